@@ -899,61 +899,37 @@ static double src_square_off(hd_geodesic *g, const shape *s, const hd_source *sr
     return most;
 }
 
-/* Sources at a border that is held at zero are as far off as the vertex beside it; with the two other borders less. Of points and pieces that
- * lie on it nothing is left, and they are refused. */
+/* Where heat is held at zero no point and no piece of a source may have a corner: it would be far off, or have no heat at all. */
 static void src_geo_borders(void) {
-    enum { N = 41, MIDDLE = N / 2 };
-    static const double bary[15] = {1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0}, third[3] = {1 / 3.0, 1 / 3.0, 1 / 3.0};
-    static const double edge[6] = {0.5, 0.5, 0, 1 / 3.0, 1 / 3.0, 1 / 3.0}, close[6] = {0.5, 0.5 - 1e-6, 1e-6, 1 / 3.0, 1 / 3.0, 1 / 3.0};
-    const int32_t a = MIDDLE, up = N, far = 30 * N + MIDDLE;
-    const int32_t one[3] = {a, a + 1 + up, a + up}, two[3] = {a, a + 1, a + 1 + up}, beside[3] = {a + up, a, a + 1}, ear[3] = {N - 2, N - 1, 2 * N - 1};
-    const int32_t with_far[6] = {a, a + 1, a + 1 + up, far, far + 1, far + 1 + up};
-    const int32_t line[15] = {a, a + 1, a + up, a + up, a, a + 1, a + 2 * up, a, a + 1, a + 3 * up, a, a + 1, a + 4 * up, a, a + 1};
-    const int32_t stays[6] = {a + 4 * up, a, a + 1, a + 4 * up, a, a + 1};
-    const int32_t along[9] = {a + up, a, a + 1, a, a + 1, a + up, a + 1, a, a + up};
+    enum { N = 41, A = N / 2, KINDS = 7 };
+    static const double third[6] = {1 / 3.0, 1 / 3.0, 1 / 3.0, 1 / 3.0, 1 / 3.0, 1 / 3.0}, edge[3] = {0.5, 0.5, 0};
+    static const double first[9] = {1, 0, 0, 1, 0, 0, 1, 0, 0};
+    static const struct { const char *what; int32_t count, curve, vertex[9], row; const double *bary; } at[KINDS] = {
+        {"one corner", 1, 0, {A, A + 1 + N, A + N}, 0, third},
+        {"two corners", 1, 0, {A, A + 1, A + 1 + N}, 0, third},
+        {"three corners", 1, 0, {N - 2, N - 1, 2 * N - 1}, 0, third},
+        {"an edge", 1, 0, {A, A + 1, A + 1 + N}, 0, edge},
+        {"one of two points", 2, 0, {30 * N + A, 30 * N + A + 1, 31 * N + A + 1, A, A + 1, A + 1 + N}, 1, third},
+        {"a curve that ends there", 3, 1, {A + 2 * N, A, A + 1, A + N, A, A + 1, A, A + N, A + 1}, 1, first},
+        {"vertices beside it", 2, 0, {A + N, A, A + 1, A + N + 1, A, A + 1}, -1, first}};
+    const int32_t stays[6] = {A + 4 * N, A, A + 1, A + 4 * N, A, A + 1};
     shape s = shape_grid(N, N, 0);
-    int b;
+    int b, q;
     for (b = 0; b < 3; b++) {
         const int zero = b == HD_GEODESIC_BORDER_DIRICHLET;
         hd_geodesic *g = src_plan(&s, 0, (hd_geodesic_border)b, 0);
-        hd_source src = src_in_triangles(1, one, third);
-        double off[6], like;
+        hd_source src;
+        double off;
         hd_error e;
-        off[0] = src_square_off(g, &s, &src, &e);
-        src.vertex = two;
-        off[1] = src_square_off(g, &s, &src, &e);
-        src.vertex = beside;
-        src.bary = bary;
-        like = src_square_off(g, &s, &src, &e);
-        CHECK_MSG(off[0] >= 0 && off[0] < 1.3 * like && off[1] >= 0 && off[1] < 1.3 * like && like < (zero ? 0.13 : 0.05), "border %d: %g, %g, vertex %g", b, off[0], off[1], like);
-        src.count = 2;                           /* as warm as one that lies in the middle */
-        src.vertex = with_far;
-        src.bary = close;
-        off[2] = src_square_off(g, &s, &src, &e);
-        CHECK_MSG(off[2] >= 0 && off[2] < (zero ? 0.13 : 0.05), "border %d: two points %g", b, off[2]);
-        src.bary = edge;
-        off[3] = src_square_off(g, &s, &src, &e);
-        CHECK_MSG(zero ? off[3] < 0 && e.status == HD_ERR_ARGUMENT && e.row == 0 && strstr(e.text, "border") : off[3] >= 0 && off[3] < 0.05, "border %d: an edge %g", b, off[3]);
-        src.count = 5;
+        for (q = 0; q < KINDS; q++) {
+            src = src_in_triangles(at[q].count, at[q].vertex, at[q].bary);
+            src.curve = at[q].curve;
+            off = src_square_off(g, &s, &src, &e);
+            if (zero && at[q].row >= 0) CHECK_MSG(off < 0 && e.status == HD_ERR_ARGUMENT && e.row == at[q].row && strstr(e.text, "border"), "%s: %g, row %d", at[q].what, off, (int)e.row);
+            else CHECK_MSG(off >= 0 && off < (zero ? 0.13 : 0.05), "border %d, %s: off by %g", b, at[q].what, off);
+        }
+        src = src_in_triangles(2, stays, first); /* a curve that stays where it is */
         src.curve = 1;
-        src.vertex = line;
-        src.bary = bary;
-        off[4] = src_square_off(g, &s, &src, &e);
-        CHECK_MSG(off[4] >= 0 && off[4] < (zero ? 0.13 : 0.05), "border %d: a curve from the border %g", b, off[4]);
-        src.count = 3;
-        src.vertex = along;
-        off[5] = src_square_off(g, &s, &src, &e);
-        CHECK((off[5] < 0) == zero && (!zero || (e.status == HD_ERR_ARGUMENT && e.row == 1)));
-        src.curve = 0;
-        CHECK((src_square_off(g, &s, &src, &e) < 0) == zero && (!zero || (e.status == HD_ERR_ARGUMENT && e.row == 1 && e.vertex == a)));
-        src.count = 1;
-        src.vertex = ear;
-        src.bary = third;
-        CHECK((src_square_off(g, &s, &src, &e) < 0) == zero && (!zero || (e.status == HD_ERR_ARGUMENT && e.row == 0)));
-        src.count = 2;                           /* a curve that stays where it is */
-        src.curve = 1;
-        src.vertex = stays;
-        src.bary = bary;
         CHECK(src_square_off(g, &s, &src, &e) < 0 && e.status == HD_ERR_ARGUMENT);
         hd_geodesic_free(g);
     }
