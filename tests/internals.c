@@ -4566,7 +4566,7 @@ static void int_flips(void) {
             shape s = k == 0 ? shape_bumpy(3, 4) : k == 1 ? shape_grid(20, 17, 0.42) : k == 2 ? shape_torus(14, 9, 2, 0.7) : shape_grid(9, 9, 0.4);
             hdi_scope scope = hdi_scope_begin(&ctx, &e);
             hd_mesh_report rep;
-            hdi_mesh mesh, flat;
+            hdi_mesh mesh, flat, over;
             hdi_mesh_wants want;
             hdi_edges edges;
             hdi_soup soup;
@@ -4596,6 +4596,12 @@ static void int_flips(void) {
             for (i = 0; i < 3 * t.n; i++) open += t.twin[i] < 0;
             CHECK_MSG(open == (close ? 0 : t.n_sheets * (int)rep.n_boundary_edges), "shape %d: %d open sides", k, open);
             CHECK(hdi_cover_flat(&flat, &t, &rep, &scope) == HD_OK);
+            soup.mesh.m = t.in_parts = 1 << 29;  /* with as many copies: corners beyond 32 bits, in sides as well as in keys */
+            i = t.n;
+            t.n = 1 << 28;
+            CHECK(hdi_cover_flat(&over, &t, &rep, &scope) == HD_ERR_TOO_LARGE);
+            hdi_error_clear(&e);
+            t.n = i;
             for (i = 0; i < 3 * t.n; i += 3) CHECK(flat.tri[i] != flat.tri[i + 2] || flat.tri[i] == flat.tri[i + 1]);
             hdi_cover_free(&t);
             loops += (int)rep.n_self_edges;

@@ -484,7 +484,7 @@ static void gall_strip(void) {
 static void gall_coincident(void) {
     shape s = shape_points(300, shape_on_sphere, 12.566370614359172, 1, 9);
     double *xyz = DENSE_NEW(double, 3 * (s.n + 2)), *d = DENSE_NEW(double, s.n + 2), *want = DENSE_NEW(double, s.n);
-    const int32_t source = 7, twin = s.n;
+    const int32_t source = 7, twin = s.n, three[3] = {twin, 100, 200};
     hd_geodesic *g = gall_points(s.xyz, s.n, NULL);
     hd_geodesic_opts o = gall_options();
     hd_error e;
@@ -496,6 +496,8 @@ static void gall_coincident(void) {
     g = gall_points(xyz, s.n + 2, NULL);
     CHECK(hd_geodesic_distance(g, 1, &twin, d, NULL, NULL) == HD_OK && d[7] == 0 && d[twin] == 0 && d[twin + 1] == d[100]);
     CHECK(geo_difference(d, want, s.n) < 1e-10);
+    CHECK(hd_geodesic_distance(g, 3, three, d, NULL, NULL) == HD_OK);    /* several: neither twin need be named first, or both */
+    CHECK_MSG(d[7] == 0 && d[twin] == 0 && d[100] == 0 && d[twin + 1] == 0 && d[200] == 0, "twins at %g, %g", d[7], d[twin + 1]);
     hd_geodesic_free(g);
     o.border = HD_GEODESIC_BORDER_MEAN;
     CHECK(hd_geodesic_create_points(&g, s.xyz, s.n, NULL, NULL, &o, &e) == HD_ERR_ARGUMENT && strstr(e.text, "border"));

@@ -247,6 +247,138 @@ static void mov_polygon_frames(const shape_poly *s, hd_laplacian_kind kind, cons
     free(xyz);
 }
 
+/* Every update that a new Laplacian of these places would refuse is refused like that, and leaves all as it was. */
+static void mov_refused(const shape_poly *s, hd_laplacian_kind kind, hd_laplacian_opts o, const char *what) {
+    static const double scales[6] = {1e152, 1e153, 1e154, 1e155, 1e-170, NAN};
+    double *xyz = DENSE_NEW(double, 3 * s->n);
+    hd_laplacian *lap = NULL, *same = NULL, *fresh;
+    hd_error e, e2;
+    int32_t i, k, version = 1, refused = 0;
+    o.kind = kind;
+    o.updatable = 1;
+    CHECK_MSG(hd_laplacian_polygons(&lap, s->xyz, s->n, s->face_ptr, s->face_idx, s->n_faces, &o, &e) == HD_OK, "%s", e.text);
+    CHECK(hd_laplacian_polygons(&same, s->xyz, s->n, s->face_ptr, s->face_idx, s->n_faces, &o, &e) == HD_OK);
+    CHECK(hd_laplacian_update(lap, s->xyz, &e) == HD_OK && hd_laplacian_update(same, s->xyz, &e) == HD_OK);
+    o.updatable = 0;
+    for (k = 0; k < 18; k++) {
+        hd_status st, want;
+        for (i = 0; i < 3 * s->n; i++) xyz[i] = s->xyz[i] * (1 + k / 6) * (k % 6 == 5 && i == 7 ? NAN : scales[k % 6 == 5 ? 0 : k % 6]);
+        fresh = NULL;
+        st = hd_laplacian_update(lap, xyz, &e);
+        want = hd_laplacian_polygons(&fresh, xyz, s->n, s->face_ptr, s->face_idx, s->n_faces, &o, &e2);
+        CHECK_MSG(st == want && (st != HD_ERR_NOT_FINITE || (e.face == e2.face && e.vertex == e2.vertex && strcmp(e.text, e2.text) == 0)),
+                  "%s, %d: %s, face %d, new %s, face %d", what, (int)k, hd_status_name(st), (int)e.face, hd_status_name(want), (int)e2.face);
+        hd_laplacian_free(fresh);
+        if (st == HD_OK) CHECK(lap->version == ++version && hd_laplacian_update(lap, s->xyz, &e) == HD_OK && lap->version == ++version);
+        else refused++;
+        mov_same_bits(lap, same, what);
+        CHECK(lap->version == version);
+    }
+    CHECK_MSG(refused >= 9, "%s: %d updates refused", what, (int)refused);
+    hd_laplacian_free(lap);
+    hd_laplacian_free(same);
+    free(xyz);
+}
+
+/* The same of geodesic plans, with times that can make it refuse more: distances stay as they were to the last bit. */
+static void mov_geodesic_refused(const shape *s, hd_geodesic_border border) {
+    static const double scales[8] = {1e-100, 1e-120, 1e-140, 1e-160, 1e150, 1e153, 1e155, NAN};
+    double *xyz = DENSE_NEW(double, 3 * s->n), *d = DENSE_NEW(double, s->n), *want = DENSE_NEW(double, s->n);
+    const int32_t sources[2] = {s->n / 2, s->n / 2 + 1};
+    int32_t i, k, refused = 0;
+    int way;
+    for (way = 0; way < 3; way++) {
+        hd_geodesic_opts o;
+        hd_geodesic *g = NULL, *fresh;
+        hd_geodesic_report rep, rep2;
+        hd_error e, e2;
+        memset(&o, 0, sizeof o);
+        o.border = border;
+        o.updatable = 1;
+        o.t = way == 1 ? 1e-250 : 0;
+        o.t_in_h2 = way == 2 ? 1e-100 : 0;
+        CHECK(hd_geodesic_create(&g, s->xyz, s->n, s->tri, s->n_tri, &o, &e) == HD_OK);
+        o.updatable = 0;
+        CHECK(hd_geodesic_distance(g, 2, sources, want, &rep, &e) >= 0);
+        for (k = 0; k < 9; k++) {
+            hd_status st, like;
+            for (i = 0; i < 3 * s->n; i++) xyz[i] = s->xyz[i] * (k < 8 ? scales[k] : i / 3 == s->tri[0] ? 0 : 1);
+            for (i = 0; i < 3 && k == 8; i++) memcpy(xyz + 3 * s->tri[i], s->xyz + 3 * s->tri[0], 3 * sizeof *xyz);
+            fresh = NULL;
+            st = hd_geodesic_update(g, xyz, &e);
+            like = hd_geodesic_create(&fresh, xyz, s->n, s->tri, s->n_tri, &o, &e2);
+            CHECK_MSG(st == like || k == 8, "way %d, %d: %s, new %s", way, (int)k, hd_status_name(st), hd_status_name(like));
+            hd_geodesic_free(fresh);
+            if (st == HD_OK) CHECK(hd_geodesic_update(g, s->xyz, &e) == HD_OK);
+            refused += st < 0;
+            CHECK_MSG(hd_geodesic_distance(g, 2, sources, d, &rep2, &e) >= 0, "way %d, %d, after %s: %s", way, (int)k, hd_status_name(st), e.text);
+            if (st < 0) CHECK_MSG(memcmp(d, want, (size_t)s->n * sizeof *d) == 0 && rep.t == rep2.t && rep.h == rep2.h && rep.residual_heat == rep2.residual_heat, "way %d, %d", way, (int)k);
+            memcpy(want, d, (size_t)s->n * sizeof *d);       /* after an update sums were taken in another order */
+            rep = rep2;
+        }
+        hd_geodesic_free(g);
+    }
+    CHECK_MSG(refused >= 14, "%d updates refused", (int)refused);
+    free(xyz);
+    free(d);
+    free(want);
+}
+
+/* Errors name the polygon, in whatever order polygons and vertices stand: far squares and pentagons, each spoilt in turn. */
+static void mov_names(void) {
+    enum { N = 7 };
+    static const int32_t place[N] = {4, 1, 6, 0, 5, 2, 3};
+    shape_poly s = shape_poly_make(5 * N, N, 5 * N);
+    double xyz[15 * N];
+    int32_t f, k;
+    int kind;
+    for (k = 0; k < 5 * N; k++) {
+        s.xyz[3 * k] = 10 * (k / 5) + cos(1.2566370614359172 * (k % 5));
+        s.xyz[3 * k + 1] = sin(1.2566370614359172 * (k % 5));
+        s.xyz[3 * k + 2] = 0;
+    }
+    for (f = 0; f < N; f++) {
+        const int32_t v = 5 * place[f], corner[5] = {v, v + 1, v + 2, v + 3, v + 4};
+        shape_put_face(&s, f == 2 ? 2 : 4 + f % 2, corner);  /* one is no face at all */
+    }
+    for (kind = HD_LAPLACIAN_FEM; kind <= HD_LAPLACIAN_POLYGON; kind++) {
+        hd_laplacian *lap = mov_polygons(&s, s.xyz, (hd_laplacian_kind)kind, 1, NULL);
+        for (f = 0; f < N; f++) {
+            hd_error e;
+            memcpy(xyz, s.xyz, sizeof xyz);
+            xyz[15 * place[f] + 3] *= 1e200;
+            xyz[15 * place[f] + 7] *= 1e200;
+            CHECK_MSG(f == 2 || (hd_laplacian_update(lap, xyz, &e) == HD_ERR_NOT_FINITE && e.face == f), "kind %d: face %d for %d", kind, (int)e.face, (int)f);
+        }
+        hd_laplacian_free(lap);
+    }
+    shape_poly_free(&s);
+}
+
+/* Faces that lose their area take their edges along, as in a new Laplacian; those that have none from the start never count. */
+static void mov_lost(hd_laplacian_kind kind, int32_t lost) {
+    shape s = shape_grid(8, 7, 0.2);
+    hd_laplacian *lap, *fresh;
+    double *xyz = DENSE_NEW(double, 3 * s.n);
+    hd_error e;
+    s.tri[3] = s.tri[4];
+    lap = test_laplacian_at(&s, s.xyz, kind, 1, NULL);
+    memcpy(xyz, s.xyz, 3 * (size_t)s.n * sizeof *xyz);
+    memcpy(xyz + 3 * lost, s.xyz + 3 * (lost + 1), 3 * sizeof *xyz);
+    fresh = test_laplacian_at(&s, xyz, kind, 0, NULL);
+    CHECK(hd_laplacian_update(lap, xyz, &e) == HD_OK && lap->mesh.n_zero_area > 0);
+    CHECK_MSG(lap->mesh.n_edges == fresh->mesh.n_edges && lap->mesh.n_boundary_edges == fresh->mesh.n_boundary_edges && lap->mesh.n_boundary_loops == fresh->mesh.n_boundary_loops,
+              "vertex %d: %d edges, %d, %d loops for %d, %d, %d", (int)lost, (int)lap->mesh.n_edges, (int)lap->mesh.n_boundary_edges, (int)lap->mesh.n_boundary_loops,
+              (int)fresh->mesh.n_edges, (int)fresh->mesh.n_boundary_edges, (int)fresh->mesh.n_boundary_loops);
+    lap->mesh.smallest_angle = fresh->mesh.smallest_angle;
+    CHECK(memcmp(&lap->mesh, &fresh->mesh, sizeof lap->mesh) == 0);
+    CHECK_MSG(fabs(lap->h - fresh->h) <= 1e-14 * fresh->h && fabs(lap->area - fresh->area) < 1e-14, "vertex %d: h %g for %g", (int)lost, lap->h, fresh->h);
+    hd_laplacian_free(lap);
+    hd_laplacian_free(fresh);
+    shape_free(&s);
+    free(xyz);
+}
+
 /* L and B of a mesh as matrices over vertices: rows are vertices where every vertex has a mass. */
 static hd_csr mov_matrix(const hd_laplacian *lap, const double *val, int diagonal) {
     hd_csr a = lap->L;
@@ -423,6 +555,30 @@ static void test_moving(void) {
     mov_matrix_frames(&ball, HD_LAPLACIAN_VORONOI_COT, "matrices of voronoi-cot");
     mov_matrix_pattern();
     mov_points(&ball);
+    mov_names();
+    mov_lost(HD_LAPLACIAN_FEM, 27);
+    mov_lost(HD_LAPLACIAN_VORONOI_COT, 41);
+    {
+        shape flat = shape_grid(9, 7, 0);        /* its whole area overflows before that of a face does */
+        shape_poly split = shape_poly_of(&flat), mixed = shape_trominoes(4, 5, 0.1);
+        const int32_t held[2] = {10, 24};
+        hd_laplacian_opts o;
+        memset(&o, 0, sizeof o);
+        mov_refused(&split, HD_LAPLACIAN_FEM, o, "fem");
+        mov_refused(&split, HD_LAPLACIAN_VORONOI_COT, o, "voronoi-cot");
+        mov_refused(&mixed, HD_LAPLACIAN_COT, o, "cot of trominoes");
+        mov_refused(&mixed, HD_LAPLACIAN_POLYGON, o, "trominoes");
+        o.border = HD_BORDER_DIRICHLET;
+        o.held = held;
+        o.n_held = 2;
+        mov_refused(&split, HD_LAPLACIAN_FEM, o, "fem, held");
+        mov_refused(&mixed, HD_LAPLACIAN_POLYGON, o, "trominoes, held");
+        mov_geodesic_refused(&flat, HD_GEODESIC_BORDER_NATURAL);
+        mov_geodesic_refused(&flat, HD_GEODESIC_BORDER_MEAN);
+        shape_free(&flat);
+        shape_poly_free(&split);
+        shape_poly_free(&mixed);
+    }
     mov_geodesic(&ball, "ball");
     mov_geodesic(&sheet, "sheet");
     shape_free(&ball);

@@ -818,6 +818,124 @@ static void src_geo_rules(void) {
     free(e);
 }
 
+/* A plan of the triangles of a shape: 0 as they are, 1 by their lengths, 2 intrinsic Delaunay, 3 tufted, 4 as polygons that are split, 5 points. */
+static hd_geodesic *src_plan(const shape *s, int kind, hd_geodesic_border border, double t) {
+    shape_poly p = shape_poly_of(s);
+    double *length = DENSE_NEW(double, 3 * s->n_tri);
+    hd_geodesic *g = NULL;
+    hd_geodesic_opts o;
+    hd_error e;
+    int32_t q;
+    memset(&o, 0, sizeof o);
+    o.t = t;
+    o.border = border;
+    o.intrinsic_delaunay = kind == 2 || kind == 4;
+    o.tufted = kind == 3;
+    for (q = 0; q < 3 * s->n_tri; q++) length[q] = src_gap(s->xyz + 3 * s->tri[q], s->xyz + 3 * s->tri[q % 3 == 2 ? q - 2 : q + 1]);
+    if (kind == 1) (void)hd_geodesic_create_lengths(&g, length, s->n, s->tri, s->n_tri, &o, &e);
+    else if (kind == 4) (void)hd_geodesic_create_polygons(&g, p.xyz, p.n, p.face_ptr, p.face_idx, p.n_faces, &o, &e);
+    else if (kind == 5) (void)hd_geodesic_create_points(&g, s->xyz, s->n, NULL, NULL, &o, &e);
+    else (void)hd_geodesic_create(&g, s->xyz, s->n, s->tri, s->n_tri, &o, &e);
+    CHECK_MSG(g != NULL, "plan %d: %s", kind, e.text);
+    shape_poly_free(&p);
+    free(length);
+    return g;
+}
+
+/* Where another kind of plan has the same triangles, it gives the same distances from points in faces, on an edge, and from curves. */
+static void src_geo_kinds(const shape *s, int last) {
+    double *d = DENSE_NEW(double, s->n), *want = DENSE_NEW(double, s->n);
+    const double bary[9] = {0.2, 0.3, 0.5, 0, 0.6, 0.4, 0.7, 0.2, 0.1};
+    const int32_t far_face = s->n_tri / 2;
+    int32_t vertex[9];
+    int b, kind, which;
+    for (b = 0; b < (last == 5 ? 1 : 3); b++) {
+        hd_geodesic *g = src_plan(s, 0, (hd_geodesic_border)b, 0.02);
+        for (kind = 1; kind <= last; kind++) {
+            hd_geodesic *other = src_plan(s, kind, (hd_geodesic_border)b, 0.02);
+            for (which = 0; which < 3; which++) {    /* a point; three points, of two faces; a curve in a face */
+                hd_source src = src_in_triangles(which == 0 ? 1 : 3, vertex, bary);
+                hd_geodesic_report rep;
+                int q;
+                for (q = 0; q < 3; q++) memcpy(vertex + 3 * q, s->tri + 3 * (which == 1 && q == 2 ? far_face : 3), 3 * sizeof *vertex);
+                src.curve = which == 2;
+                CHECK(hd_geodesic_distance_from(g, &src, want, &rep, NULL) == HD_OK && hd_geodesic_distance_from(other, &src, d, &rep, NULL) == HD_OK);
+                CHECK_MSG(dense_max_diff(d, want, s->n) < 1e-11, "border %d, plan %d, source %d: off by %g", b, kind, which, dense_max_diff(d, want, s->n));
+            }
+            hd_geodesic_free(other);
+        }
+        hd_geodesic_free(g);
+    }
+    free(d);
+    free(want);
+}
+
+/* The largest error of a source on a square: the points, or the straight line from the first to the last of them. -1: it was refused. */
+static double src_square_off(hd_geodesic *g, const shape *s, const hd_source *src, hd_error *e) {
+    double *d = DENSE_NEW(double, s->n), p[8][2] = {{0, 0}}, most = -1;
+    hd_geodesic_report rep;
+    int32_t q, c, v;
+    if (hd_geodesic_distance_from(g, src, d, &rep, e) == HD_OK && rep.residual_heat < 1e-13) {
+        for (q = 0; q < src->count; q++)
+            for (c = 0; c < 6; c++) p[q][c % 2] += src->bary[3 * q + c / 2] * s->xyz[3 * src->vertex[3 * q + c / 2] + c % 2];
+        for (v = 0; v < s->n; v++) {
+            const double *x = s->xyz + 3 * v;
+            double want = HUGE_VAL;
+            for (q = 0; q < src->count; q++) want = fmin(want, hypot(x[0] - p[q][0], x[1] - p[q][1]));
+            if (src->curve) {
+                const double dx = p[src->count - 1][0] - p[0][0], dy = p[src->count - 1][1] - p[0][1];
+                const double at = fmax(0, fmin(1, ((x[0] - p[0][0]) * dx + (x[1] - p[0][1]) * dy) / (dx * dx + dy * dy)));
+                want = hypot(p[0][0] + at * dx - x[0], p[0][1] + at * dy - x[1]);
+            }
+            most = fmax(most, fabs(d[v] - want));
+        }
+        for (q = 0; q < src->count && !src->curve; q++)
+            for (c = 0; c < 3; c++) {
+                const int32_t corner = src->vertex[3 * q + c];
+                if (src->bary[3 * q + c] > 0) CHECK(fabs(d[corner] - hypot(s->xyz[3 * corner] - p[q][0], s->xyz[3 * corner + 1] - p[q][1])) < 1e-14);
+            }
+    }
+    free(d);
+    return most;
+}
+
+/* Where heat is held at zero no point and no piece of a source may have a corner: it would be far off, or have no heat at all. */
+static void src_geo_borders(void) {
+    enum { N = 41, A = N / 2, KINDS = 7 };
+    static const double third[6] = {1 / 3.0, 1 / 3.0, 1 / 3.0, 1 / 3.0, 1 / 3.0, 1 / 3.0}, edge[3] = {0.5, 0.5, 0};
+    static const double first[9] = {1, 0, 0, 1, 0, 0, 1, 0, 0};
+    static const struct { const char *what; int32_t count, curve, vertex[9], row; const double *bary; } at[KINDS] = {
+        {"one corner", 1, 0, {A, A + 1 + N, A + N}, 0, third},
+        {"two corners", 1, 0, {A, A + 1, A + 1 + N}, 0, third},
+        {"three corners", 1, 0, {N - 2, N - 1, 2 * N - 1}, 0, third},
+        {"an edge", 1, 0, {A, A + 1, A + 1 + N}, 0, edge},
+        {"one of two points", 2, 0, {30 * N + A, 30 * N + A + 1, 31 * N + A + 1, A, A + 1, A + 1 + N}, 1, third},
+        {"a curve that ends there", 3, 1, {A + 2 * N, A, A + 1, A + N, A, A + 1, A, A + N, A + 1}, 1, first},
+        {"vertices beside it", 2, 0, {A + N, A, A + 1, A + N + 1, A, A + 1}, -1, first}};
+    const int32_t stays[6] = {A + 4 * N, A, A + 1, A + 4 * N, A, A + 1};
+    shape s = shape_grid(N, N, 0);
+    int b, q;
+    for (b = 0; b < 3; b++) {
+        const int zero = b == HD_GEODESIC_BORDER_DIRICHLET;
+        hd_geodesic *g = src_plan(&s, 0, (hd_geodesic_border)b, 0);
+        hd_source src;
+        double off;
+        hd_error e;
+        for (q = 0; q < KINDS; q++) {
+            src = src_in_triangles(at[q].count, at[q].vertex, at[q].bary);
+            src.curve = at[q].curve;
+            off = src_square_off(g, &s, &src, &e);
+            if (zero && at[q].row >= 0) CHECK_MSG(off < 0 && e.status == HD_ERR_ARGUMENT && e.row == at[q].row && strstr(e.text, "border"), "%s: %g, row %d", at[q].what, off, (int)e.row);
+            else CHECK_MSG(off >= 0 && off < (zero ? 0.13 : 0.05), "border %d, %s: off by %g", b, at[q].what, off);
+        }
+        src = src_in_triangles(2, stays, first); /* a curve that stays where it is */
+        src.curve = 1;
+        CHECK(src_square_off(g, &s, &src, &e) < 0 && e.status == HD_ERR_ARGUMENT);
+        hd_geodesic_free(g);
+    }
+    shape_free(&s);
+}
+
 /* ---- errors ---- */
 
 static void src_refused(hd_heat *heat, const hd_source *s, hd_status want, int64_t row, int64_t vertex, const char *what) {
@@ -1076,6 +1194,14 @@ static void test_sources(void) {
     src_geo_square();
     src_geo_strip();
     src_geo_rules();
+    {
+        shape ball = shape_icosphere(2), cap = bord_disk(6, 1);
+        src_geo_kinds(&ball, 5);
+        src_geo_kinds(&cap, 4);
+        shape_free(&ball);
+        shape_free(&cap);
+    }
+    src_geo_borders();
     src_far_weights();
     src_errors();
     src_memory();
