@@ -780,7 +780,8 @@ typedef struct hd_spectrum {
      * the first eigenvalue that does not belong to constants */
     double *residual;
     double largest_residual;
-    int32_t n_poor;             /* residuals above tol and above what rounding of L x alone makes */
+    /* residuals above tol and above what rounding of L x alone makes, or above a tenth of lambda itself */
+    int32_t n_poor;
     int32_t n_constant;         /* the first pairs are the constants of components; their residual is 0 */
     /* 1: proven complete. No pair is missing: L - shift B has as many negative pivots as there are
      * eigenvalues found below the shift, and rounding cannot change the count, because no eigenvalue found is
@@ -22863,6 +22864,8 @@ static void hdi_spec_settle(hdi_spec *s, double *x, double *bx, int32_t at, int3
     hdi_spec_add(s, hdi_spec_pass(s, slab, at, n, x, 1), NULL, 1);
 }
 
+#define HDI_SPEC_LOST 0.1        /* a residual that is a larger part of its value leaves nothing of it */
+
 /* Locks the Ritz vectors which[0..n): one group of blocks. first: their first column in the last slab. Errors
  * of solves, which eigenvalues next to the shift make large, leave fast modes in the vectors. They are taken
  * out where they are seen. */
@@ -22888,7 +22891,8 @@ static void hdi_spec_lock_group(hdi_spec *s, const int32_t *which, int32_t n, in
         hdi_wide_norms(x, s->noise, s->n, HDI_SPEC_WIDE, noise);
         for (r = 0; r < here; r++) {
             if (twin[at + r] > 0.1 || s->found == s->n) continue;   /* found before */
-            s->n_poor += norm[r] > s->tol * hdi_max(fabs(value[r]), s->unit) + noise[r];
+            s->n_poor += norm[r] > s->tol * hdi_max(fabs(value[r]), s->unit) + noise[r] ||
+                         norm[r] > HDI_SPEC_LOST * fabs(value[r]);
             hdi_spec_enter(s, value[r], norm[r], first + at + r);
         }
     }
@@ -23194,7 +23198,7 @@ static void hdi_spec_vectors(const hdi_spec *s, hd_spectrum *out) {
         sign = most < 0 ? -root : root;
         for (i = 0; i < out->n; i++) x[i] *= sign;
         out->value[q] = s->m->scale * s->value[q];
-        out->residual[q] = s->residual[q] > 0 ? s->residual[q] / hdi_max(s->value[q], first) : 0;
+        out->residual[q] = hdi_quotient(s->residual[q], hdi_max(s->value[q], first));
         out->largest_residual = hdi_max(out->largest_residual, out->residual[q]);
     }
 }

@@ -146,7 +146,8 @@ static void spec_closed_forms(void) {
         char what[60];
         snprintf(what, sizeof what, "%d x %d", nx[k], ny[k]);
         if (z) spec_check_values(z, want, nx[k] * ny[k], what);
-        if (z) spec_check_vectors(lap, z, 2e-10, what);
+        /* a path of 900 has eigenvalues of 1e-5, where rounding of L x is 1e-15 */
+        if (z) spec_check_vectors(lap, z, nx[k] < 900 ? 2e-10 : 1e-9, what);
         hd_spectrum_free(z);
         hd_laplacian_free(lap);
         free(want);
@@ -286,7 +287,8 @@ static void spec_rounding(void) {
     }
     lap = bnd_graph(400, 400, a, b, w, NULL, 1);
     z = spec_make(lap, 6, 0, HD_WARN_ACCURACY);
-    if (z) CHECK(!z->proven || z->n_poor > 0);
+    if (z) CHECK((!z->proven || z->n_poor > 0) && z->largest_residual > 0.1);
+    for (i = 0; z && i < 6; i++) CHECK(z->residual[i] >= 0);
     hd_spectrum_free(z);
     hd_laplacian_free(lap);
 }
