@@ -33108,7 +33108,10 @@ HEATDIFF_API hd_status hd_ldl_solve(hd_ldl *f, int32_t k, const double *b, size_
     ldb = ldb ? ldb : HDI_CAST(size_t, f->n);
     ldx = ldx ? ldx : HDI_CAST(size_t, f->n);
     if (hdi_ldl_leading(f, ldb, ldx, c.e) < 0 || hdi_ldl_room(f, 0, c.e) < 0) return c.e->status;
-    for (q = 0; q < k; q += 8) hdi_ldl_solve_real(f, q, k - q < 8 ? k - q : 8, b, ldb, x, ldx);
+    for (q = 0; q < k; q += 8) {                 /* in place no answer may reach what is still to be read */
+        const int32_t at = ldx > ldb ? (k - 1) / 8 * 8 - q : q;
+        hdi_ldl_solve_real(f, at, k - at < 8 ? k - at : 8, b, ldb, x, ldx);
+    }
     return HD_OK;
 }
 

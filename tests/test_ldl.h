@@ -940,6 +940,12 @@ static void ldl_forms_real(void) {
         CHECK(hd_ldl_solve(f, k, y, PAD, y, PAD, NULL) == HD_OK);
         for (q = 0; q < k; q++) CHECK_MSG(memcmp(y + PAD * q, x + PAD * q, N * sizeof *x) == 0, "in place: %d of %d", (int)q, (int)k);
     }
+    for (i = 0; f && i < 2; i++) {               /* in place, columns wider apart before or afterwards */
+        const size_t ldb = i ? PAD : N, ldx = i ? N : PAD;
+        for (q = 0; q < MOST; q++) memcpy(y + ldb * (size_t)q, b + PAD * q, N * sizeof *y);
+        CHECK(hd_ldl_solve(f, MOST, y, ldb, y, ldx, NULL) == HD_OK);
+        for (q = 0; q < MOST; q++) CHECK_MSG(ldl_backward_real(&a, L, b + PAD * q, y + ldx * (size_t)q) <= 1e-14, "%d apart: %d", (int)ldx, (int)q);
+    }
     hd_ldl_free(f);
     hd_csr_free(&a, NULL);
     free(L);
