@@ -3337,6 +3337,7 @@ enum {
     HDI_REAL_MR = 24,   /* largest mr */
     HDI_REAL_NR = 8     /* largest nr */
 };
+#define HDI_PIVOT_LEAST (DBL_MIN / 4)   /* the largest number whose inverse overflows, 2^-1024 */
 
 /* One instruction set. mr x nr is the register tile. L, A, P point at the entry (first row, first column)
  * named; ld is the distance of columns. */
@@ -3989,7 +3990,7 @@ HDI_PART void HDI_OF(real_pivots)(const int nv, double *P, int64_t ld, int32_t k
         double d, q;
         if (j == nc) return;
         d = hdi_vlow(hdi_vlane(x[j][j / HDI_WIDTH], j % HDI_WIDTH));
-        if (d == 0) {                            /* which hdi_real_block finds on the diagonal */
+        if (fabs(d) <= HDI_PIVOT_LEAST) {        /* which hdi_real_block finds on the diagonal */
             C[j] = d;
             return;
         }
@@ -4798,7 +4799,8 @@ static void hdi_real_rows(const hdi_real_ops *o, double *P, int64_t m, int32_t k
 /* Pivots K = k0..k0+nb-1 in rows k0..end-1: LDL' of P(K,K) - L(K,0..k0-1) D L(K,0..k0-1)', and as
  * hdi_real_rows, to the last bit, below K. nb <= HDI_REAL_NB, k0 a multiple of nr; end = k0 + nb, or up to m
  * when k0 + nb <= HDI_REAL_KC. S [k0 + nb rows of slices] becomes D L(K,0..k0+nb-1)'. d is left on the
- * diagonal of P. work [hdi_real_work(u, p)]. Returns -1, or the first pivot that is zero or not finite. */
+ * diagonal of P. work [hdi_real_work(u, p)]. Returns -1, or the first pivot that is not finite, or
+ * whose inverse is not. */
 static int64_t hdi_real_block(const hdi_real_ops *o, double *P, int64_t m, int32_t k0, int32_t nb,
                               int64_t end, double *S, double *dinv, hdi_real_pivots *pivots, double *work) {
     const int32_t nr = o->nr, kb = k0 + nb;
@@ -4818,7 +4820,7 @@ static int64_t hdi_real_block(const hdi_real_ops *o, double *P, int64_t m, int32
         o->block(P + k, m, k, nc, n, S, dinv);
         for (j = k; j < k + nc; j++) {
             const double d = P[j * (m + 1)], a = fabs(d);
-            if (a == 0 || !hdi_finite(a)) return j;
+            if (a <= HDI_PIVOT_LEAST || !hdi_finite(a)) return j;
             if (a > pivots->largest) pivots->largest = a;
             if (a < pivots->smallest) pivots->smallest = a;
             pivots->negative += d < 0;
@@ -14121,7 +14123,7 @@ static hd_status hdi_factor_collect(hdi_factor *f, int32_t n_parts, hd_error *e)
         return e->status;
     }
     if (f->all.failed < 0) return HD_OK;
-    hdi_fail_row(e, HD_ERR_BREAKDOWN, "LDL': a pivot is zero or not finite", f->sym->perm[f->all.failed], -1,
+    hdi_fail_row(e, HD_ERR_BREAKDOWN, "LDL': a pivot is not finite, or too small to divide by", f->sym->perm[f->all.failed], -1,
                  f->all.value);
     if (f->width > 1) e->pole = f->all.lane;
     return e->status;

@@ -1392,6 +1392,43 @@ static void ldl_not_finite(void) {
     free(val);
 }
 
+/* A pivot is divided by if its inverse is a number, else named, wherever it stands. */
+static void ldl_subnormal(void) {
+    enum { N = 30 };
+    static const double pivots[5] = {1e-307, -1e-308, 1e-309, -1e-310, 5e-324};
+    hd_csr a = ldl_shape(LDL_BAND, N, 1, 1);
+    double *val = DENSE_NEW(double, a.nnz), b[N], x[N];
+    hd_c64 *z = DENSE_NEW(hd_c64, a.nnz);
+    hd_ldl *f = ldl_make(&a, NULL, "subnormal");
+    hd_error e;
+    int32_t i, q;
+    TRAPS_OFF;                                   /* inverses overflow */
+    for (i = 0; f && i < N; i++) {
+        const int64_t at = op_find(&a, i, i);
+        memset(val, 0, (size_t)a.nnz * sizeof *val);
+        for (q = 0; q < N; q++) {
+            val[op_find(&a, q, q)] = b[q] = 1;
+            if (q == i) b[q] = 1e-5;
+        }
+        for (q = 0; q < 5; q++) {
+            const hd_status want = q < 2 ? HD_OK : HD_ERR_BREAKDOWN;
+            int64_t p;
+            val[at] = pivots[q];
+            for (p = 0; p < a.nnz; p++) z[p].re = z[p].im = val[p];
+            z[at].im = 0;
+            CHECK_MSG(hd_ldl_factor(f, val, NULL, &e) == want && (q < 2 || (e.row == i && e.value == pivots[q])), "%g in row %d: %s, row %d",
+                      pivots[q], (int)i, hd_status_name(e.status), (int)e.row);
+            if (q < 2) CHECK(hd_ldl_solve(f, 1, b, 0, x, 0, &e) == HD_OK && fabs(x[i] * pivots[q] / b[i] - 1) < 1e-15);
+            CHECK(hd_ldl_factor_complex(f, 1, z, NULL, &e) == want && (q < 2 || e.row == i));
+        }
+    }
+    TRAPS_ON;
+    hd_ldl_free(f);
+    hd_csr_free(&a, NULL);
+    free(val);
+    free(z);
+}
+
 /* Exact zeros that come by elimination, and pivots that overflow. */
 static void ldl_breakdown(void) {
     enum { N = 12 };
@@ -1834,6 +1871,7 @@ static void test_ldl(void) {
     ldl_pivot_errors_of(HD_ORDERING_NESTED_DISSECTION, 77, 5);
     ldl_pivot_errors_of(HD_ORDERING_OWN, 33, 6);
     ldl_not_finite();
+    ldl_subnormal();
     ldl_breakdown();
     ldl_first_of_two();
     ldl_robust();
