@@ -1278,7 +1278,7 @@ typedef struct hd_ldl_opts {
     /* Default: nested dissection if coordinates are given and there are many rows, else minimum degree. */
     hd_ordering ordering;
     const int32_t *perm;        /* [n] with HD_ORDERING_OWN: perm[k] is the row eliminated k-th */
-    const double *xyz;          /* [3 n] coordinates of the rows; NULL: none */
+    const double *xyz;          /* [3 n] coordinates of the rows, finite; NULL: none */
     hd_context *context;
     int32_t end_zero;
 } hd_ldl_opts;
@@ -1301,8 +1301,9 @@ typedef struct hd_ldl_report {
 
 /* Computes the ordering, the elimination tree and the supernodes.
  * a      n x n with a symmetric pattern. Its values are ignored, and diagonal entries may be missing
- * Errors as hd_csr_check; HD_ERR_INDEX (row) if perm is not a permutation; HD_ERR_ARGUMENT, HD_ERR_TOO_LARGE,
- *        HD_ERR_MEMORY, HD_ERR_CANCELLED
+ * Errors as hd_csr_check; HD_ERR_NOT_FINITE (row; column: 0 to 2) if a coordinate is not finite; HD_ERR_INDEX
+ *        (row) if perm is not a permutation; HD_ERR_ARGUMENT, HD_ERR_TOO_LARGE, HD_ERR_MEMORY,
+ *        HD_ERR_CANCELLED
  * Cost   nearly linear in the non-zeros of A, plus the ordering
  * Source Amestoy, Davis, Duff 1996; George 1973; Gilbert, Ng, Peyton 1994 */
 HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ldl_opts *opts,
@@ -14640,7 +14641,12 @@ static void hdi_ldl_tell(const hd_ldl *f, const hdi_factor *of, hd_ldl_report *r
 /* Order, analysis and a copy of the pattern, for f->ctx. */
 static hd_status hdi_ldl_analyse(hd_ldl *f, const hd_csr *a, const hdi_order *order, hd_error *e) {
     const uint64_t n = HDI_CAST(uint64_t, f->n), nnz = HDI_CAST(uint64_t, f->nnz);
+    int64_t p;
     int32_t i;
+    for (p = 0; order->xyz && p < hdi_triple(f->n); p++)
+        if (!hdi_finite(order->xyz[p]))
+            return hdi_fail_row(e, HD_ERR_NOT_FINITE, "ldl options: a coordinate is not finite", p / 3, p % 3,
+                                order->xyz[p]);
     if (hdi_symbolic_order(&f->sym, a, order, f->ctx, e) < 0) return e->status;
     f->row_ptr = HDI_CAST(int64_t *, hdi_copy(a->row_ptr, n + 1, sizeof *f->row_ptr, f->ctx, e));
     f->col = HDI_CAST(int32_t *, hdi_copy(a->col, nnz, sizeof *f->col, f->ctx, e));

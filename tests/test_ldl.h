@@ -1697,6 +1697,17 @@ static void ldl_bad_options(void) {
     good.ordering = HD_ORDERING_NESTED_DISSECTION;
     good.xyz = xyz;
     if (CHECK(hd_ldl_analyse(&f, &a, &good, NULL, NULL) == HD_OK)) hd_ldl_free(f);
+    for (i = 0; i < 6; i++) {                    /* coordinates: refused, or of any size */
+        const double wrong[3] = {(double)NAN, (double)INFINITY, -(double)INFINITY};
+        hd_ldl *none = ldl_mark;
+        xyz[5 * i + 2] = wrong[i % 3];
+        good.ordering = i < 3 ? HD_ORDERING_NESTED_DISSECTION : HD_ORDERING_AUTO;
+        CHECK(hd_ldl_analyse(&none, &a, &good, NULL, &e) == HD_ERR_NOT_FINITE && none == ldl_mark);
+        CHECK_MSG(e.row == (5 * i + 2) / 3 && e.column == (5 * i + 2) % 3, "row %d, column %d", (int)e.row, (int)e.column);
+        xyz[5 * i + 2] = i % 2 ? DBL_MAX : -DBL_MAX;
+    }
+    good.ordering = HD_ORDERING_NESTED_DISSECTION;
+    if (CHECK(hd_ldl_analyse(&f, &a, &good, NULL, NULL) == HD_OK)) hd_ldl_free(f);
     hd_ldl_free(NULL);
     hd_csr_free(&a, NULL);
 }
