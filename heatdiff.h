@@ -32722,7 +32722,9 @@ HEATDIFF_API hd_status hd_csr_permute(hd_csr *out, const hd_csr *a, const int32_
 HEATDIFF_API void hd_csr_apply(const hd_csr *a, const double *x, double *y, hd_context *ctx) {
     hdi_call c;
     if (hdi_enter(&c, ctx, NULL) < 0) c.ctx = &c.context;
+    hdi_hold(c.ctx);
     hdi_csr_apply(a, x, y, c.ctx);
+    hdi_let_go(c.ctx);
 }
 
 HEATDIFF_API void hd_csr_free(hd_csr *a, hd_context *ctx) {
