@@ -14441,14 +14441,14 @@ static void hdi_sweep_front(const hdi_sweep *z, int32_t v) {
     const hdi_factor *f = z->f;
     const int64_t w = HDI_CAST(int64_t, f->width) * z->k;
     double *y = z->x + w * f->sym->super[v], *t = z->vec + w * f->sym->vector[v];
+    const char *only = z->backward ? z->wanted : z->active;
+    if (only && !only[v]) return;
     hdi_factor_fetch(f, v, z->backward);
     if (z->backward) {
-        if (z->wanted && !z->wanted[v]) return;
         if (hdi_is_real(f)) hdi_sweep_backward_real(z, v, y, t);
         else hdi_sweep_backward_pack(z, v, y);
         return;
     }
-    if (z->active && !z->active[v]) return;
     hdi_sweep_take(z, v, y);
     hdi_sweep_children(z, v, y, t);
     hdi_sweep_forward(z, v, y, t);
