@@ -1312,7 +1312,7 @@ HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ld
 /* Factorises a real matrix.
  * val    [nnz] in the order of the analysed pattern. Of each pair (i,j), (j,i) one entry is read
  * Errors HD_ERR_NOT_FINITE (row, column), HD_ERR_BREAKDOWN (row, value: a pivot too small to divide by),
- *        HD_ERR_MEMORY, HD_ERR_CANCELLED
+ *        HD_ERR_MEMORY, HD_ERR_CANCELLED. The pivot does not depend on the number of threads
  * Cost   hd_ldl_report.factor_flops; 8 bytes for each stored entry
  * Source Duff, Reid 1983; Liu 1992: multifrontal */
 HEATDIFF_API hd_status hd_ldl_factor(hd_ldl *f, const double *val, hd_ldl_report *report,
@@ -13345,7 +13345,8 @@ typedef struct hdi_factor {
     uint64_t spare_size;
     /* a factorisation under way */
     const hdi_values *values;
-    int32_t stop;
+    int32_t stop;                    /* the top is not begun, or not gone on with */
+    int32_t until;                   /* nor subtrees from this one on: those before it may fail earlier */
     double share;
     hd_error error;
 } hdi_factor;
@@ -13909,17 +13910,24 @@ static double *hdi_factor_scratch(const hdi_factor *f, int64_t i) {
     return f->scratch + f->scratch_size * HDI_CAST(size_t, i);
 }
 
+/* No subtree from this one on need go on. Should two threads come at once, and the larger number stay, then
+ * more is done than need be. */
+static void hdi_factor_stop(hdi_factor *f, int32_t until) {
+    if (until < HDI_LOAD(&f->until)) HDI_STORE(&f->until, until);
+    HDI_STORE(&f->stop, 1);
+}
+
 /* A subtree, by one thread. */
 static void hdi_factor_task(void *arg, int64_t index, int32_t worker) {
     hdi_factor *f = HDI_CAST(hdi_factor *, arg);
     const hdi_symbolic *s = f->sym;
     const double done = f->share * HDI_CAST(double, index) / s->n_tasks;
     int32_t v;
-    if (HDI_LOAD(&f->stop)) return;
-    if (worker == 0 && hdi_progress(f->ctx, "factor", done, &f->error) < 0) HDI_STORE(&f->stop, 1);
-    for (v = s->task_begin[index]; v < s->task_end[index] && !HDI_LOAD(&f->stop); v++)
+    if (index >= HDI_LOAD(&f->until)) return;
+    if (worker == 0 && hdi_progress(f->ctx, "factor", done, &f->error) < 0) hdi_factor_stop(f, 0);
+    for (v = s->task_begin[index]; v < s->task_end[index] && index < HDI_LOAD(&f->until); v++)
         if (!hdi_front_factor(f, v, hdi_factor_scratch(f, index), f->pivots + index, 0))
-            HDI_STORE(&f->stop, 1);
+            hdi_factor_stop(f, HDI_CAST(int32_t, index));
 }
 
 static void hdi_factor_free(hdi_factor *f) {
@@ -14106,7 +14114,8 @@ static hd_status hdi_factor_make_pack(hdi_factor *pack, int32_t i, const hdi_sym
     return hdi_factor_make(pack, sym, HDI_PACK, ctx, e);
 }
 
-/* Collects what the parts saw. Of several failures that of the lowest pivot is reported. */
+/* Collects what the parts saw. Of several failures that of the lowest pivot is reported: no thread stops a
+ * subtree before it. */
 static hd_status hdi_factor_collect(hdi_factor *f, int32_t n_parts, hd_error *e) {
     int32_t i;
     hdi_pivots_clear(&f->all);
@@ -14230,6 +14239,7 @@ static hd_status hdi_factor_run(hdi_factor *f, const hdi_values *values, hd_erro
     hd_threads *threads = hdi_threads_own(f->ctx, n);
     int32_t i;
     f->ready = f->stop = 0;
+    f->until = s->n_tasks;
     f->values = values;
     f->share = s->n_top > 0 ? 0.5 : 1;
     hdi_error_clear(&f->error);
