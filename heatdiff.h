@@ -2355,7 +2355,8 @@ static hd_status hdi_need(hd_context *ctx, uint64_t more, const char *what, hd_e
  * which a factor needs a lot. */
 static void hdi_large_pages(char *raw, size_t total) {
 #if HDI_LARGE_PAGES
-    const size_t page = 4096, skip = (page - HDI_RECAST(size_t, raw) % page) % page;
+    const size_t page = 1 << 16;                 /* the largest that Linux has; shorter ones divide it */
+    const size_t skip = (page - HDI_RECAST(size_t, raw) % page) % page;
     if (total >= HDI_CAST(size_t, 4) << 20)
         (void)madvise(raw + skip, (total - skip) & ~(page - 1), MADV_HUGEPAGE);
 #else
@@ -2539,6 +2540,13 @@ static int64_t hdi_process(void) { return getpid(); }
 #define HDI_THREAD_DONE NULL
 typedef void *(*hdi_thread_body)(void *);
 
+/* Signals go to the threads of the program, where the compiler's mode shows how to say so. */
+#if defined(SIG_SETMASK) && (!defined(_POSIX_C_SOURCE) || _POSIX_C_SOURCE >= 199506L)
+#define HDI_SIGNALS 1
+#else
+#define HDI_SIGNALS 0
+#endif
+
 /* Before glibc 2.34 these functions are in a library of their own. A program that was linked without it has
  * no threads. */
 #if !defined(HDI_THREADS_WEAK) && defined(__GLIBC__) && __GLIBC__ == 2 && __GLIBC_MINOR__ < 34
@@ -2548,7 +2556,13 @@ typedef void *(*hdi_thread_body)(void *);
 #pragma weak pthread_create
 #pragma weak pthread_join
 #pragma weak pthread_attr_setstacksize
-static int hdi_threads_linked(void) { return pthread_create && pthread_join && pthread_attr_setstacksize; }
+#pragma weak pthread_sigmask
+static int hdi_threads_linked(void) {
+#if HDI_SIGNALS
+    if (!pthread_sigmask) return 0;
+#endif
+    return pthread_create && pthread_join && pthread_attr_setstacksize;
+}
 #else
 static int hdi_threads_linked(void) { return 1; }
 #endif
@@ -2556,21 +2570,20 @@ static int hdi_threads_linked(void) { return 1; }
 /* The stack of a thread: some systems give as little as 128 KB, musl among them. */
 enum { HDI_STACK = 1 << 20 };
 
-/* Signals go to the threads of the program, where the compiler's mode shows how to say so. */
 static int hdi_thread_start(hdi_thread *t, hdi_thread_body body, void *arg) {
     pthread_attr_t attr;
     int failed;
-#ifdef SIG_SETMASK
+#if HDI_SIGNALS
     sigset_t all, old;
     sigfillset(&all);
-    sigprocmask(SIG_SETMASK, &all, &old);
+    pthread_sigmask(SIG_SETMASK, &all, &old);
 #endif
     pthread_attr_init(&attr);
     pthread_attr_setstacksize(&attr, HDI_STACK);
     failed = pthread_create(t, &attr, body, arg);
     pthread_attr_destroy(&attr);
-#ifdef SIG_SETMASK
-    sigprocmask(SIG_SETMASK, &old, NULL);
+#if HDI_SIGNALS
+    pthread_sigmask(SIG_SETMASK, &old, NULL);
 #endif
     return !failed;
 }
