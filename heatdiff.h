@@ -2420,6 +2420,8 @@ typedef struct hdi_scope {
     hd_context *ctx;
     hd_error *e;
     uint64_t *tally;             /* bytes; NULL: takes are made */
+    char *room;                  /* a part of another block, that is used up first; NULL in a tally */
+    uint64_t left;               /* bytes of it */
     int32_t n;
     void *block[HDI_SCOPE_MOST];
 } hdi_scope;
@@ -2449,8 +2451,15 @@ static hdi_scope hdi_scope_tally(uint64_t *tally, hd_error *e) {
 }
 
 static void *hdi_take(hdi_scope *s, uint64_t count, size_t size) {
-    void *p;
+    uint64_t bytes;
+    void *p = s->room;
     if (s->e->status < 0) return NULL;
+    if (hdi_size(count, size, HDI_ALIGN, s->left, &bytes)) {
+        bytes -= bytes % HDI_ALIGN;
+        s->left -= bytes;
+        s->room += s->room ? bytes : 0;
+        return p;
+    }
     if (s->tally) {
         hdi_scope_count(s->tally, count, size);
         return NULL;
@@ -13354,8 +13363,6 @@ typedef struct hdi_factor {
     double largest_entry;            /* |diagonal entry of A|, the largest */
     int32_t ready;
     int32_t guest;                   /* work, scratch, chunk_scratch, nodes, order and pivots are another's */
-    double *spare;                   /* [spare_size] of a factor within a pack: what is left there */
-    uint64_t spare_size;
     /* a factorisation under way */
     const hdi_values *values;
     int32_t stop;                    /* the top is not begun, or not gone on with */
@@ -14043,43 +14050,7 @@ static uint64_t hdi_factor_guest_bytes(const hdi_symbolic *sym, int32_t width) {
     return bytes;
 }
 
-/* The sizes of a real factor that stands where the update matrices of a pack do. Returns 0 if it does not
- * fit. */
-static int hdi_factor_within_size(hdi_factor *f, const hdi_symbolic *s) {
-    const uint64_t room = HDI_PACK * HDI_CAST(uint64_t, s->work);
-    uint64_t need = HDI_CAST(uint64_t, s->panel[s->n_super] + s->work + s->n);
-    *f = hdi_factor_of(s, 1);
-    f->n_order = hdi_factor_nodes(f);
-    need += f->scratch_size * hdi_factor_parts(s) + 2 * f->top_size;
-    need += f->chunk_size * hdi_factor_chunks(s) + HDI_CAST(uint64_t, f->n_order / 2 + 1);
-    f->spare_size = need <= room ? room - need : 0;
-    return need <= room;
-}
-
-/* A real factor that stands where the update matrices of a pack do, until the pack is factorised or inverted
- * again, or other use is made of that room. Not to be freed. Returns 0 if it does not fit. */
-static int hdi_factor_within(hdi_factor *f, const hdi_factor *pack) {
-    const hdi_symbolic *s = pack->sym;
-    if (!hdi_factor_within_size(f, s)) return 0;
-    f->real = pack->real;
-    f->pack = pack->pack;
-    f->panel = pack->work;
-    f->work = f->panel + s->panel[s->n_super];
-    f->dinv = f->work + s->work;
-    f->scratch = f->dinv + s->n;
-    f->second = f->scratch + f->scratch_size * hdi_factor_parts(s) + f->top_size;
-    f->chunk_scratch = f->second + f->top_size;
-    f->spare = f->chunk_scratch + f->chunk_size * hdi_factor_chunks(s);
-    f->order = HDI_CAST(int32_t *, HDI_CAST(void *, f->spare));
-    f->spare += f->n_order / 2 + 1;
-    f->nodes = pack->nodes;                      /* those of a pack are more: its blocks are smaller */
-    f->pivots = pack->pivots;
-    f->guest = 1;
-    f->ctx = pack->ctx;
-    return 1;
-}
-
-/* The arrays of a factor of the given width; all that factoring and refactoring need. */
+/* A factor of the given width with the arrays that factoring and refactoring need. */
 static void hdi_factor_take(hdi_factor *f, const hdi_symbolic *sym, int32_t width, hdi_scope *s) {
     const uint64_t n_parts = hdi_factor_parts(sym), n_chunks = hdi_factor_chunks(sym);
     const uint64_t tops = sym->n_top > 0 ? n_chunks > 0 ? 2 : 1 : 0;
@@ -14093,6 +14064,10 @@ static void hdi_factor_take(hdi_factor *f, const hdi_symbolic *sym, int32_t widt
     f->n_order = hdi_factor_nodes(f);
     f->order = HDI_TAKE(s, int32_t, f->n_order + 1);
     if (f->scratch && n_chunks > 0) f->second = f->scratch + f->scratch_size * n_parts + f->top_size;
+    if (s->tally) return;
+    f->pack = HDI_HAS_POLE_FACTORS ? hdi_pack_ops_get(hdi_simd_level(s->ctx)) : NULL;
+    f->real = hdi_real_ops_get(hdi_simd_level(s->ctx));
+    f->ctx = s->ctx;
 }
 
 /* Room for a factor. */
@@ -14100,14 +14075,9 @@ static hd_status hdi_factor_make(hdi_factor *f, const hdi_symbolic *sym, int32_t
                                  hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
     hdi_factor_take(f, sym, width, &s);
-    if (e->status < 0) {
-        memset(f, 0, sizeof *f);
-        return hdi_scope_end(&s);
-    }
-    f->pack = HDI_HAS_POLE_FACTORS ? hdi_pack_ops_get(hdi_simd_level(ctx)) : NULL;
-    f->real = hdi_real_ops_get(hdi_simd_level(ctx));
-    f->ctx = ctx;                                /* the blocks are f's own now */
-    return HD_OK;
+    if (e->status >= 0) return HD_OK;            /* the blocks are f's own now */
+    memset(f, 0, sizeof *f);
+    return hdi_scope_end(&s);
 }
 
 /* The bytes of that. */
@@ -14913,7 +14883,6 @@ typedef struct hdi_inverse {
     int64_t stride;              /* from set to set */
     double *scratch, *chunk;     /* [n_tasks][scratch_size] and one for the top; [chunks][chunk_size] */
     uint64_t scratch_size, top_size, chunk_size;
-    int32_t guest;               /* scratch is the factor's */
     int32_t stop;
     double done;
     hd_error error;
@@ -16124,16 +16093,8 @@ static void hdi_inverse_share(hdi_inverse *z, hd_threads *threads, int32_t n, in
     hdi_parallel_ordered(z->f->ctx, n, ready, order, hdi_inverse_node, &l);
 }
 
-static void hdi_inverse_free(hdi_inverse *z, hd_context *ctx) {
-    if (!z->guest) hdi_free(ctx, z->scratch);
-    hdi_free(ctx, z->chunk);
-    z->scratch = z->chunk = NULL;
-}
-
-/* The arrays that inverting factors of the given width takes; with f that factor, some of it in f's spare
- * room if it fits. */
-static void hdi_inverse_take(hdi_inverse *z, const hdi_symbolic *s, int32_t width, const hdi_factor *f,
-                             hdi_scope *keep) {
+/* The arrays that inverting factors of the given width takes. */
+static void hdi_inverse_take(hdi_inverse *z, const hdi_symbolic *s, int32_t width, hdi_scope *keep) {
     const int64_t *at = width == 1 ? s->panel : s->panel_pack;
     const int32_t chunks = s->largest_front / HDI_INV_CHUNK + HDI_PANEL / HDI_CAST(int32_t, HDI_REAL_MR) + 2;
     uint64_t size;
@@ -16147,29 +16108,22 @@ static void hdi_inverse_take(hdi_inverse *z, const hdi_symbolic *s, int32_t widt
     }
     z->chunk_size = hdi_inverse_buffer(width);
     size = z->scratch_size * HDI_CAST(uint64_t, s->n_tasks) + z->top_size;
-    z->guest = f && size <= f->spare_size;
-    z->scratch = z->guest ? f->spare : HDI_TAKE(keep, double, size);
+    z->scratch = HDI_TAKE(keep, double, size);
     z->chunk = HDI_TAKE(keep, double, s->n_top ? z->chunk_size * HDI_CAST(uint64_t, chunks) : 1);
 }
 
-/* Room to invert factors of the given width; f: see hdi_inverse_take. */
-static hd_status hdi_inverse_make(hdi_inverse *z, const hdi_symbolic *s, int32_t width, const hdi_factor *f,
-                                  hd_context *ctx, hd_error *e) {
-    hdi_scope keep = hdi_scope_begin(ctx, e);
-    hdi_inverse_take(z, s, width, f, &keep);
-    if (e->status >= 0) return HD_OK;            /* the blocks are z's own */
-    z->scratch = z->chunk = NULL;
-    return hdi_scope_end(&keep);
-}
-
-/* The bytes of that, and of the order that hdi_inverse_run takes: of this alone to *order, unless NULL. */
-static uint64_t hdi_inverse_bytes(const hdi_symbolic *s, int32_t width, const hdi_factor *f,
+/* The bytes of that, and of the order that hdi_inverse_run takes: of this alone to *order, unless NULL. Also
+ * those of the factor, if asked for; less the room that is there. */
+static uint64_t hdi_inverse_bytes(const hdi_symbolic *s, int32_t width, int factor, uint64_t room,
                                   uint64_t *order) {
     hd_error none;
     uint64_t bytes, later = 0;
     hdi_scope keep = hdi_scope_tally(&bytes, &none);
+    hdi_factor f;
     hdi_inverse z;
-    hdi_inverse_take(&z, s, width, f, &keep);
+    keep.left = room;
+    if (factor) hdi_factor_take(&f, s, width, &keep);
+    hdi_inverse_take(&z, s, width, &keep);
     hdi_scope_count(&later, HDI_CAST(uint64_t, s->n_top > 0 ? hdi_inverse_count(&z, s) : 0), sizeof(int32_t));
     if (order) *order = later;
     return bytes + later;
@@ -16244,8 +16198,8 @@ static hd_status hdi_ldl_invert(hd_ldl *f, hdi_factor *of, int32_t n_matrices, d
     hdi_inverse z;
     memset(coef, 0, sizeof coef);
     for (q = 0; q < n_sets; q++) coef[q * of->width + hdi_pack_part(q, stride)] = 1;
-    if (e->status < 0 || hdi_inverse_make(&z, &f->sym, of->width, NULL, f->ctx, e) < 0)
-        return hdi_scope_end(&s);
+    hdi_inverse_take(&z, &f->sym, of->width, &s);
+    if (e->status < 0) return hdi_scope_end(&s);
     z.coef = coef;
     z.n_sets = n_sets;
     z.values = x;
@@ -16265,7 +16219,6 @@ static hd_status hdi_ldl_invert(hd_ldl *f, hdi_factor *of, int32_t n_matrices, d
         for (q = 0; q < n_sets && e->status >= 0; q++)
             hdi_ldl_diagonal(f, x + q * n, diag + stride * (q / stride * n) + q % stride, stride);
     }
-    hdi_inverse_free(&z, f->ctx);
     return hdi_scope_end(&s);
 }
 
@@ -20635,9 +20588,13 @@ static void hdi_elim_invert_width(hdi_elim *m, hdi_factor *f, int32_t n, const h
     const int32_t width = n > 0 ? f->width : 0;
     hdi_forms forms;
     hdi_inverse z;
+    hdi_scope s;
     int32_t i, k;
-    if (n == 0 || e->status < 0 || hdi_inverse_make(&z, &m->sym, width, NULL, m->ctx, e) < 0) return;
-    if (b) (void)hdi_forms_make(&forms, &m->sym, width, &m->source->L, b, m->ctx, e);
+    if (n == 0 || e->status < 0) return;
+    s = hdi_scope_begin(m->ctx, e);
+    memset(&forms, 0, sizeof forms);
+    hdi_inverse_take(&z, &m->sym, width, &s);
+    if (b && e->status >= 0) (void)hdi_forms_make(&forms, &m->sym, width, &m->source->L, b, m->ctx, e);
     z.coef = coef;
     z.n_sets = sums->n_sets;
     z.wanted = sums->wanted;
@@ -20652,8 +20609,8 @@ static void hdi_elim_invert_width(hdi_elim *m, hdi_factor *f, int32_t n, const h
         }
         (void)hdi_inverse_run(&z, f + i, e);
     }
-    hdi_inverse_free(&z, m->ctx);
     if (b) hdi_forms_free(&forms, m->ctx);
+    hdi_scope_end(&s);
 }
 
 /* Sums over all poles. The factors are there, and stay. */
@@ -20671,20 +20628,19 @@ static hd_status hdi_elim_invert(hdi_elim *m, const hdi_elim_sums *sums, hd_erro
 }
 
 /* out [n] = the diagonal of the inverse of a factor, by pivots. coef [width]: of its parts, as hdi_elim_coef
- * has them. */
+ * has them. Work arrays in s. */
 static hd_status hdi_elim_inverse_diagonal(const hdi_elim *m, hdi_factor *f, const double *coef, double *out,
-                                           hd_error *e) {
+                                           hdi_scope *s) {
     hdi_inverse z;
-    if (hdi_inverse_make(&z, &m->sym, f->width, f, m->ctx, e) < 0) return e->status;
+    hdi_inverse_take(&z, &m->sym, f->width, s);
+    if (s->e->status < 0) return s->e->status;
     memset(out, 0, HDI_CAST(size_t, m->sym.n) * sizeof *out);
     z.coef = coef;
     z.n_sets = 1;
     z.wanted = HDI_WANT_DIAGONAL;
     z.values = out;
     z.stride = m->sym.n;
-    (void)hdi_inverse_run(&z, f, e);
-    hdi_inverse_free(&z, m->ctx);
-    return e->status;
+    return hdi_inverse_run(&z, f, s->e);
 }
 
 enum { HDI_RESOLVENT_POLES = 8, HDI_RESOLVENT_POINTS = 160 };
@@ -20735,17 +20691,26 @@ static double hdi_constant_part(const hd_laplacian *lap, int32_t i) {
 /* A factor for the rounding of an inverse's entries that serve as bounds. */
 #define HDI_REACH_SLACK 1.01
 
+/* Bytes of the first pack's update matrices, which are free between its factorisations and inversions. */
+static uint64_t hdi_elim_room(const hdi_elim *m, int32_t packs) {
+    return packs > 0 ? HDI_PACK * sizeof(double) * HDI_CAST(uint64_t, m->sym.work) : 0;
+}
+
 /* m->reach: a bound of diag((B + tL)^-1) for the time of the poles, from the real factor at hand or a new
  * one, in the room of the first pack where it fits. */
 static hd_status hdi_elim_bound(hdi_elim *m, hd_error *e) {
     const double theta = m->lone >= 0 ? m->set.theta[0].re : 1, factor = HDI_REACH_SLACK * hdi_max(1, theta);
-    hdi_factor within, *real = &m->real;
+    hdi_factor own, *real = m->lone >= 0 ? &m->real : &own;
+    hdi_scope s;
     int32_t i;
     if (m->reach && m->reach_t == m->t) return HD_OK;
+    s = hdi_scope_begin(m->ctx, e);
     if (!m->reach) m->reach = HDI_NEW(m->ctx, double, m->sym.n, e);
-    if (m->lone < 0 && m->n_used > 0 && hdi_factor_within(&within, m->pack)) real = &within;
-    if (m->reach && (m->lone >= 0 || hdi_elim_real(m, real, m->t, theta, e) >= 0) &&
-        hdi_elim_inverse_diagonal(m, real, &factor, m->reach, e) >= 0) {
+    s.left = hdi_elim_room(m, m->n_used);
+    if (s.left > 0) s.room = HDI_CAST(char *, HDI_CAST(void *, m->pack->work));
+    if (m->lone < 0) hdi_factor_take(&own, &m->sym, 1, &s);
+    if (e->status >= 0 && (m->lone >= 0 || hdi_elim_real(m, real, m->t, theta, e) >= 0) &&
+        hdi_elim_inverse_diagonal(m, real, &factor, m->reach, &s) >= 0) {
         for (i = 0; i < m->sym.n; i++) {
             const double most = hdi_inverse_mass(m->lap, i);
             if (!(m->reach[i] > 0 && m->reach[i] < most)) m->reach[i] = most;
@@ -20757,28 +20722,21 @@ static hd_status hdi_elim_bound(hdi_elim *m, hd_error *e) {
         hdi_free(m->ctx, m->reach);
         m->reach = NULL;
     }
-    return e->status;
+    return hdi_scope_end(&s);
 }
 
 /* What follows the factors of a set: solves, with hdi_elim_bound before them or without, or an inversion. */
 typedef enum hdi_after { HDI_AFTER_SOLVES, HDI_AFTER_BOUND, HDI_AFTER_INVERSE, HDI_AFTER_FORMS } hdi_after;
 
-/* Does hdi_elim_bound find room for its real factor in the first pack? */
-static int hdi_elim_bound_within(const hdi_elim *m, const hd_rational *set, hdi_factor *within) {
-    return !hdi_set_lone(set) && hdi_set_packs(set) > 0 && hdi_factor_within_size(within, &m->sym);
-}
-
 /* Bytes that the factors of a set take beyond those that are there, with what hdi_elim_bound keeps. */
 static uint64_t hdi_elim_factor_need(const hdi_elim *m, const hd_rational *set, hdi_after after) {
     const int32_t packs = hdi_set_packs(set), guests = packs - hdi_high32(m->n_packs, 1);
-    const int bound = after == HDI_AFTER_BOUND;
-    hdi_factor within;
-    const int real = hdi_set_lone(set) || (bound && !hdi_elim_bound_within(m, set, &within));
     uint64_t bytes = 0;
     if (packs > 0 && m->n_packs == 0) bytes += hdi_factor_bytes(&m->sym, HDI_PACK);
     if (guests > 0) bytes += HDI_CAST(uint64_t, guests) * hdi_factor_guest_bytes(&m->sym, HDI_PACK);
-    if (real && !m->real.ctx) bytes += hdi_factor_bytes(&m->sym, 1);
-    if (bound && !m->reach) hdi_scope_count(&bytes, HDI_CAST(uint64_t, m->sym.n), sizeof *m->reach);
+    if (hdi_set_lone(set) && !m->real.ctx) bytes += hdi_factor_bytes(&m->sym, 1);
+    if (after == HDI_AFTER_BOUND && !m->reach)
+        hdi_scope_count(&bytes, HDI_CAST(uint64_t, m->sym.n), sizeof *m->reach);
     return bytes;
 }
 
@@ -20788,15 +20746,14 @@ static uint64_t hdi_elim_inverse_need(const hdi_elim *m, const hd_rational *set,
     const int forms = after == HDI_AFTER_FORMS;
     const int32_t widths[2] = {hdi_set_lone(set) ? 1 : 0, hdi_set_packs(set) > 0 ? HDI_PACK : 0};
     uint64_t most = 0, bytes = 0, order;
-    hdi_factor within;
     int q;
     if (after == HDI_AFTER_SOLVES) return 0;
     if (after == HDI_AFTER_BOUND)
-        return hdi_inverse_bytes(&m->sym, 1, hdi_elim_bound_within(m, set, &within) ? &within : NULL, NULL);
+        return hdi_inverse_bytes(&m->sym, 1, !hdi_set_lone(set), hdi_elim_room(m, hdi_set_packs(set)), NULL);
     for (q = 0; q < 2 && e->status >= 0; q++) {
         uint64_t need;
         if (!widths[q]) continue;
-        need = hdi_inverse_bytes(&m->sym, widths[q], NULL, &order);
+        need = hdi_inverse_bytes(&m->sym, widths[q], 0, 0, &order);
         if (forms) need += hdi_forms_bytes(&m->sym, widths[q], order, m->ctx, e);
         if (most < need) most = need;
     }
@@ -21818,7 +21775,7 @@ static hd_status hdi_ground_make(hdi_elim *m, hdi_ground *g, hd_error *e) {
         memset(&v, 0, sizeof v);
         v.real = val;
         if (hdi_progress(m->ctx, "factor", 0, e) >= 0 && hdi_factor_run(&g->factor, &v, e) >= 0 &&
-            hdi_elim_inverse_diagonal(m, &g->factor, &one, g->diag, e) >= 0) {
+            hdi_elim_inverse_diagonal(m, &g->factor, &one, g->diag, &s) >= 0) {
             if (g->factor.all.negative) hdi_not_semidefinite(e);
             for (i = 0; i < lap->n_active; i++) {
                 double size = lap->B ? 0 : lap->mass[i];
@@ -21858,7 +21815,7 @@ static hd_status hdi_ground_forms(hdi_elim *m, hdi_ground *g, hd_error *e) {
         memset(&v, 0, sizeof v);
         v.z[0] = v.z[1] = v.z[2] = v.z[3] = val;
         coef[4] = -1 / step;                     /* the first one's imaginary part */
-        if (hdi_factor_run(&pack, &v, e) >= 0) (void)hdi_elim_inverse_diagonal(m, &pack, coef, g->form, e);
+        if (hdi_factor_run(&pack, &v, e) >= 0) (void)hdi_elim_inverse_diagonal(m, &pack, coef, g->form, &s);
         hdi_factor_free(&pack);
     }
     if (e->status < 0) return hdi_scope_end(&s);
@@ -21921,12 +21878,12 @@ static uint64_t hdi_ground_need(const hdi_elim *m, const hdi_ground *g, int form
         hdi_scope_count(&held, n, sizeof(char));
         hdi_scope_count(&held, 3 * n, sizeof(double));
         hdi_scope_count(&held, 2 * n_comp, sizeof(double));
-        make = hdi_inverse_bytes(&m->sym, 1, NULL, NULL);
+        make = hdi_inverse_bytes(&m->sym, 1, 0, 0, NULL);
         hdi_scope_count(&make, nnz, sizeof(double));
         hdi_scope_count(&make, n_comp, sizeof(char));
     }
     if (forms && !g->formed) {
-        form = hdi_factor_bytes(&m->sym, HDI_PACK) + hdi_inverse_bytes(&m->sym, HDI_PACK, NULL, NULL);
+        form = hdi_factor_bytes(&m->sym, HDI_PACK) + hdi_inverse_bytes(&m->sym, HDI_PACK, 0, 0, NULL);
         hdi_scope_count(&form, nnz, sizeof(hd_c64));
         hdi_scope_count(&form, hdi_sweep_size(&m->sym, 1, 1), sizeof(double));
         hdi_scope_count(&form, 2 * n, sizeof(double));
@@ -30482,7 +30439,8 @@ static hd_status hdi_estimate_solves(const hdi_estimate *x, double held) {
         if (x->query == HD_QUERY_PAIRS && !heat->poles_asked && !heat->exacting &&
             hdi_rational_get(&set, HD_POLES_KERNEL, HDI_RAT_KERNEL_MAX, h->e) < 0)
             return h->e->status;
-        direct->bytes_most = hdi_bytes_direct(x, &set, HDI_AFTER_BOUND, 0, x->k, held);
+        direct->bytes_most = hdi_max(direct->bytes,
+                                     hdi_bytes_direct(x, &set, HDI_AFTER_BOUND, 0, x->k, held));
         if (x->query == HD_QUERY_PAIRS && heat->elim.ctx)   /* the solves' arrays of the first try stay */
             direct->bytes_most += HDI_CAST(double, hdi_batches_need(heat, hdi_set_packs(&set), x->k));
         if (!heat->poles_asked || method == HD_METHOD_KRYLOV)
