@@ -2867,14 +2867,12 @@ static void hdi_release_many(hd_threads *t, int32_t id, int32_t n, int32_t *orde
     hdi_unlock(&t->lock);
 }
 
-static void hdi_release(hd_threads *t, int32_t id, int32_t *order) { hdi_release_many(t, id, 1, order); }
-
 /* Threads that can share n tasks with the caller; NULL: none, or they are the user's. */
 static hd_threads *hdi_threads_own(hd_context *ctx, int64_t n_tasks) {
     return ctx->parallel_for ? NULL : hdi_threads_get(ctx, n_tasks);
 }
 
-/* A loop of n tasks of which tasks release others. order [n]: the n_ready first ones. */
+/* A loop of n tasks of which tasks release others. order [n]: the n_ready first ones; NULL: all by number. */
 static void hdi_parallel_ordered(hd_context *ctx, int32_t n, int32_t n_ready, int32_t *order, hd_task task,
                                  void *arg) {
     hdi_loop loop;
@@ -2907,8 +2905,9 @@ static void hdi_release_many(hd_threads *t, int32_t id, int32_t n, int32_t *orde
     (void)n;
     (void)order;
 }
-static void hdi_release(hd_threads *t, int32_t id, int32_t *order) { hdi_release_many(t, id, 1, order); }
 #endif
+
+static void hdi_release(hd_threads *t, int32_t id, int32_t *order) { hdi_release_many(t, id, 1, order); }
 
 /* An object that is made with the context holds it; its threads end with the last one. */
 static void hdi_hold(hd_context *ctx) { ctx->n_holders++; }
@@ -2925,20 +2924,10 @@ static int hdi_is_serial(const hd_context *ctx) {
 }
 
 static void hdi_parallel(hd_context *ctx, int64_t n_tasks, hd_task task, void *arg) {
+    const int32_t n = HDI_CAST(int32_t, hdi_least(n_tasks, INT32_MAX));
     int64_t i;
-#if HDI_THREADS
-    hd_threads *t = ctx->parallel_for ? NULL : hdi_threads_get(ctx, n_tasks);
-    if (t) {
-        hdi_loop loop;
-        loop.n = HDI_CAST(uint32_t, n_tasks);
-        loop.task = task;
-        loop.arg = arg;
-        loop.order = NULL;
-        hdi_loop_run(ctx, t, &loop, n_tasks);
-        return;
-    }
-#endif
-    if (ctx->parallel_for && n_tasks > 1) ctx->parallel_for(ctx->parallel_user, n_tasks, task, arg);
+    if (hdi_threads_own(ctx, n_tasks)) hdi_parallel_ordered(ctx, n, n, NULL, task, arg);
+    else if (ctx->parallel_for && n_tasks > 1) ctx->parallel_for(ctx->parallel_user, n_tasks, task, arg);
     else for (i = 0; i < n_tasks; i++) task(arg, i, 0);
 }
 
@@ -4776,10 +4765,24 @@ static const hdi_pack_ops *hdi_pack_ops_get(int level) {
 
 /* ---- factorisation ---- */
 
-typedef struct hdi_real_pivots {
-    double largest, smallest;  /* of |d|; begin with 0 and DBL_MAX */
-    int64_t negative;
-} hdi_real_pivots;
+/* What the pivots of a part of the tree looked like. */
+typedef struct hdi_pivots {
+    double largest, smallest;        /* absolute values, over all matrices */
+    int64_t negative;                /* real pivots below zero */
+    int32_t failed, lane;            /* pivot that cannot be divided by, -1 none; its matrix */
+    double value;
+} hdi_pivots;
+
+static void hdi_pivots_clear(hdi_pivots *q) {
+    memset(q, 0, sizeof *q);
+    q->smallest = HUGE_VAL;
+    q->failed = -1;
+}
+
+static void hdi_pivots_add(hdi_pivots *q, double largest, double smallest) {
+    if (largest > q->largest) q->largest = largest;
+    if (smallest < q->smallest) q->smallest = smallest;
+}
 
 /* Columns of L, and of U padded to slices, that are taken at a time in fronts of at most p pivots and u rows
  * below. */
@@ -4825,7 +4828,7 @@ static void hdi_real_rows(const hdi_real_ops *o, double *P, int64_t m, int32_t k
  * diagonal of P. work [hdi_real_work(u, p)]. Returns -1, or the first pivot that is not finite, or
  * whose inverse is not. */
 static int64_t hdi_real_block(const hdi_real_ops *o, double *P, int64_t m, int32_t k0, int32_t nb,
-                              int64_t end, double *S, double *dinv, hdi_real_pivots *pivots, double *work) {
+                              int64_t end, double *S, double *dinv, hdi_pivots *pivots, double *work) {
     const int32_t nr = o->nr, kb = k0 + nb;
     int32_t k, j;
     for (k = k0; k < kb; k += nr, S += HDI_CAST(int64_t, kb) * nr) {
@@ -4844,8 +4847,7 @@ static int64_t hdi_real_block(const hdi_real_ops *o, double *P, int64_t m, int32
         for (j = k; j < k + nc; j++) {
             const double d = P[j * (m + 1)], a = fabs(d);
             if (a <= HDI_PIVOT_LEAST || !hdi_finite(a)) return j;
-            if (a > pivots->largest) pivots->largest = a;
-            if (a < pivots->smallest) pivots->smallest = a;
+            hdi_pivots_add(pivots, a, a);
             pivots->negative += d < 0;
         }
         if (k + nc + n < end) hdi_real_rows(o, P, m, k, nc, S, kb, dinv, k + nc + n, end, work);
@@ -13246,14 +13248,6 @@ typedef struct hdi_order {
     const int32_t *own;          /* [n] OWN: the permutation */
 } hdi_order;
 
-static hdi_order hdi_order_of(hd_ordering kind, const double *xyz, const int32_t *own) {
-    hdi_order o;
-    o.kind = kind;
-    o.xyz = xyz;
-    o.own = own;
-    return o;
-}
-
 static hd_status hdi_order_check(const int32_t *perm, int32_t n, hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
     char *seen = HDI_TAKE_ZERO(&s, char, HDI_CAST(uint64_t, n) + 1);
@@ -13334,14 +13328,6 @@ typedef struct hdi_values {
     hd_c64 theta[HDI_PACK_LANES];
 } hdi_values;
 
-/* What the pivots of a part of the tree looked like. */
-typedef struct hdi_pivots {
-    double largest, smallest;        /* absolute values, over all matrices */
-    int64_t negative;                /* real pivots below zero */
-    int32_t failed, lane;            /* pivot that cannot be divided by, -1 none; its matrix */
-    double value;
-} hdi_pivots;
-
 typedef struct hdi_factor {
     const hdi_symbolic *sym;
     hd_context *ctx;
@@ -13373,17 +13359,6 @@ typedef struct hdi_factor {
 
 /* Is it the factor of a real matrix, and not a pack? */
 static HDI_INLINE int hdi_is_real(const hdi_factor *f) { return !HDI_HAS_POLE_FACTORS || f->width == 1; }
-
-static void hdi_pivots_clear(hdi_pivots *q) {
-    memset(q, 0, sizeof *q);
-    q->smallest = HUGE_VAL;
-    q->failed = -1;
-}
-
-static void hdi_pivots_add(hdi_pivots *q, double largest, double smallest) {
-    if (largest > q->largest) q->largest = largest;
-    if (smallest < q->smallest) q->smallest = smallest;
-}
 
 /* ---- parts of a front ---- */
 
@@ -13667,16 +13642,8 @@ static void hdi_front_assemble_real(const hdi_front *w) {
 
 /* Pivots [k0,k0+nb) and their columns down to row end. */
 static int hdi_front_pivots_real(const hdi_front *w, int64_t end, hdi_pivots *note) {
-    hdi_real_pivots seen;
-    int64_t bad;
-    seen.largest = note->largest;
-    seen.smallest = hdi_min(note->smallest, DBL_MAX);
-    seen.negative = note->negative;
-    bad = hdi_real_block(w->f->real, w->panel, w->m, HDI_CAST(int32_t, w->k0), w->nb, end, w->S, w->dinv,
-                         &seen, w->work);
-    note->largest = seen.largest;
-    note->smallest = seen.smallest;
-    note->negative = seen.negative;
+    const int64_t bad = hdi_real_block(w->f->real, w->panel, w->m, HDI_CAST(int32_t, w->k0), w->nb, end,
+                                       w->S, w->dinv, note, w->work);
     if (bad < 0) return 1;
     note->failed = w->f->sym->super[w->v] + HDI_CAST(int32_t, bad);
     note->value = w->panel[bad * (w->m + 1)];
@@ -14116,8 +14083,8 @@ static hd_status hdi_factor_collect(hdi_factor *f, int32_t n_parts, hd_error *e)
         return e->status;
     }
     if (f->all.failed < 0) return HD_OK;
-    hdi_fail_row(e, HD_ERR_BREAKDOWN, "LDL': a pivot is not finite, or too small to divide by", f->sym->perm[f->all.failed], -1,
-                 f->all.value);
+    hdi_fail_row(e, HD_ERR_BREAKDOWN, "LDL': a pivot is not finite, or too small to divide by",
+                 f->sym->perm[f->all.failed], -1, f->all.value);
     if (f->width > 1) e->pole = f->all.lane;
     return e->status;
 }
@@ -14632,15 +14599,16 @@ static void hdi_ldl_tell(const hd_ldl *f, const hdi_factor *of, hd_ldl_report *r
 }
 
 /* Order, analysis and a copy of the pattern, for f->ctx. */
-static hd_status hdi_ldl_analyse(hd_ldl *f, const hd_csr *a, const hdi_order *order, hd_error *e) {
+static hd_status hdi_ldl_analyse(hd_ldl *f, const hd_csr *a, const hd_ldl_opts *o, hd_error *e) {
     const uint64_t n = HDI_CAST(uint64_t, f->n), nnz = HDI_CAST(uint64_t, f->nnz);
+    const hdi_order order = {o->ordering, o->xyz, o->perm};
     int64_t p;
     int32_t i;
-    for (p = 0; order->xyz && p < hdi_triple(f->n); p++)
-        if (!hdi_finite(order->xyz[p]))
+    for (p = 0; o->xyz && p < hdi_triple(f->n); p++)
+        if (!hdi_finite(o->xyz[p]))
             return hdi_fail_row(e, HD_ERR_NOT_FINITE, "ldl options: a coordinate is not finite", p / 3, p % 3,
-                                order->xyz[p]);
-    if (hdi_symbolic_order(&f->sym, a, order, f->ctx, e) < 0) return e->status;
+                                o->xyz[p]);
+    if (hdi_symbolic_order(&f->sym, a, &order, f->ctx, e) < 0) return e->status;
     f->row_ptr = HDI_CAST(int64_t *, hdi_copy(a->row_ptr, n + 1, sizeof *f->row_ptr, f->ctx, e));
     f->col = HDI_CAST(int32_t *, hdi_copy(a->col, nnz, sizeof *f->col, f->ctx, e));
     if (f->col) f->inv = HDI_CAST(int32_t *, hdi_alloc(f->ctx, n, sizeof *f->inv, e));
@@ -14803,25 +14771,21 @@ static void hdi_ldl_free(hd_ldl *f) {
     hdi_let_go(ctx);
 }
 
-/* Begins a call that factors. */
-static hd_status hdi_ldl_enter(hdi_call *c, hd_ldl *f, const void *val, hd_error *err) {
-    if (hdi_enter(c, f ? f->ctx : NULL, err) < 0) return c->e->status;
-    if (!HDI_HAS_DIRECT) return HDI_LEFT_OUT(c->e, DIRECT, "factorisations");
-    return !f || (f->nnz > 0 && !val) ? hdi_missing(c->e) : HD_OK;
-}
-
-/* Begins a call that needs the real factor, or the packs. given: no array is missing. */
-static hd_status hdi_ldl_enter_factored(hdi_call *c, const hd_ldl *f, int packs, int given, hd_error *err) {
+/* Begins a call for a real factor, or for packs. given: no array is missing. */
+static hd_status hdi_ldl_enter(hdi_call *c, const hd_ldl *f, int packs, int given, hd_error *err) {
     if (hdi_enter(c, f ? f->ctx : NULL, err) < 0) return c->e->status;
     if (!HDI_HAS_DIRECT) return HDI_LEFT_OUT(c->e, DIRECT, "factorisations");
     if (packs && !HDI_HAS_POLE_FACTORS)
         return HDI_LEFT_OUT(c->e, POLE_FACTORS, "factorisations of complex matrices");
-    if (!f || !given) return hdi_missing(c->e);
-    if (!packs && !f->real.ready)
-        return hdi_fail(c->e, HD_ERR_ARGUMENT, "ldl: the last factorisation was not a real one");
-    if (packs && !f->n_matrices)
-        return hdi_fail(c->e, HD_ERR_ARGUMENT, "ldl: the last factorisation was not a complex one");
-    return HD_OK;
+    return !f || !given ? hdi_missing(c->e) : HD_OK;
+}
+
+/* The same for a call that needs them. */
+static hd_status hdi_ldl_enter_factored(hdi_call *c, const hd_ldl *f, int packs, int given, hd_error *err) {
+    if (hdi_ldl_enter(c, f, packs, given, err) < 0) return c->e->status;
+    hdi_refuse(!packs && !f->real.ready, "ldl: the last factorisation was not a real one", c->e);
+    hdi_refuse(packs && !f->n_matrices, "ldl: the last factorisation was not a complex one", c->e);
+    return c->e->status;
 }
 
 static hd_status hdi_ldl_leading(const hd_ldl *f, size_t ldb, size_t ldx, hd_error *e) {
@@ -16315,6 +16279,15 @@ static hd_status hdi_ldl_entries_check(const hd_ldl *f, int64_t n, const int32_t
             return hdi_fail_row(e, HD_ERR_INDEX, "ldl: an entry is not in the matrix", q, -1, worst);
     }
     return HD_OK;
+}
+
+/* The same for a public call. */
+static hd_status hdi_ldl_some_entries(hd_ldl *f, int packs, int64_t n, const int32_t *i, const int32_t *j,
+                                      double *values, hd_error *err) {
+    hdi_call c;
+    if (hdi_ldl_enter_inverse(&c, f, packs, err) < 0 || !HDI_HAS_DIAGONAL) return c.e->status;
+    if (hdi_ldl_entries_check(f, n, i, j, values, c.e) < 0) return c.e->status;
+    return n > 0 ? hdi_ldl_inverse_entries(f, packs, n, i, j, values, c.e) : HD_OK;
 }
 
 /* ==== [19] precond ====
@@ -19865,7 +19838,7 @@ static hd_status hdi_elim_make(hdi_elim *m, const hd_laplacian *lap, hd_ordering
                                double scale, hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
     int32_t *rows = HDI_TAKE(&s, int32_t, lap->n_active);
-    const hdi_order order = hdi_order_of(ordering, lap->xyz, own ? rows : NULL);
+    const hdi_order order = {ordering, lap->xyz, own ? rows : NULL};
     if (e->status < 0) return hdi_scope_end(&s);
     memset(m, 0, sizeof *m);
     m->ctx = ctx;
@@ -20308,7 +20281,7 @@ static hd_status hdi_lap_ratio(hd_laplacian *lap, hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
     const double dominant = hdi_max(lap->b_ratio, 0);
     double *work = HDI_TAKE(&s, double, 4 * HDI_CAST(int64_t, lap->n_active)), least, sigma, slack;
-    const hdi_order order = hdi_order_of(HD_ORDERING_MINIMUM_DEGREE, NULL, NULL);
+    const hdi_order order = {HD_ORDERING_MINIMUM_DEGREE, NULL, NULL};
     int32_t tries;
     hd_csr b = hdi_lap_mass_matrix(lap, &s);
     double *value = HDI_TAKE(&s, double, b.nnz);
@@ -24597,7 +24570,7 @@ enum { HDI_LIGHT_COLUMNS = 3 };  /* more are solved side by side, and gain less 
 static int hdi_heat_light(const hdi_heat_call *h) {
     const hd_heat *heat = h->heat;
     const hd_laplacian *lap = heat->source;
-    const hdi_order order = hdi_order_of(heat->opts.ordering, lap->xyz, NULL);
+    const hdi_order order = {heat->opts.ordering, lap->xyz, NULL};
     const hdi_fill f = hdi_heat_guess(heat);
     const double n = lap->n_active, wide = hdi_max(1, HDI_CAST(double, lap->L.nnz) / (10 * n));
     hdi_windows w;
@@ -31264,7 +31237,7 @@ static hd_status hdi_geo_analyse(hd_geodesic *g, const hd_laplacian *lap, const 
                                  hd_error *e) {
     hdi_scope s = hdi_scope_begin(g->ctx, e);
     int32_t *own = HDI_TAKE(&s, int32_t, lap->n_active);
-    const hdi_order order = hdi_order_of(o->ordering, lap->xyz, own);
+    const hdi_order order = {o->ordering, lap->xyz, own};
     if (e->status < 0) return hdi_scope_end(&s);
     if (o->ordering == HD_ORDERING_OWN) hdi_elim_own(lap, o->perm, own);
     (void)hdi_symbolic_order(&g->sym, &lap->L, &order, g->ctx, e);
@@ -33037,7 +33010,6 @@ HEATDIFF_API void hd_ldl_free(hd_ldl *f) { hdi_ldl_free(f); }
 HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ldl_opts *opts,
                                       hd_ldl_report *report, hd_error *err) {
     hd_ldl_opts o;
-    hdi_order order;
     hdi_call c;
     hd_csr shape;
     hd_ldl *f;
@@ -33056,8 +33028,7 @@ HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ld
     hdi_hold(f->ctx);
     f->n = a->n_rows;
     f->nnz = a->nnz;
-    order = hdi_order_of(o.ordering, o.xyz, o.perm);
-    if (hdi_ldl_analyse(f, &shape, &order, c.e) >= 0) {
+    if (hdi_ldl_analyse(f, &shape, &o, c.e) >= 0) {
         hdi_ldl_tell(f, NULL, report);
         *out = f;
     } else {
@@ -33068,7 +33039,7 @@ HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ld
 
 HEATDIFF_API hd_status hd_ldl_factor(hd_ldl *f, const double *val, hd_ldl_report *report, hd_error *err) {
     hdi_call c;
-    if (hdi_ldl_enter(&c, f, val, err) < 0 || !HDI_HAS_DIRECT) return c.e->status;
+    if (hdi_ldl_enter(&c, f, 0, f && (f->nnz == 0 || val), err) < 0 || !HDI_HAS_DIRECT) return c.e->status;
     f->n_matrices = f->real.ready = 0;
     if (hdi_ldl_factor(f, val, c.e) < 0) return c.e->status;
     hdi_ldl_tell(f, &f->real, report);
@@ -33079,9 +33050,8 @@ HEATDIFF_API hd_status hd_ldl_factor_complex(hd_ldl *f, int32_t k, const hd_c64 
                                              hd_error *err) {
     hd_ldl_report all;
     hdi_call c;
-    if (hdi_ldl_enter(&c, f, val, err) < 0) return c.e->status;
-    if (!HDI_HAS_POLE_FACTORS)
-        return HDI_LEFT_OUT(c.e, POLE_FACTORS, "factorisations of complex matrices");
+    if (hdi_ldl_enter(&c, f, 1, f && (f->nnz == 0 || val), err) < 0 || !HDI_HAS_POLE_FACTORS)
+        return c.e->status;
     if (k < 1) return hdi_fail(c.e, HD_ERR_ARGUMENT, "ldl: the number of matrices is not positive");
     f->n_matrices = f->real.ready = 0;
     if (hdi_ldl_factor_complex(f, k, val, &all, c.e) < 0) return c.e->status;
@@ -33143,18 +33113,12 @@ HEATDIFF_API hd_status hd_ldl_inverse_complex(hd_ldl *f, hd_c64 *values, hd_c64 
 
 HEATDIFF_API hd_status hd_ldl_inverse_entries(hd_ldl *f, int64_t n_entries, const int32_t *i,
                                               const int32_t *j, double *values, hd_error *err) {
-    hdi_call c;
-    if (hdi_ldl_enter_inverse(&c, f, 0, err) < 0 || !HDI_HAS_DIAGONAL) return c.e->status;
-    if (hdi_ldl_entries_check(f, n_entries, i, j, values, c.e) < 0) return c.e->status;
-    return n_entries > 0 ? hdi_ldl_inverse_entries(f, 0, n_entries, i, j, values, c.e) : HD_OK;
+    return hdi_ldl_some_entries(f, 0, n_entries, i, j, values, err);
 }
 
 HEATDIFF_API hd_status hd_ldl_inverse_entries_complex(hd_ldl *f, int64_t n_entries, const int32_t *i,
                                                       const int32_t *j, hd_c64 *values, hd_error *err) {
-    hdi_call c;
-    if (hdi_ldl_enter_inverse(&c, f, 1, err) < 0 || !HDI_HAS_DIAGONAL) return c.e->status;
-    if (hdi_ldl_entries_check(f, n_entries, i, j, values, c.e) < 0) return c.e->status;
-    return n_entries > 0 ? hdi_ldl_inverse_entries(f, 1, n_entries, i, j, &values->re, c.e) : HD_OK;
+    return hdi_ldl_some_entries(f, 1, n_entries, i, j, values ? &values->re : NULL, err);
 }
 
 /* ---- heat ---- */

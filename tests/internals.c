@@ -2543,12 +2543,10 @@ static int_real int_real_make(int32_t p, int32_t u, uint64_t seed) {
 static void int_real_factor(const hdi_real_ops *o, const int_real *f, double *dinv, const char *what) {
     double *S = DENSE_NEW(double, hdi_real_s_size(f->p)), *work = DENSE_NEW(double, hdi_real_work(f->u, f->p)), off = 0;
     const int64_t m = f->m, u = f->u;
-    hdi_real_pivots pivots;
+    hdi_pivots pivots;
     int64_t i, j, at;
     int32_t k, negative = 0;
-    pivots.largest = 0;
-    pivots.smallest = DBL_MAX;
-    pivots.negative = 0;
+    hdi_pivots_clear(&pivots);
     for (k = 0; k < f->p; k += HDI_REAL_NB) {
         const int32_t nb = f->p - k < HDI_REAL_NB ? f->p - k : HDI_REAL_NB, kb = k + nb;
         const int64_t end = kb + (kb <= HDI_REAL_KC ? (m - kb) / 2 : 0), middle = end + (m - end) / 3;
