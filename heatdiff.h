@@ -1281,7 +1281,7 @@ typedef struct hd_ldl_opts {
     /* Default: nested dissection if coordinates are given and there are many rows, else minimum degree. */
     hd_ordering ordering;
     const int32_t *perm;        /* [n] with HD_ORDERING_OWN: perm[k] is the row eliminated k-th */
-    const double *xyz;          /* [3 n] coordinates of the rows; NULL: none */
+    const double *xyz;          /* [3 n] coordinates of the rows, finite; NULL: none */
     hd_context *context;
     int32_t end_zero;
 } hd_ldl_opts;
@@ -1304,8 +1304,9 @@ typedef struct hd_ldl_report {
 
 /* Computes the ordering, the elimination tree and the supernodes.
  * a      n x n with a symmetric pattern. Its values are ignored, and diagonal entries may be missing
- * Errors as hd_csr_check; HD_ERR_INDEX (row) if perm is not a permutation; HD_ERR_ARGUMENT, HD_ERR_TOO_LARGE,
- *        HD_ERR_MEMORY, HD_ERR_CANCELLED
+ * Errors as hd_csr_check; HD_ERR_NOT_FINITE (row; column: 0 to 2) if a coordinate is not finite; HD_ERR_INDEX
+ *        (row) if perm is not a permutation; HD_ERR_ARGUMENT, HD_ERR_TOO_LARGE, HD_ERR_MEMORY,
+ *        HD_ERR_CANCELLED
  * Cost   nearly linear in the non-zeros of A, plus the ordering
  * Source Amestoy, Davis, Duff 1996; George 1973; Gilbert, Ng, Peyton 1994 */
 HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ldl_opts *opts,
@@ -1314,7 +1315,7 @@ HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ld
 /* Factorises a real matrix.
  * val    [nnz] in the order of the analysed pattern. Of each pair (i,j), (j,i) one entry is read
  * Errors HD_ERR_NOT_FINITE (row, column), HD_ERR_BREAKDOWN (row, value: a pivot too small to divide by),
- *        HD_ERR_MEMORY, HD_ERR_CANCELLED
+ *        HD_ERR_MEMORY, HD_ERR_CANCELLED. The pivot does not depend on the number of threads
  * Cost   hd_ldl_report.factor_flops; 8 bytes for each stored entry
  * Source Duff, Reid 1983; Liu 1992: multifrontal */
 HEATDIFF_API hd_status hd_ldl_factor(hd_ldl *f, const double *val, hd_ldl_report *report,
@@ -2357,7 +2358,8 @@ static hd_status hdi_need(hd_context *ctx, uint64_t more, const char *what, hd_e
  * which a factor needs a lot. */
 static void hdi_large_pages(char *raw, size_t total) {
 #if HDI_LARGE_PAGES
-    const size_t page = 4096, skip = (page - HDI_RECAST(size_t, raw) % page) % page;
+    const size_t page = 1 << 16;                 /* the largest that Linux has; shorter ones divide it */
+    const size_t skip = (page - HDI_RECAST(size_t, raw) % page) % page;
     if (total >= HDI_CAST(size_t, 4) << 20)
         (void)madvise(raw + skip, (total - skip) & ~(page - 1), MADV_HUGEPAGE);
 #else
@@ -2421,6 +2423,8 @@ typedef struct hdi_scope {
     hd_context *ctx;
     hd_error *e;
     uint64_t *tally;             /* bytes; NULL: takes are made */
+    char *room;                  /* a part of another block, that is used up first; NULL in a tally */
+    uint64_t left;               /* bytes of it */
     int32_t n;
     void *block[HDI_SCOPE_MOST];
 } hdi_scope;
@@ -2450,8 +2454,15 @@ static hdi_scope hdi_scope_tally(uint64_t *tally, hd_error *e) {
 }
 
 static void *hdi_take(hdi_scope *s, uint64_t count, size_t size) {
-    void *p;
+    uint64_t bytes;
+    void *p = s->room;
     if (s->e->status < 0) return NULL;
+    if (hdi_size(count, size, HDI_ALIGN, s->left, &bytes)) {
+        bytes -= bytes % HDI_ALIGN;
+        s->left -= bytes;
+        s->room += s->room ? bytes : 0;
+        return p;
+    }
     if (s->tally) {
         hdi_scope_count(s->tally, count, size);
         return NULL;
@@ -2541,6 +2552,13 @@ static int64_t hdi_process(void) { return getpid(); }
 #define HDI_THREAD_DONE NULL
 typedef void *(*hdi_thread_body)(void *);
 
+/* Signals go to the threads of the program, where the compiler's mode shows how to say so. */
+#if defined(SIG_SETMASK) && (!defined(_POSIX_C_SOURCE) || _POSIX_C_SOURCE >= 199506L)
+#define HDI_SIGNALS 1
+#else
+#define HDI_SIGNALS 0
+#endif
+
 /* Before glibc 2.34 these functions are in a library of their own. A program that was linked without it has
  * no threads. */
 #if !defined(HDI_THREADS_WEAK) && defined(__GLIBC__) && __GLIBC__ == 2 && __GLIBC_MINOR__ < 34
@@ -2550,7 +2568,13 @@ typedef void *(*hdi_thread_body)(void *);
 #pragma weak pthread_create
 #pragma weak pthread_join
 #pragma weak pthread_attr_setstacksize
-static int hdi_threads_linked(void) { return pthread_create && pthread_join && pthread_attr_setstacksize; }
+#pragma weak pthread_sigmask
+static int hdi_threads_linked(void) {
+#if HDI_SIGNALS
+    if (!pthread_sigmask) return 0;
+#endif
+    return pthread_create && pthread_join && pthread_attr_setstacksize;
+}
 #else
 static int hdi_threads_linked(void) { return 1; }
 #endif
@@ -2558,21 +2582,20 @@ static int hdi_threads_linked(void) { return 1; }
 /* The stack of a thread: some systems give as little as 128 KB, musl among them. */
 enum { HDI_STACK = 1 << 20 };
 
-/* Signals go to the threads of the program, where the compiler's mode shows how to say so. */
 static int hdi_thread_start(hdi_thread *t, hdi_thread_body body, void *arg) {
     pthread_attr_t attr;
     int failed;
-#ifdef SIG_SETMASK
+#if HDI_SIGNALS
     sigset_t all, old;
     sigfillset(&all);
-    sigprocmask(SIG_SETMASK, &all, &old);
+    pthread_sigmask(SIG_SETMASK, &all, &old);
 #endif
     pthread_attr_init(&attr);
     pthread_attr_setstacksize(&attr, HDI_STACK);
     failed = pthread_create(t, &attr, body, arg);
     pthread_attr_destroy(&attr);
-#ifdef SIG_SETMASK
-    sigprocmask(SIG_SETMASK, &old, NULL);
+#if HDI_SIGNALS
+    pthread_sigmask(SIG_SETMASK, &old, NULL);
 #endif
     return !failed;
 }
@@ -2847,14 +2870,12 @@ static void hdi_release_many(hd_threads *t, int32_t id, int32_t n, int32_t *orde
     hdi_unlock(&t->lock);
 }
 
-static void hdi_release(hd_threads *t, int32_t id, int32_t *order) { hdi_release_many(t, id, 1, order); }
-
 /* Threads that can share n tasks with the caller; NULL: none, or they are the user's. */
 static hd_threads *hdi_threads_own(hd_context *ctx, int64_t n_tasks) {
     return ctx->parallel_for ? NULL : hdi_threads_get(ctx, n_tasks);
 }
 
-/* A loop of n tasks of which tasks release others. order [n]: the n_ready first ones. */
+/* A loop of n tasks of which tasks release others. order [n]: the n_ready first ones; NULL: all by number. */
 static void hdi_parallel_ordered(hd_context *ctx, int32_t n, int32_t n_ready, int32_t *order, hd_task task,
                                  void *arg) {
     hdi_loop loop;
@@ -2887,8 +2908,9 @@ static void hdi_release_many(hd_threads *t, int32_t id, int32_t n, int32_t *orde
     (void)n;
     (void)order;
 }
-static void hdi_release(hd_threads *t, int32_t id, int32_t *order) { hdi_release_many(t, id, 1, order); }
 #endif
+
+static void hdi_release(hd_threads *t, int32_t id, int32_t *order) { hdi_release_many(t, id, 1, order); }
 
 /* An object that is made with the context holds it; its threads end with the last one. */
 static void hdi_hold(hd_context *ctx) { ctx->n_holders++; }
@@ -2905,20 +2927,10 @@ static int hdi_is_serial(const hd_context *ctx) {
 }
 
 static void hdi_parallel(hd_context *ctx, int64_t n_tasks, hd_task task, void *arg) {
+    const int32_t n = HDI_CAST(int32_t, hdi_least(n_tasks, INT32_MAX));
     int64_t i;
-#if HDI_THREADS
-    hd_threads *t = ctx->parallel_for ? NULL : hdi_threads_get(ctx, n_tasks);
-    if (t) {
-        hdi_loop loop;
-        loop.n = HDI_CAST(uint32_t, n_tasks);
-        loop.task = task;
-        loop.arg = arg;
-        loop.order = NULL;
-        hdi_loop_run(ctx, t, &loop, n_tasks);
-        return;
-    }
-#endif
-    if (ctx->parallel_for && n_tasks > 1) ctx->parallel_for(ctx->parallel_user, n_tasks, task, arg);
+    if (hdi_threads_own(ctx, n_tasks)) hdi_parallel_ordered(ctx, n, n, NULL, task, arg);
+    else if (ctx->parallel_for && n_tasks > 1) ctx->parallel_for(ctx->parallel_user, n_tasks, task, arg);
     else for (i = 0; i < n_tasks; i++) task(arg, i, 0);
 }
 
@@ -3340,6 +3352,7 @@ enum {
     HDI_REAL_MR = 24,   /* largest mr */
     HDI_REAL_NR = 8     /* largest nr */
 };
+#define HDI_PIVOT_LEAST (DBL_MIN / 4)   /* the largest number whose inverse overflows, 2^-1024 */
 
 /* One instruction set. mr x nr is the register tile. L, A, P point at the entry (first row, first column)
  * named; ld is the distance of columns. */
@@ -3992,7 +4005,7 @@ HDI_PART void HDI_OF(real_pivots)(const int nv, double *P, int64_t ld, int32_t k
         double d, q;
         if (j == nc) return;
         d = hdi_vlow(hdi_vlane(x[j][j / HDI_WIDTH], j % HDI_WIDTH));
-        if (d == 0) {                            /* which hdi_real_block finds on the diagonal */
+        if (fabs(d) <= HDI_PIVOT_LEAST) {        /* which hdi_real_block finds on the diagonal */
             C[j] = d;
             return;
         }
@@ -4755,10 +4768,24 @@ static const hdi_pack_ops *hdi_pack_ops_get(int level) {
 
 /* ---- factorisation ---- */
 
-typedef struct hdi_real_pivots {
-    double largest, smallest;  /* of |d|; begin with 0 and DBL_MAX */
-    int64_t negative;
-} hdi_real_pivots;
+/* What the pivots of a part of the tree looked like. */
+typedef struct hdi_pivots {
+    double largest, smallest;        /* absolute values, over all matrices */
+    int64_t negative;                /* real pivots below zero */
+    int32_t failed, lane;            /* pivot that cannot be divided by, -1 none; its matrix */
+    double value;
+} hdi_pivots;
+
+static void hdi_pivots_clear(hdi_pivots *q) {
+    memset(q, 0, sizeof *q);
+    q->smallest = HUGE_VAL;
+    q->failed = -1;
+}
+
+static void hdi_pivots_add(hdi_pivots *q, double largest, double smallest) {
+    if (largest > q->largest) q->largest = largest;
+    if (smallest < q->smallest) q->smallest = smallest;
+}
 
 /* Columns of L, and of U padded to slices, that are taken at a time in fronts of at most p pivots and u rows
  * below. */
@@ -4801,9 +4828,10 @@ static void hdi_real_rows(const hdi_real_ops *o, double *P, int64_t m, int32_t k
 /* Pivots K = k0..k0+nb-1 in rows k0..end-1: LDL' of P(K,K) - L(K,0..k0-1) D L(K,0..k0-1)', and as
  * hdi_real_rows, to the last bit, below K. nb <= HDI_REAL_NB, k0 a multiple of nr; end = k0 + nb, or up to m
  * when k0 + nb <= HDI_REAL_KC. S [k0 + nb rows of slices] becomes D L(K,0..k0+nb-1)'. d is left on the
- * diagonal of P. work [hdi_real_work(u, p)]. Returns -1, or the first pivot that is zero or not finite. */
+ * diagonal of P. work [hdi_real_work(u, p)]. Returns -1, or the first pivot that is not finite, or
+ * whose inverse is not. */
 static int64_t hdi_real_block(const hdi_real_ops *o, double *P, int64_t m, int32_t k0, int32_t nb,
-                              int64_t end, double *S, double *dinv, hdi_real_pivots *pivots, double *work) {
+                              int64_t end, double *S, double *dinv, hdi_pivots *pivots, double *work) {
     const int32_t nr = o->nr, kb = k0 + nb;
     int32_t k, j;
     for (k = k0; k < kb; k += nr, S += HDI_CAST(int64_t, kb) * nr) {
@@ -4821,9 +4849,8 @@ static int64_t hdi_real_block(const hdi_real_ops *o, double *P, int64_t m, int32
         o->block(P + k, m, k, nc, n, S, dinv);
         for (j = k; j < k + nc; j++) {
             const double d = P[j * (m + 1)], a = fabs(d);
-            if (a == 0 || !hdi_finite(a)) return j;
-            if (a > pivots->largest) pivots->largest = a;
-            if (a < pivots->smallest) pivots->smallest = a;
+            if (a <= HDI_PIVOT_LEAST || !hdi_finite(a)) return j;
+            hdi_pivots_add(pivots, a, a);
             pivots->negative += d < 0;
         }
         if (k + nc + n < end) hdi_real_rows(o, P, m, k, nc, S, kb, dinv, k + nc + n, end, work);
@@ -13245,14 +13272,6 @@ typedef struct hdi_order {
     const int32_t *own;          /* [n] OWN: the permutation */
 } hdi_order;
 
-static hdi_order hdi_order_of(hd_ordering kind, const double *xyz, const int32_t *own) {
-    hdi_order o;
-    o.kind = kind;
-    o.xyz = xyz;
-    o.own = own;
-    return o;
-}
-
 static hd_status hdi_order_check(const int32_t *perm, int32_t n, hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
     char *seen = HDI_TAKE_ZERO(&s, char, HDI_CAST(uint64_t, n) + 1);
@@ -13333,14 +13352,6 @@ typedef struct hdi_values {
     hd_c64 theta[HDI_PACK_LANES];
 } hdi_values;
 
-/* What the pivots of a part of the tree looked like. */
-typedef struct hdi_pivots {
-    double largest, smallest;        /* absolute values, over all matrices */
-    int64_t negative;                /* real pivots below zero */
-    int32_t failed, lane;            /* pivot that cannot be divided by, -1 none; its matrix */
-    double value;
-} hdi_pivots;
-
 typedef struct hdi_factor {
     const hdi_symbolic *sym;
     hd_context *ctx;
@@ -13362,28 +13373,16 @@ typedef struct hdi_factor {
     double largest_entry;            /* |diagonal entry of A|, the largest */
     int32_t ready;
     int32_t guest;                   /* work, scratch, chunk_scratch, nodes, order and pivots are another's */
-    double *spare;                   /* [spare_size] of a factor within a pack: what is left there */
-    uint64_t spare_size;
     /* a factorisation under way */
     const hdi_values *values;
-    int32_t stop;
+    int32_t stop;                    /* the top is not begun, or not gone on with */
+    int32_t until;                   /* nor subtrees from this one on: those before it may fail earlier */
     double share;
     hd_error error;
 } hdi_factor;
 
 /* Is it the factor of a real matrix, and not a pack? */
 static HDI_INLINE int hdi_is_real(const hdi_factor *f) { return !HDI_HAS_POLE_FACTORS || f->width == 1; }
-
-static void hdi_pivots_clear(hdi_pivots *q) {
-    memset(q, 0, sizeof *q);
-    q->smallest = HUGE_VAL;
-    q->failed = -1;
-}
-
-static void hdi_pivots_add(hdi_pivots *q, double largest, double smallest) {
-    if (largest > q->largest) q->largest = largest;
-    if (smallest < q->smallest) q->smallest = smallest;
-}
 
 /* ---- parts of a front ---- */
 
@@ -13667,16 +13666,8 @@ static void hdi_front_assemble_real(const hdi_front *w) {
 
 /* Pivots [k0,k0+nb) and their columns down to row end. */
 static int hdi_front_pivots_real(const hdi_front *w, int64_t end, hdi_pivots *note) {
-    hdi_real_pivots seen;
-    int64_t bad;
-    seen.largest = note->largest;
-    seen.smallest = hdi_min(note->smallest, DBL_MAX);
-    seen.negative = note->negative;
-    bad = hdi_real_block(w->f->real, w->panel, w->m, HDI_CAST(int32_t, w->k0), w->nb, end, w->S, w->dinv,
-                         &seen, w->work);
-    note->largest = seen.largest;
-    note->smallest = seen.smallest;
-    note->negative = seen.negative;
+    const int64_t bad = hdi_real_block(w->f->real, w->panel, w->m, HDI_CAST(int32_t, w->k0), w->nb, end,
+                                       w->S, w->dinv, note, w->work);
     if (bad < 0) return 1;
     note->failed = w->f->sym->super[w->v] + HDI_CAST(int32_t, bad);
     note->value = w->panel[bad * (w->m + 1)];
@@ -13930,17 +13921,24 @@ static double *hdi_factor_scratch(const hdi_factor *f, int64_t i) {
     return f->scratch + f->scratch_size * HDI_CAST(size_t, i);
 }
 
+/* No subtree from this one on need go on. Should two threads come at once, and the larger number stay, then
+ * more is done than need be. */
+static void hdi_factor_stop(hdi_factor *f, int32_t until) {
+    if (until < HDI_LOAD(&f->until)) HDI_STORE(&f->until, until);
+    HDI_STORE(&f->stop, 1);
+}
+
 /* A subtree, by one thread. */
 static void hdi_factor_task(void *arg, int64_t index, int32_t worker) {
     hdi_factor *f = HDI_CAST(hdi_factor *, arg);
     const hdi_symbolic *s = f->sym;
     const double done = f->share * HDI_CAST(double, index) / s->n_tasks;
     int32_t v;
-    if (HDI_LOAD(&f->stop)) return;
-    if (worker == 0 && hdi_progress(f->ctx, "factor", done, &f->error) < 0) HDI_STORE(&f->stop, 1);
-    for (v = s->task_begin[index]; v < s->task_end[index] && !HDI_LOAD(&f->stop); v++)
+    if (index >= HDI_LOAD(&f->until)) return;
+    if (worker == 0 && hdi_progress(f->ctx, "factor", done, &f->error) < 0) hdi_factor_stop(f, 0);
+    for (v = s->task_begin[index]; v < s->task_end[index] && index < HDI_LOAD(&f->until); v++)
         if (!hdi_front_factor(f, v, hdi_factor_scratch(f, index), f->pivots + index, 0))
-            HDI_STORE(&f->stop, 1);
+            hdi_factor_stop(f, HDI_CAST(int32_t, index));
 }
 
 static void hdi_factor_free(hdi_factor *f) {
@@ -14043,43 +14041,7 @@ static uint64_t hdi_factor_guest_bytes(const hdi_symbolic *sym, int32_t width) {
     return bytes;
 }
 
-/* The sizes of a real factor that stands where the update matrices of a pack do. Returns 0 if it does not
- * fit. */
-static int hdi_factor_within_size(hdi_factor *f, const hdi_symbolic *s) {
-    const uint64_t room = HDI_PACK * HDI_CAST(uint64_t, s->work);
-    uint64_t need = HDI_CAST(uint64_t, s->panel[s->n_super] + s->work + s->n);
-    *f = hdi_factor_of(s, 1);
-    f->n_order = hdi_factor_nodes(f);
-    need += f->scratch_size * hdi_factor_parts(s) + 2 * f->top_size;
-    need += f->chunk_size * hdi_factor_chunks(s) + HDI_CAST(uint64_t, f->n_order / 2 + 1);
-    f->spare_size = need <= room ? room - need : 0;
-    return need <= room;
-}
-
-/* A real factor that stands where the update matrices of a pack do, until the pack is factorised or inverted
- * again, or other use is made of that room. Not to be freed. Returns 0 if it does not fit. */
-static int hdi_factor_within(hdi_factor *f, const hdi_factor *pack) {
-    const hdi_symbolic *s = pack->sym;
-    if (!hdi_factor_within_size(f, s)) return 0;
-    f->real = pack->real;
-    f->pack = pack->pack;
-    f->panel = pack->work;
-    f->work = f->panel + s->panel[s->n_super];
-    f->dinv = f->work + s->work;
-    f->scratch = f->dinv + s->n;
-    f->second = f->scratch + f->scratch_size * hdi_factor_parts(s) + f->top_size;
-    f->chunk_scratch = f->second + f->top_size;
-    f->spare = f->chunk_scratch + f->chunk_size * hdi_factor_chunks(s);
-    f->order = HDI_CAST(int32_t *, HDI_CAST(void *, f->spare));
-    f->spare += f->n_order / 2 + 1;
-    f->nodes = pack->nodes;                      /* those of a pack are more: its blocks are smaller */
-    f->pivots = pack->pivots;
-    f->guest = 1;
-    f->ctx = pack->ctx;
-    return 1;
-}
-
-/* The arrays of a factor of the given width; all that factoring and refactoring need. */
+/* A factor of the given width with the arrays that factoring and refactoring need. */
 static void hdi_factor_take(hdi_factor *f, const hdi_symbolic *sym, int32_t width, hdi_scope *s) {
     const uint64_t n_parts = hdi_factor_parts(sym), n_chunks = hdi_factor_chunks(sym);
     const uint64_t tops = sym->n_top > 0 ? n_chunks > 0 ? 2 : 1 : 0;
@@ -14093,6 +14055,10 @@ static void hdi_factor_take(hdi_factor *f, const hdi_symbolic *sym, int32_t widt
     f->n_order = hdi_factor_nodes(f);
     f->order = HDI_TAKE(s, int32_t, f->n_order + 1);
     if (f->scratch && n_chunks > 0) f->second = f->scratch + f->scratch_size * n_parts + f->top_size;
+    if (s->tally) return;
+    f->pack = HDI_HAS_POLE_FACTORS ? hdi_pack_ops_get(hdi_simd_level(s->ctx)) : NULL;
+    f->real = hdi_real_ops_get(hdi_simd_level(s->ctx));
+    f->ctx = s->ctx;
 }
 
 /* Room for a factor. */
@@ -14100,14 +14066,9 @@ static hd_status hdi_factor_make(hdi_factor *f, const hdi_symbolic *sym, int32_t
                                  hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
     hdi_factor_take(f, sym, width, &s);
-    if (e->status < 0) {
-        memset(f, 0, sizeof *f);
-        return hdi_scope_end(&s);
-    }
-    f->pack = HDI_HAS_POLE_FACTORS ? hdi_pack_ops_get(hdi_simd_level(ctx)) : NULL;
-    f->real = hdi_real_ops_get(hdi_simd_level(ctx));
-    f->ctx = ctx;                                /* the blocks are f's own now */
-    return HD_OK;
+    if (e->status >= 0) return HD_OK;            /* the blocks are f's own now */
+    memset(f, 0, sizeof *f);
+    return hdi_scope_end(&s);
 }
 
 /* The bytes of that. */
@@ -14127,7 +14088,8 @@ static hd_status hdi_factor_make_pack(hdi_factor *pack, int32_t i, const hdi_sym
     return hdi_factor_make(pack, sym, HDI_PACK, ctx, e);
 }
 
-/* Collects what the parts saw. Of several failures that of the lowest pivot is reported. */
+/* Collects what the parts saw. Of several failures that of the lowest pivot is reported: no thread stops a
+ * subtree before it. */
 static hd_status hdi_factor_collect(hdi_factor *f, int32_t n_parts, hd_error *e) {
     int32_t i;
     hdi_pivots_clear(&f->all);
@@ -14145,8 +14107,8 @@ static hd_status hdi_factor_collect(hdi_factor *f, int32_t n_parts, hd_error *e)
         return e->status;
     }
     if (f->all.failed < 0) return HD_OK;
-    hdi_fail_row(e, HD_ERR_BREAKDOWN, "LDL': a pivot is zero or not finite", f->sym->perm[f->all.failed], -1,
-                 f->all.value);
+    hdi_fail_row(e, HD_ERR_BREAKDOWN, "LDL': a pivot is not finite, or too small to divide by",
+                 f->sym->perm[f->all.failed], -1, f->all.value);
     if (f->width > 1) e->pole = f->all.lane;
     return e->status;
 }
@@ -14251,6 +14213,7 @@ static hd_status hdi_factor_run(hdi_factor *f, const hdi_values *values, hd_erro
     hd_threads *threads = hdi_threads_own(f->ctx, n);
     int32_t i;
     f->ready = f->stop = 0;
+    f->until = s->n_tasks;
     f->values = values;
     f->share = s->n_top > 0 ? 0.5 : 1;
     hdi_error_clear(&f->error);
@@ -14462,14 +14425,14 @@ static void hdi_sweep_front(const hdi_sweep *z, int32_t v) {
     const hdi_factor *f = z->f;
     const int64_t w = HDI_CAST(int64_t, f->width) * z->k;
     double *y = z->x + w * f->sym->super[v], *t = z->vec + w * f->sym->vector[v];
+    const char *only = z->backward ? z->wanted : z->active;
+    if (only && !only[v]) return;
     hdi_factor_fetch(f, v, z->backward);
     if (z->backward) {
-        if (z->wanted && !z->wanted[v]) return;
         if (hdi_is_real(f)) hdi_sweep_backward_real(z, v, y, t);
         else hdi_sweep_backward_pack(z, v, y);
         return;
     }
-    if (z->active && !z->active[v]) return;
     hdi_sweep_take(z, v, y);
     hdi_sweep_children(z, v, y, t);
     hdi_sweep_forward(z, v, y, t);
@@ -14660,10 +14623,16 @@ static void hdi_ldl_tell(const hd_ldl *f, const hdi_factor *of, hd_ldl_report *r
 }
 
 /* Order, analysis and a copy of the pattern, for f->ctx. */
-static hd_status hdi_ldl_analyse(hd_ldl *f, const hd_csr *a, const hdi_order *order, hd_error *e) {
+static hd_status hdi_ldl_analyse(hd_ldl *f, const hd_csr *a, const hd_ldl_opts *o, hd_error *e) {
     const uint64_t n = HDI_CAST(uint64_t, f->n), nnz = HDI_CAST(uint64_t, f->nnz);
+    const hdi_order order = {o->ordering, o->xyz, o->perm};
+    int64_t p;
     int32_t i;
-    if (hdi_symbolic_order(&f->sym, a, order, f->ctx, e) < 0) return e->status;
+    for (p = 0; o->xyz && p < hdi_triple(f->n); p++)
+        if (!hdi_finite(o->xyz[p]))
+            return hdi_fail_row(e, HD_ERR_NOT_FINITE, "ldl options: a coordinate is not finite", p / 3, p % 3,
+                                o->xyz[p]);
+    if (hdi_symbolic_order(&f->sym, a, &order, f->ctx, e) < 0) return e->status;
     f->row_ptr = HDI_CAST(int64_t *, hdi_copy(a->row_ptr, n + 1, sizeof *f->row_ptr, f->ctx, e));
     f->col = HDI_CAST(int32_t *, hdi_copy(a->col, nnz, sizeof *f->col, f->ctx, e));
     if (f->col) f->inv = HDI_CAST(int32_t *, hdi_alloc(f->ctx, n, sizeof *f->inv, e));
@@ -14826,25 +14795,21 @@ static void hdi_ldl_free(hd_ldl *f) {
     hdi_let_go(ctx);
 }
 
-/* Begins a call that factors. */
-static hd_status hdi_ldl_enter(hdi_call *c, hd_ldl *f, const void *val, hd_error *err) {
-    if (hdi_enter(c, f ? f->ctx : NULL, err) < 0) return c->e->status;
-    if (!HDI_HAS_DIRECT) return HDI_LEFT_OUT(c->e, DIRECT, "factorisations");
-    return !f || (f->nnz > 0 && !val) ? hdi_missing(c->e) : HD_OK;
-}
-
-/* Begins a call that needs the real factor, or the packs. given: no array is missing. */
-static hd_status hdi_ldl_enter_factored(hdi_call *c, const hd_ldl *f, int packs, int given, hd_error *err) {
+/* Begins a call for a real factor, or for packs. given: no array is missing. */
+static hd_status hdi_ldl_enter(hdi_call *c, const hd_ldl *f, int packs, int given, hd_error *err) {
     if (hdi_enter(c, f ? f->ctx : NULL, err) < 0) return c->e->status;
     if (!HDI_HAS_DIRECT) return HDI_LEFT_OUT(c->e, DIRECT, "factorisations");
     if (packs && !HDI_HAS_POLE_FACTORS)
         return HDI_LEFT_OUT(c->e, POLE_FACTORS, "factorisations of complex matrices");
-    if (!f || !given) return hdi_missing(c->e);
-    if (!packs && !f->real.ready)
-        return hdi_fail(c->e, HD_ERR_ARGUMENT, "ldl: the last factorisation was not a real one");
-    if (packs && !f->n_matrices)
-        return hdi_fail(c->e, HD_ERR_ARGUMENT, "ldl: the last factorisation was not a complex one");
-    return HD_OK;
+    return !f || !given ? hdi_missing(c->e) : HD_OK;
+}
+
+/* The same for a call that needs them. */
+static hd_status hdi_ldl_enter_factored(hdi_call *c, const hd_ldl *f, int packs, int given, hd_error *err) {
+    if (hdi_ldl_enter(c, f, packs, given, err) < 0) return c->e->status;
+    hdi_refuse(!packs && !f->real.ready, "ldl: the last factorisation was not a real one", c->e);
+    hdi_refuse(packs && !f->n_matrices, "ldl: the last factorisation was not a complex one", c->e);
+    return c->e->status;
 }
 
 static hd_status hdi_ldl_leading(const hd_ldl *f, size_t ldb, size_t ldx, hd_error *e) {
@@ -14906,7 +14871,6 @@ typedef struct hdi_inverse {
     int64_t stride;              /* from set to set */
     double *scratch, *chunk;     /* [n_tasks][scratch_size] and one for the top; [chunks][chunk_size] */
     uint64_t scratch_size, top_size, chunk_size;
-    int32_t guest;               /* scratch is the factor's */
     int32_t stop;
     double done;
     hd_error error;
@@ -16117,16 +16081,8 @@ static void hdi_inverse_share(hdi_inverse *z, hd_threads *threads, int32_t n, in
     hdi_parallel_ordered(z->f->ctx, n, ready, order, hdi_inverse_node, &l);
 }
 
-static void hdi_inverse_free(hdi_inverse *z, hd_context *ctx) {
-    if (!z->guest) hdi_free(ctx, z->scratch);
-    hdi_free(ctx, z->chunk);
-    z->scratch = z->chunk = NULL;
-}
-
-/* The arrays that inverting factors of the given width takes; with f that factor, some of it in f's spare
- * room if it fits. */
-static void hdi_inverse_take(hdi_inverse *z, const hdi_symbolic *s, int32_t width, const hdi_factor *f,
-                             hdi_scope *keep) {
+/* The arrays that inverting factors of the given width takes. */
+static void hdi_inverse_take(hdi_inverse *z, const hdi_symbolic *s, int32_t width, hdi_scope *keep) {
     const int64_t *at = width == 1 ? s->panel : s->panel_pack;
     const int32_t chunks = s->largest_front / HDI_INV_CHUNK + HDI_PANEL / HDI_CAST(int32_t, HDI_REAL_MR) + 2;
     uint64_t size;
@@ -16140,29 +16096,22 @@ static void hdi_inverse_take(hdi_inverse *z, const hdi_symbolic *s, int32_t widt
     }
     z->chunk_size = hdi_inverse_buffer(width);
     size = z->scratch_size * HDI_CAST(uint64_t, s->n_tasks) + z->top_size;
-    z->guest = f && size <= f->spare_size;
-    z->scratch = z->guest ? f->spare : HDI_TAKE(keep, double, size);
+    z->scratch = HDI_TAKE(keep, double, size);
     z->chunk = HDI_TAKE(keep, double, s->n_top ? z->chunk_size * HDI_CAST(uint64_t, chunks) : 1);
 }
 
-/* Room to invert factors of the given width; f: see hdi_inverse_take. */
-static hd_status hdi_inverse_make(hdi_inverse *z, const hdi_symbolic *s, int32_t width, const hdi_factor *f,
-                                  hd_context *ctx, hd_error *e) {
-    hdi_scope keep = hdi_scope_begin(ctx, e);
-    hdi_inverse_take(z, s, width, f, &keep);
-    if (e->status >= 0) return HD_OK;            /* the blocks are z's own */
-    z->scratch = z->chunk = NULL;
-    return hdi_scope_end(&keep);
-}
-
-/* The bytes of that, and of the order that hdi_inverse_run takes: of this alone to *order, unless NULL. */
-static uint64_t hdi_inverse_bytes(const hdi_symbolic *s, int32_t width, const hdi_factor *f,
+/* The bytes of that, and of the order that hdi_inverse_run takes: of this alone to *order, unless NULL. Also
+ * those of the factor, if asked for; less the room that is there. */
+static uint64_t hdi_inverse_bytes(const hdi_symbolic *s, int32_t width, int factor, uint64_t room,
                                   uint64_t *order) {
     hd_error none;
     uint64_t bytes, later = 0;
     hdi_scope keep = hdi_scope_tally(&bytes, &none);
+    hdi_factor f;
     hdi_inverse z;
-    hdi_inverse_take(&z, s, width, f, &keep);
+    keep.left = room;
+    if (factor) hdi_factor_take(&f, s, width, &keep);
+    hdi_inverse_take(&z, s, width, &keep);
     hdi_scope_count(&later, HDI_CAST(uint64_t, s->n_top > 0 ? hdi_inverse_count(&z, s) : 0), sizeof(int32_t));
     if (order) *order = later;
     return bytes + later;
@@ -16237,8 +16186,8 @@ static hd_status hdi_ldl_invert(hd_ldl *f, hdi_factor *of, int32_t n_matrices, d
     hdi_inverse z;
     memset(coef, 0, sizeof coef);
     for (q = 0; q < n_sets; q++) coef[q * of->width + hdi_pack_part(q, stride)] = 1;
-    if (e->status < 0 || hdi_inverse_make(&z, &f->sym, of->width, NULL, f->ctx, e) < 0)
-        return hdi_scope_end(&s);
+    hdi_inverse_take(&z, &f->sym, of->width, &s);
+    if (e->status < 0) return hdi_scope_end(&s);
     z.coef = coef;
     z.n_sets = n_sets;
     z.values = x;
@@ -16258,7 +16207,6 @@ static hd_status hdi_ldl_invert(hd_ldl *f, hdi_factor *of, int32_t n_matrices, d
         for (q = 0; q < n_sets && e->status >= 0; q++)
             hdi_ldl_diagonal(f, x + q * n, diag + stride * (q / stride * n) + q % stride, stride);
     }
-    hdi_inverse_free(&z, f->ctx);
     return hdi_scope_end(&s);
 }
 
@@ -16355,6 +16303,15 @@ static hd_status hdi_ldl_entries_check(const hd_ldl *f, int64_t n, const int32_t
             return hdi_fail_row(e, HD_ERR_INDEX, "ldl: an entry is not in the matrix", q, -1, worst);
     }
     return HD_OK;
+}
+
+/* The same for a public call. */
+static hd_status hdi_ldl_some_entries(hd_ldl *f, int packs, int64_t n, const int32_t *i, const int32_t *j,
+                                      double *values, hd_error *err) {
+    hdi_call c;
+    if (hdi_ldl_enter_inverse(&c, f, packs, err) < 0 || !HDI_HAS_DIAGONAL) return c.e->status;
+    if (hdi_ldl_entries_check(f, n, i, j, values, c.e) < 0) return c.e->status;
+    return n > 0 ? hdi_ldl_inverse_entries(f, packs, n, i, j, values, c.e) : HD_OK;
 }
 
 /* ==== [19] precond ====
@@ -19919,7 +19876,7 @@ static hd_status hdi_elim_make(hdi_elim *m, const hd_laplacian *lap, hd_ordering
                                double scale, hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
     int32_t *rows = HDI_TAKE(&s, int32_t, lap->n_active);
-    const hdi_order order = hdi_order_of(ordering, lap->xyz, own ? rows : NULL);
+    const hdi_order order = {ordering, lap->xyz, own ? rows : NULL};
     if (e->status < 0) return hdi_scope_end(&s);
     memset(m, 0, sizeof *m);
     m->ctx = ctx;
@@ -20362,7 +20319,7 @@ static hd_status hdi_lap_ratio(hd_laplacian *lap, hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
     const double dominant = hdi_max(lap->b_ratio, 0);
     double *work = HDI_TAKE(&s, double, 4 * HDI_CAST(int64_t, lap->n_active)), least, sigma, slack;
-    const hdi_order order = hdi_order_of(HD_ORDERING_MINIMUM_DEGREE, NULL, NULL);
+    const hdi_order order = {HD_ORDERING_MINIMUM_DEGREE, NULL, NULL};
     int32_t tries;
     hd_csr b = hdi_lap_mass_matrix(lap, &s);
     double *value = HDI_TAKE(&s, double, b.nnz);
@@ -20642,9 +20599,13 @@ static void hdi_elim_invert_width(hdi_elim *m, hdi_factor *f, int32_t n, const h
     const int32_t width = n > 0 ? f->width : 0;
     hdi_forms forms;
     hdi_inverse z;
+    hdi_scope s;
     int32_t i, k;
-    if (n == 0 || e->status < 0 || hdi_inverse_make(&z, &m->sym, width, NULL, m->ctx, e) < 0) return;
-    if (b) (void)hdi_forms_make(&forms, &m->sym, width, &m->source->L, b, m->ctx, e);
+    if (n == 0 || e->status < 0) return;
+    s = hdi_scope_begin(m->ctx, e);
+    memset(&forms, 0, sizeof forms);
+    hdi_inverse_take(&z, &m->sym, width, &s);
+    if (b && e->status >= 0) (void)hdi_forms_make(&forms, &m->sym, width, &m->source->L, b, m->ctx, e);
     z.coef = coef;
     z.n_sets = sums->n_sets;
     z.wanted = sums->wanted;
@@ -20659,8 +20620,8 @@ static void hdi_elim_invert_width(hdi_elim *m, hdi_factor *f, int32_t n, const h
         }
         (void)hdi_inverse_run(&z, f + i, e);
     }
-    hdi_inverse_free(&z, m->ctx);
     if (b) hdi_forms_free(&forms, m->ctx);
+    hdi_scope_end(&s);
 }
 
 /* Sums over all poles. The factors are there, and stay. */
@@ -20678,20 +20639,19 @@ static hd_status hdi_elim_invert(hdi_elim *m, const hdi_elim_sums *sums, hd_erro
 }
 
 /* out [n] = the diagonal of the inverse of a factor, by pivots. coef [width]: of its parts, as hdi_elim_coef
- * has them. */
+ * has them. Work arrays in s. */
 static hd_status hdi_elim_inverse_diagonal(const hdi_elim *m, hdi_factor *f, const double *coef, double *out,
-                                           hd_error *e) {
+                                           hdi_scope *s) {
     hdi_inverse z;
-    if (hdi_inverse_make(&z, &m->sym, f->width, f, m->ctx, e) < 0) return e->status;
+    hdi_inverse_take(&z, &m->sym, f->width, s);
+    if (s->e->status < 0) return s->e->status;
     memset(out, 0, HDI_CAST(size_t, m->sym.n) * sizeof *out);
     z.coef = coef;
     z.n_sets = 1;
     z.wanted = HDI_WANT_DIAGONAL;
     z.values = out;
     z.stride = m->sym.n;
-    (void)hdi_inverse_run(&z, f, e);
-    hdi_inverse_free(&z, m->ctx);
-    return e->status;
+    return hdi_inverse_run(&z, f, s->e);
 }
 
 enum { HDI_RESOLVENT_POLES = 8, HDI_RESOLVENT_POINTS = 160 };
@@ -20742,17 +20702,26 @@ static double hdi_constant_part(const hd_laplacian *lap, int32_t i) {
 /* A factor for the rounding of an inverse's entries that serve as bounds. */
 #define HDI_REACH_SLACK 1.01
 
+/* Bytes of the first pack's update matrices, which are free between its factorisations and inversions. */
+static uint64_t hdi_elim_room(const hdi_elim *m, int32_t packs) {
+    return packs > 0 ? HDI_PACK * sizeof(double) * HDI_CAST(uint64_t, m->sym.work) : 0;
+}
+
 /* m->reach: a bound of diag((B + tL)^-1) for the time of the poles, from the real factor at hand or a new
  * one, in the room of the first pack where it fits. */
 static hd_status hdi_elim_bound(hdi_elim *m, hd_error *e) {
     const double theta = m->lone >= 0 ? m->set.theta[0].re : 1, factor = HDI_REACH_SLACK * hdi_max(1, theta);
-    hdi_factor within, *real = &m->real;
+    hdi_factor own, *real = m->lone >= 0 ? &m->real : &own;
+    hdi_scope s;
     int32_t i;
     if (m->reach && m->reach_t == m->t) return HD_OK;
+    s = hdi_scope_begin(m->ctx, e);
     if (!m->reach) m->reach = HDI_NEW(m->ctx, double, m->sym.n, e);
-    if (m->lone < 0 && m->n_used > 0 && hdi_factor_within(&within, m->pack)) real = &within;
-    if (m->reach && (m->lone >= 0 || hdi_elim_real(m, real, m->t, theta, e) >= 0) &&
-        hdi_elim_inverse_diagonal(m, real, &factor, m->reach, e) >= 0) {
+    s.left = hdi_elim_room(m, m->n_used);
+    if (s.left > 0) s.room = HDI_CAST(char *, HDI_CAST(void *, m->pack->work));
+    if (m->lone < 0) hdi_factor_take(&own, &m->sym, 1, &s);
+    if (e->status >= 0 && (m->lone >= 0 || hdi_elim_real(m, real, m->t, theta, e) >= 0) &&
+        hdi_elim_inverse_diagonal(m, real, &factor, m->reach, &s) >= 0) {
         for (i = 0; i < m->sym.n; i++) {
             const double most = hdi_inverse_mass(m->lap, i);
             if (!(m->reach[i] > 0 && m->reach[i] < most)) m->reach[i] = most;
@@ -20764,28 +20733,21 @@ static hd_status hdi_elim_bound(hdi_elim *m, hd_error *e) {
         hdi_free(m->ctx, m->reach);
         m->reach = NULL;
     }
-    return e->status;
+    return hdi_scope_end(&s);
 }
 
 /* What follows the factors of a set: solves, with hdi_elim_bound before them or without, or an inversion. */
 typedef enum hdi_after { HDI_AFTER_SOLVES, HDI_AFTER_BOUND, HDI_AFTER_INVERSE, HDI_AFTER_FORMS } hdi_after;
 
-/* Does hdi_elim_bound find room for its real factor in the first pack? */
-static int hdi_elim_bound_within(const hdi_elim *m, const hd_rational *set, hdi_factor *within) {
-    return !hdi_set_lone(set) && hdi_set_packs(set) > 0 && hdi_factor_within_size(within, &m->sym);
-}
-
 /* Bytes that the factors of a set take beyond those that are there, with what hdi_elim_bound keeps. */
 static uint64_t hdi_elim_factor_need(const hdi_elim *m, const hd_rational *set, hdi_after after) {
     const int32_t packs = hdi_set_packs(set), guests = packs - hdi_high32(m->n_packs, 1);
-    const int bound = after == HDI_AFTER_BOUND;
-    hdi_factor within;
-    const int real = hdi_set_lone(set) || (bound && !hdi_elim_bound_within(m, set, &within));
     uint64_t bytes = 0;
     if (packs > 0 && m->n_packs == 0) bytes += hdi_factor_bytes(&m->sym, HDI_PACK);
     if (guests > 0) bytes += HDI_CAST(uint64_t, guests) * hdi_factor_guest_bytes(&m->sym, HDI_PACK);
-    if (real && !m->real.ctx) bytes += hdi_factor_bytes(&m->sym, 1);
-    if (bound && !m->reach) hdi_scope_count(&bytes, HDI_CAST(uint64_t, m->sym.n), sizeof *m->reach);
+    if (hdi_set_lone(set) && !m->real.ctx) bytes += hdi_factor_bytes(&m->sym, 1);
+    if (after == HDI_AFTER_BOUND && !m->reach)
+        hdi_scope_count(&bytes, HDI_CAST(uint64_t, m->sym.n), sizeof *m->reach);
     return bytes;
 }
 
@@ -20795,15 +20757,14 @@ static uint64_t hdi_elim_inverse_need(const hdi_elim *m, const hd_rational *set,
     const int forms = after == HDI_AFTER_FORMS;
     const int32_t widths[2] = {hdi_set_lone(set) ? 1 : 0, hdi_set_packs(set) > 0 ? HDI_PACK : 0};
     uint64_t most = 0, bytes = 0, order;
-    hdi_factor within;
     int q;
     if (after == HDI_AFTER_SOLVES) return 0;
     if (after == HDI_AFTER_BOUND)
-        return hdi_inverse_bytes(&m->sym, 1, hdi_elim_bound_within(m, set, &within) ? &within : NULL, NULL);
+        return hdi_inverse_bytes(&m->sym, 1, !hdi_set_lone(set), hdi_elim_room(m, hdi_set_packs(set)), NULL);
     for (q = 0; q < 2 && e->status >= 0; q++) {
         uint64_t need;
         if (!widths[q]) continue;
-        need = hdi_inverse_bytes(&m->sym, widths[q], NULL, &order);
+        need = hdi_inverse_bytes(&m->sym, widths[q], 0, 0, &order);
         if (forms) need += hdi_forms_bytes(&m->sym, widths[q], order, m->ctx, e);
         if (most < need) most = need;
     }
@@ -21829,7 +21790,7 @@ static hd_status hdi_ground_make(hdi_elim *m, hdi_ground *g, hd_error *e) {
         memset(&v, 0, sizeof v);
         v.real = val;
         if (hdi_progress(m->ctx, "factor", 0, e) >= 0 && hdi_factor_run(&g->factor, &v, e) >= 0 &&
-            hdi_elim_inverse_diagonal(m, &g->factor, &one, g->diag, e) >= 0) {
+            hdi_elim_inverse_diagonal(m, &g->factor, &one, g->diag, &s) >= 0) {
             if (g->factor.all.negative) hdi_not_semidefinite(e);
             for (i = 0; i < lap->n_active; i++) {
                 double size = lap->B ? 0 : lap->mass[i];
@@ -21869,7 +21830,7 @@ static hd_status hdi_ground_forms(hdi_elim *m, hdi_ground *g, hd_error *e) {
         memset(&v, 0, sizeof v);
         v.z[0] = v.z[1] = v.z[2] = v.z[3] = val;
         coef[4] = -1 / step;                     /* the first one's imaginary part */
-        if (hdi_factor_run(&pack, &v, e) >= 0) (void)hdi_elim_inverse_diagonal(m, &pack, coef, g->form, e);
+        if (hdi_factor_run(&pack, &v, e) >= 0) (void)hdi_elim_inverse_diagonal(m, &pack, coef, g->form, &s);
         hdi_factor_free(&pack);
     }
     if (e->status < 0) return hdi_scope_end(&s);
@@ -21932,12 +21893,12 @@ static uint64_t hdi_ground_need(const hdi_elim *m, const hdi_ground *g, int form
         hdi_scope_count(&held, n, sizeof(char));
         hdi_scope_count(&held, 3 * n, sizeof(double));
         hdi_scope_count(&held, 2 * n_comp, sizeof(double));
-        make = hdi_inverse_bytes(&m->sym, 1, NULL, NULL);
+        make = hdi_inverse_bytes(&m->sym, 1, 0, 0, NULL);
         hdi_scope_count(&make, nnz, sizeof(double));
         hdi_scope_count(&make, n_comp, sizeof(char));
     }
     if (forms && !g->formed) {
-        form = hdi_factor_bytes(&m->sym, HDI_PACK) + hdi_inverse_bytes(&m->sym, HDI_PACK, NULL, NULL);
+        form = hdi_factor_bytes(&m->sym, HDI_PACK) + hdi_inverse_bytes(&m->sym, HDI_PACK, 0, 0, NULL);
         hdi_scope_count(&form, nnz, sizeof(hd_c64));
         hdi_scope_count(&form, hdi_sweep_size(&m->sym, 1, 1), sizeof(double));
         hdi_scope_count(&form, 2 * n, sizeof(double));
@@ -24645,7 +24606,7 @@ enum { HDI_LIGHT_COLUMNS = 3 };  /* more are solved side by side, and gain less 
 static int hdi_heat_light(const hdi_heat_call *h) {
     const hd_heat *heat = h->heat;
     const hd_laplacian *lap = heat->source;
-    const hdi_order order = hdi_order_of(heat->opts.ordering, lap->xyz, NULL);
+    const hdi_order order = {heat->opts.ordering, lap->xyz, NULL};
     const hdi_fill f = hdi_heat_guess(heat);
     const double n = lap->n_active, wide = hdi_max(1, HDI_CAST(double, lap->L.nnz) / (10 * n));
     hdi_windows w;
@@ -30491,7 +30452,8 @@ static hd_status hdi_estimate_solves(const hdi_estimate *x, double held) {
         if (x->query == HD_QUERY_PAIRS && !heat->poles_asked && !heat->exacting &&
             hdi_rational_get(&set, HD_POLES_KERNEL, HDI_RAT_KERNEL_MAX, h->e) < 0)
             return h->e->status;
-        direct->bytes_most = hdi_bytes_direct(x, &set, HDI_AFTER_BOUND, 0, x->k, held);
+        direct->bytes_most = hdi_max(direct->bytes,
+                                     hdi_bytes_direct(x, &set, HDI_AFTER_BOUND, 0, x->k, held));
         if (x->query == HD_QUERY_PAIRS && heat->elim.ctx)   /* the solves' arrays of the first try stay */
             direct->bytes_most += HDI_CAST(double, hdi_batches_need(heat, hdi_set_packs(&set), x->k));
         if (!heat->poles_asked || method == HD_METHOD_KRYLOV)
@@ -31295,7 +31257,7 @@ static hd_status hdi_geo_analyse(hd_geodesic *g, const hd_laplacian *lap, const 
                                  hd_error *e) {
     hdi_scope s = hdi_scope_begin(g->ctx, e);
     int32_t *own = HDI_TAKE(&s, int32_t, lap->n_active);
-    const hdi_order order = hdi_order_of(o->ordering, lap->xyz, own);
+    const hdi_order order = {o->ordering, lap->xyz, own};
     if (e->status < 0) return hdi_scope_end(&s);
     if (o->ordering == HD_ORDERING_OWN) hdi_elim_own(lap, o->perm, own);
     (void)hdi_symbolic_order(&g->sym, &lap->L, &order, g->ctx, e);
@@ -32730,7 +32692,9 @@ HEATDIFF_API hd_status hd_csr_permute(hd_csr *out, const hd_csr *a, const int32_
 HEATDIFF_API void hd_csr_apply(const hd_csr *a, const double *x, double *y, hd_context *ctx) {
     hdi_call c;
     if (hdi_enter(&c, ctx, NULL) < 0) c.ctx = &c.context;
+    hdi_hold(c.ctx);
     hdi_csr_apply(a, x, y, c.ctx);
+    hdi_let_go(c.ctx);
 }
 
 HEATDIFF_API void hd_csr_free(hd_csr *a, hd_context *ctx) {
@@ -33061,7 +33025,6 @@ HEATDIFF_API void hd_ldl_free(hd_ldl *f) { hdi_ldl_free(f); }
 HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ldl_opts *opts,
                                       hd_ldl_report *report, hd_error *err) {
     hd_ldl_opts o;
-    hdi_order order;
     hdi_call c;
     hd_csr shape;
     hd_ldl *f;
@@ -33080,8 +33043,7 @@ HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ld
     hdi_hold(f->ctx);
     f->n = a->n_rows;
     f->nnz = a->nnz;
-    order = hdi_order_of(o.ordering, o.xyz, o.perm);
-    if (hdi_ldl_analyse(f, &shape, &order, c.e) >= 0) {
+    if (hdi_ldl_analyse(f, &shape, &o, c.e) >= 0) {
         hdi_ldl_tell(f, NULL, report);
         *out = f;
     } else {
@@ -33092,7 +33054,7 @@ HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ld
 
 HEATDIFF_API hd_status hd_ldl_factor(hd_ldl *f, const double *val, hd_ldl_report *report, hd_error *err) {
     hdi_call c;
-    if (hdi_ldl_enter(&c, f, val, err) < 0 || !HDI_HAS_DIRECT) return c.e->status;
+    if (hdi_ldl_enter(&c, f, 0, f && (f->nnz == 0 || val), err) < 0 || !HDI_HAS_DIRECT) return c.e->status;
     f->n_matrices = f->real.ready = 0;
     if (hdi_ldl_factor(f, val, c.e) < 0) return c.e->status;
     hdi_ldl_tell(f, &f->real, report);
@@ -33103,9 +33065,8 @@ HEATDIFF_API hd_status hd_ldl_factor_complex(hd_ldl *f, int32_t k, const hd_c64 
                                              hd_error *err) {
     hd_ldl_report all;
     hdi_call c;
-    if (hdi_ldl_enter(&c, f, val, err) < 0) return c.e->status;
-    if (!HDI_HAS_POLE_FACTORS)
-        return HDI_LEFT_OUT(c.e, POLE_FACTORS, "factorisations of complex matrices");
+    if (hdi_ldl_enter(&c, f, 1, f && (f->nnz == 0 || val), err) < 0 || !HDI_HAS_POLE_FACTORS)
+        return c.e->status;
     if (k < 1) return hdi_fail(c.e, HD_ERR_ARGUMENT, "ldl: the number of matrices is not positive");
     f->n_matrices = f->real.ready = 0;
     if (hdi_ldl_factor_complex(f, k, val, &all, c.e) < 0) return c.e->status;
@@ -33123,7 +33084,10 @@ HEATDIFF_API hd_status hd_ldl_solve(hd_ldl *f, int32_t k, const double *b, size_
     ldb = ldb ? ldb : HDI_CAST(size_t, f->n);
     ldx = ldx ? ldx : HDI_CAST(size_t, f->n);
     if (hdi_ldl_leading(f, ldb, ldx, c.e) < 0 || hdi_ldl_room(f, 0, c.e) < 0) return c.e->status;
-    for (q = 0; q < k; q += 8) hdi_ldl_solve_real(f, q, k - q < 8 ? k - q : 8, b, ldb, x, ldx);
+    for (q = 0; q < k; q += 8) {                 /* in place no answer may reach what is still to be read */
+        const int32_t at = ldx > ldb ? (k - 1) / 8 * 8 - q : q;
+        hdi_ldl_solve_real(f, at, k - at < 8 ? k - at : 8, b, ldb, x, ldx);
+    }
     return HD_OK;
 }
 
@@ -33164,18 +33128,12 @@ HEATDIFF_API hd_status hd_ldl_inverse_complex(hd_ldl *f, hd_c64 *values, hd_c64 
 
 HEATDIFF_API hd_status hd_ldl_inverse_entries(hd_ldl *f, int64_t n_entries, const int32_t *i,
                                               const int32_t *j, double *values, hd_error *err) {
-    hdi_call c;
-    if (hdi_ldl_enter_inverse(&c, f, 0, err) < 0 || !HDI_HAS_DIAGONAL) return c.e->status;
-    if (hdi_ldl_entries_check(f, n_entries, i, j, values, c.e) < 0) return c.e->status;
-    return n_entries > 0 ? hdi_ldl_inverse_entries(f, 0, n_entries, i, j, values, c.e) : HD_OK;
+    return hdi_ldl_some_entries(f, 0, n_entries, i, j, values, err);
 }
 
 HEATDIFF_API hd_status hd_ldl_inverse_entries_complex(hd_ldl *f, int64_t n_entries, const int32_t *i,
                                                       const int32_t *j, hd_c64 *values, hd_error *err) {
-    hdi_call c;
-    if (hdi_ldl_enter_inverse(&c, f, 1, err) < 0 || !HDI_HAS_DIAGONAL) return c.e->status;
-    if (hdi_ldl_entries_check(f, n_entries, i, j, values, c.e) < 0) return c.e->status;
-    return n_entries > 0 ? hdi_ldl_inverse_entries(f, 1, n_entries, i, j, &values->re, c.e) : HD_OK;
+    return hdi_ldl_some_entries(f, 1, n_entries, i, j, values ? &values->re : NULL, err);
 }
 
 /* ---- heat ---- */

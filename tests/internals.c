@@ -17,6 +17,17 @@
 
 #include "guard.h"
 #include "traps.h"
+#ifdef __linux__                                 /* what the library tells the system of its memory */
+#include <sys/mman.h>
+static char *int_advised_at;
+static size_t int_advised;
+static int int_advise(void *at, size_t size, int advice) {
+    int_advised_at = (char *)at;
+    int_advised = size;
+    return advice - advice;
+}
+#define madvise int_advise
+#endif
 #define HEATDIFF_IMPLEMENTATION
 #include "../heatdiff.h"
 #include "dense.h"
@@ -224,6 +235,27 @@ static void int_scope_room(void) {
     for (i = 0; i < HDI_SCOPE_MOST; i++) CHECK(HDI_TAKE(&s, int32_t, i) != NULL);
     CHECK(e.status == HD_OK && HDI_TAKE(&s, int32_t, 1) == NULL && e.status == HD_ERR_TOO_LARGE && ctx.bytes_in_use > 0);
     CHECK(hdi_scope_end(&s) == HD_ERR_TOO_LARGE && ctx.bytes_in_use == 0);
+}
+
+/* Advice on large blocks begins where pages do, be they of 4, 16 or 64 KB, and stays within the block. */
+static void int_large_pages(void) {
+#if HDI_LARGE_PAGES
+    hd_context ctx;
+    hd_error e;
+    size_t k;
+    memset(&ctx, 0, sizeof ctx);
+    hdi_error_clear(&e);
+    for (k = 0; k < 6; k++) {
+        const size_t size = ((size_t)5 << 20) + 5000 * k;
+        char *p = (char *)hdi_alloc(&ctx, size, 1, &e);
+        CHECK(p != NULL);
+        if (!p) return;
+        CHECK_MSG((size_t)int_advised_at % 65536 == 0 && int_advised > size - 2 * 65536, "%zu of %zu bytes, %zu past a page", int_advised, size,
+                  (size_t)int_advised_at % 65536);
+        CHECK(int_advised_at >= p - HDI_ALIGN - HDI_HEADER && int_advised_at + int_advised <= p + size);
+        hdi_free(&ctx, p);
+    }
+#endif
 }
 
 static void int_memory(void) {
@@ -2511,12 +2543,10 @@ static int_real int_real_make(int32_t p, int32_t u, uint64_t seed) {
 static void int_real_factor(const hdi_real_ops *o, const int_real *f, double *dinv, const char *what) {
     double *S = DENSE_NEW(double, hdi_real_s_size(f->p)), *work = DENSE_NEW(double, hdi_real_work(f->u, f->p)), off = 0;
     const int64_t m = f->m, u = f->u;
-    hdi_real_pivots pivots;
+    hdi_pivots pivots;
     int64_t i, j, at;
     int32_t k, negative = 0;
-    pivots.largest = 0;
-    pivots.smallest = DBL_MAX;
-    pivots.negative = 0;
+    hdi_pivots_clear(&pivots);
     for (k = 0; k < f->p; k += HDI_REAL_NB) {
         const int32_t nb = f->p - k < HDI_REAL_NB ? f->p - k : HDI_REAL_NB, kb = k + nb;
         const int64_t end = kb + (kb <= HDI_REAL_KC ? (m - kb) / 2 : 0), middle = end + (m - end) / 3;
@@ -5169,6 +5199,7 @@ static void int_all(void) {
     int_megabytes();
     int_arrays();
     int_memory();
+    int_large_pages();
     int_scope_room();
     int_sorting();
     int_union_find();

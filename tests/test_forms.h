@@ -33,14 +33,16 @@ static void forms_run(const forms_case *c, const hdi_symbolic *s, hd_context *ct
     hdi_forms forms;
     hdi_inverse z;
     hdi_values v;
+    hdi_scope keep;
     hd_error e;
     int32_t q, i;
     memset(&v, 0, sizeof v);
     v.real = c->real;
     for (q = 0; q < 4 && c->z; q++) v.z[q] = c->z + q * c->a->nnz;
-    hdi_error_clear(&e);
+    keep = hdi_scope_begin(ctx, &e);
     CHECK_MSG(hdi_factor_make(&f, s, width, ctx, &e) == HD_OK && hdi_factor_run(&f, &v, &e) == HD_OK, "%s: %s", what, e.text);
-    CHECK_MSG(hdi_inverse_make(&z, s, width, NULL, ctx, &e) == HD_OK && hdi_forms_make(&forms, s, width, c->a, c->x, ctx, &e) == HD_OK, "%s: %s", what, e.text);
+    hdi_inverse_take(&z, s, width, &keep);
+    CHECK_MSG(e.status == HD_OK && hdi_forms_make(&forms, s, width, c->a, c->x, ctx, &e) == HD_OK, "%s: %s", what, e.text);
     if (c->cols && c->cols < forms.cols) forms.cols = c->cols;
     if (c->slots && c->slots < forms.n_slots) forms.n_slots = c->slots;
     memset(coef, 0, sizeof coef);
@@ -57,7 +59,7 @@ static void forms_run(const forms_case *c, const hdi_symbolic *s, hd_context *ct
     for (i = 0; i < n; i++)
         for (q = 0; q < width; q++) out[q * n + s->perm[i]] += by_pivot[q * n + i] - 3;
     hdi_forms_free(&forms, ctx);
-    hdi_inverse_free(&z, ctx);
+    hdi_scope_end(&keep);
     hdi_factor_free(&f);
     free(by_pivot);
 }

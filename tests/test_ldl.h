@@ -940,6 +940,12 @@ static void ldl_forms_real(void) {
         CHECK(hd_ldl_solve(f, k, y, PAD, y, PAD, NULL) == HD_OK);
         for (q = 0; q < k; q++) CHECK_MSG(memcmp(y + PAD * q, x + PAD * q, N * sizeof *x) == 0, "in place: %d of %d", (int)q, (int)k);
     }
+    for (i = 0; f && i < 2; i++) {               /* in place, columns wider apart before or afterwards */
+        const size_t ldb = i ? PAD : N, ldx = i ? N : PAD;
+        for (q = 0; q < MOST; q++) memcpy(y + ldb * (size_t)q, b + PAD * q, N * sizeof *y);
+        CHECK(hd_ldl_solve(f, MOST, y, ldb, y, ldx, NULL) == HD_OK);
+        for (q = 0; q < MOST; q++) CHECK_MSG(ldl_backward_real(&a, L, b + PAD * q, y + ldx * (size_t)q) <= 1e-14, "%d apart: %d", (int)ldx, (int)q);
+    }
     hd_ldl_free(f);
     hd_csr_free(&a, NULL);
     free(L);
@@ -1386,6 +1392,43 @@ static void ldl_not_finite(void) {
     free(val);
 }
 
+/* A pivot is divided by if its inverse is a number, else named, wherever it stands. */
+static void ldl_subnormal(void) {
+    enum { N = 30 };
+    static const double pivots[5] = {1e-307, -1e-308, 1e-309, -1e-310, 5e-324};
+    hd_csr a = ldl_shape(LDL_BAND, N, 1, 1);
+    double *val = DENSE_NEW(double, a.nnz), b[N], x[N];
+    hd_c64 *z = DENSE_NEW(hd_c64, a.nnz);
+    hd_ldl *f = ldl_make(&a, NULL, "subnormal");
+    hd_error e;
+    int32_t i, q;
+    TRAPS_OFF;                                   /* inverses overflow */
+    for (i = 0; f && i < N; i++) {
+        const int64_t at = op_find(&a, i, i);
+        memset(val, 0, (size_t)a.nnz * sizeof *val);
+        for (q = 0; q < N; q++) {
+            val[op_find(&a, q, q)] = b[q] = 1;
+            if (q == i) b[q] = 1e-5;
+        }
+        for (q = 0; q < 5; q++) {
+            const hd_status want = q < 2 ? HD_OK : HD_ERR_BREAKDOWN;
+            int64_t p;
+            val[at] = pivots[q];
+            for (p = 0; p < a.nnz; p++) z[p].re = z[p].im = val[p];
+            z[at].im = 0;
+            CHECK_MSG(hd_ldl_factor(f, val, NULL, &e) == want && (q < 2 || (e.row == i && e.value == pivots[q])), "%g in row %d: %s, row %d",
+                      pivots[q], (int)i, hd_status_name(e.status), (int)e.row);
+            if (q < 2) CHECK(hd_ldl_solve(f, 1, b, 0, x, 0, &e) == HD_OK && fabs(x[i] * pivots[q] / b[i] - 1) < 1e-15);
+            CHECK(hd_ldl_factor_complex(f, 1, z, NULL, &e) == want && (q < 2 || e.row == i));
+        }
+    }
+    TRAPS_ON;
+    hd_ldl_free(f);
+    hd_csr_free(&a, NULL);
+    free(val);
+    free(z);
+}
+
 /* Exact zeros that come by elimination, and pivots that overflow. */
 static void ldl_breakdown(void) {
     enum { N = 12 };
@@ -1418,31 +1461,33 @@ static void ldl_breakdown(void) {
     hd_csr_free(&two, NULL);
 }
 
-/* Two zeros far from each other: which one is told does not depend on threads. */
+/* Two zeros far from each other: the one that is eliminated first is told, whatever threads do. */
 static void ldl_first_of_two(void) {
-    hd_csr a = ldl_shape(LDL_PIECES, 4000, 1, 1);
+    enum { N = 40000 };                          /* many subtrees */
+    hd_csr a = ldl_shape(LDL_PIECES, N, 1, 1);
+    int32_t *perm = DENSE_NEW(int32_t, N), i;
     double *L = DENSE_NEW(double, a.nnz), *B = DENSE_NEW(double, a.nnz);
-    int64_t p, row = -1;
+    int64_t p;
     int way;
     ldl_pair(&a, 1, L, B);
     for (p = 0; p < a.nnz; p++) L[p] += B[p];
-    L[op_find(&a, 3500, 3500)] = L[op_find(&a, 700, 700)] = 0;    /* multiples of five: alone, or the first of their piece */
+    L[op_find(&a, 35000, 35000)] = L[op_find(&a, 700, 700)] = 0;    /* multiples of five: alone, or the first of their piece */
+    for (i = 0; i < N; i++) perm[i] = i;
     for (way = 0; way < LDL_WAYS; way++) {
         ldl_way *w = DENSE_NEW(ldl_way, 1);
         hd_ldl_opts o;
         hd_ldl *f;
         hd_error e;
         ldl_way_begin(w, way, HD_SIMD_AUTO);
-        o = ldl_opts_of(HD_ORDERING_MINIMUM_DEGREE, NULL, NULL, &w->ctx);
+        o = ldl_opts_of(HD_ORDERING_OWN, perm, NULL, &w->ctx);
         f = ldl_make(&a, &o, "two zeros");
-        CHECK(hd_ldl_factor(f, L, NULL, &e) == HD_ERR_BREAKDOWN && (e.row == 3500 || e.row == 700));
-        CHECK_MSG(way == 0 || e.row == row, "way %d of threading says row %d, the first said %d", way, (int)e.row, (int)row);
-        row = e.row;
+        CHECK_MSG(hd_ldl_factor(f, L, NULL, &e) == HD_ERR_BREAKDOWN && e.row == 700, "way %d of threading says row %d", way, (int)e.row);
         hd_ldl_free(f);
         ldl_way_end(w, way);
         free(w);
     }
     hd_csr_free(&a, NULL);
+    free(perm);
     free(L);
     free(B);
 }
@@ -1654,6 +1699,17 @@ static void ldl_bad_options(void) {
     good.ordering = HD_ORDERING_NESTED_DISSECTION;
     good.xyz = xyz;
     if (CHECK(hd_ldl_analyse(&f, &a, &good, NULL, NULL) == HD_OK)) hd_ldl_free(f);
+    for (i = 0; i < 6; i++) {                    /* coordinates: refused, or of any size */
+        const double wrong[3] = {(double)NAN, (double)INFINITY, -(double)INFINITY};
+        hd_ldl *none = ldl_mark;
+        xyz[5 * i + 2] = wrong[i % 3];
+        good.ordering = i < 3 ? HD_ORDERING_NESTED_DISSECTION : HD_ORDERING_AUTO;
+        CHECK(hd_ldl_analyse(&none, &a, &good, NULL, &e) == HD_ERR_NOT_FINITE && none == ldl_mark);
+        CHECK_MSG(e.row == (5 * i + 2) / 3 && e.column == (5 * i + 2) % 3, "row %d, column %d", (int)e.row, (int)e.column);
+        xyz[5 * i + 2] = i % 2 ? DBL_MAX : -DBL_MAX;
+    }
+    good.ordering = HD_ORDERING_NESTED_DISSECTION;
+    if (CHECK(hd_ldl_analyse(&f, &a, &good, NULL, NULL) == HD_OK)) hd_ldl_free(f);
     hd_ldl_free(NULL);
     hd_csr_free(&a, NULL);
 }
@@ -1828,6 +1884,7 @@ static void test_ldl(void) {
     ldl_pivot_errors_of(HD_ORDERING_NESTED_DISSECTION, 77, 5);
     ldl_pivot_errors_of(HD_ORDERING_OWN, 33, 6);
     ldl_not_finite();
+    ldl_subnormal();
     ldl_breakdown();
     ldl_first_of_two();
     ldl_robust();
