@@ -3,6 +3,7 @@
        cc -std=c99 tests/runner.c -I. -lm -o runner && ./runner
 
    runner [FILTER...]   groups whose name contains one of the filters; none: all
+   runner --shard N     groups of part N of 5, which take about as long as each other; the fifth is memory that fails
    runner --list        names of the groups
    runner --traps       the first invalid operation, division by zero or overflow ends the run with SIGFPE (glibc, x86)
    runner --tmp DIR     an existing directory for files that tests write; default: one made here and removed at the end
@@ -191,24 +192,23 @@ static void test_tmp_remove(void) {
 #include "test_failures.h"
 #include "test_platform.h"
 
-typedef struct test_group { const char *name; void (*run)(void); } test_group;
+/* shard: groups that ctest runs together; those of memory that fails are one of its own */
+enum { TEST_MEMORY = 5 };
+typedef struct test_group { const char *name; void (*run)(void); int shard; } test_group;
 
 static const test_group test_groups[] = {
-    {"base", test_base},         {"sparse", test_sparse}, {"operators", test_operators}, {"rational", test_rational},
-    {"intrinsic", test_intrinsic},
-    {"ldl", test_ldl},           {"threads", test_threads}, {"engines", test_engines}, {"krylov", test_krylov},     {"heat", test_heat},         {"robust", test_robust},
-    {"points", test_points},     {"assembly", test_assembly}, {"polygon", test_polygon},   {"geodesic", test_geodesic_all},
-    {"diagonal", test_diagonal}, {"forms", test_forms},   {"everywhere", test_operators_all},
-    {"picture", test_picture},   {"meshio", test_meshio}, {"bounds", test_bounds}, {"moving", test_moving},
-    {"platform", test_platform}, {"view", test_view},     {"estimate", test_estimate}, {"spectrum", test_spectrum},
-    {"large_t", test_large_t},
-    {"borders", test_borders},   {"adjoints", test_adjoints}, {"signatures", test_signatures},
-    {"filters", test_filters},
-    {"sources", test_sources},
-    {"lengths", test_lengths},
-    {"deep", test_deep},
-    {"doors", test_doors},
-    {"failures", test_failures},
+    {"filters", test_filters, 1}, {"heat", test_heat, 1}, {"lengths", test_lengths, 1}, {"view", test_view, 1},
+    {"platform", test_platform, 1}, {"moving", test_moving, 1}, {"doors", test_doors, 1}, {"rational", test_rational, 1},
+    {"krylov", test_krylov, 1}, {"base", test_base, 1}, {"sparse", test_sparse, 1},
+    {"engines", test_engines, 2}, {"estimate", test_estimate, 2},
+    {"points", test_points, 3}, {"deep", test_deep, 3}, {"diagonal", test_diagonal, 3}, {"spectrum", test_spectrum, 3},
+    {"large_t", test_large_t, 3}, {"forms", test_forms, 3},
+    {"geodesic", test_geodesic_all, 4}, {"ldl", test_ldl, 4}, {"threads", test_threads, 4}, {"bounds", test_bounds, 4},
+    {"adjoints", test_adjoints, 4}, {"signatures", test_signatures, 4}, {"picture", test_picture, 4},
+    {"everywhere", test_operators_all, 4}, {"sources", test_sources, 4}, {"intrinsic", test_intrinsic, 4},
+    {"operators", test_operators, 4}, {"borders", test_borders, 4}, {"polygon", test_polygon, 4}, {"assembly", test_assembly, 4},
+    {"meshio", test_meshio, 4},
+    {"failures", test_failures, TEST_MEMORY}, {"robust", test_robust, TEST_MEMORY},
 };
 
 enum { TEST_GROUPS = sizeof test_groups / sizeof *test_groups };
@@ -224,7 +224,7 @@ static void test_run(const test_group *group) {
 }
 
 int main(int argc, char **argv) {
-    int i, k, filters = 0, ran = 0;
+    int i, k, filters = 0, ran = 0, shard = 0;
 #if HDI_THREADS
     GUARD_THREADS(sizeof(hd_threads));
 #endif
@@ -247,8 +247,12 @@ int main(int argc, char **argv) {
             strcpy(test_tmp_path, argv[i + 1]);
             argv[i] = argv[i + 1] = NULL;
             i++;
+        } else if (strcmp(argv[i], "--shard") == 0 && i + 1 < argc && atoi(argv[i + 1]) >= 1 && atoi(argv[i + 1]) <= TEST_MEMORY) {
+            shard = atoi(argv[i + 1]);
+            argv[i] = argv[i + 1] = NULL;
+            i++;
         } else if (argv[i][0] == '-') {
-            fprintf(stderr, "usage: runner [--list] [--traps] [--tmp DIR] [FILTER...]\n");
+            fprintf(stderr, "usage: runner [--list] [--traps] [--tmp DIR] [--shard N] [FILTER...]\n");
             return 2;
         } else {
             filters++;
@@ -257,7 +261,7 @@ int main(int argc, char **argv) {
     for (k = 0; k < TEST_GROUPS; k++) {
         int wanted = filters == 0;
         for (i = 1; i < argc; i++) wanted |= argv[i] && strstr(test_groups[k].name, argv[i]) != NULL;
-        if (!wanted) continue;
+        if (!wanted || (shard && test_groups[k].shard != shard)) continue;
         test_run(test_groups + k);
         ran++;
     }
