@@ -235,8 +235,9 @@ typedef struct hd_error {
     int64_t face, vertex;  /* ids as the caller numbers them */
     int64_t row, column;   /* of a matrix or of a field */
     int64_t pole;          /* index in the rational set, or of the matrix in a complex factorisation */
-    /* The offending value; 0 if there is none. HD_ERR_MEMORY_LIMIT: a byte_limit below this is too small. For
-     * a factorisation this is all that it and what follows need, which is known before it begins. */
+    /* The offending value; 0 if there is none. HD_ERR_MEMORY_LIMIT: a byte_limit below this is too small (or
+     * an allocation_limit, if the text names that one). For a factorisation this is all that it and what
+     * follows need, which is known before it begins. */
     double value;
 } hd_error;
 
@@ -2325,22 +2326,36 @@ static void hdi_text_bytes(hd_error *e, double bytes) {
 
 enum { HDI_ALIGN = 64, HDI_HEADER = 2 * sizeof(uint64_t) };
 
+/* Is the byte limit the reason of an error? Another way may take less. Out of memory, cancelled, or too many
+ * allocations ends the call. */
+static int hdi_over_limit(const hd_context *ctx, const hd_error *e) {
+    return e->status == HD_ERR_MEMORY_LIMIT &&
+           !(ctx->allocation_limit && ctx->allocations >= ctx->allocation_limit);
+}
+
 static hd_status hdi_alloc_check(hd_context *ctx, size_t total, hd_error *e) {
     const uint64_t most = ctx->byte_limit;
-    const int bytes = most && (total > most || ctx->bytes_in_use > most - total);
-    if (bytes || (ctx->allocation_limit && ctx->allocations >= ctx->allocation_limit)) {
-        hdi_fail(e, HD_ERR_MEMORY_LIMIT, bytes ? "the byte limit of the context is reached"
-                                               : "the allocation limit of the context is reached");
+    if (ctx->allocation_limit && ctx->allocations >= ctx->allocation_limit) {
+        hdi_fail(e, HD_ERR_MEMORY_LIMIT, "the allocation limit of the context is reached");
+        e->value = HDI_CAST(double, ctx->allocations) + 1;
+    } else if (most && (total > most || ctx->bytes_in_use > most - total)) {
+        hdi_fail(e, HD_ERR_MEMORY_LIMIT, "the byte limit of the context is reached");
         e->value = HDI_CAST(double, total) + HDI_CAST(double, ctx->bytes_in_use);
     }
     return e->status;
+}
+
+/* What the byte limit leaves. */
+static double hdi_bytes_left(const hd_context *ctx) {
+    return ctx->byte_limit ? HDI_CAST(double, ctx->byte_limit) - HDI_CAST(double, ctx->bytes_in_use)
+                           : HUGE_VAL;
 }
 
 /* Ends long work before it begins, if its need of `more` bytes, which is sure, is above what the limit
  * leaves. what: of the text. */
 static hd_status hdi_need(hd_context *ctx, uint64_t more, const char *what, hd_error *e) {
     const double all = HDI_CAST(double, more) + HDI_CAST(double, ctx->bytes_in_use);
-    if (!ctx->byte_limit || more <= ctx->byte_limit - ctx->bytes_in_use) return e->status;
+    if (HDI_CAST(double, more) <= hdi_bytes_left(ctx)) return e->status;
     hdi_fail(e, HD_ERR_MEMORY_LIMIT, what);
     hdi_text_add(e, " would bring the memory in use to ");
     hdi_text_bytes(e, all);
@@ -2422,10 +2437,11 @@ typedef struct hdi_scope {
     void *block[HDI_SCOPE_MOST];
 } hdi_scope;
 
+/* A scope never swallows an error: none may be set. */
 static hdi_scope hdi_scope_begin(hd_context *ctx, hd_error *e) {
     hdi_scope s;
+    HEATDIFF_ASSERT(e->status >= 0);
     memset(&s, 0, sizeof s);
-    hdi_error_clear(e);
     s.ctx = ctx;
     s.e = e;
     return s;
@@ -2440,7 +2456,9 @@ static void hdi_scope_count(uint64_t *tally, uint64_t count, size_t size) {
 }
 
 static hdi_scope hdi_scope_tally(uint64_t *tally, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(NULL, e);
+    hdi_scope s;
+    hdi_error_clear(e);
+    s = hdi_scope_begin(NULL, e);
     *tally = 0;
     s.tally = tally;
     return s;
@@ -19109,10 +19127,6 @@ static void hdi_family_set(hdi_family *fam, const hd_rational *set, double t) {
 /* Do poles make their preconditioners in turns? */
 static int hdi_family_turns(const hdi_family *fam) { return fam->n_values < fam->set.n_poles; }
 
-static int hdi_out_of_memory(hd_status status) {
-    return status == HD_ERR_MEMORY || status == HD_ERR_MEMORY_LIMIT;
-}
-
 /* Room for the preconditioners of the set. */
 static hd_status hdi_family_room(hdi_family *fam, hd_error *e) {
     const uint64_t n = HDI_CAST(uint64_t, fam->lap->n_active), upper = HDI_CAST(uint64_t, fam->up->ptr[n]);
@@ -19122,7 +19136,7 @@ static hd_status hdi_family_room(hdi_family *fam, hd_error *e) {
     if (fam->n_values < room) {
         hdi_family_free(fam);
         fam->values = HDI_NEW(fam->ctx, hd_c64, HDI_CAST(uint64_t, room) * (size + 1), e);
-        if (!fam->values && hdi_out_of_memory(e->status) && room > 1) {
+        if (room > 1 && hdi_over_limit(fam->ctx, e)) {
             hdi_error_clear(e);
             fam->values = HDI_NEW(fam->ctx, hd_c64, size + 1, e);
             room = 1;
@@ -19847,16 +19861,23 @@ typedef struct hdi_elim {
     double shift;                /* shifted is the factor of B + shift L */
 } hdi_elim;
 
-static void hdi_elim_free(hdi_elim *m) {
-    int32_t i;
+/* Frees all factors; the analysis stays. */
+static void hdi_elim_drop(hdi_elim *m) {
     if (!HDI_HAS_DIRECT || !m->ctx) return;
-    for (i = 0; i < m->n_packs; i++) hdi_factor_free(m->pack + i);
-    hdi_free(m->ctx, m->pack);
+    while (m->n_packs > 0) hdi_factor_free(m->pack + --m->n_packs);
     hdi_factor_free(&m->real);
     hdi_factor_free(&m->shifted);
+    hdi_free(m->ctx, m->reach);
+    m->reach = NULL;
+    m->filled = 0;
+}
+
+static void hdi_elim_free(hdi_elim *m) {
+    if (!HDI_HAS_DIRECT || !m->ctx) return;
+    hdi_elim_drop(m);
+    hdi_free(m->ctx, m->pack);
     hdi_symbolic_free(m->ctx, &m->sym);
     hdi_free(m->ctx, m->weight);
-    hdi_free(m->ctx, m->reach);
     hdi_laplacian_free(m->lap, m->ctx);
     memset(m, 0, sizeof *m);
 }
@@ -21648,7 +21669,7 @@ typedef struct hdi_ground {
     double *trace;
     double largest_trace;
     double *mean_off;            /* [n_components] G b is off by at most sqrt(G_vv) times this */
-    int32_t formed;
+    int32_t formed, traced;      /* traced: largest_trace is known, if all else is gone, too */
 } hdi_ground;
 
 /* ---- the pair grounded ---- */
@@ -21796,6 +21817,7 @@ static hd_status hdi_ground_make(hdi_elim *m, hdi_ground *g, hd_error *e) {
                 g->trace[lap->component[i]] += hdi_max(0, g->diag[i]) * size;
             }
             for (i = 0; i < lap->n_components; i++) g->largest_trace = hdi_max(g->largest_trace, g->trace[i]);
+            g->traced = 1;
         }
     }
     if (e->status < 0) hdi_ground_free(g, m->ctx);
@@ -23695,6 +23717,10 @@ typedef struct hdi_heat_order {
     hdi_ground ground;
 } hdi_heat_order;
 
+/* How a call goes on that exceeded the byte limit: without what is optional, that is eigenpairs and poles that
+ * times share; besides by the direct method with the fewest poles. */
+enum { HDI_SPARE_OPTIONS = 1, HDI_SPARE_POLES };
+
 struct hd_heat {
     hd_context *ctx;
     const hd_laplacian *source;  /* the caller's */
@@ -23709,6 +23735,7 @@ struct hd_heat {
     uint64_t no_factors_limit;   /* the byte limit that factors did not fit */
     /* auto: the time asked for last without factors of its poles, and the cost of these calls by the model */
     double habit_t, habit_spent;
+    int32_t spare;               /* of a call that exceeded the byte limit: an hdi_spare */
     hd_rational own_set;
     hdi_elim elim;               /* to factorise */
     hdi_ground ground;           /* made when it is first needed; of elim */
@@ -23912,10 +23939,18 @@ static hd_status hdi_heat_seats(hd_heat *heat, int32_t n, hd_error *e) {
     return HD_OK;
 }
 
+static void hdi_heat_free_iterative(hd_heat *heat) {
+    hdi_family_free(&heat->fam);
+    hdi_upper_free(heat->ctx, &heat->up);
+    hdi_free(heat->ctx, heat->weight);
+    hdi_laplacian_free(heat->lap, heat->ctx);
+    heat->weight = NULL;
+    heat->lap = NULL;
+}
+
 /* The copy of the pair to iterate on. */
 static hd_status hdi_heat_iterative(hd_heat *heat, hd_error *e) {
     if (heat->weight) return HD_OK;
-    hdi_error_clear(e);
     if (!heat->lap) {
         if (hdi_progress(heat->ctx, "order", 0, e) < 0) return e->status;
         heat->lap = hdi_precond_ordered(heat->source, heat->ctx, e);
@@ -23961,12 +23996,37 @@ static hd_status hdi_heat_turn(hd_heat *heat, int light, hd_error *e) {
     return HD_OK;
 }
 
+/* Frees all factors of both orders; the analyses stay. */
+static void hdi_heat_drop(hd_heat *heat) {
+    hdi_elim_drop(&heat->elim);
+    if (heat->other) hdi_elim_drop(&heat->other->elim);
+}
+
+/* Frees what poles make again when it is needed; the analyses and the copy of the pair to iterate on stay. */
+static void hdi_heat_shed(hd_heat *heat) {
+    hdi_heat_free_lanes(heat);
+    hdi_free(heat->ctx, heat->batch_room);
+    heat->batch_room = NULL;
+    heat->batch_doubles = 0;
+    if (HDI_HAS_DIRECT && heat->silan) hdi_silan_free(heat->silan, heat->ctx);
+    hdi_free(heat->ctx, heat->silan);
+    heat->silan = NULL;
+    if (HDI_HAS_DIAGONAL) hdi_ground_free(&heat->ground, heat->ctx);
+    if (HDI_HAS_DIAGONAL && heat->other) hdi_ground_free(&heat->other->ground, heat->ctx);
+    hdi_heat_drop(heat);
+}
+
+/* The same with the eigenpairs. */
+static void hdi_heat_shed_all(hd_heat *heat) {
+    hdi_heat_shed(heat);
+    if (HDI_HAS_MODES) hdi_modes_free(&heat->modes, heat->ctx);
+}
+
+/* And with the analyses. */
 static void hdi_heat_free_factors(hd_heat *heat) {
-    if (HDI_HAS_DIAGONAL && heat->ground.diag) hdi_ground_free(&heat->ground, heat->ctx);
+    hdi_heat_shed_all(heat);
     hdi_elim_free(&heat->elim);
-    if (!heat->other) return;
-    if (HDI_HAS_DIAGONAL && heat->other->ground.diag) hdi_ground_free(&heat->other->ground, heat->ctx);
-    hdi_elim_free(&heat->other->elim);
+    if (heat->other) hdi_elim_free(&heat->other->elim);
     hdi_free(heat->ctx, heat->other);
     heat->other = NULL;
     heat->light = 0;
@@ -24327,6 +24387,7 @@ typedef struct hdi_heat_call {
     hd_method method;
     double cost;                 /* of this method by the model, where auto picks by it; else 0 */
     int32_t by_habit;            /* auto picks direct because of the calls before */
+    int32_t forced;              /* auto takes iterations because of the byte limit, which they may not bear */
     hdi_rate rate;
     hd_solver solver;
     const hd_laplacian *lap;     /* the copy of the pair that the method works on; the caller's for t = 0 */
@@ -24384,7 +24445,7 @@ static hd_status hdi_heat_renew(hd_heat *heat, hd_error *e) {
     hdi_heat_measure_pair(heat);
     for (i = heat->other != NULL; HDI_HAS_DIRECT && i >= 0; i--) {
         if (heat->elim.ctx) hdi_elim_renew(&heat->elim, lap, heat->fill);
-        if (HDI_HAS_DIAGONAL && heat->ground.diag) hdi_ground_free(&heat->ground, heat->ctx);
+        if (HDI_HAS_DIAGONAL) hdi_ground_free(&heat->ground, heat->ctx);
         if (heat->other) (void)hdi_heat_turn(heat, !heat->light, e);   /* twice, or not at all */
     }
     if (HDI_HAS_DIRECT && HDI_HAS_MODES) hdi_modes_free(&heat->modes, heat->ctx);
@@ -24708,9 +24769,8 @@ static void hdi_heat_spend(hdi_heat_call *h) {
  * iterations. */
 static hd_status hdi_heat_pick_by_cost(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
-    const hd_context *ctx = heat->ctx;
-    const double room = ctx->byte_limit && HDI_HAS_ITERATIVE   /* without iterations there is no retreat */
-                        ? HDI_CAST(double, ctx->byte_limit) - HDI_CAST(double, ctx->bytes_in_use) : HUGE_VAL;
+    /* without iterations there is no retreat */
+    const double room = HDI_HAS_ITERATIVE ? hdi_bytes_left(heat->ctx) : HUGE_VAL;
     hdi_cost c;
     int light;
     if (hdi_heat_turn(heat, hdi_heat_light(h), h->e) < 0) return h->e->status;
@@ -24724,6 +24784,7 @@ static hd_status hdi_heat_pick_by_cost(hdi_heat_call *h) {
         c = hdi_heat_cost(h);
         hdi_heat_cheapest(h, &c, room);
     }
+    h->forced |= room < HUGE_VAL && h->method == HD_METHOD_ITERATIVE && c.iterative > hdi_min(c.direct, c.krylov);
     h->by_habit = hdi_heat_habit(h, &c, room);
     if (h->by_habit) {
         h->method = HD_METHOD_DIRECT;
@@ -24740,11 +24801,15 @@ static hd_status hdi_heat_pick(hdi_heat_call *h) {
     h->by_habit = 0;
     h->rep->reason = "asked for";
     if (h->method != HD_METHOD_AUTO) return HD_OK;
+    h->method = HD_METHOD_DIRECT;
+    h->rep->reason = "iterations, which the byte limit asks for, fail";
+    if (heat->spare == HDI_SPARE_POLES) return HD_OK;
     h->method = HD_METHOD_ITERATIVE;
     h->rep->reason = "a solver or preconditioner is asked for";
     if (heat->iterations_asked) return HD_OK;
     h->rep->reason = "factors did not fit the byte limit";
-    if (heat->no_factors && heat->ctx->byte_limit == heat->no_factors_limit) return HD_OK;
+    h->forced = heat->no_factors && heat->ctx->byte_limit == heat->no_factors_limit;
+    if (h->forced) return HD_OK;
     h->rep->reason = "this build has iterations only";
     return HDI_HAS_DIRECT ? hdi_heat_pick_by_cost(h) : HD_OK;
 }
@@ -24757,15 +24822,29 @@ static hd_status hdi_heat_pick(hdi_heat_call *h) {
 #define HDI_EQUAL_FROM 1e8
 #define HDI_EQUAL_BEYOND 750
 
-/* Is t (scaled) so large that only the means of the components are left? 1 or 0; errors are in e. */
+/* Is that asked at t (scaled)? */
+static int hdi_heat_equal_asks(const hd_heat *heat, double t) {
+    return HDI_HAS_DIAGONAL && heat->source->conserves && !heat->opts.rational &&
+           t * heat->lambda_max >= HDI_EQUAL_FROM;
+}
+
+/* Is t (scaled) so large that only the means of the components are left? 1 or 0; errors are in e. What tells
+ * is one number: the factor behind it is not kept, so that there is room for those of poles. Where there is no
+ * such factor, or no room for it, all goes on as ever. */
 static int hdi_heat_equal(hd_heat *heat, double t, hd_error *e) {
-    if (!HDI_HAS_DIAGONAL || !heat->source->conserves || heat->opts.rational ||
-        t * heat->lambda_max < HDI_EQUAL_FROM)
-        return 0;
-    if (heat->elim.ctx && hdi_ground_make(&heat->elim, &heat->ground, e) >= 0)
-        return t > 2 * HDI_EQUAL_BEYOND * heat->ground.largest_trace;
-    if (e->status == HD_ERR_BREAKDOWN) hdi_error_clear(e);   /* not to be told: go on as ever */
-    return 0;
+    hdi_ground *g = &heat->ground;
+    if (!hdi_heat_equal_asks(heat, t) || !heat->elim.ctx) return 0;
+    if (!g->traced) {
+        double trace = HUGE_VAL;
+        if (hdi_ground_make(&heat->elim, g, e) >= 0) trace = g->largest_trace;
+        else if (hdi_over_limit(heat->ctx, e)) trace = -1;
+        else if (e->status != HD_ERR_BREAKDOWN) return 0;
+        hdi_error_clear(e);
+        hdi_ground_free(g, heat->ctx);
+        g->largest_trace = trace;
+        g->traced = trace >= 0;
+    }
+    return g->traced && t > 2 * HDI_EQUAL_BEYOND * g->largest_trace;
 }
 
 /* Lanes for n items, without their arrays. */
@@ -25150,7 +25229,8 @@ static hd_status hdi_heat_set(const hdi_heat_call *h, hd_rational *set) {
         *set = h->set ? *h->set : *o->rational;
         return HD_OK;
     }
-    if (!o->degree && !h->heat->exacting && kind == HD_POLES_UNIFORM && hdi_heat_degree(h, &degree) < 0)
+    if (!o->degree && !h->heat->exacting && kind == HD_POLES_UNIFORM &&
+        h->heat->spare != HDI_SPARE_POLES && hdi_heat_degree(h, &degree) < 0)
         return h->e->status;
     if (hdi_rational_get(set, kind, degree, h->e) >= 0 && h->rate) hdi_rational_rate(set);
     return h->e->status;
@@ -25856,7 +25936,7 @@ static double hdi_modes_expected(const hd_heat *heat, double above) {
 
 /* May eigenpairs serve this plan? */
 static int hdi_modes_allowed(const hd_heat *heat) {
-    return !heat->poles_asked && !heat->modes.barred && !heat->iterations_asked &&
+    return !heat->poles_asked && !heat->modes.barred && !heat->iterations_asked && !heat->spare &&
            heat->opts.method != HD_METHOD_ITERATIVE && heat->opts.method != HD_METHOD_KRYLOV &&
            heat->source->b_ratio > 0 && heat->source->n_components <= HDI_MODES_FIRST;
 }
@@ -25880,16 +25960,16 @@ static double hdi_modes_need(const hd_heat *heat, int32_t count) {
            HDI_CAST(double, hdi_factor_bytes(&heat->elim.sym, 1));
 }
 
-/* Finds so many eigenpairs. Returns 0 where that fails, or where they are not proven
- * complete: then poles go on. Only out of memory by the system, and cancelling, are errors. */
+/* Finds so many eigenpairs. Returns 0 where that fails, or where they are not proven complete, or where there
+ * is no room: then poles go on. Only out of memory by the system, and cancelling, are errors. */
 static int hdi_modes_find(hd_heat *heat, int32_t count, hd_error *e) {
     hdi_modes *x = &heat->modes;
     const hd_laplacian *lap = heat->source;
     hdi_spec_goal goal;
     hdi_modes_free(x, heat->ctx);
-    if (hdi_heat_analysed(heat, e) < 0) return 0;
-    if (heat->ctx->byte_limit && HDI_MODES_SURE * hdi_modes_need(heat, count) >
-        HDI_CAST(double, heat->ctx->byte_limit) - HDI_CAST(double, heat->ctx->bytes_in_use)) return 0;
+    if (hdi_heat_analysed(heat, e) < 0 ||
+        HDI_MODES_SURE * hdi_modes_need(heat, count) > hdi_bytes_left(heat->ctx))
+        return 0;
     goal.below = HUGE_VAL;
     goal.count = count;
     x->s.lap = lap;
@@ -25899,9 +25979,9 @@ static int hdi_modes_find(hd_heat *heat, int32_t count, hd_error *e) {
         x->off_gram <= HDI_MODES_ORTHO)
         return 1;
     hdi_modes_free(x, heat->ctx);
-    if (e->status == HD_ERR_MEMORY || e->status == HD_ERR_CANCELLED) return 0;
-    x->barred = e->status != HD_ERR_MEMORY_LIMIT;
-    hdi_error_clear(e);
+    x->barred = e->status != HD_ERR_MEMORY && e->status != HD_ERR_MEMORY_LIMIT &&
+                e->status != HD_ERR_CANCELLED && e->status != HD_ERR_ARGUMENT;   /* of progress */
+    if (x->barred) hdi_error_clear(e);
     return 0;
 }
 
@@ -25914,8 +25994,9 @@ static int hdi_modes_enough(hd_heat *heat, double t, double depth, int32_t most,
         const hdi_modes *x = &heat->modes;
         const double more = hdi_modes_expected(heat, above);
         if (x->s.value && x->s.next - x->low >= above) return 1;
-        if (!(more <= most) || !hdi_modes_find(heat, hdi_modes_count(heat, more), e)) return 0;
+        if (!(more <= most) || !hdi_modes_find(heat, hdi_modes_count(heat, more), e)) break;
     }
+    if (hdi_over_limit(heat->ctx, e)) hdi_error_clear(e);
     return 0;
 }
 
@@ -25981,13 +26062,6 @@ static hdi_ledger hdi_modes_ledger(void) {
 /* Is a bound by eigenpairs as it should be, or so near zero that nothing else is better? */
 static int hdi_modes_good(const hd_heat *heat, double t, const hd_report *rep) {
     return rep->error_bound <= HDI_MODES_HELP || t * heat->modes.low > HDI_MODES_FADED;
-}
-
-/* Frees the factors of poles, which are of no more use. */
-static void hdi_packs_drop(hd_heat *heat) {
-    hdi_elim *m = heat->light ? &heat->other->elim : &heat->elim;
-    while (m->n_packs > 0) hdi_factor_free(m->pack + --m->n_packs);
-    m->filled = 0;
 }
 
 /* ---- heat that fades ---- */
@@ -26206,13 +26280,6 @@ static void hdi_fading_again(hdi_heat_call *h, const hdi_fading_start *from) {
         hdi_ledger_begin(HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, 0);
 }
 
-/* Are there pairs enough? Where they do not fit the byte limit the other methods go on. */
-static int hdi_fading_enough(hdi_heat_call *h, double t, double depth, int32_t most) {
-    const int there = hdi_modes_enough(h->heat, t, depth, most, h->e);
-    if (!there && h->e->status == HD_ERR_MEMORY_LIMIT) hdi_error_clear(h->e);
-    return there;
-}
-
 /* The request at one time from at most `most` pairs, which are found if need be: more of them where those
  * left out show in the bound. Returns 0 where there are not enough. */
 static int hdi_fading_pairs(hdi_heat_call *h, const hdi_fading_start *from, int32_t most) {
@@ -26220,7 +26287,7 @@ static int hdi_fading_pairs(hdi_heat_call *h, const hdi_fading_start *from, int3
     double depth = hdi_fading_depth(h->heat);
     int tries, there = 0;
     for (tries = 0; tries < 3; tries++) {
-        if (!hdi_fading_enough(h, t, depth, most)) return there && h->e->status >= 0;
+        if (!hdi_modes_enough(h->heat, t, depth, most, h->e)) return there && h->e->status >= 0;
         hdi_fading_again(h, from);
         if (hdi_fading_answer(h, t) < 0 || hdi_modes_good(h->heat, t, h->rep) ||
             h->rep->error_rational <= HDI_MODES_TOL)
@@ -26241,7 +26308,7 @@ static int hdi_fading_keep(hdi_heat_call *h) {
     if (!hdi_query_fields(h->ask.query) || h->ask.U != h->ask.F) return 1;
     copy = HDI_TAKE(&h->s, double, n * HDI_CAST(size_t, h->ask.k));
     if (!copy) {
-        if (h->e->status == HD_ERR_MEMORY_LIMIT) hdi_error_clear(h->e);
+        if (hdi_over_limit(h->heat->ctx, h->e)) hdi_error_clear(h->e);
         return 0;
     }
     for (q = 0; q < h->ask.k; q++)
@@ -26253,32 +26320,54 @@ static int hdi_fading_keep(hdi_heat_call *h) {
 
 /* ---- the run ---- */
 
-/* Did a method that auto chose exceed the byte limit? Then what was factorised is freed, and iterations take
- * over. */
+/* Goes on in another way where the byte limit ended one: from factors that auto chose to iterations; where these
+ * fail, or the direct method is asked for, to the fewest poles, with all that can be made again freed before.
+ * Returns 0 where there is no other way. */
 static int hdi_heat_retreat(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
-    if (!HDI_HAS_DIRECT || !HDI_HAS_ITERATIVE) return 0;
-    if (heat->opts.method != HD_METHOD_AUTO || h->e->status != HD_ERR_MEMORY_LIMIT || !heat->elim.ctx)
-        return 0;
-    if (heat->no_factors && heat->no_factors_limit == heat->ctx->byte_limit) return 0;
+    const int over = hdi_over_limit(heat->ctx, h->e), automatic = heat->opts.method == HD_METHOD_AUTO;
+    const int failed = over || h->e->status == HD_ERR_BREAKDOWN || h->e->status == HD_ERR_NOT_CONVERGED;
+    if (!HDI_HAS_DIRECT || heat->spare == HDI_SPARE_POLES) return 0;
     /* fields may have been overwritten by their answers */
     if (h->batch > 0 && hdi_query_fields(h->ask.query)) return 0;
-    hdi_heat_free_lanes(heat);
-    hdi_heat_free_factors(heat);
-    if (heat->silan) hdi_silan_free(heat->silan, heat->ctx);
-    hdi_free(heat->ctx, heat->silan);
-    hdi_free(heat->ctx, heat->batch_room);
-    heat->silan = NULL;
-    heat->batch_room = NULL;
-    heat->batch_doubles = 0;
-    if (h->by_habit) {                           /* the methods before have fitted, and do again */
-        heat->habit_spent = -DBL_MAX;
+    if (HDI_HAS_ITERATIVE && automatic && over && heat->elim.ctx && !h->forced) {
+        hdi_heat_free_factors(heat);
+        if (h->by_habit) {                       /* the methods before have fitted, and do again */
+            heat->habit_spent = -DBL_MAX;
+        } else {
+            heat->no_factors = 1;
+            heat->no_factors_limit = heat->ctx->byte_limit;
+        }
+    } else if (HDI_HAS_POLE_FACTORS && (automatic ? h->forced && failed : over && h->method == HD_METHOD_DIRECT)) {
+        hdi_heat_shed_all(heat);
+        hdi_heat_free_iterative(heat);
+        heat->spare = HDI_SPARE_POLES;
     } else {
-        heat->no_factors = 1;
-        heat->no_factors_limit = heat->ctx->byte_limit;
+        return 0;
     }
     hdi_error_clear(h->e);
     return 1;
+}
+
+/* One way to answer a call; what: its own arguments. */
+typedef hd_status (*hdi_way)(hdi_heat_call *h, void *what);
+
+/* Answers a call. If the byte limit ends it, all that can be made again is freed, and the call begins anew
+ * without what is optional. */
+static hd_status hdi_heat_sparing(hdi_heat_call *h, hdi_way way, void *what) {
+    const hdi_heat_call before = *h;
+    const hd_report rep = *h->rep;
+    hd_heat *heat = h->heat;
+    if (way(h, what) >= 0 || heat->spare || !hdi_over_limit(heat->ctx, h->e)) return h->e->status;
+    while (h->s.n > before.s.n) hdi_free(heat->ctx, h->s.block[--h->s.n]);
+    *h = before;
+    *h->rep = rep;                               /* with its error, which is none */
+    hdi_heat_shed_all(heat);
+    h->lane = NULL;
+    heat->spare = HDI_SPARE_OPTIONS;
+    (void)way(h, what);
+    heat->spare = 0;
+    return h->e->status;
 }
 
 /* Answers that need no solve: the field itself for t = 0, the means for very large t. */
@@ -26331,15 +26420,18 @@ static hd_status hdi_heat_chosen(hdi_heat_call *h) {
 
 /* One time of heat that fades: from eigenpairs where few are left, else by the method picked for it. Where
  * the bound is not as it should be the other way is tried too, and the one with the lower bound taken. */
-static hd_status hdi_heat_fading(hdi_heat_call *h) {
+static hd_status hdi_heat_fading(hdi_heat_call *h, void *what) {
     const double t = h->ask.t[h->now];
     hdi_fading_start from;
     double bound = HUGE_VAL;
     int32_t most = HDI_MODES_FIRST;
+    (void)what;
     from.rep = *h->rep;
     from.t = h->t;
-    if (!hdi_fading_near(h->heat, t, HDI_MODES_MOST) || !hdi_fading_keep(h))
-        return h->e->status < 0 ? h->e->status : hdi_heat_chosen(h);
+    if (!hdi_fading(h)) {                        /* spare: begun anew */
+        hdi_fading_again(h, &from);
+        return hdi_heat_chosen(h);
+    }
     if (hdi_fading_first(h, t) && hdi_fading_pairs(h, &from, most)) {
         if (h->e->status < 0 || hdi_modes_good(h->heat, t, h->rep)) return h->e->status;
         bound = h->rep->error_bound;
@@ -26350,7 +26442,7 @@ static hd_status hdi_heat_fading(hdi_heat_call *h) {
     if (bound == HUGE_VAL && hdi_fading(h)) {
         most = HDI_MODES_MOST;
         bound = h->rep->error_bound;
-        hdi_packs_drop(h->heat);
+        hdi_heat_drop(h->heat);
         if (hdi_fading_pairs(h, &from, most) && (h->e->status < 0 || h->rep->error_bound <= bound))
             return h->e->status;
         if (h->e->status < 0) return h->e->status;
@@ -26364,7 +26456,10 @@ static hd_status hdi_heat_fading(hdi_heat_call *h) {
 
 /* Answers the time under way. */
 static hd_status hdi_heat_single(hdi_heat_call *h) {
-    return HDI_HAS_MODES && h->t > 0 && hdi_fading(h) ? hdi_heat_fading(h) : hdi_heat_chosen(h);
+    if (HDI_HAS_MODES && h->t > 0 && hdi_fading(h) &&
+        hdi_fading_near(h->heat, h->ask.t[h->now], HDI_MODES_MOST) && hdi_fading_keep(h))
+        return hdi_heat_sparing(h, hdi_heat_fading, NULL);
+    return h->e->status < 0 ? h->e->status : hdi_heat_chosen(h);
 }
 
 static hd_status hdi_sources_check(hdi_heat_call *h, int32_t k, const int32_t *sources) {
@@ -26571,9 +26666,11 @@ static hd_status hdi_heat_several(hdi_heat_call *h) {
 
 /* Runs a request whose arguments are checked. */
 static hd_status hdi_heat_run(hdi_heat_call *h) {
+    const int32_t spare = h->heat ? h->heat->spare : 0;
     if (h->e->status < 0 || h->ask.k == 0) return hdi_heat_end(h);
     if (h->ask.n_times == 1) (void)hdi_heat_single(h);
     else (void)hdi_heat_several(h);
+    h->heat->spare = spare;
     return hdi_heat_end(h);
 }
 
@@ -26981,16 +27078,8 @@ static void hdi_heat_free(hd_heat *heat) {
     hd_context *ctx;
     if (!heat) return;
     ctx = heat->ctx;
-    hdi_heat_free_lanes(heat);
-    hdi_family_free(&heat->fam);
-    hdi_upper_free(ctx, &heat->up);
-    hdi_free(ctx, heat->weight);
-    hdi_laplacian_free(heat->lap, ctx);
-    if (HDI_HAS_MODES) hdi_modes_free(&heat->modes, ctx);
+    hdi_heat_free_iterative(heat);
     hdi_heat_free_factors(heat);
-    if (HDI_HAS_DIRECT && heat->silan) hdi_silan_free(heat->silan, ctx);
-    hdi_free(ctx, heat->silan);
-    hdi_free(ctx, heat->batch_room);
     hdi_free(ctx, heat->perm);
     hdi_free(ctx, heat->fill);
     hdi_free(ctx, heat->sums);
@@ -27625,9 +27714,10 @@ static hd_status hdi_edges_once(hdi_heat_call *h, double *values, double *ration
 
 /* Goes on from the highest degree of poles, whose factors did not fit the byte limit, to the default. Returns
  * 0 where there is no reason to. */
-static int hdi_degree_retreat(int32_t *degree, hd_error *e) {
-    if (*degree == 0 || e->status != HD_ERR_MEMORY_LIMIT) return 0;
+static int hdi_degree_retreat(hd_heat *heat, int32_t *degree, hd_error *e) {
+    if (*degree == 0 || !hdi_over_limit(heat->ctx, e)) return 0;
     *degree = 0;
+    hdi_heat_shed(heat);
     hdi_error_clear(e);
     return 1;
 }
@@ -27652,7 +27742,7 @@ static hd_status hdi_entries_sure(hdi_heat_call *h, hd_kernel kernel, int edges,
     do {
         *h->rep = before;
         (void)hdi_entries_once(h, kernel, edges, out, &rational);
-    } while (hdi_degree_retreat(&h->degree, h->e));
+    } while (hdi_degree_retreat(h->heat, &h->degree, h->e));
     h->degree = 0;
     return h->e->status;
 }
@@ -27664,16 +27754,9 @@ static hd_status hdi_entries_sure(hdi_heat_call *h, hd_kernel kernel, int edges,
 
 /* ---- diagonals at many times ---- */
 
-/* Frees packs after some did not fit the byte limit, and begins the call anew. */
-static void hdi_heat_forget(hdi_heat_call *h) {
-    hdi_elim *m = &h->heat->elim;
-    hd_report *rep = h->rep;
-    while (m->n_packs > 0) hdi_factor_free(m->pack + --m->n_packs);
-    m->filled = 0;
-    hdi_error_clear(h->e);
-    memset(rep, 0, sizeof *rep);
-    hdi_inverse_tell(h);
-    h->set = NULL;
+/* May the times of a call share their poles? */
+static int hdi_shared_may(const hd_heat *heat) {
+    return !heat->poles_asked && !heat->exacting && !heat->spare;
 }
 
 /* Packs that a shared set for a ratio of times takes. Returns 0 where there is no set. */
@@ -27839,12 +27922,10 @@ static hd_status hdi_diagonal_poles(hdi_heat_call *h, hd_kernel kernel, double *
     if (hdi_heat_analysed(heat, h->e) < 0 || hdi_heat_sort_times(h, 1, done) < 0) return h->e->status;
     hdi_inverse_tell(h);
     n = h->n_times;
-    if (kernel == HD_KERNEL_SYMMETRIC && n > 1 && !heat->poles_asked && !heat->exacting) {
+    if (kernel == HD_KERNEL_SYMMETRIC && n > 1 && hdi_shared_may(heat)) {
         windows = hdi_shared_windows(h->times[n - 1] / h->times[0], HDI_SHARED_TOL, n, &packs);
-        if (windows > 0 && hdi_shared_pays(packs, n) && !hdi_heat_equal(heat, h->t, h->e)) {
-            if (hdi_diagonal_windows(h, windows, D, ldd) != HD_ERR_MEMORY_LIMIT) return h->e->status;
-            hdi_heat_forget(h);                  /* one by one takes less */
-        }
+        if (windows > 0 && hdi_shared_pays(packs, n) && !hdi_heat_equal(heat, h->t, h->e))
+            return h->e->status < 0 ? h->e->status : hdi_diagonal_windows(h, windows, D, ldd);
     }
     for (q = 0; q < h->ask.n_times && h->e->status >= 0; q++) {
         if (done && done[q]) continue;
@@ -28062,18 +28143,13 @@ static hd_status hdi_trace_poles(hdi_heat_call *h, double *Z, double *bound, con
     hdi_inverse_tell(h);
     if (hdi_heat_sort_times(h, 1, done) < 0) return h->e->status;
     n = hdi_trace_late(h, Z, bound);
-    if (n > 1 && !heat->poles_asked && !heat->exacting)
+    if (n > 1 && hdi_shared_may(heat))
         windows = hdi_shared_windows(h->times[n - 1] / h->times[0], HDI_SHARED_TOL, n, &packs);
-    if (windows > 0 && hdi_shared_pays(packs, n)) {
-        for (w = 0, q0 = 0; q0 < n; w++, q0 = q1) {
-            q1 = hdi_window_end(h->times, n, q0, w, windows);
-            if (hdi_trace_window(h, q0, q1, Z, bound) < 0) break;
-        }
-        if (h->e->status != HD_ERR_MEMORY_LIMIT) return h->e->status;
-        hdi_heat_forget(h);                      /* one by one takes less */
-        (void)hdi_trace_late(h, Z, bound);
+    if (!hdi_shared_pays(packs, n)) windows = 0;
+    for (w = 0, q0 = 0; q0 < n && h->e->status >= 0; w++, q0 = q1) {
+        q1 = windows > 0 ? hdi_window_end(h->times, n, q0, w, windows) : q0 + 1;
+        (void)hdi_trace_window(h, q0, q1, Z, bound);
     }
-    for (q0 = 0; q0 < n && h->e->status >= 0; q0++) (void)hdi_trace_window(h, q0, q0 + 1, Z, bound);
     return h->e->status;
 }
 
@@ -28273,7 +28349,7 @@ static int hdi_fading_values(hdi_heat_call *h, int32_t q, int32_t most, const hd
     hd_report one;
     memset(&one, 0, sizeof one);
     hdi_error_clear(&one.error);
-    if (!hdi_fading_enough(h, t, hdi_fading_depth(h->heat), most)) return 0;
+    if (!hdi_modes_enough(h->heat, t, hdi_fading_depth(h->heat), most, h->e)) return 0;
     *h->rep = one;
     if (to->Z) hdi_fading_trace(h, t, to->Z + q, to->bound ? to->bound + q : NULL);
     else if (to->edges) (void)hdi_fading_edges_run(h, t, to->D + HDI_CAST(size_t, q) * to->ldd);
@@ -28360,12 +28436,17 @@ static hd_status hdi_fading_times(hdi_heat_call *h, const hdi_fading_to *to) {
     return h->e->status;
 }
 
+static hd_status hdi_fading_run(hdi_heat_call *h, void *what) {
+    const hdi_fading_to *to = HDI_CAST(const hdi_fading_to *, what);
+    return HDI_HAS_MODES && hdi_fading(h) ? hdi_fading_times(h, to) : hdi_fading_poles(h, to, NULL);
+}
+
 static hd_status hdi_trace_run(hdi_heat_call *h, double *Z, double *bound) {
     hdi_fading_to to;
     memset(&to, 0, sizeof to);
     to.Z = Z;
     to.bound = bound;
-    return HDI_HAS_MODES && hdi_fading(h) ? hdi_fading_times(h, &to) : hdi_fading_poles(h, &to, NULL);
+    return hdi_heat_sparing(h, hdi_fading_run, &to);
 }
 
 static hd_status hdi_edges_run(hdi_heat_call *h, double *values) {
@@ -28374,7 +28455,7 @@ static hd_status hdi_edges_run(hdi_heat_call *h, double *values) {
     to.edges = 1;
     to.D = values;
     to.ldd = HDI_CAST(size_t, h->heat->source->L.nnz);
-    return HDI_HAS_MODES && hdi_fading(h) ? hdi_fading_times(h, &to) : hdi_fading_poles(h, &to, NULL);
+    return hdi_heat_sparing(h, hdi_fading_run, &to);
 }
 
 static hd_status hdi_diagonal_run(hdi_heat_call *h, hd_kernel kernel, double *D, size_t ldd) {
@@ -28383,7 +28464,7 @@ static hd_status hdi_diagonal_run(hdi_heat_call *h, hd_kernel kernel, double *D,
     to.kernel = kernel;
     to.D = D;
     to.ldd = ldd;
-    return HDI_HAS_MODES && hdi_fading(h) ? hdi_fading_times(h, &to) : hdi_fading_poles(h, &to, NULL);
+    return hdi_heat_sparing(h, hdi_fading_run, &to);
 }
 
 /* ---- filters that share their poles ---- */
@@ -28826,6 +28907,7 @@ static hd_status hdi_metric_make(hd_heat *heat, hd_distance_kind kind, double t,
     }
     if (h.e->status < 0) *e = *h.e;
     hdi_heat_end(&h);
+    if (e->status < 0) hdi_free(heat->ctx, hdi_keep(keep, x->diag));   /* another try may follow */
     return hdi_scope_end(&scope);
 }
 
@@ -29339,7 +29421,7 @@ static hd_status hdi_distance_poles(hd_heat *heat, const hdi_distances *to, doub
     if (!sure && hdi_distance_once(heat, to, t, 0, rep, e) < 0) return e->status;
     if (settled || (!sure && rep->error_rational <= HDI_DISTANCE_SURE)) return e->status;
     do (void)hdi_distance_once(heat, to, t, degree, rep, e);
-    while (hdi_degree_retreat(&degree, e));
+    while (hdi_degree_retreat(heat, &degree, e));
     return e->status;
 }
 
@@ -29349,9 +29431,12 @@ static hd_status hdi_distance_help(hd_heat *heat, const hdi_distances *to, doubl
                                    hd_error *e) {
     const double bound = rep->error_bound;
     if (bound <= HDI_MODES_HELP || !hdi_modes_near(heat, to->kind, t, HDI_MODES_MOST)) return e->status;
-    hdi_packs_drop(heat);
+    hdi_heat_drop(heat);
     if (!hdi_modes_reach(heat, to->kind, t, HDI_MODES_MOST, e)) return e->status;
     if (hdi_modes_distance(heat, to, t, rep, e) < 0 || rep->error_bound <= bound) return e->status;
+    if (hdi_distance_poles(heat, to, t, rep, e) >= 0 || !hdi_over_limit(heat->ctx, e)) return e->status;
+    hdi_heat_shed_all(heat);                     /* without the pairs, as before */
+    hdi_error_clear(e);
     return hdi_distance_poles(heat, to, t, rep, e);
 }
 
@@ -29366,7 +29451,10 @@ static hd_status hdi_distance_time(hd_heat *heat, const hdi_distances *to, doubl
     }
     if (hdi_modes_distance(heat, to, t, rep, e) < 0 || hdi_modes_good(heat, t, rep)) return e->status;
     bound = rep->error_bound;
-    if (hdi_distance_poles(heat, to, t, rep, e) < 0 || rep->error_bound <= bound) return e->status;
+    (void)hdi_distance_poles(heat, to, t, rep, e);
+    if (e->status < 0 ? !hdi_over_limit(heat->ctx, e) : rep->error_bound <= bound) return e->status;
+    hdi_heat_drop(heat);
+    hdi_error_clear(e);
     return hdi_modes_distance(heat, to, t, rep, e);
 }
 
@@ -29595,19 +29683,21 @@ static void hdi_distance_shared_judge(hdi_distance_shared *z, int32_t q, const h
     hdi_ledger_close(&ledger, z->one + q);
 }
 
-/* The times of a window into the report of the call, those that eigenpairs do better by these. */
-static void hdi_distance_shared_end(hdi_distance_shared *z, const hdi_distances *to) {
-    hdi_heat_call *h = z->h;
+/* The times of a window into the report of the call, those that eigenpairs do better by these. one: their
+ * reports; column: which of the call's times each is. */
+static hd_status hdi_distance_shared_end(hdi_heat_call *h, const hdi_distances *to, hd_report *one,
+                                         const int32_t *column, int32_t n_times) {
     int32_t q;
-    for (q = 0; q < z->w.n_times && h->e->status >= 0; q++) {
-        hd_report *one = z->one + q;
+    for (q = 0; q < n_times && h->e->status >= 0; q++) {
         hdi_distances at = *to;
         at.ld = to->ld * HDI_CAST(size_t, h->n_times);
-        at.D = to->D + HDI_CAST(size_t, z->time_column[q]) * to->ld;
-        if (hdi_distance_help(h->heat, &at, h->ask.t[z->time_column[q]], one, h->e) < 0) break;
-        hdi_report_merge(one, h->rep);           /* the method stays that of the window */
-        *h->rep = *one;
+        at.D = to->D + HDI_CAST(size_t, column[q]) * to->ld;
+        if (hdi_distance_help(h->heat, &at, h->ask.t[column[q]], one + q, h->e) < 0) break;
+        hdi_report_merge(one + q, h->rep);       /* the method stays that of the window */
+        *h->rep = one[q];
     }
+    hdi_free(h->heat->ctx, one);
+    return h->e->status;
 }
 
 /* Distances of the first two kinds at times q0 to q1 - 1 of the call by one set of poles. */
@@ -29639,8 +29729,9 @@ static hd_status hdi_distance_window(hdi_heat_call *h, const hdi_distances *to, 
         probe.row[0] = hdi_high32(row[hdi_terms_at(&source, 0)], 0);
         (void)hdi_probe_run(h, &probe, HD_KERNEL_SYMMETRIC, z.w.set);
     }
-    hdi_distance_shared_end(&z, to);
-    return hdi_scope_end(&s);
+    if (h->e->status >= 0) (void)hdi_keep(&s, z.one);
+    if (hdi_scope_end(&s) < 0) return h->e->status;
+    return hdi_distance_shared_end(h, to, z.one, z.time_column, q1 - q0);
 }
 
 /* The first n_times of the sorted times with shared poles, where that is cheaper than one by one. Returns 0
@@ -29648,7 +29739,7 @@ static hd_status hdi_distance_window(hdi_heat_call *h, const hdi_distances *to, 
 static int hdi_distance_windows(hdi_heat_call *h, const hdi_distances *to, int32_t n_times) {
     hd_heat *heat = h->heat;
     int32_t packs = 0, windows, w, q0, q1;
-    if (n_times < 2 || heat->poles_asked || heat->exacting || hdi_heat_analysed(heat, h->e) < 0) return 0;
+    if (n_times < 2 || !hdi_shared_may(heat) || hdi_heat_analysed(heat, h->e) < 0) return 0;
     windows =
         hdi_shared_windows(h->times[n_times - 1] / h->times[0], HDI_SHARED_DISTANCE_TOL, n_times, &packs);
     if (windows == 0 || packs > n_times || hdi_heat_equal(heat, h->times[n_times - 1], h->e) ||
@@ -29663,7 +29754,8 @@ static int hdi_distance_windows(hdi_heat_call *h, const hdi_distances *to, int32
 }
 
 /* Distances from one to all: all times and sources of a call. */
-static hd_status hdi_distance_run(hdi_heat_call *h, hdi_distances to) {
+static hd_status hdi_distance_run(hdi_heat_call *h, void *what) {
+    hdi_distances to = *HDI_CAST(const hdi_distances *, what);
     const int timeless = to.kind >= HD_DISTANCE_COMMUTE;
     const int32_t n_times = timeless ? 1 : h->ask.n_times;
     const size_t ldd = to.ld;
@@ -29675,12 +29767,7 @@ static hd_status hdi_distance_run(hdi_heat_call *h, hdi_distances to) {
     if (done && n_times > 1 && hdi_heat_sort_times(h, 2, NULL) >= 0) {
         const int32_t early = hdi_distance_late(h, &to, done, &begun);
         if (early == 0 || h->e->status < 0) return h->e->status;
-        if (hdi_distance_windows(h, &to, early) && h->e->status != HD_ERR_MEMORY_LIMIT) return h->e->status;
-        if (h->e->status == HD_ERR_MEMORY_LIMIT) {   /* one by one takes less */
-            hdi_heat_forget(h);
-            memset(done, 0, HDI_CAST(size_t, n_times));
-            begun = 0;
-        }
+        if (hdi_distance_windows(h, &to, early)) return h->e->status;
     }
     to.ld = ldd * HDI_CAST(size_t, n_times);
     for (q = 0; q < n_times && h->e->status >= 0; q++) {
@@ -29955,25 +30042,25 @@ static hd_status hdi_pairs_columns(hd_heat *heat, const hdi_pairs *x, double t, 
                                    hd_report *rep) {
     const uint64_t n = HDI_CAST(uint64_t, heat->source->n), twice = 2 * HDI_CAST(uint64_t, x->n);
     const hd_kernel kernel = x->kind == HD_DISTANCE_WEIGHTED ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
-    hd_error e;
-    hdi_scope s = hdi_scope_begin(heat->ctx, &e);
+    hd_error *e = &rep->error;
+    hdi_scope s = hdi_scope_begin(heat->ctx, e);
     hdi_pair *order = HDI_TAKE(&s, hdi_pair, twice);
     int32_t *list = HDI_TAKE(&s, int32_t, twice), *place = HDI_TAKE(&s, int32_t, twice), n_list, q;
     hdi_pair_columns c;
     hdi_heat_call h;
     c.place = place;
     c.work = HDI_TAKE(&s, double, 2 * n + 1);
-    n_list = e.status < 0 ? 0 : hdi_pairs_vertices(x, order, list, place);
-    if (e.status >= 0 &&
-        (x->kind >= HD_DISTANCE_COMMUTE || (x->d && hdi_heat_filtered(heat)) ||
-         HDI_CAST(uint64_t, n_list) * n > HDI_PAIRS_DOUBLES)) {
+    if (e->status < 0) return rep->status = hdi_scope_end(&s);
+    n_list = hdi_pairs_vertices(x, order, list, place);
+    if (x->kind >= HD_DISTANCE_COMMUTE || (x->d && hdi_heat_filtered(heat)) ||
+        HDI_CAST(uint64_t, n_list) * n > HDI_PAIRS_DOUBLES) {
         hdi_scope_end(&s);
         return hdi_pairs_by_entries(heat, x, t, rep);
     }
     c.U = HDI_TAKE(&s, double, n * HDI_CAST(uint64_t, n_list));
     c.size = HDI_TAKE(&s, double, n_list);
+    if (e->status < 0) return rep->status = hdi_scope_end(&s);
     if (hdi_kernel_begin(&h, heat, kernel, rep, NULL) >= 0 && hdi_times_check(&h, 1, &t, 0) >= 0) {
-        if (e.status < 0) *h.e = e;
         h.ask.k = n_list;
         h.ask.sources = list;
         h.ask.U = c.U;
@@ -29997,16 +30084,17 @@ static int hdi_pairs_by_modes(hd_heat *heat, const hdi_pairs *x, double t, int32
                               hd_report *rep) {
     hd_report one;
     hdi_pairs y = *x;
-    hdi_scope s = hdi_scope_begin(heat->ctx, &one.error);
+    hdi_scope s;
     int taken = 0;
     memset(&one, 0, sizeof one);
     hdi_error_clear(&one.error);
+    s = hdi_scope_begin(heat->ctx, &one.error);
     y.d = NULL;
     if (hdi_modes_reach(heat, x->kind, t, most, &one.error)) y.d = HDI_TAKE(&s, double, x->n);
     if (y.d && hdi_modes_pairs(heat, &y, t, &one) >= 0)
         taken = one.error_bound < bound || hdi_modes_good(heat, t, &one);
     if (taken) memcpy(x->d, y.d, HDI_CAST(size_t, x->n) * sizeof *y.d);
-    if (one.error.status == HD_ERR_MEMORY_LIMIT) hdi_error_clear(&one.error);
+    if (hdi_over_limit(heat->ctx, &one.error)) hdi_error_clear(&one.error);
     if (one.error.status < 0) one.status = one.error.status;
     if (taken || one.status < 0) *rep = one;
     hdi_scope_end(&s);
@@ -30024,7 +30112,7 @@ static hd_status hdi_pairs_poles(hd_heat *heat, const hdi_pairs *x, double t, hd
     y.K = NULL;
     y.of_k = NULL;
     do (void)hdi_pairs_columns(heat, &y, t, degree, rep);
-    while (hdi_degree_retreat(&degree, &rep->error));
+    while (hdi_degree_retreat(heat, &degree, &rep->error));
     if (rep->status >= 0 && x->K) {
         hd_report all = *x->of_k;
         hdi_report_merge(&all, rep);
@@ -30057,7 +30145,7 @@ static hd_status hdi_pairs_once(hd_heat *heat, const hdi_pairs *pairs, double t,
     if (hdi_pairs_poles(heat, &x, t, rep) < 0 || !x.d || bound <= HDI_MODES_HELP ||
         !hdi_modes_near(heat, x.kind, t, HDI_MODES_MOST))
         return rep->status;
-    hdi_packs_drop(heat);
+    hdi_heat_drop(heat);
     if (!hdi_pairs_by_modes(heat, &x, t, HDI_MODES_MOST, bound, rep) || !x.K) return rep->status;
     all = of_k;
     hdi_report_merge(&all, rep);
@@ -30066,21 +30154,16 @@ static hd_status hdi_pairs_once(hd_heat *heat, const hdi_pairs *pairs, double t,
 }
 
 /* The pairs at all times of a call. */
-static hd_status hdi_pairs_run(hdi_heat_call *h, hd_distance_kind kind, int64_t n_pairs, const int32_t *i,
-                               const int32_t *j, double *K, double *d) {
-    const int timeless = kind >= HD_DISTANCE_COMMUTE;
+static hd_status hdi_pairs_run(hdi_heat_call *h, void *what) {
+    const hdi_pairs *all = HDI_CAST(const hdi_pairs *, what);
+    const int timeless = all->kind >= HD_DISTANCE_COMMUTE;
     const int32_t n_times = timeless ? 1 : h->ask.n_times;
-    hdi_pairs x;
+    hdi_pairs x = *all;
     hd_report one;
     int32_t q;
-    memset(&x, 0, sizeof x);
-    x.kind = kind;
-    x.n = n_pairs;
-    x.i = i;
-    x.j = j;
     for (q = 0; q < n_times; q++) {
-        x.K = K ? K + n_pairs * q : NULL;
-        x.d = d ? d + n_pairs * q : NULL;
+        x.K = all->K ? all->K + x.n * q : NULL;
+        x.d = all->d ? all->d + x.n * q : NULL;
         if (hdi_pairs_once(h->heat, &x, timeless ? 0 : h->ask.t[q], &one) < 0) {
             *h->rep = one;
             if (n_times > 1) h->e->column = q;
@@ -30164,7 +30247,7 @@ static hd_status hdi_sample_poles(hd_heat *heat, hdi_samples *a, hd_report *rep,
     hdi_metric x;
     memset(rep, 0, sizeof *rep);
     do (void)hdi_metric_make(heat, a->kind, a->t, degree, &x, &s, rep);
-    while (hdi_degree_retreat(&degree, e));
+    while (hdi_degree_retreat(heat, &degree, e));
     a->x = &x;
     a->sum = NULL;
     if (e->status >= 0) (void)hdi_sample_points(heat, a, rep, e);
@@ -30198,7 +30281,7 @@ static hd_status hdi_sample_either(hd_heat *heat, hdi_samples *a, hd_report *rep
     if (rep->error_bound <= HDI_MODES_HELP || (first && bound >= rep->error_bound)) return e->status;
     if (!first) {
         if (!hdi_modes_near(heat, a->kind, a->t, HDI_MODES_MOST)) return e->status;
-        hdi_packs_drop(heat);
+        hdi_heat_drop(heat);
         if (!hdi_modes_reach(heat, a->kind, a->t, HDI_MODES_MOST, e)) return e->status;
     }
     bound = rep->error_bound;
@@ -30206,7 +30289,8 @@ static hd_status hdi_sample_either(hd_heat *heat, hdi_samples *a, hd_report *rep
     return hdi_sample_poles(heat, a, rep, e);
 }
 
-static hd_status hdi_sample_run(hdi_heat_call *h, hdi_samples *a) {
+static hd_status hdi_sample_run(hdi_heat_call *h, void *what) {
+    hdi_samples *a = HDI_CAST(hdi_samples *, what);
     hd_report one;
     memset(&one, 0, sizeof one);
     a->nearest = HDI_TAKE(&h->s, double, h->heat->source->n);
@@ -30247,7 +30331,7 @@ static hd_status hdi_distance_answer(hd_heat *heat, hdi_distances *to, const hd_
     to->ld = hdi_leading(&h, to->ld);
     if (h.e->status >= 0 && sources) to->terms = hdi_terms_all(to->k, sources, heat->source, 1, &h.s);
     else if (h.e->status >= 0) (void)hdi_sources_check(&h, to->k, to->sources);
-    if (h.e->status >= 0 && to->k > 0) (void)hdi_distance_run(&h, *to);
+    if (h.e->status >= 0 && to->k > 0) (void)hdi_heat_sparing(&h, hdi_distance_run, to);
     return hdi_heat_end(&h);
 }
 
@@ -30276,7 +30360,7 @@ static hd_status hdi_sample_answer(hd_heat *heat, hdi_samples *a, const hd_sourc
     else if (!a->vertex || (a->n_from > 0 && !sources)) hdi_missing(h.e);
     if (h.e->status >= 0 && hdi_sources_check(&h, a->n_given, a->vertex) >= 0 && a->n_from > 0)
         a->terms = hdi_terms_all(a->n_from, sources, heat->source, 1, &h.s);
-    if (h.e->status >= 0) (void)hdi_sample_run(&h, a);
+    if (h.e->status >= 0) (void)hdi_heat_sparing(&h, hdi_sample_run, a);
     return hdi_heat_end(&h);
 }
 
@@ -30300,11 +30384,6 @@ typedef struct hdi_estimate {
 
 /* Bytes of small arrays that are not listed one by one. */
 #define HDI_ESTIMATE_SMALL 4096
-
-static double hdi_estimate_room(const hd_context *ctx) {
-    return ctx->byte_limit ? HDI_CAST(double, ctx->byte_limit) - HDI_CAST(double, ctx->bytes_in_use)
-                           : HUGE_VAL;
-}
 
 /* Adds work that comes after what is there; bytes are those of the larger one. */
 static void hdi_cost_add(hd_cost *c, double flops, double seconds, double bytes) {
@@ -30348,8 +30427,12 @@ static double hdi_bytes_direct(const hdi_estimate *x, const hd_rational *set, hd
     /* the solves' arrays of one time stay while the next one is factorised */
     if (heat->elim.ctx && x->h->n_times > 1)
         held += HDI_CAST(double, hdi_batches_need(heat, hdi_set_packs(set), k));
-    if (heat->elim.ctx)
-        return held + HDI_CAST(double, hdi_direct_need(heat, set, after, n_sets, k, x->h->e));
+    if (heat->elim.ctx) {
+        const uint64_t need = hdi_direct_need(heat, set, after, n_sets, k, x->h->e);
+        const int asks = hdi_heat_equal_asks(heat, x->h->t) && !heat->ground.traced;
+        return held + hdi_max(HDI_CAST(double, need),
+                              asks ? HDI_CAST(double, hdi_ground_need(&heat->elim, &heat->ground, 0)) : 0);
+    }
     held += 8 * (8 * packs + 1) * f.stored + 200 * n + hdi_min(k, HDI_LANES) * 140 * n;
     return after >= HDI_AFTER_INVERSE ? held + 16 * n * n_sets : held;
 }
@@ -30357,7 +30440,7 @@ static double hdi_bytes_direct(const hdi_estimate *x, const hd_rational *set, hd
 /* Analyses the pattern for a query that needs a factorisation. If there is no memory for that within the byte
  * limit, figures are guesses. */
 static hd_status hdi_estimate_analyse(hdi_heat_call *h) {
-    if (hdi_heat_analysed_for(h) == HD_ERR_MEMORY_LIMIT) hdi_error_clear(h->e);
+    if (hdi_heat_analysed_for(h) < 0 && hdi_over_limit(h->heat->ctx, h->e)) hdi_error_clear(h->e);
     if (h->heat->elim.ctx) h->lap = h->heat->elim.lap;
     return h->e->status;
 }
@@ -30423,15 +30506,15 @@ static hd_status hdi_estimate_solves(const hdi_estimate *x, double held) {
     hdi_cost model;
     hd_method method;
     int32_t poles;
-    if (hdi_heat_pick(h) < 0 && h->e->status != HD_ERR_MEMORY_LIMIT) return h->e->status;
-    if (h->e->status >= 0 && n_times > 1 && h->method != HD_METHOD_KRYLOV) {   /* the times one by one */
+    if (hdi_heat_pick(h) >= 0 && n_times > 1 && h->method != HD_METHOD_KRYLOV) {   /* the times one by one */
         h->times += n_times - 1;
         h->n_times = 1;
         (void)hdi_heat_pick(h);
         h->times -= n_times - 1;
         h->n_times = n_times;
     }
-    hdi_error_clear(h->e);
+    if (hdi_over_limit(heat->ctx, h->e)) hdi_error_clear(h->e);
+    if (h->e->status < 0) return h->e->status;
     if (h->method != HD_METHOD_ITERATIVE && hdi_estimate_analyse(h) < 0) return h->e->status;
     model = hdi_heat_cost(h);
     x->to->method = method = h->method;
@@ -30483,7 +30566,7 @@ static hd_status hdi_estimate_inverse(const hdi_estimate *x, int32_t degree, hd_
     if (hdi_heat_set(h, &set) < 0) return h->e->status;
     h->degree = 0;
     if (distance) held += 16.0 * lap->n + 48.0 * x->k;
-    bytes = hdi_bytes_direct(x, &set, after, 2, HDI_PROBES, held);
+    bytes = hdi_bytes_direct(x, &set, after, 2, h->n_times > 1 ? solves : HDI_PROBES, held);
     bytes = hdi_max(bytes, hdi_bytes_direct(x, &set, HDI_AFTER_SOLVES, 0, solves, held - 16 * n + later));
     hdi_cost_direct(h->heat, hdi_set_packs(&set), hdi_set_lone(&set), after,
                     HDI_CAST(double, HDI_PROBES) + (distance ? 2.0 * x->k : 0), c);
@@ -30525,7 +30608,7 @@ static int32_t hdi_estimate_shared(const hdi_estimate *x, double tol) {
     const hdi_heat_call *h = x->h;
     const int distance = x->query == HD_QUERY_DISTANCE || x->query == HD_QUERY_DISTANCE_WEIGHTED;
     int32_t packs = 0, windows;
-    if (h->n_times < 2 || h->heat->poles_asked || h->heat->exacting) return 0;
+    if (h->n_times < 2 || !hdi_shared_may(h->heat)) return 0;
     if (x->query != HD_QUERY_DIAGONAL && !distance) return 0;
     windows = hdi_shared_windows(h->times[h->n_times - 1] / h->times[0], tol, h->n_times, &packs);
     if (windows < 1) return 0;
@@ -30577,30 +30660,35 @@ static void hdi_estimate_modes(const hdi_estimate *x, int32_t count, hd_cost *c)
     c->flops += 6 * n * count * x->k;
 }
 
-/* Late times, where eigenpairs come first: how many times are left before them. *held: bytes that then
- * stay. */
+/* Bytes that so many eigenpairs hold when they are found. */
+static double hdi_estimate_held(const hdi_estimate *x, int32_t count) {
+    const int twice = x->query == HD_QUERY_DISTANCE_WEIGHTED && x->h->heat->source->B;
+    return 8.0 * x->h->heat->source->n * ((twice ? 2.0 : 1.0) * count + 5);
+}
+
+/* Late times, where eigenpairs come first: how many times are left before them. *held: bytes that stay when
+ * these are found. */
 static int32_t hdi_estimate_late(const hdi_estimate *x, hd_cost *c, double *held) {
     const hd_heat *heat = x->h->heat;
-    const double n = heat->source->n, unit = (hdi_estimate_distance(x) ? 2 : 1) * heat->scale;
-    const int twice = x->query == HD_QUERY_DISTANCE_WEIGHTED && heat->source->B;
+    const double unit = (hdi_estimate_distance(x) ? 2 : 1) * heat->scale;
     int32_t early = x->h->n_times, count;
     while (early > 0 && hdi_estimate_first(x, x->h->times[early - 1] / unit)) early--;
     *held = 0;
     if (early == x->h->n_times) return early;
     count = hdi_estimate_pairs(x, x->h->times[early] / unit);
-    if (hdi_modes_need(heat, count) > hdi_estimate_room(heat->ctx)) return x->h->n_times;
+    if (hdi_modes_need(heat, count) > hdi_bytes_left(heat->ctx)) return x->h->n_times;
     hdi_estimate_modes(x, count, c);
-    if (!heat->modes.s.value) *held = 8 * n * ((twice ? 2 : 1) * count + 5);
+    if (!heat->modes.s.value || heat->modes.s.count < count) *held = hdi_estimate_held(x, count);
     return early;
 }
 
-/* Bytes that eigenpairs need which may come after poles at time t. */
-static double hdi_estimate_help(const hdi_estimate *x, double t) {
+/* Eigenpairs that may come after poles at time t, or 0. */
+static int32_t hdi_estimate_help(const hdi_estimate *x, double t) {
     const hd_heat *heat = x->h->heat;
     if (hdi_estimate_distance(x) ? !hdi_modes_near(heat, hdi_estimate_kind(x), t, HDI_MODES_MOST)
                                  : !hdi_fading(x->h) || !hdi_fading_near(heat, t, HDI_MODES_MOST))
         return 0;
-    return hdi_modes_need(heat, hdi_estimate_pairs(x, t));
+    return hdi_estimate_pairs(x, t);
 }
 
 /* Commute and biharmonic distances. */
@@ -30630,59 +30718,65 @@ static void hdi_estimate_join(hd_cost *c, const hd_cost *late, double held) {
     if (late->possible) hdi_cost_add(c, late->flops, late->seconds, late->bytes);
 }
 
-/* Queries that need the direct method. They take what the run would take: shared poles, else the times one by
- * one, and for distances the highest degree where it is sure to be needed; less where that does not fit. */
+/* Poles for time q of the call alone: by default, and by the highest degree, which distances may need at once.
+ * held: bytes of eigenpairs that stay. most: with pairs that may come after, and poles once more. */
+static hd_status hdi_estimate_alone(const hdi_estimate *x, int32_t q, double held, hd_cost *one, hd_cost *most) {
+    hd_heat *heat = x->h->heat;
+    const double t = x->h->times[q] / (hdi_estimate_distance(x) ? 2 * heat->scale : heat->scale);
+    const double h0 = heat->source->h, expected = h0 > 0 ? HDI_DISTANCE_EXPECTED * sqrt(t) / h0 : 0;
+    const int sure = x->query == HD_QUERY_DISTANCE && hdi_shared_may(heat) && expected > HDI_DISTANCE_SURE;
+    const int32_t help = hdi_estimate_help(x, t);
+    memset(one, 0, sizeof *one);
+    memset(most, 0, sizeof *most);
+    x->h->t = x->h->times[q];
+    if (hdi_estimate_inverse(x, heat->poles_asked ? 0 : HDI_RAT_KERNEL_MAX, most) < 0) return x->h->e->status;
+    if (sure && most->bytes + held <= hdi_bytes_left(heat->ctx)) *one = *most;
+    else if (hdi_estimate_inverse(x, 0, one) < 0) return x->h->e->status;
+    if (heat->elim.ctx)                          /* after a first try, whose lanes and real factor stay */
+        most->bytes += HDI_CAST(double, hdi_batches_need(heat, 1, hdi_high32(x->k, HDI_PROBES)) +
+                                        (heat->elim.real.ctx ? 0 : hdi_factor_bytes(&heat->elim.sym, 1)));
+    most->bytes += hdi_max(held, help > 0 ? hdi_estimate_held(x, help) : 0);
+    if (help > 0) most->bytes = hdi_max(most->bytes, hdi_modes_need(heat, help) + HDI_ESTIMATE_SMALL);
+    return HD_OK;
+}
+
+/* Queries that need the direct method. They take what the run would take: eigenpairs at late times; shared
+ * poles, else the times one by one. Bytes are enough for poles at all times one by one, to which the run comes
+ * back where the others do not serve. */
 static hd_status hdi_estimate_direct(const hdi_estimate *x) {
     hdi_heat_call *h = x->h;
     hd_heat *heat = h->heat;
-    hd_cost *c = x->to->cost + HD_METHOD_DIRECT;
-    const int distance = x->query >= HD_QUERY_DISTANCE;
-    const double tol = distance ? HDI_SHARED_DISTANCE_TOL : HDI_SHARED_TOL, h0 = heat->source->h;
-    hd_cost late;
-    double room, held = 0;
+    hd_cost *c = x->to->cost + HD_METHOD_DIRECT, late, shared, one, most;
+    const int32_t n_times = h->n_times;
+    const double tol = x->query >= HD_QUERY_DISTANCE ? HDI_SHARED_DISTANCE_TOL : HDI_SHARED_TOL;
+    double held = 0;
     int32_t q, windows, early;
     memset(&late, 0, sizeof late);
+    memset(&shared, 0, sizeof shared);
     x->to->method = HD_METHOD_DIRECT;
     x->to->reason = "diagonals and distances to all vertices need the direct method";
     if (hdi_estimate_analyse(h) < 0) return h->e->status;
-    room = hdi_estimate_room(heat->ctx);
     if (x->query >= HD_QUERY_DISTANCE_COMMUTE) {
         hdi_estimate_ground(x, c);
         return HD_OK;
     }
-    early = hdi_estimate_late(x, &late, &held);
-    h->n_times = early;
+    h->n_times = early = hdi_estimate_late(x, &late, &held);
+    if (early == 0) x->to->reason = HDI_MODES_REASON;
     windows = hdi_estimate_shared(x, tol);
-    if (early == 0) {
-        *c = late;
-        x->to->reason = HDI_MODES_REASON;
-    } else if (windows > 0 && (hdi_estimate_windows(x, windows, tol, c) < 0 || c->bytes <= room)) {
-        c->seconds += HDI_FRESH_BYTE * c->bytes;
-        hdi_estimate_join(c, &late, held);
-        return h->e->status;
+    if (windows > 0 && hdi_estimate_windows(x, windows, tol, &shared) < 0) return h->e->status;
+    if (shared.bytes + held > hdi_bytes_left(heat->ctx)) windows = 0;
+    if (windows > 0) hdi_cost_add(c, shared.flops, shared.seconds, shared.bytes + held);
+    h->n_times = n_times;
+    for (q = 0; q < n_times; q++) {
+        const int alone = windows == 0 && q < early;
+        if (q >= early && held == 0) break;      /* by pairs that are there */
+        if (hdi_estimate_alone(x, q, held, &one, &most) < 0) return h->e->status;
+        if (alone) hdi_cost_add(c, one.flops, one.seconds, one.bytes + held);
+        else hdi_cost_add(c, 0, 0, one.bytes);
+        c->bytes_most = hdi_max(c->bytes_most, most.bytes);
     }
-    if (early > 0) memset(c, 0, sizeof *c);
-    for (q = 0; q < h->n_times && h->e->status >= 0; q++) {
-        const double t = h->times[q] / (distance ? 2 * heat->scale : heat->scale);
-        const double expected = h0 > 0 ? HDI_DISTANCE_EXPECTED * sqrt(t) / h0 : 0;
-        const int sure = x->query == HD_QUERY_DISTANCE && !heat->poles_asked && !heat->exacting &&
-                         expected > HDI_DISTANCE_SURE;
-        hd_cost one, most;
-        memset(&one, 0, sizeof one);
-        memset(&most, 0, sizeof most);
-        if (hdi_estimate_inverse(x, heat->poles_asked ? 0 : HDI_RAT_KERNEL_MAX, &most) < 0) break;
-        if (sure && most.bytes <= room) one = most;
-        else if (hdi_estimate_inverse(x, 0, &one) < 0) break;
-        hdi_cost_add(c, one.flops, one.seconds, one.bytes);
-        /* after a first try, whose lanes and real factor stay */
-        if (!sure && heat->elim.ctx)
-            most.bytes += HDI_CAST(double, hdi_batches_need(heat, 1, hdi_high32(x->k, HDI_PROBES)) +
-                                           (heat->elim.real.ctx ? 0 : hdi_factor_bytes(&heat->elim.sym, 1)));
-        c->bytes_most = hdi_max(c->bytes_most, hdi_max(most.bytes, hdi_estimate_help(x, t)));
-    }
-    if (early == 0) return h->e->status;
-    c->seconds += HDI_FRESH_BYTE * c->bytes;
-    hdi_estimate_join(c, &late, held);
+    if (early > 0) c->seconds += HDI_FRESH_BYTE * c->bytes;
+    if (late.possible) hdi_cost_add(c, late.flops, late.seconds, late.bytes);
     return h->e->status;
 }
 
@@ -30809,7 +30903,7 @@ static void hdi_estimate_close(const hd_heat *heat, hd_estimate *to) {
     int32_t q;
     to->analysed = heat->elim.ctx != NULL || (heat->other && heat->other->elim.ctx);
     to->bytes_in_use = HDI_CAST(double, heat->ctx->bytes_in_use);
-    to->bytes_left = hdi_estimate_room(heat->ctx);
+    to->bytes_left = hdi_bytes_left(heat->ctx);
     to->cost[HD_METHOD_AUTO] = to->cost[to->method];
     for (q = 0; q <= HD_METHOD_KRYLOV; q++)
         to->cost[q].fits = to->cost[q].possible && to->cost[q].bytes <= to->bytes_left;
@@ -33498,12 +33592,20 @@ HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, int32
                                      int64_t n_pairs, const int32_t *i, const int32_t *j, double *K,
                                      double *d, hd_report *report, hd_error *err) {
     hdi_heat_call h;
+    hdi_pairs x;
     if (hdi_distance_begin(&h, heat, kind, n_times, t, 0, report, err) < 0 || !HDI_HAS_DIFFUSION)
         return hdi_heat_end(&h);
+    memset(&x, 0, sizeof x);
+    x.kind = kind;
+    x.n = n_pairs;
+    x.i = i;
+    x.j = j;
+    x.K = K;
+    x.d = d;
     h.relative = d != NULL;
     if (d && hdi_heat_filtered(heat)) (void)hdi_direct_only(&h);
     if (h.e->status >= 0 && hdi_pairs_check(&h, n_pairs, i, j) >= 0 && n_pairs > 0)
-        (void)hdi_pairs_run(&h, kind, n_pairs, i, j, K, d);
+        (void)hdi_heat_sparing(&h, hdi_pairs_run, &x);
     return hdi_heat_end(&h);
 }
 
