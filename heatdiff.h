@@ -30628,10 +30628,15 @@ static int hdi_estimate_distance(const hdi_estimate *x) {
     return x->query == HD_QUERY_DISTANCE || x->query == HD_QUERY_DISTANCE_WEIGHTED;
 }
 
+/* Distances to all vertices, or of pairs. */
+static int hdi_estimate_apart(const hdi_estimate *x) {
+    return x->query == HD_QUERY_PAIRS || hdi_estimate_distance(x);
+}
+
 /* Eigenpairs for time t. */
 static int32_t hdi_estimate_pairs(const hdi_estimate *x, double t) {
     const hd_heat *heat = x->h->heat;
-    const double depth = hdi_estimate_distance(x) ? hdi_modes_depth(heat) : hdi_fading_depth(heat);
+    const double depth = hdi_estimate_apart(x) ? hdi_modes_depth(heat) : hdi_fading_depth(heat);
     return hdi_modes_count(heat, hdi_modes_expected(heat, depth / t));
 }
 
@@ -30639,6 +30644,14 @@ static int32_t hdi_estimate_pairs(const hdi_estimate *x, double t) {
 static int hdi_estimate_first(const hdi_estimate *x, double t) {
     return hdi_estimate_distance(x) ? hdi_modes_first(x->h->heat, hdi_estimate_kind(x), t)
                                     : hdi_fading_first(x->h, t);
+}
+
+/* Bytes that eigenpairs may need where more are looked for than expected: 1.14 times those for the number
+ * expected were seen on small meshes. */
+#define HDI_MODES_OVER 1.25
+
+static double hdi_modes_need_most(const hd_heat *heat, int32_t count) {
+    return HDI_MODES_OVER * hdi_modes_need(heat, count) + HDI_ESTIMATE_SMALL;
 }
 
 /* Finding so many eigenpairs. */
@@ -30649,6 +30662,7 @@ static void hdi_estimate_pairs_cost(const hd_heat *heat, int32_t count, hd_cost 
     const double seconds = runs * f.flops / HDI_RATE_REAL + HDI_MODES_SECONDS * n * pairs;
     const double flops = runs * f.flops + solves * (4 * f.nnz + 8 * n * count);
     hdi_cost_add(c, flops, seconds, hdi_modes_need(heat, count) + HDI_ESTIMATE_SMALL);
+    c->bytes_most = hdi_max(c->bytes_most, hdi_modes_need_most(heat, count));
 }
 
 /* Finding so many eigenpairs, and distances from k sources, or k columns, by them. */
@@ -30685,8 +30699,8 @@ static int32_t hdi_estimate_late(const hdi_estimate *x, hd_cost *c, double *held
 /* Eigenpairs that may come after poles at time t, or 0. */
 static int32_t hdi_estimate_help(const hdi_estimate *x, double t) {
     const hd_heat *heat = x->h->heat;
-    if (hdi_estimate_distance(x) ? !hdi_modes_near(heat, hdi_estimate_kind(x), t, HDI_MODES_MOST)
-                                 : !hdi_fading(x->h) || !hdi_fading_near(heat, t, HDI_MODES_MOST))
+    if (hdi_estimate_apart(x) ? !hdi_modes_near(heat, hdi_estimate_kind(x), t, HDI_MODES_MOST)
+                              : !hdi_fading(x->h) || !hdi_fading_near(heat, t, HDI_MODES_MOST))
         return 0;
     return hdi_estimate_pairs(x, t);
 }
@@ -30716,6 +30730,7 @@ static void hdi_estimate_join(hd_cost *c, const hd_cost *late, double held) {
     c->bytes += held;
     c->bytes_most += held;
     if (late->possible) hdi_cost_add(c, late->flops, late->seconds, late->bytes);
+    c->bytes_most = hdi_max(c->bytes_most, late->bytes_most);
 }
 
 /* Poles for time q of the call alone: by default, and by the highest degree, which distances may need at once.
@@ -30736,7 +30751,7 @@ static hd_status hdi_estimate_alone(const hdi_estimate *x, int32_t q, double hel
         most->bytes += HDI_CAST(double, hdi_batches_need(heat, 1, hdi_high32(x->k, HDI_PROBES)) +
                                         (heat->elim.real.ctx ? 0 : hdi_factor_bytes(&heat->elim.sym, 1)));
     most->bytes += hdi_max(held, help > 0 ? hdi_estimate_held(x, help) : 0);
-    if (help > 0) most->bytes = hdi_max(most->bytes, hdi_modes_need(heat, help) + HDI_ESTIMATE_SMALL);
+    if (help > 0) most->bytes = hdi_max(most->bytes, hdi_modes_need_most(heat, help));
     return HD_OK;
 }
 
@@ -30776,7 +30791,11 @@ static hd_status hdi_estimate_direct(const hdi_estimate *x) {
         c->bytes_most = hdi_max(c->bytes_most, most.bytes);
     }
     if (early > 0) c->seconds += HDI_FRESH_BYTE * c->bytes;
-    if (late.possible) hdi_cost_add(c, late.flops, late.seconds, late.bytes);
+    hdi_estimate_join(c, &late, 0);
+    memset(&shared, 0, sizeof shared);           /* if pairs are found, and say little at late times */
+    windows = held > 0 ? hdi_estimate_shared(x, tol) : 0;
+    if (windows > 0 && hdi_estimate_windows(x, windows, tol, &shared) >= 0)
+        c->bytes_most = hdi_max(c->bytes_most, shared.bytes + held);
     return h->e->status;
 }
 
@@ -30815,6 +30834,19 @@ static hd_status hdi_estimate_trace(const hdi_estimate *x, double held, hd_cost 
     return h->e->status;
 }
 
+/* Where heat fades: eigenpairs that may come after poles at any time, with poles once more. */
+static void hdi_estimate_fading(const hdi_estimate *x, hd_cost *c) {
+    const hd_heat *heat = x->h->heat;
+    const double most = c->bytes_most;
+    int32_t q;
+    for (q = 0; q < x->h->n_times; q++) {
+        const int32_t help = HDI_HAS_MODES ? hdi_estimate_help(x, x->h->times[q] / heat->scale) : 0;
+        if (help == 0) continue;
+        c->bytes_most = hdi_max(c->bytes_most, most + hdi_estimate_held(x, help));
+        c->bytes_most = hdi_max(c->bytes_most, hdi_modes_need_most(heat, help));
+    }
+}
+
 /* Traces, and signatures made of diagonals: what the run takes beside them. */
 static hd_status hdi_estimate_signature(const hdi_estimate *x) {
     const hd_heat *heat = x->h->heat;
@@ -30830,7 +30862,10 @@ static hd_status hdi_estimate_signature(const hdi_estimate *x) {
     x->to->reason = "diagonals and distances to all vertices need the direct method";
     x->h->diagonal = 1;
     if (hdi_estimate_analyse(x->h) < 0) return x->h->e->status;
-    if (x->query == HD_QUERY_TRACE) return hdi_estimate_trace(x, 0, c);
+    if (x->query == HD_QUERY_TRACE) {
+        if (hdi_estimate_trace(x, 0, c) >= 0) hdi_estimate_fading(x, c);
+        return x->h->e->status;
+    }
     if (hdi_estimate_direct(&diagonal) < 0) return x->h->e->status;
     hdi_estimate_join(c, &trace, held);
     if (!normalised) return HD_OK;
@@ -30842,28 +30877,38 @@ static hd_status hdi_estimate_signature(const hdi_estimate *x) {
     return x->h->e->status;
 }
 
-/* Fields, columns and entries; pairs take columns. Late times come from eigenpairs where heat fades. */
+/* Fields, columns and entries; pairs take columns. Late times come from eigenpairs where heat fades; bytes are
+ * enough for the others' way at all times. */
 static hd_status hdi_estimate_columns(const hdi_estimate *x, double held) {
     hdi_heat_call *h = x->h;
     hd_estimate *to = x->to;
-    hd_cost late;
+    const int32_t n_times = h->n_times;
+    hd_cost late, *c;
     double stay = 0;
-    int32_t early = h->n_times;
+    int32_t early = n_times;
     memset(&late, 0, sizeof late);
     if (x->query < HD_QUERY_PAIRS && HDI_HAS_MODES && hdi_fading(h)) {
         if (hdi_fading_first(h, h->times[early - 1] / h->heat->scale) && hdi_estimate_analyse(h) < 0)
             return h->e->status;
         early = hdi_estimate_late(x, &late, &stay);
     }
-    h->n_times = early;
-    if (early > 0) {
-        h->t = h->times[early - 1];
-        if (hdi_estimate_solves(x, held) >= 0) hdi_estimate_join(to->cost + to->method, &late, stay);
-        return h->e->status;
+    h->n_times = early > 0 ? early : n_times;
+    h->t = h->times[h->n_times - 1];
+    if (hdi_estimate_solves(x, held) < 0) return h->e->status;
+    c = to->cost + to->method;
+    h->n_times = n_times;
+    if (early == 0) {
+        late.bytes = hdi_max(late.bytes, stay > 0 ? c->bytes : 0);
+        late.bytes_most = hdi_max(late.bytes_most, c->bytes_most + stay);
+        memset(to->cost, 0, sizeof to->cost);
+        to->method = HD_METHOD_DIRECT;
+        to->reason = HDI_MODES_REASON;
+        c = to->cost + HD_METHOD_DIRECT;
+        *c = late;
+    } else {
+        hdi_estimate_join(c, &late, stay);
     }
-    to->method = HD_METHOD_DIRECT;
-    to->reason = HDI_MODES_REASON;
-    to->cost[HD_METHOD_DIRECT] = late;
+    hdi_estimate_fading(x, c);
     return HD_OK;
 }
 
