@@ -827,9 +827,9 @@ typedef struct hd_cost {
      * long, and those with poles far longer on thin triangles with obtuse angles. */
     double seconds;
     double bytes;               /* at the peak, beyond what the context has in use now */
-    /* The same if poles of degree 14 take over: for demanding fields, and where slivers or the time make the
-     * bound of a diagonal, of edges or of distances too large. Without room for that, these three get by with
-     * bytes and have a looser bound. */
+    /* The same if poles of degree 14 or eigenpairs take over: for demanding fields, and where slivers or the
+     * time make a bound too large. By the direct method so much room gives the same answers as no limit; with
+     * bytes alone the bound may be looser. */
     double bytes_most;
 } hd_cost;
 
@@ -1742,8 +1742,8 @@ HEATDIFF_API hd_status hd_spectrum_distance_from(const hd_spectrum *s, hd_distan
  * k        see hd_query
  * estimate if there is not enough memory, cost[HD_METHOD_AUTO].fits is 0. That is no error
  * Bytes of the direct method are sums of the arrays that the query will allocate: an upper bound, by a few
- * percent. Those of the other two methods depend on their steps and are estimates. Output arrays are the
- * caller's and not counted.
+ * percent; where eigenpairs come first it allows for poles instead. Those of the other two methods depend on
+ * their steps and are estimates. Output arrays are the caller's and not counted.
  * Errors   HD_ERR_ARGUMENT, HD_ERR_MEMORY, HD_ERR_CANCELLED
  * Cost     one ordering and analysis, if the query needs them; the plan keeps them for the query. Otherwise
  *          one pass over L */
@@ -18893,8 +18893,7 @@ static hd_status hdi_rational_fit_shared(hd_rational *out, int32_t count, const 
  *   |A^-1 r|_B <= |r|_(B^-1) / min |t lambda + theta|
  *   |A^-1 r|_M <= |r|_(B^-1) max (1 + t lambda)/|t lambda + theta|,   M = B + t L,
  * and |r|_(B^-1)^2 <= |r|_(D^-1)^2 / b_ratio, D = diag(B). At vertex v, |e_v| <= |e|_B / sqrt(b_ratio D_v),
- * and |e_v| <= sqrt(g_v) |e|_M for g = diag(M^-1). The second is much smaller where heat has spread over many
- * vertices. */
+ * and |e_v| <= sqrt(g_v) |e|_M for g = diag(M^-1). The second is much smaller where heat has spread far. */
 
 /* Parts of an error bound, in one of the norms or of values. */
 typedef struct hdi_parts { double rational, solver, rounding; } hdi_parts;
@@ -18921,8 +18920,7 @@ static hdi_parts hdi_parts_least(hdi_parts a, hdi_parts b) {
     return a;
 }
 
-/* Every query keeps an account of its errors, which becomes part of the report. The numbers are absolute,
- * over all values noted. */
+/* The account of a query's errors, which becomes part of its report: absolute, over all values noted. */
 typedef struct hdi_ledger {
     hdi_parts off;               /* the largest of each part */
     hdi_parts known;             /* evidence of each part, as hd_evidence; hdi_ledger_begin sets it */
@@ -19023,8 +19021,7 @@ static double hdi_row_diagonal(const hd_laplacian *lap, int32_t i) {
  * |theta| |B|, and c_i half a unit in the last place for every term of the row and HDI_NOISE_TERMS more (N.
  * Higham, Accuracy and Stability of Numerical Algorithms, 2002, section 3.1). By Cauchy and Schwarz that is
  * at most sqrt(sum_j noise_j |x_j|^2) in the norm of D^-1, with
- *   noise_j = sum_i M_ij (c_i^2/D_i) sum_k M_ik.
- * work [n]. */
+ *   noise_j = sum_i M_ij (c_i^2/D_i) sum_k M_ik; work [n]. */
 #define HDI_NOISE_TERMS 8
 
 static void hdi_noise_weights(const hd_laplacian *lap, double t, double theta, double *noise, double *work) {
@@ -19410,8 +19407,7 @@ static void hdi_lane_clear_off(hdi_lane *lane) {
     lane->negative = 0;
 }
 
-/* u = a0 f - sum a_i x_i, in the order of the poles, and the bounds on its error without the rational
- * part. */
+/* u = a0 f - sum a_i x_i, in the order of the poles, and the bounds on its error but for the rational one. */
 static void hdi_lane_sum(hdi_lane *lane, const hdi_family *fam) {
     const int32_t n = fam->lap->n_active;
     double *HDI_RESTRICT u = lane->u;
@@ -19939,8 +19935,7 @@ static double hdi_elim_diagonal(const hd_laplacian *lap, double t, const hd_c64 
     int32_t i, q;
     for (i = 0; i < lap->n_active; i++) {
         const double b = lap->b_diag[i], l = t * hdi_row_diagonal(lap, i);
-        for (q = 0; q < k; q++)
-            most = hdi_max(most, hdi_cabs2(hdi_c(l + theta[q].re * b, theta[q].im * b)));
+        for (q = 0; q < k; q++) most = hdi_max(most, hdi_cabs2(hdi_c(l + theta[q].re * b, theta[q].im * b)));
     }
     return sqrt(most);
 }
@@ -20320,8 +20315,7 @@ static hd_csr hdi_lap_mass_matrix(const hd_laplacian *lap, hdi_scope *s) {
     return b;
 }
 
-/* Whether B - sigma diag(B) has an LDL' without a negative pivot, and so no negative eigenvalue (Sylvester).
- * value [nnz]: room. */
+/* Has B - sigma diag(B) no negative pivot, and so no negative eigenvalue (Sylvester)? value [nnz]: room. */
 static int hdi_lap_exceeds(const hd_laplacian *lap, const hd_csr *b, double sigma, double *value,
                            hdi_factor *f, hd_error *e) {
     hdi_values v;
@@ -20660,8 +20654,7 @@ static hd_status hdi_elim_invert(hdi_elim *m, const hdi_elim_sums *sums, hd_erro
     return hdi_scope_end(&s);
 }
 
-/* out [n] = the diagonal of the inverse of a factor, by pivots. coef [width]: of its parts, as hdi_elim_coef
- * has them. */
+/* out [n] = the diagonal of a factor's inverse, by pivots. coef [width]: of its parts, see hdi_elim_coef. */
 static hd_status hdi_elim_inverse_diagonal(const hdi_elim *m, hdi_factor *f, const double *coef, double *out,
                                            hd_error *e) {
     hdi_inverse z;
@@ -20842,8 +20835,7 @@ static hd_status hdi_lanczos_bound(hdi_lanczos *z, double t, double *bound, hd_e
         z->z0[i] = i == 0;
         z->z1[i] = i == m - 1;
     }
-    if (!hdi_tridiag_eigen(z->d, z->e, z->z0, z->z1, m))
-        return hdi_lanczos_failed(e);
+    if (!hdi_tridiag_eigen(z->d, z->e, z->z0, z->z1, m)) return hdi_lanczos_failed(e);
     for (i = 0; i < m; i++) {
         least = hdi_min(least, z->d[i]);
         most = hdi_max(most, fabs(z->d[i]));
@@ -20904,8 +20896,7 @@ static void hdi_lanczos_start(hdi_lane *lane, int32_t n, double f0_norm) {
     z->m = 0;
 }
 
-/* One step from v_j, c = B v_j, c_old = B v_(j-1) to the next vectors, and alpha_j, beta_(j+1). w [n] and
- * mass [3 n]: work. */
+/* A step from v_j, c = B v_j, c_old = B v_(j-1) to the next, and alpha_j, beta_(j+1). w, mass: [n], [3 n]. */
 static hd_status hdi_lanczos_step(const hdi_lanczos_task *task, hdi_lanczos *z, double *HDI_RESTRICT w,
                                   double *mass, hd_error *e) {
     const hd_laplacian *lap = task->lap;
@@ -21265,8 +21256,7 @@ static hd_status hdi_silan_step(hdi_silan *z, hd_context *ctx, hd_error *e) {
     hdi_sweep s;
     int64_t i;
     int32_t r;
-    if (!z->v[j + 1])
-        z->v[j + 1] = HDI_NEW(ctx, double, count, e);
+    if (!z->v[j + 1]) z->v[j + 1] = HDI_NEW(ctx, double, count, e);
     if (!z->v[j + 1]) return e->status;
     memcpy(w, z->c, HDI_CAST(size_t, count) * sizeof *w);
     s = hdi_sweep_open(&z->m->shifted, wide, w, z->work);
@@ -21320,8 +21310,7 @@ static int hdi_silan_eigen(const hdi_silan *z, int32_t r, int32_t m, int32_t p, 
     return hdi_tridiag_eigen(d, off, x, y, m);
 }
 
-/* exp(-s (1/mu - 1)/g) for an eigenvalue mu of T in (0, 1]. Tiny ones are rounding, and belong to modes that
- * are gone. */
+/* exp(-s (1/mu - 1)/g) for an eigenvalue mu of T in (0, 1]. Tiny ones are rounding of modes that are gone. */
 static double hdi_silan_decay(double mu, double s_over_g) {
     if (mu > 1e-15) return exp(-s_over_g * hdi_max(0, 1 / mu - 1));
     return s_over_g > 0 ? 0 : 1;
@@ -21352,8 +21341,7 @@ static double hdi_silan_slope(double a, double fa, double b, double fb, double t
     return x > 0 ? fb * expm1(-x) / d : -fa * expm1(x) / d;   /* from the larger one */
 }
 
-/* What the error bounds of a right-hand side need of T_m: its eigenvalues, and their weights in e_1 and
- * between e_1 and e_m. */
+/* What error bounds need of T_m: its eigenvalues, and their weights in e_1 and between e_1 and e_m. */
 typedef struct hdi_ritz {
     int32_t m;
     double beta, mu[HDI_SILAN_MAX], first[HDI_SILAN_MAX], both[HDI_SILAN_MAX];
@@ -21455,8 +21443,7 @@ static hd_status hdi_silan_places(hdi_silan *z, int32_t count, hd_context *ctx, 
     return e->status;
 }
 
-/* Answers that are summed up in one pass over the basis: of one right-hand side at several times, or of
- * several at one time. */
+/* Answers summed up in one pass over the basis: of one right-hand side at several times, or the reverse. */
 typedef struct hdi_silan_sum {
     int32_t count;
     const double *y[HDI_SILAN_WIDE];   /* [steps] coefficients of each */
@@ -21701,8 +21688,7 @@ static void hdi_ground_components(const hd_laplacian *lap, char *loose) {
             sum += lap->L.val[p];
             size += fabs(lap->L.val[p]);
         }
-        if (fabs(sum) > hdi_row_terms(lap, i) * DBL_EPSILON * size)
-            loose[lap->component[i]] = 0;
+        if (fabs(sum) > hdi_row_terms(lap, i) * DBL_EPSILON * size) loose[lap->component[i]] = 0;
     }
 }
 
@@ -21824,8 +21810,7 @@ static hd_status hdi_ground_make(hdi_elim *m, hdi_ground *g, hd_error *e) {
     return hdi_scope_end(&s);
 }
 
-/* The step of the derivative, relative to the smallest eigenvalue that is not zero. Its error is the square
- * of this. */
+/* The step of the derivative, relative to the smallest eigenvalue but zero. Its error is this squared. */
 #define HDI_GROUND_STEP 1e-9
 
 /* form: diag of G B G without the part of the means. mean: G b, and the bound on its error. */
@@ -22258,8 +22243,7 @@ static hd_status hdi_spec_make(hdi_spec *s, hdi_elim *m, int32_t count, double t
     if (s->slab_of) s->T = HDI_NEW(s->ctx, double, 3 * most * most + 5 * most, e);
     if (s->T) s->w = HDI_NEW(s->ctx, double, 3 * n * wide, e);
     if (s->w) s->sweep = HDI_NEW(s->ctx, double, hdi_sweep_size(&m->sym, 1, HDI_SPEC_WIDE), e);
-    if (s->sweep)
-        s->h = HDI_NEW(s->ctx, double, h * HDI_CAST(uint64_t, hdi_spec_chunks(s->n) + 1), e);
+    if (s->sweep) s->h = HDI_NEW(s->ctx, double, h * HDI_CAST(uint64_t, hdi_spec_chunks(s->n) + 1), e);
     if (s->h) s->group = HDI_NEW(s->ctx, double, 2 * group + 2 * n, e);
     if (e->status < 0) return e->status;
     s->residual = s->value + n;
@@ -22302,8 +22286,7 @@ static void hdi_spec_dots(const hdi_spec *s, hdi_slab_pass p, double *h) {
     p.h = s->part;
     hdi_parallel(s->ctx, p.n_chunks, hdi_slab_dots_task, &p);
     for (i = 0; i < size; i++) h[i] = -s->part[i];
-    for (c = 1; c < p.n_chunks; c++)
-        for (i = 0; i < size; i++) h[i] -= s->part[c * size + i];
+    for (c = 1; c < p.n_chunks; c++) for (i = 0; i < size; i++) h[i] -= s->part[c * size + i];
 }
 
 static void hdi_spec_add(const hdi_spec *s, hdi_slab_pass p, double *h, int copy) {
@@ -22542,8 +22525,7 @@ static void hdi_spec_take(hdi_spec *s) {
     double C[HDI_SPEC_WIDE * HDI_SPEC_WIDE] = {0};
     for (q = 0; q < HDI_SPEC_WIDE; q++)
         if (s->couple[9 * q] > 0) from[n++] = q;
-    for (i = 0; i < n; i++)
-        for (k = 0; k < s->width; k++) C[8 * i + k] = s->couple[8 * from[i] + k];
+    for (i = 0; i < n; i++) for (k = 0; k < s->width; k++) C[8 * i + k] = s->couple[8 * from[i] + k];
     memcpy(s->couple, C, sizeof C);
     for (i = 0; i < n; i++) {                    /* pack to the left */
         double *w = s->w, *bw = s->bw;
@@ -22768,8 +22750,7 @@ static double hdi_spec_measure(hdi_spec *s, const double *value, const double *x
     hdi_spec_mass(s, x, bx);
     hdi_spec_residuals(s, value, x, bx, s->tmp);
     hdi_wide_norms(s->tmp, s->m->weight, s->n, HDI_SPEC_WIDE, norm);
-    for (r = 0; r < HDI_SPEC_WIDE; r++)
-        worst = hdi_max(worst, norm[r] / hdi_max(fabs(value[r]), s->unit));
+    for (r = 0; r < HDI_SPEC_WIDE; r++) worst = hdi_max(worst, norm[r] / hdi_max(fabs(value[r]), s->unit));
     return worst;
 }
 
@@ -22806,8 +22787,7 @@ static void hdi_spec_polish(hdi_spec *s, double *x, int32_t n) {
     for (i = 0; i < size; i++) x[i] -= i % 8 < n ? s->w[i] : 0;
 }
 
-/* The same while residuals are too large, for the eigenvalues of block x. A step that makes them larger is
- * taken back. */
+/* The same while residuals are too large, for the eigenvalues of block x. Steps that worsen it are undone. */
 static void hdi_spec_polish_all(hdi_spec *s, const double *value, double *x, double *bx, int32_t n) {
     double norm[HDI_SPEC_WIDE], worst = hdi_spec_measure(s, value, x, bx, norm), now;
     int32_t tries;
@@ -22833,8 +22813,7 @@ static void hdi_spec_settle(hdi_spec *s, double *x, double *bx, int32_t at, int3
     hdi_spec_mass(s, x, bx);
     hdi_spec_add(s, hdi_spec_pass(s, slab, at, n, x, 1), NULL, 1);
     hdi_spec_dots(s, hdi_spec_pass(s, slab, at, n, bx, 1), h);
-    for (q = 0; q < n; q++)
-        for (r = 0; r < n; r++) G[8 * q + r] = h[8 * q + r];
+    for (q = 0; q < n; q++) for (r = 0; r < n; r++) G[8 * q + r] = h[8 * q + r];
     for (q = 0; q < HDI_SPEC_WIDE; q++) norm[q] = scale[q] = 1;
     (void)hdi_spec_cholesky(G, R, scale, norm, NULL);
     job.w = x;
@@ -22913,8 +22892,7 @@ static hd_status hdi_spec_constants(hdi_spec *s, int32_t most, hd_error *e) {
         for (i = 0; i < s->n; i++) {
             const int32_t c = s->lap->component[i], at = col[c] - k;
             if (col[c] < 0 || at < 0 || at >= cols) continue;
-            hdi_slab_at(slab, i / HDI_SPEC_TILE, at)[i % HDI_SPEC_TILE] =
-                1 / sqrt(s->lap->component_mass[c]);
+            hdi_slab_at(slab, i / HDI_SPEC_TILE, at)[i % HDI_SPEC_TILE] = 1 / sqrt(s->lap->component_mass[c]);
         }
         for (i = 0; i < cols; i++) hdi_spec_enter(s, 0, 0, i);
     }
@@ -23717,8 +23695,8 @@ typedef struct hdi_heat_order {
     hdi_ground ground;
 } hdi_heat_order;
 
-/* How a call goes on that exceeded the byte limit: without what is optional, that is eigenpairs and poles that
- * times share; besides by the direct method with the fewest poles. */
+/* How a call goes on that exceeded the byte limit: without what is optional, that is eigenpairs and poles
+ * that times share; besides by the direct method with the fewest poles. */
 enum { HDI_SPARE_OPTIONS = 1, HDI_SPARE_POLES };
 
 struct hd_heat {
@@ -23917,14 +23895,6 @@ static double hdi_heat_drift(const hd_laplacian *lap, double *sum) {
     return drift;
 }
 
-static void hdi_heat_free_lanes(hd_heat *heat) {
-    int32_t i;
-    for (i = 0; i < heat->n_lanes; i++) hdi_lane_free(heat->lane + i, heat->ctx);
-    hdi_free(heat->ctx, heat->lane);
-    heat->lane = NULL;
-    heat->n_lanes = 0;
-}
-
 /* Makes the plan have n lanes, without their arrays. */
 static hd_status hdi_heat_seats(hd_heat *heat, int32_t n, hd_error *e) {
     hdi_lane *lane;
@@ -24002,9 +23972,14 @@ static void hdi_heat_drop(hd_heat *heat) {
     if (heat->other) hdi_elim_drop(&heat->other->elim);
 }
 
-/* Frees what poles make again when it is needed; the analyses and the copy of the pair to iterate on stay. */
-static void hdi_heat_shed(hd_heat *heat) {
-    hdi_heat_free_lanes(heat);
+/* Frees what is made again when it is needed, but the analyses and the copy of the pair to iterate on. pairs:
+ * eigenpairs, too. */
+static void hdi_heat_shed(hd_heat *heat, int pairs) {
+    int32_t i;
+    for (i = 0; i < heat->n_lanes; i++) hdi_lane_free(heat->lane + i, heat->ctx);
+    hdi_free(heat->ctx, heat->lane);
+    heat->lane = NULL;
+    heat->n_lanes = 0;
     hdi_free(heat->ctx, heat->batch_room);
     heat->batch_room = NULL;
     heat->batch_doubles = 0;
@@ -24013,18 +23988,13 @@ static void hdi_heat_shed(hd_heat *heat) {
     heat->silan = NULL;
     if (HDI_HAS_DIAGONAL) hdi_ground_free(&heat->ground, heat->ctx);
     if (HDI_HAS_DIAGONAL && heat->other) hdi_ground_free(&heat->other->ground, heat->ctx);
+    if (HDI_HAS_MODES && pairs) hdi_modes_free(&heat->modes, heat->ctx);
     hdi_heat_drop(heat);
 }
 
-/* The same with the eigenpairs. */
-static void hdi_heat_shed_all(hd_heat *heat) {
-    hdi_heat_shed(heat);
-    if (HDI_HAS_MODES) hdi_modes_free(&heat->modes, heat->ctx);
-}
-
-/* And with the analyses. */
+/* The same with the analyses. */
 static void hdi_heat_free_factors(hd_heat *heat) {
-    hdi_heat_shed_all(heat);
+    hdi_heat_shed(heat, 1);
     hdi_elim_free(&heat->elim);
     if (heat->other) hdi_elim_free(&heat->other->elim);
     hdi_free(heat->ctx, heat->other);
@@ -24050,16 +24020,14 @@ static hd_status hdi_heat_analysed_as(hd_heat *heat, int light, hd_error *e) {
 /* The same in the order for all but few columns. */
 static hd_status hdi_heat_analysed(hd_heat *heat, hd_error *e) { return hdi_heat_analysed_as(heat, 0, e); }
 
-/* Checks a right-hand side. The absolute value of its largest part is between 2^(*exponent - 1) and
- * 2^*exponent. */
+/* Checks a right-hand side. Its largest part is between 2^(*exponent - 1) and 2^*exponent in size. */
 static hd_status hdi_solve_rhs(const hd_laplacian *lap, const hd_c64 *rhs, int *exponent, hd_error *e) {
     double largest = 0;
     int32_t v;
     for (v = 0; v < lap->n; v++) {
         if (!hdi_cfinite(rhs[v]))
             return hdi_fail_row(e, HD_ERR_NOT_FINITE, "solve: a value of the right-hand side is not finite",
-                                v,
-                                -1, hdi_finite(rhs[v].re) ? rhs[v].im : rhs[v].re);
+                                v, -1, hdi_finite(rhs[v].re) ? rhs[v].im : rhs[v].re);
         if (lap->row[v] >= 0) largest = hdi_max(largest, hdi_max(fabs(rhs[v].re), fabs(rhs[v].im)));
     }
     frexp(largest, exponent);
@@ -24067,8 +24035,7 @@ static hd_status hdi_solve_rhs(const hd_laplacian *lap, const hd_c64 *rhs, int *
 }
 
 /* The right-hand side into the lane, near one so that no norm underflows or overflows, by rows and without
- * its constants, which go to x by vertices: b - B mean(b), and mean(b)/theta. Returns its norm, constants
- * included. */
+ * its constants, which go to x by vertices: b - B mean(b), and mean(b)/theta. Returns the norm with these. */
 static double hdi_shifted_load(const hd_heat *heat, const hd_c64 *rhs, int exponent, hd_c64 theta,
                                hdi_lane *lane, hd_c64 *x) {
     const hd_laplacian *lap = heat->lap;
@@ -24179,8 +24146,7 @@ static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const 
  * Constants were fitted to meshes of 2K to 10K vertices with t from 0.1 h^2 to 1e5 h^2: balls, tori, grids
  * with jitter, strips, unevenly sampled ones, noise, thin triangles made Delaunay, points. There the model
  * has 0.6 to 2.8 times the steps that Lanczos takes, and 0.4 to 2.8 times those of COCG; 0.6 to 1.7 times
- * where triangles are fair. Thin triangles whose obtuse angles are left may take ten times more, or never
- * end. */
+ * where triangles are fair. Thin triangles with obtuse angles may take ten times more, or never end. */
 #define HDI_LANCZOS_GROWTH 3.3
 #define HDI_LANCZOS_LOWEST 0.22
 #define HDI_LANCZOS_LEAST 3
@@ -24255,8 +24221,7 @@ static double hdi_lanczos_steps(const hd_heat *heat, double t) {
     return HDI_LANCZOS_LEAST + hdi_min(least, HDI_CAST(double, heat->source->n_active));
 }
 
-/* Of all poles together. Solutions at hand give a good start, so that more poles do not take as many times
- * more steps. */
+/* Of all poles together. Solutions at hand give a good start: twice the poles do not take twice as many. */
 static double hdi_cocg_steps(const hd_heat *heat, double t, int32_t poles) {
     static const double hdi_steps_of[] = {1, 5.5, 5, 2, 1.4, 1};   /* by hd_precond */
     const hdi_steps_scales *s = &heat->scales;
@@ -24387,7 +24352,7 @@ typedef struct hdi_heat_call {
     hd_method method;
     double cost;                 /* of this method by the model, where auto picks by it; else 0 */
     int32_t by_habit;            /* auto picks direct because of the calls before */
-    int32_t forced;              /* auto takes iterations because of the byte limit, which they may not bear */
+    int32_t forced;              /* auto takes iterations because of the byte limit */
     hdi_rate rate;
     hd_solver solver;
     const hd_laplacian *lap;     /* the copy of the pair that the method works on; the caller's for t = 0 */
@@ -24407,8 +24372,7 @@ typedef struct hdi_heat_call {
     int32_t stop;
 } hdi_heat_call;
 
-/* t for the scaled pair, kept within the range of doubles: any t as large, or as small, gives the same
- * answers. */
+/* t for the scaled pair, within the range of doubles: any t as large, or as small, has the same answers. */
 static double hdi_heat_scaled(const hd_heat *heat, double t) {
     return t > 0 ? hdi_max(1e-300, hdi_min(t * heat->scale, 1e300)) : 0;
 }
@@ -24610,8 +24574,7 @@ static hd_pole_kind hdi_heat_kind(const hdi_heat_call *h) {
            : h->diagonal ? HD_POLES_DIAGONAL : HD_POLES_KERNEL;
 }
 
-/* Are the factors of the poles there? The degree that a field takes by default is not known yet: it is taken
- * to be that of the last. */
+/* Are the factors of the poles there? A field's default degree, not known yet, is taken as the last. */
 static int hdi_heat_at_hand(const hdi_heat_call *h) {
     const hdi_elim *m = hdi_heat_full(h->heat);
     if (!m->filled || m->t != h->t || h->n_times > 1) return 0;
@@ -24676,8 +24639,7 @@ static int hdi_heat_light(const hdi_heat_call *h) {
     hdi_windows w;
     double more;
     if (order.kind != HD_ORDERING_AUTO || hdi_order_kind(&order, &lap->L) != HD_ORDERING_NESTED_DISSECTION ||
-        h->ask.k > HDI_LIGHT_COLUMNS || heat->ctx->byte_limit)
-        return 0;
+        h->ask.k > HDI_LIGHT_COLUMNS || heat->ctx->byte_limit) return 0;
     w = hdi_krylov_windows(f, n, h->times[h->n_times - 1] / h->times[0]);
     more = w.n * HDI_DEGREE_FLOPS * wide / HDI_RATE_FRONTS +
            h->ask.k * w.steps * hdi_krylov_late(h) * 16 * HDI_DEGREE_NNZ / HDI_RATE_SWEEP;
@@ -24748,8 +24710,7 @@ static void hdi_heat_cheapest(hdi_heat_call *h, const hdi_cost *c, double room) 
 
 /* Have calls at this t cost as much as the factors of the poles, and would these be faster from now on?
  * Whoever buys when the rent paid amounts to the price never pays more than twice the least (ski rental;
- * Karlin, Manasse, Rudolph, Sleator 1988). The model counts, never a clock, so the same calls take the same
- * methods everywhere. */
+ * Karlin, Manasse, Rudolph, Sleator 1988). The model counts, not a clock: methods are the same everywhere. */
 static int hdi_heat_habit(const hdi_heat_call *h, const hdi_cost *c, double room) {
     if (!HDI_HAS_POLE_FACTORS || h->method == HD_METHOD_DIRECT || c->direct_bytes > room) return 0;
     return h->n_times == 1 && h->t == h->heat->habit_t && h->heat->habit_spent >= c->factors &&
@@ -24765,8 +24726,7 @@ static void hdi_heat_spend(hdi_heat_call *h) {
     if (h->method != HD_METHOD_DIRECT) heat->habit_spent += h->cost;
 }
 
-/* Picks the method by the model. The analysis is made only where a factorisation could cost less than
- * iterations. */
+/* Picks the method by the model. The analysis is made only where a factorisation could cost least. */
 static hd_status hdi_heat_pick_by_cost(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     /* without iterations there is no retreat */
@@ -24784,7 +24744,8 @@ static hd_status hdi_heat_pick_by_cost(hdi_heat_call *h) {
         c = hdi_heat_cost(h);
         hdi_heat_cheapest(h, &c, room);
     }
-    h->forced |= room < HUGE_VAL && h->method == HD_METHOD_ITERATIVE && c.iterative > hdi_min(c.direct, c.krylov);
+    h->forced |= room < HUGE_VAL && h->method == HD_METHOD_ITERATIVE &&
+        c.iterative > hdi_min(c.direct, c.krylov);
     h->by_habit = hdi_heat_habit(h, &c, room);
     if (h->by_habit) {
         h->method = HD_METHOD_DIRECT;
@@ -24829,8 +24790,8 @@ static int hdi_heat_equal_asks(const hd_heat *heat, double t) {
 }
 
 /* Is t (scaled) so large that only the means of the components are left? 1 or 0; errors are in e. What tells
- * is one number: the factor behind it is not kept, so that there is room for those of poles. Where there is no
- * such factor, or no room for it, all goes on as ever. */
+ * is one number; its factor is not kept, so that there is room for those of poles. Where there is no such
+ * factor, or no room for it, all goes on as ever. */
 static int hdi_heat_equal(hd_heat *heat, double t, hd_error *e) {
     hdi_ground *g = &heat->ground;
     if (!hdi_heat_equal_asks(heat, t) || !heat->elim.ctx) return 0;
@@ -24919,8 +24880,7 @@ static void hdi_heat_measure(const hd_laplacian *lap, hdi_lane *lane) {
 #define HDI_UNIFORM_SHARE 1e-9
 #define HDI_UNIFORM_SHARE_DIRECT 2e-9
 
-/* Degree of a uniform set. Odd ones cost as much as the next even one; direct, 9 fills a pack and the real
- * factor. */
+/* Degree of a uniform set. Odd ones cost as much as the next even one; 9 fills a pack and the real factor. */
 static int32_t hdi_uniform_degree(const hd_laplacian *lap, const hdi_lane *lane, int direct) {
     const double share = direct ? HDI_UNIFORM_SHARE_DIRECT : HDI_UNIFORM_SHARE;
     const double most = share * sqrt(hdi_lane_means_norm2(lane, lap));
@@ -25000,8 +24960,7 @@ static int hdi_lane_bounded(const hdi_heat_call *h) {
     return h->method == HD_METHOD_DIRECT && h->t > 0 && h->heat->elim.set.a0 == 0 && h->lap->b_ratio > 0;
 }
 
-/* Puts a source of several vertices into x by rows; those without rows leave nothing. Returns the norm of
- * diag(B)^-1/2 x. */
+/* A source of several vertices into x by rows, for those that have one. Returns |diag(B)^-1/2 x|. */
 static double hdi_lane_terms(const hd_laplacian *lap, const hdi_terms *c, double *x) {
     double norm = 0;
     int32_t q;
@@ -25201,8 +25160,7 @@ static void hdi_heat_store(const hdi_heat_call *h, int32_t q, const hdi_lane *la
     }
 }
 
-/* The degree of a uniform set that serves all fields. Columns get the highest degree, because their constants
- * are small. */
+/* The degree of a uniform set for all fields. Columns, whose constants are small, get the highest one. */
 static hd_status hdi_heat_degree(const hdi_heat_call *h, int32_t *degree) {
     const int fields = hdi_query_fields(h->ask.query);
     int32_t q, r;
@@ -25230,8 +25188,7 @@ static hd_status hdi_heat_set(const hdi_heat_call *h, hd_rational *set) {
         return HD_OK;
     }
     if (!o->degree && !h->heat->exacting && kind == HD_POLES_UNIFORM &&
-        h->heat->spare != HDI_SPARE_POLES && hdi_heat_degree(h, &degree) < 0)
-        return h->e->status;
+        h->heat->spare != HDI_SPARE_POLES && hdi_heat_degree(h, &degree) < 0) return h->e->status;
     if (hdi_rational_get(set, kind, degree, h->e) >= 0 && h->rate) hdi_rational_rate(set);
     return h->e->status;
 }
@@ -25647,8 +25604,7 @@ static hd_status hdi_krylov_basis(hdi_heat_call *h, int32_t n, int32_t q0, int32
     return hdi_silan_run(z, h->times + q0, q1 - q0, heat->opts.tol, fixed, heat->ctx, h->e);
 }
 
-/* The answers of n items at time q, whose sums are in place p and after in a. counted: their steps have been
- * told of already. */
+/* The answers of n items at time q, whose sums are in place p and after in a. counted: steps are told. */
 static hd_status hdi_krylov_store(hdi_heat_call *h, int32_t n, int32_t q, const hdi_silan_sum *a, int32_t p,
                                   int counted, hd_status status) {
     const hd_heat *heat = h->heat;
@@ -25660,19 +25616,16 @@ static hd_status hdi_krylov_store(hdi_heat_call *h, int32_t n, int32_t q, const 
         if (lane->skip) continue;
         if (a->u[p + i] != lane->u) memcpy(lane->u, a->u[p + i], bytes);
         if (hdi_silan_answer(heat->silan, i, h->times[q] - heat->silan->from, a->y[p + i], heat->drift, lane,
-                             h->e) < 0)
-            return h->e->status;
+                             h->e) < 0) return h->e->status;
         if (counted) lane->steps = 0;
         if (lane->off.solver > heat->opts.tol * lane->u_norm ||
-            lane->off.rounding > heat->limit * lane->u_norm)
-            lane->status = HD_WARN_ACCURACY;
+            lane->off.rounding > heat->limit * lane->u_norm) lane->status = HD_WARN_ACCURACY;
     }
     h->now = h->time_column ? h->time_column[q] : h->now;
     return hdi_heat_store_some(h, n);
 }
 
-/* The answers of n items at the times [q0, q1), from their basis: as many in one pass over it as there are
- * places in a sum. */
+/* The answers of n items at the times [q0, q1), from their basis: each pass as many as a sum has places. */
 static hd_status hdi_krylov_answers(hdi_heat_call *h, int32_t n, int32_t q0, int32_t q1, hd_status status) {
     hd_context *ctx = h->heat->ctx;
     hdi_silan *z = h->heat->silan;
@@ -25968,16 +25921,14 @@ static int hdi_modes_find(hd_heat *heat, int32_t count, hd_error *e) {
     hdi_spec_goal goal;
     hdi_modes_free(x, heat->ctx);
     if (hdi_heat_analysed(heat, e) < 0 ||
-        HDI_MODES_SURE * hdi_modes_need(heat, count) > hdi_bytes_left(heat->ctx))
-        return 0;
+        HDI_MODES_SURE * hdi_modes_need(heat, count) > hdi_bytes_left(heat->ctx)) return 0;
     goal.below = HUGE_VAL;
     goal.count = count;
     x->s.lap = lap;
     x->s.context = heat->ctx;
     if (hdi_spec_run(&heat->elim, &goal, HDI_MODES_RESIDUAL, &x->s, e) >= 0 && x->s.proven &&
         x->s.n_constant == (lap->conserves ? lap->n_components : 0) && hdi_modes_measure(heat, e) >= 0 &&
-        x->off_gram <= HDI_MODES_ORTHO)
-        return 1;
+        x->off_gram <= HDI_MODES_ORTHO) return 1;
     hdi_modes_free(x, heat->ctx);
     x->barred = e->status != HD_ERR_MEMORY && e->status != HD_ERR_MEMORY_LIMIT &&
                 e->status != HD_ERR_CANCELLED && e->status != HD_ERR_ARGUMENT;   /* of progress */
@@ -26000,8 +25951,7 @@ static int hdi_modes_enough(hd_heat *heat, double t, double depth, int32_t most,
     return 0;
 }
 
-/* What is left of the pairs at time t, and what that is off by per |c_i| and |Q y|: see the sums in which
- * they are used. */
+/* What is left of the pairs at time t, and what that is off by per |c_i| and |Q y|: see their sums. */
 typedef struct hdi_decay {
     int32_t first;               /* of the pairs that are not constants */
     double *weight, *off;        /* [count] exp(-t (theta_i - low)); bounds on the errors per |c_i| */
@@ -26181,8 +26131,7 @@ static void hdi_fading_task(void *arg, int64_t begin, int64_t end) {
     for (i = begin; i < end; i++) a->u[i] = hdi_decayed(a->decay, a->u[i]);
 }
 
-/* What the coefficients of a field sum up to: |c|^2, |w c|^2, the sum of |r_i| min(t, ...) |c_i|, and s(c)
- * but for its last term. */
+/* Sums of a field's coefficients: |c|^2, |w c|^2, of |r_i| min(t, ...) |c_i|, and s(c) but its last term. */
 typedef struct hdi_fading_size { double found, kept, inner, side; } hdi_fading_size;
 
 /* The bounds of a lane's answer. */
@@ -26254,8 +26203,7 @@ static hd_status hdi_fading_answer(hdi_heat_call *h, double t) {
         most = hdi_fading_reach(&heat->modes, &x, work + 3 * HDI_CAST(int64_t, count));
         for (h->batch = 0; h->batch < h->ask.k; h->batch++) {
             if (hdi_progress(heat->ctx, "solve", HDI_CAST(double, h->batch) / h->ask.k, h->e) < 0 ||
-                hdi_heat_load(h, h->batch, h->lane) < 0)
-                break;
+                hdi_heat_load(h, h->batch, h->lane) < 0) break;
             if (!h->lane->skip) hdi_fading_lane(h, &x, &most, h->lane, work);
             if (hdi_heat_store_some(h, 1) < 0) break;
         }
@@ -26276,8 +26224,7 @@ static void hdi_fading_again(hdi_heat_call *h, const hdi_fading_start *from) {
     h->batch = 0;                                /* the fields are as they were: iterations may take over */
     h->lap = h->heat->source;
     if (!h->ask.list) return;
-    h->ask.list->ledger[h->now] =
-        hdi_ledger_begin(HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, 0);
+    h->ask.list->ledger[h->now] = hdi_ledger_begin(HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, 0);
 }
 
 /* The request at one time from at most `most` pairs, which are found if need be: more of them where those
@@ -26290,8 +26237,7 @@ static int hdi_fading_pairs(hdi_heat_call *h, const hdi_fading_start *from, int3
         if (!hdi_modes_enough(h->heat, t, depth, most, h->e)) return there && h->e->status >= 0;
         hdi_fading_again(h, from);
         if (hdi_fading_answer(h, t) < 0 || hdi_modes_good(h->heat, t, h->rep) ||
-            h->rep->error_rational <= HDI_MODES_TOL)
-            break;
+            h->rep->error_rational <= HDI_MODES_TOL) break;
         depth += log(h->rep->error_rational / HDI_MODES_TOL);
         there = hdi_finite(depth);
         if (!there) break;
@@ -26299,8 +26245,7 @@ static int hdi_fading_pairs(hdi_heat_call *h, const hdi_fading_start *from, int3
     return 1;
 }
 
-/* Fields that their answers are to overwrite are copied, so that they can be asked for again. Returns 0 where
- * there is no room. */
+/* Copies fields that their answers would overwrite, to ask for them again. Returns 0 if there is no room. */
 static int hdi_fading_keep(hdi_heat_call *h) {
     const size_t n = HDI_CAST(size_t, h->heat->source->n);
     double *copy;
@@ -26320,9 +26265,9 @@ static int hdi_fading_keep(hdi_heat_call *h) {
 
 /* ---- the run ---- */
 
-/* Goes on in another way where the byte limit ended one: from factors that auto chose to iterations; where these
- * fail, or the direct method is asked for, to the fewest poles, with all that can be made again freed before.
- * Returns 0 where there is no other way. */
+/* Goes on in another way where the byte limit ended one: from factors that auto chose to iterations; where
+ * these fail, or the direct method is asked for, to the fewest poles, with all that can be made again freed
+ * before. Returns 0 where there is no other way. */
 static int hdi_heat_retreat(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     const int over = hdi_over_limit(heat->ctx, h->e), automatic = heat->opts.method == HD_METHOD_AUTO;
@@ -26338,8 +26283,9 @@ static int hdi_heat_retreat(hdi_heat_call *h) {
             heat->no_factors = 1;
             heat->no_factors_limit = heat->ctx->byte_limit;
         }
-    } else if (HDI_HAS_POLE_FACTORS && (automatic ? h->forced && failed : over && h->method == HD_METHOD_DIRECT)) {
-        hdi_heat_shed_all(heat);
+    } else if (HDI_HAS_POLE_FACTORS &&
+               (automatic ? h->forced && failed : over && h->method == HD_METHOD_DIRECT)) {
+        hdi_heat_shed(heat, 1);
         hdi_heat_free_iterative(heat);
         heat->spare = HDI_SPARE_POLES;
     } else {
@@ -26362,7 +26308,7 @@ static hd_status hdi_heat_sparing(hdi_heat_call *h, hdi_way way, void *what) {
     while (h->s.n > before.s.n) hdi_free(heat->ctx, h->s.block[--h->s.n]);
     *h = before;
     *h->rep = rep;                               /* with its error, which is none */
-    hdi_heat_shed_all(heat);
+    hdi_heat_shed(heat, 1);
     h->lane = NULL;
     heat->spare = HDI_SPARE_OPTIONS;
     (void)way(h, what);
@@ -26615,14 +26561,6 @@ static hd_status hdi_heat_one_time(hdi_heat_call *h, int32_t q, int *begun) {
     return one.status;
 }
 
-/* The times that are not done one by one. */
-static hd_status hdi_heat_each_time(hdi_heat_call *h, const char *done, int begun) {
-    int32_t q;
-    for (q = 0; q < h->ask.n_times; q++)
-        if (!(done && done[q]) && hdi_heat_one_time(h, q, &begun) < 0) break;
-    return h->rep->status;
-}
-
 /* Answers many times with one or a few krylov bases, where that is the method. Returns 0 where it is not. */
 static int hdi_heat_together(hdi_heat_call *h, const char *done) {
     hd_heat *heat = h->heat;
@@ -26661,7 +26599,9 @@ static hd_status hdi_heat_several(hdi_heat_call *h) {
     else if (begun) *h->rep = late;
     if (whole && !(HDI_HAS_MODES && hdi_fading(h) && h->rep->error_bound > HDI_MODES_HELP)) return HD_OK;
     if (whole) *h->rep = late;
-    return hdi_heat_each_time(h, done, begun);
+    for (q = 0; q < h->ask.n_times; q++)
+        if (!(done && done[q]) && hdi_heat_one_time(h, q, &begun) < 0) break;
+    return h->rep->status;
 }
 
 /* Runs a request whose arguments are checked. */
@@ -27118,8 +27058,7 @@ static void hdi_inverse_tell(hdi_heat_call *h) {
     h->rep->factor_nnz = h->heat->elim.sym.nnz;
 }
 
-/* Columns within another call: k of them at the (scaled) time t, with the factors that the plan holds or
- * makes. */
+/* Columns within another call: k of them at the (scaled) time t, with factors the plan holds or makes. */
 typedef struct hdi_columns {
     double t;
     hd_kernel kernel;
@@ -27214,8 +27153,7 @@ static double hdi_own_rounding(const hd_heat *heat, const hd_rational *set, doub
     return HDI_PROBE_OWN * seen + closeness * most;
 }
 
-/* A bound of the largest entry of diag(B^-1). A matrix whose B norm is x has entries of at most this times
- * x. */
+/* A bound of the largest entry of diag(B^-1). A matrix whose B norm is x has entries below x times this. */
 static double hdi_largest_spread(const hd_laplacian *lap) {
     double most = 0;
     int32_t i;
@@ -27249,8 +27187,7 @@ static hdi_probe hdi_probe_rows(const hd_laplacian *lap, const double *k, int32_
     return x;
 }
 
-/* Solves for the columns of these rows by the poles of set at the call's time. What is found stays in the
- * plan's lanes. */
+/* Solves for the columns of these rows by the poles of set at the call's time, into the plan's lanes. */
 static hd_status hdi_probe_run(hdi_heat_call *h, const hdi_probe *x, hd_kernel kernel,
                                const hd_rational *set) {
     const hd_rational own = *set;                /* it may be the plan's, which the call sets anew */
@@ -27489,8 +27426,7 @@ static void hdi_diagonal_plain(const hdi_elim *m, hdi_entries *x, const hdi_diag
     }
 }
 
-/* Rounding is relative to the value. A function of the caller's may vanish, and its rounding is relative to
- * the resolvent. */
+/* Rounding is relative to the value; for a function of the caller's, which may vanish, to the resolvent. */
 static void hdi_diagonal_own(const hd_laplacian *lap, hdi_diagonal *d) {
     int32_t i;
     for (i = 0; i < lap->n_active; i++) {
@@ -27530,16 +27466,6 @@ static hd_status hdi_diagonal_probe(hdi_heat_call *h, const hdi_diagonal *d, con
     return hdi_probe_run(h, probe, d->kernel, set);
 }
 
-/* Measures what rounding does to a diagonal by the poles of the plan, relative to size. */
-static hd_status hdi_diagonal_rounding(hdi_heat_call *h, const hdi_diagonal *d, double *rounding) {
-    const hd_rational *set = &h->heat->elim.set;
-    hdi_probe probe;
-    *rounding = 0;
-    if (hdi_diagonal_probe(h, d, set, &probe) < 0) return h->e->status;
-    *rounding = hdi_diagonal_seen(h, d, &probe, set);
-    return HD_OK;
-}
-
 /* The kernel's diagonal at one time with the set for it, on vertices, and its bounds into the report.
  * *relative: the largest of the rational errors relative to the value. */
 static hd_status hdi_diagonal_once(hdi_heat_call *h, hd_kernel kernel, double *out, double *relative) {
@@ -27547,8 +27473,9 @@ static hd_status hdi_diagonal_once(hdi_heat_call *h, hd_kernel kernel, double *o
     hdi_elim *m = &heat->elim;
     const int full = kernel == HD_KERNEL_OPERATOR && heat->source->B;
     hdi_scope scope = hdi_scope_begin(heat->ctx, h->e);
-    double *room, rounding;
+    double *room;
     hdi_diagonal d;
+    hdi_probe probe;
     hdi_entries x;
     int64_t size;
     *relative = 0;
@@ -27569,13 +27496,13 @@ static hd_status hdi_diagonal_once(hdi_heat_call *h, hd_kernel kernel, double *o
         if (full) hdi_diagonal_full(m, &x, &d);
         else hdi_diagonal_plain(m, &x, &d);
         if (m->set.kind == HD_POLES_OWN) hdi_diagonal_own(m->lap, &d);
-        if (hdi_diagonal_rounding(h, &d, &rounding) >= 0) *relative = hdi_diagonal_tell(h, &d, rounding, out);
+        if (hdi_diagonal_probe(h, &d, &m->set, &probe) >= 0)
+            *relative = hdi_diagonal_tell(h, &d, hdi_diagonal_seen(h, &d, &probe, &m->set), out);
     }
     return hdi_scope_end(&scope);
 }
 
-/* The analysis' entries on the pattern of the source's L. The analysis has one of each pair (i,j), (j,i); the
- * other one is the same. */
+/* The analysis' entries on the pattern of the source's L. The analysis has one of (i,j) and (j,i). */
 static void hdi_entries_spread(const hdi_elim *m, const double *k, double unit, double *val) {
     const hdi_symbolic *s = &m->sym;
     const hd_csr *a = &m->source->L;
@@ -27717,7 +27644,7 @@ static hd_status hdi_edges_once(hdi_heat_call *h, double *values, double *ration
 static int hdi_degree_retreat(hd_heat *heat, int32_t *degree, hd_error *e) {
     if (*degree == 0 || !hdi_over_limit(heat->ctx, e)) return 0;
     *degree = 0;
-    hdi_heat_shed(heat);
+    hdi_heat_shed(heat, 0);
     hdi_error_clear(e);
     return 1;
 }
@@ -27759,27 +27686,20 @@ static int hdi_shared_may(const hd_heat *heat) {
     return !heat->poles_asked && !heat->exacting && !heat->spare;
 }
 
-/* Packs that a shared set for a ratio of times takes. Returns 0 where there is no set. */
-static int32_t hdi_shared_packs(double ratio, double tol) {
-    hd_rational set;
-    return hdi_shared_pick(&set, ratio * (1 + 1e-12), tol) ? (set.n_poles + 3) / 4 : 0;
-}
-
-/* How many windows of equal ratio take the fewest packs in all for times in a range of this ratio. *packs:
- * how many those are. */
+/* How many windows of equal ratio take the fewest packs (*packs) for times in a range of this ratio. */
 static int32_t hdi_shared_windows(double ratio, double tol, int32_t most, int32_t *packs) {
     int32_t w, best = 0;
     for (w = 1; w <= most && w <= 64; w++) {
-        const int32_t each = hdi_shared_packs(pow(ratio, 1.0 / w), tol);
-        if (each == 0 || (best > 0 && w * each >= *packs)) continue;
+        hd_rational set;
+        if (!hdi_shared_pick(&set, pow(ratio, 1.0 / w) * (1 + 1e-12), tol)) continue;
+        if (best > 0 && w * ((set.n_poles + 3) / 4) >= *packs) continue;
         best = w;
-        *packs = w * each;
+        *packs = w * ((set.n_poles + 3) / 4);
     }
     return best;
 }
 
-/* Times that share their poles, in terms of those of the first: (t L + tau theta B)^-1 = (t0 L + theta B)^-1
- * / tau. */
+/* Times that share the poles of the first: (t L + tau theta B)^-1 = (t0 L + theta B)^-1 / tau. */
 typedef struct hdi_window {
     int32_t n_times;
     const double *t;             /* [n_times] scaled, ascending */
@@ -27805,17 +27725,16 @@ static void hdi_window_take(hdi_window *w, const hdi_heat_call *h, int32_t q0, i
     w->values = HDI_TAKE_ZERO(s, double, sets * w->n);
 }
 
-static void hdi_window_weights(const hdi_window *w) {
-    const hd_rational *set = w->set;
-    int32_t q, p;
-    for (q = 0; q < w->n_times; q++) {
-        double factor = 1, tau = w->t[q] / w->t[0];
-        const int32_t best = hdi_resolvent_pole(set + q, &factor);
-        hd_c64 *k = w->weight + 2 * HDI_CAST(int64_t, q) * set->n_poles, *g = k + set->n_poles;
-        for (p = 0; p < set->n_poles; p++) {
-            k[p] = hdi_cscale(-hdi_rat_count(set, p) / tau, set[q].a[p]);
-            g[p] = hdi_c(p == best ? factor / tau : 0, 0);
-        }
+/* Weights for k and for (B + tL)^-1 at time q. */
+static void hdi_window_weights(const hdi_window *w, int32_t q, hd_c64 *k, hd_c64 *g) {
+    const hd_rational *set = w->set + q;
+    const double tau = w->t[q] / w->t[0];
+    double factor = 1;
+    const int32_t best = hdi_resolvent_pole(set, &factor);
+    int32_t p;
+    for (p = 0; p < set->n_poles; p++) {
+        k[p] = hdi_cscale(-hdi_rat_count(set, p) / tau, set->a[p]);
+        g[p] = hdi_c(p == best ? factor / tau : 0, 0);
     }
 }
 
@@ -27825,6 +27744,8 @@ static hd_status hdi_window_run(hdi_heat_call *h, const hdi_window *w, double to
     hd_context *ctx = h->heat->ctx;
     hdi_elim_sums sums;
     hd_status status;
+    hd_c64 *k;
+    int32_t q;
     if (h->e->status < 0 || hdi_rational_shared(w->set, w->n_times, w->t, tol, ctx, h->e) < 0)
         return h->e->status;
     h->t = w->t[0];
@@ -27834,7 +27755,8 @@ static hd_status hdi_window_run(hdi_heat_call *h, const hdi_window *w, double to
                                 2 * w->n_times);
     h->set = NULL;
     if (status < 0) return status;
-    hdi_window_weights(w);
+    for (k = w->weight, q = 0; q < w->n_times; k += 2 * w->set->n_poles, q++)
+        hdi_window_weights(w, q, k, k + w->set->n_poles);
     sums.n_sets = 2 * w->n_times;
     sums.weight = w->weight;
     sums.wanted = wanted;
@@ -27900,16 +27822,6 @@ static hd_status hdi_diagonal_window(hdi_heat_call *h, int32_t q0, int32_t q1, d
     return hdi_scope_end(&s);
 }
 
-/* All times, in windows that share their poles. */
-static hd_status hdi_diagonal_windows(hdi_heat_call *h, int32_t n_windows, double *D, size_t ldd) {
-    int32_t w, q0, q1;
-    for (w = 0, q0 = 0; q0 < h->n_times; w++, q0 = q1) {
-        q1 = hdi_window_end(h->times, h->n_times, q0, w, n_windows);
-        if (hdi_diagonal_window(h, q0, q1, D, ldd) < 0) break;
-    }
-    return h->e->status;
-}
-
 /* Do so many packs cost less than so many times one by one? Each of these takes a set of degree 9, that is a
  * pack and a real factor, which costs an eighth of a pack. */
 static int hdi_shared_pays(int32_t packs, int32_t n_times) { return 8 * packs < 9 * n_times; }
@@ -27918,14 +27830,18 @@ static int hdi_shared_pays(int32_t packs, int32_t n_times) { return 8 * packs < 
 static hd_status hdi_diagonal_poles(hdi_heat_call *h, hd_kernel kernel, double *D, size_t ldd,
                                     const char *done) {
     hd_heat *heat = h->heat;
-    int32_t q, n, packs = 0, windows;
+    int32_t q, q1, n, w, packs = 0, windows = 0;
     if (hdi_heat_analysed(heat, h->e) < 0 || hdi_heat_sort_times(h, 1, done) < 0) return h->e->status;
     hdi_inverse_tell(h);
     n = h->n_times;
-    if (kernel == HD_KERNEL_SYMMETRIC && n > 1 && hdi_shared_may(heat)) {
+    if (kernel == HD_KERNEL_SYMMETRIC && n > 1 && hdi_shared_may(heat))
         windows = hdi_shared_windows(h->times[n - 1] / h->times[0], HDI_SHARED_TOL, n, &packs);
-        if (windows > 0 && hdi_shared_pays(packs, n) && !hdi_heat_equal(heat, h->t, h->e))
-            return h->e->status < 0 ? h->e->status : hdi_diagonal_windows(h, windows, D, ldd);
+    if (windows > 0 && hdi_shared_pays(packs, n) && !hdi_heat_equal(heat, h->t, h->e)) {
+        for (w = 0, q = 0; q < n && h->e->status >= 0; w++, q = q1) {
+            q1 = hdi_window_end(h->times, n, q, w, windows);
+            (void)hdi_diagonal_window(h, q, q1, D, ldd);
+        }
+        return h->e->status;
     }
     for (q = 0; q < h->ask.n_times && h->e->status >= 0; q++) {
         if (done && done[q]) continue;
@@ -27957,19 +27873,6 @@ static double hdi_trace_sum(const hd_c64 *w, int32_t n_poles, const double *x, i
     for (p = 0; p < n_poles; p++)
         sum += w[p].re * x[2 * p * stride + i] - w[p].im * x[(2 * p + 1) * stride + i];
     return sum;
-}
-
-/* Weights for K_t and for (B + tL)^-1 at time q; see hdi_window_weights. */
-static void hdi_trace_weights(const hdi_trace *z, int32_t q, hd_c64 *k, hd_c64 *g) {
-    const hd_rational *set = z->w.set + q;
-    const double tau = z->w.t[q] / z->w.t[0];
-    double factor = 1;
-    const int32_t best = hdi_resolvent_pole(set, &factor);
-    int32_t p;
-    for (p = 0; p < set->n_poles; p++) {
-        k[p] = hdi_cscale(-hdi_rat_count(set, p) / tau, set->a[p]);
-        g[p] = hdi_c(p == best ? factor / tau : 0, 0);
-    }
 }
 
 /* Factors at the first time, and the two parts of every pole's inverse. */
@@ -28012,7 +27915,7 @@ static void hdi_trace_probes(const hdi_elim *m, hdi_trace *z) {
     hd_c64 k[HD_MAX_POLES], g[HD_MAX_POLES];
     int32_t i, r, v, set;
     int64_t at;
-    hdi_trace_weights(z, last, k, g);
+    hdi_window_weights(&z->w, last, k, g);
     for (i = 0; i < n; i++) z->last[i] = z->w.set[last].a0 + hdi_trace_sum(k, n_poles, z->diag, n, i);
     for (i = 0, r = -1; i < n; i++)
         if (r < 0 || z->last[i] * lap->b_diag[r] < z->last[r] * lap->b_diag[i]) r = i;
@@ -28056,7 +27959,7 @@ static double hdi_trace_at(hdi_heat_call *h, const hdi_trace *z, int32_t q, hdi_
     double value = set->a0 * lap->n_active, spread = 0, seen = 0;
     hd_c64 k[HD_MAX_POLES], g[HD_MAX_POLES];
     int32_t i, r;
-    hdi_trace_weights(z, q, k, g);
+    hdi_window_weights(&z->w, q, k, g);
     for (i = 0; i < lap->n_active; i++) {
         value += hdi_trace_sum(k, n_poles, z->diag, lap->n_active, i);
         spread += hdi_trace_sum(g, n_poles, z->diag, lap->n_active, i);
@@ -28091,8 +27994,7 @@ static void hdi_trace_note(hdi_heat_call *h, int32_t q, double value, hdi_parts 
     if (bound) bound[q] = hdi_parts_sum(&off);
 }
 
-/* Traces at times q0 to q1 - 1 of the call, sorted, by one set of poles: shared, or that of the options for a
- * single time. */
+/* Traces at times q0 to q1 - 1 of the call, sorted, by one set of poles: shared, or that of the options. */
 static hd_status hdi_trace_window(hdi_heat_call *h, int32_t q0, int32_t q1, double *Z, double *bound) {
     hdi_elim *m = &h->heat->elim;
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
@@ -28213,8 +28115,7 @@ static void hdi_fading_diagonal_note(const hdi_fading_diagonal *a, int32_t i, do
     out[v] = hdi_decayed(x, a->value[i]);
     part.rational = hdi_decayed(x, x->cut * left_g * left);
     part.solver = hdi_decayed(x, x->mixed * x->mixed * left_g * left + (g->side + twice * found_g) * left +
-                                 (c->side + twice * found) * left_g +
-                                 found_g * (c->inner + twice * found));
+                                 (c->side + twice * found) * left_g + found_g * (c->inner + twice * found));
     part.rounding = hdi_decayed(x, 2 * x->rounding * found_g * sqrt(b)) + 4 * DBL_MIN * DBL_EPSILON +
                     8 * (1 + hdi_min(x->depth, HDI_EQUAL_BEYOND)) * DBL_EPSILON * fabs(out[v]);
     hdi_ledger_note(ledger, out[v], part);
@@ -28383,18 +28284,13 @@ static hd_status hdi_fading_poles(hdi_heat_call *h, const hdi_fading_to *to, con
                  : hdi_diagonal_poles(h, to->kernel, to->D, to->ldd, done);
 }
 
-/* May at most `most` pairs serve time t of the call? */
-static int hdi_fading_serves(const hdi_heat_call *h, double t, int32_t most) {
-    return most > HDI_MODES_FIRST ? hdi_fading(h) && hdi_fading_near(h->heat, t, most)
-                                  : hdi_fading_first(h, t);
-}
-
-/* Times that are not done and that at most `most` pairs serve. done [n_times]: of these 1. Returns how many
- * are tried. */
+/* Times that are not done and that at most `most` pairs serve: done becomes 1. Returns how many are tried. */
 static int32_t hdi_fading_some(hdi_heat_call *h, const hdi_fading_to *to, int32_t most, char *done) {
     int32_t q, tried = 0;
     for (q = 0; q < h->ask.n_times && h->e->status >= 0; q++) {
-        if (done[q] || !hdi_fading_serves(h, h->ask.t[q], most)) continue;
+        const double t = h->ask.t[q];
+        if (done[q] || !(most > HDI_MODES_FIRST ? hdi_fading(h) && hdi_fading_near(h->heat, t, most)
+                                                : hdi_fading_first(h, t))) continue;
         done[q] = HDI_CAST(char, hdi_fading_values(h, q, most, to));
         if (h->e->status < 0) h->e->column = q;
         tried++;
@@ -28441,30 +28337,21 @@ static hd_status hdi_fading_run(hdi_heat_call *h, void *what) {
     return HDI_HAS_MODES && hdi_fading(h) ? hdi_fading_times(h, to) : hdi_fading_poles(h, to, NULL);
 }
 
-static hd_status hdi_trace_run(hdi_heat_call *h, double *Z, double *bound) {
+/* A query for diagonals or edges in D, ldd apart, or for traces in Z with bounds. */
+static hd_status hdi_fading_ask(hdi_heat_call *h, hd_kernel kernel, int edges, double *D, size_t ldd,
+                                double *Z, double *bound) {
     hdi_fading_to to;
-    memset(&to, 0, sizeof to);
+    to.kernel = kernel;
+    to.edges = edges;
+    to.D = D;
+    to.ldd = ldd;
     to.Z = Z;
     to.bound = bound;
     return hdi_heat_sparing(h, hdi_fading_run, &to);
 }
 
-static hd_status hdi_edges_run(hdi_heat_call *h, double *values) {
-    hdi_fading_to to;
-    memset(&to, 0, sizeof to);
-    to.edges = 1;
-    to.D = values;
-    to.ldd = HDI_CAST(size_t, h->heat->source->L.nnz);
-    return hdi_heat_sparing(h, hdi_fading_run, &to);
-}
-
 static hd_status hdi_diagonal_run(hdi_heat_call *h, hd_kernel kernel, double *D, size_t ldd) {
-    hdi_fading_to to;
-    memset(&to, 0, sizeof to);
-    to.kernel = kernel;
-    to.D = D;
-    to.ldd = ldd;
-    return hdi_heat_sparing(h, hdi_fading_run, &to);
+    return hdi_fading_ask(h, kernel, 0, D, ldd, NULL, NULL);
 }
 
 /* ---- filters that share their poles ---- */
@@ -28687,13 +28574,11 @@ static hd_status hdi_diagonal_check(hdi_heat_call *h) {
     return HDI_HAS_DIAGONAL ? hdi_direct_only(h) : HDI_LEFT_OUT(h->e, DIAGONAL, "selected inversion");
 }
 
-/* The start of a query that only selected inversion answers, at positive times. given: the array for its
- * answers is there. */
+/* The start of a query that only selected inversion answers, at positive times. given: its array is there. */
 static hd_status hdi_diagonal_begin(hdi_heat_call *h, hd_heat *heat, hd_kernel kernel, int32_t n_times,
                                     const double *t, int given, hd_report *report, hd_error *err) {
     if (hdi_kernel_begin(h, heat, kernel, report, err) < 0 || hdi_times_check(h, n_times, t, 1) < 0 ||
-        hdi_diagonal_check(h) < 0)
-        return h->e->status;
+        hdi_diagonal_check(h) < 0) return h->e->status;
     return given ? HD_OK : hdi_missing(h->e);
 }
 
@@ -28747,8 +28632,7 @@ typedef struct hdi_metric {
     int own;
 } hdi_metric;
 
-/* A column of f by vertices. Rounding is at most sqrt(g_v) times off_m, and at most sqrt(spread_v) times
- * off_b. */
+/* A column of f by vertices. Rounding is at most sqrt(g_v) off_m, and at most sqrt(spread_v) off_b. */
 typedef struct hdi_metric_column { double *u, off_m, off_b; } hdi_metric_column;
 
 /* What rounding of a function of the caller's is relative to: the resolvent, or where that is no bound the
@@ -28911,8 +28795,7 @@ static hd_status hdi_metric_make(hd_heat *heat, hd_distance_kind kind, double t,
     return hdi_scope_end(&scope);
 }
 
-/* Makes a column that the plan gave, of k_t or of K_t e_s, a column of f by vertices, in place. work [2
- * n_active]. */
+/* Makes a column of k_t, or of K_t e_s, one of f by vertices, in place. work [2 n_active]. */
 static void hdi_metric_of_column(const hd_laplacian *lap, const hdi_metric *x, double *u, double *work) {
     int32_t i;
     if (x->kind != HD_DISTANCE_WEIGHTED) {
@@ -29435,7 +29318,7 @@ static hd_status hdi_distance_help(hd_heat *heat, const hdi_distances *to, doubl
     if (!hdi_modes_reach(heat, to->kind, t, HDI_MODES_MOST, e)) return e->status;
     if (hdi_modes_distance(heat, to, t, rep, e) < 0 || rep->error_bound <= bound) return e->status;
     if (hdi_distance_poles(heat, to, t, rep, e) >= 0 || !hdi_over_limit(heat->ctx, e)) return e->status;
-    hdi_heat_shed_all(heat);                     /* without the pairs, as before */
+    hdi_heat_shed(heat, 1);                      /* without the pairs, as before */
     hdi_error_clear(e);
     return hdi_distance_poles(heat, to, t, rep, e);
 }
@@ -29476,8 +29359,7 @@ static int32_t hdi_distance_late(hdi_heat_call *h, const hdi_distances *to, char
         hdi_distances one = *to;
         hd_report rep;
         if (!hdi_modes_first(h->heat, to->kind, t) ||
-            !hdi_modes_reach(h->heat, to->kind, t, HDI_MODES_FIRST, h->e))
-            break;
+            !hdi_modes_reach(h->heat, to->kind, t, HDI_MODES_FIRST, h->e)) break;
         one.ld = to->ld * HDI_CAST(size_t, h->n_times);
         one.D = to->D + HDI_CAST(size_t, column) * to->ld;
         if (hdi_modes_distance(h->heat, &one, t, &rep, h->e) < 0 || !hdi_modes_good(h->heat, t, &rep)) break;
@@ -29538,8 +29420,7 @@ static hd_status hdi_distance_shared_take(hdi_distance_shared *z, hdi_heat_call 
     return HD_OK;
 }
 
-/* Adds a row to the right-hand side, e_row or with full B e_row, and to the part of its sweeps that is not
- * zero. */
+/* Adds a row to the right-hand side, e_row or with full B e_row, and to the part that its sweeps touch. */
 static void hdi_distance_shared_row(hdi_distance_shared *z, int32_t row, double weight) {
     const hd_laplacian *lap = z->m->lap;
     int64_t p;
@@ -29625,8 +29506,7 @@ static double hdi_distance_shared_off(const hdi_distance_shared *z, int32_t q) {
     return off;
 }
 
-/* Measures rounding of the diagonals: they are compared with columns of some rows, found as those of sources
- * are. */
+/* Measures rounding of the diagonals against columns of some rows, found as those of sources are. */
 static void hdi_distance_shared_probe(hdi_distance_shared *z) {
     const hd_laplacian *lap = z->m->lap;
     const double *last = hdi_window_at(&z->w, z->w.values, z->w.n_times - 1);
@@ -29649,8 +29529,7 @@ static void hdi_distance_shared_probe(hdi_distance_shared *z) {
     }
 }
 
-/* Distances from a source at time q, whose columns are there (without rows they are zero), into u by
- * vertices. */
+/* Distances from a source at time q, whose columns are there (zero without rows), into u by vertices. */
 static void hdi_distance_shared_judge(hdi_distance_shared *z, int32_t q, const hdi_terms *source, double *u) {
     const hdi_elim *m = z->m;
     const hd_laplacian *lap = z->h->heat->source;
@@ -29743,8 +29622,7 @@ static int hdi_distance_windows(hdi_heat_call *h, const hdi_distances *to, int32
     windows =
         hdi_shared_windows(h->times[n_times - 1] / h->times[0], HDI_SHARED_DISTANCE_TOL, n_times, &packs);
     if (windows == 0 || packs > n_times || hdi_heat_equal(heat, h->times[n_times - 1], h->e) ||
-        h->e->status < 0)
-        return 0;
+        h->e->status < 0) return 0;
     hdi_inverse_tell(h);
     for (w = 0, q0 = 0; q0 < n_times; w++, q0 = q1) {
         q1 = hdi_window_end(h->times, n_times, q0, w, windows);
@@ -29809,8 +29687,7 @@ static int32_t hdi_pairs_vertices(const hdi_pairs *x, hdi_pair *order, int32_t *
     return n;
 }
 
-/* |u - v|_B of fields on vertices of any size; v NULL: |u|_B. B times scale is near one. work [2
- * n_active]. */
+/* |u - v|_B of fields on vertices of any size; v NULL: |u|_B. B scale is near one. work [2 n_active]. */
 static double hdi_vertex_norm(const hd_laplacian *lap, const double *u, const double *v, double *work,
                               double scale) {
     double most = 0, unit;
@@ -29855,8 +29732,7 @@ static void hdi_parts_share(hdi_parts *to, const hdi_parts *as) {
     to->rounding = all * (as->rounding / sum);
 }
 
-/* K_t(i,j) for pair q from the columns ui of i and uj of j: (K_t e_j)_i, or from symmetric columns (k_t(i,.)
- * B)_j. */
+/* K_t(i,j) for pair q from the columns ui of i and uj of j: (K_t e_j)_i, or if symmetric (k_t(i,.) B)_j. */
 static double hdi_pairs_entry(const hd_laplacian *lap, const hdi_pairs *x, int64_t q, const double *ui,
                               const double *uj) {
     const int32_t i = x->i[q], j = x->j[q], row = lap->row[j];
@@ -29870,8 +29746,7 @@ static double hdi_pairs_entry(const hd_laplacian *lap, const hdi_pairs *x, int64
     return sum;
 }
 
-/* The error of that entry for an error e of the column with |e|_B = 1: of e_i, or |(B e)_j| <= sqrt(B_jj)
- * |e|_B. */
+/* The error of that entry for one of the column with |e|_B = 1: e_i, or |(B e)_j| <= sqrt(B_jj) |e|_B. */
 static double hdi_pairs_entry_off(const hd_laplacian *lap, const hdi_pairs *x, int64_t q) {
     const int weighted = x->kind == HD_DISTANCE_WEIGHTED;
     const int32_t row = lap->row[weighted ? x->i[q] : x->j[q]];
@@ -29944,8 +29819,7 @@ static void hdi_pairs_of_columns(const hd_heat *heat, const hdi_pairs *x, const 
     hdi_ledger_close(&of_d, rep);
 }
 
-/* Distances one by one from entries and the diagonal, for more vertices than columns fit. Each is judged by
- * itself. */
+/* Distances from entries and the diagonal, for more vertices than columns fit; each is judged by itself. */
 static hd_status hdi_pairs_distances(hd_heat *heat, const hdi_pairs *p, double t, hd_report *rep) {
     hd_error *e = &rep->error;
     hdi_scope s = hdi_scope_begin(heat->ctx, e);
@@ -30143,8 +30017,7 @@ static hd_status hdi_pairs_once(hd_heat *heat, const hdi_pairs *pairs, double t,
     x.of_k = &of_k;
     x.bound = &bound;
     if (hdi_pairs_poles(heat, &x, t, rep) < 0 || !x.d || bound <= HDI_MODES_HELP ||
-        !hdi_modes_near(heat, x.kind, t, HDI_MODES_MOST))
-        return rep->status;
+        !hdi_modes_near(heat, x.kind, t, HDI_MODES_MOST)) return rep->status;
     hdi_heat_drop(heat);
     if (!hdi_pairs_by_modes(heat, &x, t, HDI_MODES_MOST, bound, rep) || !x.K) return rep->status;
     all = of_k;
@@ -30154,7 +30027,7 @@ static hd_status hdi_pairs_once(hd_heat *heat, const hdi_pairs *pairs, double t,
 }
 
 /* The pairs at all times of a call. */
-static hd_status hdi_pairs_run(hdi_heat_call *h, void *what) {
+static hd_status hdi_pairs_times(hdi_heat_call *h, void *what) {
     const hdi_pairs *all = HDI_CAST(const hdi_pairs *, what);
     const int timeless = all->kind >= HD_DISTANCE_COMMUTE;
     const int32_t n_times = timeless ? 1 : h->ask.n_times;
@@ -30173,6 +30046,19 @@ static hd_status hdi_pairs_run(hdi_heat_call *h, void *what) {
         else hdi_report_merge(h->rep, &one);
     }
     return h->e->status;
+}
+
+static hd_status hdi_pairs_run(hdi_heat_call *h, hd_distance_kind kind, int64_t n_pairs, const int32_t *i,
+                               const int32_t *j, double *K, double *d) {
+    hdi_pairs x;
+    memset(&x, 0, sizeof x);
+    x.kind = kind;
+    x.n = n_pairs;
+    x.i = i;
+    x.j = j;
+    x.K = K;
+    x.d = d;
+    return hdi_heat_sparing(h, hdi_pairs_times, &x);
 }
 
 /* ---- farthest points ---- */
@@ -30230,8 +30116,7 @@ static hd_status hdi_sample_points(hd_heat *heat, const hdi_samples *a, hd_repor
             if (q >= a->n_given) vertex[q] = first ? lap->vertex[0] : hdi_sample_next(lap, a->nearest);
             if (a->distance) a->distance[q] = first ? 0 : hdi_max(0, a->nearest[vertex[q]]);
         }
-        if (q + 1 == a->count || hdi_progress(heat->ctx, "sample", hdi_max(0, q) / a->count, e) < 0)
-            break;
+        if (q + 1 == a->count || hdi_progress(heat->ctx, "sample", hdi_max(0, q) / a->count, e) < 0) break;
         from = q < 0 ? a->terms[a->n_from + q] : hdi_terms_vertex(vertex[q]);
         if (hdi_sample_distances(heat, a, &from, rep, e) < 0) break;
         for (v = 0; v < lap->n; v++) a->nearest[v] = hdi_min(a->nearest[v], a->u[v]);
@@ -30324,8 +30209,7 @@ static hd_status hdi_distance_answer(hd_heat *heat, hdi_distances *to, const hd_
                                      int32_t n_times, const double *t, hd_report *report, hd_error *err) {
     hdi_heat_call h;
     if (hdi_distance_begin(&h, heat, to->kind, n_times, t, 1, report, err) < 0 || hdi_direct_only(&h) < 0 ||
-        !HDI_HAS_DIFFUSION)
-        return hdi_heat_end(&h);
+        !HDI_HAS_DIFFUSION) return hdi_heat_end(&h);
     if (to->k < 0) hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: a number of fields or columns is negative");
     else if (to->k > 0 && ((!to->sources && !sources) || !to->D)) hdi_missing(h.e);
     to->ld = hdi_leading(&h, to->ld);
@@ -30352,8 +30236,7 @@ static hd_status hdi_sample_answer(hd_heat *heat, hdi_samples *a, const hd_sourc
                                    hd_error *err) {
     hdi_heat_call h;
     if (hdi_distance_begin(&h, heat, a->kind, 1, &a->t, 1, report, err) < 0 || hdi_direct_only(&h) < 0 ||
-        !HDI_HAS_DIFFUSION)
-        return hdi_heat_end(&h);
+        !HDI_HAS_DIFFUSION) return hdi_heat_end(&h);
     if (a->count < 1 || a->n_given < 0 || a->n_given > a->count || a->count > heat->source->n_active)
         hdi_fail_row(h.e, HD_ERR_ARGUMENT, "sample: more points than vertices, or none", -1, -1, a->count);
     else if (a->n_from < 0) hdi_fail(h.e, HD_ERR_ARGUMENT, "sample: a number of sources is negative");
@@ -30394,8 +30277,7 @@ static void hdi_cost_add(hd_cost *c, double flops, double seconds, double bytes)
     c->bytes_most = hdi_max(c->bytes_most, c->bytes);
 }
 
-/* Factors of so many packs, of a real matrix or none, their inversions by a factor of the work, and solves of
- * k items. */
+/* Factors of so many packs, of a real matrix or none, what comes after them, and solves of k items. */
 static void hdi_cost_direct(const hd_heat *heat, int32_t packs, int real, hdi_after after, double k,
                             hd_cost *c) {
     const hdi_fill f = hdi_heat_fill_poles(heat);
@@ -30416,8 +30298,7 @@ static void hdi_cost_direct(const hd_heat *heat, int32_t packs, int real, hdi_af
     }
 }
 
-/* Bytes of the direct method after an analysis, or guessed before it. held: of arrays that are taken before
- * the factors. */
+/* Bytes of the direct method, guessed before the analysis. held: of arrays taken before the factors. */
 static double hdi_bytes_direct(const hdi_estimate *x, const hd_rational *set, hdi_after after,
                                int32_t n_sets, int32_t k, double held) {
     hd_heat *heat = x->h->heat;
@@ -30450,15 +30331,6 @@ static int hdi_estimate_open(const hdi_estimate *x) {
     const hd_heat_opts *o = &x->h->heat->opts;
     return x->query == HD_QUERY_FIELDS && !o->rational && !o->degree && !x->h->heat->exacting &&
            (!o->poles || o->poles == HD_POLES_UNIFORM);
-}
-
-/* The poles by which the direct method would answer a query for fields or columns. */
-static hd_status hdi_estimate_set(const hdi_estimate *x, hd_rational *set) {
-    hd_status status;
-    x->h->method = HD_METHOD_DIRECT;
-    status = hdi_estimate_open(x) ? hdi_rational_get(set, HD_POLES_UNIFORM, 9, x->h->e)
-                                  : hdi_heat_set(x->h, set);
-    return status;
 }
 
 /* Bytes of iterations: the copy of the pair, its upper triangle, lanes and preconditioners, or bases. */
@@ -30519,7 +30391,9 @@ static hd_status hdi_estimate_solves(const hdi_estimate *x, double held) {
     model = hdi_heat_cost(h);
     x->to->method = method = h->method;
     x->to->reason = h->rep->reason;
-    if (hdi_estimate_set(x, &set) < 0) return h->e->status;
+    h->method = HD_METHOD_DIRECT;
+    if ((hdi_estimate_open(x) ? hdi_rational_get(&set, HD_POLES_UNIFORM, 9, h->e)
+                              : hdi_heat_set(h, &set)) < 0) return h->e->status;
     poles = heat->opts.rational || heat->opts.degree ? set.n_poles : HDI_POLES_EXPECTED;
     hdi_cost_add(c + HD_METHOD_ITERATIVE, model.iterative_flops, model.iterative,
                  held + hdi_bytes_iterative(heat, h->t, x->k, poles));
@@ -30532,8 +30406,7 @@ static hd_status hdi_estimate_solves(const hdi_estimate *x, double held) {
         if (hdi_estimate_open(x) && hdi_rational_get(&set, HD_POLES_UNIFORM, HDI_RAT_UNIFORM_MAX, h->e) < 0)
             return h->e->status;
         if (x->query == HD_QUERY_PAIRS && !heat->poles_asked && !heat->exacting &&
-            hdi_rational_get(&set, HD_POLES_KERNEL, HDI_RAT_KERNEL_MAX, h->e) < 0)
-            return h->e->status;
+            hdi_rational_get(&set, HD_POLES_KERNEL, HDI_RAT_KERNEL_MAX, h->e) < 0) return h->e->status;
         direct->bytes_most = hdi_bytes_direct(x, &set, HDI_AFTER_BOUND, 0, x->k, held);
         if (x->query == HD_QUERY_PAIRS && heat->elim.ctx)   /* the solves' arrays of the first try stay */
             direct->bytes_most += HDI_CAST(double, hdi_batches_need(heat, hdi_set_packs(&set), x->k));
@@ -30543,8 +30416,7 @@ static hd_status hdi_estimate_solves(const hdi_estimate *x, double held) {
     return h->e->status;
 }
 
-/* A diagonal, edges or a metric at one time, by poles of a degree (0: the default), then solves of k
- * columns. */
+/* A diagonal, edges or a metric at one time, by poles of a degree (0: the default), then k columns. */
 static hd_status hdi_estimate_inverse(const hdi_estimate *x, int32_t degree, hd_cost *c) {
     hdi_heat_call *h = x->h;
     const hd_laplacian *lap = h->heat->source;
@@ -30620,10 +30492,6 @@ static int32_t hdi_estimate_shared(const hdi_estimate *x, double tol) {
 #define HDI_MODES_SECONDS 7e-7
 #define HDI_MODES_BEGIN 5
 
-static hd_distance_kind hdi_estimate_kind(const hdi_estimate *x) {
-    return x->query == HD_QUERY_DISTANCE ? HD_DISTANCE_CLASSICAL : HD_DISTANCE_WEIGHTED;
-}
-
 static int hdi_estimate_distance(const hdi_estimate *x) {
     return x->query == HD_QUERY_DISTANCE || x->query == HD_QUERY_DISTANCE_WEIGHTED;
 }
@@ -30638,12 +30506,6 @@ static int32_t hdi_estimate_pairs(const hdi_estimate *x, double t) {
     const hd_heat *heat = x->h->heat;
     const double depth = hdi_estimate_apart(x) ? hdi_modes_depth(heat) : hdi_fading_depth(heat);
     return hdi_modes_count(heat, hdi_modes_expected(heat, depth / t));
-}
-
-/* Do eigenpairs come first at time t? */
-static int hdi_estimate_first(const hdi_estimate *x, double t) {
-    return hdi_estimate_distance(x) ? hdi_modes_first(x->h->heat, hdi_estimate_kind(x), t)
-                                    : hdi_fading_first(x->h, t);
 }
 
 /* Bytes that eigenpairs may need where more are looked for than expected: 1.14 times those for the number
@@ -30680,13 +30542,16 @@ static double hdi_estimate_held(const hdi_estimate *x, int32_t count) {
     return 8.0 * x->h->heat->source->n * ((twice ? 2.0 : 1.0) * count + 5);
 }
 
-/* Late times, where eigenpairs come first: how many times are left before them. *held: bytes that stay when
- * these are found. */
+/* Late times, where eigenpairs come first: how many are left before them. *held: bytes of pairs found. */
 static int32_t hdi_estimate_late(const hdi_estimate *x, hd_cost *c, double *held) {
     const hd_heat *heat = x->h->heat;
     const double unit = (hdi_estimate_distance(x) ? 2 : 1) * heat->scale;
     int32_t early = x->h->n_times, count;
-    while (early > 0 && hdi_estimate_first(x, x->h->times[early - 1] / unit)) early--;
+    for (; early > 0; early--) {
+        const double t = x->h->times[early - 1] / unit;
+        if (hdi_estimate_distance(x) ? !hdi_modes_first(heat, HD_DISTANCE_CLASSICAL, t)
+                                     : !hdi_fading_first(x->h, t)) break;
+    }
     *held = 0;
     if (early == x->h->n_times) return early;
     count = hdi_estimate_pairs(x, x->h->times[early] / unit);
@@ -30699,9 +30564,8 @@ static int32_t hdi_estimate_late(const hdi_estimate *x, hd_cost *c, double *held
 /* Eigenpairs that may come after poles at time t, or 0. */
 static int32_t hdi_estimate_help(const hdi_estimate *x, double t) {
     const hd_heat *heat = x->h->heat;
-    if (hdi_estimate_apart(x) ? !hdi_modes_near(heat, hdi_estimate_kind(x), t, HDI_MODES_MOST)
-                              : !hdi_fading(x->h) || !hdi_fading_near(heat, t, HDI_MODES_MOST))
-        return 0;
+    if (hdi_estimate_apart(x) ? !hdi_modes_near(heat, HD_DISTANCE_CLASSICAL, t, HDI_MODES_MOST)
+                              : !hdi_fading(x->h) || !hdi_fading_near(heat, t, HDI_MODES_MOST)) return 0;
     return hdi_estimate_pairs(x, t);
 }
 
@@ -30733,9 +30597,10 @@ static void hdi_estimate_join(hd_cost *c, const hd_cost *late, double held) {
     c->bytes_most = hdi_max(c->bytes_most, late->bytes_most);
 }
 
-/* Poles for time q of the call alone: by default, and by the highest degree, which distances may need at once.
+/* Poles for time q of the call alone: by default, and by the highest degree, which distances may need.
  * held: bytes of eigenpairs that stay. most: with pairs that may come after, and poles once more. */
-static hd_status hdi_estimate_alone(const hdi_estimate *x, int32_t q, double held, hd_cost *one, hd_cost *most) {
+static hd_status hdi_estimate_alone(const hdi_estimate *x, int32_t q, double held, hd_cost *one,
+                                    hd_cost *most) {
     hd_heat *heat = x->h->heat;
     const double t = x->h->times[q] / (hdi_estimate_distance(x) ? 2 * heat->scale : heat->scale);
     const double h0 = heat->source->h, expected = h0 > 0 ? HDI_DISTANCE_EXPECTED * sqrt(t) / h0 : 0;
@@ -30756,8 +30621,8 @@ static hd_status hdi_estimate_alone(const hdi_estimate *x, int32_t q, double hel
 }
 
 /* Queries that need the direct method. They take what the run would take: eigenpairs at late times; shared
- * poles, else the times one by one. Bytes are enough for poles at all times one by one, to which the run comes
- * back where the others do not serve. */
+ * poles, else the times one by one. Bytes are enough for poles one by one at all times, to which the run
+ * comes back where the others do not serve. */
 static hd_status hdi_estimate_direct(const hdi_estimate *x) {
     hdi_heat_call *h = x->h;
     hd_heat *heat = h->heat;
@@ -30813,7 +30678,7 @@ static void hdi_estimate_trace_set(const hdi_estimate *x, const hd_rational *set
     hdi_cost_add(c, 0, 0, bytes);
 }
 
-/* Traces at all times, as hdi_trace_run takes them. held: bytes that stay from before. */
+/* Traces at all times, as hdi_trace_poles takes them. held: bytes that stay from before. */
 static hd_status hdi_estimate_trace(const hdi_estimate *x, double held, hd_cost *c) {
     hdi_heat_call *h = x->h;
     const int settled = h->heat->poles_asked || h->heat->exacting;
@@ -30877,8 +30742,8 @@ static hd_status hdi_estimate_signature(const hdi_estimate *x) {
     return x->h->e->status;
 }
 
-/* Fields, columns and entries; pairs take columns. Late times come from eigenpairs where heat fades; bytes are
- * enough for the others' way at all times. */
+/* Fields, columns and entries; pairs take columns. Late times come from eigenpairs where heat fades; bytes
+ * are enough for the others' way at all times. */
 static hd_status hdi_estimate_columns(const hdi_estimate *x, double held) {
     hdi_heat_call *h = x->h;
     hd_estimate *to = x->to;
@@ -33550,7 +33415,7 @@ HEATDIFF_API hd_status hd_heat_trace(hd_heat *heat, int32_t n_times, const doubl
     hdi_heat_call h;
     if (hdi_diagonal_begin(&h, heat, HD_KERNEL_OPERATOR, n_times, t, Z != NULL, report, err) < 0 ||
         !HDI_HAS_DIAGONAL) return hdi_heat_end(&h);
-    if (h.e->status >= 0) (void)hdi_trace_run(&h, Z, bound);
+    if (h.e->status >= 0) (void)hdi_fading_ask(&h, HD_KERNEL_OPERATOR, 0, NULL, 0, Z, bound);
     return hdi_heat_end(&h);
 }
 
@@ -33614,7 +33479,8 @@ HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, hd_kernel kernel, int32_t n_
     if (kernel != HD_KERNEL_SYMMETRIC)
         hdi_fail(h.e, HD_ERR_ARGUMENT,
                  "edges: the kernel is the symmetric one; K_t = k_t B is not symmetric");
-    if (h.e->status >= 0) (void)hdi_edges_run(&h, values);
+    if (h.e->status >= 0)
+        (void)hdi_fading_ask(&h, kernel, 1, values, HDI_CAST(size_t, heat->source->L.nnz), NULL, NULL);
     return hdi_heat_end(&h);
 }
 
@@ -33637,20 +33503,12 @@ HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, int32
                                      int64_t n_pairs, const int32_t *i, const int32_t *j, double *K,
                                      double *d, hd_report *report, hd_error *err) {
     hdi_heat_call h;
-    hdi_pairs x;
     if (hdi_distance_begin(&h, heat, kind, n_times, t, 0, report, err) < 0 || !HDI_HAS_DIFFUSION)
         return hdi_heat_end(&h);
-    memset(&x, 0, sizeof x);
-    x.kind = kind;
-    x.n = n_pairs;
-    x.i = i;
-    x.j = j;
-    x.K = K;
-    x.d = d;
     h.relative = d != NULL;
     if (d && hdi_heat_filtered(heat)) (void)hdi_direct_only(&h);
     if (h.e->status >= 0 && hdi_pairs_check(&h, n_pairs, i, j) >= 0 && n_pairs > 0)
-        (void)hdi_heat_sparing(&h, hdi_pairs_run, &x);
+        (void)hdi_pairs_run(&h, kind, n_pairs, i, j, K, d);
     return hdi_heat_end(&h);
 }
 
