@@ -9659,7 +9659,6 @@ static hd_laplacian *hdi_pair_renumber(const hd_laplacian *lap, const int32_t *p
     const size_t n = HDI_CAST(size_t, lap->n_active);
     hd_laplacian *out;
     int32_t i;
-    hdi_error_clear(e);
     out = HDI_CAST(hd_laplacian *, hdi_copy(lap, 1, sizeof *lap, ctx, e));
     if (!out) return NULL;
     memset(&out->L, 0, sizeof out->L);
@@ -22940,12 +22939,12 @@ static double hdi_spec_count_off(hdi_spec *s) {
 static hd_status hdi_spec_shift(hdi_spec *s, double sigma, double step, hd_error *e) {
     int32_t tries;
     for (tries = 0;; tries++) {
-        hdi_error_clear(e);
         s->n_factors++;
         s->refine = 0;
         s->sigma = sigma;
         if (hdi_elim_real(s->m, &s->factor, 1, -sigma, e) >= 0) break;
         if (e->status != HD_ERR_BREAKDOWN || tries == 4) return e->status;
+        hdi_error_clear(e);
         sigma += 0.01 * step;
     }
     s->below = s->factor.all.negative;
