@@ -235,8 +235,9 @@ typedef struct hd_error {
     int64_t face, vertex;  /* ids as the caller numbers them */
     int64_t row, column;   /* of a matrix or of a field */
     int64_t pole;          /* index in the rational set, or of the matrix in a complex factorisation */
-    /* The offending value; 0 if there is none. HD_ERR_MEMORY_LIMIT: a byte_limit below this is too small. For
-     * a factorisation this is all that it and what follows need, which is known before it begins. */
+    /* The offending value; 0 if there is none. HD_ERR_MEMORY_LIMIT: a byte_limit below this is too small (or
+     * an allocation_limit, if the text names that one). For a factorisation this is all that it and what
+     * follows need, which is known before it begins. */
     double value;
 } hd_error;
 
@@ -827,9 +828,9 @@ typedef struct hd_cost {
      * long, and those with poles far longer on thin triangles with obtuse angles. */
     double seconds;
     double bytes;               /* at the peak, beyond what the context has in use now */
-    /* The same if poles of degree 14 take over: for demanding fields, and where slivers or the time make the
-     * bound of a diagonal, of edges or of distances too large. Without room for that, these three get by with
-     * bytes and have a looser bound. */
+    /* The same if poles of degree 14 or eigenpairs take over: for demanding fields, and where slivers or the
+     * time make a bound too large. By the direct method so much room gives the same answers as no limit; with
+     * bytes alone the bound may be looser. */
     double bytes_most;
 } hd_cost;
 
@@ -1745,8 +1746,8 @@ HEATDIFF_API hd_status hd_spectrum_distance_from(const hd_spectrum *s, hd_distan
  * k        see hd_query
  * estimate if there is not enough memory, cost[HD_METHOD_AUTO].fits is 0. That is no error
  * Bytes of the direct method are sums of the arrays that the query will allocate: an upper bound, by a few
- * percent. Those of the other two methods depend on their steps and are estimates. Output arrays are the
- * caller's and not counted.
+ * percent; where eigenpairs come first it allows for poles instead. Those of the other two methods depend on
+ * their steps and are estimates. Output arrays are the caller's and not counted.
  * Errors   HD_ERR_ARGUMENT, HD_ERR_MEMORY, HD_ERR_CANCELLED
  * Cost     one ordering and analysis, if the query needs them; the plan keeps them for the query. Otherwise
  *          one pass over L */
@@ -2329,22 +2330,36 @@ static void hdi_text_bytes(hd_error *e, double bytes) {
 
 enum { HDI_ALIGN = 64, HDI_HEADER = 2 * sizeof(uint64_t) };
 
+/* Is the byte limit the reason of an error? Another way may take less. Out of memory, cancelled, or too many
+ * allocations ends the call. */
+static int hdi_over_limit(const hd_context *ctx, const hd_error *e) {
+    return e->status == HD_ERR_MEMORY_LIMIT &&
+           !(ctx->allocation_limit && ctx->allocations >= ctx->allocation_limit);
+}
+
 static hd_status hdi_alloc_check(hd_context *ctx, size_t total, hd_error *e) {
     const uint64_t most = ctx->byte_limit;
-    const int bytes = most && (total > most || ctx->bytes_in_use > most - total);
-    if (bytes || (ctx->allocation_limit && ctx->allocations >= ctx->allocation_limit)) {
-        hdi_fail(e, HD_ERR_MEMORY_LIMIT, bytes ? "the byte limit of the context is reached"
-                                               : "the allocation limit of the context is reached");
+    if (ctx->allocation_limit && ctx->allocations >= ctx->allocation_limit) {
+        hdi_fail(e, HD_ERR_MEMORY_LIMIT, "the allocation limit of the context is reached");
+        e->value = HDI_CAST(double, ctx->allocations) + 1;
+    } else if (most && (total > most || ctx->bytes_in_use > most - total)) {
+        hdi_fail(e, HD_ERR_MEMORY_LIMIT, "the byte limit of the context is reached");
         e->value = HDI_CAST(double, total) + HDI_CAST(double, ctx->bytes_in_use);
     }
     return e->status;
+}
+
+/* What the byte limit leaves. */
+static double hdi_bytes_left(const hd_context *ctx) {
+    return ctx->byte_limit ? HDI_CAST(double, ctx->byte_limit) - HDI_CAST(double, ctx->bytes_in_use)
+                           : HUGE_VAL;
 }
 
 /* Ends long work before it begins, if its need of `more` bytes, which is sure, is above what the limit
  * leaves. what: of the text. */
 static hd_status hdi_need(hd_context *ctx, uint64_t more, const char *what, hd_error *e) {
     const double all = HDI_CAST(double, more) + HDI_CAST(double, ctx->bytes_in_use);
-    if (!ctx->byte_limit || more <= ctx->byte_limit - ctx->bytes_in_use) return e->status;
+    if (HDI_CAST(double, more) <= hdi_bytes_left(ctx)) return e->status;
     hdi_fail(e, HD_ERR_MEMORY_LIMIT, what);
     hdi_text_add(e, " would bring the memory in use to ");
     hdi_text_bytes(e, all);
@@ -2429,10 +2444,11 @@ typedef struct hdi_scope {
     void *block[HDI_SCOPE_MOST];
 } hdi_scope;
 
+/* A scope never swallows an error: none may be set. */
 static hdi_scope hdi_scope_begin(hd_context *ctx, hd_error *e) {
     hdi_scope s;
+    HEATDIFF_ASSERT(e->status >= 0);
     memset(&s, 0, sizeof s);
-    hdi_error_clear(e);
     s.ctx = ctx;
     s.e = e;
     return s;
@@ -2447,7 +2463,9 @@ static void hdi_scope_count(uint64_t *tally, uint64_t count, size_t size) {
 }
 
 static hdi_scope hdi_scope_tally(uint64_t *tally, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(NULL, e);
+    hdi_scope s;
+    hdi_error_clear(e);
+    s = hdi_scope_begin(NULL, e);
     *tally = 0;
     s.tally = tally;
     return s;
@@ -9692,7 +9710,6 @@ static hd_laplacian *hdi_pair_renumber(const hd_laplacian *lap, const int32_t *p
     const size_t n = HDI_CAST(size_t, lap->n_active);
     hd_laplacian *out;
     int32_t i;
-    hdi_error_clear(e);
     out = HDI_CAST(hd_laplacian *, hdi_copy(lap, 1, sizeof *lap, ctx, e));
     if (!out) return NULL;
     memset(&out->L, 0, sizeof out->L);
@@ -18870,8 +18887,7 @@ static hd_status hdi_rational_fit_shared(hd_rational *out, int32_t count, const 
  *   |A^-1 r|_B <= |r|_(B^-1) / min |t lambda + theta|
  *   |A^-1 r|_M <= |r|_(B^-1) max (1 + t lambda)/|t lambda + theta|,   M = B + t L,
  * and |r|_(B^-1)^2 <= |r|_(D^-1)^2 / b_ratio, D = diag(B). At vertex v, |e_v| <= |e|_B / sqrt(b_ratio D_v),
- * and |e_v| <= sqrt(g_v) |e|_M for g = diag(M^-1). The second is much smaller where heat has spread over many
- * vertices. */
+ * and |e_v| <= sqrt(g_v) |e|_M for g = diag(M^-1). The second is much smaller where heat has spread far. */
 
 /* Parts of an error bound, in one of the norms or of values. */
 typedef struct hdi_parts { double rational, solver, rounding; } hdi_parts;
@@ -18898,8 +18914,7 @@ static hdi_parts hdi_parts_least(hdi_parts a, hdi_parts b) {
     return a;
 }
 
-/* Every query keeps an account of its errors, which becomes part of the report. The numbers are absolute,
- * over all values noted. */
+/* The account of a query's errors, which becomes part of its report: absolute, over all values noted. */
 typedef struct hdi_ledger {
     hdi_parts off;               /* the largest of each part */
     hdi_parts known;             /* evidence of each part, as hd_evidence; hdi_ledger_begin sets it */
@@ -19000,8 +19015,7 @@ static double hdi_row_diagonal(const hd_laplacian *lap, int32_t i) {
  * |theta| |B|, and c_i half a unit in the last place for every term of the row and HDI_NOISE_TERMS more (N.
  * Higham, Accuracy and Stability of Numerical Algorithms, 2002, section 3.1). By Cauchy and Schwarz that is
  * at most sqrt(sum_j noise_j |x_j|^2) in the norm of D^-1, with
- *   noise_j = sum_i M_ij (c_i^2/D_i) sum_k M_ik.
- * work [n]. */
+ *   noise_j = sum_i M_ij (c_i^2/D_i) sum_k M_ik; work [n]. */
 #define HDI_NOISE_TERMS 8
 
 static void hdi_noise_weights(const hd_laplacian *lap, double t, double theta, double *noise, double *work) {
@@ -19104,10 +19118,6 @@ static void hdi_family_set(hdi_family *fam, const hd_rational *set, double t) {
 /* Do poles make their preconditioners in turns? */
 static int hdi_family_turns(const hdi_family *fam) { return fam->n_values < fam->set.n_poles; }
 
-static int hdi_out_of_memory(hd_status status) {
-    return status == HD_ERR_MEMORY || status == HD_ERR_MEMORY_LIMIT;
-}
-
 /* Room for the preconditioners of the set. */
 static hd_status hdi_family_room(hdi_family *fam, hd_error *e) {
     const uint64_t n = HDI_CAST(uint64_t, fam->lap->n_active), upper = HDI_CAST(uint64_t, fam->up->ptr[n]);
@@ -19117,7 +19127,7 @@ static hd_status hdi_family_room(hdi_family *fam, hd_error *e) {
     if (fam->n_values < room) {
         hdi_family_free(fam);
         fam->values = HDI_NEW(fam->ctx, hd_c64, HDI_CAST(uint64_t, room) * (size + 1), e);
-        if (!fam->values && hdi_out_of_memory(e->status) && room > 1) {
+        if (room > 1 && hdi_over_limit(fam->ctx, e)) {
             hdi_error_clear(e);
             fam->values = HDI_NEW(fam->ctx, hd_c64, size + 1, e);
             room = 1;
@@ -19391,8 +19401,7 @@ static void hdi_lane_clear_off(hdi_lane *lane) {
     lane->negative = 0;
 }
 
-/* u = a0 f - sum a_i x_i, in the order of the poles, and the bounds on its error without the rational
- * part. */
+/* u = a0 f - sum a_i x_i, in the order of the poles, and the bounds on its error but for the rational one. */
 static void hdi_lane_sum(hdi_lane *lane, const hdi_family *fam) {
     const int32_t n = fam->lap->n_active;
     double *HDI_RESTRICT u = lane->u;
@@ -19842,16 +19851,23 @@ typedef struct hdi_elim {
     double shift;                /* shifted is the factor of B + shift L */
 } hdi_elim;
 
-static void hdi_elim_free(hdi_elim *m) {
-    int32_t i;
+/* Frees all factors; the analysis stays. */
+static void hdi_elim_drop(hdi_elim *m) {
     if (!HDI_HAS_DIRECT || !m->ctx) return;
-    for (i = 0; i < m->n_packs; i++) hdi_factor_free(m->pack + i);
-    hdi_free(m->ctx, m->pack);
+    while (m->n_packs > 0) hdi_factor_free(m->pack + --m->n_packs);
     hdi_factor_free(&m->real);
     hdi_factor_free(&m->shifted);
+    hdi_free(m->ctx, m->reach);
+    m->reach = NULL;
+    m->filled = 0;
+}
+
+static void hdi_elim_free(hdi_elim *m) {
+    if (!HDI_HAS_DIRECT || !m->ctx) return;
+    hdi_elim_drop(m);
+    hdi_free(m->ctx, m->pack);
     hdi_symbolic_free(m->ctx, &m->sym);
     hdi_free(m->ctx, m->weight);
-    hdi_free(m->ctx, m->reach);
     hdi_laplacian_free(m->lap, m->ctx);
     memset(m, 0, sizeof *m);
 }
@@ -19913,8 +19929,7 @@ static double hdi_elim_diagonal(const hd_laplacian *lap, double t, const hd_c64 
     int32_t i, q;
     for (i = 0; i < lap->n_active; i++) {
         const double b = lap->b_diag[i], l = t * hdi_row_diagonal(lap, i);
-        for (q = 0; q < k; q++)
-            most = hdi_max(most, hdi_cabs2(hdi_c(l + theta[q].re * b, theta[q].im * b)));
+        for (q = 0; q < k; q++) most = hdi_max(most, hdi_cabs2(hdi_c(l + theta[q].re * b, theta[q].im * b)));
     }
     return sqrt(most);
 }
@@ -20294,8 +20309,7 @@ static hd_csr hdi_lap_mass_matrix(const hd_laplacian *lap, hdi_scope *s) {
     return b;
 }
 
-/* Whether B - sigma diag(B) has an LDL' without a negative pivot, and so no negative eigenvalue (Sylvester).
- * value [nnz]: room. */
+/* Has B - sigma diag(B) no negative pivot, and so no negative eigenvalue (Sylvester)? value [nnz]: room. */
 static int hdi_lap_exceeds(const hd_laplacian *lap, const hd_csr *b, double sigma, double *value,
                            hdi_factor *f, hd_error *e) {
     hdi_values v;
@@ -20638,8 +20652,8 @@ static hd_status hdi_elim_invert(hdi_elim *m, const hdi_elim_sums *sums, hd_erro
     return hdi_scope_end(&s);
 }
 
-/* out [n] = the diagonal of the inverse of a factor, by pivots. coef [width]: of its parts, as hdi_elim_coef
- * has them. Work arrays in s. */
+/* out [n] = the diagonal of a factor's inverse, by pivots. coef [width]: of its parts, see hdi_elim_coef. Work
+ * arrays in s. */
 static hd_status hdi_elim_inverse_diagonal(const hdi_elim *m, hdi_factor *f, const double *coef, double *out,
                                            hdi_scope *s) {
     hdi_inverse z;
@@ -20820,8 +20834,7 @@ static hd_status hdi_lanczos_bound(hdi_lanczos *z, double t, double *bound, hd_e
         z->z0[i] = i == 0;
         z->z1[i] = i == m - 1;
     }
-    if (!hdi_tridiag_eigen(z->d, z->e, z->z0, z->z1, m))
-        return hdi_lanczos_failed(e);
+    if (!hdi_tridiag_eigen(z->d, z->e, z->z0, z->z1, m)) return hdi_lanczos_failed(e);
     for (i = 0; i < m; i++) {
         least = hdi_min(least, z->d[i]);
         most = hdi_max(most, fabs(z->d[i]));
@@ -20882,8 +20895,7 @@ static void hdi_lanczos_start(hdi_lane *lane, int32_t n, double f0_norm) {
     z->m = 0;
 }
 
-/* One step from v_j, c = B v_j, c_old = B v_(j-1) to the next vectors, and alpha_j, beta_(j+1). w [n] and
- * mass [3 n]: work. */
+/* A step from v_j, c = B v_j, c_old = B v_(j-1) to the next, and alpha_j, beta_(j+1). w, mass: [n], [3 n]. */
 static hd_status hdi_lanczos_step(const hdi_lanczos_task *task, hdi_lanczos *z, double *HDI_RESTRICT w,
                                   double *mass, hd_error *e) {
     const hd_laplacian *lap = task->lap;
@@ -21247,8 +21259,7 @@ static hd_status hdi_silan_step(hdi_silan *z, hd_context *ctx, hd_error *e) {
     hdi_sweep s;
     int64_t i;
     int32_t r;
-    if (!z->v[j + 1])
-        z->v[j + 1] = HDI_NEW(ctx, double, count, e);
+    if (!z->v[j + 1]) z->v[j + 1] = HDI_NEW(ctx, double, count, e);
     if (!z->v[j + 1]) return e->status;
     memcpy(w, z->c, HDI_CAST(size_t, count) * sizeof *w);
     s = hdi_sweep_open(&z->m->shifted, wide, w, z->work);
@@ -21302,8 +21313,7 @@ static int hdi_silan_eigen(const hdi_silan *z, int32_t r, int32_t m, int32_t p, 
     return hdi_tridiag_eigen(d, off, x, y, m);
 }
 
-/* exp(-s (1/mu - 1)/g) for an eigenvalue mu of T in (0, 1]. Tiny ones are rounding, and belong to modes that
- * are gone. */
+/* exp(-s (1/mu - 1)/g) for an eigenvalue mu of T in (0, 1]. Tiny ones are rounding of modes that are gone. */
 static double hdi_silan_decay(double mu, double s_over_g) {
     if (mu > 1e-15) return exp(-s_over_g * hdi_max(0, 1 / mu - 1));
     return s_over_g > 0 ? 0 : 1;
@@ -21334,8 +21344,7 @@ static double hdi_silan_slope(double a, double fa, double b, double fb, double t
     return x > 0 ? fb * expm1(-x) / d : -fa * expm1(x) / d;   /* from the larger one */
 }
 
-/* What the error bounds of a right-hand side need of T_m: its eigenvalues, and their weights in e_1 and
- * between e_1 and e_m. */
+/* What error bounds need of T_m: its eigenvalues, and their weights in e_1 and between e_1 and e_m. */
 typedef struct hdi_ritz {
     int32_t m;
     double beta, mu[HDI_SILAN_MAX], first[HDI_SILAN_MAX], both[HDI_SILAN_MAX];
@@ -21437,8 +21446,7 @@ static hd_status hdi_silan_places(hdi_silan *z, int32_t count, hd_context *ctx, 
     return e->status;
 }
 
-/* Answers that are summed up in one pass over the basis: of one right-hand side at several times, or of
- * several at one time. */
+/* Answers summed up in one pass over the basis: of one right-hand side at several times, or the reverse. */
 typedef struct hdi_silan_sum {
     int32_t count;
     const double *y[HDI_SILAN_WIDE];   /* [steps] coefficients of each */
@@ -21651,7 +21659,7 @@ typedef struct hdi_ground {
     double *trace;
     double largest_trace;
     double *mean_off;            /* [n_components] G b is off by at most sqrt(G_vv) times this */
-    int32_t formed;
+    int32_t formed, traced;      /* traced: largest_trace is known, if all else is gone, too */
 } hdi_ground;
 
 /* ---- the pair grounded ---- */
@@ -21683,8 +21691,7 @@ static void hdi_ground_components(const hd_laplacian *lap, char *loose) {
             sum += lap->L.val[p];
             size += fabs(lap->L.val[p]);
         }
-        if (fabs(sum) > hdi_row_terms(lap, i) * DBL_EPSILON * size)
-            loose[lap->component[i]] = 0;
+        if (fabs(sum) > hdi_row_terms(lap, i) * DBL_EPSILON * size) loose[lap->component[i]] = 0;
     }
 }
 
@@ -21799,14 +21806,14 @@ static hd_status hdi_ground_make(hdi_elim *m, hdi_ground *g, hd_error *e) {
                 g->trace[lap->component[i]] += hdi_max(0, g->diag[i]) * size;
             }
             for (i = 0; i < lap->n_components; i++) g->largest_trace = hdi_max(g->largest_trace, g->trace[i]);
+            g->traced = 1;
         }
     }
     if (e->status < 0) hdi_ground_free(g, m->ctx);
     return hdi_scope_end(&s);
 }
 
-/* The step of the derivative, relative to the smallest eigenvalue that is not zero. Its error is the square
- * of this. */
+/* The step of the derivative, relative to the smallest eigenvalue but zero. Its error is this squared. */
 #define HDI_GROUND_STEP 1e-9
 
 /* form: diag of G B G without the part of the means. mean: G b, and the bound on its error. */
@@ -22239,8 +22246,7 @@ static hd_status hdi_spec_make(hdi_spec *s, hdi_elim *m, int32_t count, double t
     if (s->slab_of) s->T = HDI_NEW(s->ctx, double, 3 * most * most + 5 * most, e);
     if (s->T) s->w = HDI_NEW(s->ctx, double, 3 * n * wide, e);
     if (s->w) s->sweep = HDI_NEW(s->ctx, double, hdi_sweep_size(&m->sym, 1, HDI_SPEC_WIDE), e);
-    if (s->sweep)
-        s->h = HDI_NEW(s->ctx, double, h * HDI_CAST(uint64_t, hdi_spec_chunks(s->n) + 1), e);
+    if (s->sweep) s->h = HDI_NEW(s->ctx, double, h * HDI_CAST(uint64_t, hdi_spec_chunks(s->n) + 1), e);
     if (s->h) s->group = HDI_NEW(s->ctx, double, 2 * group + 2 * n, e);
     if (e->status < 0) return e->status;
     s->residual = s->value + n;
@@ -22283,8 +22289,7 @@ static void hdi_spec_dots(const hdi_spec *s, hdi_slab_pass p, double *h) {
     p.h = s->part;
     hdi_parallel(s->ctx, p.n_chunks, hdi_slab_dots_task, &p);
     for (i = 0; i < size; i++) h[i] = -s->part[i];
-    for (c = 1; c < p.n_chunks; c++)
-        for (i = 0; i < size; i++) h[i] -= s->part[c * size + i];
+    for (c = 1; c < p.n_chunks; c++) for (i = 0; i < size; i++) h[i] -= s->part[c * size + i];
 }
 
 static void hdi_spec_add(const hdi_spec *s, hdi_slab_pass p, double *h, int copy) {
@@ -22523,8 +22528,7 @@ static void hdi_spec_take(hdi_spec *s) {
     double C[HDI_SPEC_WIDE * HDI_SPEC_WIDE] = {0};
     for (q = 0; q < HDI_SPEC_WIDE; q++)
         if (s->couple[9 * q] > 0) from[n++] = q;
-    for (i = 0; i < n; i++)
-        for (k = 0; k < s->width; k++) C[8 * i + k] = s->couple[8 * from[i] + k];
+    for (i = 0; i < n; i++) for (k = 0; k < s->width; k++) C[8 * i + k] = s->couple[8 * from[i] + k];
     memcpy(s->couple, C, sizeof C);
     for (i = 0; i < n; i++) {                    /* pack to the left */
         double *w = s->w, *bw = s->bw;
@@ -22749,8 +22753,7 @@ static double hdi_spec_measure(hdi_spec *s, const double *value, const double *x
     hdi_spec_mass(s, x, bx);
     hdi_spec_residuals(s, value, x, bx, s->tmp);
     hdi_wide_norms(s->tmp, s->m->weight, s->n, HDI_SPEC_WIDE, norm);
-    for (r = 0; r < HDI_SPEC_WIDE; r++)
-        worst = hdi_max(worst, norm[r] / hdi_max(fabs(value[r]), s->unit));
+    for (r = 0; r < HDI_SPEC_WIDE; r++) worst = hdi_max(worst, norm[r] / hdi_max(fabs(value[r]), s->unit));
     return worst;
 }
 
@@ -22787,8 +22790,7 @@ static void hdi_spec_polish(hdi_spec *s, double *x, int32_t n) {
     for (i = 0; i < size; i++) x[i] -= i % 8 < n ? s->w[i] : 0;
 }
 
-/* The same while residuals are too large, for the eigenvalues of block x. A step that makes them larger is
- * taken back. */
+/* The same while residuals are too large, for the eigenvalues of block x. Steps that worsen it are undone. */
 static void hdi_spec_polish_all(hdi_spec *s, const double *value, double *x, double *bx, int32_t n) {
     double norm[HDI_SPEC_WIDE], worst = hdi_spec_measure(s, value, x, bx, norm), now;
     int32_t tries;
@@ -22814,8 +22816,7 @@ static void hdi_spec_settle(hdi_spec *s, double *x, double *bx, int32_t at, int3
     hdi_spec_mass(s, x, bx);
     hdi_spec_add(s, hdi_spec_pass(s, slab, at, n, x, 1), NULL, 1);
     hdi_spec_dots(s, hdi_spec_pass(s, slab, at, n, bx, 1), h);
-    for (q = 0; q < n; q++)
-        for (r = 0; r < n; r++) G[8 * q + r] = h[8 * q + r];
+    for (q = 0; q < n; q++) for (r = 0; r < n; r++) G[8 * q + r] = h[8 * q + r];
     for (q = 0; q < HDI_SPEC_WIDE; q++) norm[q] = scale[q] = 1;
     (void)hdi_spec_cholesky(G, R, scale, norm, NULL);
     job.w = x;
@@ -22897,8 +22898,7 @@ static hd_status hdi_spec_constants(hdi_spec *s, int32_t most, hd_error *e) {
         for (i = 0; i < s->n; i++) {
             const int32_t c = s->lap->component[i], at = col[c] - k;
             if (col[c] < 0 || at < 0 || at >= cols) continue;
-            hdi_slab_at(slab, i / HDI_SPEC_TILE, at)[i % HDI_SPEC_TILE] =
-                1 / sqrt(s->lap->component_mass[c]);
+            hdi_slab_at(slab, i / HDI_SPEC_TILE, at)[i % HDI_SPEC_TILE] = 1 / sqrt(s->lap->component_mass[c]);
         }
         for (i = 0; i < cols; i++) hdi_spec_enter(s, 0, 0, i);
     }
@@ -22946,12 +22946,12 @@ static double hdi_spec_count_off(hdi_spec *s) {
 static hd_status hdi_spec_shift(hdi_spec *s, double sigma, double step, hd_error *e) {
     int32_t tries;
     for (tries = 0;; tries++) {
-        hdi_error_clear(e);
         s->n_factors++;
         s->refine = 0;
         s->sigma = sigma;
         if (hdi_elim_real(s->m, &s->factor, 1, -sigma, e) >= 0) break;
         if (e->status != HD_ERR_BREAKDOWN || tries == 4) return e->status;
+        hdi_error_clear(e);
         sigma += 0.01 * step;
     }
     s->below = s->factor.all.negative;
@@ -23701,6 +23701,10 @@ typedef struct hdi_heat_order {
     hdi_ground ground;
 } hdi_heat_order;
 
+/* How a call goes on that exceeded the byte limit: without what is optional, that is eigenpairs and poles
+ * that times share; besides by the direct method with the fewest poles. */
+enum { HDI_SPARE_OPTIONS = 1, HDI_SPARE_POLES };
+
 struct hd_heat {
     hd_context *ctx;
     const hd_laplacian *source;  /* the caller's */
@@ -23715,6 +23719,7 @@ struct hd_heat {
     uint64_t no_factors_limit;   /* the byte limit that factors did not fit */
     /* auto: the time asked for last without factors of its poles, and the cost of these calls by the model */
     double habit_t, habit_spent;
+    int32_t spare;               /* of a call that exceeded the byte limit: an hdi_spare */
     hd_rational own_set;
     hdi_elim elim;               /* to factorise */
     hdi_ground ground;           /* made when it is first needed; of elim */
@@ -23887,14 +23892,6 @@ static double hdi_heat_drift(const hd_laplacian *lap, double *sum) {
     return drift;
 }
 
-static void hdi_heat_free_lanes(hd_heat *heat) {
-    int32_t i;
-    for (i = 0; i < heat->n_lanes; i++) hdi_lane_free(heat->lane + i, heat->ctx);
-    hdi_free(heat->ctx, heat->lane);
-    heat->lane = NULL;
-    heat->n_lanes = 0;
-}
-
 /* Makes the plan have n lanes, without their arrays. */
 static hd_status hdi_heat_seats(hd_heat *heat, int32_t n, hd_error *e) {
     hdi_lane *lane;
@@ -23909,10 +23906,18 @@ static hd_status hdi_heat_seats(hd_heat *heat, int32_t n, hd_error *e) {
     return HD_OK;
 }
 
+static void hdi_heat_free_iterative(hd_heat *heat) {
+    hdi_family_free(&heat->fam);
+    hdi_upper_free(heat->ctx, &heat->up);
+    hdi_free(heat->ctx, heat->weight);
+    hdi_laplacian_free(heat->lap, heat->ctx);
+    heat->weight = NULL;
+    heat->lap = NULL;
+}
+
 /* The copy of the pair to iterate on. */
 static hd_status hdi_heat_iterative(hd_heat *heat, hd_error *e) {
     if (heat->weight) return HD_OK;
-    hdi_error_clear(e);
     if (!heat->lap) {
         if (hdi_progress(heat->ctx, "order", 0, e) < 0) return e->status;
         heat->lap = hdi_precond_ordered(heat->source, heat->ctx, e);
@@ -23958,12 +23963,37 @@ static hd_status hdi_heat_turn(hd_heat *heat, int light, hd_error *e) {
     return HD_OK;
 }
 
+/* Frees all factors of both orders; the analyses stay. */
+static void hdi_heat_drop(hd_heat *heat) {
+    hdi_elim_drop(&heat->elim);
+    if (heat->other) hdi_elim_drop(&heat->other->elim);
+}
+
+/* Frees what is made again when it is needed, but the analyses and the copy of the pair to iterate on. pairs:
+ * eigenpairs, too. */
+static void hdi_heat_shed(hd_heat *heat, int pairs) {
+    int32_t i;
+    for (i = 0; i < heat->n_lanes; i++) hdi_lane_free(heat->lane + i, heat->ctx);
+    hdi_free(heat->ctx, heat->lane);
+    heat->lane = NULL;
+    heat->n_lanes = 0;
+    hdi_free(heat->ctx, heat->batch_room);
+    heat->batch_room = NULL;
+    heat->batch_doubles = 0;
+    if (HDI_HAS_DIRECT && heat->silan) hdi_silan_free(heat->silan, heat->ctx);
+    hdi_free(heat->ctx, heat->silan);
+    heat->silan = NULL;
+    if (HDI_HAS_DIAGONAL) hdi_ground_free(&heat->ground, heat->ctx);
+    if (HDI_HAS_DIAGONAL && heat->other) hdi_ground_free(&heat->other->ground, heat->ctx);
+    if (HDI_HAS_MODES && pairs) hdi_modes_free(&heat->modes, heat->ctx);
+    hdi_heat_drop(heat);
+}
+
+/* The same with the analyses. */
 static void hdi_heat_free_factors(hd_heat *heat) {
-    if (HDI_HAS_DIAGONAL && heat->ground.diag) hdi_ground_free(&heat->ground, heat->ctx);
+    hdi_heat_shed(heat, 1);
     hdi_elim_free(&heat->elim);
-    if (!heat->other) return;
-    if (HDI_HAS_DIAGONAL && heat->other->ground.diag) hdi_ground_free(&heat->other->ground, heat->ctx);
-    hdi_elim_free(&heat->other->elim);
+    if (heat->other) hdi_elim_free(&heat->other->elim);
     hdi_free(heat->ctx, heat->other);
     heat->other = NULL;
     heat->light = 0;
@@ -23987,16 +24017,14 @@ static hd_status hdi_heat_analysed_as(hd_heat *heat, int light, hd_error *e) {
 /* The same in the order for all but few columns. */
 static hd_status hdi_heat_analysed(hd_heat *heat, hd_error *e) { return hdi_heat_analysed_as(heat, 0, e); }
 
-/* Checks a right-hand side. The absolute value of its largest part is between 2^(*exponent - 1) and
- * 2^*exponent. */
+/* Checks a right-hand side. Its largest part is between 2^(*exponent - 1) and 2^*exponent in size. */
 static hd_status hdi_solve_rhs(const hd_laplacian *lap, const hd_c64 *rhs, int *exponent, hd_error *e) {
     double largest = 0;
     int32_t v;
     for (v = 0; v < lap->n; v++) {
         if (!hdi_cfinite(rhs[v]))
             return hdi_fail_row(e, HD_ERR_NOT_FINITE, "solve: a value of the right-hand side is not finite",
-                                v,
-                                -1, hdi_finite(rhs[v].re) ? rhs[v].im : rhs[v].re);
+                                v, -1, hdi_finite(rhs[v].re) ? rhs[v].im : rhs[v].re);
         if (lap->row[v] >= 0) largest = hdi_max(largest, hdi_max(fabs(rhs[v].re), fabs(rhs[v].im)));
     }
     frexp(largest, exponent);
@@ -24004,8 +24032,7 @@ static hd_status hdi_solve_rhs(const hd_laplacian *lap, const hd_c64 *rhs, int *
 }
 
 /* The right-hand side into the lane, near one so that no norm underflows or overflows, by rows and without
- * its constants, which go to x by vertices: b - B mean(b), and mean(b)/theta. Returns its norm, constants
- * included. */
+ * its constants, which go to x by vertices: b - B mean(b), and mean(b)/theta. Returns the norm with these. */
 static double hdi_shifted_load(const hd_heat *heat, const hd_c64 *rhs, int exponent, hd_c64 theta,
                                hdi_lane *lane, hd_c64 *x) {
     const hd_laplacian *lap = heat->lap;
@@ -24116,8 +24143,7 @@ static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const 
  * Constants were fitted to meshes of 2K to 10K vertices with t from 0.1 h^2 to 1e5 h^2: balls, tori, grids
  * with jitter, strips, unevenly sampled ones, noise, thin triangles made Delaunay, points. There the model
  * has 0.6 to 2.8 times the steps that Lanczos takes, and 0.4 to 2.8 times those of COCG; 0.6 to 1.7 times
- * where triangles are fair. Thin triangles whose obtuse angles are left may take ten times more, or never
- * end. */
+ * where triangles are fair. Thin triangles with obtuse angles may take ten times more, or never end. */
 #define HDI_LANCZOS_GROWTH 3.3
 #define HDI_LANCZOS_LOWEST 0.22
 #define HDI_LANCZOS_LEAST 3
@@ -24192,8 +24218,7 @@ static double hdi_lanczos_steps(const hd_heat *heat, double t) {
     return HDI_LANCZOS_LEAST + hdi_min(least, HDI_CAST(double, heat->source->n_active));
 }
 
-/* Of all poles together. Solutions at hand give a good start, so that more poles do not take as many times
- * more steps. */
+/* Of all poles together. Solutions at hand give a good start: twice the poles do not take twice as many. */
 static double hdi_cocg_steps(const hd_heat *heat, double t, int32_t poles) {
     static const double hdi_steps_of[] = {1, 5.5, 5, 2, 1.4, 1};   /* by hd_precond */
     const hdi_steps_scales *s = &heat->scales;
@@ -24324,6 +24349,7 @@ typedef struct hdi_heat_call {
     hd_method method;
     double cost;                 /* of this method by the model, where auto picks by it; else 0 */
     int32_t by_habit;            /* auto picks direct because of the calls before */
+    int32_t forced;              /* auto takes iterations because of the byte limit */
     hdi_rate rate;
     hd_solver solver;
     const hd_laplacian *lap;     /* the copy of the pair that the method works on; the caller's for t = 0 */
@@ -24343,8 +24369,7 @@ typedef struct hdi_heat_call {
     int32_t stop;
 } hdi_heat_call;
 
-/* t for the scaled pair, kept within the range of doubles: any t as large, or as small, gives the same
- * answers. */
+/* t for the scaled pair, within the range of doubles: any t as large, or as small, has the same answers. */
 static double hdi_heat_scaled(const hd_heat *heat, double t) {
     return t > 0 ? hdi_max(1e-300, hdi_min(t * heat->scale, 1e300)) : 0;
 }
@@ -24381,7 +24406,7 @@ static hd_status hdi_heat_renew(hd_heat *heat, hd_error *e) {
     hdi_heat_measure_pair(heat);
     for (i = heat->other != NULL; HDI_HAS_DIRECT && i >= 0; i--) {
         if (heat->elim.ctx) hdi_elim_renew(&heat->elim, lap, heat->fill);
-        if (HDI_HAS_DIAGONAL && heat->ground.diag) hdi_ground_free(&heat->ground, heat->ctx);
+        if (HDI_HAS_DIAGONAL) hdi_ground_free(&heat->ground, heat->ctx);
         if (heat->other) (void)hdi_heat_turn(heat, !heat->light, e);   /* twice, or not at all */
     }
     if (HDI_HAS_DIRECT && HDI_HAS_MODES) hdi_modes_free(&heat->modes, heat->ctx);
@@ -24546,8 +24571,7 @@ static hd_pole_kind hdi_heat_kind(const hdi_heat_call *h) {
            : h->diagonal ? HD_POLES_DIAGONAL : HD_POLES_KERNEL;
 }
 
-/* Are the factors of the poles there? The degree that a field takes by default is not known yet: it is taken
- * to be that of the last. */
+/* Are the factors of the poles there? A field's default degree, not known yet, is taken as the last. */
 static int hdi_heat_at_hand(const hdi_heat_call *h) {
     const hdi_elim *m = hdi_heat_full(h->heat);
     if (!m->filled || m->t != h->t || h->n_times > 1) return 0;
@@ -24612,8 +24636,7 @@ static int hdi_heat_light(const hdi_heat_call *h) {
     hdi_windows w;
     double more;
     if (order.kind != HD_ORDERING_AUTO || hdi_order_kind(&order, &lap->L) != HD_ORDERING_NESTED_DISSECTION ||
-        h->ask.k > HDI_LIGHT_COLUMNS || heat->ctx->byte_limit)
-        return 0;
+        h->ask.k > HDI_LIGHT_COLUMNS || heat->ctx->byte_limit) return 0;
     w = hdi_krylov_windows(f, n, h->times[h->n_times - 1] / h->times[0]);
     more = w.n * HDI_DEGREE_FLOPS * wide / HDI_RATE_FRONTS +
            h->ask.k * w.steps * hdi_krylov_late(h) * 16 * HDI_DEGREE_NNZ / HDI_RATE_SWEEP;
@@ -24684,8 +24707,7 @@ static void hdi_heat_cheapest(hdi_heat_call *h, const hdi_cost *c, double room) 
 
 /* Have calls at this t cost as much as the factors of the poles, and would these be faster from now on?
  * Whoever buys when the rent paid amounts to the price never pays more than twice the least (ski rental;
- * Karlin, Manasse, Rudolph, Sleator 1988). The model counts, never a clock, so the same calls take the same
- * methods everywhere. */
+ * Karlin, Manasse, Rudolph, Sleator 1988). The model counts, not a clock: methods are the same everywhere. */
 static int hdi_heat_habit(const hdi_heat_call *h, const hdi_cost *c, double room) {
     if (!HDI_HAS_POLE_FACTORS || h->method == HD_METHOD_DIRECT || c->direct_bytes > room) return 0;
     return h->n_times == 1 && h->t == h->heat->habit_t && h->heat->habit_spent >= c->factors &&
@@ -24701,13 +24723,11 @@ static void hdi_heat_spend(hdi_heat_call *h) {
     if (h->method != HD_METHOD_DIRECT) heat->habit_spent += h->cost;
 }
 
-/* Picks the method by the model. The analysis is made only where a factorisation could cost less than
- * iterations. */
+/* Picks the method by the model. The analysis is made only where a factorisation could cost least. */
 static hd_status hdi_heat_pick_by_cost(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
-    const hd_context *ctx = heat->ctx;
-    const double room = ctx->byte_limit && HDI_HAS_ITERATIVE   /* without iterations there is no retreat */
-                        ? HDI_CAST(double, ctx->byte_limit) - HDI_CAST(double, ctx->bytes_in_use) : HUGE_VAL;
+    /* without iterations there is no retreat */
+    const double room = HDI_HAS_ITERATIVE ? hdi_bytes_left(heat->ctx) : HUGE_VAL;
     hdi_cost c;
     int light;
     if (hdi_heat_turn(heat, hdi_heat_light(h), h->e) < 0) return h->e->status;
@@ -24721,6 +24741,8 @@ static hd_status hdi_heat_pick_by_cost(hdi_heat_call *h) {
         c = hdi_heat_cost(h);
         hdi_heat_cheapest(h, &c, room);
     }
+    h->forced |= room < HUGE_VAL && h->method == HD_METHOD_ITERATIVE &&
+        c.iterative > hdi_min(c.direct, c.krylov);
     h->by_habit = hdi_heat_habit(h, &c, room);
     if (h->by_habit) {
         h->method = HD_METHOD_DIRECT;
@@ -24737,11 +24759,15 @@ static hd_status hdi_heat_pick(hdi_heat_call *h) {
     h->by_habit = 0;
     h->rep->reason = "asked for";
     if (h->method != HD_METHOD_AUTO) return HD_OK;
+    h->method = HD_METHOD_DIRECT;
+    h->rep->reason = "iterations, which the byte limit asks for, fail";
+    if (heat->spare == HDI_SPARE_POLES) return HD_OK;
     h->method = HD_METHOD_ITERATIVE;
     h->rep->reason = "a solver or preconditioner is asked for";
     if (heat->iterations_asked) return HD_OK;
     h->rep->reason = "factors did not fit the byte limit";
-    if (heat->no_factors && heat->ctx->byte_limit == heat->no_factors_limit) return HD_OK;
+    h->forced = heat->no_factors && heat->ctx->byte_limit == heat->no_factors_limit;
+    if (h->forced) return HD_OK;
     h->rep->reason = "this build has iterations only";
     return HDI_HAS_DIRECT ? hdi_heat_pick_by_cost(h) : HD_OK;
 }
@@ -24754,15 +24780,29 @@ static hd_status hdi_heat_pick(hdi_heat_call *h) {
 #define HDI_EQUAL_FROM 1e8
 #define HDI_EQUAL_BEYOND 750
 
-/* Is t (scaled) so large that only the means of the components are left? 1 or 0; errors are in e. */
+/* Is that asked at t (scaled)? */
+static int hdi_heat_equal_asks(const hd_heat *heat, double t) {
+    return HDI_HAS_DIAGONAL && heat->source->conserves && !heat->opts.rational &&
+           t * heat->lambda_max >= HDI_EQUAL_FROM;
+}
+
+/* Is t (scaled) so large that only the means of the components are left? 1 or 0; errors are in e. What tells
+ * is one number; its factor is not kept, so that there is room for those of poles. Where there is no such
+ * factor, or no room for it, all goes on as ever. */
 static int hdi_heat_equal(hd_heat *heat, double t, hd_error *e) {
-    if (!HDI_HAS_DIAGONAL || !heat->source->conserves || heat->opts.rational ||
-        t * heat->lambda_max < HDI_EQUAL_FROM)
-        return 0;
-    if (heat->elim.ctx && hdi_ground_make(&heat->elim, &heat->ground, e) >= 0)
-        return t > 2 * HDI_EQUAL_BEYOND * heat->ground.largest_trace;
-    if (e->status == HD_ERR_BREAKDOWN) hdi_error_clear(e);   /* not to be told: go on as ever */
-    return 0;
+    hdi_ground *g = &heat->ground;
+    if (!hdi_heat_equal_asks(heat, t) || !heat->elim.ctx) return 0;
+    if (!g->traced) {
+        double trace = HUGE_VAL;
+        if (hdi_ground_make(&heat->elim, g, e) >= 0) trace = g->largest_trace;
+        else if (hdi_over_limit(heat->ctx, e)) trace = -1;
+        else if (e->status != HD_ERR_BREAKDOWN) return 0;
+        hdi_error_clear(e);
+        hdi_ground_free(g, heat->ctx);
+        g->largest_trace = trace;
+        g->traced = trace >= 0;
+    }
+    return g->traced && t > 2 * HDI_EQUAL_BEYOND * g->largest_trace;
 }
 
 /* Lanes for n items, without their arrays. */
@@ -24837,8 +24877,7 @@ static void hdi_heat_measure(const hd_laplacian *lap, hdi_lane *lane) {
 #define HDI_UNIFORM_SHARE 1e-9
 #define HDI_UNIFORM_SHARE_DIRECT 2e-9
 
-/* Degree of a uniform set. Odd ones cost as much as the next even one; direct, 9 fills a pack and the real
- * factor. */
+/* Degree of a uniform set. Odd ones cost as much as the next even one; 9 fills a pack and the real factor. */
 static int32_t hdi_uniform_degree(const hd_laplacian *lap, const hdi_lane *lane, int direct) {
     const double share = direct ? HDI_UNIFORM_SHARE_DIRECT : HDI_UNIFORM_SHARE;
     const double most = share * sqrt(hdi_lane_means_norm2(lane, lap));
@@ -24922,8 +24961,7 @@ static int hdi_lane_bounded(const hdi_heat_call *h) {
     return h->method == HD_METHOD_DIRECT && h->t > 0 && h->heat->elim.set.a0 == 0 && h->lap->b_ratio > 0;
 }
 
-/* Puts a source of several vertices into x by rows; those without rows leave nothing. Returns the norm of
- * diag(B)^-1/2 x. */
+/* A source of several vertices into x by rows, for those that have one. Returns |diag(B)^-1/2 x|. */
 static double hdi_lane_terms(const hd_laplacian *lap, const hdi_terms *c, double *x) {
     double norm = 0;
     int32_t q;
@@ -25123,8 +25161,7 @@ static void hdi_heat_store(const hdi_heat_call *h, int32_t q, const hdi_lane *la
     }
 }
 
-/* The degree of a uniform set that serves all fields. Columns get the highest degree, because their constants
- * are small. */
+/* The degree of a uniform set for all fields. Columns, whose constants are small, get the highest one. */
 static hd_status hdi_heat_degree(const hdi_heat_call *h, int32_t *degree) {
     const int fields = hdi_query_fields(h->ask.query);
     int32_t q, r;
@@ -25151,8 +25188,8 @@ static hd_status hdi_heat_set(const hdi_heat_call *h, hd_rational *set) {
         *set = h->set ? *h->set : *o->rational;
         return HD_OK;
     }
-    if (!o->degree && !h->heat->exacting && kind == HD_POLES_UNIFORM && hdi_heat_degree(h, &degree) < 0)
-        return h->e->status;
+    if (!o->degree && !h->heat->exacting && kind == HD_POLES_UNIFORM &&
+        h->heat->spare != HDI_SPARE_POLES && hdi_heat_degree(h, &degree) < 0) return h->e->status;
     if (hdi_rational_get(set, kind, degree, h->e) >= 0 && h->rate) hdi_rational_rate(set);
     return h->e->status;
 }
@@ -25568,8 +25605,7 @@ static hd_status hdi_krylov_basis(hdi_heat_call *h, int32_t n, int32_t q0, int32
     return hdi_silan_run(z, h->times + q0, q1 - q0, heat->opts.tol, fixed, heat->ctx, h->e);
 }
 
-/* The answers of n items at time q, whose sums are in place p and after in a. counted: their steps have been
- * told of already. */
+/* The answers of n items at time q, whose sums are in place p and after in a. counted: steps are told. */
 static hd_status hdi_krylov_store(hdi_heat_call *h, int32_t n, int32_t q, const hdi_silan_sum *a, int32_t p,
                                   int counted, hd_status status) {
     const hd_heat *heat = h->heat;
@@ -25581,19 +25617,16 @@ static hd_status hdi_krylov_store(hdi_heat_call *h, int32_t n, int32_t q, const 
         if (lane->skip) continue;
         if (a->u[p + i] != lane->u) memcpy(lane->u, a->u[p + i], bytes);
         if (hdi_silan_answer(heat->silan, i, h->times[q] - heat->silan->from, a->y[p + i], heat->drift, lane,
-                             h->e) < 0)
-            return h->e->status;
+                             h->e) < 0) return h->e->status;
         if (counted) lane->steps = 0;
         if (lane->off.solver > heat->opts.tol * lane->u_norm ||
-            lane->off.rounding > heat->limit * lane->u_norm)
-            lane->status = HD_WARN_ACCURACY;
+            lane->off.rounding > heat->limit * lane->u_norm) lane->status = HD_WARN_ACCURACY;
     }
     h->now = h->time_column ? h->time_column[q] : h->now;
     return hdi_heat_store_some(h, n);
 }
 
-/* The answers of n items at the times [q0, q1), from their basis: as many in one pass over it as there are
- * places in a sum. */
+/* The answers of n items at the times [q0, q1), from their basis: each pass as many as a sum has places. */
 static hd_status hdi_krylov_answers(hdi_heat_call *h, int32_t n, int32_t q0, int32_t q1, hd_status status) {
     hd_context *ctx = h->heat->ctx;
     hdi_silan *z = h->heat->silan;
@@ -25857,7 +25890,7 @@ static double hdi_modes_expected(const hd_heat *heat, double above) {
 
 /* May eigenpairs serve this plan? */
 static int hdi_modes_allowed(const hd_heat *heat) {
-    return !heat->poles_asked && !heat->modes.barred && !heat->iterations_asked &&
+    return !heat->poles_asked && !heat->modes.barred && !heat->iterations_asked && !heat->spare &&
            heat->opts.method != HD_METHOD_ITERATIVE && heat->opts.method != HD_METHOD_KRYLOV &&
            heat->source->b_ratio > 0 && heat->source->n_components <= HDI_MODES_FIRST;
 }
@@ -25881,28 +25914,26 @@ static double hdi_modes_need(const hd_heat *heat, int32_t count) {
            HDI_CAST(double, hdi_factor_bytes(&heat->elim.sym, 1));
 }
 
-/* Finds so many eigenpairs. Returns 0 where that fails, or where they are not proven
- * complete: then poles go on. Only out of memory by the system, and cancelling, are errors. */
+/* Finds so many eigenpairs. Returns 0 where that fails, or where they are not proven complete, or where there
+ * is no room: then poles go on. Only out of memory by the system, and cancelling, are errors. */
 static int hdi_modes_find(hd_heat *heat, int32_t count, hd_error *e) {
     hdi_modes *x = &heat->modes;
     const hd_laplacian *lap = heat->source;
     hdi_spec_goal goal;
     hdi_modes_free(x, heat->ctx);
-    if (hdi_heat_analysed(heat, e) < 0) return 0;
-    if (heat->ctx->byte_limit && HDI_MODES_SURE * hdi_modes_need(heat, count) >
-        HDI_CAST(double, heat->ctx->byte_limit) - HDI_CAST(double, heat->ctx->bytes_in_use)) return 0;
+    if (hdi_heat_analysed(heat, e) < 0 ||
+        HDI_MODES_SURE * hdi_modes_need(heat, count) > hdi_bytes_left(heat->ctx)) return 0;
     goal.below = HUGE_VAL;
     goal.count = count;
     x->s.lap = lap;
     x->s.context = heat->ctx;
     if (hdi_spec_run(&heat->elim, &goal, HDI_MODES_RESIDUAL, &x->s, e) >= 0 && x->s.proven &&
         x->s.n_constant == (lap->conserves ? lap->n_components : 0) && hdi_modes_measure(heat, e) >= 0 &&
-        x->off_gram <= HDI_MODES_ORTHO)
-        return 1;
+        x->off_gram <= HDI_MODES_ORTHO) return 1;
     hdi_modes_free(x, heat->ctx);
-    if (e->status == HD_ERR_MEMORY || e->status == HD_ERR_CANCELLED) return 0;
-    x->barred = e->status != HD_ERR_MEMORY_LIMIT;
-    hdi_error_clear(e);
+    x->barred = e->status != HD_ERR_MEMORY && e->status != HD_ERR_MEMORY_LIMIT &&
+                e->status != HD_ERR_CANCELLED && e->status != HD_ERR_ARGUMENT;   /* of progress */
+    if (x->barred) hdi_error_clear(e);
     return 0;
 }
 
@@ -25915,13 +25946,13 @@ static int hdi_modes_enough(hd_heat *heat, double t, double depth, int32_t most,
         const hdi_modes *x = &heat->modes;
         const double more = hdi_modes_expected(heat, above);
         if (x->s.value && x->s.next - x->low >= above) return 1;
-        if (!(more <= most) || !hdi_modes_find(heat, hdi_modes_count(heat, more), e)) return 0;
+        if (!(more <= most) || !hdi_modes_find(heat, hdi_modes_count(heat, more), e)) break;
     }
+    if (hdi_over_limit(heat->ctx, e)) hdi_error_clear(e);
     return 0;
 }
 
-/* What is left of the pairs at time t, and what that is off by per |c_i| and |Q y|: see the sums in which
- * they are used. */
+/* What is left of the pairs at time t, and what that is off by per |c_i| and |Q y|: see their sums. */
 typedef struct hdi_decay {
     int32_t first;               /* of the pairs that are not constants */
     double *weight, *off;        /* [count] exp(-t (theta_i - low)); bounds on the errors per |c_i| */
@@ -25982,13 +26013,6 @@ static hdi_ledger hdi_modes_ledger(void) {
 /* Is a bound by eigenpairs as it should be, or so near zero that nothing else is better? */
 static int hdi_modes_good(const hd_heat *heat, double t, const hd_report *rep) {
     return rep->error_bound <= HDI_MODES_HELP || t * heat->modes.low > HDI_MODES_FADED;
-}
-
-/* Frees the factors of poles, which are of no more use. */
-static void hdi_packs_drop(hd_heat *heat) {
-    hdi_elim *m = heat->light ? &heat->other->elim : &heat->elim;
-    while (m->n_packs > 0) hdi_factor_free(m->pack + --m->n_packs);
-    m->filled = 0;
 }
 
 /* ---- heat that fades ---- */
@@ -26108,8 +26132,7 @@ static void hdi_fading_task(void *arg, int64_t begin, int64_t end) {
     for (i = begin; i < end; i++) a->u[i] = hdi_decayed(a->decay, a->u[i]);
 }
 
-/* What the coefficients of a field sum up to: |c|^2, |w c|^2, the sum of |r_i| min(t, ...) |c_i|, and s(c)
- * but for its last term. */
+/* Sums of a field's coefficients: |c|^2, |w c|^2, of |r_i| min(t, ...) |c_i|, and s(c) but its last term. */
 typedef struct hdi_fading_size { double found, kept, inner, side; } hdi_fading_size;
 
 /* The bounds of a lane's answer. */
@@ -26181,8 +26204,7 @@ static hd_status hdi_fading_answer(hdi_heat_call *h, double t) {
         most = hdi_fading_reach(&heat->modes, &x, work + 3 * HDI_CAST(int64_t, count));
         for (h->batch = 0; h->batch < h->ask.k; h->batch++) {
             if (hdi_progress(heat->ctx, "solve", HDI_CAST(double, h->batch) / h->ask.k, h->e) < 0 ||
-                hdi_heat_load(h, h->batch, h->lane) < 0)
-                break;
+                hdi_heat_load(h, h->batch, h->lane) < 0) break;
             if (!h->lane->skip) hdi_fading_lane(h, &x, &most, h->lane, work);
             if (hdi_heat_store_some(h, 1) < 0) break;
         }
@@ -26203,15 +26225,7 @@ static void hdi_fading_again(hdi_heat_call *h, const hdi_fading_start *from) {
     h->batch = 0;                                /* the fields are as they were: iterations may take over */
     h->lap = h->heat->source;
     if (!h->ask.list) return;
-    h->ask.list->ledger[h->now] =
-        hdi_ledger_begin(HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, 0);
-}
-
-/* Are there pairs enough? Where they do not fit the byte limit the other methods go on. */
-static int hdi_fading_enough(hdi_heat_call *h, double t, double depth, int32_t most) {
-    const int there = hdi_modes_enough(h->heat, t, depth, most, h->e);
-    if (!there && h->e->status == HD_ERR_MEMORY_LIMIT) hdi_error_clear(h->e);
-    return there;
+    h->ask.list->ledger[h->now] = hdi_ledger_begin(HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, 0);
 }
 
 /* The request at one time from at most `most` pairs, which are found if need be: more of them where those
@@ -26221,11 +26235,10 @@ static int hdi_fading_pairs(hdi_heat_call *h, const hdi_fading_start *from, int3
     double depth = hdi_fading_depth(h->heat);
     int tries, there = 0;
     for (tries = 0; tries < 3; tries++) {
-        if (!hdi_fading_enough(h, t, depth, most)) return there && h->e->status >= 0;
+        if (!hdi_modes_enough(h->heat, t, depth, most, h->e)) return there && h->e->status >= 0;
         hdi_fading_again(h, from);
         if (hdi_fading_answer(h, t) < 0 || hdi_modes_good(h->heat, t, h->rep) ||
-            h->rep->error_rational <= HDI_MODES_TOL)
-            break;
+            h->rep->error_rational <= HDI_MODES_TOL) break;
         depth += log(h->rep->error_rational / HDI_MODES_TOL);
         there = hdi_finite(depth);
         if (!there) break;
@@ -26233,8 +26246,7 @@ static int hdi_fading_pairs(hdi_heat_call *h, const hdi_fading_start *from, int3
     return 1;
 }
 
-/* Fields that their answers are to overwrite are copied, so that they can be asked for again. Returns 0 where
- * there is no room. */
+/* Copies fields that their answers would overwrite, to ask for them again. Returns 0 if there is no room. */
 static int hdi_fading_keep(hdi_heat_call *h) {
     const size_t n = HDI_CAST(size_t, h->heat->source->n);
     double *copy;
@@ -26242,7 +26254,7 @@ static int hdi_fading_keep(hdi_heat_call *h) {
     if (!hdi_query_fields(h->ask.query) || h->ask.U != h->ask.F) return 1;
     copy = HDI_TAKE(&h->s, double, n * HDI_CAST(size_t, h->ask.k));
     if (!copy) {
-        if (h->e->status == HD_ERR_MEMORY_LIMIT) hdi_error_clear(h->e);
+        if (hdi_over_limit(h->heat->ctx, h->e)) hdi_error_clear(h->e);
         return 0;
     }
     for (q = 0; q < h->ask.k; q++)
@@ -26254,32 +26266,55 @@ static int hdi_fading_keep(hdi_heat_call *h) {
 
 /* ---- the run ---- */
 
-/* Did a method that auto chose exceed the byte limit? Then what was factorised is freed, and iterations take
- * over. */
+/* Goes on in another way where the byte limit ended one: from factors that auto chose to iterations; where
+ * these fail, or the direct method is asked for, to the fewest poles, with all that can be made again freed
+ * before. Returns 0 where there is no other way. */
 static int hdi_heat_retreat(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
-    if (!HDI_HAS_DIRECT || !HDI_HAS_ITERATIVE) return 0;
-    if (heat->opts.method != HD_METHOD_AUTO || h->e->status != HD_ERR_MEMORY_LIMIT || !heat->elim.ctx)
-        return 0;
-    if (heat->no_factors && heat->no_factors_limit == heat->ctx->byte_limit) return 0;
+    const int over = hdi_over_limit(heat->ctx, h->e), automatic = heat->opts.method == HD_METHOD_AUTO;
+    const int failed = over || h->e->status == HD_ERR_BREAKDOWN || h->e->status == HD_ERR_NOT_CONVERGED;
+    if (!HDI_HAS_DIRECT || heat->spare == HDI_SPARE_POLES) return 0;
     /* fields may have been overwritten by their answers */
     if (h->batch > 0 && hdi_query_fields(h->ask.query)) return 0;
-    hdi_heat_free_lanes(heat);
-    hdi_heat_free_factors(heat);
-    if (heat->silan) hdi_silan_free(heat->silan, heat->ctx);
-    hdi_free(heat->ctx, heat->silan);
-    hdi_free(heat->ctx, heat->batch_room);
-    heat->silan = NULL;
-    heat->batch_room = NULL;
-    heat->batch_doubles = 0;
-    if (h->by_habit) {                           /* the methods before have fitted, and do again */
-        heat->habit_spent = -DBL_MAX;
+    if (HDI_HAS_ITERATIVE && automatic && over && heat->elim.ctx && !h->forced) {
+        hdi_heat_free_factors(heat);
+        if (h->by_habit) {                       /* the methods before have fitted, and do again */
+            heat->habit_spent = -DBL_MAX;
+        } else {
+            heat->no_factors = 1;
+            heat->no_factors_limit = heat->ctx->byte_limit;
+        }
+    } else if (HDI_HAS_POLE_FACTORS &&
+               (automatic ? h->forced && failed : over && h->method == HD_METHOD_DIRECT)) {
+        hdi_heat_shed(heat, 1);
+        hdi_heat_free_iterative(heat);
+        heat->spare = HDI_SPARE_POLES;
     } else {
-        heat->no_factors = 1;
-        heat->no_factors_limit = heat->ctx->byte_limit;
+        return 0;
     }
     hdi_error_clear(h->e);
     return 1;
+}
+
+/* One way to answer a call; what: its own arguments. */
+typedef hd_status (*hdi_way)(hdi_heat_call *h, void *what);
+
+/* Answers a call. If the byte limit ends it, all that can be made again is freed, and the call begins anew
+ * without what is optional. */
+static hd_status hdi_heat_sparing(hdi_heat_call *h, hdi_way way, void *what) {
+    const hdi_heat_call before = *h;
+    const hd_report rep = *h->rep;
+    hd_heat *heat = h->heat;
+    if (way(h, what) >= 0 || heat->spare || !hdi_over_limit(heat->ctx, h->e)) return h->e->status;
+    while (h->s.n > before.s.n) hdi_free(heat->ctx, h->s.block[--h->s.n]);
+    *h = before;
+    *h->rep = rep;                               /* with its error, which is none */
+    hdi_heat_shed(heat, 1);
+    h->lane = NULL;
+    heat->spare = HDI_SPARE_OPTIONS;
+    (void)way(h, what);
+    heat->spare = 0;
+    return h->e->status;
 }
 
 /* Answers that need no solve: the field itself for t = 0, the means for very large t. */
@@ -26332,15 +26367,18 @@ static hd_status hdi_heat_chosen(hdi_heat_call *h) {
 
 /* One time of heat that fades: from eigenpairs where few are left, else by the method picked for it. Where
  * the bound is not as it should be the other way is tried too, and the one with the lower bound taken. */
-static hd_status hdi_heat_fading(hdi_heat_call *h) {
+static hd_status hdi_heat_fading(hdi_heat_call *h, void *what) {
     const double t = h->ask.t[h->now];
     hdi_fading_start from;
     double bound = HUGE_VAL;
     int32_t most = HDI_MODES_FIRST;
+    (void)what;
     from.rep = *h->rep;
     from.t = h->t;
-    if (!hdi_fading_near(h->heat, t, HDI_MODES_MOST) || !hdi_fading_keep(h))
-        return h->e->status < 0 ? h->e->status : hdi_heat_chosen(h);
+    if (!hdi_fading(h)) {                        /* spare: begun anew */
+        hdi_fading_again(h, &from);
+        return hdi_heat_chosen(h);
+    }
     if (hdi_fading_first(h, t) && hdi_fading_pairs(h, &from, most)) {
         if (h->e->status < 0 || hdi_modes_good(h->heat, t, h->rep)) return h->e->status;
         bound = h->rep->error_bound;
@@ -26351,7 +26389,7 @@ static hd_status hdi_heat_fading(hdi_heat_call *h) {
     if (bound == HUGE_VAL && hdi_fading(h)) {
         most = HDI_MODES_MOST;
         bound = h->rep->error_bound;
-        hdi_packs_drop(h->heat);
+        hdi_heat_drop(h->heat);
         if (hdi_fading_pairs(h, &from, most) && (h->e->status < 0 || h->rep->error_bound <= bound))
             return h->e->status;
         if (h->e->status < 0) return h->e->status;
@@ -26365,7 +26403,10 @@ static hd_status hdi_heat_fading(hdi_heat_call *h) {
 
 /* Answers the time under way. */
 static hd_status hdi_heat_single(hdi_heat_call *h) {
-    return HDI_HAS_MODES && h->t > 0 && hdi_fading(h) ? hdi_heat_fading(h) : hdi_heat_chosen(h);
+    if (HDI_HAS_MODES && h->t > 0 && hdi_fading(h) &&
+        hdi_fading_near(h->heat, h->ask.t[h->now], HDI_MODES_MOST) && hdi_fading_keep(h))
+        return hdi_heat_sparing(h, hdi_heat_fading, NULL);
+    return h->e->status < 0 ? h->e->status : hdi_heat_chosen(h);
 }
 
 static hd_status hdi_sources_check(hdi_heat_call *h, int32_t k, const int32_t *sources) {
@@ -26521,14 +26562,6 @@ static hd_status hdi_heat_one_time(hdi_heat_call *h, int32_t q, int *begun) {
     return one.status;
 }
 
-/* The times that are not done one by one. */
-static hd_status hdi_heat_each_time(hdi_heat_call *h, const char *done, int begun) {
-    int32_t q;
-    for (q = 0; q < h->ask.n_times; q++)
-        if (!(done && done[q]) && hdi_heat_one_time(h, q, &begun) < 0) break;
-    return h->rep->status;
-}
-
 /* Answers many times with one or a few krylov bases, where that is the method. Returns 0 where it is not. */
 static int hdi_heat_together(hdi_heat_call *h, const char *done) {
     hd_heat *heat = h->heat;
@@ -26567,14 +26600,18 @@ static hd_status hdi_heat_several(hdi_heat_call *h) {
     else if (begun) *h->rep = late;
     if (whole && !(HDI_HAS_MODES && hdi_fading(h) && h->rep->error_bound > HDI_MODES_HELP)) return HD_OK;
     if (whole) *h->rep = late;
-    return hdi_heat_each_time(h, done, begun);
+    for (q = 0; q < h->ask.n_times; q++)
+        if (!(done && done[q]) && hdi_heat_one_time(h, q, &begun) < 0) break;
+    return h->rep->status;
 }
 
 /* Runs a request whose arguments are checked. */
 static hd_status hdi_heat_run(hdi_heat_call *h) {
+    const int32_t spare = h->heat ? h->heat->spare : 0;
     if (h->e->status < 0 || h->ask.k == 0) return hdi_heat_end(h);
     if (h->ask.n_times == 1) (void)hdi_heat_single(h);
     else (void)hdi_heat_several(h);
+    h->heat->spare = spare;
     return hdi_heat_end(h);
 }
 
@@ -26982,16 +27019,8 @@ static void hdi_heat_free(hd_heat *heat) {
     hd_context *ctx;
     if (!heat) return;
     ctx = heat->ctx;
-    hdi_heat_free_lanes(heat);
-    hdi_family_free(&heat->fam);
-    hdi_upper_free(ctx, &heat->up);
-    hdi_free(ctx, heat->weight);
-    hdi_laplacian_free(heat->lap, ctx);
-    if (HDI_HAS_MODES) hdi_modes_free(&heat->modes, ctx);
+    hdi_heat_free_iterative(heat);
     hdi_heat_free_factors(heat);
-    if (HDI_HAS_DIRECT && heat->silan) hdi_silan_free(heat->silan, ctx);
-    hdi_free(ctx, heat->silan);
-    hdi_free(ctx, heat->batch_room);
     hdi_free(ctx, heat->perm);
     hdi_free(ctx, heat->fill);
     hdi_free(ctx, heat->sums);
@@ -27030,8 +27059,7 @@ static void hdi_inverse_tell(hdi_heat_call *h) {
     h->rep->factor_nnz = h->heat->elim.sym.nnz;
 }
 
-/* Columns within another call: k of them at the (scaled) time t, with the factors that the plan holds or
- * makes. */
+/* Columns within another call: k of them at the (scaled) time t, with factors the plan holds or makes. */
 typedef struct hdi_columns {
     double t;
     hd_kernel kernel;
@@ -27126,8 +27154,7 @@ static double hdi_own_rounding(const hd_heat *heat, const hd_rational *set, doub
     return HDI_PROBE_OWN * seen + closeness * most;
 }
 
-/* A bound of the largest entry of diag(B^-1). A matrix whose B norm is x has entries of at most this times
- * x. */
+/* A bound of the largest entry of diag(B^-1). A matrix whose B norm is x has entries below x times this. */
 static double hdi_largest_spread(const hd_laplacian *lap) {
     double most = 0;
     int32_t i;
@@ -27161,8 +27188,7 @@ static hdi_probe hdi_probe_rows(const hd_laplacian *lap, const double *k, int32_
     return x;
 }
 
-/* Solves for the columns of these rows by the poles of set at the call's time. What is found stays in the
- * plan's lanes. */
+/* Solves for the columns of these rows by the poles of set at the call's time, into the plan's lanes. */
 static hd_status hdi_probe_run(hdi_heat_call *h, const hdi_probe *x, hd_kernel kernel,
                                const hd_rational *set) {
     const hd_rational own = *set;                /* it may be the plan's, which the call sets anew */
@@ -27401,8 +27427,7 @@ static void hdi_diagonal_plain(const hdi_elim *m, hdi_entries *x, const hdi_diag
     }
 }
 
-/* Rounding is relative to the value. A function of the caller's may vanish, and its rounding is relative to
- * the resolvent. */
+/* Rounding is relative to the value; for a function of the caller's, which may vanish, to the resolvent. */
 static void hdi_diagonal_own(const hd_laplacian *lap, hdi_diagonal *d) {
     int32_t i;
     for (i = 0; i < lap->n_active; i++) {
@@ -27442,16 +27467,6 @@ static hd_status hdi_diagonal_probe(hdi_heat_call *h, const hdi_diagonal *d, con
     return hdi_probe_run(h, probe, d->kernel, set);
 }
 
-/* Measures what rounding does to a diagonal by the poles of the plan, relative to size. */
-static hd_status hdi_diagonal_rounding(hdi_heat_call *h, const hdi_diagonal *d, double *rounding) {
-    const hd_rational *set = &h->heat->elim.set;
-    hdi_probe probe;
-    *rounding = 0;
-    if (hdi_diagonal_probe(h, d, set, &probe) < 0) return h->e->status;
-    *rounding = hdi_diagonal_seen(h, d, &probe, set);
-    return HD_OK;
-}
-
 /* The kernel's diagonal at one time with the set for it, on vertices, and its bounds into the report.
  * *relative: the largest of the rational errors relative to the value. */
 static hd_status hdi_diagonal_once(hdi_heat_call *h, hd_kernel kernel, double *out, double *relative) {
@@ -27459,8 +27474,9 @@ static hd_status hdi_diagonal_once(hdi_heat_call *h, hd_kernel kernel, double *o
     hdi_elim *m = &heat->elim;
     const int full = kernel == HD_KERNEL_OPERATOR && heat->source->B;
     hdi_scope scope = hdi_scope_begin(heat->ctx, h->e);
-    double *room, rounding;
+    double *room;
     hdi_diagonal d;
+    hdi_probe probe;
     hdi_entries x;
     int64_t size;
     *relative = 0;
@@ -27481,13 +27497,13 @@ static hd_status hdi_diagonal_once(hdi_heat_call *h, hd_kernel kernel, double *o
         if (full) hdi_diagonal_full(m, &x, &d);
         else hdi_diagonal_plain(m, &x, &d);
         if (m->set.kind == HD_POLES_OWN) hdi_diagonal_own(m->lap, &d);
-        if (hdi_diagonal_rounding(h, &d, &rounding) >= 0) *relative = hdi_diagonal_tell(h, &d, rounding, out);
+        if (hdi_diagonal_probe(h, &d, &m->set, &probe) >= 0)
+            *relative = hdi_diagonal_tell(h, &d, hdi_diagonal_seen(h, &d, &probe, &m->set), out);
     }
     return hdi_scope_end(&scope);
 }
 
-/* The analysis' entries on the pattern of the source's L. The analysis has one of each pair (i,j), (j,i); the
- * other one is the same. */
+/* The analysis' entries on the pattern of the source's L. The analysis has one of (i,j) and (j,i). */
 static void hdi_entries_spread(const hdi_elim *m, const double *k, double unit, double *val) {
     const hdi_symbolic *s = &m->sym;
     const hd_csr *a = &m->source->L;
@@ -27626,9 +27642,10 @@ static hd_status hdi_edges_once(hdi_heat_call *h, double *values, double *ration
 
 /* Goes on from the highest degree of poles, whose factors did not fit the byte limit, to the default. Returns
  * 0 where there is no reason to. */
-static int hdi_degree_retreat(int32_t *degree, hd_error *e) {
-    if (*degree == 0 || e->status != HD_ERR_MEMORY_LIMIT) return 0;
+static int hdi_degree_retreat(hd_heat *heat, int32_t *degree, hd_error *e) {
+    if (*degree == 0 || !hdi_over_limit(heat->ctx, e)) return 0;
     *degree = 0;
+    hdi_heat_shed(heat, 0);
     hdi_error_clear(e);
     return 1;
 }
@@ -27653,7 +27670,7 @@ static hd_status hdi_entries_sure(hdi_heat_call *h, hd_kernel kernel, int edges,
     do {
         *h->rep = before;
         (void)hdi_entries_once(h, kernel, edges, out, &rational);
-    } while (hdi_degree_retreat(&h->degree, h->e));
+    } while (hdi_degree_retreat(h->heat, &h->degree, h->e));
     h->degree = 0;
     return h->e->status;
 }
@@ -27665,39 +27682,25 @@ static hd_status hdi_entries_sure(hdi_heat_call *h, hd_kernel kernel, int edges,
 
 /* ---- diagonals at many times ---- */
 
-/* Frees packs after some did not fit the byte limit, and begins the call anew. */
-static void hdi_heat_forget(hdi_heat_call *h) {
-    hdi_elim *m = &h->heat->elim;
-    hd_report *rep = h->rep;
-    while (m->n_packs > 0) hdi_factor_free(m->pack + --m->n_packs);
-    m->filled = 0;
-    hdi_error_clear(h->e);
-    memset(rep, 0, sizeof *rep);
-    hdi_inverse_tell(h);
-    h->set = NULL;
+/* May the times of a call share their poles? */
+static int hdi_shared_may(const hd_heat *heat) {
+    return !heat->poles_asked && !heat->exacting && !heat->spare;
 }
 
-/* Packs that a shared set for a ratio of times takes. Returns 0 where there is no set. */
-static int32_t hdi_shared_packs(double ratio, double tol) {
-    hd_rational set;
-    return hdi_shared_pick(&set, ratio * (1 + 1e-12), tol) ? (set.n_poles + 3) / 4 : 0;
-}
-
-/* How many windows of equal ratio take the fewest packs in all for times in a range of this ratio. *packs:
- * how many those are. */
+/* How many windows of equal ratio take the fewest packs (*packs) for times in a range of this ratio. */
 static int32_t hdi_shared_windows(double ratio, double tol, int32_t most, int32_t *packs) {
     int32_t w, best = 0;
     for (w = 1; w <= most && w <= 64; w++) {
-        const int32_t each = hdi_shared_packs(pow(ratio, 1.0 / w), tol);
-        if (each == 0 || (best > 0 && w * each >= *packs)) continue;
+        hd_rational set;
+        if (!hdi_shared_pick(&set, pow(ratio, 1.0 / w) * (1 + 1e-12), tol)) continue;
+        if (best > 0 && w * ((set.n_poles + 3) / 4) >= *packs) continue;
         best = w;
-        *packs = w * each;
+        *packs = w * ((set.n_poles + 3) / 4);
     }
     return best;
 }
 
-/* Times that share their poles, in terms of those of the first: (t L + tau theta B)^-1 = (t0 L + theta B)^-1
- * / tau. */
+/* Times that share the poles of the first: (t L + tau theta B)^-1 = (t0 L + theta B)^-1 / tau. */
 typedef struct hdi_window {
     int32_t n_times;
     const double *t;             /* [n_times] scaled, ascending */
@@ -27723,17 +27726,16 @@ static void hdi_window_take(hdi_window *w, const hdi_heat_call *h, int32_t q0, i
     w->values = HDI_TAKE_ZERO(s, double, sets * w->n);
 }
 
-static void hdi_window_weights(const hdi_window *w) {
-    const hd_rational *set = w->set;
-    int32_t q, p;
-    for (q = 0; q < w->n_times; q++) {
-        double factor = 1, tau = w->t[q] / w->t[0];
-        const int32_t best = hdi_resolvent_pole(set + q, &factor);
-        hd_c64 *k = w->weight + 2 * HDI_CAST(int64_t, q) * set->n_poles, *g = k + set->n_poles;
-        for (p = 0; p < set->n_poles; p++) {
-            k[p] = hdi_cscale(-hdi_rat_count(set, p) / tau, set[q].a[p]);
-            g[p] = hdi_c(p == best ? factor / tau : 0, 0);
-        }
+/* Weights for k and for (B + tL)^-1 at time q. */
+static void hdi_window_weights(const hdi_window *w, int32_t q, hd_c64 *k, hd_c64 *g) {
+    const hd_rational *set = w->set + q;
+    const double tau = w->t[q] / w->t[0];
+    double factor = 1;
+    const int32_t best = hdi_resolvent_pole(set, &factor);
+    int32_t p;
+    for (p = 0; p < set->n_poles; p++) {
+        k[p] = hdi_cscale(-hdi_rat_count(set, p) / tau, set->a[p]);
+        g[p] = hdi_c(p == best ? factor / tau : 0, 0);
     }
 }
 
@@ -27743,6 +27745,8 @@ static hd_status hdi_window_run(hdi_heat_call *h, const hdi_window *w, double to
     hd_context *ctx = h->heat->ctx;
     hdi_elim_sums sums;
     hd_status status;
+    hd_c64 *k;
+    int32_t q;
     if (h->e->status < 0 || hdi_rational_shared(w->set, w->n_times, w->t, tol, ctx, h->e) < 0)
         return h->e->status;
     h->t = w->t[0];
@@ -27752,7 +27756,8 @@ static hd_status hdi_window_run(hdi_heat_call *h, const hdi_window *w, double to
                                 2 * w->n_times);
     h->set = NULL;
     if (status < 0) return status;
-    hdi_window_weights(w);
+    for (k = w->weight, q = 0; q < w->n_times; k += 2 * w->set->n_poles, q++)
+        hdi_window_weights(w, q, k, k + w->set->n_poles);
     sums.n_sets = 2 * w->n_times;
     sums.weight = w->weight;
     sums.wanted = wanted;
@@ -27818,16 +27823,6 @@ static hd_status hdi_diagonal_window(hdi_heat_call *h, int32_t q0, int32_t q1, d
     return hdi_scope_end(&s);
 }
 
-/* All times, in windows that share their poles. */
-static hd_status hdi_diagonal_windows(hdi_heat_call *h, int32_t n_windows, double *D, size_t ldd) {
-    int32_t w, q0, q1;
-    for (w = 0, q0 = 0; q0 < h->n_times; w++, q0 = q1) {
-        q1 = hdi_window_end(h->times, h->n_times, q0, w, n_windows);
-        if (hdi_diagonal_window(h, q0, q1, D, ldd) < 0) break;
-    }
-    return h->e->status;
-}
-
 /* Do so many packs cost less than so many times one by one? Each of these takes a set of degree 9, that is a
  * pack and a real factor, which costs an eighth of a pack. */
 static int hdi_shared_pays(int32_t packs, int32_t n_times) { return 8 * packs < 9 * n_times; }
@@ -27836,16 +27831,18 @@ static int hdi_shared_pays(int32_t packs, int32_t n_times) { return 8 * packs < 
 static hd_status hdi_diagonal_poles(hdi_heat_call *h, hd_kernel kernel, double *D, size_t ldd,
                                     const char *done) {
     hd_heat *heat = h->heat;
-    int32_t q, n, packs = 0, windows;
+    int32_t q, q1, n, w, packs = 0, windows = 0;
     if (hdi_heat_analysed(heat, h->e) < 0 || hdi_heat_sort_times(h, 1, done) < 0) return h->e->status;
     hdi_inverse_tell(h);
     n = h->n_times;
-    if (kernel == HD_KERNEL_SYMMETRIC && n > 1 && !heat->poles_asked && !heat->exacting) {
+    if (kernel == HD_KERNEL_SYMMETRIC && n > 1 && hdi_shared_may(heat))
         windows = hdi_shared_windows(h->times[n - 1] / h->times[0], HDI_SHARED_TOL, n, &packs);
-        if (windows > 0 && hdi_shared_pays(packs, n) && !hdi_heat_equal(heat, h->t, h->e)) {
-            if (hdi_diagonal_windows(h, windows, D, ldd) != HD_ERR_MEMORY_LIMIT) return h->e->status;
-            hdi_heat_forget(h);                  /* one by one takes less */
+    if (windows > 0 && hdi_shared_pays(packs, n) && !hdi_heat_equal(heat, h->t, h->e)) {
+        for (w = 0, q = 0; q < n && h->e->status >= 0; w++, q = q1) {
+            q1 = hdi_window_end(h->times, n, q, w, windows);
+            (void)hdi_diagonal_window(h, q, q1, D, ldd);
         }
+        return h->e->status;
     }
     for (q = 0; q < h->ask.n_times && h->e->status >= 0; q++) {
         if (done && done[q]) continue;
@@ -27877,19 +27874,6 @@ static double hdi_trace_sum(const hd_c64 *w, int32_t n_poles, const double *x, i
     for (p = 0; p < n_poles; p++)
         sum += w[p].re * x[2 * p * stride + i] - w[p].im * x[(2 * p + 1) * stride + i];
     return sum;
-}
-
-/* Weights for K_t and for (B + tL)^-1 at time q; see hdi_window_weights. */
-static void hdi_trace_weights(const hdi_trace *z, int32_t q, hd_c64 *k, hd_c64 *g) {
-    const hd_rational *set = z->w.set + q;
-    const double tau = z->w.t[q] / z->w.t[0];
-    double factor = 1;
-    const int32_t best = hdi_resolvent_pole(set, &factor);
-    int32_t p;
-    for (p = 0; p < set->n_poles; p++) {
-        k[p] = hdi_cscale(-hdi_rat_count(set, p) / tau, set->a[p]);
-        g[p] = hdi_c(p == best ? factor / tau : 0, 0);
-    }
 }
 
 /* Factors at the first time, and the two parts of every pole's inverse. */
@@ -27932,7 +27916,7 @@ static void hdi_trace_probes(const hdi_elim *m, hdi_trace *z) {
     hd_c64 k[HD_MAX_POLES], g[HD_MAX_POLES];
     int32_t i, r, v, set;
     int64_t at;
-    hdi_trace_weights(z, last, k, g);
+    hdi_window_weights(&z->w, last, k, g);
     for (i = 0; i < n; i++) z->last[i] = z->w.set[last].a0 + hdi_trace_sum(k, n_poles, z->diag, n, i);
     for (i = 0, r = -1; i < n; i++)
         if (r < 0 || z->last[i] * lap->b_diag[r] < z->last[r] * lap->b_diag[i]) r = i;
@@ -27976,7 +27960,7 @@ static double hdi_trace_at(hdi_heat_call *h, const hdi_trace *z, int32_t q, hdi_
     double value = set->a0 * lap->n_active, spread = 0, seen = 0;
     hd_c64 k[HD_MAX_POLES], g[HD_MAX_POLES];
     int32_t i, r;
-    hdi_trace_weights(z, q, k, g);
+    hdi_window_weights(&z->w, q, k, g);
     for (i = 0; i < lap->n_active; i++) {
         value += hdi_trace_sum(k, n_poles, z->diag, lap->n_active, i);
         spread += hdi_trace_sum(g, n_poles, z->diag, lap->n_active, i);
@@ -28011,8 +27995,7 @@ static void hdi_trace_note(hdi_heat_call *h, int32_t q, double value, hdi_parts 
     if (bound) bound[q] = hdi_parts_sum(&off);
 }
 
-/* Traces at times q0 to q1 - 1 of the call, sorted, by one set of poles: shared, or that of the options for a
- * single time. */
+/* Traces at times q0 to q1 - 1 of the call, sorted, by one set of poles: shared, or that of the options. */
 static hd_status hdi_trace_window(hdi_heat_call *h, int32_t q0, int32_t q1, double *Z, double *bound) {
     hdi_elim *m = &h->heat->elim;
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
@@ -28063,18 +28046,13 @@ static hd_status hdi_trace_poles(hdi_heat_call *h, double *Z, double *bound, con
     hdi_inverse_tell(h);
     if (hdi_heat_sort_times(h, 1, done) < 0) return h->e->status;
     n = hdi_trace_late(h, Z, bound);
-    if (n > 1 && !heat->poles_asked && !heat->exacting)
+    if (n > 1 && hdi_shared_may(heat))
         windows = hdi_shared_windows(h->times[n - 1] / h->times[0], HDI_SHARED_TOL, n, &packs);
-    if (windows > 0 && hdi_shared_pays(packs, n)) {
-        for (w = 0, q0 = 0; q0 < n; w++, q0 = q1) {
-            q1 = hdi_window_end(h->times, n, q0, w, windows);
-            if (hdi_trace_window(h, q0, q1, Z, bound) < 0) break;
-        }
-        if (h->e->status != HD_ERR_MEMORY_LIMIT) return h->e->status;
-        hdi_heat_forget(h);                      /* one by one takes less */
-        (void)hdi_trace_late(h, Z, bound);
+    if (!hdi_shared_pays(packs, n)) windows = 0;
+    for (w = 0, q0 = 0; q0 < n && h->e->status >= 0; w++, q0 = q1) {
+        q1 = windows > 0 ? hdi_window_end(h->times, n, q0, w, windows) : q0 + 1;
+        (void)hdi_trace_window(h, q0, q1, Z, bound);
     }
-    for (q0 = 0; q0 < n && h->e->status >= 0; q0++) (void)hdi_trace_window(h, q0, q0 + 1, Z, bound);
     return h->e->status;
 }
 
@@ -28138,8 +28116,7 @@ static void hdi_fading_diagonal_note(const hdi_fading_diagonal *a, int32_t i, do
     out[v] = hdi_decayed(x, a->value[i]);
     part.rational = hdi_decayed(x, x->cut * left_g * left);
     part.solver = hdi_decayed(x, x->mixed * x->mixed * left_g * left + (g->side + twice * found_g) * left +
-                                 (c->side + twice * found) * left_g +
-                                 found_g * (c->inner + twice * found));
+                                 (c->side + twice * found) * left_g + found_g * (c->inner + twice * found));
     part.rounding = hdi_decayed(x, 2 * x->rounding * found_g * sqrt(b)) + 4 * DBL_MIN * DBL_EPSILON +
                     8 * (1 + hdi_min(x->depth, HDI_EQUAL_BEYOND)) * DBL_EPSILON * fabs(out[v]);
     hdi_ledger_note(ledger, out[v], part);
@@ -28274,7 +28251,7 @@ static int hdi_fading_values(hdi_heat_call *h, int32_t q, int32_t most, const hd
     hd_report one;
     memset(&one, 0, sizeof one);
     hdi_error_clear(&one.error);
-    if (!hdi_fading_enough(h, t, hdi_fading_depth(h->heat), most)) return 0;
+    if (!hdi_modes_enough(h->heat, t, hdi_fading_depth(h->heat), most, h->e)) return 0;
     *h->rep = one;
     if (to->Z) hdi_fading_trace(h, t, to->Z + q, to->bound ? to->bound + q : NULL);
     else if (to->edges) (void)hdi_fading_edges_run(h, t, to->D + HDI_CAST(size_t, q) * to->ldd);
@@ -28308,18 +28285,13 @@ static hd_status hdi_fading_poles(hdi_heat_call *h, const hdi_fading_to *to, con
                  : hdi_diagonal_poles(h, to->kernel, to->D, to->ldd, done);
 }
 
-/* May at most `most` pairs serve time t of the call? */
-static int hdi_fading_serves(const hdi_heat_call *h, double t, int32_t most) {
-    return most > HDI_MODES_FIRST ? hdi_fading(h) && hdi_fading_near(h->heat, t, most)
-                                  : hdi_fading_first(h, t);
-}
-
-/* Times that are not done and that at most `most` pairs serve. done [n_times]: of these 1. Returns how many
- * are tried. */
+/* Times that are not done and that at most `most` pairs serve: done becomes 1. Returns how many are tried. */
 static int32_t hdi_fading_some(hdi_heat_call *h, const hdi_fading_to *to, int32_t most, char *done) {
     int32_t q, tried = 0;
     for (q = 0; q < h->ask.n_times && h->e->status >= 0; q++) {
-        if (done[q] || !hdi_fading_serves(h, h->ask.t[q], most)) continue;
+        const double t = h->ask.t[q];
+        if (done[q] || !(most > HDI_MODES_FIRST ? hdi_fading(h) && hdi_fading_near(h->heat, t, most)
+                                                : hdi_fading_first(h, t))) continue;
         done[q] = HDI_CAST(char, hdi_fading_values(h, q, most, to));
         if (h->e->status < 0) h->e->column = q;
         tried++;
@@ -28361,30 +28333,26 @@ static hd_status hdi_fading_times(hdi_heat_call *h, const hdi_fading_to *to) {
     return h->e->status;
 }
 
-static hd_status hdi_trace_run(hdi_heat_call *h, double *Z, double *bound) {
-    hdi_fading_to to;
-    memset(&to, 0, sizeof to);
-    to.Z = Z;
-    to.bound = bound;
-    return HDI_HAS_MODES && hdi_fading(h) ? hdi_fading_times(h, &to) : hdi_fading_poles(h, &to, NULL);
+static hd_status hdi_fading_run(hdi_heat_call *h, void *what) {
+    const hdi_fading_to *to = HDI_CAST(const hdi_fading_to *, what);
+    return HDI_HAS_MODES && hdi_fading(h) ? hdi_fading_times(h, to) : hdi_fading_poles(h, to, NULL);
 }
 
-static hd_status hdi_edges_run(hdi_heat_call *h, double *values) {
+/* A query for diagonals or edges in D, ldd apart, or for traces in Z with bounds. */
+static hd_status hdi_fading_ask(hdi_heat_call *h, hd_kernel kernel, int edges, double *D, size_t ldd,
+                                double *Z, double *bound) {
     hdi_fading_to to;
-    memset(&to, 0, sizeof to);
-    to.edges = 1;
-    to.D = values;
-    to.ldd = HDI_CAST(size_t, h->heat->source->L.nnz);
-    return HDI_HAS_MODES && hdi_fading(h) ? hdi_fading_times(h, &to) : hdi_fading_poles(h, &to, NULL);
+    to.kernel = kernel;
+    to.edges = edges;
+    to.D = D;
+    to.ldd = ldd;
+    to.Z = Z;
+    to.bound = bound;
+    return hdi_heat_sparing(h, hdi_fading_run, &to);
 }
 
 static hd_status hdi_diagonal_run(hdi_heat_call *h, hd_kernel kernel, double *D, size_t ldd) {
-    hdi_fading_to to;
-    memset(&to, 0, sizeof to);
-    to.kernel = kernel;
-    to.D = D;
-    to.ldd = ldd;
-    return HDI_HAS_MODES && hdi_fading(h) ? hdi_fading_times(h, &to) : hdi_fading_poles(h, &to, NULL);
+    return hdi_fading_ask(h, kernel, 0, D, ldd, NULL, NULL);
 }
 
 /* ---- filters that share their poles ---- */
@@ -28607,13 +28575,11 @@ static hd_status hdi_diagonal_check(hdi_heat_call *h) {
     return HDI_HAS_DIAGONAL ? hdi_direct_only(h) : HDI_LEFT_OUT(h->e, DIAGONAL, "selected inversion");
 }
 
-/* The start of a query that only selected inversion answers, at positive times. given: the array for its
- * answers is there. */
+/* The start of a query that only selected inversion answers, at positive times. given: its array is there. */
 static hd_status hdi_diagonal_begin(hdi_heat_call *h, hd_heat *heat, hd_kernel kernel, int32_t n_times,
                                     const double *t, int given, hd_report *report, hd_error *err) {
     if (hdi_kernel_begin(h, heat, kernel, report, err) < 0 || hdi_times_check(h, n_times, t, 1) < 0 ||
-        hdi_diagonal_check(h) < 0)
-        return h->e->status;
+        hdi_diagonal_check(h) < 0) return h->e->status;
     return given ? HD_OK : hdi_missing(h->e);
 }
 
@@ -28667,8 +28633,7 @@ typedef struct hdi_metric {
     int own;
 } hdi_metric;
 
-/* A column of f by vertices. Rounding is at most sqrt(g_v) times off_m, and at most sqrt(spread_v) times
- * off_b. */
+/* A column of f by vertices. Rounding is at most sqrt(g_v) off_m, and at most sqrt(spread_v) off_b. */
 typedef struct hdi_metric_column { double *u, off_m, off_b; } hdi_metric_column;
 
 /* What rounding of a function of the caller's is relative to: the resolvent, or where that is no bound the
@@ -28827,11 +28792,11 @@ static hd_status hdi_metric_make(hd_heat *heat, hd_distance_kind kind, double t,
     }
     if (h.e->status < 0) *e = *h.e;
     hdi_heat_end(&h);
+    if (e->status < 0) hdi_free(heat->ctx, hdi_keep(keep, x->diag));   /* another try may follow */
     return hdi_scope_end(&scope);
 }
 
-/* Makes a column that the plan gave, of k_t or of K_t e_s, a column of f by vertices, in place. work [2
- * n_active]. */
+/* Makes a column of k_t, or of K_t e_s, one of f by vertices, in place. work [2 n_active]. */
 static void hdi_metric_of_column(const hd_laplacian *lap, const hdi_metric *x, double *u, double *work) {
     int32_t i;
     if (x->kind != HD_DISTANCE_WEIGHTED) {
@@ -29340,7 +29305,7 @@ static hd_status hdi_distance_poles(hd_heat *heat, const hdi_distances *to, doub
     if (!sure && hdi_distance_once(heat, to, t, 0, rep, e) < 0) return e->status;
     if (settled || (!sure && rep->error_rational <= HDI_DISTANCE_SURE)) return e->status;
     do (void)hdi_distance_once(heat, to, t, degree, rep, e);
-    while (hdi_degree_retreat(&degree, e));
+    while (hdi_degree_retreat(heat, &degree, e));
     return e->status;
 }
 
@@ -29350,9 +29315,12 @@ static hd_status hdi_distance_help(hd_heat *heat, const hdi_distances *to, doubl
                                    hd_error *e) {
     const double bound = rep->error_bound;
     if (bound <= HDI_MODES_HELP || !hdi_modes_near(heat, to->kind, t, HDI_MODES_MOST)) return e->status;
-    hdi_packs_drop(heat);
+    hdi_heat_drop(heat);
     if (!hdi_modes_reach(heat, to->kind, t, HDI_MODES_MOST, e)) return e->status;
     if (hdi_modes_distance(heat, to, t, rep, e) < 0 || rep->error_bound <= bound) return e->status;
+    if (hdi_distance_poles(heat, to, t, rep, e) >= 0 || !hdi_over_limit(heat->ctx, e)) return e->status;
+    hdi_heat_shed(heat, 1);                      /* without the pairs, as before */
+    hdi_error_clear(e);
     return hdi_distance_poles(heat, to, t, rep, e);
 }
 
@@ -29367,7 +29335,10 @@ static hd_status hdi_distance_time(hd_heat *heat, const hdi_distances *to, doubl
     }
     if (hdi_modes_distance(heat, to, t, rep, e) < 0 || hdi_modes_good(heat, t, rep)) return e->status;
     bound = rep->error_bound;
-    if (hdi_distance_poles(heat, to, t, rep, e) < 0 || rep->error_bound <= bound) return e->status;
+    (void)hdi_distance_poles(heat, to, t, rep, e);
+    if (e->status < 0 ? !hdi_over_limit(heat->ctx, e) : rep->error_bound <= bound) return e->status;
+    hdi_heat_drop(heat);
+    hdi_error_clear(e);
     return hdi_modes_distance(heat, to, t, rep, e);
 }
 
@@ -29389,8 +29360,7 @@ static int32_t hdi_distance_late(hdi_heat_call *h, const hdi_distances *to, char
         hdi_distances one = *to;
         hd_report rep;
         if (!hdi_modes_first(h->heat, to->kind, t) ||
-            !hdi_modes_reach(h->heat, to->kind, t, HDI_MODES_FIRST, h->e))
-            break;
+            !hdi_modes_reach(h->heat, to->kind, t, HDI_MODES_FIRST, h->e)) break;
         one.ld = to->ld * HDI_CAST(size_t, h->n_times);
         one.D = to->D + HDI_CAST(size_t, column) * to->ld;
         if (hdi_modes_distance(h->heat, &one, t, &rep, h->e) < 0 || !hdi_modes_good(h->heat, t, &rep)) break;
@@ -29451,8 +29421,7 @@ static hd_status hdi_distance_shared_take(hdi_distance_shared *z, hdi_heat_call 
     return HD_OK;
 }
 
-/* Adds a row to the right-hand side, e_row or with full B e_row, and to the part of its sweeps that is not
- * zero. */
+/* Adds a row to the right-hand side, e_row or with full B e_row, and to the part that its sweeps touch. */
 static void hdi_distance_shared_row(hdi_distance_shared *z, int32_t row, double weight) {
     const hd_laplacian *lap = z->m->lap;
     int64_t p;
@@ -29538,8 +29507,7 @@ static double hdi_distance_shared_off(const hdi_distance_shared *z, int32_t q) {
     return off;
 }
 
-/* Measures rounding of the diagonals: they are compared with columns of some rows, found as those of sources
- * are. */
+/* Measures rounding of the diagonals against columns of some rows, found as those of sources are. */
 static void hdi_distance_shared_probe(hdi_distance_shared *z) {
     const hd_laplacian *lap = z->m->lap;
     const double *last = hdi_window_at(&z->w, z->w.values, z->w.n_times - 1);
@@ -29562,8 +29530,7 @@ static void hdi_distance_shared_probe(hdi_distance_shared *z) {
     }
 }
 
-/* Distances from a source at time q, whose columns are there (without rows they are zero), into u by
- * vertices. */
+/* Distances from a source at time q, whose columns are there (zero without rows), into u by vertices. */
 static void hdi_distance_shared_judge(hdi_distance_shared *z, int32_t q, const hdi_terms *source, double *u) {
     const hdi_elim *m = z->m;
     const hd_laplacian *lap = z->h->heat->source;
@@ -29596,19 +29563,21 @@ static void hdi_distance_shared_judge(hdi_distance_shared *z, int32_t q, const h
     hdi_ledger_close(&ledger, z->one + q);
 }
 
-/* The times of a window into the report of the call, those that eigenpairs do better by these. */
-static void hdi_distance_shared_end(hdi_distance_shared *z, const hdi_distances *to) {
-    hdi_heat_call *h = z->h;
+/* The times of a window into the report of the call, those that eigenpairs do better by these. one: their
+ * reports; column: which of the call's times each is. */
+static hd_status hdi_distance_shared_end(hdi_heat_call *h, const hdi_distances *to, hd_report *one,
+                                         const int32_t *column, int32_t n_times) {
     int32_t q;
-    for (q = 0; q < z->w.n_times && h->e->status >= 0; q++) {
-        hd_report *one = z->one + q;
+    for (q = 0; q < n_times && h->e->status >= 0; q++) {
         hdi_distances at = *to;
         at.ld = to->ld * HDI_CAST(size_t, h->n_times);
-        at.D = to->D + HDI_CAST(size_t, z->time_column[q]) * to->ld;
-        if (hdi_distance_help(h->heat, &at, h->ask.t[z->time_column[q]], one, h->e) < 0) break;
-        hdi_report_merge(one, h->rep);           /* the method stays that of the window */
-        *h->rep = *one;
+        at.D = to->D + HDI_CAST(size_t, column[q]) * to->ld;
+        if (hdi_distance_help(h->heat, &at, h->ask.t[column[q]], one + q, h->e) < 0) break;
+        hdi_report_merge(one + q, h->rep);       /* the method stays that of the window */
+        *h->rep = one[q];
     }
+    hdi_free(h->heat->ctx, one);
+    return h->e->status;
 }
 
 /* Distances of the first two kinds at times q0 to q1 - 1 of the call by one set of poles. */
@@ -29640,8 +29609,9 @@ static hd_status hdi_distance_window(hdi_heat_call *h, const hdi_distances *to, 
         probe.row[0] = hdi_high32(row[hdi_terms_at(&source, 0)], 0);
         (void)hdi_probe_run(h, &probe, HD_KERNEL_SYMMETRIC, z.w.set);
     }
-    hdi_distance_shared_end(&z, to);
-    return hdi_scope_end(&s);
+    if (h->e->status >= 0) (void)hdi_keep(&s, z.one);
+    if (hdi_scope_end(&s) < 0) return h->e->status;
+    return hdi_distance_shared_end(h, to, z.one, z.time_column, q1 - q0);
 }
 
 /* The first n_times of the sorted times with shared poles, where that is cheaper than one by one. Returns 0
@@ -29649,12 +29619,11 @@ static hd_status hdi_distance_window(hdi_heat_call *h, const hdi_distances *to, 
 static int hdi_distance_windows(hdi_heat_call *h, const hdi_distances *to, int32_t n_times) {
     hd_heat *heat = h->heat;
     int32_t packs = 0, windows, w, q0, q1;
-    if (n_times < 2 || heat->poles_asked || heat->exacting || hdi_heat_analysed(heat, h->e) < 0) return 0;
+    if (n_times < 2 || !hdi_shared_may(heat) || hdi_heat_analysed(heat, h->e) < 0) return 0;
     windows =
         hdi_shared_windows(h->times[n_times - 1] / h->times[0], HDI_SHARED_DISTANCE_TOL, n_times, &packs);
     if (windows == 0 || packs > n_times || hdi_heat_equal(heat, h->times[n_times - 1], h->e) ||
-        h->e->status < 0)
-        return 0;
+        h->e->status < 0) return 0;
     hdi_inverse_tell(h);
     for (w = 0, q0 = 0; q0 < n_times; w++, q0 = q1) {
         q1 = hdi_window_end(h->times, n_times, q0, w, windows);
@@ -29664,7 +29633,8 @@ static int hdi_distance_windows(hdi_heat_call *h, const hdi_distances *to, int32
 }
 
 /* Distances from one to all: all times and sources of a call. */
-static hd_status hdi_distance_run(hdi_heat_call *h, hdi_distances to) {
+static hd_status hdi_distance_run(hdi_heat_call *h, void *what) {
+    hdi_distances to = *HDI_CAST(const hdi_distances *, what);
     const int timeless = to.kind >= HD_DISTANCE_COMMUTE;
     const int32_t n_times = timeless ? 1 : h->ask.n_times;
     const size_t ldd = to.ld;
@@ -29676,12 +29646,7 @@ static hd_status hdi_distance_run(hdi_heat_call *h, hdi_distances to) {
     if (done && n_times > 1 && hdi_heat_sort_times(h, 2, NULL) >= 0) {
         const int32_t early = hdi_distance_late(h, &to, done, &begun);
         if (early == 0 || h->e->status < 0) return h->e->status;
-        if (hdi_distance_windows(h, &to, early) && h->e->status != HD_ERR_MEMORY_LIMIT) return h->e->status;
-        if (h->e->status == HD_ERR_MEMORY_LIMIT) {   /* one by one takes less */
-            hdi_heat_forget(h);
-            memset(done, 0, HDI_CAST(size_t, n_times));
-            begun = 0;
-        }
+        if (hdi_distance_windows(h, &to, early)) return h->e->status;
     }
     to.ld = ldd * HDI_CAST(size_t, n_times);
     for (q = 0; q < n_times && h->e->status >= 0; q++) {
@@ -29723,8 +29688,7 @@ static int32_t hdi_pairs_vertices(const hdi_pairs *x, hdi_pair *order, int32_t *
     return n;
 }
 
-/* |u - v|_B of fields on vertices of any size; v NULL: |u|_B. B times scale is near one. work [2
- * n_active]. */
+/* |u - v|_B of fields on vertices of any size; v NULL: |u|_B. B scale is near one. work [2 n_active]. */
 static double hdi_vertex_norm(const hd_laplacian *lap, const double *u, const double *v, double *work,
                               double scale) {
     double most = 0, unit;
@@ -29769,8 +29733,7 @@ static void hdi_parts_share(hdi_parts *to, const hdi_parts *as) {
     to->rounding = all * (as->rounding / sum);
 }
 
-/* K_t(i,j) for pair q from the columns ui of i and uj of j: (K_t e_j)_i, or from symmetric columns (k_t(i,.)
- * B)_j. */
+/* K_t(i,j) for pair q from the columns ui of i and uj of j: (K_t e_j)_i, or if symmetric (k_t(i,.) B)_j. */
 static double hdi_pairs_entry(const hd_laplacian *lap, const hdi_pairs *x, int64_t q, const double *ui,
                               const double *uj) {
     const int32_t i = x->i[q], j = x->j[q], row = lap->row[j];
@@ -29784,8 +29747,7 @@ static double hdi_pairs_entry(const hd_laplacian *lap, const hdi_pairs *x, int64
     return sum;
 }
 
-/* The error of that entry for an error e of the column with |e|_B = 1: of e_i, or |(B e)_j| <= sqrt(B_jj)
- * |e|_B. */
+/* The error of that entry for one of the column with |e|_B = 1: e_i, or |(B e)_j| <= sqrt(B_jj) |e|_B. */
 static double hdi_pairs_entry_off(const hd_laplacian *lap, const hdi_pairs *x, int64_t q) {
     const int weighted = x->kind == HD_DISTANCE_WEIGHTED;
     const int32_t row = lap->row[weighted ? x->i[q] : x->j[q]];
@@ -29858,8 +29820,7 @@ static void hdi_pairs_of_columns(const hd_heat *heat, const hdi_pairs *x, const 
     hdi_ledger_close(&of_d, rep);
 }
 
-/* Distances one by one from entries and the diagonal, for more vertices than columns fit. Each is judged by
- * itself. */
+/* Distances from entries and the diagonal, for more vertices than columns fit; each is judged by itself. */
 static hd_status hdi_pairs_distances(hd_heat *heat, const hdi_pairs *p, double t, hd_report *rep) {
     hd_error *e = &rep->error;
     hdi_scope s = hdi_scope_begin(heat->ctx, e);
@@ -29956,25 +29917,25 @@ static hd_status hdi_pairs_columns(hd_heat *heat, const hdi_pairs *x, double t, 
                                    hd_report *rep) {
     const uint64_t n = HDI_CAST(uint64_t, heat->source->n), twice = 2 * HDI_CAST(uint64_t, x->n);
     const hd_kernel kernel = x->kind == HD_DISTANCE_WEIGHTED ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
-    hd_error e;
-    hdi_scope s = hdi_scope_begin(heat->ctx, &e);
+    hd_error *e = &rep->error;
+    hdi_scope s = hdi_scope_begin(heat->ctx, e);
     hdi_pair *order = HDI_TAKE(&s, hdi_pair, twice);
     int32_t *list = HDI_TAKE(&s, int32_t, twice), *place = HDI_TAKE(&s, int32_t, twice), n_list, q;
     hdi_pair_columns c;
     hdi_heat_call h;
     c.place = place;
     c.work = HDI_TAKE(&s, double, 2 * n + 1);
-    n_list = e.status < 0 ? 0 : hdi_pairs_vertices(x, order, list, place);
-    if (e.status >= 0 &&
-        (x->kind >= HD_DISTANCE_COMMUTE || (x->d && hdi_heat_filtered(heat)) ||
-         HDI_CAST(uint64_t, n_list) * n > HDI_PAIRS_DOUBLES)) {
+    if (e->status < 0) return rep->status = hdi_scope_end(&s);
+    n_list = hdi_pairs_vertices(x, order, list, place);
+    if (x->kind >= HD_DISTANCE_COMMUTE || (x->d && hdi_heat_filtered(heat)) ||
+        HDI_CAST(uint64_t, n_list) * n > HDI_PAIRS_DOUBLES) {
         hdi_scope_end(&s);
         return hdi_pairs_by_entries(heat, x, t, rep);
     }
     c.U = HDI_TAKE(&s, double, n * HDI_CAST(uint64_t, n_list));
     c.size = HDI_TAKE(&s, double, n_list);
+    if (e->status < 0) return rep->status = hdi_scope_end(&s);
     if (hdi_kernel_begin(&h, heat, kernel, rep, NULL) >= 0 && hdi_times_check(&h, 1, &t, 0) >= 0) {
-        if (e.status < 0) *h.e = e;
         h.ask.k = n_list;
         h.ask.sources = list;
         h.ask.U = c.U;
@@ -29998,16 +29959,17 @@ static int hdi_pairs_by_modes(hd_heat *heat, const hdi_pairs *x, double t, int32
                               hd_report *rep) {
     hd_report one;
     hdi_pairs y = *x;
-    hdi_scope s = hdi_scope_begin(heat->ctx, &one.error);
+    hdi_scope s;
     int taken = 0;
     memset(&one, 0, sizeof one);
     hdi_error_clear(&one.error);
+    s = hdi_scope_begin(heat->ctx, &one.error);
     y.d = NULL;
     if (hdi_modes_reach(heat, x->kind, t, most, &one.error)) y.d = HDI_TAKE(&s, double, x->n);
     if (y.d && hdi_modes_pairs(heat, &y, t, &one) >= 0)
         taken = one.error_bound < bound || hdi_modes_good(heat, t, &one);
     if (taken) memcpy(x->d, y.d, HDI_CAST(size_t, x->n) * sizeof *y.d);
-    if (one.error.status == HD_ERR_MEMORY_LIMIT) hdi_error_clear(&one.error);
+    if (hdi_over_limit(heat->ctx, &one.error)) hdi_error_clear(&one.error);
     if (one.error.status < 0) one.status = one.error.status;
     if (taken || one.status < 0) *rep = one;
     hdi_scope_end(&s);
@@ -30025,7 +29987,7 @@ static hd_status hdi_pairs_poles(hd_heat *heat, const hdi_pairs *x, double t, hd
     y.K = NULL;
     y.of_k = NULL;
     do (void)hdi_pairs_columns(heat, &y, t, degree, rep);
-    while (hdi_degree_retreat(&degree, &rep->error));
+    while (hdi_degree_retreat(heat, &degree, &rep->error));
     if (rep->status >= 0 && x->K) {
         hd_report all = *x->of_k;
         hdi_report_merge(&all, rep);
@@ -30056,9 +30018,8 @@ static hd_status hdi_pairs_once(hd_heat *heat, const hdi_pairs *pairs, double t,
     x.of_k = &of_k;
     x.bound = &bound;
     if (hdi_pairs_poles(heat, &x, t, rep) < 0 || !x.d || bound <= HDI_MODES_HELP ||
-        !hdi_modes_near(heat, x.kind, t, HDI_MODES_MOST))
-        return rep->status;
-    hdi_packs_drop(heat);
+        !hdi_modes_near(heat, x.kind, t, HDI_MODES_MOST)) return rep->status;
+    hdi_heat_drop(heat);
     if (!hdi_pairs_by_modes(heat, &x, t, HDI_MODES_MOST, bound, rep) || !x.K) return rep->status;
     all = of_k;
     hdi_report_merge(&all, rep);
@@ -30067,21 +30028,16 @@ static hd_status hdi_pairs_once(hd_heat *heat, const hdi_pairs *pairs, double t,
 }
 
 /* The pairs at all times of a call. */
-static hd_status hdi_pairs_run(hdi_heat_call *h, hd_distance_kind kind, int64_t n_pairs, const int32_t *i,
-                               const int32_t *j, double *K, double *d) {
-    const int timeless = kind >= HD_DISTANCE_COMMUTE;
+static hd_status hdi_pairs_times(hdi_heat_call *h, void *what) {
+    const hdi_pairs *all = HDI_CAST(const hdi_pairs *, what);
+    const int timeless = all->kind >= HD_DISTANCE_COMMUTE;
     const int32_t n_times = timeless ? 1 : h->ask.n_times;
-    hdi_pairs x;
+    hdi_pairs x = *all;
     hd_report one;
     int32_t q;
-    memset(&x, 0, sizeof x);
-    x.kind = kind;
-    x.n = n_pairs;
-    x.i = i;
-    x.j = j;
     for (q = 0; q < n_times; q++) {
-        x.K = K ? K + n_pairs * q : NULL;
-        x.d = d ? d + n_pairs * q : NULL;
+        x.K = all->K ? all->K + x.n * q : NULL;
+        x.d = all->d ? all->d + x.n * q : NULL;
         if (hdi_pairs_once(h->heat, &x, timeless ? 0 : h->ask.t[q], &one) < 0) {
             *h->rep = one;
             if (n_times > 1) h->e->column = q;
@@ -30091,6 +30047,19 @@ static hd_status hdi_pairs_run(hdi_heat_call *h, hd_distance_kind kind, int64_t 
         else hdi_report_merge(h->rep, &one);
     }
     return h->e->status;
+}
+
+static hd_status hdi_pairs_run(hdi_heat_call *h, hd_distance_kind kind, int64_t n_pairs, const int32_t *i,
+                               const int32_t *j, double *K, double *d) {
+    hdi_pairs x;
+    memset(&x, 0, sizeof x);
+    x.kind = kind;
+    x.n = n_pairs;
+    x.i = i;
+    x.j = j;
+    x.K = K;
+    x.d = d;
+    return hdi_heat_sparing(h, hdi_pairs_times, &x);
 }
 
 /* ---- farthest points ---- */
@@ -30148,8 +30117,7 @@ static hd_status hdi_sample_points(hd_heat *heat, const hdi_samples *a, hd_repor
             if (q >= a->n_given) vertex[q] = first ? lap->vertex[0] : hdi_sample_next(lap, a->nearest);
             if (a->distance) a->distance[q] = first ? 0 : hdi_max(0, a->nearest[vertex[q]]);
         }
-        if (q + 1 == a->count || hdi_progress(heat->ctx, "sample", hdi_max(0, q) / a->count, e) < 0)
-            break;
+        if (q + 1 == a->count || hdi_progress(heat->ctx, "sample", hdi_max(0, q) / a->count, e) < 0) break;
         from = q < 0 ? a->terms[a->n_from + q] : hdi_terms_vertex(vertex[q]);
         if (hdi_sample_distances(heat, a, &from, rep, e) < 0) break;
         for (v = 0; v < lap->n; v++) a->nearest[v] = hdi_min(a->nearest[v], a->u[v]);
@@ -30165,7 +30133,7 @@ static hd_status hdi_sample_poles(hd_heat *heat, hdi_samples *a, hd_report *rep,
     hdi_metric x;
     memset(rep, 0, sizeof *rep);
     do (void)hdi_metric_make(heat, a->kind, a->t, degree, &x, &s, rep);
-    while (hdi_degree_retreat(&degree, e));
+    while (hdi_degree_retreat(heat, &degree, e));
     a->x = &x;
     a->sum = NULL;
     if (e->status >= 0) (void)hdi_sample_points(heat, a, rep, e);
@@ -30199,7 +30167,7 @@ static hd_status hdi_sample_either(hd_heat *heat, hdi_samples *a, hd_report *rep
     if (rep->error_bound <= HDI_MODES_HELP || (first && bound >= rep->error_bound)) return e->status;
     if (!first) {
         if (!hdi_modes_near(heat, a->kind, a->t, HDI_MODES_MOST)) return e->status;
-        hdi_packs_drop(heat);
+        hdi_heat_drop(heat);
         if (!hdi_modes_reach(heat, a->kind, a->t, HDI_MODES_MOST, e)) return e->status;
     }
     bound = rep->error_bound;
@@ -30207,7 +30175,8 @@ static hd_status hdi_sample_either(hd_heat *heat, hdi_samples *a, hd_report *rep
     return hdi_sample_poles(heat, a, rep, e);
 }
 
-static hd_status hdi_sample_run(hdi_heat_call *h, hdi_samples *a) {
+static hd_status hdi_sample_run(hdi_heat_call *h, void *what) {
+    hdi_samples *a = HDI_CAST(hdi_samples *, what);
     hd_report one;
     memset(&one, 0, sizeof one);
     a->nearest = HDI_TAKE(&h->s, double, h->heat->source->n);
@@ -30241,14 +30210,13 @@ static hd_status hdi_distance_answer(hd_heat *heat, hdi_distances *to, const hd_
                                      int32_t n_times, const double *t, hd_report *report, hd_error *err) {
     hdi_heat_call h;
     if (hdi_distance_begin(&h, heat, to->kind, n_times, t, 1, report, err) < 0 || hdi_direct_only(&h) < 0 ||
-        !HDI_HAS_DIFFUSION)
-        return hdi_heat_end(&h);
+        !HDI_HAS_DIFFUSION) return hdi_heat_end(&h);
     if (to->k < 0) hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: a number of fields or columns is negative");
     else if (to->k > 0 && ((!to->sources && !sources) || !to->D)) hdi_missing(h.e);
     to->ld = hdi_leading(&h, to->ld);
     if (h.e->status >= 0 && sources) to->terms = hdi_terms_all(to->k, sources, heat->source, 1, &h.s);
     else if (h.e->status >= 0) (void)hdi_sources_check(&h, to->k, to->sources);
-    if (h.e->status >= 0 && to->k > 0) (void)hdi_distance_run(&h, *to);
+    if (h.e->status >= 0 && to->k > 0) (void)hdi_heat_sparing(&h, hdi_distance_run, to);
     return hdi_heat_end(&h);
 }
 
@@ -30269,15 +30237,14 @@ static hd_status hdi_sample_answer(hd_heat *heat, hdi_samples *a, const hd_sourc
                                    hd_error *err) {
     hdi_heat_call h;
     if (hdi_distance_begin(&h, heat, a->kind, 1, &a->t, 1, report, err) < 0 || hdi_direct_only(&h) < 0 ||
-        !HDI_HAS_DIFFUSION)
-        return hdi_heat_end(&h);
+        !HDI_HAS_DIFFUSION) return hdi_heat_end(&h);
     if (a->count < 1 || a->n_given < 0 || a->n_given > a->count || a->count > heat->source->n_active)
         hdi_fail_row(h.e, HD_ERR_ARGUMENT, "sample: more points than vertices, or none", -1, -1, a->count);
     else if (a->n_from < 0) hdi_fail(h.e, HD_ERR_ARGUMENT, "sample: a number of sources is negative");
     else if (!a->vertex || (a->n_from > 0 && !sources)) hdi_missing(h.e);
     if (h.e->status >= 0 && hdi_sources_check(&h, a->n_given, a->vertex) >= 0 && a->n_from > 0)
         a->terms = hdi_terms_all(a->n_from, sources, heat->source, 1, &h.s);
-    if (h.e->status >= 0) (void)hdi_sample_run(&h, a);
+    if (h.e->status >= 0) (void)hdi_heat_sparing(&h, hdi_sample_run, a);
     return hdi_heat_end(&h);
 }
 
@@ -30302,11 +30269,6 @@ typedef struct hdi_estimate {
 /* Bytes of small arrays that are not listed one by one. */
 #define HDI_ESTIMATE_SMALL 4096
 
-static double hdi_estimate_room(const hd_context *ctx) {
-    return ctx->byte_limit ? HDI_CAST(double, ctx->byte_limit) - HDI_CAST(double, ctx->bytes_in_use)
-                           : HUGE_VAL;
-}
-
 /* Adds work that comes after what is there; bytes are those of the larger one. */
 static void hdi_cost_add(hd_cost *c, double flops, double seconds, double bytes) {
     c->possible = 1;
@@ -30316,8 +30278,7 @@ static void hdi_cost_add(hd_cost *c, double flops, double seconds, double bytes)
     c->bytes_most = hdi_max(c->bytes_most, c->bytes);
 }
 
-/* Factors of so many packs, of a real matrix or none, their inversions by a factor of the work, and solves of
- * k items. */
+/* Factors of so many packs, of a real matrix or none, what comes after them, and solves of k items. */
 static void hdi_cost_direct(const hd_heat *heat, int32_t packs, int real, hdi_after after, double k,
                             hd_cost *c) {
     const hdi_fill f = hdi_heat_fill_poles(heat);
@@ -30338,8 +30299,7 @@ static void hdi_cost_direct(const hd_heat *heat, int32_t packs, int real, hdi_af
     }
 }
 
-/* Bytes of the direct method after an analysis, or guessed before it. held: of arrays that are taken before
- * the factors. */
+/* Bytes of the direct method, guessed before the analysis. held: of arrays taken before the factors. */
 static double hdi_bytes_direct(const hdi_estimate *x, const hd_rational *set, hdi_after after,
                                int32_t n_sets, int32_t k, double held) {
     hd_heat *heat = x->h->heat;
@@ -30349,8 +30309,12 @@ static double hdi_bytes_direct(const hdi_estimate *x, const hd_rational *set, hd
     /* the solves' arrays of one time stay while the next one is factorised */
     if (heat->elim.ctx && x->h->n_times > 1)
         held += HDI_CAST(double, hdi_batches_need(heat, hdi_set_packs(set), k));
-    if (heat->elim.ctx)
-        return held + HDI_CAST(double, hdi_direct_need(heat, set, after, n_sets, k, x->h->e));
+    if (heat->elim.ctx) {
+        const uint64_t need = hdi_direct_need(heat, set, after, n_sets, k, x->h->e);
+        const int asks = hdi_heat_equal_asks(heat, x->h->t) && !heat->ground.traced;
+        return held + hdi_max(HDI_CAST(double, need),
+                              asks ? HDI_CAST(double, hdi_ground_need(&heat->elim, &heat->ground, 0)) : 0);
+    }
     held += 8 * (8 * packs + 1) * f.stored + 200 * n + hdi_min(k, HDI_LANES) * 140 * n;
     return after >= HDI_AFTER_INVERSE ? held + 16 * n * n_sets : held;
 }
@@ -30358,7 +30322,7 @@ static double hdi_bytes_direct(const hdi_estimate *x, const hd_rational *set, hd
 /* Analyses the pattern for a query that needs a factorisation. If there is no memory for that within the byte
  * limit, figures are guesses. */
 static hd_status hdi_estimate_analyse(hdi_heat_call *h) {
-    if (hdi_heat_analysed_for(h) == HD_ERR_MEMORY_LIMIT) hdi_error_clear(h->e);
+    if (hdi_heat_analysed_for(h) < 0 && hdi_over_limit(h->heat->ctx, h->e)) hdi_error_clear(h->e);
     if (h->heat->elim.ctx) h->lap = h->heat->elim.lap;
     return h->e->status;
 }
@@ -30368,15 +30332,6 @@ static int hdi_estimate_open(const hdi_estimate *x) {
     const hd_heat_opts *o = &x->h->heat->opts;
     return x->query == HD_QUERY_FIELDS && !o->rational && !o->degree && !x->h->heat->exacting &&
            (!o->poles || o->poles == HD_POLES_UNIFORM);
-}
-
-/* The poles by which the direct method would answer a query for fields or columns. */
-static hd_status hdi_estimate_set(const hdi_estimate *x, hd_rational *set) {
-    hd_status status;
-    x->h->method = HD_METHOD_DIRECT;
-    status = hdi_estimate_open(x) ? hdi_rational_get(set, HD_POLES_UNIFORM, 9, x->h->e)
-                                  : hdi_heat_set(x->h, set);
-    return status;
 }
 
 /* Bytes of iterations: the copy of the pair, its upper triangle, lanes and preconditioners, or bases. */
@@ -30424,20 +30379,22 @@ static hd_status hdi_estimate_solves(const hdi_estimate *x, double held) {
     hdi_cost model;
     hd_method method;
     int32_t poles;
-    if (hdi_heat_pick(h) < 0 && h->e->status != HD_ERR_MEMORY_LIMIT) return h->e->status;
-    if (h->e->status >= 0 && n_times > 1 && h->method != HD_METHOD_KRYLOV) {   /* the times one by one */
+    if (hdi_heat_pick(h) >= 0 && n_times > 1 && h->method != HD_METHOD_KRYLOV) {   /* the times one by one */
         h->times += n_times - 1;
         h->n_times = 1;
         (void)hdi_heat_pick(h);
         h->times -= n_times - 1;
         h->n_times = n_times;
     }
-    hdi_error_clear(h->e);
+    if (hdi_over_limit(heat->ctx, h->e)) hdi_error_clear(h->e);
+    if (h->e->status < 0) return h->e->status;
     if (h->method != HD_METHOD_ITERATIVE && hdi_estimate_analyse(h) < 0) return h->e->status;
     model = hdi_heat_cost(h);
     x->to->method = method = h->method;
     x->to->reason = h->rep->reason;
-    if (hdi_estimate_set(x, &set) < 0) return h->e->status;
+    h->method = HD_METHOD_DIRECT;
+    if ((hdi_estimate_open(x) ? hdi_rational_get(&set, HD_POLES_UNIFORM, 9, h->e)
+                              : hdi_heat_set(h, &set)) < 0) return h->e->status;
     poles = heat->opts.rational || heat->opts.degree ? set.n_poles : HDI_POLES_EXPECTED;
     hdi_cost_add(c + HD_METHOD_ITERATIVE, model.iterative_flops, model.iterative,
                  held + hdi_bytes_iterative(heat, h->t, x->k, poles));
@@ -30450,8 +30407,7 @@ static hd_status hdi_estimate_solves(const hdi_estimate *x, double held) {
         if (hdi_estimate_open(x) && hdi_rational_get(&set, HD_POLES_UNIFORM, HDI_RAT_UNIFORM_MAX, h->e) < 0)
             return h->e->status;
         if (x->query == HD_QUERY_PAIRS && !heat->poles_asked && !heat->exacting &&
-            hdi_rational_get(&set, HD_POLES_KERNEL, HDI_RAT_KERNEL_MAX, h->e) < 0)
-            return h->e->status;
+            hdi_rational_get(&set, HD_POLES_KERNEL, HDI_RAT_KERNEL_MAX, h->e) < 0) return h->e->status;
         direct->bytes_most = hdi_max(direct->bytes,
                                      hdi_bytes_direct(x, &set, HDI_AFTER_BOUND, 0, x->k, held));
         if (x->query == HD_QUERY_PAIRS && heat->elim.ctx)   /* the solves' arrays of the first try stay */
@@ -30462,8 +30418,7 @@ static hd_status hdi_estimate_solves(const hdi_estimate *x, double held) {
     return h->e->status;
 }
 
-/* A diagonal, edges or a metric at one time, by poles of a degree (0: the default), then solves of k
- * columns. */
+/* A diagonal, edges or a metric at one time, by poles of a degree (0: the default), then k columns. */
 static hd_status hdi_estimate_inverse(const hdi_estimate *x, int32_t degree, hd_cost *c) {
     hdi_heat_call *h = x->h;
     const hd_laplacian *lap = h->heat->source;
@@ -30485,7 +30440,7 @@ static hd_status hdi_estimate_inverse(const hdi_estimate *x, int32_t degree, hd_
     if (hdi_heat_set(h, &set) < 0) return h->e->status;
     h->degree = 0;
     if (distance) held += 16.0 * lap->n + 48.0 * x->k;
-    bytes = hdi_bytes_direct(x, &set, after, 2, HDI_PROBES, held);
+    bytes = hdi_bytes_direct(x, &set, after, 2, h->n_times > 1 ? solves : HDI_PROBES, held);
     bytes = hdi_max(bytes, hdi_bytes_direct(x, &set, HDI_AFTER_SOLVES, 0, solves, held - 16 * n + later));
     hdi_cost_direct(h->heat, hdi_set_packs(&set), hdi_set_lone(&set), after,
                     HDI_CAST(double, HDI_PROBES) + (distance ? 2.0 * x->k : 0), c);
@@ -30527,7 +30482,7 @@ static int32_t hdi_estimate_shared(const hdi_estimate *x, double tol) {
     const hdi_heat_call *h = x->h;
     const int distance = x->query == HD_QUERY_DISTANCE || x->query == HD_QUERY_DISTANCE_WEIGHTED;
     int32_t packs = 0, windows;
-    if (h->n_times < 2 || h->heat->poles_asked || h->heat->exacting) return 0;
+    if (h->n_times < 2 || !hdi_shared_may(h->heat)) return 0;
     if (x->query != HD_QUERY_DIAGONAL && !distance) return 0;
     windows = hdi_shared_windows(h->times[h->n_times - 1] / h->times[0], tol, h->n_times, &packs);
     if (windows < 1) return 0;
@@ -30539,25 +30494,28 @@ static int32_t hdi_estimate_shared(const hdi_estimate *x, double tol) {
 #define HDI_MODES_SECONDS 7e-7
 #define HDI_MODES_BEGIN 5
 
-static hd_distance_kind hdi_estimate_kind(const hdi_estimate *x) {
-    return x->query == HD_QUERY_DISTANCE ? HD_DISTANCE_CLASSICAL : HD_DISTANCE_WEIGHTED;
-}
-
 static int hdi_estimate_distance(const hdi_estimate *x) {
     return x->query == HD_QUERY_DISTANCE || x->query == HD_QUERY_DISTANCE_WEIGHTED;
+}
+
+/* Distances to all vertices, or of pairs. */
+static int hdi_estimate_apart(const hdi_estimate *x) {
+    return x->query == HD_QUERY_PAIRS || hdi_estimate_distance(x);
 }
 
 /* Eigenpairs for time t. */
 static int32_t hdi_estimate_pairs(const hdi_estimate *x, double t) {
     const hd_heat *heat = x->h->heat;
-    const double depth = hdi_estimate_distance(x) ? hdi_modes_depth(heat) : hdi_fading_depth(heat);
+    const double depth = hdi_estimate_apart(x) ? hdi_modes_depth(heat) : hdi_fading_depth(heat);
     return hdi_modes_count(heat, hdi_modes_expected(heat, depth / t));
 }
 
-/* Do eigenpairs come first at time t? */
-static int hdi_estimate_first(const hdi_estimate *x, double t) {
-    return hdi_estimate_distance(x) ? hdi_modes_first(x->h->heat, hdi_estimate_kind(x), t)
-                                    : hdi_fading_first(x->h, t);
+/* Bytes that eigenpairs may need where more are looked for than expected: 1.14 times those for the number
+ * expected were seen on small meshes. */
+#define HDI_MODES_OVER 1.25
+
+static double hdi_modes_need_most(const hd_heat *heat, int32_t count) {
+    return HDI_MODES_OVER * hdi_modes_need(heat, count) + HDI_ESTIMATE_SMALL;
 }
 
 /* Finding so many eigenpairs. */
@@ -30568,6 +30526,7 @@ static void hdi_estimate_pairs_cost(const hd_heat *heat, int32_t count, hd_cost 
     const double seconds = runs * f.flops / HDI_RATE_REAL + HDI_MODES_SECONDS * n * pairs;
     const double flops = runs * f.flops + solves * (4 * f.nnz + 8 * n * count);
     hdi_cost_add(c, flops, seconds, hdi_modes_need(heat, count) + HDI_ESTIMATE_SMALL);
+    c->bytes_most = hdi_max(c->bytes_most, hdi_modes_need_most(heat, count));
 }
 
 /* Finding so many eigenpairs, and distances from k sources, or k columns, by them. */
@@ -30579,30 +30538,37 @@ static void hdi_estimate_modes(const hdi_estimate *x, int32_t count, hd_cost *c)
     c->flops += 6 * n * count * x->k;
 }
 
-/* Late times, where eigenpairs come first: how many times are left before them. *held: bytes that then
- * stay. */
+/* Bytes that so many eigenpairs hold when they are found. */
+static double hdi_estimate_held(const hdi_estimate *x, int32_t count) {
+    const int twice = x->query == HD_QUERY_DISTANCE_WEIGHTED && x->h->heat->source->B;
+    return 8.0 * x->h->heat->source->n * ((twice ? 2.0 : 1.0) * count + 5);
+}
+
+/* Late times, where eigenpairs come first: how many are left before them. *held: bytes of pairs found. */
 static int32_t hdi_estimate_late(const hdi_estimate *x, hd_cost *c, double *held) {
     const hd_heat *heat = x->h->heat;
-    const double n = heat->source->n, unit = (hdi_estimate_distance(x) ? 2 : 1) * heat->scale;
-    const int twice = x->query == HD_QUERY_DISTANCE_WEIGHTED && heat->source->B;
+    const double unit = (hdi_estimate_distance(x) ? 2 : 1) * heat->scale;
     int32_t early = x->h->n_times, count;
-    while (early > 0 && hdi_estimate_first(x, x->h->times[early - 1] / unit)) early--;
+    for (; early > 0; early--) {
+        const double t = x->h->times[early - 1] / unit;
+        if (hdi_estimate_distance(x) ? !hdi_modes_first(heat, HD_DISTANCE_CLASSICAL, t)
+                                     : !hdi_fading_first(x->h, t)) break;
+    }
     *held = 0;
     if (early == x->h->n_times) return early;
     count = hdi_estimate_pairs(x, x->h->times[early] / unit);
-    if (hdi_modes_need(heat, count) > hdi_estimate_room(heat->ctx)) return x->h->n_times;
+    if (hdi_modes_need(heat, count) > hdi_bytes_left(heat->ctx)) return x->h->n_times;
     hdi_estimate_modes(x, count, c);
-    if (!heat->modes.s.value) *held = 8 * n * ((twice ? 2 : 1) * count + 5);
+    if (!heat->modes.s.value || heat->modes.s.count < count) *held = hdi_estimate_held(x, count);
     return early;
 }
 
-/* Bytes that eigenpairs need which may come after poles at time t. */
-static double hdi_estimate_help(const hdi_estimate *x, double t) {
+/* Eigenpairs that may come after poles at time t, or 0. */
+static int32_t hdi_estimate_help(const hdi_estimate *x, double t) {
     const hd_heat *heat = x->h->heat;
-    if (hdi_estimate_distance(x) ? !hdi_modes_near(heat, hdi_estimate_kind(x), t, HDI_MODES_MOST)
-                                 : !hdi_fading(x->h) || !hdi_fading_near(heat, t, HDI_MODES_MOST))
-        return 0;
-    return hdi_modes_need(heat, hdi_estimate_pairs(x, t));
+    if (hdi_estimate_apart(x) ? !hdi_modes_near(heat, HD_DISTANCE_CLASSICAL, t, HDI_MODES_MOST)
+                              : !hdi_fading(x->h) || !hdi_fading_near(heat, t, HDI_MODES_MOST)) return 0;
+    return hdi_estimate_pairs(x, t);
 }
 
 /* Commute and biharmonic distances. */
@@ -30630,61 +30596,73 @@ static void hdi_estimate_join(hd_cost *c, const hd_cost *late, double held) {
     c->bytes += held;
     c->bytes_most += held;
     if (late->possible) hdi_cost_add(c, late->flops, late->seconds, late->bytes);
+    c->bytes_most = hdi_max(c->bytes_most, late->bytes_most);
 }
 
-/* Queries that need the direct method. They take what the run would take: shared poles, else the times one by
- * one, and for distances the highest degree where it is sure to be needed; less where that does not fit. */
+/* Poles for time q of the call alone: by default, and by the highest degree, which distances may need.
+ * held: bytes of eigenpairs that stay. most: with pairs that may come after, and poles once more. */
+static hd_status hdi_estimate_alone(const hdi_estimate *x, int32_t q, double held, hd_cost *one,
+                                    hd_cost *most) {
+    hd_heat *heat = x->h->heat;
+    const double t = x->h->times[q] / (hdi_estimate_distance(x) ? 2 * heat->scale : heat->scale);
+    const double h0 = heat->source->h, expected = h0 > 0 ? HDI_DISTANCE_EXPECTED * sqrt(t) / h0 : 0;
+    const int sure = x->query == HD_QUERY_DISTANCE && hdi_shared_may(heat) && expected > HDI_DISTANCE_SURE;
+    const int32_t help = hdi_estimate_help(x, t);
+    memset(one, 0, sizeof *one);
+    memset(most, 0, sizeof *most);
+    x->h->t = x->h->times[q];
+    if (hdi_estimate_inverse(x, heat->poles_asked ? 0 : HDI_RAT_KERNEL_MAX, most) < 0) return x->h->e->status;
+    if (sure && most->bytes + held <= hdi_bytes_left(heat->ctx)) *one = *most;
+    else if (hdi_estimate_inverse(x, 0, one) < 0) return x->h->e->status;
+    if (heat->elim.ctx)                          /* after a first try, whose lanes and real factor stay */
+        most->bytes += HDI_CAST(double, hdi_batches_need(heat, 1, hdi_high32(x->k, HDI_PROBES)) +
+                                        (heat->elim.real.ctx ? 0 : hdi_factor_bytes(&heat->elim.sym, 1)));
+    most->bytes += hdi_max(held, help > 0 ? hdi_estimate_held(x, help) : 0);
+    if (help > 0) most->bytes = hdi_max(most->bytes, hdi_modes_need_most(heat, help));
+    return HD_OK;
+}
+
+/* Queries that need the direct method. They take what the run would take: eigenpairs at late times; shared
+ * poles, else the times one by one. Bytes are enough for poles one by one at all times, to which the run
+ * comes back where the others do not serve. */
 static hd_status hdi_estimate_direct(const hdi_estimate *x) {
     hdi_heat_call *h = x->h;
     hd_heat *heat = h->heat;
-    hd_cost *c = x->to->cost + HD_METHOD_DIRECT;
-    const int distance = x->query >= HD_QUERY_DISTANCE;
-    const double tol = distance ? HDI_SHARED_DISTANCE_TOL : HDI_SHARED_TOL, h0 = heat->source->h;
-    hd_cost late;
-    double room, held = 0;
+    hd_cost *c = x->to->cost + HD_METHOD_DIRECT, late, shared, one, most;
+    const int32_t n_times = h->n_times;
+    const double tol = x->query >= HD_QUERY_DISTANCE ? HDI_SHARED_DISTANCE_TOL : HDI_SHARED_TOL;
+    double held = 0;
     int32_t q, windows, early;
     memset(&late, 0, sizeof late);
+    memset(&shared, 0, sizeof shared);
     x->to->method = HD_METHOD_DIRECT;
     x->to->reason = "diagonals and distances to all vertices need the direct method";
     if (hdi_estimate_analyse(h) < 0) return h->e->status;
-    room = hdi_estimate_room(heat->ctx);
     if (x->query >= HD_QUERY_DISTANCE_COMMUTE) {
         hdi_estimate_ground(x, c);
         return HD_OK;
     }
-    early = hdi_estimate_late(x, &late, &held);
-    h->n_times = early;
+    h->n_times = early = hdi_estimate_late(x, &late, &held);
+    if (early == 0) x->to->reason = HDI_MODES_REASON;
     windows = hdi_estimate_shared(x, tol);
-    if (early == 0) {
-        *c = late;
-        x->to->reason = HDI_MODES_REASON;
-    } else if (windows > 0 && (hdi_estimate_windows(x, windows, tol, c) < 0 || c->bytes <= room)) {
-        c->seconds += HDI_FRESH_BYTE * c->bytes;
-        hdi_estimate_join(c, &late, held);
-        return h->e->status;
+    if (windows > 0 && hdi_estimate_windows(x, windows, tol, &shared) < 0) return h->e->status;
+    if (shared.bytes + held > hdi_bytes_left(heat->ctx)) windows = 0;
+    if (windows > 0) hdi_cost_add(c, shared.flops, shared.seconds, shared.bytes + held);
+    h->n_times = n_times;
+    for (q = 0; q < n_times; q++) {
+        const int alone = windows == 0 && q < early;
+        if (q >= early && held == 0) break;      /* by pairs that are there */
+        if (hdi_estimate_alone(x, q, held, &one, &most) < 0) return h->e->status;
+        if (alone) hdi_cost_add(c, one.flops, one.seconds, one.bytes + held);
+        else hdi_cost_add(c, 0, 0, one.bytes);
+        c->bytes_most = hdi_max(c->bytes_most, most.bytes);
     }
-    if (early > 0) memset(c, 0, sizeof *c);
-    for (q = 0; q < h->n_times && h->e->status >= 0; q++) {
-        const double t = h->times[q] / (distance ? 2 * heat->scale : heat->scale);
-        const double expected = h0 > 0 ? HDI_DISTANCE_EXPECTED * sqrt(t) / h0 : 0;
-        const int sure = x->query == HD_QUERY_DISTANCE && !heat->poles_asked && !heat->exacting &&
-                         expected > HDI_DISTANCE_SURE;
-        hd_cost one, most;
-        memset(&one, 0, sizeof one);
-        memset(&most, 0, sizeof most);
-        if (hdi_estimate_inverse(x, heat->poles_asked ? 0 : HDI_RAT_KERNEL_MAX, &most) < 0) break;
-        if (sure && most.bytes <= room) one = most;
-        else if (hdi_estimate_inverse(x, 0, &one) < 0) break;
-        hdi_cost_add(c, one.flops, one.seconds, one.bytes);
-        /* after a first try, whose lanes and real factor stay */
-        if (!sure && heat->elim.ctx)
-            most.bytes += HDI_CAST(double, hdi_batches_need(heat, 1, hdi_high32(x->k, HDI_PROBES)) +
-                                           (heat->elim.real.ctx ? 0 : hdi_factor_bytes(&heat->elim.sym, 1)));
-        c->bytes_most = hdi_max(c->bytes_most, hdi_max(most.bytes, hdi_estimate_help(x, t)));
-    }
-    if (early == 0) return h->e->status;
-    c->seconds += HDI_FRESH_BYTE * c->bytes;
-    hdi_estimate_join(c, &late, held);
+    if (early > 0) c->seconds += HDI_FRESH_BYTE * c->bytes;
+    hdi_estimate_join(c, &late, 0);
+    memset(&shared, 0, sizeof shared);           /* if pairs are found, and say little at late times */
+    windows = held > 0 ? hdi_estimate_shared(x, tol) : 0;
+    if (windows > 0 && hdi_estimate_windows(x, windows, tol, &shared) >= 0)
+        c->bytes_most = hdi_max(c->bytes_most, shared.bytes + held);
     return h->e->status;
 }
 
@@ -30702,7 +30680,7 @@ static void hdi_estimate_trace_set(const hdi_estimate *x, const hd_rational *set
     hdi_cost_add(c, 0, 0, bytes);
 }
 
-/* Traces at all times, as hdi_trace_run takes them. held: bytes that stay from before. */
+/* Traces at all times, as hdi_trace_poles takes them. held: bytes that stay from before. */
 static hd_status hdi_estimate_trace(const hdi_estimate *x, double held, hd_cost *c) {
     hdi_heat_call *h = x->h;
     const int settled = h->heat->poles_asked || h->heat->exacting;
@@ -30723,6 +30701,19 @@ static hd_status hdi_estimate_trace(const hdi_estimate *x, double held, hd_cost 
     return h->e->status;
 }
 
+/* Where heat fades: eigenpairs that may come after poles at any time, with poles once more. */
+static void hdi_estimate_fading(const hdi_estimate *x, hd_cost *c) {
+    const hd_heat *heat = x->h->heat;
+    const double most = c->bytes_most;
+    int32_t q;
+    for (q = 0; q < x->h->n_times; q++) {
+        const int32_t help = HDI_HAS_MODES ? hdi_estimate_help(x, x->h->times[q] / heat->scale) : 0;
+        if (help == 0) continue;
+        c->bytes_most = hdi_max(c->bytes_most, most + hdi_estimate_held(x, help));
+        c->bytes_most = hdi_max(c->bytes_most, hdi_modes_need_most(heat, help));
+    }
+}
+
 /* Traces, and signatures made of diagonals: what the run takes beside them. */
 static hd_status hdi_estimate_signature(const hdi_estimate *x) {
     const hd_heat *heat = x->h->heat;
@@ -30738,7 +30729,10 @@ static hd_status hdi_estimate_signature(const hdi_estimate *x) {
     x->to->reason = "diagonals and distances to all vertices need the direct method";
     x->h->diagonal = 1;
     if (hdi_estimate_analyse(x->h) < 0) return x->h->e->status;
-    if (x->query == HD_QUERY_TRACE) return hdi_estimate_trace(x, 0, c);
+    if (x->query == HD_QUERY_TRACE) {
+        if (hdi_estimate_trace(x, 0, c) >= 0) hdi_estimate_fading(x, c);
+        return x->h->e->status;
+    }
     if (hdi_estimate_direct(&diagonal) < 0) return x->h->e->status;
     hdi_estimate_join(c, &trace, held);
     if (!normalised) return HD_OK;
@@ -30750,28 +30744,38 @@ static hd_status hdi_estimate_signature(const hdi_estimate *x) {
     return x->h->e->status;
 }
 
-/* Fields, columns and entries; pairs take columns. Late times come from eigenpairs where heat fades. */
+/* Fields, columns and entries; pairs take columns. Late times come from eigenpairs where heat fades; bytes
+ * are enough for the others' way at all times. */
 static hd_status hdi_estimate_columns(const hdi_estimate *x, double held) {
     hdi_heat_call *h = x->h;
     hd_estimate *to = x->to;
-    hd_cost late;
+    const int32_t n_times = h->n_times;
+    hd_cost late, *c;
     double stay = 0;
-    int32_t early = h->n_times;
+    int32_t early = n_times;
     memset(&late, 0, sizeof late);
     if (x->query < HD_QUERY_PAIRS && HDI_HAS_MODES && hdi_fading(h)) {
         if (hdi_fading_first(h, h->times[early - 1] / h->heat->scale) && hdi_estimate_analyse(h) < 0)
             return h->e->status;
         early = hdi_estimate_late(x, &late, &stay);
     }
-    h->n_times = early;
-    if (early > 0) {
-        h->t = h->times[early - 1];
-        if (hdi_estimate_solves(x, held) >= 0) hdi_estimate_join(to->cost + to->method, &late, stay);
-        return h->e->status;
+    h->n_times = early > 0 ? early : n_times;
+    h->t = h->times[h->n_times - 1];
+    if (hdi_estimate_solves(x, held) < 0) return h->e->status;
+    c = to->cost + to->method;
+    h->n_times = n_times;
+    if (early == 0) {
+        late.bytes = hdi_max(late.bytes, stay > 0 ? c->bytes : 0);
+        late.bytes_most = hdi_max(late.bytes_most, c->bytes_most + stay);
+        memset(to->cost, 0, sizeof to->cost);
+        to->method = HD_METHOD_DIRECT;
+        to->reason = HDI_MODES_REASON;
+        c = to->cost + HD_METHOD_DIRECT;
+        *c = late;
+    } else {
+        hdi_estimate_join(c, &late, stay);
     }
-    to->method = HD_METHOD_DIRECT;
-    to->reason = HDI_MODES_REASON;
-    to->cost[HD_METHOD_DIRECT] = late;
+    hdi_estimate_fading(x, c);
     return HD_OK;
 }
 
@@ -30811,7 +30815,7 @@ static void hdi_estimate_close(const hd_heat *heat, hd_estimate *to) {
     int32_t q;
     to->analysed = heat->elim.ctx != NULL || (heat->other && heat->other->elim.ctx);
     to->bytes_in_use = HDI_CAST(double, heat->ctx->bytes_in_use);
-    to->bytes_left = hdi_estimate_room(heat->ctx);
+    to->bytes_left = hdi_bytes_left(heat->ctx);
     to->cost[HD_METHOD_AUTO] = to->cost[to->method];
     for (q = 0; q <= HD_METHOD_KRYLOV; q++)
         to->cost[q].fits = to->cost[q].possible && to->cost[q].bytes <= to->bytes_left;
@@ -33384,7 +33388,7 @@ HEATDIFF_API hd_status hd_heat_trace(hd_heat *heat, int32_t n_times, const doubl
     hdi_heat_call h;
     if (hdi_diagonal_begin(&h, heat, HD_KERNEL_OPERATOR, n_times, t, Z != NULL, report, err) < 0 ||
         !HDI_HAS_DIAGONAL) return hdi_heat_end(&h);
-    if (h.e->status >= 0) (void)hdi_trace_run(&h, Z, bound);
+    if (h.e->status >= 0) (void)hdi_fading_ask(&h, HD_KERNEL_OPERATOR, 0, NULL, 0, Z, bound);
     return hdi_heat_end(&h);
 }
 
@@ -33448,7 +33452,8 @@ HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, hd_kernel kernel, int32_t n_
     if (kernel != HD_KERNEL_SYMMETRIC)
         hdi_fail(h.e, HD_ERR_ARGUMENT,
                  "edges: the kernel is the symmetric one; K_t = k_t B is not symmetric");
-    if (h.e->status >= 0) (void)hdi_edges_run(&h, values);
+    if (h.e->status >= 0)
+        (void)hdi_fading_ask(&h, kernel, 1, values, HDI_CAST(size_t, heat->source->L.nnz), NULL, NULL);
     return hdi_heat_end(&h);
 }
 

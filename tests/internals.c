@@ -36,6 +36,13 @@ static int int_advise(void *at, size_t size, int advice) {
 
 static int64_t int_passed, int_failed;
 
+/* Private functions take an error that is clear. */
+static hd_error int_no_error(void) {
+    hd_error e;
+    hdi_error_clear(&e);
+    return e;
+}
+
 #if defined(__GNUC__) || defined(__clang__)
 __attribute__((format(printf, 5, 6)))
 #endif
@@ -117,7 +124,7 @@ static void int_sizes(void) {
 static void int_texts(void) {
     static const double bytes[8] = {0, 1, 1e5, 100001, 999999, 123456789, 5e9, 9.9e5};
     static const char *const want[8] = {"0.0 MB", "0.1 MB", "0.1 MB", "0.2 MB", "1.0 MB", "123.5 MB", "5000.0 MB", "1.0 MB"};
-    hd_error e;
+    hd_error e = int_no_error();
     size_t k;
     for (k = 0; k < 8; k++) {
         hdi_error_clear(&e);
@@ -152,7 +159,7 @@ static void int_sums(void) {
 static void int_megabytes(void) {
     static const double tenths[12] = {0, 1, 9, 10, 11, 99, 100, 101, 109, 110, 1005, 10000};
     char want[40];
-    hd_error e;
+    hd_error e = int_no_error();
     int k;
     for (k = 0; k < 12; k++) {
         hdi_error_clear(&e);
@@ -165,7 +172,7 @@ static void int_megabytes(void) {
 /* Takes that are only added up: as many bytes as blocks of their own would count, and 2^60 where a number has no meaning. */
 static void int_tally(void) {
     hd_context ctx;
-    hd_error e;
+    hd_error e = int_no_error();
     uint64_t bytes;
     hdi_scope s = hdi_scope_tally(&bytes, &e), real;
     memset(&ctx, 0, sizeof ctx);
@@ -227,7 +234,7 @@ static void int_odd_free(void *user, void *block, size_t size) {
 /* A scope that is full gives no more, and frees what it has. */
 static void int_scope_room(void) {
     hd_context ctx;
-    hd_error e;
+    hd_error e = int_no_error();
     hdi_scope s;
     int i;
     memset(&ctx, 0, sizeof ctx);
@@ -260,7 +267,7 @@ static void int_large_pages(void) {
 
 static void int_memory(void) {
     hd_context ctx;
-    hd_error e;
+    hd_error e = int_no_error();
     size_t freed = 0, k;
     void *block[40];
     hdi_scope s;
@@ -495,7 +502,7 @@ static void int_amd_dense(void) {
     static double one[NNZ];
     hd_csr a;
     hd_context ctx;
-    hd_error e;
+    hd_error e = int_no_error();
     hdi_amd_graph g;
     int32_t i, k = 0, *work;
     memset(&ctx, 0, sizeof ctx);
@@ -1756,7 +1763,7 @@ static hd_csr int_nd_grid(int32_t w, int32_t h, int wide, double *xyz) {
     double *one = DENSE_NEW(double, 11 * n);
     int64_t z = 0;
     hd_csr a;
-    hd_error e;
+    hd_error e = int_no_error();
     for (v = 0; v < n; v++) {
         xyz[3 * v] = v % w;
         xyz[3 * v + 1] = v / w;
@@ -1855,7 +1862,7 @@ static void int_nd_fill(void) {
             for (way = 0; way < 2; way++) {
                 hdi_symbolic s;
                 hd_context ctx;
-                hd_error e;
+                hd_error e = int_no_error();
                 memset(&ctx, 0, sizeof ctx);
                 CHECK((way ? hdi_nd_order(&a, xyz, perm, &ctx, &e) : hdi_amd_order(&a, perm, &ctx, &e)) == HD_OK);
                 CHECK(hdi_symbolic_make(&s, &a, perm, &ctx, &e) == HD_OK);
@@ -1903,7 +1910,7 @@ static void int_cuthill_mckee(void) {
     hd_laplacian *lap = NULL;
     hd_csr shuffled;
     hd_context ctx;
-    hd_error e;
+    hd_error e = int_no_error();
     uint64_t seed = 3;
     int32_t *perm, *seen, i, missing = 0;
     both = shape_disjoint(&s, &two, offset);
@@ -2099,7 +2106,7 @@ static hd_laplacian *int_path(int32_t n) {
     double *l = DENSE_NEW(double, 3 * n), *b = DENSE_NEW(double, 3 * n);
     hd_laplacian *lap = NULL;
     hd_csr L, B;
-    hd_error e;
+    hd_error e = int_no_error();
     int64_t c = 0;
     for (k = 0; k < n; k++) {
         const int ends = (k == 0) + (k == n - 1);
@@ -2123,7 +2130,7 @@ static void int_precond_make(void) {
     enum { N = 23 };
     hd_laplacian *lap = int_path(N);
     hd_context ctx;
-    hd_error e;
+    hd_error e = int_no_error();
     hdi_upper up;
     hdi_system a;
     hdi_precond m;
@@ -2325,7 +2332,7 @@ static void int_deflation(void) {
     hdi_precond none;
     hdi_upper up;
     hd_context ctx;
-    hd_error e;
+    hd_error e = int_no_error();
     hd_c64 r[N], z[N], p[N], sums[1], mean = hdi_c(0, 0), dot, want = hdi_c(0, 0);
     uint64_t seed = 2;
     int32_t i;
@@ -2801,7 +2808,7 @@ static hd_csr int_pattern(int kind, uint64_t seed) {
     int32_t *i, *j, a, b, m = n;
     int64_t c = 0;
     hd_csr out;
-    hd_error e;
+    hd_error e = int_no_error();
     shape s;
     memset(&s, 0, sizeof s);
     if (kind == 0) {
@@ -2919,7 +2926,7 @@ static void int_symbolic_one(const hd_csr *a, int32_t *perm, int dense, const ch
     int32_t *seen = DENSE_NEW(int32_t, n + 1), v, k, i, j;
     hdi_symbolic s;
     hd_context ctx;
-    hd_error e;
+    hd_error e = int_no_error();
     int64_t p, nnz = 0, wrong = 0, entries = 0;
     double flops = 0;
     char *l;
@@ -3000,7 +3007,7 @@ static void int_tree_one(const hd_csr *a, const int32_t *order, const char *what
     hdi_sym_job job;
     hdi_sym_work w;
     hd_context ctx;
-    hd_error e;
+    hd_error e = int_no_error();
     hdi_scope s;
     memset(&ctx, 0, sizeof ctx);
     s = hdi_scope_begin(&ctx, &e);
@@ -3048,7 +3055,7 @@ static void int_tree_one(const hd_csr *a, const int32_t *order, const char *what
 static void int_symbolic(void) {
     static const char *const names[6] = {"grid", "random", "path", "star", "full", "diagonal"};
     hd_context ctx;
-    hd_error e;
+    hd_error e = int_no_error();
     uint64_t seed = 8;
     int kind, q;
     memset(&ctx, 0, sizeof ctx);
@@ -3073,7 +3080,7 @@ static void int_symbolic_large(void) {
     const double offset[3] = {3, 0, 0};
     const shape *shapes[3];
     hd_context ctx;
-    hd_error e;
+    hd_error e = int_no_error();
     int q, k;
     both = shape_disjoint(&s, &g, offset);
     shapes[0] = &s;
@@ -3145,7 +3152,7 @@ static hd_laplacian *int_mesh(int kind, hd_laplacian_kind form) {
     shape s = kind == 0 ? shape_bumpy(2, 5) : kind == 1 ? shape_grid(14, 9, 0.3) : shape_bumpy(4, 5);
     hd_laplacian *lap = NULL;
     hd_laplacian_opts o;
-    hd_error e;
+    hd_error e = int_no_error();
     memset(&o, 0, sizeof o);
     o.kind = form;
     CHECK(hd_laplacian_triangles(&lap, s.xyz, s.n, s.tri, s.n_tri, &o, &e) == HD_OK);
@@ -3238,7 +3245,7 @@ static void int_sweeps(void) {
         for (level = 0; level <= hdi_simd_best(); level++) {
             hd_laplacian *lap = int_mesh(kind, kind == 1 ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM);
             hd_context ctx;
-            hd_error e;
+            hd_error e = int_no_error();
             hdi_elim m;
             hd_rational set;
             int32_t k;
@@ -3265,7 +3272,7 @@ static void int_sweep_panels(void) {
     hd_laplacian *lap = NULL;
     hd_context ctx;
     hd_csr L, B;
-    hd_error e;
+    hd_error e = int_no_error();
     hdi_elim m;
     hd_rational set;
     int32_t *row = DENSE_NEW(int32_t, N * N), *col = DENSE_NEW(int32_t, N * N), i;
@@ -3457,7 +3464,7 @@ static void int_silan_slopes(void) {
 static hdi_lane *int_lanes(const hd_laplacian *lap, int32_t k, hd_context *ctx) {
     hdi_lane *lane = DENSE_NEW(hdi_lane, k);
     uint64_t seed = 21;
-    hd_error e;
+    hd_error e = int_no_error();
     int32_t r, i;
     hdi_error_clear(&e);
     for (r = 0; r < k; r++) {
@@ -3474,7 +3481,7 @@ static hdi_lane *int_lanes(const hd_laplacian *lap, int32_t k, hd_context *ctx) 
 static void int_silan_miss(const hdi_silan *z, int32_t r, double t, const hdi_ritz *ritz) {
     const double times[2] = {0.7 * t, 1.6 * t};
     double miss[2], bound = 0, share = 0;
-    hd_error e;
+    hd_error e = int_no_error();
     int q;
     hdi_error_clear(&e);
     for (q = 0; q < 2; q++) {
@@ -3497,7 +3504,7 @@ static void int_lanczos_pace(void) {
 static void int_ritz_above(void) {
     hdi_silan *z = DENSE_NEW(hdi_silan, 1);
     hdi_ritz s;
-    hd_error e;
+    hd_error e = int_no_error();
     double known[2] = {1.05, 1};                 /* an eigenvalue, and its vector */
     hdi_error_clear(&e);
     z->eigen[0] = known;
@@ -3520,7 +3527,7 @@ static void int_silan_bound_of(hd_laplacian *lap, int32_t wide, double t, const 
     hdi_ritz ritz;
     hdi_silan_sum sum;
     hd_context ctx;
-    hd_error e;
+    hd_error e = int_no_error();
     hdi_elim m;
     hdi_lane *lane;
     dense_pair pair;
@@ -3613,7 +3620,7 @@ static void int_batches(void) {
     dense_c64 *a = DENSE_NEW(dense_c64, n * n), *x = DENSE_NEW(dense_c64, n);
     double *part = DENSE_NEW(double, 2 * n), *mass = DENSE_NEW(double, 2 * n), *want = DENSE_NEW(double, n);
     hd_context ctx;
-    hd_error e;
+    hd_error e = int_no_error();
     hdi_elim m;
     int q, z;
     memset(&ctx, 0, sizeof ctx);
@@ -3751,7 +3758,7 @@ static void int_invert_of(int kind, hd_laplacian_kind form, int level, int32_t d
     hd_laplacian *lap = int_mesh(kind, form);
     const int32_t n = lap->n_active;
     hd_context ctx;
-    hd_error e;
+    hd_error e = int_no_error();
     hdi_elim m;
     hd_rational set;
     hd_c64 weight[SETS * HD_MAX_POLES];
@@ -3846,7 +3853,7 @@ static void int_resolvent_pole(void) {
     for (q = 0; q < 3; q++) {
         for (r = 2; r <= 14; r++) {
             hd_rational set;
-            hd_error e;
+            hd_error e = int_no_error();
             double factor = 1;
             int32_t best;
             CHECK(hdi_rational_get(&set, kinds[q], r, &e) == HD_OK);
@@ -3955,7 +3962,7 @@ static void int_ground_need(void) {
         for (form = 0; form < 2; form++) {
             hd_laplacian *lap = int_mesh(kind, form ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM);
             hd_context ctx;
-            hd_error e;
+            hd_error e = int_no_error();
             hdi_elim m;
             hdi_ground g;
             uint64_t need, before;
@@ -3986,7 +3993,7 @@ static void int_ground_refined(void) {
     hd_laplacian *lap = int_mesh(0, HD_LAPLACIAN_FEM);
     const int32_t n = lap->n_active;
     hd_context ctx;
-    hd_error e;
+    hd_error e = int_no_error();
     hdi_elim m;
     hdi_ground g;
     double *b, *x, *r, *sweep, off = 0, once, twice;
@@ -4220,7 +4227,7 @@ static void int_turned(void) {
     hd_heat_opts o;
     hd_context ctx;
     hd_heat *heat = NULL;
-    hd_error e;
+    hd_error e = int_no_error();
     memset(&ctx, 0, sizeof ctx);
     memset(&o, 0, sizeof o);
     hdi_error_clear(&e);
@@ -4401,7 +4408,7 @@ static void int_ground_apart(void) {
     hd_laplacian *lap = int_mesh(1, HD_LAPLACIAN_FEM);
     const int32_t n = lap->n_active;
     hd_context ctx;
-    hd_error e;
+    hd_error e = int_no_error();
     hdi_elim m;
     hdi_ground g;
     double *room, *x = DENSE_NEW(double, 6 * (int64_t)n), *b = x + n, *u = b + n, *y = u + n, *extra = y + n, *r = extra + n, *sweep;
@@ -4448,7 +4455,7 @@ static void int_fading_reach(void) {
     hd_laplacian *lap = NULL;
     hd_laplacian_opts o;
     hd_heat *heat;
-    hd_error e;
+    hd_error e = int_no_error();
     hdi_decay x;
     hdi_fading_far most;
     double *work, left = 0, found = 0, inner = 0, t;
@@ -4517,7 +4524,7 @@ static void int_fading_note(void) {
 static void int_factor_need(void) {
     hd_laplacian *lap = int_mesh(1, HD_LAPLACIAN_FEM);
     hd_context ctx;
-    hd_error e;
+    hd_error e = int_no_error();
     hdi_elim m;
     hd_rational set;
     uint64_t solves;
@@ -4588,7 +4595,7 @@ static void int_cover_state(const hdi_cover *t, double *angle, int32_t n, double
 /* Flips leave every cone angle as it was, and the area; whether the surface is its own cover or not, and its boundary closed or not. */
 static void int_flips(void) {
     hd_context ctx;
-    hd_error e;
+    hd_error e = int_no_error();
     int k, close, loops = 0;
     memset(&ctx, 0, sizeof ctx);
     for (k = 0; k < 4; k++) {
@@ -4699,7 +4706,7 @@ static int32_t int_soup_triangles(double *xyz, int32_t n, int32_t *tri, int copi
 
 /* (L, B) of a soup; everything: all of its cover is unfolded, glued and looked at, instead of what may have to be flipped. */
 static hd_laplacian *int_soup_pair(const double *xyz, int32_t n, const int32_t *tri, int32_t m, int everything, hd_context *ctx, hd_mesh_report *rep) {
-    hd_error e;
+    hd_error e = int_no_error();
     hdi_scope s = hdi_scope_begin(ctx, &e);
     hd_laplacian *lap = (hd_laplacian *)hdi_alloc(ctx, 1, sizeof *lap, &e);
     hdi_soup soup;
@@ -5140,7 +5147,7 @@ static void int_geo_no_factor(void) {
     hd_laplacian *lap = NULL;
     hd_geodesic *g = NULL;
     hdi_factor f;
-    hd_error e;
+    hd_error e = int_no_error();
     double *val;
     CHECK(hd_laplacian_triangles(&lap, s.xyz, s.n, s.tri, s.n_tri, NULL, NULL) == HD_OK && hd_geodesic_create(&g, s.xyz, s.n, s.tri, s.n_tri, NULL, NULL) == HD_OK);
     val = DENSE_NEW(double, lap->L.nnz);

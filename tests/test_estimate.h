@@ -50,7 +50,9 @@ static hd_status est_run(hd_heat *heat, const hd_laplacian *lap, const est_case 
     int32_t source[EST_MOST_K], i;
     est_times(lap, c, t);
     for (i = 0; i < EST_MOST_K; i++) source[i] = lap->vertex[i * 7919 % lap->n_active];
+    for (i = 0; c->query == HD_QUERY_FIELDS && i < lap->n * c->k; i++) U[lap->n * c->k * c->n_times + i] = sin(1.3 * i) + 0.1;
     switch (c->query) {
+        case HD_QUERY_FIELDS: return hd_heat_apply(heat, c->n_times, t, c->k, U + lap->n * c->k * c->n_times, 0, U, 0, rep, NULL);
         case HD_QUERY_COLUMNS: return hd_heat_columns(heat, HD_KERNEL_OPERATOR, c->n_times, t, c->k, source, U, 0, rep, NULL);
         case HD_QUERY_PAIRS:
             return hd_heat_pairs(heat, HD_DISTANCE_CLASSICAL, c->n_times, t, c->k / 2, source, source + c->k / 2, U, U + c->k / 2, rep, NULL);
@@ -58,7 +60,7 @@ static hd_status est_run(hd_heat *heat, const hd_laplacian *lap, const est_case 
         case HD_QUERY_DIAGONAL_OPERATOR: return hd_heat_diagonal(heat, HD_KERNEL_OPERATOR, c->n_times, t, U, 0, rep, NULL);
         case HD_QUERY_TRACE: return hd_heat_trace(heat, c->n_times, t, U, NULL, rep, NULL);
         case HD_QUERY_NORMALISED: return hd_heat_normalised(heat, c->n_times, t, U, 0, rep, NULL);
-        case HD_QUERY_SCALE_INVARIANT: return hd_heat_scale_invariant(heat, t[0], t[c->n_times - 1], c->n_times, 4, U, 0, rep, NULL);
+        case HD_QUERY_SCALE_INVARIANT: return hd_heat_scale_invariant(heat, t[0], t[c->n_times - 1], c->n_times, c->n_times < 7 ? 2 : 4, U, 0, rep, NULL);
         case HD_QUERY_EDGES: return hd_heat_edges(heat, HD_KERNEL_SYMMETRIC, c->n_times, t, U, rep, NULL);
         default: return hd_heat_distance(heat, (hd_distance_kind)(c->query - HD_QUERY_DISTANCE), c->n_times, t, c->k, source, U, 0, rep, NULL);
     }
@@ -216,6 +218,75 @@ static void est_limits(const hd_laplacian *lap) {
     CHECK(fit > 2 && not_fit > 2);
     hd_heat_free(heat);
     free(U);
+}
+
+/* Within what the estimate says a query finds a way; within bytes_most it is the way, to the bit, that it takes without a limit. */
+static void est_room(const hd_laplacian *lap, const est_case *c, const char *what) {
+    const size_t n = (size_t)est_values(lap, c), extra = (size_t)(lap->n * c->k);
+    double *U[3], t[EST_MOST_TIMES], most = 0;
+    hd_estimate e = {HD_METHOD_AUTO, NULL, 0, {{0, 0, 0, 0, 0, 0}}, 0, 0};
+    hd_report rep[3];
+    size_t q;
+    int pass;
+    est_times(lap, c, t);
+    for (pass = 0; pass < 3; pass++) {
+        hd_heat_opts o = eng_opts(c->method);
+        hd_context ctx;
+        hd_heat *heat;
+        hd_status st;
+        U[pass] = DENSE_NEW(double, n + extra);
+        memset(&ctx, 0, sizeof ctx);
+        ctx.n_threads = 1;
+        o.context = &ctx;
+        heat = eng_create(lap, &o);
+        CHECK(hd_heat_estimate(heat, c->query, c->n_times, t, c->k, &e, NULL) == HD_OK);
+        if (pass > 0) ctx.byte_limit = ctx.bytes_in_use + 1 + (uint64_t)(pass == 1 ? e.cost[0].bytes : e.cost[0].bytes_most);
+        ctx.bytes_peak = ctx.bytes_in_use;
+        st = est_run(heat, lap, c, U[pass], rep + pass);
+        CHECK_MSG(st >= 0 && (!ctx.byte_limit || ctx.bytes_peak <= ctx.byte_limit), "%s: within %g of %g bytes: %s: %s", what,
+                  pass == 1 ? e.cost[0].bytes : e.cost[0].bytes_most, e.cost[0].bytes_most, hd_status_name(st), rep[pass].error.text);
+        hd_heat_free(heat);
+        CHECK(ctx.bytes_in_use == 0);
+    }
+    for (q = 0; q < n; q++) most = fmax(most, fabs(U[0][q]));
+    for (q = 0; q < n && fabs(U[0][q] - U[1][q]) <= (rep[0].error_bound + rep[1].error_bound) * most * 1.001; q++) {}
+    CHECK_MSG(q == n || !isfinite(rep[1].error_bound), "%s: %g, not %g, with bounds %g and %g", what, U[1][q], U[0][q], rep[1].error_bound, rep[0].error_bound);
+    CHECK_MSG(e.method != HD_METHOD_DIRECT || (memcmp(U[0], U[2], n * sizeof **U) == 0 && rep[0].error_bound == rep[2].error_bound),
+              "%s: other bits, bounds %g and %g", what, rep[0].error_bound, rep[2].error_bound);
+    for (pass = 0; pass < 3; pass++) free(U[pass]);
+}
+
+/* Fair triangles and slivers, at ordinary times and where the plan asks whether only the means are left; with heat that fades. */
+static void est_rooms(void) {
+    static const hd_laplacian_kind kinds[2] = {HD_LAPLACIAN_FEM, HD_LAPLACIAN_VORONOI_COT};
+    char what[100];
+    hd_laplacian_opts o;
+    int thin, kind, held, large, n_times, query, method, i;
+    for (thin = 0; thin < 2; thin++) {
+        shape s = shape_grid(14, 13, 0.3);
+        for (i = 0; thin && i < s.n; i++) s.xyz[3 * i + 1] *= 1e-4;
+        for (kind = 0; kind < (thin ? 2 : 4); kind++) {   /* in slivers heat fades at once */
+            hd_laplacian *lap = NULL;
+            held = kind / 2;
+            memset(&o, 0, sizeof o);
+            o.kind = kinds[kind % 2];
+            if (held) o.border = HD_BORDER_DIRICHLET;
+            CHECK(hd_laplacian_triangles(&lap, s.xyz, s.n, s.tri, s.n_tri, &o, NULL) == HD_OK);
+            for (method = kind % 2; method < 2; method++) for (large = 0; large < 2; large++) for (n_times = 1; n_times <= 4; n_times += 3)
+                for (query = HD_QUERY_FIELDS; query <= HD_QUERY_DISTANCE_WEIGHTED; query++) {
+                    const double h2 = lap->h * lap->h, from = !large ? 5 : held ? 40 : 3e8 / hd_laplacian_lambda_max(lap) / h2;
+                    est_case c = {HD_QUERY_FIELDS, HD_METHOD_AUTO, n_times, query <= HD_QUERY_PAIRS || query >= HD_QUERY_DISTANCE ? 6 : 0, from, 8};
+                    c.query = (hd_query)query;
+                    if (query == HD_QUERY_PAIRS && n_times > 1) continue;
+                    if (query == HD_QUERY_SCALE_INVARIANT && n_times < 3) continue;
+                    if (method) c.method = HD_METHOD_DIRECT;
+                    snprintf(what, sizeof what, "thin %d, kind %d, held %d, method %d, query %d, %d times from %g h^2", thin, kind % 2, held, (int)c.method, query, n_times, from);
+                    est_room(lap, &c, what);
+                }
+            hd_laplacian_free(lap);
+        }
+        shape_free(&s);
+    }
 }
 
 static void est_bad(const hd_laplacian *lap) {
@@ -507,6 +578,7 @@ static void test_estimate(void) {
         hd_laplacian_free(lap);
     }
     est_model();
+    est_rooms();
     est_sweeps();
     est_many();
     shape_free(&ball);

@@ -24,8 +24,9 @@ typedef struct fail_world {
     int has_report;
 } fail_world;
 
-/* What a case may do where memory fails: nothing but say so; go on in another way, with an answer. */
-enum { FAIL_TELLS = 0, FAIL_GOES_ON = 1 };
+/* What a case may do under a byte limit: nothing but say so; go on in another way; besides, the way may depend on what was
+ * asked before. Where an allocation fails, or the call is cancelled, each must say so. */
+enum { FAIL_TELLS = 0, FAIL_GOES_ON, FAIL_DEPENDS };
 
 typedef struct fail_case {
     const char *name;
@@ -261,12 +262,15 @@ static void fail_sources(hd_source sources[2]) {
 enum { FAIL_FADING = 1000, FAIL_FADING_INSIDE = 1000, FAIL_FADING_COLUMNS, FAIL_FADING_ENTRIES, FAIL_FADING_DIAGONAL, FAIL_FADING_DIAGONAL_K,
        FAIL_FADING_EDGES, FAIL_FADING_TRACE, FAIL_FADING_ESTIMATE, FAIL_FADING_END };
 
+/* So large a time that the plan asks whether only the means are left, and so many of that. */
+enum { FAIL_HUGE = 2000 };
+
 /* A variant above the list: many times. */
 static hd_status fail_ask(fail_world *w, int variant) {
     static const int32_t id[6] = {0, 5, 13, 14, 2, 20}, other[6] = {3, 5, 1, 17, 20, 20};
     static const double f[21] = {1, 0, 2, 0, 0, 3, 0, -1, 0, 0, 4, 0, 0, 1, 0, 0, 0, 7, 0, 0, 1};
-    const int q = variant % FAIL_QUERIES;
-    const int32_t many = variant >= FAIL_QUERIES ? 3 : 1;
+    const int q = variant % FAIL_HUGE % FAIL_QUERIES;
+    const int32_t many = variant % FAIL_HUGE >= FAIL_QUERIES ? 3 : 1;
     hd_heat *const h = w->heat;
     double *const u = w->out;
     hd_report *const r = &w->rep;
@@ -276,7 +280,10 @@ static hd_status fail_ask(fail_world *w, int variant) {
     hd_source sources[2];
     int32_t vertex[6] = {4}, k;
     fail_sources(sources);
-    for (k = 0; k < 3; k++) t[k] *= w->lap->h * w->lap->h * (q == FAIL_LARGE || q == FAIL_LARGE_PAIRS ? 200 : 1);
+    for (k = 0; k < 3; k++) {
+        t[k] *= w->lap->h * w->lap->h * (q == FAIL_LARGE || q == FAIL_LARGE_PAIRS ? 200 : 1);
+        if (variant >= FAIL_HUGE) t[k] = (1 << k) * 3e8 / hd_laplacian_lambda_max(w->lap);
+    }
     w->has_report = q != FAIL_ESTIMATE;
     w->n_out = (size_t)(21 * many);
     switch (q) {
@@ -704,8 +711,8 @@ static const fail_case fail_cases[] = {
     {"plan, direct", fail_triangles, fail_create_plan, FAIL_HELD, 2, 0},
     {"filter", fail_plan, fail_filter, FAIL_DIRECT, 0, 0},
     {"filter, cocg", fail_plan, fail_filter, FAIL_COCG, 1, 1},
-    {"filter after another", fail_plan_filtered, fail_filter, FAIL_DIRECT, 1, 0},
-    {"heat after a filter", fail_plan_filtered, fail_unfilter, FAIL_DIRECT, FAIL_COLUMNS, 0},
+    {"filter after another", fail_plan_filtered, fail_filter, FAIL_DIRECT, 1, FAIL_GOES_ON},
+    {"heat after a filter", fail_plan_filtered, fail_unfilter, FAIL_DIRECT, FAIL_COLUMNS, FAIL_GOES_ON},
     {"times", fail_triangles, fail_times, 0, 0, 0},
     {"times by eigenvalues", fail_triangles, fail_times, FAIL_HELD, 1, 0},
     {"eigenpairs", fail_triangles, fail_create_spectrum, 0, 8, 0},
@@ -820,7 +827,7 @@ static void fail_clean(fail_world *w, const fail_case *c, fail_want *want) {
     want->n_out = w->n_out;
     want->bound = w->rep.error_bound;
     memcpy(want->out, w->out, w->n_out * sizeof *w->out);
-    CHECK_MSG(fail_call(w, c) >= 0 && w->n_out == want->n_out && (c->goes_on || memcmp(w->out, want->out, w->n_out * sizeof *w->out) == 0),
+    CHECK_MSG(fail_call(w, c) >= 0 && w->n_out == want->n_out && (c->goes_on == FAIL_DEPENDS || memcmp(w->out, want->out, w->n_out * sizeof *w->out) == 0),
               "%s: the second time other bits", c->name);
     memcpy(want->again, w->out, w->n_out * sizeof *w->out);
     want->after_again = w->ctx.bytes_in_use;
@@ -867,7 +874,7 @@ static void fail_recover(fail_world *w, const fail_case *c, const fail_want *wan
         CHECK_MSG(c->goes_on || w->ctx.bytes_in_use == want->after || w->ctx.bytes_in_use == want->after_again, "%s: after %s %lld: %llu bytes in use, not %llu",
                   c->name, how, (long long)k, (unsigned long long)w->ctx.bytes_in_use, (unsigned long long)want->after);
     } else {
-        CHECK_MSG(c->goes_on && w->has_report && fail_agree(w->out, want->out, w->n_out, w->rep.error_bound, want->bound),
+        CHECK_MSG(c->goes_on == FAIL_DEPENDS && w->has_report && fail_agree(w->out, want->out, w->n_out, w->rep.error_bound, want->bound),
                   "%s: after %s %lld: other bits, off by %g, where bounds are %g and %g", c->name, how, (long long)k, fail_far(w->out, want->out, w->n_out),
                   w->rep.error_bound, want->bound);
         CHECK_MSG(w->rep.error_bound <= fmax(2 * want->bound, 1e-6), "%s: after %s %lld: bound %g, not %g", c->name, how, (long long)k, w->rep.error_bound,
@@ -883,7 +890,7 @@ static void fail_each_allocation(fail_world *w, const fail_case *c, const fail_w
         fail_begin(w, c);
         w->m.fail_at = w->m.calls + k;
         st = fail_call(w, c);
-        CHECK_MSG(st == HD_ERR_MEMORY || (c->goes_on && st >= 0), "%s: allocation %lld failed, but %s", c->name, (long long)k, hd_status_name(st));
+        CHECK_MSG(st == HD_ERR_MEMORY, "%s: allocation %lld failed, but %s", c->name, (long long)k, hd_status_name(st));
         fail_memory++;
         fail_recover(w, c, want, "failed allocation", k);
     }
@@ -899,7 +906,7 @@ static void fail_at_random(fail_world *w, const fail_case *c, const fail_want *w
         st = fail_call(w, c);
         CHECK_MSG(st == HD_ERR_MEMORY || st >= 0, "%s: at random %lld, but %s", c->name, (long long)k, hd_status_name(st));
         fail_random += w->m.failed;
-        CHECK_MSG(st < 0 || w->m.failed == 0 || c->goes_on, "%s: at random %lld, but %s", c->name, (long long)k, hd_status_name(st));
+        CHECK_MSG(st < 0 || w->m.failed == 0, "%s: at random %lld, but %s", c->name, (long long)k, hd_status_name(st));
         fail_recover(w, c, want, "failures at random", k);
     }
 }
@@ -953,14 +960,15 @@ static void fail_run(const fail_case *c) {
     fail_limits(&w, c, &want);
 }
 
-/* Documented: preconditioners are made in turns where there is no memory for all at once, an estimate guesses where the
- * analysis does not fit, distances may come from eigenpairs or from poles, by what the plan has, and a diagonal at many
- * times takes them one by one where the inverses of shared poles do not fit. */
+/* Documented: under a byte limit preconditioners are made in turns, an estimate guesses where the analysis does not fit,
+ * auto takes iterations, times do without shared poles, and fields take the fewest poles. Distances may come from
+ * eigenpairs or from poles, by what the plan has. */
 static int fail_goes_on(int way, int query) {
-    if (way >= 1 && way <= 3) return 1;
-    return query == FAIL_ESTIMATE || query == FAIL_CLASSICAL || query == FAIL_WEIGHTED || query == FAIL_PAIRS || query == FAIL_PAIRS_WEIGHTED ||
-           query == FAIL_SAMPLE || query == FAIL_LARGE || query == FAIL_LARGE_PAIRS || query == FAIL_DISTANCE_FROM ||
-           query == FAIL_INVARIANT;
+    if (way <= 3 || query == FAIL_ESTIMATE || query == FAIL_CLASSICAL || query == FAIL_WEIGHTED || query == FAIL_PAIRS ||
+        query == FAIL_PAIRS_WEIGHTED || query == FAIL_SAMPLE || query == FAIL_LARGE || query == FAIL_LARGE_PAIRS ||
+        query == FAIL_DISTANCE_FROM || query == FAIL_INVARIANT)
+        return FAIL_DEPENDS;
+    return way == 5 ? FAIL_GOES_ON : FAIL_TELLS;
 }
 
 /* Every query by every method that answers it. */
@@ -982,10 +990,16 @@ static void fail_queries(void) {
             c.variant = q;
             c.prepare = fail_plan;
             c.prepare_variant = ways[way].method + FAIL_LAP * laplacians[(q + way) % 3];
-            c.goes_on = way == 0 || fail_goes_on(way, query);
+            c.goes_on = fail_goes_on(way, query);
             snprintf(name, sizeof name, "%s, query %d, Laplacian %d", ways[way].name, q, laplacians[(q + way) % 3]);
             fail_run(&c);
-            if (q >= FAIL_QUERIES || query == FAIL_ESTIMATE) continue;
+            if (query == FAIL_ESTIMATE) continue;
+            c.variant = FAIL_HUGE + q;
+            c.prepare_variant = ways[way].method + FAIL_LAP * laplacians[(q + way) % 2];
+            snprintf(name, sizeof name, "%s, query %d, Laplacian %d, endless", ways[way].name, q, laplacians[(q + way) % 2]);
+            if (direct) fail_run(&c);
+            if (q >= FAIL_QUERIES) continue;
+            c.variant = q;
             c.prepare = fail_plan_moved;
             c.prepare_variant = ways[way].method + FAIL_LAP * q;
             snprintf(name, sizeof name, "%s, query %d after a move", ways[way].name, q);
@@ -1003,7 +1017,7 @@ static void fail_fading_queries(void) {
     c.name = name;
     c.prepare = fail_plan;
     c.call = fail_fading;
-    c.goes_on = 1;                               /* with poles */
+    c.goes_on = FAIL_DEPENDS;                    /* with poles */
     for (q = FAIL_FADING; q < FAIL_FADING_END; q++)
         for (w = 0; w < 2; w++) {
             c.variant = q;
@@ -1011,6 +1025,29 @@ static void fail_fading_queries(void) {
             snprintf(name, sizeof name, "fading, query %d, Laplacian %d", q, laplacians[w]);
             fail_run(&c);
         }
+}
+
+/* What the allocation limit says is what suffices, one more each time. */
+static void fail_allocation_limit(void) {
+    shape s = fail_shape();
+    hd_laplacian_opts o;
+    hd_laplacian *lap = NULL;
+    hd_context ctx;
+    hd_status st = HD_ERR_MEMORY_LIMIT;
+    hd_error e;
+    uint64_t count = 0;
+    memset(&ctx, 0, sizeof ctx);
+    memset(&o, 0, sizeof o);
+    o.context = &ctx;
+    for (ctx.allocation_limit = 1; st == HD_ERR_MEMORY_LIMIT && count < 1000; count++) {
+        ctx.allocations = 0;
+        st = hd_laplacian_triangles(&lap, s.xyz, s.n, s.tri, s.n_tri, &o, &e);
+        if (st == HD_ERR_MEMORY_LIMIT && !CHECK_MSG(e.value == (double)(ctx.allocation_limit + 1) && strstr(e.text, "allocation"), "%s: %g", e.text, e.value)) break;
+        ctx.allocation_limit = (uint64_t)e.value;
+    }
+    CHECK_MSG(st == HD_OK && count == ctx.allocations, "%s after %d", hd_status_name(st), (int)count);
+    hd_laplacian_free(lap);
+    shape_free(&s);
 }
 
 /* All eigenpairs, no time and endless times: neither a value nor a bound is NaN (0 times infinity), and the values are
@@ -1087,6 +1124,7 @@ static void fail_minus_zero(void) {
 static void test_failures(void) {
     int k;
     fail_minus_zero();
+    fail_allocation_limit();
     fail_far_points();
     fail_large_area();
     fail_spectrum_ends();
