@@ -856,9 +856,10 @@ typedef enum hd_geodesic_border {
                                        angle */
     HD_GEODESIC_BORDER_MEAN,        /* the mean of the two others (Crane et al. 2013, section 3.4). Takes a
                                        third factor. Fronts hardly bend, and t may be larger, such as 8 h^2 */
-    HD_GEODESIC_BORDER_DIRICHLET    /* zero at the border, where no source can lie, nor in the faces along
-                                       it: fronts bend to follow it. From places near it distances are too short: in a square of 40 x 40
-                                       cells by 0.05 on average, against 0.007 with the natural border */
+    HD_GEODESIC_BORDER_DIRICHLET    /* zero at the border: fronts bend to follow it. No source may lie there,
+                                       nor in a face with a corner there. From places near it distances are
+                                       too short: in a square of 40 x 40 cells by 0.05 on average, against
+                                       0.007 with the natural border */
 } hd_geodesic_border;
 
 typedef struct hd_geodesic_opts {
@@ -20652,8 +20653,8 @@ static hd_status hdi_elim_invert(hdi_elim *m, const hdi_elim_sums *sums, hd_erro
     return hdi_scope_end(&s);
 }
 
-/* out [n] = the diagonal of a factor's inverse, by pivots. coef [width]: of its parts, see hdi_elim_coef. Work
- * arrays in s. */
+/* out [n] = the diagonal of a factor's inverse, by pivots. coef [width]: of its parts, see hdi_elim_coef.
+ * Work arrays in s. */
 static hd_status hdi_elim_inverse_diagonal(const hdi_elim *m, hdi_factor *f, const double *coef, double *out,
                                            hdi_scope *s) {
     hdi_inverse z;

@@ -39,6 +39,7 @@ static void forms_run(const forms_case *c, const hdi_symbolic *s, hd_context *ct
     memset(&v, 0, sizeof v);
     v.real = c->real;
     for (q = 0; q < 4 && c->z; q++) v.z[q] = c->z + q * c->a->nnz;
+    hdi_error_clear(&e);
     keep = hdi_scope_begin(ctx, &e);
     CHECK_MSG(hdi_factor_make(&f, s, width, ctx, &e) == HD_OK && hdi_factor_run(&f, &v, &e) == HD_OK, "%s: %s", what, e.text);
     hdi_inverse_take(&z, s, width, &keep);
