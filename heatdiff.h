@@ -389,7 +389,7 @@ typedef struct hd_laplacian_opts {
      * 6..128. Default 30. */
     int32_t neighbours;
     /* Triangles and polygons, without intrinsic_delaunay and tufted: 1: hd_laplacian_update may be called.
-     * Takes 100 bytes more for each triangle, or 60 for each corner of polygons. Own matrices: 1:
+     * Takes 110 bytes more for each triangle, or 60 for each corner of polygons. Own matrices: 1:
      * hd_laplacian_update_matrices may be called. Takes 24 bytes more for each entry. Points refuse it. */
     int32_t updatable;
     /* Meshes: natural, or Dirichlet: every vertex at the border of the faces used is held at zero. The border
@@ -479,7 +479,7 @@ typedef struct hd_laplacian {
     int32_t n;                  /* vertices of the caller */
     int32_t n_active;           /* rows: vertices with mass that are not held */
     int32_t n_held;             /* vertices held at zero */
-    int32_t n_components;       /* connected components of the rows */
+    int32_t n_components;       /* of the rows, joined by entries of L or B that are not zero */
     hd_laplacian_kind kind;
     /* Mean length of the distinct edges, before any flip. Points: mean distance of a place to the nearest
      * other place. Matrices: as the caller gave it. */
@@ -1114,9 +1114,10 @@ HEATDIFF_API hd_status hd_laplacian_apply(const hd_laplacian *lap, double alpha,
  * with the option updatable. Plans notice: their next query computes with the new values, on the ordering and
  * analysis that they have.
  * xyz    [3 n] finite
- * Faces that were left out stay left out. Faces that lose their area are counted in lap->mesh and add
- * nothing. L, B and the report are those of a new Laplacian: to the last bit for the kind polygon, up to
- * rounding in the order of sums for triangles.
+ * Rows, pattern, held vertices and faces that were left out stay as they are. Faces that lose their area are
+ * counted in lap->mesh and add nothing; their entries may become zero, and what they alone join falls apart.
+ * All values, components and the report are those of a new Laplacian: to the last bit for the kind polygon,
+ * up to rounding in the order of sums for triangles. All arrays keep their places.
  * Points have no update. The pairs that are joined, the planes and the cells follow from the places, so that
  * new places make a new pattern.
  * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (vertex, or face: too large); HD_ERR_EMPTY (vertex: none of its
@@ -6283,7 +6284,6 @@ typedef struct hdi_edges {
     double *w;                  /* minus half the cotangents opposite to it */
     double *b;                  /* a twelfth of the areas of its faces; NULL: not wanted */
     int32_t *smaller, *larger;  /* [n] neighbours of a vertex: those before it and those after it */
-    int32_t *parent;            /* [n] vertices united along edges */
     double length;              /* of all edges, each once */
     int32_t shift;              /* 2^shift vertices a block, which few edges leave */
 } hdi_edges;
@@ -6300,15 +6300,7 @@ static hd_status hdi_edges_take(hdi_edges *g, int32_t n, int64_t room, int weigh
     if (areas) g->b = HDI_TAKE(s, double, room);
     g->smaller = HDI_TAKE_ZERO(s, int32_t, n);
     g->larger = HDI_TAKE_ZERO(s, int32_t, n);
-    g->parent = HDI_TAKE(s, int32_t, n);
-    if (s->e->status >= 0) hdi_fill_own(g->parent, n);
     return s->e->status;
-}
-
-/* The edge (i,j), i < j, which g->larger[i] counts already. */
-static HDI_INLINE void hdi_edges_join(hdi_edges *g, int32_t i, int32_t j) {
-    g->smaller[j]++;
-    if (g->parent[i] != g->parent[j]) hdi_unite(g->parent, i, j);
 }
 
 /* All cotangents of the faces of a run of sides: what the rounding error of their edge's weight is
@@ -6349,7 +6341,7 @@ static hd_status hdi_edges_flat(hdi_edges *g, const hdi_mesh *mesh, int full, hd
             if (full) g->b[n_edges] = b / 12;
             if (j == i) continue;
             g->larger[i]++;
-            hdi_edges_join(g, i, j);
+            g->smaller[j]++;
         }
     }
     g->first[mesh->n] = n_edges;
@@ -6538,8 +6530,8 @@ static void hdi_pass_edges(void *arg, int64_t begin, int64_t end) {
     }
 }
 
-/* Joins the vertices of all edges, in border those of boundary edges, whose marks are taken away. mark [n]:
- * becomes 1 at their ends, unless NULL. */
+/* Counts the edges from earlier vertices. Joins in border the ends of boundary edges, whose marks are taken
+ * away. mark [n]: becomes 1 at their ends, unless NULL. */
 static void hdi_pass_join(hdi_edges *g, int32_t n, int32_t *border, char *mark) {
     int32_t i, p;
     hdi_fill_own(border, n);
@@ -6550,7 +6542,7 @@ static void hdi_pass_join(hdi_edges *g, int32_t n, int32_t *border, char *mark) 
                 hdi_unite(border, i, g->to[p]);
                 if (mark) mark[i] = mark[g->to[p]] = 1;
             }
-            hdi_edges_join(g, i, g->to[p]);
+            g->smaller[g->to[p]]++;
         }
     }
 }
@@ -8114,7 +8106,7 @@ enum { HDI_MOVING_BLOCKS = 20 };
 typedef struct hd_moving {
     struct hdi_moving_poly *poly;
     struct hdi_moving_pair *pair;
-    void *block[HDI_MOVING_BLOCKS];  /* of these two */
+    void *block[HDI_MOVING_BLOCKS];  /* of all this */
     int32_t n_blocks;
     int32_t m;
     int32_t *tri;               /* [3 m] */
@@ -8122,6 +8114,7 @@ typedef struct hd_moving {
     int64_t *place;             /* [6 m] entries of L: (a,b) and (b,a) of the sides ab, bc, ca */
     double *cot, *area;         /* [3 m], [m] */
     double *mass;               /* [n] by vertices */
+    int32_t *border;            /* [n_active] work */
 } hdi_moving;
 
 /* Vertices held at zero. */
@@ -8137,14 +8130,7 @@ static char *hdi_lap_border(const hd_laplacian *lap) {
 }
 
 static void hdi_moving_free(hdi_moving *x, hd_context *ctx) {
-    if (!x) return;
-    while (x->n_blocks > 0) hdi_free(ctx, x->block[--x->n_blocks]);
-    hdi_free(ctx, x->tri);
-    hdi_free(ctx, x->face);
-    hdi_free(ctx, x->place);
-    hdi_free(ctx, x->cot);
-    hdi_free(ctx, x->area);
-    hdi_free(ctx, x->mass);
+    while (x && x->n_blocks > 0) hdi_free(ctx, x->block[--x->n_blocks]);
     hdi_free(ctx, x);
 }
 
@@ -8246,36 +8232,51 @@ static hd_status hdi_lap_rows(hd_laplacian *lap, const double *vertex_mass, hd_e
     return HD_OK;
 }
 
-/* Components from the vertices that are united in parent [n], numbered by their first row, and their
- * masses. */
-static hd_status hdi_lap_united(hd_laplacian *lap, int32_t *parent, hd_error *e) {
+/* Masses of the components. */
+static void hdi_lap_component_masses(hd_laplacian *lap) {
     int32_t i;
-    lap->component = HDI_NEW(lap->context, int32_t, lap->n_active, e);
-    if (!lap->component) return e->status;
-    for (i = 0; i < lap->n_active; i++) {
-        /* the smallest: it has its number already */
-        const int32_t root = lap->row[hdi_find(parent, lap->vertex[i])];
-        lap->component[i] = root == i ? lap->n_components++ : lap->component[root];
-    }
-    lap->component_mass = HDI_NEW(lap->context, double, lap->n_components, e);
-    if (!lap->component_mass) return e->status;
     memset(lap->component_mass, 0, HDI_CAST(size_t, lap->n_components) * sizeof(double));
     for (i = 0; i < lap->n_active; i++) lap->component_mass[lap->component[i]] += lap->mass[i];
-    return HD_OK;
 }
 
-/* The same over the pattern of L. */
-static hd_status hdi_lap_components(hd_laplacian *lap, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
-    int32_t *parent = HDI_TAKE(&s, int32_t, lap->n), i;
+/* Components by values: an entry of L or B that is not zero joins its rows. They are numbered by their first
+ * row. */
+static void hdi_lap_connect(hd_laplacian *lap) {
+    int32_t *c = lap->component, i;
     int64_t p;
-    if (!parent) return hdi_scope_end(&s);
-    hdi_fill_own(parent, lap->n);
-    for (i = 0; i < lap->n_active; i++)
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1] && lap->L.col[p] < i; p++)
-            hdi_unite(parent, lap->vertex[i], lap->vertex[lap->L.col[p]]);
-    (void)hdi_lap_united(lap, parent, e);
-    return hdi_scope_end(&s);
+    hdi_fill_own(c, lap->n_active);
+    for (i = 0; i < lap->n_active; i++) {
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1] && lap->L.col[p] < i; p++) {
+            const int joins = lap->L.val[p] != 0 || (lap->B && lap->B[p] != 0);
+            if (joins && c[i] != c[lap->L.col[p]]) hdi_unite(c, i, lap->L.col[p]);
+        }
+    }
+    lap->n_components = 0;                       /* c[i] <= i, and before i they have their numbers */
+    for (i = 0; i < lap->n_active; i++) c[i] = c[i] == i ? lap->n_components++ : c[c[i]];
+}
+
+/* How many components there can be: updates may part what is joined now. */
+static int32_t hdi_lap_components_most(const hd_laplacian *lap) {
+    return lap->moving || lap->holding ? lap->n_active : lap->n_components;
+}
+
+/* Components and their masses, of a Laplacian that has its values and, if it is to be updated, what that
+ * needs. */
+static hd_status hdi_lap_components(hd_laplacian *lap, hd_error *e) {
+    lap->component = HDI_NEW(lap->context, int32_t, lap->n_active, e);
+    if (!lap->component) return e->status;
+    hdi_lap_connect(lap);
+    lap->component_mass = HDI_NEW(lap->context, double, hdi_lap_components_most(lap), e);
+    if (lap->component_mass) hdi_lap_component_masses(lap);
+    return e->status;
+}
+
+/* Ends an update, once L, B and mass have their new values. */
+static void hdi_lap_renewed(hd_laplacian *lap) {
+    lap->version++;
+    if (!lap->component) return;                 /* the whole of what is held needs none */
+    hdi_lap_connect(lap);
+    hdi_lap_component_masses(lap);
 }
 
 typedef struct hdi_lap_job {
@@ -8414,7 +8415,7 @@ static hd_status hdi_lap_places(hd_laplacian *lap, const double *xyz, hd_error *
     return HD_OK;
 }
 
-/* (L, B), places, components and h of the mesh, whose arrays come to live in s. full: B is, if its kind
+/* (L, B), places and h of the mesh, whose arrays come to live in s. full: B is, if its kind
  * is. */
 static hd_status hdi_lap_mesh(hd_laplacian *lap, hdi_mesh *mesh, int full, hdi_scope *s) {
     hdi_scope own = hdi_scope_begin(lap->context, s->e);
@@ -8430,9 +8431,8 @@ static hd_status hdi_lap_mesh(hd_laplacian *lap, hdi_mesh *mesh, int full, hdi_s
     if (!vertex_mass || hdi_mesh_faces(mesh, &edges, &want, &lap->mesh, s) < 0) return hdi_scope_end(&own);
     if (hdi_lap_rows(lap, vertex_mass, e) < 0 || hdi_progress(lap->context, "assemble", 0.4, e) < 0)
         return hdi_scope_end(&own);
-    if (hdi_lap_places(lap, mesh->xyz, e) < 0 || hdi_lap_united(lap, edges.parent, e) < 0)
-        return hdi_scope_end(&own);
-    if (hdi_lap_assemble(lap, &edges, e) < 0 || hdi_progress(lap->context, "assemble", 0.8, e) < 0)
+    if (hdi_lap_places(lap, mesh->xyz, e) < 0 || hdi_lap_assemble(lap, &edges, e) < 0 ||
+        hdi_progress(lap->context, "assemble", 0.8, e) < 0)
         return hdi_scope_end(&own);
     lap->h = edges.length / HDI_CAST(double, lap->mesh.n_edges);
     return hdi_scope_end(&own);
@@ -8460,17 +8460,18 @@ static hd_status hdi_moving_keep(hdi_moving *x, hdi_scope *s) {
 }
 
 static hd_status hdi_moving_make(hd_laplacian *lap, const hdi_mesh *mesh, hd_error *e) {
-    hd_context *ctx = lap->context;
+    hdi_scope s = hdi_scope_begin(lap->context, e);
     const uint64_t m = HDI_CAST(uint64_t, lap->mesh.n_faces_used);
     hdi_moving *x = hdi_moving_new(lap, e);
     int32_t f, q;
-    if (!x) return e->status;
-    x->tri = HDI_NEW(ctx, int32_t, 3 * m, e);
-    if (x->tri) x->face = HDI_NEW(ctx, int32_t, m, e);
-    if (x->face) x->place = HDI_NEW(ctx, int64_t, 6 * m, e);
-    if (x->place) x->cot = HDI_NEW(ctx, double, 3 * m, e);
-    if (x->cot) x->area = HDI_NEW(ctx, double, m, e);
-    if (x->area) x->mass = HDI_NEW(ctx, double, lap->n, e);
+    if (!x) return hdi_scope_end(&s);
+    x->tri = HDI_TAKE(&s, int32_t, 3 * m);
+    x->face = HDI_TAKE(&s, int32_t, m);
+    x->place = HDI_TAKE(&s, int64_t, 6 * m);
+    x->cot = HDI_TAKE(&s, double, 3 * m);
+    x->area = HDI_TAKE(&s, double, m);
+    x->mass = HDI_TAKE(&s, double, lap->n);
+    x->border = HDI_TAKE(&s, int32_t, lap->n_active);
     for (f = 0; f < mesh->m && e->status >= 0; f++) {
         int32_t *v = x->tri + hdi_triple(x->m);
         if (!(mesh->area[f] > 0)) continue;
@@ -8483,7 +8484,7 @@ static hd_status hdi_moving_make(hd_laplacian *lap, const hdi_mesh *mesh, hd_err
         }
         x->m++;
     }
-    return e->status;
+    return hdi_moving_keep(x, &s);
 }
 
 /* Has each row's vertex a mass? mass [n] by vertices. */
@@ -8515,6 +8516,38 @@ static hd_status hdi_moving_measure(const hd_laplacian *lap, const double *xyz, 
     return hdi_moving_masses(lap, x->mass, e);
 }
 
+/* Counts the edges of faces that have an area and returns their mean length. L holds the counts before it
+ * gets its values: each face adds 1 to its edge, and HDI_MOVING_WAY if it runs from the smaller vertex. */
+#define HDI_MOVING_WAY 1073741824.0
+static double hdi_moving_edges(hd_laplacian *lap) {
+    const hdi_moving *x = lap->moving;
+    hdi_edge_tally tally = {0, 0, 0, 0, 0};
+    double *L = lap->L.val;
+    int32_t f, i, q;
+    int64_t p;
+    memset(L, 0, HDI_CAST(size_t, lap->L.nnz) * sizeof *L);
+    for (f = 0; f < x->m; f++) {
+        const int32_t *v = x->tri + hdi_triple(f);
+        for (q = 0; q < 3 && x->area[f] > 0; q++) {
+            const int up = v[q] < v[hdi_next3[q]];
+            L[x->place[2 * (hdi_triple(f) + q) + !up]] += up ? 1 + HDI_MOVING_WAY : 1;
+        }
+    }
+    hdi_fill_own(x->border, lap->n_active);
+    for (i = 0; i < lap->n_active; i++) {
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
+            const int32_t j = lap->L.col[p];
+            const int64_t forward = HDI_CAST(int64_t, L[p] / HDI_MOVING_WAY);
+            const int64_t faces = HDI_CAST(int64_t, L[p]) - forward * HDI_CAST(int64_t, HDI_MOVING_WAY);
+            if (faces == 0) continue;
+            hdi_edge_count(&tally, faces, forward, hdi_edge_length(lap->xyz, i, j));
+            if (faces == 1) hdi_unite(x->border, i, j);
+        }
+    }
+    hdi_edge_report(&tally, x->border, lap->n_active, &lap->mesh);
+    return tally.length / HDI_CAST(double, tally.n_edges);
+}
+
 /* Off-diagonal entries from the faces, in the order of the assembly. */
 static void hdi_moving_sides(hd_laplacian *lap) {
     const hdi_moving *x = lap->moving;
@@ -8542,7 +8575,6 @@ static void hdi_moving_rows(hd_laplacian *lap) {
     int32_t i;
     int64_t p, diagonal = 0;
     lap->mesh.n_negative_weights = 0;
-    memset(lap->component_mass, 0, HDI_CAST(size_t, lap->n_components) * sizeof(double));
     for (i = 0; i < lap->n_active; i++) {
         double sum = 0;
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
@@ -8553,12 +8585,11 @@ static void hdi_moving_rows(hd_laplacian *lap) {
             if (B) B[p] /= 12;
             if (j < i) continue;
             lap->mesh.n_negative_weights += L[p] > 0;
-            length += sqrt(hdi_distance2(lap->xyz + hdi_triple(i), lap->xyz + hdi_triple(j)));
+            length += hdi_edge_length(lap->xyz, i, j);
         }
         L[diagonal] = -sum;
         lap->mass[i] = lap->moving->mass[lap->vertex[i]];
         if (B) B[diagonal] = lap->b_diag[i] = lap->mass[i] / 2;
-        lap->component_mass[lap->component[i]] += lap->mass[i];
     }
     lap->h = length / HDI_CAST(double, lap->mesh.n_edges);
 }
@@ -8574,13 +8605,17 @@ static void hdi_moving_tell(hd_laplacian *lap, const double *xyz, const hd_mesh_
 }
 
 static hd_status hdi_lap_update(hd_laplacian *lap, const double *xyz, hd_error *e) {
+    const int32_t m = lap->moving->m, before = lap->mesh.n_faces_used;
     hd_mesh_report rep;
+    double h = 0;
     memset(&rep, 0, sizeof rep);
     if (hdi_moving_measure(lap, xyz, &rep, e) < 0) return e->status;
-    hdi_moving_tell(lap, xyz, &rep, lap->mesh.n_faces - lap->moving->m);
+    hdi_moving_tell(lap, xyz, &rep, lap->mesh.n_faces - m);
+    if (before < m || rep.n_faces_used < m) h = hdi_moving_edges(lap);   /* else all entries stay edges */
     hdi_moving_sides(lap);
     hdi_moving_rows(lap);
-    lap->version++;
+    if (h > 0) lap->h = h;
+    hdi_lap_renewed(lap);
     return HD_OK;
 }
 
@@ -8819,13 +8854,9 @@ static hd_status hdi_moving_poly_update(hd_laplacian *lap, const double *xyz, hd
     for (i = 0; i < lap->n; i++) z->mass[i] = hdi_poly_mass(poly, i);
     if (hdi_moving_masses(lap, z->mass, e) < 0) return e->status;
     hdi_moving_tell(lap, xyz, &rep, z->n_left_out);
-    memset(lap->component_mass, 0, HDI_CAST(size_t, lap->n_components) * sizeof(double));
-    for (i = 0; i < lap->n_active; i++) {
-        lap->mass[i] = z->mass[lap->vertex[i]];
-        lap->component_mass[lap->component[i]] += lap->mass[i];
-    }
+    for (i = 0; i < lap->n_active; i++) lap->mass[i] = z->mass[lap->vertex[i]];
     hdi_poly_values(lap, poly, &z->work, z->border);
-    lap->version++;
+    hdi_lap_renewed(lap);
     return HD_OK;
 }
 
@@ -8852,7 +8883,6 @@ static hd_status hdi_lap_poly(hd_laplacian *lap, hdi_poly *poly, hdi_scope *keep
     if (hdi_progress(lap->context, "assemble", 0.8, e) < 0) return hdi_scope_end(&s);
     lap->b_ratio = 1;
     lap->conserves = 1;
-    (void)hdi_lap_components(lap, e);
     return hdi_scope_end(&s);
 }
 
@@ -8885,8 +8915,8 @@ static int32_t hdi_flat_copies(const hdi_flat *flat, int32_t f, double unit) {
     return in_parts ? flat->soup.copies[f] * HDI_CAST(int32_t, unit / flat->soup.share) : 1;
 }
 
-/* Rows, components, L and B from intrinsic triangles that are Delaunay, with areas and cotangents but
- * without coordinates. */
+/* Rows, L and B from intrinsic triangles that are Delaunay, with areas and cotangents but without
+ * coordinates. */
 static hd_status hdi_lap_flat(hd_laplacian *lap, const hdi_mesh *flat, hdi_scope *s) {
     const int full = lap->kind == HD_LAPLACIAN_FEM;
     hd_error *e = s->e;
@@ -8898,7 +8928,6 @@ static hd_status hdi_lap_flat(hd_laplacian *lap, const hdi_mesh *flat, hdi_scope
     hdi_mesh_masses(flat, hdi_lap_lump(lap->kind), vertex_mass);
     if (hdi_lap_rows(lap, vertex_mass, e) < 0 || hdi_progress(lap->context, "assemble", 0.5, e) < 0)
         return e->status;
-    if (hdi_lap_united(lap, edges.parent, e) < 0) return e->status;
     /* The smallest eigenvalue of the element 1/2, 1/6; 1/6, 1/6 of corners v, v, w, and of that of three
      * corners. */
     lap->b_ratio = !full ? 1 : lap->mesh.n_self_edges ? 1 - sqrt(1.0 / 3) : 0.5;
@@ -9232,14 +9261,13 @@ static hd_status hdi_lap_matrices(hd_laplacian *lap, const hd_csr *L, const hd_c
         lap->B = NULL;
         lap->b_diag = lap->mass;
     }
-    hdi_lap_components(lap, e);
     return hdi_scope_end(&s);
 }
 
 /* Matrices whose values change: what to go back to after an error, and work. */
 typedef struct hdi_moving_pair {
     hd_laplacian before;
-    double *L, *B, *mass, *b_diag, *component_mass;
+    double *L, *B, *mass, *b_diag;
     double *full, *diag;        /* [nnz] B and [n_active] its diagonal where lap has none */
     double *root;               /* [n_active] see hdi_pair_measure */
 } hdi_moving_pair;
@@ -9256,7 +9284,6 @@ static hd_status hdi_moving_pair_make(hd_laplacian *lap, hd_error *e) {
     z->b_diag = HDI_TAKE(&s, double, lap->n_active);
     z->diag = HDI_TAKE(&s, double, lap->n_active);
     z->root = HDI_TAKE(&s, double, lap->n_active);
-    z->component_mass = HDI_TAKE(&s, double, lap->n_components);
     if (e->status >= 0) x->pair = z;
     return hdi_moving_keep(x, &s);
 }
@@ -9264,12 +9291,12 @@ static hd_status hdi_moving_pair_make(hd_laplacian *lap, hd_error *e) {
 /* Copies the values of lap to where an error finds them, or with `back` from there. */
 static void hdi_moving_pair_copy(hd_laplacian *lap, int back) {
     hdi_moving_pair *z = lap->moving->pair;
-    const size_t n = HDI_CAST(size_t, lap->n_active), n_comp = HDI_CAST(size_t, lap->n_components);
-    double *const here[] = {lap->L.val, lap->B, lap->mass, lap->b_diag, lap->component_mass};
-    double *const kept[] = {z->L, z->B, z->mass, z->b_diag, z->component_mass};
-    const size_t count[] = {HDI_CAST(size_t, lap->L.nnz), HDI_CAST(size_t, lap->L.nnz), n, n, n_comp};
+    const size_t n = HDI_CAST(size_t, lap->n_active), nnz = HDI_CAST(size_t, lap->L.nnz);
+    double *const here[] = {lap->L.val, lap->B, lap->mass, lap->b_diag};
+    double *const kept[] = {z->L, z->B, z->mass, z->b_diag};
+    const size_t count[] = {nnz, nnz, n, n};
     int q;
-    for (q = 0; q < 5; q++)
+    for (q = 0; q < 4; q++)
         if (here[q]) memcpy(back ? here[q] : kept[q], back ? kept[q] : here[q], count[q] * sizeof(double));
 }
 
@@ -9326,11 +9353,11 @@ static hd_status hdi_pair_inert(const hd_laplacian *lap, const hd_csr *B, hd_err
     return HD_OK;
 }
 
-/* New values, all but a proof about B. The matrices are checked by rows. After an error lap is as it was. */
+/* New values, all but components and a proof about B. The matrices are checked by rows. After an error lap is
+ * as it was. */
 static hd_status hdi_pair_update(hd_laplacian *lap, const hd_csr *L, const hd_csr *B, hd_error *e) {
     hdi_moving_pair *z = lap->moving->pair;
     const int full = lap->B != NULL;
-    int32_t i;
     int diagonal = 1;
     z->before = *lap;
     hdi_moving_pair_copy(lap, 0);
@@ -9351,8 +9378,6 @@ static hd_status hdi_pair_update(hd_laplacian *lap, const hd_csr *L, const hd_cs
     }
     lap->B = z->before.B;
     lap->b_diag = z->before.b_diag;
-    memset(lap->component_mass, 0, HDI_CAST(size_t, lap->n_components) * sizeof(double));
-    for (i = 0; i < lap->n_active; i++) lap->component_mass[lap->component[i]] += lap->mass[i];
     return HD_OK;
 }
 
@@ -9382,13 +9407,6 @@ static void hdi_held_values(hd_laplacian *lap, const hd_laplacian *whole) {
     }
 }
 
-/* Masses of the components. */
-static void hdi_lap_component_masses(hd_laplacian *lap) {
-    int32_t i;
-    memset(lap->component_mass, 0, HDI_CAST(size_t, lap->n_components) * sizeof(double));
-    for (i = 0; i < lap->n_active; i++) lap->component_mass[lap->component[i]] += lap->mass[i];
-}
-
 /* Does an entry of L lead from this row to a vertex that is held? */
 static int hdi_held_leaks(const hd_laplacian *lap, const hd_laplacian *whole, int32_t i) {
     const int32_t from = whole->row[lap->vertex[i]];
@@ -9398,11 +9416,10 @@ static int hdi_held_leaks(const hd_laplacian *lap, const hd_laplacian *whole, in
     return 0;
 }
 
-/* Masses of the components, and which of them conserve their heat. An infinite mass takes the constants out
- * of all formulas: their part of K_t f is the heat divided by the mass. */
+/* Which components conserve their heat. Masses are known. An infinite one takes the constants out of all
+ * formulas: their part of K_t f is the heat divided by the mass. */
 static void hdi_held_components(hd_laplacian *lap, const hd_laplacian *whole) {
     int32_t i, leaks = 0;
-    hdi_lap_component_masses(lap);
     lap->conserves = whole->conserves;
     for (i = 0; i < lap->n_active && whole->conserves; i++) {
         double *mass = lap->component_mass + lap->component[i];
@@ -9434,7 +9451,7 @@ static hd_status hdi_held_rows(hd_laplacian *lap, const hd_laplacian *whole, hd_
     return hdi_scope_end(&s);
 }
 
-/* Room for the pair, its places if the whole has some, and all that follows from the values. */
+/* Room for the pair and its places, if the whole has some, and the values. */
 static hd_status hdi_held_fill(hd_laplacian *lap, const hd_laplacian *whole, hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
     const int32_t n = lap->n_active;
@@ -9442,10 +9459,9 @@ static hd_status hdi_held_fill(hd_laplacian *lap, const hd_laplacian *whole, hd_
     int32_t i;
     double *B, *b_diag, *xyz;
     hd_csr L;
-    for (p = 0; p < whole->L.nnz; p++) nnz += lap->row[whole->vertex[whole->L.col[p]]] >= 0;
-    for (i = 0; i < whole->n_active; i++)        /* rows that go, on columns that stay */
-        for (p = whole->L.row_ptr[i]; p < whole->L.row_ptr[i + 1] && lap->row[whole->vertex[i]] < 0; p++)
-            nnz -= lap->row[whole->vertex[whole->L.col[p]]] >= 0;
+    for (i = 0; i < whole->n_active; i++)
+        for (p = whole->L.row_ptr[i]; p < whole->L.row_ptr[i + 1] && lap->row[whole->vertex[i]] >= 0; p++)
+            nnz += lap->row[whole->vertex[whole->L.col[p]]] >= 0;
     L = hdi_csr_take(&s, n, n, nnz, 1);
     B = whole->B ? HDI_TAKE(&s, double, nnz) : NULL;
     b_diag = whole->B ? HDI_TAKE(&s, double, n) : NULL;
@@ -9458,7 +9474,6 @@ static hd_status hdi_held_fill(hd_laplacian *lap, const hd_laplacian *whole, hd_
     for (i = 0; i < n && xyz; i++)
         hdi_copy3(xyz + hdi_triple(i), hdi_at3(whole->xyz, whole->row[lap->vertex[i]]));
     hdi_held_values(lap, whole);
-    if (hdi_lap_components(lap, e) >= 0) hdi_held_components(lap, whole);
     return hdi_scope_end(&s);
 }
 
@@ -9469,28 +9484,30 @@ static hd_laplacian *hdi_held_whole(hd_laplacian *lap, hd_error *e) {
     *whole = *lap;
     whole->holding = NULL;
     memset(&lap->L, 0, sizeof lap->L);
-    lap->B = lap->mass = lap->b_diag = lap->xyz = lap->component_mass = NULL;
-    lap->vertex = lap->row = lap->component = NULL;
+    lap->B = lap->mass = lap->b_diag = lap->xyz = NULL;
+    lap->vertex = lap->row = NULL;
     lap->moving = NULL;
-    lap->n_components = 0;
     return lap->holding->whole = whole;
 }
 
-/* Ends the making of a Laplacian, which holds no vertex so far: takes out those that are marked. */
+/* Ends the making of a Laplacian, which holds no vertex so far: takes out those that are marked, and finds
+ * the components of what is left. */
 static hd_status hdi_lap_hold(hd_laplacian *lap, hd_error *e) {
     hdi_holding *x = lap->holding;
+    const hd_laplacian *whole = NULL;
     int32_t v, rows = 0;
-    if (!x || e->status < 0) return e->status;
-    for (v = 0; v < lap->n; v++) {
+    for (v = 0; v < lap->n && x; v++) {
         lap->n_held += x->mark[v];
         rows += x->mark[v] && lap->row[v] >= 0;
         if (x->mark[v] && lap->row[v] < 0) lap->row[v] = HD_ROW_HELD;
     }
     if (rows > 0) {
-        const hd_laplacian *whole = hdi_held_whole(lap, e);
+        whole = hdi_held_whole(lap, e);
         if (!whole || hdi_held_rows(lap, whole, e) < 0 || hdi_held_fill(lap, whole, e) < 0) return e->status;
-        if (whole->moving) return HD_OK;
     }
+    if (hdi_lap_components(lap, e) < 0) return e->status;
+    if (whole) hdi_held_components(lap, whole);
+    if (whole && whole->moving) return HD_OK;
     hdi_holding_free(x, lap->context);
     lap->holding = NULL;
     return HD_OK;
@@ -9513,8 +9530,8 @@ static void hdi_held_update(hd_laplacian *lap) {
     for (i = 0; i < lap->n_active && lap->xyz; i++)
         hdi_copy3(lap->xyz + hdi_triple(i), hdi_at3(whole->xyz, whole->row[lap->vertex[i]]));
     hdi_held_values(lap, whole);
+    hdi_lap_renewed(lap);
     hdi_held_components(lap, whole);
-    lap->version++;
 }
 
 /* ---- pairs renumbered ---- */
@@ -9655,8 +9672,8 @@ static hd_laplacian *hdi_pair_renumber(const hd_laplacian *lap, const int32_t *p
     out->component = HDI_CAST(int32_t *, hdi_copy(lap->component, n, sizeof(int32_t), ctx, e));
     out->row = HDI_CAST(int32_t *, hdi_copy(lap->row, HDI_CAST(uint64_t, lap->n), sizeof(int32_t), ctx, e));
     out->component_mass = HDI_CAST(
-        double *,
-        hdi_copy(lap->component_mass, HDI_CAST(uint64_t, lap->n_components), sizeof(double), ctx, e));
+        double *, hdi_copy(lap->component_mass, HDI_CAST(uint64_t, hdi_lap_components_most(lap)),
+                           sizeof(double), ctx, e));
     out->b_diag = lap->B ? HDI_CAST(double *, hdi_copy(lap->b_diag, n, sizeof(double), ctx, e)) : out->mass;
     if (e->status < 0 || hdi_pair_permute(out, lap, perm, ctx, e) < 0) {
         hdi_laplacian_free(out, ctx);
@@ -9681,6 +9698,7 @@ static void hdi_pair_refresh(hd_laplacian *out, const hd_laplacian *lap, int64_t
         fill[i] = out->L.row_ptr[i];
         out->mass[i] = lap->mass[from];
         out->b_diag[i] = lap->b_diag[from];
+        out->component[i] = lap->component[from];
     }
     /* as in hdi_pair_permute: row i of one is column i of the other */
     for (i = 0; i < out->n_active; i++) {
@@ -9691,6 +9709,7 @@ static void hdi_pair_refresh(hd_laplacian *out, const hd_laplacian *lap, int64_t
             if (lap->B) out->B[q] = lap->B[p];
         }
     }
+    out->n_components = lap->n_components;
     memcpy(out->component_mass, lap->component_mass, HDI_CAST(size_t, lap->n_components) * sizeof(double));
     out->h = lap->h;
     out->area = lap->area;
@@ -9959,7 +9978,6 @@ static hd_status hdi_lap_points(hd_laplacian *lap, const double *xyz, hd_error *
     if (hdi_cloud_assemble(lap, -4 * log(rep->weight_cut) * rep->bandwidth, e) < 0) return hdi_scope_end(&s);
     lap->b_ratio = 1;
     lap->conserves = 1;
-    hdi_lap_components(lap, e);
     return hdi_scope_end(&s);
 }
 
@@ -10197,13 +10215,13 @@ static int32_t *hdi_stars(hdi_star_job *job, int32_t *m, hd_laplacian *lap, hdi_
     return tri;
 }
 
-/* Rows, components and matrices of the pair from, whose vertex v is name[v] of lap, in the order of lap's
+/* Rows and matrices of the pair from, whose vertex v is name[v] of lap, in the order of lap's
  * vertices. */
 static hd_status hdi_lap_renumber(hd_laplacian *lap, const hd_laplacian *from, const int32_t *name,
                                   hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
     const int32_t rows = from->n_active;
-    int32_t *perm = HDI_TAKE(&s, int32_t, rows), *number = HDI_TAKE(&s, int32_t, from->n_components), r, i;
+    int32_t *perm = HDI_TAKE(&s, int32_t, rows), r;
     double *mass = HDI_TAKE_ZERO(&s, double, lap->n);
     if (e->status < 0) return hdi_scope_end(&s);
     for (r = 0; r < rows; r++) mass[name[from->vertex[r]]] = from->mass[r];
@@ -10211,19 +10229,7 @@ static hd_status hdi_lap_renumber(hd_laplacian *lap, const hd_laplacian *from, c
     for (r = 0; r < rows; r++) perm[lap->row[name[from->vertex[r]]]] = r;
     if (hdi_pair_permute(lap, from, perm, lap->context, e) < 0) return hdi_scope_end(&s);
     if (from->B) lap->b_diag = HDI_NEW(lap->context, double, rows, e);
-    if (e->status >= 0) lap->component = HDI_NEW(lap->context, int32_t, rows, e);
-    if (e->status >= 0) lap->component_mass = HDI_NEW(lap->context, double, from->n_components, e);
-    if (e->status < 0) return hdi_scope_end(&s);
-    hdi_fill_i32(number, from->n_components, -1);
-    for (i = 0; i < rows; i++) {                 /* components are numbered by their first row, as always */
-        const int32_t c = from->component[perm[i]];
-        if (number[c] < 0) {
-            lap->component_mass[lap->n_components] = from->component_mass[c];
-            number[c] = lap->n_components++;
-        }
-        lap->component[i] = number[c];
-        lap->b_diag[i] = from->b_diag[perm[i]];
-    }
+    for (r = 0; r < rows && e->status >= 0; r++) lap->b_diag[r] = from->b_diag[perm[r]];
     return hdi_scope_end(&s);
 }
 
@@ -20371,7 +20377,7 @@ static hd_status hdi_pair_replace(hd_laplacian *lap, const hd_csr *L, const hd_c
         return e->status;
     }
     lap->h = h;
-    lap->version++;
+    hdi_lap_renewed(lap);
     return HD_OK;
 }
 
@@ -23733,7 +23739,8 @@ struct hd_heat {
     double drift;
     int64_t version;             /* of the Laplacian that all this is made of */
     int64_t *fill;               /* [n_active] work of a renewal, made at the first */
-    double *sums;                /* [2 n_components] work */
+    double *sums;                /* [2 n_sums] work */
+    int32_t n_sums;              /* components that these and the lanes are for */
 };
 
 /* What the caller gets, by rows. */
@@ -23896,6 +23903,18 @@ static void hdi_heat_free_lanes(hd_heat *heat) {
     hdi_free(heat->ctx, heat->lane);
     heat->lane = NULL;
     heat->n_lanes = 0;
+}
+
+/* Room for sums over components. Lanes for another number of them are made anew. */
+static hd_status hdi_heat_sums(hd_heat *heat, hd_error *e) {
+    const int32_t n = heat->source->n_components;
+    if (n == heat->n_sums) return HD_OK;
+    hdi_heat_free_lanes(heat);
+    hdi_free(heat->ctx, heat->sums);
+    heat->n_sums = 0;
+    heat->sums = HDI_NEW(heat->ctx, double, 2 * HDI_CAST(uint64_t, n), e);
+    if (heat->sums) heat->n_sums = n;
+    return e->status;
 }
 
 /* Makes the plan have n lanes, without their arrays. */
@@ -24380,7 +24399,7 @@ static hd_status hdi_heat_renew(hd_heat *heat, hd_error *e) {
     if (heat->version == lap->version) return HD_OK;
     heat->habit_spent = 0;
     if (!heat->fill) heat->fill = HDI_NEW(heat->ctx, int64_t, lap->n_active, e);
-    if (!heat->fill) return e->status;
+    if (!heat->fill || hdi_heat_sums(heat, e) < 0) return e->status;
     hdi_heat_measure_pair(heat);
     for (i = heat->other != NULL; HDI_HAS_DIRECT && i >= 0; i--) {
         if (heat->elim.ctx) hdi_elim_renew(&heat->elim, lap, heat->fill);
@@ -24416,8 +24435,9 @@ static hd_status hdi_heat_begin(hdi_heat_call *h, hd_heat *heat, hdi_query query
     h->s = hdi_scope_begin(heat->ctx, h->e);
     h->rep->reason = "nothing was asked for";
     h->lap = heat->source;
+    if (hdi_context_check(heat->ctx, h->e) >= 0) (void)hdi_heat_renew(heat, h->e);
     h->lane = heat->lane;
-    return hdi_context_check(heat->ctx, h->e) < 0 ? h->e->status : hdi_heat_renew(heat, h->e);
+    return h->e->status;
 }
 
 /* ---- choice of the method ---- */
@@ -26967,8 +26987,7 @@ static void hdi_heat_defaults(hd_heat *heat, const hd_heat_opts *opts) {
 static hd_status hdi_heat_make(hd_heat *heat, const hd_laplacian *lap, hd_error *e) {
     hd_context *ctx = heat->ctx;
     heat->source = lap;
-    heat->sums = HDI_NEW(ctx, double, 2 * HDI_CAST(uint64_t, lap->n_components), e);
-    if (!heat->sums) return e->status;
+    if (hdi_heat_sums(heat, e) < 0) return e->status;
     hdi_heat_measure_pair(heat);
     if (heat->opts.ordering == HD_ORDERING_OWN && hdi_order_check(heat->opts.perm, lap->n, ctx, e) >= 0)
         heat->perm = HDI_CAST(int32_t *, hdi_copy(heat->opts.perm, HDI_CAST(uint64_t, lap->n),
@@ -31356,9 +31375,10 @@ static hd_status hdi_geo_make(hd_geodesic *g, const hdi_geo_input *in, const hd_
     if ((o->border == HD_GEODESIC_BORDER_NATURAL || hdi_holding_make(lap, 1, NULL, 0, e) >= 0) &&
         hdi_geo_surface_make(lap, &z, in, &s) >= 0) {
         g->n_active = lap->n_active;
-        g->n_components = lap->n_components;
         g->copies = z.flat.mesh.m ? hdi_flat_unit(&z.flat, lap->mesh.n_sheets) : 1;
         if (o->updatable && hdi_moving_make(lap, &z.mesh, e) >= 0) g->lap = lap;
+        if (e->status >= 0) (void)hdi_lap_components(lap, e);
+        g->n_components = lap->n_components;
     }
     if (e->status >= 0 && hdi_geo_analyse(g, lap, o, e) >= 0 && hdi_geo_rows(g, lap, e) >= 0 &&
         hdi_geo_store(g, lap, &z, in, e) >= 0) {
