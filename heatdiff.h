@@ -2144,6 +2144,8 @@ static double hdi_pythag(double a, double b) {
 
 static double hdi_max(double a, double b) { return a > b ? a : b; }
 static double hdi_min(double a, double b) { return a < b ? a : b; }
+/* The larger one, or NaN. */
+static double hdi_worst(double a, double b) { return a >= b || hdi_nan(a) ? a : b; }
 static int64_t hdi_least(int64_t a, int64_t b) { return a < b ? a : b; }
 
 /* By value, so that no branch has to be guessed. */
@@ -18221,12 +18223,13 @@ static hd_status hdi_filter_check(const hd_filter *f, double lambda_max, hd_erro
     else if (two && !(f->b > 0)) text = "filter: b is not positive";
     else if (f->kind == HD_FILTER_BAND && !(f->b > f->a)) text = "filter: the band ends before it begins";
     else if (!hdi_finite(f->tol) || f->tol < 0 || f->tol >= 1) text = "filter: tol is not in [0, 1)";
-    else if (!hdi_finite(f->weight) || f->weight < 0) text = "filter: weight is negative or not finite";
     else if (f->max_degree < 0 || f->max_degree > HD_MAX_POLES)
         text = "filter: max_degree is not in 0..HD_MAX_POLES";
     else if (!hdi_finite(f->lambda_min) || f->lambda_min < 0) text = "filter: lambda_min is negative";
     else if (!hdi_finite(lambda_max) || !(lambda_max > 0) || !(f->lambda_min < lambda_max))
         text = "filter: lambda_max is unknown, not positive, or not above lambda_min";
+    else if (!hdi_finite(f->weight * lambda_max) || f->weight < 0)
+        text = "filter: weight is negative, or not finite times lambda_max";
     return text ? hdi_fail(e, HD_ERR_ARGUMENT, text) : HD_OK;
 }
 
@@ -18234,6 +18237,7 @@ static hd_status hdi_filter_check(const hd_filter *f, double lambda_max, hd_erro
 typedef struct hdi_fit {
     /* the filters that poles are found for, and one more whose weights are */
     const hd_filter *filter[HDI_FIT_MOST + 1];
+    const hd_filter *list;       /* the caller's, of several, or NULL */
     double largest[HDI_FIT_MOST + 1];   /* |f| of each */
     int32_t count, constant;     /* filters; is there an a0? */
     double top, floor, tol;      /* lambda_max; floor/top and tol relative to it and to the largest value */
@@ -18264,9 +18268,21 @@ static double hdi_fitted_value(const hdi_fitted *s, double x) {
     return sum;
 }
 
-/* Filter j at a scaled point. */
-static double hdi_fit_f(const hdi_fit *k, int32_t j, double x) {
-    return hdi_filter_value(k->filter[j], x * k->top);
+/* An error that names the filter, if there are several. */
+static hd_status hdi_fit_fail(const hdi_fit *k, const hd_filter *filter, hd_status status, const char *text,
+                              hd_error *e) {
+    hdi_fail(e, status, text);
+    if (k->list) e->column = filter - k->list;
+    return status;
+}
+
+/* A filter at a scaled point. Every value has to be finite; after an error nothing more is asked. */
+static double hdi_fit_f(const hdi_fit *k, const hd_filter *filter, double x, hd_error *e) {
+    const double f = e->status < 0 ? 0 : hdi_filter_value(filter, x * k->top);
+    if (hdi_finite(f)) return f;
+    hdi_fit_fail(k, filter, HD_ERR_NOT_FINITE, "filter: its value is not finite at an eigenvalue", e);
+    e->value = x * k->top;
+    return 0;
 }
 
 static double hdi_fit_tol(const hd_filter *filter) { return filter->tol > 0 ? filter->tol : HDI_FIT_TOL; }
@@ -18281,15 +18297,9 @@ static double hdi_fit_point(int32_t i, int32_t n_log, int32_t n_linear, double f
  * tolerances count as the fit's. */
 static hd_status hdi_fit_put(hdi_fit *k, int32_t j, int32_t i, hd_error *e) {
     const hd_filter *filter = k->filter[j];
-    const double x = k->x[i], f = hdi_fit_f(k, j, x);
-    if (!hdi_finite(f)) {
-        hdi_fail(e, HD_ERR_NOT_FINITE, "filter: its value is not finite at an eigenvalue");
-        e->value = x * k->top;
-        return e->status;
-    }
-    k->u[j * HDI_FIT_ROOM + i] = (1 + filter->weight * k->top * x) * (k->tol / hdi_fit_tol(filter));
-    k->f[j * HDI_FIT_ROOM + i] = f;
-    return HD_OK;
+    k->u[j * HDI_FIT_ROOM + i] = (1 + filter->weight * k->top * k->x[i]) * (k->tol / hdi_fit_tol(filter));
+    k->f[j * HDI_FIT_ROOM + i] = hdi_fit_f(k, filter, k->x[i], e);
+    return e->status;
 }
 
 /* Adds a point, unless it is there. */
@@ -18310,7 +18320,7 @@ static hd_status hdi_fit_scale(hdi_fit *k, int32_t j, hd_error *e) {
     int32_t i;
     for (i = 0; i < k->n; i++) most = hdi_max(most, fabs(f[i]));
     if (!(most > 0 && hdi_finite(1 / most)))
-        return hdi_fail(e, HD_ERR_ARGUMENT, "filter: it is zero on the whole spectrum");
+        return hdi_fit_fail(k, k->filter[j], HD_ERR_ARGUMENT, "filter: it is zero on the whole spectrum", e);
     for (i = 0; i < k->n; i++) f[i] /= most;
     k->largest[j] = most;
     return HD_OK;
@@ -18571,7 +18581,7 @@ static void hdi_fit_residues(hdi_fit *k, int32_t q, hdi_fitted *s) {
     }
     s->a0 = c < cols ? k->b[c] / scale[c] : 0;
     for (s->error = 0, i = 0; i < k->n; i++)
-        s->error = hdi_max(s->error, u[i] * fabs(hdi_fitted_value(s, k->x[i]) - f[i]));
+        s->error = hdi_worst(s->error, u[i] * fabs(hdi_fitted_value(s, k->x[i]) - f[i]));
 }
 
 /* Drops poles that the error would not miss. Returns how many. */
@@ -18592,7 +18602,7 @@ static void hdi_fit_serve(hdi_fit *k, hdi_fitted *s) {
     for (q = 0; q < k->count; q++) {
         hdi_fit_residues(k, q, s);
         if (k->count == 1 && hdi_fit_idle(k, s) > 0) hdi_fit_residues(k, q, s);
-        most = hdi_max(most, s->error);
+        most = hdi_worst(most, s->error);
     }
     s->error = most;
 }
@@ -18629,12 +18639,12 @@ static void hdi_fit_run(hdi_fit *k, hdi_fitted *best) {
 typedef struct hdi_fit_errors { double plain, fit, by_t; } hdi_fit_errors;
 
 static double hdi_fit_error(const hdi_fit *k, int32_t q, const hdi_fitted *s, double x, double t,
-                            hdi_fit_errors *e) {
-    const double off = fabs(hdi_fit_f(k, q, x) / k->largest[q] - hdi_fitted_value(s, x));
+                            hdi_fit_errors *to, hd_error *e) {
+    const double off = fabs(hdi_fit_f(k, k->filter[q], x, e) / k->largest[q] - hdi_fitted_value(s, x));
     const double fit = (1 + k->filter[q]->weight * k->top * x) * off;
-    if (!(off <= e->plain)) e->plain = off;      /* a NaN stays */
-    if (!(fit <= e->fit)) e->fit = fit;
-    if (!((1 + t * x) * off <= e->by_t)) e->by_t = (1 + t * x) * off;
+    to->plain = hdi_worst(to->plain, off);
+    to->fit = hdi_worst(to->fit, fit);
+    to->by_t = hdi_worst(to->by_t, (1 + t * x) * off);
     return fit;
 }
 
@@ -18647,9 +18657,9 @@ static int32_t hdi_fit_measure(hdi_fit *k, int32_t q, const hdi_fitted *s, doubl
     double worst = 0, at = 0;
     int32_t i, before = k->n;
     to->plain = to->fit = to->by_t = 0;
-    (void)hdi_fit_error(k, q, s, 0, t, to);
-    for (i = 0; i < n_log + n_linear; i++) {
-        const double x = hdi_fit_point(i, n_log, n_linear, from), off = hdi_fit_error(k, q, s, x, t, to);
+    (void)hdi_fit_error(k, q, s, 0, t, to, e);
+    for (i = 0; i < n_log + n_linear && e->status >= 0; i++) {
+        const double x = hdi_fit_point(i, n_log, n_linear, from), off = hdi_fit_error(k, q, s, x, t, to, e);
         if (off > worst) at = x;
         worst = hdi_max(worst, off);
         if (off > join && i + 1 < n_log + n_linear) continue;
@@ -18715,7 +18725,7 @@ static hd_status hdi_fit_take(const hdi_fit *k, int32_t q, const hdi_fitted *s, 
     out->lambda_max = k->top;
     out->largest = largest;
     out->a0 = largest * s->a0;
-    fine = hdi_finite(out->a0);
+    fine = hdi_finite(out->a0) && hdi_finite(off->plain);
     for (i = 0; i < s->n; i++) {
         out->theta[i] = hdi_cscale(-unit, s->p[i]);
         out->a[i] = hdi_cscale(-unit * largest, s->a[i]);
@@ -18748,21 +18758,22 @@ static void hdi_fit_room(hdi_fit *k, int32_t count, hdi_scope *s) {
 }
 
 /* Where the points of a filter begin, relative to lambda_max. */
-static double hdi_fit_floor(const hd_filter *filter, double lambda_max) {
+static double hdi_fit_floor(const hdi_fit *k, const hd_filter *filter, hd_error *e) {
     double x, most = 0, floor = HDI_FIT_FLOOR;
-    const double zero = hdi_filter_value(filter, 0);
-    if (filter->lambda_min > 0) return filter->lambda_min / lambda_max;
-    for (x = 1; x > HDI_FIT_LOWEST; x /= 2)
-        most = hdi_max(most, fabs(hdi_filter_value(filter, x * lambda_max)));
+    const double zero = hdi_fit_f(k, filter, 0, e);
+    if (filter->lambda_min > 0) return filter->lambda_min / k->top;
+    for (x = 1; x > HDI_FIT_LOWEST; x /= 2) most = hdi_max(most, fabs(hdi_fit_f(k, filter, x, e)));
     for (x = HDI_FIT_FLOOR; x > HDI_FIT_LOWEST; x /= 2)
-        if (fabs(hdi_filter_value(filter, x * lambda_max) - zero) > HDI_FIT_SETTLED * most) floor = x;
+        if (fabs(hdi_fit_f(k, filter, x, e) - zero) > HDI_FIT_SETTLED * most) floor = x;
     return floor;
 }
 
-/* A fit of poles for the first so many filters, whose arrays and points are still to come. */
-static void hdi_fit_open(hdi_fit *k, int32_t count, const hd_filter *const *filter, double lambda_max) {
+/* A fit of poles for so many filters, whose arrays and points are still to come. */
+static void hdi_fit_open(hdi_fit *k, int32_t count, const hd_filter *const *filter, const hd_filter *list,
+                         double lambda_max, hd_error *e) {
     int32_t q;
     memset(k, 0, sizeof *k);
+    k->list = list;
     k->count = count;
     k->top = lambda_max;
     k->floor = 1;
@@ -18771,7 +18782,7 @@ static void hdi_fit_open(hdi_fit *k, int32_t count, const hd_filter *const *filt
     for (q = 0; q < count; q++) {
         k->filter[q] = filter[q];
         k->constant |= filter[q]->constant != 0;
-        k->floor = hdi_min(k->floor, hdi_fit_floor(filter[q], lambda_max));
+        k->floor = hdi_min(k->floor, hdi_fit_floor(k, filter[q], e));
     }
 }
 
@@ -18785,7 +18796,7 @@ static hd_status hdi_rational_fit(hd_rational *out, const hd_filter *filter, dou
     hdi_fit k;
     int32_t round;
     if (hdi_filter_check(filter, lambda_max, e) < 0) return e->status;
-    hdi_fit_open(&k, 1, &filter, lambda_max);
+    hdi_fit_open(&k, 1, &filter, NULL, lambda_max, e);
     hdi_fit_room(&k, 1, &scope);
     if (e->status < 0 || hdi_fit_begin(&k, e) < 0) return hdi_scope_end(&scope);
     for (round = 0; round < HDI_FIT_ROUNDS && e->status >= 0; round++) {
@@ -18795,7 +18806,7 @@ static hd_status hdi_rational_fit(hd_rational *out, const hd_filter *filter, dou
     }
     if (e->status >= 0 && hdi_fit_take(&k, 0, &s, unit, &off, &set, e) >= 0) *out = set;
     (void)hdi_scope_end(&scope);
-    return e->status < 0 ? e->status : off.fit > k.tol ? HD_WARN_ACCURACY : HD_OK;
+    return e->status < 0 ? e->status : off.fit <= k.tol ? HD_OK : HD_WARN_ACCURACY;
 }
 
 /* The set of one more filter by the poles of s. */
@@ -18804,7 +18815,7 @@ static hd_status hdi_fit_set(hdi_fit *k, hdi_fitted *s, const hd_filter *filter,
     if (hdi_fit_load(k, k->count, filter, e) < 0) return e->status;
     hdi_fit_residues(k, k->count, s);
     (void)hdi_fit_measure(k, k->count, s, unit, HUGE_VAL, off, e);
-    return hdi_fit_take(k, k->count, s, unit, off, out, e);
+    return e->status < 0 ? e->status : hdi_fit_take(k, k->count, s, unit, off, out, e);
 }
 
 /* The sets of all filters by the poles of s. Returns the filter that they serve worst, or -1 where the
@@ -18846,11 +18857,11 @@ static hd_status hdi_rational_fit_shared(hd_rational *out, int32_t count, const 
     }
     for (q = 0; q < first; q++)
         pick[q] = filters + HDI_CAST(int64_t, q) * (count - 1) / hdi_high32(first - 1, 1);
-    hdi_fit_open(&k, first, pick, lambda_max);
+    hdi_fit_open(&k, first, pick, filters, lambda_max, e);
     for (q = 0; q < count; q++) {
         k.constant |= filters[q].constant != 0;
         k.tol = hdi_min(k.tol, hdi_fit_tol(filters + q));
-        k.floor = hdi_min(k.floor, hdi_fit_floor(filters + q, lambda_max));
+        k.floor = hdi_min(k.floor, hdi_fit_floor(&k, filters + q, e));
     }
     k.most = 2 * HD_MAX_POLES - 2;
     hdi_fit_room(&k, HDI_FIT_MOST, &scope);
