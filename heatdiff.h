@@ -24200,7 +24200,7 @@ static void hdi_steps_measure(hd_heat *heat) {
             const double mass = lap->mass[i] > 0 ? lap->mass[i] : lap->b_diag[i];
             s->local += sqrt(sqrt(diag / mass)) / n;
             s->obtuse += hdi_min(1, positive / diag) / n;
-            frexp(top / (sum / lap->b_diag[i]), &octave);
+            frexp(hdi_min(top / (sum / lap->b_diag[i]), DBL_MAX), &octave);
         }
         s->rows[hdi_low32(hdi_high32(octave - 1, 0), HDI_STEPS_OCTAVES - 1)]++;
     }
@@ -24610,17 +24610,23 @@ static double hdi_krylov_late(const hdi_heat_call *h) {
     return hdi_max(0.4, 1 / (1 + HDI_STEPS_LATE * h->times[0] * h->heat->scales.lowest));
 }
 
-/* The number of windows of equal ratio that costs least. */
-static hdi_windows hdi_krylov_windows(hdi_fill f, double n, double span) {
-    const double factor = f.flops / HDI_RATE_REAL, step = 16 * f.nnz / HDI_RATE_SWEEP + 1e-8 * n;
+/* Beyond this ratio of times no basis serves. */
+#define HDI_WINDOW_WIDEST 1e4
+
+/* The number of windows of equal ratio that costs least. The ratio of all times might overflow. */
+static hdi_windows hdi_krylov_windows(const hdi_heat_call *h, hdi_fill f) {
+    const double factor = f.flops / HDI_RATE_REAL;
+    const double step = 16 * f.nnz / HDI_RATE_SWEEP + 1e-8 * h->heat->source->n_active;
+    const double span = log(h->times[h->n_times - 1]) - log(hdi_max(h->times[0], 1e-300));
+    const int32_t least = hdi_high32(1, HDI_CAST(int32_t, ceil(span / log(HDI_WINDOW_WIDEST))));
     double best = HUGE_VAL;
     hdi_windows all = {1, 0, 0};
     int32_t w;
-    for (w = 1; w <= 16; w++) {
-        const double ratio = pow(span, 1.0 / w);
+    for (w = least; w < 2 * least + 15; w++) {
+        const double ratio = exp(span / w);
         const double longest = hdi_krylov_steps(ratio, 0) + (w > 1 ? HDI_STEPS_HANDED_ON : 0);
         const double steps = longest + (w - 1) * hdi_krylov_steps(ratio, 1);
-        if (ratio > 1e4 || w * factor + steps * step >= best) continue;   /* beyond none serves */
+        if (w * factor + steps * step >= best) continue;
         best = w * factor + steps * step;
         all.n = w;
         all.steps = steps;
@@ -24648,7 +24654,7 @@ static int hdi_heat_light(const hdi_heat_call *h) {
     if (order.kind != HD_ORDERING_AUTO || hdi_order_kind(&order, &lap->L) != HD_ORDERING_NESTED_DISSECTION ||
         h->ask.k > HDI_LIGHT_COLUMNS || heat->ctx->byte_limit)
         return 0;
-    w = hdi_krylov_windows(f, n, h->times[h->n_times - 1] / h->times[0]);
+    w = hdi_krylov_windows(h, f);
     more = w.n * HDI_DEGREE_FLOPS * wide / HDI_RATE_FRONTS +
            h->ask.k * w.steps * hdi_krylov_late(h) * 16 * HDI_DEGREE_NNZ / HDI_RATE_SWEEP;
     return more * wide * n * n < HDI_DEGREE_SAVES * f.analysis;
@@ -24664,8 +24670,7 @@ static hdi_cost hdi_heat_cost(const hdi_heat_call *h) {
                           : HDI_POLES_EXPECTED;
     const int32_t pairs = o->rational ? poles : o->degree ? o->degree / 2 : 4;
     const int32_t packs = pairs > 4 ? (pairs + 3) / 4 : 1;
-    const double span = h->times[h->n_times - 1] / h->times[0];
-    const hdi_windows w = hdi_krylov_windows(f, n, span);
+    const hdi_windows w = hdi_krylov_windows(h, f);
     const double steps = k * w.steps * hdi_krylov_late(h), shared = k > 3 ? HDI_KRYLOV_SHARED : 1;
     const double real = f.flops / HDI_RATE_REAL, sweep = (k > 1 ? 1.6 : 0.6) * HDI_RATE_SWEEP;
     const double factor =
@@ -25557,10 +25562,13 @@ static hd_status hdi_heat_by_direct(hdi_heat_call *h) {
 
 /* ---- krylov ---- */
 
+/* The time at part x of the way from t0 to t1, in equal ratios. Their own ratio might overflow. */
+static double hdi_time_between(double t0, double t1, double x) { return pow(t0, 1 - x) * pow(t1, x); }
+
 /* The end of window w of n_windows of equal ratio, from time q0 on; times ascend. */
 static int32_t hdi_window_end(const double *times, int32_t n_times, int32_t q0, int32_t w,
                               int32_t n_windows) {
-    const double end = times[0] * pow(times[n_times - 1] / times[0], (w + 1.0) / n_windows);
+    const double end = hdi_time_between(times[0], times[n_times - 1], (w + 1.0) / n_windows);
     int32_t q1 = q0 + 1;
     /* 1e-13: rounding of pow */
     while (q1 < n_times && (w + 1 >= n_windows || times[q1] <= end * (1 + 1e-13))) q1++;
@@ -25717,9 +25725,8 @@ static hd_status hdi_krylov_items(hdi_heat_call *h, int32_t n, int32_t n_windows
 
 static hd_status hdi_heat_by_krylov(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
-    const double span = h->times[h->n_times - 1] / h->times[0];
     const int32_t wide = h->ask.k > 3 ? HDI_SILAN_WIDE : 1;
-    const int32_t n_windows = hdi_krylov_windows(hdi_heat_fill(heat), heat->elim.sym.n, span).n;
+    const int32_t n_windows = hdi_krylov_windows(h, hdi_heat_fill(heat)).n;
     int32_t n;
     if (heat->silan && heat->silan->wide != wide) hdi_silan_free(heat->silan, heat->ctx);
     if (!heat->silan) {
@@ -30430,8 +30437,8 @@ static void hdi_estimate_krylov(const hdi_estimate *x, double seconds, double he
     const hd_heat *heat = x->h->heat;
     const hdi_fill f = hdi_heat_fill(heat);
     const int several = x->h->n_times > 1;
-    const double span = x->h->times[x->h->n_times - 1] / x->h->times[0], n = heat->source->n_active;
-    const hdi_windows w = hdi_krylov_windows(f, n, span);
+    const double n = heat->source->n_active;
+    const hdi_windows w = hdi_krylov_windows(x->h, f);
     const double longer = several ? 1.3 : 1.15;  /* more than expected, to be safe */
     const double steps = hdi_min(HDI_SILAN_MAX, longer * w.longest);
     const int32_t wide = x->k > 3 ? HDI_SILAN_WIDE : 1;
@@ -33489,7 +33496,7 @@ HEATDIFF_API hd_status hd_heat_scale_invariant(hd_heat *heat, double t0, double 
     else if (n_times < 3 || n_freq < 1 || n_freq > (n_times + 1) / 2)
         hdi_fail(h.e, HD_ERR_ARGUMENT, "signature: n_times is 3 or more, n_freq in 1..(n_times + 1)/2");
     t = h.e->status >= 0 ? HDI_TAKE(&h.s, double, n_times) : NULL;
-    for (q = 0; t && q < n_times; q++) t[q] = t0 * pow(t1 / t0, q / HDI_CAST(double, n_times - 1));
+    for (q = 0; t && q < n_times; q++) t[q] = hdi_time_between(t0, t1, q / HDI_CAST(double, n_times - 1));
     if (!t || hdi_times_check(&h, n_times, t, 1) < 0 || hdi_diagonal_check(&h) < 0 || !HDI_HAS_DIAGONAL)
         return hdi_heat_end(&h);
     if (!D) hdi_missing(h.e);
