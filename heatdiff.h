@@ -1641,10 +1641,12 @@ HEATDIFF_API hd_status hd_heat_distance_from(hd_heat *heat, hd_distance_kind kin
  * The distance is |K_t B^-1 (e_i - e_j)|_B, from the columns at t of all vertices that occur, without
  * cancellation, or from eigenpairs as above. Where its bound is above 1e-6, degree 14 takes over. If these
  * columns would take more than half a GiB, it comes from entries and the diagonal at 2t, one column at a
- * time; sort the pairs by i in that case. Commute and biharmonic always work that way.
+ * time; sort the pairs by i in that case. Commute and biharmonic always work that way. Plans of method
+ * iterative or krylov then take as many pairs at a time as there is room for, in the order of the list.
  * Errors as hd_heat_columns; HD_ERR_INDEX (vertex, row: which pair). HD_ERR_ARGUMENT: commute, biharmonic and
  *        distances of a filter need the direct method
- * Cost   one column for each distinct vertex; from entries one for each distinct i, and a diagonal */
+ * Cost   one column for each distinct vertex, or for each of those taken at a time; from entries one for each
+ *        distinct i, and a diagonal */
 HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, int32_t n_times,
                                      const double *t, int64_t n_pairs, const int32_t *i,
                                      const int32_t *j, double *K, double *d, hd_report *report,
@@ -26459,10 +26461,14 @@ static size_t hdi_leading(hdi_heat_call *h, size_t ld) {
     return ld ? ld : n;
 }
 
+/* Has the caller asked for another method than the direct one? */
+static int hdi_direct_barred(const hd_heat *heat) {
+    return heat->opts.method == HD_METHOD_ITERATIVE || heat->opts.method == HD_METHOD_KRYLOV;
+}
+
 /* Checks that the direct method is allowed, for queries that have no other. */
 static hd_status hdi_direct_only(hdi_heat_call *h) {
-    const hd_method asked = h->heat->opts.method;
-    if (asked == HD_METHOD_ITERATIVE || asked == HD_METHOD_KRYLOV)
+    if (hdi_direct_barred(h->heat))
         return hdi_fail(h->e, HD_ERR_ARGUMENT,
                         "heat: diagonals and distances to all vertices need the direct method");
     return HD_OK;
@@ -30102,29 +30108,45 @@ static hd_status hdi_pairs_once(hd_heat *heat, const hdi_pairs *pairs, double t,
     return rep->status;
 }
 
-/* The pairs at all times of a call. */
+/* How many of the n pairs from the first on have no more than `most` vertices. mark [vertices]: below stamp. */
+static int64_t hdi_pairs_few(const int32_t *i, const int32_t *j, int64_t n, int64_t most, int64_t stamp,
+                             int64_t *mark) {
+    int64_t q, count = 0;
+    for (q = 0; q < n; q++) {
+        count += (mark[i[q]] != stamp) + (mark[j[q]] != stamp && i[q] != j[q]);
+        if (count > most && q > 0) break;
+        mark[i[q]] = mark[j[q]] = stamp;
+    }
+    return q;
+}
+
+/* The pairs at all times of a call. Without the direct method distances come from columns alone, for as many
+ * pairs at a time as these have room for. */
 static hd_status hdi_pairs_run(hdi_heat_call *h, hd_distance_kind kind, int64_t n_pairs, const int32_t *i,
                                const int32_t *j, double *K, double *d) {
     const int timeless = kind >= HD_DISTANCE_COMMUTE;
-    const int32_t n_times = timeless ? 1 : h->ask.n_times;
+    const int32_t n_times = timeless ? 1 : h->ask.n_times, n = h->heat->source->n;
+    int64_t *mark = d && hdi_direct_barred(h->heat) ? HDI_TAKE_ZERO(&h->s, int64_t, n) : NULL, p;
     hdi_pairs x;
     hd_report one;
     int32_t q;
     memset(&x, 0, sizeof x);
     x.kind = kind;
-    x.n = n_pairs;
-    x.i = i;
-    x.j = j;
-    for (q = 0; q < n_times; q++) {
-        x.K = K ? K + n_pairs * q : NULL;
-        x.d = d ? d + n_pairs * q : NULL;
-        if (hdi_pairs_once(h->heat, &x, timeless ? 0 : h->ask.t[q], &one) < 0) {
-            *h->rep = one;
-            if (n_times > 1) h->e->column = q;
-            return h->e->status;
+    for (p = 0; p < n_pairs && h->e->status >= 0; p += x.n) {
+        x.n = mark ? hdi_pairs_few(i + p, j + p, n_pairs - p, HDI_PAIRS_DOUBLES / n, p + 1, mark) : n_pairs;
+        x.i = i + p;
+        x.j = j + p;
+        for (q = 0; q < n_times; q++) {
+            x.K = K ? K + n_pairs * q + p : NULL;
+            x.d = d ? d + n_pairs * q + p : NULL;
+            if (hdi_pairs_once(h->heat, &x, timeless ? 0 : h->ask.t[q], &one) < 0) {
+                *h->rep = one;
+                if (n_times > 1) h->e->column = q;
+                return h->e->status;
+            }
+            if (q == 0 && p == 0) *h->rep = one;
+            else hdi_report_merge(h->rep, &one);
         }
-        if (q == 0) *h->rep = one;
-        else hdi_report_merge(h->rep, &one);
     }
     return h->e->status;
 }
@@ -30831,8 +30853,8 @@ static hd_status hdi_estimate_run(const hdi_estimate *x) {
         to->reason = "t = 0";
         hdi_cost_add(to->cost + to->method, 0, 0, 64.0 * heat->source->n + HDI_ESTIMATE_SMALL);
     } else if (x->query <= HD_QUERY_PAIRS) {
-        (void)hdi_estimate_columns(x, x->query == HD_QUERY_PAIRS
-                                      ? 8 * columns + 16.0 * heat->source->n + 8.0 * x->k : 0);
+        const double held = 8 * hdi_min(columns, HDI_CAST(double, HDI_PAIRS_DOUBLES)) + 8.0 * x->k;
+        (void)hdi_estimate_columns(x, x->query == HD_QUERY_PAIRS ? held + 16.0 * heat->source->n : 0);
     } else if (x->query >= HD_QUERY_TRACE && x->query <= HD_QUERY_SCALE_INVARIANT) {
         (void)hdi_estimate_signature(x);
     } else {

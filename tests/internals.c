@@ -3904,6 +3904,31 @@ static void int_pairs_by_entries(void) {
     }
 }
 
+/* Lists of pairs fall into parts of at most so many vertices, each as long as can be. */
+static void int_pairs_few(void) {
+    enum { N = 12, PAIRS = 80 };
+    int32_t i[PAIRS], j[PAIRS], most, v;
+    uint64_t seed = 3;
+    int64_t p, q, n;
+    for (q = 0; q < PAIRS; q++) {
+        i[q] = q < 30 ? 0 : (int32_t)(dense_random(&seed) % N);
+        j[q] = q % 9 == 4 ? i[q] : (int32_t)(dense_random(&seed) % N);
+    }
+    for (most = 0; most <= N; most++) {
+        int64_t mark[N] = {0};
+        for (p = 0; p < PAIRS; p += n) {
+            int32_t count = 0, next = 0;
+            char seen[N] = {0};
+            n = hdi_pairs_few(i + p, j + p, PAIRS - p, most, p + 1, mark);
+            for (q = p; q < p + n; q++) seen[i[q]] = seen[j[q]] = 1;
+            for (v = 0; v < N; v++) count += seen[v];
+            if (p + n < PAIRS) seen[i[p + n]] = seen[j[p + n]] = 1;
+            for (v = 0; v < N; v++) next += seen[v];
+            if (!CHECK_MSG(n >= 1 && (count <= most || n == 1) && (next > most || p + n == PAIRS), "most %d, pair %d: %d pairs of %d vertices", (int)most, (int)p, (int)n, (int)count)) return;
+        }
+    }
+}
+
 /* f(s, s), f(v, v) and f(s, v) of row s and all rows, f = x g(lambda) x', or B f B; d2[v] = f(s, s) - 2 f(s, v) + f(v, v). */
 static void int_dense_distances(const dense_pair *p, const double *g, int by_b, int32_t source, double *d2) {
     const int32_t n = p->n;
@@ -5218,6 +5243,7 @@ static void int_all(void) {
     int_resolvent_pole();
     int_resolvent_imaginary();
     int_pairs_by_entries();
+    int_pairs_few();
     int_distance_windows();
     int_noise_weights();
     int_lambda_bound();
