@@ -8521,8 +8521,7 @@ static hd_status hdi_moving_measure(const hd_laplacian *lap, const double *xyz, 
 }
 
 /* Counts the edges of faces that have an area and returns their mean length. L holds the counts before it
- * gets its values: each face adds 1 to its edge, and HDI_MOVING_WAY if it runs from the smaller vertex. */
-#define HDI_MOVING_WAY 1073741824.0
+ * gets its values: entry (i,j) that of faces which run from i to j. */
 static double hdi_moving_edges(hd_laplacian *lap) {
     const hdi_moving *x = lap->moving;
     hdi_edge_tally tally = {0, 0, 0, 0, 0};
@@ -8530,21 +8529,16 @@ static double hdi_moving_edges(hd_laplacian *lap) {
     int32_t f, i, q;
     int64_t p;
     memset(L, 0, HDI_CAST(size_t, lap->L.nnz) * sizeof *L);
-    for (f = 0; f < x->m; f++) {
-        const int32_t *v = x->tri + hdi_triple(f);
-        for (q = 0; q < 3 && x->area[f] > 0; q++) {
-            const int up = v[q] < v[hdi_next3[q]];
-            L[x->place[2 * (hdi_triple(f) + q) + !up]] += up ? 1 + HDI_MOVING_WAY : 1;
-        }
-    }
+    for (f = 0; f < x->m; f++)
+        for (q = 0; q < 3 && x->area[f] > 0; q++) L[x->place[2 * (hdi_triple(f) + q)]]++;
     hdi_fill_own(x->border, lap->n_active);
     for (i = 0; i < lap->n_active; i++) {
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
             const int32_t j = lap->L.col[p];
-            const int64_t forward = HDI_CAST(int64_t, L[p] / HDI_MOVING_WAY);
-            const int64_t faces = HDI_CAST(int64_t, L[p]) - forward * HDI_CAST(int64_t, HDI_MOVING_WAY);
+            const double faces = j > i ? L[p] + L[hdi_lap_entry(lap, j, i)] : 0;
             if (faces == 0) continue;
-            hdi_edge_count(&tally, faces, forward, hdi_edge_length(lap->xyz, i, j));
+            hdi_edge_count(&tally, HDI_CAST(int64_t, faces), HDI_CAST(int64_t, L[p]),
+                           hdi_edge_length(lap->xyz, i, j));
             if (faces == 1) hdi_unite(x->border, i, j);
         }
     }
@@ -8623,17 +8617,14 @@ static hd_status hdi_lap_update(hd_laplacian *lap, const double *xyz, hd_error *
     return HD_OK;
 }
 
-static hd_status hdi_lap_triangles(hd_laplacian *lap, const hdi_mesh *given, int updatable, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
-    hdi_mesh mesh = *given;
+static hd_status hdi_lap_triangles(hd_laplacian *lap, hdi_mesh *mesh, int updatable, hdi_scope *s) {
     int32_t f;
-    if (hdi_lap_mesh(lap, &mesh, 1, &s) < 0) return hdi_scope_end(&s);
-    for (f = 0; f < mesh.m; f++) lap->area += mesh.area[f];
-    if (updatable && hdi_moving_make(lap, &mesh, e) < 0) return hdi_scope_end(&s);
+    if (hdi_lap_mesh(lap, mesh, 1, s) < 0) return s->e->status;
+    for (f = 0; f < mesh->m; f++) lap->area += mesh->area[f];
     /* element matrix area/12 (1 1' + I) >= 1/2 of its diagonal, area/12 I */
     lap->b_ratio = lap->kind == HD_LAPLACIAN_FEM ? 0.5 : 1;
     lap->conserves = 1;
-    return hdi_scope_end(&s);
+    return updatable ? hdi_moving_make(lap, mesh, s->e) : HD_OK;
 }
 
 /* ---- polygons ----
@@ -8960,20 +8951,15 @@ static hd_status hdi_lap_unfold(hd_laplacian *lap, hdi_flat *flat, hdi_mesh *mes
     return hdi_progress(lap->context, "assemble", 0.8, e);
 }
 
-static hd_status hdi_lap_intrinsic(hd_laplacian *lap, const hdi_mesh *given, const hdi_intrinsic_task *task,
-                                   hd_error *e) {
+/* The triangles as they are, or with a task their intrinsic Delaunay triangulation. */
+static hd_status hdi_lap_faces(hd_laplacian *lap, const hdi_mesh *given, const hdi_intrinsic_task *task,
+                               int updatable, hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
     hdi_mesh mesh = *given;
     hdi_flat flat;
-    (void)hdi_lap_unfold(lap, &flat, &mesh, task, &s);
+    if (HDI_HAS_INTRINSIC && task) (void)hdi_lap_unfold(lap, &flat, &mesh, task, &s);
+    else (void)hdi_lap_triangles(lap, &mesh, updatable, &s);
     return hdi_scope_end(&s);
-}
-
-/* The triangles as they are, or with a task their intrinsic Delaunay triangulation. */
-static hd_status hdi_lap_faces(hd_laplacian *lap, const hdi_mesh *mesh, const hdi_intrinsic_task *task,
-                               int updatable, hd_error *e) {
-    if (HDI_HAS_INTRINSIC && task) return hdi_lap_intrinsic(lap, mesh, task, e);
-    return hdi_lap_triangles(lap, mesh, updatable, e);
 }
 
 /* The default of the option, as its declaration states. */
@@ -18735,7 +18721,8 @@ static hd_status hdi_fit_take(const hdi_fit *k, int32_t q, const hdi_fitted *s, 
         fine &= hdi_cfinite(out->a[i]);
     }
     if (!fine)
-        return hdi_fail(e, HD_ERR_BREAKDOWN, "filter: a weight of its poles leaves the range of doubles");
+        return hdi_fit_fail(k, k->filter[q], HD_ERR_BREAKDOWN,
+                            "filter: a weight of its poles leaves the range of doubles", e);
     hdi_fit_sort(out);
     out->max_error = largest * (HDI_FIT_BETWEEN * off->plain + hdi_fit_rounding(s));
     out->max_weighted_error = largest * (HDI_FIT_BETWEEN * off->by_t + (1 + unit) * hdi_fit_rounding(s));
@@ -18811,15 +18798,6 @@ static hd_status hdi_rational_fit(hd_rational *out, const hd_filter *filter, dou
     return e->status < 0 ? e->status : off.fit <= k.tol ? HD_OK : HD_WARN_ACCURACY;
 }
 
-/* The set of one more filter by the poles of s. */
-static hd_status hdi_fit_set(hdi_fit *k, hdi_fitted *s, const hd_filter *filter, double unit,
-                             hdi_fit_errors *off, hd_rational *out, hd_error *e) {
-    if (hdi_fit_load(k, k->count, filter, e) < 0) return e->status;
-    hdi_fit_residues(k, k->count, s);
-    (void)hdi_fit_measure(k, k->count, s, unit, HUGE_VAL, off, e);
-    return e->status < 0 ? e->status : hdi_fit_take(k, k->count, s, unit, off, out, e);
-}
-
 /* The sets of all filters by the poles of s. Returns the filter that they serve worst, or -1 where the
  * tolerances of all are kept. */
 static int32_t hdi_fit_sets(hdi_fit *k, hdi_fitted *s, int32_t count, const hd_filter *filters,
@@ -18830,10 +18808,10 @@ static int32_t hdi_fit_sets(hdi_fit *k, hdi_fitted *s, int32_t count, const hd_f
     for (q = 0; q < count; q++) {
         hdi_fit_errors off;
         double part;
-        if (hdi_fit_set(k, s, filters + q, unit, &off, out + q, e) < 0) {
-            e->column = q;
-            return -1;
-        }
+        if (hdi_fit_load(k, k->count, filters + q, e) < 0) return -1;
+        hdi_fit_residues(k, k->count, s);
+        (void)hdi_fit_measure(k, k->count, s, unit, HUGE_VAL, &off, e);
+        if (e->status < 0 || hdi_fit_take(k, k->count, s, unit, &off, out + q, e) < 0) return -1;
         part = off.fit / hdi_fit_tol(filters + q);
         if (part <= most) continue;
         most = part;
@@ -19975,16 +19953,6 @@ static int32_t hdi_elim_pole(const hdi_elim *m, int32_t i, int32_t q) {
 static int hdi_set_lone(const hd_rational *set) { return set->n_poles % 4 == 1 && set->theta[0].im == 0; }
 static int32_t hdi_set_packs(const hd_rational *set) { return (set->n_poles - hdi_set_lone(set) + 3) / 4; }
 
-/* Takes up a set of poles at a time. */
-static void hdi_elim_take(hdi_elim *m, const hd_rational *set, double t) {
-    m->filled = 0;
-    m->reach_t = -1;
-    m->set = *set;
-    m->t = t;
-    m->lone = hdi_set_lone(set) ? 0 : -1;
-    m->n_used = hdi_set_packs(set);
-}
-
 /* Are the factors of this set and time there? */
 static int hdi_elim_holds(const hdi_elim *m, const hd_rational *set, double t) {
     return m->filled && m->t == t && hdi_set_same_poles(&m->set, set);
@@ -19993,12 +19961,15 @@ static int hdi_elim_holds(const hdi_elim *m, const hd_rational *set, double t) {
 /* Factors of all poles of a set at a time. */
 static hd_status hdi_elim_poles(hdi_elim *m, const hd_rational *set, double t, hd_error *e) {
     hdi_values v = hdi_elim_values(m, t);
+    const int there = hdi_elim_holds(m, set, t);
     int32_t i, q;
-    if (hdi_elim_holds(m, set, t)) {
-        m->set = *set;                           /* weights cost nothing */
-        return HD_OK;
-    }
-    hdi_elim_take(m, set, t);
+    m->set = *set;                               /* weights cost nothing */
+    if (there) return HD_OK;
+    m->filled = 0;
+    m->reach_t = -1;
+    m->t = t;
+    m->lone = hdi_set_lone(set) ? 0 : -1;
+    m->n_used = hdi_set_packs(set);
     for (; m->n_packs < m->n_used; m->n_packs++)
         if (hdi_factor_make_pack(m->pack, m->n_packs, &m->sym, m->ctx, e) < 0) return e->status;
     if (m->lone >= 0 && hdi_elim_real(m, &m->real, t, set->theta[0].re, e) < 0) return e->status;
@@ -26564,14 +26535,6 @@ static hd_status hdi_heat_one_time(hdi_heat_call *h, int32_t q, int *begun) {
     return one.status;
 }
 
-/* The times that are not done one by one. */
-static hd_status hdi_heat_each_time(hdi_heat_call *h, const char *done, int begun) {
-    int32_t q;
-    for (q = 0; q < h->ask.n_times; q++)
-        if (!(done && done[q]) && hdi_heat_one_time(h, q, &begun) < 0) break;
-    return h->rep->status;
-}
-
 /* Answers many times with one or a few krylov bases, where that is the method. Returns 0 where it is not. */
 static int hdi_heat_together(hdi_heat_call *h, const char *done) {
     hd_heat *heat = h->heat;
@@ -26610,7 +26573,9 @@ static hd_status hdi_heat_several(hdi_heat_call *h) {
     else if (begun) *h->rep = late;
     if (whole && !(HDI_HAS_MODES && hdi_fading(h) && h->rep->error_bound > HDI_MODES_HELP)) return HD_OK;
     if (whole) *h->rep = late;
-    return hdi_heat_each_time(h, done, begun);
+    for (q = 0; q < h->ask.n_times; q++)         /* those that are not done one by one */
+        if (!(done && done[q]) && hdi_heat_one_time(h, q, &begun) < 0) break;
+    return h->rep->status;
 }
 
 /* Runs a request whose arguments are checked. */
@@ -27484,16 +27449,6 @@ static hd_status hdi_diagonal_probe(hdi_heat_call *h, const hdi_diagonal *d, con
     return hdi_probe_run(h, probe, d->kernel, set);
 }
 
-/* Measures what rounding does to a diagonal by the poles of the plan, relative to size. */
-static hd_status hdi_diagonal_rounding(hdi_heat_call *h, const hdi_diagonal *d, double *rounding) {
-    const hd_rational *set = &h->heat->elim.set;
-    hdi_probe probe;
-    *rounding = 0;
-    if (hdi_diagonal_probe(h, d, set, &probe) < 0) return h->e->status;
-    *rounding = hdi_diagonal_seen(h, d, &probe, set);
-    return HD_OK;
-}
-
 /* The kernel's diagonal at one time with the set for it, on vertices, and its bounds into the report.
  * *relative: the largest of the rational errors relative to the value. */
 static hd_status hdi_diagonal_once(hdi_heat_call *h, hd_kernel kernel, double *out, double *relative) {
@@ -27501,7 +27456,8 @@ static hd_status hdi_diagonal_once(hdi_heat_call *h, hd_kernel kernel, double *o
     hdi_elim *m = &heat->elim;
     const int full = kernel == HD_KERNEL_OPERATOR && heat->source->B;
     hdi_scope scope = hdi_scope_begin(heat->ctx, h->e);
-    double *room, rounding;
+    double *room;
+    hdi_probe probe;
     hdi_diagonal d;
     hdi_entries x;
     int64_t size;
@@ -27523,7 +27479,8 @@ static hd_status hdi_diagonal_once(hdi_heat_call *h, hd_kernel kernel, double *o
         if (full) hdi_diagonal_full(m, &x, &d);
         else hdi_diagonal_plain(m, &x, &d);
         if (m->set.kind == HD_POLES_OWN) hdi_diagonal_own(m->lap, &d);
-        if (hdi_diagonal_rounding(h, &d, &rounding) >= 0) *relative = hdi_diagonal_tell(h, &d, rounding, out);
+        if (hdi_diagonal_probe(h, &d, &m->set, &probe) >= 0)
+            *relative = hdi_diagonal_tell(h, &d, hdi_diagonal_seen(h, &d, &probe, &m->set), out);
     }
     return hdi_scope_end(&scope);
 }
@@ -27725,11 +27682,12 @@ static int32_t hdi_shared_packs(double ratio, double tol) {
     return hdi_shared_pick(&set, ratio * (1 + 1e-12), tol) ? (set.n_poles + 3) / 4 : 0;
 }
 
-/* How many windows of equal ratio take the fewest packs in all for times in a range of this ratio. *packs:
- * how many those are. */
-static int32_t hdi_shared_windows(double ratio, double tol, int32_t most, int32_t *packs) {
+/* How many windows of equal ratio take the fewest packs in all for times that ascend. *packs: how many those
+ * are. */
+static int32_t hdi_shared_windows(const double *times, int32_t n_times, double tol, int32_t *packs) {
+    const double ratio = times[n_times - 1] / times[0];
     int32_t w, best = 0;
-    for (w = 1; w <= most && w <= 64; w++) {
+    for (w = 1; w <= n_times && w <= 64; w++) {
         const int32_t each = hdi_shared_packs(pow(ratio, 1.0 / w), tol);
         if (each == 0 || (best > 0 && w * each >= *packs)) continue;
         best = w;
@@ -27860,16 +27818,6 @@ static hd_status hdi_diagonal_window(hdi_heat_call *h, int32_t q0, int32_t q1, d
     return hdi_scope_end(&s);
 }
 
-/* All times, in windows that share their poles. */
-static hd_status hdi_diagonal_windows(hdi_heat_call *h, int32_t n_windows, double *D, size_t ldd) {
-    int32_t w, q0, q1;
-    for (w = 0, q0 = 0; q0 < h->n_times; w++, q0 = q1) {
-        q1 = hdi_window_end(h->times, h->n_times, q0, w, n_windows);
-        if (hdi_diagonal_window(h, q0, q1, D, ldd) < 0) break;
-    }
-    return h->e->status;
-}
-
 /* Do so many packs cost less than so many times one by one? Each of these takes a set of degree 9, that is a
  * pack and a real factor, which costs an eighth of a pack. */
 static int hdi_shared_pays(int32_t packs, int32_t n_times) { return 8 * packs < 9 * n_times; }
@@ -27878,14 +27826,17 @@ static int hdi_shared_pays(int32_t packs, int32_t n_times) { return 8 * packs < 
 static hd_status hdi_diagonal_poles(hdi_heat_call *h, hd_kernel kernel, double *D, size_t ldd,
                                     const char *done) {
     hd_heat *heat = h->heat;
-    int32_t q, n, packs = 0, windows;
+    int32_t q, q0, q1, w, packs = 0, windows;
     if (hdi_heat_analysed(heat, h->e) < 0 || hdi_heat_sort_times(h, 1, done) < 0) return h->e->status;
     hdi_inverse_tell(h);
-    n = h->n_times;
-    if (kernel == HD_KERNEL_SYMMETRIC && n > 1 && !heat->poles_asked && !heat->exacting) {
-        windows = hdi_shared_windows(h->times[n - 1] / h->times[0], HDI_SHARED_TOL, n, &packs);
-        if (windows > 0 && hdi_shared_pays(packs, n) && !hdi_heat_equal(heat, h->t, h->e)) {
-            if (hdi_diagonal_windows(h, windows, D, ldd) != HD_ERR_MEMORY_LIMIT) return h->e->status;
+    if (kernel == HD_KERNEL_SYMMETRIC && h->n_times > 1 && !heat->poles_asked && !heat->exacting) {
+        windows = hdi_shared_windows(h->times, h->n_times, HDI_SHARED_TOL, &packs);
+        if (windows > 0 && hdi_shared_pays(packs, h->n_times) && !hdi_heat_equal(heat, h->t, h->e)) {
+            for (w = 0, q0 = 0; q0 < h->n_times && h->e->status >= 0; w++, q0 = q1) {
+                q1 = hdi_window_end(h->times, h->n_times, q0, w, windows);
+                (void)hdi_diagonal_window(h, q0, q1, D, ldd);
+            }
+            if (h->e->status != HD_ERR_MEMORY_LIMIT) return h->e->status;
             hdi_heat_forget(h);                  /* one by one takes less */
         }
     }
@@ -28106,7 +28057,7 @@ static hd_status hdi_trace_poles(hdi_heat_call *h, double *Z, double *bound, con
     if (hdi_heat_sort_times(h, 1, done) < 0) return h->e->status;
     n = hdi_trace_late(h, Z, bound);
     if (n > 1 && !heat->poles_asked && !heat->exacting)
-        windows = hdi_shared_windows(h->times[n - 1] / h->times[0], HDI_SHARED_TOL, n, &packs);
+        windows = hdi_shared_windows(h->times, n, HDI_SHARED_TOL, &packs);
     if (windows > 0 && hdi_shared_pays(packs, n)) {
         for (w = 0, q0 = 0; q0 < n; w++, q0 = q1) {
             q1 = hdi_window_end(h->times, n, q0, w, windows);
@@ -28350,18 +28301,13 @@ static hd_status hdi_fading_poles(hdi_heat_call *h, const hdi_fading_to *to, con
                  : hdi_diagonal_poles(h, to->kernel, to->D, to->ldd, done);
 }
 
-/* May at most `most` pairs serve time t of the call? */
-static int hdi_fading_serves(const hdi_heat_call *h, double t, int32_t most) {
-    return most > HDI_MODES_FIRST ? hdi_fading(h) && hdi_fading_near(h->heat, t, most)
-                                  : hdi_fading_first(h, t);
-}
-
 /* Times that are not done and that at most `most` pairs serve. done [n_times]: of these 1. Returns how many
  * are tried. */
 static int32_t hdi_fading_some(hdi_heat_call *h, const hdi_fading_to *to, int32_t most, char *done) {
     int32_t q, tried = 0;
     for (q = 0; q < h->ask.n_times && h->e->status >= 0; q++) {
-        if (done[q] || !hdi_fading_serves(h, h->ask.t[q], most)) continue;
+        if (done[q] || !(most > HDI_MODES_FIRST ? hdi_fading_near(h->heat, h->ask.t[q], most)
+                                                : hdi_fading_first(h, h->ask.t[q]))) continue;
         done[q] = HDI_CAST(char, hdi_fading_values(h, q, most, to));
         if (h->e->status < 0) h->e->column = q;
         tried++;
@@ -28387,11 +28333,9 @@ static hd_status hdi_fading_rest(hdi_heat_call *h, const hdi_fading_to *to, cons
 /* All times where heat fades: from eigenpairs where few are left, else by poles. If the bound is not as it
  * should be then, more eigenpairs are asked for help, and poles do what is left once more. */
 static hd_status hdi_fading_times(hdi_heat_call *h, const hdi_fading_to *to) {
-    char *done = HDI_TAKE(&h->s, char, h->ask.n_times);
+    char *done = HDI_TAKE_ZERO(&h->s, char, h->ask.n_times);
     hd_report late, all;
-    if (!done) return h->e->status;
-    memset(done, 0, HDI_CAST(size_t, h->ask.n_times));
-    if (hdi_heat_analysed(h->heat, h->e) < 0) return h->e->status;
+    if (!done || hdi_heat_analysed(h->heat, h->e) < 0) return h->e->status;
     (void)hdi_fading_some(h, to, HDI_MODES_FIRST, done);
     late = *h->rep;
     if (h->e->status < 0 || hdi_fading_rest(h, to, done) < 0) return h->e->status;
@@ -28411,18 +28355,11 @@ static hd_status hdi_trace_run(hdi_heat_call *h, double *Z, double *bound) {
     return HDI_HAS_MODES && hdi_fading(h) ? hdi_fading_times(h, &to) : hdi_fading_poles(h, &to, NULL);
 }
 
-static hd_status hdi_edges_run(hdi_heat_call *h, double *values) {
+/* The diagonal, or with `edges` the entries of L's pattern. */
+static hd_status hdi_diagonal_run(hdi_heat_call *h, hd_kernel kernel, int edges, double *D, size_t ldd) {
     hdi_fading_to to;
     memset(&to, 0, sizeof to);
-    to.edges = 1;
-    to.D = values;
-    to.ldd = HDI_CAST(size_t, h->heat->source->L.nnz);
-    return HDI_HAS_MODES && hdi_fading(h) ? hdi_fading_times(h, &to) : hdi_fading_poles(h, &to, NULL);
-}
-
-static hd_status hdi_diagonal_run(hdi_heat_call *h, hd_kernel kernel, double *D, size_t ldd) {
-    hdi_fading_to to;
-    memset(&to, 0, sizeof to);
+    to.edges = edges;
     to.kernel = kernel;
     to.D = D;
     to.ldd = ldd;
@@ -28626,7 +28563,7 @@ static hd_status hdi_signature_run(hdi_heat_call *h, int32_t n_freq, double *D, 
     hdi_circle c;
     size_t v;
     int32_t j, sure = 1;
-    if (h->e->status < 0 || hdi_diagonal_run(h, HD_KERNEL_SYMMETRIC, x, n) < 0) return h->e->status;
+    if (h->e->status < 0 || hdi_diagonal_run(h, HD_KERNEL_SYMMETRIC, 0, x, n) < 0) return h->e->status;
     for (j = 0; j < m; j++) {
         circle[2 * j] = cos(two_pi * j / m);
         circle[2 * j + 1] = sin(two_pi * j / m);
@@ -29692,8 +29629,7 @@ static int hdi_distance_windows(hdi_heat_call *h, const hdi_distances *to, int32
     hd_heat *heat = h->heat;
     int32_t packs = 0, windows, w, q0, q1;
     if (n_times < 2 || heat->poles_asked || heat->exacting || hdi_heat_analysed(heat, h->e) < 0) return 0;
-    windows =
-        hdi_shared_windows(h->times[n_times - 1] / h->times[0], HDI_SHARED_DISTANCE_TOL, n_times, &packs);
+    windows = hdi_shared_windows(h->times, n_times, HDI_SHARED_DISTANCE_TOL, &packs);
     if (windows == 0 || packs > n_times || hdi_heat_equal(heat, h->times[n_times - 1], h->e) ||
         h->e->status < 0)
         return 0;
@@ -30108,7 +30044,7 @@ static hd_status hdi_pairs_once(hd_heat *heat, const hdi_pairs *pairs, double t,
     return rep->status;
 }
 
-/* How many of the n pairs from the first on have no more than `most` vertices. mark [vertices]: below stamp. */
+/* How many of the n pairs, from the first on, have at most so many vertices. mark: by vertex, below stamp. */
 static int64_t hdi_pairs_few(const int32_t *i, const int32_t *j, int64_t n, int64_t most, int64_t stamp,
                              int64_t *mark) {
     int64_t q, count = 0;
@@ -30430,11 +30366,9 @@ static int hdi_estimate_open(const hdi_estimate *x) {
 
 /* The poles by which the direct method would answer a query for fields or columns. */
 static hd_status hdi_estimate_set(const hdi_estimate *x, hd_rational *set) {
-    hd_status status;
     x->h->method = HD_METHOD_DIRECT;
-    status = hdi_estimate_open(x) ? hdi_rational_get(set, HD_POLES_UNIFORM, 9, x->h->e)
-                                  : hdi_heat_set(x->h, set);
-    return status;
+    return hdi_estimate_open(x) ? hdi_rational_get(set, HD_POLES_UNIFORM, 9, x->h->e)
+                                : hdi_heat_set(x->h, set);
 }
 
 /* Bytes of iterations: the copy of the pair, its upper triangle, lanes and preconditioners, or bases. */
@@ -30586,7 +30520,7 @@ static int32_t hdi_estimate_shared(const hdi_estimate *x, double tol) {
     int32_t packs = 0, windows;
     if (h->n_times < 2 || h->heat->poles_asked || h->heat->exacting) return 0;
     if (x->query != HD_QUERY_DIAGONAL && !distance) return 0;
-    windows = hdi_shared_windows(h->times[h->n_times - 1] / h->times[0], tol, h->n_times, &packs);
+    windows = hdi_shared_windows(h->times, h->n_times, tol, &packs);
     if (windows < 1) return 0;
     return (distance ? packs <= h->n_times : hdi_shared_pays(packs, h->n_times)) ? windows : 0;
 }
@@ -30765,8 +30699,7 @@ static hd_status hdi_estimate_trace(const hdi_estimate *x, double held, hd_cost 
     const int settled = h->heat->poles_asked || h->heat->exacting;
     int32_t w, q0, q1, packs = 0, windows = 0;
     if (h->n_times > 1 && !settled)
-        windows = hdi_shared_windows(h->times[h->n_times - 1] / h->times[0], HDI_SHARED_TOL, h->n_times,
-                                     &packs);
+        windows = hdi_shared_windows(h->times, h->n_times, HDI_SHARED_TOL, &packs);
     if (windows > 0 && !hdi_shared_pays(packs, h->n_times)) windows = 0;
     for (w = 0, q0 = 0; q0 < h->n_times && h->e->status >= 0; w++, q0 = q1) {
         hd_rational set;
@@ -33462,7 +33395,7 @@ HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t
     if (hdi_diagonal_begin(&h, heat, kernel, n_times, t, D != NULL, report, err) < 0 ||
         !HDI_HAS_DIAGONAL) return hdi_heat_end(&h);
     ldd = hdi_leading(&h, ldd);
-    if (h.e->status >= 0) (void)hdi_diagonal_run(&h, kernel, D, ldd);
+    if (h.e->status >= 0) (void)hdi_diagonal_run(&h, kernel, 0, D, ldd);
     return hdi_heat_end(&h);
 }
 
@@ -33498,7 +33431,7 @@ HEATDIFF_API hd_status hd_heat_normalised(hd_heat *heat, int32_t n_times, const 
         !HDI_HAS_DIAGONAL) return hdi_heat_end(&h);
     ldd = hdi_leading(&h, ldd);
     Z = HDI_TAKE(&h.s, double, n_times);
-    if (h.e->status >= 0 && hdi_diagonal_run(&h, HD_KERNEL_SYMMETRIC, D, ldd) >= 0) {
+    if (h.e->status >= 0 && hdi_diagonal_run(&h, HD_KERNEL_SYMMETRIC, 0, D, ldd) >= 0) {
         if (hd_heat_trace(heat, n_times, t, Z, NULL, &trace, NULL) >= 0)
             hdi_signature_normalise(heat->source, n_times, D, ldd, Z, h.rep, &trace);
         else *h.e = trace.error;
@@ -33535,7 +33468,8 @@ HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, hd_kernel kernel, int32_t n_
     if (kernel != HD_KERNEL_SYMMETRIC)
         hdi_fail(h.e, HD_ERR_ARGUMENT,
                  "edges: the kernel is the symmetric one; K_t = k_t B is not symmetric");
-    if (h.e->status >= 0) (void)hdi_edges_run(&h, values);
+    if (h.e->status >= 0)
+        (void)hdi_diagonal_run(&h, kernel, 1, values, HDI_CAST(size_t, heat->source->L.nnz));
     return hdi_heat_end(&h);
 }
 
