@@ -18948,6 +18948,18 @@ static void hdi_ledger_note(hdi_ledger *l, double value, hdi_parts off) {
     l->n_values++;
 }
 
+/* Adds the values that another ledger has noted. */
+static void hdi_ledger_join(hdi_ledger *l, const hdi_ledger *other) {
+    l->off.rational = hdi_max(l->off.rational, other->off.rational);
+    l->off.solver = hdi_max(l->off.solver, other->off.solver);
+    l->off.rounding = hdi_max(l->off.rounding, other->off.rounding);
+    l->largest = hdi_max(l->largest, other->largest);
+    l->smallest = hdi_min(l->smallest, other->smallest);
+    l->relative = hdi_max(l->relative, other->relative);
+    l->n_values += other->n_values;
+    l->lost |= other->lost;
+}
+
 static void hdi_evidence_worst(hd_evidence *to, double evidence) {
     if (evidence > HDI_CAST(double, *to)) *to = HDI_CAST(hd_evidence, HDI_CAST(int, evidence));
 }
@@ -29682,6 +29694,8 @@ typedef struct hdi_pairs {
     double *K, *d;
     hd_report *of_k;             /* of the entries alone; with d, may be NULL */
     double *bound;               /* of the distances alone; may be NULL */
+    hdi_ledger *before;          /* [2] of entries and distances of the pairs so far; NULL: there are none */
+    int more;                    /* others follow, and end the ledgers */
 } hdi_pairs;
 
 /* Distinct vertices of the pairs, ascending, and where each pair's two stand among them. order, list, place
@@ -29828,12 +29842,18 @@ static void hdi_pairs_of_columns(const hd_heat *heat, const hdi_pairs *x, const 
     rep->evidence_b = HD_EVIDENCE_NONE;
     hdi_parts_share(&of_k.off, &share);
     hdi_parts_share(&of_d.off, &share);
-    hdi_ledger_close(&of_k, rep);
+    if (x->before) {
+        hdi_ledger_join(x->before, &of_k);
+        hdi_ledger_join(x->before + 1, &of_d);
+        of_k = x->before[0];
+        of_d = x->before[1];
+    }
+    if (!x->more) hdi_ledger_close(&of_k, rep);
     rep->smallest = 0;                           /* of the distances */
     if (x->of_k) *x->of_k = *rep;
     rep->n_lost = n_lost;
     if (x->bound) *x->bound = hdi_quotient(hdi_parts_sum(&of_d.off), of_d.largest);
-    hdi_ledger_close(&of_d, rep);
+    if (!x->more) hdi_ledger_close(&of_d, rep);
 }
 
 /* Distances one by one from entries and the diagonal, for more vertices than columns fit. Each is judged by
@@ -30063,18 +30083,23 @@ static hd_status hdi_pairs_run(hdi_heat_call *h, hd_distance_kind kind, int64_t 
     const int timeless = kind >= HD_DISTANCE_COMMUTE;
     const int32_t n_times = timeless ? 1 : h->ask.n_times, n = h->heat->source->n;
     int64_t *mark = d && hdi_direct_barred(h->heat) ? HDI_TAKE_ZERO(&h->s, int64_t, n) : NULL, p;
+    hdi_ledger before[2];
     hdi_pairs x;
     hd_report one;
     int32_t q;
     memset(&x, 0, sizeof x);
     x.kind = kind;
-    for (p = 0; p < n_pairs && h->e->status >= 0; p += x.n) {
-        x.n = mark ? hdi_pairs_few(i + p, j + p, n_pairs - p, HDI_PAIRS_DOUBLES / n, p + 1, mark) : n_pairs;
-        x.i = i + p;
-        x.j = j + p;
-        for (q = 0; q < n_times; q++) {
+    x.before = mark ? before : NULL;
+    for (q = 0; q < n_times && h->e->status >= 0; q++) {
+        before[0] = before[1] = hdi_ledger_begin(HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, 0);
+        for (p = 0; p < n_pairs; p += x.n) {
+            const int64_t left = n_pairs - p, stamp = q * n_pairs + p + 1;
+            x.n = mark ? hdi_pairs_few(i + p, j + p, left, HDI_PAIRS_DOUBLES / n, stamp, mark) : left;
+            x.i = i + p;
+            x.j = j + p;
             x.K = K ? K + n_pairs * q + p : NULL;
             x.d = d ? d + n_pairs * q + p : NULL;
+            x.more = x.n < left;
             if (hdi_pairs_once(h->heat, &x, timeless ? 0 : h->ask.t[q], &one) < 0) {
                 *h->rep = one;
                 if (n_times > 1) h->e->column = q;
