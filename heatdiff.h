@@ -390,7 +390,7 @@ typedef struct hd_laplacian_opts {
      * 6..128. Default 30. */
     int32_t neighbours;
     /* Triangles and polygons, without intrinsic_delaunay and tufted: 1: hd_laplacian_update may be called.
-     * Takes 100 bytes more for each triangle, or 60 for each corner of polygons. Own matrices: 1:
+     * Takes 110 bytes more for each triangle, or 60 for each corner of polygons. Own matrices: 1:
      * hd_laplacian_update_matrices may be called. Takes 24 bytes more for each entry. Points refuse it. */
     int32_t updatable;
     /* Meshes: natural, or Dirichlet: every vertex at the border of the faces used is held at zero. The border
@@ -480,7 +480,7 @@ typedef struct hd_laplacian {
     int32_t n;                  /* vertices of the caller */
     int32_t n_active;           /* rows: vertices with mass that are not held */
     int32_t n_held;             /* vertices held at zero */
-    int32_t n_components;       /* connected components of the rows */
+    int32_t n_components;       /* of the rows, joined by entries of L or B that are not zero */
     hd_laplacian_kind kind;
     /* Mean length of the distinct edges, before any flip. Points: mean distance of a place to the nearest
      * other place. Matrices: as the caller gave it. */
@@ -1119,9 +1119,10 @@ HEATDIFF_API hd_status hd_laplacian_apply(const hd_laplacian *lap, double alpha,
  * with the option updatable. Plans notice: their next query computes with the new values, on the ordering and
  * analysis that they have.
  * xyz    [3 n] finite
- * Faces that were left out stay left out. Faces that lose their area are counted in lap->mesh and add
- * nothing. L, B and the report are those of a new Laplacian: to the last bit for the kind polygon, up to
- * rounding in the order of sums for triangles.
+ * Rows, pattern, held vertices and faces that were left out stay as they are. Faces that lose their area are
+ * counted in lap->mesh and add nothing; their entries may become zero, and what they alone join falls apart.
+ * All values, components and the report are those of a new Laplacian: to the last bit for the kind polygon,
+ * up to rounding in the order of sums for triangles. All arrays keep their places.
  * Points have no update. The pairs that are joined, the planes and the cells follow from the places, so that
  * new places make a new pattern.
  * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (vertex, or face: too large, or none: the whole area);
@@ -1646,10 +1647,12 @@ HEATDIFF_API hd_status hd_heat_distance_from(hd_heat *heat, hd_distance_kind kin
  * The distance is |K_t B^-1 (e_i - e_j)|_B, from the columns at t of all vertices that occur, without
  * cancellation, or from eigenpairs as above. Where its bound is above 1e-6, degree 14 takes over. If these
  * columns would take more than half a GiB, it comes from entries and the diagonal at 2t, one column at a
- * time; sort the pairs by i in that case. Commute and biharmonic always work that way.
+ * time; sort the pairs by i in that case. Commute and biharmonic always work that way. Plans of method
+ * iterative or krylov then take as many pairs at a time as there is room for, in the order of the list.
  * Errors as hd_heat_columns; HD_ERR_INDEX (vertex, row: which pair). HD_ERR_ARGUMENT: commute, biharmonic and
  *        distances of a filter need the direct method
- * Cost   one column for each distinct vertex; from entries one for each distinct i, and a diagonal */
+ * Cost   one column for each distinct vertex, or for each of those taken at a time; from entries one for each
+ *        distinct i, and a diagonal */
 HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, int32_t n_times,
                                      const double *t, int64_t n_pairs, const int32_t *i,
                                      const int32_t *j, double *K, double *d, hd_report *report,
@@ -2149,6 +2152,8 @@ static double hdi_pythag(double a, double b) {
 
 static double hdi_max(double a, double b) { return a > b ? a : b; }
 static double hdi_min(double a, double b) { return a < b ? a : b; }
+/* The larger one, or NaN. */
+static double hdi_worst(double a, double b) { return a >= b || hdi_nan(a) ? a : b; }
 static int64_t hdi_least(int64_t a, int64_t b) { return a < b ? a : b; }
 
 /* By value, so that no branch has to be guessed. */
@@ -6332,7 +6337,6 @@ typedef struct hdi_edges {
     double *w;                  /* minus half the cotangents opposite to it */
     double *b;                  /* a twelfth of the areas of its faces; NULL: not wanted */
     int32_t *smaller, *larger;  /* [n] neighbours of a vertex: those before it and those after it */
-    int32_t *parent;            /* [n] vertices united along edges */
     double length;              /* of all edges, each once */
     int32_t shift;              /* 2^shift vertices a block, which few edges leave */
 } hdi_edges;
@@ -6349,15 +6353,7 @@ static hd_status hdi_edges_take(hdi_edges *g, int32_t n, int64_t room, int weigh
     if (areas) g->b = HDI_TAKE(s, double, room);
     g->smaller = HDI_TAKE_ZERO(s, int32_t, n);
     g->larger = HDI_TAKE_ZERO(s, int32_t, n);
-    g->parent = HDI_TAKE(s, int32_t, n);
-    if (s->e->status >= 0) hdi_fill_own(g->parent, n);
     return s->e->status;
-}
-
-/* The edge (i,j), i < j, which g->larger[i] counts already. */
-static HDI_INLINE void hdi_edges_join(hdi_edges *g, int32_t i, int32_t j) {
-    g->smaller[j]++;
-    if (g->parent[i] != g->parent[j]) hdi_unite(g->parent, i, j);
 }
 
 /* All cotangents of the faces of a run of sides: what the rounding error of their edge's weight is
@@ -6398,7 +6394,7 @@ static hd_status hdi_edges_flat(hdi_edges *g, const hdi_mesh *mesh, int full, hd
             if (full) g->b[n_edges] = b / 12;
             if (j == i) continue;
             g->larger[i]++;
-            hdi_edges_join(g, i, j);
+            g->smaller[j]++;
         }
     }
     g->first[mesh->n] = n_edges;
@@ -6587,8 +6583,8 @@ static void hdi_pass_edges(void *arg, int64_t begin, int64_t end) {
     }
 }
 
-/* Joins the vertices of all edges, in border those of boundary edges, whose marks are taken away. mark [n]:
- * becomes 1 at their ends, unless NULL. */
+/* Counts the edges from earlier vertices. Joins in border the ends of boundary edges, whose marks are taken
+ * away. mark [n]: becomes 1 at their ends, unless NULL. */
 static void hdi_pass_join(hdi_edges *g, int32_t n, int32_t *border, char *mark) {
     int32_t i, p;
     hdi_fill_own(border, n);
@@ -6599,7 +6595,7 @@ static void hdi_pass_join(hdi_edges *g, int32_t n, int32_t *border, char *mark) 
                 hdi_unite(border, i, g->to[p]);
                 if (mark) mark[i] = mark[g->to[p]] = 1;
             }
-            hdi_edges_join(g, i, g->to[p]);
+            g->smaller[g->to[p]]++;
         }
     }
 }
@@ -8174,7 +8170,7 @@ typedef struct hd_moving {
     int64_t *place;             /* [6 m] entries of L: (a,b) and (b,a) of the sides ab, bc, ca */
     double *cot, *area;         /* [3 m], [m] */
     double *mass;               /* [n] by vertices */
-    int32_t *border;            /* [n] work */
+    int32_t *border;            /* [n_active] work */
 } hdi_moving;
 
 /* Vertices held at zero. */
@@ -8190,8 +8186,7 @@ static char *hdi_lap_border(const hd_laplacian *lap) {
 }
 
 static void hdi_moving_free(hdi_moving *x, hd_context *ctx) {
-    if (!x) return;
-    while (x->n_blocks > 0) hdi_free(ctx, x->block[--x->n_blocks]);
+    while (x && x->n_blocks > 0) hdi_free(ctx, x->block[--x->n_blocks]);
     hdi_free(ctx, x);
 }
 
@@ -8300,34 +8295,44 @@ static void hdi_lap_component_masses(hd_laplacian *lap) {
     for (i = 0; i < lap->n_active; i++) lap->component_mass[lap->component[i]] += lap->mass[i];
 }
 
-/* Components from the vertices that are united in parent [n], numbered by their first row, and their
- * masses. */
-static hd_status hdi_lap_united(hd_laplacian *lap, int32_t *parent, hd_error *e) {
-    int32_t i;
+/* Components by values: an entry of L or B that is not zero joins its rows. They are numbered by their first
+ * row. */
+static void hdi_lap_connect(hd_laplacian *lap) {
+    int32_t *c = lap->component, i;
+    int64_t p;
+    hdi_fill_own(c, lap->n_active);
+    for (i = 0; i < lap->n_active; i++) {
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1] && lap->L.col[p] < i; p++) {
+            const int joins = lap->L.val[p] != 0 || (lap->B && lap->B[p] != 0);
+            if (joins && c[i] != c[lap->L.col[p]]) hdi_unite(c, i, lap->L.col[p]);
+        }
+    }
+    lap->n_components = 0;                       /* c[i] <= i, and before i they have their numbers */
+    for (i = 0; i < lap->n_active; i++) c[i] = c[i] == i ? lap->n_components++ : c[c[i]];
+}
+
+/* How many components there can be: updates may part what is joined now. */
+static int32_t hdi_lap_components_most(const hd_laplacian *lap) {
+    return lap->moving || lap->holding ? lap->n_active : lap->n_components;
+}
+
+/* Components and their masses, of a Laplacian that has its values and, if it is to be updated, what that
+ * needs. */
+static hd_status hdi_lap_components(hd_laplacian *lap, hd_error *e) {
     lap->component = HDI_NEW(lap->context, int32_t, lap->n_active, e);
     if (!lap->component) return e->status;
-    for (i = 0; i < lap->n_active; i++) {
-        /* the smallest: it has its number already */
-        const int32_t root = lap->row[hdi_find(parent, lap->vertex[i])];
-        lap->component[i] = root == i ? lap->n_components++ : lap->component[root];
-    }
-    lap->component_mass = HDI_NEW(lap->context, double, lap->n_components, e);
+    hdi_lap_connect(lap);
+    lap->component_mass = HDI_NEW(lap->context, double, hdi_lap_components_most(lap), e);
     if (lap->component_mass) hdi_lap_component_masses(lap);
     return e->status;
 }
 
-/* The same over the pattern of L. */
-static hd_status hdi_lap_components(hd_laplacian *lap, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
-    int32_t *parent = HDI_TAKE(&s, int32_t, lap->n), i;
-    int64_t p;
-    if (!parent) return hdi_scope_end(&s);
-    hdi_fill_own(parent, lap->n);
-    for (i = 0; i < lap->n_active; i++)
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1] && lap->L.col[p] < i; p++)
-            hdi_unite(parent, lap->vertex[i], lap->vertex[lap->L.col[p]]);
-    (void)hdi_lap_united(lap, parent, e);
-    return hdi_scope_end(&s);
+/* Ends an update, once L, B and mass have their new values. */
+static void hdi_lap_renewed(hd_laplacian *lap) {
+    lap->version++;
+    if (!lap->component) return;                 /* the whole of what is held needs none */
+    hdi_lap_connect(lap);
+    hdi_lap_component_masses(lap);
 }
 
 typedef struct hdi_lap_job {
@@ -8480,7 +8485,7 @@ static hd_status hdi_lap_places(hd_laplacian *lap, const double *xyz, hd_error *
     return HD_OK;
 }
 
-/* (L, B), places, components and h of the mesh, whose arrays come to live in s. full: B is, if its kind
+/* (L, B), places and h of the mesh, whose arrays come to live in s. full: B is, if its kind
  * is. */
 static hd_status hdi_lap_mesh(hd_laplacian *lap, hdi_mesh *mesh, int full, hdi_scope *s) {
     hdi_scope own = hdi_scope_begin(lap->context, s->e);
@@ -8496,9 +8501,8 @@ static hd_status hdi_lap_mesh(hd_laplacian *lap, hdi_mesh *mesh, int full, hdi_s
     if (!vertex_mass || hdi_mesh_faces(mesh, &edges, &want, &lap->mesh, s) < 0) return hdi_scope_end(&own);
     if (hdi_lap_rows(lap, vertex_mass, e) < 0 || hdi_progress(lap->context, "assemble", 0.4, e) < 0)
         return hdi_scope_end(&own);
-    if (hdi_lap_places(lap, mesh->xyz, e) < 0 || hdi_lap_united(lap, edges.parent, e) < 0)
-        return hdi_scope_end(&own);
-    if (hdi_lap_assemble(lap, &edges, e) < 0 || hdi_progress(lap->context, "assemble", 0.8, e) < 0)
+    if (hdi_lap_places(lap, mesh->xyz, e) < 0 || hdi_lap_assemble(lap, &edges, e) < 0 ||
+        hdi_progress(lap->context, "assemble", 0.8, e) < 0)
         return hdi_scope_end(&own);
     lap->h = edges.length / HDI_CAST(double, lap->mesh.n_edges);
     lap->area = hdi_sum_areas(mesh->area, mesh->m);
@@ -8528,7 +8532,7 @@ static hd_status hdi_moving_keep(hdi_moving *x, hdi_scope *s) {
 
 static hd_status hdi_moving_make(hd_laplacian *lap, const hdi_mesh *mesh, hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
-    const int64_t m = lap->mesh.n_faces_used;
+    const uint64_t m = HDI_CAST(uint64_t, lap->mesh.n_faces_used);
     hdi_moving *x = hdi_moving_new(lap, e);
     int32_t f, q;
     if (!x) return hdi_scope_end(&s);
@@ -8538,7 +8542,7 @@ static hd_status hdi_moving_make(hd_laplacian *lap, const hdi_mesh *mesh, hd_err
     x->cot = HDI_TAKE(&s, double, 3 * m);
     x->area = HDI_TAKE(&s, double, m);
     x->mass = HDI_TAKE(&s, double, lap->n);
-    x->border = HDI_TAKE(&s, int32_t, lap->n);
+    x->border = HDI_TAKE(&s, int32_t, lap->n_active);
     for (f = 0; f < mesh->m && e->status >= 0; f++) {
         int32_t *v = x->tri + hdi_triple(x->m);
         if (!(mesh->area[f] > 0)) continue;
@@ -8564,29 +8568,30 @@ static hd_status hdi_moving_masses(const hd_laplacian *lap, const double *mass, 
     return HD_OK;
 }
 
-/* The edges of the faces that have an area, and h. L serves for counting: how many sides run from the vertex
- * of a row to that of a column. */
-static void hdi_moving_edges(hd_laplacian *lap, const double *xyz) {
+/* Counts the edges of faces that have an area and returns their mean length. L holds the counts before it
+ * gets its values: entry (i,j) that of faces which run from i to j. */
+static double hdi_moving_edges(hd_laplacian *lap) {
     const hdi_moving *x = lap->moving;
     hdi_edge_tally tally = {0, 0, 0, 0, 0};
     double *L = lap->L.val;
+    int32_t f, i, q;
     int64_t p;
-    int32_t i;
     memset(L, 0, HDI_CAST(size_t, lap->L.nnz) * sizeof *L);
-    for (p = 0; p < hdi_triple(x->m); p++)
-        if (x->area[p / 3] > 0) L[x->place[2 * p]]++;
+    for (f = 0; f < x->m; f++)
+        for (q = 0; q < 3 && x->area[f] > 0; q++) L[x->place[2 * (hdi_triple(f) + q)]]++;
     hdi_fill_own(x->border, lap->n_active);
-    for (i = 0; i < lap->n_active; i++)
+    for (i = 0; i < lap->n_active; i++) {
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
             const int32_t j = lap->L.col[p];
             const double faces = j > i ? L[p] + L[hdi_lap_entry(lap, j, i)] : 0;
             if (faces == 0) continue;
             hdi_edge_count(&tally, HDI_CAST(int64_t, faces), HDI_CAST(int64_t, L[p]),
-                           hdi_edge_length(xyz, lap->vertex[i], lap->vertex[j]));
+                           hdi_edge_length(lap->xyz, i, j));
             if (faces == 1) hdi_unite(x->border, i, j);
         }
+    }
     hdi_edge_report(&tally, x->border, lap->n_active, &lap->mesh);
-    lap->h = tally.length / HDI_CAST(double, tally.n_edges);
+    return tally.length / HDI_CAST(double, tally.n_edges);
 }
 
 /* Off-diagonal entries from the faces, in the order of the assembly. */
@@ -8608,7 +8613,7 @@ static void hdi_moving_sides(hd_laplacian *lap) {
 
 /* Diagonals and masses from that. */
 static void hdi_moving_rows(hd_laplacian *lap) {
-    double *L = lap->L.val, *B = lap->B;
+    double *L = lap->L.val, *B = lap->B, length = 0;
     int32_t i;
     int64_t p, diagonal = 0;
     lap->mesh.n_negative_weights = 0;
@@ -8620,13 +8625,15 @@ static void hdi_moving_rows(hd_laplacian *lap) {
             if (j == i) continue;
             sum += L[p];
             if (B) B[p] /= 12;
-            lap->mesh.n_negative_weights += j > i && L[p] > 0;
+            if (j < i) continue;
+            lap->mesh.n_negative_weights += L[p] > 0;
+            length += hdi_edge_length(lap->xyz, i, j);
         }
         L[diagonal] = -sum;
         lap->mass[i] = lap->moving->mass[lap->vertex[i]];
         if (B) B[diagonal] = lap->b_diag[i] = lap->mass[i] / 2;
     }
-    hdi_lap_component_masses(lap);
+    lap->h = length / HDI_CAST(double, lap->mesh.n_edges);
 }
 
 /* Takes up new places, and what the report says of faces measured anew. unused: left out from the start. */
@@ -8645,7 +8652,8 @@ static hd_status hdi_lap_update(hd_laplacian *lap, const double *xyz, hd_error *
     hdi_face_tally tally;
     hd_mesh_report rep;
     hdi_mesh mesh;
-    double area;
+    const int32_t before = lap->mesh.n_faces_used;
+    double area, h = 0;
     int32_t f;
     if (hdi_mesh_check(xyz, lap->n, NULL, 0, e) < 0) return e->status;
     memset(&rep, 0, sizeof rep);
@@ -8661,22 +8669,20 @@ static hd_status hdi_lap_update(hd_laplacian *lap, const double *xyz, hd_error *
     if (hdi_moving_masses(lap, x->mass, e) < 0 || hdi_lap_finite(area, 0, e) < 0) return e->status;
     lap->area = area;
     hdi_moving_tell(lap, xyz, &rep, lap->mesh.n_faces - x->m);
-    hdi_moving_edges(lap, xyz);
+    if (before < x->m || rep.n_faces_used < x->m) h = hdi_moving_edges(lap);   /* else all are edges */
     hdi_moving_sides(lap);
     hdi_moving_rows(lap);
-    lap->version++;
+    if (h > 0) lap->h = h;
+    hdi_lap_renewed(lap);
     return HD_OK;
 }
 
-static hd_status hdi_lap_triangles(hd_laplacian *lap, const hdi_mesh *given, int updatable, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
-    hdi_mesh mesh = *given;
-    if (hdi_lap_mesh(lap, &mesh, 1, &s) < 0) return hdi_scope_end(&s);
-    if (updatable && hdi_moving_make(lap, &mesh, e) < 0) return hdi_scope_end(&s);
+static hd_status hdi_lap_triangles(hd_laplacian *lap, hdi_mesh *mesh, int updatable, hdi_scope *s) {
+    if (hdi_lap_mesh(lap, mesh, 1, s) < 0) return s->e->status;
     /* element matrix area/12 (1 1' + I) >= 1/2 of its diagonal, area/12 I */
     lap->b_ratio = lap->kind == HD_LAPLACIAN_FEM ? 0.5 : 1;
     lap->conserves = 1;
-    return hdi_scope_end(&s);
+    return updatable ? hdi_moving_make(lap, mesh, s->e) : HD_OK;
 }
 
 /* ---- polygons ----
@@ -8903,9 +8909,8 @@ static hd_status hdi_moving_poly_update(hd_laplacian *lap, const double *xyz, hd
     hdi_moving_tell(lap, xyz, &rep, z->n_left_out);
     lap->area = area;
     for (i = 0; i < lap->n_active; i++) lap->mass[i] = z->mass[lap->vertex[i]];
-    hdi_lap_component_masses(lap);
     hdi_poly_values(lap, poly, &z->work, z->border);
-    lap->version++;
+    hdi_lap_renewed(lap);
     return HD_OK;
 }
 
@@ -8933,7 +8938,6 @@ static hd_status hdi_lap_poly(hd_laplacian *lap, hdi_poly *poly, hdi_scope *keep
     if (hdi_progress(lap->context, "assemble", 0.8, e) < 0) return hdi_scope_end(&s);
     lap->b_ratio = 1;
     lap->conserves = 1;
-    (void)hdi_lap_components(lap, e);
     return hdi_scope_end(&s);
 }
 
@@ -8966,8 +8970,8 @@ static int32_t hdi_flat_copies(const hdi_flat *flat, int32_t f, double unit) {
     return in_parts ? flat->soup.copies[f] * HDI_CAST(int32_t, unit / flat->soup.share) : 1;
 }
 
-/* Rows, components, L and B from intrinsic triangles that are Delaunay, with areas and cotangents but
- * without coordinates. */
+/* Rows, L and B from intrinsic triangles that are Delaunay, with areas and cotangents but without
+ * coordinates. */
 static hd_status hdi_lap_flat(hd_laplacian *lap, const hdi_mesh *flat, hdi_scope *s) {
     const int full = lap->kind == HD_LAPLACIAN_FEM;
     hd_error *e = s->e;
@@ -8979,7 +8983,6 @@ static hd_status hdi_lap_flat(hd_laplacian *lap, const hdi_mesh *flat, hdi_scope
     hdi_mesh_masses(flat, hdi_lap_lump(lap->kind), vertex_mass);
     if (hdi_lap_rows(lap, vertex_mass, e) < 0 || hdi_progress(lap->context, "assemble", 0.5, e) < 0)
         return e->status;
-    if (hdi_lap_united(lap, edges.parent, e) < 0) return e->status;
     /* The smallest eigenvalue of the element 1/2, 1/6; 1/6, 1/6 of corners v, v, w, and of that of three
      * corners. */
     lap->b_ratio = !full ? 1 : lap->mesh.n_self_edges ? 1 - sqrt(1.0 / 3) : 0.5;
@@ -9008,20 +9011,15 @@ static hd_status hdi_lap_unfold(hd_laplacian *lap, hdi_flat *flat, hdi_mesh *mes
     return hdi_progress(lap->context, "assemble", 0.8, e);
 }
 
-static hd_status hdi_lap_intrinsic(hd_laplacian *lap, const hdi_mesh *given, const hdi_intrinsic_task *task,
-                                   hd_error *e) {
+/* The triangles as they are, or with a task their intrinsic Delaunay triangulation. */
+static hd_status hdi_lap_faces(hd_laplacian *lap, const hdi_mesh *given, const hdi_intrinsic_task *task,
+                               int updatable, hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
     hdi_mesh mesh = *given;
     hdi_flat flat;
-    (void)hdi_lap_unfold(lap, &flat, &mesh, task, &s);
+    if (HDI_HAS_INTRINSIC && task) (void)hdi_lap_unfold(lap, &flat, &mesh, task, &s);
+    else (void)hdi_lap_triangles(lap, &mesh, updatable, &s);
     return hdi_scope_end(&s);
-}
-
-/* The triangles as they are, or with a task their intrinsic Delaunay triangulation. */
-static hd_status hdi_lap_faces(hd_laplacian *lap, const hdi_mesh *mesh, const hdi_intrinsic_task *task,
-                               int updatable, hd_error *e) {
-    if (HDI_HAS_INTRINSIC && task) return hdi_lap_intrinsic(lap, mesh, task, e);
-    return hdi_lap_triangles(lap, mesh, updatable, e);
 }
 
 /* The default of the option, as its declaration states. */
@@ -9311,14 +9309,13 @@ static hd_status hdi_lap_matrices(hd_laplacian *lap, const hd_csr *L, const hd_c
         lap->B = NULL;
         lap->b_diag = lap->mass;
     }
-    hdi_lap_components(lap, e);
     return hdi_scope_end(&s);
 }
 
 /* Matrices whose values change: what to go back to after an error, and work. */
 typedef struct hdi_moving_pair {
     hd_laplacian before;
-    double *L, *B, *mass, *b_diag, *component_mass;
+    double *L, *B, *mass, *b_diag;
     double *full, *diag;        /* [nnz] B and [n_active] its diagonal where lap has none */
     double *root;               /* [n_active] see hdi_pair_measure */
 } hdi_moving_pair;
@@ -9335,7 +9332,6 @@ static hd_status hdi_moving_pair_make(hd_laplacian *lap, hd_error *e) {
     z->b_diag = HDI_TAKE(&s, double, lap->n_active);
     z->diag = HDI_TAKE(&s, double, lap->n_active);
     z->root = HDI_TAKE(&s, double, lap->n_active);
-    z->component_mass = HDI_TAKE(&s, double, lap->n_components);
     if (e->status >= 0) x->pair = z;
     return hdi_moving_keep(x, &s);
 }
@@ -9343,12 +9339,12 @@ static hd_status hdi_moving_pair_make(hd_laplacian *lap, hd_error *e) {
 /* Copies the values of lap to where an error finds them, or with `back` from there. */
 static void hdi_moving_pair_copy(hd_laplacian *lap, int back) {
     hdi_moving_pair *z = lap->moving->pair;
-    const size_t n = HDI_CAST(size_t, lap->n_active), n_comp = HDI_CAST(size_t, lap->n_components);
-    double *const here[] = {lap->L.val, lap->B, lap->mass, lap->b_diag, lap->component_mass};
-    double *const kept[] = {z->L, z->B, z->mass, z->b_diag, z->component_mass};
-    const size_t count[] = {HDI_CAST(size_t, lap->L.nnz), HDI_CAST(size_t, lap->L.nnz), n, n, n_comp};
+    const size_t n = HDI_CAST(size_t, lap->n_active), nnz = HDI_CAST(size_t, lap->L.nnz);
+    double *const here[] = {lap->L.val, lap->B, lap->mass, lap->b_diag};
+    double *const kept[] = {z->L, z->B, z->mass, z->b_diag};
+    const size_t count[] = {nnz, nnz, n, n};
     int q;
-    for (q = 0; q < 5; q++)
+    for (q = 0; q < 4; q++)
         if (here[q]) memcpy(back ? here[q] : kept[q], back ? kept[q] : here[q], count[q] * sizeof(double));
 }
 
@@ -9405,7 +9401,8 @@ static hd_status hdi_pair_inert(const hd_laplacian *lap, const hd_csr *B, hd_err
     return HD_OK;
 }
 
-/* New values, all but a proof about B. The matrices are checked by rows. After an error lap is as it was. */
+/* New values, all but components and a proof about B. The matrices are checked by rows. After an error lap is
+ * as it was. */
 static hd_status hdi_pair_update(hd_laplacian *lap, const hd_csr *L, const hd_csr *B, hd_error *e) {
     hdi_moving_pair *z = lap->moving->pair;
     const int full = lap->B != NULL;
@@ -9429,7 +9426,6 @@ static hd_status hdi_pair_update(hd_laplacian *lap, const hd_csr *L, const hd_cs
     }
     lap->B = z->before.B;
     lap->b_diag = z->before.b_diag;
-    hdi_lap_component_masses(lap);
     return HD_OK;
 }
 
@@ -9468,11 +9464,10 @@ static int hdi_held_leaks(const hd_laplacian *lap, const hd_laplacian *whole, in
     return 0;
 }
 
-/* Masses of the components, and which of them conserve their heat. An infinite mass takes the constants out
- * of all formulas: their part of K_t f is the heat divided by the mass. */
+/* Which components conserve their heat. Masses are known. An infinite one takes the constants out of all
+ * formulas: their part of K_t f is the heat divided by the mass. */
 static void hdi_held_components(hd_laplacian *lap, const hd_laplacian *whole) {
     int32_t i, leaks = 0;
-    hdi_lap_component_masses(lap);
     lap->conserves = whole->conserves;
     for (i = 0; i < lap->n_active && whole->conserves; i++) {
         double *mass = lap->component_mass + lap->component[i];
@@ -9504,7 +9499,7 @@ static hd_status hdi_held_rows(hd_laplacian *lap, const hd_laplacian *whole, hd_
     return hdi_scope_end(&s);
 }
 
-/* Room for the pair, its places if the whole has some, and all that follows from the values. */
+/* Room for the pair and its places, if the whole has some, and the values. */
 static hd_status hdi_held_fill(hd_laplacian *lap, const hd_laplacian *whole, hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
     const int32_t n = lap->n_active;
@@ -9512,10 +9507,9 @@ static hd_status hdi_held_fill(hd_laplacian *lap, const hd_laplacian *whole, hd_
     int32_t i;
     double *B, *b_diag, *xyz;
     hd_csr L;
-    for (p = 0; p < whole->L.nnz; p++) nnz += lap->row[whole->vertex[whole->L.col[p]]] >= 0;
-    for (i = 0; i < whole->n_active; i++)        /* rows that go, on columns that stay */
-        for (p = whole->L.row_ptr[i]; p < whole->L.row_ptr[i + 1] && lap->row[whole->vertex[i]] < 0; p++)
-            nnz -= lap->row[whole->vertex[whole->L.col[p]]] >= 0;
+    for (i = 0; i < whole->n_active; i++)
+        for (p = whole->L.row_ptr[i]; p < whole->L.row_ptr[i + 1] && lap->row[whole->vertex[i]] >= 0; p++)
+            nnz += lap->row[whole->vertex[whole->L.col[p]]] >= 0;
     L = hdi_csr_take(&s, n, n, nnz, 1);
     B = whole->B ? HDI_TAKE(&s, double, nnz) : NULL;
     b_diag = whole->B ? HDI_TAKE(&s, double, n) : NULL;
@@ -9528,7 +9522,6 @@ static hd_status hdi_held_fill(hd_laplacian *lap, const hd_laplacian *whole, hd_
     for (i = 0; i < n && xyz; i++)
         hdi_copy3(xyz + hdi_triple(i), hdi_at3(whole->xyz, whole->row[lap->vertex[i]]));
     hdi_held_values(lap, whole);
-    if (hdi_lap_components(lap, e) >= 0) hdi_held_components(lap, whole);
     return hdi_scope_end(&s);
 }
 
@@ -9539,28 +9532,30 @@ static hd_laplacian *hdi_held_whole(hd_laplacian *lap, hd_error *e) {
     *whole = *lap;
     whole->holding = NULL;
     memset(&lap->L, 0, sizeof lap->L);
-    lap->B = lap->mass = lap->b_diag = lap->xyz = lap->component_mass = NULL;
-    lap->vertex = lap->row = lap->component = NULL;
+    lap->B = lap->mass = lap->b_diag = lap->xyz = NULL;
+    lap->vertex = lap->row = NULL;
     lap->moving = NULL;
-    lap->n_components = 0;
     return lap->holding->whole = whole;
 }
 
-/* Ends the making of a Laplacian, which holds no vertex so far: takes out those that are marked. */
+/* Ends the making of a Laplacian, which holds no vertex so far: takes out those that are marked, and finds
+ * the components of what is left. */
 static hd_status hdi_lap_hold(hd_laplacian *lap, hd_error *e) {
     hdi_holding *x = lap->holding;
+    const hd_laplacian *whole = NULL;
     int32_t v, rows = 0;
-    if (!x || e->status < 0) return e->status;
-    for (v = 0; v < lap->n; v++) {
+    for (v = 0; v < lap->n && x; v++) {
         lap->n_held += x->mark[v];
         rows += x->mark[v] && lap->row[v] >= 0;
         if (x->mark[v] && lap->row[v] < 0) lap->row[v] = HD_ROW_HELD;
     }
     if (rows > 0) {
-        const hd_laplacian *whole = hdi_held_whole(lap, e);
+        whole = hdi_held_whole(lap, e);
         if (!whole || hdi_held_rows(lap, whole, e) < 0 || hdi_held_fill(lap, whole, e) < 0) return e->status;
-        if (whole->moving) return HD_OK;
     }
+    if (hdi_lap_components(lap, e) < 0) return e->status;
+    if (whole) hdi_held_components(lap, whole);
+    if (whole && whole->moving) return HD_OK;
     hdi_holding_free(x, lap->context);
     lap->holding = NULL;
     return HD_OK;
@@ -9583,8 +9578,8 @@ static void hdi_held_update(hd_laplacian *lap) {
     for (i = 0; i < lap->n_active && lap->xyz; i++)
         hdi_copy3(lap->xyz + hdi_triple(i), hdi_at3(whole->xyz, whole->row[lap->vertex[i]]));
     hdi_held_values(lap, whole);
+    hdi_lap_renewed(lap);
     hdi_held_components(lap, whole);
-    lap->version++;
 }
 
 /* ---- pairs renumbered ---- */
@@ -9724,8 +9719,8 @@ static hd_laplacian *hdi_pair_renumber(const hd_laplacian *lap, const int32_t *p
     out->component = HDI_CAST(int32_t *, hdi_copy(lap->component, n, sizeof(int32_t), ctx, e));
     out->row = HDI_CAST(int32_t *, hdi_copy(lap->row, HDI_CAST(uint64_t, lap->n), sizeof(int32_t), ctx, e));
     out->component_mass = HDI_CAST(
-        double *,
-        hdi_copy(lap->component_mass, HDI_CAST(uint64_t, lap->n_components), sizeof(double), ctx, e));
+        double *, hdi_copy(lap->component_mass, HDI_CAST(uint64_t, hdi_lap_components_most(lap)),
+                           sizeof(double), ctx, e));
     out->b_diag = lap->B ? HDI_CAST(double *, hdi_copy(lap->b_diag, n, sizeof(double), ctx, e)) : out->mass;
     if (e->status < 0 || hdi_pair_permute(out, lap, perm, ctx, e) < 0) {
         hdi_laplacian_free(out, ctx);
@@ -9750,6 +9745,7 @@ static void hdi_pair_refresh(hd_laplacian *out, const hd_laplacian *lap, int64_t
         fill[i] = out->L.row_ptr[i];
         out->mass[i] = lap->mass[from];
         out->b_diag[i] = lap->b_diag[from];
+        out->component[i] = lap->component[from];
     }
     /* as in hdi_pair_permute: row i of one is column i of the other */
     for (i = 0; i < out->n_active; i++) {
@@ -9760,6 +9756,7 @@ static void hdi_pair_refresh(hd_laplacian *out, const hd_laplacian *lap, int64_t
             if (lap->B) out->B[q] = lap->B[p];
         }
     }
+    out->n_components = lap->n_components;
     memcpy(out->component_mass, lap->component_mass, HDI_CAST(size_t, lap->n_components) * sizeof(double));
     out->h = lap->h;
     out->area = lap->area;
@@ -10028,7 +10025,6 @@ static hd_status hdi_lap_points(hd_laplacian *lap, const double *xyz, hd_error *
     if (hdi_cloud_assemble(lap, -4 * log(rep->weight_cut) * rep->bandwidth, e) < 0) return hdi_scope_end(&s);
     lap->b_ratio = 1;
     lap->conserves = 1;
-    hdi_lap_components(lap, e);
     return hdi_scope_end(&s);
 }
 
@@ -10266,13 +10262,13 @@ static int32_t *hdi_stars(hdi_star_job *job, int32_t *m, hd_laplacian *lap, hdi_
     return tri;
 }
 
-/* Rows, components and matrices of the pair from, whose vertex v is name[v] of lap, in the order of lap's
+/* Rows and matrices of the pair from, whose vertex v is name[v] of lap, in the order of lap's
  * vertices. */
 static hd_status hdi_lap_renumber(hd_laplacian *lap, const hd_laplacian *from, const int32_t *name,
                                   hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
     const int32_t rows = from->n_active;
-    int32_t *perm = HDI_TAKE(&s, int32_t, rows), *number = HDI_TAKE(&s, int32_t, from->n_components), r, i;
+    int32_t *perm = HDI_TAKE(&s, int32_t, rows), r;
     double *mass = HDI_TAKE_ZERO(&s, double, lap->n);
     if (e->status < 0) return hdi_scope_end(&s);
     for (r = 0; r < rows; r++) mass[name[from->vertex[r]]] = from->mass[r];
@@ -10280,19 +10276,7 @@ static hd_status hdi_lap_renumber(hd_laplacian *lap, const hd_laplacian *from, c
     for (r = 0; r < rows; r++) perm[lap->row[name[from->vertex[r]]]] = r;
     if (hdi_pair_permute(lap, from, perm, lap->context, e) < 0) return hdi_scope_end(&s);
     if (from->B) lap->b_diag = HDI_NEW(lap->context, double, rows, e);
-    if (e->status >= 0) lap->component = HDI_NEW(lap->context, int32_t, rows, e);
-    if (e->status >= 0) lap->component_mass = HDI_NEW(lap->context, double, from->n_components, e);
-    if (e->status < 0) return hdi_scope_end(&s);
-    hdi_fill_i32(number, from->n_components, -1);
-    for (i = 0; i < rows; i++) {                 /* components are numbered by their first row, as always */
-        const int32_t c = from->component[perm[i]];
-        if (number[c] < 0) {
-            lap->component_mass[lap->n_components] = from->component_mass[c];
-            number[c] = lap->n_components++;
-        }
-        lap->component[i] = number[c];
-        lap->b_diag[i] = from->b_diag[perm[i]];
-    }
+    for (r = 0; r < rows && e->status >= 0; r++) lap->b_diag[r] = from->b_diag[perm[r]];
     return hdi_scope_end(&s);
 }
 
@@ -16664,17 +16648,6 @@ static void hdi_deflate(const hd_laplacian *lap, hd_c64 *z, hd_c64 *sums) {
     const int32_t *comp = lap->component;
     int32_t i;
     if (!lap->conserves) return;
-    if (lap->n_components == 1) {
-        hd_c64 s0 = hdi_c(0, 0), s1 = s0;
-        for (i = 0; i + 2 <= lap->n_active; i += 2) {
-            s0 = hdi_cadd(s0, hdi_cscale(b[i], z[i]));
-            s1 = hdi_cadd(s1, hdi_cscale(b[i + 1], z[i + 1]));
-        }
-        for (; i < lap->n_active; i++) s0 = hdi_cadd(s0, hdi_cscale(b[i], z[i]));
-        s0 = hdi_cscale(1 / lap->component_mass[0], hdi_cadd(s0, s1));
-        for (i = 0; i < lap->n_active; i++) z[i] = hdi_csub(z[i], s0);
-        return;
-    }
     memset(sums, 0, HDI_CAST(size_t, lap->n_components) * sizeof *sums);
     for (i = 0; i < lap->n_active; i++) sums[comp[i]] = hdi_cadd(sums[comp[i]], hdi_cscale(b[i], z[i]));
     for (i = 0; i < lap->n_components; i++) sums[i] = hdi_cscale(1 / lap->component_mass[i], sums[i]);
@@ -18228,12 +18201,13 @@ static hd_status hdi_filter_check(const hd_filter *f, double lambda_max, hd_erro
     else if (two && !(f->b > 0)) text = "filter: b is not positive";
     else if (f->kind == HD_FILTER_BAND && !(f->b > f->a)) text = "filter: the band ends before it begins";
     else if (!hdi_finite(f->tol) || f->tol < 0 || f->tol >= 1) text = "filter: tol is not in [0, 1)";
-    else if (!hdi_finite(f->weight) || f->weight < 0) text = "filter: weight is negative or not finite";
     else if (f->max_degree < 0 || f->max_degree > HD_MAX_POLES)
         text = "filter: max_degree is not in 0..HD_MAX_POLES";
     else if (!hdi_finite(f->lambda_min) || f->lambda_min < 0) text = "filter: lambda_min is negative";
     else if (!hdi_finite(lambda_max) || !(lambda_max > 0) || !(f->lambda_min < lambda_max))
         text = "filter: lambda_max is unknown, not positive, or not above lambda_min";
+    else if (!hdi_finite(f->weight * lambda_max) || f->weight < 0)
+        text = "filter: weight is negative, or not finite times lambda_max";
     return text ? hdi_fail(e, HD_ERR_ARGUMENT, text) : HD_OK;
 }
 
@@ -18241,6 +18215,7 @@ static hd_status hdi_filter_check(const hd_filter *f, double lambda_max, hd_erro
 typedef struct hdi_fit {
     /* the filters that poles are found for, and one more whose weights are */
     const hd_filter *filter[HDI_FIT_MOST + 1];
+    const hd_filter *list;       /* the caller's, of several, or NULL */
     double largest[HDI_FIT_MOST + 1];   /* |f| of each */
     int32_t count, constant;     /* filters; is there an a0? */
     double top, floor, tol;      /* lambda_max; floor/top and tol relative to it and to the largest value */
@@ -18271,9 +18246,21 @@ static double hdi_fitted_value(const hdi_fitted *s, double x) {
     return sum;
 }
 
-/* Filter j at a scaled point. */
-static double hdi_fit_f(const hdi_fit *k, int32_t j, double x) {
-    return hdi_filter_value(k->filter[j], x * k->top);
+/* An error that names the filter, if there are several. */
+static hd_status hdi_fit_fail(const hdi_fit *k, const hd_filter *filter, hd_status status, const char *text,
+                              hd_error *e) {
+    hdi_fail(e, status, text);
+    if (k->list) e->column = filter - k->list;
+    return status;
+}
+
+/* A filter at a scaled point. Every value has to be finite; after an error nothing more is asked. */
+static double hdi_fit_f(const hdi_fit *k, const hd_filter *filter, double x, hd_error *e) {
+    const double f = e->status < 0 ? 0 : hdi_filter_value(filter, x * k->top);
+    if (hdi_finite(f)) return f;
+    hdi_fit_fail(k, filter, HD_ERR_NOT_FINITE, "filter: its value is not finite at an eigenvalue", e);
+    e->value = x * k->top;
+    return 0;
 }
 
 static double hdi_fit_tol(const hd_filter *filter) { return filter->tol > 0 ? filter->tol : HDI_FIT_TOL; }
@@ -18288,15 +18275,9 @@ static double hdi_fit_point(int32_t i, int32_t n_log, int32_t n_linear, double f
  * tolerances count as the fit's. */
 static hd_status hdi_fit_put(hdi_fit *k, int32_t j, int32_t i, hd_error *e) {
     const hd_filter *filter = k->filter[j];
-    const double x = k->x[i], f = hdi_fit_f(k, j, x);
-    if (!hdi_finite(f)) {
-        hdi_fail(e, HD_ERR_NOT_FINITE, "filter: its value is not finite at an eigenvalue");
-        e->value = x * k->top;
-        return e->status;
-    }
-    k->u[j * HDI_FIT_ROOM + i] = (1 + filter->weight * k->top * x) * (k->tol / hdi_fit_tol(filter));
-    k->f[j * HDI_FIT_ROOM + i] = f;
-    return HD_OK;
+    k->u[j * HDI_FIT_ROOM + i] = (1 + filter->weight * k->top * k->x[i]) * (k->tol / hdi_fit_tol(filter));
+    k->f[j * HDI_FIT_ROOM + i] = hdi_fit_f(k, filter, k->x[i], e);
+    return e->status;
 }
 
 /* Adds a point, unless it is there. */
@@ -18317,7 +18298,7 @@ static hd_status hdi_fit_scale(hdi_fit *k, int32_t j, hd_error *e) {
     int32_t i;
     for (i = 0; i < k->n; i++) most = hdi_max(most, fabs(f[i]));
     if (!(most > 0 && hdi_finite(1 / most)))
-        return hdi_fail(e, HD_ERR_ARGUMENT, "filter: it is zero on the whole spectrum");
+        return hdi_fit_fail(k, k->filter[j], HD_ERR_ARGUMENT, "filter: it is zero on the whole spectrum", e);
     for (i = 0; i < k->n; i++) f[i] /= most;
     k->largest[j] = most;
     return HD_OK;
@@ -18578,7 +18559,7 @@ static void hdi_fit_residues(hdi_fit *k, int32_t q, hdi_fitted *s) {
     }
     s->a0 = c < cols ? k->b[c] / scale[c] : 0;
     for (s->error = 0, i = 0; i < k->n; i++)
-        s->error = hdi_max(s->error, u[i] * fabs(hdi_fitted_value(s, k->x[i]) - f[i]));
+        s->error = hdi_worst(s->error, u[i] * fabs(hdi_fitted_value(s, k->x[i]) - f[i]));
 }
 
 /* Drops poles that the error would not miss. Returns how many. */
@@ -18599,7 +18580,7 @@ static void hdi_fit_serve(hdi_fit *k, hdi_fitted *s) {
     for (q = 0; q < k->count; q++) {
         hdi_fit_residues(k, q, s);
         if (k->count == 1 && hdi_fit_idle(k, s) > 0) hdi_fit_residues(k, q, s);
-        most = hdi_max(most, s->error);
+        most = hdi_worst(most, s->error);
     }
     s->error = most;
 }
@@ -18636,12 +18617,12 @@ static void hdi_fit_run(hdi_fit *k, hdi_fitted *best) {
 typedef struct hdi_fit_errors { double plain, fit, by_t; } hdi_fit_errors;
 
 static double hdi_fit_error(const hdi_fit *k, int32_t q, const hdi_fitted *s, double x, double t,
-                            hdi_fit_errors *e) {
-    const double off = fabs(hdi_fit_f(k, q, x) / k->largest[q] - hdi_fitted_value(s, x));
+                            hdi_fit_errors *to, hd_error *e) {
+    const double off = fabs(hdi_fit_f(k, k->filter[q], x, e) / k->largest[q] - hdi_fitted_value(s, x));
     const double fit = (1 + k->filter[q]->weight * k->top * x) * off;
-    if (!(off <= e->plain)) e->plain = off;      /* a NaN stays */
-    if (!(fit <= e->fit)) e->fit = fit;
-    if (!((1 + t * x) * off <= e->by_t)) e->by_t = (1 + t * x) * off;
+    to->plain = hdi_worst(to->plain, off);
+    to->fit = hdi_worst(to->fit, fit);
+    to->by_t = hdi_worst(to->by_t, (1 + t * x) * off);
     return fit;
 }
 
@@ -18654,9 +18635,9 @@ static int32_t hdi_fit_measure(hdi_fit *k, int32_t q, const hdi_fitted *s, doubl
     double worst = 0, at = 0;
     int32_t i, before = k->n;
     to->plain = to->fit = to->by_t = 0;
-    (void)hdi_fit_error(k, q, s, 0, t, to);
-    for (i = 0; i < n_log + n_linear; i++) {
-        const double x = hdi_fit_point(i, n_log, n_linear, from), off = hdi_fit_error(k, q, s, x, t, to);
+    (void)hdi_fit_error(k, q, s, 0, t, to, e);
+    for (i = 0; i < n_log + n_linear && e->status >= 0; i++) {
+        const double x = hdi_fit_point(i, n_log, n_linear, from), off = hdi_fit_error(k, q, s, x, t, to, e);
         if (off > worst) at = x;
         worst = hdi_max(worst, off);
         if (off > join && i + 1 < n_log + n_linear) continue;
@@ -18722,7 +18703,7 @@ static hd_status hdi_fit_take(const hdi_fit *k, int32_t q, const hdi_fitted *s, 
     out->lambda_max = k->top;
     out->largest = largest;
     out->a0 = largest * s->a0;
-    fine = hdi_finite(out->a0);
+    fine = hdi_finite(out->a0) && hdi_finite(off->plain);
     for (i = 0; i < s->n; i++) {
         out->theta[i] = hdi_cscale(-unit, s->p[i]);
         out->a[i] = hdi_cscale(-unit * largest, s->a[i]);
@@ -18730,7 +18711,8 @@ static hd_status hdi_fit_take(const hdi_fit *k, int32_t q, const hdi_fitted *s, 
         fine &= hdi_cfinite(out->a[i]);
     }
     if (!fine)
-        return hdi_fail(e, HD_ERR_BREAKDOWN, "filter: a weight of its poles leaves the range of doubles");
+        return hdi_fit_fail(k, k->filter[q], HD_ERR_BREAKDOWN,
+                            "filter: a weight of its poles leaves the range of doubles", e);
     hdi_fit_sort(out);
     out->max_error = largest * (HDI_FIT_BETWEEN * off->plain + hdi_fit_rounding(s));
     out->max_weighted_error = largest * (HDI_FIT_BETWEEN * off->by_t + (1 + unit) * hdi_fit_rounding(s));
@@ -18755,21 +18737,22 @@ static void hdi_fit_room(hdi_fit *k, int32_t count, hdi_scope *s) {
 }
 
 /* Where the points of a filter begin, relative to lambda_max. */
-static double hdi_fit_floor(const hd_filter *filter, double lambda_max) {
+static double hdi_fit_floor(const hdi_fit *k, const hd_filter *filter, hd_error *e) {
     double x, most = 0, floor = HDI_FIT_FLOOR;
-    const double zero = hdi_filter_value(filter, 0);
-    if (filter->lambda_min > 0) return filter->lambda_min / lambda_max;
-    for (x = 1; x > HDI_FIT_LOWEST; x /= 2)
-        most = hdi_max(most, fabs(hdi_filter_value(filter, x * lambda_max)));
+    const double zero = hdi_fit_f(k, filter, 0, e);
+    if (filter->lambda_min > 0) return filter->lambda_min / k->top;
+    for (x = 1; x > HDI_FIT_LOWEST; x /= 2) most = hdi_max(most, fabs(hdi_fit_f(k, filter, x, e)));
     for (x = HDI_FIT_FLOOR; x > HDI_FIT_LOWEST; x /= 2)
-        if (fabs(hdi_filter_value(filter, x * lambda_max) - zero) > HDI_FIT_SETTLED * most) floor = x;
+        if (fabs(hdi_fit_f(k, filter, x, e) - zero) > HDI_FIT_SETTLED * most) floor = x;
     return floor;
 }
 
-/* A fit of poles for the first so many filters, whose arrays and points are still to come. */
-static void hdi_fit_open(hdi_fit *k, int32_t count, const hd_filter *const *filter, double lambda_max) {
+/* A fit of poles for so many filters, whose arrays and points are still to come. */
+static void hdi_fit_open(hdi_fit *k, int32_t count, const hd_filter *const *filter, const hd_filter *list,
+                         double lambda_max, hd_error *e) {
     int32_t q;
     memset(k, 0, sizeof *k);
+    k->list = list;
     k->count = count;
     k->top = lambda_max;
     k->floor = 1;
@@ -18778,7 +18761,7 @@ static void hdi_fit_open(hdi_fit *k, int32_t count, const hd_filter *const *filt
     for (q = 0; q < count; q++) {
         k->filter[q] = filter[q];
         k->constant |= filter[q]->constant != 0;
-        k->floor = hdi_min(k->floor, hdi_fit_floor(filter[q], lambda_max));
+        k->floor = hdi_min(k->floor, hdi_fit_floor(k, filter[q], e));
     }
 }
 
@@ -18792,7 +18775,7 @@ static hd_status hdi_rational_fit(hd_rational *out, const hd_filter *filter, dou
     hdi_fit k;
     int32_t round;
     if (hdi_filter_check(filter, lambda_max, e) < 0) return e->status;
-    hdi_fit_open(&k, 1, &filter, lambda_max);
+    hdi_fit_open(&k, 1, &filter, NULL, lambda_max, e);
     hdi_fit_room(&k, 1, &scope);
     if (e->status < 0 || hdi_fit_begin(&k, e) < 0) return hdi_scope_end(&scope);
     for (round = 0; round < HDI_FIT_ROUNDS && e->status >= 0; round++) {
@@ -18802,16 +18785,7 @@ static hd_status hdi_rational_fit(hd_rational *out, const hd_filter *filter, dou
     }
     if (e->status >= 0 && hdi_fit_take(&k, 0, &s, unit, &off, &set, e) >= 0) *out = set;
     (void)hdi_scope_end(&scope);
-    return e->status < 0 ? e->status : off.fit > k.tol ? HD_WARN_ACCURACY : HD_OK;
-}
-
-/* The set of one more filter by the poles of s. */
-static hd_status hdi_fit_set(hdi_fit *k, hdi_fitted *s, const hd_filter *filter, double unit,
-                             hdi_fit_errors *off, hd_rational *out, hd_error *e) {
-    if (hdi_fit_load(k, k->count, filter, e) < 0) return e->status;
-    hdi_fit_residues(k, k->count, s);
-    (void)hdi_fit_measure(k, k->count, s, unit, HUGE_VAL, off, e);
-    return hdi_fit_take(k, k->count, s, unit, off, out, e);
+    return e->status < 0 ? e->status : off.fit <= k.tol ? HD_OK : HD_WARN_ACCURACY;
 }
 
 /* The sets of all filters by the poles of s. Returns the filter that they serve worst, or -1 where the
@@ -18824,10 +18798,10 @@ static int32_t hdi_fit_sets(hdi_fit *k, hdi_fitted *s, int32_t count, const hd_f
     for (q = 0; q < count; q++) {
         hdi_fit_errors off;
         double part;
-        if (hdi_fit_set(k, s, filters + q, unit, &off, out + q, e) < 0) {
-            e->column = q;
-            return -1;
-        }
+        if (hdi_fit_load(k, k->count, filters + q, e) < 0) return -1;
+        hdi_fit_residues(k, k->count, s);
+        (void)hdi_fit_measure(k, k->count, s, unit, HUGE_VAL, &off, e);
+        if (e->status < 0 || hdi_fit_take(k, k->count, s, unit, &off, out + q, e) < 0) return -1;
         part = off.fit / hdi_fit_tol(filters + q);
         if (part <= most) continue;
         most = part;
@@ -18853,11 +18827,11 @@ static hd_status hdi_rational_fit_shared(hd_rational *out, int32_t count, const 
     }
     for (q = 0; q < first; q++)
         pick[q] = filters + HDI_CAST(int64_t, q) * (count - 1) / hdi_high32(first - 1, 1);
-    hdi_fit_open(&k, first, pick, lambda_max);
+    hdi_fit_open(&k, first, pick, filters, lambda_max, e);
     for (q = 0; q < count; q++) {
         k.constant |= filters[q].constant != 0;
         k.tol = hdi_min(k.tol, hdi_fit_tol(filters + q));
-        k.floor = hdi_min(k.floor, hdi_fit_floor(filters + q, lambda_max));
+        k.floor = hdi_min(k.floor, hdi_fit_floor(&k, filters + q, e));
     }
     k.most = 2 * HD_MAX_POLES - 2;
     hdi_fit_room(&k, HDI_FIT_MOST, &scope);
@@ -18960,6 +18934,18 @@ static void hdi_ledger_note(hdi_ledger *l, double value, hdi_parts off) {
         l->relative = hdi_max(l->relative, all == 0 ? 0 : hdi_quotient(all, size - all));
     }
     l->n_values++;
+}
+
+/* Adds the values that another ledger has noted. */
+static void hdi_ledger_join(hdi_ledger *l, const hdi_ledger *other) {
+    l->off.rational = hdi_max(l->off.rational, other->off.rational);
+    l->off.solver = hdi_max(l->off.solver, other->off.solver);
+    l->off.rounding = hdi_max(l->off.rounding, other->off.rounding);
+    l->largest = hdi_max(l->largest, other->largest);
+    l->smallest = hdi_min(l->smallest, other->smallest);
+    l->relative = hdi_max(l->relative, other->relative);
+    l->n_values += other->n_values;
+    l->lost |= other->lost;
 }
 
 static void hdi_evidence_worst(hd_evidence *to, double evidence) {
@@ -19967,16 +19953,6 @@ static int32_t hdi_elim_pole(const hdi_elim *m, int32_t i, int32_t q) {
 static int hdi_set_lone(const hd_rational *set) { return set->n_poles % 4 == 1 && set->theta[0].im == 0; }
 static int32_t hdi_set_packs(const hd_rational *set) { return (set->n_poles - hdi_set_lone(set) + 3) / 4; }
 
-/* Takes up a set of poles at a time. */
-static void hdi_elim_take(hdi_elim *m, const hd_rational *set, double t) {
-    m->filled = 0;
-    m->reach_t = -1;
-    m->set = *set;
-    m->t = t;
-    m->lone = hdi_set_lone(set) ? 0 : -1;
-    m->n_used = hdi_set_packs(set);
-}
-
 /* Are the factors of this set and time there? */
 static int hdi_elim_holds(const hdi_elim *m, const hd_rational *set, double t) {
     return m->filled && m->t == t && hdi_set_same_poles(&m->set, set);
@@ -19985,12 +19961,15 @@ static int hdi_elim_holds(const hdi_elim *m, const hd_rational *set, double t) {
 /* Factors of all poles of a set at a time. */
 static hd_status hdi_elim_poles(hdi_elim *m, const hd_rational *set, double t, hd_error *e) {
     hdi_values v = hdi_elim_values(m, t);
+    const int there = hdi_elim_holds(m, set, t);
     int32_t i, q;
-    if (hdi_elim_holds(m, set, t)) {
-        m->set = *set;                           /* weights cost nothing */
-        return HD_OK;
-    }
-    hdi_elim_take(m, set, t);
+    m->set = *set;                               /* weights cost nothing */
+    if (there) return HD_OK;
+    m->filled = 0;
+    m->reach_t = -1;
+    m->t = t;
+    m->lone = hdi_set_lone(set) ? 0 : -1;
+    m->n_used = hdi_set_packs(set);
     for (; m->n_packs < m->n_used; m->n_packs++)
         if (hdi_factor_make_pack(m->pack, m->n_packs, &m->sym, m->ctx, e) < 0) return e->status;
     if (m->lone >= 0 && hdi_elim_real(m, &m->real, t, set->theta[0].re, e) < 0) return e->status;
@@ -20381,7 +20360,7 @@ static hd_status hdi_pair_replace(hd_laplacian *lap, const hd_csr *L, const hd_c
         return e->status;
     }
     lap->h = h;
-    lap->version++;
+    hdi_lap_renewed(lap);
     return HD_OK;
 }
 
@@ -23745,7 +23724,8 @@ struct hd_heat {
     double drift;
     int64_t version;             /* of the Laplacian that all this is made of */
     int64_t *fill;               /* [n_active] work of a renewal, made at the first */
-    double *sums;                /* [2 n_components] work */
+    double *sums;                /* [2 n_sums] work */
+    int32_t n_sums;              /* components that these and the lanes are for */
 };
 
 /* What the caller gets, by rows. */
@@ -23891,6 +23871,26 @@ static double hdi_heat_drift(const hd_laplacian *lap, double *sum) {
     for (i = 0; i < lap->n_components && lap->conserves; i++)
         drift = hdi_max(drift, fabs(sum[i] + rest[i]) / lap->component_mass[i]);
     return drift;
+}
+
+static void hdi_heat_free_lanes(hd_heat *heat) {
+    int32_t i;
+    for (i = 0; i < heat->n_lanes; i++) hdi_lane_free(heat->lane + i, heat->ctx);
+    hdi_free(heat->ctx, heat->lane);
+    heat->lane = NULL;
+    heat->n_lanes = 0;
+}
+
+/* Room for sums over components. Lanes for another number of them are made anew. */
+static hd_status hdi_heat_sums(hd_heat *heat, hd_error *e) {
+    const int32_t n = heat->source->n_components;
+    if (n == heat->n_sums) return HD_OK;
+    hdi_heat_free_lanes(heat);
+    hdi_free(heat->ctx, heat->sums);
+    heat->n_sums = 0;
+    heat->sums = HDI_NEW(heat->ctx, double, 2 * HDI_CAST(uint64_t, n), e);
+    if (heat->sums) heat->n_sums = n;
+    return e->status;
 }
 
 /* Makes the plan have n lanes, without their arrays. */
@@ -24194,7 +24194,7 @@ static void hdi_steps_measure(hd_heat *heat) {
             const double mass = lap->mass[i] > 0 ? lap->mass[i] : lap->b_diag[i];
             s->local += sqrt(sqrt(diag / mass)) / n;
             s->obtuse += hdi_min(1, positive / diag) / n;
-            frexp(top / (sum / lap->b_diag[i]), &octave);
+            frexp(hdi_min(top / (sum / lap->b_diag[i]), DBL_MAX), &octave);
         }
         s->rows[hdi_low32(hdi_high32(octave - 1, 0), HDI_STEPS_OCTAVES - 1)]++;
     }
@@ -24403,7 +24403,7 @@ static hd_status hdi_heat_renew(hd_heat *heat, hd_error *e) {
     if (heat->version == lap->version) return HD_OK;
     heat->habit_spent = 0;
     if (!heat->fill) heat->fill = HDI_NEW(heat->ctx, int64_t, lap->n_active, e);
-    if (!heat->fill) return e->status;
+    if (!heat->fill || hdi_heat_sums(heat, e) < 0) return e->status;
     hdi_heat_measure_pair(heat);
     for (i = heat->other != NULL; HDI_HAS_DIRECT && i >= 0; i--) {
         if (heat->elim.ctx) hdi_elim_renew(&heat->elim, lap, heat->fill);
@@ -24439,8 +24439,9 @@ static hd_status hdi_heat_begin(hdi_heat_call *h, hd_heat *heat, hdi_query query
     h->s = hdi_scope_begin(heat->ctx, h->e);
     h->rep->reason = "nothing was asked for";
     h->lap = heat->source;
+    if (hdi_context_check(heat->ctx, h->e) >= 0) (void)hdi_heat_renew(heat, h->e);
     h->lane = heat->lane;
-    return hdi_context_check(heat->ctx, h->e) < 0 ? h->e->status : hdi_heat_renew(heat, h->e);
+    return h->e->status;
 }
 
 /* ---- choice of the method ---- */
@@ -24601,17 +24602,23 @@ static double hdi_krylov_late(const hdi_heat_call *h) {
     return hdi_max(0.4, 1 / (1 + HDI_STEPS_LATE * h->times[0] * h->heat->scales.lowest));
 }
 
-/* The number of windows of equal ratio that costs least. */
-static hdi_windows hdi_krylov_windows(hdi_fill f, double n, double span) {
-    const double factor = f.flops / HDI_RATE_REAL, step = 16 * f.nnz / HDI_RATE_SWEEP + 1e-8 * n;
+/* Beyond this ratio of times no basis serves. */
+#define HDI_WINDOW_WIDEST 1e4
+
+/* The number of windows of equal ratio that costs least. The ratio of all times might overflow. */
+static hdi_windows hdi_krylov_windows(const hdi_heat_call *h, hdi_fill f) {
+    const double factor = f.flops / HDI_RATE_REAL;
+    const double step = 16 * f.nnz / HDI_RATE_SWEEP + 1e-8 * h->heat->source->n_active;
+    const double span = log(h->times[h->n_times - 1]) - log(hdi_max(h->times[0], 1e-300));
+    const int32_t least = hdi_high32(1, HDI_CAST(int32_t, ceil(span / log(HDI_WINDOW_WIDEST))));
     double best = HUGE_VAL;
     hdi_windows all = {1, 0, 0};
     int32_t w;
-    for (w = 1; w <= 16; w++) {
-        const double ratio = pow(span, 1.0 / w);
+    for (w = least; w < 2 * least + 15; w++) {
+        const double ratio = exp(span / w);
         const double longest = hdi_krylov_steps(ratio, 0) + (w > 1 ? HDI_STEPS_HANDED_ON : 0);
         const double steps = longest + (w - 1) * hdi_krylov_steps(ratio, 1);
-        if (ratio > 1e4 || w * factor + steps * step >= best) continue;   /* beyond none serves */
+        if (w * factor + steps * step >= best) continue;
         best = w * factor + steps * step;
         all.n = w;
         all.steps = steps;
@@ -24638,7 +24645,7 @@ static int hdi_heat_light(const hdi_heat_call *h) {
     double more;
     if (order.kind != HD_ORDERING_AUTO || hdi_order_kind(&order, &lap->L) != HD_ORDERING_NESTED_DISSECTION ||
         h->ask.k > HDI_LIGHT_COLUMNS || heat->ctx->byte_limit) return 0;
-    w = hdi_krylov_windows(f, n, h->times[h->n_times - 1] / h->times[0]);
+    w = hdi_krylov_windows(h, f);
     more = w.n * HDI_DEGREE_FLOPS * wide / HDI_RATE_FRONTS +
            h->ask.k * w.steps * hdi_krylov_late(h) * 16 * HDI_DEGREE_NNZ / HDI_RATE_SWEEP;
     return more * wide * n * n < HDI_DEGREE_SAVES * f.analysis;
@@ -24654,8 +24661,7 @@ static hdi_cost hdi_heat_cost(const hdi_heat_call *h) {
                           : HDI_POLES_EXPECTED;
     const int32_t pairs = o->rational ? poles : o->degree ? o->degree / 2 : 4;
     const int32_t packs = pairs > 4 ? (pairs + 3) / 4 : 1;
-    const double span = h->times[h->n_times - 1] / h->times[0];
-    const hdi_windows w = hdi_krylov_windows(f, n, span);
+    const hdi_windows w = hdi_krylov_windows(h, f);
     const double steps = k * w.steps * hdi_krylov_late(h), shared = k > 3 ? HDI_KRYLOV_SHARED : 1;
     const double real = f.flops / HDI_RATE_REAL, sweep = (k > 1 ? 1.6 : 0.6) * HDI_RATE_SWEEP;
     const double factor =
@@ -25565,10 +25571,13 @@ static hd_status hdi_heat_by_direct(hdi_heat_call *h) {
 
 /* ---- krylov ---- */
 
+/* The time at part x of the way from t0 to t1, in equal ratios. Their own ratio might overflow. */
+static double hdi_time_between(double t0, double t1, double x) { return pow(t0, 1 - x) * pow(t1, x); }
+
 /* The end of window w of n_windows of equal ratio, from time q0 on; times ascend. */
 static int32_t hdi_window_end(const double *times, int32_t n_times, int32_t q0, int32_t w,
                               int32_t n_windows) {
-    const double end = times[0] * pow(times[n_times - 1] / times[0], (w + 1.0) / n_windows);
+    const double end = hdi_time_between(times[0], times[n_times - 1], (w + 1.0) / n_windows);
     int32_t q1 = q0 + 1;
     /* 1e-13: rounding of pow */
     while (q1 < n_times && (w + 1 >= n_windows || times[q1] <= end * (1 + 1e-13))) q1++;
@@ -25721,9 +25730,8 @@ static hd_status hdi_krylov_items(hdi_heat_call *h, int32_t n, int32_t n_windows
 
 static hd_status hdi_heat_by_krylov(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
-    const double span = h->times[h->n_times - 1] / h->times[0];
     const int32_t wide = h->ask.k > 3 ? HDI_SILAN_WIDE : 1;
-    const int32_t n_windows = hdi_krylov_windows(hdi_heat_fill(heat), heat->elim.sym.n, span).n;
+    const int32_t n_windows = hdi_krylov_windows(h, hdi_heat_fill(heat)).n;
     int32_t n;
     if (heat->silan && heat->silan->wide != wide) hdi_silan_free(heat->silan, heat->ctx);
     if (!heat->silan) {
@@ -26464,10 +26472,14 @@ static size_t hdi_leading(hdi_heat_call *h, size_t ld) {
     return ld ? ld : n;
 }
 
+/* Has the caller asked for another method than the direct one? */
+static int hdi_direct_barred(const hd_heat *heat) {
+    return heat->opts.method == HD_METHOD_ITERATIVE || heat->opts.method == HD_METHOD_KRYLOV;
+}
+
 /* Checks that the direct method is allowed, for queries that have no other. */
 static hd_status hdi_direct_only(hdi_heat_call *h) {
-    const hd_method asked = h->heat->opts.method;
-    if (asked == HD_METHOD_ITERATIVE || asked == HD_METHOD_KRYLOV)
+    if (hdi_direct_barred(h->heat))
         return hdi_fail(h->e, HD_ERR_ARGUMENT,
                         "heat: diagonals and distances to all vertices need the direct method");
     return HD_OK;
@@ -27006,8 +27018,7 @@ static void hdi_heat_defaults(hd_heat *heat, const hd_heat_opts *opts) {
 static hd_status hdi_heat_make(hd_heat *heat, const hd_laplacian *lap, hd_error *e) {
     hd_context *ctx = heat->ctx;
     heat->source = lap;
-    heat->sums = HDI_NEW(ctx, double, 2 * HDI_CAST(uint64_t, lap->n_components), e);
-    if (!heat->sums) return e->status;
+    if (hdi_heat_sums(heat, e) < 0) return e->status;
     hdi_heat_measure_pair(heat);
     if (heat->opts.ordering == HD_ORDERING_OWN && hdi_order_check(heat->opts.perm, lap->n, ctx, e) >= 0)
         heat->perm = HDI_CAST(int32_t *, hdi_copy(heat->opts.perm, HDI_CAST(uint64_t, lap->n),
@@ -27688,15 +27699,22 @@ static int hdi_shared_may(const hd_heat *heat) {
     return !heat->poles_asked && !heat->exacting && !heat->spare;
 }
 
-/* How many windows of equal ratio take the fewest packs (*packs) for times in a range of this ratio. */
-static int32_t hdi_shared_windows(double ratio, double tol, int32_t most, int32_t *packs) {
+/* Packs that a shared set for a ratio of times takes. Returns 0 where there is no set. */
+static int32_t hdi_shared_packs(double ratio, double tol) {
+    hd_rational set;
+    return hdi_shared_pick(&set, ratio * (1 + 1e-12), tol) ? (set.n_poles + 3) / 4 : 0;
+}
+
+/* How many windows of equal ratio take the fewest packs in all for times that ascend. *packs: how many those
+ * are. */
+static int32_t hdi_shared_windows(const double *times, int32_t n_times, double tol, int32_t *packs) {
+    const double ratio = times[n_times - 1] / times[0];
     int32_t w, best = 0;
-    for (w = 1; w <= most && w <= 64; w++) {
-        hd_rational set;
-        if (!hdi_shared_pick(&set, pow(ratio, 1.0 / w) * (1 + 1e-12), tol)) continue;
-        if (best > 0 && w * ((set.n_poles + 3) / 4) >= *packs) continue;
+    for (w = 1; w <= n_times && w <= 64; w++) {
+        const int32_t each = hdi_shared_packs(pow(ratio, 1.0 / w), tol);
+        if (each == 0 || (best > 0 && w * each >= *packs)) continue;
         best = w;
-        *packs = w * ((set.n_poles + 3) / 4);
+        *packs = w * each;
     }
     return best;
 }
@@ -27837,7 +27855,7 @@ static hd_status hdi_diagonal_poles(hdi_heat_call *h, hd_kernel kernel, double *
     hdi_inverse_tell(h);
     n = h->n_times;
     if (kernel == HD_KERNEL_SYMMETRIC && n > 1 && hdi_shared_may(heat))
-        windows = hdi_shared_windows(h->times[n - 1] / h->times[0], HDI_SHARED_TOL, n, &packs);
+        windows = hdi_shared_windows(h->times, n, HDI_SHARED_TOL, &packs);
     if (windows > 0 && hdi_shared_pays(packs, n) && !hdi_heat_equal(heat, h->t, h->e)) {
         for (w = 0, q = 0; q < n && h->e->status >= 0; w++, q = q1) {
             q1 = hdi_window_end(h->times, n, q, w, windows);
@@ -28048,7 +28066,7 @@ static hd_status hdi_trace_poles(hdi_heat_call *h, double *Z, double *bound, con
     if (hdi_heat_sort_times(h, 1, done) < 0) return h->e->status;
     n = hdi_trace_late(h, Z, bound);
     if (n > 1 && hdi_shared_may(heat))
-        windows = hdi_shared_windows(h->times[n - 1] / h->times[0], HDI_SHARED_TOL, n, &packs);
+        windows = hdi_shared_windows(h->times, n, HDI_SHARED_TOL, &packs);
     if (!hdi_shared_pays(packs, n)) windows = 0;
     for (w = 0, q0 = 0; q0 < n && h->e->status >= 0; w++, q0 = q1) {
         q1 = windows > 0 ? hdi_window_end(h->times, n, q0, w, windows) : q0 + 1;
@@ -28318,11 +28336,9 @@ static hd_status hdi_fading_rest(hdi_heat_call *h, const hdi_fading_to *to, cons
 /* All times where heat fades: from eigenpairs where few are left, else by poles. If the bound is not as it
  * should be then, more eigenpairs are asked for help, and poles do what is left once more. */
 static hd_status hdi_fading_times(hdi_heat_call *h, const hdi_fading_to *to) {
-    char *done = HDI_TAKE(&h->s, char, h->ask.n_times);
+    char *done = HDI_TAKE_ZERO(&h->s, char, h->ask.n_times);
     hd_report late, all;
-    if (!done) return h->e->status;
-    memset(done, 0, HDI_CAST(size_t, h->ask.n_times));
-    if (hdi_heat_analysed(h->heat, h->e) < 0) return h->e->status;
+    if (!done || hdi_heat_analysed(h->heat, h->e) < 0) return h->e->status;
     (void)hdi_fading_some(h, to, HDI_MODES_FIRST, done);
     late = *h->rep;
     if (h->e->status < 0 || hdi_fading_rest(h, to, done) < 0) return h->e->status;
@@ -29621,8 +29637,7 @@ static int hdi_distance_windows(hdi_heat_call *h, const hdi_distances *to, int32
     hd_heat *heat = h->heat;
     int32_t packs = 0, windows, w, q0, q1;
     if (n_times < 2 || !hdi_shared_may(heat) || hdi_heat_analysed(heat, h->e) < 0) return 0;
-    windows =
-        hdi_shared_windows(h->times[n_times - 1] / h->times[0], HDI_SHARED_DISTANCE_TOL, n_times, &packs);
+    windows = hdi_shared_windows(h->times, n_times, HDI_SHARED_DISTANCE_TOL, &packs);
     if (windows == 0 || packs > n_times || hdi_heat_equal(heat, h->times[n_times - 1], h->e) ||
         h->e->status < 0) return 0;
     hdi_inverse_tell(h);
@@ -29670,6 +29685,8 @@ typedef struct hdi_pairs {
     double *K, *d;
     hd_report *of_k;             /* of the entries alone; with d, may be NULL */
     double *bound;               /* of the distances alone; may be NULL */
+    hdi_ledger *before;          /* [2] of entries and distances of the pairs so far; NULL: there are none */
+    int more;                    /* others follow, and end the ledgers */
 } hdi_pairs;
 
 /* Distinct vertices of the pairs, ascending, and where each pair's two stand among them. order, list, place
@@ -29813,12 +29830,18 @@ static void hdi_pairs_of_columns(const hd_heat *heat, const hdi_pairs *x, const 
     rep->evidence_b = HD_EVIDENCE_NONE;
     hdi_parts_share(&of_k.off, &share);
     hdi_parts_share(&of_d.off, &share);
-    hdi_ledger_close(&of_k, rep);
+    if (x->before) {
+        hdi_ledger_join(x->before, &of_k);
+        hdi_ledger_join(x->before + 1, &of_d);
+        of_k = x->before[0];
+        of_d = x->before[1];
+    }
+    if (!x->more) hdi_ledger_close(&of_k, rep);
     rep->smallest = 0;                           /* of the distances */
     if (x->of_k) *x->of_k = *rep;
     rep->n_lost = n_lost;
     if (x->bound) *x->bound = hdi_quotient(hdi_parts_sum(&of_d.off), of_d.largest);
-    hdi_ledger_close(&of_d, rep);
+    if (!x->more) hdi_ledger_close(&of_d, rep);
 }
 
 /* Distances from entries and the diagonal, for more vertices than columns fit; each is judged by itself. */
@@ -30028,24 +30051,48 @@ static hd_status hdi_pairs_once(hd_heat *heat, const hdi_pairs *pairs, double t,
     return rep->status;
 }
 
-/* The pairs at all times of a call. */
+/* How many of the n pairs, from the first on, have at most so many vertices. mark: by vertex, below stamp. */
+static int64_t hdi_pairs_few(const int32_t *i, const int32_t *j, int64_t n, int64_t most, int64_t stamp,
+                             int64_t *mark) {
+    int64_t q, count = 0;
+    for (q = 0; q < n; q++) {
+        count += (mark[i[q]] != stamp) + (mark[j[q]] != stamp && i[q] != j[q]);
+        if (count > most && q > 0) break;
+        mark[i[q]] = mark[j[q]] = stamp;
+    }
+    return q;
+}
+
+/* The pairs at all times of a call. Without the direct method distances come from columns alone, for as many
+ * pairs at a time as these have room for. */
 static hd_status hdi_pairs_times(hdi_heat_call *h, void *what) {
     const hdi_pairs *all = HDI_CAST(const hdi_pairs *, what);
     const int timeless = all->kind >= HD_DISTANCE_COMMUTE;
-    const int32_t n_times = timeless ? 1 : h->ask.n_times;
+    const int32_t n_times = timeless ? 1 : h->ask.n_times, n = h->heat->source->n;
+    int64_t *mark = all->d && hdi_direct_barred(h->heat) ? HDI_TAKE_ZERO(&h->s, int64_t, n) : NULL, p;
+    hdi_ledger before[2];
     hdi_pairs x = *all;
     hd_report one;
     int32_t q;
-    for (q = 0; q < n_times; q++) {
-        x.K = all->K ? all->K + x.n * q : NULL;
-        x.d = all->d ? all->d + x.n * q : NULL;
-        if (hdi_pairs_once(h->heat, &x, timeless ? 0 : h->ask.t[q], &one) < 0) {
-            *h->rep = one;
-            if (n_times > 1) h->e->column = q;
-            return h->e->status;
+    x.before = mark ? before : NULL;
+    for (q = 0; q < n_times && h->e->status >= 0; q++) {
+        before[0] = before[1] = hdi_ledger_begin(HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, 0);
+        for (p = 0; p < all->n; p += x.n) {
+            const int64_t left = all->n - p, stamp = q * all->n + p + 1;
+            x.i = all->i + p;
+            x.j = all->j + p;
+            x.n = mark ? hdi_pairs_few(x.i, x.j, left, HDI_PAIRS_DOUBLES / n, stamp, mark) : left;
+            x.K = all->K ? all->K + all->n * q + p : NULL;
+            x.d = all->d ? all->d + all->n * q + p : NULL;
+            x.more = x.n < left;
+            if (hdi_pairs_once(h->heat, &x, timeless ? 0 : h->ask.t[q], &one) < 0) {
+                *h->rep = one;
+                if (n_times > 1) h->e->column = q;
+                return h->e->status;
+            }
+            if (q == 0 && p == 0) *h->rep = one;
+            else hdi_report_merge(h->rep, &one);
         }
-        if (q == 0) *h->rep = one;
-        else hdi_report_merge(h->rep, &one);
     }
     return h->e->status;
 }
@@ -30357,8 +30404,8 @@ static void hdi_estimate_krylov(const hdi_estimate *x, double seconds, double he
     const hd_heat *heat = x->h->heat;
     const hdi_fill f = hdi_heat_fill(heat);
     const int several = x->h->n_times > 1;
-    const double span = x->h->times[x->h->n_times - 1] / x->h->times[0], n = heat->source->n_active;
-    const hdi_windows w = hdi_krylov_windows(f, n, span);
+    const double n = heat->source->n_active;
+    const hdi_windows w = hdi_krylov_windows(x->h, f);
     const double longer = several ? 1.3 : 1.15;  /* more than expected, to be safe */
     const double steps = hdi_min(HDI_SILAN_MAX, longer * w.longest);
     const int32_t wide = x->k > 3 ? HDI_SILAN_WIDE : 1;
@@ -30485,7 +30532,7 @@ static int32_t hdi_estimate_shared(const hdi_estimate *x, double tol) {
     int32_t packs = 0, windows;
     if (h->n_times < 2 || !hdi_shared_may(h->heat)) return 0;
     if (x->query != HD_QUERY_DIAGONAL && !distance) return 0;
-    windows = hdi_shared_windows(h->times[h->n_times - 1] / h->times[0], tol, h->n_times, &packs);
+    windows = hdi_shared_windows(h->times, h->n_times, tol, &packs);
     if (windows < 1) return 0;
     return (distance ? packs <= h->n_times : hdi_shared_pays(packs, h->n_times)) ? windows : 0;
 }
@@ -30687,8 +30734,7 @@ static hd_status hdi_estimate_trace(const hdi_estimate *x, double held, hd_cost 
     const int settled = h->heat->poles_asked || h->heat->exacting;
     int32_t w, q0, q1, packs = 0, windows = 0;
     if (h->n_times > 1 && !settled)
-        windows = hdi_shared_windows(h->times[h->n_times - 1] / h->times[0], HDI_SHARED_TOL, h->n_times,
-                                     &packs);
+        windows = hdi_shared_windows(h->times, h->n_times, HDI_SHARED_TOL, &packs);
     if (windows > 0 && !hdi_shared_pays(packs, h->n_times)) windows = 0;
     for (w = 0, q0 = 0; q0 < h->n_times && h->e->status >= 0; w++, q0 = q1) {
         hd_rational set;
@@ -30801,8 +30847,8 @@ static hd_status hdi_estimate_run(const hdi_estimate *x) {
         to->reason = "t = 0";
         hdi_cost_add(to->cost + to->method, 0, 0, 64.0 * heat->source->n + HDI_ESTIMATE_SMALL);
     } else if (x->query <= HD_QUERY_PAIRS) {
-        (void)hdi_estimate_columns(x, x->query == HD_QUERY_PAIRS
-                                      ? 8 * columns + 16.0 * heat->source->n + 8.0 * x->k : 0);
+        const double held = 8 * hdi_min(columns, HDI_CAST(double, HDI_PAIRS_DOUBLES)) + 8.0 * x->k;
+        (void)hdi_estimate_columns(x, x->query == HD_QUERY_PAIRS ? held + 16.0 * heat->source->n : 0);
     } else if (x->query >= HD_QUERY_TRACE && x->query <= HD_QUERY_SCALE_INVARIANT) {
         (void)hdi_estimate_signature(x);
     } else {
@@ -31343,9 +31389,10 @@ static hd_status hdi_geo_make(hd_geodesic *g, const hdi_geo_input *in, const hd_
     if ((o->border == HD_GEODESIC_BORDER_NATURAL || hdi_holding_make(lap, 1, NULL, 0, e) >= 0) &&
         hdi_geo_surface_make(lap, &z, in, &s) >= 0 && hdi_lap_finite(lap->area, lap->h, e) >= 0) {
         g->n_active = lap->n_active;
-        g->n_components = lap->n_components;
         g->copies = z.flat.mesh.m ? hdi_flat_unit(&z.flat, lap->mesh.n_sheets) : 1;
         if (o->updatable && hdi_moving_make(lap, &z.mesh, e) >= 0) g->lap = lap;
+        if (e->status >= 0) (void)hdi_lap_components(lap, e);
+        g->n_components = lap->n_components;
     }
     if (e->status >= 0 && hdi_geo_analyse(g, lap, o, e) >= 0 && hdi_geo_rows(g, lap, e) >= 0 &&
         hdi_geo_store(g, lap, &z, in, e) >= 0) {
@@ -33436,7 +33483,7 @@ HEATDIFF_API hd_status hd_heat_scale_invariant(hd_heat *heat, double t0, double 
     else if (n_times < 3 || n_freq < 1 || n_freq > (n_times + 1) / 2)
         hdi_fail(h.e, HD_ERR_ARGUMENT, "signature: n_times is 3 or more, n_freq in 1..(n_times + 1)/2");
     t = h.e->status >= 0 ? HDI_TAKE(&h.s, double, n_times) : NULL;
-    for (q = 0; t && q < n_times; q++) t[q] = t0 * pow(t1 / t0, q / HDI_CAST(double, n_times - 1));
+    for (q = 0; t && q < n_times; q++) t[q] = hdi_time_between(t0, t1, q / HDI_CAST(double, n_times - 1));
     if (!t || hdi_times_check(&h, n_times, t, 1) < 0 || hdi_diagonal_check(&h) < 0 || !HDI_HAS_DIAGONAL)
         return hdi_heat_end(&h);
     if (!D) hdi_missing(h.e);

@@ -3941,6 +3941,78 @@ static void int_pairs_by_entries(void) {
     }
 }
 
+/* Lists of pairs fall into parts of at most so many vertices, each as long as can be. */
+static void int_pairs_few(void) {
+    enum { N = 12, PAIRS = 80 };
+    int32_t i[PAIRS], j[PAIRS], most, v;
+    uint64_t seed = 3;
+    int64_t p, q, n;
+    for (q = 0; q < PAIRS; q++) {
+        i[q] = q < 30 ? 0 : (int32_t)(dense_random(&seed) % N);
+        j[q] = q % 9 == 4 ? i[q] : (int32_t)(dense_random(&seed) % N);
+    }
+    for (most = 0; most <= N; most++) {
+        int64_t mark[N] = {0};
+        for (p = 0; p < PAIRS; p += n) {
+            int32_t count = 0, next = 0;
+            char seen[N] = {0};
+            n = hdi_pairs_few(i + p, j + p, PAIRS - p, most, p + 1, mark);
+            for (q = p; q < p + n; q++) seen[i[q]] = seen[j[q]] = 1;
+            for (v = 0; v < N; v++) count += seen[v];
+            if (p + n < PAIRS) seen[i[p + n]] = seen[j[p + n]] = 1;
+            for (v = 0; v < N; v++) next += seen[v];
+            CHECK_MSG(n >= 1 && (count <= most || n == 1) && (next > most || p + n == PAIRS), "most %d, pair %d: %d pairs of %d vertices", (int)most, (int)p, (int)n, (int)count);
+            if (n < 1) return;
+        }
+    }
+}
+
+/* Pairs in parts: the same numbers and bounds as all at once, though all entries of some parts are tiny. */
+static void int_pairs_in_parts(void) {
+    hd_laplacian *lap = int_mesh(0, HD_LAPLACIAN_FEM);
+    const int32_t n = lap->n;
+    const double t = 0.3 * lap->h * lap->h;
+    double *K = DENSE_NEW(double, n), *d = DENSE_NEW(double, n), *all_K = DENSE_NEW(double, n), *all_d = DENSE_NEW(double, n);
+    int32_t *i = DENSE_NEW(int32_t, n), *j = DENSE_NEW(int32_t, n), v;
+    hdi_ledger before[2];
+    hd_report all, sum, one;
+    hd_heat *heat = NULL;
+    hd_heat_opts o;
+    hdi_pairs x;
+    int64_t p;
+    memset(&o, 0, sizeof o);
+    o.method = HD_METHOD_KRYLOV;
+    CHECK(hd_heat_create(&heat, lap, &o, NULL) == HD_OK);
+    for (v = 0; v < n; v++) j[v] = v;
+    CHECK(heat_pairs(heat, HD_DISTANCE_CLASSICAL, t, n, i, j, all_K, all_d, &all) == HD_OK);
+    memset(&x, 0, sizeof x);
+    x.kind = HD_DISTANCE_CLASSICAL;
+    x.before = before;
+    before[0] = before[1] = hdi_ledger_begin(HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, 0);
+    for (p = 0; p < n; p += x.n) {
+        x.n = n - p < 10 ? n - p : 10;
+        x.i = i + p;
+        x.j = j + p;
+        x.K = K + p;
+        x.d = d + p;
+        x.more = p + x.n < n;
+        CHECK(hdi_pairs_once(heat, &x, t, &one) == HD_OK);
+        if (p == 0) sum = one;
+        else hdi_report_merge(&sum, &one);
+    }
+    for (v = 0; v < n; v++) CHECK(fabs(K[v] - all_K[v]) <= 1e-8 * all_K[0] && fabs(d[v] - all_d[v]) <= 1e-8 * dense_max_abs(all_d, n));
+    CHECK_MSG(sum.error_bound > 0 && sum.error_bound <= 2 * all.error_bound && sum.error_relative <= 2 * all.error_relative && sum.n_lost == all.n_lost && sum.smallest > 0.5 * all.smallest,
+              "bounds %g and %g, %g and %g at once; smallest %g and %g", sum.error_bound, sum.error_relative, all.error_bound, all.error_relative, sum.smallest, all.smallest);
+    hd_heat_free(heat);
+    hd_laplacian_free(lap);
+    free(K);
+    free(d);
+    free(all_K);
+    free(all_d);
+    free(i);
+    free(j);
+}
+
 /* f(s, s), f(v, v) and f(s, v) of row s and all rows, f = x g(lambda) x', or B f B; d2[v] = f(s, s) - 2 f(s, v) + f(v, v). */
 static void int_dense_distances(const dense_pair *p, const double *g, int by_b, int32_t source, double *d2) {
     const int32_t n = p->n;
@@ -5262,6 +5334,8 @@ static void int_all(void) {
     int_resolvent_pole();
     int_resolvent_imaginary();
     int_pairs_by_entries();
+    int_pairs_few();
+    int_pairs_in_parts();
     int_distance_windows();
     int_noise_weights();
     int_lambda_bound();

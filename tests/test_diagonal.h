@@ -931,6 +931,50 @@ static void diag_pairs_of(const heat_case *c) {
     free(KB);
 }
 
+/* Which stages of work were told of; stops at the tenth of them, or of solves. */
+typedef struct diag_stages { int inverts, solves; } diag_stages;
+
+static hd_progress diag_on_stage(void *user, const char *stage, double done) {
+    diag_stages *x = (diag_stages *)user;
+    (void)done;
+    x->inverts += strcmp(stage, "invert") == 0;
+    x->solves += strcmp(stage, "solve") == 0;
+    return x->inverts == 10 || x->solves == 10 ? HD_PROGRESS_CANCEL : HD_PROGRESS_CONTINUE;
+}
+
+/* Pairs of more vertices than columns fit into half a GiB keep the method that was asked for: only the direct one inverts factors. */
+static void diag_pairs_method(void) {
+    enum { PAIRS = 8280 };
+    shape s = shape_grid(91, 91, 0.3);
+    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_VORONOI_COT);
+    const double t = 3 * lap->h * lap->h;
+    int32_t *i = DENSE_NEW(int32_t, PAIRS), *j = DENSE_NEW(int32_t, PAIRS);
+    double *d = DENSE_NEW(double, PAIRS);
+    int m, q;
+    for (q = 0; q < PAIRS; q++) j[q] = q + 1;
+    for (m = HD_METHOD_ITERATIVE; m <= HD_METHOD_KRYLOV; m++) {
+        diag_stages seen = {0, 0};
+        hd_context ctx;
+        hd_heat_opts o = eng_opts((hd_method)m);
+        hd_heat *heat;
+        hd_report rep;
+        memset(&ctx, 0, sizeof ctx);
+        ctx.progress = diag_on_stage;
+        ctx.progress_user = &seen;
+        o.context = &ctx;
+        heat = eng_create(lap, &o);
+        CHECK(heat_pairs(heat, HD_DISTANCE_CLASSICAL, t, PAIRS, i, j, NULL, d, &rep) == HD_ERR_CANCELLED);
+        CHECK_MSG((seen.inverts > 0) == (m == HD_METHOD_DIRECT) && (seen.solves == 10) == (m != HD_METHOD_DIRECT), "%s: %d inversions, %d solves", eng_name((hd_method)m),
+                  seen.inverts, seen.solves);
+        hd_heat_free(heat);
+    }
+    free(i);
+    free(j);
+    free(d);
+    hd_laplacian_free(lap);
+    shape_free(&s);
+}
+
 /* Symmetry and the triangle inequality, at a time when little is left of distances. */
 static void diag_metric_laws(void) {
     enum { TRIPLES = 60 };
@@ -1530,6 +1574,7 @@ static void test_diagonal(void) {
     diag_lost();
     diag_pairs();
     diag_metric_laws();
+    diag_pairs_method();
     diag_refused();
     diag_robust();
     diag_limits_by_default();

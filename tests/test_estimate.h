@@ -538,6 +538,28 @@ static void est_flops(void) {
     shape_free(&s);
 }
 
+/* Times over more decades never cost less. */
+static void est_decades(void) {
+    enum { TIMES = 20 };
+    shape s = shape_grid(31, 31, 0.2);
+    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
+    double before = 0, flops = 0, t[TIMES];
+    int decades, q;
+    for (decades = 2; decades <= 290; decades += 24) {
+        hd_heat *heat = eng_create(lap, NULL);
+        hd_estimate to;
+        for (q = 0; q < TIMES; q++) t[q] = lap->h * lap->h * pow(10, decades * q / (TIMES - 1.0));
+        CHECK(hd_heat_estimate(heat, HD_QUERY_COLUMNS, TIMES, t, 1, &to, NULL) == HD_OK);
+        CHECK_MSG(to.cost[HD_METHOD_KRYLOV].seconds >= before && to.cost[HD_METHOD_KRYLOV].flops >= flops, "%d decades: %g seconds after %g, %g flops after %g", decades,
+                  to.cost[HD_METHOD_KRYLOV].seconds, before, to.cost[HD_METHOD_KRYLOV].flops, flops);
+        before = to.cost[HD_METHOD_KRYLOV].seconds;
+        flops = to.cost[HD_METHOD_KRYLOV].flops;
+        hd_heat_free(heat);
+    }
+    hd_laplacian_free(lap);
+    shape_free(&s);
+}
+
 /* Work grows with the number of items up to the largest there is. */
 static void est_many(void) {
     shape s = shape_grid(6, 5, 0.2);
@@ -581,6 +603,7 @@ static void test_estimate(void) {
     est_rooms();
     est_sweeps();
     est_many();
+    est_decades();
     shape_free(&ball);
     shape_free(&sheet);
     shape_free(&points);

@@ -189,6 +189,50 @@ static void filt_own(void) {
     CHECK(hd_rational_fit(&set, &f, 1e5, NULL, &e) == HD_ERR_ARGUMENT);
 }
 
+/* exp(-lambda), but something else on a narrow band. */
+typedef struct filt_hole { double from, to, value; int hits; } filt_hole;
+
+static double filt_holed(double lambda, void *user) {
+    filt_hole *x = (filt_hole *)user;
+    if (lambda < x->from || lambda > x->to) return exp(-lambda);
+    x->hits++;
+    return x->value;
+}
+
+/* No value is overlooked that is not finite, whatever point of whichever grid it is at. */
+static void filt_holes(void) {
+    static const double values[3] = {(double)NAN, HUGE_VAL, -HUGE_VAL};
+    hd_filter f = filt_make(HD_FILTER_OWN, 0, 0), several[3];
+    hd_rational set, sets[3];
+    filt_hole hole;
+    hd_error e;
+    hd_status st;
+    int k, q, seen = 0;
+    f.f = filt_holed;
+    f.user = &hole;
+    for (k = 0; k < 30; k++) {
+        hole.value = values[k % 3];
+        hole.hits = 0;
+        hole.from = pow(10, -4 + 7 * k / 29.0);
+        hole.to = k == 28 ? hole.from : hole.from * (1 + pow(10, -4 + 3 * (k * 7 % 30) / 30.0));
+        st = hd_rational_fit(&set, &f, 1000, NULL, &e);
+        seen += hole.hits > 0;
+        CHECK_MSG(hole.hits == 0 ? st == HD_OK : st == HD_ERR_NOT_FINITE && hole.hits == 1 && e.value >= hole.from && e.value <= hole.to,
+                  "%g at %g: %s, value %g", hole.value, hole.from, hd_status_name(st), e.value);
+    }
+    CHECK_MSG(seen >= 15, "%d holes were seen", seen);
+    for (k = 0; k < 6; k++) {                    /* of several: a wide hole, or one that few points meet */
+        hole.value = values[k % 3];
+        hole.hits = 0;
+        hole.from = k < 3 ? 1e-3 : 2.4926e-4;
+        hole.to = k < 3 ? 1 : 2.49362e-4;
+        for (q = 0; q < 3; q++) several[q] = filt_make(HD_FILTER_HEAT, 1 + q, 0);
+        several[k % 3] = f;
+        st = hd_rational_fit_shared(sets, 3, several, 1000, NULL, &e);
+        CHECK_MSG(hole.hits == 1 && st == HD_ERR_NOT_FINITE && e.column == k % 3, "of three, hole %d: %d hits, %s, column %d", k, hole.hits, hd_status_name(st), (int)e.column);
+    }
+}
+
 static void filt_arguments(void) {
     const hd_filter good = filt_make(HD_FILTER_BAND, 1, 2);
     hd_filter f;
@@ -685,6 +729,7 @@ static void test_filters(void) {
     filt_overflow();
     filt_weight();
     filt_own();
+    filt_holes();
     filt_arguments();
     filt_queries();
     filt_one_plan();

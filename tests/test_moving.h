@@ -11,6 +11,24 @@ static void mov_bend(const shape *s, double how, double *xyz) {
     }
 }
 
+/* All that a Laplacian says besides L and B. */
+static void mov_same_report(const hd_laplacian *a, const hd_laplacian *b, const char *what) {
+    int32_t i;
+    CHECK_MSG(dense_max_diff(a->mass, b->mass, b->n_active) <= 1e-14 * dense_max_abs(b->mass, b->n_active), "%s: masses", what);
+    CHECK_MSG(dense_max_diff(a->b_diag, b->b_diag, b->n_active) <= 1e-14 * dense_max_abs(b->mass, b->n_active), "%s: diag(B)", what);
+    CHECK_MSG(a->n_components == b->n_components && memcmp(a->component, b->component, (size_t)b->n_active * sizeof(int32_t)) == 0 &&
+              a->conserves == b->conserves, "%s: %d components, not %d", what, a->n_components, b->n_components);
+    for (i = 0; i < b->n_components; i++)        /* infinite where heat is lost */
+        CHECK_MSG(a->component_mass[i] == b->component_mass[i] || fabs(a->component_mass[i] - b->component_mass[i]) <= 1e-13 * (b->area + b->n), "%s: components", what);
+    CHECK_MSG(fabs(a->area - b->area) <= 1e-13 * b->area && fabs(a->h - b->h) <= 1e-13 * b->h, "%s: area or h", what);
+    CHECK_MSG(memcmp(a->xyz, b->xyz, 3 * (size_t)b->n_active * sizeof(double)) == 0, "%s: places", what);
+    CHECK_MSG(a->mesh.n_faces_used == b->mesh.n_faces_used && a->mesh.n_zero_area == b->mesh.n_zero_area &&
+              a->mesh.n_negative_weights == b->mesh.n_negative_weights && a->mesh.n_edges == b->mesh.n_edges &&
+              a->mesh.n_boundary_edges == b->mesh.n_boundary_edges && a->mesh.n_nonmanifold_edges == b->mesh.n_nonmanifold_edges &&
+              a->mesh.n_misoriented_edges == b->mesh.n_misoriented_edges && a->mesh.n_boundary_loops == b->mesh.n_boundary_loops &&
+              fabs(a->mesh.smallest_angle - b->mesh.smallest_angle) <= 1e-12, "%s: report", what);
+}
+
 static void mov_same_laplacian(const hd_laplacian *a, const hd_laplacian *b, const char *what) {
     const double top = dense_max_abs(b->L.val, b->L.nnz);
     CHECK_MSG(a->n_active == b->n_active && a->L.nnz == b->L.nnz && memcmp(a->L.col, b->L.col, (size_t)b->L.nnz * sizeof(int32_t)) == 0,
@@ -18,14 +36,7 @@ static void mov_same_laplacian(const hd_laplacian *a, const hd_laplacian *b, con
     CHECK_MSG(dense_max_diff(a->L.val, b->L.val, b->L.nnz) <= 1e-14 * top, "%s: L is off by %g", what,
               dense_max_diff(a->L.val, b->L.val, b->L.nnz) / top);
     if (b->B) CHECK_MSG(dense_max_diff(a->B, b->B, b->L.nnz) <= 1e-14 * dense_max_abs(b->B, b->L.nnz), "%s: B", what);
-    CHECK_MSG(dense_max_diff(a->mass, b->mass, b->n_active) <= 1e-14 * dense_max_abs(b->mass, b->n_active), "%s: masses", what);
-    CHECK_MSG(dense_max_diff(a->b_diag, b->b_diag, b->n_active) <= 1e-14 * dense_max_abs(b->mass, b->n_active), "%s: diag(B)", what);
-    CHECK_MSG(dense_max_diff(a->component_mass, b->component_mass, b->n_components) <= 1e-13 * b->area + 1e-13 * b->n, "%s: components", what);
-    CHECK_MSG(fabs(a->area - b->area) <= 1e-13 * b->area && fabs(a->h - b->h) <= 1e-13 * b->h, "%s: area or h", what);
-    CHECK_MSG(memcmp(a->xyz, b->xyz, 3 * (size_t)b->n_active * sizeof(double)) == 0, "%s: places", what);
-    CHECK_MSG(a->mesh.n_faces_used == b->mesh.n_faces_used && a->mesh.n_zero_area == b->mesh.n_zero_area &&
-              a->mesh.n_negative_weights == b->mesh.n_negative_weights &&
-              fabs(a->mesh.smallest_angle - b->mesh.smallest_angle) <= 1e-12, "%s: report", what);
+    mov_same_report(a, b, what);
 }
 
 /* Every frame: the Laplacian, and columns, a diagonal and distances of plans that have been used before. */
@@ -523,6 +534,149 @@ static void mov_matrix_pattern(void) {
     hd_csr_free(&B, NULL);
 }
 
+/* ---- values that part what the pattern joins ---- */
+
+/* Heat at a very large t spreads evenly over its part of the grid, and leaves it where a vertex is held. part [n], area [parts]; 0: heat is lost. */
+static void mov_parts_check(const hd_laplacian *lap, hd_heat *const *plan, const int32_t *part, const double *area, const char *what) {
+    const double t = 1e12;
+    double *u = DENSE_NEW(double, lap->n);
+    int32_t source, v;
+    hd_report rep;
+    int k;
+    for (k = 0; k < 3; k++)
+        for (source = 12; source <= 18; source += 6) {
+            const double even = area[part[source]] > 0 ? 1 / area[part[source]] : 0, mass = lap->mass[lap->row[source]];
+            CHECK(eng_ok(heat_column(plan[k], t, source, u, &rep), &rep, what));
+            CHECK_MSG(even == 0 || rep.error_bound <= 1e-6, "%s, %s: bound %g", what, eng_name(rep.method), rep.error_bound);
+            for (v = 0; v < lap->n; v++) {
+                const double want = lap->row[v] >= 0 && part[v] == part[source] ? even * mass : 0;
+                CHECK_MSG(fabs(u[v] - want) <= (even > 0 ? rep.error_bound * even : 1e-9) * mass, "%s, %s: %d to %d: %g, not %g", what, eng_name(rep.method), source, v, u[v], want);
+            }
+        }
+    CHECK(eng_ok(heat_diagonal(plan[0], 1, &t, HD_KERNEL_SYMMETRIC, u, 0, &rep), &rep, what));
+    for (v = 0; v < lap->n; v++)
+        if (lap->row[v] >= 0 && area[part[v]] > 0) CHECK_MSG(fabs(u[v] * area[part[v]] - 1) <= 1e-6, "%s: diagonal at %d: %g", what, v, u[v]);
+    for (k = HD_DISTANCE_COMMUTE; k <= HD_DISTANCE_BIHARMONIC; k++) {
+        source = 12;
+        CHECK(eng_ok(heat_distance(plan[0], (hd_distance_kind)k, 1, &t, 1, &source, u, 0, &rep), &rep, what));
+        for (v = 0; v < lap->n; v++) CHECK_MSG((u[v] == HUGE_VAL) == (lap->row[v] < 0 || part[v] != part[source]), "%s: distance to %d: %g", what, v, u[v]);
+    }
+    free(u);
+}
+
+/* A strip of the grid closes and opens again. kind polygon: its triangles as polygons. held: a vertex on the left is. */
+static void mov_strip(hd_laplacian_kind kind, int held, const char *what) {
+    static const hd_method methods[3] = {HD_METHOD_DIRECT, HD_METHOD_KRYLOV, HD_METHOD_ITERATIVE};
+    shape s = shape_grid(10, 7, 0);
+    const int32_t corner = 0;
+    int64_t *ptr = DENSE_NEW(int64_t, s.n_tri + 1);
+    double *xyz = DENSE_NEW(double, 3 * s.n), *L[2];
+    int32_t *part = DENSE_NEW(int32_t, s.n), i;
+    hd_laplacian *lap[2] = {NULL, NULL};
+    hd_heat *plan[3];
+    hd_laplacian_opts o;
+    hd_error e;
+    int frame, k;
+    memset(&o, 0, sizeof o);
+    o.kind = kind;
+    o.n_held = held;
+    o.held = &corner;
+    for (i = 0; i <= s.n_tri; i++) ptr[i] = 3 * i;
+    for (frame = 0; frame < 4; frame++) {
+        const int closed = frame % 2;
+        const double area[2] = {held ? 0 : closed ? 24 / 81.0 : 54 / 81.0, 30 / 81.0};
+        memcpy(xyz, s.xyz, 3 * (size_t)s.n * sizeof *xyz);
+        for (i = 0; i < s.n; i++) {
+            part[i] = closed && i % 10 >= 5;
+            if (closed && i % 10 == 5) memcpy(xyz + 3 * i, s.xyz + 3 * (i - 1), 3 * sizeof *xyz);
+        }
+        for (k = frame > 0; k < 2; k++) {        /* the one that moves, at first; and a new one */
+            o.updatable = k == 0;
+            CHECK((kind == HD_LAPLACIAN_POLYGON ? hd_laplacian_polygons(lap + k, xyz, s.n, ptr, s.tri, s.n_tri, &o, &e)
+                                                : hd_laplacian_triangles(lap + k, xyz, s.n, s.tri, s.n_tri, &o, &e)) == HD_OK);
+        }
+        for (k = 0; k < 3 && frame == 0; k++) {
+            const hd_heat_opts ho = eng_opts(methods[k]);
+            plan[k] = eng_create(lap[0], &ho);
+        }
+        if (frame > 0) CHECK_MSG(hd_laplacian_update(lap[0], xyz, &e) == HD_OK, "%s: %s", what, e.text);
+        CHECK_MSG(lap[0]->n_components == 1 + closed && lap[0]->conserves == (!held ? 1 : closed ? 2 : 0), "%s: %d components", what, lap[0]->n_components);
+        mov_same_report(lap[0], lap[1], what);
+        L[0] = test_dense(&lap[0]->L, NULL);
+        L[1] = test_dense(&lap[1]->L, NULL);
+        CHECK_MSG(dense_max_diff(L[0], L[1], lap[1]->n_active * lap[1]->n_active) <= 1e-14 * dense_max_abs(L[1], lap[1]->n_active * lap[1]->n_active), "%s: L", what);
+        free(L[0]);
+        free(L[1]);
+        mov_parts_check(lap[0], plan, part, area, what);
+        hd_laplacian_free(lap[1]);
+        lap[1] = NULL;
+    }
+    for (k = 0; k < 3; k++) hd_heat_free(plan[k]);
+    hd_laplacian_free(lap[0]);
+    shape_free(&s);
+    free(ptr);
+    free(xyz);
+    free(part);
+}
+
+/* Zeros that the caller's matrices store join nothing: two paths of three vertices, and what lies between them. */
+static void mov_stored_zeros(void) {
+    enum { N = 6, E = 11 };
+    static const int32_t I[E] = {0, 1, 2, 3, 4, 5, 0, 1, 3, 4, 2}, J[E] = {0, 1, 2, 3, 4, 5, 1, 2, 4, 5, 3};
+    double l[2 * E] = {1, 2, 1, 1, 2, 1, -1, -1, -1, -1, 0}, b[2 * E] = {1, 1, 1, 1, 1, 1, 0.1, 0.1, 0.1, 0.1, 0}, t = 1e12, u[N];
+    const int32_t source = 0;
+    int32_t ij[2][2 * E], i;
+    int frame;
+    hd_laplacian *lap = NULL;
+    hd_laplacian_opts o;
+    hd_heat *heat;
+    hd_report rep;
+    hd_error e;
+    hd_csr L, B, D = test_diagonal_csr(N, NULL);
+    memcpy(ij[0], I, sizeof I);
+    memcpy(ij[1], J, sizeof J);
+    L = test_symmetric_csr(N, E, ij[0], ij[1], l);
+    memcpy(ij[0], I, sizeof I);
+    memcpy(ij[1], J, sizeof J);
+    B = test_symmetric_csr(N, E, ij[0], ij[1], b);
+    memset(&o, 0, sizeof o);
+    CHECK(hd_laplacian_matrices(&lap, &L, &D, 1, &o, &e) == HD_OK && lap->n_components == 2 && lap->component_mass[1] == 3);
+    heat = eng_create(lap, NULL);
+    CHECK(eng_ok(heat_column(heat, t, 0, u, &rep), &rep, "stored zeros"));
+    for (i = 0; i < N; i++) CHECK_MSG(fabs(u[i] - (i < 3) / 3.0) <= 1e-9, "stored zeros: %g at %d", u[i], i);
+    CHECK(eng_ok(heat_distance(heat, HD_DISTANCE_COMMUTE, 1, &t, 1, &source, u, 0, &rep), &rep, "stored zeros") && fabs(u[2] - sqrt(2)) <= 1e-9 && u[3] == HUGE_VAL);
+    hd_heat_free(heat);
+    hd_laplacian_free(lap);
+    lap = NULL;
+    /* a full B: joined while one of the two has a value there; without vertex 1 the first path falls apart too */
+    o.updatable = 1;
+    CHECK(hd_laplacian_matrices(&lap, &L, &B, 1, &o, &e) == HD_OK && lap->n_components == 2);
+    for (frame = 0; frame < 4; frame++) {
+        const double between = frame < 2 ? frame == 0 : 0, mass = frame == 2 ? 0.1 : 0;
+        int64_t p;
+        for (i = 2; i <= 3; i++)
+            for (p = L.row_ptr[i]; p < L.row_ptr[i + 1]; p++) {
+                if (L.col[p] == i) L.val[p] = 1 + between;
+                if (L.col[p] != 5 - i) continue;
+                L.val[p] = -between;
+                B.val[p] = mass;
+            }
+        CHECK_MSG(hd_laplacian_update_matrices(lap, &L, &B, 1, &e) == HD_OK, "%s", e.text);
+        CHECK_MSG(lap->n_components == (frame == 0 || frame == 2 ? 1 : 2) && lap->component[5] == lap->n_components - 1, "stored zeros, frame %d: %d components", frame, lap->n_components);
+        CHECK(fabs(lap->component_mass[lap->component[5]] - (lap->n_components == 1 ? 6.8 + 2 * mass : 3.4)) <= 1e-14);
+    }
+    hd_laplacian_free(lap);
+    lap = NULL;
+    o.held = ij[0];
+    o.n_held = 1;
+    ij[0][0] = 1;
+    CHECK(hd_laplacian_matrices(&lap, &L, &B, 1, &o, &e) == HD_OK && lap->n_components == 3 && lap->conserves == 2);
+    hd_laplacian_free(lap);
+    hd_csr_free(&L, NULL);
+    hd_csr_free(&B, NULL);
+    hd_csr_free(&D, NULL);
+}
+
 /* Points are refused, and told why. */
 static void mov_points(const shape *s) {
     hd_laplacian_opts o;
@@ -554,6 +708,11 @@ static void test_moving(void) {
     mov_matrix_frames(&ball, HD_LAPLACIAN_FEM, "matrices of fem");
     mov_matrix_frames(&ball, HD_LAPLACIAN_VORONOI_COT, "matrices of voronoi-cot");
     mov_matrix_pattern();
+    mov_strip(HD_LAPLACIAN_FEM, 0, "strip, fem");
+    mov_strip(HD_LAPLACIAN_VORONOI_COT, 1, "strip, voronoi-cot, held");
+    mov_strip(HD_LAPLACIAN_POLYGON, 0, "strip, polygon");
+    mov_strip(HD_LAPLACIAN_POLYGON, 1, "strip, polygon, held");
+    mov_stored_zeros();
     mov_points(&ball);
     mov_names();
     mov_lost(HD_LAPLACIAN_FEM, 27);

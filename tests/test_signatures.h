@@ -204,11 +204,12 @@ static void sign_torus(void) {
     hd_csr_free(&B, NULL);
 }
 
-/* Without weights on its edge the only eigenvalue but that of constants is 0 too: no time belongs to it. */
+/* Without weights on the edge of two vertices, both eigenvalues are 0: of two constants if B is diagonal; if it joins the vertices, one of them
+ * belongs to no constant. No time belongs to either. */
 static void sign_times_of_nothing(void) {
     int64_t row_ptr[3] = {0, 2, 4}, diagonal[3] = {0, 1, 2};
     int32_t col[4] = {0, 1, 0, 1}, one[2] = {0, 1};
-    double zero[4] = {0, 0, 0, 0}, mass[2] = {1, 1}, c = 1, t = -7;
+    double zero[4] = {0, 0, 0, 0}, mass[2] = {1, 1}, full[4] = {1, 0.1, 0.1, 1}, c = 1, t = -7;
     hd_csr L, B;
     hd_laplacian *lap = NULL;
     hd_error e;
@@ -223,7 +224,12 @@ static void sign_times_of_nothing(void) {
     B.row_ptr = diagonal;
     B.col = one;
     B.val = mass;
-    CHECK(hd_laplacian_matrices(&lap, &L, &B, 1, NULL, &e) == HD_OK);
+    CHECK(hd_laplacian_matrices(&lap, &L, &B, 1, NULL, &e) == HD_OK && lap->n_components == 2);
+    CHECK(hd_times_spectral(lap, 1, &c, &t, &e) == HD_ERR_ARGUMENT && strstr(e.text, "those of constants") && t == -7);
+    hd_laplacian_free(lap);
+    B = L;
+    B.val = full;
+    CHECK(hd_laplacian_matrices(&lap, &L, &B, 1, NULL, &e) == HD_OK && lap->n_components == 1);
     CHECK(hd_times_spectral(lap, 1, &c, &t, &e) == HD_ERR_BREAKDOWN && strstr(e.text, "lost in rounding") && t == -7);
     hd_laplacian_free(lap);
 }
