@@ -8558,8 +8558,9 @@ static hd_status hdi_moving_make(hd_laplacian *lap, const hdi_mesh *mesh, hd_err
     return hdi_moving_keep(x, &s);
 }
 
-/* Has each row's vertex a mass? mass [n] by vertices. */
-static hd_status hdi_moving_masses(const hd_laplacian *lap, const double *mass, hd_error *e) {
+/* Has each row's vertex a mass? */
+static hd_status hdi_moving_masses(const hd_laplacian *lap, hd_error *e) {
+    const double *mass = lap->moving->mass;
     int32_t i;
     for (i = 0; i < lap->n_active; i++)
         if (!(mass[lap->vertex[i]] > 0))
@@ -8666,7 +8667,7 @@ static hd_status hdi_lap_update(hd_laplacian *lap, const double *xyz, hd_error *
     if (hdi_tally_report(&tally, x->m, &rep, e) < 0) return e->status;
     hdi_mesh_masses(&mesh, hdi_lap_lump(lap->kind), x->mass);
     area = hdi_sum_areas(x->area, x->m);
-    if (hdi_moving_masses(lap, x->mass, e) < 0 || hdi_lap_finite(area, 0, e) < 0) return e->status;
+    if (hdi_moving_masses(lap, e) < 0 || hdi_lap_finite(area, 0, e) < 0) return e->status;
     lap->area = area;
     hdi_moving_tell(lap, xyz, &rep, lap->mesh.n_faces - x->m);
     if (before < x->m || rep.n_faces_used < x->m) h = hdi_moving_edges(lap);   /* else all are edges */
@@ -8732,14 +8733,13 @@ static hd_status hdi_poly_pattern(hd_laplacian *lap, const hdi_poly *poly, int32
     int32_t *col = HDI_TAKE(&s, int32_t, lap->n_active), i;
     uint64_t *work = HDI_TAKE(&s, uint64_t, 2 * HDI_CAST(int64_t, lap->n_active));
     int64_t nnz = 0;
+    hd_csr L;
     if (e->status < 0) return hdi_scope_end(&s);
     hdi_fill_i32(mark, lap->n_active, -1);
     for (i = 0; i < lap->n_active; i++) nnz += hdi_poly_ring(poly, lap, lap->vertex[i], mark, col);
-    lap->L = hdi_csr_take(&s, lap->n_active, lap->n_active, nnz, 1);
-    if (e->status < 0) {
-        memset(&lap->L, 0, sizeof lap->L);
-        return hdi_scope_end(&s);
-    }
+    L = hdi_csr_take(&s, lap->n_active, lap->n_active, nnz, 1);
+    if (e->status < 0) return hdi_scope_end(&s);
+    lap->L = hdi_csr_keep(&s, L);
     hdi_fill_i32(mark, lap->n_active, -1);
     for (i = 0; i < lap->n_active; i++) {
         const int64_t begin = lap->L.row_ptr[i], n = hdi_poly_ring(poly, lap, lap->vertex[i], mark, col);
@@ -8747,7 +8747,6 @@ static hd_status hdi_poly_pattern(hd_laplacian *lap, const hdi_poly *poly, int32
         memcpy(lap->L.col + begin, col, HDI_CAST(size_t, n) * sizeof *col);
         lap->L.row_ptr[i + 1] = begin + n;
     }
-    lap->L = hdi_csr_keep(&s, lap->L);
     return hdi_scope_end(&s);
 }
 
@@ -8847,8 +8846,7 @@ typedef struct hdi_moving_poly {
     hdi_poly poly;
     char *left_out;             /* [m] from the start */
     int32_t n_left_out;
-    int32_t *mark, *border;     /* [n], [n_active] */
-    double *mass;               /* [n] by vertices */
+    int32_t *mark;              /* [n] */
     hdi_poly_work work;
 } hdi_moving_poly;
 
@@ -8870,8 +8868,8 @@ static hd_status hdi_moving_poly_make(hd_laplacian *lap, const hdi_poly *from, h
     z->poly.corner = HDI_TAKE(&s, int32_t, n_corners);
     z->left_out = HDI_TAKE(&s, char, m);
     z->mark = HDI_TAKE(&s, int32_t, n);
-    z->border = HDI_TAKE(&s, int32_t, lap->n_active);
-    z->mass = HDI_TAKE(&s, double, n);
+    x->border = HDI_TAKE(&s, int32_t, lap->n_active);
+    x->mass = HDI_TAKE(&s, double, n);
     hdi_poly_work_take(&z->work, lap, &s);
     if (e->status < 0) return hdi_scope_end(&s);
     memcpy(ptr, from->ptr, (HDI_CAST(size_t, m) + 1) * sizeof *ptr);
@@ -8887,7 +8885,8 @@ static hd_status hdi_moving_poly_make(hd_laplacian *lap, const hdi_poly *from, h
 
 /* As hdi_lap_update. L is made as in a new Laplacian, from the same sums. */
 static hd_status hdi_moving_poly_update(hd_laplacian *lap, const double *xyz, hd_error *e) {
-    hdi_moving_poly *z = lap->moving->poly;
+    hdi_moving *x = lap->moving;
+    hdi_moving_poly *z = x->poly;
     hdi_poly *poly = &z->poly;
     hd_mesh_report rep;
     double area;
@@ -8903,13 +8902,13 @@ static hd_status hdi_moving_poly_update(hd_laplacian *lap, const double *xyz, hd
         rep.n_faces_used += poly->area[f] > 0;
     }
     hdi_poly_corners(poly);
-    for (i = 0; i < lap->n; i++) z->mass[i] = hdi_poly_mass(poly, i);
+    for (i = 0; i < lap->n; i++) x->mass[i] = hdi_poly_mass(poly, i);
     area = hdi_sum_areas(poly->area, poly->m);
-    if (hdi_moving_masses(lap, z->mass, e) < 0 || hdi_lap_finite(area, 0, e) < 0) return e->status;
+    if (hdi_moving_masses(lap, e) < 0 || hdi_lap_finite(area, 0, e) < 0) return e->status;
     hdi_moving_tell(lap, xyz, &rep, z->n_left_out);
     lap->area = area;
-    for (i = 0; i < lap->n_active; i++) lap->mass[i] = z->mass[lap->vertex[i]];
-    hdi_poly_values(lap, poly, &z->work, z->border);
+    for (i = 0; i < lap->n_active; i++) lap->mass[i] = x->mass[lap->vertex[i]];
+    hdi_poly_values(lap, poly, &z->work, x->border);
     hdi_lap_renewed(lap);
     return HD_OK;
 }
@@ -9274,8 +9273,9 @@ static hd_status hdi_pair_ratio(const hd_laplacian *lap, double *work, double *r
 static hd_status hdi_lap_matrices(hd_laplacian *lap, const hd_csr *L, const hd_csr *B,
                                   hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
-    double *present = HDI_TAKE_ZERO(&s, double, lap->n), *b_diag, *root;
+    double *present = HDI_TAKE_ZERO(&s, double, lap->n), *b_diag, *root, *Bx;
     int64_t nnz = 0, p;
+    hd_csr a;
     int32_t i;
     int diagonal;
     if (!present) return hdi_scope_end(&s);
@@ -9284,17 +9284,13 @@ static hd_status hdi_lap_matrices(hd_laplacian *lap, const hd_csr *L, const hd_c
             if (B->val[p] != 0) present[i] = 1;
     if (hdi_lap_rows(lap, present, e) < 0) return hdi_scope_end(&s);
     for (i = 0; i < lap->n_active; i++) nnz += hdi_pair_row(lap, L, B, lap->vertex[i], NULL, NULL, NULL);
-    lap->L = hdi_csr_take(&s, lap->n_active, lap->n_active, nnz, 1);
-    lap->B = HDI_TAKE(&s, double, nnz);
+    a = hdi_csr_take(&s, lap->n_active, lap->n_active, nnz, 1);
+    Bx = HDI_TAKE(&s, double, nnz);
     b_diag = HDI_TAKE(&s, double, lap->n_active);
     root = HDI_TAKE(&s, double, lap->n_active);
-    if (e->status < 0) {
-        memset(&lap->L, 0, sizeof lap->L);
-        lap->B = NULL;
-        return hdi_scope_end(&s);
-    }
-    lap->L = hdi_csr_keep(&s, lap->L);
-    lap->B = HDI_CAST(double *, hdi_keep(&s, lap->B));
+    if (e->status < 0) return hdi_scope_end(&s);
+    lap->L = hdi_csr_keep(&s, a);
+    lap->B = HDI_CAST(double *, hdi_keep(&s, Bx));
     lap->b_diag = HDI_CAST(double *, hdi_keep(&s, b_diag));
     for (i = 0; i < lap->n_active; i++) {
         p = lap->L.row_ptr[i];
@@ -23897,9 +23893,8 @@ static hd_status hdi_heat_sums(hd_heat *heat, hd_error *e) {
 static hd_status hdi_heat_seats(hd_heat *heat, int32_t n, hd_error *e) {
     hdi_lane *lane;
     if (n <= heat->n_lanes) return HD_OK;
-    lane = HDI_NEW(heat->ctx, hdi_lane, n, e);
+    lane = HDI_CAST(hdi_lane *, hdi_alloc_zero(heat->ctx, HDI_CAST(uint64_t, n), sizeof *lane, e));
     if (!lane) return e->status;
-    memset(lane, 0, HDI_CAST(size_t, n) * sizeof *lane);
     if (heat->lane) memcpy(lane, heat->lane, HDI_CAST(size_t, heat->n_lanes) * sizeof *lane);
     hdi_free(heat->ctx, heat->lane);
     heat->lane = lane;
@@ -24602,15 +24597,13 @@ static double hdi_krylov_late(const hdi_heat_call *h) {
     return hdi_max(0.4, 1 / (1 + HDI_STEPS_LATE * h->times[0] * h->heat->scales.lowest));
 }
 
-/* Beyond this ratio of times no basis serves. */
-#define HDI_WINDOW_WIDEST 1e4
-
-/* The number of windows of equal ratio that costs least. The ratio of all times might overflow. */
+/* The number of windows of equal ratio that costs least. No basis serves beyond a ratio of 1e4; that of all
+ * times might overflow. */
 static hdi_windows hdi_krylov_windows(const hdi_heat_call *h, hdi_fill f) {
     const double factor = f.flops / HDI_RATE_REAL;
     const double step = 16 * f.nnz / HDI_RATE_SWEEP + 1e-8 * h->heat->source->n_active;
     const double span = log(h->times[h->n_times - 1]) - log(hdi_max(h->times[0], 1e-300));
-    const int32_t least = hdi_high32(1, HDI_CAST(int32_t, ceil(span / log(HDI_WINDOW_WIDEST))));
+    const int32_t least = hdi_high32(1, HDI_CAST(int32_t, ceil(span / log(1e4))));
     double best = HUGE_VAL;
     hdi_windows all = {1, 0, 0};
     int32_t w;
@@ -25856,9 +25849,8 @@ static hd_status hdi_modes_mass(hd_heat *heat, hd_error *e) {
     int64_t at;
     int32_t i;
     if (x->bx || !lap->B) return HD_OK;
-    x->bx = HDI_NEW(heat->ctx, double, size, e);
+    x->bx = HDI_CAST(double *, hdi_alloc_zero(heat->ctx, HDI_CAST(uint64_t, size), sizeof *x->bx, e));
     if (!x->bx) return e->status;
-    memset(x->bx, 0, HDI_CAST(size_t, size) * sizeof *x->bx);
     for (at = 0; at < size; at += x->s.n)
         for (i = 0; i < lap->n_active; i++)
             x->bx[at + lap->vertex[i]] = hdi_spec_mass_row(lap, x->s.vector + at, i);
@@ -27699,22 +27691,17 @@ static int hdi_shared_may(const hd_heat *heat) {
     return !heat->poles_asked && !heat->exacting && !heat->spare;
 }
 
-/* Packs that a shared set for a ratio of times takes. Returns 0 where there is no set. */
-static int32_t hdi_shared_packs(double ratio, double tol) {
-    hd_rational set;
-    return hdi_shared_pick(&set, ratio * (1 + 1e-12), tol) ? (set.n_poles + 3) / 4 : 0;
-}
-
 /* How many windows of equal ratio take the fewest packs in all for times that ascend. *packs: how many those
  * are. */
 static int32_t hdi_shared_windows(const double *times, int32_t n_times, double tol, int32_t *packs) {
     const double ratio = times[n_times - 1] / times[0];
+    hd_rational set;
     int32_t w, best = 0;
     for (w = 1; w <= n_times && w <= 64; w++) {
-        const int32_t each = hdi_shared_packs(pow(ratio, 1.0 / w), tol);
-        if (each == 0 || (best > 0 && w * each >= *packs)) continue;
+        if (!hdi_shared_pick(&set, pow(ratio, 1.0 / w) * (1 + 1e-12), tol)) continue;
+        if (best > 0 && w * ((set.n_poles + 3) / 4) >= *packs) continue;
         best = w;
-        *packs = w * each;
+        *packs = w * ((set.n_poles + 3) / 4);
     }
     return best;
 }
@@ -29733,15 +29720,6 @@ static double hdi_vertex_norm(const hd_laplacian *lap, const double *u, const do
     return sqrt(most) / sqrt(scale) / unit;
 }
 
-/* The parts of a report's bound. */
-static hdi_parts hdi_parts_of(const hd_report *rep) {
-    hdi_parts p;
-    p.rational = rep->error_rational;
-    p.solver = rep->error_solver;
-    p.rounding = rep->error_rounding;
-    return p;
-}
-
 /* Distributes a bound that stands in rounding over all parts, in the ratio of another bound. */
 static void hdi_parts_share(hdi_parts *to, const hdi_parts *as) {
     const double all = to->rounding, sum = hdi_parts_sum(as);
@@ -29794,13 +29772,15 @@ static void hdi_pairs_of_columns(const hd_heat *heat, const hdi_pairs *x, const 
                                  hd_report *rep) {
     const hd_laplacian *lap = heat->source;
     const size_t n = HDI_CAST(size_t, lap->n);
-    const hdi_parts share = hdi_parts_of(rep);
     const double bound_b = rep->error_bound_b;
     hdi_ledger of_k =
         hdi_ledger_begin(rep->evidence_rational, rep->evidence_solver, rep->evidence_rounding, 0);
     hdi_ledger of_d = of_k;
-    hdi_parts part;
+    hdi_parts part, share;
     int64_t q, n_lost = 0;
+    share.rational = rep->error_rational;
+    share.solver = rep->error_solver;
+    share.rounding = rep->error_rounding;
     memset(&part, 0, sizeof part);
     of_d.relative = 0;
     for (q = 0; q < x->n; q++) {
