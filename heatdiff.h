@@ -1648,7 +1648,7 @@ HEATDIFF_API hd_status hd_heat_distance_from(hd_heat *heat, hd_distance_kind kin
  * cancellation, or from eigenpairs as above. Where its bound is above 1e-6, degree 14 takes over. If these
  * columns would take more than half a GiB, it comes from entries and the diagonal at 2t, one column at a
  * time; sort the pairs by i in that case. Commute and biharmonic always work that way. Plans of method
- * iterative or krylov then take as many pairs at a time as there is room for, in the order of the list.
+ * iterative or krylov keep to columns: of as many pairs at a time as fit, in the order of the list.
  * Errors as hd_heat_columns; HD_ERR_INDEX (vertex, row: which pair). HD_ERR_ARGUMENT: commute, biharmonic and
  *        distances of a filter need the direct method
  * Cost   one column for each distinct vertex, or for each of those taken at a time; from entries one for each
