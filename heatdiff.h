@@ -178,7 +178,7 @@
 
 #define HD_VERSION_MAJOR 1
 #define HD_VERSION_MINOR 0
-#define HD_VERSION_PATCH 0
+#define HD_VERSION_PATCH 1
 /* Versions are semantic, and compare as numbers: HD_VERSION >= HD_MAKE_VERSION(1, 2, 0). */
 #define HD_MAKE_VERSION(major, minor, patch) ((major) * 1000000 + (minor) * 1000 + (patch))
 #define HD_VERSION HD_MAKE_VERSION(HD_VERSION_MAJOR, HD_VERSION_MINOR, HD_VERSION_PATCH)
