@@ -24760,7 +24760,7 @@ static hd_status hdi_heat_pick(hdi_heat_call *h) {
     h->rep->reason = "asked for";
     if (h->method != HD_METHOD_AUTO) return HD_OK;
     h->method = HD_METHOD_DIRECT;
-    h->rep->reason = "iterations, which the byte limit asks for, fail";
+    h->rep->reason = "iterations, which would take less, fail";
     if (heat->spare == HDI_SPARE_POLES) return HD_OK;
     h->method = HD_METHOD_ITERATIVE;
     h->rep->reason = "a solver or preconditioner is asked for";
@@ -26267,9 +26267,9 @@ static int hdi_fading_keep(hdi_heat_call *h) {
 
 /* ---- the run ---- */
 
-/* Goes on in another way where the byte limit ended one: from factors that auto chose to iterations; where
- * these fail, or the direct method is asked for, to the fewest poles, with all that can be made again freed
- * before. Returns 0 where there is no other way. */
+/* Goes on in another way where one has ended: at the byte limit from factors that auto chose to iterations;
+ * where iterations that auto chose fail, or direct is asked for and does not fit, to the fewest poles, with
+ * all that can be made again freed before. Returns 0 where there is no other way. */
 static int hdi_heat_retreat(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     const int over = hdi_over_limit(heat->ctx, h->e), automatic = heat->opts.method == HD_METHOD_AUTO;
@@ -26286,7 +26286,8 @@ static int hdi_heat_retreat(hdi_heat_call *h) {
             heat->no_factors_limit = heat->ctx->byte_limit;
         }
     } else if (HDI_HAS_POLE_FACTORS &&
-               (automatic ? h->forced && failed : over && h->method == HD_METHOD_DIRECT)) {
+               (automatic ? failed && h->method == HD_METHOD_ITERATIVE && !heat->iterations_asked
+                          : over && h->method == HD_METHOD_DIRECT)) {
         hdi_heat_shed(heat, 1);
         hdi_heat_free_iterative(heat);
         heat->spare = HDI_SPARE_POLES;
