@@ -5247,7 +5247,28 @@ static void int_no_numbers(void) {
     CHECK(hdi_krylov_done(1, endless, 1e-6) == 0 && fabs(hdi_krylov_done(1e300, 1, 1e-300) - 0.5) < 1e-15);
 }
 
+/* A bound is never a share of an infinite value: an infinite part stays infinite, and an infinite value is an error. */
+static void int_ledger_infinite(void) {
+    static const double value[3] = {2, 2, HUGE_VAL}, part[3] = {1, HUGE_VAL, 1};
+    int k;
+    for (k = 0; k < 3; k++) {
+        hdi_ledger l = hdi_ledger_begin(HD_EVIDENCE_PROVEN, HD_EVIDENCE_PROVEN, HD_EVIDENCE_PROVEN, 1);
+        hdi_parts off = {0, 0, 0};
+        hd_report rep;
+        memset(&rep, 0, sizeof rep);
+        hdi_error_clear(&rep.error);
+        off.solver = part[k];
+        hdi_ledger_note(&l, 1, off);
+        hdi_ledger_note(&l, value[k], off);
+        hdi_ledger_close(&l, &rep);
+        if (k == 0) CHECK(rep.error_bound == 0.5 && rep.error.status == HD_OK);
+        if (k == 1) CHECK(rep.error_bound == HUGE_VAL && rep.error_relative == HUGE_VAL);
+        if (k == 2) CHECK(rep.error.status == HD_ERR_BREAKDOWN);
+    }
+}
+
 static void int_all(void) {
+    int_ledger_infinite();
     int_no_numbers();
     int_linear_precision();
     int_geo_heat_off();
