@@ -275,8 +275,10 @@ typedef struct hd_threads hd_threads;            /* started and ended by the lib
  * every object made with it; do not copy it in the meantime. Wherever a function takes a context, NULL means
  * one with all defaults. */
 typedef struct hd_context {
-    hd_allocator allocator;     /* both functions or none */
-    uint64_t byte_limit;        /* most bytes in use at one time; 0: no limit */
+    hd_allocator allocator;     /* both functions or none; NULL from alloc ends a call with HD_ERR_MEMORY */
+    /* most bytes in use at one time; 0: no limit. Where one way would exceed it, others that need less are
+     * tried: set it where memory is scarce */
+    uint64_t byte_limit;
     uint64_t allocation_limit;  /* most calls of alloc; 0: no limit */
 
     /* Called now and then during long work, by the calling thread only. done runs from 0 to 1 within a stage.

@@ -234,6 +234,7 @@ static hd_status work(size_t size, hd_laplacian_kind kind, hd_method method, siz
     ctx.allocator.alloc = arena_alloc;
     ctx.allocator.free = arena_free;
     ctx.allocator.user = &a;
+    ctx.byte_limit = size;                       /* so that the library takes ways that need less in time */
     memset(&lap_opts, 0, sizeof lap_opts);
     lap_opts.context = &ctx;
     lap_opts.kind = kind;
