@@ -14057,7 +14057,7 @@ static void hdi_factor_take(hdi_factor *f, const hdi_symbolic *sym, int32_t widt
     if (f->scratch && n_chunks > 0) f->second = f->scratch + f->scratch_size * n_parts + f->top_size;
     if (s->tally) return;
     f->pack = HDI_HAS_POLE_FACTORS ? hdi_pack_ops_get(hdi_simd_level(s->ctx)) : NULL;
-    f->real = hdi_real_ops_get(hdi_simd_level(s->ctx));
+    f->real = HDI_HAS_DIRECT ? hdi_real_ops_get(hdi_simd_level(s->ctx)) : NULL;
     f->ctx = s->ctx;
 }
 
@@ -24793,7 +24793,7 @@ static int hdi_heat_equal_asks(const hd_heat *heat, double t) {
  * factor, or no room for it, all goes on as ever. */
 static int hdi_heat_equal(hd_heat *heat, double t, hd_error *e) {
     hdi_ground *g = &heat->ground;
-    if (!hdi_heat_equal_asks(heat, t) || !heat->elim.ctx) return 0;
+    if (!HDI_HAS_DIAGONAL || !hdi_heat_equal_asks(heat, t) || !heat->elim.ctx) return 0;
     if (!g->traced) {
         double trace = HUGE_VAL;
         if (hdi_ground_make(&heat->elim, g, e) >= 0) trace = g->largest_trace;
