@@ -31981,7 +31981,7 @@ static void hdi_geo_add_cold(hd_geodesic *g, int32_t k, double *x, double *y) {
     for (p = 0; p < size; p++) x[p] += y[p];
 }
 
-#define HDI_GEO_ON_BORDER "geodesic: a source lies at the border, which is held at zero; take the mean border"
+#define HDI_GEO_ON_BORDER "geodesic: a source lies on the border, which is held at zero; take the mean border"
 
 /* Refuses sources that lie where heat is held at zero. */
 static hd_status hdi_geo_off_border(const hd_geodesic *g, const int32_t *sources, int32_t k, hd_error *e) {
