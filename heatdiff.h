@@ -16642,12 +16642,12 @@ static hd_c64 hdi_system_apply(const hdi_system *a, const hd_c64 *HDI_RESTRICT x
 
 /* Subtracts from z its B-mean on every component, if L 1 = 0. sums [n_components] is work. */
 static void hdi_deflate(const hd_laplacian *lap, hd_c64 *z, hd_c64 *sums) {
-    const double *b = lap->mass;
     const int32_t *comp = lap->component;
     int32_t i;
     if (!lap->conserves) return;
     memset(sums, 0, HDI_CAST(size_t, lap->n_components) * sizeof *sums);
-    for (i = 0; i < lap->n_active; i++) sums[comp[i]] = hdi_cadd(sums[comp[i]], hdi_cscale(b[i], z[i]));
+    for (i = 0; i < lap->n_active; i++)
+        sums[comp[i]] = hdi_cadd(sums[comp[i]], hdi_cscale(lap->mass[i], z[i]));
     for (i = 0; i < lap->n_components; i++) sums[i] = hdi_cscale(1 / lap->component_mass[i], sums[i]);
     for (i = 0; i < lap->n_active; i++) z[i] = hdi_csub(z[i], sums[comp[i]]);
 }
@@ -16696,14 +16696,12 @@ static void hdi_krylov_precond(hdi_krylov *k, const hd_c64 *r, hd_c64 *z) {
  * change nothing but the means of x, which the caller sets. */
 static void hdi_krylov_measure(hdi_krylov *k) {
     const hd_laplacian *lap = k->a.lap;
+    const int32_t n = lap->conserves ? lap->n_active : 0, *c = lap->component;
     int32_t i;
     memset(k->sums, 0, HDI_CAST(size_t, lap->n_components) * sizeof *k->sums);
-    for (i = 0; i < lap->n_active && lap->conserves; i++)
-        k->sums[lap->component[i]] = hdi_cadd(k->sums[lap->component[i]], k->r[i]);
-    for (i = 0; i < lap->n_active && lap->conserves; i++) {
-        const int32_t c = lap->component[i];
-        k->r[i] = hdi_csub(k->r[i], hdi_cscale(lap->mass[i] / lap->component_mass[c], k->sums[c]));
-    }
+    for (i = 0; i < n; i++) k->sums[c[i]] = hdi_cadd(k->sums[c[i]], k->r[i]);
+    for (i = 0; i < n; i++)
+        k->r[i] = hdi_csub(k->r[i], hdi_cscale(lap->mass[i] / lap->component_mass[c[i]], k->sums[c[i]]));
     k->r_norm = sqrt(hdi_cnorm2w(k->r, k->weight, lap->n_active));
     k->ready = 0;
 }
@@ -22805,7 +22803,6 @@ static void hdi_spec_settle(hdi_spec *s, double *x, double *bx, int32_t at, int3
 }
 
 #define HDI_SPEC_LOST 0.1        /* a residual that is a larger part of its value leaves nothing of it */
-
 /* Locks the Ritz vectors which[0..n): one group of blocks. first: their first column in the last slab. Errors
  * of solves, which eigenvalues next to the shift make large, leave fast modes in the vectors. They are taken
  * out where they are seen. */
@@ -28358,10 +28355,6 @@ static hd_status hdi_fading_ask(hdi_heat_call *h, hd_kernel kernel, int edges, d
     return hdi_heat_sparing(h, hdi_fading_run, &to);
 }
 
-static hd_status hdi_diagonal_run(hdi_heat_call *h, hd_kernel kernel, double *D, size_t ldd) {
-    return hdi_fading_ask(h, kernel, 0, D, ldd, NULL, NULL);
-}
-
 /* ---- filters that share their poles ---- */
 
 /* Place of each row's diagonal entry among an inverse's values. */
@@ -28559,7 +28552,8 @@ static hd_status hdi_signature_run(hdi_heat_call *h, int32_t n_freq, double *D, 
     hdi_circle c;
     size_t v;
     int32_t j, sure = 1;
-    if (h->e->status < 0 || hdi_diagonal_run(h, HD_KERNEL_SYMMETRIC, x, n) < 0) return h->e->status;
+    if (h->e->status < 0 || hdi_fading_ask(h, HD_KERNEL_SYMMETRIC, 0, x, n, NULL, NULL) < 0)
+        return h->e->status;
     for (j = 0; j < m; j++) {
         circle[2 * j] = cos(two_pi * j / m);
         circle[2 * j + 1] = sin(two_pi * j / m);
@@ -33410,7 +33404,7 @@ HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t
     if (hdi_diagonal_begin(&h, heat, kernel, n_times, t, D != NULL, report, err) < 0 ||
         !HDI_HAS_DIAGONAL) return hdi_heat_end(&h);
     ldd = hdi_leading(&h, ldd);
-    if (h.e->status >= 0) (void)hdi_diagonal_run(&h, kernel, D, ldd);
+    if (h.e->status >= 0) (void)hdi_fading_ask(&h, kernel, 0, D, ldd, NULL, NULL);
     return hdi_heat_end(&h);
 }
 
@@ -33446,7 +33440,7 @@ HEATDIFF_API hd_status hd_heat_normalised(hd_heat *heat, int32_t n_times, const 
         !HDI_HAS_DIAGONAL) return hdi_heat_end(&h);
     ldd = hdi_leading(&h, ldd);
     Z = HDI_TAKE(&h.s, double, n_times);
-    if (h.e->status >= 0 && hdi_diagonal_run(&h, HD_KERNEL_SYMMETRIC, D, ldd) >= 0) {
+    if (h.e->status >= 0 && hdi_fading_ask(&h, HD_KERNEL_SYMMETRIC, 0, D, ldd, NULL, NULL) >= 0) {
         if (hd_heat_trace(heat, n_times, t, Z, NULL, &trace, NULL) >= 0)
             hdi_signature_normalise(heat->source, n_times, D, ldd, Z, h.rep, &trace);
         else *h.e = trace.error;
