@@ -201,7 +201,7 @@ static double filt_holed(double lambda, void *user) {
 
 /* No value is overlooked that is not finite, whatever point of whichever grid it is at. */
 static void filt_holes(void) {
-    static const double values[3] = {(double)NAN, HUGE_VAL, -HUGE_VAL};
+    const double values[3] = {(double)NAN, HUGE_VAL, -HUGE_VAL};
     hd_filter f = filt_make(HD_FILTER_OWN, 0, 0), several[3];
     hd_rational set, sets[3];
     filt_hole hole;
