@@ -32,9 +32,11 @@
 #include <unistd.h>
 #endif
 
-#include "guard.h"
 #include "traps.h"
+#ifndef TEST_LINKED                 /* the implementation is in another file of the program */
+#include "guard.h"
 #define HEATDIFF_IMPLEMENTATION
+#endif
 #include "../heatdiff.h"
 #ifdef _WIN32
 #undef near                          /* windows.h has them as macros */
@@ -168,10 +170,14 @@ static void test_tmp_remove(void) {
 #include "test_polygon.h"
 #include "test_ldl.h"
 #include "test_engines.h"
+#ifdef HEATDIFF_IMPLEMENTATION
 #include "test_threads.h"
+#endif
 #include "test_geodesic.h"
 #include "test_diagonal.h"
+#ifdef HEATDIFF_IMPLEMENTATION
 #include "test_forms.h"
+#endif
 #include "test_operators_all.h"
 #include "test_picture.h"
 #include "test_bounds.h"
@@ -202,8 +208,15 @@ static const test_group test_groups[] = {
     {"krylov", test_krylov, 1}, {"base", test_base, 1}, {"sparse", test_sparse, 1},
     {"engines", test_engines, 2}, {"estimate", test_estimate, 2},
     {"points", test_points, 3}, {"deep", test_deep, 3}, {"diagonal", test_diagonal, 3}, {"spectrum", test_spectrum, 3},
-    {"large_t", test_large_t, 3}, {"forms", test_forms, 3},
-    {"geodesic", test_geodesic_all, 4}, {"ldl", test_ldl, 4}, {"threads", test_threads, 4}, {"bounds", test_bounds, 4},
+    {"large_t", test_large_t, 3},
+#ifdef HEATDIFF_IMPLEMENTATION
+    {"forms", test_forms, 3},
+#endif
+    {"geodesic", test_geodesic_all, 4}, {"ldl", test_ldl, 4}, 
+#ifdef HEATDIFF_IMPLEMENTATION
+    {"threads", test_threads, 4},
+#endif
+    {"bounds", test_bounds, 4},
     {"adjoints", test_adjoints, 4}, {"signatures", test_signatures, 4}, {"picture", test_picture, 4},
     {"everywhere", test_operators_all, 4}, {"sources", test_sources, 4}, {"intrinsic", test_intrinsic, 4},
     {"operators", test_operators, 4}, {"borders", test_borders, 4}, {"polygon", test_polygon, 4}, {"assembly", test_assembly, 4},
@@ -225,7 +238,7 @@ static void test_run(const test_group *group) {
 
 int main(int argc, char **argv) {
     int i, k, filters = 0, ran = 0, shard = 0;
-#if HDI_THREADS
+#if defined(HEATDIFF_IMPLEMENTATION) && HDI_THREADS
     GUARD_THREADS(sizeof(hd_threads));
 #endif
     for (i = 1; i < argc; i++) {

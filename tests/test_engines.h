@@ -242,7 +242,7 @@ static void eng_against_dense(const heat_case *c, hd_heat *heat, hd_method metho
             for (i = 0; i < 4 * K; i++) CHECK(values[i] == u[(i * 2 + 1) % K * n + rows[i]]);
         else {                                   /* each call takes poles or eigenpairs, by its own bound */
             double most = 0;
-            for (i = 0; i < K * n; i++) most = hdi_max(most, fabs(u[i]));
+            for (i = 0; i < K * n; i++) most = fmax(most, fabs(u[i]));
             for (i = 0; i < 4 * K; i++) CHECK(fabs(values[i] - u[(i * 2 + 1) % K * n + rows[i]]) <= 2e-7 * most);
         }
     }
@@ -1233,62 +1233,34 @@ static void eng_choice(void) {
     free(u);
 }
 
-/* Seconds by the model, from its rates and what a report says: of all factors of the poles of a column's set; of a column with
- * them; of a column with one real factor, which is made at the first; of the memory of both when it is used for the first time. */
-typedef struct eng_price { double factors, direct, krylov, first, fresh_direct, fresh_krylov; } eng_price;
-
-static eng_price eng_prices(const hd_laplacian *lap, double t) {
-    hd_heat_opts o = eng_opts(HD_METHOD_DIRECT);
-    hd_heat *heat = eng_create(lap, &o);
-    double *u = DENSE_NEW(double, lap->n), flops, nnz, real, n = lap->n_active;
-    const hdi_symbolic *f;
-    eng_price p;
-    hd_report rep;
-    CHECK(heat_column(heat, 30 * lap->h * lap->h, 0, u, &rep) >= 0);
-    flops = heat->elim.sym.flops_done;
-    nnz = (double)rep.factor_nnz;
-    p.factors = 16 * flops / HDI_RATE_PACK + HDI_ENTRY_PACK * nnz + flops / HDI_RATE_REAL;
-    p.direct = (64 * nnz + 400 * n) / (0.6 * HDI_RATE_SWEEP);
-    p.krylov = 24 * (16 * nnz + 100 * n + 8 * n) / HDI_RATE_SWEEP / (1 + HDI_STEPS_LATE * t * heat->scale * heat->scales.lowest);
-    p.first = p.krylov + flops / HDI_RATE_REAL;
-    f = &heat->elim.sym;
-    real = (double)(f->panel[f->n_super] + f->work);
-    p.fresh_direct = HDI_FRESH_BYTE * (64 * (double)(f->stored + f->work) + 8 * real + 340 * n);
-    p.fresh_krylov = HDI_FRESH_BYTE * (8 * real + 480 * n);
-    hd_heat_free(heat);
-    free(u);
-    return p;
-}
-
-/* Auto, asked for columns one by one at one t, goes over to the factors of the poles when the calls have cost as much. */
+/* Auto, asked for columns one by one at one t, goes over to the factors of the poles after some calls, and stays with them. */
 static void eng_habit(const shape *s, hd_laplacian_kind kind, double c, const char *what) {
     hd_laplacian *lap = test_laplacian_at(s, s->xyz, kind, 1, NULL);
     const double t = c * lap->h * lap->h;
-    const eng_price price = eng_prices(lap, t);
     const hd_heat_opts none = eng_opts(HD_METHOD_AUTO), krylov = eng_opts(HD_METHOD_KRYLOV), direct = eng_opts(HD_METHOD_DIRECT);
     hd_heat *heat = eng_create(lap, &none), *asked = eng_create(lap, &krylov), *other = eng_create(lap, &direct), *moving = eng_create(lap, &none);
     double *u = DENSE_NEW(double, lap->n), *want = DENSE_NEW(double, lap->n);
     hd_report rep, rep2;
-    int k, expected = 2, round;
+    int k, expected = 0, round;
     for (round = 0; round < 3; round++) {        /* new; at another t; after an update of the Laplacian */
-        const double now = round == 1 ? 1.5 * t : t, fresh = round == 0;
-        double spent = price.first + fresh * price.fresh_krylov;
-        for (expected = 2; spent < price.factors + fresh * price.fresh_direct && expected < 40; expected++) spent += price.krylov;
-        CHECK_MSG(price.direct < price.krylov && expected < 40, "%s: %d", what, expected);
+        const double now = round == 1 ? 1.5 * t : t;
+        int switched = 0;
         if (round == 2) CHECK(hd_laplacian_update(lap, s->xyz, NULL) == HD_OK);
-        for (k = 1; k <= expected + 3; k++) {
+        for (k = 1; k < 40 && k <= (switched ? switched + 3 : 39); k++) {
             const int32_t source = lap->vertex[k * 37 % lap->n_active];
-            /* at another t the real factor may serve again, and then the switch may come a call later */
-            const int slack = round == 1;
             CHECK(eng_ok(heat_column(heat, now, source, u, &rep), &rep, what));
-            CHECK_MSG(k >= expected || rep.method == HD_METHOD_KRYLOV, "%s, round %d, call %d of %d: %s", what, round, k, expected, eng_name(rep.method));
-            CHECK_MSG(k < expected + slack || rep.method == HD_METHOD_DIRECT, "%s, round %d, call %d of %d: %s", what, round, k, expected, eng_name(rep.method));
-            if (k == expected && !slack) CHECK_MSG(strstr(rep.reason, "at this t") != NULL, "%s", rep.reason);
-            if (k > expected + slack) CHECK_MSG(strstr(rep.reason, "calls before") != NULL, "%s", rep.reason);
+            CHECK_MSG(rep.method == (switched || rep.method == HD_METHOD_DIRECT ? HD_METHOD_DIRECT : HD_METHOD_KRYLOV),
+                      "%s, round %d, call %d: %s", what, round, k, eng_name(rep.method));
+            if (rep.method == HD_METHOD_DIRECT) {
+                CHECK_MSG(strstr(rep.reason, switched ? "calls before" : "at this t") != NULL, "%s", rep.reason);
+                if (!switched) switched = k;
+            }
             CHECK(eng_ok(heat_column(rep.method == HD_METHOD_DIRECT ? asked : other, now, source, want, &rep2), &rep2, what));
             CHECK_MSG(dense_max_diff(u, want, lap->n) <= (rep.error_bound + rep2.error_bound) * dense_max_abs(want, lap->n) && rep.error_bound < 1e-5,
                       "%s, call %d: off by %g, bounds %g and %g", what, k, dense_max_diff(u, want, lap->n), rep.error_bound, rep2.error_bound);
         }
+        CHECK_MSG(switched >= 2, "%s, round %d: call %d", what, round, switched);
+        if (switched > expected) expected = switched;
     }
     for (k = 0; k < 2 * expected + 4; k++) {     /* times that change, or change back, and a method that is asked for */
         CHECK(eng_ok(heat_column(moving, t * (1 + 0.5 * (k % 2)), 3, u, &rep), &rep, what) && rep.method == HD_METHOD_KRYLOV);

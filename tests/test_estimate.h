@@ -310,6 +310,7 @@ static void est_bad(const hd_laplacian *lap) {
 
 /* Steps by the model over those taken, with this solver and preconditioner, for t from h^2 to 1000 h^2. */
 static void est_steps(const hd_laplacian *lap, hd_solver solver, hd_precond precond, double least, double most, const char *what) {
+#ifdef HEATDIFF_IMPLEMENTATION
     static const double tau[] = {1, 10, 100, 1000};
     double *u = DENSE_NEW(double, lap->n), model;
     int q;
@@ -328,6 +329,7 @@ static void est_steps(const hd_laplacian *lap, hd_solver solver, hd_precond prec
         hd_heat_free(heat);
     }
     free(u);
+#endif
 }
 
 /* The model of steps: fair triangles, points, other preconditioners, thin triangles made Delaunay, and a fine patch. */
@@ -511,6 +513,7 @@ enum { EST_EACH = 1 };
 
 /* Work by iterations is a sum over the times that starts at zero. */
 static void est_flops(void) {
+#ifdef HEATDIFF_IMPLEMENTATION
     shape s = shape_icosphere(2);
     hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
     hd_heat *heat = eng_create(lap, NULL);
@@ -536,6 +539,7 @@ static void est_flops(void) {
     hd_heat_free(heat);
     hd_laplacian_free(lap);
     shape_free(&s);
+#endif
 }
 
 /* Times over more decades never cost less. */

@@ -613,7 +613,7 @@ static void tri_slivers(void) {
                     CHECK(lap->mesh.n_faces_used > 90 && (off || k < 1 || lap->mesh.n_mollified > 5));
                     CHECK(!off || (lap->mesh.n_mollified == 0 && lap->mesh.mollify_epsilon == 0));
                     CHECK(lap->mesh.mollify_epsilon <= 1.001e-5 * lap->h);
-                    CHECK(hdi_finite(tri_worst_sign(lap)) && hdi_finite(tri_sum(lap->mass, lap->n_active)));
+                    CHECK(isfinite(tri_worst_sign(lap)) && isfinite(tri_sum(lap->mass, lap->n_active)));
                     if (!off) tri_properties(lap, mode == TRI_TUFTED, 1e-3, "slivers");
                     hd_laplacian_free(lap);
                 }
