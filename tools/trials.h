@@ -748,7 +748,7 @@ static void trial_compare(trial_work *w, const double *value, int64_t n, int has
     r->compared++;
     trial_counts[w->c->query].compared++;
     if (!(w->rep.error_bound <= trial_largest)) trial_largest = w->rep.error_bound;
-    trial_counts[w->c->query].unbounded += !finite || (has_b && !finite_b) || (relative && !finite_rel);
+    trial_counts[w->c->query].unbounded += !finite || (has_b && !finite_b);
     r->warned += w->rep.status > 0;
     r->below += below;
     r->below_b += below_b;
@@ -1471,9 +1471,10 @@ static int trial_subject_make(trial_subject *s, const trial *c, int want_stored)
     return 1;
 }
 
-/* One case on its subject. */
-static void trial_run(trial_subject *s, trial *c, int stored) {
+/* One case on its subject. 0: there is no answer. */
+static int trial_run(trial_subject *s, trial *c, int stored) {
     char text[400];
+    int ok;
     if (c->th > 0) c->t = c->th * s->unit;
     c->th = 0;
     if (c->n_times < 1) c->n_times = 1;
@@ -1484,9 +1485,11 @@ static void trial_run(trial_subject *s, trial *c, int stored) {
                text, (int)s->lap->n_active, (int)s->exact.n_comp, s->exact.edge, s->exact.top,
                (int)s->lap->conserves, s->exact.conserves, s->unit);
     trial_counts[c->query].asked++;
-    trial_counts[c->query].refused += !trial_run_one(s, c, text, 0);
+    ok = trial_run_one(s, c, text, 0);
+    trial_counts[c->query].refused += !ok;
     if (stored && s->has_stored && !(c->query >= QUERY_PAIRS && c->kind >= HD_DISTANCE_COMMUTE))
         trial_run_one(s, c, text, 1);
+    return ok;
 }
 
 #endif
