@@ -88,12 +88,30 @@ static hd_heat *kit_heat(const hd_laplacian *lap, const char *options) {
     return (hd_heat *)kit_keep(heat, kit_free_heat);
 }
 
-/* A matrix that is made elsewhere, freed with the rest. */
+/* What is made elsewhere and freed with the rest. */
 static hd_csr *kit_csr(hd_csr a) {
     hd_csr *own = KIT_NEW(hd_csr, 1);
     *own = a;
     kit_list[kit_count - 1].destroy = kit_free_csr;
     return own;
+}
+
+static hd_csr kit_own_csr(hd_csr a) { return *kit_csr(a); }
+static hd_laplacian *kit_own_laplacian(hd_laplacian *lap) { return (hd_laplacian *)kit_keep(lap, kit_free_laplacian); }
+static hd_heat *kit_own_heat(hd_heat *heat) { return (hd_heat *)kit_keep(heat, kit_free_heat); }
+
+static shape kit_own_shape(shape s) {
+    trial_body *b = KIT_NEW(trial_body, 1);
+    b->s = s;
+    kit_list[kit_count - 1].destroy = kit_free_body;
+    return s;
+}
+
+static shape_poly kit_own_poly(shape_poly p) {
+    trial_body *b = KIT_NEW(trial_body, 1);
+    b->p = p;
+    kit_list[kit_count - 1].destroy = kit_free_body;
+    return p;
 }
 
 #endif
