@@ -56,7 +56,7 @@ static shape eng_soup(int32_t n, int32_t n_tri, uint64_t seed) {
 static shape eng_with_inert(const shape *b) {
     const int32_t n = b->n + b->n / 4 + 2;
     shape s = shape_make(n, b->n_tri);
-    int32_t *to = DENSE_NEW(int32_t, b->n), i, k = 0;
+    int32_t *to = KIT_NEW(int32_t, b->n), i, k = 0;
     for (i = 0; i < n; i++) {
         if (i % 5 == 0 || k == b->n) {
             shape_put_vertex(&s, i, 9 + i, 8, 7);
@@ -67,15 +67,14 @@ static shape eng_with_inert(const shape *b) {
     }
     CHECK(k == b->n && to[k - 1] < n - 1);
     for (i = 0; i < 3 * b->n_tri; i++) s.tri[i] = to[b->tri[i]];
-    free(to);
     return s;
 }
 
 /* A grid graph with heat leaking out everywhere, and masses over three decades: nothing is conserved, B is diagonal. */
 static hd_laplacian *eng_leaking(int32_t nx, int32_t ny) {
     const int32_t n = nx * ny;
-    int32_t *i = DENSE_NEW(int32_t, 6 * n), *j = DENSE_NEW(int32_t, 6 * n), k;
-    double *v = DENSE_NEW(double, 6 * n), *mass = DENSE_NEW(double, n);
+    int32_t *i = KIT_NEW(int32_t, 6 * n), *j = KIT_NEW(int32_t, 6 * n), k;
+    double *v = KIT_NEW(double, 6 * n), *mass = KIT_NEW(double, n);
     hd_laplacian *lap = NULL;
     hd_csr L, B;
     hd_error e;
@@ -92,10 +91,6 @@ static hd_laplacian *eng_leaking(int32_t nx, int32_t ny) {
     CHECK(lap && !lap->conserves);
     hd_csr_free(&L, NULL);
     hd_csr_free(&B, NULL);
-    free(i);
-    free(j);
-    free(v);
-    free(mass);
     return lap;
 }
 
@@ -198,7 +193,7 @@ static void eng_against_dense(const heat_case *c, hd_heat *heat, hd_method metho
     const hd_laplacian *lap = c->lap;
     const int32_t n = lap->n, m = lap->n_active;
     const int32_t sources[K] = {lap->vertex[m / 3], lap->vertex[0], lap->vertex[m - 1]};
-    double *u = DENSE_NEW(double, K * n), *f = DENSE_NEW(double, K * n), *rhs = DENSE_NEW(double, m);
+    double *u = KIT_NEW(double, K * n), *f = KIT_NEW(double, K * n), *rhs = KIT_NEW(double, m);
     hd_report rep;
     uint64_t seed = 12;
     int32_t i, q;
@@ -246,9 +241,6 @@ static void eng_against_dense(const heat_case *c, hd_heat *heat, hd_method metho
             for (i = 0; i < 4 * K; i++) CHECK(fabs(values[i] - u[(i * 2 + 1) % K * n + rows[i]]) <= 2e-7 * most);
         }
     }
-    free(u);
-    free(f);
-    free(rhs);
 }
 
 /* Times over six decades, with one plan for all, whose memory is poisoned. */
@@ -301,10 +293,10 @@ static void eng_large(void) {
     int q, k, z;
     for (q = 0; q < 2; q++) {
         const shape *s = q ? &grid : &ball;
-        hd_laplacian *lap = test_laplacian(s, op_kinds[q]);
+        hd_laplacian *lap = kit_own_laplacian(test_laplacian(s, op_kinds[q]));
         const int32_t n = s->n;
         const double t = 15 * lap->h * lap->h, times[3] = {t, 30 * t, 5 * t};
-        double *F = DENSE_NEW(double, K * n), *want = DENSE_NEW(double, K * n), *u = DENSE_NEW(double, K * n), *all = DENSE_NEW(double, 3 * n);
+        double *F = KIT_NEW(double, K * n), *want = KIT_NEW(double, K * n), *u = KIT_NEW(double, K * n), *all = KIT_NEW(double, 3 * n);
         hd_heat *oracle = eng_plan(lap, HD_METHOD_ITERATIVE, HD_POLES_DEFAULT, 0);
         hd_report rep, rep2;
         int32_t i;
@@ -325,11 +317,6 @@ static void eng_large(void) {
             hd_heat_free(heat);
         }
         hd_heat_free(oracle);
-        hd_laplacian_free(lap);
-        free(F);
-        free(want);
-        free(u);
-        free(all);
     }
 }
 
@@ -337,11 +324,11 @@ static void eng_large(void) {
 static void eng_batches(void) {
     enum { K = 26 };
     shape s = kit_own_shape(eng_soup(900, 2700, 6));
-    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_VORONOI_COT);
+    hd_laplacian *lap = kit_own_laplacian(test_laplacian(&s, HD_LAPLACIAN_VORONOI_COT));
     hd_heat *direct = eng_plan(lap, HD_METHOD_DIRECT, HD_POLES_DEFAULT, 0), *krylov = eng_plan(lap, HD_METHOD_KRYLOV, HD_POLES_DEFAULT, 0);
     const double t = 3 * lap->h * lap->h;
     const int32_t n = s.n;
-    double *u = DENSE_NEW(double, K * n), *v = DENSE_NEW(double, K * n), *first = DENSE_NEW(double, K * n);
+    double *u = KIT_NEW(double, K * n), *v = KIT_NEW(double, K * n), *first = KIT_NEW(double, K * n);
     int32_t sources[K], q, k;
     hd_report rep, rep2;
     for (q = 0; q < K; q++) sources[q] = lap->vertex[q * 31 % lap->n_active];
@@ -362,10 +349,6 @@ static void eng_batches(void) {
     }
     hd_heat_free(direct);
     hd_heat_free(krylov);
-    hd_laplacian_free(lap);
-    free(u);
-    free(v);
-    free(first);
 }
 
 /* ---- sets of poles ---- */
@@ -380,7 +363,7 @@ static void eng_degrees(void) {
         for (k = 0; k < 2; k++) {
             for (r = 1 + k; r <= 14; r++) {
                 hd_heat *heat = eng_plan(c.lap, HD_METHOD_DIRECT, k ? HD_POLES_KERNEL : HD_POLES_UNIFORM, r);
-                double *u = DENSE_NEW(double, s.n);
+                double *u = KIT_NEW(double, s.n);
                 char what[40];
                 hd_report rep;
                 snprintf(what, sizeof what, "%s %d", k ? "kernel" : "uniform", (int)r);
@@ -389,7 +372,6 @@ static void eng_degrees(void) {
                 CHECK_MSG(rep.residual < 1e-12, "%s: residual %g", what, rep.residual);
                 eng_against_dense(&c, heat, HD_METHOD_DIRECT, 3 * c.lap->h * c.lap->h, NULL, what);
                 eng_against_dense(&c, heat, HD_METHOD_DIRECT, 300 * c.lap->h * c.lap->h, NULL, what);
-                free(u);
                 hd_heat_free(heat);
             }
         }
@@ -448,7 +430,7 @@ static void eng_own_sets(void) {
             const char *what;
             hd_rational set = eng_own_set(k, &what), kept = set;
             hd_heat_opts o = eng_opts(HD_METHOD_DIRECT);
-            double *u = DENSE_NEW(double, c.lap->n);
+            double *u = KIT_NEW(double, c.lap->n);
             hd_report rep;
             hd_heat *heat;
             o.rational = &set;
@@ -461,7 +443,6 @@ static void eng_own_sets(void) {
                 CHECK_MSG(rep.mass_drift == 0 && rep.method == HD_METHOD_DIRECT, "%s: drift %g", what, rep.mass_drift);
                 if (kept.n_poles) eng_against_dense(&c, heat, HD_METHOD_DIRECT, t, &kept, what);
             }
-            free(u);
             hd_heat_free(heat);
         }
         heat_case_free(&c);
@@ -476,7 +457,7 @@ static void eng_counts_of(const heat_case *c, hd_method method) {
     const hd_laplacian *lap = c->lap;
     const int32_t n = lap->n, ld = n + PAD, source_step = 7;
     const double t = 6 * lap->h * lap->h;
-    double *U = DENSE_NEW(double, MOST * ld), *F = DENSE_NEW(double, MOST * ld), *u = DENSE_NEW(double, n), *rhs = DENSE_NEW(double, n);
+    double *U = KIT_NEW(double, MOST * ld), *F = KIT_NEW(double, MOST * ld), *u = KIT_NEW(double, n), *rhs = KIT_NEW(double, n);
     test_memory m;
     hd_context ctx = test_memory_context(&m);
     hd_heat_opts o = eng_opts(method);
@@ -528,10 +509,6 @@ static void eng_counts_of(const heat_case *c, hd_method method) {
     CHECK(heat_entries(heat, t, HD_KERNEL_SYMMETRIC, 0, NULL, NULL, NULL, &rep) == HD_OK && rep.status == HD_OK);
     hd_heat_free(heat);
     test_memory_done(&m, &ctx, "counts");
-    free(U);
-    free(F);
-    free(u);
-    free(rhs);
 }
 
 /* Sources that are all without mass, and fields of nothing but zeros or constants. */
@@ -539,7 +516,7 @@ static void eng_nothing_to_do(const hd_laplacian *lap, hd_method method) {
     const int32_t n = lap->n, inert[3] = {0, 5, 0};
     hd_heat *heat = eng_plan(lap, method, HD_POLES_DEFAULT, 0);
     const double t = lap->h * lap->h;
-    double *u = DENSE_NEW(double, 9 * n), *f = DENSE_NEW(double, 9 * n);
+    double *u = KIT_NEW(double, 9 * n), *f = KIT_NEW(double, 9 * n);
     hd_report rep;
     int32_t i, k;
     CHECK(n > 25 && lap->row[0] < 0 && lap->row[5] < 0);
@@ -553,8 +530,6 @@ static void eng_nothing_to_do(const hd_laplacian *lap, hd_method method) {
         CHECK_MSG(dense_max_diff(u, f, k * k * n) <= 1e-13 * 4, "%s: nothing moves by %g", eng_name(method), dense_max_diff(u, f, k * k * n));
         for (i = 0; i < k * k * n; i++) CHECK(i / n == 1 || u[i] == 0);
     }
-    free(u);
-    free(f);
     hd_heat_free(heat);
 }
 
@@ -578,8 +553,8 @@ typedef struct eng_call { double t; int32_t k; int task; } eng_call;    /* task 
 
 static hd_status eng_do(hd_heat *heat, const hd_laplacian *lap, const eng_call *call, double *u, hd_report *rep) {
     const int32_t n = lap->n;
-    double *f = DENSE_NEW(double, call->k * n), times[3];
-    int32_t *sources = DENSE_NEW(int32_t, call->k), i;
+    double *f = KIT_NEW(double, call->k * n), times[3];
+    int32_t *sources = KIT_NEW(int32_t, call->k), i;
     hd_status st;
     for (i = 0; i < call->k; i++) sources[i] = lap->vertex[i * 5 % lap->n_active];
     for (i = 0; i < call->k * n; i++) f[i] = sin(i);
@@ -588,8 +563,6 @@ static hd_status eng_do(hd_heat *heat, const hd_laplacian *lap, const eng_call *
     else if (call->task == 3) st = heat_entries(heat, call->t, HD_KERNEL_OPERATOR, call->k, sources, sources, u, rep);
     else if (call->task == 4) st = heat_times(heat, 3, times, HD_KERNEL_SYMMETRIC, sources[0], NULL, u, 0, rep);
     else st = heat_columns(heat, call->t, call->task ? HD_KERNEL_SYMMETRIC : HD_KERNEL_OPERATOR, call->k, sources, u, 0, rep);
-    free(f);
-    free(sources);
     return st;
 }
 
@@ -599,7 +572,7 @@ static void eng_reuse_of(const hd_laplacian *lap, hd_heat_opts *o, const char *w
         {2, 1, 0}, {3, 2, 1}, {0, 2, 1},
                                        {1e3, 1, 0}, {3, 1, 4}, {3, 1, 0}, {70, 25, 0}};
     const size_t size = (size_t)(25 * lap->n) * sizeof(double);
-    double *u = DENSE_NEW(double, 25 * lap->n), *want = DENSE_NEW(double, 25 * lap->n);
+    double *u = KIT_NEW(double, 25 * lap->n), *want = KIT_NEW(double, 25 * lap->n);
     test_memory m, m2;
     hd_context ctx = test_memory_context(&m), ctx2 = test_memory_context(&m2);
     hd_heat *heat;
@@ -632,13 +605,11 @@ static void eng_reuse_of(const hd_laplacian *lap, hd_heat_opts *o, const char *w
     }
     test_memory_done(&m, &ctx, what);
     test_memory_done(&m2, &ctx2, what);
-    free(u);
-    free(want);
 }
 
 static void eng_reuse(void) {
     shape s = kit_own_shape(shape_bumpy(2, 8));
-    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
+    hd_laplacian *lap = kit_own_laplacian(test_laplacian(&s, HD_LAPLACIAN_FEM));
     hd_heat_opts o = eng_opts(HD_METHOD_DIRECT);
     const char *what;
     hd_rational set = eng_own_set(3, &what);
@@ -652,17 +623,16 @@ static void eng_reuse(void) {
     eng_reuse_of(lap, &o, "krylov");
     o = eng_opts(HD_METHOD_AUTO);
     eng_reuse_of(lap, &o, "auto");
-    hd_laplacian_free(lap);
 }
 
 /* A plan that goes from poles to shift-and-invert Lanczos and back: the same answers every time. */
 static void eng_switch(void) {
     enum { K = 40, TIMES = 40 };
     shape s = kit_own_shape(shape_bumpy(3, 7));
-    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
+    hd_laplacian *lap = kit_own_laplacian(test_laplacian(&s, HD_LAPLACIAN_FEM));
     const hd_heat_opts o = eng_opts(HD_METHOD_AUTO);
     hd_heat *heat = eng_create(lap, &o);
-    double *first = DENSE_NEW(double, (K + TIMES) * s.n), *u = DENSE_NEW(double, (K + TIMES) * s.n), times[TIMES];
+    double *first = KIT_NEW(double, (K + TIMES) * s.n), *u = KIT_NEW(double, (K + TIMES) * s.n), times[TIMES];
     int32_t sources[K], i;
     int round;
     for (i = 0; i < K; i++) sources[i] = i * 11;
@@ -680,9 +650,6 @@ static void eng_switch(void) {
         if (round) CHECK_MSG(memcmp(first, u, (size_t)(K + TIMES) * (size_t)s.n * sizeof *u) == 0, "round %d: other answers", round);
     }
     hd_heat_free(heat);
-    hd_laplacian_free(lap);
-    free(first);
-    free(u);
 }
 
 /* ---- many times ---- */
@@ -691,7 +658,7 @@ static void eng_times_of(const heat_case *c, hd_heat_opts *o, const double *time
     enum { PAD = 2 };
     const hd_laplacian *lap = c->lap;
     const int32_t n = lap->n, ld = n + PAD, source = lap->vertex[lap->n_active / 2];
-    double *U = DENSE_NEW(double, (n_times + 1) * ld), *u = DENSE_NEW(double, n), *f = DENSE_NEW(double, n), *rhs = DENSE_NEW(double, lap->n_active);
+    double *U = KIT_NEW(double, (n_times + 1) * ld), *u = KIT_NEW(double, n), *f = KIT_NEW(double, n), *rhs = KIT_NEW(double, lap->n_active);
     test_memory m;
     hd_context ctx = test_memory_context(&m);
     hd_heat *heat;
@@ -729,10 +696,6 @@ static void eng_times_of(const heat_case *c, hd_heat_opts *o, const double *time
     }
     hd_heat_free(heat);
     test_memory_done(&m, &ctx, what);
-    free(U);
-    free(u);
-    free(f);
-    free(rhs);
 }
 
 static void eng_no_times(const hd_laplacian *lap, const hd_heat_opts *o) {
@@ -784,7 +747,7 @@ static void eng_times_columns_of(const hd_laplacian *lap, double unit, const cha
     enum { COLUMNS = 10, TIMES = 16 };
     hd_heat *heat = eng_plan(lap, HD_METHOD_KRYLOV, HD_POLES_DEFAULT, 0);
     const int32_t n = lap->n;
-    double times[TIMES], *U = DENSE_NEW(double, COLUMNS * TIMES * n), *u = DENSE_NEW(double, n);
+    double times[TIMES], *U = KIT_NEW(double, COLUMNS * TIMES * n), *u = KIT_NEW(double, n);
     int32_t sources[COLUMNS], c, q;
     hd_report rep, one;
     for (c = 0; c < COLUMNS; c++) sources[c] = (3 + 7 * c) % n;
@@ -801,8 +764,6 @@ static void eng_times_columns_of(const hd_laplacian *lap, double unit, const cha
         }
     }
     hd_heat_free(heat);
-    free(U);
-    free(u);
 }
 
 static void eng_times_columns(void) {
@@ -818,9 +779,9 @@ static void eng_times_columns(void) {
 /* A source without mass at many times. */
 static void eng_times_inert(void) {
     shape ball = kit_own_shape(shape_icosphere(0)), s = kit_own_shape(eng_with_inert(&ball));
-    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
+    hd_laplacian *lap = kit_own_laplacian(test_laplacian(&s, HD_LAPLACIAN_FEM));
     const double times[3] = {0.3, 0.1, 0.2};
-    double *u = DENSE_NEW(double, 3 * s.n);
+    double *u = KIT_NEW(double, 3 * s.n);
     int k, z;
     int32_t i;
     CHECK(lap->row[5] < 0);
@@ -834,8 +795,6 @@ static void eng_times_inert(void) {
             hd_heat_free(heat);
         }
     }
-    free(u);
-    hd_laplacian_free(lap);
 }
 
 /* ---- threads and instructions ---- */
@@ -843,9 +802,9 @@ static void eng_times_inert(void) {
 /* What a plan answers in one way of threading: a column, columns of several batches, fields, times; all into out. */
 static int64_t eng_thread_run(const shape *s, hd_laplacian_kind kind, hd_heat_opts o, hd_simd simd, int way, double *out, hd_report *rep) {
     static const int32_t counts[3] = {1, 6, 15};
-    ldl_way *w = DENSE_NEW(ldl_way, 1);
+    ldl_way *w = KIT_NEW(ldl_way, 1);
     const int32_t n = s->n;
-    double *f = DENSE_NEW(double, 15 * n), times[3];
+    double *f = KIT_NEW(double, 15 * n), times[3];
     hd_laplacian_opts lo;
     hd_laplacian *lap = NULL;
     hd_heat *heat;
@@ -871,8 +830,6 @@ static int64_t eng_thread_run(const shape *s, hd_laplacian_kind kind, hd_heat_op
 #ifdef LDL_THREADS
     calls += w->pool.loops;
 #endif
-    free(w);
-    free(f);
     return calls;
 }
 
@@ -884,7 +841,7 @@ static int eng_same_report(const hd_report *a, const hd_report *b) {
 
 static void eng_threads_of(const shape *s, hd_laplacian_kind kind, hd_heat_opts o, const char *what) {
     const int64_t size = 75 * (int64_t)s->n;
-    double *top = DENSE_NEW(double, size), *first = DENSE_NEW(double, size), *other = DENSE_NEW(double, size);
+    double *top = KIT_NEW(double, size), *first = KIT_NEW(double, size), *other = KIT_NEW(double, size);
     const double limit = o.method == HD_METHOD_KRYLOV ? 1e-10 : 1e-12;   /* krylov may stop a step later: its tolerance is 1e-9 */
     hd_report rep[5], rep2[5];
     int64_t calls = 0, part;
@@ -906,9 +863,6 @@ static void eng_threads_of(const shape *s, hd_laplacian_kind kind, hd_heat_opts 
         }
     }
     CHECK_MSG(calls > 0, "%s: never in parallel", what);
-    free(top);
-    free(first);
-    free(other);
 }
 
 static void eng_threads(void) {
@@ -927,8 +881,8 @@ static void eng_extreme_times(void) {
     shape a = kit_own_shape(shape_icosphere(1)), b = kit_own_shape(shape_grid(5, 4, 0.2)), s = kit_own_shape(shape_disjoint(&a, &b, offset));
     int q, k, z;
     for (q = 0; q < 2; q++) {
-        hd_laplacian *lap = test_laplacian(&s, op_kinds[q]);
-        double *f = DENSE_NEW(double, s.n), *u = DENSE_NEW(double, s.n), mean[2];
+        hd_laplacian *lap = kit_own_laplacian(test_laplacian(&s, op_kinds[q]));
+        double *f = KIT_NEW(double, s.n), *u = KIT_NEW(double, s.n), mean[2];
         int32_t i, c;
         for (i = 0; i < s.n; i++) f[i] = 1.5 + sin(i);
         for (c = 0; c < 2; c++) {
@@ -949,9 +903,6 @@ static void eng_extreme_times(void) {
             }
             hd_heat_free(heat);
         }
-        free(f);
-        free(u);
-        hd_laplacian_free(lap);
     }
 }
 
@@ -961,8 +912,8 @@ static void eng_extreme_times(void) {
 static void eng_warnings(void) {
     static const double when[2][2] = {{1e-3, 1e4}, {1e4, 1e-3}};
     shape s = kit_own_shape(shape_icosphere(1));
-    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
-    double *u = DENSE_NEW(double, 2 * s.n), times[2], rest;
+    hd_laplacian *lap = kit_own_laplacian(test_laplacian(&s, HD_LAPLACIAN_FEM));
+    double *u = KIT_NEW(double, 2 * s.n), times[2], rest;
     int k, q, z, tol, seen[2] = {0, 0};
     for (k = 0; k < 2; k++) {
         for (tol = 9; tol <= 17; tol++) {
@@ -990,8 +941,6 @@ static void eng_warnings(void) {
         }
     }
     CHECK_MSG((seen[0] & 1) && seen[1] == 3, "no warnings %d, nothing but warnings %d", seen[0], seen[1]);
-    free(u);
-    hd_laplacian_free(lap);
 }
 
 /* The degree that one of the fields needs serves all; the time that failed is told. */
@@ -1000,7 +949,7 @@ static void eng_told(void) {
     hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_VORONOI_COT);
     const double t = lap->h * lap->h, times[3] = {1e-9 * t, 500 * t, 1e-8 * t};
     const int32_t n = s.n;
-    double *F = DENSE_NEW(double, 2 * n), *u = DENSE_NEW(double, 3 * n), mean = 0;
+    double *F = KIT_NEW(double, 2 * n), *u = KIT_NEW(double, 3 * n), mean = 0;
     hd_heat_opts o = eng_opts(HD_METHOD_ITERATIVE);
     hd_heat *heat;
     hd_report rep, one[2];
@@ -1039,8 +988,6 @@ static void eng_told(void) {
             (long long)p.solving);
         hd_heat_free(heat);
     }
-    free(F);
-    free(u);
     hd_laplacian_free(lap);
 }
 
@@ -1050,11 +997,11 @@ static void eng_orderings(void) {
     static const hd_ordering kinds[5] = {HD_ORDERING_AUTO, HD_ORDERING_MINIMUM_DEGREE, HD_ORDERING_NESTED_DISSECTION, HD_ORDERING_OWN,
         HD_ORDERING_OWN};
     shape ball = kit_own_shape(shape_bumpy(2, 8)), s = kit_own_shape(eng_with_inert(&ball));
-    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
+    hd_laplacian *lap = kit_own_laplacian(test_laplacian(&s, HD_LAPLACIAN_FEM));
     const int32_t n = s.n, sources[4] = {1, 0, 77, 1};
     const double t = 10 * lap->h * lap->h;
-    int32_t *perm = DENSE_NEW(int32_t, n), *rows = DENSE_NEW(int32_t, n), i, m;
-    double *first = DENSE_NEW(double, 4 * n), *u = DENSE_NEW(double, 4 * n);
+    int32_t *perm = KIT_NEW(int32_t, n), *rows = KIT_NEW(int32_t, n), i, m;
+    double *first = KIT_NEW(double, 4 * n), *u = KIT_NEW(double, 4 * n);
     uint64_t seed = 16;
     int k, q;
     for (k = 0; k < 2; k++) {
@@ -1089,20 +1036,15 @@ static void eng_orderings(void) {
             hd_heat_free(heat);
         }
     }
-    free(perm);
-    free(rows);
-    free(first);
-    free(u);
-    hd_laplacian_free(lap);
 }
 
 /* What is not a permutation is told with its place. */
 static void eng_bad_perms(void) {
     shape ball = kit_own_shape(shape_icosphere(0)), s = kit_own_shape(eng_with_inert(&ball));
-    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
+    hd_laplacian *lap = kit_own_laplacian(test_laplacian(&s, HD_LAPLACIAN_FEM));
     const int32_t n = s.n;
-    int32_t *perm = DENSE_NEW(int32_t, n), i, twice = 3;
-    double *u = DENSE_NEW(double, n);
+    int32_t *perm = KIT_NEW(int32_t, n), i, twice = 3;
+    double *u = KIT_NEW(double, n);
     int k, q, again;
     CHECK(n == 17 && lap->row[0] < 0 && lap->row[5] < 0 && lap->row[3] >= 0 && lap->row[8] >= 0);
     for (k = 0; k < 2; k++) {
@@ -1134,17 +1076,14 @@ static void eng_bad_perms(void) {
             if (st >= 0) hd_heat_free(heat);
         }
     }
-    free(perm);
-    free(u);
-    hd_laplacian_free(lap);
 }
 
 /* ---- the choice ---- */
 
 static hd_method eng_chosen(const hd_laplacian *lap, const hd_heat_opts *o, double t, int32_t k, int times, const char *reason) {
     hd_heat *heat = eng_create(lap, o);
-    double *u = DENSE_NEW(double, (times ? times : k) * lap->n), *at = DENSE_NEW(double, times + 1);
-    int32_t *sources = DENSE_NEW(int32_t, k), i;
+    double *u = KIT_NEW(double, (times ? times : k) * lap->n), *at = KIT_NEW(double, times + 1);
+    int32_t *sources = KIT_NEW(int32_t, k), i;
     hd_report rep;
     for (i = 0; i < k; i++) sources[i] = i * 3 % lap->n;
     for (i = 0; i < times; i++) at[i] = t * (1 + i);
@@ -1153,15 +1092,12 @@ static hd_method eng_chosen(const hd_laplacian *lap, const hd_heat_opts *o, doub
     CHECK(rep.method != HD_METHOD_AUTO);
     CHECK_MSG(rep.reason && (!reason || strstr(rep.reason, reason)), "%s: %s", eng_name(rep.method), rep.reason ? rep.reason : "no reason");
     hd_heat_free(heat);
-    free(u);
-    free(at);
-    free(sources);
     return rep.method;
 }
 
 static void eng_choice(void) {
     shape s = kit_own_shape(shape_bumpy(3, 2));
-    hd_laplacian *fem = test_laplacian(&s, HD_LAPLACIAN_FEM), *voronoi = test_laplacian(&s, HD_LAPLACIAN_VORONOI_COT);
+    hd_laplacian *fem = kit_own_laplacian(test_laplacian(&s, HD_LAPLACIAN_FEM)), *voronoi = kit_own_laplacian(test_laplacian(&s, HD_LAPLACIAN_VORONOI_COT));
     const double hh = fem->h * fem->h;
     const hd_heat_opts none = eng_opts(HD_METHOD_AUTO);
     const char *what;
@@ -1169,7 +1105,7 @@ static void eng_choice(void) {
     hd_heat_opts o;
     hd_heat *heat;
     hd_report rep;
-    double *u = DENSE_NEW(double, s.n);
+    double *u = KIT_NEW(double, s.n);
     int k;
     CHECK(eng_chosen(voronoi, &none, 0.01 * hh, 1, 0, "iterations") == HD_METHOD_ITERATIVE);    /* far from where they cost the same */
     CHECK(eng_chosen(fem, &none, 300 * hh, 64, 0, "columns") == HD_METHOD_DIRECT);
@@ -1198,18 +1134,15 @@ static void eng_choice(void) {
     heat = eng_create(fem, &none);
     CHECK(heat_column(heat, 0, 3, u, &rep) == HD_OK && rep.method != HD_METHOD_AUTO && rep.reason && rep.factor_nnz == 0);
     hd_heat_free(heat);
-    hd_laplacian_free(fem);
-    hd_laplacian_free(voronoi);
-    free(u);
 }
 
 /* Auto, asked for columns one by one at one t, goes over to the factors of the poles after some calls, and stays with them. */
 static void eng_habit(const shape *s, hd_laplacian_kind kind, double c, const char *what) {
-    hd_laplacian *lap = test_laplacian_at(s, s->xyz, kind, 1, NULL);
+    hd_laplacian *lap = kit_own_laplacian(test_laplacian_at(s, s->xyz, kind, 1, NULL));
     const double t = c * lap->h * lap->h;
     const hd_heat_opts none = eng_opts(HD_METHOD_AUTO), krylov = eng_opts(HD_METHOD_KRYLOV), direct = eng_opts(HD_METHOD_DIRECT);
     hd_heat *heat = eng_create(lap, &none), *asked = eng_create(lap, &krylov), *other = eng_create(lap, &direct), *moving = eng_create(lap, &none);
-    double *u = DENSE_NEW(double, lap->n), *want = DENSE_NEW(double, lap->n);
+    double *u = KIT_NEW(double, lap->n), *want = KIT_NEW(double, lap->n);
     hd_report rep, rep2;
     int k, expected = 0, round;
     for (round = 0; round < 3; round++) {        /* new; at another t; after an update of the Laplacian */
@@ -1240,9 +1173,6 @@ static void eng_habit(const shape *s, hd_laplacian_kind kind, double c, const ch
     hd_heat_free(asked);
     hd_heat_free(other);
     hd_heat_free(moving);
-    hd_laplacian_free(lap);
-    free(u);
-    free(want);
 }
 
 /* The same within byte limits: never an error and never too many bytes where the first call has an answer, and direct only where
@@ -1250,7 +1180,7 @@ static void eng_habit(const shape *s, hd_laplacian_kind kind, double c, const ch
 static void eng_habit_limits(const shape *s) {
     hd_laplacian *lap = test_laplacian(s, HD_LAPLACIAN_FEM);
     const double t = 30 * lap->h * lap->h;
-    double *u = DENSE_NEW(double, lap->n), *want = DENSE_NEW(double, lap->n);
+    double *u = KIT_NEW(double, lap->n), *want = KIT_NEW(double, lap->n);
     hd_heat_opts o = eng_opts(HD_METHOD_DIRECT);
     hd_context ctx;
     hd_heat *heat = NULL;
@@ -1281,17 +1211,15 @@ static void eng_habit_limits(const shape *s) {
     }
     CHECK_MSG(seen == (1 << HD_METHOD_DIRECT | 1 << HD_METHOD_KRYLOV | 1 << HD_METHOD_ITERATIVE), "seen: %d", seen);
     hd_laplacian_free(lap);
-    free(u);
-    free(want);
 }
 
 /* Fields have factors of another set. Where they alternate with columns, no call factorises what the one before has made. */
 static void eng_habit_mixed(const shape *s) {
-    hd_laplacian *lap = test_laplacian(s, HD_LAPLACIAN_FEM);
+    hd_laplacian *lap = kit_own_laplacian(test_laplacian(s, HD_LAPLACIAN_FEM));
     const hd_heat_opts none = eng_opts(HD_METHOD_AUTO);
     hd_heat *heat = eng_create(lap, &none);
     const double t = 30 * lap->h * lap->h;
-    double *u = DENSE_NEW(double, lap->n), *f = DENSE_NEW(double, lap->n);
+    double *u = KIT_NEW(double, lap->n), *f = KIT_NEW(double, lap->n);
     hd_report rep;
     int k, switches = 0;
     hd_method last[2] = {HD_METHOD_AUTO, HD_METHOD_AUTO};
@@ -1305,9 +1233,6 @@ static void eng_habit_mixed(const shape *s) {
     CHECK_MSG(switches <= 1, "%d switches", switches);
     CHECK((last[0] == HD_METHOD_DIRECT) != (last[1] == HD_METHOD_DIRECT));
     hd_heat_free(heat);
-    hd_laplacian_free(lap);
-    free(u);
-    free(f);
 }
 
 static void eng_habits(void) {
@@ -1320,8 +1245,8 @@ static void eng_habits(void) {
 
 /* Whatever the limit is: when iterations fit into it, there is an answer; twice the same call is twice the same method. */
 static void eng_choice_limits_of(const hd_laplacian *lap, double t, int32_t k) {
-    double *u = DENSE_NEW(double, k * lap->n), *want = DENSE_NEW(double, k * lap->n);
-    int32_t *sources = DENSE_NEW(int32_t, k), i;
+    double *u = KIT_NEW(double, k * lap->n), *want = KIT_NEW(double, k * lap->n);
+    int32_t *sources = KIT_NEW(int32_t, k), i;
     hd_context ctx;
     hd_heat_opts o = eng_opts(HD_METHOD_ITERATIVE);
     hd_heat *heat;
@@ -1360,19 +1285,15 @@ static void eng_choice_limits_of(const hd_laplacian *lap, double t, int32_t k) {
     }
     CHECK_MSG(seen >> HD_METHOD_ITERATIVE & 1, "never iterated: %d", seen);
     CHECK_MSG(seen & (1 << HD_METHOD_DIRECT | 1 << HD_METHOD_KRYLOV), "never factorised: %d", seen);
-    free(u);
-    free(want);
-    free(sources);
 }
 
 static void eng_choice_limits(void) {
     shape s = kit_own_shape(shape_bumpy(3, 2));
     int q;
     for (q = 0; q < 2; q++) {
-        hd_laplacian *lap = test_laplacian(&s, op_kinds[q]);
+        hd_laplacian *lap = kit_own_laplacian(test_laplacian(&s, op_kinds[q]));
         eng_choice_limits_of(lap, 40 * lap->h * lap->h, 1);
         eng_choice_limits_of(lap, 4 * lap->h * lap->h, 9);
-        hd_laplacian_free(lap);
     }
 }
 
@@ -1381,7 +1302,7 @@ static void eng_limit_lifted(void) {
     shape s = kit_own_shape(shape_bumpy(3, 2));
     hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
     const double t = 40 * lap->h * lap->h;
-    double *u = DENSE_NEW(double, lap->n), *want = DENSE_NEW(double, lap->n);
+    double *u = KIT_NEW(double, lap->n), *want = KIT_NEW(double, lap->n);
     hd_heat_opts o = eng_opts(HD_METHOD_ITERATIVE);
     hd_context ctx, free_ctx;
     hd_heat *heat;
@@ -1410,15 +1331,13 @@ static void eng_limit_lifted(void) {
     CHECK(memcmp(u, want, (size_t)lap->n * sizeof *u) == 0);
     hd_heat_free(heat);
     hd_laplacian_free(lap);
-    free(u);
-    free(want);
 }
 
 /* ---- errors ---- */
 
 static void eng_bad_options(void) {
     shape s = kit_own_shape(shape_icosphere(0));
-    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM), *own = eng_leaking(4, 3);
+    hd_laplacian *lap = kit_own_laplacian(test_laplacian(&s, HD_LAPLACIAN_FEM)), *own = kit_own_laplacian(eng_leaking(4, 3));
     int32_t perm[12];
     double u[12];
     hd_heat *heat = NULL;
@@ -1473,14 +1392,12 @@ static void eng_bad_options(void) {
         CHECK(eng_ok(heat_column(heat, 1, 2, u, &rep), &rep, "own"));
         hd_heat_free(heat);
     }
-    hd_laplacian_free(lap);
-    hd_laplacian_free(own);
 }
 
 static void eng_bad_calls(void) {
     static const hd_method methods[4] = {HD_METHOD_AUTO, HD_METHOD_ITERATIVE, HD_METHOD_DIRECT, HD_METHOD_KRYLOV};
     shape s = kit_own_shape(shape_icosphere(0));
-    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
+    hd_laplacian *lap = kit_own_laplacian(test_laplacian(&s, HD_LAPLACIAN_FEM));
     int32_t sources[3] = {0, 12, 2}, i;
     double F[36], U[36], times[3] = {0.3, 0.1, 0.2};
     hd_report rep;
@@ -1530,7 +1447,6 @@ static void eng_bad_calls(void) {
 #undef ENG_BAD
         hd_heat_free(heat);
     }
-    hd_laplacian_free(lap);
 }
 
 /* ---- memory and cancelling ---- */
@@ -1620,7 +1536,7 @@ static void eng_survives_one(const hd_laplacian *lap, hd_heat_opts o, int q, con
     static const eng_call calls[6] = {{3, 1, 0}, {80, 7, 2}, {3, 8, 1}, {900, 1, 4}, {80, 1, 2}, {3, 2, 0}};
     enum { CALLS = 6 };
     const size_t size = (size_t)(8 * lap->n);
-    double *want = DENSE_NEW(double, CALLS * size), *u = DENSE_NEW(double, size);
+    double *want = KIT_NEW(double, CALLS * size), *u = KIT_NEW(double, size);
     int at, z;
     for (z = 0; z < CALLS; z++) {
         hd_heat *heat = eng_create(lap, &o);
@@ -1668,13 +1584,11 @@ static void eng_survives_one(const hd_laplacian *lap, hd_heat_opts o, int q, con
         }
         CHECK_MSG(k < ROB_MOST, "%s: never went well", what);
     }
-    free(want);
-    free(u);
 }
 
 static void eng_survives(void) {
     shape s = kit_own_shape(shape_icosphere(0));
-    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
+    hd_laplacian *lap = kit_own_laplacian(test_laplacian(&s, HD_LAPLACIAN_FEM));
     const char *what;
     hd_rational set = eng_own_set(3, &what);
     int q;
@@ -1686,7 +1600,6 @@ static void eng_survives(void) {
         eng_survives_one(lap, eng_opts(HD_METHOD_KRYLOV), q, "krylov survives");
         eng_survives_one(lap, eng_opts(HD_METHOD_AUTO), q, "auto survives");
     }
-    hd_laplacian_free(lap);
 }
 
 /* The same field again takes the same number of iterations, and finds the same bits: nothing is left of the first, in calls nor within one. */
@@ -1694,8 +1607,8 @@ static void eng_again(void) {
     enum { FIELDS = 40 };
     static const hd_method methods[3] = {HD_METHOD_ITERATIVE, HD_METHOD_ITERATIVE, HD_METHOD_KRYLOV};
     shape ball = kit_own_shape(shape_icosphere(2));
-    hd_laplacian *lap = test_laplacian(&ball, HD_LAPLACIAN_FEM);
-    double *F = DENSE_NEW(double, FIELDS * (int64_t)ball.n), *u = DENSE_NEW(double, FIELDS * (int64_t)ball.n);
+    hd_laplacian *lap = kit_own_laplacian(test_laplacian(&ball, HD_LAPLACIAN_FEM));
+    double *F = KIT_NEW(double, FIELDS * (int64_t)ball.n), *u = KIT_NEW(double, FIELDS * (int64_t)ball.n);
     uint64_t seed = 5;
     int32_t k, v;
     for (v = 0; v < ball.n; v++) F[v] = dense_signed(&seed);
@@ -1715,9 +1628,6 @@ static void eng_again(void) {
         for (v = 1; v < FIELDS; v++) CHECK(memcmp(u, u + v * ball.n, (size_t)ball.n * sizeof *u) == 0);
         hd_heat_free(heat);
     }
-    hd_laplacian_free(lap);
-    free(F);
-    free(u);
 }
 
 /* Rounding of krylov's solves is measured at every field: constants, which it does not enter, may stand anywhere. */
@@ -1726,7 +1636,7 @@ static void eng_constant_first(void) {
     shape s = kit_own_shape(shape_grid(12, 10, 0.3));
     const double t = 0.1;
     hd_laplacian *lap;
-    double *f = DENSE_NEW(double, K * (int64_t)s.n), *u = DENSE_NEW(double, K * (int64_t)s.n), rounding[2];
+    double *f = KIT_NEW(double, K * (int64_t)s.n), *u = KIT_NEW(double, K * (int64_t)s.n), rounding[2];
     uint64_t seed = 3;
     int32_t v, last;
     for (v = 0; v < s.n; v++) s.xyz[3 * v + 1] *= 1e-3;      /* slivers, where solves round much */
@@ -1744,8 +1654,6 @@ static void eng_constant_first(void) {
     }
     CHECK_MSG(fabs(rounding[0] - rounding[1]) <= 1e-6 * rounding[0], "rounding %g with the constant first, %g with it last", rounding[0], rounding[1]);
     hd_laplacian_free(lap);
-    free(f);
-    free(u);
 }
 
 static void test_engines(void) {

@@ -77,7 +77,7 @@ static hd_progress est_on_progress(void *user, const char *stage, double done) {
 /* Within a limit below its need a query ends before any work and writes nothing; its error says the need, within which it runs. */
 static void est_early(const hd_laplacian *lap, const est_case *c, uint64_t before, uint64_t truth, const char *what) {
     const int64_t n_values = est_values(lap, c);
-    double *U = DENSE_NEW(double, n_values);
+    double *U = KIT_NEW(double, n_values);
     int64_t calls = 0, i, tries;
     hd_context ctx;
     hd_heat_opts o = eng_opts(c->method);
@@ -106,14 +106,13 @@ static void est_early(const hd_laplacian *lap, const est_case *c, uint64_t befor
     CHECK_MSG(st >= 0 && ctx.byte_limit <= before + truth, "%s: a limit of %g of %g: %s", what, (double)ctx.byte_limit, (double)(before + truth), rep.error.text);
     hd_heat_free(heat);
     CHECK(ctx.bytes_in_use == 0);
-    free(U);
 }
 
 static void est_compare(const hd_laplacian *lap, const est_case *c, const char *shape_name) {
     test_memory m;
     hd_context ctx = test_memory_context(&m);
     hd_heat_opts o = eng_opts(c->method);
-    double *U = DENSE_NEW(double, est_values(lap, c)), t[EST_MOST_TIMES], truth;
+    double *U = KIT_NEW(double, est_values(lap, c)), t[EST_MOST_TIMES], truth;
     hd_heat *heat;
     hd_estimate e;
     hd_report rep;
@@ -147,14 +146,13 @@ static void est_compare(const hd_laplacian *lap, const est_case *c, const char *
     }
     hd_heat_free(heat);
     test_memory_done(&m, &ctx, what);
-    free(U);
 }
 
 /* Columns by each method: estimates of the other two are estimates. */
 static void est_methods(const hd_laplacian *lap) {
     static const hd_method methods[4] = {HD_METHOD_AUTO, HD_METHOD_ITERATIVE, HD_METHOD_DIRECT, HD_METHOD_KRYLOV};
     static const int32_t ks[3] = {1, 4, 20};
-    double *U = DENSE_NEW(double, 20 * lap->n);
+    double *U = KIT_NEW(double, 20 * lap->n);
     int q, w;
     for (q = 0; q < 4; q++) {
         for (w = 0; w < 3; w++) {
@@ -181,13 +179,12 @@ static void est_methods(const hd_laplacian *lap) {
             hd_heat_free(heat);
         }
     }
-    free(U);
 }
 
 /* A limit: what fits and what does not, and that the query agrees. */
 static void est_limits(const hd_laplacian *lap) {
     const double t = 10 * lap->h * lap->h;
-    double *U = DENSE_NEW(double, 20 * lap->n);
+    double *U = KIT_NEW(double, 20 * lap->n);
     const est_case c = {HD_QUERY_COLUMNS, HD_METHOD_AUTO, 1, 20, 10, 1};
     hd_context ctx;
     hd_heat_opts o = eng_opts(HD_METHOD_AUTO);
@@ -217,7 +214,6 @@ static void est_limits(const hd_laplacian *lap) {
     }
     CHECK(fit > 2 && not_fit > 2);
     hd_heat_free(heat);
-    free(U);
 }
 
 /* Within what the estimate says a query finds a way; within bytes_most it is the way, to the bit, that it takes without a limit. */
@@ -311,7 +307,7 @@ static void est_bad(const hd_laplacian *lap) {
 static void est_steps(const hd_laplacian *lap, hd_solver solver, hd_precond precond, double least, double most, const char *what) {
 #ifdef HEATDIFF_IMPLEMENTATION
     static const double tau[] = {1, 10, 100, 1000};
-    double *u = DENSE_NEW(double, lap->n), model;
+    double *u = KIT_NEW(double, lap->n), model;
     int q;
     for (q = 0; q < 4; q++) {
         hd_heat_opts o = eng_opts(HD_METHOD_ITERATIVE);
@@ -327,7 +323,6 @@ static void est_steps(const hd_laplacian *lap, hd_solver solver, hd_precond prec
                   tau[q], (int)rep.iterations, model);
         hd_heat_free(heat);
     }
-    free(u);
 #endif
 }
 
@@ -455,7 +450,7 @@ static hd_heat_opts est_sweep_opts(int which, const hd_rational *set) {
 }
 
 static void est_sweep(const hd_laplacian *lap, uint64_t limit, const char *name) {
-    double t[4][EST_MOST_TIMES] = {{1}, {0, 1, 2}, {1}, {1e7}}, *u = DENSE_NEW(double, lap->n);
+    double t[4][EST_MOST_TIMES] = {{1}, {0, 1, 2}, {1}, {1e7}}, *u = KIT_NEW(double, lap->n);
     static const int32_t n_times[4] = {1, 3, EST_MOST_TIMES, 1};
     hd_rational set;
     int which, w, pass, query, q;
@@ -480,7 +475,6 @@ static void est_sweep(const hd_laplacian *lap, uint64_t limit, const char *name)
         hd_heat_free(heat);
         CHECK(ctx.bytes_in_use == 0);
     }
-    free(u);
 }
 
 static void est_sweeps(void) {
@@ -509,7 +503,7 @@ enum { EST_EACH = 1 };
 static void est_flops(void) {
 #ifdef HEATDIFF_IMPLEMENTATION
     shape s = kit_own_shape(shape_icosphere(2));
-    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
+    hd_laplacian *lap = kit_own_laplacian(test_laplacian(&s, HD_LAPLACIAN_FEM));
     hd_heat *heat = eng_create(lap, NULL);
     const double t[2] = {3 * lap->h * lap->h * heat->scale, 9 * lap->h * lap->h * heat->scale};
     hdi_heat_call h;
@@ -531,7 +525,6 @@ static void est_flops(void) {
     CHECK_MSG(one[0].iterative_flops > 0 && fabs(both.iterative_flops - one[0].iterative_flops - one[1].iterative_flops) <= 1e-12 * both.iterative_flops, "%g and %g, together %g",
               one[0].iterative_flops, one[1].iterative_flops, both.iterative_flops);
     hd_heat_free(heat);
-    hd_laplacian_free(lap);
 #endif
 }
 
@@ -539,7 +532,7 @@ static void est_flops(void) {
 static void est_decades(void) {
     enum { TIMES = 20 };
     shape s = kit_own_shape(shape_grid(31, 31, 0.2));
-    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
+    hd_laplacian *lap = kit_own_laplacian(test_laplacian(&s, HD_LAPLACIAN_FEM));
     double before = 0, flops = 0, t[TIMES];
     int decades, q;
     for (decades = 2; decades <= 290; decades += 24) {
@@ -553,13 +546,12 @@ static void est_decades(void) {
         flops = to.cost[HD_METHOD_KRYLOV].flops;
         hd_heat_free(heat);
     }
-    hd_laplacian_free(lap);
 }
 
 /* Work grows with the number of items up to the largest there is. */
 static void est_many(void) {
     shape s = kit_own_shape(shape_grid(6, 5, 0.2));
-    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
+    hd_laplacian *lap = kit_own_laplacian(test_laplacian(&s, HD_LAPLACIAN_FEM));
     const double t = 10 * lap->h * lap->h;
     int q;
     for (q = HD_QUERY_FIELDS; q <= HD_QUERY_DISTANCE_BIHARMONIC; q++) {
@@ -573,7 +565,6 @@ static void est_many(void) {
                   "query %d: %g and %g flops", q, half.cost[HD_METHOD_AUTO].flops, all.cost[HD_METHOD_AUTO].flops);
         hd_heat_free(heat);
     }
-    hd_laplacian_free(lap);
 }
 
 static void test_estimate(void) {

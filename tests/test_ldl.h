@@ -49,7 +49,7 @@ static void ldl_join(ldl_edges *g, int32_t a, int32_t b) {
 /* The pattern without values; with every diagonal entry, or with none. Takes the edges. */
 static hd_csr ldl_pattern(ldl_edges *g, int diagonal) {
     const int64_t all = g->count + (diagonal ? g->n : 0);
-    int32_t *i = DENSE_NEW(int32_t, all), *j = DENSE_NEW(int32_t, all), k;
+    int32_t *i = KIT_NEW(int32_t, all), *j = KIT_NEW(int32_t, all), k;
     hd_csr a;
     hd_error e;
     if (g->count) memcpy(i, g->i, (size_t)g->count * sizeof *i);
@@ -57,8 +57,6 @@ static hd_csr ldl_pattern(ldl_edges *g, int diagonal) {
     for (k = 0; diagonal && k < g->n; k++) i[g->count + k] = j[g->count + k] = k;
     memset(&a, 0, sizeof a);
     CHECK(hd_csr_from_triplets(&a, g->n, g->n, all, i, j, NULL, NULL, &e) == HD_OK);
-    free(i);
-    free(j);
     free(g->i);
     free(g->j);
     memset(g, 0, sizeof *g);
@@ -233,7 +231,7 @@ static double ldl_backward(const hd_csr *a, const hd_c64 *val, const hd_c64 *b, 
 }
 
 static double ldl_backward_real(const hd_csr *a, const double *val, const double *b, const double *x) {
-    hd_c64 *v = DENSE_NEW(hd_c64, a->nnz), *c = DENSE_NEW(hd_c64, a->n_rows), *y = DENSE_NEW(hd_c64, a->n_rows);
+    hd_c64 *v = KIT_NEW(hd_c64, a->nnz), *c = KIT_NEW(hd_c64, a->n_rows), *y = KIT_NEW(hd_c64, a->n_rows);
     double back;
     int64_t p;
     int32_t i;
@@ -243,16 +241,13 @@ static double ldl_backward_real(const hd_csr *a, const double *val, const double
         y[i].re = x[i];
     }
     back = ldl_backward(a, v, c, y);
-    free(v);
-    free(c);
-    free(y);
     return back;
 }
 
 /* Largest |x - y| / largest |y|, y by dense LU with pivoting. */
 static double ldl_off_dense(const hd_csr *a, const hd_c64 *val, const hd_c64 *b, const hd_c64 *x) {
     const int32_t n = a->n_rows;
-    dense_c64 *d = DENSE_NEW(dense_c64, (int64_t)n * n), *y = DENSE_NEW(dense_c64, n);
+    dense_c64 *d = KIT_NEW(dense_c64, (int64_t)n * n), *y = KIT_NEW(dense_c64, n);
     double off = 0, size = 0;
     int64_t p;
     int32_t i;
@@ -266,8 +261,6 @@ static double ldl_off_dense(const hd_csr *a, const hd_c64 *val, const hd_c64 *b,
         if (!(diff <= off)) off = diff;
         size = fmax(size, hypot(y[i].re, y[i].im));
     }
-    free(d);
-    free(y);
     return n ? off / size : 0;
 }
 
@@ -286,8 +279,8 @@ static double ldl_differ(const hd_c64 *x, const hd_c64 *y, int64_t n) {
 /* Pivots d [n] of P A P' by elimination on a dense matrix, in the order of perm. */
 static void ldl_dense_pivots(const hd_csr *a, const hd_c64 *val, const int32_t *perm, dense_c64 *d) {
     const int32_t n = a->n_rows;
-    dense_c64 *m = DENSE_NEW(dense_c64, (int64_t)n * n);
-    int32_t *inv = DENSE_NEW(int32_t, n), i, j, k;
+    dense_c64 *m = KIT_NEW(dense_c64, (int64_t)n * n);
+    int32_t *inv = KIT_NEW(int32_t, n), i, j, k;
     int64_t p;
     for (i = 0; i < n; i++) inv[perm[i]] = i;
     for (i = 0; i < n; i++)
@@ -302,15 +295,13 @@ static void ldl_dense_pivots(const hd_csr *a, const hd_c64 *val, const int32_t *
             for (j = k + 1; j < n; j++) to[j] = dense_cfma(to[j], l, row[j]);
         }
     }
-    free(m);
-    free(inv);
 }
 
 /* Non-zeros of L, diagonal included, and the sum of the squared column counts, by playing the elimination on a dense pattern. */
 static int64_t ldl_dense_fill(const hd_csr *a, const int32_t *perm, double *flops) {
     const int32_t n = a->n_rows;
-    unsigned char *m = DENSE_NEW(unsigned char, (int64_t)n * n);
-    int32_t *inv = DENSE_NEW(int32_t, n), i, j, k;
+    unsigned char *m = KIT_NEW(unsigned char, (int64_t)n * n);
+    int32_t *inv = KIT_NEW(int32_t, n), i, j, k;
     int64_t p, nnz = 0;
     *flops = 0;
     for (i = 0; i < n; i++) inv[perm[i]] = i;
@@ -326,8 +317,6 @@ static int64_t ldl_dense_fill(const hd_csr *a, const int32_t *perm, double *flop
         nnz += count;
         *flops += (double)count * (double)count;
     }
-    free(m);
-    free(inv);
     return nnz;
 }
 
@@ -371,8 +360,8 @@ static hd_ldl *ldl_make(const hd_csr *a, const hd_ldl_opts *o, const char *what)
 /* k complex-symmetric matrices in one sweep on f, each with a right-hand side of its own: residuals, growth, and with dense also dense LU. */
 static void ldl_try_complex(hd_ldl *f, const hd_csr *a, hd_ordering asked, int32_t k, int dense, uint64_t seed, const char *what) {
     const int32_t n = a->n_rows;
-    double *L = DENSE_NEW(double, a->nnz), *B = DENSE_NEW(double, a->nnz), bound;
-    hd_c64 *val = DENSE_NEW(hd_c64, k * a->nnz), *b = DENSE_NEW(hd_c64, (int64_t)k * n), *x = DENSE_NEW(hd_c64, (int64_t)k * n);
+    double *L = KIT_NEW(double, a->nnz), *B = KIT_NEW(double, a->nnz), bound;
+    hd_c64 *val = KIT_NEW(hd_c64, k * a->nnz), *b = KIT_NEW(hd_c64, (int64_t)k * n), *x = KIT_NEW(hd_c64, (int64_t)k * n);
     hd_ldl_report rep;
     hd_error e;
     int32_t q;
@@ -393,19 +382,14 @@ static void ldl_try_complex(hd_ldl *f, const hd_csr *a, hd_ordering asked, int32
             }
         }
     }
-    free(L);
-    free(B);
-    free(val);
-    free(b);
-    free(x);
 }
 
 /* t L + B, positive definite, with k right-hand sides in place. */
 static void ldl_try_real(hd_ldl *f, const hd_csr *a, hd_ordering asked, int32_t k, uint64_t seed, const char *what) {
     const int32_t n = a->n_rows;
     const double t = pow(10, 1 + 2 * ldl_chance(k, n, seed));
-    double *L = DENSE_NEW(double, a->nnz), *B = DENSE_NEW(double, a->nnz), back;
-    double *b = DENSE_NEW(double, (int64_t)k * n), *x = DENSE_NEW(double, (int64_t)k * n);
+    double *L = KIT_NEW(double, a->nnz), *B = KIT_NEW(double, a->nnz), back;
+    double *b = KIT_NEW(double, (int64_t)k * n), *x = KIT_NEW(double, (int64_t)k * n);
     hd_ldl_report rep;
     hd_error e;
     int64_t p;
@@ -422,10 +406,6 @@ static void ldl_try_real(hd_ldl *f, const hd_csr *a, hd_ordering asked, int32_t 
             CHECK_MSG(back <= 1e-14, "%s, n %d, right-hand side %d of %d: backward error %g", what, (int)n, (int)q, (int)k, back);
         }
     }
-    free(L);
-    free(B);
-    free(b);
-    free(x);
 }
 
 /* ---- small ones, by hand ---- */
@@ -534,8 +514,8 @@ static void ldl_random_points(double *xyz, int32_t n, uint64_t seed) {
 /* One pattern by every ordering, with from one to nine matrices, at every level of instructions in turn. */
 static void ldl_all_orderings(const hd_csr *a, int32_t k, int dense, uint64_t seed, const char *what) {
     const int32_t n = a->n_rows;
-    int32_t *perm = DENSE_NEW(int32_t, n), i;
-    double *xyz = DENSE_NEW(double, 3 * n);
+    int32_t *perm = KIT_NEW(int32_t, n), i;
+    double *xyz = KIT_NEW(double, 3 * n);
     int way;
     ldl_random_points(xyz, n, seed);
     for (way = 0; way < 6; way++) {              /* automatic, minimum degree, nested dissection; own: natural, reversed, random */
@@ -554,8 +534,6 @@ static void ldl_all_orderings(const hd_csr *a, int32_t k, int dense, uint64_t se
         hd_ldl_free(f);
         CHECK(ctx.bytes_in_use == 0);
     }
-    free(perm);
-    free(xyz);
 }
 
 static void ldl_all_shapes(void) {
@@ -591,7 +569,7 @@ static void ldl_all_dense(void) {
     static const int32_t sizes[10] = {4, 5, 7, 8, 9, 15, 31, 64, 97, 257};
     int s;
     for (s = 0; s < 10; s++) {
-        hd_csr a = ldl_shape(LDL_DENSE, sizes[s], 1, 3);
+        hd_csr a = kit_own_csr(ldl_shape(LDL_DENSE, sizes[s], 1, 3));
         int q;
         for (q = 0; q < 4; q++) {
             hd_context ctx;
@@ -606,7 +584,6 @@ static void ldl_all_dense(void) {
             ldl_try_real(f, &a, o.ordering, 5, (uint64_t)s + 2, "dense");
             hd_ldl_free(f);
         }
-        hd_csr_free(&a, NULL);
     }
 }
 
@@ -615,10 +592,10 @@ static void ldl_all_dense(void) {
 /* With an order given, fill, flops and pivots are facts. */
 static void ldl_own_order(const hd_csr *a, const int32_t *perm, uint64_t seed, const char *what) {
     const int32_t n = a->n_rows, k = 3;
-    double *L = DENSE_NEW(double, a->nnz), *B = DENSE_NEW(double, a->nnz), flops, lo = HUGE_VAL, lo_each = HUGE_VAL, hi = 0, top = 0;
+    double *L = KIT_NEW(double, a->nnz), *B = KIT_NEW(double, a->nnz), flops, lo = HUGE_VAL, lo_each = HUGE_VAL, hi = 0, top = 0;
     double hi_least = HUGE_VAL, hi_most = 0;
-    hd_c64 *val = DENSE_NEW(hd_c64, k * a->nnz);
-    dense_c64 *d = DENSE_NEW(dense_c64, n);
+    hd_c64 *val = KIT_NEW(hd_c64, k * a->nnz);
+    dense_c64 *d = KIT_NEW(dense_c64, n);
     hd_ldl_opts o = ldl_opts_of(HD_ORDERING_OWN, perm, NULL, NULL);
     hd_ldl *f = ldl_make(a, &o, what);
     const int64_t nnz = ldl_dense_fill(a, perm, &flops);
@@ -654,10 +631,6 @@ static void ldl_own_order(const hd_csr *a, const int32_t *perm, uint64_t seed, c
                   rep.smallest_pivot);
     }
     hd_ldl_free(f);
-    free(L);
-    free(B);
-    free(val);
-    free(d);
 }
 
 static void ldl_own_orders(void) {
@@ -691,8 +664,8 @@ static void ldl_fill_is_low(void) {
     hd_csr a;
     hd_ldl_report rep, natural;
     hd_ldl *f;
-    int32_t *perm = DENSE_NEW(int32_t, 2500), i;
-    double *xyz = DENSE_NEW(double, 3 * 2500);
+    int32_t *perm = KIT_NEW(int32_t, 2500), i;
+    double *xyz = KIT_NEW(double, 3 * 2500);
     int kind, k;
     for (kind = 0; kind <= LDL_TREES; kind++) {
         for (k = 0; k < 3; k++) {
@@ -721,8 +694,6 @@ static void ldl_fill_is_low(void) {
         hd_ldl_free(f);
     }
     hd_csr_free(&a, NULL);
-    free(perm);
-    free(xyz);
 }
 
 /* ---- indefinite ---- */
@@ -730,9 +701,9 @@ static void ldl_fill_is_low(void) {
 /* [H, A'; A, -G] with H and G positive definite: every order has pivots, and as many are negative as G has rows. */
 static void ldl_quasidefinite_of(int32_t n, uint64_t seed) {
     hd_csr a = kit_own_csr(ldl_random_pattern(n, 5, seed));
-    double *val = DENSE_NEW(double, a.nnz), *b = DENSE_NEW(double, 3 * n), *x = DENSE_NEW(double, 3 * n), *q = DENSE_NEW(double, (int64_t)n * n);
-    double *lambda = DENSE_NEW(double, n), *dense;
-    int32_t *perm = DENSE_NEW(int32_t, n), i, negative = 0;
+    double *val = KIT_NEW(double, a.nnz), *b = KIT_NEW(double, 3 * n), *x = KIT_NEW(double, 3 * n), *q = KIT_NEW(double, (int64_t)n * n);
+    double *lambda = KIT_NEW(double, n), *dense;
+    int32_t *perm = KIT_NEW(int32_t, n), i, negative = 0;
     int64_t p;
     int way;
     for (i = 0; i < n; i++) {
@@ -771,13 +742,7 @@ static void ldl_quasidefinite_of(int32_t n, uint64_t seed) {
         }
         hd_ldl_free(f);
     }
-    free(val);
-    free(b);
-    free(x);
-    free(q);
-    free(lambda);
     free(dense);
-    free(perm);
 }
 
 static void ldl_quasidefinite(void) {
@@ -829,8 +794,8 @@ static void ldl_no_diagonal(void) {
 static void ldl_forms_complex(void) {
     enum { N = 61, PAD = 70, MOST = 9 };
     hd_csr a = kit_own_csr(ldl_random_pattern(N, 4, 3));
-    double *L = DENSE_NEW(double, a.nnz), *B = DENSE_NEW(double, a.nnz);
-    hd_c64 *val = DENSE_NEW(hd_c64, MOST * a.nnz), b[PAD * MOST], x[PAD * MOST], y[PAD * MOST];
+    double *L = KIT_NEW(double, a.nnz), *B = KIT_NEW(double, a.nnz);
+    hd_c64 *val = KIT_NEW(hd_c64, MOST * a.nnz), b[PAD * MOST], x[PAD * MOST], y[PAD * MOST];
     const hd_c64 mark = {-77, 99};
     hd_ldl *f = ldl_make(&a, NULL, "forms");
     int32_t k, q, i;
@@ -866,17 +831,14 @@ static void ldl_forms_complex(void) {
         for (q = 0; q < k; q++) CHECK_MSG(memcmp(y + PAD * q, x + PAD * q, N * sizeof *x) == 0, "common, in place: %d of %d", (int)q, (int)k);
     }
     hd_ldl_free(f);
-    free(L);
-    free(B);
-    free(val);
 }
 
 /* A matrix has the same answer wherever in the sweep it stands, and whatever its companions. */
 static void ldl_companions(void) {
     enum { N = 45, MOST = 9 };
     hd_csr a = kit_own_csr(ldl_random_pattern(N, 5, 8));
-    double *L = DENSE_NEW(double, a.nnz), *B = DENSE_NEW(double, a.nnz);
-    hd_c64 *val = DENSE_NEW(hd_c64, MOST * a.nnz), *own = DENSE_NEW(hd_c64, MOST * a.nnz), b[N], x[N * MOST], alone[N * MOST];
+    double *L = KIT_NEW(double, a.nnz), *B = KIT_NEW(double, a.nnz);
+    hd_c64 *val = KIT_NEW(hd_c64, MOST * a.nnz), *own = KIT_NEW(hd_c64, MOST * a.nnz), b[N], x[N * MOST], alone[N * MOST];
     hd_ldl *f = ldl_make(&a, NULL, "companions");
     int32_t k, q;
     ldl_pair(&a, 5, L, B);
@@ -893,16 +855,12 @@ static void ldl_companions(void) {
         for (q = 0; q < k; q++) CHECK_MSG(ldl_differ(x + N * q, alone + N * (MOST - 1 - q), N) <= 1e-10, "matrix %d of %d", (int)q, (int)k);
     }
     hd_ldl_free(f);
-    free(L);
-    free(B);
-    free(val);
-    free(own);
 }
 
 static void ldl_forms_real(void) {
     enum { N = 53, PAD = 60, MOST = 13 };
     hd_csr a = kit_own_csr(ldl_random_pattern(N, 4, 13));
-    double *L = DENSE_NEW(double, a.nnz), *B = DENSE_NEW(double, a.nnz), b[PAD * MOST], x[PAD * MOST], y[PAD * MOST], alone[N * MOST];
+    double *L = KIT_NEW(double, a.nnz), *B = KIT_NEW(double, a.nnz), b[PAD * MOST], x[PAD * MOST], y[PAD * MOST], alone[N * MOST];
     hd_ldl *f = ldl_make(&a, NULL, "forms");
     uint64_t seed = 4;
     int64_t p;
@@ -939,16 +897,14 @@ static void ldl_forms_real(void) {
         for (q = 0; q < MOST; q++) CHECK_MSG(ldl_backward_real(&a, L, b + PAD * q, y + ldx * (size_t)q) <= 1e-14, "%d apart: %d", (int)ldx, (int)q);
     }
     hd_ldl_free(f);
-    free(L);
-    free(B);
 }
 
 /* Of (i, j) and (j, i) one is read, whichever: where they differ, the answer is that of a symmetric matrix with either value. */
 static void ldl_one_of_a_pair(void) {
     enum { N = 30 };
     hd_csr a = kit_own_csr(ldl_random_pattern(N, 5, 21));
-    double *L = DENSE_NEW(double, a.nnz), *B = DENSE_NEW(double, a.nnz);
-    hd_c64 *val = DENSE_NEW(hd_c64, a.nnz), *other = DENSE_NEW(hd_c64, a.nnz), *keep = DENSE_NEW(hd_c64, a.nnz), b[N], x[N];
+    double *L = KIT_NEW(double, a.nnz), *B = KIT_NEW(double, a.nnz);
+    hd_c64 *val = KIT_NEW(hd_c64, a.nnz), *other = KIT_NEW(hd_c64, a.nnz), *keep = KIT_NEW(hd_c64, a.nnz), b[N], x[N];
     int32_t perm[N], i;
     int64_t p;
     int way;
@@ -975,11 +931,6 @@ static void ldl_one_of_a_pair(void) {
         }
         hd_ldl_free(f);
     }
-    free(L);
-    free(B);
-    free(val);
-    free(other);
-    free(keep);
 }
 
 /* ---- again and again ---- */
@@ -990,10 +941,10 @@ static void ldl_refactor(void) {
     enum { N = 140, K = 6, ROUNDS = 4 };
     test_memory m;
     hd_context ctx = test_memory_context(&m);
-    hd_csr a = ldl_random_pattern(N, 4, 31), copy = ldl_random_pattern(N, 4, 31);
-    double *L = DENSE_NEW(double, a.nnz), *B = DENSE_NEW(double, a.nnz), *val = DENSE_NEW(double, a.nnz), b[N], x[2][2 * N], c[2 * N];
-    hd_c64 *z = DENSE_NEW(hd_c64, K * a.nnz), rhs[N], y[2][K * N];
-    int32_t *perm = DENSE_NEW(int32_t, N);
+    hd_csr a = kit_own_csr(ldl_random_pattern(N, 4, 31)), copy = kit_own_csr(ldl_random_pattern(N, 4, 31));
+    double *L = KIT_NEW(double, a.nnz), *B = KIT_NEW(double, a.nnz), *val = KIT_NEW(double, a.nnz), b[N], x[2][2 * N], c[2 * N];
+    hd_c64 *z = KIT_NEW(hd_c64, K * a.nnz), rhs[N], y[2][K * N];
+    int32_t *perm = KIT_NEW(int32_t, N);
     uint64_t seed = 8, calls = 0, bytes = 0;
     hd_ldl_opts o = ldl_opts_of(HD_ORDERING_OWN, perm, NULL, &ctx);
     hd_ldl *f, *fresh;
@@ -1004,7 +955,6 @@ static void ldl_refactor(void) {
     if (copy.nnz) memset(copy.col, 0x77, (size_t)copy.nnz * sizeof *copy.col);
     memset(copy.row_ptr, 0x77, (N + 1) * sizeof *copy.row_ptr);
     copy.nnz = 0;
-    hd_csr_free(&copy, NULL);
     for (round = 0; f && round < ROUNDS; round++) {
         int32_t *own = DENSE_NEW(int32_t, N);
         memcpy(own, perm, N * sizeof *own);
@@ -1046,12 +996,6 @@ static void ldl_refactor(void) {
     }
     hd_ldl_free(f);
     test_memory_done(&m, &ctx, "refactor");
-    hd_csr_free(&a, NULL);
-    free(L);
-    free(B);
-    free(val);
-    free(z);
-    free(perm);
 }
 
 /* More matrices, then fewer, then more. */
@@ -1059,7 +1003,7 @@ static void ldl_other_counts(void) {
     static const int32_t counts[7] = {3, 9, 1, 4, 5, 8, 2};
     test_memory m;
     hd_context ctx = test_memory_context(&m);
-    hd_csr a = ldl_random_pattern(50, 4, 41);
+    hd_csr a = kit_own_csr(ldl_random_pattern(50, 4, 41));
     hd_ldl_opts o = ldl_opts_of(HD_ORDERING_AUTO, NULL, NULL, &ctx);
     hd_ldl *f = ldl_make(&a, &o, "counts");
     int k;
@@ -1069,7 +1013,6 @@ static void ldl_other_counts(void) {
     }
     hd_ldl_free(f);
     test_memory_done(&m, &ctx, "counts");
-    hd_csr_free(&a, NULL);
 }
 
 /* ---- threads and instructions ---- */
@@ -1204,8 +1147,8 @@ static int ldl_same_report(const hd_ldl_report *a, const hd_ldl_report *b) {
 /* All ways of threading give the same bits, at every level of instructions; levels differ by rounding only. */
 static void ldl_threads_of(const hd_csr *a, const double *xyz, hd_ordering ordering, int32_t k, const char *what) {
     const size_t n = (size_t)a->n_rows, size = (size_t)k * n;
-    double *L = DENSE_NEW(double, a->nnz), *B = DENSE_NEW(double, a->nnz);
-    hd_c64 *val = DENSE_NEW(hd_c64, k * a->nnz), *b = DENSE_NEW(hd_c64, size), *top = DENSE_NEW(hd_c64, size);
+    double *L = KIT_NEW(double, a->nnz), *B = KIT_NEW(double, a->nnz);
+    hd_c64 *val = KIT_NEW(hd_c64, k * a->nnz), *b = KIT_NEW(hd_c64, size), *top = KIT_NEW(hd_c64, size);
     ldl_answers first, other;
     int64_t p, calls = 0;
     int32_t q;
@@ -1239,11 +1182,6 @@ static void ldl_threads_of(const hd_csr *a, const double *xyz, hd_ordering order
         }
     }
     CHECK_MSG(calls > 0 || a->n_rows < 1000, "%s: never in parallel", what);
-    free(L);
-    free(B);
-    free(val);
-    free(b);
-    free(top);
     free(first.z);
     free(other.z);
     free(first.x);
@@ -1277,9 +1215,9 @@ static void ldl_threads(void) {
 
 static void ldl_pivot_errors_of(hd_ordering ordering, int32_t n, uint64_t seed) {
     const int32_t zero = ldl_below(&seed, n), k = 7;
-    int32_t *perm = DENSE_NEW(int32_t, n), i, bad;
-    double *L, *B, *xyz = DENSE_NEW(double, 3 * n);
-    hd_c64 *val, *b = DENSE_NEW(hd_c64, n), *x = DENSE_NEW(hd_c64, (int64_t)n * k);
+    int32_t *perm = KIT_NEW(int32_t, n), i, bad;
+    double *L, *B, *xyz = KIT_NEW(double, 3 * n);
+    hd_c64 *val, *b = KIT_NEW(hd_c64, n), *x = KIT_NEW(hd_c64, (int64_t)n * k);
     hd_ldl_opts o = ldl_opts_of(ordering, perm, xyz, NULL);
     ldl_edges g = ldl_edges_of(n);
     hd_ldl_report rep;
@@ -1321,13 +1259,9 @@ static void ldl_pivot_errors_of(hd_ordering ordering, int32_t n, uint64_t seed) 
     for (i = 0; i < k; i++) CHECK(ldl_backward(&a, val + i * a.nnz, b, x + (int64_t)i * n) <= 1e-14);
     hd_ldl_free(f);
     hd_csr_free(&a, NULL);
-    free(perm);
-    free(xyz);
     free(L);
     free(B);
     free(val);
-    free(b);
-    free(x);
 }
 
 /* Values that are no numbers, told by their place: on the diagonal, off it, in each matrix. */
@@ -1335,8 +1269,8 @@ static void ldl_not_finite(void) {
     enum { N = 23, K = 6 };
     const double wrong[3] = {(double)NAN, (double)INFINITY, -(double)INFINITY};
     hd_csr a = kit_own_csr(ldl_random_pattern(N, 4, 5));
-    double *L = DENSE_NEW(double, a.nnz), *B = DENSE_NEW(double, a.nnz);
-    hd_c64 *val = DENSE_NEW(hd_c64, K * a.nnz);
+    double *L = KIT_NEW(double, a.nnz), *B = KIT_NEW(double, a.nnz);
+    hd_c64 *val = KIT_NEW(hd_c64, K * a.nnz);
     hd_ldl *f = ldl_make(&a, NULL, "not finite");
     hd_error e;
     int32_t i, q;
@@ -1375,9 +1309,6 @@ static void ldl_not_finite(void) {
         ldl_try_real(f, &a, HD_ORDERING_AUTO, K, 5, "after values that were not finite");
     }
     hd_ldl_free(f);
-    free(L);
-    free(B);
-    free(val);
 }
 
 /* A pivot is divided by if its inverse is a number, else named, wherever it stands. */
@@ -1385,8 +1316,8 @@ static void ldl_subnormal(void) {
     enum { N = 30 };
     static const double pivots[5] = {1e-307, -1e-308, 1e-309, -1e-310, 5e-324};
     hd_csr a = kit_own_csr(ldl_shape(LDL_BAND, N, 1, 1));
-    double *val = DENSE_NEW(double, a.nnz), b[N], x[N];
-    hd_c64 *z = DENSE_NEW(hd_c64, a.nnz);
+    double *val = KIT_NEW(double, a.nnz), b[N], x[N];
+    hd_c64 *z = KIT_NEW(hd_c64, a.nnz);
     hd_ldl *f = ldl_make(&a, NULL, "subnormal");
     hd_error e;
     int32_t i, q;
@@ -1412,8 +1343,6 @@ static void ldl_subnormal(void) {
     }
     TRAPS_ON;
     hd_ldl_free(f);
-    free(val);
-    free(z);
 }
 
 /* Exact zeros that come by elimination, and pivots that overflow. */
@@ -1450,8 +1379,8 @@ static void ldl_breakdown(void) {
 static void ldl_first_of_two(void) {
     enum { N = 40000 };                          /* many subtrees */
     hd_csr a = kit_own_csr(ldl_shape(LDL_PIECES, N, 1, 1));
-    int32_t *perm = DENSE_NEW(int32_t, N), i;
-    double *L = DENSE_NEW(double, a.nnz), *B = DENSE_NEW(double, a.nnz);
+    int32_t *perm = KIT_NEW(int32_t, N), i;
+    double *L = KIT_NEW(double, a.nnz), *B = KIT_NEW(double, a.nnz);
     int64_t p;
     int way;
     ldl_pair(&a, 1, L, B);
@@ -1459,7 +1388,7 @@ static void ldl_first_of_two(void) {
     L[op_find(&a, 35000, 35000)] = L[op_find(&a, 700, 700)] = 0;    /* multiples of five: alone, or the first of their piece */
     for (i = 0; i < N; i++) perm[i] = i;
     for (way = 0; way < LDL_WAYS; way++) {
-        ldl_way *w = DENSE_NEW(ldl_way, 1);
+        ldl_way *w = KIT_NEW(ldl_way, 1);
         hd_ldl_opts o;
         hd_ldl *f;
         hd_error e;
@@ -1469,22 +1398,17 @@ static void ldl_first_of_two(void) {
         CHECK_MSG(hd_ldl_factor(f, L, NULL, &e) == HD_ERR_BREAKDOWN && e.row == 700, "way %d of threading says row %d", way, (int)e.row);
         hd_ldl_free(f);
         ldl_way_end(w, way);
-        free(w);
     }
-    free(perm);
-    free(L);
-    free(B);
 }
 
 /* ---- memory and cancelling ---- */
 
 static void ldl_robust_values(const hd_csr *a, int32_t k, double *real, hd_c64 *val) {
-    double *L = DENSE_NEW(double, a->nnz);
+    double *L = KIT_NEW(double, a->nnz);
     int64_t p;
     ldl_pair(a, 3, L, real);
     ldl_shifted(a, L, real, k, 4, val);
     for (p = 0; p < a->nnz; p++) real[p] += L[p];
-    free(L);
 }
 
 /* variant % 4: ordering; / 4: real, complex, or both in turn. */
@@ -1492,8 +1416,8 @@ static hd_status ldl_rob_job(hd_context *ctx, int variant) {
     enum { N = 48, K = 5 };
     const int kind = variant / 4;
     hd_csr a = kit_own_csr(ldl_random_pattern(N, 4, 9));
-    double *real = DENSE_NEW(double, a.nnz), *xyz = DENSE_NEW(double, 3 * N), *x = DENSE_NEW(double, 6 * N);
-    hd_c64 *val = DENSE_NEW(hd_c64, K * a.nnz), *z = DENSE_NEW(hd_c64, K * N);
+    double *real = KIT_NEW(double, a.nnz), *xyz = KIT_NEW(double, 3 * N), *x = KIT_NEW(double, 6 * N);
+    hd_c64 *val = KIT_NEW(hd_c64, K * a.nnz), *z = KIT_NEW(hd_c64, K * N);
     int32_t perm[N];
     uint64_t seed = 6;
     hd_ldl_opts o = ldl_opts_of(ldl_orderings[variant % 4], perm, xyz, ctx);
@@ -1512,11 +1436,6 @@ static hd_status ldl_rob_job(hd_context *ctx, int variant) {
         if (kind != 0 && st >= 0) CHECK((st = hd_ldl_solve_complex(f, z, 0, z, 0, &e)) == e.status);
         hd_ldl_free(f);
     }
-    free(real);
-    free(xyz);
-    free(x);
-    free(val);
-    free(z);
     return st;
 }
 
@@ -1541,8 +1460,8 @@ static void ldl_robust(void) {
 static void ldl_survives_one(const hd_csr *a, const double *xyz, int q, int before, int reverse) {
     enum { K = 5 };
     const int32_t n = a->n_rows;
-    double *real = DENSE_NEW(double, a->nnz);
-    hd_c64 *val = DENSE_NEW(hd_c64, K * a->nnz), *b = DENSE_NEW(hd_c64, n), *x = DENSE_NEW(hd_c64, K * n), *want = DENSE_NEW(hd_c64, K * n);
+    double *real = KIT_NEW(double, a->nnz);
+    hd_c64 *val = KIT_NEW(hd_c64, K * a->nnz), *b = KIT_NEW(hd_c64, n), *x = KIT_NEW(hd_c64, K * n), *want = KIT_NEW(hd_c64, K * n);
     int64_t k, calls = 0;
     ldl_robust_values(a, K, real, val);
     ldl_fill(b, n, 5);
@@ -1580,11 +1499,6 @@ static void ldl_survives_one(const hd_csr *a, const double *xyz, int q, int befo
         if (k && st >= 0) break;
     }
     CHECK_MSG(k < ROB_MOST && (k > 1 || (q == 0 && before == 1)), "stopped at %lld", (long long)k);
-    free(real);
-    free(val);
-    free(b);
-    free(x);
-    free(want);
 }
 
 static void ldl_survives(void) {
@@ -1633,7 +1547,7 @@ static void ldl_bad_patterns(void) {
 
 static void ldl_bad_options(void) {
     enum { N = 10 };
-    hd_csr a = test_path_csr(N, 1);
+    hd_csr a = kit_own_csr(test_path_csr(N, 1));
     int32_t perm[N], i;
     double xyz[3 * N];
     hd_context ctx;
@@ -1692,7 +1606,6 @@ static void ldl_bad_options(void) {
     good.ordering = HD_ORDERING_NESTED_DISSECTION;
     if (CHECK(hd_ldl_analyse(&f, &a, &good, NULL, NULL) == HD_OK)) hd_ldl_free(f);
     hd_ldl_free(NULL);
-    hd_csr_free(&a, NULL);
 }
 
 static void ldl_bad_calls(void) {
@@ -1756,12 +1669,12 @@ static void ldl_bad_calls(void) {
 /* t L + theta B of a mesh for four poles at once, and the real t L + B, by all orderings; coordinates of two kinds. */
 static void ldl_mesh_of(const shape *s, hd_laplacian_kind kind, int flat, const char *what) {
     enum { K = 4, K_REAL = 2 };
-    hd_laplacian *lap = test_laplacian(s, kind);
+    hd_laplacian *lap = kit_own_laplacian(test_laplacian(s, kind));
     const int32_t n = lap->n_active;
     const hd_csr *a = &lap->L;
-    double *real = DENSE_NEW(double, a->nnz), *xyz = DENSE_NEW(double, 3 * n), most = 0;
-    double *x = DENSE_NEW(double, K_REAL * n), *y = DENSE_NEW(double, K_REAL * n);
-    hd_c64 *val = DENSE_NEW(hd_c64, K * a->nnz), *b = DENSE_NEW(hd_c64, n), *z = DENSE_NEW(hd_c64, K * n);
+    double *real = KIT_NEW(double, a->nnz), *xyz = KIT_NEW(double, 3 * n), most = 0;
+    double *x = KIT_NEW(double, K_REAL * n), *y = KIT_NEW(double, K_REAL * n);
+    hd_c64 *val = KIT_NEW(hd_c64, K * a->nnz), *b = KIT_NEW(hd_c64, n), *z = KIT_NEW(hd_c64, K * n);
     const double t = 100 * lap->h * lap->h;
     hd_rational set;
     int32_t i, k;
@@ -1796,14 +1709,6 @@ static void ldl_mesh_of(const shape *s, hd_laplacian_kind kind, int flat, const 
                                                (int)k);
         hd_ldl_free(f);
     }
-    hd_laplacian_free(lap);
-    free(real);
-    free(xyz);
-    free(x);
-    free(y);
-    free(val);
-    free(b);
-    free(z);
 }
 
 /* Nested dissection of graphs with and without a use of it: every small size, and meshes whose leaves have many neighbours. */
@@ -1812,7 +1717,7 @@ static void ldl_dissections(void) {
     for (n = 1; n < 420; n += n < 40 ? 1 : 29) {
         for (k = 0; k < 3; k++) {
             shape grid = kit_own_shape(shape_grid(2 + n / 9, 8, 0.3));
-            double *xyz = DENSE_NEW(double, 3 * n);
+            double *xyz = KIT_NEW(double, 3 * n);
             hd_csr a = k == 2 ? ldl_mesh_pattern(&grid) : k ? ldl_random_pattern(n, 9, (uint64_t)n) : ldl_shape(LDL_PIECES, n, 1, 1);
             hd_ldl_opts o = ldl_opts_of(HD_ORDERING_NESTED_DISSECTION, NULL, k == 2 ? grid.xyz : xyz, NULL);
             hd_ldl *f;
@@ -1821,7 +1726,6 @@ static void ldl_dissections(void) {
             if (f) ldl_try_complex(f, &a, o.ordering, 1, 0, (uint64_t)(n + k), "dissection");
             hd_ldl_free(f);
             hd_csr_free(&a, NULL);
-            free(xyz);
         }
     }
 }

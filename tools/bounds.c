@@ -281,7 +281,7 @@ static trial trial_draw(uint64_t *seed, const trial *from, double unit) {
         if (c.query == QUERY_DERIVATIVE) c.poles = c.degree = 0;
         if (c.query != QUERY_DERIVATIVE && trial_chance(seed, 0.1)) {   /* sets of one's own have none */
             c.poles = 0;
-            c.own = 1 + trial_below(seed, OWNS - 1);
+            c.own = 1 + trial_below(seed, OWN_A0);
             c.degree = 2 + trial_below(seed, 13);
             c.own_x = 1 + trial_below(seed, 7);
         }
