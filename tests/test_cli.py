@@ -6,7 +6,6 @@ Needs nothing but Python 3. All runs are in one temporary folder. Meshes and fie
 names them: torus-40-24.obj, or waves-960-2.npy (MAKERS, FIELDS). Numbers are checked against eigenpairs computed here,
 in plain Python on small meshes or in closed form, and against what must hold on any mesh.
 """
-import base64
 import functools
 import json
 import math
@@ -22,7 +21,6 @@ import sys
 import tempfile
 import time
 import unittest
-import xml.etree.ElementTree as ElementTree
 import zlib
 
 TOOL = None
@@ -68,15 +66,11 @@ def patch(k):
     return v, triangles(quads(k, k))[1]
 
 
-def round_grid(n, m):
-    """Faces of a grid of n x m places that goes around both ways."""
-    corners = [(i * m + j, (i + 1) % n * m + j, (i + 1) % n * m + (j + 1) % m, i * m + (j + 1) % m) for i in range(n) for j in range(m)]
-    return [t for p, q, s, r in corners for t in ((p, q, s), (p, s, r))]
-
-
 def torus(n, m):
-    angles = [(2 * math.pi * i / n, 2 * math.pi * j / m) for i in range(n) for j in range(m)]
-    return [((3 + math.cos(b)) * math.cos(a), (3 + math.cos(b)) * math.sin(a), math.sin(b)) for a, b in angles], round_grid(n, m)
+    places = [(i, j) for i in range(n) for j in range(m)]
+    angles = [(2 * math.pi * i / n, 2 * math.pi * j / m) for i, j in places]
+    v = [((3 + math.cos(b)) * math.cos(a), (3 + math.cos(b)) * math.sin(a), math.sin(b)) for a, b in angles]
+    return triangles((v, [(i * m + j, (i + 1) % n * m + j, (i + 1) % n * m + (j + 1) % m, i * m + (j + 1) % m) for i, j in places]))
 
 
 def askew():
@@ -130,7 +124,7 @@ def with_holes(mesh, *vertices):
     return mesh[0], [t for t in mesh[1] if not set(t) & set(vertices)]
 
 
-PARTS_STARTS, PARTS_INERT = (0, 384, 484), (5, 200, 428, 496, 497)
+PARTS_INERT = (5, 200, 428, 496, 497)
 
 
 def parts():
@@ -166,7 +160,6 @@ ROOF = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (2, 0, 0), (2, 1, 0)], [(0, 
 # Three leaves on one spine.
 BOOK = [(0, 0, 0), (0, 0, 1), (3, 0, .5), (-1, 2, .5), (-1, -2, .4)], [(0, 1, 2), (0, 1, 3), (0, 1, 4)]
 FIVE = of_corners((0.0, 0.0, 0.0), (2.0, 0.0, 0.1), (2.5, 1.5, 0.0), (1.0, 2.5, 0.3), (-0.5, 1.5, 0.0))
-FLAT = [(1 / 9, 1 / 9, math.sqrt(2) / 9), (math.sqrt(2) / 9, 1 / 9, 1 / 9)] * 81
 MAKERS = {
     "ico": icosahedron, "quads": quads, "grid": lambda *n: triangles(quads(*n)), "patch": patch, "torus": torus, "askew": askew,
     "sphere": sphere, "cloud": cloud, "parts": parts, "pieces": pieces, "roof": lambda: ROOF, "book": lambda: BOOK,
@@ -182,11 +175,11 @@ MAKERS = {
     "few": lambda: (cloud(300)[0][::6], []), "sheets": lambda: ([(i % 12, i // 12 % 12, i // 144) for i in range(288)], []),
     "uneven": lambda: ([(float(i % 5), i // 5 + 0.1 * (i % 2), 0.0) for i in range(25)], quads(4, 4)[1]),
     # places that say nothing about the surface, for lengths of edges
-    "flat": lambda n: ([(i, i * i % 7, i % 3) for i in range(n * n)], round_grid(n, n)), "squashed": lambda: ([(0, 0, 0)] * 64, patch(7)[1]),
+    "squashed": lambda: ([(0, 0, 0)] * 64, patch(7)[1]),
 }
 # Rows of fields: name-rows.txt, or name-rows-columns.npy
 FIELDS = {"ones": lambda i: [1.0], "count": lambda i: [float(i)], "waves": lambda i: [math.sin(i / 9), float(i % 11), 1.0],
-          "heights": lambda i: [cloud(300)[0][i][2]], "latitude": lambda i: [sphere(3)[0][i][2]], "edges": lambda i: FLAT[i],
+          "heights": lambda i: [cloud(300)[0][i][2]], "latitude": lambda i: [sphere(3)[0][i][2]],
           "sides": lambda i: sides(*patch(7))[i]}
 
 
@@ -386,12 +379,6 @@ def square_modes(n):
                         [[math.sqrt(2 / n) * math.sin(m * math.pi * a / n) * (0 < a < n) for m in range(1, n)] for a in range(n + 1)], n)
 
 
-@functools.lru_cache(None)
-def torus_modes(n):
-    """The flat torus of n x n cells, n odd."""
-    waves = [(m, shift) for m in range(n // 2 + 1) for shift in (0, math.pi / 2) if m or shift]
-    return on_both_axes([(2 * n * math.sin(m * math.pi / n)) ** 2 for m, _ in waves],
-                        [[math.sqrt((2 if m else 1) / n) * math.sin(2 * math.pi * m * a / n + s) for m, s in waves] for a in range(n)], n)
 
 
 # ---- readers of the outputs ----
@@ -421,32 +408,9 @@ def read_npy(data):
     return [list(v[r * columns:(r + 1) * columns]) for r in range(rows)]
 
 
-PLY_TYPES = {"uchar": "B", "int": "i", "float": "f", "double": "d"}
-
-
-def read_ply(data):
-    """The vertices as dicts and the faces as lists."""
-    head, _, body = data.partition(b"end_header\n")
-    lines = head.decode().splitlines()
-    assert lines[:2] == ["ply", "format binary_little_endian 1.0"], lines
-    elements = []
-    for w in map(str.split, lines[2:]):
-        if w[0] == "element":
-            elements.append((w[1], int(w[2]), []))
-        elif w[0] == "property":
-            elements[-1][2].append(w[1:])
-    at, result = 0, {}
-
-    def take(kind):
-        nonlocal at
-        x = struct.unpack_from("<" + PLY_TYPES[kind], body, at)[0]
-        at += struct.calcsize(PLY_TYPES[kind])
-        return x
-    for name, count, properties in elements:
-        result[name] = [{p[-1]: [take(p[2]) for _ in range(take(p[1]))] if p[0] == "list" else take(p[0]) for p in properties}
-                        for _ in range(count)]
-    assert at == len(body), "bytes behind the end"
-    return result["vertex"], [f["vertex_indices"] for f in result.get("face", [])]
+def counted(data):
+    """Points and faces, as the head of a .ply or .vtu tells. What is in them is read by test_files.py and by the runner's meshio."""
+    return tuple(map(int, re.findall(rb'(?:element (?:vertex|face) |NumberOf(?:Points|Cells)=")(\d+)', data)))
 
 
 def read_obj(data):
@@ -458,41 +422,17 @@ def read_obj(data):
 def read_png(data):
     """Checks every chunk; width, height and the number of unlike bytes in the picture, which is still filtered."""
     assert data[:8] == b"\x89PNG\r\n\x1a\n"
-    at, image, size, names = 8, b"", None, []
+    at, chunks = 8, []
     while at < len(data):
-        n, name = struct.unpack(">I4s", data[at:at + 8])
-        chunk = data[at + 8:at + 8 + n]
-        assert struct.unpack(">I", data[at + 8 + n:at + 12 + n])[0] == zlib.crc32(name + chunk) & 0xffffffff
-        names.append(name)
-        if name == b"IHDR":
-            size = struct.unpack(">IIBBBBB", chunk)
-        if name == b"IDAT":
-            image += chunk
+        n, name = struct.unpack_from(">I4s", data, at)
+        chunks.append((name, data[at + 8:at + 8 + n]))
+        assert struct.unpack_from(">I", data, at + 8 + n)[0] == zlib.crc32(data[at + 4:at + 8 + n])
         at += 12 + n
-    assert names[-1] == b"IEND"
-    channels = {0: 1, 2: 3, 3: 1, 6: 4}[size[3]]
-    pixels = zlib.decompress(image)
-    assert len(pixels) == size[1] * (1 + size[0] * channels * size[2] // 8)
-    return size[0], size[1], len(set(pixels))
-
-
-def read_vtu(data):
-    """The point-data arrays by name, and the number of points and of cells."""
-    cut = data.index(b"<AppendedData encoding=\"raw\">\n_")
-    raw = data[data.index(b"_", cut) + 1:]
-    root = ElementTree.fromstring(data[:cut] + b"</VTKFile>")
-    assert (root.get("header_type"), root.get("byte_order")) == ("UInt64", "LittleEndian")
-    piece = root.find(".//Piece")
-    points, cells = int(piece.get("NumberOfPoints")), int(piece.get("NumberOfCells"))
-
-    def values(array):
-        kind, at = {"Float64": "d", "Int64": "q", "UInt8": "B"}[array.get("type")], int(array.get("offset"))
-        n = struct.unpack_from("<Q", raw, at)[0]
-        return list(struct.unpack_from("<%d%s" % (n // struct.calcsize(kind), kind), raw, at + 8))
-    assert len(values(piece.find("Points/DataArray"))) == 3 * points
-    ends = {a.get("Name"): values(a) for a in piece.findall("Cells/DataArray")}
-    assert all(0 <= i < points for i in ends["connectivity"]) and len(ends["offsets"]) == len(ends["types"]) == cells
-    return {a.get("Name"): values(a) for a in piece.findall("PointData/DataArray")}, points, cells
+    assert (chunks[0][0], chunks[-1][0]) == (b"IHDR", b"IEND")
+    width, height, bits, colour = struct.unpack_from(">IIBB", chunks[0][1])
+    pixels = zlib.decompress(b"".join(data for name, data in chunks if name == b"IDAT"))
+    assert len(pixels) == height * (1 + width * {0: 1, 2: 3, 3: 1, 6: 4}[colour] * bits // 8)
+    return width, height, len(set(pixels))
 
 
 def columns(rows, *which):
@@ -549,6 +489,11 @@ def everything():
     return sorted(os.listdir(FOLDER))
 
 
+KEYS = set("n faces components h area inert laplacian method times threads peak_bytes seconds ordering factor_nnz factor_flops residual".split())
+HEAT_KEYS = KEYS | set("solver precond poles degree iterations error_bound mass_drift reason growth evidence error_rational error_solver error_rounding".split())
+STAGES = ("load", "assemble", "order", "analyse", "factor", "precondition", "invert", "solve", "write")
+
+
 class Case(unittest.TestCase):
     """Command lines are written as for a shell, in the folder of all tests."""
 
@@ -590,7 +535,34 @@ class Case(unittest.TestCase):
         """The report as JSON. The output, if it is in no file of its own, is in report.npy."""
         if line.startswith("info"):
             return json.loads(self.good(line, *more, "--json").stdout)
-        return json.loads(self.good(line, *more, "--json", *(() if " -o " in line else ("-o", "report.npy"))).stderr)
+        r = json.loads(self.good(line, *more, "--json", *(() if " -o " in line else ("-o", "report.npy"))).stderr)
+        with self.subTest(line, more=more):
+            self.sound(r)
+        return r
+
+    def sound(self, r):
+        """What holds for the report of every run."""
+        heat = r["command"] in ("kernel", "diffuse", "distance", "pairs", "hks", "sample")
+        if not heat and r["command"] != "geodesic":
+            return
+        self.assertLessEqual(HEAT_KEYS if heat else KEYS, set(r))
+        seconds, spent = r["seconds"], [r["seconds"].get(k, 0) for k in STAGES]
+        self.assertTrue(min(spent) >= 0 and sum(spent) <= seconds["total"] * (1 + 1e-9), seconds)
+        self.assertGreater(r["peak_bytes"], 1000)
+        if r["method"] == "iterative" and r["reason"] == "asked for":      # else there may be an analysis
+            self.assertEqual((r["factor_nnz"], r["factor_flops"], r["growth"], r["ordering"], seconds["factor"]), (0, 0, 0, "none", 0))
+        elif r["method"] != "iterative":
+            self.assertTrue(0 < r["n"] - r["inert"] <= r["factor_nnz"] <= r["factor_flops"], r)
+            self.assertIn(r["ordering"], ("amd", "dissection"))
+            self.assertGreater(min(seconds[k] for k in ("order", "analyse", "factor", "solve")), 0)
+        if heat:
+            self.assertEqual(set(r["evidence"]), {"rational", "solver", "rounding"})
+            self.assertLessEqual(set(r["evidence"].values()), {"none", "proven", "measured", "estimated"})
+            self.assertTrue(not r["times"] or [p["t"] for p in r["per_time"]] == r["times"])
+        if r["method"] == "krylov":
+            self.assertEqual((r["solver"], r["precond"], r["poles"], r["degree"]), ("lanczos", "none", "none", 0))
+        if r["command"] in ("distance", "hks", "sample"):
+            self.assertTrue(r["method"] == "direct" and (r["poles"] == "none" or seconds["invert"] > 0) and r["smallest"] >= 0 and 0 < r["error_bound"] <= r["error_relative"], r)
 
     def text(self, line, *more):
         """What a run tells people: info by its output, all others on standard error."""
@@ -716,7 +688,7 @@ TAKEN = (
     # the sources of sample may be more than its count where they are no vertices
     *("sample ico.obj --count 2 --t 1 --source " + s for s in ("0:0.2,0.3,1,2", "0+1,2+3,4+5 --curve", "0,1,2 --source-file one.txt")),
     *(run + " --t 1 --poles uniform --degree 1" for run in ("hks ico.obj", "distance ico.obj --source 0", PAIRS, "sample ico.obj --count 2")),
-    "kernel patch-9.off --source 0 --t auto:1,2h2", "info book.obj --lambda 2 --laplacian polygon", "info quad.obj --lambda 2",
+    "kernel patch-9.off --source 0 --t auto:1,2h2", "kernel ico.obj --source 0 --t auto:17", "info book.obj --lambda 2 --laplacian polygon", "info quad.obj --lambda 2",
 )
 
 
@@ -827,9 +799,12 @@ NOISE = bytes(random.Random(1).randrange(256) for _ in range(4000))
 
 
 
-def with_row_7(*row):
-    """Lengths of the flat torus, one row changed."""
-    return "# lengths\n" + lines_of(FLAT[:7] + [row + FLAT[7][2:]] + FLAT[8:])
+SIDES = sides(*patch(7))
+
+
+def with_row_7(x):
+    """Lengths of edges, one of them changed."""
+    return "# lengths\n" + lines_of(SIDES[:7] + [[SIDES[7][0], x, SIDES[7][2]]] + SIDES[8:])
 
 
 # Runs that fail: the text, and the lines that get it.
@@ -846,7 +821,7 @@ FAILED = (
     (like("source (0|1)"), "geodesic roof.obj --curve --source 0,0+5"), (like("source 0, point [01].*no face"), "geodesic roof.obj --curve --source 0+5,0+1"),
     (like("source 1, point 1.*no face"), "geodesic roof.obj --curve --source 0+1,0+2+4"),
     ("not-there", "kernel roof.obj --t 0.1 --source-file not-there.txt", "diffuse ico.obj --input not-there --t 1", "pairs ico.obj --input not-there --t 1",
-     "render ico.obj not-there.obj --input count-12.txt --input count-12.txt -o x.png"), ("No such file", "info flat-9.obj --lengths none.txt"),
+     "render ico.obj not-there.obj --input count-12.txt --input count-12.txt -o x.png"), ("No such file", "info squashed.obj --lengths none.txt"),
     # columns
     ("--column 2", "render ico.obj --input waves-12-2.txt --column 2 -o c.png", "geodesic ico.obj --source 0,9,5 --nearest --column 2"),
     ("--column 9", "spectrum ico.obj -k 3 --column 9 -o s.png"), ("2 columns", "kernel ico.obj --source 0,1 --t 1 --column 2 -o r.png"),
@@ -898,14 +873,14 @@ FILES = (
     ("kernel roof.obj --t 0.1 --source-file", (
         ("s.txt", "1\n0:0.5\n", like(r"s\.txt:2.*0:0\.5")), ("s.txt", "1\n\n12\n", like(r"s\.txt:3.*12")), ("s.txt", "# nothing\n", "no point"))),
     ("geodesic ico.obj --curve --source-file", (("far.txt", "0\n3\n", "far.txt:"),)),
-    ("info flat-9.obj --lengths", (
-        ("l.txt", "1 1\n" * 162, "2 columns; a face has three edges"), ("l.txt", FLAT[1:], "161 rows, but flat-9.obj has 162 faces"),
+    ("info squashed.obj --lengths", (
+        ("l.txt", "1 1\n" * 98, "2 columns; a face has three edges"), ("l.txt", SIDES[1:], "97 rows, but squashed.obj has 98 faces"),
         # the comment is line 1; an edge has two faces, and the later one is told
-        ("l.txt", with_row_7(FLAT[7][0], 5.0), "l.txt:9: face 7: a side of a face is longer than the two others together: "),
-        ("l.txt", with_row_7(FLAT[7][0], -0.1), "l.txt:9: face 7: a length is negative: -"), ("l.txt", with_row_7(FLAT[7][0], math.nan), "l.txt:9: "),
-        ("l.txt", with_row_7(FLAT[7][0], 0.112), like(r"l\.txt:\d+: face \d+: .*give their edge different lengths")),
-        ("l.npy", npy_bytes([(1.0, 1.0, 3.0)] + FLAT[1:]), "l.npy: face 0: a side of a face is longer"),
-        ("l.npy", npy_bytes([(1.0, 1.0, math.nan)] + FLAT[1:]), "l.npy: row 0, column 2: nan is not a finite number"))),
+        ("l.txt", with_row_7(5.0), "l.txt:9: face 7: a side of a face is longer than the two others together: "),
+        ("l.txt", with_row_7(-0.1), "l.txt:9: face 7: a length is negative: -"), ("l.txt", with_row_7(math.nan), "l.txt:9: "),
+        ("l.txt", with_row_7(1.01 * SIDES[7][1]), like(r"l\.txt:\d+: face \d+: .*give their edge different lengths")),
+        ("l.npy", npy_bytes([(1.0, 1.0, 3.0)] + SIDES[1:]), "l.npy: face 0: a side of a face is longer"),
+        ("l.npy", npy_bytes([(1.0, 1.0, math.nan)] + SIDES[1:]), "l.npy: row 0, column 2: nan is not a finite number"))),
 )
 
 # Files that promise much, or never end a line; told in few words, in little memory and time.
@@ -1141,7 +1116,7 @@ class Hostile(Case):
             told = json.loads(p.stderr)["mesh"]
             self.assertTrue(b"\xff" in name or told == mesh.decode(), told)
             with open(out, "rb") as f:
-                self.assertEqual(read_vtu(f.read())[1:], (12, 20))
+                self.assertEqual(counted(f.read()), (12, 20))
             for args in ((b"kernel", mesh, b"--source", b"99", b"--t", b"1"), (b"info", mesh + b".off"), (b"kernel", mesh, *kernel, b"-o", out + b"/x.txt"),
                          (b"info", mesh, b"--" + name), (name, mesh), (b"info", b"--", name)):
                 p = run(*args)
@@ -1301,7 +1276,11 @@ SAME = (
         "kernel --source 3,40 --t 1h2,0.7", "hks --t 5h2", "trace --t 2", "distance --source 5:0.2,0.3 --t 2", "distance --source 5 --definition biharmonic",
         "pairs --input p.csv --t 2", "sample --count 5 --t 2", "geodesic --source 0:0.2,0.2+20", "geodesic --source 0:0.2,0.2+0:0.3,0.3 --curve",
         "kernel --source 3 --t 1 --border dirichlet", "kernel --source 3 --t 1 --intrinsic-delaunay", "hks --t 1 --tufted")),
-    # poles and degrees
+    # orderings, poles and degrees
+    *(("kernel torus-80-50.obj --source 7,3000 --t 50h2 --method %s --ordering %s" % (m, o), "kernel torus-80-50.obj --source 7,3000 --t 50h2 --method " + m, 1e-9)
+      for m in ("direct", "krylov") for o in ("amd", "dissection", "auto")),
+    *(("kernel parts.obj --source 0,390,490 --t 2h2,900h2 --laplacian %s --method %s" % (kind, m),
+       "kernel parts.obj --source 0,390,490 --t 2h2,900h2 --laplacian %s --method iterative --degree 14 --tol 1e-12" % kind, 1e-7) for kind in KINDS for m in METHODS),
     *(("%s --t 10h2 --laplacian %s --poles %s --degree %d --method direct" % (line, kind, poles, degree), "%s --t 10h2 --laplacian %s" % (line, kind), tol)
       for line, tol in (("hks torus-40-24.obj", 1e-7), ("distance torus-40-24.obj --source 5", 1e-6)) for kind in KINDS
       for poles, degree in (("diagonal", 12), ("kernel", 12), ("uniform", 14))),
@@ -1315,10 +1294,12 @@ SAME = (
         "pairs torus-40-24.obj --input p.csv --t 20h2", "sample torus-40-24.obj --count 6 --t 20h2",
         *("kernel torus-80-50.obj --source 1,400,3000 --t %s --method %s" % (t, m) for m in ("direct", "krylov", "auto") for t in ("100h2", "1h2,40h2")))),
 )
+SHARED = (9, 1, 3, 20, 2, 14, 1.5, 5, 7, 4, 12, 17)      # so many share their poles
 # Sources and times together, against one of each: line, sources, times, closeness.
 TOGETHER = (
     ("kernel patch-9.off", (8, 90, 8), ("1h2", "20h2", "3h2"), 1e-7), ("geodesic patch-9.off", (3, 40, 77, 3, 99, 0, 12, 13, 14, 15, 50), (), 1e-12),
-    ("distance torus-40-24.obj", (3, 700), ("30h2", "2h2", "9h2"), 1e-7), ("hks torus-40-24.obj", (), ("30h2", "2h2", "9h2"), 2e-7),
+    ("distance torus-40-24.obj", (3, 700), ("30h2", "2h2", "9h2"), 1e-7),
+    *(("distance torus-40-24.obj --laplacian voronoi-cot --definition " + d, (3,), tuple("%gh2" % t for t in SHARED), 1e-6) for d in DEFINITIONS[:2]), ("hks torus-40-24.obj", (), ("30h2", "2h2", "9h2"), 2e-7),
     *(("kernel torus-40-24.obj --method " + m, s, t, 1e-7) for m in METHODS for s, t in (((3, 700), ("2h2", "5h2", "40h2")), ((3,), ("500h2", "0", "2h2", "40h2", "2h2")))),
     # the far ends need factors of their own; what belongs together is not side by side
     *(("kernel parts.obj --method krylov --laplacian " + kind, (0, 5, 484), ("100000h2", "1h2", "0", "30000h2", "3h2", "0", "0.01h2", "1h2"), 1e-7) for kind in KINDS),
@@ -1335,8 +1316,7 @@ class Numbers(Case):
         """Kernels, fields, signatures, distances, pairs and samples of dense matrices."""
         cases = [("%s --laplacian %s" % case, dense_modes(*case), (7, 0), (0.05, 1.0, 30.0))
                  for case in (("ico.obj", "fem"), ("ico.obj", "cot"), ("patch-4.obj", "fem"), ("patch-4.obj", "cot"))]
-        cases += [("square-12.obj --border dirichlet --laplacian voronoi-cot", square_modes(12), (69, 84), (0.005, 0.02)),
-                  ("flat-9.obj --lengths edges-162.txt --laplacian voronoi-cot", torus_modes(9), (23, 40), (0.01, 0.05))]
+        cases.append(("square-12.obj --border dirichlet --laplacian voronoi-cot", square_modes(12), (69, 84), (0.005, 0.02)))
         for mesh, m, sources, times in cases:
             pairs = [sources, sources[::-1], (3, 3), (len(m.x) - 1, 1), sources]
             file("p.txt", pairs)
@@ -1419,17 +1399,6 @@ class Numbers(Case):
                     self.close(columns(got, len(times) * q + k), self.rows(line + " --input one.npy --t", t), 1e-7)
                     self.assertTrue(t != "0" or columns(got, len(times) * q + k) == columns(rows, q))
 
-    def test_many_times_share_poles(self):
-        times = ("9h2", "1h2", "3h2", "20h2", "2h2", "14h2", "1.5h2", "5h2", "7h2", "4h2", "12h2", "17h2")
-        for definition in ("classical", "weighted"):
-            run = "distance torus-40-24.obj --source 3,700,3 --laplacian voronoi-cot --definition %s --t " % definition
-            r = self.report(run + ",".join(times))
-            got = read_npy(taken("report.npy"))
-            self.assertEqual((len(got[0]), len(r["per_time"])), (36, 12))
-            self.assertGreater(r["degree"], 14)                     # no set for a single time has more
-            for k in (0, 3, 10):
-                self.close(columns(got, k, 12 + k, 24 + k), self.rows(run + times[k]), 1e-6)
-
     def test_what_is_exact(self):
         file("f.txt", [[math.exp(i)] for i in range(12)])
         for source in (0, 5):
@@ -1462,51 +1431,21 @@ class Numbers(Case):
         self.assertLess(max(ratios) / min(ratios), 1 + 1e-9)
 
     def test_scale_invariant_signature(self):
-        """By its definition from signatures at the times told, and nearly the same on a mesh of another size."""
-        line = "hks %s --t %s --scale-invariant 4"
-        r = self.report(line % ("patch-4.obj", "1e-5,1e3"))
-        got, times = read_npy(taken("report.npy")), r["times"]
-        m = len(times) - 1
-        self.assertEqual((len(got[0]), m), (4, round(16 * math.log2(1e8))))
-        logs = [[math.log(x) for x in row] for row in self.rows("hks patch-4.obj --t", ",".join(map(repr, times)))]
-        turn = [[complex(math.cos(2 * math.pi * j * k / m), -math.sin(2 * math.pi * j * k / m)) for j in range(m)] for k in range(4)]
-        want = [[abs(sum((b - a) * z for a, b, z in zip(row, row[1:], turn[k]))) for k in range(4)] for row in logs]
-        largest = max(map(max, want))
-        self.assertLess(max(abs(a - b) for x, y in zip(got, want) for a, b in zip(x, y)), 1e-5 * largest)
+        """Nearly the same on a mesh of another size. The runner's signatures compares it with its definition."""
+        line = "hks %s --t 1e-5,1e3 --scale-invariant 4"
+        r = self.report(line % "patch-4.obj")
+        got = read_npy(taken("report.npy"))
+        self.assertEqual((len(got[0]), len(r["times"]) - 1), (4, round(16 * math.log2(1e8))))
         self.assertLess(r["error_bound"], 1e-4)
         file("scaled.obj", obj_text([tuple(3 * c for c in p) for p in patch(4)[0]], patch(4)[1]))
-        names, moved = read_csv(self.data("si.csv", line % ("scaled.obj", "1e-5,1e3")))
+        names, moved = read_csv(self.data("si.csv", line % "scaled.obj"))
         self.assertEqual(names, ["si_0", "si_1", "si_2", "si_3"])
-        self.assertLess(max(abs(a - b) for x, y in zip(got, moved) for a, b in zip(x, y)), 1e-2 * largest)
+        self.assertLess(max(abs(a - b) for x, y in zip(got, moved) for a, b in zip(x, y)), 1e-2 * max(map(max, got)))
 
     def test_sample_takes_no_vertex_twice(self):
         for line, want in (("patch-4.obj --count 25 --t 100000h2", range(25)),     # all distances are zero but for rounding
                            ("pieces.obj --count 19 --definition commute", [i for i in range(20) if i != 16])):
             self.assertEqual(sorted(r[0] for r in self.rows("sample " + line)), list(want))
-
-    def test_methods_agree(self):
-        """Columns and fields, with each kind of Laplacian, on meshes in one and in many parts."""
-        for line, tol in [("kernel %s --laplacian %s --kernel %s --t 2h2,60h2,900h2" % (mesh, kind, kernel), 1e-7) for kind in KINDS
-                          for mesh in ("patch-9.off --source 3,55", "torus-40-24.obj --source 0,500", "parts.obj --source 0,390,490") for kernel in ("operator", "symmetric")] + \
-                         [("diffuse torus-40-24.obj --laplacian %s --input waves-960.npy --t 1h2,40h2,2000h2" % kind, 1e-7) for kind in KINDS]:
-            poles = "kernel" if line.startswith("kernel") else "uniform"
-            want = self.rows(line, "--method", "iterative", "--poles", poles, "--degree", 14, "--tol", "1e-12")
-            for method in METHODS:
-                with self.subTest(line=line, method=method):
-                    got = self.rows(line, "--method", method)
-                    self.close(got, want, tol)
-                    if poles == "uniform":
-                        self.close(columns(got, 6, 7, 8), [[1.0] * 3] * 960, 1e-9)
-
-    def test_orderings(self):
-        for method in ("direct", "krylov"):
-            run = "kernel torus-80-50.obj --source 7,3000 --t 50h2 --method " + method
-            want = self.rows(run)
-            for ordering in ("amd", "dissection", "auto"):
-                r = self.report(run, "--ordering", ordering)
-                self.close(read_npy(taken("report.npy")), want, 1e-9)
-                self.assertIn(r["ordering"], ("amd", "dissection") if ordering == "auto" else (ordering,))
-                self.assertGreater(r["factor_nnz"], r["n"])
 
     def test_nothing_is_factorised_twice(self):
         def flops(method, *args):
@@ -1517,21 +1456,16 @@ class Numbers(Case):
         self.assertEqual((flops("direct", "5,6,7", "50h2"), flops("direct", "5,6,7", "20h2,50h2,100h2")), (one, 3 * one))
 
     def test_components_holes_and_inert_vertices(self):
-        n = 24 * 16 + 100 + 12 + 2
-        ends, sources = PARTS_STARTS[1:] + (n - 2,), PARTS_STARTS + (PARTS_INERT[0], PARTS_INERT[3])
+        reach = [set(range(*ends)) - set(PARTS_INERT) for ends in ((0, 384), (384, 484), (484, 496))] + [{5}, {496}]
         for kind in KINDS:
             info = self.report("info parts.obj --laplacian " + kind)
             self.assertEqual((info["components"], info["inert"]), (3, len(PARTS_INERT)))
             for method in METHODS:
                 for t in ("4h2", "4h2,5000h2"):
-                    each = t.count(",") + 1
-                    got = self.rows("kernel parts.obj --laplacian %s --method %s --t %s --source" % (kind, method, t), ",".join(map(str, sources)))
-                    for q, (first, end) in enumerate(zip(PARTS_STARTS, ends)):
-                        cold = [r[q * each] for i, r in enumerate(got) if not first <= i < end or i in PARTS_INERT]
-                        self.assertEqual(cold, [0.0] * len(cold), (kind, method, q))
-                        self.assertGreater(got[sources[q]][q * each], 0)
-                    for q in (3, 4):
-                        self.assertEqual([r[q * each] for r in got], [float(i == sources[q]) for i in range(n)])
+                    got = transposed(self.rows("kernel parts.obj --source 0,384,484,5,496 --laplacian %s --method %s --t %s" % (kind, method, t)))
+                    for column, source, there in zip(got[::t.count(",") + 1], (0, 384, 484, 5, 496), reach):
+                        self.assertLessEqual({i for i, x in enumerate(column) if x}, there, (kind, method, source))
+                        self.assertTrue(column[source] > 0 if source not in PARTS_INERT else column[source] == 1)
 
     def test_signatures_and_distances_of_pieces(self):
         inert, n, pieces_of = 16, 20, (range(0, 4), range(4, 16), range(17, 20))
@@ -1568,7 +1502,7 @@ class Numbers(Case):
             self.assertAlmostEqual(want[int(found[0])] / max(want), 1, delta=1e-6)
             for definition in DEFINITIONS[1:]:
                 d = self.rows("distance %s --source 0 --definition %s" % (mesh, definition), *(("--t", t) if definition == "weighted" else ()))
-                self.assertEqual([x for x in range(n) if d[x] == [0] or definition == "weighted" and x], [0] + list(range(1, n)) * (definition == "weighted"))
+                self.assertTrue(d[0] == [0] and (definition == "weighted" or min(d[1:]) > [0]))
 
     def test_sources_anywhere(self):
         """Places on faces, sums of places with weights, curves."""
@@ -1600,12 +1534,6 @@ class Numbers(Case):
         self.assertIn("3 points", self.text("sample roof.obj --t 0.1 --count 3 --source 1:0.2,0.3 -o s.txt"))
         self.good("sample roof.obj --t 0.1 --count 3 --source 1:0.2,0.3 --dry-run")
 
-    def test_intrinsic_heat_is_not_negative(self):
-        run = "kernel askew.obj --laplacian voronoi-cot --source 0,37 --t 0.3h2,2h2 "
-        plain, delaunay, tufted = (min(min(r) for r in self.rows(run + more)) for more in ("", "--intrinsic-delaunay", "--tufted"))
-        self.assertLess(plain, -1e-4)
-        self.assertGreater(min(delaunay, tufted), -1e-6)
-
     def test_points_of_a_sphere(self):
         """Laplacians of points: z has eigenvalue 2."""
         v = cloud(300)[0]
@@ -1621,7 +1549,7 @@ class Numbers(Case):
 
 # ---- files ----
 
-READERS = {"txt": numbers, "csv": lambda data: read_csv(data)[1], "npy": read_npy, "ply": read_ply, "obj": read_obj, "vtu": read_vtu, "png": read_png}
+READERS = {"txt": numbers, "csv": lambda data: read_csv(data)[1], "npy": read_npy, "obj": read_obj, "png": read_png}
 FIELD_FILES, ROW_FILES = ("txt", "csv", "npy", "ply", "obj", "vtu", "png"), ("txt", "csv", "npy")
 # A command, the names of the columns that it prints, and the formats of its files. Names that the help does not show have a * in front.
 NAMES = (
@@ -1643,17 +1571,16 @@ class Formats(Case):
         file("p.txt", "3 8\n8 3\n4 4\n")
         for line, names, formats in NAMES:
             printed = self.good(line, "--quiet").stdout.decode()
-            want, mesh = numbers(printed), spec(line.split()[1])[2]
+            want = numbers(printed)
             if formats == ROW_FILES and not line.startswith("trace"):
                 self.assertRegex(printed, r"(?m)^\d+ ")               # ids are written as integers
             for e in formats:
                 with self.subTest(line=line, format=e):
                     data = self.data("f." + e, line, *(("--size", "200x200") if e == "png" else ()))
-                    got = READERS[e](data)
                     if e in ROW_FILES:
-                        self.assertEqual(got, want)
+                        self.assertEqual(READERS[e](data), want)
                     else:
-                        self.field_file(e, got, want, mesh)
+                        self.field_file(e, data, names.lstrip("*").split(","), spec(line.split()[1])[2])
             data = self.data("f.csv", line)
             self.assertEqual(read_csv(data)[0], names.lstrip("*").split(","))
             self.assertEqual(self.data("f.csv", line, "--no-header"), data.split(b"\n", 1)[1])
@@ -1662,26 +1589,23 @@ class Formats(Case):
                 self.assertLessEqual(set(names.split(",")), set(told))
         self.assertEqual(numbers(self.data("K.TXT", NAMES[0][0])), self.rows(NAMES[0][0]))
 
-    def field_file(self, kind, got, want, mesh):
+    def field_file(self, kind, data, names, mesh):
         """Meshes with colours and fields, and pictures."""
-        (v, f), size = mesh, len(want[0])
+        v, f = mesh
         if kind == "png":
-            self.assertEqual(got[:2], (200, 200))
-            self.assertGreater(got[2], 20 if len(v) < 10 else 30)
+            width, height, distinct = read_png(data)
+            self.assertTrue((width, height) == (200, 200) and distinct > (20 if len(v) < 10 else 30), distinct)
         elif kind == "vtu":
-            self.assertEqual((len(got[0]), got[1], got[2]), (size, len(v), len(f) or len(v)))
-            self.close(transposed(got[0].values()), want, 1e-6)
+            self.assertEqual(counted(data), (len(v), len(f) or len(v)))
+            self.assertEqual(re.findall(rb'"Float64" Name="([^"]+)" format', data), [name.encode() for name in names])
         elif kind == "obj":
-            self.assertEqual((len(got[0]), got[1]), (len(v), len(f)))
-            self.assertTrue(all(len(p) == 6 and all(0 <= c <= 1 for c in p[3:]) for p in got[0]))
-            self.close([p[:3] for p in got[0]], v, 1e-14)
+            places, faces = read_obj(data)
+            self.assertEqual((len(places), faces), (len(v), len(f)))
+            self.assertTrue(all(len(p) == 6 and all(0 <= c <= 1 for c in p[3:]) for p in places))
+            self.close([p[:3] for p in places], v, 1e-14)
         else:
-            self.assertEqual(got[1], [list(t) for t in f])
-            self.close([[p[c] for c in "xyz"] for p in got[0]], v, 1e-6)
-            self.assertTrue(all(0 <= p[c] <= 255 for p in got[0] for c in ("red", "green", "blue")))
-            extra = [k for k in got[0][0] if k not in ("x", "y", "z", "red", "green", "blue")]
-            self.assertEqual(len(extra), size)
-            self.close([[p[k] for k in extra] for p in got[0]], want, 1e-6)
+            self.assertEqual(counted(data), (len(v), len(f)) if f else (len(v),))
+            self.assertEqual(data.count(b"property double quality"), len(names))
 
     def test_pictures(self):
         for more in ("", "--log", "--isolines 8", "--range 0,0.5", "--view 100,-40", "--column 3", "--title 'a <title> \u00e9'", "--colormap grey"):
@@ -1692,7 +1616,7 @@ class Formats(Case):
             file("flat.npy", npy_bytes([[3.0]] * 100, flat=True))
             self.assertEqual(read_png(self.data("r.png", "render patch-9.off --size 200x200 " + more))[:2], (200, 200))
         self.data("r.png", "render cloud-300.xyz --input heights-300.txt --size 64x64")
-        self.data("n.png", "geodesic patch-9.off --source 0,9 --nearest --column 1 --size 64x64")
+        self.data("n.png", "geodesic ./patch-9.off --source 0,9 --nearest --column 1 --size 64x64")
         for n in (2, 3):                         # the height suits the number of pictures
             self.assertLess(read_png(self.data("r.png", "render ico.obj" + n * " --input=count-12.txt"))[1], 900)
         drawn = [self.data("p.png", "render ico.obj --size 64x64 --input", file("p.txt", "-1e-9\n" + "1\n" * 10 + last)) for last in ("inf\n", "-inf\n", "nan\n")]
@@ -1747,42 +1671,81 @@ class Formats(Case):
 
 # ---- reports ----
 
-# Lines, and what their report has. Lists, words and whole numbers are exact; other numbers to 1e-9; a key with - is not there.
+# Lines, and what their report has. Lists, words and whole numbers are exact, other numbers to 1e-9, functions say what is right.
 SPHERE = 4 * math.pi
+
+
+def near(value):
+    return lambda x: abs(x / value - 1) < 0.05
+
+
+def above(value):
+    return lambda x: x > value
+
+
+def below(value):
+    return lambda x: 0 <= x < value
+
+
+def ABSENT(x):
+    return x is None
+
+
 REPORTS = (
     ("info patch-9.off", dict(n=100, faces=162, boundary_loops=1, components=1, inert=0)),
     ("info ico.obj", dict(boundary_loops=0, area=20 * math.sqrt(3), h=2.0, laplacian="fem")),
     ("info defects.obj", dict(faces=23, inert=1, repeated_faces=1, repeated_corner_faces=1, zero_area_faces=1)),
     ("info line.xyz", dict(n=3, faces=0, inert=3)), ("info loose.obj", dict(inert=1)), ("info mixed.obj", dict(laplacian="polygon")),
     ("kernel mixed.obj --source 0 --t 1", dict(laplacian="polygon")), ("kernel quad.obj --source 0 --t 1", dict(laplacian="polygon")),
-    ("kernel ico.obj --source 0 --t 1", dict(laplacian="fem")),
+    ("kernel patch-9.off --source 1,2 --t 2,40h2", dict(
+        n=100, faces=162, components=1, inert=0, sources=[1, 2], laplacian="fem", command="kernel", times=lambda t: t[0] == 2,
+        error_bound_b=below(2e-7), error_bound=below(1e-5), mass_drift=below(1e-6))),
+    *(("kernel torus-80-50.obj --source 1,2 --method %s --t %s" % (m, t), dict(
+        method=m, reason="asked for", times=lambda x, t=t: len(x) == t.count(",") + 1, mass_drift=below(1e-9),
+        seconds=lambda x: sum(x[k] for k in STAGES) >= 0.9 * x["total"] - 0.05, **more))
+      for t in ("30h2", "3h2,30h2") for m, more in (
+          ("direct", dict(solver="none", precond="none", poles="kernel", factor_nnz=above(20000), growth=lambda g: 0.1 < g < 5)),
+          ("krylov", dict(iterations=above(5), factor_nnz=above(20000), growth=lambda g: 0.1 < g < 5)), ("iterative", {}))),
+    ("kernel torus-80-50.obj --source 1,2 --t 30h2", dict(
+        method=lambda m: m in ("direct", "krylov", "iterative"), reason=lambda x: x not in ("", "asked for"))),
+    *((line, dict(command=line.split()[0], n=100, lost=0, error_relative=below(1e-3), smallest=above(0), times=lambda t, n=times: len(t) == n))
+      for line, times in (
+          ("hks patch-9.off --t 3h2,9h2", 2), ("distance patch-9.off --source 1,2 --t 3h2", 1), ("sample patch-9.off --count 3 --t 3h2", 1),
+          ("distance patch-9.off --source 3 --definition biharmonic", 0), ("sample patch-9.off --count 3 --definition commute", 0))),
+    ("pairs patch-9.off --input p.txt --definition commute", dict(command="pairs", times=[], lost=lambda x: x is not None)),
     ("info quad.obj", dict(h=1.0, area=1.0, edges=4, faces=1, faces_used=1, triangles=2, boundary_loops=1, laplacian="polygon")),
     ("info quad.obj --laplacian fem", dict(edges=5, triangles_used=2, laplacian="fem")),
     ("info strange.obj", dict(repeated_faces=1, repeated_corner_faces=1, zero_area_faces=1, inert=4, faces_used=1)),
     ("info quad.obj --tufted", dict(laplacian="fem", intrinsic="tufted", triangles_used=2)),
     ("info quad.obj --intrinsic-delaunay", dict(laplacian="fem", intrinsic="delaunay", triangles_used=2)),
-    ("info askew.obj --intrinsic-delaunay", dict(intrinsic="delaunay", sheets=1, negative_weights=0, not_delaunay_edges=0)),
-    ("kernel book.obj --tufted --source 0 --t 0.1", dict(intrinsic="tufted", sheets=2)),
+    ("info askew.obj", dict(intrinsic=ABSENT, negative_weights=above(50))),
+    ("info askew.obj --intrinsic-delaunay", dict(intrinsic="delaunay", sheets=1, negative_weights=0, not_delaunay_edges=0, flips=above(50))),
+    *(("info sheets.xyz" + more, dict(not_flat=above(250))) for more in ("", " --tufted")), ("distance patch-9.off --source 1 --t 100000h2", dict(lost=above(50))),
+    ("kernel book.obj --tufted --source 0 --t 0.1", dict(intrinsic="tufted", sheets=2, mass_drift=below(1e-9))),
     ("kernel square-12.obj --border dirichlet --source 30 --t 0.02", dict(held=48, inert=0, mass_drift=0)),
-    ("hks square-12.obj --filter wave:5,0.4", dict(filter="wave:5,0.4", poles="filter", times=[])),
-    ("info squashed.obj --lengths sides-98.txt", {"lengths": "sides-98.txt", "-box_low": 0}),
+    ("hks square-12.obj --filter wave:5,0.4", dict(filter="wave:5,0.4", poles="filter", times=[], filter_error=below(1.1e-10), error_rational=above(0))),
+    ("info squashed.obj --lengths sides-98.txt", dict(lengths="sides-98.txt", box_low=ABSENT)),
     ("diffuse patch-9.off --input ones-100.txt --t 2 --poles uniform --degree 7 --solver cocr --precond ssor", dict(poles="uniform", degree=7, solver="cocr", precond="ssor")),
     ("kernel torus-40-24.obj --source 9 --t 30h2 --method direct --poles kernel --degree 13", dict(poles="kernel", degree=13)),
+    *(("kernel torus-40-24.obj --source 9 --t 30h2 " + more, dict(method=lambda m: m in ("direct", "iterative"))) for more in ("--degree 9", "--poles kernel")),
     ("hks torus-40-24.obj --t 10h2 --method direct --poles uniform --degree 14", dict(poles="uniform", degree=14, method="direct")),
     ("distance torus-40-24.obj --source 5 --t 10h2", dict(poles="diagonal")), ("hks patch-9.off --t 1", dict(kernel="symmetric", method="direct")),
     ("pairs patch-9.off --input p.txt --t 3h2", dict(pairs=2, input="p.txt")),
     ("distance patch-9.off --source 1,2 --t 3h2", dict(sources=[1, 2], definition="classical")),
     ("sample patch-9.off --count 3 --definition commute", dict(sources=[], definition="commute", times=[])),
-    ("geodesic patch-9.off --source 1,2", dict(command="geodesic", n=100, sources=[1, 2], stages=1, unreached=0, status="HD_OK")),
+    ("geodesic patch-9.off --source 1,2", dict(command="geodesic", n=100, sources=[1, 2], stages=1, unreached=0, status="HD_OK", residual=below(1e-12))),
+    ("geodesic ico.obj --source 0:0.1,0.1,1:0.5,0.2,2 --laplacian voronoi-cot", dict(residual_heat=below(1e-9))),
     ("geodesic twins.obj --source 3,25,40", dict(unreached=25 + 49 + 26)),
     ("geodesic quads-16-12.obj --source 109 --border mean", dict(laplacian="polygon", border="mean", edge=1.0)),
     ("info cloud-300.xyz", dict(n=300, faces=0, components=1, inert=0, laplacian="voronoi-exp", coincident=0, isolated=0, without_area=0, neighbours=30,
-                               weight_cut=1e-8, not_flat=0, h=sum(min(math.dist(p, q) for q in cloud(300)[0] if q is not p) for p in cloud(300)[0]) / 300)),
+                               weight_cut=1e-8, not_flat=0, area=near(SPHERE), h=sum(min(math.dist(p, q) for q in cloud(300)[0] if q is not p) for p in cloud(300)[0]) / 300)),
     ("info cloud-300.xyz --tufted", dict(not_flat=0)), ("info cloud-300.xyz --bandwidth 0.004", dict(bandwidth=0.004)),
     ("info cloud-300.xyz --weight-cut 1e-4", dict(weight_cut=1e-4)), ("info twice.xyz --bandwidth 2h2", dict(coincident=20, n=320)),
-    *(("info twice.xyz --tufted" + kind, dict(laplacian=name, intrinsic="tufted", coincident=20, inert=20, sheets=2, negative_weights=0, **{"-bandwidth": 0}))
+    *(("info twice.xyz --tufted" + kind, dict(laplacian=name, intrinsic="tufted", coincident=20, inert=20, sheets=2, negative_weights=0, bandwidth=ABSENT, area=near(SPHERE)))
       for kind, name in (("", "fem"), (" --laplacian voronoi-cot", "voronoi-cot"), (" --laplacian cot", "cot"))),
     ("info patch-9.off --laplacian voronoi-exp", dict(n=100, laplacian="voronoi-exp", triangles_used=0)),
+    ("distance torus-40-24.obj --source 3,700,3 --t %s" % ",".join("%gh2" % t for t in SHARED), dict(degree=above(14))),    # no set for a single time has more
+    *(("kernel torus-80-50.obj --source 7 --t 50h2 --ordering " + o, dict(ordering=o, factor_nnz=above(4000))) for o in ("amd", "dissection")),
     ("levels sphere-3.obj --input latitude-642.txt --levels -0.6,0.8,2", dict(lines=2, closed=2, levels=[-0.6, 0.8, 2])),
 )
 # Lines, and what they tell people. What begins with ! is not there.
@@ -1810,11 +1773,6 @@ TEXTS = (
     *(("%s torus-60-40.obj --dry-run" % run, "method") for run in ("hks --t 1 --kernel operator", "pairs --input p.txt --definition commute", "pairs --input p.txt --t 1,2",
                                                                   "geodesic --source 0 --ordering amd", "trace --t 1", "sample --count 3 --source 0+1 --t 1")),
 )
-KEYS = set("n faces components h area inert laplacian method times threads peak_bytes seconds ordering factor_nnz factor_flops residual".split())
-HEAT_KEYS = KEYS | set("solver precond poles degree iterations error_bound mass_drift reason growth evidence error_rational error_solver error_rounding".split())
-STAGES = ("load", "assemble", "order", "analyse", "factor", "precondition", "invert", "solve", "write")
-
-
 class Reports(Case):
     def setUp(self):
         file("p.txt", "1 2\n4 4\n")
@@ -1824,8 +1782,8 @@ class Reports(Case):
             r = self.report(line)
             for key, value in want.items():
                 with self.subTest(line=line, key=key):
-                    if key[0] == "-":
-                        self.assertNotIn(key[1:], r)
+                    if callable(value):
+                        self.assertTrue(value(r.get(key)), r.get(key))
                     elif isinstance(value, float):
                         self.assertAlmostEqual(r[key] / value, 1, delta=1e-9)
                     else:
@@ -1841,8 +1799,6 @@ class Reports(Case):
 
     def test_numbers_of_info(self):
         plain, r = self.report("info askew.obj"), self.report("info askew.obj --intrinsic-delaunay")
-        self.assertNotIn("intrinsic", plain)
-        self.assertGreater(min(r["flips"], plain["negative_weights"]), 50)
         self.assertAlmostEqual(r["h"], plain["h"], 12)
         self.assertAlmostEqual(r["area"], plain["area"], 9)
         self.assertTrue(r["smallest_angle"] == plain["smallest_angle"] < r["smallest_intrinsic_angle"])
@@ -1852,82 +1808,20 @@ class Reports(Case):
         for line, cut in (("info cloud-300.xyz", 1e8), ("info cloud-300.xyz --weight-cut 1e-4", 1e4)):
             r = self.report(line)
             self.assertAlmostEqual(r["cut_radius"], math.sqrt(4 * r["bandwidth"] * math.log(cut)), delta=1e-12)
-            self.assertAlmostEqual(r["area"] / SPHERE, 1, delta=0.05)
         self.assertLess(r["most_in_row"], self.report("info cloud-300.xyz")["most_in_row"])
-        self.assertAlmostEqual(self.report("info twice.xyz --tufted")["area"] / SPHERE, 1, delta=0.05)
         for line, factor in (("info cloud-300.xyz --laplacian exp --bandwidth 0.4h2", 0.4), ("info twice.xyz --bandwidth 2h2", 2)):
             self.assertAlmostEqual(self.report(line)["bandwidth"] / (factor * r["h"] ** 2), 1, delta=1e-13)
-        for more in ("", " --tufted"):
-            self.assertGreater(self.report("info sheets.xyz" + more)["not_flat"], 250)
 
-    def test_heat(self):
+    def test_times_and_errors(self):
         r = self.report("kernel patch-9.off --source 1,2 --t 2,40h2")
-        self.assertEqual((r["n"], r["faces"], r["components"], r["inert"], r["sources"], r["laplacian"], r["command"]), (100, 162, 1, 0, [1, 2], "fem", "kernel"))
-        self.assertLessEqual(HEAT_KEYS, set(r))
-        self.assertEqual(r["times"][0], 2)
         self.assertAlmostEqual(r["times"][1], 40 * r["h"] ** 2)
-        self.assertLess(max(r["error_bound_b"], 0.02 * r["error_bound"], 0.2 * r["mass_drift"]), 2e-7)
-        self.assertEqual(set(r["evidence"]), {"rational", "solver", "rounding"})
-        self.assertLessEqual(set(r["evidence"].values()), {"none", "proven", "measured", "estimated"})
         self.assertNotEqual(r["evidence"]["rounding"], "none")
-        self.assertGreater(r["peak_bytes"], 1000)
-        for more in ("--degree 9", "--poles kernel"):        # left to choose: anything but krylov
-            self.assertIn(self.report("kernel torus-40-24.obj --source 9 --t 30h2 " + more)["method"], ("direct", "iterative"))
         r = self.report("hks square-12.obj --filter wave:5,0.4")
         self.assertEqual((r["evidence"]["rational"], r["per_time"][0]["t"]), ("measured", None))
-        self.assertTrue(r["filter_error"] < 1.1e-10 and 0 < r["error_rational"])
-
-    def test_methods(self):
-        for method in METHODS:
-            for t in ("30h2", "3h2,30h2"):
-                r = self.report("kernel torus-80-50.obj --source 1,2 --t %s --method %s" % (t, method))
-                self.assertLessEqual(HEAT_KEYS, set(r))
-                spent = sum(r["seconds"][k] for k in STAGES)
-                self.assertTrue(min(r["seconds"][k] for k in STAGES) >= 0 and 0.9 * r["seconds"]["total"] - 0.05 <= spent <= r["seconds"]["total"] * (1 + 1e-9))
-                self.assertEqual([p["t"] for p in r["per_time"]], r["times"])
-                self.assertEqual(len(r["times"]), t.count(",") + 1)
-                self.assertLess(r["mass_drift"], 1e-9)
-                if method == "auto":
-                    self.assertIn(r["method"], ("direct", "krylov", "iterative"))
-                    self.assertNotIn(r["reason"], ("", "asked for"))
-                else:
-                    self.assertEqual((r["method"], r["reason"]), (method, "asked for"))
-                if r["method"] == "iterative":
-                    self.assertEqual((r["factor_nnz"], r["factor_flops"], r["growth"], r["ordering"], r["seconds"]["factor"]), (0, 0, 0, "none", 0))
-                else:
-                    self.assertTrue(5 * r["n"] < r["factor_nnz"] < r["factor_flops"] and 0.1 < r["growth"] < 5)
-                    self.assertIn(r["ordering"], ("amd", "dissection"))
-                    self.assertGreater(min(r["seconds"][k] for k in ("order", "analyse", "factor", "solve")), 0)
-                if r["method"] == "direct":
-                    self.assertEqual((r["solver"], r["precond"], r["poles"]), ("none", "none", "kernel"))
-                if r["method"] == "krylov":
-                    self.assertEqual((r["solver"], r["precond"], r["poles"], r["degree"]), ("lanczos", "none", "none", 0))
-                    self.assertGreater(r["iterations"], 5)
-
-    def test_signatures_and_distances(self):
-        for line, times in (("hks patch-9.off --t 3h2,9h2", 2), ("distance patch-9.off --source 1,2 --t 3h2", 1), ("distance patch-9.off --source 3 --definition biharmonic", 0),
-                            ("pairs patch-9.off --input p.txt --t 3h2", 1), ("pairs patch-9.off --input p.txt --definition commute", 0),
-                            ("sample patch-9.off --count 3 --t 3h2", 1), ("sample patch-9.off --count 3 --definition commute", 0)):
-            r = self.report(line)
-            self.assertLessEqual(HEAT_KEYS | {"error_relative", "smallest", "lost", "per_time"}, set(r), line)
-            self.assertEqual((r["command"], r["n"], len(r["times"])), (line.split()[0], 100, times))
-            self.assertIn(r["ordering"], ("amd", "dissection"))
-            self.assertTrue(r["factor_nnz"] > 100 and r["seconds"]["factor"] > 0)
-            if not line.startswith("pairs"):
-                self.assertEqual((r["method"], r["lost"]), ("direct", 0))
-                self.assertTrue(r["seconds"]["invert"] > 0 and r["smallest"] > 0 and 0 < r["error_bound"] <= r["error_relative"] < 1e-3, r)
-        self.assertGreater(self.report("distance patch-9.off --source 1 --t 100000h2")["lost"], 50)
-
-    def test_geodesic(self):
         r = self.report("geodesic patch-9.off --source 1,2")
-        self.assertLessEqual(KEYS, set(r))
         self.assertAlmostEqual(r["times"][0], r["h"] ** 2)
-        self.assertLess(r["residual"], 1e-12)
-        self.assertGreaterEqual(min(r["seconds"][k] for k in ("load", "assemble", "order", "analyse", "factor", "solve", "total")), 0)
         r = self.report("geodesic cloud-300.xyz --source 0 --t 4h2")
         self.assertAlmostEqual(r["times"][0] / (4 * r["edge"] ** 2), 1)
-        r = self.report("geodesic ico.obj --source 0:0.1,0.1,1:0.5,0.2,2 --laplacian voronoi-cot")
-        self.assertLess(r["residual_heat"], 1e-9)
 
 
 class Limits(Case):
@@ -2072,18 +1966,16 @@ class Terminals(Case):
         return p.wait(timeout=60), text
 
     def test_bar(self):
-        run = "kernel torus-150-80.obj --source 0,1,2,3 --t 2000h2 --solver cocg -o bar.npy"
+        run = "kernel torus-40-24.obj --source 0,1,2,3 --t 2000h2 --solver cocg -o bar.npy"
         code, text = self.on_a_terminal(run)
         self.assertTrue(code == 0 and b"%" in text and b"\r" in text, text)
         self.assertEqual(self.on_a_terminal(run + " --quiet"), (0, b""))
-        self.assertNotIn(b"\r", self.good(run).stderr)               # which is no terminal
         code, text = self.on_a_terminal("render ico.obj --input count-12.txt -o -", output=None)
         self.assertEqual((code, b"nothing for a terminal" in text), (2, True))
 
     def test_bar_of_factorisations(self):
-        run = "kernel torus-300-200.obj --threads 1 --source 0,1,2 --t 200h2,300h2,400h2 -o bar.npy --method "
-        for method, parts_of in (("direct", (b"] ", b"% factor, time ", b"time 2 of 3", b"time 3 of 3")), ("krylov", (b"% solve, source ", b"source 2 of 3", b"source 3 of 3"))):
-            code, text = self.on_a_terminal(run + method)
+        for mesh, method, parts_of in (("torus-200-150.obj", "direct", (b"] ", b"% factor, time ", b"time 2 of 3", b"time 3 of 3")), ("torus-300-200.obj", "krylov", (b"% solve, source ", b"source 2 of 3", b"source 3 of 3"))):
+            code, text = self.on_a_terminal("kernel %s --threads 1 --source 0,1,2 --t 200h2,300h2,400h2 -o bar.npy --method %s" % (mesh, method))
             self.assertEqual(code, 0)
             for word in parts_of:
                 self.assertIn(word, text)
@@ -2186,10 +2078,6 @@ def geodesic_dense(mesh, source, t):
 class Geodesic(Case):
     """The method itself is checked by tests/test_geodesic_all.h."""
 
-    def error(self, line, want):
-        """The mean difference of a column and the distances that are known."""
-        return sum(abs(g[0] - w) for g, w in zip(self.rows("geodesic", *line.split()), want)) / len(want)
-
     def test_dense(self):
         for name in ("ico.obj", "patch-4.obj"):
             h = self.report("info " + name)["h"]
@@ -2197,29 +2085,20 @@ class Geodesic(Case):
                 for source in (0, 7):
                     self.close(self.rows("geodesic %s --source %d%s" % (name, source, more)), geodesic_dense(spec(name)[2], source, tau * h * h), 1e-9)
 
-    def test_known_distances(self):
-        """Of planes, of polygons too, of slivers, of a sphere and of a flat torus, to which the heat method comes near."""
-        def flat(v, s):
-            return [math.dist(p, v[s]) for p in v]
+    def test_options(self):
+        """Each changes the distances; which are right is checked by the runner's geodesic_all."""
+        for mesh, *options in (("quads-16-12.obj", "", "--tufted", "--laplacian fem", "--lambda 1", "--t 4h2", "--t 4h2 --border mean"),
+                               ("askew.obj", "", "--intrinsic-delaunay")):
+            got = [self.rows("geodesic --source 109", mesh, *o.split()) for o in options]
+            for q, a in enumerate(got):
+                self.assertTrue(all(a != b for b in got[:q]), options[q])
         v = quads(16, 12)[0]
-        quad = "quads-16-12.obj --source 109 "
-        plain, mean, means = (self.error(quad + more, flat(v, 109)) for more in ("", "--t 4h2", "--t 4h2 --border mean"))
-        self.assertLess(plain, 0.3)
-        self.assertLess(means, 0.5 * mean)
-        self.assertLess(self.error(quad + "--tufted", flat(v, 109)), 0.3)
-        for more in ("--laplacian fem", "--lambda 1"):
-            self.assertNotEqual(self.error(quad + more, flat(v, 109)), plain)
-        sheared = [(x + 4 * y, y, 0.0) for x, y, _ in quads(20, 20)[0]]
-        file("slivers.obj", obj_text(sheared, triangles(quads(20, 20))[1]))
-        plain, flipped = (self.error("slivers.obj --source 220 " + more, flat(sheared, 220)) for more in ("", "--intrinsic-delaunay"))
-        self.assertLess(flipped, 1)
-        self.assertGreater(plain, 4 * flipped)                       # flipped along the surface it is as good as any
+        self.assertLess(sum(abs(g[0] - math.dist(p, v[109])) for g, p in zip(self.rows("geodesic quads-16-12.obj --source 109"), v)) / len(v), 0.3)
         v = cloud(300)[0]
-        self.assertLess(self.error("cloud-300.xyz --source 0", [math.acos(max(-1.0, min(1.0, dot(v[0], p)))) for p in v]), 0.06)
-        far = [math.hypot(*(min(abs(x), 9 - abs(x)) / 9 for x in (i % 9 - 23 % 9, i // 9 - 23 // 9))) for i in range(81)]
-        got = self.rows("geodesic flat-9.obj --lengths edges-162.txt --source 23")
-        self.assertLess(max(abs(a[0] - b) for a, b in zip(got, far)), 0.13)
-        self.assertEqual(self.rows("geodesic flat-9.obj --lengths - --source 23", input=lines_of(FLAT).encode()), got)
+        want = [math.acos(max(-1.0, min(1.0, dot(v[0], p)))) for p in v]
+        self.assertLess(sum(abs(g[0] - w) for g, w in zip(self.rows("geodesic cloud-300.xyz --source 0"), want)) / len(v), 0.06)
+        self.assertEqual(self.rows("geodesic squashed.obj --lengths - --source 23", input=lines_of(SIDES).encode()),
+                         self.rows("geodesic squashed.obj --lengths sides-98.txt --source 23"))
 
     def test_out_of_reach(self):
         got = self.rows("geodesic twins.obj --source 3,25,40")
@@ -2386,9 +2265,8 @@ class Demo(Case):
             if name.endswith(".png"):
                 self.assertGreater(read_png(data)[2], 50, name)
             else:
-                vertices, faces = read_ply(data)
-                self.assertTrue(len(vertices) > 100 and len(faces) > 100)
-                self.good("info", file("demo.ply", data))
+                mesh = self.report("info " + file("demo.ply", data))
+                self.assertGreater(min(mesh["n"], mesh["faces"]), 100)
             self.assertIn(name, p.stdout.decode())
         r = json.loads(p.stderr)
         self.assertEqual((len(r["sources"]), len(r["times"])), (2, 4))
@@ -2403,8 +2281,8 @@ class Demo(Case):
             os.symlink(path("nowhere"), path("dangling"))
         for folder in folders:
             self.bad(1, "cannot make this folder", "demo -o", folder)
-        os.makedirs(path("empty"))                               # and a run that ends early writes nothing there
-        self.bad(1, "memory limit", "demo -o empty --memory-limit 1000")
+        p = self.run_tool("demo -o empty --memory-limit 1000")  # and a run that ends early makes it and writes nothing there
+        self.assertEqual((p.returncode, b"memory limit" in p.stderr), (1, True))
         self.assertEqual(os.listdir(path("empty")), [])
 
 
