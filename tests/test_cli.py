@@ -554,7 +554,7 @@ class Case(unittest.TestCase):
         elif r["method"] != "iterative":
             self.assertTrue(0 < r["n"] - r["inert"] <= r["factor_nnz"] <= r["factor_flops"], r)
             self.assertIn(r["ordering"], ("amd", "dissection"))
-            self.assertGreater(min(seconds[k] for k in ("order", "analyse", "factor", "solve")), 0)
+            self.assertGreater(min(seconds["order"] + seconds["analyse"], seconds["solve"]), 0, seconds)
         if heat:
             self.assertEqual(set(r["evidence"]), {"rational", "solver", "rounding"})
             self.assertLessEqual(set(r["evidence"].values()), {"none", "proven", "measured", "estimated"})
@@ -562,7 +562,7 @@ class Case(unittest.TestCase):
         if r["method"] == "krylov":
             self.assertEqual((r["solver"], r["precond"], r["poles"], r["degree"]), ("lanczos", "none", "none", 0))
         if r["command"] in ("distance", "hks", "sample"):
-            self.assertTrue(r["method"] == "direct" and (r["poles"] == "none" or seconds["invert"] > 0) and r["smallest"] >= 0 and 0 < r["error_bound"] <= r["error_relative"], r)
+            self.assertTrue(r["method"] == "direct" and (r["poles"] == "none" or seconds["invert"] > 0) and 0 < (r["error_bound"] or math.inf) <= (r["error_relative"] or math.inf), r)
 
     def text(self, line, *more):
         """What a run tells people: info by its output, all others on standard error."""
@@ -836,7 +836,7 @@ FAILED = (
     # limits
     ("--memory-limit", "kernel patch-9.off --source 0 --t 10h2 --memory-limit 2000"), ("limit", "geodesic patch-9.off --source 0 --memory-limit 20K"),
     ("limit", *(run + " --memory-limit 3000 -o x.npy" for run in ("hks patch-9.off --t 1", "distance patch-9.off --source 0 --t 1", "sample patch-9.off --count 2 --t 1"))),
-    ("", *(run + " --solver cocg --precond none --max-iterations 2" for run in ("kernel patch-9.off --source 0 --t 1000h2", "pairs patch-9.off --input p.txt --t 1000h2,2000h2"))),
+    ("", *(run + " --solver cocg --precond none --max-iterations 2" for run in ("kernel patch-9.off --source 0 --t 1000h2", "kernel patch-9.off --source 0 --t 9h2,1000h2", "pairs patch-9.off --input p.txt --t 1000h2,2000h2"))),
     ("more than the memory limit", "kernel torus-60-40.xyz --source 0 --t 1 --laplacian exp --memory-limit 100K"),
     ("--tufted needs less", "kernel torus-60-40.xyz --source 0 --t 1 --weight-cut 1e-3 --memory-limit 100K"),
     # what some meshes do not have
@@ -1404,6 +1404,8 @@ class Numbers(Case):
         for source in (0, 5):
             self.assertEqual(self.rows("kernel ico.obj --t 0 --source", source), [[float(i == source)] for i in range(12)])
         self.assertEqual(self.rows("diffuse ico.obj --input f.txt --t -0"), [[math.exp(i)] for i in range(12)])
+        file("f.txt", "9876543210987654321e3\n" * 12)
+        self.assertEqual(self.rows("diffuse ico.obj --input f.txt --t 0"), [[9876543210987654321e3]] * 12)
         self.close(self.rows("diffuse patch-9.off --input ones-100.txt --t 1h2,100h2"), [[1.0, 1.0]] * 100, 1e-7)
         self.assertTrue(all(a == b for a, b in self.rows("kernel patch-9.off --source 8,8 --t 2h2")))
         got = self.rows("kernel loose.obj --source 12,3 --t 4h2")     # a vertex of no face
@@ -1702,7 +1704,7 @@ REPORTS = (
         error_bound_b=below(2e-7), error_bound=below(1e-5), mass_drift=below(1e-6))),
     *(("kernel torus-80-50.obj --source 1,2 --method %s --t %s" % (m, t), dict(
         method=m, reason="asked for", times=lambda x, t=t: len(x) == t.count(",") + 1, mass_drift=below(1e-9),
-        seconds=lambda x: sum(x[k] for k in STAGES) >= 0.9 * x["total"] - 0.05, **more))
+        seconds=lambda x, m=m: sum(x[k] for k in STAGES) >= 0.9 * x["total"] - 0.05 and (x["factor"] > 0) == (m != "iterative"), **more))
       for t in ("30h2", "3h2,30h2") for m, more in (
           ("direct", dict(solver="none", precond="none", poles="kernel", factor_nnz=above(20000), growth=lambda g: 0.1 < g < 5)),
           ("krylov", dict(iterations=above(5), factor_nnz=above(20000), growth=lambda g: 0.1 < g < 5)), ("iterative", {}))),
