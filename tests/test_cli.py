@@ -568,7 +568,10 @@ class Case(unittest.TestCase):
             self.assertGreater(min(seconds["order"] + seconds["analyse"], seconds["solve"]), 0, seconds)
         if r["command"] in ("kernel", "diffuse"):
             asked = args[args.index("--method") + 1] if "--method" in args else "auto"
-            self.assertTrue((r["method"], r["reason"]) == (asked, "asked for") or asked == "auto" and r["reason"] not in ("", "asked for"), r)
+            if asked == "auto":
+                self.assertNotIn(r["reason"], ("", "asked for"))
+            else:
+                self.assertEqual((r["method"], r["reason"]), (asked, "asked for"))
         if heat:
             self.assertEqual(set(r["evidence"]), {"rational", "solver", "rounding"})
             self.assertLessEqual(set(r["evidence"].values()), {"none", "proven", "measured", "estimated"})
@@ -970,14 +973,13 @@ ENDLESS_MESHES = (
     ("digits.obj", b"v ", b"1"), ("corners.obj", b"f ", b"1 "), ("word.obj", b"v ", b"x"), ("blank.obj", b"", b" "),
     ("zero.obj", b"", b"v 0 0 0\0"),
     ("word.ply", b"ply\nformat ascii 1.0\nelement ", b"x"), ("comment.ply", b"ply\ncomment ", b"x"),
-    ("name.stl", b"solid ", b"x"),
-    ("digits.off", b"OFF\n1 1 0 ", b"1"), ("digits.xyz", b"0 0 ", b"1"))
+    ("name.stl", b"solid ", b"x"), ("digits.off", b"OFF\n1 1 0 ", b"1"), ("digits.xyz", b"0 0 ", b"1"))
 ENDLESS_FIELDS = (
     ("names.csv", b"", b"a,"), ("commas.csv", b"", b","), ("quotes.csv", b"", b'"'), ("open.csv", b'"', b"x"),
-    ("quoted.csv", b"", b'"a",'),
-    ("h.txt", b"", b"1 "), ("h.txt", b"", b"1"))
-ENDLESS_PLACES = tuple(("places.txt", *row) for row in ((b"", b"1"), (b"# ", b"x"), (b"", b"\0"), (b"", b"0.5*"),
-                                                        (b"0:0.", b"1")))
+    ("quoted.csv", b"", b'"a",'), ("h.txt", b"", b"1 "), ("h.txt", b"", b"1"))
+ENDLESS_PLACES = (
+    ("places.txt", b"", b"1"), ("places.txt", b"# ", b"x"), ("places.txt", b"", b"\0"), ("places.txt", b"", b"0.5*"),
+    ("places.txt", b"0:0.", b"1"))
 HOSTILE_SHAPES = (
     ("(%d, 16)" % HUGE, "1152921504606846976 x 16 numbers"), ("(12, %d)" % HUGE, "1152921504606846976 columns"),
     ("(%d, %d)" % (1 << 32, 1 << 32), "4294967296 columns"),
@@ -1326,23 +1328,24 @@ def greedy(m, definition, t, given):
 def answers(mesh, m, sources, times, pairs):
     """For each command its options, the columns that it must print, and how closely."""
     at, t = ",".join(map(str, sources)), ",".join(map(str, times))
-    each = [(v, x) for v in sources for x in times]
+    both = [(v, x) for v in sources for x in times]
     fields = transposed([FIELDS["waves"](i) for i in range(len(m.x))])
     ends, early = transposed(pairs), times[:2]                # later, distances are small and lose digits
 
     def of_pairs(definition, side="y", shown=early):
         """The columns of pairs, for each time K and d; without times d alone."""
         d = [[m.distance(definition, x, j)[i] for i, j in pairs] for x in shown]
-        return ends + [c for x, row in zip(shown, d) for c in (([m.entry(heat(x), i, j, "x", side) for i, j in pairs], row) if x
-                                                               else (row,))]
+        if not any(shown):
+            return ends + d
+        return ends + [c for x, row in zip(shown, d) for c in ([m.entry(heat(x), i, j, "x", side) for i, j in pairs], row)]
 
     for method in METHODS:
         by = " --method " + method
-        yield "kernel --source %s --t %s" % (at, t) + by, [m.column(heat(x), v) for v, x in each], 1e-7
-        yield "diffuse --input waves-%d.txt --t %s" % (len(m.x), t) + by, [m.applied(heat(x), f) for f in fields
-            for x in times], 1e-7
+        yield "kernel --source %s --t %s" % (at, t) + by, [m.column(heat(x), v) for v, x in both], 1e-7
+        want = [m.applied(heat(x), f) for f in fields for x in times]
+        yield "diffuse --input waves-%d.txt --t %s" % (len(m.x), t) + by, want, 1e-7
         yield "pairs --input p.txt --t %s,%s" % early + by, of_pairs("classical"), 1e-6
-    yield "kernel --kernel symmetric --source %s --t %s" % (at, t), [m.column(heat(x), v, "x", "x") for v, x in each], 1e-7
+    yield "kernel --kernel symmetric --source %s --t %s" % (at, t), [m.column(heat(x), v, "x", "x") for v, x in both], 1e-7
     yield "pairs --kernel symmetric --input p.txt --t %s,%s" % early, of_pairs("classical", "x"), 1e-6
     for option, side in (("", "x"), (" --kernel symmetric", "x"), (" --kernel operator", "y")):
         yield "hks --t " + t + option, [m.diagonal(heat(x), "x", side) for x in times], 2e-7
@@ -1350,9 +1353,9 @@ def answers(mesh, m, sources, times, pairs):
     for definition in DEFINITIONS[:2 if "dirichlet" in mesh else 4]:          # where heat is lost the others may be infinite
         timed = definition in ("classical", "weighted")
         option = " --definition " + definition + (" --t %s,%s" % early if timed else "")
-        yield "distance --source " + at + option, [m.distance(definition, x, v) for v in sources
-                                                   for x in (early if timed else (0,))], 1e-6
-        yield "pairs --input p.txt" + option, of_pairs(definition, shown=early if timed else (0,)), 1e-6
+        shown = early if timed else (0,)
+        yield "distance --source " + at + option, [m.distance(definition, x, v) for v in sources for x in shown], 1e-6
+        yield "pairs --input p.txt" + option, of_pairs(definition, shown=shown), 1e-6
         for given in ([], [13], [13, 2]) if mesh.startswith("patch") else ():     # on others many vertices are as far
             option = (" --t %s" % times[1] if timed else "") + (" --source " + ",".join(map(str, given)) if given else "")
             yield "sample --count 5 --definition " + definition + option, greedy(m, definition, times[1], given), 1e-6
@@ -1673,8 +1676,7 @@ NAMES = (
     ("distance patch-9.off --source 3 --definition commute", "*v3_commute", FIELD_FILES),
     ("geodesic patch-9.off --source 3,8", "v3_1h2,v8_1h2", FIELD_FILES),
     ("geodesic patch-9.off --source 3,8 --nearest", "*nearest_1h2,d_1h2", ("csv",)),
-    ("hks patch-9.off --t 1,2", "hks_1,hks_2", FIELD_FILES),
-    ("hks patch-9.off --filter wave:5,0.4", "*hks_wave", ("csv",)),
+    ("hks patch-9.off --t 1,2", "hks_1,hks_2", FIELD_FILES), ("hks patch-9.off --filter wave:5,0.4", "*hks_wave", ("csv",)),
     ("trace patch-9.off --t 1,2h2,1/l1", "t,trace,bound", ROW_FILES),
     ("pairs patch-9.off --input p.txt --t 1,2", "i,j,K_1,d_1,K_2,d_2", ROW_FILES),
     ("pairs patch-9.off --input p.txt --definition commute", "*i,j,d_commute", ROW_FILES),
@@ -1795,7 +1797,8 @@ class Formats(Case):
 
 # ---- reports ----
 
-# Lines, and what their report has: = to 1e-9 or to the letter, of several a/b, < and not negative, >, ~ to 5 %, # so many, ! nothing.
+# Lines, and what their report has: = exactly, numbers with a point to 1e-9, a/b one of them; < and not negative; >; ~ to 5 %;
+# # so many; ! nothing of the name.
 REPORTS = table(r"""
 info patch-9.off :: n=100 faces=162 boundary_loops=1 components=1 inert=0
 info ico.obj :: boundary_loops=0 area=34.64101615137755 h=2.0 laplacian=fem
