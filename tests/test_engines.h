@@ -258,7 +258,7 @@ static void eng_reports(void) {
         for (q = 0; q < 12; q++) {
             hd_laplacian *on = q % 2 ? held : lap;
             hd_heat *heat = eng_plan(on, eng_methods[k], HD_POLES_DEFAULT, 0);
-            const double t = (q < 6 ? 1 : 300) * on->h * on->h;
+            const double t = (q < 6 ? 1 : 20) * on->h * on->h;
             const int32_t source = on->vertex[on->n_active / 3];
             hd_report rep;
             if (q % 6 < 2) CHECK(eng_ok(heat_column(heat, t, source, u, &rep), &rep, "report"));
@@ -266,7 +266,7 @@ static void eng_reports(void) {
             else CHECK(eng_ok(heat_entries(heat, t, HD_KERNEL_OPERATOR, 2, i, j, u, &rep), &rep, "report"));
             eng_check_report(&rep, eng_methods[k], "report");
             CHECK(rep.error_bound >= rep.error_rational && rep.error_bound >= rep.error_solver && rep.error_bound >= rep.error_rounding);
-            CHECK(rep.evidence_b != HD_EVIDENCE_NONE && rep.evidence_rounding != HD_EVIDENCE_NONE && rep.error_relative == HUGE_VAL);
+            CHECK(rep.evidence_b != HD_EVIDENCE_NONE && rep.evidence_rounding != HD_EVIDENCE_NONE);
             hd_heat_free(heat);
         }
 }
