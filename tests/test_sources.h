@@ -539,9 +539,6 @@ static void src_pairs_degree(void) {
     hd_report rep;
     hd_heat_opts o = eng_opts(HD_METHOD_DIRECT);
     hd_heat *heat = eng_create(lap, &o);
-#ifdef HEATDIFF_IMPLEMENTATION
-    heat->modes.barred = 1;                      /* which would do better here */
-#endif
     CHECK(heat_pairs(heat, HD_DISTANCE_CLASSICAL, t, 3, i, j, NULL, d, &rep) == HD_OK);
     CHECK_MSG(rep.error_bound <= 1e-6 && rep.degree == 14, "degree %d, bound %g: %s", (int)rep.degree, rep.error_bound, rep.reason);
     hd_heat_free(heat);
