@@ -3278,6 +3278,24 @@ static void int_probe_rows(void) {
     free(k);
 }
 
+/* Pairs whose bound by the usual degree is too large take the highest one, as distances do, where eigenpairs are barred. */
+static void int_pairs_degree(void) {
+    hd_laplacian *lap = int_mesh(2, HD_LAPLACIAN_FEM);
+    const int32_t i[3] = {5, 80, 300}, j[3] = {300, 81, 600};
+    hd_heat *heat = NULL;
+    hd_heat_opts o;
+    hd_report rep;
+    double d[3];
+    memset(&o, 0, sizeof o);
+    o.method = HD_METHOD_DIRECT;
+    CHECK(hd_heat_create(&heat, lap, &o, NULL) == HD_OK);
+    heat->modes.barred = 1;
+    CHECK(heat_pairs(heat, HD_DISTANCE_CLASSICAL, 150 * lap->h * lap->h, 3, i, j, NULL, d, &rep) == HD_OK);
+    CHECK_MSG(rep.error_bound <= 1e-6 && rep.degree == 14, "degree %d, bound %g: %s", (int)rep.degree, rep.error_bound, rep.reason);
+    hd_heat_free(heat);
+    hd_laplacian_free(lap);
+}
+
 /* Lists of pairs fall into parts of at most so many vertices, each as long as can be. */
 static void int_pairs_few(void) {
     static const int32_t i[9] = {0, 0, 1, 5, 5, 2, 3, 3, 4}, j[9] = {1, 2, 1, 5, 5, 0, 4, 3, 4};
@@ -3585,6 +3603,7 @@ static void int_all(void) {
     int_silan_bounds();
     int_damages_seen();
     int_probe_rows();
+    int_pairs_degree();
     int_pairs_few();
     int_spectrum_proof();
     int_least_squares();
