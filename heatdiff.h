@@ -30967,7 +30967,6 @@ struct hd_geodesic {
     double *value;               /* [value_size] phi at the sources, by component, ascending */
     hdi_pair *sorted;            /* [value_size] */
     int32_t value_size;
-    int64_t n_staged;            /* fronts visited so far by all stages after the first ones */
     hd_laplacian *lap;           /* of updatable plans, else NULL */
     int32_t *from;               /* [n_faces] which of lap->moving's faces each is; updatable */
     double t_asked, t_in_h2;     /* 0: t_in_h2 h^2 */
@@ -31865,7 +31864,6 @@ static void hdi_geo_stage(hdi_geo_far *w) {
     z.backward = 1;
     hdi_geo_backward(w, &z);
     for (k = 0; k < w->n_fronts; k++) g->active[w->front[k]] = 0;
-    g->n_staged += w->n_fronts;
 }
 
 /* Adds div X of the faces that no earlier stage reached. */

@@ -165,6 +165,7 @@ static void test_tmp_remove(void) {
 #include "test_operators.h"
 #include "test_intrinsic.h"
 #include "test_rational.h"
+#include "test_shared.h"
 #include "test_krylov.h"
 #include "test_heat.h"
 #include "test_points.h"
@@ -178,9 +179,6 @@ static void test_tmp_remove(void) {
 #endif
 #include "test_geodesic.h"
 #include "test_diagonal.h"
-#ifdef HEATDIFF_IMPLEMENTATION
-#include "test_forms.h"
-#endif
 #include "test_operators_all.h"
 #include "test_picture.h"
 #include "test_bounds.h"
@@ -209,13 +207,11 @@ typedef struct test_group { const char *name; void (*run)(void); int shard; } te
 static const test_group test_groups[] = {
     {"filters", test_filters, 1}, {"heat", test_heat, 1}, {"lengths", test_lengths, 1}, {"view", test_view, 1},
     {"platform", test_platform, 1}, {"cases", test_cases, 1}, {"moving", test_moving, 1}, {"doors", test_doors, 1}, {"rational", test_rational, 1},
+    {"shared", test_shared, 1},
     {"krylov", test_krylov, 1}, {"base", test_base, 1}, {"sparse", test_sparse, 1},
     {"engines", test_engines, 2}, {"estimate", test_estimate, 2},
     {"points", test_points, 3}, {"deep", test_deep, 3}, {"diagonal", test_diagonal, 3}, {"spectrum", test_spectrum, 3},
     {"large_t", test_large_t, 3},
-#ifdef HEATDIFF_IMPLEMENTATION
-    {"forms", test_forms, 3},
-#endif
     {"geodesic", test_geodesic_all, 4}, {"ldl", test_ldl, 4}, 
 #ifdef HEATDIFF_IMPLEMENTATION
     {"threads", test_threads, 4},

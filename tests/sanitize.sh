@@ -103,7 +103,7 @@ int main(int c, char **v) { char *p = (char *)malloc(4); (void)v; p[3 + c] = 1; 
   gcc $flags "$top/tests/internals.c" -o "$work/internals" -lm
   # two at a time: the group that takes about as long as all others with internals, and those
   long=failures
-  slow="engines diagonal forms estimate filters points deep bounds signatures spectrum ldl geodesic"
+  slow="engines diagonal estimate filters points deep bounds signatures spectrum ldl geodesic"
   rest=$("$work/runner" --list | grep -vxF "$(printf '%s\n' $long $slow)")
   [ "$mode" != all ] || long="$long $slow"
   mkdir "$work/a" "$work/b"

@@ -16,11 +16,11 @@ top=$(cd "$(dirname "$0")/.." && pwd)
 # Groups. most leaves out those that take minutes without optimisation; core is what an emulator does in half a minute, with every
 # method in `platform`. fast is what -ffast-math leaves (builds.sh has NaN in the input). x87 is what asks neither for bits, nor for
 # bounds near rounding, nor for what is zero up to it: see Limits in heatdiff.h.
-all="base sparse operators rational intrinsic ldl engines krylov heat robust points assembly polygon geodesic diagonal forms \
+all="base sparse operators rational shared intrinsic ldl engines krylov heat robust points assembly polygon geodesic diagonal \
 everywhere picture meshio bounds platform"
 most="base sparse operators rational intrinsic ldl krylov heat robust assembly polygon picture meshio platform"
 core="base sparse rational krylov meshio platform"
-x87="base sparse operators intrinsic ldl engines krylov heat robust assembly diagonal forms everywhere picture platform"
+x87="base sparse operators intrinsic ldl engines krylov heat robust assembly diagonal everywhere picture platform"
 fast="base sparse heat platform"
 
 multilib=gcc-$(gcc -dumpversion 2>/dev/null | cut -d. -f1)-multilib
