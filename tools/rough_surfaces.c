@@ -83,7 +83,7 @@ static void hold_least(const char *operator_name, const char *what, int64_t weig
                        struct least page) {
     hold(operator_name, what, (double)weights, page.weights, 0);
     if (own_mesh || (page.value < 0 ? value < page.value / 2 && value > 2 * page.value
-                                    : value >= -fmin(bound, 2e-8) * 1.01 && bound < 1e-5)) return;
+                                    : value >= -fmin(bound, 3e-8) && bound < 1e-5)) return;
     fprintf(stderr, "rough_surfaces: %s, %s: least value %.3g within %.3g, where tools/README.md says %.3g\n",
             operator_name, what, value, bound, page.value);
     wrong++;
