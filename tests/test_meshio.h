@@ -252,37 +252,25 @@ static void tmio_test_obj(void) {
         {"d.obj", "\t v\t0 0\t0  \n  v 1 0 0\nv 0 1 0\n f  1  2  3  ", "OBJ:" TRIANGLE},
         {"e.obj", "\357\273\277v 0 0 0\nv 1 0 0\n", "OBJ: 0 0 0, 1 0 0"},
         {"f.obj", "v 1e0 -1.5E-3 +2\nv .5 5. 0\nv 0 0 0#c\nf 1 2 3#c\n", "OBJ: 1 -0.0015 2, 0.5 5 0, 0 0 0 | 0 1 2"},
-        {"a.obj", OBJ3 "fo 1 2 3\n", "OBJ:" TRIANGLE},
-        {"a.obj", OBJ3 "fog 1 2 3\nf 1 2 3\n", "OBJ:" TRIANGLE},
+        {"a.obj", OBJ3 "fo 1 2 3\n", "OBJ:" TRIANGLE}, {"a.obj", OBJ3 "fog 1 2 3\nf 1 2 3\n", "OBJ:" TRIANGLE},
         {"a.obj", OBJ3 "f 1 2 3\nf", "OBJ:" TRIANGLE " | 1"},
         {"a", "about\nv\t1 2 3\nf\t1 1 1\n", "OBJ: 1 2 3 | 0 0 0"}};          /* the second line tells */
     static const tmio_bad bad[] = {
-        {"x.obj", OBJ3 "f 1 2 3\nf 1 2 99999999\n", 5, "99999999"},
-        {"x.obj", OBJ3 "f 1 2 4\nv 0 0\n", 5, "3 coordinates"},
-        {"x.obj", OBJ3 "f 1 2 99999999999999999999\nf 1 2 5", 4, "9999999999"},
-        {"x.obj", OBJ3 "f 1 2 0\n", 4, "index 0"},
-        {"x.obj", OBJ3 "\nf 1 2 -4\n", 5, "-4"},
-        {"x.obj", OBJ3 "f 1 2 9\n", 4, "3 vertices"},
-        {"x.obj", OBJ3 "f 1 2\nf 1 9\n", 5, "9"},
-        {"x.obj", OBJ3 "f 1 2 3x\n", 4, "'3x'"},
-        {"x.obj", OBJ3 "f 1 2 1.5\n", 4, "'1.5'"},
-        {"x.obj", "v 0 0 0\r\nv nan 0 0\r\n", 2, "'nan' is not a finite"},
+        {"x.obj", OBJ3 "f 1 2 3\nf 1 2 99999999\n", 5, "99999999"}, {"x.obj", OBJ3 "f 1 2 4\nv 0 0\n", 5, "3 coordinates"},
+        {"x.obj", OBJ3 "f 1 2 99999999999999999999\nf 1 2 5", 4, "9999999999"}, {"x.obj", OBJ3 "f 1 2 0\n", 4, "index 0"},
+        {"x.obj", OBJ3 "\nf 1 2 -4\n", 5, "-4"}, {"x.obj", OBJ3 "f 1 2 9\n", 4, "3 vertices"},
+        {"x.obj", OBJ3 "f 1 2\nf 1 9\n", 5, "9"}, {"x.obj", OBJ3 "f 1 2 3x\n", 4, "'3x'"},
+        {"x.obj", OBJ3 "f 1 2 1.5\n", 4, "'1.5'"}, {"x.obj", "v 0 0 0\r\nv nan 0 0\r\n", 2, "'nan' is not a finite"},
         {"x.obj", "v 0 0 0\rv 0 -Infinity 0\r", 2, "'-Infinity' is not a finite"},
         {"x.obj", "v 0 0 1e999\n", 1, "'1e999' is too large"},
         {"x.obj", "v 0 0 0\nv 1 0 \\\n 0\nv 0 \001two\200 0", 4, "'?two?' is not a number"},
-        {"x.obj", "v 0 0 0\nv 1 0 0\nv 0 1\nf 1 2 3\n", 3, "this line has 2"},
-        {"x.obj", "v 0 0 0\nv", 2, "this line has 0"},
-        {"x.obj", "v 0 0 0\nv 0 1 # 2\n", 2, "this line has 2"},
-        {"x.obj", "v 0 0 0x10\n", 1, "'0x10'"},
+        {"x.obj", "v 0 0 0\nv 1 0 0\nv 0 1\nf 1 2 3\n", 3, "this line has 2"}, {"x.obj", "v 0 0 0\nv", 2, "this line has 0"},
+        {"x.obj", "v 0 0 0\nv 0 1 # 2\n", 2, "this line has 2"}, {"x.obj", "v 0 0 0x10\n", 1, "'0x10'"},
         {"x.obj", "v 0 0 1234567890123456789012345678901234567890123456789x\n", 1, "'1234567890123456789012345678901234567...'"},
-        {"x.obj", "# nothing here\n", 0, "no vertices found"},
-        {"x.obj", "f 1 2 3\n", 0, "no vertices found"},
-        {"x.obj", "", 0, "no vertices found"},
-        {"x.dat", "", 0, "no vertices found"},
-        {"x.obj", "v 0 0 \fb 0\f 1\n\fb 0", 1, "'?' is not a number"},
-        {"x.obj", "v nab 0 0\nv 1 0 0\nf 1 2 1\n", 1, "'nab'"},
-        {"x.obj", "v inx 0 0\nv 1 0 0\nf 1 2 1\n", 1, "'inx'"},
-        {"x.obj", "v n 0 0\nv 1 0 0\nf 1 2 1\n", 1, "'n'"},
+        {"x.obj", "# nothing here\n", 0, "no vertices found"}, {"x.obj", "f 1 2 3\n", 0, "no vertices found"},
+        {"x.obj", "", 0, "no vertices found"}, {"x.dat", "", 0, "no vertices found"},
+        {"x.obj", "v 0 0 \fb 0\f 1\n\fb 0", 1, "'?' is not a number"}, {"x.obj", "v nab 0 0\nv 1 0 0\nf 1 2 1\n", 1, "'nab'"},
+        {"x.obj", "v inx 0 0\nv 1 0 0\nf 1 2 1\n", 1, "'inx'"}, {"x.obj", "v n 0 0\nv 1 0 0\nf 1 2 1\n", 1, "'n'"},
         {"x", "about\nv  \nv of\n", 0, "neither the content nor the name"}};
     TMIO_GOOD(good, TMIO_MESH);
     TMIO_BAD(bad, TMIO_MESH);
@@ -309,10 +297,8 @@ static void tmio_test_off(void) {
     static const tmio_bad bad[] = {
         {"x.off", OFF4("4 1 0") "3 0 1 4\n", 7, "4 is out of range"},
         {"x.off", OFF4("4 1 0") "3 0 1 -1\n", 7, "-1 is out of range"},
-        {"x.off", OFF4("4 2 0") "3 0 1 2\n", 8, "before face 2 of 2"},
-        {"x.off", OFF4("4 1 0") "3 0 1\n", 7, "has only 2"},
-        {"x.off", OFF4("4 1 0") "3 0 1 b\n", 7, "'b'"},
-        {"x.off", OFF4("4 1 0") "-3 0 1 2\n", 7, "'-3'"},
+        {"x.off", OFF4("4 2 0") "3 0 1 2\n", 8, "before face 2 of 2"}, {"x.off", OFF4("4 1 0") "3 0 1\n", 7, "has only 2"},
+        {"x.off", OFF4("4 1 0") "3 0 1 b\n", 7, "'b'"}, {"x.off", OFF4("4 1 0") "-3 0 1 2\n", 7, "'-3'"},
         {"x.off", OFF4("4 1 0") "4000000000 0 1 2\n", 7, "'4000000000'"},
         {"x.off", OFF4("6 1 0") "3 0 1 2\n", 8, "before vertex 6 of 6"},
         {"x.off", "OFF\n3 1 0\n0 0 0\n1 0\n0 1 0\n3 0 1 2\n", 4, "this line has 2"},
@@ -320,14 +306,10 @@ static void tmio_test_off(void) {
         {"x.off", "OFF\n3000000000 1 0\n0 0 0\n", 2, "3000000000 vertices are more"},
         {"x.off", "OFF\n1 99999999999999999999 0\n0 0 0\n", 2, "faces"},
         {"x.off", "OFF\n2000000000 2000000000 0\n0 0 0\n", 4, "before vertex 2 of 2000000000"},
-        {"x.off", "OFF\n-1 1 0\n0 0 0\n", 2, "'-1'"},
-        {"x.off", "OFF\nx\n", 2, "'x'"},
-        {"x.off", "OFF\n", 2, "number of vertices"},
-        {"x.off", "OFF 1", 1, "number of faces"},
-        {"x.off", "OFF\n0 0 0\n", 0, "no vertices found"},
-        {"x.off", "OFF BINARY\n3 1 0\n", 1, "binary"},
-        {"x.off", "nOFF\n3\n3 1 0\n", 1, "nOFF"},
-        {"x.off", "4nOFF\n3 1 0\n", 1, "nOFF"}};
+        {"x.off", "OFF\n-1 1 0\n0 0 0\n", 2, "'-1'"}, {"x.off", "OFF\nx\n", 2, "'x'"},
+        {"x.off", "OFF\n", 2, "number of vertices"}, {"x.off", "OFF 1", 1, "number of faces"},
+        {"x.off", "OFF\n0 0 0\n", 0, "no vertices found"}, {"x.off", "OFF BINARY\n3 1 0\n", 1, "binary"},
+        {"x.off", "nOFF\n3\n3 1 0\n", 1, "nOFF"}, {"x.off", "4nOFF\n3 1 0\n", 1, "nOFF"}};
     TMIO_GOOD(good, TMIO_MESH);
     TMIO_BAD(bad, TMIO_MESH);
 }
@@ -335,28 +317,19 @@ static void tmio_test_off(void) {
 static void tmio_test_xyz(void) {
     static const tmio_good good[] = {
         {"a.xyz", "# c\n// c\n0 0 0\n1,2,3\n1, 2 ,4 9 9\n\n 5\t6\t7 # c", "XYZ: 0 0 0, 1 2 3, 1 2 4, 5 6 7"},
-        {"b.xyz", "2\n0 0 0\r\n1 0 0", "XYZ: 0 0 0, 1 0 0"},
-        {"c", "0 0 0\n1 0 0\n", "XYZ: 0 0 0, 1 0 0"},
+        {"b.xyz", "2\n0 0 0\r\n1 0 0", "XYZ: 0 0 0, 1 0 0"}, {"c", "0 0 0\n1 0 0\n", "XYZ: 0 0 0, 1 0 0"},
         {"d.xyz", "3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "XYZ: 3 1 0, 0 0 0, 1 0 0, 0 1 0, 3 0 1"},      /* would be OFF, but for its name */
-        {"e.obj", "0.5 0 0\n1 0 0\n", "XYZ: 0.5 0 0, 1 0 0"},
-        {"f.txt", "4 0 0\n1 0 0\n1 1 0\n", "XYZ: 4 0 0, 1 0 0, 1 1 0"},
+        {"e.obj", "0.5 0 0\n1 0 0\n", "XYZ: 0.5 0 0, 1 0 0"}, {"f.txt", "4 0 0\n1 0 0\n1 1 0\n", "XYZ: 4 0 0, 1 0 0, 1 1 0"},
         {"a.xyz", "// points\n2\n1;2;3\n4,5,6\n", "XYZ: 1 2 3, 4 5 6"},
         {"a.dat", "3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n5 5 5\n",                                           /* one line too much for an OFF */
             "XYZ: 3 1 0, 0 0 0, 1 0 0, 0 1 0, 3 0 1, 5 5 5"}};
     static const tmio_bad bad[] = {
-        {"x.xyz", "0 0 0\n1 0\n", 2, "this line has 2"},
-        {"x.xyz", "0 0 0\n\n1 0 a\n", 3, "'a' is not a number"},
+        {"x.xyz", "0 0 0\n1 0\n", 2, "this line has 2"}, {"x.xyz", "0 0 0\n\n1 0 a\n", 3, "'a' is not a number"},
         {"x.xyz", "0 0 0\n1 0 NaN\n", 2, "'NaN' is not a finite"},
-        {"x.xyz", "5\n0 0 0\n1 0 0\n", 1, "5 points are announced, 2 found"},
-        {"x.xyz", "# c\n", 0, "no vertices found"},
-        {"x.xyz", "C 0 0 0\n", 1, "'C'"},
-        {"x.xyz", "1 2 3\n/ 5 6\n", 2, "'/'"},
-        {"x.xyz", "1 2 \\\n3\n", 1, "'\\'"},
-        {"x.csv", "x,y,z\n", 1, "'x'"},
-        {"x.pts", "x y z\n", 1, "'x'"},
-        {"x.dat", "# nothing\n", 0, "nothing but comments"},
-        {"x.dat", "what is this\n", 0, "OBJ, OFF, PLY, STL, XYZ"},
-        {"x.dat", "\037\213\010", 0, "gzip"},
+        {"x.xyz", "5\n0 0 0\n1 0 0\n", 1, "5 points are announced, 2 found"}, {"x.xyz", "# c\n", 0, "no vertices found"},
+        {"x.xyz", "C 0 0 0\n", 1, "'C'"}, {"x.xyz", "1 2 3\n/ 5 6\n", 2, "'/'"}, {"x.xyz", "1 2 \\\n3\n", 1, "'\\'"},
+        {"x.csv", "x,y,z\n", 1, "'x'"}, {"x.pts", "x y z\n", 1, "'x'"}, {"x.dat", "# nothing\n", 0, "nothing but comments"},
+        {"x.dat", "what is this\n", 0, "OBJ, OFF, PLY, STL, XYZ"}, {"x.dat", "\037\213\010", 0, "gzip"},
         {"x.obj", "\037\213\010", 0, "gzip"},
         {"x.obj", "\377\376v\fb 0\f \fb 0\f0\fb 0\f \fb 0\f1\fb 0\f \fb 0\f2\fb 0\f\n", 0, "UTF-16"},
         {"x.off", "\376\377\fb 0\fO\fb 0\fF\fb 0\fF", 0, "UTF-16"}};
@@ -390,10 +363,8 @@ static void tmio_test_ply_ascii(void) {
         {"a.ply", PLY1 "element face 0\nproperty int q\nend_header\n1 2 3\n", "PLY ascii: 1 2 3"}};
     static const tmio_bad bad[] = {
         {"x.ply", PLY3_FACE XYZ3 "3 0 1 3\n", 15, "3 is out of range"},
-        {"x.ply", PLY3_FACE XYZ3 "3 0 1\n", 15, "too few numbers for face 0"},
-        {"x.ply", PLY3_FACE XYZ3 "-3 0 1 2\n", 15, "-3"},
-        {"x.ply", PLY3_FACE XYZ3 "3 0 1 1.5\n", 15, "1.5"},
-        {"x.ply", PLY3_FACE XYZ3 "4000000000 0 1\n", 15, "4000000000"},
+        {"x.ply", PLY3_FACE XYZ3 "3 0 1\n", 15, "too few numbers for face 0"}, {"x.ply", PLY3_FACE XYZ3 "-3 0 1 2\n", 15, "-3"},
+        {"x.ply", PLY3_FACE XYZ3 "3 0 1 1.5\n", 15, "1.5"}, {"x.ply", PLY3_FACE XYZ3 "4000000000 0 1\n", 15, "4000000000"},
         {"x.ply", PLY3 "end_header\n0 0 0\n1 0 0 0\n0 1 0\n", 11, "more numbers"},
         {"x.ply", PLY3 "end_header\n0 0 0\n1 0\n0 1 0\n", 11, "too few numbers for vertex 1"},
         {"x.ply", PLY3 "end_header\n0 0 0\n1 0 0\n", 12, "ends inside vertex 2"},
@@ -409,16 +380,13 @@ static void tmio_test_ply_ascii(void) {
         {"x.ply", ASCII "element vertex -1\n", 3, "'-1'"},
         {"x.ply", ASCII "element vertex 1\nproperty float x\nproperty float y\nend_header\n0 0\n", 3, "no property 'z'"},
         {"x.ply", ASCII "element vertex 1\nproperty flout x\n", 4, "'flout'"},
-        {"x.ply", ASCII "element vertex 1\nproperty\n", 4, "missing"},
-        {"x.ply", ASCII "element vertex\n", 3, "missing"},
+        {"x.ply", ASCII "element vertex 1\nproperty\n", 4, "missing"}, {"x.ply", ASCII "element vertex\n", 3, "missing"},
         {"x.ply", ASCII "element vertex 1\nelement vertex 1\n", 4, "second"},
         {"x.ply", ASCII "property float x\n", 3, "before the first element"},
         {"x.ply", ASCII "element face 1\nproperty list float int vertex_indices\n", 4, "integer"},
-        {"x.ply", "ply\nformat morse 1.0\n", 2, "'morse'"},
-        {"x.ply", "ply\nfromat ascii 1.0\n", 2, "'fromat'"},
+        {"x.ply", "ply\nformat morse 1.0\n", 2, "'morse'"}, {"x.ply", "ply\nfromat ascii 1.0\n", 2, "'fromat'"},
         {"x.ply", "ply\nelement vertex 0\nend_header\n", 3, "which format"},
-        {"x.ply", ASCII "element vertex 1\n", 4, "inside the header"},
-        {"x.ply", ASCII "end_header\n", 0, "no vertices found"},
+        {"x.ply", ASCII "element vertex 1\n", 4, "inside the header"}, {"x.ply", ASCII "end_header\n", 0, "no vertices found"},
         {"x.ply", "plx\n", 1, "'ply'"}};
     TMIO_GOOD(good, TMIO_MESH);
     TMIO_BAD(bad, TMIO_MESH);
@@ -531,25 +499,13 @@ static void tmio_test_table_text(void) {
     static const tmio_bad bad_fields[] = {
         {"a.txt", "1\ninfinit\n", 2, ""}, {"a.txt", "1\n1e999\n", 2, ""}, {"a.txt", "1\nnana\n", 2, ""}, {"a.txt", "1\n- inf\n", 2, ""}};
     static const tmio_bad bad[] = {
-        {"x.csv", "a 1\n2 3\n", 1, "'a'"},
-        {"x.csv", "nan,b\n2,3\n", 1, "'nan'"},
-        {"x.csv", "a,-Inf\n2,3\n", 1, "'a'"},
-        {"x.csv", "a,-nan\n2,3\n", 1, "'a'"},
-        {"x.csv", "a,+inf\n2,3\n", 1, "'a'"},
-        {"x.csv", "a,b\nc,d\n", 2, "'c'"},
-        {"x.csv", "a,b\n", 0, "no numbers"},
-        {"x.txt", "1 2\n3\n", 2, "1 columns, but 2"},
-        {"x.txt", "1 2\n3 zwei\n", 2, "'zwei'"},
-        {"x.txt", "1 2\n3 nan\n", 2, "'nan'"},
-        {"x.txt", "1 2\n\n3 -inf\n", 3, "'-inf'"},
-        {"x.csv", "1,,2\n", 1, "comma"},
-        {"x.csv", "1,2,\n", 1, "comma"},
-        {"x.csv", "1,2\n,3\n", 2, "comma"},
-        {"x.csv", "1;2\n", 1, "';'"},
-        {"x.csv", "\377\3761\fb 0\f,\fb 0\f2\fb 0\f\n", 0, "UTF-16"},
-        {"x.txt", "\037\213\010", 0, "gzip"},
-        {"x.txt", "", 0, "no numbers"},
-        {"x.txt", "# c\n\n", 0, "no numbers"}};
+        {"x.csv", "a 1\n2 3\n", 1, "'a'"}, {"x.csv", "nan,b\n2,3\n", 1, "'nan'"}, {"x.csv", "a,-Inf\n2,3\n", 1, "'a'"},
+        {"x.csv", "a,-nan\n2,3\n", 1, "'a'"}, {"x.csv", "a,+inf\n2,3\n", 1, "'a'"}, {"x.csv", "a,b\nc,d\n", 2, "'c'"},
+        {"x.csv", "a,b\n", 0, "no numbers"}, {"x.txt", "1 2\n3\n", 2, "1 columns, but 2"},
+        {"x.txt", "1 2\n3 zwei\n", 2, "'zwei'"}, {"x.txt", "1 2\n3 nan\n", 2, "'nan'"}, {"x.txt", "1 2\n\n3 -inf\n", 3, "'-inf'"},
+        {"x.csv", "1,,2\n", 1, "comma"}, {"x.csv", "1,2,\n", 1, "comma"}, {"x.csv", "1,2\n,3\n", 2, "comma"},
+        {"x.csv", "1;2\n", 1, "';'"}, {"x.csv", "\377\3761\fb 0\f,\fb 0\f2\fb 0\f\n", 0, "UTF-16"},
+        {"x.txt", "\037\213\010", 0, "gzip"}, {"x.txt", "", 0, "no numbers"}, {"x.txt", "# c\n\n", 0, "no numbers"}};
     double *v;
     int64_t r;
     int32_t c;
@@ -577,25 +533,21 @@ static void tmio_test_table_npy(void) {
         {"x.npy", NPY("1", "<f8", "False", "(2, 1)") "\fd 1", 0, "2 x 1"},
         {"x.npy", NPY("1", "<f8", "False", "(2, 1)") "\fd 1 q 9221120237041090560", 0, "row 1, column 0"},     /* a NaN */
         {"x.npy", "\223NUMPY\1\fb 0 63", 0, "inside the header"},
-        {"x.npy", "\223NUMPY\1\fb 0 63 0\f{'descr': '<f8', 'fo", 0, "inside the header"},
-        {"x.npy", "1 2\n", 0, "not a .npy"},
+        {"x.npy", "\223NUMPY\1\fb 0 63 0\f{'descr': '<f8', 'fo", 0, "inside the header"}, {"x.npy", "1 2\n", 0, "not a .npy"},
         {"x.npy", NPY("1", "<c8", "False", "(1,)"), 0, "type"},
         {"x.npy", NPY("1", "<f8", "False", "(1, 1, 1)"), 0, "3 dimensions"},
-        {"x.npy", NPY("1", "<f8", "False", "()"), 0, "0 dimensions"},
-        {"x.npy", NPY("1", "<f8", "False", "(0, 3)"), 0, "empty"},
+        {"x.npy", NPY("1", "<f8", "False", "()"), 0, "0 dimensions"}, {"x.npy", NPY("1", "<f8", "False", "(0, 3)"), 0, "empty"},
         {"x.npy", NPY("1", "<f8", "False", "(3, 0)"), 0, "empty"},
         {"x.npy", NPY("1", "<f8", "False", "(999999999999999, 999999999)"), 0, "announced"},
         {"x.npy", NPY("1", "<f8", "False", "(1152921504606846976, 16)"), 0, "1152921504606846976 x 16 numbers"},
         {"x.npy", NPY("1", "<f8", "False", "(9223372036854775808, 16)"), 0, "announces 9223372036854775808, more"},
-        {"x.npy", NPY("1", "<f8", "Maybe", "(1,)"), 0, "order"},
-        {"x.npy", NPY("9", "<f8", "False", "(1,)"), 0, "version 9"},
+        {"x.npy", NPY("1", "<f8", "Maybe", "(1,)"), 0, "order"}, {"x.npy", NPY("9", "<f8", "False", "(1,)"), 0, "version 9"},
         {"x.npy", "npy1{'descr'", 0, "the type of its numbers"},
         {"x.npy", "npy1{'descr': <f8', 'fortran_order': False, 'shape': (1,), }", 0, "the type of its numbers"},
         {"x.npy", "npy1{'descr': '<f", 0, "the type of its numbers"},
         {"x.npy", "npy1{'descr': 'f8'  , 'shape': (1,)}", 0, "the type of its numbers"},
         {"x.npy", "npy1{'descr': '|b1 ', 'shape': (1,)}", 0, "the type of its numbers"},
-        {"x.npy", "npy1{'descr':  ", 0, "the type of its numbers"},
-        {"x.npy", "npy1{'descr' : :", 0, "the type of its numbers"}};
+        {"x.npy", "npy1{'descr':  ", 0, "the type of its numbers"}, {"x.npy", "npy1{'descr' : :", 0, "the type of its numbers"}};
     static const struct { char version; const char *order, *shape, *values, *holds; } layouts[] = {
         {'1', "False", "(3, 2)", "0 3 1 4 2 5", "3 x 2: 0 1 2 3 4 5"}, {'2', "True", "(3, 2)", "0 1 2 3 4 5", "3 x 2: 0 1 2 3 4 5"},
         {'3', "False", "(6,)", "0 1 2 3 4 5", "6 x 1: 0 1 2 3 4 5"}};
@@ -620,8 +572,6 @@ static void tmio_test_table_npy(void) {
 typedef struct tmio_sample {
     mio_mesh m;
     double xyz[18], values[12];
-    int64_t ptr[4];
-    int32_t idx[12], id0[6], id1[6];
     const int32_t *ids[2];
     const char *names[2];
     uint8_t rgb[18];
@@ -629,36 +579,25 @@ typedef struct tmio_sample {
 } tmio_sample;
 
 static void tmio_sample_make(tmio_sample *s) {
-    static const int32_t idx[12] = {0, 1, 2, 0, 2, 3, 4, 4, 3, 2, 1, 5};
+    static int32_t idx[12] = {0, 1, 2, 0, 2, 3, 4, 4, 3, 2, 1, 5}, ids[2][6] = {{0, 1, 2, 3, 4, 5}, {0, -100, -200, -300, -400, -500}};
+    static int64_t ptr[4] = {0, 3, 7, 12};
+    const mio_mesh m = {6, s->xyz, 3, ptr, idx, NULL, 0};
     int i;
     memset(s, 0, sizeof *s);
+    s->m = m;
     for (i = 0; i < 18; i++) {
         s->xyz[i] = (i * 7 % 11) / 3.0 - 1;
         s->rgb[i] = (uint8_t)(i * 15);
     }
     for (i = 0; i < 12; i++) s->values[i] = i == 4 ? 0 : 1e-7 / (i + 1) - 0.1 * (i > 6);
-    memcpy(s->idx, idx, sizeof idx);
-    for (i = 0; i < 6; i++) {
-        s->id0[i] = i;
-        s->id1[i] = -100 * i;
-    }
-    s->ptr[1] = 3;
-    s->ptr[2] = 7;
-    s->ptr[3] = 12;
-    s->m.n = 6;
-    s->m.xyz = s->xyz;
-    s->m.n_faces = 3;
-    s->m.face_ptr = s->ptr;
-    s->m.face_idx = s->idx;
-    s->ids[0] = s->id0;
-    s->ids[1] = s->id1;
+    s->ids[0] = ids[0];
+    s->ids[1] = ids[1];
     s->names[0] = "t < 1 & \"two\"";
     s->names[1] = "second";
     s->o.ids = s->ids;
-    s->o.rows = 6;
+    s->o.rows = s->o.ld = 6;
     s->o.cols = 2;
     s->o.values = s->values;
-    s->o.ld = 6;
 }
 
 /* Writes the sample into a file, and gets the whole of it, which must fit. The caller removes it. */

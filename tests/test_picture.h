@@ -335,7 +335,7 @@ typedef struct tpic_images { pic_image image[4]; int n; } tpic_images;
 
 static const pic_image *tpic_draw(tpic_images *all, const pic_panel *p, int32_t n, const pic_opts *o, const char *what) {
     pic_image *const img = &all->image[all->n++];
-    const int status = pic_render_grid(img, p, n, o);
+    const int status = n == 1 ? pic_render(img, p, o) : pic_render_grid(img, p, n, o);
     CHECK_MSG(status == PIC_OK && img->rgb, "%s: status %d", what, status);
     return img;
 }
@@ -352,7 +352,7 @@ static void tpic_fine(const pic_panel *p, int32_t n, const pic_opts *o, const ch
 
 static int tpic_refused(const pic_panel *p, int32_t n, const pic_opts *o) {
     pic_image img;
-    return pic_render_grid(&img, p, n, o) == PIC_ERR_ARGUMENT && !img.rgb;
+    return (n == 1 && p ? pic_render(&img, p, o) : pic_render_grid(&img, p, n, o)) == PIC_ERR_ARGUMENT && !img.rgb;
 }
 
 static int tpic_equal(const pic_image *a, const pic_image *b) {

@@ -119,11 +119,11 @@ class Dense(unittest.TestCase):
     """Columns, signatures and distances at several times against SciPy's expm of -t B^-1 L."""
 
     def near(self, heat, got, want, tol):
-        """Within tol; where that is None, within the bound that the plan reports, which is a small one."""
+        """Each column within tol; where that is None, within the bound that the plan reports, which is a small one."""
         if tol is None:
             self.assertLess(heat.report["error_bound"], 1e-4)
             tol = heat.report["error_bound"] + 1e-12
-        self.assertLess(abs(got - want).max(), tol * abs(want).max())
+        self.assertTrue(np.all(abs(got - want).max(axis=0) <= tol * abs(want).max(axis=0)))
 
     def check(self, lap, L, B, times, free=None, tol=1e-7):
         """free: the vertices that are not held at zero. As heat fades there, bounds relative to what is left grow: tol is None."""
@@ -140,9 +140,8 @@ class Dense(unittest.TestCase):
             k[part] = np.linalg.solve(B[part], K[part].T)               # K B^-1, as B is symmetric
             W[part] = B[part] @ K[part] @ K[part]
             f = np.sin(np.arange(n))
-            for q, s in enumerate(sources):
-                for symmetric, want in ((False, K), (True, k)):
-                    self.near(heat, heat.columns(t, sources, symmetric=symmetric)[:, q], want[:, s], tol)
+            for symmetric, want in ((False, K), (True, k)):
+                self.near(heat, heat.columns(t, sources, symmetric=symmetric), want[:, sources], tol)
             self.near(heat, heat.diagonal(t)[:, 0], np.diag(k), tol)
             self.assertLess(abs(heat.diagonal(t)[free, 0] / np.diag(k)[free] - 1).max(), 1e-6 if tol else 1e-3)
             self.assertLess(abs(heat.apply(t, f)[:, 0] - K @ f).max(), 1e-7)
