@@ -905,7 +905,7 @@ static void tmio_test_failed_reads(void) {
 }
 
 /* A large file of one row again and again, between a beginning and an end. */
-typedef struct tmio_large { const char *name, *head, *row; size_t head_size, row_size; const char *tail; } tmio_large;
+typedef struct tmio_large { const char *name, *head, *row, *tail; } tmio_large;
 
 /* Loads it; stop is asked so many times before it says so. Returns the status. */
 static int tmio_load_large(const tmio_large *x, int asked) {
@@ -929,35 +929,27 @@ static int tmio_load_large(const tmio_large *x, int asked) {
 
 /* Loading something large stops wherever it is asked to, whatever the format. */
 static void tmio_test_stop(void) {
-    static const char binary[] = BINARY("little") "element vertex 70000\n" XYZ("float") "end_header\n";
-    static const char faces[] = BINARY("little") "element vertex 3\n" XYZ("char") "element face 70000\n" LIST("uchar", "int")
-                                "end_header\n\0\0\0\0\0\0\0\0";
-    static const char ascii[] = ASCII "element vertex 70000\n" XYZ("float") "end_header\n";
-    static const char facet[] = "facet normal 0 0 1 outer loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop endfacet\n";
-    static const char npy[] = "\x93NUMPY\1\0\x3c\0{'descr': '<f8', 'fortran_order': False, 'shape': (70000,)} \n";
-    static const char zeros[96] = "";
-    static char stl[84];
-    const tmio_large all[] = {
-        {"l.obj", "", "v 1 2 3\n", 0, 8, ""}, {"l.off", "OFF\n70000 0 0\n", "1 2 3\n", 14, 6, ""},
-        {"l.ply", ascii, "1 2 3\n", sizeof ascii - 1, 6, ""}, {"v.ply", binary, zeros, sizeof binary - 1, 12, ""},
-        {"f.ply", faces, "\3\0\0\0\0\1\0\0\0\2\0\0\0", sizeof faces, 13, ""},
-        {"l.stl", "solid\n", facet, 6, sizeof facet - 1, "endsolid\n"}, {"b.stl", stl, zeros, 84, 50, ""},
-        {"l.xyz", "", "1 2 3\n", 0, 6, ""}, {"table.txt", "", "1 2\n", 0, 4, ""}, {"table.npy", npy, zeros, sizeof npy - 1, 8, ""}};
+    static const tmio_large all[] = {
+        {"l.obj", "", "v 1 2 3\n", ""}, {"l.off", "OFF\n70000 0 0\n", "1 2 3\n", ""}, {"l.xyz", "", "1 2 3\n", ""},
+        {"l.ply", ASCII "element vertex 70000\n" XYZ("float") "end_header\n", "1 2 3\n", ""},
+        {"v.ply", BINARY("little") "element vertex 70000\n" XYZ("float") "end_header\n", "\f@12", ""},
+        {"f.ply", BINARY("little") "element vertex 3\n" XYZ("char") "element face 70000\n" LIST("uchar", "int") "end_header\n\fb 0 0 0 0 0 0 0 0 0",
+            "\fb 3 i 0 1 2", ""},
+        {"l.stl", "solid\n", "facet normal 0 0 1 outer loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop endfacet\n", "endsolid\n"},
+        {"b.stl", "\f@80 i 70000", "\f@50", ""}, {"table.txt", "", "1 2\n", ""}, {"table.npy", NPY("1", "<f8", "False", "(70000,)"), "\f@8", ""}};
     size_t k;
-    int32_t i;
-    int asked;
-    memcpy(stl + 80, "\x70\x11\x01", 4);           /* 70000 triangles */
-    for (k = 0; k < sizeof all / sizeof all[0]; k++) {
-        const tmio_large *const x = all + k;
-        FILE *const f = fopen(tmio_path(x->name), "wb");
+    int i, asked;
+    for (k = 0; k < sizeof all / sizeof *all; k++) {
+        const tmio_bytes *const head = tmio_make(all[k].head), *const row = tmio_make(all[k].row);
+        FILE *const f = fopen(tmio_path(all[k].name), "wb");
         if (!CHECK(f != NULL)) continue;
-        fwrite(x->head, 1, x->head_size, f);
-        for (i = 0; i < 70000; i++) fwrite(x->row, 1, x->row_size, f);
-        CHECK(fputs(x->tail, f) >= 0 && fclose(f) == 0);
-        for (asked = 1; asked < 100 && tmio_load_large(x, asked) == MIO_STOPPED; asked++) {}
-        CHECK_MSG(asked > 3 && asked < 100, "%s: asked %d times", x->name, asked);
+        fwrite(head->b, 1, head->n, f);
+        for (i = 0; i < 70000; i++) fwrite(row->b, 1, row->n, f);
+        CHECK(fputs(all[k].tail, f) >= 0 && fclose(f) == 0);
+        for (asked = 1; asked < 100 && tmio_load_large(all + k, asked) == MIO_STOPPED; asked++) {}
+        CHECK_MSG(asked > 3 && asked < 100, "%s: asked %d times", all[k].name, asked);
         CHECK(tmio_stop_count == 20);            /* and not once more than that */
-        remove(tmio_path(x->name));
+        remove(tmio_path(all[k].name));
     }
 }
 
