@@ -135,7 +135,7 @@ static void tmio_say_mesh(char *to, const mio_mesh *m) {
     for (i = 0; i < m->n_faces; i++)
         for (k = m->face_ptr[i]; k < m->face_ptr[i + 1]; k++)
             tmio_say(to, k > m->face_ptr[i] ? " " : i > 0 ? ", " : " | ", m->face_idx[k]);
-    if (m->n_small_faces) tmio_say(to, " | ", m->n_small_faces);
+    if (m->n_small_faces) tmio_say(to, " | ", (double)m->n_small_faces);
 }
 
 /* Loads a file, and tells its contents or the error. On failure nothing may be left. */

@@ -190,7 +190,8 @@ static void tpic_fill(const char *what, uint8_t *rgb, int32_t n, int32_t w) {
     uint64_t seed = 5;
     int32_t i, a = 1, b = 1, k, s = 0;
     for (i = 0; i < n; i++)
-        rgb[i] = (uint8_t)(*what == 'r' ? i / 3 % w + i / 3 / w * (i % 3) : *what == 'n' || i < 32768 + 2 ? shape_random(&seed) & 255u : 0);
+        if (*what == 'r') rgb[i] = (uint8_t)(i / 3 % w + i / 3 / w * (i % 3));
+        else rgb[i] = (uint8_t)(shape_random(&seed) & 255u);
     if (*what == 'b') memset(rgb, 0, (size_t)n);
     for (i = 32768 + 2; *what == 'w' && i < n; i++) rgb[i] = rgb[i - 32768 + i / 65536];
     for (i = 0; *what == 's' && i < n; s++) {
@@ -763,21 +764,30 @@ static void tpic_check_shape(const shape *s, const char *what, int euler, int bo
 
 static void tpic_test_simple_shapes(void) {
     static const double offset[3] = {5, 0, 0};
-    shape ball = shape_icosphere(0), larger = shape_icosphere(4), bumpy = shape_bumpy(4, 11);
-    const shape all[] = {ball, larger, shape_disjoint(&ball, &larger, offset), shape_torus(40, 20, 1, 0.4), bumpy, shape_bumpy(4, 11),
-                         shape_grid(9, 6, 0.4), shape_cylinder(12, 5, 1, 2)};
+    shape all[8], none[5];
     static const struct { const char *name; int euler, border, pieces; double volume; } rows[] = {
         {"icosahedron", 2, 0, 1, 2.5}, {"icosphere", 2, 0, 1, 4.1}, {"two balls", 4, 0, 2, 6.6}, {"torus", 0, 0, 1, 2.9}, {"bumpy", 2, 0, 1, 2},
         {"bumpy again", 2, 0, 1, 2}, {"grid", 1, 2 * 8 + 2 * 5, 1, 0}, {"cylinder", 0, 24, 1, 0}};
-    const shape none[] = {shape_torus(2, 5, 1, 0.4), shape_grid(1, 5, 0), shape_icosphere(-1), shape_icosphere(11), shape_cylinder(3, 1, 1, 1)};
     size_t k;
+    all[0] = shape_icosphere(0);
+    all[1] = shape_icosphere(4);
+    all[2] = shape_disjoint(&all[0], &all[1], offset);
+    all[3] = shape_torus(40, 20, 1, 0.4);
+    all[4] = shape_bumpy(4, 11);
+    all[5] = shape_bumpy(4, 11);
+    all[6] = shape_grid(9, 6, 0.4);
+    all[7] = shape_cylinder(12, 5, 1, 2);
+    none[0] = shape_torus(2, 5, 1, 0.4);
+    none[1] = shape_grid(1, 5, 0);
+    none[2] = shape_icosphere(-1);
+    none[3] = shape_icosphere(11);
+    none[4] = shape_cylinder(3, 1, 1, 1);
     for (k = 0; k < sizeof none / sizeof *none; k++) CHECK_MSG(!none[k].xyz && none[k].n == 0, "shape %d", (int)k);
-    CHECK(ball.n == 12 && ball.n_tri == 20 && larger.n == 2562 && larger.n_tri == 5120);
-    CHECK(bumpy.n == all[5].n && bumpy.xyz && all[5].xyz && memcmp(bumpy.xyz, all[5].xyz, (size_t)bumpy.n * 24) == 0);
+    CHECK(all[0].n == 12 && all[0].n_tri == 20 && all[1].n == 2562 && all[1].n_tri == 5120);
+    CHECK(all[4].n == all[5].n && all[4].xyz && all[5].xyz && memcmp(all[4].xyz, all[5].xyz, (size_t)all[4].n * 24) == 0);
     for (k = 0; k < sizeof rows / sizeof *rows; k++) {
-        shape s = all[k];
-        tpic_check_shape(&s, rows[k].name, rows[k].euler, rows[k].border, rows[k].pieces, rows[k].volume);
-        shape_free(&s);
+        tpic_check_shape(&all[k], rows[k].name, rows[k].euler, rows[k].border, rows[k].pieces, rows[k].volume);
+        shape_free(&all[k]);
     }
 }
 
