@@ -92,6 +92,7 @@
      Beside the implementation only:
      HEATDIFF_IMPLEMENTATION   compiles the implementation; define it in one file
      HEATDIFF_ASSERT(x)        your own assert; default: assert() unless NDEBUG
+     HEATDIFF_AUDIT            more asserts, which take time; on by itself under the address sanitizer
      HEATDIFF_MALLOC(size), HEATDIFF_FREE(p)
                                used by contexts without an allocator; define both or none
      HEATDIFF_NO_THREADS       no threads of the library's own. They need POSIX threads or Windows, and
@@ -1935,6 +1936,20 @@ HEATDIFF_API hd_status hd_geodesic_distance_from(hd_geodesic *g, const hd_source
 #ifndef HEATDIFF_ASSERT
 #include <assert.h>
 #define HEATDIFF_ASSERT(x) assert(x)
+#endif
+
+/* 1: steps of long computations also assert what they hand on, which takes time. */
+#ifdef __has_feature
+#if __has_feature(address_sanitizer) || __has_feature(memory_sanitizer)
+#define HDI_AUDIT 1
+#endif
+#endif
+#ifndef HDI_AUDIT
+#if defined(HEATDIFF_AUDIT) || defined(__SANITIZE_ADDRESS__)
+#define HDI_AUDIT 1
+#else
+#define HDI_AUDIT 0
+#endif
 #endif
 
 #if defined(__GNUC__) || defined(__clang__)
@@ -10901,6 +10916,39 @@ static void hdi_amd_next_flag(hdi_amd *g, int32_t step) {
     g->flag = 2;
 }
 
+/* For audits: what is left has all the weight and is in the lists of degrees; elements weigh what they say;
+ * and each degree lies between the weight of the neighbours and that of all lists they are in. */
+static int hdi_amd_sound(hdi_amd *g) {
+    hdi_amd_node *v = g->v;
+    int32_t i, k, q, left = 0, listed = 0, wrong = 0;
+    for (i = 0; i < g->n; i++) {
+        int32_t exact = 0, sum = 0;
+        if (v[i].weight == 0 || v[i].elen == HDI_AMD_PIVOT) continue;
+        left += v[i].weight;
+        listed += i < g->inner;
+        hdi_amd_next_flag(g, 1);
+        v[i].mark = g->flag;
+        for (k = 0; k < v[i].len; k++) {
+            const int32_t e = g->list[v[i].at + k], is_element = k < v[i].elen;
+            int32_t all = 0;
+            wrong += is_element != (v[e].elen == HDI_AMD_PIVOT) || (is_element && v[e].mark == 0);
+            for (q = 0; q < (is_element ? v[e].len : 1); q++) {
+                const int32_t j = is_element ? g->list[v[e].at + q] : e;
+                all += v[j].weight;
+                exact += v[j].mark == g->flag ? 0 : v[j].weight;
+                v[j].mark = g->flag;
+            }
+            sum += all - (is_element ? v[i].weight : 0);
+            wrong += is_element && all != v[e].degree;
+        }
+        wrong += i < g->inner && (v[i].degree < exact || v[i].degree > sum);
+    }
+    for (k = 0; k <= g->n; k++)
+        for (i = g->head[k]; i >= 0; i = v[i].next, listed--)
+            wrong += v[i].degree != k || k < g->least || v[i].weight == 0 || v[i].elen == HDI_AMD_PIVOT;
+    return wrong == 0 && left == g->left && listed == 0;
+}
+
 /* Eliminates variables until the order holds as many as that. */
 static void hdi_amd_run(hdi_amd *g, int32_t until) {
     while (g->done < until) {
@@ -10923,6 +10971,7 @@ static void hdi_amd_run(hdi_amd *g, int32_t until) {
         g->done += pivot->weight;
         g->left -= pivot->weight;
         hdi_amd_restore(g, pivot);
+        if (HDI_AUDIT && me % (g->n / 32 + 1) == 0 && !hdi_amd_sound(g)) HEATDIFF_ASSERT(0);
     }
 }
 
@@ -11346,6 +11395,34 @@ static int hdi_nd_contract(const hdi_nd_graph *g, hdi_nd_graph *c, int32_t space
     return 1;
 }
 
+/* For audits: each edge is there from both its ends, with the same weight, or the sum would hardly be zero. */
+static int hdi_nd_sound(const hdi_nd_graph *g) {
+    int32_t v, p;
+    uint64_t sum = 0;
+    for (v = 0; v < g->n; v++)
+        for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
+            const int32_t u = g->adj[p], e = g->ew ? g->ew[p] : 1;
+            const uint64_t a = HDI_CAST(uint64_t, v) + 1, b = HDI_CAST(uint64_t, u) + 1;
+            if (u == v || u >= g->n || e <= 0) return 0;
+            if (u >= 0) sum += a * b * (a - b) * HDI_CAST(uint64_t, e);
+        }
+    return sum == 0;
+}
+
+/* For audits: weight of the vertices, and 2^32 times that of the entries between clusters (map; NULL: all). */
+static int64_t hdi_nd_weigh(const hdi_nd_graph *g, const int32_t *map) {
+    int64_t sum = 0;
+    int32_t v, p;
+    for (v = 0; v < g->n; v++) {
+        sum += g->w ? g->w[v] : 1;
+        for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
+            const int32_t u = g->adj[p];
+            if (u >= 0 && (!map || map[u] != map[v])) sum += HDI_CAST(int64_t, g->ew ? g->ew[p] : 1) << 32;
+        }
+    }
+    return sum;
+}
+
 /* Where copies are made: the room for their entries. */
 typedef struct hdi_nd_room { int32_t *adj, *ew, n; } hdi_nd_room;
 
@@ -11372,6 +11449,7 @@ static int hdi_nd_coarser(hdi_nd_graph *level, int32_t total, hdi_nd_room *room,
     start = hdi_nd_take(&temp, c->n + 1);
     mark = hdi_nd_take(&temp, c->n);
     if (!hdi_nd_contract(g, c, room->n, member, start, mark)) return 0;
+    if (HDI_AUDIT && !(hdi_nd_sound(c) && hdi_nd_weigh(c, NULL) == hdi_nd_weigh(g, g->map))) HEATDIFF_ASSERT(0);
     room->n -= c->ptr[c->n];
     room->adj += c->ptr[c->n];
     room->ew += c->ptr[c->n];
@@ -11545,6 +11623,9 @@ static void hdi_nd_refine_edges(hdi_nd_mover *m, hdi_nd_cut *cut, int32_t passes
             }
         }
         while (n > keep) hdi_nd_mover_move(m, m->moved[--n], cut);
+        if (HDI_AUDIT) hdi_nd_mover_start(m, cut);   /* anew: this costs what the moves have led to */
+        HEATDIFF_ASSERT(best >= DBL_MAX ||
+            fabs(hdi_nd_cost(cut->cut, cut->weight[0], cut->weight[1]) - best) <= 1e-9 * best);
         if (!(best < first)) break;
     }
 }
@@ -11808,20 +11889,24 @@ static int hdi_nd_flow_starts(const hdi_nd_flow *f, int32_t v) {
 /* Sets the sides of the band around the separator band[0..n) so that the separator is the smallest inside of
  * it; of several such, the one nearest to side from. */
 static void hdi_nd_flow_run(hdi_nd_flow *f, int32_t n, int32_t most, int32_t layers) {
-    int32_t i, k = 0, *start;
+    int32_t i, k = 0, paths = 0, cut = 0, begins = 0, *start;
     hdi_nd_flow_band(f, n, most, layers);
     start = f->band + f->n_band;
     for (i = 0; i < f->n_band; i++)
         if (hdi_nd_flow_starts(f, f->band[i])) start[k++] = f->band[i];
     for (i = 0; i < k; i++)
-        if (f->seen[2 * start[i]] != HDI_ND_DEAD && f->prev[start[i]] != -1) hdi_nd_flow_search(f, start[i]);
+        if (f->seen[2 * start[i]] != HDI_ND_DEAD && f->prev[start[i]] != -1)
+            paths += hdi_nd_flow_search(f, start[i]);
     for (i = 0; i < k; i++) f->seen[2 * start[i]] = HDI_ND_DEAD;
     f->stamp = HDI_ND_DEAD;
     for (i = 0; i < f->n_band; i++) {
         const int32_t v = f->band[i];
         f->g->side[v] = f->seen[2 * v + 1] == f->stamp ? f->from
             : HDI_CAST(int8_t, f->seen[2 * v] == f->stamp ? 2 : 1 - f->from);
+        cut += f->g->side[v] == 2;
+        begins += f->prev[v] == -1;
     }
+    HEATDIFF_ASSERT(cut == paths && begins == paths && cut <= n);   /* Menger */
 }
 
 /* ---- parts ---- */
@@ -11960,6 +12045,15 @@ static int hdi_nd_dissect(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_grap
     if (hdi_nd_measure(level, size)) return 1;
     hdi_nd_halve(level);
     return hdi_nd_measure(level, size);
+}
+
+/* For audits: no edge joins one side to the other. */
+static int hdi_nd_separated(const hdi_nd_graph *g) {
+    int32_t v, p;
+    for (v = 0; v < g->n; v++)
+        for (p = g->ptr[v]; p < g->ptr[v + 1]; p++)
+            if (g->adj[p] >= 0 && g->side[v] + g->side[g->adj[p]] == 1) return 0;
+    return 1;
 }
 
 /* Words of work space for so many vertices, entries and tasks. */
@@ -12107,10 +12201,12 @@ static void hdi_nd_split(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_part 
     memset(child, 0, 2 * sizeof *child);
     hdi_nd_graphs_of(nd, part, level);
     level->side = hdi_nd_take_bytes(&rest, part->n);
+    if (HDI_AUDIT && !(hdi_nd_sound(level) && hdi_nd_sound(level + 1))) HEATDIFF_ASSERT(0);
     if (small || !hdi_nd_dissect(nd, part, level, rest, size)) {
         hdi_nd_leaf(nd, part, level, s);
         return;
     }
+    if (HDI_AUDIT && !hdi_nd_separated(level)) HEATDIFF_ASSERT(0);
     last = part->first + part->n - size[2];
     for (v = 0; v < part->n; v++) {
         const int8_t t = level->side[v];
@@ -12505,6 +12601,7 @@ static void hdi_sym_triangle(const hdi_sym_job *job, hd_context *ctx) {
     const int32_t n = job->a->n_rows;
     int64_t *ptr = job->w->lower_ptr, begin, sum = 0;
     hdi_parallel_ranges(ctx, n, HDI_SYM_ROWS, hdi_sym_invert_task, &of);
+    for (begin = 0; HDI_AUDIT && begin < n; begin++) HEATDIFF_ASSERT(of.w->inv[of.perm[begin]] == begin);
     for (begin = 0; begin < n; begin += HDI_SYM_ROWS) {
         const int64_t entries = ptr[begin];
         ptr[begin] = sum;
