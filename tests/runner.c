@@ -169,6 +169,7 @@ static void test_tmp_remove(void) {
 #include "test_robust.h"
 #include "test_polygon.h"
 #include "test_ldl.h"
+#include "test_order.h"
 #include "test_engines.h"
 #ifdef HEATDIFF_IMPLEMENTATION
 #include "test_threads.h"
@@ -212,7 +213,7 @@ static const test_group test_groups[] = {
 #ifdef HEATDIFF_IMPLEMENTATION
     {"forms", test_forms, 3},
 #endif
-    {"geodesic", test_geodesic_all, 4}, {"ldl", test_ldl, 4}, 
+    {"geodesic", test_geodesic_all, 4}, {"ldl", test_ldl, 4}, {"order", test_order, 4},
 #ifdef HEATDIFF_IMPLEMENTATION
     {"threads", test_threads, 4},
 #endif
