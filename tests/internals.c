@@ -110,7 +110,8 @@ static void int_sizes(void) {
     const struct { uint64_t a, b, c, limit; int fits; uint64_t size; } row[13] = {
         {3, 4, 5, all, 1, 17}, {0, all, 5, all, 1, 5}, {all, 0, 5, all, 1, 5}, {all, 1, 0, all, 1, all},
         {all / 2, 2, 1, all, 1, all}, {small / 8, 8, 7, small, 1, small}, {all, 1, 1, all, 0, 0}, {all / 2 + 1, 2, 0, all, 0, 0},
-        {2, all / 2 + 1, 0, all, 0, 0}, {all / 16, 16, 80, all, 0, 0}, {small + 1, 8, 0, small, 0, 0}, {small / 8, 8, 80, small, 0, 0}, {0, 8, 80, 79, 0, 0}};
+        {2, all / 2 + 1, 0, all, 0, 0}, {all / 16, 16, 80, all, 0, 0},
+        {small + 1, 8, 0, small, 0, 0}, {small / 8, 8, 80, small, 0, 0}, {0, 8, 80, 79, 0, 0}};
     int k;
     for (k = 0; k < 13; k++) {
         uint64_t out = 77;

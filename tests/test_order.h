@@ -1,5 +1,5 @@
-/* test_order.h - elimination orders, by the fill that hd_ldl_analyse reports: against all orders, minimum degree by its definition, closed
- * forms, and limits. That they are permutations, and sound on the way, is asserted in the library where HEATDIFF_AUDIT is defined. */
+/* test_order.h - elimination orders, by the fill that hd_ldl_analyse reports: against all orders, minimum degree by its
+ * definition, closed forms, limits. That they are permutations, and sound on the way, is asserted in the library with HEATDIFF_AUDIT. */
 
 #ifndef TEST_ORDER_H
 #define TEST_ORDER_H
