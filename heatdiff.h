@@ -11359,14 +11359,15 @@ static int hdi_nd_contract(const hdi_nd_graph *g, hdi_nd_graph *c, int32_t space
 /* For audits: weight of the vertices, and 2^32 times that of entries between clusters (map; NULL: of all).
  * -1 unless each edge is there from both its ends with the same weight: the sum would hardly be zero. */
 static int64_t hdi_nd_weigh(const hdi_nd_graph *g, const int32_t *map) {
-    int64_t weight = 0, sum = 0;
+    int64_t weight = 0;
+    uint64_t sum = 0;
     int32_t v, p;
     for (v = 0; v < g->n; v++) {
         weight += g->w ? g->w[v] : 1;
         for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
             const int64_t u = g->adj[p], e = g->ew ? g->ew[p] : 1;
             if (u == v || u >= g->n || e <= 0) return -1;
-            if (u >= 0) sum += (u - v) * (1 + u % 1000 * (v % 1000)) * e;
+            if (u >= 0) sum += HDI_CAST(uint64_t, u - v) * HDI_CAST(uint64_t, (1 + u % 1000 * (v % 1000)) * e);
             if (u >= 0 && (!map || map[u] != map[v])) weight += e << 32;
         }
     }
@@ -11820,8 +11821,7 @@ static int hdi_nd_flow_starts(const hdi_nd_flow *f, int32_t v) {
     return 0;
 }
 
-/* Sets the sides of the band around the separator band[0..n) so that the separator is the smallest inside of
- * it; of several such, the one nearest to side from. */
+/* Sets the sides of the band around band[0..n): the smallest separator in it, the one nearest to side from. */
 static void hdi_nd_flow_run(hdi_nd_flow *f, int32_t n, int32_t most, int32_t layers) {
     int32_t i, k = 0, paths = 0, cut = 0, begins = 0, *start;
     hdi_nd_flow_band(f, n, most, layers);
@@ -11995,8 +11995,7 @@ static size_t hdi_nd_words(int32_t n, int32_t n_edges, int64_t tasks) {
         HDI_ND_SLACK * HDI_CAST(size_t, tasks);
 }
 
-/* The space of part i of the heap lies within that of the part it comes from: two parts of which neither
- * contains the other can be worked on at the same time, whatever their sizes. */
+/* The space of part i of the heap lies within that of the part it comes from, apart from all others. */
 static hdi_nd_space hdi_nd_space_of(const hdi_nd *nd, int64_t i) {
     const hdi_nd_part *p = nd->part + i;
     hdi_nd_space s;
@@ -12064,8 +12063,8 @@ static int32_t hdi_nd_extract_clusters(const hdi_nd_graph *g, int8_t side, hdi_n
     return n;
 }
 
-/* Gives the rows of the halo numbers from part->n on, in place, by a hash table in the work space. Returns
- * how many there are; n_edges when the space is too small and nothing has been done. */
+/* Gives the rows of the halo numbers from part->n on, in place, by a hash table in s. Returns how many there
+ * are; n_edges when the space is too small and nothing has been done. */
 static int32_t hdi_nd_halo(const hdi_nd_part *part, int32_t *adj, hdi_nd_space s) {
     int32_t p, n = 0, outer = 0, mask = 1;
     for (p = 0; p < part->n_edges; p++) outer += adj[p] < 0;
