@@ -11367,7 +11367,7 @@ static int64_t hdi_nd_weigh(const hdi_nd_graph *g, const int32_t *map) {
         for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
             const int64_t u = g->adj[p], e = g->ew ? g->ew[p] : 1;
             if (u == v || u >= g->n || e <= 0) return -1;
-            if (u >= 0) sum += HDI_CAST(uint64_t, u - v) * HDI_CAST(uint64_t, (1 + u % 1000 * (v % 1000)) * e);
+            if (u >= 0) sum += HDI_CAST(uint64_t, u - v) * HDI_CAST(uint64_t, (1 + u % 999 * (v % 999)) * e);
             if (u >= 0 && (!map || map[u] != map[v])) weight += e << 32;
         }
     }
@@ -11821,7 +11821,7 @@ static int hdi_nd_flow_starts(const hdi_nd_flow *f, int32_t v) {
     return 0;
 }
 
-/* Sets the sides of the band around band[0..n): the smallest separator in it, the one nearest to side from. */
+/* Sets the sides of the band around band[0..n): the smallest separator in it, that nearest to side from. */
 static void hdi_nd_flow_run(hdi_nd_flow *f, int32_t n, int32_t most, int32_t layers) {
     int32_t i, k = 0, paths = 0, cut = 0, begins = 0, *start;
     hdi_nd_flow_band(f, n, most, layers);
