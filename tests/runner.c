@@ -173,6 +173,7 @@ static void test_tmp_remove(void) {
 #include "test_robust.h"
 #include "test_polygon.h"
 #include "test_ldl.h"
+#include "test_order.h"
 #include "test_engines.h"
 #ifdef HEATDIFF_IMPLEMENTATION
 #include "test_threads.h"
@@ -212,7 +213,7 @@ static const test_group test_groups[] = {
     {"engines", test_engines, 2}, {"estimate", test_estimate, 2},
     {"points", test_points, 3}, {"deep", test_deep, 3}, {"diagonal", test_diagonal, 3}, {"spectrum", test_spectrum, 3},
     {"large_t", test_large_t, 3},
-    {"geodesic", test_geodesic_all, 4}, {"ldl", test_ldl, 4}, 
+    {"geodesic", test_geodesic_all, 4}, {"ldl", test_ldl, 4}, {"order", test_order, 4},
 #ifdef HEATDIFF_IMPLEMENTATION
     {"threads", test_threads, 4},
 #endif

@@ -332,7 +332,7 @@ class Bench:
 
     def compile(self, name):
         """The bytes of the object of a program, or None."""
-        if subprocess.run(["tcc", "-w", "-c", "tests/pieces_%s.c" % name, "-I.", "-o", name + ".o"], cwd=self.folder,
+        if subprocess.run(["tcc", "-w", "-DHEATDIFF_AUDIT", "-c", "tests/pieces_%s.c" % name, "-I.", "-o", name + ".o"], cwd=self.folder,
                           stderr=subprocess.DEVNULL).returncode:
             return None
         with open(os.path.join(self.folder, name + ".o"), "rb") as f:
