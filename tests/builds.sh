@@ -33,7 +33,7 @@ gcc -std=c99 -I"$top" "$work/use.c" -c -o "$work/use.o"
 gcc -std=c99 -I"$top" "$work/impl.c" -c -o "$work/impl.o"
 gcc "$work/use.o" "$work/impl.o" -o "$work/two" -lm
 "$work/two"
-# Two static copies in a program, a whole one and one without most rooms. The whole one has the header under another name, found by a
+# Two static copies in a program, a whole one and one without vector code. The whole one has the header under another name, found by a
 # path in C and in a folder of -I in C++: for the instruction sets the header includes itself.
 mkdir -p "$work/far/own"
 cp "$top/heatdiff.h" "$work/far/own/renamed.hpp"
@@ -54,7 +54,7 @@ for c in gcc g++ clang clang++; do
   clang*) $c $warn $far -fsyntax-only whole.$ext ;;
   *)
     $c $warn $far -c whole.$ext -o whole.o
-    $c $warn -I"$top" -DHEATDIFF_NO_DIRECT -DHEATDIFF_NO_SIMD small.$ext whole.o -o copies -lm
+    $c $warn -I"$top" -DHEATDIFF_NO_SIMD small.$ext whole.o -o copies -lm
     ./copies
     names=$(nm -g --defined-only whole.o | awk '$2 ~ /[TDBR]/ {print $3}')
     [ "$names" = main ] || { echo "a static copy exports $names"; exit 1; } ;;

@@ -6,7 +6,7 @@ set -euo pipefail
 top=$(cd "$(dirname "$0")/.." && pwd)
 work=$(cd "$1" && pwd)
 cc=${CC:-cc}
-export CFLAGS="${CFLAGS:-} -DHEATDIFF_NO_SIMD"     # compiles faster
+export CFLAGS="-DHEATDIFF_NO_SIMD"       # compiles faster
 count=0
 fail() { echo "packaging.sh: $*"; exit 1; }
 quietly() { "$@" >"$work/log" 2>&1 || { cat "$work/log"; fail "$*"; }; }

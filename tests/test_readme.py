@@ -186,7 +186,7 @@ def program_text(path):
 def look_up(page, text, cc):
     built = {"heatdiff": "tools/heatdiff.c"}            # programs, by the source they come from
     cmake, compiled = read("CMakeLists.txt"), set()
-    for name in re.findall(r"hd_program\((\w+) ", cmake):
+    for name in re.findall(r"hd_program(?:_alone)?\((\w+) ", cmake):
         built.setdefault(name, "tools/%s.c" % name)
     built.update(runner="tests/runner.c", internals="tests/internals.c", fuzz="tests/fuzz/fuzz.c")
     tests = re.findall(r"add_test\(NAME (\w+)", cmake)
