@@ -43,10 +43,10 @@ each() {
   local cc=$1 p builds=()
   shift
   for p in runner internals; do
-    if [ $p = runner ] || [ -z "$groups" ] || grep -qx internals <<<"$groups"; then
-      $cc -std=c99 -g -O1 "$@" -I"$top" "$top/tests/$p.c" -o "$work/$p.$mode" -lm &
-      builds+=($!)
-    fi
+    [ "$p $groups" != "runner internals" ] || continue
+    [ $p = runner ] || [ -z "$groups" ] || grep -qx internals <<<"$groups" || continue
+    $cc -std=c99 -g -O1 "$@" -I"$top" "$top/tests/$p.c" -o "$work/$p.$mode" -lm &
+    builds+=($!)
   done
   for p in "${builds[@]}"; do wait "$p"; done
   [ -n "$groups" ] || groups=$(printf 'internals\n'; "$work/runner.$mode" --list)
