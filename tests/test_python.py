@@ -35,8 +35,8 @@ hd = folder = None
 
 def setUpModule():
     global folder
+    folder = tempfile.TemporaryDirectory()
     if "HEATDIFF_LIBRARY" not in os.environ:
-        folder = tempfile.TemporaryDirectory()
         library = os.path.join(folder.name, "libheatdiff.so")
         subprocess.run([CC, "-O1", "-shared", "-fPIC", "-fvisibility=hidden", os.path.join(TOP, "tools", "heatdiff_shared.c"),
                         "-o", library, "-lm"], check=True)
