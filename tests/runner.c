@@ -155,8 +155,11 @@ static void test_tmp_remove(void) {
 
 #include "dense.h"
 #include "at.h"
-#include "test_meshio.h"
 #include "../tools/shapes.h"
+#include "../tools/trials.h"
+#include "kit.h"
+#include "cases.h"
+#include "test_meshio.h"
 #include "test_base.h"
 #include "test_sparse.h"
 #include "test_operators.h"
@@ -198,6 +201,7 @@ static void test_tmp_remove(void) {
 #include "test_deep.h"
 #include "test_doors.h"
 #include "test_failures.h"
+#include "test_cases.h"
 #endif
 
 /* shard: groups that ctest runs together; those of memory that fails are one of its own */
@@ -209,7 +213,7 @@ static const test_group test_groups[] = {
     {"sparse", test_sparse, 1}, {"meshio", test_meshio, 4},
 #ifndef TEST_CORE
     {"filters", test_filters, 1}, {"heat", test_heat, 1}, {"lengths", test_lengths, 1}, {"view", test_view, 1},
-    {"moving", test_moving, 1}, {"doors", test_doors, 1},
+    {"cases", test_cases, 1}, {"moving", test_moving, 1}, {"doors", test_doors, 1},
     {"engines", test_engines, 2}, {"estimate", test_estimate, 2},
     {"points", test_points, 3}, {"deep", test_deep, 3}, {"diagonal", test_diagonal, 3}, {"spectrum", test_spectrum, 3},
     {"large_t", test_large_t, 3},
@@ -235,6 +239,7 @@ static void test_run(const test_group *group) {
     const clock_t start = clock();
     test_failed_in_group = 0;
     group->run();
+    kit_release(0);
     printf("%-12s %8lld passed %6lld failed %8.2f s\n", group->name, (long long)(test_passed - passed), (long long)(test_failed - failed),
            (double)(clock() - start) / CLOCKS_PER_SEC);
     fflush(stdout);

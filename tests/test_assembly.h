@@ -57,7 +57,7 @@ static void asm_dense(const shape *s, const int *counts, double *L, double *B) {
 /* A crumpled grid with fins, needles, faces that come twice and faces that are none, a hub with many faces; in several orders. */
 static void asm_orders(void) {
     enum { EXTRA = 80 };
-    shape grid = shape_grid(13, 11, 0.45), s = shape_make(grid.n, grid.n_tri + 2 * EXTRA);
+    shape grid = kit_own_shape(shape_grid(13, 11, 0.45)), s = kit_own_shape(shape_make(grid.n, grid.n_tri + 2 * EXTRA));
     const int32_t n = s.n;
     hd_laplacian *first = NULL;
     uint64_t seed = 11;
@@ -120,8 +120,6 @@ static void asm_orders(void) {
         asm_shuffle(s.tri, s.n_tri, 5u + (uint64_t)round);
     }
     hd_laplacian_free(first);
-    shape_free(&grid);
-    shape_free(&s);
     free(counts);
     free(L);
     free(B);
@@ -187,7 +185,7 @@ static void asm_points(void) {
 /* A grid of several blocks with fins from anywhere to anywhere, holes and faces that come twice. */
 static shape asm_blocks_shape(void) {
     enum { EXTRA = 900 };
-    shape grid = shape_grid(331, 163, 0.45), s = shape_make(grid.n, grid.n_tri + EXTRA);
+    shape grid = kit_own_shape(shape_grid(331, 163, 0.45)), s = shape_make(grid.n, grid.n_tri + EXTRA);
     uint64_t seed = 17;
     int32_t f, k;
     memcpy(s.xyz, grid.xyz, 3 * (size_t)grid.n * sizeof(double));
@@ -203,7 +201,6 @@ static shape asm_blocks_shape(void) {
     for (f = 0; f < grid.n_tri; f += 97) s.tri[3 * f] = s.tri[3 * f + 1];                        /* holes */
     for (f = 0; f < 2 * 330 && f < grid.n_tri; f++) memcpy(s.tri + 3 * (50 * 660 + f), s.tri, 3 * sizeof *s.tri);    /* a cut, near where a block ends */
     asm_shuffle(s.tri, s.n_tri, 23);
-    shape_free(&grid);
     return s;
 }
 
@@ -231,7 +228,7 @@ static void asm_compare(const hd_laplacian *a, const hd_laplacian *b) {
 static void asm_blocks(void) {
     static const hd_laplacian_kind kinds[3] = {HD_LAPLACIAN_FEM, HD_LAPLACIAN_VORONOI_COT, HD_LAPLACIAN_COT};
     enum { WAYS = 4 };
-    shape s = asm_blocks_shape();
+    shape s = kit_own_shape(asm_blocks_shape());
     hd_error bad[WAYS];
     int64_t calls = 0;
     int k, way, limit;
@@ -288,7 +285,6 @@ static void asm_blocks(void) {
     }
     CHECK(bad[0].face >= 0 && bad[0].face == bad[2].face && bad[0].vertex == bad[2].vertex);
     CHECK(calls > 0);
-    shape_free(&s);
 }
 
 static void test_assembly(void) {

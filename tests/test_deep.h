@@ -54,7 +54,7 @@ static void deep_factor(const hd_csr *a, const int32_t *perm, const char *what) 
 
 /* One column on a long path, by a factor and by Lanczos. */
 static void deep_column(int32_t n) {
-    hd_csr L = deep_matrix(n, 0, 0), B = deep_matrix(n, 0, 0);
+    hd_csr L = kit_own_csr(deep_matrix(n, 0, 0)), B = kit_own_csr(deep_matrix(n, 0, 0));
     hd_laplacian *lap = NULL;
     double *u = DENSE_NEW(double, n), *w = DENSE_NEW(double, n), worst = 0;
     hd_report r[2];
@@ -76,22 +76,18 @@ static void deep_column(int32_t n) {
     for (v = 0; v < n; v++) worst = fmax(worst, fabs(u[v] - w[v]));
     CHECK_MSG(worst <= u[n / 2] * (r[0].error_bound + r[1].error_bound), "a path: two methods are %g apart", worst);
     hd_laplacian_free(lap);
-    hd_csr_free(&L, NULL);
-    hd_csr_free(&B, NULL);
     free(u);
     free(w);
 }
 
 static void *deep_all(void *arg) {
-    hd_csr path = deep_matrix(DEEP_N, 0, 1), star = deep_matrix(DEEP_N, 1, 1);
+    hd_csr path = kit_own_csr(deep_matrix(DEEP_N, 0, 1)), star = kit_own_csr(deep_matrix(DEEP_N, 1, 1));
     int32_t *perm = DENSE_NEW(int32_t, DEEP_N), v;
     for (v = 0; v < DEEP_N; v++) perm[v] = v;
     deep_factor(&path, perm, "path from end to end");    /* a tree as deep as the path is long */
     deep_factor(&path, NULL, "path");
     deep_factor(&star, NULL, "star");
     deep_column(DEEP_N);
-    hd_csr_free(&path, NULL);
-    hd_csr_free(&star, NULL);
     free(perm);
     return arg;
 }

@@ -297,7 +297,7 @@ static void eng_dense_cases(void) {
 /* Meshes that are too large for the oracle: the methods agree, iterations among them, within what they say. */
 static void eng_large(void) {
     enum { K = 9 };
-    shape ball = shape_bumpy(4, 2), grid = shape_grid(60, 45, 0.3);
+    shape ball = kit_own_shape(shape_bumpy(4, 2)), grid = kit_own_shape(shape_grid(60, 45, 0.3));
     int q, k, z;
     for (q = 0; q < 2; q++) {
         const shape *s = q ? &grid : &ball;
@@ -331,14 +331,12 @@ static void eng_large(void) {
         free(u);
         free(all);
     }
-    shape_free(&ball);
-    shape_free(&grid);
 }
 
 /* Fronts of hundreds of rows, and batches next to each other: few, then many columns, against single ones and the other method. */
 static void eng_batches(void) {
     enum { K = 26 };
-    shape s = eng_soup(900, 2700, 6);
+    shape s = kit_own_shape(eng_soup(900, 2700, 6));
     hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_VORONOI_COT);
     hd_heat *direct = eng_plan(lap, HD_METHOD_DIRECT, HD_POLES_DEFAULT, 0), *krylov = eng_plan(lap, HD_METHOD_KRYLOV, HD_POLES_DEFAULT, 0);
     const double t = 3 * lap->h * lap->h;
@@ -365,7 +363,6 @@ static void eng_batches(void) {
     hd_heat_free(direct);
     hd_heat_free(krylov);
     hd_laplacian_free(lap);
-    shape_free(&s);
     free(u);
     free(v);
     free(first);
@@ -375,7 +372,7 @@ static void eng_batches(void) {
 
 /* All degrees of both kinds: packs that are full, and such with one, two, three poles or a lone real one left over. */
 static void eng_degrees(void) {
-    shape s = shape_bumpy(1, 9);
+    shape s = kit_own_shape(shape_bumpy(1, 9));
     int q, k;
     int32_t r;
     for (q = 0; q < 2; q++) {
@@ -398,7 +395,6 @@ static void eng_degrees(void) {
         }
         heat_case_free(&c);
     }
-    shape_free(&s);
 }
 
 enum { ENG_SETS = 12 };
@@ -443,7 +439,7 @@ static hd_rational eng_own_set(int which, const char **what) {
 
 static void eng_own_sets(void) {
     const double offset[3] = {4, 0, 0};
-    shape a = shape_grid(6, 6, 0.3), b = shape_icosphere(1), s = shape_disjoint(&a, &b, offset);
+    shape a = kit_own_shape(shape_grid(6, 6, 0.3)), b = kit_own_shape(shape_icosphere(1)), s = kit_own_shape(shape_disjoint(&a, &b, offset));
     int q, k, z;
     for (q = 0; q < 3; q++) {
         heat_case c = q < 2 ? heat_case_of(test_laplacian(&s, op_kinds[q]), "own, mesh") : heat_case_of(kry_dirichlet(40), "own, dirichlet");
@@ -470,9 +466,6 @@ static void eng_own_sets(void) {
         }
         heat_case_free(&c);
     }
-    shape_free(&a);
-    shape_free(&b);
-    shape_free(&s);
 }
 
 /* ---- many right-hand sides ---- */
@@ -566,7 +559,7 @@ static void eng_nothing_to_do(const hd_laplacian *lap, hd_method method) {
 }
 
 static void eng_counts(void) {
-    shape ball = shape_icosphere(1), inert = eng_with_inert(&ball), grid = shape_grid(8, 5, 0.3);
+    shape ball = kit_own_shape(shape_icosphere(1)), inert = kit_own_shape(eng_with_inert(&ball)), grid = kit_own_shape(shape_grid(8, 5, 0.3));
     int k;
     for (k = 0; k < 2; k++) {
         heat_case c = heat_case_of(test_laplacian(&inert, HD_LAPLACIAN_FEM), "counts, inert");
@@ -577,9 +570,6 @@ static void eng_counts(void) {
         eng_counts_of(&c, eng_methods[k]);
         heat_case_free(&c);
     }
-    shape_free(&ball);
-    shape_free(&inert);
-    shape_free(&grid);
 }
 
 /* ---- plans used again ---- */
@@ -647,7 +637,7 @@ static void eng_reuse_of(const hd_laplacian *lap, hd_heat_opts *o, const char *w
 }
 
 static void eng_reuse(void) {
-    shape s = shape_bumpy(2, 8);
+    shape s = kit_own_shape(shape_bumpy(2, 8));
     hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
     hd_heat_opts o = eng_opts(HD_METHOD_DIRECT);
     const char *what;
@@ -663,13 +653,12 @@ static void eng_reuse(void) {
     o = eng_opts(HD_METHOD_AUTO);
     eng_reuse_of(lap, &o, "auto");
     hd_laplacian_free(lap);
-    shape_free(&s);
 }
 
 /* A plan that goes from poles to shift-and-invert Lanczos and back: the same answers every time. */
 static void eng_switch(void) {
     enum { K = 40, TIMES = 40 };
-    shape s = shape_bumpy(3, 7);
+    shape s = kit_own_shape(shape_bumpy(3, 7));
     hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
     const hd_heat_opts o = eng_opts(HD_METHOD_AUTO);
     hd_heat *heat = eng_create(lap, &o);
@@ -692,7 +681,6 @@ static void eng_switch(void) {
     }
     hd_heat_free(heat);
     hd_laplacian_free(lap);
-    shape_free(&s);
     free(first);
     free(u);
 }
@@ -762,7 +750,7 @@ static void eng_times(void) {
     static const double unsorted[7] = {5, 0.5, 80, 5, 20, 0.5, 11}, with_zero[5] = {3, 0, 40, -0.0, 1}, single[1] = {7}, zeros[2] = {0, 0},
         equal[3] = {4, 4, 4};
     static const hd_method methods[4] = {HD_METHOD_AUTO, HD_METHOD_ITERATIVE, HD_METHOD_DIRECT, HD_METHOD_KRYLOV};
-    shape ball = shape_icosphere(1), s = eng_with_inert(&ball);
+    shape ball = kit_own_shape(shape_icosphere(1)), s = kit_own_shape(eng_with_inert(&ball));
     int q, k, z, i;
     for (q = 0; q < 3; q++) {
         heat_case c = q < 2 ? heat_case_of(test_laplacian(&s, op_kinds[q]), q ? "times voronoi" : "times fem") : heat_case_of(eng_leaking(8, 7),
@@ -788,8 +776,6 @@ static void eng_times(void) {
         }
         heat_case_free(&c);
     }
-    shape_free(&ball);
-    shape_free(&s);
 }
 
 /* Columns of two batches at times over five decades, one source without mass among them, against calls for one column
@@ -820,20 +806,18 @@ static void eng_times_columns_of(const hd_laplacian *lap, double unit, const cha
 }
 
 static void eng_times_columns(void) {
-    shape ball = shape_icosphere(2), s = eng_with_inert(&ball);
+    shape ball = kit_own_shape(shape_icosphere(2)), s = kit_own_shape(eng_with_inert(&ball));
     hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
     eng_times_columns_of(lap, lap->h * lap->h, "columns and times");
     hd_laplacian_free(lap);
     lap = eng_leaking(12, 9);
     eng_times_columns_of(lap, 0.02, "columns and times, leaking");
     hd_laplacian_free(lap);
-    shape_free(&ball);
-    shape_free(&s);
 }
 
 /* A source without mass at many times. */
 static void eng_times_inert(void) {
-    shape ball = shape_icosphere(0), s = eng_with_inert(&ball);
+    shape ball = kit_own_shape(shape_icosphere(0)), s = kit_own_shape(eng_with_inert(&ball));
     hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
     const double times[3] = {0.3, 0.1, 0.2};
     double *u = DENSE_NEW(double, 3 * s.n);
@@ -852,8 +836,6 @@ static void eng_times_inert(void) {
     }
     free(u);
     hd_laplacian_free(lap);
-    shape_free(&ball);
-    shape_free(&s);
 }
 
 /* ---- threads and instructions ---- */
@@ -930,13 +912,11 @@ static void eng_threads_of(const shape *s, hd_laplacian_kind kind, hd_heat_opts 
 }
 
 static void eng_threads(void) {
-    shape ball = shape_bumpy(3, 6), soup = eng_soup(600, 1200, 4);
+    shape ball = kit_own_shape(shape_bumpy(3, 6)), soup = kit_own_shape(eng_soup(600, 1200, 4));
     eng_threads_of(&ball, HD_LAPLACIAN_FEM, eng_opts(HD_METHOD_DIRECT), "direct");
     eng_threads_of(&ball, HD_LAPLACIAN_VORONOI_COT, eng_opts(HD_METHOD_KRYLOV), "krylov");
     eng_threads_of(&soup, HD_LAPLACIAN_VORONOI_COT, eng_opts(HD_METHOD_DIRECT), "direct, soup");
     eng_threads_of(&soup, HD_LAPLACIAN_FEM, eng_opts(HD_METHOD_KRYLOV), "krylov, soup");
-    shape_free(&ball);
-    shape_free(&soup);
 }
 
 /* ---- far from the times that matter ---- */
@@ -944,7 +924,7 @@ static void eng_threads(void) {
 /* Before anything has moved, and long after everything has: the field itself, and the means of the components. */
 static void eng_extreme_times(void) {
     const double offset[3] = {4, 0, 0};
-    shape a = shape_icosphere(1), b = shape_grid(5, 4, 0.2), s = shape_disjoint(&a, &b, offset);
+    shape a = kit_own_shape(shape_icosphere(1)), b = kit_own_shape(shape_grid(5, 4, 0.2)), s = kit_own_shape(shape_disjoint(&a, &b, offset));
     int q, k, z;
     for (q = 0; q < 2; q++) {
         hd_laplacian *lap = test_laplacian(&s, op_kinds[q]);
@@ -973,9 +953,6 @@ static void eng_extreme_times(void) {
         free(u);
         hd_laplacian_free(lap);
     }
-    shape_free(&a);
-    shape_free(&b);
-    shape_free(&s);
 }
 
 /* ---- what reports and progress tell ---- */
@@ -983,7 +960,7 @@ static void eng_extreme_times(void) {
 /* A tolerance that rounding does not allow is told, by one call and by many times whichever comes first. */
 static void eng_warnings(void) {
     static const double when[2][2] = {{1e-3, 1e4}, {1e4, 1e-3}};
-    shape s = shape_icosphere(1);
+    shape s = kit_own_shape(shape_icosphere(1));
     hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
     double *u = DENSE_NEW(double, 2 * s.n), times[2], rest;
     int k, q, z, tol, seen[2] = {0, 0};
@@ -1015,12 +992,11 @@ static void eng_warnings(void) {
     CHECK_MSG((seen[0] & 1) && seen[1] == 3, "no warnings %d, nothing but warnings %d", seen[0], seen[1]);
     free(u);
     hd_laplacian_free(lap);
-    shape_free(&s);
 }
 
 /* The degree that one of the fields needs serves all; the time that failed is told. */
 static void eng_told(void) {
-    shape s = shape_icosphere(1);
+    shape s = kit_own_shape(shape_icosphere(1));
     hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_VORONOI_COT);
     const double t = lap->h * lap->h, times[3] = {1e-9 * t, 500 * t, 1e-8 * t};
     const int32_t n = s.n;
@@ -1066,7 +1042,6 @@ static void eng_told(void) {
     free(F);
     free(u);
     hd_laplacian_free(lap);
-    shape_free(&s);
 }
 
 /* ---- orders of elimination ---- */
@@ -1074,7 +1049,7 @@ static void eng_told(void) {
 static void eng_orderings(void) {
     static const hd_ordering kinds[5] = {HD_ORDERING_AUTO, HD_ORDERING_MINIMUM_DEGREE, HD_ORDERING_NESTED_DISSECTION, HD_ORDERING_OWN,
         HD_ORDERING_OWN};
-    shape ball = shape_bumpy(2, 8), s = eng_with_inert(&ball);
+    shape ball = kit_own_shape(shape_bumpy(2, 8)), s = kit_own_shape(eng_with_inert(&ball));
     hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
     const int32_t n = s.n, sources[4] = {1, 0, 77, 1};
     const double t = 10 * lap->h * lap->h;
@@ -1119,13 +1094,11 @@ static void eng_orderings(void) {
     free(first);
     free(u);
     hd_laplacian_free(lap);
-    shape_free(&ball);
-    shape_free(&s);
 }
 
 /* What is not a permutation is told with its place. */
 static void eng_bad_perms(void) {
-    shape ball = shape_icosphere(0), s = eng_with_inert(&ball);
+    shape ball = kit_own_shape(shape_icosphere(0)), s = kit_own_shape(eng_with_inert(&ball));
     hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
     const int32_t n = s.n;
     int32_t *perm = DENSE_NEW(int32_t, n), i, twice = 3;
@@ -1164,8 +1137,6 @@ static void eng_bad_perms(void) {
     free(perm);
     free(u);
     hd_laplacian_free(lap);
-    shape_free(&ball);
-    shape_free(&s);
 }
 
 /* ---- the choice ---- */
@@ -1189,7 +1160,7 @@ static hd_method eng_chosen(const hd_laplacian *lap, const hd_heat_opts *o, doub
 }
 
 static void eng_choice(void) {
-    shape s = shape_bumpy(3, 2);
+    shape s = kit_own_shape(shape_bumpy(3, 2));
     hd_laplacian *fem = test_laplacian(&s, HD_LAPLACIAN_FEM), *voronoi = test_laplacian(&s, HD_LAPLACIAN_VORONOI_COT);
     const double hh = fem->h * fem->h;
     const hd_heat_opts none = eng_opts(HD_METHOD_AUTO);
@@ -1229,7 +1200,6 @@ static void eng_choice(void) {
     hd_heat_free(heat);
     hd_laplacian_free(fem);
     hd_laplacian_free(voronoi);
-    shape_free(&s);
     free(u);
 }
 
@@ -1341,13 +1311,11 @@ static void eng_habit_mixed(const shape *s) {
 }
 
 static void eng_habits(void) {
-    shape s = shape_bumpy(4, 2), ring = shape_torus(144, 60, 2, 1);
+    shape s = kit_own_shape(shape_bumpy(4, 2)), ring = kit_own_shape(shape_torus(144, 60, 2, 1));
     eng_habit(&s, HD_LAPLACIAN_FEM, 30, "bumpy, fem");
     eng_habit(&ring, HD_LAPLACIAN_VORONOI_COT, 200, "torus, voronoi");
     eng_habit_limits(&s);
     eng_habit_mixed(&s);
-    shape_free(&s);
-    shape_free(&ring);
 }
 
 /* Whatever the limit is: when iterations fit into it, there is an answer; twice the same call is twice the same method. */
@@ -1398,7 +1366,7 @@ static void eng_choice_limits_of(const hd_laplacian *lap, double t, int32_t k) {
 }
 
 static void eng_choice_limits(void) {
-    shape s = shape_bumpy(3, 2);
+    shape s = kit_own_shape(shape_bumpy(3, 2));
     int q;
     for (q = 0; q < 2; q++) {
         hd_laplacian *lap = test_laplacian(&s, op_kinds[q]);
@@ -1406,12 +1374,11 @@ static void eng_choice_limits(void) {
         eng_choice_limits_of(lap, 4 * lap->h * lap->h, 9);
         hd_laplacian_free(lap);
     }
-    shape_free(&s);
 }
 
 /* A plan that once had to do without factors takes them again when there is room: the same bits as a new one. */
 static void eng_limit_lifted(void) {
-    shape s = shape_bumpy(3, 2);
+    shape s = kit_own_shape(shape_bumpy(3, 2));
     hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
     const double t = 40 * lap->h * lap->h;
     double *u = DENSE_NEW(double, lap->n), *want = DENSE_NEW(double, lap->n);
@@ -1443,7 +1410,6 @@ static void eng_limit_lifted(void) {
     CHECK(memcmp(u, want, (size_t)lap->n * sizeof *u) == 0);
     hd_heat_free(heat);
     hd_laplacian_free(lap);
-    shape_free(&s);
     free(u);
     free(want);
 }
@@ -1451,7 +1417,7 @@ static void eng_limit_lifted(void) {
 /* ---- errors ---- */
 
 static void eng_bad_options(void) {
-    shape s = shape_icosphere(0);
+    shape s = kit_own_shape(shape_icosphere(0));
     hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM), *own = eng_leaking(4, 3);
     int32_t perm[12];
     double u[12];
@@ -1509,12 +1475,11 @@ static void eng_bad_options(void) {
     }
     hd_laplacian_free(lap);
     hd_laplacian_free(own);
-    shape_free(&s);
 }
 
 static void eng_bad_calls(void) {
     static const hd_method methods[4] = {HD_METHOD_AUTO, HD_METHOD_ITERATIVE, HD_METHOD_DIRECT, HD_METHOD_KRYLOV};
-    shape s = shape_icosphere(0);
+    shape s = kit_own_shape(shape_icosphere(0));
     hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
     int32_t sources[3] = {0, 12, 2}, i;
     double F[36], U[36], times[3] = {0.3, 0.1, 0.2};
@@ -1566,7 +1531,6 @@ static void eng_bad_calls(void) {
         hd_heat_free(heat);
     }
     hd_laplacian_free(lap);
-    shape_free(&s);
 }
 
 /* ---- memory and cancelling ---- */
@@ -1709,7 +1673,7 @@ static void eng_survives_one(const hd_laplacian *lap, hd_heat_opts o, int q, con
 }
 
 static void eng_survives(void) {
-    shape s = shape_icosphere(0);
+    shape s = kit_own_shape(shape_icosphere(0));
     hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
     const char *what;
     hd_rational set = eng_own_set(3, &what);
@@ -1723,14 +1687,13 @@ static void eng_survives(void) {
         eng_survives_one(lap, eng_opts(HD_METHOD_AUTO), q, "auto survives");
     }
     hd_laplacian_free(lap);
-    shape_free(&s);
 }
 
 /* The same field again takes the same number of iterations, and finds the same bits: nothing is left of the first, in calls nor within one. */
 static void eng_again(void) {
     enum { FIELDS = 40 };
     static const hd_method methods[3] = {HD_METHOD_ITERATIVE, HD_METHOD_ITERATIVE, HD_METHOD_KRYLOV};
-    shape ball = shape_icosphere(2);
+    shape ball = kit_own_shape(shape_icosphere(2));
     hd_laplacian *lap = test_laplacian(&ball, HD_LAPLACIAN_FEM);
     double *F = DENSE_NEW(double, FIELDS * (int64_t)ball.n), *u = DENSE_NEW(double, FIELDS * (int64_t)ball.n);
     uint64_t seed = 5;
@@ -1753,7 +1716,6 @@ static void eng_again(void) {
         hd_heat_free(heat);
     }
     hd_laplacian_free(lap);
-    shape_free(&ball);
     free(F);
     free(u);
 }
@@ -1761,7 +1723,7 @@ static void eng_again(void) {
 /* Rounding of krylov's solves is measured at every field: constants, which it does not enter, may stand anywhere. */
 static void eng_constant_first(void) {
     enum { K = 6 };
-    shape s = shape_grid(12, 10, 0.3);
+    shape s = kit_own_shape(shape_grid(12, 10, 0.3));
     const double t = 0.1;
     hd_laplacian *lap;
     double *f = DENSE_NEW(double, K * (int64_t)s.n), *u = DENSE_NEW(double, K * (int64_t)s.n), rounding[2];
@@ -1782,7 +1744,6 @@ static void eng_constant_first(void) {
     }
     CHECK_MSG(fabs(rounding[0] - rounding[1]) <= 1e-6 * rounding[0], "rounding %g with the constant first, %g with it last", rounding[0], rounding[1]);
     hd_laplacian_free(lap);
-    shape_free(&s);
     free(f);
     free(u);
 }

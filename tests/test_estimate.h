@@ -263,7 +263,7 @@ static void est_rooms(void) {
     hd_laplacian_opts o;
     int thin, kind, held, large, n_times, query, method, i;
     for (thin = 0; thin < 2; thin++) {
-        shape s = shape_grid(14, 13, 0.3);
+        shape s = kit_own_shape(shape_grid(14, 13, 0.3));
         for (i = 0; thin && i < s.n; i++) s.xyz[3 * i + 1] *= 1e-4;
         for (kind = 0; kind < (thin ? 2 : 4); kind++) {   /* in slivers heat fades at once */
             hd_laplacian *lap = NULL;
@@ -285,7 +285,6 @@ static void est_rooms(void) {
                 }
             hd_laplacian_free(lap);
         }
-        shape_free(&s);
     }
 }
 
@@ -334,7 +333,7 @@ static void est_steps(const hd_laplacian *lap, hd_solver solver, hd_precond prec
 
 /* The model of steps: fair triangles, points, other preconditioners, thin triangles made Delaunay, and a fine patch. */
 static void est_model(void) {
-    shape ball = shape_bumpy(4, 3), sheet = shape_grid(50, 50, 0.35), torus = shape_torus(100, 25, 1, 0.4);
+    shape ball = kit_own_shape(shape_bumpy(4, 3)), sheet = kit_own_shape(shape_grid(50, 50, 0.35)), torus = kit_own_shape(shape_torus(100, 25, 1, 0.4));
     hd_laplacian_opts o;
     hd_laplacian *lap;
     const shape *s[3];
@@ -368,9 +367,6 @@ static void est_model(void) {
     CHECK(hd_laplacian_triangles(&lap, sheet.xyz, sheet.n, sheet.tri, sheet.n_tri, &o, NULL) >= 0);
     est_steps(lap, HD_SOLVER_COCG, HD_PRECOND_AUTO, 0.4, 2.5, "cocg, thin triangles");
     hd_laplacian_free(lap);
-    shape_free(&ball);
-    shape_free(&sheet);
-    shape_free(&torus);
 }
 
 /* Eigenpairs: bytes against those of hd_spectrum_create, whatever the plan's method. */
@@ -488,7 +484,7 @@ static void est_sweep(const hd_laplacian *lap, uint64_t limit, const char *name)
 }
 
 static void est_sweeps(void) {
-    shape ball = shape_icosphere(1), grid = shape_grid(9, 8, 0.2);
+    shape ball = kit_own_shape(shape_icosphere(1)), grid = kit_own_shape(shape_grid(9, 8, 0.2));
     hd_laplacian_opts held;
     hd_laplacian *lap = test_laplacian(&ball, HD_LAPLACIAN_FEM);
     memset(&held, 0, sizeof held);
@@ -501,8 +497,6 @@ static void est_sweeps(void) {
     CHECK(hd_laplacian_triangles(&lap, grid.xyz, grid.n, grid.tri, grid.n_tri, &held, NULL) == HD_OK);
     est_sweep(lap, 0, "held grid");
     hd_laplacian_free(lap);
-    shape_free(&ball);
-    shape_free(&grid);
 }
 
 #if defined(__SANITIZE_ADDRESS__)
@@ -514,7 +508,7 @@ enum { EST_EACH = 1 };
 /* Work by iterations is a sum over the times that starts at zero. */
 static void est_flops(void) {
 #ifdef HEATDIFF_IMPLEMENTATION
-    shape s = shape_icosphere(2);
+    shape s = kit_own_shape(shape_icosphere(2));
     hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
     hd_heat *heat = eng_create(lap, NULL);
     const double t[2] = {3 * lap->h * lap->h * heat->scale, 9 * lap->h * lap->h * heat->scale};
@@ -538,14 +532,13 @@ static void est_flops(void) {
               one[0].iterative_flops, one[1].iterative_flops, both.iterative_flops);
     hd_heat_free(heat);
     hd_laplacian_free(lap);
-    shape_free(&s);
 #endif
 }
 
 /* Times over more decades never cost less. */
 static void est_decades(void) {
     enum { TIMES = 20 };
-    shape s = shape_grid(31, 31, 0.2);
+    shape s = kit_own_shape(shape_grid(31, 31, 0.2));
     hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
     double before = 0, flops = 0, t[TIMES];
     int decades, q;
@@ -561,12 +554,11 @@ static void est_decades(void) {
         hd_heat_free(heat);
     }
     hd_laplacian_free(lap);
-    shape_free(&s);
 }
 
 /* Work grows with the number of items up to the largest there is. */
 static void est_many(void) {
-    shape s = shape_grid(6, 5, 0.2);
+    shape s = kit_own_shape(shape_grid(6, 5, 0.2));
     hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
     const double t = 10 * lap->h * lap->h;
     int q;
@@ -582,14 +574,13 @@ static void est_many(void) {
         hd_heat_free(heat);
     }
     hd_laplacian_free(lap);
-    shape_free(&s);
 }
 
 static void test_estimate(void) {
     est_flops();
     static const hd_laplacian_kind kinds[3] = {HD_LAPLACIAN_FEM, HD_LAPLACIAN_VORONOI_COT, HD_LAPLACIAN_FEM};
     static const char *const names[4] = {"ball, fem", "ball, voronoi-cot", "sheet, fem", "points"};
-    shape ball = shape_bumpy(4, 5), sheet = shape_grid(53, 41, 0.3), points = shape_bumpy(3, 5);
+    shape ball = kit_own_shape(shape_bumpy(4, 5)), sheet = kit_own_shape(shape_grid(53, 41, 0.3)), points = kit_own_shape(shape_bumpy(3, 5));
     int q, c;
     for (q = 0; q < 4; q += EST_EACH) {
         const shape *s = q == 3 ? &points : q == 2 ? &sheet : &ball;
@@ -608,7 +599,4 @@ static void test_estimate(void) {
     est_sweeps();
     est_many();
     est_decades();
-    shape_free(&ball);
-    shape_free(&sheet);
-    shape_free(&points);
 }

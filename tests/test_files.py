@@ -72,28 +72,28 @@ def absent(what):
     raise (AssertionError if os.environ.get("HEATDIFF_NO_SKIP") else unittest.SkipTest)(what)
 
 
+FOLDER = tempfile.TemporaryDirectory()
+MESHES = meshes()
+
+
+def setUpModule():
+    for name, (points, faces) in MESHES.items():
+        with open(os.path.join(FOLDER.name, name + ".obj"), "w") as f:
+            f.write(obj_text(points, faces))
+
+
 class Files(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.folder = tempfile.TemporaryDirectory()
-        cls.meshes = meshes()
-        for name, (points, faces) in cls.meshes.items():
-            with open(os.path.join(cls.folder.name, name + ".obj"), "w") as f:
-                f.write(obj_text(points, faces))
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.folder.cleanup()
-
     def write(self, name, columns, extension):
-        out = os.path.join(self.folder.name, "%s-%d%s" % (name, columns, extension))
-        mesh = os.path.join(self.folder.name, name + ".obj")
-        subprocess.run([TOOL, "kernel"] + arguments(columns) + [mesh, "-o", out, "--quiet"], check=True)
+        """Each file once, for both readers."""
+        out = os.path.join(FOLDER.name, "%s-%d%s" % (name, columns, extension))
+        mesh = os.path.join(FOLDER.name, name + ".obj")
+        if not os.path.exists(out):
+            subprocess.run([TOOL, "kernel"] + arguments(columns) + [mesh, "-o", out, "--quiet"], check=True)
         return out
 
     def cases(self, extension, names=None):
         """Each file, with what it must hold: points, faces, values [n, columns], names of the columns."""
-        for name, (points, faces) in self.meshes.items():
+        for name, (points, faces) in MESHES.items():
             for columns in COLUMNS:
                 if names and name not in names:
                     continue

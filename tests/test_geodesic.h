@@ -254,9 +254,7 @@ static shape geo_sheared(int32_t nx, int32_t ny, double shear) {
 
 static shape geo_two(void) {
     const double offset[3] = {4, 0.3, 0};
-    shape a = shape_bumpy(2, 3), b = shape_torus(11, 7, 1, 0.4), s = shape_disjoint(&a, &b, offset);
-    shape_free(&a);
-    shape_free(&b);
+    shape a = kit_own_shape(shape_bumpy(2, 3)), b = kit_own_shape(shape_torus(11, 7, 1, 0.4)), s = shape_disjoint(&a, &b, offset);
     return s;
 }
 
@@ -303,7 +301,7 @@ static void geo_against_dense(shape s, const char *what) {
  * row. */
 static void geo_tube(int32_t around, int32_t rows, double tau, int32_t n_stages) {
     const double row = 1.0 / (rows - 1);
-    shape s = shape_cylinder(around, rows, row * around / 6, 1);
+    shape s = kit_own_shape(shape_cylinder(around, rows, row * around / 6, 1));
     hd_geodesic *g = geo_plan(&s, tau * row * row, HD_GEODESIC_MASS_BARYCENTRIC, NULL);
     double *d = DENSE_NEW(double, s.n), worst = 0;
     int32_t *sources = DENSE_NEW(int32_t, around), i;
@@ -316,7 +314,6 @@ static void geo_tube(int32_t around, int32_t rows, double tau, int32_t n_stages)
     hd_geodesic_free(g);
     free(d);
     free(sources);
-    shape_free(&s);
 }
 
 /* Straight lines in the plane and great circles on the sphere are approached. most: bounds on the largest error, level by level. */
@@ -342,7 +339,7 @@ static void geo_refine(int ball, const double *most, int levels) {
 
 /* A jittered strip of many stages: every step along it is a step of about its length. */
 static void geo_long(void) {
-    shape s = shape_grid(4000, 4, 0.25);
+    shape s = kit_own_shape(shape_grid(4000, 4, 0.25));
     const int32_t source = 2 * 4000;
     hd_geodesic *g = geo_plan(&s, 0, HD_GEODESIC_MASS_BARYCENTRIC, NULL);
     double *d = DENSE_NEW(double, 4 * s.n), worst = 0;
@@ -363,13 +360,12 @@ static void geo_long(void) {
     }
     hd_geodesic_free(g);
     free(d);
-    shape_free(&s);
 }
 
 /* Stages cost what they touch: together they go to each front a few times, however long the strip and however
  * high the tree. */
 static void geo_strip(hd_ordering ordering) {
-    shape s = shape_grid(10001, 2, 0.2);
+    shape s = kit_own_shape(shape_grid(10001, 2, 0.2));
     const int32_t source = 3000;
     double *d = DENSE_NEW(double, s.n), worst = 0, times;
     hd_geodesic *g = NULL;
@@ -388,7 +384,6 @@ static void geo_strip(hd_ordering ordering) {
     CHECK_MSG(worst < 0.01, "off by %g", worst);
     hd_geodesic_free(g);
     free(d);
-    shape_free(&s);
 }
 
 /* What a stage leaves out is nothing: the same in orders whose trees have nothing in common. */
@@ -423,7 +418,7 @@ static void geo_stages_ordered(shape s, int32_t source, double t) {
 
 static void geo_moved(void) {
     static const double scales[5] = {1, 1e-3, 1e-140, 250, 1e140};
-    shape s = shape_bumpy(3, 8), r;
+    shape s = kit_own_shape(shape_bumpy(3, 8)), r;
     const int32_t sources[2] = {17, 400};
     double *want = geo_of(&s, 0, sources, 2), *d, worst;
     int32_t i;
@@ -440,12 +435,11 @@ static void geo_moved(void) {
         shape_free(&r);
     }
     free(want);
-    shape_free(&s);
 }
 
 /* Vertices and faces renumbered, corners turned, some faces turned over, faces given twice, faces without area. */
 static void geo_renumbered(void) {
-    shape s = geo_two(), r = shape_make(s.n + 3, s.n_tri + 4);
+    shape s = kit_own_shape(geo_two()), r = kit_own_shape(shape_make(s.n + 3, s.n_tri + 4));
     int32_t *perm = DENSE_NEW(int32_t, s.n), *face = DENSE_NEW(int32_t, s.n_tri), sources[2] = {40, 200}, moved[2], i;
     uint64_t seed = 5;
     double *want = geo_of(&s, 0, sources, 2), *d, worst = 0;
@@ -468,13 +462,11 @@ static void geo_renumbered(void) {
     free(face);
     free(want);
     free(d);
-    shape_free(&s);
-    shape_free(&r);
 }
 
 /* A torus turned by some of its steps is the same torus; a ball has a point opposite to each. */
 static void geo_symmetric(void) {
-    shape torus = shape_torus(24, 10, 1, 0.45), ball = shape_icosphere(3);
+    shape torus = kit_own_shape(shape_torus(24, 10, 1, 0.45)), ball = kit_own_shape(shape_icosphere(3));
     const int32_t a = 3, b = 7 * 10 + 3, c = 33;
     int32_t opposite = 0, i, j;
     double *x = geo_of(&torus, 0, &a, 1), *y = geo_of(&torus, 0, &b, 1), worst = 0, most = 0;
@@ -494,14 +486,12 @@ static void geo_symmetric(void) {
     CHECK_MSG(worst < 1e-10 && most == x[opposite], "ball: %g, farthest %g of %g", worst, x[opposite], most);
     free(x);
     free(y);
-    shape_free(&torus);
-    shape_free(&ball);
 }
 
 /* Components by themselves, vertices in no face, sources among them. */
 static void geo_parts(void) {
     const double offset[3] = {4, 0.3, 0};
-    shape a = shape_bumpy(2, 3), b = shape_torus(11, 7, 1, 0.4), s = shape_disjoint(&a, &b, offset), r = shape_make(s.n + 2, s.n_tri);
+    shape a = kit_own_shape(shape_bumpy(2, 3)), b = kit_own_shape(shape_torus(11, 7, 1, 0.4)), s = kit_own_shape(shape_disjoint(&a, &b, offset)), r = kit_own_shape(shape_make(s.n + 2, s.n_tri));
     const double hh = 0.04;
     const int32_t first = 9, second = 50, both[3] = {9, a.n + 50, s.n}, lone = s.n + 1;
     double *da = geo_of(&a, hh, &first, 1), *db = geo_of(&b, hh, &second, 1), *d;
@@ -542,10 +532,6 @@ static void geo_parts(void) {
     }
     free(da);
     free(db);
-    shape_free(&a);
-    shape_free(&b);
-    shape_free(&s);
-    shape_free(&r);
 }
 
 /* Slivers, needles, soups: whatever comes out are numbers, zero at the source, not negative. */
@@ -593,7 +579,7 @@ static void geo_ugly(void) {
 /* ---- plans ---- */
 
 static void geo_plans(void) {
-    shape s = shape_bumpy(3, 2);
+    shape s = kit_own_shape(shape_bumpy(3, 2));
     hd_geodesic *g = geo_plan(&s, 0, HD_GEODESIC_MASS_BARYCENTRIC, NULL), *own = NULL;
     const int32_t sources[5] = {5, 5, 17, 5, 17}, pair[2] = {17, 5};
     double *a = DENSE_NEW(double, s.n), *b = DENSE_NEW(double, s.n);
@@ -628,11 +614,10 @@ static void geo_plans(void) {
     free(a);
     free(b);
     free(perm);
-    shape_free(&s);
 }
 
 static void geo_errors(void) {
-    shape s = shape_icosphere(1);
+    shape s = kit_own_shape(shape_icosphere(1));
     hd_geodesic *g = NULL;
     hd_geodesic_opts good, o;
     hd_geodesic_report rep;
@@ -681,7 +666,6 @@ static void geo_errors(void) {
     CHECK(hd_geodesic_distance(g, 1, &zero, d, &rep, NULL) == HD_OK && d[0] == 0 && d[1] > 0);     /* and is as good as before */
     hd_geodesic_free(g);
     hd_geodesic_free(NULL);
-    shape_free(&s);
 }
 
 /* One triangle, the smallest mesh of all: equilateral, so that heat runs straight from a corner to the middle of the edge opposite. */
@@ -741,7 +725,7 @@ static int64_t geo_thread_run(const shape *s, hd_simd simd, int way, double *out
 
 static void geo_threads(void) {
     const double offset[3] = {3, 0, 0};
-    shape ball = shape_bumpy(4, 6), strip = shape_grid(900, 3, 0.2), s = shape_disjoint(&ball, &strip, offset);
+    shape ball = kit_own_shape(shape_bumpy(4, 6)), strip = kit_own_shape(shape_grid(900, 3, 0.2)), s = kit_own_shape(shape_disjoint(&ball, &strip, offset));
     const int64_t size = 12 * (int64_t)s.n;
     double *first = DENSE_NEW(double, size), *other = DENSE_NEW(double, size), *top = DENSE_NEW(double, size);
     int64_t calls = 0;
@@ -761,9 +745,6 @@ static void geo_threads(void) {
     free(first);
     free(other);
     free(top);
-    shape_free(&ball);
-    shape_free(&strip);
-    shape_free(&s);
 }
 
 static hd_geodesic *const geo_mark = (hd_geodesic *)&test_passed;    /* not a plan: only compared */
@@ -771,7 +752,7 @@ static hd_geodesic *const geo_mark = (hd_geodesic *)&test_passed;    /* not a pl
 /* 0: plan; 1: and a set; 2: and columns; 3: on a strip that needs stages. */
 static hd_status geo_job(hd_context *ctx, int variant) {
     const double offset[3] = {3, 0, 0};
-    shape a = shape_icosphere(0), b = variant == 3 ? shape_grid(700, 2, 0) : shape_grid(3, 3, 0.2), s = shape_disjoint(&a, &b, offset);
+    shape a = kit_own_shape(shape_icosphere(0)), b = variant == 3 ? shape_grid(700, 2, 0) : shape_grid(3, 3, 0.2), s = kit_own_shape(shape_disjoint(&a, &b, offset));
     const int32_t sources[6] = {0, 13, 5, 14, 2, 20};
     double *d = DENSE_NEW(double, 6 * s.n);
     hd_geodesic *g = geo_mark;
@@ -790,15 +771,13 @@ static hd_status geo_job(hd_context *ctx, int variant) {
         hd_geodesic_free(g);
     }
     free(d);
-    shape_free(&a);
     shape_free(&b);
-    shape_free(&s);
     return st;
 }
 
 /* A plan that ran out of memory in one query serves the next. */
 static void geo_survives(void) {
-    shape s = shape_icosphere(2);
+    shape s = kit_own_shape(shape_icosphere(2));
     test_memory m;
     hd_context ctx = test_memory_context(&m);
     const int32_t sources[4] = {3, 4, 5, 6};
@@ -821,7 +800,6 @@ static void geo_survives(void) {
     test_memory_done(&m, &ctx, "geodesic");
     free(want);
     free(d);
-    shape_free(&s);
 }
 
 static void geo_robust(void) {

@@ -239,8 +239,8 @@ static void gall_against_dense(shape_poly s, int32_t inner, const char *what) {
 
 /* Triangles given as polygons, and the intrinsic triangulations of a closed mesh that is Delaunay already. */
 static void gall_equal(void) {
-    shape s = shape_icosphere(3);
-    shape_poly p = shape_poly_of(&s);
+    shape s = kit_own_shape(shape_icosphere(3));
+    shape_poly p = kit_own_poly(shape_poly_of(&s));
     const int32_t sources[4] = {5, 100, 17, 600};
     double *want = DENSE_NEW(double, 5 * s.n), *d = DENSE_NEW(double, 5 * s.n);
     hd_geodesic_opts o = gall_options();
@@ -263,8 +263,6 @@ static void gall_equal(void) {
     }
     free(want);
     free(d);
-    shape_free(&s);
-    shape_poly_free(&p);
 }
 
 /* Slivers in a plane: flipped along the surface they are as good as any. The residuals compare the frames of faces with L as it was assembled. */
@@ -272,7 +270,7 @@ static void gall_slivers(void) {
     const double squeeze[3] = {1, 5, 20};
     int k, way;
     for (k = 0; k < 3; k++) {
-        shape s = shape_grid(31, 31, 0.3);
+        shape s = kit_own_shape(shape_grid(31, 31, 0.3));
         const int32_t source = 480;
         double *d = DENSE_NEW(double, s.n), error[3];
         int32_t i;
@@ -291,7 +289,6 @@ static void gall_slivers(void) {
         }
         CHECK_MSG(error[1] < 0.015 && error[2] < 0.015 && (k == 0 || error[0] > 4 * error[1]), "1:%g: errors %g %g %g", squeeze[k], error[0], error[1], error[2]);
         free(d);
-        shape_free(&s);
     }
 }
 
@@ -352,8 +349,8 @@ static void gall_accuracy(void) {
 
 /* Many sources at once are nearly as good as each by itself, and no vertex comes much nearer than it is. */
 static void gall_many(void) {
-    shape_poly p = shape_quad_sphere(16);
-    shape s = shape_grid(31, 31, 0.3);
+    shape_poly p = kit_own_poly(shape_quad_sphere(16));
+    shape s = kit_own_shape(shape_grid(31, 31, 0.3));
     int32_t sources[40], k, i, way;
     double *d = DENSE_NEW(double, p.n);
     for (way = 0; way < 2; way++) {
@@ -376,13 +373,11 @@ static void gall_many(void) {
         hd_geodesic_free(g);
     }
     free(d);
-    shape_free(&s);
-    shape_poly_free(&p);
 }
 
 /* In a convex piece of the plane the mean border lets heat flow longer: at 8 h^2 it is less than half as far off as the natural one. */
 static void gall_borders(void) {
-    shape s = shape_grid(31, 31, 0.3), ball = shape_icosphere(2);
+    shape s = kit_own_shape(shape_grid(31, 31, 0.3)), ball = kit_own_shape(shape_icosphere(2));
     const int32_t source = 15 * 31 + 8;
     double *d = DENSE_NEW(double, s.n > ball.n ? s.n : ball.n), *e = DENSE_NEW(double, ball.n), error[2];
     int b;
@@ -408,15 +403,13 @@ static void gall_borders(void) {
     }
     free(d);
     free(e);
-    shape_free(&s);
-    shape_free(&ball);
 }
 
 /* ---- long ways ---- */
 
 /* The cells of a tube of around x rows vertices as quadrangles. */
 static shape_poly gall_tube(int32_t around, int32_t rows, double radius) {
-    shape s = shape_cylinder(around, rows, radius, 1);
+    shape s = kit_own_shape(shape_cylinder(around, rows, radius, 1));
     shape_poly p = shape_poly_make(s.n, (int64_t)around * (rows - 1), 4 * (int64_t)around * (rows - 1));
     int32_t i, j;
     memcpy(p.xyz, s.xyz, 3 * (size_t)s.n * sizeof *s.xyz);
@@ -425,15 +418,14 @@ static shape_poly gall_tube(int32_t around, int32_t rows, double radius) {
             const int32_t next = (i + 1) % around;
             shape_put_quad(&p, i * rows + j, next * rows + j, next * rows + j + 1, i * rows + j + 1);
         }
-    shape_free(&s);
     return p;
 }
 
 /* As geo_tube: from all of a rim the distance is linear in the height, and exact, through all stages. way 0: quadrangles; 1: tufted; 2: intrinsic. */
 static void gall_rim(int32_t around, int32_t rows, double tau, int way) {
     const double row = 1.0 / (rows - 1), radius = row * around / 6;
-    shape s = shape_cylinder(around, rows, radius, 1);
-    shape_poly p = gall_tube(around, rows, radius);
+    shape s = kit_own_shape(shape_cylinder(around, rows, radius, 1));
+    shape_poly p = kit_own_poly(gall_tube(around, rows, radius));
     double *d = DENSE_NEW(double, s.n), worst = 0;
     int32_t *sources = DENSE_NEW(int32_t, around), i;
     hd_geodesic_opts o = gall_options();
@@ -451,13 +443,11 @@ static void gall_rim(int32_t around, int32_t rows, double tau, int way) {
     hd_geodesic_free(g);
     free(d);
     free(sources);
-    shape_free(&s);
-    shape_poly_free(&p);
 }
 
 /* A source with heat held at zero along the border of a strip that needs stages: distances go on past the first. */
 static void gall_strip(void) {
-    shape s = shape_grid(1500, 9, 0);
+    shape s = kit_own_shape(shape_grid(1500, 9, 0));
     const int32_t source = 4 * 1500;
     double *d = DENSE_NEW(double, s.n), least;
     int32_t i;
@@ -476,13 +466,12 @@ static void gall_strip(void) {
         hd_geodesic_free(g);
     }
     free(d);
-    shape_free(&s);
 }
 
 /* ---- points ---- */
 
 static void gall_coincident(void) {
-    shape s = shape_points(300, shape_on_sphere, 12.566370614359172, 1, 9);
+    shape s = kit_own_shape(shape_points(300, shape_on_sphere, 12.566370614359172, 1, 9));
     double *xyz = DENSE_NEW(double, 3 * (s.n + 2)), *d = DENSE_NEW(double, s.n + 2), *want = DENSE_NEW(double, s.n);
     const int32_t source = 7, twin = s.n, three[3] = {twin, 100, 200};
     hd_geodesic *g = gall_points(s.xyz, s.n, NULL);
@@ -507,14 +496,13 @@ static void gall_coincident(void) {
     free(xyz);
     free(d);
     free(want);
-    shape_free(&s);
 }
 
 /* ---- options, threads, failures ---- */
 
 static void gall_errors(void) {
-    shape s = shape_icosphere(1);
-    shape_poly p = shape_quad_sphere(3);
+    shape s = kit_own_shape(shape_icosphere(1));
+    shape_poly p = kit_own_poly(shape_quad_sphere(3));
     hd_geodesic *g = geo_mark;
     hd_geodesic_opts o;
     hd_error e;
@@ -548,8 +536,6 @@ static void gall_errors(void) {
     CHECK(hd_geodesic_create_polygons(&g, p.xyz, 5, p.face_ptr, p.face_idx, p.n_faces, NULL, &e) == HD_ERR_INDEX && e.face >= 0);
     CHECK(hd_geodesic_create_polygons(&g, p.xyz, p.n, p.face_ptr, p.face_idx, 0, NULL, &e) == HD_ERR_EMPTY);
     CHECK(g == geo_mark);
-    shape_free(&s);
-    shape_poly_free(&p);
 }
 
 static void gall_thread_run(const shape_poly *s, hd_simd simd, int way, double *out) {
@@ -575,7 +561,7 @@ static void gall_thread_run(const shape_poly *s, hd_simd simd, int way, double *
 
 /* The same bits with any number of threads, and nearly the same with any instructions. */
 static void gall_threads(void) {
-    shape_poly s = shape_quad_sphere(12);
+    shape_poly s = kit_own_poly(shape_quad_sphere(12));
     const int64_t size = 36 * (int64_t)s.n;
     double *first = DENSE_NEW(double, size), *other = DENSE_NEW(double, size), *top = DENSE_NEW(double, size);
     int level, way;
@@ -591,13 +577,12 @@ static void gall_threads(void) {
     free(first);
     free(other);
     free(top);
-    shape_poly_free(&s);
 }
 
 /* 0: polygons and a mean border; 1: tufted; 2: points; 3: polygons that need stages. */
 static hd_status gall_job(hd_context *ctx, int variant) {
     shape_poly s = variant == 3 ? gall_tube(3, 500, 0.001) : shape_trominoes(2, 2, 0.2);
-    shape ball = shape_icosphere(1);
+    shape ball = kit_own_shape(shape_icosphere(1));
     const int32_t sources[6] = {0, 13, 5, 14, 2, 20};
     double *d = DENSE_NEW(double, 6 * (s.n > ball.n ? s.n : ball.n));
     hd_geodesic_opts o = gall_options();
@@ -618,7 +603,6 @@ static hd_status gall_job(hd_context *ctx, int variant) {
         hd_geodesic_free(g);
     }
     free(d);
-    shape_free(&ball);
     shape_poly_free(&s);
     return st;
 }
@@ -635,7 +619,7 @@ static void gall_robust(void) {
 
 /* Two squares of four cells: a component without a source has no heat, and that is no reason for stages. Each plan holds its context. */
 static void gall_cold(void) {
-    shape_poly p = shape_poly_make(18, 8, 32);
+    shape_poly p = kit_own_poly(shape_poly_make(18, 8, 32));
     hd_geodesic_opts o = gall_options();
     hd_geodesic_report rep;
     hd_context ctx;
@@ -668,7 +652,6 @@ static void gall_cold(void) {
     CHECK_MSG(made[0] == made[1], "%d allocations with two sources, %d with one", (int)made[0], (int)made[1]);
     hd_geodesic_free(g);
     CHECK(ctx.n_holders == 0 && ctx.bytes_in_use == 0);
-    shape_poly_free(&p);
 }
 
 /* Rings of cells that double in size, small ones listed beside large ones: what is flat is so beside its own face. */
@@ -678,7 +661,7 @@ static void gall_face_orders(void) {
     const int32_t source = 0;
     int32_t i, r, way;
     for (way = 0; way < 2; way++) {
-        shape_poly p = shape_poly_make((RINGS + 1) * AROUND, RINGS * AROUND, 4 * RINGS * AROUND);
+        shape_poly p = kit_own_poly(shape_poly_make((RINGS + 1) * AROUND, RINGS * AROUND, 4 * RINGS * AROUND));
         hd_geodesic *g;
         for (i = 0; i < p.n; i++) {
             p.xyz[3 * i] = ldexp(cos(i % AROUND * 6.283185307179586 / AROUND), i / AROUND);
@@ -702,7 +685,6 @@ static void gall_face_orders(void) {
         g = gall_polygons(&p, NULL);
         CHECK(hd_geodesic_distance(g, 1, &source, d[way], NULL, NULL) == HD_OK);
         hd_geodesic_free(g);
-        shape_poly_free(&p);
     }
     for (i = 0; i < (RINGS + 1) * AROUND; i++) CHECK_MSG(fabs(d[0][i] - d[1][i]) <= 1e-3 * d[0][i], "vertex %d: %g, %g", (int)i, d[0][i], d[1][i]);
 }

@@ -153,7 +153,7 @@ static void tri_plane(void) {
     static const double factors[3] = {1, 4, 0.15};
     int k, q;
     for (k = 0; k < 3; k++) {
-        shape s = shape_grid(11, 9, 0.4), d;
+        shape s = kit_own_shape(shape_grid(11, 9, 0.4)), d;
         tri_stretch(&s, factors[k]);
         d = tri_planar_delaunay(s.xyz, s.n);
         CHECK(d.n_tri == s.n_tri);
@@ -167,7 +167,6 @@ static void tri_plane(void) {
             hd_laplacian_free(plain);
             hd_laplacian_free(lap);
         }
-        shape_free(&s);
         shape_free(&d);
     }
 }
@@ -178,7 +177,7 @@ static void tri_closed(void) {
     static const double factors[3] = {1, 10, 0.03};
     int k, q, mode;
     for (k = 0; k < 3; k++) {
-        shape s = shape_bumpy(3, 5);
+        shape s = kit_own_shape(shape_bumpy(3, 5));
         int64_t negative;
         tri_stretch(&s, factors[k]);
         for (q = 0; q < 3; q++) {
@@ -199,14 +198,13 @@ static void tri_closed(void) {
             hd_laplacian_free(lap[TRI_DELAUNAY]);
             hd_laplacian_free(lap[TRI_TUFTED]);
         }
-        shape_free(&s);
     }
 }
 
 /* The statistics of the faces are those of the plain operator, also where the surface is open, broken, or inside out in places. */
 static void tri_same_report(void) {
     const double offset[3] = {2, 0, 0};
-    shape a = shape_cylinder(9, 4, 1, 2), b = shape_grid(5, 4, 0.3), s = shape_disjoint(&a, &b, offset), t = shape_make(s.n + 1, s.n_tri + 3);
+    shape a = kit_own_shape(shape_cylinder(9, 4, 1, 2)), b = kit_own_shape(shape_grid(5, 4, 0.3)), s = kit_own_shape(shape_disjoint(&a, &b, offset)), t = kit_own_shape(shape_make(s.n + 1, s.n_tri + 3));
     int32_t f, m = 0;
     int mode;
     memcpy(t.xyz, s.xyz, 3 * (size_t)s.n * sizeof(double));
@@ -234,16 +232,12 @@ static void tri_same_report(void) {
         hd_laplacian_free(plain);
         hd_laplacian_free(lap);
     }
-    shape_free(&a);
-    shape_free(&b);
-    shape_free(&s);
-    shape_free(&t);
 }
 
 /* A surface and its subdivision have the same geometry. The eigenvalues of the finer mesh are nearer to the surface's own; those of the coarse Delaunay
  * triangulation must be nearer to them, on the whole, than those of the coarse slivers. */
 static void tri_eigenvalues(void) {
-    shape s = shape_bumpy(1, 3), mid, fine;
+    shape s = kit_own_shape(shape_bumpy(1, 3)), mid, fine;
     hd_laplacian *lap[3];
     dense_pair pair[3];
     double off[2] = {0, 0};
@@ -270,7 +264,6 @@ static void tri_eigenvalues(void) {
         dense_pair_free(pair + k);
         hd_laplacian_free(lap[k]);
     }
-    shape_free(&s);
     shape_free(&mid);
     shape_free(&fine);
 }
@@ -279,7 +272,7 @@ static void tri_eigenvalues(void) {
 
 /* n pages around a spine along z, at the angles given, of cells x cells squares of the size given, split at random and shaken within their page. */
 static shape tri_book(int pages, const double *angle, int32_t cells, double jitter, double stretch) {
-    shape page = shape_grid(cells + 1, cells + 1, jitter), s = shape_make((cells + 1) + pages * cells * (cells + 1), pages * page.n_tri);
+    shape page = kit_own_shape(shape_grid(cells + 1, cells + 1, jitter)), s = shape_make((cells + 1) + pages * cells * (cells + 1), pages * page.n_tri);
     int32_t i, j, f, m = 0;
     int k, q;
     for (k = 0; k < pages; k++) {
@@ -300,7 +293,6 @@ static shape tri_book(int pages, const double *angle, int32_t cells, double jitt
             shape_put_triangle(&s, m++, v[0], v[1], v[2]);
         }
     }
-    shape_free(&page);
     return s;
 }
 
@@ -309,7 +301,7 @@ static void tri_books(void) {
     static const double angle[5] = {0.3, 1.1, 2.9, 4.0, 5.5};
     int pages, q;
     for (pages = 3; pages <= 5; pages++) {
-        shape good = tri_book(pages, angle, 4, 0, 1), bad = tri_book(pages, angle, 5, 0.35, 4), r;
+        shape good = kit_own_shape(tri_book(pages, angle, 4, 0, 1)), bad = kit_own_shape(tri_book(pages, angle, 5, 0.35, 4)), r;
         int32_t *to = DENSE_NEW(int32_t, bad.n);
         r = op_renumbered(&bad, 12, to);
         for (q = 0; q < 3; q++) {
@@ -332,15 +324,13 @@ static void tri_books(void) {
         }
         free(to);
         shape_free(&r);
-        shape_free(&good);
-        shape_free(&bad);
     }
 }
 
 /* A closed ball beside a book is covered twice, and keeps the operators it has alone. */
 static void tri_cover_of_closed(void) {
     static const double angle[3] = {0, 2, 4}, offset[3] = {9, 0, 0};
-    shape ball = shape_bumpy(2, 4), book = tri_book(3, angle, 2, 0, 1), both;
+    shape ball = kit_own_shape(shape_bumpy(2, 4)), book = kit_own_shape(tri_book(3, angle, 2, 0, 1)), both;
     int q, mode;
     tri_stretch(&ball, 5);
     both = shape_disjoint(&ball, &book, offset);
@@ -353,8 +343,6 @@ static void tri_cover_of_closed(void) {
             hd_laplacian_free(lap);
         }
     }
-    shape_free(&ball);
-    shape_free(&book);
     shape_free(&both);
 }
 
@@ -364,7 +352,7 @@ static void tri_obtuse(void) {
     const double xyz[9] = {0, 0, 0, 5, 0, 0, 2, 1, 0}, tan_a = 1.0 / 2, tan_b = 1.0 / 3, ik2 = 5, jk2 = 10;
     const double a_area = 0.25 * ik2 * 2 * tan_a / (1 + tan_a * tan_a), b_area = 0.25 * jk2 * 2 * tan_b / (1 + tan_b * tan_b);
     const int32_t tri[3] = {0, 1, 2};
-    shape s = shape_make(3, 1);
+    shape s = kit_own_shape(shape_make(3, 1));
     int q;
     memcpy(s.xyz, xyz, sizeof xyz);
     memcpy(s.tri, tri, sizeof tri);
@@ -382,12 +370,11 @@ static void tri_obtuse(void) {
         hd_laplacian_free(open);
         hd_laplacian_free(plain);
     }
-    shape_free(&s);
 }
 
 /* B >= b_ratio diag(B), where edges from a vertex to itself make it worst. */
 static void tri_b_ratio(void) {
-    shape s = shape_grid(5, 2, 0);
+    shape s = kit_own_shape(shape_grid(5, 2, 0));
     hd_laplacian *lap;
     dense_pair pair;
     double *D, *B;
@@ -404,7 +391,6 @@ static void tri_b_ratio(void) {
     for (i = 0; i < n; i++) CHECK_MSG(pair.lambda[i] >= lap->b_ratio * (1 - 1e-12), "%g below %g", pair.lambda[i], lap->b_ratio);
     dense_pair_free(&pair);
     hd_laplacian_free(lap);
-    shape_free(&s);
 }
 
 /* A strip of n x 3 cells, glued after half a turn, or (two_sided) after a whole one. */
@@ -451,7 +437,7 @@ static void tri_energy_of(const shape *s, int mode, const char *what) {
 
 static void tri_energy(void) {
     static const double angle[3] = {0.5, 2, 4.4};
-    shape s = shape_bumpy(2, 9), open = shape_grid(9, 8, 0.4), strip = tri_strip(14, 0, 0.3), book;
+    shape s = kit_own_shape(shape_bumpy(2, 9)), open = kit_own_shape(shape_grid(9, 8, 0.4)), strip = kit_own_shape(tri_strip(14, 0, 0.3)), book;
     tri_stretch(&s, 7);
     tri_stretch(&open, 5);
     book = tri_book(3, angle, 5, 0.3, 3);
@@ -462,9 +448,6 @@ static void tri_energy(void) {
     tri_energy_of(&strip, TRI_TUFTED, "Moebius, tufted");
     tri_energy_of(&book, TRI_DELAUNAY, "book");
     tri_energy_of(&book, TRI_TUFTED, "book, tufted");
-    shape_free(&s);
-    shape_free(&open);
-    shape_free(&strip);
     shape_free(&book);
 }
 
@@ -472,7 +455,7 @@ static void tri_moebius(void) {
     int q, mode;
     for (q = 0; q < 3; q++) {
         for (mode = TRI_DELAUNAY; mode <= TRI_TUFTED; mode++) {
-            shape s = tri_strip(14, 0, 0.3), two = tri_strip(14, 1, 0.3), turned = tri_strip(14, 1, 0.3);
+            shape s = kit_own_shape(tri_strip(14, 0, 0.3)), two = kit_own_shape(tri_strip(14, 1, 0.3)), turned = kit_own_shape(tri_strip(14, 1, 0.3));
             hd_laplacian *a = tri_make(&s, op_kinds[q], mode), *b, *c;
             int32_t f;
             CHECK(a->mesh.n_boundary_loops == 1 && a->mesh.n_sheets == 2 && a->mesh.n_nonmanifold_edges == 0 && a->mesh.n_flips > 0 && a->n_components == 1);
@@ -490,9 +473,6 @@ static void tri_moebius(void) {
             hd_laplacian_free(a);
             hd_laplacian_free(b);
             hd_laplacian_free(c);
-            shape_free(&s);
-            shape_free(&two);
-            shape_free(&turned);
         }
     }
 }
@@ -503,7 +483,7 @@ static void tri_invariance(void) {
     const double scales[3] = {1, 1e-3, 250};
     int k, q, mode;
     for (mode = TRI_DELAUNAY; mode <= TRI_TUFTED; mode++) {
-        shape s = shape_bumpy(2, 8), open = shape_grid(9, 8, 0.4), r;
+        shape s = kit_own_shape(shape_bumpy(2, 8)), open = kit_own_shape(shape_grid(9, 8, 0.4)), r;
         int32_t *to = DENSE_NEW(int32_t, open.n), i;
         tri_stretch(&s, 4);
         tri_stretch(&open, 3);
@@ -534,8 +514,6 @@ static void tri_invariance(void) {
             shape_free(&r);
         }
         free(to);
-        shape_free(&s);
-        shape_free(&open);
     }
 }
 
@@ -545,7 +523,7 @@ static void tri_units(void) {
     int k, mode;
     for (k = 0; k < 4; k++) {
         for (mode = TRI_DELAUNAY; mode <= TRI_TUFTED; mode++) {
-            shape s = tri_book(3, angle, 4, 0.3, 3);
+            shape s = kit_own_shape(tri_book(3, angle, 4, 0.3, 3));
             hd_laplacian *a = tri_make(&s, HD_LAPLACIAN_FEM, mode), *b;
             const double scale = ldexp(1, (int)exponents[k]);
             int32_t i;
@@ -556,7 +534,6 @@ static void tri_units(void) {
             for (i = 0; i < a->n_active; i++) CHECK(b->mass[i] == a->mass[i] * scale * scale);
             hd_laplacian_free(a);
             hd_laplacian_free(b);
-            shape_free(&s);
         }
     }
 }
@@ -565,7 +542,7 @@ static void tri_units(void) {
 
 /* Faces that are left out change nothing. */
 static void tri_left_out(void) {
-    shape s = shape_grid(6, 5, 0.3), t = shape_make(s.n + 3, s.n_tri + 5);
+    shape s = kit_own_shape(shape_grid(6, 5, 0.3)), t = kit_own_shape(shape_make(s.n + 3, s.n_tri + 5));
     int32_t m = 0, f;
     int q, mode;
     memcpy(t.xyz, s.xyz, 3 * (size_t)s.n * sizeof(double));
@@ -587,8 +564,6 @@ static void tri_left_out(void) {
             hd_laplacian_free(b);
         }
     }
-    shape_free(&s);
-    shape_free(&t);
 }
 
 /* Needles and caps down to heights of 1e-17: rounding breaks the triangle inequality of lengths, mollification repairs it. */
@@ -596,7 +571,7 @@ static void tri_slivers(void) {
     static const double heights[4] = {1e-3, 1e-6, 1e-9, 1e-17};
     int k, q, mode, off;
     for (k = 0; k < 4; k++) {
-        shape s = shape_grid(8, 8, 0.4);
+        shape s = kit_own_shape(shape_grid(8, 8, 0.4));
         int32_t i;
         for (i = 0; i < s.n; i++) {              /* a band of the square pressed flat, so that there are needles beside it */
             double *p = s.xyz + 3 * i;
@@ -619,7 +594,6 @@ static void tri_slivers(void) {
                 }
             }
         }
-        shape_free(&s);
     }
 }
 
@@ -627,7 +601,7 @@ static void tri_slivers(void) {
 static void tri_needle_mass(void) {
     const double xyz[15] = {0, 0, 0, 0, 1e-200, 0, 1, 0, 0, -1, 0, 0, -1, 1, 0};
     const int32_t tri[9] = {0, 1, 2, 0, 3, 4, 1, 4, 3};
-    shape s = shape_make(5, 3);
+    shape s = kit_own_shape(shape_make(5, 3));
     int mode;
     memcpy(s.xyz, xyz, sizeof xyz);
     memcpy(s.tri, tri, sizeof tri);
@@ -640,7 +614,6 @@ static void tri_needle_mass(void) {
         CHECK(fabs(tri_sum(lap->mass, lap->n_active) - lap->area) < 1e-12);
         hd_laplacian_free(lap);
     }
-    shape_free(&s);
 }
 
 /* delta is what it says: a cap of height 0 in lengths has nothing to spare, so delta h is added to all sides. */
@@ -648,7 +621,7 @@ static void tri_mollify_amount(void) {
     const double xyz[12] = {-1, 0, 0, 1, 0, 0, 0, 1e-10, 0, 0, -1, 0};
     const int32_t tri[6] = {0, 1, 2, 1, 0, 3};
     static const double deltas[4] = {0, 1e-5, 1e-3, 0.1};
-    shape s = shape_make(4, 2);
+    shape s = kit_own_shape(shape_make(4, 2));
     hd_laplacian *lap = NULL;
     int k;
     hd_error e;
@@ -666,7 +639,6 @@ static void tri_mollify_amount(void) {
     CHECK(tri_try(&lap, &s, HD_LAPLACIAN_FEM, TRI_DELAUNAY, 1.5, NULL, &e) == HD_ERR_ARGUMENT && !lap);
     s.n_tri = 0;
     CHECK(tri_try(&lap, &s, HD_LAPLACIAN_FEM, TRI_DELAUNAY, 0, NULL, &e) == HD_ERR_EMPTY && !lap);
-    shape_free(&s);
 }
 
 /* ---- the maximum principle ---- */
@@ -737,7 +709,7 @@ static void tri_maximum_principle(void) {
     static const char *const names[2] = {"fandisk.obj", "truck.obj"};
     static const double times[3] = {0.1, 3, 30};
     int k, q;
-    shape s = shape_bumpy(2, 6), open = shape_grid(12, 12, 0.4);
+    shape s = shape_bumpy(2, 6), open = kit_own_shape(shape_grid(12, 12, 0.4));
     tri_stretch(&s, 6);
     tri_stretch(&open, 5);
     for (k = 0; k < 3; k++) {
@@ -745,7 +717,6 @@ static void tri_maximum_principle(void) {
         tri_principle_of(&open, TRI_TUFTED, times[k], 8, k < 1, "rectangle");
     }
     shape_free(&s);
-    shape_free(&open);
     for (q = 0; q < 2; q++) {
         s = tri_file(names[q]);
         for (k = 0; s.xyz && k < 3; k++) tri_principle_of(&s, q ? TRI_TUFTED : TRI_DELAUNAY, times[k], 6, k == 0 && q, names[q]);
@@ -808,7 +779,7 @@ static void tri_points_plane(void) {
     double jitter;
     int q;
     for (jitter = 0; jitter < 0.5; jitter += 0.4) {
-        shape s = shape_grid(NX, NY, jitter), d = jitter > 0 ? tri_planar_delaunay(s.xyz, s.n) : shape_grid(NX, NY, 0);
+        shape s = kit_own_shape(shape_grid(NX, NY, jitter)), d = jitter > 0 ? tri_planar_delaunay(s.xyz, s.n) : shape_grid(NX, NY, 0);
         int32_t i;
         for (i = 0; i < s.n; i++) {
             op_rotate(s.xyz + 3 * i, 2);
@@ -832,7 +803,6 @@ static void tri_points_plane(void) {
             hd_laplacian_free(want);
             hd_laplacian_free(lap);
         }
-        shape_free(&s);
         shape_free(&d);
     }
 }
@@ -851,7 +821,7 @@ static double tri_spacing(const double *xyz, int32_t n) {
 
 /* The unit sphere: area 4 pi, the first eigenvalues 2, 2, 2, 6 (five times). */
 static void tri_points_sphere(void) {
-    shape s = shape_icosphere(2), r;
+    shape s = kit_own_shape(shape_icosphere(2)), r;
     int32_t *to = DENSE_NEW(int32_t, s.n), i;
     hd_laplacian *lap, *other;
     dense_pair pair;
@@ -886,7 +856,6 @@ static void tri_points_sphere(void) {
     dense_pair_free(&pair);
     hd_laplacian_free(lap);
     hd_laplacian_free(other);
-    shape_free(&s);
     shape_free(&r);
     free(to);
 }
@@ -943,13 +912,12 @@ static void tri_points_bad_input(void) {
 /* 0, 1: Delaunay and tufted of an open book with slivers; 2: points. */
 static hd_status tri_job(hd_context *ctx, int variant, hd_laplacian **out) {
     static const double angle[3] = {0, 2, 4};
-    shape s = tri_book(3, angle, 3, 0.3, 3);
+    shape s = kit_own_shape(tri_book(3, angle, 3, 0.3, 3));
     hd_error e;
     hd_status st;
     if (variant < 2) st = tri_try(out, &s, HD_LAPLACIAN_FEM, variant ? TRI_TUFTED : TRI_DELAUNAY, 0, ctx, &e);
     else st = tri_points_try(out, s.xyz, s.n, HD_LAPLACIAN_FEM, ctx, &e);
     CHECK(e.status == st);
-    shape_free(&s);
     return st;
 }
 

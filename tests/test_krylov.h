@@ -132,7 +132,7 @@ static void kry_all(const hd_laplacian *lap, double unit, const char *what) {
 
 /* A path with its ends held at zero: L 1 is not 0, nothing is conserved, no constants to deflate. */
 static hd_laplacian *kry_dirichlet(int32_t n) {
-    hd_csr L = test_path_csr(n, 0), B = test_path_csr(n, 1);
+    hd_csr L = kit_own_csr(test_path_csr(n, 0)), B = kit_own_csr(test_path_csr(n, 1));
     hd_laplacian *lap = NULL;
     hd_error e;
     int64_t p;
@@ -144,14 +144,12 @@ static hd_laplacian *kry_dirichlet(int32_t n) {
     }
     CHECK_MSG(hd_laplacian_matrices(&lap, &L, &B, 1, NULL, &e) == HD_OK, "%s", e.text);
     CHECK(lap && lap->conserves == 0);
-    hd_csr_free(&L, NULL);
-    hd_csr_free(&B, NULL);
     return lap;
 }
 
 static void kry_against_dense(void) {
     const double offset[3] = {4, 0, 0};
-    shape ball = shape_bumpy(1, 5), grid = shape_grid(6, 5, 0.4), two = shape_disjoint(&ball, &grid, offset);
+    shape ball = kit_own_shape(shape_bumpy(1, 5)), grid = kit_own_shape(shape_grid(6, 5, 0.4)), two = kit_own_shape(shape_disjoint(&ball, &grid, offset));
     hd_laplacian *lap;
     int32_t f;
     int q;
@@ -170,16 +168,13 @@ static void kry_against_dense(void) {
     lap = kry_dirichlet(33);
     kry_all(lap, 1, "dirichlet");
     hd_laplacian_free(lap);
-    shape_free(&ball);
-    shape_free(&grid);
-    shape_free(&two);
 }
 
 /* Smallest ones: a single vertex, and a single triangle. */
 static void kry_tiny(void) {
     const double d = 2.5, xyz[9] = {0, 0, 0, 3, 0, 0, 0, 4, 0};
     const int32_t tri[3] = {0, 1, 2};
-    hd_csr L = test_diagonal_csr(1, &d), B = test_diagonal_csr(1, &d);
+    hd_csr L = kit_own_csr(test_diagonal_csr(1, &d)), B = kit_own_csr(test_diagonal_csr(1, &d));
     hd_laplacian *lap = NULL;
     hd_c64 rhs = {3, -4}, x;
     int k, q;
@@ -198,13 +193,11 @@ static void kry_tiny(void) {
     lap = op_make(xyz, 3, tri, 1, HD_LAPLACIAN_FEM);
     kry_all(lap, 16, "one triangle");
     hd_laplacian_free(lap);
-    hd_csr_free(&L, NULL);
-    hd_csr_free(&B, NULL);
 }
 
 /* Masses below 1e-290, whose inverses could overflow, are refused, and those that are just larger serve. */
 static void kry_tiny_masses(void) {
-    shape s = shape_icosphere(0);
+    shape s = kit_own_shape(shape_icosphere(0));
     hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM), *tiny = NULL;
     hd_c64 rhs[12], x[12];
     hd_solve_opts o;
@@ -236,12 +229,11 @@ static void kry_tiny_masses(void) {
     free(mass);
     hd_laplacian_free(tiny);
     hd_laplacian_free(lap);
-    shape_free(&s);
 }
 
 /* t = 0: theta B x = b, and the zero right-hand side. */
 static void kry_special(void) {
-    shape s = shape_icosphere(1);
+    shape s = kit_own_shape(shape_icosphere(1));
     hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
     hd_c64 *rhs = DENSE_NEW(hd_c64, lap->n), *want = DENSE_NEW(hd_c64, lap->n), *x = DENSE_NEW(hd_c64, lap->n);
     hd_solve_report rep;
@@ -262,11 +254,10 @@ static void kry_special(void) {
     free(want);
     free(x);
     hd_laplacian_free(lap);
-    shape_free(&s);
 }
 
 static void kry_not_converged(void) {
-    shape s = shape_bumpy(2, 1);
+    shape s = kit_own_shape(shape_bumpy(2, 1));
     hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
     const double t = 1000 * lap->h * lap->h;
     const hd_c64 theta = {0.1, 0.3};
@@ -295,11 +286,10 @@ static void kry_not_converged(void) {
     free(rhs);
     free(x);
     hd_laplacian_free(lap);
-    shape_free(&s);
 }
 
 static void kry_errors(void) {
-    shape s = shape_icosphere(0);
+    shape s = kit_own_shape(shape_icosphere(0));
     hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
     hd_c64 rhs[12], x[12];
     hd_solve_opts o;
@@ -339,14 +329,13 @@ static void kry_errors(void) {
     CHECK(hd_shifted_solve(lap, 1, test_c(1, 1), NULL, x, NULL, NULL, &e) == HD_ERR_ARGUMENT);
     CHECK(hd_shifted_solve(lap, 1, test_c(1, 1), rhs, NULL, NULL, NULL, &e) == HD_ERR_ARGUMENT);
     hd_laplacian_free(lap);
-    shape_free(&s);
 }
 
 /* Right-hand sides of any size: the answer scales with them, whatever squares would do. Values that are none are told. */
 static void kry_sizes(void) {
     static const double sizes[6] = {1, 1e-170, 1e-230, 1e160, 1e200, 1e240};
     const double scales[3] = {1, 1e-30, 1e30};
-    shape s = shape_bumpy(1, 5);
+    shape s = kit_own_shape(shape_bumpy(1, 5));
     hd_c64 *rhs = DENSE_NEW(hd_c64, s.n), *x = DENSE_NEW(hd_c64, s.n), *want = DENSE_NEW(hd_c64, s.n);
     hd_solve_report rep;
     hd_solve_opts o;
@@ -355,7 +344,7 @@ static void kry_sizes(void) {
     int k, q, r, pick;
     memset(&o, 0, sizeof o);
     for (pick = 0; pick < 3; pick++) {
-        shape own = shape_bumpy(1, 5);
+        shape own = kit_own_shape(shape_bumpy(1, 5));
         hd_laplacian *lap;
         double h2;
         for (v = 0; v < 3 * s.n; v++) own.xyz[v] *= scales[pick];
@@ -385,9 +374,7 @@ static void kry_sizes(void) {
         for (r = 0; r < s.n; r++) rhs[r] = test_c(1e308, 0);
         if (pick == 1) CHECK(hd_shifted_solve(lap, 3 * h2, test_c(-1, 2), rhs, x, NULL, &rep, &e) == HD_ERR_NOT_FINITE && e.row >= 0);    /* over areas of 1e-60 */
         hd_laplacian_free(lap);
-        shape_free(&own);
     }
-    shape_free(&s);
     free(rhs);
     free(x);
     free(want);

@@ -433,7 +433,7 @@ static void ldl_try_real(hd_ldl *f, const hd_csr *a, hd_ordering asked, int32_t 
 static void ldl_one(void) {
     const double d = -2.5, b[3] = {5, 1, -10};
     const hd_c64 z[2] = {{1, 2}, {0, -3}}, c[2] = {{3, -4}, {6, 3}};
-    hd_csr a = test_diagonal_csr(1, &d);
+    hd_csr a = kit_own_csr(test_diagonal_csr(1, &d));
     hd_ldl *f = ldl_make(&a, NULL, "1 x 1");
     hd_ldl_report rep;
     double x[3];
@@ -448,7 +448,6 @@ static void ldl_one(void) {
     CHECK_MSG(hypot(y[0].re + 1, y[0].im + 2) < 1e-15 && hypot(y[1].re + 1, y[1].im - 2) < 1e-15, "%g%+gi, %g%+gi", y[0].re, y[0].im, y[1].re,
               y[1].im);
     hd_ldl_free(f);
-    hd_csr_free(&a, NULL);
 }
 
 /* [1 + i, 2 - i; 2 - i, 3i] x = b with x = (1, i); 2 - i squared is 3 - 4i, its size squared would be 5. */
@@ -456,7 +455,7 @@ static void ldl_two(void) {
     const hd_c64 val[4] = {{1, 1}, {2, -1}, {2, -1}, {0, 3}}, b[2] = {{2, 3}, {-1, -1}};
     const double real[4] = {2, 6, 6, 3}, c[2] = {14, 12};
     const int32_t natural[2] = {0, 1};
-    hd_csr a = ldl_shape(LDL_PATH, 2, 1, 1);
+    hd_csr a = kit_own_csr(ldl_shape(LDL_PATH, 2, 1, 1));
     hd_ldl_opts o = ldl_opts_of(HD_ORDERING_OWN, natural, NULL, NULL);
     hd_ldl *f = ldl_make(&a, &o, "2 x 2");
     hd_ldl_report rep;
@@ -473,14 +472,13 @@ static void ldl_two(void) {
     CHECK(hd_ldl_solve(f, 1, c, 0, y, 0, NULL) == HD_OK);
     CHECK_MSG(fabs(y[0] - 1) < 1e-14 && fabs(y[1] - 2) < 1e-14, "%g, %g", y[0], y[1]);
     hd_ldl_free(f);
-    hd_csr_free(&a, NULL);
 }
 
 static void ldl_none(void) {
     const double d = 3, xyz[3] = {0, 0, 0};
     const hd_c64 z = {3, 1};
     const int32_t perm = 0;
-    hd_csr a = ldl_shape(LDL_EMPTY, 0, 1, 1);
+    hd_csr a = kit_own_csr(ldl_shape(LDL_EMPTY, 0, 1, 1));
     int k;
     for (k = 0; k < 4; k++) {
         hd_ldl_opts o = ldl_opts_of(ldl_orderings[k], &perm, xyz, NULL);
@@ -496,7 +494,6 @@ static void ldl_none(void) {
         CHECK(hd_ldl_solve_complex(f, &z, 0, &y, 0, NULL) == HD_OK && y.re == 7 && y.im == 8);
         hd_ldl_free(f);
     }
-    hd_csr_free(&a, NULL);
 }
 
 /* Diagonal matrices: every pivot is an entry, in whatever order. */
@@ -566,9 +563,8 @@ static void ldl_all_shapes(void) {
     int kind, s;
     for (kind = 0; kind < LDL_SHAPES; kind++) {
         for (s = 0; s < 6; s++) {
-            hd_csr a = ldl_shape(kind, sizes[s], 1, (uint64_t)(kind + 1));
+            hd_csr a = kit_own_csr(ldl_shape(kind, sizes[s], 1, (uint64_t)(kind + 1)));
             ldl_all_orderings(&a, 1 + (kind + 2 * s) % 9, 1, (uint64_t)(100 * kind + s + 1), ldl_shape_name(kind));
-            hd_csr_free(&a, NULL);
         }
     }
 }
@@ -733,7 +729,7 @@ static void ldl_fill_is_low(void) {
 
 /* [H, A'; A, -G] with H and G positive definite: every order has pivots, and as many are negative as G has rows. */
 static void ldl_quasidefinite_of(int32_t n, uint64_t seed) {
-    hd_csr a = ldl_random_pattern(n, 5, seed);
+    hd_csr a = kit_own_csr(ldl_random_pattern(n, 5, seed));
     double *val = DENSE_NEW(double, a.nnz), *b = DENSE_NEW(double, 3 * n), *x = DENSE_NEW(double, 3 * n), *q = DENSE_NEW(double, (int64_t)n * n);
     double *lambda = DENSE_NEW(double, n), *dense;
     int32_t *perm = DENSE_NEW(int32_t, n), i, negative = 0;
@@ -775,7 +771,6 @@ static void ldl_quasidefinite_of(int32_t n, uint64_t seed) {
         }
         hd_ldl_free(f);
     }
-    hd_csr_free(&a, NULL);
     free(val);
     free(b);
     free(x);
@@ -795,7 +790,7 @@ static void ldl_no_diagonal(void) {
     const double saddle[9] = {2, 1, 3, 1, 3, 0, 0, 0, 0}, b[3] = {7, 1, 3}, cycle[2] = {1, 1};
     const int32_t natural[3] = {0, 1, 2}, i[5] = {0, 0, 0, 1, 2}, j[5] = {0, 1, 2, 0, 0};
     hd_ldl_opts o = ldl_opts_of(HD_ORDERING_OWN, natural, NULL, NULL);
-    hd_csr a, c = ldl_shape(LDL_PATH, 2, 0, 1);
+    hd_csr a, c = kit_own_csr(ldl_shape(LDL_PATH, 2, 0, 1));
     hd_ldl *f;
     hd_ldl_report rep;
     hd_error e;
@@ -814,7 +809,6 @@ static void ldl_no_diagonal(void) {
     f = ldl_make(&c, &o, "cycle");
     CHECK(hd_ldl_factor(f, cycle, &rep, &e) == HD_ERR_BREAKDOWN && e.row == 0);
     hd_ldl_free(f);
-    hd_csr_free(&c, NULL);
     {                                            /* [4 1 .; 1 . 2; . 2 1]: pivots 4, -1/4, 17 */
         const int32_t ri[6] = {0, 0, 1, 1, 2, 2}, rj[6] = {0, 1, 0, 2, 1, 2};
         const double val[6] = {4, 1, 1, 2, 2, 1};
@@ -834,7 +828,7 @@ static void ldl_no_diagonal(void) {
 /* One, several or a common right-hand side, columns apart, in place: for k = 1..9 all give the same bits. */
 static void ldl_forms_complex(void) {
     enum { N = 61, PAD = 70, MOST = 9 };
-    hd_csr a = ldl_random_pattern(N, 4, 3);
+    hd_csr a = kit_own_csr(ldl_random_pattern(N, 4, 3));
     double *L = DENSE_NEW(double, a.nnz), *B = DENSE_NEW(double, a.nnz);
     hd_c64 *val = DENSE_NEW(hd_c64, MOST * a.nnz), b[PAD * MOST], x[PAD * MOST], y[PAD * MOST];
     const hd_c64 mark = {-77, 99};
@@ -872,7 +866,6 @@ static void ldl_forms_complex(void) {
         for (q = 0; q < k; q++) CHECK_MSG(memcmp(y + PAD * q, x + PAD * q, N * sizeof *x) == 0, "common, in place: %d of %d", (int)q, (int)k);
     }
     hd_ldl_free(f);
-    hd_csr_free(&a, NULL);
     free(L);
     free(B);
     free(val);
@@ -881,7 +874,7 @@ static void ldl_forms_complex(void) {
 /* A matrix has the same answer wherever in the sweep it stands, and whatever its companions. */
 static void ldl_companions(void) {
     enum { N = 45, MOST = 9 };
-    hd_csr a = ldl_random_pattern(N, 5, 8);
+    hd_csr a = kit_own_csr(ldl_random_pattern(N, 5, 8));
     double *L = DENSE_NEW(double, a.nnz), *B = DENSE_NEW(double, a.nnz);
     hd_c64 *val = DENSE_NEW(hd_c64, MOST * a.nnz), *own = DENSE_NEW(hd_c64, MOST * a.nnz), b[N], x[N * MOST], alone[N * MOST];
     hd_ldl *f = ldl_make(&a, NULL, "companions");
@@ -900,7 +893,6 @@ static void ldl_companions(void) {
         for (q = 0; q < k; q++) CHECK_MSG(ldl_differ(x + N * q, alone + N * (MOST - 1 - q), N) <= 1e-10, "matrix %d of %d", (int)q, (int)k);
     }
     hd_ldl_free(f);
-    hd_csr_free(&a, NULL);
     free(L);
     free(B);
     free(val);
@@ -909,7 +901,7 @@ static void ldl_companions(void) {
 
 static void ldl_forms_real(void) {
     enum { N = 53, PAD = 60, MOST = 13 };
-    hd_csr a = ldl_random_pattern(N, 4, 13);
+    hd_csr a = kit_own_csr(ldl_random_pattern(N, 4, 13));
     double *L = DENSE_NEW(double, a.nnz), *B = DENSE_NEW(double, a.nnz), b[PAD * MOST], x[PAD * MOST], y[PAD * MOST], alone[N * MOST];
     hd_ldl *f = ldl_make(&a, NULL, "forms");
     uint64_t seed = 4;
@@ -947,7 +939,6 @@ static void ldl_forms_real(void) {
         for (q = 0; q < MOST; q++) CHECK_MSG(ldl_backward_real(&a, L, b + PAD * q, y + ldx * (size_t)q) <= 1e-14, "%d apart: %d", (int)ldx, (int)q);
     }
     hd_ldl_free(f);
-    hd_csr_free(&a, NULL);
     free(L);
     free(B);
 }
@@ -955,7 +946,7 @@ static void ldl_forms_real(void) {
 /* Of (i, j) and (j, i) one is read, whichever: where they differ, the answer is that of a symmetric matrix with either value. */
 static void ldl_one_of_a_pair(void) {
     enum { N = 30 };
-    hd_csr a = ldl_random_pattern(N, 5, 21);
+    hd_csr a = kit_own_csr(ldl_random_pattern(N, 5, 21));
     double *L = DENSE_NEW(double, a.nnz), *B = DENSE_NEW(double, a.nnz);
     hd_c64 *val = DENSE_NEW(hd_c64, a.nnz), *other = DENSE_NEW(hd_c64, a.nnz), *keep = DENSE_NEW(hd_c64, a.nnz), b[N], x[N];
     int32_t perm[N], i;
@@ -984,7 +975,6 @@ static void ldl_one_of_a_pair(void) {
         }
         hd_ldl_free(f);
     }
-    hd_csr_free(&a, NULL);
     free(L);
     free(B);
     free(val);
@@ -1270,7 +1260,7 @@ static hd_csr ldl_mesh_pattern(const shape *s) {
 }
 
 static void ldl_threads(void) {
-    shape ball = shape_bumpy(4, 3);
+    shape ball = kit_own_shape(shape_bumpy(4, 3));
     hd_csr a = ldl_mesh_pattern(&ball);
     ldl_threads_of(&a, ball.xyz, HD_ORDERING_NESTED_DISSECTION, 5, "mesh, nested dissection");
     ldl_threads_of(&a, NULL, HD_ORDERING_MINIMUM_DEGREE, 2, "mesh, minimum degree");
@@ -1281,7 +1271,6 @@ static void ldl_threads(void) {
     a = ldl_shape(LDL_DENSE, 310, 1, 1);         /* one front, larger than what one task takes */
     ldl_threads_of(&a, NULL, HD_ORDERING_AUTO, 3, "dense");
     hd_csr_free(&a, NULL);
-    shape_free(&ball);
 }
 
 /* ---- pivots that fail ---- */
@@ -1345,7 +1334,7 @@ static void ldl_pivot_errors_of(hd_ordering ordering, int32_t n, uint64_t seed) 
 static void ldl_not_finite(void) {
     enum { N = 23, K = 6 };
     const double wrong[3] = {(double)NAN, (double)INFINITY, -(double)INFINITY};
-    hd_csr a = ldl_random_pattern(N, 4, 5);
+    hd_csr a = kit_own_csr(ldl_random_pattern(N, 4, 5));
     double *L = DENSE_NEW(double, a.nnz), *B = DENSE_NEW(double, a.nnz);
     hd_c64 *val = DENSE_NEW(hd_c64, K * a.nnz);
     hd_ldl *f = ldl_make(&a, NULL, "not finite");
@@ -1386,7 +1375,6 @@ static void ldl_not_finite(void) {
         ldl_try_real(f, &a, HD_ORDERING_AUTO, K, 5, "after values that were not finite");
     }
     hd_ldl_free(f);
-    hd_csr_free(&a, NULL);
     free(L);
     free(B);
     free(val);
@@ -1396,7 +1384,7 @@ static void ldl_not_finite(void) {
 static void ldl_subnormal(void) {
     enum { N = 30 };
     static const double pivots[5] = {1e-307, -1e-308, 1e-309, -1e-310, 5e-324};
-    hd_csr a = ldl_shape(LDL_BAND, N, 1, 1);
+    hd_csr a = kit_own_csr(ldl_shape(LDL_BAND, N, 1, 1));
     double *val = DENSE_NEW(double, a.nnz), b[N], x[N];
     hd_c64 *z = DENSE_NEW(hd_c64, a.nnz);
     hd_ldl *f = ldl_make(&a, NULL, "subnormal");
@@ -1424,7 +1412,6 @@ static void ldl_subnormal(void) {
     }
     TRAPS_ON;
     hd_ldl_free(f);
-    hd_csr_free(&a, NULL);
     free(val);
     free(z);
 }
@@ -1436,7 +1423,7 @@ static void ldl_breakdown(void) {
     const hd_c64 nil[8] = {{1, 1}, {2, 2}, {2, 2}, {4, 4}, {0, 2}, {1, 0}, {1, 0}, {0, -0.5}};
     const int32_t natural[2] = {0, 1};
     int32_t perm[N], i;
-    hd_csr path = test_path_csr(N, 0), two = ldl_shape(LDL_PATH, 2, 1, 1);
+    hd_csr path = kit_own_csr(test_path_csr(N, 0)), two = kit_own_csr(ldl_shape(LDL_PATH, 2, 1, 1));
     hd_ldl_opts o = ldl_opts_of(HD_ORDERING_OWN, perm, NULL, NULL);
     hd_ldl_report rep;
     hd_error e;
@@ -1457,14 +1444,12 @@ static void ldl_breakdown(void) {
     CHECK(hd_ldl_factor_complex(f, 1, nil, &rep, &e) == HD_ERR_BREAKDOWN && e.row == 1 && e.pole == 0 && e.value == 0);    /* (1 + i) [1 2; 2 4] */
     CHECK(hd_ldl_factor_complex(f, 1, nil + 4, &rep, &e) == HD_ERR_BREAKDOWN && e.row == 1 && e.pole == 0);                /* [2i 1; 1 -i/2] */
     hd_ldl_free(f);
-    hd_csr_free(&path, NULL);
-    hd_csr_free(&two, NULL);
 }
 
 /* Two zeros far from each other: the one that is eliminated first is told, whatever threads do. */
 static void ldl_first_of_two(void) {
     enum { N = 40000 };                          /* many subtrees */
-    hd_csr a = ldl_shape(LDL_PIECES, N, 1, 1);
+    hd_csr a = kit_own_csr(ldl_shape(LDL_PIECES, N, 1, 1));
     int32_t *perm = DENSE_NEW(int32_t, N), i;
     double *L = DENSE_NEW(double, a.nnz), *B = DENSE_NEW(double, a.nnz);
     int64_t p;
@@ -1486,7 +1471,6 @@ static void ldl_first_of_two(void) {
         ldl_way_end(w, way);
         free(w);
     }
-    hd_csr_free(&a, NULL);
     free(perm);
     free(L);
     free(B);
@@ -1507,7 +1491,7 @@ static void ldl_robust_values(const hd_csr *a, int32_t k, double *real, hd_c64 *
 static hd_status ldl_rob_job(hd_context *ctx, int variant) {
     enum { N = 48, K = 5 };
     const int kind = variant / 4;
-    hd_csr a = ldl_random_pattern(N, 4, 9);
+    hd_csr a = kit_own_csr(ldl_random_pattern(N, 4, 9));
     double *real = DENSE_NEW(double, a.nnz), *xyz = DENSE_NEW(double, 3 * N), *x = DENSE_NEW(double, 6 * N);
     hd_c64 *val = DENSE_NEW(hd_c64, K * a.nnz), *z = DENSE_NEW(hd_c64, K * N);
     int32_t perm[N];
@@ -1528,7 +1512,6 @@ static hd_status ldl_rob_job(hd_context *ctx, int variant) {
         if (kind != 0 && st >= 0) CHECK((st = hd_ldl_solve_complex(f, z, 0, z, 0, &e)) == e.status);
         hd_ldl_free(f);
     }
-    hd_csr_free(&a, NULL);
     free(real);
     free(xyz);
     free(x);
@@ -1605,13 +1588,11 @@ static void ldl_survives_one(const hd_csr *a, const double *xyz, int q, int befo
 }
 
 static void ldl_survives(void) {
-    shape ball = shape_bumpy(2, 4);
-    hd_csr a = ldl_mesh_pattern(&ball);
+    shape ball = kit_own_shape(shape_bumpy(2, 4));
+    hd_csr a = kit_own_csr(ldl_mesh_pattern(&ball));
     int q, before;
     for (before = 0; before < 3; before++)
         for (q = 0; q < 2; q++) ldl_survives_one(&a, ball.xyz, q, before, (q + before) % 2);
-    hd_csr_free(&a, NULL);
-    shape_free(&ball);
 }
 
 /* ---- arguments ---- */
@@ -1716,7 +1697,7 @@ static void ldl_bad_options(void) {
 
 static void ldl_bad_calls(void) {
     enum { N = 6 };
-    hd_csr a = test_path_csr(N, 1);
+    hd_csr a = kit_own_csr(test_path_csr(N, 1));
     double b[3 * N], x[3 * N];
     hd_c64 val[2 * 3 * N], c[2 * N], z[2 * N];
     hd_ldl *f = ldl_make(&a, NULL, "calls");
@@ -1768,7 +1749,6 @@ static void ldl_bad_calls(void) {
 #undef LDL_BAD
     CHECK(hd_ldl_solve_complex(NULL, c, 0, z, 0, NULL) == HD_ERR_ARGUMENT);    /* no place for the error is fine */
     hd_ldl_free(f);
-    hd_csr_free(&a, NULL);
 }
 
 /* ---- meshes ---- */
@@ -1831,7 +1811,7 @@ static void ldl_dissections(void) {
     int32_t n, k;
     for (n = 1; n < 420; n += n < 40 ? 1 : 29) {
         for (k = 0; k < 3; k++) {
-            shape grid = shape_grid(2 + n / 9, 8, 0.3);
+            shape grid = kit_own_shape(shape_grid(2 + n / 9, 8, 0.3));
             double *xyz = DENSE_NEW(double, 3 * n);
             hd_csr a = k == 2 ? ldl_mesh_pattern(&grid) : k ? ldl_random_pattern(n, 9, (uint64_t)n) : ldl_shape(LDL_PIECES, n, 1, 1);
             hd_ldl_opts o = ldl_opts_of(HD_ORDERING_NESTED_DISSECTION, NULL, k == 2 ? grid.xyz : xyz, NULL);
@@ -1842,21 +1822,16 @@ static void ldl_dissections(void) {
             hd_ldl_free(f);
             hd_csr_free(&a, NULL);
             free(xyz);
-            shape_free(&grid);
         }
     }
 }
 
 static void ldl_meshes(void) {
     const double offset[3] = {4, 0, 0};
-    shape grid = shape_grid(141, 141, 0.3), ball = shape_bumpy(3, 1), plate = shape_grid(20, 30, 0.2), two = shape_disjoint(&ball, &plate, offset);
+    shape grid = kit_own_shape(shape_grid(141, 141, 0.3)), ball = kit_own_shape(shape_bumpy(3, 1)), plate = kit_own_shape(shape_grid(20, 30, 0.2)), two = kit_own_shape(shape_disjoint(&ball, &plate, offset));
     ldl_mesh_of(&grid, HD_LAPLACIAN_FEM, 0, "grid of 20 thousand");
     ldl_mesh_of(&two, HD_LAPLACIAN_VORONOI_COT, 0, "two pieces");
     ldl_mesh_of(&plate, HD_LAPLACIAN_COT, 1, "all rows at one point");    /* nothing to dissect by, and still right */
-    shape_free(&grid);
-    shape_free(&ball);
-    shape_free(&plate);
-    shape_free(&two);
 }
 
 static void test_ldl(void) {

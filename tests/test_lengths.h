@@ -51,7 +51,7 @@ static void len_operators(void) {
     const int32_t held[2] = {5, 9};
     int k, q, w;
     for (k = 0; k < 5; k++) {
-        shape ball = shape_icosphere(2), s = k == 0 ? shape_grid(9, 8, 0.3) : k == 1 ? shape_bumpy(2, 5) : k == 2 ? eng_with_inert(&ball) : k == 3 ? all_soup() : all_needles();
+        shape ball = kit_own_shape(shape_icosphere(2)), s = k == 0 ? shape_grid(9, 8, 0.3) : k == 1 ? shape_bumpy(2, 5) : k == 2 ? eng_with_inert(&ball) : k == 3 ? all_soup() : all_needles();
         for (q = 0; q < 3; q++)
             for (w = 0; w < (k == 3 ? 1 : 3); w++) {     /* without angles in space the sheets of a soup may be glued otherwise */
                 const double unit = units[(k + q + w) % 3];
@@ -69,7 +69,6 @@ static void len_operators(void) {
                 hd_laplacian_free(b);
                 free(len);
             }
-        shape_free(&ball);
         shape_free(&s);
     }
 }
@@ -252,7 +251,7 @@ static void len_smooth(void) {
 /* ---- geodesics as in space ---- */
 
 static void len_geodesic(void) {
-    shape s = shape_bumpy(3, 5);
+    shape s = kit_own_shape(shape_bumpy(3, 5));
     const int32_t sources[2] = {3, 200};
     const double unit = 1e-60;
     double *len = len_of(&s, unit), *a = DENSE_NEW(double, s.n), *b = DENSE_NEW(double, s.n);
@@ -265,7 +264,6 @@ static void len_geodesic(void) {
     CHECK_MSG(off < 1e-10, "geodesics by lengths are off by %g", off);
     hd_geodesic_free(space);
     hd_geodesic_free(g);
-    shape_free(&s);
     free(len);
     free(a);
     free(b);
@@ -283,7 +281,7 @@ static void len_refused(const double *len, const shape *s, const hd_laplacian_op
 }
 
 static void len_errors(void) {
-    shape s = shape_grid(5, 4, 0.2);
+    shape s = kit_own_shape(shape_grid(5, 4, 0.2));
     double *len = len_of(&s, 1), was;
     hd_laplacian_opts o = bord_opts(HD_LAPLACIAN_POLYGON, HD_BORDER_NATURAL, 0, NULL);
     hd_geodesic_opts go;
@@ -323,7 +321,6 @@ static void len_errors(void) {
     s.tri[4] = 0;
     CHECK(hd_laplacian_lengths(&lap, len, s.n, s.tri, 0, NULL, &e) == HD_ERR_EMPTY && hd_laplacian_lengths(&lap, len, s.n, s.tri, -1, NULL, &e) == HD_ERR_ARGUMENT);
     free(len);
-    shape_free(&s);
 }
 
 /* A face whose sides lie on each other has no area, and is left out. */
@@ -337,7 +334,7 @@ static void len_flat_face(void) {
 
 /* Every allocation fails once; nothing stays behind. */
 static void len_memory(void) {
-    shape s = shape_grid(4, 4, 0.2);
+    shape s = kit_own_shape(shape_grid(4, 4, 0.2));
     double *len = len_of(&s, 1);
     int64_t fail = 1;
     int done = 0;
@@ -357,7 +354,6 @@ static void len_memory(void) {
         test_memory_done(&m, &ctx, "lengths");
     }
     CHECK(done && fail > 20);
-    shape_free(&s);
     free(len);
 }
 

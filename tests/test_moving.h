@@ -96,7 +96,7 @@ static void mov_frames(const shape *s, hd_laplacian_kind kind, const char *what)
 
 /* What cannot be taken leaves everything as it was. */
 static void mov_errors(void) {
-    shape s = shape_grid(6, 5, 0);
+    shape s = kit_own_shape(shape_grid(6, 5, 0));
     double *xyz = DENSE_NEW(double, 3 * s.n), *before;
     hd_laplacian *lap = test_laplacian_at(&s, s.xyz, HD_LAPLACIAN_FEM, 1, NULL), *plain = test_laplacian_at(&s, s.xyz, HD_LAPLACIAN_FEM, 0, NULL);
     hd_laplacian_opts o;
@@ -125,7 +125,6 @@ static void mov_errors(void) {
     CHECK(hd_laplacian_update(lap, s.xyz, &e) == HD_OK && memcmp(before, lap->L.val, (size_t)lap->L.nnz * sizeof *before) == 0 && lap->mesh.n_zero_area == 0);
     hd_laplacian_free(lap);
     hd_laplacian_free(plain);
-    shape_free(&s);
     free(xyz);
     free(before);
 }
@@ -339,7 +338,7 @@ static void mov_geodesic_refused(const shape *s, hd_geodesic_border border) {
 static void mov_names(void) {
     enum { N = 7 };
     static const int32_t place[N] = {4, 1, 6, 0, 5, 2, 3};
-    shape_poly s = shape_poly_make(5 * N, N, 5 * N);
+    shape_poly s = kit_own_poly(shape_poly_make(5 * N, N, 5 * N));
     double xyz[15 * N];
     int32_t f, k;
     int kind;
@@ -363,12 +362,11 @@ static void mov_names(void) {
         }
         hd_laplacian_free(lap);
     }
-    shape_poly_free(&s);
 }
 
 /* Faces that lose their area take their edges along, as in a new Laplacian; those that have none from the start never count. */
 static void mov_lost(hd_laplacian_kind kind, int32_t lost) {
-    shape s = shape_grid(8, 7, 0.2);
+    shape s = kit_own_shape(shape_grid(8, 7, 0.2));
     hd_laplacian *lap, *fresh;
     double *xyz = DENSE_NEW(double, 3 * s.n);
     hd_error e;
@@ -386,7 +384,6 @@ static void mov_lost(hd_laplacian_kind kind, int32_t lost) {
     CHECK_MSG(fabs(lap->h - fresh->h) <= 1e-14 * fresh->h && fabs(lap->area - fresh->area) < 1e-14, "vertex %d: h %g for %g", (int)lost, lap->h, fresh->h);
     hd_laplacian_free(lap);
     hd_laplacian_free(fresh);
-    shape_free(&s);
     free(xyz);
 }
 
@@ -567,7 +564,7 @@ static void mov_parts_check(const hd_laplacian *lap, hd_heat *const *plan, const
 /* A strip of the grid closes and opens again. kind polygon: its triangles as polygons. held: a vertex on the left is. */
 static void mov_strip(hd_laplacian_kind kind, int held, const char *what) {
     static const hd_method methods[3] = {HD_METHOD_DIRECT, HD_METHOD_KRYLOV, HD_METHOD_ITERATIVE};
-    shape s = shape_grid(10, 7, 0);
+    shape s = kit_own_shape(shape_grid(10, 7, 0));
     const int32_t corner = 0;
     int64_t *ptr = DENSE_NEW(int64_t, s.n_tri + 1);
     double *xyz = DENSE_NEW(double, 3 * s.n), *L[2];
@@ -613,7 +610,6 @@ static void mov_strip(hd_laplacian_kind kind, int held, const char *what) {
     }
     for (k = 0; k < 3; k++) hd_heat_free(plan[k]);
     hd_laplacian_free(lap[0]);
-    shape_free(&s);
     free(ptr);
     free(xyz);
     free(part);
@@ -632,7 +628,7 @@ static void mov_stored_zeros(void) {
     hd_heat *heat;
     hd_report rep;
     hd_error e;
-    hd_csr L, B, D = test_diagonal_csr(N, NULL);
+    hd_csr L, B, D = kit_own_csr(test_diagonal_csr(N, NULL));
     memcpy(ij[0], I, sizeof I);
     memcpy(ij[1], J, sizeof J);
     L = test_symmetric_csr(N, E, ij[0], ij[1], l);
@@ -674,7 +670,6 @@ static void mov_stored_zeros(void) {
     hd_laplacian_free(lap);
     hd_csr_free(&L, NULL);
     hd_csr_free(&B, NULL);
-    hd_csr_free(&D, NULL);
 }
 
 /* Points are refused, and told why. */
@@ -689,20 +684,18 @@ static void mov_points(const shape *s) {
 }
 
 static void test_moving(void) {
-    shape ball = shape_bumpy(3, 5), sheet = shape_grid(13, 11, 0.3), soup = eng_soup(300, 500, 9);
+    shape ball = kit_own_shape(shape_bumpy(3, 5)), sheet = kit_own_shape(shape_grid(13, 11, 0.3)), soup = kit_own_shape(eng_soup(300, 500, 9));
     mov_frames(&ball, HD_LAPLACIAN_FEM, "ball, fem");
     mov_frames(&ball, HD_LAPLACIAN_COT, "ball, cot");
     mov_frames(&sheet, HD_LAPLACIAN_VORONOI_COT, "sheet, voronoi-cot");
     mov_frames(&soup, HD_LAPLACIAN_FEM, "soup, fem");
     mov_errors();
     {
-        shape_poly torus = shape_quad_torus(14, 9, 2, 0.7), cells = shape_hex_sphere(2), mixed = shape_trominoes(4, 5, 0.3);
+        shape_poly torus = kit_own_poly(shape_quad_torus(14, 9, 2, 0.7)), cells = kit_own_poly(shape_hex_sphere(2)), mixed = shape_trominoes(4, 5, 0.3);
         mov_polygon_frames(&torus, HD_LAPLACIAN_POLYGON, "torus of quads");
         mov_polygon_frames(&cells, HD_LAPLACIAN_POLYGON, "sphere of hexagons");
         mov_polygon_frames(&mixed, HD_LAPLACIAN_POLYGON, "trominoes");
         mov_polygon_frames(&torus, HD_LAPLACIAN_FEM, "torus of quads, split");
-        shape_poly_free(&torus);
-        shape_poly_free(&cells);
         shape_poly_free(&mixed);
     }
     mov_matrix_frames(&ball, HD_LAPLACIAN_FEM, "matrices of fem");
@@ -719,7 +712,7 @@ static void test_moving(void) {
     mov_lost(HD_LAPLACIAN_VORONOI_COT, 41);
     {
         shape flat = shape_grid(9, 7, 0);        /* its whole area overflows before that of a face does */
-        shape_poly split = shape_poly_of(&flat), mixed = shape_trominoes(4, 5, 0.1);
+        shape_poly split = kit_own_poly(shape_poly_of(&flat)), mixed = shape_trominoes(4, 5, 0.1);
         const int32_t held[2] = {10, 24};
         hd_laplacian_opts o;
         memset(&o, 0, sizeof o);
@@ -735,12 +728,8 @@ static void test_moving(void) {
         mov_geodesic_refused(&flat, HD_GEODESIC_BORDER_NATURAL);
         mov_geodesic_refused(&flat, HD_GEODESIC_BORDER_MEAN);
         shape_free(&flat);
-        shape_poly_free(&split);
         shape_poly_free(&mixed);
     }
     mov_geodesic(&ball, "ball");
     mov_geodesic(&sheet, "sheet");
-    shape_free(&ball);
-    shape_free(&sheet);
-    shape_free(&soup);
 }

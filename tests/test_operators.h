@@ -184,7 +184,7 @@ static void op_single_mixed(void) {
 
 /* Unit square cells with parallel diagonals: the five-point stencil, whatever the cell's size; half weights along the border. */
 static void op_grid_stencil(void) {
-    shape s = shape_grid(7, 6, 0);
+    shape s = kit_own_shape(shape_grid(7, 6, 0));
     const double h = 1.0 / 6;
     int k;
     int32_t i, j;
@@ -206,7 +206,6 @@ static void op_grid_stencil(void) {
         CHECK_MSG(worst < 1e-13, "stencil off by %g", worst);
         hd_laplacian_free(lap);
     }
-    shape_free(&s);
 }
 
 /* ---- invariance ---- */
@@ -221,7 +220,7 @@ static void op_rotate(double *p, double scale) {
 
 static void op_rigid(void) {
     const double scales[3] = {1, 1e-3, 250};
-    shape s = shape_bumpy(2, 8), r;
+    shape s = kit_own_shape(shape_bumpy(2, 8)), r;
     int k, q;
     int64_t p;
     int32_t i;
@@ -245,7 +244,6 @@ static void op_rigid(void) {
         }
         shape_free(&r);
     }
-    shape_free(&s);
 }
 
 /* The same shape with its vertices, faces and corners renumbered. to[new] = old. */
@@ -269,7 +267,7 @@ static shape op_renumbered(const shape *s, uint64_t seed, int32_t *to) {
 }
 
 static void op_permutation(void) {
-    shape s = shape_grid(9, 8, 0.35), r;
+    shape s = kit_own_shape(shape_grid(9, 8, 0.35)), r;
     int32_t *to = DENSE_NEW(int32_t, s.n), i;
     int64_t p;
     int q;
@@ -293,7 +291,6 @@ static void op_permutation(void) {
         hd_laplacian_free(b);
     }
     free(to);
-    shape_free(&s);
     shape_free(&r);
 }
 
@@ -301,7 +298,7 @@ static void op_permutation(void) {
 
 /* A good mesh with every kind of face that is left out mixed in; the pair stays that of the good mesh. */
 static void op_left_out(void) {
-    shape s = shape_grid(5, 4, 0), t;
+    shape s = kit_own_shape(shape_grid(5, 4, 0)), t;
     int32_t i, n = s.n, m = 0;
     int q;
     t = shape_make(n + 5, s.n_tri + 8);
@@ -335,7 +332,6 @@ static void op_left_out(void) {
         hd_laplacian_free(a);
         hd_laplacian_free(b);
     }
-    shape_free(&s);
     shape_free(&t);
 }
 
@@ -367,7 +363,7 @@ static void op_nonmanifold(void) {
 }
 
 static void op_borders(void) {
-    shape cylinder = shape_cylinder(9, 4, 1, 1), grid = shape_grid(4, 4, 0.2), ball = shape_icosphere(1);
+    shape cylinder = kit_own_shape(shape_cylinder(9, 4, 1, 1)), grid = kit_own_shape(shape_grid(4, 4, 0.2)), ball = kit_own_shape(shape_icosphere(1));
     hd_laplacian *lap = test_laplacian(&cylinder, HD_LAPLACIAN_FEM);
     int32_t keep;
     CHECK(lap->mesh.n_boundary_loops == 2 && lap->mesh.n_boundary_edges == 18 && lap->mesh.n_misoriented_edges == 0);
@@ -389,15 +385,12 @@ static void op_borders(void) {
     lap = test_laplacian(&ball, HD_LAPLACIAN_FEM);
     CHECK(lap->mesh.n_boundary_loops == 1 && lap->mesh.n_boundary_edges == 3);
     hd_laplacian_free(lap);
-    shape_free(&cylinder);
-    shape_free(&grid);
-    shape_free(&ball);
 }
 
 /* One vertex with 100 000 faces: nothing may be quadratic in its degree. */
 static void op_star(void) {
     enum { RIM = 100000 };
-    shape s = shape_make(RIM + 1, RIM);
+    shape s = kit_own_shape(shape_make(RIM + 1, RIM));
     const clock_t start = clock();
     double seconds, *u = DENSE_NEW(double, RIM + 1), sum = 0, want = 0;
     hd_heat_opts ho;
@@ -433,7 +426,6 @@ static void op_star(void) {
     hd_heat_free(heat);
     hd_laplacian_free(lap);
     free(u);
-    shape_free(&s);
 }
 
 static void op_errors(void) {
@@ -478,7 +470,7 @@ static void op_largest(void) {
     int i, kind;
     for (kind = 0; kind < 4; kind++) {
         const int far_off = kind > 1;
-        shape s = shape_icosphere(1);
+        shape s = kit_own_shape(shape_icosphere(1));
         hd_laplacian *lap, *big;
         int64_t p;
         for (i = 0; i < 3 * s.n && far_off; i++) s.xyz[i] = floor(ldexp(s.xyz[i], 20));       /* exact after the move */
@@ -490,13 +482,12 @@ static void op_largest(void) {
         CHECK(fabs(big->area / ldexp(lap->area, far_off ? 936 : 1012) - 1) <= 1e-15);
         hd_laplacian_free(lap);
         hd_laplacian_free(big);
-        shape_free(&s);
     }
 }
 
 /* Heat on a small ball of a given size. What the library says it is, or an error. */
 static hd_status op_scaled_heat(double scale, hd_laplacian_kind kind, hd_solver solver, double *u, hd_report *rep) {
-    shape s = shape_icosphere(1);
+    shape s = kit_own_shape(shape_icosphere(1));
     hd_laplacian_opts lo;
     hd_heat_opts ho;
     hd_laplacian *lap = NULL;
@@ -515,7 +506,6 @@ static hd_status op_scaled_heat(double scale, hd_laplacian_kind kind, hd_solver 
     CHECK(st >= 0 || (rep->error.status == st && rep->error.text[0]));
     hd_heat_free(heat);
     hd_laplacian_free(lap);
-    shape_free(&s);
     return st;
 }
 
@@ -545,7 +535,7 @@ static void op_extreme_scale(void) {
 
 static void op_matrices_good(void) {
     enum { N = 6 };
-    hd_csr L = test_path_csr(N, 0), B = test_diagonal_csr(N, NULL), full;
+    hd_csr L = kit_own_csr(test_path_csr(N, 0)), B = kit_own_csr(test_diagonal_csr(N, NULL)), full;
     int32_t i[40] = {0, 1, 2, 3, 4, 5, 0, 1}, j[40] = {0, 1, 2, 3, 4, 5, 3, 4};
     double v[40] = {4, 5, 6, 7, 8, 9, 1, -0.5};
     hd_laplacian *lap = NULL;
@@ -563,15 +553,13 @@ static void op_matrices_good(void) {
     CHECK(fabs(lap->b_ratio - 0.75) < 1e-15);
     CHECK(hd_csr_check(&lap->L, 1, NULL, &e) == HD_OK);
     hd_laplacian_free(lap);
-    hd_csr_free(&L, NULL);
-    hd_csr_free(&B, NULL);
     hd_csr_free(&full, NULL);
 }
 
 /* Rows of B without a non-zero carry no mass, whatever L says there; the rest is one component less connected. */
 static void op_matrices_inert(void) {
     const double d[5] = {1, 2, 0, 3, 4};
-    hd_csr L = test_path_csr(5, 0), B = test_diagonal_csr(5, d);
+    hd_csr L = kit_own_csr(test_path_csr(5, 0)), B = kit_own_csr(test_diagonal_csr(5, d));
     hd_laplacian *lap = NULL;
     hd_error e;
     CHECK(hd_laplacian_matrices(&lap, &L, &B, 0, NULL, &e) == HD_OK);
@@ -579,8 +567,6 @@ static void op_matrices_inert(void) {
     CHECK(lap->n_components == 2 && lap->conserves == 0);        /* rows 1 and 3 lost a neighbour */
     CHECK(lap->area == 10);
     hd_laplacian_free(lap);
-    hd_csr_free(&L, NULL);
-    hd_csr_free(&B, NULL);
 }
 
 /* Explicit zeros, one without its mirror entry in L or in B, one whose mirror entry the other matrix stores: the
@@ -625,7 +611,7 @@ static void op_matrices_zeros(void) {
 static void op_matrices_bad(void) {
     enum { N = 4 };
     double d[N] = {1, 2, 3, 4};
-    hd_csr L = test_path_csr(N, 0), B = test_diagonal_csr(N, d), small = test_diagonal_csr(3, d), indefinite;
+    hd_csr L = kit_own_csr(test_path_csr(N, 0)), B = kit_own_csr(test_diagonal_csr(N, d)), small = kit_own_csr(test_diagonal_csr(3, d)), indefinite;
     int32_t i[10] = {0, 1, 2, 3, 0}, j[10] = {0, 1, 2, 3, 1};
     double v[10] = {1, 1, 1, 1, 2}, u[N], keep;
     hd_laplacian *lap = NULL;
@@ -668,15 +654,12 @@ static void op_matrices_bad(void) {
     B.val[2] = 1;
     L.val[0] = 1.0001e290;                       /* the corner of the path */
     CHECK(hd_laplacian_matrices(&lap, &L, &B, 0, NULL, &e) == HD_ERR_NOT_FINITE && e.row == 0 && e.value > 1e290 && e.text[0] == 'L');
-    hd_csr_free(&L, NULL);
-    hd_csr_free(&B, NULL);
-    hd_csr_free(&small, NULL);
     hd_csr_free(&indefinite, NULL);
 }
 
 /* A pair on 4 vertices with B = I and single entries of the path's L changed, both of a pair. */
 static hd_status op_changed(const int32_t *i, const int32_t *j, const double *v, int32_t count, hd_error *e) {
-    hd_csr L = test_path_csr(4, 0), B = test_diagonal_csr(4, NULL);
+    hd_csr L = kit_own_csr(test_path_csr(4, 0)), B = kit_own_csr(test_diagonal_csr(4, NULL));
     hd_laplacian *lap = NULL;
     hd_status st;
     int32_t k, side;
@@ -687,8 +670,6 @@ static hd_status op_changed(const int32_t *i, const int32_t *j, const double *v,
     }
     st = hd_laplacian_matrices(&lap, &L, &B, 0, NULL, e);
     if (st >= 0) hd_laplacian_free(lap);
-    hd_csr_free(&L, NULL);
-    hd_csr_free(&B, NULL);
     return st;
 }
 
@@ -696,9 +677,9 @@ static hd_status op_changed(const int32_t *i, const int32_t *j, const double *v,
 static void op_matrices_sign(void) {
     const int32_t two[1] = {2}, both[2] = {2, 2}, one_two[1] = {1}, ends[2] = {0, 0}, next[2] = {0, 1};
     const double zero[1] = {0}, negative[1] = {-0.5}, large[1] = {-2.1}, most[1] = {-2}, tiny[2] = {1e-30, -1}, fine[2] = {1e-30, -1e-15};
-    shape ball = shape_bumpy(2, 5);
+    shape ball = kit_own_shape(shape_bumpy(2, 5));
     hd_laplacian *mesh = test_laplacian(&ball, HD_LAPLACIAN_VORONOI_COT), *lap = NULL;
-    hd_csr L = mesh->L, B = test_diagonal_csr(L.n_rows, mesh->mass);
+    hd_csr L = mesh->L, B = kit_own_csr(test_diagonal_csr(L.n_rows, mesh->mass));
     hd_error e;
     int64_t p;
     CHECK(hd_laplacian_matrices(&lap, &L, &B, 0, NULL, &e) == HD_OK && lap->conserves);
@@ -712,18 +693,16 @@ static void op_matrices_sign(void) {
     CHECK(op_changed(one_two, two, most, 1, &e) == HD_OK);       /* singular, but not yet negative by this test */
     CHECK(op_changed(ends, next, tiny, 2, &e) == HD_ERR_NOT_POSITIVE && e.row == 0 && e.column == 1 && e.value == -1);
     CHECK(op_changed(ends, next, fine, 2, &e) == HD_OK);
-    hd_csr_free(&B, NULL);
     hd_laplacian_free(mesh);
-    shape_free(&ball);
 }
 
 /* Cotangent weights summed corner by corner in any order: rows are off zero by rounding, and heat is conserved. */
 static void op_matrices_assembled(void) {
-    shape s = shape_bumpy(4, 3);
+    shape s = kit_own_shape(shape_bumpy(4, 3));
     const int32_t room = 12 * s.n_tri;
     int32_t *i = DENSE_NEW(int32_t, room), *j = DENSE_NEW(int32_t, room), f, k, order;
     double *v = DENSE_NEW(double, room);
-    hd_csr B = test_diagonal_csr(s.n, NULL);
+    hd_csr B = kit_own_csr(test_diagonal_csr(s.n, NULL));
     uint64_t seed = 8;
     for (f = 0; f < s.n; f++) s.xyz[3 * f + 2] *= 0.03;          /* slivers among them */
     for (order = 0; order < 2; order++) {
@@ -769,8 +748,6 @@ static void op_matrices_assembled(void) {
         }
         hd_csr_free(&L, NULL);
     }
-    hd_csr_free(&B, NULL);
-    shape_free(&s);
     free(i);
     free(j);
     free(v);
@@ -778,7 +755,7 @@ static void op_matrices_assembled(void) {
 
 /* A leak of 4e-12 is one, whatever the rows' largest entries hide of it. */
 static void op_matrices_leak(void) {
-    hd_csr L = test_path_csr(64, 1), B = test_diagonal_csr(64, NULL);
+    hd_csr L = kit_own_csr(test_path_csr(64, 1)), B = kit_own_csr(test_diagonal_csr(64, NULL));
     hd_laplacian *lap = NULL;
     int32_t i;
     int64_t p;
@@ -789,8 +766,6 @@ static void op_matrices_leak(void) {
         CHECK(lap->conserves == 0);
         hd_laplacian_free(lap);
     }
-    hd_csr_free(&L, NULL);
-    hd_csr_free(&B, NULL);
 }
 
 /* b_ratio for B of 3 x 3 blocks I - (1 - mu) w w', w = (2, 1, 1)/sqrt 6, count of them, whose rows their diagonal does not dominate. */
@@ -799,7 +774,7 @@ static hd_status op_block_ratio(int32_t count, double mu, hd_laplacian **lap, hd
     const int32_t n = 3 * count;
     int32_t *i = DENSE_NEW(int32_t, 9 * count), *j = DENSE_NEW(int32_t, 9 * count), k;
     double *v = DENSE_NEW(double, 9 * count);
-    hd_csr L = test_path_csr(n, 0), B;
+    hd_csr L = kit_own_csr(test_path_csr(n, 0)), B;
     hd_status st;
     for (k = 0; k < 9 * count; k++) {
         i[k] = k / 9 * 3 + k % 9 / 3;
@@ -808,7 +783,6 @@ static hd_status op_block_ratio(int32_t count, double mu, hd_laplacian **lap, hd
     }
     CHECK(hd_csr_from_triplets(&B, n, n, 9 * count, i, j, v, NULL, NULL) == HD_OK);
     st = hd_laplacian_matrices(lap, &L, &B, 0, NULL, e);
-    hd_csr_free(&L, NULL);
     hd_csr_free(&B, NULL);
     free(i);
     free(j);
@@ -820,7 +794,7 @@ static hd_status op_block_ratio(int32_t count, double mu, hd_laplacian **lap, hd
 static void op_matrices_ratio(void) {
     enum { N = 20000 };
     static const double mus[4] = {1e-3, 1e-6, 1e-9, 1e-10};
-    hd_csr L = test_path_csr(N, 0), B = test_path_csr(N, 0);
+    hd_csr L = kit_own_csr(test_path_csr(N, 0)), B = kit_own_csr(test_path_csr(N, 0));
     hd_laplacian *lap = NULL;
     hd_heat *heat;
     hd_report rep;
@@ -857,8 +831,6 @@ static void op_matrices_ratio(void) {
         hd_heat_free(heat);
         hd_laplacian_free(lap);
     }
-    hd_csr_free(&L, NULL);
-    hd_csr_free(&B, NULL);
     free(u);
 }
 

@@ -270,7 +270,7 @@ static void pts_operators(void) {
     static const hd_laplacian_kind kinds[] = {HD_LAPLACIAN_VORONOI_EXP, HD_LAPLACIAN_EXP};
     int blue, k;
     for (blue = 0; blue < 2; blue++) {
-        shape s = shape_points(150, shape_on_torus, 8 * pts_pi * pts_pi, blue, 5);
+        shape s = kit_own_shape(shape_points(150, shape_on_torus, 8 * pts_pi * pts_pi, blue, 5));
         for (k = 0; k < 2; k++) {
             hd_laplacian *lap = pts_make(s.xyz, s.n, kinds[k], 0), *narrow;
             double sum = 0, h = 0;
@@ -293,7 +293,6 @@ static void pts_operators(void) {
             hd_laplacian_free(lap);
             hd_laplacian_free(narrow);
         }
-        shape_free(&s);
     }
 }
 
@@ -305,13 +304,12 @@ static void pts_areas(void) {
     int which, blue;
     for (which = 0; which < 2; which++) {
         for (blue = 0; blue < 2; blue++) {
-            shape s = shape_points(10000, on[which], area[which], blue, 11);
+            shape s = kit_own_shape(shape_points(10000, on[which], area[which], blue, 11));
             hd_laplacian *lap = pts_make(s.xyz, s.n, HD_LAPLACIAN_VORONOI_EXP, 1e-3);
             CHECK_MSG(fabs(lap->area / area[which] - 1) < (blue ? 0.003 : 0.006), "surface %d, blue %d: area %g of the true one", which, blue,
                       lap->area / area[which]);
             CHECK_MSG(lap->points.n_border < (blue ? 1 : 60), "%d cells at a border that is not there", (int)lap->points.n_border);
             hd_laplacian_free(lap);
-            shape_free(&s);
         }
     }
 }
@@ -319,7 +317,7 @@ static void pts_areas(void) {
 /* Cells in the plane: of a square grid, exactly; of random points, against counting on which cell the nodes of a fine grid lie. */
 static void pts_plane(void) {
     enum { FINE = 500, N = 200 };
-    shape grid = shape_grid(21, 21, 0), s;
+    shape grid = kit_own_shape(shape_grid(21, 21, 0)), s;
     double *query = DENSE_NEW(double, 3 * FINE * FINE), count[N] = {0}, worst = 0;
     int32_t *id = DENSE_NEW(int32_t, FINE * FINE), i, inner = 0;
     hd_laplacian *lap = pts_make(grid.xyz, grid.n, HD_LAPLACIAN_VORONOI_EXP, 0);
@@ -329,7 +327,6 @@ static void pts_plane(void) {
     }
     CHECK(fabs(lap->area - 1) < 1e-12 && fabs(lap->h - 0.05) < 1e-15);
     hd_laplacian_free(lap);
-    shape_free(&grid);
     for (i = 0; i < FINE * FINE; i++) {
         query[3 * i] = (i % FINE + 0.5) / FINE;
         query[3 * i + 1] = (i / FINE + 0.5) / FINE;
@@ -358,7 +355,7 @@ static void pts_plane(void) {
 /* Two sheets, two points' spacings apart, have twice the area of one. */
 static void pts_sheets(void) {
     enum { N = 1000 };
-    shape s = shape_points(N, shape_on_square, 1, 1, 8), t = shape_points(N, shape_on_square, 1, 1, 9), both;
+    shape s = kit_own_shape(shape_points(N, shape_on_square, 1, 1, 8)), t = kit_own_shape(shape_points(N, shape_on_square, 1, 1, 9)), both;
     hd_laplacian *one = pts_make(s.xyz, N, HD_LAPLACIAN_VORONOI_EXP, 0), *two;
     static const double gaps[] = {2, 3, 20};
     size_t k;
@@ -376,8 +373,6 @@ static void pts_sheets(void) {
         shape_free(&both);
     }
     hd_laplacian_free(one);
-    shape_free(&s);
-    shape_free(&t);
 }
 
 /* ---- what must not matter, and what must be told ---- */
@@ -401,7 +396,7 @@ static double pts_difference(const hd_laplacian *a, const hd_laplacian *b, const
 
 static void pts_invariance(void) {
     enum { N = 300 };
-    shape s = shape_points(N, shape_on_torus, 8 * pts_pi * pts_pi, 0, 21), t = shape_points(N, shape_on_torus, 1, 0, 1);
+    shape s = kit_own_shape(shape_points(N, shape_on_torus, 8 * pts_pi * pts_pi, 0, 21)), t = kit_own_shape(shape_points(N, shape_on_torus, 1, 0, 1));
     int32_t perm[N], i;
     uint64_t seed = 4;
     int kind, c;
@@ -432,13 +427,11 @@ static void pts_invariance(void) {
         hd_laplacian_free(b);
         hd_laplacian_free(a);
     }
-    shape_free(&s);
-    shape_free(&t);
 }
 
 static void pts_coincident(void) {
     enum { N = 400, COPIES = 40, M = N + COPIES + 3 };
-    shape s = shape_points(N, shape_on_sphere, 4 * pts_pi, 0, 2), t = shape_points(M, shape_on_sphere, 4 * pts_pi, 0, 3);
+    shape s = kit_own_shape(shape_points(N, shape_on_sphere, 4 * pts_pi, 0, 2)), t = kit_own_shape(shape_points(M, shape_on_sphere, 4 * pts_pi, 0, 3));
     hd_laplacian *a = pts_make(s.xyz, N, HD_LAPLACIAN_VORONOI_EXP, 0), *b;
     int32_t i;
     s.xyz[3 * 7] = 0;
@@ -462,14 +455,12 @@ static void pts_coincident(void) {
     pts_entries(b, t.xyz, "coincident exp");
     hd_laplacian_free(b);
     hd_laplacian_free(a);
-    shape_free(&s);
-    shape_free(&t);
 }
 
 /* Outliers are components of their own, small, and change little for the others. */
 static void pts_outliers(void) {
     enum { N = 1000 };
-    shape s = shape_points(N + 2, shape_on_sphere, 4 * pts_pi, 1, 2);
+    shape s = kit_own_shape(shape_points(N + 2, shape_on_sphere, 4 * pts_pi, 1, 2));
     hd_laplacian *clean = pts_make(s.xyz, N, HD_LAPLACIAN_VORONOI_EXP, 0), *lap;
     hd_heat *heat = NULL;
     hd_report rep;
@@ -491,7 +482,6 @@ static void pts_outliers(void) {
     hd_heat_free(heat);
     hd_laplacian_free(lap);
     hd_laplacian_free(clean);
-    shape_free(&s);
     free(u);
 }
 
@@ -511,7 +501,7 @@ static hd_status pts_status(const double *xyz, int32_t n, hd_laplacian_kind kind
 }
 
 static void pts_errors(void) {
-    shape s = shape_points(50, shape_on_sphere, 4 * pts_pi, 0, 2);
+    shape s = kit_own_shape(shape_points(50, shape_on_sphere, 4 * pts_pi, 0, 2));
     const double keep = s.xyz[10];
     hd_error e;
     int32_t i;
@@ -553,12 +543,11 @@ static void pts_errors(void) {
     CHECK(pts_status(s.xyz, 50, HD_LAPLACIAN_EXP, 0, 0, 0, &e) == HD_OK);
     memcpy(s.xyz, s.xyz + 3, 3 * sizeof(double));
     CHECK(pts_status(s.xyz, 50, HD_LAPLACIAN_EXP, 1e-300, 0, 0, &e) == HD_ERR_NOT_FINITE && e.vertex == 0);   /* weight of a pair in one place */
-    shape_free(&s);
 }
 
 /* The same bits whatever runs the loops. */
 static void pts_threads(void) {
-    shape s = shape_points(3000, shape_on_torus, 8 * pts_pi * pts_pi, 0, 6);
+    shape s = kit_own_shape(shape_points(3000, shape_on_torus, 8 * pts_pi * pts_pi, 0, 6));
     hd_laplacian *lap[3] = {NULL, NULL, NULL};
     hd_context ctx[3];
     hd_laplacian_opts o;
@@ -580,7 +569,6 @@ static void pts_threads(void) {
         CHECK(memcmp(lap[way]->mass, lap[0]->mass, (size_t)s.n * sizeof(double)) == 0);
     }
     for (way = 0; way < 3; way++) hd_laplacian_free(lap[way]);
-    shape_free(&s);
 }
 
 /* ---- the smooth sphere ---- */
@@ -601,7 +589,7 @@ static double pts_sphere_kernel(double t, double x) {
  * bandwidth, of which a third is left as room. scale: exp tends to Laplacian/area. */
 static void pts_sphere(hd_laplacian_kind kind, int blue, double tol_value, double tol_kernel) {
     enum { N = 2000 };
-    shape s = shape_points(N, shape_on_sphere, 4 * pts_pi, blue, 1);
+    shape s = kit_own_shape(shape_points(N, shape_on_sphere, 4 * pts_pi, blue, 1));
     hd_laplacian *lap = pts_make(s.xyz, N, kind, 0);
     hd_heat *heat = NULL;
     hd_report rep;
@@ -631,7 +619,6 @@ static void pts_sphere(hd_laplacian_kind kind, int blue, double tol_value, doubl
     CHECK_MSG(worst / top < tol_kernel, "kind %d, blue %d: heat kernel off by %g of its largest value", kind, blue, worst / top);
     hd_heat_free(heat);
     hd_laplacian_free(lap);
-    shape_free(&s);
     free(x);
     free(y);
 }
@@ -670,8 +657,8 @@ static void pts_shells(void) {
     const double t = 0.1;
     size_t k;
     for (k = 0; k < 4; k++) {
-        shape a = shape_points(N, shape_on_sphere, 4 * pts_pi, 1, 3);
-        shape b = shape_points(N, shape_on_sphere, 4 * pts_pi, 1, 4);
+        shape a = kit_own_shape(shape_points(N, shape_on_sphere, 4 * pts_pi, 1, 3));
+        shape b = kit_own_shape(shape_points(N, shape_on_sphere, 4 * pts_pi, 1, 4));
         const double q = 1 - gaps[k] * sqrt(4 * pts_pi / N);
         double *want = DENSE_NEW(double, 2 * N), area, worst;    /* zeros on the smaller one */
         shape both;
@@ -693,8 +680,6 @@ static void pts_shells(void) {
         CHECK(cells->points.n_not_flat == flagged);
         hd_laplacian_free(lap);
         hd_laplacian_free(cells);
-        shape_free(&a);
-        shape_free(&b);
         shape_free(&both);
         free(want);
     }
@@ -703,7 +688,7 @@ static void pts_shells(void) {
 /* An ear: a ball pressed flat, five spacings thick in the middle and none at the rim; as the mesh of the same
  * vertices has it. */
 static void pts_ear(void) {
-    shape s = shape_icosphere(4);
+    shape s = kit_own_shape(shape_icosphere(4));
     const double edge = 0.075;
     double *want = DENSE_NEW(double, s.n), t, worst;
     uint64_t seed = 6;
@@ -731,7 +716,6 @@ static void pts_ear(void) {
     hd_heat_free(heat);
     hd_laplacian_free(mesh);
     hd_laplacian_free(lap);
-    shape_free(&s);
     free(want);
 }
 
@@ -743,7 +727,7 @@ static void pts_noise(void) {
     static const double most[] = {0.01, 0.035, 0.18};
     int k, c;
     for (k = 0; k < 3; k++) {
-        shape s = shape_points(N, shape_on_torus, area, 0, 12);
+        shape s = kit_own_shape(shape_points(N, shape_on_torus, area, 0, 12));
         const double noise[] = {0, 0.2, 0.5};
         uint64_t seed = 5;
         hd_laplacian *lap;
@@ -759,7 +743,6 @@ static void pts_noise(void) {
         CHECK_MSG(k == 2 ? lap->points.n_not_flat > N / 5 : lap->points.n_not_flat <= 5 * k,
                   "noise %g: %d places not flat", noise[k], (int)lap->points.n_not_flat);
         hd_laplacian_free(lap);
-        shape_free(&s);
     }
 }
 
@@ -784,7 +767,7 @@ static void pts_line(void) {
 
 /* Points of a small sphere, some of them twice. */
 static hd_status pts_robust(hd_context *ctx, int variant) {
-    shape s = shape_points(60, shape_on_sphere, 4 * pts_pi, 0, 2);
+    shape s = kit_own_shape(shape_points(60, shape_on_sphere, 4 * pts_pi, 0, 2));
     hd_laplacian *lap = (hd_laplacian *)&test_passed;     /* not a Laplacian: only compared */
     hd_laplacian_opts o;
     double d2[60 * 4];
@@ -812,7 +795,6 @@ static hd_status pts_robust(hd_context *ctx, int variant) {
         if (st >= 0) hd_csr_free(&a, ctx);
     }
     CHECK(e.status == st);
-    shape_free(&s);
     return st;
 }
 

@@ -180,7 +180,7 @@ static void poly_definition(void) {
 /* A unit square: M has the two parts 1/2 (of the diagonals) and the alternating vector. */
 static void poly_square(void) {
     static const double lambdas[3] = {0, 0.25, 3};
-    shape_poly s = shape_poly_make(4, 1, 4);
+    shape_poly s = kit_own_poly(shape_poly_make(4, 1, 4));
     int k, i, j;
     const double xyz[12] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
     memcpy(s.xyz, xyz, sizeof xyz);
@@ -198,7 +198,6 @@ static void poly_square(void) {
         CHECK(fabs(lap->mesh.smallest_angle - 1.5707963267948966) < 1e-15);
         hd_laplacian_free(lap);
     }
-    shape_poly_free(&s);
 }
 
 /* ---- triangles ---- */
@@ -214,7 +213,7 @@ static void poly_equals_triangles(void) {
     for (k = 0; k < 3 * s[2].n; k++) s[2].xyz[k] += 0.02 * sin(k);    /* no weights that are zero but for rounding */
     s[3] = shape_disjoint(s, s + 1, far_away);
     for (k = 0; k < 4; k++) {
-        shape_poly p = shape_poly_of(s + k);
+        shape_poly p = kit_own_poly(shape_poly_of(s + k));
         hd_laplacian *a = test_laplacian(s + k, HD_LAPLACIAN_FEM);
         for (q = 0; q < 3; q++) {
             hd_laplacian *b = poly_make(&p, lambdas[q]);
@@ -229,14 +228,13 @@ static void poly_equals_triangles(void) {
             hd_laplacian_free(b);
         }
         hd_laplacian_free(a);
-        shape_poly_free(&p);
     }
     for (k = 0; k < 4; k++) shape_free(s + k);
 }
 
 /* With the kinds of triangles every face is a fan. */
 static void poly_fans(void) {
-    shape_poly s = poly_mixed();
+    shape_poly s = kit_own_poly(poly_mixed());
     int32_t tri[3 * 14], m = 0, f;
     int64_t c;
     int q;
@@ -256,7 +254,6 @@ static void poly_fans(void) {
         hd_laplacian_free(a);
         hd_laplacian_free(b);
     }
-    shape_poly_free(&s);
 }
 
 /* ---- properties ---- */
@@ -360,10 +357,10 @@ static void poly_linear(void) {
 
 static void poly_rigid(void) {
     static const double scales[4] = {1, 1e-3, 250, 1e80};
-    shape_poly s = poly_mixed();
+    shape_poly s = kit_own_poly(poly_mixed());
     int k;
     for (k = 0; k < 4; k++) {
-        shape_poly r = poly_copy(&s);
+        shape_poly r = kit_own_poly(poly_copy(&s));
         hd_laplacian *a, *b;
         double worst;
         int32_t i;
@@ -378,9 +375,7 @@ static void poly_rigid(void) {
         CHECK_MSG(worst < (k == 1 ? 1e-11 : 1e-13), "scale %g: off by %g", scales[k], worst);
         hd_laplacian_free(a);
         hd_laplacian_free(b);
-        shape_poly_free(&r);
     }
-    shape_poly_free(&s);
 }
 
 /* Where a face begins and which way round it runs says nothing about it, nor does the order of the faces. */
@@ -394,7 +389,7 @@ static void poly_turned(void) {
         hd_laplacian *a = poly_make(s + k, 0.7);
         for (turn = 0; turn < 5; turn++)
             for (back = 0; back < 2; back++) {
-                shape_poly r = poly_copy(s + k);
+                shape_poly r = kit_own_poly(poly_copy(s + k));
                 hd_laplacian *b;
                 int32_t f, p;
                 r.n_faces = 0;
@@ -412,7 +407,6 @@ static void poly_turned(void) {
                 CHECK(a->mesh.n_edges == b->mesh.n_edges && a->mesh.n_boundary_edges == b->mesh.n_boundary_edges);
                 CHECK(a->mesh.n_misoriented_edges == b->mesh.n_misoriented_edges);
                 hd_laplacian_free(b);
-                shape_poly_free(&r);
             }
         hd_laplacian_free(a);
         shape_poly_free(s + k);
@@ -446,7 +440,7 @@ static void poly_left_out(void) {
                                      {4, 24, 26, 25, 27}, {2, 0, 1}, {1, 4}, {0, 0},             /* too few corners */
                                      {4, 1, 7, 6, 0}, {4, 6, 7, 1, 0}, {6, 4, 3, 2, 1, 7, 5}, {3, 5, 6, 7}};   /* repeated, turned, reversed */
     enum { N_BAD = sizeof bad / sizeof *bad };
-    shape_poly s = poly_mixed(), t = shape_poly_make(16 + 12, 6 + N_BAD, 200);
+    shape_poly s = kit_own_poly(poly_mixed()), t = shape_poly_make(16 + 12, 6 + N_BAD, 200);
     hd_laplacian *a = poly_make(&s, 0), *b;
     int32_t f, i;
     memcpy(t.xyz, s.xyz, 3 * (size_t)s.n * sizeof *s.xyz);
@@ -483,11 +477,10 @@ static void poly_left_out(void) {
     CHECK(b->mesh.n_repeated_face == 0 && b->mesh.n_faces_used == 2);
     hd_laplacian_free(b);
     shape_poly_free(&t);
-    shape_poly_free(&s);
 }
 
 static void poly_edges(void) {
-    shape_poly s = shape_quad_torus(6, 5, 2, 0.7), t;
+    shape_poly s = kit_own_poly(shape_quad_torus(6, 5, 2, 0.7)), t;
     hd_laplacian *lap = poly_make(&s, 0);
     int32_t keep;
     CHECK(lap->mesh.n_edges == 60 && lap->mesh.n_boundary_edges == 0 && lap->mesh.n_misoriented_edges == 0 && lap->L.nnz == 30 * 9);
@@ -502,7 +495,6 @@ static void poly_edges(void) {
     lap = poly_make(&s, 0);
     CHECK(lap->mesh.n_boundary_loops == 1 && lap->mesh.n_boundary_edges == 4 && lap->mesh.n_edges == 60);
     hd_laplacian_free(lap);
-    shape_poly_free(&s);
     t = shape_poly_make(8, 3, 12);                /* three leaves of a book */
     for (keep = 0; keep < 24; keep++) t.xyz[keep] = cos(1.7 * keep);
     shape_put_quad(&t, 0, 1, 2, 3);
@@ -515,7 +507,7 @@ static void poly_edges(void) {
 }
 
 static void poly_errors(void) {
-    shape_poly s = poly_mixed();
+    shape_poly s = kit_own_poly(poly_mixed());
     hd_laplacian_opts o;
     hd_laplacian *lap = NULL;
     hd_error e;
@@ -564,7 +556,6 @@ static void poly_errors(void) {
     for (k = 0; k < 9; k++) s.xyz[24 + k] *= 1e-200;
     for (k = 0; k < 3 * s.n; k++) s.xyz[k] *= 1e-170;
     CHECK(poly_try(&lap, &s, HD_LAPLACIAN_POLYGON, 0, &e) == HD_ERR_EMPTY);
-    shape_poly_free(&s);
 }
 
 /* Slivers: whatever happens, the entries are finite, rows sum to zero, and nothing is lost in silence. */
@@ -572,7 +563,7 @@ static void poly_slivers(void) {
     static const int32_t sliver[3] = {0, 1, 5};
     double width;
     for (width = 1e-3; width > 1e-200; width *= 1e-9) {
-        shape_poly s = shape_poly_make(6, 4, 15);
+        shape_poly s = kit_own_poly(shape_poly_make(6, 4, 15));
         hd_laplacian *lap = NULL;
         hd_error e;
         int64_t p;
@@ -589,7 +580,6 @@ static void poly_slivers(void) {
         CHECK(lap->mesh.n_faces_used + lap->mesh.n_zero_area == 4);
         for (p = 0; p < lap->L.nnz; p++) CHECK_MSG(fabs(lap->L.val[p]) <= DBL_MAX, "width %g: L = %g", width, lap->L.val[p]);
         hd_laplacian_free(lap);
-        shape_poly_free(&s);
     }
 }
 
@@ -597,7 +587,7 @@ static void poly_slivers(void) {
 static void poly_long_and_notched(void) {
     static const double notch[21] = {0, 0, 0, 4, 0, 0, 4, 4, 0, 2.2, 4, 0, 2, 0.5, 0, 1.8, 4, 0, 0, 4, 0};
     static const int32_t corner[7] = {0, 1, 2, 3, 4, 5, 6};
-    shape_poly s = shape_poly_make(11, 2, 11);
+    shape_poly s = kit_own_poly(shape_poly_make(11, 2, 11));
     hd_laplacian *lap;
     hd_error e;
     double area;
@@ -623,13 +613,12 @@ static void poly_long_and_notched(void) {
     s.xyz[3] = -(s.xyz[6] = DBL_MAX);            /* nor are differences of corners doubles */
     s.xyz[7] *= 2;
     CHECK(poly_try(&lap, &s, HD_LAPLACIAN_POLYGON, 0, &e) == HD_ERR_NOT_FINITE && e.face == 0);
-    shape_poly_free(&s);
 }
 
 /* ---- memory and cancelling ---- */
 
 static hd_status poly_job(hd_context *ctx, int variant) {
-    shape_poly s = poly_mixed();
+    shape_poly s = kit_own_poly(poly_mixed());
     hd_laplacian_opts o;
     hd_laplacian *lap = rob_mark_lap;
     hd_error e;
@@ -640,7 +629,6 @@ static hd_status poly_job(hd_context *ctx, int variant) {
     st = hd_laplacian_polygons(&lap, s.xyz, s.n, s.face_ptr, s.face_idx, s.n_faces, &o, &e);
     CHECK(e.status == st && (st >= 0) == (lap != rob_mark_lap));
     if (st >= 0) hd_laplacian_free(lap);
-    shape_poly_free(&s);
     return st;
 }
 
@@ -660,7 +648,7 @@ static void poly_robust(void) {
 /* By every method, against the dense eigensolution. */
 static void poly_heat(void) {
     static const hd_method methods[3] = {HD_METHOD_DIRECT, HD_METHOD_KRYLOV, HD_METHOD_ITERATIVE};
-    shape_poly s = shape_hex_sphere(2);
+    shape_poly s = kit_own_poly(shape_hex_sphere(2));
     hd_laplacian *lap;
     double *L, *B, *f, *u, *want, t;
     dense_pair p;
@@ -693,7 +681,6 @@ static void poly_heat(void) {
     free(u);
     free(want);
     hd_laplacian_free(lap);
-    shape_poly_free(&s);
 }
 
 static int poly_ascending(const void *a, const void *b) {

@@ -176,7 +176,7 @@ static void sparse_check_symmetric(void) {
 
 static void sparse_transpose(void) {
     double *d = DENSE_NEW(double, 17 * 9), *t = DENSE_NEW(double, 17 * 9);
-    hd_csr a = sparse_random(17, 9, 60, 11, d), b, c;
+    hd_csr a = kit_own_csr(sparse_random(17, 9, 60, 11, d)), b, c;
     hd_error e;
     double *keep;
     int32_t i, j;
@@ -194,7 +194,6 @@ static void sparse_transpose(void) {
     CHECK(hd_csr_transpose(&b, &a, NULL, &e) == HD_OK && !b.val && b.nnz == a.nnz);
     a.val = keep;
     hd_csr_free(&b, NULL);
-    hd_csr_free(&a, NULL);
     free(d);
     free(t);
 }
@@ -222,7 +221,7 @@ static void sparse_overflow(void) {
 
 static void sparse_product_of(int32_t n, int32_t k, int32_t m, int32_t count, uint64_t seed) {
     double *x = DENSE_NEW(double, n * k), *y = DENSE_NEW(double, k * m), *z = DENSE_NEW(double, n * m);
-    hd_csr a = sparse_random(n, k, count, seed, x), b = sparse_random(k, m, count, seed + 1, y), c, pattern;
+    hd_csr a = kit_own_csr(sparse_random(n, k, count, seed, x)), b = kit_own_csr(sparse_random(k, m, count, seed + 1, y)), c, pattern;
     hd_error e;
     double *keep;
     int32_t i, j, q;
@@ -239,8 +238,6 @@ static void sparse_product_of(int32_t n, int32_t k, int32_t m, int32_t count, ui
     hd_csr_free(&c, NULL);
     hd_csr_free(&pattern, NULL);
     if (n != m) CHECK(hd_csr_product(&c, &b, &a, NULL, &e) == HD_ERR_ARGUMENT && e.row == m && e.column == n);
-    hd_csr_free(&a, NULL);
-    hd_csr_free(&b, NULL);
     free(x);
     free(y);
     free(z);
@@ -270,7 +267,7 @@ static void sparse_product_too_large(void) {
 static void sparse_permute(void) {
     enum { N = 31 };
     double *d = DENSE_NEW(double, N * N), *p = DENSE_NEW(double, N * N);
-    hd_csr a = sparse_random(N, N, 140, 23, d), b;
+    hd_csr a = kit_own_csr(sparse_random(N, N, 140, 23, d)), b;
     hd_error e;
     uint64_t seed = 9;
     int32_t perm[N], i, j;
@@ -293,7 +290,6 @@ static void sparse_permute(void) {
     a.n_cols = N;
     a.row_ptr[1] = -3;
     CHECK(hd_csr_permute(&b, &a, perm, NULL, &e) == HD_ERR_STRUCTURE && e.row == 0);
-    hd_csr_free(&a, NULL);
     free(d);
     free(p);
 }

@@ -1,0 +1,117 @@
+/* kit.h - what tests work on, made from a line of text and freed by itself
+
+   Everything made here is freed when the group ends, the last first; kit_release(mark) frees what was made after
+   `mark = kit_mark()`, for loops. Makers stop the program where they fail: tests of failures make things themselves. */
+
+#ifndef KIT_H
+#define KIT_H
+
+typedef struct kit_entry { void *object; void (*destroy)(void *object); } kit_entry;
+static kit_entry *kit_list;
+static int32_t kit_count, kit_room;
+
+static int32_t kit_mark(void) { return kit_count; }
+
+static void kit_release(int32_t mark) {
+    while (kit_count > mark) {
+        kit_count--;
+        kit_list[kit_count].destroy(kit_list[kit_count].object);
+    }
+    if (kit_count > 0) return;
+    free(kit_list);
+    kit_list = NULL;
+    kit_room = 0;
+}
+
+static void *kit_keep(void *object, void (*destroy)(void *object)) {
+    if (kit_count == kit_room) {
+        kit_room = kit_room ? 2 * kit_room : 64;
+        kit_list = (kit_entry *)realloc(kit_list, (size_t)kit_room * sizeof *kit_list);
+        if (!kit_list) truth_stop("out of memory");
+    }
+    kit_list[kit_count].object = object;
+    kit_list[kit_count++].destroy = destroy;
+    return object;
+}
+
+static void kit_free_laplacian(void *p) { hd_laplacian_free((hd_laplacian *)p); }
+static void kit_free_heat(void *p) { hd_heat_free((hd_heat *)p); }
+static void kit_free_body(void *p) {
+    trial_body_free((trial_body *)p);
+    free(p);
+}
+static void kit_free_csr(void *p) {
+    hd_csr_free((hd_csr *)p, NULL);
+    free(p);
+}
+
+/* Zeros. */
+#define KIT_NEW(type, count) ((type *)kit_keep(truth_room((int64_t)(count), sizeof(type)), free))
+
+/* An array that lives until the group ends, filled by xorshift: numbers in [-1, 1). */
+static double *kit_random(int64_t count, uint64_t seed) {
+    double *x = KIT_NEW(double, count);
+    int64_t i;
+    for (i = 0; i < count; i++) x[i] = dense_signed(&seed);
+    return x;
+}
+
+/* A shape: "bumpy/3/7", see trial_body_make and trial_shape in tools/trials.h. Triangles in s, polygons in p, the matrix of a
+ * graph in L. */
+static const trial_body *kit_body(const char *spec) {
+    trial_body *b = KIT_NEW(trial_body, 1);
+    if (!trial_body_make(b, spec)) truth_stop(spec);
+    kit_list[kit_count - 1].destroy = kit_free_body;
+    return b;
+}
+
+static const shape *kit_shape(const char *spec) { return &kit_body(spec)->s; }
+
+/* The pair of a shape by an operator: kit_pair("sphere/2 fem"), kit_pair("bumpy/3/1 vor+id"); one thread. */
+static hd_laplacian *kit_pair(const char *spec) {
+    char name[64];
+    const char *op = strchr(spec, ' ');
+    hd_laplacian *lap = NULL;
+    hd_error e;
+    snprintf(name, sizeof name, "%.*s", (int)strcspn(spec, " "), spec);
+    if (trial_pair(&lap, name, op ? op + 1 : "fem", 1, &e) < 0) truth_stop(e.text);
+    return (hd_laplacian *)kit_keep(lap, kit_free_laplacian);
+}
+
+/* A plan by words of tools/trials.h: kit_heat(lap, "method=direct degree=9 tol=1e-10"); one thread. */
+static hd_heat *kit_heat(const hd_laplacian *lap, const char *options) {
+    const trial c = trial_parse(options);
+    const hd_heat_opts o = trial_options(&c);
+    hd_heat *heat = NULL;
+    hd_error e;
+    if (hd_heat_create(&heat, lap, &o, &e) < 0) truth_stop(e.text);
+    return (hd_heat *)kit_keep(heat, kit_free_heat);
+}
+
+/* What is made elsewhere and freed with the rest. */
+static hd_csr *kit_csr(hd_csr a) {
+    hd_csr *own = KIT_NEW(hd_csr, 1);
+    *own = a;
+    kit_list[kit_count - 1].destroy = kit_free_csr;
+    return own;
+}
+
+static hd_csr kit_own_csr(hd_csr a) { return *kit_csr(a); }
+static hd_laplacian *kit_own_laplacian(hd_laplacian *lap) { return (hd_laplacian *)kit_keep(lap, kit_free_laplacian); }
+static hd_heat *kit_own_heat(hd_heat *heat) { return (hd_heat *)kit_keep(heat, kit_free_heat); }
+
+static shape kit_own_shape(shape s) {
+    trial_body *b = KIT_NEW(trial_body, 1);
+    b->s = s;
+    kit_list[kit_count - 1].destroy = kit_free_body;
+    return s;
+}
+
+static shape_poly kit_own_poly(shape_poly p) {
+    trial_body *b = KIT_NEW(trial_body, 1);
+    b->p = p;
+    kit_list[kit_count - 1].destroy = kit_free_body;
+    return p;
+}
+
+#endif
