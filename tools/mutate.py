@@ -256,7 +256,7 @@ def cut(folder, name):
     files = [text] + [open(os.path.join(tests, f), encoding="utf-8").read() for f in re.findall(r'#include "(test_\w+\.h)"', text)]
     whole = "\n".join(files)
     static = set(re.findall(r"^static void (\w+)\(", whole, re.M))
-    groups = dict((g, f) for g, f in re.findall(r'\{"(\w+)", (\w+)\}', text)) if name == "runner" else {"internals": "int_all"}
+    groups = dict((g, f) for g, f in re.findall(r'\{"(\w+)", (test_\w+)', text)) if name == "runner" else {"internals": "int_all"}
     pieces, code, todo, done = [], [], list(groups.items()), set()
     while todo:
         group, function = todo.pop(0)

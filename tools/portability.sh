@@ -136,7 +136,7 @@ embedded() {
 }
 
 one_target() {
-  local name=$1 line cc run groups t0 status=0 summary
+  local name=$1 line cc run groups t0 status=0 summary alone=
   line=$(line_of "$name")
   cc=$(field "$line" 2)
   run=$(field "$line" 3)
@@ -155,8 +155,9 @@ one_target() {
   if [ "$run" = syntax ]; then msvc_syntax; return; fi
   if [ "$run" = embedded ]; then embedded "$name" "$cc"; return; fi
   [ -z "$set_of" ] || groups=$set_of
+  [ "$groups" != core ] || alone=-DTEST_CORE        # the code of no other group
   t0=$SECONDS
-  if ! $cc $flags $(includes "$cc") -w -I"$top" "$top/tests/runner.c" -o "$work/$name.exe" -lm >"$work/log" 2>&1; then
+  if ! $cc $flags $alone $(includes "$cc") -w -I"$top" "$top/tests/runner.c" -o "$work/$name.exe" -lm >"$work/log" 2>&1; then
     head -20 "$work/log"
     echo "$name: does not compile"
     return 1
