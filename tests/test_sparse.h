@@ -235,6 +235,27 @@ static void sparse_product_of(int32_t n, int32_t k, int32_t m, int32_t count, ui
     if (n != m) CHECK(hd_csr_product(&c, &b, &a, NULL, &e) == HD_ERR_ARGUMENT && e.row == m && e.column == n);
 }
 
+/* A full column by a full row: 2^30 entries of 4 bytes and more, which sizes of 32 bits take for none. */
+static void sparse_product_too_large(void) {
+    enum { N = 32768 };
+    int64_t *many = DENSE_NEW(int64_t, N + 1), one[2] = {0, N};
+    int32_t *zero = DENSE_NEW(int32_t, N), *each = DENSE_NEW(int32_t, N), i;
+    double *val = DENSE_NEW(double, N);
+    const hd_csr a = sparse_view(N, 1, N, many, zero, val), b = sparse_view(1, N, N, one, each, val);
+    hd_csr c;
+    hd_error e;
+    for (i = 0; i < N; i++) {
+        many[i + 1] = i + 1;
+        each[i] = i;
+        val[i] = 1;
+    }
+    CHECK(hd_csr_product(&c, &a, &b, NULL, &e) == HD_ERR_TOO_LARGE);
+    free(many);
+    free(zero);
+    free(each);
+    free(val);
+}
+
 static void sparse_permute(void) {
     enum { N = 31 };
     double *d = KIT_NEW(double, N * N), *p = KIT_NEW(double, N * N);
@@ -306,6 +327,7 @@ static void test_sparse(void) {
     sparse_product_of(30, 30, 30, 90, 18);
     sparse_product_of(50, 40, 60, 900, 19);      /* rows long enough for heapsort */
     sparse_product_of(1, 1, 1, 1, 20);
+    if (sizeof(size_t) < 8) sparse_product_too_large();
     sparse_permute();
     sparse_apply();
 }

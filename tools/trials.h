@@ -479,10 +479,10 @@ static double trial_unit(const hd_laplacian *lap) {
 /* ==== [5] cases ==== */
 
 enum { QUERY_APPLY, QUERY_COLUMN, QUERY_TIMES, QUERY_DERIVATIVE, QUERY_ADJOINT, QUERY_FROM, QUERY_FILTER,
-       QUERY_ENTRIES, QUERY_PAIRS, QUERY_DIAGONAL, QUERY_EDGES, QUERY_DISTANCE, QUERY_DISTANCE_FROM, QUERIES };
+       QUERY_ENTRIES, QUERY_PAIRS, QUERY_DIAGONAL, QUERY_EDGES, QUERY_DISTANCE, QUERY_DISTANCE_FROM, QUERY_COUNT };
 enum { OWN_NONE, OWN_COPY, OWN_COPY0, OWN_LOOSE, OWN_NEAR, OWN_RANDOM, OWN_RESOLVENT, OWN_A0, OWN_PACKS };
 enum { FIELD_RANDOM, FIELD_SMOOTH, FIELD_NEARLY, FIELD_HUGE, FIELD_TINY, FIELD_DELTA, FIELD_ALTERNATE,
-       FIELD_MODE, FIELD_CONSTANT, FIELD_STEP, FIELD_LINEAR, FIELD_ZERO, FIELD_LEVEL, FIELDS };
+       FIELD_MODE, FIELD_CONSTANT, FIELD_STEP, FIELD_LINEAR, FIELD_ZERO, FIELD_LEVEL, FIELD_COUNT };
 
 static const char *const trial_queries[] = {"apply",    "column", "times",    "derivative",    "adjoint",
                                           "from",     "filter", "entries",  "pairs",         "diagonal",
@@ -632,7 +632,7 @@ static trial_tally trial_rows[TRIAL_ROWS];
 static int trial_n_rows;
 /* By query: cases put, those without an answer (no pair, no plan, an error), comparisons, those without a finite bound. */
 typedef struct trial_count { int64_t asked, refused, compared, unbounded; } trial_count;
-static trial_count trial_counts[QUERIES];
+static trial_count trial_counts[QUERY_COUNT];
 static double trial_largest;         /* bound reported since this was set to zero */
 static double trial_shrink = 1;
 /* comparisons in which the truth's own error is above a hundredth of the bound */
