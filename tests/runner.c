@@ -158,6 +158,7 @@ static void test_tmp_remove(void) {
 #include "test_meshio.h"
 #include "../tools/shapes.h"
 #include "test_base.h"
+#include "calls.h"
 #include "test_sparse.h"
 #include "test_operators.h"
 #include "test_intrinsic.h"
