@@ -33427,7 +33427,8 @@ HEATDIFF_API hd_status hd_heat_filter_diagonals(hd_heat *heat, int32_t count, co
     if (h.e->status < 0 || hdi_times_check(&h, 1, &heat->opts.rational->t, 1) < 0 ||
         hdi_diagonal_check(&h) < 0 || !HDI_HAS_DIAGONAL)
         return hdi_heat_end(&h);
-    (void)hdi_filters_run(&h, sets, count, D, hdi_leading(&h, ldd), Z, bound);
+    ldd = hdi_leading(&h, ldd);
+    if (h.e->status >= 0) (void)hdi_filters_run(&h, sets, count, D, ldd, Z, bound);
     return hdi_heat_end(&h);
 }
 
