@@ -14,9 +14,9 @@
 /* ---- arguments ---- */
 
 typedef struct call_args {
-    hd_laplacian *lap, *pair, **out_lap;     /* pair, loop, twin: room for second objects, by x=y */
-    hd_heat *heat, *loop, **out_heat;
-    hd_ldl *ldl, *twin, **out_ldl;
+    hd_laplacian *lap, *lap2, *lap3, **out_lap;      /* 2, 3: room for further objects, by x=y */
+    hd_heat *heat, *heat2, *heat3, **out_heat;
+    hd_ldl *ldl, *ldl2, *ldl3, **out_ldl;
     hd_spectrum *spectrum, **out_spectrum;
     hd_geodesic *geodesic, **out_geodesic;
     hd_csr *out_csr;
@@ -198,7 +198,8 @@ typedef struct call_field { const char *name; size_t at; call_type type; } call_
 #define D(field) {#field, CALL_AT(field), CALL_DOUBLE}
 #define P(field) {#field, CALL_AT(field), CALL_POINTER}
 static const call_field call_fields[] = {
-    P(lap), P(pair), P(out_lap), P(heat), P(loop), P(out_heat), P(ldl), P(twin), P(out_ldl), P(spectrum), P(out_spectrum),
+    P(lap), P(lap2), P(lap3), P(out_lap), P(heat), P(heat2), P(heat3), P(out_heat), P(ldl), P(ldl2), P(ldl3), P(out_ldl),
+    P(spectrum), P(out_spectrum),
     P(geodesic), P(out_geodesic), P(out_csr), P(out_set), P(ctx),
     I(n), I(n_tri), I(n_times), I(k), I(k_from), I(n_given), I(count), I(n_freq), I(n_scale), I(n_filters), I(n_sets),
     I(n_matrices), I(n_queries), I(rows), I(cols), I(symmetric), I(source), I(degree), I(kernel), I(kind), I(poles), I(query),
@@ -212,9 +213,9 @@ static const call_field call_fields[] = {
     I(A.n_rows), I(A.n_cols), L(A.nnz), P(A.row_ptr), P(A.col), P(A.val), L(A2.nnz), P(A2.val), I(L.n_rows), I(L.n_cols),
     P(L.row_ptr), P(L.val), I(B.n_rows), I(B.n_cols), P(B.row_ptr), P(B.col), P(B.val), L(B.nnz), P(full.row_ptr), P(full.col),
     P(full.val), L(full.nnz),
-    I(mesh.begin_zero), I(mesh.end_zero), P(mesh.xyz_float), P(mesh.xyz_double), P(mesh.tri_u16), P(mesh.tri_i32), L(mesh.n),
+    P(solve_rep), P(ldl_rep), I(mesh.begin_zero), I(mesh.end_zero), P(mesh.xyz_float), P(mesh.xyz_double), P(mesh.tri_u16), P(mesh.tri_i32), L(mesh.n),
     L(mesh.n_indices), S(mesh.stride),
-    I(lo.begin_zero), I(lo.end_zero), I(lo.kind), I(lo.border), I(lo.n_held), I(lo.updatable), I(lo.neighbours), D(lo.lambda),
+    I(lo.begin_zero), I(lo.end_zero), I(lo.kind), I(lo.intrinsic_delaunay), I(lo.tufted), I(go.updatable), I(go.tufted), I(lo.border), I(lo.n_held), I(lo.updatable), I(lo.neighbours), D(lo.lambda),
     D(lo.bandwidth), D(lo.weight_cut), D(lo.mollify),
     I(ho.begin_zero), I(ho.end_zero), I(ho.method), I(ho.solver), I(ho.precond), I(ho.poles), I(ho.degree), P(ho.rational),
     D(ho.tol), I(ho.max_iterations), I(ho.ordering), P(ho.perm),

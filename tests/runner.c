@@ -171,9 +171,7 @@ static void test_tmp_remove(void) {
 #include "test_polygon.h"
 #include "test_ldl.h"
 #include "test_engines.h"
-#ifdef HEATDIFF_IMPLEMENTATION
 #include "test_threads.h"
-#endif
 #include "test_geodesic.h"
 #include "test_diagonal.h"
 #ifdef HEATDIFF_IMPLEMENTATION
@@ -213,10 +211,7 @@ static const test_group test_groups[] = {
 #ifdef HEATDIFF_IMPLEMENTATION
     {"forms", test_forms, 3},
 #endif
-    {"geodesic", test_geodesic_all, 4}, {"ldl", test_ldl, 4}, 
-#ifdef HEATDIFF_IMPLEMENTATION
-    {"threads", test_threads, 4},
-#endif
+    {"geodesic", test_geodesic_all, 4}, {"ldl", test_ldl, 4}, {"threads", test_threads, 4},
     {"bounds", test_bounds, 4},
     {"adjoints", test_adjoints, 4}, {"signatures", test_signatures, 4}, {"picture", test_picture, 4},
     {"everywhere", test_operators_all, 4}, {"sources", test_sources, 4}, {"intrinsic", test_intrinsic, 4},
