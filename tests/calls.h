@@ -30,7 +30,7 @@ typedef struct call_args {
     double h, time, time1, alpha, beta, radius, tol, lambda_max, x;
     hd_c64 theta;
 
-    const double *xyz, *moved, *lengths, *queries, *triplet_v, *f, *val, *val2;
+    const double *xyz, *moved, *lengths, *queries, *triplet_v, *f, *val, *val2, *with_nan, *with_inf;
     const double *t, *late, *endless, *fading, *low, *bad, *zero, *c, *set_t;      /* times; c: without unit; set_t: of a set */
     double set_time;
     const int32_t *tri, *nbr, *own_nbr, *perm, *ids, *other, *far_id, *low_id, *triplet_i, *triplet_j;
@@ -205,7 +205,7 @@ static const call_field call_fields[] = {
     I(n_matrices), I(n_queries), I(rows), I(cols), I(symmetric), I(source), I(degree), I(kernel), I(kind), I(poles), I(query),
     L(n_pairs), L(n_triplets), S(ldf), S(ld), D(h), D(time), D(time1), D(alpha), D(beta), D(radius), D(tol), D(lambda_max), D(x),
     D(theta.re), D(theta.im), D(set_time),
-    P(xyz), P(moved), P(lengths), P(queries), P(triplet_v), P(f), P(val), P(val2), P(t), P(late), P(endless), P(fading), P(low),
+    P(xyz), P(moved), P(lengths), P(queries), P(triplet_v), P(f), P(val), P(val2), P(with_nan), P(with_inf), P(t), P(late), P(endless), P(fading), P(low),
     P(bad), P(zero), P(c), P(set_t), P(tri), P(nbr), P(own_nbr), P(perm), P(ids), P(other), P(far_id), P(low_id), P(triplet_i),
     P(triplet_j), P(face_ptr), P(nbr_ptr), P(own_ptr), P(bent), P(sources), P(curve), P(zval), P(zb), P(set), P(filter),
     P(filter2), P(u), P(v), P(bound), P(z), P(zd), P(vertex), P(a), P(a2), P(l), P(b), P(whole), P(view), P(lap_opts), P(heat_opts),
@@ -301,6 +301,26 @@ static int call_choose(call_args *a, const char *name) {
     return found;
 }
 
+/* The next word of a script into text, NULL at its end. */
+static const char *call_next(const char *at, char text[40]) {
+    size_t n;
+    at += strspn(at, " ");
+    n = strcspn(at, " ");
+    if (!n || (n >= 40 && !CHECK_MSG(0, "a long word: %s", at))) return NULL;
+    memcpy(text, at, n);
+    text[n] = 0;
+    return at + n;
+}
+
+/* Words x=y alone. */
+static void call_assign(call_args *a, const char *words) {
+    char text[40];
+    while ((words = call_next(words, text)) != NULL) {
+        const size_t n = strcspn(text, "=");
+        call_put(a, call_field_of(text, n), text + n + 1);
+    }
+}
+
 /* ---- what calls work with: never changed by them ---- */
 
 enum { CALL_SMALL = 9, CALL_BLOCKS = 40 };      /* rows of L and B */
@@ -366,6 +386,7 @@ static void call_arrays(call_data *d) {
     float *small = CALL_NEW(d, float, 3 * n);
     int64_t *face_ptr = CALL_NEW(d, int64_t, n_tri + 1), *own_ptr = CALL_NEW(d, int64_t, n + 1);
     int32_t *nbr = CALL_NEW(d, int32_t, 12 * n), *perm = CALL_NEW(d, int32_t, n), k, j;
+    double *with_nan = CALL_NEW(d, double, d->good.n_triplets), *with_inf = CALL_NEW(d, double, d->good.n_triplets);
     hd_c64 *zb = CALL_NEW(d, hd_c64, 3 * n), *zval = CALL_NEW(d, hd_c64, 3 * d->A.nnz);
     int64_t p;
     call_args *a = &d->good;
@@ -386,6 +407,11 @@ static void call_arrays(call_data *d) {
     }
     for (k = 0; k < 6 * n; k++) f[k] = k % 7 - k % 3;
     for (p = 0; p < 3 * d->A.nnz; p++) zval[p] = test_c(d->A.val[p % d->A.nnz], 0.25 * (double)(p / d->A.nnz));
+    for (p = 0; p < d->good.n_triplets; p++) with_nan[p] = with_inf[p] = 1;
+    with_nan[2] = (double)NAN;
+    with_inf[2] = (double)INFINITY;
+    a->with_nan = with_nan;
+    a->with_inf = with_inf;
     a->lengths = lengths;
     a->moved = moved;
     a->f = f;
@@ -499,38 +525,23 @@ static void call_data_make(call_data *d, shape s) {
     a->other = other;
     a->low_id = low;
     a->far_id = d->far_id;
-    a->n_times = 1;
-    a->k = 3;
-    a->k_from = a->n_filters = a->n_freq = 2;
-    a->n_sets = a->n_given = a->symmetric = 1;
-    a->n_matrices = a->source = 3;
-    a->count = a->n_scale = 5;
-    a->n_pairs = 6;
-    a->degree = 7;
-    a->kernel = HD_KERNEL_SYMMETRIC;
-    a->poles = HD_POLES_UNIFORM;
-    a->query = HD_QUERY_COLUMNS;
-    a->h = 0.5;
-    a->alpha = 1;
-    a->beta = 2;
-    a->radius = 1.2;
-    a->tol = 1e-6;
-    a->lambda_max = 100;
-    a->x = -2;
-    a->theta = test_c(-1, 3);
     a->A = a->A2 = d->A;
     a->val = d->A.val;
     a->L = d->L;
     a->B = d->B;
     a->full = d->full;
-    a->so.count = 8;
-    a->ho.perm = a->so.perm = a->go.perm = a->fo.perm = a->perm;
-    a->fo.xyz = s.xyz;
     a->lo.held = d->held;
     a->filters[0].kind = HD_FILTER_HEAT;
     a->filters[1].kind = HD_FILTER_RESOLVENT;
     a->filters[0].a = a->filters[1].a = a->filters[0].b = 2;
-    a->filters[0].tol = a->filters[1].tol = 1e-3;   /* few poles: a fit takes long */
+    a->filters[0].tol = a->filters[1].tol = 1e-3;        /* few poles: a fit takes long */
+    a->kernel = HD_KERNEL_SYMMETRIC;
+    a->poles = HD_POLES_UNIFORM;
+    a->query = HD_QUERY_COLUMNS;
+    a->so.count = 8;
+    call_assign(a, "n_times=1 n_sets=1 n_given=1 symmetric=1 k_from=2 n_filters=2 n_freq=2 k=3 n_matrices=3 source=3 count=5 n_scale=5");
+    call_assign(a, "n_pairs=6 degree=7 h=0.5 alpha=1 beta=2 radius=1.2 tol=1e-6 lambda_max=100 x=-2 theta.re=-1 theta.im=3");
+    call_assign(a, "ho.perm=perm so.perm=perm go.perm=perm fo.perm=perm fo.xyz=xyz");
 }
 
 static void call_data_free(call_data *d) {
@@ -720,6 +731,8 @@ static const char *call_wrong(const call_world *w, const call_row *c, hd_status 
     const hd_status bad = st < 0 ? st : HD_OK;
     const int makes = strstr(c->args, "a->out_") && !CALL_TAKES(c, "out_set");
     if (a->err && (w->e.status != bad || (st < 0 && !w->e.text[0]))) return "the error says something else";
+    if (a->err && st >= 0 && strstr(c->args, "a->err") &&
+        (w->e.face != -1 || w->e.vertex != -1 || w->e.row != -1 || w->e.column != -1 || w->e.pole != -1)) return "the error names a place";
     if (w->has_report && (w->rep.status != st || (st < 0 && w->rep.error.status != st))) return "the report says something else";
     if (CALL_TAKES(c, "geodesic_rep") && a->geodesic_rep &&
         (w->geodesic_rep.status != st || (st < 0 && w->geodesic_rep.error.status != st))) return "the report says something else";
@@ -742,18 +755,18 @@ static hd_status call_one(call_world *w, const call_row *c, int keep) {
     return st;
 }
 
-/* ---- scripts ---- */
+/* ---- progress ---- */
 
-/* The next word of a script into text, NULL at its end. */
-static const char *call_next(const char *at, char text[40]) {
-    size_t n;
-    at += strspn(at, " ");
-    n = strcspn(at, " ");
-    if (!n || (n >= 40 && !CHECK_MSG(0, "a long word: %s", at))) return NULL;
-    memcpy(text, at, n);
-    text[n] = 0;
-    return at + n;
+typedef struct rob_progress { int64_t calls, stop_at, solving; hd_progress answer; } rob_progress;
+
+static hd_progress rob_on_progress(void *user, const char *stage, double done) {
+    rob_progress *p = (rob_progress *)user;
+    CHECK(stage && stage[0] && done >= 0 && done <= 1);
+    p->solving += strcmp(stage, "solve") == 0;
+    return ++p->calls == p->stop_at ? p->answer : HD_PROGRESS_CONTINUE;
 }
+
+/* ---- scripts ---- */
 
 static hd_status call_words(call_world *w, const char *words, int keep);
 

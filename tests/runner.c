@@ -167,6 +167,7 @@ static void test_tmp_remove(void) {
 #include "test_heat.h"
 #include "test_points.h"
 #include "test_assembly.h"
+#include "test_doors.h"
 #include "test_robust.h"
 #include "test_polygon.h"
 #include "test_ldl.h"
@@ -193,7 +194,6 @@ static void test_tmp_remove(void) {
 #include "test_geodesic_all.h"
 #include "test_lengths.h"
 #include "test_deep.h"
-#include "test_doors.h"
 #include "test_failures.h"
 #include "test_platform.h"
 

@@ -96,6 +96,7 @@ static void fail_clean(fail_world *f, const fail_case *c, fail_want *want) {
     want->calls = f->m.calls;
     fail_watch(f, 0);
     CHECK_MSG(call_test(&f->w, c->script) >= 0, "%s: %s", c->script, f->w.e.text);
+    CHECK_MSG(f->ctx.bytes_in_use == f->m.bytes && f->ctx.allocations == (uint64_t)f->m.calls, "%s: other books", c->script);
     want->calls = f->m.calls - want->calls;
     want->progress = f->p.calls;
     want->after = f->ctx.bytes_in_use;
@@ -204,6 +205,8 @@ static void fail_limits(fail_world *f, const fail_case *c, const fail_want *want
         else if (limit < want->peak)
             CHECK_MSG(st == HD_ERR_MEMORY_LIMIT || (c->goes_on && st >= 0), "%s: limit %llu of %llu, but %s", c->script,
                       (unsigned long long)limit, (unsigned long long)want->peak, hd_status_name(st));
+        if (st < 0) CHECK_MSG(f->w.e.value > (double)limit && strstr(f->w.e.text, "limit"), "%s: limit %llu: %s, value %g", c->script,
+                              (unsigned long long)limit, f->w.e.text, f->w.e.value);
         fail_count.limited += st < 0;
         fail_recover(f, c, want, "limit", (int64_t)limit);
     }

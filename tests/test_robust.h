@@ -190,15 +190,6 @@ static void rob_small_memory(void) {
 
 /* ---- cancelling ---- */
 
-typedef struct rob_progress { int64_t calls, stop_at, solving; hd_progress answer; } rob_progress;
-
-static hd_progress rob_on_progress(void *user, const char *stage, double done) {
-    rob_progress *p = (rob_progress *)user;
-    CHECK(stage && stage[0] && done >= 0 && done <= 1);
-    p->solving += strcmp(stage, "solve") == 0;
-    return ++p->calls == p->stop_at ? p->answer : HD_PROGRESS_CONTINUE;
-}
-
 static void rob_stop_each_progress(const rob_job *job, hd_progress answer, hd_status want) {
     test_memory m;
     hd_context ctx;
@@ -349,54 +340,38 @@ static void rob_on_trap(int sig) {
     longjmp(rob_trapped, 1);
 }
 
-static void rob_trap_laplacian(hd_laplacian *lap, hd_context *ctx, const char **at) {
-    static const hd_method methods[4] = {HD_METHOD_AUTO, HD_METHOD_ITERATIVE, HD_METHOD_DIRECT, HD_METHOD_KRYLOV};
-    const int32_t sources[3] = {0, 7, 9};
-    double *u = DENSE_NEW(double, 20 * lap->n), *f = DENSE_NEW(double, 3 * lap->n);
-    const double t = lap->h > 0 ? 20 * lap->h * lap->h : 2, times[3] = {t, 5 * t, 1e6 * t};
-    int32_t v;
-    int m, k;
-    for (v = 0; v < lap->n; v++) f[v] = v % 5 - 1;           /* the second field is zero, the third constant */
-    for (v = 0; v < lap->n; v++) f[2 * lap->n + v] = 2;
-    for (m = 0; m < 4; m++) {
-        hd_heat_opts o;
-        hd_heat *heat = NULL;
-        memset(&o, 0, sizeof o);
-        o.method = methods[m];
-        o.context = ctx;
-        if (hd_heat_create(&heat, lap, &o, NULL) < 0) continue;
-        *at = "columns";
-        (void)heat_columns(heat, t, HD_KERNEL_OPERATOR, 3, sources, u, 0, NULL);
-        (void)heat_column(heat, 0, 3, u, NULL);
-        *at = "fields";
-        (void)heat_apply(heat, t, 3, f, 0, u, 0, NULL);
-        (void)heat_apply(heat, t, 1, f + lap->n, 0, u, 0, NULL);
-        *at = "times";
-        (void)heat_times(heat, 3, times, HD_KERNEL_SYMMETRIC, 3, NULL, u, 0, NULL);
-        *at = "diagonal";
-        (void)heat_diagonal(heat, 3, times, HD_KERNEL_SYMMETRIC, u, 0, NULL);
-        *at = "distances";
-        for (k = 0; k < 4; k++) (void)heat_distance(heat, (hd_distance_kind)k, 1, &t, 2, sources, u, 0, NULL);
-        hd_heat_free(heat);
-    }
-    free(u);
+/* Everything of one mesh by one set of kernels; statuses are as they come. stage: what goes on. */
+static void rob_trap_calls(const call_data *d, hd_context *ctx, const char *volatile *stage) {
+    static const char *const laplacians[7] = {"triangles", "voronoi triangles", "cot triangles", "delaunay triangles", "tufted triangles",
+                                              "points", "tufted_points"};
+    static const char *const methods[4] = {"auto plan", "iterative plan", "direct plan", "krylov plan"};
+    static const char *const asked[8] = {"operator columns", "time=0 operator column", "apply", "n_times=3 t=late columns",
+                                         "n_times=3 t=late diagonal", "distance", "weighted distance", "commute distance"};
+    static const char *const others[3] = {"geodesic k=1 geodesic_set", "geodesic k=6 geodesic_each", "biharmonic distance"};
+    static call_world w;
+    double *f = DENSE_NEW(double, 3 * d->s.n);   /* the second field is zero, the third constant */
+    int32_t i;
+    int q, m, k;
+    for (i = 0; i < d->s.n; i++) f[i] = i % 5 - 1;
+    for (i = 0; i < d->s.n; i++) f[2 * d->s.n + i] = 2;
+    for (q = 0; q < 7; q++)
+        for (m = 0; m < 4; m++) {
+            call_open(&w, d, ctx);
+            w.what = *stage = laplacians[q];
+            w.a.f = f;
+            CHECK(call_words(&w, laplacians[q], 1) >= 0);
+            if (call_words(&w, methods[m], 1) < 0) continue;
+            for (k = 0; k < 8; k++) {
+                w.a.n_times = 1;
+                w.a.t = d->t;
+                w.what = *stage = asked[k];
+                (void)call_words(&w, asked[k], 0);
+            }
+            for (k = 0; k < 3 && q == 0; k++) (void)call_words(&w, *stage = others[k], 1);
+            call_close(&w);
+        }
     free(f);
-}
-
-static void rob_trap_geodesic(const shape *s, hd_context *ctx) {
-    const int32_t sources[9] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
-    hd_geodesic_opts o;
-    hd_geodesic *g = NULL;
-    hd_geodesic_report rep;
-    double *d = DENSE_NEW(double, 9 * s->n);
-    memset(&o, 0, sizeof o);
-    o.context = ctx;
-    if (CHECK(hd_geodesic_create(&g, s->xyz, s->n, s->tri, s->n_tri, &o, NULL) >= 0)) {
-        (void)hd_geodesic_distance(g, 1, sources + 3, d, &rep, NULL);
-        (void)hd_geodesic_distance_each(g, 9, sources, d, 0, &rep, NULL);
-    }
-    hd_geodesic_free(g);
-    free(d);
+    call_world_free(&w);
 }
 
 /* Matrices with zero pivots, of all sizes of the kernels' blocks. */
@@ -434,115 +409,45 @@ static void rob_trap_pivots(hd_context *ctx) {
     }
 }
 
-/* Bad input is told as ever: no check compares numbers that are none. */
-static void rob_trap_bad_input(const shape *s, const hd_laplacian *lap) {
-    const double bad[2] = {(double)NAN, (double)INFINITY};
-    const double keep = s->xyz[3];
-    const int32_t i[2] = {0, 1};
-    double v[2] = {1, 2};
-    hd_laplacian *none = NULL;
-    hd_geodesic *g = NULL;
-    hd_heat_opts o;
-    hd_heat *heat = NULL;
-    hd_csr a;
-    double *u = DENSE_NEW(double, s->n);
-    int q;
-    CHECK(hd_heat_create(&heat, lap, NULL, NULL) == HD_OK);
-    memset(&o, 0, sizeof o);
-    for (q = 0; q < 2; q++) {
-        s->xyz[3] = bad[q];
-        CHECK(hd_laplacian_triangles(&none, s->xyz, s->n, s->tri, s->n_tri, NULL, NULL) == HD_ERR_NOT_FINITE);
-        CHECK(hd_laplacian_points(&none, s->xyz, s->n, NULL, NULL) == HD_ERR_NOT_FINITE);
-        CHECK(hd_geodesic_create(&g, s->xyz, s->n, s->tri, s->n_tri, NULL, NULL) == HD_ERR_NOT_FINITE);
-        s->xyz[3] = keep;
-        v[1] = bad[q];
-        CHECK(hd_csr_from_triplets(&a, 2, 2, 2, i, i, v, NULL, NULL) == HD_ERR_NOT_FINITE);
-        u[2] = bad[q];
-        CHECK(heat_apply(heat, 1, 1, u, 0, u, 0, NULL) == HD_ERR_NOT_FINITE);
-        u[2] = 0;
-        CHECK(heat_column(heat, bad[q], 0, u, NULL) == HD_ERR_ARGUMENT);
-        CHECK(heat_diagonal(heat, 1, bad + q, HD_KERNEL_SYMMETRIC, u, 0, NULL) == HD_ERR_ARGUMENT);
-        CHECK(heat_times(heat, 1, bad + q, HD_KERNEL_SYMMETRIC, 0, NULL, u, 0, NULL) == HD_ERR_ARGUMENT);
-        CHECK(heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, bad + q, 1, i, u, 0, NULL) == HD_ERR_ARGUMENT);
-        o.tol = bad[q];
-        CHECK(hd_heat_create(&heat, lap, &o, NULL) == HD_ERR_ARGUMENT);
-        if (q == 0) CHECK(hd_neighbours_radius(&a, s->xyz, s->n, NULL, 0, bad[q], NULL, NULL) == HD_ERR_ARGUMENT);
-        if (q == 1 && CHECK(hd_neighbours_radius(&a, s->xyz, s->n, NULL, 0, bad[q], NULL, NULL) == HD_OK)) {
-            CHECK(a.nnz == (int64_t)s->n * s->n);
-            hd_csr_free(&a, NULL);
-        }
-    }
-    hd_heat_free(heat);
-    free(u);
-}
-
-/* Programs that stop at the first division by zero, overflow or invalid operation can use the library on ordinary input, faces without area and zero
- * pivots among it. */
+/* Programs that stop at the first division by zero, overflow or invalid operation can use the library on ordinary input, faces
+ * without area and zero pivots among it, and bad arguments are told as ever. */
 static void rob_traps(void) {
     static const hd_simd simds[3] = {HD_SIMD_AUTO, HD_SIMD_NONE, HD_SIMD_AVX2};
     const double offset[3] = {5, 0, 0};
     shape ball = shape_bumpy(2, 5), grid = shape_grid(9, 8, 0.3), s = shape_disjoint(&ball, &grid, offset);
-    hd_laplacian *lap = NULL;
-    hd_laplacian_opts lo;
+    static call_data d;
     hd_context ctx;
     const char *volatile stage = "";
-    const char *at = "";
     void (*before)(int) = signal(SIGFPE, rob_on_trap);
-    volatile int k = 0, q = 0;
+    volatile int k = 0;
     int32_t f;
     for (f = 0; f < s.n_tri; f += 23) s.tri[3 * f + 1] = s.tri[3 * f];               /* a corner twice */
-    for (f = 5; f < s.n_tri; f += 41) memcpy(s.xyz + 3 * s.tri[3 * f], s.xyz + 3 * s.tri[3 * f + 1], 3 * sizeof(double));    /* two places the same */
+    for (f = 5; f < s.n_tri; f += 41)                                                /* two places the same */
+        memcpy(s.xyz + 3 * s.tri[3 * f], s.xyz + 3 * s.tri[3 * f + 1], 3 * sizeof(double));
     memcpy(s.xyz + 3, s.xyz, 3 * sizeof(double));
+    shape_free(&ball);
+    shape_free(&grid);
+    call_data_make(&d, s);
     if (setjmp(rob_trapped)) {
         fedisableexcept(FE_ALL_EXCEPT);
-        CHECK_MSG(0, "trapped: %s, kind %d, instruction set %d, %s", stage, q, k, at);
+        CHECK_MSG(0, "trapped: %s, instruction set %d", stage, k);
         signal(SIGFPE, before);
         return;
     }
     feclearexcept(FE_ALL_EXCEPT);
     feenableexcept(FE_DIVBYZERO | FE_INVALID | FE_OVERFLOW);
     memset(&ctx, 0, sizeof ctx);
-    memset(&lo, 0, sizeof lo);
-    lo.context = &ctx;
     for (k = 0; k < 3; k++) {
         ctx.simd = simds[k];
-        for (q = 0; q < 5; q++) {
-            stage = "triangles";
-            lo.kind = op_kinds[q % 3];
-            lo.intrinsic_delaunay = q == 3;
-            lo.tufted = q == 4;
-            if (CHECK(hd_laplacian_triangles(&lap, s.xyz, s.n, s.tri, s.n_tri, &lo, NULL) >= 0)) {
-                rob_trap_laplacian(lap, &ctx, &at);
-                hd_laplacian_free(lap);
-            }
-        }
-        lo.kind = HD_LAPLACIAN_DEFAULT;
-        lo.tufted = 0;
-        stage = "points";
-        if (CHECK(hd_laplacian_points(&lap, s.xyz, s.n, &lo, NULL) >= 0)) {
-            rob_trap_laplacian(lap, &ctx, &at);
-            hd_laplacian_free(lap);
-        }
-        stage = "tufted points";
-        if (CHECK(hd_laplacian_tufted_points(&lap, s.xyz, s.n, NULL, NULL, &lo, NULL) >= 0)) {
-            rob_trap_laplacian(lap, &ctx, &at);
-            hd_laplacian_free(lap);
-        }
-        at = "";
-        stage = "geodesic";
-        rob_trap_geodesic(&s, &ctx);
+        rob_trap_calls(&d, &ctx, &stage);
         stage = "pivots";
         rob_trap_pivots(&ctx);
     }
-    stage = "bad input";
-    lap = test_laplacian(&ball, HD_LAPLACIAN_FEM);
-    rob_trap_bad_input(&ball, lap);
+    stage = "bad arguments";
+    doors_rows();
     fedisableexcept(FE_ALL_EXCEPT);
     signal(SIGFPE, before);
-    hd_laplacian_free(lap);
-    shape_free(&ball);
-    shape_free(&grid);
-    shape_free(&s);
+    call_data_free(&d);
 }
 #endif
 
