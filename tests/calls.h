@@ -170,8 +170,8 @@ typedef struct call_row { const char *name, *function, *before, *args; hd_status
 CALLS(CALL_STATUS, CALL_VOID)
 
 #define CALL_ROW(name, function, before, args) {#name, #function, before, #args, call_##name},
-static const call_row calls[] = {CALLS(CALL_ROW, CALL_ROW)};
-enum { N_CALLS = sizeof calls / sizeof *calls };
+static const call_row call_table[] = {CALLS(CALL_ROW, CALL_ROW)};
+enum { N_CALLS = sizeof call_table / sizeof *call_table };
 
 /* Does it take this argument? */
 static int call_takes(const call_row *c, const char *field, size_t length) {
@@ -199,30 +199,26 @@ typedef struct call_field { const char *name; size_t at; call_type type; } call_
 #define P(field) {#field, CALL_AT(field), CALL_POINTER}
 static const call_field call_fields[] = {
     P(lap), P(lap2), P(lap3), P(out_lap), P(heat), P(heat2), P(heat3), P(out_heat), P(ldl), P(ldl2), P(ldl3), P(out_ldl),
-    P(spectrum), P(out_spectrum),
-    P(geodesic), P(out_geodesic), P(out_csr), P(out_set), P(ctx),
-    I(n), I(n_tri), I(n_times), I(k), I(k_from), I(n_given), I(count), I(n_freq), I(n_scale), I(n_filters), I(n_sets),
-    I(n_matrices), I(n_queries), I(rows), I(cols), I(symmetric), I(source), I(degree), I(kernel), I(kind), I(poles), I(query),
-    L(n_pairs), L(n_triplets), S(ldf), S(ld), D(h), D(time), D(time1), D(alpha), D(beta), D(radius), D(tol), D(lambda_max), D(x),
-    D(theta.re), D(theta.im), D(set_time),
-    P(xyz), P(moved), P(lengths), P(queries), P(triplet_v), P(f), P(val), P(val2), P(with_nan), P(with_inf), P(t), P(late), P(endless), P(fading), P(low),
-    P(bad), P(zero), P(c), P(set_t), P(tri), P(nbr), P(own_nbr), P(perm), P(ids), P(other), P(far_id), P(low_id), P(triplet_i),
-    P(triplet_j), P(face_ptr), P(nbr_ptr), P(own_ptr), P(bent), P(sources), P(curve), P(zval), P(zb), P(set), P(filter),
-    P(filter2), P(u), P(v), P(bound), P(z), P(zd), P(vertex), P(a), P(a2), P(l), P(b), P(whole), P(view), P(lap_opts), P(heat_opts),
-    P(spectrum_opts), P(geodesic_opts), P(ldl_opts), P(solve_opts), P(estimate), P(rep), P(geodesic_rep), P(err),
-    I(A.n_rows), I(A.n_cols), L(A.nnz), P(A.row_ptr), P(A.col), P(A.val), L(A2.nnz), P(A2.val), I(L.n_rows), I(L.n_cols),
-    P(L.row_ptr), P(L.val), I(B.n_rows), I(B.n_cols), P(B.row_ptr), P(B.col), P(B.val), L(B.nnz), P(full.row_ptr), P(full.col),
-    P(full.val), L(full.nnz),
-    P(solve_rep), P(ldl_rep), I(mesh.begin_zero), I(mesh.end_zero), P(mesh.xyz_float), P(mesh.xyz_double), P(mesh.tri_u16), P(mesh.tri_i32), L(mesh.n),
-    L(mesh.n_indices), S(mesh.stride),
-    I(lo.begin_zero), I(lo.end_zero), I(lo.kind), I(lo.intrinsic_delaunay), I(lo.tufted), I(go.updatable), I(go.tufted), I(lo.border), I(lo.n_held), I(lo.updatable), I(lo.neighbours), D(lo.lambda),
-    D(lo.bandwidth), D(lo.weight_cut), D(lo.mollify),
+    P(spectrum), P(out_spectrum), P(geodesic), P(out_geodesic), P(out_csr), P(out_set), P(ctx), I(n), I(n_tri), I(n_times), I(k),
+    I(k_from), I(n_given), I(count), I(n_freq), I(n_scale), I(n_filters), I(n_sets), I(n_matrices), I(n_queries), I(rows),
+    I(cols), I(symmetric), I(source), I(degree), I(kernel), I(kind), I(poles), I(query), L(n_pairs), L(n_triplets), S(ldf), S(ld),
+    D(h), D(time), D(time1), D(alpha), D(beta), D(radius), D(tol), D(lambda_max), D(x), D(theta.re), D(theta.im), D(set_time),
+    P(xyz), P(moved), P(lengths), P(queries), P(triplet_v), P(f), P(val), P(val2), P(with_nan), P(with_inf), P(t), P(late),
+    P(endless), P(fading), P(low), P(bad), P(zero), P(c), P(set_t), P(tri), P(nbr), P(own_nbr), P(perm), P(ids), P(other),
+    P(far_id), P(low_id), P(triplet_i), P(triplet_j), P(face_ptr), P(nbr_ptr), P(own_ptr), P(bent), P(sources), P(curve), P(zval),
+    P(zb), P(set), P(filter), P(filter2), P(u), P(v), P(bound), P(z), P(zd), P(vertex), P(a), P(a2), P(l), P(b), P(whole),
+    P(view), P(lap_opts), P(heat_opts), P(spectrum_opts), P(geodesic_opts), P(ldl_opts), P(solve_opts), P(estimate), P(rep),
+    P(geodesic_rep), P(err), I(A.n_rows), I(A.n_cols), L(A.nnz), P(A.row_ptr), P(A.col), P(A.val), L(A2.nnz), P(A2.val),
+    I(L.n_rows), I(L.n_cols), P(L.row_ptr), P(L.val), I(B.n_rows), I(B.n_cols), P(B.row_ptr), P(B.col), P(B.val), L(B.nnz),
+    P(full.row_ptr), P(full.col), P(full.val), L(full.nnz), P(solve_rep), P(ldl_rep), I(mesh.begin_zero), I(mesh.end_zero),
+    P(mesh.xyz_float), P(mesh.xyz_double), P(mesh.tri_u16), P(mesh.tri_i32), L(mesh.n), L(mesh.n_indices), S(mesh.stride),
+    I(lo.begin_zero), I(lo.end_zero), I(lo.kind), I(lo.intrinsic_delaunay), I(lo.tufted), I(go.updatable), I(go.tufted),
+    I(lo.border), I(lo.n_held), I(lo.updatable), I(lo.neighbours), D(lo.lambda), D(lo.bandwidth), D(lo.weight_cut), D(lo.mollify),
     I(ho.begin_zero), I(ho.end_zero), I(ho.method), I(ho.solver), I(ho.precond), I(ho.poles), I(ho.degree), P(ho.rational),
-    D(ho.tol), I(ho.max_iterations), I(ho.ordering), P(ho.perm),
-    I(so.begin_zero), I(so.end_zero), I(so.count), D(so.below), D(so.tol), I(so.ordering), P(so.perm),
-    I(go.begin_zero), I(go.end_zero), D(go.t), D(go.t_in_h2), I(go.mass), I(go.border), I(go.ordering), P(go.perm), D(go.lambda),
-    I(go.neighbours), D(go.mollify), I(fo.begin_zero), I(fo.end_zero), I(fo.ordering), P(fo.perm), P(fo.xyz),
-    I(vo.begin_zero), I(vo.end_zero), I(vo.solver), I(vo.precond), D(vo.tol), I(vo.max_iterations),
+    D(ho.tol), I(ho.max_iterations), I(ho.ordering), P(ho.perm), I(so.begin_zero), I(so.end_zero), I(so.count), D(so.below),
+    D(so.tol), I(so.ordering), P(so.perm), I(go.begin_zero), I(go.end_zero), D(go.t), D(go.t_in_h2), I(go.mass), I(go.border),
+    I(go.ordering), P(go.perm), D(go.lambda), I(go.neighbours), D(go.mollify), I(fo.begin_zero), I(fo.end_zero), I(fo.ordering),
+    P(fo.perm), P(fo.xyz), I(vo.begin_zero), I(vo.end_zero), I(vo.solver), I(vo.precond), D(vo.tol), I(vo.max_iterations),
 };
 #undef I
 #undef L
@@ -239,21 +235,19 @@ static const struct { const char *name; size_t at; int32_t value; } call_choices
     {"mean", CALL_AT(go.border), HD_GEODESIC_BORDER_MEAN}, {"absorbing", CALL_AT(go.border), HD_GEODESIC_BORDER_DIRICHLET},
     {"updatable", CALL_AT(lo.updatable), 1}, {"updatable", CALL_AT(go.updatable), 1},
     {"delaunay", CALL_AT(lo.intrinsic_delaunay), 1}, {"delaunay", CALL_AT(go.intrinsic_delaunay), 1},
-    {"tufted", CALL_AT(lo.tufted), 1}, {"tufted", CALL_AT(go.tufted), 1},
-    {"auto", CALL_AT(ho.method), HD_METHOD_AUTO}, {"iterative", CALL_AT(ho.method), HD_METHOD_ITERATIVE},
-    {"direct", CALL_AT(ho.method), HD_METHOD_DIRECT}, {"krylov", CALL_AT(ho.method), HD_METHOD_KRYLOV},
-    {"cocg", CALL_AT(ho.solver), HD_SOLVER_COCG}, {"cocg", CALL_AT(vo.solver), HD_SOLVER_COCG},
-    {"cocr", CALL_AT(ho.solver), HD_SOLVER_COCR}, {"cocr", CALL_AT(vo.solver), HD_SOLVER_COCR},
-    {"minres", CALL_AT(ho.solver), HD_SOLVER_MINRES}, {"minres", CALL_AT(vo.solver), HD_SOLVER_MINRES},
-    {"lanczos", CALL_AT(ho.solver), HD_SOLVER_LANCZOS},
+    {"tufted", CALL_AT(lo.tufted), 1}, {"tufted", CALL_AT(go.tufted), 1}, {"auto", CALL_AT(ho.method), HD_METHOD_AUTO},
+    {"iterative", CALL_AT(ho.method), HD_METHOD_ITERATIVE}, {"direct", CALL_AT(ho.method), HD_METHOD_DIRECT},
+    {"krylov", CALL_AT(ho.method), HD_METHOD_KRYLOV}, {"cocg", CALL_AT(ho.solver), HD_SOLVER_COCG},
+    {"cocg", CALL_AT(vo.solver), HD_SOLVER_COCG}, {"cocr", CALL_AT(ho.solver), HD_SOLVER_COCR},
+    {"cocr", CALL_AT(vo.solver), HD_SOLVER_COCR}, {"minres", CALL_AT(ho.solver), HD_SOLVER_MINRES},
+    {"minres", CALL_AT(vo.solver), HD_SOLVER_MINRES}, {"lanczos", CALL_AT(ho.solver), HD_SOLVER_LANCZOS},
     {"ssor", CALL_AT(vo.precond), HD_PRECOND_SSOR}, {"ildl", CALL_AT(vo.precond), HD_PRECOND_ILDL},
     {"mildl", CALL_AT(vo.precond), HD_PRECOND_MILDL}, {"jacobi", CALL_AT(ho.precond), HD_PRECOND_JACOBI},
     {"dissection", CALL_AT(fo.ordering), HD_ORDERING_NESTED_DISSECTION}, {"own", CALL_AT(fo.ordering), HD_ORDERING_OWN},
     {"own", CALL_AT(so.ordering), HD_ORDERING_OWN}, {"own", CALL_AT(go.ordering), HD_ORDERING_OWN},
-    {"own", CALL_AT(ho.ordering), HD_ORDERING_OWN},
-    {"operator", CALL_AT(kernel), HD_KERNEL_OPERATOR}, {"weighted", CALL_AT(kind), HD_DISTANCE_WEIGHTED},
-    {"commute", CALL_AT(kind), HD_DISTANCE_COMMUTE}, {"commute", CALL_AT(n_times), 0},
-    {"biharmonic", CALL_AT(kind), HD_DISTANCE_BIHARMONIC}, {"biharmonic", CALL_AT(n_times), 0},
+    {"own", CALL_AT(ho.ordering), HD_ORDERING_OWN}, {"operator", CALL_AT(kernel), HD_KERNEL_OPERATOR},
+    {"weighted", CALL_AT(kind), HD_DISTANCE_WEIGHTED}, {"commute", CALL_AT(kind), HD_DISTANCE_COMMUTE},
+    {"commute", CALL_AT(n_times), 0}, {"biharmonic", CALL_AT(kind), HD_DISTANCE_BIHARMONIC}, {"biharmonic", CALL_AT(n_times), 0},
     {"wave", CALL_AT(filters[0].kind), HD_FILTER_WAVE},
 };
 
@@ -267,7 +261,7 @@ static const call_field *call_field_of(const char *name, size_t length) {
 
 static const call_row *call_of(const char *name) {
     int i;
-    for (i = 0; i < N_CALLS; i++) if (strcmp(calls[i].name, name) == 0) return calls + i;
+    for (i = 0; i < N_CALLS; i++) if (strcmp(call_table[i].name, name) == 0) return call_table + i;
     return NULL;
 }
 
@@ -677,7 +671,7 @@ static void call_take(call_world *w, const call_row *c, int keep) {
         (void)call_show(w, has, w->csr.val, w->csr.val ? (size_t)w->csr.nnz : 0);
         hd_csr_free(&w->csr, w->a.ctx);
     }
-    if (CALL_TAKES(c, "out_set")) (void)call_show(w, has, w->sets, sizeof w->sets / sizeof(double));
+    if (CALL_TAKES(c, "out_set")) (void)call_show(w, has, w->sets, sizeof w->sets / (sizeof *w->out));
     if (CALL_TAKES(c, "out_set") && keep) {
         memcpy(w->kept_sets, w->sets, sizeof w->sets);
         w->a.set = w->kept_sets;

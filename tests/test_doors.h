@@ -15,14 +15,14 @@ static const door_row door_rows[] = {
     {"bound=NULL", NULL, HD_OK, "", NULL}, {"zd=NULL", NULL, HD_OK, "", NULL}, {"rep=NULL", NULL, HD_OK, "", NULL},
     {"geodesic_rep=NULL", NULL, HD_OK, "", NULL}, {"solve_rep=NULL", NULL, HD_OK, "", NULL}, {"err=NULL", NULL, HD_OK, "", NULL},
     {"lap_opts=NULL", NULL, HD_OK, "", NULL}, {"heat_opts=NULL", NULL, HD_OK, "", NULL}, {"ldl_opts=NULL", NULL, HD_OK, "", NULL},
-    {"geodesic_opts=NULL", NULL, HD_OK, "", NULL}, {"solve_opts=NULL", NULL, HD_OK, "", NULL}, {"ctx=NULL", NULL, HD_OK, "", NULL},
-    {"z=NULL", "inverse_c", HD_OK, "", NULL},
+    {"geodesic_opts=NULL", NULL, HD_OK, "", NULL}, {"solve_opts=NULL", NULL, HD_OK, "", NULL},
+    {"ctx=NULL", NULL, HD_OK, "", NULL}, {"z=NULL", "inverse_c", HD_OK, "", NULL},
     {"u=NULL", "nearest inverse pairs sample sample_from", HD_OK, "", NULL}, {"v=NULL u=NULL", "inverse pairs", HD_OK, "", NULL},
     {"ids=NULL other=NULL u=NULL n_pairs=0", "inverse_at entries", HD_OK, "", NULL},
     {"ids=NULL other=NULL z=NULL n_pairs=0", "inverse_at_c", HD_OK, "", NULL},
     {"queries=xyz n_queries=0 vertex=NULL", "nearest", HD_OK, "", NULL}, {"k=0 ids=NULL u=NULL", "distance", HD_OK, "", NULL},
-    {"k=0 ids=NULL", "eigen_columns columns", HD_OK, "", NULL}, {"t=zero", "diagonal trace normalised edges distance distance_from",
-     BAD "t is not positive and finite", "column=0"},
+    {"k=0 ids=NULL", "eigen_columns columns", HD_OK, "", NULL},
+    {"t=zero", "diagonal trace normalised edges distance distance_from", BAD "t is not positive and finite", "column=0"},
     {"t=zero", "shared_poles", BAD "a time is not positive", "row=0"}, {"t=zero", NULL, HD_OK, "", NULL},
 
     /* sizes */
@@ -37,8 +37,8 @@ static const door_row door_rows[] = {
     {"count=0", NULL, BAD "more points than vertices, or none", NULL}, {"n_given=-1", NULL, BAD "or none", NULL},
     {"n_given=6", NULL, BAD "more points than vertices, or none", NULL}, {"count=22", "sample", BAD "more points", "value=22"},
     {"n_freq=0", NULL, BAD "n_freq in 1..", NULL}, {"n_freq=4", NULL, BAD "n_freq in 1..", NULL},
-    {"n_scale=2", NULL, BAD "3 or more", NULL}, {"ld=20", "eigen_columns eigen_diagonal eigen_distance eigen_columns_from "
-     "eigen_distance_from", BAD "would overlap", NULL},
+    {"n_scale=2", NULL, BAD "3 or more", NULL},
+    {"ld=20", "eigen_columns eigen_diagonal eigen_distance eigen_columns_from eigen_distance_from", BAD "would overlap", NULL},
     {"ld=20", NULL, BAD "leading dimension", NULL}, {"ldf=20", NULL, BAD "leading dimension", NULL},
     {"zb=z ldf=22 ld=23", "solve_c", BAD "same leading dimension", NULL},
     {"commute n_times=2", "distance pairs distance_from", BAD "n_times is 0 or 1", "value=2"},
@@ -54,42 +54,42 @@ static const door_row door_rows[] = {
     {"n_times=2 t=bad", "shared_poles", BAD "a time is not positive or not finite", "row=1"},
     {"n_times=2 t=low", "diagonal trace normalised edges distance distance_from", BAD "t is not positive and finite", "column=1"},
     {"n_times=2 t=bad", "diagonal trace normalised edges distance distance_from", BAD "t is not positive and finite", "column=1"},
-    {"n_times=2 t=low", "apply derivative adjoint columns columns_from pairs entries estimate", BAD "t is negative or not finite",
-     "column=1"},
-    {"n_times=2 t=bad", "apply derivative adjoint columns columns_from pairs entries estimate", BAD "t is negative or not finite",
-     "column=1"},
-    {"n_times=2 t=low", NULL, BAD "t is negative or not finite", "value=-1"},
-    {"n_times=2 t=bad", NULL, BAD "t is negative or not finite", NULL}, {"n_times=2 c=low", NULL, BAD "c is not positive", "column=1"},
-    {"n_times=2 c=bad", NULL, BAD "c is not positive", "column=1"}, {"time=-1", "shifted column", BAD "t is negative", "value=-1"},
+    {"n_times=2 t=low", "apply derivative adjoint columns columns_from pairs entries estimate",
+     BAD "t is negative or not finite", "column=1"},
+    {"n_times=2 t=bad", "apply derivative adjoint columns columns_from pairs entries estimate",
+     BAD "t is negative or not finite", "column=1"}, {"n_times=2 t=low", NULL, BAD "t is negative or not finite", "value=-1"},
+    {"n_times=2 t=bad", NULL, BAD "t is negative or not finite", NULL},
+    {"n_times=2 c=low", NULL, BAD "c is not positive", "column=1"},
+    {"n_times=2 c=bad", NULL, BAD "c is not positive", "column=1"},
+    {"time=-1", "shifted column", BAD "t is negative", "value=-1"},
     {"time=nan", "shifted column", BAD "t is negative or not finite", NULL},
-    {"time=inf", "shifted column", BAD "t is negative or not finite", NULL}, {"time=0", "sample sample_from", BAD "t is not positive", NULL},
-    {"time=-1", NULL, BAD "", "value=-1"}, {"time=nan", NULL, BAD "", NULL}, {"time=inf", NULL, BAD "", NULL},
-    {"time=0", "scale_invariant", BAD "0 < t0 < t1", NULL}, {"time1=0.1", "scale_invariant", BAD "0 < t0 < t1", NULL},
-    {"time1=inf", "scale_invariant", BAD "0 < t0 < t1", NULL}, {"tol=-1", NULL, BAD "tol is not positive", NULL},
-    {"tol=nan", NULL, BAD "tol is not positive", NULL}, {"h=-1", NULL, BAD "h is negative", NULL},
-    {"h=nan", NULL, BAD "h is negative or not finite", NULL}, {"radius=-1", NULL, BAD "radius is negative", NULL},
-    {"radius=nan", NULL, BAD "not a number", NULL}, {"lambda_max=-1", NULL, BAD "lambda_max is unknown", NULL},
-    {"lambda_max=nan", NULL, BAD "lambda_max is unknown", NULL}, {"theta.re=nan", "shifted", BAD "not finite", NULL},
-    {"theta.re=0 theta.im=0", "shifted", BAD "theta lies on", NULL},
+    {"time=inf", "shifted column", BAD "t is negative or not finite", NULL},
+    {"time=0", "sample sample_from", BAD "t is not positive", NULL}, {"time=-1", NULL, BAD "", "value=-1"},
+    {"time=nan", NULL, BAD "", NULL}, {"time=inf", NULL, BAD "", NULL}, {"time=0", "scale_invariant", BAD "0 < t0 < t1", NULL},
+    {"time1=0.1", "scale_invariant", BAD "0 < t0 < t1", NULL}, {"time1=inf", "scale_invariant", BAD "0 < t0 < t1", NULL},
+    {"tol=-1", NULL, BAD "tol is not positive", NULL}, {"tol=nan", NULL, BAD "tol is not positive", NULL},
+    {"h=-1", NULL, BAD "h is negative", NULL}, {"h=nan", NULL, BAD "h is negative or not finite", NULL},
+    {"radius=-1", NULL, BAD "radius is negative", NULL}, {"radius=nan", NULL, BAD "not a number", NULL},
+    {"lambda_max=-1", NULL, BAD "lambda_max is unknown", NULL}, {"lambda_max=nan", NULL, BAD "lambda_max is unknown", NULL},
+    {"theta.re=nan", "shifted", BAD "not finite", NULL}, {"theta.re=0 theta.im=0", "shifted", BAD "theta lies on", NULL},
 
     {"xyz=with_nan", NULL, HD_ERR_NOT_FINITE, "", NULL}, {"xyz=with_inf", NULL, HD_ERR_NOT_FINITE, "", NULL},
     {"moved=with_nan", NULL, HD_ERR_NOT_FINITE, "", "vertex=0"}, {"moved=with_inf", NULL, HD_ERR_NOT_FINITE, "", "vertex=0"},
     {"lengths=with_nan", NULL, HD_ERR_NOT_FINITE, "", "face=0"}, {"lengths=with_inf", NULL, HD_ERR_NOT_FINITE, "", "face=0"},
     {"triplet_v=with_nan", NULL, HD_ERR_NOT_FINITE, "", "row=2"}, {"triplet_v=with_inf", NULL, HD_ERR_NOT_FINITE, "", "row=2"},
     {"f=with_nan", "apply derivative adjoint", HD_ERR_NOT_FINITE, "", NULL},
-    {"f=with_inf", "apply derivative adjoint", HD_ERR_NOT_FINITE, "", NULL},
-    {"radius=inf", "radius", HD_OK, "", NULL},
+    {"f=with_inf", "apply derivative adjoint", HD_ERR_NOT_FINITE, "", NULL}, {"radius=inf", "radius", HD_OK, "", NULL},
 
     /* kinds, and objects of the wrong kind */
     {"kernel=9", "eigen_columns eigen_diagonal eigen_columns_from", BAD "unknown kernel", NULL},
     {"kernel=-1", "eigen_columns eigen_diagonal eigen_columns_from", BAD "unknown kernel", NULL},
     {"kernel=9", NULL, BAD "operator or symmetric", NULL}, {"kernel=-1", NULL, BAD "operator or symmetric", NULL},
     {"kernel=0", "edges", BAD "the kernel is the symmetric one", NULL}, {"kind=-1", NULL, BAD "unknown", NULL},
-    {"kind=99", NULL, BAD "unknown", NULL}, {"query=99", NULL, BAD "unknown query", NULL}, {"query=-1", NULL, BAD "unknown query", NULL},
-    {"poles=99", NULL, BAD "uniform, kernel or diagonal", NULL}, {"degree=99", NULL, BAD "degrees 1 to 14", "value=99"},
+    {"kind=99", NULL, BAD "unknown", NULL}, {"query=99", NULL, BAD "unknown query", NULL},
+    {"query=-1", NULL, BAD "unknown query", NULL}, {"poles=99", NULL, BAD "uniform, kernel or diagonal", NULL},
+    {"degree=99", NULL, BAD "degrees 1 to 14", "value=99"},
     {"heat=heat2", "diagonal trace normalised scale_invariant edges distance sample sample_from distance_from",
-     BAD "need the direct method", NULL},
-    {"heat=heat2 commute", "distance", BAD "need the direct method", NULL},
+     BAD "need the direct method", NULL}, {"heat=heat2 commute", "distance", BAD "need the direct method", NULL},
     {"heat=heat2", "filter_diagonals", BAD "no set of a filter", NULL},
     {"ldl=ldl2", "solve inverse inverse_at", BAD "not a real one", NULL},
     {"ldl=ldl3", "solve_c inverse_c inverse_at_c", BAD "not a complex one", NULL},
@@ -108,12 +108,15 @@ static const door_row door_rows[] = {
     {"n_triplets=2 triplet_j=far_id", "triplets", HD_ERR_INDEX, "", "row=1"}, {"perm=tri", "permute", HD_ERR_INDEX, "", NULL},
 
     /* matrices */
-    {"A.nnz=-1 a=a", NULL, HD_ERR_STRUCTURE, "negative size", NULL}, {"A.n_rows=-1 a=a", NULL, HD_ERR_STRUCTURE, "negative size", NULL},
-    {"A.n_cols=-1 a=a", NULL, HD_ERR_STRUCTURE, "negative size", NULL}, {"A2.nnz=-1 a2=a2", NULL, HD_ERR_STRUCTURE, "negative size", NULL},
-    {"A.row_ptr=NULL a=a", NULL, HD_ERR_STRUCTURE, "missing array", NULL}, {"A.col=NULL a=a", NULL, HD_ERR_STRUCTURE, "missing array", NULL},
-    {"A.n_cols=22", "product", BAD "inner sizes", "row=22"}, {"A.n_cols=22", "permute", BAD "not square", "column=22"},
-    {"A.val=NULL", "product permute transpose", HD_OK, "", NULL}, {"A2.val=NULL", "product", HD_OK, "", NULL},
-    {"L.val=NULL l=l", NULL, BAD "must not be NULL", NULL}, {"B.val=NULL b=b", NULL, BAD "must not be NULL", NULL},
+    {"A.nnz=-1 a=a", NULL, HD_ERR_STRUCTURE, "negative size", NULL},
+    {"A.n_rows=-1 a=a", NULL, HD_ERR_STRUCTURE, "negative size", NULL},
+    {"A.n_cols=-1 a=a", NULL, HD_ERR_STRUCTURE, "negative size", NULL},
+    {"A2.nnz=-1 a2=a2", NULL, HD_ERR_STRUCTURE, "negative size", NULL},
+    {"A.row_ptr=NULL a=a", NULL, HD_ERR_STRUCTURE, "missing array", NULL},
+    {"A.col=NULL a=a", NULL, HD_ERR_STRUCTURE, "missing array", NULL}, {"A.n_cols=22", "product", BAD "inner sizes", "row=22"},
+    {"A.n_cols=22", "permute", BAD "not square", "column=22"}, {"A.val=NULL", "product permute transpose", HD_OK, "", NULL},
+    {"A2.val=NULL", "product", HD_OK, "", NULL}, {"L.val=NULL l=l", NULL, BAD "must not be NULL", NULL},
+    {"B.val=NULL b=b", NULL, BAD "must not be NULL", NULL},
     {"L.row_ptr=bent l=l", NULL, HD_ERR_STRUCTURE, "does not begin with 0", NULL},
     {"B.row_ptr=bent b=b", NULL, HD_ERR_STRUCTURE, "does not begin with 0", NULL},
     {"L.n_rows=8", "update_matrices", BAD "another size", NULL}, {"B.n_rows=8", "update_matrices", BAD "another size", NULL},
@@ -122,20 +125,23 @@ static const door_row door_rows[] = {
     /* options of Laplacians */
     {"lo.kind=99", "triangles", BAD "", NULL}, {"lo.kind=8", "triangles", BAD "", NULL},
     {"lo.border=7", "triangles", BAD "border is natural", NULL}, {"lo.border=-1", "triangles", BAD "border is natural", NULL},
-    {"lo.n_held=-1", "triangles", BAD "n_held is negative", NULL}, {"updatable", "lengths", BAD "of lengths: it is not updatable", NULL},
+    {"lo.n_held=-1", "triangles", BAD "n_held is negative", NULL},
+    {"updatable", "lengths", BAD "of lengths: it is not updatable", NULL},
     {"updatable", "points tufted_points", BAD "not updatable", NULL},
     {"updatable lo.tufted=1", "triangles polygons", BAD "intrinsic triangulation is not updatable", NULL},
     {"tufted", "points", BAD "use no triangles", NULL}, {"delaunay", "points", BAD "use no triangles", NULL},
-    {"delaunay polygonal", "polygons", BAD "intrinsic triangulations are for", NULL}, {"lo.weight_cut=nan", "points", BAD "weight_cut", NULL},
-    {"lo.weight_cut=-1", "points", BAD "weight_cut", NULL}, {"lo.weight_cut=1", "points", BAD "weight_cut", NULL},
-    {"nbr_ptr=own_ptr", NULL, BAD "must not be NULL", NULL}, {"nbr=own_nbr", NULL, BAD "must not be NULL", NULL},
+    {"delaunay polygonal", "polygons", BAD "intrinsic triangulations are for", NULL},
+    {"lo.weight_cut=nan", "points", BAD "weight_cut", NULL}, {"lo.weight_cut=-1", "points", BAD "weight_cut", NULL},
+    {"lo.weight_cut=1", "points", BAD "weight_cut", NULL}, {"nbr_ptr=own_ptr", NULL, BAD "must not be NULL", NULL},
+    {"nbr=own_nbr", NULL, BAD "must not be NULL", NULL},
 
     /* views */
     {"mesh.begin_zero=1 view=view", NULL, BAD "not cleared", NULL}, {"mesh.end_zero=1 view=view", NULL, BAD "not cleared", NULL},
     {"mesh.xyz_double=xyz view=view", NULL, BAD "set one of xyz_float", NULL},
     {"mesh.xyz_float=NULL view=view", NULL, BAD "set one of xyz_float", NULL},
     {"mesh.tri_u16=tri", "view geodesic_view", BAD "set one of tri_u16", NULL},
-    {"mesh.tri_i32=NULL", "view geodesic_view", BAD "set one of tri_u16", NULL}, {"mesh.n=-1 view=view", NULL, BAD "count is negative", NULL},
+    {"mesh.tri_i32=NULL", "view geodesic_view", BAD "set one of tri_u16", NULL},
+    {"mesh.n=-1 view=view", NULL, BAD "count is negative", NULL},
     {"mesh.n_indices=-3", "view geodesic_view", BAD "count is negative", NULL},
     {"mesh.n_indices=4", "view geodesic_view", BAD "multiple of three", NULL},
     {"mesh.stride=11 view=view", NULL, BAD "stride is shorter", NULL},
@@ -145,48 +151,53 @@ static const door_row door_rows[] = {
     {"mesh.stride=-1", "view geodesic_view", HD_ERR_TOO_LARGE, "beyond the address space", NULL},
     {"mesh.stride=-4", "view geodesic_view", HD_ERR_TOO_LARGE, "beyond the address space", NULL},
     {"mesh.stride=-40", "view geodesic_view", HD_ERR_TOO_LARGE, "beyond the address space", NULL},
-    {"mesh.n_indices=0", "view geodesic_view", HD_ERR_EMPTY, "", NULL}, {"mesh.n=0", "view geodesic_view", HD_ERR_INDEX, "does not exist", NULL},
+    {"mesh.n_indices=0", "view geodesic_view", HD_ERR_EMPTY, "", NULL},
+    {"mesh.n=0", "view geodesic_view", HD_ERR_INDEX, "does not exist", NULL},
     {"mesh.n=0 mesh.n_indices=0 mesh.xyz_float=NULL mesh.tri_i32=NULL", "view geodesic_view", HD_ERR_EMPTY, "", NULL},
     {"mesh.n=1 mesh.n_indices=0 mesh.stride=-1", "view geodesic_view", HD_ERR_EMPTY, "", NULL},
     {"mesh.n=20", "update_view geodesic_update_view", BAD "another number of vertices", "value=20"},
     {"mesh.tri_i32=NULL mesh.n_indices=1", "update_view geodesic_update_view", HD_OK, "", NULL},
 
     /* options of eigenpairs, shifted systems, plans */
-    {"so.count=-1", "eigenpairs", BAD "neither a count nor a bound", NULL}, {"so.count=0", "eigenpairs", BAD "neither a count nor", NULL},
+    {"so.count=-1", "eigenpairs", BAD "neither a count nor a bound", NULL},
+    {"so.count=0", "eigenpairs", BAD "neither a count nor", NULL},
     {"so.count=22", "eigenpairs", BAD "more pairs than rows", NULL}, {"so.below=-1", "eigenpairs", BAD "below is negative", NULL},
-    {"so.below=nan", "eigenpairs", BAD "below is negative or not finite", NULL}, {"so.tol=-1", "eigenpairs", BAD "tol is not in", NULL},
-    {"so.tol=1", "eigenpairs", BAD "tol is not in", NULL}, {"so.tol=nan", "eigenpairs", BAD "tol is not in", NULL},
-    {"so.ordering=99", "eigenpairs", BAD "unknown ordering", NULL}, {"so.ordering=-1", "eigenpairs", BAD "unknown ordering", NULL},
+    {"so.below=nan", "eigenpairs", BAD "below is negative or not finite", NULL},
+    {"so.tol=-1", "eigenpairs", BAD "tol is not in", NULL}, {"so.tol=1", "eigenpairs", BAD "tol is not in", NULL},
+    {"so.tol=nan", "eigenpairs", BAD "tol is not in", NULL}, {"so.ordering=99", "eigenpairs", BAD "unknown ordering", NULL},
+    {"so.ordering=-1", "eigenpairs", BAD "unknown ordering", NULL},
     {"own so.perm=NULL", "eigenpairs", BAD "no permutation", NULL}, {"own so.perm=tri", "eigenpairs", HD_ERR_INDEX, "", NULL},
     {"vo.tol=nan", "shifted", BAD "tol is not in", NULL}, {"vo.tol=-1", "shifted", BAD "tol is not in", NULL},
     {"vo.tol=1", "shifted", BAD "tol is not in", NULL}, {"vo.solver=4", "shifted", BAD "cocg, cocr or minres", NULL},
-    {"vo.solver=-1", "shifted", BAD "cocg, cocr or minres", NULL}, {"vo.precond=99", "shifted", BAD "unknown preconditioner", NULL},
-    {"vo.precond=-1", "shifted", BAD "unknown preconditioner", NULL}, {"vo.max_iterations=-1", "shifted", BAD "max_iterations", NULL},
-    {"ho.method=-1", "plan", BAD "unknown method", NULL}, {"ho.method=9", "plan", BAD "unknown method", NULL},
-    {"ho.solver=-1", "plan", BAD "unknown solver", NULL}, {"ho.solver=9", "plan", BAD "unknown solver", NULL},
-    {"ho.precond=-1", "plan", BAD "unknown preconditioner", NULL}, {"ho.precond=9", "plan", BAD "unknown preconditioner", NULL},
-    {"ho.poles=-1", "plan", BAD "poles are uniform", NULL}, {"ho.poles=3", "plan", BAD "poles are uniform", NULL},
-    {"ho.poles=4 ho.degree=1", "plan", BAD "degrees 2 to 14", NULL}, {"ho.poles=2 ho.degree=1", "plan", BAD "", "value=1"},
-    {"ho.degree=-1", "plan", BAD "", NULL}, {"ho.degree=15", "plan", BAD "", NULL}, {"ho.tol=-1e-3", "plan", BAD "tol", NULL},
-    {"ho.tol=1", "plan", BAD "tol", NULL}, {"ho.tol=nan", "plan", BAD "tol", NULL},
-    {"ho.max_iterations=-1", "plan", BAD "max_iterations", NULL}, {"ho.ordering=-1", "plan", BAD "unknown ordering", NULL},
-    {"ho.ordering=99", "plan", BAD "unknown ordering", NULL}, {"own ho.perm=NULL", "plan", BAD "no permutation", NULL},
-    {"krylov ho.rational=set", "plan", BAD "no use for poles", NULL}, {"krylov ho.poles=1", "plan", BAD "no use for poles", NULL},
-    {"krylov ho.degree=7", "plan", BAD "no use for poles", NULL}, {"krylov cocg", "plan", BAD "belong to the iterative", NULL},
-    {"direct cocg", "plan", BAD "belong to the iterative", NULL}, {"direct jacobi", "plan", BAD "belong to the iterative", NULL},
-    {"lanczos ho.rational=set", "plan", BAD "", NULL},
+    {"vo.solver=-1", "shifted", BAD "cocg, cocr or minres", NULL},
+    {"vo.precond=99", "shifted", BAD "unknown preconditioner", NULL},
+    {"vo.precond=-1", "shifted", BAD "unknown preconditioner", NULL},
+    {"vo.max_iterations=-1", "shifted", BAD "max_iterations", NULL}, {"ho.method=-1", "plan", BAD "unknown method", NULL},
+    {"ho.method=9", "plan", BAD "unknown method", NULL}, {"ho.solver=-1", "plan", BAD "unknown solver", NULL},
+    {"ho.solver=9", "plan", BAD "unknown solver", NULL}, {"ho.precond=-1", "plan", BAD "unknown preconditioner", NULL},
+    {"ho.precond=9", "plan", BAD "unknown preconditioner", NULL}, {"ho.poles=-1", "plan", BAD "poles are uniform", NULL},
+    {"ho.poles=3", "plan", BAD "poles are uniform", NULL}, {"ho.poles=4 ho.degree=1", "plan", BAD "degrees 2 to 14", NULL},
+    {"ho.poles=2 ho.degree=1", "plan", BAD "", "value=1"}, {"ho.degree=-1", "plan", BAD "", NULL},
+    {"ho.degree=15", "plan", BAD "", NULL}, {"ho.tol=-1e-3", "plan", BAD "tol", NULL}, {"ho.tol=1", "plan", BAD "tol", NULL},
+    {"ho.tol=nan", "plan", BAD "tol", NULL}, {"ho.max_iterations=-1", "plan", BAD "max_iterations", NULL},
+    {"ho.ordering=-1", "plan", BAD "unknown ordering", NULL}, {"ho.ordering=99", "plan", BAD "unknown ordering", NULL},
+    {"own ho.perm=NULL", "plan", BAD "no permutation", NULL}, {"krylov ho.rational=set", "plan", BAD "no use for poles", NULL},
+    {"krylov ho.poles=1", "plan", BAD "no use for poles", NULL}, {"krylov ho.degree=7", "plan", BAD "no use for poles", NULL},
+    {"krylov cocg", "plan", BAD "belong to the iterative", NULL}, {"direct cocg", "plan", BAD "belong to the iterative", NULL},
+    {"direct jacobi", "plan", BAD "belong to the iterative", NULL}, {"lanczos ho.rational=set", "plan", BAD "", NULL},
 
     /* options of geodesic plans */
     {"go.t=-1", "geodesic", BAD "t is negative", NULL}, {"go.t=nan", "geodesic", BAD "t is negative or not finite", NULL},
-    {"go.t_in_h2=-1", "geodesic", BAD "t_in_h2 is negative", NULL}, {"go.t_in_h2=inf", "geodesic", BAD "t_in_h2 is negative or not", NULL},
-    {"go.mass=-1", "geodesic", BAD "unknown mass", NULL}, {"go.mass=99", "geodesic", BAD "unknown mass", NULL},
-    {"go.border=-1", "geodesic", BAD "unknown border", NULL}, {"go.border=99", "geodesic", BAD "unknown border", NULL},
-    {"go.ordering=99", "geodesic", BAD "unknown ordering", NULL}, {"own go.perm=NULL", "geodesic", BAD "no permutation", NULL},
-    {"own go.perm=tri", "geodesic", HD_ERR_INDEX, "", NULL}, {"go.lambda=-1", "geodesic", BAD "lambda is not between", NULL},
-    {"go.lambda=1e101", "geodesic", BAD "lambda is not between", NULL}, {"go.lambda=nan", "geodesic", BAD "lambda is not between", NULL},
-    {"go.neighbours=5", "geodesic", BAD "6..128", NULL}, {"go.neighbours=129", "geodesic", BAD "6..128", NULL},
-    {"go.mollify=nan", "geodesic", BAD "mollify", NULL}, {"go.mollify=2", "geodesic", BAD "mollify", NULL},
-    {"updatable", "geodesic_lengths", BAD "of lengths is not updatable", NULL},
+    {"go.t_in_h2=-1", "geodesic", BAD "t_in_h2 is negative", NULL},
+    {"go.t_in_h2=inf", "geodesic", BAD "t_in_h2 is negative or not", NULL}, {"go.mass=-1", "geodesic", BAD "unknown mass", NULL},
+    {"go.mass=99", "geodesic", BAD "unknown mass", NULL}, {"go.border=-1", "geodesic", BAD "unknown border", NULL},
+    {"go.border=99", "geodesic", BAD "unknown border", NULL}, {"go.ordering=99", "geodesic", BAD "unknown ordering", NULL},
+    {"own go.perm=NULL", "geodesic", BAD "no permutation", NULL}, {"own go.perm=tri", "geodesic", HD_ERR_INDEX, "", NULL},
+    {"go.lambda=-1", "geodesic", BAD "lambda is not between", NULL},
+    {"go.lambda=1e101", "geodesic", BAD "lambda is not between", NULL},
+    {"go.lambda=nan", "geodesic", BAD "lambda is not between", NULL}, {"go.neighbours=5", "geodesic", BAD "6..128", NULL},
+    {"go.neighbours=129", "geodesic", BAD "6..128", NULL}, {"go.mollify=nan", "geodesic", BAD "mollify", NULL},
+    {"go.mollify=2", "geodesic", BAD "mollify", NULL}, {"updatable", "geodesic_lengths", BAD "of lengths is not updatable", NULL},
     {"updatable", "geodesic_polygons", BAD "triangles in space are updatable", NULL},
     {"updatable tufted", "geodesic", BAD "triangles in space are updatable", NULL},
     {"voronoi", "geodesic_polygons", BAD "of triangles, not of polygons", NULL},
@@ -297,8 +308,8 @@ static void doors_rows(void) {
     doors_open(&d);
     for (row = 0; row < DOOR_ROWS; row++) {
         for (k = 0, tried = 0; k < N_CALLS; k++) {
-            if (!doors_applies(row, calls + k)) continue;
-            doors_try(&d, calls + k, door_rows[row].words, door_rows[row].want, door_rows[row].say, door_rows[row].place);
+            if (!doors_applies(row, call_table + k)) continue;
+            doors_try(&d, call_table + k, door_rows[row].words, door_rows[row].want, door_rows[row].say, door_rows[row].place);
             tried++;
         }
         CHECK_MSG(tried > 0, "no call for %s", door_rows[row].words);
@@ -317,11 +328,11 @@ static void doors_missing(void) {
         snprintf(words, sizeof words, "%s=NULL", name);
         for (k = 0, tried = 0; k < N_CALLS; k++) {
             int fine = 0;
-            for (row = 0; row < DOOR_ROWS; row++) fine |= strcmp(door_rows[row].words, words) == 0 && doors_applies(row, calls + k);
-            if (fine || !call_takes(calls + k, name, strlen(name)) || !strstr(calls[k].args, "a->err")) continue;
-            doors_try(&d, calls + k, words, HD_ERR_ARGUMENT, "must not be NULL", NULL);
+            for (row = 0; row < DOOR_ROWS; row++) fine |= strcmp(door_rows[row].words, words) == 0 && doors_applies(row, call_table + k);
+            if (fine || !call_takes(call_table + k, name, strlen(name)) || !strstr(call_table[k].args, "a->err")) continue;
+            doors_try(&d, call_table + k, words, HD_ERR_ARGUMENT, "must not be NULL", NULL);
             d.w.a.err = NULL;                    /* no place for the error is fine */
-            CHECK(calls[k].run(&d.w.a) == HD_ERR_ARGUMENT);
+            CHECK(call_table[k].run(&d.w.a) == HD_ERR_ARGUMENT);
             tried++;
         }
         CHECK_MSG(tried > 0, "no call for %s", words);
@@ -344,8 +355,8 @@ static void doors_not_cleared(void) {
     doors_open(&d);
     good = d.good;
     for (i = 0; i < N_CALLS; i++)
-        for (k = 0; k < 3 && strstr(calls[i].args, "_opts"); k++, tried++) {
-            const call_row *const c = calls + i;
+        for (k = 0; k < 3 && strstr(call_table[i].args, "_opts"); k++, tried++) {
+            const call_row *const c = call_table + i;
             DOORS_RUBBISH(lo, "lap_opts")
             DOORS_RUBBISH(ho, "heat_opts")
             DOORS_RUBBISH(so, "spectrum_opts")
@@ -366,13 +377,13 @@ static void doors_context(void) {
     int i;
     doors_open(&d);
     for (i = 0; i < N_CALLS; i++) {
-        if (!strstr(calls[i].args, "a->err") || strcmp(calls[i].name, "poles") == 0) continue;
+        if (!strstr(call_table[i].args, "a->err") || strcmp(call_table[i].name, "poles") == 0) continue;
         d.ctx.n_threads = -1;
-        doors_try(&d, calls + i, "", HD_ERR_ARGUMENT, "n_threads is negative", NULL);
+        doors_try(&d, call_table + i, "", HD_ERR_ARGUMENT, "n_threads is negative", NULL);
         d.ctx.n_threads = 0;
         d.ctx.allocator = test_memory_context(&m).allocator;
         d.ctx.allocator.free = NULL;
-        doors_try(&d, calls + i, "", HD_ERR_ARGUMENT, "allocator", NULL);
+        doors_try(&d, call_table + i, "", HD_ERR_ARGUMENT, "allocator", NULL);
         d.ctx.allocator.alloc = NULL;
     }
     d.ctx.n_threads = -1;                        /* tells nothing, and goes on without it */

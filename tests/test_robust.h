@@ -55,7 +55,7 @@ static call_data rob_data;
 /* A script from nothing: first of the list, then each call alone, by the direct method. */
 static const char *rob_words(int variant, char text[80]) {
     if (variant < ROB_SCRIPTS) return rob_scripts[variant].script;
-    snprintf(text, 80, "direct %s", calls[variant - ROB_SCRIPTS].name);
+    snprintf(text, 80, "direct %s", call_table[variant - ROB_SCRIPTS].name);
     return text;
 }
 
@@ -271,7 +271,7 @@ static void rob_plan_survives(void) {
             if (k) st = call_words(&w, fails[q], 0);
             m.fail_at = 0;
             CHECK(call_words(&w, "time=0.7 source=2 column", 0) >= 0);
-            if (!want) memcpy(want = DENSE_NEW(char, w.out_size), w.out, w.out_size);
+            if (!want) memcpy(want = (double *)dense_alloc((int64_t)w.out_size, 1), w.out, w.out_size);
             CHECK_MSG(memcmp(want, w.out, w.out_size) == 0, "%s, allocation %d", w.what, (int)k);
             call_close(&w);
             test_memory_done(&m, &ctx, w.what);

@@ -106,7 +106,7 @@ static void thr_calls(void) {
     memset(&w, 0, sizeof w);
     call_data_make(&d, shape_bumpy(3, 5));
     for (k = 0; k < N_CALLS + 8; k++) {
-        snprintf(text, sizeof text, "%s%s", k < N_CALLS ? "direct " : "", k < N_CALLS ? calls[k].name : more[k - N_CALLS]);
+        snprintf(text, sizeof text, "%s%s", k < N_CALLS ? "direct " : "", k < N_CALLS ? call_table[k].name : more[k - N_CALLS]);
         shared += thr_same(&w, &d, text, 0) > 0;
     }
     CHECK_MSG(shared > N_CALLS / 3, "only %d calls had loops to share", shared);
