@@ -5,7 +5,8 @@
 #define TEST_DOORS_H
 
 /* What calls say of bad arguments: a list of words, one after the other. which: the calls, NULL for all that take the last
- * argument of the words, but for those that other rows name with the same words. place: a field of hd_error and its value, or NULL. */
+ * argument of the words, but for those that other rows name with the same words. place: a field of hd_error and its value,
+ * or NULL. */
 typedef struct door_row { const char *which; hd_status want; const char *say, *place, *words; } door_row;
 
 #define BAD HD_ERR_ARGUMENT,
@@ -183,7 +184,8 @@ enum { DOOR_ROWS = sizeof door_rows / sizeof *door_rows };
 /* Arguments that must not be NULL. */
 static const char *const door_pointers =
     "lap heat spectrum geodesic ldl out_lap out_heat out_spectrum out_geodesic out_ldl out_csr out_set xyz moved lengths tri "
-    "face_ptr view triplet_i triplet_j a a2 l b perm val zval f zb t c ids other sources set filter u z vertex estimate spectrum_opts";
+    "face_ptr view triplet_i triplet_j a a2 l b perm val zval f zb t c ids other sources set filter u z vertex estimate "
+    "spectrum_opts";
 
 typedef struct doors {
     call_data data;
@@ -264,13 +266,15 @@ static int doors_listed(const char *list, const char *item, char mark) {
 /* Does the row speak of these words and this call? */
 static int doors_applies(int row, const char *words, const call_row *c) {
     const char *last = strrchr(words, ' '), *field = last ? last + 1 : words;
+    char name[48];
     int k;
     if (!strstr(c->args, "a->err") || !doors_listed(door_rows[row].words, words, ';')) return 0;
     if (door_rows[row].which) return doors_listed(door_rows[row].which, c->name, ' ');
     for (k = 0; k < DOOR_ROWS; k++)
         if (door_rows[k].which && doors_listed(door_rows[k].words, words, ';') && doors_listed(door_rows[k].which, c->name, ' '))
             return 0;
-    return call_takes(c, field, strcspn(field, "="));
+    snprintf(name, sizeof name, "a->%.*s", (int)strcspn(field, "="), field);
+    return call_takes(c, name, strlen(name));
 }
 
 static void doors_row(doors *d, int row) {
@@ -303,16 +307,17 @@ static void doors_rows(void) {
 static void doors_missing(void) {
     static doors d;
     const char *at = door_pointers;
-    char name[40], words[48];
+    char name[40], field[48], words[48];
     int row, k, tried;
     doors_open(&d);
     while ((at = call_next(at, name)) != NULL) {
         snprintf(words, sizeof words, "%s=NULL", name);
+        snprintf(field, sizeof field, "a->%s", name);
         for (k = 0, tried = 0; k < N_CALLS; k++) {
             const call_row *const c = call_table + k;
             int fine = !strstr(c->args, "a->err");
             for (row = 0; row < DOOR_ROWS; row++) fine |= doors_applies(row, words, c);
-            if (fine || !call_takes(c, name, strlen(name))) continue;
+            if (fine || !call_takes(c, field, strlen(field))) continue;
             doors_try(&d, c, words, HD_ERR_ARGUMENT, "must not be NULL", NULL);
             d.w.a.err = NULL;
             CHECK(c->run(&d.w.a) == HD_ERR_ARGUMENT);

@@ -95,7 +95,8 @@ static void rob_fail_each_allocation(const rob_job *job) {
             return;
         }
         if (st >= 0) break;
-        if (!CHECK_MSG(st == HD_ERR_MEMORY, "%s: allocation %lld failed, but %s", job->what, (long long)k, hd_status_name(st))) return;
+        CHECK_MSG(st == HD_ERR_MEMORY, "%s: allocation %lld failed, but %s", job->what, (long long)k, hd_status_name(st));
+        if (st != HD_ERR_MEMORY) return;
     }
     CHECK_MSG(k < ROB_MOST && m.calls < k && (k > 1 || rob_is(job, ROB_QUIET)), "%s: stopped at %lld", job->what, (long long)k);
 }
@@ -184,8 +185,8 @@ static void rob_small_memory(void) {
     }
     /* with less memory preconditioners are made in turns, and are the same */
     peak = rob_small_peak(HD_LAPLACIAN_FEM, HD_METHOD_ITERATIVE, 128 << 10, v);
-    CHECK_MSG(peak <= 126000 && memcmp(u, v, sizeof u) == 0, "162 vertices in 128 KiB: %llu bytes, off by %g", (unsigned long long)peak,
-              fabs(u[0] - v[0]));
+    CHECK_MSG(peak <= 126000 && memcmp(u, v, sizeof u) == 0, "162 vertices in 128 KiB: %llu bytes, off by %g",
+              (unsigned long long)peak, fabs(u[0] - v[0]));
 }
 
 /* ---- cancelling ---- */
@@ -285,7 +286,8 @@ static void rob_plan_survives(void) {
 
 /* Patterns without entries, over no arrays at all: nothing is read from them, nor copied (which a sanitizer sees). */
 static void rob_nothing(void) {
-    static const hd_ordering orderings[4] = {HD_ORDERING_AUTO, HD_ORDERING_MINIMUM_DEGREE, HD_ORDERING_NESTED_DISSECTION, HD_ORDERING_OWN};
+    static const hd_ordering orderings[4] = {HD_ORDERING_AUTO, HD_ORDERING_MINIMUM_DEGREE, HD_ORDERING_NESTED_DISSECTION,
+                                             HD_ORDERING_OWN};
     const int32_t perm[2] = {1, 0};
     const double xyz[6] = {0, 0, 0, 1, 0, 0};
     int64_t ptr[3] = {0, 0, 0};
@@ -325,7 +327,8 @@ static void rob_nothing(void) {
 
 /* ---- with floating-point traps on ---- */
 
-#if defined(__GLIBC__) && (defined(__x86_64__) || defined(__i386__)) && !defined(__clang__)   /* clang divides first and chooses then */
+/* Not with clang, which divides first and chooses then. */
+#if defined(__GLIBC__) && (defined(__x86_64__) || defined(__i386__)) && !defined(__clang__)
 #define ROB_TRAPS 1
 #include <fenv.h>
 #include <setjmp.h>
@@ -342,8 +345,8 @@ static void rob_on_trap(int sig) {
 
 /* Everything of one mesh by one set of kernels; statuses are as they come. stage: what goes on. */
 static void rob_trap_calls(const call_data *d, hd_context *ctx, const char *volatile *stage) {
-    static const char *const laplacians[7] = {"triangles", "voronoi triangles", "cot triangles", "delaunay triangles", "tufted triangles",
-                                              "points", "tufted_points"};
+    static const char *const laplacians[7] = {"triangles", "voronoi triangles", "cot triangles", "delaunay triangles",
+                                              "tufted triangles", "points", "tufted_points"};
     static const char *const methods[4] = {"auto plan", "iterative plan", "direct plan", "krylov plan"};
     static const char *const asked[8] = {"operator columns", "time=0 operator column", "apply", "n_times=3 t=late columns",
                                          "n_times=3 t=late diagonal", "distance", "weighted distance", "commute distance"};
@@ -459,8 +462,8 @@ static void rob_calls(void) {
     for (job.variant = 0; job.variant < ROB_SCRIPTS + N_CALLS; job.variant++) {
         job.what = rob_words(job.variant, text);
         rob_fail_each_allocation(&job);
-        rob_stop_each_progress(&job, HD_PROGRESS_CANCEL, HD_ERR_CANCELLED);
         if (job.variant >= ROB_SCRIPTS) continue;
+        rob_stop_each_progress(&job, HD_PROGRESS_CANCEL, HD_ERR_CANCELLED);
         rob_byte_limits(&job);
         rob_stop_each_progress(&job, (hd_progress)1, HD_ERR_ARGUMENT);
         rob_stop_each_progress(&job, (hd_progress)0, HD_ERR_ARGUMENT);

@@ -82,7 +82,8 @@ static int thr_same(call_world *w, const call_data *d, const char *script, int64
         loops = 0;
         ctx.regions = 0;
         st = call_test(w, script);
-        CHECK_MSG(stop && p.calls >= stop ? st == HD_ERR_CANCELLED && p.calls == stop : st >= 0, "%s, way %d: %s", script, q, hd_status_name(st));
+        CHECK_MSG(stop && p.calls >= stop ? st == HD_ERR_CANCELLED && p.calls == stop : st >= 0, "%s, way %d: %s", script, q,
+                  hd_status_name(st));
         if (!first) memcpy(first = (double *)dense_alloc((int64_t)w->out_size, 1), w->out, w->out_size);
         if (!stop) CHECK_MSG(memcmp(first, w->out, w->out_size) == 0, "%s, way %d: other bits", script, q);
         shared += loops > 0 || ctx.regions > 0;
@@ -97,8 +98,9 @@ static int thr_same(call_world *w, const call_data *d, const char *script, int64
 
 /* Every call, and solvers that a plan would not choose. */
 static void thr_calls(void) {
-    static const char *const more[8] = {"iterative cocg columns", "iterative cocr k=1 apply", "iterative minres columns", "krylov columns",
-                                        "iterative lanczos columns", "voronoi delaunay triangles", "weighted distance", "held border pairs"};
+    static const char *const more[8] = {"iterative cocg columns", "iterative cocr k=1 apply", "iterative minres columns",
+                                        "krylov columns", "iterative lanczos columns", "voronoi delaunay triangles",
+                                        "weighted distance", "held border pairs"};
     call_data d;
     call_world w;
     char text[80];
@@ -325,67 +327,57 @@ static void thr_nested(const shape *s, const double *want) {
 }
 #endif
 
-/* k columns; returns the ordering that the report names. */
-static hd_ordering thr_columns(hd_heat *heat, const hd_laplacian *lap, int32_t k, double *U) {
-    const int32_t sources[4] = {7, 11000, 23000, 40000};
-    const double t = 100 * lap->h * lap->h;
-    hd_report rep;
-    hd_error e;
-    CHECK(hd_heat_columns(heat, HD_KERNEL_OPERATOR, 1, &t, k, sources, U, 0, &rep, &e) >= 0 && rep.method == HD_METHOD_KRYLOV);
-    return rep.ordering;
+/* So many columns by one real factor, and in what elimination order. */
+static void thr_light_ask(call_world *w, int32_t k, hd_ordering ordering, double *kept, const char *what) {
+    const size_t bytes = (size_t)k * (size_t)w->data->s.n * sizeof *kept;
+    w->what = what;
+    w->a.k = k;
+    CHECK(call_words(w, "columns", 0) >= 0 && w->rep.method == HD_METHOD_KRYLOV && w->rep.ordering == ordering);
+    if (kept[0] == 0) memcpy(kept, w->out, bytes);
+    CHECK_MSG(memcmp(kept, w->out, bytes) == 0, "%s: %d columns differ", what, (int)k);
 }
 
 /* Few columns of a large mesh have an elimination order of their own. No answer depends on what a plan was asked
  * before, nor on the number of threads, nor on an update between; another order gives the same column. */
 static void thr_light(void) {
-    shape s = shape_bumpy(6, 4);
-    const size_t bytes = (size_t)s.n * sizeof(double);
-    double *kept = DENSE_NEW(double, s.n), *one = DENSE_NEW(double, s.n), *four = DENSE_NEW(double, 4 * s.n), *u = DENSE_NEW(double, 4 * s.n);
-    double *xyz = DENSE_NEW(double, 3 * s.n);
-    hd_context ctx[2];
-    int q, i;
-    for (i = 0; i < 3 * s.n; i++) xyz[i] = s.xyz[i] * (i % 3 ? 1 : 1.25);
+    static const int32_t ids[4] = {7, 11000, 23000, 40000};
+    const hd_ordering light = HD_ORDERING_MINIMUM_DEGREE, full = HD_ORDERING_NESTED_DISSECTION;
+    call_data d;
+    call_world w;
+    double *one, *four, t;
+    int q, frame;
+    memset(&w, 0, sizeof w);
+    call_data_make(&d, shape_bumpy(6, 4));
+    t = 100 * d.h * d.h;
+    one = DENSE_NEW(double, 2 * d.s.n);          /* of each frame */
+    four = DENSE_NEW(double, 8 * d.s.n);
     for (q = 0; q < 2; q++) {
-        hd_laplacian *lap;
-        hd_heat_opts opts;
-        hd_heat *heat = NULL;
-        hd_error e;
-        memset(ctx + q, 0, sizeof *ctx);
-        memset(&opts, 0, sizeof opts);
-        ctx[q].n_threads = q ? 3 : 1;
-        opts.method = HD_METHOD_KRYLOV;
-        lap = test_laplacian_at(&s, s.xyz, HD_LAPLACIAN_VORONOI_COT, 1, ctx + q);
-        CHECK(hd_heat_create(&heat, lap, &opts, &e) == HD_OK);
-        if (q == 0) CHECK(thr_columns(heat, lap, 1, kept) == HD_ORDERING_MINIMUM_DEGREE);
-        CHECK(thr_columns(heat, lap, 4, u) == HD_ORDERING_NESTED_DISSECTION);
-        if (q == 0) memcpy(four, u, 4 * bytes);
-        CHECK_MSG(memcmp(four, u, 4 * bytes) == 0, "way %d: four columns differ", q);
-        CHECK_MSG(dense_max_diff(kept, u, s.n) <= 1e-9 * dense_max_abs(kept, s.n), "other orders differ by %g",
-                  dense_max_diff(kept, u, s.n));
-        CHECK(thr_columns(heat, lap, 1, u) == HD_ORDERING_MINIMUM_DEGREE);
-        CHECK_MSG(memcmp(kept, u, bytes) == 0, "way %d: one column differs", q);
-        if (q == 0) {                            /* both copies of the pair follow an update */
-            CHECK(hd_laplacian_update(lap, xyz, &e) == HD_OK);
-            CHECK(thr_columns(heat, lap, 1, one) == HD_ORDERING_MINIMUM_DEGREE);
-            CHECK(thr_columns(heat, lap, 4, u) == HD_ORDERING_NESTED_DISSECTION);
-            CHECK_MSG(dense_max_diff(one, u, s.n) <= 1e-9 * dense_max_abs(one, s.n), "updated, other orders differ by %g",
-                      dense_max_diff(one, u, s.n));
-            hd_heat_free(heat);
-            opts.method = HD_METHOD_AUTO;
-            CHECK(hd_heat_create(&heat, lap, &opts, &e) == HD_OK);
-            CHECK(thr_columns(heat, lap, 1, u) == HD_ORDERING_MINIMUM_DEGREE);
-            CHECK_MSG(memcmp(one, u, bytes) == 0, "updated: a new plan's column differs");
+        hd_context ctx;
+        memset(&ctx, 0, sizeof ctx);
+        ctx.n_threads = q ? 3 : 1;
+        call_open(&w, &d, &ctx);
+        w.a.ids = ids;
+        w.a.t = &t;
+        w.what = "light";
+        CHECK(call_words(&w, "voronoi updatable triangles krylov operator plan", 1) == HD_OK);
+        for (frame = 0; frame < 2 - q; frame++) {
+            double *u = one + frame * d.s.n, *v = four + 4 * frame * d.s.n;
+            if (frame) CHECK(call_words(&w, "update", 0) == HD_OK);
+            if (q == 0) thr_light_ask(&w, 1, light, u, "first");
+            thr_light_ask(&w, 4, full, v, q ? "threads" : "after one");
+            CHECK_MSG(dense_max_diff(u, v, d.s.n) <= 1e-9 * dense_max_abs(u, d.s.n), "frame %d, other orders differ by %g", frame,
+                      dense_max_diff(u, v, d.s.n));
+            thr_light_ask(&w, 1, light, u, q ? "threads" : "after four");
         }
-        hd_heat_free(heat);
-        hd_laplacian_free(lap);
-        CHECK(ctx[q].bytes_in_use == 0);
+        if (q == 0) CHECK(call_words(&w, "auto plan", 1) == HD_OK);
+        if (q == 0) thr_light_ask(&w, 1, light, one + d.s.n, "a new plan");
+        call_close(&w);
+        CHECK(ctx.bytes_in_use == 0);
     }
-    free(kept);
     free(one);
     free(four);
-    free(u);
-    free(xyz);
-    shape_free(&s);
+    call_world_free(&w);
+    call_data_free(&d);
 }
 
 static void thr_lives(void) {
