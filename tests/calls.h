@@ -32,13 +32,13 @@ typedef struct call_args {
 
     const double *xyz, *moved, *lengths, *queries, *triplet_v, *f, *val, *val2, *with_nan, *with_inf;
     const double *t, *late, *endless, *fading, *low, *bad, *zero, *c, *set_t;      /* times; c: without unit; set_t: of a set */
-    double set_time;
+    double set_time, set2_time;
     const int32_t *tri, *nbr, *own_nbr, *perm, *ids, *other, *far_id, *low_id, *triplet_i, *triplet_j;
     const int64_t *face_ptr, *nbr_ptr, *own_ptr;
     int64_t *bent;
     const hd_source *sources, *curve;
     const hd_c64 *zval, *zb;
-    const hd_rational *set;
+    const hd_rational *set, *set2;           /* of filters */
     const hd_filter *filter, *filter2;
     double *u, *v, *bound;                   /* answers */
     hd_c64 *z, *zd;
@@ -106,7 +106,7 @@ typedef struct call_args {
     X(inverse_at, hd_ldl_inverse_entries, "factor", (a->ldl, a->n_pairs, a->ids, a->other, a->u, a->err))                      \
     X(inverse_at_c, hd_ldl_inverse_entries_complex, "factor_c", (a->ldl, a->n_pairs, a->ids, a->other, a->z, a->err))          \
     X(plan, hd_heat_create, "", (a->out_heat, a->lap, a->heat_opts, a->err))                                                   \
-    X(set_rational, hd_heat_set_rational, "lambda_max fit", (a->heat, a->set, a->err))                                         \
+    X(set_rational, hd_heat_set_rational, "", (a->heat, a->set, a->err))                                         \
     X(apply, hd_heat_apply, "", (a->heat, a->n_times, a->t, a->k, a->f, a->ldf, a->u, a->ld, a->rep, a->err))                  \
     X(derivative, hd_heat_derivative, "", (a->heat, a->n_times, a->t, a->k, a->f, a->ldf, a->u, a->ld, a->rep, a->err))        \
     X(adjoint, hd_heat_adjoint, "", (a->heat, a->n_times, a->t, a->k, a->f, a->ldf, a->u, a->ld, a->rep, a->err))              \
@@ -118,7 +118,7 @@ typedef struct call_args {
     X(diagonal, hd_heat_diagonal, "", (a->heat, (hd_kernel)a->kernel, a->n_times, a->t, a->u, a->ld, a->rep, a->err))          \
     X(trace, hd_heat_trace, "", (a->heat, a->n_times, a->t, a->u, a->v, a->rep, a->err))                                       \
     X(normalised, hd_heat_normalised, "", (a->heat, a->n_times, a->t, a->u, a->ld, a->rep, a->err))                            \
-    X(filter_diagonals, hd_heat_filter_diagonals, "lambda_max fit set_rational",                                               \
+    X(filter_diagonals, hd_heat_filter_diagonals, "set_rational",                                               \
       (a->heat, a->n_sets, a->set, a->u, a->ld, a->v, a->bound, a->rep, a->err))                                               \
     X(scale_invariant, hd_heat_scale_invariant, "",                                                                            \
       (a->heat, a->time, a->time1, a->n_scale, a->n_freq, a->u, a->ld, a->rep, a->err))                                        \
@@ -202,11 +202,11 @@ static const call_field call_fields[] = {
     P(spectrum), P(out_spectrum), P(geodesic), P(out_geodesic), P(out_csr), P(out_set), P(ctx), I(n), I(n_tri), I(n_times), I(k),
     I(k_from), I(n_given), I(count), I(n_freq), I(n_scale), I(n_filters), I(n_sets), I(n_matrices), I(n_queries), I(rows),
     I(cols), I(symmetric), I(source), I(degree), I(kernel), I(kind), I(poles), I(query), L(n_pairs), L(n_triplets), S(ldf), S(ld),
-    D(h), D(time), D(time1), D(alpha), D(beta), D(radius), D(tol), D(lambda_max), D(x), D(theta.re), D(theta.im), D(set_time),
+    D(h), D(time), D(time1), D(alpha), D(beta), D(radius), D(tol), D(lambda_max), D(x), D(theta.re), D(theta.im), D(set_time), D(set2_time),
     P(xyz), P(moved), P(lengths), P(queries), P(triplet_v), P(f), P(val), P(val2), P(with_nan), P(with_inf), P(t), P(late),
     P(endless), P(fading), P(low), P(bad), P(zero), P(c), P(set_t), P(tri), P(nbr), P(own_nbr), P(perm), P(ids), P(other),
     P(far_id), P(low_id), P(triplet_i), P(triplet_j), P(face_ptr), P(nbr_ptr), P(own_ptr), P(bent), P(sources), P(curve), P(zval),
-    P(zb), P(set), P(filter), P(filter2), P(u), P(v), P(bound), P(z), P(zd), P(vertex), P(a), P(a2), P(l), P(b), P(whole),
+    P(zb), P(set), P(set2), P(filter), P(filter2), P(u), P(v), P(bound), P(z), P(zd), P(vertex), P(a), P(a2), P(l), P(b), P(whole),
     P(view), P(lap_opts), P(heat_opts), P(spectrum_opts), P(geodesic_opts), P(ldl_opts), P(solve_opts), P(estimate), P(rep),
     P(geodesic_rep), P(err), I(A.n_rows), I(A.n_cols), L(A.nnz), P(A.row_ptr), P(A.col), P(A.val), L(A2.nnz), P(A2.val),
     I(L.n_rows), I(L.n_cols), P(L.row_ptr), P(L.val), I(B.n_rows), I(B.n_cols), P(B.row_ptr), P(B.col), P(B.val), L(B.nnz),
@@ -328,6 +328,7 @@ typedef struct call_data {
     double t[3], late[3], endless[3], fading[3], bad[2], minus[2];
     int32_t held[2], far_id[2], point[6], curve[6];
     hd_source sources[2];
+    hd_rational sets[2];
     void *block[CALL_BLOCKS];
     int n_blocks;
 } call_data;
@@ -498,6 +499,7 @@ static void call_small_matrices(call_data *d) {
 static void call_data_make(call_data *d, shape s) {
     static const int32_t ids[6] = {0, 5, 13, 14, 2, 20}, other[6] = {3, 5, 1, 17, 20, 20}, low[2] = {0, -1};
     call_args *const a = &d->good;
+    int k;
     memset(d, 0, sizeof *d);
     d->s = s;
     call_make_triplets(d);
@@ -533,6 +535,11 @@ static void call_data_make(call_data *d, shape s) {
     a->poles = HD_POLES_UNIFORM;
     a->query = HD_QUERY_COLUMNS;
     a->so.count = 8;
+    for (k = 0; k < 2; k++) CHECK(hd_rational_fit(d->sets + k, a->filters + k, 1000 / (d->h * d->h), NULL, NULL) == HD_OK);
+    a->set = d->sets;
+    a->set2 = d->sets + 1;
+    a->set_time = d->sets[0].t;
+    a->set2_time = d->sets[1].t;
     call_assign(a, "n_times=1 n_sets=1 n_given=1 symmetric=1 k_from=2 n_filters=2 n_freq=2 k=3 n_matrices=3 source=3 count=5");
     call_assign(a, "n_scale=5 n_pairs=6 degree=7 h=0.5 alpha=1 beta=2 radius=1.2 tol=1e-6 lambda_max=100 x=-2");
     call_assign(a, "theta.re=-1 theta.im=3");

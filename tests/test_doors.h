@@ -202,7 +202,7 @@ static void doors_open(doors *d) {
     d->w.what = "doors";
     CHECK(call_words(&d->w, "updatable matrices lap2=lap triangles lap3=lap geodesic", 1) == HD_OK);
     CHECK(call_words(&d->w, "lo.updatable=0 go.updatable=0 triangles iterative plan heat2=heat auto", 1) == HD_OK);
-    CHECK(call_words(&d->w, "plan lambda_max fit set_rational heat3=heat plan eigenpairs", 1) == HD_OK);
+    CHECK(call_words(&d->w, "plan set_rational heat3=heat plan eigenpairs", 1) == HD_OK);
     CHECK(call_words(&d->w, "analyse factor_c ldl2=ldl analyse factor ldl3=ldl", 1) == HD_OK);
     d->good = d->w.a;
 }
@@ -452,7 +452,7 @@ static void doors_filter_sets(doors *d) {
     hd_rational sets[2];
     int k;
     for (k = 0; k < 5; k++) {
-        sets[0] = sets[1] = d->w.kept_sets[0];
+        sets[0] = sets[1] = d->data.sets[0];
         if (k == 1) sets[1].t *= 2;
         if (k == 2) sets[1].lambda_max *= 2;
         if (k == 3) sets[1].theta[0].re += 1;
@@ -462,7 +462,7 @@ static void doors_filter_sets(doors *d) {
                   k == 0 ? "" : k < 4 ? "differs from the plan" : "theta needs", "column=1");
         if (k == 0) CHECK(d->w.out[0] > 0 && memcmp(d->w.out, d->w.out + 21, bytes) == 0);
     }
-    d->good.set = d->w.kept_sets;
+    d->good.set = d->data.sets;
     d->w.a = d->good;
     CHECK(call_words(&d->w, "iterative lanczos plan heat3=heat", 1) == HD_OK);
     d->good.heat3 = d->w.a.heat3;
