@@ -42,7 +42,7 @@ static const struct { const char *script; int flags; } rob_scripts[] = {
     {"minres voronoi k=6 apply", ROB_MUST | ROB_SOLVES}, {"lanczos voronoi k=6 apply", ROB_SOLVES},
     {"cocg operator entries", ROB_MUST | ROB_SOLVES}, {"lanczos voronoi operator entries", ROB_SOLVES},
     {"cocg time=0.5 shifted", ROB_SOLVES}, {"cocr time=0.5 shifted", ROB_SOLVES}, {"minres time=0.5 shifted", ROB_SOLVES},
-    {"exp points", 0}, {"queries=moved n_queries=7 nearest", 0}, {"queries=moved n_queries=7 radius", 0},
+    {"points", 0}, {"exp points", 0}, {"queries=moved n_queries=7 nearest", 0}, {"queries=moved n_queries=7 radius", 0},
     {"tufted_points", 0}, {"delaunay triangles", 0}, {"dissection solve", 0}, {"own solve_c", 0},
     {"factor_c solve_c factor | solve", 0}, {"mean geodesic | geodesic_each", 0}, {"tufted geodesic | geodesic_each", 0},
     {"geodesic_points | geodesic_each", 0}, {"geodesic_polygons | geodesic_set", 0},
