@@ -33434,7 +33434,8 @@ HEATDIFF_API hd_status hd_heat_filter_diagonals(hd_heat *heat, int32_t count, co
     if (h.e->status < 0 || hdi_times_check(&h, 1, &heat->opts.rational->t, 1) < 0 ||
         hdi_diagonal_check(&h) < 0 || !HDI_HAS_DIAGONAL)
         return hdi_heat_end(&h);
-    (void)hdi_filters_run(&h, sets, count, D, hdi_leading(&h, ldd), Z, bound);
+    ldd = hdi_leading(&h, ldd);
+    if (h.e->status >= 0) (void)hdi_filters_run(&h, sets, count, D, ldd, Z, bound);
     return hdi_heat_end(&h);
 }
 
@@ -33462,8 +33463,9 @@ HEATDIFF_API hd_status hd_heat_scale_invariant(hd_heat *heat, double t0, double 
     double *t;
     int32_t q;
     if (hdi_kernel_begin(&h, heat, HD_KERNEL_SYMMETRIC, report, err) < 0) return hdi_heat_end(&h);
-    if (!(t0 > 0) || !(t1 > t0) || !hdi_finite(t1))
-        hdi_fail_row(h.e, HD_ERR_ARGUMENT, "signature: times need 0 < t0 < t1", -1, -1, t0 > 0 ? t1 : t0);
+    if (!hdi_finite(t0) || !hdi_finite(t1) || !(t0 > 0) || !(t1 > t0))
+        hdi_fail_row(h.e, HD_ERR_ARGUMENT, "signature: times need 0 < t0 < t1", -1, -1,
+                     hdi_finite(t0) && t0 > 0 ? t1 : t0);
     else if (n_times < 3 || n_freq < 1 || n_freq > (n_times + 1) / 2)
         hdi_fail(h.e, HD_ERR_ARGUMENT, "signature: n_times is 3 or more, n_freq in 1..(n_times + 1)/2");
     t = h.e->status >= 0 ? HDI_TAKE(&h.s, double, n_times) : NULL;

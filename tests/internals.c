@@ -14,6 +14,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "guard.h"
 #include "traps.h"
@@ -1893,7 +1894,101 @@ static void int_polygon(void) {
     CHECK(g.n == 2 * HDI_MOST_NEIGHBOURS && g.n <= HDI_POLYGON_MOST);
 }
 
+/* ---- [04] context: tasks of threads ---- */
+
+/* Tasks of a loop that release others: each is done once, after what it waits for, by any number of threads. A
+ * binary tree, from the leaves up. */
+typedef struct int_tree { hd_context *ctx; int32_t *order, *pending; int64_t *sum; int32_t leaves; int64_t wrong; } int_tree;
+
+static void int_tree_task(void *arg, int64_t index, int32_t worker) {
+    int_tree *w = (int_tree *)arg;
+    const int32_t i = (int32_t)index, up = i / 2;
+    (void)worker;
+    if (i < w->leaves) w->sum[i] = w->sum[2 * i] + w->sum[2 * i + 1];
+    else w->sum[i] = i;
+    if (up > 0 && HDI_ATOMIC_ADD(w->pending + up, -1) == 0) hdi_release(w->ctx->threads, up, w->order);
+}
+
+static void int_release(void) {
+    enum { LEAVES = 512 };
+    int32_t order[2 * LEAVES], pending[2 * LEAVES], i, threads, round;
+    int64_t sum[2 * LEAVES];
+    for (threads = 2; threads < 9; threads++) {
+        hd_context ctx;
+        int_tree w;
+        memset(&ctx, 0, sizeof ctx);
+        memset(&w, 0, sizeof w);
+        ctx.n_threads = threads;
+        w.ctx = &ctx;
+        w.order = order;
+        w.pending = pending;
+        w.sum = sum;
+        w.leaves = LEAVES;
+        hdi_hold(&ctx);
+        for (round = 0; round < 50 && hdi_threads_own(&ctx, 2 * LEAVES); round++) {
+            for (i = 0; i < 2 * LEAVES; i++) pending[i] = 2;
+            for (i = 0; i < LEAVES; i++) order[i] = LEAVES + i;
+            memset(sum, 0, sizeof sum);
+            hdi_parallel_ordered(&ctx, 2 * LEAVES - 1, LEAVES, order, int_tree_task, &w);
+            CHECK(sum[1] == (int64_t)LEAVES * (3 * LEAVES - 1) / 2);
+        }
+        hdi_let_go(&ctx);
+        CHECK(!ctx.threads && ctx.regions == (uint64_t)round);
+    }
+}
+
+#if HDI_THREADS
+/* The caller's tasks wait until another thread has one, and that one until the caller sleeps. */
+typedef struct int_nap { hd_threads *threads; int32_t begun, slept; } int_nap;
+
+static int int_caller_sleeps(hd_threads *t) {
+    int yes;
+    hdi_lock(&t->lock);
+    yes = t->caller_asleep;
+    hdi_unlock(&t->lock);
+    return yes;
+}
+
+static void int_nap_task(void *arg, int64_t index, int32_t worker) {
+    int_nap *w = (int_nap *)arg;
+    const time_t start = time(NULL);
+    (void)index;
+    if (worker > 0 && HDI_ATOMIC_ADD(&w->begun, 1) == 1) {
+        while (!int_caller_sleeps(w->threads) && time(NULL) < start + 30) {}
+        HDI_ATOMIC_SET(&w->slept, int_caller_sleeps(w->threads));
+    }
+    while (worker == 0 && HDI_ATOMIC_GET(&w->begun) == 0 && time(NULL) < start + 60) {}
+}
+#endif
+
+/* No more threads start than there are tasks besides the caller's; and a caller that has nothing to do sleeps. */
+static void int_few_tasks(void) {
+#if HDI_THREADS
+    enum { TASKS = HDI_TASKS_START };
+    hd_context ctx;
+    int_nap w;
+    memset(&ctx, 0, sizeof ctx);
+    memset(&w, 0, sizeof w);
+    ctx.n_threads = 4 * TASKS;
+    hdi_hold(&ctx);
+    w.threads = hdi_threads_own(&ctx, TASKS - 1);
+    CHECK(!w.threads);                           /* too few to start any */
+    w.threads = hdi_threads_own(&ctx, TASKS);
+    if (w.threads) {
+        CHECK_MSG(w.threads->n == TASKS - 1, "%d threads", (int)w.threads->n);
+        hdi_parallel(&ctx, TASKS, int_nap_task, &w);
+        CHECK(w.begun > 0 && w.slept && ctx.waits > 0 && ctx.helped == (uint64_t)w.begun && ctx.regions == 1);
+        CHECK(hdi_threads_own(&ctx, TASKS - 1) == w.threads);    /* those that run take part in loops of few tasks, too */
+    }
+    CHECK(w.threads || !hdi_threads_linked());
+    hdi_let_go(&ctx);
+    CHECK(!ctx.threads);
+#endif
+}
+
 static void int_all(void) {
+    int_release();
+    int_few_tasks();
     int_division();
     int_not_finite();
     int_complex();

@@ -161,6 +161,7 @@ static void test_tmp_remove(void) {
 #include "cases.h"
 #include "test_meshio.h"
 #include "test_base.h"
+#include "calls.h"
 #include "test_sparse.h"
 #include "test_operators.h"
 #include "test_rational.h"
@@ -172,14 +173,13 @@ static void test_tmp_remove(void) {
 #include "test_heat.h"
 #include "test_points.h"
 #include "test_assembly.h"
+#include "test_doors.h"
 #include "test_robust.h"
 #include "test_polygon.h"
 #include "test_ldl.h"
 #include "test_order.h"
 #include "test_engines.h"
-#ifdef HEATDIFF_IMPLEMENTATION
 #include "test_threads.h"
-#endif
 #include "test_geodesic.h"
 #include "test_diagonal.h"
 #include "test_operators_all.h"
@@ -198,7 +198,6 @@ static void test_tmp_remove(void) {
 #include "test_geodesic_all.h"
 #include "test_lengths.h"
 #include "test_deep.h"
-#include "test_doors.h"
 #include "test_failures.h"
 #include "test_cases.h"
 #endif
@@ -216,10 +215,7 @@ static const test_group test_groups[] = {
     {"engines", test_engines, 2}, {"estimate", test_estimate, 2},
     {"points", test_points, 3}, {"deep", test_deep, 3}, {"diagonal", test_diagonal, 3}, {"spectrum", test_spectrum, 3},
     {"large_t", test_large_t, 3},
-    {"geodesic", test_geodesic_all, 4}, {"ldl", test_ldl, 4}, {"order", test_order, 4},
-#ifdef HEATDIFF_IMPLEMENTATION
-    {"threads", test_threads, 4},
-#endif
+    {"geodesic", test_geodesic_all, 4}, {"ldl", test_ldl, 4}, {"order", test_order, 4}, {"threads", test_threads, 4},
     {"bounds", test_bounds, 4},
     {"adjoints", test_adjoints, 4}, {"signatures", test_signatures, 4}, {"picture", test_picture, 4},
     {"everywhere", test_operators_all, 4}, {"sources", test_sources, 4}, {"intrinsic", test_intrinsic, 4},
