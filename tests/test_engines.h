@@ -252,21 +252,20 @@ static void eng_sets(void) {
 static void eng_reports(void) {
     hd_laplacian *lap = kit_pair("bumpy/1/3 fem"), *held = kit_pair("bump/6/1 fem+held");
     double *u = KIT_NEW(double, lap->n), *f = kit_random(lap->n, 12);
-    const int32_t i[2] = {3, 5}, j[2] = {5, 3};
     int k, q;
     for (k = 0; k < 2; k++)
         for (q = 0; q < 12; q++) {
             hd_laplacian *on = q % 2 ? held : lap;
             hd_heat *heat = eng_plan(on, eng_methods[k], HD_POLES_DEFAULT, 0);
             const double t = (q < 6 ? 1 : 20) * on->h * on->h;
-            const int32_t source = on->vertex[on->n_active / 3];
+            const int32_t source = on->vertex[on->n_active / 3], i[2] = {on->vertex[0], on->vertex[3]}, j[2] = {source, on->vertex[1]};
             hd_report rep;
             if (q % 6 < 2) CHECK(eng_ok(heat_column(heat, t, source, u, &rep), &rep, "report"));
             else if (q % 6 < 4) CHECK(eng_ok(heat_apply(heat, t, 1, f, 0, u, 0, &rep), &rep, "report"));
             else CHECK(eng_ok(heat_entries(heat, t, HD_KERNEL_OPERATOR, 2, i, j, u, &rep), &rep, "report"));
             eng_check_report(&rep, eng_methods[k], "report");
             CHECK(rep.error_bound >= rep.error_rational && rep.error_bound >= rep.error_solver && rep.error_bound >= rep.error_rounding);
-            CHECK(rep.evidence_b != HD_EVIDENCE_NONE && rep.evidence_rounding != HD_EVIDENCE_NONE);
+            if (q % 6 < 4) CHECK(rep.evidence_b != HD_EVIDENCE_NONE && rep.evidence_rounding != HD_EVIDENCE_NONE);
             hd_heat_free(heat);
         }
 }
