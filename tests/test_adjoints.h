@@ -35,7 +35,7 @@ static const case_row adj_rows[] = {
     {ADJ_DRAIN " method=direct poles=kernel|diagonal degree=10|12", 0, 0, 18},
     {ADJ_DRAIN " method=krylov tol=1e-10|1e-3", 0, 0, 6},
     {ADJ_DRAIN " method=iterative solver=lanczos tol=1e-10", 0, 0, 0},
-    {ADJ_DRAIN " method=auto|iterative tol=1e-3", 0, 0, 0},
+    {ADJ_DRAIN " method=auto|iterative tol=1e-3", 0, 0, 4},
     {ADJ_DRAIN " method=iterative solver=lanczos tol=1e-3", 0, 0, 9},
     /* where iterations fail that auto has chosen, factors take over: the field has decayed by exp(-5) */
     {"shape=leak/40/1e-9 op=I query=derivative field=level seed=28|29|30|31|32 t=5.444e9 tol=1e-13", 0, 0, 5},
@@ -158,7 +158,7 @@ static void adj_late(const hd_laplacian *lap, double late, const char *what) {
     for (q = 0; q < 5; q++) {
         hd_report rep;
         const hd_status st = hd_heat_derivative(kit_heat(lap, adj_plans[plans[q]]), 1, &late, 1, f, 0, u, 0, &rep, NULL);
-        CHECK_MSG(st >= 0 && dense_max_abs(u, lap->n) <= 1e-11 / late, "%s, %s: %g late, %s", what, adj_plans[plans[q]], late * dense_max_abs(u, lap->n), rep.error.text);
+        CHECK_MSG(st >= 0 && dense_max_abs(u, lap->n) <= 2e-12 / late * dense_max_abs(f, lap->n), "%s, %s: %g late, %s", what, adj_plans[plans[q]], late * dense_max_abs(u, lap->n), rep.error.text);
         CHECK(st == HD_WARN_ACCURACY || dense_max_abs(u, lap->n) == 0);
     }
 }

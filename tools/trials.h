@@ -284,12 +284,12 @@ static int trial_graph(trial_body *b, const char *name, const double *p) {
         for (i = 1; i < parts; i++) trial_join(&g, (i - 1) * m, i * m, ldexp(1, -(int)p[1]));
         for (i = parts * m; i < g.n; i++) trial_join(&g, i - 1, i, 1);
     } else if (strcmp(name, "none") != 0) {
-        /* cycles: plain, turned, with something on one diagonal entry or on all */
+        /* cycles: plain, turned, turned but with a diagonal that hides it, with something on one diagonal entry or on all */
         for (i = 0; i < g.n && g.n > 2; i++) trial_join(&g, i, (i + 1) % g.n, 1);
-        if (strcmp(name, "turned") == 0) g.sign = -1;
+        if (strcmp(name, "turned") == 0 || strcmp(name, "hidden") == 0) g.sign = -1;
         else if (strcmp(name, "penalty") == 0) g.extra[0] = pow(10, p[1]);
-        else if (strcmp(name, "leak") == 0) for (i = 0; i < g.n; i++) g.extra[i] = p[1];
-        else if (strcmp(name, "cycle") != 0) return 0;
+        else if (strcmp(name, "leak") != 0 && strcmp(name, "cycle") != 0) return 0;
+        for (i = 0; i < g.n; i++) g.extra[i] += strcmp(name, "leak") == 0 ? p[1] : strcmp(name, "hidden") == 0 ? 3 : 0;
     }
     trial_graph_matrix(b, &g);
     return 1;
