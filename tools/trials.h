@@ -1433,14 +1433,15 @@ static void trial_run_distance_from(trial_work *w, hd_heat *heat) {
     free(d);
 }
 
-/* A filter of the spectrum near 1/t, fitted; 0: there is none. The last set is kept: cases in a row often have the same. */
+/* A filter of the spectrum near 1/t, fitted; 0: there is none. The last sets are kept: cases in a row often have the same. */
 static int trial_make_filter(trial_work *w) {
-    static hd_filter last;
-    static hd_rational last_set;
-    static double last_max;
+    enum { KEPT = 16 };
+    static struct { hd_filter f; hd_rational set; } kept[KEPT];
+    static int oldest;
     const trial *c = w->c;
     const double lambda_max = hd_laplacian_lambda_max(w->s->lap);
     hd_filter *f = &w->s->f.of;
+    int q;
     memset(f, 0, sizeof *f);
     if (!(c->t > 1e-100 && c->t < 1e100 && lambda_max > 0 && lambda_max < 1e100)) return 0;
     f->a = c->t;
@@ -1458,13 +1459,15 @@ static int trial_make_filter(trial_work *w) {
     case 7: f->kind = HD_FILTER_WAVE; f->a = -log(c->t); f->b = 0.3; break;
     default: f->kind = HD_FILTER_BAND; f->a = 1 / c->t; f->b = 4 / c->t;
     }
-    if (memcmp(&last, f, sizeof last) != 0 || last_max < lambda_max || last_max > lambda_max) {
-        memset(&last, 0, sizeof last);
-        if (hd_rational_fit(&last_set, f, lambda_max, &trial_serial, NULL) < 0) return 0;
-        last = *f;
-        last_max = lambda_max;
+    for (q = 0; q < KEPT && (memcmp(&kept[q].f, f, sizeof *f) != 0 || kept[q].set.lambda_max < lambda_max || kept[q].set.lambda_max > lambda_max); q++) {}
+    if (q == KEPT) {
+        q = oldest;
+        oldest = (oldest + 1) % KEPT;
+        memset(&kept[q].f, 0, sizeof *f);
+        if (hd_rational_fit(&kept[q].set, f, lambda_max, &trial_serial, NULL) < 0) return 0;
+        kept[q].f = *f;
     }
-    w->set = last_set;
+    w->set = kept[q].set;
     return 1;
 }
 
