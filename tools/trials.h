@@ -1402,35 +1402,42 @@ static quad trial_want_distance_from(trial_work *w, const quad *c, int32_t v, in
 static void trial_run_distance_from(trial_work *w, hd_heat *heat) {
     const trial *c = w->c;
     const hd_laplacian *lap = w->s->lap;
-    const int32_t n = lap->n;
+    const int timeless = c->kind >= HD_DISTANCE_COMMUTE;
+    const int32_t n = lap->n, k = c->k < 1 ? 1 : c->k > 8 ? 8 : c->k, m = timeless ? 1 : c->n_times;
     uint64_t seed = (uint64_t)c->seed + 1;
-    double *d = TRUTH_NEW(double, 2 * n), *field = d + n;
-    quad *share = TRUTH_NEW(quad, n), sum = 0;
-    int32_t v, count = 0;
-    trial_points at;
-    hd_source s = trial_source(w, &seed, &at, field);
+    double *D = TRUTH_NEW(double, n * k * m), *field = TRUTH_NEW(double, n * k), *t = trial_times(c);
+    quad *share = TRUTH_NEW(quad, n);
+    int32_t v, q;
+    trial_points at[8];
+    hd_source s[8];
     char name[32];
+    for (q = 0; q < k; q++) s[q] = trial_source(w, &seed, at + q, field + q * n);
     snprintf(name, sizeof name, "from, %s", trial_kinds[c->kind]);
     trial_row_name(w, name);
-    hd_heat_distance_from(heat, (hd_distance_kind)c->kind, 1, &c->t, 1, &s, d, 0, &w->rep, NULL);
-    if (!trial_failed(w)) {
-        if (c->kind >= HD_DISTANCE_COMMUTE)
+    hd_heat_distance_from(heat, (hd_distance_kind)c->kind, m, t, k, s, D, 0, &w->rep, NULL);
+    for (q = 0; q < k * m && !trial_failed(w); q++) {
+        const double *f = field + q / m * n;
+        double *d = D + q * n;
+        quad sum = 0;
+        int32_t count = 0;
+        if (timeless)
             truth_filter_fill(&w->s->f, w->T, c->kind == HD_DISTANCE_COMMUTE ? FORM_COMMUTE : FORM_BIHARMONIC, 0, NULL, 0);
-        else trial_filter_for(w, 2 * c->t, 0);
-        for (v = 0; v < n; v++) sum += field[v];
-        for (v = 0; v < n; v++) share[v] = field[v] / sum;
+        else trial_filter_for(w, 2 * t[q % m], 0);
+        for (v = 0; v < n; v++) sum += f[v];
+        for (v = 0; v < n; v++) share[v] = f[v] / sum;
         for (v = 0; v < n; v++) {
             const int32_t r = lap->row[v];
             if (share[v] == 1) continue;         /* the source is this vertex */
-            if (c->kind >= HD_DISTANCE_COMMUTE &&
-                (r < 0 || w->T->comp[r] != w->T->comp[lap->row[at.vertex[0]]])) continue;
+            if (timeless && (r < 0 || w->T->comp[r] != w->T->comp[lap->row[at[q / m].vertex[0]]])) continue;
             w->want[count] = trial_want_distance_from(w, share, v, c->kind == HD_DISTANCE_WEIGHTED, w->off + count);
             d[count++] = d[v];
         }
         if (count > 0) trial_compare(w, d, count, 0, 1, -1);
     }
     free(share);
-    free(d);
+    free(field);
+    free(D);
+    free(t);
 }
 
 /* A filter of the spectrum near 1/t, fitted; 0: there is none. The last sets are kept: cases in a row often have the same. */
