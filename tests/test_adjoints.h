@@ -292,12 +292,12 @@ static void adj_sets(void) {
 
 /* A method that is chosen works as the same one asked for. */
 static void adj_chosen(void) {
-    enum { FIELDS = 36 };
+    enum { MANY = 36 };
     const hd_laplacian *lap = kit_pair("bumpy/2/5 fem");
-    double *u = kit_random(FIELDS * lap->n, 3), *out = KIT_NEW(double, FIELDS * lap->n), t = 10 * lap->h * lap->h;
+    double *u = kit_random(MANY * lap->n, 3), *out = KIT_NEW(double, MANY * lap->n), t = 10 * lap->h * lap->h;
     hd_report rep[2];
     int i;
-    for (i = 0; i < 2; i++) CHECK(hd_heat_derivative(kit_heat(lap, i ? "method=direct" : ""), 1, &t, FIELDS, u, 0, out, 0, rep + i, NULL) >= 0);
+    for (i = 0; i < 2; i++) CHECK(hd_heat_derivative(kit_heat(lap, i ? "method=direct" : ""), 1, &t, MANY, u, 0, out, 0, rep + i, NULL) >= 0);
     CHECK(rep[0].method == HD_METHOD_DIRECT && rep[1].method == HD_METHOD_DIRECT);
     CHECK_MSG(rep[0].poles == rep[1].poles && rep[0].degree == rep[1].degree, "poles %d, %d", (int)rep[0].poles, (int)rep[1].poles);
 }

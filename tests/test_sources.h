@@ -336,7 +336,7 @@ static void src_samples(trial_work *w, const hd_source *s) {
     const double t = (lap->conserves ? 10 : 3) * w->s->unit;
     const int32_t n = lap->n;
     double *near = KIT_NEW(double, n), distance[COUNT];
-    int kind, q, k;
+    int kind, q;
     for (kind = 0; kind < 4; kind++) {
         hd_heat *heat = kit_heat(lap, "poles=diagonal degree=14");
         int32_t vertex[COUNT], again[COUNT], v;
