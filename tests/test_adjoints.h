@@ -46,7 +46,8 @@ static void adj_cases(void) { CASES(adj_rows); }
 /* ---- plans and fields ---- */
 
 enum { ADJ_DIRECT, ADJ_TRAIN, ADJ_DIAGONAL, ADJ_KRYLOV, ADJ_ITERATIVE, ADJ_LANCZOS, ADJ_AUTO, ADJ_PLANS, ADJ_FIELDS = 3 };
-static const char *const adj_plans[ADJ_PLANS] = {"method=direct", "method=direct poles=kernel degree=10", "method=direct poles=diagonal degree=12", "method=krylov tol=1e-10",
+static const char *const adj_plans[ADJ_PLANS] = {"method=direct", "method=direct poles=kernel degree=10",
+    "method=direct poles=diagonal degree=12", "method=krylov tol=1e-10",
     "method=iterative", "method=iterative solver=lanczos tol=1e-10", "method=auto"};
 
 static hd_heat *adj_plan(const hd_laplacian *lap, int which) {
@@ -91,7 +92,8 @@ static void adj_duality(const hd_laplacian *lap, double t, const char *what) {
                 right += w[v] * h[v];
                 size += fabs(g[v] * u[v]) + fabs(w[v] * h[v]);
             }
-            CHECK_MSG(fabs(left - right) <= want * size, "%s, %s: %.17g and %.17g differ by %g", what, adj_plans[which], left, right, fabs(left - right) / size);
+            CHECK_MSG(fabs(left - right) <= want * size, "%s, %s: %.17g and %.17g differ by %g", what, adj_plans[which], left,
+                right, fabs(left - right) / size);
         }
     }
 }
@@ -127,19 +129,24 @@ static void adj_calls(const hd_laplacian *lap, double unit, const char *what) {
     for (which = 0; which < 2 * ADJ_PLANS; which++) {
         hd_heat *heat = kit_heat(lap, adj_plans[which / 2]);
         hd_report rep;
+        hd_status st;
         adjoint = which % 2;
-        CHECK((adjoint ? hd_heat_adjoint : hd_heat_derivative)(heat, TIMES, t, ADJ_FIELDS, f, ldf, u, ldu, &rep, NULL) == rep.status && rep.status >= 0);
+        st = (adjoint ? hd_heat_adjoint : hd_heat_derivative)(heat, TIMES, t, ADJ_FIELDS, f, ldf, u, ldu, &rep, NULL);
+        CHECK(st >= 0 && st == rep.status);
         for (q = 0; q < ADJ_FIELDS * TIMES; q++) {
             const double *have = u + (size_t)q * ldu;
             double size;
             size_t v;
             memcpy(one, f + (size_t)(q / TIMES) * ldf, n * sizeof *one);
-            CHECK_MSG((adjoint ? hd_heat_adjoint : hd_heat_derivative)(heat, 1, t + q % TIMES, 1, one, 0, one, 0, &rep, NULL) >= 0, "%s: %s", what, rep.error.text);
+            st = (adjoint ? hd_heat_adjoint : hd_heat_derivative)(heat, 1, t + q % TIMES, 1, one, 0, one, 0, &rep, NULL);
+            CHECK_MSG(st >= 0, "%s: %s", what, rep.error.text);
             size = dense_max_abs(one, (int64_t)n);
-            CHECK_MSG(rep.error_bound <= 1e-4 && dense_max_diff(have, one, (int64_t)n) <= 2e-7 * size, "%s, %s, adjoint %d, column %d: off by %g, bound %g", what, adj_plans[which / 2],
+            CHECK_MSG(rep.error_bound <= 1e-4 && dense_max_diff(have, one, (int64_t)n) <= 2e-7 * size,
+                "%s, %s, adjoint %d, column %d: off by %g, bound %g", what, adj_plans[which / 2],
                 adjoint, q, dense_max_diff(have, one, (int64_t)n) / size, rep.error_bound);
             for (v = 0; v < n; v++)
-                if (lap->row[v] < 0) CHECK(have[v] == (adjoint && lap->row[v] == HD_ROW_INERT ? f[(size_t)(q / TIMES) * ldf + v] : 0) && one[v] == have[v]);
+                if (lap->row[v] < 0)
+                    CHECK(have[v] == (adjoint && lap->row[v] == HD_ROW_INERT ? f[(size_t)(q / TIMES) * ldf + v] : 0) && one[v] == have[v]);
             CHECK(rep.evidence_b != HD_EVIDENCE_NONE && rep.evidence_rounding != HD_EVIDENCE_NONE && rep.error_relative == HUGE_VAL);
             if (t[q % TIMES] == 0) continue;
             if (which == 2 * ADJ_DIRECT) CHECK(rep.method == HD_METHOD_DIRECT && rep.poles == HD_POLES_KERNEL && rep.degree == 14);
@@ -158,13 +165,15 @@ static void adj_late(const hd_laplacian *lap, double late, const char *what) {
     for (q = 0; q < 5; q++) {
         hd_report rep;
         const hd_status st = hd_heat_derivative(kit_heat(lap, adj_plans[plans[q]]), 1, &late, 1, f, 0, u, 0, &rep, NULL);
-        CHECK_MSG(st >= 0 && dense_max_abs(u, lap->n) <= 2e-12 / late * dense_max_abs(f, lap->n), "%s, %s: %g late, %s", what, adj_plans[plans[q]], late * dense_max_abs(u, lap->n), rep.error.text);
+        CHECK_MSG(st >= 0 && dense_max_abs(u, lap->n) <= 2e-12 / late * dense_max_abs(f, lap->n), "%s, %s: %g late, %s", what,
+            adj_plans[plans[q]], late * dense_max_abs(u, lap->n), rep.error.text);
         CHECK(st == HD_WARN_ACCURACY || dense_max_abs(u, lap->n) == 0);
     }
 }
 
 static void adj_identities(void) {
-    static const char *const pairs[] = {"bumpy/2/3 fem", "ico/2 cot", "two/2/0/5 vor", "spare/5/1 fem", "disk/5/1 fem+held", "split/8/2 fem+pin", "leak/60/1e-2 mass3"};
+    static const char *const pairs[] = {"bumpy/2/3 fem", "ico/2 cot", "two/2/0/5 vor", "spare/5/1 fem", "disk/5/1 fem+held",
+        "split/8/2 fem+pin", "leak/60/1e-2 mass3"};
     int k;
     for (k = 0; k < (int)(sizeof pairs / sizeof *pairs); k++) {
         const int32_t mark = kit_mark();

@@ -54,13 +54,15 @@ static void bord_check_pair(const hd_laplacian *lap, const hd_laplacian *all, co
             mass += B[was];
         }
         for (v = 0; v < n; v++)
-            if (mark[v] && all->row[v] >= 0) leaks[lap->component[i]] = (char)(leaks[lap->component[i]] || L[(size_t)from * (size_t)m + (size_t)all->row[v]] != 0);
+            if (mark[v] && all->row[v] >= 0) leaks[lap->component[i]] = (char)(leaks[lap->component[i]] ||
+                    L[(size_t)from * (size_t)m + (size_t)all->row[v]] != 0);
         CHECK(fabs(lap->mass[i] - mass) <= 1e-14 * mass && lap->b_diag[i] == B[(size_t)from * (size_t)m + (size_t)from]);
         if (lap->xyz) CHECK(memcmp(lap->xyz + 3 * i, all->xyz + 3 * from, 3 * sizeof(double)) == 0);
     }
     CHECK_MSG(off == 0, "%s: L and B are off by %g", what, off);
     for (i = 0; i < lap->n_components; i++) n_leaks += leaks[i];
-    CHECK_MSG(lap->conserves == (!all->conserves || n_leaks == lap->n_components ? 0 : n_leaks > 0 ? 2 : 1), "%s: conserves %d", what, (int)lap->conserves);
+    CHECK_MSG(lap->conserves == (!all->conserves || n_leaks == lap->n_components ? 0 : n_leaks > 0 ? 2 : 1),
+        "%s: conserves %d", what, (int)lap->conserves);
     for (i = 0; i < lap->n_components; i++) CHECK((lap->component_mass[i] == HUGE_VAL) == (lap->conserves == 2 && leaks[i]));
     kit_release(mark_kit);
 }
@@ -85,7 +87,9 @@ static hd_laplacian *bord_triangles(const shape *s, const hd_laplacian_opts *o) 
 /* For the other groups; freed by the caller. */
 static shape bord_disk(int32_t m, int round) { return trial_disk(m, round); }
 
-static hd_laplacian *bord_kept(const shape *s, const hd_laplacian_opts *o) { return (hd_laplacian *)kit_keep(bord_triangles(s, o), kit_free_laplacian); }
+static hd_laplacian *bord_kept(const shape *s, const hd_laplacian_opts *o) {
+    return (hd_laplacian *)kit_keep(bord_triangles(s, o), kit_free_laplacian);
+}
 
 /* Borders, a list with one vertex twice, and both; triangulations as they are, intrinsic Delaunay, tufted. */
 static void bord_pairs_triangles(void) {
@@ -176,7 +180,8 @@ static void bord_pairs_others(void) {
         hd_csr B = mesh->L;
         B.val = mesh->B;
         for (which = 0; which < 2; which++) {
-            const hd_laplacian_opts o = bord_opts(HD_LAPLACIAN_DEFAULT, q == 0 && which ? HD_BORDER_DIRICHLET : HD_BORDER_NATURAL, q > 0 && which ? 3 : 0, held);
+            const hd_border border = q == 0 && which ? HD_BORDER_DIRICHLET : HD_BORDER_NATURAL;
+            const hd_laplacian_opts o = bord_opts(HD_LAPLACIAN_DEFAULT, border, q > 0 && which ? 3 : 0, held);
             const hd_status st = q == 0   ? hd_laplacian_polygons(lap + which, p->xyz, p->n, p->face_ptr, p->face_idx, p->n_faces, &o, NULL)
                                  : q == 1 ? hd_laplacian_points(lap + which, s->xyz, s->n, &o, NULL)
                                  : q == 2 ? hd_laplacian_tufted_points(lap + which, s->xyz, s->n, NULL, NULL, &o, NULL)
@@ -213,7 +218,8 @@ static void bord_held_zero(const hd_laplacian *lap, const double *u, int32_t cou
     int32_t q, v;
     for (q = 0; q < count; q++)
         for (v = 0; v < lap->n; v++)
-            if (lap->row[v] == HD_ROW_HELD) CHECK_MSG(u[(size_t)q * (size_t)lap->n + (size_t)v] == 0, "%s: vertex %d is held and has %g", what, v, u[q * lap->n + v]);
+            if (lap->row[v] == HD_ROW_HELD) CHECK_MSG(u[(size_t)q * (size_t)lap->n + (size_t)v] == 0,
+                    "%s: vertex %d is held and has %g", what, v, u[q * lap->n + v]);
 }
 
 /* What is exact: zeros at held vertices and of columns from them, fields at t = 0 and at vertices in no face, infinite distances. */
@@ -261,7 +267,8 @@ static void bord_faded_pairs(const trial_work *w) {
     hd_report rep;
     int kind;
     for (kind = 0; kind < 2; kind++) {
-        CHECK(lap->row[held] == HD_ROW_HELD && heat_pairs(heat, (hd_distance_kind)kind, t, 1, i, j, K, d, &rep) >= 0 && K[0] == 0 && d[0] == 0 && rep.error_bound == 0);
+        CHECK(lap->row[held] == HD_ROW_HELD && heat_pairs(heat, (hd_distance_kind)kind, t, 1, i, j, K, d, &rep) >= 0 &&
+            K[0] == 0 && d[0] == 0 && rep.error_bound == 0);
         CHECK(heat_pairs(heat, (hd_distance_kind)kind, t, 2, i, j, K, d, &rep) >= 0 && rep.error_bound >= 0);
     }
 }
@@ -328,14 +335,17 @@ static void bord_mixed(void) {
         CHECK(heat_column(kit_heat(lap, methods[k / 3]), factors[k % 3] * lap->h * lap->h, source, u, &rep) >= 0);
         for (v = disk->n; v < n; v++) sum += lap->mass[lap->row[v]] * u[v];
         sum /= lap->mass[lap->row[source]];
-        CHECK_MSG(fabs(sum - 1) <= 1e-12 && rep.mass_drift <= 1e-12, "%s, time %d: heat is 1 + %g, drift %g", methods[k / 3], k % 3, sum - 1, rep.mass_drift);
+        CHECK_MSG(fabs(sum - 1) <= 1e-12 && rep.mass_drift <= 1e-12, "%s, time %d: heat is 1 + %g, drift %g", methods[k / 3],
+            k % 3, sum - 1, rep.mass_drift);
         for (v = 0; v < disk->n; v++) CHECK(u[v] == 0);
     }
     for (k = 0; k < 2; k++) {
         double off = 0;
-        CHECK((k ? hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, 1, &late, u + n, 0, &rep, NULL) : hd_heat_columns(heat, HD_KERNEL_SYMMETRIC, 1, &late, 2, sources, u, 0, &rep, NULL)) >= 0);
+        if (k) CHECK(hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, 1, &late, u + n, 0, &rep, NULL) >= 0);
+        else CHECK(hd_heat_columns(heat, HD_KERNEL_SYMMETRIC, 1, &late, 2, sources, u, 0, &rep, NULL) >= 0);
         for (v = 0; v < n; v++) off = fmax(off, fmax(k ? 0 : fabs(u[v]), fabs(u[n + v] - (v < disk->n ? 0 : mean))));
-        CHECK_MSG(off <= 1e-10 * mean && off <= (rep.error_bound + 1e-13) * mean, "late %s: off by %g of %g, bound %g", k ? "diagonal" : "columns", off, mean, rep.error_bound);
+        CHECK_MSG(off <= 1e-10 * mean && off <= (rep.error_bound + 1e-13) * mean, "late %s: off by %g of %g, bound %g",
+            k ? "diagonal" : "columns", off, mean, rep.error_bound);
     }
     shape_free(&two);
 }
@@ -374,7 +384,8 @@ static void bord_modes(void) {
             CHECK(heat_apply(kit_heat(bord_kept(s, &o), ""), t, 1, f, 0, f, 0, NULL) == HD_OK);
             for (v = 0; v < s->n; v++) off[k] = fmax(off[k], fabs(f[v] * exp(t * lambda) - rows[q / 2].mode(s->xyz + 3 * v)));
         }
-        CHECK_MSG(off[1] < 0.01 && bord_order(off) >= 1.9, "%s, %d: errors %g, %g, order %.2f", rows[q / 2].spec[0], q % 2, off[0], off[1], bord_order(off));
+        CHECK_MSG(off[1] < 0.01 && bord_order(off) >= 1.9, "%s, %d: errors %g, %g, order %.2f", rows[q / 2].spec[0], q % 2,
+            off[0], off[1], bord_order(off));
     }
 }
 
@@ -468,7 +479,8 @@ static void bord_updates(void) {
             CHECK(hd_laplacian_update(lap, xyz, &e) == HD_OK && lap->version == frame);
             fresh = bord_polygons(&p, xyz, &o);
             bord_same(lap, fresh, q == 2 ? 0 : 1e-13, "moved");
-            CHECK(heat_column(heat, t, lap->vertex[20], u, NULL) == HD_OK && heat_column(kit_heat(fresh, ""), t, lap->vertex[20], want, NULL) == HD_OK);
+            CHECK(heat_column(heat, t, lap->vertex[20], u, NULL) == HD_OK && heat_column(kit_heat(fresh, ""), t,
+                lap->vertex[20], want, NULL) == HD_OK);
             CHECK(dense_max_diff(u, want, s->n) <= 1e-7 * dense_max_abs(want, s->n));
         }
         memset(xyz, 0, 3 * (size_t)s->n * sizeof *xyz);      /* no area: refused, and nothing has changed */

@@ -62,7 +62,8 @@ static const double bnd_pi = 3.14159265358979323846;
 
 /* `error` of an answer beside its largest value, where the truth is good to `slack` of it. There is an answer. */
 static void bnd_within(const char *what, hd_status st, const hd_report *r, double error, double slack) {
-    CHECK_MSG(st >= 0 && error <= r->error_bound + slack, "%s: %s, error %.3g, error_bound %.3g (the truth is good to %.1g)", what, hd_status_name(st), error,
+    CHECK_MSG(st >= 0 && error <= r->error_bound + slack, "%s: %s, error %.3g, error_bound %.3g (the truth is good to %.1g)",
+        what, hd_status_name(st), error,
               r->error_bound, slack);
     CHECK_MSG(st != HD_OK || r->error_bound <= 1e-2, "%s: HD_OK with error_bound %.3g", what, r->error_bound);
 }
@@ -189,7 +190,8 @@ static void bnd_far_entry(void) {
             CHECK(heat_columns(best, t, k ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC, 1, &source, u, 0, &r0) >= 0);
             if (k) st = heat_pairs(heat, HD_DISTANCE_CLASSICAL, t, 1, &far_off, &source, value, &d, &r);
             else st = heat_entries(heat, t, HD_KERNEL_SYMMETRIC, 1, &far_off, &source, value, &r);
-            bnd_within(k ? "K_t of antipodes" : "k_t of antipodes", st, &r, bnd_beside(fabs(*value - u[far_off]), *value), bnd_beside(r0.error_bound * dense_max_abs(u, s->n), *value));
+            bnd_within(k ? "K_t of antipodes" : "k_t of antipodes", st, &r, bnd_beside(fabs(*value - u[far_off]), *value),
+                bnd_beside(r0.error_bound * dense_max_abs(u, s->n), *value));
         }
 }
 
@@ -212,7 +214,8 @@ static void bnd_long_path(void) {
             bnd_within("long path", st, &r, bnd_error(u, want, n), 2e-15);
             for (i = 0; i < n; i++) want[i] -= u[i];
             error = sqrt(dense_dot(want, want, n) / dense_dot(u, u, n));
-            CHECK_MSG(error <= r.error_bound_b + 2e-15, "path of %d, t %g: error in the norm %.3g, error_bound_b %.3g", (int)n, t, error, r.error_bound_b);
+            CHECK_MSG(error <= r.error_bound_b + 2e-15, "path of %d, t %g: error in the norm %.3g, error_bound_b %.3g", (int)n,
+                t, error, r.error_bound_b);
         }
         kit_release(mark);
     }
@@ -263,7 +266,8 @@ static void bnd_shifted_sizes(void) {
             most = fmax(most, fabs(ref[i].re));
             if (!(fabs(x[i].re / size - ref[i].re) <= off)) off = fabs(x[i].re / size - ref[i].re);
         }
-        CHECK_MSG(off <= 1e-6 * most || (st > 0 && r.error_b > 1e-6), "right-hand side of %g: off by %.3g of the largest value, error_b %.3g", size, off / most, r.error_b);
+        CHECK_MSG(off <= 1e-6 * most || (st > 0 && r.error_b > 1e-6),
+            "right-hand side of %g: off by %.3g of the largest value, error_b %.3g", size, off / most, r.error_b);
     }
 }
 
@@ -285,7 +289,8 @@ static void bnd_fields(void) {
         CHECK(heat_apply(heat, 0.1, K, G, 0, R, 0, &r0) >= 0);
         st = heat_apply(heat, 0.1, K, F, (size_t)n, F, (size_t)ldu, &r);
         for (c = 0; c < K && st >= 0; c++) off = fmax(off, bnd_error(F + c * ldu, R + c * n, n));
-        CHECK_MSG(st == HD_ERR_ARGUMENT || (st >= 0 && off <= r.error_bound + r0.error_bound), "U over F with another stride, %s: %s, off by %.3g, bound %.3g",
+        CHECK_MSG(st == HD_ERR_ARGUMENT || (st >= 0 && off <= r.error_bound + r0.error_bound),
+            "U over F with another stride, %s: %s, off by %.3g, bound %.3g",
                   bnd_methods[m], hd_status_name(st), off, r.error_bound);
         if (m == 0) CHECK(heat_apply(heat, 0.1, 0, F, 0, G, 0, &r) == HD_OK && r.reason != NULL);   /* a report that is printed */
     }
@@ -328,7 +333,8 @@ static void bnd_truck(void) {
         slack = own;
         at = v;
     }
-    CHECK_MSG(at >= 0 && worst <= r.error_relative + slack, "truck, diagonal: vertex %d is off by %.3g of itself (column good to %.2g), error_relative %.3g", (int)at, worst, slack,
+    CHECK_MSG(at >= 0 && worst <= r.error_relative + slack,
+        "truck, diagonal: vertex %d is off by %.3g of itself (column good to %.2g), error_relative %.3g", (int)at, worst, slack,
               r.error_relative);
     shape_free(&s);
 }

@@ -8,7 +8,8 @@ enum { FILT_LIST = 10, FILT_POINTS = 20000 };
 /* What hd_filter_kind says, once more. */
 static double filt_want(const hd_filter *f, double l) {
     const double a = f->a, b = f->b;
-    if (l <= 0) return f->kind == HD_FILTER_WAVE || f->kind == HD_FILTER_MEXICAN_HAT || f->kind == HD_FILTER_BAND ? 0 : f->kind == HD_FILTER_BIHARMONIC ? 1 / (a * a) : 1;
+    if (l <= 0) return f->kind == HD_FILTER_WAVE || f->kind == HD_FILTER_MEXICAN_HAT ||
+            f->kind == HD_FILTER_BAND ? 0 : f->kind == HD_FILTER_BIHARMONIC ? 1 / (a * a) : 1;
     if (f->kind == HD_FILTER_HEAT) return exp(-a * l);
     if (f->kind == HD_FILTER_WAVE) return exp(-pow(a - log(l), 2) / (2 * b * b));
     if (f->kind == HD_FILTER_MEXICAN_HAT) return l * exp(-a * l);
@@ -49,7 +50,8 @@ static double filt_error(const hd_filter *f, const hd_rational *set, double top)
     double most = fabs(filt_want(f, 0) - hd_rational_eval(set, 0));
     int k;
     for (k = 0; k < FILT_POINTS; k++) {
-        const double s = (k % (FILT_POINTS / 2) + 0.37) / (FILT_POINTS / 2), l = k < FILT_POINTS / 2 ? from * pow(top / from, s) : from + s * (top - from);
+        const double s = (k % (FILT_POINTS / 2) + 0.37) / (FILT_POINTS / 2);
+        const double l = k < FILT_POINTS / 2 ? from * pow(top / from, s) : from + s * (top - from);
         most = fmax(most, fabs(filt_want(f, l) - hd_rational_eval(set, -set->t * l)));
     }
     return most;
@@ -62,8 +64,10 @@ static void filt_check_set(const hd_filter *f, const hd_rational *set, double to
     int k;
     for (k = 0; k <= 2000; k++) largest = fmax(largest, filt_want(f, top * pow(10, -k / 200.0)));
     CHECK_MSG(off <= 1e-8 * largest && set->degree <= 24, "%s: error %g with degree %d", what, off / largest, (int)set->degree);
-    CHECK_MSG(off <= set->max_error && set->max_error <= set->max_weighted_error, "%s: error %g, reported %g, weighted %g", what, off, set->max_error, set->max_weighted_error);
-    CHECK_MSG(fabs(set->largest / largest - 1) < 1e-2 && set->lambda_max == top && set->t > 0, "%s: largest value %g, not %g", what, set->largest, largest);
+    CHECK_MSG(off <= set->max_error && set->max_error <= set->max_weighted_error, "%s: error %g, reported %g, weighted %g",
+        what, off, set->max_error, set->max_weighted_error);
+    CHECK_MSG(fabs(set->largest / largest - 1) < 1e-2 && set->lambda_max == top && set->t > 0, "%s: largest value %g, not %g",
+        what, set->largest, largest);
     CHECK(set->kind == HD_POLES_OWN && set->a0 == 0);
     for (i = 0; i < set->n_poles; i++) {
         degree += set->theta[i].im == 0 ? 1 : 2;
@@ -86,7 +90,8 @@ static void filt_sets(void) {
             snprintf(what, sizeof what, "filter %d, eigenvalues to %g", q, top[k]);
             CHECK_MSG(hd_rational_fit(&set, f + q, top[k], NULL, &e) == HD_OK, "%s: %s", what, e.text);
             filt_check_set(f + q, &set, top[k], what);
-            CHECK(fabs(hd_filter_eval(f + q, 3 * low[k]) - filt_want(f + q, 3 * low[k])) <= 1e-12 * set.largest && fabs(hd_filter_eval(f + q, 0) - filt_want(f + q, 0)) <= 1e-12 * set.largest);
+            CHECK(fabs(hd_filter_eval(f + q, 3 * low[k]) - filt_want(f + q, 3 * low[k])) <= 1e-12 * set.largest &&
+                fabs(hd_filter_eval(f + q, 0) - filt_want(f + q, 0)) <= 1e-12 * set.largest);
         }
     }
 }
@@ -157,7 +162,8 @@ static void filt_weight(void) {
         off = fmax(off, (1 + f.weight * l) * e);
         CHECK(e <= set.max_error && (1 + set.t * l) * e <= set.max_weighted_error);
     }
-    CHECK_MSG(off <= 1.1e-7 && set.max_weighted_error < 0.02 * plain.max_weighted_error, "error %g, reported %g, plain %g", off, set.max_weighted_error, plain.max_weighted_error);
+    CHECK_MSG(off <= 1.1e-7 && set.max_weighted_error < 0.02 * plain.max_weighted_error, "error %g, reported %g, plain %g",
+        off, set.max_weighted_error, plain.max_weighted_error);
 }
 
 static double filt_high_pass(double lambda, void *user) { return 1 - exp(-lambda * *(double *)user); }
@@ -229,7 +235,8 @@ static void filt_holes(void) {
         for (q = 0; q < 3; q++) several[q] = filt_make(HD_FILTER_HEAT, 1 + q, 0);
         several[k % 3] = f;
         st = hd_rational_fit_shared(sets, 3, several, 1000, NULL, &e);
-        CHECK_MSG(hole.hits == 1 && st == HD_ERR_NOT_FINITE && e.column == k % 3, "of three, hole %d: %d hits, %s, column %d", k, hole.hits, hd_status_name(st), (int)e.column);
+        CHECK_MSG(hole.hits == 1 && st == HD_ERR_NOT_FINITE && e.column == k % 3, "of three, hole %d: %d hits, %s, column %d",
+            k, hole.hits, hd_status_name(st), (int)e.column);
     }
 }
 
@@ -365,7 +372,8 @@ static void filt_one_plan(void) {
         set = filt_fit(f + q, lap);
         CHECK(hd_heat_set_rational(one, &set, &e) == HD_OK);
         own = filt_plan(lap, &set, "");
-        CHECK(heat_diagonal(own, 1, &set.t, HD_KERNEL_SYMMETRIC, want, 0, NULL) >= 0 && heat_diagonal(one, 1, &set.t, HD_KERNEL_SYMMETRIC, D, 0, &rep) >= 0);
+        CHECK(heat_diagonal(own, 1, &set.t, HD_KERNEL_SYMMETRIC, want, 0, NULL) >= 0 &&
+            heat_diagonal(one, 1, &set.t, HD_KERNEL_SYMMETRIC, D, 0, &rep) >= 0);
         CHECK(dense_max_diff(D, want, n) == 0 && rep.n_poles == set.n_poles);
         CHECK(heat_column(own, set.t, 5, want, NULL) >= 0 && heat_column(one, set.t, 5, u, NULL) >= 0);
         CHECK(dense_max_diff(u, want, n) <= 1e-8 * dense_max_abs(want, n));
@@ -407,9 +415,11 @@ static void filt_shared_sets(void) {
         CHECK_MSG(hd_rational_fit_shared(set, counts[k], f, top, NULL, &e) == HD_OK, "%d filters: %s", counts[k], e.text);
         for (q = 0; q < counts[k]; q++) {
             const double off = filt_error(f + q, set + q, top);
-            CHECK_MSG(off <= set[q].max_error && off <= 1.1 * f[q].tol * set[q].largest, "filter %d of %d: error %g, reported %g, largest %g", q, counts[k], off, set[q].max_error,
+            CHECK_MSG(off <= set[q].max_error && off <= 1.1 * f[q].tol * set[q].largest,
+                "filter %d of %d: error %g, reported %g, largest %g", q, counts[k], off, set[q].max_error,
                       set[q].largest);
-            CHECK(set[q].n_poles == set[0].n_poles && set[q].t == set[0].t && memcmp(set[q].theta, set[0].theta, sizeof set[0].theta) == 0 && set[q].kind == HD_POLES_OWN &&
+            CHECK(set[q].n_poles == set[0].n_poles && set[q].t == set[0].t &&
+                memcmp(set[q].theta, set[0].theta, sizeof set[0].theta) == 0 && set[q].kind == HD_POLES_OWN &&
                   set[q].lambda_max == top && set[q].a0 == 0);
         }
     }
@@ -422,7 +432,8 @@ static void filt_shared_sets(void) {
     for (q = 0; q < 2; q++) CHECK(filt_error(f + q, set + q, top) <= set[q].max_error);
     f[1].b = 0;
     CHECK(hd_rational_fit_shared(set, 2, f, top, NULL, &e) == HD_ERR_ARGUMENT && e.column == 1);
-    CHECK(hd_rational_fit_shared(set, 0, f, top, NULL, NULL) == HD_ERR_ARGUMENT && hd_rational_fit_shared(NULL, 1, f, top, NULL, NULL) == HD_ERR_ARGUMENT);
+    CHECK(hd_rational_fit_shared(set, 0, f, top, NULL, NULL) == HD_ERR_ARGUMENT &&
+        hd_rational_fit_shared(NULL, 1, f, top, NULL, NULL) == HD_ERR_ARGUMENT);
 }
 
 /* Diagonals and traces of all filters at once against the truth. */
@@ -445,7 +456,8 @@ static void filt_shared_diagonals(const char *pairs) {
     heat = filt_plan(lap, set + 3, "");
     for (round = 0; round < 2; round++) {
         for (v = 0; v < COUNT * (n + 1); v++) D[v] = 77;
-        CHECK_MSG(hd_heat_filter_diagonals(heat, COUNT, set, D, (size_t)n + 1, round ? NULL : Z, round ? NULL : bound, &rep, NULL) == HD_OK, "%s: %s", pairs, rep.error.text);
+        CHECK_MSG(hd_heat_filter_diagonals(heat, COUNT, set, D, (size_t)n + 1, round ? NULL : Z, round ? NULL : bound, &rep, NULL) == HD_OK,
+            "%s: %s", pairs, rep.error.text);
         CHECK_MSG(rep.error_bound < 2e-5 && rep.method == HD_METHOD_DIRECT && rep.degree == set[0].degree, "%s: bound %g", pairs, rep.error_bound);
         for (q = 0; q < COUNT; q++) {
             const double *d = D + (size_t)q * ((size_t)n + 1);
@@ -460,8 +472,10 @@ static void filt_shared_diagonals(const char *pairs) {
             }
             for (l = 0; l < T->n; l++) sum += filt_want(f + q, fmax(0, (double)T->lambda[l]));
             CHECK(d[n] == 77);
-            CHECK_MSG(off <= rep.error_bound * most && off <= 2e-7 * most, "%s, filter %d: diagonal off by %g of %g, bound %g", pairs, q, off, most, rep.error_bound);
-            if (round == 0) CHECK_MSG(fabs(Z[q] - sum) <= bound[q] && fabs(Z[q] - sum) <= 1e-6 * sum && bound[q] < 1e-3 * sum, "%s, filter %d: trace %.12g, not %.12g, bound %g",
+            CHECK_MSG(off <= rep.error_bound * most && off <= 2e-7 * most, "%s, filter %d: diagonal off by %g of %g, bound %g",
+                pairs, q, off, most, rep.error_bound);
+            if (round == 0) CHECK_MSG(fabs(Z[q] - sum) <= bound[q] && fabs(Z[q] - sum) <= 1e-6 * sum && bound[q] < 1e-3 * sum,
+                    "%s, filter %d: trace %.12g, not %.12g, bound %g",
                                       pairs, q, Z[q], sum, bound[q]);
         }
     }
@@ -472,7 +486,8 @@ static void filt_shared_diagonals(const char *pairs) {
     CHECK_MSG(fabs(D[v] - D[(size_t)4 * ((size_t)n + 1) + (size_t)v]) <= 1e-7 * dense_max_abs(D, n), "%s: column and diagonal", pairs);
     set[2].theta[1].re *= 1.0001;
     CHECK(hd_heat_filter_diagonals(heat, COUNT, set, D, 0, NULL, NULL, &rep, NULL) == HD_ERR_ARGUMENT && rep.error.column == 2);
-    CHECK(hd_heat_filter_diagonals(heat, 0, set, D, 0, NULL, NULL, NULL, NULL) == HD_ERR_ARGUMENT && hd_heat_filter_diagonals(heat, 1, NULL, D, 0, NULL, NULL, NULL, NULL) == HD_ERR_ARGUMENT);
+    CHECK(hd_heat_filter_diagonals(heat, 0, set, D, 0, NULL, NULL, NULL, NULL) == HD_ERR_ARGUMENT &&
+        hd_heat_filter_diagonals(heat, 1, NULL, D, 0, NULL, NULL, NULL, NULL) == HD_ERR_ARGUMENT);
     CHECK(hd_heat_set_rational(heat, NULL, NULL) == HD_OK && hd_heat_filter_diagonals(heat, 1, set, D, 0, NULL, NULL, &rep, NULL) == HD_ERR_ARGUMENT);
 }
 
@@ -503,14 +518,17 @@ static void filt_refused(void) {
     f.a = 2 * time;
     set = filt_fit(&f, lap);
     heat = filt_plan(lap, &set, "");
-    CHECK(heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &set.t, 1, &source, u, 0, NULL) >= 0 && heat_distance(plain, HD_DISTANCE_CLASSICAL, 1, &time, 1, &source, w, 0, NULL) >= 0);
+    CHECK(heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &set.t, 1, &source, u, 0, NULL) >= 0 &&
+        heat_distance(plain, HD_DISTANCE_CLASSICAL, 1, &time, 1, &source, w, 0, NULL) >= 0);
     CHECK(dense_max_diff(u, w, lap->n) < 1e-6 * dense_max_abs(w, lap->n));
     t[0] = set.t;
     t[1] = 2 * set.t;
-    CHECK(heat_times(heat, 2, t, HD_KERNEL_OPERATOR, source, NULL, u, 0, &rep) == HD_ERR_ARGUMENT && rep.error.column == 1 && rep.error.value == t[1]);
+    CHECK(heat_times(heat, 2, t, HD_KERNEL_OPERATOR, source, NULL, u, 0, &rep) == HD_ERR_ARGUMENT && rep.error.column == 1 &&
+        rep.error.value == t[1]);
     CHECK(heat_diagonal(heat, 1, t + 1, HD_KERNEL_SYMMETRIC, u, 0, &rep) == HD_ERR_ARGUMENT);
     CHECK(heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, t + 1, 1, &source, u, 0, &rep) == HD_ERR_ARGUMENT);
-    CHECK(heat_sample(heat, HD_DISTANCE_CLASSICAL, set.t, 4, 0, vertex, w, &rep) >= 0 && heat_sample(heat, HD_DISTANCE_CLASSICAL, 1.5 * set.t, 4, 0, vertex, w, &rep) == HD_ERR_ARGUMENT);
+    CHECK(heat_sample(heat, HD_DISTANCE_CLASSICAL, set.t, 4, 0, vertex, w, &rep) >= 0 &&
+        heat_sample(heat, HD_DISTANCE_CLASSICAL, 1.5 * set.t, 4, 0, vertex, w, &rep) == HD_ERR_ARGUMENT);
     t[1] = set.t;                                /* twice the same is fine */
     CHECK(heat_times(heat, 2, t, HD_KERNEL_OPERATOR, source, NULL, u, 0, &rep) >= 0 && dense_max_diff(u, u + lap->n, lap->n) == 0);
     CHECK(heat_distance(heat, HD_DISTANCE_COMMUTE, 0, NULL, 1, &source, u, 0, &rep) >= 0);

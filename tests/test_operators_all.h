@@ -53,8 +53,10 @@ static void all_operators(void) {
 /* ---- doors between the operators ---- */
 
 static int all_same(const hd_laplacian *a, const hd_laplacian *b) {
-    return a->n_active == b->n_active && a->L.nnz == b->L.nnz && a->h == b->h && memcmp(a->L.col, b->L.col, (size_t)a->L.nnz * sizeof *a->L.col) == 0 &&
-           memcmp(a->L.val, b->L.val, (size_t)a->L.nnz * sizeof(double)) == 0 && memcmp(a->mass, b->mass, (size_t)a->n_active * sizeof(double)) == 0 &&
+    return a->n_active == b->n_active && a->L.nnz == b->L.nnz && a->h == b->h &&
+           memcmp(a->L.col, b->L.col, (size_t)a->L.nnz * sizeof *a->L.col) == 0 &&
+           memcmp(a->L.val, b->L.val, (size_t)a->L.nnz * sizeof(double)) == 0 &&
+           memcmp(a->mass, b->mass, (size_t)a->n_active * sizeof(double)) == 0 &&
            memcmp(a->vertex, b->vertex, (size_t)a->n_active * sizeof *a->vertex) == 0 && memcmp(&a->mesh, &b->mesh, sizeof a->mesh) == 0;
 }
 
@@ -104,7 +106,8 @@ static void all_fans(void) {
         memset(&o, 0, sizeof o);
         o.tufted = way;
         o.intrinsic_delaunay = !way;
-        CHECK(hd_laplacian_polygons(&fans, s->xyz, s->n, s->face_ptr, s->face_idx, s->n_faces, &o, &e) == HD_OK && fans->kind == HD_LAPLACIAN_FEM && fans->mesh.n_flips > 0);
+        CHECK(hd_laplacian_polygons(&fans, s->xyz, s->n, s->face_ptr, s->face_idx, s->n_faces, &o, &e) == HD_OK &&
+            fans->kind == HD_LAPLACIAN_FEM && fans->mesh.n_flips > 0);
         CHECK(hd_laplacian_triangles(&triangles, s->xyz, s->n, tri, 2 * s->n_faces, &o, &e) == HD_OK && all_same(fans, triangles));
         hd_laplacian_free(fans);
         hd_laplacian_free(triangles);
@@ -137,7 +140,8 @@ static void all_kinds(void) {
     int k, door, kind;
     for (k = HD_LAPLACIAN_DEFAULT; k <= HD_LAPLACIAN_MATRICES + 1; k++)
         for (door = 0; door < 3; door++) {
-            const int taken = k == 0 || (door == 1 ? k == HD_LAPLACIAN_VORONOI_EXP || k == HD_LAPLACIAN_EXP : k >= HD_LAPLACIAN_FEM && k <= HD_LAPLACIAN_COT);
+            const int points = k == HD_LAPLACIAN_VORONOI_EXP || k == HD_LAPLACIAN_EXP, faces = k >= HD_LAPLACIAN_FEM && k <= HD_LAPLACIAN_COT;
+            const int taken = k == 0 || (door == 1 ? points : faces);
             memset(&o, 0, sizeof o);
             o.kind = (hd_laplacian_kind)k;
             CHECK_MSG(all_door(door, s, s->n, &o, &kind, &e) == (taken ? HD_OK : HD_ERR_ARGUMENT), "door %d, kind %d: %s", door, k, e.text);

@@ -150,7 +150,8 @@ static void src_same(const hd_laplacian *lap, const char *method, const char *wh
             for (q = 0; q < 3; q++)
                 for (v = 0; v < n; v++) {
                     const double u = U[(size_t)(3 * w + q) * (size_t)n + (size_t)v];
-                    if (lap->row[v] < 0) CHECK_MSG(u == (lap->row[v] == HD_ROW_INERT && k == HD_KERNEL_OPERATOR ? load[v] : 0), "%s: source %d at vertex %d: %g", what, w, v, u);
+                    if (lap->row[v] < 0) CHECK_MSG(u == (lap->row[v] == HD_ROW_INERT && k == HD_KERNEL_OPERATOR ? load[v] : 0),
+                            "%s: source %d at vertex %d: %g", what, w, v, u);
                     else if (q == 2 && k == HD_KERNEL_OPERATOR) CHECK_MSG(fabs(u - load[v]) <= 1e-15, "%s: load %d of vertex %d", what, w, v);
                 }
         }
@@ -163,7 +164,8 @@ static void src_same(const hd_laplacian *lap, const char *method, const char *wh
     s[1].vertex += 3;
     s[1].bary += 3;
     for (k = 0; k < 2; k++) {
-        CHECK(hd_heat_columns(heat, (hd_kernel)k, 3, times, 2, id, U, 0, &a, NULL) >= 0 && hd_heat_columns_from(heat, (hd_kernel)k, 3, times, 2, s, V, 0, &b, NULL) >= 0);
+        CHECK(hd_heat_columns(heat, (hd_kernel)k, 3, times, 2, id, U, 0, &a, NULL) >= 0 &&
+            hd_heat_columns_from(heat, (hd_kernel)k, 3, times, 2, s, V, 0, &b, NULL) >= 0);
         CHECK(memcmp(U, V, (size_t)(6 * n) * sizeof *U) == 0 && a.error_bound == b.error_bound && a.iterations == b.iterations);
     }
     for (k = 0; k < 4 && strcmp(method, "method=direct") == 0; k++) {
@@ -171,7 +173,8 @@ static void src_same(const hd_laplacian *lap, const char *method, const char *wh
         const int32_t n_times = k < 2 ? 2 : 1;
         CHECK(hd_heat_distance(kit_heat(lap, method), (hd_distance_kind)k, n_times, times, 2, id, U, 0, &a, NULL) >= 0);
         CHECK(hd_heat_distance_from(kit_heat(lap, method), (hd_distance_kind)k, n_times, times, 2, s, V, 0, &b, NULL) >= 0);
-        CHECK_MSG(memcmp(U, V, (size_t)(2 * n_times * n) * sizeof *U) == 0 && a.error_bound == b.error_bound, "%s, distance %d: %g, bounds %g %g", what, k,
+        CHECK_MSG(memcmp(U, V, (size_t)(2 * n_times * n) * sizeof *U) == 0 && a.error_bound == b.error_bound,
+            "%s, distance %d: %g, bounds %g %g", what, k,
                   dense_max_diff(U, V, 2 * n_times * n), a.error_bound, b.error_bound);
     }
 }
@@ -186,7 +189,8 @@ static void src_symmetric(const hd_laplacian *lap, const char *method, const cha
     hd_report rep;
     int p, q;
     src_make_all(room, s, lap);
-    CHECK_MSG(hd_heat_columns_from(kit_heat(lap, method), HD_KERNEL_SYMMETRIC, 1, &t, SRC_KINDS, s, U, 0, &rep, NULL) >= 0, "%s: %s", what, rep.error.text);
+    CHECK_MSG(hd_heat_columns_from(kit_heat(lap, method), HD_KERNEL_SYMMETRIC, 1, &t, SRC_KINDS, s, U, 0, &rep, NULL) >= 0,
+        "%s: %s", what, rep.error.text);
     for (p = 0; p < SRC_KINDS; p++) {
         const double *load = src_load(s + p, n);
         for (q = 0; q < SRC_KINDS; q++) M[p][q] = dense_dot(load, U + (size_t)q * (size_t)n, n);
@@ -200,7 +204,8 @@ static void src_symmetric(const hd_laplacian *lap, const char *method, const cha
 }
 
 static void src_exact(void) {
-    static const char *const pairs[] = {"flat/9/8/0.3 fem+held", "qtorus/8/6 poly", "tromino/4/4/0.2 cot+tuft", "cloud/90/0 vexp", "cloud/90/1 exp", "cloud/90/0 tuft", "needles/2 fem+id",
+    static const char *const pairs[] = {"flat/9/8/0.3 fem+held", "qtorus/8/6 poly", "tromino/4/4/0.2 cot+tuft",
+        "cloud/90/0 vexp", "cloud/90/1 exp", "cloud/90/0 tuft", "needles/2 fem+id",
                                         "tangle fem+tuft", "tangle vor+id"};
     static const char *const methods[3] = {"method=direct", "method=krylov", "method=iterative"};
     int k, m;
@@ -249,12 +254,14 @@ static void src_pair_columns(trial_work *w, const hd_spectrum *z, const hd_sourc
     for (k = 0; k < 2; k++) {
         CHECK(hd_spectrum_columns_from(z, (hd_kernel)k, 3, times, SRC_KINDS, s, U, bound, 0, NULL) == HD_OK);
         for (q = 0; q < 3 * SRC_KINDS; q++) {
-            const double *u = U + (size_t)q * (size_t)n, *b = bound + (size_t)q * (size_t)n, *load = src_load(s + q / 3, n), size = dense_max_abs(u, n);
+            const double *u = U + (size_t)q * (size_t)n, *b = bound + (size_t)q * (size_t)n, *load = src_load(s + q / 3, n),
+                size = dense_max_abs(u, n);
             trial_filter_for(w, times[q % 3], 0);
             if (k == HD_KERNEL_SYMMETRIC) trial_want_symmetric(w, load);
             else trial_want_field(w, load, load, 0);
             for (v = 0; v < n; v++) {
-                CHECK_MSG(src_near(w, v, u[v], b[v] + 1e-12 * size), "%s, source %d, time %d: %g for %g, bound %g", w->text, q / 3, q % 3, u[v], (double)w->want[v], b[v]);
+                CHECK_MSG(src_near(w, v, u[v], b[v] + 1e-12 * size), "%s, source %d, time %d: %g for %g, bound %g", w->text,
+                    q / 3, q % 3, u[v], (double)w->want[v], b[v]);
                 if (q % 3 == 1) CHECK_MSG(b[v] <= 1e-2 * size, "%s, source %d: bound %g of %g", w->text, q / 3, b[v], size);
                 if (lap->row[v] < 0) CHECK(u[v] == (lap->row[v] == HD_ROW_INERT && k == HD_KERNEL_OPERATOR ? load[v] : 0));
             }
@@ -300,7 +307,8 @@ static void src_pair_distances(trial_work *w, const hd_spectrum *z, const hd_sou
             src_want_distances(w, (hd_distance_kind)kind, t, s + q);
             for (v = 0; v < n; v++) {
                 const double d = D[(size_t)q * (size_t)n + (size_t)v], b = bound[(size_t)q * (size_t)n + (size_t)v];
-                CHECK_MSG(d == (double)w->want[v] || src_near(w, v, d, b + (size < HUGE_VAL ? 1e-13 * size : 0)), "%s, distance %d from source %d: %g for %g, bound %g", w->text, kind, q, d,
+                CHECK_MSG(d == (double)w->want[v] || src_near(w, v, d, b + (size < HUGE_VAL ? 1e-13 * size : 0)),
+                    "%s, distance %d from source %d: %g for %g, bound %g", w->text, kind, q, d,
                           (double)w->want[v], b);
             }
         }
@@ -322,7 +330,8 @@ static void src_pair_same(const hd_laplacian *lap, const hd_spectrum *z) {
     for (k = 0; k < 6; k++) {                    /* two kernels, four kinds of distances */
         const int32_t n_times = k < 4 ? 2 : 1;
         const size_t bytes = (size_t)(2 * n_times * n) * sizeof *U;
-        if (k < 2) CHECK(hd_spectrum_columns(z, (hd_kernel)k, 2, times, 2, id, U, a, 0, NULL) == HD_OK && hd_spectrum_columns_from(z, (hd_kernel)k, 2, times, 2, s, V, b, 0, NULL) == HD_OK);
+        if (k < 2) CHECK(hd_spectrum_columns(z, (hd_kernel)k, 2, times, 2, id, U, a, 0, NULL) == HD_OK &&
+                hd_spectrum_columns_from(z, (hd_kernel)k, 2, times, 2, s, V, b, 0, NULL) == HD_OK);
         else CHECK(hd_spectrum_distance(z, (hd_distance_kind)(k - 2), n_times, times, 2, id, U, a, 0, NULL) == HD_OK &&
                    hd_spectrum_distance_from(z, (hd_distance_kind)(k - 2), n_times, times, 2, s, V, b, 0, NULL) == HD_OK);
         CHECK(memcmp(U, V, bytes) == 0 && memcmp(a, b, bytes) == 0);
@@ -345,15 +354,18 @@ static void src_samples(trial_work *w, const hd_source *s) {
         memset(&one, 0, sizeof one);
         one.count = 1;
         for (v = 0; v < n; v++) near[v] = HUGE_VAL;
-        CHECK_MSG(hd_heat_sample_from(heat, (hd_distance_kind)kind, t, FROM, s, COUNT, vertex, distance, &rep, NULL) >= 0, "%s: %s", w->text, rep.error.text);
+        CHECK_MSG(hd_heat_sample_from(heat, (hd_distance_kind)kind, t, FROM, s, COUNT, vertex, distance, &rep, NULL) >= 0,
+            "%s: %s", w->text, rep.error.text);
         for (q = -FROM; q < COUNT; q++) {
             double best = -1;
             if (q >= 0) {
                 const double own = near[vertex[q]];
                 for (v = 0; v < n; v++)
                     if (lap->row[v] >= 0) best = fmax(best, near[v]);
-                CHECK_MSG(own == best || own >= best * (1 - 1e-5), "%s, distance %d, point %d: %g is not the largest, %g", w->text, kind, q, own, best);
-                CHECK_MSG(distance[q] == own || fabs(distance[q] - own) <= 1e-5 * own, "%s, distance %d, point %d: distance %g, not %g", w->text, kind, q, distance[q], own);
+                CHECK_MSG(own == best || own >= best * (1 - 1e-5), "%s, distance %d, point %d: %g is not the largest, %g",
+                    w->text, kind, q, own, best);
+                CHECK_MSG(distance[q] == own || fabs(distance[q] - own) <= 1e-5 * own,
+                    "%s, distance %d, point %d: distance %g, not %g", w->text, kind, q, distance[q], own);
                 one.vertex = vertex + q;
             }
             src_want_distances(w, (hd_distance_kind)kind, t, q < 0 ? s + FROM + q : &one);
@@ -362,13 +374,15 @@ static void src_samples(trial_work *w, const hd_source *s) {
         one.vertex = again;                      /* a vertex as a source is that vertex given */
         again[0] = lap->vertex[lap->n_active / 3];
         CHECK(heat_sample(heat, (hd_distance_kind)kind, t, COUNT, 1, again, distance, &rep) >= 0);
-        CHECK(hd_heat_sample_from(heat, (hd_distance_kind)kind, t, 1, &one, COUNT - 1, vertex, NULL, &rep, NULL) >= 0 && memcmp(vertex, again + 1, sizeof vertex - sizeof *vertex) == 0);
+        CHECK(hd_heat_sample_from(heat, (hd_distance_kind)kind, t, 1, &one, COUNT - 1, vertex, NULL, &rep, NULL) >= 0 &&
+            memcmp(vertex, again + 1, sizeof vertex - sizeof *vertex) == 0);
         CHECK(hd_heat_sample_from(heat, (hd_distance_kind)kind, t, 0, NULL, 2, vertex, NULL, &rep, NULL) >= 0 && vertex[0] == lap->vertex[0]);
     }
 }
 
 static void src_pairs(void) {
-    static const char *const pairs[] = {"shape=flat/8/7/0.3 op=fem", "shape=flat/8/7/0.3 op=vor", "shape=flat/8/7/0.3 op=fem+held", "shape=qtorus/8/6 op=poly", "shape=cloud/50/0 op=tuft",
+    static const char *const pairs[] = {"shape=flat/8/7/0.3 op=fem", "shape=flat/8/7/0.3 op=vor",
+        "shape=flat/8/7/0.3 op=fem+held", "shape=qtorus/8/6 op=poly", "shape=cloud/50/0 op=tuft",
                                         "shape=tangle op=vor+id"};
     int k;
     for (k = 0; k < (int)(sizeof pairs / sizeof *pairs); k++) {
@@ -406,9 +420,12 @@ static void src_sample_report(void) {
         hd_report one, all;
         vertex[0] = 7;
         CHECK(heat_sample(heat, kind, t[q % 2], 5, 1, vertex, far, &all) >= 0 && heat_distance(heat, kind, 1, t + q % 2, 1, vertex, d, 0, &one) >= 0);
-        CHECK_MSG(all.evidence_rational == one.evidence_rational && all.evidence_solver == one.evidence_solver && all.evidence_rounding == one.evidence_rounding,
-                  "kind %d, t %d: evidence %d %d %d", (int)kind, q % 2, (int)all.evidence_rational, (int)all.evidence_solver, (int)all.evidence_rounding);
-        CHECK_MSG(all.error_bound > 0 && all.error_bound <= 1e-6 && all.error_bound <= 10 * one.error_bound, "kind %d, t %d: bound %g, of distances %g", (int)kind, q % 2, all.error_bound,
+        CHECK_MSG(all.evidence_rational == one.evidence_rational && all.evidence_solver == one.evidence_solver &&
+            all.evidence_rounding == one.evidence_rounding,
+                  "kind %d, t %d: evidence %d %d %d", (int)kind, q % 2, (int)all.evidence_rational, (int)all.evidence_solver,
+                      (int)all.evidence_rounding);
+        CHECK_MSG(all.error_bound > 0 && all.error_bound <= 1e-6 && all.error_bound <= 10 * one.error_bound,
+            "kind %d, t %d: bound %g, of distances %g", (int)kind, q % 2, all.error_bound,
                   one.error_bound);
     }
 }
@@ -597,7 +614,8 @@ static void src_geo_sphere(const char *spec) {
         hd_geodesic_report rep;
         const hd_source src = src_in_triangles(1, v, b);
         int32_t at;
-        CHECK(hd_geodesic_distance_from(g, &src, d, &rep, NULL) == HD_OK && rep.n_stages == 1 && rep.residual_heat > 0 && rep.residual_heat < 1e-13 && rep.residual_distance < 1e-12);
+        CHECK(hd_geodesic_distance_from(g, &src, d, &rep, NULL) == HD_OK && rep.n_stages == 1 && rep.residual_heat > 0 &&
+            rep.residual_heat < 1e-13 && rep.residual_distance < 1e-12);
         h = rep.h;
         for (k = 0; k < 9; k++) p[k % 3] += b[k / 3] * s->xyz[3 * v[k / 3] + k % 3];
         memcpy(flat, p, sizeof p);
@@ -633,7 +651,8 @@ static void src_geo_flat(void) {
     src.curve = 1;
     CHECK(hd_geodesic_distance_from(g, &src, d, &rep, NULL) == HD_OK && rep.n_stages == 1);
     for (v = 0; v < s->n; v++) off[1] = fmax(off[1], fabs(d[v] - fabs(s->xyz[3 * v] - x)));
-    CHECK_MSG(off[0] < 0.3 * cell && off[1] < 0.1 * cell, "square: points off by %g edges on average, a line by at most %g", off[0] / cell, off[1] / cell);
+    CHECK_MSG(off[0] < 0.3 * cell && off[1] < 0.1 * cell, "square: points off by %g edges on average, a line by at most %g",
+        off[0] / cell, off[1] / cell);
     x = 10.3 / (LONG - 1);
     y = 1.6 / (LONG - 1);
     src = src_in_triangles(1, vertex, bary);
@@ -666,12 +685,14 @@ static void src_geo_rules(void) {
     vertex[5] = a->n + 20;
     bary[4] = bary[5] = 0.25;
     bary[3] = 0.5;
-    CHECK(hd_geodesic_distance_from(g, &src, d, &rep, &err) == HD_ERR_ARGUMENT && err.row == 1 && strstr(err.text, "no face") && rep.status == err.status);
+    CHECK(hd_geodesic_distance_from(g, &src, d, &rep, &err) == HD_ERR_ARGUMENT && err.row == 1 &&
+        strstr(err.text, "no face") && rep.status == err.status);
     src.curve = 1;
     CHECK(hd_geodesic_distance_from(g, &src, d, NULL, &err) == HD_ERR_ARGUMENT && err.row == 0);
     bary[1] = -1;
     CHECK(hd_geodesic_distance_from(g, &src, d, NULL, &err) == HD_ERR_ARGUMENT && err.row == 0 && err.vertex == vertex[1]);
-    CHECK(hd_geodesic_distance_from(g, NULL, d, NULL, &err) == HD_ERR_ARGUMENT && hd_geodesic_distance_from(g, &src, NULL, NULL, &err) == HD_ERR_ARGUMENT);
+    CHECK(hd_geodesic_distance_from(g, NULL, d, NULL, &err) == HD_ERR_ARGUMENT &&
+        hd_geodesic_distance_from(g, &src, NULL, NULL, &err) == HD_ERR_ARGUMENT);
     CHECK(hd_geodesic_distance_from(NULL, &src, d, NULL, &err) == HD_ERR_ARGUMENT);
     shape_free(&s);
 }
@@ -692,8 +713,10 @@ static void src_geo_kinds(void) {
                 hd_source src = src_in_triangles(which == 0 ? 1 : 3, vertex, bary);
                 for (p = 0; p < 3; p++) memcpy(vertex + 3 * p, s->tri + 3 * (which == 1 && p == 2 ? s->n_tri / 2 : 3), 3 * sizeof *vertex);
                 src.curve = which == 2;
-                CHECK(hd_geodesic_distance_from(g, &src, want, NULL, NULL) == HD_OK && hd_geodesic_distance_from(other, &src, d, NULL, NULL) == HD_OK);
-                CHECK_MSG(dense_max_diff(d, want, s->n) < 1e-11, "border %d, plan %d, source %d: off by %g", q, kind, which, dense_max_diff(d, want, s->n));
+                CHECK(hd_geodesic_distance_from(g, &src, want, NULL, NULL) == HD_OK &&
+                    hd_geodesic_distance_from(other, &src, d, NULL, NULL) == HD_OK);
+                CHECK_MSG(dense_max_diff(d, want, s->n) < 1e-11, "border %d, plan %d, source %d: off by %g", q, kind, which,
+                    dense_max_diff(d, want, s->n));
             }
         }
     }
@@ -753,7 +776,8 @@ static void src_geo_borders(void) {
             src = src_in_triangles(at[q].count, at[q].vertex, at[q].bary);
             src.curve = at[q].curve;
             off = src_square_off(g, s, &src, &e);
-            if (zero && at[q].row >= 0) CHECK_MSG(off < 0 && e.status == HD_ERR_ARGUMENT && e.row == at[q].row && strstr(e.text, "border"), "%s: %g, row %d", at[q].what, off, (int)e.row);
+            if (zero && at[q].row >= 0) CHECK_MSG(off < 0 && e.status == HD_ERR_ARGUMENT && e.row == at[q].row &&
+                    strstr(e.text, "border"), "%s: %g, row %d", at[q].what, off, (int)e.row);
             else CHECK_MSG(off >= 0 && off < (zero ? 0.13 : 0.05), "border %d, %s: off by %g", b, at[q].what, off);
         }
         src = src_in_triangles(2, stays, first); /* a curve that stays where it is */
@@ -776,7 +800,8 @@ static void src_refused(hd_heat *heat, const hd_source *s, hd_status want, int64
     two[0].vertex = s->vertex;
     two[1] = *s;
     st = hd_heat_columns_from(heat, HD_KERNEL_OPERATOR, 1, &t, 2, two, u, 0, &rep, NULL);
-    CHECK_MSG(st == want && (want == HD_OK || rep.error.column == 1) && rep.error.row == row && rep.error.vertex == vertex, "%s: %s, %s, column %d, row %d, vertex %d", what,
+    CHECK_MSG(st == want && (want == HD_OK || rep.error.column == 1) && rep.error.row == row && rep.error.vertex == vertex,
+        "%s: %s, %s, column %d, row %d, vertex %d", what,
               hd_status_name(rep.status), rep.error.text, (int)rep.error.column, (int)rep.error.row, (int)rep.error.vertex);
     CHECK(hd_heat_distance_from(heat, HD_DISTANCE_CLASSICAL, 1, &t, 2, two, u, 0, &rep, NULL) == want);
 }
@@ -795,7 +820,8 @@ static void src_one_vertex(hd_heat *heat, int32_t held) {
     s.weight = &two;
     for (k = 0; k < 2; k++) {
         s.vertex = id;
-        CHECK(hd_heat_columns_from(heat, (hd_kernel)k, 1, &t, 1, &s, u, 0, NULL, NULL) == HD_OK && hd_heat_columns(heat, (hd_kernel)k, 1, &t, 1, id, v, 0, NULL, NULL) == HD_OK);
+        CHECK(hd_heat_columns_from(heat, (hd_kernel)k, 1, &t, 1, &s, u, 0, NULL, NULL) == HD_OK &&
+            hd_heat_columns(heat, (hd_kernel)k, 1, &t, 1, id, v, 0, NULL, NULL) == HD_OK);
         for (i = 0; i < N; i++) CHECK(fabs(u[i] - 2 * v[i]) <= 1e-9 * fabs(v[3]));
         s.vertex = id + 1;
         CHECK(hd_heat_columns_from(heat, (hd_kernel)k, 1, &t, 1, &s, u, 0, NULL, NULL) == HD_OK && dense_max_abs(u, N) == 0);
@@ -825,7 +851,8 @@ static void src_far_weights(void) {
             weight[1] = ldexp(0.5, exponents[k]);
             CHECK(hd_heat_columns_from(heat, (hd_kernel)(q % 2), 1, &t, 1, &s, k ? u : one, 0, &rep, NULL) == HD_OK && rep.error_bound <= 1e-6);
             for (i = 0; i < lap->n && k; i++)
-                CHECK_MSG(fabs(ldexp(u[i], -exponents[k]) - one[i]) <= 1e-12 * dense_max_abs(one, lap->n), "%s, 2^%d: %.17g, %.17g", methods[q / 2], exponents[k], ldexp(u[i], -exponents[k]), one[i]);
+                CHECK_MSG(fabs(ldexp(u[i], -exponents[k]) - one[i]) <= 1e-12 * dense_max_abs(one, lap->n),
+                    "%s, 2^%d: %.17g, %.17g", methods[q / 2], exponents[k], ldexp(u[i], -exponents[k]), one[i]);
         }
     }
 }
@@ -833,9 +860,11 @@ static void src_far_weights(void) {
 static void src_errors(void) {
     enum { POINTS, CURVE, VERTICES };
     static const int32_t id[6] = {1, 2, 6, 2, 6, 7};
-    static const double none[2] = {0, 0}, usual[2] = {1, 2}, infinite[2] = {1, HUGE_VAL}, negative[2] = {-1, 2}, far_off[2] = {1e200, 2}, first_infinite[2] = {HUGE_VAL, 2};
+    static const double none[2] = {0, 0}, usual[2] = {1, 2}, infinite[2] = {1, HUGE_VAL}, negative[2] = {-1, 2},
+        far_off[2] = {1e200, 2}, first_infinite[2] = {HUGE_VAL, 2};
     /* bary4: that of the second point's second corner, one of which has 0.5, 0.25, 0.25; weight, length: NULL for none */
-    static const struct { const char *what; int kind, count, corners, cleared, last; double bary4; const double *weight, *length; hd_status want; int row, vertex; } rows[] = {
+    static const struct { const char *what; int kind, count, corners, cleared, last; double bary4; const double *weight,
+        *length; hd_status want; int row, vertex; } rows[] = {
         {"fine", POINTS, 2, 3, 1, 7, 0.25, NULL, NULL, HD_OK, -1, -1},
         {"not cleared", POINTS, 2, 3, 0, 7, 0.25, NULL, NULL, HD_ERR_ARGUMENT, -1, -1},
         {"not cleared at its end", POINTS, 2, 3, -1, 7, 0.25, NULL, NULL, HD_ERR_ARGUMENT, -1, -1},
