@@ -433,7 +433,7 @@ static int trial_body_make(trial_body *b, const char *spec) {
     memset(b, 0, sizeof *b);
     b->seed = 41;
     if (sscanf(spec, "%15[a-z]/%lf/%lf/%lf/%lf", name, p, p + 1, p + 2, p + 3) < 1) return 0;
-    return trial_mesh(b, name, p) || trial_graph(b, name, p) || trial_shape(b, name, p);
+    return trial_mesh(b, name, p) || trial_shape(b, name, p) || trial_graph(b, name, p);   /* the last makes room first */
 }
 
 static void trial_body_free(trial_body *b) {
