@@ -827,7 +827,8 @@ static void trial_compare(trial_work *w, const double *value, int64_t n, int has
         error = has_b == 2 ? trial_norm_dual(w->T, lap, e, 0) : trial_norm_b(lap, e);
         for (i = 0; i < n; i++) e[i] = (quad)w->off[i] + (quad)1e-322;
         /* entries of B are not all positive, but dominated by the diagonal */
-        off = has_b == 2 ? trial_norm_dual(w->T, lap, e, 1) + 16 * TRUTH_EPS * trial_norm_dual(w->T, lap, u, 1) : 2 * trial_norm_b(lap, e);
+        /* (a value of the transpose is divided by B and multiplied by it, which error_bound_b does not count) */
+        off = has_b == 2 ? trial_norm_dual(w->T, lap, e, 1) + (quad)(2 * DBL_EPSILON) * size : 2 * trial_norm_b(lap, e);
         below_b = finite_b && error - off > b * size * (1 + (quad)1e-12);
         ratio_b = finite_b && error > off ? trial_ratio(error - off, b * size) : 0;
         free(e);
