@@ -34,6 +34,8 @@ static const case_row bnd_rows[] = {
     {"shape=path/80 op=near query=apply field=alternate t=1 method=direct poles=uniform degree=4|8", 0, 0, 1},
     /* sixteen times in one call, on graded meshes */
     {"shape=grid/9/2|grid/9/4|grid/9/6|grid/9/8|grid/9/10 query=distance kind=classical|weighted times=16 span=100 th=1", 0, 0, 3},
+    {"shape=grid/9/6|grid/9/10 query=diagonal kernel=symmetric|operator times=16 span=30|1000 th=1", 0, 0, 4},
+    {"shape=sphere/2 query=times method=krylov|auto|direct kind=classical|weighted times=8 span=30|1000 th=1", 0, 0, 0},
     /* stiff penalties, weak edges */
     {"shape=penalty/60/6 op=I query=column kernel=symmetric t=10|100|1000 method=iterative solver=lanczos", 0, 0, 0},
     {"shape=weak/60/20 op=I query=apply field=step t=3145728" BND_METHODS, 0, 0, 3},

@@ -10,7 +10,7 @@ static shape all_needles(void) { return trial_needles(2); }
 
 /* ---- queries ---- */
 
-#define ALL_FIELDS " query=apply|times method=auto|direct|krylov|iterative k=2 times=2 span=90 th=0.7|5|60"
+#define ALL_FIELDS " query=apply|times method=auto|direct|krylov|iterative k=2 times=3 span=90 th=0.7|5|60"
 #define ALL_COLUMNS " query=column kernel=operator|symmetric method=auto|direct|krylov|iterative k=2 th=0.7|5|60"
 #define ALL_ENTRIES " query=entries kernel=operator|symmetric method=auto|direct|krylov|iterative k=24 th=0.7|5"
 #define ALL_PAIRS " query=pairs kind=classical|weighted method=auto|direct|krylov|iterative k=24 th=0.7|5"
