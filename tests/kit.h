@@ -153,6 +153,19 @@ static hd_laplacian *kit_lattice(int32_t nx, int32_t ny, int closed, double wy, 
     return (hd_laplacian *)kit_keep(lap, kit_free_laplacian);
 }
 
+/* A path of n vertices, weights 2^l, masses 1, 2, 3 times 2^b. */
+static hd_laplacian *kit_path(int32_t n, int l, int b) {
+    int32_t *from = KIT_NEW(int32_t, n), *to = KIT_NEW(int32_t, n), i;      /* freed with the rest */
+    double *w = KIT_NEW(double, n), *mass = KIT_NEW(double, n);
+    for (i = 0; i < n; i++) {
+        from[i] = i;
+        to[i] = i + 1;
+        w[i] = ldexp(1, l);
+        mass[i] = ldexp(1 + i % 3, b);
+    }
+    return kit_graph(n, n - 1, from, to, w, mass);
+}
+
 /* A plan by words of tools/trials.h: kit_heat(lap, "method=direct degree=9 tol=1e-10"); one thread. */
 static hd_heat *kit_heat(const hd_laplacian *lap, const char *options) {
     const trial c = trial_parse(options);

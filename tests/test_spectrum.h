@@ -357,12 +357,12 @@ static void spec_within(const trial_work *w, const double *got, const double *bo
 }
 
 static void spec_kernels_of(const char *text) {
-    static const double times[5] = {0, 0.02, 0.2, 1, 10};
     const int32_t source = 31;
     trial_work *w = case_truth_of(text);
     const hd_laplacian *lap = w->s->lap;
     const int32_t n = lap->n;
-    const hd_spectrum *z = spec_of(lap, 40, 0);
+    const double times[5] = {0, 5e-4 * lap->area, 5e-3 * lap->area, 0.03 * lap->area, 0.3 * lap->area};
+    const hd_spectrum *z = spec_of(lap, n / 2, 0);
     double *U = KIT_NEW(double, 5 * n), *bound = KIT_NEW(double, 5 * n);
     int32_t k, q, v, what;
     for (k = 0; k < 4; k++) {                    /* columns and diagonals of both kernels */
@@ -373,7 +373,7 @@ static void spec_kernels_of(const char *text) {
         for (q = 0; q < 5; q++) {
             trial_filter_for(w, times[q], 0);
             for (v = 0; v < n; v++) w->want[v] = trial_want_entry(w, v, k < 2 ? source : v, 0, operator_, operator_, w->off + v);
-            spec_within(w, U + q * n, bound + q * n, n, times[q] > 0.5, k < 2 ? "column" : "diagonal", times[q]);
+            spec_within(w, U + q * n, bound + q * n, n, q > 2, k < 2 ? "column" : "diagonal", times[q]);
         }
     }
     for (k = HD_DISTANCE_CLASSICAL; k <= HD_DISTANCE_BIHARMONIC; k++) {
@@ -454,19 +454,6 @@ static void spec_one_run(void) {
     CHECK_MSG(z->n_runs == 1 && z->n_factors == 2, "%d runs, %d factors", (int)z->n_runs, (int)z->n_factors);
 }
 
-/* A path of n vertices, weights 2^l, masses 1, 2, 3 times 2^b. */
-static hd_laplacian *spec_path(int32_t n, int l, int b) {
-    int32_t *from = KIT_NEW(int32_t, n), *to = KIT_NEW(int32_t, n), i;
-    double *w = KIT_NEW(double, n), *mass = KIT_NEW(double, n);
-    for (i = 0; i < n; i++) {
-        from[i] = i;
-        to[i] = i + 1;
-        w[i] = ldexp(1, l);
-        mass[i] = ldexp(1 + i % 3, b);
-    }
-    return kit_graph(n, n - 1, from, to, w, mass);
-}
-
 /* B in other units: distances from the pairs and their bounds change by powers of two only. */
 static void spec_units(void) {
     static const int units[] = {0, -940, -600, 400, 600, 940};
@@ -476,7 +463,7 @@ static void spec_units(void) {
     for (q = 0; q < 6; q++) {
         const int k = units[q];
         const double t = ldexp(3, k);
-        const hd_spectrum *s = spec_of(spec_path(12, 0, k), 5, 0);
+        const hd_spectrum *s = spec_of(kit_path(12, 0, k), 5, 0);
         for (a = HD_DISTANCE_CLASSICAL; a <= HD_DISTANCE_BIHARMONIC; a++) {
             const int power = a == HD_DISTANCE_CLASSICAL ? k / 2 : a == HD_DISTANCE_COMMUTE ? 0 : -k / 2;
             double d[12], off[12];
