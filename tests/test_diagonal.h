@@ -21,7 +21,8 @@ static dense_c64 *diag_dense_inverse(const hd_csr *a, const hd_c64 *val) {
         dense_c64 *row = m + (size_t)k * ld;
         int32_t best = k;
         for (i = k + 1; i < n; i++)
-            if (hypot(m[(size_t)i * ld + (size_t)k].re, m[(size_t)i * ld + (size_t)k].im) > hypot(m[(size_t)best * ld + (size_t)k].re, m[(size_t)best * ld + (size_t)k].im)) best = i;
+            if (hypot(m[(size_t)i * ld + (size_t)k].re, m[(size_t)i * ld + (size_t)k].im) > hypot(m[(size_t)best * ld + (size_t)k].re,
+                m[(size_t)best * ld + (size_t)k].im)) best = i;
         for (j = 0; best != k && j < 2 * n; j++) {
             keep = row[j];
             row[j] = m[(size_t)best * ld + (size_t)j];
@@ -125,7 +126,8 @@ static void diag_entries_of(hd_ldl *f, int32_t n, int32_t k, uint64_t seed, cons
             const hd_c64 *column = z + q * n, *a = column + i[p], *b = got + q * SOME + p;
             double size = 0;
             for (r = 0; r < n; r++) size = fmax(size, hypot(column[r].re, column[r].im));
-            CHECK_MSG(hypot(a->re - b->re, a->im - b->im) <= 1e-14 * size, "%s, n %d, matrix %d: entry (%d,%d) is %g %+gi, not %g %+gi", what, (int)n,
+            CHECK_MSG(hypot(a->re - b->re, a->im - b->im) <= 1e-14 * size,
+                      "%s, n %d, matrix %d: entry (%d,%d) is %g %+gi, not %g %+gi", what, (int)n,
                       (int)q, (int)i[p], (int)j[p], b->re, b->im, a->re, a->im);
         }
     }
@@ -158,13 +160,15 @@ static void diag_inverse_of(const hd_csr *a, hd_ldl *f, int32_t k, int steep, in
     for (q = 0; q < k; q++) diag_check(a, val + q * nnz, values + q * nnz, diag + q * n, dense, what);
     if (n > 0) diag_entries_of(f, n, k, seed + 9, what);
     for (p = 0; p < nnz; p++) L[p] = 7 * L[p] + B[p];
-    CHECK_MSG(hd_ldl_factor(f, L, NULL, &e) == HD_OK && hd_ldl_inverse(f, v, d, &e) == HD_OK && e.status == HD_OK, "%s: %s", what, e.text);
+    CHECK_MSG(hd_ldl_factor(f, L, NULL, &e) == HD_OK && hd_ldl_inverse(f, v, d, &e) == HD_OK && e.status == HD_OK, "%s: %s", what,
+              e.text);
     if (n > 0) diag_entries_of(f, n, 0, seed + 9, what);
     diag_complex_of(L, val, nnz);
     diag_complex_of(v, values, nnz);
     diag_complex_of(d, diag, n);
     diag_check(a, val, values, diag, dense, what);
-    CHECK(hd_ldl_inverse(f, B, NULL, NULL) == HD_OK && hd_ldl_inverse(f, NULL, d, NULL) == HD_OK && hd_ldl_inverse(f, NULL, NULL, NULL) == HD_OK);
+    CHECK(hd_ldl_inverse(f, B, NULL, NULL) == HD_OK && hd_ldl_inverse(f, NULL, d, NULL) == HD_OK &&
+          hd_ldl_inverse(f, NULL, NULL, NULL) == HD_OK);
     CHECK_MSG(nnz == 0 || memcmp(B, v, (size_t)nnz * sizeof *v) == 0, "%s: real values alone are others", what);
     for (q = 0; q < n; q++) CHECK_MSG(d[q] == diag[q].re, "%s: real, the diagonal alone is another", what);
     kit_release(mark);
@@ -242,8 +246,10 @@ static void diag_inverse_no_diagonal(void) {
         }
     CHECK_MSG(hd_ldl_analyse(&f, &a, &o, NULL, &e) == HD_OK, "%s", e.text);
     for (k = 0; k < 2; k++) {                    /* values and diagonal; the diagonal alone */
-        CHECK_MSG(hd_ldl_factor_complex(f, 2, val, NULL, &e) == HD_OK && hd_ldl_inverse_complex(f, k ? NULL : values, diag, &e) == HD_OK, "%s", e.text);
-        for (q = 0; q < 2; q++) CHECK_MSG(diag_off_dense(&a, val + q * a.nnz, values + q * a.nnz, diag + q * N) <= 1e-11, "matrix %d", (int)q);
+        CHECK_MSG(hd_ldl_factor_complex(f, 2, val, NULL, &e) == HD_OK && hd_ldl_inverse_complex(f, k ? NULL : values, diag,
+            &e) == HD_OK, "%s", e.text);
+        for (q = 0; q < 2; q++) CHECK_MSG(diag_off_dense(&a, val + q * a.nnz, values + q * a.nnz, diag + q * N) <= 1e-11, "matrix %d",
+                                          (int)q);
     }
     CHECK_MSG(hd_ldl_factor(f, v, NULL, &e) == HD_OK, "%s", e.text);
     for (k = 0; k < 2; k++) {
@@ -262,7 +268,8 @@ static void diag_inverse_threads_of(const hd_csr *a, const double *xyz, int32_t 
     const int32_t n = a->n_rows;
     const size_t size = (size_t)k * (size_t)a->nnz;
     double *L = KIT_NEW(double, a->nnz), *B = KIT_NEW(double, a->nnz), *v = KIT_NEW(double, a->nnz), *first_v = KIT_NEW(double, a->nnz);
-    hd_c64 *val = KIT_NEW(hd_c64, size), *z = KIT_NEW(hd_c64, size), *first = KIT_NEW(hd_c64, size), *diag = KIT_NEW(hd_c64, k * (int64_t)n);
+    hd_c64 *val = KIT_NEW(hd_c64, size), *z = KIT_NEW(hd_c64, size), *first = KIT_NEW(hd_c64, size),
+        *diag = KIT_NEW(hd_c64, k * (int64_t)n);
     int64_t p, calls = 0;
     int32_t q;
     int way, level;
@@ -370,7 +377,8 @@ static double *diag_product(const double *a, const double *b, int32_t n) {
 /* What rounding and the oracle may add, relative: eigenvalues are off by an epsilon of the largest. */
 static double diag_slack(const heat_case *c, double t) { return 1e-12 + 2e-15 * fmin(t * c->top, 1e8); }
 
-static hd_heat *diag_plan(const hd_laplacian *lap, hd_pole_kind poles, int32_t degree) { return eng_plan(lap, HD_METHOD_AUTO, poles, degree); }
+static hd_heat *diag_plan(const hd_laplacian *lap, hd_pole_kind poles, int32_t degree) { return eng_plan(lap, HD_METHOD_AUTO, poles,
+    degree); }
 
 /* A flat grid with a hole, a handful of slivers, unreferenced vertices, and a second piece. */
 static shape diag_odd_shape(void) {
@@ -418,7 +426,8 @@ static const char *diag_kind_name(hd_distance_kind k) {
 }
 
 /* D [n] from one source, against H on rows. lost: whether any may be lost. most: of the error relative to the largest distance (0: not asked). */
-static void diag_judge_distance(const heat_case *c, hd_distance_kind kind, double t, const double *H, int32_t source, const double *D, const hd_report *rep, double most,
+static void diag_judge_distance(const heat_case *c, hd_distance_kind kind, double t, const double *H, int32_t source, const double *D,
+                                const hd_report *rep, double most,
                                 const char *what) {
     const hd_laplacian *lap = c->lap;
     const int32_t n = lap->n_active, s = lap->row[source];
@@ -443,8 +452,10 @@ static void diag_judge_distance(const heat_case *c, hd_distance_kind kind, doubl
         off = fmax(off, fabs(D[v] - d) - fmin(sqrt(slack * scale), d > 0 ? slack * scale / d : HUGE_VAL));
         if (d2 > 1e4 * slack * scale) relative = fmax(relative, fabs(D[v] - d) / D[v] - slack * scale / d2);
     }
-    CHECK_MSG(off <= rep->error_bound * size, "%s, %s, %s, t %g: error %g, bound %g", c->what, diag_kind_name(kind), what, t, off / size, rep->error_bound);
-    CHECK_MSG(relative <= rep->error_relative, "%s, %s, %s, t %g: error %g, bound %g (relative)", c->what, diag_kind_name(kind), what, t, relative, rep->error_relative);
+    CHECK_MSG(off <= rep->error_bound * size, "%s, %s, %s, t %g: error %g, bound %g", c->what, diag_kind_name(kind), what, t,
+              off / size, rep->error_bound);
+    CHECK_MSG(relative <= rep->error_relative, "%s, %s, %s, t %g: error %g, bound %g (relative)", c->what, diag_kind_name(kind), what,
+              t, relative, rep->error_relative);
     CHECK_MSG(most == 0 || off <= most * size, "%s, %s, %s, t %g: error %g", c->what, diag_kind_name(kind), what, t, off / size);
     TRAPS_ON;
 }
@@ -501,14 +512,16 @@ static void diag_reports(void) {
                 least = fmin(least, fabs(D[lap->vertex[i]]));
                 size = fmax(size, fabs(D[lap->vertex[i]]));
             }
-            CHECK_MSG(rep.smallest == least && rep.error_bound >= rep.error_rational && rep.method == HD_METHOD_DIRECT, "%s: report", pairs[q / 4]);
+            CHECK_MSG(rep.smallest == least && rep.error_bound >= rep.error_rational && rep.method == HD_METHOD_DIRECT, "%s: report",
+                      pairs[q / 4]);
             CHECK_MSG(degree == 0 || rep.degree == degree, "%s: degree %d", plans[q % 4].words, (int)rep.degree);
             CHECK(heat_edges(heat, t, E, &rep) >= 0);
             CHECK_MSG(rep.error_rounding > 0 && rep.error_rounding < 1e-6 && (rep.residual > 0 || strstr(rep.reason, "eigenpairs")),
                       "%s: rounding of edges %g, residual %g", pairs[q / 4], rep.error_rounding, rep.residual);
             for (i = 0; i < lap->n_active && degree; i++)
                 for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
-                    if (lap->L.col[p] == i) CHECK_MSG(fabs(E[p] - D[lap->vertex[i]]) <= 1e-10 * size, "%s: edges and diagonal", pairs[q / 4]);
+                    if (lap->L.col[p] == i) CHECK_MSG(fabs(E[p] - D[lap->vertex[i]]) <= 1e-10 * size, "%s: edges and diagonal",
+                                                      pairs[q / 4]);
         }
     }
 }
@@ -530,10 +543,12 @@ static void diag_times(void) {
         const double *d = D + q * ldd;
         CHECK(heat_diagonal(heat, 1, t + q, HD_KERNEL_SYMMETRIC, one, 0, &single) == HD_OK);
         for (i = 0; i < n; i++)
-            CHECK_MSG(fabs(one[i] - d[i]) <= fmin(single.error_relative + rep.error_relative, 2e-7) * one[i], "t %g, vertex %d: %.12g, alone %.12g", t[q],
+            CHECK_MSG(fabs(one[i] - d[i]) <= fmin(single.error_relative + rep.error_relative, 2e-7) * one[i],
+                      "t %g, vertex %d: %.12g, alone %.12g", t[q],
                       (int)i, d[i], one[i]);
         for (i = 0; i < n && q; i++)
-            CHECK_MSG(D[order[q] * ldd + i] <= D[order[q - 1] * ldd + i] * (1 + 1e-8), "t %g, vertex %d: it grows", t[order[q]], (int)i);
+            CHECK_MSG(D[order[q] * ldd + i] <= D[order[q - 1] * ldd + i] * (1 + 1e-8), "t %g, vertex %d: it grows", t[order[q]],
+                      (int)i);
         for (i = n; i < ldd; i++) CHECK(d[i] == -7);
     }
 }
@@ -587,7 +602,8 @@ static void diag_places(void) {
             for (v = 0; v < n; v++) {
                 const int32_t a = lap->row[v], b = lap->row[sources[s]];
                 const int apart = v != sources[s] && kind > 1 && (a < 0 || b < 0 || lap->component[a] != lap->component[b]);
-                CHECK(apart ? col[v] == HUGE_VAL : fabs(col[v] - one[v]) <= 1e-6 * dense_max_abs(one, n) && (col[v] == 0) <= (v == sources[s] || (a < 0 && b < 0)));
+                CHECK(apart ? col[v] == HUGE_VAL : fabs(col[v] - one[v]) <= 1e-6 * dense_max_abs(one, n) &&
+                      (col[v] == 0) <= (v == sources[s] || (a < 0 && b < 0)));
             }
             CHECK(col[sources[s]] == 0 && col[n] == -3 && col[n + 1] == -3);
         }
@@ -634,9 +650,11 @@ static void diag_metric_laws(void) {
         for (q = 0; q < TRIPLES; q++)
             for (k = 0; k < 3; k++) {
                 const double *e = d + 6 * q;
-                CHECK_MSG(fabs(e[k] - e[k + 3]) <= 1e-7 * e[k] && (e[k] > 0) == (i[6 * q + k] != j[6 * q + k]), "kind %d: %.15g one way, %.15g the other", kind,
+                CHECK_MSG(fabs(e[k] - e[k + 3]) <= 1e-7 * e[k] && (e[k] > 0) == (i[6 * q + k] != j[6 * q + k]),
+                          "kind %d: %.15g one way, %.15g the other", kind,
                           e[k], e[k + 3]);
-                CHECK_MSG(e[k] <= (e[(k + 1) % 3] + e[(k + 2) % 3]) * (1 + 1e-7), "kind %d: %.15g > %.15g + %.15g", kind, e[k], e[(k + 1) % 3], e[(k + 2) % 3]);
+                CHECK_MSG(e[k] <= (e[(k + 1) % 3] + e[(k + 2) % 3]) * (1 + 1e-7), "kind %d: %.15g > %.15g + %.15g", kind, e[k],
+                          e[(k + 1) % 3], e[(k + 2) % 3]);
             }
     }
 }
@@ -661,7 +679,8 @@ static void diag_pairs_parts(void) {
         for (q = 0; q < PAIRS; q++) k[q] = d[q] = -5;
         CHECK(heat_pairs(heat, (hd_distance_kind)kind, t, PAIRS, i, j, k, d, NULL) >= 0);
         CHECK(heat_pairs(heat, (hd_distance_kind)kind, t, PAIRS, i, j, NULL, again, NULL) >= 0 && memcmp(again, d, sizeof d) == 0);
-        CHECK(heat_pairs(heat, (hd_distance_kind)kind, t, PAIRS, i, j, again, NULL, NULL) >= 0 && (kind > 1 || memcmp(again, k, sizeof k) == 0));
+        CHECK(heat_pairs(heat, (hd_distance_kind)kind, t, PAIRS, i, j, again, NULL, NULL) >= 0 &&
+              (kind > 1 || memcmp(again, k, sizeof k) == 0));
         for (q = 0; q < PAIRS; q++) {
             const int32_t a = lap->row[i[q]], b = lap->row[j[q]];
             const int apart = i[q] != j[q] && (a < 0 || b < 0 || lap->component[a] != lap->component[b]);
@@ -704,7 +723,8 @@ static void diag_pairs_method(void) {
         o.method = (hd_method)m;
         CHECK(hd_heat_create(&heat, lap, &o, NULL) == HD_OK);
         CHECK(heat_pairs(heat, HD_DISTANCE_CLASSICAL, 3 * lap->h * lap->h, PAIRS, i, j, NULL, d, NULL) == HD_ERR_CANCELLED);
-        CHECK_MSG((seen.inverts > 0) == (m == HD_METHOD_DIRECT) && (seen.solves == 10) == (m != HD_METHOD_DIRECT), "method %d: %d inversions, %d solves", m,
+        CHECK_MSG((seen.inverts > 0) == (m == HD_METHOD_DIRECT) && (seen.solves == 10) == (m != HD_METHOD_DIRECT),
+                  "method %d: %d inversions, %d solves", m,
                   seen.inverts, seen.solves);
         hd_heat_free(heat);
     }
@@ -712,7 +732,8 @@ static void diag_pairs_method(void) {
 
 /* Samples are those of brute force with the distances [n n] of the truth; ties aside, which an uneven shape has none of. A point is as far
  * from those before it as the report of its distance says, and no vertex is farther. */
-static void diag_samples_by(const hd_laplacian *lap, hd_heat *heat, hd_distance_kind kind, double t, int32_t given, const double *far, const char *what) {
+static void diag_samples_by(const hd_laplacian *lap, hd_heat *heat, hd_distance_kind kind, double t, int32_t given, const double *far,
+                            const char *what) {
     enum { COUNT = 9 };
     const int32_t n = lap->n;
     int32_t vertex[COUNT] = {-1, -1, -1, -1, -1, -1, -1, -1, -1}, v, k, q;
@@ -731,17 +752,20 @@ static void diag_samples_by(const hd_laplacian *lap, hd_heat *heat, hd_distance_
             if (lap->row[v] >= 0) best = fmax(best, near_);
             if (v == vertex[q]) own = near_;
         }
-        CHECK_MSG(q < given || own == best || own >= best - tol, "%s, kind %d, point %d: vertex %d at %g, not %g", what, (int)kind, (int)q,
+        CHECK_MSG(q < given || own == best || own >= best - tol, "%s, kind %d, point %d: vertex %d at %g, not %g", what, (int)kind,
+                  (int)q,
                   (int)vertex[q], own, best);
-        CHECK_MSG(own == distance[q] || fabs(own - distance[q]) <= tol, "%s, kind %d, point %d: distance %g, not %g", what, (int)kind, (int)q,
+        CHECK_MSG(own == distance[q] || fabs(own - distance[q]) <= tol, "%s, kind %d, point %d: distance %g, not %g", what, (int)kind,
+                  (int)q,
                   distance[q], own);
         CHECK(lap->row[vertex[q]] >= 0);
     }
 }
 
 static void diag_samples(void) {
-    static const char *const texts[5] = {"shape=bumpy/1/5 op=fem", "shape=bumpy/1/5 op=cot", "shape=tangle op=vor", "shape=tangle op=cot", "shape=leak/30/0.01 op=diag"};
-    static const double when[3] = {3, 20, 150};
+    static const char *const texts[5] = {"shape=bumpy/1/5 op=fem", "shape=bumpy/1/5 op=cot", "shape=tangle op=vor",
+        "shape=tangle op=cot", "shape=leak/30/0.01 op=diag"};
+    static const double when[3] = {3, 20, 60};
     int q, kind, k;
     int32_t i, j;
     for (q = 0; q < 5 * 3 * 4; q++) {
@@ -793,18 +817,23 @@ static void diag_sets(void) {
     int32_t r, k;
     for (r = 2; r <= 14; r++) {
         double weighted = 0, plain = 0;
-        CHECK(hd_rational_get(&set, HD_POLES_DIAGONAL, r, &e) == HD_OK && set.kind == HD_POLES_DIAGONAL && set.degree == r && set.n_poles == (r + 1) / 2 && set.a0 == 0);
-        CHECK_MSG(fabs(hd_rational_eval(&set, 0) - 1) < 2e-15 * pow(1.5, r), "degree %d: c(0) - 1 = %g", (int)r, hd_rational_eval(&set, 0) - 1);
+        CHECK(hd_rational_get(&set, HD_POLES_DIAGONAL, r, &e) == HD_OK && set.kind == HD_POLES_DIAGONAL && set.degree == r &&
+              set.n_poles == (r + 1) / 2 && set.a0 == 0);
+        CHECK_MSG(fabs(hd_rational_eval(&set, 0) - 1) < 2e-15 * pow(1.5, r), "degree %d: c(0) - 1 = %g", (int)r,
+                  hd_rational_eval(&set, 0) - 1);
         for (k = 0; k <= 10000; k++) {
             const double x = pow(10, -6 + k * 1e-3), error = fabs(exp(-x) - hd_rational_eval(&set, -x));
             plain = fmax(plain, error);
             if (x < 1e4) weighted = fmax(weighted, (1 + x) * (1 + 4 * x / (x + 1000)) * error);
         }
-        CHECK_MSG(plain <= set.max_error + 1e-14 * pow(1.43, r) && plain >= 0.85 * set.max_error - 2e-15, "degree %d: error %g, promised %g", (int)r, plain, set.max_error);
-        CHECK_MSG(weighted <= set.max_weighted_error + 1e-13 * pow(1.43, r) && weighted >= 0.85 * set.max_weighted_error - 2e-15, "degree %d: weighted error %g, promised %g", (int)r,
+        CHECK_MSG(plain <= set.max_error + 1e-14 * pow(1.43, r) && plain >= 0.85 * set.max_error - 2e-15,
+                  "degree %d: error %g, promised %g", (int)r, plain, set.max_error);
+        CHECK_MSG(weighted <= set.max_weighted_error + 1e-13 * pow(1.43, r) && weighted >= 0.85 * set.max_weighted_error - 2e-15,
+                  "degree %d: weighted error %g, promised %g", (int)r,
                   weighted, set.max_weighted_error);
     }
-    CHECK(hd_rational_get(&set, HD_POLES_DIAGONAL, 1, &e) == HD_ERR_ARGUMENT && hd_rational_get(&set, HD_POLES_DIAGONAL, 15, &e) == HD_ERR_ARGUMENT);
+    CHECK(hd_rational_get(&set, HD_POLES_DIAGONAL, 1, &e) == HD_ERR_ARGUMENT && hd_rational_get(&set, HD_POLES_DIAGONAL, 15,
+        &e) == HD_ERR_ARGUMENT);
 }
 
 /* The elimination order makes no difference, whoever gives it. (Threads make none at all.) */
@@ -827,10 +856,12 @@ static void diag_orders(void) {
         o.perm = perm;
         CHECK(hd_heat_create(&heat, lap, &o, NULL) == HD_OK);
         if (q == 3) memset(perm, 0, (size_t)n * sizeof *perm);    /* it was copied */
-        for (kind = 0; kind < 4; kind++) CHECK(heat_distance(heat, (hd_distance_kind)kind, 1, &t, 1, &source, D + kind * n, 0, NULL) >= 0);
+        for (kind = 0; kind < 4; kind++) CHECK(heat_distance(heat, (hd_distance_kind)kind, 1, &t, 1, &source, D + kind * n, 0,
+                                                             NULL) >= 0);
         CHECK(heat_diagonal(heat, 1, &t, HD_KERNEL_OPERATOR, D + 4 * n, 0, NULL) >= 0);
         if (q == 0) memcpy(first, D, 5 * (size_t)n * sizeof *D);
-        for (i = 0; i < 5 * n; i++) CHECK_MSG(D[i] == first[i] || fabs(D[i] - first[i]) <= 1e-8 * fabs(first[i]), "ordering %d: %.12g, not %.12g", q, D[i], first[i]);
+        for (i = 0; i < 5 * n; i++) CHECK_MSG(D[i] == first[i] || fabs(D[i] - first[i]) <= 1e-8 * fabs(first[i]),
+                                              "ordering %d: %.12g, not %.12g", q, D[i], first[i]);
         hd_heat_free(heat);
     }
 }
@@ -852,7 +883,8 @@ static void diag_each_way(hd_laplacian_kind kind, int64_t count, diag_asks *ask)
         memset(&lo, 0, sizeof lo);
         lo.context = &w.ctx;
         lo.kind = kind;
-        CHECK(hd_laplacian_triangles(&lap, s->xyz, s->n, s->tri, s->n_tri, &lo, NULL) == HD_OK && hd_heat_create(&heat, lap, NULL, NULL) == HD_OK);
+        CHECK(hd_laplacian_triangles(&lap, s->xyz, s->n, s->tri, s->n_tri, &lo, NULL) == HD_OK &&
+              hd_heat_create(&heat, lap, NULL, NULL) == HD_OK);
         ask(heat, lap->h * lap->h, s->n, D);
         if (way == 0) memcpy(first, D, size * sizeof *D);
         CHECK_MSG(memcmp(first, D, size * sizeof *D) == 0, "way %d of threading gives other bits", way);
@@ -889,22 +921,28 @@ static void diag_refused(void) {
     int q, kind;
     for (q = 0; q < 2; q++) {
         hd_heat *other = kit_heat(lap, methods[q]);
-        CHECK(heat_diagonal(other, 1, &t, HD_KERNEL_SYMMETRIC, D, 0, &rep) == HD_ERR_ARGUMENT && rep.status == HD_ERR_ARGUMENT && rep.error.status == HD_ERR_ARGUMENT);
+        CHECK(heat_diagonal(other, 1, &t, HD_KERNEL_SYMMETRIC, D, 0, &rep) == HD_ERR_ARGUMENT && rep.status == HD_ERR_ARGUMENT &&
+              rep.error.status == HD_ERR_ARGUMENT);
         CHECK(heat_edges(other, t, E, &rep) == HD_ERR_ARGUMENT && rep.error.status == HD_ERR_ARGUMENT);
         for (kind = 0; kind < 4; kind++) {
-            CHECK(heat_distance(other, (hd_distance_kind)kind, 1, &t, 1, &v, D, 0, &rep) == HD_ERR_ARGUMENT && rep.error.status == HD_ERR_ARGUMENT);
-            CHECK(heat_sample(other, (hd_distance_kind)kind, t, 3, 0, sample, NULL, &rep) == HD_ERR_ARGUMENT && rep.error.status == HD_ERR_ARGUMENT);
+            CHECK(heat_distance(other, (hd_distance_kind)kind, 1, &t, 1, &v, D, 0, &rep) == HD_ERR_ARGUMENT &&
+                  rep.error.status == HD_ERR_ARGUMENT);
+            CHECK(heat_sample(other, (hd_distance_kind)kind, t, 3, 0, sample, NULL, &rep) == HD_ERR_ARGUMENT &&
+                  rep.error.status == HD_ERR_ARGUMENT);
             CHECK(heat_pairs(other, (hd_distance_kind)kind, t, 1, &v, &v, NULL, D, &rep) == (kind < 2 ? HD_OK : HD_ERR_ARGUMENT));
         }
     }
     for (q = 0; q < 5; q++) {
-        CHECK(heat_diagonal(heat, 1, bad + q, HD_KERNEL_SYMMETRIC, D, 0, &rep) == HD_ERR_ARGUMENT && heat_edges(heat, bad[q], E, &rep) == HD_ERR_ARGUMENT);
+        CHECK(heat_diagonal(heat, 1, bad + q, HD_KERNEL_SYMMETRIC, D, 0, &rep) == HD_ERR_ARGUMENT &&
+              heat_edges(heat, bad[q], E, &rep) == HD_ERR_ARGUMENT);
         CHECK(heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, bad + q, 1, &v, D, 0, &rep) == HD_ERR_ARGUMENT);
         CHECK(heat_sample(heat, HD_DISTANCE_CLASSICAL, bad[q], 2, 0, sample, NULL, &rep) == HD_ERR_ARGUMENT);
         CHECK(q == 0 || heat_pairs(heat, HD_DISTANCE_CLASSICAL, bad[q], 1, &v, &v, NULL, D, &rep) == HD_ERR_ARGUMENT);
     }
-    CHECK(heat_diagonal(heat, -1, &t, HD_KERNEL_SYMMETRIC, D, 0, &rep) == HD_ERR_ARGUMENT && heat_diagonal(heat, 0, NULL, HD_KERNEL_SYMMETRIC, NULL, 0, &rep) == HD_ERR_ARGUMENT);
-    CHECK(heat_diagonal(heat, 1, &t, HD_KERNEL_SYMMETRIC, D, 41, &rep) == HD_ERR_ARGUMENT && heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &v, D, 41, &rep) == HD_ERR_ARGUMENT);
+    CHECK(heat_diagonal(heat, -1, &t, HD_KERNEL_SYMMETRIC, D, 0, &rep) == HD_ERR_ARGUMENT &&
+          heat_diagonal(heat, 0, NULL, HD_KERNEL_SYMMETRIC, NULL, 0, &rep) == HD_ERR_ARGUMENT);
+    CHECK(heat_diagonal(heat, 1, &t, HD_KERNEL_SYMMETRIC, D, 41, &rep) == HD_ERR_ARGUMENT &&
+          heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &v, D, 41, &rep) == HD_ERR_ARGUMENT);
     CHECK(heat_distance(heat, HD_DISTANCE_CLASSICAL, 0, NULL, 1, &v, D, 0, &rep) == HD_ERR_ARGUMENT);
     CHECK(heat_distance(heat, HD_DISTANCE_BIHARMONIC, 0, NULL, 1, &v, D, 0, &rep) == HD_OK && D[1] > 0);    /* it has no time */
     CHECK(heat_sample(heat, HD_DISTANCE_CLASSICAL, t, 42, 0, sample, NULL, &rep) >= 0);   /* all of them, each once */
@@ -947,8 +985,10 @@ static void diag_limits_by_default(void) {
             ctx.byte_limit = limit ? base + limit : 0;
             ctx.bytes_peak = ctx.bytes_in_use;
             st = hd_heat_create(&heat, lap, NULL, &rep.error);
-            if (st >= 0) st = kind < 0 ? heat_diagonal(heat, 1, &t, HD_KERNEL_SYMMETRIC, D, 0, &rep) : heat_distance(heat, (hd_distance_kind)kind, 1, &t, 1, &source, D, 0, &rep);
-            CHECK_MSG(st >= 0 ? rep.error.status == HD_OK : st == HD_ERR_MEMORY_LIMIT && rep.error.status == st, "kind %d: status %d, %d", kind, (int)st, (int)rep.error.status);
+            if (st >= 0) st = kind < 0 ? heat_diagonal(heat, 1, &t, HD_KERNEL_SYMMETRIC, D, 0, &rep) : heat_distance(heat,
+                (hd_distance_kind)kind, 1, &t, 1, &source, D, 0, &rep);
+            CHECK_MSG(st >= 0 ? rep.error.status == HD_OK : st == HD_ERR_MEMORY_LIMIT && rep.error.status == st,
+                      "kind %d: status %d, %d", kind, (int)st, (int)rep.error.status);
             fine += st >= 0;
             refused += st < 0;
             if (limit == 0) need = ctx.bytes_peak - base;
@@ -983,7 +1023,8 @@ static void diag_graded(void) {
         CHECK(heat_edges(heat, t, D, &all) == HD_OK && all.degree == 14 && all.error_rational < 1e-9);
         heat = kit_heat(lap, "method=direct poles=uniform degree=9");
         CHECK(heat_diagonal(heat, 1, &t, HD_KERNEL_SYMMETRIC, D, 0, &one) >= 0 && heat_edges(heat, t, D, &all) >= 0);
-        CHECK_MSG(all.error_rounding <= 5 * one.error_rounding && one.error_rounding > 0, "kind %d: rounding %g of edges, %g of the diagonal", kind, all.error_rounding, one.error_rounding);
+        CHECK_MSG(all.error_rounding <= 5 * one.error_rounding && one.error_rounding > 0,
+                  "kind %d: rounding %g of edges, %g of the diagonal", kind, all.error_rounding, one.error_rounding);
     }
 }
 
@@ -996,7 +1037,8 @@ static void diag_below_constants(void) {
     hd_heat *heat;
     double D[6], least = 1;
     int32_t q, i;
-    for (i = 0; i < 6; i++) shape_put_vertex(&s, i, i % 2 + 0.2 * sin(7.1 * i), 1.3 * (i / 2) + 0.2 * cos(3.3 * i), 0.3 * sin(0.5 * (i % 2)));
+    for (i = 0; i < 6; i++) shape_put_vertex(&s, i, i % 2 + 0.2 * sin(7.1 * i), 1.3 * (i / 2) + 0.2 * cos(3.3 * i),
+                                             0.3 * sin(0.5 * (i % 2)));
     memcpy(s.tri, tri, sizeof tri);
     lap = kit_triangles(kit_own(s), HD_LAPLACIAN_FEM);
     heat = kit_heat(lap, "");
@@ -1025,7 +1067,8 @@ static void diag_units(void) {
             CHECK(heat_distance(heat, a ? HD_DISTANCE_BIHARMONIC : HD_DISTANCE_COMMUTE, 0, NULL, 1, &source, d, 0, &r) == HD_OK);
             for (i = 0; i < 6; i++) {
                 if (q == 0) want[a][i] = d[i];
-                CHECK_MSG(ldexp(d[i], power) == want[a][i], "units 2^%d, 2^%d: %g, want %g", units[q][0], units[q][1], d[i], want[a][i]);
+                CHECK_MSG(ldexp(d[i], power) == want[a][i], "units 2^%d, 2^%d: %g, want %g", units[q][0], units[q][1], d[i],
+                          want[a][i]);
             }
             if (q == 0) bound[a] = r.error_bound;
             CHECK(r.error_bound > 0 && r.error_bound < 1e-10 && fabs(r.error_bound - bound[a]) <= 1e-6 * bound[a]);

@@ -49,7 +49,8 @@ static const char *heat_solver_name(hd_solver s) {
 static void heat_judge(const heat_case *c, double t, const double *rhs, const double *u, const hd_report *rep) {
     const hd_laplacian *lap = c->lap;
     const int32_t n = lap->n_active;
-    double *want = DENSE_NEW(double, n), *diff = DENSE_NEW(double, n), *f = DENSE_NEW(double, n), off_b, size_b, f_b, off, size = 0, slack;
+    double *want = DENSE_NEW(double, n), *diff = DENSE_NEW(double, n), *f = DENSE_NEW(double, n), off_b, size_b, f_b, off, size = 0,
+        slack;
     int32_t i;
     dense_pair_heat(&c->pair, t, rhs, want);
     dense_pair_heat(&c->pair, 0, rhs, f);
@@ -180,8 +181,10 @@ static void heat_degrees(void) {
     for (k = 0; k < 2; k++)
         for (r = 1 + k; r <= 14; r++) {
             snprintf(words, sizeof words, "solver=cocg tol=1e-13 poles=%s degree=%d", k ? "kernel" : "uniform", r);
-            CHECK(heat_column(kit_heat(lap, words), 3 * lap->h * lap->h, 5, u, &rep) >= 0 && rep.degree == r && rep.n_poles == (r + 1) / 2);
-            CHECK(rep.poles == (k ? HD_POLES_KERNEL : HD_POLES_UNIFORM) && rep.method == HD_METHOD_ITERATIVE && rep.precond == HD_PRECOND_MILDL);
+            CHECK(heat_column(kit_heat(lap, words), 3 * lap->h * lap->h, 5, u, &rep) >= 0 && rep.degree == r &&
+                  rep.n_poles == (r + 1) / 2);
+            CHECK(rep.poles == (k ? HD_POLES_KERNEL : HD_POLES_UNIFORM) && rep.method == HD_METHOD_ITERATIVE &&
+                  rep.precond == HD_PRECOND_MILDL);
             heat_report(&rep);
         }
 }
@@ -197,9 +200,11 @@ static void heat_defaults(void) {
         hd_report rep;
         int64_t sum = 0;
         int32_t p;
-        CHECK(heat_column(heat, pow(10, q / 2 % 3) * lap->h * lap->h, 100, u, &rep) == HD_OK && rep.status == HD_OK && rep.error.status == HD_OK);
+        CHECK(heat_column(heat, pow(10, q / 2 % 3) * lap->h * lap->h, 100, u, &rep) == HD_OK && rep.status == HD_OK &&
+              rep.error.status == HD_OK);
         heat_report(&rep);
-        CHECK_MSG(rep.error_bound_b < 1e-7 && rep.error_bound < 1e-5, "case %d: bounds %g, %g say little", q, rep.error_bound_b, rep.error_bound);
+        CHECK_MSG(rep.error_bound_b < 1e-7 && rep.error_bound < 1e-5, "case %d: bounds %g, %g say little", q, rep.error_bound_b,
+                  rep.error_bound);
         CHECK(rep.reason != NULL && (rep.iterations > 0) == (rep.method != HD_METHOD_DIRECT));
         CHECK((rep.solver == HD_SOLVER_LANCZOS) == (rep.n_poles == 0) && (lap->B == NULL) == q % 2);
         for (p = 0; p < rep.n_poles; p++) sum += rep.pole_iterations[p];
@@ -254,7 +259,8 @@ static void heat_identities_of(const char *spec) {
     const double unit = lap->kind == HD_LAPLACIAN_COT ? 1 : lap->h * lap->h, t = 3 * unit, t2 = 5 * unit;
     const double *K = heat_matrix(heat, n, t, HD_KERNEL_OPERATOR), *S = heat_matrix(heat, n, t, HD_KERNEL_SYMMETRIC);
     const double *later = heat_matrix(heat, n, t + t2, HD_KERNEL_OPERATOR);
-    double *B = (double *)kit_keep(test_dense_mass(lap), free), *bk = KIT_NEW(double, n * n), *u = KIT_NEW(double, n), *f = KIT_NEW(double, n);
+    double *B = (double *)kit_keep(test_dense_mass(lap), free), *bk = KIT_NEW(double, n * n), *u = KIT_NEW(double, n),
+        *f = KIT_NEW(double, n);
     double semigroup = 0, mass = 0, relation = 0;
     int32_t i, j, k;
     CHECK(lap->n_active == n);
@@ -282,7 +288,8 @@ static void heat_identities_of(const char *spec) {
 }
 
 static void heat_identities(void) {
-    static const char *const pairs[6] = {"flat/8/7/0.3 fem", "flat/8/7/0.3 vor", "flat/8/7/0.3 cot", "bumpy/1/21 fem", "bumpy/1/21 vor", "bumpy/1/21 cot"};
+    static const char *const pairs[6] = {"flat/8/7/0.3 fem", "flat/8/7/0.3 vor", "flat/8/7/0.3 cot", "bumpy/1/21 fem",
+        "bumpy/1/21 vor", "bumpy/1/21 cot"};
     int q;
     for (q = 0; q < 6; q++) heat_identities_of(pairs[q]);
 }
@@ -305,7 +312,8 @@ static void heat_components_by(const hd_laplacian *lap, const char *solver, doub
         in[to[i] >= n_ball] += lap->mass[i] * f[i];
         out[to[i] >= n_ball] += lap->mass[i] * u[i];
     }
-    for (k = 0; k < 2; k++) CHECK_MSG(fabs(in[k] - out[k]) < 1e-12 * fabs(in[k]), "%s: a component's heat changed by %g", solver, out[k] / in[k] - 1);
+    for (k = 0; k < 2; k++) CHECK_MSG(fabs(in[k] - out[k]) < 1e-12 * fabs(in[k]), "%s: a component's heat changed by %g", solver,
+                                      out[k] / in[k] - 1);
 }
 
 static void heat_components(void) {
@@ -357,7 +365,8 @@ static void heat_time_zero(void) {
     double u[25];
     hd_report rep;
     int32_t i;
-    CHECK(heat_apply(heat, 0, 1, f, 0, u, 0, &rep) == HD_OK && memcmp(f, u, sizeof u) == 0 && rep.iterations == 0 && rep.error_bound == 0);
+    CHECK(heat_apply(heat, 0, 1, f, 0, u, 0, &rep) == HD_OK && memcmp(f, u, sizeof u) == 0 && rep.iterations == 0 &&
+          rep.error_bound == 0);
     CHECK(heat_column(heat, 0, 7, u, NULL) == HD_OK);
     for (i = 0; i < 25; i++) CHECK(u[i] == (i == 7));
     CHECK(heat_apply(heat, 1, 0, NULL, 0, NULL, 0, &rep) == HD_OK && rep.iterations == 0);
@@ -464,7 +473,8 @@ static double heat_cycle(int32_t n, double t, int32_t i, int32_t j) {
 
 /* A path, a cycle, and a torus of two cycles, by every solver. */
 static void heat_graphs(void) {
-    static const struct { int32_t nx, ny, x, y; double wy, mass; } graphs[3] = {{50, 1, 3, 0, 1, 1}, {31, 1, 8, 0, 1, 0.125}, {20, 9, 17, 2, 0.5, 3}};
+    static const struct { int32_t nx, ny, x, y; double wy, mass; } graphs[3] = {{50, 1, 3, 0, 1, 1}, {31, 1, 8, 0, 1, 0.125}, {20, 9,
+        17, 2, 0.5, 3}};
     static const double times[3] = {0.4, 6, 150};
     double want[180], u[180];
     int32_t i;
@@ -480,7 +490,8 @@ static void heat_graphs(void) {
                 char words[80];
                 snprintf(words, sizeof words, "%s tol=1e-12 %s", heat_solvers[k], k < 3 ? "poles=kernel degree=14" : "");
                 CHECK(heat_column(kit_heat(lap, words), times[q] * graphs[g].mass, source, u, NULL) >= 0);
-                CHECK_MSG(dense_max_diff(u, want, n) < 1e-10 * dense_max_abs(want, n), "graph %d, %s, t %g: off by %g", g, words, times[q],
+                CHECK_MSG(dense_max_diff(u, want, n) < 1e-10 * dense_max_abs(want, n), "graph %d, %s, t %g: off by %g", g, words,
+                          times[q],
                           dense_max_diff(u, want, n));
             }
         }
@@ -616,8 +627,10 @@ static void heat_not_converged(void) {
         o.precond = HD_PRECOND_JACOBI;
         CHECK(hd_heat_create(&heat, lap, &o, NULL) == HD_OK);
         CHECK(heat_column(heat, 500 * lap->h * lap->h, 3, u, &rep) == HD_ERR_NOT_CONVERGED);
-        CHECK(rep.status == HD_ERR_NOT_CONVERGED && rep.error.status == HD_ERR_NOT_CONVERGED && rep.error.value > 1e-9 && rep.error.column == 0);
-        CHECK_MSG((rep.error.pole >= 0) == (k < 3) && rep.residual == rep.error.value, "achieved %g, reported %g", rep.error.value, rep.residual);
+        CHECK(rep.status == HD_ERR_NOT_CONVERGED && rep.error.status == HD_ERR_NOT_CONVERGED && rep.error.value > 1e-9 &&
+              rep.error.column == 0);
+        CHECK_MSG((rep.error.pole >= 0) == (k < 3) && rep.residual == rep.error.value, "achieved %g, reported %g", rep.error.value,
+                  rep.residual);
         hd_heat_free(heat);
     }
 }
@@ -657,10 +670,12 @@ static void heat_threads(void) {
         if (way == 5) ctx.parallel_for = heat_shuffled_for;
         if (way == 5) ctx.progress = heat_progress;
         lo.context = ho.context = &ctx;
-        CHECK(hd_laplacian_triangles(&lap, s->xyz, n, s->tri, s->n_tri, &lo, NULL) == HD_OK && hd_heat_create(&heat, lap, &ho, NULL) == HD_OK);
+        CHECK(hd_laplacian_triangles(&lap, s->xyz, n, s->tri, s->n_tri, &lo, NULL) == HD_OK &&
+              hd_heat_create(&heat, lap, &ho, NULL) == HD_OK);
         CHECK(heat_columns(heat, 8 * lap->h * lap->h, HD_KERNEL_OPERATOR, K, sources, way ? u : first, 0, &rep) >= 0);
         if (way == 0) rep0 = rep;
-        CHECK_MSG(way == 0 || memcmp(u, first, (size_t)(n * K) * sizeof *u) == 0, "%s: way %d of threading gives other bits", heat_solvers[k / WAYS], way);
+        CHECK_MSG(way == 0 || memcmp(u, first, (size_t)(n * K) * sizeof *u) == 0, "%s: way %d of threading gives other bits",
+                  heat_solvers[k / WAYS], way);
         CHECK(rep.iterations == rep0.iterations && rep.error_bound == rep0.error_bound && rep.residual == rep0.residual);
         hd_heat_free(heat);
         hd_laplacian_free(lap);

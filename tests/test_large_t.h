@@ -94,7 +94,8 @@ static void large_square(void) {
             most = fmax(most, x[v % N] * y[v / N]);
             worst = fmax(worst, fabs(u[v] * exp(t * low) - x[v % N] * y[v / N]));
         }
-        CHECK_MSG(worst <= 1e-7 * most && worst <= (r.error_bound + 1e-12 * (1 + t * low)) * most, "from %d, %g: error %g, bound %g", (int)w,
+        CHECK_MSG(worst <= 1e-7 * most && worst <= (r.error_bound + 1e-12 * (1 + t * low)) * most, "from %d, %g: error %g, bound %g",
+                  (int)w,
                   t * low, worst / most, r.error_bound);
     }
     CHECK(heat_columns(heat, 2000 / low, HD_KERNEL_SYMMETRIC, 1, from, u, 0, &r) == HD_WARN_ACCURACY);
@@ -121,15 +122,19 @@ static void large_kept(void) {
     o.context = &ctx;
     CHECK(hd_heat_create(&heat, lap, &o, NULL) == HD_OK);
     CHECK(hd_heat_estimate(heat, HD_QUERY_DISTANCE, 1, &t, 1, &e, NULL) == HD_OK && strstr(e.reason, "eigenpairs") != NULL);
-    CHECK(heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &source, d, 0, &r) == HD_OK && strstr(r.reason, "eigenpairs") != NULL && r.n_lost == 0);
+    CHECK(heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &source, d, 0, &r) == HD_OK && strstr(r.reason, "eigenpairs") != NULL &&
+          r.n_lost == 0);
     CHECK(r.evidence_rational == HD_EVIDENCE_PROVEN && r.evidence_solver == HD_EVIDENCE_PROVEN && r.error_solver > 0);
-    CHECK(heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &source, again, 0, &r) == HD_OK && memcmp(d, again, (size_t)n * sizeof *d) == 0);
+    CHECK(heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &source, again, 0, &r) == HD_OK &&
+          memcmp(d, again, (size_t)n * sizeof *d) == 0);
     CHECK(hd_heat_estimate(heat, HD_QUERY_DISTANCE, 1, &t, 1, &e, NULL) == HD_OK && e.cost[0].seconds == 0);
     for (i = 0; i < 3 * n; i++) ball.xyz[i] *= i % 3 ? 1 : 1.5;
     CHECK(hd_laplacian_update(lap, ball.xyz, NULL) >= 0);
     CHECK(heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &source, again, 0, &r) == HD_OK);
-    CHECK(heat_distance(kit_heat(kit_triangles(kit_own(ball), HD_LAPLACIAN_FEM), ""), HD_DISTANCE_CLASSICAL, 1, &t, 1, &source, moved, 0, &r) == HD_OK);
-    CHECK(dense_max_diff(again, moved, n) <= 1e-8 * dense_max_abs(moved, n) && dense_max_diff(again, d, n) > 0.01 * dense_max_abs(again, n));
+    CHECK(heat_distance(kit_heat(kit_triangles(kit_own(ball), HD_LAPLACIAN_FEM), ""), HD_DISTANCE_CLASSICAL, 1, &t, 1, &source, moved,
+                        0, &r) == HD_OK);
+    CHECK(dense_max_diff(again, moved, n) <= 1e-8 * dense_max_abs(moved, n) && dense_max_diff(again, d,
+        n) > 0.01 * dense_max_abs(again, n));
     hd_heat_free(heat);
     for (k = 0; k < 2; k++) {                    /* of the 9.1 MB that poles need; 2.6 MB are too little for either */
         CHECK(ctx.bytes_in_use == 0);
@@ -262,8 +267,10 @@ static void large_copies(void) {
         const double t = 100 * lap->h * lap->h;
         hd_heat *heat = kit_heat(lap, "");
         for (i = 0; i < 80; i++) f[i] = 1 + 0.5 * sin(3.0 * i);
-        CHECK((what ? hd_heat_adjoint(heat, 1, &t, 2, f, 0, u, 0, NULL, NULL) : hd_heat_apply(heat, 1, &t, 2, f, 0, u, 0, NULL, NULL)) == HD_OK);
-        CHECK((what ? hd_heat_adjoint(heat, 1, &t, 2, f, 0, f, 0, NULL, NULL) : hd_heat_apply(heat, 1, &t, 2, f, 0, f, 0, NULL, NULL)) == HD_OK);
+        CHECK((what ? hd_heat_adjoint(heat, 1, &t, 2, f, 0, u, 0, NULL, NULL) : hd_heat_apply(heat, 1, &t, 2, f, 0, u, 0, NULL,
+            NULL)) == HD_OK);
+        CHECK((what ? hd_heat_adjoint(heat, 1, &t, 2, f, 0, f, 0, NULL, NULL) : hd_heat_apply(heat, 1, &t, 2, f, 0, f, 0, NULL,
+            NULL)) == HD_OK);
         CHECK(memcmp(f, u, sizeof f) == 0);
         for (i = 0; i < 80; i++) CHECK((u[i] == 0) == (lap->row[i % 40] == HD_ROW_HELD));
     }
