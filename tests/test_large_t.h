@@ -102,7 +102,36 @@ static void large_square(void) {
     for (v = 0; v < N * N; v++) CHECK(u[v] == 0);
 }
 
-/* ---- eigenpairs that are kept ---- */
+/* ---- eigenpairs ---- */
+
+/* Samples at every time: each point is as far from the nearest one before it as pairs say. */
+static void large_samples(void) {
+    enum { COUNT = 6, PAIRS = COUNT * (COUNT - 1) / 2 };
+    static const char *const pairs[3] = {"bumpy/2/5 fem", "torus/18/10 vor", "flat/15/11/0.2 cot"};
+    int32_t vertex[COUNT], i[PAIRS], j[PAIRS], q, r, m, v;
+    double far[COUNT], d[PAIRS], most;
+    hd_report rep;
+    for (q = 0; q < 3 * 2 * 14; q++) {
+        const hd_laplacian *lap = kit_pair(pairs[q / 28]);
+        const hd_distance_kind kind = q % 2 ? HD_DISTANCE_WEIGHTED : HD_DISTANCE_CLASSICAL;
+        const double t = 0.3 * pow(10, q / 2 % 14 * 0.5) * trial_unit(lap);
+        hd_heat *heat = kit_heat(lap, "");
+        CHECK(heat_sample(heat, kind, t, COUNT, 0, vertex, far, &rep) >= 0);
+        for (v = 1, m = 0; v < COUNT; v++)
+            for (r = 0; r < v; r++, m++) {
+                i[m] = vertex[r];
+                j[m] = vertex[v];
+            }
+        CHECK(heat_pairs(heat, kind, t, PAIRS, i, j, NULL, d, NULL) >= 0);
+        most = dense_max_abs(d, PAIRS);
+        for (v = 1, m = 0; v < COUNT && most > 1e-290; v++) {
+            double nearest = HUGE_VAL;
+            for (r = 0; r < v; r++) nearest = fmin(nearest, d[m++]);
+            CHECK_MSG(fabs(far[v] - nearest) <= 2e-7 * most && rep.error_bound <= 1e-6, "%s, kind %d, t = %g: point %d at %g, not %g of %g, bound %g",
+                      pairs[q / 28], (int)kind, t, (int)v, far[v], nearest, most, rep.error_bound);
+        }
+    }
+}
 
 /* Made again after an update, and they fit where the poles do not. */
 static void large_kept(void) {
@@ -280,6 +309,7 @@ static void test_large_t(void) {
     large_cases();
     large_equal();
     large_square();
+    large_samples();
     large_kept();
     large_units();
     large_below();
