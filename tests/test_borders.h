@@ -84,9 +84,6 @@ static hd_laplacian *bord_triangles(const shape *s, const hd_laplacian_opts *o) 
     return lap;
 }
 
-/* For the other groups; freed by the caller. */
-static shape bord_disk(int32_t m, int round) { return trial_disk(m, round); }
-
 static hd_laplacian *bord_kept(const shape *s, const hd_laplacian_opts *o) {
     return (hd_laplacian *)kit_keep(bord_triangles(s, o), kit_free_laplacian);
 }

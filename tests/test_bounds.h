@@ -80,33 +80,6 @@ static double bnd_error(const double *u, const double *want, int64_t n) {
 #define BND_BEST "method=direct poles=kernel degree=14"
 static const char *const bnd_methods[4] = {"method=auto", "method=direct", "method=krylov", "method=iterative"};
 
-/* Edges a-b of weight w, B = I; extra (or NULL) is added on the diagonal, and L takes the sign. For test_spectrum.h. */
-static hd_laplacian *bnd_graph(int32_t n, int32_t m, const int32_t *a, const int32_t *b, const double *w, const double *extra, double sign) {
-    int32_t *i = DENSE_NEW(int32_t, 4 * m + n), *j = DENSE_NEW(int32_t, 4 * m + n), e, k = 0, side;
-    double *v = DENSE_NEW(double, 4 * m + n);
-    hd_laplacian *lap = NULL;
-    hd_csr L, B = test_diagonal_csr(n, NULL);
-    for (e = 0; e < m; e++)
-        for (side = 0; side < 2; side++) {
-            i[k] = j[k] = i[k + 1] = side ? b[e] : a[e];
-            v[k++] = sign * w[e];
-            j[k] = side ? a[e] : b[e];
-            v[k++] = -sign * w[e];
-        }
-    for (e = 0; extra && e < n; e++) {
-        i[k] = j[k] = e;
-        v[k++] = extra[e];
-    }
-    memset(&L, 0, sizeof L);
-    CHECK(hd_csr_from_triplets(&L, n, n, k, i, j, v, NULL, NULL) == HD_OK && hd_laplacian_matrices(&lap, &L, &B, 0, NULL, NULL) == HD_OK);
-    hd_csr_free(&L, NULL);
-    hd_csr_free(&B, NULL);
-    free(i);
-    free(j);
-    free(v);
-    return lap;
-}
-
 /* L and B of a path: what B has on its diagonal and, if anything, beside it. */
 static hd_laplacian *bnd_path(int32_t n, double diagonal, double beside) {
     const hd_csr *L = kit_csr(test_path_csr(n, 0));

@@ -745,39 +745,6 @@ static void pts_line(void) {
 
 /* ---- memory; used by test_robust.h ---- */
 
-/* Points of a small sphere, some of them twice. */
-static hd_status pts_robust(hd_context *ctx, int variant) {
-    shape s = kit_own_shape(shape_points(60, shape_on_sphere, 4 * pts_pi, 0, 2));
-    hd_laplacian *lap = (hd_laplacian *)&test_passed;     /* not a Laplacian: only compared */
-    hd_laplacian_opts o;
-    double d2[60 * 4];
-    int32_t id[60 * 4];
-    hd_csr a;
-    hd_error e;
-    hd_status st;
-    memset(&o, 0, sizeof o);
-    memcpy(s.xyz + 90, s.xyz, 6 * sizeof(double));
-    o.context = ctx;
-    o.kind = variant == 1 ? HD_LAPLACIAN_EXP : HD_LAPLACIAN_VORONOI_EXP;
-    if (variant < 2) {
-        st = hd_laplacian_points(&lap, s.xyz, s.n, &o, &e);
-        CHECK((st >= 0) == (lap != (hd_laplacian *)&test_passed));
-        if (st >= 0) hd_laplacian_free(lap);
-    } else if (variant == 2) st = hd_neighbours_nearest(s.xyz, 60, NULL, 0, 4, id, d2, ctx, &e);
-    else if (variant == 4) {
-        st = hd_laplacian_tufted_points(&lap, s.xyz, s.n, NULL, NULL, NULL, &e);
-        hd_laplacian_free(st >= 0 ? lap : NULL);
-        o.kind = HD_LAPLACIAN_DEFAULT;
-        if (st >= 0) st = hd_laplacian_tufted_points(&lap, s.xyz, s.n, NULL, NULL, &o, &e);
-        if (st >= 0) hd_laplacian_free(lap);
-    } else {
-        st = hd_neighbours_radius(&a, s.xyz, 60, NULL, 0, 0.5, ctx, &e);
-        if (st >= 0) hd_csr_free(&a, ctx);
-    }
-    CHECK(e.status == st);
-    return st;
-}
-
 static void test_points(void) {
     pts_nearest();
     pts_within();

@@ -114,13 +114,6 @@ static double *src_load(const hd_source *s, int32_t n) {
     return c;
 }
 
-static void src_normalise(double *c, int32_t n) {
-    double sum = 0;
-    int32_t v;
-    for (v = 0; v < n; v++) sum += c[v];
-    for (v = 0; v < n; v++) c[v] /= sum;
-}
-
 static void src_make_all(src_room *room, hd_source *s, const hd_laplacian *lap) {
     int w;
     for (w = 0; w < SRC_KINDS; w++) {
