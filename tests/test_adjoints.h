@@ -189,12 +189,12 @@ static void adj_identities(void) {
 
 /* The factors of one time serve all three calls, forth and back: answers are the same bits whatever came before. */
 static void adj_factors_shared(void) {
-    shape s = shape_icosphere(3);
-    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
+    shape s = kit_own_shape(shape_icosphere(3));
+    hd_laplacian *lap = kit_own_laplacian(test_laplacian(&s, HD_LAPLACIAN_FEM));
     hd_heat *heat = adj_plan(lap, ADJ_TRAIN), *other = adj_plan(lap, ADJ_TRAIN);
     const size_t n = (size_t)lap->n;
     const double t = 0.1, t2 = 0.2;
-    double *f = adj_fields(lap, n), *u = DENSE_NEW(double, 4 * n);
+    double *f = adj_fields(lap, n), *u = KIT_NEW(double, 4 * n);
     CHECK(hd_heat_apply(heat, 1, &t, 1, f, 0, u, 0, NULL, NULL) == HD_OK);
     CHECK(hd_heat_derivative(heat, 1, &t, 1, f, 0, u + n, 0, NULL, NULL) == HD_OK);
     CHECK(hd_heat_adjoint(heat, 1, &t, 1, f, 0, u + 2 * n, 0, NULL, NULL) == HD_OK);
@@ -204,10 +204,7 @@ static void adj_factors_shared(void) {
     CHECK(hd_heat_derivative(other, 1, &t, 1, f, 0, u, 0, NULL, NULL) == HD_OK && memcmp(u, u + n, n * sizeof *u) == 0);
     hd_heat_free(heat);
     hd_heat_free(other);
-    hd_laplacian_free(lap);
     free(f);
-    free(u);
-    shape_free(&s);
 }
 
 /* -A f of fields near the largest double is beyond it, and that is an error, not infinity. */

@@ -138,7 +138,7 @@ static void bord_split(void) {
 static void bord_masses(void) {
     const double apart[3] = {4, 1, 0}, further[3] = {9, 1, 0};
     const shape *ball = kit_shape("ico/1"), *disk = kit_shape("disk/5/0"), *small = kit_shape("disk/3/0");
-    shape two = shape_disjoint(ball, disk, apart), three = shape_disjoint(&two, small, further);
+    shape two = kit_own_shape(shape_disjoint(ball, disk, apart)), three = kit_own_shape(shape_disjoint(&two, small, further));
     int32_t *held = KIT_NEW(int32_t, ball->n + 1), q, more, round;
     double *xyz = KIT_NEW(double, 3 * (int64_t)three.n);
     for (q = 0; q < ball->n; q++) held[q] = q;
@@ -160,8 +160,6 @@ static void bord_masses(void) {
             CHECK(hd_laplacian_update(lap, xyz, NULL) == HD_OK);
         }
     }
-    shape_free(&two);
-    shape_free(&three);
 }
 
 /* Polygons, points, tufted points, and matrices. */
@@ -317,7 +315,7 @@ static void bord_mixed(void) {
     const int32_t held = 7;
     const hd_laplacian_opts o = bord_opts(HD_LAPLACIAN_FEM, HD_BORDER_NATURAL, 1, &held);
     const shape *disk = kit_shape("disk/5/0");
-    shape two = shape_disjoint(disk, disk, apart);
+    shape two = kit_own_shape(shape_disjoint(disk, disk, apart));
     const hd_laplacian *lap = bord_kept(&two, &o);
     const int32_t n = lap->n, source = disk->n + 11, sources[2] = {2, source};
     const double late = 1e11 * lap->h * lap->h, mean = 1 / lap->component_mass[1];
@@ -344,7 +342,6 @@ static void bord_mixed(void) {
         CHECK_MSG(off <= 1e-10 * mean && off <= (rep.error_bound + 1e-13) * mean, "late %s: off by %g of %g, bound %g",
             k ? "diagonal" : "columns", off, mean, rep.error_bound);
     }
-    shape_free(&two);
 }
 
 /* ---- closed forms ---- */
@@ -457,7 +454,7 @@ static void bord_updates(void) {
     static const hd_laplacian_kind kinds[3] = {HD_LAPLACIAN_FEM, HD_LAPLACIAN_VORONOI_COT, HD_LAPLACIAN_POLYGON};
     static const int32_t held[2] = {2, 9};
     const shape *s = kit_shape("disk/6/1");
-    shape_poly p = shape_poly_of(s);
+    shape_poly p = kit_own_poly(shape_poly_of(s));
     double *xyz = KIT_NEW(double, 3 * s->n), *u = KIT_NEW(double, s->n), *want = KIT_NEW(double, s->n);
     int32_t q, frame, v;
     for (q = 0; q < 3; q++) {
@@ -484,7 +481,6 @@ static void bord_updates(void) {
         CHECK(hd_laplacian_update(lap, xyz, &e) == HD_ERR_EMPTY && lap->version == 3);
         CHECK(heat_column(heat, 3 * lap->h * lap->h, lap->vertex[20], want, NULL) >= 0);
     }
-    shape_poly_free(&p);
 }
 
 static void bord_update_matrices(void) {

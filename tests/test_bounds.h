@@ -284,7 +284,7 @@ static void bnd_fields(void) {
 
 /* The signature of the truck by the default plan beside columns by another method, at some of its vertices. */
 static void bnd_truck(void) {
-    shape s = tri_file("truck.obj");
+    shape s = kit_own_shape(tri_file("truck.obj"));
     hd_laplacian *lap;
     hd_heat *columns;
     double *D, *u, t, worst = 0, slack = 0;
@@ -311,7 +311,6 @@ static void bnd_truck(void) {
     CHECK_MSG(at >= 0 && worst <= r.error_relative + slack,
         "truck, diagonal: vertex %d is off by %.3g of itself (column good to %.2g), error_relative %.3g", (int)at, worst, slack,
               r.error_relative);
-    shape_free(&s);
 }
 
 static void test_bounds(void) {

@@ -9,8 +9,8 @@ enum { DEEP_N = 1000000, DEEP_STACK = 256 * 1024, DEEP_WIDE = 70000 };
 /* Diagonal 1 + degree, -1 along the edges: a path, or a star around vertex 0. */
 static hd_csr deep_matrix(int32_t n, int star, double shift) {
     const int64_t count = 3 * (int64_t)n - 2;
-    int32_t *i = DENSE_NEW(int32_t, count), *j = DENSE_NEW(int32_t, count), v;
-    double *x = DENSE_NEW(double, count);
+    int32_t *i = KIT_NEW(int32_t, count), *j = KIT_NEW(int32_t, count), v;
+    double *x = KIT_NEW(double, count);
     hd_csr a;
     int64_t q = 0;
     memset(&a, 0, sizeof a);
@@ -25,15 +25,12 @@ static hd_csr deep_matrix(int32_t n, int star, double shift) {
         q += 2;
     }
     CHECK(hd_csr_from_triplets(&a, n, n, q, i, j, x, NULL, NULL) == HD_OK);
-    free(i);
-    free(j);
-    free(x);
     return a;
 }
 
 /* Analysis, factor and solve: L + I has the solution 1 for the right-hand side 1. */
 static void deep_factor(const hd_csr *a, const int32_t *perm, const char *what) {
-    double *x = DENSE_NEW(double, a->n_rows), worst = 0;
+    double *x = KIT_NEW(double, a->n_rows), worst = 0;
     hd_ldl *f = NULL;
     hd_ldl_opts o;
     hd_ldl_report r;
@@ -49,14 +46,13 @@ static void deep_factor(const hd_csr *a, const int32_t *perm, const char *what) 
     for (v = 0; v < a->n_rows; v++) worst = fmax(worst, fabs(x[v] - 1));
     CHECK_MSG(worst < 1e-9, "%s: off by %g", what, worst);
     hd_ldl_free(f);
-    free(x);
 }
 
 /* One column on a long path, by a factor and by Lanczos. */
 static void deep_column(int32_t n) {
     hd_csr L = kit_own_csr(deep_matrix(n, 0, 0)), B = kit_own_csr(deep_matrix(n, 0, 0));
     hd_laplacian *lap = NULL;
-    double *u = DENSE_NEW(double, n), *w = DENSE_NEW(double, n), worst = 0;
+    double *u = KIT_NEW(double, n), *w = KIT_NEW(double, n), worst = 0;
     hd_report r[2];
     int32_t v;
     int64_t p;
@@ -76,27 +72,24 @@ static void deep_column(int32_t n) {
     for (v = 0; v < n; v++) worst = fmax(worst, fabs(u[v] - w[v]));
     CHECK_MSG(worst <= u[n / 2] * (r[0].error_bound + r[1].error_bound), "a path: two methods are %g apart", worst);
     hd_laplacian_free(lap);
-    free(u);
-    free(w);
 }
 
 static void *deep_all(void *arg) {
     hd_csr path = kit_own_csr(deep_matrix(DEEP_N, 0, 1)), star = kit_own_csr(deep_matrix(DEEP_N, 1, 1));
-    int32_t *perm = DENSE_NEW(int32_t, DEEP_N), v;
+    int32_t *perm = KIT_NEW(int32_t, DEEP_N), v;
     for (v = 0; v < DEEP_N; v++) perm[v] = v;
     deep_factor(&path, perm, "path from end to end");    /* a tree as deep as the path is long */
     deep_factor(&path, NULL, "path");
     deep_factor(&star, NULL, "star");
     deep_column(DEEP_N);
-    free(perm);
     return arg;
 }
 
 /* A star whose middle goes first fills up: n (n + 1)/2 entries, more than 32 bits count. */
 static void deep_wide(void) {
-    hd_csr star = deep_matrix(DEEP_WIDE, 1, 1);
+    hd_csr star = kit_own_csr(deep_matrix(DEEP_WIDE, 1, 1));
     const int64_t entries = (int64_t)DEEP_WIDE * (DEEP_WIDE + 1) / 2;
-    int32_t *perm = DENSE_NEW(int32_t, DEEP_WIDE), v;
+    int32_t *perm = KIT_NEW(int32_t, DEEP_WIDE), v;
     hd_context ctx;
     hd_ldl *f = NULL;
     hd_ldl_opts o;
@@ -117,8 +110,6 @@ static void deep_wide(void) {
     }
     hd_ldl_free(f);
     CHECK(ctx.bytes_in_use == 0);
-    hd_csr_free(&star, NULL);
-    free(perm);
 }
 
 static void test_deep(void) {

@@ -10,7 +10,7 @@
 static dense_c64 *diag_dense_inverse(const hd_csr *a, const hd_c64 *val) {
     const int32_t n = a->n_rows;
     const size_t ld = 2 * (size_t)n;
-    dense_c64 *m = DENSE_NEW(dense_c64, (int64_t)n * (int64_t)ld), *z = DENSE_NEW(dense_c64, (int64_t)n * n), keep;
+    dense_c64 *m = KIT_NEW(dense_c64, (int64_t)n * (int64_t)ld), *z = DENSE_NEW(dense_c64, (int64_t)n * n), keep;
     int64_t p;
     int32_t i, j, k;
     for (i = 0; i < n; i++) {
@@ -40,7 +40,6 @@ static dense_c64 *diag_dense_inverse(const hd_csr *a, const hd_c64 *val) {
         }
     }
     for (i = 0; i < n; i++) memcpy(z + (size_t)i * (size_t)n, m + (size_t)i * ld + n, (size_t)n * sizeof *z);
-    free(m);
     return z;
 }
 
@@ -180,13 +179,12 @@ static void diag_inverse_shapes(void) {
     int kind, z;
     for (kind = 0; kind < LDL_SHAPES; kind++) {
         for (z = 0; z < 6; z++) {
-            hd_csr a = ldl_shape(kind, sizes[z], 1, (uint64_t)(kind + 1));
+            hd_csr a = kit_own_csr(ldl_shape(kind, sizes[z], 1, (uint64_t)(kind + 1)));
             const hd_ldl_opts o = ldl_opts_of(HD_ORDERING_MINIMUM_DEGREE, NULL, NULL, NULL);
             hd_ldl *f = ldl_make(&a, kind % 2 ? &o : NULL, ldl_shape_name(kind));
             diag_inverse_of(&a, f, 1 + (kind + z) % 9, z % 2, 1, (uint64_t)(7 * kind + z), ldl_shape_name(kind));
             if (z == 4) diag_inverse_of(&a, f, 1 + (kind + z + 3) % 9, 1, 1, (uint64_t)(11 * kind + z), ldl_shape_name(kind));
             hd_ldl_free(f);
-            hd_csr_free(&a, NULL);
         }
     }
 }
@@ -201,12 +199,11 @@ static void diag_inverse_levels(void) {
         for (q = 0; q < 6; q++) {
             static const int kinds[6] = {LDL_RANDOM, LDL_GRID, LDL_DENSE, LDL_BAND, LDL_BIPARTITE, LDL_DENSE};
             static const int32_t sizes[6] = {90, 400, 75, 120, 90, 141};
-            hd_csr a = ldl_shape(kinds[q], sizes[q], 1, (uint64_t)(q + 50));
+            hd_csr a = kit_own_csr(ldl_shape(kinds[q], sizes[q], 1, (uint64_t)(q + 50)));
             const hd_ldl_opts o = ldl_opts_of(HD_ORDERING_AUTO, NULL, NULL, &ctx);
             hd_ldl *f = ldl_make(&a, &o, ldl_shape_name(kinds[q]));
             diag_inverse_of(&a, f, 3, q % 2, sizes[q] <= 150 && level < 2, (uint64_t)q, ldl_shape_name(kinds[q]));
             hd_ldl_free(f);
-            hd_csr_free(&a, NULL);
         }
         CHECK(ctx.bytes_in_use == 0);
     }

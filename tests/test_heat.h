@@ -14,12 +14,11 @@ typedef struct heat_case {
 
 /* Tasks in the order of a shuffled deck, each by some worker; the last one by the calling thread. */
 static void heat_shuffled_for(void *user, int64_t n_tasks, hd_task task, void *arg) {
-    int32_t *order = DENSE_NEW(int32_t, n_tasks), i;
+    int32_t *order = KIT_NEW(int32_t, n_tasks), i;
     uint64_t seed = 17;
     dense_shuffle(order, (int32_t)n_tasks, &seed);
     for (i = 0; i < n_tasks; i++) task(arg, order[i], (int32_t)((i + 1) % n_tasks ? 1 + i % 2 : 0));
     ++*(int64_t *)user;
-    free(order);
 }
 
 /* ---- against the truth ---- */

@@ -27,7 +27,7 @@ static int32_t order_rows(order_box b) { return b.w * b.h * b.d + b.hubs; }
 /* xyz [3 n]: the places of the rows. */
 static hd_csr order_graph(order_box b, double *xyz) {
     const int32_t n = order_rows(b);
-    int32_t *row = DENSE_NEW(int32_t, n), v, u, k, q;
+    int32_t *row = KIT_NEW(int32_t, n), v, u, k, q;
     uint64_t seed = 11;
     ldl_edges g = ldl_edges_of(n);
     for (v = 0; v < n; v++) row[v] = v;
@@ -44,7 +44,6 @@ static hd_csr order_graph(order_box b, double *xyz) {
         }
         for (k = 0; k < 2 && (b.joins & ORDER_FAR); k++) ldl_join(&g, row[v], row[ldl_below(&seed, n)]);
     }
-    free(row);
     return ldl_pattern(&g, 1);
 }
 
@@ -53,7 +52,7 @@ static hd_csr order_graph(order_box b, double *xyz) {
 /* Non-zeros of the factor in the best of all orders. least[s]: those of the columns in s, when they are eliminated first. */
 static int64_t order_best(const hd_csr *a) {
     const int32_t n = a->n_rows;
-    int32_t *near = DENSE_NEW(int32_t, n), *least = DENSE_NEW(int32_t, 1 << n), s, v, u;
+    int32_t *near = KIT_NEW(int32_t, n), *least = KIT_NEW(int32_t, 1 << n), s, v, u;
     int64_t p, best;
     for (v = 0; v < n; v++)
         for (p = a->row_ptr[v]; p < a->row_ptr[v + 1]; p++) near[v] |= 1 << a->col[p];
@@ -73,8 +72,6 @@ static int64_t order_best(const hd_csr *a) {
         }
     }
     best = least[(1 << n) - 1];
-    free(near);
-    free(least);
     return best;
 }
 
@@ -96,7 +93,7 @@ static void order_all_orders(void) {
 /* Eliminates a vertex of least degree, the last of several, until none is left. */
 static int64_t order_by_definition(const hd_csr *a) {
     const int32_t n = a->n_rows;
-    char *m = DENSE_NEW(char, (int64_t)n * n), *gone = DENSE_NEW(char, n);
+    char *m = KIT_NEW(char, (int64_t)n * n), *gone = KIT_NEW(char, n);
     int32_t i, j, k, step;
     int64_t p, nnz = 0;
     for (i = 0; i < n; i++)
@@ -114,8 +111,6 @@ static int64_t order_by_definition(const hd_csr *a) {
         for (i = 0; i < n; i++)
             for (j = 0; m[k * n + i] && j < n; j++) m[i * n + j] |= m[k * n + j];
     }
-    free(m);
-    free(gone);
     return nnz;
 }
 
@@ -149,8 +144,8 @@ static void order_grids(void) {
     for (k = 45; k <= 90; k += 45)
         for (wide = 0; wide < 2; wide++) {
             const order_box b = {k, k, 1, wide ? ORDER_CELLS : ORDER_GRID, 0, 0};
-            double *xyz = DENSE_NEW(double, 3 * k * k), work[2];
-            hd_csr a = order_graph(b, xyz);
+            double *xyz = KIT_NEW(double, 3 * k * k), work[2];
+            hd_csr a = kit_own_csr(order_graph(b, xyz));
             for (way = 0; way < 2; way++) {
                 const hd_ldl_report r = order_of(&a, ldl_orderings[1 + way], xyz);
                 work[way] = r.factor_flops / pow(k, 3);
@@ -158,8 +153,6 @@ static void order_grids(void) {
                           "%d by %d: %lld non-zeros, %g k^3 flops", (int)k, (int)k, (long long)r.factor_nnz, work[way]);
             }
             CHECK_MSG(work[0] < 1.2 * work[1] && work[1] < 1.2 * work[0], "%g and %g k^3 flops", work[0], work[1]);
-            hd_csr_free(&a, NULL);
-            free(xyz);
         }
 }
 
@@ -167,8 +160,8 @@ static void order_grids(void) {
 static void order_dense_rows(void) {
     const order_box box = {50, 50, 1, ORDER_CELLS, 0, 0};
     order_box hubs = box;
-    double *xyz = DENSE_NEW(double, 3 * 2503);
-    hd_csr a = order_graph(box, xyz), b;
+    double *xyz = KIT_NEW(double, 3 * 2503);
+    hd_csr a = kit_own_csr(order_graph(box, xyz)), b;
     int way;
     hubs.hubs = 3;
     b = order_graph(hubs, xyz);
@@ -177,9 +170,7 @@ static void order_dense_rows(void) {
         const int64_t all = order_of(&b, ldl_orderings[way], xyz).factor_nnz;
         CHECK_MSG(all <= alone + alone / 50 + 3 * 2500 + 6, "%d non-zeros, %d without dense rows", (int)all, (int)alone);
     }
-    hd_csr_free(&a, NULL);
     hd_csr_free(&b, NULL);
-    free(xyz);
 }
 
 /* ---- limits ---- */
@@ -217,8 +208,8 @@ static void order_limits(void) {
     for (c = 0; c < sizeof table / sizeof *table; c++) {
         const order_box b = table[c].box;
         const int32_t n = order_rows(b);
-        double *xyz = DENSE_NEW(double, 3 * n), got[4];
-        hd_csr a = order_graph(b, xyz);
+        double *xyz = KIT_NEW(double, 3 * n), got[4];
+        hd_csr a = kit_own_csr(order_graph(b, xyz));
         uint64_t seed = 3;
         for (k = 0; k < 3 * n; k++) {
             if (table[c].places == ORDER_ANYWHERE) xyz[k] = dense_signed(&seed);
@@ -232,8 +223,6 @@ static void order_limits(void) {
         for (k = 0; k < 4; k++)
             CHECK_MSG(got[k] <= (k % 2 ? 1.04 : 1.02) * table[c].most[k], "case %d: %.5g, %.5g; %.5g, %.5g", (int)c, got[0], got[1],
                       got[2], got[3]);
-        hd_csr_free(&a, NULL);
-        free(xyz);
     }
 }
 

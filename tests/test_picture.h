@@ -375,7 +375,7 @@ static int tpic_coloured(const pic_image *img) {
 }
 
 static void tpic_test_isolines(void) {
-    shape s = shape_grid(41, 31, 0.2);
+    shape s = kit_own_shape(shape_grid(41, 31, 0.2));
     double *f = (double *)malloc((size_t)s.n * sizeof *f);
     pic_opts o = tpic_small(320, 240);
     tpic_images all = {{{0, 0, NULL, 0}}, 0};
@@ -402,12 +402,11 @@ static void tpic_test_isolines(void) {
     }
     tpic_free(&all);
     free(f);
-    shape_free(&s);
 }
 
 /* A panel of another mesh is seen from where it is warm, or with one_view from where the first is: as if it were the same mesh. */
 static void tpic_test_one_view(void) {
-    shape s = shape_bumpy(3, 4), copy = shape_bumpy(3, 4);
+    shape s = kit_own_shape(shape_bumpy(3, 4)), copy = kit_own_shape(shape_bumpy(3, 4));
     double *f = (double *)malloc(2 * (size_t)s.n * sizeof *f);
     pic_opts o = tpic_small(320, 240);
     tpic_images all = {{{0, 0, NULL, 0}}, 0};
@@ -430,8 +429,6 @@ static void tpic_test_one_view(void) {
     }
     tpic_free(&all);
     free(f);
-    shape_free(&s);
-    shape_free(&copy);
 }
 
 /* The scale and the ticks for values, a given range and so many decades. */
@@ -583,7 +580,7 @@ static int tpic_same(const pic_panel *a, const pic_opts *oa, const pic_panel *b,
 static void tpic_test_rare(void) {
     static const double xyz[12] = {0, 0, 0, 1, 0, 0.2, 0, 1, 0, 0, 1, 0}, f[4] = {0, 1, 2, 2}, large[4] = {0, 1e6, 2e6, 2e6};
     static const int32_t tri[15] = {0, 1, 2, 0, 0, 1, 0, 1, 1, 1, 0, 1, 1, 2, 3};
-    shape s = shape_icosphere(1);
+    shape s = kit_own_shape(shape_icosphere(1));
     pic_opts o = tpic_small(120, 90), other;
     pic_panel p, q;
     tpic_images all = {{{0, 0, NULL, 0}}, 0};
@@ -632,7 +629,6 @@ static void tpic_test_rare(void) {
     }
     CHECK_MSG(seen[1] > 2 * seen[0] && seen[0] > 20, "%d and %d pixels", seen[0], seen[1]);
     tpic_free(&all);
-    shape_free(&s);
 }
 
 /* Letters beyond ASCII, superscripts and subscripts: by the widths of texts. */
@@ -663,7 +659,7 @@ static void tpic_test_letters(void) {
 
 /* A sphere fills about as much of the picture as it should, as faces and as points, whichever way its faces are turned. */
 static void tpic_test_picture_of_sphere(void) {
-    shape s = shape_icosphere(3);
+    shape s = kit_own_shape(shape_icosphere(3));
     double *f = (double *)malloc((size_t)s.n * sizeof *f);
     pic_opts o = tpic_small(320, 240);
     tpic_images all = {{{0, 0, NULL, 0}}, 0};
@@ -698,7 +694,6 @@ static void tpic_test_picture_of_sphere(void) {
     }
     tpic_free(&all);
     free(f);
-    shape_free(&s);
 }
 
 /* ---- shapes ---- */
@@ -793,7 +788,7 @@ static void tpic_test_simple_shapes(void) {
 
 /* All triangles of a grid look up, also the jittered ones; the random generator gives its published first number. */
 static void tpic_test_grid_upright(void) {
-    shape s = shape_grid(30, 20, 0.3);
+    shape s = kit_own_shape(shape_grid(30, 20, 0.3));
     uint64_t seed = 0;
     int32_t i, bad = 0;
     for (i = 0; i < s.n_tri; i++) {
@@ -802,7 +797,6 @@ static void tpic_test_grid_upright(void) {
         bad += !(n[2] > 0);
     }
     CHECK(s.n == 600 && bad == 0);
-    shape_free(&s);
     CHECK(shape_random(&seed) == 0xe220a8397b1dcdafu);
 }
 
@@ -810,7 +804,7 @@ static void tpic_test_demo(void) {
     static const int32_t sizes[3] = {2000, 0, 36000};
     int k, c;
     for (k = 0; k < 3; k++) {
-        shape s = shape_demo(sizes[k]);
+        shape s = kit_own_shape(shape_demo(sizes[k]));
         const double wanted = sizes[k] ? sizes[k] : 12000;
         int32_t i, slim = 0, odd = 0, *valence = (int32_t *)calloc((size_t)s.n + 1, sizeof *valence);
         tpic_check_shape(&s, "demo", -2, 0, 1, 1.7);
@@ -825,7 +819,6 @@ static void tpic_test_demo(void) {
         CHECK_MSG(slim <= s.n_tri / 2000, "demo: %d angles below 15 degrees", (int)slim);
         CHECK_MSG(odd > s.n / 20, "demo: only %d irregular vertices", (int)odd);
         free(valence);
-        shape_free(&s);
     }
 }
 

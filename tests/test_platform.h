@@ -16,7 +16,7 @@ static void plat_is(const char *what, const double *u, int32_t n, double want, d
 static void plat_heat(const hd_laplacian *lap, const char *what, const double want[2]) {
     static const hd_method methods[3] = {HD_METHOD_DIRECT, HD_METHOD_KRYLOV, HD_METHOD_ITERATIVE};
     const double t[1] = {3 * lap->h * lap->h};
-    double *u = DENSE_NEW(double, lap->n);
+    double *u = KIT_NEW(double, lap->n);
     int k;
     for (k = 0; k < 3; k++) {
         hd_heat *heat = NULL;
@@ -34,16 +34,15 @@ static void plat_heat(const hd_laplacian *lap, const char *what, const double wa
         }
         hd_heat_free(heat);
     }
-    free(u);
 }
 
 static void test_platform(void) {
     static const double fem[2] = {2.5543600282776149, 197.3638785557259}, flipped[2] = {2.9845496459786554, 206.81190328552705},
                         points[2] = {2.5341179078977927, 322.10133007652712};
-    shape ball = shape_bumpy(2, 9);
+    shape ball = kit_own_shape(shape_bumpy(2, 9));
     const int32_t source = 7;
     const double t = 0.1;
-    double *d = DENSE_NEW(double, ball.n);
+    double *d = KIT_NEW(double, ball.n);
     hd_laplacian *lap = NULL;
     hd_laplacian_opts o;
     hd_heat *heat = NULL;
@@ -68,6 +67,4 @@ static void test_platform(void) {
     CHECK(hd_geodesic_distance(geo, 1, &source, d, NULL, NULL) >= 0);
     plat_is("geodesic", d, ball.n, 1061.2440935015238, 1e-12);
     hd_geodesic_free(geo);
-    free(d);
-    shape_free(&ball);
 }

@@ -17,7 +17,7 @@ typedef struct rob_job {
 } rob_job;
 
 static hd_status rob_laplacian_of(hd_context *ctx, hd_laplacian_kind kind, hd_laplacian **out) {
-    shape s = call_pair_of_shapes();
+    shape s = kit_own_shape(call_pair_of_shapes());
     hd_laplacian_opts o;
     hd_error e;
     hd_status st;
@@ -27,7 +27,6 @@ static hd_status rob_laplacian_of(hd_context *ctx, hd_laplacian_kind kind, hd_la
     *out = rob_mark_lap;
     st = hd_laplacian_triangles(out, s.xyz, s.n, s.tri, s.n_tri, &o, &e);
     CHECK(e.status == st && (st >= 0) == (*out != rob_mark_lap));
-    shape_free(&s);
     return st;
 }
 
@@ -143,7 +142,7 @@ static void rob_byte_limits(const rob_job *job) {
 /* Small meshes must not pay for large ones: the most bytes in use for a Laplacian and one column on a sphere of 162
  * vertices, which examples/embedded computes on a microcontroller. limit: of the context, 0 none. */
 static uint64_t rob_small_peak(hd_laplacian_kind kind, hd_method method, uint64_t limit, double *u) {
-    shape s = shape_icosphere(2);
+    shape s = kit_own_shape(shape_icosphere(2));
     test_memory m;
     hd_context ctx = test_memory_context(&m);
     hd_laplacian_opts lap_opts;
@@ -165,7 +164,6 @@ static uint64_t rob_small_peak(hd_laplacian_kind kind, hd_method method, uint64_
     hd_heat_free(heat);
     hd_laplacian_free(lap);
     CHECK(m.live == 0 && ctx.bytes_in_use == 0);
-    shape_free(&s);
     return ctx.bytes_peak;
 }
 
@@ -352,7 +350,7 @@ static void rob_trap_calls(const call_data *d, hd_context *ctx, const char *vola
                                          "n_times=3 t=late diagonal", "distance", "weighted distance", "commute distance"};
     static const char *const others[3] = {"geodesic k=1 geodesic_set", "geodesic k=6 geodesic_each", "biharmonic distance"};
     static call_world w;
-    double *f = DENSE_NEW(double, 3 * d->s.n);   /* the second field is zero, the third constant */
+    double *f = KIT_NEW(double, 3 * d->s.n);   /* the second field is zero, the third constant */
     int32_t i;
     int q, m, k;
     for (i = 0; i < d->s.n; i++) f[i] = i % 5 - 1;
@@ -373,7 +371,6 @@ static void rob_trap_calls(const call_data *d, hd_context *ctx, const char *vola
             for (k = 0; k < 3 && q == 0; k++) (void)call_words(&w, *stage = others[k], 1);
             call_close(&w);
         }
-    free(f);
     call_world_free(&w);
 }
 
@@ -417,7 +414,7 @@ static void rob_trap_pivots(hd_context *ctx) {
 static void rob_traps(void) {
     static const hd_simd simds[3] = {HD_SIMD_AUTO, HD_SIMD_NONE, HD_SIMD_AVX2};
     const double offset[3] = {5, 0, 0};
-    shape ball = shape_bumpy(2, 5), grid = shape_grid(9, 8, 0.3), s = shape_disjoint(&ball, &grid, offset);
+    shape ball = kit_own_shape(shape_bumpy(2, 5)), grid = kit_own_shape(shape_grid(9, 8, 0.3)), s = shape_disjoint(&ball, &grid, offset);
     static call_data d;
     hd_context ctx;
     const char *volatile stage = "";
@@ -428,8 +425,6 @@ static void rob_traps(void) {
     for (f = 5; f < s.n_tri; f += 41)                                                /* two places the same */
         memcpy(s.xyz + 3 * s.tri[3 * f], s.xyz + 3 * s.tri[3 * f + 1], 3 * sizeof(double));
     memcpy(s.xyz + 3, s.xyz, 3 * sizeof(double));
-    shape_free(&ball);
-    shape_free(&grid);
     call_data_make(&d, s);
     if (setjmp(rob_trapped)) {
         fedisableexcept(FE_ALL_EXCEPT);

@@ -547,7 +547,7 @@ static double src_gap(const double *a, const double *b) { return sqrt(pow(a[0] -
 
 /* A plan of the triangles of a shape: 0 as they are, 1 by their lengths, 2 intrinsic Delaunay, 3 tufted, 4 as polygons that are split, 5 points. */
 static hd_geodesic *src_plan(const shape *s, int kind, hd_geodesic_border border, double t) {
-    shape_poly p = shape_poly_of(s);
+    shape_poly p = kit_own_poly(shape_poly_of(s));
     double *length = KIT_NEW(double, 3 * s->n_tri);
     hd_geodesic *g = NULL;
     hd_geodesic_opts o;
@@ -564,7 +564,6 @@ static hd_geodesic *src_plan(const shape *s, int kind, hd_geodesic_border border
     else if (kind == 5) (void)hd_geodesic_create_points(&g, s->xyz, s->n, NULL, NULL, &o, &e);
     else (void)hd_geodesic_create(&g, s->xyz, s->n, s->tri, s->n_tri, &o, &e);
     CHECK_MSG(g != NULL, "plan %d: %s", kind, e.text);
-    shape_poly_free(&p);
     return g;
 }
 
@@ -639,7 +638,7 @@ static void src_geo_flat(void) {
 static void src_geo_rules(void) {
     const double apart[3] = {5, 0, 0};
     const shape *a = kit_shape("ico/2"), *b = kit_shape("flat/6/5/0.2");
-    shape s = shape_disjoint(a, b, apart);
+    shape s = kit_own_shape(shape_disjoint(a, b, apart));
     hd_geodesic *g = src_kept(src_geodesic(&s, 0));
     double *d = KIT_NEW(double, s.n), *e = KIT_NEW(double, s.n), bary[6] = {0, 1, 0, 1, 0, 0};
     int32_t vertex[6] = {0, 5, 1, a->n + 3, 0, 9}, id[2] = {5, a->n + 3}, v;
@@ -667,7 +666,6 @@ static void src_geo_rules(void) {
     CHECK(hd_geodesic_distance_from(g, NULL, d, NULL, &err) == HD_ERR_ARGUMENT &&
         hd_geodesic_distance_from(g, &src, NULL, NULL, &err) == HD_ERR_ARGUMENT);
     CHECK(hd_geodesic_distance_from(NULL, &src, d, NULL, &err) == HD_ERR_ARGUMENT);
-    shape_free(&s);
 }
 
 /* Where another kind of plan has the same triangles, it gives the same distances from points in faces, on an edge, and from curves. */

@@ -23,7 +23,7 @@ static int spec_compare(const void *a, const void *b) {
 
 /* Residuals and orthogonality, computed here. */
 static void spec_check_vectors(const hd_laplacian *lap, const hd_spectrum *s, double tol, const char *what) {
-    double *y = DENSE_NEW(double, lap->n), *b = DENSE_NEW(double, lap->n), worst = 0, orth = 0, off = 0;
+    double *y = KIT_NEW(double, lap->n), *b = KIT_NEW(double, lap->n), worst = 0, orth = 0, off = 0;
     int32_t q, p, i;
     for (q = 0; q < s->count; q++) {
         const double *x = s->vector + (size_t)q * (size_t)s->n;
@@ -41,8 +41,6 @@ static void spec_check_vectors(const hd_laplacian *lap, const hd_spectrum *s, do
     }
     CHECK_MSG(worst < tol && off < 0.1 * tol && orth < 1e-12, "%s: residual %g, told off by %g, orthogonal to %g", what, worst, off,
               orth);
-    free(y);
-    free(b);
 }
 
 static void spec_free(void *p) { hd_spectrum_free((hd_spectrum *)p); }
@@ -256,7 +254,7 @@ static void spec_memory(void) {
     static const double most[4] = {1.1e6, 3.4e6, 11.5e6, 24.5e6};
     int32_t k;
     for (k = 0; k < 4; k++) {
-        shape s = shape_icosphere(level[k]);
+        shape s = kit_own_shape(shape_icosphere(level[k]));
         hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
         hd_spectrum_opts o;
         hd_spectrum *z = NULL;
@@ -270,7 +268,6 @@ static void spec_memory(void) {
         hd_spectrum_free(z);
         CHECK_MSG(ctx.bytes_in_use == 0 && (double)ctx.bytes_peak <= most[k], "%d pairs of %d: %g bytes", count[k], s.n, (double)ctx.bytes_peak);
         hd_laplacian_free(lap);
-        shape_free(&s);
     }
 }
 

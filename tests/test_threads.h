@@ -139,7 +139,7 @@ static void thr_lifetime(const shape *s, const double *want, double *u) {
     hd_context ctx;
     hd_laplacian *lap, *other;
     hd_heat *heat;
-    int32_t *index = DENSE_NEW(int32_t, 7 * s->n);
+    int32_t *index = KIT_NEW(int32_t, 7 * s->n);
     memset(&ctx, 0, sizeof ctx);
     ctx.n_threads = 3;
     CHECK(hd_context_threads(&ctx) == (own ? 3 : 1) && hd_context_threads(NULL) >= 1);
@@ -163,14 +163,13 @@ static void thr_lifetime(const shape *s, const double *want, double *u) {
     CHECK(!ctx.threads && ctx.n_holders == 0 && thr_running() == before);
     lap = NULL;
     CHECK(hd_laplacian_triangles(&lap, s->xyz, s->n, s->tri, -1, NULL, NULL) == HD_ERR_ARGUMENT && thr_running() == before);
-    free(index);
 }
 
 /* A product makes no object; it has threads like any other call, and ends them. */
 static void thr_product(void) {
     enum { N = 200000 };
-    hd_csr a = test_path_csr(N, 1);
-    double *x = DENSE_NEW(double, N), *y = DENSE_NEW(double, N);
+    hd_csr a = kit_own_csr(test_path_csr(N, 1));
+    double *x = KIT_NEW(double, N), *y = KIT_NEW(double, N);
     const int before = thr_running();
     hd_context ctx;
     uint64_t seed = 1;
@@ -182,9 +181,6 @@ static void thr_product(void) {
     CHECK(ctx.regions == (thr_own() ? 1 : 0) && !ctx.threads && ctx.n_holders == 0 && thr_running() == before);
     for (i = 0; i < N; i++) y[i] -= 2 * x[i] - x[(i + 1) % N] - x[(i + N - 1) % N];
     CHECK(dense_max_abs(y, N) < 1e-14);
-    hd_csr_free(&a, NULL);
-    free(x);
-    free(y);
 }
 
 /* What is asked of other threads: a solve of a large mesh is one loop; a small one is no loop, and starts nobody. */
@@ -303,9 +299,9 @@ static void *thr_user_run(void *arg) {
 static void thr_nested(const shape *s, const double *want) {
     static const hd_method methods[3] = {HD_METHOD_DIRECT, HD_METHOD_KRYLOV, HD_METHOD_ITERATIVE};
     enum { USERS = 8 };
-    hd_laplacian *lap = test_laplacian_at(s, s->xyz, HD_LAPLACIAN_FEM, 0, NULL);
+    hd_laplacian *lap = kit_own_laplacian(test_laplacian_at(s, s->xyz, HD_LAPLACIAN_FEM, 0, NULL));
     const size_t size = 2 * (size_t)s->n + THR_ASKED;
-    double *u = DENSE_NEW(double, USERS * size);
+    double *u = KIT_NEW(double, USERS * size);
     pthread_t thread[USERS];
     thr_user user[USERS];
     int k;
@@ -322,8 +318,6 @@ static void thr_nested(const shape *s, const double *want) {
         CHECK_MSG(memcmp(user[k].u, user[k % 3].u, size * sizeof *u) == 0, "user %d, unlike user %d", k, k % 3);
     }
     CHECK(memcmp(u, want, (size_t)s->n * sizeof *u) == 0);
-    hd_laplacian_free(lap);
-    free(u);
 }
 #endif
 
@@ -381,8 +375,8 @@ static void thr_light(void) {
 }
 
 static void thr_lives(void) {
-    shape s = shape_bumpy(4, 5);
-    double *want = DENSE_NEW(double, s.n), *u = DENSE_NEW(double, s.n);
+    shape s = kit_own_shape(shape_bumpy(4, 5));
+    double *want = KIT_NEW(double, s.n), *u = KIT_NEW(double, s.n);
     hd_context serial;
     hd_laplacian *lap;
     hd_heat *heat;
@@ -401,9 +395,6 @@ static void thr_lives(void) {
 #ifdef LDL_THREADS
     thr_nested(&s, want);
 #endif
-    free(want);
-    free(u);
-    shape_free(&s);
 }
 
 static void test_threads(void) {

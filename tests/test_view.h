@@ -75,7 +75,7 @@ static int view_same_laplacian(const hd_laplacian *a, const hd_laplacian *b) {
 /* Every door with one form of the buffers, and the same numbers as doubles. */
 static void view_answers(const shape *s, const shape *moved, int floats, size_t stride, enum view_index type, size_t offset) {
     view_buffers b = view_make(s, floats, stride, type, offset), b2 = view_make(moved, floats, stride, type, offset);
-    double *d = DENSE_NEW(double, s->n), *want = DENSE_NEW(double, s->n);
+    double *d = KIT_NEW(double, s->n), *want = KIT_NEW(double, s->n);
     const int32_t source = s->tri[0];
     hd_laplacian_opts lo = {0};
     hd_geodesic_opts go = {0};
@@ -104,20 +104,16 @@ static void view_answers(const shape *s, const shape *moved, int floats, size_t 
     test_memory_done(&m, &ctx, "views");
     view_free(&b);
     view_free(&b2);
-    free(d);
-    free(want);
 }
 
 static void view_forms(void) {
-    shape s = shape_bumpy(2, 5), moved = shape_bumpy(2, 6);
+    shape s = kit_own_shape(shape_bumpy(2, 5)), moved = kit_own_shape(shape_bumpy(2, 6));
     static const size_t strides[5] = {0, 12, 13, 14, 32}, wide_strides[4] = {0, 24, 25, 40};
     size_t k, offset;
     for (offset = 0; offset < 2; offset++) {
         for (k = 0; k < 5; k++) view_answers(&s, &moved, 1, strides[k], (enum view_index)(k % 4), offset);
         for (k = 0; k < 4; k++) view_answers(&s, &moved, 0, wide_strides[k], (enum view_index)k, offset);
     }
-    shape_free(&s);
-    shape_free(&moved);
 }
 
 /* The two doors that make something refuse alike. Returns the error of the first. */
@@ -137,7 +133,7 @@ static hd_error view_refused(const hd_mesh_view *v) {
 static void view_bad_data(void) {
     static const enum view_index types[4] = {VIEW_U16, VIEW_U32, VIEW_I16, VIEW_I32};
     static const double values[4] = {65535, 4294967295.0, -1, -1};
-    shape s = shape_grid(6, 5, 0);
+    shape s = kit_own_shape(shape_grid(6, 5, 0));
     hd_laplacian *lap = NULL;
     hd_error e, want;
     int k;
@@ -162,7 +158,6 @@ static void view_bad_data(void) {
         free(broken);
         view_free(&b);
     }
-    shape_free(&s);
 }
 
 static void test_view(void) {
