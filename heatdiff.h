@@ -92,6 +92,7 @@
      Beside the implementation only:
      HEATDIFF_IMPLEMENTATION   compiles the implementation; define it in one file
      HEATDIFF_ASSERT(x)        your own assert; default: assert() unless NDEBUG
+     HEATDIFF_AUDIT            more asserts, which take time; on by itself under the address sanitizer
      HEATDIFF_MALLOC(size), HEATDIFF_FREE(p)
                                used by contexts without an allocator; define both or none
      HEATDIFF_NO_THREADS       no threads of the library's own. They need POSIX threads or Windows, and
@@ -1935,6 +1936,18 @@ HEATDIFF_API hd_status hd_geodesic_distance_from(hd_geodesic *g, const hd_source
 #ifndef HEATDIFF_ASSERT
 #include <assert.h>
 #define HEATDIFF_ASSERT(x) assert(x)
+#endif
+
+/* 1: steps of long computations also assert what they hand on, which takes time. */
+#if defined(HEATDIFF_AUDIT) || defined(__SANITIZE_ADDRESS__)
+#define HDI_AUDIT 1
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(memory_sanitizer)
+#define HDI_AUDIT 1
+#endif
+#endif
+#ifndef HDI_AUDIT
+#define HDI_AUDIT 0
 #endif
 
 #if defined(__GNUC__) || defined(__clang__)
@@ -10640,21 +10653,16 @@ static hd_status hdi_vertices_check(const hd_laplacian *lap, int64_t k, const in
  *   2000 (the halo)
  * Our own additions: all that is known of a vertex lies in one half of a cache line, and what is needed soon
  * is fetched early, which decides the speed from 1M vertices on; the hash table of twins is small; a halo
- * needs no rows. Renumbering the matrix breadth first before costs as much as it saves. Ties: the vertex
- * whose degree was found last goes first. */
+ * needs no rows. Ties: the vertex whose degree was found last goes first. */
 
 /* A variable, an element, or what became of them. */
 typedef struct hdi_amd_node {
-    int32_t at;                  /* its list begins at list[at]; of a vertex eliminated or merged with another
-                                    one: that one */
+    int32_t at;                  /* its list begins at list[at]; of a vertex gone with another: that one */
     int32_t len;                 /* length of the list: elements first, then variables */
     int32_t elen;                /* how many are elements; HDI_AMD_PIVOT: this is an element itself */
-    int32_t weight;              /* vertices it stands for, 0: it is gone. Negative: on the list that is being
-                                    worked on */
-    int32_t mark;                /* elements: |L_e \ L_me| + flag, 0 when absorbed; variables: seen when equal
-                                    to flag */
-    int32_t degree;              /* bound of the weight of the neighbours; of an element the weight of its
-                                    list */
+    int32_t weight;              /* vertices it stands for; 0: it is gone; negative: it is in L_me */
+    int32_t mark;                /* elements: |L_e \ L_me| + flag, 0 when absorbed; variables: flag if seen */
+    int32_t degree;              /* bound of the weight of the neighbours; of elements that of the list */
     int32_t next, prev;          /* of the same degree; later chain of the hash table, and hash. Of an element
                                     prev is its place in the order */
 } hdi_amd_node;
@@ -10735,8 +10743,7 @@ static int32_t hdi_amd_collect(hdi_amd *g, int32_t p, int32_t len, int32_t q, in
     return q;
 }
 
-/* L_me = A_me and the L_e of all its elements e, without me. They are absorbed. A variable without elements
- * becomes an element in place. */
+/* L_me = A_me and the L_e of all its elements e, which are absorbed. Without elements it is made in place. */
 static void hdi_amd_element(hdi_amd *g, int32_t me) {
     hdi_amd_node *v = g->v + me;
     int32_t begin, end, p, weight = 0;
@@ -10782,8 +10789,7 @@ static void hdi_amd_overlaps(hdi_amd *g, const hdi_amd_node *me) {
 }
 
 /* A_i and E_i for the i of L_me: what me covers goes, so do elements inside L_me, me comes. Variables with no
- * neighbours outside L_me are eliminated with me. The others get their degree without the share of L_me, and
- * are put into the hash table. */
+ * neighbours outside go with me. The others get their degree outside, and are put into the hash table. */
 static void hdi_amd_update(hdi_amd *g, int32_t me) {
     hdi_amd_node *v = g->v, *pivot = v + me;
     int32_t *list = g->list, *l = list + pivot->at, *const l_end = l + pivot->len;
@@ -10831,8 +10837,7 @@ static void hdi_amd_update(hdi_amd *g, int32_t me) {
     }
 }
 
-/* Merges into i those of the chain behind it that have the same elements and variables: they will stay
- * alike. */
+/* Merges into i those behind it in the chain that have the same elements and variables: they stay alike. */
 static void hdi_amd_twins(hdi_amd *g, int32_t i) {
     hdi_amd_node *v = g->v, *a = v + i;
     const int32_t *list = g->list;
@@ -10901,6 +10906,39 @@ static void hdi_amd_next_flag(hdi_amd *g, int32_t step) {
     g->flag = 2;
 }
 
+/* For audits: what is left has all the weight and is in the lists of degrees; elements weigh what they say;
+ * and each degree lies between the weight of the neighbours and that of all lists they are in. */
+static int hdi_amd_sound(hdi_amd *g) {
+    hdi_amd_node *v = g->v;
+    int32_t i, k, q, left = g->left, listed = 0, wrong = 0;
+    for (i = 0; i < g->n; i++) {
+        int32_t exact = 0, sum = 0;
+        if (v[i].weight == 0 || v[i].elen == HDI_AMD_PIVOT) continue;
+        left -= v[i].weight;
+        listed += i < g->inner;
+        hdi_amd_next_flag(g, 1);
+        v[i].mark = g->flag;
+        for (k = 0; k < v[i].len; k++) {
+            const int32_t *e = g->list + v[i].at + k, is_element = k < v[i].elen;
+            const int32_t *l = is_element ? g->list + v[*e].at : e, len = is_element ? v[*e].len : 1;
+            int32_t all = 0;
+            wrong += (v[*e].elen == HDI_AMD_PIVOT) != is_element || (is_element && v[*e].mark == 0);
+            for (q = 0; q < len; q++) {
+                all += v[l[q]].weight;
+                exact += v[l[q]].mark == g->flag ? 0 : v[l[q]].weight;
+                v[l[q]].mark = g->flag;
+            }
+            sum += is_element ? all - v[i].weight : all;
+            wrong += is_element && all != v[*e].degree;
+        }
+        wrong += i < g->inner && (v[i].degree < exact || v[i].degree > sum);
+    }
+    for (k = 0; k <= g->n; k++)
+        for (i = g->head[k]; i >= 0; i = v[i].next, listed--)
+            wrong += v[i].degree != k || k < g->least || v[i].weight == 0 || v[i].elen == HDI_AMD_PIVOT;
+    return wrong == 0 && left == 0 && listed == 0;
+}
+
 /* Eliminates variables until the order holds as many as that. */
 static void hdi_amd_run(hdi_amd *g, int32_t until) {
     while (g->done < until) {
@@ -10923,14 +10961,16 @@ static void hdi_amd_run(hdi_amd *g, int32_t until) {
         g->done += pivot->weight;
         g->left -= pivot->weight;
         hdi_amd_restore(g, pivot);
+        if (HDI_AUDIT && me % (g->n / 32 + 1) == 0 && !hdi_amd_sound(g)) HEATDIFF_ASSERT(0);
     }
 }
 
-/* Words of work space for n vertices and lists of nnz entries. The elbow room of n is needed, that of nnz / 5
- * saves time (as in the paper). */
-static int64_t hdi_amd_words(int64_t n, int64_t nnz) {
-    return HDI_CAST(int64_t, sizeof(hdi_amd_node) / sizeof(int32_t)) * n + n + 1 + HDI_AMD_BUCKETS + nnz +
-        nnz / 5 + n;
+/* int32 words of work space for lists of nnz entries. The elbow room of n is needed, that of a fifth of the
+ * entries saves time (as in the paper). */
+static int64_t hdi_amd_words(int32_t inner, int32_t halo, int64_t nnz) {
+    const int64_t n = HDI_CAST(int64_t, inner) + halo, all = halo > 0 ? 2 * nnz : nnz;
+    return HDI_CAST(int64_t, sizeof(hdi_amd_node) / sizeof(int32_t)) * n + n + 1 + HDI_AMD_BUCKETS + all +
+        all / 5 + n;
 }
 
 /* Lays out the work space of words. */
@@ -10945,19 +10985,12 @@ static void hdi_amd_begin(hdi_amd *g, int32_t n, int32_t inner, int32_t *work, i
     g->bucket = g->head + n + 1;
     g->list = g->bucket + HDI_AMD_BUCKETS;
     g->size = HDI_CAST(int32_t, work + words - g->list);
-    for (i = 0; i <= n; i++) g->head[i] = -1;
-    for (i = 0; i < HDI_AMD_BUCKETS; i++) g->bucket[i] = -1;
+    hdi_fill_i32(g->head, n + 1 + HDI_AMD_BUCKETS, -1);   /* and the buckets */
     for (i = 0; i < n; i++) {
         g->v[i].at = g->v[i].len = g->v[i].elen = g->v[i].degree = 0;
         g->v[i].weight = g->v[i].mark = 1;
         g->v[i].next = g->v[i].prev = -1;
     }
-}
-
-/* Rows longer than this (as in AMD) would be in most lists, and are eliminated last whatever happens. */
-static int32_t hdi_amd_dense(int32_t n) {
-    const double d = 10 * sqrt(HDI_CAST(double, n));
-    return d < 16 ? 16 : HDI_CAST(int32_t, d);
 }
 
 /* Takes i out of the graph. */
@@ -10967,9 +11000,8 @@ static void hdi_amd_drop(hdi_amd *g, int32_t i) {
     g->left--;
 }
 
-/* Called when all lists are there: rows without neighbours come first in the order, those dropped as dense
- * last, the others go into the list of their degree. Returns how many the order holds without the dense ones.
- * */
+/* Rows without neighbours come first in the order, those dropped as dense last, the others enter the list of
+ * their degree. Returns how many the order holds without the dense ones. */
 static int32_t hdi_amd_start(hdi_amd *g) {
     int32_t i, last = g->inner, count;
     for (i = 0; i < g->inner; i++) last -= g->v[i].weight == 0;
@@ -11013,9 +11045,9 @@ typedef struct hdi_amd_graph {
 
 static int64_t hdi_amd_row(const hdi_amd_graph *a, int32_t i) { return a->wide ? a->wide[i] : a->ptr[i]; }
 
-/* Lists of all vertices, but of those with dense rows, which are dropped. */
+/* Lists of all vertices but those with dense rows (as in AMD), which are dropped: they would be in most. */
 static void hdi_amd_load(hdi_amd *g, const hdi_amd_graph *a) {
-    const int32_t dense = hdi_amd_dense(a->n);
+    const int32_t dense = HDI_CAST(int32_t, hdi_max(16, 10 * sqrt(HDI_CAST(double, a->n))));
     int32_t i, q = 0;
     int64_t p;
     for (i = 0; i < a->inner; i++) {
@@ -11044,17 +11076,11 @@ static void hdi_amd_load(hdi_amd *g, const hdi_amd_graph *a) {
     g->free = q;
 }
 
-/* int32 words of work space for hdi_amd_part. */
-static int64_t hdi_amd_part_words(int32_t inner, int32_t halo, int64_t nnz) {
-    return hdi_amd_words(HDI_CAST(int64_t, inner) + halo, halo > 0 ? 2 * nnz : nnz);
-}
-
 /* Orders a small graph with ptr given: perm[q] is the inner vertex eliminated q-th. work
- * [hdi_amd_part_words], below 2^31, best aligned to 64 bytes. Allocates nothing and cannot fail. TRUSTS ITS
- * INPUT. */
+ * [hdi_amd_words], below 2^31, best aligned to 64 bytes. Cannot fail. TRUSTS ITS INPUT. */
 static void hdi_amd_part(const hdi_amd_graph *a, int32_t *perm, int32_t *work) {
     hdi_amd g;
-    hdi_amd_begin(&g, a->n, a->inner, work, hdi_amd_part_words(a->inner, a->n - a->inner, a->ptr[a->inner]));
+    hdi_amd_begin(&g, a->n, a->inner, work, hdi_amd_words(a->inner, a->n - a->inner, a->ptr[a->inner]));
     hdi_amd_load(&g, a);
     hdi_amd_run(&g, hdi_amd_start(&g));
     hdi_amd_number(&g, perm);
@@ -11066,18 +11092,14 @@ enum { HDI_AMD_STEP = 100000 };      /* vertices from one report of progress to 
 static hd_status hdi_amd_order(const hd_csr *a, int32_t *perm, hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
     const int32_t n = a->n_rows;
-    const int64_t words = hdi_amd_words(n, a->nnz);
+    const int64_t words = hdi_amd_words(n, 0, a->nnz);
+    const hdi_amd_graph rows = {n, n, a->row_ptr, NULL, a->col};
     int32_t count, *work;
-    hdi_amd_graph rows;
     hdi_amd g;
     if (words - 9 * HDI_CAST(int64_t, n) > INT32_MAX)   /* places in the lists are numbered by 32 bits */
         return hdi_fail(e, HD_ERR_TOO_LARGE, "a pattern is too large for a minimum degree ordering");
     work = HDI_TAKE(&s, int32_t, words);
     if (e->status < 0) return hdi_scope_end(&s);
-    rows.n = rows.inner = n;
-    rows.wide = a->row_ptr;
-    rows.ptr = NULL;
-    rows.col = a->col;
     hdi_amd_begin(&g, n, n, work, words);
     hdi_amd_load(&g, &rows);
     count = hdi_amd_start(&g);
@@ -11092,9 +11114,8 @@ static hd_status hdi_amd_order(const hd_csr *a, int32_t *perm, hd_context *ctx, 
  * along a space-filling curve, so that every part is a compact graph in cache. A part is halved on its
  * clusters, small groups of neighbours that are made once and handed down: they are swept along a line or by
  * graph distance, then the cut is improved by exchanges on a few coarser copies. Around the cut that this
- * gives, the smallest separator within a band is found exactly, by vertex-disjoint paths. Both halves are
- * halved in turn. Small parts are ordered by minimum degree, the separators around them counted as
- * neighbours. May call [13].
+ * gives, the smallest separator within a band is found exactly, by vertex-disjoint paths. Small parts are
+ * ordered by minimum degree, the separators around them counted as neighbours. May call [13].
  * This work is based on
  *   A. George, Nested dissection of a regular finite element mesh, 1973
  *   G. M. Morton, A computer oriented geodetic data base and a new technique in file sequencing, 1966
@@ -11107,13 +11128,10 @@ static hd_status hdi_amd_order(const hd_csr *a, int32_t *perm, hd_context *ctx, 
  * these only guide the next cut. */
 
 enum {
-    /* vertices of a part that minimum degree orders: 300 to 3000 make little difference to fill, fewer cost
-     * time */
-    HDI_ND_LEAF = 1500,
+    HDI_ND_LEAF = 1500,     /* vertices of a part that minimum degree orders: fewer cost time, not fill */
     HDI_ND_FRESH = 50,      /* clusters of a part that are too few to cut */
     HDI_ND_COARSE = 100,    /* vertices of a coarsest copy, about */
-    /* of the band, on each side of a cut: 3 cost a tenth more flops in the factor, 8 gain little */
-    HDI_ND_LAYERS = 5,
+    HDI_ND_LAYERS = 5,      /* of the band, on each side of a cut: 3 cost a tenth more flops, 8 gain little */
     HDI_ND_WORDS = 20,      /* work space: words for a vertex */
     HDI_ND_SLACK = 1200,    /* and for a task */
     HDI_ND_LEVELS = 24,     /* most copies of a part */
@@ -11126,8 +11144,7 @@ enum {
     HDI_ND_PASSES = 3,      /* of exchanges on each copy */
     HDI_ND_PATIENCE = 200,  /* most moves without a better cut before a pass ends */
     HDI_ND_BAND = 12,       /* a band has at most this share of a part's vertices on each side */
-    /* a cluster weighs at most this share of all, so that the coarsest copy can be halved */
-    HDI_ND_CLUSTERS = 24,
+    HDI_ND_CLUSTERS = 24,   /* share of all that a cluster weighs at most: the coarsest copy can be halved */
     HDI_ND_MIDDLE = 64,     /* the separator's layer in a band */
     HDI_ND_NONE = -2147483647,
     HDI_ND_DEAD = 2147483647
@@ -11142,8 +11159,7 @@ enum {
 typedef struct hdi_nd_graph {
     int32_t n;
     int32_t *ptr, *adj;    /* neighbours of v: adj[ptr[v]..ptr[v + 1]), no diagonal */
-    int32_t *ew, *w;       /* weights of entries (edges of the part within) and of vertices (vertices of the
-                              part within) */
+    int32_t *ew, *w;       /* weights of entries and vertices: edges and vertices of the part within */
     int32_t *id;           /* the row whose place stands for v */
     int32_t *map;          /* vertex of the next coarser copy */
     int8_t *side;          /* 0, 1, and at the finest copy 2: separator */
@@ -11152,11 +11168,9 @@ typedef struct hdi_nd_graph {
 /* Rows first..first + n - 1 of the order are to be found. clusters = 0: none are known. */
 typedef struct hdi_nd_part { int32_t first, n, edge, n_edges, clusters, buffer; } hdi_nd_part;
 
-/* The graphs of parts and of their clusters. Those of odd depth are in one of two buffers, of even depth in
- * the other, each in its own slices. */
+/* The graphs of parts and their clusters, each in its own slices: one of two buffers is for odd depths. */
 typedef struct hdi_nd_buffer {
-    int32_t *ptr, *adj, *id, *map;   /* [2 n], [nnz], [n], [n]; ptr has n + 1 words for every part, also where
-                                        a separator is empty */
+    int32_t *ptr, *adj, *id, *map;   /* [2 n], [nnz], [n], [n]; ptr has n + 1 words for every part */
     int32_t *cptr, *cadj, *cew, *cid; /* [2 n], [nnz / 4], [nnz / 4], [n] */
 } hdi_nd_buffer;
 
@@ -11176,8 +11190,7 @@ typedef struct hdi_nd {
     hd_error *error;
 } hdi_nd;
 
-/* Work space left to a task. A step takes from its front; the space is given back when the copy of this
- * struct that the step worked with is dropped. */
+/* Work space left to a task, taken from its front: what a copy of this struct took is free after it. */
 typedef struct hdi_nd_space { int32_t *at, *end; } hdi_nd_space;
 
 /* A task's space, 20 n + 2 n_edges + 1200 words for a part of n vertices, is never used up. A split takes
@@ -11186,9 +11199,8 @@ typedef struct hdi_nd_space { int32_t *at, *end; } hdi_nd_space;
  * n_edges, and copies, each of at most 2/3 of the vertices of the one before: one of N vertices takes 3.17 N,
  * all 9.5 c; where a copy fails it keeps 3.17 N at most, takes 5.5 N for a while, and hdi_nd_first_cut 11.5 N
  * on top, or hdi_nd_descend 4.25 N on top of all copies. With N = (2/3)^l c that is 9.5 c (1 - (2/3)^l) +
- * 14.67 N <= 14.67 c: together 19.2 n at most. Rounding adds less than 30 words a copy, of which there are
- * 24. The flow takes 9.25 n, fresh clusters 3.17 n + 5.5 (2/3 n), clusters of a half 2 n; hdi_nd_leaf looks
- * itself. */
+ * 14.67 N <= 14.67 c: together 19.2 n at most. Rounding adds less than 30 words to each of 24 copies. The
+ * flow takes 9.25 n, fresh clusters 3.17 n + 5.5 (2/3 n), those of a half 2 n; hdi_nd_leaf looks itself. */
 static int32_t *hdi_nd_take(hdi_nd_space *s, int64_t words) {
     int32_t *p = s->at;
     HEATDIFF_ASSERT(words <= s->end - s->at);
@@ -11210,18 +11222,16 @@ static uint32_t hdi_nd_spread(uint32_t x) {
     return (x | x << 2) & 0x09249249u;
 }
 
-/* key[i] = place of row i on the Morton curve in a grid of 1024^3 cells; unit [3n] = the places scaled to [0,
- * 1]. */
+/* key[i] = place of row i on the Morton curve in a grid of 1024^3 cells; unit [3n] = places within [0, 1]. */
 static void hdi_nd_keys(const double *xyz, int32_t n, uint32_t *key, float *unit) {
     double lo[3], hi[3], width = 0;
     int32_t i, d;
     /* halves: a difference of two must not overflow */
     for (d = 0; d < 3; d++) lo[d] = hi[d] = n ? 0.5 * xyz[d] : 0;
-    for (i = 0; i < n; i++)
-        for (d = 0; d < 3; d++) {
-            lo[d] = hdi_min(lo[d], 0.5 * xyz[3 * HDI_CAST(size_t, i) + HDI_CAST(size_t, d)]);
-            hi[d] = hdi_max(hi[d], 0.5 * xyz[3 * HDI_CAST(size_t, i) + HDI_CAST(size_t, d)]);
-        }
+    for (i = 0; i < 3 * n; i++) {
+        lo[i % 3] = hdi_min(lo[i % 3], 0.5 * xyz[i]);
+        hi[i % 3] = hdi_max(hi[i % 3], 0.5 * xyz[i]);
+    }
     for (d = 0; d < 3; d++) width = hdi_max(width, hi[d] - lo[d]);
     if (!(width > 0)) width = 1;
     for (i = 0; i < n; i++) {
@@ -11346,11 +11356,28 @@ static int hdi_nd_contract(const hdi_nd_graph *g, hdi_nd_graph *c, int32_t space
     return 1;
 }
 
+/* For audits: weight of the vertices, and 2^32 times that of entries between clusters (map; NULL: of all).
+ * -1 unless each edge is there from both its ends with the same weight: the sum would hardly be zero. */
+static int64_t hdi_nd_weigh(const hdi_nd_graph *g, const int32_t *map) {
+    int64_t weight = 0;
+    uint64_t sum = 0;
+    int32_t v, p;
+    for (v = 0; v < g->n; v++) {
+        weight += g->w ? g->w[v] : 1;
+        for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
+            const int64_t u = g->adj[p], e = g->ew ? g->ew[p] : 1;
+            if (u == v || u >= g->n || e <= 0) return -1;
+            if (u >= 0) sum += HDI_CAST(uint64_t, u - v) * HDI_CAST(uint64_t, (1 + u % 999 * (v % 999)) * e);
+            if (u >= 0 && (!map || map[u] != map[v])) weight += e << 32;
+        }
+    }
+    return sum == 0 ? weight : -1;
+}
+
 /* Where copies are made: the room for their entries. */
 typedef struct hdi_nd_room { int32_t *adj, *ew, n; } hdi_nd_room;
 
-/* Makes level[1], coarser than level[0]. total: weight of all vertices. 0 if there is no room or not much to
- * win. */
+/* Makes level[1], coarser than level[0]. total: weight of all vertices. 0: no room, or not much to win. */
 static int hdi_nd_coarser(hdi_nd_graph *level, int32_t total, hdi_nd_room *room, hdi_nd_space *s) {
     hdi_nd_graph *g = level, *c = level + 1;
     const int32_t mean = total / g->n, most = total / HDI_ND_CLUSTERS;
@@ -11372,6 +11399,7 @@ static int hdi_nd_coarser(hdi_nd_graph *level, int32_t total, hdi_nd_room *room,
     start = hdi_nd_take(&temp, c->n + 1);
     mark = hdi_nd_take(&temp, c->n);
     if (!hdi_nd_contract(g, c, room->n, member, start, mark)) return 0;
+    if (HDI_AUDIT && hdi_nd_weigh(c, NULL) != hdi_nd_weigh(g, g->map)) HEATDIFF_ASSERT(0);
     room->n -= c->ptr[c->n];
     room->adj += c->ptr[c->n];
     room->ew += c->ptr[c->n];
@@ -11380,17 +11408,11 @@ static int hdi_nd_coarser(hdi_nd_graph *level, int32_t total, hdi_nd_room *room,
 
 /* ---- buckets ---- */
 
-/* Items by gain: doubly linked lists, one for each gain and side. prev of the first is -1 - bucket, of one in
- * no list HDI_ND_NONE. */
+/* Lists of items for each gain and side. prev of the first is -1 - bucket, of one in none HDI_ND_NONE. */
 typedef struct hdi_nd_queue {
     int32_t head[2 * HDI_ND_BUCKETS], top[2];
     int32_t *next, *prev;
 } hdi_nd_queue;
-
-static void hdi_nd_queue_clear(hdi_nd_queue *q) {
-    memset(q->head, 0xff, sizeof q->head);
-    q->top[0] = q->top[1] = -1;
-}
 
 static void hdi_nd_queue_add(hdi_nd_queue *q, int32_t item, int32_t side, int32_t gain) {
     const int32_t b = side * HDI_ND_BUCKETS + gain, h = q->head[b];
@@ -11458,7 +11480,8 @@ static void hdi_nd_mover_start(hdi_nd_mover *m, hdi_nd_cut *cut) {
     int32_t v, p, largest = 1;
     double sum = 0;
     cut->weight[0] = cut->weight[1] = 0;
-    hdi_nd_queue_clear(&m->q);
+    memset(m->q.head, 0xff, sizeof m->q.head);
+    m->q.top[0] = m->q.top[1] = -1;
     for (v = 0; v < g->n; v++) {
         int32_t in = 0, out = 0;
         for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
@@ -11545,6 +11568,9 @@ static void hdi_nd_refine_edges(hdi_nd_mover *m, hdi_nd_cut *cut, int32_t passes
             }
         }
         while (n > keep) hdi_nd_mover_move(m, m->moved[--n], cut);
+        if (HDI_AUDIT) hdi_nd_mover_start(m, cut);   /* anew: this costs what the moves have led to */
+        HEATDIFF_ASSERT(best >= DBL_MAX ||
+            fabs(hdi_nd_cost(cut->cut, cut->weight[0], cut->weight[1]) - best) <= 1e-9 * best);
         if (!(best < first)) break;
     }
 }
@@ -11555,18 +11581,14 @@ static const float *hdi_nd_place(const hdi_nd *nd, const hdi_nd_graph *g, int32_
     return nd->xyz + 3 * HDI_CAST(size_t, g->id[v]);
 }
 
-static double hdi_nd_distance2(const float *a, const float *b) {
-    const double x = HDI_CAST(double, a[0]) - HDI_CAST(double, b[0]);
-    const double y = HDI_CAST(double, a[1]) - HDI_CAST(double, b[1]);
-    const double z = HDI_CAST(double, a[2]) - HDI_CAST(double, b[2]);
-    return x * x + y * y + z * z;
-}
-
 static int32_t hdi_nd_farthest(const hdi_nd *nd, const hdi_nd_graph *g, const float *from) {
-    int32_t v, far_v = 0;
+    int32_t v, i, far_v = 0;
     double most = -1;
     for (v = 0; v < g->n; v++) {
-        const double d = hdi_nd_distance2(hdi_nd_place(nd, g, v), from);
+        const float *at = hdi_nd_place(nd, g, v);
+        double d, x[3];
+        for (i = 0; i < 3; i++) x[i] = HDI_CAST(double, at[i]) - HDI_CAST(double, from[i]);
+        d = x[0] * x[0] + x[1] * x[1] + x[2] * x[2];
         if (d > most) {
             most = d;
             far_v = v;
@@ -11601,8 +11623,7 @@ static uint64_t hdi_nd_key(double x) {
 }
 
 /* The values along which the vertices are swept, as keys to sort by. kind 0: places along the longest
- * straight line; 1: graph distances; others: places along fixed directions. Returns 0 if all values are
- * equal. work [3 g->n]. */
+ * straight line; 1: graph distances; others: places along a direction. 0 if all are equal. work [3 g->n]. */
 static int hdi_nd_sweep_keys(const hdi_nd *nd, const hdi_nd_graph *g, int32_t kind, hdi_pair *key,
                              int32_t *work) {
     static const signed char hdi_directions[9][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {1, -1, 0},
@@ -11697,14 +11718,11 @@ typedef struct hdi_nd_flow {
     int32_t *prev;              /* on the path through v: HDI_ND_NONE without one, -1 at its beginning */
     int32_t *seen, stamp;       /* states reached: [2 v], [2 v + 1] = stamp */
     int32_t *up, *log, n_log;   /* of a search: the state before each, all states seen */
-    int32_t *link, head[2 * HDI_ND_MIDDLE], top;   /* states still to go on from, a list for each layer; the
-                                                      layer farthest on */
-    int8_t *inside, from;       /* layer: 0 outside, else HDI_ND_MIDDLE plus the distance from the separator,
-                                   minus on side from */
+    int32_t *link, head[2 * HDI_ND_MIDDLE], top;   /* states to go on from, by layer; farthest layer */
+    int8_t *inside, from;       /* layer: 0 outside, else HDI_ND_MIDDLE +- the distance, less on side from */
 } hdi_nd_flow;
 
-/* The band consists of the separator, band[0..n), and of the vertices at most `layers` steps away from it, no
- * more than `most` on each side. */
+/* The band: the separator, band[0..n), and what is at most `layers` steps from it, at most `most` a side. */
 static void hdi_nd_flow_band(hdi_nd_flow *f, int32_t n, int32_t most, int32_t layers) {
     const hdi_nd_graph *g = f->g;
     int32_t i, p, begin = 0, room[2];
@@ -11733,8 +11751,7 @@ static void hdi_nd_flow_band(hdi_nd_flow *f, int32_t n, int32_t most, int32_t la
     f->stamp = 0;
 }
 
-/* A path that ends in this state has been found: joins it to the others, which give up the steps that it
- * takes back. */
+/* A path ends in this state: joins it to the others, which give up the steps that it takes back. */
 static void hdi_nd_flow_augment(hdi_nd_flow *f, int32_t state) {
     int32_t up;
     for (; (up = f->up[state]) >= 0; state = up) {
@@ -11758,8 +11775,7 @@ static void hdi_nd_flow_push(hdi_nd_flow *f, int32_t to, int32_t from) {
 }
 
 /* Searches one more path from vertex v; goes on from the state that is farthest towards the other side.
- * Returns 1 when there is one. What a failed search has seen cannot be part of any path, and is dead from
- * then on. */
+ * Returns 1 when there is one. What a failed search has seen is on no path, and dead from then on. */
 static int hdi_nd_flow_search(hdi_nd_flow *f, int32_t v) {
     const hdi_nd_graph *g = f->g;
     int32_t p, i;
@@ -11805,23 +11821,26 @@ static int hdi_nd_flow_starts(const hdi_nd_flow *f, int32_t v) {
     return 0;
 }
 
-/* Sets the sides of the band around the separator band[0..n) so that the separator is the smallest inside of
- * it; of several such, the one nearest to side from. */
+/* Sets the sides of the band around band[0..n): the smallest separator in it, that nearest to side from. */
 static void hdi_nd_flow_run(hdi_nd_flow *f, int32_t n, int32_t most, int32_t layers) {
-    int32_t i, k = 0, *start;
+    int32_t i, k = 0, paths = 0, cut = 0, begins = 0, *start;
     hdi_nd_flow_band(f, n, most, layers);
     start = f->band + f->n_band;
     for (i = 0; i < f->n_band; i++)
         if (hdi_nd_flow_starts(f, f->band[i])) start[k++] = f->band[i];
     for (i = 0; i < k; i++)
-        if (f->seen[2 * start[i]] != HDI_ND_DEAD && f->prev[start[i]] != -1) hdi_nd_flow_search(f, start[i]);
+        if (f->seen[2 * start[i]] != HDI_ND_DEAD && f->prev[start[i]] != -1)
+            paths += hdi_nd_flow_search(f, start[i]);
     for (i = 0; i < k; i++) f->seen[2 * start[i]] = HDI_ND_DEAD;
     f->stamp = HDI_ND_DEAD;
     for (i = 0; i < f->n_band; i++) {
         const int32_t v = f->band[i];
         f->g->side[v] = f->seen[2 * v + 1] == f->stamp ? f->from
             : HDI_CAST(int8_t, f->seen[2 * v] == f->stamp ? 2 : 1 - f->from);
+        cut += f->g->side[v] == 2;
+        begins += f->prev[v] == -1;
     }
+    if (HDI_AUDIT && (cut != paths || begins != paths || cut > n)) HEATDIFF_ASSERT(0);   /* Menger */
 }
 
 /* ---- parts ---- */
@@ -11850,8 +11869,7 @@ static void hdi_nd_clusters_of(const hdi_nd *nd, const hdi_nd_part *p, hdi_nd_gr
     c->id = b->cid + p->first;
 }
 
-/* level[1] = clusters of level[0], about a dozen vertices each: clusters of clusters. They replace those of
- * the part, if they fit. */
+/* level[1] = clusters of clusters of level[0], about a dozen vertices each: the part's, if they fit. */
 static void hdi_nd_fresh(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_graph *level, hdi_nd_space s) {
     hdi_nd_graph temp[3];
     hdi_nd_room room;
@@ -11962,14 +11980,22 @@ static int hdi_nd_dissect(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_grap
     return hdi_nd_measure(level, size);
 }
 
+/* For audits: no edge joins one side to the other. */
+static int hdi_nd_separated(const hdi_nd_graph *g) {
+    int32_t v, p;
+    for (v = 0; v < g->n; v++)
+        for (p = g->ptr[v]; p < g->ptr[v + 1]; p++)
+            if (g->adj[p] >= 0 && g->side[v] + g->side[g->adj[p]] == 1) return 0;
+    return 1;
+}
+
 /* Words of work space for so many vertices, entries and tasks. */
 static size_t hdi_nd_words(int32_t n, int32_t n_edges, int64_t tasks) {
     return HDI_ND_WORDS * HDI_CAST(size_t, n) + 2 * HDI_CAST(size_t, n_edges) +
         HDI_ND_SLACK * HDI_CAST(size_t, tasks);
 }
 
-/* The space of part i of the heap lies within that of the part it comes from: two parts of which neither
- * contains the other can be worked on at the same time, whatever their sizes. */
+/* The space of part i of the heap lies within that of the part it comes from, apart from all others. */
 static hdi_nd_space hdi_nd_space_of(const hdi_nd *nd, int64_t i) {
     const hdi_nd_part *p = nd->part + i;
     hdi_nd_space s;
@@ -11991,8 +12017,7 @@ static void hdi_nd_graphs_of(const hdi_nd *nd, const hdi_nd_part *p, hdi_nd_grap
     hdi_nd_clusters_of(nd, p, level + 1);
 }
 
-/* The vertices of one side into the child's slices. at [level->n]: numbers within the sides, ~row in the
- * separator. */
+/* The vertices of one side into the child's slices. at [g->n]: numbers within the sides, or ~row. */
 static void hdi_nd_extract(const hdi_nd_graph *g, int8_t side, const int32_t *at, hdi_nd_graph *child) {
     int32_t v, p, i = 0, z = 0;
     for (v = 0; v < g->n; v++) {
@@ -12038,8 +12063,8 @@ static int32_t hdi_nd_extract_clusters(const hdi_nd_graph *g, int8_t side, hdi_n
     return n;
 }
 
-/* Gives the rows of the halo numbers from part->n on, in place, by a hash table in the work space. Returns
- * how many there are; n_edges when the space is too small and nothing has been done. */
+/* Gives the rows of the halo numbers from part->n on, in place, by a hash table in s. Returns how many there
+ * are; n_edges when the space is too small and nothing has been done. */
 static int32_t hdi_nd_halo(const hdi_nd_part *part, int32_t *adj, hdi_nd_space s) {
     int32_t p, n = 0, outer = 0, mask = 1;
     for (p = 0; p < part->n_edges; p++) outer += adj[p] < 0;
@@ -12075,30 +12100,24 @@ static void hdi_nd_bare(hdi_nd_graph *g) {
     }
 }
 
-/* Orders a part by minimum degree, separators around it as halo, if there is space for that. Its graph is
- * changed in place. */
+/* Orders a part by minimum degree, separators around it as halo if there is space. Changes its graph. */
 static void hdi_nd_leaf(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_graph *g, hdi_nd_space s) {
-    hdi_amd_graph rows;
+    hdi_amd_graph rows = {part->n, part->n, NULL, g->ptr, g->adj};
     int32_t v, halo, *local = nd->perm + part->first;
     if (!part->n) return;
     halo = hdi_nd_halo(part, g->adj, s);
-    if (hdi_amd_part_words(part->n, halo, part->n_edges) > s.end - s.at) {
+    if (hdi_amd_words(part->n, halo, part->n_edges) > s.end - s.at) {
         hdi_nd_bare(g);
         halo = 0;
     }
-    rows.n = part->n + halo;
-    rows.inner = part->n;
-    rows.wide = NULL;
-    rows.ptr = g->ptr;
-    rows.col = g->adj;
-    if (hdi_amd_part_words(part->n, halo, g->ptr[part->n]) <= s.end - s.at) hdi_amd_part(&rows, local, s.at);
+    rows.n += halo;
+    if (hdi_amd_words(part->n, halo, g->ptr[part->n]) <= s.end - s.at) hdi_amd_part(&rows, local, s.at);
     else
         for (v = 0; v < part->n; v++) local[v] = v;
     for (v = 0; v < part->n; v++) local[v] = g->id[local[v]];
 }
 
-/* Halves a part: its separator is ordered, last in the part's range, child[2] are the rest. A small part is
- * ordered whole, its children are empty. */
+/* Halves a part into child[2], its separator last; orders a small part whole, its children are empty. */
 static void hdi_nd_split(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_part *child, hdi_nd_space s) {
     hdi_nd_graph level[HDI_ND_LEVELS], half[2];
     hdi_nd_space rest = s;
@@ -12107,10 +12126,12 @@ static void hdi_nd_split(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_part 
     memset(child, 0, 2 * sizeof *child);
     hdi_nd_graphs_of(nd, part, level);
     level->side = hdi_nd_take_bytes(&rest, part->n);
+    if (HDI_AUDIT && (hdi_nd_weigh(level, NULL) < 0 || hdi_nd_weigh(level + 1, NULL) < 0)) HEATDIFF_ASSERT(0);
     if (small || !hdi_nd_dissect(nd, part, level, rest, size)) {
         hdi_nd_leaf(nd, part, level, s);
         return;
     }
+    if (HDI_AUDIT && !hdi_nd_separated(level)) HEATDIFF_ASSERT(0);
     last = part->first + part->n - size[2];
     for (v = 0; v < part->n; v++) {
         const int8_t t = level->side[v];
@@ -12134,8 +12155,7 @@ static void hdi_nd_split(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_part 
     }
 }
 
-/* Orders a part and all below it. A child has at most 4/5 of its part's vertices, so the stack grows to less
- * than 100. */
+/* Orders a part and all below it. A child has at most 4/5 of its part: the stack grows to less than 100. */
 static void hdi_nd_subtree(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_space s) {
     hdi_nd_part stack[128];
     int32_t n = 1;
@@ -12174,8 +12194,7 @@ static void hdi_nd_loop_task(void *arg, int64_t index, int32_t worker) {
         hdi_release_many(nd->threads, HDI_CAST(int32_t, 2 * index + 1), 2, nd->order);
 }
 
-/* order = rows along the curve, those with far too many entries last; inv = its inverse, -1 for these.
- * Returns how many the others are. */
+/* order = rows along the curve, too long ones last; inv = its inverse, -1 for these. Returns the others. */
 static int32_t hdi_nd_number(const hd_csr *a, const uint32_t *key, int32_t *order, int32_t *inv,
                              int32_t *count) {
     const double dense = 10 * sqrt(HDI_CAST(double, a->n_rows)) + 16;
@@ -12191,15 +12210,13 @@ static int32_t hdi_nd_number(const hd_csr *a, const uint32_t *key, int32_t *orde
     return k;
 }
 
-/* Reads the matrix in the order of the curve: blocks of rows go to the second buffer, with gaps between them,
- * and from there to the first. */
+/* Reads the matrix along the curve: blocks of rows go to the second buffer, from there to the first. */
 typedef struct hdi_nd_load_job {
     const hdi_nd *nd;
     const hd_csr *a;
     const int32_t *order, *inv;
     const float *unit;         /* [3 a->n_rows] places of the rows */
-    int32_t n, *from, *to;     /* of block i: its place in the second buffer; its place in the first,
-                                  [n_blocks + 1] */
+    int32_t n, *from, *to;     /* places of blocks in the second buffer; in the first, [n_blocks + 1] */
 } hdi_nd_load_job;
 
 static void hdi_nd_load_task(void *arg, int64_t index, int32_t worker) {
@@ -12238,8 +12255,7 @@ static void hdi_nd_move_task(void *arg, int64_t index, int32_t worker) {
                                                               job->to[index + 1] - to) * sizeof(int32_t));
 }
 
-/* Reads the whole matrix as one part, its n rows numbered by order. work [2 blocks + 2] becomes job->from and
- * job->to. */
+/* Reads the whole matrix as one part, its rows numbered by order. work [2 blocks + 2]: job->from, job->to. */
 static hdi_nd_part hdi_nd_load(hdi_nd_load_job *job, int32_t *work, hd_context *ctx) {
     const int32_t n = job->n, n_blocks = (n + HDI_ND_BLOCK - 1) / HDI_ND_BLOCK;
     hdi_nd_part part;
@@ -12272,8 +12288,7 @@ static void hdi_nd_buffer_make(hdi_nd_buffer *b, const hd_csr *a, hdi_scope *s) 
     b->cew = b->cadj + nnz / 4 + 1;
 }
 
-/* Orders the whole. Own threads share one loop, in which halves go on without waiting for others; those of
- * the user take the heap level by level. */
+/* Orders the whole: own threads share one loop, the user's take the heap level by level. */
 static void hdi_nd_run(hdi_nd *nd) {
     double done = 0.15;
     if (hdi_progress(nd->ctx, "order", 0.1, nd->error) < 0) return;
@@ -12289,19 +12304,18 @@ static void hdi_nd_run(hdi_nd *nd) {
 }
 
 /* perm[k] = row of the symmetric pattern a (both triangles, the diagonal may be there) that is eliminated
- * k-th. xyz [3 n] places of the rows, finite. They need not differ; but the less they tell who is whose
- * neighbour, the slower this is Does not depend on the number of threads. Progress stage "order". Errors
- * HD_ERR_TOO_LARGE, HD_ERR_MEMORY, HD_ERR_CANCELLED. */
+ * k-th. xyz [3 n] places of the rows, finite; the less they tell of who is whose neighbour, the slower this
+ * is. Stage "order". Errors HD_ERR_TOO_LARGE, HD_ERR_MEMORY, HD_ERR_CANCELLED. */
 static hd_status hdi_nd_order(const hd_csr *a, const double *xyz, int32_t *perm, hd_context *ctx,
                               hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
     const uint64_t n = HDI_CAST(uint64_t, a->n_rows);
-    hdi_nd_load_job job;
-    hdi_nd nd;
     int32_t i, k, *order = HDI_TAKE(&s, int32_t, n + 1), *inv = HDI_TAKE(&s, int32_t, n + 1);
     int32_t *count = HDI_TAKE(&s, int32_t, 1024 + 2 * n / HDI_ND_BLOCK);
     uint32_t *key = HDI_TAKE(&s, uint32_t, n + 1);
     float *unit = HDI_TAKE(&s, float, 3 * n + 1);
+    hdi_nd nd;
+    hdi_nd_load_job job = {&nd, a, order, inv, unit, 0, NULL, NULL};
     if (a->nnz > INT32_MAX / 2 || n > INT32_MAX / 4)
         hdi_fail(e, HD_ERR_TOO_LARGE, "a pattern is too large for nested dissection");
     memset(&nd, 0, sizeof nd);
@@ -12316,13 +12330,7 @@ static hd_status hdi_nd_order(const hd_csr *a, const double *xyz, int32_t *perm,
     nd.error = e;
     nd.threads = hdi_threads_own(ctx, HDI_ND_NODES);   /* started now, they share the loops before, too */
     hdi_nd_keys(xyz, a->n_rows, key, unit);
-    k = hdi_nd_number(a, key, order, inv, count);
-    job.nd = &nd;
-    job.a = a;
-    job.order = order;
-    job.inv = inv;
-    job.unit = unit;
-    job.n = k;
+    k = job.n = hdi_nd_number(a, key, order, inv, count);
     nd.part[0] = hdi_nd_load(&job, count, ctx);
     hdi_nd_run(&nd);
     if (e->status < 0) return hdi_scope_end(&s);
@@ -12505,6 +12513,7 @@ static void hdi_sym_triangle(const hdi_sym_job *job, hd_context *ctx) {
     const int32_t n = job->a->n_rows;
     int64_t *ptr = job->w->lower_ptr, begin, sum = 0;
     hdi_parallel_ranges(ctx, n, HDI_SYM_ROWS, hdi_sym_invert_task, &of);
+    for (begin = 0; HDI_AUDIT && begin < n; begin++) HEATDIFF_ASSERT(of.w->inv[of.perm[begin]] == begin);
     for (begin = 0; begin < n; begin += HDI_SYM_ROWS) {
         const int64_t entries = ptr[begin];
         ptr[begin] = sum;
@@ -30967,7 +30976,6 @@ struct hd_geodesic {
     double *value;               /* [value_size] phi at the sources, by component, ascending */
     hdi_pair *sorted;            /* [value_size] */
     int32_t value_size;
-    int64_t n_staged;            /* fronts visited so far by all stages after the first ones */
     hd_laplacian *lap;           /* of updatable plans, else NULL */
     int32_t *from;               /* [n_faces] which of lap->moving's faces each is; updatable */
     double t_asked, t_in_h2;     /* 0: t_in_h2 h^2 */
@@ -31865,7 +31873,6 @@ static void hdi_geo_stage(hdi_geo_far *w) {
     z.backward = 1;
     hdi_geo_backward(w, &z);
     for (k = 0; k < w->n_fronts; k++) g->active[w->front[k]] = 0;
-    g->n_staged += w->n_fronts;
 }
 
 /* Adds div X of the faces that no earlier stage reached. */
@@ -33427,7 +33434,8 @@ HEATDIFF_API hd_status hd_heat_filter_diagonals(hd_heat *heat, int32_t count, co
     if (h.e->status < 0 || hdi_times_check(&h, 1, &heat->opts.rational->t, 1) < 0 ||
         hdi_diagonal_check(&h) < 0 || !HDI_HAS_DIAGONAL)
         return hdi_heat_end(&h);
-    (void)hdi_filters_run(&h, sets, count, D, hdi_leading(&h, ldd), Z, bound);
+    ldd = hdi_leading(&h, ldd);
+    if (h.e->status >= 0) (void)hdi_filters_run(&h, sets, count, D, ldd, Z, bound);
     return hdi_heat_end(&h);
 }
 
@@ -33455,8 +33463,9 @@ HEATDIFF_API hd_status hd_heat_scale_invariant(hd_heat *heat, double t0, double 
     double *t;
     int32_t q;
     if (hdi_kernel_begin(&h, heat, HD_KERNEL_SYMMETRIC, report, err) < 0) return hdi_heat_end(&h);
-    if (!(t0 > 0) || !(t1 > t0) || !hdi_finite(t1))
-        hdi_fail_row(h.e, HD_ERR_ARGUMENT, "signature: times need 0 < t0 < t1", -1, -1, t0 > 0 ? t1 : t0);
+    if (!hdi_finite(t0) || !hdi_finite(t1) || !(t0 > 0) || !(t1 > t0))
+        hdi_fail_row(h.e, HD_ERR_ARGUMENT, "signature: times need 0 < t0 < t1", -1, -1,
+                     hdi_finite(t0) && t0 > 0 ? t1 : t0);
     else if (n_times < 3 || n_freq < 1 || n_freq > (n_times + 1) / 2)
         hdi_fail(h.e, HD_ERR_ARGUMENT, "signature: n_times is 3 or more, n_freq in 1..(n_times + 1)/2");
     t = h.e->status >= 0 ? HDI_TAKE(&h.s, double, n_times) : NULL;

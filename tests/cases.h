@@ -32,7 +32,7 @@ static int64_t cases_warned(void) {
     int64_t sum = 0;
     int k;
     for (k = 0; k < trial_n_rows; k++) sum += trial_rows[k].warned;
-    for (k = 0; k < QUERIES; k++) sum += trial_counts[k].unbounded;
+    for (k = 0; k < QUERY_COUNT; k++) sum += trial_counts[k].unbounded;
     return sum;
 }
 

@@ -2,11 +2,12 @@
 # examples/petsc.c on 1, 2 and 4 ranks: its answers against hd_heat_columns on one rank and against SLEPc's exp.
 # Exit 77, which ctest shows as skipped, where PETSc and SLEPc with complex scalars or MPI are not installed;
 # 1 with HEATDIFF_NO_SKIP in the environment.
-# Usage: petsc.sh [DIRECTORY]
+# Usage: petsc.sh [DIRECTORY [IMPLEMENTATION.o]]        the object: heatdiff.h compiled already
 set -euo pipefail
 top=$(cd "$(dirname "$0")/.." && pwd)
 work=${1:-$(mktemp -d)}
 [ $# -gt 0 ] || trap 'rm -rf "$work"' EXIT
+mkdir -p "$work"
 debian=$(find /usr/lib/petscdir /usr/lib/slepcdir -path '*complex*' -name pkgconfig 2>/dev/null | paste -sd: || true)
 export PKG_CONFIG_PATH=${debian:+$debian:}${PKG_CONFIG_PATH:-}
 absent() { echo "not here: $*"; [ -n "${HEATDIFF_NO_SKIP:-}" ] && exit 1; exit 77; }
@@ -19,8 +20,13 @@ echo '#include <petscsys.h>
 # shellcheck disable=SC2086
 mpicc -c "$work/probe.c" -o "$work/probe.o" $flags 2>/dev/null || absent PETSc with complex scalars and MUMPS
 
+program=$top/examples/petsc.c
+if [ $# -gt 1 ]; then
+  sed '/^#define HEATDIFF_IMPLEMENTATION/d' "$program" >"$work/petsc.c"
+  program="$work/petsc.c $2 -I$top/examples"
+fi
 # shellcheck disable=SC2086
-mpicc -std=c99 -O1 -Wall -Wextra -Wshadow -Werror -DUSE_SLEPC "$top/examples/petsc.c" -o "$work/petsc" $flags -lm
+mpicc -std=c99 -O1 -Wall -Wextra -Wshadow -Werror -DUSE_SLEPC $program -o "$work/petsc" $flags -lm
 
 # Ranks that wait leave the processor to the others: there may be fewer processors than ranks.
 export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1

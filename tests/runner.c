@@ -161,26 +161,27 @@ static void test_tmp_remove(void) {
 #include "cases.h"
 #include "test_meshio.h"
 #include "test_base.h"
+#include "calls.h"
 #include "test_sparse.h"
 #include "test_operators.h"
-#include "test_intrinsic.h"
 #include "test_rational.h"
+#include "test_shared.h"
 #include "test_krylov.h"
+#include "test_platform.h"
+#ifndef TEST_CORE                   /* nothing but a core, as tools/portability.sh runs on slow processors */
+#include "test_intrinsic.h"
 #include "test_heat.h"
 #include "test_points.h"
 #include "test_assembly.h"
+#include "test_doors.h"
 #include "test_robust.h"
 #include "test_polygon.h"
 #include "test_ldl.h"
+#include "test_order.h"
 #include "test_engines.h"
-#ifdef HEATDIFF_IMPLEMENTATION
 #include "test_threads.h"
-#endif
 #include "test_geodesic.h"
 #include "test_diagonal.h"
-#ifdef HEATDIFF_IMPLEMENTATION
-#include "test_forms.h"
-#endif
 #include "test_operators_all.h"
 #include "test_picture.h"
 #include "test_bounds.h"
@@ -197,35 +198,30 @@ static void test_tmp_remove(void) {
 #include "test_geodesic_all.h"
 #include "test_lengths.h"
 #include "test_deep.h"
-#include "test_doors.h"
 #include "test_failures.h"
-#include "test_platform.h"
 #include "test_cases.h"
+#endif
 
 /* shard: groups that ctest runs together; those of memory that fails are one of its own */
 enum { TEST_MEMORY = 5 };
 typedef struct test_group { const char *name; void (*run)(void); int shard; } test_group;
 
 static const test_group test_groups[] = {
+    {"platform", test_platform, 1}, {"rational", test_rational, 1}, {"krylov", test_krylov, 1}, {"base", test_base, 1},
+    {"sparse", test_sparse, 1}, {"meshio", test_meshio, 4},
+#ifndef TEST_CORE
     {"filters", test_filters, 1}, {"heat", test_heat, 1}, {"lengths", test_lengths, 1}, {"view", test_view, 1},
-    {"platform", test_platform, 1}, {"cases", test_cases, 1}, {"moving", test_moving, 1}, {"doors", test_doors, 1}, {"rational", test_rational, 1},
-    {"krylov", test_krylov, 1}, {"base", test_base, 1}, {"sparse", test_sparse, 1},
+    {"cases", test_cases, 1}, {"moving", test_moving, 1}, {"doors", test_doors, 1}, {"shared", test_shared, 1},
     {"engines", test_engines, 2}, {"estimate", test_estimate, 2},
     {"points", test_points, 3}, {"deep", test_deep, 3}, {"diagonal", test_diagonal, 3}, {"spectrum", test_spectrum, 3},
     {"large_t", test_large_t, 3},
-#ifdef HEATDIFF_IMPLEMENTATION
-    {"forms", test_forms, 3},
-#endif
-    {"geodesic", test_geodesic_all, 4}, {"ldl", test_ldl, 4}, 
-#ifdef HEATDIFF_IMPLEMENTATION
-    {"threads", test_threads, 4},
-#endif
+    {"geodesic", test_geodesic_all, 4}, {"ldl", test_ldl, 4}, {"order", test_order, 4}, {"threads", test_threads, 4},
     {"bounds", test_bounds, 4},
     {"adjoints", test_adjoints, 4}, {"signatures", test_signatures, 4}, {"picture", test_picture, 4},
     {"everywhere", test_operators_all, 4}, {"sources", test_sources, 4}, {"intrinsic", test_intrinsic, 4},
     {"operators", test_operators, 4}, {"borders", test_borders, 4}, {"polygon", test_polygon, 4}, {"assembly", test_assembly, 4},
-    {"meshio", test_meshio, 4},
     {"failures", test_failures, TEST_MEMORY}, {"robust", test_robust, TEST_MEMORY},
+#endif
 };
 
 enum { TEST_GROUPS = sizeof test_groups / sizeof *test_groups };

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # The tests under checkers. In each mode a planted error first proves that the checker is on.
-#     sanitize.sh WORKFOLDER [all]                    addresses and undefined behaviour, as CI does; all: the slow groups too,
-#                                                     whose code the others run as well
+#     sanitize.sh WORKFOLDER [all]                    addresses and undefined behaviour, as CI does, but for seven slow groups, whose
+#                                                     code the others run as well; all: these too
 #     sanitize.sh WORKFOLDER python [COUNT]           the arguments that test_python.py throws, under the address sanitizer
-#     sanitize.sh WORKFOLDER memory|threads|traps|valgrind [GROUP...]
-# The last modes print a line per group; the log of a group is WORKFOLDER/MODE.GROUP.log. Groups are those of `runner --list`, and
-# `internals`; none: all, for threads those that start some. JOBS groups at a time (2; threads: 1).
+#     sanitize.sh WORKFOLDER address|memory|threads|traps|valgrind [GROUP...]
+# All but python print a line per group, and what failed; the log of a group is WORKFOLDER/MODE.GROUP.log. Groups are those of
+# `runner --list`, and `internals`; none: all, for threads those that start some. JOBS groups at a time (2; threads: 1).
 #     memory     MemorySanitizer of clang: numbers that nobody wrote
 #     threads    ThreadSanitizer: races
 #     traps      the first invalid operation, division by zero or overflow ends a group (glibc on x86)
@@ -13,7 +13,7 @@
 set -euo pipefail
 top=$(cd "$(dirname "$0")/.." && pwd)
 work=$1
-mode=${2:-}
+mode=${2:-address}
 
 # planted COMPILER FLAGS... <source: must end with an error, by itself or under $wrap
 wrap=
@@ -35,18 +35,23 @@ one() {
   $wrap $run >"$log" 2>&1 || status=$?
   if [ $status = 0 ]; then word=ok; else word="FAILED ($status)"; fi
   printf '%-9s %-11s %-12s %5d s   %s\n' "$mode" "$group" "$word" $((SECONDS - begin)) "$(grep -a ' passed, ' "$log" | tail -1)"
-  [ $status = 0 ]
+  [ $status = 0 ] || { head -60 "$log"; return 1; }
 }
 
-# each COMPILER FLAGS...: builds what is needed, and runs the groups
+# each COMPILER FLAGS...: builds what is needed, side by side, and runs the groups
 each() {
-  local cc=$1 p
+  local cc=$1 p builds=()
   shift
   for p in runner internals; do
-    $cc -std=c99 -g -O1 "$@" -I"$top" "$top/tests/$p.c" -o "$work/$p.$mode" -lm
-    [ -n "$groups" ] || groups=$("$work/runner.$mode" --list; echo internals)
-    grep -qx internals <<<"$groups" || break
+    [ "$p $groups" != "runner internals" ] || continue
+    [ $p = runner ] || [ -z "$groups" ] || grep -qx internals <<<"$groups" || continue
+    $cc -std=c99 -g -O1 "$@" -I"$top" "$top/tests/$p.c" -o "$work/$p.$mode" -lm &
+    builds+=($!)
   done
+  for p in "${builds[@]}"; do wait "$p"; done
+  [ -n "$groups" ] || groups=$(printf 'internals\n'; "$work/runner.$mode" --list)
+  groups=$( (grep -xF "$long" <<<"$groups"; grep -vxF "$long" <<<"$groups") || true)
+  groups=$(grep -vxF "$left_out" <<<"$groups")
   export -f one
   export work wrap flag
   xargs -P "${JOBS:-$jobs}" -I{} bash -c "one $mode {}" <<<"$groups"
@@ -56,6 +61,8 @@ unwritten='#include <stdio.h>
 int main(int c, char **v) { int a[4]; (void)v; a[c] = 1; if (a[c + 1] > 7) puts("a"); return 0; }'
 flag=
 jobs=2
+long=$(printf '%s\n' failures engines estimate internals diagonal filters)      # they begin, so that the end is not a wait for one of them
+left_out=none
 shift $(($# < 2 ? $# : 2))
 groups=$(printf '%s\n' "$@")
 case "$mode" in
@@ -92,26 +99,16 @@ python)
     echo "python: the checker is not on"; exit 1
   fi
   python "$top/tests/test_python.py" --throw "${groups:-5000}" 2>"$work/python.log" || { tail -50 "$work/python.log"; exit 1; } ;;
-'' | all)
-  flags="-std=c99 -g -O1 -fsanitize=address,undefined -fno-sanitize-recover=all -I$top"
+address | all)
+  flags="-g -fsanitize=address,undefined -fno-sanitize-recover=all"
   for cc in gcc clang; do
     command -v $cc >/dev/null || continue
     planted $cc $flags <<<'#include <stdlib.h>
 int main(int c, char **v) { char *p = (char *)malloc(4); (void)v; p[3 + c] = 1; c = p[3]; free(p); return c; }'
   done
-  gcc $flags "$top/tests/runner.c" -o "$work/runner" -lm
-  gcc $flags "$top/tests/internals.c" -o "$work/internals" -lm
-  # two at a time: the group that takes about as long as all others with internals, and those
-  long=failures
-  slow="engines diagonal forms estimate filters points deep bounds signatures spectrum ldl geodesic"
-  rest=$("$work/runner" --list | grep -vxF "$(printf '%s\n' $long $slow)")
-  [ "$mode" != all ] || long="$long $slow"
-  mkdir "$work/a" "$work/b"
-  { "$work/runner" --tmp "$work/a" $long && "$work/internals"; } >"$work/long.log" 2>&1 &
-  "$work/runner" --tmp "$work/b" $rest
-  wait $! || { cat "$work/long.log"; exit 1; }
-  cat "$work/long.log" ;;
+  [ "$mode" = all ] || [ -n "$groups" ] || left_out=$(printf '%s\n' filters estimate engines points deep diagonal)
+  each gcc $flags ;;
 *)
-  echo "usage: sanitize.sh WORKFOLDER [all | python [COUNT] | memory | threads | traps | valgrind [GROUP...]]"
+  echo "usage: sanitize.sh WORKFOLDER [address | all | python [COUNT] | memory | threads | traps | valgrind [GROUP...]]"
   exit 2 ;;
 esac

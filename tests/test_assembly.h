@@ -61,8 +61,8 @@ static void asm_orders(void) {
     const int32_t n = s.n;
     hd_laplacian *first = NULL;
     uint64_t seed = 11;
-    int round, *counts = DENSE_NEW(int, s.n_tri);
-    double *L = DENSE_NEW(double, (size_t)n * (size_t)n), *B = DENSE_NEW(double, (size_t)n * (size_t)n);
+    int round, *counts = KIT_NEW(int, s.n_tri);
+    double *L = KIT_NEW(double, (size_t)n * (size_t)n), *B = KIT_NEW(double, (size_t)n * (size_t)n);
     int32_t f, k, i;
     memcpy(s.xyz, grid.xyz, 3 * (size_t)n * sizeof(double));
     memcpy(s.tri, grid.tri, 3 * (size_t)grid.n_tri * sizeof(int32_t));
@@ -120,16 +120,13 @@ static void asm_orders(void) {
         asm_shuffle(s.tri, s.n_tri, 5u + (uint64_t)round);
     }
     hd_laplacian_free(first);
-    free(counts);
-    free(L);
-    free(B);
 }
 
 /* Three spheres whose points come in turns, some of them twice: rows, components and matrices are in the order of the caller, whatever order the points are
  * worked on in. */
 static void asm_points(void) {
     enum { N = 900 };
-    double *xyz = DENSE_NEW(double, 3 * N), mass[3] = {0, 0, 0};
+    double *xyz = KIT_NEW(double, 3 * N), mass[3] = {0, 0, 0};
     hd_laplacian *lap = NULL, *turned = NULL;
     hd_context ctx;
     hd_laplacian_opts o;
@@ -179,7 +176,6 @@ static void asm_points(void) {
     hd_laplacian_free(lap);
     hd_laplacian_free(turned);
     CHECK(ctx.bytes_in_use == 0);
-    free(xyz);
 }
 
 /* A grid of several blocks with fins from anywhere to anywhere, holes and faces that come twice. */

@@ -56,7 +56,7 @@ static shape eng_soup(int32_t n, int32_t n_tri, uint64_t seed) {
 static shape eng_with_inert(const shape *b) {
     const int32_t n = b->n + b->n / 4 + 2;
     shape s = shape_make(n, b->n_tri);
-    int32_t *to = DENSE_NEW(int32_t, b->n), i, k = 0;
+    int32_t *to = KIT_NEW(int32_t, b->n), i, k = 0;
     for (i = 0; i < n; i++) {
         if (i % 5 == 0 || k == b->n) {
             shape_put_vertex(&s, i, 9 + i, 8, 7);
@@ -67,15 +67,14 @@ static shape eng_with_inert(const shape *b) {
     }
     CHECK(k == b->n && to[k - 1] < n - 1);
     for (i = 0; i < 3 * b->n_tri; i++) s.tri[i] = to[b->tri[i]];
-    free(to);
     return s;
 }
 
 /* A grid graph with heat leaking out everywhere, and masses over three decades: nothing is conserved, B is diagonal. */
 static hd_laplacian *eng_leaking(int32_t nx, int32_t ny) {
     const int32_t n = nx * ny;
-    int32_t *i = DENSE_NEW(int32_t, 6 * n), *j = DENSE_NEW(int32_t, 6 * n), k;
-    double *v = DENSE_NEW(double, 6 * n), *mass = DENSE_NEW(double, n);
+    int32_t *i = KIT_NEW(int32_t, 6 * n), *j = KIT_NEW(int32_t, 6 * n), k;
+    double *v = KIT_NEW(double, 6 * n), *mass = KIT_NEW(double, n);
     hd_laplacian *lap = NULL;
     hd_csr L, B;
     hd_error e;
@@ -92,77 +91,38 @@ static hd_laplacian *eng_leaking(int32_t nx, int32_t ny) {
     CHECK(lap && !lap->conserves);
     hd_csr_free(&L, NULL);
     hd_csr_free(&B, NULL);
-    free(i);
-    free(j);
-    free(v);
-    free(mass);
     return lap;
 }
 
-/* ---- the judge ---- */
+/* A set of poles by number, see trial_packs. */
+static hd_rational eng_own_set(int which) {
+    hd_rational set;
+    memset(&set, 0, sizeof set);
+    trial_packs(&set, which);
+    return set;
+}
 
-/* Is u within the bounds that the report gives, is the heat of every component what it was, and are the bounds worth something? rhs is B f on rows.
- * own: the answer is that of a filter, not of the exponential. alone: the report is about this answer and no other. */
-static void eng_judge(const heat_case *c, double t, const hd_rational *own, const double *rhs, const double *u, const hd_report *rep, int alone,
-    const char *what) {
-    const hd_laplacian *lap = c->lap;
-    const int32_t n = lap->n_active;
-    double *g = DENSE_NEW(double, n), *want = DENSE_NEW(double, n), *diff = DENSE_NEW(double, n), *f = DENSE_NEW(double, n),
-        *heat = DENSE_NEW(double, 3 * n);
-    double off_b, size_b, f_b, off, size = 0, slack, gain = 1;
-    int32_t i;
-    for (i = 0; i < n; i++) {
-        g[i] = own ? hd_rational_eval(own, -t * c->pair.lambda[i]) : exp(-t * c->pair.lambda[i]);
-        gain = fmax(gain, fabs(g[i]));
-    }
-    dense_pair_filter(&c->pair, g, rhs, want);
-    dense_pair_heat(&c->pair, 0, rhs, f);
-    for (i = 0; i < n; i++) {
-        diff[i] = u[lap->vertex[i]] - want[i];
-        size = fmax(size, fabs(u[lap->vertex[i]]));
-    }
-    off_b = dense_pair_norm(&c->pair, diff);
-    size_b = dense_pair_norm(&c->pair, want);
-    f_b = gain * dense_pair_norm(&c->pair, f);
-    off = dense_max_abs(diff, n);
-    slack = 3e-13 * f_b + 1e-15 * fmin(t * c->top, 1e4) * f_b;    /* of rounding, and of the oracle's eigenvalues */
-    if (rep->error_bound_b == HUGE_VAL) CHECK_MSG(off_b <= (alone ? 1e-8 : 1e-7) * f_b, "%s, %s, %s, t %g: no bound, and an error of %g", c->what,
-        eng_name(rep->method), what, t, off_b / f_b);
-    else CHECK_MSG(off_b <= rep->error_bound_b * size_b + slack, "%s, %s, %s, t %g: error %g, bound %g (B norm)", c->what, eng_name(rep->method),
-        what, t,
-              off_b / size_b, rep->error_bound_b);
-    CHECK_MSG(rep->error_bound == HUGE_VAL || off <= rep->error_bound * size + slack * 2 * sqrt(n / lap->area) + 1e-13 * size,
-        "%s, %s, %s, t %g: error %g, bound %g (maximum)", c->what,
-              eng_name(rep->method), what, t, off / size, rep->error_bound);
-    CHECK(rep->error_bound >= rep->error_rational && rep->error_bound >= rep->error_solver && rep->error_bound >= rep->error_rounding);
-    CHECK(rep->evidence_b != HD_EVIDENCE_NONE && rep->evidence_rounding != HD_EVIDENCE_NONE && rep->error_relative == HUGE_VAL);
-    if (rep->error_bound_b < HUGE_VAL) {
-        const double loose = rep->error_bound_b * size_b / (off_b + 1e-15 * f_b);
-        CHECK_MSG(!alone || loose <= 1e6, "%s, %s, %s, t %g: error %g, bound %g", c->what, eng_name(rep->method), what, t, off_b / size_b,
-            rep->error_bound_b);
-    } else {
-        CHECK_MSG(!alone || size_b <= 1e-5 * f_b, "%s, %s, %s, t %g: no bound for an answer of size %g", c->what, eng_name(rep->method), what, t,
-            size_b / f_b);
-    }
-    if (lap->conserves) {
-        const double c0 = own ? hd_rational_eval(own, 0) : 1;
-        double *out = heat + n, *sum = heat + 2 * n;
-        for (i = 0; i < n; i++) {
-            heat[lap->component[i]] += c0 * rhs[i];
-            out[lap->component[i]] += lap->mass[i] * u[lap->vertex[i]];
-            sum[lap->component[i]] += fabs(c0 * rhs[i]) + lap->mass[i] * fabs(u[lap->vertex[i]]);
-        }
-        for (i = 0; i < lap->n_components; i++)
-            CHECK_MSG(fabs(heat[i] - out[i]) <= 1e-12 * sum[i], "%s, %s, %s, t %g: component %d had heat %g and has %g", c->what,
-                eng_name(rep->method), what, t,
-                      (int)i, heat[i], out[i]);
-        CHECK_MSG(rep->mass_drift <= 1e-12, "%s: mass drift %g", c->what, rep->mass_drift);
-    }
-    free(g);
-    free(want);
-    free(diff);
-    free(f);
-    free(heat);
+/* ---- values ---- */
+
+/* Times over six decades; several components, tangles of non-manifold faces, vertices without mass, heat that leaks. */
+static const case_row eng_values[] = {
+    {"shape=bumpy/1/3 op=fem|vor|cot query=column|apply kernel=operator|symmetric k=1|3 method=direct|krylov th=1e-3|1e-2|0.1|1|10|100|1e3", 1e-2, 0, 0},
+    {"shape=bumpy/1/3 op=fem|vor|cot query=entries kernel=operator|symmetric k=16 method=direct|krylov th=1|10|100|1e3", 1e-2, 0, 0},
+    {"shape=torus/9/7|flat/9/7/0.35|two/1/0/4|inert/7/1|tangle/60/130/5 op=fem|vor|cot query=column|apply k=1|3 method=direct|krylov th=1e-3|0.1|1|100|1e3", 1e-2, 0, 0},
+    {"shape=leak/40/0.01|penalty/40/0 op=I|diag query=column|apply kernel=operator|symmetric k=1|3 method=direct|krylov th=1e-3|0.1|1|10|100", 1e-2, 0, 0},
+    /* packs that are full, and those with one, two, three poles or a lone real one left over */
+    {"shape=bumpy/1/9 op=fem query=column|apply k=1|3 method=direct poles=uniform|kernel degree=3|4|5|6|7|8|9|10|11|12|13|14 th=3|300", 0.2, 0, 17},
+    {"shape=two/1/0/4 op=fem|vor query=column|apply k=1|3 own=packs method=direct th=1|30|900 x=0|1|2|3|4|5|6|7|8|9|10|11", 1e-2, 0, 0},
+    {"shape=leak/40/0.01 op=I query=column|apply k=1|3 own=packs method=direct th=1|30 x=0|1|2|3|4|5|6|7|8|9|10|11", 1e-2, 0, 0},
+    /* any number of columns */
+    {"shape=inert/5/1|flat/8/5/0.3 op=fem query=column|apply method=direct|krylov th=6 k=1|2|3|4|5|6|7|8|9|10|11|12|13|14|15|16|17|24|25|30", 1e-4, 0, 0},
+    /* many times, in order and not, of a field (classical) and of a column (weighted) */
+    {"shape=inert/5/1 op=fem|vor query=times kind=classical|weighted seed=1|2 method=auto|iterative|direct|krylov th=0.01 times=1|4|7|10|13|19 span=1|100|1e4|1e6", 1e-2, 0, 0},
+    {"shape=leak/40/0.01 op=diag query=times kind=classical|weighted seed=1|2 method=auto|iterative|direct|krylov th=0.01 times=7|19 span=100|1e6", 1e-2, 0, 0},
+};
+
+static void eng_against_truth(void) {
+    CASES(eng_values);
 }
 
 /* What every report of a method says. */
@@ -192,108 +152,6 @@ static int eng_ok(hd_status st, const hd_report *rep, const char *what) {
     return CHECK_MSG(st >= 0 && rep->error.status == HD_OK, "%s: %s: %s", what, hd_status_name(st), rep->error.text);
 }
 
-/* Columns of both kernels, a rough and a smooth field, one by one and together, and entries. */
-static void eng_against_dense(const heat_case *c, hd_heat *heat, hd_method method, double t, const hd_rational *own, const char *what) {
-    enum { K = 3 };
-    const hd_laplacian *lap = c->lap;
-    const int32_t n = lap->n, m = lap->n_active;
-    const int32_t sources[K] = {lap->vertex[m / 3], lap->vertex[0], lap->vertex[m - 1]};
-    double *u = DENSE_NEW(double, K * n), *f = DENSE_NEW(double, K * n), *rhs = DENSE_NEW(double, m);
-    hd_report rep;
-    uint64_t seed = 12;
-    int32_t i, q;
-    int k, z;
-    for (z = 1; z <= K; z += K - 1) {            /* alone, and in a batch */
-        for (k = 0; k < 2; k++) {
-            const hd_kernel kernel = k ? HD_KERNEL_SYMMETRIC : HD_KERNEL_OPERATOR;
-            if (!eng_ok(heat_columns(heat, t, kernel, z, sources, u, 0, &rep), &rep, what)) continue;
-            eng_check_report(&rep, method, what);
-            for (q = 0; q < z; q++) {
-                heat_source_rhs(c, sources[q], kernel, rhs);
-                eng_judge(c, t, own, rhs, u + q * n, &rep, z == 1, what);
-            }
-        }
-        for (i = 0; i < n; i++) {
-            f[i] = dense_signed(&seed);
-            f[n + i] = 2 + sin(0.3 * i);
-            f[2 * n + i] = i == 7 ? 1 : 0;
-        }
-        if (!eng_ok(heat_apply(heat, t, z, f, 0, u, 0, &rep), &rep, what)) continue;
-        eng_check_report(&rep, method, what);
-        for (q = 0; q < z; q++) {
-            if (q == 2 && lap->row[7] < 0) continue;
-            heat_field_rhs(c, f + q * n, rhs);
-            eng_judge(c, t, own, rhs, u + q * n, &rep, z == 1, what);
-        }
-    }
-    for (k = 0; k < 2; k++) {                    /* entries of the same columns, ascending as entries are worked on: the same bits */
-        const hd_kernel kernel = k ? HD_KERNEL_SYMMETRIC : HD_KERNEL_OPERATOR;
-        const int32_t ascending[K] = {sources[1], sources[0], sources[2]};
-        int32_t rows[4 * K], cols[4 * K];
-        double values[4 * K];
-        if (!eng_ok(heat_columns(heat, t, kernel, K, ascending, u, 0, &rep), &rep, what)) continue;
-        for (i = 0; i < 4 * K; i++) {
-            cols[i] = ascending[(i * 2 + 1) % K];
-            rows[i] = lap->vertex[(i * 37) % m];
-        }
-        if (!eng_ok(heat_entries(heat, t, kernel, 4 * K, rows, cols, values, &rep), &rep, what)) continue;
-        eng_check_report(&rep, method, what);
-        if (lap->conserves)
-            for (i = 0; i < 4 * K; i++) CHECK(values[i] == u[(i * 2 + 1) % K * n + rows[i]]);
-        else {                                   /* each call takes poles or eigenpairs, by its own bound */
-            double most = 0;
-            for (i = 0; i < K * n; i++) most = fmax(most, fabs(u[i]));
-            for (i = 0; i < 4 * K; i++) CHECK(fabs(values[i] - u[(i * 2 + 1) % K * n + rows[i]]) <= 2e-7 * most);
-        }
-    }
-    free(u);
-    free(f);
-    free(rhs);
-}
-
-/* Times over six decades, with one plan for all, whose memory is poisoned. */
-static void eng_decades(hd_laplacian *lap, const char *what) {
-    heat_case c = heat_case_of(lap, what);
-    const double unit = lap->kind == HD_LAPLACIAN_COT || lap->h == 0 ? 1 : lap->h * lap->h;
-    int k, q;
-    for (k = 0; k < 2; k++) {
-        test_memory m;
-        hd_context ctx = test_memory_context(&m);
-        hd_heat_opts o = eng_opts(eng_methods[k]);
-        hd_heat *heat;
-        o.context = &ctx;
-        heat = eng_create(lap, &o);
-        for (q = 0; q < 7; q++) eng_against_dense(&c, heat, eng_methods[k], unit * pow(10, (q * 3) % 7 - 3), NULL, "decades");
-        hd_heat_free(heat);
-        test_memory_done(&m, &ctx, what);
-    }
-    heat_case_free(&c);
-}
-
-static void eng_dense_cases(void) {
-    const double offset[3] = {4, 0, 0};
-    shape ball = shape_bumpy(2, 3), torus = shape_torus(14, 9, 2, 0.8), grid = shape_grid(11, 9, 0.35), small = shape_icosphere(1),
-        tiny = shape_grid(3, 2, 0.1);
-    shape two = shape_disjoint(&small, &grid, offset), three = shape_disjoint(&two, &tiny, offset), soup = eng_soup(90, 200, 5),
-        inert = eng_with_inert(&small);
-    const shape *const shapes[6] = {&ball, &torus, &grid, &three, &soup, &inert};
-    static const char *const names[6] = {"ball", "torus", "grid", "disjoint", "soup", "inert"};
-    int q, k;
-    for (q = 0; q < 6; q++)
-        for (k = 0; k < 3; k++) eng_decades(test_laplacian(shapes[q], op_kinds[k]), names[q]);
-    eng_decades(kry_dirichlet(60), "dirichlet");
-    eng_decades(eng_leaking(12, 9), "leaking");
-    shape_free(&ball);
-    shape_free(&torus);
-    shape_free(&grid);
-    shape_free(&small);
-    shape_free(&tiny);
-    shape_free(&two);
-    shape_free(&three);
-    shape_free(&soup);
-    shape_free(&inert);
-}
-
 /* Meshes that are too large for the oracle: the methods agree, iterations among them, within what they say. */
 static void eng_large(void) {
     enum { K = 9 };
@@ -301,10 +159,10 @@ static void eng_large(void) {
     int q, k, z;
     for (q = 0; q < 2; q++) {
         const shape *s = q ? &grid : &ball;
-        hd_laplacian *lap = test_laplacian(s, op_kinds[q]);
+        hd_laplacian *lap = kit_own_laplacian(test_laplacian(s, op_kinds[q]));
         const int32_t n = s->n;
         const double t = 15 * lap->h * lap->h, times[3] = {t, 30 * t, 5 * t};
-        double *F = DENSE_NEW(double, K * n), *want = DENSE_NEW(double, K * n), *u = DENSE_NEW(double, K * n), *all = DENSE_NEW(double, 3 * n);
+        double *F = KIT_NEW(double, K * n), *want = KIT_NEW(double, K * n), *u = KIT_NEW(double, K * n), *all = KIT_NEW(double, 3 * n);
         hd_heat *oracle = eng_plan(lap, HD_METHOD_ITERATIVE, HD_POLES_DEFAULT, 0);
         hd_report rep, rep2;
         int32_t i;
@@ -325,11 +183,6 @@ static void eng_large(void) {
             hd_heat_free(heat);
         }
         hd_heat_free(oracle);
-        hd_laplacian_free(lap);
-        free(F);
-        free(want);
-        free(u);
-        free(all);
     }
 }
 
@@ -337,11 +190,11 @@ static void eng_large(void) {
 static void eng_batches(void) {
     enum { K = 26 };
     shape s = kit_own_shape(eng_soup(900, 2700, 6));
-    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_VORONOI_COT);
+    hd_laplacian *lap = kit_own_laplacian(test_laplacian(&s, HD_LAPLACIAN_VORONOI_COT));
     hd_heat *direct = eng_plan(lap, HD_METHOD_DIRECT, HD_POLES_DEFAULT, 0), *krylov = eng_plan(lap, HD_METHOD_KRYLOV, HD_POLES_DEFAULT, 0);
     const double t = 3 * lap->h * lap->h;
     const int32_t n = s.n;
-    double *u = DENSE_NEW(double, K * n), *v = DENSE_NEW(double, K * n), *first = DENSE_NEW(double, K * n);
+    double *u = KIT_NEW(double, K * n), *v = KIT_NEW(double, K * n), *first = KIT_NEW(double, K * n);
     int32_t sources[K], q, k;
     hd_report rep, rep2;
     for (q = 0; q < K; q++) sources[q] = lap->vertex[q * 31 % lap->n_active];
@@ -362,176 +215,112 @@ static void eng_batches(void) {
     }
     hd_heat_free(direct);
     hd_heat_free(krylov);
-    hd_laplacian_free(lap);
-    free(u);
-    free(v);
-    free(first);
 }
 
 /* ---- sets of poles ---- */
 
-/* All degrees of both kinds: packs that are full, and such with one, two, three poles or a lone real one left over. */
-static void eng_degrees(void) {
-    shape s = kit_own_shape(shape_bumpy(1, 9));
-    int q, k;
-    int32_t r;
-    for (q = 0; q < 2; q++) {
-        heat_case c = heat_case_of(test_laplacian(&s, op_kinds[q]), "degrees");
-        for (k = 0; k < 2; k++) {
-            for (r = 1 + k; r <= 14; r++) {
-                hd_heat *heat = eng_plan(c.lap, HD_METHOD_DIRECT, k ? HD_POLES_KERNEL : HD_POLES_UNIFORM, r);
-                double *u = DENSE_NEW(double, s.n);
-                char what[40];
-                hd_report rep;
-                snprintf(what, sizeof what, "%s %d", k ? "kernel" : "uniform", (int)r);
-                CHECK(heat_column(heat, 3 * c.lap->h * c.lap->h, 5, u, &rep) >= 0);
-                CHECK_MSG(rep.degree == r && rep.n_poles == (r + 1) / 2 && rep.poles == (k ? HD_POLES_KERNEL : HD_POLES_UNIFORM), "%s", what);
-                CHECK_MSG(rep.residual < 1e-12, "%s: residual %g", what, rep.residual);
-                eng_against_dense(&c, heat, HD_METHOD_DIRECT, 3 * c.lap->h * c.lap->h, NULL, what);
-                eng_against_dense(&c, heat, HD_METHOD_DIRECT, 300 * c.lap->h * c.lap->h, NULL, what);
-                free(u);
-                hd_heat_free(heat);
-            }
-        }
-        heat_case_free(&c);
-    }
-}
-
-enum { ENG_SETS = 12 };
-
-/* A set of n poles; those whose bit in real is set are real. No two are the same, and none is near the negative axis. */
-static hd_rational eng_set(int32_t n, uint32_t real, double a0, uint64_t seed) {
-    hd_rational set;
-    int32_t i;
-    memset(&set, 0, sizeof set);
-    set.n_poles = n;
-    set.a0 = a0;
-    for (i = 0; i < n; i++) {
-        const int is_real = (int)(real >> i & 1);
-        set.theta[i] = test_c(is_real ? 0.5 + 3.5 * fabs(dense_signed(&seed)) + 0.3 * i : 6 * dense_signed(&seed),
-            is_real ? 0 : 1 + 8 * fabs(dense_signed(&seed)));
-        set.a[i] = test_c(3 * dense_signed(&seed), is_real ? 0 : 3 * dense_signed(&seed));
-        set.degree += is_real ? 1 : 2;
-    }
-    return set;
-}
-
-static hd_rational eng_own_set(int which, const char **what) {
-    static const char *const names[ENG_SETS] = {"one real", "three real", "five real", "a real one and four", "a real one and eight",
-        "four and a real one", "a real one and three",
-                                                "nine pairs", "two real and three", "no poles", "all 32", "a real one and twenty-eight"};
-    *what = names[which];
-    switch (which) {
-        case 0: return eng_set(1, 1, 0, 3);
-        case 1: return eng_set(3, 7, 0.5, 4);
-        case 2: return eng_set(5, 31, -0.2, 5);
-        case 3: return eng_set(5, 1, 0.25, 6);
-        case 4: return eng_set(9, 1, 0, 7);
-        case 5: return eng_set(5, 1u << 4, 0.1, 8);
-        case 6: return eng_set(4, 1, 0, 9);
-        case 7: return eng_set(9, 0, 1, 10);
-        case 8: return eng_set(5, 3, 0, 11);
-        case 9: return eng_set(0, 0, 0.75, 12);
-        case 10: return eng_set(32, 0x00010101u, 0.3, 13);
-        default: return eng_set(29, 1, 0, 14);
-    }
-}
-
-static void eng_own_sets(void) {
-    const double offset[3] = {4, 0, 0};
-    shape a = kit_own_shape(shape_grid(6, 6, 0.3)), b = kit_own_shape(shape_icosphere(1)), s = kit_own_shape(shape_disjoint(&a, &b, offset));
-    int q, k, z;
-    for (q = 0; q < 3; q++) {
-        heat_case c = q < 2 ? heat_case_of(test_laplacian(&s, op_kinds[q]), "own, mesh") : heat_case_of(kry_dirichlet(40), "own, dirichlet");
-        const double unit = q < 2 ? c.lap->h * c.lap->h : 1;
-        for (k = 0; k < ENG_SETS; k++) {
-            const char *what;
-            hd_rational set = eng_own_set(k, &what), kept = set;
-            hd_heat_opts o = eng_opts(HD_METHOD_DIRECT);
-            double *u = DENSE_NEW(double, c.lap->n);
-            hd_report rep;
-            hd_heat *heat;
-            o.rational = &set;
-            heat = eng_create(c.lap, &o);
-            memset(&set, 0x55, sizeof set);      /* it was copied */
-            for (z = 0; z < 3; z++) {
-                const double t = unit * pow(30, z);
-                if (!eng_ok(heat_column(heat, t, 3, u, &rep), &rep, what)) continue;
-                CHECK(rep.poles == HD_POLES_OWN && rep.n_poles == kept.n_poles && rep.degree == kept.degree && rep.error_rational == 0);
-                CHECK_MSG(rep.mass_drift == 0 && rep.method == HD_METHOD_DIRECT, "%s: drift %g", what, rep.mass_drift);
-                if (kept.n_poles) eng_against_dense(&c, heat, HD_METHOD_DIRECT, t, &kept, what);
-            }
-            free(u);
+/* Every number of poles and every mixture of real ones: reports, and a set that is copied. */
+static void eng_sets(void) {
+    hd_laplacian *lap = kit_pair("bumpy/1/9 fem");
+    double *u = KIT_NEW(double, lap->n);
+    hd_report rep;
+    int kind, k;
+    for (kind = HD_POLES_UNIFORM; kind <= HD_POLES_KERNEL; kind++)
+        for (k = kind == HD_POLES_UNIFORM ? 1 : 2; k <= 14; k++) {
+            hd_heat *heat = eng_plan(lap, HD_METHOD_DIRECT, (hd_pole_kind)kind, k);
+            CHECK(heat_column(heat, 3 * lap->h * lap->h, 5, u, &rep) >= 0);
+            CHECK_MSG(rep.degree == k && rep.n_poles == (k + 1) / 2 && rep.poles == (hd_pole_kind)kind, "degree %d of %d", (int)rep.degree, k);
+            CHECK_MSG(rep.residual < 1e-12, "degree %d: residual %g", k, rep.residual);
             hd_heat_free(heat);
         }
-        heat_case_free(&c);
+    for (k = 0; k < TRIAL_PACKS; k++) {
+        hd_heat_opts o = eng_opts(HD_METHOD_DIRECT);
+        hd_rational set = eng_own_set(k);
+        const hd_rational kept = set;
+        hd_heat *heat;
+        o.rational = &set;
+        heat = eng_create(lap, &o);
+        memset(&set, 0x55, sizeof set);          /* it was copied */
+        CHECK(eng_ok(heat_column(heat, lap->h * lap->h, 3, u, &rep), &rep, "own set"));
+        CHECK(rep.poles == HD_POLES_OWN && rep.n_poles == kept.n_poles && rep.degree == kept.degree && rep.error_rational == 0);
+        CHECK_MSG(rep.mass_drift == 0 && rep.method == HD_METHOD_DIRECT, "set %d: drift %g", k, rep.mass_drift);
+        hd_heat_free(heat);
     }
+}
+
+/* What the report of a method says, of columns, fields and entries, early and late. */
+static void eng_reports(void) {
+    hd_laplacian *lap = kit_pair("bumpy/1/3 fem"), *held = kit_pair("bump/6/1 fem+held");
+    double *u = KIT_NEW(double, lap->n), *f = kit_random(lap->n, 12);
+    int k, q;
+    for (k = 0; k < 2; k++)
+        for (q = 0; q < 12; q++) {
+            hd_laplacian *on = q % 2 ? held : lap;
+            hd_heat *heat = eng_plan(on, eng_methods[k], HD_POLES_DEFAULT, 0);
+            const double t = (q < 6 ? 1 : 20) * on->h * on->h;
+            const int32_t source = on->vertex[on->n_active / 3], i[2] = {on->vertex[0], on->vertex[3]}, j[2] = {source, on->vertex[1]};
+            hd_report rep;
+            if (q % 6 < 2) CHECK(eng_ok(heat_column(heat, t, source, u, &rep), &rep, "report"));
+            else if (q % 6 < 4) CHECK(eng_ok(heat_apply(heat, t, 1, f, 0, u, 0, &rep), &rep, "report"));
+            else CHECK(eng_ok(heat_entries(heat, t, HD_KERNEL_OPERATOR, 2, i, j, u, &rep), &rep, "report"));
+            eng_check_report(&rep, eng_methods[k], "report");
+            CHECK(rep.error_bound >= rep.error_rational && rep.error_bound >= rep.error_solver && rep.error_bound >= rep.error_rounding);
+            if (q % 6 < 4) CHECK(rep.evidence_b != HD_EVIDENCE_NONE && rep.evidence_rounding != HD_EVIDENCE_NONE);
+            hd_heat_free(heat);
+        }
 }
 
 /* ---- many right-hand sides ---- */
 
-/* Any number of columns and fields, with repeats and sources without mass, padded columns; in place; in one call or one by one. */
-static void eng_counts_of(const heat_case *c, hd_method method) {
+/* In place, with padded columns, repeats, and sources without mass: nothing else is written, and entries have the bits of columns. */
+static void eng_counts_of(const hd_laplacian *lap, hd_method method) {
     enum { MOST = 30, PAD = 3 };
-    const hd_laplacian *lap = c->lap;
-    const int32_t n = lap->n, ld = n + PAD, source_step = 7;
-    const double t = 6 * lap->h * lap->h;
-    double *U = DENSE_NEW(double, MOST * ld), *F = DENSE_NEW(double, MOST * ld), *u = DENSE_NEW(double, n), *rhs = DENSE_NEW(double, n);
+    const int32_t n = lap->n, ld = n + PAD;
+    const double t = 6 * lap->h * lap->h, near = method == HD_METHOD_DIRECT ? 1e-12 : 1e-8;
+    double *U = KIT_NEW(double, MOST * ld), *F = kit_random(MOST * ld, 5), *u = KIT_NEW(double, n), values[MOST];
     test_memory m;
     hd_context ctx = test_memory_context(&m);
     hd_heat_opts o = eng_opts(method);
     hd_heat *heat;
     hd_report rep;
-    uint64_t seed = 5;
-    int32_t sources[MOST], k, q, i;
+    int32_t sources[MOST], rows[MOST], k, q, i;
     o.context = &ctx;
     heat = eng_create(lap, &o);
-    for (q = 0; q < MOST; q++) sources[q] = q % 4 == 3 ? sources[q - 2] : q * source_step % n;
-    for (i = 0; i < MOST * ld; i++) F[i] = dense_signed(&seed);
-    for (k = 1; k <= MOST; k++) {
+    for (q = 0; q < MOST; q++) {
+        sources[q] = q % 4 == 3 ? sources[q - 2] : q * 7 % n;
+        rows[q] = lap->vertex[q * 37 % lap->n_active];
+    }
+    for (k = 1; k <= MOST; k += 1 + k / 4) {
         const hd_kernel kernel = k % 2 ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
-        double size = 0;
         for (i = 0; i < MOST * ld; i++) U[i] = 1234;
         if (!eng_ok(heat_columns(heat, t, kernel, k, sources, U, (size_t)ld, &rep), &rep, "counts")) continue;
         for (q = 0; q < k; q++) {
-            const double *column = U + q * ld;
-            if (lap->row[sources[q]] < 0) {
-                for (i = 0; i < n; i++) CHECK(column[i] == (kernel == HD_KERNEL_OPERATOR && i == sources[q]));
-            } else {
-                heat_source_rhs(c, sources[q], kernel, rhs);
-                eng_judge(c, t, NULL, rhs, column, &rep, k == 1, "counts");
-                for (i = 0; i < n; i++) CHECK(lap->row[i] >= 0 || column[i] == 0);
-            }
-            for (i = n; i < ld; i++) CHECK(column[i] == 1234);
+            const int inert = lap->row[sources[q]] < 0;
+            for (i = 0; i < n; i++) CHECK((!inert && lap->row[i] >= 0) || U[q * ld + i] == (inert && kernel == HD_KERNEL_OPERATOR && i == sources[q]));
+            for (i = n; i < ld; i++) CHECK(U[q * ld + i] == 1234);
         }
         for (i = k * ld; i < MOST * ld; i++) CHECK(U[i] == 1234);
-        q = k - 1;
-        CHECK(heat_columns(heat, t, kernel, 1, sources + q, u, 0, NULL) >= 0);
-        size = dense_max_abs(u, n);
-        CHECK_MSG(dense_max_diff(u, U + q * ld, n) <= (method == HD_METHOD_DIRECT ? 1e-12 : 1e-8) * size,
-            "%s: the last of %d columns differs by %g from a call of its own",
-                  eng_name(method), (int)k, dense_max_diff(u, U + q * ld, n) / size);
-        if (k % 5 > 1) continue;
+        CHECK(heat_columns(heat, t, kernel, 1, sources + k - 1, u, 0, NULL) >= 0);
+        CHECK_MSG(dense_max_diff(u, U + (k - 1) * ld, n) <= near * dense_max_abs(u, n), "%s: the last of %d columns differs from a call of its own",
+                  eng_name(method), (int)k);
+        CHECK(heat_entries(heat, t, kernel, k, rows, sources, values, NULL) >= 0);
+        for (q = 0; q < k; q++) CHECK(fabs(values[q] - U[q * ld + rows[q]]) <= 1e-8 * dense_max_abs(U + q * ld, n));
         memcpy(U, F, (size_t)(MOST * ld) * sizeof *U);
         CHECK(heat_apply(heat, t, k, U, (size_t)ld, U, (size_t)ld, &rep) >= 0);
         for (q = 0; q < k; q++) {
             for (i = 0; i < n; i++) CHECK(lap->row[i] >= 0 || U[q * ld + i] == F[q * ld + i]);
             CHECK(memcmp(U + q * ld + n, F + q * ld + n, PAD * sizeof *U) == 0);
-            heat_field_rhs(c, F + q * ld, rhs);
-            eng_judge(c, t, NULL, rhs, U + q * ld, &rep, k == 1, "in place");
+            CHECK(heat_apply(heat, t, 1, F + q * ld, 0, u, 0, NULL) >= 0);
+            CHECK(dense_max_diff(u, U + q * ld, n) <= near * dense_max_abs(u, n));
         }
     }
     memset(&rep, 0x77, sizeof rep);
     CHECK(heat_columns(heat, t, HD_KERNEL_OPERATOR, 0, NULL, NULL, 0, &rep) == HD_OK && rep.status == HD_OK && rep.error.status == HD_OK &&
-        rep.iterations == 0);
+          rep.iterations == 0);
     CHECK(heat_apply(heat, t, 0, NULL, 0, NULL, 0, &rep) == HD_OK && rep.status == HD_OK);
     CHECK(heat_entries(heat, t, HD_KERNEL_SYMMETRIC, 0, NULL, NULL, NULL, &rep) == HD_OK && rep.status == HD_OK);
     hd_heat_free(heat);
     test_memory_done(&m, &ctx, "counts");
-    free(U);
-    free(F);
-    free(u);
-    free(rhs);
 }
 
 /* Sources that are all without mass, and fields of nothing but zeros or constants. */
@@ -539,7 +328,7 @@ static void eng_nothing_to_do(const hd_laplacian *lap, hd_method method) {
     const int32_t n = lap->n, inert[3] = {0, 5, 0};
     hd_heat *heat = eng_plan(lap, method, HD_POLES_DEFAULT, 0);
     const double t = lap->h * lap->h;
-    double *u = DENSE_NEW(double, 9 * n), *f = DENSE_NEW(double, 9 * n);
+    double *u = KIT_NEW(double, 9 * n), *f = KIT_NEW(double, 9 * n);
     hd_report rep;
     int32_t i, k;
     CHECK(n > 25 && lap->row[0] < 0 && lap->row[5] < 0);
@@ -553,22 +342,17 @@ static void eng_nothing_to_do(const hd_laplacian *lap, hd_method method) {
         CHECK_MSG(dense_max_diff(u, f, k * k * n) <= 1e-13 * 4, "%s: nothing moves by %g", eng_name(method), dense_max_diff(u, f, k * k * n));
         for (i = 0; i < k * k * n; i++) CHECK(i / n == 1 || u[i] == 0);
     }
-    free(u);
-    free(f);
     hd_heat_free(heat);
 }
 
 static void eng_counts(void) {
-    shape ball = kit_own_shape(shape_icosphere(1)), inert = kit_own_shape(eng_with_inert(&ball)), grid = kit_own_shape(shape_grid(8, 5, 0.3));
+    shape ball = kit_own_shape(shape_icosphere(1)), inert = kit_own_shape(eng_with_inert(&ball));
+    hd_laplacian *lap = kit_own_laplacian(test_laplacian(&inert, HD_LAPLACIAN_FEM)), *grid = kit_pair("flat/8/5/0.3 vor");
     int k;
     for (k = 0; k < 2; k++) {
-        heat_case c = heat_case_of(test_laplacian(&inert, HD_LAPLACIAN_FEM), "counts, inert");
-        eng_counts_of(&c, eng_methods[k]);
-        eng_nothing_to_do(c.lap, eng_methods[k]);
-        heat_case_free(&c);
-        c = heat_case_of(test_laplacian(&grid, HD_LAPLACIAN_VORONOI_COT), "counts, grid");
-        eng_counts_of(&c, eng_methods[k]);
-        heat_case_free(&c);
+        eng_counts_of(lap, eng_methods[k]);
+        eng_nothing_to_do(lap, eng_methods[k]);
+        eng_counts_of(grid, eng_methods[k]);
     }
 }
 
@@ -578,8 +362,8 @@ typedef struct eng_call { double t; int32_t k; int task; } eng_call;    /* task 
 
 static hd_status eng_do(hd_heat *heat, const hd_laplacian *lap, const eng_call *call, double *u, hd_report *rep) {
     const int32_t n = lap->n;
-    double *f = DENSE_NEW(double, call->k * n), times[3];
-    int32_t *sources = DENSE_NEW(int32_t, call->k), i;
+    double *f = KIT_NEW(double, call->k * n), times[3];
+    int32_t *sources = KIT_NEW(int32_t, call->k), i;
     hd_status st;
     for (i = 0; i < call->k; i++) sources[i] = lap->vertex[i * 5 % lap->n_active];
     for (i = 0; i < call->k * n; i++) f[i] = sin(i);
@@ -588,8 +372,6 @@ static hd_status eng_do(hd_heat *heat, const hd_laplacian *lap, const eng_call *
     else if (call->task == 3) st = heat_entries(heat, call->t, HD_KERNEL_OPERATOR, call->k, sources, sources, u, rep);
     else if (call->task == 4) st = heat_times(heat, 3, times, HD_KERNEL_SYMMETRIC, sources[0], NULL, u, 0, rep);
     else st = heat_columns(heat, call->t, call->task ? HD_KERNEL_SYMMETRIC : HD_KERNEL_OPERATOR, call->k, sources, u, 0, rep);
-    free(f);
-    free(sources);
     return st;
 }
 
@@ -599,7 +381,7 @@ static void eng_reuse_of(const hd_laplacian *lap, hd_heat_opts *o, const char *w
         {2, 1, 0}, {3, 2, 1}, {0, 2, 1},
                                        {1e3, 1, 0}, {3, 1, 4}, {3, 1, 0}, {70, 25, 0}};
     const size_t size = (size_t)(25 * lap->n) * sizeof(double);
-    double *u = DENSE_NEW(double, 25 * lap->n), *want = DENSE_NEW(double, 25 * lap->n);
+    double *u = KIT_NEW(double, 25 * lap->n), *want = KIT_NEW(double, 25 * lap->n);
     test_memory m, m2;
     hd_context ctx = test_memory_context(&m), ctx2 = test_memory_context(&m2);
     hd_heat *heat;
@@ -632,37 +414,33 @@ static void eng_reuse_of(const hd_laplacian *lap, hd_heat_opts *o, const char *w
     }
     test_memory_done(&m, &ctx, what);
     test_memory_done(&m2, &ctx2, what);
-    free(u);
-    free(want);
 }
 
 static void eng_reuse(void) {
     shape s = kit_own_shape(shape_bumpy(2, 8));
-    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
+    hd_laplacian *lap = kit_own_laplacian(test_laplacian(&s, HD_LAPLACIAN_FEM));
     hd_heat_opts o = eng_opts(HD_METHOD_DIRECT);
-    const char *what;
-    hd_rational set = eng_own_set(3, &what);
+    hd_rational set = eng_own_set(3);
     eng_reuse_of(lap, &o, "direct");
     o.degree = 11;
     eng_reuse_of(lap, &o, "direct 11");
     o.degree = 0;
     o.rational = &set;
-    eng_reuse_of(lap, &o, what);
+    eng_reuse_of(lap, &o, "own set");
     o = eng_opts(HD_METHOD_KRYLOV);
     eng_reuse_of(lap, &o, "krylov");
     o = eng_opts(HD_METHOD_AUTO);
     eng_reuse_of(lap, &o, "auto");
-    hd_laplacian_free(lap);
 }
 
 /* A plan that goes from poles to shift-and-invert Lanczos and back: the same answers every time. */
 static void eng_switch(void) {
     enum { K = 40, TIMES = 40 };
     shape s = kit_own_shape(shape_bumpy(3, 7));
-    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
+    hd_laplacian *lap = kit_own_laplacian(test_laplacian(&s, HD_LAPLACIAN_FEM));
     const hd_heat_opts o = eng_opts(HD_METHOD_AUTO);
     hd_heat *heat = eng_create(lap, &o);
-    double *first = DENSE_NEW(double, (K + TIMES) * s.n), *u = DENSE_NEW(double, (K + TIMES) * s.n), times[TIMES];
+    double *first = KIT_NEW(double, (K + TIMES) * s.n), *u = KIT_NEW(double, (K + TIMES) * s.n), times[TIMES];
     int32_t sources[K], i;
     int round;
     for (i = 0; i < K; i++) sources[i] = i * 11;
@@ -680,101 +458,44 @@ static void eng_switch(void) {
         if (round) CHECK_MSG(memcmp(first, u, (size_t)(K + TIMES) * (size_t)s.n * sizeof *u) == 0, "round %d: other answers", round);
     }
     hd_heat_free(heat);
-    hd_laplacian_free(lap);
-    free(first);
-    free(u);
 }
 
 /* ---- many times ---- */
 
-static void eng_times_of(const heat_case *c, hd_heat_opts *o, const double *times, int32_t n_times, const char *what) {
-    enum { PAD = 2 };
-    const hd_laplacian *lap = c->lap;
-    const int32_t n = lap->n, ld = n + PAD, source = lap->vertex[lap->n_active / 2];
-    double *U = DENSE_NEW(double, (n_times + 1) * ld), *u = DENSE_NEW(double, n), *f = DENSE_NEW(double, n), *rhs = DENSE_NEW(double, lap->n_active);
-    test_memory m;
-    hd_context ctx = test_memory_context(&m);
-    hd_heat *heat;
-    uint64_t seed = 3;
-    int32_t i, q;
-    int k;
-    o->context = &ctx;
-    heat = eng_create(lap, o);
-    for (i = 0; i < n; i++) f[i] = 0.4 + dense_signed(&seed);
-    for (k = 0; k < 3; k++) {
-        const hd_kernel kernel = k == 1 ? HD_KERNEL_SYMMETRIC : HD_KERNEL_OPERATOR;
-        hd_report rep, one;
-        for (i = 0; i < (n_times + 1) * ld; i++) U[i] = 4321;
-        memset(&rep, 0x77, sizeof rep);
-        if (!eng_ok(heat_times(heat, n_times, times, kernel, source, k == 2 ? f : NULL, U, (size_t)ld, &rep), &rep, what)) continue;
-        CHECK_MSG(n_times == 0 || o->method == HD_METHOD_AUTO || rep.method == o->method, "%s: %s", what, eng_name(rep.method));
-        CHECK(n_times == 0 || (rep.reason && rep.reason[0]));
-        for (q = 0; q < n_times; q++) {
-            const double *column = U + q * ld;
-            if (k == 2) heat_field_rhs(c, f, rhs);
-            else heat_source_rhs(c, source, kernel, rhs);
-            if (times[q] > 0) eng_judge(c, times[q], NULL, rhs, column, &rep, n_times == 1, what);
-            if (k == 2) CHECK(eng_ok(heat_apply(heat, times[q], 1, f, 0, u, 0, &one), &one, what));
-            else CHECK(eng_ok(heat_columns(heat, times[q], kernel, 1, &source, u, 0, &one), &one, what));
-            CHECK_MSG(dense_max_diff(u, column, n) <= (rep.error_bound + one.error_bound + 1e-13) * dense_max_abs(u, n),
-                "%s: time %g: off by %g from a call of its own", what, times[q],
-                      dense_max_diff(u, column, n) / dense_max_abs(u, n));
-            if (times[q] == 0) CHECK(memcmp(u, column, (size_t)n * sizeof *u) == 0);
-            for (i = 0; i < n; i++) CHECK(lap->row[i] >= 0 || column[i] == (k == 2 ? f[i] : 0));
-            for (i = n; i < ld; i++) CHECK(column[i] == 4321);
-            /* the same time twice */
-            for (i = 0; i < q; i++) CHECK(times[i] != times[q] || memcmp(U + i * ld, column, (size_t)n * sizeof *U) == 0);
-        }
-        for (i = n_times * ld; i < (n_times + 1) * ld; i++) CHECK(U[i] == 4321);
-    }
-    hd_heat_free(heat);
-    test_memory_done(&m, &ctx, what);
-    free(U);
-    free(u);
-    free(f);
-    free(rhs);
-}
-
-static void eng_no_times(const hd_laplacian *lap, const hd_heat_opts *o) {
-    hd_heat_opts own = *o;
-    hd_heat *heat;
-    hd_report rep;
-    double u = 7;
-    own.context = NULL;                          /* that of the last call is gone */
-    heat = eng_create(lap, &own);
-    CHECK(heat_times(heat, 0, NULL, HD_KERNEL_OPERATOR, lap->vertex[0], NULL, &u, 0, &rep) == HD_ERR_ARGUMENT && u == 7);
-    hd_heat_free(heat);
-}
-
+/* Zeros among the times, the same time twice, rows of vertices without mass; nothing is written beside the columns. */
 static void eng_times(void) {
-    static const double unsorted[7] = {5, 0.5, 80, 5, 20, 0.5, 11}, with_zero[5] = {3, 0, 40, -0.0, 1}, single[1] = {7}, zeros[2] = {0, 0},
-        equal[3] = {4, 4, 4};
-    static const hd_method methods[4] = {HD_METHOD_AUTO, HD_METHOD_ITERATIVE, HD_METHOD_DIRECT, HD_METHOD_KRYLOV};
+    static const double all[5][7] = {{5, 0.5, 80, 5, 20, 0.5, 11}, {3, 0, 40, -0.0, 1}, {7}, {0, 0}, {4, 4, 4}};
+    static const int32_t counts[5] = {7, 5, 1, 2, 3};
+    enum { PAD = 2 };
     shape ball = kit_own_shape(shape_icosphere(1)), s = kit_own_shape(eng_with_inert(&ball));
-    int q, k, z, i;
-    for (q = 0; q < 3; q++) {
-        heat_case c = q < 2 ? heat_case_of(test_laplacian(&s, op_kinds[q]), q ? "times voronoi" : "times fem") : heat_case_of(eng_leaking(8, 7),
-            "times leaking");
-        const double unit = q < 2 ? c.lap->h * c.lap->h : 0.02;
-        double times[40];
-        for (k = 0; k < 4; k++) {
-            hd_heat_opts o = eng_opts(methods[k]);
-            if (methods[k] == HD_METHOD_ITERATIVE && q == 0) continue;
-            for (i = 0; i < 7; i++) times[i] = unit * unsorted[i];
-            eng_times_of(&c, &o, times, 7, "unsorted");
-            for (i = 0; i < 5; i++) times[i] = unit * with_zero[i];
-            eng_times_of(&c, &o, times, 5, "with zeros");
-            eng_times_of(&c, &o, zeros, 2, "zeros");
-            eng_times_of(&c, &o, single, 1, "one");
-            eng_times_of(&c, &o, equal, 3, "equal");
-            eng_no_times(c.lap, &o);
-            for (z = 0; z <= 6; z++) {           /* spans of 1 to 1e6, in an order that is neither */
-                const int n_times = 1 + 3 * z;
-                for (i = 0; i < n_times; i++) times[i] = unit * 1e-2 * pow(10, z * ((i * 5) % n_times) / fmax(n_times - 1, 1));
-                eng_times_of(&c, &o, times, n_times, z < 3 ? "span" : "long span");
+    hd_laplacian *lap = kit_own_laplacian(test_laplacian(&s, HD_LAPLACIAN_VORONOI_COT));
+    const int32_t n = lap->n, ld = n + PAD, source = lap->vertex[lap->n_active / 2];
+    double *U = KIT_NEW(double, 8 * ld), *u = KIT_NEW(double, n), *f = kit_random(n, 3), times[7];
+    hd_report rep, one;
+    int method, q, z, k, i, e;
+    for (method = HD_METHOD_AUTO; method <= HD_METHOD_KRYLOV; method++) {
+        hd_heat *heat = eng_plan(lap, (hd_method)method, HD_POLES_DEFAULT, 0);
+        for (z = 0; z < 5; z++)
+            for (k = 0; k < 3; k++) {            /* the column of either kernel, and a field */
+                const hd_kernel kernel = k == 1 ? HD_KERNEL_SYMMETRIC : HD_KERNEL_OPERATOR;
+                for (i = 0; i < counts[z]; i++) times[i] = all[z][i] * lap->h * lap->h;
+                for (i = 0; i < 8 * ld; i++) U[i] = 4321;
+                if (!eng_ok(heat_times(heat, counts[z], times, kernel, source, k == 2 ? f : NULL, U, (size_t)ld, &rep), &rep, "times")) continue;
+                CHECK((method == HD_METHOD_AUTO || rep.method == (hd_method)method) && rep.reason && rep.reason[0]);
+                for (q = 0; q < counts[z]; q++) {
+                    const double *column = U + q * ld;
+                    CHECK(eng_ok(heat_times(heat, 1, times + q, kernel, source, k == 2 ? f : NULL, u, 0, &one), &one, "times"));
+                    CHECK_MSG(dense_max_diff(u, column, n) <= (rep.error_bound + one.error_bound + 1e-13) * dense_max_abs(u, n),
+                              "%s, time %g: not as by a call of its own", eng_name((hd_method)method), times[q]);
+                    if (times[q] == 0) CHECK(memcmp(u, column, (size_t)n * sizeof *u) == 0);
+                    for (i = 0; i < n; i++) CHECK(lap->row[i] >= 0 || column[i] == (k == 2 ? f[i] : 0));
+                    for (i = n; i < ld; i++) CHECK(column[i] == 4321);
+                    for (e = 0; e < q; e++) CHECK(times[e] != times[q] || memcmp(U + e * ld, column, (size_t)n * sizeof *U) == 0);
+                }
+                for (i = counts[z] * ld; i < 8 * ld; i++) CHECK(U[i] == 4321);
             }
-        }
-        heat_case_free(&c);
+        CHECK(heat_times(heat, 0, NULL, HD_KERNEL_OPERATOR, source, NULL, u, 0, &rep) == HD_ERR_ARGUMENT);
+        hd_heat_free(heat);
     }
 }
 
@@ -784,7 +505,7 @@ static void eng_times_columns_of(const hd_laplacian *lap, double unit, const cha
     enum { COLUMNS = 10, TIMES = 16 };
     hd_heat *heat = eng_plan(lap, HD_METHOD_KRYLOV, HD_POLES_DEFAULT, 0);
     const int32_t n = lap->n;
-    double times[TIMES], *U = DENSE_NEW(double, COLUMNS * TIMES * n), *u = DENSE_NEW(double, n);
+    double times[TIMES], *U = KIT_NEW(double, COLUMNS * TIMES * n), *u = KIT_NEW(double, n);
     int32_t sources[COLUMNS], c, q;
     hd_report rep, one;
     for (c = 0; c < COLUMNS; c++) sources[c] = (3 + 7 * c) % n;
@@ -801,8 +522,6 @@ static void eng_times_columns_of(const hd_laplacian *lap, double unit, const cha
         }
     }
     hd_heat_free(heat);
-    free(U);
-    free(u);
 }
 
 static void eng_times_columns(void) {
@@ -818,9 +537,9 @@ static void eng_times_columns(void) {
 /* A source without mass at many times. */
 static void eng_times_inert(void) {
     shape ball = kit_own_shape(shape_icosphere(0)), s = kit_own_shape(eng_with_inert(&ball));
-    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
+    hd_laplacian *lap = kit_own_laplacian(test_laplacian(&s, HD_LAPLACIAN_FEM));
     const double times[3] = {0.3, 0.1, 0.2};
-    double *u = DENSE_NEW(double, 3 * s.n);
+    double *u = KIT_NEW(double, 3 * s.n);
     int k, z;
     int32_t i;
     CHECK(lap->row[5] < 0);
@@ -834,8 +553,6 @@ static void eng_times_inert(void) {
             hd_heat_free(heat);
         }
     }
-    free(u);
-    hd_laplacian_free(lap);
 }
 
 /* ---- threads and instructions ---- */
@@ -843,9 +560,9 @@ static void eng_times_inert(void) {
 /* What a plan answers in one way of threading: a column, columns of several batches, fields, times; all into out. */
 static int64_t eng_thread_run(const shape *s, hd_laplacian_kind kind, hd_heat_opts o, hd_simd simd, int way, double *out, hd_report *rep) {
     static const int32_t counts[3] = {1, 6, 15};
-    ldl_way *w = DENSE_NEW(ldl_way, 1);
+    ldl_way *w = KIT_NEW(ldl_way, 1);
     const int32_t n = s->n;
-    double *f = DENSE_NEW(double, 15 * n), times[3];
+    double *f = KIT_NEW(double, 15 * n), times[3];
     hd_laplacian_opts lo;
     hd_laplacian *lap = NULL;
     hd_heat *heat;
@@ -871,8 +588,6 @@ static int64_t eng_thread_run(const shape *s, hd_laplacian_kind kind, hd_heat_op
 #ifdef LDL_THREADS
     calls += w->pool.loops;
 #endif
-    free(w);
-    free(f);
     return calls;
 }
 
@@ -884,7 +599,7 @@ static int eng_same_report(const hd_report *a, const hd_report *b) {
 
 static void eng_threads_of(const shape *s, hd_laplacian_kind kind, hd_heat_opts o, const char *what) {
     const int64_t size = 75 * (int64_t)s->n;
-    double *top = DENSE_NEW(double, size), *first = DENSE_NEW(double, size), *other = DENSE_NEW(double, size);
+    double *top = KIT_NEW(double, size), *first = KIT_NEW(double, size), *other = KIT_NEW(double, size);
     const double limit = o.method == HD_METHOD_KRYLOV ? 1e-10 : 1e-12;   /* krylov may stop a step later: its tolerance is 1e-9 */
     hd_report rep[5], rep2[5];
     int64_t calls = 0, part;
@@ -906,9 +621,6 @@ static void eng_threads_of(const shape *s, hd_laplacian_kind kind, hd_heat_opts 
         }
     }
     CHECK_MSG(calls > 0, "%s: never in parallel", what);
-    free(top);
-    free(first);
-    free(other);
 }
 
 static void eng_threads(void) {
@@ -927,8 +639,8 @@ static void eng_extreme_times(void) {
     shape a = kit_own_shape(shape_icosphere(1)), b = kit_own_shape(shape_grid(5, 4, 0.2)), s = kit_own_shape(shape_disjoint(&a, &b, offset));
     int q, k, z;
     for (q = 0; q < 2; q++) {
-        hd_laplacian *lap = test_laplacian(&s, op_kinds[q]);
-        double *f = DENSE_NEW(double, s.n), *u = DENSE_NEW(double, s.n), mean[2];
+        hd_laplacian *lap = kit_own_laplacian(test_laplacian(&s, op_kinds[q]));
+        double *f = KIT_NEW(double, s.n), *u = KIT_NEW(double, s.n), mean[2];
         int32_t i, c;
         for (i = 0; i < s.n; i++) f[i] = 1.5 + sin(i);
         for (c = 0; c < 2; c++) {
@@ -949,9 +661,6 @@ static void eng_extreme_times(void) {
             }
             hd_heat_free(heat);
         }
-        free(f);
-        free(u);
-        hd_laplacian_free(lap);
     }
 }
 
@@ -961,8 +670,8 @@ static void eng_extreme_times(void) {
 static void eng_warnings(void) {
     static const double when[2][2] = {{1e-3, 1e4}, {1e4, 1e-3}};
     shape s = kit_own_shape(shape_icosphere(1));
-    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
-    double *u = DENSE_NEW(double, 2 * s.n), times[2], rest;
+    hd_laplacian *lap = kit_own_laplacian(test_laplacian(&s, HD_LAPLACIAN_FEM));
+    double *u = KIT_NEW(double, 2 * s.n), times[2], rest;
     int k, q, z, tol, seen[2] = {0, 0};
     for (k = 0; k < 2; k++) {
         for (tol = 9; tol <= 17; tol++) {
@@ -990,8 +699,6 @@ static void eng_warnings(void) {
         }
     }
     CHECK_MSG((seen[0] & 1) && seen[1] == 3, "no warnings %d, nothing but warnings %d", seen[0], seen[1]);
-    free(u);
-    hd_laplacian_free(lap);
 }
 
 /* The degree that one of the fields needs serves all; the time that failed is told. */
@@ -1000,7 +707,7 @@ static void eng_told(void) {
     hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_VORONOI_COT);
     const double t = lap->h * lap->h, times[3] = {1e-9 * t, 500 * t, 1e-8 * t};
     const int32_t n = s.n;
-    double *F = DENSE_NEW(double, 2 * n), *u = DENSE_NEW(double, 3 * n), mean = 0;
+    double *F = KIT_NEW(double, 2 * n), *u = KIT_NEW(double, 3 * n), mean = 0;
     hd_heat_opts o = eng_opts(HD_METHOD_ITERATIVE);
     hd_heat *heat;
     hd_report rep, one[2];
@@ -1039,8 +746,6 @@ static void eng_told(void) {
             (long long)p.solving);
         hd_heat_free(heat);
     }
-    free(F);
-    free(u);
     hd_laplacian_free(lap);
 }
 
@@ -1050,11 +755,11 @@ static void eng_orderings(void) {
     static const hd_ordering kinds[5] = {HD_ORDERING_AUTO, HD_ORDERING_MINIMUM_DEGREE, HD_ORDERING_NESTED_DISSECTION, HD_ORDERING_OWN,
         HD_ORDERING_OWN};
     shape ball = kit_own_shape(shape_bumpy(2, 8)), s = kit_own_shape(eng_with_inert(&ball));
-    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
+    hd_laplacian *lap = kit_own_laplacian(test_laplacian(&s, HD_LAPLACIAN_FEM));
     const int32_t n = s.n, sources[4] = {1, 0, 77, 1};
     const double t = 10 * lap->h * lap->h;
-    int32_t *perm = DENSE_NEW(int32_t, n), *rows = DENSE_NEW(int32_t, n), i, m;
-    double *first = DENSE_NEW(double, 4 * n), *u = DENSE_NEW(double, 4 * n);
+    int32_t *perm = KIT_NEW(int32_t, n), *rows = KIT_NEW(int32_t, n), i, m;
+    double *first = KIT_NEW(double, 4 * n), *u = KIT_NEW(double, 4 * n);
     uint64_t seed = 16;
     int k, q;
     for (k = 0; k < 2; k++) {
@@ -1089,20 +794,15 @@ static void eng_orderings(void) {
             hd_heat_free(heat);
         }
     }
-    free(perm);
-    free(rows);
-    free(first);
-    free(u);
-    hd_laplacian_free(lap);
 }
 
 /* What is not a permutation is told with its place. */
 static void eng_bad_perms(void) {
     shape ball = kit_own_shape(shape_icosphere(0)), s = kit_own_shape(eng_with_inert(&ball));
-    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
+    hd_laplacian *lap = kit_own_laplacian(test_laplacian(&s, HD_LAPLACIAN_FEM));
     const int32_t n = s.n;
-    int32_t *perm = DENSE_NEW(int32_t, n), i, twice = 3;
-    double *u = DENSE_NEW(double, n);
+    int32_t *perm = KIT_NEW(int32_t, n), i, twice = 3;
+    double *u = KIT_NEW(double, n);
     int k, q, again;
     CHECK(n == 17 && lap->row[0] < 0 && lap->row[5] < 0 && lap->row[3] >= 0 && lap->row[8] >= 0);
     for (k = 0; k < 2; k++) {
@@ -1134,17 +834,14 @@ static void eng_bad_perms(void) {
             if (st >= 0) hd_heat_free(heat);
         }
     }
-    free(perm);
-    free(u);
-    hd_laplacian_free(lap);
 }
 
 /* ---- the choice ---- */
 
 static hd_method eng_chosen(const hd_laplacian *lap, const hd_heat_opts *o, double t, int32_t k, int times, const char *reason) {
     hd_heat *heat = eng_create(lap, o);
-    double *u = DENSE_NEW(double, (times ? times : k) * lap->n), *at = DENSE_NEW(double, times + 1);
-    int32_t *sources = DENSE_NEW(int32_t, k), i;
+    double *u = KIT_NEW(double, (times ? times : k) * lap->n), *at = KIT_NEW(double, times + 1);
+    int32_t *sources = KIT_NEW(int32_t, k), i;
     hd_report rep;
     for (i = 0; i < k; i++) sources[i] = i * 3 % lap->n;
     for (i = 0; i < times; i++) at[i] = t * (1 + i);
@@ -1153,23 +850,19 @@ static hd_method eng_chosen(const hd_laplacian *lap, const hd_heat_opts *o, doub
     CHECK(rep.method != HD_METHOD_AUTO);
     CHECK_MSG(rep.reason && (!reason || strstr(rep.reason, reason)), "%s: %s", eng_name(rep.method), rep.reason ? rep.reason : "no reason");
     hd_heat_free(heat);
-    free(u);
-    free(at);
-    free(sources);
     return rep.method;
 }
 
 static void eng_choice(void) {
     shape s = kit_own_shape(shape_bumpy(3, 2));
-    hd_laplacian *fem = test_laplacian(&s, HD_LAPLACIAN_FEM), *voronoi = test_laplacian(&s, HD_LAPLACIAN_VORONOI_COT);
+    hd_laplacian *fem = kit_own_laplacian(test_laplacian(&s, HD_LAPLACIAN_FEM)), *voronoi = kit_own_laplacian(test_laplacian(&s, HD_LAPLACIAN_VORONOI_COT));
     const double hh = fem->h * fem->h;
     const hd_heat_opts none = eng_opts(HD_METHOD_AUTO);
-    const char *what;
-    hd_rational set = eng_own_set(3, &what);
+    hd_rational set = eng_own_set(3);
     hd_heat_opts o;
     hd_heat *heat;
     hd_report rep;
-    double *u = DENSE_NEW(double, s.n);
+    double *u = KIT_NEW(double, s.n);
     int k;
     CHECK(eng_chosen(voronoi, &none, 0.01 * hh, 1, 0, "iterations") == HD_METHOD_ITERATIVE);    /* far from where they cost the same */
     CHECK(eng_chosen(fem, &none, 300 * hh, 64, 0, "columns") == HD_METHOD_DIRECT);
@@ -1198,18 +891,15 @@ static void eng_choice(void) {
     heat = eng_create(fem, &none);
     CHECK(heat_column(heat, 0, 3, u, &rep) == HD_OK && rep.method != HD_METHOD_AUTO && rep.reason && rep.factor_nnz == 0);
     hd_heat_free(heat);
-    hd_laplacian_free(fem);
-    hd_laplacian_free(voronoi);
-    free(u);
 }
 
 /* Auto, asked for columns one by one at one t, goes over to the factors of the poles after some calls, and stays with them. */
 static void eng_habit(const shape *s, hd_laplacian_kind kind, double c, const char *what) {
-    hd_laplacian *lap = test_laplacian_at(s, s->xyz, kind, 1, NULL);
+    hd_laplacian *lap = kit_own_laplacian(test_laplacian_at(s, s->xyz, kind, 1, NULL));
     const double t = c * lap->h * lap->h;
     const hd_heat_opts none = eng_opts(HD_METHOD_AUTO), krylov = eng_opts(HD_METHOD_KRYLOV), direct = eng_opts(HD_METHOD_DIRECT);
     hd_heat *heat = eng_create(lap, &none), *asked = eng_create(lap, &krylov), *other = eng_create(lap, &direct), *moving = eng_create(lap, &none);
-    double *u = DENSE_NEW(double, lap->n), *want = DENSE_NEW(double, lap->n);
+    double *u = KIT_NEW(double, lap->n), *want = KIT_NEW(double, lap->n);
     hd_report rep, rep2;
     int k, expected = 0, round;
     for (round = 0; round < 3; round++) {        /* new; at another t; after an update of the Laplacian */
@@ -1240,9 +930,6 @@ static void eng_habit(const shape *s, hd_laplacian_kind kind, double c, const ch
     hd_heat_free(asked);
     hd_heat_free(other);
     hd_heat_free(moving);
-    hd_laplacian_free(lap);
-    free(u);
-    free(want);
 }
 
 /* The same within byte limits: never an error and never too many bytes where the first call has an answer, and direct only where
@@ -1250,7 +937,7 @@ static void eng_habit(const shape *s, hd_laplacian_kind kind, double c, const ch
 static void eng_habit_limits(const shape *s) {
     hd_laplacian *lap = test_laplacian(s, HD_LAPLACIAN_FEM);
     const double t = 30 * lap->h * lap->h;
-    double *u = DENSE_NEW(double, lap->n), *want = DENSE_NEW(double, lap->n);
+    double *u = KIT_NEW(double, lap->n), *want = KIT_NEW(double, lap->n);
     hd_heat_opts o = eng_opts(HD_METHOD_DIRECT);
     hd_context ctx;
     hd_heat *heat = NULL;
@@ -1281,17 +968,15 @@ static void eng_habit_limits(const shape *s) {
     }
     CHECK_MSG(seen == (1 << HD_METHOD_DIRECT | 1 << HD_METHOD_KRYLOV | 1 << HD_METHOD_ITERATIVE), "seen: %d", seen);
     hd_laplacian_free(lap);
-    free(u);
-    free(want);
 }
 
 /* Fields have factors of another set. Where they alternate with columns, no call factorises what the one before has made. */
 static void eng_habit_mixed(const shape *s) {
-    hd_laplacian *lap = test_laplacian(s, HD_LAPLACIAN_FEM);
+    hd_laplacian *lap = kit_own_laplacian(test_laplacian(s, HD_LAPLACIAN_FEM));
     const hd_heat_opts none = eng_opts(HD_METHOD_AUTO);
     hd_heat *heat = eng_create(lap, &none);
     const double t = 30 * lap->h * lap->h;
-    double *u = DENSE_NEW(double, lap->n), *f = DENSE_NEW(double, lap->n);
+    double *u = KIT_NEW(double, lap->n), *f = KIT_NEW(double, lap->n);
     hd_report rep;
     int k, switches = 0;
     hd_method last[2] = {HD_METHOD_AUTO, HD_METHOD_AUTO};
@@ -1305,9 +990,6 @@ static void eng_habit_mixed(const shape *s) {
     CHECK_MSG(switches <= 1, "%d switches", switches);
     CHECK((last[0] == HD_METHOD_DIRECT) != (last[1] == HD_METHOD_DIRECT));
     hd_heat_free(heat);
-    hd_laplacian_free(lap);
-    free(u);
-    free(f);
 }
 
 static void eng_habits(void) {
@@ -1320,8 +1002,8 @@ static void eng_habits(void) {
 
 /* Whatever the limit is: when iterations fit into it, there is an answer; twice the same call is twice the same method. */
 static void eng_choice_limits_of(const hd_laplacian *lap, double t, int32_t k) {
-    double *u = DENSE_NEW(double, k * lap->n), *want = DENSE_NEW(double, k * lap->n);
-    int32_t *sources = DENSE_NEW(int32_t, k), i;
+    double *u = KIT_NEW(double, k * lap->n), *want = KIT_NEW(double, k * lap->n);
+    int32_t *sources = KIT_NEW(int32_t, k), i;
     hd_context ctx;
     hd_heat_opts o = eng_opts(HD_METHOD_ITERATIVE);
     hd_heat *heat;
@@ -1360,19 +1042,15 @@ static void eng_choice_limits_of(const hd_laplacian *lap, double t, int32_t k) {
     }
     CHECK_MSG(seen >> HD_METHOD_ITERATIVE & 1, "never iterated: %d", seen);
     CHECK_MSG(seen & (1 << HD_METHOD_DIRECT | 1 << HD_METHOD_KRYLOV), "never factorised: %d", seen);
-    free(u);
-    free(want);
-    free(sources);
 }
 
 static void eng_choice_limits(void) {
     shape s = kit_own_shape(shape_bumpy(3, 2));
     int q;
     for (q = 0; q < 2; q++) {
-        hd_laplacian *lap = test_laplacian(&s, op_kinds[q]);
+        hd_laplacian *lap = kit_own_laplacian(test_laplacian(&s, op_kinds[q]));
         eng_choice_limits_of(lap, 40 * lap->h * lap->h, 1);
         eng_choice_limits_of(lap, 4 * lap->h * lap->h, 9);
-        hd_laplacian_free(lap);
     }
 }
 
@@ -1381,7 +1059,7 @@ static void eng_limit_lifted(void) {
     shape s = kit_own_shape(shape_bumpy(3, 2));
     hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
     const double t = 40 * lap->h * lap->h;
-    double *u = DENSE_NEW(double, lap->n), *want = DENSE_NEW(double, lap->n);
+    double *u = KIT_NEW(double, lap->n), *want = KIT_NEW(double, lap->n);
     hd_heat_opts o = eng_opts(HD_METHOD_ITERATIVE);
     hd_context ctx, free_ctx;
     hd_heat *heat;
@@ -1410,15 +1088,13 @@ static void eng_limit_lifted(void) {
     CHECK(memcmp(u, want, (size_t)lap->n * sizeof *u) == 0);
     hd_heat_free(heat);
     hd_laplacian_free(lap);
-    free(u);
-    free(want);
 }
 
 /* ---- errors ---- */
 
 static void eng_bad_options(void) {
     shape s = kit_own_shape(shape_icosphere(0));
-    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM), *own = eng_leaking(4, 3);
+    hd_laplacian *lap = kit_own_laplacian(test_laplacian(&s, HD_LAPLACIAN_FEM)), *own = kit_own_laplacian(eng_leaking(4, 3));
     int32_t perm[12];
     double u[12];
     hd_heat *heat = NULL;
@@ -1473,14 +1149,12 @@ static void eng_bad_options(void) {
         CHECK(eng_ok(heat_column(heat, 1, 2, u, &rep), &rep, "own"));
         hd_heat_free(heat);
     }
-    hd_laplacian_free(lap);
-    hd_laplacian_free(own);
 }
 
 static void eng_bad_calls(void) {
     static const hd_method methods[4] = {HD_METHOD_AUTO, HD_METHOD_ITERATIVE, HD_METHOD_DIRECT, HD_METHOD_KRYLOV};
     shape s = kit_own_shape(shape_icosphere(0));
-    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
+    hd_laplacian *lap = kit_own_laplacian(test_laplacian(&s, HD_LAPLACIAN_FEM));
     int32_t sources[3] = {0, 12, 2}, i;
     double F[36], U[36], times[3] = {0.3, 0.1, 0.2};
     hd_report rep;
@@ -1530,7 +1204,6 @@ static void eng_bad_calls(void) {
 #undef ENG_BAD
         hd_heat_free(heat);
     }
-    hd_laplacian_free(lap);
 }
 
 /* ---- memory and cancelling ---- */
@@ -1542,8 +1215,7 @@ static hd_status eng_rob_job(hd_context *ctx, int variant) {
     hd_laplacian *lap;
     hd_heat *heat = rob_mark_heat;
     hd_heat_opts o = eng_opts(way == 7 ? HD_METHOD_AUTO : way < 4 ? HD_METHOD_DIRECT : HD_METHOD_KRYLOV);
-    const char *what;
-    hd_rational set = eng_own_set(3, &what);
+    hd_rational set = eng_own_set(3);
     int32_t perm[21], i;
     double F[21 * 7], U[21 * 7], times[7];
     hd_report rep;
@@ -1620,7 +1292,7 @@ static void eng_survives_one(const hd_laplacian *lap, hd_heat_opts o, int q, con
     static const eng_call calls[6] = {{3, 1, 0}, {80, 7, 2}, {3, 8, 1}, {900, 1, 4}, {80, 1, 2}, {3, 2, 0}};
     enum { CALLS = 6 };
     const size_t size = (size_t)(8 * lap->n);
-    double *want = DENSE_NEW(double, CALLS * size), *u = DENSE_NEW(double, size);
+    double *want = KIT_NEW(double, CALLS * size), *u = KIT_NEW(double, size);
     int at, z;
     for (z = 0; z < CALLS; z++) {
         hd_heat *heat = eng_create(lap, &o);
@@ -1668,15 +1340,12 @@ static void eng_survives_one(const hd_laplacian *lap, hd_heat_opts o, int q, con
         }
         CHECK_MSG(k < ROB_MOST, "%s: never went well", what);
     }
-    free(want);
-    free(u);
 }
 
 static void eng_survives(void) {
     shape s = kit_own_shape(shape_icosphere(0));
-    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
-    const char *what;
-    hd_rational set = eng_own_set(3, &what);
+    hd_laplacian *lap = kit_own_laplacian(test_laplacian(&s, HD_LAPLACIAN_FEM));
+    hd_rational set = eng_own_set(3);
     int q;
     for (q = 0; q < 2; q++) {
         hd_heat_opts o = eng_opts(HD_METHOD_DIRECT);
@@ -1686,7 +1355,6 @@ static void eng_survives(void) {
         eng_survives_one(lap, eng_opts(HD_METHOD_KRYLOV), q, "krylov survives");
         eng_survives_one(lap, eng_opts(HD_METHOD_AUTO), q, "auto survives");
     }
-    hd_laplacian_free(lap);
 }
 
 /* The same field again takes the same number of iterations, and finds the same bits: nothing is left of the first, in calls nor within one. */
@@ -1694,8 +1362,8 @@ static void eng_again(void) {
     enum { FIELDS = 40 };
     static const hd_method methods[3] = {HD_METHOD_ITERATIVE, HD_METHOD_ITERATIVE, HD_METHOD_KRYLOV};
     shape ball = kit_own_shape(shape_icosphere(2));
-    hd_laplacian *lap = test_laplacian(&ball, HD_LAPLACIAN_FEM);
-    double *F = DENSE_NEW(double, FIELDS * (int64_t)ball.n), *u = DENSE_NEW(double, FIELDS * (int64_t)ball.n);
+    hd_laplacian *lap = kit_own_laplacian(test_laplacian(&ball, HD_LAPLACIAN_FEM));
+    double *F = KIT_NEW(double, FIELDS * (int64_t)ball.n), *u = KIT_NEW(double, FIELDS * (int64_t)ball.n);
     uint64_t seed = 5;
     int32_t k, v;
     for (v = 0; v < ball.n; v++) F[v] = dense_signed(&seed);
@@ -1715,9 +1383,6 @@ static void eng_again(void) {
         for (v = 1; v < FIELDS; v++) CHECK(memcmp(u, u + v * ball.n, (size_t)ball.n * sizeof *u) == 0);
         hd_heat_free(heat);
     }
-    hd_laplacian_free(lap);
-    free(F);
-    free(u);
 }
 
 /* Rounding of krylov's solves is measured at every field: constants, which it does not enter, may stand anywhere. */
@@ -1726,7 +1391,7 @@ static void eng_constant_first(void) {
     shape s = kit_own_shape(shape_grid(12, 10, 0.3));
     const double t = 0.1;
     hd_laplacian *lap;
-    double *f = DENSE_NEW(double, K * (int64_t)s.n), *u = DENSE_NEW(double, K * (int64_t)s.n), rounding[2];
+    double *f = KIT_NEW(double, K * (int64_t)s.n), *u = KIT_NEW(double, K * (int64_t)s.n), rounding[2];
     uint64_t seed = 3;
     int32_t v, last;
     for (v = 0; v < s.n; v++) s.xyz[3 * v + 1] *= 1e-3;      /* slivers, where solves round much */
@@ -1744,16 +1409,14 @@ static void eng_constant_first(void) {
     }
     CHECK_MSG(fabs(rounding[0] - rounding[1]) <= 1e-6 * rounding[0], "rounding %g with the constant first, %g with it last", rounding[0], rounding[1]);
     hd_laplacian_free(lap);
-    free(f);
-    free(u);
 }
 
 static void test_engines(void) {
-    eng_dense_cases();
+    eng_against_truth();
+    eng_reports();
     eng_large();
     eng_batches();
-    eng_degrees();
-    eng_own_sets();
+    eng_sets();
     eng_counts();
     eng_reuse();
     eng_again();

@@ -35,7 +35,7 @@ static hd_geodesic *gall_points(const double *xyz, int32_t n, const hd_geodesic_
 
 /* One step of the definition: (B + t L) u = the indicator, with the rows in held (or none) taken out. */
 static void gall_dense_heat(const double *L, const double *mass, double t, const char *held, const int32_t *sources, int32_t k, int32_t n, double *u) {
-    double *A = DENSE_NEW(double, (int64_t)n * n);
+    double *A = KIT_NEW(double, (int64_t)n * n);
     int32_t i, q;
     for (i = 0; i < n * n; i++) {
         const int32_t a = i / n, b = i % n;
@@ -47,7 +47,6 @@ static void gall_dense_heat(const double *L, const double *mass, double t, const
     CHECK(dense_cholesky(A, n));
     dense_forward(A, u, n);
     dense_backward(A, u, n);
-    free(A);
 }
 
 /* div of the unit field down |u| of every face by the middles of its edges: D'B B'D u / |B'D u|, with an origin in the face. */
@@ -95,7 +94,7 @@ static void gall_components(const shape_poly *s, int32_t *component) {
 }
 
 static double gall_mean_edge(const shape_poly *s) {
-    char *seen = DENSE_NEW(char, (int64_t)s->n * s->n);
+    char *seen = KIT_NEW(char, (int64_t)s->n * s->n);
     double sum = 0, count = 0;
     int32_t f, p;
     for (f = 0; f < s->n_faces; f++) {
@@ -109,7 +108,6 @@ static double gall_mean_edge(const shape_poly *s) {
             seen[i * s->n + j] = seen[j * s->n + i] = 1;
         }
     }
-    free(seen);
     return sum / count;
 }
 
@@ -172,7 +170,7 @@ static void gall_dense_distance(const shape_poly *s, double lambda, double t, hd
 /* Marks the ends of edges with one face. */
 static char *gall_border(const shape_poly *s) {
     char *held = DENSE_NEW(char, s->n);
-    int32_t *count = DENSE_NEW(int32_t, (int64_t)s->n * s->n), f, p, i, j;
+    int32_t *count = KIT_NEW(int32_t, (int64_t)s->n * s->n), f, p, i, j;
     for (f = 0; f < s->n_faces; f++)
         for (p = 0; p < s->face_ptr[f + 1] - s->face_ptr[f]; p++) {
             const int32_t *v = s->face_idx + s->face_ptr[f], k = (int32_t)(s->face_ptr[f + 1] - s->face_ptr[f]);
@@ -181,7 +179,6 @@ static char *gall_border(const shape_poly *s) {
         }
     for (i = 0; i < s->n; i++)
         for (j = 0; j < s->n; j++) held[i] |= count[(int64_t)i * s->n + j] == 1;
-    free(count);
     return held;
 }
 
@@ -190,7 +187,7 @@ static void gall_against_dense(shape_poly s, int32_t inner, const char *what) {
     static const double times[4] = {0, 0.3, 20, 1e4}, lambdas[2] = {0, 0.8};
     const double h = gall_mean_edge(&s);
     const int32_t several[8] = {s.n / 3, 0, s.n - 1, s.n / 2, 1, s.n / 2, 2, s.n - 2};
-    double *d = DENSE_NEW(double, 8 * s.n), *want = DENSE_NEW(double, 8 * s.n);
+    double *d = KIT_NEW(double, 8 * s.n), *want = KIT_NEW(double, 8 * s.n);
     char *held = gall_border(&s);
     int k, border, q;
     for (k = 0; k < 8; k++)
@@ -230,8 +227,6 @@ static void gall_against_dense(shape_poly s, int32_t inner, const char *what) {
             hd_geodesic_free(g);
         }
     free(held);
-    free(d);
-    free(want);
     shape_poly_free(&s);
 }
 
@@ -242,7 +237,7 @@ static void gall_equal(void) {
     shape s = kit_own_shape(shape_icosphere(3));
     shape_poly p = kit_own_poly(shape_poly_of(&s));
     const int32_t sources[4] = {5, 100, 17, 600};
-    double *want = DENSE_NEW(double, 5 * s.n), *d = DENSE_NEW(double, 5 * s.n);
+    double *want = KIT_NEW(double, 5 * s.n), *d = KIT_NEW(double, 5 * s.n);
     hd_geodesic_opts o = gall_options();
     hd_geodesic *g = gall_triangles(&s, NULL);
     hd_geodesic_report rep;
@@ -261,8 +256,6 @@ static void gall_equal(void) {
         CHECK_MSG(geo_difference(d, want, 5 * s.n) < 1e-10, "way %d is off by %g", way, geo_difference(d, want, 5 * s.n));
         hd_geodesic_free(g);
     }
-    free(want);
-    free(d);
 }
 
 /* Slivers in a plane: flipped along the surface they are as good as any. The residuals compare the frames of faces with L as it was assembled. */
@@ -272,7 +265,7 @@ static void gall_slivers(void) {
     for (k = 0; k < 3; k++) {
         shape s = kit_own_shape(shape_grid(31, 31, 0.3));
         const int32_t source = 480;
-        double *d = DENSE_NEW(double, s.n), error[3];
+        double *d = KIT_NEW(double, s.n), error[3];
         int32_t i;
         for (i = 0; i < s.n; i++) s.xyz[3 * i + 1] /= squeeze[k];
         for (way = 0; way < 3; way++) {
@@ -288,7 +281,6 @@ static void gall_slivers(void) {
             for (i = 0, error[way] = 0; i < s.n; i++) error[way] += fabs(d[i] - shape_distance(s.xyz + 3 * i, s.xyz + 3 * source)) / s.n;
         }
         CHECK_MSG(error[1] < 0.015 && error[2] < 0.015 && (k == 0 || error[0] > 4 * error[1]), "1:%g: errors %g %g %g", squeeze[k], error[0], error[1], error[2]);
-        free(d);
     }
 }
 
@@ -296,7 +288,7 @@ static void gall_slivers(void) {
 
 /* Mean error on the unit sphere of eight sources. *h as the report says. */
 static double gall_sphere(hd_geodesic *g, const double *xyz, int32_t n, double *h) {
-    double *d = DENSE_NEW(double, 8 * n), sum = 0;
+    double *d = KIT_NEW(double, 8 * n), sum = 0;
     int32_t sources[8], i, q;
     hd_geodesic_report rep;
     for (q = 0; q < 8; q++) sources[q] = (int32_t)((int64_t)q * (n - 1) / 7);
@@ -305,7 +297,6 @@ static double gall_sphere(hd_geodesic *g, const double *xyz, int32_t n, double *
         for (i = 0; i < n; i++) sum += fabs(d[q * n + i] - 2 * asin(fmin(1, shape_distance(xyz + 3 * i, xyz + 3 * sources[q]) / 2)));
     *h = rep.h;
     hd_geodesic_free(g);
-    free(d);
     return sum / (8.0 * n);
 }
 
@@ -352,7 +343,7 @@ static void gall_many(void) {
     shape_poly p = kit_own_poly(shape_quad_sphere(16));
     shape s = kit_own_shape(shape_grid(31, 31, 0.3));
     int32_t sources[40], k, i, way;
-    double *d = DENSE_NEW(double, p.n);
+    double *d = KIT_NEW(double, p.n);
     for (way = 0; way < 2; way++) {
         const double *xyz = way ? s.xyz : p.xyz;
         const int32_t n = way ? s.n : p.n;
@@ -372,14 +363,13 @@ static void gall_many(void) {
         CHECK_MSG(mean < 0.35 && least > 0.6, "%d: mean error %g h, least ratio %g", (int)way, mean, least);
         hd_geodesic_free(g);
     }
-    free(d);
 }
 
 /* In a convex piece of the plane the mean border lets heat flow longer: at 8 h^2 it is less than half as far off as the natural one. */
 static void gall_borders(void) {
     shape s = kit_own_shape(shape_grid(31, 31, 0.3)), ball = kit_own_shape(shape_icosphere(2));
     const int32_t source = 15 * 31 + 8;
-    double *d = DENSE_NEW(double, s.n > ball.n ? s.n : ball.n), *e = DENSE_NEW(double, ball.n), error[2];
+    double *d = KIT_NEW(double, s.n > ball.n ? s.n : ball.n), *e = KIT_NEW(double, ball.n), error[2];
     int b;
     for (b = 0; b < 2; b++) {
         hd_geodesic_opts o = gall_options();
@@ -401,8 +391,6 @@ static void gall_borders(void) {
         CHECK(hd_geodesic_distance(g, 1, &source, b ? e : d, NULL, NULL) == HD_ERR_INDEX || b == 0 || geo_difference(d, e, ball.n) == 0);
         hd_geodesic_free(g);
     }
-    free(d);
-    free(e);
 }
 
 /* ---- long ways ---- */
@@ -426,8 +414,8 @@ static void gall_rim(int32_t around, int32_t rows, double tau, int way) {
     const double row = 1.0 / (rows - 1), radius = row * around / 6;
     shape s = kit_own_shape(shape_cylinder(around, rows, radius, 1));
     shape_poly p = kit_own_poly(gall_tube(around, rows, radius));
-    double *d = DENSE_NEW(double, s.n), worst = 0;
-    int32_t *sources = DENSE_NEW(int32_t, around), i;
+    double *d = KIT_NEW(double, s.n), worst = 0;
+    int32_t *sources = KIT_NEW(int32_t, around), i;
     hd_geodesic_opts o = gall_options();
     hd_geodesic_report rep;
     hd_geodesic *g;
@@ -441,15 +429,13 @@ static void gall_rim(int32_t around, int32_t rows, double tau, int way) {
     for (i = 0; i < s.n; i++) worst = fmax(worst, fabs(d[i] - s.xyz[3 * i + 1] - 0.5));
     CHECK_MSG(worst <= 1e-9, "rim of %d x %d, way %d: off by %g, %d stages", (int)around, (int)rows, way, worst, (int)rep.n_stages);
     hd_geodesic_free(g);
-    free(d);
-    free(sources);
 }
 
 /* A source with heat held at zero along the border of a strip that needs stages: distances go on past the first. */
 static void gall_strip(void) {
     shape s = kit_own_shape(shape_grid(1500, 9, 0));
     const int32_t source = 4 * 1500;
-    double *d = DENSE_NEW(double, s.n), least;
+    double *d = KIT_NEW(double, s.n), least;
     int32_t i;
     int b;
     for (b = 0; b < 3; b++) {
@@ -465,14 +451,13 @@ static void gall_strip(void) {
         CHECK_MSG(least > (b < 2 ? 0.7 : 0.3) && d[from + 799] < 800 / 1499.0, "border %d: a step of %g, %g after 799", b, least, d[from + 799]);
         hd_geodesic_free(g);
     }
-    free(d);
 }
 
 /* ---- points ---- */
 
 static void gall_coincident(void) {
     shape s = kit_own_shape(shape_points(300, shape_on_sphere, 12.566370614359172, 1, 9));
-    double *xyz = DENSE_NEW(double, 3 * (s.n + 2)), *d = DENSE_NEW(double, s.n + 2), *want = DENSE_NEW(double, s.n);
+    double *xyz = KIT_NEW(double, 3 * (s.n + 2)), *d = KIT_NEW(double, s.n + 2), *want = KIT_NEW(double, s.n);
     const int32_t source = 7, twin = s.n, three[3] = {twin, 100, 200};
     hd_geodesic *g = gall_points(s.xyz, s.n, NULL);
     hd_geodesic_opts o = gall_options();
@@ -493,9 +478,6 @@ static void gall_coincident(void) {
     CHECK(hd_geodesic_create_points(&g, s.xyz, 2, NULL, NULL, NULL, &e) == HD_ERR_EMPTY);
     CHECK(hd_geodesic_create_points(&g, s.xyz, -1, NULL, NULL, NULL, &e) == HD_ERR_ARGUMENT);
     CHECK(hd_geodesic_create_points(&g, NULL, 3, NULL, NULL, NULL, &e) == HD_ERR_ARGUMENT);
-    free(xyz);
-    free(d);
-    free(want);
 }
 
 /* ---- options, threads, failures ---- */
@@ -540,7 +522,7 @@ static void gall_errors(void) {
 
 static void gall_thread_run(const shape_poly *s, hd_simd simd, int way, double *out) {
     static const int32_t sources[11] = {1, 4, 600, 7, 300, 520, 20, 390, 22, 60, 450};
-    ldl_way *w = DENSE_NEW(ldl_way, 1);
+    ldl_way *w = KIT_NEW(ldl_way, 1);
     hd_geodesic_opts o = gall_options();
     hd_geodesic *g;
     int k;
@@ -556,14 +538,13 @@ static void gall_thread_run(const shape_poly *s, hd_simd simd, int way, double *
         hd_geodesic_free(g);
     }
     ldl_way_end(w, way);
-    free(w);
 }
 
 /* The same bits with any number of threads, and nearly the same with any instructions. */
 static void gall_threads(void) {
     shape_poly s = kit_own_poly(shape_quad_sphere(12));
     const int64_t size = 36 * (int64_t)s.n;
-    double *first = DENSE_NEW(double, size), *other = DENSE_NEW(double, size), *top = DENSE_NEW(double, size);
+    double *first = KIT_NEW(double, size), *other = KIT_NEW(double, size), *top = KIT_NEW(double, size);
     int level, way;
     for (level = 0; level < 4; level++) {
         gall_thread_run(&s, ldl_simds[level], 0, first);
@@ -574,9 +555,6 @@ static void gall_threads(void) {
             CHECK_MSG(memcmp(first, other, (size_t)size * sizeof *first) == 0, "way %d of threading gives other bits, level %d", way, level);
         }
     }
-    free(first);
-    free(other);
-    free(top);
 }
 
 /* 0: polygons and a mean border; 1: tufted; 2: points; 3: polygons that need stages. */
@@ -584,7 +562,7 @@ static hd_status gall_job(hd_context *ctx, int variant) {
     shape_poly s = variant == 3 ? gall_tube(3, 500, 0.001) : shape_trominoes(2, 2, 0.2);
     shape ball = kit_own_shape(shape_icosphere(1));
     const int32_t sources[6] = {0, 13, 5, 14, 2, 20};
-    double *d = DENSE_NEW(double, 6 * (s.n > ball.n ? s.n : ball.n));
+    double *d = KIT_NEW(double, 6 * (s.n > ball.n ? s.n : ball.n));
     hd_geodesic_opts o = gall_options();
     hd_geodesic *g = geo_mark;
     hd_geodesic_report rep;
@@ -602,7 +580,6 @@ static hd_status gall_job(hd_context *ctx, int variant) {
         CHECK(rep.status == st && rep.error.status == (st < 0 ? st : HD_OK));
         hd_geodesic_free(g);
     }
-    free(d);
     shape_poly_free(&s);
     return st;
 }

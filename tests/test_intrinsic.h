@@ -158,14 +158,12 @@ static void tri_plane(void) {
         d = tri_planar_delaunay(s.xyz, s.n);
         CHECK(d.n_tri == s.n_tri);
         for (q = 0; q < 3; q++) {
-            hd_laplacian *plain = tri_make(&d, op_kinds[q], TRI_PLAIN), *lap = tri_make(&s, op_kinds[q], TRI_DELAUNAY);
+            hd_laplacian *plain = kit_own_laplacian(tri_make(&d, op_kinds[q], TRI_PLAIN)), *lap = kit_own_laplacian(tri_make(&s, op_kinds[q], TRI_DELAUNAY));
             const double worst = tri_differ(plain, lap, NULL);
             CHECK_MSG(worst < 1e-12, "stretched by %g, kind %d: off by %g", factors[k], q, worst);
             CHECK(lap->mesh.n_sheets == 1 && lap->mesh.n_self_edges == 0 && lap->mesh.n_mollified == 0 && lap->mesh.mollify_epsilon == 0);
             CHECK(fabs(lap->mesh.smallest_intrinsic_angle - plain->mesh.smallest_angle) < 1e-12 && lap->mesh.n_flips > 0);
             CHECK(lap->mesh.n_negative_weights == plain->mesh.n_negative_weights);
-            hd_laplacian_free(plain);
-            hd_laplacian_free(lap);
         }
         shape_free(&d);
     }
@@ -181,7 +179,7 @@ static void tri_closed(void) {
         int64_t negative;
         tri_stretch(&s, factors[k]);
         for (q = 0; q < 3; q++) {
-            hd_laplacian *plain = tri_make(&s, op_kinds[q], TRI_PLAIN), *lap[3];
+            hd_laplacian *plain = kit_own_laplacian(tri_make(&s, op_kinds[q], TRI_PLAIN)), *lap[3];
             negative = plain->mesh.n_negative_weights;
             for (mode = TRI_DELAUNAY; mode <= TRI_TUFTED; mode++) {
                 const hd_mesh_report *r, *p = &plain->mesh;
@@ -194,7 +192,6 @@ static void tri_closed(void) {
                 CHECK(r->n_sheets == 1 && r->smallest_intrinsic_angle > r->smallest_angle && r->n_flips >= negative && negative > 0);
             }
             CHECK(tri_differ(lap[TRI_DELAUNAY], lap[TRI_TUFTED], NULL) == 0);
-            hd_laplacian_free(plain);
             hd_laplacian_free(lap[TRI_DELAUNAY]);
             hd_laplacian_free(lap[TRI_TUFTED]);
         }
@@ -220,7 +217,7 @@ static void tri_same_report(void) {
     shape_put_triangle(&t, m++, 3, 3, 4);
     t.n_tri = m;
     for (mode = TRI_DELAUNAY; mode <= TRI_TUFTED; mode++) {
-        hd_laplacian *plain = tri_make(&t, HD_LAPLACIAN_FEM, TRI_PLAIN), *lap = tri_make(&t, HD_LAPLACIAN_FEM, mode);
+        hd_laplacian *plain = kit_own_laplacian(tri_make(&t, HD_LAPLACIAN_FEM, TRI_PLAIN)), *lap = kit_own_laplacian(tri_make(&t, HD_LAPLACIAN_FEM, mode));
         const hd_mesh_report *p = &plain->mesh, *r = &lap->mesh;
         CHECK(p->n_faces == r->n_faces && p->n_faces_used == r->n_faces_used && p->n_repeated_corner == r->n_repeated_corner);
         CHECK(p->n_zero_area == r->n_zero_area && p->n_repeated_face == r->n_repeated_face && p->n_edges == r->n_edges);
@@ -229,8 +226,6 @@ static void tri_same_report(void) {
         CHECK_MSG(p->n_boundary_loops == r->n_boundary_loops, "%d loops, not %d", r->n_boundary_loops, p->n_boundary_loops);
         CHECK(p->n_inert == r->n_inert && p->smallest_angle == r->smallest_angle && fabs(plain->h - lap->h) < 1e-14 && plain->area == lap->area);
         CHECK(plain->n_components == 2 && lap->n_components == 2);
-        hd_laplacian_free(plain);
-        hd_laplacian_free(lap);
     }
 }
 
@@ -302,13 +297,12 @@ static void tri_books(void) {
     int pages, q;
     for (pages = 3; pages <= 5; pages++) {
         shape good = kit_own_shape(tri_book(pages, angle, 4, 0, 1)), bad = kit_own_shape(tri_book(pages, angle, 5, 0.35, 4)), r;
-        int32_t *to = DENSE_NEW(int32_t, bad.n);
+        int32_t *to = KIT_NEW(int32_t, bad.n);
         r = op_renumbered(&bad, 12, to);
         for (q = 0; q < 3; q++) {
-            hd_laplacian *plain = tri_make(&good, op_kinds[q], TRI_PLAIN), *lap = tri_make(&good, op_kinds[q], TRI_TUFTED), *b;
+            hd_laplacian *plain = kit_own_laplacian(tri_make(&good, op_kinds[q], TRI_PLAIN)), *lap = tri_make(&good, op_kinds[q], TRI_TUFTED), *b;
             CHECK(lap->mesh.n_sheets == 2 && lap->mesh.n_nonmanifold_edges == 4 && lap->mesh.n_flips == 0);
             CHECK_MSG(tri_differ(plain, lap, NULL) < 1e-13, "%d pages: off by %g", pages, tri_differ(plain, lap, NULL));
-            hd_laplacian_free(plain);
             hd_laplacian_free(lap);
             lap = tri_make(&bad, op_kinds[q], TRI_TUFTED);
             b = tri_make(&r, op_kinds[q], TRI_TUFTED);
@@ -322,7 +316,6 @@ static void tri_books(void) {
             CHECK(lap->mesh.n_sheets == 2);
             hd_laplacian_free(lap);
         }
-        free(to);
         shape_free(&r);
     }
 }
@@ -336,11 +329,9 @@ static void tri_cover_of_closed(void) {
     both = shape_disjoint(&ball, &book, offset);
     for (q = 0; q < 3; q++) {
         for (mode = TRI_DELAUNAY; mode <= TRI_TUFTED; mode++) {
-            hd_laplacian *alone = tri_make(&ball, op_kinds[q], mode), *lap = tri_make(&both, op_kinds[q], mode);
+            hd_laplacian *alone = kit_own_laplacian(tri_make(&ball, op_kinds[q], mode)), *lap = kit_own_laplacian(tri_make(&both, op_kinds[q], mode));
             CHECK(alone->mesh.n_sheets == 1 && lap->mesh.n_sheets == 2 && lap->mesh.n_flips > alone->mesh.n_flips && alone->mesh.n_flips > 0);
             CHECK_MSG(tri_differ(alone, lap, NULL) < 1e-12, "kind %d, mode %d: off by %g", q, mode, tri_differ(alone, lap, NULL));
-            hd_laplacian_free(alone);
-            hd_laplacian_free(lap);
         }
     }
     shape_free(&both);
@@ -357,7 +348,7 @@ static void tri_obtuse(void) {
     memcpy(s.xyz, xyz, sizeof xyz);
     memcpy(s.tri, tri, sizeof tri);
     for (q = 0; q < 3; q++) {
-        hd_laplacian *lap = tri_make(&s, op_kinds[q], TRI_TUFTED), *open = tri_make(&s, op_kinds[q], TRI_DELAUNAY), *plain = tri_make(&s, op_kinds[q], TRI_PLAIN);
+        hd_laplacian *lap = kit_own_laplacian(tri_make(&s, op_kinds[q], TRI_TUFTED)), *open = kit_own_laplacian(tri_make(&s, op_kinds[q], TRI_DELAUNAY)), *plain = kit_own_laplacian(tri_make(&s, op_kinds[q], TRI_PLAIN));
         CHECK(lap->mesh.n_self_edges == 1 && lap->mesh.n_flips == 1 && lap->mesh.n_sheets == 2);
         CHECK(fabs(op_l(lap, 0, 2) + tan_a / 2) < 1e-15 && fabs(op_l(lap, 1, 2) + tan_b / 2) < 1e-15 && op_l(lap, 0, 1) == 0);
         CHECK(open->mesh.n_flips == 0 && tri_differ(open, plain, NULL) < 1e-15 && open->mesh.n_negative_weights == 1);
@@ -366,9 +357,6 @@ static void tri_obtuse(void) {
             CHECK(fabs(op_b(lap, 1, 1) - b_area / 6) < 1e-15 && fabs(op_b(lap, 2, 2) - (a_area + b_area) / 2) < 1e-15 && op_b(lap, 0, 1) == 0);
             CHECK(fabs(a_area + b_area - 2.5) < 1e-15 && lap->b_ratio < 0.43 && open->b_ratio == 0.5);
         }
-        hd_laplacian_free(lap);
-        hd_laplacian_free(open);
-        hd_laplacian_free(plain);
     }
 }
 
@@ -418,7 +406,7 @@ static shape tri_strip(int32_t n, int two_sided, double jitter) {
 /* Of all triangulations of a surface the Delaunay one has the least Dirichlet energy, whatever the values on the vertices (Rippa 1990): the plain L minus
  * the intrinsic one is positive semi-definite. */
 static void tri_energy_of(const shape *s, int mode, const char *what) {
-    hd_laplacian *plain = tri_make(s, HD_LAPLACIAN_VORONOI_COT, TRI_PLAIN), *lap = tri_make(s, HD_LAPLACIAN_VORONOI_COT, mode);
+    hd_laplacian *plain = kit_own_laplacian(tri_make(s, HD_LAPLACIAN_VORONOI_COT, TRI_PLAIN)), *lap = kit_own_laplacian(tri_make(s, HD_LAPLACIAN_VORONOI_COT, mode));
     const int32_t n = plain->n_active;
     double *a = test_dense(&plain->L, NULL), *b = test_dense(&lap->L, NULL), *one = DENSE_NEW(double, (int64_t)n * n), top;
     dense_pair pair;
@@ -431,8 +419,6 @@ static void tri_energy_of(const shape *s, int mode, const char *what) {
     CHECK_MSG(pair.lambda[0] > -1e-12 * top && top > 0.1, "%s: the energies differ by %g to %g", what, pair.lambda[0], top);
     dense_pair_free(&pair);
     free(b);
-    hd_laplacian_free(plain);
-    hd_laplacian_free(lap);
 }
 
 static void tri_energy(void) {
@@ -456,7 +442,7 @@ static void tri_moebius(void) {
     for (q = 0; q < 3; q++) {
         for (mode = TRI_DELAUNAY; mode <= TRI_TUFTED; mode++) {
             shape s = kit_own_shape(tri_strip(14, 0, 0.3)), two = kit_own_shape(tri_strip(14, 1, 0.3)), turned = kit_own_shape(tri_strip(14, 1, 0.3));
-            hd_laplacian *a = tri_make(&s, op_kinds[q], mode), *b, *c;
+            hd_laplacian *a = kit_own_laplacian(tri_make(&s, op_kinds[q], mode)), *b, *c;
             int32_t f;
             CHECK(a->mesh.n_boundary_loops == 1 && a->mesh.n_sheets == 2 && a->mesh.n_nonmanifold_edges == 0 && a->mesh.n_flips > 0 && a->n_components == 1);
             tri_properties(a, mode == TRI_TUFTED, 1e-12, "Moebius");
@@ -470,7 +456,6 @@ static void tri_moebius(void) {
             CHECK(b->mesh.n_boundary_loops == 2 && b->mesh.n_sheets == (mode == TRI_TUFTED ? 2 : 1) && c->mesh.n_sheets == b->mesh.n_sheets);
             CHECK(b->mesh.n_misoriented_edges == 0 && c->mesh.n_misoriented_edges > 10 && tri_differ(b, c, NULL) < 1e-12);
             tri_properties(b, mode == TRI_TUFTED, 1e-12, "strip");
-            hd_laplacian_free(a);
             hd_laplacian_free(b);
             hd_laplacian_free(c);
         }
@@ -484,7 +469,7 @@ static void tri_invariance(void) {
     int k, q, mode;
     for (mode = TRI_DELAUNAY; mode <= TRI_TUFTED; mode++) {
         shape s = kit_own_shape(shape_bumpy(2, 8)), open = kit_own_shape(shape_grid(9, 8, 0.4)), r;
-        int32_t *to = DENSE_NEW(int32_t, open.n), i;
+        int32_t *to = KIT_NEW(int32_t, open.n), i;
         tri_stretch(&s, 4);
         tri_stretch(&open, 3);
         for (q = 0; q < 3; q++) {
@@ -513,7 +498,6 @@ static void tri_invariance(void) {
             hd_laplacian_free(b);
             shape_free(&r);
         }
-        free(to);
     }
 }
 
@@ -524,7 +508,7 @@ static void tri_units(void) {
     for (k = 0; k < 4; k++) {
         for (mode = TRI_DELAUNAY; mode <= TRI_TUFTED; mode++) {
             shape s = kit_own_shape(tri_book(3, angle, 4, 0.3, 3));
-            hd_laplacian *a = tri_make(&s, HD_LAPLACIAN_FEM, mode), *b;
+            hd_laplacian *a = kit_own_laplacian(tri_make(&s, HD_LAPLACIAN_FEM, mode)), *b;
             const double scale = ldexp(1, (int)exponents[k]);
             int32_t i;
             for (i = 0; i < 3 * s.n; i++) s.xyz[i] *= scale;
@@ -532,7 +516,6 @@ static void tri_units(void) {
             if (!a || !b) continue;
             CHECK(a->L.nnz == b->L.nnz && memcmp(a->L.val, b->L.val, (size_t)a->L.nnz * sizeof(double)) == 0 && b->h == a->h * scale);
             for (i = 0; i < a->n_active; i++) CHECK(b->mass[i] == a->mass[i] * scale * scale);
-            hd_laplacian_free(a);
             hd_laplacian_free(b);
         }
     }
@@ -557,11 +540,9 @@ static void tri_left_out(void) {
     shape_put_triangle(&t, m++, 0, 1, 2);                        /* collinear */
     for (q = 0; q < 3; q++) {
         for (mode = TRI_DELAUNAY; mode <= TRI_TUFTED; mode++) {
-            hd_laplacian *a = tri_make(&s, op_kinds[q], mode), *b = tri_make(&t, op_kinds[q], mode);
+            hd_laplacian *a = kit_own_laplacian(tri_make(&s, op_kinds[q], mode)), *b = kit_own_laplacian(tri_make(&t, op_kinds[q], mode));
             CHECK(b->mesh.n_repeated_face == 2 && b->mesh.n_zero_area == 2 && b->mesh.n_repeated_corner == 1 && b->mesh.n_inert == 3);
             CHECK(b->n_active == s.n && tri_differ(a, b, NULL) == 0 && a->h == b->h);
-            hd_laplacian_free(a);
-            hd_laplacian_free(b);
         }
     }
 }
@@ -648,7 +629,7 @@ static double tri_smallest_heat(const hd_laplacian *lap, double t, int32_t colum
     hd_heat *heat = NULL;
     hd_report rep;
     hd_error e;
-    double *u = DENSE_NEW(double, lap->n), least = 0;
+    double *u = KIT_NEW(double, lap->n), least = 0;
     int32_t q, i;
     *bound = 0;
     CHECK_MSG(hd_heat_create(&heat, lap, NULL, &e) == HD_OK, "%s", e.text);
@@ -664,20 +645,17 @@ static double tri_smallest_heat(const hd_laplacian *lap, double t, int32_t colum
         *bound = fmax(*bound, rep.error_bound);
     }
     hd_heat_free(heat);
-    free(u);
     return least;
 }
 
 static void tri_principle_of(const shape *s, int mode, double h2, int32_t columns, int plain_fails, const char *what) {
-    hd_laplacian *plain = tri_make(s, HD_LAPLACIAN_VORONOI_COT, TRI_PLAIN), *lap = tri_make(s, HD_LAPLACIAN_VORONOI_COT, mode);
+    hd_laplacian *plain = kit_own_laplacian(tri_make(s, HD_LAPLACIAN_VORONOI_COT, TRI_PLAIN)), *lap = kit_own_laplacian(tri_make(s, HD_LAPLACIAN_VORONOI_COT, mode));
     const double t = h2 * plain->h * plain->h;
     double bound, bound_plain, least, least_plain;
     least = tri_smallest_heat(lap, t, columns, &bound);
     least_plain = tri_smallest_heat(plain, t, columns, &bound_plain);
     CHECK_MSG(least >= -bound && bound < 1e-3, "%s, t = %g h^2: smallest value %g of the largest, bound %g", what, h2, least, bound);
     if (plain_fails) CHECK_MSG(least_plain < -100 * bound_plain, "%s, t = %g h^2: plain weights give %g, bound %g", what, h2, least_plain, bound_plain);
-    hd_laplacian_free(plain);
-    hd_laplacian_free(lap);
 }
 
 /* A mesh of triangles from a file beside the project, if there is one. */
@@ -721,9 +699,8 @@ static void tri_maximum_principle(void) {
         s = tri_file(names[q]);
         for (k = 0; s.xyz && k < 3; k++) tri_principle_of(&s, q ? TRI_TUFTED : TRI_DELAUNAY, times[k], 6, k == 0 && q, names[q]);
         if (s.xyz) {
-            hd_laplacian *lap = tri_make(&s, HD_LAPLACIAN_FEM, TRI_TUFTED);
+            hd_laplacian *lap = kit_own_laplacian(tri_make(&s, HD_LAPLACIAN_FEM, TRI_TUFTED));
             tri_properties(lap, 1, 1e-4, names[q]);
-            hd_laplacian_free(lap);
         }
         shape_free(&s);
     }
@@ -733,7 +710,7 @@ static void tri_maximum_principle(void) {
 
 /* The k nearest others of each point, by comparing all. */
 static void tri_neighbours(const double *xyz, int32_t n, int32_t k, int64_t *ptr, int32_t *nbr) {
-    double *d = DENSE_NEW(double, n);
+    double *d = KIT_NEW(double, n);
     int32_t i, j, q;
     if (k > n - 1) k = n - 1;
     for (i = 0; i < n; i++) {
@@ -748,12 +725,11 @@ static void tri_neighbours(const double *xyz, int32_t n, int32_t k, int64_t *ptr
         }
     }
     ptr[n] = (int64_t)n * k;
-    free(d);
 }
 
 static hd_status tri_points_try(hd_laplacian **out, const double *xyz, int32_t n, hd_laplacian_kind kind, hd_context *ctx, hd_error *e) {
-    int64_t *ptr = DENSE_NEW(int64_t, n + 1);
-    int32_t *nbr = DENSE_NEW(int32_t, 30 * n);
+    int64_t *ptr = KIT_NEW(int64_t, n + 1);
+    int32_t *nbr = KIT_NEW(int32_t, 30 * n);
     hd_laplacian_opts o;
     hd_status st;
     memset(&o, 0, sizeof o);
@@ -761,8 +737,6 @@ static hd_status tri_points_try(hd_laplacian **out, const double *xyz, int32_t n
     o.context = ctx;
     tri_neighbours(xyz, n, 30, ptr, nbr);
     st = hd_laplacian_tufted_points(out, xyz, n, ptr, nbr, &o, e);
-    free(ptr);
-    free(nbr);
     return st;
 }
 
@@ -786,7 +760,7 @@ static void tri_points_plane(void) {
             op_rotate(d.xyz + 3 * i, 2);
         }
         for (q = 0; q < 3; q++) {
-            hd_laplacian *want = tri_make(&d, op_kinds[q], TRI_PLAIN), *lap = tri_points(s.xyz, s.n, op_kinds[q]);
+            hd_laplacian *want = kit_own_laplacian(tri_make(&d, op_kinds[q], TRI_PLAIN)), *lap = kit_own_laplacian(tri_points(s.xyz, s.n, op_kinds[q]));
             double worst = 0;
             int64_t p;
             CHECK(lap->n_active == s.n && lap->mesh.n_sheets == 2 && lap->n_components == 1);
@@ -800,8 +774,6 @@ static void tri_points_plane(void) {
             }
             CHECK_MSG(worst < 1e-11, "jitter %g, kind %d: off by %g", jitter, q, worst);
             CHECK(tri_worst_sign(lap) <= 0 && lap->mesh.n_negative_weights == 0 && lap->mesh.n_not_delaunay == 0);
-            hd_laplacian_free(want);
-            hd_laplacian_free(lap);
         }
         shape_free(&d);
     }
@@ -822,7 +794,7 @@ static double tri_spacing(const double *xyz, int32_t n) {
 /* The unit sphere: area 4 pi, the first eigenvalues 2, 2, 2, 6 (five times). */
 static void tri_points_sphere(void) {
     shape s = kit_own_shape(shape_icosphere(2)), r;
-    int32_t *to = DENSE_NEW(int32_t, s.n), i;
+    int32_t *to = KIT_NEW(int32_t, s.n), i;
     hd_laplacian *lap, *other;
     dense_pair pair;
     uint64_t seed = 3;
@@ -842,22 +814,18 @@ static void tri_points_sphere(void) {
     r = op_renumbered(&s, 5, to);
     other = tri_points(r.xyz, r.n, HD_LAPLACIAN_VORONOI_COT);
     {   /* which of the copies of a face meet is told by their numbers, where neighbours do not agree; so this is not to the last digits */
-        double *u = DENSE_NEW(double, s.n), *v = DENSE_NEW(double, s.n), *x = DENSE_NEW(double, s.n), worst = 0;
+        double *u = KIT_NEW(double, s.n), *v = KIT_NEW(double, s.n), *x = KIT_NEW(double, s.n), worst = 0;
         for (i = 0; i < s.n; i++) x[i] = s.xyz[3 * i] + s.xyz[3 * i + 1] * s.xyz[3 * i + 2];
         CHECK(hd_laplacian_apply(lap, 1, 0, x, u, NULL) == HD_OK);
         for (i = 0; i < s.n; i++) v[i] = x[to[i]];
         CHECK(hd_laplacian_apply(other, 1, 0, v, x, NULL) == HD_OK);
         for (i = 0; i < s.n; i++) worst = fmax(worst, fabs(x[i] - u[to[i]]));
         CHECK_MSG(worst < 1e-3, "renumbered: off by %g", worst);
-        free(u);
-        free(v);
-        free(x);
     }
     dense_pair_free(&pair);
     hd_laplacian_free(lap);
     hd_laplacian_free(other);
     shape_free(&r);
-    free(to);
 }
 
 /* Points in one place, on a line, too few; noise; a plane seen edge on. */
@@ -888,7 +856,7 @@ static void tri_points_bad_input(void) {
     const int32_t nbr[12] = {1, 2, 3, 0, 2, 3, 0, 1, 3, 0, 1, 2}, bad[12] = {1, 2, 3, 0, 2, 3, 0, 1, 4, 0, 1, 2};
     const int64_t ptr[5] = {0, 3, 6, 9, 12}, shifted[5] = {1, 3, 6, 9, 12}, falling[5] = {0, 3, 2, 9, 12};
     int64_t many[5] = {0, 257, 257, 257, 257};
-    int32_t *lots = DENSE_NEW(int32_t, 257);
+    int32_t *lots = KIT_NEW(int32_t, 257);
     double nan_xyz[12];
     hd_laplacian *lap = NULL;
     hd_error e;
@@ -904,7 +872,6 @@ static void tri_points_bad_input(void) {
     CHECK(hd_laplacian_tufted_points(&lap, xyz, -1, ptr, nbr, NULL, &e) == HD_ERR_ARGUMENT && !lap);
     CHECK(hd_laplacian_tufted_points(&lap, xyz, 4, ptr, nbr, NULL, &e) == HD_OK);
     hd_laplacian_free(lap);
-    free(lots);
 }
 
 /* ---- memory, cancelling, threads ---- */
@@ -972,9 +939,9 @@ static void tri_backwards(void *user, int64_t n_tasks, hd_task task, void *arg) 
 /* The same to the last bit, whoever runs the tasks and in which order. More points than a task takes. */
 static void tri_deterministic(void) {
     enum { N = 2500, K = 12 };
-    double *xyz = DENSE_NEW(double, 3 * N);
-    int64_t *ptr = DENSE_NEW(int64_t, N + 1);
-    int32_t *nbr = DENSE_NEW(int32_t, K * N), i;
+    double *xyz = KIT_NEW(double, 3 * N);
+    int64_t *ptr = KIT_NEW(int64_t, N + 1);
+    int32_t *nbr = KIT_NEW(int32_t, K * N), i;
     hd_laplacian *lap[2] = {NULL, NULL};
     hd_laplacian_opts o;
     hd_context ctx[2];
@@ -999,9 +966,6 @@ static void tri_deterministic(void) {
         CHECK(lap[0]->h == lap[1]->h && lap[0]->area == lap[1]->area && fabs(lap[0]->area / 2401 - 1) < 0.1);
     }
     for (k = 0; k < 2; k++) hd_laplacian_free(lap[k]);
-    free(xyz);
-    free(ptr);
-    free(nbr);
 }
 
 static void test_intrinsic(void) {

@@ -43,7 +43,7 @@ static void mov_same_laplacian(const hd_laplacian *a, const hd_laplacian *b, con
 static void mov_frames(const shape *s, hd_laplacian_kind kind, const char *what) {
     /* the fourth plan has diagonals and distances only: a query of another kind would make factors anew anyway */
     static const hd_method methods[4] = {HD_METHOD_DIRECT, HD_METHOD_KRYLOV, HD_METHOD_ITERATIVE, HD_METHOD_DIRECT};
-    double *xyz = DENSE_NEW(double, 3 * s->n), *u = DENSE_NEW(double, s->n), *want = DENSE_NEW(double, s->n);
+    double *xyz = KIT_NEW(double, 3 * s->n), *u = KIT_NEW(double, s->n), *want = KIT_NEW(double, s->n);
     test_memory m;
     hd_context ctx = test_memory_context(&m);
     hd_laplacian *lap = test_laplacian_at(s, s->xyz, kind, 1, &ctx), *fresh;
@@ -89,16 +89,13 @@ static void mov_frames(const shape *s, hd_laplacian_kind kind, const char *what)
     for (k = 0; k < 4; k++) hd_heat_free(plan[k]);
     hd_laplacian_free(lap);
     test_memory_done(&m, &ctx, what);
-    free(xyz);
-    free(u);
-    free(want);
 }
 
 /* What cannot be taken leaves everything as it was. */
 static void mov_errors(void) {
     shape s = kit_own_shape(shape_grid(6, 5, 0));
-    double *xyz = DENSE_NEW(double, 3 * s.n), *before;
-    hd_laplacian *lap = test_laplacian_at(&s, s.xyz, HD_LAPLACIAN_FEM, 1, NULL), *plain = test_laplacian_at(&s, s.xyz, HD_LAPLACIAN_FEM, 0, NULL);
+    double *xyz = KIT_NEW(double, 3 * s.n), *before;
+    hd_laplacian *lap = kit_own_laplacian(test_laplacian_at(&s, s.xyz, HD_LAPLACIAN_FEM, 1, NULL)), *plain = kit_own_laplacian(test_laplacian_at(&s, s.xyz, HD_LAPLACIAN_FEM, 0, NULL));
     hd_laplacian_opts o;
     hd_laplacian *none = NULL;
     hd_error e;
@@ -123,15 +120,12 @@ static void mov_errors(void) {
     memcpy(xyz + 3 * s.tri[0], s.xyz + 3 * s.tri[1], 3 * sizeof *xyz);
     CHECK(hd_laplacian_update(lap, xyz, &e) == HD_OK && lap->mesh.n_zero_area >= 1 && lap->mesh.n_faces_used + lap->mesh.n_zero_area == s.n_tri);
     CHECK(hd_laplacian_update(lap, s.xyz, &e) == HD_OK && memcmp(before, lap->L.val, (size_t)lap->L.nnz * sizeof *before) == 0 && lap->mesh.n_zero_area == 0);
-    hd_laplacian_free(lap);
-    hd_laplacian_free(plain);
-    free(xyz);
     free(before);
 }
 
 /* Geodesic distances of a plan that moves with the mesh. */
 static void mov_geodesic(const shape *s, const char *what) {
-    double *xyz = DENSE_NEW(double, 3 * s->n), *d = DENSE_NEW(double, s->n), *want = DENSE_NEW(double, s->n);
+    double *xyz = KIT_NEW(double, 3 * s->n), *d = KIT_NEW(double, s->n), *want = KIT_NEW(double, s->n);
     const int32_t source = s->tri[0];
     hd_geodesic_opts o;
     hd_geodesic *plan = NULL, *fresh = NULL;
@@ -162,9 +156,6 @@ static void mov_geodesic(const shape *s, const char *what) {
     CHECK(hd_geodesic_update(plan, xyz, &e) == HD_ERR_EMPTY && (e.face >= 0 || e.vertex >= 0));
     CHECK(hd_geodesic_distance(plan, 1, &source, d, &rep, NULL) == HD_OK && memcmp(d, want, (size_t)s->n * sizeof *d) == 0);   /* as it was */
     hd_geodesic_free(plan);
-    free(xyz);
-    free(d);
-    free(want);
 }
 
 /* ---- polygons and matrices: the same bits as new ones ---- */
@@ -196,19 +187,17 @@ static hd_laplacian *mov_polygons(const shape_poly *s, const double *xyz, hd_lap
 
 /* A column by a plan that moved, against that of a new plan: the same bits, as the pairs are. */
 static void mov_same_column(hd_heat *plan, const hd_laplacian *fresh, hd_method method, double t, const char *what) {
-    double *u = DENSE_NEW(double, fresh->n), *want = DENSE_NEW(double, fresh->n);
+    double *u = KIT_NEW(double, fresh->n), *want = KIT_NEW(double, fresh->n);
     const hd_heat_opts o = eng_opts(method);
     hd_heat *other = eng_create(fresh, &o);
     hd_report rep;
     CHECK(eng_ok(heat_column(plan, t, fresh->vertex[3], u, &rep), &rep, what) && eng_ok(heat_column(other, t, fresh->vertex[3], want, &rep), &rep, what));
     CHECK_MSG(memcmp(u, want, (size_t)fresh->n * sizeof *u) == 0, "%s, %s: another column", what, eng_name(method));
     hd_heat_free(other);
-    free(u);
-    free(want);
 }
 
 static void mov_polygon_frames(const shape_poly *s, hd_laplacian_kind kind, const char *what) {
-    double *xyz = DENSE_NEW(double, 3 * s->n);
+    double *xyz = KIT_NEW(double, 3 * s->n);
     const shape points = {s->n, s->xyz, 0, NULL};
     static const hd_method methods[3] = {HD_METHOD_DIRECT, HD_METHOD_KRYLOV, HD_METHOD_ITERATIVE};
     test_memory m;
@@ -254,13 +243,12 @@ static void mov_polygon_frames(const shape_poly *s, hd_laplacian_kind kind, cons
     for (k = 0; k < 3; k++) hd_heat_free(plan[k]);
     hd_laplacian_free(lap);
     test_memory_done(&m, &ctx, what);
-    free(xyz);
 }
 
 /* Every update that a new Laplacian of these places would refuse is refused like that, and leaves all as it was. */
 static void mov_refused(const shape_poly *s, hd_laplacian_kind kind, hd_laplacian_opts o, const char *what) {
     static const double scales[6] = {1e152, 1e153, 1e154, 1e155, 1e-170, NAN};
-    double *xyz = DENSE_NEW(double, 3 * s->n);
+    double *xyz = KIT_NEW(double, 3 * s->n);
     hd_laplacian *lap = NULL, *same = NULL, *fresh;
     hd_error e, e2;
     int32_t i, k, version = 1, refused = 0;
@@ -287,13 +275,12 @@ static void mov_refused(const shape_poly *s, hd_laplacian_kind kind, hd_laplacia
     CHECK_MSG(refused >= 9, "%s: %d updates refused", what, (int)refused);
     hd_laplacian_free(lap);
     hd_laplacian_free(same);
-    free(xyz);
 }
 
 /* The same of geodesic plans, with times that can make it refuse more: distances stay as they were to the last bit. */
 static void mov_geodesic_refused(const shape *s, hd_geodesic_border border) {
     static const double scales[8] = {1e-100, 1e-120, 1e-140, 1e-160, 1e150, 1e153, 1e155, NAN};
-    double *xyz = DENSE_NEW(double, 3 * s->n), *d = DENSE_NEW(double, s->n), *want = DENSE_NEW(double, s->n);
+    double *xyz = KIT_NEW(double, 3 * s->n), *d = KIT_NEW(double, s->n), *want = KIT_NEW(double, s->n);
     const int32_t sources[2] = {s->n / 2, s->n / 2 + 1};
     int32_t i, k, refused = 0;
     int way;
@@ -329,9 +316,6 @@ static void mov_geodesic_refused(const shape *s, hd_geodesic_border border) {
         hd_geodesic_free(g);
     }
     CHECK_MSG(refused >= 14, "%d updates refused", (int)refused);
-    free(xyz);
-    free(d);
-    free(want);
 }
 
 /* Errors name the polygon, in whatever order polygons and vertices stand: far squares and pentagons, each spoilt in turn. */
@@ -352,7 +336,7 @@ static void mov_names(void) {
         shape_put_face(&s, f == 2 ? 2 : 4 + f % 2, corner);  /* one is no face at all */
     }
     for (kind = HD_LAPLACIAN_FEM; kind <= HD_LAPLACIAN_POLYGON; kind++) {
-        hd_laplacian *lap = mov_polygons(&s, s.xyz, (hd_laplacian_kind)kind, 1, NULL);
+        hd_laplacian *lap = kit_own_laplacian(mov_polygons(&s, s.xyz, (hd_laplacian_kind)kind, 1, NULL));
         for (f = 0; f < N; f++) {
             hd_error e;
             memcpy(xyz, s.xyz, sizeof xyz);
@@ -360,7 +344,6 @@ static void mov_names(void) {
             xyz[15 * place[f] + 7] *= 1e200;
             CHECK_MSG(f == 2 || (hd_laplacian_update(lap, xyz, &e) == HD_ERR_NOT_FINITE && e.face == f), "kind %d: face %d for %d", kind, (int)e.face, (int)f);
         }
-        hd_laplacian_free(lap);
     }
 }
 
@@ -368,7 +351,7 @@ static void mov_names(void) {
 static void mov_lost(hd_laplacian_kind kind, int32_t lost) {
     shape s = kit_own_shape(shape_grid(8, 7, 0.2));
     hd_laplacian *lap, *fresh;
-    double *xyz = DENSE_NEW(double, 3 * s.n);
+    double *xyz = KIT_NEW(double, 3 * s.n);
     hd_error e;
     s.tri[3] = s.tri[4];
     lap = test_laplacian_at(&s, s.xyz, kind, 1, NULL);
@@ -384,7 +367,6 @@ static void mov_lost(hd_laplacian_kind kind, int32_t lost) {
     CHECK_MSG(fabs(lap->h - fresh->h) <= 1e-14 * fresh->h && fabs(lap->area - fresh->area) < 1e-14, "vertex %d: h %g for %g", (int)lost, lap->h, fresh->h);
     hd_laplacian_free(lap);
     hd_laplacian_free(fresh);
-    free(xyz);
 }
 
 /* L and B of a mesh as matrices over vertices: rows are vertices where every vertex has a mass. */
@@ -419,7 +401,7 @@ static void mov_matrix_free(hd_csr *a, int diagonal) {
 static void mov_matrix_frames(const shape *s, hd_laplacian_kind kind, const char *what) {
     const int diagonal = kind != HD_LAPLACIAN_FEM;
     static const hd_method methods[3] = {HD_METHOD_DIRECT, HD_METHOD_KRYLOV, HD_METHOD_ITERATIVE};
-    double *xyz = DENSE_NEW(double, 3 * s->n);
+    double *xyz = KIT_NEW(double, 3 * s->n);
     test_memory m;
     hd_context ctx = test_memory_context(&m);
     hd_laplacian *lap = NULL, *fresh = NULL, *mesh = test_laplacian_at(s, s->xyz, kind, 1, NULL);
@@ -489,7 +471,6 @@ static void mov_matrix_frames(const shape *s, hd_laplacian_kind kind, const char
     mov_matrix_free(&L, 0);
     mov_matrix_free(&B, diagonal);
     test_memory_done(&m, &ctx, what);
-    free(xyz);
 }
 
 /* A vertex without mass stays one, and a diagonal B stays diagonal; entries of zero may lie outside of the pattern. */
@@ -536,7 +517,7 @@ static void mov_matrix_pattern(void) {
 /* Heat at a very large t spreads evenly over its part of the grid, and leaves it where a vertex is held. part [n], area [parts]; 0: heat is lost. */
 static void mov_parts_check(const hd_laplacian *lap, hd_heat *const *plan, const int32_t *part, const double *area, const char *what) {
     const double t = 1e12;
-    double *u = DENSE_NEW(double, lap->n);
+    double *u = KIT_NEW(double, lap->n);
     int32_t source, v;
     hd_report rep;
     int k;
@@ -558,7 +539,6 @@ static void mov_parts_check(const hd_laplacian *lap, hd_heat *const *plan, const
         CHECK(eng_ok(heat_distance(plan[0], (hd_distance_kind)k, 1, &t, 1, &source, u, 0, &rep), &rep, what));
         for (v = 0; v < lap->n; v++) CHECK_MSG((u[v] == HUGE_VAL) == (lap->row[v] < 0 || part[v] != part[source]), "%s: distance to %d: %g", what, v, u[v]);
     }
-    free(u);
 }
 
 /* A strip of the grid closes and opens again. kind polygon: its triangles as polygons. held: a vertex on the left is. */
@@ -566,9 +546,9 @@ static void mov_strip(hd_laplacian_kind kind, int held, const char *what) {
     static const hd_method methods[3] = {HD_METHOD_DIRECT, HD_METHOD_KRYLOV, HD_METHOD_ITERATIVE};
     shape s = kit_own_shape(shape_grid(10, 7, 0));
     const int32_t corner = 0;
-    int64_t *ptr = DENSE_NEW(int64_t, s.n_tri + 1);
-    double *xyz = DENSE_NEW(double, 3 * s.n), *L[2];
-    int32_t *part = DENSE_NEW(int32_t, s.n), i;
+    int64_t *ptr = KIT_NEW(int64_t, s.n_tri + 1);
+    double *xyz = KIT_NEW(double, 3 * s.n), *L[2];
+    int32_t *part = KIT_NEW(int32_t, s.n), i;
     hd_laplacian *lap[2] = {NULL, NULL};
     hd_heat *plan[3];
     hd_laplacian_opts o;
@@ -610,9 +590,6 @@ static void mov_strip(hd_laplacian_kind kind, int held, const char *what) {
     }
     for (k = 0; k < 3; k++) hd_heat_free(plan[k]);
     hd_laplacian_free(lap[0]);
-    free(ptr);
-    free(xyz);
-    free(part);
 }
 
 /* Zeros that the caller's matrices store join nothing: two paths of three vertices, and what lies between them. */

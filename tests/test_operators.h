@@ -57,7 +57,7 @@ static double op_area(const shape *s) {
 /* ---- properties ---- */
 
 static void op_properties(const shape *s, hd_laplacian_kind kind, const char *what) {
-    hd_laplacian *lap = test_laplacian(s, kind);
+    hd_laplacian *lap = kit_own_laplacian(test_laplacian(s, kind));
     const double area = op_area(s);
     double b_sum = 0, mass_sum = 0, comp_sum = 0, worst_row = 0;
     int64_t p, asymmetric = 0, no_diagonal = 0;
@@ -91,12 +91,11 @@ static void op_properties(const shape *s, hd_laplacian_kind kind, const char *wh
     CHECK_MSG(fabs(lap->area - area) <= 1e-12 * area, "%s: area %.17g not %.17g", what, lap->area, area);
     CHECK_MSG(fabs(b_sum - (kind == HD_LAPLACIAN_COT ? lap->n_active : area)) <= 1e-12 * b_sum, "%s: sum of B %g", what, b_sum);
     CHECK(fabs(mass_sum - b_sum) <= 1e-12 * b_sum && fabs(comp_sum - b_sum) <= 1e-12 * b_sum);
-    hd_laplacian_free(lap);
 }
 
 /* Positive semi-definite, with one zero eigenvalue per component; and B >= b_ratio diag(B). */
 static void op_spectrum(const shape *s, hd_laplacian_kind kind, int32_t components) {
-    hd_laplacian *lap = test_laplacian(s, kind);
+    hd_laplacian *lap = kit_own_laplacian(test_laplacian(s, kind));
     const int32_t n = lap->n_active;
     double *L = test_dense(&lap->L, NULL), *B = test_dense_mass(lap), *D = DENSE_NEW(double, (int64_t)n * n), *one = DENSE_NEW(double, (int64_t)n * n), top;
     int32_t i, zeros = 0, negative = 0;
@@ -119,7 +118,6 @@ static void op_spectrum(const shape *s, hd_laplacian_kind kind, int32_t componen
     CHECK_MSG(least >= lap->b_ratio * (1 - 1e-12), "B >= %g diag(B), not %g", least, lap->b_ratio);
     dense_pair_free(&p);
     dense_pair_free(&q);
-    hd_laplacian_free(lap);
 }
 
 static void op_all_properties(void) {
@@ -146,7 +144,7 @@ static void op_single_fem(void) {
     const double xyz[9] = {0, 0, 0, 3, 0, 0, 0, 4, 0};
     const int32_t tri[3] = {0, 1, 2};
     const double want[3][3] = {{2.0 / 3 + 3.0 / 8, -2.0 / 3, -3.0 / 8}, {-2.0 / 3, 2.0 / 3, 0}, {-3.0 / 8, 0, 3.0 / 8}};
-    hd_laplacian *lap = op_make(xyz, 3, tri, 1, HD_LAPLACIAN_FEM);
+    hd_laplacian *lap = kit_own_laplacian(op_make(xyz, 3, tri, 1, HD_LAPLACIAN_FEM));
     int i, j;
     for (i = 0; i < 3; i++) {
         for (j = 0; j < 3; j++) {
@@ -159,7 +157,6 @@ static void op_single_fem(void) {
     CHECK(lap->mesh.n_edges == 3 && lap->mesh.n_boundary_edges == 3 && lap->mesh.n_boundary_loops == 1);
     CHECK(fabs(lap->mesh.smallest_angle - atan2(3, 4)) < 1e-15);
     CHECK(lap->mesh.n_faces == 1 && lap->mesh.n_faces_used == 1 && lap->mesh.n_inert == 0);
-    hd_laplacian_free(lap);
 }
 
 static void op_single_mixed(void) {
@@ -174,10 +171,9 @@ static void op_single_mixed(void) {
     for (k = 0; k < 4; k++) {
         for (turn = 0; turn < 6; turn++) {       /* the corners in any order */
             const int32_t a = turn % 3, b = (a + (turn < 3 ? 1 : 2)) % 3, tri[3] = {a, b, 3 - a - b};
-            hd_laplacian *lap = op_make(xyz[k], 3, tri, 1, HD_LAPLACIAN_VORONOI_COT);
+            hd_laplacian *lap = kit_own_laplacian(op_make(xyz[k], 3, tri, 1, HD_LAPLACIAN_VORONOI_COT));
             for (i = 0; i < 3; i++) CHECK_MSG(fabs(lap->mass[i] - want[k][i]) < 1e-14, "triangle %d, corner %d: %.17g", k, i, lap->mass[i]);
             CHECK(lap->mesh.n_negative_weights == (k == 2));
-            hd_laplacian_free(lap);
         }
     }
 }
@@ -189,7 +185,7 @@ static void op_grid_stencil(void) {
     int k;
     int32_t i, j;
     for (k = 0; k < 3; k++) {
-        hd_laplacian *lap = test_laplacian(&s, op_kinds[k]);
+        hd_laplacian *lap = kit_own_laplacian(test_laplacian(&s, op_kinds[k]));
         double worst = fabs(lap->h - (71 + 30 * sqrt(2)) / 101 * h);    /* 36 + 35 sides, 30 diagonals */
         CHECK(lap->mesh.n_edges == 101);
         for (j = 0; j < 6; j++) {
@@ -204,7 +200,6 @@ static void op_grid_stencil(void) {
             }
         }
         CHECK_MSG(worst < 1e-13, "stencil off by %g", worst);
-        hd_laplacian_free(lap);
     }
 }
 
@@ -228,7 +223,7 @@ static void op_rigid(void) {
         r = shape_bumpy(2, 8);
         for (i = 0; i < r.n; i++) op_rotate(r.xyz + 3 * i, scales[k]);
         for (q = 0; q < 3; q++) {
-            hd_laplacian *a = test_laplacian(&s, op_kinds[q]), *b = test_laplacian(&r, op_kinds[q]);
+            hd_laplacian *a = kit_own_laplacian(test_laplacian(&s, op_kinds[q])), *b = kit_own_laplacian(test_laplacian(&r, op_kinds[q]));
             const double unit = q == 2 ? 1 : scales[k] * scales[k], tol = k == 1 ? 1e-9 : 1e-11;    /* the shift costs digits of small meshes */
             double worst = 0;
             CHECK(a->L.nnz == b->L.nnz && memcmp(a->L.col, b->L.col, (size_t)a->L.nnz * sizeof *a->L.col) == 0);
@@ -239,8 +234,6 @@ static void op_rigid(void) {
             for (i = 0; i < a->n_active; i++) worst = fmax(worst, fabs(a->mass[i] * unit - b->mass[i]) / (a->mass[i] * unit));
             worst = fmax(worst, fabs(a->h * scales[k] - b->h) / b->h);
             CHECK_MSG(worst < tol, "kind %d, scale %g: off by %g", q, scales[k], worst);
-            hd_laplacian_free(a);
-            hd_laplacian_free(b);
         }
         shape_free(&r);
     }
@@ -249,7 +242,7 @@ static void op_rigid(void) {
 /* The same shape with its vertices, faces and corners renumbered. to[new] = old. */
 static shape op_renumbered(const shape *s, uint64_t seed, int32_t *to) {
     shape r = shape_make(s->n, s->n_tri);
-    int32_t *from = DENSE_NEW(int32_t, s->n), *order = DENSE_NEW(int32_t, s->n_tri), i;
+    int32_t *from = KIT_NEW(int32_t, s->n), *order = KIT_NEW(int32_t, s->n_tri), i;
     dense_shuffle(to, s->n, &seed);
     dense_shuffle(order, s->n_tri, &seed);
     for (i = 0; i < s->n; i++) {
@@ -261,19 +254,17 @@ static shape op_renumbered(const shape *s, uint64_t seed, int32_t *to) {
         const int turn = (int)(dense_random(&seed) % 3);
         shape_put_triangle(&r, i, from[v[turn]], from[v[(turn + 1) % 3]], from[v[(turn + 2) % 3]]);
     }
-    free(from);
-    free(order);
     return r;
 }
 
 static void op_permutation(void) {
     shape s = kit_own_shape(shape_grid(9, 8, 0.35)), r;
-    int32_t *to = DENSE_NEW(int32_t, s.n), i;
+    int32_t *to = KIT_NEW(int32_t, s.n), i;
     int64_t p;
     int q;
     r = op_renumbered(&s, 77, to);
     for (q = 0; q < 3; q++) {
-        hd_laplacian *a = test_laplacian(&s, op_kinds[q]), *b = test_laplacian(&r, op_kinds[q]);
+        hd_laplacian *a = kit_own_laplacian(test_laplacian(&s, op_kinds[q])), *b = kit_own_laplacian(test_laplacian(&r, op_kinds[q]));
         double worst = fabs(a->h - b->h);
         CHECK(a->L.nnz == b->L.nnz && a->mesh.n_edges == b->mesh.n_edges && a->mesh.n_boundary_edges == b->mesh.n_boundary_edges);
         CHECK(a->mesh.n_boundary_loops == b->mesh.n_boundary_loops && a->mesh.n_misoriented_edges == b->mesh.n_misoriented_edges);
@@ -287,10 +278,7 @@ static void op_permutation(void) {
             worst = fmax(worst, fabs(b->mass[i] - a->mass[to[i]]));
         }
         CHECK_MSG(worst < 1e-13, "kind %d: off by %g", q, worst);
-        hd_laplacian_free(a);
-        hd_laplacian_free(b);
     }
-    free(to);
     shape_free(&r);
 }
 
@@ -319,7 +307,7 @@ static void op_left_out(void) {
     shape_put_triangle(&t, m++, 0, 1, 2);                                    /* along the border: collinear */
     CHECK(m == t.n_tri);
     for (q = 0; q < 3; q++) {
-        hd_laplacian *a = test_laplacian(&s, op_kinds[q]), *b = test_laplacian(&t, op_kinds[q]);
+        hd_laplacian *a = kit_own_laplacian(test_laplacian(&s, op_kinds[q])), *b = kit_own_laplacian(test_laplacian(&t, op_kinds[q]));
         CHECK(b->n == n + 5 && b->n_active == n && b->mesh.n_inert == 5);
         CHECK_MSG(b->mesh.n_repeated_corner == 2 && b->mesh.n_zero_area == 3 && b->mesh.n_repeated_face == 3, "%d %d %d",
                   b->mesh.n_repeated_corner, b->mesh.n_zero_area, b->mesh.n_repeated_face);
@@ -329,8 +317,6 @@ static void op_left_out(void) {
         CHECK(memcmp(a->L.val, b->L.val, (size_t)a->L.nnz * sizeof(double)) == 0);
         CHECK(memcmp(a->mass, b->mass, (size_t)a->n_active * sizeof(double)) == 0);
         CHECK(a->mesh.n_boundary_loops == b->mesh.n_boundary_loops && b->mesh.n_nonmanifold_edges == 0);
-        hd_laplacian_free(a);
-        hd_laplacian_free(b);
     }
     shape_free(&t);
 }
@@ -341,25 +327,23 @@ static void op_inert_rows(void) {
     const int32_t tri[3] = {1, 3, 4};
     const int32_t rows[5] = {-1, 0, -1, 1, 2}, vertices[3] = {1, 3, 4};
     double x[5] = {100, 1, 100, 2, 4}, y[5];
-    hd_laplacian *lap = op_make(xyz, 5, tri, 1, HD_LAPLACIAN_FEM);
+    hd_laplacian *lap = kit_own_laplacian(op_make(xyz, 5, tri, 1, HD_LAPLACIAN_FEM));
     CHECK(memcmp(lap->row, rows, sizeof rows) == 0 && memcmp(lap->vertex, vertices, sizeof vertices) == 0);
     CHECK(hd_laplacian_apply(lap, 2, 3, x, y, NULL) == HD_OK);    /* L x = (-2/3 - 9/8, 2/3, 9/8), B x = (4, 4.5, 5.5) */
     CHECK(y[0] == 0 && y[2] == 0);
     CHECK(fabs(y[1] - (2 * (-2.0 / 3 - 9.0 / 8) + 12)) < 1e-14 && fabs(y[3] - (4.0 / 3 + 13.5)) < 1e-14 && fabs(y[4] - (9.0 / 4 + 16.5)) < 1e-14);
-    hd_laplacian_free(lap);
 }
 
 static void op_nonmanifold(void) {
     /* three triangles on the edge (0, 1), opposite corners with cotangents 0, 0 and 3/4 */
     const double xyz[15] = {0, 0, 0, 2, 0, 0, 1, 1, 0, 1, -1, 0, 1, 0, 2};
     const int32_t tri[9] = {0, 1, 2, 1, 0, 3, 0, 1, 4};
-    hd_laplacian *lap = op_make(xyz, 5, tri, 3, HD_LAPLACIAN_FEM);
+    hd_laplacian *lap = kit_own_laplacian(op_make(xyz, 5, tri, 3, HD_LAPLACIAN_FEM));
     const double cot4 = 3.0 / 4;                 /* (-1,0,-2).(1,0,-2) = 3, cross = 4 */
     CHECK_MSG(fabs(op_l(lap, 0, 1) + cot4 / 2) < 1e-14, "%.17g", op_l(lap, 0, 1));
     CHECK(fabs(op_b(lap, 0, 1) - (1 + 1 + 2) / 12.0) < 1e-14);
     CHECK(lap->mesh.n_nonmanifold_edges == 1 && lap->mesh.n_edges == 7 && lap->mesh.n_boundary_edges == 6);
     CHECK(lap->n_components == 1);
-    hd_laplacian_free(lap);
 }
 
 static void op_borders(void) {
@@ -392,7 +376,7 @@ static void op_star(void) {
     enum { RIM = 100000 };
     shape s = kit_own_shape(shape_make(RIM + 1, RIM));
     const clock_t start = clock();
-    double seconds, *u = DENSE_NEW(double, RIM + 1), sum = 0, want = 0;
+    double seconds, *u = KIT_NEW(double, RIM + 1), sum = 0, want = 0;
     hd_heat_opts ho;
     hd_heat *heat = NULL;
     hd_report rep;
@@ -425,7 +409,6 @@ static void op_star(void) {
     CHECK_MSG(seconds < 60, "star: %.1f s", seconds);    /* far above what it takes, far below a square of the degree */
     hd_heat_free(heat);
     hd_laplacian_free(lap);
-    free(u);
 }
 
 static void op_errors(void) {
@@ -585,11 +568,11 @@ static void op_matrices_zeros(void) {
     int q, m;
     memset(&o, 0, sizeof o);
     for (q = 0; q < 4; q++) {
-        hd_csr shape;
+        hd_csr pattern;
         if (!CHECK(hd_laplacian_matrices(&lap, L[q], B[q], 0, NULL, &e) == HD_OK)) continue;
-        shape = lap->L;
-        shape.val = NULL;
-        CHECK_MSG(hd_csr_check(&shape, 1, NULL, &e) == HD_OK && lap->L.nnz == 5 && !lap->B, "pair %d: %s", q, e.text);
+        pattern = lap->L;
+        pattern.val = NULL;
+        CHECK_MSG(hd_csr_check(&pattern, 1, NULL, &e) == HD_OK && lap->L.nnz == 5 && !lap->B, "pair %d: %s", q, e.text);
         for (m = 0; m < 4; m++) {
             o.method = methods[m];
             if (!CHECK(hd_heat_create(&heat, lap, &o, NULL) == HD_OK)) continue;
@@ -678,7 +661,7 @@ static void op_matrices_sign(void) {
     const int32_t two[1] = {2}, both[2] = {2, 2}, one_two[1] = {1}, ends[2] = {0, 0}, next[2] = {0, 1};
     const double zero[1] = {0}, negative[1] = {-0.5}, large[1] = {-2.1}, most[1] = {-2}, tiny[2] = {1e-30, -1}, fine[2] = {1e-30, -1e-15};
     shape ball = kit_own_shape(shape_bumpy(2, 5));
-    hd_laplacian *mesh = test_laplacian(&ball, HD_LAPLACIAN_VORONOI_COT), *lap = NULL;
+    hd_laplacian *mesh = kit_own_laplacian(test_laplacian(&ball, HD_LAPLACIAN_VORONOI_COT)), *lap = NULL;
     hd_csr L = mesh->L, B = kit_own_csr(test_diagonal_csr(L.n_rows, mesh->mass));
     hd_error e;
     int64_t p;
@@ -693,15 +676,14 @@ static void op_matrices_sign(void) {
     CHECK(op_changed(one_two, two, most, 1, &e) == HD_OK);       /* singular, but not yet negative by this test */
     CHECK(op_changed(ends, next, tiny, 2, &e) == HD_ERR_NOT_POSITIVE && e.row == 0 && e.column == 1 && e.value == -1);
     CHECK(op_changed(ends, next, fine, 2, &e) == HD_OK);
-    hd_laplacian_free(mesh);
 }
 
 /* Cotangent weights summed corner by corner in any order: rows are off zero by rounding, and heat is conserved. */
 static void op_matrices_assembled(void) {
     shape s = kit_own_shape(shape_bumpy(4, 3));
     const int32_t room = 12 * s.n_tri;
-    int32_t *i = DENSE_NEW(int32_t, room), *j = DENSE_NEW(int32_t, room), f, k, order;
-    double *v = DENSE_NEW(double, room);
+    int32_t *i = KIT_NEW(int32_t, room), *j = KIT_NEW(int32_t, room), f, k, order;
+    double *v = KIT_NEW(double, room);
     hd_csr B = kit_own_csr(test_diagonal_csr(s.n, NULL));
     uint64_t seed = 8;
     for (f = 0; f < s.n; f++) s.xyz[3 * f + 2] *= 0.03;          /* slivers among them */
@@ -748,9 +730,6 @@ static void op_matrices_assembled(void) {
         }
         hd_csr_free(&L, NULL);
     }
-    free(i);
-    free(j);
-    free(v);
 }
 
 /* A leak of 4e-12 is one, whatever the rows' largest entries hide of it. */
@@ -772,8 +751,8 @@ static void op_matrices_leak(void) {
 static hd_status op_block_ratio(int32_t count, double mu, hd_laplacian **lap, hd_error *e) {
     const double w[3] = {2 / sqrt(6), 1 / sqrt(6), 1 / sqrt(6)};
     const int32_t n = 3 * count;
-    int32_t *i = DENSE_NEW(int32_t, 9 * count), *j = DENSE_NEW(int32_t, 9 * count), k;
-    double *v = DENSE_NEW(double, 9 * count);
+    int32_t *i = KIT_NEW(int32_t, 9 * count), *j = KIT_NEW(int32_t, 9 * count), k;
+    double *v = KIT_NEW(double, 9 * count);
     hd_csr L = kit_own_csr(test_path_csr(n, 0)), B;
     hd_status st;
     for (k = 0; k < 9 * count; k++) {
@@ -784,9 +763,6 @@ static hd_status op_block_ratio(int32_t count, double mu, hd_laplacian **lap, hd
     CHECK(hd_csr_from_triplets(&B, n, n, 9 * count, i, j, v, NULL, NULL) == HD_OK);
     st = hd_laplacian_matrices(lap, &L, &B, 0, NULL, e);
     hd_csr_free(&B, NULL);
-    free(i);
-    free(j);
-    free(v);
     return st;
 }
 
@@ -799,7 +775,7 @@ static void op_matrices_ratio(void) {
     hd_heat *heat;
     hd_report rep;
     hd_error e;
-    double *u = DENSE_NEW(double, 3 * 2000), exact;
+    double *u = KIT_NEW(double, 3 * 2000), exact;
     int32_t i, q;
     int64_t p;
     for (i = 0; i < N; i++)
@@ -831,7 +807,6 @@ static void op_matrices_ratio(void) {
         hd_heat_free(heat);
         hd_laplacian_free(lap);
     }
-    free(u);
 }
 
 static void test_operators(void) {

@@ -13,8 +13,7 @@
 
 typedef struct tpic_bits { const uint8_t *p; size_t n, at; int failed; } tpic_bits;    /* at: next bit */
 
-static uint32_t tpic_take(tpic_bits *b, int count)
-{
+static uint32_t tpic_take(tpic_bits *b, int count) {
     uint32_t v = 0;
     int i;
     for (i = 0; i < count; i++, b->at++) {
@@ -28,8 +27,7 @@ static uint32_t tpic_take(tpic_bits *b, int count)
 typedef struct tpic_code { int count[16], symbol[320]; } tpic_code;
 
 /* Returns how many codes of the longest length are left over: 0 for a complete code, negative for an impossible one. */
-static int tpic_code_make(tpic_code *c, const uint8_t *len, int n)
-{
+static int tpic_code_make(tpic_code *c, const uint8_t *len, int n) {
     int at[17] = {0}, i, left = 1;
     memset(c, 0, sizeof *c);
     for (i = 0; i < n; i++) c->count[len[i]]++;
@@ -39,8 +37,7 @@ static int tpic_code_make(tpic_code *c, const uint8_t *len, int n)
     return left;
 }
 
-static int tpic_decode(tpic_bits *b, const tpic_code *c)
-{
+static int tpic_decode(tpic_bits *b, const tpic_code *c) {
     int code = 0, first = 0, index = 0, len;
     for (len = 1; len < 16; len++) {
         code = code << 1 | (int)tpic_take(b, 1);
@@ -52,8 +49,7 @@ static int tpic_decode(tpic_bits *b, const tpic_code *c)
     return 0;
 }
 
-static void tpic_dynamic_codes(tpic_bits *b, tpic_code *lit, tpic_code *dist)
-{
+static void tpic_dynamic_codes(tpic_bits *b, tpic_code *lit, tpic_code *dist) {
     static const uint8_t order[19] = {16, 17, 18, 0, 8, 7, 9, 6, 10, 5, 11, 4, 12, 3, 13, 2, 14, 1, 15};
     const int n_lit = (int)tpic_take(b, 5) + 257, n_dist = (int)tpic_take(b, 5) + 1, n_len = (int)tpic_take(b, 4) + 4;
     uint8_t len[320] = {0};
@@ -74,8 +70,7 @@ static void tpic_dynamic_codes(tpic_bits *b, tpic_code *lit, tpic_code *dist)
     CHECK(tpic_code_make(dist, len + n_lit, n_dist) == 0);
 }
 
-static void tpic_fixed_codes(tpic_code *lit, tpic_code *dist)
-{
+static void tpic_fixed_codes(tpic_code *lit, tpic_code *dist) {
     uint8_t len[288];
     int i;
     for (i = 0; i < 288; i++) len[i] = (uint8_t)(i < 144 ? 8 : i < 256 ? 9 : i < 280 ? 7 : 8);
@@ -84,8 +79,7 @@ static void tpic_fixed_codes(tpic_code *lit, tpic_code *dist)
     tpic_code_make(dist, len, 30);
 }
 
-static size_t tpic_inflate_block(tpic_bits *b, const tpic_code *lit, const tpic_code *dist, uint8_t *out, size_t at, size_t room)
-{
+static size_t tpic_inflate_block(tpic_bits *b, const tpic_code *lit, const tpic_code *dist, uint8_t *out, size_t at, size_t room) {
     while (!b->failed) {
         int sym = tpic_decode(b, lit), extra, length, distance;
         if (sym == 256) return at;
@@ -110,8 +104,7 @@ static size_t tpic_inflate_block(tpic_bits *b, const tpic_code *lit, const tpic_
 }
 
 /* Inflates a zlib stream of known length, checksum included. Returns 1 when all is well. */
-static int tpic_inflate(const uint8_t *p, size_t n, uint8_t *out, size_t room)
-{
+static int tpic_inflate(const uint8_t *p, size_t n, uint8_t *out, size_t room) {
     tpic_bits b = {p, n, 16, 0};
     size_t at = 0, i;
     uint32_t a1 = 1, a2 = 0, sum = 0, last = 0;
@@ -134,16 +127,14 @@ static int tpic_inflate(const uint8_t *p, size_t n, uint8_t *out, size_t room)
 
 static uint32_t tpic_be32(const uint8_t *p) { return (uint32_t)p[0] << 24 | (uint32_t)p[1] << 16 | (uint32_t)p[2] << 8 | p[3]; }
 
-static uint32_t tpic_crc(const uint8_t *p, size_t n)
-{
+static uint32_t tpic_crc(const uint8_t *p, size_t n) {
     uint32_t c = 0xffffffffu;
     int k;
     for (; n > 0; n--, p++) for (c ^= *p, k = 0; k < 8; k++) c = c & 1u ? c >> 1 ^ 0xedb88320u : c >> 1;
     return ~c;
 }
 
-static void tpic_unfilter(uint8_t *raw, int32_t w, int32_t h)
-{
+static void tpic_unfilter(uint8_t *raw, int32_t w, int32_t h) {
     const size_t row = (size_t)w * 3 + 1;
     size_t i;
     int32_t y;
@@ -158,8 +149,7 @@ static void tpic_unfilter(uint8_t *raw, int32_t w, int32_t h)
 }
 
 /* Whether the PNG file in memory holds exactly these pixels and nothing out of order. */
-static int tpic_png_holds(const uint8_t *png, size_t n, const uint8_t *rgb, int32_t w, int32_t h)
-{
+static int tpic_png_holds(const uint8_t *png, size_t n, const uint8_t *rgb, int32_t w, int32_t h) {
     static const uint8_t signature[8] = {137, 80, 78, 71, 13, 10, 26, 10};
     const size_t row = (size_t)w * 3 + 1;
     uint8_t *raw = (uint8_t *)malloc(row * (size_t)h);
@@ -185,8 +175,7 @@ static int tpic_png_holds(const uint8_t *png, size_t n, const uint8_t *rgb, int3
     return ok;
 }
 
-static void tpic_check_png(const uint8_t *rgb, int32_t w, int32_t h, const char *what)
-{
+static void tpic_check_png(const uint8_t *rgb, int32_t w, int32_t h, const char *what) {
     uint8_t *png = NULL;
     size_t n = 0;
     CHECK_MSG(pic_png_encode(&png, &n, rgb, w, h) == PIC_OK, "%s: not encoded", what);
@@ -196,48 +185,46 @@ static void tpic_check_png(const uint8_t *rgb, int32_t w, int32_t h, const char 
 
 /* ---- PNG ---- */
 
-static void tpic_test_png_pixels(void)
-{
-    const int32_t w = 317, h = 211;
-    uint8_t *rgb = (uint8_t *)calloc((size_t)w * (size_t)h, 3);
+/* Fills n bytes; n is 3 w h. */
+static void tpic_fill(const char *what, uint8_t *rgb, int32_t n, int32_t w) {
     uint64_t seed = 5;
-    int32_t i;
-    const int32_t n = 3 * w * h;
-    CHECK(rgb != NULL);
-    if (!rgb) return;
-    tpic_check_png(rgb, w, h, "black");
-    for (i = 0; i < n; i++) rgb[i] = (uint8_t)(shape_random(&seed) & 255u);
-    tpic_check_png(rgb, w, h, "noise");
-    tpic_check_png(rgb, 1, 1, "one pixel");
-    tpic_check_png(rgb, 1, 200, "one column");
-    tpic_check_png(rgb, 300, 1, "one row");
-    for (i = 0; i < n; i++) rgb[i] = (uint8_t)(i / 3 % w + i / 3 / w * (i % 3));
-    tpic_check_png(rgb, w, h, "ramps");
-    /* Symbol counts that grow like Fibonacci numbers want codes longer than 15 bits: the limit must hold. */
-    {
-        int32_t a = 1, b = 1, k, s = 0;
-        for (i = 0; i < n; s++) {
-            for (k = 0; k < a && i < n; k++) rgb[i++] = (uint8_t)((s * 37) & 255);
-            k = a + b; a = b; b = k;
-            if (s == 22) { a = b = 1; s = 0; }
-        }
-        for (i = n - 1; i > 0; i--) {
-            const int32_t j = (int32_t)(shape_random(&seed) % (uint64_t)(i + 1));
-            const uint8_t swap = rgb[i];
-            rgb[i] = rgb[j];
-            rgb[j] = swap;
-        }
-        tpic_check_png(rgb, w, h, "skewed");
+    int32_t i, a = 1, b = 1, k, s = 0;
+    for (i = 0; i < n; i++)
+        if (*what == 'r') rgb[i] = (uint8_t)(i / 3 % w + i / 3 / w * (i % 3));
+        else rgb[i] = (uint8_t)(shape_random(&seed) & 255u);
+    if (*what == 'b') memset(rgb, 0, (size_t)n);
+    for (i = 32768 + 2; *what == 'w' && i < n; i++) rgb[i] = rgb[i - 32768 + i / 65536];
+    for (i = 0; *what == 's' && i < n; s++) {
+        for (k = 0; k < a && i < n; k++) rgb[i++] = (uint8_t)((s * 37) & 255);
+        k = a + b;
+        a = b;
+        b = k;
+        if (s == 22) a = b = s = 1;
     }
-    /* Repeats at the far end of the window, and just beyond. */
-    for (i = 0; i < n; i++) rgb[i] = i < 32768 + 2 ? (uint8_t)(shape_random(&seed) & 255u) : rgb[i - 32768 + i / 65536];
-    tpic_check_png(rgb, w, h, "window");
-    free(rgb);
+    for (i = n - 1; *what == 's' && i > 0; i--) {
+        const int32_t j = (int32_t)(shape_random(&seed) % (uint64_t)(i + 1));
+        const uint8_t swap = rgb[i];
+        rgb[i] = rgb[j];
+        rgb[j] = swap;
+    }
+}
+
+/* skewed: symbol counts that grow like Fibonacci numbers want codes longer than 15 bits, and the limit must hold.
+ * window: repeats at the far end of the window, and just beyond. */
+static void tpic_test_png_pixels(void) {
+    static const struct { const char *what; int32_t w, h; } rows[] = {
+        {"black", 317, 211}, {"noise", 317, 211}, {"noise, one pixel", 1, 1}, {"noise, one column", 1, 200}, {"noise, one row", 300, 1},
+        {"ramps", 317, 211}, {"skewed", 317, 211}, {"window", 317, 211}};
+    static uint8_t rgb[3 * 317 * 211];
+    size_t k;
+    for (k = 0; k < sizeof rows / sizeof *rows; k++) {
+        tpic_fill(rows[k].what, rgb, 3 * rows[k].w * rows[k].h, rows[k].w);
+        tpic_check_png(rgb, rows[k].w, rows[k].h, rows[k].what);
+    }
 }
 
 /* The Huffman lengths themselves: within the limit, complete, and never longer for a more frequent symbol. */
-static void tpic_test_huffman(void)
-{
+static void tpic_test_huffman(void) {
     uint32_t freq[286];
     uint8_t len[286];
     int n, i, j, k;
@@ -253,53 +240,42 @@ static void tpic_test_huffman(void)
     }
 }
 
-static void tpic_test_png_file(void)
-{
-    uint8_t rgb[2 * 2 * 3] = {255, 0, 0, 0, 255, 0, 0, 0, 255, 9, 8, 7}, back[4096];
-    char path[1024], part[1040];
-    size_t n = 0;
-    FILE *f;
-    snprintf(path, sizeof path, "%s/picture_test.png", test_tmp_dir());
-    snprintf(part, sizeof part, "%s.part", path);
+static void tpic_test_png_file(void) {
+    static const uint8_t rgb[2 * 2 * 3] = {255, 0, 0, 0, 255, 0, 0, 0, 255, 9, 8, 7};
+    char back[4096], path[1024], name[TEST_LONGEST_NAME + 1];
+    uint8_t *data = NULL;
+    size_t n, size = 0;
+    snprintf(path, sizeof path, "%s", tmio_path("picture_test.png"));
     CHECK(pic_png_write(path, rgb, 2, 2) == PIC_OK);
     CHECK(pic_png_write(path, rgb, 2, 2) == PIC_OK);    /* over an existing one */
-    f = fopen(path, "rb");
-    CHECK(f != NULL);
-    if (f) { n = fread(back, 1, sizeof back, f); fclose(f); }
-    CHECK(tpic_png_holds(back, n, rgb, 2, 2));
-    f = fopen(part, "rb");
-    CHECK(f == NULL);
-    if (f) fclose(f);
+    n = tmio_get(path, back, sizeof back);
+    CHECK(tpic_png_holds((const uint8_t *)back, n, rgb, 2, 2) && !tmio_exists(tmio_path("picture_test.png.part")));
+    CHECK(pic_png_write(path, NULL, 2, 2) == PIC_ERR_ARGUMENT && pic_png_write(path, rgb, 0, 2) == PIC_ERR_ARGUMENT);
+    CHECK(pic_png_write("", rgb, 2, 2) == PIC_ERR_ARGUMENT && pic_png_write(NULL, rgb, 1, 1) != PIC_OK);
     remove(path);
-    n = (size_t)snprintf(path, sizeof path, "%s/", test_tmp_dir());
-    memset(path + n, 'x', TEST_LONGEST_NAME);
-    memcpy(path + n + TEST_LONGEST_NAME - 4, ".png", 5);
-    CHECK(pic_png_write(path, rgb, 2, 2) == PIC_OK && remove(path) == 0);
-    snprintf(path, sizeof path, "%s/no such folder/x.png", test_tmp_dir());
-    CHECK(pic_png_write(path, rgb, 2, 2) == PIC_ERR_FILE);
-    CHECK(pic_png_write(path, rgb, 0, 2) == PIC_ERR_ARGUMENT);
-    CHECK(pic_png_write("", rgb, 2, 2) == PIC_ERR_ARGUMENT);
+    memset(name, 'x', TEST_LONGEST_NAME);
+    memcpy(name + TEST_LONGEST_NAME - 4, ".png", 5);
+    CHECK(pic_png_write(tmio_path(name), rgb, 2, 2) == PIC_OK && remove(tmio_path(name)) == 0);
     CHECK(pic_png_write("picture_test_here.png", rgb, 2, 2) == PIC_OK && remove("picture_test_here.png") == 0);
+    CHECK(pic_png_write(tmio_path("no such folder/x.png"), rgb, 2, 2) == PIC_ERR_FILE);
     CHECK(pic_png_write(test_tmp_dir(), rgb, 2, 2) == PIC_ERR_FILE);    /* a folder is there, and nothing is left beside it */
-    snprintf(part, sizeof part, "%s.part", test_tmp_dir());
-    f = fopen(part, "rb");
-    CHECK(f == NULL);
-    if (f) fclose(f);
-    CHECK(pic_png_write(path, NULL, 2, 2) == PIC_ERR_ARGUMENT);
+    snprintf(path, sizeof path, "%s.part", test_tmp_dir());
+    CHECK(!tmio_exists(path));
+    CHECK(pic_png_encode(&data, &size, NULL, 1, 1) == PIC_ERR_ARGUMENT && pic_png_encode(&data, &size, rgb, 0, 1) == PIC_ERR_ARGUMENT);
+    CHECK(pic_png_encode(&data, &size, rgb, 1, 0) == PIC_ERR_ARGUMENT && pic_png_encode(&data, &size, rgb, PIC_MAX_SIDE + 1, 1) == PIC_ERR_ARGUMENT);
+    CHECK(pic_png_encode(&data, &size, rgb, 1, PIC_MAX_SIDE + 1) == PIC_ERR_ARGUMENT && !data);
 }
 
 /* ---- colour ---- */
 
-static double tpic_lightness(const uint8_t rgb[3])
-{
+static double tpic_lightness(const uint8_t rgb[3]) {
     double lin[3];
     int c;
     for (c = 0; c < 3; c++) lin[c] = pow(rgb[c] / 255.0, 2.2);
     return cbrt(0.2126 * lin[0] + 0.7152 * lin[1] + 0.0722 * lin[2]);
 }
 
-static void tpic_test_colormaps(void)
-{
+static void tpic_test_colormaps(void) {
     int map, i;
     for (map = 0; map < PIC_MAP_COUNT; map++) {
         double last = -1, low, high;
@@ -332,26 +308,61 @@ static void tpic_test_colormaps(void)
 
 /* ---- pictures ---- */
 
-static pic_panel tpic_panel(const shape *s, const double *field)
-{
+static pic_panel tpic_panel(const shape *s, const double *field) {
     pic_panel p;
     memset(&p, 0, sizeof p);
-    p.n = s->n; p.xyz = s->xyz; p.n_tri = s->n_tri; p.tri = s->tri; p.field = field;
+    p.n = s->n;
+    p.xyz = s->xyz;
+    p.n_tri = s->n_tri;
+    p.tri = s->tri;
+    p.field = field;
     return p;
 }
 
-static pic_opts tpic_small(void)
-{
+static pic_opts tpic_small(int32_t width, int32_t height) {
     pic_opts o;
     memset(&o, 0, sizeof o);
-    o.width = 320; o.height = 240; o.supersample = 2;
-    o.title = "title"; o.subtitle = "sub"; o.label = "u";
+    o.width = width;
+    o.height = height;
+    o.supersample = 2;
+    o.title = "title";
+    o.subtitle = "sub";
+    o.label = "u";
     return o;
 }
 
+/* Draws into an image of the same test, which goes with it; rgb NULL when it fails. */
+typedef struct tpic_images { pic_image image[4]; int n; } tpic_images;
+
+static const pic_image *tpic_draw(tpic_images *all, const pic_panel *p, int32_t n, const pic_opts *o, const char *what) {
+    pic_image *const img = &all->image[all->n++];
+    const int status = n == 1 ? pic_render(img, p, o) : pic_render_grid(img, p, n, o);
+    CHECK_MSG(status == PIC_OK && img->rgb, "%s: status %d", what, status);
+    return img;
+}
+
+static void tpic_free(tpic_images *all) {
+    while (all->n > 0) pic_image_free(&all->image[--all->n]);
+}
+
+static void tpic_fine(const pic_panel *p, int32_t n, const pic_opts *o, const char *what) {
+    tpic_images one = {{{0, 0, NULL, 0}}, 0};
+    (void)tpic_draw(&one, p, n, o, what);
+    tpic_free(&one);
+}
+
+static int tpic_refused(const pic_panel *p, int32_t n, const pic_opts *o) {
+    pic_image img;
+    return (n == 1 && p ? pic_render(&img, p, o) : pic_render_grid(&img, p, n, o)) == PIC_ERR_ARGUMENT && !img.rgb;
+}
+
+static int tpic_equal(const pic_image *a, const pic_image *b) {
+    return a->rgb && b->rgb && a->width == b->width && a->height == b->height &&
+           memcmp(a->rgb, b->rgb, 3 * (size_t)a->width * (size_t)a->height) == 0;
+}
+
 /* How many pixels are clearly coloured: those of the shape and of the bar. */
-static int tpic_coloured(const pic_image *img)
-{
+static int tpic_coloured(const pic_image *img) {
     int count = 0;
     int32_t i;
     for (i = 0; i < img->width * img->height; i++) {
@@ -363,196 +374,227 @@ static int tpic_coloured(const pic_image *img)
     return count;
 }
 
-static void tpic_test_isolines(void)
-{
+static void tpic_test_isolines(void) {
     shape s = shape_grid(41, 31, 0.2);
     double *f = (double *)malloc((size_t)s.n * sizeof *f);
-    pic_opts o = tpic_small();
-    pic_image plain, lines;
-    pic_panel p;
-    int32_t i, x, crossed = 0;
-    CHECK(s.xyz && f);
-    if (!s.xyz || !f) { free(f); shape_free(&s); return; }
-    for (i = 0; i < s.n; i++) f[i] = s.xyz[3 * i];
-    p = tpic_panel(&s, f);
-    o.view_given = 1;           /* straight at the square, x to the right */
-    o.no_legend = 1;
-    o.isolines = -1;
-    CHECK(pic_render(&plain, &p, &o) == PIC_OK);
-    o.isolines = 7;
-    CHECK(pic_render(&lines, &p, &o) == PIC_OK);
-    if (plain.rgb && lines.rgb) {
-        const size_t row = (size_t)(lines.height * 11 / 20) * (size_t)lines.width * 3;
-        int inside = 0;
-        for (x = 0; x < lines.width; x++) {
-            const uint8_t *a = plain.rgb + row + 3 * x, *b = lines.rgb + row + 3 * x;
-            const int darker = a[0] + a[1] + a[2] - b[0] - b[1] - b[2] > 30;
-            CHECK(a[0] + a[1] + a[2] - b[0] - b[1] - b[2] >= -2);       /* lines only darken */
-            crossed += darker && !inside;
-            inside = darker;
+    pic_opts o = tpic_small(320, 240);
+    tpic_images all = {{{0, 0, NULL, 0}}, 0};
+    int32_t i, crossed = 0, inside = 0;
+    if (CHECK(s.xyz && f)) {
+        const pic_panel p = tpic_panel(&s, f);
+        const pic_image *plain, *lines;
+        for (i = 0; i < s.n; i++) f[i] = s.xyz[3 * i];
+        o.view_given = 1;           /* straight at the square, x to the right */
+        o.no_legend = 1;
+        o.isolines = -1;
+        plain = tpic_draw(&all, &p, 1, &o, "no lines");
+        o.isolines = 7;
+        lines = tpic_draw(&all, &p, 1, &o, "lines");
+        for (i = 0; plain->rgb && lines->rgb && i < lines->width; i++) {
+            const size_t at = 3 * ((size_t)(lines->height * 11 / 20) * (size_t)lines->width + (size_t)i);
+            const uint8_t *a = plain->rgb + at, *b = lines->rgb + at;
+            const int darker = a[0] + a[1] + a[2] - b[0] - b[1] - b[2];
+            CHECK(darker >= -2);            /* lines only darken */
+            crossed += darker > 30 && !inside;
+            inside = darker > 30;
         }
         CHECK_MSG(crossed == 7, "%d isolines instead of 7", (int)crossed);
     }
-    pic_image_free(&plain);
-    pic_image_free(&lines);
+    tpic_free(&all);
     free(f);
     shape_free(&s);
 }
 
 /* A panel of another mesh is seen from where it is warm, or with one_view from where the first is: as if it were the same mesh. */
-static void tpic_test_one_view(void)
-{
+static void tpic_test_one_view(void) {
     shape s = shape_bumpy(3, 4), copy = shape_bumpy(3, 4);
     double *f = (double *)malloc(2 * (size_t)s.n * sizeof *f);
-    pic_opts o = tpic_small();
-    pic_panel p[2];
-    pic_image same, other, one;
+    pic_opts o = tpic_small(320, 240);
+    tpic_images all = {{{0, 0, NULL, 0}}, 0};
     int32_t i;
-    CHECK(s.xyz && copy.xyz && f);
-    if (s.xyz && copy.xyz && f) {
-        const size_t size = 3 * (size_t)o.width * (size_t)o.height;
+    if (CHECK(s.xyz && copy.xyz && f)) {
+        pic_panel p[2];
+        const pic_image *same, *other, *one;
         for (i = 0; i < s.n; i++) {
             f[i] = exp(-4 * shape_distance(s.xyz + 3 * i, s.xyz));
             f[s.n + i] = exp(-4 * shape_distance(s.xyz + 3 * i, s.xyz + 9));
         }
         p[0] = tpic_panel(&s, f);
         p[1] = tpic_panel(&s, f + s.n);
-        CHECK(pic_render_grid(&same, p, 2, &o) == PIC_OK);
+        same = tpic_draw(&all, p, 2, &o, "one mesh");
         p[1].xyz = copy.xyz;
-        CHECK(pic_render_grid(&other, p, 2, &o) == PIC_OK);
+        other = tpic_draw(&all, p, 2, &o, "two meshes");
         o.one_view = 1;
-        CHECK(pic_render_grid(&one, p, 2, &o) == PIC_OK);
-        CHECK(same.rgb && other.rgb && one.rgb && memcmp(same.rgb, other.rgb, size) != 0 && memcmp(same.rgb, one.rgb, size) == 0);
-        pic_image_free(&same);
-        pic_image_free(&other);
-        pic_image_free(&one);
+        one = tpic_draw(&all, p, 2, &o, "two meshes in one view");
+        CHECK(!tpic_equal(same, other) && tpic_equal(same, one));
     }
+    tpic_free(&all);
     free(f);
     shape_free(&s);
     shape_free(&copy);
 }
 
-static void tpic_test_scale(void)
-{
-    static const double v[5] = {-1e-18, 1e-9, 1e-3, 10, (double)NAN};
+/* The scale and the ticks for values, a given range and so many decades. */
+static void tpic_scale(pic_scale *sc, pic_ticks *t, int n, const double *values, double lo, double hi, double decades) {
     pic_opts o;
     pic_panel p;
-    pic_scale sc;
-    pic_ticks t;
-    int i;
     memset(&o, 0, sizeof o);
     memset(&p, 0, sizeof p);
-    p.n = 5; p.field = v;
-    pic_scale_make(&sc, &p, 0, 1, &o);
+    p.n = n;
+    p.field = values;
+    o.lo = lo;
+    o.hi = hi;
+    o.log_decades = decades;
+    pic_scale_make(sc, &p, 0, 1, &o);
+    pic_ticks_make(t, sc);
+}
+
+static void tpic_test_scale(void) {
+    static const double v[5] = {-1e-18, 1e-9, 1e-3, 10, (double)NAN}, large[2] = {-1.7e308, 1.7e308}, near1[2] = {1, 1.0000000000000002},
+                        same[2] = {4, 4};
+    pic_scale sc;
+    pic_ticks t;
+    double decades;
+    int i;
+    tpic_scale(&sc, &t, 5, v, 0, 0, 0);
     CHECK(sc.lo == -1e-18 && sc.hi == 10 && !sc.is_log && sc.n_levels >= 7 && sc.n_levels <= 20);
     CHECK(fabs(pic_scale_at(&sc, 5) - 0.5) < 1e-12 && !pic_finite(pic_scale_at(&sc, (double)NAN)));
-    o.log_decades = 6;
-    pic_scale_make(&sc, &p, 0, 1, &o);
+    tpic_scale(&sc, &t, 5, v, 0, 0, 6);
     CHECK(sc.is_log && fabs(sc.lo - 1e-5) < 1e-12 && pic_scale_at(&sc, -1) < 0 && fabs(pic_scale_at(&sc, 1e-2) - 0.5) < 1e-9);
-    pic_ticks_make(&t, &sc);
     for (i = 0; i < t.n; i++) if (t.text[i][0]) CHECK(strncmp(t.text[i], "10^", 3) == 0);
     CHECK(t.n >= 7);
-    o.log_decades = 0;
+    tpic_scale(&sc, &t, 2, large, 0, 0, 0);
+    CHECK(fabs(pic_scale_at(&sc, 0) - 0.5) < 1e-9);
+    tpic_scale(&sc, &t, 2, near1, 0, 0, 0);
+    tpic_scale(&sc, &t, 2, same, 0, 0, 0);
+    CHECK(sc.constant && sc.n_levels == 0 && fabs(pic_scale_at(&sc, 4) - 0.5) < 1e-15);
+    tpic_scale(&sc, &t, 2, near1, -1, 10, 6);       /* logarithms begin above zero */
+    CHECK(sc.lo > 0 && sc.hi == 10);
     for (i = -300; i <= 300; i += 50) {         /* ticks and levels for ranges of every size */
-        double w[2];
-        w[0] = -pow(10, i); w[1] = 3 * pow(10, i);
-        p.n = 2; p.field = w;
-        pic_scale_make(&sc, &p, 0, 1, &o);
-        pic_ticks_make(&t, &sc);
+        const double w[2] = {-pow(10, i), 3 * pow(10, i)};
+        tpic_scale(&sc, &t, 2, w, 0, 0, 0);
         CHECK_MSG(t.n >= 4 && t.n <= 12, "10^%d: %d ticks", i, t.n);
         CHECK_MSG(sc.n_levels >= 7 && sc.n_levels <= 20, "10^%d: %d levels", i, (int)sc.n_levels);
     }
-    {
-        const double w[2] = {-1.7e308, 1.7e308}, near1[2] = {1, 1.0000000000000002}, same[2] = {4, 4};
-        p.n = 2; p.field = w;
-        pic_scale_make(&sc, &p, 0, 1, &o);
-        pic_ticks_make(&t, &sc);
-        CHECK(fabs(pic_scale_at(&sc, 0) - 0.5) < 1e-9);
-        p.field = near1;
-        pic_scale_make(&sc, &p, 0, 1, &o);
-        pic_ticks_make(&t, &sc);
-        p.field = same;
-        pic_scale_make(&sc, &p, 0, 1, &o);
-        CHECK(sc.constant && sc.n_levels == 0 && fabs(pic_scale_at(&sc, 4) - 0.5) < 1e-15);
+    for (decades = 0.25; decades < 300; decades *= 1.5) {       /* from a part of a decade to hundreds */
+        const double lo = 1e30 / pow(10, decades);
+        tpic_scale(&sc, &t, 2, near1, lo, 1e30, 400);
+        CHECK_MSG(sc.is_log && fabs(sc.lo / lo - 1) < 1e-9, "%g decades", decades);
+        CHECK_MSG(t.n >= 2 && t.n <= PIC_MAX_TICKS, "%g decades: %d ticks", decades, t.n);
+        for (i = 1; i < t.n; i++) CHECK(t.at[i] > t.at[i - 1]);
     }
+    for (i = -7; i < 8; i++) {                   /* numbers without factor from 1e-3 to 1e4 */
+        tpic_scale(&sc, &t, 2, near1, 0, 3 * pow(10, i), 0);
+        CHECK_MSG((t.factor[0] != 0) == (i >= 5 || i <= -4) && t.n >= 4, "10^%d: '%s'", i, t.factor);
+    }
+    CHECK(fabs(pic_nice_step(10) - 10) < 1e-12 && fabs(pic_nice_step(0.0011) - 0.002) < 1e-15);
 }
 
-static void tpic_render_ok(const pic_panel *p, int32_t n, const pic_opts *o, const char *what)
-{
-    pic_image img;
-    const int status = pic_render_grid(&img, p, n, o);
-    CHECK_MSG(status == PIC_OK && img.rgb, "%s: status %d", what, status);
-    pic_image_free(&img);
-}
-
-static void tpic_test_degenerate(void)
-{
+/* Places, values, sizes and options of every kind: each gives a picture. */
+static void tpic_test_degenerate(void) {
     static const double flat[9] = {0, 0, 0, 1, 0, 0, 2, 0, 0}, big[9] = {-1.7e308, 0, 0, 1.7e308, 0, 0, 0, 1.7e308, 1},
                         tiny[9] = {0, 0, 0, 1e-300, 0, 0, 0, 1e-300, 0}, here[9] = {5, 5, 5, 5, 5, 5, 5, 5, 5}, same[3] = {2, 2, 2};
     const double broken[9] = {0, 0, 0, 1, (double)NAN, 0, 0, 1, HUGE_VAL}, values[3] = {(double)NAN, HUGE_VAL, -HUGE_VAL};
     static const int32_t one[3] = {0, 1, 2}, wild[6] = {0, 1, 7, -1, 0, 0}, marks[3] = {0, 99, -4};
-    const double *const places[5] = {flat, big, tiny, broken, here};
-    pic_opts o = tpic_small();
-    pic_panel p, four[5];
-    pic_image img;
-    int i, faces, log_on;
+    const double *const places[5] = {flat, big, tiny, broken, here}, *const fields[4] = {NULL, values, same, flat};
+    pic_opts o = tpic_small(160, 120);
+    pic_panel p, five[5];
+    int i, k;
     memset(&p, 0, sizeof p);
-    o.width = 160; o.height = 120;
-    tpic_render_ok(&p, 1, &o, "nothing");
-    for (i = 0; i < 5; i++) for (faces = 0; faces < 2; faces++) for (log_on = 0; log_on < 2; log_on++) {
-        p.n = 3; p.xyz = places[i]; p.n_tri = faces; p.tri = one; p.markers = marks; p.n_markers = 3;
-        o.log_decades = log_on ? 5 : 0;
-        p.field = NULL;
-        tpic_render_ok(&p, 1, &o, "no field");
-        p.field = values;
-        tpic_render_ok(&p, 1, &o, "no finite value");
-        p.field = same;
-        tpic_render_ok(&p, 1, &o, "constant");
-        p.field = flat;
-        tpic_render_ok(&p, 1, &o, "odd places");
+    tpic_fine(&p, 1, &o, "nothing");
+    p.n = 3;
+    p.tri = one;
+    p.markers = marks;
+    p.n_markers = 3;
+    for (i = 0; i < 5; i++)
+        for (k = 0; k < 16; k++) {
+            p.xyz = places[i];
+            p.n_tri = k & 1;
+            o.log_decades = k & 2 ? 5 : 0;
+            p.field = fields[k >> 2];
+            tpic_fine(&p, 1, &o, "odd places and values");
+        }
+    p.xyz = tiny;
+    p.n_tri = 2;
+    p.tri = wild;
+    tpic_fine(&p, 1, &o, "indices out of range");
+    for (i = 0; i < 5; i++) {
+        five[i] = p;
+        five[i].caption = i % 2 ? "caption" : NULL;
     }
-    p.xyz = tiny; p.n_tri = 2; p.tri = wild;
-    tpic_render_ok(&p, 1, &o, "indices out of range");
-    for (i = 0; i < 5; i++) { four[i] = p; four[i].caption = i % 2 ? "caption" : NULL; }
-    tpic_render_ok(four, 5, &o, "five panels");
+    tpic_fine(five, 5, &o, "five panels");
     o.own_scale = 1;
-    tpic_render_ok(four, 5, &o, "five panels, own scales");
+    tpic_fine(five, 5, &o, "five panels, own scales");
+    tpic_fine(five, 1, &o, "one panel, own scale");
+    five[1].field = NULL;
+    tpic_fine(five, 2, &o, "own scales, one without a field");
     for (i = 1; i < 40; i += 3) {       /* too small for anything to fit */
-        o.width = i; o.height = 1 + i / 2;
-        tpic_render_ok(four, 5, &o, "thumbnail");
+        o.width = i;
+        o.height = 1 + i / 2;
+        tpic_fine(five, 5, &o, "thumbnail");
     }
-    o.width = 20000;
-    CHECK(pic_render(&img, &p, &o) == PIC_ERR_ARGUMENT && !img.rgb);
-    o.width = 0;
-    CHECK(pic_render_grid(&img, &p, 0, &o) == PIC_ERR_ARGUMENT && !img.rgb);
-    p.xyz = NULL;
-    CHECK(pic_render(&img, &p, &o) == PIC_ERR_ARGUMENT && !img.rgb);
+    for (i = 1; i < 10; i += 4) {
+        o = tpic_small(120, 90);
+        o.columns = i;
+        tpic_fine(five, 3, &o, "columns");
+    }
+    o.title = NULL;
+    o.label = "";
+    o.supersample = 20;
+    tpic_fine(five, 1, &o, "a subtitle alone");
+    p.n_tri = 1;
+    tpic_fine(&p, 1, NULL, "no options");
+}
+
+static void tpic_test_refused(void) {
+    static const double xyz[9] = {0, 0, 0, 0, 1, 0, 0, 0, 1};
+    static const int32_t tri[3] = {0, 1, 2};
+    /* n, n_tri, markers; whether there are places and triangles; width, height; panels */
+    static const struct { int32_t n, n_tri, n_markers; int xyz, tri; int32_t width, height, panels; } rows[] = {
+        {3, 1, 0, 1, 1, 20000, 90, 1}, {3, 1, 0, 1, 1, 120, PIC_MAX_SIDE + 1, 1}, {3, 1, 0, 1, 1, 120, 90, 0}, {3, 1, 0, 0, 1, 120, 90, 1},
+        {3, 1, 0, 1, 0, 120, 90, 1}, {-1, 1, 0, 1, 1, 120, 90, 1}, {3, -1, 0, 1, 1, 120, 90, 1}, {3, 1, -1, 1, 1, 120, 90, 1}};
+    size_t k;
+    for (k = 0; k < sizeof rows / sizeof *rows; k++) {
+        const pic_opts o = tpic_small(rows[k].width, rows[k].height);
+        pic_panel p;
+        memset(&p, 0, sizeof p);
+        p.n = rows[k].n;
+        p.n_tri = rows[k].n_tri;
+        p.n_markers = rows[k].n_markers;
+        p.xyz = rows[k].xyz ? xyz : NULL;
+        p.tri = rows[k].tri ? tri : NULL;
+        CHECK_MSG(tpic_refused(&p, rows[k].panels, &o), "row %d", (int)k);
+        CHECK_MSG(k < 3 || tpic_refused(&p, rows[k].panels, NULL), "row %d without options", (int)k);
+    }
+    CHECK(tpic_refused(NULL, 1, NULL));
 }
 
 /* Are two pictures the same? */
-static int tpic_same(const pic_panel *a, const pic_opts *oa, const pic_panel *b, const pic_opts *ob)
-{
-    pic_image x, y;
-    const int fine = (pic_render(&x, a, oa) == PIC_OK) + (pic_render(&y, b, ob) == PIC_OK) == 2;
-    const int same = fine && x.width == y.width && x.height == y.height && memcmp(x.rgb, y.rgb, 3 * (size_t)x.width * (size_t)x.height) == 0;
-    CHECK(fine);
-    pic_image_free(&x);
-    pic_image_free(&y);
+static int tpic_same(const pic_panel *a, const pic_opts *oa, const pic_panel *b, const pic_opts *ob) {
+    tpic_images all = {{{0, 0, NULL, 0}}, 0};
+    const pic_image *const x = tpic_draw(&all, a, 1, oa, "one"), *const y = tpic_draw(&all, b, 1, ob, "other");
+    const int same = tpic_equal(x, y);
+    tpic_free(&all);
     return same;
 }
 
 /* Triangles with a corner twice or with two corners in one place draw nothing; a view that is no number is as none;
- * a factor stands above the ticks of large values. */
-static void tpic_test_rare(void)
-{
+ * a factor stands above the ticks of large values; larger discs cover more; only texts with letters are seen. */
+static void tpic_test_rare(void) {
     static const double xyz[12] = {0, 0, 0, 1, 0, 0.2, 0, 1, 0, 0, 1, 0}, f[4] = {0, 1, 2, 2}, large[4] = {0, 1e6, 2e6, 2e6};
     static const int32_t tri[15] = {0, 1, 2, 0, 0, 1, 0, 1, 1, 1, 0, 1, 1, 2, 3};
-    pic_opts o = tpic_small(), other;
-    pic_panel p, q, two[2];
-    pic_image img;
+    shape s = shape_icosphere(1);
+    pic_opts o = tpic_small(120, 90), other;
+    pic_panel p, q;
+    tpic_images all = {{{0, 0, NULL, 0}}, 0};
+    const pic_image *img;
+    int i, seen[2] = {0, 0};
     memset(&p, 0, sizeof p);
-    o.width = 120; o.height = 90;
-    p.n = 4; p.xyz = xyz; p.n_tri = 1; p.tri = tri; p.field = f;
+    p.n = 4;
+    p.xyz = xyz;
+    p.n_tri = 1;
+    p.tri = tri;
+    p.field = f;
     q = p;
     q.n_tri = 5;
     o.view_given = 1;
@@ -570,53 +612,44 @@ static void tpic_test_rare(void)
     q = p;
     q.field = large;
     CHECK(!tpic_same(&p, &o, &q, &o));
-    other = o;
-    other.own_scale = 1;
-    tpic_render_ok(&p, 1, &other, "one panel, own scale");
-    two[0] = two[1] = p;
-    two[1].field = NULL;
-    tpic_render_ok(two, 2, &other, "own scales, one without a field");
-    q = p;
-    q.n = -1;
-    CHECK(pic_render(&img, &q, &o) == PIC_ERR_ARGUMENT);
-    q.n = 4;
-    q.n_tri = -1;
-    CHECK(pic_render(&img, &q, &o) == PIC_ERR_ARGUMENT);
-    q.n_tri = 1;
-    q.n_markers = -1;
-    CHECK(pic_render(&img, &q, &o) == PIC_ERR_ARGUMENT);
-    CHECK(fabs(pic_nice_step(10) - 10) < 1e-12 && fabs(pic_nice_step(0.0011) - 0.002) < 1e-15);
-    if (pic_render(&img, &p, &o) == PIC_OK) {
-        uint8_t *const before = (uint8_t *)malloc(3 * 120 * 90);
-        if (before) {
-            memcpy(before, img.rgb, 3 * 120 * 90);
-            pic_text(&img, "nothing", 10, 10, 0, 0, 1, pic_ink);
-            pic_text(&img, NULL, 10, 10, 10, 0, 1, pic_ink);
-            CHECK(memcmp(before, img.rgb, 3 * 120 * 90) == 0);
-            pic_text(&img, "all", 10, 50, 10, 0, 1, pic_ink);
-            CHECK(memcmp(before, img.rgb, 3 * 120 * 90) != 0);
-        }
-        free(before);
-        pic_image_free(&img);
+    img = tpic_draw(&all, &p, 1, &o, "before");
+    pic_text(&all.image[0], "nothing", 10, 10, 0, 0, 1, pic_ink);
+    pic_text(&all.image[0], NULL, 10, 10, 10, 0, 1, pic_ink);
+    CHECK(tpic_equal(img, tpic_draw(&all, &p, 1, &o, "no text")));
+    pic_text(&all.image[0], "all", 10, 50, 10, 0, 1, pic_ink);
+    CHECK(!tpic_equal(img, &all.image[1]));
+    tpic_free(&all);
+    q = tpic_panel(&s, s.xyz);
+    q.n_tri = 0;
+    o.supersample = 1;
+    o.title = NULL;
+    o.label = "";
+    for (i = 0; i < 2; i++) {
+        int32_t k;
+        o.point_radius = i ? 1e9 : 0.05;
+        img = tpic_draw(&all, &q, 1, &o, "discs");
+        for (k = 0; img->rgb && k < img->width * img->height; k++) seen[i] += img->rgb[3 * k] < 200;
     }
+    CHECK_MSG(seen[1] > 2 * seen[0] && seen[0] > 20, "%d and %d pixels", seen[0], seen[1]);
+    tpic_free(&all);
+    shape_free(&s);
 }
 
 /* Letters beyond ASCII, superscripts and subscripts: by the widths of texts. */
-static void tpic_test_letters(void)
-{
-    static const char *const dashes[3] = {"\xe2\x80\x93", "\xe2\x80\x94", "\xe2\x88\x92"};
+static void tpic_test_letters(void) {
+    static const char *const dashes[3] = {"\xe2\x80\x93", "\xe2\x80\x94", "\xe2\x88\x92"}, *const signs[2] = {"\xc3\x97", "\xc2\xb7"};
     static const char *const unknown[6] = {"\xc3\xa9", "\xc2\xa0", "\xe2\x80\x9c", "\xe2\x88\x91", "\xe2\x82\xac", "\xf0\x9d\x84\x9e"};
     static const char *const plain[13] = {"x^", "x^y", "x^-", "x_", "heat_on", "on_t", "k_t_", "x^:", "_x", "a_:", "a_[", "a_{", "@_a"};
+    static const char *const small[8][2] = {{"10^-3", "10-3"}, {"h^2", "h2"}, {"k_t", "kt"}, {"a k_T 0", "a kT 0"}, {"h^2:", "h2:"},
+                                            {"a_1:", "a1:"}, {"a_t[", "at["}, {"{a_t", "{at"}};
     const double box = pic_text_width("\xff", 10);
     int i;
     for (i = 0; i < 3; i++) CHECK(pic_text_width(dashes[i], 10) == pic_text_width(dashes[0], 10) && pic_text_width(dashes[i], 10) != box);
-    CHECK(pic_text_width("\xc3\x97", 10) > 0 && pic_text_width("\xc2\xb7", 10) > 0 && pic_text_width("\xc2\xb7", 10) != box);
+    for (i = 0; i < 2; i++) CHECK(pic_text_width(signs[i], 10) > 0);
+    CHECK(pic_text_width(signs[1], 10) != box);
     for (i = 0; i < 6; i++) CHECK_MSG(pic_text_width(unknown[i], 10) == box, "letter %d", i);
     CHECK(pic_text_width("\t\x7f", 10) == pic_text_width("  ", 10));
-    CHECK(pic_text_width("10^-3", 10) < pic_text_width("10-3", 10) && pic_text_width("h^2", 10) < pic_text_width("h2", 10));
-    CHECK(pic_text_width("k_t", 10) < pic_text_width("kt", 10) && pic_text_width("a k_T 0", 10) < pic_text_width("a kT 0", 10));
-    CHECK(pic_text_width("h^2:", 10) < pic_text_width("h2:", 10) && pic_text_width("a_1:", 10) < pic_text_width("a1:", 10));
-    CHECK(pic_text_width("a_t[", 10) < pic_text_width("at[", 10) && pic_text_width("{a_t", 10) < pic_text_width("{at", 10));
+    for (i = 0; i < 8; i++) CHECK_MSG(pic_text_width(small[i][0], 10) < pic_text_width(small[i][1], 10), "%s", small[i][0]);
     for (i = 0; i < 13; i++) {                    /* every sign is drawn: as wide as its letters one by one */
         double sum = 0;
         const char *c;
@@ -628,125 +661,42 @@ static void tpic_test_letters(void)
     }
 }
 
-/* Scales whose range is given, and ticks of logarithmic ones from a part of a decade to hundreds. */
-static void tpic_test_given_scale(void)
-{
-    static const double v[2] = {1, 2};
-    pic_opts o;
-    pic_panel p;
-    pic_scale sc;
-    pic_ticks t;
-    double decades;
-    int i;
-    memset(&o, 0, sizeof o);
-    memset(&p, 0, sizeof p);
-    p.n = 2; p.field = v;
-    o.lo = -1; o.hi = 10; o.log_decades = 6;     /* logarithms begin above zero */
-    pic_scale_make(&sc, &p, 0, 1, &o);
-    CHECK(sc.lo > 0 && sc.hi == 10);
-    for (decades = 0.25; decades < 300; decades *= 1.5) {
-        o.hi = 1e30; o.lo = o.hi / pow(10, decades); o.log_decades = 400;
-        pic_scale_make(&sc, &p, 0, 1, &o);
-        pic_ticks_make(&t, &sc);
-        CHECK_MSG(sc.is_log && fabs(sc.lo / o.lo - 1) < 1e-9, "%g decades", decades);
-        CHECK_MSG(t.n >= 2 && t.n <= PIC_MAX_TICKS, "%g decades: %d ticks", decades, t.n);
-        for (i = 1; i < t.n; i++) CHECK(t.at[i] > t.at[i - 1]);
-    }
-    o.log_decades = 0;
-    for (i = -7; i < 8; i++) {                   /* numbers without factor from 1e-3 to 1e4 */
-        o.lo = 0; o.hi = 3 * pow(10, i);
-        pic_scale_make(&sc, &p, 0, 1, &o);
-        pic_ticks_make(&t, &sc);
-        CHECK_MSG((t.factor[0] != 0) == (i >= 5 || i <= -4) && t.n >= 4, "10^%d: '%s'", i, t.factor);
-    }
-}
-
-/* What options say of the layout, and what is refused. */
-static void tpic_test_taste(void)
-{
-    static const double wall[9] = {0, 0, 0, 0, 1, 0, 0, 0, 1};
-    static const int32_t one[3] = {0, 1, 2};
-    shape s = shape_icosphere(1);
-    pic_opts o = tpic_small();
-    pic_panel three[3];
-    pic_image img;
-    uint8_t *data = NULL, rgb[3] = {1, 2, 3};
-    size_t size = 0;
-    int i, seen[2] = {0, 0};
-    for (i = 0; i < 3; i++) three[i] = tpic_panel(&s, s.xyz);
-    o.width = 120; o.height = 90;
-    for (i = 1; i < 10; i += 4) {
-        o.columns = i;
-        tpic_render_ok(three, 3, &o, "columns");
-    }
-    o.title = NULL; o.label = ""; o.supersample = 20; o.view_given = 1; o.azimuth = (double)NAN;
-    tpic_render_ok(three, 1, &o, "a subtitle alone");
-    three[1].n_tri = 0;
-    for (i = 0; i < 2; i++) {                    /* larger discs cover more */
-        int32_t k;
-        o.point_radius = i ? 1e9 : 0.05;
-        o.supersample = 1;
-        if (!CHECK(pic_render(&img, &three[1], &o) == PIC_OK)) continue;
-        for (k = 0; k < img.width * img.height; k++) seen[i] += img.rgb[3 * k] < 200;
-        pic_image_free(&img);
-    }
-    CHECK_MSG(seen[1] > 2 * seen[0] && seen[0] > 20, "%d and %d pixels", seen[0], seen[1]);
-    memset(three, 0, sizeof three);
-    three[0].n = 3; three[0].xyz = wall; three[0].n_tri = 1; three[0].tri = one;
-    tpic_render_ok(three, 1, NULL, "no options");
-    three[0].n_markers = -1;
-    CHECK(pic_render(&img, three, NULL) == PIC_ERR_ARGUMENT && !img.rgb);
-    three[0].n_markers = 0; three[0].tri = NULL;
-    CHECK(pic_render(&img, three, NULL) == PIC_ERR_ARGUMENT);
-    three[0].n = -1;
-    CHECK(pic_render(&img, three, NULL) == PIC_ERR_ARGUMENT);
-    o.height = PIC_MAX_SIDE + 1;
-    CHECK(pic_render_grid(&img, three, 0, &o) == PIC_ERR_ARGUMENT && pic_render_grid(&img, NULL, 1, NULL) == PIC_ERR_ARGUMENT);
-    CHECK(pic_png_encode(&data, &size, NULL, 1, 1) == PIC_ERR_ARGUMENT && pic_png_encode(&data, &size, rgb, 0, 1) == PIC_ERR_ARGUMENT);
-    CHECK(pic_png_encode(&data, &size, rgb, 1, 0) == PIC_ERR_ARGUMENT && pic_png_encode(&data, &size, rgb, PIC_MAX_SIDE + 1, 1) == PIC_ERR_ARGUMENT);
-    CHECK(pic_png_encode(&data, &size, rgb, 1, PIC_MAX_SIDE + 1) == PIC_ERR_ARGUMENT && !data);
-    CHECK(pic_png_write(NULL, rgb, 1, 1) != PIC_OK);
-    shape_free(&s);
-}
-
 /* A sphere fills about as much of the picture as it should, as faces and as points, whichever way its faces are turned. */
-static void tpic_test_picture_of_sphere(void)
-{
+static void tpic_test_picture_of_sphere(void) {
     shape s = shape_icosphere(3);
     double *f = (double *)malloc((size_t)s.n * sizeof *f);
-    pic_opts o = tpic_small();
-    pic_panel p;
-    pic_image a, b, c;
+    pic_opts o = tpic_small(320, 240);
+    tpic_images all = {{{0, 0, NULL, 0}}, 0};
     uint64_t seed = 3;
     int32_t i;
-    CHECK(s.xyz && f);
-    if (!s.xyz || !f) { free(f); shape_free(&s); return; }
-    for (i = 0; i < s.n; i++) f[i] = s.xyz[3 * i];
-    p = tpic_panel(&s, f);
-    o.title = o.subtitle = NULL;
-    o.isolines = -1;
-    CHECK(pic_render(&a, &p, &o) == PIC_OK);
-    p.n_tri = 0;
-    CHECK(pic_render(&b, &p, &o) == PIC_OK);
-    p.n_tri = s.n_tri;
-    for (i = 0; i < s.n_tri; i++) if (shape_random(&seed) & 1u) {
-        const int32_t swap = s.tri[3 * i];
-        s.tri[3 * i] = s.tri[3 * i + 1];
-        s.tri[3 * i + 1] = swap;
+    if (CHECK(s.xyz && f)) {
+        pic_panel p = tpic_panel(&s, f);
+        const pic_image *faces, *points, *turned;
+        for (i = 0; i < s.n; i++) f[i] = s.xyz[3 * i];
+        o.title = o.subtitle = NULL;
+        o.isolines = -1;
+        faces = tpic_draw(&all, &p, 1, &o, "faces");
+        p.n_tri = 0;
+        points = tpic_draw(&all, &p, 1, &o, "points");
+        p.n_tri = s.n_tri;
+        for (i = 0; i < s.n_tri; i++)
+            if (shape_random(&seed) & 1u) {
+                const int32_t swap = s.tri[3 * i];
+                s.tri[3 * i] = s.tri[3 * i + 1];
+                s.tri[3 * i + 1] = swap;
+            }
+        turned = tpic_draw(&all, &p, 1, &o, "turned");
+        if (faces->rgb && points->rgb && turned->rgb) {
+            const double disc = 3.14159 / 4 * pow(0.86 * 0.95 * 240, 2), seen = tpic_coloured(faces), seen_points = tpic_coloured(points);
+            int64_t differ = 0;
+            for (i = 0; i < 3 * faces->width * faces->height; i++) differ += abs(faces->rgb[i] - turned->rgb[i]) > 3;
+            CHECK_MSG(seen > 0.7 * disc && seen < 1.3 * disc, "sphere: %g coloured pixels, disc %g", seen, disc);
+            CHECK_MSG(seen_points > 0.7 * seen && seen_points < 1.3 * seen, "points: %g coloured pixels, faces %g", seen_points, seen);
+            CHECK_MSG(differ < faces->width, "orientation of faces shows in %d bytes", (int)differ);
+            tpic_check_png(faces->rgb, faces->width, faces->height, "a picture");
+        }
     }
-    CHECK(pic_render(&c, &p, &o) == PIC_OK);
-    if (a.rgb && b.rgb && c.rgb) {
-        const double disc = 3.14159 / 4 * pow(0.86 * 0.95 * 240, 2), seen = tpic_coloured(&a), seen_b = tpic_coloured(&b);
-        int64_t differ = 0;
-        for (i = 0; i < 3 * a.width * a.height; i++) differ += abs(a.rgb[i] - c.rgb[i]) > 3;
-        CHECK_MSG(seen > 0.7 * disc && seen < 1.3 * disc, "sphere: %g coloured pixels, disc %g", seen, disc);
-        CHECK_MSG(seen_b > 0.7 * seen && seen_b < 1.3 * seen, "points: %g coloured pixels, faces %g", seen_b, seen);
-        CHECK_MSG(differ < a.width, "orientation of faces shows in %d bytes", (int)differ);
-        tpic_check_png(a.rgb, a.width, a.height, "a picture");
-    }
-    pic_image_free(&a);
-    pic_image_free(&b);
-    pic_image_free(&c);
+    tpic_free(&all);
     free(f);
     shape_free(&s);
 }
@@ -755,24 +705,21 @@ static void tpic_test_picture_of_sphere(void)
 
 typedef struct tpic_edge { int32_t a, b, way; } tpic_edge;
 
-static int tpic_compare_edges(const void *pa, const void *pb)
-{
+static int tpic_compare_edges(const void *pa, const void *pb) {
     const tpic_edge *x = (const tpic_edge *)pa, *y = (const tpic_edge *)pb;
     if (x->a != y->a) return x->a < y->a ? -1 : 1;
     if (x->b != y->b) return x->b < y->b ? -1 : 1;
     return x->way - y->way;
 }
 
-static int32_t tpic_root(int32_t *parent, int32_t v)
-{
+static int32_t tpic_root(int32_t *parent, int32_t v) {
     while (parent[v] != v) v = parent[v] = parent[parent[v]];
     return v;
 }
 
 /* Checks that s is manifold and consistently oriented, with so many border edges, pieces and that Euler characteristic, no
  * vertex unused, and volume at least `volume`. */
-static void tpic_check_shape(const shape *s, const char *what, int euler, int border, int pieces, double volume)
-{
+static void tpic_check_shape(const shape *s, const char *what, int euler, int border, int pieces, double volume) {
     tpic_edge *e = (tpic_edge *)malloc((size_t)s->n_tri * 3 * sizeof *e);
     int32_t *parent = (int32_t *)malloc((size_t)s->n * sizeof *parent), *faces = (int32_t *)calloc((size_t)s->n, sizeof *faces);
     int32_t i, n_edges = 0, n_border = 0, n_pieces = 0, wrong = 0, unused = 0;
@@ -815,40 +762,37 @@ static void tpic_check_shape(const shape *s, const char *what, int euler, int bo
     free(faces);
 }
 
-static void tpic_test_simple_shapes(void)
-{
+static void tpic_test_simple_shapes(void) {
     static const double offset[3] = {5, 0, 0};
-    shape a = shape_icosphere(0), b, c;
-    tpic_check_shape(&a, "icosahedron", 2, 0, 1, 2.5);
-    CHECK(a.n == 12 && a.n_tri == 20);
-    b = shape_icosphere(4);
-    tpic_check_shape(&b, "icosphere", 2, 0, 1, 4.1);
-    CHECK(b.n == 2562 && b.n_tri == 5120);
-    c = shape_disjoint(&a, &b, offset);
-    tpic_check_shape(&c, "two balls", 4, 0, 2, 6.6);
-    shape_free(&a); shape_free(&b); shape_free(&c);
-    a = shape_torus(40, 20, 1, 0.4);
-    tpic_check_shape(&a, "torus", 0, 0, 1, 2.9);
-    b = shape_bumpy(4, 11);
-    tpic_check_shape(&b, "bumpy", 2, 0, 1, 2);
-    c = shape_bumpy(4, 11);
-    CHECK(b.n == c.n && b.xyz && c.xyz && memcmp(b.xyz, c.xyz, (size_t)b.n * 24) == 0);
-    shape_free(&a); shape_free(&b); shape_free(&c);
-    a = shape_grid(9, 6, 0.4);
-    tpic_check_shape(&a, "grid", 1, 2 * 8 + 2 * 5, 1, 0);
-    b = shape_cylinder(12, 5, 1, 2);
-    tpic_check_shape(&b, "cylinder", 0, 24, 1, 0);
-    shape_free(&a); shape_free(&b);
-    a = shape_torus(2, 5, 1, 0.4); CHECK(!a.xyz && a.n == 0);
-    a = shape_grid(1, 5, 0); CHECK(!a.xyz && a.n == 0);
-    a = shape_icosphere(-1); CHECK(!a.xyz && a.n == 0);
-    a = shape_icosphere(11); CHECK(!a.xyz && a.n == 0);
-    a = shape_cylinder(3, 1, 1, 1); CHECK(!a.xyz && a.n == 0);
+    shape all[8], none[5];
+    static const struct { const char *name; int euler, border, pieces; double volume; } rows[] = {
+        {"icosahedron", 2, 0, 1, 2.5}, {"icosphere", 2, 0, 1, 4.1}, {"two balls", 4, 0, 2, 6.6}, {"torus", 0, 0, 1, 2.9}, {"bumpy", 2, 0, 1, 2},
+        {"bumpy again", 2, 0, 1, 2}, {"grid", 1, 2 * 8 + 2 * 5, 1, 0}, {"cylinder", 0, 24, 1, 0}};
+    size_t k;
+    all[0] = shape_icosphere(0);
+    all[1] = shape_icosphere(4);
+    all[2] = shape_disjoint(&all[0], &all[1], offset);
+    all[3] = shape_torus(40, 20, 1, 0.4);
+    all[4] = shape_bumpy(4, 11);
+    all[5] = shape_bumpy(4, 11);
+    all[6] = shape_grid(9, 6, 0.4);
+    all[7] = shape_cylinder(12, 5, 1, 2);
+    none[0] = shape_torus(2, 5, 1, 0.4);
+    none[1] = shape_grid(1, 5, 0);
+    none[2] = shape_icosphere(-1);
+    none[3] = shape_icosphere(11);
+    none[4] = shape_cylinder(3, 1, 1, 1);
+    for (k = 0; k < sizeof none / sizeof *none; k++) CHECK_MSG(!none[k].xyz && none[k].n == 0, "shape %d", (int)k);
+    CHECK(all[0].n == 12 && all[0].n_tri == 20 && all[1].n == 2562 && all[1].n_tri == 5120);
+    CHECK(all[4].n == all[5].n && all[4].xyz && all[5].xyz && memcmp(all[4].xyz, all[5].xyz, (size_t)all[4].n * 24) == 0);
+    for (k = 0; k < sizeof rows / sizeof *rows; k++) {
+        tpic_check_shape(&all[k], rows[k].name, rows[k].euler, rows[k].border, rows[k].pieces, rows[k].volume);
+        shape_free(&all[k]);
+    }
 }
 
 /* All triangles of a grid look up, also the jittered ones; the random generator gives its published first number. */
-static void tpic_test_grid_upright(void)
-{
+static void tpic_test_grid_upright(void) {
     shape s = shape_grid(30, 20, 0.3);
     uint64_t seed = 0;
     int32_t i, bad = 0;
@@ -862,8 +806,7 @@ static void tpic_test_grid_upright(void)
     CHECK(shape_random(&seed) == 0xe220a8397b1dcdafu);
 }
 
-static void tpic_test_demo(void)
-{
+static void tpic_test_demo(void) {
     static const int32_t sizes[3] = {2000, 0, 36000};
     int k, c;
     for (k = 0; k < 3; k++) {
@@ -886,8 +829,7 @@ static void tpic_test_demo(void)
     }
 }
 
-static void test_picture(void)
-{
+static void test_picture(void) {
     tpic_test_png_pixels();
     tpic_test_huffman();
     tpic_test_png_file();
@@ -896,10 +838,9 @@ static void test_picture(void)
     tpic_test_isolines();
     tpic_test_one_view();
     tpic_test_degenerate();
+    tpic_test_refused();
     tpic_test_rare();
     tpic_test_letters();
-    tpic_test_given_scale();
-    tpic_test_taste();
     tpic_test_picture_of_sphere();
     tpic_test_simple_shapes();
     tpic_test_grid_upright();

@@ -82,8 +82,8 @@ static int pts_row(const double *xyz, int32_t n, const double *q, int32_t k, con
 
 static void pts_nearest(void) {
     static const int32_t sizes[] = {1, 2, 5, 16, 17, 33, 343, 700}, ks[] = {1, 2, 7, 30, 400};
-    double *xyz = DENSE_NEW(double, 3 * 700), *query = DENSE_NEW(double, 3 * 60), *d2 = DENSE_NEW(double, 700 * 400);
-    int32_t *id = DENSE_NEW(int32_t, 700 * 400), i;
+    double *xyz = KIT_NEW(double, 3 * 700), *query = KIT_NEW(double, 3 * 60), *d2 = KIT_NEW(double, 700 * 400);
+    int32_t *id = KIT_NEW(int32_t, 700 * 400), i;
     size_t a, b;
     int which, exact;
     uint64_t seed = 3;
@@ -106,15 +106,11 @@ static void pts_nearest(void) {
             }
         }
     }
-    free(xyz);
-    free(query);
-    free(d2);
-    free(id);
 }
 
 static void pts_within(void) {
     static const double radii[] = {0, 1, 1.5, 3, 100};
-    double *xyz = DENSE_NEW(double, 3 * 500);
+    double *xyz = KIT_NEW(double, 3 * 500);
     size_t r;
     int which, exact;
     hd_error e;
@@ -141,13 +137,12 @@ static void pts_within(void) {
             hd_csr_free(&a, NULL);
         }
     }
-    free(xyz);
 }
 
 /* Distances that are just the radius, and a few units in the last place above it: rows end where they should, without gaps. */
 static void pts_within_edges(void) {
     enum { N = 600 };
-    double *xyz = DENSE_NEW(double, 3 * N);
+    double *xyz = KIT_NEW(double, 3 * N);
     int32_t i, j, more = 0;
     hd_csr a;
     hd_error e;
@@ -168,7 +163,6 @@ static void pts_within_edges(void) {
         CHECK(a.nnz == p && a.row_ptr[N] == p && more > 3);
         hd_csr_free(&a, NULL);
     }
-    free(xyz);
 }
 
 static void pts_neighbour_errors(void) {
@@ -272,7 +266,7 @@ static void pts_operators(void) {
     for (blue = 0; blue < 2; blue++) {
         shape s = kit_own_shape(shape_points(150, shape_on_torus, 8 * pts_pi * pts_pi, blue, 5));
         for (k = 0; k < 2; k++) {
-            hd_laplacian *lap = pts_make(s.xyz, s.n, kinds[k], 0), *narrow;
+            hd_laplacian *lap = kit_own_laplacian(pts_make(s.xyz, s.n, kinds[k], 0)), *narrow;
             double sum = 0, h = 0;
             int32_t i, j;
             CHECK(lap->kind == kinds[k] && lap->n_active == s.n && lap->points.bandwidth > 0 && lap->points.neighbours == 30);
@@ -290,7 +284,6 @@ static void pts_operators(void) {
             pts_entries(narrow, s.xyz, "torus, narrow");
             pts_spectrum(lap, "torus");
             pts_spectrum(narrow, "torus, narrow");
-            hd_laplacian_free(lap);
             hd_laplacian_free(narrow);
         }
     }
@@ -305,11 +298,10 @@ static void pts_areas(void) {
     for (which = 0; which < 2; which++) {
         for (blue = 0; blue < 2; blue++) {
             shape s = kit_own_shape(shape_points(10000, on[which], area[which], blue, 11));
-            hd_laplacian *lap = pts_make(s.xyz, s.n, HD_LAPLACIAN_VORONOI_EXP, 1e-3);
+            hd_laplacian *lap = kit_own_laplacian(pts_make(s.xyz, s.n, HD_LAPLACIAN_VORONOI_EXP, 1e-3));
             CHECK_MSG(fabs(lap->area / area[which] - 1) < (blue ? 0.003 : 0.006), "surface %d, blue %d: area %g of the true one", which, blue,
                       lap->area / area[which]);
             CHECK_MSG(lap->points.n_border < (blue ? 1 : 60), "%d cells at a border that is not there", (int)lap->points.n_border);
-            hd_laplacian_free(lap);
         }
     }
 }
@@ -318,8 +310,8 @@ static void pts_areas(void) {
 static void pts_plane(void) {
     enum { FINE = 500, N = 200 };
     shape grid = kit_own_shape(shape_grid(21, 21, 0)), s;
-    double *query = DENSE_NEW(double, 3 * FINE * FINE), count[N] = {0}, worst = 0;
-    int32_t *id = DENSE_NEW(int32_t, FINE * FINE), i, inner = 0;
+    double *query = KIT_NEW(double, 3 * FINE * FINE), count[N] = {0}, worst = 0;
+    int32_t *id = KIT_NEW(int32_t, FINE * FINE), i, inner = 0;
     hd_laplacian *lap = pts_make(grid.xyz, grid.n, HD_LAPLACIAN_VORONOI_EXP, 0);
     for (i = 0; i < grid.n; i++) {
         const int edge = (i % 21 == 0) + (i % 21 == 20) + (i / 21 == 0) + (i / 21 == 20);
@@ -348,15 +340,13 @@ static void pts_plane(void) {
     CHECK(lap->points.n_border > 20 && lap->points.n_border < 120);
     hd_laplacian_free(lap);
     shape_free(&s);
-    free(query);
-    free(id);
 }
 
 /* Two sheets, two points' spacings apart, have twice the area of one. */
 static void pts_sheets(void) {
     enum { N = 1000 };
     shape s = kit_own_shape(shape_points(N, shape_on_square, 1, 1, 8)), t = kit_own_shape(shape_points(N, shape_on_square, 1, 1, 9)), both;
-    hd_laplacian *one = pts_make(s.xyz, N, HD_LAPLACIAN_VORONOI_EXP, 0), *two;
+    hd_laplacian *one = kit_own_laplacian(pts_make(s.xyz, N, HD_LAPLACIAN_VORONOI_EXP, 0)), *two;
     static const double gaps[] = {2, 3, 20};
     size_t k;
     for (k = 0; k < 3; k++) {
@@ -372,7 +362,6 @@ static void pts_sheets(void) {
         hd_laplacian_free(two);
         shape_free(&both);
     }
-    hd_laplacian_free(one);
 }
 
 /* ---- what must not matter, and what must be told ---- */
@@ -403,7 +392,7 @@ static void pts_invariance(void) {
     dense_shuffle(perm, N, &seed);
     for (kind = 0; kind < 2; kind++) {
         const hd_laplacian_kind k = kind ? HD_LAPLACIAN_EXP : HD_LAPLACIAN_VORONOI_EXP;
-        hd_laplacian *a = pts_make(s.xyz, N, k, 0), *b;
+        hd_laplacian *a = kit_own_laplacian(pts_make(s.xyz, N, k, 0)), *b;
         double d;
         for (i = 0; i < N; i++) {                /* a rotation by 3-4-5 about z, a cyclic turn of the axes, and a shift */
             const double *p = s.xyz + 3 * i;
@@ -425,7 +414,6 @@ static void pts_invariance(void) {
         d = pts_difference(a, b, perm, 1, 1);
         CHECK_MSG(d < 1e-12, "permutation: %g", d);
         hd_laplacian_free(b);
-        hd_laplacian_free(a);
     }
 }
 
@@ -461,10 +449,10 @@ static void pts_coincident(void) {
 static void pts_outliers(void) {
     enum { N = 1000 };
     shape s = kit_own_shape(shape_points(N + 2, shape_on_sphere, 4 * pts_pi, 1, 2));
-    hd_laplacian *clean = pts_make(s.xyz, N, HD_LAPLACIAN_VORONOI_EXP, 0), *lap;
+    hd_laplacian *clean = kit_own_laplacian(pts_make(s.xyz, N, HD_LAPLACIAN_VORONOI_EXP, 0)), *lap;
     hd_heat *heat = NULL;
     hd_report rep;
-    double *u = DENSE_NEW(double, N + 2), largest = 0;
+    double *u = KIT_NEW(double, N + 2), largest = 0;
     int32_t i;
     for (i = 0; i < 3; i++) {
         s.xyz[3 * N + i] = 40;
@@ -481,8 +469,6 @@ static void pts_outliers(void) {
     CHECK(heat_column(heat, 0.1, N, u, &rep) == HD_OK && fabs(u[N] - 1) < 1e-12 && u[0] == 0);
     hd_heat_free(heat);
     hd_laplacian_free(lap);
-    hd_laplacian_free(clean);
-    free(u);
 }
 
 static hd_status pts_status(const double *xyz, int32_t n, hd_laplacian_kind kind, double bandwidth, double cut, int32_t neighbours, hd_error *e) {
@@ -590,11 +576,11 @@ static double pts_sphere_kernel(double t, double x) {
 static void pts_sphere(hd_laplacian_kind kind, int blue, double tol_value, double tol_kernel) {
     enum { N = 2000 };
     shape s = kit_own_shape(shape_points(N, shape_on_sphere, 4 * pts_pi, blue, 1));
-    hd_laplacian *lap = pts_make(s.xyz, N, kind, 0);
+    hd_laplacian *lap = kit_own_laplacian(pts_make(s.xyz, N, kind, 0));
     hd_heat *heat = NULL;
     hd_report rep;
     const double scale = kind == HD_LAPLACIAN_EXP ? lap->area : 1, t = 0.15;
-    double *x = DENSE_NEW(double, N), *y = DENSE_NEW(double, N), worst = 0, top = 0;
+    double *x = KIT_NEW(double, N), *y = KIT_NEW(double, N), worst = 0, top = 0;
     int f, i;
     for (f = 0; f < 5; f++) {                    /* x, y, z with eigenvalue 2; xy, x^2 - z^2 with 6 */
         double num = 0, den = 0, lambda;
@@ -618,9 +604,6 @@ static void pts_sphere(hd_laplacian_kind kind, int blue, double tol_value, doubl
     }
     CHECK_MSG(worst / top < tol_kernel, "kind %d, blue %d: heat kernel off by %g of its largest value", kind, blue, worst / top);
     hd_heat_free(heat);
-    hd_laplacian_free(lap);
-    free(x);
-    free(y);
 }
 
 /* ---- tufted: thin parts ---- */
@@ -635,7 +618,7 @@ static hd_laplacian *pts_tufted(const double *xyz, int32_t n) {
 /* Largest difference of the symmetric kernel's column 0 from want, relative to its largest value. */
 static double pts_kernel_error(const hd_laplacian *lap, double t, const double *want) {
     const int32_t source = 0;
-    double *u = DENSE_NEW(double, lap->n), worst = 0;
+    double *u = KIT_NEW(double, lap->n), worst = 0;
     hd_heat *heat = NULL;
     hd_report rep;
     int32_t i;
@@ -644,7 +627,6 @@ static double pts_kernel_error(const hd_laplacian *lap, double t, const double *
     for (i = 0; i < lap->n; i++) worst = fmax(worst, fabs(u[i] - want[i]));
     worst /= dense_max_abs(want, lap->n);
     hd_heat_free(heat);
-    free(u);
     return worst;
 }
 
@@ -660,7 +642,7 @@ static void pts_shells(void) {
         shape a = kit_own_shape(shape_points(N, shape_on_sphere, 4 * pts_pi, 1, 3));
         shape b = kit_own_shape(shape_points(N, shape_on_sphere, 4 * pts_pi, 1, 4));
         const double q = 1 - gaps[k] * sqrt(4 * pts_pi / N);
-        double *want = DENSE_NEW(double, 2 * N), area, worst;    /* zeros on the smaller one */
+        double *want = KIT_NEW(double, 2 * N), area, worst;    /* zeros on the smaller one */
         shape both;
         hd_laplacian *lap, *cells;
         int32_t i, flagged;
@@ -681,7 +663,6 @@ static void pts_shells(void) {
         hd_laplacian_free(lap);
         hd_laplacian_free(cells);
         shape_free(&both);
-        free(want);
     }
 }
 
@@ -690,7 +671,7 @@ static void pts_shells(void) {
 static void pts_ear(void) {
     shape s = kit_own_shape(shape_icosphere(4));
     const double edge = 0.075;
-    double *want = DENSE_NEW(double, s.n), t, worst;
+    double *want = KIT_NEW(double, s.n), t, worst;
     uint64_t seed = 6;
     hd_laplacian *mesh = NULL, *lap;
     hd_heat *heat = NULL;
@@ -716,7 +697,6 @@ static void pts_ear(void) {
     hd_heat_free(heat);
     hd_laplacian_free(mesh);
     hd_laplacian_free(lap);
-    free(want);
 }
 
 /* Noise along the normals, of up to half a spacing: triangles follow it no more than they must, and points

@@ -38,7 +38,7 @@ static void poly_shake(shape_poly *s, double much, uint64_t seed) {
 /* One face of k corners on a wavy, star-shaped curve, a flower; in a plane when rise is 0. */
 static shape_poly poly_flower(int32_t k, double rise) {
     shape_poly s = shape_poly_make(k, 1, k);
-    int32_t *v = DENSE_NEW(int32_t, k), i;
+    int32_t *v = KIT_NEW(int32_t, k), i;
     for (i = 0; i < k; i++) {
         const double a = 6.283185307179586 * i / k, r = 1 + 0.4 * sin(7 * a + 0.3);
         v[i] = i;
@@ -47,7 +47,6 @@ static shape_poly poly_flower(int32_t k, double rise) {
         s.xyz[3 * i + 2] = rise * sin(3 * a);
     }
     shape_put_face(&s, k, v);
-    free(v);
     return s;
 }
 
@@ -72,8 +71,8 @@ static shape_poly poly_mixed(void) {
 /* L_f [k x k] of one face: D'(B B'/|f| + lambda C C') D with the matrices made as they are written. Returns |f|. */
 static double poly_dense_face(const shape_poly *s, int32_t f, double lambda, double *out) {
     const int32_t k = (int32_t)(s->face_ptr[f + 1] - s->face_ptr[f]), *v = s->face_idx + s->face_ptr[f];
-    double *E = DENSE_NEW(double, 3 * k), *B = DENSE_NEW(double, 3 * k), *M = DENSE_NEW(double, k * k), *EE = DENSE_NEW(double, k * k);
-    double *Q = DENSE_NEW(double, k * k), *d = DENSE_NEW(double, k), a[3] = {0, 0, 0}, size, top;
+    double *E = KIT_NEW(double, 3 * k), *B = KIT_NEW(double, 3 * k), *M = KIT_NEW(double, k * k), *EE = KIT_NEW(double, k * k);
+    double *Q = KIT_NEW(double, k * k), *d = KIT_NEW(double, k), a[3] = {0, 0, 0}, size, top;
     int32_t p, q, r, c;
     for (p = 0; p < k; p++) {
         const double *x = s->xyz + 3 * v[p], *y = s->xyz + 3 * v[(p + 1) % k];
@@ -105,12 +104,6 @@ static double poly_dense_face(const shape_poly *s, int32_t f, double lambda, dou
             out[p * k + q] = M[pb * k + qb] - M[pb * k + q] - M[p * k + qb] + M[p * k + q];
         }
     }
-    free(E);
-    free(B);
-    free(M);
-    free(EE);
-    free(Q);
-    free(d);
     return size;
 }
 
@@ -121,20 +114,19 @@ static double *poly_dense(const shape_poly *s, double lambda, double *mass) {
     for (p = 0; p < s->n; p++) mass[p] = 0;
     for (f = 0; f < s->n_faces; f++) {
         const int32_t k = (int32_t)(s->face_ptr[f + 1] - s->face_ptr[f]), *v = s->face_idx + s->face_ptr[f];
-        double *local = DENSE_NEW(double, k * k);
+        double *local = KIT_NEW(double, k * k);
         const double size = poly_dense_face(s, f, lambda, local);
         for (p = 0; p < k; p++) {
             mass[v[p]] += size / k;
             for (q = 0; q < k; q++) L[(size_t)v[p] * (size_t)s->n + (size_t)v[q]] += local[p * k + q];
         }
-        free(local);
     }
     return L;
 }
 
 static void poly_compare(const shape_poly *s, double lambda, double tol, const char *what) {
-    hd_laplacian *lap = poly_make(s, lambda);
-    double *mass = DENSE_NEW(double, s->n), *L = poly_dense(s, lambda ? lambda : 1, mass), worst = 0, off = 0, area = 0;
+    hd_laplacian *lap = kit_own_laplacian(poly_make(s, lambda));
+    double *mass = KIT_NEW(double, s->n), *L = poly_dense(s, lambda ? lambda : 1, mass), worst = 0, off = 0, area = 0;
     const double top = dense_max_abs(L, (int64_t)s->n * s->n);
     int64_t p;
     int32_t i, j;
@@ -153,8 +145,6 @@ static void poly_compare(const shape_poly *s, double lambda, double tol, const c
     }
     CHECK_MSG(off <= tol * top && worst <= tol, "%s: L off by %.1e, mass by %.1e", what, off / top, worst);
     CHECK(fabs(lap->area - area) <= tol * area && lap->kind == HD_LAPLACIAN_POLYGON && !lap->B && lap->b_diag == lap->mass && lap->b_ratio == 1);
-    hd_laplacian_free(lap);
-    free(mass);
     free(L);
 }
 
@@ -186,7 +176,7 @@ static void poly_square(void) {
     memcpy(s.xyz, xyz, sizeof xyz);
     shape_put_quad(&s, 0, 1, 2, 3);
     for (k = 0; k < 3; k++) {
-        hd_laplacian *lap = poly_make(&s, lambdas[k]);
+        hd_laplacian *lap = kit_own_laplacian(poly_make(&s, lambdas[k]));
         const double l = lambdas[k] != 0 ? lambdas[k] : 1;
         for (i = 0; i < 4; i++)
             for (j = 0; j < 4; j++) {
@@ -196,7 +186,6 @@ static void poly_square(void) {
         CHECK(lap->mass[0] == 0.25 && lap->area == 1 && lap->h == 1 && lap->mesh.n_edges == 4 && lap->mesh.n_boundary_edges == 4);
         CHECK(lap->mesh.n_boundary_loops == 1 && lap->mesh.n_negative_weights == (l > 0.5 ? 2 : 0));
         CHECK(fabs(lap->mesh.smallest_angle - 1.5707963267948966) < 1e-15);
-        hd_laplacian_free(lap);
     }
 }
 
@@ -214,9 +203,9 @@ static void poly_equals_triangles(void) {
     s[3] = shape_disjoint(s, s + 1, far_away);
     for (k = 0; k < 4; k++) {
         shape_poly p = kit_own_poly(shape_poly_of(s + k));
-        hd_laplacian *a = test_laplacian(s + k, HD_LAPLACIAN_FEM);
+        hd_laplacian *a = kit_own_laplacian(test_laplacian(s + k, HD_LAPLACIAN_FEM));
         for (q = 0; q < 3; q++) {
-            hd_laplacian *b = poly_make(&p, lambdas[q]);
+            hd_laplacian *b = kit_own_laplacian(poly_make(&p, lambdas[q]));
             const double top = dense_max_abs(a->L.val, a->L.nnz);
             CHECK(a->L.nnz == b->L.nnz && memcmp(a->L.col, b->L.col, (size_t)a->L.nnz * sizeof *a->L.col) == 0);
             CHECK_MSG(dense_max_diff(a->L.val, b->L.val, a->L.nnz) < 1e-14 * top, "lambda %g: %g", lambdas[q], dense_max_diff(a->L.val, b->L.val, a->L.nnz) / top);
@@ -225,9 +214,7 @@ static void poly_equals_triangles(void) {
             CHECK(fabs(a->mesh.smallest_angle - b->mesh.smallest_angle) < 1e-13);
             b->mesh.smallest_angle = a->mesh.smallest_angle;
             CHECK(memcmp(&a->mesh, &b->mesh, sizeof a->mesh) == 0);
-            hd_laplacian_free(b);
         }
-        hd_laplacian_free(a);
     }
     for (k = 0; k < 4; k++) shape_free(s + k);
 }
@@ -246,12 +233,11 @@ static void poly_fans(void) {
         }
     CHECK(m == 14);
     for (q = 0; q < 3; q++) {
-        hd_laplacian *a = op_make(s.xyz, s.n, tri, m, op_kinds[q]), *b = NULL;
+        hd_laplacian *a = kit_own_laplacian(op_make(s.xyz, s.n, tri, m, op_kinds[q])), *b = NULL;
         hd_error e;
         CHECK(poly_try(&b, &s, op_kinds[q], 0, &e) == HD_OK);
         CHECK(a->L.nnz == b->L.nnz && memcmp(a->L.val, b->L.val, (size_t)a->L.nnz * sizeof(double)) == 0 && a->kind == b->kind && a->h == b->h);
         CHECK(memcmp(a->mass, b->mass, (size_t)a->n_active * sizeof(double)) == 0 && memcmp(&a->mesh, &b->mesh, sizeof a->mesh) == 0);
-        hd_laplacian_free(a);
         hd_laplacian_free(b);
     }
 }
@@ -260,9 +246,9 @@ static void poly_fans(void) {
 
 /* Symmetric to the last bit, rows sum to zero, no eigenvalue below zero, as many zeros as components. */
 static void poly_spectrum(const shape_poly *s, double lambda, int32_t components, const char *what) {
-    hd_laplacian *lap = poly_make(s, lambda);
+    hd_laplacian *lap = kit_own_laplacian(poly_make(s, lambda));
     const int32_t n = lap->n_active;
-    double *L = test_dense(&lap->L, NULL), *B = test_dense_mass(lap), *keep = DENSE_NEW(double, (int64_t)n * n), worst = 0, top;
+    double *L = test_dense(&lap->L, NULL), *B = test_dense_mass(lap), *keep = KIT_NEW(double, (int64_t)n * n), worst = 0, top;
     int32_t i, j, zeros = 0, negative = 0, asymmetric = 0;
     dense_pair p;
     hd_error e;
@@ -289,8 +275,6 @@ static void poly_spectrum(const shape_poly *s, double lambda, int32_t components
               zeros, (int)lap->n_components);
     CHECK(lap->conserves == 1);
     dense_pair_free(&p);
-    free(keep);
-    hd_laplacian_free(lap);
 }
 
 static void poly_properties(void) {
@@ -316,7 +300,7 @@ static void poly_linear(void) {
     for (k = 0; k < 4; k++) {
         shape_poly s = k < 2 ? shape_trominoes(6, 7, k ? 0.3 : 0) : poly_flower(k == 2 ? 300 : 37, 0);
         hd_laplacian *lap;
-        double *u = DENSE_NEW(double, s.n), *y = DENSE_NEW(double, s.n), inner = 0, area = 0;
+        double *u = KIT_NEW(double, s.n), *y = KIT_NEW(double, s.n), inner = 0, area = 0;
         int32_t i, q;
         for (i = 0; i < s.n_faces; i++) {        /* the shoelace formula */
             int64_t c;
@@ -350,8 +334,6 @@ static void poly_linear(void) {
         CHECK_MSG(inner < 1e-11, "mesh %d: L x = %g inside", k, inner);
         hd_laplacian_free(lap);
         shape_poly_free(&s);
-        free(u);
-        free(y);
     }
 }
 
@@ -386,7 +368,7 @@ static void poly_turned(void) {
     s[1] = shape_trominoes(2, 3, 0.3);
     s[2] = poly_flower(25, 0.2);
     for (k = 0; k < 3; k++) {
-        hd_laplacian *a = poly_make(s + k, 0.7);
+        hd_laplacian *a = kit_own_laplacian(poly_make(s + k, 0.7));
         for (turn = 0; turn < 5; turn++)
             for (back = 0; back < 2; back++) {
                 shape_poly r = kit_own_poly(poly_copy(s + k));
@@ -408,7 +390,6 @@ static void poly_turned(void) {
                 CHECK(a->mesh.n_misoriented_edges == b->mesh.n_misoriented_edges);
                 hd_laplacian_free(b);
             }
-        hd_laplacian_free(a);
         shape_poly_free(s + k);
     }
 }
@@ -441,7 +422,7 @@ static void poly_left_out(void) {
                                      {4, 1, 7, 6, 0}, {4, 6, 7, 1, 0}, {6, 4, 3, 2, 1, 7, 5}, {3, 5, 6, 7}};   /* repeated, turned, reversed */
     enum { N_BAD = sizeof bad / sizeof *bad };
     shape_poly s = kit_own_poly(poly_mixed()), t = shape_poly_make(16 + 12, 6 + N_BAD, 200);
-    hd_laplacian *a = poly_make(&s, 0), *b;
+    hd_laplacian *a = kit_own_laplacian(poly_make(&s, 0)), *b;
     int32_t f, i;
     memcpy(t.xyz, s.xyz, 3 * (size_t)s.n * sizeof *s.xyz);
     for (i = 0; i < 4; i++) {
@@ -467,7 +448,6 @@ static void poly_left_out(void) {
     CHECK(memcmp(a->mass, b->mass, (size_t)a->n_active * sizeof(double)) == 0 && fabs(a->area - b->area) < 1e-14);
     CHECK(a->mesh.n_edges == b->mesh.n_edges && a->mesh.smallest_angle == b->mesh.smallest_angle);
     hd_laplacian_free(b);
-    hd_laplacian_free(a);
     shape_poly_free(&t);
     t = shape_poly_make(4, 2, 8);                 /* the same corners in another order are another face */
     memcpy(t.xyz, s.xyz, 12 * sizeof(double));
@@ -690,7 +670,7 @@ static int poly_ascending(const void *a, const void *b) {
 
 /* Largest relative error of the eigenvalues 2 (three times), 6 (five times) and 12 (seven times). */
 static double poly_sphere_error(shape_poly *s) {
-    hd_laplacian *lap = poly_make(s, 0);
+    hd_laplacian *lap = kit_own_laplacian(poly_make(s, 0));
     double *L = test_dense(&lap->L, NULL), *B = test_dense_mass(lap), worst = 0;
     dense_pair p;
     int k;
@@ -699,7 +679,6 @@ static double poly_sphere_error(shape_poly *s) {
     qsort(p.lambda, (size_t)lap->n_active, sizeof *p.lambda, poly_ascending);
     for (k = 1; k < 16; k++) worst = fmax(worst, fabs(p.lambda[k] / (k < 4 ? 2 : k < 9 ? 6 : 12) - 1));
     dense_pair_free(&p);
-    hd_laplacian_free(lap);
     shape_poly_free(s);
     return worst;
 }

@@ -2,12 +2,12 @@
 """What the pages say is what works: runs the code and the commands of README.md, examples/README.md, tools/README.md and
 tests/README.md, and looks up every name in them.
 
-    test_readme.py [CC]             CC: the C compiler, by default cc
+    test_readme.py [CC [OBJECT]]    CC: the C compiler, by default cc; OBJECT: the implementation, compiled already
     test_readme.py [CC] --pictures  also puts the pictures that the commands make into examples/
 
 The rules, the same for every page:
 
-  C code     is compiled as the reader sees it, as C99 and as C++11, and run.
+  C code     is read as the reader sees it, as C99 and as C++11, and run with the implementation that is compiled already.
   commands   of README.md and then examples/README.md run as a reader would run them, from top to bottom in one folder.
              `cc` stands for a script here: it takes the implementation out of a program and links the one that is
              compiled already, at -O1. The programs that CMakeLists.txt lists in hd_examples_timed are built and not run.
@@ -186,7 +186,7 @@ def program_text(path):
 def look_up(page, text, cc):
     built = {"heatdiff": "tools/heatdiff.c"}            # programs, by the source they come from
     cmake, compiled = read("CMakeLists.txt"), set()
-    for name in re.findall(r"hd_program\((\w+) ", cmake):
+    for name in re.findall(r"hd_program(?:_alone)?\((\w+) ", cmake):
         built.setdefault(name, "tools/%s.c" % name)
     built.update(runner="tests/runner.c", internals="tests/internals.c", fuzz="tests/fuzz/fuzz.c")
     tests = re.findall(r"add_test\(NAME (\w+)", cmake)
@@ -292,32 +292,41 @@ def sources():
 
 # ---- C code ----
 
-def start_programs(cc, text, work):
-    """Starts to compile the program of the page. As C its object, whose main has another name, is also the implementation
-    that other programs are linked to. As C++ it is compiled without optimisation, which finds the same errors sooner."""
+def compiled(command, work, what):
+    done = subprocess.run(command, cwd=work, stderr=subprocess.PIPE, universal_newlines=True)
+    if not check(done.returncode == 0, "README.md", "%s\n%s" % (what, done.stderr)):
+        sys.exit("%s: %s\n%s" % (" ".join(command), what, done.stderr))
+
+
+def run_programs(cc, text, work, implementation):
+    """Reads the program of the page as C and as C++; without its implementation it is linked to the one that is there."""
     code = [body for language, body, _ in blocks(text) if language == "c" and "int main" in body]
     check(len(code) == 1, "README.md", "has %d programs" % len(code))
-    for name in ("readme.c", "readme.cpp"):
-        with open(os.path.join(work, name), "w", encoding="utf-8") as f:
-            f.write(code[0])
-    with open(os.path.join(work, "main.c"), "w") as f:
-        f.write("int readme_main(void);\nint main(void) { return readme_main(); }\n")
-    warn = ["-Wall", "-Wextra", "-I" + TOP]
-    return [subprocess.Popen([cc] + flags + warn, cwd=work) for flags in (
-        ["-std=c99", "-O1", "-Dmain=readme_main", "-c", "readme.c", "-o", "implementation.o"],
-        ["-x", "c++", "-std=c++11", "-O0", "readme.cpp", "-o", "readme_cpp", "-lm", "-lstdc++"])]
-
-
-def run_programs(cc, work):
-    subprocess.run([cc, "main.c", "implementation.o", "-o", "readme_c", "-lm"], cwd=work, check=True)
-    for name in ("readme_c", "readme_cpp"):
-        out = subprocess.run([os.path.join(work, name)], stdout=subprocess.PIPE, universal_newlines=True, timeout=60)
+    short = code[0].replace("#define HEATDIFF_IMPLEMENTATION\n", "")
+    check(short != code[0], "README.md", "its program has no implementation")
+    if not implementation:
+        implementation = os.path.join(work, "whole.o")
+        with open(os.path.join(work, "whole.c"), "w") as f:
+            f.write("#define HEATDIFF_IMPLEMENTATION\n#include \"heatdiff.h\"\n")
+        compiled([cc, "-std=c99", "-O1", "-I" + TOP, "-c", "whole.c", "-o", implementation], work, "heatdiff.h does not compile")
+    shutil.copyfile(implementation, os.path.join(work, "implementation.o"))
+    for name, standard in (("readme.c", ["-std=c99"]), ("readme.cpp", ["-x", "c++", "-std=c++11"])):
+        for folder, body in (("", code[0]), ("short", short)):
+            os.makedirs(os.path.join(work, folder), exist_ok=True)
+            with open(os.path.join(work, folder, name), "w", encoding="utf-8") as f:
+                f.write(body)
+        warn, program = ["-Wall", "-Wextra", "-I" + TOP], os.path.join(work, name.replace(".", "_"))
+        compiled([cc] + standard + warn + ["-fsyntax-only", name], work, "the program does not compile")
+        compiled([cc] + standard + warn + ["-O1", "-c", "short/" + name, "-o", "short.o"], work, "the program does not compile")
+        compiled([cc, "short.o", "implementation.o", "-o", program, "-lm", "-lstdc++"], work, "the program does not link")
+        out = subprocess.run([program], stdout=subprocess.PIPE, universal_newlines=True, timeout=60)
         check(out.returncode == 0 and "error at most" in out.stdout, "README.md", "%s said %s" % (name, out.stdout))
         print("%s: %s" % (name, out.stdout.strip()))
 
 
 def main():
-    cc = next((a for a in sys.argv[1:] if not a.startswith("-")), "cc")
+    given = [a for a in sys.argv[1:] if not a.startswith("-")]
+    cc, implementation = given[0] if given else "cc", given[1] if len(given) > 1 else None
     cc = shutil.which(cc) or sys.exit("there is no " + cc)      # a path: "cc" will be our own
     text = {page: read(page) for page in PAGES}
     header = read("heatdiff.h")
@@ -327,14 +336,11 @@ def main():
     timed = re.search(r"set\(hd_examples_timed ([^)]*)\)", read("CMakeLists.txt")).group(1).split()
     check(text["README.md"].count("\n") <= LENGTH, "README.md", "is longer than %d lines" % LENGTH)
     with tempfile.TemporaryDirectory() as work:
-        started = start_programs(cc, text["README.md"], work)
+        run_programs(cc, text["README.md"], work, implementation)
         os.mkdir(os.path.join(work, "bin"))
         with open(os.path.join(work, "bin", "cc"), "w") as f:
             f.write(COMPILER.format(work=work, cc=cc, top=TOP))
         os.chmod(f.name, 0o755)
-        if not all(p.wait() == 0 for p in started):
-            sys.exit("the code of README.md does not compile")
-        run_programs(cc, work)
         folder = os.path.join(work, "project")
         os.mkdir(folder)
         for name in ("examples", "tools", "tests", "heatdiff.h"):

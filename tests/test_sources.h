@@ -529,26 +529,6 @@ static void src_sample_report(void) {
     free(d);
 }
 
-/* Pairs whose bound by the usual degree is too large take the highest one, as distances do. */
-static void src_pairs_degree(void) {
-    shape s = shape_bumpy(3, 5);
-    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
-    const double t = 150 * lap->h * lap->h;
-    const int32_t i[3] = {5, 80, 300}, j[3] = {300, 81, 600};
-    double d[3];
-    hd_report rep;
-    hd_heat_opts o = eng_opts(HD_METHOD_DIRECT);
-    hd_heat *heat = eng_create(lap, &o);
-#ifdef HEATDIFF_IMPLEMENTATION
-    heat->modes.barred = 1;                      /* which would do better here */
-#endif
-    CHECK(heat_pairs(heat, HD_DISTANCE_CLASSICAL, t, 3, i, j, NULL, d, &rep) == HD_OK);
-    CHECK_MSG(rep.error_bound <= 1e-6 && rep.degree == 14, "degree %d, bound %g: %s", (int)rep.degree, rep.error_bound, rep.reason);
-    hd_heat_free(heat);
-    hd_laplacian_free(lap);
-    shape_free(&s);
-}
-
 /* ---- closed forms ---- */
 
 /* The kernel of an interval of length 1 with isolated ends. */
@@ -1185,7 +1165,6 @@ static void src_memory(void) {
 static void test_sources(void) {
     src_two();
     src_sample_report();
-    src_pairs_degree();
     src_operators();
     src_means();
     src_pairs();

@@ -308,7 +308,6 @@ static void spec_next_to_shifts(void) {
 
 /* Memory follows the vertices and the pairs: 8.6, 10.9, 19.3 and 30.7 MB while a part of it did not. */
 static void spec_memory(void) {
-#ifdef HEATDIFF_IMPLEMENTATION
     static const int32_t level[4] = {2, 3, 4, 4}, count[4] = {10, 20, 20, 200};
     static const double most[4] = {1.1e6, 3.4e6, 11.5e6, 24.5e6};
     int32_t k;
@@ -318,89 +317,17 @@ static void spec_memory(void) {
         hd_spectrum_opts o;
         hd_spectrum *z = NULL;
         hd_context ctx;
-        hd_error e;
-        hdi_elim m;
-        hdi_spec room;
-        double before, sweep;
         memset(&ctx, 0, sizeof ctx);
         memset(&o, 0, sizeof o);
-        memset(&e, 0, sizeof e);
         ctx.n_threads = 1;
         o.context = &ctx;
         o.count = count[k];
         CHECK(hd_spectrum_create(&z, lap, &o, NULL) == HD_OK);
         hd_spectrum_free(z);
         CHECK_MSG(ctx.bytes_in_use == 0 && (double)ctx.bytes_peak <= most[k], "%d pairs of %d: %g bytes", count[k], s.n, (double)ctx.bytes_peak);
-        hdi_hold(&ctx);
-        CHECK(hdi_elim_make(&m, lap, HD_ORDERING_AUTO, NULL, hdi_heat_scale(lap), &ctx, &e) >= 0);
-        before = (double)ctx.bytes_in_use;
-        sweep = (double)hdi_sweep_size(&m.sym, 1, HDI_SPEC_WIDE);
-        CHECK(hdi_spec_make(&room, &m, count[k], 1e-10, &e) >= 0);
-        before = ((double)ctx.bytes_in_use - before) / 8 - sweep;      /* and as expected for the limit of a context */
-        CHECK_MSG(fabs(before - hdi_spec_doubles(lap->n_active, count[k])) <= 0.01 * before, "%g doubles, expected %g", before,
-                  hdi_spec_doubles(lap->n_active, count[k]));
-        hdi_spec_free(&room);
-        hdi_elim_free(&m);
-        hdi_let_go(&ctx);
         hd_laplacian_free(lap);
         shape_free(&s);
     }
-#endif
-}
-
-/* The proof sees a pair that is taken away, and a shift too near. */
-static void spec_tampered(void) {
-#ifdef HEATDIFF_IMPLEMENTATION
-    shape s = shape_icosphere(3);
-    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
-    hd_context ctx;
-    hd_error e;
-    hdi_elim m;
-    hdi_spec z;
-    hdi_spec_goal goal;
-    int32_t count = 0, i;
-    memset(&ctx, 0, sizeof ctx);
-    hdi_hold(&ctx);
-    memset(&e, 0, sizeof e);
-    memset(&z, 0, sizeof z);
-    goal.count = 40;
-    goal.below = HUGE_VAL;
-    CHECK(hdi_elim_make(&m, lap, HD_ORDERING_AUTO, NULL, hdi_heat_scale(lap), &ctx, &e) >= 0);
-    CHECK(hdi_spec_make(&z, &m, goal.count, 1e-10, &e) >= 0 && hdi_spec_solve(&z, &goal, &count, &e) >= 0);
-    CHECK(z.proven && count == 40 && z.below == hdi_spec_rank(&z, z.sigma) && hdi_spec_sure(&z));
-    for (i = 20; i + 1 < z.found; i++) z.value[i] = z.value[i + 1];
-    z.found--;
-    CHECK(z.below == hdi_spec_rank(&z, z.sigma) + 1);
-    z.value[7] = z.sigma * (1 + 1e-15);
-    CHECK(!hdi_spec_sure(&z));
-    hdi_spec_free(&z);
-    hdi_elim_free(&m);
-    hdi_let_go(&ctx);
-    CHECK(ctx.bytes_in_use == 0);
-    hd_laplacian_free(lap);
-    shape_free(&s);
-#endif
-}
-
-/* The same pair twice is seen, wherever the two stand. */
-static void spec_twice(void) {
-#ifdef HEATDIFF_IMPLEMENTATION
-    shape s = shape_icosphere(3);
-    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
-    int32_t i, j;
-    for (i = 3; i < 30; i += 7) {
-        for (j = i + 1; j < 30; j += 13) {
-            hd_spectrum *z = spec_make(lap, 30, 0, HD_OK);
-            if (!z) continue;
-            CHECK(hdi_spec_distinct(lap, z));
-            memcpy(z->vector + (size_t)j * (size_t)z->n, z->vector + (size_t)i * (size_t)z->n, (size_t)z->n * sizeof(double));
-            CHECK(!hdi_spec_distinct(lap, z));
-            hd_spectrum_free(z);
-        }
-    }
-    hd_laplacian_free(lap);
-    shape_free(&s);
-#endif
 }
 
 /* f(lambda) of the exact pair at two rows: sum over pairs, of B x where mass is 1. */
@@ -672,8 +599,6 @@ static void test_spectrum(void) {
     spec_rounding();
     spec_next_to_shifts();
     spec_memory();
-    spec_tampered();
-    spec_twice();
     spec_kernels();
     spec_against_heat();
     spec_threads();

@@ -29,19 +29,113 @@ static int thr_running(void) {
 }
 
 static hd_heat *thr_plan(const hd_laplacian *lap, hd_context *ctx) {
-    hd_heat_opts o = eng_opts(HD_METHOD_DIRECT);
+    hd_heat_opts o;
+    hd_heat *heat = NULL;
+    memset(&o, 0, sizeof o);
+    o.method = HD_METHOD_DIRECT;
     o.context = ctx;
-    return eng_create(lap, &o);
+    CHECK(hd_heat_create(&heat, lap, &o, NULL) == HD_OK);
+    return heat;
 }
 
 static void thr_column(hd_heat *heat, const hd_laplacian *lap, int32_t source, double *u) {
     CHECK(hd_heat_column(heat, HD_KERNEL_SYMMETRIC, 50 * lap->h * lap->h, source, u, NULL, NULL) >= 0);
 }
 
+/* Can this build start threads? */
+static int thr_own(void) {
+    hd_context ctx;
+    memset(&ctx, 0, sizeof ctx);
+    ctx.n_threads = 3;
+    CHECK(hd_context_threads(&ctx) == 3 || hd_context_threads(&ctx) == 1);
+    return hd_context_threads(&ctx) == 3;
+}
+
+/* ---- the same bits ---- */
+
+/* By so many threads, or by a user's loop that does tasks in another order. */
+enum { THR_WAYS = 5 };
+static const int32_t thr_ways[THR_WAYS] = {1, 2, 3, 8, 0};
+
+/* Each way the same answers. Returns how many ways shared loops; stop > 0: cancelled at that progress call. */
+static int thr_same(call_world *w, const call_data *d, const char *script, int64_t stop) {
+    double *first = NULL;
+    int q, shared = 0;
+    for (q = 0; q < THR_WAYS; q++) {
+        test_memory m;
+        hd_context ctx = test_memory_context(&m);
+        rob_progress p;
+        int64_t loops = 0;
+        hd_status st;
+        memset(&p, 0, sizeof p);
+        p.answer = HD_PROGRESS_CANCEL;
+        p.stop_at = stop;
+        ctx.n_threads = thr_ways[q];
+        ctx.parallel_for = thr_ways[q] ? NULL : heat_shuffled_for;
+        ctx.parallel_user = &loops;
+        ctx.progress_user = &p;
+        call_open(w, d, &ctx);
+        w->what = script;
+        st = call_prepare(w, script);
+        CHECK_MSG(st >= 0, "%s: %s", script, w->e.text);
+        if (stop) ctx.progress = rob_on_progress;
+        loops = 0;
+        ctx.regions = 0;
+        st = call_test(w, script);
+        CHECK_MSG(stop && p.calls >= stop ? st == HD_ERR_CANCELLED && p.calls == stop : st >= 0, "%s, way %d: %s", script, q,
+                  hd_status_name(st));
+        if (!first) memcpy(first = (double *)dense_alloc((int64_t)w->out_size, 1), w->out, w->out_size);
+        if (!stop) CHECK_MSG(memcmp(first, w->out, w->out_size) == 0, "%s, way %d: other bits", script, q);
+        shared += loops > 0 || ctx.regions > 0;
+        ctx.progress = NULL;
+        call_close(w);
+        CHECK_MSG(!ctx.threads && ctx.n_holders == 0, "%s, way %d: threads are left", script, q);
+        test_memory_done(&m, &ctx, script);
+    }
+    free(first);
+    return shared;
+}
+
+/* Every call, and solvers that a plan would not choose. */
+static void thr_calls(void) {
+    static const char *const more[8] = {"iterative cocg columns", "iterative cocr k=1 apply", "iterative minres columns",
+                                        "krylov columns", "iterative lanczos columns", "voronoi delaunay triangles",
+                                        "weighted distance", "held border pairs"};
+    call_data d;
+    call_world w;
+    char text[80];
+    int k, shared = 0;
+    memset(&w, 0, sizeof w);
+    call_data_make(&d, shape_bumpy(3, 5));
+    for (k = 0; k < N_CALLS + 8; k++) {
+        snprintf(text, sizeof text, "%s%s", k < N_CALLS ? "direct " : "", k < N_CALLS ? call_table[k].name : more[k - N_CALLS]);
+        shared += thr_same(&w, &d, text, 0) > 0;
+    }
+    CHECK_MSG(shared > N_CALLS / 3, "only %d calls had loops to share", shared);
+    call_world_free(&w);
+    call_data_free(&d);
+}
+
+/* The elimination order of a larger mesh, and what is made by it; cancelled, nothing is left behind. */
+static void thr_orders(void) {
+    call_data d;
+    call_world w;
+    int64_t stop;
+    memset(&w, 0, sizeof w);
+    call_data_make(&d, shape_bumpy(5, 2));
+    CHECK(thr_same(&w, &d, "dissection | analyse", 0) >= (thr_own() ? 4 : 1));
+    CHECK(thr_same(&w, &d, "dissection analyse | factor solve", 0) >= (thr_own() ? 4 : 1));
+    for (stop = 1; stop <= 3; stop++) thr_same(&w, &d, "dissection | analyse", stop);
+    call_world_free(&w);
+    call_data_free(&d);
+}
+
+/* ---- when they run ---- */
+
 /* They start with the first long work and end with the last object, whatever order objects are freed in. */
 static void thr_lifetime(const shape *s, const double *want, double *u) {
     const int before = thr_running();
-    const int own = hdi_threads_linked();
+    const int own = thr_own();
     hd_context ctx;
     hd_laplacian *lap, *other;
     hd_heat *heat;
@@ -85,7 +179,7 @@ static void thr_product(void) {
     ctx.n_threads = 2;
     for (i = 0; i < N; i++) x[i] = dense_signed(&seed);
     hd_csr_apply(&a, x, y, &ctx);
-    CHECK(ctx.regions == (hdi_threads_linked() ? 1 : 0) && !ctx.threads && ctx.n_holders == 0 && thr_running() == before);
+    CHECK(ctx.regions == (thr_own() ? 1 : 0) && !ctx.threads && ctx.n_holders == 0 && thr_running() == before);
     for (i = 0; i < N; i++) y[i] -= 2 * x[i] - x[(i + 1) % N] - x[(i + N - 1) % N];
     CHECK(dense_max_abs(y, N) < 1e-14);
     hd_csr_free(&a, NULL);
@@ -93,36 +187,28 @@ static void thr_product(void) {
     free(y);
 }
 
-/* What is asked of other threads: a solve is one loop; a small one is no loop, and starts nobody. */
-static void thr_counts(const shape *s, const shape *small) {
-    const uint64_t own = hdi_threads_linked() ? 1 : 0;
-    const shape *const shapes[2] = {s, small};
-    int k, serial;
-    for (k = 0; k < 2; k++) {
-        for (serial = 0; serial < 2; serial++) {
-            hd_csr a = ldl_mesh_pattern(shapes[k]);
-            double *val = DENSE_NEW(double, a.nnz), *x = DENSE_NEW(double, a.n_rows);
-            hd_context ctx;
-            hd_ldl_opts o;
-            hd_ldl *f = NULL;
-            int32_t i;
-            int64_t p;
-            for (i = 0; i < a.n_rows; i++)
-                for (p = a.row_ptr[i]; p < a.row_ptr[i + 1]; p++) val[p] = a.col[p] == i ? 9 : -1;
-            memset(&ctx, 0, sizeof ctx);
-            ctx.n_threads = serial ? 1 : 2;
-            o = ldl_opts_of(HD_ORDERING_AUTO, NULL, shapes[k]->xyz, &ctx);
-            CHECK(hd_ldl_analyse(&f, &a, &o, NULL, NULL) == HD_OK && hd_ldl_factor(f, val, NULL, NULL) == HD_OK);
-            ctx.regions = ctx.helped = ctx.waits = 0;
-            x[0] = 1;
-            CHECK(hd_ldl_solve(f, 1, x, 0, x, 0, NULL) == HD_OK);
-            CHECK_MSG(ctx.regions == (serial || k ? 0 : own), "%d rows: %lld loops", (int)a.n_rows, (long long)ctx.regions);
-            CHECK(!serial || (!ctx.threads && ctx.helped == 0 && ctx.waits == 0));
-            hd_ldl_free(f);
-            hd_csr_free(&a, NULL);
-            free(val);
-            free(x);
-        }
+/* What is asked of other threads: a solve of a large mesh is one loop; a small one is no loop, and starts nobody. */
+static void thr_counts(void) {
+    int k;
+    for (k = 0; k < 4; k++) {
+        const int large = k < 2, serial = k % 2;
+        hd_context ctx;
+        call_data d;
+        call_world w;
+        memset(&ctx, 0, sizeof ctx);
+        memset(&w, 0, sizeof w);
+        ctx.n_threads = serial ? 1 : 2;
+        call_data_make(&d, shape_bumpy(large ? 4 : 1, 5));
+        call_open(&w, &d, &ctx);
+        w.what = "counts";
+        CHECK(call_prepare(&w, "k=1 solve") == HD_OK);
+        ctx.regions = ctx.helped = ctx.waits = 0;
+        CHECK(call_test(&w, "solve") == HD_OK);
+        CHECK_MSG(ctx.regions == (large && !serial && thr_own() ? 1 : 0), "%d rows: %d loops", (int)d.s.n, (int)ctx.regions);
+        CHECK(!serial || (!ctx.threads && ctx.helped == 0 && ctx.waits == 0));
+        call_close(&w);
+        call_world_free(&w);
+        call_data_free(&d);
     }
 }
 
@@ -241,217 +327,61 @@ static void thr_nested(const shape *s, const double *want) {
 }
 #endif
 
-/* Tasks of a loop that release others: each is done once, after what it waits for, by any number of threads. A
- * binary tree, from the leaves up. */
-typedef struct thr_tree { hd_context *ctx; int32_t *order, *pending; int64_t *sum; int32_t leaves; int64_t wrong; } thr_tree;
-
-static void thr_tree_task(void *arg, int64_t index, int32_t worker) {
-    thr_tree *w = (thr_tree *)arg;
-    const int32_t i = (int32_t)index, up = i / 2;
-    (void)worker;
-    if (i < w->leaves) w->sum[i] = w->sum[2 * i] + w->sum[2 * i + 1];
-    else w->sum[i] = i;
-    if (up > 0 && HDI_ATOMIC_ADD(w->pending + up, -1) == 0) hdi_release(w->ctx->threads, up, w->order);
-}
-
-static void thr_release(void) {
-    enum { LEAVES = 512 };
-    int32_t order[2 * LEAVES], pending[2 * LEAVES], i, threads, round;
-    int64_t sum[2 * LEAVES];
-    for (threads = 2; threads < 9; threads++) {
-        hd_context ctx;
-        thr_tree w;
-        memset(&ctx, 0, sizeof ctx);
-        memset(&w, 0, sizeof w);
-        ctx.n_threads = threads;
-        w.ctx = &ctx;
-        w.order = order;
-        w.pending = pending;
-        w.sum = sum;
-        w.leaves = LEAVES;
-        hdi_hold(&ctx);
-        for (round = 0; round < 50 && hdi_threads_own(&ctx, 2 * LEAVES); round++) {
-            for (i = 0; i < 2 * LEAVES; i++) pending[i] = 2;
-            for (i = 0; i < LEAVES; i++) order[i] = LEAVES + i;
-            memset(sum, 0, sizeof sum);
-            hdi_parallel_ordered(&ctx, 2 * LEAVES - 1, LEAVES, order, thr_tree_task, &w);
-            CHECK(sum[1] == (int64_t)LEAVES * (3 * LEAVES - 1) / 2);
-        }
-        hdi_let_go(&ctx);
-        CHECK(!ctx.threads && ctx.regions == (uint64_t)round);
-    }
-}
-
-#if HDI_THREADS
-/* The caller's tasks wait until another thread has one, and that one until the caller sleeps. */
-typedef struct thr_nap { hd_threads *threads; int32_t begun, slept; } thr_nap;
-
-static int thr_caller_sleeps(hd_threads *t) {
-    int yes;
-    hdi_lock(&t->lock);
-    yes = t->caller_asleep;
-    hdi_unlock(&t->lock);
-    return yes;
-}
-
-static void thr_nap_task(void *arg, int64_t index, int32_t worker) {
-    thr_nap *w = (thr_nap *)arg;
-    const time_t start = time(NULL);
-    (void)index;
-    if (worker > 0 && HDI_ATOMIC_ADD(&w->begun, 1) == 1) {
-        while (!thr_caller_sleeps(w->threads) && time(NULL) < start + 30) {}
-        HDI_ATOMIC_SET(&w->slept, thr_caller_sleeps(w->threads));
-    }
-    while (worker == 0 && HDI_ATOMIC_GET(&w->begun) == 0 && time(NULL) < start + 60) {}
-}
-#endif
-
-/* No more threads start than there are tasks besides the caller's; and a caller that has nothing to do sleeps. */
-static void thr_few_tasks(void) {
-#if HDI_THREADS
-    enum { TASKS = HDI_TASKS_START };
-    hd_context ctx;
-    thr_nap w;
-    memset(&ctx, 0, sizeof ctx);
-    memset(&w, 0, sizeof w);
-    ctx.n_threads = 4 * TASKS;
-    hdi_hold(&ctx);
-    w.threads = hdi_threads_own(&ctx, TASKS - 1);
-    CHECK(!w.threads);                           /* too few to start any */
-    w.threads = hdi_threads_own(&ctx, TASKS);
-    if (w.threads) {
-        CHECK_MSG(w.threads->n == TASKS - 1, "%d threads", (int)w.threads->n);
-        hdi_parallel(&ctx, TASKS, thr_nap_task, &w);
-        CHECK(w.begun > 0 && w.slept && ctx.waits > 0 && ctx.helped == (uint64_t)w.begun && ctx.regions == 1);
-        CHECK(hdi_threads_own(&ctx, TASKS - 1) == w.threads);    /* those that run take part in loops of few tasks, too */
-    }
-    CHECK(w.threads || !hdi_threads_linked());
-    hdi_let_go(&ctx);
-    CHECK(!ctx.threads);
-#endif
-}
-
-/* Cancels at the last of so many reports. */
-static hd_progress thr_cancel(void *user, const char *stage, double done) {
-    int *left = (int *)user;
-    (void)stage;
-    (void)done;
-    return --*left > 0 ? HD_PROGRESS_CONTINUE : HD_PROGRESS_CANCEL;
-}
-
-/* Nested dissection and the analysis for any number of threads: the same permutation and the same supernodes, in
- * one loop for the order. Cancelled, nothing is left behind. */
-static void thr_orders(void) {
-    static const int32_t n_threads[] = {1, 2, 3, 8};
-    shape s = shape_bumpy(5, 2);
-    hd_laplacian *lap = test_laplacian_at(&s, s.xyz, HD_LAPLACIAN_FEM, 0, NULL);
-    const int32_t n = lap->n_active;
-    const size_t bytes = (size_t)n * sizeof(int32_t);
-    int32_t *first = DENSE_NEW(int32_t, n), *final = DENSE_NEW(int32_t, n), *perm = DENSE_NEW(int32_t, n);
-    int64_t loops = 0;
-    int q, cancelled, left;
-    for (q = 0; q < 5; q++) {
-        for (cancelled = 0; cancelled < 2; cancelled++) {
-            hd_context ctx;
-            hdi_symbolic sym;
-            hd_error e;
-            memset(&ctx, 0, sizeof ctx);
-            hdi_error_clear(&e);
-            ctx.n_threads = q < 4 ? n_threads[q] : 0;
-            ctx.parallel_for = q < 4 ? NULL : heat_shuffled_for;
-            ctx.parallel_user = &loops;
-            ctx.progress_user = &left;
-            ctx.progress = cancelled ? thr_cancel : NULL;
-            hdi_hold(&ctx);
-            left = q % 4 ? 1 : 3;                /* the calling thread may find all of a loop taken */
-            if (cancelled) {
-                CHECK(hdi_nd_order(&lap->L, lap->xyz, perm, &ctx, &e) == HD_ERR_CANCELLED && left == 0);
-            } else {
-                CHECK(hdi_nd_order(&lap->L, lap->xyz, perm, &ctx, &e) == HD_OK);
-                if (q > 0 && q < 4) CHECK(ctx.regions > 0 && ctx.threads);
-                if (q == 0) memcpy(first, perm, bytes);
-                CHECK_MSG(memcmp(first, perm, bytes) == 0, "way %d: another permutation", q);
-                CHECK(hdi_symbolic_make(&sym, &lap->L, perm, &ctx, &e) == HD_OK);
-                if (q == 0) memcpy(final, sym.perm, bytes);
-                CHECK_MSG(memcmp(final, sym.perm, bytes) == 0, "way %d: another elimination order", q);
-                hdi_symbolic_free(&ctx, &sym);
-            }
-            hdi_let_go(&ctx);
-            CHECK(ctx.bytes_in_use == 0 && !ctx.threads);
-        }
-    }
-    free(first);
-    free(final);
-    free(perm);
-    hd_laplacian_free(lap);
-    shape_free(&s);
-}
-
-/* k columns; returns the ordering that the report names. */
-static hd_ordering thr_columns(hd_heat *heat, const hd_laplacian *lap, int32_t k, double *U) {
-    const int32_t sources[4] = {7, 11000, 23000, 40000};
-    const double t = 100 * lap->h * lap->h;
-    hd_report rep;
-    hd_error e;
-    CHECK(hd_heat_columns(heat, HD_KERNEL_OPERATOR, 1, &t, k, sources, U, 0, &rep, &e) >= 0 && rep.method == HD_METHOD_KRYLOV);
-    return rep.ordering;
+/* So many columns by one real factor, and in what elimination order. */
+static void thr_light_ask(call_world *w, int32_t k, hd_ordering ordering, double *kept, const char *what) {
+    const size_t bytes = (size_t)k * (size_t)w->data->s.n * sizeof *kept;
+    w->what = what;
+    w->a.k = k;
+    CHECK(call_words(w, "columns", 0) >= 0 && w->rep.method == HD_METHOD_KRYLOV && w->rep.ordering == ordering);
+    if (kept[0] == 0) memcpy(kept, w->out, bytes);
+    CHECK_MSG(memcmp(kept, w->out, bytes) == 0, "%s: %d columns differ", what, (int)k);
 }
 
 /* Few columns of a large mesh have an elimination order of their own. No answer depends on what a plan was asked
  * before, nor on the number of threads, nor on an update between; another order gives the same column. */
 static void thr_light(void) {
-    shape s = shape_bumpy(6, 4);
-    const size_t bytes = (size_t)s.n * sizeof(double);
-    double *kept = DENSE_NEW(double, s.n), *one = DENSE_NEW(double, s.n), *four = DENSE_NEW(double, 4 * s.n), *u = DENSE_NEW(double, 4 * s.n);
-    double *xyz = DENSE_NEW(double, 3 * s.n);
-    hd_context ctx[2];
-    int q, i;
-    for (i = 0; i < 3 * s.n; i++) xyz[i] = s.xyz[i] * (i % 3 ? 1 : 1.25);
+    static const int32_t ids[4] = {7, 11000, 23000, 40000};
+    const hd_ordering light = HD_ORDERING_MINIMUM_DEGREE, full = HD_ORDERING_NESTED_DISSECTION;
+    call_data d;
+    call_world w;
+    double *one, *four, t;
+    int q, frame;
+    memset(&w, 0, sizeof w);
+    call_data_make(&d, shape_bumpy(6, 4));
+    t = 100 * d.h * d.h;
+    one = DENSE_NEW(double, 2 * d.s.n);          /* of each frame */
+    four = DENSE_NEW(double, 8 * d.s.n);
     for (q = 0; q < 2; q++) {
-        hd_laplacian *lap;
-        hd_heat_opts opts;
-        hd_heat *heat = NULL;
-        hd_error e;
-        memset(ctx + q, 0, sizeof *ctx);
-        memset(&opts, 0, sizeof opts);
-        ctx[q].n_threads = q ? 3 : 1;
-        opts.method = HD_METHOD_KRYLOV;
-        lap = test_laplacian_at(&s, s.xyz, HD_LAPLACIAN_VORONOI_COT, 1, ctx + q);
-        CHECK(hd_heat_create(&heat, lap, &opts, &e) == HD_OK);
-        if (q == 0) CHECK(thr_columns(heat, lap, 1, kept) == HD_ORDERING_MINIMUM_DEGREE);
-        CHECK(thr_columns(heat, lap, 4, u) == HD_ORDERING_NESTED_DISSECTION);
-        if (q == 0) memcpy(four, u, 4 * bytes);
-        CHECK_MSG(memcmp(four, u, 4 * bytes) == 0, "way %d: four columns differ", q);
-        CHECK_MSG(dense_max_diff(kept, u, s.n) <= 1e-9 * dense_max_abs(kept, s.n), "other orders differ by %g",
-                  dense_max_diff(kept, u, s.n));
-        CHECK(thr_columns(heat, lap, 1, u) == HD_ORDERING_MINIMUM_DEGREE);
-        CHECK_MSG(memcmp(kept, u, bytes) == 0, "way %d: one column differs", q);
-        if (q == 0) {                            /* both copies of the pair follow an update */
-            CHECK(hd_laplacian_update(lap, xyz, &e) == HD_OK);
-            CHECK(thr_columns(heat, lap, 1, one) == HD_ORDERING_MINIMUM_DEGREE);
-            CHECK(thr_columns(heat, lap, 4, u) == HD_ORDERING_NESTED_DISSECTION);
-            CHECK_MSG(dense_max_diff(one, u, s.n) <= 1e-9 * dense_max_abs(one, s.n), "updated, other orders differ by %g",
-                      dense_max_diff(one, u, s.n));
-            hd_heat_free(heat);
-            opts.method = HD_METHOD_AUTO;
-            CHECK(hd_heat_create(&heat, lap, &opts, &e) == HD_OK);
-            CHECK(thr_columns(heat, lap, 1, u) == HD_ORDERING_MINIMUM_DEGREE);
-            CHECK_MSG(memcmp(one, u, bytes) == 0, "updated: a new plan's column differs");
+        hd_context ctx;
+        memset(&ctx, 0, sizeof ctx);
+        ctx.n_threads = q ? 3 : 1;
+        call_open(&w, &d, &ctx);
+        w.a.ids = ids;
+        w.a.t = &t;
+        w.what = "light";
+        CHECK(call_words(&w, "voronoi updatable triangles krylov operator plan", 1) == HD_OK);
+        for (frame = 0; frame < 2 - q; frame++) {
+            double *u = one + frame * d.s.n, *v = four + 4 * frame * d.s.n;
+            if (frame) CHECK(call_words(&w, "update", 0) == HD_OK);
+            if (q == 0) thr_light_ask(&w, 1, light, u, "first");
+            thr_light_ask(&w, 4, full, v, q ? "threads" : "after one");
+            CHECK_MSG(dense_max_diff(u, v, d.s.n) <= 1e-9 * dense_max_abs(u, d.s.n), "frame %d, other orders differ by %g", frame,
+                      dense_max_diff(u, v, d.s.n));
+            thr_light_ask(&w, 1, light, u, q ? "threads" : "after four");
         }
-        hd_heat_free(heat);
-        hd_laplacian_free(lap);
-        CHECK(ctx[q].bytes_in_use == 0);
+        if (q == 0) CHECK(call_words(&w, "auto plan", 1) == HD_OK);
+        if (q == 0) thr_light_ask(&w, 1, light, one + d.s.n, "a new plan");
+        call_close(&w);
+        CHECK(ctx.bytes_in_use == 0);
     }
-    free(kept);
     free(one);
     free(four);
-    free(u);
-    free(xyz);
-    shape_free(&s);
+    call_world_free(&w);
+    call_data_free(&d);
 }
 
-static void test_threads(void) {
-    shape s = shape_bumpy(4, 5), small = shape_bumpy(1, 5);
+static void thr_lives(void) {
+    shape s = shape_bumpy(4, 5);
     double *want = DENSE_NEW(double, s.n), *u = DENSE_NEW(double, s.n);
     hd_context serial;
     hd_laplacian *lap;
@@ -466,20 +396,24 @@ static void test_threads(void) {
     hd_laplacian_free(lap);
     thr_lifetime(&s, want, u);
     thr_product();
-    thr_counts(&s, &small);
+    thr_counts();
     thr_fork(&s, want, u);
 #ifdef LDL_THREADS
     thr_nested(&s, want);
 #endif
-    thr_release();
-    thr_few_tasks();
-    thr_orders();
-    thr_light();
-    CHECK(GUARD_IN_USE == 0);                    /* all that threads had is free */
     free(want);
     free(u);
     shape_free(&s);
-    shape_free(&small);
+}
+
+static void test_threads(void) {
+    thr_calls();
+    thr_orders();
+    thr_lives();
+    thr_light();
+#ifdef GUARD_IN_USE
+    CHECK(GUARD_IN_USE == 0);                    /* all that threads had is free */
+#endif
 }
 
 #endif

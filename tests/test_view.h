@@ -1,4 +1,5 @@
-/* test_view.h - meshes in vertex and index buffers: the same answers to the bit, the same errors, and sizes that cannot be */
+/* test_view.h - meshes in vertex and index buffers: the same answers to the bit, and the same errors; test_doors.h has sizes that
+ * cannot be */
 
 #ifndef TEST_VIEW_H
 #define TEST_VIEW_H
@@ -164,100 +165,9 @@ static void view_bad_data(void) {
     shape_free(&s);
 }
 
-/* Views that say too little, too much, or what cannot be. Nothing of the buffers is read then. */
-static void view_bad_views(void) {
-    shape s = shape_grid(6, 5, 0);
-    view_buffers b = view_make(&s, 1, 16, VIEW_U16, 0);
-    const uint32_t other[3] = {0, 1, 2};
-    hd_laplacian_opts o = {0};
-    hd_laplacian *lap = NULL;
-    hd_geodesic *g = NULL;
-    hd_mesh_view v;
-    hd_error e;
-    int k;
-    CHECK(view_refused(NULL).status == HD_ERR_ARGUMENT);
-#define VIEW_REFUSES(change, code, words) \
-    do { v = b.view; change; e = view_refused(&v); CHECK_MSG(e.status == (code) && strstr(e.text, words) != NULL, "%s", e.text); } while (0)
-    VIEW_REFUSES(v.begin_zero = 1, HD_ERR_ARGUMENT, "not cleared");
-    VIEW_REFUSES(v.end_zero = 1, HD_ERR_ARGUMENT, "not cleared");
-    VIEW_REFUSES(v.xyz_double = s.xyz, HD_ERR_ARGUMENT, "one of xyz");
-    VIEW_REFUSES(v.xyz_float = NULL, HD_ERR_ARGUMENT, "one of xyz");
-    VIEW_REFUSES(v.tri_u32 = other, HD_ERR_ARGUMENT, "one of tri");
-    VIEW_REFUSES(v.tri_u16 = NULL, HD_ERR_ARGUMENT, "one of tri");
-    VIEW_REFUSES(v.stride = 11, HD_ERR_ARGUMENT, "stride");
-    VIEW_REFUSES(v.n = -1, HD_ERR_ARGUMENT, "negative");
-    VIEW_REFUSES(v.n_indices = -3, HD_ERR_ARGUMENT, "negative");
-    VIEW_REFUSES(v.n_indices = s.n_tri + 1 + (s.n_tri % 3 == 2), HD_ERR_ARGUMENT, "multiple of three");
-    VIEW_REFUSES(v.n = (int64_t)INT32_MAX + 1, HD_ERR_TOO_LARGE, "2^31");
-    VIEW_REFUSES(v.n_indices = 3 * ((int64_t)INT32_MAX + 1), HD_ERR_TOO_LARGE, "2^31");
-    VIEW_REFUSES(v.n = INT64_MAX, HD_ERR_TOO_LARGE, "2^31");
-    VIEW_REFUSES(v.stride = SIZE_MAX, HD_ERR_TOO_LARGE, "address space");
-    VIEW_REFUSES(v.stride = SIZE_MAX / 2 / (size_t)(s.n - 1), HD_ERR_TOO_LARGE, "address space");
-    VIEW_REFUSES(v.n_indices = 0, HD_ERR_EMPTY, "");
-    VIEW_REFUSES(v.n = 0, HD_ERR_INDEX, "does not exist");
-    VIEW_REFUSES((v.n = v.n_indices = 0, v.stride = 0, v.xyz_float = NULL, v.tri_u16 = NULL), HD_ERR_EMPTY, "");
-#undef VIEW_REFUSES
-    for (k = 0; k < 2; k++) {                    /* a stride without a second vertex to go to */
-        v = b.view;
-        v.n = 1;
-        v.n_indices = 0;
-        v.stride = k ? SIZE_MAX : 0;
-        CHECK(view_refused(&v).status == HD_ERR_EMPTY);
-    }
-    CHECK(hd_laplacian_view(NULL, &b.view, NULL, &e) == HD_ERR_ARGUMENT && hd_geodesic_create_view(NULL, &b.view, NULL, &e) == HD_ERR_ARGUMENT);
-    o.updatable = 1;
-    CHECK(hd_laplacian_view(&lap, &b.view, &o, &e) == HD_OK && hd_geodesic_create_view(&g, &b.view, NULL, &e) == HD_OK);
-    v = b.view;
-    v.n--;
-    CHECK(hd_laplacian_update_view(lap, &v, &e) == HD_ERR_ARGUMENT && e.value == s.n - 1 && strstr(e.text, "number of vertices"));
-    CHECK(hd_geodesic_update_view(g, &v, &e) == HD_ERR_ARGUMENT && e.value == s.n - 1);
-    CHECK(hd_laplacian_update_view(lap, NULL, &e) == HD_ERR_ARGUMENT && hd_laplacian_update_view(NULL, &v, &e) == HD_ERR_ARGUMENT);
-    CHECK(hd_geodesic_update_view(NULL, &v, &e) == HD_ERR_ARGUMENT && lap->version == 0);
-    v = b.view;                                  /* indices are of no matter to an update */
-    v.tri_u16 = NULL;
-    v.n_indices = 1;
-    CHECK(hd_laplacian_update_view(lap, &v, &e) == HD_OK && lap->version == 1);
-    o.end_zero = 1;
-    CHECK(hd_laplacian_view(&lap, &b.view, &o, &e) == HD_ERR_ARGUMENT && strstr(e.text, "options") != NULL);
-    hd_laplacian_free(lap);
-    hd_geodesic_free(g);
-    view_free(&b);
-    shape_free(&s);
-}
-
-/* Out of memory at every allocation: a status, nothing left, nothing changed. */
-static void view_memory(void) {
-    shape s = shape_grid(6, 5, 0);
-    view_buffers b = view_make(&s, 1, 16, VIEW_U16, 0);
-    hd_laplacian_opts o = {0};
-    hd_error e;
-    int64_t k;
-    int done = 0;
-    o.updatable = 1;
-    for (k = 1; !done && k < 200; k++) {
-        test_memory m;
-        hd_context ctx = test_memory_context(&m);
-        hd_laplacian *lap = NULL;
-        ctx.allocation_limit = (uint64_t)k;
-        o.context = &ctx;
-        if (hd_laplacian_view(&lap, &b.view, &o, &e) < 0) CHECK(e.status == HD_ERR_MEMORY_LIMIT && lap == NULL);
-        else {
-            CHECK(hd_laplacian_update_view(lap, &b.view, &e) == HD_ERR_MEMORY_LIMIT && lap->version == 0);
-            done = 1;
-        }
-        hd_laplacian_free(lap);
-        test_memory_done(&m, &ctx, "views, out of memory");
-    }
-    CHECK(done && k > 4);
-    view_free(&b);
-    shape_free(&s);
-}
-
 static void test_view(void) {
     view_forms();
     view_bad_data();
-    view_bad_views();
-    view_memory();
 }
 
 #endif

@@ -86,8 +86,16 @@ def ring(n, m):
 
 # ---- the same questions to the module and to native code ----
 
+# A step calls page_... of its first word. A list stands for its length and its numbers, a text for a place with its bytes.
+
+def file_step(name, content):
+    return ["file", content, len(content), name]
+
+
+PER_VERTEX = {"columns": 1, "signature": 1, "smooth": 3, "geodesic": 1}     # numbers of an answer, for each time
+
 STEPS = [["shape", 0, 3000], ["shape", 1, 2500], ["shape", 2, 2000], ["shape", 3, 2000], ["shape", 4, 2000],
-         ["file", "ring.obj", ring(40, 20)]]
+         file_step("ring.obj", ring(40, 20))]
 QUERIES = [["columns", DIRECT, [30.0], 7], ["columns", DIRECT, [30.0], 500],
            ["columns", KRYLOV, [2.0, 4.0, 8.0, 16.0], 33],
            ["signature", [20.0, 40.0, 80.0]], ["smooth", [1.0, 3.0]], ["geodesic", 11]]
@@ -111,21 +119,18 @@ const clock = () => {
     return performance.now();
   }
 };
-const rows = [];
-for (const step of steps) {
-  const [op, ...a] = step, n = wasm.page_n(), begin = clock();
-  let status, count = 0, p = 0;
-  const times = (list) => (p = put(new Uint8Array(Float64Array.from(list).buffer)));
-  if (op === "shape") status = wasm.page_shape(a[0], a[1]);
-  if (op === "file") { const d = Buffer.from(a[1]), q = put(Buffer.from(a[0])); status = wasm.page_file(put(d), d.length, q); }
-  if (op === "begin") { status = wasm.page_begin(a[0]); count = -9; }
-  if (op === "columns") { status = wasm.page_columns(a[0], a[1].length, times(a[1]), a[2]); count = n * a[1].length; }
-  if (op === "signature") { status = wasm.page_signature(a[0].length, times(a[0])); count = n * a[0].length; }
-  if (op === "smooth") { status = wasm.page_smooth(a[0].length, times(a[0])); count = 3 * n * a[0].length; }
-  if (op === "geodesic") { status = wasm.page_geodesic(a[0]); count = n; }
-  const ms = clock() - begin, from = count < 0 ? wasm.page_facts() : wasm.page_out();
+const perVertex = JSON.parse(process.argv[6]), rows = [];
+for (const [op, ...given] of steps) {
+  const n = wasm.page_n(), begin = clock(), args = [];
+  let times = 1, p = 0;
+  for (const x of given) {
+    if (Array.isArray(x)) args.push(times = x.length, p = put(new Uint8Array(Float64Array.from(x).buffer)));
+    else args.push(typeof x === "string" ? put(Buffer.from(x)) : x);
+  }
+  const status = wasm["page_" + op](...args), facts = op === "begin", count = facts ? 9 : (perVertex[op] || 0) * n * times;
+  const ms = clock() - begin, from = facts ? wasm.page_facts() : wasm.page_out();
   if (p) wasm.page_free(p);
-  const values = status < 0 ? [] : new Float64Array(wasm.memory.buffer, from, Math.abs(count));
+  const values = status < 0 ? [] : new Float64Array(wasm.memory.buffer, from, count);
   fs.writeFileSync(`${out}.${rows.length}`, Buffer.from(Float64Array.from(values).buffer));
   rows.push({ status, ms, n: wasm.page_n(), text: status < 0 ? text() : "", bytes: wasm.memory.buffer.byteLength });
 }
@@ -140,7 +145,7 @@ def in_node(steps):
         f.write(NODE)
     with open(ask, "w") as f:
         json.dump(steps, f)
-    command = [program("node", "nodejs"), script, BUILT["wasm"], ask, out, os.path.join(WEB, "worker.js")]
+    command = [program("node", "nodejs"), script, BUILT["wasm"], ask, out, os.path.join(WEB, "worker.js"), json.dumps(PER_VERTEX)]
     run = subprocess.run(command, stdout=subprocess.PIPE, check=True)
     rows = json.loads(run.stdout)
     for i, row in enumerate(rows):
@@ -168,34 +173,26 @@ def natively(steps):
     lib.page_alloc.restype = ctypes.c_void_p
     lib.page_out.restype = lib.page_facts.restype = ctypes.POINTER(ctypes.c_double)
     lib.page_text.restype = ctypes.c_char_p
-    lib.page_file.argtypes = [ctypes.c_void_p, ctypes.c_size_t, ctypes.c_char_p]
+    lib.page_file.argtypes = [ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p]
     lib.page_alloc.argtypes = [ctypes.c_size_t]
     rows = []
-    for op, *a in steps:
-        n, count, begin = lib.page_n(), 0, time.thread_time()
-        times = (lambda t: (len(t), (ctypes.c_double * len(t))(*t)))
-        if op == "shape":
-            status = lib.page_shape(*a)
-        elif op == "file":
-            data = a[1].encode()
-            block = lib.page_alloc(len(data) + 1)
-            ctypes.memmove(block, data, len(data))
-            status = lib.page_file(block, len(data), a[0].encode())
-        elif op == "begin":
-            status, count = lib.page_begin(a[0]), -9
-        elif op == "columns":
-            status, count = lib.page_columns(a[0], *times(a[1]), a[2]), n * len(a[1])
-        elif op == "signature":
-            status, count = lib.page_signature(*times(a[0])), n * len(a[0])
-        elif op == "smooth":
-            status, count = lib.page_smooth(*times(a[0])), 3 * n * len(a[0])
-        else:
-            status, count = lib.page_geodesic(a[0]), n
+    for op, *given in steps:
+        n, times, args, begin = lib.page_n(), 1, [], time.thread_time()
+        for x in given:
+            if isinstance(x, list):
+                times = len(x)
+                args += [times, (ctypes.c_double * times)(*x)]
+            elif isinstance(x, str):
+                args.append(lib.page_alloc(len(x) + 1))
+                ctypes.memmove(args[-1], x.encode() + b"\0", len(x) + 1)
+            else:
+                args.append(x)
+        status = getattr(lib, "page_" + op)(*args)
         ms = 1000 * (time.thread_time() - begin)
-        source = lib.page_facts() if count < 0 else lib.page_out()
-        said = lib.page_text().decode() if status < 0 else ""
-        rows.append({"status": status, "ms": ms, "n": lib.page_n(), "text": said,
-                     "values": tuple(source[:abs(count)]) if status >= 0 and count else ()})
+        facts, count = op == "begin", PER_VERTEX.get(op, 0) * n * times
+        values = (lib.page_facts()[:9] if facts else lib.page_out()[:count] if count else []) if status >= 0 else []
+        rows.append({"status": status, "ms": ms, "n": lib.page_n(), "values": tuple(values),
+                     "text": lib.page_text().decode() if status < 0 else ""})
     return rows
 
 
@@ -284,12 +281,12 @@ class Module(unittest.TestCase):
                  "a.ply": "ply\nformat ascii 1.0\nelement vertex 2\nend_header\n", "a.off": "OFF\n3 1\n",
                  "a.stl": "", "flat.obj": "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"}
         for name, content in files.items():
-            rows = in_node([["file", name, content], ["begin", 0], ["shape", 1, 700], ["begin", 0]])
+            rows = in_node([file_step(name, content), ["begin", 0], ["shape", 1, 700], ["begin", 0]])
             said = rows[0]["text"] or rows[1]["text"]
             print("%s: %s" % (name, said), file=sys.stderr)
             self.assertTrue(said)
             self.assertEqual(rows[3]["status"], 0, "a good surface works after a bad file")
-        self.assertIn("a.obj:4: ", in_node([["file", "a.obj", files["a.obj"]]])[0]["text"])
+        self.assertIn("a.obj:4: ", in_node([file_step("a.obj", files["a.obj"])])[0]["text"])
 
     def test_measure(self):
         if not LARGE:
@@ -523,7 +520,7 @@ class Page(unittest.TestCase):
         chunk = at // 10
         times = b.js("chunkTimes(%d)" % chunk)
         far = b.js("chunkTimes(%d)" % ((at + 3) // 10))
-        native = natively([["file", "ring.obj", text], ["begin", 0], ["columns", KRYLOV, times, 17],
+        native = natively([file_step("ring.obj", text), ["begin", 0], ["columns", KRYLOV, times, 17],
                            ["columns", KRYLOV, far, 17], ["signature", far], ["geodesic", 17]])
         n, k, j = 1800, at - 10 * chunk, at + 3 - 10 * ((at + 3) // 10)
         self.assertAlmostEqual(times[k] / t, 1, 14)

@@ -261,7 +261,7 @@ static trial trial_draw(uint64_t *seed, const trial *from, double unit) {
     static const double tols[] = {0, 0, 0, 1e-6, 1e-11, 1e-13};
     trial c = *from;
     int direct;
-    c.query = among(seed, queries, QUERIES);
+    c.query = among(seed, queries, QUERY_COUNT);
     c.kernel = trial_below(seed, 2);
     c.seed = (int64_t)(shape_random(seed) >> 44);
     c.t = draw_time(seed, unit);
@@ -281,14 +281,14 @@ static trial trial_draw(uint64_t *seed, const trial *from, double unit) {
         if (c.query == QUERY_DERIVATIVE) c.poles = c.degree = 0;
         if (c.query != QUERY_DERIVATIVE && trial_chance(seed, 0.1)) {   /* sets of one's own have none */
             c.poles = 0;
-            c.own = 1 + trial_below(seed, OWNS - 1);
+            c.own = 1 + trial_below(seed, OWN_A0);
             c.degree = 2 + trial_below(seed, 13);
             c.own_x = 1 + trial_below(seed, 7);
         }
     }
     if (c.query == QUERY_FILTER) c.poles = c.degree = c.own = 0;
     c.field = c.query == QUERY_APPLY || c.query == QUERY_DERIVATIVE || c.query == QUERY_ADJOINT || (c.query == QUERY_TIMES && trial_chance(seed, 0.5))
-                  ? among(seed, fields, FIELDS)
+                  ? among(seed, fields, FIELD_COUNT)
                   : 0;
     if (c.query == QUERY_ADJOINT && trial_chance(seed, 0.3)) c.field = FIELD_DELTA;
     /* rounding of huge fields over tiny times leaves the range of doubles */
@@ -721,14 +721,14 @@ static int print_table(void) {
 
 /* By query: how many of a hundred cases are answered, and how many of a hundred comparisons have finite bounds; some shapes, sets
  * of poles and times are such that the rest have none. */
-static const struct { int answered, bounded; } floors[QUERIES] = {
+static const struct { int answered, bounded; } floors[QUERY_COUNT] = {
     {93, 85}, {95, 85}, {93, 90}, {92, 60}, {92, 95}, {93, 88}, {58, 45}, {92, 88}, {95, 75}, {96, 90}, {93, 93}, {96, 75}, {96, 85}};
 
 /* Whether too much was refused, or left without a bound: that would pass all comparisons. */
 static int below_floors(void) {
     enum { ENOUGH = 36 };        /* cases; of fewer nothing can be said */
     int found = 0, q;
-    for (q = 0; q < QUERIES; q++) {
+    for (q = 0; q < QUERY_COUNT; q++) {
         const trial_count *c = trial_counts + q;
         const int64_t answered = c->asked - c->refused, bounded = c->compared - c->unbounded;
         if (c->asked < ENOUGH || (100 * answered >= floors[q].answered * c->asked && 100 * bounded >= floors[q].bounded * c->compared)) continue;

@@ -256,7 +256,7 @@ def cut(folder, name):
     files = [text] + [open(os.path.join(tests, f), encoding="utf-8").read() for f in re.findall(r'#include "(test_\w+\.h)"', text)]
     whole = "\n".join(files)
     static = set(re.findall(r"^static void (\w+)\(", whole, re.M))
-    groups = dict((g, f) for g, f in re.findall(r'\{"(\w+)", (\w+)\}', text)) if name == "runner" else {"internals": "int_all"}
+    groups = dict((g, f) for g, f in re.findall(r'\{"(\w+)", (test_\w+)', text)) if name == "runner" else {"internals": "int_all"}
     pieces, code, todo, done = [], [], list(groups.items()), set()
     while todo:
         group, function = todo.pop(0)
@@ -332,7 +332,7 @@ class Bench:
 
     def compile(self, name):
         """The bytes of the object of a program, or None."""
-        if subprocess.run(["tcc", "-w", "-c", "tests/pieces_%s.c" % name, "-I.", "-o", name + ".o"], cwd=self.folder,
+        if subprocess.run(["tcc", "-w", "-DHEATDIFF_AUDIT", "-c", "tests/pieces_%s.c" % name, "-I.", "-o", name + ".o"], cwd=self.folder,
                           stderr=subprocess.DEVNULL).returncode:
             return None
         with open(os.path.join(self.folder, name + ".o"), "rb") as f:

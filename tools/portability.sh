@@ -16,11 +16,11 @@ top=$(cd "$(dirname "$0")/.." && pwd)
 # Groups. most leaves out those that take minutes without optimisation; core is what an emulator does in half a minute, with every
 # method in `platform`. fast is what -ffast-math leaves (builds.sh has NaN in the input). x87 is what asks neither for bits, nor for
 # bounds near rounding, nor for what is zero up to it: see Limits in heatdiff.h.
-all="base sparse operators rational intrinsic ldl engines krylov heat robust points assembly polygon geodesic diagonal forms \
+all="base sparse operators rational shared intrinsic ldl engines krylov heat robust points assembly polygon geodesic diagonal \
 everywhere picture meshio bounds platform"
 most="base sparse operators rational intrinsic ldl krylov heat robust assembly polygon picture meshio platform"
 core="base sparse rational krylov meshio platform"
-x87="base sparse operators intrinsic ldl engines krylov heat robust assembly diagonal forms everywhere picture platform"
+x87="base sparse operators intrinsic ldl engines krylov heat robust assembly diagonal everywhere picture platform"
 fast="base sparse heat platform"
 
 multilib=gcc-$(gcc -dumpversion 2>/dev/null | cut -d. -f1)-multilib
@@ -136,7 +136,7 @@ embedded() {
 }
 
 one_target() {
-  local name=$1 line cc run groups t0 status=0 summary
+  local name=$1 line cc run groups t0 status=0 summary alone=
   line=$(line_of "$name")
   cc=$(field "$line" 2)
   run=$(field "$line" 3)
@@ -155,8 +155,9 @@ one_target() {
   if [ "$run" = syntax ]; then msvc_syntax; return; fi
   if [ "$run" = embedded ]; then embedded "$name" "$cc"; return; fi
   [ -z "$set_of" ] || groups=$set_of
+  [ "$groups" != core ] || alone=-DTEST_CORE        # the code of no other group
   t0=$SECONDS
-  if ! $cc $flags $(includes "$cc") -w -I"$top" "$top/tests/runner.c" -o "$work/$name.exe" -lm >"$work/log" 2>&1; then
+  if ! $cc $flags $alone $(includes "$cc") -w -I"$top" "$top/tests/runner.c" -o "$work/$name.exe" -lm >"$work/log" 2>&1; then
     head -20 "$work/log"
     echo "$name: does not compile"
     return 1

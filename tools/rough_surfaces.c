@@ -14,7 +14,10 @@
 
    The tables, in Markdown, show the changes in percent of the original's largest value: root mean square and
    largest. The last table is about the maximum principle: how far heat falls below zero on bad triangles. The
-   pictures show the original beside its variants in the same colours; the meshes carry both fields. */
+   pictures show the original beside its variants in the same colours; the meshes carry both fields.
+
+   Without a mesh of your own, the numbers are held against those in tools/README.md, and the exit status is 1 if
+   one is not as it says there. */
 
 #if defined(__GNUC__) || defined(__clang__)
 #pragma GCC diagnostic ignored "-Wunused-function"
@@ -38,6 +41,53 @@ enum { ORIGINAL, NOISE_1, NOISE_2, NOISE_3, HOLES_1, HOLES_2, CUT, UNEVEN, VARIA
 static surface variant[VARIANTS];
 static double times[TIMES];
 static int32_t source;                  /* on the original */
+
+/* ---- what tools/README.md says ---- */
+
+enum { ROWS = 8, KERNEL = MIDDLE, DISTANCE = TIMES + MIDDLE };      /* the variants, and one of them scaled */
+
+/* Changes at the middle time: of the kernel in the mean and at most, and of the distance. */
+static const double page_meshes[ROWS][4] = {{.1, .5, .1, .3}, {1.8, 5.6, 1.1, 2.7}, {7.2, 22.9, 4.1, 10.3}, {1.3, 5.8, 1.1, 2.2},
+                                            {2.1, 12.3, 2.9, 8}, {5.7, 25.4, 9.4, 29}, {0, 0, 3.9, 14}, {.3, 1.4, .3, 1.4}},
+                    page_points[ROWS][4] = {{.1, .3, .2, .3}, {.7, 2.6, 1.9, 2.8}, {4.4, 13.9, 1.7, 6.2}, {1.4, 7.3, 1, 5.1},
+                                            {.3, 3, .4, 2.4}, {1, 9.6, 1.7, 6.8}, {0, 0, 3.8, 13}, {2.7, 10.3, 7.1, 13.5}},
+                    page_stars[ROWS][4] = {{.1, .5, .1, .3}, {1.8, 5.6, 1.1, 2.7}, {8, 25.3, 5.2, 10.7}, {2.4, 9.9, 4.2, 9.2},
+                                           {.3, 1.9, .3, 1.2}, {.5, 2.9, .6, 1.7}, {0, 0, 3.6, 12.1}, {.5, 5.2, .6, 4.2}};
+
+/* How many weights are negative, and the least value of heat: voronoi-cot, with Delaunay flips, tufted. */
+static const struct least { int32_t weights; double value; } page_least[6][3] = {
+    {{25, -.01}, {0, 0}, {0, 0}},       {{506, -.1}, {0, 0}, {0, 0}},   {{25, -.005}, {1, -.006}, {0, 0}},
+    {{480, -.0002}, {0, 0}, {0, 0}},    {{5261, -.2}, {0, 0}, {0, 0}},  {{4614, -.5}, {534, -1}, {0, 0}}};
+
+static int own_mesh, wrong;
+
+/* Other processors and compilers round other sines, and a flip that comes out the other way changes a digit. So numbers may
+ * be off by a tenth of themselves; and by a tenth of a percent, because the page rounds to that and says that operators on
+ * meshes agree to that. */
+static void hold(const char *operator_name, const char *what, double got, double page, double least) {
+    if (own_mesh || fabs(got - page) <= least + 0.1 * fabs(page)) return;
+    fprintf(stderr, "rough_surfaces: %s, %s: %.4g, where tools/README.md says %.4g\n", operator_name, what, got, page);
+    wrong++;
+}
+
+static void hold_row(const char *operator_name, const char *what, double got[FIELDS][2], const double page[4]) {
+    hold(operator_name, what, got[KERNEL][0], page[0], 0.1);
+    hold(operator_name, what, got[KERNEL][1], page[1], 0.2);
+    hold(operator_name, what, got[DISTANCE][0], page[2], 0.1);
+    hold(operator_name, what, got[DISTANCE][1], page[3], 0.2);
+}
+
+/* Without a negative weight heat is nowhere negative, by theory: it may be below zero by its bound, which must be small.
+ * Otherwise the least value, of which the page has one digit, is the one there up to a factor of two. */
+static void hold_least(const char *operator_name, const char *what, int64_t weights, double value, double bound,
+                       struct least page) {
+    hold(operator_name, what, (double)weights, page.weights, 0);
+    if (own_mesh || (page.value < 0 ? value < page.value / 2 && value > 2 * page.value
+                                    : value >= -fmin(bound, 3e-8) && bound < 1e-5)) return;
+    fprintf(stderr, "rough_surfaces: %s, %s: least value %.3g within %.3g, where tools/README.md says %.3g\n",
+            operator_name, what, value, bound, page.value);
+    wrong++;
+}
 
 /* ---- heat ---- */
 
@@ -143,7 +193,7 @@ static void show(const char *folder, const answer *a) {
 /* ---- tables ---- */
 
 /* The change of every field from the original, at common vertices, in percent of the largest value. */
-static void print_change(const surface *f, const answer *a, const answer *original) {
+static void print_change(const surface *f, const answer *a, const answer *original, double got[FIELDS][2]) {
     int32_t i, n;
     int q;
     for (q = 0; q < FIELDS; q++) {
@@ -157,16 +207,19 @@ static void print_change(const surface *f, const answer *a, const answer *origin
             worst = fmax(worst, off);
             sum += off * off;
         }
-        printf(" %.1f (%.3g) |", sqrt(sum / n), worst < 99.5 ? floor(10 * worst + 0.5) / 10 : worst);
+        got[q][0] = sqrt(sum / n);
+        got[q][1] = worst;
+        printf(" %.1f (%.3g) |", got[q][0], worst < 99.5 ? floor(10 * worst + 0.5) / 10 : worst);
     }
     printf("\n");
     fflush(stdout);
 }
 
-static void table(const method *m, const char *folder) {
+static void table(const method *m, const char *folder, const double page[ROWS][4]) {
     answer a[VARIANTS], scaled;
     hd_laplacian *lap = laplacian(m, &variant[ORIGINAL].s, NULL);
-    int v;
+    double got[FIELDS][2];
+    int v, row = 0;
     printf("\n| %s | k_t, t = %.4g | t = %.4g | t = %.4g | d_t, t = %.4g | t = %.4g | t = %.4g |\n"
            "|---|---|---|---|---|---|---|\n", m->name, times[0], times[1],
            times[2], times[0], times[1], times[2]);
@@ -174,11 +227,13 @@ static void table(const method *m, const char *folder) {
         a[v] = solve(m, variant + v, 0);
         if (v == ORIGINAL) continue;
         printf("| %s |", variant[v].name);
-        print_change(variant + v, a + v, a);
+        print_change(variant + v, a + v, a, got);
+        hold_row(m->name, variant[v].name, got, page[row++]);
         if (v != NOISE_3) continue;
         scaled = solve(m, variant + v, lap->area);
         printf("| the same, scaled to the original's area |");
-        print_change(variant + v, &scaled, a);
+        print_change(variant + v, &scaled, a, got);
+        hold_row(m->name, "scaled", got, page[row++]);
         free(scaled.value);
     }
     if (folder) show(folder, a);
@@ -209,7 +264,7 @@ static void suspects(const hd_laplacian *lap, int32_t *vertex) {
 
 /* How far K_t e_i falls below zero, relative to its largest value, for several sources and times; and the
  * largest bound on the error. */
-static void print_lowest(const method *m, const shape *s) {
+static void print_lowest(const method *m, const shape *s, const char *name, struct least page) {
     static const double in_h2[] = {0.01, 0.1, 1, 10};
     hd_laplacian *lap = laplacian(m, s, NULL);
     hd_heat *heat = NULL;
@@ -233,6 +288,7 @@ static void print_lowest(const method *m, const shape *s) {
             bound = fmax(bound, report.error_bound);
         }
     printf(" %lld | %.0e (%.0e) |", (long long)lap->mesh.n_negative_weights, low, bound);
+    hold_least(m->name, name, lap->mesh.n_negative_weights, low, bound, page);
     hd_heat_free(heat);
     hd_laplacian_free(lap);
     free(u);
@@ -250,7 +306,7 @@ static void maximum_principle(void) {
         surface f = begin(&variant[rows[k]].s, "needles");
         for (i = 0; i < f.s.n && k >= 4; i++) f.s.xyz[3 * i] *= 10;
         printf("| %s%s |", variant[rows[k]].name, k >= 4 ? ", ten times as long" : "");
-        for (m = 0; m < 3; m++) print_lowest(methods[m], &f.s);
+        for (m = 0; m < 3; m++) print_lowest(methods[m], &f.s, variant[rows[k]].name, page_least[k][m]);
         printf("\n");
         fflush(stdout);
         shape_free(&f.s);
@@ -320,6 +376,7 @@ int main(int argc, char **argv) {
     const char *folder = argc > 1 && argv[1][0] ? argv[1] : NULL, *file = argc > 2 ? argv[2] : NULL;
     hd_laplacian *lap;
     int k;
+    own_mesh = file != NULL;
     make_variants(file);
     lap = laplacian(&FEM, &variant[ORIGINAL].s, NULL);
     for (k = 0; k < TIMES; k++) times[k] = lap->area * 0.002 * pow(10, k);
@@ -328,17 +385,18 @@ int main(int argc, char **argv) {
            "in per cent of the original's largest value: root of the mean square (largest).\n",
                (int)variant[ORIGINAL].s.n, lap->area, lap->h, (int)source);
     hd_laplacian_free(lap);
-    table(&FEM, folder);
-    table(&PLAIN, NULL);
-    table(&DELAUNAY, NULL);
+    table(&FEM, folder, page_meshes);
+    table(&PLAIN, NULL, page_meshes);
+    table(&DELAUNAY, NULL, page_meshes);
     if (variant[ORIGINAL].s.n <= 20000) {
-        table(&POINTS, NULL);
-        table(&STARS, NULL);
+        table(&POINTS, NULL, page_points);
+        table(&STARS, NULL, page_stars);
     }
     maximum_principle();
     for (k = 0; k < VARIANTS; k++) {
         shape_free(&variant[k].s);
         free(variant[k].of);
     }
-    return 0;
+    if (wrong) fprintf(stderr, "rough_surfaces: %d numbers are not as tools/README.md says\n", wrong);
+    return wrong > 0;
 }

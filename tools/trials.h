@@ -323,8 +323,23 @@ static int trial_mesh(trial_body *b, const char *name, const double *p) {
     return 1;
 }
 
-/* What shapes.h makes: ico/levels, bumpy/levels/seed, torus/nu/nv, cylinder/nu/nv, flat/nx/ny/jitter, demo/n; of polygons,
- * qtorus/nu/nv, qsphere/m, hex/levels, tromino/a/b/jitter. */
+/* Triangles between any three of n points in a cube: edges with many faces, slivers, vertices in no face. */
+static shape trial_tangle(int32_t n, int32_t n_tri, uint64_t seed) {
+    shape s = shape_make(n, n_tri);
+    int32_t i, v[3];
+    for (i = 0; i < 3 * n; i++) s.xyz[i] = shape_signed(&seed);
+    for (i = 0; i < n_tri; i++) {
+        do {
+            int k;
+            for (k = 0; k < 3; k++) v[k] = (int32_t)(shape_random(&seed) % (uint64_t)n);
+        } while (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]);
+        shape_put_triangle(&s, i, v[0], v[1], v[2]);
+    }
+    return s;
+}
+
+/* What shapes.h makes: ico/levels, bumpy/levels/seed, torus/nu/nv, cylinder/nu/nv, flat/nx/ny/jitter, demo/n, and
+ * tangle/points/triangles/seed; of polygons, qtorus/nu/nv, qsphere/m, hex/levels, tromino/a/b/jitter. */
 static int trial_shape(trial_body *b, const char *name, const double *p) {
     const int32_t m = (int32_t)p[0], k = (int32_t)p[1];
     if (strcmp(name, "ico") == 0) b->s = shape_icosphere(m);
@@ -333,6 +348,7 @@ static int trial_shape(trial_body *b, const char *name, const double *p) {
     else if (strcmp(name, "cylinder") == 0) b->s = shape_cylinder(m, k, 1, 2);
     else if (strcmp(name, "flat") == 0) b->s = shape_grid(m, k, p[2]);
     else if (strcmp(name, "demo") == 0) b->s = shape_demo(m);
+    else if (strcmp(name, "tangle") == 0) b->s = trial_tangle(m, k, (uint64_t)p[2]);
     else if (strcmp(name, "qtorus") == 0) b->p = shape_quad_torus(m, k, 2, 1);
     else if (strcmp(name, "qsphere") == 0) b->p = shape_quad_sphere(m);
     else if (strcmp(name, "hex") == 0) b->p = shape_hex_sphere(m);
@@ -463,10 +479,10 @@ static double trial_unit(const hd_laplacian *lap) {
 /* ==== [5] cases ==== */
 
 enum { QUERY_APPLY, QUERY_COLUMN, QUERY_TIMES, QUERY_DERIVATIVE, QUERY_ADJOINT, QUERY_FROM, QUERY_FILTER,
-       QUERY_ENTRIES, QUERY_PAIRS, QUERY_DIAGONAL, QUERY_EDGES, QUERY_DISTANCE, QUERY_DISTANCE_FROM, QUERIES };
-enum { OWN_NONE, OWN_COPY, OWN_COPY0, OWN_LOOSE, OWN_NEAR, OWN_RANDOM, OWN_RESOLVENT, OWN_A0, OWNS };
+       QUERY_ENTRIES, QUERY_PAIRS, QUERY_DIAGONAL, QUERY_EDGES, QUERY_DISTANCE, QUERY_DISTANCE_FROM, QUERY_COUNT };
+enum { OWN_NONE, OWN_COPY, OWN_COPY0, OWN_LOOSE, OWN_NEAR, OWN_RANDOM, OWN_RESOLVENT, OWN_A0, OWN_PACKS };
 enum { FIELD_RANDOM, FIELD_SMOOTH, FIELD_NEARLY, FIELD_HUGE, FIELD_TINY, FIELD_DELTA, FIELD_ALTERNATE,
-       FIELD_MODE, FIELD_CONSTANT, FIELD_STEP, FIELD_LINEAR, FIELD_ZERO, FIELD_LEVEL, FIELDS };
+       FIELD_MODE, FIELD_CONSTANT, FIELD_STEP, FIELD_LINEAR, FIELD_ZERO, FIELD_LEVEL, FIELD_COUNT };
 
 static const char *const trial_queries[] = {"apply",    "column", "times",    "derivative",    "adjoint",
                                           "from",     "filter", "entries",  "pairs",         "diagonal",
@@ -478,7 +494,7 @@ static const char *const trial_solvers[] = {"auto", "cocg", "cocr", "minres", "l
 static const char *const trial_preconds[] = {"auto", "none", "jacobi", "ssor", "ildl", "mildl", NULL};
 static const char *const trial_poles[] = {"default", "uniform", "kernel", "own", "diagonal", NULL};
 static const char *const trial_owns[] = {"none",   "copy",      "copy0", "loose", "near",
-                                        "random", "resolvent", "a0",    NULL};
+                                        "random", "resolvent", "a0", "packs", NULL};
 static const char *const trial_fields[] = {"random", "smooth",    "nearly", "huge",     "tiny",
                                           "delta",  "alternate", "mode",   "constant", "step",
                                           "linear", "zero",      "level",  NULL};
@@ -616,7 +632,7 @@ static trial_tally trial_rows[TRIAL_ROWS];
 static int trial_n_rows;
 /* By query: cases put, those without an answer (no pair, no plan, an error), comparisons, those without a finite bound. */
 typedef struct trial_count { int64_t asked, refused, compared, unbounded; } trial_count;
-static trial_count trial_counts[QUERIES];
+static trial_count trial_counts[QUERY_COUNT];
 static double trial_largest;         /* bound reported since this was set to zero */
 static double trial_shrink = 1;
 /* comparisons in which the truth's own error is above a hundredth of the bound */
@@ -1332,6 +1348,28 @@ static int trial_make_filter(trial_work *w) {
     return hd_rational_fit(&w->set, f, lambda_max, &trial_serial, NULL) >= 0;
 }
 
+/* Sets by number, real poles and pairs in all the ways in which four of them fill a pack or leave one over: how many, which of them are real, and
+ * the constant. No two poles are the same, and none is near the negative axis. */
+enum { TRIAL_PACKS = 12 };
+
+static void trial_packs(hd_rational *s, int which) {
+    static const struct { int32_t n; uint32_t real; double a0; } sets[TRIAL_PACKS] = {
+        {1, 1, 0}, {3, 7, 0.5}, {5, 31, -0.2}, {5, 1, 0.25}, {9, 1, 0}, {5, 1u << 4, 0.1}, {4, 1, 0}, {9, 0, 1}, {5, 3, 0}, {0, 0, 0.75},
+        {32, 0x00010101u, 0.3}, {29, 1, 0}};
+    uint64_t seed = (uint64_t)which + 3;
+    int32_t p;
+    s->n_poles = sets[which].n;
+    s->a0 = sets[which].a0;
+    for (p = 0; p < s->n_poles; p++) {
+        const int real = (int)(sets[which].real >> p & 1);
+        s->theta[p].re = real ? 0.5 + 3.5 * shape_uniform(&seed) + 0.3 * p : 6 * shape_signed(&seed);
+        s->theta[p].im = real ? 0 : 1 + 8 * shape_uniform(&seed);
+        s->a[p].re = 3 * shape_signed(&seed);
+        s->a[p].im = real ? 0 : 3 * shape_signed(&seed);
+        s->degree += real ? 1 : 2;
+    }
+}
+
 /* A set of the caller's own; 0: this one cannot be had. */
 static int trial_make_own(trial_work *w) {
     const trial *c = w->c;
@@ -1364,6 +1402,8 @@ static int trial_make_own(trial_work *w) {
         s->theta[0].re = -t * (double)T->lambda[c->seed % T->n];
         s->theta[0].im = pow(10, -c->own_x);
         s->a[0].im = 1;
+    } else if (c->own == OWN_PACKS) {
+        trial_packs(s, (int)c->own_x);
     } else if (c->own == OWN_RESOLVENT) {        /* 1/(1 - x) */
         s->degree = s->n_poles = 1;
         s->theta[0].re = 1;
