@@ -1249,44 +1249,6 @@ static void ldl_robust_values(const hd_csr *a, int32_t k, double *real, hd_c64 *
     kit_release(mark);
 }
 
-/* variant % 4: ordering; / 4: real, complex, or both in turn. */
-static hd_status ldl_rob_job(hd_context *ctx, int variant) {
-    const int kind = variant / 4, mark = kit_mark();
-    const ldl_problem p = ldl_random_problem(48, 4, 5, 9);
-    hd_ldl_opts o = ldl_opts_of(ldl_orderings[variant % 4], p.perm, p.xyz, ctx);
-    hd_ldl *f = ldl_mark;
-    hd_error e;
-    hd_status st = hd_ldl_analyse(&f, &p.a, &o, NULL, &e);
-    CHECK(e.status == st && (st >= 0) == (f != ldl_mark));
-    if (st >= 0) {
-        if (kind != 1) CHECK((st = hd_ldl_factor(f, p.real, NULL, &e)) == e.status);
-        if (kind != 1 && st >= 0) CHECK((st = hd_ldl_solve(f, 6, p.c, 0, p.y, 0, &e)) == e.status);
-        if (kind != 0 && st >= 0) CHECK((st = hd_ldl_factor_complex(f, p.k, p.val, NULL, &e)) == e.status);
-        if (kind != 0 && st >= 0) CHECK((st = hd_ldl_solve_complex(f, p.b, 0, p.x, 0, &e)) == e.status);
-        hd_ldl_free(f);
-    }
-    kit_release(mark);
-    return st;
-}
-
-static void ldl_robust(void) {
-    static const char *const names[3] = {"ldl real", "ldl complex", "ldl both"};
-    int variant;
-    for (variant = 0; variant < 12; variant++) {
-        const int64_t before = test_passed;
-        rob_job job;
-        job.what = names[variant / 4];
-        job.run = ldl_rob_job;
-        job.variant = variant;
-        rob_fail_each_allocation(&job);
-        rob_byte_limits(&job);
-        rob_stop_each_progress(&job, HD_PROGRESS_CANCEL, HD_ERR_CANCELLED);
-        rob_stop_each_progress(&job, (hd_progress)1, HD_ERR_ARGUMENT);
-        rob_stop_each_progress(&job, (hd_progress)0, HD_ERR_ARGUMENT);
-        test_count_once(before);
-    }
-}
-
 /* Attempt k of a factorisation that runs out of memory, or is cancelled, in the first one of the object or a later: not to be solved with,
  * but to be factored again, with the bits of want. k = 0: what these are. Whether it was stopped. */
 static int ldl_survives_at(const ldl_problem *p, hd_c64 *want, int cancel, int before, int reverse, int64_t k) {
@@ -1344,138 +1306,87 @@ static void ldl_survives(void) {
 
 /* ---- arguments ---- */
 
+/* Patterns that are none: what is wrong, and where. */
 static void ldl_bad_patterns(void) {
-    static const struct { int what; hd_status want; int32_t row, column; } rows[] = {
-        {0, HD_ERR_NOT_SYMMETRIC, 1, 2}, {1, HD_ERR_NOT_SYMMETRIC, 1, 2}, {2, HD_ERR_NOT_SYMMETRIC, 3, 4},
-        {3, HD_ERR_STRUCTURE, -1, -1}, {4, HD_ERR_STRUCTURE, -1, -1}, {5, HD_ERR_STRUCTURE, -1, -1},
-        {6, HD_ERR_STRUCTURE, 2, 2}, {7, HD_ERR_INDEX, 2, 3}, {8, HD_ERR_STRUCTURE, 1, -1},
+    static const struct { int at, to; hd_status want; int32_t row, column; } rows[] = {    /* col[at] = to; 6: the columns, 7: ptr[1] */
+        {0, 0, HD_ERR_NOT_SYMMETRIC, 1, 2}, {6, 4, HD_ERR_NOT_SYMMETRIC, 3, 4}, {4, 2, HD_ERR_STRUCTURE, 2, 2},    /* 2 twice */
+        {4, 3, HD_ERR_INDEX, 2, 3}, {7, 5, HD_ERR_STRUCTURE, 1, -1},
     };
-    size_t k;
     hd_ldl *f = ldl_mark;
     hd_error e;
-    for (k = 0; k < sizeof rows / sizeof *rows; k++) {
+    size_t k;
+    for (k = 0; k < 2 * sizeof rows / sizeof *rows; k++) {
+        const int at = rows[k / 2].at, to = rows[k / 2].to;
         int64_t ptr[4] = {0, 2, 4, 6};
         int32_t col[6] = {0, 1, 0, 1, 1, 2};     /* (2, 1) has no partner, though its value is zero */
         double val[6] = {1, 2, 2, 1, 0, 1};
-        hd_csr a = sparse_view(3, 3, 6, ptr, col, val);
-        switch (rows[k].what) {
-        case 1: a.val = NULL; break;
-        case 2: a.n_cols = 4; break;
-        case 3: a.row_ptr = NULL; break;
-        case 4: a.col = NULL; break;
-        case 5: a.n_rows = a.n_cols = -1; break;
-        case 6: col[4] = 2; break;               /* twice */
-        case 7: col[4] = 3; break;
-        case 8: ptr[1] = 5; break;
-        default: break;
-        }
-        CHECK(hd_ldl_analyse(&f, &a, NULL, NULL, &e) == rows[k].want && e.status == rows[k].want && f == ldl_mark);
-        CHECK_MSG(k < 2 ? e.row + e.column == 3 && e.row * e.column == 2 : (rows[k].row < 0 || e.row == rows[k].row) &&
-                  (rows[k].column < 0 || e.column == rows[k].column), "pattern %d: (%d, %d)", (int)k, (int)e.row, (int)e.column);
-        CHECK(hd_ldl_analyse(NULL, &a, NULL, NULL, &e) == HD_ERR_ARGUMENT && e.status == HD_ERR_ARGUMENT);
+        hd_csr a = sparse_view(3, 3, 6, ptr, col, k % 2 ? NULL : val);
+        if (at < 6) col[at] = to;
+        if (at == 6) a.n_cols = to;
+        if (at == 7) ptr[1] = to;
+        CHECK(hd_ldl_analyse(&f, &a, NULL, NULL, &e) == rows[k / 2].want && e.status == rows[k / 2].want && f == ldl_mark);
+        CHECK_MSG((e.row == rows[k / 2].row && e.column == rows[k / 2].column) || (k < 2 && e.row == 2 && e.column == 1), "pattern %d: (%d, %d)", (int)k,
+                  (int)e.row, (int)e.column);
     }
-    CHECK(hd_ldl_analyse(&f, NULL, NULL, NULL, &e) == HD_ERR_ARGUMENT && f == ldl_mark);
 }
 
 static void ldl_bad_options(void) {
     enum { N = 10 };
     const double wrong[3] = {(double)NAN, (double)INFINITY, -(double)INFINITY};
-    const int32_t bad[3] = {1, N, -1};           /* 1: there already */
-    ldl_problem p = ldl_problem_of(test_path_csr(N, 1), 1, 1);
-    int32_t i;
-    hd_context ctx;
+    const ldl_problem p = ldl_problem_of(test_path_csr(N, 1), 1, 1);
     hd_ldl_opts o;
     hd_ldl *f = ldl_mark;
     hd_error e;
-    memset(&ctx, 0, sizeof ctx);
-    for (i = 0; i < N; i++) {
-        p.perm[i] = (3 * i + 4) % N;
-        p.a.val[i] = (double)NAN;                /* values are not looked at */
-    }
-#define LDL_BAD(change, st)                                                                                            \
-    memset(&o, 0, sizeof o);                                                                                           \
-    change;                                                                                                            \
-    CHECK_MSG(hd_ldl_analyse(&f, &p.a, &o, NULL, &e) == st && e.status == st && e.text[0] && f == ldl_mark, "%s: %s", #change, hd_status_name(e.status))
-    LDL_BAD(o.begin_zero = 1, HD_ERR_ARGUMENT);
-    LDL_BAD(o.end_zero = -1, HD_ERR_ARGUMENT);
-    LDL_BAD(o.ordering = (hd_ordering)4, HD_ERR_ARGUMENT);
-    LDL_BAD(o.ordering = (hd_ordering)99, HD_ERR_ARGUMENT);
-    LDL_BAD(o.ordering = HD_ORDERING_OWN, HD_ERR_ARGUMENT);
-    LDL_BAD(o.ordering = HD_ORDERING_NESTED_DISSECTION, HD_ERR_ARGUMENT);
-    ctx.n_threads = -1;
-    LDL_BAD(o.context = &ctx, HD_ERR_ARGUMENT);
-    ctx.n_threads = 0;
-    ctx.allocator.alloc = test_memory_alloc;
-    LDL_BAD(o.context = &ctx, HD_ERR_ARGUMENT);
-    for (i = 0; i < 3; i++) {
+    int32_t i;
+#define LDL_BAD(ordering, perm, xyz, st)                                                                               \
+    o = ldl_opts_of((hd_ordering)(ordering), perm, xyz, NULL);                                                         \
+    CHECK_MSG(hd_ldl_analyse(&f, &p.a, &o, NULL, &e) == st && e.status == st && e.text[0] && f == ldl_mark, "%s", hd_status_name(e.status))
+    LDL_BAD(4, NULL, NULL, HD_ERR_ARGUMENT);
+    LDL_BAD(99, NULL, NULL, HD_ERR_ARGUMENT);
+    LDL_BAD(HD_ORDERING_OWN, NULL, p.xyz, HD_ERR_ARGUMENT);
+    LDL_BAD(HD_ORDERING_NESTED_DISSECTION, p.perm, NULL, HD_ERR_ARGUMENT);
+    for (i = 0; i < 3; i++) {                    /* there already, beyond the rows, negative */
         const int32_t keep = p.perm[7];
-        p.perm[7] = i ? bad[i] : p.perm[3];
-        LDL_BAD(o = ldl_opts_of(HD_ORDERING_OWN, p.perm, NULL, NULL), HD_ERR_INDEX);
+        p.perm[7] = i == 0 ? p.perm[3] : i == 1 ? N : -1;
+        LDL_BAD(HD_ORDERING_OWN, p.perm, NULL, HD_ERR_INDEX);
         CHECK_MSG(e.row == 7 && e.value == p.perm[7], "row %d, value %g", (int)e.row, e.value);
         p.perm[7] = keep;
     }
     for (i = 0; i < 6; i++) {                    /* coordinates: refused, or of any size */
         p.xyz[5 * i + 2] = wrong[i % 3];
-        LDL_BAD(o = ldl_opts_of(i < 3 ? HD_ORDERING_NESTED_DISSECTION : HD_ORDERING_AUTO, NULL, p.xyz, NULL), HD_ERR_NOT_FINITE);
+        LDL_BAD(i < 3 ? HD_ORDERING_NESTED_DISSECTION : HD_ORDERING_AUTO, NULL, p.xyz, HD_ERR_NOT_FINITE);
         CHECK_MSG(e.row == (5 * i + 2) / 3 && e.column == (5 * i + 2) % 3, "row %d, column %d", (int)e.row, (int)e.column);
         p.xyz[5 * i + 2] = i % 2 ? DBL_MAX : -DBL_MAX;
     }
 #undef LDL_BAD
+    for (i = 0; i < N; i++) p.a.val[i] = (double)NAN;    /* values are not looked at */
     for (i = 2; i < 4; i++) {
         o = ldl_opts_of(ldl_orderings[i], p.perm, p.xyz, NULL);
         hd_ldl_free(ldl_make(&p.a, &o, "good options"));
     }
-    hd_ldl_free(NULL);
 }
 
-/* What is wrong with each call, by what was factored last: nothing, a real matrix, two complex ones. */
-static void ldl_bad_calls(void) {
+/* Solves need a factorisation, of their kind, the last one, and one that went well. */
+static void ldl_bad_solves(void) {
     enum { N = 6 };
-    ldl_problem p = ldl_problem_of(test_path_csr(N, 1), 2, 1);
-    const double *b = p.c;
-    const hd_c64 *c = p.b;
-    double *x = p.y;
-    hd_c64 *z = p.x;
+    const ldl_problem p = ldl_problem_of(test_path_csr(N, 1), 2, 1);
     hd_ldl *f = ldl_make(&p.a, NULL, "calls");
     hd_error e;
-#define LDL_BAD(call) CHECK((call) == HD_ERR_ARGUMENT && e.status == HD_ERR_ARGUMENT && e.text[0])
-    LDL_BAD(hd_ldl_solve(f, 1, b, 0, x, 0, &e));
-    LDL_BAD(hd_ldl_solve_complex(f, c, 0, z, 0, &e));
-    LDL_BAD(hd_ldl_factor(NULL, p.real, NULL, &e));
-    LDL_BAD(hd_ldl_factor(f, NULL, NULL, &e));
-    LDL_BAD(hd_ldl_factor_complex(NULL, 1, p.val, NULL, &e));
-    LDL_BAD(hd_ldl_factor_complex(f, 1, NULL, NULL, &e));
-    LDL_BAD(hd_ldl_factor_complex(f, 0, p.val, NULL, &e));
-    LDL_BAD(hd_ldl_factor_complex(f, -3, p.val, NULL, &e));
-    CHECK(hd_ldl_factor(f, p.real, NULL, &e) == HD_OK);
-    LDL_BAD(hd_ldl_solve_complex(f, c, 0, z, 0, &e));        /* of the other kind */
-    LDL_BAD(hd_ldl_solve(NULL, 1, b, 0, x, 0, &e));
-    LDL_BAD(hd_ldl_solve(f, 1, NULL, 0, x, 0, &e));
-    LDL_BAD(hd_ldl_solve(f, 1, b, 0, NULL, 0, &e));
-    LDL_BAD(hd_ldl_solve(f, -1, b, 0, x, 0, &e));
-    LDL_BAD(hd_ldl_solve(f, 2, b, N - 1, x, 0, &e));
-    LDL_BAD(hd_ldl_solve(f, 2, b, 0, x, N - 1, &e));
-    CHECK(hd_ldl_solve(f, 3, b, 0, x, N, &e) == HD_OK && e.status == HD_OK);
-    CHECK(hd_ldl_factor_complex(f, 2, p.val, NULL, &e) == HD_OK);
-    LDL_BAD(hd_ldl_solve(f, 1, b, 0, x, 0, &e));
-    LDL_BAD(hd_ldl_solve_complex(NULL, c, 0, z, 0, &e));
-    LDL_BAD(hd_ldl_solve_complex(f, NULL, 0, z, 0, &e));
-    LDL_BAD(hd_ldl_solve_complex(f, c, 0, NULL, 0, &e));
-    LDL_BAD(hd_ldl_solve_complex(f, c, N - 1, z, 0, &e));
-    LDL_BAD(hd_ldl_solve_complex(f, c, 0, z, N - 1, &e));
-    CHECK(hd_ldl_solve_complex(f, c, N, z, N, NULL) == HD_OK);
-    ldl_judge(&p, N, 3, 1, "calls");
-    CHECK(hd_ldl_factor(f, p.real, NULL, &e) == HD_OK);
-    LDL_BAD(hd_ldl_solve_complex(f, c, 0, z, 0, &e));        /* the last factorisation counts */
-    p.real[0] = (double)NAN;
-    CHECK(hd_ldl_factor(f, p.real, NULL, &e) == HD_ERR_NOT_FINITE);
-    LDL_BAD(hd_ldl_solve(f, 1, b, 0, x, 0, &e));             /* also when it failed */
-    CHECK(hd_ldl_factor_complex(f, 2, p.val, NULL, &e) == HD_OK);
-    p.val[3 * N].im = (double)INFINITY;
-    CHECK(hd_ldl_factor_complex(f, 2, p.val, NULL, &e) == HD_ERR_NOT_FINITE && e.pole == 1);
-    LDL_BAD(hd_ldl_solve_complex(f, c, 0, z, 0, &e));
-#undef LDL_BAD
-    CHECK(hd_ldl_solve_complex(NULL, c, 0, z, 0, NULL) == HD_ERR_ARGUMENT);    /* no place for the error is fine */
+    int step;
+    for (step = 0; step < 6; step++) {           /* nothing, real, complex, real, real that fails, complex that fails */
+        const int real = step == 1 || step == 3 || step == 4, fails = step > 3;
+        hd_status want = HD_OK;
+        if (step == 4) p.real[0] = (double)NAN;
+        if (step == 5) p.val[3 * N].im = (double)INFINITY;
+        if (fails) want = HD_ERR_NOT_FINITE;
+        if (real) CHECK(hd_ldl_factor(f, p.real, NULL, &e) == want);
+        else if (step) CHECK(hd_ldl_factor_complex(f, 2, p.val, NULL, &e) == want && (!fails || e.pole == 1));
+        want = hd_ldl_solve(f, 3, p.c, 0, p.y, N, &e);
+        CHECK(want == (real && !fails ? HD_OK : HD_ERR_ARGUMENT) && e.status == want && (want == HD_OK || e.text[0]));
+        want = hd_ldl_solve_complex(f, p.b, N, p.x, N, &e);
+        CHECK(want == (step == 2 ? HD_OK : HD_ERR_ARGUMENT) && e.status == want && (want == HD_OK || e.text[0]));
+        if (step == 3) ldl_judge(&p, N, 3, 1, "calls");
+    }
     hd_ldl_free(f);
 }
 
@@ -1564,11 +1475,10 @@ static void test_ldl(void) {
     ldl_not_finite();
     ldl_subnormal();
     ldl_first_of_two();
-    ldl_robust();
     ldl_survives();
     ldl_bad_patterns();
     ldl_bad_options();
-    ldl_bad_calls();
+    ldl_bad_solves();
     ldl_dissections();
     ldl_meshes();
 }
