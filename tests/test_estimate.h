@@ -260,15 +260,15 @@ static void est_rooms(void) {
     hd_laplacian_opts o;
     int thin, kind, held, large, n_times, query, method, i;
     for (thin = 0; thin < 2; thin++) {
-        shape s = kit_own_shape(shape_grid(9, 8, 0.3));
-        for (i = 0; thin && i < s.n; i++) s.xyz[3 * i + 1] *= 1e-4;
         for (kind = 0; kind < (thin ? 2 : 4); kind++) {   /* in slivers heat fades at once */
+            const shape *s = kit_shape(kind < 2 ? "flat/9/8/0.3" : "flat/11/10/0.3");
             hd_laplacian *lap = NULL;
+            for (i = 0; thin && i < s->n; i++) s->xyz[3 * i + 1] *= 1e-4;
             held = kind / 2;
             memset(&o, 0, sizeof o);
             o.kind = kinds[kind % 2];
             if (held) o.border = HD_BORDER_DIRICHLET;
-            CHECK(hd_laplacian_triangles(&lap, s.xyz, s.n, s.tri, s.n_tri, &o, NULL) == HD_OK);
+            CHECK(hd_laplacian_triangles(&lap, s->xyz, s->n, s->tri, s->n_tri, &o, NULL) == HD_OK);
             for (method = kind % 2; method < 2; method++) for (large = 0; large < 2; large++) for (n_times = 1; n_times <= 4; n_times += 3)
                 for (query = HD_QUERY_FIELDS; query <= HD_QUERY_DISTANCE_WEIGHTED; query++) {
                     const double h2 = lap->h * lap->h, from = !large ? 5 : held ? 40 : 3e8 / hd_laplacian_lambda_max(lap) / h2;
