@@ -810,7 +810,7 @@ static void ldl_forms(void) {
     size_t i;
     for (w = 1; f && w <= 2; w++) {
         for (q = 0; q < LDL_SIDES; q++) memcpy(copies + w * PAD * q, b, (size_t)(w * N) * sizeof *b);
-        for (k = 1; k <= (w == 1 ? LDL_SIDES : MOST); k++) {
+        for (k = 1; k <= (w == 1 ? (int)LDL_SIDES : (int)MOST); k++) {
             CHECK((w == 1 ? hd_ldl_factor(f, p.real, NULL, NULL) : hd_ldl_factor_complex(f, k, p.val, NULL, NULL)) == HD_OK);
             CHECK(ldl_solve_as(f, w, k, b, PAD, each, PAD) == HD_OK && ldl_solve_as(f, w, k, copies, PAD, same, PAD) == HD_OK);
             for (q = 0; q < k; q++) {
@@ -1304,6 +1304,37 @@ static void ldl_survives(void) {
     }
 }
 
+/* An analysis that is cancelled at each call of progress in turn, by each ordering. */
+static void ldl_cancelled(void) {
+    const shape *ball = kit_shape("bumpy/2/4");
+    const hd_csr a = kit_own_csr(ldl_mesh_pattern(ball));
+    int way;
+    for (way = 0; way < 3; way++) {
+        const int64_t passed = test_passed;
+        hd_status st = HD_ERR_CANCELLED;
+        int64_t k;
+        for (k = 1; k < ROB_MOST && st == HD_ERR_CANCELLED; k++) {
+            test_memory m;
+            hd_context ctx = test_memory_context(&m);
+            hd_ldl_opts o = ldl_opts_of(ldl_orderings[way], NULL, ball->xyz, &ctx);
+            hd_ldl *f = ldl_mark;
+            rob_progress progress;
+            hd_error e;
+            memset(&progress, 0, sizeof progress);
+            progress.stop_at = k;
+            progress.answer = HD_PROGRESS_CANCEL;
+            ctx.progress = rob_on_progress;
+            ctx.progress_user = &progress;
+            st = hd_ldl_analyse(&f, &a, &o, NULL, &e);
+            CHECK((st == HD_OK || st == HD_ERR_CANCELLED) && e.status == st && (st == HD_OK) == (f != ldl_mark));
+            if (st == HD_OK) hd_ldl_free(f);
+            test_memory_done(&m, &ctx, "cancelled");
+        }
+        CHECK_MSG(st == HD_OK && k > 3, "ordering %d: %s after %d", way, hd_status_name(st), (int)k);
+        test_count_once(passed);
+    }
+}
+
 /* ---- arguments ---- */
 
 /* Patterns that are none: what is wrong, and where. */
@@ -1476,6 +1507,7 @@ static void test_ldl(void) {
     ldl_subnormal();
     ldl_first_of_two();
     ldl_survives();
+    ldl_cancelled();
     ldl_bad_patterns();
     ldl_bad_options();
     ldl_bad_solves();
