@@ -1526,12 +1526,12 @@ static void int_silan_bounds(void) {
 /* ---- [24] to [28]: damaged factors ---- */
 
 typedef enum int_query {
-    INT_APPLY, INT_COLUMN, INT_DIAGONAL, INT_ENTRIES, INT_TRACE, INT_CLASSICAL, INT_WEIGHTED, INT_COMMUTE, INT_BIHARMONIC
+    INT_APPLY, INT_COLUMN, INT_OF_DIAGONAL, INT_OF_ENTRIES, INT_TRACE, INT_CLASSICAL, INT_WEIGHTED, INT_COMMUTE, INT_BIHARMONIC
 } int_query;
 typedef struct int_damaged { int_query query; int32_t n_times; } int_damaged;
 static const int_damaged int_damages[] = {
-    {INT_APPLY, 1}, {INT_APPLY, 12}, {INT_COLUMN, 1}, {INT_COLUMN, 12}, {INT_DIAGONAL, 1}, {INT_DIAGONAL, 12},
-    {INT_ENTRIES, 1}, {INT_TRACE, 1}, {INT_TRACE, 12}, {INT_CLASSICAL, 1}, {INT_CLASSICAL, 12}, {INT_WEIGHTED, 1},
+    {INT_APPLY, 1}, {INT_APPLY, 12}, {INT_COLUMN, 1}, {INT_COLUMN, 12}, {INT_OF_DIAGONAL, 1}, {INT_OF_DIAGONAL, 12},
+    {INT_OF_ENTRIES, 1}, {INT_TRACE, 1}, {INT_TRACE, 12}, {INT_CLASSICAL, 1}, {INT_CLASSICAL, 12}, {INT_WEIGHTED, 1},
     {INT_WEIGHTED, 12}, {INT_COMMUTE, 1}, {INT_BIHARMONIC, 1},
 };
 
@@ -1546,13 +1546,13 @@ static int32_t int_ask(hd_heat *heat, const int_damaged *x, const double *t, dou
     switch (x->query) {
         case INT_APPLY: st = hd_heat_apply(heat, x->n_times, t, 1, f, 0, out, 0, rep, NULL); break;
         case INT_COLUMN: st = hd_heat_columns(heat, HD_KERNEL_OPERATOR, x->n_times, t, 1, i, out, 0, rep, NULL); break;
-        case INT_DIAGONAL: st = hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, x->n_times, t, out, 0, rep, NULL); break;
-        case INT_ENTRIES: st = hd_heat_entries(heat, HD_KERNEL_SYMMETRIC, x->n_times, t, 3, i, j, out, rep, NULL); break;
+        case INT_OF_DIAGONAL: st = hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, x->n_times, t, out, 0, rep, NULL); break;
+        case INT_OF_ENTRIES: st = hd_heat_entries(heat, HD_KERNEL_SYMMETRIC, x->n_times, t, 3, i, j, out, rep, NULL); break;
         case INT_TRACE: st = hd_heat_trace(heat, x->n_times, t, out, NULL, rep, NULL); break;
         default: st = heat_distance(heat, (hd_distance_kind)(x->query - INT_CLASSICAL), x->n_times, t, 1, i + 1, out, 0, rep);
     }
     CHECK_MSG(st >= 0, "query %d: %s", (int)x->query, rep->error.text);
-    return x->query == INT_TRACE ? 1 : x->query == INT_ENTRIES ? 3 : n;
+    return x->query == INT_TRACE ? 1 : x->query == INT_OF_ENTRIES ? 3 : n;
 }
 
 /* The hook: pivots of every factor that a plan holds become a little wrong, by the same share or each by another. */

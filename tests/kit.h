@@ -78,6 +78,94 @@ static hd_laplacian *kit_pair(const char *spec) {
     return (hd_laplacian *)kit_keep(lap, kit_free_laplacian);
 }
 
+/* A shape that is made elsewhere, freed with the rest. */
+static const shape *kit_own(shape s) {
+    trial_body *b = KIT_NEW(trial_body, 1);
+    if (!s.xyz) truth_stop("out of memory");
+    b->s = s;
+    kit_list[kit_count - 1].destroy = kit_free_body;
+    return &b->s;
+}
+
+/* The pair of triangles, with threads as the library has them. */
+static hd_laplacian *kit_triangles(const shape *s, hd_laplacian_kind kind) {
+    hd_laplacian_opts o;
+    hd_laplacian *lap = NULL;
+    hd_error e;
+    memset(&o, 0, sizeof o);
+    o.kind = kind;
+    if (hd_laplacian_triangles(&lap, s->xyz, s->n, s->tri, s->n_tri, &o, &e) < 0) truth_stop(e.text);
+    return (hd_laplacian *)kit_keep(lap, kit_free_laplacian);
+}
+
+/* The pair of a graph of m edges a, b of weights w (NULL: 1), B diagonal of this mass (NULL: 1). */
+static hd_laplacian *kit_graph(int32_t n, int32_t m, const int32_t *a, const int32_t *b, const double *w, const double *mass) {
+    const int32_t mark = kit_mark();
+    int32_t *i = KIT_NEW(int32_t, 4 * m + n), *j = KIT_NEW(int32_t, 4 * m + n), k;
+    double *v = KIT_NEW(double, 4 * m + n), *one = KIT_NEW(double, n);
+    hd_laplacian *lap = NULL;
+    hd_csr L, B;
+    hd_error e;
+    memset(&L, 0, sizeof L);
+    memset(&B, 0, sizeof B);
+    for (k = 0; k < 4 * m; k++) {                /* its four entries */
+        const int32_t at[2] = {a[k / 4], b[k / 4]};
+        i[k] = at[k % 2];
+        j[k] = at[k / 2 % 2];
+        v[k] = (i[k] == j[k] ? 1 : -1) * (w ? w[k / 4] : 1);
+    }
+    for (k = 0; k < n; k++) {                    /* zeros: every vertex has a diagonal entry */
+        i[4 * m + k] = j[4 * m + k] = k;
+        one[k] = mass ? mass[k] : 1;
+    }
+    if (hd_csr_from_triplets(&L, n, n, 4 * (int64_t)m + n, i, j, v, NULL, &e) < 0) truth_stop(e.text);
+    if (hd_csr_from_triplets(&B, n, n, n, i + 4 * m, j + 4 * m, one, NULL, &e) < 0) truth_stop(e.text);
+    if (hd_laplacian_matrices(&lap, &L, &B, 0, NULL, &e) < 0) truth_stop(e.text);
+    hd_csr_free(&L, NULL);
+    hd_csr_free(&B, NULL);
+    kit_release(mark);
+    return (hd_laplacian *)kit_keep(lap, kit_free_laplacian);
+}
+
+/* The graph of nx x ny nodes, (i, j) at i ny + j: paths of weight 1, closed ones if asked, and across them cycles of weight wy. */
+static hd_laplacian *kit_lattice(int32_t nx, int32_t ny, int closed, double wy, double mass) {
+    const int32_t mark = kit_mark(), n = nx * ny;
+    int32_t *a = KIT_NEW(int32_t, 2 * n), *b = KIT_NEW(int32_t, 2 * n), i, j, m = 0;
+    double *w = KIT_NEW(double, 2 * n), *masses = KIT_NEW(double, n);
+    hd_laplacian *lap;
+    for (i = 0; i < nx; i++)
+        for (j = 0; j < ny; j++) {
+            masses[i * ny + j] = mass;
+            if (closed || i + 1 < nx) {
+                w[m] = 1;
+                a[m] = i * ny + j;
+                b[m++] = (i + 1) % nx * ny + j;
+            }
+            if (ny > 1) {
+                w[m] = wy;
+                a[m] = i * ny + j;
+                b[m++] = i * ny + (j + 1) % ny;
+            }
+        }
+    lap = kit_graph(n, m, a, b, w, masses);
+    kit_count--;                                 /* it stays, the lists go */
+    kit_release(mark);
+    return (hd_laplacian *)kit_keep(lap, kit_free_laplacian);
+}
+
+/* A path of n vertices, weights 2^l, masses 1, 2, 3 times 2^b. */
+static hd_laplacian *kit_path(int32_t n, int l, int b) {
+    int32_t *from = KIT_NEW(int32_t, n), *to = KIT_NEW(int32_t, n), i;      /* freed with the rest */
+    double *w = KIT_NEW(double, n), *mass = KIT_NEW(double, n);
+    for (i = 0; i < n; i++) {
+        from[i] = i;
+        to[i] = i + 1;
+        w[i] = ldexp(1, l);
+        mass[i] = ldexp(1 + i % 3, b);
+    }
+    return kit_graph(n, n - 1, from, to, w, mass);
+}
+
 /* A plan by words of tools/trials.h: kit_heat(lap, "method=direct degree=9 tol=1e-10"); one thread. */
 static hd_heat *kit_heat(const hd_laplacian *lap, const char *options) {
     const trial c = trial_parse(options);

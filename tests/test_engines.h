@@ -104,11 +104,11 @@ static hd_rational eng_own_set(int which) {
 
 /* ---- values ---- */
 
-/* Times over six decades; several components, tangles of non-manifold faces, vertices without mass, heat that leaks. */
+/* Times over six decades; several components, jumbles of non-manifold faces, vertices without mass, heat that leaks. */
 static const case_row eng_values[] = {
     {"shape=bumpy/1/3 op=fem|vor|cot query=column|apply kernel=operator|symmetric k=1|3 method=direct|krylov th=1e-3|1e-2|0.1|1|10|100|1e3", 1e-2, 0, 0},
     {"shape=bumpy/1/3 op=fem|vor|cot query=entries kernel=operator|symmetric k=16 method=direct|krylov th=1|10|100|1e3", 1e-2, 0, 0},
-    {"shape=torus/9/7|flat/9/7/0.35|two/1/0/4|inert/7/1|tangle/60/130/5 op=fem|vor|cot query=column|apply k=1|3 method=direct|krylov th=1e-3|0.1|1|100|1e3", 1e-2, 0, 0},
+    {"shape=torus/9/7|flat/9/7/0.35|two/1/0/4|inert/7/1|jumble/60/130/5 op=fem|vor|cot query=column|apply k=1|3 method=direct|krylov th=1e-3|0.1|1|100|1e3", 1e-2, 0, 0},
     {"shape=leak/40/0.01|penalty/40/0 op=I|diag query=column|apply kernel=operator|symmetric k=1|3 method=direct|krylov th=1e-3|0.1|1|10|100", 1e-2, 0, 0},
     /* packs that are full, and those with one, two, three poles or a lone real one left over */
     {"shape=bumpy/1/9 op=fem query=column|apply k=1|3 method=direct poles=uniform|kernel degree=3|4|5|6|7|8|9|10|11|12|13|14 th=3|300", 0.2, 0, 17},

@@ -3,16 +3,17 @@
    A case is a line of words, "shape=grid/9/6 op=fem query=column method=krylov th=10"; what is left out is the default:
 
    shape     a maker and up to four numbers, see trial_body_make
-   op        fem, vor, cot, poly, with +id, +tuft, +held; vexp, exp, tuft for points; I, diag, massN, tri, near for graphs
+   op        fem, vor, cot, poly, with +id, +tuft, +held, +pin; vexp, exp, tuft for points; I, diag, massN, heavyN, tri, near for graphs
    scale     coordinates are multiplied by this
    query     apply, column, times, derivative, adjoint, from, filter, entries, pairs, diagonal, edges, distance, distance_from
    kernel    operator, symmetric
    kind      classical, weighted, commute, biharmonic; for times: weighted asks for a column instead of a field
    method, solver, precond, poles, degree, tol    options of the plan
-   own, x    sets of poles of the caller's own
+   own, x    sets of poles of the caller's own; fitted: a filter, which seed says, of eigenvalues about 1/t
    t, th     the time, or the time in units of the shape's own (h^2)
    times, span    so many times from t to span t
    k, corners     columns, pairs or sources; corners of a source between vertices
+   curve, apart   1: a source is a curve; its points may lie in several components
    field, seed    of a field; what else is drawn
 
    truth.h makes the truth. A comparison is one column of an answer, or one list of entries, pairs or edges. */
@@ -118,6 +119,78 @@ static void trial_sliver(shape *s, int32_t f, double h) {
     shape_put_triangle(s, s->n_tri++, a, b, k);
 }
 
+/* Rings 0..m about a vertex, of 6 k vertices each: in the plane, or over the upper half of the unit sphere. */
+static shape trial_disk(int32_t m, int round) {
+    const double pi = 3.14159265358979323846;
+    shape s = shape_make(1 + 3 * (int64_t)m * (m + 1), 6 * (int64_t)m * m);
+    int32_t k, q, t = 0;
+    if (!s.xyz) truth_stop("out of memory");
+    shape_put_vertex(&s, 0, 0, 0, round);
+    for (k = 1; k <= m; k++) {
+        const int32_t first = 1 + 3 * k * (k - 1), inner = k > 1 ? 1 + 3 * (k - 1) * (k - 2) : 0, n = 6 * k, n_in = k > 1 ? 6 * (k - 1) : 1;
+        const double r = (double)k / m, x = round ? sin(r * pi / 2) : r, z = round ? cos(r * pi / 2) : 0;
+        for (q = 0; q < n; q++) {
+            const int32_t a = first + q, b = first + (q + 1) % n, side = q / k, at = q % k, c = inner + (side * (k - 1) + at) % n_in;
+            shape_put_vertex(&s, a, x * cos(2 * pi * q / n), x * sin(2 * pi * q / n), z);
+            shape_put_triangle(&s, t++, a, b, c);
+            if (at > 0) shape_put_triangle(&s, t++, a, c, inner + (side * (k - 1) + at - 1) % n_in);
+        }
+    }
+    return s;
+}
+
+/* The shape with vertices that are in no face: the first, the last, and every fifth. */
+static shape trial_spare(shape b) {
+    const int32_t n = b.n + b.n / 4 + 2;
+    shape s = shape_make(n, b.n_tri);
+    int32_t *to = TRUTH_NEW(int32_t, b.n), i, k = 0;
+    if (!s.xyz) truth_stop("out of memory");
+    for (i = 0; i < n; i++) {
+        if (i % 5 == 0 || k == b.n) {
+            shape_put_vertex(&s, i, 9 + i, 8, 7);
+            continue;
+        }
+        memcpy(s.xyz + 3 * i, b.xyz + 3 * k, 3 * sizeof(double));
+        to[k++] = i;
+    }
+    for (i = 0; i < 3 * b.n_tri; i++) s.tri[i] = to[b.tri[i]];
+    free(to);
+    shape_free(&b);
+    return s;
+}
+
+/* A sphere, and a sheet that has borders, edges of three faces, and a vertex in no face. */
+static shape trial_tangle(void) {
+    static const double offset[3] = {9, 1, 0};
+    shape a = shape_icosphere(1), b = shape_grid(8, 6, 0.3), s = shape_disjoint(&a, &b, offset);
+    int32_t f;
+    if (!s.xyz) truth_stop("out of memory");
+    for (f = a.n_tri; f < s.n_tri; f++) {
+        if (s.tri[3 * f] == a.n + 20) s.tri[3 * f] = a.n + 4;
+        if (f % 11 == 0) s.tri[3 * f + 1] = a.n + 30;
+    }
+    s.n--;                                       /* faces of the last corner go to its neighbour, and the vertex before is in no face then */
+    for (f = 0; f < 3 * s.n_tri; f++)
+        if (s.tri[f] >= s.n - 1) s.tri[f] = s.n - 2;
+    shape_free(&a);
+    shape_free(&b);
+    return s;
+}
+
+static shape trial_needles(int levels) {
+    shape s = shape_bumpy(levels, 5);
+    int32_t i;
+    for (i = 0; i < s.n; i++) s.xyz[3 * i] *= 6;
+    return s;
+}
+
+/* Points of a sphere, of which two are in one place. */
+static shape trial_cloud(int32_t n, int blue) {
+    shape s = shape_points(n, shape_on_sphere, 12.566370614359172, blue, 3);
+    if (s.xyz) memcpy(s.xyz + 3 * (n - 1), s.xyz + 3 * 7, 3 * sizeof(double));
+    return s;
+}
+
 /* Symmetric weights as a dense matrix, diagonals the sums of their rows and what is added. */
 typedef struct trial_weights { int n; double *w, *extra; double sign; } trial_weights;
 
@@ -198,7 +271,8 @@ static int trial_graph(trial_body *b, const char *name, const double *p) {
         trial_random_graph(&g, p, name[0] == 'l');
     } else if (strcmp(name, "tree") == 0) {
         trial_tree(b, &g, p);
-    } else if (strcmp(name, "path") == 0) {
+    } else if (strcmp(name, "path") == 0 || strcmp(name, "drain") == 0) {
+        if (name[0] == 'd') g.extra[0] = p[1];   /* a path that heat leaves at its first vertex */
         for (i = 0; i + 1 < g.n; i++) trial_join(&g, i, i + 1, 1);
     } else if (strcmp(name, "star") == 0) {
         for (i = 1; i < g.n; i++) trial_join(&g, 0, i, 1);
@@ -210,12 +284,12 @@ static int trial_graph(trial_body *b, const char *name, const double *p) {
         for (i = 1; i < parts; i++) trial_join(&g, (i - 1) * m, i * m, ldexp(1, -(int)p[1]));
         for (i = parts * m; i < g.n; i++) trial_join(&g, i - 1, i, 1);
     } else if (strcmp(name, "none") != 0) {
-        /* cycles: plain, turned, with something on one diagonal entry or on all */
+        /* cycles: plain, turned, turned but with a diagonal that hides it, with something on one diagonal entry or on all */
         for (i = 0; i < g.n && g.n > 2; i++) trial_join(&g, i, (i + 1) % g.n, 1);
-        if (strcmp(name, "turned") == 0) g.sign = -1;
+        if (strcmp(name, "turned") == 0 || strcmp(name, "hidden") == 0) g.sign = -1;
         else if (strcmp(name, "penalty") == 0) g.extra[0] = pow(10, p[1]);
-        else if (strcmp(name, "leak") == 0) for (i = 0; i < g.n; i++) g.extra[i] = p[1];
-        else if (strcmp(name, "cycle") != 0) return 0;
+        else if (strcmp(name, "leak") != 0 && strcmp(name, "cycle") != 0) return 0;
+        for (i = 0; i < g.n; i++) g.extra[i] += strcmp(name, "leak") == 0 ? p[1] : strcmp(name, "hidden") == 0 ? 3 : 0;
     }
     trial_graph_matrix(b, &g);
     return 1;
@@ -324,7 +398,7 @@ static int trial_mesh(trial_body *b, const char *name, const double *p) {
 }
 
 /* Triangles between any three of n points in a cube: edges with many faces, slivers, vertices in no face. */
-static shape trial_tangle(int32_t n, int32_t n_tri, uint64_t seed) {
+static shape trial_jumble(int32_t n, int32_t n_tri, uint64_t seed) {
     shape s = shape_make(n, n_tri);
     int32_t i, v[3];
     for (i = 0; i < 3 * n; i++) s.xyz[i] = shape_signed(&seed);
@@ -338,8 +412,9 @@ static shape trial_tangle(int32_t n, int32_t n_tri, uint64_t seed) {
     return s;
 }
 
-/* What shapes.h makes: ico/levels, bumpy/levels/seed, torus/nu/nv, cylinder/nu/nv, flat/nx/ny/jitter, demo/n, and
- * tangle/points/triangles/seed; of polygons, qtorus/nu/nv, qsphere/m, hex/levels, tromino/a/b/jitter. */
+/* What shapes.h makes: ico/levels, bumpy/levels/seed, torus/nu/nv, cylinder/nu/nv, flat/nx/ny/jitter, demo/n; of polygons,
+ * qtorus/nu/nv, qsphere/m, hex/levels, tromino/a/b/jitter. And what is made here: disk/rings/round, spare/rings/round (a disk with
+ * vertices in no face), tangle, jumble/points/triangles/seed, needles/levels, cloud/n/blue. */
 static int trial_shape(trial_body *b, const char *name, const double *p) {
     const int32_t m = (int32_t)p[0], k = (int32_t)p[1];
     if (strcmp(name, "ico") == 0) b->s = shape_icosphere(m);
@@ -348,12 +423,18 @@ static int trial_shape(trial_body *b, const char *name, const double *p) {
     else if (strcmp(name, "cylinder") == 0) b->s = shape_cylinder(m, k, 1, 2);
     else if (strcmp(name, "flat") == 0) b->s = shape_grid(m, k, p[2]);
     else if (strcmp(name, "demo") == 0) b->s = shape_demo(m);
-    else if (strcmp(name, "tangle") == 0) b->s = trial_tangle(m, k, (uint64_t)p[2]);
+    else if (strcmp(name, "jumble") == 0) b->s = trial_jumble(m, k, (uint64_t)p[2]);
     else if (strcmp(name, "qtorus") == 0) b->p = shape_quad_torus(m, k, 2, 1);
     else if (strcmp(name, "qsphere") == 0) b->p = shape_quad_sphere(m);
     else if (strcmp(name, "hex") == 0) b->p = shape_hex_sphere(m);
     else if (strcmp(name, "tromino") == 0) b->p = shape_trominoes(m, k, p[2]);
+    else if (strcmp(name, "disk") == 0) b->s = trial_disk(m, k);
+    else if (strcmp(name, "spare") == 0) b->s = trial_spare(trial_disk(m, k));
+    else if (strcmp(name, "tangle") == 0) b->s = trial_tangle();
+    else if (strcmp(name, "needles") == 0) b->s = trial_needles(m);
+    else if (strcmp(name, "cloud") == 0) b->s = trial_cloud(m, k);
     else return 0;
+    b->points = strcmp(name, "cloud") == 0;
     if (b->p.xyz) {
         b->s = shape_make(b->p.n, 0);
         if (b->s.xyz) memcpy(b->s.xyz, b->p.xyz, 3 * (size_t)b->p.n * sizeof *b->p.xyz);
@@ -368,7 +449,7 @@ static int trial_body_make(trial_body *b, const char *spec) {
     memset(b, 0, sizeof *b);
     b->seed = 41;
     if (sscanf(spec, "%15[a-z]/%lf/%lf/%lf/%lf", name, p, p + 1, p + 2, p + 3) < 1) return 0;
-    return trial_mesh(b, name, p) || trial_graph(b, name, p) || trial_shape(b, name, p);
+    return trial_mesh(b, name, p) || trial_shape(b, name, p) || trial_graph(b, name, p);   /* the last makes room first */
 }
 
 static void trial_body_free(trial_body *b) {
@@ -380,8 +461,8 @@ static void trial_body_free(trial_body *b) {
 /* one thread: the answers do not depend on it, and small problems are quicker */
 static hd_context trial_serial;
 
-/* B for a graph: "I", "diag" over twelve decades, "massN" over N, "tri" uneven, "near" the smallest eigenvalue
- * of which is 1e-9. */
+/* B for a graph: "I", "diag" over twelve decades, "massN" over N, "heavyN" 10^N at the last but one and 1 elsewhere, "tri" uneven,
+ * "near" the smallest eigenvalue of which is 1e-9. */
 static hd_status trial_graph_pair(hd_laplacian **out, const trial_body *b, const char *op, double scale, hd_error *e) {
     const int n = b->L.n_rows;
     double *a = TRUTH_NEW(double, n * n);
@@ -399,6 +480,7 @@ static hd_status trial_graph_pair(hd_laplacian **out, const trial_body *b, const
     for (i = 0; i < n; i++) {
         a[i * n + i] = decades > 0 ? trial_power10(&seed, -decades / 2, decades / 2) : 1;
         if (strcmp(op, "near") == 0) a[i * n + i] = 1 + 1e-9;
+        if (strncmp(op, "heavy", 5) == 0 && i == n - 2) a[i * n + i] = pow(10, atof(op + 5));
     }
     for (i = 0; i + 1 < n; i++) {
         double w = 0;
@@ -415,8 +497,8 @@ static hd_status trial_graph_pair(hd_laplacian **out, const trial_body *b, const
     return st;
 }
 
-/* The pair of a shape by an operator: fem, vor, cot, poly with +id or +tuft; vexp, exp, tuft for points; all
- * these also with +held; I, diag, massN, tri, near for graphs. */
+/* The pair of a shape by an operator: fem, vor, cot, poly with +id or +tuft, poly+half; vexp, exp, tuft, tuft+vor for points; all
+ * these also with +held or +pin; I, diag, massN, heavyN, tri, near for graphs. Shapes of polygons are always taken as such. */
 static hd_status trial_pair(hd_laplacian **out, const char *spec, const char *op, double scale, hd_error *e) {
     hd_laplacian_opts o;
     hd_status st;
@@ -435,24 +517,25 @@ static hd_status trial_pair(hd_laplacian **out, const char *spec, const char *op
     memset(&o, 0, sizeof o);
     o.context = &trial_serial;
     o.kind = strncmp(op, "fem", 3) == 0   ? HD_LAPLACIAN_FEM
-             : strncmp(op, "vor", 3) == 0 ? HD_LAPLACIAN_VORONOI_COT
+             : strncmp(op, "vor", 3) == 0 || strstr(op, "+vor") ? HD_LAPLACIAN_VORONOI_COT
              : strncmp(op, "cot", 3) == 0 ? HD_LAPLACIAN_COT
              : strncmp(op, "vexp", 4) == 0 ? HD_LAPLACIAN_VORONOI_EXP
              : strncmp(op, "exp", 3) == 0 ? HD_LAPLACIAN_EXP
                                           : HD_LAPLACIAN_DEFAULT;
     o.intrinsic_delaunay = strstr(op, "+id") != NULL;
     o.tufted = strstr(op, "+tuft") != NULL;
-    if (strstr(op, "+held")) {                   /* a vertex, and the border of a mesh */
+    o.lambda = strstr(op, "+half") ? 0.5 : 0;
+    if (strstr(op, "+held") || strstr(op, "+pin")) {         /* a vertex; held: and the border of a mesh */
         o.n_held = 1;
         o.held = &held;
-        o.border = b.points ? HD_BORDER_NATURAL : HD_BORDER_DIRICHLET;
+        o.border = b.points || strstr(op, "+pin") ? HD_BORDER_NATURAL : HD_BORDER_DIRICHLET;
         held = b.s.n / 3;
     }
     for (i = 0; i < 3 * b.s.n; i++) b.s.xyz[i] *= scale;
     if (b.points) {
         if (strncmp(op, "tuft", 4) == 0) st = hd_laplacian_tufted_points(out, b.s.xyz, b.s.n, NULL, NULL, &o, e);
         else st = hd_laplacian_points(out, b.s.xyz, b.s.n, &o, e);
-    } else if (strncmp(op, "poly", 4) == 0) {
+    } else if (strncmp(op, "poly", 4) == 0 || (b.p.xyz && b.s.n_tri == 0)) {
         shape_poly q = b.p.xyz ? b.p : shape_poly_of(&b.s);
         st = hd_laplacian_polygons(out, b.s.xyz, q.n, q.face_ptr, q.face_idx, q.n_faces, &o, e);
         if (!b.p.xyz) shape_poly_free(&q);
@@ -480,7 +563,7 @@ static double trial_unit(const hd_laplacian *lap) {
 
 enum { QUERY_APPLY, QUERY_COLUMN, QUERY_TIMES, QUERY_DERIVATIVE, QUERY_ADJOINT, QUERY_FROM, QUERY_FILTER,
        QUERY_ENTRIES, QUERY_PAIRS, QUERY_DIAGONAL, QUERY_EDGES, QUERY_DISTANCE, QUERY_DISTANCE_FROM, QUERY_COUNT };
-enum { OWN_NONE, OWN_COPY, OWN_COPY0, OWN_LOOSE, OWN_NEAR, OWN_RANDOM, OWN_RESOLVENT, OWN_A0, OWN_PACKS };
+enum { OWN_NONE, OWN_COPY, OWN_COPY0, OWN_LOOSE, OWN_NEAR, OWN_RANDOM, OWN_RESOLVENT, OWN_A0, OWN_PACKS, OWN_FITTED };   /* the last two are not drawn */
 enum { FIELD_RANDOM, FIELD_SMOOTH, FIELD_NEARLY, FIELD_HUGE, FIELD_TINY, FIELD_DELTA, FIELD_ALTERNATE,
        FIELD_MODE, FIELD_CONSTANT, FIELD_STEP, FIELD_LINEAR, FIELD_ZERO, FIELD_LEVEL, FIELD_COUNT };
 
@@ -494,7 +577,7 @@ static const char *const trial_solvers[] = {"auto", "cocg", "cocr", "minres", "l
 static const char *const trial_preconds[] = {"auto", "none", "jacobi", "ssor", "ildl", "mildl", NULL};
 static const char *const trial_poles[] = {"default", "uniform", "kernel", "own", "diagonal", NULL};
 static const char *const trial_owns[] = {"none",   "copy",      "copy0", "loose", "near",
-                                        "random", "resolvent", "a0", "packs", NULL};
+                                        "random", "resolvent", "a0", "packs", "fitted", NULL};
 static const char *const trial_fields[] = {"random", "smooth",    "nearly", "huge",     "tiny",
                                           "delta",  "alternate", "mode",   "constant", "step",
                                           "linear", "zero",      "level",  NULL};
@@ -502,7 +585,7 @@ static const char *const trial_fields[] = {"random", "smooth",    "nearly", "hug
 typedef struct trial {
     char shape[32], op[16];
     double scale, t, th, span, tol, own_x;       /* th > 0: t in units of the shape's own */
-    int query, kernel, kind, method, solver, precond, poles, degree, own, n_times, k, field, corners;
+    int query, kernel, kind, method, solver, precond, poles, degree, own, n_times, k, field, corners, curve, apart;
     int64_t seed;
 } trial;
 
@@ -529,6 +612,8 @@ static const trial_key trial_keys[] = {{"shape", KEY_TEXT, offsetof(trial, shape
                            {"times", KEY_INT, offsetof(trial, n_times), NULL},
                            {"k", KEY_INT, offsetof(trial, k), NULL},
                            {"corners", KEY_INT, offsetof(trial, corners), NULL},
+                           {"curve", KEY_INT, offsetof(trial, curve), NULL},
+                           {"apart", KEY_INT, offsetof(trial, apart), NULL},
                            {"field", KEY_NAME, offsetof(trial, field), trial_fields},
                            {"seed", KEY_SEED, offsetof(trial, seed), NULL}};
 
@@ -702,10 +787,22 @@ static quad trial_norm_b(const hd_laplacian *lap, const quad *e) {
     return sum > 0 ? q_sqrt(sum) : 0;
 }
 
+/* The norm of B^-1 of x, by the eigenvectors: X X' = B^-1. sizes: all entries of both taken positive. */
+static quad trial_norm_dual(const truth_pairs *T, const hd_laplacian *lap, const quad *x, int sizes) {
+    quad sum = 0;
+    int32_t i, l;
+    for (l = 0; l < T->n; l++) {
+        quad d = 0;
+        for (i = 0; i < T->n; i++) d += sizes ? (quad)T->xd[i * T->n + l] * q_fabs(x[lap->vertex[i]]) : T->x[i * T->n + l] * x[lap->vertex[i]];
+        sum += d * d;
+    }
+    return sum > 0 ? q_sqrt(sum) : 0;
+}
+
 static quad trial_ratio(quad error, quad bound) { return error == 0 ? 0 : bound > 0 ? error / bound : (quad)1e30; }
 
 /* n values against the truth and its own error. has_b, relative: which bounds there are beside error_bound.
- * skip: a place to leave out (-1: none). */
+ * has_b 2: the norm is that of B^-1. skip: a place to leave out (-1: none). */
 static void trial_compare(trial_work *w, const double *value, int64_t n, int has_b, int relative, int64_t skip) {
     const quad vertex = (quad)(w->rep.error_bound * trial_shrink), b = (quad)(w->rep.error_bound_b * trial_shrink),
                rel = (quad)(w->rep.error_relative * trial_shrink);
@@ -741,12 +838,13 @@ static void trial_compare(trial_work *w, const double *value, int64_t n, int has
         const hd_laplacian *lap = w->s->lap;
         quad *e = TRUTH_NEW(quad, 2 * lap->n), *u = e + lap->n, error, off, size;
         for (i = 0; i < n; i++) u[i] = value[i];
-        size = trial_norm_b(lap, u);
+        size = has_b == 2 ? trial_norm_dual(w->T, lap, u, 0) : trial_norm_b(lap, u);
         for (i = 0; i < n; i++) e[i] = value[i] - w->want[i];
-        error = trial_norm_b(lap, e);
+        error = has_b == 2 ? trial_norm_dual(w->T, lap, e, 0) : trial_norm_b(lap, e);
         for (i = 0; i < n; i++) e[i] = (quad)w->off[i] + (quad)1e-322;
         /* entries of B are not all positive, but dominated by the diagonal */
-        off = 2 * trial_norm_b(lap, e);
+        /* (a value of the transpose is divided by B and multiplied by it, which error_bound_b does not count) */
+        off = has_b == 2 ? trial_norm_dual(w->T, lap, e, 1) + (quad)(2 * DBL_EPSILON) * size : 2 * trial_norm_b(lap, e);
         below_b = finite_b && error - off > b * size * (1 + (quad)1e-12);
         ratio_b = finite_b && error > off ? trial_ratio(error - off, b * size) : 0;
         free(e);
@@ -943,7 +1041,8 @@ static int trial_failed(trial_work *w) {
 }
 
 static void trial_filter_for(trial_work *w, double t, int squared) {
-    truth_filter_fill(&w->s->f, w->T, FORM_HEAT, t, w->own, squared);
+    if (w->c->own == OWN_FITTED) truth_filter_fill(&w->s->f, w->T, FORM_FILTER, 0, NULL, 0);
+    else truth_filter_fill(&w->s->f, w->T, FORM_HEAT, t, w->own, squared);
 }
 
 /* A field on the vertices. */
@@ -1016,90 +1115,6 @@ static void trial_run_columns(trial_work *w, hd_heat *heat) {
     free(inert);
 }
 
-/* The derivative in t and the transpose, of a field. */
-static void trial_run_training(trial_work *w, hd_heat *heat) {
-    const trial *c = w->c;
-    const int32_t n = w->s->lap->n;
-    const int dual = c->query == QUERY_ADJOINT;
-    uint64_t seed = (uint64_t)c->seed + 1;
-    double *f = TRUTH_NEW(double, 2 * n), *u = f + n;
-    trial_make_field(w, c->field, &seed, f);
-    trial_row_name(w, dual ? "adjoint" : "derivative");
-    if (dual) hd_heat_adjoint(heat, 1, &c->t, 1, f, 0, u, 0, &w->rep, NULL);
-    else hd_heat_derivative(heat, 1, &c->t, 1, f, 0, u, 0, &w->rep, NULL);
-    if (!trial_failed(w)) {
-        truth_filter_fill(&w->s->f, w->T, dual ? FORM_HEAT : FORM_DERIVATIVE, c->t, w->own, 0);
-        trial_want_field(w, f, dual ? f : NULL, dual);
-        trial_compare(w, u, n, !dual, 0, -1);          /* error_bound_b of the transpose is in another norm */
-    }
-    free(f);
-}
-
-/* One to four points between `corners` vertices of one component each, with weights: c as a field. Between vertices all
- * numbers are sixteenths, so that c is exact. */
-typedef struct trial_points { int32_t vertex[12]; double bary[12], weight[4]; } trial_points;
-
-static hd_source trial_source(const trial_work *w, uint64_t *seed, trial_points *p, double *c) {
-    const hd_laplacian *lap = w->s->lap;
-    const int32_t first = trial_below(seed, lap->n_active), corners = w->c->corners;
-    hd_source s;
-    int32_t i;
-    memset(&s, 0, sizeof s);
-    s.count = 1 + trial_below(seed, 4);
-    s.corners = corners;
-    s.vertex = p->vertex;
-    s.bary = corners > 1 ? p->bary : NULL;
-    s.weight = p->weight;
-    for (i = 0; i < corners * s.count; i++) {
-        const int32_t point = i / corners, corner = i % corners;
-        int32_t row = trial_below(seed, lap->n_active);
-        if (lap->component[row] != lap->component[first]) row = first;
-        p->vertex[i] = lap->vertex[row];
-        if (corners == 1) p->weight[point] = 0.1 + shape_uniform(seed);
-        else if (corner == 0) p->weight[point] = (1 + trial_below(seed, 16)) / 16.0;
-        p->bary[i] = corners == 1 ? 1 : corner == 2 ? 1 - p->bary[i - 1] - p->bary[i - 2] : trial_below(seed, 9) / 16.0;
-        c[p->vertex[i]] += p->bary[i] * p->weight[point];
-    }
-    return s;
-}
-
-/* Columns of several vertices at once, and columns of filters. */
-static void trial_run_from(trial_work *w, hd_heat *heat) {
-    const trial *c = w->c;
-    const hd_laplacian *lap = w->s->lap;
-    const int32_t n = lap->n;
-    const int symmetric = c->kernel == HD_KERNEL_SYMMETRIC, by_filter = c->query == QUERY_FILTER;
-    const double t = by_filter ? w->set.t : c->t;
-    uint64_t seed = (uint64_t)c->seed + 1;
-    double *u = TRUTH_NEW(double, 3 * n), *field = u + n, *inert = field + n;
-    trial_points at;
-    hd_source s = trial_source(w, &seed, &at, field);
-    trial_row_name(w, by_filter ? symmetric ? "filter, k_t" : "filter, K_t" : symmetric ? "k_t from" : "K_t from");
-    hd_heat_columns_from(heat, (hd_kernel)c->kernel, 1, &t, 1, &s, u, 0, &w->rep, NULL);
-    if (!trial_failed(w)) {
-        truth_filter_fill(&w->s->f, w->T, by_filter ? FORM_FILTER : FORM_HEAT, c->t, w->own, 0);
-        if (symmetric) {                         /* x g x' c: as the transpose, and x on the left */
-            quad *z = TRUTH_NEW(quad, w->T->n);
-            double *off = TRUTH_NEW(double, w->T->n), beyond = 0;
-            int32_t r, l;
-            for (r = 0; r < w->T->n; r++) {
-                const double f = field[lap->vertex[r]];
-                for (l = w->T->first[w->T->comp[r]]; f != 0 && l < w->T->first[w->T->comp[r] + 1]; l++) {
-                    z[l] += w->T->x[r * w->T->n + l] * f;
-                    off[l] += (TRUTH_EPS / 4) * w->T->xd[r * w->T->n + l] * fabs(f);
-                }
-                beyond += w->T->x_most * fabs(f);
-            }
-            trial_weigh(w, z, off);
-            trial_want_rows(w, 0, w->T->n * beyond, inert);
-            free(z);
-            free(off);
-        } else trial_want_field(w, field, field, 0);
-        trial_compare(w, u, n, 1, 0, -1);
-    }
-    free(u);
-}
-
 static double *trial_times(const trial *c) {
     const int m = c->n_times;
     double *t = TRUTH_NEW(double, m);
@@ -1110,6 +1125,112 @@ static double *trial_times(const trial *c) {
                : q == m - 1 ? c->t * c->span
                             : c->t * pow(c->span, (double)q / (m - 1));
     return t;
+}
+
+/* The derivative in t and the transpose, of fields. */
+static void trial_run_training(trial_work *w, hd_heat *heat) {
+    const trial *c = w->c;
+    const int32_t n = w->s->lap->n, k = c->k < 1 ? 1 : c->k > 64 ? 64 : c->k, m = c->n_times;
+    const int dual = c->query == QUERY_ADJOINT;
+    uint64_t seed = (uint64_t)c->seed + 1;
+    double *f = TRUTH_NEW(double, n * k), *u = TRUTH_NEW(double, n * k * m), *t = trial_times(c);
+    int32_t q;
+    for (q = 0; q < k; q++) trial_make_field(w, q == 0 ? c->field : trial_below(&seed, FIELD_HUGE), &seed, f + q * n);
+    trial_row_name(w, dual ? "adjoint" : "derivative");
+    if (dual) hd_heat_adjoint(heat, m, t, k, f, 0, u, 0, &w->rep, NULL);
+    else hd_heat_derivative(heat, m, t, k, f, 0, u, 0, &w->rep, NULL);
+    for (q = 0; q < k * m && !trial_failed(w); q++) {
+        truth_filter_fill(&w->s->f, w->T, dual ? FORM_HEAT : FORM_DERIVATIVE, t[q % m], w->own, 0);
+        trial_want_field(w, f + q / m * n, dual ? f + q / m * n : NULL, dual);
+        trial_compare(w, u + q * n, n, dual ? 2 : 1, 0, -1);
+    }
+    free(f);
+    free(u);
+    free(t);
+}
+
+/* One to four points between `corners` vertices, with weights, or a curve through them with the lengths of its pieces: c as a field.
+ * All in one component, or anywhere. Between vertices all numbers are sixteenths, so that c is exact. */
+typedef struct trial_points { int32_t vertex[12]; double bary[12], weight[4]; } trial_points;
+
+static hd_source trial_source(const trial_work *w, uint64_t *seed, trial_points *p, double *c) {
+    const hd_laplacian *lap = w->s->lap;
+    const int32_t first = trial_below(seed, lap->n_active), corners = w->c->corners;
+    const int curve = w->c->curve;
+    hd_source s;
+    int32_t i;
+    memset(&s, 0, sizeof s);
+    s.count = 1 + trial_below(seed, 4);
+    if (curve && s.count < 2) s.count = 2;
+    s.corners = corners;
+    s.vertex = p->vertex;
+    s.bary = corners > 1 ? p->bary : NULL;
+    s.curve = curve;
+    if (curve) s.length = p->weight;
+    else s.weight = p->weight;
+    for (i = 0; i < corners * s.count; i++) {
+        const int32_t point = i / corners, corner = i % corners;
+        int32_t row = trial_below(seed, lap->n_active);
+        if (!w->c->apart && lap->component[row] != lap->component[first]) row = first;
+        p->vertex[i] = lap->vertex[row];
+        if (corners == 1) p->weight[point] = 0.1 + shape_uniform(seed);
+        else if (corner == 0) p->weight[point] = (1 + trial_below(seed, 16)) / 16.0;
+        p->bary[i] = corners == 1 ? 1 : corner == 2 ? 1 - p->bary[i - 1] - p->bary[i - 2] : trial_below(seed, 9) / 16.0;
+        if (corners == 2 && corner == 1) p->bary[i] = 1 - p->bary[i - 1];
+    }
+    for (i = 0; i < corners * s.count; i++) {
+        const int32_t point = i / corners;
+        const double before = point > 0 ? p->weight[point - 1] : 0, after = point + 1 < s.count ? p->weight[point] : 0;
+        c[p->vertex[i]] += p->bary[i] * (curve ? (before + after) / 2 : p->weight[point]);
+    }
+    return s;
+}
+
+/* x g x' c: as the transpose, and x on the left. */
+static void trial_want_symmetric(trial_work *w, const double *field) {
+    const truth_pairs *T = w->T;
+    quad *z = TRUTH_NEW(quad, T->n);
+    double *off = TRUTH_NEW(double, T->n), beyond = 0;
+    int32_t r, l;
+    for (r = 0; r < T->n; r++) {
+        const double f = field[w->s->lap->vertex[r]];
+        for (l = T->first[T->comp[r]]; f != 0 && l < T->first[T->comp[r] + 1]; l++) {
+            z[l] += T->x[r * T->n + l] * f;
+            off[l] += (TRUTH_EPS / 4) * T->xd[r * T->n + l] * fabs(f);
+        }
+        beyond += T->x_most * fabs(f);
+    }
+    trial_weigh(w, z, off);
+    trial_want_rows(w, 0, T->n * beyond, NULL);
+    free(z);
+    free(off);
+}
+
+/* Columns of several vertices at once, k sources at some times, and columns of filters. */
+static void trial_run_from(trial_work *w, hd_heat *heat) {
+    const trial *c = w->c;
+    const int32_t n = w->s->lap->n, k = c->k < 1 ? 1 : c->k > 8 ? 8 : c->k;
+    const int symmetric = c->kernel == HD_KERNEL_SYMMETRIC, by_filter = c->query == QUERY_FILTER;
+    const int32_t m = by_filter ? 1 : c->n_times;
+    uint64_t seed = (uint64_t)c->seed + 1;
+    double *u = TRUTH_NEW(double, n * k * m), *field = TRUTH_NEW(double, n * k), *t = trial_times(c);
+    trial_points at[8];
+    hd_source s[8];
+    int32_t q;
+    if (by_filter) t[0] = w->set.t;
+    for (q = 0; q < k; q++) s[q] = trial_source(w, &seed, at + q, field + q * n);
+    trial_row_name(w, by_filter ? symmetric ? "filter, k_t" : "filter, K_t" : symmetric ? "k_t from" : "K_t from");
+    hd_heat_columns_from(heat, (hd_kernel)c->kernel, m, t, k, s, u, 0, &w->rep, NULL);
+    for (q = 0; q < k * m && !trial_failed(w); q++) {
+        if (by_filter) truth_filter_fill(&w->s->f, w->T, FORM_FILTER, c->t, NULL, 0);
+        else trial_filter_for(w, t[q % m], 0);
+        if (symmetric) trial_want_symmetric(w, field + q / m * n);
+        else trial_want_field(w, field + q / m * n, field + q / m * n, 0);
+        trial_compare(w, u + q * n, n, 1, 0, -1);
+    }
+    free(u);
+    free(field);
+    free(t);
 }
 
 static void trial_run_times(trial_work *w, hd_heat *heat) {
@@ -1298,54 +1419,80 @@ static quad trial_want_distance_from(trial_work *w, const quad *c, int32_t v, in
 static void trial_run_distance_from(trial_work *w, hd_heat *heat) {
     const trial *c = w->c;
     const hd_laplacian *lap = w->s->lap;
-    const int32_t n = lap->n;
+    const int timeless = c->kind >= HD_DISTANCE_COMMUTE;
+    const int32_t n = lap->n, k = c->k < 1 ? 1 : c->k > 8 ? 8 : c->k, m = timeless ? 1 : c->n_times;
     uint64_t seed = (uint64_t)c->seed + 1;
-    double *d = TRUTH_NEW(double, 2 * n), *field = d + n;
-    quad *share = TRUTH_NEW(quad, n), sum = 0;
-    int32_t v, count = 0;
-    trial_points at;
-    hd_source s = trial_source(w, &seed, &at, field);
+    double *D = TRUTH_NEW(double, n * k * m), *field = TRUTH_NEW(double, n * k), *t = trial_times(c);
+    quad *share = TRUTH_NEW(quad, n);
+    int32_t v, q;
+    trial_points at[8];
+    hd_source s[8];
     char name[32];
+    for (q = 0; q < k; q++) s[q] = trial_source(w, &seed, at + q, field + q * n);
     snprintf(name, sizeof name, "from, %s", trial_kinds[c->kind]);
     trial_row_name(w, name);
-    hd_heat_distance_from(heat, (hd_distance_kind)c->kind, 1, &c->t, 1, &s, d, 0, &w->rep, NULL);
-    if (!trial_failed(w)) {
-        if (c->kind >= HD_DISTANCE_COMMUTE)
+    hd_heat_distance_from(heat, (hd_distance_kind)c->kind, m, t, k, s, D, 0, &w->rep, NULL);
+    for (q = 0; q < k * m && !trial_failed(w); q++) {
+        const double *f = field + q / m * n;
+        double *d = D + q * n;
+        quad sum = 0;
+        int32_t count = 0;
+        if (timeless)
             truth_filter_fill(&w->s->f, w->T, c->kind == HD_DISTANCE_COMMUTE ? FORM_COMMUTE : FORM_BIHARMONIC, 0, NULL, 0);
-        else trial_filter_for(w, 2 * c->t, 0);
-        for (v = 0; v < n; v++) sum += field[v];
-        for (v = 0; v < n; v++) share[v] = field[v] / sum;
+        else trial_filter_for(w, 2 * t[q % m], 0);
+        for (v = 0; v < n; v++) sum += f[v];
+        for (v = 0; v < n; v++) share[v] = f[v] / sum;
         for (v = 0; v < n; v++) {
             const int32_t r = lap->row[v];
             if (share[v] == 1) continue;         /* the source is this vertex */
-            if (c->kind >= HD_DISTANCE_COMMUTE &&
-                (r < 0 || w->T->comp[r] != w->T->comp[lap->row[at.vertex[0]]])) continue;
+            if (timeless && (r < 0 || w->T->comp[r] != w->T->comp[lap->row[at[q / m].vertex[0]]])) continue;
             w->want[count] = trial_want_distance_from(w, share, v, c->kind == HD_DISTANCE_WEIGHTED, w->off + count);
             d[count++] = d[v];
         }
         if (count > 0) trial_compare(w, d, count, 0, 1, -1);
     }
     free(share);
-    free(d);
+    free(field);
+    free(D);
+    free(t);
 }
 
-/* A filter of the spectrum near 1/t, fitted; 0: there is none. */
+/* A filter of the spectrum near 1/t, fitted; 0: there is none. The last sets are kept: cases in a row often have the same. */
 static int trial_make_filter(trial_work *w) {
+    enum { KEPT = 16 };
+    static struct { hd_filter f; hd_rational set; } kept[KEPT];
+    static int oldest;
     const trial *c = w->c;
     const double lambda_max = hd_laplacian_lambda_max(w->s->lap);
     hd_filter *f = &w->s->f.of;
+    int q;
     memset(f, 0, sizeof *f);
     if (!(c->t > 1e-100 && c->t < 1e100 && lambda_max > 0 && lambda_max < 1e100)) return 0;
     f->a = c->t;
     f->b = 0.5;
-    switch (c->seed % 5) {
+    switch (c->own == OWN_FITTED ? c->seed % 8 : c->seed % 5) {
     case 0: f->kind = HD_FILTER_WAVE; f->a = -log(c->t); f->b = 0.7; break;
     case 1: f->kind = HD_FILTER_MEXICAN_HAT; break;
     case 2: f->kind = HD_FILTER_RESOLVENT; break;
-    case 3: f->kind = HD_FILTER_FRACTIONAL; break;
+    case 3:
+        f->kind = HD_FILTER_FRACTIONAL;
+        if (c->own == OWN_FITTED) f->lambda_min = 0.9 * w->s->exact.edge;
+        break;
+    case 5: f->kind = HD_FILTER_BIHARMONIC; f->a = 1 / c->t; break;
+    case 6: f->kind = HD_FILTER_HEAT; break;
+    case 7: f->kind = HD_FILTER_WAVE; f->a = -log(c->t); f->b = 0.3; break;
     default: f->kind = HD_FILTER_BAND; f->a = 1 / c->t; f->b = 4 / c->t;
     }
-    return hd_rational_fit(&w->set, f, lambda_max, &trial_serial, NULL) >= 0;
+    for (q = 0; q < KEPT && (memcmp(&kept[q].f, f, sizeof *f) != 0 || kept[q].set.lambda_max < lambda_max || kept[q].set.lambda_max > lambda_max); q++) {}
+    if (q == KEPT) {
+        q = oldest;
+        oldest = (oldest + 1) % KEPT;
+        memset(&kept[q].f, 0, sizeof *f);
+        if (hd_rational_fit(&kept[q].set, f, lambda_max, &trial_serial, NULL) < 0) return 0;
+        kept[q].f = *f;
+    }
+    w->set = kept[q].set;
+    return 1;
 }
 
 /* Sets by number, real poles and pairs in all the ways in which four of them fill a pack or leave one over: how many, which of them are real, and
@@ -1379,7 +1526,7 @@ static int trial_make_own(trial_work *w) {
     int32_t p;
     memset(s, 0, sizeof *s);
     w->own = NULL;
-    if (c->query == QUERY_FILTER) return trial_make_filter(w);
+    if (c->query == QUERY_FILTER || c->own == OWN_FITTED) return trial_make_filter(w);
     if (c->own == OWN_NONE) return 1;
     if (c->own == OWN_COPY || c->own == OWN_COPY0 || c->own == OWN_LOOSE || c->own == OWN_A0) {
         if (hd_rational_get(s, HD_POLES_KERNEL, degree, NULL) < 0) return 0;
@@ -1438,6 +1585,7 @@ static hd_heat_opts trial_options(const trial *c) {
 
 /* 0: there is no answer. */
 static int trial_run_one(trial_subject *s, const trial *c, const char *text, int stored) {
+    trial fitted = *c;
     hd_heat_opts o;
     hd_heat *heat = NULL;
     hd_error e;
@@ -1450,6 +1598,10 @@ static int trial_run_one(trial_subject *s, const trial *c, const char *text, int
     w.T = stored ? &s->stored : &s->exact;
     w.text = text;
     if (!trial_make_own(&w)) return 0;
+    if (c->own == OWN_FITTED) {                  /* the set has a time of its own */
+        fitted.t = w.set.t;
+        w.c = &fitted;
+    }
     o = trial_options(c);
     o.rational = c->own || c->query == QUERY_FILTER ? &w.set : NULL;
     if (hd_heat_create(&heat, s->lap, &o, &e) < 0) {
