@@ -1238,17 +1238,6 @@ static void ldl_first_of_two(void) {
 
 /* ---- memory and cancelling ---- */
 
-/* real = L + B and val of k poles. */
-static void ldl_robust_values(const hd_csr *a, int32_t k, double *real, hd_c64 *val) {
-    const int32_t mark = kit_mark();
-    double *L = KIT_NEW(double, a->nnz);
-    int64_t p;
-    ldl_pair(a, 3, L, real);
-    ldl_shifted(a, L, real, k, 4, val);
-    for (p = 0; p < a->nnz; p++) real[p] += L[p];
-    kit_release(mark);
-}
-
 /* Attempt k of a factorisation that runs out of memory, or is cancelled, in the first one of the object or a later: not to be solved with,
  * but to be factored again, with the bits of want. k = 0: what these are. Whether it was stopped. */
 static int ldl_survives_at(const ldl_problem *p, hd_c64 *want, int cancel, int before, int reverse, int64_t k) {
