@@ -5,32 +5,33 @@ typedef struct est_case {
     hd_method method;
     int32_t n_times, k;
     double from, ratio;                          /* times in units of h^2: the first, and the last over the first */
+    int large;                                   /* for a large mesh */
 } est_case;
 
 static const est_case EST_CASES[] = {
-    {HD_QUERY_COLUMNS, HD_METHOD_DIRECT, 1, 1, 10, 1},
-    {HD_QUERY_COLUMNS, HD_METHOD_DIRECT, 1, 100, 10, 1},
-    {HD_QUERY_COLUMNS, HD_METHOD_DIRECT, 3, 5, 10, 100},
-    {HD_QUERY_PAIRS, HD_METHOD_DIRECT, 1, 10, 10, 1},
-    {HD_QUERY_DIAGONAL, HD_METHOD_AUTO, 1, 0, 5, 1},
-    {HD_QUERY_DIAGONAL, HD_METHOD_DIRECT, 16, 0, 1, 1000},
-    {HD_QUERY_DIAGONAL, HD_METHOD_AUTO, 2, 0, 1, 3},
-    {HD_QUERY_DIAGONAL_OPERATOR, HD_METHOD_AUTO, 1, 0, 5, 1},
-    {HD_QUERY_EDGES, HD_METHOD_AUTO, 2, 0, 5, 2},
-    {HD_QUERY_TRACE, HD_METHOD_AUTO, 1, 0, 5, 1},
-    {HD_QUERY_TRACE, HD_METHOD_DIRECT, 16, 0, 1, 1000},
-    {HD_QUERY_TRACE, HD_METHOD_AUTO, 2, 0, 1, 3},
-    {HD_QUERY_NORMALISED, HD_METHOD_AUTO, 1, 0, 5, 1},
-    {HD_QUERY_NORMALISED, HD_METHOD_AUTO, 16, 0, 1, 1000},
-    {HD_QUERY_SCALE_INVARIANT, HD_METHOD_AUTO, 16, 0, 1, 1000},
-    {HD_QUERY_DISTANCE, HD_METHOD_AUTO, 1, 3, 5, 1},
-    {HD_QUERY_DISTANCE, HD_METHOD_AUTO, 1, 1, 100, 1},
-    {HD_QUERY_DISTANCE, HD_METHOD_AUTO, 1, 50, 5, 1},
-    {HD_QUERY_DISTANCE, HD_METHOD_AUTO, 16, 2, 1, 1000},
-    {HD_QUERY_DISTANCE_WEIGHTED, HD_METHOD_AUTO, 1, 2, 5, 1},
-    {HD_QUERY_DISTANCE_WEIGHTED, HD_METHOD_AUTO, 16, 2, 1, 1000},
-    {HD_QUERY_DISTANCE_COMMUTE, HD_METHOD_AUTO, 0, 2, 0, 1},
-    {HD_QUERY_DISTANCE_BIHARMONIC, HD_METHOD_AUTO, 0, 2, 0, 1},
+    {HD_QUERY_COLUMNS, HD_METHOD_DIRECT, 1, 1, 10, 1, 0},
+    {HD_QUERY_COLUMNS, HD_METHOD_DIRECT, 1, 100, 10, 1, 0},
+    {HD_QUERY_COLUMNS, HD_METHOD_DIRECT, 3, 5, 10, 100, 0},
+    {HD_QUERY_PAIRS, HD_METHOD_DIRECT, 1, 10, 10, 1, 0},
+    {HD_QUERY_DIAGONAL, HD_METHOD_AUTO, 1, 0, 5, 1, 0},
+    {HD_QUERY_DIAGONAL, HD_METHOD_DIRECT, 16, 0, 1, 1000, 0},
+    {HD_QUERY_DIAGONAL, HD_METHOD_AUTO, 2, 0, 1, 3, 0},
+    {HD_QUERY_DIAGONAL_OPERATOR, HD_METHOD_AUTO, 1, 0, 5, 1, 0},
+    {HD_QUERY_EDGES, HD_METHOD_AUTO, 2, 0, 5, 2, 0},
+    {HD_QUERY_TRACE, HD_METHOD_AUTO, 1, 0, 5, 1, 0},
+    {HD_QUERY_TRACE, HD_METHOD_DIRECT, 16, 0, 1, 1000, 0},
+    {HD_QUERY_TRACE, HD_METHOD_AUTO, 2, 0, 1, 3, 0},
+    {HD_QUERY_NORMALISED, HD_METHOD_AUTO, 1, 0, 5, 1, 0},
+    {HD_QUERY_NORMALISED, HD_METHOD_AUTO, 16, 0, 1, 1000, 0},
+    {HD_QUERY_SCALE_INVARIANT, HD_METHOD_AUTO, 16, 0, 1, 1000, 0},
+    {HD_QUERY_DISTANCE, HD_METHOD_AUTO, 1, 3, 5, 1, 0},
+    {HD_QUERY_DISTANCE, HD_METHOD_AUTO, 1, 1, 100, 1, 1},
+    {HD_QUERY_DISTANCE, HD_METHOD_AUTO, 1, 50, 5, 1, 0},
+    {HD_QUERY_DISTANCE, HD_METHOD_AUTO, 16, 2, 1, 1000, 1},
+    {HD_QUERY_DISTANCE_WEIGHTED, HD_METHOD_AUTO, 1, 2, 5, 1, 1},
+    {HD_QUERY_DISTANCE_WEIGHTED, HD_METHOD_AUTO, 16, 2, 1, 1000, 1},
+    {HD_QUERY_DISTANCE_COMMUTE, HD_METHOD_AUTO, 0, 2, 0, 1, 0},
+    {HD_QUERY_DISTANCE_BIHARMONIC, HD_METHOD_AUTO, 0, 2, 0, 1, 0},
 };
 enum { EST_N_CASES = sizeof EST_CASES / sizeof EST_CASES[0], EST_MOST_TIMES = 16, EST_MOST_K = 100 };
 
@@ -156,7 +157,7 @@ static void est_methods(const hd_laplacian *lap) {
     int q, w;
     for (q = 0; q < 4; q++) {
         for (w = 0; w < 3; w++) {
-            const est_case c = {HD_QUERY_COLUMNS, methods[q], 1, ks[w], 20, 1};
+            const est_case c = {HD_QUERY_COLUMNS, methods[q], 1, ks[w], 20, 1, 0};
             hd_context ctx;
             hd_heat_opts o = eng_opts(methods[q]);
             hd_heat *heat;
@@ -185,7 +186,7 @@ static void est_methods(const hd_laplacian *lap) {
 static void est_limits(const hd_laplacian *lap) {
     const double t = 10 * lap->h * lap->h;
     double *U = KIT_NEW(double, 20 * lap->n);
-    const est_case c = {HD_QUERY_COLUMNS, HD_METHOD_AUTO, 1, 20, 10, 1};
+    const est_case c = {HD_QUERY_COLUMNS, HD_METHOD_AUTO, 1, 20, 10, 1, 0};
     hd_context ctx;
     hd_heat_opts o = eng_opts(HD_METHOD_AUTO);
     hd_heat *heat;
@@ -259,19 +260,19 @@ static void est_rooms(void) {
     hd_laplacian_opts o;
     int thin, kind, held, large, n_times, query, method, i;
     for (thin = 0; thin < 2; thin++) {
-        shape s = kit_own_shape(shape_grid(14, 13, 0.3));
-        for (i = 0; thin && i < s.n; i++) s.xyz[3 * i + 1] *= 1e-4;
         for (kind = 0; kind < (thin ? 2 : 4); kind++) {   /* in slivers heat fades at once */
+            const shape *s = kit_shape(kind < 2 ? "flat/9/8/0.3" : "flat/11/10/0.3");
             hd_laplacian *lap = NULL;
+            for (i = 0; thin && i < s->n; i++) s->xyz[3 * i + 1] *= 1e-4;
             held = kind / 2;
             memset(&o, 0, sizeof o);
             o.kind = kinds[kind % 2];
             if (held) o.border = HD_BORDER_DIRICHLET;
-            CHECK(hd_laplacian_triangles(&lap, s.xyz, s.n, s.tri, s.n_tri, &o, NULL) == HD_OK);
+            CHECK(hd_laplacian_triangles(&lap, s->xyz, s->n, s->tri, s->n_tri, &o, NULL) == HD_OK);
             for (method = kind % 2; method < 2; method++) for (large = 0; large < 2; large++) for (n_times = 1; n_times <= 4; n_times += 3)
                 for (query = HD_QUERY_FIELDS; query <= HD_QUERY_DISTANCE_WEIGHTED; query++) {
                     const double h2 = lap->h * lap->h, from = !large ? 5 : held ? 40 : 3e8 / hd_laplacian_lambda_max(lap) / h2;
-                    est_case c = {HD_QUERY_FIELDS, HD_METHOD_AUTO, n_times, query <= HD_QUERY_PAIRS || query >= HD_QUERY_DISTANCE ? 6 : 0, from, 8};
+                    est_case c = {HD_QUERY_FIELDS, HD_METHOD_AUTO, n_times, query <= HD_QUERY_PAIRS || query >= HD_QUERY_DISTANCE ? 6 : 0, from, 8, 0};
                     c.query = (hd_query)query;
                     if (query == HD_QUERY_PAIRS && n_times > 1) continue;
                     if (query == HD_QUERY_SCALE_INVARIANT && n_times < 3) continue;
@@ -285,22 +286,13 @@ static void est_rooms(void) {
 }
 
 static void est_bad(const hd_laplacian *lap) {
-    hd_heat *heat = eng_plan(lap, HD_METHOD_ITERATIVE, HD_POLES_DEFAULT, 0);
-    const double t = 1, bad = -1, none = 0;
+    hd_heat *heat = kit_heat(lap, "method=iterative");
+    const double t = 1, none = 0;
     hd_estimate e;
     hd_error err;
-    e.method = HD_METHOD_DIRECT;
-    CHECK(hd_heat_estimate(NULL, HD_QUERY_COLUMNS, 1, &t, 1, &e, &err) == HD_ERR_ARGUMENT);
-    CHECK(hd_heat_estimate(heat, HD_QUERY_COLUMNS, 1, &t, 1, NULL, &err) == HD_ERR_ARGUMENT);
-    CHECK(hd_heat_estimate(heat, HD_QUERY_COLUMNS, 1, &bad, 1, &e, &err) == HD_ERR_ARGUMENT);
-    CHECK(hd_heat_estimate(heat, HD_QUERY_COLUMNS, 0, &t, 1, &e, &err) == HD_ERR_ARGUMENT);
-    CHECK(hd_heat_estimate(heat, HD_QUERY_COLUMNS, 1, &t, -1, &e, &err) == HD_ERR_ARGUMENT);
-    CHECK(hd_heat_estimate(heat, (hd_query)99, 1, &t, 1, &e, &err) == HD_ERR_ARGUMENT);
     CHECK(hd_heat_estimate(heat, HD_QUERY_DIAGONAL, 1, &t, 1, &e, &err) == HD_ERR_ARGUMENT && err.text[0]);   /* iterations have none */
-    CHECK(e.method == HD_METHOD_DIRECT);         /* unchanged */
     CHECK(hd_heat_estimate(heat, HD_QUERY_COLUMNS, 1, &none, 1, &e, &err) == HD_OK && e.cost[0].seconds == 0 && strcmp(e.reason, "t = 0") == 0);
     CHECK(hd_heat_estimate(heat, HD_QUERY_FIELDS, 1, &t, 3, &e, NULL) == HD_OK && e.method == HD_METHOD_ITERATIVE && !e.analysed && e.cost[0].flops > 0);
-    hd_heat_free(heat);
 }
 
 /* Work for one more column by the model, over the steps that one takes, with this solver and preconditioner, for t from h^2 to
@@ -333,40 +325,32 @@ static void est_steps(const hd_laplacian *lap, hd_solver solver, hd_precond prec
 
 /* The model of steps: fair triangles, points, other preconditioners, thin triangles made Delaunay, and a fine patch. */
 static void est_model(void) {
-    shape ball = kit_own_shape(shape_bumpy(4, 3)), sheet = kit_own_shape(shape_grid(50, 50, 0.35)), torus = kit_own_shape(shape_torus(100, 25, 1, 0.4));
+    static const struct { const char *pair; hd_solver solver; hd_precond precond; double spread; } rows[] = {
+        {"bumpy/3/3 fem", HD_SOLVER_COCG, HD_PRECOND_AUTO, 2.83}, {"bumpy/3/3 vor", HD_SOLVER_COCG, HD_PRECOND_AUTO, 2.83},
+        {"bumpy/3/3 vor", HD_SOLVER_LANCZOS, HD_PRECOND_AUTO, 3.17}, {"bumpy/3/3 vor", HD_SOLVER_COCG, HD_PRECOND_JACOBI, 4},
+        {"bumpy/3/3 vor", HD_SOLVER_COCG, HD_PRECOND_SSOR, 4}, {"bumpy/3/3 vor", HD_SOLVER_COCG, HD_PRECOND_ILDL, 4},
+        {"flat/30/30/0.35 fem", HD_SOLVER_COCG, HD_PRECOND_AUTO, 2.83}, {"flat/30/30/0.35 vor", HD_SOLVER_COCG, HD_PRECOND_AUTO, 2.83},
+        {"flat/30/30/0.35 vor", HD_SOLVER_LANCZOS, HD_PRECOND_AUTO, 3.17}, {"torus/60/20 fem", HD_SOLVER_COCG, HD_PRECOND_AUTO, 2.83},
+        {"torus/60/20 vor", HD_SOLVER_COCG, HD_PRECOND_AUTO, 2.83}, {"torus/60/20 vor", HD_SOLVER_LANCZOS, HD_PRECOND_AUTO, 3.17},
+    };
+    const shape *ball = kit_shape("bumpy/3/3"), *sheet = kit_shape("flat/30/30/0.35");
     hd_laplacian_opts o;
-    hd_laplacian *lap;
-    const shape *s[3];
-    int k, kind, i;
-    s[0] = &ball;
-    s[1] = &sheet;
-    s[2] = &torus;
-    for (k = 0; k < 3; k++) {
-        for (kind = 0; kind < 2; kind++) {
-            lap = test_laplacian(s[k], kind ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM);
-            est_steps(lap, HD_SOLVER_COCG, HD_PRECOND_AUTO, 2.83, "cocg");
-            if (kind) est_steps(lap, HD_SOLVER_LANCZOS, HD_PRECOND_AUTO, 3.17, "lanczos");
-            if (kind && k == 0) {
-                est_steps(lap, HD_SOLVER_COCG, HD_PRECOND_JACOBI, 4, "jacobi");
-                est_steps(lap, HD_SOLVER_COCG, HD_PRECOND_SSOR, 4, "ssor");
-                est_steps(lap, HD_SOLVER_COCG, HD_PRECOND_ILDL, 4, "ildl");
-            }
-            hd_laplacian_free(lap);
-        }
-    }
-    lap = NULL;
-    CHECK(hd_laplacian_points(&lap, ball.xyz, ball.n, NULL, NULL) >= 0);
-    est_steps(lap, HD_SOLVER_COCG, HD_PRECOND_AUTO, 4, "cocg, points");
-    est_steps(lap, HD_SOLVER_LANCZOS, HD_PRECOND_AUTO, 2.83, "lanczos, points");
-    hd_laplacian_free(lap);
-    for (i = 0; i < sheet.n; i++) sheet.xyz[3 * i] *= 10;
+    hd_laplacian *points = NULL, *thin = NULL;
+    size_t k;
+    int i;
+    for (k = 0; k < sizeof rows / sizeof *rows; k++)
+        est_steps(kit_pair(rows[k].pair), rows[k].solver, rows[k].precond, rows[k].spread, rows[k].pair);
+    CHECK(hd_laplacian_points(&points, ball->xyz, ball->n, NULL, NULL) >= 0);
+    est_steps(points, HD_SOLVER_COCG, HD_PRECOND_AUTO, 4, "cocg, points");
+    est_steps(points, HD_SOLVER_LANCZOS, HD_PRECOND_AUTO, 2.83, "lanczos, points");
+    for (i = 0; i < sheet->n; i++) sheet->xyz[3 * i] *= 10;
     memset(&o, 0, sizeof o);
     o.kind = HD_LAPLACIAN_VORONOI_COT;
     o.intrinsic_delaunay = 1;
-    lap = NULL;
-    CHECK(hd_laplacian_triangles(&lap, sheet.xyz, sheet.n, sheet.tri, sheet.n_tri, &o, NULL) >= 0);
-    est_steps(lap, HD_SOLVER_COCG, HD_PRECOND_AUTO, 6.25, "cocg, thin triangles");
-    hd_laplacian_free(lap);
+    CHECK(hd_laplacian_triangles(&thin, sheet->xyz, sheet->n, sheet->tri, sheet->n_tri, &o, NULL) >= 0);
+    est_steps(thin, HD_SOLVER_COCG, HD_PRECOND_AUTO, 6.25, "cocg, thin triangles");
+    hd_laplacian_free(points);
+    hd_laplacian_free(thin);
 }
 
 /* Eigenpairs: bytes against those of hd_spectrum_create, whatever the plan's method. */
@@ -430,29 +414,13 @@ static void est_sweep_one(hd_heat *heat, const hd_heat_opts *o, hd_query query, 
     }
 }
 
-enum { EST_PLANS = 14 };
-
-/* One plan of the list below. */
-static hd_heat_opts est_sweep_opts(int which, const hd_rational *set) {
-    hd_heat_opts o = eng_opts(HD_METHOD_AUTO);
-    switch (which) {
-    case 1: o.method = HD_METHOD_DIRECT; break;
-    case 2: o.method = HD_METHOD_ITERATIVE; break;
-    case 3: o.method = HD_METHOD_KRYLOV; break;
-    case 4: o.tol = 1e-8; break;
-    case 5: o.poles = HD_POLES_UNIFORM; break;
-    case 6: o.poles = HD_POLES_KERNEL; o.degree = 6; break;
-    case 7: o.poles = HD_POLES_DIAGONAL; break;
-    case 8: o.degree = 7; o.method = HD_METHOD_DIRECT; break;
-    case 9: o.rational = set; break;
-    case 10: o.method = HD_METHOD_ITERATIVE; o.precond = HD_PRECOND_NONE; break;
-    case 11: o.method = HD_METHOD_ITERATIVE; o.precond = HD_PRECOND_JACOBI; o.solver = HD_SOLVER_MINRES; break;
-    case 12: o.method = HD_METHOD_ITERATIVE; o.solver = HD_SOLVER_LANCZOS; break;
-    case 13: o.tol = 1e-6; o.method = HD_METHOD_DIRECT; break;
-    default: break;
-    }
-    return o;
-}
+/* The plans of the sweep, in words of tools/trials.h; the last has a set of its own. */
+static const char *const est_plans[] = {
+    "", "method=direct", "method=iterative", "method=krylov", "tol=1e-8", "poles=uniform", "poles=kernel degree=6", "poles=diagonal",
+    "degree=7 method=direct", "method=iterative precond=none", "method=iterative precond=jacobi solver=minres",
+    "method=iterative solver=lanczos", "tol=1e-6 method=direct", "",
+};
+enum { EST_PLANS = sizeof est_plans / sizeof *est_plans };
 
 static void est_sweep(const hd_laplacian *lap, uint64_t limit, const char *name) {
     double t[4][EST_MOST_TIMES] = {{1}, {0, 1, 2}, {1}, {1e7}}, *u = KIT_NEW(double, lap->n);
@@ -463,12 +431,15 @@ static void est_sweep(const hd_laplacian *lap, uint64_t limit, const char *name)
     for (q = 0; q < EST_MOST_TIMES; q++) t[2][q] = pow(10, 0.3 * q);
     for (w = 0; w < 4; w++) for (q = 0; q < n_times[w]; q++) t[w][q] *= lap->h * lap->h;
     for (which = 0; which < EST_PLANS; which++) {
-        hd_heat_opts o = est_sweep_opts(which, &set);
+        const trial words = trial_parse(est_plans[which]);
+        hd_heat_opts o = trial_options(&words);
         hd_context ctx;
         hd_heat *heat = NULL;
         char what[80];
         memset(&ctx, 0, sizeof ctx);
         o.context = &ctx;
+        o.max_iterations = 0;
+        o.rational = which == EST_PLANS - 1 ? &set : NULL;
         ctx.byte_limit = limit;
         if (!CHECK(hd_heat_create(&heat, lap, &o, NULL) == HD_OK)) continue;
         for (pass = 0; pass < 2; pass++) {
@@ -483,32 +454,15 @@ static void est_sweep(const hd_laplacian *lap, uint64_t limit, const char *name)
 }
 
 static void est_sweeps(void) {
-    shape ball = kit_own_shape(shape_icosphere(1)), grid = kit_own_shape(shape_grid(9, 8, 0.2));
-    hd_laplacian_opts held;
-    hd_laplacian *lap = test_laplacian(&ball, HD_LAPLACIAN_FEM);
-    memset(&held, 0, sizeof held);
-    held.kind = HD_LAPLACIAN_VORONOI_COT;
-    held.border = HD_BORDER_DIRICHLET;
-    est_sweep(lap, 0, "ball");
-    est_sweep(lap, 30000, "ball with little room");
-    hd_laplacian_free(lap);
-    lap = NULL;
-    CHECK(hd_laplacian_triangles(&lap, grid.xyz, grid.n, grid.tri, grid.n_tri, &held, NULL) == HD_OK);
-    est_sweep(lap, 0, "held grid");
-    hd_laplacian_free(lap);
+    est_sweep(kit_pair("ico/1 fem"), 0, "ball");
+    est_sweep(kit_pair("ico/1 fem"), 30000, "ball with little room");
+    est_sweep(kit_pair("flat/9/8/0.2 vor+held"), 0, "held grid");
 }
-
-#if defined(__SANITIZE_ADDRESS__)
-enum { EST_EACH = 3 };       /* under the sanitizers the ball and the points do: it takes a minute for all */
-#else
-enum { EST_EACH = 1 };
-#endif
 
 /* Work by iterations is a sum over the times. */
 static void est_flops(void) {
-    shape s = kit_own_shape(shape_icosphere(2));
-    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
-    hd_heat *heat = eng_plan(lap, HD_METHOD_ITERATIVE, HD_POLES_DEFAULT, 0);
+    const hd_laplacian *lap = kit_pair("ico/2 fem");
+    hd_heat *heat = kit_heat(lap, "method=iterative");
     const double t[2] = {3 * lap->h * lap->h, 9 * lap->h * lap->h};
     double flops[3];
     int q;
@@ -518,15 +472,12 @@ static void est_flops(void) {
         flops[q] = e.cost[HD_METHOD_ITERATIVE].flops;
     }
     CHECK_MSG(flops[0] > 0 && fabs(flops[2] - flops[0] - flops[1]) <= 1e-12 * flops[2], "%g and %g, together %g", flops[0], flops[1], flops[2]);
-    hd_heat_free(heat);
-    hd_laplacian_free(lap);
 }
 
 /* Times over more decades never cost less. */
 static void est_decades(void) {
     enum { TIMES = 20 };
-    shape s = kit_own_shape(shape_grid(31, 31, 0.2));
-    hd_laplacian *lap = kit_own_laplacian(test_laplacian(&s, HD_LAPLACIAN_FEM));
+    const hd_laplacian *lap = kit_pair("flat/31/31/0.2 fem");
     double before = 0, flops = 0, t[TIMES];
     int decades, q;
     for (decades = 2; decades <= 290; decades += 24) {
@@ -544,12 +495,11 @@ static void est_decades(void) {
 
 /* Work grows with the number of items up to the largest there is. */
 static void est_many(void) {
-    shape s = kit_own_shape(shape_grid(6, 5, 0.2));
-    hd_laplacian *lap = kit_own_laplacian(test_laplacian(&s, HD_LAPLACIAN_FEM));
+    const hd_laplacian *lap = kit_pair("flat/6/5/0.2 fem");
     const double t = 10 * lap->h * lap->h;
     int q;
     for (q = HD_QUERY_FIELDS; q <= HD_QUERY_DISTANCE_BIHARMONIC; q++) {
-        hd_heat *heat = eng_plan(lap, HD_METHOD_DIRECT, HD_POLES_DEFAULT, 0);
+        hd_heat *heat = kit_heat(lap, "method=direct");
         const hd_query query = (hd_query)q;
         const int each = q <= HD_QUERY_PAIRS || q >= HD_QUERY_DISTANCE;
         hd_estimate half, all;
@@ -557,28 +507,32 @@ static void est_many(void) {
         CHECK(hd_heat_estimate(heat, query, 1, &t, INT32_MAX, &all, NULL) == HD_OK);
         CHECK_MSG(half.cost[HD_METHOD_AUTO].flops > 0 && (!each || fabs(all.cost[HD_METHOD_AUTO].flops / half.cost[HD_METHOD_AUTO].flops - 2) < 1e-3),
                   "query %d: %g and %g flops", q, half.cost[HD_METHOD_AUTO].flops, all.cost[HD_METHOD_AUTO].flops);
-        hd_heat_free(heat);
     }
+}
+
+/* Every query on small shapes; those whose need depends on how much of the heat is left on a larger one. */
+static void est_queries(void) {
+    static const char *const pairs[4] = {"bumpy/4/5 fem", "bumpy/3/5 fem", "bumpy/3/5 vor", "flat/27/21/0.3 fem"};
+    const shape *cloud = kit_shape("bumpy/2/5");
+    hd_laplacian *points = NULL;
+    int q, c;
+    CHECK(hd_laplacian_points(&points, cloud->xyz, cloud->n, NULL, NULL) >= 0);
+    for (q = 0; q < 5; q++) {
+        const hd_laplacian *lap = q == 4 ? points : kit_pair(pairs[q]);
+        for (c = 0; c < EST_N_CASES; c++)
+            if (EST_CASES[c].large == (q == 0)) est_compare(lap, EST_CASES + c, q == 4 ? "points" : pairs[q]);
+        if (q == 1 || q == 2) est_methods(lap);
+        if (q != 1) continue;
+        est_limits(lap);
+        est_bad(lap);
+        est_spectrum(lap);
+    }
+    hd_laplacian_free(points);
 }
 
 static void test_estimate(void) {
     est_flops();
-    static const hd_laplacian_kind kinds[3] = {HD_LAPLACIAN_FEM, HD_LAPLACIAN_VORONOI_COT, HD_LAPLACIAN_FEM};
-    static const char *const names[4] = {"ball, fem", "ball, voronoi-cot", "sheet, fem", "points"};
-    shape ball = kit_own_shape(shape_bumpy(4, 5)), sheet = kit_own_shape(shape_grid(53, 41, 0.3)), points = kit_own_shape(shape_bumpy(3, 5));
-    int q, c;
-    for (q = 0; q < 4; q += EST_EACH) {
-        const shape *s = q == 3 ? &points : q == 2 ? &sheet : &ball;
-        hd_laplacian *lap = NULL;
-        if (q < 3) lap = test_laplacian(s, kinds[q]);
-        else CHECK(hd_laplacian_points(&lap, s->xyz, s->n, NULL, NULL) >= 0);
-        for (c = 0; c < EST_N_CASES; c++) est_compare(lap, EST_CASES + c, names[q]);
-        if (q < 2) est_methods(lap);
-        if (q == 0) est_limits(lap);
-        if (q == 0) est_bad(lap);
-        if (q == 0) est_spectrum(lap);
-        hd_laplacian_free(lap);
-    }
+    est_queries();
     est_model();
     est_rooms();
     est_sweeps();
