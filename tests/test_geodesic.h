@@ -716,68 +716,6 @@ static void geo_threads(void) {
 
 static hd_geodesic *const geo_mark = (hd_geodesic *)&test_passed;    /* not a plan: only compared */
 
-/* 0: plan; 1: and a set; 2: and columns; 3: on a strip that needs stages. */
-static hd_status geo_job(hd_context *ctx, int variant) {
-    const double offset[3] = {3, 0, 0};
-    shape a = kit_own_shape(shape_icosphere(0)), b = variant == 3 ? shape_grid(700, 2, 0) : shape_grid(3, 3, 0.2), s = kit_own_shape(shape_disjoint(&a, &b, offset));
-    const int32_t sources[6] = {0, 13, 5, 14, 2, 20};
-    double *d = KIT_NEW(double, 6 * s.n);
-    hd_geodesic *g = geo_mark;
-    hd_geodesic_opts o;
-    hd_geodesic_report rep;
-    hd_error e;
-    hd_status st;
-    memset(&o, 0, sizeof o);
-    o.context = ctx;
-    st = hd_geodesic_create(&g, s.xyz, s.n, s.tri, s.n_tri, &o, &e);
-    CHECK(e.status == st && (st >= 0) == (g != geo_mark));
-    if (st >= 0) {
-        if (variant == 1 || variant == 3) st = hd_geodesic_distance(g, 2, sources, d, &rep, NULL);
-        if (variant == 2) st = hd_geodesic_distance_each(g, 6, sources, d, 0, &rep, NULL);
-        if (variant) CHECK(rep.status == st && rep.error.status == (st < 0 ? st : HD_OK));
-        hd_geodesic_free(g);
-    }
-    shape_free(&b);
-    return st;
-}
-
-/* A plan that ran out of memory in one query serves the next. */
-static void geo_survives(void) {
-    shape s = kit_own_shape(shape_icosphere(2));
-    test_memory m;
-    hd_context ctx = test_memory_context(&m);
-    const int32_t sources[4] = {3, 4, 5, 6};
-    double *want = KIT_NEW(double, 4 * s.n), *d = KIT_NEW(double, 4 * s.n);
-    int64_t k;
-    for (k = 0; k < 20; k++) {
-        hd_geodesic *g = geo_plan(&s, 0, HD_GEODESIC_MASS_BARYCENTRIC, &ctx);
-        hd_status st = HD_OK;
-        m.fail_at = k ? m.calls + k : 0;
-        if (k) st = hd_geodesic_distance(g, 4, sources, d, NULL, NULL);
-        if (k && st >= 0) st = hd_geodesic_distance_each(g, 4, sources, d, 0, NULL, NULL);
-        m.fail_at = 0;
-        CHECK(hd_geodesic_distance_each(g, 4, sources, k ? d : want, 0, NULL, NULL) == HD_OK);
-        CHECK(k == 0 || memcmp(d, want, 4 * (size_t)s.n * sizeof *d) == 0);
-        hd_geodesic_free(g);
-        if (k && st >= 0) break;
-        CHECK(k == 0 || st == HD_ERR_MEMORY);
-    }
-    CHECK(k > 3 && k < 20);
-    test_memory_done(&m, &ctx, "geodesic");
-}
-
-static void geo_robust(void) {
-    static const rob_job jobs[4] = {{"geodesic plan", geo_job, 0}, {"geodesic set", geo_job, 1}, {"geodesic columns", geo_job, 2}, {"geodesic stages", geo_job, 3}};
-    int k;
-    for (k = 0; k < 4; k++) {
-        rob_fail_each_allocation(jobs + k);
-        rob_byte_limits(jobs + k);
-        rob_stop_each_progress(jobs + k, HD_PROGRESS_CANCEL, HD_ERR_CANCELLED);
-        rob_stop_each_progress(jobs + k, (hd_progress)1, HD_ERR_ARGUMENT);
-    }
-    geo_survives();
-}
-
 static void test_geodesic(void) {
     static const double plane[5] = {0.1, 0.06, 0.04, 0.03, 0.02}, ball[5] = {0.12, 0.07, 0.04, 0.025, 0.02};
     geo_against_dense(shape_bumpy(2, 5), "ball");
@@ -809,7 +747,6 @@ static void test_geodesic(void) {
     geo_plans();
     geo_errors();
     geo_threads();
-    geo_robust();
 }
 
 #endif

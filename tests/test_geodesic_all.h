@@ -557,43 +557,6 @@ static void gall_threads(void) {
     }
 }
 
-/* 0: polygons and a mean border; 1: tufted; 2: points; 3: polygons that need stages. */
-static hd_status gall_job(hd_context *ctx, int variant) {
-    shape_poly s = variant == 3 ? gall_tube(3, 500, 0.001) : shape_trominoes(2, 2, 0.2);
-    shape ball = kit_own_shape(shape_icosphere(1));
-    const int32_t sources[6] = {0, 13, 5, 14, 2, 20};
-    double *d = KIT_NEW(double, 6 * (s.n > ball.n ? s.n : ball.n));
-    hd_geodesic_opts o = gall_options();
-    hd_geodesic *g = geo_mark;
-    hd_geodesic_report rep;
-    hd_error e;
-    hd_status st;
-    o.context = ctx;
-    o.tufted = variant == 1;
-    o.border = variant ? HD_GEODESIC_BORDER_NATURAL : HD_GEODESIC_BORDER_MEAN;
-    st = variant == 2 ? hd_geodesic_create_points(&g, ball.xyz, ball.n, NULL, NULL, &o, &e)
-                      : hd_geodesic_create_polygons(&g, s.xyz, s.n, s.face_ptr, s.face_idx, s.n_faces, &o, &e);
-    CHECK(e.status == st && (st >= 0) == (g != geo_mark));
-    if (st >= 0) {
-        st = hd_geodesic_distance(g, 2, sources, d, &rep, NULL);
-        if (st >= 0) st = hd_geodesic_distance_each(g, 6, sources, d, 0, &rep, NULL);
-        CHECK(rep.status == st && rep.error.status == (st < 0 ? st : HD_OK));
-        hd_geodesic_free(g);
-    }
-    shape_poly_free(&s);
-    return st;
-}
-
-static void gall_robust(void) {
-    static const rob_job jobs[4] = {{"geodesic polygons", gall_job, 0}, {"geodesic tufted", gall_job, 1}, {"geodesic points", gall_job, 2}, {"geodesic polygon stages", gall_job, 3}};
-    int k;
-    for (k = 0; k < 4; k++) {
-        rob_fail_each_allocation(jobs + k);
-        rob_byte_limits(jobs + k);
-        rob_stop_each_progress(jobs + k, HD_PROGRESS_CANCEL, HD_ERR_CANCELLED);
-    }
-}
-
 /* Two squares of four cells: a component without a source has no heat, and that is no reason for stages. Each plan holds its context. */
 static void gall_cold(void) {
     shape_poly p = kit_own_poly(shape_poly_make(18, 8, 32));
@@ -686,7 +649,6 @@ static void test_geodesic_all(void) {
     gall_coincident();
     gall_errors();
     gall_threads();
-    gall_robust();
 }
 
 #endif

@@ -597,32 +597,6 @@ static void poly_long_and_notched(void) {
 
 /* ---- memory and cancelling ---- */
 
-static hd_status poly_job(hd_context *ctx, int variant) {
-    shape_poly s = kit_own_poly(poly_mixed());
-    hd_laplacian_opts o;
-    hd_laplacian *lap = rob_mark_lap;
-    hd_error e;
-    hd_status st;
-    memset(&o, 0, sizeof o);
-    o.context = ctx;
-    o.kind = variant ? HD_LAPLACIAN_FEM : HD_LAPLACIAN_POLYGON;
-    st = hd_laplacian_polygons(&lap, s.xyz, s.n, s.face_ptr, s.face_idx, s.n_faces, &o, &e);
-    CHECK(e.status == st && (st >= 0) == (lap != rob_mark_lap));
-    if (st >= 0) hd_laplacian_free(lap);
-    return st;
-}
-
-static void poly_robust(void) {
-    static const rob_job jobs[2] = {{"polygons", poly_job, 0}, {"polygons as fans", poly_job, 1}};
-    int k;
-    for (k = 0; k < 2; k++) {
-        rob_fail_each_allocation(jobs + k);
-        rob_byte_limits(jobs + k);
-        rob_stop_each_progress(jobs + k, HD_PROGRESS_CANCEL, HD_ERR_CANCELLED);
-        rob_stop_each_progress(jobs + k, (hd_progress)0, HD_ERR_ARGUMENT);
-    }
-}
-
 /* ---- heat ---- */
 
 /* By every method, against the dense eigensolution. */
@@ -709,7 +683,6 @@ static void test_polygon(void) {
     poly_errors();
     poly_slivers();
     poly_long_and_notched();
-    poly_robust();
     poly_heat();
     poly_sphere();
 }

@@ -16,20 +16,6 @@ typedef struct rob_job {
     int variant;
 } rob_job;
 
-static hd_status rob_laplacian_of(hd_context *ctx, hd_laplacian_kind kind, hd_laplacian **out) {
-    shape s = kit_own_shape(call_pair_of_shapes());
-    hd_laplacian_opts o;
-    hd_error e;
-    hd_status st;
-    memset(&o, 0, sizeof o);
-    o.kind = kind;
-    o.context = ctx;
-    *out = rob_mark_lap;
-    st = hd_laplacian_triangles(out, s.xyz, s.n, s.tri, s.n_tri, &o, &e);
-    CHECK(e.status == st && (st >= 0) == (*out != rob_mark_lap));
-    return st;
-}
-
 /* What a script may do: under a limit it must or may go on with less; it solves; it reports no progress. */
 enum { ROB_MUST = 1, ROB_MAY = 2, ROB_SOLVES = 4, ROB_QUIET = 8, ROB_MOST = 20000 };
 
@@ -44,6 +30,8 @@ static const struct { const char *script; int flags; } rob_scripts[] = {
     {"points", 0}, {"exp points", 0}, {"queries=moved n_queries=7 nearest", 0}, {"queries=moved n_queries=7 radius", 0},
     {"tufted_points", 0}, {"delaunay triangles", 0}, {"dissection solve", 0}, {"own solve_c", 0},
     {"factor_c solve_c factor | solve", 0}, {"mean geodesic | geodesic_each", 0}, {"tufted geodesic | geodesic_each", 0},
+    {"krylov k=7 columns", 0}, {"krylov voronoi k=7 apply", 0}, {"krylov n_times=7 columns", 0}, {"direct voronoi k=7 apply", ROB_MAY},
+    {"direct dissection k=7 columns", 0}, {"direct n_times=7 columns", ROB_MAY}, {"krylov dissection operator entries", 0},
     {"geodesic_points | geodesic_each", 0}, {"geodesic_polygons | geodesic_set", 0},
 };
 
