@@ -7,57 +7,10 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The switches of this build, or NULL. */
-#ifdef HEATDIFF_NO_DIRECT
-#define NO_DIRECT "HEATDIFF_NO_DIRECT"
-#else
-#define NO_DIRECT NULL
-#endif
-#ifdef HEATDIFF_NO_POLE_FACTORS
-#define NO_POLE_FACTORS "HEATDIFF_NO_POLE_FACTORS"
-#else
-#define NO_POLE_FACTORS NULL
-#endif
-#ifdef HEATDIFF_NO_DIAGONAL
-#define NO_DIAGONAL "HEATDIFF_NO_DIAGONAL"
-#else
-#define NO_DIAGONAL NULL
-#endif
-#ifdef HEATDIFF_NO_DIFFUSION
-#define NO_DIFFUSION "HEATDIFF_NO_DIFFUSION"
-#else
-#define NO_DIFFUSION NULL
-#endif
-#ifdef HEATDIFF_NO_GEODESIC
-#define NO_GEODESIC "HEATDIFF_NO_GEODESIC"
-#else
-#define NO_GEODESIC NULL
-#endif
-#ifdef HEATDIFF_NO_SPECTRUM
-#define NO_SPECTRUM "HEATDIFF_NO_SPECTRUM"
-#else
-#define NO_SPECTRUM NULL
-#endif
-#ifdef HEATDIFF_NO_ITERATIVE
-#define NO_ITERATIVE "HEATDIFF_NO_ITERATIVE"
-#else
-#define NO_ITERATIVE NULL
-#endif
-#ifdef HEATDIFF_NO_INTRINSIC
-#define NO_INTRINSIC "HEATDIFF_NO_INTRINSIC"
-#else
-#define NO_INTRINSIC NULL
-#endif
-#ifdef HEATDIFF_NO_POINTS
-#define NO_POINTS "HEATDIFF_NO_POINTS"
-#else
-#define NO_POINTS NULL
-#endif
-#ifdef HEATDIFF_NO_POLYGONS
-#define NO_POLYGONS "HEATDIFF_NO_POLYGONS"
-#else
-#define NO_POLYGONS NULL
-#endif
+/* A switch of this build by name, or NULL. What is not defined stands for itself. */
+#define TEXT(x) #x
+#define SWITCH(name) is_on(#name, TEXT(name))
+static const char *is_on(const char *name, const char *value) { return strcmp(name, value) == 0 ? NULL : name; }
 
 /* The switch that takes a part away, by itself or because it implies that; NULL if the part is there. */
 static struct {
@@ -67,16 +20,16 @@ static struct {
 static const char *either(const char *first, const char *second) { return first ? first : second; }
 
 static void find_switches(void) {
-    no.direct = NO_DIRECT;
-    no.pole_factors = either(NO_POLE_FACTORS, no.direct);
-    no.diagonal = either(NO_DIAGONAL, no.pole_factors);
-    no.diffusion = either(NO_DIFFUSION, no.diagonal);
-    no.geodesic = either(NO_GEODESIC, no.direct);
-    no.spectrum = either(NO_SPECTRUM, no.direct);
-    no.iterative = NO_ITERATIVE;
-    no.intrinsic = NO_INTRINSIC;
-    no.points = NO_POINTS;
-    no.polygons = NO_POLYGONS;
+    no.direct = SWITCH(HEATDIFF_NO_DIRECT);
+    no.pole_factors = either(SWITCH(HEATDIFF_NO_POLE_FACTORS), no.direct);
+    no.diagonal = either(SWITCH(HEATDIFF_NO_DIAGONAL), no.pole_factors);
+    no.diffusion = either(SWITCH(HEATDIFF_NO_DIFFUSION), no.diagonal);
+    no.geodesic = either(SWITCH(HEATDIFF_NO_GEODESIC), no.direct);
+    no.spectrum = either(SWITCH(HEATDIFF_NO_SPECTRUM), no.direct);
+    no.iterative = SWITCH(HEATDIFF_NO_ITERATIVE);
+    no.intrinsic = SWITCH(HEATDIFF_NO_INTRINSIC);
+    no.points = SWITCH(HEATDIFF_NO_POINTS);
+    no.polygons = SWITCH(HEATDIFF_NO_POLYGONS);
 }
 
 static int n_checks, n_failed;

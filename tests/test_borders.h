@@ -532,30 +532,6 @@ static void bord_errors(void) {
     }
 }
 
-/* Every allocation fails once; nothing stays behind. */
-static void bord_memory(void) {
-    const shape *s = kit_shape("disk/3/0");
-    const int32_t held = 1;
-    int64_t fail = 1;
-    int done = 0;
-    for (; !done && fail < 1000; fail++) {
-        test_memory m;
-        hd_context ctx = test_memory_context(&m);
-        hd_laplacian_opts o = bord_opts(HD_LAPLACIAN_FEM, HD_BORDER_DIRICHLET, 1, &held);
-        hd_laplacian *lap = NULL;
-        hd_status st;
-        o.context = &ctx;
-        o.updatable = (int32_t)(fail % 2);
-        m.fail_at = fail;
-        st = hd_laplacian_triangles(&lap, s->xyz, s->n, s->tri, s->n_tri, &o, NULL);
-        CHECK(st == HD_OK || st == HD_ERR_MEMORY);
-        done = st == HD_OK;
-        hd_laplacian_free(lap);
-        test_memory_done(&m, &ctx, "held");
-    }
-    CHECK(done && fail > 20);
-}
-
 static void test_borders(void) {
     bord_pairs_triangles();
     bord_split();
@@ -570,7 +546,6 @@ static void test_borders(void) {
     bord_updates();
     bord_update_matrices();
     bord_errors();
-    bord_memory();
 }
 
 #endif

@@ -325,31 +325,6 @@ static void len_flat_face(void) {
     CHECK(lap->mesh.n_zero_area == 1 && lap->mesh.n_faces_used == 1 && lap->n_active == 3 && lap->mesh.n_inert == 1 && fabs(lap->area - sqrt(3)) < 1e-15);
 }
 
-/* Every allocation fails once; nothing stays behind. */
-static void len_memory(void) {
-    shape s = kit_own_shape(shape_grid(4, 4, 0.2));
-    double *len = len_of(&s, 1);
-    int64_t fail = 1;
-    int done = 0;
-    for (; !done && fail < 1000; fail++) {
-        test_memory m;
-        hd_context ctx = test_memory_context(&m);
-        hd_laplacian_opts o = bord_opts(HD_LAPLACIAN_FEM, HD_BORDER_NATURAL, 0, NULL);
-        hd_laplacian *lap = NULL;
-        hd_status st;
-        o.context = &ctx;
-        o.intrinsic_delaunay = (int32_t)(fail % 2);
-        m.fail_at = fail;
-        st = hd_laplacian_lengths(&lap, len, s.n, s.tri, s.n_tri, &o, NULL);
-        CHECK(st == HD_OK || st == HD_ERR_MEMORY);
-        done = st == HD_OK;
-        hd_laplacian_free(lap);
-        test_memory_done(&m, &ctx, "lengths");
-    }
-    CHECK(done && fail > 20);
-    free(len);
-}
-
 static void test_lengths(void) {
     len_operators();
     len_book();
@@ -359,7 +334,6 @@ static void test_lengths(void) {
     len_geodesic();
     len_errors();
     len_flat_face();
-    len_memory();
 }
 
 #endif

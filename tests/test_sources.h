@@ -923,61 +923,6 @@ static void src_errors(void) {
     hd_spectrum_free(z);
 }
 
-/* Every allocation fails once; nothing stays behind. */
-static void src_memory(void) {
-    const shape *g = kit_shape("flat/5/5/0");
-    int64_t fail = 1;
-    int done = 0;
-    for (; !done && fail < 2000; fail++) {
-        test_memory m;
-        hd_context ctx = test_memory_context(&m);
-        hd_laplacian_opts o = bord_opts(HD_LAPLACIAN_FEM, HD_BORDER_NATURAL, 0, NULL);
-        hd_laplacian *lap = NULL;
-        hd_heat *heat = NULL;
-        hd_geodesic_opts go;
-        hd_geodesic *geo = NULL;
-        hd_spectrum_opts so;
-        hd_spectrum *z = NULL;
-        const double t[2] = {0.1, 0.3};
-        double u[100];
-        src_room room[2];
-        hd_source s[2];
-        hd_status st;
-        o.context = &ctx;
-        ctx.n_threads = 1;
-        m.fail_at = fail;
-        st = hd_laplacian_triangles(&lap, g->xyz, g->n, g->tri, g->n_tri, &o, NULL);
-        if (st == HD_OK) st = hd_heat_create(&heat, lap, NULL, NULL);
-        if (st == HD_OK) {
-            src_make(room, lap, 0);
-            src_make(room + 1, lap, 5);
-            s[0] = room[0].s;
-            s[1] = room[1].s;
-            st = hd_heat_columns_from(heat, HD_KERNEL_SYMMETRIC, 2, t, 2, s, u, 0, NULL, NULL);
-        }
-        if (st == HD_OK) st = hd_heat_distance_from(heat, HD_DISTANCE_BIHARMONIC, 0, NULL, 2, s, u, 0, NULL, NULL);
-        if (st == HD_OK) st = hd_heat_sample_from(heat, HD_DISTANCE_BIHARMONIC, 0, 2, s, 3, room[1].vertex, u, NULL, NULL);
-        memset(&so, 0, sizeof so);
-        so.count = 4;
-        if (st == HD_OK) st = hd_spectrum_create(&z, lap, &so, NULL);
-        if (st == HD_OK) st = hd_spectrum_columns_from(z, HD_KERNEL_SYMMETRIC, 1, t, 1, s, u, NULL, 0, NULL);
-        if (st == HD_OK) st = hd_spectrum_distance_from(z, HD_DISTANCE_COMMUTE, 0, NULL, 1, s, u, NULL, 0, NULL);
-        memset(&go, 0, sizeof go);
-        go.context = &ctx;
-        if (st == HD_OK) st = hd_geodesic_create(&geo, g->xyz, g->n, g->tri, g->n_tri, &go, NULL);
-        src_place(g, 0.6, 0.3, room[0].vertex, room[0].bary);
-        if (st == HD_OK) st = hd_geodesic_distance_from(geo, &room[0].s, u, NULL, NULL);
-        CHECK(st == HD_OK || st == HD_ERR_MEMORY);
-        done = st == HD_OK;
-        hd_geodesic_free(geo);
-        hd_spectrum_free(z);
-        hd_heat_free(heat);
-        hd_laplacian_free(lap);
-        test_memory_done(&m, &ctx, "sources");
-    }
-    CHECK(done && fail > 40);
-}
-
 static void test_sources(void) {
     src_cases();
     src_exact();
@@ -994,7 +939,6 @@ static void test_sources(void) {
     src_geo_borders();
     src_far_weights();
     src_errors();
-    src_memory();
 }
 
 #endif
