@@ -134,8 +134,8 @@ static hd_csr test_symmetric_csr(int32_t n, int64_t count, int32_t *i, int32_t *
 }
 
 static hd_csr test_diagonal_csr(int32_t n, const double *d) {
-    int32_t *i = DENSE_NEW(int32_t, n), k;
-    double *v = DENSE_NEW(double, n);
+    int32_t *i = KIT_NEW(int32_t, n), k;
+    double *v = KIT_NEW(double, n);
     hd_csr a;
     memset(&a, 0, sizeof a);
     for (k = 0; k < n; k++) {
@@ -143,16 +143,14 @@ static hd_csr test_diagonal_csr(int32_t n, const double *d) {
         v[k] = d ? d[k] : 1;
     }
     CHECK(hd_csr_from_triplets(&a, n, n, n, i, i, v, NULL, NULL) == HD_OK);
-    free(i);
-    free(v);
     return a;
 }
 
 /* Laplacian of a path, or of a cycle; with edge weights 1. */
 static hd_csr test_path_csr(int32_t n, int closed) {
     const int32_t n_edges = closed ? n : n - 1;
-    int32_t *i = DENSE_NEW(int32_t, 4 * n + 4), *j = DENSE_NEW(int32_t, 4 * n + 4), k;
-    double *v = DENSE_NEW(double, 4 * n + 4);
+    int32_t *i = KIT_NEW(int32_t, 4 * n + 4), *j = KIT_NEW(int32_t, 4 * n + 4), k;
+    double *v = KIT_NEW(double, 4 * n + 4);
     int64_t c = 0;
     hd_csr a;
     for (k = 0; k < n_edges; k++) {
@@ -162,9 +160,6 @@ static hd_csr test_path_csr(int32_t n, int closed) {
         i[c] = j[c] = b; v[c++] = 1;
     }
     a = test_symmetric_csr(n, c, i, j, v);
-    free(i);
-    free(j);
-    free(v);
     return a;
 }
 
@@ -208,7 +203,7 @@ static void base_null(void) {
 static void base_dense(void) {
     enum { N = 40 };
     double *L = DENSE_NEW(double, N * N), *B = DENSE_NEW(double, N * N), x[N], y[N], worst = 0;
-    dense_c64 *a = DENSE_NEW(dense_c64, N * N), *copy = DENSE_NEW(dense_c64, N * N), b[N], rhs[N];
+    dense_c64 *a = KIT_NEW(dense_c64, N * N), *copy = KIT_NEW(dense_c64, N * N), b[N], rhs[N];
     dense_pair p;
     uint64_t seed = 3;
     int32_t i, j, k;
@@ -236,8 +231,6 @@ static void base_dense(void) {
         worst = fmax(worst, hypot(rhs[i].re, rhs[i].im));
     }
     CHECK_MSG(worst < 1e-11, "complex residual %g", worst);
-    free(a);
-    free(copy);
 }
 
 static void test_base(void) {

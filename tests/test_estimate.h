@@ -299,7 +299,7 @@ static void est_bad(const hd_laplacian *lap) {
  * 1000 h^2: the same within `spread`. */
 static void est_steps(const hd_laplacian *lap, hd_solver solver, hd_precond precond, double spread, const char *what) {
     static const double tau[] = {1, 10, 100, 1000};
-    double *u = DENSE_NEW(double, lap->n), least = HUGE_VAL, most = 0;
+    double *u = KIT_NEW(double, lap->n), least = HUGE_VAL, most = 0;
     int q;
     for (q = 0; q < 4; q++) {
         hd_heat_opts o = eng_opts(HD_METHOD_ITERATIVE);
@@ -320,7 +320,6 @@ static void est_steps(const hd_laplacian *lap, hd_solver solver, hd_precond prec
         hd_heat_free(heat);
     }
     CHECK_MSG(most <= spread * least, "%s: %g to %g flops a step", what, least / lap->n, most / lap->n);
-    free(u);
 }
 
 /* The model of steps: fair triangles, points, other preconditioners, thin triangles made Delaunay, and a fine patch. */

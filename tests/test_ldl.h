@@ -877,7 +877,7 @@ static void ldl_one_of_a_pair(void) {
 /* An analysis whose pattern and order are overwritten afterwards: they are not looked at again. Takes the pattern. */
 static hd_ldl *ldl_make_alone(hd_csr a, const int32_t *order, hd_context *ctx) {
     const size_t size = (size_t)a.n_rows * sizeof *order;
-    int32_t *perm = DENSE_NEW(int32_t, a.n_rows);
+    int32_t *perm = KIT_NEW(int32_t, a.n_rows);
     hd_ldl_opts o = ldl_opts_of(HD_ORDERING_OWN, perm, NULL, ctx);
     hd_ldl *f;
     memcpy(perm, order, size);
@@ -885,7 +885,6 @@ static hd_ldl *ldl_make_alone(hd_csr a, const int32_t *order, hd_context *ctx) {
     memset(perm, 0x77, size);
     memset(a.col, 0x77, (size_t)a.nnz * sizeof *a.col);
     memset(a.row_ptr, 0x77, ((size_t)a.n_rows + 1) * sizeof *a.row_ptr);
-    free(perm);
     a.nnz = 0;
     hd_csr_free(&a, NULL);
     return f;

@@ -514,17 +514,6 @@ static void poly_errors(void) {
     s.xyz[7] = 0;
     for (k = 0; k < 4; k++) CHECK(poly_try(&lap, &s, HD_LAPLACIAN_POLYGON, bad_lambda[k], &e) == HD_ERR_ARGUMENT && strstr(e.text, "lambda"));
     CHECK(poly_try(&lap, &s, HD_LAPLACIAN_MATRICES, 0, &e) == HD_ERR_ARGUMENT && poly_try(&lap, &s, (hd_laplacian_kind)99, 0, &e) == HD_ERR_ARGUMENT);
-    CHECK(hd_laplacian_polygons(NULL, s.xyz, s.n, s.face_ptr, s.face_idx, s.n_faces, NULL, &e) == HD_ERR_ARGUMENT);
-    CHECK(hd_laplacian_polygons(&lap, NULL, s.n, s.face_ptr, s.face_idx, s.n_faces, NULL, &e) == HD_ERR_ARGUMENT);
-    CHECK(hd_laplacian_polygons(&lap, s.xyz, s.n, NULL, s.face_idx, s.n_faces, NULL, &e) == HD_ERR_ARGUMENT);
-    CHECK(hd_laplacian_polygons(&lap, s.xyz, s.n, s.face_ptr, NULL, s.n_faces, NULL, &e) == HD_ERR_ARGUMENT);
-    CHECK(hd_laplacian_polygons(&lap, s.xyz, s.n, s.face_ptr, s.face_idx, -1, NULL, &e) == HD_ERR_ARGUMENT);
-    CHECK(hd_laplacian_polygons(&lap, s.xyz, -1, s.face_ptr, s.face_idx, s.n_faces, NULL, &e) == HD_ERR_ARGUMENT);
-    CHECK(hd_laplacian_polygons(&lap, s.xyz, s.n, NULL, NULL, 0, NULL, &e) == HD_ERR_EMPTY);
-    CHECK(hd_laplacian_polygons(&lap, NULL, 0, NULL, NULL, 0, NULL, &e) == HD_ERR_EMPTY);
-    o.end_zero = 1;
-    CHECK(hd_laplacian_polygons(&lap, s.xyz, s.n, s.face_ptr, s.face_idx, s.n_faces, &o, &e) == HD_ERR_ARGUMENT);
-    o.end_zero = 0;
     o.kind = HD_LAPLACIAN_POLYGON;               /* is not for the other function */
     CHECK(hd_laplacian_triangles(&lap, s.xyz, s.n, s.face_idx, 1, &o, &e) == HD_ERR_ARGUMENT && lap == NULL);
     for (k = 0; k < 3 * s.n; k++) s.xyz[k] *= 1e200;    /* no area that is a double, in any face; the first that is looked at is named */

@@ -203,9 +203,9 @@ static void sparse_product_of(int32_t n, int32_t k, int32_t m, int32_t count, ui
 /* A full column by a full row: 2^30 entries of 4 bytes and more, which sizes of 32 bits take for none. */
 static void sparse_product_too_large(void) {
     enum { N = 32768 };
-    int64_t *many = DENSE_NEW(int64_t, N + 1), one[2] = {0, N};
-    int32_t *zero = DENSE_NEW(int32_t, N), *each = DENSE_NEW(int32_t, N), i;
-    double *val = DENSE_NEW(double, N);
+    int64_t *many = KIT_NEW(int64_t, N + 1), one[2] = {0, N};
+    int32_t *zero = KIT_NEW(int32_t, N), *each = KIT_NEW(int32_t, N), i;
+    double *val = KIT_NEW(double, N);
     const hd_csr a = sparse_view(N, 1, N, many, zero, val), b = sparse_view(1, N, N, one, each, val);
     hd_csr c;
     hd_error e;
@@ -215,10 +215,6 @@ static void sparse_product_too_large(void) {
         val[i] = 1;
     }
     CHECK(hd_csr_product(&c, &a, &b, NULL, &e) == HD_ERR_TOO_LARGE);
-    free(many);
-    free(zero);
-    free(each);
-    free(val);
 }
 
 static void sparse_permute(void) {
