@@ -2120,7 +2120,7 @@ class Terminals(Case):
         self.assertEqual((code, b"nothing for a terminal" in text), (2, True))
 
     def test_bar_of_factorisations(self):
-        for mesh, method, parts_of in (("torus-200-150.obj", "direct",
+        for mesh, method, parts_of in (("torus-400-300.obj", "direct",
                                         (b"] ", b"% factor, time ", b"time 2 of 3", b"time 3 of 3")),
                                         ("torus-300-200.obj", "krylov",
                                          (b"% solve, source ", b"source 2 of 3", b"source 3 of 3"))):
