@@ -332,7 +332,7 @@ class Bench:
 
     def compile(self, name):
         """The bytes of the object of a program, or None."""
-        if subprocess.run(["tcc", "-w", "-DHEATDIFF_AUDIT", "-c", "tests/pieces_%s.c" % name, "-I.", "-o", name + ".o"], cwd=self.folder,
+        if subprocess.run(["tcc", "-w", "-DHEATDIFF_AUDIT", "-DCASES_SPARSE", "-c", "tests/pieces_%s.c" % name, "-I.", "-o", name + ".o"], cwd=self.folder,
                           stderr=subprocess.DEVNULL).returncode:
             return None
         with open(os.path.join(self.folder, name + ".o"), "rb") as f:
@@ -346,7 +346,7 @@ class Bench:
         known = {}
         for name in PROGRAMS:
             program = os.path.join(self.folder, name + "_seen")
-            subprocess.run(["gcc", "-O0", "-g", "-w", "-D__TINYC__", "-DHEATDIFF_NO_SIMD", "-no-pie", "-fsanitize-coverage=trace-pc",
+            subprocess.run(["gcc", "-O0", "-g", "-w", "-D__TINYC__", "-DCASES_SPARSE", "-DHEATDIFF_NO_SIMD", "-no-pie", "-fsanitize-coverage=trace-pc",
                             "-I.", "-c", "tests/pieces_%s.c" % name, "-o", "seen_pieces.o"], cwd=self.folder, check=True)
             subprocess.run(["gcc", "-no-pie", "seen_pieces.o", "seen.c", "-o", program, "-lm"], cwd=self.folder, check=True)
             printed = subprocess.run([program], cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True).stderr
