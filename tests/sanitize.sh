@@ -106,7 +106,7 @@ address | all)
     planted $cc $flags <<<'#include <stdlib.h>
 int main(int c, char **v) { char *p = (char *)malloc(4); (void)v; p[3 + c] = 1; c = p[3]; free(p); return c; }'
   done
-  [ "$mode" = all ] || [ -n "$groups" ] || left_out=$(printf '%s\n' estimate engines points deep spectrum ldl geodesic)
+  [ "$mode" = all ] || [ -n "$groups" ] || left_out=$(printf '%s\n' estimate engines points deep spectrum ldl geodesic diagonal filters)
   each gcc $flags ;;
 *)
   echo "usage: sanitize.sh WORKFOLDER [address | all | python [COUNT] | memory | threads | traps | valgrind [GROUP...]]"
