@@ -30,8 +30,8 @@ static const struct { const char *script; int flags; } rob_scripts[] = {
     {"points", 0}, {"exp points", 0}, {"queries=moved n_queries=7 nearest", 0}, {"queries=moved n_queries=7 radius", 0},
     {"tufted_points", 0}, {"delaunay triangles", 0}, {"dissection solve", 0}, {"own solve_c", 0},
     {"factor_c solve_c factor | solve", 0}, {"mean geodesic | geodesic_each", 0}, {"tufted geodesic | geodesic_each", 0},
-    {"krylov k=7 columns", 0}, {"krylov voronoi k=7 apply", 0}, {"krylov n_times=7 columns", 0}, {"direct voronoi k=7 apply", ROB_MAY},
-    {"direct dissection k=7 columns", 0}, {"direct n_times=7 columns", ROB_MAY}, {"krylov dissection operator entries", 0},
+    {"krylov k=6 columns", 0}, {"krylov voronoi k=6 apply", 0}, {"krylov n_times=3 columns", 0}, {"direct voronoi k=6 apply", ROB_MAY},
+    {"direct dissection k=6 columns", 0}, {"direct n_times=3 columns", ROB_MAY}, {"krylov dissection operator entries", 0},
     {"geodesic_points | geodesic_each", 0}, {"geodesic_polygons | geodesic_set", 0},
 };
 
