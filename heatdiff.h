@@ -1957,8 +1957,7 @@ HEATDIFF_API hd_status hd_geodesic_distance_from(hd_geodesic *g, const hd_source
 #define HDI_PREFETCH(p) __builtin_prefetch(p)
 /* Of p[i], which may lie outside of the array: no pointer may, so that it is a number. */
 #define HDI_PREFETCH_AT(p, i)                                                                      \
-    __builtin_prefetch(HDI_RECAST(const void *,                                                    \
-                                  HDI_RECAST(uintptr_t, p) + HDI_CAST(uintptr_t, i) * sizeof *(p)))
+    __builtin_prefetch((const void *)((uintptr_t)(p) + (uintptr_t)(i) * sizeof *(p)))
 #else
 #define HDI_RESTRICT
 #define HDI_LOAD(p) (*(p))
@@ -2075,18 +2074,18 @@ HEATDIFF_API hd_status hd_geodesic_distance_from(hd_geodesic *g, const hd_source
 #define HDI_UNROLL
 #endif
 
-#if defined(__GNUC__) && !defined(__clang__)
+#if defined(__GNUC__) || defined(__clang__)
 #pragma GCC diagnostic push
+#ifndef __clang__
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"   /* of GCC's own avx512fintrin.h, which means it */
+#endif
+#ifdef __cplusplus
+#pragma GCC diagnostic ignored "-Wold-style-cast"        /* C has no other */
+#endif
 #endif
 
 #ifdef __cplusplus
-#define HDI_CAST(type, x) static_cast<type>(x)
-#define HDI_RECAST(type, x) reinterpret_cast<type>(x)   /* of pointers and numbers */
 extern "C" {
-#else
-#define HDI_CAST(type, x) ((type)(x))
-#define HDI_RECAST(type, x) ((type)(x))
 #endif
 
 /* Counters that threads share. HDI_ATOMIC_GET sees all that was written before the matching HDI_ATOMIC_SET;
@@ -2096,10 +2095,10 @@ extern "C" {
 #define HDI_ATOMIC_SET(p, v) __atomic_store_n(p, v, __ATOMIC_RELEASE)
 #define HDI_ATOMIC_ADD(p, v) __atomic_add_fetch(p, v, __ATOMIC_ACQ_REL)
 #elif HDI_THREADS
-#define HDI_ATOMIC_GET(p) HDI_CAST(uint32_t, InterlockedCompareExchange(HDI_RECAST(volatile LONG *, p), 0, 0))
-#define HDI_ATOMIC_SET(p, v) ((void)InterlockedExchange(HDI_RECAST(volatile LONG *, p), HDI_CAST(LONG, v)))
+#define HDI_ATOMIC_GET(p) ((uint32_t)InterlockedCompareExchange((volatile LONG *)(p), 0, 0))
+#define HDI_ATOMIC_SET(p, v) ((void)InterlockedExchange((volatile LONG *)(p), (LONG)(v)))
 #define HDI_ATOMIC_ADD(p, v) \
-    HDI_CAST(uint32_t, InterlockedExchangeAdd(HDI_RECAST(volatile LONG *, p), HDI_CAST(LONG, v)) + (v))
+    ((uint32_t)(InterlockedExchangeAdd((volatile LONG *)(p), (LONG)(v)) + (v)))
 #else
 #define HDI_ATOMIC_GET(p) (*(p))
 #define HDI_ATOMIC_SET(p, v) (*(p) = (v))
@@ -2157,7 +2156,7 @@ static HDI_INLINE uint64_t hdi_bits(double x) {
 }
 
 static HDI_INLINE int hdi_finite(double x) { return (hdi_bits(x) >> 52 & 0x7ff) != 0x7ff; }
-static HDI_INLINE int hdi_nan(double x) { return hdi_bits(x) << 1 > HDI_CAST(uint64_t, 0xffe) << 52; }
+static HDI_INLINE int hdi_nan(double x) { return hdi_bits(x) << 1 > (uint64_t)0xffe << 52; }
 static int hdi_cfinite(hd_c64 a) { return hdi_finite(a.re) && hdi_finite(a.im); }
 /* sqrt(a^2 + b^2): hypot's care only where it is needed. */
 static double hdi_pythag(double a, double b) {
@@ -2183,7 +2182,7 @@ static double hdi_even_unit(double size) {
 }
 
 /* Three numbers for each of n things; where those of thing number n begin. */
-static HDI_INLINE int64_t hdi_triple(int32_t n) { return 3 * HDI_CAST(int64_t, n); }
+static HDI_INLINE int64_t hdi_triple(int32_t n) { return 3 * (int64_t)n; }
 static HDI_INLINE const double *hdi_at3(const double *xyz, int64_t i) { return xyz + 3 * i; }
 
 static HDI_INLINE void hdi_copy3(double *to, const double *from) { memcpy(to, from, 3 * sizeof *to); }
@@ -2335,12 +2334,12 @@ static void hdi_text_add(hd_error *e, const char *text) {
 
 /* Appends a number of bytes in MB (1e6 bytes), rounded up to one decimal. */
 static void hdi_text_bytes(hd_error *e, double bytes) {
-    uint64_t tenths = HDI_CAST(uint64_t, ceil(bytes / 1e5));
+    uint64_t tenths = (uint64_t)ceil(bytes / 1e5);
     char text[32], *at = text + sizeof text;
     memcpy(at -= 4, " MB", 4);
-    *--at = HDI_CAST(char, '0' + tenths % 10);
+    *--at = (char)('0' + tenths % 10);
     *--at = '.';
-    do *--at = HDI_CAST(char, '0' + (tenths /= 10) % 10);
+    do *--at = (char)('0' + (tenths /= 10) % 10);
     while (tenths >= 10);
     hdi_text_add(e, at);
 }
@@ -2362,30 +2361,29 @@ static hd_status hdi_alloc_check(hd_context *ctx, size_t total, hd_error *e) {
     const uint64_t most = ctx->byte_limit;
     if (ctx->allocation_limit && ctx->allocations >= ctx->allocation_limit) {
         hdi_fail(e, HD_ERR_MEMORY_LIMIT, "the allocation limit of the context is reached");
-        e->value = HDI_CAST(double, ctx->allocations) + 1;
+        e->value = (double)ctx->allocations + 1;
     } else if (most && (total > most || ctx->bytes_in_use > most - total)) {
         hdi_fail(e, HD_ERR_MEMORY_LIMIT, "the byte limit of the context is reached");
-        e->value = HDI_CAST(double, total) + HDI_CAST(double, ctx->bytes_in_use);
+        e->value = (double)total + (double)ctx->bytes_in_use;
     }
     return e->status;
 }
 
 /* What the byte limit leaves. */
 static double hdi_bytes_left(const hd_context *ctx) {
-    return ctx->byte_limit ? HDI_CAST(double, ctx->byte_limit) - HDI_CAST(double, ctx->bytes_in_use)
-                           : HUGE_VAL;
+    return ctx->byte_limit ? (double)ctx->byte_limit - (double)ctx->bytes_in_use : HUGE_VAL;
 }
 
 /* Ends long work before it begins, if its need of `more` bytes, which is sure, is above what the limit
  * leaves. what: of the text. */
 static hd_status hdi_need(hd_context *ctx, uint64_t more, const char *what, hd_error *e) {
-    const double all = HDI_CAST(double, more) + HDI_CAST(double, ctx->bytes_in_use);
-    if (HDI_CAST(double, more) <= hdi_bytes_left(ctx)) return e->status;
+    const double all = (double)more + (double)ctx->bytes_in_use;
+    if ((double)more <= hdi_bytes_left(ctx)) return e->status;
     hdi_fail(e, HD_ERR_MEMORY_LIMIT, what);
     hdi_text_add(e, " would bring the memory in use to ");
     hdi_text_bytes(e, all);
     hdi_text_add(e, ", and the byte limit is ");
-    hdi_text_bytes(e, HDI_CAST(double, ctx->byte_limit));
+    hdi_text_bytes(e, (double)ctx->byte_limit);
     e->value = all;
     return e->status;
 }
@@ -2395,8 +2393,8 @@ static hd_status hdi_need(hd_context *ctx, uint64_t more, const char *what, hd_e
 static void hdi_large_pages(char *raw, size_t total) {
 #if HDI_LARGE_PAGES
     const size_t page = 1 << 16;                 /* the largest that Linux has; shorter ones divide it */
-    const size_t skip = (page - HDI_RECAST(size_t, raw) % page) % page;
-    if (total >= HDI_CAST(size_t, 4) << 20)
+    const size_t skip = (page - (size_t)raw % page) % page;
+    if (total >= (size_t)4 << 20)
         (void)madvise(raw + skip, (total - skip) & ~(page - 1), MADV_HUGEPAGE);
 #else
     (void)raw;
@@ -2414,20 +2412,20 @@ static void *hdi_alloc(hd_context *ctx, uint64_t count, size_t size, hd_error *e
         hdi_fail(e, HD_ERR_TOO_LARGE, "an array would be larger than the address space");
         return NULL;
     }
-    total = HDI_CAST(size_t, head[0]);
+    total = (size_t)head[0];
     if (hdi_alloc_check(ctx, total, e) < 0) return NULL;
     ctx->allocations++;
-    raw = HDI_CAST(char *, ctx->allocator.alloc ? ctx->allocator.alloc(ctx->allocator.user, total)
-                                                : HEATDIFF_MALLOC(total));
+    raw = (char *)(ctx->allocator.alloc ? ctx->allocator.alloc(ctx->allocator.user, total)
+                   : HEATDIFF_MALLOC(total));
     if (raw && !ctx->allocator.alloc) hdi_large_pages(raw, total);
     if (!raw) {
         hdi_fail(e, HD_ERR_MEMORY, "out of memory");
-        e->value = HDI_CAST(double, total);
+        e->value = (double)total;
         return NULL;
     }
     ctx->bytes_in_use += total;
     if (ctx->bytes_peak < ctx->bytes_in_use) ctx->bytes_peak = ctx->bytes_in_use;
-    offset = HDI_HEADER + (HDI_ALIGN - (HDI_RECAST(size_t, raw) + HDI_HEADER) % HDI_ALIGN) % HDI_ALIGN;
+    offset = HDI_HEADER + (HDI_ALIGN - ((size_t)raw + HDI_HEADER) % HDI_ALIGN) % HDI_ALIGN;
     head[0] = total;
     head[1] = offset;
     memcpy(raw + offset - HDI_HEADER, head, sizeof head);
@@ -2436,7 +2434,7 @@ static void *hdi_alloc(hd_context *ctx, uint64_t count, size_t size, hd_error *e
 
 static void *hdi_alloc_zero(hd_context *ctx, uint64_t count, size_t size, hd_error *e) {
     void *p = hdi_alloc(ctx, count, size, e);
-    if (p) memset(p, 0, HDI_CAST(size_t, count) * size);
+    if (p) memset(p, 0, (size_t)count * size);
     return p;
 }
 
@@ -2444,10 +2442,10 @@ static void hdi_free(hd_context *ctx, void *block) {
     uint64_t head[2];
     char *raw;
     if (!block) return;
-    memcpy(head, HDI_CAST(char *, block) - HDI_HEADER, sizeof head);
-    raw = HDI_CAST(char *, block) - head[1];
+    memcpy(head, (char *)block - HDI_HEADER, sizeof head);
+    raw = (char *)block - head[1];
     ctx->bytes_in_use -= head[0];
-    if (ctx->allocator.free) ctx->allocator.free(ctx->allocator.user, raw, HDI_CAST(size_t, head[0]));
+    if (ctx->allocator.free) ctx->allocator.free(ctx->allocator.user, raw, (size_t)head[0]);
     else HEATDIFF_FREE(raw);
 }
 
@@ -2517,7 +2515,7 @@ static void *hdi_take(hdi_scope *s, uint64_t count, size_t size) {
 
 static void *hdi_take_zero(hdi_scope *s, uint64_t count, size_t size) {
     void *p = hdi_take(s, count, size);
-    if (p) memset(p, 0, HDI_CAST(size_t, count) * size);
+    if (p) memset(p, 0, (size_t)count * size);
     return p;
 }
 
@@ -2536,12 +2534,12 @@ static hd_status hdi_scope_end(hdi_scope *s) {
 
 /* [count] elements that outlive their maker. */
 #define HDI_NEW(ctx, type, count, e) \
-    HDI_CAST(type *, hdi_alloc(ctx, HDI_CAST(uint64_t, count), sizeof(type), e))
+    (type *)hdi_alloc(ctx, (uint64_t)count, sizeof(type), e)
 
 #define HDI_TAKE(scope, type, count) \
-    HDI_CAST(type *, hdi_take(scope, HDI_CAST(uint64_t, count), sizeof(type)))
+    (type *)hdi_take(scope, (uint64_t)(count), sizeof(type))
 #define HDI_TAKE_ZERO(scope, type, count) \
-    HDI_CAST(type *, hdi_take_zero(scope, HDI_CAST(uint64_t, count), sizeof(type)))
+    (type *)hdi_take_zero(scope, (uint64_t)(count), sizeof(type))
 
 /* ==== [04] context ====
  * Progress, cancelling, threads, parallel loops, and how public functions are entered. May call [03]. */
@@ -2648,11 +2646,11 @@ static int32_t hdi_processors(void) {
     unsigned long mask[128] = {0};               /* the call fills a part of it, unseen by MemorySanitizer */
     const long bytes = syscall(SYS_sched_getaffinity, 0, sizeof mask, mask);
     long i;
-    for (i = 0; i < bytes / HDI_CAST(long, sizeof *mask); i++)
+    for (i = 0; i < bytes / (long)(sizeof *mask); i++)
         for (; mask[i]; mask[i] &= mask[i] - 1) n++;
 #endif
     if (n < 1) n = sysconf(_SC_NPROCESSORS_ONLN);
-    return n < 1 ? 1 : HDI_CAST(int32_t, hdi_least(n, 1 << 16));
+    return n < 1 ? 1 : (int32_t)hdi_least(n, 1 << 16);
 }
 #elif HDI_THREADS == HDI_THREADS_WINDOWS
 typedef SRWLOCK hdi_mutex;
@@ -2739,9 +2737,9 @@ static int hdi_swap(uint32_t *p, uint32_t from, uint32_t to) {
 #if defined(__GNUC__) || defined(__clang__)
     return __atomic_compare_exchange_n(p, &from, to, 0, __ATOMIC_ACQ_REL, __ATOMIC_RELAXED);
 #else
-    volatile LONG *at = HDI_RECAST(volatile LONG *, p);
-    const LONG was = InterlockedCompareExchange(at, HDI_CAST(LONG, to), HDI_CAST(LONG, from));
-    return HDI_CAST(uint32_t, was) == from;
+    volatile LONG *at = (volatile LONG *)p;
+    const LONG was = InterlockedCompareExchange(at, (LONG)to, (LONG)from);
+    return (uint32_t)was == from;
 #endif
 }
 
@@ -2759,14 +2757,14 @@ static void hdi_relax(void) {
 /* How many tasks may be claimed now. */
 static int32_t hdi_claimable(hd_threads *t) {
     const uint32_t next = HDI_ATOMIC_GET(&t->next);
-    return HDI_CAST(int32_t, HDI_ATOMIC_GET(&t->ready) - next);
+    return (int32_t)(HDI_ATOMIC_GET(&t->ready) - next);
 }
 
 /* Number of a task of this loop that is the caller's from now on, or -1. */
 static int64_t hdi_claim(hd_threads *t, const hdi_loop *loop) {
     for (;;) {
         const uint32_t next = HDI_ATOMIC_GET(&t->next), i = next - loop->base;
-        if (i >= loop->n || HDI_CAST(int32_t, HDI_ATOMIC_GET(&t->ready) - next) <= 0) return -1;
+        if (i >= loop->n || (int32_t)(HDI_ATOMIC_GET(&t->ready) - next) <= 0) return -1;
         if (hdi_swap(&t->next, next, next + 1)) return i;
     }
 }
@@ -2785,7 +2783,7 @@ static void hdi_loop_work(hd_threads *t, const hdi_loop *loop, int32_t worker) {
 }
 
 HDI_THREAD_BODY hdi_seat_run(void *arg) {
-    const hdi_seat *seat = HDI_CAST(const hdi_seat *, arg);
+    const hdi_seat *seat = (const hdi_seat *)arg;
     hd_threads *t = seat->threads;
     hdi_loop loop;
     int32_t k;
@@ -2808,7 +2806,7 @@ HDI_THREAD_BODY hdi_seat_run(void *arg) {
 
 /* Neither counted nor limited, like stacks of threads: what is counted does not depend on their number. */
 static hd_threads *hdi_threads_new(hd_context *ctx) {
-    hd_threads *t = HDI_CAST(hd_threads *, HEATDIFF_MALLOC(sizeof *t));
+    hd_threads *t = (hd_threads *)HEATDIFF_MALLOC(sizeof *t);
     int32_t most;
     if (!t) return NULL;
     memset(t, 0, sizeof *t);
@@ -2818,7 +2816,7 @@ static hd_threads *hdi_threads_new(hd_context *ctx) {
     t->process = hdi_process();
     t->asked = ctx->n_threads;
     most = hdi_context_width(ctx);
-    t->most = HDI_CAST(int32_t, hdi_least(most, HDI_THREADS_MOST)) - 1;
+    t->most = (int32_t)hdi_least(most, HDI_THREADS_MOST) - 1;
     return t;
 }
 
@@ -2884,7 +2882,7 @@ static void hdi_loop_run(hd_context *ctx, hd_threads *t, hdi_loop *loop, int64_t
     t->loop = *loop;
     t->open = 1;
     HDI_ATOMIC_SET(&t->done, 0);
-    HDI_ATOMIC_SET(&t->ready, loop->base + HDI_CAST(uint32_t, n_ready));
+    HDI_ATOMIC_SET(&t->ready, loop->base + (uint32_t)n_ready);
     for (wake = hdi_least(t->n_asleep, n_ready - 1); wake > 0; wake--) hdi_signal_one(&t->work);
     hdi_unlock(&t->lock);
     ctx->regions++;
@@ -2902,8 +2900,8 @@ static void hdi_loop_run(hd_context *ctx, hd_threads *t, hdi_loop *loop, int64_t
 static void hdi_release_many(hd_threads *t, int32_t id, int32_t n, int32_t *order) {
     int32_t i, wake = n;
     hdi_lock(&t->lock);
-    for (i = 0; i < n; i++) order[t->ready - t->loop.base + HDI_CAST(uint32_t, i)] = id + i;
-    HDI_ATOMIC_SET(&t->ready, t->ready + HDI_CAST(uint32_t, n));
+    for (i = 0; i < n; i++) order[t->ready - t->loop.base + (uint32_t)i] = id + i;
+    HDI_ATOMIC_SET(&t->ready, t->ready + (uint32_t)n);
     if (t->caller_asleep && wake-- > 0) hdi_signal_one(&t->finished);
     for (i = 0; i < wake && i < t->n_asleep; i++) hdi_signal_one(&t->work);
     hdi_unlock(&t->lock);
@@ -2918,7 +2916,7 @@ static hd_threads *hdi_threads_own(hd_context *ctx, int64_t n_tasks) {
 static void hdi_parallel_ordered(hd_context *ctx, int32_t n, int32_t n_ready, int32_t *order, hd_task task,
                                  void *arg) {
     hdi_loop loop;
-    loop.n = HDI_CAST(uint32_t, n);
+    loop.n = (uint32_t)n;
     loop.task = task;
     loop.arg = arg;
     loop.order = order;
@@ -2966,7 +2964,7 @@ static int hdi_is_serial(const hd_context *ctx) {
 }
 
 static void hdi_parallel(hd_context *ctx, int64_t n_tasks, hd_task task, void *arg) {
-    const int32_t n = HDI_CAST(int32_t, hdi_least(n_tasks, INT32_MAX));
+    const int32_t n = (int32_t)hdi_least(n_tasks, INT32_MAX);
     int64_t i;
     if (hdi_threads_own(ctx, n_tasks)) hdi_parallel_ordered(ctx, n, n, NULL, task, arg);
     else if (ctx->parallel_for && n_tasks > 1) ctx->parallel_for(ctx->parallel_user, n_tasks, task, arg);
@@ -2978,7 +2976,7 @@ typedef void (*hdi_range_task)(void *arg, int64_t begin, int64_t end);
 typedef struct hdi_range_job { int64_t n, per_task; hdi_range_task task; void *arg; } hdi_range_job;
 
 static void hdi_range_run(void *arg, int64_t index, int32_t worker) {
-    const hdi_range_job *job = HDI_CAST(const hdi_range_job *, arg);
+    const hdi_range_job *job = (const hdi_range_job *)arg;
     const int64_t begin = index * job->per_task, rest = job->n - begin;
     (void)worker;
     job->task(job->arg, begin, begin + (rest < job->per_task ? rest : job->per_task));
@@ -3082,7 +3080,7 @@ static int64_t hdi_prefix_sum(int64_t *count, int64_t n) {
 
 /* Buckets are filled through their offsets: ptr[b] moves on with every item. This moves them back. */
 static void hdi_rewind(int64_t *ptr, int64_t n) {
-    memmove(ptr + 1, ptr, HDI_CAST(size_t, n) * sizeof *ptr);
+    memmove(ptr + 1, ptr, (size_t)n * sizeof *ptr);
     ptr[0] = 0;
 }
 
@@ -3163,15 +3161,15 @@ static void hdi_sort_keys(uint64_t *a, int64_t n, uint64_t *work) {
         from = to;
         to = swap;
     }
-    if (from != a) memcpy(a, from, HDI_CAST(size_t, n) * sizeof *a);
+    if (from != a) memcpy(a, from, (size_t)n * sizeof *a);
 }
 
 /* Sorts n indices; work [2 n]. */
 static void hdi_sort_indices(int32_t *a, int64_t n, uint64_t *work) {
     int64_t i;
-    for (i = 0; i < n; i++) work[i] = HDI_CAST(uint64_t, a[i]);
+    for (i = 0; i < n; i++) work[i] = (uint64_t)a[i];
     hdi_sort_keys(work, n, work + n);
-    for (i = 0; i < n; i++) a[i] = HDI_CAST(int32_t, work[i]);
+    for (i = 0; i < n; i++) a[i] = (int32_t)work[i];
 }
 
 /* The number-k smallest of a, which is rearranged (Hoare 1961). */
@@ -3596,9 +3594,9 @@ typedef double hdi_v2 __attribute__((vector_size(16)));
 typedef double hdi_v2_anywhere __attribute__((vector_size(16), aligned(8), may_alias));
 HDI_IN2 hdi_v2 hdi_two(double a, double b) { const hdi_v2 v = {a, b}; return v; }
 HDI_IN2 hdi_v2 hdi_load_plain(const double *p) {
-    return *HDI_CAST(const hdi_v2_anywhere *, HDI_CAST(const void *, p));
+    return *(const hdi_v2_anywhere *)(const void *)p;
 }
-HDI_IN2 void hdi_store_plain(double *p, hdi_v2 v) { *HDI_CAST(hdi_v2_anywhere *, HDI_CAST(void *, p)) = v; }
+HDI_IN2 void hdi_store_plain(double *p, hdi_v2 v) { *(hdi_v2_anywhere *)(void *)p = v; }
 HDI_IN2 double hdi_low_plain(hdi_v2 v) { return v[0]; }
 HDI_IN2 double hdi_high_plain(hdi_v2 v) { return v[1]; }
 HDI_IN2 hdi_v2 hdi_add_plain(hdi_v2 a, hdi_v2 b) { return a + b; }
@@ -3708,7 +3706,7 @@ HDI_IN4 double hdi_sum_avx2(hdi_v4 v) {
     return _mm_cvtsd_f64(_mm_add_pd(_mm256_castpd256_pd128(pairs), _mm256_extractf128_pd(pairs, 1)));
 }
 HDI_IN4 hdi_v4 hdi_gather_avx2(const double *x, const int32_t *idx) {
-    return _mm256_i32gather_pd(x, _mm_loadu_si128(HDI_CAST(const __m128i *, HDI_CAST(const void *, idx))), 8);
+    return _mm256_i32gather_pd(x, _mm_loadu_si128((const __m128i *)(const void *)idx), 8);
 }
 /* lanes lo..hi-1 */
 HDI_IN4 __m256i hdi_lanes_avx2(int64_t lo, int64_t hi) {
@@ -3764,14 +3762,14 @@ HDI_IN8 hdi_v8 hdi_fnma_avx512(hdi_v8 a, hdi_v8 b, hdi_v8 c) { return _mm512_fnm
 HDI_IN8 double hdi_low_avx512(hdi_v8 v) { return _mm512_cvtsd_f64(v); }
 HDI_IN8 hdi_v8 hdi_lane_avx512(hdi_v8 v, int k) { return _mm512_permutexvar_pd(_mm512_set1_epi64(k), v); }
 HDI_IN8 hdi_v8 hdi_load_tail_avx512(const double *p, int64_t n) {
-    return _mm512_maskz_loadu_pd(HDI_CAST(__mmask8, n >= 8 ? 0xff : n > 0 ? (1u << n) - 1u : 0), p);
+    return _mm512_maskz_loadu_pd((__mmask8)(n >= 8 ? 0xff : n > 0 ? (1u << n) - 1u : 0), p);
 }
 HDI_IN8 hdi_v8 hdi_load_some_avx512(const double *p, int64_t n) { return hdi_load_tail_avx512(p, n); }
 HDI_IN8 hdi_v8 hdi_load_rows_avx512(const double *p, uint32_t g, int32_t q) {
-    return _mm512_maskz_loadu_pd(HDI_CAST(__mmask8, g >> q & 0xff), p);
+    return _mm512_maskz_loadu_pd((__mmask8)(g >> q & 0xff), p);
 }
 HDI_IN8 void hdi_store_rows_avx512(double *p, hdi_v8 v, uint32_t g, int32_t q) {
-    _mm512_mask_storeu_pd(p, HDI_CAST(__mmask8, g >> q & 0xff), v);
+    _mm512_mask_storeu_pd(p, (__mmask8)(g >> q & 0xff), v);
 }
 /* (x, x) of four doubles */
 HDI_IN8 hdi_v8 hdi_twice512(const double *x) { return _mm512_broadcast_f64x4(_mm256_loadu_pd(x)); }
@@ -3815,8 +3813,8 @@ HDI_IN8 hdi_v8 hdi_join512(hdi_v8 p, hdi_v8 q) {
 #define hdi_vfnma HDI_OF(fnma)
 #define hdi_vlane HDI_OF(lane)
 #define hdi_vlow HDI_OF(low)
-#define HDI_COLS HDI_CAST(int32_t, HDI_OF(cols))
-#define HDI_REGS HDI_CAST(int32_t, HDI_OF(regs))
+#define HDI_COLS ((int32_t)HDI_OF(cols))
+#define HDI_REGS ((int32_t)HDI_OF(regs))
 #endif
 
 /* B = (L diag(d))' in slices */
@@ -3921,12 +3919,12 @@ HDI_KERNEL void HDI_OF(real_tiles)(const hdi_real_tile *first, int64_t n_cols, i
     double *C = first->C;
     for (; n_cols > 0; n_cols -= HDI_COLS) {
         /* vectors wholly above the diagonal */
-        const int32_t up = s < HDI_WIDTH ? 0 : HDI_CAST(int32_t, s - s % HDI_WIDTH);
+        const int32_t up = s < HDI_WIDTH ? 0 : (int32_t)(s - s % HDI_WIDTH);
         t.C = C + up;
         t.A = first->A + up;
         t.n = first->n - up;
-        t.diag = s < -HDI_COLS ? -HDI_COLS : HDI_CAST(int32_t, s - up);
-        t.nc = n_cols < HDI_COLS ? HDI_CAST(int32_t, n_cols) : HDI_COLS;
+        t.diag = s < -HDI_COLS ? -HDI_COLS : (int32_t)(s - up);
+        t.nc = n_cols < HDI_COLS ? (int32_t)n_cols : HDI_COLS;
         if (t.n > HDI_WIDTH * (HDI_REGS - 1)) HDI_OF(real_tile)(HDI_REGS, &t);
         else if (HDI_REGS > 3 && t.n > 2 * HDI_WIDTH) HDI_OF(real_tile)(3, &t);
         else if (HDI_REGS > 2 && t.n > HDI_WIDTH) HDI_OF(real_tile)(2, &t);
@@ -3941,20 +3939,20 @@ HDI_KERNEL void HDI_OF(real_tiles)(const hdi_real_tile *first, int64_t n_cols, i
 HDI_KERNEL void HDI_OF(real_gemm)(double *C, int64_t ld, int32_t n, int32_t nb, const double *A, int64_t lda,
                                   const double *B, int32_t kb, int32_t kc) {
     const hdi_real_tile t = {C, A, B, ld, 0, lda, n, 0, 0, kc};
-    HDI_OF(real_tiles)(&t, nb, HDI_CAST(int64_t, kb) * HDI_COLS, -HDI_COLS);
+    HDI_OF(real_tiles)(&t, nb, (int64_t)kb * HDI_COLS, -HDI_COLS);
 }
 
 HDI_KERNEL void HDI_OF(real_update)(double *U, int64_t u, int64_t i, int32_t n, int64_t j0, int64_t j1,
                                     const double *A, int64_t lda, const double *B, int32_t kc) {
     double *C = U + (j0 * u - j0 * (j0 - 1) / 2 - j0 + i);
     const hdi_real_tile t = {C, A, B, u - j0 - 1, 1, lda, n, 0, 0, kc};
-    HDI_OF(real_tiles)(&t, j1 - j0, HDI_CAST(int64_t, kc) * HDI_COLS, j0 - i);
+    HDI_OF(real_tiles)(&t, j1 - j0, (int64_t)kc * HDI_COLS, j0 - i);
 }
 
 /* X = (C - A B) over kc columns, then X = X inv(D L') with the block's D L' in the rows of B that follow. */
 HDI_PART void HDI_OF(real_solve)(const int nv, const hdi_real_tile *t, const double *dinv) {
     const HDI_OF(rows) g = HDI_OF(rows_of)(0, t->n);
-    const double *B = t->B + HDI_CAST(int64_t, t->kc) * HDI_COLS;
+    const double *B = t->B + (int64_t)t->kc * HDI_COLS;
     hdi_vec x[HDI_COLS][HDI_REGS];
     double *C = t->C;
     int j, k, v;
@@ -3991,7 +3989,7 @@ HDI_KERNEL void HDI_OF(real_rows)(double *P, int64_t ld, int32_t n, int32_t k1, 
     t.n = n;
     t.diag = -HDI_COLS;
     t.A = P + k1 * ld;
-    t.B = B + HDI_CAST(int64_t, k1) * HDI_COLS;
+    t.B = B + (int64_t)k1 * HDI_COLS;
     t.kc = k - k1;
     dinv += k;
     for (; nb > 0; nb -= HDI_COLS, dinv += HDI_COLS) {
@@ -4001,7 +3999,7 @@ HDI_KERNEL void HDI_OF(real_rows)(double *P, int64_t ld, int32_t n, int32_t k1, 
         else if (HDI_REGS > 2 && n > HDI_WIDTH) HDI_OF(real_solve)(2, &t, dinv);
         else HDI_OF(real_solve)(1, &t, dinv);
         t.C += HDI_COLS * ld;
-        t.B += HDI_CAST(int64_t, kb) * HDI_COLS;
+        t.B += (int64_t)kb * HDI_COLS;
         t.kc += HDI_COLS;
     }
 }
@@ -4021,7 +4019,7 @@ HDI_PART void HDI_OF(real_pivots)(const int nv, double *P, int64_t ld, int32_t k
                                   double *S, double *dinv) {
     enum { top = HDI_COLS / HDI_WIDTH };
     const double *row = P, *slice = S;
-    double *C = P + kc * ld, *T = S + HDI_CAST(int64_t, kc) * HDI_COLS;
+    double *C = P + kc * ld, *T = S + (int64_t)kc * HDI_COLS;
     hdi_vec x[HDI_COLS][HDI_REGS];
     int j, k, v;
     HDI_OF(real_zero)(x, nv);
@@ -4115,7 +4113,7 @@ HDI_PART void HDI_OF(real_sweep)(double *y, const double *const *l, int64_t n, c
     for (i = 0; i + HDI_WIDTH <= n; i += HDI_WIDTH)
         hdi_vstore(y + i, HDI_OF(real_minus)(keep ? hdi_vload(y + i) : hdi_vall(0), l, i, 0, 0, b, wide));
     if (i < n) {
-        const int32_t rest = HDI_CAST(int32_t, n - i);
+        const int32_t rest = (int32_t)(n - i);
         const hdi_vec from = keep ? HDI_OF(load_tail)(y + i, rest) : hdi_vall(0);
         const hdi_vec to = HDI_OF(real_minus)(from, l, i, 1, rest, b, wide);
         HDI_OF(store_rows)(y + i, to, HDI_OF(rows_of)(0, rest), 0);
@@ -4204,7 +4202,7 @@ HDI_PART void HDI_OF(real_gemv8_rows)(const int n_rows, double *y, const int32_t
         }
     }
     HDI_EACH(r, n_rows) {
-        double *to = y + 8 * (idx ? HDI_CAST(int64_t, idx[i + r]) : i + r);
+        double *to = y + 8 * (idx ? (int64_t)idx[i + r] : i + r);
         HDI_EACH(v, n_vec) hdi_vstore(to + HDI_WIDTH * v, hdi_vsub(hdi_vload(to + HDI_WIDTH * v), s[r][v]));
     }
 }
@@ -4231,7 +4229,7 @@ HDI_PART void HDI_OF(real_dots8_cols)(const int n_cols, double *x, const double 
         HDI_EACH(v, n_vec) s[j][v] = hdi_vall(0);
     }
     for (i = 0; i < n; i++) {
-        const double *from = y + 8 * (idx ? HDI_CAST(int64_t, idx[i]) : i);
+        const double *from = y + 8 * (idx ? (int64_t)idx[i] : i);
         HDI_EACH(j, n_cols) {
             const hdi_vec a = hdi_vall(l[j][i]);
             HDI_EACH(v, n_vec) s[j][v] = hdi_vfma(hdi_vload(from + HDI_WIDTH * v), a, s[j][v]);
@@ -4584,7 +4582,7 @@ HDI_PART void HDI_OF(pack_backward_cols)(const int n_cols, const double *l, cons
     HDI_EACH(c, n_cols * HDI_HALVES) HDI_OF(sweep_begin)(&s[c], y + HDI_OF(pack_at)(c));
     for (i = 0; i < u; i++, l += HDI_PACK * p) {
         HDI_OF(twice) f[HDI_HALVES];
-        const double *from = x + HDI_PACK * (row ? HDI_CAST(int64_t, row[i]) : i);
+        const double *from = x + HDI_PACK * (row ? (int64_t)row[i] : i);
         HDI_PREFETCH_AT(l, 1024);
         HDI_EACH(c, HDI_HALVES) HDI_OF(twice_load)(&f[c], from + HDI_OF(pack_at)(c));
         HDI_EACH(c, n_cols * HDI_HALVES) {
@@ -4625,7 +4623,7 @@ HDI_PART void HDI_OF(pack_many_sum)(const int n_cols, const int listed, HDI_OF(t
     int64_t q;
     int c;
     for (q = 0; q < n; q++, l += step) {
-        const double *from = x + x_row * (listed ? HDI_CAST(int64_t, list[q]) : q);
+        const double *from = x + x_row * (listed ? (int64_t)list[q] : q);
         HDI_OF(twice) f;
         HDI_OF(twice_load)(&f, l);
         HDI_PREFETCH_AT(l, ahead);
@@ -4655,7 +4653,7 @@ HDI_PART void HDI_OF(pack_up_cols)(const int n_cols, const hdi_pack_sweep *g) {
     for (i = 0; i < g->n + g->u; i++, l += g->row) {
         double *to = i < g->n ? g->y + g->x_row * i : g->t + g->x_row * (i - g->n);
         HDI_OF(pack_many_zero)(n_cols, s);
-        HDI_OF(pack_many_sum)(n_cols, 0, s, l, HDI_PACK, HDI_CAST(int32_t, HDI_PACK) * HDI_PACK_AHEAD,
+        HDI_OF(pack_many_sum)(n_cols, 0, s, l, HDI_PACK, (int32_t)HDI_PACK * HDI_PACK_AHEAD,
                               hdi_least(i, g->width), g->y, g->x_row, NULL);
         HDI_OF(pack_many_put)(n_cols, to, s);
     }
@@ -4855,10 +4853,10 @@ static void hdi_real_rows(const hdi_real_ops *o, double *P, int64_t m, int32_t k
     int64_t r;
     int32_t j;
     for (r = r0; r < r1; r += mr) {
-        const int32_t n = HDI_CAST(int32_t, r1 - r < mr ? r1 - r : mr);
+        const int32_t n = (int32_t)(r1 - r < mr ? r1 - r : mr);
         for (j = 0; j < k1; j += HDI_REAL_KC) {
             o->copy(work, P + r + j * m, m, n, HDI_REAL_KC);
-            o->gemm(P + r + k0 * m, m, n, nb, work, mr, S + HDI_CAST(int64_t, j) * nr, kb, HDI_REAL_KC);
+            o->gemm(P + r + k0 * m, m, n, nb, work, mr, S + (int64_t)j * nr, kb, HDI_REAL_KC);
         }
         o->rows(P + r, m, n, k1, k0, nb, S, kb, dinv);
     }
@@ -4873,9 +4871,9 @@ static int64_t hdi_real_block(const hdi_real_ops *o, double *P, int64_t m, int32
                               int64_t end, double *S, double *dinv, hdi_pivots *pivots, double *work) {
     const int32_t nr = o->nr, kb = k0 + nb;
     int32_t k, j;
-    for (k = k0; k < kb; k += nr, S += HDI_CAST(int64_t, kb) * nr) {
+    for (k = k0; k < kb; k += nr, S += (int64_t)kb * nr) {
         const int32_t nc = kb - k < nr ? kb - k : nr;
-        const int32_t n = HDI_CAST(int32_t, end - k - nc < o->mr - nr ? end - k - nc : o->mr - nr);
+        const int32_t n = (int32_t)(end - k - nc < o->mr - nr ? end - k - nc : o->mr - nr);
         double *slice = S;
         for (j = 0; j < k; j += HDI_REAL_KC) {
             const int32_t kc = k - j < HDI_REAL_KC ? k - j : HDI_REAL_KC;
@@ -4883,7 +4881,7 @@ static int64_t hdi_real_block(const hdi_real_ops *o, double *P, int64_t m, int32
             int32_t q;
             for (q = 0; q < kc; q++) d[q] = P[(j + q) * (m + 1)];
             o->pack(slice, P + k + j * m, m, d, nc, kc);
-            slice += HDI_CAST(int64_t, kc) * nr;
+            slice += (int64_t)kc * nr;
         }
         o->block(P + k, m, k, nc, n, S, dinv);
         for (j = k; j < k + nc; j++) {
@@ -4906,19 +4904,19 @@ enum { HDI_BLAS_LEAST = 128, HDI_BLAS_ROWS = 128, HDI_BLAS_COLS = 256 };
 static void hdi_blas_update(double *U, int64_t u, const double *P, int64_t m, int32_t p, double *work,
                             int64_t r0, int64_t r1) {
     double *S = work, *C = work + HDI_BLAS_COLS * HDI_REAL_KC;
-    const int ld = HDI_CAST(int, m), ld_s = HDI_BLAS_COLS, ld_c = HDI_BLAS_ROWS;
+    const int ld = (int)m, ld_s = HDI_BLAS_COLS, ld_c = HDI_BLAS_ROWS;
     const double one = 1, zero = 0;
     int64_t g, i, j, r;
     int32_t k, q;
     for (g = 0; g < r1; g += HDI_BLAS_COLS) {
-        const int cols = HDI_CAST(int, r1 - g < HDI_BLAS_COLS ? r1 - g : HDI_BLAS_COLS);
+        const int cols = (int)(r1 - g < HDI_BLAS_COLS ? r1 - g : HDI_BLAS_COLS);
         for (k = 0; k < p; k += HDI_REAL_KC) {
             const int depth = p - k < HDI_REAL_KC ? p - k : HDI_REAL_KC;
             for (q = 0; q < depth; q++)
                 for (j = 0; j < cols; j++)
                     S[j + q * HDI_BLAS_COLS] = P[p + g + j + (k + q) * m] * P[(k + q) * (m + 1)];
             for (r = r0 > g ? r0 : g; r < r1; r += HDI_BLAS_ROWS) {
-                const int rows = HDI_CAST(int, r1 - r < HDI_BLAS_ROWS ? r1 - r : HDI_BLAS_ROWS);
+                const int rows = (int)(r1 - r < HDI_BLAS_ROWS ? r1 - r : HDI_BLAS_ROWS);
                 dgemm_("N", "T", &rows, &cols, &depth, &one, P + p + r + k * m, &ld, S, &ld_s, &zero, C,
                        &ld_c);
                 for (j = 0; j < cols; j++) {
@@ -4951,9 +4949,9 @@ static void hdi_real_update(const hdi_real_ops *o, double *U, int64_t u, const d
         for (k = 0; k < p; k += HDI_REAL_KC) {
             const int32_t kc = p - k < HDI_REAL_KC ? p - k : HDI_REAL_KC;
             for (q = 0; q < kc; q++) d[q] = P[(k + q) * (m + 1)];
-            o->pack(B, P + p + g + k * m, m, d, HDI_CAST(int32_t, g1 - g), kc);
+            o->pack(B, P + p + g + k * m, m, d, (int32_t)(g1 - g), kc);
             for (i = r0 > g ? r0 : g; i < r1; i += mr) {
-                const int32_t n = HDI_CAST(int32_t, r1 - i < mr ? r1 - i : mr);
+                const int32_t n = (int32_t)(r1 - i < mr ? r1 - i : mr);
                 const int64_t j1 = i + n < g1 ? i + n : g1;
                 const double *A = P + p + i + k * m;
                 if (j1 - g > 96) {  /* many columns: the rows are worth a copy in one piece */
@@ -4977,9 +4975,9 @@ static void hdi_real_extend(const hdi_real_ops *o, double *P, int64_t m, int32_t
     for (i = c0; i < uc; i++)
         if (i == c0 || rel[i] != rel[i - 1] + 1) {
             if (n == n_runs) break;
-            run[n++] = HDI_CAST(int32_t, i);
+            run[n++] = (int32_t)i;
         }
-    run[i < uc ? n - 1 : n] = HDI_CAST(int32_t, i);
+    run[i < uc ? n - 1 : n] = (int32_t)i;
     for (j = c0; j < c1; j++) {
         const int64_t at = rel[j];
         const double *c = child + (j * uc - j * (j - 1) / 2 - j);
@@ -5044,7 +5042,7 @@ static hd_csr hdi_csr_take(hdi_scope *s, int32_t n_rows, int32_t n_cols, int64_t
     a.n_rows = n_rows;
     a.n_cols = n_cols;
     a.nnz = nnz;
-    a.row_ptr = HDI_TAKE_ZERO(s, int64_t, HDI_CAST(int64_t, n_rows) + 1);
+    a.row_ptr = HDI_TAKE_ZERO(s, int64_t, (int64_t)n_rows + 1);
     a.col = HDI_TAKE(s, int32_t, nnz);
     a.val = values ? HDI_TAKE(s, double, nnz) : NULL;
     return a;
@@ -5163,10 +5161,10 @@ static hd_status hdi_csr_check_rows(const hd_csr *a, hd_error *e) {
     for (i = 0; i < a->n_rows; i++)
         if (ptr[i + 1] < ptr[i] || ptr[i + 1] > a->nnz)
             return hdi_fail_row(e, HD_ERR_STRUCTURE, "matrix: row_ptr descends or exceeds nnz", i, -1,
-                                HDI_CAST(double, ptr[i + 1]));
+                                (double)ptr[i + 1]);
     if (ptr[a->n_rows] != a->nnz)
         return hdi_fail_row(e, HD_ERR_STRUCTURE, "matrix: row_ptr does not end with nnz", a->n_rows, -1,
-                            HDI_CAST(double, ptr[a->n_rows]));
+                            (double)ptr[a->n_rows]);
     for (i = 0; i < a->n_rows; i++) {
         for (p = ptr[i]; p < ptr[i + 1]; p++) {
             const int32_t j = a->col[p];
@@ -5246,7 +5244,7 @@ static hd_status hdi_csr_product(hd_csr *out, const hd_csr *a, const hd_csr *b, 
     const int values = a->val && b->val;
     int32_t *mark = HDI_TAKE(&s, int32_t, b->n_cols);
     double *sum = HDI_TAKE(&s, double, b->n_cols);
-    uint64_t *work = HDI_TAKE(&s, uint64_t, 2 * HDI_CAST(int64_t, b->n_cols));
+    uint64_t *work = HDI_TAKE(&s, uint64_t, 2 * (int64_t)b->n_cols);
     int64_t nnz = 0, p, q;
     hd_csr c;
     int32_t i;
@@ -5302,7 +5300,7 @@ static hd_status hdi_csr_permute(hd_csr *out, const hd_csr *a, const int32_t *pe
         t.row_ptr[i + 1] = q;
     }
     hdi_csr_transpose_into(&t, &b);    /* twice transposed: the columns of every row ascend */
-    memset(t.row_ptr, 0, (HDI_CAST(size_t, t.n_rows) + 1) * sizeof *t.row_ptr);
+    memset(t.row_ptr, 0, ((size_t)t.n_rows + 1) * sizeof *t.row_ptr);
     hdi_csr_transpose_into(&b, &t);
     *out = hdi_csr_keep(&s, t);
     return hdi_scope_end(&s);
@@ -5337,8 +5335,8 @@ enum { HDI_ROWS_PER_TASK = 16384 };
 typedef struct hdi_apply_job { const hd_csr *a; const double *x; double *y; } hdi_apply_job;
 
 static void hdi_apply_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_apply_job *job = HDI_CAST(const hdi_apply_job *, arg);
-    hdi_csr_apply_rows(job->a, job->x, job->y, HDI_CAST(int32_t, begin), HDI_CAST(int32_t, end));
+    const hdi_apply_job *job = (const hdi_apply_job *)arg;
+    hdi_csr_apply_rows(job->a, job->x, job->y, (int32_t)begin, (int32_t)end);
 }
 
 static void hdi_csr_apply(const hd_csr *a, const double *x, double *y, hd_context *ctx) {
@@ -5400,7 +5398,7 @@ static void hdi_select_point(hdi_point *a, int64_t n, int64_t k, int axis) {
         int q;
         for (q = 0; q < 3; q++) {
             seed = seed * 6364136223846793005u + 1442695040888963407u;
-            p[q] = a[lo + HDI_CAST(int64_t, (seed >> 33) % HDI_CAST(uint64_t, hi - lo + 1))].x[axis];
+            p[q] = a[lo + (int64_t)((seed >> 33) % (uint64_t)(hi - lo + 1))].x[axis];
         }
         pivot = hdi_max(hdi_min(p[0], p[1]), hdi_min(hdi_max(p[0], p[1]), p[2]));
         while (i <= j) {
@@ -5440,13 +5438,13 @@ static void hdi_tree_split(hdi_tree *t, hdi_point *a) {
     t->node[0].count = t->n_leaves;
     for (v = 0; v < 2 * t->n_leaves - 1; v++) {   /* parents come first */
         hdi_cell *node = t->node + v;
-        const int64_t begin = HDI_CAST(int64_t, node->first) * HDI_LEAF,
-                      size = HDI_CAST(int64_t, node->count) * HDI_LEAF;
+        const int64_t begin = (int64_t)node->first * HDI_LEAF,
+                      size = (int64_t)node->count * HDI_LEAF;
         const int64_t end = hdi_least(t->n, begin + size);
         const int axis = hdi_cell_box(node, a + begin, end - begin);
         const int32_t left = node->count / 2;
         if (!left) continue;
-        hdi_select_point(a + begin, end - begin, HDI_CAST(int64_t, left) * HDI_LEAF, axis);
+        hdi_select_point(a + begin, end - begin, (int64_t)left * HDI_LEAF, axis);
         node[1].first = node->first;
         node[1].count = left;
         node[2 * left].first = node->first + left;
@@ -5480,21 +5478,21 @@ static hd_status hdi_points_check(const double *xyz, int32_t n, const double *qu
 /* The tree of finite points, in s. id of point i: i. Cost O(n log n). */
 static hd_status hdi_tree_make(hdi_tree *t, const double *xyz, int32_t n, hdi_scope *s) {
     /* none: one leaf that is all padding */
-    const int64_t n_leaves = n > 0 ? (HDI_CAST(int64_t, n) + HDI_LEAF - 1) / HDI_LEAF : 1;
+    const int64_t n_leaves = n > 0 ? ((int64_t)n + HDI_LEAF - 1) / HDI_LEAF : 1;
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
     hdi_point *a = HDI_TAKE(&own, hdi_point, n);
     int64_t i;
     int c;
     t->xyz = xyz;
     t->n = n;
-    t->n_leaves = HDI_CAST(int32_t, n_leaves);
+    t->n_leaves = (int32_t)n_leaves;
     t->node = HDI_TAKE(s, hdi_cell, 2 * n_leaves - 1);
     t->x = HDI_TAKE(s, double, 3 * HDI_LEAF * n_leaves);
     t->id = HDI_TAKE(s, int32_t, HDI_LEAF * n_leaves);
     if (s->e->status < 0) return hdi_scope_end(&own);
     for (i = 0; i < n; i++) {
         hdi_copy3(a[i].x, hdi_at3(xyz, i));
-        a[i].id = HDI_CAST(int32_t, i);
+        a[i].id = (int32_t)i;
     }
     hdi_tree_split(t, a);
     for (i = 0; i < HDI_LEAF * n_leaves; i++) {
@@ -5538,12 +5536,12 @@ static int64_t hdi_found_sort(hdi_found *f) {
     int64_t end[HDI_BUCKETS + 1], i, from = 0, b;
     double most = 0, scale;
     for (i = 0; i < f->m; i++) most = hdi_max(most, f->d[i]);
-    scale = most > 1e-290 ? HDI_CAST(double, HDI_BUCKETS) * 0.9999 / most : 0;
+    scale = most > 1e-290 ? (double)HDI_BUCKETS * 0.9999 / most : 0;
     memset(end, 0, sizeof end);
-    for (i = 0; i < f->m; i++) end[HDI_CAST(int32_t, f->d[i] * scale)]++;
+    for (i = 0; i < f->m; i++) end[(int32_t)(f->d[i] * scale)]++;
     hdi_prefix_sum(end, HDI_BUCKETS);
     for (i = 0; i < f->m; i++) {
-        hdi_pair *to = f->sorted + end[HDI_CAST(int32_t, f->d[i] * scale)]++;
+        hdi_pair *to = f->sorted + end[(int32_t)(f->d[i] * scale)]++;
         to->key = hdi_bits(f->d[i]);
         to->id = f->id[i];
     }
@@ -5565,15 +5563,15 @@ static void hdi_found_shrink(hdi_found *f) {
     f->m = hdi_found_sort(f);
     for (i = 0; i < f->m; i++) {
         f->d[i] = hdi_key_square(f->sorted + i);
-        f->id[i] = HDI_CAST(int32_t, f->sorted[i].id);
+        f->id[i] = (int32_t)f->sorted[i].id;
     }
     hdi_found_bound(f, f->d[f->m - 1]);
 }
 
 static void hdi_scan_leaf(const hdi_tree *t, int32_t leaf, const double *q, hdi_found *f) {
-    const double *HDI_RESTRICT x = t->x + 3 * HDI_LEAF * HDI_CAST(int64_t, leaf), q0 = q[0], q1 = q[1],
+    const double *HDI_RESTRICT x = t->x + 3 * HDI_LEAF * (int64_t)leaf, q0 = q[0], q1 = q[1],
                                q2 = q[2], bound = f->bound;
-    const int32_t *HDI_RESTRICT id = t->id + HDI_LEAF * HDI_CAST(int64_t, leaf);
+    const int32_t *HDI_RESTRICT id = t->id + HDI_LEAF * (int64_t)leaf;
     double *HDI_RESTRICT d = f->d + f->m, r[HDI_LEAF];
     int32_t *HDI_RESTRICT found = f->id + f->m;
     int64_t m = 0;
@@ -5661,7 +5659,7 @@ static void hdi_search_begin(hdi_search_job *job, const hdi_tree *t, const doubl
  * candidate). */
 static hd_status hdi_search_take(hdi_search_job *job, int64_t room, hdi_scope *s) {
     const int64_t size = room + HDI_LEAF, blocks = (job->n_queries + 255) / 256,
-                  fit = 1 + (HDI_CAST(int64_t, 64) << 20) / (28 * size);
+                  fit = 1 + ((int64_t)64 << 20) / (28 * size);
     const int64_t tasks = hdi_least(hdi_least(blocks, HDI_SEARCH_TASKS), fit);
     double *d = HDI_TAKE(s, double, tasks * size);
     hdi_pair *sorted = HDI_TAKE(s, hdi_pair, tasks * size);
@@ -5683,7 +5681,7 @@ static hd_status hdi_search_take(hdi_search_job *job, int64_t room, hdi_scope *s
 static double hdi_raise(double x) { return x * (1 + 16 * DBL_EPSILON); }
 
 static void hdi_nearest_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_search_job *job = HDI_CAST(const hdi_search_job *, arg);
+    const hdi_search_job *job = (const hdi_search_job *)arg;
     hdi_found *f = job->found + begin / job->per_task;
     const double *before = NULL;
     const int64_t k = job->k;
@@ -5697,7 +5695,7 @@ static void hdi_nearest_task(void *arg, int64_t begin, int64_t end) {
         hdi_found_bound(f, before ? hdi_raise(limit * limit) : HDI_NO_BOUND);
         hdi_search(job->t, q, f);
         m = hdi_found_sort(f);
-        for (p = 0; p < k; p++) job->index[v * k + p] = p < m ? HDI_CAST(int32_t, f->sorted[p].id) : -1;
+        for (p = 0; p < k; p++) job->index[v * k + p] = p < m ? (int32_t)f->sorted[p].id : -1;
         for (p = 0; job->distance2 && p < k; p++)
             job->distance2[v * k + p] = p < m ? hdi_key_square(f->sorted + p) : HUGE_VAL;
         before = m == k ? q : NULL;
@@ -5715,7 +5713,7 @@ static hd_status hdi_nearest(const hdi_tree *t, const double *query, int64_t n_q
     job.k = k;
     job.index = index;
     job.distance2 = distance2;
-    if (hdi_search_take(&job, 2 * HDI_CAST(int64_t, k) + 32, &s) >= 0)
+    if (hdi_search_take(&job, 2 * (int64_t)k + 32, &s) >= 0)
         hdi_parallel_ranges(ctx, n_queries, job.per_task, hdi_nearest_task, &job);
     return hdi_scope_end(&s);
 }
@@ -5723,12 +5721,12 @@ static hd_status hdi_nearest(const hdi_tree *t, const double *query, int64_t n_q
 /* One row: columns ascending. What was gathered is sorted by id with its place as a payload. */
 static void hdi_within_row(const hdi_found *f, int32_t *col, double *val) {
     /* room for twice as many */
-    uint64_t *key = HDI_CAST(uint64_t *, HDI_CAST(void *, f->sorted)), *work = key + f->m;
+    uint64_t *key = (uint64_t *)(void *)f->sorted, *work = key + f->m;
     int64_t p;
-    for (p = 0; p < f->m; p++) key[p] = HDI_CAST(uint64_t, f->id[p]) << 32 | HDI_CAST(uint64_t, p);
+    for (p = 0; p < f->m; p++) key[p] = (uint64_t)f->id[p] << 32 | (uint64_t)p;
     hdi_sort_keys(key, f->m, work);
     for (p = 0; p < f->m; p++) {
-        col[p] = HDI_CAST(int32_t, key[p] >> 32);
+        col[p] = (int32_t)(key[p] >> 32);
         if (val) val[p] = f->d[key[p] & 0xffffffffu];
     }
 }
@@ -5736,7 +5734,7 @@ static void hdi_within_row(const hdi_found *f, int32_t *col, double *val) {
 /* Counts are of a radius that is a little larger: compilers may round the distances of one pass otherwise
  * than those of the other. */
 static void hdi_within_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_search_job *job = HDI_CAST(const hdi_search_job *, arg);
+    const hdi_search_job *job = (const hdi_search_job *)arg;
     const double bound = job->kept ? job->radius2 : job->radius2 * (1 + 8 * DBL_EPSILON) + DBL_MIN;
     hdi_found *f = job->found + begin / job->per_task;
     hd_csr *out = job->out;
@@ -5749,7 +5747,7 @@ static void hdi_within_task(void *arg, int64_t begin, int64_t end) {
         hdi_search(job->t, hdi_at3(job->query, v), f);
         if (job->kept) {
             hdi_within_row(f, out->col + out->row_ptr[v], out->val + out->row_ptr[v]);
-            job->kept[v] = HDI_CAST(int32_t, f->m);
+            job->kept[v] = (int32_t)f->m;
         } else {
             out->row_ptr[v] = f->counted + f->m;
         }
@@ -5763,8 +5761,8 @@ static void hdi_within_close(hd_csr *a, const int32_t *kept) {
     for (i = 0; i < a->n_rows; i++) {
         const int64_t from = a->row_ptr[i];
         if (from != to) {
-            memmove(a->col + to, a->col + from, HDI_CAST(size_t, kept[i]) * sizeof *a->col);
-            memmove(a->val + to, a->val + from, HDI_CAST(size_t, kept[i]) * sizeof *a->val);
+            memmove(a->col + to, a->col + from, (size_t)kept[i] * sizeof *a->col);
+            memmove(a->val + to, a->val + from, (size_t)kept[i] * sizeof *a->val);
         }
         a->row_ptr[i] = to;
         to += kept[i];
@@ -5845,13 +5843,12 @@ static void hdi_mesh_clear(hdi_mesh *mesh, const double *xyz, int32_t n, const i
 
 /* id: what corner i of all faces names. */
 static hd_status hdi_corner_fail(int64_t i, int64_t id, hd_error *e) {
-    return hdi_fail_face(e, HD_ERR_INDEX, "a face names a vertex that does not exist", i / 3, -1,
-                         HDI_CAST(double, id));
+    return hdi_fail_face(e, HD_ERR_INDEX, "a face names a vertex that does not exist", i / 3, -1, (double)id);
 }
 
 /* Lengths of face f. */
 static const double *hdi_mesh_lengths(const hdi_mesh *mesh, int32_t f) {
-    return mesh->len + 3 * HDI_CAST(int64_t, mesh->face ? mesh->face[f] : f);
+    return mesh->len + 3 * (int64_t)(mesh->face ? mesh->face[f] : f);
 }
 
 /* A side may be longer than the two others together by this much of their sum: lengths are rounded. */
@@ -5883,10 +5880,10 @@ static hd_status hdi_lengths_check(const double *len, int32_t m, hd_error *e) {
 static hd_status hdi_mesh_check(const double *xyz, int32_t n, const int32_t *tri, int32_t m,
                                 hd_error *e) {
     int64_t i;
-    for (i = 0; i < 3 * HDI_CAST(int64_t, n) && xyz; i++)
+    for (i = 0; i < 3 * (int64_t)n && xyz; i++)
         if (!hdi_finite(xyz[i]))
             return hdi_fail_face(e, HD_ERR_NOT_FINITE, "a coordinate is not finite", -1, i / 3, xyz[i]);
-    for (i = 0; i < 3 * HDI_CAST(int64_t, m); i++)
+    for (i = 0; i < 3 * (int64_t)m; i++)
         if (tri[i] < 0 || tri[i] >= n) return hdi_corner_fail(i, tri[i], e);
     return HD_OK;
 }
@@ -5898,48 +5895,47 @@ static size_t hdi_view_wide(const hd_mesh_view *v) {
     return 3 * (v->xyz_float ? sizeof(float) : sizeof(double));
 }
 
-static int hdi_aligned(const void *p, size_t size) { return HDI_RECAST(size_t, p) % size == 0; }
+static int hdi_aligned(const void *p, size_t size) { return (size_t)p % size == 0; }
 
 /* Positions as packed doubles. Bytes are copied, since they need not be aligned. */
 static const double *hdi_view_places(const hd_mesh_view *v, hdi_scope *s) {
     const size_t wide = hdi_view_wide(v), stride = v->stride ? v->stride : wide;
-    const void *first = v->xyz_float ? HDI_CAST(const void *, v->xyz_float) : v->xyz_double;
-    const char *from = HDI_CAST(const char *, first);
+    const void *first = v->xyz_float ? (const void *)v->xyz_float : v->xyz_double;
+    const char *from = (const char *)first;
     double *xyz, *to;
     float p[3];
     int64_t i;
     if (!v->xyz_float && stride == wide && hdi_aligned(first, sizeof(double))) return v->xyz_double;
     to = xyz = HDI_TAKE(s, double, 3 * v->n);
     for (i = 0; i < v->n && xyz; i++, to += 3) {
-        memcpy(v->xyz_float ? HDI_CAST(void *, p) : to, from + HDI_CAST(size_t, i) * stride, wide);
+        memcpy(v->xyz_float ? (void *)p : to, from + (size_t)i * stride, wide);
         if (!v->xyz_float) continue;
-        to[0] = HDI_CAST(double, p[0]);
-        to[1] = HDI_CAST(double, p[1]);
-        to[2] = HDI_CAST(double, p[2]);
+        to[0] = (double)p[0];
+        to[1] = (double)p[1];
+        to[2] = (double)p[2];
     }
     return xyz;
 }
 
 /* Index number i of a buffer of the type that the view has. */
 static int64_t hdi_view_index(const hd_mesh_view *v, const char *first, int64_t i) {
-    const char *at = first + HDI_CAST(size_t, i) * (v->tri_u16 || v->tri_i16 ? 2 : 4);
+    const char *at = first + (size_t)i * (v->tri_u16 || v->tri_i16 ? 2 : 4);
     uint16_t half;
     uint32_t full;
     memcpy(&half, at, sizeof half);
     if (v->tri_u16) return half;
-    if (v->tri_i16) return half < 0x8000 ? half : HDI_CAST(int64_t, half) - 0x10000;
+    if (v->tri_i16) return half < 0x8000 ? half : (int64_t)half - 0x10000;
     memcpy(&full, at, sizeof full);
     if (v->tri_u32) return full;
-    return full < 0x80000000u ? full : HDI_CAST(int64_t, full) - HDI_CAST(int64_t, 0x100000000);
+    return full < 0x80000000u ? full : (int64_t)full - (int64_t)0x100000000;
 }
 
 /* Indices as int32_t. Those of no vertex are an error here, as not all of them are in the range of the type.
  * Coordinates that are not finite come before it, as they do for packed arrays. */
 static const int32_t *hdi_view_corners(const hd_mesh_view *v, const double *xyz, hdi_scope *s) {
-    const void *first = v->tri_u16 ? HDI_CAST(const void *, v->tri_u16)
-                      : v->tri_i16 ? HDI_CAST(const void *, v->tri_i16)
-                      : v->tri_u32 ? HDI_CAST(const void *, v->tri_u32) : v->tri_i32;
-    const char *from = HDI_CAST(const char *, first);
+    const void *first = v->tri_u16 ? (const void *)v->tri_u16 : v->tri_i16 ? (const void *)v->tri_i16
+                      : v->tri_u32 ? (const void *)v->tri_u32 : v->tri_i32;
+    const char *from = (const char *)first;
     int32_t *tri;
     int64_t i;
     if (v->tri_i32 && hdi_aligned(first, sizeof(int32_t))) return v->tri_i32;
@@ -5947,11 +5943,11 @@ static const int32_t *hdi_view_corners(const hd_mesh_view *v, const double *xyz,
     for (i = 0; i < v->n_indices && tri; i++) {
         const int64_t id = hdi_view_index(v, from, i);
         if (id < 0 || id >= v->n) {
-            if (hdi_mesh_check(xyz, HDI_CAST(int32_t, v->n), NULL, 0, s->e) >= 0)
+            if (hdi_mesh_check(xyz, (int32_t)v->n, NULL, 0, s->e) >= 0)
                 hdi_corner_fail(i, id, s->e);
             return NULL;
         }
-        tri[i] = HDI_CAST(int32_t, id);
+        tri[i] = (int32_t)id;
     }
     return tri;
 }
@@ -5966,10 +5962,10 @@ typedef struct hdi_view {
 
 /* Reads a view whose sizes are checked. faces: its indices are wanted too. */
 static hd_status hdi_view_read(hdi_view *out, const hd_mesh_view *v, int faces) {
-    out->n = HDI_CAST(int32_t, v->n);
+    out->n = (int32_t)v->n;
     out->xyz = hdi_view_places(v, &out->s);
     if (!faces || out->s.e->status < 0) return out->s.e->status;
-    out->n_tri = HDI_CAST(int32_t, v->n_indices / 3);
+    out->n_tri = (int32_t)(v->n_indices / 3);
     out->tri = hdi_view_corners(v, out->xyz, &out->s);
     return out->s.e->status;
 }
@@ -5978,15 +5974,14 @@ static hd_status hdi_view_read(hdi_view *out, const hd_mesh_view *v, int faces) 
 static hd_status hdi_view_sizes(const hd_mesh_view *v, int faces, hd_error *e) {
     const size_t wide = hdi_view_wide(v), stride = v->stride ? v->stride : wide;
     hdi_refuse(v->n < 0 || (faces && v->n_indices < 0), "mesh view: a count is negative", e);
-    hdi_refuse_value(stride < wide, "mesh view: the stride is shorter than a position",
-                     HDI_CAST(double, stride), e);
+    hdi_refuse_value(stride < wide, "mesh view: the stride is shorter than a position", (double)stride, e);
     hdi_refuse_value(faces && v->n_indices % 3 != 0,
                      "mesh view: the number of indices is not a multiple of three",
-                     HDI_CAST(double, v->n_indices), e);
+                     (double)v->n_indices, e);
     if (e->status < 0) return e->status;
     if (v->n > INT32_MAX || (faces && v->n_indices / 3 > INT32_MAX))
         return hdi_fail(e, HD_ERR_TOO_LARGE, "mesh view: more than 2^31 - 1 vertices or faces");
-    if (v->n > 1 && HDI_CAST(uint64_t, v->n - 1) > (SIZE_MAX / 2 - wide) / stride)
+    if (v->n > 1 && (uint64_t)(v->n - 1) > (SIZE_MAX / 2 - wide) / stride)
         return hdi_fail(e, HD_ERR_TOO_LARGE, "mesh view: positions lie beyond the address space");
     return HD_OK;
 }
@@ -6015,7 +6010,7 @@ static hd_status hdi_view_open(hdi_view *out, const hd_mesh_view *v, int faces, 
 static hd_status hdi_view_positions(hdi_view *out, const hd_mesh_view *v, int32_t n, const hdi_call *c) {
     if (hdi_view_open(out, v, 0, c) < 0 || out->n == n) return c->e->status;
     return hdi_fail_row(c->e, HD_ERR_ARGUMENT, "mesh view: the mesh has another number of vertices", -1, -1,
-                        HDI_CAST(double, v->n));
+                        (double)v->n);
 }
 
 /* ---- faces ---- */
@@ -6098,7 +6093,7 @@ static HDI_INLINE int hdi_face_cots(double edge[3][3], double twice, int exponen
 /* Area of face f, and its cotangents; 0 where it has none or where a cotangent would not be finite. */
 static HDI_INLINE double hdi_face_measure(const hdi_mesh *mesh, int32_t f, double *cot,
                                           hdi_face_tally *tally) {
-    const int32_t *v = mesh->tri + 3 * HDI_CAST(int64_t, f);
+    const int32_t *v = mesh->tri + 3 * (int64_t)f;
     double edge[3][3], cross[3], len[3], twice, scaled = 0;
     int exponent = 0, good;
     if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) {
@@ -6186,21 +6181,20 @@ static HDI_INLINE void hdi_face_ahead(const hdi_mesh *mesh, int64_t f) {
 typedef struct hdi_measure_job { const hdi_mesh *mesh; hdi_face_tally *tally; } hdi_measure_job;
 
 static void hdi_measure_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_measure_job *job = HDI_CAST(const hdi_measure_job *, arg);
+    const hdi_measure_job *job = (const hdi_measure_job *)arg;
     hdi_face_tally tally;
     int64_t f;
     hdi_tally_clear(&tally);
     for (f = begin; f < end; f++) {
         hdi_face_ahead(job->mesh, hdi_least(f + HDI_FACES_AHEAD, end - 1));
-        job->mesh->area[f] = hdi_face_measure(job->mesh, HDI_CAST(int32_t, f), job->mesh->cot + 3 * f,
-                                              &tally);
+        job->mesh->area[f] = hdi_face_measure(job->mesh, (int32_t)f, job->mesh->cot + 3 * f, &tally);
     }
     job->tally[begin / HDI_FACES_PER_TASK] = tally;
 }
 
 /* All faces of a mesh whose indices are fine: cot and area. */
 static hd_status hdi_faces_measure(const hdi_mesh *mesh, hd_mesh_report *rep, hdi_scope *s) {
-    const int64_t n_tasks = (HDI_CAST(int64_t, mesh->m) + HDI_FACES_PER_TASK - 1) / HDI_FACES_PER_TASK;
+    const int64_t n_tasks = ((int64_t)mesh->m + HDI_FACES_PER_TASK - 1) / HDI_FACES_PER_TASK;
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
     hdi_face_tally all;
     hdi_measure_job job;
@@ -6226,9 +6220,9 @@ typedef struct hdi_sides {
     uint64_t *work;             /* [most] */
 } hdi_sides;
 
-static int32_t hdi_key_face(uint64_t key) { return HDI_CAST(int32_t, (key & 0xffffffffu) >> 2); }
-static int hdi_key_corner(uint64_t key) { return HDI_CAST(int, key & 3); }
-static int32_t hdi_key_vertex(uint64_t key) { return HDI_CAST(int32_t, key >> 32); }
+static int32_t hdi_key_face(uint64_t key) { return (int32_t)((key & 0xffffffffu) >> 2); }
+static int hdi_key_corner(uint64_t key) { return (int)(key & 3); }
+static int32_t hdi_key_vertex(uint64_t key) { return (int32_t)(key >> 32); }
 /* Where the side begins, and the corner opposite to it. */
 static int64_t hdi_key_side(uint64_t key) { return hdi_triple(hdi_key_face(key)) + hdi_key_corner(key); }
 static int64_t hdi_key_opposite(uint64_t key) {
@@ -6246,7 +6240,7 @@ static void hdi_sides_gather(const hdi_mesh *mesh, hdi_sides *g) {
     const int32_t *v = mesh->tri;
     int32_t f, i, q, sum = 0, *at = g->ptr;
     g->most = 1;
-    memset(at, 0, (HDI_CAST(size_t, mesh->n) + 1) * sizeof *at);
+    memset(at, 0, ((size_t)mesh->n + 1) * sizeof *at);
     for (f = 0; f < mesh->m; f++, v += 3) {
         if (!(mesh->area[f] > 0)) continue;
         at[hdi_low32(v[0], v[1])]++;
@@ -6263,11 +6257,11 @@ static void hdi_sides_gather(const hdi_mesh *mesh, hdi_sides *g) {
         if (!(mesh->area[f] > 0)) continue;
         for (q = 0; q < 3; q++) {
             const int32_t a = v[q], b = v[hdi_next3[q]];
-            g->key[at[hdi_low32(a, b)]++] = HDI_CAST(uint64_t, hdi_high32(a, b)) << 32
-                                          | (HDI_CAST(uint64_t, f) << 2) | HDI_CAST(uint64_t, q);
+            g->key[at[hdi_low32(a, b)]++] = (uint64_t)hdi_high32(a, b) << 32
+                                          | ((uint64_t)f << 2) | (uint64_t)q;
         }
     }
-    memmove(at + 1, at, HDI_CAST(size_t, mesh->n) * sizeof *at);
+    memmove(at + 1, at, (size_t)mesh->n * sizeof *at);
     at[0] = 0;
 }
 
@@ -6277,7 +6271,7 @@ static void hdi_sides_sort(hdi_sides *g, int32_t i) {
 
 /* Gathers the sides, in s; sorting them is left to the caller. */
 static hd_status hdi_sides_make(hdi_sides *g, const hdi_mesh *mesh, hdi_scope *s) {
-    g->ptr = HDI_TAKE(s, int32_t, HDI_CAST(int64_t, mesh->n) + 1);
+    g->ptr = HDI_TAKE(s, int32_t, (int64_t)mesh->n + 1);
     g->key = HDI_TAKE(s, uint64_t, hdi_triple(mesh->m));
     if (s->e->status < 0) return s->e->status;
     hdi_sides_gather(mesh, g);
@@ -6361,7 +6355,7 @@ static hd_status hdi_edges_take(hdi_edges *g, int32_t n, int64_t room, int weigh
                                 hdi_scope *s) {
     memset(g, 0, sizeof *g);
     g->shift = 31;
-    g->first = HDI_TAKE(s, int32_t, HDI_CAST(int64_t, n) + 1);
+    g->first = HDI_TAKE(s, int32_t, (int64_t)n + 1);
     if (g->first) g->last = g->first + 1;
     g->to = HDI_TAKE(s, int32_t, room);
     if (weights) g->w = HDI_TAKE(s, double, room);
@@ -6377,7 +6371,7 @@ static double hdi_run_cotangents(const hdi_mesh *mesh, const uint64_t *run, int6
     double sum = 0;
     int64_t p;
     for (p = 0; p < n; p++) {
-        const double *cot = mesh->cot + 3 * HDI_CAST(int64_t, hdi_key_face(run[p]));
+        const double *cot = mesh->cot + 3 * (int64_t)hdi_key_face(run[p]);
         sum += fabs(cot[0]) + fabs(cot[1]) + fabs(cot[2]);
     }
     return sum;
@@ -6453,7 +6447,7 @@ static HDI_INLINE void hdi_face_masses(double *mass, const int32_t *v, const dou
 
 static void hdi_mesh_masses(const hdi_mesh *mesh, hdi_lump lump, double *mass) {
     int64_t f;
-    memset(mass, 0, HDI_CAST(size_t, mesh->n) * sizeof *mass);
+    memset(mass, 0, (size_t)mesh->n * sizeof *mass);
     for (f = 0; f < mesh->m; f++)
         if (mesh->area[f] > 0)
             hdi_face_masses(mass, mesh->tri + 3 * f, mesh->cot + 3 * f, mesh->area[f], lump);
@@ -6493,7 +6487,7 @@ typedef struct hdi_pass {
 static int32_t hdi_pass_sort(hdi_pass *s, int32_t shift, int32_t *tri, int32_t *face) {
     const int32_t n = s->mesh->n, m = s->mesh->m, *v = s->mesh->tri;
     int32_t *HDI_RESTRICT at = s->face_ptr, f, i, sum = 0, leaving = 0;
-    memset(at, 0, (HDI_CAST(size_t, n) + 1) * sizeof *at);
+    memset(at, 0, ((size_t)n + 1) * sizeof *at);
     for (f = 0; f < m; f++, v += 3) {
         const int32_t low = hdi_low32(hdi_low32(v[0], v[1]), v[2]),
                       high = hdi_high32(hdi_high32(v[0], v[1]), v[2]);
@@ -6510,7 +6504,7 @@ static int32_t hdi_pass_sort(hdi_pass *s, int32_t shift, int32_t *tri, int32_t *
         memcpy(tri + hdi_triple(to), v, 3 * sizeof *v);
         face[to] = f;
     }
-    memmove(at + 1, at, HDI_CAST(size_t, n) * sizeof *at);
+    memmove(at + 1, at, (size_t)n * sizeof *at);
     at[0] = 0;
     s->mesh->tri = tri;
     s->mesh->face = face;
@@ -6528,9 +6522,9 @@ static void hdi_pass_repeats(const hdi_pass *s, int32_t i, hdi_face_tally *tally
     if (n <= HDI_SHORT_LIST) pair = few;
     /* the sum of the two others and the larger say it all; no sum is 0 */
     for (p = 0; p < n; p++, v += 3) {
-        const uint64_t sum = HDI_CAST(uint64_t, HDI_CAST(int64_t, v[0]) + v[1] + v[2] - i);
-        const uint64_t most = HDI_CAST(uint64_t, hdi_high32(hdi_high32(v[0], v[1]), v[2]));
-        pair[p].key = area[p] > 0 ? sum << 31 | most : HDI_CAST(uint64_t, p);
+        const uint64_t sum = (uint64_t)((int64_t)v[0] + v[1] + v[2] - i);
+        const uint64_t most = (uint64_t)hdi_high32(hdi_high32(v[0], v[1]), v[2]);
+        pair[p].key = area[p] > 0 ? sum << 31 | most : (uint64_t)p;
         pair[p].id = p;
     }
     hdi_sort_pairs(pair, n);
@@ -6542,7 +6536,7 @@ static void hdi_pass_repeats(const hdi_pass *s, int32_t i, hdi_face_tally *tally
 }
 
 static void hdi_pass_measure(void *arg, int64_t begin, int64_t end) {
-    const hdi_pass *s = HDI_CAST(const hdi_pass *, arg);
+    const hdi_pass *s = (const hdi_pass *)arg;
     const hdi_mesh *mesh = s->mesh;
     hdi_face_tally tally;
     int64_t i;
@@ -6553,8 +6547,8 @@ static void hdi_pass_measure(void *arg, int64_t begin, int64_t end) {
         mesh->area[f] = hdi_face_measure(mesh, f, mesh->cot + hdi_triple(f), &tally);
     }
     for (i = begin; i < end; i++)
-        if (s->face_ptr[i + 1] - s->face_ptr[i] > 1) hdi_pass_repeats(s, HDI_CAST(int32_t, i), &tally, NULL);
-    HDI_CAST(hdi_pass *, arg)->block[begin >> s->shift].faces = tally;
+        if (s->face_ptr[i + 1] - s->face_ptr[i] > 1) hdi_pass_repeats(s, (int32_t)i, &tally, NULL);
+    ((hdi_pass *)arg)->block[begin >> s->shift].faces = tally;
 }
 
 /* The edges of the run of sides [p, q), into place at of the edges if these are wanted. */
@@ -6579,11 +6573,11 @@ static HDI_INLINE void hdi_pass_edge(const hdi_pass *s, int32_t p, int32_t q, in
 
 /* The edges of a block of vertices; boundary edges are marked by ~. */
 static void hdi_pass_edges(void *arg, int64_t begin, int64_t end) {
-    hdi_pass *s = HDI_CAST(hdi_pass *, arg);
+    hdi_pass *s = (hdi_pass *)arg;
     hdi_edges *g = s->edges;
     hdi_edge_tally *block = &s->block[begin >> s->shift].edges;
     int32_t at = s->sides.ptr[begin], i, p, q;
-    for (i = HDI_CAST(int32_t, begin); i < end; i++) {
+    for (i = (int32_t)begin; i < end; i++) {
         hdi_edge_tally tally = {0, 0, 0, 0, 0};
         const int32_t last = s->sides.ptr[i + 1];
         if (last - s->sides.ptr[i] <= HDI_SHORT_LIST) hdi_sides_sort(&s->sides, i);
@@ -6622,7 +6616,7 @@ static hd_status hdi_pass_faces(hdi_pass *pass, hd_mesh_report *rep, hdi_scope *
     hdi_pair *work = NULL;
     int32_t i, most = 0;
     hdi_tally_clear(&tally);
-    hdi_parallel_ranges(own->ctx, n, HDI_CAST(int64_t, 1) << pass->shift, hdi_pass_measure, pass);
+    hdi_parallel_ranges(own->ctx, n, (int64_t)1 << pass->shift, hdi_pass_measure, pass);
     for (i = 0; i <= (n - 1) >> pass->shift; i++) hdi_tally_add(&tally, &pass->block[i].faces);
     for (i = 0; i < n; i++) most = hdi_high32(most, ptr[i + 1] - ptr[i]);
     if (most > HDI_SHORT_LIST) work = HDI_TAKE(own, hdi_pair, most);
@@ -6649,7 +6643,7 @@ static hd_status hdi_pass_run(hdi_pass *pass, const hdi_mesh_wants *want, hd_mes
     if (hdi_sides_make(&pass->sides, mesh, own) < 0) return own->e->status;
     for (i = 0; i < mesh->n; i++)                /* short ones need no work array */
         if (pass->sides.ptr[i + 1] - pass->sides.ptr[i] > HDI_SHORT_LIST) hdi_sides_sort(&pass->sides, i);
-    hdi_parallel_ranges(own->ctx, mesh->n, HDI_CAST(int64_t, 1) << pass->shift, hdi_pass_edges, pass);
+    hdi_parallel_ranges(own->ctx, mesh->n, (int64_t)1 << pass->shift, hdi_pass_edges, pass);
     if (mesh->len && hdi_lengths_agree(mesh, &pass->sides, own->e) < 0) return own->e->status;
     for (i = 0; i < HDI_BLOCKS_MOST; i++) hdi_edge_tally_add(&tally, &pass->block[i].edges);
     hdi_pass_join(pass->edges, mesh->n, border, want->border);
@@ -6682,7 +6676,7 @@ static hd_status hdi_mesh_faces(hdi_mesh *mesh, hdi_edges *edges, const hdi_mesh
     face = HDI_TAKE(s, int32_t, mesh->m);
     mesh->area = HDI_TAKE(s, double, mesh->m);
     mesh->cot = HDI_TAKE(&own, double, n_corners);
-    pass.face_ptr = HDI_TAKE(&own, int32_t, HDI_CAST(int64_t, mesh->n) + 1);
+    pass.face_ptr = HDI_TAKE(&own, int32_t, (int64_t)mesh->n + 1);
     if (s->e->status < 0) return hdi_scope_end(&own);
     leaving = hdi_pass_sort(&pass, pass.shift, tri, face);
     (void)hdi_pass_run(&pass, want, rep, &own);
@@ -6714,12 +6708,10 @@ static hd_status hdi_poly_check(const double *xyz, int32_t n, const int64_t *ptr
     int32_t f;
     if (hdi_mesh_check(xyz, n, NULL, 0, e) < 0) return e->status;
     if (m > 0 && ptr[0] != 0)
-        return hdi_fail_face(e, HD_ERR_STRUCTURE, "face_ptr does not begin with 0", 0, -1,
-                             HDI_CAST(double, ptr[0]));
+        return hdi_fail_face(e, HD_ERR_STRUCTURE, "face_ptr does not begin with 0", 0, -1, (double)ptr[0]);
     for (f = 0; f < m; f++)
         if (ptr[f + 1] < ptr[f])
-            return hdi_fail_face(e, HD_ERR_STRUCTURE, "face_ptr descends", f, -1,
-                                 HDI_CAST(double, ptr[f + 1]));
+            return hdi_fail_face(e, HD_ERR_STRUCTURE, "face_ptr descends", f, -1, (double)ptr[f + 1]);
     if (m > 0 && ptr[m] > INT32_MAX) return hdi_fail(e, HD_ERR_TOO_LARGE, "more than 2^31 face corners");
     if (m > 0 && ptr[m] > 0 && !idx)
         return hdi_fail(e, HD_ERR_ARGUMENT, "an argument that must not be NULL is NULL");
@@ -6732,7 +6724,7 @@ static hd_status hdi_poly_check(const double *xyz, int32_t n, const int64_t *ptr
 }
 
 static const double *hdi_poly_at(const hdi_poly *poly, int64_t corner) {
-    return poly->xyz + 3 * HDI_CAST(int64_t, poly->idx[corner]);
+    return poly->xyz + 3 * (int64_t)poly->idx[corner];
 }
 
 /* The corners of the same face before and after c. */
@@ -6795,7 +6787,7 @@ static double hdi_poly_area(const hdi_poly *poly, int32_t f, double *twice) {
         sum += hdi_norm3(cross);
     }
     length = hdi_norm3(twice);
-    if (length <= 4 * DBL_EPSILON * HDI_CAST(double, end - begin - 2) * sum) return 0;
+    if (length <= 4 * DBL_EPSILON * (double)(end - begin - 2) * sum) return 0;
     if (!exponent) return length;
     for (q = 0; q < 3; q++) twice[q] = hdi_scale(twice[q], 2 * exponent);
     return hdi_poly_unscale(length, exponent);
@@ -6900,7 +6892,7 @@ static hd_status hdi_poly_measure(const hdi_poly *poly, int32_t f, int32_t *mark
     if (!hdi_finite(twice))
         return hdi_fail_face(e, HD_ERR_NOT_FINITE, "a face is too large: its area is not finite", f,
                              poly->idx[begin], twice);
-    if (twice == 0 || twice / (8 * HDI_CAST(double, end - begin)) < DBL_MIN ||
+    if (twice == 0 || twice / (8 * (double)(end - begin)) < DBL_MIN ||
         !hdi_poly_gradients(poly, f, twice / 2)) {
         rep->n_zero_area++;
         return HD_OK;
@@ -6919,13 +6911,13 @@ static hd_status hdi_poly_measure(const hdi_poly *poly, int32_t f, int32_t *mark
 static void hdi_poly_corners(hdi_poly *poly) {
     const int64_t n_corners = poly->m ? poly->ptr[poly->m] : 0;
     int64_t c;
-    memset(poly->corner_ptr, 0, (HDI_CAST(size_t, poly->n) + 1) * sizeof *poly->corner_ptr);
+    memset(poly->corner_ptr, 0, ((size_t)poly->n + 1) * sizeof *poly->corner_ptr);
     for (c = 0; c < n_corners; c++)
         if (poly->area[poly->face[c]] > 0) poly->corner_ptr[poly->idx[c]]++;
     hdi_prefix_sum(poly->corner_ptr, poly->n);
     for (c = 0; c < n_corners; c++)
         if (poly->area[poly->face[c]] > 0)
-            poly->corner[poly->corner_ptr[poly->idx[c]]++] = HDI_CAST(int32_t, c);
+            poly->corner[poly->corner_ptr[poly->idx[c]]++] = (int32_t)c;
     hdi_rewind(poly->corner_ptr, poly->n);
 }
 
@@ -6946,7 +6938,7 @@ static uint64_t hdi_poly_key(const hdi_poly *poly, int64_t c) {
     uint64_t key = 14695981039346656037u;
     int64_t at = c;
     do {
-        key = (key ^ HDI_CAST(uint64_t, poly->idx[at])) * 1099511628211u;
+        key = (key ^ (uint64_t)poly->idx[at]) * 1099511628211u;
         at = hdi_poly_step(poly, at, forward);
     } while (at != c);
     return key;
@@ -6973,7 +6965,7 @@ static void hdi_poly_repeats(hdi_poly *poly, int32_t *least, hdi_pair *work, hd_
     hdi_fill_i32(least, poly->m, -1);
     for (c = 0; c < n_corners; c++) {
         int32_t *best = least + poly->face[c];
-        if (*best < 0 || poly->idx[c] < poly->idx[*best]) *best = HDI_CAST(int32_t, c);
+        if (*best < 0 || poly->idx[c] < poly->idx[*best]) *best = (int32_t)c;
     }
     for (i = 0; i < poly->n; i++) {
         n = 0;
@@ -7007,7 +6999,7 @@ static hd_status hdi_poly_make(hdi_poly *poly, hd_mesh_report *rep, hdi_scope *s
     poly->g = HDI_TAKE(s, double, 3 * n_corners);
     poly->w = HDI_TAKE(s, double, 2 * n_corners);
     poly->face = HDI_TAKE(s, int32_t, n_corners);
-    poly->corner_ptr = HDI_TAKE(s, int64_t, HDI_CAST(int64_t, poly->n) + 1);
+    poly->corner_ptr = HDI_TAKE(s, int64_t, (int64_t)poly->n + 1);
     poly->corner = HDI_TAKE(s, int32_t, n_corners);
     mark = HDI_TAKE(s, int32_t, poly->n > m ? poly->n : m);
     if (s->e->status < 0) return s->e->status;
@@ -7085,7 +7077,7 @@ typedef struct hdi_places {
 
 /* Of n checked points, in s. */
 static hd_status hdi_places_make(hdi_places *out, const double *xyz, int32_t n, hdi_scope *s) {
-    const int64_t slots = 2 * HDI_CAST(int64_t, n) + 1;
+    const int64_t slots = 2 * (int64_t)n + 1;
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
     int32_t *table = HDI_TAKE(&own, int32_t, slots), v;
     out->n = 0;
@@ -7095,7 +7087,7 @@ static hd_status hdi_places_make(hdi_places *out, const double *xyz, int32_t n, 
     hdi_fill_i32(table, slots, -1);
     for (v = 0; v < n; v++) {
         const double *p = hdi_at3(xyz, v);
-        int64_t at = HDI_CAST(int64_t, hdi_place_hash(p) % HDI_CAST(uint64_t, slots));
+        int64_t at = (int64_t)(hdi_place_hash(p) % (uint64_t)slots);
         for (; table[at] >= 0; at = at + 1 < slots ? at + 1 : 0) {
             const double *q = hdi_at3(xyz, out->first[table[at]]);
             if (p[0] == q[0] && p[1] == q[1] && p[2] == q[2]) break;
@@ -7228,7 +7220,7 @@ static int hdi_polygon_clip(hdi_polygon *g, double a0, double a1, double b) {
         last = here;
     }
     g->n = cut.n;
-    memcpy(g->x, cut.x, HDI_CAST(size_t, cut.n) * sizeof *g->x);
+    memcpy(g->x, cut.x, (size_t)cut.n * sizeof *g->x);
     return 1;
 }
 
@@ -7324,7 +7316,7 @@ static void hdi_star_sort(hdi_star_point *p, int32_t n) {
     for (i = 0; i < n; i++) {
         p[i].angle = hdi_star_angle(p[i].x, p[i].y) + 0.0;       /* no -0 */
         memcpy(key + i, &p[i].angle, sizeof *key);
-        key[i] = (key[i] & ~HDI_CAST(uint64_t, 255)) | HDI_CAST(uint64_t, i);
+        key[i] = (key[i] & ~(uint64_t)255) | (uint64_t)i;
         from[i] = p[i];
     }
     hdi_sort_keys(key, n, work);
@@ -7415,12 +7407,12 @@ static int64_t hdi_soup_bucket(hdi_soup *soup, int64_t m, int32_t i, const uint6
     int64_t p, q, count = 0;
     for (p = 0; p < n; p = q, count++) {
         int32_t odd = 0;
-        for (q = p; q < n && key[q] >> 1 == key[p] >> 1; q++) odd += HDI_CAST(int32_t, key[q] & 1);
+        for (q = p; q < n && key[q] >> 1 == key[p] >> 1; q++) odd += (int32_t)(key[q] & 1);
         if (!soup) continue;
         soup->tri[3 * (m + count)] = i;
         soup->tri[3 * (m + count) + 1] = hdi_key_vertex(key[p]);
-        soup->tri[3 * (m + count) + 2] = HDI_CAST(int32_t, (key[p] & 0xffffffffu) >> 1);
-        soup->copies[m + count] = HDI_CAST(int32_t, q - p);
+        soup->tri[3 * (m + count) + 2] = (int32_t)((key[p] & 0xffffffffu) >> 1);
+        soup->copies[m + count] = (int32_t)(q - p);
         soup->odd[m + count] = odd;
     }
     return count;
@@ -7435,9 +7427,9 @@ static void hdi_soup_gather(const int32_t *tri, int64_t m, int32_t n, int64_t *p
     for (f = 0; f < m; f++) {
         const int32_t a = tri[3 * f], b = tri[3 * f + 1], c = tri[3 * f + 2];
         const int32_t first = hdi_low32(a, hdi_low32(b, c)), last = hdi_high32(a, hdi_high32(b, c));
-        const int64_t middle = HDI_CAST(int64_t, a) + b + c - first - last,
+        const int64_t middle = (int64_t)a + b + c - first - last,
                       odd = ((a > b) + (b > c) + (a > c)) & 1;
-        key[ptr[first]++] = HDI_CAST(uint64_t, middle << 32 | HDI_CAST(int64_t, last) << 1 | odd);
+        key[ptr[first]++] = (uint64_t)(middle << 32 | (int64_t)last << 1 | odd);
     }
     hdi_rewind(ptr, n);
 }
@@ -7446,7 +7438,7 @@ static void hdi_soup_gather(const int32_t *tri, int64_t m, int32_t n, int64_t *p
 static hd_status hdi_soup_faces(hdi_soup *soup, const int32_t *tri, int64_t m, int32_t n,
                                 hdi_scope *s) {
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
-    int64_t *ptr = HDI_TAKE_ZERO(&own, int64_t, HDI_CAST(int64_t, n) + 1), f = 0, count = 0;
+    int64_t *ptr = HDI_TAKE_ZERO(&own, int64_t, (int64_t)n + 1), f = 0, count = 0;
     uint64_t *key = HDI_TAKE(&own, uint64_t, m), *work;
     int32_t i;
     if (s->e->status < 0) return hdi_scope_end(&own);
@@ -7464,7 +7456,7 @@ static hd_status hdi_soup_faces(hdi_soup *soup, const int32_t *tri, int64_t m, i
     for (i = 0; i < n; i++) f += hdi_soup_bucket(soup, f, i, key + ptr[i], ptr[i + 1] - ptr[i]);
     soup->mesh.tri = soup->tri;
     soup->mesh.n = n;
-    soup->mesh.m = HDI_CAST(int32_t, count);
+    soup->mesh.m = (int32_t)count;
     return hdi_scope_end(&own);
 }
 
@@ -7503,7 +7495,7 @@ typedef struct hdi_soup_job {
 } hdi_soup_job;
 
 static void hdi_soup_length_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_soup_job *job = HDI_CAST(const hdi_soup_job *, arg);
+    const hdi_soup_job *job = (const hdi_soup_job *)arg;
     hdi_soup *soup = job->soup;
     const hdi_mesh *mesh = &soup->mesh;
     double add = 0;
@@ -7514,12 +7506,12 @@ static void hdi_soup_length_task(void *arg, int64_t begin, int64_t end) {
         double *len = soup->len + 3 * f, spare;
         if (!(mesh->area[f] > 0)) continue;
         for (q = 0; q < 3; q++)
-            len[q] = (mesh->len ? hdi_mesh_lengths(mesh, HDI_CAST(int32_t, f))[q]
-                                : hdi_edge_length(mesh->xyz, v[q], v[hdi_next3[q]])) / soup->unit;
+            len[q] = (mesh->len ? hdi_mesh_lengths(mesh, (int32_t)f)[q]
+                      : hdi_edge_length(mesh->xyz, v[q], v[hdi_next3[q]])) / soup->unit;
         spare = hdi_min(len[0] + len[1] - len[2],
                         hdi_min(len[2] + len[0] - len[1], len[2] + len[1] - len[0]));
         if (job->delta < 0) continue;
-        if (spare < job->delta) n_short += hdi_soup_copies(soup, HDI_CAST(int32_t, f));
+        if (spare < job->delta) n_short += hdi_soup_copies(soup, (int32_t)f);
         add = hdi_max(add, job->delta - spare);
     }
     job->add[begin / HDI_FACES_PER_TASK] = add;
@@ -7527,7 +7519,7 @@ static void hdi_soup_length_task(void *arg, int64_t begin, int64_t end) {
 }
 
 static void hdi_soup_cot_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_soup_job *job = HDI_CAST(const hdi_soup_job *, arg);
+    const hdi_soup_job *job = (const hdi_soup_job *)arg;
     hdi_soup *soup = job->soup;
     int64_t f;
     int q;
@@ -7563,7 +7555,7 @@ static hd_status hdi_soup_lengths(hdi_soup *soup, double delta, hd_mesh_report *
         n_short += job.n_short[i];
     }
     hdi_parallel_ranges(s->ctx, m, HDI_FACES_PER_TASK, hdi_soup_cot_task, &job);
-    rep->n_mollified = HDI_CAST(int32_t, n_short);
+    rep->n_mollified = (int32_t)n_short;
     rep->mollify_epsilon = job.most_add * soup->unit;
     return HD_OK;
 }
@@ -7578,7 +7570,7 @@ static hd_status hdi_soup_finish(hdi_soup *soup, double delta, hd_mesh_report *r
     if (!border || hdi_sides_make(&soup->sides, mesh, s) < 0) return s->e->status;
     tally = hdi_soup_edges(soup, border);
     if (soup->copies) hdi_edge_report(&tally, border, mesh->n, rep);   /* of a mesh it is known */
-    soup->unit = tally.length / HDI_CAST(double, tally.n_edges > 0 ? tally.n_edges : 1);
+    soup->unit = tally.length / (double)(tally.n_edges > 0 ? tally.n_edges : 1);
     return hdi_soup_lengths(soup, delta, rep, s);
 }
 
@@ -7657,26 +7649,26 @@ static void hdi_cover_free(hdi_cover *c) {
 
 /* old with n elements in a block of room elements; NULL, old freed, when there is none. */
 static void *hdi_regrow(hdi_cover *c, void *old, int64_t n, int64_t room, size_t size) {
-    void *block = c->e->status < 0 ? NULL : hdi_alloc(c->ctx, HDI_CAST(uint64_t, room), size, c->e);
-    if (block && n > 0) memcpy(block, old, HDI_CAST(size_t, n) * size);
+    void *block = c->e->status < 0 ? NULL : hdi_alloc(c->ctx, (uint64_t)room, size, c->e);
+    if (block && n > 0) memcpy(block, old, (size_t)n * size);
     hdi_free(c->ctx, old);
     return block;
 }
 
 /* Room for more faces: at least twice as many as before, if they come in parts. */
 static hd_status hdi_cover_room(hdi_cover *c, int64_t more) {
-    const int64_t n = c->n, need = n + more, twice = 2 * HDI_CAST(int64_t, c->room);
+    const int64_t n = c->n, need = n + more, twice = 2 * (int64_t)c->room;
     const int64_t room = !c->in_parts ? need : need > twice ? need + 1024 : twice;
     if (need <= c->room) return HD_OK;
     if (3 * room > INT32_MAX)
         return hdi_fail(c->e, HD_ERR_TOO_LARGE, "more than 2^31 face corners in a cover of two sheets");
-    c->vert = HDI_CAST(int32_t *, hdi_regrow(c, c->vert, 3 * n, 3 * room, sizeof(int32_t)));
-    c->twin = HDI_CAST(int32_t *, hdi_regrow(c, c->twin, 3 * n, 3 * room, sizeof(int32_t)));
-    c->len = HDI_CAST(double *, hdi_regrow(c, c->len, 3 * n, 3 * room, sizeof(double)));
-    c->area = HDI_CAST(double *, hdi_regrow(c, c->area, n, room, sizeof(double)));
-    c->stack = HDI_CAST(int32_t *, hdi_regrow(c, c->stack, c->depth, 3 * room, sizeof(int32_t)));
-    c->waits = HDI_CAST(signed char *, hdi_regrow(c, c->waits, 3 * n, 3 * room, 1));
-    if (c->e->status >= 0) c->room = HDI_CAST(int32_t, room);
+    c->vert = (int32_t *)hdi_regrow(c, c->vert, 3 * n, 3 * room, sizeof(int32_t));
+    c->twin = (int32_t *)hdi_regrow(c, c->twin, 3 * n, 3 * room, sizeof(int32_t));
+    c->len = (double *)hdi_regrow(c, c->len, 3 * n, 3 * room, sizeof(double));
+    c->area = (double *)hdi_regrow(c, c->area, n, room, sizeof(double));
+    c->stack = (int32_t *)hdi_regrow(c, c->stack, c->depth, 3 * room, sizeof(int32_t));
+    c->waits = (signed char *)hdi_regrow(c, c->waits, 3 * n, 3 * room, 1);
+    if (c->e->status >= 0) c->room = (int32_t)room;
     return c->e->status;
 }
 
@@ -7720,7 +7712,7 @@ static void hdi_cover_put(hdi_cover *c, int32_t f, int32_t at, int back) {
 
 /* Unfolds face f: all its copies. */
 static hd_status hdi_cover_face(hdi_cover *c, int32_t f) {
-    const int64_t copies = 2 * HDI_CAST(int64_t, hdi_soup_copies(c->soup, f));
+    const int64_t copies = 2 * (int64_t)hdi_soup_copies(c->soup, f);
     int32_t k;
     if (c->first[f] >= 0) return HD_OK;
     if (hdi_cover_room(c, copies) < 0) return c->e->status;
@@ -7756,15 +7748,15 @@ static void hdi_sort_around(const hdi_mesh *mesh, int32_t lo, int32_t hi, hdi_pa
     double axis[3], first[3], up[3], u[3];
     int64_t k;
     hdi_unit3(p, hdi_at3(mesh->xyz, hi), axis);
-    hdi_unit3(p, hdi_at3(mesh->xyz, mesh->tri[hdi_side_prev(HDI_CAST(int32_t, list[0].id))]), first);
+    hdi_unit3(p, hdi_at3(mesh->xyz, mesh->tri[hdi_side_prev((int32_t)list[0].id)]), first);
     hdi_cross3(axis, first, up);
     hdi_cross3(up, axis, first);                 /* its part across the axis, as long as up */
     for (k = 0; k < n; k++) {
         double angle;
-        hdi_unit3(p, hdi_at3(mesh->xyz, mesh->tri[hdi_side_prev(HDI_CAST(int32_t, list[k].id))]), u);
+        hdi_unit3(p, hdi_at3(mesh->xyz, mesh->tri[hdi_side_prev((int32_t)list[k].id)]), u);
         angle = atan2(hdi_dot3(up, u), hdi_dot3(first, u));
         if (angle < 0) angle += HDI_TURN;
-        list[k].key = HDI_CAST(uint64_t, hdi_min(angle / HDI_TURN, 1) * steps);
+        list[k].key = (uint64_t)(hdi_min(angle / HDI_TURN, 1) * steps);
     }
     hdi_sort_pairs(list, n);
 }
@@ -7783,7 +7775,7 @@ static hd_status hdi_cover_glue(hdi_cover *c, int32_t v, int32_t p, int32_t q) {
     for (i = 0; i < n; i++) {
         const int32_t f = hdi_key_face(key[p + i]);
         if (hdi_cover_face(c, f) < 0) return c->e->status;
-        c->list[i].key = HDI_CAST(uint64_t, i);
+        c->list[i].key = (uint64_t)i;
         c->list[i].id = hdi_triple(f) + hdi_key_corner(key[p + i]);
         most = hdi_high32(most, hdi_soup_copies(c->soup, f));
     }
@@ -7791,7 +7783,7 @@ static hd_status hdi_cover_glue(hdi_cover *c, int32_t v, int32_t p, int32_t q) {
     for (layer = 0; layer < most; layer++) {
         /* a front looks counterclockwise if its side runs from v, a back if it runs to v */
         for (i = 0; i < n; i++) {
-            const int32_t side = HDI_CAST(int32_t, c->list[i].id), back = mesh->tri[side] != v;
+            const int32_t side = (int32_t)c->list[i].id, back = mesh->tri[side] != v;
             int32_t clock;
             if (layer >= hdi_soup_copies(c->soup, side / 3)) continue;
             clock = hdi_cover_side(c, side, layer, !back);
@@ -7829,8 +7821,8 @@ static void hdi_mesh_mates(const hdi_mesh *mesh, const hdi_sides *g, int32_t *ma
         for (p = g->ptr[v]; p < g->ptr[v + 1]; p = q) {
             q = hdi_sides_run(g, p, g->ptr[v + 1]);
             if (q - p != 2) continue;
-            mate[hdi_key_side(g->key[p])] = HDI_CAST(int32_t, hdi_key_side(g->key[p + 1]));
-            mate[hdi_key_side(g->key[p + 1])] = HDI_CAST(int32_t, hdi_key_side(g->key[p]));
+            mate[hdi_key_side(g->key[p])] = (int32_t)hdi_key_side(g->key[p + 1]);
+            mate[hdi_key_side(g->key[p + 1])] = (int32_t)hdi_key_side(g->key[p]);
         }
     }
 }
@@ -7840,7 +7832,7 @@ static void hdi_mesh_mates(const hdi_mesh *mesh, const hdi_sides *g, int32_t *ma
 static int hdi_mesh_orient(const hdi_mesh *mesh, const int32_t *mate, signed char *turned,
                            int32_t *queue) {
     int32_t start, head, tail, q;
-    memset(turned, -1, HDI_CAST(size_t, mesh->m));
+    memset(turned, -1, (size_t)mesh->m);
     for (start = 0; start < mesh->m; start++) {
         if (turned[start] >= 0 || !(mesh->area[start] > 0)) continue;
         turned[start] = 0;
@@ -7853,7 +7845,7 @@ static int hdi_mesh_orient(const hdi_mesh *mesh, const int32_t *mate, signed cha
                 want = turned[queue[head]] ^ (mesh->tri[s] == mesh->tri[t]);
                 if (turned[f] >= 0 && turned[f] != want) return 0;
                 if (turned[f] >= 0) continue;
-                turned[f] = HDI_CAST(signed char, want);
+                turned[f] = (signed char)want;
                 queue[tail++] = f;
             }
         }
@@ -7901,7 +7893,7 @@ static hd_status hdi_cover_whole(hdi_cover *c, int close, const hd_mesh_report *
     c->n_sheets = one ? 1 : 2;
     for (f = 0; f < mesh->m; f++)
         if (mesh->area[f] > 0) c->first[f] = used++;
-    if (hdi_cover_room(c, HDI_CAST(int64_t, used) * c->n_sheets) < 0) return c->e->status;
+    if (hdi_cover_room(c, (int64_t)used * c->n_sheets) < 0) return c->e->status;
     c->step = used;
     c->n = used * c->n_sheets;
     c->most_flips = HDI_FLIPS_PER_SIDE * hdi_triple(c->n);
@@ -8022,7 +8014,7 @@ static hd_status hdi_cover_flip_all(hdi_cover *c, hd_mesh_report *rep) {
         /* boundary, or done as its other side: who moves is put on the stack */
         if (c->twin[seed] < seed) continue;
         hdi_cover_push(c, seed);
-        if (hdi_cover_flip(c, HDI_CAST(double, seed) / n_sides, rep) < 0) return c->e->status;
+        if (hdi_cover_flip(c, (double)seed / n_sides, rep) < 0) return c->e->status;
     }
     return HD_OK;
 }
@@ -8053,9 +8045,9 @@ static hd_status hdi_cover_flip_parts(hdi_cover *c, hd_mesh_report *rep) {
     const hdi_sides *g = &soup->sides;
     int32_t v, p, q;
     for (v = 0; v < soup->mesh.m; v++)
-        c->most_flips += 6 * HDI_FLIPS_PER_SIDE * HDI_CAST(int64_t, hdi_soup_copies(soup, v));
+        c->most_flips += 6 * HDI_FLIPS_PER_SIDE * (int64_t)hdi_soup_copies(soup, v);
     for (v = 0; v < soup->mesh.n; v++) {
-        const double done = HDI_CAST(double, v) / soup->mesh.n;
+        const double done = (double)v / soup->mesh.n;
         for (p = g->ptr[v]; p < g->ptr[v + 1]; p = q) {
             q = hdi_sides_run(g, p, g->ptr[v + 1]);
             if (c->glued[p] || !hdi_soup_suspect(soup, p, q)) continue;
@@ -8125,7 +8117,7 @@ static hd_status hdi_cover_flat(hdi_mesh *flat, const hdi_cover *c, hd_mesh_repo
     flat->cot = HDI_TAKE(s, double, n_corners);
     flat->area = HDI_TAKE(s, double, flat->m);
     if (s->e->status < 0) return s->e->status;
-    if (m) memcpy(tri, soup->mesh.tri, HDI_CAST(size_t, hdi_triple(m)) * sizeof *tri);
+    if (m) memcpy(tri, soup->mesh.tri, (size_t)hdi_triple(m) * sizeof *tri);
     for (f = 0; f < m; f++)
         hdi_flat_face(flat, f, soup->len + hdi_triple(f), c->first[f] < 0 ? soup->area[f] : 0, soup->unit,
                       hdi_soup_copies(soup, f) / soup->share, &steepest);
@@ -8134,7 +8126,7 @@ static hd_status hdi_cover_flat(hdi_mesh *flat, const hdi_cover *c, hd_mesh_repo
         if (!c->in_parts) hdi_flat_turn(c->vert + hdi_triple(i), len);
         hdi_flat_face(flat, m + i, len, c->area[i], soup->unit, 1 / (soup->share * c->n_sheets), &steepest);
     }
-    if (c->n) memcpy(tri + hdi_triple(m), c->vert, HDI_CAST(size_t, hdi_triple(c->n)) * sizeof *tri);
+    if (c->n) memcpy(tri + hdi_triple(m), c->vert, (size_t)hdi_triple(c->n) * sizeof *tri);
     rep->smallest_intrinsic_angle = hdi_finite(steepest) ? atan2(1, steepest) : 0;
     return HD_OK;
 }
@@ -8230,12 +8222,12 @@ static void hdi_holding_free(hdi_holding *x, hd_context *ctx) {
 /* Marks the vertices that are to be held; border: those at the border too, once it is known. */
 static hd_status hdi_holding_make(hd_laplacian *lap, int border, const int32_t *held, int32_t n_held,
                                   hd_error *e) {
-    hdi_holding *x = HDI_CAST(hdi_holding *, hdi_alloc_zero(lap->context, 1, sizeof *x, e));
+    hdi_holding *x = (hdi_holding *)hdi_alloc_zero(lap->context, 1, sizeof *x, e);
     int32_t q;
     lap->holding = x;
     if (!x) return e->status;
     x->border = border;
-    x->mark = HDI_CAST(char *, hdi_alloc_zero(lap->context, HDI_CAST(uint64_t, lap->n), 1, e));
+    x->mark = (char *)hdi_alloc_zero(lap->context, (uint64_t)lap->n, 1, e);
     for (q = 0; q < n_held && x->mark; q++) x->mark[held[q]] = 1;
     return e->status;
 }
@@ -8269,7 +8261,7 @@ typedef struct hdi_laplacian {
 } hdi_laplacian;
 
 static void hdi_lap_drop(hd_laplacian *lap) {
-    hd_context own, *own_in = &HDI_CAST(hdi_laplacian *, HDI_CAST(void *, lap))->context;
+    hd_context own, *own_in = &((hdi_laplacian *)(void *)lap)->context;
     hd_context *ctx = hdi_outlive(lap->context, own_in, &own);
     hdi_laplacian_free(lap, ctx);
     hdi_let_go(ctx);
@@ -8306,7 +8298,7 @@ static hd_status hdi_lap_rows(hd_laplacian *lap, const double *vertex_mass, hd_e
 /* Masses of the components. */
 static void hdi_lap_component_masses(hd_laplacian *lap) {
     int32_t i;
-    memset(lap->component_mass, 0, HDI_CAST(size_t, lap->n_components) * sizeof(double));
+    memset(lap->component_mass, 0, (size_t)lap->n_components * sizeof(double));
     for (i = 0; i < lap->n_active; i++) lap->component_mass[lap->component[i]] += lap->mass[i];
 }
 
@@ -8401,18 +8393,18 @@ static HDI_INLINE int64_t hdi_lap_row(const hdi_lap_job *job, int32_t i, int32_t
 
 /* The row behind the block of row i. */
 static int32_t hdi_lap_block_end(const hdi_lap_job *job, int64_t block) {
-    return HDI_CAST(int32_t, hdi_least(job->lap->n_active, (block + 1) << job->g->shift));
+    return (int32_t)hdi_least(job->lap->n_active, (block + 1) << job->g->shift);
 }
 
 static void hdi_lap_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_lap_job *job = HDI_CAST(const hdi_lap_job *, arg);
+    const hdi_lap_job *job = (const hdi_lap_job *)arg;
     const hd_laplacian *lap = job->lap;
     const hdi_edges *g = job->g;
     const int32_t end = hdi_lap_block_end(job, index);
     int32_t i;
     int64_t negative = 0;
     (void)worker;
-    for (i = HDI_CAST(int32_t, index << g->shift); i < end; i++) {
+    for (i = (int32_t)(index << g->shift); i < end; i++) {
         const int32_t v = lap->vertex[i + HDI_VERTICES_AHEAD < end ? i + HDI_VERTICES_AHEAD : i];
         /* the farthest neighbour: its row is new to the caches, those of others are in use */
         if (g->last[v] > g->first[v]) {
@@ -8462,8 +8454,8 @@ static hd_status hdi_lap_assemble(hd_laplacian *lap, const hdi_edges *g, hd_erro
     if (full) b_diag = HDI_TAKE(&s, double, lap->n_active);
     if (e->status < 0) return hdi_scope_end(&s);
     lap->L = hdi_csr_keep(&s, L);
-    lap->B = HDI_CAST(double *, hdi_keep(&s, B));
-    if (full) lap->b_diag = HDI_CAST(double *, hdi_keep(&s, b_diag));
+    lap->B = (double *)hdi_keep(&s, B);
+    if (full) lap->b_diag = (double *)hdi_keep(&s, b_diag);
     for (i = 0; i < lap->n_active; i++) {
         const int32_t v = lap->vertex[i];
         job.next[i] = L.row_ptr[i];
@@ -8519,7 +8511,7 @@ static hd_status hdi_lap_mesh(hd_laplacian *lap, hdi_mesh *mesh, int full, hdi_s
     if (hdi_lap_places(lap, mesh->xyz, e) < 0 || hdi_lap_assemble(lap, &edges, e) < 0 ||
         hdi_progress(lap->context, "assemble", 0.8, e) < 0)
         return hdi_scope_end(&own);
-    lap->h = edges.length / HDI_CAST(double, lap->mesh.n_edges);
+    lap->h = edges.length / (double)lap->mesh.n_edges;
     lap->area = hdi_sum_areas(mesh->area, mesh->m);
     return hdi_scope_end(&own);
 }
@@ -8534,7 +8526,7 @@ static int64_t hdi_lap_entry(const hd_laplacian *lap, int32_t i, int32_t j) {
 
 /* Freed with the Laplacian, whatever comes. */
 static hdi_moving *hdi_moving_new(hd_laplacian *lap, hd_error *e) {
-    hdi_moving *x = HDI_CAST(hdi_moving *, hdi_alloc_zero(lap->context, 1, sizeof *x, e));
+    hdi_moving *x = (hdi_moving *)hdi_alloc_zero(lap->context, 1, sizeof *x, e);
     return lap->moving = x;
 }
 
@@ -8547,7 +8539,7 @@ static hd_status hdi_moving_keep(hdi_moving *x, hdi_scope *s) {
 
 static hd_status hdi_moving_make(hd_laplacian *lap, const hdi_mesh *mesh, hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
-    const uint64_t m = HDI_CAST(uint64_t, lap->mesh.n_faces_used);
+    const uint64_t m = (uint64_t)lap->mesh.n_faces_used;
     hdi_moving *x = hdi_moving_new(lap, e);
     int32_t f, q;
     if (!x) return hdi_scope_end(&s);
@@ -8592,7 +8584,7 @@ static double hdi_moving_edges(hd_laplacian *lap) {
     double *L = lap->L.val;
     int32_t f, i, q;
     int64_t p;
-    memset(L, 0, HDI_CAST(size_t, lap->L.nnz) * sizeof *L);
+    memset(L, 0, (size_t)lap->L.nnz * sizeof *L);
     for (f = 0; f < x->m; f++)
         for (q = 0; q < 3 && x->area[f] > 0; q++) L[x->place[2 * (hdi_triple(f) + q)]]++;
     hdi_fill_own(x->border, lap->n_active);
@@ -8601,13 +8593,12 @@ static double hdi_moving_edges(hd_laplacian *lap) {
             const int32_t j = lap->L.col[p];
             const double faces = j > i ? L[p] + L[hdi_lap_entry(lap, j, i)] : 0;
             if (faces == 0) continue;
-            hdi_edge_count(&tally, HDI_CAST(int64_t, faces), HDI_CAST(int64_t, L[p]),
-                           hdi_edge_length(lap->xyz, i, j));
+            hdi_edge_count(&tally, (int64_t)faces, (int64_t)L[p], hdi_edge_length(lap->xyz, i, j));
             if (faces == 1) hdi_unite(x->border, i, j);
         }
     }
     hdi_edge_report(&tally, x->border, lap->n_active, &lap->mesh);
-    return tally.length / HDI_CAST(double, tally.n_edges);
+    return tally.length / (double)tally.n_edges;
 }
 
 /* Off-diagonal entries from the faces, in the order of the assembly. */
@@ -8615,8 +8606,8 @@ static void hdi_moving_sides(hd_laplacian *lap) {
     const hdi_moving *x = lap->moving;
     double *L = lap->L.val, *B = lap->B;
     int32_t f, q;
-    memset(L, 0, HDI_CAST(size_t, lap->L.nnz) * sizeof *L);
-    if (B) memset(B, 0, HDI_CAST(size_t, lap->L.nnz) * sizeof *B);
+    memset(L, 0, (size_t)lap->L.nnz * sizeof *L);
+    if (B) memset(B, 0, (size_t)lap->L.nnz * sizeof *B);
     for (f = 0; f < x->m; f++)
         for (q = 0; q < 3 && x->area[f] > 0; q++) {      /* side q is opposite to corner q + 2 */
             const int64_t *at = x->place + 2 * (hdi_triple(f) + q);
@@ -8649,7 +8640,7 @@ static void hdi_moving_rows(hd_laplacian *lap) {
         lap->mass[i] = lap->moving->mass[lap->vertex[i]];
         if (B) B[diagonal] = lap->b_diag[i] = lap->mass[i] / 2;
     }
-    lap->h = length / HDI_CAST(double, lap->mesh.n_edges);
+    lap->h = length / (double)lap->mesh.n_edges;
 }
 
 /* Takes up new places, and what the report says of faces measured anew. unused: left out from the start. */
@@ -8746,7 +8737,7 @@ static hd_status hdi_poly_pattern(hd_laplacian *lap, const hdi_poly *poly, int32
                                   hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
     int32_t *col = HDI_TAKE(&s, int32_t, lap->n_active), i;
-    uint64_t *work = HDI_TAKE(&s, uint64_t, 2 * HDI_CAST(int64_t, lap->n_active));
+    uint64_t *work = HDI_TAKE(&s, uint64_t, 2 * (int64_t)lap->n_active);
     int64_t nnz = 0;
     hd_csr L;
     if (e->status < 0) return hdi_scope_end(&s);
@@ -8759,7 +8750,7 @@ static hd_status hdi_poly_pattern(hd_laplacian *lap, const hdi_poly *poly, int32
     for (i = 0; i < lap->n_active; i++) {
         const int64_t begin = lap->L.row_ptr[i], n = hdi_poly_ring(poly, lap, lap->vertex[i], mark, col);
         hdi_sort_indices(col, n, work);
-        memcpy(lap->L.col + begin, col, HDI_CAST(size_t, n) * sizeof *col);
+        memcpy(lap->L.col + begin, col, (size_t)n * sizeof *col);
         lap->L.row_ptr[i + 1] = begin + n;
     }
     return hdi_scope_end(&s);
@@ -8842,7 +8833,7 @@ static void hdi_poly_values(hd_laplacian *lap, const hdi_poly *poly, const hdi_p
         hdi_poly_row_edges(lap, poly->xyz, i, work, &tally, border);
     }
     hdi_edge_report(&tally, border, lap->n_active, &lap->mesh);
-    lap->h = tally.length / HDI_CAST(double, tally.n_edges);
+    lap->h = tally.length / (double)tally.n_edges;
 }
 
 /* Area of each face to its corners in equal parts. */
@@ -8851,7 +8842,7 @@ static double hdi_poly_mass(const hdi_poly *poly, int32_t v) {
     int64_t p;
     for (p = poly->corner_ptr[v]; p < poly->corner_ptr[v + 1]; p++) {
         const int32_t f = poly->face[poly->corner[p]];
-        sum += poly->area[f] / HDI_CAST(double, poly->ptr[f + 1] - poly->ptr[f]);
+        sum += poly->area[f] / (double)(poly->ptr[f + 1] - poly->ptr[f]);
     }
     return sum;
 }
@@ -8871,7 +8862,7 @@ static hd_status hdi_moving_poly_make(hd_laplacian *lap, const hdi_poly *from, h
     const int64_t n_corners = from->ptr[m], n = lap->n;
     hdi_moving *x = hdi_moving_new(lap, e);
     hdi_moving_poly *z = HDI_TAKE(&s, hdi_moving_poly, 1);
-    int64_t *ptr = HDI_TAKE(&s, int64_t, HDI_CAST(int64_t, m) + 1);
+    int64_t *ptr = HDI_TAKE(&s, int64_t, (int64_t)m + 1);
     int32_t *idx = HDI_TAKE(&s, int32_t, n_corners), f;
     if (!x || !idx) return hdi_scope_end(&s);
     z->poly = *from;
@@ -8887,9 +8878,9 @@ static hd_status hdi_moving_poly_make(hd_laplacian *lap, const hdi_poly *from, h
     x->mass = HDI_TAKE(&s, double, n);
     hdi_poly_work_take(&z->work, lap, &s);
     if (e->status < 0) return hdi_scope_end(&s);
-    memcpy(ptr, from->ptr, (HDI_CAST(size_t, m) + 1) * sizeof *ptr);
-    memcpy(idx, from->idx, HDI_CAST(size_t, n_corners) * sizeof *idx);
-    memcpy(z->poly.face, from->face, HDI_CAST(size_t, n_corners) * sizeof *idx);
+    memcpy(ptr, from->ptr, ((size_t)m + 1) * sizeof *ptr);
+    memcpy(idx, from->idx, (size_t)n_corners * sizeof *idx);
+    memcpy(z->poly.face, from->face, (size_t)n_corners * sizeof *idx);
     z->poly.ptr = ptr;
     z->poly.idx = idx;
     z->n_left_out = 0;
@@ -8981,7 +8972,7 @@ static double hdi_flat_unit(const hdi_flat *flat, int32_t n_sheets) { return fla
 
 static int32_t hdi_flat_copies(const hdi_flat *flat, int32_t f, double unit) {
     const int in_parts = flat->soup.copies && f < flat->soup.mesh.m;
-    return in_parts ? flat->soup.copies[f] * HDI_CAST(int32_t, unit / flat->soup.share) : 1;
+    return in_parts ? flat->soup.copies[f] * (int32_t)(unit / flat->soup.share) : 1;
 }
 
 /* Rows, L and B from intrinsic triangles that are Delaunay, with areas and cotangents but without
@@ -9070,7 +9061,7 @@ static hd_status hdi_lap_fans(hd_laplacian *lap, const hdi_poly *poly,
     hdi_mesh mesh;
     if (!tri) return hdi_scope_end(&s);
     hdi_poly_fans(poly->ptr, poly->idx, poly->m, tri);
-    hdi_mesh_clear(&mesh, poly->xyz, lap->n, tri, HDI_CAST(int32_t, m));
+    hdi_mesh_clear(&mesh, poly->xyz, lap->n, tri, (int32_t)m);
     if (hdi_lap_faces(lap, &mesh, task, updatable, e) < 0 && e->face >= 0)
         e->face = hdi_poly_face_of(poly->ptr, poly->m, e->face);
     if (e->status >= 0 && lap->moving) hdi_moving_fans(lap->moving, poly, tri);
@@ -9120,7 +9111,7 @@ static void hdi_component_sums(const hd_laplacian *lap, const double *weight, co
         for (i = 0; !weight && i < lap->n_active; i++) out[0] += x[i];
         return;
     }
-    memset(out, 0, HDI_CAST(size_t, lap->n_components) * sizeof *out);
+    memset(out, 0, (size_t)lap->n_components * sizeof *out);
     for (i = 0; i < lap->n_active; i++) out[lap->component[i]] += weight ? weight[i] * x[i] : x[i];
 }
 
@@ -9305,8 +9296,8 @@ static hd_status hdi_lap_matrices(hd_laplacian *lap, const hd_csr *L, const hd_c
     root = HDI_TAKE(&s, double, lap->n_active);
     if (e->status < 0) return hdi_scope_end(&s);
     lap->L = hdi_csr_keep(&s, a);
-    lap->B = HDI_CAST(double *, hdi_keep(&s, Bx));
-    lap->b_diag = HDI_CAST(double *, hdi_keep(&s, b_diag));
+    lap->B = (double *)hdi_keep(&s, Bx);
+    lap->b_diag = (double *)hdi_keep(&s, b_diag);
     for (i = 0; i < lap->n_active; i++) {
         p = lap->L.row_ptr[i];
         lap->L.row_ptr[i + 1] = p + hdi_pair_row(lap, L, B, lap->vertex[i], lap->L.col + p, lap->L.val + p,
@@ -9350,7 +9341,7 @@ static hd_status hdi_moving_pair_make(hd_laplacian *lap, hd_error *e) {
 /* Copies the values of lap to where an error finds them, or with `back` from there. */
 static void hdi_moving_pair_copy(hd_laplacian *lap, int back) {
     hdi_moving_pair *z = lap->moving->pair;
-    const size_t n = HDI_CAST(size_t, lap->n_active), nnz = HDI_CAST(size_t, lap->L.nnz);
+    const size_t n = (size_t)lap->n_active, nnz = (size_t)lap->L.nnz;
     double *const here[] = {lap->L.val, lap->B, lap->mass, lap->b_diag};
     double *const kept[] = {z->L, z->B, z->mass, z->b_diag};
     const size_t count[] = {nnz, nnz, n, n};
@@ -9527,9 +9518,9 @@ static hd_status hdi_held_fill(hd_laplacian *lap, const hd_laplacian *whole, hd_
     xyz = whole->xyz ? HDI_TAKE(&s, double, hdi_triple(n)) : NULL;
     if (e->status < 0) return hdi_scope_end(&s);
     lap->L = hdi_csr_keep(&s, L);
-    lap->B = HDI_CAST(double *, hdi_keep(&s, B));
-    lap->xyz = HDI_CAST(double *, hdi_keep(&s, xyz));
-    if (b_diag) lap->b_diag = HDI_CAST(double *, hdi_keep(&s, b_diag));
+    lap->B = (double *)hdi_keep(&s, B);
+    lap->xyz = (double *)hdi_keep(&s, xyz);
+    if (b_diag) lap->b_diag = (double *)hdi_keep(&s, b_diag);
     for (i = 0; i < n && xyz; i++)
         hdi_copy3(xyz + hdi_triple(i), hdi_at3(whole->xyz, whole->row[lap->vertex[i]]));
     hdi_held_values(lap, whole);
@@ -9538,7 +9529,7 @@ static hd_status hdi_held_fill(hd_laplacian *lap, const hd_laplacian *whole, hd_
 
 /* The pair of lap becomes that of a Laplacian of its own, the whole. */
 static hd_laplacian *hdi_held_whole(hd_laplacian *lap, hd_error *e) {
-    hd_laplacian *whole = HDI_CAST(hd_laplacian *, hdi_alloc(lap->context, 1, sizeof *whole, e));
+    hd_laplacian *whole = (hd_laplacian *)hdi_alloc(lap->context, 1, sizeof *whole, e);
     if (!whole) return NULL;
     *whole = *lap;
     whole->holding = NULL;
@@ -9597,7 +9588,7 @@ static void hdi_held_update(hd_laplacian *lap) {
 
 static void *hdi_copy(const void *from, uint64_t count, size_t size, hd_context *ctx, hd_error *e) {
     void *to = e->status < 0 ? NULL : hdi_alloc(ctx, count, size, e);
-    if (to && count > 0) memcpy(to, from, HDI_CAST(size_t, count) * size);
+    if (to && count > 0) memcpy(to, from, (size_t)count * size);
     return to;
 }
 
@@ -9628,13 +9619,13 @@ static HDI_INLINE void hdi_permute_fetch(const hdi_permute_job *job, int64_t i, 
 
 /* Rows [begin,end), none longer than HDI_RANK_MOST. */
 static void hdi_permute_ranked(void *arg, int64_t begin, int64_t end) {
-    const hdi_permute_job *job = HDI_CAST(const hdi_permute_job *, arg);
+    const hdi_permute_job *job = (const hdi_permute_job *)arg;
     const hd_laplacian *lap = job->lap;
     int32_t col[HDI_RANK_MOST], k, j, b;
     int64_t i;
     for (i = begin; i < end; i++) {
         const int64_t from = lap->L.row_ptr[job->perm[i]], to = job->a.row_ptr[i];
-        const int32_t n = HDI_CAST(int32_t, job->a.row_ptr[i + 1] - to);
+        const int32_t n = (int32_t)(job->a.row_ptr[i + 1] - to);
         hdi_permute_fetch(job, i, end);
         for (k = 0; k < n; k++) col[k] = job->inv[lap->L.col[from + k]];
         for (; k % 8; k++) col[k] = INT32_MAX;
@@ -9674,7 +9665,7 @@ static void hdi_permute_transposed(const hdi_permute_job *job) {
 static hd_status hdi_pair_permute(hd_laplacian *out, const hd_laplacian *lap, const int32_t *perm,
                                   hd_context *ctx, hd_error *e) {
     const int32_t n = lap->n_active;
-    const uint64_t n1 = HDI_CAST(uint64_t, n) + 1, nnz = HDI_CAST(uint64_t, lap->L.nnz);
+    const uint64_t n1 = (uint64_t)n + 1, nnz = (uint64_t)lap->L.nnz;
     hdi_scope s = hdi_scope_begin(ctx, e), keep = hdi_scope_begin(ctx, e);
     int32_t *inv = HDI_TAKE(&s, int32_t, n), i;
     int64_t longest = 0;
@@ -9714,10 +9705,10 @@ static hd_status hdi_pair_permute(hd_laplacian *out, const hd_laplacian *lap, co
 /* A Laplacian with rows renumbered: row i of out is row perm[i] of lap. out lives in ctx. */
 static hd_laplacian *hdi_pair_renumber(const hd_laplacian *lap, const int32_t *perm,
                                        hd_context *ctx, hd_error *e) {
-    const size_t n = HDI_CAST(size_t, lap->n_active);
+    const size_t n = (size_t)lap->n_active;
     hd_laplacian *out;
     int32_t i;
-    out = HDI_CAST(hd_laplacian *, hdi_copy(lap, 1, sizeof *lap, ctx, e));
+    out = (hd_laplacian *)hdi_copy(lap, 1, sizeof *lap, ctx, e);
     if (!out) return NULL;
     memset(&out->L, 0, sizeof out->L);
     out->context = ctx;
@@ -9725,14 +9716,13 @@ static hd_laplacian *hdi_pair_renumber(const hd_laplacian *lap, const int32_t *p
     out->xyz = NULL;                             /* an order has been found */
     out->moving = NULL;
     out->holding = NULL;
-    out->mass = HDI_CAST(double *, hdi_copy(lap->mass, n, sizeof(double), ctx, e));
-    out->vertex = HDI_CAST(int32_t *, hdi_copy(lap->vertex, n, sizeof(int32_t), ctx, e));
-    out->component = HDI_CAST(int32_t *, hdi_copy(lap->component, n, sizeof(int32_t), ctx, e));
-    out->row = HDI_CAST(int32_t *, hdi_copy(lap->row, HDI_CAST(uint64_t, lap->n), sizeof(int32_t), ctx, e));
-    out->component_mass = HDI_CAST(
-        double *, hdi_copy(lap->component_mass, HDI_CAST(uint64_t, hdi_lap_components_most(lap)),
-                           sizeof(double), ctx, e));
-    out->b_diag = lap->B ? HDI_CAST(double *, hdi_copy(lap->b_diag, n, sizeof(double), ctx, e)) : out->mass;
+    out->mass = (double *)hdi_copy(lap->mass, n, sizeof(double), ctx, e);
+    out->vertex = (int32_t *)hdi_copy(lap->vertex, n, sizeof(int32_t), ctx, e);
+    out->component = (int32_t *)hdi_copy(lap->component, n, sizeof(int32_t), ctx, e);
+    out->row = (int32_t *)hdi_copy(lap->row, (uint64_t)lap->n, sizeof(int32_t), ctx, e);
+    out->component_mass = (double *)hdi_copy(lap->component_mass, (uint64_t)hdi_lap_components_most(lap),
+                                             sizeof(double), ctx, e);
+    out->b_diag = lap->B ? (double *)hdi_copy(lap->b_diag, n, sizeof(double), ctx, e) : out->mass;
     if (e->status < 0 || hdi_pair_permute(out, lap, perm, ctx, e) < 0) {
         hdi_laplacian_free(out, ctx);
         return NULL;
@@ -9768,7 +9758,7 @@ static void hdi_pair_refresh(hd_laplacian *out, const hd_laplacian *lap, int64_t
         }
     }
     out->n_components = lap->n_components;
-    memcpy(out->component_mass, lap->component_mass, HDI_CAST(size_t, lap->n_components) * sizeof(double));
+    memcpy(out->component_mass, lap->component_mass, (size_t)lap->n_components * sizeof(double));
     out->h = lap->h;
     out->area = lap->area;
     out->b_ratio = lap->b_ratio;
@@ -9822,7 +9812,7 @@ typedef struct hdi_cloud {
 /* The middle one of the spacings around place i: an outlier has those of the surface. */
 static double hdi_cell_spacing2(const hdi_cloud *cloud, int32_t i) {
     double s[HDI_MOST_NEIGHBOURS + 1];
-    const int32_t *nbr = cloud->nbr + HDI_CAST(int64_t, i) * cloud->k;
+    const int32_t *nbr = cloud->nbr + (int64_t)i * cloud->k;
     int32_t k;
     for (k = 0; k < cloud->k; k++) s[k] = cloud->spacing2[nbr[k]];
     return hdi_kth(s, cloud->k, cloud->k / 2);
@@ -9831,7 +9821,7 @@ static double hdi_cell_spacing2(const hdi_cloud *cloud, int32_t i) {
 /* Area of the cell of place i in its tangent plane; 0 where neighbours lie on a line. Lengths are in
  * units of the distance of the last neighbour. */
 static void hdi_cell_area(hdi_cloud *cloud, int32_t i) {
-    const int64_t at = HDI_CAST(int64_t, i) * cloud->k;
+    const int64_t at = (int64_t)i * cloud->k;
     const double reach = sqrt(cloud->d2[at + cloud->k - 1]), unit = 1 / reach, *p = hdi_at3(cloud->xyz, i);
     double x[HDI_MOST_NEIGHBOURS + 1][2], rel[3 * (HDI_MOST_NEIGHBOURS + 1)], radius, outer2, area;
     hdi_plane plane;
@@ -9863,15 +9853,15 @@ static void hdi_cell_area(hdi_cloud *cloud, int32_t i) {
             outer2 = hdi_max(outer2, g.x[v][0] * g.x[v][0] + g.x[v][1] * g.x[v][1]);
     }
     cloud->not_flat[i] = plane.not_flat;
-    cloud->border[i] = HDI_CAST(int8_t, hdi_polygon_clip_hull(&g, x, cloud->k) || outer2 >= radius * radius);
+    cloud->border[i] = (int8_t)(hdi_polygon_clip_hull(&g, x, cloud->k) || outer2 >= radius * radius);
     area = hdi_polygon_area(&g);
     cloud->area[i] = area > 1e-12 * radius * radius ? area * reach * reach : 0;
 }
 
 static void hdi_cell_task(void *arg, int64_t begin, int64_t end) {
-    hdi_cloud *cloud = HDI_CAST(hdi_cloud *, arg);
+    hdi_cloud *cloud = (hdi_cloud *)arg;
     int64_t i;
-    for (i = begin; i < end; i++) hdi_cell_area(cloud, HDI_CAST(int32_t, i));
+    for (i = begin; i < end; i++) hdi_cell_area(cloud, (int32_t)i);
 }
 
 /* Neighbours, spacings, h and cells of the places. */
@@ -9900,11 +9890,11 @@ static hd_status hdi_cloud_measure(hdi_cloud *cloud, hd_laplacian *lap, hdi_scop
             return hdi_scope_end(&own);
         }
         sum += sqrt(d2[1]);
-        cloud->spacing2[i] = HDI_PI * d2[k - 1] / HDI_CAST(double, k - 1);
+        cloud->spacing2[i] = HDI_PI * d2[k - 1] / (double)(k - 1);
     }
-    lap->h = sum / HDI_CAST(double, n);
+    lap->h = sum / (double)n;
     for (i = 0; i < HDI_CELL_SIDES; i++) {
-        const double step = HDI_TURN / HDI_CAST(double, HDI_CELL_SIDES), r = 1 / cos(step / 2);
+        const double step = HDI_TURN / (double)HDI_CELL_SIDES, r = 1 / cos(step / 2);
         cloud->start[i][0] = r * cos(step * i);
         cloud->start[i][1] = r * sin(step * i);
     }
@@ -9923,11 +9913,11 @@ static hd_status hdi_cloud_measure(hdi_cloud *cloud, hd_laplacian *lap, hdi_scop
 static double hdi_cloud_bandwidth(const hdi_cloud *cloud, double *work) {
     double median, mean = 0, h = 0;
     int32_t i;
-    memcpy(work, cloud->spacing2, HDI_CAST(size_t, cloud->n) * sizeof *work);
+    memcpy(work, cloud->spacing2, (size_t)cloud->n * sizeof *work);
     median = hdi_kth(work, cloud->n, cloud->n / 2);
     for (i = 0; i < cloud->n; i++) {
         mean += hdi_min(cloud->spacing2[i], 9 * median);
-        h += sqrt(hdi_min(cloud->d2[HDI_CAST(int64_t, i) * cloud->k + 1], 9 * median));
+        h += sqrt(hdi_min(cloud->d2[(int64_t)i * cloud->k + 1], 9 * median));
     }
     mean /= cloud->n;
     h /= cloud->n;
@@ -9942,7 +9932,7 @@ typedef struct hdi_weights {
 /* Squared distances of some rows become entries of L. Products commute, so that L is symmetric to the
  * last bit. */
 static void hdi_weights_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_weights *job = HDI_CAST(const hdi_weights *, arg);
+    const hdi_weights *job = (const hdi_weights *)arg;
     hd_laplacian *lap = job->lap;
     const double quarter = -0.25 / job->bandwidth,
                  *mass = lap->kind == HD_LAPLACIAN_VORONOI_EXP ? lap->mass : NULL;
@@ -9987,7 +9977,7 @@ static hd_status hdi_cloud_assemble(hd_laplacian *lap, double cut2, hd_error *e)
                           lap->vertex[i], rep->bandwidth);
             break;
         }
-        rep->most_in_row = count > rep->most_in_row ? HDI_CAST(int32_t, count) : rep->most_in_row;
+        rep->most_in_row = count > rep->most_in_row ? (int32_t)count : rep->most_in_row;
     }
     return hdi_scope_end(&s);
 }
@@ -10025,7 +10015,7 @@ static hd_status hdi_lap_points(hd_laplacian *lap, const double *xyz, hd_error *
     cloud.n = places.n;
     cloud.xyz = places.xyz;
     cloud.first = places.first;
-    cloud.k = HDI_CAST(int32_t, hdi_least(cloud.n, 1 + HDI_CAST(int64_t, rep->neighbours)));
+    cloud.k = (int32_t)hdi_least(cloud.n, 1 + (int64_t)rep->neighbours);
     if (hdi_cloud_measure(&cloud, lap, &s) < 0) return hdi_scope_end(&s);
     if (rep->bandwidth == 0) rep->bandwidth = hdi_cloud_bandwidth(&cloud, work);
     rep->cut_radius = sqrt(-4 * log(rep->weight_cut) * rep->bandwidth);
@@ -10075,10 +10065,10 @@ enum { HDI_STAR_POINTS = 1024 };        /* points per task */
 /* A number in [0, 1) for each point: which of four cocircular points are joined must be the same in the
  * stars of all four, on a grid for instance. */
 static double hdi_point_chance(int32_t i) {
-    uint64_t x = (HDI_CAST(uint64_t, i) + 1) * HDI_GOLDEN;
+    uint64_t x = ((uint64_t)i + 1) * HDI_GOLDEN;
     x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9u;
     x ^= x >> 27;
-    return HDI_CAST(double, x >> 11) / 9007199254740992.0;
+    return (double)(x >> 11) / 9007199254740992.0;
 }
 
 typedef struct hdi_star_job {
@@ -10094,12 +10084,12 @@ typedef struct hdi_star_job {
 } hdi_star_job;
 
 static void hdi_star_unit_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_star_job *job = HDI_CAST(const hdi_star_job *, arg);
+    const hdi_star_job *job = (const hdi_star_job *)arg;
     int64_t i, p;
     for (i = begin; i < end; i++) {
         double least = 0;
         for (p = job->ptr[i]; p < job->ptr[i + 1]; p++) {
-            const double r = hdi_edge_length(job->xyz, HDI_CAST(int32_t, i), job->nbr[p]);
+            const double r = hdi_edge_length(job->xyz, (int32_t)i, job->nbr[p]);
             if (r > 0 && (least == 0 || r < least)) least = r;
         }
         job->nearest[i] = least;
@@ -10145,9 +10135,9 @@ static void hdi_point_star(const hdi_star_job *job, int32_t i) {
 }
 
 static void hdi_star_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_star_job *job = HDI_CAST(const hdi_star_job *, arg);
+    const hdi_star_job *job = (const hdi_star_job *)arg;
     int64_t i;
-    for (i = begin; i < end; i++) hdi_point_star(job, HDI_CAST(int32_t, i));
+    for (i = begin; i < end; i++) hdi_point_star(job, (int32_t)i);
 }
 
 static hd_status hdi_star_check(const int64_t *ptr, const int32_t *nbr, int32_t n, hd_error *e) {
@@ -10155,14 +10145,14 @@ static hd_status hdi_star_check(const int64_t *ptr, const int32_t *nbr, int32_t 
     int64_t p;
     if (ptr[0] != 0)
         return hdi_fail_row(e, HD_ERR_STRUCTURE, "neighbours: offsets do not begin with 0", 0, -1,
-                            HDI_CAST(double, ptr[0]));
+                            (double)ptr[0]);
     for (i = 0; i < n; i++) {
         if (ptr[i + 1] < ptr[i])
             return hdi_fail_row(e, HD_ERR_STRUCTURE, "neighbours: offsets descend", i, -1,
-                                HDI_CAST(double, ptr[i + 1]));
+                                (double)ptr[i + 1]);
         if (ptr[i + 1] - ptr[i] > HDI_STAR_MOST)
             return hdi_fail_row(e, HD_ERR_TOO_LARGE, "neighbours: a point has more than 256", i, -1,
-                                HDI_CAST(double, ptr[i + 1] - ptr[i]));
+                                (double)(ptr[i + 1] - ptr[i]));
         for (p = ptr[i]; p < ptr[i + 1]; p++)
             if (nbr[p] < 0 || nbr[p] >= n)
                 return hdi_fail_row(e, HD_ERR_INDEX, "neighbours: an id is out of range", i, -1, nbr[p]);
@@ -10202,12 +10192,12 @@ static hd_status hdi_star_search(hdi_star_job *job, const double *xyz, int32_t n
     if (hdi_places_make(&places, xyz, n_points, &own) < 0) return hdi_scope_end(&own);
     if (hdi_star_order(job, &tree, places.xyz, places.n, places.first, &own, keep) < 0)
         return hdi_scope_end(&own);
-    k = HDI_CAST(int32_t, hdi_least(places.n, 1 + HDI_CAST(int64_t, rep->neighbours)));
+    k = (int32_t)hdi_least(places.n, 1 + (int64_t)rep->neighbours);
     rep->n_coincident = n_points - places.n;
-    job->ptr = ptr = HDI_TAKE(s, int64_t, HDI_CAST(int64_t, places.n) + 1);
-    job->nbr = HDI_TAKE(s, int32_t, HDI_CAST(int64_t, k) * places.n);
+    job->ptr = ptr = HDI_TAKE(s, int64_t, (int64_t)places.n + 1);
+    job->nbr = HDI_TAKE(s, int32_t, (int64_t)k * places.n);
     if (s->e->status < 0) return hdi_scope_end(&own);
-    for (v = 0; v <= places.n; v++) ptr[v] = HDI_CAST(int64_t, v) * k;
+    for (v = 0; v <= places.n; v++) ptr[v] = (int64_t)v * k;
     (void)hdi_nearest(&tree, NULL, places.n, k, job->nbr, NULL, s->ctx, s->e);
     for (v = 0; v < places.n && s->e->status >= 0; v++)   /* too far: its square overflows */
         for (j = 0; j < k; j++)
@@ -10221,7 +10211,7 @@ static hd_status hdi_star_given(hdi_star_job *job, const double *xyz, int32_t n,
                                 hdi_scope *keep) {
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
     int32_t *inverse = HDI_TAKE(&own, int32_t, n), v;
-    int64_t *ptr = HDI_TAKE(s, int64_t, HDI_CAST(int64_t, n) + 1), p, q = 0;
+    int64_t *ptr = HDI_TAKE(s, int64_t, (int64_t)n + 1), p, q = 0;
     hdi_tree tree;
     if (s->e->status < 0 || hdi_mesh_check(xyz, n, NULL, 0, s->e) < 0) return hdi_scope_end(&own);
     if (hdi_star_check(nbr_ptr, nbr, n, s->e) < 0) return hdi_scope_end(&own);
@@ -10259,7 +10249,7 @@ static int32_t *hdi_stars(hdi_star_job *job, int32_t *m, hd_laplacian *lap, hdi_
         hdi_fail(s->e, HD_ERR_TOO_LARGE, "more than 2^31 corners of triangles in the points' stars");
     tri = HDI_TAKE(s, int32_t, 3 * count);
     if (!tri) return NULL;
-    *m = HDI_CAST(int32_t, count);
+    *m = (int32_t)count;
     count = 0;
     for (i = 0; i < job->n; i++) {
         const int32_t *star = job->nbr + job->ptr[i], size = job->size[i] < 0 ? -job->size[i] : job->size[i],
@@ -10339,7 +10329,7 @@ static hd_status hdi_lap_unfold_points(hd_laplacian *lap, hdi_flat *flat, const 
     if (hdi_star_soup(&flat->soup, &job, lap, xyz, nbr_ptr, nbr, delta, s) < 0) return e->status;
     if (lap->mesh.n_faces_used == 0) hdi_fail(e, HD_ERR_EMPTY, "the points' neighbourhoods make no triangle");
     if (e->status >= 0 && hdi_soup_delaunay(&flat->mesh, &flat->soup, 0, &lap->mesh, s) >= 0)
-        inner = HDI_CAST(hd_laplacian *, hdi_alloc_zero(lap->context, 1, sizeof *inner, e));
+        inner = (hd_laplacian *)hdi_alloc_zero(lap->context, 1, sizeof *inner, e);
     if (!inner) return e->status;
     flat->name = job.name;
     inner->n = job.n;
@@ -10420,7 +10410,7 @@ static int32_t hdi_source_corners(const hd_source *s) { return s->corners ? s->c
 /* What point q has of its corner c. */
 static double hdi_source_part(const hd_source *s, int32_t q, int32_t c) {
     const int32_t n = hdi_source_corners(s);
-    return s->bary ? s->bary[HDI_CAST(int64_t, q) * n + c] : 1.0 / n;
+    return s->bary ? s->bary[(int64_t)q * n + c] : 1.0 / n;
 }
 
 /* Barycentric coordinates sum to 1 up to the first. Sums of weights in size, and lengths, are between the
@@ -10434,7 +10424,7 @@ static hd_status hdi_source_check_point(const hd_source *s, int32_t q, int32_t n
     double sum = 0;
     int32_t c;
     for (c = 0; c < corners; c++) {
-        const int32_t v = s->vertex[HDI_CAST(int64_t, q) * corners + c];
+        const int32_t v = s->vertex[(int64_t)q * corners + c];
         const double b = hdi_source_part(s, q, c);
         if (v < 0 || v >= n)
             return hdi_source_fail(e, HD_ERR_INDEX, "source: a vertex is not in the mesh", q, v, v);
@@ -10468,7 +10458,7 @@ static hd_status hdi_source_check(const hd_source *s, int32_t n, hd_error *e) {
         return hdi_fail(e, HD_ERR_ARGUMENT, "source: a curve has at least two points");
     if (s->curve && s->weight)
         return hdi_fail(e, HD_ERR_ARGUMENT, "source: points of a curve have no weights");
-    if (HDI_CAST(int64_t, s->count) * hdi_source_corners(s) > INT32_MAX)
+    if ((int64_t)s->count * hdi_source_corners(s) > INT32_MAX)
         return hdi_fail(e, HD_ERR_TOO_LARGE, "source: there are too many points");
     for (q = 0; q < s->count; q++)
         if (hdi_source_check_point(s, q, n, e) < 0) return e->status;
@@ -10481,13 +10471,13 @@ static hd_status hdi_source_place(const hd_source *s, int32_t q, const double *x
     int32_t c, i;
     to[0] = to[1] = to[2] = 0;
     for (c = 0; c < hdi_source_corners(s); c++) {
-        const int32_t v = s->vertex[HDI_CAST(int64_t, q) * hdi_source_corners(s) + c];
+        const int32_t v = s->vertex[(int64_t)q * hdi_source_corners(s) + c];
         const double b = hdi_source_part(s, q, c);
         if (b > 0 && (!xyz || row[v] < 0))
             return hdi_source_fail(e, HD_ERR_ARGUMENT,
                                    "source: a curve needs coordinates that are not there; give its lengths",
                                    q, v, 0);
-        for (i = 0; i < 3 && b > 0; i++) to[i] += b * xyz[3 * HDI_CAST(int64_t, row[v]) + i];
+        for (i = 0; i < 3 && b > 0; i++) to[i] += b * xyz[3 * (int64_t)row[v] + i];
     }
     return HD_OK;
 }
@@ -10509,7 +10499,7 @@ static hd_status hdi_terms_normalise(double *weight, int32_t n, double size, hd_
     double sum = 0;
     int32_t q;
     for (q = 0; q < n; q++) sum += weight[q];
-    if (!(sum > HDI_CAST(double, n) * DBL_EPSILON * size))
+    if (!(sum > (double)n * DBL_EPSILON * size))
         return hdi_fail_row(e, HD_ERR_ARGUMENT, "source: the sum of its weights is not positive", -1, -1,
                             sum);
     for (q = 0; q < n; q++) weight[q] /= sum;
@@ -10521,12 +10511,12 @@ static int32_t hdi_terms_sum(const hd_source *s, hdi_pair *order, int32_t n, con
                              int32_t *vertex, double *weight) {
     int32_t q, m = 0;
     for (q = 0; q < n; q++) {
-        order[q].key = HDI_CAST(uint64_t, s->vertex[q]);
+        order[q].key = (uint64_t)s->vertex[q];
         order[q].id = q;
     }
     hdi_sort_pairs(order, n);
     for (q = 0; q < n; q++) {
-        const int32_t v = HDI_CAST(int32_t, order[q].key);
+        const int32_t v = (int32_t)order[q].key;
         if (part[order[q].id] == 0) continue;
         if (m > 0 && vertex[m - 1] == v) {
             weight[m - 1] += part[order[q].id];
@@ -10590,13 +10580,13 @@ static hd_status hdi_terms_make(hdi_terms *to, const hd_source *s, const double 
 static hdi_terms *hdi_terms_all(int32_t k, const hd_source *sources, const hd_laplacian *lap, int normal,
                                 hdi_scope *keep) {
     hdi_scope work = hdi_scope_begin(keep->ctx, keep->e);
-    hdi_terms *all = HDI_TAKE(keep, hdi_terms, HDI_CAST(int64_t, k) + 1);
+    hdi_terms *all = HDI_TAKE(keep, hdi_terms, (int64_t)k + 1);
     hd_error *e = keep->e;
     hdi_terms_room room;
     int64_t most = 1, total = 1;
     int32_t q;
     for (q = 0; q < k && e->status >= 0; q++) {
-        const int64_t size = HDI_CAST(int64_t, sources[q].count) * hdi_source_corners(sources + q);
+        const int64_t size = (int64_t)sources[q].count * hdi_source_corners(sources + q);
         if (hdi_source_check(sources + q, lap->n, e) < 0) e->column = q;
         else most = most > size ? most : size;
         total += size;
@@ -10622,7 +10612,7 @@ static void hdi_lap_times(const hd_laplacian *lap, int32_t n_times, double *t) {
     if (lap->kind == HD_LAPLACIAN_EXP) area = lap->area * lap->area;
     for (q = 0; q < n_times; q++)
         t[q] = area * HDI_TIMES_SHORTEST * pow(HDI_TIMES_LONGEST / HDI_TIMES_SHORTEST,
-                                               n_times > 1 ? q / HDI_CAST(double, n_times - 1) : 0.5);
+                                               n_times > 1 ? q / (double)(n_times - 1) : 0.5);
 }
 
 static hd_status hdi_vertex_check(const hd_laplacian *lap, int32_t v, hd_error *e) {
@@ -10803,7 +10793,7 @@ static void hdi_amd_update(hdi_amd *g, int32_t me) {
             const int32_t e = *from, outside = v[e].mark - flag;
             if (outside > 0) {
                 degree += outside;
-                hash += HDI_CAST(uint32_t, e);
+                hash += (uint32_t)e;
                 *to++ = e;
             } else {
                 v[e].mark = 0;                   /* it lies in L_me (or was absorbed already) */
@@ -10814,7 +10804,7 @@ static void hdi_amd_update(hdi_amd *g, int32_t me) {
             const int32_t j = *from, w = v[j].weight;
             if (w <= 0) continue;
             degree += w;
-            hash += HDI_CAST(uint32_t, j);
+            hash += (uint32_t)j;
             *to++ = j;
         }
         if (to == first && *l < g->inner) {
@@ -10827,10 +10817,10 @@ static void hdi_amd_update(hdi_amd *g, int32_t me) {
         *to = *vars;                             /* there is room: an element or me itself has gone */
         *vars = *first;
         *first = me;
-        i->elen = HDI_CAST(int32_t, vars - first) + 1;
-        i->len = HDI_CAST(int32_t, to - first) + 1;
+        i->elen = (int32_t)(vars - first) + 1;
+        i->len = (int32_t)(to - first) + 1;
         if (degree < i->degree) i->degree = degree;
-        i->prev = HDI_CAST(int32_t, hash * HDI_HASH_FACTOR >> 1);
+        i->prev = (int32_t)(hash * HDI_HASH_FACTOR >> 1);
         chain = hdi_amd_chain(g, i->prev);
         i->next = *chain;
         *chain = *l;
@@ -10968,8 +10958,8 @@ static void hdi_amd_run(hdi_amd *g, int32_t until) {
 /* int32 words of work space for lists of nnz entries. The elbow room of n is needed, that of a fifth of the
  * entries saves time (as in the paper). */
 static int64_t hdi_amd_words(int32_t inner, int32_t halo, int64_t nnz) {
-    const int64_t n = HDI_CAST(int64_t, inner) + halo, all = halo > 0 ? 2 * nnz : nnz;
-    return HDI_CAST(int64_t, sizeof(hdi_amd_node) / sizeof(int32_t)) * n + n + 1 + HDI_AMD_BUCKETS + all +
+    const int64_t n = (int64_t)inner + halo, all = halo > 0 ? 2 * nnz : nnz;
+    return (int64_t)(sizeof(hdi_amd_node) / sizeof(int32_t)) * n + n + 1 + HDI_AMD_BUCKETS + all +
         all / 5 + n;
 }
 
@@ -10980,11 +10970,11 @@ static void hdi_amd_begin(hdi_amd *g, int32_t n, int32_t inner, int32_t *work, i
     g->inner = inner;
     g->done = g->free = g->longest = 0;
     g->flag = 2;
-    g->v = HDI_CAST(hdi_amd_node *, HDI_CAST(void *, work));
-    g->head = HDI_CAST(int32_t *, HDI_CAST(void *, g->v + n));
+    g->v = (hdi_amd_node *)(void *)work;
+    g->head = (int32_t *)(void *)(g->v + n);
     g->bucket = g->head + n + 1;
     g->list = g->bucket + HDI_AMD_BUCKETS;
-    g->size = HDI_CAST(int32_t, work + words - g->list);
+    g->size = (int32_t)(work + words - g->list);
     hdi_fill_i32(g->head, n + 1 + HDI_AMD_BUCKETS, -1);   /* and the buckets */
     for (i = 0; i < n; i++) {
         g->v[i].at = g->v[i].len = g->v[i].elen = g->v[i].degree = 0;
@@ -11047,7 +11037,7 @@ static int64_t hdi_amd_row(const hdi_amd_graph *a, int32_t i) { return a->wide ?
 
 /* Lists of all vertices but those with dense rows (as in AMD), which are dropped: they would be in most. */
 static void hdi_amd_load(hdi_amd *g, const hdi_amd_graph *a) {
-    const int32_t dense = HDI_CAST(int32_t, hdi_max(16, 10 * sqrt(HDI_CAST(double, a->n))));
+    const int32_t dense = (int32_t)(hdi_max(16, 10 * sqrt((double)a->n)));
     int32_t i, q = 0;
     int64_t p;
     for (i = 0; i < a->inner; i++) {
@@ -11096,14 +11086,14 @@ static hd_status hdi_amd_order(const hd_csr *a, int32_t *perm, hd_context *ctx, 
     const hdi_amd_graph rows = {n, n, a->row_ptr, NULL, a->col};
     int32_t count, *work;
     hdi_amd g;
-    if (words - 9 * HDI_CAST(int64_t, n) > INT32_MAX)   /* places in the lists are numbered by 32 bits */
+    if (words - 9 * (int64_t)n > INT32_MAX)   /* places in the lists are numbered by 32 bits */
         return hdi_fail(e, HD_ERR_TOO_LARGE, "a pattern is too large for a minimum degree ordering");
     work = HDI_TAKE(&s, int32_t, words);
     if (e->status < 0) return hdi_scope_end(&s);
     hdi_amd_begin(&g, n, n, work, words);
     hdi_amd_load(&g, &rows);
     count = hdi_amd_start(&g);
-    while (g.done < count && hdi_progress(ctx, "order", HDI_CAST(double, g.done) / count, e) >= 0)
+    while (g.done < count && hdi_progress(ctx, "order", (double)g.done / count, e) >= 0)
         hdi_amd_run(&g, count - g.done > HDI_AMD_STEP ? g.done + HDI_AMD_STEP : count);
     if (e->status >= 0) hdi_amd_number(&g, perm);
     return hdi_scope_end(&s);
@@ -11209,7 +11199,7 @@ static int32_t *hdi_nd_take(hdi_nd_space *s, int64_t words) {
 }
 
 static int8_t *hdi_nd_take_bytes(hdi_nd_space *s, int64_t bytes) {
-    return HDI_CAST(int8_t *, HDI_CAST(void *, hdi_nd_take(s, bytes / 4 + 1)));
+    return (int8_t *)(void *)hdi_nd_take(s, bytes / 4 + 1);
 }
 
 /* ---- order along the curve ---- */
@@ -11237,10 +11227,10 @@ static void hdi_nd_keys(const double *xyz, int32_t n, uint32_t *key, float *unit
     for (i = 0; i < n; i++) {
         key[i] = 0;
         for (d = 0; d < 3; d++) {
-            const size_t q = 3 * HDI_CAST(size_t, i) + HDI_CAST(size_t, d);
+            const size_t q = 3 * (size_t)i + (size_t)d;
             const double u = (0.5 * xyz[q] - lo[d]) / width;
-            unit[q] = HDI_CAST(float, u);
-            key[i] |= hdi_nd_spread(HDI_CAST(uint32_t, u * 1023)) << d;
+            unit[q] = (float)u;
+            key[i] |= hdi_nd_spread((uint32_t)(u * 1023)) << d;
         }
     }
 }
@@ -11311,7 +11301,7 @@ static int32_t hdi_nd_cluster(const hdi_nd_graph *g, int32_t limit, int32_t *wei
  * keys are left out. ptr [n_keys + 1]. */
 static void hdi_group(const int32_t *key, int32_t n, int32_t n_keys, int32_t *ptr, int32_t *list) {
     int32_t i;
-    hdi_fill_i32(ptr, HDI_CAST(int64_t, n_keys) + 1, 0);
+    hdi_fill_i32(ptr, (int64_t)n_keys + 1, 0);
     for (i = 0; i < n; i++)
         if (key[i] >= 0) ptr[key[i]]++;
     for (i = 0; i < n_keys; i++) ptr[i + 1] += ptr[i];
@@ -11367,7 +11357,7 @@ static int64_t hdi_nd_weigh(const hdi_nd_graph *g, const int32_t *map) {
         for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
             const int64_t u = g->adj[p], e = g->ew ? g->ew[p] : 1;
             if (u == v || u >= g->n || e <= 0) return -1;
-            if (u >= 0) sum += HDI_CAST(uint64_t, u - v) * HDI_CAST(uint64_t, (1 + u % 999 * (v % 999)) * e);
+            if (u >= 0) sum += (uint64_t)(u - v) * (uint64_t)((1 + u % 999 * (v % 999)) * e);
             if (u >= 0 && (!map || map[u] != map[v])) weight += e << 32;
         }
     }
@@ -11503,13 +11493,13 @@ static void hdi_nd_mover_start(hdi_nd_mover *m, hdi_nd_cut *cut) {
     while (largest >> m->shift >= HDI_ND_BUCKETS / 2) m->shift++;
     for (v = 0; v < g->n; v++)
         if (m->q.prev[v] != HDI_ND_NONE) hdi_nd_queue_add(&m->q, v, g->side[v], hdi_nd_bucket(m, m->gain[v]));
-    memset(m->locked, 0, HDI_CAST(size_t, g->n));
+    memset(m->locked, 0, (size_t)g->n);
 }
 
 /* v changes its side; its neighbours' gains follow. */
 static void hdi_nd_mover_move(hdi_nd_mover *m, int32_t v, hdi_nd_cut *cut) {
     const hdi_nd_graph *g = m->g;
-    const int8_t to = HDI_CAST(int8_t, 1 - g->side[v]);
+    const int8_t to = (int8_t)(1 - g->side[v]);
     const int32_t wv = g->w ? g->w[v] : 1;
     int32_t p;
     g->side[v] = to;
@@ -11578,7 +11568,7 @@ static void hdi_nd_refine_edges(hdi_nd_mover *m, hdi_nd_cut *cut, int32_t passes
 /* ---- the first cut ---- */
 
 static const float *hdi_nd_place(const hdi_nd *nd, const hdi_nd_graph *g, int32_t v) {
-    return nd->xyz + 3 * HDI_CAST(size_t, g->id[v]);
+    return nd->xyz + 3 * (size_t)g->id[v];
 }
 
 static int32_t hdi_nd_farthest(const hdi_nd *nd, const hdi_nd_graph *g, const float *from) {
@@ -11587,7 +11577,7 @@ static int32_t hdi_nd_farthest(const hdi_nd *nd, const hdi_nd_graph *g, const fl
     for (v = 0; v < g->n; v++) {
         const float *at = hdi_nd_place(nd, g, v);
         double d, x[3];
-        for (i = 0; i < 3; i++) x[i] = HDI_CAST(double, at[i]) - HDI_CAST(double, from[i]);
+        for (i = 0; i < 3; i++) x[i] = (double)at[i] - (double)from[i];
         d = x[0] * x[0] + x[1] * x[1] + x[2] * x[2];
         if (d > most) {
             most = d;
@@ -11640,13 +11630,12 @@ static int hdi_nd_sweep_keys(const hdi_nd *nd, const hdi_nd_graph *g, int32_t ki
         a = hdi_nd_farthest(nd, g, hdi_nd_place(nd, g, 0));
         pa = hdi_nd_place(nd, g, a);
         pb = hdi_nd_place(nd, g, hdi_nd_farthest(nd, g, pa));
-        for (v = 0; v < 3; v++) d[v] = HDI_CAST(double, pb[v]) - HDI_CAST(double, pa[v]);
+        for (v = 0; v < 3; v++) d[v] = (double)pb[v] - (double)pa[v];
     } else for (v = 0; v < 3; v++) d[v] = hdi_directions[(kind - 2) % 9][v];
     for (v = 0; v < g->n; v++) {
         const float *x = hdi_nd_place(nd, g, v);
-        key[v].key = hdi_nd_key(kind == 1 ? HDI_CAST(double, da[v] - db[v])
-                                          : d[0] * HDI_CAST(double, x[0]) + d[1] * HDI_CAST(double, x[1]) +
-                                              d[2] * HDI_CAST(double, x[2]));
+        key[v].key = hdi_nd_key(kind == 1 ? (double)(da[v] - db[v])
+                                : d[0] * (double)x[0] + d[1] * (double)x[1] + d[2] * (double)x[2]);
         key[v].id = v;
         if (key[v].key != key[0].key) differ = 1;
     }
@@ -11657,9 +11646,9 @@ static int hdi_nd_sweep_keys(const hdi_nd *nd, const hdi_nd_graph *g, int32_t ki
 static void hdi_nd_sweep(const hdi_nd_graph *g, const hdi_pair *key, double total) {
     double weight = 0, cut = 0, best = DBL_MAX;
     int32_t i, p, keep = 0;
-    memset(g->side, 1, HDI_CAST(size_t, g->n));
+    memset(g->side, 1, (size_t)g->n);
     for (i = 0; i < g->n; i++) {
-        const int32_t v = HDI_CAST(int32_t, key[i].id);
+        const int32_t v = (int32_t)key[i].id;
         double now;
         g->side[v] = 0;
         weight += g->w ? g->w[v] : 1;
@@ -11689,9 +11678,9 @@ static void hdi_nd_first_cut(const hdi_nd *nd, const hdi_nd_graph *g, int32_t to
     hdi_nd_cut cut;
     cut.most = HDI_ND_HEAVIER * total;
     side = hdi_nd_take_bytes(&s, g->n);
-    work = hdi_nd_take(&s, 3 * HDI_CAST(int64_t, g->n));
-    if (HDI_RECAST(uintptr_t, s.at) % sizeof(uint64_t)) hdi_nd_take(&s, 1);
-    key = HDI_CAST(hdi_pair *, HDI_CAST(void *, hdi_nd_take(&s, 4 * HDI_CAST(int64_t, g->n))));
+    work = hdi_nd_take(&s, 3 * (int64_t)g->n);
+    if ((uintptr_t)s.at % sizeof(uint64_t)) hdi_nd_take(&s, 1);
+    key = (hdi_pair *)((void *)hdi_nd_take(&s, 4 * (int64_t)g->n));
     for (t = 0; t < tries; t++) {
         double cost;
         if (!hdi_nd_sweep_keys(nd, g, t, key, work) && (any || t + 1 < tries)) continue;
@@ -11702,9 +11691,9 @@ static void hdi_nd_first_cut(const hdi_nd *nd, const hdi_nd_graph *g, int32_t to
         cost = hdi_nd_cost(cut.cut, cut.weight[0], cut.weight[1]);
         if (cost >= best) continue;
         best = cost;
-        memcpy(side, g->side, HDI_CAST(size_t, g->n));
+        memcpy(side, g->side, (size_t)g->n);
     }
-    memcpy(g->side, side, HDI_CAST(size_t, g->n));
+    memcpy(g->side, side, (size_t)g->n);
 }
 
 /* ---- smallest separator in a band ---- */
@@ -11728,7 +11717,7 @@ static void hdi_nd_flow_band(hdi_nd_flow *f, int32_t n, int32_t most, int32_t la
     int32_t i, p, begin = 0, room[2];
     room[0] = room[1] = most;
     f->n_band = n;
-    memset(f->inside, 0, HDI_CAST(size_t, g->n));
+    memset(f->inside, 0, (size_t)g->n);
     for (i = 0; i < n; i++) f->inside[f->band[i]] = HDI_ND_MIDDLE;
     while (layers-- > 0 && begin < f->n_band) {
         const int32_t end = f->n_band;
@@ -11738,7 +11727,7 @@ static void hdi_nd_flow_band(hdi_nd_flow *f, int32_t n, int32_t most, int32_t la
                 const int32_t u = g->adj[p];
                 if (u < 0 || f->inside[u] || room[g->side[u]] == 0) continue;
                 room[g->side[u]]--;
-                f->inside[u] = HDI_CAST(int8_t, f->inside[v] + (g->side[u] == f->from ? -1 : 1));
+                f->inside[u] = (int8_t)(f->inside[v] + (g->side[u] == f->from ? -1 : 1));
                 f->band[f->n_band++] = u;
             }
         }
@@ -11836,7 +11825,7 @@ static void hdi_nd_flow_run(hdi_nd_flow *f, int32_t n, int32_t most, int32_t lay
     for (i = 0; i < f->n_band; i++) {
         const int32_t v = f->band[i];
         f->g->side[v] = f->seen[2 * v + 1] == f->stamp ? f->from
-            : HDI_CAST(int8_t, f->seen[2 * v] == f->stamp ? 2 : 1 - f->from);
+            : (int8_t)(f->seen[2 * v] == f->stamp ? 2 : 1 - f->from);
         cut += f->g->side[v] == 2;
         begins += f->prev[v] == -1;
     }
@@ -11863,7 +11852,7 @@ static void hdi_nd_descend(hdi_nd_graph *level, int32_t from, int32_t total, hdi
 static void hdi_nd_clusters_of(const hdi_nd *nd, const hdi_nd_part *p, hdi_nd_graph *c) {
     const hdi_nd_buffer *b = nd->buffer + p->buffer;
     c->n = p->clusters;
-    c->ptr = b->cptr + 2 * HDI_CAST(size_t, p->first);
+    c->ptr = b->cptr + 2 * (size_t)p->first;
     c->adj = b->cadj + p->edge / 4;
     c->ew = b->cew + p->edge / 4;
     c->id = b->cid + p->first;
@@ -11885,10 +11874,10 @@ static void hdi_nd_fresh(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_graph
     for (v = 0; v < part->n; v++) map[v] = n == 1 ? temp[0].map[v] : temp[1].map[temp[0].map[v]];
     hdi_nd_clusters_of(nd, part, level + 1);
     level[1].n = temp[n].n;
-    memcpy(level[1].ptr, temp[n].ptr, HDI_CAST(size_t, temp[n].n + 1) * sizeof(int32_t));
-    memcpy(level[1].adj, temp[n].adj, HDI_CAST(size_t, temp[n].ptr[temp[n].n]) * sizeof(int32_t));
-    memcpy(level[1].ew, temp[n].ew, HDI_CAST(size_t, temp[n].ptr[temp[n].n]) * sizeof(int32_t));
-    memcpy(level[1].id, temp[n].id, HDI_CAST(size_t, temp[n].n) * sizeof(int32_t));
+    memcpy(level[1].ptr, temp[n].ptr, (size_t)(temp[n].n + 1) * sizeof(int32_t));
+    memcpy(level[1].adj, temp[n].adj, (size_t)temp[n].ptr[temp[n].n] * sizeof(int32_t));
+    memcpy(level[1].ew, temp[n].ew, (size_t)temp[n].ptr[temp[n].n] * sizeof(int32_t));
+    memcpy(level[1].id, temp[n].id, (size_t)temp[n].n * sizeof(int32_t));
 }
 
 static int hdi_nd_touches(const hdi_nd_graph *g, int32_t v) {
@@ -11910,7 +11899,7 @@ static int32_t hdi_nd_cut_clusters(const hdi_nd *nd, const hdi_nd_part *part, hd
     if (l) {
         level[1].w = hdi_nd_take(&s, level[1].n);
         level[1].side = hdi_nd_take_bytes(&s, level[1].n);
-        memset(level[1].w, 0, HDI_CAST(size_t, level[1].n) * sizeof(int32_t));
+        memset(level[1].w, 0, (size_t)level[1].n * sizeof(int32_t));
         for (v = 0; v < g->n; v++) level[1].w[g->map[v]]++;
     }
     room.n = part->n_edges;
@@ -11923,7 +11912,7 @@ static int32_t hdi_nd_cut_clusters(const hdi_nd *nd, const hdi_nd_part *part, hd
     hdi_nd_descend(level, l, part->n, s);
     if (l > 0) {
         near_cut = hdi_nd_take_bytes(&s, level[1].n);
-        for (v = 0; v < level[1].n; v++) near_cut[v] = HDI_CAST(int8_t, hdi_nd_touches(level + 1, v));
+        for (v = 0; v < level[1].n; v++) near_cut[v] = (int8_t)hdi_nd_touches(level + 1, v);
         for (v = 0; v < g->n; v++) g->side[v] = level[1].side[g->map[v]];
     }
     for (v = 0; v < g->n; v++) {
@@ -11991,8 +11980,7 @@ static int hdi_nd_separated(const hdi_nd_graph *g) {
 
 /* Words of work space for so many vertices, entries and tasks. */
 static size_t hdi_nd_words(int32_t n, int32_t n_edges, int64_t tasks) {
-    return HDI_ND_WORDS * HDI_CAST(size_t, n) + 2 * HDI_CAST(size_t, n_edges) +
-        HDI_ND_SLACK * HDI_CAST(size_t, tasks);
+    return HDI_ND_WORDS * (size_t)n + 2 * (size_t)n_edges + HDI_ND_SLACK * (size_t)tasks;
 }
 
 /* The space of part i of the heap lies within that of the part it comes from, apart from all others. */
@@ -12010,7 +11998,7 @@ static void hdi_nd_graphs_of(const hdi_nd *nd, const hdi_nd_part *p, hdi_nd_grap
     const hdi_nd_buffer *b = nd->buffer + p->buffer;
     memset(level, 0, 2 * sizeof *level);
     level->n = p->n;
-    level->ptr = b->ptr + 2 * HDI_CAST(size_t, p->first);
+    level->ptr = b->ptr + 2 * (size_t)p->first;
     level->adj = b->adj + p->edge;
     level->id = b->id + p->first;
     level->map = b->map + p->first;
@@ -12069,14 +12057,14 @@ static int32_t hdi_nd_halo(const hdi_nd_part *part, int32_t *adj, hdi_nd_space s
     int32_t p, n = 0, outer = 0, mask = 1;
     for (p = 0; p < part->n_edges; p++) outer += adj[p] < 0;
     while (mask < 2 * outer) mask *= 2;
-    if (2 * HDI_CAST(int64_t, mask) > s.end - s.at) return outer ? part->n_edges : 0;
-    memset(s.at, 0, 2 * HDI_CAST(size_t, mask) * sizeof *s.at);
+    if (2 * (int64_t)mask > s.end - s.at) return outer ? part->n_edges : 0;
+    memset(s.at, 0, 2 * (size_t)mask * sizeof *s.at);
     for (p = 0; p < part->n_edges; p++) {
-        uint32_t h = HDI_CAST(uint32_t, adj[p]) * HDI_HASH_FACTOR >> 7;
+        uint32_t h = (uint32_t)adj[p] * HDI_HASH_FACTOR >> 7;
         int32_t *slot;
         if (adj[p] >= 0) continue;
         for (;; h++) {
-            slot = s.at + 2 * (h & HDI_CAST(uint32_t, mask - 1));
+            slot = s.at + 2 * (h & (uint32_t)(mask - 1));
             if (*slot == 0 || *slot == adj[p]) break;
         }
         if (*slot == 0) {
@@ -12147,10 +12135,10 @@ static void hdi_nd_split(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_part 
         child[v].edge = v ? part->edge + child->n_edges : part->edge;
         child[v].buffer = 1 - part->buffer;
         hdi_nd_graphs_of(nd, child + v, half);
-        hdi_nd_extract(level, HDI_CAST(int8_t, v), at, half);
+        hdi_nd_extract(level, (int8_t)v, at, half);
         child[v].n_edges = half->ptr[n[v]];
         if (n[v] > HDI_ND_LEAF && level[1].n > 0)
-            child[v].clusters = hdi_nd_extract_clusters(level, HDI_CAST(int8_t, v), half,
+            child[v].clusters = hdi_nd_extract_clusters(level, (int8_t)v, half,
                                                         child[v].n_edges / 4 - 1, rest);
     }
 }
@@ -12176,33 +12164,32 @@ static void hdi_nd_node(const hdi_nd *nd, int64_t i) {
 }
 
 static void hdi_nd_level_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_nd *nd = HDI_CAST(const hdi_nd *, arg);
+    const hdi_nd *nd = (const hdi_nd *)arg;
     (void)worker;
     hdi_nd_node(nd, nd->level + index);
 }
 
 /* A part is done: its halves may be claimed. */
 static void hdi_nd_loop_task(void *arg, int64_t index, int32_t worker) {
-    hdi_nd *nd = HDI_CAST(hdi_nd *, arg);
-    const double done = 0.1 + 0.8 * HDI_CAST(double, HDI_ATOMIC_GET(&nd->done)) /
-                              HDI_CAST(double, HDI_ND_NODES);
+    hdi_nd *nd = (hdi_nd *)arg;
+    const double done = 0.1 + 0.8 * (double)HDI_ATOMIC_GET(&nd->done) / (double)HDI_ND_NODES;
     if (worker == 0 && !HDI_LOAD(&nd->stop) && hdi_progress(nd->ctx, "order", done, nd->error) < 0)
         HDI_STORE(&nd->stop, 1);
     if (!HDI_LOAD(&nd->stop)) hdi_nd_node(nd, index);
     HDI_ATOMIC_ADD(&nd->done, 1);
     if (index < HDI_ND_TASKS - 1)
-        hdi_release_many(nd->threads, HDI_CAST(int32_t, 2 * index + 1), 2, nd->order);
+        hdi_release_many(nd->threads, (int32_t)(2 * index + 1), 2, nd->order);
 }
 
 /* order = rows along the curve, too long ones last; inv = its inverse, -1 for these. Returns the others. */
 static int32_t hdi_nd_number(const hd_csr *a, const uint32_t *key, int32_t *order, int32_t *inv,
                              int32_t *count) {
-    const double dense = 10 * sqrt(HDI_CAST(double, a->n_rows)) + 16;
+    const double dense = 10 * sqrt((double)a->n_rows) + 16;
     int32_t i, k = 0, last = a->n_rows;
     hdi_nd_sort(key, a->n_rows, order, inv, count);
     for (i = 0; i < a->n_rows; i++) {
         const int32_t r = order[i];
-        if (HDI_CAST(double, a->row_ptr[r + 1] - a->row_ptr[r]) > dense) inv[--last] = r;
+        if ((double)(a->row_ptr[r + 1] - a->row_ptr[r]) > dense) inv[--last] = r;
         else order[k++] = r;
     }
     for (i = k; i < a->n_rows; i++) order[i] = inv[i];
@@ -12220,19 +12207,18 @@ typedef struct hdi_nd_load_job {
 } hdi_nd_load_job;
 
 static void hdi_nd_load_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_nd_load_job *job = HDI_CAST(const hdi_nd_load_job *, arg);
+    const hdi_nd_load_job *job = (const hdi_nd_load_job *)arg;
     const hd_csr *a = job->a;
     const hdi_nd_buffer *b = job->nd->buffer;
-    const int32_t first = HDI_CAST(int32_t, index) * HDI_ND_BLOCK;
-    const int32_t last = HDI_CAST(int32_t, hdi_least(first + HDI_ND_BLOCK, job->n));
+    const int32_t first = (int32_t)index * HDI_ND_BLOCK;
+    const int32_t last = (int32_t)hdi_least(first + HDI_ND_BLOCK, job->n);
     int32_t k, z = 0, *adj = b[1].adj + job->from[index];
     int64_t p;
     (void)worker;
     for (k = first; k < last; k++) {
         const int32_t r = job->order[k];
         if (k + HDI_ROWS_AHEAD < last) HDI_PREFETCH(a->col + a->row_ptr[job->order[k + HDI_ROWS_AHEAD]]);
-        memcpy(job->nd->xyz + 3 * HDI_CAST(size_t, k), job->unit + 3 * HDI_CAST(size_t, r),
-               3 * sizeof(float));
+        memcpy(job->nd->xyz + 3 * (size_t)k, job->unit + 3 * (size_t)r, 3 * sizeof(float));
         b->ptr[k] = z;
         b->id[k] = k;
         for (p = a->row_ptr[r]; p < a->row_ptr[r + 1]; p++) {
@@ -12244,15 +12230,14 @@ static void hdi_nd_load_task(void *arg, int64_t index, int32_t worker) {
 }
 
 static void hdi_nd_move_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_nd_load_job *job = HDI_CAST(const hdi_nd_load_job *, arg);
+    const hdi_nd_load_job *job = (const hdi_nd_load_job *)arg;
     const hdi_nd_buffer *b = job->nd->buffer;
-    const int32_t first = HDI_CAST(int32_t, index) * HDI_ND_BLOCK, to = job->to[index];
-    const int32_t last = HDI_CAST(int32_t, hdi_least(first + HDI_ND_BLOCK, job->n));
+    const int32_t first = (int32_t)index * HDI_ND_BLOCK, to = job->to[index];
+    const int32_t last = (int32_t)hdi_least(first + HDI_ND_BLOCK, job->n);
     int32_t k;
     (void)worker;
     for (k = first; k < last; k++) b->ptr[k] += to;
-    memcpy(b->adj + to, b[1].adj + job->from[index], HDI_CAST(size_t,
-                                                              job->to[index + 1] - to) * sizeof(int32_t));
+    memcpy(b->adj + to, b[1].adj + job->from[index], (size_t)(job->to[index + 1] - to) * sizeof(int32_t));
 }
 
 /* Reads the whole matrix as one part, its rows numbered by order. work [2 blocks + 2]: job->from, job->to. */
@@ -12264,7 +12249,7 @@ static hdi_nd_part hdi_nd_load(hdi_nd_load_job *job, int32_t *work, hd_context *
     job->to = work + n_blocks;
     for (k = 0; k < n; k++) {
         if (k % HDI_ND_BLOCK == 0) job->from[k / HDI_ND_BLOCK] = z;
-        z += HDI_CAST(int32_t, job->a->row_ptr[job->order[k] + 1] - job->a->row_ptr[job->order[k]]);
+        z += (int32_t)(job->a->row_ptr[job->order[k] + 1] - job->a->row_ptr[job->order[k]]);
     }
     hdi_parallel(ctx, n_blocks, hdi_nd_load_task, job);
     memset(&part, 0, sizeof part);
@@ -12275,7 +12260,7 @@ static hdi_nd_part hdi_nd_load(hdi_nd_load_job *job, int32_t *work, hd_context *
 }
 
 static void hdi_nd_buffer_make(hdi_nd_buffer *b, const hd_csr *a, hdi_scope *s) {
-    const uint64_t n = HDI_CAST(uint64_t, a->n_rows) + 1, nnz = HDI_CAST(uint64_t, a->nnz) + 1;
+    const uint64_t n = (uint64_t)a->n_rows + 1, nnz = (uint64_t)a->nnz + 1;
     int32_t *p = HDI_TAKE(s, int32_t, 7 * n + nnz + 2 * (nnz / 4 + 1));
     if (!p) return;
     b->ptr = p;
@@ -12309,7 +12294,7 @@ static void hdi_nd_run(hdi_nd *nd) {
 static hd_status hdi_nd_order(const hd_csr *a, const double *xyz, int32_t *perm, hd_context *ctx,
                               hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
-    const uint64_t n = HDI_CAST(uint64_t, a->n_rows);
+    const uint64_t n = (uint64_t)a->n_rows;
     int32_t i, k, *order = HDI_TAKE(&s, int32_t, n + 1), *inv = HDI_TAKE(&s, int32_t, n + 1);
     int32_t *count = HDI_TAKE(&s, int32_t, 1024 + 2 * n / HDI_ND_BLOCK);
     uint32_t *key = HDI_TAKE(&s, uint32_t, n + 1);
@@ -12321,7 +12306,7 @@ static hd_status hdi_nd_order(const hd_csr *a, const double *xyz, int32_t *perm,
     memset(&nd, 0, sizeof nd);
     nd.perm = perm;
     nd.xyz = HDI_TAKE(&s, float, 3 * n + 1);
-    nd.work = HDI_TAKE(&s, int32_t, hdi_nd_words(a->n_rows, HDI_CAST(int32_t, a->nnz), HDI_ND_TASKS));
+    nd.work = HDI_TAKE(&s, int32_t, hdi_nd_words(a->n_rows, (int32_t)a->nnz, HDI_ND_TASKS));
     nd.part = HDI_TAKE(&s, hdi_nd_part, HDI_ND_NODES);
     hdi_nd_buffer_make(nd.buffer, a, &s);
     hdi_nd_buffer_make(nd.buffer + 1, a, &s);
@@ -12442,7 +12427,7 @@ typedef struct hdi_sym_work {
 } hdi_sym_work;
 
 static void hdi_sym_work_take(hdi_sym_work *w, const hd_csr *a, hdi_scope *s) {
-    const uint64_t n = HDI_CAST(uint64_t, a->n_rows) + 1, nnz = HDI_CAST(uint64_t, a->nnz);
+    const uint64_t n = (uint64_t)a->n_rows + 1, nnz = (uint64_t)a->nnz;
     w->lower_ptr = HDI_TAKE(s, int64_t, n);
     w->upper_ptr = HDI_TAKE(s, int64_t, n);
     w->below = HDI_TAKE(s, int32_t, n);
@@ -12476,12 +12461,12 @@ enum { HDI_SYM_ROWS = 8192, HDI_SYM_PLACES = 8 };
 
 /* The inverse of the order. lower_ptr at the first row of the block: entries of A in all its rows. */
 static void hdi_sym_invert_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_sym_job *job = HDI_CAST(const hdi_sym_job *, arg);
+    const hdi_sym_job *job = (const hdi_sym_job *)arg;
     const int64_t *ptr = job->a->row_ptr;
     int64_t j, sum = 0;
     for (j = begin; j < end; j++) {
         const int32_t row = job->perm[j];
-        job->w->inv[row] = HDI_CAST(int32_t, j);
+        job->w->inv[row] = (int32_t)j;
         sum += ptr[row + 1] - ptr[row];
     }
     job->w->lower_ptr[begin] = sum;
@@ -12489,7 +12474,7 @@ static void hdi_sym_invert_task(void *arg, int64_t begin, int64_t end) {
 
 /* The block's rows of lower, from lower_ptr[begin] on. Without branches, which would be unpredictable. */
 static void hdi_sym_lower_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_sym_job *job = HDI_CAST(const hdi_sym_job *, arg);
+    const hdi_sym_job *job = (const hdi_sym_job *)arg;
     const hd_csr *a = job->a;
     const int32_t *perm = job->perm, *inv = job->w->inv;
     int32_t *lower = job->w->lower;
@@ -12502,7 +12487,7 @@ static void hdi_sym_lower_task(void *arg, int64_t begin, int64_t end) {
             lower[q] = i;
             q += i < j;
         }
-        job->w->below[j] = HDI_CAST(int32_t, q - job->w->lower_ptr[j]);
+        job->w->below[j] = (int32_t)(q - job->w->lower_ptr[j]);
     }
 }
 
@@ -12610,7 +12595,7 @@ static void hdi_sym_counts(int32_t n, hdi_sym_work *w) {
 static void hdi_sym_upper(int32_t n, hdi_sym_work *w) {
     int64_t *ptr = w->upper_ptr;
     int32_t i, p;
-    memset(ptr, 0, (HDI_CAST(size_t, n) + 1) * sizeof *ptr);
+    memset(ptr, 0, ((size_t)n + 1) * sizeof *ptr);
     for (i = 0; i < n; i++)
         for (p = 0; p < w->below[i]; p++) ptr[w->inv[w->lower[w->lower_ptr[i] + p]]]++;
     hdi_prefix_sum(ptr, n);
@@ -12625,7 +12610,7 @@ static void hdi_sym_upper(int32_t n, hdi_sym_work *w) {
 /* x[i] becomes x[order[i]]. spare [n]. */
 static void hdi_sym_reorder(int32_t *x, const int32_t *order, int32_t n, int32_t *spare) {
     int32_t i;
-    memcpy(spare, x, HDI_CAST(size_t, n) * sizeof *spare);
+    memcpy(spare, x, (size_t)n * sizeof *spare);
     for (i = 0; i < n; i++) x[i] = spare[order[i]];
 }
 
@@ -12663,10 +12648,10 @@ static int64_t hdi_node_update(const hdi_node *v) { return hdi_triangle(v->rows 
  * small that its own overhead costs more. Tuned on meshes of 36K to 1M vertices for pole lanes and real
  * factors alike. */
 static int hdi_sym_worth_merging(const hdi_node *child, const hdi_node *parent) {
-    const int64_t p = HDI_CAST(int64_t, child->pivots) + parent->pivots;
-    const int64_t all = hdi_trapezoid(HDI_CAST(int64_t, child->pivots) + parent->rows, p);
+    const int64_t p = (int64_t)child->pivots + parent->pivots;
+    const int64_t all = hdi_trapezoid((int64_t)child->pivots + parent->rows, p);
     const int64_t fresh = all - hdi_node_size(child) - hdi_node_size(parent);
-    const double share = HDI_CAST(double, child->zeros + parent->zeros + fresh) / HDI_CAST(double, all);
+    const double share = (double)(child->zeros + parent->zeros + fresh) / (double)all;
     return fresh == 0 || p <= 6 || (p <= 12 && share < 0.3) || (p <= 24 && share < 0.1) || share < 0.03;
 }
 
@@ -12738,13 +12723,13 @@ static void hdi_sym_sort_children(int32_t s, int64_t *peak, hdi_sym_work *w) {
     int64_t held = 0, most = 0, n = 0, q;
     int32_t c;
     for (c = w->head[s]; c >= 0; c = w->next[c]) {
-        w->pair[n].key = HDI_CAST(uint64_t, peak[c] - hdi_node_update(w->node + c));
+        w->pair[n].key = (uint64_t)(peak[c] - hdi_node_update(w->node + c));
         w->pair[n++].id = c;
     }
     hdi_sort_pairs(w->pair, n);
     w->head[s] = -1;
     for (q = 0; q < n; q++) {                    /* ascending, put in front of each other: descending */
-        c = HDI_CAST(int32_t, w->pair[q].id);
+        c = (int32_t)w->pair[q].id;
         w->next[c] = w->head[s];
         w->head[s] = c;
     }
@@ -12802,7 +12787,7 @@ static void hdi_sym_number(hdi_symbolic *s, const hd_csr *a, hdi_sym_work *w, co
         if (m > s->largest_front) s->largest_front = v->rows;
         if (p > s->largest_pivots) s->largest_pivots = v->pivots;
         if (m - p > s->largest_update) s->largest_update = v->rows - v->pivots;
-        for (c = 0; c < p; c++) s->flops_done += HDI_CAST(double, m - c) * HDI_CAST(double, m - c);
+        for (c = 0; c < p; c++) s->flops_done += (double)(m - c) * (double)(m - c);
     }
     w->lower_ptr[i] = lower;
     s->stored = s->panel_pack[s->n_super];
@@ -12814,7 +12799,7 @@ static void hdi_sym_number(hdi_symbolic *s, const hd_csr *a, hdi_sym_work *w, co
  * columns as entries of A, with rows still in the whole matrix; of the others the supernode of their column,
  * by rows in w->lower. */
 static void hdi_sym_fill_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_sym_job *job = HDI_CAST(const hdi_sym_job *, arg);
+    const hdi_sym_job *job = (const hdi_sym_job *)arg;
     const hd_csr *a = job->a;
     hdi_symbolic *s = job->s;
     const int32_t *inv = job->w->inv, *perm = s->perm;
@@ -12837,7 +12822,7 @@ static void hdi_sym_fill_task(void *arg, int64_t begin, int64_t end) {
             const int32_t i = inv[a->col[p]], entry[2] = {i, s->super_of[i]};
             const int before = i < j;            /* as likely as not: no branches from here on */
             *to[before]++ = entry[before];
-            *col[before] = HDI_CAST(int32_t, j) - first;
+            *col[before] = (int32_t)j - first;
             *from[before] = p;
             col[0] += !before;
             from[0] += !before;
@@ -12859,7 +12844,7 @@ static void hdi_sym_climb(hdi_sym_walk *walk, int32_t *row, int32_t i, int32_t v
 static void hdi_sym_cross(const hdi_symbolic *s, const hdi_sym_work *w, int64_t *ptr, int32_t *pair) {
     int64_t p;
     int32_t k, i, pass;
-    memset(ptr, 0, (HDI_CAST(size_t, s->n_tasks) + 1) * sizeof *ptr);
+    memset(ptr, 0, ((size_t)s->n_tasks + 1) * sizeof *ptr);
     for (pass = 0; pass < 2; pass++) {
         for (k = 0; k < s->n_top; k++) {
             for (i = s->super[s->top[k]]; i < s->super[s->top[k] + 1]; i++) {
@@ -12882,7 +12867,7 @@ static void hdi_sym_cross(const hdi_symbolic *s, const hdi_sym_work *w, int64_t 
 
 /* Rows below the pivots of a subtree: from its own rows, then from those of the top, so that they ascend. */
 static void hdi_sym_rows_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_sym_job *job = HDI_CAST(const hdi_sym_job *, arg);
+    const hdi_sym_job *job = (const hdi_sym_job *)arg;
     const hdi_symbolic *s = job->s;
     const hdi_sym_work *w = job->w;
     const int32_t end = s->task_end[index];
@@ -12922,26 +12907,26 @@ static void hdi_sym_relative(hdi_symbolic *s, int32_t c, const int32_t *place) {
     const int32_t up = s->parent[c], begin = s->super[up], end = s->super[up + 1];
     int64_t p = s->row_ptr[c];
     for (; p < s->row_ptr[c + 1] && s->row[p] < end; p++) s->rel[p] = s->row[p] - begin;
-    s->inner[c] = HDI_CAST(int32_t, p - s->row_ptr[c]);
+    s->inner[c] = (int32_t)(p - s->row_ptr[c]);
     for (; p < s->row_ptr[c + 1]; p++) s->rel[p] = place[s->row[p]];
 }
 
 /* Rows within the fronts, of entries and of the children's rows, for an eighth of the supernodes: each has an
  * array [n] of places that the steps before have left free. */
 static void hdi_sym_places_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_sym_job *job = HDI_CAST(const hdi_sym_job *, arg);
+    const hdi_sym_job *job = (const hdi_sym_job *)arg;
     const hdi_sym_work *w = job->w;
     hdi_symbolic *s = job->s;
     int32_t *const spare[HDI_SYM_PLACES] = {w->mark,     w->head,  w->next,  w->stack,
                                             w->next_col, w->order, w->count, w->parent};
-    int32_t v = HDI_CAST(int32_t, s->n_super * index / HDI_SYM_PLACES), k, *place = spare[index];
-    const int32_t last = HDI_CAST(int32_t, s->n_super * (index + 1) / HDI_SYM_PLACES);
+    int32_t v = (int32_t)(s->n_super * index / HDI_SYM_PLACES), k, *place = spare[index];
+    const int32_t last = (int32_t)(s->n_super * (index + 1) / HDI_SYM_PLACES);
     int64_t p;
     (void)worker;
     for (; v < last; v++) {
         const int32_t begin = s->super[v], end = s->super[v + 1];
         for (p = s->row_ptr[v]; p < s->row_ptr[v + 1]; p++)
-            place[s->row[p]] = HDI_CAST(int32_t, p - s->row_ptr[v]) + end - begin;
+            place[s->row[p]] = (int32_t)(p - s->row_ptr[v]) + end - begin;
         for (p = s->a_ptr[v]; p < s->a_ptr[v + 1]; p++) {
             const int32_t i = s->a_row[p];
             s->a_row[p] = i < end ? i - begin : place[i];
@@ -12953,7 +12938,7 @@ static void hdi_sym_places_task(void *arg, int64_t index, int32_t worker) {
 
 /* Arrays by pivots and by supernodes. */
 static void hdi_sym_take_supernodes(hdi_symbolic *s, hdi_scope *keep) {
-    const uint64_t n1 = HDI_CAST(uint64_t, s->n) + 1, supers = HDI_CAST(uint64_t, s->n_super) + 1;
+    const uint64_t n1 = (uint64_t)s->n + 1, supers = (uint64_t)s->n_super + 1;
     int64_t *wide = HDI_TAKE(keep, int64_t, 6 * supers);
     int32_t *narrow = HDI_TAKE(keep, int32_t, 9 * supers);
     s->perm = HDI_TAKE(keep, int32_t, n1);
@@ -12984,7 +12969,7 @@ static hd_status hdi_sym_nodes(hdi_symbolic *s, const hd_csr *a, int32_t *perm, 
     if (hdi_progress(keep->ctx, "analyse", 0.4, keep->e) < 0) return keep->e->status;
     for (i = 0; i < s->n; i++) {
         s->nnz += w->count[i];
-        s->flops += HDI_CAST(double, w->count[i]) * w->count[i];
+        s->flops += (double)w->count[i] * w->count[i];
     }
     n_nodes = hdi_sym_supernodes(s->n, w);
     hdi_sym_relax(n_nodes, w);
@@ -13036,7 +13021,7 @@ typedef struct hdi_gaps {
 
 /* Moves gap i and all after it by so many places. */
 static void hdi_gaps_shift(hdi_gaps *g, int32_t i, int32_t by) {
-    memmove(g->gap + i + by, g->gap + i, HDI_CAST(size_t, g->n - i) * sizeof *g->gap);
+    memmove(g->gap + i + by, g->gap + i, (size_t)(g->n - i) * sizeof *g->gap);
     g->n += by;
 }
 
@@ -13120,7 +13105,7 @@ static int64_t hdi_sched_roots(hdi_sched_space *z) {
         for (q = s->kid_ptr[s->top[k]]; q < s->kid_ptr[s->top[k] + 1]; q++) {
             const int32_t c = s->kid[q];
             if (s->task_of[c] < 0 || hdi_front_below(s, c) == 0) continue;
-            z->roots[n].key = HDI_CAST(uint64_t, z->at[c]);
+            z->roots[n].key = (uint64_t)z->at[c];
             z->roots[n++].id = hdi_sched_size(z, c);
         }
     }
@@ -13144,7 +13129,7 @@ static int64_t hdi_sched_spaces(hdi_sched_space *z) {
     z->gaps.n = 0;
     z->gaps.end = base + 1;                      /* so that no gap touches it */
     for (i = 0; i <= n_roots; i++) {
-        const int64_t to = i < n_roots ? HDI_CAST(int64_t, z->roots[i].key) : base;
+        const int64_t to = i < n_roots ? (int64_t)z->roots[i].key : base;
         hdi_gaps_free(&z->gaps, from, to - from);
         if (i < n_roots) from = to + z->roots[i].id;
     }
@@ -13172,13 +13157,12 @@ static double hdi_sched_subtrees(hdi_symbolic *s, double *sum) {
     int32_t *task = s->task_of, v;
     double total = 0, limit;
     for (v = 0; v < s->n_super; v++) {
-        const double work = hdi_sched_front_work(HDI_CAST(double, hdi_front_rows(s, v)),
-                                                 hdi_front_pivots(s, v));
+        const double work = hdi_sched_front_work((double)hdi_front_rows(s, v), hdi_front_pivots(s, v));
         sum[v] += work;
         total += work;
         if (s->parent[v] >= 0) sum[s->parent[v]] += sum[v];
     }
-    limit = hdi_max(total / HDI_CAST(double, HDI_SCHED_SHARES), HDI_SCHED_LEAST);
+    limit = hdi_max(total / (double)HDI_SCHED_SHARES, HDI_SCHED_LEAST);
     for (v = s->n_super; v-- > 0;) {
         const int32_t up = s->parent[v];
         task[v] = sum[v] > limit ? -1 : up < 0 || task[up] == -1 ? v : task[up];
@@ -13215,7 +13199,7 @@ static void hdi_sched_tasks(hdi_symbolic *s, double *sum) {
             task[v] = k;
             if (hdi_front_pivots(s, v) > s->task_pivots) s->task_pivots = hdi_front_pivots(s, v);
             if (hdi_front_below(s, v) > s->task_update)
-                s->task_update = HDI_CAST(int32_t, hdi_front_below(s, v));
+                s->task_update = (int32_t)hdi_front_below(s, v);
         }
     }
 }
@@ -13224,7 +13208,7 @@ static void hdi_sched_tasks(hdi_symbolic *s, double *sum) {
 static void hdi_sched_make(hdi_symbolic *s, hdi_scope *temp) {
     hdi_sched_space z;
     z.s = s;
-    z.roots = HDI_TAKE(temp, hdi_pair, HDI_CAST(int64_t, s->n_super) + 1);
+    z.roots = HDI_TAKE(temp, hdi_pair, (int64_t)s->n_super + 1);
     z.gaps.room = HDI_SCHED_GAPS;
     z.gaps.gap = HDI_TAKE(temp, hdi_gap, z.gaps.room);
     if (temp->e->status < 0) return;
@@ -13239,7 +13223,7 @@ static void hdi_sched_make(hdi_symbolic *s, hdi_scope *temp) {
 /* The steps of an analysis. Blocks that stay are taken from keep. */
 static void hdi_symbolic_run(hdi_symbolic *s, const hd_csr *a, int32_t *perm, hdi_scope *keep) {
     hdi_scope temp = hdi_scope_begin(keep->ctx, keep->e);
-    double *sum = HDI_TAKE_ZERO(&temp, double, HDI_CAST(int64_t, a->n_rows) + 1);
+    double *sum = HDI_TAKE_ZERO(&temp, double, (int64_t)a->n_rows + 1);
     hdi_sym_work w;
     memset(s, 0, sizeof *s);
     s->n = a->n_rows;
@@ -13283,7 +13267,7 @@ typedef struct hdi_order {
 
 static hd_status hdi_order_check(const int32_t *perm, int32_t n, hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
-    char *seen = HDI_TAKE_ZERO(&s, char, HDI_CAST(uint64_t, n) + 1);
+    char *seen = HDI_TAKE_ZERO(&s, char, (uint64_t)n + 1);
     int32_t i;
     for (i = 0; seen && i < n && !e->status; i++) {
         if (perm[i] < 0 || perm[i] >= n || seen[perm[i]])
@@ -13302,7 +13286,7 @@ static void hdi_refuse_ordering(hd_ordering ordering, const int32_t *perm, const
 static hd_ordering hdi_order_kind(const hdi_order *o, const hd_csr *a) {
     int32_t from = HDI_DISSECT_FROM;
     if (o->kind != HD_ORDERING_AUTO) return o->kind;
-    if (a->nnz > HDI_DISSECT_WIDE * HDI_CAST(int64_t, a->n_rows)) from = HDI_DISSECT_WIDE_FROM;
+    if (a->nnz > HDI_DISSECT_WIDE * (int64_t)a->n_rows) from = HDI_DISSECT_WIDE_FROM;
     return o->xyz && a->n_rows >= from ? HD_ORDERING_NESTED_DISSECTION : HD_ORDERING_MINIMUM_DEGREE;
 }
 
@@ -13316,7 +13300,7 @@ static hd_status hdi_order_find(const hdi_order *o, hd_ordering kind, const hd_c
                       : hdi_fail(e, HD_ERR_ARGUMENT, "ordering: nested dissection needs coordinates");
     if (kind != HD_ORDERING_OWN) return hdi_fail(e, HD_ERR_ARGUMENT, "ordering: unknown kind");
     if (!o->own && n > 0) return hdi_fail(e, HD_ERR_ARGUMENT, "ordering: own, but no permutation is given");
-    if (n > 0) memcpy(perm, o->own, HDI_CAST(size_t, n) * sizeof *perm);
+    if (n > 0) memcpy(perm, o->own, (size_t)n * sizeof *perm);
     return hdi_order_check(o->own, n, ctx, e);
 }
 
@@ -13410,10 +13394,10 @@ typedef struct hdi_front {
  * of scaled rows, and a block of columns of the update; of real ones the scaled rows, and the work of their
  * kernels. */
 static uint64_t hdi_front_scratch(int32_t pivots, int32_t below, int32_t width) {
-    const uint64_t p = HDI_CAST(uint64_t, pivots), rows = p * HDI_PACK_BLOCK;
+    const uint64_t p = (uint64_t)pivots, rows = p * HDI_PACK_BLOCK;
     const int64_t depth = hdi_least(pivots, HDI_PACK_DEPTH);
-    const uint64_t cols = HDI_CAST(uint64_t, hdi_least(below, HDI_FRONT_COLS) * depth);
-    if (width == 1) return HDI_CAST(uint64_t, hdi_real_s_size(pivots) + hdi_real_work(below, pivots)) + 64;
+    const uint64_t cols = (uint64_t)(hdi_least(below, HDI_FRONT_COLS) * depth);
+    if (width == 1) return (uint64_t)(hdi_real_s_size(pivots) + hdi_real_work(below, pivots)) + 64;
     return HDI_PACK * (p + (rows > cols ? rows : cols)) + 64;
 }
 
@@ -13421,7 +13405,7 @@ static uint64_t hdi_front_scratch(int32_t pivots, int32_t below, int32_t width) 
  * kernels. */
 static uint64_t hdi_front_chunk_scratch(int32_t pivots, int32_t below, int32_t width) {
     const int64_t cols = hdi_least(below, HDI_FRONT_COLS) * hdi_least(pivots, HDI_PACK_DEPTH);
-    return HDI_CAST(uint64_t, width == 1 ? hdi_real_work(below, pivots) : HDI_PACK * cols) + 64;
+    return (uint64_t)(width == 1 ? hdi_real_work(below, pivots) : HDI_PACK * cols) + 64;
 }
 
 static hdi_front hdi_front_open(const hdi_factor *f, int32_t v, double *scratch) {
@@ -13433,7 +13417,7 @@ static hdi_front hdi_front_open(const hdi_factor *f, int32_t v, double *scratch)
     hdi_front_shape(s, v, &w.p, &w.u, &w.m);
     w.panel = f->panel + f->width * f->panel_at[v];
     w.update = f->work + f->width * s->update[v];
-    w.dinv = f->dinv + HDI_CAST(int64_t, f->width) * s->super[v];
+    w.dinv = f->dinv + (int64_t)f->width * s->super[v];
     w.d = scratch;                               /* real pivots stay on the diagonal */
     w.S = f->width == 1 ? scratch : scratch + HDI_PACK * w.p;
     w.work = f->width == 1 ? w.S + hdi_real_s_size(w.p) : w.S;
@@ -13519,7 +13503,7 @@ static void hdi_front_assemble_pack(const hdi_front *w, int64_t r0, int64_t r1) 
         const hdi_block b = hdi_block_of(w->panel, w->m, w->p, q);
         const int64_t begin = r0 > b.begin ? r0 : b.begin;
         const int64_t count = (r1 - begin) * b.row;
-        if (count > 0) memset(hdi_block_at(&b, begin, b.begin), 0, HDI_CAST(size_t, count) * sizeof *b.at);
+        if (count > 0) memset(hdi_block_at(&b, begin, b.begin), 0, (size_t)count * sizeof *b.at);
     }
     for (q = s->a_ptr[w->v]; q < s->a_ptr[w->v + 1]; q++) {
         const int64_t i = s->a_row[q], j = s->a_col[q];
@@ -13576,7 +13560,7 @@ static int hdi_front_invert_pack(const hdi_front *w, int64_t k, const double *d,
         hd_c64 one = hdi_c(0, 0);
         if (hdi_finite(size) && size > 0) one = hdi_cdiv(hdi_c(1, 0), hdi_c(d[c], d[c + HDI_PACK_LANES]));
         if (!hdi_finite(size) || !(size > 0) || !hdi_cfinite(one)) {
-            note->failed = w->f->sym->super[w->v] + HDI_CAST(int32_t, k);
+            note->failed = w->f->sym->super[w->v] + (int32_t)k;
             note->lane = c;
             note->value = size;
             return 0;
@@ -13665,8 +13649,8 @@ static void hdi_front_extend_pack(const hdi_front *w, int64_t r0, int64_t r1) {
 static void hdi_front_assemble_real(const hdi_front *w) {
     const hdi_symbolic *s = w->f->sym;
     int64_t q;
-    memset(w->panel, 0, HDI_CAST(size_t, w->m * w->p) * sizeof *w->panel);
-    memset(w->update, 0, HDI_CAST(size_t, hdi_triangle(w->u)) * sizeof *w->update);
+    memset(w->panel, 0, (size_t)(w->m * w->p) * sizeof *w->panel);
+    memset(w->update, 0, (size_t)hdi_triangle(w->u) * sizeof *w->update);
     for (q = s->a_ptr[w->v]; q < s->a_ptr[w->v + 1]; q++) {
         const int64_t i = s->a_row[q], j = s->a_col[q];
         hdi_values_at(w->f->values, 1, s->a_from[q], hdi_front_row(w, i, j), w->panel + i + j * w->m);
@@ -13675,10 +13659,10 @@ static void hdi_front_assemble_real(const hdi_front *w) {
 
 /* Pivots [k0,k0+nb) and their columns down to row end. */
 static int hdi_front_pivots_real(const hdi_front *w, int64_t end, hdi_pivots *note) {
-    const int64_t bad = hdi_real_block(w->f->real, w->panel, w->m, HDI_CAST(int32_t, w->k0), w->nb, end,
+    const int64_t bad = hdi_real_block(w->f->real, w->panel, w->m, (int32_t)w->k0, w->nb, end,
                                        w->S, w->dinv, note, w->work);
     if (bad < 0) return 1;
-    note->failed = w->f->sym->super[w->v] + HDI_CAST(int32_t, bad);
+    note->failed = w->f->sym->super[w->v] + (int32_t)bad;
     note->value = w->panel[bad * (w->m + 1)];
     return 0;
 }
@@ -13689,10 +13673,10 @@ typedef enum hdi_front_stage { HDI_FRONT_ASSEMBLE, HDI_FRONT_COLUMNS, HDI_FRONT_
 
 /* Rows [r0,r1) of the front's panel or update matrix; but assembling real numbers, columns of w->child's. */
 static void hdi_front_part(const void *front, int stage, int64_t r0, int64_t r1, double *work) {
-    const hdi_front *w = HDI_CAST(const hdi_front *, front);
+    const hdi_front *w = (const hdi_front *)front;
     const hdi_factor *f = w->f;
     const hdi_symbolic *s = f->sym;
-    const int32_t p = HDI_CAST(int32_t, w->p), k0 = HDI_CAST(int32_t, w->k0), c = w->child;
+    const int32_t p = (int32_t)w->p, k0 = (int32_t)w->k0, c = w->child;
     hdi_pack_rows rows;
     if (hdi_is_real(f)) {
         if (stage == HDI_FRONT_ASSEMBLE)
@@ -13725,12 +13709,11 @@ typedef struct hdi_chunks {
 } hdi_chunks;
 
 static void hdi_chunks_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_chunks *h = HDI_CAST(const hdi_chunks *, arg);
+    const hdi_chunks *h = (const hdi_chunks *)arg;
     /* the last rows of a triangle are longest */
     const int64_t chunk = h->n - 1 - index, r0 = h->begin + chunk * h->rows;
     (void)worker;
-    h->run(h->front, h->stage, r0, hdi_least(r0 + h->rows, h->end),
-           h->work + h->work_size * HDI_CAST(size_t, chunk));
+    h->run(h->front, h->stage, r0, hdi_least(r0 + h->rows, h->end), h->work + h->work_size * (size_t)chunk);
 }
 
 /* h->rows, h->work and h->work_size are set. */
@@ -13743,11 +13726,11 @@ static void hdi_chunks_run(hdi_chunks *h, int64_t begin, int64_t end, hd_context
 
 static void hdi_front_run(const hdi_front *w, int shared, int stage, int64_t begin, int64_t end) {
     hdi_chunks h;
-    if (end > begin && !shared) hdi_front_part(w, HDI_CAST(int, stage), begin, end, w->work);
+    if (end > begin && !shared) hdi_front_part(w, (int)stage, begin, end, w->work);
     if (end <= begin || !shared) return;
     h.run = hdi_front_part;
     h.front = w;
-    h.stage = HDI_CAST(int, stage);
+    h.stage = (int)stage;
     h.rows = HDI_FRONT_CHUNK;
     h.work = w->f->chunk_scratch;
     h.work_size = w->f->chunk_size;
@@ -13781,17 +13764,17 @@ static int64_t hdi_front_nodes(const hdi_symbolic *s, int32_t nb) {
 }
 
 static int32_t hdi_front_block_size(const hdi_factor *f) {
-    return hdi_is_real(f) ? HDI_CAST(int32_t, HDI_REAL_NB) : HDI_CAST(int32_t, HDI_PACK_BLOCK);
+    return hdi_is_real(f) ? (int32_t)HDI_REAL_NB : (int32_t)HDI_PACK_BLOCK;
 }
 
 /* The first row below the pivots of block k, and the first chunk with such rows. */
 static int64_t hdi_front_end(const hdi_front_loop *l, int32_t k) {
-    return hdi_least(HDI_CAST(int64_t, k + 1) * l->nb, l->w.p);
+    return hdi_least((int64_t)(k + 1) * l->nb, l->w.p);
 }
 
 static int32_t hdi_front_first(const hdi_front_loop *l, int32_t k) {
     const int64_t end = hdi_front_end(l, k);
-    return end < l->w.m ? HDI_CAST(int32_t, end / HDI_FRONT_CHUNK) : l->n_chunks;
+    return end < l->w.m ? (int32_t)(end / HDI_FRONT_CHUNK) : l->n_chunks;
 }
 
 static int32_t hdi_front_node(const hdi_front_loop *l, int32_t k, int32_t c) {
@@ -13800,9 +13783,9 @@ static int32_t hdi_front_node(const hdi_front_loop *l, int32_t k, int32_t c) {
 
 /* Whether chunk c holds pivots of block k. */
 static int hdi_front_holds(const hdi_front_loop *l, int32_t k, int32_t c) {
-    const int64_t begin = HDI_CAST(int64_t, k) * l->nb;
-    return k < l->n_blocks && begin < HDI_CAST(int64_t, c + 1) * HDI_FRONT_CHUNK &&
-           hdi_front_end(l, k) > HDI_CAST(int64_t, c) * HDI_FRONT_CHUNK;
+    const int64_t begin = (int64_t)k * l->nb;
+    return k < l->n_blocks && begin < (int64_t)(c + 1) * HDI_FRONT_CHUNK &&
+           hdi_front_end(l, k) > (int64_t)c * HDI_FRONT_CHUNK;
 }
 
 static void hdi_front_arrive(const hdi_front_loop *l, int32_t node) {
@@ -13819,15 +13802,15 @@ static void hdi_front_next(const hdi_front_loop *l, int32_t k, int32_t c) {
 
 /* Node P(k), or with a chunk c >= 0 C(c,k). */
 static void hdi_front_panel_node(const hdi_front_loop *l, int32_t k, int32_t c) {
-    const int64_t end = hdi_front_end(l, k), r0 = HDI_CAST(int64_t, c) * HDI_FRONT_CHUNK;
+    const int64_t end = hdi_front_end(l, k), r0 = (int64_t)c * HDI_FRONT_CHUNK;
     const int stop = HDI_LOAD(&l->f->stop);
     hdi_front w = l->w;
     int good = 1;
     w.S = l->S[k % 2];
-    w.k0 = HDI_CAST(int64_t, k) * l->nb;
-    w.nb = HDI_CAST(int32_t, end - w.k0);
+    w.k0 = (int64_t)k * l->nb;
+    w.nb = (int32_t)(end - w.k0);
     if (c >= 0) {
-        double *work = l->f->chunk_scratch + l->f->chunk_size * HDI_CAST(size_t, c);
+        double *work = l->f->chunk_scratch + l->f->chunk_size * (size_t)c;
         const int64_t r1 = hdi_least(r0 + HDI_FRONT_CHUNK, w.m);
         if (!stop) hdi_front_part(&w, HDI_FRONT_COLUMNS, r0 > end ? r0 : end, r1, work);
         hdi_front_next(l, k, c);
@@ -13840,15 +13823,15 @@ static void hdi_front_panel_node(const hdi_front_loop *l, int32_t k, int32_t c) 
 }
 
 static int32_t hdi_front_updates(const hdi_front_loop *l) {
-    return HDI_CAST(int32_t, (l->w.u + HDI_FRONT_CHUNK - 1) / HDI_FRONT_CHUNK);
+    return (int32_t)((l->w.u + HDI_FRONT_CHUNK - 1) / HDI_FRONT_CHUNK);
 }
 
 /* Returns 1 when it was the front's last node. */
 static int hdi_front_run_node(hdi_front_loop *l, int32_t i) {
     const int32_t a = hdi_front_node(l, l->n_blocks, -1), updates = hdi_front_updates(l);
     const int32_t c = i < a ? i % (l->n_chunks + 1) - 1 : i < a + l->n_chunks ? i - a : i - a - l->n_chunks;
-    const int64_t r0 = HDI_CAST(int64_t, c) * HDI_FRONT_CHUNK, r1 = r0 + HDI_FRONT_CHUNK;
-    double *work = l->f->chunk_scratch + l->f->chunk_size * HDI_CAST(size_t, c < 0 ? 0 : c);
+    const int64_t r0 = (int64_t)c * HDI_FRONT_CHUNK, r1 = r0 + HDI_FRONT_CHUNK;
+    double *work = l->f->chunk_scratch + l->f->chunk_size * (size_t)(c < 0 ? 0 : c);
     int32_t d;
     if (i >= a + l->n_chunks) {
         if (!HDI_LOAD(&l->f->stop)) hdi_front_part(&l->w, HDI_FRONT_UPDATE, r0, hdi_least(r1, l->w.u), work);
@@ -13893,8 +13876,8 @@ static int32_t hdi_front_loop_set(hdi_front_loop *l, const hdi_front *w) {
     l->S[0] = w->S;
     l->S[1] = l->f->second;
     l->nb = hdi_front_block_size(l->f);
-    l->n_blocks = HDI_CAST(int32_t, (w->p + l->nb - 1) / l->nb);
-    l->n_chunks = HDI_CAST(int32_t, (w->m + HDI_FRONT_CHUNK - 1) / HDI_FRONT_CHUNK);
+    l->n_blocks = (int32_t)((w->p + l->nb - 1) / l->nb);
+    l->n_chunks = (int32_t)((w->m + HDI_FRONT_CHUNK - 1) / HDI_FRONT_CHUNK);
     l->pending = l->f->nodes;
     return hdi_front_count(l);
 }
@@ -13914,7 +13897,7 @@ static int hdi_front_factor(hdi_factor *f, int32_t v, double *scratch, hdi_pivot
         hdi_front_run(&w, shared, HDI_FRONT_ASSEMBLE, 0, hdi_front_below(s, w.child));
     }
     for (; w.k0 < w.p; w.k0 += w.nb) {
-        w.nb = HDI_CAST(int32_t, hdi_least(w.p - w.k0, most));
+        w.nb = (int32_t)hdi_least(w.p - w.k0, most);
         /* a small front: its columns at once */
         end = real && !shared && w.p <= HDI_REAL_NB ? w.m : w.k0 + w.nb;
         if (!(real ? hdi_front_pivots_real(&w, end, note) : hdi_front_pivots_pack(&w, note))) return 0;
@@ -13927,7 +13910,7 @@ static int hdi_front_factor(hdi_factor *f, int32_t v, double *scratch, hdi_pivot
 /* ---- the tree ---- */
 
 static double *hdi_factor_scratch(const hdi_factor *f, int64_t i) {
-    return f->scratch + f->scratch_size * HDI_CAST(size_t, i);
+    return f->scratch + f->scratch_size * (size_t)i;
 }
 
 /* No subtree from this one on need go on. Should two threads come at once, and the larger number stay, then
@@ -13939,15 +13922,15 @@ static void hdi_factor_stop(hdi_factor *f, int32_t until) {
 
 /* A subtree, by one thread. */
 static void hdi_factor_task(void *arg, int64_t index, int32_t worker) {
-    hdi_factor *f = HDI_CAST(hdi_factor *, arg);
+    hdi_factor *f = (hdi_factor *)arg;
     const hdi_symbolic *s = f->sym;
-    const double done = f->share * HDI_CAST(double, index) / s->n_tasks;
+    const double done = f->share * (double)index / s->n_tasks;
     int32_t v;
     if (index >= HDI_LOAD(&f->until)) return;
     if (worker == 0 && hdi_progress(f->ctx, "factor", done, &f->error) < 0) hdi_factor_stop(f, 0);
     for (v = s->task_begin[index]; v < s->task_end[index] && index < HDI_LOAD(&f->until); v++)
         if (!hdi_front_factor(f, v, hdi_factor_scratch(f, index), f->pivots + index, 0))
-            hdi_factor_stop(f, HDI_CAST(int32_t, index));
+            hdi_factor_stop(f, (int32_t)index);
 }
 
 static void hdi_factor_free(hdi_factor *f) {
@@ -13972,7 +13955,7 @@ static int hdi_factor_shared(const hdi_symbolic *s, int32_t v) {
 
 /* Chunks of columns of child c. */
 static int32_t hdi_factor_child_nodes(const hdi_symbolic *s, int32_t c) {
-    return HDI_CAST(int32_t, (hdi_front_below(s, c) + HDI_FRONT_CHUNK - 1) / HDI_FRONT_CHUNK);
+    return (int32_t)((hdi_front_below(s, c) + HDI_FRONT_CHUNK - 1) / HDI_FRONT_CHUNK);
 }
 
 /* Nodes of the loop over all of the tree, see below. Fills f->nodes, if there is one. */
@@ -14012,19 +13995,19 @@ static hdi_factor hdi_factor_of(const hdi_symbolic *sym, int32_t width) {
 
 /* Room to work in: chunks that the largest front of the top has. */
 static uint64_t hdi_factor_chunks(const hdi_symbolic *s) {
-    return HDI_CAST(uint64_t, s->n_top ? s->largest_front / HDI_FRONT_CHUNK + 1 : 0);
+    return (uint64_t)(s->n_top ? s->largest_front / HDI_FRONT_CHUNK + 1 : 0);
 }
 
 /* Parts of the tree that have a scratch and pivots of their own. */
 static uint64_t hdi_factor_parts(const hdi_symbolic *s) {
-    return HDI_CAST(uint64_t, s->n_tasks > 0 ? s->n_tasks : 1);
+    return (uint64_t)(s->n_tasks > 0 ? s->n_tasks : 1);
 }
 
 /* The numbers of a factor. */
 static void hdi_factor_take_numbers(hdi_factor *f, hdi_scope *s) {
-    const uint64_t w = HDI_CAST(uint64_t, f->width);
-    f->panel = HDI_TAKE(s, double, HDI_CAST(uint64_t, f->panel_at[f->sym->n_super]) * w);
-    f->dinv = HDI_TAKE(s, double, HDI_CAST(uint64_t, f->sym->n) * w);
+    const uint64_t w = (uint64_t)f->width;
+    f->panel = HDI_TAKE(s, double, (uint64_t)f->panel_at[f->sym->n_super] * w);
+    f->dinv = HDI_TAKE(s, double, (uint64_t)f->sym->n * w);
 }
 
 /* f becomes another factor like its host, with its own numbers but the host's room to work in. Neither is
@@ -14056,7 +14039,7 @@ static void hdi_factor_take(hdi_factor *f, const hdi_symbolic *sym, int32_t widt
     const uint64_t tops = sym->n_top > 0 ? n_chunks > 0 ? 2 : 1 : 0;
     *f = hdi_factor_of(sym, width);
     hdi_factor_take_numbers(f, s);
-    f->work = HDI_TAKE(s, double, HDI_CAST(uint64_t, sym->work) * HDI_CAST(uint64_t, width));
+    f->work = HDI_TAKE(s, double, (uint64_t)sym->work * (uint64_t)width);
     f->scratch = HDI_TAKE(s, double, f->scratch_size * n_parts + tops * f->top_size);
     f->chunk_scratch = HDI_TAKE(s, double, f->chunk_size * n_chunks + 1);
     f->nodes = HDI_TAKE(s, int32_t, hdi_front_nodes(sym, hdi_front_block_size(f)) + 1);
@@ -14178,7 +14161,7 @@ static int32_t hdi_factor_advance(hdi_factor_loop *t, int32_t worker, int32_t *i
 }
 
 static void hdi_factor_node(void *arg, int64_t index, int32_t worker) {
-    hdi_factor_loop *t = HDI_CAST(hdi_factor_loop *, arg);
+    hdi_factor_loop *t = (hdi_factor_loop *)arg;
     hdi_factor *f = t->l.f;
     int32_t id, n;
     if (index >= HDI_FACTOR_TASKS) {
@@ -14189,7 +14172,7 @@ static void hdi_factor_node(void *arg, int64_t index, int32_t worker) {
         if (!HDI_LOAD(&f->stop))
             hdi_front_part(&t->l.w, HDI_FRONT_ASSEMBLE, r0, hdi_least(r0 + HDI_FRONT_CHUNK, end), NULL);
         if (HDI_ATOMIC_ADD(&t->left, -1) != 0) return;
-    } else if (!hdi_front_run_node(&t->l, HDI_CAST(int32_t, index))) {
+    } else if (!hdi_front_run_node(&t->l, (int32_t)index)) {
         return;
     }
     n = hdi_factor_advance(t, worker, &id);
@@ -14210,7 +14193,7 @@ static void hdi_factor_share(hdi_factor *f, hd_threads *threads) {
     t.left = ready;
     if (ready == 0) ready = hdi_factor_advance(&t, 0, &id);
     for (i = 0; i < ready; i++) f->order[i] = id + i;
-    hdi_parallel_ordered(f->ctx, HDI_CAST(int32_t, f->n_order), ready, f->order, hdi_factor_node, &t);
+    hdi_parallel_ordered(f->ctx, (int32_t)f->n_order, ready, f->order, hdi_factor_node, &t);
 }
 
 /* All fronts: subtrees at the same time, then the top, whose fronts are shared. */
@@ -14261,10 +14244,10 @@ typedef struct hdi_sweep {
 /* The children's vectors, into the pivots' part of x and into t, which is cleared before. */
 static void hdi_sweep_children(const hdi_sweep *z, int32_t v, double *y, double *t) {
     const hdi_symbolic *s = z->f->sym;
-    const int64_t p = hdi_front_pivots(s, v), w = HDI_CAST(int64_t, z->f->width) * z->k;
+    const int64_t p = hdi_front_pivots(s, v), w = (int64_t)z->f->width * z->k;
     int64_t i, q;
     int32_t k, e;
-    memset(t, 0, HDI_CAST(size_t, w * hdi_front_below(s, v)) * sizeof *t);
+    memset(t, 0, (size_t)(w * hdi_front_below(s, v)) * sizeof *t);
     for (k = s->kid_ptr[v]; k < s->kid_ptr[v + 1]; k++) {
         const int32_t c = s->kid[k], *HDI_RESTRICT rel = s->rel + s->row_ptr[c];
         const int64_t uc = hdi_front_below(s, c), inner = s->inner[c];
@@ -14364,9 +14347,9 @@ static void hdi_sweep_take(const hdi_sweep *z, int32_t v, double *y) {
 /* Backward: a front that no right-hand side has touched has zeros. They are written only now, to be used at
  * once. Returns whether it is such a front. */
 static int hdi_sweep_clear(const hdi_sweep *z, int32_t v, double *y) {
-    const int64_t entries = HDI_CAST(int64_t, z->f->width) * z->k * hdi_front_pivots(z->f->sym, v);
+    const int64_t entries = (int64_t)z->f->width * z->k * hdi_front_pivots(z->f->sym, v);
     if (!z->rhs || !z->active || z->active[v]) return 0;
-    memset(y, 0, HDI_CAST(size_t, entries) * sizeof *y);
+    memset(y, 0, (size_t)entries * sizeof *y);
     return 1;
 }
 
@@ -14374,7 +14357,7 @@ static int hdi_sweep_clear(const hdi_sweep *z, int32_t v, double *y) {
 static void hdi_sweep_divide_pack(const hdi_sweep *z, int32_t v, double *y) {
     const hdi_symbolic *s = z->f->sym;
     const int64_t p = hdi_front_pivots(s, v);
-    const double *dinv = z->f->dinv + HDI_PACK * HDI_CAST(int64_t, s->super[v]);
+    const double *dinv = z->f->dinv + HDI_PACK * (int64_t)s->super[v];
     double t[HDI_PACK];
     int64_t i;
     for (i = 0; i < p * z->k; i++) {
@@ -14432,7 +14415,7 @@ static HDI_INLINE void hdi_factor_fetch(const hdi_factor *f, int32_t v, int back
 /* Backward, the front's vector has been handed on, and its place is free to gather the rows below. */
 static void hdi_sweep_front(const hdi_sweep *z, int32_t v) {
     const hdi_factor *f = z->f;
-    const int64_t w = HDI_CAST(int64_t, f->width) * z->k;
+    const int64_t w = (int64_t)f->width * z->k;
     double *y = z->x + w * f->sym->super[v], *t = z->vec + w * f->sym->vector[v];
     const char *only = z->backward ? z->wanted : z->active;
     if (only && !only[v]) return;
@@ -14448,7 +14431,7 @@ static void hdi_sweep_front(const hdi_sweep *z, int32_t v) {
 }
 
 static void hdi_sweep_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_sweep *z = HDI_CAST(const hdi_sweep *, arg);
+    const hdi_sweep *z = (const hdi_sweep *)arg;
     const int32_t begin = z->f->sym->task_begin[index], end = z->f->sym->task_end[index];
     int32_t v;
     (void)worker;
@@ -14516,9 +14499,9 @@ static void hdi_sweep_next(const hdi_sweep *z, int32_t i) {
 }
 
 static void hdi_sweep_node(void *arg, int64_t index, int32_t worker) {
-    hdi_sweep z = *HDI_CAST(const hdi_sweep *, arg);
+    hdi_sweep z = *(const hdi_sweep *)arg;
     const hdi_symbolic *s = z.f->sym;
-    const int32_t n = hdi_sweep_nodes(s), i = HDI_CAST(int32_t, index) % n;
+    const int32_t n = hdi_sweep_nodes(s), i = (int32_t)index % n;
     z.backward = index >= n;
     if (i < s->n_tasks) hdi_sweep_task(&z, i, worker);
     else hdi_sweep_front(&z, s->top[i - s->n_tasks]);
@@ -14546,7 +14529,7 @@ static void hdi_sweep_share(hdi_sweep *z, hd_context *ctx) {
 /* x = A^-1 x. On all threads with ctx, else (from within a task) on this one. */
 static void hdi_sweep_run(hdi_sweep *z, hd_context *ctx) {
     const hdi_symbolic *s = z->f->sym;
-    const double bytes = 2 * 8.0 * z->f->width * HDI_CAST(double, z->f->panel_at[s->n_super]);
+    const double bytes = 2 * 8.0 * z->f->width * (double)z->f->panel_at[s->n_super];
     int32_t i;
     if (ctx && !ctx->parallel_for && bytes < HDI_SWEEP_SHARED) ctx = NULL;
     if (ctx) z->threads = hdi_threads_own(ctx, hdi_sweep_nodes(s));
@@ -14570,8 +14553,8 @@ static void hdi_sweep_run(hdi_sweep *z, hd_context *ctx) {
 
 /* Doubles that a sweep of k right-hand sides works with besides x: vec, pending and order. */
 static uint64_t hdi_sweep_size(const hdi_symbolic *s, int32_t width, int32_t k) {
-    const uint64_t w = HDI_CAST(uint64_t, width) * HDI_CAST(uint64_t, k);
-    return w * HDI_CAST(uint64_t, s->vector_size) + 2 * HDI_CAST(uint64_t, hdi_sweep_nodes(s)) + 16;
+    const uint64_t w = (uint64_t)width * (uint64_t)k;
+    return w * (uint64_t)s->vector_size + 2 * (uint64_t)hdi_sweep_nodes(s) + 16;
 }
 
 static hdi_sweep hdi_sweep_open(const hdi_factor *f, int32_t k, double *x, double *work) {
@@ -14581,8 +14564,8 @@ static hdi_sweep hdi_sweep_open(const hdi_factor *f, int32_t k, double *x, doubl
     z.x = x;
     z.k = k;
     z.vec = work;
-    work += HDI_CAST(int64_t, f->width) * k * f->sym->vector_size;
-    z.pending = HDI_CAST(int32_t *, HDI_CAST(void *, work));
+    work += (int64_t)f->width * k * f->sym->vector_size;
+    z.pending = (int32_t *)(void *)work;
     z.order = z.pending + hdi_sweep_nodes(f->sym);
     return z;
 }
@@ -14612,7 +14595,7 @@ static int32_t hdi_pack_part(int32_t q, int32_t stride) { return q / stride + q 
 
 /* Matrices of pack p. */
 static int32_t hdi_ldl_lanes(const hd_ldl *f, int32_t p) {
-    return HDI_CAST(int32_t, hdi_least(f->n_matrices - HDI_PACK_LANES * p, HDI_PACK_LANES));
+    return (int32_t)hdi_least(f->n_matrices - HDI_PACK_LANES * p, HDI_PACK_LANES);
 }
 
 static void hdi_ldl_tell(const hd_ldl *f, const hdi_factor *of, hd_ldl_report *rep) {
@@ -14628,12 +14611,12 @@ static void hdi_ldl_tell(const hd_ldl *f, const hdi_factor *of, hd_ldl_report *r
     rep->growth = of->largest_entry > 0 ? of->all.largest / of->largest_entry : 0;
     rep->smallest_pivot = of->largest_entry > 0 && hdi_finite(of->all.smallest)
         ? of->all.smallest / of->largest_entry : 0;
-    rep->n_negative = HDI_CAST(int32_t, of->all.negative);
+    rep->n_negative = (int32_t)of->all.negative;
 }
 
 /* Order, analysis and a copy of the pattern, for f->ctx. */
 static hd_status hdi_ldl_analyse(hd_ldl *f, const hd_csr *a, const hd_ldl_opts *o, hd_error *e) {
-    const uint64_t n = HDI_CAST(uint64_t, f->n), nnz = HDI_CAST(uint64_t, f->nnz);
+    const uint64_t n = (uint64_t)f->n, nnz = (uint64_t)f->nnz;
     const hdi_order order = {o->ordering, o->xyz, o->perm};
     int64_t p;
     int32_t i;
@@ -14642,9 +14625,9 @@ static hd_status hdi_ldl_analyse(hd_ldl *f, const hd_csr *a, const hd_ldl_opts *
             return hdi_fail_row(e, HD_ERR_NOT_FINITE, "ldl options: a coordinate is not finite", p / 3, p % 3,
                                 o->xyz[p]);
     if (hdi_symbolic_order(&f->sym, a, &order, f->ctx, e) < 0) return e->status;
-    f->row_ptr = HDI_CAST(int64_t *, hdi_copy(a->row_ptr, n + 1, sizeof *f->row_ptr, f->ctx, e));
-    f->col = HDI_CAST(int32_t *, hdi_copy(a->col, nnz, sizeof *f->col, f->ctx, e));
-    if (f->col) f->inv = HDI_CAST(int32_t *, hdi_alloc(f->ctx, n, sizeof *f->inv, e));
+    f->row_ptr = (int64_t *)hdi_copy(a->row_ptr, n + 1, sizeof *f->row_ptr, f->ctx, e);
+    f->col = (int32_t *)hdi_copy(a->col, nnz, sizeof *f->col, f->ctx, e);
+    if (f->col) f->inv = (int32_t *)hdi_alloc(f->ctx, n, sizeof *f->inv, e);
     for (i = 0; f->inv && i < f->n; i++) f->inv[f->sym.perm[i]] = i;
     return e->status;
 }
@@ -14684,9 +14667,9 @@ static hd_status hdi_ldl_packs(hd_ldl *f, int32_t k, hd_error *e) {
     hdi_factor *pack;
     int32_t i;
     if (f->n_packs >= want) return HD_OK;
-    pack = HDI_CAST(hdi_factor *, hdi_alloc(f->ctx, HDI_CAST(uint64_t, want), sizeof *pack, e));
+    pack = (hdi_factor *)hdi_alloc(f->ctx, (uint64_t)want, sizeof *pack, e);
     if (!pack) return e->status;
-    memset(pack, 0, HDI_CAST(size_t, want) * sizeof *pack);
+    memset(pack, 0, (size_t)want * sizeof *pack);
     for (i = 0; i < f->n_packs; i++) pack[i] = f->pack[i];
     hdi_free(f->ctx, f->pack);
     f->pack = pack;
@@ -14733,12 +14716,11 @@ static hd_status hdi_ldl_factor_complex(hd_ldl *f, int32_t k, const hd_c64 *val,
 /* Vectors and work of sweeps, kept. which: 0 real, 1 packs. */
 static hd_status hdi_ldl_room(hd_ldl *f, int which, hd_error *e) {
     const int32_t width = which ? HDI_PACK : 1, k = which ? 1 : 8;
-    const uint64_t size = HDI_CAST(uint64_t, f->n) * HDI_CAST(uint64_t, width * k);
+    const uint64_t size = (uint64_t)f->n * (uint64_t)(width * k);
     if (f->x[which]) return HD_OK;
     if (!f->work[which])
-        f->work[which] = HDI_CAST(double *, hdi_alloc(f->ctx, hdi_sweep_size(&f->sym, width, k),
-                                                      sizeof(double), e));
-    if (f->work[which]) f->x[which] = HDI_CAST(double *, hdi_alloc(f->ctx, size, sizeof(double), e));
+        f->work[which] = (double *)hdi_alloc(f->ctx, hdi_sweep_size(&f->sym, width, k), sizeof(double), e);
+    if (f->work[which]) f->x[which] = (double *)hdi_alloc(f->ctx, size, sizeof(double), e);
     return e->status;
 }
 
@@ -14751,11 +14733,11 @@ static void hdi_ldl_solve_real(hd_ldl *f, int32_t q, int32_t n_cols, const doubl
     int32_t i, r;
     for (i = 0; i < f->n; i++, at += wide)
         for (r = 0; r < wide; r++)
-            at[r] = r < n_cols ? b[HDI_CAST(size_t, q + r) * ldb + HDI_CAST(size_t, f->sym.perm[i])] : 0;
+            at[r] = r < n_cols ? b[(size_t)(q + r) * ldb + (size_t)f->sym.perm[i]] : 0;
     hdi_sweep_run(&z, f->ctx);
     for (i = 0, at = f->x[0]; i < f->n; i++, at += wide)
         for (r = 0; r < n_cols; r++)
-            x[HDI_CAST(size_t, q + r) * ldx + HDI_CAST(size_t, f->sym.perm[i])] = at[r];
+            x[(size_t)(q + r) * ldx + (size_t)f->sym.perm[i]] = at[r];
 }
 
 /* One right-hand side for each matrix of pack p, or with ldb 0 the same for all. */
@@ -14764,11 +14746,11 @@ static void hdi_ldl_solve_pack(hd_ldl *f, int32_t p, const hd_c64 *b, size_t ldb
     double *at = f->x[1];
     hdi_sweep z = hdi_sweep_open(f->pack + p, 1, f->x[1], f->work[1]);
     int32_t i, q;
-    b += HDI_PACK_LANES * HDI_CAST(size_t, p) * ldb;
-    x += HDI_PACK_LANES * HDI_CAST(size_t, p) * ldx;
+    b += HDI_PACK_LANES * (size_t)p * ldb;
+    x += HDI_PACK_LANES * (size_t)p * ldx;
     for (i = 0; i < f->n; i++, at += HDI_PACK) {
         for (q = 0; q < HDI_PACK_LANES; q++) {
-            const hd_c64 v = b[HDI_CAST(size_t, q < lanes ? q : 0) * ldb + HDI_CAST(size_t, f->sym.perm[i])];
+            const hd_c64 v = b[(size_t)(q < lanes ? q : 0) * ldb + (size_t)f->sym.perm[i]];
             at[q] = v.re;
             at[q + HDI_PACK_LANES] = v.im;
         }
@@ -14776,8 +14758,7 @@ static void hdi_ldl_solve_pack(hd_ldl *f, int32_t p, const hd_c64 *b, size_t ldb
     hdi_sweep_run(&z, f->ctx);
     for (i = 0, at = f->x[1]; i < f->n; i++, at += HDI_PACK)
         for (q = 0; q < lanes; q++)
-            x[HDI_CAST(size_t, q) * ldx + HDI_CAST(size_t, f->sym.perm[i])] = hdi_c(at[q],
-                    at[q + HDI_PACK_LANES]);
+            x[(size_t)q * ldx + (size_t)f->sym.perm[i]] = hdi_c(at[q], at[q + HDI_PACK_LANES]);
 }
 
 static void hdi_ldl_free(hd_ldl *f) {
@@ -14822,7 +14803,7 @@ static hd_status hdi_ldl_enter_factored(hdi_call *c, const hd_ldl *f, int packs,
 }
 
 static hd_status hdi_ldl_leading(const hd_ldl *f, size_t ldb, size_t ldx, hd_error *e) {
-    if (ldb >= HDI_CAST(size_t, f->n) && ldx >= HDI_CAST(size_t, f->n)) return HD_OK;
+    if (ldb >= (size_t)f->n && ldx >= (size_t)f->n) return HD_OK;
     return hdi_fail(e, HD_ERR_ARGUMENT, "ldl: a leading dimension is smaller than n");
 }
 
@@ -14897,14 +14878,14 @@ typedef struct hdi_inverse_front {
 /* Doubles of a block of rows of Z that is gathered, and of all scratch of a front of at most so many rows and
  * pivots and stored entries. */
 static uint64_t hdi_inverse_buffer(int32_t width) {
-    return width == 1 ? HDI_CAST(uint64_t, HDI_REAL_MR) * HDI_INV_DEPTH_REAL
-        : HDI_CAST(uint64_t, HDI_PACK) * HDI_INV_ROWS * HDI_INV_DEPTH;
+    return width == 1 ? (uint64_t)HDI_REAL_MR * HDI_INV_DEPTH_REAL
+        : (uint64_t)HDI_PACK * HDI_INV_ROWS * HDI_INV_DEPTH;
 }
 
 static uint64_t hdi_inverse_scratch(int64_t m, int64_t p, int64_t stored, int32_t width) {
     const int64_t w = hdi_least(p, HDI_PANEL), slices = width == 1 ? (m + w) * (w + HDI_REAL_NR) : 0;
     const int64_t entries = stored + 2 * w * w + m * (w + HDI_INV_SLICE) + w + HDI_INV_PIVOTS;
-    return HDI_CAST(uint64_t, width * entries + slices) + hdi_inverse_buffer(width) + 64;
+    return (uint64_t)(width * entries + slices) + hdi_inverse_buffer(width) + 64;
 }
 
 static hdi_inverse_front hdi_inverse_open(hdi_factor *f, int32_t v, double *scratch) {
@@ -14950,8 +14931,7 @@ static void hdi_inverse_gather_pack(const hdi_inverse_front *w, int64_t i0, int6
         for (j = j0, end = hdi_least(i + 1, j1); j < end; j += run) {
             const double *from = hdi_inverse_at_pack(w, i, j, &run);
             run = hdi_least(run, end - j);
-            memcpy(to + (i - i0) * row + HDI_PACK * (j - j0), from,
-                   HDI_CAST(size_t, run) * HDI_PACK * sizeof *to);
+            memcpy(to + (i - i0) * row + HDI_PACK * (j - j0), from, (size_t)run * HDI_PACK * sizeof *to);
         }
     }
     for (j = j0 > i0 ? j0 : i0 + 1; j < j1; j++) {   /* above the diagonal: entry (j,i) */
@@ -14977,7 +14957,7 @@ static void hdi_inverse_pivots_pack(const hdi_inverse_front *w) {
     hdi_pack_rows x;
     hdi_pack_job g;
     int64_t i, k;
-    memset(w->T, 0, HDI_CAST(size_t, n * row) * sizeof *w->T);
+    memset(w->T, 0, (size_t)(n * row) * sizeof *w->T);
     memset(&x, 0, sizeof x);
     memset(&g, 0, sizeof g);
     for (i = 0; i < row; i++) w->D[i] = -dinv[i];
@@ -15001,7 +14981,7 @@ static void hdi_inverse_pivots_pack(const hdi_inverse_front *w) {
         }
         x.panel = g.c;
         x.s = l.at + k * l.row + HDI_PACK * k;
-        x.nb = HDI_CAST(int32_t, nb);
+        x.nb = (int32_t)nb;
         w->f->pack->solve_rows(&x, 0, k + nb);
     }
     w->f->pack->scale(w->T, row, 0, n, 0, n, w->D, w->S);
@@ -15034,7 +15014,7 @@ static void hdi_inverse_m_pack(const hdi_inverse_front *w, int64_t r0, int64_t r
     g.a_row = l.row;
     g.a_col = g.b_col = HDI_PACK;
     g.b_row = HDI_PACK * n;
-    g.c_row = HDI_CAST(int64_t, HDI_PACK) * HDI_INV_SLICE;
+    g.c_row = (int64_t)HDI_PACK * HDI_INV_SLICE;
     g.store = 1;
     for (r = r0; r < r1; r += HDI_INV_ROWS) {
         for (j = 0; j < n; j += HDI_INV_SLICE) {
@@ -15056,7 +15036,7 @@ static void hdi_inverse_below_pack(const hdi_inverse_front *w, int64_t r0, int64
     memset(&g, 0, sizeof g);
     g.a = buffer;
     g.a_col = g.b_row = HDI_PACK;
-    g.b_col = HDI_CAST(int64_t, HDI_PACK) * HDI_INV_SLICE;
+    g.b_col = (int64_t)HDI_PACK * HDI_INV_SLICE;
     g.c_row = z.row;
     for (r = r0; r < r1; r += HDI_INV_ROWS) {
         const int64_t end = hdi_least(r + HDI_INV_ROWS, r1);
@@ -15082,7 +15062,7 @@ static void hdi_inverse_corner_pack(const hdi_inverse_front *w, int64_t r0, int6
     memset(&g, 0, sizeof g);
     g.a_row = g.b_row = HDI_PACK;
     g.a_col = z.row;
-    g.b_col = HDI_CAST(int64_t, HDI_PACK) * HDI_INV_SLICE;
+    g.b_col = (int64_t)HDI_PACK * HDI_INV_SLICE;
     g.c = z.at;
     g.c_row = z.row;
     g.lower = 1;
@@ -15127,7 +15107,7 @@ static void hdi_inverse_gather_real(const hdi_inverse_front *w, int64_t i0, int6
                                     int64_t j1, double *to) {
     const int64_t mr = w->f->real->mr;
     int64_t i, j;
-    if (i1 - i0 < mr) memset(to, 0, HDI_CAST(size_t, mr * (j1 - j0)) * sizeof *to);
+    if (i1 - i0 < mr) memset(to, 0, (size_t)(mr * (j1 - j0)) * sizeof *to);
     for (j = j0; j < j1 && j < i1; j++) {
         const double *from = hdi_inverse_at_real(w, j) - j;
         for (i = i0 > j ? i0 : j; i < i1; i++) to[(j - j0) * mr + i - i0] = from[i];
@@ -15155,7 +15135,7 @@ static void hdi_inverse_slices_real(double *to, int32_t nr, const double *x, int
 
 static void hdi_inverse_clear_real(double *c, int64_t ld, int64_t rows, int64_t cols) {
     int64_t j;
-    for (j = 0; j < cols; j++) memset(c + j * ld, 0, HDI_CAST(size_t, rows) * sizeof *c);
+    for (j = 0; j < cols; j++) memset(c + j * ld, 0, (size_t)rows * sizeof *c);
 }
 
 /* C = C - X' Y, column-major; X and Y of `depth` rows, Y in w->slices, of its n columns. */
@@ -15170,12 +15150,12 @@ static void hdi_inverse_cross_real(const hdi_inverse_front *w, const hdi_inverse
                                    int64_t i1,
                                    double *buffer) {
     const hdi_real_ops *o = w->f->real;
-    const int32_t n = HDI_CAST(int32_t, g->n), depth = HDI_CAST(int32_t, g->depth);
+    const int32_t n = (int32_t)g->n, depth = (int32_t)g->depth;
     int64_t i, j;
     for (i = i0; i < i1; i += o->mr) {
-        const int32_t rows = HDI_CAST(int32_t, hdi_least(i1 - i, o->mr));
+        const int32_t rows = (int32_t)hdi_least(i1 - i, o->mr);
         for (j = 0; j < g->depth; j += HDI_INV_DEPTH_REAL) {
-            const int32_t here = HDI_CAST(int32_t, hdi_least(g->depth - j, HDI_INV_DEPTH_REAL));
+            const int32_t here = (int32_t)hdi_least(g->depth - j, HDI_INV_DEPTH_REAL);
             hdi_inverse_slices_real(buffer, o->mr, g->x + i * g->x_ld + j, g->x_ld, here, rows);
             o->gemm(g->c + i, g->c_ld, rows, n, buffer, o->mr, w->slices + j * o->nr, depth, here);
         }
@@ -15189,14 +15169,14 @@ static void hdi_inverse_pivots_real(const hdi_inverse_front *w) {
     double *z = w->z + w->k0 * (w->m + 1);
     hdi_inverse_cross g;
     int64_t i, j, k;
-    memset(w->T, 0, HDI_CAST(size_t, n * n) * sizeof *w->T);
+    memset(w->T, 0, (size_t)(n * n) * sizeof *w->T);
     for (k = 0; k < n; k++) {
         double *t = w->T + k * n;
         t[k] = -1;
         for (j = k; j < n; j += 8) {
             const int64_t nc = hdi_least(n - j, 8);
             const double *column = l + j * (w->m + 1);
-            w->f->real->forward(t + j, column, w->m, HDI_CAST(int32_t, nc), n - j - nc, NULL, 0, 0);
+            w->f->real->forward(t + j, column, w->m, (int32_t)nc, n - j - nc, NULL, 0, 0);
         }
         for (i = 0; i < n; i++) w->S[k * n + i] = -dinv[i] * t[i];
     }
@@ -15212,12 +15192,12 @@ static void hdi_inverse_pivots_real(const hdi_inverse_front *w) {
 
 static void hdi_inverse_m_real(const hdi_inverse_front *w, int64_t r0, int64_t r1, double *buffer) {
     const hdi_real_ops *o = w->f->real;
-    const int32_t n = HDI_CAST(int32_t, w->k1 - w->k0);
+    const int32_t n = (int32_t)(w->k1 - w->k0);
     const int64_t u = w->m - w->k1;
     int64_t r;
     hdi_inverse_clear_real(w->M + r0 - w->k1, u, r1 - r0, n);
     for (r = r0; r < r1; r += o->mr) {
-        const int32_t rows = HDI_CAST(int32_t, hdi_least(r1 - r, o->mr));
+        const int32_t rows = (int32_t)hdi_least(r1 - r, o->mr);
         o->copy(buffer, w->panel + r + w->k0 * w->m, w->m, rows, n);
         o->gemm(w->M + r - w->k1, u, rows, n, buffer, o->mr, w->slices, n, n);
     }
@@ -15226,7 +15206,7 @@ static void hdi_inverse_m_real(const hdi_inverse_front *w, int64_t r0, int64_t r
 /* Rows [r0,r1) of Z21 = -Z22 M; slices are those of M. */
 static void hdi_inverse_below_real(const hdi_inverse_front *w, int64_t r0, int64_t r1, double *buffer) {
     const hdi_real_ops *o = w->f->real;
-    const int32_t n = HDI_CAST(int32_t, w->k1 - w->k0);
+    const int32_t n = (int32_t)(w->k1 - w->k0);
     int64_t r, j;
     hdi_inverse_clear_real(w->z + r0 + w->k0 * w->m, w->m, r1 - r0, n);
     for (r = r0; r < r1; r += o->mr) {
@@ -15235,8 +15215,8 @@ static void hdi_inverse_below_real(const hdi_inverse_front *w, int64_t r0, int64
             const int64_t last = hdi_least(j + HDI_INV_DEPTH_REAL, w->m);
             const double *m = w->slices + (j - w->k1) * o->nr;
             hdi_inverse_gather_real(w, r, end, j, last, buffer);
-            o->gemm(w->z + r + w->k0 * w->m, w->m, HDI_CAST(int32_t, end - r), n, buffer, o->mr, m,
-                    HDI_CAST(int32_t, w->m - w->k1), HDI_CAST(int32_t, last - j));
+            o->gemm(w->z + r + w->k0 * w->m, w->m, (int32_t)(end - r), n, buffer, o->mr, m,
+                    (int32_t)(w->m - w->k1), (int32_t)(last - j));
         }
     }
 }
@@ -15273,7 +15253,7 @@ typedef enum hdi_inverse_stage {
 
 /* One stage for rows [r0,r1). */
 static void hdi_inverse_part(const void *front, int stage, int64_t r0, int64_t r1, double *buffer) {
-    const hdi_inverse_front *w = HDI_CAST(const hdi_inverse_front *, front);
+    const hdi_inverse_front *w = (const hdi_inverse_front *)front;
     const int real = w->f->width == 1;
     if (stage == HDI_INVERSE_M) {
         if (real) hdi_inverse_m_real(w, r0, r1, buffer);
@@ -15294,12 +15274,12 @@ static void hdi_inverse_part(const void *front, int stage, int64_t r0, int64_t r
 static void hdi_inverse_stage_run(const hdi_inverse *z, const hdi_inverse_front *w, int stage,
                                   int64_t begin, int64_t end) {
     hdi_chunks h;
-    if (end > begin && !z) hdi_inverse_part(w, HDI_CAST(int, stage), begin, end, w->buffer);
+    if (end > begin && !z) hdi_inverse_part(w, (int)stage, begin, end, w->buffer);
     if (end <= begin || !z) return;
     h.run = hdi_inverse_part;
     h.front = w;
-    h.stage = HDI_CAST(int, stage);
-    h.rows = stage == HDI_INVERSE_CORNER ? HDI_CAST(int64_t, HDI_REAL_MR) : HDI_CAST(int64_t, HDI_INV_CHUNK);
+    h.stage = (int)stage;
+    h.rows = stage == HDI_INVERSE_CORNER ? (int64_t)HDI_REAL_MR : (int64_t)HDI_INV_CHUNK;
     h.work = z->chunk;
     h.work_size = z->chunk_size;
     hdi_chunks_run(&h, begin, end, w->f->ctx);
@@ -15340,7 +15320,7 @@ static void hdi_inverse_put(const hdi_inverse *z, const double *from, int64_t at
  * take 48 s and 6.7 GB; there B^2 does not fit 24 GB. */
 
 enum { HDI_FORM_COLS = 24, HDI_FORM_COLS_REAL = 8, HDI_FORM_SLOTS = 8, HDI_FORM_NEAR = 32 };
-#define HDI_FORM_OPEN (HDI_CAST(uint64_t, 1) << 63)   /* of active: the front's rows are on the stack */
+#define HDI_FORM_OPEN ((uint64_t)1 << 63)   /* of active: the front's rows are on the stack */
 
 /* A block of columns of front J under way. The rows of fronts stand on a stack. Those of a front are put
  * there when the first of its children that is touched is done, or when it has none; when the front is done
@@ -15356,7 +15336,7 @@ typedef struct hdi_form_block {
     int32_t *column;
     double *top, *end;           /* of the stack */
     double *aside, *work;        /* rows of a child, and what Z r works with */
-    double sum[HDI_CAST(int, HDI_FORM_COLS) * HDI_PACK];
+    double sum[(int)HDI_FORM_COLS * HDI_PACK];
 } hdi_form_block;
 
 /* The columns of a set, ascending; returns their number. */
@@ -15376,7 +15356,7 @@ static int32_t hdi_form_count(uint64_t set) {
 /* Doubles that Z r works with, for blocks of so many columns. */
 static uint64_t hdi_form_work(int32_t width, int32_t cols) {
     if (width == 1) return 0;
-    return HDI_CAST(uint64_t, width) * HDI_INV_ROWS * HDI_CAST(uint64_t, cols) + hdi_inverse_buffer(width);
+    return (uint64_t)width * HDI_INV_ROWS * (uint64_t)cols + hdi_inverse_buffer(width);
 }
 
 /* Doubles of a row of k columns. */
@@ -15407,7 +15387,7 @@ static double *hdi_form_open(hdi_form_block *b, int32_t v, int32_t k) {
     if (!(b->active[v] & HDI_FORM_OPEN)) {
         b->active[v] |= HDI_FORM_OPEN;
         HEATDIFF_ASSERT(size <= b->end - b->top);
-        memset(b->top, 0, HDI_CAST(size_t, size) * sizeof *b->top);
+        memset(b->top, 0, (size_t)size * sizeof *b->top);
         b->top += size;
     }
     return b->top - size;
@@ -15421,7 +15401,7 @@ static int32_t hdi_form_touch(hdi_form_block *b) {
     int64_t p;
     for (c = 0; c < b->k; c++) {
         const int64_t row = s->perm[first + b->list[c].id];
-        const uint64_t bit = HDI_CAST(uint64_t, 1) << c;
+        const uint64_t bit = (uint64_t)1 << c;
         for (p = b->q->a->row_ptr[row]; p < b->q->a->row_ptr[row + 1]; p++) {
             const int32_t i = b->q->inv[b->q->a->col[p]];
             if (i >= first || b->q->x[p] == 0) continue;
@@ -15444,8 +15424,8 @@ static void hdi_form_below(const hdi_form_block *b, int32_t v, uint64_t set, dou
         const int32_t c = at >= 0 && at < b->w->p ? b->column[at] : -1;
         double x;
         if (c < 0 || (x = b->q->x[s->a_from[n]]) == 0) continue;
-        hdi_form_add(width, x, y + s->a_col[n] * HDI_CAST(int64_t, row) +
-                     width * hdi_form_count(set & ((HDI_CAST(uint64_t, 1) << c) - 1)));
+        hdi_form_add(width, x, y + s->a_col[n] * (int64_t)row +
+                     width * hdi_form_count(set & (((uint64_t)1 << c) - 1)));
     }
 }
 
@@ -15496,7 +15476,7 @@ static void hdi_form_lift(hdi_form_block *b, int32_t v, const double *t, int32_t
     int64_t i;
     double *rows;
     if (!(b->active[up] & HDI_FORM_OPEN)) {      /* where t stands now */
-        memcpy(b->aside, t, HDI_CAST(size_t, u * row) * sizeof *t);
+        memcpy(b->aside, t, (size_t)(u * row) * sizeof *t);
         t = b->aside;
     }
     for (c = a = 0; c < k; c++) {
@@ -15506,7 +15486,7 @@ static void hdi_form_lift(hdi_form_block *b, int32_t v, const double *t, int32_t
     rows = hdi_form_open(b, up, n);
     n = hdi_form_row(f->width, n);
     for (i = 0; i < u; i++, t += row) {
-        double *HDI_RESTRICT y = rows + rel[i] * HDI_CAST(int64_t, n);
+        double *HDI_RESTRICT y = rows + rel[i] * (int64_t)n;
         if (f->width > 1) f->pack->add(y, t, to, 0, k, 0);
         else
             for (c = 0; c < k; c++) y[to[c]] += t[c];
@@ -15526,7 +15506,7 @@ static void hdi_form_front(hdi_form_block *b, int32_t v) {
     z.k = f->width == 1 ? row : k;
     hdi_form_below(b, v, b->active[v] & ~HDI_FORM_OPEN, y, row);
     hdi_sweep_forward(&z, v, y, t);
-    hdi_form_squares(b, f->dinv + HDI_CAST(int64_t, f->width) * f->sym->super[v], y, row, p, list, k);
+    hdi_form_squares(b, f->dinv + (int64_t)f->width * f->sym->super[v], y, row, p, list, k);
     b->active[v] = 0;
     b->top = y;
     hdi_form_lift(b, v, t, row, list, k);
@@ -15630,7 +15610,7 @@ static int hdi_form_near(const hdi_inverse *z, const hdi_inverse_front *w, int64
     int64_t at[HDI_FORM_NEAR], p;
     double x[HDI_FORM_NEAR], sum[HDI_PACK];
     int32_t n = 0, a, b, c;
-    *least = HDI_CAST(int32_t, first + j);
+    *least = (int32_t)(first + j);
     for (p = q->a->row_ptr[row]; p < q->a->row_ptr[row + 1]; p++) {
         const int32_t i = q->inv[q->a->col[p]];
         if (q->x[p] == 0) continue;
@@ -15644,7 +15624,7 @@ static int hdi_form_near(const hdi_inverse *z, const hdi_inverse_front *w, int64
     if (*least < first || n > HDI_FORM_NEAR) return 0;
     memset(sum, 0, sizeof sum);
     for (a = 0; a < n; a++) {
-        at[a] = hdi_form_place(w, HDI_CAST(int32_t, at[a]));
+        at[a] = hdi_form_place(w, (int32_t)at[a]);
         for (b = 0; b <= a; b++) {
             const int in_order = at[a] > at[b];
             const double *from = hdi_inverse_at(w, in_order ? at[a] : at[b], in_order ? at[b] : at[a]);
@@ -15667,20 +15647,19 @@ typedef struct hdi_form_job {
 
 /* Block begin + index, at a place of its own. */
 static void hdi_form_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_form_job *job = HDI_CAST(const hdi_form_job *, arg);
+    const hdi_form_job *job = (const hdi_form_job *)arg;
     const hdi_forms *q = job->z->forms;
     const hdi_symbolic *s = job->z->f->sym;
     const int64_t at = job->begin + index, from = at * job->n / job->n_blocks, task = s->task_of[job->w->v];
     const hdi_form_places *places = q->place + (task < 0), *before = q->place;
     const int64_t number = task >= 0 ? task : index, n_before = task >= 0 ? 0 : before->n;
-    double *room = q->room + before->size * HDI_CAST(size_t, n_before) +
-        places->size * HDI_CAST(size_t, number);
+    double *room = q->room + before->size * (size_t)n_before + places->size * (size_t)number;
     hdi_form_block b;
     (void)worker;
     b.q = q;
     b.w = job->w;
     b.list = job->list + from;
-    b.k = HDI_CAST(int32_t, (at + 1) * job->n / job->n_blocks - from);
+    b.k = (int32_t)((at + 1) * job->n / job->n_blocks - from);
     b.active = q->active + (task >= 0 ? 0 : (1 + index) * s->n_super);
     b.column = q->column + before->pivots * n_before + places->pivots * number;
     b.end = room + places->size;
@@ -15700,21 +15679,21 @@ static hdi_form_job hdi_forms_open(const hdi_inverse *z, const hdi_inverse_front
     const hdi_forms *q = z->forms;
     const hdi_symbolic *s = w->f->sym;
     const int32_t task = s->task_of[w->v];
-    hdi_pair *order = q->order + HDI_CAST(int64_t, task >= 0 ? task : s->n_tasks) * s->task_pivots;
+    hdi_pair *order = q->order + (int64_t)(task >= 0 ? task : s->n_tasks) * s->task_pivots;
     hdi_form_job job;
     int64_t j;
     int32_t least;
     memset(&job, 0, sizeof job);
     for (j = 0; j < w->p; j++) {
         if (hdi_form_near(z, w, j, &least)) continue;
-        order[job.n].key = HDI_CAST(uint64_t, least);
+        order[job.n].key = (uint64_t)least;
         order[job.n++].id = j;
     }
     hdi_sort_pairs(order, job.n);
     job.z = z;
     job.w = w;
     job.list = order;
-    job.n_blocks = HDI_CAST(int32_t, hdi_forms_blocks(q, job.n));
+    job.n_blocks = (int32_t)hdi_forms_blocks(q, job.n);
     return job;
 }
 
@@ -15760,8 +15739,8 @@ static hdi_form_places hdi_form_places_of(int64_t n, int64_t pivots, int64_t bel
     hdi_form_places p;
     p.n = n;
     p.pivots = pivots;
-    p.aside = HDI_CAST(uint64_t, below) * row;
-    p.size = p.aside + HDI_CAST(uint64_t, rows) * row;
+    p.aside = (uint64_t)below * row;
+    p.size = p.aside + (uint64_t)rows * row;
     return p;
 }
 
@@ -15780,7 +15759,7 @@ static void hdi_forms_size(hdi_forms *q, const hdi_symbolic *s, int32_t width, i
     while (q->cols > 1 && q->cols * (s->n_tasks * in_tasks + q->n_slots * in_all) > stored / 2 +
            HDI_FORM_SMALL)
         q->cols = width == 1 ? 1 : q->cols / 2;
-    row = HDI_CAST(uint64_t, width) * HDI_CAST(uint64_t, q->cols);
+    row = (uint64_t)width * (uint64_t)q->cols;
     q->place[0] = hdi_form_places_of(s->n_tasks, s->task_pivots, s->task_update, in_tasks, row);
     q->place[1] = hdi_form_places_of(q->n_slots, s->largest_pivots, s->largest_update, in_all, row);
     for (k = 0; k < 2; k++) q->place[k].size += hdi_form_work(width, q->cols);
@@ -15791,11 +15770,10 @@ static int64_t hdi_forms_take(hdi_forms *q, const hdi_symbolic *s, hdi_scope *ke
     const hdi_form_places *p = q->place;
     const int64_t columns = p[0].n * p[0].pivots + p[1].n * p[1].pivots;
     q->inv = HDI_TAKE(keep, int32_t, s->n);
-    q->active = HDI_TAKE_ZERO(keep, uint64_t, (1 + HDI_CAST(int64_t, q->n_slots)) * s->n_super);
+    q->active = HDI_TAKE_ZERO(keep, uint64_t, (1 + (int64_t)q->n_slots) * s->n_super);
     q->column = HDI_TAKE(keep, int32_t, columns);
     q->order = HDI_TAKE(keep, hdi_pair, p[0].n * p[0].pivots + s->largest_pivots);
-    q->room = HDI_TAKE(keep, double, HDI_CAST(uint64_t, p[0].n) * p[0].size +
-                       HDI_CAST(uint64_t, p[1].n) * p[1].size);
+    q->room = HDI_TAKE(keep, double, (uint64_t)p[0].n * p[0].size + (uint64_t)p[1].n * p[1].size);
     return columns;
 }
 
@@ -15803,7 +15781,7 @@ static int64_t hdi_forms_take(hdi_forms *q, const hdi_symbolic *s, hdi_scope *ke
 static hd_status hdi_forms_make(hdi_forms *q, const hdi_symbolic *s, int32_t width, const hd_csr *a,
                                 const double *x, hd_context *ctx, hd_error *e) {
     hdi_scope temp = hdi_scope_begin(ctx, e), keep = temp;
-    int64_t *need = HDI_TAKE(&temp, int64_t, HDI_CAST(int64_t, s->n_super) + 1), columns, i;
+    int64_t *need = HDI_TAKE(&temp, int64_t, (int64_t)s->n_super + 1), columns, i;
     memset(q, 0, sizeof *q);
     if (e->status < 0) return hdi_scope_end(&temp);
     q->a = a;
@@ -15815,7 +15793,7 @@ static hd_status hdi_forms_make(hdi_forms *q, const hdi_symbolic *s, int32_t wid
         hdi_scope_end(&keep);
         return hdi_scope_end(&temp);
     }
-    for (i = 0; i < s->n; i++) q->inv[s->perm[i]] = HDI_CAST(int32_t, i);
+    for (i = 0; i < s->n; i++) q->inv[s->perm[i]] = (int32_t)i;
     hdi_fill_i32(q->column, columns, -1);
     return hdi_scope_end(&temp);                 /* what keep holds is q's own now */
 }
@@ -15825,7 +15803,7 @@ static hd_status hdi_forms_make(hdi_forms *q, const hdi_symbolic *s, int32_t wid
 static uint64_t hdi_forms_bytes(const hdi_symbolic *s, int32_t width, uint64_t later, hd_context *ctx,
                                 hd_error *e) {
     hdi_scope temp = hdi_scope_begin(ctx, e), tally;
-    const int64_t count = HDI_CAST(int64_t, s->n_super) + 1;
+    const int64_t count = (int64_t)s->n_super + 1;
     int64_t *need = HDI_TAKE(&temp, int64_t, count);
     uint64_t bytes = 0, first = 0;
     hd_error none;
@@ -15835,7 +15813,7 @@ static uint64_t hdi_forms_bytes(const hdi_symbolic *s, int32_t width, uint64_t l
     if (need) {
         hdi_forms_size(&q, s, width, need);
         (void)hdi_forms_take(&q, s, &tally);
-        hdi_scope_count(&first, HDI_CAST(uint64_t, count), sizeof *need);
+        hdi_scope_count(&first, (uint64_t)count, sizeof *need);
         bytes += first > later ? first - later : 0;
     }
     hdi_scope_end(&temp);
@@ -15910,7 +15888,7 @@ typedef struct hdi_inverse_loop {
 } hdi_inverse_loop;
 
 static void hdi_inverse_step_set(hdi_inverse_step *c, int stage, int64_t begin, int64_t end, int64_t rows) {
-    c->stage = HDI_CAST(int32_t, stage);
+    c->stage = (int32_t)stage;
     c->begin = begin;
     c->end = end;
     c->rows = rows;
@@ -15927,7 +15905,7 @@ static void hdi_inverse_step_front(const hdi_symbolic *s, hdi_inverse_step *c) {
     c->kid = s->kid_ptr[v];
     c->k1 = hdi_front_pivots(s, v);
     c->k0 = (c->k1 - 1) / HDI_PANEL * HDI_PANEL;
-    if (m < 2 * HDI_CAST(int64_t, HDI_INV_CHUNK)) hdi_inverse_step_set(c, HDI_INVERSE_WHOLE, 0, 1, 1);
+    if (m < 2 * (int64_t)HDI_INV_CHUNK) hdi_inverse_step_set(c, HDI_INVERSE_WHOLE, 0, 1, 1);
     else hdi_inverse_step_set(c, HDI_INVERSE_M, c->k1, m, HDI_INV_CHUNK);
 }
 
@@ -15939,8 +15917,7 @@ static int hdi_inverse_step_next(const hdi_inverse *z, const hdi_symbolic *s, hd
     if (c->stage == HDI_INVERSE_M) {
         hdi_inverse_step_set(c, HDI_INVERSE_BELOW, c->k1, m, HDI_INV_CHUNK);
     } else if (c->stage == HDI_INVERSE_BELOW) {
-        hdi_inverse_step_set(c, HDI_INVERSE_CORNER, 0, c->k1 < m ? c->k1 - c->k0 : 0,
-                             HDI_CAST(int64_t, HDI_REAL_MR));
+        hdi_inverse_step_set(c, HDI_INVERSE_CORNER, 0, c->k1 < m ? c->k1 - c->k0 : 0, (int64_t)HDI_REAL_MR);
     } else if (c->stage == HDI_INVERSE_CORNER && c->k0 > 0) {
         c->k1 = c->k0;
         c->k0 -= HDI_PANEL;
@@ -15995,7 +15972,7 @@ static void hdi_inverse_enter(hdi_inverse_loop *l, int32_t worker) {
         hdi_inverse_emit(l->z, w);
     } else if (c->stage == HDI_INVERSE_FORMS) {
         if (c->begin == 0) l->form = hdi_forms_open(l->z, w);
-        l->form.begin = HDI_CAST(int32_t, c->begin);
+        l->form.begin = (int32_t)c->begin;
     } else if (c->stage == HDI_INVERSE_CHILD) {
         w->child = s->kid[c->kid - 1];
     }
@@ -16013,7 +15990,7 @@ static int32_t hdi_inverse_advance(hdi_inverse_loop *l, int32_t worker, int32_t 
         hdi_inverse_enter(l, worker);
     } while (hdi_inverse_step_nodes(&l->at) == 0);
     *id = 0;
-    l->left = HDI_CAST(int32_t, hdi_inverse_step_nodes(&l->at));
+    l->left = (int32_t)hdi_inverse_step_nodes(&l->at);
     return l->left;
 }
 
@@ -16028,30 +16005,30 @@ static void hdi_inverse_chunk(hdi_inverse_loop *l, int32_t i) {
         if (c->begin + i < l->form.n_blocks) hdi_form_task(&l->form, i, 0);
     } else {
         hdi_inverse_part(&l->w, c->stage, r0, hdi_least(r0 + c->rows, c->end),
-                         l->z->chunk + l->z->chunk_size * HDI_CAST(size_t, chunk));
+                         l->z->chunk + l->z->chunk_size * (size_t)chunk);
     }
 }
 
 static void hdi_inverse_task(void *arg, int64_t index, int32_t worker) {
-    hdi_inverse *z = HDI_CAST(hdi_inverse *, arg);
+    hdi_inverse *z = (hdi_inverse *)arg;
     const hdi_symbolic *s = z->f->sym;
     const int64_t i = s->n_tasks - 1 - index;
-    const double done = z->done + (1 - z->done) * HDI_CAST(double, index) / s->n_tasks;
+    const double done = z->done + (1 - z->done) * (double)index / s->n_tasks;
     int32_t v;
     if (HDI_LOAD(&z->stop)) return;
     if (worker == 0 && hdi_progress(z->f->ctx, "invert", done, &z->error) < 0) HDI_STORE(&z->stop, 1);
     for (v = s->task_end[i]; v-- > s->task_begin[i] && !HDI_LOAD(&z->stop);)
-        hdi_inverse_front_run(z, v, z->scratch + z->scratch_size * HDI_CAST(size_t, i), 0);
+        hdi_inverse_front_run(z, v, z->scratch + z->scratch_size * (size_t)i, 0);
 }
 
 static void hdi_inverse_node(void *arg, int64_t index, int32_t worker) {
-    hdi_inverse_loop *l = HDI_CAST(hdi_inverse_loop *, arg);
+    hdi_inverse_loop *l = (hdi_inverse_loop *)arg;
     int32_t id, n;
     if (index >= HDI_INVERSE_TASKS) {
         hdi_inverse_task(l->z, index - HDI_INVERSE_TASKS, worker);
         return;
     }
-    if (!HDI_LOAD(&l->z->stop)) hdi_inverse_chunk(l, HDI_CAST(int32_t, index));
+    if (!HDI_LOAD(&l->z->stop)) hdi_inverse_chunk(l, (int32_t)index);
     if (HDI_ATOMIC_ADD(&l->left, -1) != 0) return;
     n = hdi_inverse_advance(l, worker, &id);
     hdi_release_many(l->threads, id, n, l->order);
@@ -16093,7 +16070,7 @@ static void hdi_inverse_share(hdi_inverse *z, hd_threads *threads, int32_t n, in
 /* The arrays that inverting factors of the given width takes. */
 static void hdi_inverse_take(hdi_inverse *z, const hdi_symbolic *s, int32_t width, hdi_scope *keep) {
     const int64_t *at = width == 1 ? s->panel : s->panel_pack;
-    const int32_t chunks = s->largest_front / HDI_INV_CHUNK + HDI_PANEL / HDI_CAST(int32_t, HDI_REAL_MR) + 2;
+    const int32_t chunks = s->largest_front / HDI_INV_CHUNK + HDI_PANEL / (int32_t)HDI_REAL_MR + 2;
     uint64_t size;
     int32_t v;
     memset(z, 0, sizeof *z);
@@ -16104,9 +16081,9 @@ static void hdi_inverse_take(hdi_inverse *z, const hdi_symbolic *s, int32_t widt
         if (s->task_of[v] >= 0 && size > z->scratch_size) z->scratch_size = size;
     }
     z->chunk_size = hdi_inverse_buffer(width);
-    size = z->scratch_size * HDI_CAST(uint64_t, s->n_tasks) + z->top_size;
+    size = z->scratch_size * (uint64_t)s->n_tasks + z->top_size;
     z->scratch = HDI_TAKE(keep, double, size);
-    z->chunk = HDI_TAKE(keep, double, s->n_top ? z->chunk_size * HDI_CAST(uint64_t, chunks) : 1);
+    z->chunk = HDI_TAKE(keep, double, s->n_top ? z->chunk_size * (uint64_t)chunks : 1);
 }
 
 /* The bytes of that, and of the order that hdi_inverse_run takes: of this alone to *order, unless NULL. Also
@@ -16121,7 +16098,7 @@ static uint64_t hdi_inverse_bytes(const hdi_symbolic *s, int32_t width, int fact
     keep.left = room;
     if (factor) hdi_factor_take(&f, s, width, &keep);
     hdi_inverse_take(&z, s, width, &keep);
-    hdi_scope_count(&later, HDI_CAST(uint64_t, s->n_top > 0 ? hdi_inverse_count(&z, s) : 0), sizeof(int32_t));
+    hdi_scope_count(&later, (uint64_t)(s->n_top > 0 ? hdi_inverse_count(&z, s) : 0), sizeof(int32_t));
     if (order) *order = later;
     return bytes + later;
 }
@@ -16130,7 +16107,7 @@ static uint64_t hdi_inverse_bytes(const hdi_symbolic *s, int32_t width, int fact
  * the factor's update matrices. */
 static hd_status hdi_inverse_run(hdi_inverse *z, hdi_factor *f, hd_error *e) {
     const hdi_symbolic *s = f->sym;
-    double *scratch = z->scratch + z->scratch_size * HDI_CAST(size_t, s->n_tasks);
+    double *scratch = z->scratch + z->scratch_size * (size_t)s->n_tasks;
     hdi_scope scope = hdi_scope_begin(f->ctx, e);
     const int64_t n = s->n_top > 0 ? hdi_inverse_count(z, s) : 0;
     int32_t i, *order = HDI_TAKE(&scope, int32_t, n);
@@ -16140,7 +16117,7 @@ static hd_status hdi_inverse_run(hdi_inverse *z, hdi_factor *f, hd_error *e) {
     z->stop = 0;
     z->done = s->n_top > 0 ? 0.5 : 0;
     hdi_error_clear(&z->error);
-    if (threads) hdi_inverse_share(z, threads, HDI_CAST(int32_t, n), order, scratch);
+    if (threads) hdi_inverse_share(z, threads, (int32_t)n, order, scratch);
     for (i = s->n_top; i-- > 0 && !threads && !z->stop;) {
         const int shared = hdi_front_rows(s, s->top[i]) >= 2 * HDI_INV_CHUNK;
         if (hdi_progress(f->ctx, "invert", 0.5 * (s->n_top - 1 - i) / s->n_top, &z->error) < 0) z->stop = 1;
@@ -16168,7 +16145,7 @@ static int32_t hdi_ldl_spread(const hd_ldl *f, const double *x, double *val, dou
             const int64_t row = f->row_ptr[j];
             if (val) val[stride * p] = x[q];
             if (i == j) found++;
-            if (i == j && diag) diag[HDI_CAST(int64_t, stride) * i] = x[q];
+            if (i == j && diag) diag[(int64_t)stride * i] = x[q];
             if (i != j && val)
                 val[stride * (row + hdi_lower_bound(f->col + row, f->row_ptr[j + 1] - row, i))] = x[q];
         }
@@ -16179,7 +16156,7 @@ static int32_t hdi_ldl_spread(const hd_ldl *f, const double *x, double *val, dou
 /* The diagonal by pivots x [n], to the rows of A. */
 static void hdi_ldl_diagonal(const hd_ldl *f, const double *x, double *diag, int stride) {
     int32_t i;
-    for (i = 0; i < f->n; i++) diag[HDI_CAST(int64_t, stride) * f->sym.perm[i]] = x[i];
+    for (i = 0; i < f->n; i++) diag[(int64_t)stride * f->sym.perm[i]] = x[i];
 }
 
 /* One factor, real or of up to four matrices: part c of matrix q goes to values + stride (q nnz) + c, and so
@@ -16201,7 +16178,7 @@ static hd_status hdi_ldl_invert(hd_ldl *f, hdi_factor *of, int32_t n_matrices, d
     z.n_sets = n_sets;
     z.values = x;
     if (values) {
-        memset(x, 0, HDI_CAST(size_t, n_sets * entries) * sizeof *x);
+        memset(x, 0, (size_t)(n_sets * entries) * sizeof *x);
         z.stride = entries;
         (void)hdi_inverse_run(&z, of, e);
         for (q = 0; q < n_sets && e->status >= 0; q++)
@@ -16209,7 +16186,7 @@ static hd_status hdi_ldl_invert(hd_ldl *f, hdi_factor *of, int32_t n_matrices, d
                                    diag ? diag + stride * (q / stride * n) + q % stride : NULL, stride);
     }
     if (diag && e->status >= 0 && (!values || found < f->n)) {
-        memset(x, 0, HDI_CAST(size_t, n_sets * n) * sizeof *x);
+        memset(x, 0, (size_t)(n_sets * n) * sizeof *x);
         z.wanted = HDI_WANT_DIAGONAL;
         z.stride = n;
         (void)hdi_inverse_run(&z, of, e);
@@ -16237,31 +16214,30 @@ static void hdi_ldl_column(const hd_ldl *f, const hdi_factor *of, const hdi_ldl_
     hdi_sweep z = hdi_sweep_open(of, 1, x, f->work[width > 1]);
     int64_t p;
     int32_t v, q;
-    memset(t->active, 0, HDI_CAST(size_t, s->n_super));
-    memset(t->wanted, 0, HDI_CAST(size_t, s->n_super));
+    memset(t->active, 0, (size_t)s->n_super);
+    memset(t->wanted, 0, (size_t)s->n_super);
     hdi_sweep_touch(s, source, t->active);
     for (p = begin; p < end; p++) hdi_sweep_touch(s, f->inv[t->i[t->order[p].id]], t->wanted);
-    for (q = 0; q < (width == 1 ? 1 : HDI_PACK_LANES); q++) x[HDI_CAST(int64_t, width) * source + q] = 1;
+    for (q = 0; q < (width == 1 ? 1 : HDI_PACK_LANES); q++) x[(int64_t)width * source + q] = 1;
     z.active = t->active;
     z.wanted = t->wanted;
     hdi_sweep_run(&z, NULL);
     for (p = begin; p < end; p++) {
         const int64_t to = t->order[p].id;
-        const double *at = x + HDI_CAST(int64_t, width) * f->inv[t->i[to]];
+        const double *at = x + (int64_t)width * f->inv[t->i[to]];
         for (q = 0; q < n_matrices * stride; q++)
             values[stride * (q / stride * t->n + to) + q % stride] = at[hdi_pack_part(q, stride)];
     }
     for (v = 0; v < s->n_super; v++)
         if (t->active[v] || t->wanted[v])
-            memset(x + HDI_CAST(int64_t, width) * s->super[v], 0,
-                   HDI_CAST(size_t, width * hdi_front_pivots(s, v)) * sizeof *x);
+            memset(x + (int64_t)width * s->super[v], 0, (size_t)(width * hdi_front_pivots(s, v)) * sizeof *x);
 }
 
 /* Entries of one factor's inverses: part c of matrix q goes to values + stride (q n + entry) + c. */
 static void hdi_ldl_some(const hd_ldl *f, const hdi_factor *of, const hdi_ldl_entries *t, int32_t n_matrices,
                          double *values) {
     int64_t begin, end;
-    memset(f->x[of->width > 1], 0, HDI_CAST(size_t, f->n) * HDI_CAST(size_t, of->width) * sizeof *values);
+    memset(f->x[of->width > 1], 0, (size_t)f->n * (size_t)of->width * sizeof *values);
     for (begin = 0; begin < t->n; begin = end) {
         for (end = begin; end < t->n && t->order[end].key == t->order[begin].key; end++) {}
         hdi_ldl_column(f, of, t, begin, end, n_matrices, values);
@@ -16286,7 +16262,7 @@ static hd_status hdi_ldl_inverse_entries(hd_ldl *f, int packs, int64_t n, const 
     t.wanted = HDI_TAKE(&s, char, f->sym.n_super);
     if (e->status < 0) return hdi_scope_end(&s);
     for (q = 0; q < n; q++) {
-        order[q].key = HDI_CAST(uint64_t, j[q]);
+        order[q].key = (uint64_t)j[q];
         order[q].id = q;
     }
     hdi_sort_pairs(order, n);
@@ -16363,11 +16339,11 @@ static int32_t hdi_precond_levels(const hd_csr *a, int32_t start, int32_t *order
             const int32_t j = a->col[p];
             if (seen[j] == stamp) continue;
             seen[j] = stamp;
-            work[k].key = HDI_CAST(uint64_t, a->row_ptr[j + 1] - a->row_ptr[j]);
+            work[k].key = (uint64_t)(a->row_ptr[j + 1] - a->row_ptr[j]);
             work[k++].id = j;
         }
         hdi_sort_pairs(work, k);
-        for (q = 0; q < k; q++) order[n++] = HDI_CAST(int32_t, work[q].id);
+        for (q = 0; q < k; q++) order[n++] = (int32_t)work[q].id;
     }
     return n;
 }
@@ -16428,7 +16404,7 @@ static void hdi_upper_free(hd_context *ctx, hdi_upper *u) {
 
 static hd_status hdi_upper_make(hdi_upper *u, const hd_csr *L, hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
-    int64_t *ptr = HDI_TAKE(&s, int64_t, HDI_CAST(int64_t, L->n_rows) + 1), p, nnz = 0;
+    int64_t *ptr = HDI_TAKE(&s, int64_t, (int64_t)L->n_rows + 1), p, nnz = 0;
     /* a symmetric pattern with full diagonal */
     int32_t *col = HDI_TAKE(&s, int32_t, (L->nnz - L->n_rows) / 2), i;
     if (e->status < 0) return hdi_scope_end(&s);
@@ -16439,8 +16415,8 @@ static hd_status hdi_upper_make(hdi_upper *u, const hd_csr *L, hd_context *ctx, 
     }
     ptr[L->n_rows] = nnz;
     u->n = L->n_rows;
-    u->ptr = HDI_CAST(int64_t *, hdi_keep(&s, ptr));
-    u->col = HDI_CAST(int32_t *, hdi_keep(&s, col));
+    u->ptr = (int64_t *)hdi_keep(&s, ptr);
+    u->col = (int32_t *)hdi_keep(&s, col);
     return hdi_scope_end(&s);
 }
 
@@ -16553,7 +16529,7 @@ static void hdi_precond_make(hdi_precond *m, const hdi_system *a, hd_c64 *work, 
         for (i = 0; i < n; i++)
             for (p = m->up->ptr[i]; p < m->up->ptr[i + 1]; p++) m->u[p] = hdi_cdiv(m->u[p], m->d_inv[i]);
     } else if (m->kind != HD_PRECOND_JACOBI) {
-        memcpy(work, m->d_inv, HDI_CAST(size_t, n) * sizeof *work);
+        memcpy(work, m->d_inv, (size_t)n * sizeof *work);
         for (i = 0; i < n; i++) mark[i] = -1;
         hdi_ildl(m->up, m->u, m->d_inv, work, m->kind == HD_PRECOND_MILDL ? HDI_MILDL_KEPT : 0, mark);
     }
@@ -16569,14 +16545,14 @@ static void hdi_precond_apply(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r
     int32_t i;
     int64_t p;
     if (!m->d_inv) {
-        memcpy(z, r, HDI_CAST(size_t, n) * sizeof *z);
+        memcpy(z, r, (size_t)n * sizeof *z);
         return;
     }
     if (!u) {
         for (i = 0; i < n; i++) z[i] = hdi_cmul(r[i], m->d_inv[i]);
         return;
     }
-    memcpy(z, r, HDI_CAST(size_t, n) * sizeof *z);
+    memcpy(z, r, (size_t)n * sizeof *z);
     for (i = 0; i < n; i++) {
         const hd_c64 w = z[i];
         HDI_PREFETCH_AT(u, ptr[i] + HDI_AHEAD / 4);
@@ -16654,7 +16630,7 @@ static void hdi_deflate(const hd_laplacian *lap, hd_c64 *z, hd_c64 *sums) {
     const int32_t *comp = lap->component;
     int32_t i;
     if (!lap->conserves) return;
-    memset(sums, 0, HDI_CAST(size_t, lap->n_components) * sizeof *sums);
+    memset(sums, 0, (size_t)lap->n_components * sizeof *sums);
     for (i = 0; i < lap->n_active; i++)
         sums[comp[i]] = hdi_cadd(sums[comp[i]], hdi_cscale(lap->mass[i], z[i]));
     for (i = 0; i < lap->n_components; i++) sums[i] = hdi_cscale(1 / lap->component_mass[i], sums[i]);
@@ -16707,7 +16683,7 @@ static void hdi_krylov_measure(hdi_krylov *k) {
     const hd_laplacian *lap = k->a.lap;
     const int32_t n = lap->conserves ? lap->n_active : 0, *c = lap->component;
     int32_t i;
-    memset(k->sums, 0, HDI_CAST(size_t, lap->n_components) * sizeof *k->sums);
+    memset(k->sums, 0, (size_t)lap->n_components * sizeof *k->sums);
     for (i = 0; i < n; i++) k->sums[c[i]] = hdi_cadd(k->sums[c[i]], k->r[i]);
     for (i = 0; i < n; i++)
         k->r[i] = hdi_csub(k->r[i], hdi_cscale(lap->mass[i] / lap->component_mass[c[i]], k->sums[c[i]]));
@@ -16765,7 +16741,7 @@ static hd_c64 hdi_krylov_precond_dot(hdi_krylov *k, const hd_c64 *HDI_RESTRICT r
     hd_c64 dot = hdi_c(0, 0), mean = dot, *sums = k->sums;
     int32_t i;
     hdi_precond_apply(k->m, r, z);
-    memset(sums, 0, HDI_CAST(size_t, lap->n_components) * sizeof *sums);
+    memset(sums, 0, (size_t)lap->n_components * sizeof *sums);
     for (i = 0; i < n; i++) {
         dot = hdi_cadd(dot, hdi_cmul(r[i], z[i]));
         if (comp) sums[comp[i]] = hdi_cadd(sums[comp[i]], hdi_cscale(b[i], z[i]));
@@ -16805,7 +16781,7 @@ static hd_c64 hdi_krylov_quotient(hdi_krylov *k, hd_c64 a, hd_c64 b) {
 static void hdi_cocg_step(hdi_krylov *k) {
     hd_c64 *p = k->v[0], *q = k->v[1], alpha, rho;
     if (!k->ready) {
-        memset(p, 0, HDI_CAST(size_t, k->a.lap->n_active) * sizeof *p);
+        memset(p, 0, (size_t)k->a.lap->n_active * sizeof *p);
         k->rho = hdi_krylov_precond_dot(k, k->r, q);
         hdi_krylov_deflated_direction(k, hdi_c(0, 0), q, p);
     }
@@ -16824,8 +16800,8 @@ static void hdi_cocr_step(hdi_krylov *k) {
     if (!k->ready) {
         hdi_krylov_precond(k, k->r, z);
         k->rho = hdi_system_apply(&k->a, z, az);
-        memcpy(p, z, HDI_CAST(size_t, n) * sizeof *p);
-        memcpy(q, az, HDI_CAST(size_t, n) * sizeof *q);
+        memcpy(p, z, (size_t)n * sizeof *p);
+        memcpy(q, az, (size_t)n * sizeof *q);
     }
     hdi_krylov_precond(k, q, mq);
     alpha = hdi_krylov_quotient(k, k->rho, hdi_cdotu(q, mq, n));
@@ -16855,7 +16831,7 @@ static void hdi_minres_start(hdi_krylov *k) {
     const int32_t n = k->a.lap->n_active;
     hd_c64 *w_old = k->v[0], *w = k->v[1], *y = k->v[2], *d = k->v[3], *d_old = k->v[4];
     int32_t i;
-    memcpy(w, k->r, HDI_CAST(size_t, n) * sizeof *w);
+    memcpy(w, k->r, (size_t)n * sizeof *w);
     hdi_krylov_precond(k, w, y);
     k->beta = hdi_minres_beta(k, w, y);
     k->beta_old = k->c1 = 1;
@@ -16930,7 +16906,7 @@ static void hdi_minres_step(hdi_krylov *k) {
 
 /* Begins at x = 0. The residual is reported against b_norm. */
 static void hdi_krylov_start(hdi_krylov *k, const hd_c64 *b, double b_norm) {
-    const size_t bytes = HDI_CAST(size_t, k->a.lap->n_active) * sizeof *k->x;
+    const size_t bytes = (size_t)k->a.lap->n_active * sizeof *k->x;
     memset(k->x, 0, bytes);
     memcpy(k->r, b, bytes);
     hdi_krylov_measure(k);
@@ -17000,7 +16976,7 @@ static hd_status hdi_krylov_round(hdi_krylov *k, double target, double floor_sha
  * stops when another round does not halve it, and returns the best x with HD_WARN_ACCURACY. */
 static hd_status hdi_krylov_run(hdi_krylov *k, const hd_c64 *b, double target, int64_t max_iterations,
                                 const hdi_watch *watch, hd_error *e) {
-    const size_t bytes = HDI_CAST(size_t, k->a.lap->n_active) * sizeof *k->x;
+    const size_t bytes = (size_t)k->a.lap->n_active * sizeof *k->x;
     const double start = k->r_norm;
     double before = k->r_norm, floor_share = 0.5;
     int64_t left = max_iterations;
@@ -17044,7 +17020,7 @@ enum { HDI_MASS_STEPS = 1000 };
 static hd_status hdi_mass_solve(const hd_laplacian *lap, const double *w, double *u, double *work,
                                 hd_error *e) {
     const int32_t n = lap->n_active;
-    double *r = work, *p = work + n, *q = work + 2 * HDI_CAST(int64_t, n), rho = 0, rho_new, start;
+    double *r = work, *p = work + n, *q = work + 2 * (int64_t)n, rho = 0, rho_new, start;
     int32_t i, step;
     if (!lap->B) {
         for (i = 0; i < n; i++) u[i] = w[i] / lap->mass[i];
@@ -17798,7 +17774,7 @@ enum {
  * what the fit is known to reach: the table records the errors at many times with what rounding can add,
  * and HDI_SHARED_PROVEN of it is proven for any time. */
 static int hdi_shared_pick(hd_rational *out, double lambda, double target) {
-    const int32_t size = HDI_CAST(int32_t, sizeof hdi_shared_table / sizeof *hdi_shared_table);
+    const int32_t size = (int32_t)(sizeof hdi_shared_table / sizeof *hdi_shared_table);
     hd_rational set;
     hd_error e;
     int32_t k, i, n;
@@ -17810,7 +17786,7 @@ static int hdi_shared_pick(hd_rational *out, double lambda, double target) {
     }
     for (k = 0; k < size; k += 4 + 2 * n) {
         const double *row = hdi_shared_table + k, error = HDI_SHARED_PROVEN * row[2];
-        n = HDI_CAST(int32_t, row[1]);
+        n = (int32_t)row[1];
         if (!(lambda <= row[0] && error <= target)) continue;
         memset(out, 0, sizeof *out);
         out->kind = HD_POLES_KERNEL;
@@ -17889,8 +17865,8 @@ static int32_t hdi_shared_points(int32_t n_poles) { return 8 * n_poles + 96; }
 
 /* Doubles that hdi_shared_fit works in. */
 static uint64_t hdi_shared_room(int32_t n_poles) {
-    const uint64_t n = HDI_CAST(uint64_t, 2 * n_poles);
-    const uint64_t rows = HDI_CAST(uint64_t, hdi_shared_points(n_poles)) + 1;
+    const uint64_t n = (uint64_t)(2 * n_poles);
+    const uint64_t rows = (uint64_t)hdi_shared_points(n_poles) + 1;
     return rows * n + rows + (rows + n) * n + 2 * rows + 3 * n;
 }
 
@@ -17922,7 +17898,7 @@ static void hdi_shared_matrix(hdi_shared_work *k, const hd_rational *set, double
     hdi_shared_range(set, &least, &most);
     for (r = 0; r < k->rows; r++) {
         const int last = r == k->points;
-        const double part = HDI_CAST(double, r) / (k->points - 1), q = last ? 0 : 1;
+        const double part = (double)r / (k->points - 1), q = last ? 0 : 1;
         const double p = last ? 1 : 0.02 * least * exp(part * log(750 * most / least));
         k->b[r] = last ? 0 : (1 + tau * p) * exp(-tau * p);
         for (i = 0; i < k->n; i++) {             /* -2 Re a/(p + theta q): x = -y */
@@ -17959,7 +17935,7 @@ static void hdi_shared_condition(hdi_shared_work *k, const hd_rational *set) {
     k->v[0] -= head;
     norm = sqrt(-head * k->v[0]);                /* |v|/sqrt(2) */
     for (i = 0; i < n; i++) k->v[i] /= norm;
-    memset(k->e, 0, HDI_CAST(size_t, k->rows) * sizeof(double));
+    memset(k->e, 0, (size_t)k->rows * sizeof(double));
     for (i = 0; i < n; i++) hdi_axpy(k->v[i], k->A + i * k->rows, k->e, k->rows);
     for (i = 0; i < n; i++) hdi_axpy(-k->v[i], k->e, k->A + i * k->rows, k->rows);
 }
@@ -17973,8 +17949,8 @@ static double hdi_shared_step(hdi_shared_work *k) {
     double worst = 0;
     int64_t r;
     int32_t i;
-    memset(k->M, 0, HDI_CAST(size_t, ld) * HDI_CAST(size_t, n - 1) * sizeof(double));
-    memset(k->x, 0, HDI_CAST(size_t, ld) * sizeof(double));
+    memset(k->M, 0, (size_t)ld * (size_t)(n - 1) * sizeof(double));
+    memset(k->x, 0, (size_t)ld * sizeof(double));
     for (i = 1; i < n; i++) {
         double *m = k->M + (i - 1) * ld;
         for (r = 0; r < k->rows; r++) m[r] = k->w[r] * k->A[i * k->rows + r];
@@ -18272,7 +18248,7 @@ static double hdi_fit_tol(const hd_filter *filter) { return filter->tol > 0 ? fi
 
 /* Point i of n that lie evenly in log x from `from` to 1, and then of as many evenly in x. */
 static double hdi_fit_point(int32_t i, int32_t n_log, int32_t n_linear, double from) {
-    if (i < n_log) return from * pow(1 / from, HDI_CAST(double, i) / (n_log - 1));
+    if (i < n_log) return from * pow(1 / from, (double)i / (n_log - 1));
     return hdi_max(from, (i - n_log + 0.5) / n_linear);
 }
 
@@ -18357,7 +18333,7 @@ static void hdi_fit_choose(hdi_fit *k) {
 static void hdi_fit_null(double *R, double *V, int32_t c, double *w) {
     int32_t i, j, sweep, best = 0, turned = 1;
     double least = HUGE_VAL;
-    memset(V, 0, HDI_CAST(size_t, c) * HDI_CAST(size_t, c) * sizeof *V);
+    memset(V, 0, (size_t)c * (size_t)c * sizeof *V);
     for (i = 0; i < c; i++) V[i * c + i] = 1;
     for (sweep = 0; sweep < HDI_FIT_SWEEPS && turned; sweep++) {
         turned = 0;
@@ -18390,14 +18366,14 @@ static void hdi_fit_null(double *R, double *V, int32_t c, double *w) {
             best = i;
         }
     }
-    memcpy(w, V + best * c, HDI_CAST(size_t, c) * sizeof *w);
+    memcpy(w, V + best * c, (size_t)c * sizeof *w);
 }
 
 /* The weights: those that make f times the denominator nearest to the numerator, over all other points, for
  * all filters at once. */
 static void hdi_fit_weights(hdi_fit *k) {
     const int32_t c = hdi_fit_columns(k);
-    const int64_t rows = HDI_CAST(int64_t, k->n - k->m) * k->count;
+    const int64_t rows = (int64_t)(k->n - k->m) * k->count;
     double *R = k->V + c * c;
     int64_t row = 0;
     int32_t i, j, q;
@@ -18413,7 +18389,7 @@ static void hdi_fit_weights(hdi_fit *k) {
         }
     }
     hdi_least_squares(k->A, rows, c, k->b);      /* for its triangle */
-    memset(R, 0, HDI_CAST(size_t, c) * HDI_CAST(size_t, c) * sizeof *R);
+    memset(R, 0, (size_t)c * (size_t)c * sizeof *R);
     for (j = 0; j < c; j++)
         for (i = 0; i <= j; i++) R[j * c + i] = k->A[j * rows + i];
     k->w[k->m] = 0;
@@ -18541,14 +18517,14 @@ static void hdi_fit_residues(hdi_fit *k, int32_t q, hdi_fitted *s) {
     for (i = 0; i < s->n; i++) s->degree += s->p[i].im != 0 ? 2 : 1;
     cols = s->degree + (k->constant ? 1 : 0);
     rows = k->n + cols;
-    memset(k->A, 0, HDI_CAST(size_t, rows * cols) * sizeof *k->A);
-    memset(k->b, 0, HDI_CAST(size_t, rows) * sizeof *k->b);
+    memset(k->A, 0, (size_t)(rows * cols) * sizeof *k->A);
+    memset(k->b, 0, (size_t)rows * sizeof *k->b);
     for (i = 0; i < k->n; i++) k->b[i] = u[i] * f[i];
     for (i = 0; i < s->n; i++)
         for (j = 0; j < (s->p[i].im != 0 ? 2 : 1); j++, c++)
             scale[c] = hdi_fit_fraction(k, u, s->p[i], j, k->A + c * rows);
     if (c < cols) {
-        memcpy(k->A + c * rows, u, HDI_CAST(size_t, k->n) * sizeof *u);
+        memcpy(k->A + c * rows, u, (size_t)k->n * sizeof *u);
         scale[c] = sqrt(hdi_dot(u, u, k->n));
     }
     for (c = 0; c < cols; c++) {
@@ -18596,7 +18572,7 @@ static void hdi_fit_run(hdi_fit *k, hdi_fitted *best) {
     hdi_fitted s;
     int32_t i, q, known = k->constant ? 1 : 0;
     memset(best, 0, sizeof *best);
-    memset(k->support, 0, HDI_CAST(size_t, k->n));
+    memset(k->support, 0, (size_t)k->n);
     for (q = 0; q < k->count; q++) {
         const double *f = k->f + q * HDI_FIT_ROOM, *u = k->u + q * HDI_FIT_ROOM;
         for (i = 0; i < k->n; i++) {             /* without poles */
@@ -18726,8 +18702,8 @@ static hd_status hdi_fit_take(const hdi_fit *k, int32_t q, const hdi_fitted *s, 
 
 /* Work arrays of a fit of up to so many filters. */
 static void hdi_fit_room(hdi_fit *k, int32_t count, hdi_scope *s) {
-    const uint64_t cols = HDI_CAST(uint64_t, k->most) + 2, room = HDI_FIT_ROOM;
-    const uint64_t sets = HDI_CAST(uint64_t, count), rows = sets * room + cols;
+    const uint64_t cols = (uint64_t)k->most + 2, room = HDI_FIT_ROOM;
+    const uint64_t sets = (uint64_t)count, rows = sets * room + cols;
     k->x = HDI_TAKE(s, double, room);
     k->f = HDI_TAKE(s, double, (sets + 1) * room);
     k->r = HDI_TAKE(s, double, sets * room);
@@ -18831,7 +18807,7 @@ static hd_status hdi_rational_fit_shared(hd_rational *out, int32_t count, const 
         return e->status;
     }
     for (q = 0; q < first; q++)
-        pick[q] = filters + HDI_CAST(int64_t, q) * (count - 1) / hdi_high32(first - 1, 1);
+        pick[q] = filters + (int64_t)q * (count - 1) / hdi_high32(first - 1, 1);
     hdi_fit_open(&k, first, pick, filters, lambda_max, e);
     for (q = 0; q < count; q++) {
         k.constant |= filters[q].constant != 0;
@@ -18954,7 +18930,7 @@ static void hdi_ledger_join(hdi_ledger *l, const hdi_ledger *other) {
 }
 
 static void hdi_evidence_worst(hd_evidence *to, double evidence) {
-    if (evidence > HDI_CAST(double, *to)) *to = HDI_CAST(hd_evidence, HDI_CAST(int, evidence));
+    if (evidence > (double)*to) *to = (hd_evidence)(int)evidence;
 }
 
 /* A larger bound is of no use to the caller, and the status warns. */
@@ -18992,7 +18968,7 @@ static void hdi_ledger_close(const hdi_ledger *l, hd_report *rep) {
 
 /* Entries of row i of L and B. */
 static double hdi_row_terms(const hd_laplacian *lap, int32_t i) {
-    return HDI_CAST(double, lap->L.row_ptr[i + 1] - lap->L.row_ptr[i]);
+    return (double)(lap->L.row_ptr[i + 1] - lap->L.row_ptr[i]);
 }
 
 /* The diagonal entry of row i of L. */
@@ -19093,8 +19069,7 @@ static void hdi_family_free(hdi_family *fam) {
 
 /* Do two sets have the same poles? Their weights may differ. */
 static int hdi_set_same_poles(const hd_rational *a, const hd_rational *b) {
-    return a->n_poles == b->n_poles &&
-           memcmp(a->theta, b->theta, HDI_CAST(size_t, a->n_poles) * sizeof *a->theta) == 0;
+    return a->n_poles == b->n_poles && memcmp(a->theta, b->theta, (size_t)a->n_poles * sizeof *a->theta) == 0;
 }
 
 /* Takes up a set and a time. When filled is 0, hdi_family_fill must follow. */
@@ -19112,13 +19087,13 @@ static int hdi_family_turns(const hdi_family *fam) { return fam->n_values < fam-
 
 /* Room for the preconditioners of the set. */
 static hd_status hdi_family_room(hdi_family *fam, hd_error *e) {
-    const uint64_t n = HDI_CAST(uint64_t, fam->lap->n_active), upper = HDI_CAST(uint64_t, fam->up->ptr[n]);
+    const uint64_t n = (uint64_t)fam->lap->n_active, upper = (uint64_t)fam->up->ptr[n];
     const uint64_t size =
         fam->precond == HD_PRECOND_NONE ? 0 : fam->precond == HD_PRECOND_JACOBI ? n : n + upper;
     int32_t i, room = fam->set.n_poles;
     if (fam->n_values < room) {
         hdi_family_free(fam);
-        fam->values = HDI_NEW(fam->ctx, hd_c64, HDI_CAST(uint64_t, room) * (size + 1), e);
+        fam->values = HDI_NEW(fam->ctx, hd_c64, (uint64_t)room * (size + 1), e);
         if (room > 1 && hdi_over_limit(fam->ctx, e)) {
             hdi_error_clear(e);
             fam->values = HDI_NEW(fam->ctx, hd_c64, size + 1, e);
@@ -19130,8 +19105,7 @@ static hd_status hdi_family_room(hdi_family *fam, hd_error *e) {
     for (i = 0; i < fam->set.n_poles; i++) {
         fam->m[i].kind = fam->precond;
         fam->m[i].up = fam->up;
-        fam->m[i].d_inv =
-            size ? fam->values + (hdi_family_turns(fam) ? 0 : HDI_CAST(size_t, i) * (size + 1)) : NULL;
+        fam->m[i].d_inv = size ? fam->values + (hdi_family_turns(fam) ? 0 : (size_t)i * (size + 1)) : NULL;
         fam->m[i].u = size > n ? fam->m[i].d_inv + n : NULL;
     }
     return HD_OK;
@@ -19149,7 +19123,7 @@ static void hdi_family_make(const hdi_family *fam, int32_t p, hd_c64 *work) {
     a.theta = fam->set.theta[p];
     /* real, positive definite */
     if (fam->solver == HD_SOLVER_MINRES) a.theta = hdi_c(hdi_cabs(a.theta), 0);
-    hdi_precond_make(&m, &a, work, HDI_CAST(int64_t *, HDI_CAST(void *, work + fam->lap->n_active)));
+    hdi_precond_make(&m, &a, work, (int64_t *)(void *)(work + fam->lap->n_active));
 }
 
 typedef struct hdi_fill_job {
@@ -19158,10 +19132,10 @@ typedef struct hdi_fill_job {
 } hdi_fill_job;
 
 static void hdi_fill_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_fill_job *job = HDI_CAST(const hdi_fill_job *, arg);
-    const uint64_t stride = hdi_fill_work(HDI_CAST(uint64_t, job->fam->lap->n_active));
+    const hdi_fill_job *job = (const hdi_fill_job *)arg;
+    const uint64_t stride = hdi_fill_work((uint64_t)job->fam->lap->n_active);
     (void)worker;
-    hdi_family_make(job->fam, HDI_CAST(int32_t, index), job->work + stride * HDI_CAST(size_t, index));
+    hdi_family_make(job->fam, (int32_t)index, job->work + stride * (size_t)index);
 }
 
 /* Makes the preconditioners, one parallel task each. work: [hdi_fill_work] for each of them. */
@@ -19192,7 +19166,7 @@ enum { HDI_LANCZOS_MAX = 4096 };
  * and to see that no step helps any more takes a third more and 20. */
 static int32_t hdi_lanczos_most(double t, double lambda_max) {
     const double most = 100 + 12 * sqrt(t * lambda_max);
-    return most < HDI_CAST(double, HDI_LANCZOS_MAX) ? HDI_CAST(int32_t, most) : HDI_LANCZOS_MAX;
+    return most < (double)HDI_LANCZOS_MAX ? (int32_t)most : HDI_LANCZOS_MAX;
 }
 
 /* The state of a Lanczos process in the B inner product. */
@@ -19256,7 +19230,7 @@ static void hdi_lane_free(hdi_lane *lane, hd_context *ctx) {
 }
 
 static hd_status hdi_lane_make(hdi_lane *lane, const hd_laplacian *lap, hd_context *ctx, hd_error *e) {
-    const uint64_t n = HDI_CAST(uint64_t, lap->n_active), n_comp = HDI_CAST(uint64_t, lap->n_components);
+    const uint64_t n = (uint64_t)lap->n_active, n_comp = (uint64_t)lap->n_components;
     if (lane->f) return HD_OK;
     lane->f = HDI_NEW(ctx, double, 7 * n, e);
     if (lane->f) lane->target = HDI_NEW(ctx, double, 3 * n_comp, e);
@@ -19275,7 +19249,7 @@ static hd_status hdi_lane_make(hdi_lane *lane, const hd_laplacian *lap, hd_conte
 /* Room for so many steps of Lanczos. */
 static hd_status hdi_lane_lanczos(hdi_lane *lane, const hd_laplacian *lap, int32_t steps, hd_context *ctx,
                                   hd_error *e) {
-    const uint64_t n = HDI_CAST(uint64_t, lap->n_active), most = HDI_CAST(uint64_t, steps) + 1;
+    const uint64_t n = (uint64_t)lap->n_active, most = (uint64_t)steps + 1;
     hdi_lanczos *z = &lane->lanczos;
     if (z->alpha && z->room >= steps) return HD_OK;
     hdi_free(ctx, z->alpha);
@@ -19293,7 +19267,7 @@ static hd_status hdi_lane_lanczos(hdi_lane *lane, const hd_laplacian *lap, int32
     z->z0 = z->e + most;
     z->z1 = z->z0 + most;
     z->y = z->z1 + most;
-    z->work = HDI_CAST(hd_c64 *, HDI_CAST(void *, z->y + most));
+    z->work = (hd_c64 *)(void *)(z->y + most);
     return HD_OK;
 }
 
@@ -19301,9 +19275,9 @@ static hd_status hdi_lane_lanczos(hdi_lane *lane, const hd_laplacian *lap, int32
  * each, sums, and inner products. The whole of it serves to make preconditioners before. The last two of
  * those shared are the lane's work between solves. What the lane held is lost. */
 static hd_status hdi_lane_systems_make(hdi_lane *lane, const hdi_family *fam, hd_error *e) {
-    const uint64_t n = HDI_CAST(uint64_t, fam->lap->n_active), count = HDI_CAST(uint64_t, fam->set.n_poles);
-    const uint64_t shared = HDI_CAST(uint64_t, hdi_krylov_vectors(fam->solver)) + 1;
-    const uint64_t vectors = (1 + shared + count) * n + HDI_CAST(uint64_t, fam->lap->n_components);
+    const uint64_t n = (uint64_t)fam->lap->n_active, count = (uint64_t)fam->set.n_poles;
+    const uint64_t shared = (uint64_t)hdi_krylov_vectors(fam->solver) + 1;
+    const uint64_t vectors = (1 + shared + count) * n + (uint64_t)fam->lap->n_components;
     const uint64_t size = vectors + count * (sizeof(hdi_gram) / sizeof(hd_c64));
     const uint64_t fill = count * hdi_fill_work(n);
     hdi_free(fam->ctx, lane->f);
@@ -19321,14 +19295,14 @@ static hd_status hdi_lane_systems_make(hdi_lane *lane, const hdi_family *fam, hd
     lane->rhs = lane->f + n;
     lane->u = lane->rhs + n;
     lane->tmp = &lane->b[3 * n].re;
-    lane->gram = HDI_CAST(hdi_gram *, HDI_CAST(void *, lane->b + vectors));
+    lane->gram = (hdi_gram *)(void *)(lane->b + vectors);
     lane->n_systems = fam->set.n_poles;
     return HD_OK;
 }
 
 /* The systems of a set, and their constants. */
 static hd_status hdi_lane_systems(hdi_lane *lane, const hdi_family *fam, hd_error *e) {
-    const uint64_t n = HDI_CAST(uint64_t, fam->lap->n_active);
+    const uint64_t n = (uint64_t)fam->lap->n_active;
     const int n_vec = hdi_krylov_vectors(fam->solver);
     int32_t i;
     int j;
@@ -19341,8 +19315,8 @@ static hd_status hdi_lane_systems(hdi_lane *lane, const hdi_family *fam, hd_erro
         k->r = v;
         for (j = 0; j < n_vec - 1; j++) k->v[j] = v += n;
         k->spare = v += n;
-        k->x = v += n * HDI_CAST(uint64_t, i + 1);
-        k->sums = lane->b + n * HDI_CAST(uint64_t, n_vec + 2 + lane->n_systems);
+        k->x = v += n * (uint64_t)(i + 1);
+        k->sums = lane->b + n * (uint64_t)(n_vec + 2 + lane->n_systems);
         k->a.lap = fam->lap;
         k->a.t = fam->t;
         k->a.theta = fam->set.theta[i];
@@ -19772,7 +19746,7 @@ static HDI_AVX512 HDI_INLINE void hdi_check512_batch(hdi_check *const *c, const 
     real[0] = real[1] = real[2] = zero;
     for (i = 0; i < lap->n_active; i++) {
         const double *at = c[0]->x + stride * i;
-        const double *at_real = xr ? xr + HDI_CHECK_BATCH * HDI_CAST(int64_t, i) : at;
+        const double *at_real = xr ? xr + HDI_CHECK_BATCH * (int64_t)i : at;
         const hdi_v8 mass = lap->B ? zero : _mm512_set1_pd(lap->mass[i]);
         hdi_v8 l[HDI_CHECK_BATCH], b[HDI_CHECK_BATCH], lr = zero, br = zero, u, bu;
         HDI_UNROLL
@@ -19873,7 +19847,7 @@ static void hdi_elim_own(const hd_laplacian *lap, const int32_t *perm, int32_t *
 
 /* 1/diag(B), and room for three more vectors. */
 static double *hdi_make_weight(const hd_laplacian *lap, hd_context *ctx, hd_error *e) {
-    double *w = HDI_NEW(ctx, double, 4 * HDI_CAST(uint64_t, lap->n_active), e);
+    double *w = HDI_NEW(ctx, double, 4 * (uint64_t)lap->n_active, e);
     int32_t i;
     for (i = 0; w && i < lap->n_active; i++) w[i] = 1 / lap->b_diag[i];
     return w;
@@ -19986,7 +19960,7 @@ static hd_status hdi_elim_poles(hdi_elim *m, const hd_rational *set, double t, h
         }
         m->pack[i].largest_entry = hdi_elim_diagonal(m->lap, t, theta, 4);
         if (hdi_factor_run(m->pack + i, &v, e) < 0) {
-            if (e->pole >= 0) e->pole = hdi_elim_pole(m, i, HDI_CAST(int32_t, e->pole));
+            if (e->pole >= 0) e->pole = hdi_elim_pole(m, i, (int32_t)e->pole);
             return e->status;
         }
     }
@@ -20003,11 +19977,11 @@ typedef struct hdi_batch {
 
 /* Doubles of a batch's arrays. */
 static uint64_t hdi_batch_size(const hdi_elim *m, int32_t k, uint64_t *x, uint64_t *xr) {
-    const uint64_t n = HDI_CAST(uint64_t, m->sym.n), pack = hdi_sweep_size(&m->sym, HDI_PACK, k);
+    const uint64_t n = (uint64_t)m->sym.n, pack = hdi_sweep_size(&m->sym, HDI_PACK, k);
     const uint64_t real = hdi_sweep_size(&m->sym, 1, k > 1 ? 8 : 1);
-    *x = HDI_PACK * n * HDI_CAST(uint64_t, k);
+    *x = HDI_PACK * n * (uint64_t)k;
     *xr = n * (k > 1 ? 8 : 1);
-    return *x + *xr + (pack > real ? pack : real) + HDI_CAST(uint64_t, m->sym.n_super) / sizeof(double) + 8;
+    return *x + *xr + (pack > real ? pack : real) + (uint64_t)m->sym.n_super / sizeof(double) + 8;
 }
 
 static hd_status hdi_not_semidefinite(hd_error *e) {
@@ -20093,7 +20067,7 @@ static void hdi_batch_note(const hdi_elim *m, int32_t i, const hdi_check *h, hdi
 static void hdi_batch_real_note(const hdi_elim *m, const hdi_real_check *c, int32_t r, hdi_lane *to,
                                 const double *x, int32_t wide) {
     hdi_lane_residual(to, m->lap, &m->set, 0, sqrt(c->norm2[r]), sqrt(c->size2[r]), 0);
-    if (to->watch >= 0) to->pole_value[0] = hdi_c(x[HDI_CAST(int64_t, wide) * to->watch + r], 0);
+    if (to->watch >= 0) to->pole_value[0] = hdi_c(x[(int64_t)wide * to->watch + r], 0);
     hdi_lane_first(to, m->lap, &m->set, 0, hdi_max(0, c->first2[r]), sqrt(c->norm2[r]) + sqrt(c->size2[r]),
                    x + r, wide);
 }
@@ -20186,7 +20160,7 @@ static void hdi_batch_full(const hdi_elim *m, int32_t i, hdi_lane *const *lane, 
 /* Checks the solutions of pack i, and with the first those of the lone real pole. */
 static void hdi_batch_check_all(const hdi_elim *m, int32_t i, const hdi_batch *b, hdi_lane *lane, int32_t k) {
     const double *xr = i == 0 && m->lone >= 0 ? b->xr : NULL;
-    const int64_t stride = HDI_PACK * HDI_CAST(int64_t, k);
+    const int64_t stride = HDI_PACK * (int64_t)k;
     hdi_lane *list[HDI_CHECK_BATCH] = {NULL};
     int32_t r, n_list = 0, at[HDI_CHECK_BATCH];
     for (r = 0; r < k; r++) {
@@ -20226,7 +20200,7 @@ static void hdi_batch_run(const hdi_elim *m, const hdi_batch *b, hdi_lane *lane,
     int64_t j, touched = 0;
     int32_t i, r;
     hdi_sweep z;
-    memset(b->active, 0, HDI_CAST(size_t, s->n_super));
+    memset(b->active, 0, (size_t)s->n_super);
     for (r = 0; r < k; r++) {
         double norm2 = 0;
         rhs[r] = lane[r].skip ? NULL : lane[r].rhs;
@@ -20238,13 +20212,13 @@ static void hdi_batch_run(const hdi_elim *m, const hdi_batch *b, hdi_lane *lane,
             }
             if (v == 0) continue;
             norm2 += m->weight[j] * v * v;
-            if (touched++ < 64 * HDI_CAST(int64_t, k)) hdi_sweep_touch(s, HDI_CAST(int32_t, j), b->active);
+            if (touched++ < 64 * (int64_t)k) hdi_sweep_touch(s, (int32_t)j, b->active);
         }
         lane[r].b_norm = sqrt(norm2);
         hdi_lane_clear_off(lane + r);
         lane[r].energy = lane[r].f_norm * lane[r].f_norm;
     }
-    active = touched < 64 * HDI_CAST(int64_t, k) ? b->active : NULL;
+    active = touched < 64 * (int64_t)k ? b->active : NULL;
     if (m->lone >= 0) hdi_batch_solve_real(m, b, lane, k, active, ctx);
     for (i = 0; i < hdi_high32(m->n_used, 1); i++) {
         if (i < m->n_used) {                     /* or there is none beside the lone pole */
@@ -20317,7 +20291,7 @@ static int hdi_lap_exceeds(const hd_laplacian *lap, const hd_csr *b, double sigm
 static hd_status hdi_lap_ratio(hd_laplacian *lap, hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
     const double dominant = hdi_max(lap->b_ratio, 0);
-    double *work = HDI_TAKE(&s, double, 4 * HDI_CAST(int64_t, lap->n_active)), least, sigma, slack;
+    double *work = HDI_TAKE(&s, double, 4 * (int64_t)lap->n_active), least, sigma, slack;
     const hdi_order order = {HD_ORDERING_MINIMUM_DEGREE, NULL, NULL};
     int32_t tries;
     hd_csr b = hdi_lap_mass_matrix(lap, &s);
@@ -20330,7 +20304,7 @@ static hd_status hdi_lap_ratio(hd_laplacian *lap, hd_error *e) {
     if (e->status >= 0 && hdi_pair_ratio(lap, work, &least, e) >= 0 &&
         hdi_symbolic_order(&sym, &b, &order, lap->context, e) >= 0 &&
         hdi_factor_make(&f, &sym, 1, lap->context, e) >= 0) {
-        slack = DBL_EPSILON * (HDI_CAST(double, sym.nnz) + 2.0 * lap->n_active);
+        slack = DBL_EPSILON * ((double)sym.nnz + 2.0 * lap->n_active);
         for (tries = 0; e->status >= 0; tries++) {
             sigma = tries == 0 ? 0.8 * least : ldexp(least, 1 - 2 * tries);
             if (sigma < hdi_max(dominant, 1e-12)) break;
@@ -20400,7 +20374,7 @@ static void hdi_conserve(const hd_laplacian *lap, hdi_lane *lane, double c0) {
  * the field itself where it is dense; and of what is left of L 1, which counts as zero up to 1e-8. The bound
  * is the same in both norms. */
 static double hdi_conserve_off(const hd_laplacian *lap, const hdi_lane *lane, double drift_t, int dense) {
-    const double sums = HDI_CAST(double, lap->n_active) * DBL_EPSILON / 2;
+    const double sums = (double)lap->n_active * DBL_EPSILON / 2;
     const double given = dense ? (sums + 4 * DBL_EPSILON) * lane->f_norm : 0;
     return (sums + 32 * DBL_EPSILON + hdi_min(drift_t, 1e-8)) * lane->u_norm + given + lane->rhs_off;
 }
@@ -20423,7 +20397,7 @@ static void hdi_conserve_sums(const hd_laplacian *lap, hdi_lane *lane) {
 /* |x|_B^2 of a complex vector; tmp [3 n]. */
 static double hdi_b_norm2_complex(const hd_laplacian *lap, const hd_c64 *x, double *tmp) {
     const int32_t n = lap->n_active;
-    double *work = tmp + 2 * HDI_CAST(int64_t, n);
+    double *work = tmp + 2 * (int64_t)n;
     int32_t i;
     if (!lap->B) return hdi_cnorm2w(x, lap->mass, n);
     for (i = 0; i < n; i++) {
@@ -20613,9 +20587,9 @@ static void hdi_elim_invert_width(hdi_elim *m, hdi_factor *f, int32_t n, const h
     z.stride = sums->stride;
     for (i = 0; i < n && e->status >= 0; i++) {
         for (k = 0; k < sums->n_sets; k++) {
-            const hd_c64 *w = sums->weight + HDI_CAST(int64_t, k) * m->set.n_poles;
+            const hd_c64 *w = sums->weight + (int64_t)k * m->set.n_poles;
             if (width == 1) coef[k] = w[m->lone].re;
-            else hdi_elim_coef(m, i, w, coef + HDI_PACK * HDI_CAST(int64_t, k));
+            else hdi_elim_coef(m, i, w, coef + HDI_PACK * (int64_t)k);
         }
         (void)hdi_inverse_run(&z, f + i, e);
     }
@@ -20626,7 +20600,7 @@ static void hdi_elim_invert_width(hdi_elim *m, hdi_factor *f, int32_t n, const h
 /* Sums over all poles. The factors are there, and stay. */
 static hd_status hdi_elim_invert(hdi_elim *m, const hdi_elim_sums *sums, hd_error *e) {
     hdi_scope s = hdi_scope_begin(m->ctx, e);
-    double *coef = HDI_TAKE(&s, double, HDI_PACK * HDI_CAST(uint64_t, sums->n_sets)), *b = NULL;
+    double *coef = HDI_TAKE(&s, double, HDI_PACK * (uint64_t)sums->n_sets), *b = NULL;
     int64_t p;
     if (sums->wanted == HDI_WANT_FORMS) {        /* the source's entries, scaled as m->lap is */
         b = HDI_TAKE(&s, double, m->source->L.nnz);
@@ -20644,7 +20618,7 @@ static hd_status hdi_elim_inverse_diagonal(const hdi_elim *m, hdi_factor *f, con
     hdi_inverse z;
     hdi_inverse_take(&z, &m->sym, f->width, s);
     if (s->e->status < 0) return s->e->status;
-    memset(out, 0, HDI_CAST(size_t, m->sym.n) * sizeof *out);
+    memset(out, 0, (size_t)m->sym.n * sizeof *out);
     z.coef = coef;
     z.n_sets = 1;
     z.wanted = HDI_WANT_DIAGONAL;
@@ -20665,7 +20639,7 @@ static int hdi_resolvent_weights(const hd_rational *set, hd_c64 *weight, double 
     if (set->n_poles > HDI_RESOLVENT_POLES) return 0;
     for (p = 0; p < set->n_poles; cols += set->theta[p].im != 0 ? 2 : 1, p++) {
         for (i = 0; i < HDI_RESOLVENT_POINTS; i++) {
-            const double s = (i + 0.5) / HDI_CAST(double, HDI_RESOLVENT_POINTS);
+            const double s = (i + 0.5) / (double)HDI_RESOLVENT_POINTS;
             const double x = 2 * s / ((1 - s) * (1 - s));
             const hd_c64 f = hdi_cdiv(hdi_c(1 + x, 0), hdi_c(x + set->theta[p].re, set->theta[p].im));
             work[cols * HDI_RESOLVENT_POINTS + i] = f.re;
@@ -20681,7 +20655,7 @@ static int hdi_resolvent_weights(const hd_rational *set, hd_c64 *weight, double 
     }
     for (i = 0; i <= 8 * HDI_RESOLVENT_POINTS; i++) {   /* the end is x = infinity */
         /* x = s/q */
-        const double s = i / (8 * HDI_CAST(double, HDI_RESOLVENT_POINTS)), q = 0.5 * (1 - s) * (1 - s);
+        const double s = i / (8 * (double)HDI_RESOLVENT_POINTS), q = 0.5 * (1 - s) * (1 - s);
         double sum = 0;
         for (p = 0; p < set->n_poles; p++)
             sum += hdi_cmul(weight[p],
@@ -20703,7 +20677,7 @@ static double hdi_constant_part(const hd_laplacian *lap, int32_t i) {
 
 /* Bytes of the first pack's update matrices, which are free between its factorisations and inversions. */
 static uint64_t hdi_elim_room(const hdi_elim *m, int32_t packs) {
-    return packs > 0 ? HDI_PACK * sizeof(double) * HDI_CAST(uint64_t, m->sym.work) : 0;
+    return packs > 0 ? HDI_PACK * sizeof(double) * (uint64_t)m->sym.work : 0;
 }
 
 /* m->reach: a bound of diag((B + tL)^-1) for the time of the poles, from the real factor at hand or a new
@@ -20717,7 +20691,7 @@ static hd_status hdi_elim_bound(hdi_elim *m, hd_error *e) {
     s = hdi_scope_begin(m->ctx, e);
     if (!m->reach) m->reach = HDI_NEW(m->ctx, double, m->sym.n, e);
     s.left = hdi_elim_room(m, m->n_used);
-    if (s.left > 0) s.room = HDI_CAST(char *, HDI_CAST(void *, m->pack->work));
+    if (s.left > 0) s.room = (char *)(void *)m->pack->work;
     if (m->lone < 0) hdi_factor_take(&own, &m->sym, 1, &s);
     if (e->status >= 0 && (m->lone >= 0 || hdi_elim_real(m, real, m->t, theta, e) >= 0) &&
         hdi_elim_inverse_diagonal(m, real, &factor, m->reach, &s) >= 0) {
@@ -20743,10 +20717,10 @@ static uint64_t hdi_elim_factor_need(const hdi_elim *m, const hd_rational *set, 
     const int32_t packs = hdi_set_packs(set), guests = packs - hdi_high32(m->n_packs, 1);
     uint64_t bytes = 0;
     if (packs > 0 && m->n_packs == 0) bytes += hdi_factor_bytes(&m->sym, HDI_PACK);
-    if (guests > 0) bytes += HDI_CAST(uint64_t, guests) * hdi_factor_guest_bytes(&m->sym, HDI_PACK);
+    if (guests > 0) bytes += (uint64_t)guests * hdi_factor_guest_bytes(&m->sym, HDI_PACK);
     if (hdi_set_lone(set) && !m->real.ctx) bytes += hdi_factor_bytes(&m->sym, 1);
     if (after == HDI_AFTER_BOUND && !m->reach)
-        hdi_scope_count(&bytes, HDI_CAST(uint64_t, m->sym.n), sizeof *m->reach);
+        hdi_scope_count(&bytes, (uint64_t)m->sym.n, sizeof *m->reach);
     return bytes;
 }
 
@@ -20767,8 +20741,8 @@ static uint64_t hdi_elim_inverse_need(const hdi_elim *m, const hd_rational *set,
         if (forms) need += hdi_forms_bytes(&m->sym, widths[q], order, m->ctx, e);
         if (most < need) most = need;
     }
-    hdi_scope_count(&bytes, HDI_PACK * HDI_CAST(uint64_t, n_sets), sizeof(double));
-    if (forms) hdi_scope_count(&bytes, HDI_CAST(uint64_t, m->source->L.nnz), sizeof(double));
+    hdi_scope_count(&bytes, HDI_PACK * (uint64_t)n_sets, sizeof(double));
+    if (forms) hdi_scope_count(&bytes, (uint64_t)m->source->L.nnz, sizeof(double));
     return bytes + most;
 }
 
@@ -20824,7 +20798,7 @@ static hd_status hdi_lanczos_bound(hdi_lanczos *z, double t, double *bound, hd_e
         least = hdi_min(least, z->d[i]);
         most = hdi_max(most, fabs(z->d[i]));
     }
-    if (least < -1e-8 * most - 2 * sqrt(HDI_CAST(double, m)) * z->noise) return hdi_not_semidefinite(e);
+    if (least < -1e-8 * most - 2 * sqrt((double)m) * z->noise) return hdi_not_semidefinite(e);
     for (i = 0; i < m; i++) {
         const double x = t * z->d[i];
         sum += z->z0[i] * z->z1[i] * (fabs(x) > 1e-8 ? -expm1(-x) / x : 1 - x / 2);
@@ -20940,8 +20914,7 @@ static double hdi_lanczos_rounding(const hdi_lanczos *z, double t) {
         from = to;
     }
     for (size = 0, i = 0; i < m; i++) size += z->y[i] * z->y[i];
-    return sqrt(HDI_CAST(double, m)) *
-           (hdi_residual_seen(0, z->noise) * integral + m * DBL_EPSILON * sqrt(size));
+    return sqrt((double)m) * (hdi_residual_seen(0, z->noise) * integral + m * DBL_EPSILON * sqrt(size));
 }
 
 /* Steps to the next look at the bound: half of what a straight line through the logarithms of the last two
@@ -20953,7 +20926,7 @@ static int32_t hdi_lanczos_pace(int32_t m, int32_t m_before, double bound, doubl
     if (!(bound < bound_before) || !(target > 0) || m == m_before) return most;
     rate = log(bound_before / bound) / (m - m_before);
     want = 0.5 * log(bound / target) / rate;
-    return want < 1 ? 1 : want > most ? most : HDI_CAST(int32_t, want);
+    return want < 1 ? 1 : want > most ? most : (int32_t)want;
 }
 
 /* First sweep: as many steps as the bound asks for, and the coefficients in y. fixed_norm2: the part of
@@ -21027,7 +21000,7 @@ static hd_status hdi_lanczos_run(const hdi_lanczos_task *task, hdi_lane *lane, c
     hd_status status = HD_OK;
     double f0_norm, fixed = 0;
     int32_t i;
-    memset(lane->u, 0, HDI_CAST(size_t, n) * sizeof *lane->u);
+    memset(lane->u, 0, (size_t)n * sizeof *lane->u);
     hdi_lane_clear_off(lane);
     lane->rounding = HD_EVIDENCE_ESTIMATED;
     if (lap->conserves) {                        /* f0 = f - constants, rhs0 = B f0 */
@@ -21109,12 +21082,12 @@ static void hdi_mass_rows_body(const hd_laplacian *lap, int32_t wide, const doub
             y[i] = lap->B ? s : lap->mass[i] * x[i];
             continue;
         }
-        to = y + HDI_SILAN_WIDE * HDI_CAST(int64_t, i);
+        to = y + HDI_SILAN_WIDE * (int64_t)i;
         for (r = 0; r < HDI_SILAN_WIDE; r++)
-            to[r] = lap->B ? 0 : lap->mass[i] * x[HDI_SILAN_WIDE * HDI_CAST(int64_t, i) + r];
+            to[r] = lap->B ? 0 : lap->mass[i] * x[HDI_SILAN_WIDE * (int64_t)i + r];
         for (p = lap->L.row_ptr[i]; lap->B && p < lap->L.row_ptr[i + 1]; p++) {
             const double b = lap->B[p];
-            const double *HDI_RESTRICT from = x + HDI_SILAN_WIDE * HDI_CAST(int64_t, lap->L.col[p]);
+            const double *HDI_RESTRICT from = x + HDI_SILAN_WIDE * (int64_t)lap->L.col[p];
             for (r = 0; r < HDI_SILAN_WIDE; r++) to[r] += b * from[r];
         }
     }
@@ -21128,8 +21101,8 @@ typedef struct hdi_mass_job {
 } hdi_mass_job;
 
 static void hdi_mass_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_mass_job *j = HDI_CAST(const hdi_mass_job *, arg);
-    hdi_mass_rows_body(j->lap, j->wide, j->x, j->y, HDI_CAST(int32_t, begin), HDI_CAST(int32_t, end));
+    const hdi_mass_job *j = (const hdi_mass_job *)arg;
+    hdi_mass_rows_body(j->lap, j->wide, j->x, j->y, (int32_t)begin, (int32_t)end);
 }
 
 static void hdi_mass_apply(const hd_laplacian *lap, int32_t wide, const double *x, double *y,
@@ -21187,7 +21160,7 @@ static void hdi_silan_take(hdi_silan *z, int32_t r, hdi_lane *lane) {
 
 /* Starts with the fields of z->k lanes. */
 static hd_status hdi_silan_start(hdi_silan *z, hdi_lane *lane, hd_context *ctx, hd_error *e) {
-    const uint64_t n = HDI_CAST(uint64_t, z->m->lap->n_active), count = n * HDI_CAST(uint64_t, z->wide);
+    const uint64_t n = (uint64_t)z->m->lap->n_active, count = n * (uint64_t)z->wide;
     int32_t r;
     if (!z->v[0]) z->v[0] = HDI_NEW(ctx, double, count, e);
     if (z->v[0] && !z->c) z->c = HDI_NEW(ctx, double, 2 * count + 2 * n, e);
@@ -21211,10 +21184,10 @@ static void hdi_silan_probe(hdi_silan *z) {
     for (r = 0; r < z->wide; r++) {
         double sum = 0;
         if (!(z->noise[z->steps][r] > 0)) continue;          /* no such right-hand side, or constants alone */
-        for (i = 0; i < lap->n_active; i++) x[i] = z->w[HDI_CAST(int64_t, z->wide) * i + r];
+        for (i = 0; i < lap->n_active; i++) x[i] = z->w[(int64_t)z->wide * i + r];
         hdi_pair_apply(lap, z->g, 1, x, rest);
         for (i = 0; i < lap->n_active; i++) {
-            const double d = z->c[HDI_CAST(int64_t, z->wide) * i + r] - rest[i];
+            const double d = z->c[(int64_t)z->wide * i + r] - rest[i];
             sum += z->m->weight[i] * (d * d);
         }
         z->solved = hdi_max(z->solved, sqrt(sum) / z->noise[z->steps][r]);
@@ -21246,7 +21219,7 @@ static hd_status hdi_silan_step(hdi_silan *z, hd_context *ctx, hd_error *e) {
     int32_t r;
     if (!z->v[j + 1]) z->v[j + 1] = HDI_NEW(ctx, double, count, e);
     if (!z->v[j + 1]) return e->status;
-    memcpy(w, z->c, HDI_CAST(size_t, count) * sizeof *w);
+    memcpy(w, z->c, (size_t)count * sizeof *w);
     s = hdi_sweep_open(&z->m->shifted, wide, w, z->work);
     hdi_sweep_run(&s, ctx);
     hdi_wide_norms(w, z->m->noise_shift, n, wide, z->noise[j]);
@@ -21313,7 +21286,7 @@ static double hdi_silan_decay(double mu, double s_over_g) {
 
 static double hdi_silan_point(int32_t k) {
     const int32_t low = hdi_low32(k, HDI_SILAN_POINTS - k);
-    const double x = 1.5707963267948966 * low / HDI_CAST(double, HDI_SILAN_POINTS), q = x * x;
+    const double x = 1.5707963267948966 * low / (double)HDI_SILAN_POINTS, q = x * x;
     const double s = x * (1 - q / 6 * (1 - q / 20 * (1 - q / 42 * (1 - q / 72))));
     return low == k ? s * s : 1 - s * s;
 }
@@ -21341,9 +21314,9 @@ static hd_status hdi_silan_ritz(const hdi_silan *z, int32_t r, int32_t m, hdi_ri
     s->m = m;
     s->beta = z->beta[m][r];
     if (known) {
-        memcpy(s->mu, known, HDI_CAST(size_t, m) * sizeof *known);
-        memcpy(s->first, known + m, HDI_CAST(size_t, m) * sizeof *known);
-        memcpy(s->both, known + HDI_CAST(int64_t, m) * m, HDI_CAST(size_t, m) * sizeof *known);
+        memcpy(s->mu, known, (size_t)m * sizeof *known);
+        memcpy(s->first, known + m, (size_t)m * sizeof *known);
+        memcpy(s->both, known + (int64_t)m * m, (size_t)m * sizeof *known);
     } else if (!hdi_silan_eigen(z, r, m, 0, m - 1, s->mu, s->first, s->both)) return hdi_lanczos_failed(e);
     for (i = 0; i < m; i++) {
         /* 1/(1 + g lambda); but what is left of a constant is only rounding */
@@ -21391,12 +21364,12 @@ static hd_status hdi_silan_vectors(hdi_silan *z, int32_t r, int32_t m, hd_error 
     if (z->eigen_room[r] < m) {
         hdi_free(ctx, z->eigen[r]);
         z->eigen_room[r] = 0;
-        z->eigen[r] = HDI_NEW(ctx, double, HDI_CAST(uint64_t, m) * HDI_CAST(uint64_t, m + 1), e);
+        z->eigen[r] = HDI_NEW(ctx, double, (uint64_t)m * (uint64_t)(m + 1), e);
         if (!z->eigen[r]) return e->status;
         z->eigen_room[r] = m;
     }
     for (k = 0; k < m; k += 2) {
-        double *x = z->eigen[r] + HDI_CAST(int64_t, k + 1) * m, spare[HDI_SILAN_MAX];
+        double *x = z->eigen[r] + (int64_t)(k + 1) * m, spare[HDI_SILAN_MAX];
         if (!hdi_silan_eigen(z, r, m, k, k + 1 < m ? k + 1 : k, z->eigen[r], x, k + 1 < m ? x + m : spare))
             return hdi_lanczos_failed(e);
     }
@@ -21416,7 +21389,7 @@ static hd_status hdi_silan_coefficients(hdi_silan *z, int32_t r, double t, doubl
     if (hdi_silan_vectors(z, r, m, e) < 0) return e->status;
     mu = z->eigen[r];
     for (i = 0; i < m; i++) first[i] = z->f_norm[r] * mu[m + i] * hdi_silan_decay(mu[i], t / z->g);
-    for (i = 0; i < m; i++) y[i] = hdi_dot(mu + HDI_CAST(int64_t, i + 1) * m, first, m);
+    for (i = 0; i < m; i++) y[i] = hdi_dot(mu + (int64_t)(i + 1) * m, first, m);
     return HD_OK;
 }
 
@@ -21464,7 +21437,7 @@ static void hdi_silan_sum_block(const hdi_silan *z, const hdi_silan_sum *a, int6
 typedef struct hdi_silan_sum_job { const hdi_silan *z; const hdi_silan_sum *a; } hdi_silan_sum_job;
 
 static void hdi_silan_sum_task(void *arg, int64_t first, int64_t last) {
-    const hdi_silan_sum_job *job = HDI_CAST(const hdi_silan_sum_job *, arg);
+    const hdi_silan_sum_job *job = (const hdi_silan_sum_job *)arg;
     const hdi_silan_sum *a = job->a;
     const int32_t *component = job->z->m->lap->component;
     const int64_t row = job->z->wide > 1 ? HDI_SILAN_WIDE : 1;
@@ -21473,7 +21446,7 @@ static void hdi_silan_sum_task(void *arg, int64_t first, int64_t last) {
     int32_t p;
     for (begin = first; begin < last; begin += HDI_SILAN_BLOCK) {
         const int64_t end = begin + HDI_SILAN_BLOCK < last ? begin + HDI_SILAN_BLOCK : last;
-        double s[HDI_CAST(int32_t, HDI_SILAN_WIDE) * HDI_SILAN_BLOCK];
+        double s[(int32_t)HDI_SILAN_WIDE * HDI_SILAN_BLOCK];
         memset(s, 0, sizeof s);
         hdi_silan_sum_block(job->z, a, begin, end, s);
         for (p = 0; p < a->count; p++)
@@ -21597,7 +21570,7 @@ static double hdi_silan_rounding(const hdi_silan *z, int32_t r, int32_t m, doubl
         const double at = hdi_silan_point(k), fa = hdi_silan_decay(at, tau);
         for (i = 0; i < m; i++) slope[i] = vectors[i] * hdi_silan_slope(mu[i], f[i], at, fa, tau);
         for (j = 0; j < m; j++)
-            most[j] = hdi_max(most[j], fabs(hdi_dot(vectors + HDI_CAST(int64_t, j) * m, slope, m)));
+            most[j] = hdi_max(most[j], fabs(hdi_dot(vectors + (int64_t)j * m, slope, m)));
     }
     for (j = 0; j < m; j++) {
         const double product = z->m->lap->B ? z->noise[j][r] : 0;   /* of B w, the next right-hand side */
@@ -21718,7 +21691,7 @@ static void hdi_ground_residual(const hdi_elim *m, const hdi_ground *g, const do
     const hd_laplacian *lap = m->lap;
     int32_t i;
     int64_t p;
-    if (off) memset(off, 0, HDI_CAST(size_t, lap->n_components) * sizeof *off);
+    if (off) memset(off, 0, (size_t)lap->n_components * sizeof *off);
     for (i = 0; i < lap->n_active; i++) {
         const double c = (hdi_row_terms(lap, i) + 4) * DBL_EPSILON;
         const int conserves = lap->conserves && hdi_finite(lap->component_mass[lap->component[i]]);
@@ -21743,7 +21716,7 @@ static void hdi_ground_residual(const hdi_elim *m, const hdi_ground *g, const do
 static void hdi_ground_refined(const hdi_elim *m, const hdi_ground *g, const double *b, const double *extra,
                                double *x, double *off, double *r, double *sweep) {
     int32_t i;
-    memcpy(x, b, HDI_CAST(size_t, m->sym.n) * sizeof *x);
+    memcpy(x, b, (size_t)m->sym.n * sizeof *x);
     hdi_ground_solve(m, g, x, sweep);
     hdi_ground_residual(m, g, b, x, NULL, r, NULL);
     hdi_ground_solve(m, g, r, sweep);
@@ -21756,7 +21729,7 @@ static hd_status hdi_ground_make(hdi_elim *m, hdi_ground *g, hd_error *e) {
     hdi_scope s = hdi_scope_begin(m->ctx, e);
     const hd_laplacian *lap = m->lap;
     const double one = 1;
-    const size_t n = HDI_CAST(size_t, lap->n_active), n_comp = HDI_CAST(size_t, lap->n_components);
+    const size_t n = (size_t)lap->n_active, n_comp = (size_t)lap->n_components;
     double *val;
     char *loose;
     hdi_values v;
@@ -21816,7 +21789,7 @@ static hd_status hdi_ground_forms(hdi_elim *m, hdi_ground *g, hd_error *e) {
     loose = HDI_TAKE(&s, char, lap->n_components);
     val = HDI_TAKE(&s, hd_c64, lap->L.nnz);
     work = HDI_TAKE(&s, double, hdi_sweep_size(&m->sym, 1, 1));
-    b = HDI_TAKE(&s, double, 2 * HDI_CAST(uint64_t, lap->n_active));
+    b = HDI_TAKE(&s, double, 2 * (uint64_t)lap->n_active);
     if (e->status >= 0 && hdi_factor_make(&pack, &m->sym, HDI_PACK, m->ctx, e) >= 0) {
         hdi_ground_values(m, g, step, NULL, val);
         memset(&v, 0, sizeof v);
@@ -21850,7 +21823,7 @@ static double hdi_ground_column(const hdi_elim *m, const hdi_ground *g, const hd
     double *sweep = by + lap->n_components, off, ws = 0, root = 0;   /* mean and sqrt(G) at the source */
     int32_t i;
     int64_t p;
-    memset(b, 0, HDI_CAST(size_t, n) * sizeof *b);
+    memset(b, 0, (size_t)n * sizeof *b);
     for (i = 0; i < from->n; i++) {
         const int32_t row = lap->row[hdi_terms_at(from, i)];
         const double w = hdi_terms_weight(from, i);
@@ -21877,8 +21850,8 @@ static double hdi_ground_column(const hdi_elim *m, const hdi_ground *g, const hd
 
 /* Bytes that hdi_ground_make takes at its peak, and with forms hdi_ground_forms after it. */
 static uint64_t hdi_ground_need(const hdi_elim *m, const hdi_ground *g, int forms) {
-    const uint64_t n = HDI_CAST(uint64_t, m->sym.n), n_comp = HDI_CAST(uint64_t, m->lap->n_components);
-    const uint64_t nnz = HDI_CAST(uint64_t, m->lap->L.nnz);
+    const uint64_t n = (uint64_t)m->sym.n, n_comp = (uint64_t)m->lap->n_components;
+    const uint64_t nnz = (uint64_t)m->lap->L.nnz;
     uint64_t held = 0, make = 0, form = 0;
     if (!g->diag) {
         held = hdi_factor_bytes(&m->sym, 1);
@@ -21900,8 +21873,7 @@ static uint64_t hdi_ground_need(const hdi_elim *m, const hdi_ground *g, int form
 }
 
 static uint64_t hdi_ground_room(const hdi_elim *m) {
-    return 4 * HDI_CAST(uint64_t, m->sym.n) + HDI_CAST(uint64_t, m->lap->n_components) +
-           hdi_sweep_size(&m->sym, 1, 1);
+    return 4 * (uint64_t)m->sym.n + (uint64_t)m->lap->n_components + hdi_sweep_size(&m->sym, 1, 1);
 }
 
 /* ==== [25] spectrum ====
@@ -21960,19 +21932,19 @@ static void hdi_spec_reduce(double *A, double *d, double *e, double *z, int32_t 
     for (k = 0; k < m; k++) {
         const int32_t n = m - k - 1;
         double norm = 0, first, tau, dot = 0;
-        d[k] = A[HDI_CAST(int64_t, k) * m + k];
+        d[k] = A[(int64_t)k * m + k];
         e[k] = 0;
         if (n <= 0) break;
-        for (i = 0; i < n; i++) v[i] = A[HDI_CAST(int64_t, k + 1 + i) * m + k];
+        for (i = 0; i < n; i++) v[i] = A[(int64_t)(k + 1 + i) * m + k];
         first = v[0];
         norm = sqrt(hdi_dot(v, v, n));
         e[k] = n == 1 ? first : first > 0 ? -norm : norm;
         if (n == 1 || norm == 0) continue;
         v[0] -= e[k];
         tau = 1 / (norm * (norm + fabs(first)));      /* 2/|v|^2 */
-        memset(p, 0, HDI_CAST(size_t, n) * sizeof *p);
+        memset(p, 0, (size_t)n * sizeof *p);
         for (i = 0; i < n; i++) {                /* p = A v */
-            const double *row = A + HDI_CAST(int64_t, k + 1 + i) * m + k + 1;
+            const double *row = A + (int64_t)(k + 1 + i) * m + k + 1;
             p[i] += hdi_dot(row, v, i) + row[i] * v[i];
             hdi_axpy(v[i], row, p, i);
         }
@@ -21980,12 +21952,12 @@ static void hdi_spec_reduce(double *A, double *d, double *e, double *z, int32_t 
         dot = 0.5 * tau * hdi_dot(p, v, n);
         hdi_axpy(-dot, v, p, n);
         for (i = 0; i < n; i++) {                /* A -= v p' + p v' */
-            double *row = A + HDI_CAST(int64_t, k + 1 + i) * m + k + 1;
+            double *row = A + (int64_t)(k + 1 + i) * m + k + 1;
             for (j = 0; j <= i; j++) row[j] -= v[i] * p[j] + p[i] * v[j];
         }
-        memset(p, 0, HDI_CAST(size_t, r < m ? r : m) * sizeof *p);
-        for (i = 0; i < n; i++) hdi_axpy(v[i], z + HDI_CAST(int64_t, k + 1 + i) * r, p, r);
-        for (i = 0; i < n; i++) hdi_axpy(-tau * v[i], p, z + HDI_CAST(int64_t, k + 1 + i) * r, r);
+        memset(p, 0, (size_t)(r < m ? r : m) * sizeof *p);
+        for (i = 0; i < n; i++) hdi_axpy(v[i], z + (int64_t)(k + 1 + i) * r, p, r);
+        for (i = 0; i < n; i++) hdi_axpy(-tau * v[i], p, z + (int64_t)(k + 1 + i) * r, r);
     }
 }
 
@@ -22020,7 +21992,7 @@ static void hdi_spec_step(double *d, double *e, double *z, int32_t l, int32_t k,
         p = s * t;
         d[i + 1] = g + p;
         g = c * t - b;
-        hdi_spec_rotate(z + HDI_CAST(int64_t, i) * r, z + HDI_CAST(int64_t, i + 1) * r, c, s, r);
+        hdi_spec_rotate(z + (int64_t)i * r, z + (int64_t)(i + 1) * r, c, s, r);
     }
     d[l] -= p;
     e[l] = g;
@@ -22030,7 +22002,7 @@ static void hdi_spec_step(double *d, double *e, double *z, int32_t l, int32_t k,
 /* Eigenvalues d [m] of the symmetric A [m][m], which is overwritten. z [m][r]: r rows of the identity become
  * those rows of the eigenvectors, column by column. work [3 m]. 0 when it does not converge. */
 static int hdi_spec_eigen(double *A, double *d, double *z, int32_t m, int32_t r, double *work) {
-    double *e = work + 2 * HDI_CAST(int64_t, m);
+    double *e = work + 2 * (int64_t)m;
     int32_t l, k, tries;
     hdi_spec_reduce(A, d, e, z, m, r, work);
     for (l = 0; l < m; l++) {
@@ -22067,47 +22039,46 @@ typedef struct hdi_slab_pass {
 static int32_t hdi_slab_tiles(int32_t n) { return (n + HDI_SPEC_TILE - 1) / HDI_SPEC_TILE; }
 
 static double *hdi_slab_at(const hdi_slab *s, int32_t tile, int32_t col) {
-    return s->v + HDI_SPEC_TILE * (HDI_CAST(int64_t, tile) * s->room + col);
+    return s->v + HDI_SPEC_TILE * ((int64_t)tile * s->room + col);
 }
 
 static hd_status hdi_slab_make(hdi_slab *s, int32_t n, int32_t room, hd_context *ctx, hd_error *e) {
     memset(s, 0, sizeof *s);
     s->room = room;
-    s->v = HDI_NEW(ctx, double,
-                   HDI_CAST(uint64_t, hdi_slab_tiles(n)) * HDI_SPEC_TILE * HDI_CAST(uint64_t, room), e);
+    s->v = HDI_NEW(ctx, double, (uint64_t)hdi_slab_tiles(n) * HDI_SPEC_TILE * (uint64_t)room, e);
     return e->status;
 }
 
 /* h = - V' w over the tiles of a chunk. */
 static void hdi_slab_dots_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_slab_pass *p = HDI_CAST(const hdi_slab_pass *, arg);
-    const int64_t tiles = hdi_slab_tiles(p->n), size = 8 * HDI_CAST(int64_t, p->cols);
+    const hdi_slab_pass *p = (const hdi_slab_pass *)arg;
+    const int64_t tiles = hdi_slab_tiles(p->n), size = 8 * (int64_t)p->cols;
     const int64_t end = (index + 1) * tiles / p->n_chunks;
     double *h = p->h + index * p->n_blocks * size;
     int64_t tile;
     int32_t q;
     (void)worker;
-    memset(h, 0, HDI_CAST(size_t, p->n_blocks * size) * sizeof *h);
+    memset(h, 0, (size_t)(p->n_blocks * size) * sizeof *h);
     for (tile = index * tiles / p->n_chunks; tile < end; tile++) {
         const int64_t row = HDI_SPEC_TILE * tile, n = hdi_least(p->n - row, HDI_SPEC_TILE);
-        const double *v = hdi_slab_at(p->slab, HDI_CAST(int32_t, tile), p->first);
+        const double *v = hdi_slab_at(p->slab, (int32_t)tile, p->first);
         for (q = 0; q < p->n_blocks; q++)
-            p->ops->dots8(h + q * size, v, HDI_SPEC_TILE, n, p->w + 8 * (row + HDI_CAST(int64_t, q) * p->n),
+            p->ops->dots8(h + q * size, v, HDI_SPEC_TILE, n, p->w + 8 * (row + (int64_t)q * p->n),
                           NULL, p->cols);
     }
 }
 
 /* w -= V h over the tiles of a range. copy: w goes into the slab instead, one block. */
 static void hdi_slab_add_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_slab_pass *p = HDI_CAST(const hdi_slab_pass *, arg);
+    const hdi_slab_pass *p = (const hdi_slab_pass *)arg;
     int64_t tile, i;
     int32_t q;
     for (tile = begin; tile < end; tile++) {
         const int64_t row = HDI_SPEC_TILE * tile, n = hdi_least(p->n - row, HDI_SPEC_TILE);
-        double *v = hdi_slab_at(p->slab, HDI_CAST(int32_t, tile), p->first);
+        double *v = hdi_slab_at(p->slab, (int32_t)tile, p->first);
         for (q = 0; q < p->n_blocks && !p->copy; q++)
-            p->ops->gemv8(p->w + 8 * (row + HDI_CAST(int64_t, q) * p->n), NULL, v, HDI_SPEC_TILE, n,
-                          p->h + 8 * HDI_CAST(int64_t, q) * p->cols, p->cols);
+            p->ops->gemv8(p->w + 8 * (row + (int64_t)q * p->n), NULL, v, HDI_SPEC_TILE, n,
+                          p->h + 8 * (int64_t)q * p->cols, p->cols);
         for (q = 0; q < p->cols && p->copy; q++)
             for (i = 0; i < n; i++) v[HDI_SPEC_TILE * q + i] = p->w[8 * (row + i) + q];
     }
@@ -22198,24 +22169,24 @@ static int32_t hdi_spec_chunks(int32_t n) {
 
 /* Doubles of the coefficients of a group in a slab. */
 static uint64_t hdi_spec_h(int32_t most, int32_t n_group) {
-    return HDI_CAST(uint64_t, most + HDI_SPEC_WIDE) * HDI_SPEC_WIDE * HDI_CAST(uint64_t, n_group);
+    return (uint64_t)(most + HDI_SPEC_WIDE) * HDI_SPEC_WIDE * (uint64_t)n_group;
 }
 
 /* Doubles that hdi_spec_make takes, but for a sweep. */
 static double hdi_spec_doubles(int32_t n, int32_t count) {
     const int32_t most = hdi_spec_most(n, count), group = hdi_spec_group(count);
-    const double tiles = HDI_CAST(double, HDI_SPEC_TILE) * hdi_slab_tiles(n), m = most;
+    const double tiles = (double)HDI_SPEC_TILE * hdi_slab_tiles(n), m = most;
     return tiles * (m + 2 * HDI_SPEC_WIDE) + 3 * m * (m + 2) +
-           HDI_CAST(double, hdi_spec_h(most, group)) * (hdi_spec_chunks(n) + 1) +
-           HDI_CAST(double, n) * (5 + 3 * HDI_SPEC_WIDE + 2 * HDI_SPEC_WIDE * group);
+           (double)hdi_spec_h(most, group) * (hdi_spec_chunks(n) + 1) +
+           (double)n * (5 + 3 * HDI_SPEC_WIDE + 2 * HDI_SPEC_WIDE * group);
 }
 
 /* Room for runs. */
 static hd_status hdi_spec_make(hdi_spec *s, hdi_elim *m, int32_t count, double tol, hd_error *e) {
     const int32_t columns = hdi_spec_most(m->lap->n_active, count), n_group = hdi_spec_group(count);
-    const uint64_t n = HDI_CAST(uint64_t, m->lap->n_active), most = HDI_CAST(uint64_t, columns);
+    const uint64_t n = (uint64_t)m->lap->n_active, most = (uint64_t)columns;
     const uint64_t wide = HDI_SPEC_WIDE, h = hdi_spec_h(columns, n_group);
-    const uint64_t group = n * wide * HDI_CAST(uint64_t, n_group);
+    const uint64_t group = n * wide * (uint64_t)n_group;
     memset(s, 0, sizeof *s);
     s->ctx = m->ctx;
     s->m = m;
@@ -22231,7 +22202,7 @@ static hd_status hdi_spec_make(hdi_spec *s, hdi_elim *m, int32_t count, double t
     if (s->slab_of) s->T = HDI_NEW(s->ctx, double, 3 * most * most + 5 * most, e);
     if (s->T) s->w = HDI_NEW(s->ctx, double, 3 * n * wide, e);
     if (s->w) s->sweep = HDI_NEW(s->ctx, double, hdi_sweep_size(&m->sym, 1, HDI_SPEC_WIDE), e);
-    if (s->sweep) s->h = HDI_NEW(s->ctx, double, h * HDI_CAST(uint64_t, hdi_spec_chunks(s->n) + 1), e);
+    if (s->sweep) s->h = HDI_NEW(s->ctx, double, h * (uint64_t)(hdi_spec_chunks(s->n) + 1), e);
     if (s->h) s->group = HDI_NEW(s->ctx, double, 2 * group + 2 * n, e);
     if (e->status < 0) return e->status;
     s->residual = s->value + n;
@@ -22268,7 +22239,7 @@ static hdi_slab_pass hdi_spec_pass(const hdi_spec *s, const hdi_slab *slab, int3
 
 /* h = V' w. The chunks are summed in their order. */
 static void hdi_spec_dots(const hdi_spec *s, hdi_slab_pass p, double *h) {
-    const int64_t size = 8 * HDI_CAST(int64_t, p.cols) * p.n_blocks;
+    const int64_t size = 8 * (int64_t)p.cols * p.n_blocks;
     int64_t i;
     int32_t c;
     p.h = s->part;
@@ -22301,13 +22272,13 @@ typedef struct hdi_spec_apply {
 } hdi_spec_apply;
 
 static void hdi_spec_apply_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_spec_apply *a = HDI_CAST(const hdi_spec_apply *, arg);
+    const hdi_spec_apply *a = (const hdi_spec_apply *)arg;
     int64_t i, p;
     int r;
     for (i = begin; i < end; i++) {
         double sum[HDI_SPEC_WIDE] = {0};
         for (p = a->lap->L.row_ptr[i]; p < a->lap->L.row_ptr[i + 1]; p++) {
-            const double l = a->lap->L.val[p], *x = a->x + 8 * HDI_CAST(int64_t, a->lap->L.col[p]);
+            const double l = a->lap->L.val[p], *x = a->x + 8 * (int64_t)a->lap->L.col[p];
             for (r = 0; r < HDI_SPEC_WIDE; r++) sum[r] += l * x[r];
         }
         for (r = 0; r < HDI_SPEC_WIDE; r++) a->y[8 * i + r] = sum[r] - a->shift[r] * a->z[8 * i + r];
@@ -22340,11 +22311,11 @@ static void hdi_spec_sweep(hdi_spec *s, double *w) {
 /* w = (L - sigma B)^-1 bw. Returns how large the residual bw - (L - sigma B) w is against w: the size of a
  * change of L that would explain it, a backward error. measure: look at it. */
 static double hdi_spec_inverse(hdi_spec *s, int measure) {
-    const int64_t size = 8 * HDI_CAST(int64_t, s->n);
+    const int64_t size = 8 * (int64_t)s->n;
     double error[HDI_SPEC_WIDE], norm[HDI_SPEC_WIDE], worst = 0;
     int64_t i;
     int r, turn;
-    memcpy(s->w, s->bw, HDI_CAST(size_t, size) * sizeof *s->w);
+    memcpy(s->w, s->bw, (size_t)size * sizeof *s->w);
     hdi_spec_sweep(s, s->w);
     for (turn = 0; turn < 1 + s->refine && (measure || s->refine); turn++) {
         hdi_spec_mass(s, s->w, s->group);
@@ -22370,7 +22341,7 @@ static double hdi_spec_inverse(hdi_spec *s, int measure) {
 typedef struct hdi_spec_scale { double *w, *bw; const double *R; } hdi_spec_scale;
 
 static void hdi_spec_scale_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_spec_scale *a = HDI_CAST(const hdi_spec_scale *, arg);
+    const hdi_spec_scale *a = (const hdi_spec_scale *)arg;
     double inv[HDI_SPEC_WIDE];
     int64_t i;
     int q, k;
@@ -22469,7 +22440,7 @@ static void hdi_spec_local(hdi_spec *s) {
     hdi_spec_project(s, &s->basis, s->before, s->cols - s->before, s->w, s->bw, 1, s->h);
     for (q = 0; q < s->width; q++)
         for (k = 0; k <= q; k++)
-            s->T[HDI_CAST(int64_t, s->last + q) * s->most + s->last + k] =
+            s->T[(int64_t)(s->last + q) * s->most + s->last + k] =
                 0.5 * (s->h[8 * (at + q) + k] + s->h[8 * (at + k) + q]);
     hdi_spec_mass(s, s->w, s->bw);
 }
@@ -22526,8 +22497,8 @@ static void hdi_spec_take(hdi_spec *s) {
     }
     hdi_spec_add(s, hdi_spec_pass(s, &s->basis, s->cols, n, s->w, 1), NULL, 1);
     for (i = 0; i < n && s->cols + i < s->most; i++) {
-        double *row = s->T + HDI_CAST(int64_t, s->cols + i) * s->most;
-        memset(row, 0, HDI_CAST(size_t, s->cols + i + 1) * sizeof *row);
+        double *row = s->T + (int64_t)(s->cols + i) * s->most;
+        memset(row, 0, (size_t)(s->cols + i + 1) * sizeof *row);
         for (k = 0; k < s->width; k++) row[s->last + k] = C[8 * i + k];
     }
     s->fresh = n;
@@ -22537,14 +22508,14 @@ static void hdi_spec_take(hdi_spec *s) {
 
 /* A block of numbers in (-1, 1) that are the same on every machine (splitmix64). */
 static void hdi_spec_random(hdi_spec *s, double *w) {
-    const int64_t size = 8 * HDI_CAST(int64_t, s->n);
+    const int64_t size = 8 * (int64_t)s->n;
     int64_t i;
     for (i = 0; i < size; i++) {
         uint64_t x = s->seed += UINT64_C(0x9e3779b97f4a7c15);
         x = (x ^ x >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
         x = (x ^ x >> 27) * UINT64_C(0x94d049bb133111eb);
         x ^= x >> 31;
-        w[i] = HDI_CAST(double, HDI_CAST(int64_t, x >> 11)) * ldexp(1, -52) - 1;
+        w[i] = (double)(int64_t)(x >> 11) * ldexp(1, -52) - 1;
     }
 }
 
@@ -22566,13 +22537,13 @@ static hd_status hdi_spec_ritz(hdi_spec *s, int full, hd_error *e) {
     int32_t i, j, a, k;
     for (i = 0; i < m; i++)
         for (j = 0; j <= i; j++)
-            s->A[HDI_CAST(int64_t, i) * m + j] = s->T[HDI_CAST(int64_t, i) * s->most + j];
-    memset(s->z, 0, HDI_CAST(size_t, m) * HDI_CAST(size_t, r) * sizeof *s->z);
-    for (i = 0; i < r; i++) s->z[HDI_CAST(int64_t, i + (full ? 0 : s->last)) * r + i] = 1;
+            s->A[(int64_t)i * m + j] = s->T[(int64_t)i * s->most + j];
+    memset(s->z, 0, (size_t)m * (size_t)r * sizeof *s->z);
+    for (i = 0; i < r; i++) s->z[(int64_t)(i + (full ? 0 : s->last)) * r + i] = 1;
     if (!hdi_spec_eigen(s->A, s->d, s->z, m, r, s->work)) return hdi_lanczos_failed(e);
     for (i = 0; i < m; i++) largest = hdi_max(largest, fabs(s->d[i]));
     for (i = s->stuck = 0; i < m; i++) {
-        const double *y = s->z + HDI_CAST(int64_t, i) * r + at, d2 = s->d[i] * s->d[i];
+        const double *y = s->z + (int64_t)i * r + at, d2 = s->d[i] * s->d[i];
         double sum = 0;
         int reached;
         for (a = 0; a < s->fresh; a++) {
@@ -22583,7 +22554,7 @@ static hd_status hdi_spec_ritz(hdi_spec *s, int full, hd_error *e) {
         s->off_ritz[i] = d2 > 0 ? sqrt(sum) / d2 : HUGE_VAL;
         reached = hdi_spec_converged(s, i);
         if (d2 > 0)
-            s->off_ritz[i] += (HDI_CAST(double, HDI_SPEC_WIDE) * DBL_EPSILON * largest + s->lost) / d2;
+            s->off_ritz[i] += ((double)HDI_SPEC_WIDE * DBL_EPSILON * largest + s->lost) / d2;
         s->stuck += reached && !hdi_spec_converged(s, i);
     }
     return HD_OK;
@@ -22660,7 +22631,7 @@ static hdi_slab *hdi_spec_slab(hdi_spec *s, int32_t cols, hd_error *e) {
             hdi_free(s->ctx, slab);
             return NULL;
         }
-        if (s->n_slabs) memcpy(slab, s->slab, HDI_CAST(size_t, s->n_slabs) * sizeof *slab);
+        if (s->n_slabs) memcpy(slab, s->slab, (size_t)s->n_slabs * sizeof *slab);
         hdi_free(s->ctx, s->slab);
         hdi_free(s->ctx, s->beside);
         s->slab = slab;
@@ -22699,10 +22670,10 @@ static void hdi_spec_enter(hdi_spec *s, double value, double residual, int32_t c
 static void hdi_spec_coefficients(const hdi_spec *s, const int32_t *which, int32_t n) {
     const int32_t m = s->cols, rows = m + s->fresh;
     int32_t q, i, a, k;
-    memset(s->h, 0, 8 * HDI_CAST(size_t, rows) * HDI_CAST(size_t, (n + 7) / 8) * sizeof *s->h);
+    memset(s->h, 0, 8 * (size_t)rows * (size_t)((n + 7) / 8) * sizeof *s->h);
     for (q = 0; q < n; q++) {
-        double *h = s->h + 8 * HDI_CAST(int64_t, rows) * (q / 8) + q % 8;
-        const double *y = s->z + HDI_CAST(int64_t, which[q]) * m;
+        double *h = s->h + 8 * (int64_t)rows * (q / 8) + q % 8;
+        const double *y = s->z + (int64_t)which[q] * m;
         for (i = 0; i < m; i++) h[8 * i] = -y[i];
         for (a = 0; a < s->fresh; a++) {
             double c = 0;
@@ -22716,7 +22687,7 @@ static void hdi_spec_coefficients(const hdi_spec *s, const int32_t *which, int32
  * work, are so up to residuals. twin [n]: how much of a vector was in them already. */
 static void hdi_spec_unlock(hdi_spec *s, int32_t n, double *twin) {
     const int32_t n_blocks = (n + 7) / 8;
-    const int64_t size = 8 * HDI_CAST(int64_t, s->n);
+    const int64_t size = 8 * (int64_t)s->n;
     int32_t i, q, j;
     for (q = 0; q < n_blocks; q++) hdi_spec_mass(s, s->group + q * size, s->group_b + q * size);
     for (q = 0; q < n; q++) twin[q] = 0;
@@ -22725,7 +22696,7 @@ static void hdi_spec_unlock(hdi_spec *s, int32_t n, double *twin) {
         hdi_spec_project(s, s->slab + i, 0, cols, s->group, s->group_b, n_blocks, s->h);
         for (q = 0; q < n; q++)
             for (j = 0; j < cols; j++) {
-                const double c = s->h[8 * (HDI_CAST(int64_t, cols) * (q / 8) + j) + q % 8];
+                const double c = s->h[8 * ((int64_t)cols * (q / 8) + j) + q % 8];
                 twin[q] += c * c;
             }
     }
@@ -22753,7 +22724,7 @@ static void hdi_spec_nearest(hdi_spec *s, const int32_t *which, int32_t n) {
         m = hdi_low32(m + 1, HDI_SPEC_WIDE);
     }
     hdi_spec_coefficients(s, closest, m);
-    memset(s->w, 0, 8 * HDI_CAST(size_t, s->n) * sizeof *s->w);
+    memset(s->w, 0, 8 * (size_t)s->n * sizeof *s->w);
     hdi_spec_add(s, hdi_spec_pass(s, &s->basis, 0, s->cols + s->fresh, s->w, 1), s->h, 0);
     hdi_spec_add(s, hdi_spec_pass(s, &s->basis, s->most + HDI_SPEC_WIDE, HDI_SPEC_WIDE, s->w, 1), NULL, 1);
 }
@@ -22761,11 +22732,11 @@ static void hdi_spec_nearest(hdi_spec *s, const int32_t *which, int32_t n) {
 /* x - (L - sigma B)^-1 r for the residuals r in tmp of the first n columns: a step of inverse iteration. The
  * change has no part in the slabs nearby, nor in the vectors next to the shift. */
 static void hdi_spec_polish(hdi_spec *s, double *x, int32_t n) {
-    const int64_t size = 8 * HDI_CAST(int64_t, s->n);
+    const int64_t size = 8 * (int64_t)s->n;
     const int32_t cols = s->cols;
     double removed[HDI_SPEC_WIDE];
     int64_t i;
-    memcpy(s->w, s->tmp, HDI_CAST(size_t, size) * sizeof *s->w);
+    memcpy(s->w, s->tmp, (size_t)size * sizeof *s->w);
     hdi_spec_sweep(s, s->w);
     hdi_spec_mass(s, s->w, s->bw);
     hdi_spec_project(s, &s->basis, s->most + HDI_SPEC_WIDE, HDI_SPEC_WIDE, s->w, s->bw, 1, s->h);
@@ -22784,7 +22755,7 @@ static void hdi_spec_polish_all(hdi_spec *s, const double *value, double *x, dou
         hdi_spec_polish(s, x, n);
         now = hdi_spec_measure(s, value, x, bx, norm);
         if (now <= worst) continue;
-        for (i = 0; i < 8 * HDI_CAST(int64_t, s->n); i++) x[i] += i % 8 < n ? s->w[i] : 0;
+        for (i = 0; i < 8 * (int64_t)s->n; i++) x[i] += i % 8 < n ? s->w[i] : 0;
         return;
     }
 }
@@ -22817,11 +22788,11 @@ static void hdi_spec_settle(hdi_spec *s, double *x, double *bx, int32_t at, int3
  * out where they are seen. */
 static void hdi_spec_lock_group(hdi_spec *s, const int32_t *which, int32_t n, int32_t first) {
     const int32_t n_blocks = (n + 7) / 8;
-    const int64_t size = 8 * HDI_CAST(int64_t, s->n);
+    const int64_t size = 8 * (int64_t)s->n;
     double twin[8 * HDI_SPEC_GROUP], norm[HDI_SPEC_WIDE], noise[HDI_SPEC_WIDE], value[HDI_SPEC_WIDE];
     int32_t q, r;
     hdi_spec_coefficients(s, which, n);
-    memset(s->group, 0, HDI_CAST(size_t, n_blocks * size) * sizeof *s->group);
+    memset(s->group, 0, (size_t)(n_blocks * size) * sizeof *s->group);
     hdi_spec_add(s, hdi_spec_pass(s, &s->basis, 0, s->cols + s->fresh, s->group, n_blocks), s->h, 0);
     for (q = 0; q < 2 * n_blocks; q++) {
         double *x = s->group + q % n_blocks * size, *bx = s->group_b + q % n_blocks * size;
@@ -22877,8 +22848,7 @@ static hd_status hdi_spec_constants(hdi_spec *s, int32_t most, hd_error *e) {
         const int32_t cols = hdi_low32(n - k, HDI_SPEC_HALF);
         hdi_slab *slab = hdi_spec_slab(s, cols, e);
         if (!slab) break;
-        memset(slab->v, 0, HDI_CAST(size_t, hdi_slab_tiles(s->n)) * HDI_SPEC_TILE * HDI_CAST(size_t, cols) *
-               sizeof *slab->v);
+        memset(slab->v, 0, (size_t)hdi_slab_tiles(s->n) * HDI_SPEC_TILE * (size_t)cols * sizeof *slab->v);
         for (i = 0; i < s->n; i++) {
             const int32_t c = s->lap->component[i], at = col[c] - k;
             if (col[c] < 0 || at < 0 || at >= cols) continue;
@@ -22901,7 +22871,7 @@ static double hdi_spec_count_off(hdi_spec *s) {
     double *v = s->group, *sum = v + s->n, *terms = sum + s->n, worst = 0;
     int32_t f, j, i;
     int64_t p;
-    memset(sum, 0, 2 * HDI_CAST(size_t, s->n) * sizeof *sum);
+    memset(sum, 0, 2 * (size_t)s->n * sizeof *sum);
     for (f = 0; f < sym->n_super; f++) {
         const int32_t pivots = hdi_front_pivots(sym, f), first = sym->super[f];
         const int32_t *row = sym->row + sym->row_ptr[f];
@@ -23019,7 +22989,7 @@ static double hdi_spec_next(const hdi_spec *s, const hdi_spec_goal *goal, int32_
         at = hdi_spec_gap(s, n, at, HDI_SPEC_NARROW * step);
         if (at < HUGE_VAL) return at;
     }
-    at = hdi_min(half, HDI_CAST(double, goal->count) - s->found + 3);
+    at = hdi_min(half, (double)goal->count - s->found + 3);
     at = from + ldexp(step, s->idle * (s->idle + 1) / 2) * hdi_max(1, at);
     if (at >= goal->below) at = hdi_max(goal->below, from + 0.3 * step);
     return at;
@@ -23044,9 +23014,9 @@ static hd_status hdi_spec_move(hdi_spec *s, const hdi_spec_goal *goal, int32_t f
         *missing = s->below - hdi_spec_rank(s, s->sigma);
         if (*missing < 0) at += 0.37 * step;     /* too near to a value: the count is wrong */
         else if (*missing > 2 * half) {
-            const double from = s->found > 0 && *missing < 2 * HDI_CAST(int64_t, half) * HDI_SPEC_TRIES
+            const double from = s->found > 0 && *missing < 2 * (int64_t)half * HDI_SPEC_TRIES
                 ? hdi_max(low, hdi_min(s->value[s->found - 1], 0.5 * (low + at))) : low;
-            at = from + (at - from) * hdi_max(0.05, half / HDI_CAST(double, *missing));
+            at = from + (at - from) * hdi_max(0.05, half / (double)*missing);
         } else if (s->factor.all.largest > HDI_SPEC_GROWTH * s->factor.largest_entry && *missing > 0) {
             at += 0.11 * step;                   /* there may be better ones */
         } else break;
@@ -23087,7 +23057,7 @@ static hd_status hdi_spec_start(hdi_spec *s, const hdi_spec_goal *goal, hd_error
 static hd_status hdi_spec_search(hdi_spec *s, const hdi_spec_goal *goal, int64_t missing, hd_error *e) {
     s->share = hdi_min(0.99, s->found / (1.0 + hdi_min(goal->count, s->n)));
     hdi_spec_nearby(s);
-    if (hdi_spec_lanczos(s, HDI_CAST(int32_t, missing), 0, e) < 0 || hdi_spec_lock(s, e) < 0)
+    if (hdi_spec_lanczos(s, (int32_t)missing, 0, e) < 0 || hdi_spec_lock(s, e) < 0)
         return e->status;
     if (s->below == hdi_spec_rank(s, s->sigma)) s->edge = s->sigma;
     return HD_OK;
@@ -23132,8 +23102,8 @@ static void hdi_spec_vectors(const hdi_spec *s, hd_spectrum *out) {
     int32_t q, i;
     for (q = 0; q < out->count; q++) {
         const hdi_slab *slab = s->slab + s->slab_of[q];
-        double *x = out->vector + HDI_CAST(int64_t, q) * out->n, most = 0, sign;
-        memset(x, 0, HDI_CAST(size_t, out->n) * sizeof *x);
+        double *x = out->vector + (int64_t)q * out->n, most = 0, sign;
+        memset(x, 0, (size_t)out->n * sizeof *x);
         for (i = 0; i < s->n; i++) {
             const double v = hdi_slab_at(slab, i / HDI_SPEC_TILE, s->col_of[q])[i % HDI_SPEC_TILE];
             x[s->lap->vertex[i]] = v;
@@ -23162,17 +23132,17 @@ static double hdi_spec_mass_row(const hd_laplacian *lap, const double *x, int32_
 typedef struct hdi_spec_left { const hd_laplacian *lap; hd_spectrum *out; } hdi_spec_left;
 
 static void hdi_spec_left_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_spec_left *a = HDI_CAST(const hdi_spec_left *, arg);
+    const hdi_spec_left *a = (const hdi_spec_left *)arg;
     const hd_spectrum *out = a->out;
     const double rounding = (HDI_NOISE_TERMS + out->count) * DBL_EPSILON;
     int64_t i;
     int32_t q;
     for (i = begin; i < end; i++) {
-        const int32_t row = HDI_CAST(int32_t, i), v = a->lap->vertex[row];
+        const int32_t row = (int32_t)i, v = a->lap->vertex[row];
         const double inverse = hdi_inverse_mass(a->lap, row), b = a->lap->b_diag[row];
         double k = inverse * (1 + rounding), mass = b * (1 + rounding);
         for (q = 0; q < out->count; q++) {
-            const double *x = out->vector + HDI_CAST(int64_t, q) * out->n;
+            const double *x = out->vector + (int64_t)q * out->n;
             const double bx = hdi_spec_mass_row(a->lap, x, row);
             k -= x[v] * x[v];
             mass -= bx * bx;
@@ -23186,8 +23156,8 @@ static void hdi_spec_left_out(const hd_laplacian *lap, hd_spectrum *out, hd_cont
     hdi_spec_left a;
     a.lap = lap;
     a.out = out;
-    memset(out->left, 0, HDI_CAST(size_t, out->n) * sizeof *out->left);
-    memset(out->left_mass, 0, HDI_CAST(size_t, out->n) * sizeof *out->left_mass);
+    memset(out->left, 0, (size_t)out->n * sizeof *out->left);
+    memset(out->left_mass, 0, (size_t)out->n * sizeof *out->left_mass);
     hdi_parallel_ranges(ctx, lap->n_active, 1024, hdi_spec_left_task, &a);
 }
 
@@ -23196,21 +23166,21 @@ static void hdi_spec_left_out(const hd_laplacian *lap, hd_spectrum *out, hd_cont
 #define HDI_SPEC_DISTINCT 1e-6
 
 static double hdi_spec_sign(int32_t q) {
-    return ((HDI_CAST(uint32_t, q) * 2654435761u) >> 31) != 0 ? 1 : -1;   /* Knuth's multiplicative hash */
+    return (((uint32_t)q * 2654435761u) >> 31) != 0 ? 1 : -1;   /* Knuth's multiplicative hash */
 }
 
 static int hdi_spec_distinct(const hd_laplacian *lap, const hd_spectrum *out) {
     double *sum = out->left, *mass = out->left_mass;
     int32_t q, v;
-    memset(sum, 0, HDI_CAST(size_t, out->n) * sizeof *sum);
+    memset(sum, 0, (size_t)out->n * sizeof *sum);
     for (q = 0; q < out->count; q++) {
-        const double *x = out->vector + HDI_CAST(int64_t, q) * out->n;
+        const double *x = out->vector + (int64_t)q * out->n;
         const double c = hdi_spec_sign(q);
         for (v = 0; v < out->n; v++) sum[v] += c * x[v];
     }
     for (v = 0; v < out->n; v++) mass[v] = lap->row[v] < 0 ? 0 : hdi_spec_mass_row(lap, sum, lap->row[v]);
     for (q = 0; q < out->count; q++) {
-        const double *x = out->vector + HDI_CAST(int64_t, q) * out->n;
+        const double *x = out->vector + (int64_t)q * out->n;
         double dot = 0;
         for (v = 0; v < out->n; v++) dot += x[v] * mass[v];
         if (!(fabs(dot - hdi_spec_sign(q)) <= HDI_SPEC_DISTINCT)) return 0;
@@ -23243,8 +23213,8 @@ static hd_status hdi_spec_run(hdi_elim *m, const hdi_spec_goal *goal, double tol
     uint64_t n, k;
     memset(&s, 0, sizeof s);
     if (hdi_spec_make(&s, m, goal->count, tol, e) >= 0 && hdi_spec_solve(&s, goal, &count, e) >= 0) {
-        n = HDI_CAST(uint64_t, m->source->n);
-        k = HDI_CAST(uint64_t, count);
+        n = (uint64_t)m->source->n;
+        k = (uint64_t)count;
         hdi_spec_runs_free(&s);                  /* before the vectors are there twice */
         out->n = m->source->n;
         out->count = count;
@@ -23383,7 +23353,7 @@ typedef struct hdi_spec_sum {
 /* Entry of vector q, or of B times it. */
 static double hdi_spec_entry(const hdi_spec_sum *a, int32_t q, int32_t row, int mass) {
     const hd_spectrum *s = a->f.of;
-    const double *x = s->vector + HDI_CAST(int64_t, q) * s->n;
+    const double *x = s->vector + (int64_t)q * s->n;
     return mass ? hdi_spec_mass_row(s->lap, x, row) : x[s->lap->vertex[row]];
 }
 
@@ -23403,7 +23373,7 @@ static void hdi_spec_sum_rows(const hdi_spec_sum *a, int32_t row, int32_t n, dou
     int32_t q, i;
     for (i = 0; i < n; i++) sum[i] = 0;
     for (q = 0; q < a->f.of->count; q++) {
-        const double *x = a->f.of->vector + HDI_CAST(int64_t, q) * a->f.of->n;
+        const double *x = a->f.of->vector + (int64_t)q * a->f.of->n;
         const double w = a->weight[q], at = a->x[q];
         for (i = 0; i < n && !mass && !a->diagonal && !a->distance; i++) sum[i] += w * x[vertex[i]] * at;
         for (i = 0; i < n && a->diagonal; i++)
@@ -23441,14 +23411,14 @@ static void hdi_spec_sum_store(const hdi_spec_sum *a, int32_t row, double sum) {
 }
 
 static void hdi_spec_sum_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_spec_sum *a = HDI_CAST(const hdi_spec_sum *, arg);
+    const hdi_spec_sum *a = (const hdi_spec_sum *)arg;
     double sum[HDI_SPEC_ROWS];
     int64_t i;
     int32_t k, n;
     for (i = begin; i < end; i += n) {
-        n = HDI_CAST(int32_t, hdi_least(end - i, HDI_SPEC_ROWS));
-        hdi_spec_sum_rows(a, HDI_CAST(int32_t, i), n, sum);
-        for (k = 0; k < n; k++) hdi_spec_sum_store(a, HDI_CAST(int32_t, i) + k, sum[k]);
+        n = (int32_t)hdi_least(end - i, HDI_SPEC_ROWS);
+        hdi_spec_sum_rows(a, (int32_t)i, n, sum);
+        for (k = 0; k < n; k++) hdi_spec_sum_store(a, (int32_t)i + k, sum[k]);
     }
 }
 
@@ -23561,7 +23531,7 @@ static void hdi_spec_sums_run(hdi_spec_sums *x, hd_context *ctx) {
     for (q = 0; q < x->k; q++) {
         if (!a->diagonal) from = x->terms ? x->terms[q] : hdi_terms_vertex(x->sources[q]);
         for (m = 0; m < x->n_times; m++) {
-            const size_t at = HDI_CAST(size_t, q) * HDI_CAST(size_t, x->n_times) + HDI_CAST(size_t, m);
+            const size_t at = (size_t)q * (size_t)x->n_times + (size_t)m;
             a->out = x->out + at * x->ld;
             a->bound = x->bound ? x->bound + at * x->ld : NULL;
             a->f = hdi_spec_filter_of(x->of, a->distance ? 2 * hdi_min(x->t[m], DBL_MAX / 2) : x->t[m],
@@ -23586,7 +23556,7 @@ static hd_status hdi_sum_begin(hdi_call *c, hdi_spec_sums *x, const hd_spectrum 
     if (!x->sum.diagonal && x->k > 0 && !x->sources && !x->from) return hdi_missing(c->e);
     hdi_refuse(x->n_times < 1, "spectrum: there is no time", c->e);
     hdi_refuse(x->k < 0, "spectrum: a number of columns is negative", c->e);
-    hdi_refuse(x->ld != 0 && x->ld < HDI_CAST(size_t, s->n), "spectrum: columns would overlap", c->e);
+    hdi_refuse(x->ld != 0 && x->ld < (size_t)s->n, "spectrum: columns would overlap", c->e);
     for (q = 0; q < x->n_times; q++)
         hdi_refuse_value(!hdi_finite(x->t[q]) || x->t[q] < 0, "spectrum: t is negative or not finite",
                          x->t[q], c->e);
@@ -23594,9 +23564,9 @@ static hd_status hdi_sum_begin(hdi_call *c, hdi_spec_sums *x, const hd_spectrum 
     if (x->sources && hdi_vertices_check(s->lap, x->k, x->sources, &c->e->column, c->e) < 0)
         return c->e->status;
     x->of = s;
-    x->ld = x->ld ? x->ld : HDI_CAST(size_t, s->n);
+    x->ld = x->ld ? x->ld : (size_t)s->n;
     x->scope = hdi_scope_begin(c->ctx, c->e);
-    x->work = HDI_TAKE(&x->scope, double, 2 * HDI_CAST(uint64_t, s->count) + 1);
+    x->work = HDI_TAKE(&x->scope, double, 2 * (uint64_t)s->count + 1);
     if (x->from && x->work) x->terms = hdi_terms_all(x->k, x->from, s->lap, x->sum.distance, &x->scope);
     return c->e->status < 0 ? hdi_scope_end(&x->scope) : HD_OK;
 }
@@ -23743,7 +23713,7 @@ static const double *hdi_lane_answer(const hdi_lane *lane) { return lane->dual ?
 static hdi_parts hdi_lane_bound(const hd_laplacian *lap, const hdi_lane *lane, const double *reach) {
     double smallest_b = HUGE_VAL, largest_b = 0, largest_g = 0, *touched = lane->spare_sums, by_b, by_m;
     int32_t i, any = 0;
-    memset(touched, 0, HDI_CAST(size_t, lap->n_components) * sizeof *touched);
+    memset(touched, 0, (size_t)lap->n_components * sizeof *touched);
     for (i = 0; i < lap->n_active; i++)
         if (lane->u[i] != 0) touched[lap->component[i]] = any = 1;
     for (i = 0; i < lap->n_active; i++) {
@@ -23863,7 +23833,7 @@ static double hdi_heat_drift(const hd_laplacian *lap, double *sum) {
     double *rest = sum + lap->n_components, drift = 0;
     int64_t p;
     int32_t i;
-    memset(sum, 0, 2 * HDI_CAST(size_t, lap->n_components) * sizeof *sum);
+    memset(sum, 0, 2 * (size_t)lap->n_components * sizeof *sum);
     for (i = 0; i < lap->n_active && lap->conserves; i++) {
         const int32_t c = lap->component[i];
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
@@ -23892,7 +23862,7 @@ static hd_status hdi_heat_sums(hd_heat *heat, hd_error *e) {
     hdi_heat_free_lanes(heat);
     hdi_free(heat->ctx, heat->sums);
     heat->n_sums = 0;
-    heat->sums = HDI_NEW(heat->ctx, double, 2 * HDI_CAST(uint64_t, n), e);
+    heat->sums = HDI_NEW(heat->ctx, double, 2 * (uint64_t)n, e);
     if (heat->sums) heat->n_sums = n;
     return e->status;
 }
@@ -23901,9 +23871,9 @@ static hd_status hdi_heat_sums(hd_heat *heat, hd_error *e) {
 static hd_status hdi_heat_seats(hd_heat *heat, int32_t n, hd_error *e) {
     hdi_lane *lane;
     if (n <= heat->n_lanes) return HD_OK;
-    lane = HDI_CAST(hdi_lane *, hdi_alloc_zero(heat->ctx, HDI_CAST(uint64_t, n), sizeof *lane, e));
+    lane = (hdi_lane *)hdi_alloc_zero(heat->ctx, (uint64_t)n, sizeof *lane, e);
     if (!lane) return e->status;
-    if (heat->lane) memcpy(lane, heat->lane, HDI_CAST(size_t, heat->n_lanes) * sizeof *lane);
+    if (heat->lane) memcpy(lane, heat->lane, (size_t)heat->n_lanes * sizeof *lane);
     hdi_free(heat->ctx, heat->lane);
     heat->lane = lane;
     heat->n_lanes = n;
@@ -23954,7 +23924,7 @@ static hd_status hdi_heat_turn(hd_heat *heat, int light, hd_error *e) {
     hdi_heat_order now;
     if (heat->light == light) return HD_OK;
     if (!heat->other) {
-        heat->other = HDI_CAST(hdi_heat_order *, hdi_alloc_zero(heat->ctx, 1, sizeof *heat->other, e));
+        heat->other = (hdi_heat_order *)hdi_alloc_zero(heat->ctx, 1, sizeof *heat->other, e);
         if (!heat->other) return e->status;
     }
     now.elim = heat->elim;
@@ -24048,7 +24018,7 @@ static double hdi_shifted_load(const hd_heat *heat, const hd_c64 *rhs, int expon
         lane->b[i] = hdi_c(ldexp(r.re, -exponent), ldexp(r.im, -exponent));
     }
     norm = sqrt(hdi_cnorm2w(lane->b, heat->weight, lap->n_active));
-    memset(sums, 0, HDI_CAST(size_t, lap->n_components) * sizeof *sums);
+    memset(sums, 0, (size_t)lap->n_components * sizeof *sums);
     for (v = 0; v < lap->n; v++) x[v] = hdi_c(0, 0);
     if (!lap->conserves) return norm;
     for (i = 0; i < lap->n_active; i++)
@@ -24168,8 +24138,8 @@ static double hdi_steps_lowest(const hd_laplacian *lap) {
     for (c = 0; c < 3 && lap->xyz; c++) {
         double low = HUGE_VAL, high = -HUGE_VAL;
         for (i = 0; i < lap->n_active; i++) {
-            low = hdi_min(low, lap->xyz[3 * HDI_CAST(size_t, i) + HDI_CAST(size_t, c)]);
-            high = hdi_max(high, lap->xyz[3 * HDI_CAST(size_t, i) + HDI_CAST(size_t, c)]);
+            low = hdi_min(low, lap->xyz[3 * (size_t)i + (size_t)c]);
+            high = hdi_max(high, lap->xyz[3 * (size_t)i + (size_t)c]);
         }
         extent = hdi_max(extent, high - low);
     }
@@ -24219,7 +24189,7 @@ static double hdi_lanczos_steps(const hd_heat *heat, double t) {
         least = hdi_min(least, HDI_LANCZOS_GROWTH * sqrt(bounded * lambda) + above);
         above += s->rows[k];
     }
-    return HDI_LANCZOS_LEAST + hdi_min(least, HDI_CAST(double, heat->source->n_active));
+    return HDI_LANCZOS_LEAST + hdi_min(least, (double)heat->source->n_active);
 }
 
 /* Of all poles together. Solutions at hand give a good start: twice the poles do not take twice as many. */
@@ -24227,13 +24197,13 @@ static double hdi_cocg_steps(const hd_heat *heat, double t, int32_t poles) {
     static const double hdi_steps_of[] = {1, 5.5, 5, 2, 1.4, 1};   /* by hd_precond */
     const hdi_steps_scales *s = &heat->scales;
     const hd_laplacian *lap = heat->source;
-    const double wide = hdi_max(1, HDI_CAST(double, lap->L.nnz) / (7.0 * lap->n_active));
+    const double wide = hdi_max(1, (double)lap->L.nnz / (7.0 * lap->n_active));
     const double bounded = 1 / (1 / hdi_max(t, 1e-300) + HDI_COCG_LOWEST * s->lowest);
     double one = HDI_COCG_GROWTH * pow(bounded * s->local / pow(wide, HDI_COCG_WIDE), HDI_COCG_POWER);
     one += 1 + (lap->B ? HDI_COCG_FULL_B : 0);
     one *= exp(HDI_COCG_OBTUSE * s->obtuse * s->obtuse) * hdi_steps_digits(heat);
     one *= heat->opts.solver == HD_SOLVER_MINRES ? 3.5 : hdi_steps_of[heat->opts.precond];
-    return hdi_min(one * sqrt(5.0 * poles), HDI_CAST(double, heat->opts.max_iterations) * poles);
+    return hdi_min(one * sqrt(5.0 * poles), (double)heat->opts.max_iterations * poles);
 }
 
 /* Seconds of one quiet core for each non-zero and six times each row: a step of Lanczos, and of conjugate
@@ -24256,7 +24226,7 @@ typedef struct hdi_work { double steps, flops, seconds; } hdi_work;
  * relative to its diagonal is taken to be 2/b_ratio. */
 static hdi_work hdi_lanczos_work(const hd_heat *heat, double t, double k) {
     const hd_laplacian *lap = heat->source;
-    const double nnz = HDI_CAST(double, lap->L.nnz), n = lap->n_active, entries = nnz + 6 * n;
+    const double nnz = (double)lap->L.nnz, n = lap->n_active, entries = nnz + 6 * n;
     const double root = sqrt(2 / hdi_max(lap->b_ratio, 1e-12)), rate = log((root + 1) / (root - 1));
     const double mass = lap->B ? hdi_min(-0.5 * log(HDI_MASS_STOP) / rate, HDI_MASS_STEPS) : 0;
     hdi_work w;
@@ -24269,7 +24239,7 @@ static hdi_work hdi_lanczos_work(const hd_heat *heat, double t, double k) {
 
 static hdi_work hdi_cocg_work(const hd_heat *heat, double t, int32_t poles, double k) {
     const hd_laplacian *lap = heat->source;
-    const double nnz = HDI_CAST(double, lap->L.nnz), n = lap->n_active, full = lap->B ? 1.2 : 1;
+    const double nnz = (double)lap->L.nnz, n = lap->n_active, full = lap->B ? 1.2 : 1;
     const int made = heat->fam.filled && heat->fam.t == t;
     const int plain = heat->opts.precond == HD_PRECOND_NONE || heat->opts.precond == HD_PRECOND_JACOBI;
     hdi_work w;
@@ -24474,7 +24444,7 @@ typedef struct hdi_fill { double nnz, flops, stored, real_stored, analysis; } hd
  * 10, so much more of the former and its square of the latter. (Point sets with 233 and 117 entries a row,
  * 20K to 150K points: 1220 to 1700 n and 13000 n^1.5, 600 to 830 n and 3500 n^1.5.) */
 static hdi_fill hdi_heat_guess(const hd_heat *heat) {
-    const double n = heat->source->n_active, entries = HDI_CAST(double, heat->source->L.nnz);
+    const double n = heat->source->n_active, entries = (double)heat->source->L.nnz;
     const double wide = hdi_max(1, entries / (10 * n));
     hdi_fill f;
     f.nnz = 30 * n * wide;
@@ -24503,10 +24473,10 @@ static hdi_fill hdi_heat_fill_of(const hd_heat *heat, const hdi_elim *m, int lig
         f.analysis *= 1 - HDI_DEGREE_SAVES;
     }
     if (!m->ctx) return f;
-    f.nnz = HDI_CAST(double, s->nnz);
+    f.nnz = (double)s->nnz;
     f.flops = s->flops_done;
-    f.stored = HDI_CAST(double, s->stored + s->work);
-    f.real_stored = HDI_CAST(double, s->panel[s->n_super] + s->work);
+    f.stored = (double)(s->stored + s->work);
+    f.real_stored = (double)(s->panel[s->n_super] + s->work);
     f.analysis = 0;
     return f;
 }
@@ -24592,7 +24562,7 @@ typedef struct hdi_windows { int32_t n; double steps, longest; } hdi_windows;
 #define HDI_STEPS_HANDED_ON 3
 
 static double hdi_krylov_steps(double ratio, int goes_on) {
-    const double most = 0.9 * HDI_CAST(double, HDI_SILAN_MAX);
+    const double most = 0.9 * (double)HDI_SILAN_MAX;
     return hdi_min(goes_on ? 14 + 1.8 * sqrt(ratio) : 22 + 2.8 * sqrt(ratio), most);
 }
 
@@ -24611,7 +24581,7 @@ static hdi_windows hdi_krylov_windows(const hdi_heat_call *h, hdi_fill f) {
     const double factor = f.flops / HDI_RATE_REAL;
     const double step = 16 * f.nnz / HDI_RATE_SWEEP + 1e-8 * h->heat->source->n_active;
     const double span = log(h->times[h->n_times - 1]) - log(hdi_max(h->times[0], 1e-300));
-    const int32_t least = hdi_high32(1, HDI_CAST(int32_t, ceil(span / log(1e4))));
+    const int32_t least = hdi_high32(1, (int32_t)ceil(span / log(1e4)));
     double best = HUGE_VAL;
     hdi_windows all = {1, 0, 0};
     int32_t w;
@@ -24641,7 +24611,7 @@ static int hdi_heat_light(const hdi_heat_call *h) {
     const hd_laplacian *lap = heat->source;
     const hdi_order order = {heat->opts.ordering, lap->xyz, NULL};
     const hdi_fill f = hdi_heat_guess(heat);
-    const double n = lap->n_active, wide = hdi_max(1, HDI_CAST(double, lap->L.nnz) / (10 * n));
+    const double n = lap->n_active, wide = hdi_max(1, (double)lap->L.nnz / (10 * n));
     hdi_windows w;
     double more;
     if (order.kind != HD_ORDERING_AUTO || hdi_order_kind(&order, &lap->L) != HD_ORDERING_NESTED_DISSECTION ||
@@ -24902,7 +24872,7 @@ static int32_t hdi_uniform_degree(const hd_laplacian *lap, const hdi_lane *lane,
 static hd_status hdi_fields_check(const hdi_heat_call *h) {
     int32_t q, v;
     for (q = 0; q < h->ask.k; q++) {
-        const double *f = h->ask.F + HDI_CAST(size_t, q) * h->ask.ldf;
+        const double *f = h->ask.F + (size_t)q * h->ask.ldf;
         for (v = 0; v < h->heat->source->n; v++)
             if (!hdi_finite(f[v]))
                 return hdi_fail_row(h->e, HD_ERR_NOT_FINITE, "heat: a value of the field is not finite", v,
@@ -24914,7 +24884,7 @@ static hd_status hdi_fields_check(const hdi_heat_call *h) {
 static hdi_terms hdi_heat_source(const hdi_heat_call *h, int32_t q) {
     if (h->ask.terms) return h->ask.terms[q];
     return hdi_terms_vertex(h->ask.sources ? h->ask.sources[q]
-                            : HDI_CAST(int32_t, h->ask.list->order[h->ask.list->begin[q]].key));
+                            : (int32_t)h->ask.list->order[h->ask.list->begin[q]].key);
 }
 
 /* Brings fields near one, by a power of two, where their squares could leave the range of doubles. Sums over
@@ -24973,7 +24943,7 @@ static int hdi_lane_bounded(const hdi_heat_call *h) {
 static double hdi_lane_terms(const hd_laplacian *lap, const hdi_terms *c, double *x) {
     double norm = 0;
     int32_t q;
-    memset(x, 0, HDI_CAST(size_t, lap->n_active) * sizeof *x);
+    memset(x, 0, (size_t)lap->n_active * sizeof *x);
     for (q = 0; q < c->n; q++) {
         const int32_t row = lap->row[c->vertex[q]];
         if (row < 0) continue;
@@ -25007,11 +24977,11 @@ static hd_status hdi_heat_load_terms(const hdi_heat_call *h, const hdi_terms *c,
     const hd_laplacian *lap = h->lap;
     const int plain = h->ask.query == HDI_QUERY_OPERATOR;
     const double norm = hdi_lane_terms(lap, c, plain ? lane->f : lane->rhs);
-    double sums = HDI_CAST(double, c->n) * DBL_EPSILON;
+    double sums = (double)c->n * DBL_EPSILON;
     lane->skip = norm == 0;
     if (lane->skip) return HD_OK;
     if (!plain && hdi_lane_bounded(h)) {
-        memset(lane->f, 0, HDI_CAST(size_t, lap->n_active) * sizeof *lane->f);   /* a0 = 0 times it is 0 */
+        memset(lane->f, 0, (size_t)lap->n_active * sizeof *lane->f);   /* a0 = 0 times it is 0 */
         hdi_component_sums(lap, NULL, lane->rhs, lane->target);
         lane->f_norm = norm * hdi_ratio_root(lap);
         lane->rhs_off = sums * lane->f_norm;
@@ -25020,7 +24990,7 @@ static hd_status hdi_heat_load_terms(const hdi_heat_call *h, const hdi_terms *c,
     if (plain) {
         hdi_pair_apply(lap, 0, 1, lane->f, lane->rhs);
         lane->rhs_off = hdi_lane_rhs_off(lap, lane->f);
-        sums = (HDI_CAST(double, lap->n_active) / 2 + 4) * DBL_EPSILON;
+        sums = ((double)lap->n_active / 2 + 4) * DBL_EPSILON;
     } else if (hdi_mass_solve(lap, lane->rhs, lane->f, lane->tmp, h->e) < 0) {
         return h->e->status;
     }
@@ -25034,7 +25004,7 @@ static hd_status hdi_heat_load_terms(const hdi_heat_call *h, const hdi_terms *c,
 /* Field and right-hand side of item q. A vertex without mass needs no solve, and is skipped. */
 static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane) {
     const hd_laplacian *lap = h->lap;
-    const size_t bytes = HDI_CAST(size_t, lap->n_active) * sizeof(double);
+    const size_t bytes = (size_t)lap->n_active * sizeof(double);
     hdi_terms source;
     int32_t row;
     lane->skip = 0;
@@ -25046,7 +25016,7 @@ static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane
     lane->watch = -1;
     lane->dual = h->ask.query == HDI_QUERY_ADJOINT;
     if (hdi_query_fields(h->ask.query)) {
-        hdi_gather(lap, h->ask.F + HDI_CAST(size_t, q) * h->ask.ldf, lane->f);
+        hdi_gather(lap, h->ask.F + (size_t)q * h->ask.ldf, lane->f);
         hdi_lane_unit(lap, h->by_pairs, lane);
         if (lane->dual) {
             memcpy(lane->rhs, lane->f, bytes);
@@ -25119,7 +25089,7 @@ static void hdi_heat_store_entries(const hdi_heat_call *h, int32_t q, const hdi_
         memset(&off, 0, sizeof off);
         values[at.id] = row < 0 || lane->skip ? 0 : unit * lane->u[row];
         if (row == HD_ROW_INERT)
-            values[at.id] = h->ask.query == HDI_QUERY_OPERATOR && HDI_CAST(uint64_t, v) == at.key;
+            values[at.id] = h->ask.query == HDI_QUERY_OPERATOR && (uint64_t)v == at.key;
         if (!lane->skip && row >= 0)
             off = hdi_parts_scale(unit * hdi_ratio_root(lap) / sqrt(lap->b_diag[row]), lane->off);
         if (!lane->skip && row >= 0 && h->by_pairs) off = lane->off_value;
@@ -25145,7 +25115,7 @@ static hd_status hdi_fail_range(hd_error *e, int32_t v, double value) {
 /* Stores the answer of item q at the time under way, from its lane. */
 static void hdi_heat_store(const hdi_heat_call *h, int32_t q, const hdi_lane *lane) {
     const hd_laplacian *lap = h->lap;
-    const size_t column = HDI_CAST(size_t, q) * HDI_CAST(size_t, h->ask.n_times) + HDI_CAST(size_t, h->now);
+    const size_t column = (size_t)q * (size_t)h->ask.n_times + (size_t)h->now;
     const double unit = hdi_heat_unit(h);
     const int copy = h->t == 0 && h->ask.query == HDI_QUERY_FIELD && !h->rate;
     double *u = h->ask.U ? h->ask.U + column * h->ask.ldu : NULL;
@@ -25154,10 +25124,10 @@ static void hdi_heat_store(const hdi_heat_call *h, int32_t q, const hdi_lane *la
     if (h->ask.list) hdi_heat_store_entries(h, q, lane);
     if (!u) return;
     if (hdi_query_fields(h->ask.query)) {        /* vertices without mass keep their value */
-        const double *f = h->ask.F + HDI_CAST(size_t, q) * h->ask.ldf;
-        if (u != f) memmove(u, f, HDI_CAST(size_t, lap->n) * sizeof *u);
+        const double *f = h->ask.F + (size_t)q * h->ask.ldf;
+        if (u != f) memmove(u, f, (size_t)lap->n * sizeof *u);
     } else {
-        memset(u, 0, HDI_CAST(size_t, lap->n) * sizeof *u);
+        memset(u, 0, (size_t)lap->n * sizeof *u);
         hdi_heat_store_inert(h, q, u);
     }
     for (i = 0; i < lap->n && (lap->n_held > 0 || h->rate); i++)
@@ -25221,7 +25191,7 @@ static hdi_lanczos_task hdi_heat_lanczos_task(const hd_heat *heat, double t) {
 }
 
 static void hdi_heat_task(void *arg, int64_t index, int32_t worker) {
-    hdi_heat_call *h = HDI_CAST(hdi_heat_call *, arg);
+    hdi_heat_call *h = (hdi_heat_call *)arg;
     hdi_lane *lane = h->lane + index;
     const hdi_lanczos_task task = hdi_heat_lanczos_task(h->heat, h->t);
     hdi_watch watch;
@@ -25231,7 +25201,7 @@ static void hdi_heat_task(void *arg, int64_t index, int32_t worker) {
     watch.stop = &h->stop;
     watch.stage = "solve";
     watch.share = 1.0 / h->ask.k;
-    watch.from = watch.share * HDI_CAST(double, h->batch + index);
+    watch.from = watch.share * (double)(h->batch + index);
     lane->status = hdi_watch_look(&watch, 0, &lane->error);
     if (lane->status >= 0) {
         if (h->solver == HD_SOLVER_LANCZOS) lane->status = hdi_lanczos_run(&task, lane, &watch, &lane->error);
@@ -25365,8 +25335,7 @@ static hd_status hdi_heat_by_iterations(hdi_heat_call *h) {
     for (h->batch = 0; h->batch < h->ask.k; h->batch += n) {
         n = hdi_heat_load_some(h);
         /* told here too: the calling thread may find all lanes taken */
-        if (h->e->status >= 0 &&
-            hdi_progress(h->heat->ctx, "solve", HDI_CAST(double, h->batch) / h->ask.k, h->e) >= 0)
+        if (h->e->status >= 0 && hdi_progress(h->heat->ctx, "solve", (double)h->batch / h->ask.k, h->e) >= 0)
             hdi_parallel(h->heat->ctx, n, hdi_heat_task, h);
         if (hdi_heat_store_some(h, n) < 0) break;
     }
@@ -25392,7 +25361,7 @@ static hd_status hdi_direct_growth(hdi_heat_call *h) {
 /* How many items are solved at the same time, with k in all: see hdi_batches. There are no more batches than
  * threads, and they take no more room than a pack of factors. Returns the number of batches. */
 static int32_t hdi_batches_shape(const hdi_elim *m, int32_t k, int32_t *width, uint64_t *doubles) {
-    const uint64_t n = HDI_CAST(uint64_t, m->sym.n), most = 8 * HDI_CAST(uint64_t, m->sym.stored);
+    const uint64_t n = (uint64_t)m->sym.n, most = 8 * (uint64_t)m->sym.stored;
     int32_t count;
     uint64_t x, xr;
     *width = hdi_low32(k, HDI_LANES_BATCH);
@@ -25400,36 +25369,36 @@ static int32_t hdi_batches_shape(const hdi_elim *m, int32_t k, int32_t *width, u
     count = (k - 1) / *width + 1;
     if (count > HDI_BATCHES) count = HDI_BATCHES;
     if (!m->ctx->parallel_for) count = hdi_low32(count, hdi_context_width(m->ctx));
-    while (count > 1 && HDI_CAST(uint64_t, count) * (*doubles + 7 * n * HDI_CAST(uint64_t, *width)) > most)
+    while (count > 1 && (uint64_t)count * (*doubles + 7 * n * (uint64_t)*width) > most)
         count--;
     return count;
 }
 
 /* How many of them have their arrays where the update matrices of the first of so many packs were. */
 static int32_t hdi_batches_inside(const hdi_elim *m, int32_t packs, uint64_t doubles, int32_t count) {
-    const uint64_t spare = packs > 0 ? HDI_PACK * HDI_CAST(uint64_t, m->sym.work) : 0;
-    return HDI_CAST(int32_t, hdi_least(HDI_CAST(int64_t, spare / doubles), count));
+    const uint64_t spare = packs > 0 ? HDI_PACK * (uint64_t)m->sym.work : 0;
+    return (int32_t)hdi_least((int64_t)(spare / doubles), count);
 }
 
 /* Bytes that solves of k items with so many packs take beyond what the plan has. */
 static uint64_t hdi_batches_need(const hd_heat *heat, int32_t packs, int32_t k) {
-    const uint64_t n = HDI_CAST(uint64_t, heat->elim.sym.n);
-    const uint64_t n_comp = HDI_CAST(uint64_t, heat->source->n_components);
+    const uint64_t n = (uint64_t)heat->elim.sym.n;
+    const uint64_t n_comp = (uint64_t)heat->source->n_components;
     int32_t width, count, lanes, i;
     uint64_t doubles, bytes = 0, old = 0;
     if (k < 1) return 0;
     count = hdi_batches_shape(&heat->elim, k, &width, &doubles);
     lanes = hdi_low32(k, count * width);
     if (lanes > heat->n_lanes) {
-        hdi_scope_count(&bytes, HDI_CAST(uint64_t, lanes), sizeof(hdi_lane));
-        if (heat->lane) hdi_scope_count(&old, HDI_CAST(uint64_t, heat->n_lanes), sizeof(hdi_lane));
+        hdi_scope_count(&bytes, (uint64_t)lanes, sizeof(hdi_lane));
+        if (heat->lane) hdi_scope_count(&old, (uint64_t)heat->n_lanes, sizeof(hdi_lane));
     }
     for (i = 0; i < lanes; i++) {
         if (i < heat->n_lanes && heat->lane[i].f) continue;
         hdi_scope_count(&bytes, 7 * n, sizeof(double));
         hdi_scope_count(&bytes, 3 * n_comp, sizeof(double));
     }
-    doubles *= HDI_CAST(uint64_t, count - hdi_batches_inside(&heat->elim, packs, doubles, count));
+    doubles *= (uint64_t)(count - hdi_batches_inside(&heat->elim, packs, doubles, count));
     if (heat->batch_doubles < doubles) {
         hdi_scope_count(&bytes, doubles, sizeof(double));
         if (heat->batch_room) hdi_scope_count(&old, heat->batch_doubles, sizeof(double));
@@ -25495,7 +25464,7 @@ static hd_status hdi_batches_make(hdi_batches *b, hdi_heat_call *h) {
     b->count = hdi_batches_shape(&heat->elim, h->ask.k, &b->width, &b->doubles);
     if (hdi_heat_lanes(h, b->count * b->width) < 0) return h->e->status;
     b->inside = hdi_batches_inside(&heat->elim, heat->elim.n_used, b->doubles, b->count);
-    fresh = b->doubles * HDI_CAST(uint64_t, b->count - b->inside);
+    fresh = b->doubles * (uint64_t)(b->count - b->inside);
     if (heat->batch_doubles >= fresh) return HD_OK;
     hdi_free(heat->ctx, heat->batch_room);
     heat->batch_doubles = 0;
@@ -25510,21 +25479,21 @@ static hdi_batch hdi_batches_get(const hdi_batches *b, int64_t index) {
     hdi_batch one;
     uint64_t x, xr;
     (void)hdi_batch_size(m, b->width, &x, &xr);
-    if (index < b->inside) one.x = m->pack->work + b->doubles * HDI_CAST(size_t, index);
-    else one.x = b->h->heat->batch_room + b->doubles * HDI_CAST(size_t, index - b->inside);
+    if (index < b->inside) one.x = m->pack->work + b->doubles * (size_t)index;
+    else one.x = b->h->heat->batch_room + b->doubles * (size_t)(index - b->inside);
     one.xr = one.x + x;
     one.work = one.xr + xr;
-    one.active = HDI_CAST(char *, HDI_CAST(void *, one.x + b->doubles)) - m->sym.n_super - 8;
+    one.active = (char *)(void *)(one.x + b->doubles) - m->sym.n_super - 8;
     return one;
 }
 
 static void hdi_batches_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_batches *b = HDI_CAST(const hdi_batches *, arg);
+    const hdi_batches *b = (const hdi_batches *)arg;
     const hdi_heat_call *h = b->h;
     const hd_heat *heat = h->heat;
     const hdi_batch batch = hdi_batches_get(b, index);
     hdi_lane *lane = h->lane + index * b->width;
-    const int32_t n = hdi_low32(b->n_here - HDI_CAST(int32_t, index) * b->width, b->width);
+    const int32_t n = hdi_low32(b->n_here - (int32_t)index * b->width, b->width);
     int32_t r;
     (void)worker;
     hdi_batch_run(&heat->elim, &batch, lane, n, b->count > 1 ? NULL : heat->ctx);
@@ -25558,7 +25527,7 @@ static hd_status hdi_heat_by_direct(hdi_heat_call *h) {
     if (hdi_batches_make(&b, h) < 0) return h->e->status;
     h->deflated = !h->watching && (hdi_query_fields(h->ask.query) || h->t * heat->lambda_max > HDI_DEFLATE);
     for (h->batch = 0; h->batch < h->ask.k; h->batch += b.n_here) {
-        if (hdi_progress(heat->ctx, "solve", HDI_CAST(double, h->batch) / h->ask.k, h->e) < 0)
+        if (hdi_progress(heat->ctx, "solve", (double)h->batch / h->ask.k, h->e) < 0)
             return h->e->status;
         b.n_here = hdi_heat_load_some(h);
         for (i = 0; i < b.n_here && h->deflated; i++)
@@ -25587,7 +25556,7 @@ static int32_t hdi_window_end(const double *times, int32_t n_times, int32_t q0, 
 
 /* Bytes that a basis of so many steps takes, with the real factor before it where there is none. */
 static uint64_t hdi_krylov_need(const hdi_elim *m, int32_t wide, int32_t steps) {
-    const uint64_t n = HDI_CAST(uint64_t, m->sym.n), count = n * HDI_CAST(uint64_t, wide);
+    const uint64_t n = (uint64_t)m->sym.n, count = n * (uint64_t)wide;
     uint64_t bytes = m->shifted.ctx ? 0 : hdi_factor_bytes(&m->sym, 1);
     int32_t q;
     for (q = 0; q <= steps; q++) hdi_scope_count(&bytes, count, sizeof(double));
@@ -25620,7 +25589,7 @@ static hd_status hdi_krylov_basis(hdi_heat_call *h, int32_t n, int32_t q0, int32
 static hd_status hdi_krylov_store(hdi_heat_call *h, int32_t n, int32_t q, const hdi_silan_sum *a, int32_t p,
                                   int counted, hd_status status) {
     const hd_heat *heat = h->heat;
-    const size_t bytes = HDI_CAST(size_t, h->lap->n_active) * sizeof *h->lane->u;
+    const size_t bytes = (size_t)h->lap->n_active * sizeof *h->lane->u;
     int32_t i;
     for (i = 0; i < n; i++) {
         hdi_lane *lane = h->lane + i;
@@ -25648,7 +25617,7 @@ static hd_status hdi_krylov_answers(hdi_heat_call *h, int32_t n, int32_t q0, int
     int32_t p, q, n_here;
     memset(&a, 0, sizeof a);
     if (!abreast && q1 - q0 > 1 && !z->ahead)
-        z->ahead = HDI_NEW(ctx, double, HDI_SILAN_WIDE * HDI_CAST(uint64_t, rows), h->e);
+        z->ahead = HDI_NEW(ctx, double, HDI_SILAN_WIDE * (uint64_t)rows, h->e);
     if (h->e->status < 0 || hdi_silan_places(z, places, ctx, h->e) < 0) return h->e->status;
     for (q = q0; q < q1; q += n_here) {
         n_here = abreast ? 1 : hdi_low32(q1 - q, HDI_SILAN_WIDE);
@@ -25681,7 +25650,7 @@ static void hdi_krylov_begin(hdi_heat_call *h, int32_t n, double from) {
         hdi_lane *lane = h->lane + i;
         if (lane->skip) continue;
         z->before[i] = lane->off;
-        memcpy(lane->f, lane->u, HDI_CAST(size_t, lap->n_active) * sizeof *lane->f);
+        memcpy(lane->f, lane->u, (size_t)lap->n_active * sizeof *lane->f);
         hdi_pair_apply(lap, 0, 1, lane->f, lane->rhs);
         lane->rhs_off = hdi_lane_rhs_off(lap, lane->f);
         lane->f_norm = lane->u_norm;
@@ -25736,7 +25705,7 @@ static hd_status hdi_heat_by_krylov(hdi_heat_call *h) {
     int32_t n;
     if (heat->silan && heat->silan->wide != wide) hdi_silan_free(heat->silan, heat->ctx);
     if (!heat->silan) {
-        heat->silan = HDI_CAST(hdi_silan *, hdi_alloc_zero(heat->ctx, 1, sizeof *heat->silan, h->e));
+        heat->silan = (hdi_silan *)hdi_alloc_zero(heat->ctx, 1, sizeof *heat->silan, h->e);
         if (!heat->silan) return h->e->status;
     }
     heat->silan->wide = wide;
@@ -25793,11 +25762,11 @@ static double hdi_modes_gram(const hd_laplacian *lap, const hd_spectrum *s, doub
     double sum = 0;
     int32_t i, j, q;
     for (j = 0; j < s->count; j++) {
-        const double *xj = s->vector + HDI_CAST(int64_t, j) * s->n;
-        memset(bx, 0, HDI_CAST(size_t, s->n) * sizeof *bx);
+        const double *xj = s->vector + (int64_t)j * s->n;
+        memset(bx, 0, (size_t)s->n * sizeof *bx);
         for (q = 0; q < lap->n_active; q++) bx[lap->vertex[q]] = hdi_spec_mass_row(lap, xj, q);
         for (i = 0; i <= j; i++) {
-            const double g = hdi_dot(s->vector + HDI_CAST(int64_t, i) * s->n, bx, s->n) - (i == j);
+            const double g = hdi_dot(s->vector + (int64_t)i * s->n, bx, s->n) - (i == j);
             sum += (i == j ? 1 : 2) * g * g;
         }
     }
@@ -25808,7 +25777,7 @@ static double hdi_modes_gram(const hd_laplacian *lap, const hd_spectrum *s, doub
 static void hdi_modes_one(const hd_laplacian *lap, double *one) {
     int32_t i;
     int64_t p;
-    memset(one, 0, 2 * HDI_CAST(size_t, lap->n) * sizeof *one);
+    memset(one, 0, 2 * (size_t)lap->n * sizeof *one);
     for (i = 0; i < lap->n_active; i++) {
         double sum = 0, rest = 0;
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1] && lap->B; p++) {
@@ -25826,7 +25795,7 @@ static hd_status hdi_modes_measure(hd_heat *heat, hd_error *e) {
     hdi_modes *x = &heat->modes;
     const hd_spectrum *s = &x->s;
     const hd_laplacian *lap = heat->source;
-    const uint64_t n = HDI_CAST(uint64_t, s->n);
+    const uint64_t n = (uint64_t)s->n;
     const int32_t first = s->n_constant;
     int32_t q, i;
     x->off = HDI_NEW(heat->ctx, double, s->count + 1, e);
@@ -25837,14 +25806,14 @@ static hd_status hdi_modes_measure(hd_heat *heat, hd_error *e) {
     for (q = 0, x->off_norm = 0; q < s->count; q++) {
         const double value = s->value[q], unit = first < s->count ? s->value[first] : 0;
         x->off[q] = hdi_ratio_root(lap) * s->residual[q] * hdi_max(value, unit);
-        x->off[q] += hdi_modes_noise(lap, s->vector + HDI_CAST(int64_t, q) * s->n, fabs(value));
+        x->off[q] += hdi_modes_noise(lap, s->vector + (int64_t)q * s->n, fabs(value));
         x->off[q] += x->off_gram * fabs(s->value[s->count - 1]);
         if (q >= first) x->off_norm = hdi_pythag(x->off_norm, x->off[q]);
     }
     x->low = first < s->count ? s->value[first] : s->next < HUGE_VAL ? s->next : 0;
     x->low = hdi_max(0, x->low - x->off_norm);
     hdi_modes_one(lap, x->one);
-    memset(x->by, 0, HDI_CAST(size_t, lap->n) * sizeof *x->by);
+    memset(x->by, 0, (size_t)lap->n * sizeof *x->by);
     for (i = 0; i < lap->n_active; i++) x->by[lap->vertex[i]] = lap->mass[i];
     return HD_OK;
 }
@@ -25853,11 +25822,11 @@ static hd_status hdi_modes_measure(hd_heat *heat, hd_error *e) {
 static hd_status hdi_modes_mass(hd_heat *heat, hd_error *e) {
     hdi_modes *x = &heat->modes;
     const hd_laplacian *lap = heat->source;
-    const int64_t size = HDI_CAST(int64_t, x->s.n) * x->s.count;
+    const int64_t size = (int64_t)x->s.n * x->s.count;
     int64_t at;
     int32_t i;
     if (x->bx || !lap->B) return HD_OK;
-    x->bx = HDI_CAST(double *, hdi_alloc_zero(heat->ctx, HDI_CAST(uint64_t, size), sizeof *x->bx, e));
+    x->bx = (double *)hdi_alloc_zero(heat->ctx, (uint64_t)size, sizeof *x->bx, e);
     if (!x->bx) return e->status;
     for (at = 0; at < size; at += x->s.n)
         for (i = 0; i < lap->n_active; i++)
@@ -25908,7 +25877,7 @@ static int hdi_modes_allowed(const hd_heat *heat) {
 static int32_t hdi_modes_count(const hd_heat *heat, double more) {
     const hd_laplacian *lap = heat->source;
     const double constants = lap->conserves ? lap->n_components : 0;
-    return HDI_CAST(int32_t, hdi_min(lap->n_active, ceil(1.25 * more) + 6 + constants));
+    return (int32_t)hdi_min(lap->n_active, ceil(1.25 * more) + 6 + constants);
 }
 
 /* Bytes that finding so many pairs takes; a guess before the analysis. */
@@ -25916,11 +25885,11 @@ static int32_t hdi_modes_count(const hd_heat *heat, double more) {
 
 static double hdi_modes_need(const hd_heat *heat, int32_t count) {
     const int32_t n = heat->source->n_active;
-    const double tiles = HDI_CAST(double, HDI_SPEC_TILE) * hdi_slab_tiles(n), gaps = HDI_SPEC_GAPS;
+    const double tiles = (double)HDI_SPEC_TILE * hdi_slab_tiles(n), gaps = HDI_SPEC_GAPS;
     const double doubles = hdi_spec_doubles(n, count) + 2 * tiles * (count + gaps) + 2.0 * heat->source->n;
     if (!heat->elim.ctx) return 8 * doubles + 8 * hdi_heat_fill(heat).real_stored;
-    return 8 * (doubles + HDI_CAST(double, hdi_sweep_size(&heat->elim.sym, 1, HDI_SPEC_WIDE))) +
-           HDI_CAST(double, hdi_factor_bytes(&heat->elim.sym, 1));
+    return 8 * (doubles + (double)hdi_sweep_size(&heat->elim.sym, 1, HDI_SPEC_WIDE)) +
+           (double)hdi_factor_bytes(&heat->elim.sym, 1);
 }
 
 /* Finds so many eigenpairs. Returns 0 where that fails, or where they are not proven complete, or where there
@@ -26101,7 +26070,7 @@ static hdi_fading_far hdi_fading_reach(const hdi_modes *of, const hdi_decay *x, 
     int32_t q, v;
     for (v = 0; v < s->n; v++) side[v] = found[v] = inner[v] = 0;
     for (q = 0; q < s->count; q++) {
-        const double *y = s->vector + HDI_CAST(int64_t, q) * s->n, w = hdi_decay_side(of, x, q);
+        const double *y = s->vector + (int64_t)q * s->n, w = hdi_decay_side(of, x, q);
         for (v = 0; v < s->n; v++) {
             side[v] += w * fabs(y[v]);
             inner[v] += x->off[q] * fabs(y[v]);
@@ -26128,14 +26097,14 @@ typedef struct hdi_fading_sum {
 } hdi_fading_sum;
 
 static void hdi_fading_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_fading_sum *a = HDI_CAST(const hdi_fading_sum *, arg);
+    const hdi_fading_sum *a = (const hdi_fading_sum *)arg;
     const hd_spectrum *s = &a->of->s;
     const int32_t *vertex = s->lap->vertex;
     int64_t i;
     int32_t q;
     for (i = begin; i < end; i++) a->u[i] = 0;
     for (q = 0; q < s->count; q++) {
-        const double *x = s->vector + HDI_CAST(int64_t, q) * s->n;
+        const double *x = s->vector + (int64_t)q * s->n;
         for (i = begin; i < end; i++) a->u[i] += a->c[q] * x[vertex[i]];
     }
     for (i = begin; i < end; i++) a->u[i] = hdi_decayed(a->decay, a->u[i]);
@@ -26148,7 +26117,7 @@ typedef struct hdi_fading_size { double found, kept, inner, side; } hdi_fading_s
 static void hdi_fading_bound(const hdi_heat_call *h, const hdi_decay *x, const hdi_fading_far *most,
                              const hdi_fading_size *c, hdi_lane *lane) {
     const hdi_modes *of = &h->heat->modes;
-    const double terms = hdi_query_fields(h->ask.query) ? HDI_CAST(double, h->lap->n_active) / 2 : 0;
+    const double terms = hdi_query_fields(h->ask.query) ? (double)h->lap->n_active / 2 : 0;
     const double f2 = lane->f_norm * lane->f_norm, twice = hdi_decay_twice(of, x) * sqrt(c->found);
     const double rounding = x->rounding + terms * DBL_EPSILON;
     const double left = sqrt(hdi_max(0, f2 - (1 - of->off_gram) * c->found) + rounding * f2);
@@ -26178,7 +26147,7 @@ static void hdi_fading_lane(const hdi_heat_call *h, const hdi_decay *x, const hd
     hdi_fading_sum a;
     int32_t q, i;
     for (q = 0; q < of->s.count; q++) {
-        const double *v = of->s.vector + HDI_CAST(int64_t, q) * of->s.n;
+        const double *v = of->s.vector + (int64_t)q * of->s.n;
         double c = 0;
         for (i = 0; i < lap->n_active; i++) c += lane->rhs[i] * v[lap->vertex[i]];
         work[q] = x->weight[q] * c;
@@ -26199,8 +26168,7 @@ static void hdi_fading_lane(const hdi_heat_call *h, const hdi_decay *x, const hd
 static hd_status hdi_fading_answer(hdi_heat_call *h, double t) {
     hd_heat *heat = h->heat;
     const int32_t count = heat->modes.s.count;
-    double *work = HDI_NEW(heat->ctx, double,
-                           3 * (HDI_CAST(uint64_t, count) + HDI_CAST(uint64_t, heat->source->n)), h->e);
+    double *work = HDI_NEW(heat->ctx, double, 3 * ((uint64_t)count + (uint64_t)heat->source->n), h->e);
     hdi_fading_far most;
     hdi_decay x;
     h->lap = heat->source;
@@ -26210,9 +26178,9 @@ static hd_status hdi_fading_answer(hdi_heat_call *h, double t) {
     hdi_modes_tell(heat, h->rep);
     if (work && hdi_heat_lanes(h, 1) >= 0) {
         x = hdi_decay_at(&heat->modes, t, work + count);
-        most = hdi_fading_reach(&heat->modes, &x, work + 3 * HDI_CAST(int64_t, count));
+        most = hdi_fading_reach(&heat->modes, &x, work + 3 * (int64_t)count);
         for (h->batch = 0; h->batch < h->ask.k; h->batch++) {
-            if (hdi_progress(heat->ctx, "solve", HDI_CAST(double, h->batch) / h->ask.k, h->e) < 0 ||
+            if (hdi_progress(heat->ctx, "solve", (double)h->batch / h->ask.k, h->e) < 0 ||
                 hdi_heat_load(h, h->batch, h->lane) < 0) break;
             if (!h->lane->skip) hdi_fading_lane(h, &x, &most, h->lane, work);
             if (hdi_heat_store_some(h, 1) < 0) break;
@@ -26257,17 +26225,17 @@ static int hdi_fading_pairs(hdi_heat_call *h, const hdi_fading_start *from, int3
 
 /* Copies fields that their answers would overwrite, to ask for them again. Returns 0 if there is no room. */
 static int hdi_fading_keep(hdi_heat_call *h) {
-    const size_t n = HDI_CAST(size_t, h->heat->source->n);
+    const size_t n = (size_t)h->heat->source->n;
     double *copy;
     int32_t q;
     if (!hdi_query_fields(h->ask.query) || h->ask.U != h->ask.F) return 1;
-    copy = HDI_TAKE(&h->s, double, n * HDI_CAST(size_t, h->ask.k));
+    copy = HDI_TAKE(&h->s, double, n * (size_t)h->ask.k);
     if (!copy) {
         if (hdi_over_limit(h->heat->ctx, h->e)) hdi_error_clear(h->e);
         return 0;
     }
     for (q = 0; q < h->ask.k; q++)
-        memcpy(copy + n * HDI_CAST(size_t, q), h->ask.F + h->ask.ldf * HDI_CAST(size_t, q), n * sizeof *copy);
+        memcpy(copy + n * (size_t)q, h->ask.F + h->ask.ldf * (size_t)q, n * sizeof *copy);
     h->ask.F = copy;
     h->ask.ldf = n;
     return 1;
@@ -26467,7 +26435,7 @@ static hd_status hdi_kernel_begin(hdi_heat_call *h, hd_heat *heat, hd_kernel ker
 
 /* Sets a leading dimension's default and checks it. */
 static size_t hdi_leading(hdi_heat_call *h, size_t ld) {
-    const size_t n = HDI_CAST(size_t, h->heat->source->n);
+    const size_t n = (size_t)h->heat->source->n;
     if (ld && ld < n)
         hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: a leading dimension is smaller than the number of vertices");
     return ld ? ld : n;
@@ -26542,7 +26510,7 @@ static hd_status hdi_heat_sort_times(hdi_heat_call *h, double factor, const char
     }
     hdi_sort_pairs(order, n);
     for (q = 0; q < n; q++) {
-        column[q] = HDI_CAST(int32_t, order[q].id);
+        column[q] = (int32_t)order[q].id;
         sorted[q] = hdi_min(factor * hdi_heat_scaled(h->heat, h->ask.t[column[q]]), 1e300);
     }
     h->times = sorted;
@@ -26602,7 +26570,7 @@ static hd_status hdi_heat_several(hdi_heat_call *h) {
         done = HDI_TAKE(&h->s, char, h->ask.n_times);
         if (!done) return h->e->status;
         for (q = 0; q < h->ask.n_times; q++) {
-            done[q] = HDI_CAST(char, hdi_fading_first(h, h->ask.t[q]));
+            done[q] = (char)hdi_fading_first(h, h->ask.t[q]);
             if (done[q] && hdi_heat_one_time(h, q, &begun) < 0) return h->rep->status;
         }
     }
@@ -26663,16 +26631,16 @@ static void hdi_halves_weigh(hdi_halves *z) {
 
 static hd_status hdi_halves_make(hdi_halves *z, hdi_heat_call *h) {
     const hd_laplacian *lap = h->heat->source;
-    const uint64_t n = HDI_CAST(uint64_t, lap->n_active);
+    const uint64_t n = (uint64_t)lap->n_active;
     int32_t q;
     memset(z, 0, sizeof *z);
     z->h = h;
-    z->W = HDI_TAKE(&h->s, double, HDI_CAST(uint64_t, lap->n) * HDI_CAST(uint64_t, h->ask.k));
+    z->W = HDI_TAKE(&h->s, double, (uint64_t)lap->n * (uint64_t)h->ask.k);
     z->x = HDI_TAKE(&h->s, double, n);
     z->work = HDI_TAKE(&h->s, double, 4 * n);
     z->noise = HDI_TAKE(&h->s, double, 2 * n);
     z->sums = HDI_TAKE(&h->s, double, lap->n_components);
-    z->size = HDI_TAKE(&h->s, double, 2 * HDI_CAST(uint64_t, h->ask.k));
+    z->size = HDI_TAKE(&h->s, double, 2 * (uint64_t)h->ask.k);
     z->exponent = HDI_TAKE(&h->s, int32_t, h->ask.k);
     z->later = HDI_TAKE(&h->s, double, h->ask.n_times);
     if (h->e->status < 0) return h->e->status;
@@ -26689,9 +26657,9 @@ static hd_status hdi_halves_make(hdi_halves *z, hdi_heat_call *h) {
 /* x goes to field q of W; other vertices have 0. */
 static void hdi_halves_put(hdi_halves *z, int32_t q) {
     const hd_laplacian *lap = z->h->heat->source;
-    double *w = z->W + HDI_CAST(size_t, q) * HDI_CAST(size_t, lap->n);
+    double *w = z->W + (size_t)q * (size_t)lap->n;
     int32_t i;
-    memset(w, 0, HDI_CAST(size_t, lap->n) * sizeof *w);
+    memset(w, 0, (size_t)lap->n * sizeof *w);
     for (i = 0; i < lap->n_active; i++) w[lap->vertex[i]] = z->x[i];
 }
 
@@ -26701,7 +26669,7 @@ static void hdi_halves_load(hdi_halves *z, int32_t q) {
     double most = 0;
     int32_t i;
     int exponent = 0;
-    hdi_gather(lap, z->h->ask.F + HDI_CAST(size_t, q) * z->h->ask.ldf, z->x);
+    hdi_gather(lap, z->h->ask.F + (size_t)q * z->h->ask.ldf, z->x);
     for (i = 0; i < lap->n_active; i++) most = hdi_max(most, fabs(z->x[i]));
     if (most > 0) frexp(most, &exponent);
     z->exponent[q] = exponent;
@@ -26723,7 +26691,7 @@ static hd_status hdi_halves_run(hdi_halves *z, int32_t n_times, const double *t,
     c.ask.t = t;
     c.ask.k = h->ask.k;
     c.ask.F = z->W;
-    c.ask.ldf = HDI_CAST(size_t, h->heat->source->n);
+    c.ask.ldf = (size_t)h->heat->source->n;
     c.ask.U = U;
     c.ask.ldu = ldu;
     c.t = hdi_heat_scaled(h->heat, t[0]);
@@ -26737,7 +26705,7 @@ static hd_status hdi_halves_product(hdi_halves *z, int32_t q) {
     const int64_t n = lap->n_active;
     double sum = 0, size;
     int64_t i;
-    hdi_gather(lap, z->W + HDI_CAST(size_t, q) * HDI_CAST(size_t, lap->n), z->x);
+    hdi_gather(lap, z->W + (size_t)q * (size_t)lap->n, z->x);
     z->size[q] = sqrt(hdi_max(0, hdi_b_norm2(lap, z->x, z->work)));
     for (i = 0; i < n; i++) sum += z->noise[i] * z->x[i] * z->x[i];
     hdi_pair_apply(lap, -1 / z->h->heat->scale, 0, z->x, z->work);
@@ -26770,7 +26738,7 @@ static void hdi_halves_finish(hdi_halves *z, int32_t q, int32_t m, double to_val
                               hd_report *rep) {
     hdi_heat_call *h = z->h;
     const hd_laplacian *lap = h->heat->source;
-    const size_t column = HDI_CAST(size_t, q) * HDI_CAST(size_t, h->ask.n_times) + HDI_CAST(size_t, m);
+    const size_t column = (size_t)q * (size_t)h->ask.n_times + (size_t)m;
     const double grow = 1 / (exp(1) * z->later[m] * h->heat->scale);
     const double step = ldexp(DBL_MIN * DBL_EPSILON, hdi_high32(-z->exponent[q], 0)) / h->heat->scale;
     double *u = h->ask.U + column * h->ask.ldu, size, all, largest = 0;
@@ -26822,7 +26790,7 @@ static void hdi_halves_close(hdi_halves *z) {
 }
 
 static hd_status hdi_heat_by_halves(hdi_heat_call *h) {
-    const size_t n = HDI_CAST(size_t, h->heat->source->n);
+    const size_t n = (size_t)h->heat->source->n;
     hdi_halves z;
     int32_t q;
     if (hdi_halves_make(&z, h) < 0) return h->e->status;
@@ -26875,7 +26843,7 @@ static hd_status hdi_entry_list_make(hdi_heat_call *h, hdi_entry_list *list, int
     list->ledger = HDI_TAKE(&h->s, hdi_ledger, h->ask.n_times);
     if (h->e->status < 0) return h->e->status;
     for (q = 0; q < n; q++) {
-        list->order[q].key = HDI_CAST(uint64_t, j[q]);
+        list->order[q].key = (uint64_t)j[q];
         list->order[q].id = q;
     }
     hdi_sort_pairs(list->order, n);
@@ -26894,7 +26862,7 @@ static hd_status hdi_entry_list_make(hdi_heat_call *h, hdi_entry_list *list, int
 static void hdi_fields_spread(hdi_request *ask, size_t n, double *U) {
     int32_t q;
     for (q = 1; q < ask->k && ask->ldu != ask->ldf; q++) {
-        const size_t at = HDI_CAST(size_t, ask->ldu > ask->ldf ? ask->k - q : q);
+        const size_t at = (size_t)(ask->ldu > ask->ldf ? ask->k - q : q);
         memmove(U + at * ask->ldu, U + at * ask->ldf, n * sizeof *U);
     }
     ask->ldf = ask->ldu;
@@ -26932,7 +26900,7 @@ static hd_status hdi_fields_run(hd_heat *heat, hdi_query query, const hdi_reques
     if (h.e->status < 0 || hdi_fields_check(&h) < 0) return hdi_heat_end(&h);
     if (ask->U == ask->F && ask->n_times > 1)
         hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: U may be F for one time only");
-    else if (ask->U == ask->F) hdi_fields_spread(&h.ask, HDI_CAST(size_t, heat->source->n), ask->U);
+    else if (ask->U == ask->F) hdi_fields_spread(&h.ask, (size_t)heat->source->n, ask->U);
     return derivative ? hdi_rate_run(&h) : hdi_heat_run(&h);
 }
 
@@ -27022,8 +26990,7 @@ static hd_status hdi_heat_make(hd_heat *heat, const hd_laplacian *lap, hd_error 
     if (hdi_heat_sums(heat, e) < 0) return e->status;
     hdi_heat_measure_pair(heat);
     if (heat->opts.ordering == HD_ORDERING_OWN && hdi_order_check(heat->opts.perm, lap->n, ctx, e) >= 0)
-        heat->perm = HDI_CAST(int32_t *, hdi_copy(heat->opts.perm, HDI_CAST(uint64_t, lap->n),
-                                                  sizeof *heat->perm, ctx, e));
+        heat->perm = (int32_t *)hdi_copy(heat->opts.perm, (uint64_t)lap->n, sizeof *heat->perm, ctx, e);
     heat->opts.perm = heat->perm;
     return e->status;
 }
@@ -27280,7 +27247,7 @@ static hd_status hdi_entries_make(hdi_heat_call *h, hdi_wanted wanted, double *r
     hdi_elim_sums sums;
     double slack;
     int32_t p, i;
-    memset(room, 0, HDI_CAST(size_t, 2 * size) * sizeof *room);
+    memset(room, 0, (size_t)(2 * size) * sizeof *room);
     memset(weight, 0, sizeof weight);
     if (hdi_direct_factors(h, wanted == HDI_WANT_FORMS ? HDI_AFTER_FORMS : HDI_AFTER_INVERSE, 2) < 0)
         return h->e->status;
@@ -27401,7 +27368,7 @@ static void hdi_diagonal_equal(hdi_heat_call *h, const hdi_diagonal *d, double *
         d->value[i] = unit / lap->component_mass[lap->component[i]];
         d->off[i] = 0;
     }
-    (void)hdi_diagonal_tell(h, d, HDI_CAST(double, lap->n_active) * DBL_EPSILON, out);
+    (void)hdi_diagonal_tell(h, d, (double)lap->n_active * DBL_EPSILON, out);
 }
 
 /* The diagonal of K_t for a full B, from all entries of k_t on the pattern of B. */
@@ -27498,7 +27465,7 @@ static hd_status hdi_diagonal_once(hdi_heat_call *h, hd_kernel kernel, double *o
     h->equal = hdi_heat_equal(heat, h->t, h->e);
     size = full ? m->sym.a_ptr[m->sym.n_super] : m->sym.n;
     room = HDI_TAKE(&scope, double, 2 * size);
-    d.value = d.size = HDI_TAKE(&scope, double, 4 * HDI_CAST(uint64_t, m->sym.n));
+    d.value = d.size = HDI_TAKE(&scope, double, 4 * (uint64_t)m->sym.n);
     if (h->e->status < 0) return hdi_scope_end(&scope);
     d.kernel = kernel;
     d.off = d.value + m->sym.n;
@@ -27619,7 +27586,7 @@ static void hdi_edges_equal(hdi_heat_call *h, double *values) {
     memset(&part, 0, sizeof part);
     for (i = 0; i < lap->n_active; i++) {
         const double k = 1 / lap->component_mass[lap->component[i]];
-        part.rounding = HDI_CAST(double, lap->n_active) * DBL_EPSILON * k;
+        part.rounding = (double)lap->n_active * DBL_EPSILON * k;
         hdi_ledger_note(&ledger, k, part);
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) values[p] = k;
     }
@@ -27633,8 +27600,8 @@ static hd_status hdi_edges_once(hdi_heat_call *h, double *values, double *ration
     hdi_scope scope = hdi_scope_begin(heat->ctx, h->e);
     const hdi_symbolic *s = &heat->elim.sym;
     const int64_t size = s->a_ptr[s->n_super];
-    double *room = HDI_TAKE(&scope, double, 2 * HDI_CAST(uint64_t, size));
-    double *k = HDI_TAKE(&scope, double, 2 * HDI_CAST(uint64_t, s->n));
+    double *room = HDI_TAKE(&scope, double, 2 * (uint64_t)size);
+    double *k = HDI_TAKE(&scope, double, 2 * (uint64_t)s->n);
     hdi_ledger ledger;
     hdi_entries x;
     *rational = 0;
@@ -27727,15 +27694,15 @@ typedef struct hdi_window {
 
 /* k of time q in an array as values, and g n further on. */
 static double *hdi_window_at(const hdi_window *w, double *values, int32_t q) {
-    return values + 2 * HDI_CAST(size_t, q) * w->n;
+    return values + 2 * (size_t)q * w->n;
 }
 
 /* Room for times q0 to q1 - 1 of a call. */
 static void hdi_window_take(hdi_window *w, const hdi_heat_call *h, int32_t q0, int32_t q1, hdi_scope *s) {
-    const uint64_t sets = 2 * HDI_CAST(uint64_t, q1 - q0);
+    const uint64_t sets = 2 * (uint64_t)(q1 - q0);
     w->n_times = q1 - q0;
     w->t = h->times + q0;
-    w->n = HDI_CAST(size_t, h->heat->elim.sym.n);
+    w->n = (size_t)h->heat->elim.sym.n;
     w->set = HDI_TAKE(s, hd_rational, w->n_times);
     w->weight = HDI_TAKE_ZERO(s, hd_c64, sets * HD_MAX_POLES);
     w->values = HDI_TAKE_ZERO(s, double, sets * w->n);
@@ -27833,7 +27800,7 @@ static hd_status hdi_diagonal_window(hdi_heat_call *h, int32_t q0, int32_t q1, d
             d.off[i] = hdi_min(set->max_weighted_error * hdi_max(0, d.g[i]), set->max_error / spread);
         }
         (void)hdi_diagonal_tell(h, &d, hdi_window_rounding(h->heat, &w, &probe, q),
-                                D + HDI_CAST(size_t, h->time_column[q0 + q]) * ldd);
+                                D + (size_t)h->time_column[q0 + q] * ldd);
     }
     return hdi_scope_end(&s);
 }
@@ -27862,7 +27829,7 @@ static hd_status hdi_diagonal_poles(hdi_heat_call *h, hd_kernel kernel, double *
     for (q = 0; q < h->ask.n_times && h->e->status >= 0; q++) {
         if (done && done[q]) continue;
         h->t = hdi_heat_scaled(heat, h->ask.t[q]);
-        if (hdi_entries_sure(h, kernel, 0, D + HDI_CAST(size_t, q) * ldd) < 0) h->e->column = q;
+        if (hdi_entries_sure(h, kernel, 0, D + (size_t)q * ldd) < 0) h->e->column = q;
     }
     return h->e->status;
 }
@@ -27900,8 +27867,8 @@ static hd_status hdi_trace_invert(hdi_heat_call *h, hdi_trace *z, hdi_scope *s) 
     hdi_elim_sums sums;
     int32_t p;
     z->size = full ? m->sym.a_ptr[m->sym.n_super] : m->sym.n;
-    z->values = HDI_TAKE_ZERO(s, double, HDI_CAST(uint64_t, 2 * n_poles * z->size));
-    z->diag = full ? HDI_TAKE_ZERO(s, double, HDI_CAST(uint64_t, 2 * n_poles) * z->w.n) : z->values;
+    z->values = HDI_TAKE_ZERO(s, double, (uint64_t)(2 * n_poles * z->size));
+    z->diag = full ? HDI_TAKE_ZERO(s, double, (uint64_t)(2 * n_poles) * z->w.n) : z->values;
     z->last = HDI_TAKE(s, double, z->w.n);
     if (h->e->status < 0) return h->e->status;
     for (p = 0; p < n_poles; p++) {
@@ -27926,7 +27893,7 @@ static hd_status hdi_trace_invert(hdi_heat_call *h, hdi_trace *z, hdi_scope *s) 
 static void hdi_trace_probes(const hdi_elim *m, hdi_trace *z) {
     const hdi_symbolic *s = &m->sym;
     const hd_laplacian *lap = m->lap;
-    const int64_t n = HDI_CAST(int64_t, z->w.n);
+    const int64_t n = (int64_t)z->w.n;
     const int32_t n_poles = z->w.set->n_poles, last = z->w.n_times - 1;
     hd_c64 k[HD_MAX_POLES], g[HD_MAX_POLES];
     int32_t i, r, v, set;
@@ -27954,7 +27921,7 @@ static void hdi_trace_probes(const hdi_elim *m, hdi_trace *z) {
 /* Diagonals of the inverses times B. */
 static void hdi_trace_diagonals(const hdi_elim *m, const hdi_trace *z) {
     const hd_laplacian *lap = m->lap;
-    const int64_t n = HDI_CAST(int64_t, z->w.n);
+    const int64_t n = (int64_t)z->w.n;
     int32_t set, i;
     for (set = 0; set < 2 * z->w.set->n_poles; set++) {
         double *diag = z->diag + set * n;
@@ -28020,7 +27987,7 @@ static hd_status hdi_trace_window(hdi_heat_call *h, int32_t q0, int32_t q1, doub
     memset(&z, 0, sizeof z);
     z.w.n_times = q1 - q0;
     z.w.t = h->times + q0;
-    z.w.n = HDI_CAST(size_t, m->sym.n);
+    z.w.n = (size_t)m->sym.n;
     z.w.set = HDI_TAKE(&s, hd_rational, z.w.n_times);
     if (h->e->status < 0) return hdi_scope_end(&s);
     if (h->heat->poles_asked || h->heat->exacting) (void)hdi_heat_set(h, z.w.set);
@@ -28087,7 +28054,7 @@ typedef struct hdi_fading_diagonal {
 
 /* Vector q at a vertex, times B where the other side of K_t is meant. */
 static double hdi_fading_other(const hdi_fading_diagonal *a, int32_t q, int32_t v) {
-    const int64_t at = HDI_CAST(int64_t, q) * a->of->s.n + v;
+    const int64_t at = (int64_t)q * a->of->s.n + v;
     return !a->mass ? a->of->s.vector[at] : a->of->bx ? a->of->bx[at] : a->of->by[v] * a->of->s.vector[at];
 }
 
@@ -28098,18 +28065,18 @@ static void hdi_fading_size_add(hdi_fading_size *c, const hdi_decay *x, int32_t 
 }
 
 static void hdi_fading_diagonal_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_fading_diagonal *a = HDI_CAST(const hdi_fading_diagonal *, arg);
+    const hdi_fading_diagonal *a = (const hdi_fading_diagonal *)arg;
     const hd_spectrum *s = &a->of->s;
     int64_t i;
     int32_t q;
-    memset(a->value + begin, 0, HDI_CAST(size_t, end - begin) * sizeof *a->value);
-    memset(a->c + begin, 0, HDI_CAST(size_t, end - begin) * sizeof *a->c);
-    if (a->mass) memset(a->g + begin, 0, HDI_CAST(size_t, end - begin) * sizeof *a->g);
+    memset(a->value + begin, 0, (size_t)(end - begin) * sizeof *a->value);
+    memset(a->c + begin, 0, (size_t)(end - begin) * sizeof *a->c);
+    if (a->mass) memset(a->g + begin, 0, (size_t)(end - begin) * sizeof *a->g);
     for (q = 0; q < s->count; q++) {
         const double side = hdi_decay_side(a->of, &a->decay, q);
         for (i = begin; i < end; i++) {
             const int32_t v = a->lap->vertex[i];
-            const double x = s->vector[HDI_CAST(int64_t, q) * s->n + v], y = hdi_fading_other(a, q, v);
+            const double x = s->vector[(int64_t)q * s->n + v], y = hdi_fading_other(a, q, v);
             a->value[i] += a->decay.weight[q] * x * y;
             hdi_fading_size_add(a->c + i, &a->decay, q, side, y);
             if (a->mass) hdi_fading_size_add(a->g + i, &a->decay, q, side, x);
@@ -28140,7 +28107,7 @@ static void hdi_fading_diagonal_note(const hdi_fading_diagonal *a, int32_t i, do
 static hd_status hdi_fading_diagonal_run(hdi_heat_call *h, double t, hd_kernel kernel, double *out) {
     hd_heat *heat = h->heat;
     const hd_laplacian *lap = heat->source;
-    const uint64_t n = HDI_CAST(uint64_t, lap->n_active), count = HDI_CAST(uint64_t, heat->modes.s.count);
+    const uint64_t n = (uint64_t)lap->n_active, count = (uint64_t)heat->modes.s.count;
     hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
     double *work = HDI_TAKE(&s, double, 2 * count + n);
     hdi_ledger ledger = hdi_modes_ledger();
@@ -28168,7 +28135,7 @@ static hd_status hdi_fading_diagonal_run(hdi_heat_call *h, double t, hd_kernel k
  * least next; there are as many of these as rows that are left. */
 static void hdi_fading_trace(hdi_heat_call *h, double t, double *Z, double *bound) {
     const hdi_modes *x = &h->heat->modes;
-    const double others = HDI_CAST(double, h->heat->source->n_active) - x->s.count;
+    const double others = (double)h->heat->source->n_active - x->s.count;
     hdi_ledger ledger = hdi_modes_ledger();
     hdi_parts off = {0, 0, 0};
     double value = 0;
@@ -28198,14 +28165,14 @@ typedef struct hdi_fading_edges {
 } hdi_fading_edges;
 
 static void hdi_fading_edges_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_fading_edges *a = HDI_CAST(const hdi_fading_edges *, arg);
+    const hdi_fading_edges *a = (const hdi_fading_edges *)arg;
     const hd_spectrum *s = &a->of->s;
     const hd_csr *L = &a->lap->L;
     int64_t i, p;
     int32_t q;
     for (p = L->row_ptr[begin]; p < L->row_ptr[end]; p++) a->out[p] = 0;
     for (q = 0; q < s->count; q++) {
-        const double *x = s->vector + HDI_CAST(int64_t, q) * s->n;
+        const double *x = s->vector + (int64_t)q * s->n;
         for (i = begin; i < end; i++) {
             const double own = a->w[q] * x[a->lap->vertex[i]];
             for (p = L->row_ptr[i]; p < L->row_ptr[i + 1]; p++)
@@ -28218,7 +28185,7 @@ static void hdi_fading_edges_task(void *arg, int64_t begin, int64_t end) {
 static hd_status hdi_fading_edges_run(hdi_heat_call *h, double t, double *out) {
     hd_heat *heat = h->heat;
     const hd_laplacian *lap = heat->source;
-    const uint64_t n = HDI_CAST(uint64_t, lap->n), count = HDI_CAST(uint64_t, heat->modes.s.count);
+    const uint64_t n = (uint64_t)lap->n, count = (uint64_t)heat->modes.s.count;
     hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
     double *work = HDI_TAKE(&s, double, 3 * count + 3 * n);
     hdi_ledger ledger = hdi_modes_ledger();
@@ -28269,8 +28236,8 @@ static int hdi_fading_values(hdi_heat_call *h, int32_t q, int32_t most, const hd
     if (!hdi_modes_enough(h->heat, t, hdi_fading_depth(h->heat), most, h->e)) return 0;
     *h->rep = one;
     if (to->Z) hdi_fading_trace(h, t, to->Z + q, to->bound ? to->bound + q : NULL);
-    else if (to->edges) (void)hdi_fading_edges_run(h, t, to->D + HDI_CAST(size_t, q) * to->ldd);
-    else (void)hdi_fading_diagonal_run(h, t, to->kernel, to->D + HDI_CAST(size_t, q) * to->ldd);
+    else if (to->edges) (void)hdi_fading_edges_run(h, t, to->D + (size_t)q * to->ldd);
+    else (void)hdi_fading_diagonal_run(h, t, to->kernel, to->D + (size_t)q * to->ldd);
     if (h->e->status < 0) return 0;
     one = *h->rep;
     *h->rep = before;
@@ -28281,14 +28248,14 @@ static int hdi_fading_values(hdi_heat_call *h, int32_t q, int32_t most, const hd
 
 /* Edges at the times of a call that are not done. */
 static hd_status hdi_edges_poles(hdi_heat_call *h, double *values, const char *done) {
-    const size_t nnz = HDI_CAST(size_t, h->heat->source->L.nnz);
+    const size_t nnz = (size_t)h->heat->source->L.nnz;
     int32_t q;
     if (hdi_heat_analysed(h->heat, h->e) < 0) return h->e->status;
     hdi_inverse_tell(h);
     for (q = 0; q < h->ask.n_times && h->e->status >= 0; q++) {
         if (done && done[q]) continue;
         h->t = hdi_heat_scaled(h->heat, h->ask.t[q]);
-        if (hdi_entries_sure(h, HD_KERNEL_SYMMETRIC, 1, values + HDI_CAST(size_t, q) * nnz) < 0)
+        if (hdi_entries_sure(h, HD_KERNEL_SYMMETRIC, 1, values + (size_t)q * nnz) < 0)
             h->e->column = q;
     }
     return h->e->status;
@@ -28307,7 +28274,7 @@ static int32_t hdi_fading_some(hdi_heat_call *h, const hdi_fading_to *to, int32_
         const double t = h->ask.t[q];
         if (done[q] || !(most > HDI_MODES_FIRST ? hdi_fading(h) && hdi_fading_near(h->heat, t, most)
                                                 : hdi_fading_first(h, t))) continue;
-        done[q] = HDI_CAST(char, hdi_fading_values(h, q, most, to));
+        done[q] = (char)hdi_fading_values(h, q, most, to);
         if (h->e->status < 0) h->e->column = q;
         tried++;
     }
@@ -28347,7 +28314,7 @@ static hd_status hdi_fading_times(hdi_heat_call *h, const hdi_fading_to *to) {
 }
 
 static hd_status hdi_fading_run(hdi_heat_call *h, void *what) {
-    const hdi_fading_to *to = HDI_CAST(const hdi_fading_to *, what);
+    const hdi_fading_to *to = (const hdi_fading_to *)what;
     return HDI_HAS_MODES && hdi_fading(h) ? hdi_fading_times(h, to) : hdi_fading_poles(h, to, NULL);
 }
 
@@ -28418,13 +28385,13 @@ static void hdi_filters_resolvent(const hdi_heat_call *h, hdi_filters *a) {
 
 static hd_status hdi_filters_take(hdi_heat_call *h, hdi_filters *a, const hd_rational *sets, int32_t count,
                                   hdi_scope *s) {
-    const uint64_t n = HDI_CAST(uint64_t, h->heat->elim.sym.n);
+    const uint64_t n = (uint64_t)h->heat->elim.sym.n;
     double *t = HDI_TAKE(s, double, count);
     int32_t q;
     memset(a, 0, sizeof *a);
     a->z.w.n_times = count;
     a->z.w.t = t;
-    a->z.w.n = HDI_CAST(size_t, n);
+    a->z.w.n = (size_t)n;
     a->z.w.set = HDI_TAKE(s, hd_rational, count);
     a->place = HDI_TAKE(s, int64_t, n);
     a->d.value = HDI_TAKE(s, double, 4 * n);
@@ -28462,7 +28429,7 @@ static hd_status hdi_filters_run(hdi_heat_call *h, const hd_rational *sets, int3
         hdi_diagonal_own(h->lap, &a.d);
         if (q == 0 && hdi_diagonal_probe(h, &a.d, a.z.w.set, &probe) < 0) return hdi_scope_end(&s);
         (void)hdi_diagonal_tell(h, &a.d, hdi_diagonal_seen(h, &a.d, &probe, a.z.w.set + q),
-                                D + HDI_CAST(size_t, q) * ldd);
+                                D + (size_t)q * ldd);
     }
     if (!Z) return hdi_scope_end(&s);
     hdi_trace_diagonals(m, &a.z);
@@ -28484,7 +28451,7 @@ static void hdi_signature_normalise(const hd_laplacian *lap, int32_t n_times, do
     int32_t q, v;
     rep->smallest = HUGE_VAL;
     for (q = 0; q < n_times; q++) {
-        double *d = D + HDI_CAST(size_t, q) * ldd;
+        double *d = D + (size_t)q * ldd;
         for (v = 0; v < lap->n; v++) {
             if (d[v] == 0) continue;
             d[v] /= Z[q];
@@ -28511,7 +28478,7 @@ static int hdi_signature_spectrum(const hdi_circle *c, const double *x, size_t s
     double before = 0;
     int32_t j, k, ok = 1;
     for (j = 0; j <= c->m; j++) {
-        const double h = x[HDI_CAST(size_t, j) * stride], now = h > 0 ? log(h) : 0;
+        const double h = x[(size_t)j * stride], now = h > 0 ? log(h) : 0;
         ok = ok && h > 0;
         if (j > 0) c->step[j - 1] = now - before;
         before = now;
@@ -28525,7 +28492,7 @@ static int hdi_signature_spectrum(const hdi_circle *c, const double *x, size_t s
             at += k;
             if (at >= c->m) at -= c->m;
         }
-        out[HDI_CAST(size_t, k) * ldd] = hypot(re, im);
+        out[(size_t)k * ldd] = hypot(re, im);
     }
     return ok;
 }
@@ -28555,9 +28522,9 @@ static hd_status hdi_signature_run(hdi_heat_call *h, int32_t n_freq, double *D, 
     const hd_laplacian *lap = h->heat->source;
     const double two_pi = 6.283185307179586477;
     const int32_t n_times = h->ask.n_times, m = n_times - 1;
-    const size_t n = HDI_CAST(size_t, lap->n);
-    double *x = HDI_TAKE(&h->s, double, HDI_CAST(uint64_t, n) * HDI_CAST(uint64_t, n_times));
-    double *circle = HDI_TAKE(&h->s, double, 3 * HDI_CAST(uint64_t, m)), largest = 0;
+    const size_t n = (size_t)lap->n;
+    double *x = HDI_TAKE(&h->s, double, (uint64_t)n * (uint64_t)n_times);
+    double *circle = HDI_TAKE(&h->s, double, 3 * (uint64_t)m), largest = 0;
     hdi_circle c;
     size_t v;
     int32_t j, sure = 1;
@@ -28569,11 +28536,11 @@ static hd_status hdi_signature_run(hdi_heat_call *h, int32_t n_freq, double *D, 
     }
     c.m = m;
     c.at = circle;
-    c.step = circle + 2 * HDI_CAST(size_t, m);
+    c.step = circle + 2 * (size_t)m;
     for (v = 0; v < n; v++) {
         const int ok = hdi_signature_spectrum(&c, x + v, n, n_freq, D + v, ldd);
         sure = sure && (ok || lap->row[v] < 0);
-        for (j = 0; j < n_freq; j++) largest = hdi_max(largest, D[HDI_CAST(size_t, j) * ldd + v]);
+        for (j = 0; j < n_freq; j++) largest = hdi_max(largest, D[(size_t)j * ldd + v]);
     }
     if (!sure) h->rep->error_relative = HUGE_VAL;
     hdi_signature_tell(h->rep, m, n_freq, largest);
@@ -28701,7 +28668,7 @@ static void hdi_metric_equal(const hd_laplacian *lap, hdi_metric *x) {
         x->diag[r] = x->kind == HD_DISTANCE_WEIGHTED ? b * (b * k) : k;
         x->g[r] = x->spread[r] = 0;
     }
-    x->rounding = HDI_CAST(double, lap->n_active) * DBL_EPSILON;
+    x->rounding = (double)lap->n_active * DBL_EPSILON;
 }
 
 /* Measures what rounding does to the diagonal. */
@@ -28738,7 +28705,7 @@ static hd_status hdi_metric_invert(hdi_heat_call *h, hdi_metric *x, hdi_scope *s
     hdi_elim *m = &heat->elim;
     const hd_laplacian *lap = heat->source;
     const int weighted = x->kind == HD_DISTANCE_WEIGHTED, full = weighted && lap->B != NULL;
-    double *room = HDI_TAKE(scope, double, 2 * HDI_CAST(uint64_t, m->sym.n));
+    double *room = HDI_TAKE(scope, double, 2 * (uint64_t)m->sym.n);
     hdi_entries entries;
     int32_t i;
     if (!room) return h->e->status;
@@ -28774,7 +28741,7 @@ static hd_status hdi_metric_invert(hdi_heat_call *h, hdi_metric *x, hdi_scope *s
 /* The metric of a kind at a time, by poles of a degree (0: by default). keep holds its arrays. */
 static hd_status hdi_metric_make(hd_heat *heat, hd_distance_kind kind, double t, int32_t degree,
                                  hdi_metric *x, hdi_scope *keep, hd_report *rep) {
-    const size_t n = HDI_CAST(size_t, heat->source->n_active);
+    const size_t n = (size_t)heat->source->n_active;
     hd_error *e = keep->e;
     hdi_scope scope;
     hdi_heat_call h;
@@ -28847,7 +28814,7 @@ static hdi_distances hdi_distances_to(hd_distance_kind kind, int32_t k, double *
 /* From one source. */
 static hdi_distances hdi_distances_one(const hd_heat *heat, hd_distance_kind kind, const int32_t *source,
                                        double *D) {
-    hdi_distances x = hdi_distances_to(kind, 1, D, HDI_CAST(size_t, heat->source->n));
+    hdi_distances x = hdi_distances_to(kind, 1, D, (size_t)heat->source->n);
     x.sources = source;
     return x;
 }
@@ -28862,10 +28829,10 @@ static hd_status hdi_metric_columns_ground(hd_heat *heat, const hdi_metric *x, c
     int32_t r, i;
     for (r = 0; r < to->k && e->status >= 0; r++) {
         const hdi_terms source = hdi_distances_source(to, r);
-        if (hdi_progress(heat->ctx, "solve", HDI_CAST(double, r) / to->k, e) < 0) break;
+        if (hdi_progress(heat->ctx, "solve", (double)r / to->k, e) < 0) break;
         c[r].off_m = 0;
         c[r].off_b = HUGE_VAL;
-        memset(c[r].u, 0, HDI_CAST(size_t, heat->source->n) * sizeof(double));
+        memset(c[r].u, 0, (size_t)heat->source->n * sizeof(double));
         if (hdi_terms_component(m->lap, &source) < 0) continue;
         c[r].off_m = hdi_ground_column(m, &heat->ground, &source, forms, u, work);
         for (i = 0; i < m->sym.n; i++) c[r].u[m->lap->vertex[i]] = u[i];
@@ -28897,11 +28864,11 @@ static hd_status hdi_metric_columns(hd_heat *heat, const hdi_metric *x, const hd
     hdi_columns query = hdi_metric_query(x, &x->set, to);
     double *work, *off;
     int32_t r;
-    for (r = 0; r < to->k; r++) c[r].u = to->D + HDI_CAST(size_t, r) * to->ld;
+    for (r = 0; r < to->k; r++) c[r].u = to->D + (size_t)r * to->ld;
     if (x->filter) return hdi_metric_columns_ground(heat, x, to, c, e);
     s = hdi_scope_begin(heat->ctx, e);
-    off = HDI_TAKE_ZERO(&s, double, 2 * HDI_CAST(uint64_t, to->k) + 1);
-    work = HDI_TAKE(&s, double, 2 * HDI_CAST(uint64_t, heat->source->n_active) + 1);
+    off = HDI_TAKE_ZERO(&s, double, 2 * (uint64_t)to->k + 1);
+    work = HDI_TAKE(&s, double, 2 * (uint64_t)heat->source->n_active + 1);
     if (e->status < 0) return hdi_scope_end(&s);
     query.equal = x->equal;
     query.off_b = off;
@@ -28959,7 +28926,7 @@ static hdi_metric_self hdi_metric_source(const hd_laplacian *lap, const hdi_metr
     self.spread = by_b * by_b;
     self.off = hdi_min(hdi_bound_times(hdi_finite(by_m) ? by_m : HUGE_VAL, c->off_m),
                        hdi_bound_times(hdi_finite(by_b) ? by_b : HUGE_VAL, c->off_b));
-    self.off += HDI_CAST(double, s->n) * DBL_EPSILON * size;
+    self.off += (double)s->n * DBL_EPSILON * size;
     return self;
 }
 
@@ -29046,9 +29013,9 @@ static hd_status hdi_metric_resolvent(hd_heat *heat, const hdi_metric *x, const 
 static hd_status hdi_distance_once(hd_heat *heat, const hdi_distances *to, double t, int32_t degree,
                                    hd_report *rep, hd_error *e) {
     hdi_scope s = hdi_scope_begin(heat->ctx, e);
-    const size_t n = HDI_CAST(size_t, heat->source->n);
+    const size_t n = (size_t)heat->source->n;
     double *work = HDI_TAKE(&s, double, 2 * n + 1), *g = NULL;
-    hdi_metric_column *column = HDI_TAKE(&s, hdi_metric_column, HDI_CAST(uint64_t, to->k) + 1);
+    hdi_metric_column *column = HDI_TAKE(&s, hdi_metric_column, (uint64_t)to->k + 1);
     hdi_metric x;
     int32_t r;
     memset(rep, 0, sizeof *rep);
@@ -29179,7 +29146,7 @@ static double hdi_modes_constant(const hdi_mode_sum *a, int32_t v) {
 }
 
 static void hdi_mode_sum_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_mode_sum *a = HDI_CAST(const hdi_mode_sum *, arg);
+    const hdi_mode_sum *a = (const hdi_mode_sum *)arg;
     const double *by = a->of->by;
     const int64_t n = a->lap->n;
     const int plain = !a->weighted || a->of->bx != NULL;
@@ -29198,7 +29165,7 @@ static void hdi_mode_sum_task(void *arg, int64_t begin, int64_t end) {
         }
     }
     for (v = begin; v < end; v++) {
-        const int32_t at = HDI_CAST(int32_t, v);
+        const int32_t at = (int32_t)v;
         const double left = far_left + sqrt(hdi_modes_left(a, at));
         out[v] = a->decay.cut * left;
         off[v] += a->decay.mixed * left;
@@ -29249,7 +29216,7 @@ static hdi_mode_sum hdi_mode_sum_at(const hd_heat *heat, hd_distance_kind kind, 
     a.x = a.weighted && of->bx ? of->bx : of->s.vector;
     a.unit = a.weighted ? sqrt(heat->scale) : 1 / sqrt(heat->scale);   /* the scale is a power of four */
     a.decay = hdi_decay_at(of, t, work);
-    a.part = work + 2 * HDI_CAST(int64_t, of->s.count);
+    a.part = work + 2 * (int64_t)of->s.count;
     return a;
 }
 
@@ -29287,7 +29254,7 @@ static HDI_INLINE int hdi_modes_reach(hd_heat *heat, hd_distance_kind kind, doub
 static hd_status hdi_modes_distance(hd_heat *heat, const hdi_distances *to, double t, hd_report *rep,
                                     hd_error *e) {
     hdi_scope s = hdi_scope_begin(heat->ctx, e);
-    const uint64_t n = HDI_CAST(uint64_t, heat->source->n), count = HDI_CAST(uint64_t, heat->modes.s.count);
+    const uint64_t n = (uint64_t)heat->source->n, count = (uint64_t)heat->modes.s.count;
     double *work = HDI_TAKE(&s, double, 2 * (n + count) + 1);
     hdi_mode_sum sum;
     int32_t r;
@@ -29296,8 +29263,8 @@ static hd_status hdi_modes_distance(hd_heat *heat, const hdi_distances *to, doub
     if (work) sum = hdi_mode_sum_at(heat, to->kind, t, work);
     for (r = 0; r < to->k && work; r++) {
         hdi_ledger ledger = hdi_modes_ledger();
-        if (hdi_progress(heat->ctx, "solve", HDI_CAST(double, r) / to->k, e) < 0) break;
-        hdi_mode_sum_run(&sum, hdi_distances_source(to, r), to->D + HDI_CAST(size_t, r) * to->ld, &ledger,
+        if (hdi_progress(heat->ctx, "solve", (double)r / to->k, e) < 0) break;
+        hdi_mode_sum_run(&sum, hdi_distances_source(to, r), to->D + (size_t)r * to->ld, &ledger,
                          rep, heat->ctx);
         hdi_ledger_close(&ledger, rep);
     }
@@ -29363,7 +29330,7 @@ static void hdi_distance_note(hdi_heat_call *h, const hd_report *one, int *begun
  * 1. Returns how many of the earlier ones are left. */
 static int32_t hdi_distance_late(hdi_heat_call *h, const hdi_distances *to, char *done, int *begun) {
     int32_t q = h->n_times;
-    memset(done, 0, HDI_CAST(size_t, h->n_times));
+    memset(done, 0, (size_t)h->n_times);
     for (; q > 0 && h->e->status >= 0; q--) {
         const int32_t column = h->time_column[q - 1];
         const double t = h->ask.t[column];
@@ -29371,8 +29338,8 @@ static int32_t hdi_distance_late(hdi_heat_call *h, const hdi_distances *to, char
         hd_report rep;
         if (!hdi_modes_first(h->heat, to->kind, t) ||
             !hdi_modes_reach(h->heat, to->kind, t, HDI_MODES_FIRST, h->e)) break;
-        one.ld = to->ld * HDI_CAST(size_t, h->n_times);
-        one.D = to->D + HDI_CAST(size_t, column) * to->ld;
+        one.ld = to->ld * (size_t)h->n_times;
+        one.D = to->D + (size_t)column * to->ld;
         if (hdi_modes_distance(h->heat, &one, t, &rep, h->e) < 0 || !hdi_modes_good(h->heat, t, &rep)) break;
         hdi_distance_note(h, &rep, begun);
         done[column] = 1;
@@ -29404,7 +29371,7 @@ typedef struct hdi_distance_shared {
 /* Room for times q0 to q1 - 1 of the call. */
 static hd_status hdi_distance_shared_take(hdi_distance_shared *z, hdi_heat_call *h, hd_distance_kind kind,
                                           int32_t q0, int32_t q1, hdi_scope *s) {
-    const uint64_t n = HDI_CAST(uint64_t, h->heat->elim.sym.n), n_times = HDI_CAST(uint64_t, q1 - q0);
+    const uint64_t n = (uint64_t)h->heat->elim.sym.n, n_times = (uint64_t)(q1 - q0);
     memset(z, 0, sizeof *z);
     hdi_window_take(&z->w, h, q0, q1, s);
     z->h = h;
@@ -29421,7 +29388,7 @@ static hd_status hdi_distance_shared_take(hdi_distance_shared *z, hdi_heat_call 
     z->g = HDI_TAKE(s, double, h->heat->source->n);
     z->rounding = HDI_TAKE_ZERO(s, double, n_times);
     z->one = HDI_TAKE_ZERO(s, hd_report, n_times);
-    z->active = HDI_TAKE(s, char, HDI_CAST(int64_t, z->m->sym.n_super) + 1);
+    z->active = HDI_TAKE(s, char, (int64_t)z->m->sym.n_super + 1);
     z->metric.kind = kind;
     z->metric.root = 1;
     z->metric.diag = HDI_TAKE(s, double, 3 * n + 1);
@@ -29450,7 +29417,7 @@ static void hdi_distance_shared_rhs(hdi_distance_shared *z, const hdi_terms *sou
     const int mass = z->weighted && !z->full && source->weight;
     int32_t q;
     memset(z->rhs, 0, 3 * z->w.n * sizeof *z->rhs);
-    memset(z->active, 0, HDI_CAST(size_t, z->m->sym.n_super));
+    memset(z->active, 0, (size_t)z->m->sym.n_super);
     for (q = 0; q < source->n; q++) {
         const int32_t row = lap->row[hdi_terms_at(source, q)];
         if (row < 0) continue;
@@ -29484,13 +29451,13 @@ static void hdi_distance_shared_column(hdi_distance_shared *z, const hdi_terms *
     double coef[HDI_PACK];
     int64_t j;
     int32_t i, k, q;
-    memset(z->column, 0, 2 * HDI_CAST(size_t, z->w.n_times) * z->w.n * sizeof *z->column);
+    memset(z->column, 0, 2 * (size_t)z->w.n_times * z->w.n * sizeof *z->column);
     hdi_distance_shared_rhs(z, source);
     for (i = 0; i < m->n_used; i++) {
         hdi_distance_shared_solve(z, i);
         for (k = 0; k < 2 * z->w.n_times; k++) {
-            double *HDI_RESTRICT to = z->column + HDI_CAST(int64_t, k) * m->sym.n;
-            hdi_elim_coef(m, i, z->w.weight + HDI_CAST(int64_t, k) * m->set.n_poles, coef);
+            double *HDI_RESTRICT to = z->column + (int64_t)k * m->sym.n;
+            hdi_elim_coef(m, i, z->w.weight + (int64_t)k * m->set.n_poles, coef);
             for (j = 0; j < m->sym.n; j++)
                 for (q = 0; q < HDI_PACK; q++) to[j] += coef[q] * x[HDI_PACK * j + q];
         }
@@ -29551,8 +29518,8 @@ static void hdi_distance_shared_judge(hdi_distance_shared *z, int32_t q, const h
     hdi_metric_column of;
     hdi_ledger ledger;
     int32_t i;
-    memset(u, 0, HDI_CAST(size_t, lap->n) * sizeof *u);
-    memset(z->g, 0, HDI_CAST(size_t, lap->n) * sizeof *z->g);
+    memset(u, 0, (size_t)lap->n * sizeof *u);
+    memset(z->g, 0, (size_t)lap->n * sizeof *z->g);
     for (i = 0; i < m->sym.n; i++) {
         const int32_t at = m->sym.perm[i], v = m->lap->vertex[i];
         const double b = z->weighted && !z->full ? m->lap->mass[i] : 1, unit = z->unit * b * b;
@@ -29580,8 +29547,8 @@ static hd_status hdi_distance_shared_end(hdi_heat_call *h, const hdi_distances *
     int32_t q;
     for (q = 0; q < n_times && h->e->status >= 0; q++) {
         hdi_distances at = *to;
-        at.ld = to->ld * HDI_CAST(size_t, h->n_times);
-        at.D = to->D + HDI_CAST(size_t, column[q]) * to->ld;
+        at.ld = to->ld * (size_t)h->n_times;
+        at.D = to->D + (size_t)column[q] * to->ld;
         if (hdi_distance_help(h->heat, &at, h->ask.t[column[q]], one + q, h->e) < 0) break;
         hdi_report_merge(one + q, h->rep);       /* the method stays that of the window */
         *h->rep = one[q];
@@ -29604,14 +29571,14 @@ static hd_status hdi_distance_window(hdi_heat_call *h, const hdi_distances *to, 
         return hdi_scope_end(&s);
     hdi_distance_shared_probe(&z);
     for (r = 0; r < to->k; r++) {
-        double *D = to->D + HDI_CAST(size_t, r) * HDI_CAST(size_t, h->n_times) * to->ld;
-        if (hdi_progress(h->heat->ctx, "solve", HDI_CAST(double, r) / to->k, h->e) < 0) break;
-        memset(z.column, 0, 2 * HDI_CAST(size_t, q1 - q0) * z.w.n * sizeof *z.column);
+        double *D = to->D + (size_t)r * (size_t)h->n_times * to->ld;
+        if (hdi_progress(h->heat->ctx, "solve", (double)r / to->k, h->e) < 0) break;
+        memset(z.column, 0, 2 * (size_t)(q1 - q0) * z.w.n * sizeof *z.column);
         memset(z.pole_off, 0, sizeof z.pole_off);
         source = hdi_distances_source(to, r);
         if (source.weight || row[source.one] >= 0) hdi_distance_shared_column(&z, &source);
         for (q = 0; q < z.w.n_times; q++)
-            hdi_distance_shared_judge(&z, q, &source, D + HDI_CAST(size_t, z.time_column[q]) * to->ld);
+            hdi_distance_shared_judge(&z, q, &source, D + (size_t)z.time_column[q] * to->ld);
     }
     if (z.w.n > 0 && to->k > 0 && h->e->status >= 0) {   /* how well the systems are solved */
         probe.k = 1;
@@ -29643,7 +29610,7 @@ static int hdi_distance_windows(hdi_heat_call *h, const hdi_distances *to, int32
 
 /* Distances from one to all: all times and sources of a call. */
 static hd_status hdi_distance_run(hdi_heat_call *h, void *what) {
-    hdi_distances to = *HDI_CAST(const hdi_distances *, what);
+    hdi_distances to = *(const hdi_distances *)what;
     const int timeless = to.kind >= HD_DISTANCE_COMMUTE;
     const int32_t n_times = timeless ? 1 : h->ask.n_times;
     const size_t ldd = to.ld;
@@ -29657,10 +29624,10 @@ static hd_status hdi_distance_run(hdi_heat_call *h, void *what) {
         if (early == 0 || h->e->status < 0) return h->e->status;
         if (hdi_distance_windows(h, &to, early)) return h->e->status;
     }
-    to.ld = ldd * HDI_CAST(size_t, n_times);
+    to.ld = ldd * (size_t)n_times;
     for (q = 0; q < n_times && h->e->status >= 0; q++) {
         if (done[q]) continue;
-        to.D = D + HDI_CAST(size_t, q) * ldd;
+        to.D = D + (size_t)q * ldd;
         (void)hdi_distance_time(h->heat, &to, timeless ? 0 : h->ask.t[q], &one, h->e);
         if (h->e->status < 0) h->e->column = q;
         else hdi_distance_note(h, &one, &begun);
@@ -29688,12 +29655,12 @@ static int32_t hdi_pairs_vertices(const hdi_pairs *x, hdi_pair *order, int32_t *
     int32_t n = 0;
     int64_t q;
     for (q = 0; q < 2 * x->n; q++) {
-        order[q].key = HDI_CAST(uint64_t, q % 2 ? x->j[q / 2] : x->i[q / 2]);
+        order[q].key = (uint64_t)(q % 2 ? x->j[q / 2] : x->i[q / 2]);
         order[q].id = q;
     }
     hdi_sort_pairs(order, 2 * x->n);
     for (q = 0; q < 2 * x->n; q++) {
-        if (q == 0 || order[q].key != order[q - 1].key) list[n++] = HDI_CAST(int32_t, order[q].key);
+        if (q == 0 || order[q].key != order[q - 1].key) list[n++] = (int32_t)order[q].key;
         place[order[q].id] = n - 1;
     }
     return n;
@@ -29777,7 +29744,7 @@ typedef struct hdi_pair_columns {
 static void hdi_pairs_of_columns(const hd_heat *heat, const hdi_pairs *x, const hdi_pair_columns *c,
                                  hd_report *rep) {
     const hd_laplacian *lap = heat->source;
-    const size_t n = HDI_CAST(size_t, lap->n);
+    const size_t n = (size_t)lap->n;
     const double bound_b = rep->error_bound_b;
     hdi_ledger of_k =
         hdi_ledger_begin(rep->evidence_rational, rep->evidence_solver, rep->evidence_rounding, 0);
@@ -29790,8 +29757,8 @@ static void hdi_pairs_of_columns(const hd_heat *heat, const hdi_pairs *x, const 
     memset(&part, 0, sizeof part);
     of_d.relative = 0;
     for (q = 0; q < x->n; q++) {
-        const double *ui = c->U + n * HDI_CAST(size_t, c->place[2 * q]);
-        const double *uj = c->U + n * HDI_CAST(size_t, c->place[2 * q + 1]);
+        const double *ui = c->U + n * (size_t)c->place[2 * q];
+        const double *uj = c->U + n * (size_t)c->place[2 * q + 1];
         const double size_i = c->size[c->place[2 * q]], size_j = c->size[c->place[2 * q + 1]];
         const double off_i = hdi_pairs_column_off(lap, x->i[q], size_i, bound_b);
         const double off_j = hdi_pairs_column_off(lap, x->j[q], size_j, bound_b);
@@ -29898,7 +29865,7 @@ static hd_status hdi_pairs_by_entries(hd_heat *heat, const hdi_pairs *x, double 
 static hd_status hdi_modes_pairs(hd_heat *heat, const hdi_pairs *x, double t, hd_report *rep) {
     hd_error *e = &rep->error;
     hdi_scope s = hdi_scope_begin(heat->ctx, e);
-    const uint64_t n = HDI_CAST(uint64_t, heat->source->n), count = HDI_CAST(uint64_t, heat->modes.s.count);
+    const uint64_t n = (uint64_t)heat->source->n, count = (uint64_t)heat->modes.s.count;
     double *work = HDI_TAKE(&s, double, 3 * n + 2 * count + 1);
     hdi_ledger ledger = hdi_modes_ledger();
     hdi_mode_sum sum;
@@ -29911,7 +29878,7 @@ static hd_status hdi_modes_pairs(hd_heat *heat, const hdi_pairs *x, double t, hd
         x->d[q] = 0;
         if (x->i[q] == x->j[q]) continue;
         hdi_mode_sum_from(&sum, hdi_terms_vertex(x->i[q]));
-        hdi_mode_sum_task(&sum, x->j[q], HDI_CAST(int64_t, x->j[q]) + 1);
+        hdi_mode_sum_task(&sum, x->j[q], (int64_t)x->j[q] + 1);
         x->d[q] = work[x->j[q]];
         hdi_mode_sum_note(&sum, x->j[q], &ledger, rep);
     }
@@ -29925,7 +29892,7 @@ static hd_status hdi_modes_pairs(hd_heat *heat, const hdi_pairs *x, double t, hd
 /* Pairs at time t, from columns by poles of a degree (0: by default); rep gets the report. */
 static hd_status hdi_pairs_columns(hd_heat *heat, const hdi_pairs *x, double t, int32_t degree,
                                    hd_report *rep) {
-    const uint64_t n = HDI_CAST(uint64_t, heat->source->n), twice = 2 * HDI_CAST(uint64_t, x->n);
+    const uint64_t n = (uint64_t)heat->source->n, twice = 2 * (uint64_t)x->n;
     const hd_kernel kernel = x->kind == HD_DISTANCE_WEIGHTED ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
     hd_error *e = &rep->error;
     hdi_scope s = hdi_scope_begin(heat->ctx, e);
@@ -29938,24 +29905,23 @@ static hd_status hdi_pairs_columns(hd_heat *heat, const hdi_pairs *x, double t, 
     if (e->status < 0) return rep->status = hdi_scope_end(&s);
     n_list = hdi_pairs_vertices(x, order, list, place);
     if (x->kind >= HD_DISTANCE_COMMUTE || (x->d && hdi_heat_filtered(heat)) ||
-        HDI_CAST(uint64_t, n_list) * n > HDI_PAIRS_DOUBLES) {
+        (uint64_t)n_list * n > HDI_PAIRS_DOUBLES) {
         hdi_scope_end(&s);
         return hdi_pairs_by_entries(heat, x, t, rep);
     }
-    c.U = HDI_TAKE(&s, double, n * HDI_CAST(uint64_t, n_list));
+    c.U = HDI_TAKE(&s, double, n * (uint64_t)n_list);
     c.size = HDI_TAKE(&s, double, n_list);
     if (e->status < 0) return rep->status = hdi_scope_end(&s);
     if (hdi_kernel_begin(&h, heat, kernel, rep, NULL) >= 0 && hdi_times_check(&h, 1, &t, 0) >= 0) {
         h.ask.k = n_list;
         h.ask.sources = list;
         h.ask.U = c.U;
-        h.ask.ldu = HDI_CAST(size_t, n);
+        h.ask.ldu = (size_t)n;
         h.degree = degree;
     }
     if (hdi_heat_run(&h) >= 0) {
         for (q = 0; q < n_list; q++)
-            c.size[q] = hdi_vertex_norm(heat->source, c.U + n * HDI_CAST(uint64_t, q), NULL, c.work,
-                                        heat->scale);
+            c.size[q] = hdi_vertex_norm(heat->source, c.U + n * (uint64_t)q, NULL, c.work, heat->scale);
         hdi_pairs_of_columns(heat, x, &c, rep);
     }
     hdi_scope_end(&s);
@@ -29978,7 +29944,7 @@ static int hdi_pairs_by_modes(hd_heat *heat, const hdi_pairs *x, double t, int32
     if (hdi_modes_reach(heat, x->kind, t, most, &one.error)) y.d = HDI_TAKE(&s, double, x->n);
     if (y.d && hdi_modes_pairs(heat, &y, t, &one) >= 0)
         taken = one.error_bound < bound || hdi_modes_good(heat, t, &one);
-    if (taken) memcpy(x->d, y.d, HDI_CAST(size_t, x->n) * sizeof *y.d);
+    if (taken) memcpy(x->d, y.d, (size_t)x->n * sizeof *y.d);
     if (hdi_over_limit(heat->ctx, &one.error)) hdi_error_clear(&one.error);
     if (one.error.status < 0) one.status = one.error.status;
     if (taken || one.status < 0) *rep = one;
@@ -30052,7 +30018,7 @@ static int64_t hdi_pairs_few(const int32_t *i, const int32_t *j, int64_t n, int6
 /* The pairs at all times of a call. Without the direct method distances come from columns alone, for as many
  * pairs at a time as these have room for. */
 static hd_status hdi_pairs_times(hdi_heat_call *h, void *what) {
-    const hdi_pairs *all = HDI_CAST(const hdi_pairs *, what);
+    const hdi_pairs *all = (const hdi_pairs *)what;
     const int timeless = all->kind >= HD_DISTANCE_COMMUTE;
     const int32_t n_times = timeless ? 1 : h->ask.n_times, n = h->heat->source->n;
     int64_t *mark = all->d && hdi_direct_barred(h->heat) ? HDI_TAKE_ZERO(&h->s, int64_t, n) : NULL, p;
@@ -30177,7 +30143,7 @@ static hd_status hdi_sample_poles(hd_heat *heat, hdi_samples *a, hd_report *rep,
 /* The points by distances from the eigenpairs that are there. */
 static hd_status hdi_sample_modes(hd_heat *heat, hdi_samples *a, hd_report *rep, hd_error *e) {
     hdi_scope s = hdi_scope_begin(heat->ctx, e);
-    const uint64_t n = HDI_CAST(uint64_t, heat->source->n), count = HDI_CAST(uint64_t, heat->modes.s.count);
+    const uint64_t n = (uint64_t)heat->source->n, count = (uint64_t)heat->modes.s.count;
     double *work = HDI_TAKE(&s, double, 2 * (n + count) + 1);
     hdi_mode_sum sum;
     memset(rep, 0, sizeof *rep);
@@ -30210,7 +30176,7 @@ static hd_status hdi_sample_either(hd_heat *heat, hdi_samples *a, hd_report *rep
 }
 
 static hd_status hdi_sample_run(hdi_heat_call *h, void *what) {
-    hdi_samples *a = HDI_CAST(hdi_samples *, what);
+    hdi_samples *a = (hdi_samples *)what;
     hd_report one;
     memset(&one, 0, sizeof one);
     a->nearest = HDI_TAKE(&h->s, double, h->heat->source->n);
@@ -30342,12 +30308,12 @@ static double hdi_bytes_direct(const hdi_estimate *x, const hd_rational *set, hd
     held += HDI_ESTIMATE_SMALL;
     /* the solves' arrays of one time stay while the next one is factorised */
     if (heat->elim.ctx && x->h->n_times > 1)
-        held += HDI_CAST(double, hdi_batches_need(heat, hdi_set_packs(set), k));
+        held += (double)hdi_batches_need(heat, hdi_set_packs(set), k);
     if (heat->elim.ctx) {
         const uint64_t need = hdi_direct_need(heat, set, after, n_sets, k, x->h->e);
         const int asks = hdi_heat_equal_asks(heat, x->h->t) && !heat->ground.traced;
-        return held + hdi_max(HDI_CAST(double, need),
-                              asks ? HDI_CAST(double, hdi_ground_need(&heat->elim, &heat->ground, 0)) : 0);
+        return held + hdi_max((double)need,
+                              asks ? (double)hdi_ground_need(&heat->elim, &heat->ground, 0) : 0);
     }
     held += 8 * (8 * packs + 1) * f.stored + 200 * n + hdi_min(k, HDI_LANES) * 140 * n;
     return after >= HDI_AFTER_INVERSE ? held + 16 * n * n_sets : held;
@@ -30370,7 +30336,7 @@ static int hdi_estimate_open(const hdi_estimate *x) {
 
 /* Bytes of iterations: the copy of the pair, its upper triangle, lanes and preconditioners, or bases. */
 static double hdi_bytes_iterative(const hd_heat *heat, double t, int32_t k, int32_t poles) {
-    const double n = heat->source->n_active, nnz = HDI_CAST(double, heat->source->L.nnz);
+    const double n = heat->source->n_active, nnz = (double)heat->source->L.nnz;
     const double lanes = hdi_low32(k, HDI_LANES_ITERATIVE);
     const int vectors = hdi_krylov_vectors(heat->opts.solver == HD_SOLVER_MINRES ? HD_SOLVER_MINRES
                                            : HD_SOLVER_COCG);
@@ -30395,9 +30361,9 @@ static void hdi_estimate_krylov(const hdi_estimate *x, double seconds, double he
     const double longer = several ? 1.3 : 1.15;  /* more than expected, to be safe */
     const double steps = hdi_min(HDI_SILAN_MAX, longer * w.longest);
     const int32_t wide = x->k > 3 ? HDI_SILAN_WIDE : 1;
-    double bytes = HDI_ESTIMATE_SMALL + HDI_CAST(double, sizeof(hdi_silan)) + wide * 56 * n + held;
+    double bytes = HDI_ESTIMATE_SMALL + (double)sizeof(hdi_silan) + wide * 56 * n + held;
     if (heat->elim.ctx)
-        bytes += HDI_CAST(double, hdi_krylov_need(&heat->elim, wide, HDI_CAST(int32_t, steps)));
+        bytes += (double)hdi_krylov_need(&heat->elim, wide, (int32_t)steps);
     else bytes += 8 * f.real_stored + 8 * n * wide * (steps + 4) + 200 * n;
     if (several && wide == 1) bytes += HDI_SILAN_WIDE * 8 * n;   /* sums at several times */
     hdi_cost_add(c, w.n * f.flops + x->k * w.steps * 4 * f.nnz, seconds, bytes);
@@ -30445,7 +30411,7 @@ static hd_status hdi_estimate_solves(const hdi_estimate *x, double held) {
         direct->bytes_most = hdi_max(direct->bytes,
                                      hdi_bytes_direct(x, &set, HDI_AFTER_BOUND, 0, x->k, held));
         if (x->query == HD_QUERY_PAIRS && heat->elim.ctx)   /* the solves' arrays of the first try stay */
-            direct->bytes_most += HDI_CAST(double, hdi_batches_need(heat, hdi_set_packs(&set), x->k));
+            direct->bytes_most += (double)hdi_batches_need(heat, hdi_set_packs(&set), x->k);
         if (!heat->poles_asked || method == HD_METHOD_KRYLOV)
             hdi_estimate_krylov(x, model.krylov, held, c + HD_METHOD_KRYLOV);
     }
@@ -30456,7 +30422,7 @@ static hd_status hdi_estimate_solves(const hdi_estimate *x, double held) {
 static hd_status hdi_estimate_inverse(const hdi_estimate *x, int32_t degree, hd_cost *c) {
     hdi_heat_call *h = x->h;
     const hd_laplacian *lap = h->heat->source;
-    const double n = lap->n_active, entries = HDI_CAST(double, (lap->L.nnz - lap->n_active) / 2) + n;
+    const double n = lap->n_active, entries = (double)((lap->L.nnz - lap->n_active) / 2) + n;
     const int distance = x->query >= HD_QUERY_DISTANCE;
     const int pattern = x->query == HD_QUERY_EDGES || (x->query == HD_QUERY_DIAGONAL_OPERATOR && lap->B);
     const hdi_after after = x->query == HD_QUERY_DISTANCE_WEIGHTED && lap->B ? HDI_AFTER_FORMS
@@ -30477,7 +30443,7 @@ static hd_status hdi_estimate_inverse(const hdi_estimate *x, int32_t degree, hd_
     bytes = hdi_bytes_direct(x, &set, after, 2, h->n_times > 1 ? solves : HDI_PROBES, held);
     bytes = hdi_max(bytes, hdi_bytes_direct(x, &set, HDI_AFTER_SOLVES, 0, solves, held - 16 * n + later));
     hdi_cost_direct(h->heat, hdi_set_packs(&set), hdi_set_lone(&set), after,
-                    HDI_CAST(double, HDI_PROBES) + (distance ? 2.0 * x->k : 0), c);
+                    (double)HDI_PROBES + (distance ? 2.0 * x->k : 0), c);
     hdi_cost_add(c, 0, 0, bytes);
     return h->e->status;
 }
@@ -30498,10 +30464,10 @@ static hd_status hdi_estimate_windows(const hdi_estimate *x, int32_t windows, do
         memset(&set, 0, sizeof set);
         if (!hdi_shared_pick(&set, h->times[q1 - 1] / h->times[q0] * (1 + 1e-12), tol)) return h->e->status;
         /* sets, weights and values; then a vector of a diagonal, or the columns of distances */
-        held = q * (HDI_CAST(double, sizeof set) + 32.0 * HDI_CAST(double, HD_MAX_POLES) + 16 * n) + 8 * n;
+        held = q * ((double)(sizeof set) + 32.0 * (double)HD_MAX_POLES + 16 * n) + 8 * n;
         if (distance) held += (16 * q + 128 + (full ? 16 : 0)) * n + 8.0 * lap->n;
         if (distance && h->heat->elim.ctx)
-            held += 8 * HDI_CAST(double, hdi_sweep_size(&h->heat->elim.sym, HDI_PACK, 1));
+            held += 8 * (double)hdi_sweep_size(&h->heat->elim.sym, HDI_PACK, 1);
         bytes = hdi_bytes_direct(x, &set, full ? HDI_AFTER_FORMS : HDI_AFTER_INVERSE, 2 * (q1 - q0),
                                  HDI_PROBES, held);
         hdi_cost_direct(h->heat, hdi_set_packs(&set), 0, full ? HDI_AFTER_FORMS : HDI_AFTER_INVERSE,
@@ -30555,8 +30521,8 @@ static double hdi_modes_need_most(const hd_heat *heat, int32_t count) {
 /* Finding so many eigenpairs. */
 static void hdi_estimate_pairs_cost(const hd_heat *heat, int32_t count, hd_cost *c) {
     const hdi_fill f = hdi_heat_fill(heat);
-    const double n = heat->source->n_active, runs = 2 + ceil(count / HDI_CAST(double, HDI_SPEC_HALF));
-    const double solves = 2.5 * count + HDI_CAST(double, HDI_SPEC_HALF), pairs = count + HDI_MODES_BEGIN;
+    const double n = heat->source->n_active, runs = 2 + ceil(count / (double)HDI_SPEC_HALF);
+    const double solves = 2.5 * count + (double)HDI_SPEC_HALF, pairs = count + HDI_MODES_BEGIN;
     const double seconds = runs * f.flops / HDI_RATE_REAL + HDI_MODES_SECONDS * n * pairs;
     const double flops = runs * f.flops + solves * (4 * f.nnz + 8 * n * count);
     hdi_cost_add(c, flops, seconds, hdi_modes_need(heat, count) + HDI_ESTIMATE_SMALL);
@@ -30613,14 +30579,14 @@ static void hdi_estimate_ground(const hdi_estimate *x, hd_cost *c) {
     const double n = heat->source->n_active, held = 40 * n + 16.0 * heat->source->n + 48.0 * x->k;
     const double real = f.flops / HDI_RATE_REAL * (1 + HDI_INVERT_SECONDS);
     const double solve = (16 * f.nnz + 100 * n) / HDI_RATE_SWEEP * (forms ? 4 : 2);
-    const double columns = HDI_CAST(double, x->k) + HDI_CAST(double, HDI_PROBES);
+    const double columns = (double)x->k + (double)HDI_PROBES;
     double bytes = 8 * f.real_stored * (forms ? 9 : 1);
     hdi_cost_direct(heat, forms ? 1 : 0, 1, HDI_AFTER_INVERSE, 0, c);
     c->flops += columns * 4 * f.nnz * (forms ? 4 : 2);
     c->seconds = hdi_max(c->seconds, real) + columns * solve;
     if (heat->elim.ctx) {
-        bytes = HDI_CAST(double, hdi_ground_need(&heat->elim, &heat->ground, forms));
-        bytes += 16 * HDI_CAST(double, hdi_ground_room(&heat->elim));
+        bytes = (double)hdi_ground_need(&heat->elim, &heat->ground, forms);
+        bytes += 16 * (double)hdi_ground_room(&heat->elim);
     }
     hdi_cost_add(c, 0, 0, bytes + held + HDI_ESTIMATE_SMALL);
 }
@@ -30649,8 +30615,8 @@ static hd_status hdi_estimate_alone(const hdi_estimate *x, int32_t q, double hel
     if (sure && most->bytes + held <= hdi_bytes_left(heat->ctx)) *one = *most;
     else if (hdi_estimate_inverse(x, 0, one) < 0) return x->h->e->status;
     if (heat->elim.ctx)                          /* after a first try, whose lanes and real factor stay */
-        most->bytes += HDI_CAST(double, hdi_batches_need(heat, 1, hdi_high32(x->k, HDI_PROBES)) +
-                                        (heat->elim.real.ctx ? 0 : hdi_factor_bytes(&heat->elim.sym, 1)));
+        most->bytes += (double)(hdi_batches_need(heat, 1, hdi_high32(x->k, HDI_PROBES)) +
+                                (heat->elim.real.ctx ? 0 : hdi_factor_bytes(&heat->elim.sym, 1)));
     most->bytes += hdi_max(held, help > 0 ? hdi_estimate_held(x, help) : 0);
     if (help > 0) most->bytes = hdi_max(most->bytes, hdi_modes_need_most(heat, help));
     return HD_OK;
@@ -30706,9 +30672,9 @@ static void hdi_estimate_trace_set(const hdi_estimate *x, const hd_rational *set
                                    double held, hd_cost *c) {
     const hd_laplacian *lap = x->h->heat->source;
     const double n = lap->n_active, poles = 2.0 * set->n_poles;
-    const double entries = HDI_CAST(double, (lap->L.nnz - lap->n_active) / 2) + n;
+    const double entries = (double)((lap->L.nnz - lap->n_active) / 2) + n;
     const double values = poles * (lap->B ? entries + n : n) + n;
-    double bytes = held + n_times * HDI_CAST(double, sizeof *set) + 8 * values + 16 * poles * set->n_poles;
+    double bytes = held + n_times * (double)(sizeof *set) + 8 * values + 16 * poles * set->n_poles;
     bytes = hdi_bytes_direct(x, set, HDI_AFTER_INVERSE, 2 * set->n_poles, HDI_PROBES, bytes);
     hdi_cost_direct(x->h->heat, hdi_set_packs(set), hdi_set_lone(set), HDI_AFTER_INVERSE, HDI_PROBES, c);
     hdi_cost_add(c, 0, 0, bytes);
@@ -30771,8 +30737,8 @@ static hd_status hdi_estimate_signature(const hdi_estimate *x) {
     if (!normalised) return HD_OK;
     /* lanes and the real factor of the diagonal stay */
     if (heat->elim.ctx)
-        held += HDI_CAST(double, hdi_batches_need(heat, 1, HDI_PROBES) +
-                                 (heat->elim.real.ctx ? 0 : hdi_factor_bytes(&heat->elim.sym, 1)));
+        held += (double)(hdi_batches_need(heat, 1, HDI_PROBES) +
+                         (heat->elim.real.ctx ? 0 : hdi_factor_bytes(&heat->elim.sym, 1)));
     if (hdi_estimate_trace(x, held, &trace) >= 0) hdi_cost_add(c, trace.flops, trace.seconds, trace.bytes);
     return x->h->e->status;
 }
@@ -30819,7 +30785,7 @@ static hd_status hdi_estimate_run(const hdi_estimate *x) {
     const int timeless = x->query >= HD_QUERY_DISTANCE_COMMUTE;
     const int32_t pairs = hdi_low32(x->k, heat->source->n_active);
     const int distance = x->query == HD_QUERY_DISTANCE || x->query == HD_QUERY_DISTANCE_WEIGHTED;
-    const double columns = HDI_CAST(double, heat->source->n) * x->k;
+    const double columns = (double)heat->source->n * x->k;
     hd_estimate *to = x->to;
     if (!timeless && hdi_heat_sort_times(h, distance ? 2 : 1, NULL) < 0) return h->e->status;
     for (; h->n_times > 1 && h->times[0] * heat->lambda_max < HDI_STILL; h->n_times--) h->times++;
@@ -30833,7 +30799,7 @@ static hd_status hdi_estimate_run(const hdi_estimate *x) {
         to->reason = "t = 0";
         hdi_cost_add(to->cost + to->method, 0, 0, 64.0 * heat->source->n + HDI_ESTIMATE_SMALL);
     } else if (x->query <= HD_QUERY_PAIRS) {
-        const double held = 8 * hdi_min(columns, HDI_CAST(double, HDI_PAIRS_DOUBLES)) + 8.0 * x->k;
+        const double held = 8 * hdi_min(columns, (double)HDI_PAIRS_DOUBLES) + 8.0 * x->k;
         (void)hdi_estimate_columns(x, x->query == HD_QUERY_PAIRS ? held + 16.0 * heat->source->n : 0);
     } else if (x->query >= HD_QUERY_TRACE && x->query <= HD_QUERY_SCALE_INVARIANT) {
         (void)hdi_estimate_signature(x);
@@ -30847,7 +30813,7 @@ static hd_status hdi_estimate_run(const hdi_estimate *x) {
 static void hdi_estimate_close(const hd_heat *heat, hd_estimate *to) {
     int32_t q;
     to->analysed = heat->elim.ctx != NULL || (heat->other && heat->other->elim.ctx);
-    to->bytes_in_use = HDI_CAST(double, heat->ctx->bytes_in_use);
+    to->bytes_in_use = (double)heat->ctx->bytes_in_use;
     to->bytes_left = hdi_bytes_left(heat->ctx);
     to->cost[HD_METHOD_AUTO] = to->cost[to->method];
     for (q = 0; q <= HD_METHOD_KRYLOV; q++)
@@ -31007,19 +30973,19 @@ static void hdi_geo_free(hd_geodesic *g) {
 
 /* Allocates unless something failed before: a list of arrays needs one check at its end. */
 static void *hdi_geo_alloc(hd_geodesic *g, int64_t count, size_t size, hd_error *e) {
-    return e->status < 0 ? NULL : hdi_alloc(g->ctx, HDI_CAST(uint64_t, count), size, e);
+    return e->status < 0 ? NULL : hdi_alloc(g->ctx, (uint64_t)count, size, e);
 }
 
 static double *hdi_geo_doubles(hd_geodesic *g, int64_t count, hd_error *e) {
-    return HDI_CAST(double *, hdi_geo_alloc(g, count, sizeof(double), e));
+    return (double *)hdi_geo_alloc(g, count, sizeof(double), e);
 }
 
 static int32_t *hdi_geo_ints(hd_geodesic *g, int64_t count, hd_error *e) {
-    return HDI_CAST(int32_t *, hdi_geo_alloc(g, count, sizeof(int32_t), e));
+    return (int32_t *)hdi_geo_alloc(g, count, sizeof(int32_t), e);
 }
 
 static char *hdi_geo_bytes(hd_geodesic *g, int64_t count, hd_error *e) {
-    return HDI_CAST(char *, hdi_geo_alloc(g, count, 1, e));
+    return (char *)hdi_geo_alloc(g, count, 1, e);
 }
 
 /* How far along the longest side a of a triangle the corner opposite to it lies, whose side c leads back to
@@ -31029,7 +30995,7 @@ static double hdi_geo_along(double a, double b, double c) { return (a + (c - b) 
 /* Face f in its plane with the longest edge on the axis. The height is then as small as it can be and
  * keeps its relative precision. */
 static hdi_geo_face hdi_geo_frame(const hdi_mesh *mesh, int32_t f, const int32_t *row, double h) {
-    const int32_t *v = mesh->tri + 3 * HDI_CAST(int64_t, f);
+    const int32_t *v = mesh->tri + 3 * (int64_t)f;
     double edge[3][3], length[3];
     hdi_geo_face out;
     int i, q, k = 0;
@@ -31038,8 +31004,7 @@ static hdi_geo_face hdi_geo_frame(const hdi_mesh *mesh, int32_t f, const int32_t
         if (length[q] > length[k]) k = q;
     }
     for (q = 0; q < 3 && !mesh->len; q++) {      /* edge q leaves corner q */
-        hdi_sub3(mesh->xyz + 3 * HDI_CAST(int64_t, v[(q + 1) % 3]), mesh->xyz + 3 * HDI_CAST(int64_t, v[q]),
-                 edge[q]);
+        hdi_sub3(mesh->xyz + 3 * (int64_t)v[(q + 1) % 3], mesh->xyz + 3 * (int64_t)v[q], edge[q]);
         for (i = 0; i < 3; i++) edge[q][i] /= h;
         length[q] = hdi_norm3(edge[q]);
         if (length[q] > length[k]) k = q;
@@ -31057,8 +31022,8 @@ static hdi_geo_face hdi_geo_frame(const hdi_mesh *mesh, int32_t f, const int32_t
  * the longest edge are acute, so that nothing is cancelled. */
 static hdi_geo_face hdi_geo_flat_frame(const hdi_mesh *mesh, int32_t f, const int32_t *row, double h,
                                        double weight) {
-    const int32_t *v = mesh->tri + 3 * HDI_CAST(int64_t, f);
-    const double *cot = mesh->cot + 3 * HDI_CAST(int64_t, f);
+    const int32_t *v = mesh->tri + 3 * (int64_t)f;
+    const double *cot = mesh->cot + 3 * (int64_t)f;
     const int apex = cot[0] <= cot[1] ? (cot[0] <= cot[2] ? 0 : 2) : cot[1] <= cot[2] ? 1 : 2;
     const int a = (apex + 1) % 3, b = (apex + 2) % 3;
     const double twice = 2 * mesh->area[f] / weight, length = sqrt(twice * ((cot[a] + cot[b]) / weight));
@@ -31086,10 +31051,10 @@ static int32_t hdi_geo_first(const int32_t *v, int64_t n, const int32_t *row) {
 static hd_status hdi_geo_faces(hd_geodesic *g, const hdi_mesh *mesh, const int32_t *row,
                                const hdi_flat *flat, hd_error *e) {
     hdi_scope s = hdi_scope_begin(g->ctx, e);
-    int64_t *at = HDI_TAKE_ZERO(&s, int64_t, HDI_CAST(int64_t, g->n_active) + 1);
+    int64_t *at = HDI_TAKE_ZERO(&s, int64_t, (int64_t)g->n_active + 1);
     int32_t f, used = 0;
     for (f = 0; f < mesh->m; f++) g->n_faces += mesh->area[f] > 0;
-    g->face = HDI_CAST(hdi_geo_face *, hdi_geo_alloc(g, g->n_faces, sizeof *g->face, e));
+    g->face = (hdi_geo_face *)hdi_geo_alloc(g, g->n_faces, sizeof *g->face, e);
     if (g->lap) g->from = hdi_geo_ints(g, g->n_faces, e);
     if (e->status < 0) return hdi_scope_end(&s);
     for (f = 0; f < mesh->m; f++)
@@ -31112,7 +31077,7 @@ static hd_status hdi_geo_faces(hd_geodesic *g, const hdi_mesh *mesh, const int32
 /* The same of polygons. */
 static hd_status hdi_geo_poly_faces(hd_geodesic *g, const hdi_poly *poly, hd_error *e) {
     hdi_scope s = hdi_scope_begin(g->ctx, e);
-    int64_t *at = HDI_TAKE_ZERO(&s, int64_t, HDI_CAST(int64_t, g->n_active) + 1), c, n = 0;
+    int64_t *at = HDI_TAKE_ZERO(&s, int64_t, (int64_t)g->n_active + 1), c, n = 0;
     int32_t *order = HDI_TAKE(&s, int32_t, poly->m), f, k;
     hdi_geo_polygons *z = &g->poly;
     for (f = 0; f < poly->m; f++)
@@ -31120,7 +31085,7 @@ static hd_status hdi_geo_poly_faces(hd_geodesic *g, const hdi_poly *poly, hd_err
             g->n_faces++;
             n += poly->ptr[f + 1] - poly->ptr[f];
         }
-    z->ptr = HDI_CAST(int64_t *, hdi_geo_alloc(g, HDI_CAST(int64_t, g->n_faces) + 1, sizeof(int64_t), e));
+    z->ptr = (int64_t *)hdi_geo_alloc(g, (int64_t)g->n_faces + 1, sizeof(int64_t), e);
     z->row = hdi_geo_ints(g, n, e);
     z->side = hdi_geo_doubles(g, 3 * n, e);
     z->flat = hdi_geo_doubles(g, g->n_faces, e);
@@ -31157,8 +31122,7 @@ static hd_status hdi_geo_poly_rows(hd_geodesic *g, const hd_laplacian *lap, hd_e
     int32_t i;
     a->n_rows = a->n_cols = g->n_active;
     a->nnz = lap->L.nnz;
-    a->row_ptr = HDI_CAST(int64_t *,
-                          hdi_geo_alloc(g, HDI_CAST(int64_t, g->n_active) + 1, sizeof(int64_t), e));
+    a->row_ptr = (int64_t *)hdi_geo_alloc(g, (int64_t)g->n_active + 1, sizeof(int64_t), e);
     a->col = hdi_geo_ints(g, a->nnz, e);
     a->val = hdi_geo_doubles(g, a->nnz, e);
     if (e->status < 0) return e->status;
@@ -31259,8 +31223,7 @@ static hd_status hdi_geo_factors(hd_geodesic *g, const hd_laplacian *lap, hd_err
     /* the last factor, and what is kept of those before */
     uint64_t need = hdi_factor_bytes(&g->sym, 1);
     int32_t c;
-    hdi_scope_count(&need, HDI_CAST(uint64_t, g->sym.panel[g->sym.n_super]),
-                    (mean ? 2 : 1) * sizeof(double));
+    hdi_scope_count(&need, (uint64_t)g->sym.panel[g->sym.n_super], (mean ? 2 : 1) * sizeof(double));
     if (e->status < 0 || hdi_need(g->ctx, need, "two factors", e) < 0) return hdi_scope_end(&s);
     hdi_geo_matrix(g, lap, 1, mean ? NULL : g->held, val);
     if (hdi_geo_factor(g, &g->heat, lap, val, e) < 0) return hdi_scope_end(&s);
@@ -31279,12 +31242,11 @@ static hd_status hdi_geo_room(hd_geodesic *g, hd_error *e) {
     g->active = hdi_geo_bytes(g, g->sym.n_super, e);
     g->reached = hdi_geo_bytes(g, g->n_components, e);
     g->mark = hdi_geo_bytes(g, g->n_active, e);
-    g->value_ptr = HDI_CAST(int64_t *,
-                            hdi_geo_alloc(g, HDI_CAST(int64_t, g->n_components) + 1, sizeof(int64_t), e));
+    g->value_ptr = (int64_t *)hdi_geo_alloc(g, (int64_t)g->n_components + 1, sizeof(int64_t), e);
     g->x = hdi_geo_doubles(g, g->n_active, e);
     g->b = hdi_geo_doubles(g, g->n_active, e);
     g->r = hdi_geo_doubles(g, g->n_active, e);
-    g->work = hdi_geo_doubles(g, HDI_CAST(int64_t, hdi_sweep_size(&g->sym, 1, 1)), e);
+    g->work = hdi_geo_doubles(g, (int64_t)hdi_sweep_size(&g->sym, 1, 1), e);
     return e->status;
 }
 
@@ -31362,7 +31324,7 @@ static hd_status hdi_geo_store(hd_geodesic *g, const hd_laplacian *lap, const hd
 static hd_status hdi_geo_make(hd_geodesic *g, const hdi_geo_input *in, const hd_geodesic_opts *o,
                               hd_error *e) {
     hdi_scope s = hdi_scope_begin(g->ctx, e);
-    hd_laplacian *lap = HDI_CAST(hd_laplacian *, hdi_alloc_zero(g->ctx, 1, sizeof *lap, e));
+    hd_laplacian *lap = (hd_laplacian *)hdi_alloc_zero(g->ctx, 1, sizeof *lap, e);
     hdi_geo_surface z;
     if (!lap) return hdi_scope_end(&s);
     lap->n = g->n;
@@ -31450,14 +31412,14 @@ static HDI_INLINE int hdi_geo_poly_add(const hd_geodesic *g, int32_t f, int k, c
     memset(W, 0, sizeof W);
     for (c = 0; c < k; c++) {
         double most = 0;
-        for (p = begin; p < end; p++) most = hdi_max(most, fabs(u[k * HDI_CAST(int64_t, z->row[p]) + c]));
+        for (p = begin; p < end; p++) most = hdi_max(most, fabs(u[k * (int64_t)z->row[p] + c]));
         scale[c] = most >= least[c] ? 1 / most : 0;
         faint |= (most < least[c] && most > 0) << c;
     }
     for (p = begin + 1; p < end; p++)
         for (c = 0; c < k; c++) {                /* the c_i of a face sum to zero */
-            const double first = fabs(u[k * HDI_CAST(int64_t, z->row[begin]) + c]);
-            const double d = (fabs(u[k * HDI_CAST(int64_t, z->row[p]) + c]) - first) * scale[c];
+            const double first = fabs(u[k * (int64_t)z->row[begin] + c]);
+            const double d = (fabs(u[k * (int64_t)z->row[p] + c]) - first) * scale[c];
             W[c][0] += z->side[3 * p] * d;
             W[c][1] += z->side[3 * p + 1] * d;
             W[c][2] += z->side[3 * p + 2] * d;
@@ -31465,7 +31427,7 @@ static HDI_INLINE int hdi_geo_poly_add(const hd_geodesic *g, int32_t f, int k, c
     for (c = 0; c < k; c++) {
         const double norm2 = hdi_dot3(W[c], W[c]), w = norm2 > z->flat[f] ? -1 / sqrt(norm2) : 0;
         for (p = begin; p < end; p++)
-            b[k * HDI_CAST(int64_t, z->row[p]) + c] += w * hdi_dot3(z->side + 3 * p, W[c]);
+            b[k * (int64_t)z->row[p] + c] += w * hdi_dot3(z->side + 3 * p, W[c]);
     }
     return faint;
 }
@@ -31484,7 +31446,7 @@ static int hdi_geo_divergence(const hd_geodesic *g, const double *HDI_RESTRICT u
                               double *HDI_RESTRICT b) {
     int faint = 0;
     int32_t f;
-    memset(b, 0, HDI_CAST(size_t, g->n_active) * sizeof *b);
+    memset(b, 0, (size_t)g->n_active * sizeof *b);
     if (g->poly.ptr) return hdi_geo_poly_divergence(g, 1, u, &least, b);
     for (f = 0; f < g->n_faces; f++) {
         const hdi_geo_face *a = g->face + f;
@@ -31498,7 +31460,7 @@ static int hdi_geo_divergence(const hd_geodesic *g, const double *HDI_RESTRICT u
 
 /* Where corner q of a face lies in a batch of columns. */
 static HDI_INLINE int64_t hdi_geo_at(const hdi_geo_face *f, int q) {
-    return HDI_GEO_WIDE * HDI_CAST(int64_t, f->v[q]);
+    return HDI_GEO_WIDE * (int64_t)f->v[q];
 }
 
 /* The same for a batch. Returns the columns with faint faces as bits. */
@@ -31597,7 +31559,7 @@ static HDI_AVX512 int hdi_geo_divergence8_512(const hd_geodesic *g, const double
 
 static int hdi_geo_divergence8(const hd_geodesic *g, const double *u, const double *least, double *b) {
     const int level = hdi_simd_level(g->ctx);
-    memset(b, 0, HDI_GEO_WIDE * HDI_CAST(size_t, g->n_active) * sizeof *b);
+    memset(b, 0, HDI_GEO_WIDE * (size_t)g->n_active * sizeof *b);
     if (g->poly.ptr) return hdi_geo_poly_divergence(g, HDI_GEO_WIDE, u, least, b);
 #if HDI_X86
     if (level >= 2) return hdi_geo_divergence8_512(g, u, least, b);
@@ -31649,7 +31611,7 @@ static HDI_INLINE int32_t hdi_geo_corners(const hd_geodesic *g, int32_t f, const
         return 3;
     }
     *v = g->poly.row + g->poly.ptr[f];
-    return HDI_CAST(int32_t, g->poly.ptr[f + 1] - g->poly.ptr[f]);
+    return (int32_t)(g->poly.ptr[f + 1] - g->poly.ptr[f]);
 }
 
 /* g->x is zero except for the pivots of front. Between stages g->r and g->active are zero. */
@@ -31679,7 +31641,7 @@ static void hdi_geo_around(hdi_geo_far *w) {
 }
 
 static hd_status hdi_geo_far_begin(hdi_geo_far *w, hd_geodesic *g, hdi_scope *s) {
-    const size_t n = HDI_CAST(size_t, g->n_active), n_super = HDI_CAST(size_t, g->sym.n_super);
+    const size_t n = (size_t)g->n_active, n_super = (size_t)g->sym.n_super;
     memset(w, 0, sizeof *w);
     w->g = g;
     w->around_ptr = HDI_TAKE_ZERO(s, int64_t, n + 1);
@@ -31735,7 +31697,7 @@ static int hdi_geo_visit(const hdi_geo_far *w, int32_t i, int64_t p) {
 /* Opens a front. Forward, tasks come before the top, because the vectors of its fronts reuse their memory. */
 static void hdi_geo_open(hdi_geo_far *w, int32_t v) {
     const hdi_symbolic *s = &w->g->sym;
-    const uint64_t place = HDI_CAST(uint64_t, v) + (s->task_of[v] < 0 ? HDI_CAST(uint64_t, s->n_super) : 0);
+    const uint64_t place = (uint64_t)v + (s->task_of[v] < 0 ? (uint64_t)s->n_super : 0);
     int64_t i = w->n_open, up;
     hdi_pair x;
     if (w->g->active[v]) return;
@@ -31810,7 +31772,7 @@ static void hdi_geo_forward(hdi_geo_far *w, const hdi_sweep *z) {
     const hdi_symbolic *s = &w->g->sym;
     w->n_ends = 0;
     while (w->n_open > 0) {
-        const int32_t v = HDI_CAST(int32_t, w->open[0].id);
+        const int32_t v = (int32_t)w->open[0].id;
         const double *up = z->vec + s->vector[v];
         const int64_t below = hdi_front_below(s, v);
         int64_t i = 0;
@@ -31842,7 +31804,7 @@ static void hdi_geo_backward(hdi_geo_far *w, const hdi_sweep *z) {
         if (s->parent[end] >= 0 && w->g->active[s->parent[end]]) continue;   /* comes with it, or did */
         w->open[w->n_open++].id = end;
         while (w->n_open > 0) {
-            const int32_t v = HDI_CAST(int32_t, w->open[--w->n_open].id);
+            const int32_t v = (int32_t)w->open[--w->n_open].id;
             hdi_sweep_front(z, v);
             w->g->active[v] = 1;
             w->front[w->n_fronts++] = v;
@@ -31863,7 +31825,7 @@ static void hdi_geo_stage(hdi_geo_far *w) {
     int32_t k;
     for (k = 0; k < w->n_fronts; k++) {
         const int32_t v = w->front[k];
-        memset(g->x + super[v], 0, HDI_CAST(size_t, super[v + 1] - super[v]) * sizeof *g->x);
+        memset(g->x + super[v], 0, (size_t)(super[v + 1] - super[v]) * sizeof *g->x);
     }
     g->x = g->r;
     g->r = swap;
@@ -31928,7 +31890,7 @@ static hd_status hdi_geo_further(hd_geodesic *g, double least, int32_t *n_stages
 /* The indicator of the sources into x [n_active]. A source named twice counts once. */
 static void hdi_geo_indicator(const hd_geodesic *g, const int32_t *sources, int32_t k, double *x) {
     int32_t q;
-    memset(x, 0, HDI_CAST(size_t, g->n_active) * sizeof *x);
+    memset(x, 0, (size_t)g->n_active * sizeof *x);
     for (q = 0; q < k; q++)
         if (g->row[sources[q]] >= 0) x[g->row[sources[q]]] = 1;
 }
@@ -31936,8 +31898,8 @@ static void hdi_geo_indicator(const hd_geodesic *g, const int32_t *sources, int3
 /* What the load in g->x touches. */
 static void hdi_geo_touch(hd_geodesic *g) {
     int32_t i;
-    memset(g->active, 0, HDI_CAST(size_t, g->sym.n_super));
-    memset(g->reached, 0, HDI_CAST(size_t, g->n_components));
+    memset(g->active, 0, (size_t)g->sym.n_super);
+    memset(g->reached, 0, (size_t)g->n_components);
     for (i = 0; i < g->n_active; i++) {
         if (g->x[i] == 0) continue;
         g->reached[g->component[i]] = 1;
@@ -31973,11 +31935,11 @@ static double hdi_geo_residual(const hd_geodesic *g, const double *phi) {
  * right-hand side in y, which is overwritten. Twice the mean points the same way. A source on the border has
  * no heat then. k columns side by side, 1 or a batch; g->active holds the fronts that the sources touch. */
 static void hdi_geo_add_cold(hd_geodesic *g, int32_t k, double *x, double *y) {
-    const int64_t size = k * HDI_CAST(int64_t, g->n_active);
+    const int64_t size = k * (int64_t)g->n_active;
     int64_t p;
     int32_t i;
     for (i = 0; i < g->n_active; i++)
-        if (g->held[i]) memset(y + k * HDI_CAST(int64_t, i), 0, HDI_CAST(size_t, k) * sizeof *y);
+        if (g->held[i]) memset(y + k * (int64_t)i, 0, (size_t)k * sizeof *y);
     hdi_geo_sweep(g, &g->cold, k, y, g->active);
     for (p = 0; p < size; p++) x[p] += y[p];
 }
@@ -32003,7 +31965,7 @@ static hd_status hdi_geo_values_room(hd_geodesic *g, int32_t most, hd_error *e) 
     hdi_free(g->ctx, g->sorted);
     g->value_size = 0;
     g->value = hdi_geo_doubles(g, most, e);
-    g->sorted = HDI_CAST(hdi_pair *, hdi_geo_alloc(g, most, sizeof(hdi_pair), e));
+    g->sorted = (hdi_pair *)hdi_geo_alloc(g, most, sizeof(hdi_pair), e);
     if (g->sorted) g->value_size = most;
     return e->status;
 }
@@ -32011,12 +31973,12 @@ static hd_status hdi_geo_values_room(hd_geodesic *g, int32_t most, hd_error *e) 
 /* Keeps values, whose ids are in g->sorted [n], ascending within each component. value, component: by id. */
 static void hdi_geo_values_sort(hd_geodesic *g, int32_t n, const double *value, const int32_t *component) {
     int32_t q;
-    memset(g->value_ptr, 0, (HDI_CAST(size_t, g->n_components) + 1) * sizeof *g->value_ptr);
+    memset(g->value_ptr, 0, ((size_t)g->n_components + 1) * sizeof *g->value_ptr);
     for (q = 0; q < n; q++) {
         uint64_t bits;
         memcpy(&bits, value + g->sorted[q].id, sizeof bits);
         /* in the order of the doubles */
-        g->sorted[q].key = bits >> 63 ? ~bits : bits | HDI_CAST(uint64_t, 1) << 63;
+        g->sorted[q].key = bits >> 63 ? ~bits : bits | (uint64_t)1 << 63;
         g->value_ptr[component[g->sorted[q].id]]++;
     }
     hdi_sort_pairs(g->sorted, n);
@@ -32029,7 +31991,7 @@ static void hdi_geo_values_sort(hd_geodesic *g, int32_t n, const double *value, 
 /* Collects phi at the sources. */
 static void hdi_geo_values(hd_geodesic *g, const int32_t *sources, int32_t k, const double *phi) {
     int32_t q, n = 0;
-    memset(g->mark, 0, HDI_CAST(size_t, g->n_active));
+    memset(g->mark, 0, (size_t)g->n_active);
     for (q = 0; q < k; q++) {
         const int32_t i = g->row[sources[q]];
         if (i < 0 || g->mark[i]) continue;
@@ -32120,7 +32082,7 @@ static int hdi_geo_item_add(const hdi_geo_spot *z, hdi_geo_item *x, int32_t q, i
     for (c = 0; c < corners; c++) sum += hdi_source_part(z->s, q, c);
     for (c = 0; c < corners; c++) {
         const double w = hdi_source_part(z->s, q, c) / sum;
-        const int32_t row = z->g->row[z->s->vertex[HDI_CAST(int64_t, q) * corners + c]];
+        const int32_t row = z->g->row[z->s->vertex[(int64_t)q * corners + c]];
         if (w < HDI_GEO_ASIDE) continue;
         for (k = 0; k < x->n && x->row[k] != row; k++) {}
         if (row < 0 || k == 3) return 0;
@@ -32211,7 +32173,7 @@ static hd_status hdi_geo_load(const hdi_geo_spot *z, hd_error *e) {
     hd_geodesic *g = z->g;
     double length = 0;
     int32_t q, k;
-    memset(g->x, 0, HDI_CAST(size_t, g->n_active) * sizeof *g->x);
+    memset(g->x, 0, (size_t)g->n_active * sizeof *g->x);
     for (q = 0; q < z->n_items; q++) {
         const hdi_geo_item *x = z->item + q;
         for (k = 0; k < x->n; k++) {
@@ -32267,7 +32229,7 @@ static void hdi_geo_spot_values(hdi_geo_spot *z, const double *phi) {
  * stage goes into g->first, if that is there. spot: the source's own faces, or NULL. */
 static hd_status hdi_geo_phi(hd_geodesic *g, const hdi_geo_spot *spot, double *least, hd_geodesic_report *rep,
                              hd_error *e) {
-    const size_t size = HDI_CAST(size_t, g->n_active) * sizeof *g->x;
+    const size_t size = (size_t)g->n_active * sizeof *g->x;
     const int mean = g->border == HD_GEODESIC_BORDER_MEAN;
     double heat = 0, most = 0;
     int32_t i, n_stages = 1;
@@ -32307,7 +32269,7 @@ static void hdi_geo_own_source(hd_geodesic *g, const int32_t *sources, int32_t k
         if (i >= 0) g->x[i] = g->b[i] - g->value[g->value_ptr[g->component[i]]];
     }
     if (g->border == HD_GEODESIC_BORDER_MEAN) {
-        memset(g->r, 0, HDI_CAST(size_t, g->n_active) * sizeof *g->r);
+        memset(g->r, 0, (size_t)g->n_active * sizeof *g->r);
         for (v = 0; v < g->n_active; v++) g->r[v] = g->held[v] ? 0 : g->x[v];
         hdi_geo_sweep(g, &g->cold, 1, g->r, g->active);
     }
@@ -32318,7 +32280,7 @@ static void hdi_geo_own_source(hd_geodesic *g, const int32_t *sources, int32_t k
         double from;
         if (i < 0 || g->mark[i] || !g->reached[g->component[i]] || !(fabs(g->first[i]) >= least)) continue;
         value = g->value + g->value_ptr[g->component[i]];
-        c = HDI_CAST(int32_t, g->value_ptr[g->component[i] + 1] - g->value_ptr[g->component[i]]);
+        c = (int32_t)(g->value_ptr[g->component[i] + 1] - g->value_ptr[g->component[i]]);
         from = (g->x[i] + (g->border == HD_GEODESIC_BORDER_MEAN ? g->r[i] : 0)) / g->first[i];
         from = value[0] + hdi_min(hdi_max(from, 0), value[c - 1] - value[0]);
         d[v] = g->h * fabs(g->b[i] - from);
@@ -32343,8 +32305,8 @@ static hd_status hdi_geo_one(hd_geodesic *g, const int32_t *sources, int32_t k, 
 }
 
 static hd_status hdi_geo_wide_room(hd_geodesic *g, hd_error *e) {
-    const int64_t n = HDI_GEO_WIDE * HDI_CAST(int64_t, g->n_active);
-    const int64_t n_work = HDI_CAST(int64_t, hdi_sweep_size(&g->sym, 1, HDI_GEO_WIDE));
+    const int64_t n = HDI_GEO_WIDE * (int64_t)g->n_active;
+    const int64_t n_work = (int64_t)hdi_sweep_size(&g->sym, 1, HDI_GEO_WIDE);
     if (!g->wide_x) g->wide_x = hdi_geo_doubles(g, n, e);
     if (!g->wide_b) g->wide_b = hdi_geo_doubles(g, n, e);
     if (!g->wide_work) g->wide_work = hdi_geo_doubles(g, n_work, e);
@@ -32354,7 +32316,7 @@ static hd_status hdi_geo_wide_room(hd_geodesic *g, hd_error *e) {
 /* Column c of a batch. */
 static void hdi_geo_column(const hd_geodesic *g, const double *wide, int32_t c, double *x) {
     int32_t i;
-    for (i = 0; i < g->n_active; i++) x[i] = wide[HDI_GEO_WIDE * HDI_CAST(int64_t, i) + c];
+    for (i = 0; i < g->n_active; i++) x[i] = wide[HDI_GEO_WIDE * (int64_t)i + c];
 }
 
 /* From phi of up to eight single sources to distances, in the columns of d. Columns with a bit in skip
@@ -32366,19 +32328,19 @@ static int hdi_geo_wide_distances(const hd_geodesic *g, const int32_t *sources, 
     for (c = 0; c < k; c++) {
         const int32_t i = g->row[sources[c]];
         component[c] = i < 0 ? -1 : g->component[i];
-        at[c] = i < 0 ? 0 : g->wide_b[HDI_GEO_WIDE * HDI_CAST(int64_t, i) + c];
+        at[c] = i < 0 ? 0 : g->wide_b[HDI_GEO_WIDE * (int64_t)i + c];
     }
     for (v = 0; v < g->n; v++) {
         const int32_t i = g->row[v], of = i < 0 ? -2 : g->component[i];
         for (c = 0; c < k; c++) {
-            double *to = d + HDI_CAST(size_t, c) * ldd + v;
+            double *to = d + (size_t)c * ldd + v;
             *to = HUGE_VAL;
             if (of != component[c]) continue;
-            *to = g->h * fabs(g->wide_b[HDI_GEO_WIDE * HDI_CAST(int64_t, i) + c] - at[c]);
+            *to = g->h * fabs(g->wide_b[HDI_GEO_WIDE * (int64_t)i + c] - at[c]);
             fine &= skip >> c & 1 || hdi_finite(*to);
         }
     }
-    for (c = 0; c < k; c++) d[HDI_CAST(size_t, c) * ldd + HDI_CAST(size_t, sources[c])] = 0;
+    for (c = 0; c < k; c++) d[(size_t)c * ldd + (size_t)sources[c]] = 0;
     return fine;
 }
 
@@ -32408,16 +32370,16 @@ static void hdi_geo_wide_judge(hd_geodesic *g, int32_t k, int skip, const double
  * again alone. */
 static hd_status hdi_geo_wide(hd_geodesic *g, const int32_t *sources, int32_t k, double *d, size_t ldd,
                               hd_geodesic_report *rep, hd_error *e) {
-    const size_t size = HDI_GEO_WIDE * HDI_CAST(size_t, g->n_active) * sizeof(double);
+    const size_t size = HDI_GEO_WIDE * (size_t)g->n_active * sizeof(double);
     double least[HDI_GEO_WIDE], heat[HDI_GEO_WIDE];
     int32_t c, i;
     int faint;
     if (hdi_geo_wide_room(g, e) < 0) return e->status;
     memset(g->wide_x, 0, size);
-    memset(g->active, 0, HDI_CAST(size_t, g->sym.n_super));
+    memset(g->active, 0, (size_t)g->sym.n_super);
     for (c = 0; c < k; c++) {
         if (g->row[sources[c]] < 0) continue;
-        g->wide_x[HDI_GEO_WIDE * HDI_CAST(int64_t, g->row[sources[c]]) + c] = 1;
+        g->wide_x[HDI_GEO_WIDE * (int64_t)g->row[sources[c]] + c] = 1;
         hdi_sweep_touch(&g->sym, g->row[sources[c]], g->active);
     }
     if (g->border == HD_GEODESIC_BORDER_MEAN) memcpy(g->wide_b, g->wide_x, size);
@@ -32426,18 +32388,18 @@ static hd_status hdi_geo_wide(hd_geodesic *g, const int32_t *sources, int32_t k,
     if (g->border == HD_GEODESIC_BORDER_MEAN) hdi_geo_add_cold(g, HDI_GEO_WIDE, g->wide_x, g->wide_b);
     for (c = 0; c < HDI_GEO_WIDE; c++) {
         i = c < k ? g->row[sources[c]] : -1;
-        least[c] = i < 0 ? 0 : fabs(g->wide_x[HDI_GEO_WIDE * HDI_CAST(int64_t, i) + c]) * HDI_GEO_FAINT;
+        least[c] = i < 0 ? 0 : fabs(g->wide_x[HDI_GEO_WIDE * (int64_t)i + c]) * HDI_GEO_FAINT;
         least[c] = hdi_max(least[c], DBL_MIN);
     }
     faint = hdi_geo_divergence8(g, g->wide_x, least, g->wide_b);
     if (rep) memcpy(g->wide_x, g->wide_b, size);
     for (i = 0; i < g->n_components; i++)
-        memset(g->wide_b + HDI_GEO_WIDE * HDI_CAST(int64_t, g->pin[i]), 0, HDI_GEO_WIDE * sizeof(double));
+        memset(g->wide_b + HDI_GEO_WIDE * (int64_t)g->pin[i], 0, HDI_GEO_WIDE * sizeof(double));
     hdi_geo_sweep(g, &g->poisson, HDI_GEO_WIDE, g->wide_b, NULL);
     if (!hdi_geo_wide_distances(g, sources, k, faint, d, ldd)) return hdi_geo_not_finite(e, -1);
     if (rep) hdi_geo_wide_judge(g, k, faint, heat, rep);
     for (c = 0; c < k; c++)
-        if (faint >> c & 1 && hdi_geo_one(g, sources + c, 1, d + HDI_CAST(size_t, c) * ldd, rep, e) < 0)
+        if (faint >> c & 1 && hdi_geo_one(g, sources + c, 1, d + (size_t)c * ldd, rep, e) < 0)
             return e->status;
     return HD_OK;
 }
@@ -32448,9 +32410,9 @@ static hd_status hdi_geo_all(hd_geodesic *g, const int32_t *sources, int32_t k, 
     int32_t q, n_cols;
     for (q = 0; q < k && e->status >= 0; q += n_cols) {
         const int32_t wide = k - q >= HDI_GEO_WIDE_FROM;
-        double *to = D + HDI_CAST(size_t, q) * ldd;
+        double *to = D + (size_t)q * ldd;
         n_cols = !wide ? 1 : k - q < HDI_GEO_WIDE ? k - q : HDI_GEO_WIDE;
-        if (hdi_progress(g->ctx, "solve", HDI_CAST(double, q) / k, e) < 0) break;
+        if (hdi_progress(g->ctx, "solve", (double)q / k, e) < 0) break;
         if (wide) (void)hdi_geo_wide(g, sources + q, n_cols, to, ldd, rep, e);
         else (void)hdi_geo_one(g, sources + q, 1, to, rep, e);
     }
@@ -32465,7 +32427,7 @@ static int hdi_geo_vertices(const hd_source *s, int32_t *list) {
         int32_t parts = 0;
         for (c = 0; c < corners; c++) {
             if (hdi_source_part(s, q, c) == 0) continue;
-            list[q] = s->vertex[HDI_CAST(int64_t, q) * corners + c];
+            list[q] = s->vertex[(int64_t)q * corners + c];
             parts++;
         }
         if (parts > 1) return 0;
@@ -32532,7 +32494,7 @@ static hd_status hdi_geo_make_fans(hd_geodesic *g, const hdi_geo_input *in, cons
     int32_t *tri = HDI_TAKE(&s, int32_t, 3 * m);
     hdi_geo_input split = *in;
     if (!tri) return hdi_scope_end(&s);
-    split.m = HDI_CAST(int32_t, hdi_poly_fans(in->ptr, in->idx, in->m, tri));
+    split.m = (int32_t)hdi_poly_fans(in->ptr, in->idx, in->m, tri);
     split.tri = tri;
     split.ptr = NULL;
     if (hdi_geo_make(g, &split, o, e) < 0 && e->face >= 0)
@@ -32584,7 +32546,7 @@ static hd_status hdi_geo_create(hd_geodesic **out, int32_t n, hdi_geo_input *in,
     if (hdi_geo_check(o, in, c->e) < 0) return c->e->status;
     if (o->ordering == HD_ORDERING_OWN && hdi_order_check(o->perm, n, c->ctx, c->e) < 0) return c->e->status;
     if (in->ptr && hdi_poly_check(in->xyz, n, in->ptr, in->idx, in->m, c->e) < 0) return c->e->status;
-    g = HDI_CAST(hd_geodesic *, hdi_alloc_zero(c->ctx, 1, sizeof *g, c->e));
+    g = (hd_geodesic *)hdi_alloc_zero(c->ctx, 1, sizeof *g, c->e);
     if (!g) return c->e->status;
     g->ctx = hdi_enter_keep(c, &g->context);
     hdi_hold(g->ctx);
@@ -32755,7 +32717,7 @@ static hd_laplacian *hdi_lap_new(const hd_laplacian_opts *opts, int32_t n, hd_la
                        "laplacian options: not cleared before use", err) < 0) return NULL;
     hdi_refuse(n < 0, "laplacian: a size is negative", c->e);
     if (c->e->status < 0) return NULL;
-    shell = HDI_CAST(hdi_laplacian *, hdi_alloc_zero(c->ctx, 1, sizeof *shell, c->e));
+    shell = (hdi_laplacian *)hdi_alloc_zero(c->ctx, 1, sizeof *shell, c->e);
     if (!shell) return NULL;
     shell->lap.n = n;
     shell->lap.kind = kind;
@@ -33073,7 +33035,7 @@ HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ld
     shape = *a;
     shape.val = NULL;
     if (hdi_csr_check(&shape, 1, c.ctx, c.e) < 0) return c.e->status;
-    f = HDI_CAST(hd_ldl *, hdi_alloc_zero(c.ctx, 1, sizeof *f, c.e));
+    f = (hd_ldl *)hdi_alloc_zero(c.ctx, 1, sizeof *f, c.e);
     if (!f) return c.e->status;
     f->ctx = hdi_enter_keep(&c, &f->context);
     hdi_hold(f->ctx);
@@ -33117,8 +33079,8 @@ HEATDIFF_API hd_status hd_ldl_solve(hd_ldl *f, int32_t k, const double *b, size_
     if (hdi_ldl_enter_factored(&c, f, 0, f && (k <= 0 || f->n == 0 || (b && x)), err) < 0 || !HDI_HAS_DIRECT)
         return c.e->status;
     if (k < 0) return hdi_fail(c.e, HD_ERR_ARGUMENT, "ldl: the number of right-hand sides is negative");
-    ldb = ldb ? ldb : HDI_CAST(size_t, f->n);
-    ldx = ldx ? ldx : HDI_CAST(size_t, f->n);
+    ldb = ldb ? ldb : (size_t)f->n;
+    ldx = ldx ? ldx : (size_t)f->n;
     if (hdi_ldl_leading(f, ldb, ldx, c.e) < 0 || hdi_ldl_room(f, 0, c.e) < 0) return c.e->status;
     for (q = 0; q < k; q += 8) {                 /* in place no answer may reach what is still to be read */
         const int32_t at = ldx > ldb ? (k - 1) / 8 * 8 - q : q;
@@ -33133,7 +33095,7 @@ HEATDIFF_API hd_status hd_ldl_solve_complex(hd_ldl *f, const hd_c64 *b, size_t l
     int32_t p;
     if (hdi_ldl_enter_factored(&c, f, 1, f && (f->n == 0 || (b && x)), err) < 0 || !HDI_HAS_POLE_FACTORS)
         return c.e->status;
-    ldx = ldx ? ldx : HDI_CAST(size_t, f->n);
+    ldx = ldx ? ldx : (size_t)f->n;
     if (hdi_ldl_leading(f, ldb ? ldb : ldx, ldx, c.e) < 0) return c.e->status;
     if (b == x && ldb && ldb != ldx)
         return hdi_fail(c.e, HD_ERR_ARGUMENT,
@@ -33155,7 +33117,7 @@ HEATDIFF_API hd_status hd_ldl_inverse_complex(hd_ldl *f, hd_c64 *values, hd_c64 
     int32_t p;
     if (hdi_ldl_enter_inverse(&c, f, 1, err) < 0 || !HDI_HAS_DIAGONAL) return c.e->status;
     for (p = 0; HDI_PACK_LANES * p < f->n_matrices && (values || diag); p++) {
-        const int64_t first = HDI_CAST(int64_t, HDI_PACK_LANES) * p;
+        const int64_t first = (int64_t)HDI_PACK_LANES * p;
         if (hdi_ldl_invert(f, f->pack + p, hdi_ldl_lanes(f, p), values ? &values[first * f->nnz].re : NULL,
                            diag ? &diag[first * f->n].re : NULL, c.e) < 0) return c.e->status;
     }
@@ -33183,7 +33145,7 @@ HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap, co
                        "heat options: not cleared before use", err) < 0) return c.e->status;
     if (!out || !lap) return hdi_missing(c.e);
     if (opts && hdi_heat_check(opts, c.e) < 0) return c.e->status;
-    heat = HDI_CAST(hd_heat *, hdi_alloc_zero(c.ctx, 1, sizeof *heat, c.e));
+    heat = (hd_heat *)hdi_alloc_zero(c.ctx, 1, sizeof *heat, c.e);
     if (!heat) return c.e->status;
     heat->ctx = c.ctx;
     hdi_hold(heat->ctx);
@@ -33251,7 +33213,7 @@ HEATDIFF_API hd_status hd_spectrum_create(hd_spectrum **out, const hd_laplacian 
     if (!out || !lap || !opts) return hdi_missing(c.e);
     if (!HDI_HAS_SPECTRUM) return HDI_LEFT_OUT(c.e, SPECTRUM, "eigenpairs");
     if (hdi_spectrum_check(lap, opts, c.e) < 0) return c.e->status;
-    s = HDI_CAST(hd_spectrum *, hdi_alloc_zero(c.ctx, 1, sizeof *s, c.e));
+    s = (hd_spectrum *)hdi_alloc_zero(c.ctx, 1, sizeof *s, c.e);
     if (!s) return c.e->status;
     s->lap = lap;
     s->context = c.ctx;                          /* the caller's: every Laplacian has one */
@@ -33469,7 +33431,7 @@ HEATDIFF_API hd_status hd_heat_scale_invariant(hd_heat *heat, double t0, double 
     else if (n_times < 3 || n_freq < 1 || n_freq > (n_times + 1) / 2)
         hdi_fail(h.e, HD_ERR_ARGUMENT, "signature: n_times is 3 or more, n_freq in 1..(n_times + 1)/2");
     t = h.e->status >= 0 ? HDI_TAKE(&h.s, double, n_times) : NULL;
-    for (q = 0; t && q < n_times; q++) t[q] = hdi_time_between(t0, t1, q / HDI_CAST(double, n_times - 1));
+    for (q = 0; t && q < n_times; q++) t[q] = hdi_time_between(t0, t1, q / (double)(n_times - 1));
     if (!t || hdi_times_check(&h, n_times, t, 1) < 0 || hdi_diagonal_check(&h) < 0 || !HDI_HAS_DIAGONAL)
         return hdi_heat_end(&h);
     if (!D) hdi_missing(h.e);
@@ -33487,7 +33449,7 @@ HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, hd_kernel kernel, int32_t n_
         hdi_fail(h.e, HD_ERR_ARGUMENT,
                  "edges: the kernel is the symmetric one; K_t = k_t B is not symmetric");
     if (h.e->status >= 0)
-        (void)hdi_fading_ask(&h, kernel, 1, values, HDI_CAST(size_t, heat->source->L.nnz), NULL, NULL);
+        (void)hdi_fading_ask(&h, kernel, 1, values, (size_t)heat->source->L.nnz, NULL, NULL);
     return hdi_heat_end(&h);
 }
 
@@ -33654,9 +33616,9 @@ HEATDIFF_API hd_status hd_geodesic_distance_each(hd_geodesic *g, int32_t k, cons
     hdi_call c;
     if (hdi_geo_begin(g, sources, k, D, report, err, &c) < 0 || !HDI_HAS_GEODESIC)
         return hdi_geo_end(report, c.e);
-    ldd = ldd ? ldd : HDI_CAST(size_t, g->n);
+    ldd = ldd ? ldd : (size_t)g->n;
     hdi_refuse(k < 0, "geodesic: the number of sources is negative", c.e);
-    hdi_refuse(ldd < HDI_CAST(size_t, g->n), "geodesic: the leading dimension is smaller than n", c.e);
+    hdi_refuse(ldd < (size_t)g->n, "geodesic: the leading dimension is smaller than n", c.e);
     (void)hdi_geo_all(g, sources, k, D, ldd, report, c.e);
     return hdi_geo_end(report, c.e);
 }
@@ -33668,7 +33630,7 @@ HEATDIFF_API hd_status hd_geodesic_distance_each(hd_geodesic *g, int32_t k, cons
 }
 #endif
 
-#if defined(__GNUC__) && !defined(__clang__)
+#if defined(__GNUC__) || defined(__clang__)
 #pragma GCC diagnostic pop
 #endif
 
