@@ -3412,6 +3412,15 @@ typedef struct hdi_eliminate {
     int32_t nc, n;
 } hdi_eliminate;
 
+/* One real right-hand side in nc <= 8 columns of L, whose triangle is at l: up, x = L^-1 x for the nc rows, then
+ * x -= L x in the n rows that follow them and t -= L x in u rows below; down, x = L^-T (x - L' (x, t)). */
+typedef struct hdi_single {
+    const double *l;
+    double *x, *t;
+    int64_t ld, n, u;
+    int32_t nc;
+} hdi_single;
+
 /* The kernels of one instruction set and width. A tile has mr x nr entries. Slices: groups of nr columns of a
  * matrix B, row by row, which is the form in which multiply reads fastest: b_row = nr, b_col = 1. */
 typedef struct hdi_kernels {
@@ -3426,6 +3435,8 @@ typedef struct hdi_kernels {
                    int64_t n, int64_t depth);
     /* y += x, n doubles */
     void (*add)(double *y, const double *x, int64_t n);
+    void (*up)(const hdi_single *g);
+    void (*down)(const hdi_single *g);
 } hdi_kernels;
 
 /* The inverses of n of a pack's numbers. 0: one of them is none. */
@@ -3456,8 +3467,9 @@ static HDI_INLINE void hdi_pack_times(const double *HDI_RESTRICT l, const double
 /* A set defines, here by name_set, vectors vec of HDI_WIDTH doubles for which the compiler knows + - *, and
  *   all(a)               a in every lane
  *   load, store          anywhere in memory
- *   load_range(p, lo, hi), store_range(p, v, lo, hi)   lanes lo..hi-1 of memory; others are neither read nor
- *                        written, and are zero in a vector that is loaded
+ *   rows, rows_of(lo, hi), has(g, q)   rows lo..hi-1 of a tile as a set; whether q is one of them
+ *   load_rows(p, g, q), store_rows(p, v, g, q)   lanes for rows q.. of it; others are neither read nor written,
+ *                        and are zero in a vector that is loaded
  *   fma, fnma            a b + c, c - a b
  *   lane(v, k), pick(v, k)  lane k everywhere; as a number
  * and as constants the tiles that fit its registers: rows and columns of vectors of real numbers, and of
@@ -3499,8 +3511,18 @@ enum { hdi_regs_plain = 2, hdi_cols_plain = 4, hdi_pack_regs_plain = 2, hdi_pack
 #endif
 enum { hdi_most_regs_plain = 4, hdi_most_cols_plain = 4 };
 
+typedef struct hdi_span { int32_t lo, hi; } hdi_span;
+typedef hdi_span hdi_rows_plain;
+HDI_IN2 hdi_span hdi_rows_of_plain(int32_t lo, int32_t hi) {
+    hdi_span g;
+    g.lo = lo;
+    g.hi = hi;
+    return g;
+}
+HDI_IN2 int hdi_has_plain(hdi_span g, int32_t q) { return g.lo <= q && q < g.hi; }
+
 #if HDI_V2
-enum { HDI_PLAIN_WIDTH = 2 };
+#define HDI_PLAIN_WIDTH 2
 typedef double hdi_vec_plain __attribute__((vector_size(16)));
 typedef double hdi_v2_anywhere __attribute__((vector_size(16), aligned(8), may_alias));
 HDI_IN2 hdi_vec_plain hdi_two(double a, double b) { const hdi_vec_plain v = {a, b}; return v; }
@@ -3508,28 +3530,28 @@ HDI_IN2 hdi_vec_plain hdi_all_plain(double a) { return hdi_two(a, a); }
 HDI_IN2 hdi_vec_plain hdi_load_plain(const double *p) { return *(const hdi_v2_anywhere *)(const void *)p; }
 HDI_IN2 void hdi_store_plain(double *p, hdi_vec_plain v) { *(hdi_v2_anywhere *)(void *)p = v; }
 HDI_IN2 double hdi_pick_plain(hdi_vec_plain v, int k) { return k ? v[1] : v[0]; }
-HDI_IN2 hdi_vec_plain hdi_load_range_plain(const double *p, int64_t lo, int64_t hi) {
-    const int first = lo <= 0 && hi > 0, second = lo <= 1 && hi > 1;
+HDI_IN2 hdi_vec_plain hdi_load_rows_plain(const double *p, hdi_span g, int32_t q) {
+    const int first = hdi_has_plain(g, q), second = hdi_has_plain(g, q + 1);
     return first && second ? hdi_load_plain(p) : hdi_two(first ? p[0] : 0.0, second ? p[1] : 0.0);
 }
-HDI_IN2 void hdi_store_range_plain(double *p, hdi_vec_plain v, int64_t lo, int64_t hi) {
-    const int first = lo <= 0 && hi > 0, second = lo <= 1 && hi > 1;
+HDI_IN2 void hdi_store_rows_plain(double *p, hdi_vec_plain v, hdi_span g, int32_t q) {
+    const int first = hdi_has_plain(g, q), second = hdi_has_plain(g, q + 1);
     if (first && second) hdi_store_plain(p, v);
     else if (first) p[0] = v[0];
     else if (second) p[1] = v[1];
 }
 #else
-enum { HDI_PLAIN_WIDTH = 1 };
+#define HDI_PLAIN_WIDTH 1
 typedef double hdi_vec_plain;
 HDI_IN2 double hdi_all_plain(double a) { return a; }
 HDI_IN2 double hdi_load_plain(const double *p) { return *p; }
 HDI_IN2 void hdi_store_plain(double *p, double v) { *p = v; }
 HDI_IN2 double hdi_pick_plain(double v, int k) { (void)k; return v; }
-HDI_IN2 double hdi_load_range_plain(const double *p, int64_t lo, int64_t hi) {
-    return lo <= 0 && hi > 0 ? *p : 0.0;
+HDI_IN2 double hdi_load_rows_plain(const double *p, hdi_span g, int32_t q) {
+    return hdi_has_plain(g, q) ? *p : 0.0;
 }
-HDI_IN2 void hdi_store_range_plain(double *p, double v, int64_t lo, int64_t hi) {
-    if (lo <= 0 && hi > 0) *p = v;
+HDI_IN2 void hdi_store_rows_plain(double *p, double v, hdi_span g, int32_t q) {
+    if (hdi_has_plain(g, q)) *p = v;
 }
 #endif
 HDI_IN2 hdi_vec_plain hdi_lane_plain(hdi_vec_plain v, int k) { return hdi_all_plain(hdi_pick_plain(v, k)); }
@@ -3572,14 +3594,18 @@ HDI_IN4 __m256d hdi_lane_avx2(__m256d v, int k) {
     }
 }
 HDI_IN4 double hdi_pick_avx2(__m256d v, int k) { return _mm256_cvtsd_f64(hdi_lane_avx2(v, k)); }
-HDI_IN4 __m256d hdi_load_range_avx2(const double *p, int64_t lo, int64_t hi) {
+typedef hdi_span hdi_rows_avx2;
+HDI_IN4 hdi_span hdi_rows_of_avx2(int32_t lo, int32_t hi) { return hdi_rows_of_plain(lo, hi); }
+HDI_IN4 int hdi_has_avx2(hdi_span g, int32_t q) { return hdi_has_plain(g, q); }
+HDI_IN4 __m256d hdi_load_rows_avx2(const double *p, hdi_span g, int32_t q) {
     const __m256i lane = _mm256_set_epi64x(3, 2, 1, 0);
-    if (lo <= 0 && hi >= 4) return _mm256_loadu_pd(p);
-    return _mm256_maskload_pd(p, _mm256_and_si256(_mm256_cmpgt_epi64(_mm256_set1_epi64x(hi), lane),
-                                                  _mm256_cmpgt_epi64(lane, _mm256_set1_epi64x(lo - 1))));
+    if (g.lo <= q && g.hi >= q + 4) return _mm256_loadu_pd(p);
+    return _mm256_maskload_pd(p, _mm256_and_si256(_mm256_cmpgt_epi64(_mm256_set1_epi64x(g.hi - q), lane),
+                                                  _mm256_cmpgt_epi64(lane, _mm256_set1_epi64x(g.lo - q - 1))));
 }
 /* By halves and singles: masked stores are slow on some processors. */
-HDI_IN4 void hdi_store_range_avx2(double *p, __m256d v, int64_t lo, int64_t hi) {
+HDI_IN4 void hdi_store_rows_avx2(double *p, __m256d v, hdi_span g, int32_t q) {
+    const int32_t lo = g.lo - q, hi = g.hi - q;
     const __m128d a = _mm256_castpd256_pd128(v), b = _mm256_extractf128_pd(v, 1);
     if (lo <= 0 && hi >= 2) _mm_storeu_pd(p, a);
     else if (lo <= 0 && hi >= 1) _mm_storel_pd(p, a);
@@ -3606,15 +3632,16 @@ HDI_IN8 __m512d hdi_lane_avx512(__m512d v, int k) {
     return _mm512_permutexvar_pd(_mm512_set1_epi64(k), v);
 }
 HDI_IN8 double hdi_pick_avx512(__m512d v, int k) { return _mm512_cvtsd_f64(hdi_lane_avx512(v, k)); }
-HDI_IN8 __mmask8 hdi_range512(int64_t lo, int64_t hi) {
-    const unsigned below = hi >= 8 ? 0xffu : hi > 0 ? (1u << hi) - 1u : 0u;
-    return (__mmask8)(lo >= 8 ? 0u : below & (0xffu << (lo > 0 ? lo : 0)));
+typedef uint32_t hdi_rows_avx512;                /* a bit for each */
+HDI_IN8 uint32_t hdi_rows_of_avx512(int32_t lo, int32_t hi) {
+    return ((1u << (hi > 0 ? hi : 0)) - 1u) & ~0u << (lo > 0 ? lo : 0);
 }
-HDI_IN8 __m512d hdi_load_range_avx512(const double *p, int64_t lo, int64_t hi) {
-    return _mm512_maskz_loadu_pd(hdi_range512(lo, hi), p);
+HDI_IN8 int hdi_has_avx512(uint32_t g, int32_t q) { return (int)(g >> q & 1u); }
+HDI_IN8 __m512d hdi_load_rows_avx512(const double *p, uint32_t g, int32_t q) {
+    return _mm512_maskz_loadu_pd((__mmask8)(g >> q & 0xffu), p);
 }
-HDI_IN8 void hdi_store_range_avx512(double *p, __m512d v, int64_t lo, int64_t hi) {
-    _mm512_mask_storeu_pd(p, hdi_range512(lo, hi), v);
+HDI_IN8 void hdi_store_rows_avx512(double *p, __m512d v, uint32_t g, int32_t q) {
+    _mm512_mask_storeu_pd(p, (__mmask8)(g >> q & 0xffu), v);
 }
 /* (x, x) of four doubles; (h, h) of half k of v */
 HDI_IN8 __m512d hdi_twice_avx512(const double *x) { return _mm512_broadcast_f64x4(_mm256_loadu_pd(x)); }
@@ -3630,7 +3657,8 @@ HDI_IN8 __m512d hdi_join_avx512(__m512d p, __m512d q) {
 
 /* Plain C comes first, where the file is read. */
 #define HDI_SET plain
-#define HDI_WIDTH ((int)HDI_PLAIN_WIDTH)
+#define HDI_SOLO plain
+#define HDI_WIDTH HDI_PLAIN_WIDTH
 #endif /* HEATDIFF_IMPLEMENTED */
 
 /* ---- the kernels, once for each instruction set ---- */
@@ -3681,16 +3709,16 @@ HDI_PART void HDI_OF(num_store)(const int pack, double *p, hdi_num x) {
     HDI_OF(store)(p, x.re);
     if (pack && HDI_WIDTH < 8) HDI_OF(store)(p + 4, x.im);
 }
-/* The same for rows lo..hi-1 of a num. */
-HDI_PART hdi_num HDI_OF(num_load_range)(const int pack, const double *p, int64_t lo, int64_t hi) {
+/* The same for those of rows q.. that are in a set. */
+HDI_PART hdi_num HDI_OF(num_load_rows)(const int pack, const double *p, HDI_OF(rows) g, int32_t q) {
     hdi_vec re;
-    if (pack) return lo <= 0 && hi > 0 ? HDI_OF(num_load)(1, p) : HDI_OF(num_zero)();
-    re = HDI_OF(load_range)(p, lo, hi);
+    if (pack) return HDI_OF(has)(g, q) ? HDI_OF(num_load)(1, p) : HDI_OF(num_zero)();
+    re = HDI_OF(load_rows)(p, g, q);
     return HDI_OF(num_of)(re, re);
 }
-HDI_PART void HDI_OF(num_store_range)(const int pack, double *p, hdi_num x, int64_t lo, int64_t hi) {
-    if (!pack) HDI_OF(store_range)(p, x.re, lo, hi);
-    else if (lo <= 0 && hi > 0) HDI_OF(num_store)(1, p, x);
+HDI_PART void HDI_OF(num_store_rows)(const int pack, double *p, hdi_num x, HDI_OF(rows) g, int32_t q) {
+    if (!pack) HDI_OF(store_rows)(p, x.re, g, q);
+    else if (HDI_OF(has)(g, q)) HDI_OF(num_store)(1, p, x);
 }
 HDI_PART hdi_num HDI_OF(num_minus)(hdi_num a, hdi_num b) {
     return HDI_OF(num_of)(a.re - b.re, a.im - b.im);
@@ -3743,8 +3771,8 @@ HDI_PART hdi_num HDI_OF(num_less)(const int pack, hdi_num x, hdi_num a, hdi_num 
 
 /* ---- a tile ---- */
 
-/* One tile of a product or of a solve: n rows, nc columns; `off` are the columns of B in doubles, the last
- * one again where there are fewer. */
+/* One tile of a product or of a solve: n rows, nc columns; `off` are the columns of B in doubles where they are
+ * not side by side, the last one again where there are fewer. Side by side, more than nc are read. */
 typedef struct HDI_OF(tile) {
     double *c;
     const double *a, *b;
@@ -3756,9 +3784,9 @@ typedef struct HDI_OF(tile) {
 } HDI_OF(tile);
 
 /* x = A B in nv nums of n rows; rest: rows of the last num. */
-HDI_PART void HDI_OF(tile_sum)(const int pack, const int nv, const int nc, const int part,
+HDI_PART void HDI_OF(tile_sum)(const int pack, const int nv, const int nc, const int unit, const int part,
                                const HDI_OF(tile) *t, hdi_num (*x)[HDI_OF(most_regs)]) {
-    const int64_t rest = t->n - HDI_ROWS * (nv - 1);
+    const HDI_OF(rows) g = HDI_OF(rows_of)(0, t->n);
     const double *a = t->a, *b = t->b;
     int64_t k;
     int j, v;
@@ -3768,11 +3796,11 @@ HDI_PART void HDI_OF(tile_sum)(const int pack, const int nv, const int nc, const
         hdi_num f, rows[HDI_OF(most_regs)];
         HDI_EACH(v, nv) {
             const double *from = a + HDI_ENTRY * HDI_ROWS * v;
-            rows[v] = part && v == nv - 1 ? HDI_OF(num_load_range)(pack, from, 0, rest)
+            rows[v] = part && v == nv - 1 ? HDI_OF(num_load_rows)(pack, from, g, HDI_ROWS * v)
                                           : HDI_OF(num_load)(pack, from);
         }
         HDI_EACH(j, nc) {
-            f = HDI_OF(factor_load)(pack, b + t->off[j]);
+            f = HDI_OF(factor_load)(pack, b + (unit ? HDI_ENTRY * j : t->off[j]));
             HDI_EACH(v, nv) HDI_OF(sum_add)(pack, &x[j][v], rows[v], f);
         }
     }
@@ -3780,21 +3808,22 @@ HDI_PART void HDI_OF(tile_sum)(const int pack, const int nv, const int nc, const
         HDI_EACH(v, nv) x[j][v] = HDI_OF(sum_end)(pack, x[j][v]);
 }
 
-HDI_PART void HDI_OF(tile_product)(const int pack, const int nv, const int nc, const HDI_OF(tile) *t,
-                                   hdi_num (*x)[HDI_OF(most_regs)]) {
-    if (t->n == HDI_ROWS * nv) HDI_OF(tile_sum)(pack, nv, nc, 0, t, x);
-    else if (!pack) HDI_OF(tile_sum)(pack, nv, nc, 1, t, x);
+HDI_PART void HDI_OF(tile_product)(const int pack, const int nv, const int nc, const int unit,
+                                   const HDI_OF(tile) *t, hdi_num (*x)[HDI_OF(most_regs)]) {
+    if (t->n == HDI_ROWS * nv) HDI_OF(tile_sum)(pack, nv, nc, unit, 0, t, x);
+    else if (!pack) HDI_OF(tile_sum)(pack, nv, nc, unit, 1, t, x);
 }
 
 /* C -= A B for nv nums of rows, the last one perhaps in part. */
-HDI_PART void HDI_OF(tile_multiply)(const int pack, const int nv, const int nc, const HDI_OF(tile) *t) {
+HDI_PART void HDI_OF(tile_multiply)(const int pack, const int nv, const int nc, const int unit,
+                                    const HDI_OF(tile) *t) {
     enum { whole = 1 };
     hdi_num x[HDI_OF(most_cols)][HDI_OF(most_regs)];
     const int64_t inner = HDI_ENTRY * HDI_ROWS;
     double *c = t->c;
     int64_t step = t->c_col;
     int j, v;
-    HDI_OF(tile_product)(pack, nv, nc, t, x);
+    HDI_OF(tile_product)(pack, nv, nc, unit, t, x);
     if (t->n == HDI_ROWS * nv && t->nc == nc && t->diag <= whole - nc) {
         HDI_EACH(j, nc) {
             HDI_EACH(v, nv) {
@@ -3809,11 +3838,11 @@ HDI_PART void HDI_OF(tile_multiply)(const int pack, const int nv, const int nc, 
     /* Loads before stores: columns lie so close that a masked load would overlap the store before it, and
      * wait for it. */
     HDI_EACH(j, nc) {
+        const HDI_OF(rows) g = HDI_OF(rows_of)((int32_t)t->diag + j, t->n);
         if (j >= t->nc) continue;
         HDI_EACH(v, nv) {
-            const int64_t lo = t->diag + j - HDI_ROWS * v, hi = t->n - HDI_ROWS * v;
             const hdi_num old = t->store ? HDI_OF(num_zero)()
-                                         : HDI_OF(num_load_range)(pack, c + inner * v, lo, hi);
+                                         : HDI_OF(num_load_rows)(pack, c + inner * v, g, HDI_ROWS * v);
             x[j][v] = HDI_OF(num_minus)(old, x[j][v]);
         }
         c += step;
@@ -3822,29 +3851,29 @@ HDI_PART void HDI_OF(tile_multiply)(const int pack, const int nv, const int nc, 
     c = t->c;
     step = t->c_col;
     HDI_EACH(j, nc) {
+        const HDI_OF(rows) g = HDI_OF(rows_of)((int32_t)t->diag + j, t->n);
         if (j >= t->nc) continue;
-        HDI_EACH(v, nv)
-            HDI_OF(num_store_range)(pack, c + inner * v, x[j][v], t->diag + j - HDI_ROWS * v,
-                                    t->n - HDI_ROWS * v);
+        HDI_EACH(v, nv) HDI_OF(num_store_rows)(pack, c + inner * v, x[j][v], g, HDI_ROWS * v);
         c += step;
         if (t->packed) step -= HDI_ENTRY;
     }
 }
 
 /* X = (C - A B), then X = X inv(B1) dinv with the rows of B that follow. dinv NULL: ones. */
-HDI_PART void HDI_OF(tile_solve)(const int pack, const int nv, const int nc, const HDI_OF(tile) *t,
-                                 const double *dinv) {
+HDI_PART void HDI_OF(tile_solve)(const int pack, const int nv, const int nc, const int unit,
+                                 const HDI_OF(tile) *t, const double *dinv) {
+    const HDI_OF(rows) g = HDI_OF(rows_of)(0, t->n);
     const double *b = t->b + t->depth * t->b_row;
     const int64_t inner = HDI_ENTRY * HDI_ROWS;
     hdi_num x[HDI_OF(most_cols)][HDI_OF(most_regs)];
     int j, k, v;
-    HDI_OF(tile_product)(pack, nv, nc, t, x);
+    HDI_OF(tile_product)(pack, nv, nc, unit, t, x);
     HDI_EACH(j, nc) {
         if (j >= t->nc) continue;
         HDI_EACH(v, nv) {
             const double *c = t->c + j * t->c_col + inner * v;
             const hdi_num old = v < nv - 1 ? HDI_OF(num_load)(pack, c)
-                                           : HDI_OF(num_load_range)(pack, c, 0, t->n - HDI_ROWS * v);
+                                           : HDI_OF(num_load_rows)(pack, c, g, HDI_ROWS * v);
             x[j][v] = HDI_OF(num_minus)(old, x[j][v]);
         }
     }
@@ -3855,12 +3884,12 @@ HDI_PART void HDI_OF(tile_solve)(const int pack, const int nv, const int nc, con
             if (dinv) x[j][v] = HDI_OF(num_times)(pack, x[j][v],
                                                   HDI_OF(factor_load)(pack, dinv + HDI_ENTRY * j));
             if (v < nv - 1) HDI_OF(num_store)(pack, c, x[j][v]);
-            else HDI_OF(num_store_range)(pack, c, x[j][v], 0, t->n - HDI_ROWS * v);
+            else HDI_OF(num_store_rows)(pack, c, x[j][v], g, HDI_ROWS * v);
         }
         HDI_EACH(k, nc) {
             hdi_num f;
             if (k <= j || k >= t->nc) continue;
-            f = HDI_OF(factor_load)(pack, b + t->off[k]);
+            f = HDI_OF(factor_load)(pack, b + (unit ? HDI_ENTRY * k : t->off[k]));
             HDI_EACH(v, nv) x[k][v] = HDI_OF(num_less)(pack, x[k][v], x[j][v], f);
         }
         b += t->b_row;
@@ -3869,12 +3898,13 @@ HDI_PART void HDI_OF(tile_solve)(const int pack, const int nv, const int nc, con
 
 /* A tile of at most HDI_REGS nums; dinv of a solve. A column alone, of which packs have many, is a tile of
  * its own. */
-HDI_PART void HDI_OF(tile_run)(const int pack, const int solve, const HDI_OF(tile) *t, const double *dinv) {
+HDI_PART void HDI_OF(tile_run)(const int pack, const int solve, const int unit, const HDI_OF(tile) *t,
+                               const double *dinv) {
     const int nv = (t->n + HDI_ROWS - 1) / HDI_ROWS;
 #define HDI_TILE(rows, cols)                                                         \
     do {                                                                             \
-        if (solve) HDI_OF(tile_solve)(pack, rows, cols, t, dinv);                    \
-        else HDI_OF(tile_multiply)(pack, rows, cols, t);                             \
+        if (solve) HDI_OF(tile_solve)(pack, rows, cols, unit, t, dinv);              \
+        else HDI_OF(tile_multiply)(pack, rows, cols, unit, t);                       \
     } while (0)
     if (pack && HDI_COLS > 1 && t->nc == 1) {
         if (nv >= HDI_REGS) HDI_TILE(HDI_REGS, 1);
@@ -3903,20 +3933,21 @@ HDI_PART void HDI_OF(tile_off)(const int pack, int64_t *off, int64_t b_col, int6
 #define HDI_BLOCK (pack ? 48 : HDI_ROWS * HDI_REGS)
 
 /* Rows i0.. of a product, number h of every entry. */
-HDI_PART void HDI_OF(product_rows)(const int pack, const hdi_product *g, int64_t i0, int h) {
+HDI_PART void HDI_OF(product_rows)(const int pack, const int unit, const hdi_product *g, int64_t i0, int h) {
     const int64_t end = hdi_least(i0 + HDI_BLOCK, g->n);
     const int64_t cols = g->lower ? hdi_least(g->cols, g->first + end) : g->cols;
     const double *a = g->a + HDI_ENTRY * i0 + h;
     int64_t full[HDI_OF(most_cols)], rest[HDI_OF(most_cols)], j, i, a_col = g->a_col, step = g->c_col;
     double *c = g->c + HDI_ENTRY * i0 + h;
     HDI_OF(tile) t;
-    HDI_OF(tile_off)(pack, full, g->b_col, HDI_COLS);
+    if (!unit) HDI_OF(tile_off)(pack, full, g->b_col, HDI_COLS);
     if (!pack && g->work && cols > 96) {     /* many columns: the rows are worth a copy in one piece */
+        const HDI_OF(rows) rows = HDI_OF(rows_of)(0, (int32_t)(end - i0));
         int64_t k, q;
         for (k = 0; k < g->depth; k++)
             for (q = 0; q < end - i0; q += HDI_WIDTH)
                 HDI_OF(store)(g->work + HDI_BLOCK * k + q,
-                              HDI_OF(load_range)(a + k * a_col + q, 0, end - i0 - q));
+                              HDI_OF(load_rows)(a + k * a_col + q, rows, (int32_t)q));
         a = g->work;
         a_col = HDI_BLOCK;
     }
@@ -3929,7 +3960,7 @@ HDI_PART void HDI_OF(product_rows)(const int pack, const hdi_product *g, int64_t
     for (j = 0; j < cols; j += HDI_COLS) {
         t.nc = (int32_t)hdi_least(cols - j, HDI_COLS);
         t.off = full;
-        if (t.nc < HDI_COLS) {
+        if (!unit && t.nc < HDI_COLS) {
             HDI_OF(tile_off)(pack, rest, g->b_col, t.nc);
             t.off = rest;
         }
@@ -3941,7 +3972,7 @@ HDI_PART void HDI_OF(product_rows)(const int pack, const hdi_product *g, int64_t
             t.c = c + HDI_ENTRY * i;
             t.a = a + HDI_ENTRY * i;
             t.n = (int32_t)hdi_least(end - i0 - i, HDI_ROWS * HDI_REGS);
-            HDI_OF(tile_run)(pack, 0, &t, NULL);
+            HDI_OF(tile_run)(pack, 0, unit, &t, NULL);
         }
         c += HDI_ENTRY * (HDI_COLS * step - (g->packed ? HDI_COLS * (HDI_COLS - 1) / 2 : 0));
         if (g->packed) step -= HDI_COLS;
@@ -3952,18 +3983,22 @@ HDI_PART void HDI_OF(product_rows)(const int pack, const hdi_product *g, int64_t
 HDI_PART void HDI_OF(product)(const int pack, const hdi_product *g) {
     int64_t i;
     int h;
-    for (h = 0; h < HDI_NUMBERS; h += HDI_ABREAST)
-        for (i = 0; i < g->n; i += HDI_BLOCK) HDI_OF(product_rows)(pack, g, i, h);
+    for (h = 0; h < HDI_NUMBERS; h += HDI_ABREAST) {
+        for (i = 0; i < g->n; i += HDI_BLOCK) {
+            if (g->b_col == 1) HDI_OF(product_rows)(pack, 1, g, i, h);
+            else HDI_OF(product_rows)(pack, 0, g, i, h);
+        }
+    }
 }
 
 /* ---- solves ---- */
 
-HDI_PART void HDI_OF(solve)(const int pack, const hdi_solve *g) {
+HDI_PART void HDI_OF(solve_rows)(const int pack, const int unit, const hdi_solve *g) {
     int64_t full[HDI_OF(most_cols)], rest[HDI_OF(most_cols)], i, j;
     HDI_OF(tile) t;
     int h;
-    HDI_OF(tile_off)(pack, full, g->b_col, HDI_COLS);
-    HDI_OF(tile_off)(pack, rest, g->b_col, (g->nb - 1) % HDI_COLS + 1);
+    if (!unit) HDI_OF(tile_off)(pack, full, g->b_col, HDI_COLS);
+    if (!unit) HDI_OF(tile_off)(pack, rest, g->b_col, (g->nb - 1) % HDI_COLS + 1);
     t.c_col = t.a_col = HDI_ENTRY * g->x_col;
     t.b_row = HDI_ENTRY * g->b_row;
     for (h = 0; h < HDI_NUMBERS; h += HDI_ABREAST) {
@@ -3976,21 +4011,27 @@ HDI_PART void HDI_OF(solve)(const int pack, const hdi_solve *g) {
                 t.off = t.nc < HDI_COLS ? rest : full;
                 t.depth = g->before + j;
                 t.c = g->x + HDI_ENTRY * (i + (g->before + j) * g->x_col) + h;
-                HDI_OF(tile_run)(pack, 1, &t, g->dinv ? g->dinv + HDI_ENTRY * j + h : NULL);
+                HDI_OF(tile_run)(pack, 1, unit, &t, g->dinv ? g->dinv + HDI_ENTRY * j + h : NULL);
             }
         }
     }
 }
 
-/* Nums of a block of pivots: the first hold the nc pivots' own rows, the others n rows that follow; rows of
- * num v, and how many. */
+HDI_PART void HDI_OF(solve)(const int pack, const hdi_solve *g) {
+    if (g->b_col == 1) HDI_OF(solve_rows)(pack, 1, g);
+    else HDI_OF(solve_rows)(pack, 0, g);
+}
+
+/* Nums of a block of pivots: the first hold the nc pivots' own rows, the others n rows that follow. The first
+ * row of num v, and which of its rows there are, from `first` on. */
 HDI_PART int32_t HDI_OF(pivot_first)(const int pack, const int v, int32_t nc) {
     const int top = HDI_COLS / HDI_ROWS;
     return v < top ? HDI_ROWS * v : nc + HDI_ROWS * (v - top);
 }
-HDI_PART int32_t HDI_OF(pivot_count)(const int pack, const int v, int32_t nc, int32_t n) {
+HDI_PART HDI_OF(rows) HDI_OF(pivot_rows)(const int pack, const int v, int32_t first, const hdi_eliminate *g) {
     const int top = HDI_COLS / HDI_ROWS;
-    return v < top ? nc - HDI_ROWS * v : n - HDI_ROWS * (v - top);
+    const int32_t n = v < top ? g->nc - HDI_ROWS * v : g->n - HDI_ROWS * (v - top);
+    return HDI_OF(rows_of)(first, n < HDI_ROWS ? n : HDI_ROWS);
 }
 
 /* 1/d as a factor, also to `to`. 0: it is none. */
@@ -4021,8 +4062,8 @@ HDI_PART void HDI_OF(pivots)(const int pack, const int nv, const hdi_eliminate *
         HDI_EACH(v, nv) x[j][v] = HDI_OF(num_zero)();
     for (k = 0; k < g->before; k++, row += HDI_ENTRY * g->x_col, slice += HDI_ENTRY * cols) {
         HDI_EACH(v, nv)
-            l[v] = HDI_OF(num_load_range)(pack, row + HDI_ENTRY * HDI_OF(pivot_first)(pack, v, g->nc), 0,
-                                          HDI_OF(pivot_count)(pack, v, g->nc, g->n));
+            l[v] = HDI_OF(num_load_rows)(pack, row + HDI_ENTRY * HDI_OF(pivot_first)(pack, v, g->nc),
+                                         HDI_OF(pivot_rows)(pack, v, 0, g), 0);
         HDI_EACH(j, cols) {
             f = HDI_OF(factor_load)(pack, slice + HDI_ENTRY * (j < g->nc ? j : 0));
             HDI_EACH(v, nv) HDI_OF(sum_add)(pack, &x[j][v], l[v], f);
@@ -4033,7 +4074,7 @@ HDI_PART void HDI_OF(pivots)(const int pack, const int nv, const hdi_eliminate *
         HDI_EACH(v, nv) {
             const double *from = c + HDI_ENTRY * (j * g->x_col + HDI_OF(pivot_first)(pack, v, g->nc));
             x[j][v] = HDI_OF(num_minus)(
-                HDI_OF(num_load_range)(pack, from, 0, HDI_OF(pivot_count)(pack, v, g->nc, g->n)),
+                HDI_OF(num_load_rows)(pack, from, HDI_OF(pivot_rows)(pack, v, 0, g), 0),
                 HDI_OF(sum_end)(pack, x[j][v]));
         }
     }
@@ -4047,8 +4088,8 @@ HDI_PART void HDI_OF(pivots)(const int pack, const int nv, const hdi_eliminate *
             const int first = v < top ? j + 1 - HDI_ROWS * v : 0;
             l[v] = HDI_OF(num_times)(pack, x[j][v], f);
             if (v < top) HDI_OF(num_store)(pack, s + HDI_ENTRY * HDI_ROWS * v, x[j][v]);
-            HDI_OF(num_store_range)(pack, c + HDI_ENTRY * HDI_OF(pivot_first)(pack, v, g->nc), l[v], first,
-                                    HDI_OF(pivot_count)(pack, v, g->nc, g->n));
+            HDI_OF(num_store_rows)(pack, c + HDI_ENTRY * HDI_OF(pivot_first)(pack, v, g->nc), l[v],
+                                   HDI_OF(pivot_rows)(pack, v, first, g), 0);
         }
         HDI_EACH(i, cols) {
             if (i <= j) continue;
@@ -4075,13 +4116,14 @@ HDI_PART void HDI_OF(eliminate)(const int pack, const hdi_eliminate *g) {
 HDI_PART void HDI_OF(slice)(const int pack, double *b, const double *x, int64_t row, int64_t col,
                             const double *d, int64_t n, int64_t depth) {
     const int cols = HDI_COLS;
+    const HDI_OF(rows) rows = HDI_OF(rows_of)(0, (int32_t)n);
     int64_t k, j;
     int q;
     for (k = 0; k < depth; k++, x += HDI_ENTRY * col, b += HDI_ENTRY * cols) {
         if (!pack && row == 1) {
             HDI_UNROLL
             for (q = 0; q < cols; q += HDI_WIDTH) {
-                hdi_vec v = HDI_OF(load_range)(x + q, 0, n - q);
+                hdi_vec v = HDI_OF(load_rows)(x + q, rows, q);
                 if (d) v = v * HDI_OF(all)(d[k]);
                 HDI_OF(store)(b + q, v);
             }
@@ -4109,8 +4151,105 @@ HDI_PART void HDI_OF(slices)(const int pack, double *b, int64_t b_next, const do
 HDI_KERNEL void HDI_OF(add)(double *y, const double *x, int64_t n) {
     for (; n >= HDI_WIDTH; n -= HDI_WIDTH, x += HDI_WIDTH, y += HDI_WIDTH)
         HDI_OF(store)(y, HDI_OF(load)(y) + HDI_OF(load)(x));
-    for (; n > 0; n--) *y++ += *x++;
+    if (n > 0) {
+        const HDI_OF(rows) g = HDI_OF(rows_of)(0, (int32_t)n);
+        HDI_OF(store_rows)(y, HDI_OF(load_rows)(y, g, 0) + HDI_OF(load_rows)(x, g, 0), g, 0);
+    }
 }
+
+/* ---- one real right-hand side ---- */
+/* It is bound by memory, and runs are short: AVX-512 takes AVX2's kernels, measured as fast or faster. A vector
+ * goes along the rows. */
+
+#if HDI_WIDTH <= 4
+/* Row i of the eight columns from l on; missing ones are the last one again. */
+HDI_PART void HDI_OF(single_columns)(const double **l, const hdi_single *g) {
+    int j;
+    HDI_EACH(j, 8) l[j] = g->l + g->nc + (j < g->nc ? j : g->nc - 1) * g->ld;
+}
+
+/* y -= L b for a vector of rows; even columns are summed apart from odd ones. wide: more than four columns. */
+HDI_PART void HDI_OF(single_up_rows)(double *y, const double *const *l, int64_t i, const int part,
+                                     HDI_OF(rows) g, const hdi_vec *b, int wide) {
+    hdi_vec s[2];
+    int j;
+    s[0] = part ? HDI_OF(load_rows)(y + i, g, 0) : HDI_OF(load)(y + i);
+    s[1] = HDI_OF(all)(0);
+    HDI_EACH(j, 8)
+        if (j < 4 || wide)
+            s[j % 2] = HDI_OF(fnma)(part ? HDI_OF(load_rows)(l[j] + i, g, 0) : HDI_OF(load)(l[j] + i), b[j],
+                                    s[j % 2]);
+    if (part) HDI_OF(store_rows)(y + i, s[0] + s[1], g, 0);
+    else HDI_OF(store)(y + i, s[0] + s[1]);
+}
+
+HDI_PART void HDI_OF(single_up_part)(double *y, const double *const *l, int64_t n, const hdi_vec *b, int wide) {
+    int64_t i;
+    for (i = 0; i + HDI_WIDTH <= n; i += HDI_WIDTH)
+        HDI_OF(single_up_rows)(y, l, i, 0, HDI_OF(rows_of)(0, HDI_WIDTH), b, wide);
+    if (i < n) HDI_OF(single_up_rows)(y, l, i, 1, HDI_OF(rows_of)(0, (int32_t)(n - i)), b, wide);
+}
+
+HDI_KERNEL void HDI_OF(single_up)(const hdi_single *g) {
+    const double *l[8];
+    hdi_vec v[8];
+    double x[8];
+    int j, k;
+    HDI_EACH(j, 8) x[j] = j < g->nc ? g->x[j] : 0.0;
+    HDI_EACH(j, 8)
+        HDI_EACH(k, 8)
+            if (k > j && k < g->nc) x[k] -= g->l[k + j * g->ld] * x[j];
+    HDI_EACH(j, 8) {
+        v[j] = HDI_OF(all)(x[j]);
+        if (j < g->nc) g->x[j] = x[j];
+    }
+    HDI_OF(single_columns)(l, g);
+    HDI_OF(single_up_part)(g->x + g->nc, l, g->n, v, g->nc > 4);
+    HDI_EACH(j, 8) l[j] += g->n;
+    HDI_OF(single_up_part)(g->t, l, g->u, v, g->nc > 4);
+}
+
+/* s += L' y */
+HDI_PART void HDI_OF(single_down_part)(hdi_vec *s, const double *const *l, int64_t n, const double *y, int wide) {
+    HDI_OF(rows) g;
+    int64_t i;
+    int j;
+    for (i = 0; i + HDI_WIDTH <= n; i += HDI_WIDTH) {
+        const hdi_vec v = HDI_OF(load)(y + i);
+        HDI_EACH(j, 8)
+            if (j < 4 || wide) s[j] = HDI_OF(fma)(HDI_OF(load)(l[j] + i), v, s[j]);
+    }
+    if (i == n) return;
+    g = HDI_OF(rows_of)(0, (int32_t)(n - i));
+    HDI_EACH(j, 8)
+        s[j] = HDI_OF(fma)(HDI_OF(load_rows)(l[j] + i, g, 0), HDI_OF(load_rows)(y + i, g, 0), s[j]);
+}
+
+HDI_KERNEL void HDI_OF(single_down)(const hdi_single *g) {
+    const double *l[8];
+    hdi_vec s[8];
+    double x[8];
+    int j, k;
+    HDI_OF(single_columns)(l, g);
+    HDI_EACH(j, 8) s[j] = HDI_OF(all)(0);
+    HDI_OF(single_down_part)(s, l, g->n, g->x + g->nc, g->nc > 4);
+    HDI_EACH(j, 8) l[j] += g->n;
+    HDI_OF(single_down_part)(s, l, g->u, g->t, g->nc > 4);
+    HDI_EACH(j, 8) {
+        x[j] = HDI_OF(pick)(s[j], 0);
+        HDI_EACH(k, HDI_WIDTH)
+            if (k > 0) x[j] += HDI_OF(pick)(s[j], k);
+        x[j] = j < g->nc ? g->x[j] - x[j] : 0.0;
+    }
+    HDI_UNROLL
+    for (k = 7; k > 0; k--) {
+        HDI_EACH(j, 8)
+            if (j < k && k < g->nc) x[j] -= g->l[k + j * g->ld] * x[k];
+    }
+    HDI_EACH(j, 8)
+        if (j < g->nc) g->x[j] = x[j];
+}
+#endif
 
 /* ---- what the tables hold ---- */
 
@@ -4132,16 +4271,18 @@ HDI_KERNEL void HDI_OF(pack_slices)(double *b, int64_t b_next, const double *x, 
 static const hdi_kernels *HDI_OF(kernels)(int pack) {
     static const hdi_kernels hdi_real = {
         1, HDI_OF(regs) * HDI_WIDTH, HDI_OF(cols), HDI_OF(real_product), HDI_OF(real_solve),
-        HDI_OF(real_eliminate), HDI_OF(real_slices), HDI_OF(add)
+        HDI_OF(real_eliminate), HDI_OF(real_slices), HDI_OF(add), HDI_PASTE(single_up, HDI_SOLO),
+        HDI_PASTE(single_down, HDI_SOLO)
     };
     static const hdi_kernels hdi_packs = {
         HDI_PACK, HDI_OF(pack_regs), HDI_OF(pack_cols), HDI_OF(pack_product), HDI_OF(pack_solve),
-        HDI_OF(pack_eliminate), HDI_OF(pack_slices), HDI_OF(add)
+        HDI_OF(pack_eliminate), HDI_OF(pack_slices), HDI_OF(add), NULL, NULL
     };
     return pack ? &hdi_packs : &hdi_real;
 }
 
 #undef HDI_SET
+#undef HDI_SOLO
 #undef HDI_WIDTH
 #endif /* HDI_SET */
 
@@ -4164,12 +4305,14 @@ static const hdi_kernels *HDI_OF(kernels)(int pack) {
 #endif
 #endif
 #define HDI_SET avx2
+#define HDI_SOLO avx2
 #define HDI_WIDTH 4
 #include HEATDIFF_FILENAME
 #ifdef HDI_SET
 #error "heatdiff.h: HEATDIFF_FILENAME is not the name of this file, which has to include itself"
 #endif
 #define HDI_SET avx512
+#define HDI_SOLO avx2
 #define HDI_WIDTH 8
 #include HEATDIFF_FILENAME
 #endif
@@ -12663,6 +12806,11 @@ static hdi_block hdi_front_block(const hdi_front *w, int64_t q) {
 /* Entry (j,j) of a triangle of u rows packed by columns; those below it follow. */
 static int64_t hdi_triangle_column(int64_t u, int64_t j) { return j * u - j * (j - 1) / 2; }
 
+static HDI_INLINE void hdi_entry_copy(int32_t width, double *to, const double *from) {
+    if (width == 1) *to = *from;
+    else memcpy(to, from, HDI_PACK * sizeof *to);
+}
+
 static void hdi_clear(double *to, int64_t doubles) {
     if (doubles > 0) memset(to, 0, (size_t)doubles * sizeof *to);
 }
@@ -12696,6 +12844,7 @@ static void hdi_front_child(const hdi_front *w, int32_t c, int64_t r0, int64_t r
     int32_t run[HDI_FRONT_RUNS + 1], first = 0, n, q;
     int64_t i, j = below ? inner : 0;
     const int64_t j1 = below ? end : hdi_least(inner, end);
+    hdi_block b = hdi_front_block(w, 0);
     if (from == end) return;
     n = hdi_front_runs(rel, from, end, width, run);
     for (; j < j1; j++) {
@@ -12703,7 +12852,7 @@ static void hdi_front_child(const hdi_front *w, int32_t c, int64_t r0, int64_t r
         const double *x = child + width * (hdi_triangle_column(u, j) - j);
         double *y = w->update + width * (hdi_triangle_column(w->u, at - w->p) - at);
         if (!below) {
-            const hdi_block b = hdi_front_block(w, at / HDI_PANEL);
+            if (at >= b.begin + HDI_PANEL) b = hdi_front_block(w, at / HDI_PANEL);
             y = b.at + width * ((at - b.begin) * b.ld - b.begin);
         }
         while (first + 1 < n && run[first + 1] <= i0) first++;
@@ -12727,6 +12876,7 @@ static void hdi_front_children(const hdi_front *w, int64_t r0, int64_t r1, int b
 static void hdi_front_assemble(const hdi_front *w, int64_t r0, int64_t r1) {
     const hdi_symbolic *s = w->f->sym;
     const int32_t width = w->f->width;
+    hdi_block own;
     int64_t q, k;
     for (q = 0; q * HDI_PANEL < w->p; q++) {
         const hdi_block b = hdi_front_block(w, q);
@@ -12735,12 +12885,12 @@ static void hdi_front_assemble(const hdi_front *w, int64_t r0, int64_t r1) {
         else for (k = 0; k < b.width; k++)
             hdi_clear(hdi_block_at(&b, first, b.begin + k), width * (r1 - first));
     }
+    own = hdi_front_block(w, 0);
     for (q = s->a_ptr[w->v]; q < s->a_ptr[w->v + 1]; q++) {
         const int64_t i = s->a_row[q], j = s->a_col[q];
-        if (i >= r0 && i < r1) {
-            const hdi_block b = hdi_front_block(w, j / HDI_PANEL);
-            hdi_values_at(w->f->values, width, s->a_from[q], hdi_front_row(w, i, j), hdi_block_at(&b, i, j));
-        }
+        if (i < r0 || i >= r1) continue;
+        if (j < own.begin || j >= own.begin + HDI_PANEL) own = hdi_front_block(w, j / HDI_PANEL);
+        hdi_values_at(w->f->values, width, s->a_from[q], hdi_front_row(w, i, j), hdi_block_at(&own, i, j));
     }
     hdi_front_children(w, r0, r1, 0);
 }
@@ -12750,8 +12900,7 @@ static void hdi_front_assemble(const hdi_front *w, int64_t r0, int64_t r1) {
 /* The diagonal of columns [k, k + n) of a block. */
 static void hdi_front_diagonal(const hdi_block *b, int64_t k, int64_t n, double *d) {
     int64_t i;
-    for (i = k; i < k + n; i++)
-        memcpy(d + b->entry * (i - k), hdi_block_at(b, i, i), (size_t)b->entry * sizeof *d);
+    for (i = k; i < k + n; i++) hdi_entry_copy(b->entry, d + b->entry * (i - k), hdi_block_at(b, i, i));
 }
 
 /* Rows [r0,r1) of columns [k,k+n) of the block under way: minus L D L' over the blocks of columns before.
@@ -12762,6 +12911,7 @@ static void hdi_front_before(const hdi_front *w, int64_t r0, int64_t r1, int64_t
     const hdi_block to = hdi_front_block(w, k / HDI_PANEL);
     hdi_product g;
     int64_t q;
+    if (to.begin == 0) return;
     memset(&g, 0, sizeof g);
     g.c = hdi_block_at(&to, r0, k);
     g.c_col = to.ld;
@@ -13257,7 +13407,7 @@ static uint64_t hdi_factor_parts(const hdi_symbolic *s) {
 /* The numbers of a factor. */
 static void hdi_factor_take_numbers(hdi_factor *f, hdi_scope *s) {
     const uint64_t w = (uint64_t)f->width;
-    f->panel = HDI_TAKE(s, double, (uint64_t)f->sym->panel[f->sym->n_super] * w);
+    f->panel = HDI_TAKE(s, double, ((uint64_t)f->sym->panel[f->sym->n_super] + HDI_TILE_COLS) * w);
     f->dinv = HDI_TAKE(s, double, (uint64_t)f->sym->n * w);
 }
 
@@ -13506,6 +13656,21 @@ static hdi_block hdi_sweep_block(const hdi_factor *f, int32_t v, int64_t q) {
 /* Columns of L that are taken at a time on the way up: so many streams of memory at most. */
 enum { HDI_SWEEP_DEPTH = 32 };
 
+/* The same for one real right-hand side, columns k..k+7 of a block; or x = L11^-T (x - L' (x, t)) in them. */
+static void hdi_sweep_single(const hdi_sweep *z, const hdi_block *b, int64_t k, int64_t p, int64_t u, double *y,
+                             double *t, int down) {
+    hdi_single g;
+    g.l = b->at + k * (b->ld + 1);
+    g.x = y + b->begin + k;
+    g.t = t;
+    g.ld = b->ld;
+    g.nc = (int32_t)hdi_least(b->width - k, 8);
+    g.n = p - b->begin - k - g.nc;
+    g.u = u;
+    if (down) z->f->ops->down(&g);
+    else z->f->ops->up(&g);
+}
+
 /* y = L11^-1 y, t -= L21 y */
 static void hdi_sweep_forward(const hdi_sweep *z, int32_t v, double *y, double *t) {
     const hdi_factor *f = z->f;
@@ -13516,6 +13681,10 @@ static void hdi_sweep_forward(const hdi_sweep *z, int32_t v, double *y, double *
         const hdi_block b = hdi_sweep_block(f, v, q);
         const int64_t end = b.begin + b.width;
         hdi_solve g;
+        if (row == 1) {
+            for (k = 0; k < b.width; k += 8) hdi_sweep_single(z, &b, k, p, u, y, t, 0);
+            continue;
+        }
         g.x = y + row * b.begin;
         g.x_col = g.n = z->k;
         g.b = b.at;
@@ -13585,12 +13754,17 @@ static void hdi_sweep_backward(const hdi_sweep *z, int32_t v, double *y, double 
     int64_t i, q;
     if (!hdi_sweep_clear(z, v, y)) hdi_sweep_divide(z, v, y);
     if (row == 1) for (i = 0; i < u; i++) rows[i] = z->x[idx[i]];
-    else for (i = 0; i < u; i++) memcpy(rows + row * i, z->x + row * idx[i], (size_t)row * sizeof *rows);
+    else for (i = 0; i < u; i++)
+        for (q = 0; q < row; q += 8) hdi_entry_copy(8, rows + row * i + q, z->x + row * idx[i] + q);
     for (q = (p - 1) / HDI_PANEL; q >= 0; q--) {
         const hdi_block b = hdi_sweep_block(f, v, q);
         const int64_t end = b.begin + b.width;
         double *own = y + row * b.begin;
         hdi_solve g;
+        if (row == 1) {
+            for (i = (b.width - 1) / 8 * 8; i >= 0; i -= 8) hdi_sweep_single(z, &b, i, p, u, y, rows, 1);
+            continue;
+        }
         hdi_kernels_rows(f->ops, own, z->k, b.width, rows, u, hdi_block_at(&b, p, b.begin), 1, b.ld);
         hdi_kernels_rows(f->ops, own, z->k, b.width, y + row * end, p - end, hdi_block_at(&b, end, b.begin), 1,
                          b.ld);
@@ -14141,7 +14315,7 @@ static void hdi_entries_copy(int32_t width, double *to, int64_t to_step, const d
     int64_t i;
     if (width == 1) for (i = 0; i < n; i++) to[i * to_step] = from[i * from_step];
     else for (i = 0; i < n; i++)
-        memcpy(to + HDI_PACK * i * to_step, from + HDI_PACK * i * from_step, HDI_PACK * sizeof *to);
+        hdi_entry_copy(HDI_PACK, to + HDI_PACK * i * to_step, from + HDI_PACK * i * from_step);
 }
 
 /* Rows [i0,i1), columns [j0,j1) of the symmetric Z, by columns of ld. */
