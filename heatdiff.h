@@ -3439,18 +3439,21 @@ typedef struct hdi_kernels {
     void (*down)(const hdi_single *g);
 } hdi_kernels;
 
-/* The inverses of n of a pack's numbers. 0: one of them is none. */
-static int hdi_pack_invert(const double *d, double *inverse, int n) {
-    int q;
+/* The inverses of n of a pack's numbers; infinite where there is none. 0: there is such a number. By R. Smith,
+ * "Algorithm 116: Complex division", 1962; inline, so that kernels keep their registers. */
+static HDI_INLINE int hdi_pack_invert(const double *d, double *inverse, int n) {
+    int q, good = 1;
     for (q = 0; q < n; q++) {
-        const double size = hdi_pythag(d[q], d[q + HDI_PACK_LANES]);
-        hd_c64 one = hdi_c(0, 0);
-        if (hdi_finite(size) && size > 0) one = hdi_cdiv(hdi_c(1, 0), hdi_c(d[q], d[q + HDI_PACK_LANES]));
-        if (!hdi_finite(size) || !(size > 0) || !hdi_cfinite(one)) return 0;
-        inverse[q] = one.re;
-        inverse[q + HDI_PACK_LANES] = one.im;
+        const double re = d[q], im = d[q + HDI_PACK_LANES];
+        const int flat = fabs(re) >= fabs(im);
+        const double r = flat ? im / re : re / im, s = flat ? re + im * r : im + re * r;
+        const double one = 1 / s, other = r / s;
+        const int is_number = hdi_finite(one) && hdi_finite(other);
+        inverse[q] = is_number ? flat ? one : other : HUGE_VAL;
+        inverse[q + HDI_PACK_LANES] = flat ? -other : -one;
+        good = good && is_number;
     }
-    return 1;
+    return good;
 }
 
 /* s = l d for a pack entry */
@@ -3753,20 +3756,30 @@ HDI_PART hdi_num HDI_OF(sum_end)(const int pack, hdi_num s) {
     if (pack && HDI_WIDTH == 8) s.re = HDI_OF(join)(s.re, s.im);
     return s;
 }
-/* a f, and x - a f */
+/* What is left of c when the sum s of products is taken from it; the next product a f taken as well. Packs of
+ * eight lanes go on with the sum, and take it from c at the end. */
+HDI_PART hdi_num HDI_OF(left_begin)(const int pack, hdi_num c, hdi_num s) {
+    return pack && HDI_WIDTH == 8 ? s : HDI_OF(num_minus)(c, s);
+}
+HDI_PART void HDI_OF(left_take)(const int pack, hdi_num *s, hdi_num a, hdi_num f) {
+    if (pack && HDI_WIDTH == 8) {
+        HDI_OF(sum_add)(1, s, a, f);
+        return;
+    }
+    s->re = HDI_OF(fnma)(a.re, f.re, s->re);
+    if (!pack) return;
+    s->re = HDI_OF(fma)(a.im, f.im, s->re);
+    s->im = HDI_OF(fnma)(a.re, f.im, HDI_OF(fnma)(a.im, f.re, s->im));
+}
+HDI_PART hdi_num HDI_OF(left_end)(const int pack, hdi_num c, hdi_num s) {
+    return pack && HDI_WIDTH == 8 ? HDI_OF(num_minus)(c, HDI_OF(sum_end)(1, s)) : s;
+}
+/* a f */
 HDI_PART hdi_num HDI_OF(num_times)(const int pack, hdi_num a, hdi_num f) {
     const hdi_vec re = a.re * f.re;
     if (!pack) return HDI_OF(num_of)(re, re);
     if (HDI_WIDTH == 8) return HDI_OF(sum_end)(1, HDI_OF(num_of)(re, a.re * f.im));
     return HDI_OF(num_of)(HDI_OF(fnma)(a.im, f.im, re), HDI_OF(fma)(a.re, f.im, a.im * f.re));
-}
-HDI_PART hdi_num HDI_OF(num_less)(const int pack, hdi_num x, hdi_num a, hdi_num f) {
-    if (pack && HDI_WIDTH == 8) return HDI_OF(num_minus)(x, HDI_OF(num_times)(1, a, f));
-    x.re = HDI_OF(fnma)(a.re, f.re, x.re);
-    if (!pack) return x;
-    x.re = HDI_OF(fma)(a.im, f.im, x.re);
-    x.im = HDI_OF(fnma)(a.re, f.im, HDI_OF(fnma)(a.im, f.re, x.im));
-    return x;
 }
 
 /* ---- a tile ---- */
@@ -3804,14 +3817,12 @@ HDI_PART void HDI_OF(tile_sum)(const int pack, const int nv, const int nc, const
             HDI_EACH(v, nv) HDI_OF(sum_add)(pack, &x[j][v], rows[v], f);
         }
     }
-    HDI_EACH(j, nc)
-        HDI_EACH(v, nv) x[j][v] = HDI_OF(sum_end)(pack, x[j][v]);
 }
 
 HDI_PART void HDI_OF(tile_product)(const int pack, const int nv, const int nc, const int unit,
                                    const HDI_OF(tile) *t, hdi_num (*x)[HDI_OF(most_regs)]) {
-    if (t->n == HDI_ROWS * nv) HDI_OF(tile_sum)(pack, nv, nc, unit, 0, t, x);
-    else if (!pack) HDI_OF(tile_sum)(pack, nv, nc, unit, 1, t, x);
+    if (pack || (HDI_WIDTH < 8 && t->n == HDI_ROWS * nv)) HDI_OF(tile_sum)(pack, nv, nc, unit, 0, t, x);
+    else HDI_OF(tile_sum)(pack, nv, nc, unit, 1, t, x);   /* masks of AVX-512 cost nothing */
 }
 
 /* C -= A B for nv nums of rows, the last one perhaps in part. */
@@ -3828,7 +3839,8 @@ HDI_PART void HDI_OF(tile_multiply)(const int pack, const int nv, const int nc, 
         HDI_EACH(j, nc) {
             HDI_EACH(v, nv) {
                 const hdi_num old = t->store ? HDI_OF(num_zero)() : HDI_OF(num_load)(pack, c + inner * v);
-                HDI_OF(num_store)(pack, c + inner * v, HDI_OF(num_minus)(old, x[j][v]));
+                HDI_OF(num_store)(pack, c + inner * v,
+                                  HDI_OF(num_minus)(old, HDI_OF(sum_end)(pack, x[j][v])));
             }
             c += step;
             if (t->packed) step -= HDI_ENTRY;
@@ -3843,7 +3855,7 @@ HDI_PART void HDI_OF(tile_multiply)(const int pack, const int nv, const int nc, 
         HDI_EACH(v, nv) {
             const hdi_num old = t->store ? HDI_OF(num_zero)()
                                          : HDI_OF(num_load_rows)(pack, c + inner * v, g, HDI_ROWS * v);
-            x[j][v] = HDI_OF(num_minus)(old, x[j][v]);
+            x[j][v] = HDI_OF(num_minus)(old, HDI_OF(sum_end)(pack, x[j][v]));
         }
         c += step;
         if (t->packed) step -= HDI_ENTRY;
@@ -3859,38 +3871,39 @@ HDI_PART void HDI_OF(tile_multiply)(const int pack, const int nv, const int nc, 
     }
 }
 
-/* X = (C - A B), then X = X inv(B1) dinv with the rows of B that follow. dinv NULL: ones. */
+/* X = (C - A B), then X = X inv(B1) dinv with the rows of B that follow: a column is C less the sum of all
+ * products with columns before it. dinv NULL: ones. */
 HDI_PART void HDI_OF(tile_solve)(const int pack, const int nv, const int nc, const int unit,
                                  const HDI_OF(tile) *t, const double *dinv) {
     const HDI_OF(rows) g = HDI_OF(rows_of)(0, t->n);
     const double *b = t->b + t->depth * t->b_row;
     const int64_t inner = HDI_ENTRY * HDI_ROWS;
-    hdi_num x[HDI_OF(most_cols)][HDI_OF(most_regs)];
+    hdi_num s[HDI_OF(most_cols)][HDI_OF(most_regs)], x[HDI_OF(most_regs)], f;
+    const int late = pack && HDI_WIDTH == 8;     /* c is loaded once more */
     int j, k, v;
-    HDI_OF(tile_product)(pack, nv, nc, unit, t, x);
+    HDI_OF(tile_product)(pack, nv, nc, unit, t, s);
     HDI_EACH(j, nc) {
-        if (j >= t->nc) continue;
+        const double *c = t->c + j * t->c_col;
+        if (j >= t->nc || late) continue;
         HDI_EACH(v, nv) {
-            const double *c = t->c + j * t->c_col + inner * v;
-            const hdi_num old = v < nv - 1 ? HDI_OF(num_load)(pack, c)
-                                           : HDI_OF(num_load_rows)(pack, c, g, HDI_ROWS * v);
-            x[j][v] = HDI_OF(num_minus)(old, x[j][v]);
+            x[v] = v < nv - 1 ? HDI_OF(num_load)(pack, c + inner * v)
+                              : HDI_OF(num_load_rows)(pack, c + inner * v, g, HDI_ROWS * v);
+            s[j][v] = HDI_OF(left_begin)(pack, x[v], s[j][v]);
         }
     }
     HDI_EACH(j, nc) {
+        double *c = t->c + j * t->c_col;
         if (j >= t->nc) continue;
         HDI_EACH(v, nv) {
-            double *c = t->c + j * t->c_col + inner * v;
-            if (dinv) x[j][v] = HDI_OF(num_times)(pack, x[j][v],
-                                                  HDI_OF(factor_load)(pack, dinv + HDI_ENTRY * j));
-            if (v < nv - 1) HDI_OF(num_store)(pack, c, x[j][v]);
-            else HDI_OF(num_store_rows)(pack, c, x[j][v], g, HDI_ROWS * v);
+            x[v] = HDI_OF(left_end)(pack, late ? HDI_OF(num_load)(pack, c + inner * v) : s[j][v], s[j][v]);
+            if (dinv) x[v] = HDI_OF(num_times)(pack, x[v], HDI_OF(factor_load)(pack, dinv + HDI_ENTRY * j));
+            if (v < nv - 1) HDI_OF(num_store)(pack, c + inner * v, x[v]);
+            else HDI_OF(num_store_rows)(pack, c + inner * v, x[v], g, HDI_ROWS * v);
         }
         HDI_EACH(k, nc) {
-            hdi_num f;
             if (k <= j || k >= t->nc) continue;
             f = HDI_OF(factor_load)(pack, b + (unit ? HDI_ENTRY * k : t->off[k]));
-            HDI_EACH(v, nv) x[k][v] = HDI_OF(num_less)(pack, x[k][v], x[j][v], f);
+            HDI_EACH(v, nv) HDI_OF(left_take)(pack, &s[k][v], x[v], f);
         }
         b += t->b_row;
     }
@@ -4051,50 +4064,54 @@ HDI_PART int HDI_OF(pivot_invert)(const int pack, hdi_num d, const int row, doub
 
 /* For the rows below the pivots the same operations as in a solve. */
 HDI_PART void HDI_OF(pivots)(const int pack, const int nv, const hdi_eliminate *g, int h) {
-    const int cols = HDI_COLS, top = cols / HDI_ROWS;
+    const int cols = HDI_COLS, top = cols / HDI_ROWS, late = pack && HDI_WIDTH == 8;
     const double *row = g->x + h, *slice = g->s + h;
     double *c = g->x + HDI_ENTRY * g->before * g->x_col + h;
     double *s = g->s + HDI_ENTRY * g->before * cols + h, *dinv = g->dinv + h;
-    hdi_num x[HDI_OF(most_cols)][HDI_OF(most_regs)], l[HDI_OF(most_regs)], f;
+    hdi_num sum[HDI_OF(most_cols)][HDI_OF(most_regs)], x[HDI_OF(most_regs)], l[HDI_OF(most_regs)], f;
     int64_t k;
     int i, j, v;
     HDI_EACH(j, cols)
-        HDI_EACH(v, nv) x[j][v] = HDI_OF(num_zero)();
+        HDI_EACH(v, nv) sum[j][v] = HDI_OF(num_zero)();
     for (k = 0; k < g->before; k++, row += HDI_ENTRY * g->x_col, slice += HDI_ENTRY * cols) {
         HDI_EACH(v, nv)
             l[v] = HDI_OF(num_load_rows)(pack, row + HDI_ENTRY * HDI_OF(pivot_first)(pack, v, g->nc),
                                          HDI_OF(pivot_rows)(pack, v, 0, g), 0);
         HDI_EACH(j, cols) {
             f = HDI_OF(factor_load)(pack, slice + HDI_ENTRY * (j < g->nc ? j : 0));
-            HDI_EACH(v, nv) HDI_OF(sum_add)(pack, &x[j][v], l[v], f);
+            HDI_EACH(v, nv) HDI_OF(sum_add)(pack, &sum[j][v], l[v], f);
         }
     }
     HDI_EACH(j, cols) {
-        if (j >= g->nc) continue;
+        if (j >= g->nc || late) continue;
         HDI_EACH(v, nv) {
             const double *from = c + HDI_ENTRY * (j * g->x_col + HDI_OF(pivot_first)(pack, v, g->nc));
-            x[j][v] = HDI_OF(num_minus)(
-                HDI_OF(num_load_rows)(pack, from, HDI_OF(pivot_rows)(pack, v, 0, g), 0),
-                HDI_OF(sum_end)(pack, x[j][v]));
+            x[v] = HDI_OF(num_load_rows)(pack, from, HDI_OF(pivot_rows)(pack, v, 0, g), 0);
+            sum[j][v] = HDI_OF(left_begin)(pack, x[v], sum[j][v]);
         }
     }
     HDI_EACH(j, cols) {
-        const hdi_num d = x[j][j / HDI_ROWS];
         if (j >= g->nc) continue;
-        if (pack) HDI_OF(num_store)(1, c + HDI_PACK * j, d);
-        else c[j] = HDI_OF(pick)(d.re, j % HDI_ROWS);
-        if (!HDI_OF(pivot_invert)(pack, d, j % HDI_ROWS, dinv + HDI_ENTRY * j, &f)) return;
+        HDI_EACH(v, nv) {
+            x[v] = sum[j][v];
+            if (late) x[v] = HDI_OF(num_load_rows)(pack, c + HDI_ENTRY * HDI_OF(pivot_first)(pack, v, g->nc),
+                                                   HDI_OF(pivot_rows)(pack, v, 0, g), 0);
+            x[v] = HDI_OF(left_end)(pack, x[v], sum[j][v]);
+        }
+        if (pack) HDI_OF(num_store)(1, c + HDI_PACK * j, x[j / HDI_ROWS]);
+        else c[j] = HDI_OF(pick)(x[j / HDI_ROWS].re, j % HDI_ROWS);
+        if (!HDI_OF(pivot_invert)(pack, x[j / HDI_ROWS], j % HDI_ROWS, dinv + HDI_ENTRY * j, &f)) return;
         HDI_EACH(v, nv) {
             const int first = v < top ? j + 1 - HDI_ROWS * v : 0;
-            l[v] = HDI_OF(num_times)(pack, x[j][v], f);
-            if (v < top) HDI_OF(num_store)(pack, s + HDI_ENTRY * HDI_ROWS * v, x[j][v]);
+            l[v] = HDI_OF(num_times)(pack, x[v], f);
+            if (v < top) HDI_OF(num_store)(pack, s + HDI_ENTRY * HDI_ROWS * v, x[v]);
             HDI_OF(num_store_rows)(pack, c + HDI_ENTRY * HDI_OF(pivot_first)(pack, v, g->nc), l[v],
                                    HDI_OF(pivot_rows)(pack, v, first, g), 0);
         }
         HDI_EACH(i, cols) {
             if (i <= j) continue;
-            f = HDI_OF(factor_row)(pack, x[j][i / HDI_ROWS], i % HDI_ROWS);
-            HDI_EACH(v, nv) x[i][v] = HDI_OF(num_less)(pack, x[i][v], l[v], f);
+            f = HDI_OF(factor_row)(pack, x[i / HDI_ROWS], i % HDI_ROWS);
+            HDI_EACH(v, nv) HDI_OF(left_take)(pack, &sum[i][v], l[v], f);
         }
         c += HDI_ENTRY * g->x_col;
         s += HDI_ENTRY * cols;
@@ -12965,16 +12982,14 @@ static void hdi_front_slice(const hdi_front *w, int64_t k, int64_t n, double *s)
 /* Notes pivots [k,k+n). 0: one cannot be divided by. */
 static int hdi_front_note(const hdi_front *w, int64_t k, int64_t n, hdi_pivots *note) {
     const hdi_block b = hdi_front_block(w, k / HDI_PANEL);
-    double one[HDI_PACK];
     int64_t i;
     int q;
     for (i = k; i < k + n; i++) {
-        const double *d = hdi_block_at(&b, i, i);
+        const double *d = hdi_block_at(&b, i, i), *dinv = w->dinv + b.entry * i;
         for (q = 0; q < (b.entry == 1 ? 1 : (int)HDI_PACK_LANES); q++) {
             const double size = b.entry == 1 ? fabs(*d) : hdi_pythag(d[q], d[q + HDI_PACK_LANES]);
-            const double lane[HDI_PACK] = {d[q], 0, 0, 0, b.entry == 1 ? 0 : d[q + HDI_PACK_LANES], 0, 0, 0};
-            const int good = hdi_finite(size) &&
-                (b.entry == 1 ? size > HDI_PIVOT_LEAST : hdi_pack_invert(lane, one, 1));
+            const int good = hdi_finite(size) && (b.entry == 1 ? size > HDI_PIVOT_LEAST
+                                                               : size > 0 && hdi_finite(dinv[q]));
             if (!good) {
                 note->failed = w->f->sym->super[w->v] + (int32_t)i;
                 note->lane = q;
@@ -14258,8 +14273,8 @@ typedef struct hdi_inverse_front {
 } hdi_inverse_front;
 
 /* How much is taken at a time: rows that are gathered, and their entries. */
-static int64_t hdi_inverse_rows(int32_t width) { return width == 1 ? HDI_TILE_ROWS : HDI_INV_ROWS; }
-static int64_t hdi_inverse_depth(int32_t width) { return width == 1 ? HDI_PANEL : HDI_INV_DEPTH; }
+static int64_t hdi_inverse_rows(int32_t width) { return width == 1 ? (int)HDI_TILE_ROWS : (int)HDI_INV_ROWS; }
+static int64_t hdi_inverse_depth(int32_t width) { return width == 1 ? (int)HDI_PANEL : (int)HDI_INV_DEPTH; }
 
 /* Doubles of rows that are gathered, or of rows of M, and of all scratch of a front of at most so many rows
  * and pivots and stored entries. */
