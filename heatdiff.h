@@ -12337,7 +12337,7 @@ static hd_status hdi_nd_order(const hd_csr *a, const double *xyz, int32_t *perm,
  * A front is a dense lower triangle over the rows of a supernode: its p pivots, then u rows below. Its first
  * p columns become columns of L (the panel, m = p + u rows), the rest is the update matrix for its parent. */
 
-enum { HDI_PANEL = 128, HDI_SYM_BLOCKS = 10 };
+enum { HDI_PANEL = 128, HDI_SYM_BLOCKS = 24 };
 
 typedef struct hdi_symbolic {
     int32_t n, n_super;
@@ -12396,7 +12396,7 @@ static void hdi_front_shape(const hdi_symbolic *s, int32_t v, int64_t *p, int64_
 
 static int64_t hdi_most(int64_t a, int64_t b) { return a < b ? b : a; }
 
-/* ---- forests ---- */
+/* ---- work space ---- */
 
 /* A forest on the numbers from 0 to n - 1, in which every parent has a larger number than its children. */
 typedef struct hdi_forest {
@@ -12405,36 +12405,92 @@ typedef struct hdi_forest {
     int32_t *kid, *next;         /* [n] first child, and next child of the same parent; -1: none */
 } hdi_forest;
 
-static hdi_forest hdi_forest_take(int32_t n, hdi_scope *s) {
-    hdi_forest f;
-    f.n = n;
-    f.parent = HDI_TAKE(s, int32_t, n);
-    f.kid = HDI_TAKE(s, int32_t, n);
-    f.next = HDI_TAKE(s, int32_t, n);
-    return f;
+/* What is known of a row of L while columns are counted: the last column of A with an entry in it, and the
+ * last of those that is a leaf of the row's subtree. -1: none. */
+typedef struct hdi_row_seen { int32_t column, leaf; } hdi_row_seen;
+
+/* A supernode while supernodes are merged. Its own columns are [begin, begin of the next node). Nodes in one
+ * front are a list, the lowest first; the last one has the numbers of the front. */
+typedef struct hdi_node {
+    int32_t begin;
+    int32_t pivots, rows;        /* of the front: columns, and rows with the pivots included */
+    int32_t first, then;         /* first node of its list; the node after it in a list, -1: none */
+    int32_t merged;              /* into its parent */
+    int64_t zeros;               /* let in by merging */
+} hdi_node;
+
+/* A supernode while its rows are collected: the last row that it got, its parent, where its next row goes. */
+typedef struct hdi_sym_walk {
+    int32_t mark, up;
+    int64_t fill;
+} hdi_sym_walk;
+
+/* What an analysis works with. Columns are those of L, by the order given and then by a postorder, which
+ * changes no column otherwise. */
+typedef struct hdi_sym_work {
+    const hd_csr *a;
+    int32_t *perm, *place;       /* [n] row of A of a column, column of a row of A */
+    hdi_forest given;            /* elimination tree of the order given: the parent of a column is the row of
+                                    its first non-zero below the diagonal */
+    int32_t *ancestor;           /* [n] shortcuts to the roots of what has been joined so far */
+    int32_t *order;              /* [n] a postorder of that tree */
+    int32_t *parent, *count;     /* [n] in postorder: the tree; non-zeros of a column, diagonal included */
+    int32_t *first;              /* [n] the first column below a column and itself */
+    int32_t *set;                /* [n] union-find: what is below a column that has been counted */
+    hdi_row_seen *seen;          /* [n] */
+    int32_t *node_of;            /* [n] node of a column */
+    hdi_node *node;              /* [n + 1] */
+    hdi_forest tree;             /* of the nodes; merged ones do not belong to it */
+    int64_t *peak;               /* [n] the most room that a node and all below it need for update matrices */
+    hdi_pair *pair;              /* [n] children of a node, to be sorted */
+    int32_t *node_order, *number;  /* [n] node of a supernode, supernode of a node */
+    hdi_sym_walk *walk;          /* [n] by supernodes */
+    int32_t *before;             /* [n] columns in a row of A before its pivot */
+    int32_t *at;                 /* [n] where a row of the matrix stands in the front at hand */
+    double *work;                /* [n] of a supernode and all below it */
+    char *side;                  /* [n] which stack a supernode uses */
+} hdi_sym_work;
+
+static hd_status hdi_sym_work_take(hdi_sym_work *w, const hd_csr *a, int32_t *perm, hdi_scope *s) {
+    int32_t **const narrow[] = {&w->place, &w->given.parent, &w->given.kid, &w->given.next, &w->ancestor,
+                                &w->order, &w->parent, &w->count, &w->first, &w->set, &w->node_of,
+                                &w->tree.parent, &w->tree.kid, &w->tree.next, &w->node_order, &w->number,
+                                &w->before, &w->at};
+    size_t k;
+    for (k = 0; k < sizeof narrow / sizeof *narrow; k++) *narrow[k] = HDI_TAKE(s, int32_t, a->n_rows);
+    w->seen = HDI_TAKE(s, hdi_row_seen, a->n_rows);
+    w->node = HDI_TAKE(s, hdi_node, (int64_t)a->n_rows + 1);
+    w->peak = HDI_TAKE(s, int64_t, a->n_rows);
+    w->pair = HDI_TAKE(s, hdi_pair, a->n_rows);
+    w->walk = HDI_TAKE(s, hdi_sym_walk, a->n_rows);
+    w->work = HDI_TAKE(s, double, a->n_rows);
+    w->side = HDI_TAKE(s, char, a->n_rows);
+    w->a = a;
+    w->perm = perm;
+    w->given.n = a->n_rows;
+    return s->e->status;
 }
 
+/* ---- trees and counts ---- */
+
 /* Makes the lists of children, ascending, from the parents. */
-static void hdi_forest_link(hdi_forest *f) {
+static void hdi_forest_link(const hdi_forest *f) {
     int32_t i;
     hdi_fill_i32(f->kid, f->n, -1);
     for (i = f->n; i-- > 0;) {
-        const int32_t up = f->parent[i];
-        f->next[i] = -1;
-        if (up < 0) continue;
-        f->next[i] = f->kid[up];
-        f->kid[up] = i;
+        if (f->parent[i] < 0) continue;
+        f->next[i] = f->kid[f->parent[i]];
+        f->kid[f->parent[i]] = i;
     }
 }
 
-/* The first of v and all below it in a postorder. */
+/* The first of v and all below it in postorder. */
 static int32_t hdi_forest_leaf(const hdi_forest *f, int32_t v) {
     while (f->kid[v] >= 0) v = f->kid[v];
     return v;
 }
 
-/* order[k] = number k of the postorder that takes children in the order of their lists. Returns how many the
- * forest has. */
+/* order[k] = number k of the postorder that takes children as their lists do. Returns how many there are. */
 static int32_t hdi_forest_postorder(const hdi_forest *f, int32_t *order) {
     int32_t root, v, k = 0;
     for (root = 0; root < f->n; root++) {
@@ -12448,33 +12504,21 @@ static int32_t hdi_forest_postorder(const hdi_forest *f, int32_t *order) {
     return k;
 }
 
-/* ---- columns ---- */
-
-/* The columns of L, numbered by an order that does not change L otherwise: first the one that is given, then
- * a postorder of it. */
-typedef struct hdi_cols {
-    const hd_csr *a;
-    int32_t *perm, *place;       /* [n] the row of A of each column, and the column of each row of A */
-    int32_t *parent;             /* [n] elimination tree: the row of the first non-zero below the diagonal */
-    int32_t *count;              /* [n] non-zeros, diagonal included */
-} hdi_cols;
-
-/* Rows of A are taken in the order of the columns: this fetches one that comes soon. */
-static HDI_INLINE void hdi_col_fetch(const hd_csr *a, const int32_t *perm, int32_t j) {
+/* Rows of A are read in the order of the columns: this fetches one that comes soon. */
+static HDI_INLINE void hdi_sym_fetch(const hd_csr *a, const int32_t *perm, int32_t j) {
     if (j + HDI_ROWS_AHEAD < a->n_rows) HDI_PREFETCH(a->col + a->row_ptr[perm[j + HDI_ROWS_AHEAD]]);
 }
 
-/* The elimination tree. ancestor [n]: shortcuts towards the roots of what has been joined so far. */
-static void hdi_col_tree(const hdi_cols *c, int32_t *parent, int32_t *ancestor) {
-    const hd_csr *a = c->a;
-    int32_t i, k, next;
+/* The elimination tree of the order given. */
+static void hdi_sym_etree(const hdi_sym_work *w) {
+    const hd_csr *a = w->a;
+    int32_t i, k, next, *parent = w->given.parent, *ancestor = w->ancestor;
     int64_t p;
     for (i = 0; i < a->n_rows; i++) {
-        const int32_t row = c->perm[i];
-        hdi_col_fetch(a, c->perm, i);
+        hdi_sym_fetch(a, w->perm, i);
         parent[i] = ancestor[i] = -1;
-        for (p = a->row_ptr[row]; p < a->row_ptr[row + 1]; p++) {
-            for (k = c->place[a->col[p]]; k != -1 && k < i; k = next) {
+        for (p = a->row_ptr[w->perm[i]]; p < a->row_ptr[w->perm[i] + 1]; p++) {
+            for (k = w->place[a->col[p]]; k != -1 && k < i; k = next) {
                 next = ancestor[k];
                 ancestor[k] = i;
                 if (next == -1) parent[k] = i;
@@ -12483,219 +12527,144 @@ static void hdi_col_tree(const hdi_cols *c, int32_t *parent, int32_t *ancestor) 
     }
 }
 
-/* Numbers the columns by a postorder of their tree, which is given by the numbers so far. */
-static void hdi_col_renumber(hdi_cols *c, const hdi_forest *tree, const int32_t *order) {
+/* Brings the columns to a postorder of their tree. */
+static void hdi_sym_postorder(const hdi_sym_work *w) {
+    const hdi_forest *f = &w->given;
     int32_t k;
-    for (k = 0; k < tree->n; k++) c->place[c->perm[order[k]]] = k;
-    for (k = 0; k < tree->n; k++) {
-        const int32_t up = tree->parent[order[k]];
-        c->parent[k] = up < 0 ? -1 : c->place[c->perm[up]];
+    for (k = 0; k < f->n; k++) w->place[w->perm[k]] = k;
+    hdi_sym_etree(w);
+    hdi_forest_link(f);
+    hdi_forest_postorder(f, w->order);
+    for (k = 0; k < f->n; k++) w->place[w->perm[w->order[k]]] = k;
+    for (k = 0; k < f->n; k++) {
+        const int32_t up = f->parent[w->order[k]];
+        w->parent[k] = up < 0 ? -1 : w->place[w->perm[up]];
     }
-    for (k = 0; k < tree->n; k++) c->perm[c->place[k]] = k;
+    for (k = 0; k < f->n; k++) w->perm[w->place[k]] = k;
 }
 
-/* What is known of a row of L while the columns are counted: the last column of A with an entry in it, and
- * the last of those that is a leaf of the row's subtree. -1: none. */
-typedef struct hdi_row_seen { int32_t column, leaf; } hdi_row_seen;
-
-/* Counts the non-zeros of the columns, which are in postorder. Row i of L is a subtree of the tree, its leaves
- * are entries of A. A column's count is what the leaves add to it, less what the least common ancestors of
- * neighbouring leaves take back. first [n]: the first column in the subtree of each, which is its own number
- * for a leaf; set [n]: union-find. */
-static void hdi_col_counts(hdi_cols *c, int32_t *first, int32_t *set, hdi_row_seen *seen) {
-    const hd_csr *a = c->a;
-    const int32_t n = a->n_rows, *parent = c->parent;
-    int32_t j, q, *count = c->count;
+/* Column counts of L. Row i of L is a subtree of the tree, its leaves are entries of A. A column's count is
+ * what the leaves add to it, less what the least common ancestors of neighbouring leaves take back. */
+static void hdi_sym_counts(const hdi_sym_work *w) {
+    const hd_csr *a = w->a;
+    const int32_t n = a->n_rows, *parent = w->parent;
+    int32_t j, q, *count = w->count, *first = w->first;
     int64_t p;
-    hdi_fill_own(set, n);
+    hdi_fill_own(w->set, n);
     hdi_fill_i32(first, n, -1);
     for (j = 0; j < n; j++) {
-        seen[j].column = seen[j].leaf = -1;
+        w->seen[j].column = w->seen[j].leaf = -1;
         count[j] = first[j] == -1;               /* a leaf of the tree */
         for (q = j; q != -1 && first[q] == -1; q = parent[q]) first[q] = j;
     }
     for (j = 0; j < n; j++) {
-        const int32_t row = c->perm[j];
-        hdi_col_fetch(a, c->perm, j);
+        hdi_sym_fetch(a, w->perm, j);
         if (parent[j] >= 0) count[parent[j]]--;
-        for (p = a->row_ptr[row]; p < a->row_ptr[row + 1]; p++) {
-            const int32_t i = c->place[a->col[p]];
+        for (p = a->row_ptr[w->perm[j]]; p < a->row_ptr[w->perm[j] + 1]; p++) {
+            const int32_t i = w->place[a->col[p]];
+            hdi_row_seen *row = w->seen + i;
             if (i <= j) continue;
-            if (first[j] > seen[i].column) {     /* j is a leaf of row subtree i */
+            if (first[j] > row->column) {        /* j is a leaf of row subtree i */
                 count[j]++;
-                if (seen[i].leaf >= 0) count[hdi_find(set, seen[i].leaf)]--;
-                seen[i].leaf = j;
+                if (row->leaf >= 0) count[hdi_find(w->set, row->leaf)]--;
+                row->leaf = j;
             }
-            seen[i].column = j;
+            row->column = j;
         }
-        if (parent[j] >= 0) set[j] = parent[j];
+        if (parent[j] >= 0) w->set[j] = parent[j];
     }
     for (j = 0; j < n; j++)
         if (parent[j] >= 0) count[parent[j]] += count[j];
 }
 
-/* Tree, postorder and counts of the columns under the order c->perm, which becomes a postorder. c->place is
- * room for its inverse. */
-static hd_status hdi_cols_make(hdi_cols *c, hdi_scope *keep) {
-    const int32_t n = c->a->n_rows;
-    hdi_scope temp = hdi_scope_begin(keep->ctx, keep->e);
-    hdi_forest tree = hdi_forest_take(n, &temp);
-    hdi_row_seen *seen = HDI_TAKE(&temp, hdi_row_seen, n);
-    int32_t *ancestor = HDI_TAKE(&temp, int32_t, n), *order = HDI_TAKE(&temp, int32_t, n);
-    int32_t *first = HDI_TAKE(&temp, int32_t, n), *set = HDI_TAKE(&temp, int32_t, n), k;
-    c->parent = HDI_TAKE(keep, int32_t, n);
-    c->count = HDI_TAKE(keep, int32_t, n);
-    if (keep->e->status >= 0) {
-        for (k = 0; k < n; k++) c->place[c->perm[k]] = k;
-        hdi_col_tree(c, tree.parent, ancestor);
-        hdi_forest_link(&tree);
-        hdi_forest_postorder(&tree, order);
-        hdi_col_renumber(c, &tree, order);
-        hdi_col_counts(c, first, set, seen);
-    }
-    return hdi_scope_end(&temp);
-}
-
 /* ---- supernodes ---- */
 
-/* A supernode while they are merged. Its own columns are [begin, begin of the next node). Nodes that have been
- * merged into one front are a list, the lowest first, and the last one stands for all. */
-typedef struct hdi_node {
-    int32_t begin;
-    int32_t pivots, rows;        /* of the front: columns, and rows with the pivots included */
-    int32_t first, then;         /* the first node of its list, and the one after it in the list that it is in;
-                                    -1: none */
-    int32_t merged;              /* into another node */
-    int64_t zeros;               /* let in by merging */
-} hdi_node;
-
-typedef struct hdi_nodes {
-    hdi_node *node;              /* [n + 1] */
-    hdi_forest tree;             /* their tree; merged nodes do not belong to it */
-} hdi_nodes;
-
-/* Entries of the trapezoid of p columns over m rows. */
-static int64_t hdi_trapezoid(int64_t m, int64_t p) { return m * p - p * (p - 1) / 2; }
-static int64_t hdi_node_size(const hdi_node *v) { return hdi_trapezoid(v->rows, v->pivots); }
-static int64_t hdi_node_below(const hdi_node *v) { return (int64_t)v->rows - v->pivots; }
-
-/* Whether to merge the child into its parent: when the zeros that this lets in are few, or the front is so
- * small that its own overhead costs more. Tuned on meshes of 36K to 1M vertices for pole lanes and real
- * factors alike. */
-static int hdi_node_worth_merging(const hdi_node *child, const hdi_node *parent) {
-    const int64_t p = (int64_t)child->pivots + parent->pivots;
-    const int64_t all = hdi_trapezoid((int64_t)child->pivots + parent->rows, p);
-    const int64_t fresh = all - hdi_node_size(child) - hdi_node_size(parent);
-    const double share = (double)(child->zeros + parent->zeros + fresh) / (double)all;
-    return fresh == 0 || p <= 6 || (p <= 12 && share < 0.3) || (p <= 24 && share < 0.1) || share < 0.03;
+/* Neighbouring columns with the same structure, in postorder. */
+static void hdi_sym_nodes(hdi_sym_work *w) {
+    const int32_t n = w->a->n_rows;
+    int32_t j, k = -1;
+    for (j = 0; j < n; j++) {
+        if (j == 0 || w->parent[j - 1] != j || w->count[j - 1] != w->count[j] + 1) {
+            hdi_node *v = w->node + ++k;
+            memset(v, 0, sizeof *v);
+            v->begin = j;
+            v->rows = w->count[j];
+            v->first = k;
+            v->then = -1;
+        }
+        w->node[k].pivots++;
+        w->node_of[j] = k;
+    }
+    w->tree.n = k + 1;
+    w->node[k + 1].begin = n;
+    for (k = 0; k < w->tree.n; k++) {
+        const int32_t up = w->parent[w->node[k + 1].begin - 1];
+        w->tree.parent[k] = up < 0 ? -1 : w->node_of[up];
+    }
 }
 
-/* Merges node c into node v if that is worth it: the columns of c come first. */
-static void hdi_node_merge(hdi_node *node, int32_t c, int32_t v) {
+static int64_t hdi_node_update(const hdi_node *v) { return hdi_triangle((int64_t)v->rows - v->pivots); }
+
+/* Merges node c into its parent v, with its columns first, when the zeros that this lets in are few, or the
+ * front is so small that its own overhead costs more. Tuned on meshes of 36K to 1M vertices for pole lanes
+ * and real factors alike. */
+static void hdi_sym_merge(hdi_node *node, int32_t c, int32_t v) {
     hdi_node *child = node + c, *parent = node + v;
-    const int64_t before = hdi_node_size(child) + hdi_node_size(parent);
-    if (!hdi_node_worth_merging(child, parent)) return;
-    parent->pivots += child->pivots;
+    const int64_t m = (int64_t)child->pivots + parent->rows, p = (int64_t)child->pivots + parent->pivots;
+    const int64_t fresh = child->pivots * (m - child->rows), zeros = child->zeros + parent->zeros + fresh;
+    const double share = (double)zeros / (double)(m * p - p * (p - 1) / 2);
+    if (fresh > 0 && p > 6 && (p > 12 || share >= 0.3) && (p > 24 || share >= 0.1) && share >= 0.03) return;
     parent->rows += child->pivots;
-    parent->zeros += child->zeros + hdi_node_size(parent) - before;
+    parent->pivots += child->pivots;
+    parent->zeros = zeros;
     child->then = parent->first;
     parent->first = child->first;
     child->merged = 1;
 }
 
-/* Supernodes: neighbouring columns with the same structure, in postorder. of [n]: the node of a column. */
-static void hdi_nodes_find(hdi_nodes *w, const hdi_cols *c, int32_t *of) {
-    const int32_t n = c->a->n_rows, *count = c->count;
-    int32_t j, k = -1;
-    for (j = 0; j < n; j++) {
-        if (j == 0 || c->parent[j - 1] != j || count[j - 1] != count[j] + 1) {
-            hdi_node *v = w->node + ++k;
-            memset(v, 0, sizeof *v);
-            v->begin = j;
-            v->rows = count[j];
-            v->first = k;
-            v->then = -1;
-        }
-        w->node[k].pivots++;
-        of[j] = k;
-    }
-    w->tree.n = k + 1;
-    w->node[k + 1].begin = n;
-    for (k = 0; k < w->tree.n; k++) {
-        const int32_t up = c->parent[w->node[k + 1].begin - 1];
-        w->tree.parent[k] = up < 0 ? -1 : of[up];
-    }
-}
-
 /* Merges children into parents from the leaves up: into each node first the child with most rows below, which
  * lets in fewest zeros, then the others. */
-static void hdi_nodes_merge(hdi_nodes *w) {
+static void hdi_sym_relax(const hdi_sym_work *w) {
     hdi_node *node = w->node;
-    hdi_forest *tree = &w->tree;
+    const hdi_forest *f = &w->tree;
     int32_t v, c;
-    hdi_forest_link(tree);
-    for (v = 0; v < tree->n; v++) {              /* children have gone through their own merges */
-        int32_t best = tree->kid[v];
-        if (best < 0) continue;
-        for (c = best; c >= 0; c = tree->next[c])
-            if (hdi_node_below(node + c) > hdi_node_below(node + best)) best = c;
-        hdi_node_merge(node, best, v);
-        for (c = tree->kid[v]; c >= 0; c = tree->next[c])
-            if (c != best) hdi_node_merge(node, c, v);
+    hdi_forest_link(f);
+    for (v = 0; v < f->n; v++) {                 /* children have gone through their own merges */
+        int32_t best = f->kid[v];
+        for (c = best; c >= 0; c = f->next[c])
+            if (node[c].rows - node[c].pivots > node[best].rows - node[best].pivots) best = c;
+        if (best >= 0) hdi_sym_merge(node, best, v);
+        for (c = f->kid[v]; c >= 0; c = f->next[c])
+            if (c != best) hdi_sym_merge(node, c, v);
     }
-    for (v = tree->n; v-- > 0;) {                /* parents are decided before their children */
-        const int32_t up = tree->parent[v];
-        if (up >= 0 && node[up].merged) tree->parent[v] = tree->parent[up];
+    for (v = f->n; v-- > 0;) {                   /* parents are decided before their children */
+        const int32_t up = f->parent[v];
+        if (up >= 0 && node[up].merged) f->parent[v] = f->parent[up];
     }
-    for (v = 0; v < tree->n; v++)
-        if (node[v].merged) tree->parent[v] = -2;
-    hdi_forest_link(tree);
+    for (v = 0; v < f->n; v++)
+        if (node[v].merged) f->parent[v] = -2;
 }
 
 /* Sorts the children of node v: those come first whose subtrees need much more room while under way than they
- * leave behind (Liu 1986). peak[v]: the room that update matrices of v and of all below it need. pair: room
- * for as many as v has children. */
-static void hdi_nodes_sort_kids(hdi_nodes *w, int32_t v, int64_t *peak, hdi_pair *pair) {
-    hdi_forest *tree = &w->tree;
-    int64_t held = 0, n = 0, q;
-    int32_t c;
-    for (c = tree->kid[v]; c >= 0; c = tree->next[c]) {
-        pair[n].key = (uint64_t)(peak[c] - hdi_triangle(hdi_node_below(w->node + c)));
-        pair[n++].id = c;
+ * leave behind (Liu 1986). */
+static void hdi_sym_sort_kids(const hdi_sym_work *w, int32_t v) {
+    const hdi_forest *f = &w->tree;
+    int32_t c, *link = f->kid + v;
+    int64_t held = 0, n = 0;
+    for (c = *link; c >= 0; c = f->next[c]) {
+        w->pair[n].key = (uint64_t)(w->peak[c] - hdi_node_update(w->node + c));
+        w->pair[n++].id = c;
     }
-    hdi_sort_pairs(pair, n);
-    tree->kid[v] = -1;
-    for (q = 0; q < n; q++) {                    /* ascending, put in front of each other: descending */
-        c = (int32_t)pair[q].id;
-        tree->next[c] = tree->kid[v];
-        tree->kid[v] = c;
+    hdi_sort_pairs(w->pair, n);
+    w->peak[v] = 0;
+    while (n-- > 0) {
+        c = *link = (int32_t)w->pair[n].id;
+        link = f->next + c;
+        w->peak[v] = hdi_most(w->peak[v], held + w->peak[c]);
+        held += hdi_node_update(w->node + c);
     }
-    peak[v] = 0;
-    for (c = tree->kid[v]; c >= 0; c = tree->next[c]) {
-        peak[v] = hdi_most(peak[v], held + peak[c]);
-        held += hdi_triangle(hdi_node_below(w->node + c));
-    }
-    peak[v] = hdi_most(peak[v], held + hdi_triangle(hdi_node_below(w->node + v)));
-}
-
-/* Supernodes, merged. order [n]: a postorder of them that needs little room. Returns how many there are. */
-static int32_t hdi_nodes_make(hdi_nodes *w, const hdi_cols *c, int32_t *order, hdi_scope *keep) {
-    const int32_t n = c->a->n_rows;
-    hdi_scope temp = hdi_scope_begin(keep->ctx, keep->e);
-    int32_t *of = HDI_TAKE(&temp, int32_t, n), v, n_super = 0;
-    int64_t *peak = HDI_TAKE(&temp, int64_t, n);
-    hdi_pair *pair = HDI_TAKE(&temp, hdi_pair, n);
-    w->node = HDI_TAKE(keep, hdi_node, (int64_t)n + 1);
-    w->tree = hdi_forest_take(n, keep);
-    if (keep->e->status >= 0) {
-        hdi_nodes_find(w, c, of);
-        hdi_nodes_merge(w);
-        for (v = 0; v < w->tree.n; v++)
-            if (!w->node[v].merged) hdi_nodes_sort_kids(w, v, peak, pair);
-        n_super = hdi_forest_postorder(&w->tree, order);
-    }
-    hdi_scope_end(&temp);
-    return n_super;
+    *link = -1;
+    w->peak[v] = hdi_most(w->peak[v], held + hdi_node_update(w->node + v));
 }
 
 /* Panels of packs come in blocks of at most HDI_PANEL columns, each from its first pivot's row on: what
@@ -12707,28 +12676,17 @@ static int64_t hdi_panel_block(int64_t m, int64_t p, int64_t q) {
 }
 
 /* Arrays by pivots and by supernodes. */
-static void hdi_sym_take_supernodes(hdi_symbolic *s, hdi_scope *keep) {
-    const uint64_t n1 = (uint64_t)s->n + 1, supers = (uint64_t)s->n_super + 1;
-    int64_t *wide = HDI_TAKE(keep, int64_t, 6 * supers);
-    int32_t *narrow = HDI_TAKE(keep, int32_t, 9 * supers);
-    s->perm = HDI_TAKE(keep, int32_t, n1);
-    s->super_of = HDI_TAKE(keep, int32_t, n1);
-    if (keep->e->status < 0) return;
-    s->row_ptr = wide;
-    s->panel = wide + supers;
-    s->panel_pack = wide + 2 * supers;
-    s->a_ptr = wide + 3 * supers;
-    s->update = wide + 4 * supers;
-    s->vector = wide + 5 * supers;
-    s->super = narrow;
-    s->parent = narrow + supers;
-    s->inner = narrow + 2 * supers;
-    s->kid_ptr = narrow + 3 * supers;
-    s->kid = narrow + 4 * supers;
-    s->task_begin = narrow + 5 * supers;
-    s->task_end = narrow + 6 * supers;
-    s->task_of = narrow + 7 * supers;
-    s->top = narrow + 8 * supers;
+static hd_status hdi_sym_take_supernodes(hdi_symbolic *s, hdi_scope *keep) {
+    const uint64_t supers = (uint64_t)s->n_super + 1;
+    int64_t **const wide[] = {&s->row_ptr, &s->panel, &s->panel_pack, &s->a_ptr, &s->update, &s->vector};
+    int32_t **const narrow[] = {&s->super, &s->parent, &s->inner, &s->kid_ptr, &s->kid, &s->task_begin,
+                                &s->task_end, &s->task_of, &s->top};
+    size_t k;
+    s->perm = HDI_TAKE(keep, int32_t, s->n);
+    s->super_of = HDI_TAKE(keep, int32_t, s->n);
+    for (k = 0; k < sizeof wide / sizeof *wide; k++) *wide[k] = HDI_TAKE(keep, int64_t, supers);
+    for (k = 0; k < sizeof narrow / sizeof *narrow; k++) *narrow[k] = HDI_TAKE(keep, int32_t, supers);
+    return keep->e->status;
 }
 
 /* Sizes of supernode k, which comes from node v. */
@@ -12745,60 +12703,45 @@ static void hdi_sym_measure(hdi_symbolic *s, int32_t k, const hdi_node *v) {
     for (c = 0; c < p; c++) s->flops_done += (double)(m - c) * (double)(m - c);
 }
 
-/* Numbers the supernodes by the order of their nodes, and the columns by their supernodes. number [n]: the
- * supernode of a node. */
-static void hdi_sym_number(hdi_symbolic *s, const hdi_cols *c, const hdi_nodes *w, const int32_t *order,
-                           int32_t *number) {
+/* Numbers the supernodes by the order of their nodes, and the columns by their supernodes. */
+static void hdi_sym_number(hdi_symbolic *s, const hdi_sym_work *w) {
     int32_t k, q, j, i = 0;
     s->super[0] = 0;
     s->row_ptr[0] = s->panel[0] = s->panel_pack[0] = 0;
-    for (k = 0; k < s->n_super; k++) number[order[k]] = k;
+    for (k = 0; k < s->n_super; k++) w->number[w->node_order[k]] = k;
     for (k = 0; k < s->n_super; k++) {
-        const int32_t up = w->tree.parent[order[k]];
-        s->parent[k] = up < 0 ? -1 : number[up];
-        hdi_sym_measure(s, k, w->node + order[k]);
-        for (q = w->node[order[k]].first; q >= 0; q = w->node[q].then) {
+        const int32_t v = w->node_order[k], up = w->tree.parent[v];
+        s->parent[k] = up < 0 ? -1 : w->number[up];
+        hdi_sym_measure(s, k, w->node + v);
+        for (q = w->node[v].first; q >= 0; q = w->node[q].then) {
             for (j = w->node[q].begin; j < w->node[q + 1].begin; j++) {
-                s->perm[i] = c->perm[j];
+                s->perm[i] = w->perm[j];
+                w->place[w->perm[j]] = i;
                 s->super_of[i++] = k;
             }
         }
     }
     s->stored = s->panel_pack[s->n_super];
     hdi_group(s->parent, s->n_super, s->n_super, s->kid_ptr, s->kid);
-    for (i = 0; i < s->n; i++) c->place[s->perm[i]] = i;
 }
 
-/* Supernodes and elimination order of the pattern a under the order perm, which is used up. place [n] becomes
- * the inverse of the elimination order. */
-static void hdi_sym_supernodes(hdi_symbolic *s, const hd_csr *a, int32_t *perm, int32_t *place,
-                               hdi_scope *keep) {
-    hdi_scope temp = hdi_scope_begin(keep->ctx, keep->e);
-    int32_t *order = HDI_TAKE(&temp, int32_t, s->n), *number = HDI_TAKE(&temp, int32_t, s->n), j;
-    hdi_cols c;
-    hdi_nodes w;
-    c.a = a;
-    c.perm = perm;
-    c.place = place;
-    if (number && hdi_cols_make(&c, &temp) >= 0 && hdi_progress(keep->ctx, "analyse", 0.4, keep->e) >= 0) {
-        for (j = 0; j < s->n; j++) {
-            s->nnz += c.count[j];
-            s->flops += (double)c.count[j] * c.count[j];
-        }
-        s->n_super = hdi_nodes_make(&w, &c, order, &temp);
-        hdi_sym_take_supernodes(s, keep);
-        if (keep->e->status >= 0) hdi_sym_number(s, &c, &w, order, number);
+/* Supernodes, merged, in an order that needs little room, and the elimination order. */
+static hd_status hdi_sym_supernodes(hdi_symbolic *s, hdi_sym_work *w, hdi_scope *keep) {
+    int32_t v;
+    for (v = 0; v < s->n; v++) {
+        s->nnz += w->count[v];
+        s->flops += (double)w->count[v] * w->count[v];
     }
-    hdi_scope_end(&temp);
+    hdi_sym_nodes(w);
+    hdi_sym_relax(w);
+    hdi_forest_link(&w->tree);
+    for (v = 0; v < w->tree.n; v++) hdi_sym_sort_kids(w, v);
+    s->n_super = hdi_forest_postorder(&w->tree, w->node_order);
+    if (hdi_sym_take_supernodes(s, keep) >= 0) hdi_sym_number(s, w);
+    return keep->e->status;
 }
 
-/* ---- rows of the fronts ---- */
-
-/* A supernode while its rows are collected: the last row that it got, its parent, where its next row goes. */
-typedef struct hdi_sym_walk {
-    int32_t mark, up;
-    int64_t fill;
-} hdi_sym_walk;
+/* ---- fronts ---- */
 
 /* Row i of L is a subtree of the supernodes' tree, walked up from the entries of row i of A: v and those
  * above it, before supernode end, get row i. */
@@ -12809,80 +12752,71 @@ static void hdi_sym_climb(hdi_sym_walk *walk, int32_t *row, int32_t i, int32_t v
     }
 }
 
-/* Rows below the pivots of all supernodes, and the entries of A in each front, with their rows still in the
- * whole matrix. A row of A has as many entries before its pivot as after it: which comes next cannot be
- * guessed, so both are written everywhere and kept where they belong. before [n]: columns of a row. */
-static void hdi_sym_fill(hdi_symbolic *s, const hd_csr *a, const int32_t *place, hdi_sym_walk *walk,
-                         int32_t *before) {
+/* Rows below the pivots of all supernodes, and entries of A by fronts, with their rows still in the matrix. A
+ * processor cannot guess whether an entry of A stands before the pivot of its row or after it. So each is
+ * written to both lists, and only the list where it belongs gets longer. */
+static void hdi_sym_rows(hdi_symbolic *s, const hdi_sym_work *w) {
+    const hd_csr *a = w->a;
     int64_t p, r = 0;
-    int32_t j, v, q, n_before;
-    for (v = 0; v < s->n_super; v++) {
-        walk[v].mark = -1;
-        walk[v].up = s->parent[v];
-        walk[v].fill = s->row_ptr[v];
-    }
+    int32_t j, v, q;
     s->a_ptr[0] = 0;
+    for (v = 0; v < s->n_super; v++) {
+        w->walk[v].mark = -1;
+        w->walk[v].up = s->parent[v];
+        w->walk[v].fill = s->row_ptr[v];
+    }
     for (j = 0; j < s->n; j++) {
-        const int32_t row = s->perm[j], first = s->super[s->super_of[j]];
-        hdi_col_fetch(a, s->perm, j);
-        for (p = a->row_ptr[row], n_before = 0; p < a->row_ptr[row + 1]; p++) {
-            const int32_t i = place[a->col[p]];
+        const int32_t first = s->super[v = s->super_of[j]];
+        hdi_sym_fetch(a, s->perm, j);
+        for (p = a->row_ptr[s->perm[j]], q = 0; p < a->row_ptr[s->perm[j] + 1]; p++) {
+            const int32_t i = w->place[a->col[p]];
             s->a_row[r] = i;
             s->a_col[r] = j - first;
             s->a_from[r] = p;
             r += i >= j;
-            before[n_before] = i;
-            n_before += i < j;
+            w->before[q] = i;
+            q += i < j;
         }
-        s->a_ptr[s->super_of[j] + 1] = r;
-        for (q = 0; q < n_before; q++)
-            hdi_sym_climb(walk, s->row, j, s->super_of[before[q]], s->super_of[j]);
+        s->a_ptr[v + 1] = r;
+        while (q-- > 0) hdi_sym_climb(w->walk, s->row, j, s->super_of[w->before[q]], v);
     }
-    for (v = 0; v < s->n_super; v++) HEATDIFF_ASSERT(walk[v].fill == s->row_ptr[v + 1]);
+    for (v = 0; v < s->n_super; v++) HEATDIFF_ASSERT(w->walk[v].fill == s->row_ptr[v + 1]);
 }
 
-/* Places of the rows of c in its parent's front, where at tells those of rows below the pivots. */
-static void hdi_sym_relative(hdi_symbolic *s, int32_t c, const int32_t *at) {
-    const int32_t up = s->parent[c], begin = s->super[up], end = s->super[up + 1];
-    int64_t p = s->row_ptr[c];
-    for (; p < s->row_ptr[c + 1] && s->row[p] < end; p++) s->rel[p] = s->row[p] - begin;
-    s->inner[c] = (int32_t)(p - s->row_ptr[c]);
-    for (; p < s->row_ptr[c + 1]; p++) s->rel[p] = at[s->row[p]];
-}
-
-/* Rows within the fronts, of entries and of the children's rows. at [n]: where a row of the whole matrix
- * stands in the front at hand. */
+/* Rows of the matrix become rows of the fronts, for entries of A and for rows of children. */
 static void hdi_sym_places(hdi_symbolic *s, int32_t *at) {
-    int64_t p;
     int32_t v, k;
+    int64_t p;
     for (v = 0; v < s->n_super; v++) {
         const int32_t begin = s->super[v], pivots = hdi_front_pivots(s, v);
+        const int32_t *row = s->row + s->row_ptr[v];
+        s->inner[v] = 0;
         for (k = 0; k < pivots; k++) at[begin + k] = k;
-        for (p = s->row_ptr[v]; p < s->row_ptr[v + 1]; p++)
-            at[s->row[p]] = pivots + (int32_t)(p - s->row_ptr[v]);
+        for (k = 0; k < hdi_front_below(s, v); k++) at[row[k]] = pivots + k;
         for (p = s->a_ptr[v]; p < s->a_ptr[v + 1]; p++) s->a_row[p] = at[s->a_row[p]];
-        for (k = s->kid_ptr[v]; k < s->kid_ptr[v + 1]; k++) hdi_sym_relative(s, s->kid[k], at);
-        if (s->parent[v] < 0) s->inner[v] = 0;
+        for (k = s->kid_ptr[v]; k < s->kid_ptr[v + 1]; k++) {
+            const int32_t c = s->kid[k];
+            for (p = s->row_ptr[c]; p < s->row_ptr[c + 1]; p++) {
+                s->rel[p] = at[s->row[p]];
+                s->inner[c] += s->rel[p] < pivots;
+            }
+        }
     }
 }
 
 /* The fronts: their rows and entries. */
-static void hdi_sym_fronts(hdi_symbolic *s, const hd_csr *a, const int32_t *place, hdi_scope *keep) {
-    /* of the lower triangle of A, and one more that is written before it is known to be none of them */
-    const int64_t rows = s->row_ptr[s->n_super], entries = (a->nnz + s->n) / 2 + 1;
-    hdi_scope temp = hdi_scope_begin(keep->ctx, keep->e);
-    hdi_sym_walk *walk = HDI_TAKE(&temp, hdi_sym_walk, s->n_super);
-    int32_t *before = HDI_TAKE(&temp, int32_t, s->n), *at = HDI_TAKE(&temp, int32_t, s->n);
+static hd_status hdi_sym_fronts(hdi_symbolic *s, const hdi_sym_work *w, hdi_scope *keep) {
+    /* the lower triangle of A, and one that is written before it turns out to stand above the diagonal */
+    const int64_t rows = s->row_ptr[s->n_super], entries = (w->a->nnz + s->n) / 2 + 1;
     s->row = HDI_TAKE(keep, int32_t, rows);
     s->rel = HDI_TAKE(keep, int32_t, rows);
     s->a_from = HDI_TAKE(keep, int64_t, entries);
     s->a_row = HDI_TAKE(keep, int32_t, entries);
     s->a_col = HDI_TAKE(keep, int32_t, entries);
-    if (keep->e->status >= 0 && hdi_progress(keep->ctx, "analyse", 0.6, keep->e) >= 0) {
-        hdi_sym_fill(s, a, place, walk, before);
-        hdi_sym_places(s, at);
-    }
-    hdi_scope_end(&temp);
+    if (keep->e->status < 0 || hdi_progress(keep->ctx, "analyse", 0.6, keep->e) < 0) return keep->e->status;
+    hdi_sym_rows(s, w);
+    hdi_sym_places(s, w->at);
+    return HD_OK;
 }
 
 /* ---- tasks ---- */
@@ -12893,105 +12827,98 @@ enum { HDI_TASK_SHARES = 48, HDI_TASK_LEAST = 100000 };
 
 /* Work of a front, in multiply-adds or so: the sum of its squared column lengths, and a little for its being
  * there. */
-static double hdi_front_work(double m, double p) {
+static double hdi_sym_front_work(double m, double p) {
     const double u = m - p;
     return p * u * u + u * p * p + p * p * p / 3 + 40 * m;
 }
 
-/* work [n_super]: that of each supernode and all below it. Returns the most of a task. */
-static double hdi_task_limit(const hdi_symbolic *s, double *work) {
+/* work [n_super]: that of each supernode and all below it. Returns the most work of a task. */
+static double hdi_sym_work_below(const hdi_symbolic *s, double *work) {
     double total = 0;
     int32_t v, k;
     for (v = 0; v < s->n_super; v++) {
-        const double own = hdi_front_work((double)hdi_front_rows(s, v), hdi_front_pivots(s, v));
-        work[v] = own;
-        total += own;
+        work[v] = hdi_sym_front_work((double)hdi_front_rows(s, v), hdi_front_pivots(s, v));
+        total += work[v];
         for (k = s->kid_ptr[v]; k < s->kid_ptr[v + 1]; k++) work[v] += work[s->kid[k]];
     }
-    return hdi_max(total / HDI_TASK_SHARES, HDI_TASK_LEAST);
+    return hdi_max(total / (double)HDI_TASK_SHARES, HDI_TASK_LEAST);
 }
 
 /* Cuts the forest into subtrees that can go on at the same time, small neighbours together; the rest is the
  * top, where the fronts are large enough to be shared. */
-static void hdi_sym_tasks(hdi_symbolic *s, hdi_scope *keep) {
-    hdi_scope temp = hdi_scope_begin(keep->ctx, keep->e);
-    double *work = HDI_TAKE(&temp, double, s->n_super), limit, room = 0;
-    int32_t v, q, begin = 0;                     /* the first supernode that has neither task nor place in top */
-    if (work) limit = hdi_task_limit(s, work);
-    for (v = 0; work && v < s->n_super; v++) {
-        if (work[v] > limit) {
+static void hdi_sym_tasks(hdi_symbolic *s, double *work) {
+    const double most = hdi_sym_work_below(s, work);
+    double room = 0;                             /* for more work in the last task */
+    int32_t v, q = 0;                            /* below q supernodes have been given out */
+    for (v = 0; v < s->n_super; v++) {
+        if (work[v] > most) {
             s->task_of[v] = -1 - s->n_top;
             s->top[s->n_top++] = v;
             room = 0;                            /* the supernodes of a task are consecutive */
-            begin = v + 1;
-        } else if (s->parent[v] < 0 || work[s->parent[v]] > limit) {
+            q = v + 1;
+        } else if (s->parent[v] < 0 || work[s->parent[v]] > most) {
             if (work[v] > room) {
-                s->task_begin[s->n_tasks++] = begin;
-                room = limit;
+                s->task_begin[s->n_tasks++] = q;
+                room = most;
             }
             room -= work[v];
-            for (q = begin; q <= v; q++) {
+            s->task_end[s->n_tasks - 1] = v + 1;
+            for (; q <= v; q++) {
                 s->task_of[q] = s->n_tasks - 1;
                 s->task_pivots = hdi_high32(s->task_pivots, hdi_front_pivots(s, q));
                 s->task_update = hdi_high32(s->task_update, (int32_t)hdi_front_below(s, q));
             }
-            s->task_end[s->n_tasks - 1] = begin = v + 1;
         }
     }
-    hdi_scope_end(&temp);
 }
 
 /* ---- memory ---- */
+/* What fronts leave for their parents, update matrices or vectors, lives in a space of each task and in one
+ * of the top, on two stacks that grow towards each other from both ends. Fronts of even depth use the one,
+ * those of odd depth the other. In postorder a front is pushed on its stack while its children, all of them,
+ * are on top of the other one, and then they are popped. So a space is as large as what lives in it at the
+ * same time. From the roots to the leaves all this happens backwards, and is as safe. */
 
-/* A run of fronts, those of a task or those of the top, keeps what its fronts leave for their parents on two
- * stacks, which grow towards each other from both ends of one space. A front uses the stack that its children
- * do not use. In postorder the children are then on top of theirs when their parent has been pushed on the
- * other one, and are popped. So the space is as large as what lives in it at the same time. Backwards, from
- * the roots to the leaves, places live as long as forwards, and this is safe too. */
 enum { HDI_SIDE_LOW, HDI_SIDE_HIGH, HDI_SIDE_APART, HDI_SIDES };
 
 typedef struct hdi_stacks {
     const hdi_symbolic *s;
     int matrices;                /* 0: vectors of u entries */
     int64_t *at;                 /* [n_super] where each begins */
-    char *side;                  /* [n_super] the stack of each; roots of a task may stand apart */
+    char *side;                  /* [n_super] the stack of each; APART: on none */
     int64_t used[HDI_SIDES];
 } hdi_stacks;
 
-/* Entries of the update matrix, or vector, of a supernode. */
 static int64_t hdi_stacks_size(const hdi_stacks *z, int32_t v) {
     const int64_t u = hdi_front_below(z->s, v);
     return z->matrices ? hdi_triangle(u) : u;
 }
 
-/* Whether a supernode is in the same run as its child. */
-static int hdi_stacks_together(const hdi_symbolic *s, int32_t v, int32_t c) {
-    return (s->task_of[v] < 0) == (s->task_of[c] < 0);
+/* Whether its parent is not in the same task, or not in the top with it. */
+static int hdi_stacks_root(const hdi_symbolic *s, int32_t v) {
+    const int32_t up = s->parent[v];
+    return up < 0 || (s->task_of[up] < 0) != (s->task_of[v] < 0);
 }
 
-/* Places for list[begin..end), or for these numbers themselves, in a space that begins at base. Roots go to
- * the given side; those that stand apart are counted on in used. Returns where the space ends. */
-static int64_t hdi_stacks_run(hdi_stacks *z, const int32_t *list, int32_t begin, int32_t end, int root,
+/* Places for list[begin..end), or for these numbers themselves, in a space that begins at base. apart: roots
+ * are on no stack, and their places are counted from zero on. Returns the end of the space. */
+static int64_t hdi_stacks_run(hdi_stacks *z, const int32_t *list, int32_t begin, int32_t end, int apart,
                               int64_t base) {
     const hdi_symbolic *s = z->s;
-    int64_t *used = z->used, most = 0;
+    int64_t most = 0, *used = z->used;
     int32_t q, k;
     used[HDI_SIDE_LOW] = used[HDI_SIDE_HIGH] = 0;
-    for (q = end; q-- > begin;) {
-        const int32_t v = list ? list[q] : q, up = s->parent[v];
-        z->side[v] = (char)root;
-        if (up >= 0 && hdi_stacks_together(s, up, v))
-            z->side[v] = z->side[up] == HDI_SIDE_HIGH ? HDI_SIDE_LOW : HDI_SIDE_HIGH;
-    }
     for (q = begin; q < end; q++) {
         const int32_t v = list ? list[q] : q;
+        if (apart && hdi_stacks_root(s, v)) z->side[v] = HDI_SIDE_APART;
         z->at[v] = used[(int)z->side[v]];
         used[(int)z->side[v]] += hdi_stacks_size(z, v);
         most = hdi_most(most, used[HDI_SIDE_LOW] + used[HDI_SIDE_HIGH]);
         for (k = s->kid_ptr[v + 1]; k-- > s->kid_ptr[v];) {
             const int32_t c = s->kid[k];
-            if (!hdi_stacks_together(s, v, c)) continue;
+            if (hdi_stacks_root(s, c)) continue;
             used[(int)z->side[c]] -= hdi_stacks_size(z, c);
+            /* it was on top, so its place is given out again only now */
             HEATDIFF_ASSERT(z->side[c] != z->side[v] && z->at[c] == used[(int)z->side[c]]);
         }
     }
@@ -13003,83 +12930,73 @@ static int64_t hdi_stacks_run(hdi_stacks *z, const int32_t *list, int32_t begin,
     return base + most;
 }
 
-/* Places of the update matrices, and the size of it all. Every task has a space of its own, as tasks go on at
- * the same time. The top comes after them: its space begins where theirs do, and there the tasks' roots stand
- * apart, because they stay until the top has taken them. Behind it roots are on the stacks. */
-static int64_t hdi_stacks_matrices(hdi_stacks *z) {
+/* All places, and the size of all spaces. Those of the tasks follow each other, as tasks go on at the same
+ * time. The top comes after them, so matrices of the top have the same space as those of the first tasks; but
+ * then the roots there stand apart, behind this space, because they stay until the top has taken them.
+ * Vectors of the top have places of their own, as its fronts then go on in any order that the tree allows. */
+static int64_t hdi_stacks_place(hdi_stacks *z) {
     const hdi_symbolic *s = z->s;
-    const int64_t top = hdi_stacks_run(z, s->top, 0, s->n_top, HDI_SIDE_LOW, 0);
-    int64_t end = 0;
-    int32_t k, v, n;
+    int64_t top, end = 0;
+    int32_t v, n, k;
+    z->used[HDI_SIDE_APART] = 0;
+    for (v = s->n_super; v-- > 0;)
+        z->side[v] = s->parent[v] < 0 || z->side[s->parent[v]] ? HDI_SIDE_LOW : HDI_SIDE_HIGH;
+    top = z->matrices ? hdi_stacks_run(z, s->top, 0, s->n_top, 0, 0) : 0;
     for (n = 0; n < s->n_tasks && end < top; n++)
-        end = hdi_stacks_run(z, NULL, s->task_begin[n], s->task_end[n], HDI_SIDE_APART, end);
+        end = hdi_stacks_run(z, NULL, s->task_begin[n], s->task_end[n], 1, end);
     end = hdi_most(end, top);
-    for (k = 0; k < n; k++)
-        for (v = s->task_begin[k]; v < s->task_end[k]; v++)
-            if (z->side[v] == HDI_SIDE_APART) z->at[v] += end;
+    for (v = 0; n > 0 && v < s->task_end[n - 1]; v++)
+        if (z->side[v] == HDI_SIDE_APART) z->at[v] += end;
     end += z->used[HDI_SIDE_APART];
     for (; n < s->n_tasks; n++)
-        end = hdi_stacks_run(z, NULL, s->task_begin[n], s->task_end[n], HDI_SIDE_LOW, end);
-    return end;
-}
-
-/* Places of the vectors: every task has a space of its own, and so has every front of the top, as those are
- * worked on in any order that the tree allows. */
-static int64_t hdi_stacks_vectors(hdi_stacks *z) {
-    const hdi_symbolic *s = z->s;
-    int64_t end = 0;
-    int32_t k;
-    for (k = 0; k < s->n_tasks; k++)
-        end = hdi_stacks_run(z, NULL, s->task_begin[k], s->task_end[k], HDI_SIDE_LOW, end);
-    for (k = 0; k < s->n_top; k++) {
+        end = hdi_stacks_run(z, NULL, s->task_begin[n], s->task_end[n], 0, end);
+    for (k = 0; k < s->n_top && !z->matrices; k++) {
         z->at[s->top[k]] = end;
         end += hdi_stacks_size(z, s->top[k]);
     }
     return end;
 }
 
-static void hdi_sym_memory(hdi_symbolic *s, hdi_scope *keep) {
-    hdi_scope temp = hdi_scope_begin(keep->ctx, keep->e);
+static void hdi_sym_memory(hdi_symbolic *s, char *side) {
     hdi_stacks z;
-    memset(&z, 0, sizeof z);
     z.s = s;
-    z.side = HDI_TAKE(&temp, char, s->n_super);
-    if (z.side) {
-        z.matrices = 1;
-        z.at = s->update;
-        s->work = hdi_stacks_matrices(&z);
-        z.matrices = 0;
-        z.at = s->vector;
-        s->vector_size = hdi_stacks_vectors(&z);
-    }
-    hdi_scope_end(&temp);
+    z.side = side;
+    z.matrices = 1;
+    z.at = s->update;
+    s->work = hdi_stacks_place(&z);
+    z.matrices = 0;
+    z.at = s->vector;
+    s->vector_size = hdi_stacks_place(&z);
 }
-
-/* ---- all of it ---- */
 
 /* Analysis of a symmetric pattern under the order perm, which is used up. */
 static hd_status hdi_symbolic_make(hdi_symbolic *s, const hd_csr *a, int32_t *perm, hd_context *ctx,
                                    hd_error *e) {
     hdi_scope keep = hdi_scope_begin(ctx, e), temp = hdi_scope_begin(ctx, e);
-    int32_t *place = HDI_TAKE(&temp, int32_t, a->n_rows);
+    hdi_sym_work w;
     memset(s, 0, sizeof *s);
     s->n = a->n_rows;
-    if (e->status >= 0) hdi_sym_supernodes(s, a, perm, place, &keep);
-    if (e->status >= 0) hdi_sym_fronts(s, a, place, &keep);
-    if (e->status >= 0) hdi_sym_tasks(s, &keep);
-    if (e->status >= 0) hdi_sym_memory(s, &keep);
+    if (hdi_sym_work_take(&w, a, perm, &temp) >= 0) {
+        hdi_sym_postorder(&w);
+        hdi_sym_counts(&w);
+        if (hdi_progress(ctx, "analyse", 0.4, e) >= 0 && hdi_sym_supernodes(s, &w, &keep) >= 0 &&
+            hdi_sym_fronts(s, &w, &keep) >= 0) {
+            hdi_sym_tasks(s, w.work);
+            hdi_sym_memory(s, w.side);
+        }
+    }
     hdi_scope_end(&temp);
     if (e->status < 0) {
         memset(s, 0, sizeof *s);
         return hdi_scope_end(&keep);
     }
-    for (; s->n_blocks < keep.n; s->n_blocks++) s->block[s->n_blocks] = keep.block[s->n_blocks];
+    s->n_blocks = keep.n;
+    memcpy(s->block, keep.block, (size_t)keep.n * sizeof *keep.block);
     return HD_OK;
 }
 
 /* ==== [16] order ====
- * Which elimination order: what the caller asks for and may ask for, and the choice where it is left open.
- * May call [15]. */
+ * Which elimination order: what a caller may ask for, and the choice where it is left open. May call [15]. */
 
 /* From so many rows on nested dissection pays for itself: it takes four to nine times as long to find as
  * minimum degree, and saves half of the flops. For the poles of a set that is soon. One real factor and some
