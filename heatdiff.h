@@ -2169,6 +2169,7 @@ static double hdi_min(double a, double b) { return a < b ? a : b; }
 /* The larger one, or NaN. */
 static double hdi_worst(double a, double b) { return a >= b || hdi_nan(a) ? a : b; }
 static int64_t hdi_least(int64_t a, int64_t b) { return a < b ? a : b; }
+static int64_t hdi_most(int64_t a, int64_t b) { return a < b ? b : a; }
 
 /* By value, so that no branch has to be guessed. */
 static HDI_INLINE int32_t hdi_low32(int32_t a, int32_t b) { return a < b ? a : b; }
@@ -12394,8 +12395,6 @@ static void hdi_front_shape(const hdi_symbolic *s, int32_t v, int64_t *p, int64_
     *m = *p + *u;
 }
 
-static int64_t hdi_most(int64_t a, int64_t b) { return a < b ? b : a; }
-
 /* ---- work space ---- */
 
 /* A forest on the numbers from 0 to n - 1, in which every parent has a larger number than its children. */
@@ -12900,30 +12899,30 @@ static int hdi_stacks_root(const hdi_symbolic *s, int32_t v) {
     return up < 0 || (s->task_of[up] < 0) != (s->task_of[v] < 0);
 }
 
-/* Places for list[begin..end), or for these numbers themselves, in a space that begins at base. apart: roots
- * are on no stack, and their places are counted from zero on. Returns the end of the space. */
-static int64_t hdi_stacks_run(hdi_stacks *z, const int32_t *list, int32_t begin, int32_t end, int apart,
-                              int64_t base) {
+/* Places for task k, or for the top if k < 0, in a space that begins at base. apart: roots are on no stack, and
+ * their places are counted from zero on. Returns the end of the space. */
+static int64_t hdi_stacks_run(hdi_stacks *z, int32_t k, int apart, int64_t base) {
     const hdi_symbolic *s = z->s;
+    const int32_t begin = k < 0 ? 0 : s->task_begin[k], end = k < 0 ? s->n_super : s->task_end[k];
     int64_t most = 0, *used = z->used;
-    int32_t q, k;
+    int32_t v, q;
     used[HDI_SIDE_LOW] = used[HDI_SIDE_HIGH] = 0;
-    for (q = begin; q < end; q++) {
-        const int32_t v = list ? list[q] : q;
+    for (v = begin; v < end; v++) {
+        if ((s->task_of[v] < 0) != (k < 0)) continue;
         if (apart && hdi_stacks_root(s, v)) z->side[v] = HDI_SIDE_APART;
         z->at[v] = used[(int)z->side[v]];
         used[(int)z->side[v]] += hdi_stacks_size(z, v);
         most = hdi_most(most, used[HDI_SIDE_LOW] + used[HDI_SIDE_HIGH]);
-        for (k = s->kid_ptr[v + 1]; k-- > s->kid_ptr[v];) {
-            const int32_t c = s->kid[k];
+        for (q = s->kid_ptr[v + 1]; q-- > s->kid_ptr[v];) {
+            const int32_t c = s->kid[q];
             if (hdi_stacks_root(s, c)) continue;
             used[(int)z->side[c]] -= hdi_stacks_size(z, c);
-            /* it was on top, so its place is given out again only now */
+            /* c was on top of its stack: so no place is given out again before it is free */
             HEATDIFF_ASSERT(z->side[c] != z->side[v] && z->at[c] == used[(int)z->side[c]]);
         }
     }
-    for (q = begin; q < end; q++) {
-        const int32_t v = list ? list[q] : q;
+    for (v = begin; v < end; v++) {
+        if ((s->task_of[v] < 0) != (k < 0)) continue;
         if (z->side[v] == HDI_SIDE_LOW) z->at[v] += base;
         if (z->side[v] == HDI_SIDE_HIGH) z->at[v] = base + most - z->at[v] - hdi_stacks_size(z, v);
     }
@@ -12931,25 +12930,24 @@ static int64_t hdi_stacks_run(hdi_stacks *z, const int32_t *list, int32_t begin,
 }
 
 /* All places, and the size of all spaces. Those of the tasks follow each other, as tasks go on at the same
- * time. The top comes after them, so matrices of the top have the same space as those of the first tasks; but
- * then the roots there stand apart, behind this space, because they stay until the top has taken them.
- * Vectors of the top have places of their own, as its fronts then go on in any order that the tree allows. */
+ * time. The top comes after them, so its matrices have the same space as those of the first tasks. There the
+ * roots of the tasks stand apart, behind that space, because they stay until the top has taken them. Vectors
+ * of the top have places of their own, as its fronts then go on in any order that the tree allows. */
 static int64_t hdi_stacks_place(hdi_stacks *z) {
     const hdi_symbolic *s = z->s;
+    const int32_t n = s->n_tasks;
     int64_t top, end = 0;
-    int32_t v, n, k;
+    int32_t v, k;
     z->used[HDI_SIDE_APART] = 0;
     for (v = s->n_super; v-- > 0;)
         z->side[v] = s->parent[v] < 0 || z->side[s->parent[v]] ? HDI_SIDE_LOW : HDI_SIDE_HIGH;
-    top = z->matrices ? hdi_stacks_run(z, s->top, 0, s->n_top, 0, 0) : 0;
-    for (n = 0; n < s->n_tasks && end < top; n++)
-        end = hdi_stacks_run(z, NULL, s->task_begin[n], s->task_end[n], 1, end);
+    top = z->matrices ? hdi_stacks_run(z, -1, 0, 0) : 0;
+    for (k = 0; k < n && end < top; k++) end = hdi_stacks_run(z, k, 1, end);
     end = hdi_most(end, top);
-    for (v = 0; n > 0 && v < s->task_end[n - 1]; v++)
+    for (v = 0; v < s->n_super; v++)
         if (z->side[v] == HDI_SIDE_APART) z->at[v] += end;
     end += z->used[HDI_SIDE_APART];
-    for (; n < s->n_tasks; n++)
-        end = hdi_stacks_run(z, NULL, s->task_begin[n], s->task_end[n], 0, end);
+    for (; k < n; k++) end = hdi_stacks_run(z, k, 0, end);
     for (k = 0; k < s->n_top && !z->matrices; k++) {
         z->at[s->top[k]] = end;
         end += hdi_stacks_size(z, s->top[k]);
