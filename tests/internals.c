@@ -158,30 +158,6 @@ static void int_sums(void) {
 
 /* ---- [03] memory ---- */
 
-/* Takes that are only added up: as many bytes as blocks of their own would count, and 2^60 where a number has no meaning. */
-static void int_tally(void) {
-    hd_context ctx;
-    hd_error e = int_no_error();
-    uint64_t bytes;
-    hdi_scope s = hdi_scope_tally(&bytes, &e), real;
-    memset(&ctx, 0, sizeof ctx);
-    real = hdi_scope_begin(&ctx, &e);
-    CHECK(!HDI_TAKE(&s, double, 7) && HDI_TAKE(&real, double, 7));
-    CHECK(!HDI_TAKE(&s, char, 0) && HDI_TAKE(&real, char, 0));
-    CHECK(!HDI_TAKE(&s, hd_c64, 1000) && HDI_TAKE(&real, hd_c64, 1000));
-    CHECK(bytes == ctx.bytes_in_use && e.status == HD_OK);
-    CHECK(hdi_scope_end(&real) == HD_OK && ctx.bytes_in_use == 0);
-    hdi_scope_count(&bytes, UINT64_MAX / 8, 8);
-    CHECK(bytes == UINT64_C(1) << 60);
-    hdi_scope_count(&bytes, 5, 8);
-    CHECK(bytes == UINT64_C(1) << 60);
-    ctx.byte_limit = 1000;
-    ctx.bytes_in_use = 900;
-    CHECK(hdi_need(&ctx, 100, "one more", &e) == HD_OK);
-    CHECK(hdi_need(&ctx, 101, "one more", &e) == HD_ERR_MEMORY_LIMIT && e.value == 1001);
-    CHECK(strcmp(e.text, "one more would bring the memory in use to 0.1 MB, and the byte limit is 0.1 MB") == 0);
-}
-
 static void *int_odd_alloc(void *user, size_t size) {
     char *p = (char *)malloc(size + 8);
     (void)user;
@@ -219,33 +195,6 @@ static void int_memory(void) {
         CHECK(hdi_alloc(&ctx, PTRDIFF_MAX - HDI_ALIGN - HDI_HEADER + k, 1, &e) == NULL);
         CHECK(e.status == (k ? HD_ERR_TOO_LARGE : HD_ERR_MEMORY_LIMIT));
     }
-}
-
-/* A scope frees what it has, but for what is kept; after one failure all fail; one that is full gives no more. */
-static void int_scope(void) {
-    hd_context ctx;
-    hd_error e = int_no_error();
-    hdi_scope s;
-    double *kept;
-    int i, missing = 0, set = 0;
-    memset(&ctx, 0, sizeof ctx);
-    s = hdi_scope_begin(&ctx, &e);
-    CHECK(e.status == HD_OK && e.face == -1 && e.pole == -1);
-    kept = (double *)hdi_take_zero(&s, 10, sizeof(double));
-    CHECK(hdi_take(&s, 3, sizeof(int32_t)) && hdi_keep(&s, kept) == kept);
-    ctx.allocation_limit = ctx.allocations;
-    CHECK(hdi_take(&s, 1, 1) == NULL && e.status == HD_ERR_MEMORY_LIMIT);
-    ctx.allocation_limit = 0;
-    CHECK(hdi_take(&s, 1, 1) == NULL);
-    CHECK(hdi_scope_end(&s) == HD_ERR_MEMORY_LIMIT && ctx.bytes_in_use > 0);
-    for (i = 0; i < 10; i++) set += kept[i] != 0;
-    hdi_free(&ctx, kept);
-    CHECK(set == 0 && ctx.bytes_in_use == 0);
-    hdi_error_clear(&e);
-    s = hdi_scope_begin(&ctx, &e);
-    for (i = 0; i < HDI_SCOPE_MOST; i++) missing += HDI_TAKE(&s, int32_t, i) == NULL;
-    CHECK(missing == 0 && e.status == HD_OK && HDI_TAKE(&s, int32_t, 1) == NULL && e.status == HD_ERR_TOO_LARGE);
-    CHECK(hdi_scope_end(&s) == HD_ERR_TOO_LARGE && ctx.bytes_in_use == 0);
 }
 
 /* Advice on large blocks begins where pages do, be they of 4, 16 or 64 KB, and stays within the block. */
@@ -447,51 +396,6 @@ static void int_collinear(void) {
 
 /* ---- [19] precond ---- */
 
-/* The order by its definition: each vertex follows its first neighbour in the order, those that follow the same one stand by degree.
- * Returns how often that does not hold; width: the largest distance of neighbours. Components come one after the other. */
-static int32_t int_not_cuthill_mckee(const hd_csr *a, const int32_t *perm, int32_t *width) {
-    int32_t *at = DENSE_NEW(int32_t, 2 * a->n_rows), *up = at + a->n_rows, i, wrong = 0;
-    int64_t p;
-    for (i = 0; i < a->n_rows; i++) at[i] = -1;
-    for (i = 0; i < a->n_rows; i++) at[perm[i]] = i;
-    for (i = *width = 0; i < a->n_rows; i++) {
-        const int64_t *ptr = a->row_ptr + perm[i];
-        wrong += at[i] < 0;                      /* not a permutation */
-        for (up[i] = i, p = ptr[0]; p < ptr[1]; p++)
-            if (at[a->col[p]] < up[i]) up[i] = at[a->col[p]];
-        if (i - up[i] > *width) *width = i - up[i];
-        if (i == 0 || up[i] == i) continue;
-        wrong += up[i] < up[i - 1];
-        wrong += up[i] == up[i - 1] && ptr[1] - ptr[0] < a->row_ptr[perm[i - 1] + 1] - a->row_ptr[perm[i - 1]];
-    }
-    free(at);
-    return wrong;
-}
-
-static void int_cuthill_mckee(void) {
-    const double offset[3] = {2, 0, 0};
-    shape s = shape_grid(40, 8, 0.2), two = shape_grid(5, 5, 0), both = shape_disjoint(&s, &two, offset);
-    hd_laplacian *lap = NULL;
-    hd_csr shuffled;
-    hd_context ctx;
-    hd_error e = int_no_error();
-    uint64_t seed = 3;
-    int32_t *perm = DENSE_NEW(int32_t, both.n), wrong, width = 0;
-    memset(&ctx, 0, sizeof ctx);
-    CHECK(hd_laplacian_triangles(&lap, both.xyz, both.n, both.tri, both.n_tri, NULL, &e) == HD_OK);
-    dense_shuffle(perm, both.n, &seed);
-    CHECK(hd_csr_permute(&shuffled, &lap->L, perm, NULL, &e) == HD_OK);
-    CHECK(hdi_precond_cuthill_mckee(&shuffled, perm, &ctx, &e) == HD_OK);
-    wrong = int_not_cuthill_mckee(&shuffled, perm, &width);
-    CHECK_MSG(wrong == 0 && width <= 20, "%d vertices out of order, bandwidth %d of a strip 8 wide", (int)wrong, (int)width);
-    hd_csr_free(&shuffled, NULL);
-    hd_laplacian_free(lap);
-    free(perm);
-    shape_free(&s);
-    shape_free(&two);
-    shape_free(&both);
-}
-
 static dense_c64 *int_dense_of(const hdi_upper *up, const hd_c64 *u, const hd_c64 *d) {
     const int32_t n = up->n;
     dense_c64 *a = DENSE_NEW(dense_c64, n * n);
@@ -671,7 +575,7 @@ static void int_krylov_done(void) {
     CHECK(hdi_krylov_done(5, 1e-3, 1e-3) == 1 && hdi_krylov_done(1e-3, 1e-3, 1e-2) == 1);
 }
 
-/* ---- [15] analysis and [16] schedule, against dense elimination; [17] factors and sweeps, [18] inverses ---- */
+/* ---- helpers ---- */
 
 static double int_off(const double *a, const double *b, int64_t n) {
     return dense_max_diff(a, b, n) / (1 + dense_max_abs(b, n));
@@ -681,429 +585,6 @@ static void int_noise(double *x, int64_t n, uint64_t *seed) {
     int64_t i;
     for (i = 0; i < n; i++) x[i] = dense_signed(seed);
 }
-
-/* Patterns: a grid, a random graph that falls apart, a path, a star, no edge at all, and full matrices joined by some of
- * their rows, so that fronts have about as many pivots and rows as one likes. */
-typedef struct int_kind { const char *name; int32_t n, of, joint; } int_kind;
-static const int_kind int_kinds[] = {
-    {"grid", 144, 0, 0}, {"random", 90, 0, 0}, {"path", 54, 0, 0}, {"star", 61, 0, 0}, {"diagonal", 30, 0, 0},
-    {"full", HDI_PANEL + 9, HDI_PANEL + 9, 0}, {"4, 33", 41, 4, 33}, {"7, 3", 31, 7, 3}, {"9, 12", 48, 9, 12},
-    {"23, 50", 96, 23, 50}, {"33, 9", 75, 33, 9},
-};
-enum { INT_KINDS = sizeof int_kinds / sizeof *int_kinds };
-
-static int int_joined(int kind, int32_t a, int32_t b, uint64_t *seed) {
-    const int32_t of = int_kinds[kind].of;
-    switch (kind) {
-        case 0: return a - b == 12 || (a % 12 && (a - b == 1 || a - b == 13));
-        case 1: return dense_random(seed) % 70 < 2;
-        case 2: return b == a - 1;
-        case 3: return b == 0;
-        case 4: return 0;
-        default: return a / of == b / of || a >= int_kinds[kind].n - int_kinds[kind].joint;
-    }
-}
-
-static hd_csr int_pattern(int kind) {
-    const int32_t n = int_kinds[kind].n;
-    int32_t *i = DENSE_NEW(int32_t, 2 * n * n), *j = i + n * n, a, b, c = 0;
-    uint64_t seed = 5;
-    hd_csr out;
-    for (a = 0; a < n; a++) {
-        i[c] = a;
-        j[c++] = a;
-        for (b = 0; b < a; b++) {
-            if (!int_joined(kind, a, b, &seed)) continue;
-            i[c] = j[c + 1] = a;
-            j[c] = i[c + 1] = b;
-            c += 2;
-        }
-    }
-    CHECK(hd_csr_from_triplets(&out, n, n, c, i, j, NULL, NULL, NULL) == HD_OK);
-    free(i);
-    return out;
-}
-
-/* l [n n]: where L of P A P' has entries, diagonal included, by elimination. */
-static char *int_fill(const hd_csr *a, const int32_t *perm) {
-    const int32_t n = a->n_rows;
-    char *l = DENSE_NEW(char, n * n);
-    int32_t *inv = DENSE_NEW(int32_t, n), i, j, k;
-    int64_t p;
-    for (i = 0; i < n; i++) inv[perm[i]] = i;
-    for (i = 0; i < n; i++)
-        for (p = a->row_ptr[i]; p < a->row_ptr[i + 1]; p++) l[inv[i] * n + inv[a->col[p]]] = 1;
-    for (k = 0; k < n; k++)
-        for (i = k + 1; i < n; i++)
-            for (j = k + 1; l[i * n + k] && j < n; j++) l[i * n + j] |= l[j * n + k];
-    free(inv);
-    return l;
-}
-
-/* Every entry of L has a place in its front, and the counts are those of the entries. */
-static void int_fill_right(const hdi_symbolic *s, const hd_csr *a, const char *what) {
-    char *l = int_fill(a, s->perm);
-    int64_t nnz = 0, p;
-    int32_t i, j, lost = 0;
-    double flops = 0;
-    for (j = 0; j < s->n; j++) {
-        const int32_t v = s->super_of[j];
-        int32_t count = 0;
-        for (i = j; i < s->n; i++) {
-            int inside = s->super_of[i] == v;
-            if (!l[i * s->n + j]) continue;
-            count++;
-            for (p = s->row_ptr[v]; p < s->row_ptr[v + 1]; p++) inside |= s->row[p] == i;
-            lost += !inside;
-        }
-        nnz += count;
-        flops += (double)count * count;
-    }
-    CHECK_MSG(lost == 0, "%s: %d entries of L have no place", what, (int)lost);
-    CHECK_MSG(nnz == s->nnz && flops == s->flops && s->flops_done >= s->flops,
-              "%s: %lld non-zeros and %g flops, not %lld and %g", what,
-              (long long)s->nnz, s->flops, (long long)nnz, flops);
-    free(l);
-}
-
-/* Fronts share out the pivots, rows ascend and stand in the parent's front where rel says, and so do the entries of A. */
-static void int_fronts_right(const hdi_symbolic *s, const hd_csr *a, const char *what) {
-    int32_t *seen = DENSE_NEW(int32_t, s->n + 1), v, k, i, row, col, wrong = s->super[0] != 0 || s->super[s->n_super] != s->n;
-    int64_t p, entries = 0;
-    for (i = 0; i < s->n; i++) wrong += seen[s->perm[i]]++ != 0;
-    for (v = 0; v < s->n_super; v++) {
-        const int32_t up = s->parent[v], width = up < 0 ? 0 : s->super[up + 1] - s->super[up];
-        wrong += s->super[v] >= s->super[v + 1] || (up != -1 && up <= v) || (up == -1) != (s->row_ptr[v] == s->row_ptr[v + 1]);
-        for (i = s->super[v]; i < s->super[v + 1]; i++) wrong += s->super_of[i] != v;
-        for (p = s->row_ptr[v]; p < s->row_ptr[v + 1]; p++) {
-            const int32_t at = s->rel[p];
-            wrong += s->row[p] < (p > s->row_ptr[v] ? s->row[p - 1] + 1 : s->super[v + 1]) || s->row[p] >= s->n;
-            wrong += at < 0 || (at < width ? s->super[up] + at : s->row[s->row_ptr[up] + at - width]) != s->row[p];
-        }
-        for (k = s->kid_ptr[v]; k < s->kid_ptr[v + 1]; k++) wrong += s->parent[s->kid[k]] != v;
-        for (p = s->a_ptr[v]; p < s->a_ptr[v + 1]; p++, entries++) {
-            hdi_entry_place(s, v, p, &row, &col);
-            for (i = s->perm[col]; a->row_ptr[i + 1] <= s->a_from[p]; i++) {}
-            wrong += i != s->perm[col] || s->a_from[p] < a->row_ptr[i] || s->perm[row] != a->col[s->a_from[p]] || row < col;
-        }
-    }
-    memset(seen, 0, (size_t)s->n * sizeof *seen);
-    for (k = 0; k < s->n_tasks; k++)             /* and so do subtrees and the top */
-        for (v = s->task_begin[k]; v < s->task_end[k]; v++) {
-            seen[v]++;
-            wrong += s->task_of[v] != k || (s->parent[v] >= 0 && s->task_of[s->parent[v]] >= 0 && s->task_of[s->parent[v]] != k);
-        }
-    for (k = 0; k < s->n_top; k++) {
-        seen[s->top[k]]++;
-        wrong += s->task_of[s->top[k]] != -1 - k || (k > 0 && s->top[k] <= s->top[k - 1]);
-    }
-    for (v = 0; v < s->n_super; v++) wrong += seen[v] != 1;
-    CHECK_MSG(wrong == 0 && entries == (a->nnz + s->n) / 2, "%s: %d numbers are wrong; %lld entries", what, (int)wrong,
-              (long long)entries);
-    free(seen);
-}
-
-/* Places in memory: what v leaves is held until its parent is through. Subtrees go on at the same time, then the top in
- * turn; vectors of the top all stay. No two overlap that are held at the same time. */
-static void int_places(const hdi_symbolic *s, int triangle, const char *what) {
-    const int64_t *at = triangle ? s->update : s->vector, size = triangle ? s->work : s->vector_size;
-    int32_t v, w, clash = 0;
-    for (v = 0; v < s->n_super; v++) {
-        const int32_t up = s->parent[v], task = s->task_of[v];
-        const int64_t u = hdi_front_below(s, v), end = at[v] + (triangle ? u * (u + 1) / 2 : u);
-        clash += u > 0 && (at[v] < 0 || end > size);
-        for (w = 0; w < s->n_super && u > 0; w++) {
-            const int64_t below = hdi_front_below(s, w), last = at[w] + (triangle ? below * (below + 1) / 2 : below);
-            int both;
-            if (s->task_of[w] >= 0) both = task == s->task_of[w] ? v < w && w <= up : task >= 0;
-            else both = (task < 0 ? v < w : s->task_of[up] < 0) && (w <= up || !triangle);
-            clash += both && below > 0 && at[v] < last && at[w] < end;
-        }
-    }
-    CHECK_MSG(clash == 0, "%s: %d %s are another's or nowhere", what, (int)clash, triangle ? "updates" : "vectors");
-}
-
-/* Symmetric matrices on one pattern, diagonally dominant: four complex ones, and as the last a real one, whose pivots have
- * both signs; the inverses; X, with zeros here and there, and forms x_i' Z x_i of its rows. */
-enum { INT_REAL = 4, INT_MATRICES };
-typedef struct int_system {
-    hd_csr a;
-    double *real, *x;
-    hd_c64 *z[INT_MATRICES];
-    dense_c64 *inverse[INT_MATRICES], *form[INT_MATRICES];
-} int_system;
-
-/* In [-1, 1), the same for (i,j) and (j,i). */
-static double int_entry(int32_t i, int32_t j, int salt) {
-    uint64_t seed = ((uint64_t)(i > j ? i : j) * 1009 + (uint64_t)(i > j ? j : i)) * 64 + (uint64_t)salt + 1;
-    (void)dense_random(&seed);
-    return dense_signed(&seed);
-}
-
-/* In place, by Gauss and Jordan; without pivots from elsewhere, as the diagonal dominates. */
-static void int_dense_invert(dense_c64 *a, int32_t n) {
-    int32_t i, j, k;
-    for (k = 0; k < n; k++) {
-        dense_c64 *row = a + k * n;
-        const dense_c64 pivot = row[k];
-        row[k] = dense_c(1, 0);
-        for (j = 0; j < n; j++) row[j] = dense_cquotient(row[j], pivot);
-        for (i = 0; i < n; i++) {
-            const dense_c64 f = a[i * n + k];
-            if (i == k || (f.re == 0 && f.im == 0)) continue;
-            a[i * n + k] = dense_c(0, 0);
-            for (j = 0; j < n; j++) a[i * n + j] = dense_cfma(a[i * n + j], f, row[j]);
-        }
-    }
-}
-
-static dense_c64 int_form(const int_system *y, const dense_c64 *inverse, int32_t i) {
-    dense_c64 sum = dense_c(0, 0);
-    int64_t p, q;
-    for (p = y->a.row_ptr[i]; p < y->a.row_ptr[i + 1]; p++)
-        for (q = y->a.row_ptr[i]; q < y->a.row_ptr[i + 1] && y->x[p] != 0; q++)
-            sum = dense_cfma(sum, dense_c(-y->x[p] * y->x[q], 0), inverse[y->a.col[p] * y->a.n_rows + y->a.col[q]]);
-    return sum;
-}
-
-static int_system int_system_make(int kind) {
-    int_system y;
-    int32_t n, i, j, q;
-    int64_t p;
-    y.a = int_pattern(kind);
-    n = y.a.n_rows;
-    y.real = DENSE_NEW(double, y.a.nnz);
-    y.x = DENSE_NEW(double, y.a.nnz);
-    for (q = 0; q < INT_MATRICES; q++) {
-        y.z[q] = DENSE_NEW(hd_c64, y.a.nnz);
-        y.inverse[q] = DENSE_NEW(dense_c64, n * n);
-        y.form[q] = DENSE_NEW(dense_c64, n);
-        for (i = 0; i < n; i++)
-            for (p = y.a.row_ptr[i]; p < y.a.row_ptr[i + 1]; p++) {
-                const double most = 1.5 * (double)(y.a.row_ptr[i + 1] - y.a.row_ptr[i]);
-                const double turn = q < INT_REAL ? 1 + q : i % 3 ? 0 : acos(-1.0);
-                j = y.a.col[p];
-                y.z[q][p] = hdi_c(int_entry(i, j, 2 * q), int_entry(i, j, 2 * q + 1));
-                if (i == j) y.z[q][p] = hdi_c(most * cos(turn), most * sin(turn));
-                if (q == INT_REAL) y.real[p] = y.z[q][p].re;
-                if (q == INT_REAL) y.z[q][p].im = 0;
-                y.x[p] = int_entry(i, j, 20) < -0.6 ? 0 : int_entry(i, j, 21);
-                y.inverse[q][i * n + j] = dense_c(y.z[q][p].re, y.z[q][p].im);
-            }
-        int_dense_invert(y.inverse[q], n);
-        for (i = 0; i < n; i++) y.form[q][i] = int_form(&y, y.inverse[q], i);
-    }
-    return y;
-}
-
-static void int_system_free(int_system *y) {
-    int q;
-    for (q = 0; q < INT_MATRICES; q++) {
-        free(y->z[q]);
-        free(y->inverse[q]);
-        free(y->form[q]);
-    }
-    free(y->real);
-    free(y->x);
-    hd_csr_free(&y->a, NULL);
-}
-
-/* A x = b for k right-hand sides side by side, of which x has rows of k entries in elimination order. sparse: few
- * non-zeros, and fronts that see none of them are told to be out of it. */
-static void int_sweeps_right(const int_system *y, const hdi_factor *f, int32_t k, int sparse, const char *what) {
-    const hdi_symbolic *s = f->sym;
-    const int32_t n = s->n, w = f->width, row = w * k;
-    double *x = DENSE_NEW(double, n * row), *b = DENSE_NEW(double, n * row), worst;
-    double *work = DENSE_NEW(double, hdi_sweep_size(s, w, k));
-    int32_t *inv = DENSE_NEW(int32_t, n), i, r, q;
-    char *active = DENSE_NEW(char, s->n_super);
-    uint64_t seed = 17;
-    hdi_sweep z;
-    int64_t p;
-    for (i = 0; i < n; i++) {
-        inv[s->perm[i]] = i;
-        if (sparse && i % 61 != 7) continue;
-        int_noise(b + i * row, row, &seed);
-        hdi_sweep_touch(s, i, active);
-    }
-    memcpy(x, b, (size_t)(n * row) * sizeof *x);
-    for (i = 0; (uint64_t)i < hdi_sweep_size(s, w, k); i++) work[i] = 1e300;
-    z = hdi_sweep_open(f, k, x, work);
-    if (sparse) z.active = active;
-    hdi_sweep_run(&z, k % 2 ? f->ctx : NULL);
-    for (i = 0; i < n; i++)
-        for (p = y->a.row_ptr[i]; p < y->a.row_ptr[i + 1]; p++)
-            for (r = 0; r < k; r++)
-                for (q = 0; q < (w == 1 ? 1 : 4); q++) {
-                    const hd_c64 a = y->z[w == 1 ? INT_REAL : q][p];
-                    const double *v = x + inv[y->a.col[p]] * row + w * r + q;
-                    double *to = b + inv[i] * row + w * r + q;
-                    to[0] -= a.re * v[0] - (w == 1 ? 0 : a.im * v[4]);
-                    if (w > 1) to[4] -= a.re * v[4] + a.im * v[0];
-                }
-    worst = dense_max_abs(b, n * row);
-    CHECK_MSG(worst < 1e-13, "%s, width %d, %d side by side: residual %g", what, (int)w, (int)k, worst);
-    free(x);
-    free(b);
-    free(work);
-    free(inv);
-    free(active);
-}
-
-/* What an inversion should add: numbers of the diagonal or of forms by pivots, or of entries. */
-static double *int_inverse_wanted(const int_system *y, const hdi_symbolic *s, int32_t w, hdi_wanted wanted, int64_t count) {
-    double *want = DENSE_NEW(double, w * count);
-    int32_t q, v, i, j;
-    int64_t p;
-    for (q = 0; q < (w == 1 ? 1 : 4); q++)
-        for (v = 0; v < s->n_super; v++)
-            for (p = s->a_ptr[v]; p < s->a_ptr[v + 1]; p++) {
-                const int m = w == 1 ? INT_REAL : q;
-                dense_c64 c;
-                int64_t at;
-                hdi_entry_place(s, v, p, &i, &j);
-                if (wanted != HDI_WANT_ENTRIES && i != j) continue;
-                at = q * count + (wanted == HDI_WANT_ENTRIES ? p : i);
-                c = wanted == HDI_WANT_FORMS ? y->form[m][s->perm[i]] : y->inverse[m][s->perm[i] * s->n + s->perm[j]];
-                want[at] = c.re;
-                if (w > 1) want[at + 4 * count] = c.im;
-            }
-    return want;
-}
-
-/* Every number, added to what is there. cols: the most columns that forms take together; 0: as it comes. */
-static void int_inverse_right(const int_system *y, hdi_factor *f, hdi_wanted wanted, int32_t cols, const char *what) {
-    const hdi_symbolic *s = f->sym;
-    const int32_t w = f->width;
-    const int64_t count = wanted == HDI_WANT_ENTRIES ? s->a_ptr[s->n_super] : s->n;
-    double coef[HDI_PACK * HDI_PACK] = {0}, *got = DENSE_NEW(double, w * count),
-        *want = int_inverse_wanted(y, s, w, wanted, count);
-    hd_error e = int_no_error();
-    hdi_scope keep = hdi_scope_begin(f->ctx, &e);
-    hdi_forms forms;
-    hdi_inverse z;
-    int64_t p;
-    hdi_inverse_take(&z, s, w, &keep);
-    if (wanted == HDI_WANT_FORMS) CHECK(hdi_forms_make(&forms, s, w, &y->a, y->x, f->ctx, &e) == HD_OK);
-    if (cols && cols < forms.cols) forms.cols = cols;
-    if (cols && forms.n_slots > 2) forms.n_slots = 2;
-    for (p = 0; p < w; p++) coef[p * w + p] = 1;
-    for (p = 0; p < w * count; p++) got[p] = 3;
-    z.coef = coef;
-    z.n_sets = w;
-    z.wanted = wanted;
-    z.forms = &forms;
-    z.values = got;
-    z.stride = count;
-    CHECK_MSG(hdi_inverse_run(&z, f, &e) == HD_OK, "%s: %s", what, e.text);
-    for (p = 0; p < w * count; p++) got[p] -= 3;
-    CHECK_MSG(dense_max_diff(got, want, w * count) < 1e-13, "%s, width %d, wanted %d, blocks of %d: off by %g", what, (int)w,
-              (int)wanted,
-              (int)cols, dense_max_diff(got, want, w * count));
-    if (wanted == HDI_WANT_FORMS) hdi_forms_free(&forms, f->ctx);
-    hdi_scope_end(&keep);
-    free(got);
-    free(want);
-}
-
-/* All fronts to the top, where blocks of columns are tasks; those of small matrices are all in subtrees otherwise. */
-static void int_all_top(hdi_symbolic *s) {
-    int32_t v;
-    s->n_tasks = s->task_pivots = s->task_update = 0;
-    s->n_top = s->n_super;
-    for (v = 0; v < s->n_super; v++) {
-        s->top[v] = v;
-        s->task_of[v] = -1;
-    }
-}
-
-static void int_factor_right(const int_system *y, const hdi_symbolic *s, int32_t width, hd_context *ctx, const char *what) {
-    hd_error e = int_no_error();
-    hdi_values v;
-    hdi_factor f;
-    int32_t q;
-    memset(&v, 0, sizeof v);
-    v.real = width == 1 ? y->real : NULL;
-    for (q = 0; q < 4 && width > 1; q++) v.z[q] = y->z[q];
-    CHECK_MSG(hdi_factor_make(&f, s, width, ctx, &e) == HD_OK && hdi_factor_run(&f, &v, &e) == HD_OK, "%s: %s", what, e.text);
-    for (q = 0; q < 4; q++) int_sweeps_right(y, &f, q / 2 ? width == 1 ? 8 : 13 : 1, q % 2, what);
-    int_inverse_right(y, &f, HDI_WANT_DIAGONAL, 0, what);
-    int_inverse_right(y, &f, HDI_WANT_ENTRIES, 0, what);
-    for (q = 0; q < (y->a.nnz < 10000 ? 3 : 1); q++) int_inverse_right(y, &f, HDI_WANT_FORMS, 2 * q, what);
-    hdi_factor_free(&f);
-}
-
-static void int_analysis_right(const hdi_symbolic *s, const hd_csr *a, int dense, const char *what) {
-    int_fronts_right(s, a, what);
-    if (dense) int_fill_right(s, a, what);
-    int_places(s, 0, what);
-    int_places(s, 1, what);
-}
-
-/* A pattern by minimum degree and by another order, in subtrees and at the top, at all levels of instructions. */
-static void int_factors_of(const int_system *y, int kind, int way) {
-    static const hd_simd simds[3] = {HD_SIMD_NONE, HD_SIMD_AVX2, HD_SIMD_AVX512};
-    int32_t *perm = DENSE_NEW(int32_t, y->a.n_rows), i;
-    uint64_t seed = 8;
-    hd_context ctx;
-    hd_error e = int_no_error();
-    hdi_symbolic s;
-    char what[80];
-    memset(&ctx, 0, sizeof ctx);
-    ctx.simd = simds[way / 4];
-    sprintf(what, "%s, way %d", int_kinds[kind].name, way);
-    for (i = 0; i < y->a.n_rows; i++) perm[i] = i;
-    if (way % 2) CHECK(hdi_amd_order(&y->a, perm, &ctx, &e) == HD_OK);
-    else if (kind < 5) dense_shuffle(perm, y->a.n_rows, &seed);
-    CHECK_MSG(hdi_symbolic_make(&s, &y->a, perm, &ctx, &e) == HD_OK, "%s: %s", what, e.text);
-    if (way < 2) int_analysis_right(&s, &y->a, 1, what);
-    if (way & 2) int_all_top(&s);
-    int_factor_right(y, &s, 1, &ctx, what);
-    int_factor_right(y, &s, HDI_PACK, &ctx, what);
-    hdi_symbolic_free(&ctx, &s);
-    CHECK(ctx.bytes_in_use == 0);
-    free(perm);
-}
-
-static void int_factors(int kind) {
-    int_system y;
-    int way;
-    if (kind >= INT_KINDS) return;
-    y = int_system_make(kind);
-    for (way = 0; way < 4 * (hdi_simd_best() + 1); way += kind < 5 ? 1 : 2) int_factors_of(&y, kind, way);
-    int_system_free(&y);
-}
-
-/* Meshes with many subtrees and a top. */
-static void int_schedules(void) {
-    shape s[3];
-    const double offset[3] = {3, 0, 0};
-    int q, k;
-    s[0] = shape_bumpy(4, 3);
-    s[1] = shape_grid(70, 60, 0.3);
-    s[2] = shape_disjoint(s, s + 1, offset);
-    for (q = 0; q < 3; q++) {
-        hd_laplacian *lap = NULL;
-        int32_t *perm = DENSE_NEW(int32_t, s[q].n);
-        CHECK(hd_laplacian_triangles(&lap, s[q].xyz, s[q].n, s[q].tri, s[q].n_tri, NULL, NULL) == HD_OK);
-        for (k = 0; k < 2; k++) {
-            hd_context ctx;
-            hd_error e = int_no_error();
-            hdi_symbolic y;
-            memset(&ctx, 0, sizeof ctx);
-            if (k) CHECK(hdi_nd_order(&lap->L, lap->xyz, perm, &ctx, &e) == HD_OK);
-            else CHECK(hdi_amd_order(&lap->L, perm, &ctx, &e) == HD_OK);
-            CHECK(hdi_symbolic_make(&y, &lap->L, perm, &ctx, &e) == HD_OK && y.n_tasks > 1 && y.n_top > 0);
-            int_analysis_right(&y, &lap->L, 0, "mesh");
-            hdi_symbolic_free(&ctx, &y);
-            CHECK(ctx.bytes_in_use == 0);
-        }
-        free(perm);
-        hd_laplacian_free(lap);
-        shape_free(s + q);
-    }
-}
-
 
 /* ---- [22] poles: what checks and bounds rest on ---- */
 
@@ -1902,47 +1383,6 @@ static void int_polygon(void) {
 
 /* ---- [04] context: tasks of threads ---- */
 
-/* Tasks of a loop that release others: each is done once, after what it waits for, by any number of threads. A
- * binary tree, from the leaves up. */
-typedef struct int_tree { hd_context *ctx; int32_t *order, *pending; int64_t *sum; int32_t leaves; int64_t wrong; } int_tree;
-
-static void int_tree_task(void *arg, int64_t index, int32_t worker) {
-    int_tree *w = (int_tree *)arg;
-    const int32_t i = (int32_t)index, up = i / 2;
-    (void)worker;
-    if (i < w->leaves) w->sum[i] = w->sum[2 * i] + w->sum[2 * i + 1];
-    else w->sum[i] = i;
-    if (up > 0 && HDI_ATOMIC_ADD(w->pending + up, -1) == 0) hdi_release(w->ctx->threads, up, w->order);
-}
-
-static void int_release(void) {
-    enum { LEAVES = 512 };
-    int32_t order[2 * LEAVES], pending[2 * LEAVES], i, threads, round;
-    int64_t sum[2 * LEAVES];
-    for (threads = 2; threads < 9; threads++) {
-        hd_context ctx;
-        int_tree w;
-        memset(&ctx, 0, sizeof ctx);
-        memset(&w, 0, sizeof w);
-        ctx.n_threads = threads;
-        w.ctx = &ctx;
-        w.order = order;
-        w.pending = pending;
-        w.sum = sum;
-        w.leaves = LEAVES;
-        hdi_hold(&ctx);
-        for (round = 0; round < 50 && hdi_threads_own(&ctx, 2 * LEAVES); round++) {
-            for (i = 0; i < 2 * LEAVES; i++) pending[i] = 2;
-            for (i = 0; i < LEAVES; i++) order[i] = LEAVES + i;
-            memset(sum, 0, sizeof sum);
-            hdi_parallel_ordered(&ctx, 2 * LEAVES - 1, LEAVES, order, int_tree_task, &w);
-            CHECK(sum[1] == (int64_t)LEAVES * (3 * LEAVES - 1) / 2);
-        }
-        hdi_let_go(&ctx);
-        CHECK(!ctx.threads && ctx.regions == (uint64_t)round);
-    }
-}
-
 #if HDI_THREADS
 /* The caller's tasks wait until another thread has one, and that one until the caller sleeps. */
 typedef struct int_nap { hd_threads *threads; int32_t begun, slept; } int_nap;
@@ -1993,40 +1433,24 @@ static void int_few_tasks(void) {
 }
 
 static void int_all(void) {
-    int_release();
     int_few_tasks();
     int_division();
     int_not_finite();
     int_complex();
     int_sizes();
     int_texts();
-    int_tally();
     int_sums();
     int_arrays();
     int_memory();
-    int_scope();
     int_large_pages();
     int_sorting();
     int_union_find();
     int_tridiagonal();
     int_tridiagonal_odd();
     int_collinear();
-    int_cuthill_mckee();
     int_krylov_done();
     int_ildl();
     int_precond_make();
-    int_factors(0);
-    int_factors(1);
-    int_factors(2);
-    int_factors(3);
-    int_factors(4);
-    int_factors(5);
-    int_factors(6);
-    int_factors(7);
-    int_factors(8);
-    int_factors(9);
-    int_factors(10);
-    int_schedules();
     int_checks();
     int_noise_weights();
     int_pole_bounds();
