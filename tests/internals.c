@@ -501,73 +501,6 @@ static void int_ildl(void) {
         }
 }
 
-/* The path with n vertices and B = tridiag(1, 4, 1), as a Laplacian. */
-static hd_laplacian *int_path(int32_t n) {
-    int32_t *i = DENSE_NEW(int32_t, 6 * n), *j = i + 3 * n, k, q;
-    double *l = DENSE_NEW(double, 6 * n), *b = l + 3 * n;
-    hd_laplacian *lap = NULL;
-    hd_csr L, B;
-    hd_error e = int_no_error();
-    int64_t c = 0;
-    for (k = 0; k < n; k++)
-        for (q = k - 1; q <= k + 1; q++) {
-            if (q < 0 || q == n) continue;
-            i[c] = k;
-            j[c] = q;
-            l[c] = q != k ? -1 : 2 - (k == 0) - (k == n - 1);
-            b[c++] = q != k ? 1 : 4;
-        }
-    CHECK(hd_csr_from_triplets(&L, n, n, c, i, j, l, NULL, &e) == HD_OK);
-    CHECK(hd_csr_from_triplets(&B, n, n, c, i, j, b, NULL, &e) == HD_OK);
-    CHECK(hd_laplacian_matrices(&lap, &L, &B, 0, NULL, &e) == HD_OK);
-    hd_csr_free(&L, NULL);
-    hd_csr_free(&B, NULL);
-    free(i);
-    free(l);
-    return lap;
-}
-
-/* On a path no elimination fills in, so both incomplete factors are exact; Jacobi and SSOR by their definitions. */
-static void int_precond_make(void) {
-    enum { N = 23 };
-    hd_laplacian *lap = int_path(N);
-    const hdi_system a = {lap, 1.5, {-0.2, 5}};
-    hd_context ctx;
-    hd_error e = int_no_error();
-    hdi_upper up;
-    hdi_precond m;
-    hd_c64 u[N], d[N], work[N], x[N], ax[N], back[N];
-    int64_t mark[N + 1];
-    uint64_t seed = 7;
-    int32_t i, kind;
-    memset(&ctx, 0, sizeof ctx);
-    CHECK(hdi_upper_make(&up, &lap->L, &ctx, &e) == HD_OK && up.ptr[N] == N - 1);
-    for (i = 0; i < N; i++) x[i] = hdi_c(dense_signed(&seed), dense_signed(&seed));
-    hdi_system_apply(&a, x, ax);
-    for (kind = HD_PRECOND_JACOBI; kind <= HD_PRECOND_MILDL; kind++) {
-        double worst = 0;
-        memset(&m, 0, sizeof m);
-        m.kind = (hd_precond)kind;
-        m.up = &up;
-        m.u = kind == HD_PRECOND_JACOBI ? NULL : u;
-        m.d_inv = d;
-        mark[N] = 4711;
-        hdi_precond_make(&m, &a, work, mark);
-        CHECK(mark[N] == 4711);
-        if (kind >= HD_PRECOND_ILDL) hdi_precond_apply(&m, ax, back);
-        for (i = 0; i < N; i++) {
-            const int ends = (i == 0) + (i == N - 1);
-            const hd_c64 diag = hdi_c(1.5 * (2 - ends) - 0.2 * 4, 20), off = hdi_c(-1.5 - 0.2, 5);
-            if (kind >= HD_PRECOND_ILDL) worst = hdi_max(worst, hdi_cabs(hdi_csub(back[i], x[i])));
-            else worst = hdi_max(worst, hdi_cabs(hdi_csub(hdi_cmul(diag, d[i]), hdi_c(1, 0))));
-            if (kind < HD_PRECOND_ILDL && m.u && i + 1 < N) worst = hdi_max(worst, hdi_cabs(hdi_csub(hdi_cmul(u[i], diag), off)));
-        }
-        CHECK_MSG(worst < 1e-13, "preconditioner %d: off by %g", (int)kind, worst);
-    }
-    hdi_upper_free(&ctx, &up);
-    hd_laplacian_free(lap);
-}
-
 /* The share of the way from the first residual to the target, by powers of ten. */
 static void int_krylov_done(void) {
     CHECK(fabs(hdi_krylov_done(1e3, 1e1, 1e-5) - 0.25) < 1e-15 && fabs(hdi_krylov_done(1e-2, 1e-8, 1e-10) - 0.75) < 1e-15);
@@ -1450,7 +1383,6 @@ static void int_all(void) {
     int_collinear();
     int_krylov_done();
     int_ildl();
-    int_precond_make();
     int_checks();
     int_noise_weights();
     int_pole_bounds();
