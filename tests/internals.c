@@ -65,6 +65,9 @@ static void int_check(int ok, const char *file, int line, const char *what, cons
 #define CHECK(cond) int_check((cond) != 0, __FILE__, __LINE__, #cond, "%s", "does not hold")
 #define CHECK_MSG(cond, ...) int_check((cond) != 0, __FILE__, __LINE__, #cond, __VA_ARGS__)
 
+#include "../tools/trials.h"
+#include "kit.h"
+
 /* ---- [01] scalar ---- */
 
 /* (3 + 4i) b / b for b in four directions, of all sizes. */
@@ -267,9 +270,9 @@ static void int_sorting(void) {
     for (k = 0; k < 14; k++)
         for (form = 0; form < 7; form++) {
             const int64_t n = sizes[k];
-            hdi_pair *a = DENSE_NEW(hdi_pair, n), *b = DENSE_NEW(hdi_pair, n);
-            uint64_t *work = DENSE_NEW(uint64_t, 2 * n + 1);
-            int32_t *x = DENSE_NEW(int32_t, n + 1);
+            hdi_pair *a = KIT_NEW(hdi_pair, n), *b = KIT_NEW(hdi_pair, n);
+            uint64_t *work = KIT_NEW(uint64_t, 2 * n + 1);
+            int32_t *x = KIT_NEW(int32_t, n + 1);
             for (i = 0; i < n; i++) {
                 a[i].key = b[i].key = int_key(form, i, n, &seed);
                 a[i].id = b[i].id = n - i;
@@ -288,10 +291,6 @@ static void int_sorting(void) {
             hdi_sort_indices(x, n, work);
             for (i = 0; i < n && (uint64_t)x[i] == b[i].key; i++) {}
             CHECK_MSG(i == n && x[n] == 5 && work[2 * n] == 77, "%d indices of form %d are not sorted", (int)n, form);
-            free(a);
-            free(b);
-            free(work);
-            free(x);
         }
 }
 
@@ -320,7 +319,7 @@ static void int_tridiagonal(void) {
     int k;
     for (k = 0; k < 6; k++) {
         const int32_t m = sizes[k];
-        double *d = DENSE_NEW(double, 4 * m + 2), *e = d + m + 1, *z0 = e + m + 1, *z1 = z0 + m, worst = 0;
+        double *d = KIT_NEW(double, 4 * m + 2), *e = d + m + 1, *z0 = e + m + 1, *z1 = z0 + m, worst = 0;
         int32_t i, j, at;
         d[m] = e[m] = NAN;                       /* not theirs */
         for (i = 0; i < m; i++) {
@@ -339,7 +338,6 @@ static void int_tridiagonal(void) {
             worst = fmax(worst, fabs(z0[at] * z1[at] - (j % 2 ? edge : -edge)));    /* the last component has that sign */
         }
         CHECK_MSG(worst < 1e-12, "m = %d: off by %g", (int)m, worst);
-        free(d);
     }
 }
 
@@ -398,7 +396,7 @@ static void int_collinear(void) {
 
 static dense_c64 *int_dense_of(const hdi_upper *up, const hd_c64 *u, const hd_c64 *d) {
     const int32_t n = up->n;
-    dense_c64 *a = DENSE_NEW(dense_c64, n * n);
+    dense_c64 *a = KIT_NEW(dense_c64, n * n);
     int32_t i;
     int64_t p;
     for (i = 0; i < n; i++) {
@@ -414,9 +412,9 @@ enum { INT_ENTRIES, INT_DIAGONAL, INT_FILL, INT_SUMS, INT_SOLVED, INT_OFF };
 
 static void int_ildl_of(const hdi_upper *up, double keep, double off[INT_OFF]) {
     const int32_t n = up->n;
-    hd_c64 *u = DENSE_NEW(hd_c64, up->ptr[n] + 4 * n), *d = u + up->ptr[n], *diag = d + n, *b = diag + n, *x = b + n;
-    int64_t *mark = DENSE_NEW(int64_t, n), p;
-    dense_c64 *a, *f, *m = DENSE_NEW(dense_c64, n * n);
+    hd_c64 *u = KIT_NEW(hd_c64, up->ptr[n] + 4 * n), *d = u + up->ptr[n], *diag = d + n, *b = diag + n, *x = b + n;
+    int64_t *mark = KIT_NEW(int64_t, n), p;
+    dense_c64 *a, *f, *m = KIT_NEW(dense_c64, n * n);
     hdi_precond of;
     uint64_t seed = 5;
     int32_t i, j, k;
@@ -462,11 +460,6 @@ static void int_ildl_of(const hdi_upper *up, double keep, double off[INT_OFF]) {
         off[INT_SUMS] = fmax(off[INT_SUMS], hypot(sum.re, sum.im));
         off[INT_SOLVED] = fmax(off[INT_SOLVED], hypot(left.re, left.im));
     }
-    free(u);
-    free(mark);
-    free(a);
-    free(f);
-    free(m);
 }
 
 /* Where elimination makes no fill the incomplete factors are the complete ones. Else they have the entries of A, and with keep 0 its
@@ -510,6 +503,22 @@ static void int_krylov_done(void) {
 
 /* ---- helpers ---- */
 
+static void int_free_pair(void *p) {
+    dense_pair_free((dense_pair *)p);
+    free(p);
+}
+
+/* Eigenpairs of two dense matrices, which stay as they are. */
+static const dense_pair *int_solved(const double *L, const double *B, int32_t n) {
+    dense_pair *pair = KIT_NEW(dense_pair, 1);
+    double *own[2] = {DENSE_NEW(double, n * n), DENSE_NEW(double, n * n)};
+    memcpy(own[0], L, (size_t)(n * n) * sizeof *L);
+    memcpy(own[1], B, (size_t)(n * n) * sizeof *B);
+    CHECK(dense_pair_solve(pair, own[0], own[1], n));
+    kit_list[kit_count - 1].destroy = int_free_pair;
+    return pair;
+}
+
 static double int_off(const double *a, const double *b, int64_t n) {
     return dense_max_diff(a, b, n) / (1 + dense_max_abs(b, n));
 }
@@ -521,20 +530,11 @@ static void int_noise(double *x, int64_t n, uint64_t *seed) {
 
 /* ---- [22] poles: what checks and bounds rest on ---- */
 
-static hd_laplacian *int_mesh(int kind, hd_laplacian_kind form) {
-    shape s = kind == 0 ? shape_bumpy(2, 5) : kind == 1 ? shape_grid(14, 9, 0.3) : shape_icosphere(3);
-    hd_laplacian *lap = NULL;
-    hd_laplacian_opts o;
-    memset(&o, 0, sizeof o);
-    o.kind = form;
-    CHECK(hd_laplacian_triangles(&lap, s.xyz, s.n, s.tri, s.n_tri, &o, NULL) == HD_OK);
-    shape_free(&s);
-    return lap;
-}
+static hd_laplacian *int_mesh(int voronoi) { return kit_pair(voronoi ? "flat/14/9/0.3 vor" : "flat/14/9/0.3 fem"); }
 
 /* l L + b B, dense, or the absolute values. */
 static double *int_dense(const hd_laplacian *lap, double l, double b, int absolute) {
-    double *d = DENSE_NEW(double, lap->n_active * lap->n_active);
+    double *d = KIT_NEW(double, lap->n_active * lap->n_active);
     int64_t p;
     int32_t i;
     for (i = 0; i < lap->n_active; i++)
@@ -548,7 +548,7 @@ static double *int_dense(const hd_laplacian *lap, double l, double b, int absolu
 /* Pole q's part of a right-hand side: residual and size of its solution, their share of the answer and of B times it. */
 static void int_check_right(const hdi_check *c, const double *L, const double *B, int q, double *want_u, double *want_bu) {
     const int32_t n = c->lap->n_active;
-    double *part = DENSE_NEW(double, 6 * n), *l = part + 2 * n, *b = l + 2 * n, norm2 = 0, size2 = 0, first2 = 0;
+    double *part = KIT_NEW(double, 6 * n), *l = part + 2 * n, *b = l + 2 * n, norm2 = 0, size2 = 0, first2 = 0;
     int32_t i, k;
     for (k = 0; k < 2; k++) {                    /* real parts, then imaginary ones */
         for (i = 0; i < n; i++) part[k * n + i] = c->x[c->stride * i + q + 4 * k];
@@ -570,14 +570,13 @@ static void int_check_right(const hdi_check *c, const double *L, const double *B
               (q > 0 || fabs(first2 / c->first2 - 1) < 1e-12),
               "pole %d: residual %g, told %g; size %g, told %g; norm %g, told %g", q, norm2, c->norm2[q], size2, c->size2[q],
                   first2, c->first2);
-    free(part);
 }
 
 /* Checks of packs for one to so many right-hand sides together, by their definition. */
 static void int_checks_of(const hd_laplacian *lap, void (*check)(hdi_check *const *c, int32_t k), int32_t k) {
     const int32_t n = lap->n_active;
-    double *x = DENSE_NEW(double, HDI_PACK * 6 * n), *rhs = DENSE_NEW(double, 6 * n), *weight = DENSE_NEW(double, 2 * n),
-        *u = DENSE_NEW(double, 14 * n);
+    double *x = KIT_NEW(double, HDI_PACK * 6 * n), *rhs = KIT_NEW(double, 6 * n), *weight = KIT_NEW(double, 2 * n),
+        *u = KIT_NEW(double, 14 * n);
     double *L = int_dense(lap, 1, 0, 0), *B = int_dense(lap, 0, 1, 0), *want = u + 12 * n;
     hdi_check c[6], *list[6];
     uint64_t seed = 9;
@@ -608,26 +607,19 @@ static void int_checks_of(const hd_laplacian *lap, void (*check)(hdi_check *cons
                   "%d checked together: %g, %g off", (int)k,
                   int_off(c[r].u, want, n), int_off(c[r].bu, want + n, n));
     }
-    free(x);
-    free(rhs);
-    free(weight);
-    free(u);
-    free(L);
-    free(B);
 }
 
 static void int_checks(void) {
     int form;
     int32_t k;
     for (form = 0; form < 2; form++) {
-        hd_laplacian *lap = int_mesh(1, form ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM);
+        const hd_laplacian *lap = int_mesh(form);
         for (k = 1; k <= HDI_CHECK_MOST; k++) {
             int_checks_of(lap, hdi_check_c, k);
 #if HDI_X86
             if (hdi_simd_best() == 2) int_checks_of(lap, hdi_check_512, k);
 #endif
         }
-        hd_laplacian_free(lap);
     }
 }
 
@@ -636,11 +628,11 @@ static void int_checks(void) {
 static void int_noise_weights(void) {
     int form;
     for (form = 0; form < 2; form++) {
-        hd_laplacian *lap = int_mesh(1, form ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM);
+        const hd_laplacian *lap = int_mesh(form);
         const int32_t n = lap->n_active;
-        double *M = int_dense(lap, 0.3, 1.7, 1), *noise = DENSE_NEW(double, 2 * n), *want = DENSE_NEW(double, n), top,
+        double *M = int_dense(lap, 0.3, 1.7, 1), *noise = KIT_NEW(double, 2 * n), *want = KIT_NEW(double, n), top,
             bound = hdi_lambda_bound(lap);
-        dense_pair pair;
+        const dense_pair *pair;
         int32_t i, j;
         hdi_noise_weights(lap, 0.3, 1.7, noise, noise + n);
         for (i = 0; i < n; i++) {
@@ -651,14 +643,9 @@ static void int_noise_weights(void) {
         }
         for (j = 0; j < n; j++) want[j] = noise[j] / want[j] - 1;
         CHECK_MSG(dense_max_abs(want, n) < 1e-12, "form %d: off by %g", form, dense_max_abs(want, n));
-        CHECK(dense_pair_solve(&pair, int_dense(lap, 1, 0, 0), int_dense(lap, 0, 1, 0), n));
-        top = dense_max_abs(pair.lambda, n);
+        pair = int_solved(int_dense(lap, 1, 0, 0), int_dense(lap, 0, 1, 0), n);
+        top = dense_max_abs(pair->lambda, n);
         CHECK_MSG(bound >= top && bound <= 20 * top, "bound %g, eigenvalue %g", bound, top);
-        dense_pair_free(&pair);
-        hd_laplacian_free(lap);
-        free(M);
-        free(noise);
-        free(want);
     }
 }
 
@@ -736,12 +723,12 @@ static void int_no_numbers(void) {
 static void int_lanczos_bound(void) {
     enum { N = 60 };
     static const double times[4] = {0.1, 1, 10, 100};
-    double *T = DENSE_NEW(double, N * N), *one = DENSE_NEW(double, N * N), *room = DENSE_NEW(double, 9 * N + 2),
+    double *T = KIT_NEW(double, N * N), *one = KIT_NEW(double, N * N), *room = KIT_NEW(double, 9 * N + 2),
         *got = room + 7 * N + 2, *want = got + N;
     double start[N] = {1}, loosest = 0;
     hd_c64 work[2 * N];
     hd_rational set;
-    dense_pair whole, part;
+    const dense_pair *whole, *part;
     hdi_lanczos z;
     hd_error e = int_no_error();
     uint64_t seed = 12;
@@ -761,21 +748,22 @@ static void int_lanczos_bound(void) {
         if (i + 1 < N) T[i * N + i + 1] = T[(i + 1) * N + i] = z.beta[i + 1];
         one[i * N + i] = 1;
     }
-    CHECK(hdi_rational_get(&set, HD_POLES_UNIFORM, 14, &e) == HD_OK && dense_pair_solve(&whole, T, one, N));
+    CHECK(hdi_rational_get(&set, HD_POLES_UNIFORM, 14, &e) == HD_OK);
+    whole = int_solved(T, one, N);
     for (m = 1; m < N; m += 3) {
-        double *Tm = DENSE_NEW(double, m * m), *Im = DENSE_NEW(double, m * m);
+        double *Tm = KIT_NEW(double, m * m), *Im = KIT_NEW(double, m * m);
         for (i = 0; i < m; i++) {
             for (j = 0; j < m; j++) Tm[i * m + j] = T[i * N + j];
             Im[i * m + i] = 1;
         }
-        CHECK(dense_pair_solve(&part, Tm, Im, m));
+        part = int_solved(Tm, Im, m);
         z.m = m;
         for (k = 0; k < 4; k++) {
             double bound = -1, error = 0;
             CHECK(hdi_lanczos_bound(&z, times[k], &bound, &e) == HD_OK);
-            dense_pair_heat(&whole, times[k], start, want);
+            dense_pair_heat(whole, times[k], start, want);
             memset(got, 0, N * sizeof *got);
-            dense_pair_heat(&part, times[k], start, got);
+            dense_pair_heat(part, times[k], start, got);
             for (i = 0; i < N; i++) error = hypot(error, want[i] - got[i]);
             CHECK_MSG(error <= bound * (1 + 1e-9) + 1e-14, "m %d, t %g: error %g, bound %g", (int)m, times[k], error, bound);
             if (error > 1e-10 && times[k] <= 1) loosest = fmax(loosest, bound / error);
@@ -783,11 +771,8 @@ static void int_lanczos_bound(void) {
             CHECK_MSG(dense_max_diff(z.y, got, m) < 2e-13, "m %d, t %g: coefficients off by %g", (int)m, times[k],
                       dense_max_diff(z.y, got, m));
         }
-        dense_pair_free(&part);
     }
     CHECK_MSG(loosest < 20, "bounds up to %g times the error", loosest);
-    dense_pair_free(&whole);
-    free(room);
 }
 
 /* (F(a) - F(b))/(a - b) of F(x) = exp(-tau (1/x - 1)) against long double, for a and b that are far from and very near each
@@ -819,7 +804,7 @@ static void int_silan_slopes(void) {
 /* Eigenvalues 1/(1 + g lambda) above one show that L is not semidefinite, but not where the solves themselves are off by as
  * much. */
 static void int_ritz_above(void) {
-    hdi_silan *z = DENSE_NEW(hdi_silan, 1);
+    hdi_silan *z = KIT_NEW(hdi_silan, 1);
     double known[2] = {1.05, 1};                 /* an eigenvalue, and its vector */
     hd_error e = int_no_error();
     hdi_ritz s;
@@ -831,7 +816,6 @@ static void int_ritz_above(void) {
     CHECK(hdi_silan_ritz(z, 0, 1, &s, &e) == HD_OK);
     z->noise[0][0] = 1e-5;
     CHECK(hdi_silan_ritz(z, 0, 1, &s, &e) < 0);
-    free(z);
 }
 
 static hd_status int_elim(hdi_elim *m, const hd_laplacian *lap, hd_context *ctx, hd_error *e) {
@@ -876,21 +860,21 @@ static double int_silan_error(hdi_silan *z, hdi_lane *lane, int32_t r, double t,
  * the shift is made for, and far from it. wide: right-hand sides side by side. */
 static void int_silan_bound_of(int kind, int32_t wide, double t) {
     static const double factors[5] = {0.03, 0.3, 1, 3, 30};
-    hd_laplacian *lap = int_mesh(kind, kind ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM);
+    const hd_laplacian *lap = kit_pair(kind ? "flat/14/9/0.3 vor" : "bumpy/2/5 fem");
     const int32_t n = lap->n_active, k = wide == 1 ? 1 : 3;
-    double *want = DENSE_NEW(double, n), *y = DENSE_NEW(double, 45 * 8), loosest = 0;
-    hdi_silan *z = DENSE_NEW(hdi_silan, 1);
+    double *want = KIT_NEW(double, n), *y = KIT_NEW(double, 45 * 8), loosest = 0;
+    hdi_silan *z = KIT_NEW(hdi_silan, 1);
     hdi_ritz ritz;
     hd_context ctx;
     hd_error e;
     hdi_elim m;
     hdi_lane lane[3];
-    dense_pair pair;
+    const dense_pair *pair;
     int32_t r, step, looked = 0;
     int q;
     CHECK(int_elim(&m, lap, &ctx, &e) == HD_OK);
     t *= lap->h * lap->h * m.scale;
-    CHECK(dense_pair_solve(&pair, int_dense(m.lap, 1, 0, 0), int_dense(m.lap, 0, 1, 0), n));
+    pair = int_solved(int_dense(m.lap, 1, 0, 0), int_dense(m.lap, 0, 1, 0), n);
     for (r = 0; r < k; r++) int_lane(lane + r, m.lap, r, &ctx, &e);
     CHECK(hdi_elim_shift(&m, hdi_krylov_shift(0, t, t, 0), &e) == HD_OK && m.shift / t > 0.05 && m.shift / t <= 0.2);
     z->wide = wide;
@@ -901,13 +885,13 @@ static void int_silan_bound_of(int kind, int32_t wide, double t) {
     for (step = 1; step <= 45; step++) {
         CHECK(hdi_silan_step(z, &ctx, &e) == HD_OK && z->steps == step);
         for (q = 0; q < 5 * k && (step <= 12 || step % 4 == 0); q++) {
-            const double at = t * factors[q % 5], eps = 1e-15 * fmin(at * dense_max_abs(pair.lambda, n), 1e3) + 3e-14;
+            const double at = t * factors[q % 5], eps = 1e-15 * fmin(at * dense_max_abs(pair->lambda, n), 1e3) + 3e-14;
             double bound, error;
             r = q / 5;
             if (step > 1 && !(z->beta[step - 1][r] > 1e-13)) continue;
             CHECK(hdi_silan_ritz(z, r, step, &ritz, &e) == HD_OK);
             bound = hdi_ritz_bound(&ritz, at / z->g);
-            error = int_silan_error(z, lane, r, at, &pair, y, want);
+            error = int_silan_error(z, lane, r, at, pair, y, want);
             looked++;
             CHECK_MSG(error <= bound + eps, "mesh %d, wide %d, right-hand side %d, step %d, t %g: error %g, bound %g", kind,
                       (int)wide, (int)r,
@@ -925,16 +909,11 @@ static void int_silan_bound_of(int kind, int32_t wide, double t) {
     for (r = 0; r < k; r++) hdi_lane_free(lane + r, &ctx);
     hdi_elim_free(&m);
     CHECK(ctx.bytes_in_use == 0);
-    dense_pair_free(&pair);
-    hd_laplacian_free(lap);
-    free(z);
-    free(y);
-    free(want);
 }
 
-static void int_silan_bounds(int turn) {
+static void int_silan_bounds(void) {
     int q;
-    for (q = 3 * turn; q < 3 * turn + 3; q++) int_silan_bound_of(q / 2 % 2, q % 2 ? 8 : 1, pow(20, q / 4 - 0.5));
+    for (q = 0; q < 12; q++) int_silan_bound_of(q / 2 % 2, q % 2 ? 8 : 1, pow(20, q / 4 - 0.5));
 }
 
 /* ---- [24] to [28]: damaged factors ---- */
@@ -983,22 +962,19 @@ static void int_damage(hd_heat *heat, double by, int random) {
 }
 
 /* Asked again, a plan takes the factors that it has, and its report covers what the damage did: at every time. */
-static void int_damages_seen(size_t k) {
+static void int_damages_seen(void) {
+    size_t k;
     int way;
-    for (; k < sizeof int_damages / sizeof *int_damages; k += 5)
+    for (k = 0; k < sizeof int_damages / sizeof *int_damages; k++)
         for (way = 0; way < 4; way++) {
             const int_damaged *x = int_damages + k;
-            hd_laplacian *lap = int_mesh(1, way / 2 ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM);
+            const hd_laplacian *lap = int_mesh(way / 2);
             const int64_t room = (x->n_times + 1) * (int64_t)lap->n;
-            double t[12], *before = DENSE_NEW(double, 2 * room), *after = before + room, most = 0;
-            hd_heat *heat = NULL;
-            hd_heat_opts o;
+            double t[12], *before = KIT_NEW(double, 2 * room), *after = before + room, most = 0;
+            hd_heat *heat = kit_heat(lap, x->query <= INT_COLUMN && x->n_times > 1 ? "method=krylov" : "method=direct");
             hd_report rep[2];
             int32_t n, q;
-            memset(&o, 0, sizeof o);
-            o.method = x->query <= INT_COLUMN && x->n_times > 1 ? HD_METHOD_KRYLOV : HD_METHOD_DIRECT;
             for (q = 0; q < 12; q++) t[q] = lap->h * lap->h * pow(1.4, q);
-            CHECK(hd_heat_create(&heat, lap, &o, NULL) == HD_OK);
             heat->modes.barred = 1;              /* poles, not eigenpairs */
             n = int_ask(heat, x, t, before, rep);
             int_damage(heat, 1e-5, way % 2);
@@ -1010,17 +986,14 @@ static void int_damages_seen(size_t k) {
                       "query %d, %d times, way %d: off by %g, bounds %g and %g", (int)x->query, (int)x->n_times, way, most,
                           rep[0].error_bound,
                       rep[1].error_bound);
-            hd_heat_free(heat);
-            hd_laplacian_free(lap);
-            free(before);
         }
 }
 
 /* Rows at which rounding is measured: largest diagonal entries of B^-1 L, and of L times a diagonal, and one that is named. */
 static void int_probe_rows(void) {
-    hd_laplacian *lap = int_mesh(1, HD_LAPLACIAN_FEM);
+    const hd_laplacian *lap = int_mesh(0);
     const int32_t n = lap->n_active;
-    double *k = DENSE_NEW(double, n);
+    double *k = KIT_NEW(double, n);
     uint64_t seed = 8;
     int32_t i, round, p;
     for (round = 0; round < 20; round++) {
@@ -1035,26 +1008,18 @@ static void int_probe_rows(void) {
         for (p = 0; p < probe.k; p++) found |= (probe.row[p] == first) + 2 * (probe.row[p] == second) + 4 * (probe.row[p] == round);
         CHECK_MSG(found == 7 && probe.k <= 3, "rows %d, %d: %d", (int)first, (int)second, (int)found);
     }
-    hd_laplacian_free(lap);
-    free(k);
 }
 
 /* Pairs whose bound by the usual degree is too large take the highest one, as distances do, where eigenpairs are barred. */
 static void int_pairs_degree(void) {
-    hd_laplacian *lap = int_mesh(2, HD_LAPLACIAN_FEM);
+    const hd_laplacian *lap = kit_pair("ico/3 fem");
     const int32_t i[3] = {5, 80, 300}, j[3] = {300, 81, 600};
-    hd_heat *heat = NULL;
-    hd_heat_opts o;
+    hd_heat *heat = kit_heat(lap, "method=direct");
     hd_report rep;
     double d[3];
-    memset(&o, 0, sizeof o);
-    o.method = HD_METHOD_DIRECT;
-    CHECK(hd_heat_create(&heat, lap, &o, NULL) == HD_OK);
     heat->modes.barred = 1;
     CHECK(heat_pairs(heat, HD_DISTANCE_CLASSICAL, 150 * lap->h * lap->h, 3, i, j, NULL, d, &rep) == HD_OK);
     CHECK_MSG(rep.error_bound <= 1e-6 && rep.degree == 14, "degree %d, bound %g: %s", (int)rep.degree, rep.error_bound, rep.reason);
-    hd_heat_free(heat);
-    hd_laplacian_free(lap);
 }
 
 /* Lists of pairs fall into parts of at most so many vertices, each as long as can be. */
@@ -1073,7 +1038,7 @@ static void int_pairs_few(void) {
 
 /* The proof sees a pair that is taken away, and a shift too near; and the same pair twice is seen, wherever the two stand. */
 static void int_spectrum_proof(void) {
-    hd_laplacian *lap = int_mesh(2, HD_LAPLACIAN_FEM);
+    const hd_laplacian *lap = kit_pair("ico/3 fem");
     hd_context ctx;
     hd_error e;
     hdi_elim m;
@@ -1092,12 +1057,11 @@ static void int_spectrum_proof(void) {
     CHECK(!hdi_spec_sure(&z));
     hdi_spec_free(&z);
     hdi_elim_free(&m);
-    hd_laplacian_free(lap);
 }
 
 /* The same pair twice is seen, wherever the two stand. */
 static void int_spectrum_twice(void) {
-    hd_laplacian *lap = int_mesh(0, HD_LAPLACIAN_FEM);
+    const hd_laplacian *lap = kit_pair("bumpy/2/5 fem");
     hd_spectrum_opts o;
     hd_spectrum *twice = NULL;
     int32_t i;
@@ -1109,7 +1073,6 @@ static void int_spectrum_twice(void) {
         CHECK(!hdi_spec_distinct(lap, twice));
         hd_spectrum_free(twice);
     }
-    hd_laplacian_free(lap);
 }
 
 /* ---- [21] rational: pieces of shared sets, of which test_shared.h sees the whole ---- */
@@ -1365,57 +1328,18 @@ static void int_few_tasks(void) {
 #endif
 }
 
-static void int_all(void) {
-    int_few_tasks();
-    int_division();
-    int_not_finite();
-    int_complex();
-    int_sizes();
-    int_texts();
-    int_sums();
-    int_arrays();
-    int_memory();
-    int_large_pages();
-    int_sorting();
-    int_union_find();
-    int_tridiagonal();
-    int_tridiagonal_odd();
-    int_collinear();
-    int_krylov_done();
-    int_ildl();
-    int_checks();
-    int_noise_weights();
-    int_pole_bounds();
-    int_resolvent_pole();
-    int_no_numbers();
-    int_lanczos_bound();
-    int_silan_slopes();
-    int_ritz_above();
-    int_silan_bounds(0);
-    int_silan_bounds(1);
-    int_silan_bounds(2);
-    int_silan_bounds(3);
-    int_damages_seen(0);
-    int_damages_seen(1);
-    int_damages_seen(2);
-    int_damages_seen(3);
-    int_damages_seen(4);
-    int_probe_rows();
-    int_pairs_degree();
-    int_pairs_few();
-    int_spectrum_proof();
-    int_spectrum_twice();
-    int_least_squares();
-    int_exp_rest();
-    int_shared_bounds();
-    int_length_area();
-    int_around();
-    int_selection();
-    int_eigen3();
-    int_polygon();
-}
+/* The tests, in groups that free what they made. */
+static void (*const int_tests[])(void) = {
+    int_few_tasks, int_division, int_not_finite, int_complex, int_sizes, int_texts, int_sums, int_arrays, int_memory,
+    int_large_pages, int_sorting, int_union_find, int_tridiagonal, int_tridiagonal_odd, int_collinear, int_krylov_done,
+    int_ildl, int_checks, int_noise_weights, int_pole_bounds, int_resolvent_pole, int_no_numbers, int_lanczos_bound,
+    int_silan_slopes, int_ritz_above, int_probe_rows, int_pairs_degree, int_pairs_few, int_spectrum_proof,
+    int_spectrum_twice, int_least_squares, int_exp_rest, int_shared_bounds, int_length_area, int_around, int_selection,
+    int_eigen3, int_polygon, int_silan_bounds, int_damages_seen,
+};
 
 int main(int argc, char **argv) {
+    size_t k;
 #if HDI_THREADS
     GUARD_THREADS(sizeof(hd_threads));
 #endif
@@ -1423,7 +1347,10 @@ int main(int argc, char **argv) {
         fprintf(stderr, "usage: internals [--traps]; traps are those of glibc on x86\n");
         return 2;
     }
-    int_all();
+    for (k = 0; k < sizeof int_tests / sizeof *int_tests; k++) {
+        int_tests[k]();
+        kit_release(0);
+    }
     printf("%lld passed, %lld failed\n", (long long)int_passed, (long long)int_failed);
     return int_failed > 0;
 }
