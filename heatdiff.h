@@ -12408,8 +12408,9 @@ typedef struct hdi_forest {
  * last of those that is a leaf of the row's subtree. -1: none. */
 typedef struct hdi_row_seen { int32_t column, leaf; } hdi_row_seen;
 
-/* A supernode while supernodes are merged. Its own columns are [begin, begin of the next node). Nodes in one
- * front are a list, the lowest first; the last one has the numbers of the front. */
+/* A supernode while supernodes are merged. Its own columns are those from begin up to that of the next node.
+ * Nodes that are merged into one front form a list, the lowest first. The last one has the numbers of the
+ * front. */
 typedef struct hdi_node {
     int32_t begin;
     int32_t pivots, rows;        /* of the front: columns, and rows with the pivots included */
@@ -12424,29 +12425,31 @@ typedef struct hdi_sym_walk {
     int64_t fill;
 } hdi_sym_walk;
 
-/* What an analysis works with. Columns are those of L, by the order given and then by a postorder, which
- * changes no column otherwise. */
+/* The arrays of an analysis. Columns are columns of L. At first they are numbered by the order given, then by
+ * a postorder of their tree, which leaves their non-zeros as they are. */
 typedef struct hdi_sym_work {
     const hd_csr *a;
-    int32_t *perm, *place;       /* [n] row of A of a column, column of a row of A */
+    int32_t *perm, *place;       /* [n] the row of A of a column, and the column of a row of A */
     hdi_forest given;            /* elimination tree of the order given: the parent of a column is the row of
                                     its first non-zero below the diagonal */
-    int32_t *ancestor;           /* [n] shortcuts to the roots of what has been joined so far */
+    int32_t *ancestor;           /* [n] shortcuts from a column to the root of its tree so far */
     int32_t *order;              /* [n] a postorder of that tree */
-    int32_t *parent, *count;     /* [n] in postorder: the tree; non-zeros of a column, diagonal included */
-    int32_t *first;              /* [n] the first column below a column and itself */
-    int32_t *set;                /* [n] union-find: what is below a column that has been counted */
+    int32_t *parent;             /* [n] that tree, by the numbers of the postorder */
+    int32_t *count;              /* [n] non-zeros of a column, diagonal included */
+    int32_t *first;              /* [n] the first column of the subtree of a column */
+    int32_t *set;                /* [n] union-find: a column that has been counted joins its parent */
     hdi_row_seen *seen;          /* [n] */
     int32_t *node_of;            /* [n] node of a column */
     hdi_node *node;              /* [n + 1] */
     hdi_forest tree;             /* of the nodes; merged ones do not belong to it */
     int64_t *peak;               /* [n] the most room that a node and all below it need for update matrices */
     hdi_pair *pair;              /* [n] children of a node, to be sorted */
-    int32_t *node_order, *number;  /* [n] node of a supernode, supernode of a node */
+    int32_t *node_order;         /* [n] the node of a supernode */
+    int32_t *number;             /* [n] the supernode of a node */
     hdi_sym_walk *walk;          /* [n] by supernodes */
     int32_t *before;             /* [n] columns in a row of A before its pivot */
     int32_t *at;                 /* [n] where a row of the matrix stands in the front at hand */
-    double *work;                /* [n] of a supernode and all below it */
+    double *work;                /* [n] multiply-adds of a supernode and all below it */
     char *side;                  /* [n] which stack a supernode uses */
 } hdi_sym_work;
 
@@ -12531,6 +12534,7 @@ static void hdi_sym_postorder(const hdi_sym_work *w) {
     const hdi_forest *f = &w->given;
     int32_t k;
     for (k = 0; k < f->n; k++) w->place[w->perm[k]] = k;
+    for (k = 0; HDI_AUDIT && k < f->n; k++) HEATDIFF_ASSERT(w->place[w->perm[k]] == k);
     hdi_sym_etree(w);
     hdi_forest_link(f);
     hdi_forest_postorder(f, w->order);
@@ -12751,9 +12755,10 @@ static void hdi_sym_climb(hdi_sym_walk *walk, int32_t *row, int32_t i, int32_t v
     }
 }
 
-/* Rows below the pivots of all supernodes, and entries of A by fronts, with their rows still in the matrix. A
- * processor cannot guess whether an entry of A stands before the pivot of its row or after it. So each is
- * written to both lists, and only the list where it belongs gets longer. */
+/* Fills the rows below the pivots of all supernodes, and the entries of A by fronts; the rows of the entries
+ * are still those of the whole matrix. A processor cannot predict whether an entry of A stands before the
+ * pivot of its row or after it. So each entry is written to both lists, and only the list where it belongs
+ * gets longer. */
 static void hdi_sym_rows(hdi_symbolic *s, const hdi_sym_work *w) {
     const hd_csr *a = w->a;
     int64_t p, r = 0;
@@ -12779,10 +12784,11 @@ static void hdi_sym_rows(hdi_symbolic *s, const hdi_sym_work *w) {
         s->a_ptr[v + 1] = r;
         while (q-- > 0) hdi_sym_climb(w->walk, s->row, j, s->super_of[w->before[q]], v);
     }
-    for (v = 0; v < s->n_super; v++) HEATDIFF_ASSERT(w->walk[v].fill == s->row_ptr[v + 1]);
+    HEATDIFF_ASSERT(r <= (a->nnz + s->n) / 2);
+    for (v = 0; HDI_AUDIT && v < s->n_super; v++) HEATDIFF_ASSERT(w->walk[v].fill == s->row_ptr[v + 1]);
 }
 
-/* Rows of the matrix become rows of the fronts, for entries of A and for rows of children. */
+/* Finds where the entries of A and the rows of children stand in each front. */
 static void hdi_sym_places(hdi_symbolic *s, int32_t *at) {
     int32_t v, k;
     int64_t p;
@@ -12803,9 +12809,9 @@ static void hdi_sym_places(hdi_symbolic *s, int32_t *at) {
     }
 }
 
-/* The fronts: their rows and entries. */
+/* Makes the rows and the entries of all fronts. */
 static hd_status hdi_sym_fronts(hdi_symbolic *s, const hdi_sym_work *w, hdi_scope *keep) {
-    /* the lower triangle of A, and one that is written before it turns out to stand above the diagonal */
+    /* one entry more than the triangle has: the last one written may turn out to belong to the other list */
     const int64_t rows = s->row_ptr[s->n_super], entries = (w->a->nnz + s->n) / 2 + 1;
     s->row = HDI_TAKE(keep, int32_t, rows);
     s->rel = HDI_TAKE(keep, int32_t, rows);
@@ -12843,12 +12849,12 @@ static double hdi_sym_work_below(const hdi_symbolic *s, double *work) {
     return hdi_max(total / (double)HDI_TASK_SHARES, HDI_TASK_LEAST);
 }
 
-/* Cuts the forest into subtrees that can go on at the same time, small neighbours together; the rest is the
- * top, where the fronts are large enough to be shared. */
+/* Cuts the forest into subtrees that can go on at the same time. Small neighbours become one task. The other
+ * supernodes are the top; their fronts are large enough to be shared by threads. */
 static void hdi_sym_tasks(hdi_symbolic *s, double *work) {
     const double most = hdi_sym_work_below(s, work);
-    double room = 0;                             /* for more work in the last task */
-    int32_t v, q = 0;                            /* below q supernodes have been given out */
+    double room = 0;                             /* how much more work the last task may take */
+    int32_t v, q = 0;                            /* supernodes before q are in a task or in the top */
     for (v = 0; v < s->n_super; v++) {
         if (work[v] > most) {
             s->task_of[v] = -1 - s->n_top;
@@ -12872,11 +12878,12 @@ static void hdi_sym_tasks(hdi_symbolic *s, double *work) {
 }
 
 /* ---- memory ---- */
-/* What fronts leave for their parents, update matrices or vectors, lives in a space of each task and in one
- * of the top, on two stacks that grow towards each other from both ends. Fronts of even depth use the one,
- * those of odd depth the other. In postorder a front is pushed on its stack while its children, all of them,
- * are on top of the other one, and then they are popped. So a space is as large as what lives in it at the
- * same time. From the roots to the leaves all this happens backwards, and is as safe. */
+/* A front leaves an update matrix, or a vector, for its parent. Each task has a space for what its fronts
+ * leave, and so has the top. In a space two stacks grow towards each other from both ends: fronts of even
+ * depth use the one, fronts of odd depth the other. In postorder all children of a front are on top of their
+ * stack when the front is pushed on the other one; then they are popped. So a space is only as large as what
+ * lives in it at the same time. An inversion goes from the roots to the leaves. There everything lives for
+ * the same steps in reverse, so these places are safe for it as well. */
 
 enum { HDI_SIDE_LOW, HDI_SIDE_HIGH, HDI_SIDE_APART, HDI_SIDES };
 
@@ -12899,8 +12906,8 @@ static int hdi_stacks_root(const hdi_symbolic *s, int32_t v) {
     return up < 0 || (s->task_of[up] < 0) != (s->task_of[v] < 0);
 }
 
-/* Places for task k, or for the top if k < 0, in a space that begins at base. apart: roots are on no stack, and
- * their places are counted from zero on. Returns the end of the space. */
+/* Gives places to the fronts of task k, or to those of the top if k < 0, in a space that begins at base. With
+ * apart, roots are on no stack: their places are counted in z->used. Returns the end of the space. */
 static int64_t hdi_stacks_run(hdi_stacks *z, int32_t k, int apart, int64_t base) {
     const hdi_symbolic *s = z->s;
     const int32_t begin = k < 0 ? 0 : s->task_begin[k], end = k < 0 ? s->n_super : s->task_end[k];
@@ -12917,7 +12924,7 @@ static int64_t hdi_stacks_run(hdi_stacks *z, int32_t k, int apart, int64_t base)
             const int32_t c = s->kid[q];
             if (hdi_stacks_root(s, c)) continue;
             used[(int)z->side[c]] -= hdi_stacks_size(z, c);
-            /* c was on top of its stack: so no place is given out again before it is free */
+            /* c was on top of its stack, so no place is given out again before it is free */
             HEATDIFF_ASSERT(z->side[c] != z->side[v] && z->at[c] == used[(int)z->side[c]]);
         }
     }
@@ -12929,10 +12936,11 @@ static int64_t hdi_stacks_run(hdi_stacks *z, int32_t k, int apart, int64_t base)
     return base + most;
 }
 
-/* All places, and the size of all spaces. Those of the tasks follow each other, as tasks go on at the same
- * time. The top comes after them, so its matrices have the same space as those of the first tasks. There the
- * roots of the tasks stand apart, behind that space, because they stay until the top has taken them. Vectors
- * of the top have places of their own, as its fronts then go on in any order that the tree allows. */
+/* Gives all places and returns the size of all spaces. The spaces of the tasks follow one another, because
+ * tasks go on at the same time. The top comes when the tasks are done, so its matrices share the space of the
+ * first tasks. The roots of those tasks stand apart, behind that space, because they stay until the top has
+ * taken them. Vectors of the top have places of their own, because a solve takes the fronts of the top in any
+ * order that the tree allows. */
 static int64_t hdi_stacks_place(hdi_stacks *z) {
     const hdi_symbolic *s = z->s;
     const int32_t n = s->n_tasks;
@@ -13049,7 +13057,7 @@ static hd_status hdi_order_find(const hdi_order *o, hd_ordering kind, const hd_c
     return hdi_order_check(o->own, n, ctx, e);
 }
 
-/* Order, analysis and schedule of a symmetric pattern. */
+/* Order and analysis of a symmetric pattern. */
 static hd_status hdi_symbolic_order(hdi_symbolic *s, const hd_csr *a, const hdi_order *o, hd_context *ctx,
                                     hd_error *e) {
     hdi_scope scope = hdi_scope_begin(ctx, e);
