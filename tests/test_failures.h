@@ -386,7 +386,7 @@ static void fail_minus_zero(void) {
     static const int32_t i[2] = {0, 3}, j[2] = {5, 3};
     static const double t = -0.0;
     double K[2], d[2];
-    hd_laplacian *lap = kit_own_laplacian(test_laplacian(&fail_data.s, HD_LAPLACIAN_VORONOI_COT));
+    hd_laplacian *lap = kit_triangles(&fail_data.s, HD_LAPLACIAN_VORONOI_COT);
     hd_heat *heat = NULL;
     CHECK(hd_heat_create(&heat, lap, NULL, NULL) == HD_OK);
     CHECK(hd_heat_pairs(heat, HD_DISTANCE_CLASSICAL, 1, &t, 2, i, j, K, d, NULL, NULL) == HD_OK);

@@ -543,7 +543,7 @@ static void geo_ugly(void) {
     geo_ugly_of(geo_flattened(shape_grid(12, 9, 0.3), 1e-12), "thinner slivers", 1);
     geo_ugly_of(geo_flattened(shape_bumpy(2, 4), 1e-5), "a ball pressed flat", 1);
     geo_ugly_of(geo_sheared(10, 10, 30), "sheared far", 1);
-    geo_ugly_of(eng_soup(60, 150, 4), "soup", 0);
+    geo_ugly_of(trial_jumble(60, 150, 4), "soup", 0);
     s = shape_icosphere(2);
     memcpy(s.xyz + 3 * 20, s.xyz + 3 * 21, 3 * sizeof(double));      /* two vertices in one place: faces without area, needles beside them */
     s.xyz[3 * 40] += 1e-9;

@@ -661,7 +661,7 @@ static void mov_points(const shape *s) {
 }
 
 static void test_moving(void) {
-    shape ball = kit_own_shape(shape_bumpy(3, 5)), sheet = kit_own_shape(shape_grid(13, 11, 0.3)), soup = kit_own_shape(eng_soup(300, 500, 9));
+    shape ball = kit_own_shape(shape_bumpy(3, 5)), sheet = kit_own_shape(shape_grid(13, 11, 0.3)), soup = kit_own_shape(trial_jumble(300, 500, 9));
     mov_frames(&ball, HD_LAPLACIAN_FEM, "ball, fem");
     mov_frames(&ball, HD_LAPLACIAN_COT, "ball, cot");
     mov_frames(&sheet, HD_LAPLACIAN_VORONOI_COT, "sheet, voronoi-cot");
