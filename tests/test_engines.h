@@ -682,9 +682,7 @@ static void eng_told(void) {
         hd_context ctx;
         rob_progress p;
         memset(&ctx, 0, sizeof ctx);
-        memset(&p, 0, sizeof p);
-        ctx.progress = rob_on_progress;
-        ctx.progress_user = &p;
+        rob_watch(&p, &ctx, 0);
         o = eng_opts(eng_methods[k]);
         o.context = &ctx;
         heat = eng_create(lap, &o);

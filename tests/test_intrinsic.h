@@ -253,9 +253,7 @@ static void tri_eigenvalues(void) {
         CHECK_MSG(fabs(delaunay / best - 1) < 0.25, "eigenvalue %d: %g, refined %g, plain %g", k, delaunay, best, plain);
     }
     CHECK_MSG(off[1] < 0.9 * off[0], "relative errors of the eigenvalues sum to %g, those of the slivers to %g", off[1], off[0]);
-    for (k = 0; k < 3; k++) {
-        dense_pair_free(pair + k);
-    }
+    for (k = 0; k < 3; k++) dense_pair_free(pair + k);
     shape_free(&mid);
     shape_free(&fine);
 }

@@ -68,17 +68,14 @@ static int thr_same(call_world *w, const call_data *d, const char *script, int64
         int64_t loops = 0;
         hd_status st;
         memset(&p, 0, sizeof p);
-        p.answer = HD_PROGRESS_CANCEL;
-        p.stop_at = stop;
         ctx.n_threads = thr_ways[q];
         ctx.parallel_for = thr_ways[q] ? NULL : heat_shuffled_for;
         ctx.parallel_user = &loops;
-        ctx.progress_user = &p;
         call_open(w, d, &ctx);
         w->what = script;
         st = call_prepare(w, script);
         CHECK_MSG(st >= 0, "%s: %s", script, w->e.text);
-        if (stop) ctx.progress = rob_on_progress;
+        if (stop) rob_watch(&p, &ctx, stop);
         loops = 0;
         ctx.regions = 0;
         st = call_test(w, script);
