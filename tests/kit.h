@@ -191,7 +191,6 @@ static hd_csr *kit_csr(hd_csr a) {
 
 static hd_csr kit_own_csr(hd_csr a) { return *kit_csr(a); }
 static hd_laplacian *kit_own_laplacian(hd_laplacian *lap) { return (hd_laplacian *)kit_keep(lap, kit_free_laplacian); }
-static hd_heat *kit_own_heat(hd_heat *heat) { return (hd_heat *)kit_keep(heat, kit_free_heat); }
 
 static shape kit_own_shape(shape s) {
     trial_body *b = KIT_NEW(trial_body, 1);

@@ -155,7 +155,7 @@ static void tri_plane(void) {
     for (k = 0; k < 3; k++) {
         shape s = kit_own_shape(shape_grid(11, 9, 0.4)), d;
         tri_stretch(&s, factors[k]);
-        d = tri_planar_delaunay(s.xyz, s.n);
+        d = kit_own_shape(tri_planar_delaunay(s.xyz, s.n));
         CHECK(d.n_tri == s.n_tri);
         for (q = 0; q < 3; q++) {
             hd_laplacian *plain = tri_make(&d, op_kinds[q], TRI_PLAIN), *lap = tri_make(&s, op_kinds[q], TRI_DELAUNAY);
@@ -165,7 +165,6 @@ static void tri_plane(void) {
             CHECK(fabs(lap->mesh.smallest_intrinsic_angle - plain->mesh.smallest_angle) < 1e-12 && lap->mesh.n_flips > 0);
             CHECK(lap->mesh.n_negative_weights == plain->mesh.n_negative_weights);
         }
-        shape_free(&d);
     }
 }
 
@@ -236,8 +235,8 @@ static void tri_eigenvalues(void) {
     double off[2] = {0, 0};
     int k;
     tri_stretch(&s, 0.12);
-    mid = shape_subdivide(&s);
-    fine = shape_subdivide(&mid);
+    mid = kit_own_shape(shape_subdivide(&s));
+    fine = kit_own_shape(shape_subdivide(&mid));
     lap[0] = tri_make(&s, HD_LAPLACIAN_FEM, TRI_PLAIN);
     lap[1] = tri_make(&s, HD_LAPLACIAN_FEM, TRI_DELAUNAY);
     lap[2] = tri_make(&fine, HD_LAPLACIAN_FEM, TRI_DELAUNAY);
@@ -254,8 +253,6 @@ static void tri_eigenvalues(void) {
     }
     CHECK_MSG(off[1] < 0.9 * off[0], "relative errors of the eigenvalues sum to %g, those of the slivers to %g", off[1], off[0]);
     for (k = 0; k < 3; k++) dense_pair_free(pair + k);
-    shape_free(&mid);
-    shape_free(&fine);
 }
 
 /* ---- the cover ---- */
@@ -293,7 +290,7 @@ static void tri_books(void) {
     for (pages = 3; pages <= 5; pages++) {
         shape good = kit_own_shape(tri_book(pages, angle, 4, 0, 1)), bad = kit_own_shape(tri_book(pages, angle, 5, 0.35, 4)), r;
         int32_t *to = KIT_NEW(int32_t, bad.n);
-        r = op_renumbered(&bad, 12, to);
+        r = kit_own_shape(op_renumbered(&bad, 12, to));
         for (q = 0; q < 3; q++) {
             hd_laplacian *plain = tri_make(&good, op_kinds[q], TRI_PLAIN), *lap = tri_make(&good, op_kinds[q], TRI_TUFTED), *b;
             CHECK(lap->mesh.n_sheets == 2 && lap->mesh.n_nonmanifold_edges == 4 && lap->mesh.n_flips == 0);
@@ -307,7 +304,6 @@ static void tri_books(void) {
             tri_properties(lap, 0, 1e-12, "book with a boundary");
             CHECK(lap->mesh.n_sheets == 2);
         }
-        shape_free(&r);
     }
 }
 
@@ -317,7 +313,7 @@ static void tri_cover_of_closed(void) {
     shape ball = kit_own_shape(shape_bumpy(2, 4)), book = kit_own_shape(tri_book(3, angle, 2, 0, 1)), both;
     int q, mode;
     tri_stretch(&ball, 5);
-    both = shape_disjoint(&ball, &book, offset);
+    both = kit_own_shape(shape_disjoint(&ball, &book, offset));
     for (q = 0; q < 3; q++) {
         for (mode = TRI_DELAUNAY; mode <= TRI_TUFTED; mode++) {
             hd_laplacian *alone = tri_make(&ball, op_kinds[q], mode), *lap = tri_make(&both, op_kinds[q], mode);
@@ -325,7 +321,6 @@ static void tri_cover_of_closed(void) {
             CHECK_MSG(tri_differ(alone, lap, NULL) < 1e-12, "kind %d, mode %d: off by %g", q, mode, tri_differ(alone, lap, NULL));
         }
     }
-    shape_free(&both);
 }
 
 /* An obtuse triangle and its back: the long edge goes, an edge from the obtuse corner to itself comes. By hand, with the angles a, b at its ends:
@@ -416,7 +411,7 @@ static void tri_energy(void) {
     shape s = kit_own_shape(shape_bumpy(2, 9)), open = kit_own_shape(shape_grid(9, 8, 0.4)), strip = kit_own_shape(tri_strip(14, 0, 0.3)), book;
     tri_stretch(&s, 7);
     tri_stretch(&open, 5);
-    book = tri_book(3, angle, 5, 0.3, 3);
+    book = kit_own_shape(tri_book(3, angle, 5, 0.3, 3));
     tri_energy_of(&s, TRI_DELAUNAY, "ball");
     tri_energy_of(&open, TRI_DELAUNAY, "rectangle");
     tri_energy_of(&open, TRI_TUFTED, "rectangle, tufted");
@@ -424,7 +419,6 @@ static void tri_energy(void) {
     tri_energy_of(&strip, TRI_TUFTED, "Moebius, tufted");
     tri_energy_of(&book, TRI_DELAUNAY, "book");
     tri_energy_of(&book, TRI_TUFTED, "book, tufted");
-    shape_free(&book);
 }
 
 static void tri_moebius(void) {
@@ -794,7 +788,7 @@ static void tri_points_sphere(void) {
     CHECK(dense_pair_solve(&pair, test_dense(&lap->L, NULL), test_dense_mass(lap), lap->n_active));
     tri_sort(pair.lambda, lap->n_active);
     for (k = 1; k <= 8; k++) CHECK_MSG(fabs(pair.lambda[k] / (k <= 3 ? 2 : 6) - 1) < 0.06, "eigenvalue %d: %g", k, pair.lambda[k]);
-    r = op_renumbered(&s, 5, to);
+    r = kit_own_shape(op_renumbered(&s, 5, to));
     other = tri_points(r.xyz, r.n, HD_LAPLACIAN_VORONOI_COT);
     {   /* which of the copies of a face meet is told by their numbers, where neighbours do not agree; so this is not to the last digits */
         double *u = KIT_NEW(double, s.n), *v = KIT_NEW(double, s.n), *x = KIT_NEW(double, s.n), worst = 0;
@@ -806,7 +800,6 @@ static void tri_points_sphere(void) {
         CHECK_MSG(worst < 1e-3, "renumbered: off by %g", worst);
     }
     dense_pair_free(&pair);
-    shape_free(&r);
 }
 
 /* Points in one place, on a line, too few; noise; a plane seen edge on. */

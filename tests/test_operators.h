@@ -220,7 +220,7 @@ static void op_rigid(void) {
     int64_t p;
     int32_t i;
     for (k = 0; k < 3; k++) {
-        r = shape_bumpy(2, 8);
+        r = kit_own_shape(shape_bumpy(2, 8));
         for (i = 0; i < r.n; i++) op_rotate(r.xyz + 3 * i, scales[k]);
         for (q = 0; q < 3; q++) {
             hd_laplacian *a = kit_triangles(&s, op_kinds[q]), *b = kit_triangles(&r, op_kinds[q]);
@@ -235,7 +235,6 @@ static void op_rigid(void) {
             worst = fmax(worst, fabs(a->h * scales[k] - b->h) / b->h);
             CHECK_MSG(worst < tol, "kind %d, scale %g: off by %g", q, scales[k], worst);
         }
-        shape_free(&r);
     }
 }
 
@@ -262,7 +261,7 @@ static void op_permutation(void) {
     int32_t *to = KIT_NEW(int32_t, s.n), i;
     int64_t p;
     int q;
-    r = op_renumbered(&s, 77, to);
+    r = kit_own_shape(op_renumbered(&s, 77, to));
     for (q = 0; q < 3; q++) {
         hd_laplacian *a = kit_triangles(&s, op_kinds[q]), *b = kit_triangles(&r, op_kinds[q]);
         double worst = fabs(a->h - b->h);
@@ -279,7 +278,6 @@ static void op_permutation(void) {
         }
         CHECK_MSG(worst < 1e-13, "kind %d: off by %g", q, worst);
     }
-    shape_free(&r);
 }
 
 /* ---- meshes that are not nice ---- */
@@ -289,7 +287,7 @@ static void op_left_out(void) {
     shape s = kit_own_shape(shape_grid(5, 4, 0)), t;
     int32_t i, n = s.n, m = 0;
     int q;
-    t = shape_make(n + 5, s.n_tri + 8);
+    t = kit_own_shape(shape_make(n + 5, s.n_tri + 8));
     memcpy(t.xyz, s.xyz, 3 * (size_t)n * sizeof(double));
     shape_put_vertex(&t, n, 9, 9, 9);                                        /* in no face */
     shape_put_vertex(&t, n + 1, 0.5, 7, 0);                                  /* only in faces without area */
@@ -318,7 +316,6 @@ static void op_left_out(void) {
         CHECK(memcmp(a->mass, b->mass, (size_t)a->n_active * sizeof(double)) == 0);
         CHECK(a->mesh.n_boundary_loops == b->mesh.n_boundary_loops && b->mesh.n_nonmanifold_edges == 0);
     }
-    shape_free(&t);
 }
 
 /* Vertices without mass in the middle of the numbering. */

@@ -321,7 +321,7 @@ static void pts_plane(void) {
         query[3 * i] = (i % FINE + 0.5) / FINE;
         query[3 * i + 1] = (i / FINE + 0.5) / FINE;
     }
-    s = shape_points(N, shape_on_square, 1, 0, 3);
+    s = kit_own_shape(shape_points(N, shape_on_square, 1, 0, 3));
     lap = pts_make(s.xyz, N, HD_LAPLACIAN_VORONOI_EXP, 0);
     CHECK(hd_neighbours_nearest(s.xyz, N, query, FINE * FINE, 1, id, NULL, NULL, NULL) == HD_OK);
     for (i = 0; i < FINE * FINE; i++) count[id[i]] += 1.0 / (FINE * FINE);
@@ -336,7 +336,6 @@ static void pts_plane(void) {
     CHECK_MSG(inner > 40 && worst < 0.02, "%d inner cells, the worst off by %g of the mean cell", (int)inner, worst);
     CHECK_MSG(lap->area > 0.85 && lap->area < 1.05, "area of 200 random points in a square %g", lap->area);
     CHECK(lap->points.n_border > 20 && lap->points.n_border < 120);
-    shape_free(&s);
 }
 
 /* Two sheets, two points' spacings apart, have twice the area of one. */
@@ -350,13 +349,12 @@ static void pts_sheets(void) {
         const double offset[3] = {0, 0, gaps[k] / sqrt((double)N)};
         double each = 0;
         int32_t i;
-        both = shape_disjoint(&s, &t, offset);
+        both = kit_own_shape(shape_disjoint(&s, &t, offset));
         two = pts_make(both.xyz, both.n, HD_LAPLACIAN_VORONOI_EXP, one->points.bandwidth);
         for (i = 0; i < N; i++) each += two->mass[i];
         CHECK_MSG(fabs(each / one->area - 1) < 0.04 && fabs(two->area / one->area / 2 - 1) < 0.04, "gap %g: areas %g and %g of one sheet", gaps[k],
                   each / one->area, two->area / one->area);
         CHECK(two->n_components == (gaps[k] < 10 ? 1 : 2));
-        shape_free(&both);
     }
 }
 
@@ -635,7 +633,7 @@ static void pts_shells(void) {
         hd_laplacian *lap, *cells;
         int32_t i, flagged;
         for (i = 0; i < 3 * N; i++) b.xyz[i] *= q;
-        both = shape_disjoint(&a, &b, origin);
+        both = kit_own_shape(shape_disjoint(&a, &b, origin));
         for (i = 0; i < N; i++) want[i] = pts_sphere_kernel(t, shape_dot(a.xyz, a.xyz + 3 * i));
         lap = pts_tufted(both.xyz, both.n);
         cells = pts_make(both.xyz, both.n, HD_LAPLACIAN_VORONOI_EXP, 0);
@@ -648,7 +646,6 @@ static void pts_shells(void) {
                   "%g spacings: %d places not flat", gaps[k], (int)flagged);
         CHECK(gaps[k] < 2 || lap->n_components == 2);
         CHECK(cells->points.n_not_flat == flagged);
-        shape_free(&both);
     }
 }
 

@@ -465,14 +465,13 @@ static void poly_edges(void) {
     s.n_faces--;                                  /* a hole */
     lap = poly_make(&s, 0);
     CHECK(lap->mesh.n_boundary_loops == 1 && lap->mesh.n_boundary_edges == 4 && lap->mesh.n_edges == 60);
-    t = shape_poly_make(8, 3, 12);                /* three leaves of a book */
+    t = kit_own_poly(shape_poly_make(8, 3, 12));                /* three leaves of a book */
     for (keep = 0; keep < 24; keep++) t.xyz[keep] = cos(1.7 * keep);
     shape_put_quad(&t, 0, 1, 2, 3);
     shape_put_quad(&t, 0, 1, 4, 5);
     shape_put_quad(&t, 1, 0, 6, 7);
     lap = poly_make(&t, 0);
     CHECK(lap->mesh.n_nonmanifold_edges == 1 && lap->mesh.n_edges == 10 && lap->mesh.n_boundary_edges == 9 && lap->n_components == 1);
-    shape_poly_free(&t);
 }
 
 static void poly_errors(void) {
@@ -587,9 +586,9 @@ static void poly_heat(void) {
     lap = poly_make(&s, 0);
     L = test_dense(&lap->L, NULL);
     B = test_dense_mass(lap);
-    f = DENSE_NEW(double, s.n);
-    u = DENSE_NEW(double, s.n);
-    want = DENSE_NEW(double, s.n);
+    f = KIT_NEW(double, s.n);
+    u = KIT_NEW(double, s.n);
+    want = KIT_NEW(double, s.n);
     t = 5 * lap->h * lap->h;
     f[7] = lap->mass[7];
     CHECK(dense_pair_solve(&p, L, B, s.n));
@@ -607,9 +606,6 @@ static void poly_heat(void) {
         hd_heat_free(heat);
     }
     dense_pair_free(&p);
-    free(f);
-    free(u);
-    free(want);
 }
 
 static int poly_ascending(const void *a, const void *b) {

@@ -340,8 +340,8 @@ static void thr_light(void) {
     memset(&w, 0, sizeof w);
     call_data_make(&d, shape_bumpy(6, 4));
     t = 100 * d.h * d.h;
-    one = DENSE_NEW(double, 2 * d.s.n);          /* of each frame */
-    four = DENSE_NEW(double, 8 * d.s.n);
+    one = KIT_NEW(double, 2 * d.s.n);          /* of each frame */
+    four = KIT_NEW(double, 8 * d.s.n);
     for (q = 0; q < 2; q++) {
         hd_context ctx;
         memset(&ctx, 0, sizeof ctx);
@@ -365,8 +365,6 @@ static void thr_light(void) {
         call_close(&w);
         CHECK(ctx.bytes_in_use == 0);
     }
-    free(one);
-    free(four);
     call_world_free(&w);
     call_data_free(&d);
 }
