@@ -4285,17 +4285,21 @@ HDI_KERNEL void HDI_OF(pack_slices)(double *b, int64_t b_next, const double *x, 
     HDI_OF(slices)(1, b, b_next, x, row, col, d, n, depth);
 }
 
-static const hdi_kernels *HDI_OF(kernels)(int pack) {
-    static const hdi_kernels hdi_real = {
+static const hdi_kernels *HDI_OF(real_kernels)(void) {
+    static const hdi_kernels hdi_table = {
         1, HDI_OF(regs) * HDI_WIDTH, HDI_OF(cols), HDI_OF(real_product), HDI_OF(real_solve),
         HDI_OF(real_eliminate), HDI_OF(real_slices), HDI_OF(add), HDI_PASTE(single_up, HDI_SOLO),
         HDI_PASTE(single_down, HDI_SOLO)
     };
-    static const hdi_kernels hdi_packs = {
+    return &hdi_table;
+}
+
+static const hdi_kernels *HDI_OF(pack_kernels)(void) {
+    static const hdi_kernels hdi_table = {
         HDI_PACK, HDI_OF(pack_regs), HDI_OF(pack_cols), HDI_OF(pack_product), HDI_OF(pack_solve),
         HDI_OF(pack_eliminate), HDI_OF(pack_slices), HDI_OF(add), NULL, NULL
     };
-    return pack ? &hdi_packs : &hdi_real;
+    return &hdi_table;
 }
 
 #undef HDI_SET
@@ -4337,12 +4341,13 @@ static const hdi_kernels *HDI_OF(kernels)(int pack) {
 /* Kernels of a level: 0 plain C, 1 AVX2, 2 AVX-512; of real numbers, or of packs. Never NULL: a level that was
  * not compiled gives the plain kernels. */
 static const hdi_kernels *hdi_kernels_get(int level, int pack) {
+    const int packs = HDI_HAS_POLE_FACTORS && pack;
 #if HDI_X86
-    if (level >= 2) return hdi_kernels_avx512(pack);
-    if (level == 1) return hdi_kernels_avx2(pack);
+    if (level >= 2) return packs ? hdi_pack_kernels_avx512() : hdi_real_kernels_avx512();
+    if (level == 1) return packs ? hdi_pack_kernels_avx2() : hdi_real_kernels_avx2();
 #endif
     (void)level;
-    return hdi_kernels_plain(pack);
+    return packs ? hdi_pack_kernels_plain() : hdi_real_kernels_plain();
 }
 
 /* X = X - A B for matrices of which a few rows stand side by side, as right-hand sides do: X [cols][n] and A
@@ -13217,7 +13222,7 @@ static void hdi_factor_take(hdi_factor *f, const hdi_symbolic *sym, int32_t widt
     f->order = HDI_TAKE(s, int32_t, f->n_order + 1);
     if (f->scratch && n_chunks > 0) f->second = f->scratch + f->scratch_size * n_parts + f->top_size;
     if (s->tally) return;
-    f->ops = HDI_HAS_DIRECT ? hdi_kernels_get(hdi_simd_level(s->ctx), HDI_HAS_POLE_FACTORS && width > 1) : NULL;
+    f->ops = HDI_HAS_DIRECT ? hdi_kernels_get(hdi_simd_level(s->ctx), width > 1) : NULL;
     f->ctx = s->ctx;
 }
 

@@ -1935,7 +1935,7 @@ static double sim_factor(const hdi_symbolic *f, int32_t n) {
     sim_meet(&s, 0);
     for (k = 0; k < f->n_top; k++) {
         const double p = hdi_front_pivots(f, f->top[k]), u = (double)hdi_front_below(f, f->top[k]);
-        if (hdi_factor_shared(f, f->top[k])) sim_front(&s, p + u, p, HDI_PACK_BLOCK);
+        if (hdi_factor_shared(f, f->top[k])) sim_front(&s, p + u, p, (int32_t)hdi_front_pivot_block(HDI_PACK));
         else sim_meet(&s, sim_front_work(p, u));
     }
     return s.end;
