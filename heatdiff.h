@@ -12014,7 +12014,7 @@ static void hdi_sym_sort_kids(const hdi_sym_work *w, int32_t v) {
 /* Panels come in blocks of at most HDI_PANEL columns, each from its first pivot's row on: what stands above
  * the diagonal of a wide panel is not kept. Entries before block q of a panel of m rows and p
  * columns: */
-static int64_t hdi_panel_block(int64_t m, int64_t p, int64_t q) {
+static HDI_INLINE int64_t hdi_panel_block(int64_t m, int64_t p, int64_t q) {
     const int64_t full = q * HDI_PANEL < p ? q : p / HDI_PANEL, rest = q * HDI_PANEL < p ? 0 : p % HDI_PANEL;
     return HDI_PANEL * (full * m - HDI_PANEL * (full * (full - 1) / 2)) + rest * (m - HDI_PANEL * full);
 }
@@ -12559,7 +12559,7 @@ static int32_t hdi_front_row(const hdi_front *w, int64_t i, int64_t j) {
  * apart. at: its entry (begin,begin). */
 typedef struct hdi_block { double *at; int64_t begin, width, ld; int32_t entry; } hdi_block;
 
-static hdi_block hdi_block_of(double *panel, int32_t entry, int64_t m, int64_t p, int64_t q) {
+static HDI_INLINE hdi_block hdi_block_of(double *panel, int32_t entry, int64_t m, int64_t p, int64_t q) {
     hdi_block b;
     b.begin = q * HDI_PANEL;
     b.width = hdi_least(p - b.begin, HDI_PANEL);
@@ -12570,7 +12570,7 @@ static hdi_block hdi_block_of(double *panel, int32_t entry, int64_t m, int64_t p
 }
 
 /* Entry (i,k) of the front. */
-static double *hdi_block_at(const hdi_block *b, int64_t i, int64_t k) {
+static HDI_INLINE double *hdi_block_at(const hdi_block *b, int64_t i, int64_t k) {
     return b->at + b->entry * (i - b->begin + (k - b->begin) * b->ld);
 }
 
@@ -12579,7 +12579,7 @@ static hdi_block hdi_front_block(const hdi_front *w, int64_t q) {
 }
 
 /* Entry (j,j) of a triangle of u rows packed by columns; those below it follow. */
-static int64_t hdi_triangle_column(int64_t u, int64_t j) { return j * u - j * (j - 1) / 2; }
+static HDI_INLINE int64_t hdi_triangle_column(int64_t u, int64_t j) { return j * u - j * (j - 1) / 2; }
 
 static HDI_INLINE void hdi_entry_copy(int32_t width, double *to, const double *from) {
     if (width == 1) *to = *from;
@@ -12614,7 +12614,8 @@ static void hdi_front_child(const hdi_front *w, int32_t c, int64_t r0, int64_t r
     const hdi_symbolic *s = f->sym;
     const int32_t *rel = s->rel + s->row_ptr[c], width = f->width;
     const int64_t u = hdi_front_below(s, c), inner = s->inner[c];
-    const int64_t from = hdi_lower_bound(rel, u, r0), end = hdi_lower_bound(rel, u, r1);
+    const int64_t from = r0 == 0 ? 0 : r0 == w->p ? inner : hdi_lower_bound(rel, u, r0);
+    const int64_t end = r1 == w->m ? u : hdi_lower_bound(rel, u, r1);
     const double *child = f->work + width * s->update[c];
     int32_t run[HDI_FRONT_RUNS + 1], first = 0, n, q;
     int64_t i, j = below ? inner : 0;
@@ -13503,18 +13504,20 @@ static int hdi_sweep_clear(const hdi_sweep *z, int32_t v, double *y) {
 
 /* y = D^-1 y */
 static void hdi_sweep_divide(const hdi_sweep *z, int32_t v, double *y) {
-    const hdi_symbolic *s = z->f->sym;
-    const int64_t n = hdi_front_pivots(s, v) * (int64_t)z->k, width = z->f->width;
-    const double *dinv = z->f->dinv + width * s->super[v];
+    const int64_t p = hdi_front_pivots(z->f->sym, v), width = z->f->width;
+    const double *d = z->f->dinv + width * z->f->sym->super[v];
     double t[HDI_PACK];
     int64_t i;
-    for (i = 0; i < n; i++, y += width) {
-        if (width == 1) {
-            *y *= dinv[i / z->k];
-            continue;
+    int32_t r;
+    for (i = 0; i < p; i++, d += width) {
+        for (r = 0; r < z->k; r++, y += width) {
+            if (width == 1) {
+                *y *= *d;
+                continue;
+            }
+            memcpy(t, y, sizeof t);
+            hdi_pack_times(t, d, y);
         }
-        memcpy(t, y, sizeof t);
-        hdi_pack_times(t, dinv + HDI_PACK * (i / z->k), y);
     }
 }
 
