@@ -11024,27 +11024,22 @@ static void hdi_amd_number(hdi_amd *g, int32_t *perm) {
     }
 }
 
-/* A graph to be ordered: rows of the inner vertices, 0..inner-1, in both triangles; in any order, none twice
- * in a row, the diagonal may be there. The others, the halo, count in degrees but are never eliminated. They
- * have no rows, and edges between them do not matter. */
+/* A graph to be ordered. The inner vertices, 0..inner-1, have rows: their neighbours in both triangles, in any
+ * order, none twice; the diagonal may be there. The other vertices are the halo. They count in degrees but are
+ * never eliminated. They have no rows, and edges between them do not matter. Columns from n on are skipped. */
 typedef struct hdi_amd_graph {
     int32_t n, inner;
-    const int64_t *wide;         /* [inner + 1] where rows begin, or NULL and ... */
-    const int32_t *ptr;          /* [inner + 1] ... the same as shorter numbers */
-    const int32_t *col;          /* columns 0..n-1 */
+    const int32_t *ptr, *col;    /* [inner + 1], [ptr[inner]] */
 } hdi_amd_graph;
-
-static int64_t hdi_amd_row(const hdi_amd_graph *a, int32_t i) { return a->wide ? a->wide[i] : a->ptr[i]; }
 
 /* Lists of all vertices but those with dense rows (as in AMD), which are dropped: they would be in most. */
 static void hdi_amd_load(hdi_amd *g, const hdi_amd_graph *a) {
     const int32_t dense = (int32_t)(hdi_max(16, 10 * sqrt((double)a->n)));
-    int32_t i, q = 0;
-    int64_t p;
+    int32_t i, p, q = 0;
     for (i = 0; i < a->inner; i++) {
-        if (hdi_amd_row(a, i + 1) - hdi_amd_row(a, i) > dense) hdi_amd_drop(g, i);
-        for (p = hdi_amd_row(a, i); a->inner < a->n && p < hdi_amd_row(a, i + 1); p++)
-            if (a->col[p] >= a->inner) g->v[a->col[p]].len++;
+        if (a->ptr[i + 1] - a->ptr[i] > dense) hdi_amd_drop(g, i);
+        for (p = a->ptr[i]; a->inner < a->n && p < a->ptr[i + 1]; p++)
+            if (a->col[p] >= a->inner && a->col[p] < a->n) g->v[a->col[p]].len++;
     }
     for (i = a->inner; i < a->n; i++) {          /* room for the lists of the halo */
         if (g->v[i].len > dense) hdi_amd_drop(g, i);
@@ -11053,12 +11048,11 @@ static void hdi_amd_load(hdi_amd *g, const hdi_amd_graph *a) {
         g->v[i].len = 0;
     }
     for (i = 0; i < a->inner; i++) {
-        const int64_t end = hdi_amd_row(a, i + 1);
         g->v[i].at = q;
         if (g->v[i].weight == 0) continue;
-        for (p = hdi_amd_row(a, i); p < end; p++) {
+        for (p = a->ptr[i]; p < a->ptr[i + 1]; p++) {
             hdi_amd_node *j = g->v + a->col[p];
-            if (a->col[p] == i || j->weight == 0) continue;
+            if (a->col[p] == i || a->col[p] >= a->n || j->weight == 0) continue;
             g->list[q++] = a->col[p];
             if (a->col[p] >= a->inner) g->list[j->at + j->len++] = i;
         }
@@ -11067,7 +11061,7 @@ static void hdi_amd_load(hdi_amd *g, const hdi_amd_graph *a) {
     g->free = q;
 }
 
-/* Orders a small graph with ptr given: perm[q] is the inner vertex eliminated q-th. work
+/* Orders a small graph: perm[q] is the inner vertex that is eliminated q-th. work
  * [hdi_amd_words], below 2^31, best aligned to 64 bytes. Cannot fail. TRUSTS ITS INPUT. */
 static void hdi_amd_part(const hdi_amd_graph *a, int32_t *perm, int32_t *work) {
     hdi_amd g;
@@ -11084,13 +11078,14 @@ static hd_status hdi_amd_order(const hd_csr *a, int32_t *perm, hd_context *ctx, 
     hdi_scope s = hdi_scope_begin(ctx, e);
     const int32_t n = a->n_rows;
     const int64_t words = hdi_amd_words(n, 0, a->nnz);
-    const hdi_amd_graph rows = {n, n, a->row_ptr, NULL, a->col};
-    int32_t count, *work;
+    int32_t i, count, *ptr = HDI_TAKE(&s, int32_t, (int64_t)n + 1), *work;
+    const hdi_amd_graph rows = {n, n, ptr, a->col};
     hdi_amd g;
     if (words - 9 * (int64_t)n > INT32_MAX)   /* places in the lists are numbered by 32 bits */
-        return hdi_fail(e, HD_ERR_TOO_LARGE, "a pattern is too large for a minimum degree ordering");
+        hdi_fail(e, HD_ERR_TOO_LARGE, "a pattern is too large for a minimum degree ordering");
     work = HDI_TAKE(&s, int32_t, words);
     if (e->status < 0) return hdi_scope_end(&s);
+    for (i = 0; i <= n; i++) ptr[i] = (int32_t)a->row_ptr[i];
     hdi_amd_begin(&g, n, n, work, words);
     hdi_amd_load(&g, &rows);
     count = hdi_amd_start(&g);
@@ -11145,8 +11140,8 @@ enum {
 #define HDI_ND_UNEVEN 0.6     /* share by which a cut costs more that leaves one side empty */
 #define HDI_ND_SWEPT 0.2      /* share of the weight by which the sides of a swept cut differ at most */
 
-/* A part, or a coarse copy of one. At the finest copy weights are 1 (ew and w are NULL), and negative entries
- * of adj are rows outside of the part, already in a separator: ~row. */
+/* A part, or a coarse copy of one. In the part itself all weights are 1 (ew and w are NULL), and entries of adj
+ * from n on are its halo: rows outside of it, which are in a separator already. Copies have no halo. */
 typedef struct hdi_nd_graph {
     int32_t n;
     int32_t *ptr, *adj;    /* neighbours of v: adj[ptr[v]..ptr[v + 1]), no diagonal */
@@ -11156,8 +11151,9 @@ typedef struct hdi_nd_graph {
     int8_t *side;          /* 0, 1, and at the finest copy 2: separator */
 } hdi_nd_graph;
 
-/* Rows first..first + n - 1 of the order are to be found. clusters = 0: none are known. */
-typedef struct hdi_nd_part { int32_t first, n, edge, n_edges, clusters, buffer; } hdi_nd_part;
+/* A part has places first..first + n - 1 of the order. Its halo has the numbers n..n + halo - 1. clusters = 0:
+ * none are known. */
+typedef struct hdi_nd_part { int32_t first, n, halo, edge, n_edges, clusters, buffer; } hdi_nd_part;
 
 /* The graphs of parts and their clusters, each in its own slices: one of two buffers is for odd depths. */
 typedef struct hdi_nd_buffer {
@@ -11236,31 +11232,38 @@ static void hdi_nd_keys(const double *xyz, int32_t n, uint32_t *key, float *unit
     }
 }
 
-/* count[i] becomes the sum of those before it. Returns the sum of all. */
-static int32_t hdi_nd_sums(int32_t *count, int32_t n) {
-    int32_t i, sum = 0;
-    for (i = 0; i < n; i++) {
-        const int32_t c = count[i];
-        count[i] = sum;
-        sum += c;
-    }
-    return sum;
+/* Groups [0,n) by keys: list[ptr[k]..ptr[k + 1]) are the i with key[i] = k, ascending. Those with negative
+ * keys are left out. ptr [n_keys + 1]. */
+static void hdi_group(const int32_t *key, int32_t n, int32_t n_keys, int32_t *ptr, int32_t *list) {
+    int32_t i;
+    hdi_fill_i32(ptr, (int64_t)n_keys + 1, 0);
+    for (i = 0; i < n; i++)
+        if (key[i] >= 0) ptr[key[i]]++;
+    for (i = 0; i < n_keys; i++) ptr[i + 1] += ptr[i];
+    for (i = n; i-- > 0;)
+        if (key[i] >= 0) list[--ptr[key[i]]] = i;
 }
 
-/* order = the rows by ascending key: three passes of ten bits. spare [n], count [1024]. */
-static void hdi_nd_sort(const uint32_t *key, int32_t n, int32_t *order, int32_t *spare, int32_t *count) {
-    int32_t i, shift, *from = spare, *to = order;
-    for (i = 0; i < n; i++) from[i] = i;
-    for (shift = 0; shift < 30; shift += 10) {
-        int32_t *t;
-        memset(count, 0, 1024 * sizeof *count);
-        for (i = 0; i < n; i++) count[key[i] >> shift & 1023u]++;
-        hdi_nd_sums(count, 1024);
-        for (i = 0; i < n; i++) to[count[key[from[i]] >> shift & 1023u]++] = from[i];
-        t = from;
-        from = to;
-        to = t;
+/* order = the rows along the curve, those with too many entries last; inv = its inverse, -1 for these rows.
+ * Returns how many the others are. Sorts by three digits of 11 bits. spare [n], ptr [2049]. */
+static int32_t hdi_nd_number(const hd_csr *a, uint32_t *key, int32_t *order, int32_t *inv, int32_t *spare,
+                             int32_t *ptr) {
+    const double dense = 10 * sqrt((double)a->n_rows) + 16;
+    const int32_t n = a->n_rows;
+    int32_t i, shift, m = 0;
+    for (i = 0; i < n; i++) {
+        if ((double)(a->row_ptr[i + 1] - a->row_ptr[i]) > dense) key[i] = (uint32_t)1 << 30;
+        else m++;
+        order[i] = i;
     }
+    for (shift = 0; shift < 33; shift += 11) {
+        for (i = 0; i < n; i++) inv[i] = (int32_t)(key[order[i]] >> shift & 2047u);
+        hdi_group(inv, n, 2048, ptr, spare);
+        for (i = 0; i < n; i++) inv[i] = order[spare[i]];
+        memcpy(order, inv, (size_t)n * sizeof *order);
+    }
+    for (i = 0; i < n; i++) inv[order[i]] = i < m ? i : -1;
+    return m;
 }
 
 /* ---- coarse copies ---- */
@@ -11278,7 +11281,7 @@ static int32_t hdi_nd_cluster(const hdi_nd_graph *g, int32_t limit, int32_t *wei
         map[v] = n;
         for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
             const int32_t u = g->adj[p];
-            if (u < 0) continue;
+            if (u >= g->n) continue;
             if (map[u] < 0) {
                 const int32_t wu = g->w ? g->w[u] : 1;
                 if (sum + wu > limit) continue;
@@ -11296,18 +11299,6 @@ static int32_t hdi_nd_cluster(const hdi_nd_graph *g, int32_t limit, int32_t *wei
         }
     }
     return n;
-}
-
-/* Groups [0,n) by keys: list[ptr[k]..ptr[k + 1]) are the i with key[i] = k, ascending. Those with negative
- * keys are left out. ptr [n_keys + 1]. */
-static void hdi_group(const int32_t *key, int32_t n, int32_t n_keys, int32_t *ptr, int32_t *list) {
-    int32_t i;
-    hdi_fill_i32(ptr, (int64_t)n_keys + 1, 0);
-    for (i = 0; i < n; i++)
-        if (key[i] >= 0) ptr[key[i]]++;
-    for (i = 0; i < n_keys; i++) ptr[i + 1] += ptr[i];
-    for (i = n; i-- > 0;)
-        if (key[i] >= 0) list[--ptr[key[i]]] = i;
 }
 
 /* c = the graph of the clusters of g, with summed weights. c->n, c->w are set; c->adj, c->ew have room for
@@ -11330,7 +11321,7 @@ static int hdi_nd_contract(const hdi_nd_graph *g, hdi_nd_graph *c, int32_t space
             for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
                 const int32_t u = g->adj[p], e = ew ? ew[p] : 1;
                 int32_t d, at, fresh;
-                if (u < 0) continue;
+                if (u >= g->n) continue;
                 d = map[u];                      /* no branches from here on: they would be unpredictable */
                 at = mark[d];
                 fresh = at < row;
@@ -11357,9 +11348,10 @@ static int64_t hdi_nd_weigh(const hdi_nd_graph *g, const int32_t *map) {
         weight += g->w ? g->w[v] : 1;
         for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
             const int64_t u = g->adj[p], e = g->ew ? g->ew[p] : 1;
-            if (u == v || u >= g->n || e <= 0) return -1;
-            if (u >= 0) sum += (uint64_t)(u - v) * (uint64_t)((1 + u % 999 * (v % 999)) * e);
-            if (u >= 0 && (!map || map[u] != map[v])) weight += e << 32;
+            if (u == v || u < 0 || e <= 0) return -1;
+            if (u >= g->n) continue;
+            sum += (uint64_t)(u - v) * (uint64_t)((1 + u % 999 * (v % 999)) * e);
+            if (!map || map[u] != map[v]) weight += e << 32;
         }
     }
     return sum == 0 ? weight : -1;
@@ -11477,7 +11469,7 @@ static void hdi_nd_mover_start(hdi_nd_mover *m, hdi_nd_cut *cut) {
         int32_t in = 0, out = 0;
         for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
             const int32_t u = g->adj[p], e = g->ew ? g->ew[p] : 1;
-            if (u < 0) continue;
+            if (u >= g->n) continue;
             out += e & -(g->side[u] ^ g->side[v]);
             in += e;
         }
@@ -11510,7 +11502,7 @@ static void hdi_nd_mover_move(hdi_nd_mover *m, int32_t v, hdi_nd_cut *cut) {
     m->gain[v] = -m->gain[v];
     for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
         const int32_t u = g->adj[p], e = g->ew ? g->ew[p] : 1;
-        if (u < 0) continue;
+        if (u >= g->n) continue;
         m->gain[u] += g->side[u] == to ? -2 * e : 2 * e;
         if (m->locked[u]) continue;
         if (m->q.prev[u] != HDI_ND_NONE) hdi_nd_queue_remove(&m->q, u);
@@ -11598,7 +11590,7 @@ static int32_t hdi_nd_steps(const hdi_nd_graph *g, int32_t start, int32_t *dist,
         v = queue[head++];
         for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
             const int32_t u = g->adj[p];
-            if (u < 0 || dist[u] < g->n) continue;
+            if (u >= g->n || dist[u] < g->n) continue;
             dist[u] = dist[v] + 1;
             queue[tail++] = u;
         }
@@ -11655,7 +11647,7 @@ static void hdi_nd_sweep(const hdi_nd_graph *g, const hdi_pair *key, double tota
         weight += g->w ? g->w[v] : 1;
         for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
             const int32_t u = g->adj[p], e = g->ew ? g->ew[p] : 1;
-            if (u >= 0) cut += g->side[u] ? e : -e;
+            if (u < g->n) cut += g->side[u] ? e : -e;
         }
         now = hdi_nd_cost(cut, weight, total - weight);
         if (fabs(2 * weight - total) > HDI_ND_SWEPT * total)
@@ -11726,7 +11718,7 @@ static void hdi_nd_flow_band(hdi_nd_flow *f, int32_t n, int32_t most, int32_t la
             const int32_t v = f->band[begin];
             for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
                 const int32_t u = g->adj[p];
-                if (u < 0 || f->inside[u] || room[g->side[u]] == 0) continue;
+                if (u >= g->n || f->inside[u] || room[g->side[u]] == 0) continue;
                 room[g->side[u]]--;
                 f->inside[u] = (int8_t)(f->inside[v] + (g->side[u] == f->from ? -1 : 1));
                 f->band[f->n_band++] = u;
@@ -11787,7 +11779,7 @@ static int hdi_nd_flow_search(hdi_nd_flow *f, int32_t v) {
         } else {
             for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
                 const int32_t u = g->adj[p];
-                if (u < 0) continue;
+                if (u >= g->n) continue;
                 if (f->inside[u]) {
                     if (f->seen[2 * u] < f->stamp) hdi_nd_flow_push(f, 2 * u, state);
                 } else if (g->side[u] != f->from) {
@@ -11807,7 +11799,7 @@ static int hdi_nd_flow_starts(const hdi_nd_flow *f, int32_t v) {
     const hdi_nd_graph *g = f->g;
     int32_t p;
     for (p = g->ptr[v]; p < g->ptr[v + 1]; p++)
-        if (g->adj[p] >= 0 && !f->inside[g->adj[p]] && g->side[g->adj[p]] == f->from) return 1;
+        if (g->adj[p] < g->n && !f->inside[g->adj[p]] && g->side[g->adj[p]] == f->from) return 1;
     return 0;
 }
 
@@ -11884,7 +11876,7 @@ static void hdi_nd_fresh(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_graph
 static int hdi_nd_touches(const hdi_nd_graph *g, int32_t v) {
     int32_t p;
     for (p = g->ptr[v]; p < g->ptr[v + 1]; p++)
-        if (g->adj[p] >= 0 && g->side[g->adj[p]] != g->side[v]) return 1;
+        if (g->adj[p] < g->n && g->side[g->adj[p]] != g->side[v]) return 1;
     return 0;
 }
 
@@ -11934,15 +11926,6 @@ static int hdi_nd_measure(const hdi_nd_graph *g, int32_t *size) {
     return size[0] <= g->n - g->n / 5 && size[1] <= g->n - g->n / 5 && size[2] <= g->n / 2;
 }
 
-/* Sides by number, for graphs on which all else failed. */
-static void hdi_nd_halve(const hdi_nd_graph *g) {
-    int32_t v, p;
-    for (v = 0; v < g->n; v++) g->side[v] = v >= g->n / 2;
-    for (v = 0; v < g->n / 2; v++)
-        for (p = g->ptr[v]; p < g->ptr[v + 1]; p++)
-            if (g->adj[p] >= g->n / 2) g->side[v] = 2;
-}
-
 /* Sets level[0].side to 0, 1 or 2 and size [3]. 0 if the part has no good separator. */
 static int hdi_nd_dissect(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_graph *level, hdi_nd_space s,
                           int32_t *size) {
@@ -11965,8 +11948,6 @@ static int hdi_nd_dissect(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_grap
     f.inside = hdi_nd_take_bytes(&s, n);
     f.from = size[1] > size[0];
     hdi_nd_flow_run(&f, n_list, part->n / HDI_ND_BAND, HDI_ND_LAYERS);
-    if (hdi_nd_measure(level, size)) return 1;
-    hdi_nd_halve(level);
     return hdi_nd_measure(level, size);
 }
 
@@ -11975,7 +11956,7 @@ static int hdi_nd_separated(const hdi_nd_graph *g) {
     int32_t v, p;
     for (v = 0; v < g->n; v++)
         for (p = g->ptr[v]; p < g->ptr[v + 1]; p++)
-            if (g->adj[p] >= 0 && g->side[v] + g->side[g->adj[p]] == 1) return 0;
+            if (g->adj[p] < g->n && g->side[v] + g->side[g->adj[p]] == 1) return 0;
     return 1;
 }
 
@@ -12006,19 +11987,24 @@ static void hdi_nd_graphs_of(const hdi_nd *nd, const hdi_nd_part *p, hdi_nd_grap
     hdi_nd_clusters_of(nd, p, level + 1);
 }
 
-/* The vertices of one side into the child's slices. at [g->n]: numbers within the sides, or ~row. */
-static void hdi_nd_extract(const hdi_nd_graph *g, int8_t side, const int32_t *at, hdi_nd_graph *child) {
+/* Makes a child of the vertices of one side, in the child's slices. Neighbours that are not on this side are
+ * numbered as its halo when they are first met. number: work space for the part's vertices and its halo. */
+static void hdi_nd_extract(const hdi_nd_graph *g, int32_t halo, int8_t side, hdi_nd_part *child,
+                           const hdi_nd_graph *half, int32_t *number) {
     int32_t v, p, i = 0, z = 0;
+    for (v = 0; v < g->n; v++) number[v] = g->side[v] == side ? child->n++ : -1;
+    hdi_fill_i32(number + g->n, halo, -1);
     for (v = 0; v < g->n; v++) {
         if (g->side[v] != side) continue;
-        child->ptr[i] = z;
-        child->id[i++] = g->id[v];
+        half->ptr[i] = z;
+        half->id[i++] = g->id[v];
         for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
             const int32_t u = g->adj[p];
-            child->adj[z++] = u < 0 ? u : at[u];
+            if (number[u] < 0) number[u] = child->n + child->halo++;
+            half->adj[z++] = number[u];
         }
     }
-    child->ptr[i] = z;
+    half->ptr[i] = child->n_edges = z;
 }
 
 /* The clusters of g[0], which are in g[1], that have vertices on one side into the child's slices, with room
@@ -12052,57 +12038,14 @@ static int32_t hdi_nd_extract_clusters(const hdi_nd_graph *g, int8_t side, hdi_n
     return n;
 }
 
-/* Gives the rows of the halo numbers from part->n on, in place, by a hash table in s. Returns how many there
- * are; n_edges when the space is too small and nothing has been done. */
-static int32_t hdi_nd_halo(const hdi_nd_part *part, int32_t *adj, hdi_nd_space s) {
-    int32_t p, n = 0, outer = 0, mask = 1;
-    for (p = 0; p < part->n_edges; p++) outer += adj[p] < 0;
-    while (mask < 2 * outer) mask *= 2;
-    if (2 * (int64_t)mask > s.end - s.at) return outer ? part->n_edges : 0;
-    memset(s.at, 0, 2 * (size_t)mask * sizeof *s.at);
-    for (p = 0; p < part->n_edges; p++) {
-        uint32_t h = (uint32_t)adj[p] * HDI_HASH_FACTOR >> 7;
-        int32_t *slot;
-        if (adj[p] >= 0) continue;
-        for (;; h++) {
-            slot = s.at + 2 * (h & (uint32_t)(mask - 1));
-            if (*slot == 0 || *slot == adj[p]) break;
-        }
-        if (*slot == 0) {
-            slot[0] = adj[p];
-            slot[1] = part->n + n++;
-        }
-        adj[p] = slot[1];
-    }
-    return n;
-}
-
-/* Takes the halo out of the rows. */
-static void hdi_nd_bare(hdi_nd_graph *g) {
-    int32_t v, p = 0, z = 0;
-    for (v = 0; v < g->n; v++) {
-        for (; p < g->ptr[v + 1]; p++) {
-            g->adj[z] = g->adj[p];
-            z += g->adj[p] >= 0 && g->adj[p] < g->n;
-        }
-        g->ptr[v + 1] = z;
-    }
-}
-
-/* Orders a part by minimum degree, separators around it as halo if there is space. Changes its graph. */
-static void hdi_nd_leaf(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_graph *g, hdi_nd_space s) {
-    hdi_amd_graph rows = {part->n, part->n, NULL, g->ptr, g->adj};
-    int32_t v, halo, *local = nd->perm + part->first;
+/* Orders a part by minimum degree. The separators around it count as its halo if the space is large enough. */
+static void hdi_nd_leaf(const hdi_nd *nd, const hdi_nd_part *part, const hdi_nd_graph *g, hdi_nd_space s) {
+    hdi_amd_graph rows = {part->n + part->halo, part->n, g->ptr, g->adj};
+    int32_t v, *local = nd->perm + part->first;
     if (!part->n) return;
-    halo = hdi_nd_halo(part, g->adj, s);
-    if (hdi_amd_words(part->n, halo, part->n_edges) > s.end - s.at) {
-        hdi_nd_bare(g);
-        halo = 0;
-    }
-    rows.n += halo;
-    if (hdi_amd_words(part->n, halo, g->ptr[part->n]) <= s.end - s.at) hdi_amd_part(&rows, local, s.at);
-    else
-        for (v = 0; v < part->n; v++) local[v] = v;
+    if (hdi_amd_words(part->n, part->halo, part->n_edges) > s.end - s.at) rows.n = part->n;
+    HEATDIFF_ASSERT(hdi_amd_words(rows.n, 0, part->n_edges) <= s.end - s.at);
+    hdi_amd_part(&rows, local, s.at);
     for (v = 0; v < part->n; v++) local[v] = g->id[local[v]];
 }
 
@@ -12111,7 +12054,7 @@ static void hdi_nd_split(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_part 
     hdi_nd_graph level[HDI_ND_LEVELS], half[2];
     hdi_nd_space rest = s;
     const int small = part->n <= HDI_ND_LEAF || part->n_edges == 0;
-    int32_t v, size[3], n[2] = {0, 0}, last, *at = hdi_nd_take(&rest, part->n);
+    int32_t v, size[3], last, *number;
     memset(child, 0, 2 * sizeof *child);
     hdi_nd_graphs_of(nd, part, level);
     level->side = hdi_nd_take_bytes(&rest, part->n);
@@ -12122,23 +12065,16 @@ static void hdi_nd_split(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_part 
     }
     if (HDI_AUDIT && !hdi_nd_separated(level)) HEATDIFF_ASSERT(0);
     last = part->first + part->n - size[2];
-    for (v = 0; v < part->n; v++) {
-        const int8_t t = level->side[v];
-        if (t < 2) at[v] = n[t]++;
-        else {
-            nd->perm[last++] = level->id[v];
-            at[v] = ~level->id[v];
-        }
-    }
+    for (v = 0; v < part->n; v++)
+        if (level->side[v] == 2) nd->perm[last++] = level->id[v];
+    number = hdi_nd_take(&rest, (int64_t)part->n + part->halo);
     for (v = 0; v < 2; v++) {
-        child[v].first = v ? part->first + n[0] : part->first;
-        child[v].n = n[v];
-        child[v].edge = v ? part->edge + child->n_edges : part->edge;
+        child[v].first = part->first + child[0].n;
+        child[v].edge = part->edge + child[0].n_edges;
         child[v].buffer = 1 - part->buffer;
         hdi_nd_graphs_of(nd, child + v, half);
-        hdi_nd_extract(level, (int8_t)v, at, half);
-        child[v].n_edges = half->ptr[n[v]];
-        if (n[v] > HDI_ND_LEAF && level[1].n > 0)
+        hdi_nd_extract(level, part->halo, (int8_t)v, child + v, half, number);
+        if (child[v].n > HDI_ND_LEAF && level[1].n > 0)
             child[v].clusters = hdi_nd_extract_clusters(level, (int8_t)v, half,
                                                         child[v].n_edges / 4 - 1, rest);
     }
@@ -12182,81 +12118,57 @@ static void hdi_nd_loop_task(void *arg, int64_t index, int32_t worker) {
         hdi_release_many(nd->threads, (int32_t)(2 * index + 1), 2, nd->order);
 }
 
-/* order = rows along the curve, too long ones last; inv = its inverse, -1 for these. Returns the others. */
-static int32_t hdi_nd_number(const hd_csr *a, const uint32_t *key, int32_t *order, int32_t *inv,
-                             int32_t *count) {
-    const double dense = 10 * sqrt((double)a->n_rows) + 16;
-    int32_t i, k = 0, last = a->n_rows;
-    hdi_nd_sort(key, a->n_rows, order, inv, count);
-    for (i = 0; i < a->n_rows; i++) {
-        const int32_t r = order[i];
-        if ((double)(a->row_ptr[r + 1] - a->row_ptr[r]) > dense) inv[--last] = r;
-        else order[k++] = r;
-    }
-    for (i = k; i < a->n_rows; i++) order[i] = inv[i];
-    for (i = 0; i < a->n_rows; i++) inv[order[i]] = i < k ? i : -1;
-    return k;
-}
-
-/* Reads the matrix along the curve: blocks of rows go to the second buffer, from there to the first. */
+/* The matrix as the first part: row k of it is row order[k] of a. */
 typedef struct hdi_nd_load_job {
     const hdi_nd *nd;
     const hd_csr *a;
     const int32_t *order, *inv;
     const float *unit;         /* [3 a->n_rows] places of the rows */
-    int32_t n, *from, *to;     /* places of blocks in the second buffer; in the first, [n_blocks + 1] */
 } hdi_nd_load_job;
 
-static void hdi_nd_load_task(void *arg, int64_t index, int32_t worker) {
+/* Counts the neighbours of rows [begin, end). */
+static void hdi_nd_load_lengths(void *arg, int64_t begin, int64_t end) {
     const hdi_nd_load_job *job = (const hdi_nd_load_job *)arg;
     const hd_csr *a = job->a;
-    const hdi_nd_buffer *b = job->nd->buffer;
-    const int32_t first = (int32_t)index * HDI_ND_BLOCK;
-    const int32_t last = (int32_t)hdi_least(first + HDI_ND_BLOCK, job->n);
-    int32_t k, z = 0, *adj = b[1].adj + job->from[index];
-    int64_t p;
-    (void)worker;
-    for (k = first; k < last; k++) {
+    int64_t k, p;
+    for (k = begin; k < end; k++) {
         const int32_t r = job->order[k];
-        if (k + HDI_ROWS_AHEAD < last) HDI_PREFETCH(a->col + a->row_ptr[job->order[k + HDI_ROWS_AHEAD]]);
-        memcpy(job->nd->xyz + 3 * (size_t)k, job->unit + 3 * (size_t)r, 3 * sizeof(float));
-        b->ptr[k] = z;
-        b->id[k] = k;
-        for (p = a->row_ptr[r]; p < a->row_ptr[r + 1]; p++) {
-            adj[z] = job->inv[a->col[p]];
-            z += a->col[p] != r && adj[z] >= 0;
-        }
+        int32_t count = 0;
+        if (k + HDI_ROWS_AHEAD < end) HDI_PREFETCH(a->col + a->row_ptr[job->order[k + HDI_ROWS_AHEAD]]);
+        for (p = a->row_ptr[r]; p < a->row_ptr[r + 1]; p++) count += a->col[p] != r && job->inv[a->col[p]] >= 0;
+        job->nd->buffer->ptr[k + 1] = count;
     }
-    job->to[index] = z;
 }
 
-static void hdi_nd_move_task(void *arg, int64_t index, int32_t worker) {
+/* Reads rows [begin, end), which begin where ptr says. */
+static void hdi_nd_load_rows(void *arg, int64_t begin, int64_t end) {
     const hdi_nd_load_job *job = (const hdi_nd_load_job *)arg;
     const hdi_nd_buffer *b = job->nd->buffer;
-    const int32_t first = (int32_t)index * HDI_ND_BLOCK, to = job->to[index];
-    const int32_t last = (int32_t)hdi_least(first + HDI_ND_BLOCK, job->n);
-    int32_t k;
-    (void)worker;
-    for (k = first; k < last; k++) b->ptr[k] += to;
-    memcpy(b->adj + to, b[1].adj + job->from[index], (size_t)(job->to[index + 1] - to) * sizeof(int32_t));
+    const hd_csr *a = job->a;
+    int64_t k, p;
+    for (k = begin; k < end; k++) {
+        const int32_t r = job->order[k];
+        int32_t z = b->ptr[k];
+        if (k + HDI_ROWS_AHEAD < end) HDI_PREFETCH(a->col + a->row_ptr[job->order[k + HDI_ROWS_AHEAD]]);
+        memcpy(job->nd->xyz + 3 * (size_t)k, job->unit + 3 * (size_t)r, 3 * sizeof(float));
+        b->id[k] = (int32_t)k;
+        for (p = a->row_ptr[r]; p < a->row_ptr[r + 1]; p++) {
+            const int32_t u = job->inv[a->col[p]];
+            if (a->col[p] != r && u >= 0) b->adj[z++] = u;
+        }
+    }
 }
 
-/* Reads the whole matrix as one part, its rows numbered by order. work [2 blocks + 2]: job->from, job->to. */
-static hdi_nd_part hdi_nd_load(hdi_nd_load_job *job, int32_t *work, hd_context *ctx) {
-    const int32_t n = job->n, n_blocks = (n + HDI_ND_BLOCK - 1) / HDI_ND_BLOCK;
+/* Reads the n rows that are not too long as one part. */
+static hdi_nd_part hdi_nd_load(hdi_nd_load_job *job, int32_t n, hd_context *ctx) {
+    int32_t k, *ptr = job->nd->buffer->ptr;
     hdi_nd_part part;
-    int32_t k, z = 0;
-    job->from = work;
-    job->to = work + n_blocks;
-    for (k = 0; k < n; k++) {
-        if (k % HDI_ND_BLOCK == 0) job->from[k / HDI_ND_BLOCK] = z;
-        z += (int32_t)(job->a->row_ptr[job->order[k] + 1] - job->a->row_ptr[job->order[k]]);
-    }
-    hdi_parallel(ctx, n_blocks, hdi_nd_load_task, job);
     memset(&part, 0, sizeof part);
+    hdi_parallel_ranges(ctx, n, HDI_ND_BLOCK, hdi_nd_load_lengths, job);
+    for (ptr[0] = k = 0; k < n; k++) ptr[k + 1] += ptr[k];
+    hdi_parallel_ranges(ctx, n, HDI_ND_BLOCK, hdi_nd_load_rows, job);
     part.n = n;
-    part.n_edges = job->to[n_blocks] = job->nd->buffer->ptr[n] = hdi_nd_sums(job->to, n_blocks);
-    hdi_parallel(ctx, n_blocks, hdi_nd_move_task, job);
+    part.n_edges = ptr[n];
     return part;
 }
 
@@ -12297,11 +12209,11 @@ static hd_status hdi_nd_order(const hd_csr *a, const double *xyz, int32_t *perm,
     hdi_scope s = hdi_scope_begin(ctx, e);
     const uint64_t n = (uint64_t)a->n_rows;
     int32_t i, k, *order = HDI_TAKE(&s, int32_t, n + 1), *inv = HDI_TAKE(&s, int32_t, n + 1);
-    int32_t *count = HDI_TAKE(&s, int32_t, 1024 + 2 * n / HDI_ND_BLOCK);
+    int32_t *spare = HDI_TAKE(&s, int32_t, n + 1), *ptr = HDI_TAKE(&s, int32_t, 2049);
     uint32_t *key = HDI_TAKE(&s, uint32_t, n + 1);
     float *unit = HDI_TAKE(&s, float, 3 * n + 1);
     hdi_nd nd;
-    hdi_nd_load_job job = {&nd, a, order, inv, unit, 0, NULL, NULL};
+    hdi_nd_load_job job = {&nd, a, order, inv, unit};
     if (a->nnz > INT32_MAX / 2 || n > INT32_MAX / 4)
         hdi_fail(e, HD_ERR_TOO_LARGE, "a pattern is too large for nested dissection");
     memset(&nd, 0, sizeof nd);
@@ -12316,8 +12228,8 @@ static hd_status hdi_nd_order(const hd_csr *a, const double *xyz, int32_t *perm,
     nd.error = e;
     nd.threads = hdi_threads_own(ctx, HDI_ND_NODES);   /* started now, they share the loops before, too */
     hdi_nd_keys(xyz, a->n_rows, key, unit);
-    k = job.n = hdi_nd_number(a, key, order, inv, count);
-    nd.part[0] = hdi_nd_load(&job, count, ctx);
+    k = hdi_nd_number(a, key, order, inv, spare, ptr);
+    nd.part[0] = hdi_nd_load(&job, k, ctx);
     hdi_nd_run(&nd);
     if (e->status < 0) return hdi_scope_end(&s);
     for (i = 0; i < k; i++) perm[i] = order[perm[i]];
