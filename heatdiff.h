@@ -68,7 +68,7 @@
      [10] geometry   triangles: checks, areas, cotangents, edges, defects
      [11] intrinsic  intrinsic Delaunay triangulations and the tufted cover
      [12] operators  the pair (L, B) of triangles, polygons, points and the caller's own matrices
-     [13] degree     orderings by minimum degree, breadth-first orderings
+     [13] degree     orderings by minimum degree
      [14] dissection nested dissection of meshes in space
      [15] analysis   elimination tree, supernodes, fronts, tasks, plan of memory
      [16] order      the choice of an elimination order
@@ -10643,19 +10643,20 @@ static hd_status hdi_vertices_check(const hd_laplacian *lap, int64_t k, const in
  *   F. Pellegrini, J. Roman, P. Amestoy, Hybridizing nested dissection and halo approximate minimum degree,
  *   2000 (the halo)
  * Our own additions: all that is known of a vertex lies in one half of a cache line, and what is needed soon
- * is fetched early, which decides the speed from 1M vertices on; the hash table of twins is small; a halo
- * needs no rows. Ties: the vertex whose degree was found last goes first. */
+ * is fetched early. This decides the speed from 1M vertices on. The hash table of twins is small. The halo
+ * needs no rows. Of several vertices of least degree, the one whose degree was found last goes first. */
 
-/* A variable, an element, or what became of them. */
+/* What is known of a vertex. It begins as a variable and may become an element. It is gone when it was
+ * eliminated or merged together with another one, or when its list is part of a newer element. */
 typedef struct hdi_amd_node {
-    int32_t at;                  /* its list begins at list[at]; of a vertex gone with another: that one */
-    int32_t len;                 /* length of the list: elements first, then variables */
-    int32_t elen;                /* how many are elements; HDI_AMD_PIVOT: this is an element itself */
-    int32_t weight;              /* vertices it stands for; 0: it is gone; negative: it is in L_me */
-    int32_t mark;                /* elements: |L_e \ L_me| + flag, 0 when absorbed; variables: flag if seen */
-    int32_t degree;              /* bound of the weight of the neighbours; of elements that of the list */
-    int32_t next, prev;          /* of the same degree; later chain of the hash table, and hash. Of an element
-                                    prev is its place in the order */
+    int32_t at;                  /* its list begins at list[at]; if it went with another vertex: that one */
+    int32_t len;                 /* the length of the list, which has elements first and then variables */
+    int32_t elen;                /* how many of them are elements; HDI_AMD_PIVOT: this is an element itself */
+    int32_t weight;              /* how many vertices it stands for; 0: it is gone; negative: it is in L_me */
+    int32_t mark;                /* element: |L_e \ L_me| + flag, 0 when absorbed; variable: flag if seen */
+    int32_t degree;              /* a bound of the weight of its neighbours; element: the list's weight */
+    int32_t next, prev;          /* neighbours in the list of a degree; later the next one in a chain of the
+                                    hash table, and the hash; prev of an element is its place in the order */
 } hdi_amd_node;
 
 enum { HDI_AMD_PIVOT = -1, HDI_AMD_BITS = 10, HDI_AMD_BUCKETS = 1 << HDI_AMD_BITS };
@@ -10693,7 +10694,8 @@ static void hdi_amd_unlink(hdi_amd *g, int32_t i) {
     else g->head[g->v[i].degree] = next;
 }
 
-/* Moves all lists together. Each marks its beginning with its owner, who keeps the entry that stood there. */
+/* Moves all lists together. The first entry of each list is replaced by the number of its owner, which keeps
+ * that entry in `at` until the list has been moved. */
 static void hdi_amd_compact(hdi_amd *g) {
     int32_t i, p, q = 0, end;
     for (i = 0; i < g->n; i++) {
@@ -10716,8 +10718,8 @@ static void hdi_amd_compact(hdi_amd *g) {
     g->free = q;
 }
 
-/* Variables of list[p..p+len-1] that are not in L_me yet are put to its end at list[q], which may be that
- * same list; returns the new end. Their own lists are read next: they are fetched already. */
+/* Appends to L_me, which ends at list[q], those variables of list[p..p+len-1] that are not in it yet. Both
+ * may be the same list. Returns the new end. The variables' own lists are read next, so they are fetched. */
 static int32_t hdi_amd_collect(hdi_amd *g, int32_t p, int32_t len, int32_t q, int32_t *weight) {
     const int32_t end = p + len;
     int32_t ahead;
@@ -10734,15 +10736,16 @@ static int32_t hdi_amd_collect(hdi_amd *g, int32_t p, int32_t len, int32_t q, in
     return q;
 }
 
-/* L_me = A_me and the L_e of all its elements e, which are absorbed. Without elements it is made in place. */
+/* Makes the element me: L_me is the union of A_me and the lists L_e of all elements e of me. These elements
+ * are absorbed. If there are none, L_me is made in place. */
 static void hdi_amd_element(hdi_amd *g, int32_t me) {
     hdi_amd_node *v = g->v + me;
     int32_t begin, end, p, weight = 0;
     const int32_t elen = v->elen;
     if (elen > 0 && v->degree > g->size - g->free) hdi_amd_compact(g);
-    /* Lists that are alive hold at most the nnz entries that they began with: L_me replaces the longer ones
-     * it is made of, and whoever gets me into its list loses one entry at least. So n words and more are free
-     * after compacting, and degrees are below n. */
+    /* The lists that are alive never hold more than the nnz entries that they began with. L_me replaces the
+     * lists it is made of, which are longer together, and a variable that gets me into its list loses at
+     * least one entry. So at least n words are free after compacting, and a degree is below n. */
     HEATDIFF_ASSERT(elen == 0 || v->degree <= g->size - g->free);
     begin = end = elen > 0 ? g->free : v->at;
     v->weight = -v->weight;
@@ -10764,7 +10767,7 @@ static int32_t *hdi_amd_chain(const hdi_amd *g, int32_t hash) {
     return g->bucket + (hash >> (31 - HDI_AMD_BITS));
 }
 
-/* mark - flag = |L_e \ L_me| for all elements e that share a variable with L_me. */
+/* Computes |L_e \ L_me| for all elements e that share a variable with L_me: it is mark - flag from now on. */
 static void hdi_amd_overlaps(hdi_amd *g, const hdi_amd_node *me) {
     hdi_amd_node *v = g->v;
     const int32_t flag = g->flag, *list = g->list, *l = list + me->at, *const l_end = l + me->len;
@@ -10779,8 +10782,9 @@ static void hdi_amd_overlaps(hdi_amd *g, const hdi_amd_node *me) {
     }
 }
 
-/* A_i and E_i for the i of L_me: what me covers goes, so do elements inside L_me, me comes. Variables with no
- * neighbours outside go with me. The others get their degree outside, and are put into the hash table. */
+/* Updates the lists A_i and E_i of all i in L_me. Variables that me covers and elements that lie inside L_me
+ * leave them, and me enters. Variables without neighbours outside L_me are eliminated together with me. For
+ * the others this finds their degree outside L_me and puts them into the hash table. */
 static void hdi_amd_update(hdi_amd *g, int32_t me) {
     hdi_amd_node *v = g->v, *pivot = v + me;
     int32_t *list = g->list, *l = list + pivot->at, *const l_end = l + pivot->len;
@@ -10828,7 +10832,8 @@ static void hdi_amd_update(hdi_amd *g, int32_t me) {
     }
 }
 
-/* Merges into i those behind it in the chain that have the same elements and variables: they stay alike. */
+/* Merges into i the vertices behind it in the chain that have the same elements and variables as i. They
+ * would have the same ones for ever. */
 static void hdi_amd_twins(hdi_amd *g, int32_t i) {
     hdi_amd_node *v = g->v, *a = v + i;
     const int32_t *list = g->list;
@@ -10854,7 +10859,7 @@ static void hdi_amd_twins(hdi_amd *g, int32_t i) {
     g->flag += stamped;
 }
 
-/* Merges all twins within L_me: they are in the same chains of the hash table, which is left empty. */
+/* Merges all twins within L_me. Twins are in the same chain of the hash table. The table is left empty. */
 static void hdi_amd_merge(hdi_amd *g, const hdi_amd_node *me) {
     int32_t p, i, *head;
     for (p = me->at; p < me->at + me->len; p++) {
@@ -10885,7 +10890,7 @@ static void hdi_amd_restore(hdi_amd *g, hdi_amd_node *me) {
     if (me->len == 0) me->mark = 0;
 }
 
-/* Marks of the next step must be above all old ones. Before the numbers run out they begin anew. */
+/* The marks of the next step must be above all old ones. Before the numbers run out, all marks begin anew. */
 static void hdi_amd_next_flag(hdi_amd *g, int32_t step) {
     int32_t i;
     if (g->flag < INT32_MAX - 2 * step - g->n) {
@@ -10897,8 +10902,8 @@ static void hdi_amd_next_flag(hdi_amd *g, int32_t step) {
     g->flag = 2;
 }
 
-/* For audits: what is left has all the weight and is in the lists of degrees; elements weigh what they say;
- * and each degree lies between the weight of the neighbours and that of all lists they are in. */
+/* For audits. The variables that are left have all the weight and are in the lists of degrees, elements weigh
+ * what they say, and each degree lies between the weight of the neighbours and the weight of all lists. */
 static int hdi_amd_sound(hdi_amd *g) {
     hdi_amd_node *v = g->v;
     int32_t i, k, q, left = g->left, listed = 0, wrong = 0;
@@ -10956,8 +10961,8 @@ static void hdi_amd_run(hdi_amd *g, int32_t until) {
     }
 }
 
-/* int32 words of work space for lists of nnz entries. The elbow room of n is needed, that of a fifth of the
- * entries saves time (as in the paper). */
+/* Words of work space for lists of nnz entries. The last n words are needed (see hdi_amd_element). A fifth of
+ * the entries more saves time, as in the paper. */
 static int64_t hdi_amd_words(int32_t inner, int32_t halo, int64_t nnz) {
     const int64_t n = (int64_t)inner + halo, all = halo > 0 ? 2 * nnz : nnz;
     return (int64_t)(sizeof(hdi_amd_node) / sizeof(int32_t)) * n + n + 1 + HDI_AMD_BUCKETS + all +
@@ -10991,8 +10996,8 @@ static void hdi_amd_drop(hdi_amd *g, int32_t i) {
     g->left--;
 }
 
-/* Rows without neighbours come first in the order, those dropped as dense last, the others enter the list of
- * their degree. Returns how many the order holds without the dense ones. */
+/* Rows without neighbours come first in the order. Rows that were dropped as dense come last. All others
+ * enter the list of their degree. Returns how many rows there are without the dense ones. */
 static int32_t hdi_amd_start(hdi_amd *g) {
     int32_t i, last = g->inner, count;
     for (i = 0; i < g->inner; i++) last -= g->v[i].weight == 0;
@@ -11010,7 +11015,7 @@ static int32_t hdi_amd_start(hdi_amd *g) {
     return count;
 }
 
-/* perm [inner] from the pivots' places: those merged or eliminated with others follow them. */
+/* Fills perm [inner] from the places of the pivots. Vertices that went with another one follow it. */
 static void hdi_amd_number(hdi_amd *g, int32_t *perm) {
     hdi_amd_node *v = g->v;
     int32_t i, j, root, up;
@@ -11024,15 +11029,17 @@ static void hdi_amd_number(hdi_amd *g, int32_t *perm) {
     }
 }
 
-/* A graph to be ordered. The inner vertices, 0..inner-1, have rows: their neighbours in both triangles, in any
- * order, none twice; the diagonal may be there. The other vertices are the halo. They count in degrees but are
- * never eliminated. They have no rows, and edges between them do not matter. Columns from n on are skipped. */
+/* A graph to be ordered. The inner vertices, 0..inner-1, have rows: their neighbours in both triangles, in
+ * any order, none twice; the diagonal may be there. The other vertices are the halo. They count in degrees
+ * but are never eliminated. They have no rows, and edges between them do not matter. Columns from n on are
+ * skipped. */
 typedef struct hdi_amd_graph {
     int32_t n, inner;
     const int32_t *ptr, *col;    /* [inner + 1], [ptr[inner]] */
 } hdi_amd_graph;
 
-/* Lists of all vertices but those with dense rows (as in AMD), which are dropped: they would be in most. */
+/* Makes the lists of all vertices. Vertices with dense rows are dropped, as in AMD: they would be in most
+ * lists. */
 static void hdi_amd_load(hdi_amd *g, const hdi_amd_graph *a) {
     const int32_t dense = (int32_t)(hdi_max(16, 10 * sqrt((double)a->n)));
     int32_t i, p, q = 0;
@@ -11096,12 +11103,15 @@ static hd_status hdi_amd_order(const hd_csr *a, int32_t *perm, hd_context *ctx, 
 }
 
 /* ==== [14] dissection ====
- * An elimination order for matrices whose rows have a place in space: separators last. The rows are numbered
- * along a space-filling curve, so that every part is a compact graph in cache. A part is halved on its
- * clusters, small groups of neighbours that are made once and handed down: they are swept along a line or by
- * graph distance, then the cut is improved by exchanges on a few coarser copies. Around the cut that this
- * gives, the smallest separator within a band is found exactly, by vertex-disjoint paths. Small parts are
- * ordered by minimum degree, the separators around them counted as neighbours. May call [13].
+ * Nested dissection: an elimination order for matrices whose rows have a place in space. A part of the graph
+ * is cut into two halves by a separator, which comes last in the order, and both halves are treated alike.
+ * The rows are numbered along a space-filling curve, so that every part is a compact graph in cache.
+ *   1. A part has clusters: small groups of neighbours, which are made once and handed down to the halves.
+ *   2. The clusters are made coarser a few times. The coarsest copy is cut in several ways, along directions
+ *      and by graph distance, and the best cut is taken. It is improved by exchanges on each finer copy.
+ *   3. Within a band around this cut, the smallest separator is found exactly, by vertex-disjoint paths.
+ *   4. Small parts are ordered by minimum degree. The separators around them count as neighbours.
+ * May call [13].
  * This work is based on
  *   A. George, Nested dissection of a regular finite element mesh, 1973
  *   G. M. Morton, A computer oriented geodetic data base and a new technique in file sequencing, 1966
@@ -11110,8 +11120,8 @@ static hd_status hdi_amd_order(const hd_csr *a, int32_t *perm, hd_context *ctx, 
  *   L. R. Ford, D. R. Fulkerson, Flows in networks, 1962 (and Menger's theorem)
  *   C. Ashcraft, J. W. H. Liu, Applications of the Dulmage-Mendelsohn decomposition and network flow to graph
  *   bisection improvement, 1998 (smallest separators in a band)
- * The clusters that a separator cuts through live on in both halves, with the weights of edges that they had:
- * these only guide the next cut. */
+ * A cluster that a separator cuts through lives on in both halves, and its edges keep their weights. Clusters
+ * only guide the next cut. */
 
 enum {
     HDI_ND_LEAF = 1500,     /* vertices of a part that minimum degree orders: fewer cost time, not fill */
@@ -11140,8 +11150,8 @@ enum {
 #define HDI_ND_UNEVEN 0.6     /* share by which a cut costs more that leaves one side empty */
 #define HDI_ND_SWEPT 0.2      /* share of the weight by which the sides of a swept cut differ at most */
 
-/* A part, or a coarse copy of one. In the part itself all weights are 1 (ew and w are NULL), and entries of adj
- * from n on are its halo: rows outside of it, which are in a separator already. Copies have no halo. */
+/* A part, or a coarse copy of one. In the part itself all weights are 1 (ew and w are NULL), and entries of
+ * adj from n on are its halo: rows outside of it, which are in a separator already. Copies have no halo. */
 typedef struct hdi_nd_graph {
     int32_t n;
     int32_t *ptr, *adj;    /* neighbours of v: adj[ptr[v]..ptr[v + 1]), no diagonal */
@@ -11151,8 +11161,8 @@ typedef struct hdi_nd_graph {
     int8_t *side;          /* 0, 1, and at the finest copy 2: separator */
 } hdi_nd_graph;
 
-/* A part has places first..first + n - 1 of the order. Its halo has the numbers n..n + halo - 1. clusters = 0:
- * none are known. */
+/* A part has places first..first + n - 1 of the order. Its halo has the numbers n..n + halo - 1. If
+ * clusters is 0, none are known. */
 typedef struct hdi_nd_part { int32_t first, n, halo, edge, n_edges, clusters, buffer; } hdi_nd_part;
 
 /* The graphs of parts and their clusters, each in its own slices: one of two buffers is for odd depths. */
@@ -11180,14 +11190,11 @@ typedef struct hdi_nd {
 /* Work space left to a task, taken from its front: what a copy of this struct took is free after it. */
 typedef struct hdi_nd_space { int32_t *at, *end; } hdi_nd_space;
 
-/* A task's space, 20 n + 2 n_edges + 1200 words for a part of n vertices, is never used up. A split takes
- * 1.25 n (rows by number, sides), and the list of a cut's vertices 2 n; what else it takes is given back
- * before the next step. Of these steps the largest is hdi_nd_cut_clusters: 1.25 c for c <= n clusters, 2
- * n_edges, and copies, each of at most 2/3 of the vertices of the one before: one of N vertices takes 3.17 N,
- * all 9.5 c; where a copy fails it keeps 3.17 N at most, takes 5.5 N for a while, and hdi_nd_first_cut 11.5 N
- * on top, or hdi_nd_descend 4.25 N on top of all copies. With N = (2/3)^l c that is 9.5 c (1 - (2/3)^l) +
- * 14.67 N <= 14.67 c: together 19.2 n at most. Rounding adds less than 30 words to each of 24 copies. The
- * flow takes 9.25 n, fresh clusters 3.17 n + 5.5 (2/3 n), those of a half 2 n; hdi_nd_leaf looks itself. */
+/* Takes work space. Tasks cannot allocate, so each has 20 n + 2 n_edges + 1200 words for a part of n
+ * vertices. That is always enough. The largest need is in hdi_nd_cut_clusters, in words for each vertex: 0.25
+ * for the sides, 2 for the list, 1.25 for weights and sides of the clusters; 2 n_edges for the edges of the
+ * copies; and at most 14.7 for the copies themselves, because each has at most 2/3 of the vertices of the one
+ * before. */
 static int32_t *hdi_nd_take(hdi_nd_space *s, int64_t words) {
     int32_t *p = s->at;
     HEATDIFF_ASSERT(words <= s->end - s->at);
@@ -11209,7 +11216,7 @@ static uint32_t hdi_nd_spread(uint32_t x) {
     return (x | x << 2) & 0x09249249u;
 }
 
-/* key[i] = place of row i on the Morton curve in a grid of 1024^3 cells; unit [3n] = places within [0, 1]. */
+/* key[i] is the place of row i on the Morton curve in a grid of 1024^3 cells. unit [3n]: places in [0, 1]. */
 static void hdi_nd_keys(const double *xyz, int32_t n, uint32_t *key, float *unit) {
     double lo[3], hi[3], width = 0;
     int32_t i, d;
@@ -11244,8 +11251,9 @@ static void hdi_group(const int32_t *key, int32_t n, int32_t n_keys, int32_t *pt
         if (key[i] >= 0) list[--ptr[key[i]]] = i;
 }
 
-/* order = the rows along the curve, those with too many entries last; inv = its inverse, -1 for these rows.
- * Returns how many the others are. Sorts by three digits of 11 bits. spare [n], ptr [2049]. */
+/* Sorts the rows along the curve, by three digits of 11 bits. Rows with too many entries come last, and the
+ * return value is the number of the other ones. inv: the inverse of order, but -1 for rows with too many
+ * entries. spare [n], ptr [2049]. */
 static int32_t hdi_nd_number(const hd_csr *a, uint32_t *key, int32_t *order, int32_t *inv, int32_t *spare,
                              int32_t *ptr) {
     const double dense = 10 * sqrt((double)a->n_rows) + 16;
@@ -11268,9 +11276,9 @@ static int32_t hdi_nd_number(const hd_csr *a, uint32_t *key, int32_t *order, int
 
 /* ---- coarse copies ---- */
 
-/* Makes clusters of neighbours: each vertex still free takes its free neighbours, up to a weight of limit. A
- * vertex that finds none joins the cluster of a neighbour, or, where none has room, the last vertex that was
- * left alone. weight [n]: of the clusters. Returns their number. */
+/* Makes clusters of neighbours. Each vertex that is still free takes its free neighbours, up to a weight of
+ * limit. A vertex that finds none joins the cluster of a neighbour. If none of these has room, it joins the
+ * last vertex that was left alone. weight [n]: of the clusters. Returns their number. */
 static int32_t hdi_nd_cluster(const hdi_nd_graph *g, int32_t limit, int32_t *weight) {
     int32_t v, p, n = 0, single = -1, *map = g->map;
     for (v = 0; v < g->n; v++) map[v] = -1;
@@ -11301,8 +11309,9 @@ static int32_t hdi_nd_cluster(const hdi_nd_graph *g, int32_t limit, int32_t *wei
     return n;
 }
 
-/* c = the graph of the clusters of g, with summed weights. c->n, c->w are set; c->adj, c->ew have room for
- * space > 0 entries. member [g->n], start [c->n + 1], mark [c->n]. 0 if the room is too small. */
+/* Makes c, the graph of the clusters of g, with summed weights. c->n and c->w are set before. c->adj and
+ * c->ew have room for space > 0 entries. member [g->n], start [c->n + 1], mark [c->n]. Returns 0 if the room
+ * is too small. */
 static int hdi_nd_contract(const hdi_nd_graph *g, hdi_nd_graph *c, int32_t space, int32_t *member,
                            int32_t *start, int32_t *mark) {
     const int32_t *map = g->map, *ew = g->ew;
@@ -11338,8 +11347,9 @@ static int hdi_nd_contract(const hdi_nd_graph *g, hdi_nd_graph *c, int32_t space
     return 1;
 }
 
-/* For audits: weight of the vertices, and 2^32 times that of entries between clusters (map; NULL: of all).
- * -1 unless each edge is there from both its ends with the same weight: the sum would hardly be zero. */
+/* For audits. Returns the weight of all vertices plus 2^32 times the weight of the entries between clusters
+ * (map; NULL: of all entries). Returns -1 unless each edge is there from both its ends with the same weight:
+ * a checksum, to which both ends add opposite terms, would hardly be zero otherwise. */
 static int64_t hdi_nd_weigh(const hdi_nd_graph *g, const int32_t *map) {
     int64_t weight = 0;
     uint64_t sum = 0;
@@ -11360,7 +11370,8 @@ static int64_t hdi_nd_weigh(const hdi_nd_graph *g, const int32_t *map) {
 /* Where copies are made: the room for their entries. */
 typedef struct hdi_nd_room { int32_t *adj, *ew, n; } hdi_nd_room;
 
-/* Makes level[1], coarser than level[0]. total: weight of all vertices. 0: no room, or not much to win. */
+/* Makes level[1], a coarser copy of level[0]. total: the weight of all vertices. Returns 0 if there is no
+ * room, or if the copy would not be much smaller. */
 static int hdi_nd_coarser(hdi_nd_graph *level, int32_t total, hdi_nd_room *room, hdi_nd_space *s) {
     hdi_nd_graph *g = level, *c = level + 1;
     const int32_t mean = total / g->n, most = total / HDI_ND_CLUSTERS;
@@ -11391,7 +11402,8 @@ static int hdi_nd_coarser(hdi_nd_graph *level, int32_t total, hdi_nd_room *room,
 
 /* ---- buckets ---- */
 
-/* Lists of items for each gain and side. prev of the first is -1 - bucket, of one in none HDI_ND_NONE. */
+/* A list of items for each gain and side. prev of the first item of a list is -1 - bucket. prev of an
+ * item that is in no list is HDI_ND_NONE. */
 typedef struct hdi_nd_queue {
     int32_t head[2 * HDI_ND_BUCKETS], top[2];
     int32_t *next, *prev;
@@ -11425,7 +11437,7 @@ static int32_t hdi_nd_queue_best(hdi_nd_queue *q, int32_t side) {
 
 /* ---- cutting edges ---- */
 
-/* What a cut costs: its size, and a little for halves that differ. */
+/* What a cut costs: its size, and a little more if the halves differ in weight. */
 static double hdi_nd_cost(double cut, double a, double b) {
     const double im = (a - b) / (a + b + 1e-30);
     return (cut + 1) * (1 + HDI_ND_UNEVEN * im * im);
@@ -11457,7 +11469,7 @@ static hdi_nd_mover hdi_nd_mover_make(const hdi_nd_graph *g, hdi_nd_space *s) {
     return m;
 }
 
-/* Gains of all vertices; those on the cut enter the queue. Sets the cut's weights. */
+/* Computes the gains of all vertices and the cut's weights. Vertices on the cut enter the queue. */
 static void hdi_nd_mover_start(hdi_nd_mover *m, hdi_nd_cut *cut) {
     const hdi_nd_graph *g = m->g;
     int32_t v, p, largest = 1;
@@ -11489,7 +11501,7 @@ static void hdi_nd_mover_start(hdi_nd_mover *m, hdi_nd_cut *cut) {
     memset(m->locked, 0, (size_t)g->n);
 }
 
-/* v changes its side; its neighbours' gains follow. */
+/* Moves v to the other side and updates the gains of its neighbours. */
 static void hdi_nd_mover_move(hdi_nd_mover *m, int32_t v, hdi_nd_cut *cut) {
     const hdi_nd_graph *g = m->g;
     const int8_t to = (int8_t)(1 - g->side[v]);
@@ -11510,8 +11522,8 @@ static void hdi_nd_mover_move(hdi_nd_mover *m, int32_t v, hdi_nd_cut *cut) {
     }
 }
 
-/* The vertex to move next: the one of largest gain, where the side that it goes to stays below `most` or
- * below the side that it leaves. -1: there is none. */
+/* The vertex to move next is the one of largest gain, provided that the side it goes to stays below `most` or
+ * below the side it leaves. Returns -1 if there is none. */
 static int32_t hdi_nd_mover_next(hdi_nd_mover *m, const hdi_nd_cut *cut) {
     int32_t s, best = -1, gain = 0;
     for (s = 0; s < 2; s++) {
@@ -11528,8 +11540,8 @@ static int32_t hdi_nd_mover_next(hdi_nd_mover *m, const hdi_nd_cut *cut) {
     return best;
 }
 
-/* Passes of Fiduccia and Mattheyses: each moves the best vertex again and again, even at a loss, no vertex
- * twice, and then goes back to the best cut seen. */
+/* Passes of Fiduccia and Mattheyses. A pass moves the best vertex again and again, even at a loss, but no
+ * vertex twice. At its end it goes back to the best cut seen. */
 static void hdi_nd_refine_edges(hdi_nd_mover *m, hdi_nd_cut *cut, int32_t passes) {
     const int64_t patience = hdi_least(20 + m->g->n / 20, HDI_ND_PATIENCE);
     while (passes-- > 0) {
@@ -11605,8 +11617,9 @@ static uint64_t hdi_nd_key(double x) {
     return u >> 63 ? ~u : u | 0x8000000000000000u;
 }
 
-/* The values along which the vertices are swept, as keys to sort by. kind 0: places along the longest
- * straight line; 1: graph distances; others: places along a direction. 0 if all are equal. work [3 g->n]. */
+/* The values along which the vertices are swept, as keys to sort by. kind 0: places along a line between two
+ * vertices far apart; 1: differences of graph distances from two such vertices; others: places along a fixed
+ * direction. Returns 0 if all values are equal. work [3 g->n]. */
 static int hdi_nd_sweep_keys(const hdi_nd *nd, const hdi_nd_graph *g, int32_t kind, hdi_pair *key,
                              int32_t *work) {
     static const signed char hdi_directions[9][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {1, -1, 0},
@@ -11635,7 +11648,7 @@ static int hdi_nd_sweep_keys(const hdi_nd *nd, const hdi_nd_graph *g, int32_t ki
     return differ;
 }
 
-/* The sides that the best place in the order of key gives. */
+/* Sets the sides: vertices up to the best place in the order of key are on side 0, the others on side 1. */
 static void hdi_nd_sweep(const hdi_nd_graph *g, const hdi_pair *key, double total) {
     double weight = 0, cut = 0, best = DBL_MAX;
     int32_t i, p, keep = 0;
@@ -11704,7 +11717,8 @@ typedef struct hdi_nd_flow {
     int8_t *inside, from;       /* layer: 0 outside, else HDI_ND_MIDDLE +- the distance, less on side from */
 } hdi_nd_flow;
 
-/* The band: the separator, band[0..n), and what is at most `layers` steps from it, at most `most` a side. */
+/* Makes the band: the separator, band[0..n), and the vertices at most `layers` steps away from it, but no
+ * more than `most` on each side. */
 static void hdi_nd_flow_band(hdi_nd_flow *f, int32_t n, int32_t most, int32_t layers) {
     const hdi_nd_graph *g = f->g;
     int32_t i, p, begin = 0, room[2];
@@ -11733,7 +11747,7 @@ static void hdi_nd_flow_band(hdi_nd_flow *f, int32_t n, int32_t most, int32_t la
     f->stamp = 0;
 }
 
-/* A path ends in this state: joins it to the others, which give up the steps that it takes back. */
+/* A new path ends in this state. Joins it to the others, which lose the steps that the new path goes back. */
 static void hdi_nd_flow_augment(hdi_nd_flow *f, int32_t state) {
     int32_t up;
     for (; (up = f->up[state]) >= 0; state = up) {
@@ -11745,7 +11759,7 @@ static void hdi_nd_flow_augment(hdi_nd_flow *f, int32_t state) {
     f->prev[state >> 1] = -1;
 }
 
-/* Notes that state `to` can be reached from state `from`, in the list of its layer. */
+/* State `to` can be reached from state `from`: puts it into the list of its layer. */
 static void hdi_nd_flow_push(hdi_nd_flow *f, int32_t to, int32_t from) {
     const int32_t layer = f->inside[to >> 1];
     f->seen[to] = f->stamp;
@@ -11756,8 +11770,9 @@ static void hdi_nd_flow_push(hdi_nd_flow *f, int32_t to, int32_t from) {
     if (layer > f->top) f->top = layer;
 }
 
-/* Searches one more path from vertex v; goes on from the state that is farthest towards the other side.
- * Returns 1 when there is one. What a failed search has seen is on no path, and dead from then on. */
+/* Searches one more path from vertex v. It always goes on from the state that is farthest towards the other
+ * side. Returns 1 if there is a path. If not, no state that was seen can lead to the other side any more:
+ * these states are dead from then on. */
 static int hdi_nd_flow_search(hdi_nd_flow *f, int32_t v) {
     const hdi_nd_graph *g = f->g;
     int32_t p, i;
@@ -11803,7 +11818,8 @@ static int hdi_nd_flow_starts(const hdi_nd_flow *f, int32_t v) {
     return 0;
 }
 
-/* Sets the sides of the band around band[0..n): the smallest separator in it, that nearest to side from. */
+/* Finds the smallest separator within the band around band[0..n), and of several the one that is nearest to
+ * side `from`. Sets the sides of the band. */
 static void hdi_nd_flow_run(hdi_nd_flow *f, int32_t n, int32_t most, int32_t layers) {
     int32_t i, k = 0, paths = 0, cut = 0, begins = 0, *start;
     hdi_nd_flow_band(f, n, most, layers);
@@ -11827,7 +11843,7 @@ static void hdi_nd_flow_run(hdi_nd_flow *f, int32_t n, int32_t most, int32_t lay
 
 /* ---- parts ---- */
 
-/* The cut of level[from] taken down to level[1], improved on each copy. */
+/* Takes the cut of level[from] down to level[1] and improves it on each copy. */
 static void hdi_nd_descend(hdi_nd_graph *level, int32_t from, int32_t total, hdi_nd_space s) {
     int32_t l, v;
     for (l = from - 1; l > 0; l--) {
@@ -11841,7 +11857,7 @@ static void hdi_nd_descend(hdi_nd_graph *level, int32_t from, int32_t total, hdi
     }
 }
 
-/* Slices of the clusters of a part. */
+/* Where the clusters of a part are stored. */
 static void hdi_nd_clusters_of(const hdi_nd *nd, const hdi_nd_part *p, hdi_nd_graph *c) {
     const hdi_nd_buffer *b = nd->buffer + p->buffer;
     c->n = p->clusters;
@@ -11851,7 +11867,8 @@ static void hdi_nd_clusters_of(const hdi_nd *nd, const hdi_nd_part *p, hdi_nd_gr
     c->id = b->cid + p->first;
 }
 
-/* level[1] = clusters of clusters of level[0], about a dozen vertices each: the part's, if they fit. */
+/* Makes level[1]: clusters of clusters of level[0], of about a dozen vertices each. If they do not fit into
+ * the part's slices, it stays empty. */
 static void hdi_nd_fresh(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_graph *level, hdi_nd_space s) {
     hdi_nd_graph temp[3];
     hdi_nd_room room;
@@ -11880,8 +11897,8 @@ static int hdi_nd_touches(const hdi_nd_graph *g, int32_t v) {
     return 0;
 }
 
-/* The sides of level[0]: cuts the coarsest copy and takes the cut down. Returns in list the vertices that
- * touch the other side, of the side where they are fewer. */
+/* Sets the sides of level[0]: cuts the coarsest copy and takes the cut down. Fills list with the vertices of
+ * one side that touch the other side, and takes the side where these are fewer. Returns their number. */
 static int32_t hdi_nd_cut_clusters(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_graph *level,
                                    int32_t *list, hdi_nd_space s) {
     hdi_nd_room room;
@@ -11918,7 +11935,8 @@ static int32_t hdi_nd_cut_clusters(const hdi_nd *nd, const hdi_nd_part *part, hd
     return kept;
 }
 
-/* Weighs the sides of g. 0 if they differ too much, or the separator is most of it. */
+/* Counts the vertices on the sides of g. Returns 0 if the sides differ too much or the separator is
+ * too large. */
 static int hdi_nd_measure(const hdi_nd_graph *g, int32_t *size) {
     int32_t v;
     size[0] = size[1] = size[2] = 0;
@@ -11926,7 +11944,7 @@ static int hdi_nd_measure(const hdi_nd_graph *g, int32_t *size) {
     return size[0] <= g->n - g->n / 5 && size[1] <= g->n - g->n / 5 && size[2] <= g->n / 2;
 }
 
-/* Sets level[0].side to 0, 1 or 2 and size [3]. 0 if the part has no good separator. */
+/* Sets level[0].side to 0, 1, or 2 in the separator, and size [3]. Returns 0 if no separator is good. */
 static int hdi_nd_dissect(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_graph *level, hdi_nd_space s,
                           int32_t *size) {
     hdi_nd_flow f;
@@ -12007,8 +12025,8 @@ static void hdi_nd_extract(const hdi_nd_graph *g, int32_t halo, int8_t side, hdi
     half->ptr[i] = child->n_edges = z;
 }
 
-/* The clusters of g[0], which are in g[1], that have vertices on one side into the child's slices, with room
- * for space entries. Returns their number, 0 if the room is too small. */
+/* Copies the clusters that have vertices on one side from g[1] to the child's slices, which have room for
+ * space entries. Returns their number, or 0 if the room is too small. */
 static int32_t hdi_nd_extract_clusters(const hdi_nd_graph *g, int8_t side, hdi_nd_graph *child,
                                        int32_t space, hdi_nd_space s) {
     const hdi_nd_graph *c = g + 1;
@@ -12038,7 +12056,7 @@ static int32_t hdi_nd_extract_clusters(const hdi_nd_graph *g, int8_t side, hdi_n
     return n;
 }
 
-/* Orders a part by minimum degree. The separators around it count as its halo if the space is large enough. */
+/* Orders a part by minimum degree. The separators around it count as its halo if there is space for it. */
 static void hdi_nd_leaf(const hdi_nd *nd, const hdi_nd_part *part, const hdi_nd_graph *g, hdi_nd_space s) {
     hdi_amd_graph rows = {part->n + part->halo, part->n, g->ptr, g->adj};
     int32_t v, *local = nd->perm + part->first;
@@ -12049,7 +12067,8 @@ static void hdi_nd_leaf(const hdi_nd *nd, const hdi_nd_part *part, const hdi_nd_
     for (v = 0; v < part->n; v++) local[v] = g->id[local[v]];
 }
 
-/* Halves a part into child[2], its separator last; orders a small part whole, its children are empty. */
+/* Halves a part into child[2] and puts its separator last. Small parts, and parts without a good separator,
+ * are ordered whole: their children are empty. */
 static void hdi_nd_split(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_part *child, hdi_nd_space s) {
     hdi_nd_graph level[HDI_ND_LEVELS], half[2];
     hdi_nd_space rest = s;
@@ -12080,7 +12099,8 @@ static void hdi_nd_split(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_part 
     }
 }
 
-/* Orders a part and all below it. A child has at most 4/5 of its part: the stack grows to less than 100. */
+/* Orders a part and all parts below it. A child has at most 4/5 of the vertices of its part, so there are
+ * less than 100 parts on the stack. */
 static void hdi_nd_subtree(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_space s) {
     hdi_nd_part stack[128];
     int32_t n = 1;
@@ -12106,7 +12126,7 @@ static void hdi_nd_level_task(void *arg, int64_t index, int32_t worker) {
     hdi_nd_node(nd, nd->level + index);
 }
 
-/* A part is done: its halves may be claimed. */
+/* Treats one part of the heap. After that its halves may be claimed. */
 static void hdi_nd_loop_task(void *arg, int64_t index, int32_t worker) {
     hdi_nd *nd = (hdi_nd *)arg;
     const double done = 0.1 + 0.8 * (double)HDI_ATOMIC_GET(&nd->done) / (double)HDI_ND_NODES;
@@ -12135,7 +12155,8 @@ static void hdi_nd_load_lengths(void *arg, int64_t begin, int64_t end) {
         const int32_t r = job->order[k];
         int32_t count = 0;
         if (k + HDI_ROWS_AHEAD < end) HDI_PREFETCH(a->col + a->row_ptr[job->order[k + HDI_ROWS_AHEAD]]);
-        for (p = a->row_ptr[r]; p < a->row_ptr[r + 1]; p++) count += a->col[p] != r && job->inv[a->col[p]] >= 0;
+        for (p = a->row_ptr[r]; p < a->row_ptr[r + 1]; p++)
+            count += a->col[p] != r && job->inv[a->col[p]] >= 0;
         job->nd->buffer->ptr[k + 1] = count;
     }
 }
@@ -12186,7 +12207,7 @@ static void hdi_nd_buffer_make(hdi_nd_buffer *b, const hd_csr *a, hdi_scope *s) 
     b->cew = b->cadj + nnz / 4 + 1;
 }
 
-/* Orders the whole: own threads share one loop, the user's take the heap level by level. */
+/* Orders the whole matrix. Own threads share one loop. The user's threads take the heap level by level. */
 static void hdi_nd_run(hdi_nd *nd) {
     double done = 0.15;
     if (hdi_progress(nd->ctx, "order", 0.1, nd->error) < 0) return;
