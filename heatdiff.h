@@ -2865,7 +2865,7 @@ static void hdi_walk_stop(hdi_walk *w) {
 
 /* How far it is, now and then. By the calling thread only. */
 static void hdi_walk_tell(hdi_walk *w) {
-    const uint32_t part = (uint32_t)((uint64_t)HDI_TELLS * HDI_ATOMIC_GET(&w->at->done) / w->n);
+    const uint32_t part = (uint32_t)((uint64_t)HDI_TELLS * HDI_ATOMIC_GET(&w->at->done) / (w->n + 1));
     if (!w->stage || part == w->told || hdi_walk_stopped(w)) return;
     w->told = part;
     if (hdi_progress(w->ctx, w->stage, w->from + (w->to - w->from) * part / HDI_TELLS, w->e) < 0)
