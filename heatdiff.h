@@ -2089,16 +2089,13 @@ extern "C" {
 #endif
 
 /* Counters that threads share, of 32 bits. HDI_ATOMIC_GET sees all that was written before the matching
- * HDI_ATOMIC_SET; HDI_ATOMIC_ADD gives the sum; HDI_ATOMIC_SWAP writes `to` if it finds `from`, and tells
- * whether it did. Compilers without them have no threads of the library's own, and a user's threads share
- * loops only whose tasks know nothing of each other. */
+ * HDI_ATOMIC_SET; HDI_ATOMIC_ADD gives the sum. Compilers without them have no threads of the library's own,
+ * and a user's threads share loops only whose tasks know nothing of each other. */
 #if defined(__GNUC__) || defined(__clang__)
 #define HDI_ATOMICS 1
 #define HDI_ATOMIC_GET(p) __atomic_load_n(p, __ATOMIC_ACQUIRE)
 #define HDI_ATOMIC_SET(p, v) __atomic_store_n(p, v, __ATOMIC_RELEASE)
 #define HDI_ATOMIC_ADD(p, v) __atomic_add_fetch(p, v, __ATOMIC_ACQ_REL)
-#define HDI_ATOMIC_SWAP(p, from, to) \
-    __atomic_compare_exchange_n(p, &(from), to, 0, __ATOMIC_ACQ_REL, __ATOMIC_RELAXED)
 #elif defined(_MSC_VER)
 #include <intrin.h>
 #define HDI_ATOMICS 1
@@ -2106,14 +2103,11 @@ extern "C" {
 #define HDI_ATOMIC_SET(p, v) ((void)_InterlockedExchange((volatile long *)(p), (long)(v)))
 #define HDI_ATOMIC_ADD(p, v) \
     ((uint32_t)(_InterlockedExchangeAdd((volatile long *)(p), (long)(v)) + (v)))
-#define HDI_ATOMIC_SWAP(p, from, to) \
-    ((uint32_t)_InterlockedCompareExchange((volatile long *)(p), (long)(to), (long)(from)) == (from))
 #else
 #define HDI_ATOMICS 0
 #define HDI_ATOMIC_GET(p) (*(p))
 #define HDI_ATOMIC_SET(p, v) (*(p) = (v))
 #define HDI_ATOMIC_ADD(p, v) (*(p) += (v))
-#define HDI_ATOMIC_SWAP(p, from, to) (*(p) == (from) ? (*(p) = (to), 1) : 0)
 #endif
 
 #if HDI_THREADS == HDI_THREADS_POSIX && defined(__linux__) && !defined(__cplusplus)
@@ -2777,7 +2771,18 @@ struct hd_threads {
     hdi_seat seat[HDI_THREADS_MOST - 1];
 };
 
-static int hdi_swap(uint32_t *p, uint32_t from, uint32_t to) { return HDI_ATOMIC_SWAP(p, from, to); }
+/* Writes `to` if it finds `from`, and tells whether it did. */
+static int hdi_swap(uint32_t *p, uint32_t from, uint32_t to) {
+#if defined(__GNUC__) || defined(__clang__)
+    return __atomic_compare_exchange_n(p, &from, to, 0, __ATOMIC_ACQ_REL, __ATOMIC_RELAXED);
+#elif HDI_ATOMICS
+    return (uint32_t)_InterlockedCompareExchange((volatile long *)p, (long)to, (long)from) == from;
+#else
+    if (*p != from) return 0;
+    *p = to;
+    return 1;
+#endif
+}
 
 static int32_t hdi_claimable(const hdi_claims *c) {
     const uint32_t next = HDI_ATOMIC_GET(&c->next);
@@ -3057,7 +3062,8 @@ static void hdi_walk_run(hdi_walk *w) {
     else if (hdi_walk_alone(w))
         while (hdi_walk_step(w, 0)) {}
     else
-        for (; !hdi_walk_done(w); hdi_walk_tell(w)) ctx->parallel_for(ctx->parallel_user, HDI_DRAINS, hdi_drain, w);
+        for (; !hdi_walk_done(w); hdi_walk_tell(w))
+            ctx->parallel_for(ctx->parallel_user, HDI_DRAINS, hdi_drain, w);
 }
 
 /* An object that is made with the context holds it; its threads end with the last one. */
@@ -13458,8 +13464,8 @@ static hd_status hdi_symbolic_order(hdi_symbolic *s, const hd_csr *a, const hdi_
  * its update matrix starts as -L21 D L21' and the children's are added afterwards, so that it is neither
  * cleared nor read before. */
 
-/* Rows of a chunk of a front that threads share, as many as the kernels take at once. The parallel efficiency
- * that bench simulates for 150K rows is 0.80, 0.68, 0.43 on 4, 8, 16 threads, with chunks of 96 rows 0.73,
+/* Rows of a chunk of a front that threads share, as many as the kernels take at once. By the critical path
+ * the parallel efficiency for 150K rows is 0.80, 0.68, 0.43 on 4, 8, 16 threads, with chunks of 96 rows 0.73,
  * 0.46, 0.25. Fronts of fewer rows than HDI_FRONT_SHARED are not shared. */
 enum { HDI_PACK_LANES = HDI_PACK / 2, HDI_FRONT_COLS = 96, HDI_FRONT_CHUNK = 48, HDI_FRONT_SHARED = 192 };
 
@@ -13493,7 +13499,7 @@ typedef struct hdi_factor {
     hdi_pivots all;                  /* of the last factorisation */
     double largest_entry;            /* |diagonal entry of A|, the largest */
     int32_t ready;
-    int32_t guest;                   /* work, scratch, chunk_scratch, counts, order and pivots are another's */
+    int32_t guest;                   /* work, scratch, counts, order and pivots are another's */
     const hdi_values *values;        /* of a factorisation under way */
     hd_error error;
 } hdi_factor;
@@ -15904,7 +15910,8 @@ static int64_t hdi_inverse_nodes(const hdi_inverse *z, const hdi_symbolic *s) {
         if (z->wanted == HDI_WANT_FORMS) n += hdi_forms_blocks(z->forms, p);
         for (k1 = p; k1 > 0; k1 = k0) {
             k0 = (k1 - 1) / HDI_PANEL * HDI_PANEL;
-            n += 2 * hdi_inverse_chunks(HDI_INVERSE_M, m - k1) + hdi_inverse_chunks(HDI_INVERSE_CORNER, k1 - k0);
+            n += 2 * hdi_inverse_chunks(HDI_INVERSE_M, m - k1);
+            n += hdi_inverse_chunks(HDI_INVERSE_CORNER, k1 - k0);
         }
     }
     return n;
