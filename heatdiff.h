@@ -2748,8 +2748,8 @@ typedef struct hdi_walk {
     double from, to;             /* done of the stage before and after it */
     hd_error *e;                 /* gets what progress answers */
     uint32_t told, stop, busy;   /* parts told of; nothing more is begun; the lock of a user's threads */
-    uint32_t drains, most;       /* that are under way; the most that were */
-    uint32_t caller;             /* the calling thread has one of them */
+    int32_t drains, most;        /* that are under way; the most that were */
+    int32_t caller;              /* the calling thread has one of them */
 } hdi_walk;
 
 typedef struct hdi_seat {
@@ -2873,7 +2873,7 @@ static void hdi_walk_tell(hdi_walk *w) {
     const uint32_t part = (uint32_t)((uint64_t)HDI_TELLS * HDI_ATOMIC_GET(&w->at->done) / (w->n + 1));
     if (!w->stage || part == w->told || hdi_walk_stopped(w)) return;
     w->told = part;
-    if (hdi_progress(w->ctx, w->stage, w->from + (w->to - w->from) * part / HDI_TELLS, w->e) < 0)
+    if (hdi_progress(w->ctx, w->stage, w->from + (w->to - w->from) * part / (double)HDI_TELLS, w->e) < 0)
         hdi_walk_stop(w);
 }
 
@@ -3018,18 +3018,18 @@ static void hdi_threads_run(hdi_walk *w) {
 /* Whether a drain ends though there are nodes: when one that ended before can take one in the next round, or
  * when the calling thread is not among those who drain, and should tell how far the walk is. */
 static int hdi_drain_leaves(const hdi_walk *w, int32_t done) {
-    if (!HDI_ATOMIC_GET(&w->caller)) return (uint32_t)done > w->n / (8 * HDI_DRAINS);
-    return HDI_ATOMIC_GET(&w->drains) < HDI_ATOMIC_GET(&w->most) && hdi_claimable(w->at) > 1;
+    if (!HDI_LOAD(&w->caller)) return (uint32_t)done > w->n / (8 * HDI_DRAINS);
+    return HDI_LOAD(&w->drains) < HDI_LOAD(&w->most) && hdi_claimable(w->at) > 1;
 }
 
 /* By a user's thread. */
 static void hdi_drain(void *arg, int64_t index, int32_t worker) {
     hdi_walk *w = (hdi_walk *)arg;
-    const uint32_t drains = HDI_ATOMIC_ADD(&w->drains, 1);
+    const int32_t drains = (int32_t)HDI_ATOMIC_ADD(&w->drains, 1);
     int32_t k, done = 0, leaves = 0;
     (void)index;
-    if (worker == 0) HDI_ATOMIC_SET(&w->caller, 1);
-    if (drains > HDI_ATOMIC_GET(&w->most)) HDI_ATOMIC_SET(&w->most, drains);
+    if (worker == 0) HDI_STORE(&w->caller, 1);
+    if (drains > HDI_LOAD(&w->most)) HDI_STORE(&w->most, drains);
     for (k = 0; k < HDI_SPIN / HDI_DRAINS && !leaves && !hdi_walk_done(w); k++) {
         while (!leaves && hdi_walk_step(w, worker)) leaves = hdi_drain_leaves(w, ++done);
         hdi_relax();
