@@ -299,7 +299,9 @@ typedef struct hd_context {
 
     /* Runs task(arg, i, worker) for every i in [0, n_tasks), in any order, and returns when all tasks are
      * done. The calling thread is worker 0; other threads have numbers of their own. NULL: the library's own
-     * threads. Results depend neither on this function nor on the number of threads. */
+     * threads. Results depend neither on this function nor on the number of threads. Some tasks, those of a
+     * factorisation among them, work for as long as they find something to do: as many threads as there are
+     * should run them side by side. None waits for another. */
     void (*parallel_for)(void *user, int64_t n_tasks, hd_task task, void *arg);
     void *parallel_user;
     /* Threads that work at the same time, the calling one included. 0: as many as the process may use
@@ -2975,24 +2977,13 @@ static hd_threads *hdi_threads_own(hd_context *ctx, int64_t n) {
     return t && t->n > 0 ? t : NULL;
 }
 
-/* The calling thread has nothing to claim, but others are at work: looks around, then sleeps. */
-static void hdi_threads_wait(hdi_walk *w) {
-    hd_threads *t = w->threads;
-    int32_t k;
-    for (k = 0; k < HDI_SPIN && !hdi_walk_done(w) && hdi_claimable(w->at) <= 0; k++) hdi_relax();
-    hdi_lock(&t->lock);
-    while (!hdi_walk_done(w) && hdi_claimable(w->at) <= 0) {
-        t->caller_asleep = 1;
-        w->ctx->waits++;
-        hdi_signal_wait(&t->finished, &t->lock);
-        t->caller_asleep = 0;
-    }
-    hdi_unlock(&t->lock);
-}
+/* Nothing is left to claim, but others are at work. */
+static int hdi_walk_waits(const hdi_walk *w) { return !hdi_walk_done(w) && hdi_claimable(w->at) <= 0; }
 
 /* By own threads, which claim from counters of theirs. */
 static void hdi_threads_run(hdi_walk *w) {
     hd_threads *t = w->threads;
+    int32_t k;
     hdi_lock(&t->lock);
     w->at = &t->at;
     w->base = t->end;
@@ -3005,10 +2996,15 @@ static void hdi_threads_run(hdi_walk *w) {
     hdi_threads_wake(t, (int64_t)w->own.ready - 1);
     hdi_unlock(&t->lock);
     w->ctx->regions++;
-    for (;;) {
+    while (!hdi_walk_done(w)) {
         while (hdi_walk_step(w, 0)) {}
-        if (hdi_walk_done(w)) break;
-        hdi_threads_wait(w);
+        for (k = 0; k < HDI_SPIN && hdi_walk_waits(w); k++) hdi_relax();
+        hdi_lock(&t->lock);
+        for (; hdi_walk_waits(w); t->caller_asleep = 0, w->ctx->waits++) {
+            t->caller_asleep = 1;
+            hdi_signal_wait(&t->finished, &t->lock);
+        }
+        hdi_unlock(&t->lock);
     }
     t->open = 0;
     w->ctx->helped += HDI_ATOMIC_GET(&t->helped);
@@ -13501,7 +13497,6 @@ typedef struct hdi_factor {
     int32_t ready;
     int32_t guest;                   /* work, scratch, counts, order and pivots are another's */
     const hdi_values *values;        /* of a factorisation under way */
-    hd_error error;
 } hdi_factor;
 
 /* Is it the factor of a real matrix, and not a pack? */
@@ -14070,10 +14065,7 @@ static hd_status hdi_factor_collect(hdi_factor *f, int32_t n_parts, hd_error *e)
         f->all.lane = q->lane;
         f->all.value = q->value;
     }
-    if (f->error.status < 0) {
-        *e = f->error;
-        return e->status;
-    }
+    if (e->status < 0) return e->status;
     if (f->all.failed < 0) return HD_OK;
     hdi_fail_row(e, HD_ERR_BREAKDOWN, "LDL': a pivot is not finite, or too small to divide by",
                  f->sym->perm[f->all.failed], -1, f->all.value);
@@ -14209,12 +14201,11 @@ static hd_status hdi_factor_run(hdi_factor *f, const hdi_values *values, hd_erro
     t.left = n_tasks;
     f->ready = 0;
     f->values = values;
-    hdi_error_clear(&f->error);
     for (i = 0; i <= n_tasks; i++) hdi_pivots_clear(f->pivots + i);
     hdi_walk_open(&t.walk, f->ctx, f->n_order, f->order, hdi_factor_node, &t);
     if (hdi_walk_alone(&t.walk)) t.walk.n = (uint32_t)(n_tasks + f->sym->n_top);
     t.walk.stage = "factor";
-    t.walk.e = &f->error;
+    t.walk.e = e;
     if (n_tasks > 0) hdi_release(&t.walk, 0, n_tasks);
     else hdi_factor_next(&t);
     hdi_walk_run(&t.walk);
