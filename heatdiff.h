@@ -14471,9 +14471,9 @@ static void hdi_sweep_next(const hdi_sweep *z, int32_t i) {
     int32_t v;
     if (!z->backward) {
         const int32_t begin = top < 0 ? s->task_begin[i] : top, end = top < 0 ? s->task_end[i] : top + 1;
+        if (z->pending[n + i] < 0) hdi_release(z->walk, n + i, 1);
         for (v = begin; v < end; v++)
             if (hdi_sweep_below_top(s, v)) hdi_sweep_arrive(z, hdi_sweep_node_of(s, s->parent[v]));
-        if (z->pending[n + i] < 0) hdi_release(z->walk, n + i, 1);
     } else if (top >= 0) {
         for (v = s->kid_ptr[top]; v < s->kid_ptr[top + 1]; v++)
             hdi_sweep_arrive(z, n + hdi_sweep_node_of(s, s->kid[v]));
