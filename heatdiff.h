@@ -3088,20 +3088,6 @@ static void hdi_parallel(hd_context *ctx, int64_t n_tasks, hd_task task, void *a
     else for (i = 0; i < n_tasks; i++) task(arg, i, 0);
 }
 
-/* What [14] still asks for: n nodes of which the first n_ready in order are ready. By own threads. */
-static void hdi_parallel_ordered(hd_context *ctx, int32_t n, int32_t n_ready, int32_t *order, hd_task task,
-                                 void *arg) {
-    hdi_walk w;
-    hdi_walk_open(&w, ctx, n, order, task, arg);
-    w.own.ready = (uint32_t)n_ready;
-    hdi_walk_run(&w);
-}
-
-static void hdi_release_many(hd_threads *t, int32_t id, int32_t n, int32_t *order) {
-    (void)order;
-    hdi_release(&t->walk, id, n);
-}
-
 /* The same for [0, n) in ranges of per_task; the last one may be shorter. */
 typedef void (*hdi_range_task)(void *arg, int64_t begin, int64_t end);
 typedef struct hdi_range_job { int64_t n, per_task; hdi_range_task task; void *arg; } hdi_range_job;
@@ -11308,13 +11294,8 @@ typedef struct hdi_nd {
     float *xyz;
     int32_t *perm, *work;
     hdi_nd_part *part;               /* [HDI_ND_NODES] */
-    int32_t level;                   /* halved in step: the first part of the level under way */
-    hd_threads *threads;             /* in one loop: those who share it, ... */
-    int32_t order[HDI_ND_NODES];     /* ... the parts as they become ready, ... */
-    uint32_t done;                   /* ... and how many are done */
-    int32_t stop;
-    hd_context *ctx;
-    hd_error *error;
+    hdi_walk walk;
+    int32_t order[HDI_ND_NODES];     /* the parts as they become ready */
 } hdi_nd;
 
 /* Work space left to a task, taken from its front: what a copy of this struct took is free after it. */
@@ -12250,22 +12231,12 @@ static void hdi_nd_node(const hdi_nd *nd, int64_t i) {
     else hdi_nd_subtree(nd, nd->part + i, s);
 }
 
-static void hdi_nd_level_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_nd *nd = (const hdi_nd *)arg;
-    (void)worker;
-    hdi_nd_node(nd, nd->level + index);
-}
-
 /* Treats one part of the heap. After that its halves may be claimed. */
-static void hdi_nd_loop_task(void *arg, int64_t index, int32_t worker) {
+static void hdi_nd_task(void *arg, int64_t index, int32_t worker) {
     hdi_nd *nd = (hdi_nd *)arg;
-    const double done = 0.1 + 0.8 * (double)HDI_ATOMIC_GET(&nd->done) / (double)HDI_ND_NODES;
-    if (worker == 0 && !HDI_LOAD(&nd->stop) && hdi_progress(nd->ctx, "order", done, nd->error) < 0)
-        HDI_STORE(&nd->stop, 1);
-    if (!HDI_LOAD(&nd->stop)) hdi_nd_node(nd, index);
-    HDI_ATOMIC_ADD(&nd->done, 1);
-    if (index < HDI_ND_TASKS - 1)
-        hdi_release_many(nd->threads, (int32_t)(2 * index + 1), 2, nd->order);
+    (void)worker;
+    hdi_nd_node(nd, index);
+    if (index < HDI_ND_TASKS - 1) hdi_release(&nd->walk, (int32_t)(2 * index + 1), 2);
 }
 
 /* The matrix as the first part: row k of it is row order[k] of a. */
@@ -12337,19 +12308,15 @@ static void hdi_nd_buffer_make(hdi_nd_buffer *b, const hd_csr *a, hdi_scope *s) 
     b->cew = b->cadj + nnz / 4 + 1;
 }
 
-/* Orders the whole matrix. Own threads share one loop. The user's threads take the heap level by level. */
-static void hdi_nd_run(hdi_nd *nd) {
-    double done = 0.15;
-    if (hdi_progress(nd->ctx, "order", 0.1, nd->error) < 0) return;
-    if (nd->threads) {
-        nd->order[0] = 0;
-        hdi_parallel_ordered(nd->ctx, HDI_ND_NODES, 1, nd->order, hdi_nd_loop_task, nd);
-        return;
-    }
-    for (nd->level = 0; nd->level < HDI_ND_NODES; nd->level = 2 * nd->level + 1, done += 0.05) {
-        if (hdi_progress(nd->ctx, "order", done, nd->error) < 0) return;
-        hdi_parallel(nd->ctx, nd->level + 1, hdi_nd_level_task, nd);
-    }
+/* Orders the whole matrix, which is part 0 of the heap. */
+static void hdi_nd_run(hdi_nd *nd, hd_context *ctx, hd_error *e) {
+    hdi_walk_open(&nd->walk, ctx, HDI_ND_NODES, nd->order, hdi_nd_task, nd);
+    nd->walk.stage = "order";
+    nd->walk.from = 0.1;
+    nd->walk.to = 0.9;
+    nd->walk.e = e;
+    hdi_release(&nd->walk, 0, 1);
+    hdi_walk_run(&nd->walk);
 }
 
 /* perm[k] = row of the symmetric pattern a (both triangles, the diagonal may be there) that is eliminated
@@ -12375,13 +12342,11 @@ static hd_status hdi_nd_order(const hd_csr *a, const double *xyz, int32_t *perm,
     hdi_nd_buffer_make(nd.buffer, a, &s);
     hdi_nd_buffer_make(nd.buffer + 1, a, &s);
     if (e->status < 0) return hdi_scope_end(&s);
-    nd.ctx = ctx;
-    nd.error = e;
-    nd.threads = hdi_threads_own(ctx, HDI_ND_NODES);   /* started now, they share the loops before, too */
+    hdi_threads_own(ctx, HDI_ND_NODES);   /* threads that are started now share the loops below, too */
     hdi_nd_keys(xyz, a->n_rows, key, unit);
     k = hdi_nd_number(a, key, order, inv, spare, ptr);
     nd.part[0] = hdi_nd_load(&job, k, ctx);
-    hdi_nd_run(&nd);
+    hdi_nd_run(&nd, ctx, e);
     if (e->status < 0) return hdi_scope_end(&s);
     for (i = 0; i < k; i++) perm[i] = order[perm[i]];
     for (i = k; i < a->n_rows; i++) perm[i] = order[i];
