@@ -28,7 +28,9 @@ static const case_row bnd_rows[] = {
     {"shape=path/80 op=I query=apply field=random method=krylov tol=1e-13 t=1e4", 0, 0, 1},
     /* poles of one's own: with a weighted error that is loose, and next to the spectrum */
     {"shape=sphere/3 query=distance own=loose|copy degree=8 th=1|10|100", 0, 0, 3},
-    {"shape=cycle/60 op=I query=diagonal|column kernel=symmetric|operator own=near x=3|4|5|6|7 method=direct t=1 seed=13", 0, 0, 6},
+    /* Always without a good bound: diagonals at x=3, columns at x=6 and x=7. Diagonals at x=7 too in plain C and with AVX-512: that factor is
+     * nearly singular, its bound follows the rounding, and each instruction set rounds in its own way (0.031 and 0.043; 0.002 with AVX2). */
+    {"shape=cycle/60 op=I query=diagonal|column kernel=symmetric|operator own=near x=3|4|5|6|7 method=direct t=1 seed=13", 0, 0, 8},
     /* a mass matrix that is nearly singular, and a field along its smallest eigenvector */
     {"shape=path/80 op=near query=apply field=alternate t=1" BND_METHODS, 1e-6, 0, 0},
     {"shape=path/80 op=near query=apply field=alternate t=1 method=direct poles=uniform degree=4|8", 0, 0, 1},
@@ -291,7 +293,7 @@ static void bnd_truck(void) {
     hd_report r, c;
     int32_t i, at = -1;
     if (!s.xyz) return;
-    lap = (hd_laplacian *)kit_keep(test_laplacian(&s, HD_LAPLACIAN_FEM), kit_free_laplacian);
+    lap = kit_triangles(&s, HD_LAPLACIAN_FEM);
     columns = kit_heat(lap, "method=krylov tol=1e-13");
     D = KIT_NEW(double, s.n);
     u = KIT_NEW(double, s.n);

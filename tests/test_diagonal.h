@@ -189,21 +189,28 @@ static void diag_inverse_shapes(void) {
     }
 }
 
-/* At every level of instructions: random patterns, mesh-like ones, and fronts of more pivots than a panel or a tile holds. */
+/* At every level of instructions: random patterns, mesh-like ones, and fronts of all numbers of pivots and rows. */
 static void diag_inverse_levels(void) {
-    int level, q;
+    static const int kinds[6] = {LDL_RANDOM, LDL_GRID, LDL_DENSE, LDL_BAND, LDL_BIPARTITE, LDL_DENSE};
+    static const int32_t sizes[6] = {90, 400, 75, 120, 90, 141};
+    const int32_t mark = kit_mark();
+    int level, q, way;
+    int32_t i;
     for (level = 0; level < 4; level++) {
         hd_context ctx;
         memset(&ctx, 0, sizeof ctx);
         ctx.simd = ldl_simds[level];
-        for (q = 0; q < 6; q++) {
-            static const int kinds[6] = {LDL_RANDOM, LDL_GRID, LDL_DENSE, LDL_BAND, LDL_BIPARTITE, LDL_DENSE};
-            static const int32_t sizes[6] = {90, 400, 75, 120, 90, 141};
-            hd_csr a = kit_own_csr(ldl_shape(kinds[q], sizes[q], 1, (uint64_t)(q + 50)));
-            const hd_ldl_opts o = ldl_opts_of(HD_ORDERING_AUTO, NULL, NULL, &ctx);
-            hd_ldl *f = ldl_make(&a, &o, ldl_shape_name(kinds[q]));
-            diag_inverse_of(&a, f, 3, q % 2, sizes[q] <= 150 && level < 2, (uint64_t)q, ldl_shape_name(kinds[q]));
-            hd_ldl_free(f);
+        for (q = 0; q < 6 + LDL_JOINTS; q++) {
+            const hd_csr *a = kit_csr(q < 6 ? ldl_shape(kinds[q], sizes[q], 1, (uint64_t)(q + 50)) : ldl_joined(q - 6));
+            int32_t *natural = KIT_NEW(int32_t, a->n_rows);
+            for (i = 0; i < a->n_rows; i++) natural[i] = i;
+            for (way = 0; way < 2; way++) {
+                const hd_ldl_opts o = ldl_opts_of(way ? HD_ORDERING_OWN : HD_ORDERING_AUTO, natural, NULL, &ctx);
+                hd_ldl *f = ldl_make(a, &o, "levels");
+                diag_inverse_of(a, f, 3 + way, q % 2, a->n_rows < 100 || (way == 0 && a->n_rows < 150), (uint64_t)q, "levels");
+                hd_ldl_free(f);
+            }
+            kit_release(mark);
         }
         CHECK(ctx.bytes_in_use == 0);
     }
@@ -336,6 +343,7 @@ static void diag_inverse_of_nothing(void) {
 
 /* ---- against the truth ---- */
 
+#define DIAG_PAIRS "shape=bumpy/1/5|tangle op=fem|vor|cot query="
 static const case_row diag_rows[] = {
     /* diagonals of both kernels and edges: on a bumpy sphere; a hole, pieces, three sheets at an edge and vertices in no face; slivers */
     {"shape=bumpy/1/5|tangle|sliver/2/3/3 op=fem|vor|cot query=diagonal|edges kernel=operator|symmetric th=0.5|3|30|300|3000|1e4", 1e-6, 0, 0},
@@ -346,23 +354,39 @@ static const case_row diag_rows[] = {
     {"shape=bumpy/1/5|tangle op=fem|vor query=diagonal|edges kernel=operator|symmetric poles=diagonal|uniform degree=4 th=0.5|30|3000", 0, 0, 21},
     {"shape=soup/12/3 op=fem query=diagonal|edges kernel=operator|symmetric th=0.5|3|30|300", 1e-6, 0, 0},
     {"shape=leak/30/0.01|drain/30/0.5|tree/30/3 op=I|diag|tri query=diagonal|edges kernel=operator|symmetric th=0.5|3|10", 1e-5, 0, 0},
-    {"shape=bumpy/1/5|tangle op=fem|vor|cot query=diagonal kernel=operator|symmetric times=5 span=1000 th=1 seed=0|1", 1e-6, 0, 0},
+    {DIAG_PAIRS "diagonal kernel=operator|symmetric times=5 span=1000 th=1 seed=0|1", 1e-6, 0, 0},
     /* filters of the caller's own, with a bit of the identity, too: on the diagonal of the symmetric kernel that needs a diagonal B */
     {"shape=flat/8/5/0.3 op=fem|vor|cot query=diagonal kernel=operator own=resolvent|a0|random seed=2 th=2|10", 1e-9, 0, 0},
     {"shape=flat/8/5/0.3 op=vor|cot query=diagonal|edges kernel=symmetric own=resolvent|a0|random seed=2 th=2|10", 1e-9, 0, 0},
     {"shape=flat/8/5/0.3 op=fem query=diagonal|edges kernel=symmetric own=resolvent|a0 th=2", 1e-9, 0, 2},
     /* distances (without a bound of each where the source has no mass), and pairs, of which a few may be near each other */
-    {"shape=bumpy/1/5|tangle op=fem|vor|cot query=distance kind=classical|weighted|commute|biharmonic k=4 th=0.7|5|40", 1e-6, 0, 4},
-    {"shape=bumpy/1/5|tangle op=fem|vor|cot query=distance kind=classical|weighted k=4 times=3 span=50 th=0.7 seed=0|1", 1e-6, 0, 4},
-    {"shape=bumpy/1/5|tangle op=fem|vor|cot query=distance kind=classical|weighted k=4 poles=diagonal degree=14 th=0.7|2", 1e-5, 0, 0},
-    {"shape=bumpy/1/5|tangle op=fem|vor|cot query=distance kind=classical|weighted k=4 poles=uniform|kernel degree=8 th=0.7|2|40", 0, 0, 19},
-    {"shape=bumpy/1/5|tangle op=fem|vor|cot query=pairs kind=classical|weighted|commute|biharmonic k=40 method=auto|direct th=0.7|4|40 seed=1|2",
+    {DIAG_PAIRS "distance kind=classical|weighted|commute|biharmonic k=4 th=0.7|5|40", 1e-6, 0, 4},
+    {DIAG_PAIRS "distance kind=classical|weighted k=4 times=3 span=50 th=0.7 seed=0|1", 1e-6, 0, 4},
+    {DIAG_PAIRS "distance kind=classical|weighted k=4 poles=diagonal degree=14 th=0.7|2", 1e-5, 0, 0},
+    {DIAG_PAIRS "distance kind=classical|weighted k=4 poles=uniform|kernel degree=8 th=0.7|2|40", 0, 0, 19},
+    {DIAG_PAIRS "pairs kind=classical|weighted|commute|biharmonic k=40 method=auto|direct th=0.7|4|40 seed=1|2",
      3e-6, 0, 8},
-    {"shape=bumpy/1/5|tangle op=fem|vor|cot query=pairs kind=classical|weighted k=40 method=iterative|krylov th=0.7|4 seed=1|2", 2e-6, 0, 0},
+    {DIAG_PAIRS "pairs kind=classical|weighted k=40 method=iterative|krylov th=0.7|4 seed=1|2", 2e-6, 0, 0},
     {"shape=leak/30/0.01|drain/30/0.5 op=I|tri query=distance|pairs kind=classical|weighted|commute|biharmonic k=4 th=0.7|2", 2e-5, 0, 0},
 };
 
-static void diag_cases(void) { CASES(diag_rows); }
+/* What sums over entries of inverses, at every level of instructions: with a full B too, several times and columns together. */
+static const case_row diag_level_rows[] = {
+    {"shape=bumpy/1/5|grid/9/2 op=fem|vor query=diagonal|edges kernel=operator|symmetric method=direct th=0.7|10", 1e-6, 0, 0},
+    {"shape=bumpy/1/5|grid/9/2 op=fem|vor query=distance kind=classical|weighted method=direct k=9 times=1|3 span=50 th=0.7|10", 1e-6, 0, 0},
+    {"shape=bumpy/1/5|grid/9/2 op=fem|vor query=distance kind=classical|weighted k=9 poles=diagonal degree=14 th=0.7|2", 1e-5, 0, 0},
+    {"shape=bumpy/1/5|grid/9/2 op=fem|vor query=apply|column|entries method=direct k=9 th=0.7|10", 2e-6, 0, 0},
+};
+
+static void diag_cases(void) {
+    int level;
+    CASES(diag_rows);
+    for (level = 1; level < 4; level++) {
+        trial_serial.simd = ldl_simds[level];
+        CASES(diag_level_rows);
+    }
+    trial_serial.simd = HD_SIMD_AUTO;
+}
 
 /* The set that was asked for, the smallest value, parts of the bounds; and the same numbers in edges as in the diagonal. */
 static void diag_reports(void) {
@@ -544,6 +568,7 @@ static void diag_pairs_parts(void) {
     int32_t i[PAIRS], j[PAIRS];
     double k[PAIRS], d[PAIRS], again[PAIRS];
     uint64_t seed = 5;
+    hd_report r;
     int kind, q;
     for (q = 0; q < PAIRS; q++) {
         i[q] = trial_below(&seed, lap->n);
@@ -552,8 +577,9 @@ static void diag_pairs_parts(void) {
     for (kind = 0; kind < 4; kind++) {
         for (q = 0; q < PAIRS; q++) k[q] = d[q] = -5;
         CHECK(heat_pairs(heat, (hd_distance_kind)kind, t, PAIRS, i, j, k, d, NULL) >= 0);
-        CHECK(heat_pairs(heat, (hd_distance_kind)kind, t, PAIRS, i, j, NULL, again, NULL) >= 0 && memcmp(again, d, sizeof d) == 0);
-        CHECK(heat_pairs(heat, (hd_distance_kind)kind, t, PAIRS, i, j, again, NULL, NULL) >= 0 &&
+        CHECK(heat_pairs(heat, (hd_distance_kind)kind, t, PAIRS, i, j, NULL, again, &r) >= 0 && memcmp(again, d, sizeof d) == 0);
+        CHECK_MSG(r.error_bound < 1e-5 && r.error_relative < 0.1, "kind %d: bounds %g, %g", kind, r.error_bound, r.error_relative);
+        CHECK(heat_pairs(heat, (hd_distance_kind)kind, t, PAIRS, i, j, again, NULL, &r) >= 0 && r.error_relative == HUGE_VAL &&
               (kind > 1 || memcmp(again, k, sizeof k) == 0));
         for (q = 0; q < PAIRS; q++) {
             const int32_t a = lap->row[i[q]], b = lap->row[j[q]];
