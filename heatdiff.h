@@ -3528,8 +3528,9 @@ typedef struct hdi_eliminate {
     int32_t nc, n;
 } hdi_eliminate;
 
-/* One real right-hand side in nc <= 8 columns of L, whose triangle is at l: up, x = L^-1 x for the nc rows, then
- * x -= L x in the n rows that follow them and t -= L x in u rows below; down, x = L^-T (x - L' (x, t)). */
+/* One real right-hand side in nc <= 8 columns of L, whose triangle is at l. Up: x = L^-1 x for the nc rows,
+ * then x -= L x in the n rows that follow them, and t -= L x in u rows below. Down:
+ * x = L^-T (x - L' (x, t)). */
 typedef struct hdi_single {
     const double *l;
     double *x, *t;
@@ -3555,8 +3556,8 @@ typedef struct hdi_kernels {
     void (*down)(const hdi_single *g);
 } hdi_kernels;
 
-/* The inverses of n of a pack's numbers; infinite where there is none. 0: there is such a number. By R. Smith,
- * "Algorithm 116: Complex division", 1962; inline, so that kernels keep their registers. */
+/* The inverses of n of a pack's numbers; infinite where there is none. 0: there is such a number. By
+ * R. Smith, "Algorithm 116: Complex division", 1962; inline, so that kernels keep their registers. */
 static HDI_INLINE int hdi_pack_invert(const double *d, double *inverse, int n) {
     int q, good = 1;
     for (q = 0; q < n; q++) {
@@ -3587,8 +3588,8 @@ static HDI_INLINE void hdi_pack_times(const double *HDI_RESTRICT l, const double
  *   all(a)               a in every lane
  *   load, store          anywhere in memory
  *   rows, rows_of(lo, hi), has(g, q)   rows lo..hi-1 of a tile as a set; whether q is one of them
- *   load_rows(p, g, q), store_rows(p, v, g, q)   lanes for rows q.. of it; others are neither read nor written,
- *                        and are zero in a vector that is loaded
+ *   load_rows(p, g, q), store_rows(p, v, g, q)   lanes for rows q.. of it; others are neither read nor
+ *                        written, and are zero in a vector that is loaded
  *   fma, fnma            a b + c, c - a b
  *   lane(v, k), pick(v, k)  lane k everywhere; as a number
  * and as constants the tiles that fit its registers: rows and columns of vectors of real numbers, and of
@@ -3719,8 +3720,8 @@ HDI_IN4 int hdi_has_avx2(hdi_span g, int32_t q) { return hdi_has_plain(g, q); }
 HDI_IN4 __m256d hdi_load_rows_avx2(const double *p, hdi_span g, int32_t q) {
     const __m256i lane = _mm256_set_epi64x(3, 2, 1, 0);
     if (g.lo <= q && g.hi >= q + 4) return _mm256_loadu_pd(p);
-    return _mm256_maskload_pd(p, _mm256_and_si256(_mm256_cmpgt_epi64(_mm256_set1_epi64x(g.hi - q), lane),
-                                                  _mm256_cmpgt_epi64(lane, _mm256_set1_epi64x(g.lo - q - 1))));
+    return _mm256_maskload_pd(p, _mm256_andnot_si256(_mm256_cmpgt_epi64(_mm256_set1_epi64x(g.lo - q), lane),
+                                                     _mm256_cmpgt_epi64(_mm256_set1_epi64x(g.hi - q), lane)));
 }
 /* By halves and singles: masked stores are slow on some processors. */
 HDI_IN4 void hdi_store_rows_avx2(double *p, __m256d v, hdi_span g, int32_t q) {
@@ -3900,8 +3901,8 @@ HDI_PART hdi_num HDI_OF(num_times)(const int pack, hdi_num a, hdi_num f) {
 
 /* ---- a tile ---- */
 
-/* One tile of a product or of a solve: n rows, nc columns; `off` are the columns of B in doubles where they are
- * not side by side, the last one again where there are fewer. Side by side, more than nc are read. */
+/* One tile of a product or of a solve: n rows, nc columns; `off` are the columns of B in doubles where they
+ * are not side by side, the last one again where there are fewer. Side by side, more than nc are read. */
 typedef struct HDI_OF(tile) {
     double *c;
     const double *a, *b;
@@ -4025,28 +4026,28 @@ HDI_PART void HDI_OF(tile_solve)(const int pack, const int nv, const int nc, con
     }
 }
 
+HDI_PART void HDI_OF(tile_one)(const int pack, const int solve, const int nv, const int nc, const int unit,
+                               const HDI_OF(tile) *t, const double *dinv) {
+    if (solve) HDI_OF(tile_solve)(pack, nv, nc, unit, t, dinv);
+    else HDI_OF(tile_multiply)(pack, nv, nc, unit, t);
+}
+
 /* A tile of at most HDI_REGS nums; dinv of a solve. A column alone, of which packs have many, is a tile of
  * its own. */
 HDI_PART void HDI_OF(tile_run)(const int pack, const int solve, const int unit, const HDI_OF(tile) *t,
                                const double *dinv) {
     const int nv = (t->n + HDI_ROWS - 1) / HDI_ROWS;
-#define HDI_TILE(rows, cols)                                                         \
-    do {                                                                             \
-        if (solve) HDI_OF(tile_solve)(pack, rows, cols, unit, t, dinv);              \
-        else HDI_OF(tile_multiply)(pack, rows, cols, unit, t);                       \
-    } while (0)
     if (pack && HDI_COLS > 1 && t->nc == 1) {
-        if (nv >= HDI_REGS) HDI_TILE(HDI_REGS, 1);
-        else if (HDI_REGS > 3 && nv == 3) HDI_TILE(3, 1);
-        else if (HDI_REGS > 2 && nv == 2) HDI_TILE(2, 1);
-        else if (HDI_REGS > 1) HDI_TILE(1, 1);
+        if (nv >= HDI_REGS) HDI_OF(tile_one)(pack, solve, HDI_REGS, 1, unit, t, dinv);
+        else if (HDI_REGS > 3 && nv == 3) HDI_OF(tile_one)(pack, solve, 3, 1, unit, t, dinv);
+        else if (HDI_REGS > 2 && nv == 2) HDI_OF(tile_one)(pack, solve, 2, 1, unit, t, dinv);
+        else if (HDI_REGS > 1) HDI_OF(tile_one)(pack, solve, 1, 1, unit, t, dinv);
     } else {
-        if (nv >= HDI_REGS) HDI_TILE(HDI_REGS, HDI_COLS);
-        else if (HDI_REGS > 3 && nv == 3) HDI_TILE(3, HDI_COLS);
-        else if (HDI_REGS > 2 && nv == 2) HDI_TILE(2, HDI_COLS);
-        else if (HDI_REGS > 1) HDI_TILE(1, HDI_COLS);
+        if (nv >= HDI_REGS) HDI_OF(tile_one)(pack, solve, HDI_REGS, HDI_COLS, unit, t, dinv);
+        else if (HDI_REGS > 3 && nv == 3) HDI_OF(tile_one)(pack, solve, 3, HDI_COLS, unit, t, dinv);
+        else if (HDI_REGS > 2 && nv == 2) HDI_OF(tile_one)(pack, solve, 2, HDI_COLS, unit, t, dinv);
+        else if (HDI_REGS > 1) HDI_OF(tile_one)(pack, solve, 1, HDI_COLS, unit, t, dinv);
     }
-#undef HDI_TILE
 }
 
 /* Offsets of nc columns of B. */
@@ -4291,8 +4292,8 @@ HDI_KERNEL void HDI_OF(add)(double *y, const double *x, int64_t n) {
 }
 
 /* ---- one real right-hand side ---- */
-/* It is bound by memory, and runs are short: AVX-512 takes AVX2's kernels, measured as fast or faster. A vector
- * goes along the rows. */
+/* It is bound by memory, and runs are short: AVX-512 takes AVX2's kernels, measured as fast or faster. A
+ * vector goes along the rows. */
 
 #if HDI_WIDTH <= 4
 /* Row i of the eight columns from l on; missing ones are the last one again. */
@@ -4301,7 +4302,7 @@ HDI_PART void HDI_OF(single_columns)(const double **l, const hdi_single *g) {
     HDI_EACH(j, 8) l[j] = g->l + g->nc + (j < g->nc ? j : g->nc - 1) * g->ld;
 }
 
-/* y -= L b for a vector of rows; even columns are summed apart from odd ones. wide: more than four columns. */
+/* y -= L b for a vector of rows; even columns are summed apart from odd ones. wide: more than four. */
 HDI_PART void HDI_OF(single_up_rows)(double *y, const double *const *l, int64_t i, const int part,
                                      HDI_OF(rows) g, const hdi_vec *b, int wide) {
     hdi_vec s[2];
@@ -4316,7 +4317,8 @@ HDI_PART void HDI_OF(single_up_rows)(double *y, const double *const *l, int64_t 
     else HDI_OF(store)(y + i, s[0] + s[1]);
 }
 
-HDI_PART void HDI_OF(single_up_part)(double *y, const double *const *l, int64_t n, const hdi_vec *b, int wide) {
+HDI_PART void HDI_OF(single_up_part)(double *y, const double *const *l, int64_t n, const hdi_vec *b,
+                                     int wide) {
     int64_t i;
     for (i = 0; i + HDI_WIDTH <= n; i += HDI_WIDTH)
         HDI_OF(single_up_rows)(y, l, i, 0, HDI_OF(rows_of)(0, HDI_WIDTH), b, wide);
@@ -4343,7 +4345,8 @@ HDI_KERNEL void HDI_OF(single_up)(const hdi_single *g) {
 }
 
 /* s += L' y */
-HDI_PART void HDI_OF(single_down_part)(hdi_vec *s, const double *const *l, int64_t n, const double *y, int wide) {
+HDI_PART void HDI_OF(single_down_part)(hdi_vec *s, const double *const *l, int64_t n, const double *y,
+                                       int wide) {
     HDI_OF(rows) g;
     int64_t i;
     int j;
@@ -4454,8 +4457,8 @@ static const hdi_kernels *HDI_OF(pack_kernels)(void) {
 #include HEATDIFF_FILENAME
 #endif
 
-/* Kernels of a level: 0 plain C, 1 AVX2, 2 AVX-512; of real numbers, or of packs. Never NULL: a level that was
- * not compiled gives the plain kernels. */
+/* Kernels of a level: 0 plain C, 1 AVX2, 2 AVX-512; of real numbers, or of packs. Never NULL: a level that
+ * was not compiled gives the plain kernels. */
 static const hdi_kernels *hdi_kernels_get(int level, int pack) {
     const int packs = HDI_HAS_POLE_FACTORS && pack;
 #if HDI_X86
@@ -12785,8 +12788,8 @@ static int hdi_front_note(const hdi_front *w, int64_t k, int64_t n, hdi_pivots *
     return 1;
 }
 
-/* The block of pivots in rows [k0,end): k0 + nb, or further down. S gets its D L'. 0: a pivot cannot be divided
- * by. */
+/* The block of pivots in rows [k0,end): end is k0 + nb, or further down. S gets its D L'. 0: a pivot cannot
+ * be divided by. */
 static int hdi_front_eliminate(const hdi_front *w, int64_t end, hdi_pivots *note) {
     const hdi_kernels *o = w->f->ops;
     const int64_t kb = w->k0 + w->nb, width = w->f->width;
@@ -12841,8 +12844,8 @@ static void hdi_blas_update(const hdi_front *w, double *S, int64_t r0, int64_t r
                                                *hdi_block_at(&b, b.begin + i, b.begin + i);
             for (r = hdi_most(r0, g); r < r1; r += HDI_BLAS_ROWS) {
                 const int rows = (int)hdi_least(r1 - r, HDI_BLAS_ROWS);
-                dgemm_("N", "T", &rows, &cols, &depth, &one, hdi_block_at(&b, w->p + r, b.begin), &ld, S, &ld_s,
-                       &zero, C, &ld_c);
+                dgemm_("N", "T", &rows, &cols, &depth, &one, hdi_block_at(&b, w->p + r, b.begin), &ld, S,
+                       &ld_s, &zero, C, &ld_c);
                 for (j = 0; j < cols; j++) {
                     double *to = w->update + (hdi_triangle_column(w->u, g + j) - g - j);
                     for (i = hdi_most(r, g + j); i < r + rows; i++)
@@ -13343,8 +13346,8 @@ static hdi_block hdi_sweep_block(const hdi_factor *f, int32_t v, int64_t q) {
 enum { HDI_SWEEP_DEPTH = 32 };
 
 /* The same for one real right-hand side, columns k..k+7 of a block; or x = L11^-T (x - L' (x, t)) in them. */
-static void hdi_sweep_single(const hdi_sweep *z, const hdi_block *b, int64_t k, int64_t p, int64_t u, double *y,
-                             double *t, int down) {
+static void hdi_sweep_single(const hdi_sweep *z, const hdi_block *b, int64_t k, int64_t p, int64_t u,
+                             double *y, double *t, int down) {
     hdi_single g;
     g.l = b->at + k * (b->ld + 1);
     g.x = y + b->begin + k;
@@ -13454,8 +13457,8 @@ static void hdi_sweep_backward(const hdi_sweep *z, int32_t v, double *y, double 
             continue;
         }
         hdi_kernels_rows(f->ops, own, z->k, b.width, rows, u, hdi_block_at(&b, p, b.begin), 1, b.ld);
-        hdi_kernels_rows(f->ops, own, z->k, b.width, y + row * end, p - end, hdi_block_at(&b, end, b.begin), 1,
-                         b.ld);
+        hdi_kernels_rows(f->ops, own, z->k, b.width, y + row * end, p - end, hdi_block_at(&b, end, b.begin),
+                         1, b.ld);
         /* L11' from its last row and column on is like L11 */
         g.x = own + row * (b.width - 1);
         g.n = z->k;
@@ -13910,7 +13913,9 @@ typedef struct hdi_inverse_front {
 } hdi_inverse_front;
 
 /* How much is taken at a time: rows that are gathered, and their entries. */
-static int64_t hdi_inverse_height(int32_t width) { return width == 1 ? (int)HDI_TILE_ROWS : (int)HDI_INV_ROWS; }
+static int64_t hdi_inverse_height(int32_t width) {
+    return width == 1 ? (int)HDI_TILE_ROWS : (int)HDI_INV_ROWS;
+}
 static int64_t hdi_inverse_depth(int32_t width) { return width == 1 ? (int)HDI_PANEL : (int)HDI_INV_DEPTH; }
 
 /* Doubles of rows that are gathered, or of rows of M, and of all scratch of a front of at most so many rows
@@ -13962,8 +13967,8 @@ static const double *hdi_inverse_at(const hdi_inverse_front *w, int64_t i, int64
 }
 
 /* to = from, n entries; from_step and to_step from entry to entry. */
-static void hdi_entries_copy(int32_t width, double *to, int64_t to_step, const double *from, int64_t from_step,
-                             int64_t n) {
+static void hdi_entries_copy(int32_t width, double *to, int64_t to_step, const double *from,
+                             int64_t from_step, int64_t n) {
     int64_t i;
     if (width == 1) for (i = 0; i < n; i++) to[i * to_step] = from[i * from_step];
     else for (i = 0; i < n; i++)
@@ -13983,8 +13988,8 @@ static void hdi_inverse_gather(const hdi_inverse_front *w, int64_t i0, int64_t i
     for (i = i0; i < i1; i++) {                  /* above the diagonal: entry (j,i) */
         const int64_t first = hdi_most(j0, i + 1);
         if (first < j1)
-            hdi_entries_copy(width, to + width * ((first - j0) * ld + i - i0), ld, hdi_inverse_at(w, first, i), 1,
-                             j1 - first);
+            hdi_entries_copy(width, to + width * ((first - j0) * ld + i - i0), ld,
+                             hdi_inverse_at(w, first, i), 1, j1 - first);
     }
 }
 
@@ -14105,8 +14110,8 @@ static void hdi_inverse_corner(const hdi_inverse_front *w, int64_t r0, int64_t r
             g.depth = hdi_least(w->m - j, depth);
             g.b = w->M + w->f->width * o->nr * (j - w->k1);
             for (i = 0; i < g.n; i++)
-                hdi_entries_copy(w->f->width, buffer + w->f->width * i, g.n, hdi_block_at(&z, j, w->k0 + r + i), 1,
-                                 g.depth);
+                hdi_entries_copy(w->f->width, buffer + w->f->width * i, g.n,
+                                 hdi_block_at(&z, j, w->k0 + r + i), 1, g.depth);
             o->multiply(&g);
         }
     }
@@ -18315,16 +18320,17 @@ static void hdi_check_c(hdi_check *const *c, int32_t k) {
 
 #if HDI_X86
 /* The sums for one right-hand side. */
-typedef struct hdi_check512 { hdi_vec_avx512 l, b, norm, first, size; } hdi_check512;
+typedef struct hdi_check512 { __m512d l, b, norm, first, size; } hdi_check512;
 
 /* Row i is complete: l and b hold its products with L and B. */
 static HDI_AVX512 HDI_INLINE void hdi_check512_row(hdi_check *h, hdi_check512 *s, int32_t i,
                                                    const double *x) {
-    const hdi_vec_avx512 t = _mm512_set1_pd(h->t), re = hdi_twice_avx512(h->theta), im = hdi_twice_avx512(h->theta + 4);
-    const hdi_vec_avx512 turned = _mm512_mask_sub_pd(im, 0x0f, _mm512_setzero_pd(), im);
-    const hdi_vec_avx512 weight = _mm512_set1_pd(h->weight[i]), noise = _mm512_set1_pd(h->noise[i]);
-    const hdi_vec_avx512 v = _mm512_loadu_pd(x), coef = _mm512_loadu_pd(h->coef);
-    hdi_vec_avx512 r = _mm512_fnmadd_pd(t, s->l, _mm512_maskz_mov_pd(0x0f, _mm512_set1_pd(h->rhs[i])));
+    const __m512d t = _mm512_set1_pd(h->t), re = hdi_twice_avx512(h->theta);
+    const __m512d im = hdi_twice_avx512(h->theta + 4);
+    const __m512d turned = _mm512_mask_sub_pd(im, 0x0f, _mm512_setzero_pd(), im);
+    const __m512d weight = _mm512_set1_pd(h->weight[i]), noise = _mm512_set1_pd(h->noise[i]);
+    const __m512d v = _mm512_loadu_pd(x), coef = _mm512_loadu_pd(h->coef);
+    __m512d r = _mm512_fnmadd_pd(t, s->l, _mm512_maskz_mov_pd(0x0f, _mm512_set1_pd(h->rhs[i])));
     r = _mm512_fnmadd_pd(re, s->b, r);
     r = _mm512_fnmadd_pd(turned, _mm512_shuffle_f64x2(s->b, s->b, 0x4e), r);
     s->norm = _mm512_fmadd_pd(_mm512_mul_pd(weight, r), r, s->norm);
@@ -18350,7 +18356,7 @@ static HDI_AVX512 HDI_INLINE void hdi_check512_end(hdi_check *h, const hdi_check
 /* For n right-hand sides, whose rows of x stand side by side. */
 static HDI_AVX512 HDI_INLINE void hdi_check512_of(hdi_check *const *c, const int n) {
     const hd_laplacian *lap = c[0]->lap;
-    const hdi_vec_avx512 zero = _mm512_setzero_pd();
+    const __m512d zero = _mm512_setzero_pd();
     const int64_t stride = c[0]->stride;
     const int full = lap->B != NULL;
     hdi_check512 s[HDI_CHECK_MOST];
@@ -18369,10 +18375,10 @@ static HDI_AVX512 HDI_INLINE void hdi_check512_of(hdi_check *const *c, const int
         }
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
             const double *from = c[0]->x + stride * lap->L.col[p];
-            const hdi_vec_avx512 lx = _mm512_set1_pd(lap->L.val[p]), bx = full ? _mm512_set1_pd(lap->B[p]) : zero;
+            const __m512d lx = _mm512_set1_pd(lap->L.val[p]), bx = full ? _mm512_set1_pd(lap->B[p]) : zero;
             HDI_UNROLL
             for (r = 0; r < n; r++) {
-                const hdi_vec_avx512 v = _mm512_loadu_pd(from + HDI_PACK * r);
+                const __m512d v = _mm512_loadu_pd(from + HDI_PACK * r);
                 s[r].l = _mm512_fmadd_pd(lx, v, s[r].l);
                 if (full) s[r].b = _mm512_fmadd_pd(bx, v, s[r].b);
             }
@@ -18385,8 +18391,8 @@ static HDI_AVX512 HDI_INLINE void hdi_check512_of(hdi_check *const *c, const int
 }
 
 /* The sums of eight vectors' entries. */
-static HDI_AVX512 HDI_INLINE hdi_vec_avx512 hdi_sums512(const hdi_vec_avx512 *v) {
-    hdi_vec_avx512 two[4], four[2];
+static HDI_AVX512 HDI_INLINE __m512d hdi_sums512(const __m512d *v) {
+    __m512d two[4], four[2];
     int r;
     HDI_UNROLL
     for (r = 0; r < 4; r++)
@@ -18401,20 +18407,21 @@ static HDI_AVX512 HDI_INLINE hdi_vec_avx512 hdi_sums512(const hdi_vec_avx512 *v)
 }
 
 /* Row i of eight right-hand sides is complete, at its solutions; u and bu receive its part of the answers. */
-static HDI_AVX512 HDI_INLINE void hdi_check512_rows(hdi_check *const *c, const hdi_vec_avx512 *l, const hdi_vec_avx512 *b,
+static HDI_AVX512 HDI_INLINE void hdi_check512_rows(hdi_check *const *c, const __m512d *l, const __m512d *b,
                                                     double (*sum)[3][HDI_PACK], int32_t i, const double *at,
-                                                    hdi_vec_avx512 *u, hdi_vec_avx512 *bu) {
+                                                    __m512d *u, __m512d *bu) {
     const hdi_check *h = c[0];
-    const hdi_vec_avx512 t = _mm512_set1_pd(h->t), re = hdi_twice_avx512(h->theta), im = hdi_twice_avx512(h->theta + 4);
-    const hdi_vec_avx512 turned = _mm512_mask_sub_pd(im, 0x0f, _mm512_setzero_pd(), im);
-    const hdi_vec_avx512 weight = _mm512_set1_pd(h->weight[i]), noise = _mm512_set1_pd(h->noise[i]);
-    const hdi_vec_avx512 coef = _mm512_loadu_pd(h->coef);
-    hdi_vec_avx512 cv[HDI_CHECK_BATCH], cb[HDI_CHECK_BATCH];
+    const __m512d t = _mm512_set1_pd(h->t), re = hdi_twice_avx512(h->theta);
+    const __m512d im = hdi_twice_avx512(h->theta + 4);
+    const __m512d turned = _mm512_mask_sub_pd(im, 0x0f, _mm512_setzero_pd(), im);
+    const __m512d weight = _mm512_set1_pd(h->weight[i]), noise = _mm512_set1_pd(h->noise[i]);
+    const __m512d coef = _mm512_loadu_pd(h->coef);
+    __m512d cv[HDI_CHECK_BATCH], cb[HDI_CHECK_BATCH];
     int r;
     HDI_UNROLL
     for (r = 0; r < HDI_CHECK_BATCH; r++, sum++) {
-        const hdi_vec_avx512 v = _mm512_loadu_pd(at + HDI_PACK * r);
-        hdi_vec_avx512 rest = _mm512_fnmadd_pd(t, l[r], _mm512_maskz_mov_pd(0x0f, _mm512_set1_pd(c[r]->rhs[i])));
+        const __m512d v = _mm512_loadu_pd(at + HDI_PACK * r);
+        __m512d rest = _mm512_fnmadd_pd(t, l[r], _mm512_maskz_mov_pd(0x0f, _mm512_set1_pd(c[r]->rhs[i])));
         rest = _mm512_fnmadd_pd(re, b[r], rest);
         rest = _mm512_fnmadd_pd(turned, _mm512_shuffle_f64x2(b[r], b[r], 0x4e), rest);
         _mm512_storeu_pd(sum[0][0], _mm512_fmadd_pd(_mm512_mul_pd(weight, rest), rest,
@@ -18430,11 +18437,11 @@ static HDI_AVX512 HDI_INLINE void hdi_check512_rows(hdi_check *const *c, const h
 
 /* The same of the lone real pole: l and b for all right-hand sides, x their row; sum: norm, size, first. Its
  * part is taken from u and bu. */
-static HDI_AVX512 HDI_INLINE void hdi_check512_real(hdi_check *const *c, const hdi_real_check *z, hdi_vec_avx512 l,
-                                                    hdi_vec_avx512 b, int32_t i, const double *x, hdi_vec_avx512 *sum) {
-    const hdi_vec_avx512 v = _mm512_loadu_pd(x), weight = _mm512_set1_pd(c[0]->weight[i]);
+static HDI_AVX512 HDI_INLINE void hdi_check512_real(hdi_check *const *c, const hdi_real_check *z, __m512d l,
+                                                    __m512d b, int32_t i, const double *x, __m512d *sum) {
+    const __m512d v = _mm512_loadu_pd(x), weight = _mm512_set1_pd(c[0]->weight[i]);
     double rhs[HDI_CHECK_BATCH];
-    hdi_vec_avx512 rest;
+    __m512d rest;
     int r;
     for (r = 0; r < HDI_CHECK_BATCH; r++) rhs[r] = c[r]->rhs[i];
     rest = _mm512_fnmadd_pd(_mm512_set1_pd(c[0]->t), l, _mm512_loadu_pd(rhs));
@@ -18445,7 +18452,7 @@ static HDI_AVX512 HDI_INLINE void hdi_check512_real(hdi_check *const *c, const h
 }
 
 /* Row i of the answers. There are more of them than the processor looks ahead for. */
-static HDI_AVX512 HDI_INLINE void hdi_check512_put(hdi_check *const *c, int32_t i, hdi_vec_avx512 u, hdi_vec_avx512 bu) {
+static HDI_AVX512 HDI_INLINE void hdi_check512_put(hdi_check *const *c, int32_t i, __m512d u, __m512d bu) {
     double part[2][HDI_CHECK_BATCH];
     int r;
     _mm512_storeu_pd(part[0], u);
@@ -18462,7 +18469,7 @@ static HDI_AVX512 HDI_INLINE void hdi_check512_put(hdi_check *const *c, int32_t 
 
 /* What the sums have come to. */
 static HDI_AVX512 void hdi_check512_close(hdi_check *const *c, double (*sum)[3][HDI_PACK],
-                                          const hdi_vec_avx512 *real, hdi_real_check *z) {
+                                          const __m512d *real, hdi_real_check *z) {
     int r, q;
     _mm512_storeu_pd(z->norm2, real[0]);
     _mm512_storeu_pd(z->size2, real[1]);
@@ -18480,10 +18487,10 @@ static HDI_AVX512 void hdi_check512_close(hdi_check *const *c, double (*sum)[3][
 static HDI_AVX512 HDI_INLINE void hdi_check512_batch(hdi_check *const *c, const double *xr,
                                                      hdi_real_check *z) {
     const hd_laplacian *lap = c[0]->lap;
-    const hdi_vec_avx512 zero = _mm512_setzero_pd(), a = _mm512_set1_pd(z->a);
+    const __m512d zero = _mm512_setzero_pd(), a = _mm512_set1_pd(z->a);
     const int64_t stride = c[0]->stride;
     double sum[HDI_CHECK_BATCH][3][HDI_PACK];
-    hdi_vec_avx512 real[3];
+    __m512d real[3];
     int64_t p;
     int32_t i;
     int r;
@@ -18492,8 +18499,8 @@ static HDI_AVX512 HDI_INLINE void hdi_check512_batch(hdi_check *const *c, const 
     for (i = 0; i < lap->n_active; i++) {
         const double *at = c[0]->x + stride * i;
         const double *at_real = xr ? xr + HDI_CHECK_BATCH * (int64_t)i : at;
-        const hdi_vec_avx512 mass = lap->B ? zero : _mm512_set1_pd(lap->mass[i]);
-        hdi_vec_avx512 l[HDI_CHECK_BATCH], b[HDI_CHECK_BATCH], lr = zero, br = zero, u, bu;
+        const __m512d mass = lap->B ? zero : _mm512_set1_pd(lap->mass[i]);
+        __m512d l[HDI_CHECK_BATCH], b[HDI_CHECK_BATCH], lr = zero, br = zero, u, bu;
         HDI_UNROLL
         for (r = 0; r < HDI_CHECK_BATCH; r++) {
             HDI_PREFETCH_AT(at, HDI_CHECK_AHEAD * stride + HDI_PACK * r);
@@ -18503,10 +18510,10 @@ static HDI_AVX512 HDI_INLINE void hdi_check512_batch(hdi_check *const *c, const 
         if (xr) br = _mm512_mul_pd(mass, _mm512_loadu_pd(at_real));
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
             const int64_t j = lap->L.col[p];
-            const hdi_vec_avx512 lx = _mm512_set1_pd(lap->L.val[p]), bx = lap->B ? _mm512_set1_pd(lap->B[p]) : zero;
+            const __m512d lx = _mm512_set1_pd(lap->L.val[p]), bx = lap->B ? _mm512_set1_pd(lap->B[p]) : zero;
             HDI_UNROLL
             for (r = 0; r < HDI_CHECK_BATCH; r++) {
-                const hdi_vec_avx512 v = _mm512_loadu_pd(c[0]->x + stride * j + HDI_PACK * r);
+                const __m512d v = _mm512_loadu_pd(c[0]->x + stride * j + HDI_PACK * r);
                 l[r] = _mm512_fmadd_pd(lx, v, l[r]);
                 b[r] = _mm512_fmadd_pd(bx, v, b[r]);
             }
@@ -20822,8 +20829,8 @@ static void hdi_slab_add_task(void *arg, int64_t begin, int64_t end) {
         const int64_t row = HDI_SPEC_TILE * tile, n = hdi_least(p->n - row, HDI_SPEC_TILE);
         double *v = hdi_slab_at(p->slab, (int32_t)tile, p->first);
         for (q = 0; q < p->n_blocks && !p->copy; q++)
-            hdi_kernels_rows(p->ops, p->w + 8 * (row + (int64_t)q * p->n), 8, n, p->h + 8 * (int64_t)q * p->cols,
-                             p->cols, v, HDI_SPEC_TILE, 1);
+            hdi_kernels_rows(p->ops, p->w + 8 * (row + (int64_t)q * p->n), 8, n,
+                             p->h + 8 * (int64_t)q * p->cols, p->cols, v, HDI_SPEC_TILE, 1);
         for (q = 0; q < p->cols && p->copy; q++)
             for (i = 0; i < n; i++) v[HDI_SPEC_TILE * q + i] = p->w[8 * (row + i) + q];
     }
@@ -30270,30 +30277,30 @@ static HDI_AVX2 int hdi_geo_divergence8_256(const hd_geodesic *g, const double *
 
 static HDI_AVX512 int hdi_geo_divergence8_512(const hd_geodesic *g, const double *u, const double *least,
                                               double *b) {
-    const hdi_vec_avx512 zero = _mm512_setzero_pd(), one = _mm512_set1_pd(1);
-    const hdi_vec_avx512 sign = _mm512_set1_pd(-0.0), low = _mm512_loadu_pd(least);
+    const __m512d zero = _mm512_setzero_pd(), one = _mm512_set1_pd(1);
+    const __m512d sign = _mm512_set1_pd(-0.0), low = _mm512_loadu_pd(least);
     int32_t f;
     int faint = 0;
     for (f = 0; f < g->n_faces; f++) {
         const hdi_geo_face *a = g->face + f;
-        const hdi_vec_avx512 minus = _mm512_set1_pd(-a->copies);
+        const __m512d minus = _mm512_set1_pd(-a->copies);
         const int64_t i = hdi_geo_at(a, 0), j = hdi_geo_at(a, 1), k = hdi_geo_at(a, 2);
-        const hdi_vec_avx512 l = _mm512_set1_pd(a->l), p = _mm512_set1_pd(a->p), q = _mm512_set1_pd(a->q);
-        const hdi_vec_avx512 u0 = _mm512_andnot_pd(sign, _mm512_loadu_pd(u + i));
-        const hdi_vec_avx512 u1 = _mm512_andnot_pd(sign, _mm512_loadu_pd(u + j));
-        const hdi_vec_avx512 u2 = _mm512_andnot_pd(sign, _mm512_loadu_pd(u + k));
-        const hdi_vec_avx512 m = _mm512_max_pd(_mm512_max_pd(u0, u1), u2);
+        const __m512d l = _mm512_set1_pd(a->l), p = _mm512_set1_pd(a->p), q = _mm512_set1_pd(a->q);
+        const __m512d u0 = _mm512_andnot_pd(sign, _mm512_loadu_pd(u + i));
+        const __m512d u1 = _mm512_andnot_pd(sign, _mm512_loadu_pd(u + j));
+        const __m512d u2 = _mm512_andnot_pd(sign, _mm512_loadu_pd(u + k));
+        const __m512d m = _mm512_max_pd(_mm512_max_pd(u0, u1), u2);
         const __mmask8 lit = _mm512_cmp_pd_mask(m, low, _CMP_GE_OQ);
-        const hdi_vec_avx512 s = _mm512_maskz_div_pd(lit, one, m);
-        const hdi_vec_avx512 d1 = _mm512_mul_pd(_mm512_sub_pd(u1, u0), s);
-        const hdi_vec_avx512 d2 = _mm512_mul_pd(_mm512_sub_pd(u2, u0), s);
-        const hdi_vec_avx512 x = _mm512_mul_pd(q, d1), y = _mm512_fmsub_pd(l, d2, _mm512_mul_pd(p, d1));
-        const hdi_vec_avx512 norm2 = _mm512_fmadd_pd(x, x, _mm512_mul_pd(y, y));
+        const __m512d s = _mm512_maskz_div_pd(lit, one, m);
+        const __m512d d1 = _mm512_mul_pd(_mm512_sub_pd(u1, u0), s);
+        const __m512d d2 = _mm512_mul_pd(_mm512_sub_pd(u2, u0), s);
+        const __m512d x = _mm512_mul_pd(q, d1), y = _mm512_fmsub_pd(l, d2, _mm512_mul_pd(p, d1));
+        const __m512d norm2 = _mm512_fmadd_pd(x, x, _mm512_mul_pd(y, y));
         const __mmask8 slope = _mm512_cmp_pd_mask(norm2, _mm512_set1_pd(HDI_GEO_FLAT * a->l * a->l),
                                                   _CMP_GT_OQ);
-        const hdi_vec_avx512 w = _mm512_maskz_div_pd(slope, minus, _mm512_sqrt_pd(norm2));
-        const hdi_vec_avx512 g1 = _mm512_mul_pd(_mm512_fmsub_pd(q, x, _mm512_mul_pd(p, y)), w);
-        const hdi_vec_avx512 g2 = _mm512_mul_pd(_mm512_mul_pd(l, y), w);
+        const __m512d w = _mm512_maskz_div_pd(slope, minus, _mm512_sqrt_pd(norm2));
+        const __m512d g1 = _mm512_mul_pd(_mm512_fmsub_pd(q, x, _mm512_mul_pd(p, y)), w);
+        const __m512d g2 = _mm512_mul_pd(_mm512_mul_pd(l, y), w);
         faint |= _mm512_cmp_pd_mask(m, zero, _CMP_GT_OQ) & ~lit;
         _mm512_storeu_pd(b + i, _mm512_sub_pd(_mm512_loadu_pd(b + i), _mm512_add_pd(g1, g2)));
         _mm512_storeu_pd(b + j, _mm512_add_pd(_mm512_loadu_pd(b + j), g1));
