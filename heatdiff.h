@@ -624,7 +624,7 @@ typedef enum hd_solver {
     /* CS-MINRES (Choi 2013), which is MINRES on the Saunders process. Plain MINRES needs a Hermitian matrix.
      * For complex theta, t L + theta B is not Hermitian, and plain MINRES converges to a wrong result.
      * CS-MINRES needs a real positive definite preconditioner: here that of t L + |theta| B. */
-    HD_SOLVER_MINRES = 3,
+    HD_SOLVER_MINRES = 3,       /* there is no 2 */
     HD_SOLVER_LANCZOS           /* for the exponential, no poles: about 1.1 sqrt(t lambda_max) steps */
 } hd_solver;
 
@@ -16384,22 +16384,6 @@ typedef struct hdi_system {
     hd_c64 theta;
 } hdi_system;
 
-/* Upper values and diagonal of A; u may be NULL. */
-static void hdi_system_upper(const hdi_system *a, hd_c64 *u, hd_c64 *d) {
-    const hd_csr *L = &a->lap->L;
-    int32_t i;
-    int64_t p = 0, q = 0;
-    for (i = 0; i < L->n_rows; i++) {
-        for (; p < L->row_ptr[i + 1]; p++) {
-            const int32_t j = L->col[p];
-            const double b = j == i ? a->lap->b_diag[i] : a->lap->B ? a->lap->B[p] : 0;
-            const hd_c64 v = hdi_c(a->t * L->val[p] + a->theta.re * b, a->theta.im * b);
-            if (j == i) d[i] = v;
-            else if (u && j > i) u[q++] = v;
-        }
-    }
-}
-
 /* Values of a preconditioner: U and D^-1; while it is made, those of A. */
 typedef struct hdi_precond {
     hd_precond kind;
@@ -16536,11 +16520,20 @@ typedef char hdi_preconds_all[sizeof hdi_preconds / sizeof *hdi_preconds == HD_P
 /* Fills m, whose arrays are there. work [n] */
 static void hdi_precond_make(const hdi_precond *m, const hdi_system *a, hd_c64 *work) {
     const hdi_precond_row *row = hdi_preconds + m->kind;
+    const hd_csr *L = &a->lap->L;
     int32_t i;
-    if (!row->rows) return;
-    hdi_system_upper(a, m->u, m->d);
+    int64_t p = 0, q = 0;
+    for (i = 0; row->rows && i < L->n_rows; i++) {
+        for (; p < L->row_ptr[i + 1]; p++) {     /* the diagonal of A, and what is above it */
+            const int32_t j = L->col[p];
+            const double b = j == i ? a->lap->b_diag[i] : a->lap->B ? a->lap->B[p] : 0;
+            const hd_c64 v = hdi_c(a->t * L->val[p] + a->theta.re * b, a->theta.im * b);
+            if (j == i) m->d[i] = v;
+            else if (m->u && j > i) m->u[q++] = v;
+        }
+    }
     if (row->make) row->make(m, work, row->keep);
-    for (i = 0; i < m->up->n; i++) m->d[i] = hdi_cdiv(hdi_c(1, 0), m->d[i]);
+    for (i = 0; row->rows && i < L->n_rows; i++) m->d[i] = hdi_cdiv(hdi_c(1, 0), m->d[i]);
 }
 
 /* ==== [20] iterative ====
