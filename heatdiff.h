@@ -299,7 +299,9 @@ typedef struct hd_context {
 
     /* Runs task(arg, i, worker) for every i in [0, n_tasks), in any order, and returns when all tasks are
      * done. The calling thread is worker 0; other threads have numbers of their own. NULL: the library's own
-     * threads. Results depend neither on this function nor on the number of threads. */
+     * threads. Results depend neither on this function nor on the number of threads. Some tasks, those of a
+     * factorisation among them, work for as long as they find something to do: as many threads as there are
+     * should run them side by side. None waits for another. */
     void (*parallel_for)(void *user, int64_t n_tasks, hd_task task, void *arg);
     void *parallel_user;
     /* Threads that work at the same time, the calling one included. 0: as many as the process may use
@@ -2086,18 +2088,23 @@ HEATDIFF_API hd_status hd_geodesic_distance_from(hd_geodesic *g, const hd_source
 extern "C" {
 #endif
 
-/* Counters that threads share. HDI_ATOMIC_GET sees all that was written before the matching HDI_ATOMIC_SET;
- * HDI_ATOMIC_ADD gives the sum. */
+/* Counters that threads share, of 32 bits. HDI_ATOMIC_GET sees all that was written before the matching
+ * HDI_ATOMIC_SET; HDI_ATOMIC_ADD gives the sum. Compilers without them have no threads of the library's own,
+ * and a user's threads share loops only whose tasks know nothing of each other. */
 #if defined(__GNUC__) || defined(__clang__)
+#define HDI_ATOMICS 1
 #define HDI_ATOMIC_GET(p) __atomic_load_n(p, __ATOMIC_ACQUIRE)
 #define HDI_ATOMIC_SET(p, v) __atomic_store_n(p, v, __ATOMIC_RELEASE)
 #define HDI_ATOMIC_ADD(p, v) __atomic_add_fetch(p, v, __ATOMIC_ACQ_REL)
-#elif HDI_THREADS
-#define HDI_ATOMIC_GET(p) ((uint32_t)InterlockedCompareExchange((volatile LONG *)(p), 0, 0))
-#define HDI_ATOMIC_SET(p, v) ((void)InterlockedExchange((volatile LONG *)(p), (LONG)(v)))
+#elif defined(_MSC_VER)
+#include <intrin.h>
+#define HDI_ATOMICS 1
+#define HDI_ATOMIC_GET(p) ((uint32_t)_InterlockedCompareExchange((volatile long *)(p), 0, 0))
+#define HDI_ATOMIC_SET(p, v) ((void)_InterlockedExchange((volatile long *)(p), (long)(v)))
 #define HDI_ATOMIC_ADD(p, v) \
-    ((uint32_t)(InterlockedExchangeAdd((volatile LONG *)(p), (LONG)(v)) + (v)))
+    ((uint32_t)(_InterlockedExchangeAdd((volatile long *)(p), (long)(v)) + (v)))
 #else
+#define HDI_ATOMICS 0
 #define HDI_ATOMIC_GET(p) (*(p))
 #define HDI_ATOMIC_SET(p, v) (*(p) = (v))
 #define HDI_ATOMIC_ADD(p, v) (*(p) += (v))
@@ -2562,13 +2569,7 @@ static hd_status hdi_progress(hd_context *ctx, const char *stage, double done, h
                     "context: progress returned neither HD_PROGRESS_CONTINUE nor HD_PROGRESS_CANCEL");
 }
 
-/* ---- threads ---- */
-/* The threads of a context. One loop is open at a time. Its tasks are claimed from a counter that never goes
- * back: a loop owns the numbers [base, base + n). So a thread that comes late, with the numbers of an earlier
- * loop, finds nothing to claim and touches nothing. The calling thread claims like the others and waits only
- * for tasks that others have claimed. Waking a thread takes a call of the system, about 5 microseconds, and
- * 50 pass until it works. Therefore threads that find nothing to claim look around for a while before they
- * sleep. */
+/* ---- threads of the system ---- */
 
 #if HDI_THREADS == HDI_THREADS_POSIX
 typedef pthread_mutex_t hdi_mutex;
@@ -2688,7 +2689,26 @@ static int32_t hdi_processors(void) {
         for (; mine; mine &= mine - 1) n++;
     return n > 0 ? n : 1;
 }
-#else
+#else                                            /* none: nothing of this is called but hdi_threads_linked */
+typedef int hdi_mutex, hdi_signal, hdi_thread;
+static void hdi_mutex_make(hdi_mutex *m) { (void)m; }
+static void hdi_mutex_end(hdi_mutex *m) { (void)m; }
+static void hdi_lock(hdi_mutex *m) { (void)m; }
+static void hdi_unlock(hdi_mutex *m) { (void)m; }
+static void hdi_signal_make(hdi_signal *c) { (void)c; }
+static void hdi_signal_end(hdi_signal *c) { (void)c; }
+static void hdi_signal_wait(hdi_signal *c, hdi_mutex *m) { (void)c, (void)m; }
+static void hdi_signal_one(hdi_signal *c) { (void)c; }
+static void hdi_signal_all(hdi_signal *c) { (void)c; }
+static int64_t hdi_process(void) { return 0; }
+#define HDI_THREAD_BODY static void *
+#define HDI_THREAD_DONE NULL
+typedef void *(*hdi_thread_body)(void *);
+static int hdi_thread_start(hdi_thread *t, hdi_thread_body body, void *arg) {
+    (void)t, (void)body, (void)arg;
+    return 0;
+}
+static void hdi_thread_join(hdi_thread t) { (void)t; }
 static int32_t hdi_processors(void) { return 1; }
 static int hdi_threads_linked(void) { return 0; }
 #endif
@@ -2699,11 +2719,39 @@ static int32_t hdi_context_width(const hd_context *ctx) {
     return ctx->n_threads > 0 ? ctx->n_threads : hdi_processors();
 }
 
-#if HDI_THREADS
-/* Threads at most. How often a thread looks around before it sleeps: 20 to 50 microseconds in all. Loops of
- * fewer tasks than HDI_TASKS_START share them with threads that run, but start none: assembling 50K vertices,
+/* ---- walks ---- */
+/* A walk does nodes, each by a task, of which some wait for others. What a node waits for is counted by those
+ * who know: a task releases the nodes that waited for it alone. Nodes stand in a list in the order in which
+ * they are released, and are claimed in that order. One thread goes through the list by itself. Threads of
+ * the user go through it in drains, tasks that claim nodes until they find none. The library's own threads
+ * look around for a while and then sleep: waking one takes a call of the system, about 5 microseconds, and 50
+ * pass until it works. The calling thread claims like the others and waits only for nodes that others have
+ * claimed. Nothing blocks, in whatever order, on however few threads, drains are run. */
+
+/* Threads at most. How often a thread looks around before it sleeps: 20 to 50 microseconds in all. Walks of
+ * fewer nodes than HDI_TASKS_START share them with threads that run, but start none: assembling 50K vertices,
  * 6 ms with 3 such loops, gained nothing alone and took 1.4 times as long on a busy machine. */
-enum { HDI_THREADS_MOST = 256, HDI_SPIN = 1000, HDI_TASKS_START = 9 };
+enum { HDI_THREADS_MOST = 256, HDI_SPIN = 1000, HDI_TASKS_START = 9, HDI_TELLS = 64,
+      HDI_DRAINS = HDI_ATOMICS ? 64 : 1 };
+
+/* Places of the list before next are claimed, those before ready may be; done of them are done. */
+typedef struct hdi_claims { uint32_t next, ready, done; } hdi_claims;
+
+typedef struct hdi_walk {
+    hd_context *ctx;
+    hd_task task;
+    void *arg;
+    int32_t *order;              /* [n] the list; NULL: all nodes are ready, by number */
+    uint32_t base, n;            /* its places are [base, base + n); there may be fewer nodes */
+    hdi_claims own, *at;         /* at: own, or the threads' */
+    hd_threads *threads;         /* NULL: one thread, or the user's */
+    const char *stage;           /* of progress; NULL: none */
+    double from, to;             /* done of the stage before and after it */
+    hd_error *e;                 /* gets what progress answers */
+    uint32_t told, stop, busy;   /* parts told of; nothing more is begun; the lock of a user's threads */
+    int32_t drains, most;        /* that are under way; the most that were */
+    int32_t caller;              /* the calling thread has one of them */
+} hdi_walk;
 
 typedef struct hdi_seat {
     struct hd_threads *threads;
@@ -2711,93 +2759,161 @@ typedef struct hdi_seat {
     hdi_thread thread;
 } hdi_seat;
 
-/* What a thread knows of the open loop. */
-typedef struct hdi_loop {
-    uint32_t base, n;
-    hd_task task;
-    void *arg;
-    const int32_t *order;        /* NULL: claim i is task i; else task order[i] */
-} hdi_loop;
-
 struct hd_threads {
     hdi_mutex lock;
     hdi_signal work, finished;   /* for the threads; for the calling one */
     int64_t process;
     int32_t asked, most;         /* n_threads of the context; threads besides the caller, at most */
     int32_t n, n_asleep, caller_asleep, leave;
-    int32_t open;                /* a loop is under way; written by the calling thread only */
-    hdi_loop loop;
-    uint32_t next, ready, done;  /* next number to claim; end of those that may be claimed; tasks done */
-    uint32_t helped;
+    int32_t open;                /* a walk is under way; written by the calling thread only */
+    hdi_walk walk;               /* what threads know of it */
+    hdi_claims at;
+    uint32_t end, helped;        /* places from here on belong to walks to come; nodes that threads did */
     hdi_seat seat[HDI_THREADS_MOST - 1];
 };
 
+/* Writes `to` if it finds `from`, and tells whether it did. */
 static int hdi_swap(uint32_t *p, uint32_t from, uint32_t to) {
 #if defined(__GNUC__) || defined(__clang__)
     return __atomic_compare_exchange_n(p, &from, to, 0, __ATOMIC_ACQ_REL, __ATOMIC_RELAXED);
+#elif HDI_ATOMICS
+    return (uint32_t)_InterlockedCompareExchange((volatile long *)p, (long)to, (long)from) == from;
 #else
-    volatile LONG *at = (volatile LONG *)p;
-    const LONG was = InterlockedCompareExchange(at, (LONG)to, (LONG)from);
-    return (uint32_t)was == from;
+    if (*p != from) return 0;
+    *p = to;
+    return 1;
 #endif
 }
 
+static int32_t hdi_claimable(const hdi_claims *c) {
+    const uint32_t next = HDI_ATOMIC_GET(&c->next);
+    return (int32_t)(HDI_ATOMIC_GET(&c->ready) - next);
+}
+
+/* A node that is the caller's from now on, or -1. Numbers of places never go back: a thread that comes late,
+ * with a walk that has ended, finds nothing to claim and touches nothing. */
+static int64_t hdi_claim(const hdi_walk *w) {
+    for (;;) {
+        const uint32_t next = HDI_ATOMIC_GET(&w->at->next), i = next - w->base;
+        if (i >= w->n || (int32_t)(HDI_ATOMIC_GET(&w->at->ready) - next) <= 0) return -1;
+        if (hdi_swap(&w->at->next, next, next + 1)) return w->order ? w->order[i] : (int64_t)i;
+    }
+}
+
+/* Whether all that was released is done: then nothing more will be. */
+static int hdi_walk_done(const hdi_walk *w) {
+    const uint32_t done = HDI_ATOMIC_GET(&w->at->done);
+    return done == HDI_ATOMIC_GET(&w->at->ready) - w->base;
+}
+
+/* Whether it was stopped: a long task may end early. */
+static int hdi_walk_stopped(const hdi_walk *w) { return HDI_ATOMIC_GET(&w->stop) != 0; }
+
 /* Tells the processor that a loop only waits. */
 static void hdi_relax(void) {
-#if defined(_MSC_VER) && !defined(__clang__)
+#if HDI_THREADS == HDI_THREADS_WINDOWS && defined(_MSC_VER) && !defined(__clang__)
     YieldProcessor();
-#elif defined(__x86_64__) || defined(__i386__)
+#elif HDI_ATOMICS && (defined(__x86_64__) || defined(__i386__))
     __builtin_ia32_pause();
-#elif defined(__aarch64__)
+#elif HDI_ATOMICS && defined(__aarch64__)
     __asm__ volatile("isb");
 #endif
 }
 
-/* How many tasks may be claimed now. */
-static int32_t hdi_claimable(hd_threads *t) {
-    const uint32_t next = HDI_ATOMIC_GET(&t->next);
-    return (int32_t)(HDI_ATOMIC_GET(&t->ready) - next);
+/* What one thread of a walk does at a time. Threads of the user turn on the spot meanwhile: it is short. */
+static void hdi_walk_lock(hdi_walk *w) {
+    if (w->threads) hdi_lock(&w->threads->lock);
+    else
+        while (!hdi_swap(&w->busy, 0, 1)) hdi_relax();
 }
 
-/* Number of a task of this loop that is the caller's from now on, or -1. */
-static int64_t hdi_claim(hd_threads *t, const hdi_loop *loop) {
-    for (;;) {
-        const uint32_t next = HDI_ATOMIC_GET(&t->next), i = next - loop->base;
-        if (i >= loop->n || (int32_t)(HDI_ATOMIC_GET(&t->ready) - next) <= 0) return -1;
-        if (hdi_swap(&t->next, next, next + 1)) return i;
+static void hdi_walk_unlock(hdi_walk *w) {
+    if (w->threads) hdi_unlock(&w->threads->lock);
+    else HDI_ATOMIC_SET(&w->busy, 0);
+}
+
+/* Wakes the calling thread and others for n nodes; the calling one also when all is done, n being 0. */
+static void hdi_threads_wake(hd_threads *t, int64_t n) {
+    if (t->caller_asleep) {
+        hdi_signal_one(&t->finished);
+        n--;
     }
+    for (n = hdi_least(n, t->n_asleep); n > 0; n--) hdi_signal_one(&t->work);
 }
 
-/* Does tasks of the loop until none can be claimed. The last task of all wakes the calling thread. */
-static void hdi_loop_work(hd_threads *t, const hdi_loop *loop, int32_t worker) {
-    int64_t i;
-    while ((i = hdi_claim(t, loop)) >= 0) {
-        loop->task(loop->arg, loop->order ? loop->order[i] : i, worker);
-        if (worker) HDI_ATOMIC_ADD(&t->helped, 1);
-        if (HDI_ATOMIC_ADD(&t->done, 1) != loop->n || worker == 0) continue;
+/* Nodes [id, id + n) may be claimed from now on. */
+static void hdi_release(hdi_walk *w, int32_t id, int32_t n) {
+    int32_t i;
+    hdi_walk_lock(w);
+    if (!w->stop) {
+        const uint32_t ready = w->at->ready;
+        for (i = 0; i < n; i++) w->order[ready - w->base + (uint32_t)i] = id + i;
+        HDI_ATOMIC_SET(&w->at->ready, ready + (uint32_t)n);
+        if (w->threads) hdi_threads_wake(w->threads, n);
+    }
+    hdi_walk_unlock(w);
+}
+
+/* Nothing more is begun. */
+static void hdi_walk_stop(hdi_walk *w) {
+    const uint32_t end = w->base + w->n;
+    uint32_t next;
+    hdi_walk_lock(w);
+    if (!w->stop) {
+        HDI_ATOMIC_SET(&w->stop, 1);
+        do next = HDI_ATOMIC_GET(&w->at->next);
+        while (!hdi_swap(&w->at->next, next, end));
+        HDI_ATOMIC_SET(&w->at->ready, end);
+        HDI_ATOMIC_ADD(&w->at->done, end - next);
+    }
+    hdi_walk_unlock(w);
+}
+
+/* How far it is, now and then. By the calling thread only. */
+static void hdi_walk_tell(hdi_walk *w) {
+    const uint32_t part = (uint32_t)((uint64_t)HDI_TELLS * HDI_ATOMIC_GET(&w->at->done) / (w->n + 1));
+    if (!w->stage || part == w->told || hdi_walk_stopped(w)) return;
+    w->told = part;
+    if (hdi_progress(w->ctx, w->stage, w->from + (w->to - w->from) * part / (double)HDI_TELLS, w->e) < 0)
+        hdi_walk_stop(w);
+}
+
+/* Claims a node and does it; 0: there is none. The last one of all wakes the calling thread. */
+static int hdi_walk_step(hdi_walk *w, int32_t worker) {
+    hd_threads *t = w->threads;
+    int64_t node;
+    uint32_t done;
+    if (worker == 0) hdi_walk_tell(w);
+    node = hdi_claim(w);
+    if (node < 0) return 0;
+    w->task(w->arg, node, worker);
+    if (t && worker) HDI_ATOMIC_ADD(&t->helped, 1);
+    done = HDI_ATOMIC_ADD(&w->at->done, 1);
+    if (t && worker && done == HDI_ATOMIC_GET(&w->at->ready) - w->base) {
         hdi_lock(&t->lock);
-        if (t->caller_asleep) hdi_signal_one(&t->finished);
+        hdi_threads_wake(t, 0);
         hdi_unlock(&t->lock);
     }
+    return 1;
 }
 
 HDI_THREAD_BODY hdi_seat_run(void *arg) {
     const hdi_seat *seat = (const hdi_seat *)arg;
     hd_threads *t = seat->threads;
-    hdi_loop loop;
+    hdi_walk walk;
     int32_t k;
     for (;;) {
-        for (k = 0; k < HDI_SPIN && hdi_claimable(t) <= 0; k++) hdi_relax();
+        for (k = 0; k < HDI_SPIN && hdi_claimable(&t->at) <= 0; k++) hdi_relax();
         hdi_lock(&t->lock);
-        while (!t->leave && hdi_claimable(t) <= 0) {
+        while (!t->leave && hdi_claimable(&t->at) <= 0) {
             t->n_asleep++;
             hdi_signal_wait(&t->work, &t->lock);
             t->n_asleep--;
         }
         if (t->leave) break;
-        loop = t->loop;
+        walk = t->walk;
         hdi_unlock(&t->lock);
-        hdi_loop_work(t, &loop, seat->worker);
+        while (hdi_walk_step(&walk, seat->worker)) {}
     }
     hdi_unlock(&t->lock);
     return HDI_THREAD_DONE;
@@ -2837,18 +2953,20 @@ static void hdi_threads_end(hd_context *ctx) {
     ctx->threads = NULL;
 }
 
-/* Threads for a loop of so many tasks, started when they are first needed. NULL: the caller does it alone. */
-static hd_threads *hdi_threads_get(hd_context *ctx, int64_t n_tasks) {
+/* Own threads that can share n nodes with the calling one, started when they are first needed. NULL: none, or
+ * they are the user's. */
+static hd_threads *hdi_threads_own(hd_context *ctx, int64_t n) {
     hd_threads *t = ctx->threads;
-    if (n_tasks < 2 || n_tasks > INT32_MAX || ctx->n_threads == 1 || ctx->n_holders == 0) return NULL;
+    if (ctx->parallel_for || n < 2 || n > INT32_MAX) return NULL;
+    if (ctx->n_threads == 1 || ctx->n_holders == 0 || !hdi_threads_linked()) return NULL;
     if (t && t->open) return NULL;               /* called by a task */
     if (t && (t->process != hdi_process() || t->asked != ctx->n_threads)) {
         hdi_threads_end(ctx);
         t = NULL;
     }
-    if (n_tasks < HDI_TASKS_START) return t && t->n > 0 ? t : NULL;
+    if (n < HDI_TASKS_START) return t && t->n > 0 ? t : NULL;
     if (!t) t = ctx->threads = hdi_threads_new(ctx);
-    while (t && t->n < t->most && t->n + 1 < n_tasks) {
+    while (t && t->n < t->most && t->n + 1 < n) {
         hdi_seat *seat = t->seat + t->n;
         seat->threads = t;
         seat->worker = t->n + 1;
@@ -2858,95 +2976,90 @@ static hd_threads *hdi_threads_get(hd_context *ctx, int64_t n_tasks) {
     return t && t->n > 0 ? t : NULL;
 }
 
-/* The calling thread has nothing to claim, but others are at work: looks around, then sleeps. */
-static void hdi_loop_wait(hd_context *ctx, hd_threads *t) {
-    const uint32_t n = t->loop.n;
-    int32_t k;
-    for (k = 0; k < HDI_SPIN && HDI_ATOMIC_GET(&t->done) != n && hdi_claimable(t) <= 0; k++) hdi_relax();
-    hdi_lock(&t->lock);
-    while (HDI_ATOMIC_GET(&t->done) != n && hdi_claimable(t) <= 0) {
-        t->caller_asleep = 1;
-        ctx->waits++;
-        hdi_signal_wait(&t->finished, &t->lock);
-        t->caller_asleep = 0;
-    }
-    hdi_unlock(&t->lock);
-}
+/* Nothing is left to claim, but others are at work. */
+static int hdi_walk_waits(const hdi_walk *w) { return !hdi_walk_done(w) && hdi_claimable(w->at) <= 0; }
 
-/* Of the loop's tasks n_ready may be claimed at once; tasks release the others. loop->base is set here. */
-static void hdi_loop_run(hd_context *ctx, hd_threads *t, hdi_loop *loop, int64_t n_ready) {
-    int64_t wake;
+/* By own threads, which claim from counters of theirs. */
+static void hdi_threads_run(hdi_walk *w) {
+    hd_threads *t = w->threads;
+    int32_t k;
     hdi_lock(&t->lock);
-    loop->base = HDI_ATOMIC_GET(&t->next);                        /* nobody claims now */
-    t->loop = *loop;
+    w->at = &t->at;
+    w->base = t->end;
+    t->end += w->n;
+    t->walk = *w;
     t->open = 1;
-    HDI_ATOMIC_SET(&t->done, 0);
-    HDI_ATOMIC_SET(&t->ready, loop->base + (uint32_t)n_ready);
-    for (wake = hdi_least(t->n_asleep, n_ready - 1); wake > 0; wake--) hdi_signal_one(&t->work);
+    HDI_ATOMIC_SET(&t->at.done, 0);
+    HDI_ATOMIC_SET(&t->at.next, w->base);
+    HDI_ATOMIC_SET(&t->at.ready, w->base + w->own.ready);
+    hdi_threads_wake(t, (int64_t)w->own.ready - 1);
     hdi_unlock(&t->lock);
-    ctx->regions++;
-    for (;;) {
-        hdi_loop_work(t, loop, 0);
-        if (HDI_ATOMIC_GET(&t->done) == loop->n) break;
-        hdi_loop_wait(ctx, t);
+    w->ctx->regions++;
+    while (!hdi_walk_done(w)) {
+        while (hdi_walk_step(w, 0)) {}
+        for (k = 0; k < HDI_SPIN && hdi_walk_waits(w); k++) hdi_relax();
+        hdi_lock(&t->lock);
+        for (; hdi_walk_waits(w); t->caller_asleep = 0, w->ctx->waits++) {
+            t->caller_asleep = 1;
+            hdi_signal_wait(&t->finished, &t->lock);
+        }
+        hdi_unlock(&t->lock);
     }
     t->open = 0;
-    ctx->helped += HDI_ATOMIC_GET(&t->helped);
+    w->ctx->helped += HDI_ATOMIC_GET(&t->helped);
     HDI_ATOMIC_SET(&t->helped, 0);
 }
 
-/* From within a task: tasks [id, id + n) of the open loop may be claimed too. */
-static void hdi_release_many(hd_threads *t, int32_t id, int32_t n, int32_t *order) {
-    int32_t i, wake = n;
-    hdi_lock(&t->lock);
-    for (i = 0; i < n; i++) order[t->ready - t->loop.base + (uint32_t)i] = id + i;
-    HDI_ATOMIC_SET(&t->ready, t->ready + (uint32_t)n);
-    if (t->caller_asleep && wake-- > 0) hdi_signal_one(&t->finished);
-    for (i = 0; i < wake && i < t->n_asleep; i++) hdi_signal_one(&t->work);
-    hdi_unlock(&t->lock);
+/* Whether a drain ends though there are nodes: when one that ended before can take one in the next round, or
+ * when the calling thread is not among those who drain, and should tell how far the walk is. */
+static int hdi_drain_leaves(const hdi_walk *w, int32_t done) {
+    if (!HDI_LOAD(&w->caller)) return (uint32_t)done > w->n / (8 * HDI_DRAINS);
+    return HDI_LOAD(&w->drains) < HDI_LOAD(&w->most) && hdi_claimable(w->at) > 1;
 }
 
-/* Threads that can share n tasks with the caller; NULL: none, or they are the user's. */
-static hd_threads *hdi_threads_own(hd_context *ctx, int64_t n_tasks) {
-    return ctx->parallel_for ? NULL : hdi_threads_get(ctx, n_tasks);
+/* By a user's thread. */
+static void hdi_drain(void *arg, int64_t index, int32_t worker) {
+    hdi_walk *w = (hdi_walk *)arg;
+    const int32_t drains = (int32_t)HDI_ATOMIC_ADD(&w->drains, 1);
+    int32_t k, done = 0, leaves = 0;
+    (void)index;
+    if (worker == 0) HDI_STORE(&w->caller, 1);
+    if (drains > HDI_LOAD(&w->most)) HDI_STORE(&w->most, drains);
+    for (k = 0; k < HDI_SPIN / HDI_DRAINS && !leaves && !hdi_walk_done(w); k++) {
+        while (!leaves && hdi_walk_step(w, worker)) leaves = hdi_drain_leaves(w, ++done);
+        hdi_relax();
+    }
+    HDI_ATOMIC_ADD(&w->drains, -1);
 }
 
-/* A loop of n tasks of which tasks release others. order [n]: the n_ready first ones; NULL: all by number. */
-static void hdi_parallel_ordered(hd_context *ctx, int32_t n, int32_t n_ready, int32_t *order, hd_task task,
-                                 void *arg) {
-    hdi_loop loop;
-    loop.n = (uint32_t)n;
-    loop.task = task;
-    loop.arg = arg;
-    loop.order = order;
-    hdi_loop_run(ctx, ctx->threads, &loop, n_ready);
+/* Whether the calling thread will do it all. */
+static int hdi_walk_alone(const hdi_walk *w) {
+    return !w->threads && (!w->ctx || !w->ctx->parallel_for || w->n < 2);
 }
-#else
-static void hdi_threads_end(hd_context *ctx) { (void)ctx; }
-static hd_threads *hdi_threads_own(hd_context *ctx, int64_t n_tasks) {
-    (void)ctx;
-    (void)n_tasks;
-    return NULL;
-}
-/* Never called: */
-static void hdi_parallel_ordered(hd_context *ctx, int32_t n, int32_t n_ready, int32_t *order, hd_task task,
-                                 void *arg) {
-    (void)ctx;
-    (void)n;
-    (void)n_ready;
-    (void)order;
-    (void)task;
-    (void)arg;
-}
-static void hdi_release_many(hd_threads *t, int32_t id, int32_t n, int32_t *order) {
-    (void)t;
-    (void)id;
-    (void)n;
-    (void)order;
-}
-#endif
 
-static void hdi_release(hd_threads *t, int32_t id, int32_t *order) { hdi_release_many(t, id, 1, order); }
+/* A walk of at most n nodes. By the threads of ctx; NULL: by this one. Nothing is released yet. */
+static void hdi_walk_open(hdi_walk *w, hd_context *ctx, int64_t n, int32_t *order, hd_task task, void *arg) {
+    memset(w, 0, sizeof *w);
+    w->ctx = ctx;
+    w->n = (uint32_t)n;
+    w->order = order;
+    w->task = task;
+    w->arg = arg;
+    w->at = &w->own;
+    w->told = UINT32_MAX;
+    w->to = 1;
+    w->threads = ctx ? hdi_threads_own(ctx, n) : NULL;
+}
+
+static void hdi_walk_run(hdi_walk *w) {
+    hd_context *ctx = w->ctx;
+    if (w->threads) hdi_threads_run(w);
+    else if (hdi_walk_alone(w))
+        while (hdi_walk_step(w, 0)) {}
+    else
+        for (; !hdi_walk_done(w); hdi_walk_tell(w))
+            ctx->parallel_for(ctx->parallel_user, HDI_DRAINS, hdi_drain, w);
+}
 
 /* An object that is made with the context holds it; its threads end with the last one. */
 static void hdi_hold(hd_context *ctx) { ctx->n_holders++; }
@@ -2962,12 +3075,29 @@ static int hdi_is_serial(const hd_context *ctx) {
     return !ctx->parallel_for && (ctx->n_holders == 0 || hdi_context_width(ctx) == 1);
 }
 
+/* Tasks that know nothing of each other. */
 static void hdi_parallel(hd_context *ctx, int64_t n_tasks, hd_task task, void *arg) {
-    const int32_t n = (int32_t)hdi_least(n_tasks, INT32_MAX);
     int64_t i;
-    if (hdi_threads_own(ctx, n_tasks)) hdi_parallel_ordered(ctx, n, n, NULL, task, arg);
+    hdi_walk w;
+    hdi_walk_open(&w, ctx, n_tasks, NULL, task, arg);
+    w.own.ready = w.n;
+    if (w.threads) hdi_walk_run(&w);
     else if (ctx->parallel_for && n_tasks > 1) ctx->parallel_for(ctx->parallel_user, n_tasks, task, arg);
     else for (i = 0; i < n_tasks; i++) task(arg, i, 0);
+}
+
+/* What [14] still asks for: n nodes of which the first n_ready in order are ready. By own threads. */
+static void hdi_parallel_ordered(hd_context *ctx, int32_t n, int32_t n_ready, int32_t *order, hd_task task,
+                                 void *arg) {
+    hdi_walk w;
+    hdi_walk_open(&w, ctx, n, order, task, arg);
+    w.own.ready = (uint32_t)n_ready;
+    hdi_walk_run(&w);
+}
+
+static void hdi_release_many(hd_threads *t, int32_t id, int32_t n, int32_t *order) {
+    (void)order;
+    hdi_release(&t->walk, id, n);
 }
 
 /* The same for [0, n) in ranges of per_task; the last one may be shorter. */
@@ -13069,8 +13199,8 @@ static hd_status hdi_symbolic_order(hdi_symbolic *s, const hd_csr *a, const hdi_
  * its update matrix starts as -L21 D L21' and the children's are added afterwards, so that it is neither
  * cleared nor read before. */
 
-/* Rows of a chunk of a front that threads share, as many as the kernels take at once. The parallel efficiency
- * that bench simulates for 150K rows is 0.80, 0.68, 0.43 on 4, 8, 16 threads, with chunks of 96 rows 0.73,
+/* Rows of a chunk of a front that threads share, as many as the kernels take at once. By the critical path
+ * the parallel efficiency for 150K rows is 0.80, 0.68, 0.43 on 4, 8, 16 threads, with chunks of 96 rows 0.73,
  * 0.46, 0.25. Fronts of fewer rows than HDI_FRONT_SHARED are not shared. */
 enum { HDI_PACK_LANES = HDI_PACK / 2, HDI_FRONT_COLS = 96, HDI_FRONT_CHUNK = 48, HDI_FRONT_SHARED = 192 };
 
@@ -13096,21 +13226,16 @@ typedef struct hdi_factor {
     double *scratch;                 /* [n_tasks][scratch_size], and [chunk_size] where there is a top */
     double *chunk_scratch;           /* [chunks of the largest front][chunk_size] */
     double *second;                  /* [top_size] a second place for S, of fronts that threads share */
-    int32_t *nodes;                  /* what their nodes wait for */
-    int32_t *order;                  /* [n_order] nodes of the loop over the tree, as they become ready */
+    int32_t *counts;                 /* [count_size] of blocks and chunks of the front under way */
+    int32_t *order;                  /* [n_order] nodes of the walk over the tree, as they become ready */
     int64_t n_order;
     uint64_t scratch_size, top_size, chunk_size;   /* doubles */
     hdi_pivots *pivots;              /* [n_tasks + 1] */
     hdi_pivots all;                  /* of the last factorisation */
     double largest_entry;            /* |diagonal entry of A|, the largest */
     int32_t ready;
-    int32_t guest;                   /* work, scratch, chunk_scratch, nodes, order and pivots are another's */
-    /* a factorisation under way */
-    const hdi_values *values;
-    int32_t stop;                    /* the top is not begun, or not gone on with */
-    int32_t until;                   /* nor subtrees from this one on: those before it may fail earlier */
-    double share;
-    hd_error error;
+    int32_t guest;                   /* work, scratch, counts, order and pivots are another's */
+    const hdi_values *values;        /* of a factorisation under way */
 } hdi_factor;
 
 /* Is it the factor of a real matrix, and not a pack? */
@@ -13121,7 +13246,7 @@ static HDI_INLINE int hdi_is_real(const hdi_factor *f) { return !HDI_HAS_POLE_FA
 /* One front under way: where its parts stand, and room to work in. */
 typedef struct hdi_front {
     const hdi_factor *f;
-    int32_t v, child;                /* supernode; the child whose update matrix is added */
+    int32_t v;                       /* supernode */
     double *panel, *update, *dinv;   /* dinv: of the first pivot */
     double *d, *S;                   /* [p] pivots, [block of pivots][p] scaled rows of L: S_ik = l_ik d_k */
     double *work;                    /* of kernels */
@@ -13384,15 +13509,27 @@ static void hdi_front_extend_pack(const hdi_front *w, int64_t r0, int64_t r1) {
 
 /* ---- fronts of real numbers ---- */
 
-/* Panel and update matrix: cleared, and the entries of A. */
-static void hdi_front_assemble_real(const hdi_front *w) {
+static int64_t hdi_triangle_column(int64_t u, int64_t j) { return j * u - j * (j - 1) / 2; }
+
+/* Columns [c0,c1) of panel and update matrix: cleared, entries of A, children. */
+static void hdi_front_assemble_real(const hdi_front *w, int64_t c0, int64_t c1) {
     const hdi_symbolic *s = w->f->sym;
-    int64_t q;
-    memset(w->panel, 0, (size_t)(w->m * w->p) * sizeof *w->panel);
-    memset(w->update, 0, (size_t)hdi_triangle(w->u) * sizeof *w->update);
+    const int64_t p0 = hdi_least(c0, w->p), p1 = hdi_least(c1, w->p);
+    const int64_t u0 = hdi_triangle_column(w->u, c0 - p0), u1 = hdi_triangle_column(w->u, c1 - p1);
+    int64_t q, from, end;
+    int32_t k;
+    memset(w->panel + p0 * w->m, 0, (size_t)((p1 - p0) * w->m) * sizeof *w->panel);
+    memset(w->update + u0, 0, (size_t)(u1 - u0) * sizeof *w->update);
     for (q = s->a_ptr[w->v]; q < s->a_ptr[w->v + 1]; q++) {
         const int64_t i = s->a_row[q], j = s->a_col[q];
-        hdi_values_at(w->f->values, 1, s->a_from[q], hdi_front_row(w, i, j), w->panel + i + j * w->m);
+        if (j >= c0 && j < c1)
+            hdi_values_at(w->f->values, 1, s->a_from[q], hdi_front_row(w, i, j), w->panel + i + j * w->m);
+    }
+    for (k = s->kid_ptr[w->v]; k < s->kid_ptr[w->v + 1]; k++) {
+        const int32_t c = s->kid[k];
+        hdi_front_child_rows(s, c, c0, c1, &from, &end);
+        hdi_real_extend(w->f->real, w->panel, w->m, (int32_t)w->p, w->update, w->f->work + s->update[c],
+                        hdi_front_below(s, c), s->rel + s->row_ptr[c], from, end);
     }
 }
 
@@ -13410,17 +13547,15 @@ static int hdi_front_pivots_real(const hdi_front *w, int64_t end, hdi_pivots *no
 
 typedef enum hdi_front_stage { HDI_FRONT_ASSEMBLE, HDI_FRONT_COLUMNS, HDI_FRONT_UPDATE } hdi_front_stage;
 
-/* Rows [r0,r1) of the front's panel or update matrix; but assembling real numbers, columns of w->child's. */
+/* Rows [r0,r1) of the front's panel or update matrix; but assembling real numbers, columns of both. */
 static void hdi_front_part(const void *front, int stage, int64_t r0, int64_t r1, double *work) {
     const hdi_front *w = (const hdi_front *)front;
     const hdi_factor *f = w->f;
-    const hdi_symbolic *s = f->sym;
-    const int32_t p = (int32_t)w->p, k0 = (int32_t)w->k0, c = w->child;
+    const int32_t p = (int32_t)w->p, k0 = (int32_t)w->k0;
     hdi_pack_rows rows;
     if (hdi_is_real(f)) {
         if (stage == HDI_FRONT_ASSEMBLE)
-            hdi_real_extend(f->real, w->panel, w->m, p, w->update, f->work + s->update[c],
-                            hdi_front_below(s, c), s->rel + s->row_ptr[c], r0, r1);
+            hdi_front_assemble_real(w, r0, r1);
         else if (stage == HDI_FRONT_COLUMNS)
             hdi_real_rows(f->real, w->panel, w->m, k0, w->nb, w->S, k0 + w->nb, w->dinv, r0, r1, work);
         else
@@ -13437,212 +13572,34 @@ static void hdi_front_part(const void *front, int stage, int64_t r0, int64_t r1,
     }
 }
 
-/* Rows [begin,end) of a stage of a large front, in chunks that all threads share. Each has a part of work. */
-typedef struct hdi_chunks {
-    void (*run)(const void *front, int stage, int64_t r0, int64_t r1, double *work);
-    const void *front;
-    int stage;
-    int64_t begin, end, rows, n; /* rows of a chunk; chunks */
-    double *work;                /* [n][work_size] */
-    uint64_t work_size;
-} hdi_chunks;
-
-static void hdi_chunks_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_chunks *h = (const hdi_chunks *)arg;
-    /* the last rows of a triangle are longest */
-    const int64_t chunk = h->n - 1 - index, r0 = h->begin + chunk * h->rows;
-    (void)worker;
-    h->run(h->front, h->stage, r0, hdi_least(r0 + h->rows, h->end), h->work + h->work_size * (size_t)chunk);
-}
-
-/* h->rows, h->work and h->work_size are set. */
-static void hdi_chunks_run(hdi_chunks *h, int64_t begin, int64_t end, hd_context *ctx) {
-    h->begin = begin;
-    h->end = end;
-    h->n = (end - begin + h->rows - 1) / h->rows;
-    hdi_parallel(ctx, h->n, hdi_chunks_task, h);
-}
-
-static void hdi_front_run(const hdi_front *w, int shared, int stage, int64_t begin, int64_t end) {
-    hdi_chunks h;
-    if (end > begin && !shared) hdi_front_part(w, (int)stage, begin, end, w->work);
-    if (end <= begin || !shared) return;
-    h.run = hdi_front_part;
-    h.front = w;
-    h.stage = (int)stage;
-    h.rows = HDI_FRONT_CHUNK;
-    h.work = w->f->chunk_scratch;
-    h.work_size = w->f->chunk_size;
-    hdi_chunks_run(&h, begin, end, w->f->ctx);
-}
-
-/* ---- a large front by several threads ---- */
-/* Its nodes, part of the loop over all of the tree, with rows in chunks c and pivots in blocks k: A(c)
- * assembles rows of the panel (packs), P(k) eliminates the pivots of a block, C(c,k) their columns in the
- * rows below, U(d) computes rows of the update matrix.
- *   P(k)    waits for the chunks that hold its rows, and for all C(c,k-2), because S has two places
- *   C(c,k)  waits for P(k) and for C(c,k-1)
- *   U(d)    waits for the whole panel
- * So the next pivots are eliminated while the columns of the last ones are still computed. Node numbers: P(k)
- * and C(c,k) block by block, then the A, then the U. */
-typedef struct hdi_front_loop {
-    hdi_front w;
-    hdi_factor *f;
-    hdi_pivots *note;
-    double *S[2];
-    int32_t nb, n_blocks, n_chunks;
-    int32_t left;                /* U that are not done */
-    int32_t *pending, *order;
-    hd_threads *threads;
-} hdi_front_loop;
-
-/* Node numbers that the largest front needs at most. */
-static int64_t hdi_front_nodes(const hdi_symbolic *s, int32_t nb) {
-    const int64_t chunks = s->largest_front / HDI_FRONT_CHUNK + 1, blocks = s->largest_pivots / nb + 1;
-    return s->n_top ? blocks * (chunks + 1) + 2 * chunks + 1 : 0;
-}
-
 static int32_t hdi_front_block_size(const hdi_factor *f) {
     return hdi_is_real(f) ? (int32_t)HDI_REAL_NB : (int32_t)HDI_PACK_BLOCK;
 }
 
-/* The first row below the pivots of block k, and the first chunk with such rows. */
-static int64_t hdi_front_end(const hdi_front_loop *l, int32_t k) {
-    return hdi_least((int64_t)(k + 1) * l->nb, l->w.p);
+/* The pivots of the block under way, and their columns down to row end. 0 when one cannot be divided by. */
+static int hdi_front_block(const hdi_front *w, int64_t end, hdi_pivots *note) {
+    return hdi_is_real(w->f) ? hdi_front_pivots_real(w, end, note) : hdi_front_pivots_pack(w, note);
 }
 
-static int32_t hdi_front_first(const hdi_front_loop *l, int32_t k) {
-    const int64_t end = hdi_front_end(l, k);
-    return end < l->w.m ? (int32_t)(end / HDI_FRONT_CHUNK) : l->n_chunks;
+/* Whether threads share front v. */
+static int hdi_front_shared(const hdi_symbolic *s, int32_t v) {
+    return s->task_of[v] < 0 && hdi_front_rows(s, v) >= HDI_FRONT_SHARED;
 }
 
-static int32_t hdi_front_node(const hdi_front_loop *l, int32_t k, int32_t c) {
-    return k * (l->n_chunks + 1) + 1 + c;
-}
-
-/* Whether chunk c holds pivots of block k. */
-static int hdi_front_holds(const hdi_front_loop *l, int32_t k, int32_t c) {
-    const int64_t begin = (int64_t)k * l->nb;
-    return k < l->n_blocks && begin < (int64_t)(c + 1) * HDI_FRONT_CHUNK &&
-           hdi_front_end(l, k) > (int64_t)c * HDI_FRONT_CHUNK;
-}
-
-static void hdi_front_arrive(const hdi_front_loop *l, int32_t node) {
-    if (HDI_ATOMIC_ADD(l->pending + node, -1) == 0) hdi_release(l->threads, node, l->order);
-}
-
-/* Chunk c is done up to block k, -1 assembled: those that waited for it. */
-static void hdi_front_next(const hdi_front_loop *l, int32_t k, int32_t c) {
-    if (hdi_front_holds(l, k + 1, c)) hdi_front_arrive(l, hdi_front_node(l, k + 1, -1));
-    if (k + 1 < l->n_blocks && c >= hdi_front_first(l, k + 1))
-        hdi_front_arrive(l, hdi_front_node(l, k + 1, c));
-    if (k >= 0 && k + 2 < l->n_blocks) hdi_front_arrive(l, hdi_front_node(l, k + 2, -1));
-}
-
-/* Node P(k), or with a chunk c >= 0 C(c,k). */
-static void hdi_front_panel_node(const hdi_front_loop *l, int32_t k, int32_t c) {
-    const int64_t end = hdi_front_end(l, k), r0 = (int64_t)c * HDI_FRONT_CHUNK;
-    const int stop = HDI_LOAD(&l->f->stop);
-    hdi_front w = l->w;
-    int good = 1;
-    w.S = l->S[k % 2];
-    w.k0 = (int64_t)k * l->nb;
-    w.nb = (int32_t)(end - w.k0);
-    if (c >= 0) {
-        double *work = l->f->chunk_scratch + l->f->chunk_size * (size_t)c;
-        const int64_t r1 = hdi_least(r0 + HDI_FRONT_CHUNK, w.m);
-        if (!stop) hdi_front_part(&w, HDI_FRONT_COLUMNS, r0 > end ? r0 : end, r1, work);
-        hdi_front_next(l, k, c);
-        return;
-    }
-    if (!stop && hdi_is_real(w.f)) good = hdi_front_pivots_real(&w, end, l->note);
-    else if (!stop) good = hdi_front_pivots_pack(&w, l->note);
-    if (!good) HDI_STORE(&l->f->stop, 1);
-    for (c = hdi_front_first(l, k); c < l->n_chunks; c++) hdi_front_arrive(l, hdi_front_node(l, k, c));
-}
-
-static int32_t hdi_front_updates(const hdi_front_loop *l) {
-    return (int32_t)((l->w.u + HDI_FRONT_CHUNK - 1) / HDI_FRONT_CHUNK);
-}
-
-/* Returns 1 when it was the front's last node. */
-static int hdi_front_run_node(hdi_front_loop *l, int32_t i) {
-    const int32_t a = hdi_front_node(l, l->n_blocks, -1), updates = hdi_front_updates(l);
-    const int32_t c = i < a ? i % (l->n_chunks + 1) - 1 : i < a + l->n_chunks ? i - a : i - a - l->n_chunks;
-    const int64_t r0 = (int64_t)c * HDI_FRONT_CHUNK, r1 = r0 + HDI_FRONT_CHUNK;
-    double *work = l->f->chunk_scratch + l->f->chunk_size * (size_t)(c < 0 ? 0 : c);
-    int32_t d;
-    if (i >= a + l->n_chunks) {
-        if (!HDI_LOAD(&l->f->stop)) hdi_front_part(&l->w, HDI_FRONT_UPDATE, r0, hdi_least(r1, l->w.u), work);
-        return HDI_ATOMIC_ADD(&l->left, -1) == 0;
-    }
-    if (i < a) {
-        hdi_front_panel_node(l, i / (l->n_chunks + 1), c);
-    } else {
-        if (!HDI_LOAD(&l->f->stop))
-            hdi_front_part(&l->w, HDI_FRONT_ASSEMBLE, r0, hdi_least(r1, l->w.m), work);
-        hdi_front_next(l, -1, c);
-    }
-    if (HDI_ATOMIC_ADD(l->pending + a, -1) != 0) return 0;
-    /* once the last of them is released l may belong to the next front */
-    for (d = updates; d-- > 0;) hdi_release(l->threads, a + l->n_chunks + d, l->order);
-    return updates == 0;
-}
-
-/* What nodes wait for, unless pending is NULL. Returns how many there are. pending of the first A: the nodes
- * of the panel. */
-static int32_t hdi_front_count(hdi_front_loop *l) {
-    const int32_t a = hdi_front_node(l, l->n_blocks, -1), packs = !hdi_is_real(l->f);
-    int32_t panel = packs ? l->n_chunks : 0, k, c;
-    for (k = 0; k < l->n_blocks; k++) {
-        int32_t *pivots;
-        panel += 1 + l->n_chunks - hdi_front_first(l, k);
-        if (!l->pending) continue;
-        pivots = l->pending + hdi_front_node(l, k, -1);
-        *pivots = k > 1 ? l->n_chunks - hdi_front_first(l, k - 2) : 0;
-        for (c = 0; c < l->n_chunks; c++) *pivots += (k > 0 || packs) && hdi_front_holds(l, k, c);
-        for (c = hdi_front_first(l, k); c < l->n_chunks; c++)
-            l->pending[hdi_front_node(l, k, c)] = k > 0 || packs ? 2 : 1;
-    }
-    if (l->pending) l->pending[a] = panel;
-    l->left = hdi_front_updates(l);
-    return panel + l->left;
-}
-
-/* Takes up a front of shape w. Returns the number of its nodes. */
-static int32_t hdi_front_loop_set(hdi_front_loop *l, const hdi_front *w) {
-    l->w = *w;
-    l->S[0] = w->S;
-    l->S[1] = l->f->second;
-    l->nb = hdi_front_block_size(l->f);
-    l->n_blocks = (int32_t)((w->p + l->nb - 1) / l->nb);
-    l->n_chunks = (int32_t)((w->m + HDI_FRONT_CHUNK - 1) / HDI_FRONT_CHUNK);
-    l->pending = l->f->nodes;
-    return hdi_front_count(l);
-}
-
-/* Front v, by this thread or shared by all. 0 when a pivot cannot be divided by. */
-static int hdi_front_factor(hdi_factor *f, int32_t v, double *scratch, hdi_pivots *note, int shared) {
-    const hdi_symbolic *s = f->sym;
-    const int real = hdi_is_real(f);
+/* Front v, by this thread. 0 when a pivot cannot be divided by. */
+static int hdi_front_factor(const hdi_factor *f, int32_t v, double *scratch, hdi_pivots *note) {
     const int64_t most = hdi_front_block_size(f);
     hdi_front w = hdi_front_open(f, v, scratch);
     int64_t end;
-    int32_t k;
-    if (real) hdi_front_assemble_real(&w);
-    else hdi_front_run(&w, shared, HDI_FRONT_ASSEMBLE, 0, w.m);
-    for (k = s->kid_ptr[v]; real && k < s->kid_ptr[v + 1]; k++) {
-        w.child = s->kid[k];
-        hdi_front_run(&w, shared, HDI_FRONT_ASSEMBLE, 0, hdi_front_below(s, w.child));
-    }
+    hdi_front_part(&w, HDI_FRONT_ASSEMBLE, 0, w.m, w.work);
     for (; w.k0 < w.p; w.k0 += w.nb) {
         w.nb = (int32_t)hdi_least(w.p - w.k0, most);
         /* a small front: its columns at once */
-        end = real && !shared && w.p <= HDI_REAL_NB ? w.m : w.k0 + w.nb;
-        if (!(real ? hdi_front_pivots_real(&w, end, note) : hdi_front_pivots_pack(&w, note))) return 0;
-        hdi_front_run(&w, shared, HDI_FRONT_COLUMNS, end, w.m);
+        end = hdi_is_real(f) && w.p <= HDI_REAL_NB && !hdi_front_shared(f->sym, v) ? w.m : w.k0 + w.nb;
+        if (!hdi_front_block(&w, end, note)) return 0;
+        if (end < w.m) hdi_front_part(&w, HDI_FRONT_COLUMNS, end, w.m, w.work);
     }
-    hdi_front_run(&w, shared, HDI_FRONT_UPDATE, 0, w.u);
+    if (w.u > 0) hdi_front_part(&w, HDI_FRONT_UPDATE, 0, w.u, w.work);
     return 1;
 }
 
@@ -13650,26 +13607,6 @@ static int hdi_front_factor(hdi_factor *f, int32_t v, double *scratch, hdi_pivot
 
 static double *hdi_factor_scratch(const hdi_factor *f, int64_t i) {
     return f->scratch + f->scratch_size * (size_t)i;
-}
-
-/* No subtree from this one on need go on. Should two threads come at once, and the larger number stay, then
- * more is done than need be. */
-static void hdi_factor_stop(hdi_factor *f, int32_t until) {
-    if (until < HDI_LOAD(&f->until)) HDI_STORE(&f->until, until);
-    HDI_STORE(&f->stop, 1);
-}
-
-/* A subtree, by one thread. */
-static void hdi_factor_task(void *arg, int64_t index, int32_t worker) {
-    hdi_factor *f = (hdi_factor *)arg;
-    const hdi_symbolic *s = f->sym;
-    const double done = f->share * (double)index / s->n_tasks;
-    int32_t v;
-    if (index >= HDI_LOAD(&f->until)) return;
-    if (worker == 0 && hdi_progress(f->ctx, "factor", done, &f->error) < 0) hdi_factor_stop(f, 0);
-    for (v = s->task_begin[index]; v < s->task_end[index] && index < HDI_LOAD(&f->until); v++)
-        if (!hdi_front_factor(f, v, hdi_factor_scratch(f, index), f->pivots + index, 0))
-            hdi_factor_stop(f, (int32_t)index);
 }
 
 static void hdi_factor_free(hdi_factor *f) {
@@ -13680,41 +13617,75 @@ static void hdi_factor_free(hdi_factor *f) {
         hdi_free(f->ctx, f->work);
         hdi_free(f->ctx, f->scratch);
         hdi_free(f->ctx, f->chunk_scratch);
-        hdi_free(f->ctx, f->nodes);
+        hdi_free(f->ctx, f->counts);
         hdi_free(f->ctx, f->order);
         hdi_free(f->ctx, f->pivots);
     }
     memset(f, 0, sizeof *f);
 }
 
-/* Whether threads share front v, which belongs to the top. */
-static int hdi_factor_shared(const hdi_symbolic *s, int32_t v) {
-    return hdi_front_rows(s, v) >= HDI_FRONT_SHARED;
+/* ---- the tree as a walk ---- */
+/* Its nodes: the subtrees; then one front of the top after the other. A front is one node, by one thread, or
+ * it is shared: that node opens it, and three stages follow. Chunks of rows are assembled; then the panel;
+ * then chunks of the update matrix. In the panel P(k) eliminates the pivots of a block, and C(c,k) computes
+ * their columns in chunk c of the rows below.
+ *   P(k)    waits for all C(c,k-1) that hold its rows, and for all C(c,k-2), because S has two places
+ *   C(c,k)  waits for P(k) and for C(c,k-1)
+ * So the next pivots are eliminated while the columns of the last ones are still computed. P(k) and C(c,k)
+ * never come to chunk c before C(c,k-1) and P(k-1), so that C(c,k) begins when 2 k + 1 of them have come. */
+
+enum { HDI_FRONT_OPEN = -1 };        /* the stage before the first one */
+
+typedef struct hdi_factor_walk {
+    hdi_walk walk;
+    hdi_factor *f;
+    hdi_front w;                 /* the front of the top under way */
+    double *S[2];
+    int32_t top, stage, left;    /* which it is; nodes of the stage that are not done */
+    int32_t nb, n_blocks, n_chunks;
+    int32_t *missing, *come;     /* [n_blocks] what P(k) waits for; [n_chunks] what has come to C(c,k) */
+    int32_t until;               /* a subtree that failed: those before it go on, and may fail earlier */
+} hdi_factor_walk;
+
+/* The shape of front v in blocks and chunks. */
+static void hdi_factor_shape(hdi_factor_walk *t, int32_t v) {
+    hdi_front_shape(t->f->sym, v, &t->w.p, &t->w.u, &t->w.m);
+    t->nb = hdi_front_block_size(t->f);
+    t->n_blocks = (int32_t)((t->w.p + t->nb - 1) / t->nb);
+    t->n_chunks = (int32_t)((t->w.m + HDI_FRONT_CHUNK - 1) / HDI_FRONT_CHUNK);
 }
 
-/* Chunks of columns of child c. */
-static int32_t hdi_factor_child_nodes(const hdi_symbolic *s, int32_t c) {
-    return (int32_t)((hdi_front_below(s, c) + HDI_FRONT_CHUNK - 1) / HDI_FRONT_CHUNK);
+/* The first row below the pivots of block k, and the first chunk with such rows. */
+static int64_t hdi_factor_end(const hdi_factor_walk *t, int32_t k) {
+    return hdi_least((int64_t)(k + 1) * t->nb, t->w.p);
 }
 
-/* Nodes of the loop over all of the tree, see below. Fills f->nodes, if there is one. */
+static int32_t hdi_factor_first(const hdi_factor_walk *t, int32_t k) {
+    const int64_t end = hdi_factor_end(t, k);
+    return end < t->w.m ? (int32_t)(end / HDI_FRONT_CHUNK) : t->n_chunks;
+}
+
+/* Nodes of a stage. */
+static int32_t hdi_factor_stage(const hdi_factor_walk *t, int32_t stage) {
+    int32_t k, n = t->n_blocks;
+    if (stage == HDI_FRONT_ASSEMBLE) return t->n_chunks;
+    if (stage == HDI_FRONT_UPDATE) return (int32_t)((t->w.u + HDI_FRONT_CHUNK - 1) / HDI_FRONT_CHUNK);
+    for (k = 0; k < t->n_blocks; k++) n += t->n_chunks - hdi_factor_first(t, k);
+    return n;
+}
+
+/* Nodes of the walk. */
 static int64_t hdi_factor_nodes(hdi_factor *f) {
     const hdi_symbolic *s = f->sym;
-    int64_t n = s->n_top > 0 ? s->n_tasks : 0;
-    int32_t i, k;
-    hdi_front_loop l;
-    hdi_front w;
-    memset(&l, 0, sizeof l);
-    memset(&w, 0, sizeof w);
-    l.f = f;
-    w.f = f;
+    int64_t n = (int64_t)s->n_tasks + s->n_top;
+    int32_t i, stage;
+    hdi_factor_walk t;
+    memset(&t, 0, sizeof t);
+    t.f = f;
     for (i = 0; i < s->n_top; i++) {
-        const int32_t v = s->top[i];
-        if (!hdi_factor_shared(s, v)) continue;
-        hdi_front_shape(s, v, &w.p, &w.u, &w.m);
-        n += hdi_front_loop_set(&l, &w);
-        for (k = s->kid_ptr[v]; k < s->kid_ptr[v + 1] && hdi_is_real(f); k++)
-            n += hdi_factor_child_nodes(s, s->kid[k]);
+        hdi_factor_shape(&t, s->top[i]);
+        for (stage = HDI_FRONT_ASSEMBLE; stage <= HDI_FRONT_UPDATE && hdi_front_shared(s, s->top[i]); stage++)
+            n += hdi_factor_stage(&t, stage);
     }
     return n;
 }
@@ -13781,7 +13752,7 @@ static void hdi_factor_take(hdi_factor *f, const hdi_symbolic *sym, int32_t widt
     f->work = HDI_TAKE(s, double, (uint64_t)sym->work * (uint64_t)width);
     f->scratch = HDI_TAKE(s, double, f->scratch_size * n_parts + tops * f->top_size);
     f->chunk_scratch = HDI_TAKE(s, double, f->chunk_size * n_chunks + 1);
-    f->nodes = HDI_TAKE(s, int32_t, hdi_front_nodes(sym, hdi_front_block_size(f)) + 1);
+    f->counts = HDI_TAKE(s, int32_t, sym->largest_pivots / hdi_front_block_size(f) + (int64_t)n_chunks + 2);
     f->pivots = HDI_TAKE(s, hdi_pivots, n_parts + 1);
     f->n_order = hdi_factor_nodes(f);
     f->order = HDI_TAKE(s, int32_t, f->n_order + 1);
@@ -13833,10 +13804,7 @@ static hd_status hdi_factor_collect(hdi_factor *f, int32_t n_parts, hd_error *e)
         f->all.lane = q->lane;
         f->all.value = q->value;
     }
-    if (f->error.status < 0) {
-        *e = f->error;
-        return e->status;
-    }
+    if (e->status < 0) return e->status;
     if (f->all.failed < 0) return HD_OK;
     hdi_fail_row(e, HD_ERR_BREAKDOWN, "LDL': a pivot is not finite, or too small to divide by",
                  f->sym->perm[f->all.failed], -1, f->all.value);
@@ -13844,120 +13812,144 @@ static hd_status hdi_factor_collect(hdi_factor *f, int32_t n_parts, hd_error *e)
     return e->status;
 }
 
-/* ---- the tree as one loop ---- */
-/* Its nodes: the subtrees; then for one front of the top after the other, chunks of each child that is added
- * to it (real numbers), and those of the front. Whoever does the last node of a step does what one thread
- * must do before the next, and releases that one's. */
-
-enum { HDI_FACTOR_TASKS = 1 << 30 };
-
-typedef struct hdi_factor_loop {
-    hdi_front_loop l;            /* of the front under way */
-    int32_t top, kid;            /* which front of the top; the child that is added next */
-    int32_t assembling;
-    int32_t left;                /* subtrees, or chunks of the child, that are not done */
-} hdi_factor_loop;
-
-/* Takes up front top + 1: 1, and to be shared from here on; 0 when it is done, by this thread. */
-static int hdi_factor_open(hdi_factor_loop *t, int32_t worker) {
-    hdi_factor *f = t->l.f;
-    const hdi_symbolic *s = f->sym;
-    const int32_t v = s->top[++t->top];
-    double *scratch = hdi_factor_scratch(f, s->n_tasks);
-    hdi_front w = hdi_front_open(f, v, scratch);
-    if (worker == 0 && !HDI_LOAD(&f->stop) &&
-        hdi_progress(f->ctx, "factor", 0.5 + 0.5 * t->top / s->n_top, &f->error) < 0)
-        HDI_STORE(&f->stop, 1);
-    if (!hdi_factor_shared(s, v)) {
-        if (!HDI_LOAD(&f->stop) && !hdi_front_factor(f, v, scratch, t->l.note, 0)) HDI_STORE(&f->stop, 1);
-        return 0;
-    }
-    if (f->width == 1 && !HDI_LOAD(&f->stop)) hdi_front_assemble_real(&w);
-    (void)hdi_front_loop_set(&t->l, &w);
-    t->kid = s->kid_ptr[v];
-    return 1;
+/* Chunks from the one that holds row r0 to the one that holds row r1 - 1. */
+static int32_t hdi_factor_span(int64_t r0, int64_t r1) {
+    return (int32_t)((r1 - 1) / HDI_FRONT_CHUNK - r0 / HDI_FRONT_CHUNK + 1);
 }
 
-/* Goes on to the next step. Returns how many nodes are ready, [*id, *id + result); 0: the tree is done. */
-static int32_t hdi_factor_advance(hdi_factor_loop *t, int32_t worker, int32_t *id) {
-    hdi_factor *f = t->l.f;
+/* Takes up the next front of the top: all of it, or to be shared from here on. */
+static void hdi_factor_open(hdi_factor_walk *t) {
+    hdi_factor *f = t->f;
     const hdi_symbolic *s = f->sym;
-    const int real = f->width == 1;
-    if (!t->assembling) {
-        do {
-            if (t->top + 1 >= s->n_top) return 0;
-        } while (!hdi_factor_open(t, worker));
+    const int32_t v = s->top[t->top];
+    double *scratch = hdi_factor_scratch(f, s->n_tasks);
+    int32_t k;
+    if (hdi_walk_alone(&t->walk) || !hdi_front_shared(s, v)) {
+        if (!hdi_front_factor(f, v, scratch, f->pivots + s->n_tasks)) hdi_walk_stop(&t->walk);
+        t->stage = HDI_FRONT_UPDATE;
+        return;
     }
-    t->assembling = real && t->kid < s->kid_ptr[s->top[t->top] + 1];
-    *id = 0;
-    if (t->assembling) {
-        t->l.w.child = s->kid[t->kid++];
-        return t->left = hdi_factor_child_nodes(s, t->l.w.child);
+    t->w = hdi_front_open(f, v, scratch);
+    hdi_factor_shape(t, v);
+    t->S[0] = t->w.S;
+    t->S[1] = f->second;
+    t->missing = f->counts;
+    t->come = t->missing + t->n_blocks;
+    for (k = 0; k < t->n_blocks; k++) {
+        t->missing[k] = hdi_factor_span((int64_t)k * t->nb, hdi_factor_end(t, k));
+        if (k > 1) t->missing[k] += t->n_chunks - hdi_factor_first(t, k - 2);
     }
-    if (real) return 1;
-    *id = hdi_front_node(&t->l, t->l.n_blocks, -1);
-    return t->l.n_chunks;
+    memset(t->come, 0, (size_t)t->n_chunks * sizeof *t->come);
+}
+
+/* All of a stage is done: the next one that has nodes. */
+static void hdi_factor_next(hdi_factor_walk *t) {
+    const hdi_symbolic *s = t->f->sym;
+    for (t->left = 0; t->left == 0;) {
+        if (t->stage == HDI_FRONT_UPDATE) {
+            if (++t->top == s->n_top) return;
+            t->stage = HDI_FRONT_OPEN;
+            t->left = 1;
+            hdi_release(&t->walk, s->n_tasks + t->top, 1);
+            return;
+        }
+        t->left = hdi_factor_stage(t, ++t->stage);
+    }
+    hdi_release(&t->walk, s->n_tasks + s->n_top, t->stage == HDI_FRONT_COLUMNS ? 1 : t->left);
+}
+
+static int32_t hdi_factor_panel_node(const hdi_factor_walk *t, int32_t k, int32_t c) {
+    const hdi_symbolic *s = t->f->sym;
+    return s->n_tasks + s->n_top + k * (t->n_chunks + 1) + 1 + c;
+}
+
+/* One more thing that P(k), or C(c,k), waits for. */
+static void hdi_factor_arrive(const hdi_factor_walk *t, hdi_walk *walk, int32_t k) {
+    if (k < t->n_blocks && HDI_ATOMIC_ADD(t->missing + k, -1) == 0)
+        hdi_release(walk, hdi_factor_panel_node(t, k, -1), 1);
+}
+
+static void hdi_factor_come(const hdi_factor_walk *t, hdi_walk *walk, int32_t c) {
+    const int32_t come = (int32_t)HDI_ATOMIC_ADD(t->come + c, 1);
+    if (come % 2) hdi_release(walk, hdi_factor_panel_node(t, come / 2, c), 1);
+}
+
+/* Node P(k), or with a chunk c >= 0 C(c,k). */
+static void hdi_factor_panel(hdi_factor_walk *t, int32_t k, int32_t c) {
+    const int64_t end = hdi_factor_end(t, k), r0 = (int64_t)c * HDI_FRONT_CHUNK, r1 = r0 + HDI_FRONT_CHUNK;
+    hdi_front w = t->w;
+    w.S = t->S[k % 2];
+    w.k0 = (int64_t)k * t->nb;
+    w.nb = (int32_t)(end - w.k0);
+    if (c >= 0) {
+        hdi_front_part(&w, HDI_FRONT_COLUMNS, r0 > end ? r0 : end, hdi_least(r1, w.m),
+                       w.f->chunk_scratch + w.f->chunk_size * (size_t)c);
+        hdi_factor_come(t, &t->walk, c);
+        if (r0 < hdi_factor_end(t, k + 1) && r1 > end) hdi_factor_arrive(t, &t->walk, k + 1);
+        hdi_factor_arrive(t, &t->walk, k + 2);
+        return;
+    }
+    if (!hdi_front_block(&w, end, t->f->pivots + t->f->sym->n_tasks)) hdi_walk_stop(&t->walk);
+    for (c = hdi_factor_first(t, k); c < t->n_chunks; c++) hdi_factor_come(t, &t->walk, c);
+}
+
+/* A subtree. */
+static void hdi_factor_task(hdi_factor_walk *t, int32_t i) {
+    hdi_factor *f = t->f;
+    int32_t v;
+    for (v = f->sym->task_begin[i]; v < f->sym->task_end[i]; v++) {
+        if (hdi_walk_stopped(&t->walk) && i >= HDI_LOAD(&t->until)) return;
+        if (hdi_front_factor(f, v, hdi_factor_scratch(f, i), f->pivots + i)) continue;
+        /* should two threads come at once, and the larger number stay, then more is done than need be */
+        if (HDI_LOAD(&t->until) == 0 || i < HDI_LOAD(&t->until)) HDI_STORE(&t->until, i);
+        hdi_walk_stop(&t->walk);
+        return;
+    }
 }
 
 static void hdi_factor_node(void *arg, int64_t index, int32_t worker) {
-    hdi_factor_loop *t = (hdi_factor_loop *)arg;
-    hdi_factor *f = t->l.f;
-    int32_t id, n;
-    if (index >= HDI_FACTOR_TASKS) {
-        hdi_factor_task(f, index - HDI_FACTOR_TASKS, worker);
-        if (HDI_ATOMIC_ADD(&t->left, -1) != 0) return;
-    } else if (t->assembling) {
-        const int64_t r0 = index * HDI_FRONT_CHUNK, end = hdi_front_below(f->sym, t->l.w.child);
-        if (!HDI_LOAD(&f->stop))
-            hdi_front_part(&t->l.w, HDI_FRONT_ASSEMBLE, r0, hdi_least(r0 + HDI_FRONT_CHUNK, end), NULL);
-        if (HDI_ATOMIC_ADD(&t->left, -1) != 0) return;
-    } else if (!hdi_front_run_node(&t->l, (int32_t)index)) {
-        return;
+    hdi_factor_walk *t = (hdi_factor_walk *)arg;
+    const hdi_factor *f = t->f;
+    const int32_t n_tasks = f->sym->n_tasks, i = (int32_t)index - n_tasks - f->sym->n_top;
+    (void)worker;
+    if (index < n_tasks) {
+        hdi_factor_task(t, (int32_t)index);
+    } else if (i < 0) {
+        hdi_factor_open(t);
+    } else if (t->stage == HDI_FRONT_COLUMNS) {
+        hdi_factor_panel(t, i / (t->n_chunks + 1), i % (t->n_chunks + 1) - 1);
+    } else {
+        /* the last rows of a triangle are longest */
+        const int64_t c = hdi_factor_stage(t, t->stage) - 1 - i, r0 = c * HDI_FRONT_CHUNK;
+        const int64_t rows = t->stage == HDI_FRONT_UPDATE ? t->w.u : t->w.m;
+        hdi_front_part(&t->w, t->stage, r0, hdi_least(r0 + HDI_FRONT_CHUNK, rows),
+                       f->chunk_scratch + f->chunk_size * (size_t)c);
     }
-    n = hdi_factor_advance(t, worker, &id);
-    if (n > 0) hdi_release_many(t->l.threads, id, n, t->l.order);
-}
-
-/* All fronts, by several threads. */
-static void hdi_factor_share(hdi_factor *f, hd_threads *threads) {
-    const hdi_symbolic *s = f->sym;
-    hdi_factor_loop t;
-    int32_t i, ready = s->n_tasks, id = HDI_FACTOR_TASKS;
-    memset(&t, 0, sizeof t);
-    t.l.f = f;
-    t.l.note = f->pivots + s->n_tasks;
-    t.l.threads = threads;
-    t.l.order = f->order;
-    t.top = -1;
-    t.left = ready;
-    if (ready == 0) ready = hdi_factor_advance(&t, 0, &id);
-    for (i = 0; i < ready; i++) f->order[i] = id + i;
-    hdi_parallel_ordered(f->ctx, (int32_t)f->n_order, ready, f->order, hdi_factor_node, &t);
+    if (HDI_ATOMIC_ADD(&t->left, -1) == 0) hdi_factor_next(t);
 }
 
 /* All fronts: subtrees at the same time, then the top, whose fronts are shared. */
 static hd_status hdi_factor_run(hdi_factor *f, const hdi_values *values, hd_error *e) {
-    const hdi_symbolic *s = f->sym;
-    const int32_t n_parts = s->n_tasks + 1;
-    double *scratch = hdi_factor_scratch(f, s->n_tasks);
-    const int64_t n = f->n_order < HDI_FACTOR_TASKS ? f->n_order : 0;
-    hd_threads *threads = hdi_threads_own(f->ctx, n);
+    const int32_t n_tasks = f->sym->n_tasks;
+    hdi_factor_walk t;
     int32_t i;
-    f->ready = f->stop = 0;
-    f->until = s->n_tasks;
+    memset(&t, 0, sizeof t);
+    t.f = f;
+    t.top = -1;
+    t.stage = HDI_FRONT_UPDATE;
+    t.left = n_tasks;
+    f->ready = 0;
     f->values = values;
-    f->share = s->n_top > 0 ? 0.5 : 1;
-    hdi_error_clear(&f->error);
-    for (i = 0; i < n_parts; i++) hdi_pivots_clear(f->pivots + i);
-    if (threads) hdi_factor_share(f, threads);
-    else hdi_parallel(f->ctx, s->n_tasks, hdi_factor_task, f);
-    for (i = 0; i < s->n_top && !threads && !f->stop; i++) {
-        const int shared = hdi_factor_shared(s, s->top[i]);
-        if (hdi_progress(f->ctx, "factor", 0.5 + 0.5 * i / s->n_top, &f->error) < 0) break;
-        if (!hdi_front_factor(f, s->top[i], scratch, f->pivots + s->n_tasks, shared)) break;
-    }
+    for (i = 0; i <= n_tasks; i++) hdi_pivots_clear(f->pivots + i);
+    hdi_walk_open(&t.walk, f->ctx, f->n_order, f->order, hdi_factor_node, &t);
+    if (hdi_walk_alone(&t.walk)) t.walk.n = (uint32_t)(n_tasks + f->sym->n_top);
+    t.walk.stage = "factor";
+    t.walk.e = e;
+    if (n_tasks > 0) hdi_release(&t.walk, 0, n_tasks);
+    else hdi_factor_next(&t);
+    hdi_walk_run(&t.walk);
     f->values = NULL;
-    if (hdi_factor_collect(f, n_parts, e) < 0) return e->status;
+    if (hdi_factor_collect(f, n_tasks + 1, e) < 0) return e->status;
     f->ready = 1;
     return HD_OK;
 }
@@ -13976,8 +13968,8 @@ typedef struct hdi_sweep {
                                     it: zero. NULL: they are in x, which otherwise is only written */
     const char *wanted;          /* backward: fronts whose part of x is asked for, closed towards the roots;
                                     NULL: all */
-    int32_t *pending, *order;    /* shared by threads: what nodes wait for; the nodes as they become ready */
-    hd_threads *threads;
+    hdi_walk *walk;
+    int32_t *pending, *order;    /* [2 nodes] what they wait for; nodes as they become ready */
 } hdi_sweep;
 
 /* The children's vectors, into the pivots' part of x and into t, which is cleared before. */
@@ -14169,21 +14161,10 @@ static void hdi_sweep_front(const hdi_sweep *z, int32_t v) {
     hdi_sweep_forward(z, v, y, t);
 }
 
-static void hdi_sweep_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_sweep *z = (const hdi_sweep *)arg;
-    const int32_t begin = z->f->sym->task_begin[index], end = z->f->sym->task_end[index];
-    int32_t v;
-    (void)worker;
-    if (z->backward)
-        for (v = end; v-- > begin;) hdi_sweep_front(z, v);
-    else
-        for (v = begin; v < end; v++) hdi_sweep_front(z, v);
-}
-
-/* ---- a sweep as one loop ---- */
-/* Its nodes: the subtrees and the fronts of the top, forward, then the same backward. A front of the top
- * waits for its children forward, a subtree for the parents of its roots backward. Whoever does the last
- * thing that a node waits for releases it. */
+/* ---- a sweep as a walk ---- */
+/* Its nodes: the subtrees and the fronts of the top on the way up, then the same on the way down. Upwards a
+ * front of the top waits for its children; downwards it waits for its parent, and a subtree for the parents
+ * of its roots. What has no such parent goes down when it has come up. */
 
 /* A sweep that reads fewer bytes is done by one thread. At 10 GB/s two would need as long, with the 50
  * microseconds that a thread takes to begin. */
@@ -14191,9 +14172,10 @@ static void hdi_sweep_task(void *arg, int64_t index, int32_t worker) {
 
 static int32_t hdi_sweep_nodes(const hdi_symbolic *s) { return s->n_tasks + s->n_top; }
 
-/* One of the things that a node waits for is done. */
-static void hdi_sweep_arrive(const hdi_sweep *z, int32_t node, int32_t *pending) {
-    if (HDI_ATOMIC_ADD(pending, -1) == 0) hdi_release(z->threads, node, z->order);
+/* The node of supernode v: its subtree, or the front itself. */
+static int32_t hdi_sweep_node_of(const hdi_symbolic *s, int32_t v) {
+    const int32_t task = s->task_of[v];
+    return task >= 0 ? task : s->n_tasks - 1 - task;
 }
 
 /* Whether supernode v hands its vector to a front of the top. */
@@ -14201,39 +14183,39 @@ static int hdi_sweep_below_top(const hdi_symbolic *s, int32_t v) {
     return s->parent[v] >= 0 && s->task_of[s->parent[v]] < 0;
 }
 
-/* Forward, supernode v is done, whose parent belongs to the top. */
-static void hdi_sweep_up(const hdi_sweep *z, int32_t v) {
+/* What nodes wait for. */
+static void hdi_sweep_count(const hdi_sweep *z) {
     const hdi_symbolic *s = z->f->sym;
-    const int32_t node = s->n_tasks - 1 - s->task_of[s->parent[v]];
-    hdi_sweep_arrive(z, node, z->pending + node);
+    const int32_t n = hdi_sweep_nodes(s);
+    int32_t *up = z->pending, *down = z->pending + n, i, k;
+    memset(up, 0, 2 * (size_t)n * sizeof *up);
+    for (i = 0; i < s->n_top; i++) {
+        const int32_t v = s->top[i];
+        up[s->n_tasks + i] = s->kid_ptr[v + 1] - s->kid_ptr[v];
+        for (k = s->kid_ptr[v]; k < s->kid_ptr[v + 1]; k++) down[hdi_sweep_node_of(s, s->kid[k])]++;
+    }
+    for (i = 0; i < n; i++)
+        if (down[i] == 0) down[i] = -1;          /* waits for its own way up */
 }
 
-/* What subtree k waits for backward. */
-static int32_t hdi_sweep_roots(const hdi_symbolic *s, int32_t k) {
-    int32_t v, n = 0;
-    for (v = s->task_begin[k]; v < s->task_end[k]; v++) n += hdi_sweep_below_top(s, v);
-    return n;
+/* One of the things that a node waits for is done. */
+static void hdi_sweep_arrive(const hdi_sweep *z, int32_t node) {
+    if (HDI_ATOMIC_ADD(z->pending + node, -1) == 0) hdi_release(z->walk, node, 1);
 }
 
-/* Node i is done: those that waited for it. */
+/* Node i is done, upwards or downwards: those that waited for it. */
 static void hdi_sweep_next(const hdi_sweep *z, int32_t i) {
     const hdi_symbolic *s = z->f->sym;
-    const int32_t n = hdi_sweep_nodes(s), v = i < s->n_tasks ? -1 : s->top[i - s->n_tasks];
-    int32_t k;
-    if (z->backward) {
-        for (k = v < 0 ? 0 : s->kid_ptr[v]; v >= 0 && k < s->kid_ptr[v + 1]; k++) {
-            const int32_t task = s->task_of[s->kid[k]];
-            if (task < 0) hdi_release(z->threads, n + s->n_tasks - 1 - task, z->order);
-            else hdi_sweep_arrive(z, n + task, z->pending + task);
-        }
-    } else if (v >= 0) {
-        if (s->parent[v] >= 0) hdi_sweep_up(z, v);
-        else hdi_release(z->threads, n + i, z->order);
-    } else {
-        z->pending[i] = hdi_sweep_roots(s, i);
-        if (z->pending[i] == 0) hdi_release(z->threads, n + i, z->order);
-        for (k = s->task_begin[i]; k < s->task_end[i]; k++)
-            if (hdi_sweep_below_top(s, k)) hdi_sweep_up(z, k);
+    const int32_t n = hdi_sweep_nodes(s), top = i < s->n_tasks ? -1 : s->top[i - s->n_tasks];
+    int32_t v;
+    if (!z->backward) {
+        const int32_t begin = top < 0 ? s->task_begin[i] : top, end = top < 0 ? s->task_end[i] : top + 1;
+        if (z->pending[n + i] < 0) hdi_release(z->walk, n + i, 1);
+        for (v = begin; v < end; v++)
+            if (hdi_sweep_below_top(s, v)) hdi_sweep_arrive(z, hdi_sweep_node_of(s, s->parent[v]));
+    } else if (top >= 0) {
+        for (v = s->kid_ptr[top]; v < s->kid_ptr[top + 1]; v++)
+            hdi_sweep_arrive(z, n + hdi_sweep_node_of(s, s->kid[v]));
     }
 }
 
@@ -14241,53 +14223,30 @@ static void hdi_sweep_node(void *arg, int64_t index, int32_t worker) {
     hdi_sweep z = *(const hdi_sweep *)arg;
     const hdi_symbolic *s = z.f->sym;
     const int32_t n = hdi_sweep_nodes(s), i = (int32_t)index % n;
+    int32_t v;
+    (void)worker;
     z.backward = index >= n;
-    if (i < s->n_tasks) hdi_sweep_task(&z, i, worker);
-    else hdi_sweep_front(&z, s->top[i - s->n_tasks]);
+    if (i >= s->n_tasks) hdi_sweep_front(&z, s->top[i - s->n_tasks]);
+    else if (z.backward)
+        for (v = s->task_end[i]; v-- > s->task_begin[i];) hdi_sweep_front(&z, v);
+    else
+        for (v = s->task_begin[i]; v < s->task_end[i]; v++) hdi_sweep_front(&z, v);
     hdi_sweep_next(&z, i);
-}
-
-/* All of it, or with active the way back. */
-static void hdi_sweep_share(hdi_sweep *z, hd_context *ctx) {
-    const hdi_symbolic *s = z->f->sym;
-    const int32_t n = hdi_sweep_nodes(s);
-    int32_t n_ready = 0, k;
-    for (k = 0; k < s->n_tasks; k++) {
-        z->pending[k] = z->active ? hdi_sweep_roots(s, k) : 0;
-        if (z->pending[k] == 0) z->order[n_ready++] = z->active ? n + k : k;
-    }
-    for (k = 0; k < s->n_top; k++) {
-        const int32_t v = s->top[k], node = s->n_tasks + k;
-        z->pending[node] = s->kid_ptr[v + 1] - s->kid_ptr[v];
-        if (z->active ? s->parent[v] < 0 : z->pending[node] == 0)
-            z->order[n_ready++] = z->active ? n + node : node;
-    }
-    hdi_parallel_ordered(ctx, z->active ? n : 2 * n, n_ready, z->order, hdi_sweep_node, z);
 }
 
 /* x = A^-1 x. On all threads with ctx, else (from within a task) on this one. */
 static void hdi_sweep_run(hdi_sweep *z, hd_context *ctx) {
     const hdi_symbolic *s = z->f->sym;
     const double bytes = 2 * 8.0 * z->f->width * (double)z->f->panel_at[s->n_super];
+    const int32_t n = hdi_sweep_nodes(s);
+    hdi_walk w;
     int32_t i;
-    if (ctx && !ctx->parallel_for && bytes < HDI_SWEEP_SHARED) ctx = NULL;
-    if (ctx) z->threads = hdi_threads_own(ctx, hdi_sweep_nodes(s));
-    z->backward = 0;
-    if (z->threads && !z->active) {
-        hdi_sweep_share(z, ctx);
-        return;
-    }
-    if (ctx && !z->active) hdi_parallel(ctx, s->n_tasks, hdi_sweep_task, z);
-    else for (i = 0; i < s->n_tasks; i++) hdi_sweep_task(z, i, 0);
-    for (i = 0; i < s->n_top; i++) hdi_sweep_front(z, s->top[i]);
-    if (z->threads) {
-        hdi_sweep_share(z, ctx);
-        return;
-    }
-    z->backward = 1;
-    for (i = s->n_top; i-- > 0;) hdi_sweep_front(z, s->top[i]);
-    if (ctx) hdi_parallel(ctx, s->n_tasks, hdi_sweep_task, z);
-    else for (i = s->n_tasks; i-- > 0;) hdi_sweep_task(z, i, 0);
+    hdi_walk_open(&w, bytes < HDI_SWEEP_SHARED ? NULL : ctx, 2 * n, z->order, hdi_sweep_node, z);
+    z->walk = &w;
+    hdi_sweep_count(z);
+    for (i = 0; i < n; i++)
+        if (z->pending[i] == 0) hdi_release(&w, i, 1);
+    hdi_walk_run(&w);
 }
 
 /* Doubles that a sweep of k right-hand sides works with besides x: vec, pending and order. */
@@ -14305,7 +14264,7 @@ static hdi_sweep hdi_sweep_open(const hdi_factor *f, int32_t k, double *x, doubl
     z.vec = work;
     work += (int64_t)f->width * k * f->sym->vector_size;
     z.pending = (int32_t *)(void *)work;
-    z.order = z.pending + hdi_sweep_nodes(f->sym);
+    z.order = z.pending + 2 * (int64_t)hdi_sweep_nodes(f->sym);
     return z;
 }
 
@@ -14600,9 +14559,6 @@ typedef struct hdi_inverse {
     int64_t stride;              /* from set to set */
     double *scratch, *chunk;     /* [n_tasks][scratch_size] and one for the top; [chunks][chunk_size] */
     uint64_t scratch_size, top_size, chunk_size;
-    int32_t stop;
-    double done;
-    hd_error error;
 } hdi_inverse;
 
 /* The parts of one front; a block of pivots [k0,k1) under way. */
@@ -14834,8 +14790,6 @@ static void hdi_inverse_child_pack(const hdi_inverse_front *w, int64_t r0, int64
 
 /* ---- real fronts ---- */
 
-static int64_t hdi_triangle_column(int64_t u, int64_t j) { return j * u - j * (j - 1) / 2; }
-
 /* Entry (j,j) of Z; those below it in its column follow. */
 static const double *hdi_inverse_at_real(const hdi_inverse_front *w, int64_t j) {
     return j < w->p ? w->z + j * (w->m + 1) : w->update + hdi_triangle_column(w->u, j - w->p);
@@ -14987,7 +14941,7 @@ static void hdi_inverse_child_real(const hdi_inverse_front *w, int64_t r0, int64
 /* ---- fronts ---- */
 
 typedef enum hdi_inverse_stage {
-    HDI_INVERSE_M, HDI_INVERSE_BELOW, HDI_INVERSE_CORNER, HDI_INVERSE_CHILD
+    HDI_INVERSE_M, HDI_INVERSE_BELOW, HDI_INVERSE_CORNER, HDI_INVERSE_FORMS, HDI_INVERSE_CHILD
 } hdi_inverse_stage;
 
 /* One stage for rows [r0,r1). */
@@ -15007,21 +14961,6 @@ static void hdi_inverse_part(const void *front, int stage, int64_t r0, int64_t r
         if (real) hdi_inverse_child_real(w, r0, r1);
         else hdi_inverse_child_pack(w, r0, r1);
     }
-}
-
-/* Rows [begin,end) of a stage: at once, or with z as chunks. */
-static void hdi_inverse_stage_run(const hdi_inverse *z, const hdi_inverse_front *w, int stage,
-                                  int64_t begin, int64_t end) {
-    hdi_chunks h;
-    if (end > begin && !z) hdi_inverse_part(w, (int)stage, begin, end, w->buffer);
-    if (end <= begin || !z) return;
-    h.run = hdi_inverse_part;
-    h.front = w;
-    h.stage = (int)stage;
-    h.rows = stage == HDI_INVERSE_CORNER ? (int64_t)HDI_REAL_MR : (int64_t)HDI_INV_CHUNK;
-    h.work = z->chunk;
-    h.work_size = z->chunk_size;
-    hdi_chunks_run(&h, begin, end, w->f->ctx);
 }
 
 /* Entry (i,j) of Z, j <= i. */
@@ -15381,25 +15320,24 @@ typedef struct hdi_form_job {
     const hdi_inverse *z;
     const hdi_inverse_front *w;
     const hdi_pair *list;
-    int32_t n, n_blocks, begin;
+    int32_t n, n_blocks;
 } hdi_form_job;
 
-/* Block begin + index, at a place of its own. */
-static void hdi_form_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_form_job *job = (const hdi_form_job *)arg;
+/* Block `at`, at a place of its own among as many blocks as there are places. */
+static void hdi_form_task(const hdi_form_job *job, int64_t at) {
     const hdi_forms *q = job->z->forms;
     const hdi_symbolic *s = job->z->f->sym;
-    const int64_t at = job->begin + index, from = at * job->n / job->n_blocks, task = s->task_of[job->w->v];
+    const int64_t from = at * job->n / job->n_blocks, slot = at % HDI_FORM_SLOTS;
+    const int64_t task = s->task_of[job->w->v];
     const hdi_form_places *places = q->place + (task < 0), *before = q->place;
-    const int64_t number = task >= 0 ? task : index, n_before = task >= 0 ? 0 : before->n;
+    const int64_t number = task >= 0 ? task : slot, n_before = task >= 0 ? 0 : before->n;
     double *room = q->room + before->size * (size_t)n_before + places->size * (size_t)number;
     hdi_form_block b;
-    (void)worker;
     b.q = q;
     b.w = job->w;
     b.list = job->list + from;
     b.k = (int32_t)((at + 1) * job->n / job->n_blocks - from);
-    b.active = q->active + (task >= 0 ? 0 : (1 + index) * s->n_super);
+    b.active = q->active + (task >= 0 ? 0 : (1 + slot) * s->n_super);
     b.column = q->column + before->pivots * n_before + places->pivots * number;
     b.end = room + places->size;
     b.aside = room;
@@ -15434,17 +15372,6 @@ static hdi_form_job hdi_forms_open(const hdi_inverse *z, const hdi_inverse_front
     job.list = order;
     job.n_blocks = (int32_t)hdi_forms_blocks(q, job.n);
     return job;
-}
-
-/* All forms of a front's pivots; in the top by all threads. */
-static void hdi_forms_front(const hdi_inverse *z, const hdi_inverse_front *w) {
-    const hdi_forms *q = z->forms;
-    const int32_t task = w->f->sym->task_of[w->v];
-    hdi_form_job job = hdi_forms_open(z, w);
-    for (; job.begin < job.n_blocks; job.begin += task >= 0 ? 1 : q->n_slots) {
-        if (task >= 0) hdi_form_task(&job, 0, 0);
-        else hdi_parallel(w->f->ctx, hdi_least(job.n_blocks - job.begin, q->n_slots), hdi_form_task, &job);
-    }
 }
 
 /* Rows on the stack at most, for columns of the fronts of subtrees and for those of all. need [n_super]. */
@@ -15561,249 +15488,213 @@ static uint64_t hdi_forms_bytes(const hdi_symbolic *s, int32_t width, uint64_t l
 
 /* ---- the run ---- */
 
-/* What is wanted of the front's columns. */
+/* Entries or the diagonal of the front's columns. */
 static void hdi_inverse_emit(const hdi_inverse *z, const hdi_inverse_front *w) {
     const hdi_symbolic *s = w->f->sym;
     int64_t n;
-    if (z->wanted == HDI_WANT_FORMS) hdi_forms_front(z, w);
-    else if (z->wanted == HDI_WANT_DIAGONAL)
+    if (z->wanted == HDI_WANT_DIAGONAL)
         for (n = 0; n < w->p; n++) hdi_inverse_put(z, hdi_inverse_at(w, n, n), s->super[w->v] + n);
     else
         for (n = s->a_ptr[w->v]; n < s->a_ptr[w->v + 1]; n++)
             hdi_inverse_put(z, hdi_inverse_at(w, s->a_row[n], s->a_col[n]), n);
 }
 
-/* Z of front v, whose Z22 is there: its columns, what is wanted of them, and the children's Z22. shared: all
- * threads, else this one. */
-static void hdi_inverse_front_run(const hdi_inverse *z, int32_t v, double *scratch, int shared) {
-    const hdi_symbolic *s = z->f->sym;
-    const hdi_inverse *all = shared ? z : NULL;
-    const int real = z->f->width == 1;
-    const int32_t nr = z->f->real->nr;
-    hdi_inverse_front w = hdi_inverse_open(z->f, v, scratch);
-    int64_t u;
-    int32_t k;
-    hdi_factor_fetch(z->f, v, 1);
-    for (w.k0 = (w.p - 1) / HDI_PANEL * HDI_PANEL; w.k0 >= 0; w.k0 -= HDI_PANEL) {
-        w.k1 = hdi_least(w.k0 + HDI_PANEL, w.p);
-        u = w.m - w.k1;
-        if (real) hdi_inverse_pivots_real(&w);
-        else hdi_inverse_pivots_pack(&w);
-        if (w.k1 == w.m) continue;
-        hdi_inverse_stage_run(all, &w, HDI_INVERSE_M, w.k1, w.m);
-        if (real) hdi_inverse_slices_real(w.slices, nr, w.M, u, u, w.k1 - w.k0);
-        hdi_inverse_stage_run(all, &w, HDI_INVERSE_BELOW, w.k1, w.m);
-        if (real) hdi_inverse_slices_real(w.slices, nr, w.z + w.k1 + w.k0 * w.m, w.m, u, w.k1 - w.k0);
-        hdi_inverse_stage_run(all, &w, HDI_INVERSE_CORNER, 0, w.k1 - w.k0);
-    }
-    hdi_inverse_emit(z, &w);
-    for (k = s->kid_ptr[v]; k < s->kid_ptr[v + 1]; k++) {
-        w.child = s->kid[k];
-        hdi_inverse_stage_run(all, &w, HDI_INVERSE_CHILD, 0, hdi_front_below(s, w.child));
-    }
-}
-
-/* ---- the way down as one loop ---- */
-/* Its nodes: chunks of a stage of a front of the top, one stage after the other; then the subtrees. Whoever
- * does the last chunk of a stage does what one thread must do before the next, and releases that one's. */
-
-enum { HDI_INVERSE_FORMS = HDI_INVERSE_CHILD + 1, HDI_INVERSE_WHOLE, HDI_INVERSE_TASKS = 1 << 30 };
-
-/* A stage on the way: of front s->top[top], rows [begin,end) in chunks of `rows`. WHOLE: a small front. */
+/* A front whose Z22 is there, and the stage that it is in: [begin,end) of rows, of blocks of forms, or of the
+ * rows of one child after the other. */
 typedef struct hdi_inverse_step {
-    int32_t top, stage, kid;
-    int64_t k0, k1, begin, end, rows;
-} hdi_inverse_step;
-
-typedef struct hdi_inverse_loop {
-    hdi_inverse *z;
+    const hdi_inverse *z;
     hdi_inverse_front w;
     hdi_form_job form;
-    hdi_inverse_step at;
-    double *scratch;
-    int32_t left;                /* nodes of the stage that are not done */
-    int32_t *order;
-    hd_threads *threads;
-} hdi_inverse_loop;
+    int32_t stage;
+    int64_t begin, end;
+} hdi_inverse_step;
 
-static void hdi_inverse_step_set(hdi_inverse_step *c, int stage, int64_t begin, int64_t end, int64_t rows) {
+static void hdi_inverse_begin(hdi_inverse_step *c, const hdi_inverse *z, int32_t v, double *scratch) {
+    c->z = z;
+    c->w = hdi_inverse_open(z->f, v, scratch);
+    c->w.k0 = c->w.p;
+    c->stage = HDI_INVERSE_CORNER;               /* of no block: the last one comes next */
+    hdi_factor_fetch(z->f, v, 1);
+}
+
+static int64_t hdi_inverse_children(const hdi_symbolic *s, int32_t v) {
+    int64_t n = 0;
+    int32_t k;
+    for (k = s->kid_ptr[v]; k < s->kid_ptr[v + 1]; k++) n += hdi_front_below(s, s->kid[k]);
+    return n;
+}
+
+static void hdi_inverse_set(hdi_inverse_step *c, int stage, int64_t begin, int64_t end) {
     c->stage = (int32_t)stage;
     c->begin = begin;
     c->end = end;
-    c->rows = rows;
 }
 
-static int64_t hdi_inverse_step_nodes(const hdi_inverse_step *c) {
-    return (c->end - c->begin + c->rows - 1) / c->rows;
+/* The columns are there: what is wanted of them. */
+static void hdi_inverse_columns(hdi_inverse_step *c) {
+    hdi_inverse_set(c, HDI_INVERSE_FORMS, 0, 0);
+    if (c->z->wanted != HDI_WANT_FORMS) {
+        hdi_inverse_emit(c->z, &c->w);
+        return;
+    }
+    c->form = hdi_forms_open(c->z, &c->w);
+    c->end = hdi_least(c->form.n_blocks, HDI_FORM_SLOTS);
 }
 
-/* The first stage of the front c->top: its last block of pivots. */
-static void hdi_inverse_step_front(const hdi_symbolic *s, hdi_inverse_step *c) {
-    const int32_t v = s->top[c->top];
-    const int64_t m = hdi_front_rows(s, v);
-    c->kid = s->kid_ptr[v];
-    c->k1 = hdi_front_pivots(s, v);
-    c->k0 = (c->k1 - 1) / HDI_PANEL * HDI_PANEL;
-    if (m < 2 * (int64_t)HDI_INV_CHUNK) hdi_inverse_step_set(c, HDI_INVERSE_WHOLE, 0, 1, 1);
-    else hdi_inverse_step_set(c, HDI_INVERSE_M, c->k1, m, HDI_INV_CHUNK);
-}
-
-/* The next stage, which may have no nodes. 0: there is none. Depends on nothing but the schedule. */
-static int hdi_inverse_step_next(const hdi_inverse *z, const hdi_symbolic *s, hdi_inverse_step *c) {
-    const int32_t v = s->top[hdi_low32(c->top, s->n_top - 1)];
-    const int64_t m = hdi_front_rows(s, v), p = hdi_front_pivots(s, v);
-    const int forms = z->wanted == HDI_WANT_FORMS;
+/* Goes on to the next stage, after what one thread must do before it. 0: there is none. */
+static int hdi_inverse_next(hdi_inverse_step *c) {
+    hdi_inverse_front *w = &c->w;
+    const int real = w->f->width == 1;
+    const int32_t nr = w->f->real->nr;
+    const int64_t u = w->m - w->k1, n = w->k1 - w->k0;
     if (c->stage == HDI_INVERSE_M) {
-        hdi_inverse_step_set(c, HDI_INVERSE_BELOW, c->k1, m, HDI_INV_CHUNK);
+        if (real) hdi_inverse_slices_real(w->slices, nr, w->M, u, u, n);
+        hdi_inverse_set(c, HDI_INVERSE_BELOW, w->k1, w->m);
     } else if (c->stage == HDI_INVERSE_BELOW) {
-        hdi_inverse_step_set(c, HDI_INVERSE_CORNER, 0, c->k1 < m ? c->k1 - c->k0 : 0, (int64_t)HDI_REAL_MR);
-    } else if (c->stage == HDI_INVERSE_CORNER && c->k0 > 0) {
-        c->k1 = c->k0;
-        c->k0 -= HDI_PANEL;
-        hdi_inverse_step_set(c, HDI_INVERSE_M, c->k1, m, HDI_INV_CHUNK);
+        if (real) hdi_inverse_slices_real(w->slices, nr, w->z + w->k1 + w->k0 * w->m, w->m, u, n);
+        hdi_inverse_set(c, HDI_INVERSE_CORNER, 0, u > 0 ? n : 0);
+    } else if (c->stage == HDI_INVERSE_CORNER && w->k0 > 0) {
+        w->k1 = w->k0;
+        w->k0 = (w->k1 - 1) / HDI_PANEL * HDI_PANEL;
+        if (real) hdi_inverse_pivots_real(w);
+        else hdi_inverse_pivots_pack(w);
+        hdi_inverse_set(c, HDI_INVERSE_M, w->k1, w->m);
     } else if (c->stage == HDI_INVERSE_CORNER) {
-        hdi_inverse_step_set(c, HDI_INVERSE_FORMS, 0, 0, 1);
-        if (forms) c->end = hdi_least(hdi_forms_blocks(z->forms, p), z->forms->n_slots);
-    } else if (c->stage == HDI_INVERSE_FORMS && forms && c->end < hdi_forms_blocks(z->forms, p)) {
-        c->begin = c->end;
-        c->end = hdi_least(hdi_forms_blocks(z->forms, p), c->begin + z->forms->n_slots);
-    } else if (c->stage != HDI_INVERSE_WHOLE && c->kid < s->kid_ptr[v + 1]) {
-        hdi_inverse_step_set(c, HDI_INVERSE_CHILD, 0, hdi_front_below(s, s->kid[c->kid++]), HDI_INV_CHUNK);
+        hdi_inverse_columns(c);
+    } else if (c->stage == HDI_INVERSE_FORMS && c->z->wanted == HDI_WANT_FORMS && c->end < c->form.n_blocks) {
+        hdi_inverse_set(c, HDI_INVERSE_FORMS, c->end, hdi_least(c->form.n_blocks, c->end + HDI_FORM_SLOTS));
+    } else if (c->stage == HDI_INVERSE_FORMS) {
+        hdi_inverse_set(c, HDI_INVERSE_CHILD, 0, hdi_inverse_children(w->f->sym, w->v));
     } else {
-        if (c->top-- == 0) return 0;
-        hdi_inverse_step_front(s, c);
+        return 0;
     }
     return 1;
 }
 
-/* Before M of a front's last block: the front. */
-static void hdi_inverse_enter_front(hdi_inverse_loop *l, int32_t worker) {
-    hdi_inverse *z = l->z;
-    const hdi_symbolic *s = z->f->sym;
-    const double done = 0.5 * (s->n_top - 1 - l->at.top) / s->n_top;
-    if (HDI_LOAD(&z->stop)) return;
-    if (worker == 0 && hdi_progress(z->f->ctx, "invert", done, &z->error) < 0) HDI_STORE(&z->stop, 1);
-    l->w = hdi_inverse_open(z->f, s->top[l->at.top], l->scratch);
-    hdi_factor_fetch(z->f, l->w.v, 1);
-}
-
-/* What one thread does before the stage. */
-static void hdi_inverse_enter(hdi_inverse_loop *l, int32_t worker) {
-    hdi_inverse_front *w = &l->w;
-    const hdi_inverse_step *c = &l->at;
-    const hdi_symbolic *s = l->z->f->sym;
-    const int real = l->z->f->width == 1;
-    const int32_t nr = l->z->f->real->nr;
-    const int64_t p = hdi_front_pivots(s, s->top[c->top]), n = c->k1 - c->k0;
-    if (c->stage == HDI_INVERSE_WHOLE || (c->stage == HDI_INVERSE_M && c->k1 == p))
-        hdi_inverse_enter_front(l, worker);
-    if (HDI_LOAD(&l->z->stop)) return;
-    w->k0 = c->k0;
-    w->k1 = c->k1;
-    if (c->stage == HDI_INVERSE_M) {
-        if (real) hdi_inverse_pivots_real(w);
-        else hdi_inverse_pivots_pack(w);
-    } else if (c->stage == HDI_INVERSE_BELOW && real && w->k1 < w->m) {
-        hdi_inverse_slices_real(w->slices, nr, w->M, w->m - w->k1, w->m - w->k1, n);
-    } else if (c->stage == HDI_INVERSE_CORNER && real && w->k1 < w->m) {
-        hdi_inverse_slices_real(w->slices, nr, w->z + w->k1 + w->k0 * w->m, w->m, w->m - w->k1, n);
-    } else if (c->stage == HDI_INVERSE_FORMS && l->z->wanted != HDI_WANT_FORMS) {
-        hdi_inverse_emit(l->z, w);
-    } else if (c->stage == HDI_INVERSE_FORMS) {
-        if (c->begin == 0) l->form = hdi_forms_open(l->z, w);
-        l->form.begin = (int32_t)c->begin;
-    } else if (c->stage == HDI_INVERSE_CHILD) {
-        w->child = s->kid[c->kid - 1];
-    }
-}
-
-/* Goes on to the next stage that has nodes, or after the last one to the subtrees. Sets what is ready then:
- * nodes [*id, *id + result). */
-static int32_t hdi_inverse_advance(hdi_inverse_loop *l, int32_t worker, int32_t *id) {
-    const hdi_symbolic *s = l->z->f->sym;
-    do {
-        if (!hdi_inverse_step_next(l->z, s, &l->at)) {
-            *id = HDI_INVERSE_TASKS;
-            return s->n_tasks;
-        }
-        hdi_inverse_enter(l, worker);
-    } while (hdi_inverse_step_nodes(&l->at) == 0);
-    *id = 0;
-    l->left = (int32_t)hdi_inverse_step_nodes(&l->at);
-    return l->left;
-}
-
-/* Chunk i of the stage. */
-static void hdi_inverse_chunk(hdi_inverse_loop *l, int32_t i) {
-    const hdi_inverse_step *c = &l->at;
-    /* the last rows of a triangle are longest */
-    const int64_t chunk = hdi_inverse_step_nodes(c) - 1 - i, r0 = c->begin + chunk * c->rows;
-    if (c->stage == HDI_INVERSE_WHOLE) {
-        hdi_inverse_front_run(l->z, l->w.v, l->scratch, 0);
-    } else if (c->stage == HDI_INVERSE_FORMS) {
-        if (c->begin + i < l->form.n_blocks) hdi_form_task(&l->form, i, 0);
-    } else {
-        hdi_inverse_part(&l->w, c->stage, r0, hdi_least(r0 + c->rows, c->end),
-                         l->z->chunk + l->z->chunk_size * (size_t)chunk);
-    }
-}
-
-static void hdi_inverse_task(void *arg, int64_t index, int32_t worker) {
-    hdi_inverse *z = (hdi_inverse *)arg;
-    const hdi_symbolic *s = z->f->sym;
-    const int64_t i = s->n_tasks - 1 - index;
-    const double done = z->done + (1 - z->done) * (double)index / s->n_tasks;
-    int32_t v;
-    if (HDI_LOAD(&z->stop)) return;
-    if (worker == 0 && hdi_progress(z->f->ctx, "invert", done, &z->error) < 0) HDI_STORE(&z->stop, 1);
-    for (v = s->task_end[i]; v-- > s->task_begin[i] && !HDI_LOAD(&z->stop);)
-        hdi_inverse_front_run(z, v, z->scratch + z->scratch_size * (size_t)i, 0);
-}
-
-static void hdi_inverse_node(void *arg, int64_t index, int32_t worker) {
-    hdi_inverse_loop *l = (hdi_inverse_loop *)arg;
-    int32_t id, n;
-    if (index >= HDI_INVERSE_TASKS) {
-        hdi_inverse_task(l->z, index - HDI_INVERSE_TASKS, worker);
+/* [r0,r1) of the stage. */
+static void hdi_inverse_do(const hdi_inverse_step *c, int64_t r0, int64_t r1, double *buffer) {
+    const hdi_symbolic *s = c->w.f->sym;
+    hdi_inverse_front w;
+    int32_t k;
+    if (c->stage == HDI_INVERSE_FORMS) {
+        for (; r0 < r1; r0++) hdi_form_task(&c->form, r0);
         return;
     }
-    if (!HDI_LOAD(&l->z->stop)) hdi_inverse_chunk(l, (int32_t)index);
-    if (HDI_ATOMIC_ADD(&l->left, -1) != 0) return;
-    n = hdi_inverse_advance(l, worker, &id);
-    hdi_release_many(l->threads, id, n, l->order);
+    if (c->stage != HDI_INVERSE_CHILD) {
+        hdi_inverse_part(&c->w, c->stage, r0, r1, buffer);
+        return;
+    }
+    w = c->w;
+    for (k = s->kid_ptr[w.v]; k < s->kid_ptr[w.v + 1] && r1 > 0; k++) {
+        const int64_t u = hdi_front_below(s, s->kid[k]);
+        w.child = s->kid[k];
+        if (r0 < u) hdi_inverse_part(&w, HDI_INVERSE_CHILD, r0 > 0 ? r0 : 0, hdi_least(r1, u), NULL);
+        r0 -= u;
+        r1 -= u;
+    }
 }
 
-/* A step before the first stage. */
-static hdi_inverse_step hdi_inverse_step_begin(const hdi_symbolic *s) {
+/* Front v, by this thread. */
+static void hdi_inverse_front_run(const hdi_inverse *z, int32_t v, double *scratch) {
     hdi_inverse_step c;
-    memset(&c, 0, sizeof c);
-    c.top = s->n_top;
-    hdi_inverse_step_set(&c, HDI_INVERSE_WHOLE, 0, 0, 1);
-    return c;
+    hdi_inverse_begin(&c, z, v, scratch);
+    while (hdi_inverse_next(&c))
+        if (c.begin < c.end) hdi_inverse_do(&c, c.begin, c.end, c.w.buffer);
 }
 
-/* Nodes of the loop. */
-static int64_t hdi_inverse_count(const hdi_inverse *z, const hdi_symbolic *s) {
-    hdi_inverse_step c = hdi_inverse_step_begin(s);
-    int64_t n = s->n_tasks;
-    while (hdi_inverse_step_next(z, s, &c)) n += hdi_inverse_step_nodes(&c);
+/* ---- the way down as a walk ---- */
+/* Its nodes: one front of the top after the other, then the subtrees. A front is one node, by one thread, or
+ * it is shared: that node opens it, and chunks of one stage after the other follow. */
+
+typedef struct hdi_inverse_walk {
+    hdi_walk walk;
+    hdi_inverse_step at;
+    double *scratch;             /* of the top */
+    int32_t top, left;           /* the front of the top under way; nodes of the stage that are not done */
+    int32_t whole;               /* it is done by one thread */
+} hdi_inverse_walk;
+
+/* Whether threads share front v. */
+static int hdi_inverse_shared(const hdi_symbolic *s, int32_t v) {
+    return hdi_front_rows(s, v) >= 2 * (int64_t)HDI_INV_CHUNK;
+}
+
+/* Rows of a node. */
+static int64_t hdi_inverse_rows(int32_t stage) {
+    if (stage == HDI_INVERSE_FORMS) return 1;
+    return stage == HDI_INVERSE_CORNER ? (int64_t)HDI_REAL_MR : (int64_t)HDI_INV_CHUNK;
+}
+
+static int64_t hdi_inverse_chunks(int32_t stage, int64_t rows) {
+    return (rows + hdi_inverse_rows(stage) - 1) / hdi_inverse_rows(stage);
+}
+
+/* Nodes of the walk, at most. */
+static int64_t hdi_inverse_nodes(const hdi_inverse *z, const hdi_symbolic *s) {
+    int64_t n = (int64_t)s->n_tasks + s->n_top, k0, k1;
+    int32_t i;
+    for (i = 0; i < s->n_top; i++) {
+        const int64_t m = hdi_front_rows(s, s->top[i]), p = hdi_front_pivots(s, s->top[i]);
+        if (!hdi_inverse_shared(s, s->top[i])) continue;
+        n += hdi_inverse_chunks(HDI_INVERSE_CHILD, hdi_inverse_children(s, s->top[i]));
+        if (z->wanted == HDI_WANT_FORMS) n += hdi_forms_blocks(z->forms, p);
+        for (k1 = p; k1 > 0; k1 = k0) {
+            k0 = (k1 - 1) / HDI_PANEL * HDI_PANEL;
+            n += 2 * hdi_inverse_chunks(HDI_INVERSE_M, m - k1);
+            n += hdi_inverse_chunks(HDI_INVERSE_CORNER, k1 - k0);
+        }
+    }
     return n;
 }
 
-/* All of it by several threads. order [n]. */
-static void hdi_inverse_share(hdi_inverse *z, hd_threads *threads, int32_t n, int32_t *order,
-                              double *scratch) {
-    hdi_inverse_loop l;
-    int32_t ready, id, i;
-    memset(&l, 0, sizeof l);
-    l.z = z;
-    l.at = hdi_inverse_step_begin(z->f->sym);
-    l.scratch = scratch;
-    l.order = order;
-    l.threads = threads;
-    ready = hdi_inverse_advance(&l, 0, &id);
-    for (i = 0; i < ready; i++) order[i] = id + i;
-    hdi_parallel_ordered(z->f->ctx, n, ready, order, hdi_inverse_node, &l);
+/* All of a stage is done: the next one that has nodes, or the next front, or the subtrees. */
+static void hdi_inverse_advance(hdi_inverse_walk *t) {
+    const hdi_symbolic *s = t->at.z->f->sym;
+    while (!t->whole && hdi_inverse_next(&t->at)) {
+        t->left = (int32_t)hdi_inverse_chunks(t->at.stage, t->at.end - t->at.begin);
+        if (t->left > 0) {
+            hdi_release(&t->walk, s->n_tasks + s->n_top, t->left);
+            return;
+        }
+    }
+    t->left = 1;
+    if (t->top-- > 0) hdi_release(&t->walk, s->n_tasks + t->top, 1);
+    else hdi_release(&t->walk, 0, s->n_tasks);
+}
+
+/* Takes up the next front of the top. */
+static void hdi_inverse_top(hdi_inverse_walk *t) {
+    const hdi_inverse *z = t->at.z;
+    const int32_t v = z->f->sym->top[t->top];
+    t->whole = hdi_walk_alone(&t->walk) || !hdi_inverse_shared(z->f->sym, v);
+    if (t->whole) hdi_inverse_front_run(z, v, t->scratch);
+    else hdi_inverse_begin(&t->at, z, v, t->scratch);
+}
+
+static void hdi_inverse_node(void *arg, int64_t index, int32_t worker) {
+    hdi_inverse_walk *t = (hdi_inverse_walk *)arg;
+    const hdi_inverse *z = t->at.z;
+    const hdi_symbolic *s = z->f->sym;
+    const int32_t i = (int32_t)index - s->n_tasks - s->n_top;
+    int32_t v;
+    (void)worker;
+    if (index < s->n_tasks) {                    /* the last subtree first */
+        const int32_t task = s->n_tasks - 1 - (int32_t)index;
+        for (v = s->task_end[task]; v-- > s->task_begin[task] && !hdi_walk_stopped(&t->walk);)
+            hdi_inverse_front_run(z, v, z->scratch + z->scratch_size * (size_t)task);
+        return;
+    }
+    if (i < 0) {
+        hdi_inverse_top(t);
+    } else {
+        /* the last rows of a triangle are longest */
+        const int64_t rows = hdi_inverse_rows(t->at.stage);
+        const int64_t chunk = hdi_inverse_chunks(t->at.stage, t->at.end - t->at.begin) - 1 - i;
+        const int64_t r0 = t->at.begin + chunk * rows;
+        double *buffer = t->at.stage > HDI_INVERSE_CORNER ? NULL : z->chunk + z->chunk_size * (size_t)chunk;
+        hdi_inverse_do(&t->at, r0, hdi_least(r0 + rows, t->at.end), buffer);
+    }
+    if (HDI_ATOMIC_ADD(&t->left, -1) == 0) hdi_inverse_advance(t);
 }
 
 /* The arrays that inverting factors of the given width takes. */
@@ -15837,7 +15728,7 @@ static uint64_t hdi_inverse_bytes(const hdi_symbolic *s, int32_t width, int fact
     keep.left = room;
     if (factor) hdi_factor_take(&f, s, width, &keep);
     hdi_inverse_take(&z, s, width, &keep);
-    hdi_scope_count(&later, (uint64_t)(s->n_top > 0 ? hdi_inverse_count(&z, s) : 0), sizeof(int32_t));
+    hdi_scope_count(&later, (uint64_t)hdi_inverse_nodes(&z, s), sizeof(int32_t));
     if (order) *order = later;
     return bytes + later;
 }
@@ -15846,24 +15737,23 @@ static uint64_t hdi_inverse_bytes(const hdi_symbolic *s, int32_t width, int fact
  * the factor's update matrices. */
 static hd_status hdi_inverse_run(hdi_inverse *z, hdi_factor *f, hd_error *e) {
     const hdi_symbolic *s = f->sym;
-    double *scratch = z->scratch + z->scratch_size * (size_t)s->n_tasks;
     hdi_scope scope = hdi_scope_begin(f->ctx, e);
-    const int64_t n = s->n_top > 0 ? hdi_inverse_count(z, s) : 0;
-    int32_t i, *order = HDI_TAKE(&scope, int32_t, n);
-    hd_threads *threads = n > 0 && n < HDI_INVERSE_TASKS ? hdi_threads_own(f->ctx, n) : NULL;
+    const int64_t n = hdi_inverse_nodes(z, s);
+    int32_t *order = HDI_TAKE(&scope, int32_t, n);
+    hdi_inverse_walk t;
     if (!order) return hdi_scope_end(&scope);
+    memset(&t, 0, sizeof t);
     z->f = f;
-    z->stop = 0;
-    z->done = s->n_top > 0 ? 0.5 : 0;
-    hdi_error_clear(&z->error);
-    if (threads) hdi_inverse_share(z, threads, (int32_t)n, order, scratch);
-    for (i = s->n_top; i-- > 0 && !threads && !z->stop;) {
-        const int shared = hdi_front_rows(s, s->top[i]) >= 2 * HDI_INV_CHUNK;
-        if (hdi_progress(f->ctx, "invert", 0.5 * (s->n_top - 1 - i) / s->n_top, &z->error) < 0) z->stop = 1;
-        else hdi_inverse_front_run(z, s->top[i], scratch, shared);
-    }
-    if (!threads && !z->stop) hdi_parallel(f->ctx, s->n_tasks, hdi_inverse_task, z);
-    if (z->error.status < 0) *e = z->error;
+    t.at.z = z;
+    t.scratch = z->scratch + z->scratch_size * (size_t)s->n_tasks;
+    t.top = s->n_top;
+    t.whole = 1;                                 /* of no front */
+    hdi_walk_open(&t.walk, f->ctx, n, order, hdi_inverse_node, &t);
+    if (hdi_walk_alone(&t.walk)) t.walk.n = (uint32_t)(s->n_tasks + s->n_top);
+    t.walk.stage = "invert";
+    t.walk.e = e;
+    hdi_inverse_advance(&t);
+    hdi_walk_run(&t.walk);
     return hdi_scope_end(&scope);
 }
 
