@@ -68,7 +68,7 @@
      [10] geometry   triangles: checks, areas, cotangents, edges, defects
      [11] intrinsic  intrinsic Delaunay triangulations and the tufted cover
      [12] operators  the pair (L, B) of triangles, polygons, points and the caller's own matrices
-     [13] degree     orderings by minimum degree, breadth-first orderings
+     [13] degree     orderings by minimum degree
      [14] dissection nested dissection of meshes in space
      [15] analysis   elimination tree, supernodes, fronts, tasks, plan of memory
      [16] order      the choice of an elimination order
@@ -3084,20 +3084,6 @@ static void hdi_parallel(hd_context *ctx, int64_t n_tasks, hd_task task, void *a
     if (w.threads) hdi_walk_run(&w);
     else if (ctx->parallel_for && n_tasks > 1) ctx->parallel_for(ctx->parallel_user, n_tasks, task, arg);
     else for (i = 0; i < n_tasks; i++) task(arg, i, 0);
-}
-
-/* What [14] still asks for: n nodes of which the first n_ready in order are ready. By own threads. */
-static void hdi_parallel_ordered(hd_context *ctx, int32_t n, int32_t n_ready, int32_t *order, hd_task task,
-                                 void *arg) {
-    hdi_walk w;
-    hdi_walk_open(&w, ctx, n, order, task, arg);
-    w.own.ready = (uint32_t)n_ready;
-    hdi_walk_run(&w);
-}
-
-static void hdi_release_many(hd_threads *t, int32_t id, int32_t n, int32_t *order) {
-    (void)order;
-    hdi_release(&t->walk, id, n);
 }
 
 /* The same for [0, n) in ranges of per_task; the last one may be shorter. */
@@ -10759,19 +10745,20 @@ static hd_status hdi_vertices_check(const hd_laplacian *lap, int64_t k, const in
  *   F. Pellegrini, J. Roman, P. Amestoy, Hybridizing nested dissection and halo approximate minimum degree,
  *   2000 (the halo)
  * Our own additions: all that is known of a vertex lies in one half of a cache line, and what is needed soon
- * is fetched early, which decides the speed from 1M vertices on; the hash table of twins is small; a halo
- * needs no rows. Ties: the vertex whose degree was found last goes first. */
+ * is fetched early. This decides the speed from 1M vertices on. The hash table of twins is small. The halo
+ * needs no rows. Of several vertices of least degree, the one whose degree was found last goes first. */
 
-/* A variable, an element, or what became of them. */
+/* What is known of a vertex. It begins as a variable and may become an element. It is gone when it was
+ * eliminated or merged together with another one, or when its list is part of a newer element. */
 typedef struct hdi_amd_node {
-    int32_t at;                  /* its list begins at list[at]; of a vertex gone with another: that one */
-    int32_t len;                 /* length of the list: elements first, then variables */
-    int32_t elen;                /* how many are elements; HDI_AMD_PIVOT: this is an element itself */
-    int32_t weight;              /* vertices it stands for; 0: it is gone; negative: it is in L_me */
-    int32_t mark;                /* elements: |L_e \ L_me| + flag, 0 when absorbed; variables: flag if seen */
-    int32_t degree;              /* bound of the weight of the neighbours; of elements that of the list */
-    int32_t next, prev;          /* of the same degree; later chain of the hash table, and hash. Of an element
-                                    prev is its place in the order */
+    int32_t at;                  /* its list begins at list[at]; if it went with another vertex: that one */
+    int32_t len;                 /* the length of the list, which has elements first and then variables */
+    int32_t elen;                /* how many of them are elements; HDI_AMD_PIVOT: this is an element itself */
+    int32_t weight;              /* how many vertices it stands for; 0: it is gone; negative: it is in L_me */
+    int32_t mark;                /* element: |L_e \ L_me| + flag, 0 when absorbed; variable: flag if seen */
+    int32_t degree;              /* a bound of the weight of its neighbours; element: the list's weight */
+    int32_t next, prev;          /* neighbours in the list of a degree; later the next one in a chain of the
+                                    hash table, and the hash; prev of an element is its place in the order */
 } hdi_amd_node;
 
 enum { HDI_AMD_PIVOT = -1, HDI_AMD_BITS = 10, HDI_AMD_BUCKETS = 1 << HDI_AMD_BITS };
@@ -10809,7 +10796,8 @@ static void hdi_amd_unlink(hdi_amd *g, int32_t i) {
     else g->head[g->v[i].degree] = next;
 }
 
-/* Moves all lists together. Each marks its beginning with its owner, who keeps the entry that stood there. */
+/* Moves all lists together. The first entry of each list is replaced by the number of its owner, which keeps
+ * that entry in `at` until the list has been moved. */
 static void hdi_amd_compact(hdi_amd *g) {
     int32_t i, p, q = 0, end;
     for (i = 0; i < g->n; i++) {
@@ -10832,8 +10820,8 @@ static void hdi_amd_compact(hdi_amd *g) {
     g->free = q;
 }
 
-/* Variables of list[p..p+len-1] that are not in L_me yet are put to its end at list[q], which may be that
- * same list; returns the new end. Their own lists are read next: they are fetched already. */
+/* Appends to L_me, which ends at list[q], those variables of list[p..p+len-1] that are not in it yet. Both
+ * may be the same list. Returns the new end. The variables' own lists are read next, so they are fetched. */
 static int32_t hdi_amd_collect(hdi_amd *g, int32_t p, int32_t len, int32_t q, int32_t *weight) {
     const int32_t end = p + len;
     int32_t ahead;
@@ -10850,15 +10838,16 @@ static int32_t hdi_amd_collect(hdi_amd *g, int32_t p, int32_t len, int32_t q, in
     return q;
 }
 
-/* L_me = A_me and the L_e of all its elements e, which are absorbed. Without elements it is made in place. */
+/* Makes the element me: L_me is the union of A_me and the lists L_e of all elements e of me. These elements
+ * are absorbed. If there are none, L_me is made in place. */
 static void hdi_amd_element(hdi_amd *g, int32_t me) {
     hdi_amd_node *v = g->v + me;
     int32_t begin, end, p, weight = 0;
     const int32_t elen = v->elen;
     if (elen > 0 && v->degree > g->size - g->free) hdi_amd_compact(g);
-    /* Lists that are alive hold at most the nnz entries that they began with: L_me replaces the longer ones
-     * it is made of, and whoever gets me into its list loses one entry at least. So n words and more are free
-     * after compacting, and degrees are below n. */
+    /* The lists that are alive never hold more than the nnz entries that they began with. L_me replaces the
+     * lists it is made of, which are longer together, and a variable that gets me into its list loses at
+     * least one entry. So at least n words are free after compacting, and a degree is below n. */
     HEATDIFF_ASSERT(elen == 0 || v->degree <= g->size - g->free);
     begin = end = elen > 0 ? g->free : v->at;
     v->weight = -v->weight;
@@ -10880,7 +10869,7 @@ static int32_t *hdi_amd_chain(const hdi_amd *g, int32_t hash) {
     return g->bucket + (hash >> (31 - HDI_AMD_BITS));
 }
 
-/* mark - flag = |L_e \ L_me| for all elements e that share a variable with L_me. */
+/* Computes |L_e \ L_me| for all elements e that share a variable with L_me: it is mark - flag from now on. */
 static void hdi_amd_overlaps(hdi_amd *g, const hdi_amd_node *me) {
     hdi_amd_node *v = g->v;
     const int32_t flag = g->flag, *list = g->list, *l = list + me->at, *const l_end = l + me->len;
@@ -10895,8 +10884,9 @@ static void hdi_amd_overlaps(hdi_amd *g, const hdi_amd_node *me) {
     }
 }
 
-/* A_i and E_i for the i of L_me: what me covers goes, so do elements inside L_me, me comes. Variables with no
- * neighbours outside go with me. The others get their degree outside, and are put into the hash table. */
+/* Updates the lists A_i and E_i of all i in L_me. Variables that me covers and elements that lie inside L_me
+ * leave them, and me enters. Variables without neighbours outside L_me are eliminated together with me. For
+ * the others this finds their degree outside L_me and puts them into the hash table. */
 static void hdi_amd_update(hdi_amd *g, int32_t me) {
     hdi_amd_node *v = g->v, *pivot = v + me;
     int32_t *list = g->list, *l = list + pivot->at, *const l_end = l + pivot->len;
@@ -10944,7 +10934,8 @@ static void hdi_amd_update(hdi_amd *g, int32_t me) {
     }
 }
 
-/* Merges into i those behind it in the chain that have the same elements and variables: they stay alike. */
+/* Merges into i the vertices behind it in the chain that have the same elements and variables as i. They
+ * would have the same ones for ever. */
 static void hdi_amd_twins(hdi_amd *g, int32_t i) {
     hdi_amd_node *v = g->v, *a = v + i;
     const int32_t *list = g->list;
@@ -10970,7 +10961,7 @@ static void hdi_amd_twins(hdi_amd *g, int32_t i) {
     g->flag += stamped;
 }
 
-/* Merges all twins within L_me: they are in the same chains of the hash table, which is left empty. */
+/* Merges all twins within L_me. Twins are in the same chain of the hash table. The table is left empty. */
 static void hdi_amd_merge(hdi_amd *g, const hdi_amd_node *me) {
     int32_t p, i, *head;
     for (p = me->at; p < me->at + me->len; p++) {
@@ -11001,7 +10992,7 @@ static void hdi_amd_restore(hdi_amd *g, hdi_amd_node *me) {
     if (me->len == 0) me->mark = 0;
 }
 
-/* Marks of the next step must be above all old ones. Before the numbers run out they begin anew. */
+/* The marks of the next step must be above all old ones. Before the numbers run out, all marks begin anew. */
 static void hdi_amd_next_flag(hdi_amd *g, int32_t step) {
     int32_t i;
     if (g->flag < INT32_MAX - 2 * step - g->n) {
@@ -11013,8 +11004,8 @@ static void hdi_amd_next_flag(hdi_amd *g, int32_t step) {
     g->flag = 2;
 }
 
-/* For audits: what is left has all the weight and is in the lists of degrees; elements weigh what they say;
- * and each degree lies between the weight of the neighbours and that of all lists they are in. */
+/* For audits. The variables that are left have all the weight and are in the lists of degrees, elements weigh
+ * what they say, and each degree lies between the weight of the neighbours and the weight of all lists. */
 static int hdi_amd_sound(hdi_amd *g) {
     hdi_amd_node *v = g->v;
     int32_t i, k, q, left = g->left, listed = 0, wrong = 0;
@@ -11072,8 +11063,8 @@ static void hdi_amd_run(hdi_amd *g, int32_t until) {
     }
 }
 
-/* int32 words of work space for lists of nnz entries. The elbow room of n is needed, that of a fifth of the
- * entries saves time (as in the paper). */
+/* Words of work space for lists of nnz entries. The last n words are needed (see hdi_amd_element). A fifth of
+ * the entries more saves time, as in the paper. */
 static int64_t hdi_amd_words(int32_t inner, int32_t halo, int64_t nnz) {
     const int64_t n = (int64_t)inner + halo, all = halo > 0 ? 2 * nnz : nnz;
     return (int64_t)(sizeof(hdi_amd_node) / sizeof(int32_t)) * n + n + 1 + HDI_AMD_BUCKETS + all +
@@ -11107,8 +11098,8 @@ static void hdi_amd_drop(hdi_amd *g, int32_t i) {
     g->left--;
 }
 
-/* Rows without neighbours come first in the order, those dropped as dense last, the others enter the list of
- * their degree. Returns how many the order holds without the dense ones. */
+/* Rows without neighbours come first in the order. Rows that were dropped as dense come last. All others
+ * enter the list of their degree. Returns how many rows there are without the dense ones. */
 static int32_t hdi_amd_start(hdi_amd *g) {
     int32_t i, last = g->inner, count;
     for (i = 0; i < g->inner; i++) last -= g->v[i].weight == 0;
@@ -11126,7 +11117,7 @@ static int32_t hdi_amd_start(hdi_amd *g) {
     return count;
 }
 
-/* perm [inner] from the pivots' places: those merged or eliminated with others follow them. */
+/* Fills perm [inner] from the places of the pivots. Vertices that went with another one follow it. */
 static void hdi_amd_number(hdi_amd *g, int32_t *perm) {
     hdi_amd_node *v = g->v;
     int32_t i, j, root, up;
@@ -11140,27 +11131,24 @@ static void hdi_amd_number(hdi_amd *g, int32_t *perm) {
     }
 }
 
-/* A graph to be ordered: rows of the inner vertices, 0..inner-1, in both triangles; in any order, none twice
- * in a row, the diagonal may be there. The others, the halo, count in degrees but are never eliminated. They
- * have no rows, and edges between them do not matter. */
+/* A graph to be ordered. The inner vertices, 0..inner-1, have rows: their neighbours in both triangles, in
+ * any order, none twice; the diagonal may be there. The other vertices are the halo. They count in degrees
+ * but are never eliminated. They have no rows, and edges between them do not matter. Columns from n on are
+ * skipped. */
 typedef struct hdi_amd_graph {
     int32_t n, inner;
-    const int64_t *wide;         /* [inner + 1] where rows begin, or NULL and ... */
-    const int32_t *ptr;          /* [inner + 1] ... the same as shorter numbers */
-    const int32_t *col;          /* columns 0..n-1 */
+    const int32_t *ptr, *col;    /* [inner + 1], [ptr[inner]] */
 } hdi_amd_graph;
 
-static int64_t hdi_amd_row(const hdi_amd_graph *a, int32_t i) { return a->wide ? a->wide[i] : a->ptr[i]; }
-
-/* Lists of all vertices but those with dense rows (as in AMD), which are dropped: they would be in most. */
+/* Makes the lists of all vertices. Vertices with dense rows are dropped, as in AMD: they would be in most
+ * lists. */
 static void hdi_amd_load(hdi_amd *g, const hdi_amd_graph *a) {
     const int32_t dense = (int32_t)(hdi_max(16, 10 * sqrt((double)a->n)));
-    int32_t i, q = 0;
-    int64_t p;
+    int32_t i, p, q = 0;
     for (i = 0; i < a->inner; i++) {
-        if (hdi_amd_row(a, i + 1) - hdi_amd_row(a, i) > dense) hdi_amd_drop(g, i);
-        for (p = hdi_amd_row(a, i); a->inner < a->n && p < hdi_amd_row(a, i + 1); p++)
-            if (a->col[p] >= a->inner) g->v[a->col[p]].len++;
+        if (a->ptr[i + 1] - a->ptr[i] > dense) hdi_amd_drop(g, i);
+        for (p = a->ptr[i]; a->inner < a->n && p < a->ptr[i + 1]; p++)
+            if (a->col[p] >= a->inner && a->col[p] < a->n) g->v[a->col[p]].len++;
     }
     for (i = a->inner; i < a->n; i++) {          /* room for the lists of the halo */
         if (g->v[i].len > dense) hdi_amd_drop(g, i);
@@ -11169,12 +11157,11 @@ static void hdi_amd_load(hdi_amd *g, const hdi_amd_graph *a) {
         g->v[i].len = 0;
     }
     for (i = 0; i < a->inner; i++) {
-        const int64_t end = hdi_amd_row(a, i + 1);
         g->v[i].at = q;
         if (g->v[i].weight == 0) continue;
-        for (p = hdi_amd_row(a, i); p < end; p++) {
+        for (p = a->ptr[i]; p < a->ptr[i + 1]; p++) {
             hdi_amd_node *j = g->v + a->col[p];
-            if (a->col[p] == i || j->weight == 0) continue;
+            if (a->col[p] == i || a->col[p] >= a->n || j->weight == 0) continue;
             g->list[q++] = a->col[p];
             if (a->col[p] >= a->inner) g->list[j->at + j->len++] = i;
         }
@@ -11183,7 +11170,7 @@ static void hdi_amd_load(hdi_amd *g, const hdi_amd_graph *a) {
     g->free = q;
 }
 
-/* Orders a small graph with ptr given: perm[q] is the inner vertex eliminated q-th. work
+/* Orders a small graph: perm[q] is the inner vertex that is eliminated q-th. work
  * [hdi_amd_words], below 2^31, best aligned to 64 bytes. Cannot fail. TRUSTS ITS INPUT. */
 static void hdi_amd_part(const hdi_amd_graph *a, int32_t *perm, int32_t *work) {
     hdi_amd g;
@@ -11200,13 +11187,14 @@ static hd_status hdi_amd_order(const hd_csr *a, int32_t *perm, hd_context *ctx, 
     hdi_scope s = hdi_scope_begin(ctx, e);
     const int32_t n = a->n_rows;
     const int64_t words = hdi_amd_words(n, 0, a->nnz);
-    const hdi_amd_graph rows = {n, n, a->row_ptr, NULL, a->col};
-    int32_t count, *work;
+    int32_t i, count, *ptr = HDI_TAKE(&s, int32_t, (int64_t)n + 1), *work;
+    const hdi_amd_graph rows = {n, n, ptr, a->col};
     hdi_amd g;
     if (words - 9 * (int64_t)n > INT32_MAX)   /* places in the lists are numbered by 32 bits */
-        return hdi_fail(e, HD_ERR_TOO_LARGE, "a pattern is too large for a minimum degree ordering");
+        hdi_fail(e, HD_ERR_TOO_LARGE, "a pattern is too large for a minimum degree ordering");
     work = HDI_TAKE(&s, int32_t, words);
     if (e->status < 0) return hdi_scope_end(&s);
+    for (i = 0; i <= n; i++) ptr[i] = (int32_t)a->row_ptr[i];
     hdi_amd_begin(&g, n, n, work, words);
     hdi_amd_load(&g, &rows);
     count = hdi_amd_start(&g);
@@ -11217,12 +11205,15 @@ static hd_status hdi_amd_order(const hd_csr *a, int32_t *perm, hd_context *ctx, 
 }
 
 /* ==== [14] dissection ====
- * An elimination order for matrices whose rows have a place in space: separators last. The rows are numbered
- * along a space-filling curve, so that every part is a compact graph in cache. A part is halved on its
- * clusters, small groups of neighbours that are made once and handed down: they are swept along a line or by
- * graph distance, then the cut is improved by exchanges on a few coarser copies. Around the cut that this
- * gives, the smallest separator within a band is found exactly, by vertex-disjoint paths. Small parts are
- * ordered by minimum degree, the separators around them counted as neighbours. May call [13].
+ * Nested dissection: an elimination order for matrices whose rows have a place in space. A part of the graph
+ * is cut into two halves by a separator, which comes last in the order, and both halves are treated alike.
+ * The rows are numbered along a space-filling curve, so that every part is a compact graph in cache.
+ *   1. A part has clusters: small groups of neighbours, which are made once and handed down to the halves.
+ *   2. The clusters are made coarser a few times. The coarsest copy is cut in several ways, along directions
+ *      and by graph distance, and the best cut is taken. It is improved by exchanges on each finer copy.
+ *   3. Within a band around this cut, the smallest separator is found exactly, by vertex-disjoint paths.
+ *   4. Small parts are ordered by minimum degree. The separators around them count as neighbours.
+ * May call [13].
  * This work is based on
  *   A. George, Nested dissection of a regular finite element mesh, 1973
  *   G. M. Morton, A computer oriented geodetic data base and a new technique in file sequencing, 1966
@@ -11231,8 +11222,8 @@ static hd_status hdi_amd_order(const hd_csr *a, int32_t *perm, hd_context *ctx, 
  *   L. R. Ford, D. R. Fulkerson, Flows in networks, 1962 (and Menger's theorem)
  *   C. Ashcraft, J. W. H. Liu, Applications of the Dulmage-Mendelsohn decomposition and network flow to graph
  *   bisection improvement, 1998 (smallest separators in a band)
- * The clusters that a separator cuts through live on in both halves, with the weights of edges that they had:
- * these only guide the next cut. */
+ * A cluster that a separator cuts through lives on in both halves, and its edges keep their weights. Clusters
+ * only guide the next cut. */
 
 enum {
     HDI_ND_LEAF = 1500,     /* vertices of a part that minimum degree orders: fewer cost time, not fill */
@@ -11261,8 +11252,8 @@ enum {
 #define HDI_ND_UNEVEN 0.6     /* share by which a cut costs more that leaves one side empty */
 #define HDI_ND_SWEPT 0.2      /* share of the weight by which the sides of a swept cut differ at most */
 
-/* A part, or a coarse copy of one. At the finest copy weights are 1 (ew and w are NULL), and negative entries
- * of adj are rows outside of the part, already in a separator: ~row. */
+/* A part, or a coarse copy of one. In the part itself all weights are 1 (ew and w are NULL), and entries of
+ * adj from n on are its halo: rows outside of it, which are in a separator already. Copies have no halo. */
 typedef struct hdi_nd_graph {
     int32_t n;
     int32_t *ptr, *adj;    /* neighbours of v: adj[ptr[v]..ptr[v + 1]), no diagonal */
@@ -11272,8 +11263,9 @@ typedef struct hdi_nd_graph {
     int8_t *side;          /* 0, 1, and at the finest copy 2: separator */
 } hdi_nd_graph;
 
-/* Rows first..first + n - 1 of the order are to be found. clusters = 0: none are known. */
-typedef struct hdi_nd_part { int32_t first, n, edge, n_edges, clusters, buffer; } hdi_nd_part;
+/* A part has places first..first + n - 1 of the order. Its halo has the numbers n..n + halo - 1. If
+ * clusters is 0, none are known. */
+typedef struct hdi_nd_part { int32_t first, n, halo, edge, n_edges, clusters, buffer; } hdi_nd_part;
 
 /* The graphs of parts and their clusters, each in its own slices: one of two buffers is for odd depths. */
 typedef struct hdi_nd_buffer {
@@ -11288,26 +11280,18 @@ typedef struct hdi_nd {
     float *xyz;
     int32_t *perm, *work;
     hdi_nd_part *part;               /* [HDI_ND_NODES] */
-    int32_t level;                   /* halved in step: the first part of the level under way */
-    hd_threads *threads;             /* in one loop: those who share it, ... */
-    int32_t order[HDI_ND_NODES];     /* ... the parts as they become ready, ... */
-    uint32_t done;                   /* ... and how many are done */
-    int32_t stop;
-    hd_context *ctx;
-    hd_error *error;
+    hdi_walk walk;
+    int32_t order[HDI_ND_NODES];     /* the parts as they become ready */
 } hdi_nd;
 
 /* Work space left to a task, taken from its front: what a copy of this struct took is free after it. */
 typedef struct hdi_nd_space { int32_t *at, *end; } hdi_nd_space;
 
-/* A task's space, 20 n + 2 n_edges + 1200 words for a part of n vertices, is never used up. A split takes
- * 1.25 n (rows by number, sides), and the list of a cut's vertices 2 n; what else it takes is given back
- * before the next step. Of these steps the largest is hdi_nd_cut_clusters: 1.25 c for c <= n clusters, 2
- * n_edges, and copies, each of at most 2/3 of the vertices of the one before: one of N vertices takes 3.17 N,
- * all 9.5 c; where a copy fails it keeps 3.17 N at most, takes 5.5 N for a while, and hdi_nd_first_cut 11.5 N
- * on top, or hdi_nd_descend 4.25 N on top of all copies. With N = (2/3)^l c that is 9.5 c (1 - (2/3)^l) +
- * 14.67 N <= 14.67 c: together 19.2 n at most. Rounding adds less than 30 words to each of 24 copies. The
- * flow takes 9.25 n, fresh clusters 3.17 n + 5.5 (2/3 n), those of a half 2 n; hdi_nd_leaf looks itself. */
+/* Takes work space. Tasks cannot allocate, so each has 20 n + 2 n_edges + 1200 words for a part of n
+ * vertices. That is always enough. The largest need is in hdi_nd_cut_clusters, in words for each vertex: 0.25
+ * for the sides, 2 for the list, 1.25 for weights and sides of the clusters; 2 n_edges for the edges of the
+ * copies; and at most 14.7 for the copies themselves, because each has at most 2/3 of the vertices of the one
+ * before. */
 static int32_t *hdi_nd_take(hdi_nd_space *s, int64_t words) {
     int32_t *p = s->at;
     HEATDIFF_ASSERT(words <= s->end - s->at);
@@ -11329,7 +11313,7 @@ static uint32_t hdi_nd_spread(uint32_t x) {
     return (x | x << 2) & 0x09249249u;
 }
 
-/* key[i] = place of row i on the Morton curve in a grid of 1024^3 cells; unit [3n] = places within [0, 1]. */
+/* key[i] is the place of row i on the Morton curve in a grid of 1024^3 cells. unit [3n]: places in [0, 1]. */
 static void hdi_nd_keys(const double *xyz, int32_t n, uint32_t *key, float *unit) {
     double lo[3], hi[3], width = 0;
     int32_t i, d;
@@ -11352,38 +11336,46 @@ static void hdi_nd_keys(const double *xyz, int32_t n, uint32_t *key, float *unit
     }
 }
 
-/* count[i] becomes the sum of those before it. Returns the sum of all. */
-static int32_t hdi_nd_sums(int32_t *count, int32_t n) {
-    int32_t i, sum = 0;
-    for (i = 0; i < n; i++) {
-        const int32_t c = count[i];
-        count[i] = sum;
-        sum += c;
-    }
-    return sum;
+/* Groups [0,n) by keys: list[ptr[k]..ptr[k + 1]) are the i with key[i] = k, ascending. Those with negative
+ * keys are left out. ptr [n_keys + 1]. */
+static void hdi_group(const int32_t *key, int32_t n, int32_t n_keys, int32_t *ptr, int32_t *list) {
+    int32_t i;
+    hdi_fill_i32(ptr, (int64_t)n_keys + 1, 0);
+    for (i = 0; i < n; i++)
+        if (key[i] >= 0) ptr[key[i]]++;
+    for (i = 0; i < n_keys; i++) ptr[i + 1] += ptr[i];
+    for (i = n; i-- > 0;)
+        if (key[i] >= 0) list[--ptr[key[i]]] = i;
 }
 
-/* order = the rows by ascending key: three passes of ten bits. spare [n], count [1024]. */
-static void hdi_nd_sort(const uint32_t *key, int32_t n, int32_t *order, int32_t *spare, int32_t *count) {
-    int32_t i, shift, *from = spare, *to = order;
-    for (i = 0; i < n; i++) from[i] = i;
-    for (shift = 0; shift < 30; shift += 10) {
-        int32_t *t;
-        memset(count, 0, 1024 * sizeof *count);
-        for (i = 0; i < n; i++) count[key[i] >> shift & 1023u]++;
-        hdi_nd_sums(count, 1024);
-        for (i = 0; i < n; i++) to[count[key[from[i]] >> shift & 1023u]++] = from[i];
-        t = from;
-        from = to;
-        to = t;
+/* Sorts the rows along the curve, by three digits of 11 bits. Rows with too many entries come last, and the
+ * return value is the number of the other ones. inv: the inverse of order, but -1 for rows with too many
+ * entries. spare [n], ptr [2049]. */
+static int32_t hdi_nd_number(const hd_csr *a, uint32_t *key, int32_t *order, int32_t *inv, int32_t *spare,
+                             int32_t *ptr) {
+    const double dense = 10 * sqrt((double)a->n_rows) + 16;
+    const int32_t n = a->n_rows;
+    int32_t i, shift, m = 0;
+    for (i = 0; i < n; i++) {
+        if ((double)(a->row_ptr[i + 1] - a->row_ptr[i]) > dense) key[i] = (uint32_t)1 << 30;
+        else m++;
+        order[i] = i;
     }
+    for (shift = 0; shift < 33; shift += 11) {
+        for (i = 0; i < n; i++) inv[i] = (int32_t)(key[order[i]] >> shift & 2047u);
+        hdi_group(inv, n, 2048, ptr, spare);
+        for (i = 0; i < n; i++) inv[i] = order[spare[i]];
+        memcpy(order, inv, (size_t)n * sizeof *order);
+    }
+    for (i = 0; i < n; i++) inv[order[i]] = i < m ? i : -1;
+    return m;
 }
 
 /* ---- coarse copies ---- */
 
-/* Makes clusters of neighbours: each vertex still free takes its free neighbours, up to a weight of limit. A
- * vertex that finds none joins the cluster of a neighbour, or, where none has room, the last vertex that was
- * left alone. weight [n]: of the clusters. Returns their number. */
+/* Makes clusters of neighbours. Each vertex that is still free takes its free neighbours, up to a weight of
+ * limit. A vertex that finds none joins the cluster of a neighbour. If none of these has room, it joins the
+ * last vertex that was left alone. weight [n]: of the clusters. Returns their number. */
 static int32_t hdi_nd_cluster(const hdi_nd_graph *g, int32_t limit, int32_t *weight) {
     int32_t v, p, n = 0, single = -1, *map = g->map;
     for (v = 0; v < g->n; v++) map[v] = -1;
@@ -11394,7 +11386,7 @@ static int32_t hdi_nd_cluster(const hdi_nd_graph *g, int32_t limit, int32_t *wei
         map[v] = n;
         for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
             const int32_t u = g->adj[p];
-            if (u < 0) continue;
+            if (u >= g->n) continue;
             if (map[u] < 0) {
                 const int32_t wu = g->w ? g->w[u] : 1;
                 if (sum + wu > limit) continue;
@@ -11414,20 +11406,9 @@ static int32_t hdi_nd_cluster(const hdi_nd_graph *g, int32_t limit, int32_t *wei
     return n;
 }
 
-/* Groups [0,n) by keys: list[ptr[k]..ptr[k + 1]) are the i with key[i] = k, ascending. Those with negative
- * keys are left out. ptr [n_keys + 1]. */
-static void hdi_group(const int32_t *key, int32_t n, int32_t n_keys, int32_t *ptr, int32_t *list) {
-    int32_t i;
-    hdi_fill_i32(ptr, (int64_t)n_keys + 1, 0);
-    for (i = 0; i < n; i++)
-        if (key[i] >= 0) ptr[key[i]]++;
-    for (i = 0; i < n_keys; i++) ptr[i + 1] += ptr[i];
-    for (i = n; i-- > 0;)
-        if (key[i] >= 0) list[--ptr[key[i]]] = i;
-}
-
-/* c = the graph of the clusters of g, with summed weights. c->n, c->w are set; c->adj, c->ew have room for
- * space > 0 entries. member [g->n], start [c->n + 1], mark [c->n]. 0 if the room is too small. */
+/* Makes c, the graph of the clusters of g, with summed weights. c->n and c->w are set before. c->adj and
+ * c->ew have room for space > 0 entries. member [g->n], start [c->n + 1], mark [c->n]. Returns 0 if the room
+ * is too small. */
 static int hdi_nd_contract(const hdi_nd_graph *g, hdi_nd_graph *c, int32_t space, int32_t *member,
                            int32_t *start, int32_t *mark) {
     const int32_t *map = g->map, *ew = g->ew;
@@ -11446,7 +11427,7 @@ static int hdi_nd_contract(const hdi_nd_graph *g, hdi_nd_graph *c, int32_t space
             for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
                 const int32_t u = g->adj[p], e = ew ? ew[p] : 1;
                 int32_t d, at, fresh;
-                if (u < 0) continue;
+                if (u >= g->n) continue;
                 d = map[u];                      /* no branches from here on: they would be unpredictable */
                 at = mark[d];
                 fresh = at < row;
@@ -11463,8 +11444,9 @@ static int hdi_nd_contract(const hdi_nd_graph *g, hdi_nd_graph *c, int32_t space
     return 1;
 }
 
-/* For audits: weight of the vertices, and 2^32 times that of entries between clusters (map; NULL: of all).
- * -1 unless each edge is there from both its ends with the same weight: the sum would hardly be zero. */
+/* For audits. Returns the weight of all vertices plus 2^32 times the weight of the entries between clusters
+ * (map; NULL: of all entries). Returns -1 unless each edge is there from both its ends with the same weight:
+ * a checksum, to which both ends add opposite terms, would hardly be zero otherwise. */
 static int64_t hdi_nd_weigh(const hdi_nd_graph *g, const int32_t *map) {
     int64_t weight = 0;
     uint64_t sum = 0;
@@ -11473,9 +11455,10 @@ static int64_t hdi_nd_weigh(const hdi_nd_graph *g, const int32_t *map) {
         weight += g->w ? g->w[v] : 1;
         for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
             const int64_t u = g->adj[p], e = g->ew ? g->ew[p] : 1;
-            if (u == v || u >= g->n || e <= 0) return -1;
-            if (u >= 0) sum += (uint64_t)(u - v) * (uint64_t)((1 + u % 999 * (v % 999)) * e);
-            if (u >= 0 && (!map || map[u] != map[v])) weight += e << 32;
+            if (u == v || u < 0 || e <= 0) return -1;
+            if (u >= g->n) continue;
+            sum += (uint64_t)(u - v) * (uint64_t)((1 + u % 999 * (v % 999)) * e);
+            if (!map || map[u] != map[v]) weight += e << 32;
         }
     }
     return sum == 0 ? weight : -1;
@@ -11484,7 +11467,8 @@ static int64_t hdi_nd_weigh(const hdi_nd_graph *g, const int32_t *map) {
 /* Where copies are made: the room for their entries. */
 typedef struct hdi_nd_room { int32_t *adj, *ew, n; } hdi_nd_room;
 
-/* Makes level[1], coarser than level[0]. total: weight of all vertices. 0: no room, or not much to win. */
+/* Makes level[1], a coarser copy of level[0]. total: the weight of all vertices. Returns 0 if there is no
+ * room, or if the copy would not be much smaller. */
 static int hdi_nd_coarser(hdi_nd_graph *level, int32_t total, hdi_nd_room *room, hdi_nd_space *s) {
     hdi_nd_graph *g = level, *c = level + 1;
     const int32_t mean = total / g->n, most = total / HDI_ND_CLUSTERS;
@@ -11515,7 +11499,8 @@ static int hdi_nd_coarser(hdi_nd_graph *level, int32_t total, hdi_nd_room *room,
 
 /* ---- buckets ---- */
 
-/* Lists of items for each gain and side. prev of the first is -1 - bucket, of one in none HDI_ND_NONE. */
+/* A list of items for each gain and side. prev of the first item of a list is -1 - bucket. prev of an
+ * item that is in no list is HDI_ND_NONE. */
 typedef struct hdi_nd_queue {
     int32_t head[2 * HDI_ND_BUCKETS], top[2];
     int32_t *next, *prev;
@@ -11549,7 +11534,7 @@ static int32_t hdi_nd_queue_best(hdi_nd_queue *q, int32_t side) {
 
 /* ---- cutting edges ---- */
 
-/* What a cut costs: its size, and a little for halves that differ. */
+/* What a cut costs: its size, and a little more if the halves differ in weight. */
 static double hdi_nd_cost(double cut, double a, double b) {
     const double im = (a - b) / (a + b + 1e-30);
     return (cut + 1) * (1 + HDI_ND_UNEVEN * im * im);
@@ -11581,7 +11566,7 @@ static hdi_nd_mover hdi_nd_mover_make(const hdi_nd_graph *g, hdi_nd_space *s) {
     return m;
 }
 
-/* Gains of all vertices; those on the cut enter the queue. Sets the cut's weights. */
+/* Computes the gains of all vertices and the cut's weights. Vertices on the cut enter the queue. */
 static void hdi_nd_mover_start(hdi_nd_mover *m, hdi_nd_cut *cut) {
     const hdi_nd_graph *g = m->g;
     int32_t v, p, largest = 1;
@@ -11593,7 +11578,7 @@ static void hdi_nd_mover_start(hdi_nd_mover *m, hdi_nd_cut *cut) {
         int32_t in = 0, out = 0;
         for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
             const int32_t u = g->adj[p], e = g->ew ? g->ew[p] : 1;
-            if (u < 0) continue;
+            if (u >= g->n) continue;
             out += e & -(g->side[u] ^ g->side[v]);
             in += e;
         }
@@ -11613,7 +11598,7 @@ static void hdi_nd_mover_start(hdi_nd_mover *m, hdi_nd_cut *cut) {
     memset(m->locked, 0, (size_t)g->n);
 }
 
-/* v changes its side; its neighbours' gains follow. */
+/* Moves v to the other side and updates the gains of its neighbours. */
 static void hdi_nd_mover_move(hdi_nd_mover *m, int32_t v, hdi_nd_cut *cut) {
     const hdi_nd_graph *g = m->g;
     const int8_t to = (int8_t)(1 - g->side[v]);
@@ -11626,7 +11611,7 @@ static void hdi_nd_mover_move(hdi_nd_mover *m, int32_t v, hdi_nd_cut *cut) {
     m->gain[v] = -m->gain[v];
     for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
         const int32_t u = g->adj[p], e = g->ew ? g->ew[p] : 1;
-        if (u < 0) continue;
+        if (u >= g->n) continue;
         m->gain[u] += g->side[u] == to ? -2 * e : 2 * e;
         if (m->locked[u]) continue;
         if (m->q.prev[u] != HDI_ND_NONE) hdi_nd_queue_remove(&m->q, u);
@@ -11634,8 +11619,8 @@ static void hdi_nd_mover_move(hdi_nd_mover *m, int32_t v, hdi_nd_cut *cut) {
     }
 }
 
-/* The vertex to move next: the one of largest gain, where the side that it goes to stays below `most` or
- * below the side that it leaves. -1: there is none. */
+/* The vertex to move next is the one of largest gain, provided that the side it goes to stays below `most` or
+ * below the side it leaves. Returns -1 if there is none. */
 static int32_t hdi_nd_mover_next(hdi_nd_mover *m, const hdi_nd_cut *cut) {
     int32_t s, best = -1, gain = 0;
     for (s = 0; s < 2; s++) {
@@ -11652,8 +11637,8 @@ static int32_t hdi_nd_mover_next(hdi_nd_mover *m, const hdi_nd_cut *cut) {
     return best;
 }
 
-/* Passes of Fiduccia and Mattheyses: each moves the best vertex again and again, even at a loss, no vertex
- * twice, and then goes back to the best cut seen. */
+/* Passes of Fiduccia and Mattheyses. A pass moves the best vertex again and again, even at a loss, but no
+ * vertex twice. At its end it goes back to the best cut seen. */
 static void hdi_nd_refine_edges(hdi_nd_mover *m, hdi_nd_cut *cut, int32_t passes) {
     const int64_t patience = hdi_least(20 + m->g->n / 20, HDI_ND_PATIENCE);
     while (passes-- > 0) {
@@ -11714,7 +11699,7 @@ static int32_t hdi_nd_steps(const hdi_nd_graph *g, int32_t start, int32_t *dist,
         v = queue[head++];
         for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
             const int32_t u = g->adj[p];
-            if (u < 0 || dist[u] < g->n) continue;
+            if (u >= g->n || dist[u] < g->n) continue;
             dist[u] = dist[v] + 1;
             queue[tail++] = u;
         }
@@ -11729,8 +11714,9 @@ static uint64_t hdi_nd_key(double x) {
     return u >> 63 ? ~u : u | 0x8000000000000000u;
 }
 
-/* The values along which the vertices are swept, as keys to sort by. kind 0: places along the longest
- * straight line; 1: graph distances; others: places along a direction. 0 if all are equal. work [3 g->n]. */
+/* The values along which the vertices are swept, as keys to sort by. kind 0: places along a line between two
+ * vertices far apart; 1: differences of graph distances from two such vertices; others: places along a fixed
+ * direction. Returns 0 if all values are equal. work [3 g->n]. */
 static int hdi_nd_sweep_keys(const hdi_nd *nd, const hdi_nd_graph *g, int32_t kind, hdi_pair *key,
                              int32_t *work) {
     static const signed char hdi_directions[9][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {1, -1, 0},
@@ -11759,7 +11745,7 @@ static int hdi_nd_sweep_keys(const hdi_nd *nd, const hdi_nd_graph *g, int32_t ki
     return differ;
 }
 
-/* The sides that the best place in the order of key gives. */
+/* Sets the sides: vertices up to the best place in the order of key are on side 0, the others on side 1. */
 static void hdi_nd_sweep(const hdi_nd_graph *g, const hdi_pair *key, double total) {
     double weight = 0, cut = 0, best = DBL_MAX;
     int32_t i, p, keep = 0;
@@ -11771,7 +11757,7 @@ static void hdi_nd_sweep(const hdi_nd_graph *g, const hdi_pair *key, double tota
         weight += g->w ? g->w[v] : 1;
         for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
             const int32_t u = g->adj[p], e = g->ew ? g->ew[p] : 1;
-            if (u >= 0) cut += g->side[u] ? e : -e;
+            if (u < g->n) cut += g->side[u] ? e : -e;
         }
         now = hdi_nd_cost(cut, weight, total - weight);
         if (fabs(2 * weight - total) > HDI_ND_SWEPT * total)
@@ -11828,7 +11814,8 @@ typedef struct hdi_nd_flow {
     int8_t *inside, from;       /* layer: 0 outside, else HDI_ND_MIDDLE +- the distance, less on side from */
 } hdi_nd_flow;
 
-/* The band: the separator, band[0..n), and what is at most `layers` steps from it, at most `most` a side. */
+/* Makes the band: the separator, band[0..n), and the vertices at most `layers` steps away from it, but no
+ * more than `most` on each side. */
 static void hdi_nd_flow_band(hdi_nd_flow *f, int32_t n, int32_t most, int32_t layers) {
     const hdi_nd_graph *g = f->g;
     int32_t i, p, begin = 0, room[2];
@@ -11842,7 +11829,7 @@ static void hdi_nd_flow_band(hdi_nd_flow *f, int32_t n, int32_t most, int32_t la
             const int32_t v = f->band[begin];
             for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
                 const int32_t u = g->adj[p];
-                if (u < 0 || f->inside[u] || room[g->side[u]] == 0) continue;
+                if (u >= g->n || f->inside[u] || room[g->side[u]] == 0) continue;
                 room[g->side[u]]--;
                 f->inside[u] = (int8_t)(f->inside[v] + (g->side[u] == f->from ? -1 : 1));
                 f->band[f->n_band++] = u;
@@ -11857,7 +11844,7 @@ static void hdi_nd_flow_band(hdi_nd_flow *f, int32_t n, int32_t most, int32_t la
     f->stamp = 0;
 }
 
-/* A path ends in this state: joins it to the others, which give up the steps that it takes back. */
+/* A new path ends in this state. Joins it to the others, which lose the steps that the new path goes back. */
 static void hdi_nd_flow_augment(hdi_nd_flow *f, int32_t state) {
     int32_t up;
     for (; (up = f->up[state]) >= 0; state = up) {
@@ -11869,7 +11856,7 @@ static void hdi_nd_flow_augment(hdi_nd_flow *f, int32_t state) {
     f->prev[state >> 1] = -1;
 }
 
-/* Notes that state `to` can be reached from state `from`, in the list of its layer. */
+/* State `to` can be reached from state `from`: puts it into the list of its layer. */
 static void hdi_nd_flow_push(hdi_nd_flow *f, int32_t to, int32_t from) {
     const int32_t layer = f->inside[to >> 1];
     f->seen[to] = f->stamp;
@@ -11880,8 +11867,9 @@ static void hdi_nd_flow_push(hdi_nd_flow *f, int32_t to, int32_t from) {
     if (layer > f->top) f->top = layer;
 }
 
-/* Searches one more path from vertex v; goes on from the state that is farthest towards the other side.
- * Returns 1 when there is one. What a failed search has seen is on no path, and dead from then on. */
+/* Searches one more path from vertex v. It always goes on from the state that is farthest towards the other
+ * side. Returns 1 if there is a path. If not, no state that was seen can lead to the other side any more:
+ * these states are dead from then on. */
 static int hdi_nd_flow_search(hdi_nd_flow *f, int32_t v) {
     const hdi_nd_graph *g = f->g;
     int32_t p, i;
@@ -11903,7 +11891,7 @@ static int hdi_nd_flow_search(hdi_nd_flow *f, int32_t v) {
         } else {
             for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
                 const int32_t u = g->adj[p];
-                if (u < 0) continue;
+                if (u >= g->n) continue;
                 if (f->inside[u]) {
                     if (f->seen[2 * u] < f->stamp) hdi_nd_flow_push(f, 2 * u, state);
                 } else if (g->side[u] != f->from) {
@@ -11923,11 +11911,12 @@ static int hdi_nd_flow_starts(const hdi_nd_flow *f, int32_t v) {
     const hdi_nd_graph *g = f->g;
     int32_t p;
     for (p = g->ptr[v]; p < g->ptr[v + 1]; p++)
-        if (g->adj[p] >= 0 && !f->inside[g->adj[p]] && g->side[g->adj[p]] == f->from) return 1;
+        if (g->adj[p] < g->n && !f->inside[g->adj[p]] && g->side[g->adj[p]] == f->from) return 1;
     return 0;
 }
 
-/* Sets the sides of the band around band[0..n): the smallest separator in it, that nearest to side from. */
+/* Finds the smallest separator within the band around band[0..n), and of several the one that is nearest to
+ * side `from`. Sets the sides of the band. */
 static void hdi_nd_flow_run(hdi_nd_flow *f, int32_t n, int32_t most, int32_t layers) {
     int32_t i, k = 0, paths = 0, cut = 0, begins = 0, *start;
     hdi_nd_flow_band(f, n, most, layers);
@@ -11951,7 +11940,7 @@ static void hdi_nd_flow_run(hdi_nd_flow *f, int32_t n, int32_t most, int32_t lay
 
 /* ---- parts ---- */
 
-/* The cut of level[from] taken down to level[1], improved on each copy. */
+/* Takes the cut of level[from] down to level[1] and improves it on each copy. */
 static void hdi_nd_descend(hdi_nd_graph *level, int32_t from, int32_t total, hdi_nd_space s) {
     int32_t l, v;
     for (l = from - 1; l > 0; l--) {
@@ -11965,7 +11954,7 @@ static void hdi_nd_descend(hdi_nd_graph *level, int32_t from, int32_t total, hdi
     }
 }
 
-/* Slices of the clusters of a part. */
+/* Where the clusters of a part are stored. */
 static void hdi_nd_clusters_of(const hdi_nd *nd, const hdi_nd_part *p, hdi_nd_graph *c) {
     const hdi_nd_buffer *b = nd->buffer + p->buffer;
     c->n = p->clusters;
@@ -11975,7 +11964,8 @@ static void hdi_nd_clusters_of(const hdi_nd *nd, const hdi_nd_part *p, hdi_nd_gr
     c->id = b->cid + p->first;
 }
 
-/* level[1] = clusters of clusters of level[0], about a dozen vertices each: the part's, if they fit. */
+/* Makes level[1]: clusters of clusters of level[0], of about a dozen vertices each. If they do not fit into
+ * the part's slices, it stays empty. */
 static void hdi_nd_fresh(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_graph *level, hdi_nd_space s) {
     hdi_nd_graph temp[3];
     hdi_nd_room room;
@@ -12000,12 +11990,12 @@ static void hdi_nd_fresh(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_graph
 static int hdi_nd_touches(const hdi_nd_graph *g, int32_t v) {
     int32_t p;
     for (p = g->ptr[v]; p < g->ptr[v + 1]; p++)
-        if (g->adj[p] >= 0 && g->side[g->adj[p]] != g->side[v]) return 1;
+        if (g->adj[p] < g->n && g->side[g->adj[p]] != g->side[v]) return 1;
     return 0;
 }
 
-/* The sides of level[0]: cuts the coarsest copy and takes the cut down. Returns in list the vertices that
- * touch the other side, of the side where they are fewer. */
+/* Sets the sides of level[0]: cuts the coarsest copy and takes the cut down. Fills list with the vertices of
+ * one side that touch the other side, and takes the side where these are fewer. Returns their number. */
 static int32_t hdi_nd_cut_clusters(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_graph *level,
                                    int32_t *list, hdi_nd_space s) {
     hdi_nd_room room;
@@ -12042,7 +12032,8 @@ static int32_t hdi_nd_cut_clusters(const hdi_nd *nd, const hdi_nd_part *part, hd
     return kept;
 }
 
-/* Weighs the sides of g. 0 if they differ too much, or the separator is most of it. */
+/* Counts the vertices on the sides of g. Returns 0 if the sides differ too much or the separator is
+ * too large. */
 static int hdi_nd_measure(const hdi_nd_graph *g, int32_t *size) {
     int32_t v;
     size[0] = size[1] = size[2] = 0;
@@ -12050,16 +12041,7 @@ static int hdi_nd_measure(const hdi_nd_graph *g, int32_t *size) {
     return size[0] <= g->n - g->n / 5 && size[1] <= g->n - g->n / 5 && size[2] <= g->n / 2;
 }
 
-/* Sides by number, for graphs on which all else failed. */
-static void hdi_nd_halve(const hdi_nd_graph *g) {
-    int32_t v, p;
-    for (v = 0; v < g->n; v++) g->side[v] = v >= g->n / 2;
-    for (v = 0; v < g->n / 2; v++)
-        for (p = g->ptr[v]; p < g->ptr[v + 1]; p++)
-            if (g->adj[p] >= g->n / 2) g->side[v] = 2;
-}
-
-/* Sets level[0].side to 0, 1 or 2 and size [3]. 0 if the part has no good separator. */
+/* Sets level[0].side to 0, 1, or 2 in the separator, and size [3]. Returns 0 if no separator is good. */
 static int hdi_nd_dissect(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_graph *level, hdi_nd_space s,
                           int32_t *size) {
     hdi_nd_flow f;
@@ -12081,8 +12063,6 @@ static int hdi_nd_dissect(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_grap
     f.inside = hdi_nd_take_bytes(&s, n);
     f.from = size[1] > size[0];
     hdi_nd_flow_run(&f, n_list, part->n / HDI_ND_BAND, HDI_ND_LAYERS);
-    if (hdi_nd_measure(level, size)) return 1;
-    hdi_nd_halve(level);
     return hdi_nd_measure(level, size);
 }
 
@@ -12091,7 +12071,7 @@ static int hdi_nd_separated(const hdi_nd_graph *g) {
     int32_t v, p;
     for (v = 0; v < g->n; v++)
         for (p = g->ptr[v]; p < g->ptr[v + 1]; p++)
-            if (g->adj[p] >= 0 && g->side[v] + g->side[g->adj[p]] == 1) return 0;
+            if (g->adj[p] < g->n && g->side[v] + g->side[g->adj[p]] == 1) return 0;
     return 1;
 }
 
@@ -12122,23 +12102,28 @@ static void hdi_nd_graphs_of(const hdi_nd *nd, const hdi_nd_part *p, hdi_nd_grap
     hdi_nd_clusters_of(nd, p, level + 1);
 }
 
-/* The vertices of one side into the child's slices. at [g->n]: numbers within the sides, or ~row. */
-static void hdi_nd_extract(const hdi_nd_graph *g, int8_t side, const int32_t *at, hdi_nd_graph *child) {
+/* Makes a child of the vertices of one side, in the child's slices. Neighbours that are not on this side are
+ * numbered as its halo when they are first met. number: work space for the part's vertices and its halo. */
+static void hdi_nd_extract(const hdi_nd_graph *g, int32_t halo, int8_t side, hdi_nd_part *child,
+                           const hdi_nd_graph *half, int32_t *number) {
     int32_t v, p, i = 0, z = 0;
+    for (v = 0; v < g->n; v++) number[v] = g->side[v] == side ? child->n++ : -1;
+    hdi_fill_i32(number + g->n, halo, -1);
     for (v = 0; v < g->n; v++) {
         if (g->side[v] != side) continue;
-        child->ptr[i] = z;
-        child->id[i++] = g->id[v];
+        half->ptr[i] = z;
+        half->id[i++] = g->id[v];
         for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
             const int32_t u = g->adj[p];
-            child->adj[z++] = u < 0 ? u : at[u];
+            if (number[u] < 0) number[u] = child->n + child->halo++;
+            half->adj[z++] = number[u];
         }
     }
-    child->ptr[i] = z;
+    half->ptr[i] = child->n_edges = z;
 }
 
-/* The clusters of g[0], which are in g[1], that have vertices on one side into the child's slices, with room
- * for space entries. Returns their number, 0 if the room is too small. */
+/* Copies the clusters that have vertices on one side from g[1] to the child's slices, which have room for
+ * space entries. Returns their number, or 0 if the room is too small. */
 static int32_t hdi_nd_extract_clusters(const hdi_nd_graph *g, int8_t side, hdi_nd_graph *child,
                                        int32_t space, hdi_nd_space s) {
     const hdi_nd_graph *c = g + 1;
@@ -12168,66 +12153,24 @@ static int32_t hdi_nd_extract_clusters(const hdi_nd_graph *g, int8_t side, hdi_n
     return n;
 }
 
-/* Gives the rows of the halo numbers from part->n on, in place, by a hash table in s. Returns how many there
- * are; n_edges when the space is too small and nothing has been done. */
-static int32_t hdi_nd_halo(const hdi_nd_part *part, int32_t *adj, hdi_nd_space s) {
-    int32_t p, n = 0, outer = 0, mask = 1;
-    for (p = 0; p < part->n_edges; p++) outer += adj[p] < 0;
-    while (mask < 2 * outer) mask *= 2;
-    if (2 * (int64_t)mask > s.end - s.at) return outer ? part->n_edges : 0;
-    memset(s.at, 0, 2 * (size_t)mask * sizeof *s.at);
-    for (p = 0; p < part->n_edges; p++) {
-        uint32_t h = (uint32_t)adj[p] * HDI_HASH_FACTOR >> 7;
-        int32_t *slot;
-        if (adj[p] >= 0) continue;
-        for (;; h++) {
-            slot = s.at + 2 * (h & (uint32_t)(mask - 1));
-            if (*slot == 0 || *slot == adj[p]) break;
-        }
-        if (*slot == 0) {
-            slot[0] = adj[p];
-            slot[1] = part->n + n++;
-        }
-        adj[p] = slot[1];
-    }
-    return n;
-}
-
-/* Takes the halo out of the rows. */
-static void hdi_nd_bare(hdi_nd_graph *g) {
-    int32_t v, p = 0, z = 0;
-    for (v = 0; v < g->n; v++) {
-        for (; p < g->ptr[v + 1]; p++) {
-            g->adj[z] = g->adj[p];
-            z += g->adj[p] >= 0 && g->adj[p] < g->n;
-        }
-        g->ptr[v + 1] = z;
-    }
-}
-
-/* Orders a part by minimum degree, separators around it as halo if there is space. Changes its graph. */
-static void hdi_nd_leaf(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_graph *g, hdi_nd_space s) {
-    hdi_amd_graph rows = {part->n, part->n, NULL, g->ptr, g->adj};
-    int32_t v, halo, *local = nd->perm + part->first;
+/* Orders a part by minimum degree. The separators around it count as its halo if there is space for it. */
+static void hdi_nd_leaf(const hdi_nd *nd, const hdi_nd_part *part, const hdi_nd_graph *g, hdi_nd_space s) {
+    hdi_amd_graph rows = {part->n + part->halo, part->n, g->ptr, g->adj};
+    int32_t v, *local = nd->perm + part->first;
     if (!part->n) return;
-    halo = hdi_nd_halo(part, g->adj, s);
-    if (hdi_amd_words(part->n, halo, part->n_edges) > s.end - s.at) {
-        hdi_nd_bare(g);
-        halo = 0;
-    }
-    rows.n += halo;
-    if (hdi_amd_words(part->n, halo, g->ptr[part->n]) <= s.end - s.at) hdi_amd_part(&rows, local, s.at);
-    else
-        for (v = 0; v < part->n; v++) local[v] = v;
+    if (hdi_amd_words(part->n, part->halo, part->n_edges) > s.end - s.at) rows.n = part->n;
+    HEATDIFF_ASSERT(hdi_amd_words(rows.n, 0, part->n_edges) <= s.end - s.at);
+    hdi_amd_part(&rows, local, s.at);
     for (v = 0; v < part->n; v++) local[v] = g->id[local[v]];
 }
 
-/* Halves a part into child[2], its separator last; orders a small part whole, its children are empty. */
+/* Halves a part into child[2] and puts its separator last. Small parts, and parts without a good separator,
+ * are ordered whole: their children are empty. */
 static void hdi_nd_split(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_part *child, hdi_nd_space s) {
     hdi_nd_graph level[HDI_ND_LEVELS], half[2];
     hdi_nd_space rest = s;
     const int small = part->n <= HDI_ND_LEAF || part->n_edges == 0;
-    int32_t v, size[3], n[2] = {0, 0}, last, *at = hdi_nd_take(&rest, part->n);
+    int32_t v, size[3], last, *number;
     memset(child, 0, 2 * sizeof *child);
     hdi_nd_graphs_of(nd, part, level);
     level->side = hdi_nd_take_bytes(&rest, part->n);
@@ -12238,29 +12181,23 @@ static void hdi_nd_split(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_part 
     }
     if (HDI_AUDIT && !hdi_nd_separated(level)) HEATDIFF_ASSERT(0);
     last = part->first + part->n - size[2];
-    for (v = 0; v < part->n; v++) {
-        const int8_t t = level->side[v];
-        if (t < 2) at[v] = n[t]++;
-        else {
-            nd->perm[last++] = level->id[v];
-            at[v] = ~level->id[v];
-        }
-    }
+    for (v = 0; v < part->n; v++)
+        if (level->side[v] == 2) nd->perm[last++] = level->id[v];
+    number = hdi_nd_take(&rest, (int64_t)part->n + part->halo);
     for (v = 0; v < 2; v++) {
-        child[v].first = v ? part->first + n[0] : part->first;
-        child[v].n = n[v];
-        child[v].edge = v ? part->edge + child->n_edges : part->edge;
+        child[v].first = part->first + child[0].n;
+        child[v].edge = part->edge + child[0].n_edges;
         child[v].buffer = 1 - part->buffer;
         hdi_nd_graphs_of(nd, child + v, half);
-        hdi_nd_extract(level, (int8_t)v, at, half);
-        child[v].n_edges = half->ptr[n[v]];
-        if (n[v] > HDI_ND_LEAF && level[1].n > 0)
+        hdi_nd_extract(level, part->halo, (int8_t)v, child + v, half, number);
+        if (child[v].n > HDI_ND_LEAF && level[1].n > 0)
             child[v].clusters = hdi_nd_extract_clusters(level, (int8_t)v, half,
                                                         child[v].n_edges / 4 - 1, rest);
     }
 }
 
-/* Orders a part and all below it. A child has at most 4/5 of its part: the stack grows to less than 100. */
+/* Orders a part and all parts below it. A child has at most 4/5 of the vertices of its part, so there are
+ * less than 100 parts on the stack. */
 static void hdi_nd_subtree(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_space s) {
     hdi_nd_part stack[128];
     int32_t n = 1;
@@ -12280,99 +12217,66 @@ static void hdi_nd_node(const hdi_nd *nd, int64_t i) {
     else hdi_nd_subtree(nd, nd->part + i, s);
 }
 
-static void hdi_nd_level_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_nd *nd = (const hdi_nd *)arg;
-    (void)worker;
-    hdi_nd_node(nd, nd->level + index);
-}
-
-/* A part is done: its halves may be claimed. */
-static void hdi_nd_loop_task(void *arg, int64_t index, int32_t worker) {
+/* Treats one part of the heap. After that its halves may be claimed. */
+static void hdi_nd_task(void *arg, int64_t index, int32_t worker) {
     hdi_nd *nd = (hdi_nd *)arg;
-    const double done = 0.1 + 0.8 * (double)HDI_ATOMIC_GET(&nd->done) / (double)HDI_ND_NODES;
-    if (worker == 0 && !HDI_LOAD(&nd->stop) && hdi_progress(nd->ctx, "order", done, nd->error) < 0)
-        HDI_STORE(&nd->stop, 1);
-    if (!HDI_LOAD(&nd->stop)) hdi_nd_node(nd, index);
-    HDI_ATOMIC_ADD(&nd->done, 1);
-    if (index < HDI_ND_TASKS - 1)
-        hdi_release_many(nd->threads, (int32_t)(2 * index + 1), 2, nd->order);
+    (void)worker;
+    hdi_nd_node(nd, index);
+    if (index < HDI_ND_TASKS - 1) hdi_release(&nd->walk, (int32_t)(2 * index + 1), 2);
 }
 
-/* order = rows along the curve, too long ones last; inv = its inverse, -1 for these. Returns the others. */
-static int32_t hdi_nd_number(const hd_csr *a, const uint32_t *key, int32_t *order, int32_t *inv,
-                             int32_t *count) {
-    const double dense = 10 * sqrt((double)a->n_rows) + 16;
-    int32_t i, k = 0, last = a->n_rows;
-    hdi_nd_sort(key, a->n_rows, order, inv, count);
-    for (i = 0; i < a->n_rows; i++) {
-        const int32_t r = order[i];
-        if ((double)(a->row_ptr[r + 1] - a->row_ptr[r]) > dense) inv[--last] = r;
-        else order[k++] = r;
-    }
-    for (i = k; i < a->n_rows; i++) order[i] = inv[i];
-    for (i = 0; i < a->n_rows; i++) inv[order[i]] = i < k ? i : -1;
-    return k;
-}
-
-/* Reads the matrix along the curve: blocks of rows go to the second buffer, from there to the first. */
+/* The matrix as the first part: row k of it is row order[k] of a. */
 typedef struct hdi_nd_load_job {
     const hdi_nd *nd;
     const hd_csr *a;
     const int32_t *order, *inv;
     const float *unit;         /* [3 a->n_rows] places of the rows */
-    int32_t n, *from, *to;     /* places of blocks in the second buffer; in the first, [n_blocks + 1] */
 } hdi_nd_load_job;
 
-static void hdi_nd_load_task(void *arg, int64_t index, int32_t worker) {
+/* Counts the neighbours of rows [begin, end). */
+static void hdi_nd_load_lengths(void *arg, int64_t begin, int64_t end) {
     const hdi_nd_load_job *job = (const hdi_nd_load_job *)arg;
     const hd_csr *a = job->a;
-    const hdi_nd_buffer *b = job->nd->buffer;
-    const int32_t first = (int32_t)index * HDI_ND_BLOCK;
-    const int32_t last = (int32_t)hdi_least(first + HDI_ND_BLOCK, job->n);
-    int32_t k, z = 0, *adj = b[1].adj + job->from[index];
-    int64_t p;
-    (void)worker;
-    for (k = first; k < last; k++) {
+    int64_t k, p;
+    for (k = begin; k < end; k++) {
         const int32_t r = job->order[k];
-        if (k + HDI_ROWS_AHEAD < last) HDI_PREFETCH(a->col + a->row_ptr[job->order[k + HDI_ROWS_AHEAD]]);
-        memcpy(job->nd->xyz + 3 * (size_t)k, job->unit + 3 * (size_t)r, 3 * sizeof(float));
-        b->ptr[k] = z;
-        b->id[k] = k;
-        for (p = a->row_ptr[r]; p < a->row_ptr[r + 1]; p++) {
-            adj[z] = job->inv[a->col[p]];
-            z += a->col[p] != r && adj[z] >= 0;
-        }
+        int32_t count = 0;
+        if (k + HDI_ROWS_AHEAD < end) HDI_PREFETCH(a->col + a->row_ptr[job->order[k + HDI_ROWS_AHEAD]]);
+        for (p = a->row_ptr[r]; p < a->row_ptr[r + 1]; p++)
+            count += a->col[p] != r && job->inv[a->col[p]] >= 0;
+        job->nd->buffer->ptr[k + 1] = count;
     }
-    job->to[index] = z;
 }
 
-static void hdi_nd_move_task(void *arg, int64_t index, int32_t worker) {
+/* Reads rows [begin, end), which begin where ptr says. */
+static void hdi_nd_load_rows(void *arg, int64_t begin, int64_t end) {
     const hdi_nd_load_job *job = (const hdi_nd_load_job *)arg;
     const hdi_nd_buffer *b = job->nd->buffer;
-    const int32_t first = (int32_t)index * HDI_ND_BLOCK, to = job->to[index];
-    const int32_t last = (int32_t)hdi_least(first + HDI_ND_BLOCK, job->n);
-    int32_t k;
-    (void)worker;
-    for (k = first; k < last; k++) b->ptr[k] += to;
-    memcpy(b->adj + to, b[1].adj + job->from[index], (size_t)(job->to[index + 1] - to) * sizeof(int32_t));
+    const hd_csr *a = job->a;
+    int64_t k, p;
+    for (k = begin; k < end; k++) {
+        const int32_t r = job->order[k];
+        int32_t z = b->ptr[k];
+        if (k + HDI_ROWS_AHEAD < end) HDI_PREFETCH(a->col + a->row_ptr[job->order[k + HDI_ROWS_AHEAD]]);
+        memcpy(job->nd->xyz + 3 * (size_t)k, job->unit + 3 * (size_t)r, 3 * sizeof(float));
+        b->id[k] = (int32_t)k;
+        for (p = a->row_ptr[r]; p < a->row_ptr[r + 1]; p++) {
+            const int32_t u = job->inv[a->col[p]];
+            if (a->col[p] != r && u >= 0) b->adj[z++] = u;
+        }
+    }
 }
 
-/* Reads the whole matrix as one part, its rows numbered by order. work [2 blocks + 2]: job->from, job->to. */
-static hdi_nd_part hdi_nd_load(hdi_nd_load_job *job, int32_t *work, hd_context *ctx) {
-    const int32_t n = job->n, n_blocks = (n + HDI_ND_BLOCK - 1) / HDI_ND_BLOCK;
+/* Reads the n rows that are not too long as one part. */
+static hdi_nd_part hdi_nd_load(hdi_nd_load_job *job, int32_t n, hd_context *ctx) {
+    int32_t k, *ptr = job->nd->buffer->ptr;
     hdi_nd_part part;
-    int32_t k, z = 0;
-    job->from = work;
-    job->to = work + n_blocks;
-    for (k = 0; k < n; k++) {
-        if (k % HDI_ND_BLOCK == 0) job->from[k / HDI_ND_BLOCK] = z;
-        z += (int32_t)(job->a->row_ptr[job->order[k] + 1] - job->a->row_ptr[job->order[k]]);
-    }
-    hdi_parallel(ctx, n_blocks, hdi_nd_load_task, job);
     memset(&part, 0, sizeof part);
+    hdi_parallel_ranges(ctx, n, HDI_ND_BLOCK, hdi_nd_load_lengths, job);
+    for (ptr[0] = k = 0; k < n; k++) ptr[k + 1] += ptr[k];
+    hdi_parallel_ranges(ctx, n, HDI_ND_BLOCK, hdi_nd_load_rows, job);
     part.n = n;
-    part.n_edges = job->to[n_blocks] = job->nd->buffer->ptr[n] = hdi_nd_sums(job->to, n_blocks);
-    hdi_parallel(ctx, n_blocks, hdi_nd_move_task, job);
+    part.n_edges = ptr[n];
     return part;
 }
 
@@ -12390,19 +12294,15 @@ static void hdi_nd_buffer_make(hdi_nd_buffer *b, const hd_csr *a, hdi_scope *s) 
     b->cew = b->cadj + nnz / 4 + 1;
 }
 
-/* Orders the whole: own threads share one loop, the user's take the heap level by level. */
-static void hdi_nd_run(hdi_nd *nd) {
-    double done = 0.15;
-    if (hdi_progress(nd->ctx, "order", 0.1, nd->error) < 0) return;
-    if (nd->threads) {
-        nd->order[0] = 0;
-        hdi_parallel_ordered(nd->ctx, HDI_ND_NODES, 1, nd->order, hdi_nd_loop_task, nd);
-        return;
-    }
-    for (nd->level = 0; nd->level < HDI_ND_NODES; nd->level = 2 * nd->level + 1, done += 0.05) {
-        if (hdi_progress(nd->ctx, "order", done, nd->error) < 0) return;
-        hdi_parallel(nd->ctx, nd->level + 1, hdi_nd_level_task, nd);
-    }
+/* Orders the whole matrix, which is part 0 of the heap. */
+static void hdi_nd_run(hdi_nd *nd, hd_context *ctx, hd_error *e) {
+    hdi_walk_open(&nd->walk, ctx, HDI_ND_NODES, nd->order, hdi_nd_task, nd);
+    nd->walk.stage = "order";
+    nd->walk.from = 0.1;
+    nd->walk.to = 0.9;
+    nd->walk.e = e;
+    hdi_release(&nd->walk, 0, 1);
+    hdi_walk_run(&nd->walk);
 }
 
 /* perm[k] = row of the symmetric pattern a (both triangles, the diagonal may be there) that is eliminated
@@ -12413,11 +12313,11 @@ static hd_status hdi_nd_order(const hd_csr *a, const double *xyz, int32_t *perm,
     hdi_scope s = hdi_scope_begin(ctx, e);
     const uint64_t n = (uint64_t)a->n_rows;
     int32_t i, k, *order = HDI_TAKE(&s, int32_t, n + 1), *inv = HDI_TAKE(&s, int32_t, n + 1);
-    int32_t *count = HDI_TAKE(&s, int32_t, 1024 + 2 * n / HDI_ND_BLOCK);
+    int32_t *spare = HDI_TAKE(&s, int32_t, n + 1), *ptr = HDI_TAKE(&s, int32_t, 2049);
     uint32_t *key = HDI_TAKE(&s, uint32_t, n + 1);
     float *unit = HDI_TAKE(&s, float, 3 * n + 1);
     hdi_nd nd;
-    hdi_nd_load_job job = {&nd, a, order, inv, unit, 0, NULL, NULL};
+    hdi_nd_load_job job = {&nd, a, order, inv, unit};
     if (a->nnz > INT32_MAX / 2 || n > INT32_MAX / 4)
         hdi_fail(e, HD_ERR_TOO_LARGE, "a pattern is too large for nested dissection");
     memset(&nd, 0, sizeof nd);
@@ -12428,13 +12328,11 @@ static hd_status hdi_nd_order(const hd_csr *a, const double *xyz, int32_t *perm,
     hdi_nd_buffer_make(nd.buffer, a, &s);
     hdi_nd_buffer_make(nd.buffer + 1, a, &s);
     if (e->status < 0) return hdi_scope_end(&s);
-    nd.ctx = ctx;
-    nd.error = e;
-    nd.threads = hdi_threads_own(ctx, HDI_ND_NODES);   /* started now, they share the loops before, too */
+    hdi_threads_own(ctx, HDI_ND_NODES);   /* threads that are started now share the loops below, too */
     hdi_nd_keys(xyz, a->n_rows, key, unit);
-    k = job.n = hdi_nd_number(a, key, order, inv, count);
-    nd.part[0] = hdi_nd_load(&job, count, ctx);
-    hdi_nd_run(&nd);
+    k = hdi_nd_number(a, key, order, inv, spare, ptr);
+    nd.part[0] = hdi_nd_load(&job, k, ctx);
+    hdi_nd_run(&nd, ctx, e);
     if (e->status < 0) return hdi_scope_end(&s);
     for (i = 0; i < k; i++) perm[i] = order[perm[i]];
     for (i = k; i < a->n_rows; i++) perm[i] = order[i];
