@@ -68,14 +68,14 @@
      [10] geometry   triangles: checks, areas, cotangents, edges, defects
      [11] intrinsic  intrinsic Delaunay triangulations and the tufted cover
      [12] operators  the pair (L, B) of triangles, polygons, points and the caller's own matrices
-     [13] degree     orderings by minimum degree, breadth-first orderings
+     [13] degree     orderings by minimum degree
      [14] dissection nested dissection of meshes in space
      [15] analysis   elimination tree, supernodes, fronts, tasks, plan of memory
      [16] order      the choice of an elimination order
      [17] direct     multifrontal L D L' and triangular solves
      [18] selinv     selected inversion: entries of the inverse, quadratic forms
      [19] precond    Jacobi, SSOR and incomplete L D L'
-     [20] iterative  COCG, COCR, CS-MINRES
+     [20] iterative  COCG, CS-MINRES
      [21] rational   pole sets: tables, evaluation, sets shared by many times, fits of filters
      [22] poles      the family t L + theta_i B: factors or preconditioners, answers, error bounds
      [23] lanczos    K_t f without poles: Lanczos for the exponential, and shift-and-invert
@@ -623,12 +623,10 @@ typedef enum hd_solver {
     HD_SOLVER_AUTO = 0,         /* Lanczos for small t if it costs less, else cocg */
     /* Conjugate orthogonal CG (van der Vorst, Melissen 1990); CG for real poles. */
     HD_SOLVER_COCG,
-    /* Conjugate orthogonal conjugate residuals (Sogabe, Zhang 2007); CG for real poles. */
-    HD_SOLVER_COCR,
     /* CS-MINRES (Choi 2013), which is MINRES on the Saunders process. Plain MINRES needs a Hermitian matrix.
      * For complex theta, t L + theta B is not Hermitian, and plain MINRES converges to a wrong result.
      * CS-MINRES needs a real positive definite preconditioner: here that of t L + |theta| B. */
-    HD_SOLVER_MINRES,
+    HD_SOLVER_MINRES = 3,       /* there is no 2 */
     HD_SOLVER_LANCZOS           /* for the exponential, no poles: about 1.1 sqrt(t lambda_max) steps */
 } hd_solver;
 
@@ -1247,7 +1245,7 @@ HEATDIFF_API double hd_filter_eval(const hd_filter *filter, double lambda);
 
 typedef struct hd_solve_opts {
     int32_t begin_zero;
-    hd_solver solver;           /* cocg, cocr or minres; default cocg */
+    hd_solver solver;           /* cocg or minres; default cocg */
     hd_precond precond;
     double tol;                 /* |b - A x| / |b| in the norm of diag(B)^-1; default 1e-10 */
     int32_t max_iterations;     /* default 20000 */
@@ -3088,20 +3086,6 @@ static void hdi_parallel(hd_context *ctx, int64_t n_tasks, hd_task task, void *a
     else for (i = 0; i < n_tasks; i++) task(arg, i, 0);
 }
 
-/* What [14] still asks for: n nodes of which the first n_ready in order are ready. By own threads. */
-static void hdi_parallel_ordered(hd_context *ctx, int32_t n, int32_t n_ready, int32_t *order, hd_task task,
-                                 void *arg) {
-    hdi_walk w;
-    hdi_walk_open(&w, ctx, n, order, task, arg);
-    w.own.ready = (uint32_t)n_ready;
-    hdi_walk_run(&w);
-}
-
-static void hdi_release_many(hd_threads *t, int32_t id, int32_t n, int32_t *order) {
-    (void)order;
-    hdi_release(&t->walk, id, n);
-}
-
 /* The same for [0, n) in ranges of per_task; the last one may be shorter. */
 typedef void (*hdi_range_task)(void *arg, int64_t begin, int64_t end);
 typedef struct hdi_range_job { int64_t n, per_task; hdi_range_task task; void *arg; } hdi_range_job;
@@ -3386,18 +3370,6 @@ static double hdi_dot(const double *HDI_RESTRICT x, const double *HDI_RESTRICT y
     }
     for (; i < n; i++) s0 += x[i] * y[i];
     return (s0 + s1) + (s2 + s3);
-}
-
-/* x' y, no conjugate: the bilinear form of complex-symmetric methods. */
-static hd_c64 hdi_cdotu(const hd_c64 *HDI_RESTRICT x, const hd_c64 *HDI_RESTRICT y, int64_t n) {
-    hd_c64 s0 = hdi_c(0, 0), s1 = s0;
-    int64_t i;
-    for (i = 0; i + 2 <= n; i += 2) {
-        s0 = hdi_cadd(s0, hdi_cmul(x[i], y[i]));
-        s1 = hdi_cadd(s1, hdi_cmul(x[i + 1], y[i + 1]));
-    }
-    for (; i < n; i++) s0 = hdi_cadd(s0, hdi_cmul(x[i], y[i]));
-    return hdi_cadd(s0, s1);
 }
 
 /* sum w_i |x_i|^2 */
@@ -10773,19 +10745,20 @@ static hd_status hdi_vertices_check(const hd_laplacian *lap, int64_t k, const in
  *   F. Pellegrini, J. Roman, P. Amestoy, Hybridizing nested dissection and halo approximate minimum degree,
  *   2000 (the halo)
  * Our own additions: all that is known of a vertex lies in one half of a cache line, and what is needed soon
- * is fetched early, which decides the speed from 1M vertices on; the hash table of twins is small; a halo
- * needs no rows. Ties: the vertex whose degree was found last goes first. */
+ * is fetched early. This decides the speed from 1M vertices on. The hash table of twins is small. The halo
+ * needs no rows. Of several vertices of least degree, the one whose degree was found last goes first. */
 
-/* A variable, an element, or what became of them. */
+/* What is known of a vertex. It begins as a variable and may become an element. It is gone when it was
+ * eliminated or merged together with another one, or when its list is part of a newer element. */
 typedef struct hdi_amd_node {
-    int32_t at;                  /* its list begins at list[at]; of a vertex gone with another: that one */
-    int32_t len;                 /* length of the list: elements first, then variables */
-    int32_t elen;                /* how many are elements; HDI_AMD_PIVOT: this is an element itself */
-    int32_t weight;              /* vertices it stands for; 0: it is gone; negative: it is in L_me */
-    int32_t mark;                /* elements: |L_e \ L_me| + flag, 0 when absorbed; variables: flag if seen */
-    int32_t degree;              /* bound of the weight of the neighbours; of elements that of the list */
-    int32_t next, prev;          /* of the same degree; later chain of the hash table, and hash. Of an element
-                                    prev is its place in the order */
+    int32_t at;                  /* its list begins at list[at]; if it went with another vertex: that one */
+    int32_t len;                 /* the length of the list, which has elements first and then variables */
+    int32_t elen;                /* how many of them are elements; HDI_AMD_PIVOT: this is an element itself */
+    int32_t weight;              /* how many vertices it stands for; 0: it is gone; negative: it is in L_me */
+    int32_t mark;                /* element: |L_e \ L_me| + flag, 0 when absorbed; variable: flag if seen */
+    int32_t degree;              /* a bound of the weight of its neighbours; element: the list's weight */
+    int32_t next, prev;          /* neighbours in the list of a degree; later the next one in a chain of the
+                                    hash table, and the hash; prev of an element is its place in the order */
 } hdi_amd_node;
 
 enum { HDI_AMD_PIVOT = -1, HDI_AMD_BITS = 10, HDI_AMD_BUCKETS = 1 << HDI_AMD_BITS };
@@ -10823,7 +10796,8 @@ static void hdi_amd_unlink(hdi_amd *g, int32_t i) {
     else g->head[g->v[i].degree] = next;
 }
 
-/* Moves all lists together. Each marks its beginning with its owner, who keeps the entry that stood there. */
+/* Moves all lists together. The first entry of each list is replaced by the number of its owner, which keeps
+ * that entry in `at` until the list has been moved. */
 static void hdi_amd_compact(hdi_amd *g) {
     int32_t i, p, q = 0, end;
     for (i = 0; i < g->n; i++) {
@@ -10846,8 +10820,8 @@ static void hdi_amd_compact(hdi_amd *g) {
     g->free = q;
 }
 
-/* Variables of list[p..p+len-1] that are not in L_me yet are put to its end at list[q], which may be that
- * same list; returns the new end. Their own lists are read next: they are fetched already. */
+/* Appends to L_me, which ends at list[q], those variables of list[p..p+len-1] that are not in it yet. Both
+ * may be the same list. Returns the new end. The variables' own lists are read next, so they are fetched. */
 static int32_t hdi_amd_collect(hdi_amd *g, int32_t p, int32_t len, int32_t q, int32_t *weight) {
     const int32_t end = p + len;
     int32_t ahead;
@@ -10864,15 +10838,16 @@ static int32_t hdi_amd_collect(hdi_amd *g, int32_t p, int32_t len, int32_t q, in
     return q;
 }
 
-/* L_me = A_me and the L_e of all its elements e, which are absorbed. Without elements it is made in place. */
+/* Makes the element me: L_me is the union of A_me and the lists L_e of all elements e of me. These elements
+ * are absorbed. If there are none, L_me is made in place. */
 static void hdi_amd_element(hdi_amd *g, int32_t me) {
     hdi_amd_node *v = g->v + me;
     int32_t begin, end, p, weight = 0;
     const int32_t elen = v->elen;
     if (elen > 0 && v->degree > g->size - g->free) hdi_amd_compact(g);
-    /* Lists that are alive hold at most the nnz entries that they began with: L_me replaces the longer ones
-     * it is made of, and whoever gets me into its list loses one entry at least. So n words and more are free
-     * after compacting, and degrees are below n. */
+    /* The lists that are alive never hold more than the nnz entries that they began with. L_me replaces the
+     * lists it is made of, which are longer together, and a variable that gets me into its list loses at
+     * least one entry. So at least n words are free after compacting, and a degree is below n. */
     HEATDIFF_ASSERT(elen == 0 || v->degree <= g->size - g->free);
     begin = end = elen > 0 ? g->free : v->at;
     v->weight = -v->weight;
@@ -10894,7 +10869,7 @@ static int32_t *hdi_amd_chain(const hdi_amd *g, int32_t hash) {
     return g->bucket + (hash >> (31 - HDI_AMD_BITS));
 }
 
-/* mark - flag = |L_e \ L_me| for all elements e that share a variable with L_me. */
+/* Computes |L_e \ L_me| for all elements e that share a variable with L_me: it is mark - flag from now on. */
 static void hdi_amd_overlaps(hdi_amd *g, const hdi_amd_node *me) {
     hdi_amd_node *v = g->v;
     const int32_t flag = g->flag, *list = g->list, *l = list + me->at, *const l_end = l + me->len;
@@ -10909,8 +10884,9 @@ static void hdi_amd_overlaps(hdi_amd *g, const hdi_amd_node *me) {
     }
 }
 
-/* A_i and E_i for the i of L_me: what me covers goes, so do elements inside L_me, me comes. Variables with no
- * neighbours outside go with me. The others get their degree outside, and are put into the hash table. */
+/* Updates the lists A_i and E_i of all i in L_me. Variables that me covers and elements that lie inside L_me
+ * leave them, and me enters. Variables without neighbours outside L_me are eliminated together with me. For
+ * the others this finds their degree outside L_me and puts them into the hash table. */
 static void hdi_amd_update(hdi_amd *g, int32_t me) {
     hdi_amd_node *v = g->v, *pivot = v + me;
     int32_t *list = g->list, *l = list + pivot->at, *const l_end = l + pivot->len;
@@ -10958,7 +10934,8 @@ static void hdi_amd_update(hdi_amd *g, int32_t me) {
     }
 }
 
-/* Merges into i those behind it in the chain that have the same elements and variables: they stay alike. */
+/* Merges into i the vertices behind it in the chain that have the same elements and variables as i. They
+ * would have the same ones for ever. */
 static void hdi_amd_twins(hdi_amd *g, int32_t i) {
     hdi_amd_node *v = g->v, *a = v + i;
     const int32_t *list = g->list;
@@ -10984,7 +10961,7 @@ static void hdi_amd_twins(hdi_amd *g, int32_t i) {
     g->flag += stamped;
 }
 
-/* Merges all twins within L_me: they are in the same chains of the hash table, which is left empty. */
+/* Merges all twins within L_me. Twins are in the same chain of the hash table. The table is left empty. */
 static void hdi_amd_merge(hdi_amd *g, const hdi_amd_node *me) {
     int32_t p, i, *head;
     for (p = me->at; p < me->at + me->len; p++) {
@@ -11015,7 +10992,7 @@ static void hdi_amd_restore(hdi_amd *g, hdi_amd_node *me) {
     if (me->len == 0) me->mark = 0;
 }
 
-/* Marks of the next step must be above all old ones. Before the numbers run out they begin anew. */
+/* The marks of the next step must be above all old ones. Before the numbers run out, all marks begin anew. */
 static void hdi_amd_next_flag(hdi_amd *g, int32_t step) {
     int32_t i;
     if (g->flag < INT32_MAX - 2 * step - g->n) {
@@ -11027,8 +11004,8 @@ static void hdi_amd_next_flag(hdi_amd *g, int32_t step) {
     g->flag = 2;
 }
 
-/* For audits: what is left has all the weight and is in the lists of degrees; elements weigh what they say;
- * and each degree lies between the weight of the neighbours and that of all lists they are in. */
+/* For audits. The variables that are left have all the weight and are in the lists of degrees, elements weigh
+ * what they say, and each degree lies between the weight of the neighbours and the weight of all lists. */
 static int hdi_amd_sound(hdi_amd *g) {
     hdi_amd_node *v = g->v;
     int32_t i, k, q, left = g->left, listed = 0, wrong = 0;
@@ -11086,8 +11063,8 @@ static void hdi_amd_run(hdi_amd *g, int32_t until) {
     }
 }
 
-/* int32 words of work space for lists of nnz entries. The elbow room of n is needed, that of a fifth of the
- * entries saves time (as in the paper). */
+/* Words of work space for lists of nnz entries. The last n words are needed (see hdi_amd_element). A fifth of
+ * the entries more saves time, as in the paper. */
 static int64_t hdi_amd_words(int32_t inner, int32_t halo, int64_t nnz) {
     const int64_t n = (int64_t)inner + halo, all = halo > 0 ? 2 * nnz : nnz;
     return (int64_t)(sizeof(hdi_amd_node) / sizeof(int32_t)) * n + n + 1 + HDI_AMD_BUCKETS + all +
@@ -11121,8 +11098,8 @@ static void hdi_amd_drop(hdi_amd *g, int32_t i) {
     g->left--;
 }
 
-/* Rows without neighbours come first in the order, those dropped as dense last, the others enter the list of
- * their degree. Returns how many the order holds without the dense ones. */
+/* Rows without neighbours come first in the order. Rows that were dropped as dense come last. All others
+ * enter the list of their degree. Returns how many rows there are without the dense ones. */
 static int32_t hdi_amd_start(hdi_amd *g) {
     int32_t i, last = g->inner, count;
     for (i = 0; i < g->inner; i++) last -= g->v[i].weight == 0;
@@ -11140,7 +11117,7 @@ static int32_t hdi_amd_start(hdi_amd *g) {
     return count;
 }
 
-/* perm [inner] from the pivots' places: those merged or eliminated with others follow them. */
+/* Fills perm [inner] from the places of the pivots. Vertices that went with another one follow it. */
 static void hdi_amd_number(hdi_amd *g, int32_t *perm) {
     hdi_amd_node *v = g->v;
     int32_t i, j, root, up;
@@ -11154,27 +11131,24 @@ static void hdi_amd_number(hdi_amd *g, int32_t *perm) {
     }
 }
 
-/* A graph to be ordered: rows of the inner vertices, 0..inner-1, in both triangles; in any order, none twice
- * in a row, the diagonal may be there. The others, the halo, count in degrees but are never eliminated. They
- * have no rows, and edges between them do not matter. */
+/* A graph to be ordered. The inner vertices, 0..inner-1, have rows: their neighbours in both triangles, in
+ * any order, none twice; the diagonal may be there. The other vertices are the halo. They count in degrees
+ * but are never eliminated. They have no rows, and edges between them do not matter. Columns from n on are
+ * skipped. */
 typedef struct hdi_amd_graph {
     int32_t n, inner;
-    const int64_t *wide;         /* [inner + 1] where rows begin, or NULL and ... */
-    const int32_t *ptr;          /* [inner + 1] ... the same as shorter numbers */
-    const int32_t *col;          /* columns 0..n-1 */
+    const int32_t *ptr, *col;    /* [inner + 1], [ptr[inner]] */
 } hdi_amd_graph;
 
-static int64_t hdi_amd_row(const hdi_amd_graph *a, int32_t i) { return a->wide ? a->wide[i] : a->ptr[i]; }
-
-/* Lists of all vertices but those with dense rows (as in AMD), which are dropped: they would be in most. */
+/* Makes the lists of all vertices. Vertices with dense rows are dropped, as in AMD: they would be in most
+ * lists. */
 static void hdi_amd_load(hdi_amd *g, const hdi_amd_graph *a) {
     const int32_t dense = (int32_t)(hdi_max(16, 10 * sqrt((double)a->n)));
-    int32_t i, q = 0;
-    int64_t p;
+    int32_t i, p, q = 0;
     for (i = 0; i < a->inner; i++) {
-        if (hdi_amd_row(a, i + 1) - hdi_amd_row(a, i) > dense) hdi_amd_drop(g, i);
-        for (p = hdi_amd_row(a, i); a->inner < a->n && p < hdi_amd_row(a, i + 1); p++)
-            if (a->col[p] >= a->inner) g->v[a->col[p]].len++;
+        if (a->ptr[i + 1] - a->ptr[i] > dense) hdi_amd_drop(g, i);
+        for (p = a->ptr[i]; a->inner < a->n && p < a->ptr[i + 1]; p++)
+            if (a->col[p] >= a->inner && a->col[p] < a->n) g->v[a->col[p]].len++;
     }
     for (i = a->inner; i < a->n; i++) {          /* room for the lists of the halo */
         if (g->v[i].len > dense) hdi_amd_drop(g, i);
@@ -11183,12 +11157,11 @@ static void hdi_amd_load(hdi_amd *g, const hdi_amd_graph *a) {
         g->v[i].len = 0;
     }
     for (i = 0; i < a->inner; i++) {
-        const int64_t end = hdi_amd_row(a, i + 1);
         g->v[i].at = q;
         if (g->v[i].weight == 0) continue;
-        for (p = hdi_amd_row(a, i); p < end; p++) {
+        for (p = a->ptr[i]; p < a->ptr[i + 1]; p++) {
             hdi_amd_node *j = g->v + a->col[p];
-            if (a->col[p] == i || j->weight == 0) continue;
+            if (a->col[p] == i || a->col[p] >= a->n || j->weight == 0) continue;
             g->list[q++] = a->col[p];
             if (a->col[p] >= a->inner) g->list[j->at + j->len++] = i;
         }
@@ -11197,7 +11170,7 @@ static void hdi_amd_load(hdi_amd *g, const hdi_amd_graph *a) {
     g->free = q;
 }
 
-/* Orders a small graph with ptr given: perm[q] is the inner vertex eliminated q-th. work
+/* Orders a small graph: perm[q] is the inner vertex that is eliminated q-th. work
  * [hdi_amd_words], below 2^31, best aligned to 64 bytes. Cannot fail. TRUSTS ITS INPUT. */
 static void hdi_amd_part(const hdi_amd_graph *a, int32_t *perm, int32_t *work) {
     hdi_amd g;
@@ -11214,13 +11187,14 @@ static hd_status hdi_amd_order(const hd_csr *a, int32_t *perm, hd_context *ctx, 
     hdi_scope s = hdi_scope_begin(ctx, e);
     const int32_t n = a->n_rows;
     const int64_t words = hdi_amd_words(n, 0, a->nnz);
-    const hdi_amd_graph rows = {n, n, a->row_ptr, NULL, a->col};
-    int32_t count, *work;
+    int32_t i, count, *ptr = HDI_TAKE(&s, int32_t, (int64_t)n + 1), *work;
+    const hdi_amd_graph rows = {n, n, ptr, a->col};
     hdi_amd g;
     if (words - 9 * (int64_t)n > INT32_MAX)   /* places in the lists are numbered by 32 bits */
-        return hdi_fail(e, HD_ERR_TOO_LARGE, "a pattern is too large for a minimum degree ordering");
+        hdi_fail(e, HD_ERR_TOO_LARGE, "a pattern is too large for a minimum degree ordering");
     work = HDI_TAKE(&s, int32_t, words);
     if (e->status < 0) return hdi_scope_end(&s);
+    for (i = 0; i <= n; i++) ptr[i] = (int32_t)a->row_ptr[i];
     hdi_amd_begin(&g, n, n, work, words);
     hdi_amd_load(&g, &rows);
     count = hdi_amd_start(&g);
@@ -11231,12 +11205,15 @@ static hd_status hdi_amd_order(const hd_csr *a, int32_t *perm, hd_context *ctx, 
 }
 
 /* ==== [14] dissection ====
- * An elimination order for matrices whose rows have a place in space: separators last. The rows are numbered
- * along a space-filling curve, so that every part is a compact graph in cache. A part is halved on its
- * clusters, small groups of neighbours that are made once and handed down: they are swept along a line or by
- * graph distance, then the cut is improved by exchanges on a few coarser copies. Around the cut that this
- * gives, the smallest separator within a band is found exactly, by vertex-disjoint paths. Small parts are
- * ordered by minimum degree, the separators around them counted as neighbours. May call [13].
+ * Nested dissection: an elimination order for matrices whose rows have a place in space. A part of the graph
+ * is cut into two halves by a separator, which comes last in the order, and both halves are treated alike.
+ * The rows are numbered along a space-filling curve, so that every part is a compact graph in cache.
+ *   1. A part has clusters: small groups of neighbours, which are made once and handed down to the halves.
+ *   2. The clusters are made coarser a few times. The coarsest copy is cut in several ways, along directions
+ *      and by graph distance, and the best cut is taken. It is improved by exchanges on each finer copy.
+ *   3. Within a band around this cut, the smallest separator is found exactly, by vertex-disjoint paths.
+ *   4. Small parts are ordered by minimum degree. The separators around them count as neighbours.
+ * May call [13].
  * This work is based on
  *   A. George, Nested dissection of a regular finite element mesh, 1973
  *   G. M. Morton, A computer oriented geodetic data base and a new technique in file sequencing, 1966
@@ -11245,8 +11222,8 @@ static hd_status hdi_amd_order(const hd_csr *a, int32_t *perm, hd_context *ctx, 
  *   L. R. Ford, D. R. Fulkerson, Flows in networks, 1962 (and Menger's theorem)
  *   C. Ashcraft, J. W. H. Liu, Applications of the Dulmage-Mendelsohn decomposition and network flow to graph
  *   bisection improvement, 1998 (smallest separators in a band)
- * The clusters that a separator cuts through live on in both halves, with the weights of edges that they had:
- * these only guide the next cut. */
+ * A cluster that a separator cuts through lives on in both halves, and its edges keep their weights. Clusters
+ * only guide the next cut. */
 
 enum {
     HDI_ND_LEAF = 1500,     /* vertices of a part that minimum degree orders: fewer cost time, not fill */
@@ -11275,8 +11252,8 @@ enum {
 #define HDI_ND_UNEVEN 0.6     /* share by which a cut costs more that leaves one side empty */
 #define HDI_ND_SWEPT 0.2      /* share of the weight by which the sides of a swept cut differ at most */
 
-/* A part, or a coarse copy of one. At the finest copy weights are 1 (ew and w are NULL), and negative entries
- * of adj are rows outside of the part, already in a separator: ~row. */
+/* A part, or a coarse copy of one. In the part itself all weights are 1 (ew and w are NULL), and entries of
+ * adj from n on are its halo: rows outside of it, which are in a separator already. Copies have no halo. */
 typedef struct hdi_nd_graph {
     int32_t n;
     int32_t *ptr, *adj;    /* neighbours of v: adj[ptr[v]..ptr[v + 1]), no diagonal */
@@ -11286,8 +11263,9 @@ typedef struct hdi_nd_graph {
     int8_t *side;          /* 0, 1, and at the finest copy 2: separator */
 } hdi_nd_graph;
 
-/* Rows first..first + n - 1 of the order are to be found. clusters = 0: none are known. */
-typedef struct hdi_nd_part { int32_t first, n, edge, n_edges, clusters, buffer; } hdi_nd_part;
+/* A part has places first..first + n - 1 of the order. Its halo has the numbers n..n + halo - 1. If
+ * clusters is 0, none are known. */
+typedef struct hdi_nd_part { int32_t first, n, halo, edge, n_edges, clusters, buffer; } hdi_nd_part;
 
 /* The graphs of parts and their clusters, each in its own slices: one of two buffers is for odd depths. */
 typedef struct hdi_nd_buffer {
@@ -11302,26 +11280,18 @@ typedef struct hdi_nd {
     float *xyz;
     int32_t *perm, *work;
     hdi_nd_part *part;               /* [HDI_ND_NODES] */
-    int32_t level;                   /* halved in step: the first part of the level under way */
-    hd_threads *threads;             /* in one loop: those who share it, ... */
-    int32_t order[HDI_ND_NODES];     /* ... the parts as they become ready, ... */
-    uint32_t done;                   /* ... and how many are done */
-    int32_t stop;
-    hd_context *ctx;
-    hd_error *error;
+    hdi_walk walk;
+    int32_t order[HDI_ND_NODES];     /* the parts as they become ready */
 } hdi_nd;
 
 /* Work space left to a task, taken from its front: what a copy of this struct took is free after it. */
 typedef struct hdi_nd_space { int32_t *at, *end; } hdi_nd_space;
 
-/* A task's space, 20 n + 2 n_edges + 1200 words for a part of n vertices, is never used up. A split takes
- * 1.25 n (rows by number, sides), and the list of a cut's vertices 2 n; what else it takes is given back
- * before the next step. Of these steps the largest is hdi_nd_cut_clusters: 1.25 c for c <= n clusters, 2
- * n_edges, and copies, each of at most 2/3 of the vertices of the one before: one of N vertices takes 3.17 N,
- * all 9.5 c; where a copy fails it keeps 3.17 N at most, takes 5.5 N for a while, and hdi_nd_first_cut 11.5 N
- * on top, or hdi_nd_descend 4.25 N on top of all copies. With N = (2/3)^l c that is 9.5 c (1 - (2/3)^l) +
- * 14.67 N <= 14.67 c: together 19.2 n at most. Rounding adds less than 30 words to each of 24 copies. The
- * flow takes 9.25 n, fresh clusters 3.17 n + 5.5 (2/3 n), those of a half 2 n; hdi_nd_leaf looks itself. */
+/* Takes work space. Tasks cannot allocate, so each has 20 n + 2 n_edges + 1200 words for a part of n
+ * vertices. That is always enough. The largest need is in hdi_nd_cut_clusters, in words for each vertex: 0.25
+ * for the sides, 2 for the list, 1.25 for weights and sides of the clusters; 2 n_edges for the edges of the
+ * copies; and at most 14.7 for the copies themselves, because each has at most 2/3 of the vertices of the one
+ * before. */
 static int32_t *hdi_nd_take(hdi_nd_space *s, int64_t words) {
     int32_t *p = s->at;
     HEATDIFF_ASSERT(words <= s->end - s->at);
@@ -11343,7 +11313,7 @@ static uint32_t hdi_nd_spread(uint32_t x) {
     return (x | x << 2) & 0x09249249u;
 }
 
-/* key[i] = place of row i on the Morton curve in a grid of 1024^3 cells; unit [3n] = places within [0, 1]. */
+/* key[i] is the place of row i on the Morton curve in a grid of 1024^3 cells. unit [3n]: places in [0, 1]. */
 static void hdi_nd_keys(const double *xyz, int32_t n, uint32_t *key, float *unit) {
     double lo[3], hi[3], width = 0;
     int32_t i, d;
@@ -11366,38 +11336,46 @@ static void hdi_nd_keys(const double *xyz, int32_t n, uint32_t *key, float *unit
     }
 }
 
-/* count[i] becomes the sum of those before it. Returns the sum of all. */
-static int32_t hdi_nd_sums(int32_t *count, int32_t n) {
-    int32_t i, sum = 0;
-    for (i = 0; i < n; i++) {
-        const int32_t c = count[i];
-        count[i] = sum;
-        sum += c;
-    }
-    return sum;
+/* Groups [0,n) by keys: list[ptr[k]..ptr[k + 1]) are the i with key[i] = k, ascending. Those with negative
+ * keys are left out. ptr [n_keys + 1]. */
+static void hdi_group(const int32_t *key, int32_t n, int32_t n_keys, int32_t *ptr, int32_t *list) {
+    int32_t i;
+    hdi_fill_i32(ptr, (int64_t)n_keys + 1, 0);
+    for (i = 0; i < n; i++)
+        if (key[i] >= 0) ptr[key[i]]++;
+    for (i = 0; i < n_keys; i++) ptr[i + 1] += ptr[i];
+    for (i = n; i-- > 0;)
+        if (key[i] >= 0) list[--ptr[key[i]]] = i;
 }
 
-/* order = the rows by ascending key: three passes of ten bits. spare [n], count [1024]. */
-static void hdi_nd_sort(const uint32_t *key, int32_t n, int32_t *order, int32_t *spare, int32_t *count) {
-    int32_t i, shift, *from = spare, *to = order;
-    for (i = 0; i < n; i++) from[i] = i;
-    for (shift = 0; shift < 30; shift += 10) {
-        int32_t *t;
-        memset(count, 0, 1024 * sizeof *count);
-        for (i = 0; i < n; i++) count[key[i] >> shift & 1023u]++;
-        hdi_nd_sums(count, 1024);
-        for (i = 0; i < n; i++) to[count[key[from[i]] >> shift & 1023u]++] = from[i];
-        t = from;
-        from = to;
-        to = t;
+/* Sorts the rows along the curve, by three digits of 11 bits. Rows with too many entries come last, and the
+ * return value is the number of the other ones. inv: the inverse of order, but -1 for rows with too many
+ * entries. spare [n], ptr [2049]. */
+static int32_t hdi_nd_number(const hd_csr *a, uint32_t *key, int32_t *order, int32_t *inv, int32_t *spare,
+                             int32_t *ptr) {
+    const double dense = 10 * sqrt((double)a->n_rows) + 16;
+    const int32_t n = a->n_rows;
+    int32_t i, shift, m = 0;
+    for (i = 0; i < n; i++) {
+        if ((double)(a->row_ptr[i + 1] - a->row_ptr[i]) > dense) key[i] = (uint32_t)1 << 30;
+        else m++;
+        order[i] = i;
     }
+    for (shift = 0; shift < 33; shift += 11) {
+        for (i = 0; i < n; i++) inv[i] = (int32_t)(key[order[i]] >> shift & 2047u);
+        hdi_group(inv, n, 2048, ptr, spare);
+        for (i = 0; i < n; i++) inv[i] = order[spare[i]];
+        memcpy(order, inv, (size_t)n * sizeof *order);
+    }
+    for (i = 0; i < n; i++) inv[order[i]] = i < m ? i : -1;
+    return m;
 }
 
 /* ---- coarse copies ---- */
 
-/* Makes clusters of neighbours: each vertex still free takes its free neighbours, up to a weight of limit. A
- * vertex that finds none joins the cluster of a neighbour, or, where none has room, the last vertex that was
- * left alone. weight [n]: of the clusters. Returns their number. */
+/* Makes clusters of neighbours. Each vertex that is still free takes its free neighbours, up to a weight of
+ * limit. A vertex that finds none joins the cluster of a neighbour. If none of these has room, it joins the
+ * last vertex that was left alone. weight [n]: of the clusters. Returns their number. */
 static int32_t hdi_nd_cluster(const hdi_nd_graph *g, int32_t limit, int32_t *weight) {
     int32_t v, p, n = 0, single = -1, *map = g->map;
     for (v = 0; v < g->n; v++) map[v] = -1;
@@ -11408,7 +11386,7 @@ static int32_t hdi_nd_cluster(const hdi_nd_graph *g, int32_t limit, int32_t *wei
         map[v] = n;
         for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
             const int32_t u = g->adj[p];
-            if (u < 0) continue;
+            if (u >= g->n) continue;
             if (map[u] < 0) {
                 const int32_t wu = g->w ? g->w[u] : 1;
                 if (sum + wu > limit) continue;
@@ -11428,20 +11406,9 @@ static int32_t hdi_nd_cluster(const hdi_nd_graph *g, int32_t limit, int32_t *wei
     return n;
 }
 
-/* Groups [0,n) by keys: list[ptr[k]..ptr[k + 1]) are the i with key[i] = k, ascending. Those with negative
- * keys are left out. ptr [n_keys + 1]. */
-static void hdi_group(const int32_t *key, int32_t n, int32_t n_keys, int32_t *ptr, int32_t *list) {
-    int32_t i;
-    hdi_fill_i32(ptr, (int64_t)n_keys + 1, 0);
-    for (i = 0; i < n; i++)
-        if (key[i] >= 0) ptr[key[i]]++;
-    for (i = 0; i < n_keys; i++) ptr[i + 1] += ptr[i];
-    for (i = n; i-- > 0;)
-        if (key[i] >= 0) list[--ptr[key[i]]] = i;
-}
-
-/* c = the graph of the clusters of g, with summed weights. c->n, c->w are set; c->adj, c->ew have room for
- * space > 0 entries. member [g->n], start [c->n + 1], mark [c->n]. 0 if the room is too small. */
+/* Makes c, the graph of the clusters of g, with summed weights. c->n and c->w are set before. c->adj and
+ * c->ew have room for space > 0 entries. member [g->n], start [c->n + 1], mark [c->n]. Returns 0 if the room
+ * is too small. */
 static int hdi_nd_contract(const hdi_nd_graph *g, hdi_nd_graph *c, int32_t space, int32_t *member,
                            int32_t *start, int32_t *mark) {
     const int32_t *map = g->map, *ew = g->ew;
@@ -11460,7 +11427,7 @@ static int hdi_nd_contract(const hdi_nd_graph *g, hdi_nd_graph *c, int32_t space
             for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
                 const int32_t u = g->adj[p], e = ew ? ew[p] : 1;
                 int32_t d, at, fresh;
-                if (u < 0) continue;
+                if (u >= g->n) continue;
                 d = map[u];                      /* no branches from here on: they would be unpredictable */
                 at = mark[d];
                 fresh = at < row;
@@ -11477,8 +11444,9 @@ static int hdi_nd_contract(const hdi_nd_graph *g, hdi_nd_graph *c, int32_t space
     return 1;
 }
 
-/* For audits: weight of the vertices, and 2^32 times that of entries between clusters (map; NULL: of all).
- * -1 unless each edge is there from both its ends with the same weight: the sum would hardly be zero. */
+/* For audits. Returns the weight of all vertices plus 2^32 times the weight of the entries between clusters
+ * (map; NULL: of all entries). Returns -1 unless each edge is there from both its ends with the same weight:
+ * a checksum, to which both ends add opposite terms, would hardly be zero otherwise. */
 static int64_t hdi_nd_weigh(const hdi_nd_graph *g, const int32_t *map) {
     int64_t weight = 0;
     uint64_t sum = 0;
@@ -11487,9 +11455,10 @@ static int64_t hdi_nd_weigh(const hdi_nd_graph *g, const int32_t *map) {
         weight += g->w ? g->w[v] : 1;
         for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
             const int64_t u = g->adj[p], e = g->ew ? g->ew[p] : 1;
-            if (u == v || u >= g->n || e <= 0) return -1;
-            if (u >= 0) sum += (uint64_t)(u - v) * (uint64_t)((1 + u % 999 * (v % 999)) * e);
-            if (u >= 0 && (!map || map[u] != map[v])) weight += e << 32;
+            if (u == v || u < 0 || e <= 0) return -1;
+            if (u >= g->n) continue;
+            sum += (uint64_t)(u - v) * (uint64_t)((1 + u % 999 * (v % 999)) * e);
+            if (!map || map[u] != map[v]) weight += e << 32;
         }
     }
     return sum == 0 ? weight : -1;
@@ -11498,7 +11467,8 @@ static int64_t hdi_nd_weigh(const hdi_nd_graph *g, const int32_t *map) {
 /* Where copies are made: the room for their entries. */
 typedef struct hdi_nd_room { int32_t *adj, *ew, n; } hdi_nd_room;
 
-/* Makes level[1], coarser than level[0]. total: weight of all vertices. 0: no room, or not much to win. */
+/* Makes level[1], a coarser copy of level[0]. total: the weight of all vertices. Returns 0 if there is no
+ * room, or if the copy would not be much smaller. */
 static int hdi_nd_coarser(hdi_nd_graph *level, int32_t total, hdi_nd_room *room, hdi_nd_space *s) {
     hdi_nd_graph *g = level, *c = level + 1;
     const int32_t mean = total / g->n, most = total / HDI_ND_CLUSTERS;
@@ -11529,7 +11499,8 @@ static int hdi_nd_coarser(hdi_nd_graph *level, int32_t total, hdi_nd_room *room,
 
 /* ---- buckets ---- */
 
-/* Lists of items for each gain and side. prev of the first is -1 - bucket, of one in none HDI_ND_NONE. */
+/* A list of items for each gain and side. prev of the first item of a list is -1 - bucket. prev of an
+ * item that is in no list is HDI_ND_NONE. */
 typedef struct hdi_nd_queue {
     int32_t head[2 * HDI_ND_BUCKETS], top[2];
     int32_t *next, *prev;
@@ -11563,7 +11534,7 @@ static int32_t hdi_nd_queue_best(hdi_nd_queue *q, int32_t side) {
 
 /* ---- cutting edges ---- */
 
-/* What a cut costs: its size, and a little for halves that differ. */
+/* What a cut costs: its size, and a little more if the halves differ in weight. */
 static double hdi_nd_cost(double cut, double a, double b) {
     const double im = (a - b) / (a + b + 1e-30);
     return (cut + 1) * (1 + HDI_ND_UNEVEN * im * im);
@@ -11595,7 +11566,7 @@ static hdi_nd_mover hdi_nd_mover_make(const hdi_nd_graph *g, hdi_nd_space *s) {
     return m;
 }
 
-/* Gains of all vertices; those on the cut enter the queue. Sets the cut's weights. */
+/* Computes the gains of all vertices and the cut's weights. Vertices on the cut enter the queue. */
 static void hdi_nd_mover_start(hdi_nd_mover *m, hdi_nd_cut *cut) {
     const hdi_nd_graph *g = m->g;
     int32_t v, p, largest = 1;
@@ -11607,7 +11578,7 @@ static void hdi_nd_mover_start(hdi_nd_mover *m, hdi_nd_cut *cut) {
         int32_t in = 0, out = 0;
         for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
             const int32_t u = g->adj[p], e = g->ew ? g->ew[p] : 1;
-            if (u < 0) continue;
+            if (u >= g->n) continue;
             out += e & -(g->side[u] ^ g->side[v]);
             in += e;
         }
@@ -11627,7 +11598,7 @@ static void hdi_nd_mover_start(hdi_nd_mover *m, hdi_nd_cut *cut) {
     memset(m->locked, 0, (size_t)g->n);
 }
 
-/* v changes its side; its neighbours' gains follow. */
+/* Moves v to the other side and updates the gains of its neighbours. */
 static void hdi_nd_mover_move(hdi_nd_mover *m, int32_t v, hdi_nd_cut *cut) {
     const hdi_nd_graph *g = m->g;
     const int8_t to = (int8_t)(1 - g->side[v]);
@@ -11640,7 +11611,7 @@ static void hdi_nd_mover_move(hdi_nd_mover *m, int32_t v, hdi_nd_cut *cut) {
     m->gain[v] = -m->gain[v];
     for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
         const int32_t u = g->adj[p], e = g->ew ? g->ew[p] : 1;
-        if (u < 0) continue;
+        if (u >= g->n) continue;
         m->gain[u] += g->side[u] == to ? -2 * e : 2 * e;
         if (m->locked[u]) continue;
         if (m->q.prev[u] != HDI_ND_NONE) hdi_nd_queue_remove(&m->q, u);
@@ -11648,8 +11619,8 @@ static void hdi_nd_mover_move(hdi_nd_mover *m, int32_t v, hdi_nd_cut *cut) {
     }
 }
 
-/* The vertex to move next: the one of largest gain, where the side that it goes to stays below `most` or
- * below the side that it leaves. -1: there is none. */
+/* The vertex to move next is the one of largest gain, provided that the side it goes to stays below `most` or
+ * below the side it leaves. Returns -1 if there is none. */
 static int32_t hdi_nd_mover_next(hdi_nd_mover *m, const hdi_nd_cut *cut) {
     int32_t s, best = -1, gain = 0;
     for (s = 0; s < 2; s++) {
@@ -11666,8 +11637,8 @@ static int32_t hdi_nd_mover_next(hdi_nd_mover *m, const hdi_nd_cut *cut) {
     return best;
 }
 
-/* Passes of Fiduccia and Mattheyses: each moves the best vertex again and again, even at a loss, no vertex
- * twice, and then goes back to the best cut seen. */
+/* Passes of Fiduccia and Mattheyses. A pass moves the best vertex again and again, even at a loss, but no
+ * vertex twice. At its end it goes back to the best cut seen. */
 static void hdi_nd_refine_edges(hdi_nd_mover *m, hdi_nd_cut *cut, int32_t passes) {
     const int64_t patience = hdi_least(20 + m->g->n / 20, HDI_ND_PATIENCE);
     while (passes-- > 0) {
@@ -11728,7 +11699,7 @@ static int32_t hdi_nd_steps(const hdi_nd_graph *g, int32_t start, int32_t *dist,
         v = queue[head++];
         for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
             const int32_t u = g->adj[p];
-            if (u < 0 || dist[u] < g->n) continue;
+            if (u >= g->n || dist[u] < g->n) continue;
             dist[u] = dist[v] + 1;
             queue[tail++] = u;
         }
@@ -11743,8 +11714,9 @@ static uint64_t hdi_nd_key(double x) {
     return u >> 63 ? ~u : u | 0x8000000000000000u;
 }
 
-/* The values along which the vertices are swept, as keys to sort by. kind 0: places along the longest
- * straight line; 1: graph distances; others: places along a direction. 0 if all are equal. work [3 g->n]. */
+/* The values along which the vertices are swept, as keys to sort by. kind 0: places along a line between two
+ * vertices far apart; 1: differences of graph distances from two such vertices; others: places along a fixed
+ * direction. Returns 0 if all values are equal. work [3 g->n]. */
 static int hdi_nd_sweep_keys(const hdi_nd *nd, const hdi_nd_graph *g, int32_t kind, hdi_pair *key,
                              int32_t *work) {
     static const signed char hdi_directions[9][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {1, -1, 0},
@@ -11773,7 +11745,7 @@ static int hdi_nd_sweep_keys(const hdi_nd *nd, const hdi_nd_graph *g, int32_t ki
     return differ;
 }
 
-/* The sides that the best place in the order of key gives. */
+/* Sets the sides: vertices up to the best place in the order of key are on side 0, the others on side 1. */
 static void hdi_nd_sweep(const hdi_nd_graph *g, const hdi_pair *key, double total) {
     double weight = 0, cut = 0, best = DBL_MAX;
     int32_t i, p, keep = 0;
@@ -11785,7 +11757,7 @@ static void hdi_nd_sweep(const hdi_nd_graph *g, const hdi_pair *key, double tota
         weight += g->w ? g->w[v] : 1;
         for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
             const int32_t u = g->adj[p], e = g->ew ? g->ew[p] : 1;
-            if (u >= 0) cut += g->side[u] ? e : -e;
+            if (u < g->n) cut += g->side[u] ? e : -e;
         }
         now = hdi_nd_cost(cut, weight, total - weight);
         if (fabs(2 * weight - total) > HDI_ND_SWEPT * total)
@@ -11842,7 +11814,8 @@ typedef struct hdi_nd_flow {
     int8_t *inside, from;       /* layer: 0 outside, else HDI_ND_MIDDLE +- the distance, less on side from */
 } hdi_nd_flow;
 
-/* The band: the separator, band[0..n), and what is at most `layers` steps from it, at most `most` a side. */
+/* Makes the band: the separator, band[0..n), and the vertices at most `layers` steps away from it, but no
+ * more than `most` on each side. */
 static void hdi_nd_flow_band(hdi_nd_flow *f, int32_t n, int32_t most, int32_t layers) {
     const hdi_nd_graph *g = f->g;
     int32_t i, p, begin = 0, room[2];
@@ -11856,7 +11829,7 @@ static void hdi_nd_flow_band(hdi_nd_flow *f, int32_t n, int32_t most, int32_t la
             const int32_t v = f->band[begin];
             for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
                 const int32_t u = g->adj[p];
-                if (u < 0 || f->inside[u] || room[g->side[u]] == 0) continue;
+                if (u >= g->n || f->inside[u] || room[g->side[u]] == 0) continue;
                 room[g->side[u]]--;
                 f->inside[u] = (int8_t)(f->inside[v] + (g->side[u] == f->from ? -1 : 1));
                 f->band[f->n_band++] = u;
@@ -11871,7 +11844,7 @@ static void hdi_nd_flow_band(hdi_nd_flow *f, int32_t n, int32_t most, int32_t la
     f->stamp = 0;
 }
 
-/* A path ends in this state: joins it to the others, which give up the steps that it takes back. */
+/* A new path ends in this state. Joins it to the others, which lose the steps that the new path goes back. */
 static void hdi_nd_flow_augment(hdi_nd_flow *f, int32_t state) {
     int32_t up;
     for (; (up = f->up[state]) >= 0; state = up) {
@@ -11883,7 +11856,7 @@ static void hdi_nd_flow_augment(hdi_nd_flow *f, int32_t state) {
     f->prev[state >> 1] = -1;
 }
 
-/* Notes that state `to` can be reached from state `from`, in the list of its layer. */
+/* State `to` can be reached from state `from`: puts it into the list of its layer. */
 static void hdi_nd_flow_push(hdi_nd_flow *f, int32_t to, int32_t from) {
     const int32_t layer = f->inside[to >> 1];
     f->seen[to] = f->stamp;
@@ -11894,8 +11867,9 @@ static void hdi_nd_flow_push(hdi_nd_flow *f, int32_t to, int32_t from) {
     if (layer > f->top) f->top = layer;
 }
 
-/* Searches one more path from vertex v; goes on from the state that is farthest towards the other side.
- * Returns 1 when there is one. What a failed search has seen is on no path, and dead from then on. */
+/* Searches one more path from vertex v. It always goes on from the state that is farthest towards the other
+ * side. Returns 1 if there is a path. If not, no state that was seen can lead to the other side any more:
+ * these states are dead from then on. */
 static int hdi_nd_flow_search(hdi_nd_flow *f, int32_t v) {
     const hdi_nd_graph *g = f->g;
     int32_t p, i;
@@ -11917,7 +11891,7 @@ static int hdi_nd_flow_search(hdi_nd_flow *f, int32_t v) {
         } else {
             for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
                 const int32_t u = g->adj[p];
-                if (u < 0) continue;
+                if (u >= g->n) continue;
                 if (f->inside[u]) {
                     if (f->seen[2 * u] < f->stamp) hdi_nd_flow_push(f, 2 * u, state);
                 } else if (g->side[u] != f->from) {
@@ -11937,11 +11911,12 @@ static int hdi_nd_flow_starts(const hdi_nd_flow *f, int32_t v) {
     const hdi_nd_graph *g = f->g;
     int32_t p;
     for (p = g->ptr[v]; p < g->ptr[v + 1]; p++)
-        if (g->adj[p] >= 0 && !f->inside[g->adj[p]] && g->side[g->adj[p]] == f->from) return 1;
+        if (g->adj[p] < g->n && !f->inside[g->adj[p]] && g->side[g->adj[p]] == f->from) return 1;
     return 0;
 }
 
-/* Sets the sides of the band around band[0..n): the smallest separator in it, that nearest to side from. */
+/* Finds the smallest separator within the band around band[0..n), and of several the one that is nearest to
+ * side `from`. Sets the sides of the band. */
 static void hdi_nd_flow_run(hdi_nd_flow *f, int32_t n, int32_t most, int32_t layers) {
     int32_t i, k = 0, paths = 0, cut = 0, begins = 0, *start;
     hdi_nd_flow_band(f, n, most, layers);
@@ -11965,7 +11940,7 @@ static void hdi_nd_flow_run(hdi_nd_flow *f, int32_t n, int32_t most, int32_t lay
 
 /* ---- parts ---- */
 
-/* The cut of level[from] taken down to level[1], improved on each copy. */
+/* Takes the cut of level[from] down to level[1] and improves it on each copy. */
 static void hdi_nd_descend(hdi_nd_graph *level, int32_t from, int32_t total, hdi_nd_space s) {
     int32_t l, v;
     for (l = from - 1; l > 0; l--) {
@@ -11979,7 +11954,7 @@ static void hdi_nd_descend(hdi_nd_graph *level, int32_t from, int32_t total, hdi
     }
 }
 
-/* Slices of the clusters of a part. */
+/* Where the clusters of a part are stored. */
 static void hdi_nd_clusters_of(const hdi_nd *nd, const hdi_nd_part *p, hdi_nd_graph *c) {
     const hdi_nd_buffer *b = nd->buffer + p->buffer;
     c->n = p->clusters;
@@ -11989,7 +11964,8 @@ static void hdi_nd_clusters_of(const hdi_nd *nd, const hdi_nd_part *p, hdi_nd_gr
     c->id = b->cid + p->first;
 }
 
-/* level[1] = clusters of clusters of level[0], about a dozen vertices each: the part's, if they fit. */
+/* Makes level[1]: clusters of clusters of level[0], of about a dozen vertices each. If they do not fit into
+ * the part's slices, it stays empty. */
 static void hdi_nd_fresh(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_graph *level, hdi_nd_space s) {
     hdi_nd_graph temp[3];
     hdi_nd_room room;
@@ -12014,12 +11990,12 @@ static void hdi_nd_fresh(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_graph
 static int hdi_nd_touches(const hdi_nd_graph *g, int32_t v) {
     int32_t p;
     for (p = g->ptr[v]; p < g->ptr[v + 1]; p++)
-        if (g->adj[p] >= 0 && g->side[g->adj[p]] != g->side[v]) return 1;
+        if (g->adj[p] < g->n && g->side[g->adj[p]] != g->side[v]) return 1;
     return 0;
 }
 
-/* The sides of level[0]: cuts the coarsest copy and takes the cut down. Returns in list the vertices that
- * touch the other side, of the side where they are fewer. */
+/* Sets the sides of level[0]: cuts the coarsest copy and takes the cut down. Fills list with the vertices of
+ * one side that touch the other side, and takes the side where these are fewer. Returns their number. */
 static int32_t hdi_nd_cut_clusters(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_graph *level,
                                    int32_t *list, hdi_nd_space s) {
     hdi_nd_room room;
@@ -12056,7 +12032,8 @@ static int32_t hdi_nd_cut_clusters(const hdi_nd *nd, const hdi_nd_part *part, hd
     return kept;
 }
 
-/* Weighs the sides of g. 0 if they differ too much, or the separator is most of it. */
+/* Counts the vertices on the sides of g. Returns 0 if the sides differ too much or the separator is
+ * too large. */
 static int hdi_nd_measure(const hdi_nd_graph *g, int32_t *size) {
     int32_t v;
     size[0] = size[1] = size[2] = 0;
@@ -12064,16 +12041,7 @@ static int hdi_nd_measure(const hdi_nd_graph *g, int32_t *size) {
     return size[0] <= g->n - g->n / 5 && size[1] <= g->n - g->n / 5 && size[2] <= g->n / 2;
 }
 
-/* Sides by number, for graphs on which all else failed. */
-static void hdi_nd_halve(const hdi_nd_graph *g) {
-    int32_t v, p;
-    for (v = 0; v < g->n; v++) g->side[v] = v >= g->n / 2;
-    for (v = 0; v < g->n / 2; v++)
-        for (p = g->ptr[v]; p < g->ptr[v + 1]; p++)
-            if (g->adj[p] >= g->n / 2) g->side[v] = 2;
-}
-
-/* Sets level[0].side to 0, 1 or 2 and size [3]. 0 if the part has no good separator. */
+/* Sets level[0].side to 0, 1, or 2 in the separator, and size [3]. Returns 0 if no separator is good. */
 static int hdi_nd_dissect(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_graph *level, hdi_nd_space s,
                           int32_t *size) {
     hdi_nd_flow f;
@@ -12095,8 +12063,6 @@ static int hdi_nd_dissect(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_grap
     f.inside = hdi_nd_take_bytes(&s, n);
     f.from = size[1] > size[0];
     hdi_nd_flow_run(&f, n_list, part->n / HDI_ND_BAND, HDI_ND_LAYERS);
-    if (hdi_nd_measure(level, size)) return 1;
-    hdi_nd_halve(level);
     return hdi_nd_measure(level, size);
 }
 
@@ -12105,7 +12071,7 @@ static int hdi_nd_separated(const hdi_nd_graph *g) {
     int32_t v, p;
     for (v = 0; v < g->n; v++)
         for (p = g->ptr[v]; p < g->ptr[v + 1]; p++)
-            if (g->adj[p] >= 0 && g->side[v] + g->side[g->adj[p]] == 1) return 0;
+            if (g->adj[p] < g->n && g->side[v] + g->side[g->adj[p]] == 1) return 0;
     return 1;
 }
 
@@ -12136,23 +12102,28 @@ static void hdi_nd_graphs_of(const hdi_nd *nd, const hdi_nd_part *p, hdi_nd_grap
     hdi_nd_clusters_of(nd, p, level + 1);
 }
 
-/* The vertices of one side into the child's slices. at [g->n]: numbers within the sides, or ~row. */
-static void hdi_nd_extract(const hdi_nd_graph *g, int8_t side, const int32_t *at, hdi_nd_graph *child) {
+/* Makes a child of the vertices of one side, in the child's slices. Neighbours that are not on this side are
+ * numbered as its halo when they are first met. number: work space for the part's vertices and its halo. */
+static void hdi_nd_extract(const hdi_nd_graph *g, int32_t halo, int8_t side, hdi_nd_part *child,
+                           const hdi_nd_graph *half, int32_t *number) {
     int32_t v, p, i = 0, z = 0;
+    for (v = 0; v < g->n; v++) number[v] = g->side[v] == side ? child->n++ : -1;
+    hdi_fill_i32(number + g->n, halo, -1);
     for (v = 0; v < g->n; v++) {
         if (g->side[v] != side) continue;
-        child->ptr[i] = z;
-        child->id[i++] = g->id[v];
+        half->ptr[i] = z;
+        half->id[i++] = g->id[v];
         for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
             const int32_t u = g->adj[p];
-            child->adj[z++] = u < 0 ? u : at[u];
+            if (number[u] < 0) number[u] = child->n + child->halo++;
+            half->adj[z++] = number[u];
         }
     }
-    child->ptr[i] = z;
+    half->ptr[i] = child->n_edges = z;
 }
 
-/* The clusters of g[0], which are in g[1], that have vertices on one side into the child's slices, with room
- * for space entries. Returns their number, 0 if the room is too small. */
+/* Copies the clusters that have vertices on one side from g[1] to the child's slices, which have room for
+ * space entries. Returns their number, or 0 if the room is too small. */
 static int32_t hdi_nd_extract_clusters(const hdi_nd_graph *g, int8_t side, hdi_nd_graph *child,
                                        int32_t space, hdi_nd_space s) {
     const hdi_nd_graph *c = g + 1;
@@ -12182,66 +12153,24 @@ static int32_t hdi_nd_extract_clusters(const hdi_nd_graph *g, int8_t side, hdi_n
     return n;
 }
 
-/* Gives the rows of the halo numbers from part->n on, in place, by a hash table in s. Returns how many there
- * are; n_edges when the space is too small and nothing has been done. */
-static int32_t hdi_nd_halo(const hdi_nd_part *part, int32_t *adj, hdi_nd_space s) {
-    int32_t p, n = 0, outer = 0, mask = 1;
-    for (p = 0; p < part->n_edges; p++) outer += adj[p] < 0;
-    while (mask < 2 * outer) mask *= 2;
-    if (2 * (int64_t)mask > s.end - s.at) return outer ? part->n_edges : 0;
-    memset(s.at, 0, 2 * (size_t)mask * sizeof *s.at);
-    for (p = 0; p < part->n_edges; p++) {
-        uint32_t h = (uint32_t)adj[p] * HDI_HASH_FACTOR >> 7;
-        int32_t *slot;
-        if (adj[p] >= 0) continue;
-        for (;; h++) {
-            slot = s.at + 2 * (h & (uint32_t)(mask - 1));
-            if (*slot == 0 || *slot == adj[p]) break;
-        }
-        if (*slot == 0) {
-            slot[0] = adj[p];
-            slot[1] = part->n + n++;
-        }
-        adj[p] = slot[1];
-    }
-    return n;
-}
-
-/* Takes the halo out of the rows. */
-static void hdi_nd_bare(hdi_nd_graph *g) {
-    int32_t v, p = 0, z = 0;
-    for (v = 0; v < g->n; v++) {
-        for (; p < g->ptr[v + 1]; p++) {
-            g->adj[z] = g->adj[p];
-            z += g->adj[p] >= 0 && g->adj[p] < g->n;
-        }
-        g->ptr[v + 1] = z;
-    }
-}
-
-/* Orders a part by minimum degree, separators around it as halo if there is space. Changes its graph. */
-static void hdi_nd_leaf(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_graph *g, hdi_nd_space s) {
-    hdi_amd_graph rows = {part->n, part->n, NULL, g->ptr, g->adj};
-    int32_t v, halo, *local = nd->perm + part->first;
+/* Orders a part by minimum degree. The separators around it count as its halo if there is space for it. */
+static void hdi_nd_leaf(const hdi_nd *nd, const hdi_nd_part *part, const hdi_nd_graph *g, hdi_nd_space s) {
+    hdi_amd_graph rows = {part->n + part->halo, part->n, g->ptr, g->adj};
+    int32_t v, *local = nd->perm + part->first;
     if (!part->n) return;
-    halo = hdi_nd_halo(part, g->adj, s);
-    if (hdi_amd_words(part->n, halo, part->n_edges) > s.end - s.at) {
-        hdi_nd_bare(g);
-        halo = 0;
-    }
-    rows.n += halo;
-    if (hdi_amd_words(part->n, halo, g->ptr[part->n]) <= s.end - s.at) hdi_amd_part(&rows, local, s.at);
-    else
-        for (v = 0; v < part->n; v++) local[v] = v;
+    if (hdi_amd_words(part->n, part->halo, part->n_edges) > s.end - s.at) rows.n = part->n;
+    HEATDIFF_ASSERT(hdi_amd_words(rows.n, 0, part->n_edges) <= s.end - s.at);
+    hdi_amd_part(&rows, local, s.at);
     for (v = 0; v < part->n; v++) local[v] = g->id[local[v]];
 }
 
-/* Halves a part into child[2], its separator last; orders a small part whole, its children are empty. */
+/* Halves a part into child[2] and puts its separator last. Small parts, and parts without a good separator,
+ * are ordered whole: their children are empty. */
 static void hdi_nd_split(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_part *child, hdi_nd_space s) {
     hdi_nd_graph level[HDI_ND_LEVELS], half[2];
     hdi_nd_space rest = s;
     const int small = part->n <= HDI_ND_LEAF || part->n_edges == 0;
-    int32_t v, size[3], n[2] = {0, 0}, last, *at = hdi_nd_take(&rest, part->n);
+    int32_t v, size[3], last, *number;
     memset(child, 0, 2 * sizeof *child);
     hdi_nd_graphs_of(nd, part, level);
     level->side = hdi_nd_take_bytes(&rest, part->n);
@@ -12252,29 +12181,23 @@ static void hdi_nd_split(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_part 
     }
     if (HDI_AUDIT && !hdi_nd_separated(level)) HEATDIFF_ASSERT(0);
     last = part->first + part->n - size[2];
-    for (v = 0; v < part->n; v++) {
-        const int8_t t = level->side[v];
-        if (t < 2) at[v] = n[t]++;
-        else {
-            nd->perm[last++] = level->id[v];
-            at[v] = ~level->id[v];
-        }
-    }
+    for (v = 0; v < part->n; v++)
+        if (level->side[v] == 2) nd->perm[last++] = level->id[v];
+    number = hdi_nd_take(&rest, (int64_t)part->n + part->halo);
     for (v = 0; v < 2; v++) {
-        child[v].first = v ? part->first + n[0] : part->first;
-        child[v].n = n[v];
-        child[v].edge = v ? part->edge + child->n_edges : part->edge;
+        child[v].first = part->first + child[0].n;
+        child[v].edge = part->edge + child[0].n_edges;
         child[v].buffer = 1 - part->buffer;
         hdi_nd_graphs_of(nd, child + v, half);
-        hdi_nd_extract(level, (int8_t)v, at, half);
-        child[v].n_edges = half->ptr[n[v]];
-        if (n[v] > HDI_ND_LEAF && level[1].n > 0)
+        hdi_nd_extract(level, part->halo, (int8_t)v, child + v, half, number);
+        if (child[v].n > HDI_ND_LEAF && level[1].n > 0)
             child[v].clusters = hdi_nd_extract_clusters(level, (int8_t)v, half,
                                                         child[v].n_edges / 4 - 1, rest);
     }
 }
 
-/* Orders a part and all below it. A child has at most 4/5 of its part: the stack grows to less than 100. */
+/* Orders a part and all parts below it. A child has at most 4/5 of the vertices of its part, so there are
+ * less than 100 parts on the stack. */
 static void hdi_nd_subtree(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_space s) {
     hdi_nd_part stack[128];
     int32_t n = 1;
@@ -12294,99 +12217,66 @@ static void hdi_nd_node(const hdi_nd *nd, int64_t i) {
     else hdi_nd_subtree(nd, nd->part + i, s);
 }
 
-static void hdi_nd_level_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_nd *nd = (const hdi_nd *)arg;
-    (void)worker;
-    hdi_nd_node(nd, nd->level + index);
-}
-
-/* A part is done: its halves may be claimed. */
-static void hdi_nd_loop_task(void *arg, int64_t index, int32_t worker) {
+/* Treats one part of the heap. After that its halves may be claimed. */
+static void hdi_nd_task(void *arg, int64_t index, int32_t worker) {
     hdi_nd *nd = (hdi_nd *)arg;
-    const double done = 0.1 + 0.8 * (double)HDI_ATOMIC_GET(&nd->done) / (double)HDI_ND_NODES;
-    if (worker == 0 && !HDI_LOAD(&nd->stop) && hdi_progress(nd->ctx, "order", done, nd->error) < 0)
-        HDI_STORE(&nd->stop, 1);
-    if (!HDI_LOAD(&nd->stop)) hdi_nd_node(nd, index);
-    HDI_ATOMIC_ADD(&nd->done, 1);
-    if (index < HDI_ND_TASKS - 1)
-        hdi_release_many(nd->threads, (int32_t)(2 * index + 1), 2, nd->order);
+    (void)worker;
+    hdi_nd_node(nd, index);
+    if (index < HDI_ND_TASKS - 1) hdi_release(&nd->walk, (int32_t)(2 * index + 1), 2);
 }
 
-/* order = rows along the curve, too long ones last; inv = its inverse, -1 for these. Returns the others. */
-static int32_t hdi_nd_number(const hd_csr *a, const uint32_t *key, int32_t *order, int32_t *inv,
-                             int32_t *count) {
-    const double dense = 10 * sqrt((double)a->n_rows) + 16;
-    int32_t i, k = 0, last = a->n_rows;
-    hdi_nd_sort(key, a->n_rows, order, inv, count);
-    for (i = 0; i < a->n_rows; i++) {
-        const int32_t r = order[i];
-        if ((double)(a->row_ptr[r + 1] - a->row_ptr[r]) > dense) inv[--last] = r;
-        else order[k++] = r;
-    }
-    for (i = k; i < a->n_rows; i++) order[i] = inv[i];
-    for (i = 0; i < a->n_rows; i++) inv[order[i]] = i < k ? i : -1;
-    return k;
-}
-
-/* Reads the matrix along the curve: blocks of rows go to the second buffer, from there to the first. */
+/* The matrix as the first part: row k of it is row order[k] of a. */
 typedef struct hdi_nd_load_job {
     const hdi_nd *nd;
     const hd_csr *a;
     const int32_t *order, *inv;
     const float *unit;         /* [3 a->n_rows] places of the rows */
-    int32_t n, *from, *to;     /* places of blocks in the second buffer; in the first, [n_blocks + 1] */
 } hdi_nd_load_job;
 
-static void hdi_nd_load_task(void *arg, int64_t index, int32_t worker) {
+/* Counts the neighbours of rows [begin, end). */
+static void hdi_nd_load_lengths(void *arg, int64_t begin, int64_t end) {
     const hdi_nd_load_job *job = (const hdi_nd_load_job *)arg;
     const hd_csr *a = job->a;
-    const hdi_nd_buffer *b = job->nd->buffer;
-    const int32_t first = (int32_t)index * HDI_ND_BLOCK;
-    const int32_t last = (int32_t)hdi_least(first + HDI_ND_BLOCK, job->n);
-    int32_t k, z = 0, *adj = b[1].adj + job->from[index];
-    int64_t p;
-    (void)worker;
-    for (k = first; k < last; k++) {
+    int64_t k, p;
+    for (k = begin; k < end; k++) {
         const int32_t r = job->order[k];
-        if (k + HDI_ROWS_AHEAD < last) HDI_PREFETCH(a->col + a->row_ptr[job->order[k + HDI_ROWS_AHEAD]]);
-        memcpy(job->nd->xyz + 3 * (size_t)k, job->unit + 3 * (size_t)r, 3 * sizeof(float));
-        b->ptr[k] = z;
-        b->id[k] = k;
-        for (p = a->row_ptr[r]; p < a->row_ptr[r + 1]; p++) {
-            adj[z] = job->inv[a->col[p]];
-            z += a->col[p] != r && adj[z] >= 0;
-        }
+        int32_t count = 0;
+        if (k + HDI_ROWS_AHEAD < end) HDI_PREFETCH(a->col + a->row_ptr[job->order[k + HDI_ROWS_AHEAD]]);
+        for (p = a->row_ptr[r]; p < a->row_ptr[r + 1]; p++)
+            count += a->col[p] != r && job->inv[a->col[p]] >= 0;
+        job->nd->buffer->ptr[k + 1] = count;
     }
-    job->to[index] = z;
 }
 
-static void hdi_nd_move_task(void *arg, int64_t index, int32_t worker) {
+/* Reads rows [begin, end), which begin where ptr says. */
+static void hdi_nd_load_rows(void *arg, int64_t begin, int64_t end) {
     const hdi_nd_load_job *job = (const hdi_nd_load_job *)arg;
     const hdi_nd_buffer *b = job->nd->buffer;
-    const int32_t first = (int32_t)index * HDI_ND_BLOCK, to = job->to[index];
-    const int32_t last = (int32_t)hdi_least(first + HDI_ND_BLOCK, job->n);
-    int32_t k;
-    (void)worker;
-    for (k = first; k < last; k++) b->ptr[k] += to;
-    memcpy(b->adj + to, b[1].adj + job->from[index], (size_t)(job->to[index + 1] - to) * sizeof(int32_t));
+    const hd_csr *a = job->a;
+    int64_t k, p;
+    for (k = begin; k < end; k++) {
+        const int32_t r = job->order[k];
+        int32_t z = b->ptr[k];
+        if (k + HDI_ROWS_AHEAD < end) HDI_PREFETCH(a->col + a->row_ptr[job->order[k + HDI_ROWS_AHEAD]]);
+        memcpy(job->nd->xyz + 3 * (size_t)k, job->unit + 3 * (size_t)r, 3 * sizeof(float));
+        b->id[k] = (int32_t)k;
+        for (p = a->row_ptr[r]; p < a->row_ptr[r + 1]; p++) {
+            const int32_t u = job->inv[a->col[p]];
+            if (a->col[p] != r && u >= 0) b->adj[z++] = u;
+        }
+    }
 }
 
-/* Reads the whole matrix as one part, its rows numbered by order. work [2 blocks + 2]: job->from, job->to. */
-static hdi_nd_part hdi_nd_load(hdi_nd_load_job *job, int32_t *work, hd_context *ctx) {
-    const int32_t n = job->n, n_blocks = (n + HDI_ND_BLOCK - 1) / HDI_ND_BLOCK;
+/* Reads the n rows that are not too long as one part. */
+static hdi_nd_part hdi_nd_load(hdi_nd_load_job *job, int32_t n, hd_context *ctx) {
+    int32_t k, *ptr = job->nd->buffer->ptr;
     hdi_nd_part part;
-    int32_t k, z = 0;
-    job->from = work;
-    job->to = work + n_blocks;
-    for (k = 0; k < n; k++) {
-        if (k % HDI_ND_BLOCK == 0) job->from[k / HDI_ND_BLOCK] = z;
-        z += (int32_t)(job->a->row_ptr[job->order[k] + 1] - job->a->row_ptr[job->order[k]]);
-    }
-    hdi_parallel(ctx, n_blocks, hdi_nd_load_task, job);
     memset(&part, 0, sizeof part);
+    hdi_parallel_ranges(ctx, n, HDI_ND_BLOCK, hdi_nd_load_lengths, job);
+    for (ptr[0] = k = 0; k < n; k++) ptr[k + 1] += ptr[k];
+    hdi_parallel_ranges(ctx, n, HDI_ND_BLOCK, hdi_nd_load_rows, job);
     part.n = n;
-    part.n_edges = job->to[n_blocks] = job->nd->buffer->ptr[n] = hdi_nd_sums(job->to, n_blocks);
-    hdi_parallel(ctx, n_blocks, hdi_nd_move_task, job);
+    part.n_edges = ptr[n];
     return part;
 }
 
@@ -12404,19 +12294,15 @@ static void hdi_nd_buffer_make(hdi_nd_buffer *b, const hd_csr *a, hdi_scope *s) 
     b->cew = b->cadj + nnz / 4 + 1;
 }
 
-/* Orders the whole: own threads share one loop, the user's take the heap level by level. */
-static void hdi_nd_run(hdi_nd *nd) {
-    double done = 0.15;
-    if (hdi_progress(nd->ctx, "order", 0.1, nd->error) < 0) return;
-    if (nd->threads) {
-        nd->order[0] = 0;
-        hdi_parallel_ordered(nd->ctx, HDI_ND_NODES, 1, nd->order, hdi_nd_loop_task, nd);
-        return;
-    }
-    for (nd->level = 0; nd->level < HDI_ND_NODES; nd->level = 2 * nd->level + 1, done += 0.05) {
-        if (hdi_progress(nd->ctx, "order", done, nd->error) < 0) return;
-        hdi_parallel(nd->ctx, nd->level + 1, hdi_nd_level_task, nd);
-    }
+/* Orders the whole matrix, which is part 0 of the heap. */
+static void hdi_nd_run(hdi_nd *nd, hd_context *ctx, hd_error *e) {
+    hdi_walk_open(&nd->walk, ctx, HDI_ND_NODES, nd->order, hdi_nd_task, nd);
+    nd->walk.stage = "order";
+    nd->walk.from = 0.1;
+    nd->walk.to = 0.9;
+    nd->walk.e = e;
+    hdi_release(&nd->walk, 0, 1);
+    hdi_walk_run(&nd->walk);
 }
 
 /* perm[k] = row of the symmetric pattern a (both triangles, the diagonal may be there) that is eliminated
@@ -12427,11 +12313,11 @@ static hd_status hdi_nd_order(const hd_csr *a, const double *xyz, int32_t *perm,
     hdi_scope s = hdi_scope_begin(ctx, e);
     const uint64_t n = (uint64_t)a->n_rows;
     int32_t i, k, *order = HDI_TAKE(&s, int32_t, n + 1), *inv = HDI_TAKE(&s, int32_t, n + 1);
-    int32_t *count = HDI_TAKE(&s, int32_t, 1024 + 2 * n / HDI_ND_BLOCK);
+    int32_t *spare = HDI_TAKE(&s, int32_t, n + 1), *ptr = HDI_TAKE(&s, int32_t, 2049);
     uint32_t *key = HDI_TAKE(&s, uint32_t, n + 1);
     float *unit = HDI_TAKE(&s, float, 3 * n + 1);
     hdi_nd nd;
-    hdi_nd_load_job job = {&nd, a, order, inv, unit, 0, NULL, NULL};
+    hdi_nd_load_job job = {&nd, a, order, inv, unit};
     if (a->nnz > INT32_MAX / 2 || n > INT32_MAX / 4)
         hdi_fail(e, HD_ERR_TOO_LARGE, "a pattern is too large for nested dissection");
     memset(&nd, 0, sizeof nd);
@@ -12442,13 +12328,11 @@ static hd_status hdi_nd_order(const hd_csr *a, const double *xyz, int32_t *perm,
     hdi_nd_buffer_make(nd.buffer, a, &s);
     hdi_nd_buffer_make(nd.buffer + 1, a, &s);
     if (e->status < 0) return hdi_scope_end(&s);
-    nd.ctx = ctx;
-    nd.error = e;
-    nd.threads = hdi_threads_own(ctx, HDI_ND_NODES);   /* started now, they share the loops before, too */
+    hdi_threads_own(ctx, HDI_ND_NODES);   /* threads that are started now share the loops below, too */
     hdi_nd_keys(xyz, a->n_rows, key, unit);
-    k = job.n = hdi_nd_number(a, key, order, inv, count);
-    nd.part[0] = hdi_nd_load(&job, count, ctx);
-    hdi_nd_run(&nd);
+    k = hdi_nd_number(a, key, order, inv, spare, ptr);
+    nd.part[0] = hdi_nd_load(&job, k, ctx);
+    hdi_nd_run(&nd, ctx, e);
     if (e->status < 0) return hdi_scope_end(&s);
     for (i = 0; i < k; i++) perm[i] = order[perm[i]];
     for (i = k; i < a->n_rows; i++) perm[i] = order[i];
@@ -15943,13 +15827,12 @@ static hd_status hdi_ldl_some_entries(hd_ldl *f, int packs, int64_t n, const int
 }
 
 /* ==== [19] precond ====
- * Preconditioners M = (I + U') D (I + U), U strictly upper triangular on the pattern of L, D diagonal: one
- * application serves them all, complex-symmetric and real. May call [12].
- *   none    D = I, U = 0         jacobi  D = diag(A), U = 0
+ * Preconditioners M = (I + U') D (I + U), U strictly upper triangular on the pattern of L, D diagonal,
+ * complex-symmetric or real, and the order of rows that suits them. May call [12].
+ *   jacobi  D = diag(A), U = 0
  *   ssor    D = diag(A), U = D^-1 upper(A): with omega = 1 the product form of SSOR
  *   ildl    incomplete LDL' without fill
- *   mildl   the same, with a part of the dropped fill added to the diagonal, which keeps what smooth vectors
- *           see of A
+ *   mildl   adds most of the dropped fill to the diagonal, which keeps what smooth vectors see of A
  * This work is based on
  *   I. Gustafsson, A class of first order factorization methods, 1978 (mildl)
  *   E. Cuthill, J. McKee, Reducing the bandwidth of sparse symmetric matrices, 1969
@@ -15958,109 +15841,81 @@ static hd_status hdi_ldl_some_entries(hd_ldl *f, int packs, int64_t n, const int
  * one: on the bunny, mildl needs 752 steps instead of 1404 in the order of the file, and 1834 in a random
  * one. */
 
-/* ---- the order ---- */
-
-/* Vertices of the component of start, breadth first, each ring by ascending degree; returns their number.
- * seen [n] is stamp for those visited. last: where the last level begins. work: as many pairs as the widest
- * row. */
-static int32_t hdi_precond_levels(const hd_csr *a, int32_t start, int32_t *order, int32_t *seen,
-                                  int32_t stamp, hdi_pair *work, int32_t *last, int32_t *depth) {
-    int32_t n = 1, head = 0, level_end = 1;
+/* Vertices of the component of order[0], breadth first, each ring by ascending degree. seen [n] is stamp for
+ * those visited. work: as many pairs as the widest row. last: where the last level begins; count: of
+ * all. Returns the number of levels. */
+static int32_t hdi_precond_levels(const hd_csr *a, int32_t *order, int32_t *seen, int32_t stamp,
+                                  hdi_pair *work, int32_t *last, int32_t *count) {
+    int32_t n = 1, head = 0, depth;
     int64_t p, k, q;
-    order[0] = start;
-    seen[start] = stamp;
-    *last = 0;
-    *depth = 0;
-    for (; head < n; head++) {
-        const int32_t i = order[head];
-        if (head == level_end) {
-            *last = head;
-            level_end = n;
-            ++*depth;
+    seen[order[0]] = stamp;
+    for (depth = 0; head < n; depth++) {
+        const int32_t level_end = n;
+        for (*last = head; head < level_end; head++) {
+            const int32_t i = order[head];
+            for (k = 0, p = a->row_ptr[i]; p < a->row_ptr[i + 1]; p++) {
+                const int32_t j = a->col[p];
+                if (seen[j] == stamp) continue;
+                seen[j] = stamp;
+                work[k].key = (uint64_t)(a->row_ptr[j + 1] - a->row_ptr[j]);
+                work[k++].id = j;
+            }
+            hdi_sort_pairs(work, k);
+            for (q = 0; q < k; q++) order[n++] = (int32_t)work[q].id;
         }
-        for (k = 0, p = a->row_ptr[i]; p < a->row_ptr[i + 1]; p++) {
-            const int32_t j = a->col[p];
-            if (seen[j] == stamp) continue;
-            seen[j] = stamp;
-            work[k].key = (uint64_t)(a->row_ptr[j + 1] - a->row_ptr[j]);
-            work[k++].id = j;
-        }
-        hdi_sort_pairs(work, k);
-        for (q = 0; q < k; q++) order[n++] = (int32_t)work[q].id;
     }
-    return n;
+    *count = n;
+    return depth;
 }
 
-/* Cuthill-McKee order of a symmetric pattern: perm[new] = old. */
-static hd_status hdi_precond_cuthill_mckee(const hd_csr *a, int32_t *perm, hd_context *ctx, hd_error *e) {
+/* The same pair in Cuthill-McKee order. Each component begins at an end: at the last level as seen from any
+ * vertex, walked again from there while that adds levels. */
+static hd_laplacian *hdi_precond_ordered(const hd_laplacian *lap, hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
+    const hd_csr *a = &lap->L;
     const int32_t n = a->n_rows;
-    int32_t *seen = HDI_TAKE(&s, int32_t, n), i, k, count, last, depth, deeper, start, done = 0, stamp = 0;
-    int64_t widest = 1;
-    hdi_pair *work;
-    for (i = 0; i < n; i++)
-        if (a->row_ptr[i + 1] - a->row_ptr[i] > widest) widest = a->row_ptr[i + 1] - a->row_ptr[i];
-    work = HDI_TAKE(&s, hdi_pair, widest);
-    if (e->status < 0) return hdi_scope_end(&s);
-    hdi_fill_i32(seen, n, -1);
-    for (i = 0; i < n; i++) {
-        if (seen[i] >= 0) continue;              /* a new component: walk to an end of it */
-        start = i;
-        count = hdi_precond_levels(a, start, perm + done, seen, stamp++, work, &last, &depth);
-        for (k = 0; k < 4 && count > 1; k++) {
-            /* levels are sorted by degree only within rings, any of the last will do */
-            start = perm[done + last];
-            hdi_precond_levels(a, start, perm + done, seen, stamp++, work, &last, &deeper);
+    int32_t *perm = HDI_TAKE(&s, int32_t, n), *seen = HDI_TAKE(&s, int32_t, n);
+    int32_t i, walk, depth, deeper, last = 0, count, done = 0, stamp = 0;
+    hdi_pair *work = HDI_TAKE(&s, hdi_pair, hdi_fullest(a->row_ptr, n));
+    hd_laplacian *out = NULL;
+    if (work) hdi_fill_i32(seen, n, -1);
+    for (i = 0; work && i < n; i++) {
+        if (seen[i] >= 0) continue;
+        for (walk = depth = 0; walk < 5; walk++, depth = deeper) {
+            perm[done] = walk ? perm[done + last] : i;
+            deeper = hdi_precond_levels(a, perm + done, seen, stamp++, work, &last, &count);
             if (deeper <= depth) break;
-            depth = deeper;
         }
         done += count;
     }
-    return hdi_scope_end(&s);
-}
-
-/* The same pair in an order that iterations like. */
-static hd_laplacian *hdi_precond_ordered(const hd_laplacian *lap, hd_context *ctx, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(ctx, e);
-    int32_t *perm = HDI_TAKE(&s, int32_t, lap->n_active);
-    hd_laplacian *out = NULL;
-    if (perm && hdi_precond_cuthill_mckee(&lap->L, perm, ctx, e) >= 0)
-        out = hdi_pair_renumber(lap, perm, ctx, e);
+    if (work) out = hdi_pair_renumber(lap, perm, ctx, e);
     hdi_scope_end(&s);
     return out;
 }
 
-/* ---- factors ---- */
-
 /* The strictly upper pattern of L: rows ascend, and so do columns within a row. */
 typedef struct hdi_upper {
     int32_t n;
-    int64_t *ptr;    /* [n + 1] */
+    int64_t *ptr;    /* [n + 1] one block of memory with col */
     int32_t *col;
 } hdi_upper;
 
-static void hdi_upper_free(hd_context *ctx, hdi_upper *u) {
-    hdi_free(ctx, u->ptr);
-    hdi_free(ctx, u->col);
-    memset(u, 0, sizeof *u);
-}
-
+/* L has a symmetric pattern with a full diagonal. */
 static hd_status hdi_upper_make(hdi_upper *u, const hd_csr *L, hd_context *ctx, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(ctx, e);
-    int64_t *ptr = HDI_TAKE(&s, int64_t, (int64_t)L->n_rows + 1), p, nnz = 0;
-    /* a symmetric pattern with full diagonal */
-    int32_t *col = HDI_TAKE(&s, int32_t, (L->nnz - L->n_rows) / 2), i;
-    if (e->status < 0) return hdi_scope_end(&s);
-    for (i = 0; i < L->n_rows; i++) {
-        ptr[i] = nnz;
-        for (p = L->row_ptr[i]; p < L->row_ptr[i + 1]; p++)
-            if (L->col[p] > i) col[nnz++] = L->col[p];
-    }
-    ptr[L->n_rows] = nnz;
+    const int64_t n = L->n_rows;
+    int64_t p, nnz = 0;
+    int32_t i;
+    u->ptr = HDI_NEW(ctx, int64_t, (n + 1 + (L->nnz - n + 3) / 4), e);
+    if (!u->ptr) return e->status;
     u->n = L->n_rows;
-    u->ptr = (int64_t *)hdi_keep(&s, ptr);
-    u->col = (int32_t *)hdi_keep(&s, col);
-    return hdi_scope_end(&s);
+    u->col = (int32_t *)(void *)(u->ptr + n + 1);
+    for (i = 0; i < u->n; i++) {
+        u->ptr[i] = nnz;
+        for (p = L->row_ptr[i]; p < L->row_ptr[i + 1]; p++)
+            if (L->col[p] > i) u->col[nnz++] = L->col[p];
+    }
+    u->ptr[n] = nnz;
+    return HD_OK;
 }
 
 /* A = t L + theta B, never formed. */
@@ -16070,24 +15925,13 @@ typedef struct hdi_system {
     hd_c64 theta;
 } hdi_system;
 
-/* Upper values and diagonal of A; u may be NULL. */
-static void hdi_system_upper(const hdi_system *a, const hdi_upper *up, hd_c64 *u, hd_c64 *d) {
-    const hd_laplacian *lap = a->lap;
-    int32_t i;
-    int64_t p, q = 0;
-    for (i = 0; i < up->n; i++) {
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
-            const double l = a->t * lap->L.val[p];
-            if (lap->L.col[p] < i) continue;
-            if (lap->L.col[p] == i) {
-                d[i] = hdi_c(l + a->theta.re * lap->b_diag[i], a->theta.im * lap->b_diag[i]);
-                continue;
-            }
-            if (u)
-                u[q++] = lap->B ? hdi_c(l + a->theta.re * lap->B[p], a->theta.im * lap->B[p]) : hdi_c(l, 0);
-        }
-    }
-}
+/* Values of a preconditioner: U and D^-1; while it is made, those of A. */
+typedef struct hdi_precond {
+    hd_precond kind;
+    const hdi_upper *up;
+    hd_c64 *u;       /* [nnz of up] or NULL */
+    hd_c64 *d;       /* [n] or NULL */
+} hdi_precond;
 
 #define HDI_ILDL_LEAST 1e-3   /* share of its diagonal entry that a pivot must keep */
 #define HDI_MILDL_KEPT 0.97   /* share of the dropped fill that goes to the diagonal; 1: pivots may vanish */
@@ -16101,100 +15945,81 @@ static hd_c64 hdi_ildl_pivot(hd_c64 d, hd_c64 a) {
     return d.re * re + d.im * im > HDI_ILDL_LEAST * (a.re * re + a.im * im) ? d : a;
 }
 
-/* An entry loses w x; a share of what it loses goes to a diagonal entry. */
-static void hdi_ildl_entry(hd_c64 *entry, hd_c64 *diagonal, double keep, hd_c64 w, hd_c64 x) {
-    const hd_c64 wx = hdi_cmul(w, x);
-    *entry = hdi_csub(*entry, wx);
-    *diagonal = hdi_cadd(*diagonal, hdi_cscale(keep, wx));
+/* The first place at or after p whose column is at least c. Steps double: what is near is found at once, what
+ * is far without looking at all between. */
+static int64_t hdi_ildl_seek(const int32_t *col, int64_t p, int64_t end, int32_t c) {
+    int64_t step = 1;
+    for (; p + step <= end && col[p + step - 1] < c; step *= 2) p += step;
+    return p + hdi_lower_bound(col + p, hdi_least(step, end - p), c);
 }
 
-/* Right-looking incomplete LDL' of the complex-symmetric A, plain transpose. On entry u holds the upper part,
- * d and diag the diagonal; on exit u the factor. Row k updates the entries (i, j) between its own columns;
- * where the pattern has none, `keep` of the update goes to the diagonal entries of i and j. Work per row k:
- * the shorter of the two searches, so that a vertex with very many neighbours costs no square of their
- * number. mark [n] = -1 on entry. */
-static void hdi_ildl(const hdi_upper *up, hd_c64 *u, hd_c64 *d, const hd_c64 *diag, double keep,
-                     int64_t *mark) {
+/* Right-looking incomplete LDL' of the complex-symmetric A, plain transpose. Row k updates the entries (i, j)
+ * between its own columns; where the pattern has none, `keep` of the update goes to the diagonal entries of i
+ * and j. A vertex with very many neighbours costs no square of their number. diag [n] is work. */
+static void hdi_ildl(const hdi_precond *m, hd_c64 *diag, double keep) {
+    const int32_t *col = m->up->col;
+    const int64_t *ptr = m->up->ptr;
+    hd_c64 *u = m->u, *d = m->d;
     int32_t k;
-    int64_t p, q;
-    for (k = 0; k < up->n; k++) {
-        const int64_t begin = up->ptr[k], end = up->ptr[k + 1];
+    int64_t p, q, r;
+    memcpy(diag, d, (size_t)m->up->n * sizeof *d);
+    for (k = 0; k < m->up->n; k++) {
         hd_c64 sum = hdi_c(0, 0);
         d[k] = hdi_ildl_pivot(d[k], diag[k]);
-        for (p = begin; p < end; p++) {
-            mark[up->col[p]] = p;
+        for (p = ptr[k]; p < ptr[k + 1]; p++) {
             u[p] = hdi_cdiv(u[p], d[k]);
             sum = hdi_cadd(sum, u[p]);
         }
-        for (p = begin; p < end; p++) {
-            const int32_t i = up->col[p];
-            const int64_t row = up->ptr[i], row_len = up->ptr[i + 1] - row;
+        for (p = ptr[k]; p < ptr[k + 1]; p++) {
+            const int32_t i = col[p];
             const hd_c64 w = hdi_cmul(u[p], d[k]);
-            hd_c64 kept = hdi_c(0, 0);
-            if (row_len > 8 * (end - p)) {     /* look up the columns of k in the longer row i */
-                for (q = p + 1; q < end; q++) {
-                    const int64_t at = row + hdi_lower_bound(up->col + row, row_len, up->col[q]);
-                    if (at == row + row_len || up->col[at] != up->col[q]) continue;
-                    hdi_ildl_entry(u + at, d + up->col[q], keep, w, u[q]);
-                    kept = hdi_cadd(kept, u[q]);
-                }
-            } else {
-                for (q = up->ptr[i]; q < up->ptr[i + 1]; q++) {
-                    const int64_t at = mark[up->col[q]];
-                    if (at < begin) continue;
-                    hdi_ildl_entry(u + q, d + up->col[q], keep, w, u[at]);
-                    kept = hdi_cadd(kept, u[at]);
+            hd_c64 dropped = hdi_csub(sum, u[p]);
+            for (q = p + 1, r = ptr[i]; q < ptr[k + 1] && r < ptr[i + 1];) {
+                if (col[q] < col[r]) {
+                    q = hdi_ildl_seek(col, q + 1, ptr[k + 1], col[r]);
+                } else if (col[r] < col[q]) {
+                    r = hdi_ildl_seek(col, r + 1, ptr[i + 1], col[q]);
+                } else {
+                    const hd_c64 kept = u[q], update = hdi_cmul(w, kept);
+                    u[r] = hdi_csub(u[r], update);
+                    d[col[q]] = hdi_cadd(d[col[q]], hdi_cscale(keep, update));
+                    dropped = hdi_csub(dropped, kept);
+                    q++;
+                    r++;
                 }
             }
-            /* its own update, and what was not kept of the rest of the row: the lines above put back what is
-             * before p */
-            d[i] = hdi_csub(d[i], hdi_cmul(w, u[p]));
-            d[i] = hdi_csub(d[i], hdi_cscale(keep, hdi_cmul(w, hdi_csub(hdi_csub(sum, u[p]), kept))));
+            /* entries before p are among the dropped ones; those that were kept have been put back */
+            d[i] = hdi_csub(d[i], hdi_cmul(w, hdi_cadd(u[p], hdi_cscale(keep, dropped))));
         }
     }
 }
 
-typedef struct hdi_precond {
-    hd_precond kind;
-    const hdi_upper *up;
-    hd_c64 *u;        /* [nnz of up] or NULL */
-    hd_c64 *d_inv;    /* [n] or NULL */
-} hdi_precond;
-
-/* Fills m, whose arrays are there. work [n] complex, mark [n]. */
-static void hdi_precond_make(hdi_precond *m, const hdi_system *a, hd_c64 *work, int64_t *mark) {
-    const int32_t n = m->up->n;
+static void hdi_ssor(const hdi_precond *m, hd_c64 *work, double keep) {
     int32_t i;
     int64_t p;
-    if (m->kind == HD_PRECOND_NONE) return;
-    hdi_system_upper(a, m->up, m->u, m->d_inv);
-    if (m->kind == HD_PRECOND_SSOR) {
-        for (i = 0; i < n; i++)
-            for (p = m->up->ptr[i]; p < m->up->ptr[i + 1]; p++) m->u[p] = hdi_cdiv(m->u[p], m->d_inv[i]);
-    } else if (m->kind != HD_PRECOND_JACOBI) {
-        memcpy(work, m->d_inv, (size_t)n * sizeof *work);
-        for (i = 0; i < n; i++) mark[i] = -1;
-        hdi_ildl(m->up, m->u, m->d_inv, work, m->kind == HD_PRECOND_MILDL ? HDI_MILDL_KEPT : 0, mark);
-    }
-    for (i = 0; i < n; i++) m->d_inv[i] = hdi_cdiv(hdi_c(1, 0), m->d_inv[i]);
+    (void)work;
+    (void)keep;
+    for (i = 0; i < m->up->n; i++)
+        for (p = m->up->ptr[i]; p < m->up->ptr[i + 1]; p++) m->u[p] = hdi_cdiv(m->u[p], m->d[i]);
 }
 
-/* z = M^-1 r: (I + U') w = r, z = (I + U)^-1 D^-1 w. z may not be r. */
-static void hdi_precond_apply(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z) {
+static void hdi_apply_none(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z) {
+    memcpy(z, r, (size_t)m->up->n * sizeof *z);
+}
+
+static void hdi_apply_diagonal(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z) {
+    int32_t i;
+    for (i = 0; i < m->up->n; i++) z[i] = hdi_cmul(r[i], m->d[i]);
+}
+
+/* (I + U') w = r, z = (I + U)^-1 D^-1 w. */
+static void hdi_apply_factors(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z) {
     const int64_t *HDI_RESTRICT ptr = m->up->ptr;
     const int32_t *HDI_RESTRICT col = m->up->col;
     const hd_c64 *HDI_RESTRICT u = m->u;
     const int32_t n = m->up->n;
     int32_t i;
     int64_t p;
-    if (!m->d_inv) {
-        memcpy(z, r, (size_t)n * sizeof *z);
-        return;
-    }
-    if (!u) {
-        for (i = 0; i < n; i++) z[i] = hdi_cmul(r[i], m->d_inv[i]);
-        return;
-    }
     memcpy(z, r, (size_t)n * sizeof *z);
     for (i = 0; i < n; i++) {
         const hd_c64 w = z[i];
@@ -16203,12 +16028,53 @@ static void hdi_precond_apply(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r
         for (p = ptr[i]; p < ptr[i + 1]; p++) z[col[p]] = hdi_csub(z[col[p]], hdi_cmul(u[p], w));
     }
     for (i = n; i-- > 0;) {
-        hd_c64 w = hdi_cmul(z[i], m->d_inv[i]);
+        hd_c64 w = hdi_cmul(z[i], m->d[i]);
         HDI_PREFETCH_AT(u, ptr[i] - HDI_AHEAD / 4);
         HDI_PREFETCH_AT(col, ptr[i] - HDI_AHEAD);
         for (p = ptr[i]; p < ptr[i + 1]; p++) w = hdi_csub(w, hdi_cmul(u[p], z[col[p]]));
         z[i] = w;
     }
+}
+
+/* All there is to know of a preconditioner. make (NULL: nothing to do) turns the values of A into U and D,
+ * with a work array [n]; apply makes z = M^-1 r, z not r. */
+typedef struct hdi_precond_row {
+    int32_t rows, entries;   /* values for each row and for each entry above the diagonal */
+    double steps;            /* of cocg, about, relative to those with mildl */
+    void (*apply)(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z);
+    void (*make)(const hdi_precond *m, hd_c64 *work, double keep);
+    double keep;             /* share of the dropped fill that goes to the diagonal */
+} hdi_precond_row;
+
+static const hdi_precond_row hdi_preconds[] = {                             /* by hd_precond */
+    {1, 1, 1, hdi_apply_factors, hdi_ildl, HDI_MILDL_KEPT},                 /* auto */
+    {0, 0, 5.5, hdi_apply_none, NULL, 0},
+    {1, 0, 5, hdi_apply_diagonal, NULL, 0},
+    {1, 1, 2, hdi_apply_factors, hdi_ssor, 0},
+    {1, 1, 1.4, hdi_apply_factors, hdi_ildl, 0},
+    {1, 1, 1, hdi_apply_factors, hdi_ildl, HDI_MILDL_KEPT}
+};
+
+/* Does not compile where a kind has no row. */
+typedef char hdi_preconds_all[sizeof hdi_preconds / sizeof *hdi_preconds == HD_PRECOND_MILDL + 1 ? 1 : -1];
+
+/* Fills m, whose arrays are there. work [n] */
+static void hdi_precond_make(const hdi_precond *m, const hdi_system *a, hd_c64 *work) {
+    const hdi_precond_row *row = hdi_preconds + m->kind;
+    const hd_csr *L = &a->lap->L;
+    int32_t i;
+    int64_t p = 0, q = 0;
+    for (i = 0; row->rows && i < L->n_rows; i++) {
+        for (; p < L->row_ptr[i + 1]; p++) {     /* the diagonal of A, and what is above it */
+            const int32_t j = L->col[p];
+            const double b = j == i ? a->lap->b_diag[i] : a->lap->B ? a->lap->B[p] : 0;
+            const hd_c64 v = hdi_c(a->t * L->val[p] + a->theta.re * b, a->theta.im * b);
+            if (j == i) m->d[i] = v;
+            else if (m->u && j > i) m->u[q++] = v;
+        }
+    }
+    if (row->make) row->make(m, work, row->keep);
+    for (i = 0; row->rows && i < L->n_rows; i++) m->d[i] = hdi_cdiv(hdi_c(1, 0), m->d[i]);
 }
 
 /* ==== [20] iterative ====
@@ -16218,75 +16084,61 @@ static void hdi_precond_apply(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r
  * This work is based on
  *   H. van der Vorst, J. Melissen, A Petrov-Galerkin type method for solving Ax = b, where A is symmetric
  *     complex, 1990 (cocg)
- *   T. Sogabe, S.-L. Zhang, A COCR method for solving complex symmetric linear systems, 2007 (cocr)
  *   S.-C. Choi, Minimal residual methods for complex symmetric, skew symmetric, and skew Hermitian systems,
  *     2013 (minres)
  *   Y. Saad, M. Yeung, J. Erhel, F. Guyomarc'h, A deflated version of the conjugate gradient algorithm, 2000
  * Deviation: if L 1 = 0, the constants W of the components are known eigenvectors, A W = theta B W. The
- * caller takes them out of the right-hand side (1'b = 0 for each component), and the solvers keep them out
- * of all directions. So the smallest eigenvalue does not slow the iteration. The caller adds their part of
+ * caller takes them out of the right-hand side (1'b = 0 for each component), and every step keeps them out
+ * of its direction. So the smallest eigenvalue does not slow the iteration. The caller adds their part of
  * the solution, which is known exactly, and heat is conserved. */
 
 /* y = A x on rows; returns x'y. */
 static hd_c64 hdi_system_apply(const hdi_system *a, const hd_c64 *HDI_RESTRICT x, hd_c64 *HDI_RESTRICT y) {
     const int64_t *HDI_RESTRICT Ap = a->lap->L.row_ptr;
     const int32_t *HDI_RESTRICT Aj = a->lap->L.col;
-    const double *HDI_RESTRICT Lx = a->lap->L.val, *HDI_RESTRICT Bx = a->lap->B;
-    const double *HDI_RESTRICT b = a->lap->mass;
-    const double t = a->t;
-    const hd_c64 theta = a->theta;
+    const double *HDI_RESTRICT Lx = a->lap->L.val, *HDI_RESTRICT Bx = a->lap->B, *mass = a->lap->mass;
     hd_c64 dot = hdi_c(0, 0);
     const int32_t n = a->lap->n_active;
     int32_t i;
     int64_t p = 0;
     for (i = 0; i < n; i++) {
         const int64_t end = Ap[i + 1];
-        hd_c64 l = hdi_c(0, 0), m = hdi_c(0, 0), s;
+        hd_c64 l = hdi_c(0, 0), b = l;
         HDI_PREFETCH_AT(Lx, p + HDI_AHEAD);
         HDI_PREFETCH_AT(Aj, p + HDI_AHEAD);
         if (Bx) {
             HDI_PREFETCH_AT(Bx, p + HDI_AHEAD);
             for (; p < end; p++) {
                 const hd_c64 v = x[Aj[p]];
-                l.re += Lx[p] * v.re;
-                l.im += Lx[p] * v.im;
-                m.re += Bx[p] * v.re;
-                m.im += Bx[p] * v.im;
+                l = hdi_cadd(l, hdi_cscale(Lx[p], v));
+                b = hdi_cadd(b, hdi_cscale(Bx[p], v));
             }
         } else {
-            for (; p < end; p++) {
-                const hd_c64 v = x[Aj[p]];
-                l.re += Lx[p] * v.re;
-                l.im += Lx[p] * v.im;
-            }
-            m = hdi_cscale(b[i], x[i]);
+            for (; p < end; p++) l = hdi_cadd(l, hdi_cscale(Lx[p], x[Aj[p]]));
+            b = hdi_cscale(mass[i], x[i]);
         }
-        s = hdi_cadd(hdi_cscale(t, l), hdi_cmul(theta, m));
-        y[i] = s;
-        dot = hdi_cadd(dot, hdi_cmul(x[i], s));
+        y[i] = hdi_cadd(hdi_cscale(a->t, l), hdi_cmul(a->theta, b));
+        dot = hdi_cadd(dot, hdi_cmul(x[i], y[i]));
     }
     return dot;
 }
 
-/* Subtracts from z its B-mean on every component, if L 1 = 0. sums [n_components] is work. */
-static void hdi_deflate(const hd_laplacian *lap, hd_c64 *z, hd_c64 *sums) {
-    const int32_t *comp = lap->component;
+/* Takes out of r its part in B W, if L 1 = 0: mean [n_components] receives W'r relative to the masses. */
+static void hdi_deflate(const hd_laplacian *lap, hd_c64 *r, hd_c64 *mean) {
+    const int32_t n = lap->conserves ? lap->n_active : 0, *comp = lap->component;
     int32_t i;
-    if (!lap->conserves) return;
-    memset(sums, 0, (size_t)lap->n_components * sizeof *sums);
-    for (i = 0; i < lap->n_active; i++)
-        sums[comp[i]] = hdi_cadd(sums[comp[i]], hdi_cscale(lap->mass[i], z[i]));
-    for (i = 0; i < lap->n_components; i++) sums[i] = hdi_cscale(1 / lap->component_mass[i], sums[i]);
-    for (i = 0; i < lap->n_active; i++) z[i] = hdi_csub(z[i], sums[comp[i]]);
+    memset(mean, 0, (size_t)lap->n_components * sizeof *mean);
+    for (i = 0; i < n; i++) mean[comp[i]] = hdi_cadd(mean[comp[i]], r[i]);
+    for (i = 0; i < lap->n_components; i++) mean[i] = hdi_cscale(1 / lap->component_mass[i], mean[i]);
+    for (i = 0; i < n; i++) r[i] = hdi_csub(r[i], hdi_cscale(lap->mass[i], mean[comp[i]]));
 }
 
 /* Limits of an iteration, set by hand. They only matter where rounding stops the residual from falling. */
-/* |r|/|b|: below it, the level that rounding allows is computed and watched */
-#define HDI_KRYLOV_NEAR 1e-9
+#define HDI_KRYLOV_NEAR 1e-9     /* |r|/|b|: below it the level that rounding allows is watched */
 #define HDI_KRYLOV_USABLE 1e-7   /* |r|/|b|: a solution at most this bad is handed out, with a warning */
 #define HDI_KRYLOV_ASTRAY 1e3    /* a recurrence that grows by this from its best has lost its way */
+#define HDI_KRYLOV_FLOOR 0.07    /* of the bound on rounding: less than twice that is usually seen */
 enum {
-    HDI_KRYLOV_VECTORS = 8,
     HDI_KRYLOV_PATIENCE = 50,    /* steps without halving the residual, besides as many as the best took */
     HDI_KRYLOV_LOOK = 16         /* steps between looks at the progress callback */
 };
@@ -16295,12 +16147,12 @@ enum {
 typedef struct hdi_krylov {
     hdi_system a;
     const hdi_precond *m;
-    hd_solver solver;
-    const double *weight;                /* [n] 1/diag(B): the residual's norm */
-    hd_c64 *sums;                        /* [n_components] */
-    hd_c64 *spare;                       /* [n] the best x so far, kept while a round may spoil it */
+    hd_solver solver;                    /* cocg or minres */
+    const double *weight, *noise;        /* [n] 1/diag(B): the residual's norm; weights of its rounding */
+    hd_c64 *mean;                        /* [n_components] */
     hd_c64 *x, *r;                       /* [n] solution and residual */
-    hd_c64 *v[HDI_KRYLOV_VECTORS - 2];   /* [n] each, as many as the solver needs */
+    hd_c64 *best;                        /* [n] the best x so far, kept while a round may spoil it */
+    hd_c64 *v[6];                        /* [n] each, as many as the solver needs */
     double r_norm, b_norm;               /* in the norm of diag(B)^-1 */
     int64_t iterations;
     int32_t broken, ready;
@@ -16308,109 +16160,49 @@ typedef struct hdi_krylov {
     double beta, beta_old, c1, c2;
 } hdi_krylov;
 
-/* Vectors that a system under solution takes, x and r included. One more after them is work within a step. A
- * system that waits needs x alone: hdi_krylov_residual makes r again, to the last bit. */
-static int hdi_krylov_vectors(hd_solver solver) {
-    return solver == HD_SOLVER_COCG ? 3 : solver == HD_SOLVER_COCR ? 6 : 7;
+/* Vectors besides x. A system that waits needs x alone. */
+static int hdi_krylov_vectors(hd_solver solver) { return solver == HD_SOLVER_MINRES ? 8 : 4; }
+
+/* Begins at x = 0; b_norm: what residuals are reported against. */
+static void hdi_krylov_start(hdi_krylov *k, double b_norm) {
+    memset(k->x, 0, (size_t)k->a.lap->n_active * sizeof *k->x);
+    k->b_norm = b_norm;
+    k->iterations = 0;
 }
 
-/* z = M^-1 r without its constants. */
-static void hdi_krylov_precond(hdi_krylov *k, const hd_c64 *r, hd_c64 *z) {
-    hdi_precond_apply(k->m, r, z);
-    hdi_deflate(k->a.lap, z, k->sums);
-}
-
-/* r without its part in B W, and its norm. That part is rounding, which no direction can bring down. It would
- * change nothing but the means of x, which the caller sets. */
-static void hdi_krylov_measure(hdi_krylov *k) {
-    const hd_laplacian *lap = k->a.lap;
-    const int32_t n = lap->conserves ? lap->n_active : 0, *c = lap->component;
-    int32_t i;
-    memset(k->sums, 0, (size_t)lap->n_components * sizeof *k->sums);
-    for (i = 0; i < n; i++) k->sums[c[i]] = hdi_cadd(k->sums[c[i]], k->r[i]);
-    for (i = 0; i < n; i++)
-        k->r[i] = hdi_csub(k->r[i], hdi_cscale(lap->mass[i] / lap->component_mass[c[i]], k->sums[c[i]]));
-    k->r_norm = sqrt(hdi_cnorm2w(k->r, k->weight, lap->n_active));
-    k->ready = 0;
-}
-
-/* r = b - A x and its norm, computed from x. The recurrences drift away from this residual. */
+/* r = b - A x and its norm, computed from x. The recurrences drift away from this residual. The part of r in
+ * B W is rounding, which no direction can bring down. It would change nothing but the means of x, which the
+ * caller sets. */
 static void hdi_krylov_residual(hdi_krylov *k, const hd_c64 *b) {
+    const int32_t n = k->a.lap->n_active;
     int32_t i;
     hdi_system_apply(&k->a, k->x, k->r);
-    for (i = 0; i < k->a.lap->n_active; i++) k->r[i] = hdi_csub(b[i], k->r[i]);
-    hdi_krylov_measure(k);
+    for (i = 0; i < n; i++) k->r[i] = hdi_csub(b[i], k->r[i]);
+    hdi_deflate(k->a.lap, k->r, k->mean);
+    k->r_norm = sqrt(hdi_cnorm2w(k->r, k->weight, n));
+    k->ready = k->broken = 0;
 }
 
-/* A bound on what rounding contributes to the residual of x, in the same norm. Usually less than half of
- * it is seen. */
-static double hdi_krylov_noise(const hdi_krylov *k) {
+/* z = M^-1 r up to its constants, the means that k->mean receives. Returns r'z, for minres r^* z, which the
+ * constants do not change, since 1'r = 0. Rows of a component mostly follow each other. */
+static hd_c64 hdi_krylov_precond(hdi_krylov *k, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z) {
     const hd_laplacian *lap = k->a.lap;
-    const double theta = hdi_cabs(k->a.theta);
-    double sum = 0;
-    int64_t p = 0;
-    int32_t i;
-    for (i = 0; i < lap->n_active; i++) {
-        double a = theta * lap->b_diag[i];
-        for (; p < lap->L.row_ptr[i + 1]; p++) a += k->a.t * fabs(lap->L.val[p]);
-        a *= hdi_cabs(k->x[i]);                  /* first, since x is small where a is large */
-        sum += k->weight[i] * a * a;
+    const double sign = k->solver == HD_SOLVER_MINRES ? -1 : 1;
+    const int32_t *comp = lap->component;
+    hd_c64 dot = hdi_c(0, 0);
+    int32_t i = 0;
+    hdi_preconds[k->m->kind].apply(k->m, r, z);
+    memset(k->mean, 0, (size_t)lap->n_components * sizeof *k->mean);
+    while (i < lap->n_active) {
+        const int32_t c = comp[i];
+        hd_c64 sum = hdi_c(0, 0);
+        for (; i < lap->n_active && comp[i] == c; i++) {
+            dot = hdi_cadd(dot, hdi_cmul(hdi_c(r[i].re, sign * r[i].im), z[i]));
+            sum = hdi_cadd(sum, hdi_cscale(lap->mass[i], z[i]));
+        }
+        if (lap->conserves) k->mean[c] = hdi_cadd(k->mean[c], hdi_cscale(1 / lap->component_mass[c], sum));
     }
-    return DBL_EPSILON * sqrt(sum);
-}
-
-/* x += alpha p, r -= alpha q; returns the new norm of r. */
-static double hdi_krylov_step(hdi_krylov *k, hd_c64 alpha, const hd_c64 *HDI_RESTRICT p,
-                              const hd_c64 *HDI_RESTRICT q) {
-    hd_c64 *HDI_RESTRICT x = k->x, *HDI_RESTRICT r = k->r;
-    const double *HDI_RESTRICT w = k->weight;
-    const int32_t n = k->a.lap->n_active;
-    double norm = 0;
-    int32_t i;
-    for (i = 0; i < n; i++) {
-        x[i] = hdi_cadd(x[i], hdi_cmul(alpha, p[i]));
-        r[i] = hdi_csub(r[i], hdi_cmul(alpha, q[i]));
-        norm += w[i] * hdi_cabs2(r[i]);
-    }
-    return sqrt(norm);
-}
-
-/* z = M^-1 r with its constants left in; k->sums receives their B-means. Returns r'z, which the constants do
- * not change, since 1'r = 0. */
-static hd_c64 hdi_krylov_precond_dot(hdi_krylov *k, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z) {
-    const hd_laplacian *lap = k->a.lap;
-    const double *HDI_RESTRICT b = lap->mass;
-    const int32_t n = lap->n_active, *comp = lap->n_components > 1 ? lap->component : NULL;
-    hd_c64 dot = hdi_c(0, 0), mean = dot, *sums = k->sums;
-    int32_t i;
-    hdi_precond_apply(k->m, r, z);
-    memset(sums, 0, (size_t)lap->n_components * sizeof *sums);
-    for (i = 0; i < n; i++) {
-        dot = hdi_cadd(dot, hdi_cmul(r[i], z[i]));
-        if (comp) sums[comp[i]] = hdi_cadd(sums[comp[i]], hdi_cscale(b[i], z[i]));
-        else mean = hdi_cadd(mean, hdi_cscale(b[i], z[i]));
-    }
-    if (!comp) sums[0] = mean;
-    for (i = 0; i < lap->n_components; i++)
-        sums[i] = hdi_cscale(lap->conserves ? 1 / lap->component_mass[i] : 0, sums[i]);
     return dot;
-}
-
-/* p = z - its B-means in k->sums + beta p */
-static void hdi_krylov_deflated_direction(const hdi_krylov *k, hd_c64 beta, const hd_c64 *HDI_RESTRICT z,
-                                          hd_c64 *HDI_RESTRICT p) {
-    const int32_t n = k->a.lap->n_active, *comp = k->a.lap->n_components > 1 ? k->a.lap->component : NULL;
-    const hd_c64 mean = k->sums[0];
-    int32_t i;
-    for (i = 0; i < n; i++)
-        p[i] = hdi_cadd(hdi_csub(z[i], comp ? k->sums[comp[i]] : mean), hdi_cmul(beta, p[i]));
-}
-
-/* p = z + beta p */
-static void hdi_krylov_direction(hd_c64 beta, const hd_c64 *HDI_RESTRICT z, hd_c64 *HDI_RESTRICT p,
-                                 int32_t n) {
-    int32_t i;
-    for (i = 0; i < n; i++) p[i] = hdi_cadd(z[i], hdi_cmul(beta, p[i]));
 }
 
 /* A quotient of the recurrence. The method is marked as broken if it is not finite. */
@@ -16422,77 +16214,58 @@ static hd_c64 hdi_krylov_quotient(hdi_krylov *k, hd_c64 a, hd_c64 b) {
 }
 
 static void hdi_cocg_step(hdi_krylov *k) {
-    hd_c64 *p = k->v[0], *q = k->v[1], alpha, rho;
-    if (!k->ready) {
-        memset(p, 0, (size_t)k->a.lap->n_active * sizeof *p);
-        k->rho = hdi_krylov_precond_dot(k, k->r, q);
-        hdi_krylov_deflated_direction(k, hdi_c(0, 0), q, p);
-    }
-    alpha = hdi_krylov_quotient(k, k->rho, hdi_system_apply(&k->a, p, q));
+    const int32_t n = k->a.lap->n_active, *comp = k->a.lap->component;
+    hd_c64 *HDI_RESTRICT p = k->v[0], *HDI_RESTRICT q = k->v[1];
+    hd_c64 *HDI_RESTRICT x = k->x, *HDI_RESTRICT r = k->r;
+    const hd_c64 rho = hdi_krylov_precond(k, r, q);
+    hd_c64 alpha, beta = hdi_c(0, 0);
+    double norm = 0;
+    int32_t i;
+    if (k->ready) beta = hdi_krylov_quotient(k, rho, k->rho);
+    else memset(p, 0, (size_t)n * sizeof *p);
+    for (i = 0; i < n; i++) p[i] = hdi_cadd(hdi_csub(q[i], k->mean[comp[i]]), hdi_cmul(beta, p[i]));
+    alpha = hdi_krylov_quotient(k, rho, hdi_system_apply(&k->a, p, q));
     if (k->broken) return;
-    k->r_norm = hdi_krylov_step(k, alpha, p, q);
-    rho = hdi_krylov_precond_dot(k, k->r, q);    /* q is free now: z = M^-1 r */
-    hdi_krylov_deflated_direction(k, hdi_krylov_quotient(k, rho, k->rho), q, p);
+    for (i = 0; i < n; i++) {
+        x[i] = hdi_cadd(x[i], hdi_cmul(alpha, p[i]));
+        r[i] = hdi_csub(r[i], hdi_cmul(alpha, q[i]));
+        norm += k->weight[i] * hdi_cabs2(r[i]);
+    }
+    k->r_norm = sqrt(norm);
     k->rho = rho;
 }
 
-static void hdi_cocr_step(hdi_krylov *k) {
-    const int32_t n = k->a.lap->n_active;
-    hd_c64 *p = k->v[0], *q = k->v[1], *z = k->v[2], *az = k->v[3], *mq = k->v[4], alpha, rho;
-    int32_t i;
-    if (!k->ready) {
-        hdi_krylov_precond(k, k->r, z);
-        k->rho = hdi_system_apply(&k->a, z, az);
-        memcpy(p, z, (size_t)n * sizeof *p);
-        memcpy(q, az, (size_t)n * sizeof *q);
-    }
-    hdi_krylov_precond(k, q, mq);
-    alpha = hdi_krylov_quotient(k, k->rho, hdi_cdotu(q, mq, n));
-    if (k->broken) return;
-    k->r_norm = hdi_krylov_step(k, alpha, p, q);
-    for (i = 0; i < n; i++) z[i] = hdi_csub(z[i], hdi_cmul(alpha, mq[i]));
-    rho = hdi_system_apply(&k->a, z, az);
-    alpha = hdi_krylov_quotient(k, rho, k->rho);
-    hdi_krylov_direction(alpha, z, p, n);
-    hdi_krylov_direction(alpha, az, q, n);
-    k->rho = rho;
-}
-
-/* The square root of y^* M y = w^* y, where y = M^-1 w. M is real and positive definite. */
-static double hdi_minres_beta(hdi_krylov *k, const hd_c64 *w, const hd_c64 *y) {
-    const int32_t n = k->a.lap->n_active;
-    double s = 0;
-    int32_t i;
-    for (i = 0; i < n; i++) s += w[i].re * y[i].re + w[i].im * y[i].im;
+/* y = M^-1 w (v[2], v[1]) and beta, the square root of w^* y. M is real and positive definite. */
+static void hdi_minres_beta(hdi_krylov *k) {
+    const double s = hdi_krylov_precond(k, k->v[1], k->v[2]).re;
     if (!(s >= 0)) k->broken = 1;
-    return s > 0 ? sqrt(s) : 0;
+    k->beta = s > 0 ? sqrt(s) : 0;
 }
 
 /* MINRES on the Saunders process A conj(V_k) = V_(k+1) T_k: V is unitary in the geometry of M, T is complex
- * symmetric and tridiagonal with real off-diagonals. */
+ * symmetric and tridiagonal with real off-diagonals. Vectors: w_old, w, y, d, d_old, v. */
 static void hdi_minres_start(hdi_krylov *k) {
-    const int32_t n = k->a.lap->n_active;
-    hd_c64 *w_old = k->v[0], *w = k->v[1], *y = k->v[2], *d = k->v[3], *d_old = k->v[4];
-    int32_t i;
-    memcpy(w, k->r, (size_t)n * sizeof *w);
-    hdi_krylov_precond(k, w, y);
-    k->beta = hdi_minres_beta(k, w, y);
+    const size_t bytes = (size_t)k->a.lap->n_active * sizeof *k->r;
+    memset(k->v[0], 0, bytes);
+    memset(k->v[3], 0, bytes);
+    memset(k->v[4], 0, bytes);
+    memcpy(k->v[1], k->r, bytes);
+    hdi_minres_beta(k);
     k->beta_old = k->c1 = 1;
     k->phibar = hdi_c(k->beta, 0);
     k->c2 = 0;                                   /* T has no entry above its first diagonal one */
     k->s1 = k->s2 = hdi_c(0, 0);
-    for (i = 0; i < n; i++) w_old[i] = d[i] = d_old[i] = hdi_c(0, 0);
     if (k->beta == 0) k->broken = 1;
 }
 
-/* One step of the process. The direction v = conj(y)/beta goes to v[5], the next w to v[1], and the next
- * y = M^-1 w to v[2]. Returns the diagonal entry v'Av of T. */
+/* One step of the process: the direction v = conj(y)/beta, the next w, y and beta. Returns the diagonal entry
+ * v'Av of T. */
 static hd_c64 hdi_minres_extend(hdi_krylov *k) {
-    const int32_t n = k->a.lap->n_active;
+    const int32_t n = k->a.lap->n_active, *comp = k->a.lap->component;
     const double beta = k->beta;
     hd_c64 *w_old = k->v[0], *w = k->v[1], *y = k->v[2], *v = k->v[5], alpha;
     int32_t i;
-    for (i = 0; i < n; i++) v[i] = hdi_cscale(1 / beta, hdi_cconj(y[i]));
+    for (i = 0; i < n; i++) v[i] = hdi_cscale(1 / beta, hdi_cconj(hdi_csub(y[i], k->mean[comp[i]])));
     alpha = hdi_system_apply(&k->a, v, y);
     for (i = 0; i < n; i++) {                    /* w_old becomes the new w */
         const hd_c64 u = hdi_csub(y[i], hdi_cscale(beta / k->beta_old, w_old[i]));
@@ -16500,9 +16273,8 @@ static hd_c64 hdi_minres_extend(hdi_krylov *k) {
     }
     k->v[0] = w;
     k->v[1] = w_old;
-    hdi_krylov_precond(k, w_old, y);
     k->beta_old = beta;
-    k->beta = hdi_minres_beta(k, w_old, y);
+    hdi_minres_beta(k);
     return alpha;
 }
 
@@ -16510,8 +16282,8 @@ static hd_c64 hdi_minres_extend(hdi_krylov *k) {
 static void hdi_minres_step(hdi_krylov *k) {
     const int32_t n = k->a.lap->n_active;
     const hd_c64 *v = k->v[5];
-    hd_c64 *d = k->v[3], *d_old = k->v[4], alpha, eps, delta, gbar, gamma, phi, s;
-    double dbar, size, c;
+    hd_c64 *d = k->v[3], *d_old = k->v[4], alpha, eps, delta, gbar, inverse, phi, psi, s;
+    double dbar, size, c, norm = 0;
     int32_t i;
     if (!k->ready) hdi_minres_start(k);
     if (k->broken) return;
@@ -16520,42 +16292,33 @@ static void hdi_minres_step(hdi_krylov *k) {
     dbar = k->c2 * k->beta_old;
     delta = hdi_cadd(hdi_c(k->c1 * dbar, 0), hdi_cmul(k->s1, alpha));
     gbar = hdi_csub(hdi_cscale(k->c1, alpha), hdi_cscale(dbar, hdi_cconj(k->s1)));
-    size = hypot(hdi_cabs(gbar), k->beta);
+    c = hdi_cabs(gbar);
+    size = hypot(c, k->beta);
     if (size == 0) {
         k->broken = 1;
         return;
     }
-    c = hdi_cabs(gbar) / size;
-    gamma = hdi_cabs(gbar) > 0 ? hdi_cscale(size / hdi_cabs(gbar), gbar) : hdi_c(size, 0);
-    s = hdi_cscale(k->beta / (size * size), gamma);
+    s = c > 0 ? hdi_cscale(1 / c, gbar) : hdi_c(1, 0);   /* gamma/size */
+    inverse = hdi_cscale(1 / size, hdi_cconj(s));        /* 1/gamma */
+    s = hdi_cscale(k->beta / size, s);
+    c /= size;
     phi = hdi_cscale(c, k->phibar);
     k->phibar = hdi_cscale(-1, hdi_cmul(hdi_cconj(s), k->phibar));
+    psi = hdi_cscale(k->beta > 0 ? c / k->beta : 0, k->phibar);
     for (i = 0; i < n; i++) {
         const hd_c64 u = hdi_csub(hdi_csub(v[i], hdi_cmul(delta, d[i])), hdi_cmul(eps, d_old[i]));
-        d_old[i] = hdi_cdiv(u, gamma);
+        d_old[i] = hdi_cmul(u, inverse);
         k->x[i] = hdi_cadd(k->x[i], hdi_cmul(phi, d_old[i]));
+        k->r[i] = hdi_cadd(hdi_cscale(hdi_cabs2(s), k->r[i]), hdi_cmul(psi, k->v[1][i]));
+        norm += k->weight[i] * hdi_cabs2(k->r[i]);
     }
     k->v[3] = d_old;
     k->v[4] = d;
-    phi = hdi_cscale(k->beta > 0 ? c / k->beta : 0, k->phibar);
-    for (i = 0; i < n; i++)
-        k->r[i] = hdi_cadd(hdi_cscale(hdi_cabs2(s), k->r[i]), hdi_cmul(phi, k->v[1][i]));
-    k->r_norm = sqrt(hdi_cnorm2w(k->r, k->weight, n));
+    k->r_norm = sqrt(norm);
     k->c2 = k->c1;
     k->s2 = k->s1;
     k->c1 = c;
     k->s1 = s;
-}
-
-/* Begins at x = 0. The residual is reported against b_norm. */
-static void hdi_krylov_start(hdi_krylov *k, const hd_c64 *b, double b_norm) {
-    const size_t bytes = (size_t)k->a.lap->n_active * sizeof *k->x;
-    memset(k->x, 0, bytes);
-    memcpy(k->r, b, bytes);
-    hdi_krylov_measure(k);
-    k->b_norm = b_norm;
-    k->iterations = 0;
-    k->broken = 0;
 }
 
 /* How a running solver reports progress and learns that it shall stop. */
@@ -16582,24 +16345,23 @@ static double hdi_krylov_done(double start, double now, double target) {
 }
 
 /* Iterates until the recurrence says |r| <= target, or until it gains no more. Near the level of rounding it
- * ends at floor_share times hdi_krylov_noise, since recurrences go astray below. start: |r| at the beginning,
- * for progress. left: steps allowed, counted down. */
+ * ends at floor_share times the bound on it, since recurrences go astray below. start: |r| at the beginning,
+ * for progress. most: iterations in all. */
 static hd_status hdi_krylov_round(hdi_krylov *k, double target, double floor_share, double start,
-                                  int64_t *left,
-                                  const hdi_watch *watch, hd_error *e) {
+                                  int64_t most, const hdi_watch *watch, hd_error *e) {
     double best = k->r_norm, least = target;
     int64_t step, best_step = 0;
     int near_rounding = 0;
-    for (step = 1; k->r_norm > least && !k->broken && *left > 0; step++, --*left) {
+    for (step = 1; k->r_norm > least && !k->broken && k->iterations < most; step++) {
         if (!near_rounding && k->r_norm < HDI_KRYLOV_NEAR * k->b_norm) {
             near_rounding = 1;
-            least = hdi_max(target, floor_share * hdi_krylov_noise(k));
+            least = hdi_max(target,
+                            floor_share * sqrt(hdi_cnorm2w(k->x, k->noise, k->a.lap->n_active)));
         }
         if (step % HDI_KRYLOV_LOOK == 1 &&
             hdi_watch_look(watch, hdi_krylov_done(start, k->r_norm, target), e) < 0) return e->status;
-        if (k->solver == HD_SOLVER_COCG) hdi_cocg_step(k);
-        else if (k->solver == HD_SOLVER_COCR) hdi_cocr_step(k);
-        else hdi_minres_step(k);
+        if (k->solver == HD_SOLVER_MINRES) hdi_minres_step(k);
+        else hdi_cocg_step(k);
         if (!hdi_finite(k->r_norm)) k->broken = 1;
         k->ready = 1;
         k->iterations += !k->broken;
@@ -16621,30 +16383,25 @@ static hd_status hdi_krylov_run(hdi_krylov *k, const hd_c64 *b, double target, i
                                 const hdi_watch *watch, hd_error *e) {
     const size_t bytes = (size_t)k->a.lap->n_active * sizeof *k->x;
     const double start = k->r_norm;
-    double before = k->r_norm, floor_share = 0.5;
-    int64_t left = max_iterations;
+    double before, floor_share = HDI_KRYLOV_FLOOR;
     if (!hdi_finite(start))
         return hdi_fail(e, HD_ERR_BREAKDOWN, "iterations leave the range of doubles: masses are too small");
-    while (k->r_norm > target) {
-        memcpy(k->spare, k->x, bytes);
-        if (hdi_krylov_round(k, target, floor_share, start, &left, watch, e) < 0) return e->status;
+    for (; k->r_norm > target; floor_share /= 4) {
+        before = k->r_norm;
+        memcpy(k->best, k->x, bytes);
+        if (hdi_krylov_round(k, target, floor_share, start, max_iterations, watch, e) < 0) return e->status;
         hdi_krylov_residual(k, b);               /* the recurrence says done: only x itself can confirm it */
         if (k->r_norm <= target) return HD_OK;
-        if (left <= 0)
+        if (k->iterations >= max_iterations)
             return hdi_fail(e, HD_ERR_NOT_CONVERGED,
                             "the iteration did not reach the tolerance in max_iterations steps");
-        if (!(k->r_norm <= before / 2)) {
-            if (!(k->r_norm <= before)) {
-                memcpy(k->x, k->spare, bytes);
-                hdi_krylov_residual(k, b);
-            }
-            if (k->r_norm <= HDI_KRYLOV_USABLE * k->b_norm) return HD_WARN_ACCURACY;
-            return hdi_fail(e, HD_ERR_BREAKDOWN,
-                            "the iteration broke down: no step brings the residual down");
+        if (k->r_norm <= before / 2) continue;
+        if (!(k->r_norm <= before)) {
+            memcpy(k->x, k->best, bytes);
+            hdi_krylov_residual(k, b);
         }
-        before = k->r_norm;
-        floor_share /= 4;
-        k->broken = 0;
+        if (k->r_norm <= HDI_KRYLOV_USABLE * k->b_norm) return HD_WARN_ACCURACY;
+        return hdi_fail(e, HD_ERR_BREAKDOWN, "the iteration broke down: no step brings the residual down");
     }
     return HD_OK;
 }
@@ -18730,16 +18487,16 @@ static int hdi_family_turns(const hdi_family *fam) { return fam->n_values < fam-
 
 /* Room for the preconditioners of the set. */
 static hd_status hdi_family_room(hdi_family *fam, hd_error *e) {
-    const uint64_t n = (uint64_t)fam->lap->n_active, upper = (uint64_t)fam->up->ptr[n];
-    const uint64_t size =
-        fam->precond == HD_PRECOND_NONE ? 0 : fam->precond == HD_PRECOND_JACOBI ? n : n + upper;
+    const hdi_precond_row *row = hdi_preconds + fam->precond;
+    const uint64_t n = (uint64_t)(row->rows * fam->up->n);
+    const uint64_t upper = (uint64_t)(row->entries * fam->up->ptr[fam->up->n]), size = n + upper + 1;
     int32_t i, room = fam->set.n_poles;
     if (fam->n_values < room) {
         hdi_family_free(fam);
-        fam->values = HDI_NEW(fam->ctx, hd_c64, (uint64_t)room * (size + 1), e);
+        fam->values = HDI_NEW(fam->ctx, hd_c64, (uint64_t)room * size, e);
         if (room > 1 && hdi_over_limit(fam->ctx, e)) {
             hdi_error_clear(e);
-            fam->values = HDI_NEW(fam->ctx, hd_c64, size + 1, e);
+            fam->values = HDI_NEW(fam->ctx, hd_c64, size, e);
             room = 1;
         }
         if (!fam->values) return e->status;
@@ -18748,25 +18505,21 @@ static hd_status hdi_family_room(hdi_family *fam, hd_error *e) {
     for (i = 0; i < fam->set.n_poles; i++) {
         fam->m[i].kind = fam->precond;
         fam->m[i].up = fam->up;
-        fam->m[i].d_inv = size ? fam->values + (hdi_family_turns(fam) ? 0 : (size_t)i * (size + 1)) : NULL;
-        fam->m[i].u = size > n ? fam->m[i].d_inv + n : NULL;
+        fam->m[i].d = fam->values + (hdi_family_turns(fam) ? 0 : (size_t)i * size);
+        fam->m[i].u = upper ? fam->m[i].d + n : NULL;
     }
     return HD_OK;
 }
 
-/* Complex numbers of work that a preconditioner takes: n of them, and n integers. */
-static uint64_t hdi_fill_work(uint64_t n) { return n + (n + 1) / 2; }
-
-/* Makes the preconditioner of pole p. */
+/* Makes the preconditioner of pole p. work [n] */
 static void hdi_family_make(const hdi_family *fam, int32_t p, hd_c64 *work) {
-    hdi_precond m = fam->m[p];
     hdi_system a;
     a.lap = fam->lap;
     a.t = fam->t;
     a.theta = fam->set.theta[p];
     /* real, positive definite */
     if (fam->solver == HD_SOLVER_MINRES) a.theta = hdi_c(hdi_cabs(a.theta), 0);
-    hdi_precond_make(&m, &a, work, (int64_t *)(void *)(work + fam->lap->n_active));
+    hdi_precond_make(fam->m + p, &a, work);
 }
 
 typedef struct hdi_fill_job {
@@ -18776,12 +18529,11 @@ typedef struct hdi_fill_job {
 
 static void hdi_fill_task(void *arg, int64_t index, int32_t worker) {
     const hdi_fill_job *job = (const hdi_fill_job *)arg;
-    const uint64_t stride = hdi_fill_work((uint64_t)job->fam->lap->n_active);
     (void)worker;
-    hdi_family_make(job->fam, (int32_t)index, job->work + stride * (size_t)index);
+    hdi_family_make(job->fam, (int32_t)index, job->work + index * job->fam->lap->n_active);
 }
 
-/* Makes the preconditioners, one parallel task each. work: [hdi_fill_work] for each of them. */
+/* Makes the preconditioners, one parallel task each. work [n] for each of them. */
 static hd_status hdi_family_fill(hdi_family *fam, hd_c64 *work, hd_error *e) {
     hdi_fill_job job;
     if (fam->filled) return HD_OK;
@@ -18915,21 +18667,20 @@ static hd_status hdi_lane_lanczos(hdi_lane *lane, const hd_laplacian *lap, int32
 }
 
 /* Room for the systems of a set: b, the vectors that all systems share, as they run one after the other, x of
- * each, sums, and inner products. The whole of it serves to make preconditioners before. The last two of
- * those shared are the lane's work between solves. What the lane held is lost. */
+ * each, means, and inner products. The whole of it serves to make preconditioners before. Two of those shared
+ * are the lane's work between solves. What the lane held is lost. */
 static hd_status hdi_lane_systems_make(hdi_lane *lane, const hdi_family *fam, hd_error *e) {
     const uint64_t n = (uint64_t)fam->lap->n_active, count = (uint64_t)fam->set.n_poles;
-    const uint64_t shared = (uint64_t)hdi_krylov_vectors(fam->solver) + 1;
+    const uint64_t shared = (uint64_t)hdi_krylov_vectors(fam->solver);
     const uint64_t vectors = (1 + shared + count) * n + (uint64_t)fam->lap->n_components;
     const uint64_t size = vectors + count * (sizeof(hdi_gram) / sizeof(hd_c64));
-    const uint64_t fill = count * hdi_fill_work(n);
     hdi_free(fam->ctx, lane->f);
     hdi_free(fam->ctx, lane->b);
     hdi_free(fam->ctx, lane->k);
     lane->b = NULL;
     lane->k = NULL;
     lane->f = HDI_NEW(fam->ctx, double, 3 * n, e);
-    if (lane->f) lane->b = HDI_NEW(fam->ctx, hd_c64, size > fill ? size : fill, e);
+    if (lane->f) lane->b = HDI_NEW(fam->ctx, hd_c64, size, e);
     if (lane->b) lane->k = HDI_NEW(fam->ctx, hdi_krylov, count + 1, e);
     if (!lane->k) {
         hdi_lane_free(lane, fam->ctx);
@@ -18945,26 +18696,25 @@ static hd_status hdi_lane_systems_make(hdi_lane *lane, const hdi_family *fam, hd
 
 /* The systems of a set, and their constants. */
 static hd_status hdi_lane_systems(hdi_lane *lane, const hdi_family *fam, hd_error *e) {
-    const uint64_t n = (uint64_t)fam->lap->n_active;
-    const int n_vec = hdi_krylov_vectors(fam->solver);
-    int32_t i;
-    int j;
+    const int64_t n = fam->lap->n_active;
+    const int32_t shared = hdi_krylov_vectors(fam->solver);
+    int32_t i, j;
     if ((!lane->k || lane->n_systems < fam->set.n_poles) && hdi_lane_systems_make(lane, fam, e) < 0)
         return e->status;
     for (i = 0; i < fam->set.n_poles; i++) {
         hdi_krylov *k = lane->k + i;
-        hd_c64 *v = lane->b + n;
         memset(k, 0, sizeof *k);
-        k->r = v;
-        for (j = 0; j < n_vec - 1; j++) k->v[j] = v += n;
-        k->spare = v += n;
-        k->x = v += n * (uint64_t)(i + 1);
-        k->sums = lane->b + n * (uint64_t)(n_vec + 2 + lane->n_systems);
+        k->r = lane->b + n;
+        k->best = k->r + n;
+        for (j = 0; j + 2 < shared; j++) k->v[j] = k->best + n * (j + 1);
+        k->x = k->r + n * (shared + i);
+        k->mean = k->r + n * (shared + lane->n_systems);
         k->a.lap = fam->lap;
         k->a.t = fam->t;
         k->a.theta = fam->set.theta[i];
         k->solver = fam->solver;
         k->weight = fam->weight;
+        k->noise = fam->noise;
         k->m = fam->m + i;
     }
     return HD_OK;
@@ -19126,17 +18876,17 @@ static hd_status hdi_lane_run(hdi_lane *lane, const hdi_family *fam, int fresh, 
         const double fair = hdi_max(left / (p + 1), 0.1 * aim / n_poles);
         const double share = weight > 0 ? fair / weight : DBL_MAX;
         const double target = share * sqrt(fam->lap->b_ratio) * hdi_pole_distance(fam->set.theta[p]);
-        const int runs = fresh || k->r_norm > target;
+        const int runs = fresh || k->r_norm > target, warm = fresh && p < last && b_norm > 0;
         if (runs && hdi_family_turns(fam)) hdi_family_make(fam, p, k->r);
-        if (fresh) hdi_krylov_start(k, lane->b, b_norm);
-        else if (runs) hdi_krylov_residual(k, lane->b);
-        if (fresh && p < last && b_norm > 0) {
-            hdi_warm_start(lane, fam, p, last, gram);
+        if (fresh) hdi_krylov_start(k, b_norm);
+        if (warm) hdi_warm_start(lane, fam, p, last, gram);
+        if (runs) hdi_krylov_residual(k, lane->b);
+        if (warm && !(k->r_norm < b_norm)) {
+            hdi_krylov_start(k, b_norm);
             hdi_krylov_residual(k, lane->b);
-            if (!(k->r_norm < b_norm)) hdi_krylov_start(k, lane->b, b_norm);
         }
         part.from = watch->from + part.share * (n_poles - 1 - p);
-        status = hdi_krylov_run(k, lane->b, target, fam->max_iterations - k->iterations, &part, e);
+        status = hdi_krylov_run(k, lane->b, target, fam->max_iterations, &part, e);
         if (status < 0) {
             if (status == HD_ERR_NOT_CONVERGED) e->value = k->r_norm / k->b_norm;
             if (status != HD_ERR_CANCELLED) e->pole = p;
@@ -23525,9 +23275,10 @@ static hd_status hdi_heat_seats(hd_heat *heat, int32_t n, hd_error *e) {
 
 static void hdi_heat_free_iterative(hd_heat *heat) {
     hdi_family_free(&heat->fam);
-    hdi_upper_free(heat->ctx, &heat->up);
+    hdi_free(heat->ctx, heat->up.ptr);
     hdi_free(heat->ctx, heat->weight);
     hdi_laplacian_free(heat->lap, heat->ctx);
+    heat->up.ptr = NULL;
     heat->weight = NULL;
     heat->lap = NULL;
 }
@@ -23552,9 +23303,7 @@ static hd_status hdi_heat_iterative(hd_heat *heat, hd_error *e) {
     heat->fam.lap = heat->lap;
     heat->fam.up = &heat->up;
     heat->fam.weight = heat->weight;
-    heat->fam.solver = HD_SOLVER_COCG;
-    if (heat->opts.solver == HD_SOLVER_COCR || heat->opts.solver == HD_SOLVER_MINRES)
-        heat->fam.solver = heat->opts.solver;
+    heat->fam.solver = heat->opts.solver == HD_SOLVER_MINRES ? HD_SOLVER_MINRES : HD_SOLVER_COCG;
     heat->fam.precond = heat->opts.precond;
     heat->fam.max_iterations = heat->opts.max_iterations;
     return e->status;
@@ -23653,7 +23402,7 @@ static hd_status hdi_solve_rhs(const hd_laplacian *lap, const hd_c64 *rhs, int *
 static double hdi_shifted_load(const hd_heat *heat, const hd_c64 *rhs, int exponent, hd_c64 theta,
                                hdi_lane *lane, hd_c64 *x) {
     const hd_laplacian *lap = heat->lap;
-    hd_c64 *sums = lane->k->sums;
+    const hd_c64 *mean = lane->k->mean;
     double norm;
     int32_t i, v;
     for (i = 0; i < lap->n_active; i++) {
@@ -23661,17 +23410,9 @@ static double hdi_shifted_load(const hd_heat *heat, const hd_c64 *rhs, int expon
         lane->b[i] = hdi_c(ldexp(r.re, -exponent), ldexp(r.im, -exponent));
     }
     norm = sqrt(hdi_cnorm2w(lane->b, heat->weight, lap->n_active));
-    memset(sums, 0, (size_t)lap->n_components * sizeof *sums);
+    hdi_deflate(lap, lane->b, lane->k->mean);
     for (v = 0; v < lap->n; v++) x[v] = hdi_c(0, 0);
-    if (!lap->conserves) return norm;
-    for (i = 0; i < lap->n_active; i++)
-        sums[lap->component[i]] = hdi_cadd(sums[lap->component[i]], lane->b[i]);
-    for (i = 0; i < lap->n_components; i++) sums[i] = hdi_cscale(1 / lap->component_mass[i], sums[i]);
-    for (i = 0; i < lap->n_active; i++) {
-        const hd_c64 mean = sums[lap->component[i]];
-        lane->b[i] = hdi_csub(lane->b[i], hdi_cscale(lap->mass[i], mean));
-        x[lap->vertex[i]] = hdi_cdiv(mean, theta);
-    }
+    for (i = 0; i < lap->n_active; i++) x[lap->vertex[i]] = hdi_cdiv(mean[lap->component[i]], theta);
     return norm;
 }
 
@@ -23691,12 +23432,16 @@ static hd_status hdi_shifted_prepare(hd_heat *heat, double t, hd_c64 theta, hd_e
 
 #define HDI_TOL_SOLVE 1e-10
 
+static int hdi_solver_known(hd_solver s) {
+    return s == HD_SOLVER_AUTO || s == HD_SOLVER_COCG || s == HD_SOLVER_MINRES || s == HD_SOLVER_LANCZOS;
+}
+
 static hd_status hdi_solve_check(double t, hd_c64 theta, const hd_solve_opts *o, hd_error *e) {
     hdi_refuse_value(!hdi_finite(t) || t < 0, "solve: t is negative or not finite", t, e);
     hdi_refuse(!hdi_cfinite(theta) || (theta.im == 0 && theta.re <= 0),
                "solve: theta lies on (-inf, 0] or is not finite", e);
-    hdi_refuse(o->solver < HD_SOLVER_AUTO || o->solver > HD_SOLVER_MINRES,
-               "solve: the solver is cocg, cocr or minres", e);
+    hdi_refuse(!hdi_solver_known(o->solver) || o->solver == HD_SOLVER_LANCZOS,
+               "solve: the solver is cocg or minres", e);
     hdi_refuse(o->precond < HD_PRECOND_AUTO || o->precond > HD_PRECOND_MILDL, "solve: unknown preconditioner",
                e);
     hdi_refuse(!hdi_finite(o->tol) || o->tol < 0 || o->tol >= 1, "solve: tol is not in [0, 1)", e);
@@ -23725,7 +23470,8 @@ static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const 
     watch.share = 1;
     watch.stage = "solve";
     b_norm = hdi_shifted_load(heat, rhs, exponent, theta, lane, x);
-    hdi_krylov_start(k, lane->b, b_norm);
+    hdi_krylov_start(k, b_norm);
+    hdi_krylov_residual(k, lane->b);
     status = hdi_krylov_run(k, lane->b, tol * b_norm, heat->fam.max_iterations, &watch, e);
     for (i = 0; i < lap->n_active; i++) x[lap->vertex[i]] = k->x[i] = hdi_cadd(x[lap->vertex[i]], k->x[i]);
     if (report) {
@@ -23837,7 +23583,6 @@ static double hdi_lanczos_steps(const hd_heat *heat, double t) {
 
 /* Of all poles together. Solutions at hand give a good start: twice the poles do not take twice as many. */
 static double hdi_cocg_steps(const hd_heat *heat, double t, int32_t poles) {
-    static const double hdi_steps_of[] = {1, 5.5, 5, 2, 1.4, 1};   /* by hd_precond */
     const hdi_steps_scales *s = &heat->scales;
     const hd_laplacian *lap = heat->source;
     const double wide = hdi_max(1, (double)lap->L.nnz / (7.0 * lap->n_active));
@@ -23845,7 +23590,7 @@ static double hdi_cocg_steps(const hd_heat *heat, double t, int32_t poles) {
     double one = HDI_COCG_GROWTH * pow(bounded * s->local / pow(wide, HDI_COCG_WIDE), HDI_COCG_POWER);
     one += 1 + (lap->B ? HDI_COCG_FULL_B : 0);
     one *= exp(HDI_COCG_OBTUSE * s->obtuse * s->obtuse) * hdi_steps_digits(heat);
-    one *= heat->opts.solver == HD_SOLVER_MINRES ? 3.5 : hdi_steps_of[heat->opts.precond];
+    one *= heat->opts.solver == HD_SOLVER_MINRES ? 3.5 : hdi_preconds[heat->opts.precond].steps;
     return hdi_min(one * sqrt(5.0 * poles), (double)heat->opts.max_iterations * poles);
 }
 
@@ -23884,7 +23629,7 @@ static hdi_work hdi_cocg_work(const hd_heat *heat, double t, int32_t poles, doub
     const hd_laplacian *lap = heat->source;
     const double nnz = (double)lap->L.nnz, n = lap->n_active, full = lap->B ? 1.2 : 1;
     const int made = heat->fam.filled && heat->fam.t == t;
-    const int plain = heat->opts.precond == HD_PRECOND_NONE || heat->opts.precond == HD_PRECOND_JACOBI;
+    const int plain = !hdi_preconds[heat->opts.precond].entries;
     hdi_work w;
     w.steps = hdi_cocg_steps(heat, t, poles);
     w.flops = k * w.steps * ((lap->B ? 8 : 4) * nnz + (plain ? 0 : 8 * nnz) + 40 * n);
@@ -26587,7 +26332,7 @@ static void hdi_heat_built(const hd_heat_opts *o, hd_error *e) {
 static hd_status hdi_heat_check(const hd_heat_opts *o, hd_error *e) {
     const int from_two = o->poles == HD_POLES_KERNEL || o->poles == HD_POLES_DIAGONAL;
     hdi_refuse(o->method < HD_METHOD_AUTO || o->method > HD_METHOD_KRYLOV, "heat: unknown method", e);
-    hdi_refuse(o->solver < HD_SOLVER_AUTO || o->solver > HD_SOLVER_LANCZOS, "heat: unknown solver", e);
+    hdi_refuse(!hdi_solver_known(o->solver), "heat: unknown solver", e);
     hdi_refuse(o->precond < HD_PRECOND_AUTO || o->precond > HD_PRECOND_MILDL, "heat: unknown preconditioner",
                e);
     hdi_refuse(o->poles != HD_POLES_DIAGONAL && (o->poles < HD_POLES_DEFAULT || o->poles > HD_POLES_KERNEL),
@@ -29981,17 +29726,14 @@ static int hdi_estimate_open(const hdi_estimate *x) {
 static double hdi_bytes_iterative(const hd_heat *heat, double t, int32_t k, int32_t poles) {
     const double n = heat->source->n_active, nnz = (double)heat->source->L.nnz;
     const double lanes = hdi_low32(k, HDI_LANES_ITERATIVE);
-    const int vectors = hdi_krylov_vectors(heat->opts.solver == HD_SOLVER_MINRES ? HD_SOLVER_MINRES
-                                           : HD_SOLVER_COCG);
+    const hdi_precond_row *row = hdi_preconds + heat->opts.precond;
     double bytes = HDI_ESTIMATE_SMALL;
     if (!heat->lap) bytes += nnz * (heat->source->B ? 20 : 12) + 36 * n + 4.0 * heat->source->n;
     if (!heat->weight) bytes += 8 * n + 4 * (nnz - n) / 2 + 32 * n;
     if (hdi_heat_choose(heat, t) == HD_SOLVER_LANCZOS)
         return bytes + lanes * (80 * n + 88.0 * hdi_lanczos_most(t, heat->lambda_max));
-    /* hdi_lane_systems_make: the vectors, or if they are more the room to make preconditioners */
-    bytes += lanes * (24 * n + 16 * hdi_max((2 + vectors + poles) * n, 1.5 * poles * n));
-    if (heat->opts.precond == HD_PRECOND_NONE) return bytes;
-    return bytes + 16.0 * poles * (heat->opts.precond == HD_PRECOND_JACOBI ? n : n + (nnz - n) / 2);
+    bytes += lanes * (24 + 16.0 * (1 + hdi_krylov_vectors(heat->opts.solver) + poles)) * n;
+    return bytes + 16.0 * poles * (row->rows * n + row->entries * (nnz - n) / 2);
 }
 
 /* Bytes and flops of shift-and-invert Lanczos. Bases that exist are grown. */
