@@ -75,7 +75,7 @@
      [17] direct     multifrontal L D L' and triangular solves
      [18] selinv     selected inversion: entries of the inverse, quadratic forms
      [19] precond    Jacobi, SSOR and incomplete L D L'
-     [20] iterative  COCG, COCR, CS-MINRES
+     [20] iterative  COCG, CS-MINRES
      [21] rational   pole sets: tables, evaluation, sets shared by many times, fits of filters
      [22] poles      the family t L + theta_i B: factors or preconditioners, answers, error bounds
      [23] lanczos    K_t f without poles: Lanczos for the exponential, and shift-and-invert
@@ -623,12 +623,10 @@ typedef enum hd_solver {
     HD_SOLVER_AUTO = 0,         /* Lanczos for small t if it costs less, else cocg */
     /* Conjugate orthogonal CG (van der Vorst, Melissen 1990); CG for real poles. */
     HD_SOLVER_COCG,
-    /* Conjugate orthogonal conjugate residuals (Sogabe, Zhang 2007); CG for real poles. */
-    HD_SOLVER_COCR,
     /* CS-MINRES (Choi 2013), which is MINRES on the Saunders process. Plain MINRES needs a Hermitian matrix.
      * For complex theta, t L + theta B is not Hermitian, and plain MINRES converges to a wrong result.
      * CS-MINRES needs a real positive definite preconditioner: here that of t L + |theta| B. */
-    HD_SOLVER_MINRES,
+    HD_SOLVER_MINRES = 3,       /* there is no 2 */
     HD_SOLVER_LANCZOS           /* for the exponential, no poles: about 1.1 sqrt(t lambda_max) steps */
 } hd_solver;
 
@@ -1247,7 +1245,7 @@ HEATDIFF_API double hd_filter_eval(const hd_filter *filter, double lambda);
 
 typedef struct hd_solve_opts {
     int32_t begin_zero;
-    hd_solver solver;           /* cocg, cocr or minres; default cocg */
+    hd_solver solver;           /* cocg or minres; default cocg */
     hd_precond precond;
     double tol;                 /* |b - A x| / |b| in the norm of diag(B)^-1; default 1e-10 */
     int32_t max_iterations;     /* default 20000 */
@@ -3372,18 +3370,6 @@ static double hdi_dot(const double *HDI_RESTRICT x, const double *HDI_RESTRICT y
     }
     for (; i < n; i++) s0 += x[i] * y[i];
     return (s0 + s1) + (s2 + s3);
-}
-
-/* x' y, no conjugate: the bilinear form of complex-symmetric methods. */
-static hd_c64 hdi_cdotu(const hd_c64 *HDI_RESTRICT x, const hd_c64 *HDI_RESTRICT y, int64_t n) {
-    hd_c64 s0 = hdi_c(0, 0), s1 = s0;
-    int64_t i;
-    for (i = 0; i + 2 <= n; i += 2) {
-        s0 = hdi_cadd(s0, hdi_cmul(x[i], y[i]));
-        s1 = hdi_cadd(s1, hdi_cmul(x[i + 1], y[i + 1]));
-    }
-    for (; i < n; i++) s0 = hdi_cadd(s0, hdi_cmul(x[i], y[i]));
-    return hdi_cadd(s0, s1);
 }
 
 /* sum w_i |x_i|^2 */
@@ -15050,13 +15036,12 @@ static hd_status hdi_ldl_some_entries(hd_ldl *f, int packs, int64_t n, const int
 }
 
 /* ==== [19] precond ====
- * Preconditioners M = (I + U') D (I + U), U strictly upper triangular on the pattern of L, D diagonal: one
- * application serves them all, complex-symmetric and real. May call [12].
- *   none    D = I, U = 0         jacobi  D = diag(A), U = 0
+ * Preconditioners M = (I + U') D (I + U), U strictly upper triangular on the pattern of L, D diagonal,
+ * complex-symmetric or real, and the order of rows that suits them. May call [12].
+ *   jacobi  D = diag(A), U = 0
  *   ssor    D = diag(A), U = D^-1 upper(A): with omega = 1 the product form of SSOR
  *   ildl    incomplete LDL' without fill
- *   mildl   the same, with a part of the dropped fill added to the diagonal, which keeps what smooth vectors
- *           see of A
+ *   mildl   adds most of the dropped fill to the diagonal, which keeps what smooth vectors see of A
  * This work is based on
  *   I. Gustafsson, A class of first order factorization methods, 1978 (mildl)
  *   E. Cuthill, J. McKee, Reducing the bandwidth of sparse symmetric matrices, 1969
@@ -15065,109 +15050,81 @@ static hd_status hdi_ldl_some_entries(hd_ldl *f, int packs, int64_t n, const int
  * one: on the bunny, mildl needs 752 steps instead of 1404 in the order of the file, and 1834 in a random
  * one. */
 
-/* ---- the order ---- */
-
-/* Vertices of the component of start, breadth first, each ring by ascending degree; returns their number.
- * seen [n] is stamp for those visited. last: where the last level begins. work: as many pairs as the widest
- * row. */
-static int32_t hdi_precond_levels(const hd_csr *a, int32_t start, int32_t *order, int32_t *seen,
-                                  int32_t stamp, hdi_pair *work, int32_t *last, int32_t *depth) {
-    int32_t n = 1, head = 0, level_end = 1;
+/* Vertices of the component of order[0], breadth first, each ring by ascending degree. seen [n] is stamp for
+ * those visited. work: as many pairs as the widest row. last: where the last level begins; count: of
+ * all. Returns the number of levels. */
+static int32_t hdi_precond_levels(const hd_csr *a, int32_t *order, int32_t *seen, int32_t stamp,
+                                  hdi_pair *work, int32_t *last, int32_t *count) {
+    int32_t n = 1, head = 0, depth;
     int64_t p, k, q;
-    order[0] = start;
-    seen[start] = stamp;
-    *last = 0;
-    *depth = 0;
-    for (; head < n; head++) {
-        const int32_t i = order[head];
-        if (head == level_end) {
-            *last = head;
-            level_end = n;
-            ++*depth;
+    seen[order[0]] = stamp;
+    for (depth = 0; head < n; depth++) {
+        const int32_t level_end = n;
+        for (*last = head; head < level_end; head++) {
+            const int32_t i = order[head];
+            for (k = 0, p = a->row_ptr[i]; p < a->row_ptr[i + 1]; p++) {
+                const int32_t j = a->col[p];
+                if (seen[j] == stamp) continue;
+                seen[j] = stamp;
+                work[k].key = (uint64_t)(a->row_ptr[j + 1] - a->row_ptr[j]);
+                work[k++].id = j;
+            }
+            hdi_sort_pairs(work, k);
+            for (q = 0; q < k; q++) order[n++] = (int32_t)work[q].id;
         }
-        for (k = 0, p = a->row_ptr[i]; p < a->row_ptr[i + 1]; p++) {
-            const int32_t j = a->col[p];
-            if (seen[j] == stamp) continue;
-            seen[j] = stamp;
-            work[k].key = (uint64_t)(a->row_ptr[j + 1] - a->row_ptr[j]);
-            work[k++].id = j;
-        }
-        hdi_sort_pairs(work, k);
-        for (q = 0; q < k; q++) order[n++] = (int32_t)work[q].id;
     }
-    return n;
+    *count = n;
+    return depth;
 }
 
-/* Cuthill-McKee order of a symmetric pattern: perm[new] = old. */
-static hd_status hdi_precond_cuthill_mckee(const hd_csr *a, int32_t *perm, hd_context *ctx, hd_error *e) {
+/* The same pair in Cuthill-McKee order. Each component begins at an end: at the last level as seen from any
+ * vertex, walked again from there while that adds levels. */
+static hd_laplacian *hdi_precond_ordered(const hd_laplacian *lap, hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
+    const hd_csr *a = &lap->L;
     const int32_t n = a->n_rows;
-    int32_t *seen = HDI_TAKE(&s, int32_t, n), i, k, count, last, depth, deeper, start, done = 0, stamp = 0;
-    int64_t widest = 1;
-    hdi_pair *work;
-    for (i = 0; i < n; i++)
-        if (a->row_ptr[i + 1] - a->row_ptr[i] > widest) widest = a->row_ptr[i + 1] - a->row_ptr[i];
-    work = HDI_TAKE(&s, hdi_pair, widest);
-    if (e->status < 0) return hdi_scope_end(&s);
-    hdi_fill_i32(seen, n, -1);
-    for (i = 0; i < n; i++) {
-        if (seen[i] >= 0) continue;              /* a new component: walk to an end of it */
-        start = i;
-        count = hdi_precond_levels(a, start, perm + done, seen, stamp++, work, &last, &depth);
-        for (k = 0; k < 4 && count > 1; k++) {
-            /* levels are sorted by degree only within rings, any of the last will do */
-            start = perm[done + last];
-            hdi_precond_levels(a, start, perm + done, seen, stamp++, work, &last, &deeper);
+    int32_t *perm = HDI_TAKE(&s, int32_t, n), *seen = HDI_TAKE(&s, int32_t, n);
+    int32_t i, walk, depth, deeper, last = 0, count, done = 0, stamp = 0;
+    hdi_pair *work = HDI_TAKE(&s, hdi_pair, hdi_fullest(a->row_ptr, n));
+    hd_laplacian *out = NULL;
+    if (work) hdi_fill_i32(seen, n, -1);
+    for (i = 0; work && i < n; i++) {
+        if (seen[i] >= 0) continue;
+        for (walk = depth = 0; walk < 5; walk++, depth = deeper) {
+            perm[done] = walk ? perm[done + last] : i;
+            deeper = hdi_precond_levels(a, perm + done, seen, stamp++, work, &last, &count);
             if (deeper <= depth) break;
-            depth = deeper;
         }
         done += count;
     }
-    return hdi_scope_end(&s);
-}
-
-/* The same pair in an order that iterations like. */
-static hd_laplacian *hdi_precond_ordered(const hd_laplacian *lap, hd_context *ctx, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(ctx, e);
-    int32_t *perm = HDI_TAKE(&s, int32_t, lap->n_active);
-    hd_laplacian *out = NULL;
-    if (perm && hdi_precond_cuthill_mckee(&lap->L, perm, ctx, e) >= 0)
-        out = hdi_pair_renumber(lap, perm, ctx, e);
+    if (work) out = hdi_pair_renumber(lap, perm, ctx, e);
     hdi_scope_end(&s);
     return out;
 }
 
-/* ---- factors ---- */
-
 /* The strictly upper pattern of L: rows ascend, and so do columns within a row. */
 typedef struct hdi_upper {
     int32_t n;
-    int64_t *ptr;    /* [n + 1] */
+    int64_t *ptr;    /* [n + 1] one block of memory with col */
     int32_t *col;
 } hdi_upper;
 
-static void hdi_upper_free(hd_context *ctx, hdi_upper *u) {
-    hdi_free(ctx, u->ptr);
-    hdi_free(ctx, u->col);
-    memset(u, 0, sizeof *u);
-}
-
+/* L has a symmetric pattern with a full diagonal. */
 static hd_status hdi_upper_make(hdi_upper *u, const hd_csr *L, hd_context *ctx, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(ctx, e);
-    int64_t *ptr = HDI_TAKE(&s, int64_t, (int64_t)L->n_rows + 1), p, nnz = 0;
-    /* a symmetric pattern with full diagonal */
-    int32_t *col = HDI_TAKE(&s, int32_t, (L->nnz - L->n_rows) / 2), i;
-    if (e->status < 0) return hdi_scope_end(&s);
-    for (i = 0; i < L->n_rows; i++) {
-        ptr[i] = nnz;
-        for (p = L->row_ptr[i]; p < L->row_ptr[i + 1]; p++)
-            if (L->col[p] > i) col[nnz++] = L->col[p];
-    }
-    ptr[L->n_rows] = nnz;
+    const int64_t n = L->n_rows;
+    int64_t p, nnz = 0;
+    int32_t i;
+    u->ptr = HDI_NEW(ctx, int64_t, (n + 1 + (L->nnz - n + 3) / 4), e);
+    if (!u->ptr) return e->status;
     u->n = L->n_rows;
-    u->ptr = (int64_t *)hdi_keep(&s, ptr);
-    u->col = (int32_t *)hdi_keep(&s, col);
-    return hdi_scope_end(&s);
+    u->col = (int32_t *)(void *)(u->ptr + n + 1);
+    for (i = 0; i < u->n; i++) {
+        u->ptr[i] = nnz;
+        for (p = L->row_ptr[i]; p < L->row_ptr[i + 1]; p++)
+            if (L->col[p] > i) u->col[nnz++] = L->col[p];
+    }
+    u->ptr[n] = nnz;
+    return HD_OK;
 }
 
 /* A = t L + theta B, never formed. */
@@ -15177,24 +15134,13 @@ typedef struct hdi_system {
     hd_c64 theta;
 } hdi_system;
 
-/* Upper values and diagonal of A; u may be NULL. */
-static void hdi_system_upper(const hdi_system *a, const hdi_upper *up, hd_c64 *u, hd_c64 *d) {
-    const hd_laplacian *lap = a->lap;
-    int32_t i;
-    int64_t p, q = 0;
-    for (i = 0; i < up->n; i++) {
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
-            const double l = a->t * lap->L.val[p];
-            if (lap->L.col[p] < i) continue;
-            if (lap->L.col[p] == i) {
-                d[i] = hdi_c(l + a->theta.re * lap->b_diag[i], a->theta.im * lap->b_diag[i]);
-                continue;
-            }
-            if (u)
-                u[q++] = lap->B ? hdi_c(l + a->theta.re * lap->B[p], a->theta.im * lap->B[p]) : hdi_c(l, 0);
-        }
-    }
-}
+/* Values of a preconditioner: U and D^-1; while it is made, those of A. */
+typedef struct hdi_precond {
+    hd_precond kind;
+    const hdi_upper *up;
+    hd_c64 *u;       /* [nnz of up] or NULL */
+    hd_c64 *d;       /* [n] or NULL */
+} hdi_precond;
 
 #define HDI_ILDL_LEAST 1e-3   /* share of its diagonal entry that a pivot must keep */
 #define HDI_MILDL_KEPT 0.97   /* share of the dropped fill that goes to the diagonal; 1: pivots may vanish */
@@ -15208,100 +15154,81 @@ static hd_c64 hdi_ildl_pivot(hd_c64 d, hd_c64 a) {
     return d.re * re + d.im * im > HDI_ILDL_LEAST * (a.re * re + a.im * im) ? d : a;
 }
 
-/* An entry loses w x; a share of what it loses goes to a diagonal entry. */
-static void hdi_ildl_entry(hd_c64 *entry, hd_c64 *diagonal, double keep, hd_c64 w, hd_c64 x) {
-    const hd_c64 wx = hdi_cmul(w, x);
-    *entry = hdi_csub(*entry, wx);
-    *diagonal = hdi_cadd(*diagonal, hdi_cscale(keep, wx));
+/* The first place at or after p whose column is at least c. Steps double: what is near is found at once, what
+ * is far without looking at all between. */
+static int64_t hdi_ildl_seek(const int32_t *col, int64_t p, int64_t end, int32_t c) {
+    int64_t step = 1;
+    for (; p + step <= end && col[p + step - 1] < c; step *= 2) p += step;
+    return p + hdi_lower_bound(col + p, hdi_least(step, end - p), c);
 }
 
-/* Right-looking incomplete LDL' of the complex-symmetric A, plain transpose. On entry u holds the upper part,
- * d and diag the diagonal; on exit u the factor. Row k updates the entries (i, j) between its own columns;
- * where the pattern has none, `keep` of the update goes to the diagonal entries of i and j. Work per row k:
- * the shorter of the two searches, so that a vertex with very many neighbours costs no square of their
- * number. mark [n] = -1 on entry. */
-static void hdi_ildl(const hdi_upper *up, hd_c64 *u, hd_c64 *d, const hd_c64 *diag, double keep,
-                     int64_t *mark) {
+/* Right-looking incomplete LDL' of the complex-symmetric A, plain transpose. Row k updates the entries (i, j)
+ * between its own columns; where the pattern has none, `keep` of the update goes to the diagonal entries of i
+ * and j. A vertex with very many neighbours costs no square of their number. diag [n] is work. */
+static void hdi_ildl(const hdi_precond *m, hd_c64 *diag, double keep) {
+    const int32_t *col = m->up->col;
+    const int64_t *ptr = m->up->ptr;
+    hd_c64 *u = m->u, *d = m->d;
     int32_t k;
-    int64_t p, q;
-    for (k = 0; k < up->n; k++) {
-        const int64_t begin = up->ptr[k], end = up->ptr[k + 1];
+    int64_t p, q, r;
+    memcpy(diag, d, (size_t)m->up->n * sizeof *d);
+    for (k = 0; k < m->up->n; k++) {
         hd_c64 sum = hdi_c(0, 0);
         d[k] = hdi_ildl_pivot(d[k], diag[k]);
-        for (p = begin; p < end; p++) {
-            mark[up->col[p]] = p;
+        for (p = ptr[k]; p < ptr[k + 1]; p++) {
             u[p] = hdi_cdiv(u[p], d[k]);
             sum = hdi_cadd(sum, u[p]);
         }
-        for (p = begin; p < end; p++) {
-            const int32_t i = up->col[p];
-            const int64_t row = up->ptr[i], row_len = up->ptr[i + 1] - row;
+        for (p = ptr[k]; p < ptr[k + 1]; p++) {
+            const int32_t i = col[p];
             const hd_c64 w = hdi_cmul(u[p], d[k]);
-            hd_c64 kept = hdi_c(0, 0);
-            if (row_len > 8 * (end - p)) {     /* look up the columns of k in the longer row i */
-                for (q = p + 1; q < end; q++) {
-                    const int64_t at = row + hdi_lower_bound(up->col + row, row_len, up->col[q]);
-                    if (at == row + row_len || up->col[at] != up->col[q]) continue;
-                    hdi_ildl_entry(u + at, d + up->col[q], keep, w, u[q]);
-                    kept = hdi_cadd(kept, u[q]);
-                }
-            } else {
-                for (q = up->ptr[i]; q < up->ptr[i + 1]; q++) {
-                    const int64_t at = mark[up->col[q]];
-                    if (at < begin) continue;
-                    hdi_ildl_entry(u + q, d + up->col[q], keep, w, u[at]);
-                    kept = hdi_cadd(kept, u[at]);
+            hd_c64 dropped = hdi_csub(sum, u[p]);
+            for (q = p + 1, r = ptr[i]; q < ptr[k + 1] && r < ptr[i + 1];) {
+                if (col[q] < col[r]) {
+                    q = hdi_ildl_seek(col, q + 1, ptr[k + 1], col[r]);
+                } else if (col[r] < col[q]) {
+                    r = hdi_ildl_seek(col, r + 1, ptr[i + 1], col[q]);
+                } else {
+                    const hd_c64 kept = u[q], update = hdi_cmul(w, kept);
+                    u[r] = hdi_csub(u[r], update);
+                    d[col[q]] = hdi_cadd(d[col[q]], hdi_cscale(keep, update));
+                    dropped = hdi_csub(dropped, kept);
+                    q++;
+                    r++;
                 }
             }
-            /* its own update, and what was not kept of the rest of the row: the lines above put back what is
-             * before p */
-            d[i] = hdi_csub(d[i], hdi_cmul(w, u[p]));
-            d[i] = hdi_csub(d[i], hdi_cscale(keep, hdi_cmul(w, hdi_csub(hdi_csub(sum, u[p]), kept))));
+            /* entries before p are among the dropped ones; those that were kept have been put back */
+            d[i] = hdi_csub(d[i], hdi_cmul(w, hdi_cadd(u[p], hdi_cscale(keep, dropped))));
         }
     }
 }
 
-typedef struct hdi_precond {
-    hd_precond kind;
-    const hdi_upper *up;
-    hd_c64 *u;        /* [nnz of up] or NULL */
-    hd_c64 *d_inv;    /* [n] or NULL */
-} hdi_precond;
-
-/* Fills m, whose arrays are there. work [n] complex, mark [n]. */
-static void hdi_precond_make(hdi_precond *m, const hdi_system *a, hd_c64 *work, int64_t *mark) {
-    const int32_t n = m->up->n;
+static void hdi_ssor(const hdi_precond *m, hd_c64 *work, double keep) {
     int32_t i;
     int64_t p;
-    if (m->kind == HD_PRECOND_NONE) return;
-    hdi_system_upper(a, m->up, m->u, m->d_inv);
-    if (m->kind == HD_PRECOND_SSOR) {
-        for (i = 0; i < n; i++)
-            for (p = m->up->ptr[i]; p < m->up->ptr[i + 1]; p++) m->u[p] = hdi_cdiv(m->u[p], m->d_inv[i]);
-    } else if (m->kind != HD_PRECOND_JACOBI) {
-        memcpy(work, m->d_inv, (size_t)n * sizeof *work);
-        for (i = 0; i < n; i++) mark[i] = -1;
-        hdi_ildl(m->up, m->u, m->d_inv, work, m->kind == HD_PRECOND_MILDL ? HDI_MILDL_KEPT : 0, mark);
-    }
-    for (i = 0; i < n; i++) m->d_inv[i] = hdi_cdiv(hdi_c(1, 0), m->d_inv[i]);
+    (void)work;
+    (void)keep;
+    for (i = 0; i < m->up->n; i++)
+        for (p = m->up->ptr[i]; p < m->up->ptr[i + 1]; p++) m->u[p] = hdi_cdiv(m->u[p], m->d[i]);
 }
 
-/* z = M^-1 r: (I + U') w = r, z = (I + U)^-1 D^-1 w. z may not be r. */
-static void hdi_precond_apply(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z) {
+static void hdi_apply_none(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z) {
+    memcpy(z, r, (size_t)m->up->n * sizeof *z);
+}
+
+static void hdi_apply_diagonal(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z) {
+    int32_t i;
+    for (i = 0; i < m->up->n; i++) z[i] = hdi_cmul(r[i], m->d[i]);
+}
+
+/* (I + U') w = r, z = (I + U)^-1 D^-1 w. */
+static void hdi_apply_factors(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z) {
     const int64_t *HDI_RESTRICT ptr = m->up->ptr;
     const int32_t *HDI_RESTRICT col = m->up->col;
     const hd_c64 *HDI_RESTRICT u = m->u;
     const int32_t n = m->up->n;
     int32_t i;
     int64_t p;
-    if (!m->d_inv) {
-        memcpy(z, r, (size_t)n * sizeof *z);
-        return;
-    }
-    if (!u) {
-        for (i = 0; i < n; i++) z[i] = hdi_cmul(r[i], m->d_inv[i]);
-        return;
-    }
     memcpy(z, r, (size_t)n * sizeof *z);
     for (i = 0; i < n; i++) {
         const hd_c64 w = z[i];
@@ -15310,12 +15237,53 @@ static void hdi_precond_apply(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r
         for (p = ptr[i]; p < ptr[i + 1]; p++) z[col[p]] = hdi_csub(z[col[p]], hdi_cmul(u[p], w));
     }
     for (i = n; i-- > 0;) {
-        hd_c64 w = hdi_cmul(z[i], m->d_inv[i]);
+        hd_c64 w = hdi_cmul(z[i], m->d[i]);
         HDI_PREFETCH_AT(u, ptr[i] - HDI_AHEAD / 4);
         HDI_PREFETCH_AT(col, ptr[i] - HDI_AHEAD);
         for (p = ptr[i]; p < ptr[i + 1]; p++) w = hdi_csub(w, hdi_cmul(u[p], z[col[p]]));
         z[i] = w;
     }
+}
+
+/* All there is to know of a preconditioner. make (NULL: nothing to do) turns the values of A into U and D,
+ * with a work array [n]; apply makes z = M^-1 r, z not r. */
+typedef struct hdi_precond_row {
+    int32_t rows, entries;   /* values for each row and for each entry above the diagonal */
+    double steps;            /* of cocg, about, relative to those with mildl */
+    void (*apply)(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z);
+    void (*make)(const hdi_precond *m, hd_c64 *work, double keep);
+    double keep;             /* share of the dropped fill that goes to the diagonal */
+} hdi_precond_row;
+
+static const hdi_precond_row hdi_preconds[] = {                             /* by hd_precond */
+    {1, 1, 1, hdi_apply_factors, hdi_ildl, HDI_MILDL_KEPT},                 /* auto */
+    {0, 0, 5.5, hdi_apply_none, NULL, 0},
+    {1, 0, 5, hdi_apply_diagonal, NULL, 0},
+    {1, 1, 2, hdi_apply_factors, hdi_ssor, 0},
+    {1, 1, 1.4, hdi_apply_factors, hdi_ildl, 0},
+    {1, 1, 1, hdi_apply_factors, hdi_ildl, HDI_MILDL_KEPT}
+};
+
+/* Does not compile where a kind has no row. */
+typedef char hdi_preconds_all[sizeof hdi_preconds / sizeof *hdi_preconds == HD_PRECOND_MILDL + 1 ? 1 : -1];
+
+/* Fills m, whose arrays are there. work [n] */
+static void hdi_precond_make(const hdi_precond *m, const hdi_system *a, hd_c64 *work) {
+    const hdi_precond_row *row = hdi_preconds + m->kind;
+    const hd_csr *L = &a->lap->L;
+    int32_t i;
+    int64_t p = 0, q = 0;
+    for (i = 0; row->rows && i < L->n_rows; i++) {
+        for (; p < L->row_ptr[i + 1]; p++) {     /* the diagonal of A, and what is above it */
+            const int32_t j = L->col[p];
+            const double b = j == i ? a->lap->b_diag[i] : a->lap->B ? a->lap->B[p] : 0;
+            const hd_c64 v = hdi_c(a->t * L->val[p] + a->theta.re * b, a->theta.im * b);
+            if (j == i) m->d[i] = v;
+            else if (m->u && j > i) m->u[q++] = v;
+        }
+    }
+    if (row->make) row->make(m, work, row->keep);
+    for (i = 0; row->rows && i < L->n_rows; i++) m->d[i] = hdi_cdiv(hdi_c(1, 0), m->d[i]);
 }
 
 /* ==== [20] iterative ====
@@ -15325,75 +15293,61 @@ static void hdi_precond_apply(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r
  * This work is based on
  *   H. van der Vorst, J. Melissen, A Petrov-Galerkin type method for solving Ax = b, where A is symmetric
  *     complex, 1990 (cocg)
- *   T. Sogabe, S.-L. Zhang, A COCR method for solving complex symmetric linear systems, 2007 (cocr)
  *   S.-C. Choi, Minimal residual methods for complex symmetric, skew symmetric, and skew Hermitian systems,
  *     2013 (minres)
  *   Y. Saad, M. Yeung, J. Erhel, F. Guyomarc'h, A deflated version of the conjugate gradient algorithm, 2000
  * Deviation: if L 1 = 0, the constants W of the components are known eigenvectors, A W = theta B W. The
- * caller takes them out of the right-hand side (1'b = 0 for each component), and the solvers keep them out
- * of all directions. So the smallest eigenvalue does not slow the iteration. The caller adds their part of
+ * caller takes them out of the right-hand side (1'b = 0 for each component), and every step keeps them out
+ * of its direction. So the smallest eigenvalue does not slow the iteration. The caller adds their part of
  * the solution, which is known exactly, and heat is conserved. */
 
 /* y = A x on rows; returns x'y. */
 static hd_c64 hdi_system_apply(const hdi_system *a, const hd_c64 *HDI_RESTRICT x, hd_c64 *HDI_RESTRICT y) {
     const int64_t *HDI_RESTRICT Ap = a->lap->L.row_ptr;
     const int32_t *HDI_RESTRICT Aj = a->lap->L.col;
-    const double *HDI_RESTRICT Lx = a->lap->L.val, *HDI_RESTRICT Bx = a->lap->B;
-    const double *HDI_RESTRICT b = a->lap->mass;
-    const double t = a->t;
-    const hd_c64 theta = a->theta;
+    const double *HDI_RESTRICT Lx = a->lap->L.val, *HDI_RESTRICT Bx = a->lap->B, *mass = a->lap->mass;
     hd_c64 dot = hdi_c(0, 0);
     const int32_t n = a->lap->n_active;
     int32_t i;
     int64_t p = 0;
     for (i = 0; i < n; i++) {
         const int64_t end = Ap[i + 1];
-        hd_c64 l = hdi_c(0, 0), m = hdi_c(0, 0), s;
+        hd_c64 l = hdi_c(0, 0), b = l;
         HDI_PREFETCH_AT(Lx, p + HDI_AHEAD);
         HDI_PREFETCH_AT(Aj, p + HDI_AHEAD);
         if (Bx) {
             HDI_PREFETCH_AT(Bx, p + HDI_AHEAD);
             for (; p < end; p++) {
                 const hd_c64 v = x[Aj[p]];
-                l.re += Lx[p] * v.re;
-                l.im += Lx[p] * v.im;
-                m.re += Bx[p] * v.re;
-                m.im += Bx[p] * v.im;
+                l = hdi_cadd(l, hdi_cscale(Lx[p], v));
+                b = hdi_cadd(b, hdi_cscale(Bx[p], v));
             }
         } else {
-            for (; p < end; p++) {
-                const hd_c64 v = x[Aj[p]];
-                l.re += Lx[p] * v.re;
-                l.im += Lx[p] * v.im;
-            }
-            m = hdi_cscale(b[i], x[i]);
+            for (; p < end; p++) l = hdi_cadd(l, hdi_cscale(Lx[p], x[Aj[p]]));
+            b = hdi_cscale(mass[i], x[i]);
         }
-        s = hdi_cadd(hdi_cscale(t, l), hdi_cmul(theta, m));
-        y[i] = s;
-        dot = hdi_cadd(dot, hdi_cmul(x[i], s));
+        y[i] = hdi_cadd(hdi_cscale(a->t, l), hdi_cmul(a->theta, b));
+        dot = hdi_cadd(dot, hdi_cmul(x[i], y[i]));
     }
     return dot;
 }
 
-/* Subtracts from z its B-mean on every component, if L 1 = 0. sums [n_components] is work. */
-static void hdi_deflate(const hd_laplacian *lap, hd_c64 *z, hd_c64 *sums) {
-    const int32_t *comp = lap->component;
+/* Takes out of r its part in B W, if L 1 = 0: mean [n_components] receives W'r relative to the masses. */
+static void hdi_deflate(const hd_laplacian *lap, hd_c64 *r, hd_c64 *mean) {
+    const int32_t n = lap->conserves ? lap->n_active : 0, *comp = lap->component;
     int32_t i;
-    if (!lap->conserves) return;
-    memset(sums, 0, (size_t)lap->n_components * sizeof *sums);
-    for (i = 0; i < lap->n_active; i++)
-        sums[comp[i]] = hdi_cadd(sums[comp[i]], hdi_cscale(lap->mass[i], z[i]));
-    for (i = 0; i < lap->n_components; i++) sums[i] = hdi_cscale(1 / lap->component_mass[i], sums[i]);
-    for (i = 0; i < lap->n_active; i++) z[i] = hdi_csub(z[i], sums[comp[i]]);
+    memset(mean, 0, (size_t)lap->n_components * sizeof *mean);
+    for (i = 0; i < n; i++) mean[comp[i]] = hdi_cadd(mean[comp[i]], r[i]);
+    for (i = 0; i < lap->n_components; i++) mean[i] = hdi_cscale(1 / lap->component_mass[i], mean[i]);
+    for (i = 0; i < n; i++) r[i] = hdi_csub(r[i], hdi_cscale(lap->mass[i], mean[comp[i]]));
 }
 
 /* Limits of an iteration, set by hand. They only matter where rounding stops the residual from falling. */
-/* |r|/|b|: below it, the level that rounding allows is computed and watched */
-#define HDI_KRYLOV_NEAR 1e-9
+#define HDI_KRYLOV_NEAR 1e-9     /* |r|/|b|: below it the level that rounding allows is watched */
 #define HDI_KRYLOV_USABLE 1e-7   /* |r|/|b|: a solution at most this bad is handed out, with a warning */
 #define HDI_KRYLOV_ASTRAY 1e3    /* a recurrence that grows by this from its best has lost its way */
+#define HDI_KRYLOV_FLOOR 0.07    /* of the bound on rounding: less than twice that is usually seen */
 enum {
-    HDI_KRYLOV_VECTORS = 8,
     HDI_KRYLOV_PATIENCE = 50,    /* steps without halving the residual, besides as many as the best took */
     HDI_KRYLOV_LOOK = 16         /* steps between looks at the progress callback */
 };
@@ -15402,12 +15356,12 @@ enum {
 typedef struct hdi_krylov {
     hdi_system a;
     const hdi_precond *m;
-    hd_solver solver;
-    const double *weight;                /* [n] 1/diag(B): the residual's norm */
-    hd_c64 *sums;                        /* [n_components] */
-    hd_c64 *spare;                       /* [n] the best x so far, kept while a round may spoil it */
+    hd_solver solver;                    /* cocg or minres */
+    const double *weight, *noise;        /* [n] 1/diag(B): the residual's norm; weights of its rounding */
+    hd_c64 *mean;                        /* [n_components] */
     hd_c64 *x, *r;                       /* [n] solution and residual */
-    hd_c64 *v[HDI_KRYLOV_VECTORS - 2];   /* [n] each, as many as the solver needs */
+    hd_c64 *best;                        /* [n] the best x so far, kept while a round may spoil it */
+    hd_c64 *v[6];                        /* [n] each, as many as the solver needs */
     double r_norm, b_norm;               /* in the norm of diag(B)^-1 */
     int64_t iterations;
     int32_t broken, ready;
@@ -15415,109 +15369,49 @@ typedef struct hdi_krylov {
     double beta, beta_old, c1, c2;
 } hdi_krylov;
 
-/* Vectors that a system under solution takes, x and r included. One more after them is work within a step. A
- * system that waits needs x alone: hdi_krylov_residual makes r again, to the last bit. */
-static int hdi_krylov_vectors(hd_solver solver) {
-    return solver == HD_SOLVER_COCG ? 3 : solver == HD_SOLVER_COCR ? 6 : 7;
+/* Vectors besides x. A system that waits needs x alone. */
+static int hdi_krylov_vectors(hd_solver solver) { return solver == HD_SOLVER_MINRES ? 8 : 4; }
+
+/* Begins at x = 0; b_norm: what residuals are reported against. */
+static void hdi_krylov_start(hdi_krylov *k, double b_norm) {
+    memset(k->x, 0, (size_t)k->a.lap->n_active * sizeof *k->x);
+    k->b_norm = b_norm;
+    k->iterations = 0;
 }
 
-/* z = M^-1 r without its constants. */
-static void hdi_krylov_precond(hdi_krylov *k, const hd_c64 *r, hd_c64 *z) {
-    hdi_precond_apply(k->m, r, z);
-    hdi_deflate(k->a.lap, z, k->sums);
-}
-
-/* r without its part in B W, and its norm. That part is rounding, which no direction can bring down. It would
- * change nothing but the means of x, which the caller sets. */
-static void hdi_krylov_measure(hdi_krylov *k) {
-    const hd_laplacian *lap = k->a.lap;
-    const int32_t n = lap->conserves ? lap->n_active : 0, *c = lap->component;
-    int32_t i;
-    memset(k->sums, 0, (size_t)lap->n_components * sizeof *k->sums);
-    for (i = 0; i < n; i++) k->sums[c[i]] = hdi_cadd(k->sums[c[i]], k->r[i]);
-    for (i = 0; i < n; i++)
-        k->r[i] = hdi_csub(k->r[i], hdi_cscale(lap->mass[i] / lap->component_mass[c[i]], k->sums[c[i]]));
-    k->r_norm = sqrt(hdi_cnorm2w(k->r, k->weight, lap->n_active));
-    k->ready = 0;
-}
-
-/* r = b - A x and its norm, computed from x. The recurrences drift away from this residual. */
+/* r = b - A x and its norm, computed from x. The recurrences drift away from this residual. The part of r in
+ * B W is rounding, which no direction can bring down. It would change nothing but the means of x, which the
+ * caller sets. */
 static void hdi_krylov_residual(hdi_krylov *k, const hd_c64 *b) {
+    const int32_t n = k->a.lap->n_active;
     int32_t i;
     hdi_system_apply(&k->a, k->x, k->r);
-    for (i = 0; i < k->a.lap->n_active; i++) k->r[i] = hdi_csub(b[i], k->r[i]);
-    hdi_krylov_measure(k);
+    for (i = 0; i < n; i++) k->r[i] = hdi_csub(b[i], k->r[i]);
+    hdi_deflate(k->a.lap, k->r, k->mean);
+    k->r_norm = sqrt(hdi_cnorm2w(k->r, k->weight, n));
+    k->ready = k->broken = 0;
 }
 
-/* A bound on what rounding contributes to the residual of x, in the same norm. Usually less than half of
- * it is seen. */
-static double hdi_krylov_noise(const hdi_krylov *k) {
+/* z = M^-1 r up to its constants, the means that k->mean receives. Returns r'z, for minres r^* z, which the
+ * constants do not change, since 1'r = 0. Rows of a component mostly follow each other. */
+static hd_c64 hdi_krylov_precond(hdi_krylov *k, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z) {
     const hd_laplacian *lap = k->a.lap;
-    const double theta = hdi_cabs(k->a.theta);
-    double sum = 0;
-    int64_t p = 0;
-    int32_t i;
-    for (i = 0; i < lap->n_active; i++) {
-        double a = theta * lap->b_diag[i];
-        for (; p < lap->L.row_ptr[i + 1]; p++) a += k->a.t * fabs(lap->L.val[p]);
-        a *= hdi_cabs(k->x[i]);                  /* first, since x is small where a is large */
-        sum += k->weight[i] * a * a;
+    const double sign = k->solver == HD_SOLVER_MINRES ? -1 : 1;
+    const int32_t *comp = lap->component;
+    hd_c64 dot = hdi_c(0, 0);
+    int32_t i = 0;
+    hdi_preconds[k->m->kind].apply(k->m, r, z);
+    memset(k->mean, 0, (size_t)lap->n_components * sizeof *k->mean);
+    while (i < lap->n_active) {
+        const int32_t c = comp[i];
+        hd_c64 sum = hdi_c(0, 0);
+        for (; i < lap->n_active && comp[i] == c; i++) {
+            dot = hdi_cadd(dot, hdi_cmul(hdi_c(r[i].re, sign * r[i].im), z[i]));
+            sum = hdi_cadd(sum, hdi_cscale(lap->mass[i], z[i]));
+        }
+        if (lap->conserves) k->mean[c] = hdi_cadd(k->mean[c], hdi_cscale(1 / lap->component_mass[c], sum));
     }
-    return DBL_EPSILON * sqrt(sum);
-}
-
-/* x += alpha p, r -= alpha q; returns the new norm of r. */
-static double hdi_krylov_step(hdi_krylov *k, hd_c64 alpha, const hd_c64 *HDI_RESTRICT p,
-                              const hd_c64 *HDI_RESTRICT q) {
-    hd_c64 *HDI_RESTRICT x = k->x, *HDI_RESTRICT r = k->r;
-    const double *HDI_RESTRICT w = k->weight;
-    const int32_t n = k->a.lap->n_active;
-    double norm = 0;
-    int32_t i;
-    for (i = 0; i < n; i++) {
-        x[i] = hdi_cadd(x[i], hdi_cmul(alpha, p[i]));
-        r[i] = hdi_csub(r[i], hdi_cmul(alpha, q[i]));
-        norm += w[i] * hdi_cabs2(r[i]);
-    }
-    return sqrt(norm);
-}
-
-/* z = M^-1 r with its constants left in; k->sums receives their B-means. Returns r'z, which the constants do
- * not change, since 1'r = 0. */
-static hd_c64 hdi_krylov_precond_dot(hdi_krylov *k, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z) {
-    const hd_laplacian *lap = k->a.lap;
-    const double *HDI_RESTRICT b = lap->mass;
-    const int32_t n = lap->n_active, *comp = lap->n_components > 1 ? lap->component : NULL;
-    hd_c64 dot = hdi_c(0, 0), mean = dot, *sums = k->sums;
-    int32_t i;
-    hdi_precond_apply(k->m, r, z);
-    memset(sums, 0, (size_t)lap->n_components * sizeof *sums);
-    for (i = 0; i < n; i++) {
-        dot = hdi_cadd(dot, hdi_cmul(r[i], z[i]));
-        if (comp) sums[comp[i]] = hdi_cadd(sums[comp[i]], hdi_cscale(b[i], z[i]));
-        else mean = hdi_cadd(mean, hdi_cscale(b[i], z[i]));
-    }
-    if (!comp) sums[0] = mean;
-    for (i = 0; i < lap->n_components; i++)
-        sums[i] = hdi_cscale(lap->conserves ? 1 / lap->component_mass[i] : 0, sums[i]);
     return dot;
-}
-
-/* p = z - its B-means in k->sums + beta p */
-static void hdi_krylov_deflated_direction(const hdi_krylov *k, hd_c64 beta, const hd_c64 *HDI_RESTRICT z,
-                                          hd_c64 *HDI_RESTRICT p) {
-    const int32_t n = k->a.lap->n_active, *comp = k->a.lap->n_components > 1 ? k->a.lap->component : NULL;
-    const hd_c64 mean = k->sums[0];
-    int32_t i;
-    for (i = 0; i < n; i++)
-        p[i] = hdi_cadd(hdi_csub(z[i], comp ? k->sums[comp[i]] : mean), hdi_cmul(beta, p[i]));
-}
-
-/* p = z + beta p */
-static void hdi_krylov_direction(hd_c64 beta, const hd_c64 *HDI_RESTRICT z, hd_c64 *HDI_RESTRICT p,
-                                 int32_t n) {
-    int32_t i;
-    for (i = 0; i < n; i++) p[i] = hdi_cadd(z[i], hdi_cmul(beta, p[i]));
 }
 
 /* A quotient of the recurrence. The method is marked as broken if it is not finite. */
@@ -15529,77 +15423,58 @@ static hd_c64 hdi_krylov_quotient(hdi_krylov *k, hd_c64 a, hd_c64 b) {
 }
 
 static void hdi_cocg_step(hdi_krylov *k) {
-    hd_c64 *p = k->v[0], *q = k->v[1], alpha, rho;
-    if (!k->ready) {
-        memset(p, 0, (size_t)k->a.lap->n_active * sizeof *p);
-        k->rho = hdi_krylov_precond_dot(k, k->r, q);
-        hdi_krylov_deflated_direction(k, hdi_c(0, 0), q, p);
-    }
-    alpha = hdi_krylov_quotient(k, k->rho, hdi_system_apply(&k->a, p, q));
+    const int32_t n = k->a.lap->n_active, *comp = k->a.lap->component;
+    hd_c64 *HDI_RESTRICT p = k->v[0], *HDI_RESTRICT q = k->v[1];
+    hd_c64 *HDI_RESTRICT x = k->x, *HDI_RESTRICT r = k->r;
+    const hd_c64 rho = hdi_krylov_precond(k, r, q);
+    hd_c64 alpha, beta = hdi_c(0, 0);
+    double norm = 0;
+    int32_t i;
+    if (k->ready) beta = hdi_krylov_quotient(k, rho, k->rho);
+    else memset(p, 0, (size_t)n * sizeof *p);
+    for (i = 0; i < n; i++) p[i] = hdi_cadd(hdi_csub(q[i], k->mean[comp[i]]), hdi_cmul(beta, p[i]));
+    alpha = hdi_krylov_quotient(k, rho, hdi_system_apply(&k->a, p, q));
     if (k->broken) return;
-    k->r_norm = hdi_krylov_step(k, alpha, p, q);
-    rho = hdi_krylov_precond_dot(k, k->r, q);    /* q is free now: z = M^-1 r */
-    hdi_krylov_deflated_direction(k, hdi_krylov_quotient(k, rho, k->rho), q, p);
+    for (i = 0; i < n; i++) {
+        x[i] = hdi_cadd(x[i], hdi_cmul(alpha, p[i]));
+        r[i] = hdi_csub(r[i], hdi_cmul(alpha, q[i]));
+        norm += k->weight[i] * hdi_cabs2(r[i]);
+    }
+    k->r_norm = sqrt(norm);
     k->rho = rho;
 }
 
-static void hdi_cocr_step(hdi_krylov *k) {
-    const int32_t n = k->a.lap->n_active;
-    hd_c64 *p = k->v[0], *q = k->v[1], *z = k->v[2], *az = k->v[3], *mq = k->v[4], alpha, rho;
-    int32_t i;
-    if (!k->ready) {
-        hdi_krylov_precond(k, k->r, z);
-        k->rho = hdi_system_apply(&k->a, z, az);
-        memcpy(p, z, (size_t)n * sizeof *p);
-        memcpy(q, az, (size_t)n * sizeof *q);
-    }
-    hdi_krylov_precond(k, q, mq);
-    alpha = hdi_krylov_quotient(k, k->rho, hdi_cdotu(q, mq, n));
-    if (k->broken) return;
-    k->r_norm = hdi_krylov_step(k, alpha, p, q);
-    for (i = 0; i < n; i++) z[i] = hdi_csub(z[i], hdi_cmul(alpha, mq[i]));
-    rho = hdi_system_apply(&k->a, z, az);
-    alpha = hdi_krylov_quotient(k, rho, k->rho);
-    hdi_krylov_direction(alpha, z, p, n);
-    hdi_krylov_direction(alpha, az, q, n);
-    k->rho = rho;
-}
-
-/* The square root of y^* M y = w^* y, where y = M^-1 w. M is real and positive definite. */
-static double hdi_minres_beta(hdi_krylov *k, const hd_c64 *w, const hd_c64 *y) {
-    const int32_t n = k->a.lap->n_active;
-    double s = 0;
-    int32_t i;
-    for (i = 0; i < n; i++) s += w[i].re * y[i].re + w[i].im * y[i].im;
+/* y = M^-1 w (v[2], v[1]) and beta, the square root of w^* y. M is real and positive definite. */
+static void hdi_minres_beta(hdi_krylov *k) {
+    const double s = hdi_krylov_precond(k, k->v[1], k->v[2]).re;
     if (!(s >= 0)) k->broken = 1;
-    return s > 0 ? sqrt(s) : 0;
+    k->beta = s > 0 ? sqrt(s) : 0;
 }
 
 /* MINRES on the Saunders process A conj(V_k) = V_(k+1) T_k: V is unitary in the geometry of M, T is complex
- * symmetric and tridiagonal with real off-diagonals. */
+ * symmetric and tridiagonal with real off-diagonals. Vectors: w_old, w, y, d, d_old, v. */
 static void hdi_minres_start(hdi_krylov *k) {
-    const int32_t n = k->a.lap->n_active;
-    hd_c64 *w_old = k->v[0], *w = k->v[1], *y = k->v[2], *d = k->v[3], *d_old = k->v[4];
-    int32_t i;
-    memcpy(w, k->r, (size_t)n * sizeof *w);
-    hdi_krylov_precond(k, w, y);
-    k->beta = hdi_minres_beta(k, w, y);
+    const size_t bytes = (size_t)k->a.lap->n_active * sizeof *k->r;
+    memset(k->v[0], 0, bytes);
+    memset(k->v[3], 0, bytes);
+    memset(k->v[4], 0, bytes);
+    memcpy(k->v[1], k->r, bytes);
+    hdi_minres_beta(k);
     k->beta_old = k->c1 = 1;
     k->phibar = hdi_c(k->beta, 0);
     k->c2 = 0;                                   /* T has no entry above its first diagonal one */
     k->s1 = k->s2 = hdi_c(0, 0);
-    for (i = 0; i < n; i++) w_old[i] = d[i] = d_old[i] = hdi_c(0, 0);
     if (k->beta == 0) k->broken = 1;
 }
 
-/* One step of the process. The direction v = conj(y)/beta goes to v[5], the next w to v[1], and the next
- * y = M^-1 w to v[2]. Returns the diagonal entry v'Av of T. */
+/* One step of the process: the direction v = conj(y)/beta, the next w, y and beta. Returns the diagonal entry
+ * v'Av of T. */
 static hd_c64 hdi_minres_extend(hdi_krylov *k) {
-    const int32_t n = k->a.lap->n_active;
+    const int32_t n = k->a.lap->n_active, *comp = k->a.lap->component;
     const double beta = k->beta;
     hd_c64 *w_old = k->v[0], *w = k->v[1], *y = k->v[2], *v = k->v[5], alpha;
     int32_t i;
-    for (i = 0; i < n; i++) v[i] = hdi_cscale(1 / beta, hdi_cconj(y[i]));
+    for (i = 0; i < n; i++) v[i] = hdi_cscale(1 / beta, hdi_cconj(hdi_csub(y[i], k->mean[comp[i]])));
     alpha = hdi_system_apply(&k->a, v, y);
     for (i = 0; i < n; i++) {                    /* w_old becomes the new w */
         const hd_c64 u = hdi_csub(y[i], hdi_cscale(beta / k->beta_old, w_old[i]));
@@ -15607,9 +15482,8 @@ static hd_c64 hdi_minres_extend(hdi_krylov *k) {
     }
     k->v[0] = w;
     k->v[1] = w_old;
-    hdi_krylov_precond(k, w_old, y);
     k->beta_old = beta;
-    k->beta = hdi_minres_beta(k, w_old, y);
+    hdi_minres_beta(k);
     return alpha;
 }
 
@@ -15617,8 +15491,8 @@ static hd_c64 hdi_minres_extend(hdi_krylov *k) {
 static void hdi_minres_step(hdi_krylov *k) {
     const int32_t n = k->a.lap->n_active;
     const hd_c64 *v = k->v[5];
-    hd_c64 *d = k->v[3], *d_old = k->v[4], alpha, eps, delta, gbar, gamma, phi, s;
-    double dbar, size, c;
+    hd_c64 *d = k->v[3], *d_old = k->v[4], alpha, eps, delta, gbar, inverse, phi, psi, s;
+    double dbar, size, c, norm = 0;
     int32_t i;
     if (!k->ready) hdi_minres_start(k);
     if (k->broken) return;
@@ -15627,42 +15501,33 @@ static void hdi_minres_step(hdi_krylov *k) {
     dbar = k->c2 * k->beta_old;
     delta = hdi_cadd(hdi_c(k->c1 * dbar, 0), hdi_cmul(k->s1, alpha));
     gbar = hdi_csub(hdi_cscale(k->c1, alpha), hdi_cscale(dbar, hdi_cconj(k->s1)));
-    size = hypot(hdi_cabs(gbar), k->beta);
+    c = hdi_cabs(gbar);
+    size = hypot(c, k->beta);
     if (size == 0) {
         k->broken = 1;
         return;
     }
-    c = hdi_cabs(gbar) / size;
-    gamma = hdi_cabs(gbar) > 0 ? hdi_cscale(size / hdi_cabs(gbar), gbar) : hdi_c(size, 0);
-    s = hdi_cscale(k->beta / (size * size), gamma);
+    s = c > 0 ? hdi_cscale(1 / c, gbar) : hdi_c(1, 0);   /* gamma/size */
+    inverse = hdi_cscale(1 / size, hdi_cconj(s));        /* 1/gamma */
+    s = hdi_cscale(k->beta / size, s);
+    c /= size;
     phi = hdi_cscale(c, k->phibar);
     k->phibar = hdi_cscale(-1, hdi_cmul(hdi_cconj(s), k->phibar));
+    psi = hdi_cscale(k->beta > 0 ? c / k->beta : 0, k->phibar);
     for (i = 0; i < n; i++) {
         const hd_c64 u = hdi_csub(hdi_csub(v[i], hdi_cmul(delta, d[i])), hdi_cmul(eps, d_old[i]));
-        d_old[i] = hdi_cdiv(u, gamma);
+        d_old[i] = hdi_cmul(u, inverse);
         k->x[i] = hdi_cadd(k->x[i], hdi_cmul(phi, d_old[i]));
+        k->r[i] = hdi_cadd(hdi_cscale(hdi_cabs2(s), k->r[i]), hdi_cmul(psi, k->v[1][i]));
+        norm += k->weight[i] * hdi_cabs2(k->r[i]);
     }
     k->v[3] = d_old;
     k->v[4] = d;
-    phi = hdi_cscale(k->beta > 0 ? c / k->beta : 0, k->phibar);
-    for (i = 0; i < n; i++)
-        k->r[i] = hdi_cadd(hdi_cscale(hdi_cabs2(s), k->r[i]), hdi_cmul(phi, k->v[1][i]));
-    k->r_norm = sqrt(hdi_cnorm2w(k->r, k->weight, n));
+    k->r_norm = sqrt(norm);
     k->c2 = k->c1;
     k->s2 = k->s1;
     k->c1 = c;
     k->s1 = s;
-}
-
-/* Begins at x = 0. The residual is reported against b_norm. */
-static void hdi_krylov_start(hdi_krylov *k, const hd_c64 *b, double b_norm) {
-    const size_t bytes = (size_t)k->a.lap->n_active * sizeof *k->x;
-    memset(k->x, 0, bytes);
-    memcpy(k->r, b, bytes);
-    hdi_krylov_measure(k);
-    k->b_norm = b_norm;
-    k->iterations = 0;
-    k->broken = 0;
 }
 
 /* How a running solver reports progress and learns that it shall stop. */
@@ -15689,24 +15554,23 @@ static double hdi_krylov_done(double start, double now, double target) {
 }
 
 /* Iterates until the recurrence says |r| <= target, or until it gains no more. Near the level of rounding it
- * ends at floor_share times hdi_krylov_noise, since recurrences go astray below. start: |r| at the beginning,
- * for progress. left: steps allowed, counted down. */
+ * ends at floor_share times the bound on it, since recurrences go astray below. start: |r| at the beginning,
+ * for progress. most: iterations in all. */
 static hd_status hdi_krylov_round(hdi_krylov *k, double target, double floor_share, double start,
-                                  int64_t *left,
-                                  const hdi_watch *watch, hd_error *e) {
+                                  int64_t most, const hdi_watch *watch, hd_error *e) {
     double best = k->r_norm, least = target;
     int64_t step, best_step = 0;
     int near_rounding = 0;
-    for (step = 1; k->r_norm > least && !k->broken && *left > 0; step++, --*left) {
+    for (step = 1; k->r_norm > least && !k->broken && k->iterations < most; step++) {
         if (!near_rounding && k->r_norm < HDI_KRYLOV_NEAR * k->b_norm) {
             near_rounding = 1;
-            least = hdi_max(target, floor_share * hdi_krylov_noise(k));
+            least = hdi_max(target,
+                            floor_share * sqrt(hdi_cnorm2w(k->x, k->noise, k->a.lap->n_active)));
         }
         if (step % HDI_KRYLOV_LOOK == 1 &&
             hdi_watch_look(watch, hdi_krylov_done(start, k->r_norm, target), e) < 0) return e->status;
-        if (k->solver == HD_SOLVER_COCG) hdi_cocg_step(k);
-        else if (k->solver == HD_SOLVER_COCR) hdi_cocr_step(k);
-        else hdi_minres_step(k);
+        if (k->solver == HD_SOLVER_MINRES) hdi_minres_step(k);
+        else hdi_cocg_step(k);
         if (!hdi_finite(k->r_norm)) k->broken = 1;
         k->ready = 1;
         k->iterations += !k->broken;
@@ -15728,30 +15592,25 @@ static hd_status hdi_krylov_run(hdi_krylov *k, const hd_c64 *b, double target, i
                                 const hdi_watch *watch, hd_error *e) {
     const size_t bytes = (size_t)k->a.lap->n_active * sizeof *k->x;
     const double start = k->r_norm;
-    double before = k->r_norm, floor_share = 0.5;
-    int64_t left = max_iterations;
+    double before, floor_share = HDI_KRYLOV_FLOOR;
     if (!hdi_finite(start))
         return hdi_fail(e, HD_ERR_BREAKDOWN, "iterations leave the range of doubles: masses are too small");
-    while (k->r_norm > target) {
-        memcpy(k->spare, k->x, bytes);
-        if (hdi_krylov_round(k, target, floor_share, start, &left, watch, e) < 0) return e->status;
+    for (; k->r_norm > target; floor_share /= 4) {
+        before = k->r_norm;
+        memcpy(k->best, k->x, bytes);
+        if (hdi_krylov_round(k, target, floor_share, start, max_iterations, watch, e) < 0) return e->status;
         hdi_krylov_residual(k, b);               /* the recurrence says done: only x itself can confirm it */
         if (k->r_norm <= target) return HD_OK;
-        if (left <= 0)
+        if (k->iterations >= max_iterations)
             return hdi_fail(e, HD_ERR_NOT_CONVERGED,
                             "the iteration did not reach the tolerance in max_iterations steps");
-        if (!(k->r_norm <= before / 2)) {
-            if (!(k->r_norm <= before)) {
-                memcpy(k->x, k->spare, bytes);
-                hdi_krylov_residual(k, b);
-            }
-            if (k->r_norm <= HDI_KRYLOV_USABLE * k->b_norm) return HD_WARN_ACCURACY;
-            return hdi_fail(e, HD_ERR_BREAKDOWN,
-                            "the iteration broke down: no step brings the residual down");
+        if (k->r_norm <= before / 2) continue;
+        if (!(k->r_norm <= before)) {
+            memcpy(k->x, k->best, bytes);
+            hdi_krylov_residual(k, b);
         }
-        before = k->r_norm;
-        floor_share /= 4;
-        k->broken = 0;
+        if (k->r_norm <= HDI_KRYLOV_USABLE * k->b_norm) return HD_WARN_ACCURACY;
+        return hdi_fail(e, HD_ERR_BREAKDOWN, "the iteration broke down: no step brings the residual down");
     }
     return HD_OK;
 }
@@ -17837,16 +17696,16 @@ static int hdi_family_turns(const hdi_family *fam) { return fam->n_values < fam-
 
 /* Room for the preconditioners of the set. */
 static hd_status hdi_family_room(hdi_family *fam, hd_error *e) {
-    const uint64_t n = (uint64_t)fam->lap->n_active, upper = (uint64_t)fam->up->ptr[n];
-    const uint64_t size =
-        fam->precond == HD_PRECOND_NONE ? 0 : fam->precond == HD_PRECOND_JACOBI ? n : n + upper;
+    const hdi_precond_row *row = hdi_preconds + fam->precond;
+    const uint64_t n = (uint64_t)(row->rows * fam->up->n);
+    const uint64_t upper = (uint64_t)(row->entries * fam->up->ptr[fam->up->n]), size = n + upper + 1;
     int32_t i, room = fam->set.n_poles;
     if (fam->n_values < room) {
         hdi_family_free(fam);
-        fam->values = HDI_NEW(fam->ctx, hd_c64, (uint64_t)room * (size + 1), e);
+        fam->values = HDI_NEW(fam->ctx, hd_c64, (uint64_t)room * size, e);
         if (room > 1 && hdi_over_limit(fam->ctx, e)) {
             hdi_error_clear(e);
-            fam->values = HDI_NEW(fam->ctx, hd_c64, size + 1, e);
+            fam->values = HDI_NEW(fam->ctx, hd_c64, size, e);
             room = 1;
         }
         if (!fam->values) return e->status;
@@ -17855,25 +17714,21 @@ static hd_status hdi_family_room(hdi_family *fam, hd_error *e) {
     for (i = 0; i < fam->set.n_poles; i++) {
         fam->m[i].kind = fam->precond;
         fam->m[i].up = fam->up;
-        fam->m[i].d_inv = size ? fam->values + (hdi_family_turns(fam) ? 0 : (size_t)i * (size + 1)) : NULL;
-        fam->m[i].u = size > n ? fam->m[i].d_inv + n : NULL;
+        fam->m[i].d = fam->values + (hdi_family_turns(fam) ? 0 : (size_t)i * size);
+        fam->m[i].u = upper ? fam->m[i].d + n : NULL;
     }
     return HD_OK;
 }
 
-/* Complex numbers of work that a preconditioner takes: n of them, and n integers. */
-static uint64_t hdi_fill_work(uint64_t n) { return n + (n + 1) / 2; }
-
-/* Makes the preconditioner of pole p. */
+/* Makes the preconditioner of pole p. work [n] */
 static void hdi_family_make(const hdi_family *fam, int32_t p, hd_c64 *work) {
-    hdi_precond m = fam->m[p];
     hdi_system a;
     a.lap = fam->lap;
     a.t = fam->t;
     a.theta = fam->set.theta[p];
     /* real, positive definite */
     if (fam->solver == HD_SOLVER_MINRES) a.theta = hdi_c(hdi_cabs(a.theta), 0);
-    hdi_precond_make(&m, &a, work, (int64_t *)(void *)(work + fam->lap->n_active));
+    hdi_precond_make(fam->m + p, &a, work);
 }
 
 typedef struct hdi_fill_job {
@@ -17883,12 +17738,11 @@ typedef struct hdi_fill_job {
 
 static void hdi_fill_task(void *arg, int64_t index, int32_t worker) {
     const hdi_fill_job *job = (const hdi_fill_job *)arg;
-    const uint64_t stride = hdi_fill_work((uint64_t)job->fam->lap->n_active);
     (void)worker;
-    hdi_family_make(job->fam, (int32_t)index, job->work + stride * (size_t)index);
+    hdi_family_make(job->fam, (int32_t)index, job->work + index * job->fam->lap->n_active);
 }
 
-/* Makes the preconditioners, one parallel task each. work: [hdi_fill_work] for each of them. */
+/* Makes the preconditioners, one parallel task each. work [n] for each of them. */
 static hd_status hdi_family_fill(hdi_family *fam, hd_c64 *work, hd_error *e) {
     hdi_fill_job job;
     if (fam->filled) return HD_OK;
@@ -18022,21 +17876,20 @@ static hd_status hdi_lane_lanczos(hdi_lane *lane, const hd_laplacian *lap, int32
 }
 
 /* Room for the systems of a set: b, the vectors that all systems share, as they run one after the other, x of
- * each, sums, and inner products. The whole of it serves to make preconditioners before. The last two of
- * those shared are the lane's work between solves. What the lane held is lost. */
+ * each, means, and inner products. The whole of it serves to make preconditioners before. Two of those shared
+ * are the lane's work between solves. What the lane held is lost. */
 static hd_status hdi_lane_systems_make(hdi_lane *lane, const hdi_family *fam, hd_error *e) {
     const uint64_t n = (uint64_t)fam->lap->n_active, count = (uint64_t)fam->set.n_poles;
-    const uint64_t shared = (uint64_t)hdi_krylov_vectors(fam->solver) + 1;
+    const uint64_t shared = (uint64_t)hdi_krylov_vectors(fam->solver);
     const uint64_t vectors = (1 + shared + count) * n + (uint64_t)fam->lap->n_components;
     const uint64_t size = vectors + count * (sizeof(hdi_gram) / sizeof(hd_c64));
-    const uint64_t fill = count * hdi_fill_work(n);
     hdi_free(fam->ctx, lane->f);
     hdi_free(fam->ctx, lane->b);
     hdi_free(fam->ctx, lane->k);
     lane->b = NULL;
     lane->k = NULL;
     lane->f = HDI_NEW(fam->ctx, double, 3 * n, e);
-    if (lane->f) lane->b = HDI_NEW(fam->ctx, hd_c64, size > fill ? size : fill, e);
+    if (lane->f) lane->b = HDI_NEW(fam->ctx, hd_c64, size, e);
     if (lane->b) lane->k = HDI_NEW(fam->ctx, hdi_krylov, count + 1, e);
     if (!lane->k) {
         hdi_lane_free(lane, fam->ctx);
@@ -18052,26 +17905,25 @@ static hd_status hdi_lane_systems_make(hdi_lane *lane, const hdi_family *fam, hd
 
 /* The systems of a set, and their constants. */
 static hd_status hdi_lane_systems(hdi_lane *lane, const hdi_family *fam, hd_error *e) {
-    const uint64_t n = (uint64_t)fam->lap->n_active;
-    const int n_vec = hdi_krylov_vectors(fam->solver);
-    int32_t i;
-    int j;
+    const int64_t n = fam->lap->n_active;
+    const int32_t shared = hdi_krylov_vectors(fam->solver);
+    int32_t i, j;
     if ((!lane->k || lane->n_systems < fam->set.n_poles) && hdi_lane_systems_make(lane, fam, e) < 0)
         return e->status;
     for (i = 0; i < fam->set.n_poles; i++) {
         hdi_krylov *k = lane->k + i;
-        hd_c64 *v = lane->b + n;
         memset(k, 0, sizeof *k);
-        k->r = v;
-        for (j = 0; j < n_vec - 1; j++) k->v[j] = v += n;
-        k->spare = v += n;
-        k->x = v += n * (uint64_t)(i + 1);
-        k->sums = lane->b + n * (uint64_t)(n_vec + 2 + lane->n_systems);
+        k->r = lane->b + n;
+        k->best = k->r + n;
+        for (j = 0; j + 2 < shared; j++) k->v[j] = k->best + n * (j + 1);
+        k->x = k->r + n * (shared + i);
+        k->mean = k->r + n * (shared + lane->n_systems);
         k->a.lap = fam->lap;
         k->a.t = fam->t;
         k->a.theta = fam->set.theta[i];
         k->solver = fam->solver;
         k->weight = fam->weight;
+        k->noise = fam->noise;
         k->m = fam->m + i;
     }
     return HD_OK;
@@ -18233,17 +18085,17 @@ static hd_status hdi_lane_run(hdi_lane *lane, const hdi_family *fam, int fresh, 
         const double fair = hdi_max(left / (p + 1), 0.1 * aim / n_poles);
         const double share = weight > 0 ? fair / weight : DBL_MAX;
         const double target = share * sqrt(fam->lap->b_ratio) * hdi_pole_distance(fam->set.theta[p]);
-        const int runs = fresh || k->r_norm > target;
+        const int runs = fresh || k->r_norm > target, warm = fresh && p < last && b_norm > 0;
         if (runs && hdi_family_turns(fam)) hdi_family_make(fam, p, k->r);
-        if (fresh) hdi_krylov_start(k, lane->b, b_norm);
-        else if (runs) hdi_krylov_residual(k, lane->b);
-        if (fresh && p < last && b_norm > 0) {
-            hdi_warm_start(lane, fam, p, last, gram);
+        if (fresh) hdi_krylov_start(k, b_norm);
+        if (warm) hdi_warm_start(lane, fam, p, last, gram);
+        if (runs) hdi_krylov_residual(k, lane->b);
+        if (warm && !(k->r_norm < b_norm)) {
+            hdi_krylov_start(k, b_norm);
             hdi_krylov_residual(k, lane->b);
-            if (!(k->r_norm < b_norm)) hdi_krylov_start(k, lane->b, b_norm);
         }
         part.from = watch->from + part.share * (n_poles - 1 - p);
-        status = hdi_krylov_run(k, lane->b, target, fam->max_iterations - k->iterations, &part, e);
+        status = hdi_krylov_run(k, lane->b, target, fam->max_iterations, &part, e);
         if (status < 0) {
             if (status == HD_ERR_NOT_CONVERGED) e->value = k->r_norm / k->b_norm;
             if (status != HD_ERR_CANCELLED) e->pole = p;
@@ -22635,9 +22487,10 @@ static hd_status hdi_heat_seats(hd_heat *heat, int32_t n, hd_error *e) {
 
 static void hdi_heat_free_iterative(hd_heat *heat) {
     hdi_family_free(&heat->fam);
-    hdi_upper_free(heat->ctx, &heat->up);
+    hdi_free(heat->ctx, heat->up.ptr);
     hdi_free(heat->ctx, heat->weight);
     hdi_laplacian_free(heat->lap, heat->ctx);
+    heat->up.ptr = NULL;
     heat->weight = NULL;
     heat->lap = NULL;
 }
@@ -22662,9 +22515,7 @@ static hd_status hdi_heat_iterative(hd_heat *heat, hd_error *e) {
     heat->fam.lap = heat->lap;
     heat->fam.up = &heat->up;
     heat->fam.weight = heat->weight;
-    heat->fam.solver = HD_SOLVER_COCG;
-    if (heat->opts.solver == HD_SOLVER_COCR || heat->opts.solver == HD_SOLVER_MINRES)
-        heat->fam.solver = heat->opts.solver;
+    heat->fam.solver = heat->opts.solver == HD_SOLVER_MINRES ? HD_SOLVER_MINRES : HD_SOLVER_COCG;
     heat->fam.precond = heat->opts.precond;
     heat->fam.max_iterations = heat->opts.max_iterations;
     return e->status;
@@ -22763,7 +22614,7 @@ static hd_status hdi_solve_rhs(const hd_laplacian *lap, const hd_c64 *rhs, int *
 static double hdi_shifted_load(const hd_heat *heat, const hd_c64 *rhs, int exponent, hd_c64 theta,
                                hdi_lane *lane, hd_c64 *x) {
     const hd_laplacian *lap = heat->lap;
-    hd_c64 *sums = lane->k->sums;
+    const hd_c64 *mean = lane->k->mean;
     double norm;
     int32_t i, v;
     for (i = 0; i < lap->n_active; i++) {
@@ -22771,17 +22622,9 @@ static double hdi_shifted_load(const hd_heat *heat, const hd_c64 *rhs, int expon
         lane->b[i] = hdi_c(ldexp(r.re, -exponent), ldexp(r.im, -exponent));
     }
     norm = sqrt(hdi_cnorm2w(lane->b, heat->weight, lap->n_active));
-    memset(sums, 0, (size_t)lap->n_components * sizeof *sums);
+    hdi_deflate(lap, lane->b, lane->k->mean);
     for (v = 0; v < lap->n; v++) x[v] = hdi_c(0, 0);
-    if (!lap->conserves) return norm;
-    for (i = 0; i < lap->n_active; i++)
-        sums[lap->component[i]] = hdi_cadd(sums[lap->component[i]], lane->b[i]);
-    for (i = 0; i < lap->n_components; i++) sums[i] = hdi_cscale(1 / lap->component_mass[i], sums[i]);
-    for (i = 0; i < lap->n_active; i++) {
-        const hd_c64 mean = sums[lap->component[i]];
-        lane->b[i] = hdi_csub(lane->b[i], hdi_cscale(lap->mass[i], mean));
-        x[lap->vertex[i]] = hdi_cdiv(mean, theta);
-    }
+    for (i = 0; i < lap->n_active; i++) x[lap->vertex[i]] = hdi_cdiv(mean[lap->component[i]], theta);
     return norm;
 }
 
@@ -22801,12 +22644,16 @@ static hd_status hdi_shifted_prepare(hd_heat *heat, double t, hd_c64 theta, hd_e
 
 #define HDI_TOL_SOLVE 1e-10
 
+static int hdi_solver_known(hd_solver s) {
+    return s == HD_SOLVER_AUTO || s == HD_SOLVER_COCG || s == HD_SOLVER_MINRES || s == HD_SOLVER_LANCZOS;
+}
+
 static hd_status hdi_solve_check(double t, hd_c64 theta, const hd_solve_opts *o, hd_error *e) {
     hdi_refuse_value(!hdi_finite(t) || t < 0, "solve: t is negative or not finite", t, e);
     hdi_refuse(!hdi_cfinite(theta) || (theta.im == 0 && theta.re <= 0),
                "solve: theta lies on (-inf, 0] or is not finite", e);
-    hdi_refuse(o->solver < HD_SOLVER_AUTO || o->solver > HD_SOLVER_MINRES,
-               "solve: the solver is cocg, cocr or minres", e);
+    hdi_refuse(!hdi_solver_known(o->solver) || o->solver == HD_SOLVER_LANCZOS,
+               "solve: the solver is cocg or minres", e);
     hdi_refuse(o->precond < HD_PRECOND_AUTO || o->precond > HD_PRECOND_MILDL, "solve: unknown preconditioner",
                e);
     hdi_refuse(!hdi_finite(o->tol) || o->tol < 0 || o->tol >= 1, "solve: tol is not in [0, 1)", e);
@@ -22835,7 +22682,8 @@ static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const 
     watch.share = 1;
     watch.stage = "solve";
     b_norm = hdi_shifted_load(heat, rhs, exponent, theta, lane, x);
-    hdi_krylov_start(k, lane->b, b_norm);
+    hdi_krylov_start(k, b_norm);
+    hdi_krylov_residual(k, lane->b);
     status = hdi_krylov_run(k, lane->b, tol * b_norm, heat->fam.max_iterations, &watch, e);
     for (i = 0; i < lap->n_active; i++) x[lap->vertex[i]] = k->x[i] = hdi_cadd(x[lap->vertex[i]], k->x[i]);
     if (report) {
@@ -22947,7 +22795,6 @@ static double hdi_lanczos_steps(const hd_heat *heat, double t) {
 
 /* Of all poles together. Solutions at hand give a good start: twice the poles do not take twice as many. */
 static double hdi_cocg_steps(const hd_heat *heat, double t, int32_t poles) {
-    static const double hdi_steps_of[] = {1, 5.5, 5, 2, 1.4, 1};   /* by hd_precond */
     const hdi_steps_scales *s = &heat->scales;
     const hd_laplacian *lap = heat->source;
     const double wide = hdi_max(1, (double)lap->L.nnz / (7.0 * lap->n_active));
@@ -22955,7 +22802,7 @@ static double hdi_cocg_steps(const hd_heat *heat, double t, int32_t poles) {
     double one = HDI_COCG_GROWTH * pow(bounded * s->local / pow(wide, HDI_COCG_WIDE), HDI_COCG_POWER);
     one += 1 + (lap->B ? HDI_COCG_FULL_B : 0);
     one *= exp(HDI_COCG_OBTUSE * s->obtuse * s->obtuse) * hdi_steps_digits(heat);
-    one *= heat->opts.solver == HD_SOLVER_MINRES ? 3.5 : hdi_steps_of[heat->opts.precond];
+    one *= heat->opts.solver == HD_SOLVER_MINRES ? 3.5 : hdi_preconds[heat->opts.precond].steps;
     return hdi_min(one * sqrt(5.0 * poles), (double)heat->opts.max_iterations * poles);
 }
 
@@ -22994,7 +22841,7 @@ static hdi_work hdi_cocg_work(const hd_heat *heat, double t, int32_t poles, doub
     const hd_laplacian *lap = heat->source;
     const double nnz = (double)lap->L.nnz, n = lap->n_active, full = lap->B ? 1.2 : 1;
     const int made = heat->fam.filled && heat->fam.t == t;
-    const int plain = heat->opts.precond == HD_PRECOND_NONE || heat->opts.precond == HD_PRECOND_JACOBI;
+    const int plain = !hdi_preconds[heat->opts.precond].entries;
     hdi_work w;
     w.steps = hdi_cocg_steps(heat, t, poles);
     w.flops = k * w.steps * ((lap->B ? 8 : 4) * nnz + (plain ? 0 : 8 * nnz) + 40 * n);
@@ -25492,7 +25339,7 @@ static void hdi_halves_finish(hdi_halves *z, int32_t q, int32_t m, double to_val
     hdi_heat_call *h = z->h;
     const hd_laplacian *lap = h->heat->source;
     const size_t column = (size_t)q * (size_t)h->ask.n_times + (size_t)m;
-    const double grow = 1 / (exp(1) * z->later[m] * h->heat->scale);
+    const double grow = z->s > 0 ? 1 / (exp(1) * z->later[m] * h->heat->scale) : 0;
     const double step = ldexp(DBL_MIN * DBL_EPSILON, hdi_high32(-z->exponent[q], 0)) / h->heat->scale;
     double *u = h->ask.U + column * h->ask.ldu, size, all, largest = 0;
     hdi_parts off, one;
@@ -25500,7 +25347,7 @@ static void hdi_halves_finish(hdi_halves *z, int32_t q, int32_t m, double to_val
     hdi_gather(lap, u, z->x);
     size = sqrt(hdi_max(0, hdi_b_norm2(lap, z->x, z->work)));
     off = hdi_halves_parts(&z->second, size);
-    one = hdi_parts_scale(z->s > 0 ? grow : 0, hdi_halves_parts(&z->first, z->size[q]));
+    one = hdi_parts_scale(grow, hdi_halves_parts(&z->first, z->size[q]));
     off.rational += one.rational;
     off.solver += one.solver;
     off.rounding += one.rounding + z->slip[q] + 4 * DBL_EPSILON * size;
@@ -25697,7 +25544,7 @@ static void hdi_heat_built(const hd_heat_opts *o, hd_error *e) {
 static hd_status hdi_heat_check(const hd_heat_opts *o, hd_error *e) {
     const int from_two = o->poles == HD_POLES_KERNEL || o->poles == HD_POLES_DIAGONAL;
     hdi_refuse(o->method < HD_METHOD_AUTO || o->method > HD_METHOD_KRYLOV, "heat: unknown method", e);
-    hdi_refuse(o->solver < HD_SOLVER_AUTO || o->solver > HD_SOLVER_LANCZOS, "heat: unknown solver", e);
+    hdi_refuse(!hdi_solver_known(o->solver), "heat: unknown solver", e);
     hdi_refuse(o->precond < HD_PRECOND_AUTO || o->precond > HD_PRECOND_MILDL, "heat: unknown preconditioner",
                e);
     hdi_refuse(o->poles != HD_POLES_DIAGONAL && (o->poles < HD_POLES_DEFAULT || o->poles > HD_POLES_KERNEL),
@@ -29091,17 +28938,14 @@ static int hdi_estimate_open(const hdi_estimate *x) {
 static double hdi_bytes_iterative(const hd_heat *heat, double t, int32_t k, int32_t poles) {
     const double n = heat->source->n_active, nnz = (double)heat->source->L.nnz;
     const double lanes = hdi_low32(k, HDI_LANES_ITERATIVE);
-    const int vectors = hdi_krylov_vectors(heat->opts.solver == HD_SOLVER_MINRES ? HD_SOLVER_MINRES
-                                           : HD_SOLVER_COCG);
+    const hdi_precond_row *row = hdi_preconds + heat->opts.precond;
     double bytes = HDI_ESTIMATE_SMALL;
     if (!heat->lap) bytes += nnz * (heat->source->B ? 20 : 12) + 36 * n + 4.0 * heat->source->n;
     if (!heat->weight) bytes += 8 * n + 4 * (nnz - n) / 2 + 32 * n;
     if (hdi_heat_choose(heat, t) == HD_SOLVER_LANCZOS)
         return bytes + lanes * (80 * n + 88.0 * hdi_lanczos_most(t, heat->lambda_max));
-    /* hdi_lane_systems_make: the vectors, or if they are more the room to make preconditioners */
-    bytes += lanes * (24 * n + 16 * hdi_max((2 + vectors + poles) * n, 1.5 * poles * n));
-    if (heat->opts.precond == HD_PRECOND_NONE) return bytes;
-    return bytes + 16.0 * poles * (heat->opts.precond == HD_PRECOND_JACOBI ? n : n + (nnz - n) / 2);
+    bytes += lanes * (24 + 16.0 * (1 + hdi_krylov_vectors(heat->opts.solver) + poles)) * n;
+    return bytes + 16.0 * poles * (row->rows * n + row->entries * (nnz - n) / 2);
 }
 
 /* Bytes and flops of shift-and-invert Lanczos. Bases that exist are grown. */

@@ -95,7 +95,7 @@ static int thr_same(call_world *w, const call_data *d, const char *script, int64
 
 /* Every call, and solvers that a plan would not choose. */
 static void thr_calls(void) {
-    static const char *const more[8] = {"iterative cocg columns", "iterative cocr k=1 apply", "iterative minres columns",
+    static const char *const more[8] = {"iterative cocg columns", "iterative cocg k=1 apply", "iterative minres columns",
                                         "krylov columns", "iterative lanczos columns", "voronoi delaunay triangles",
                                         "weighted distance", "held border pairs"};
     call_data d;
