@@ -3934,15 +3934,15 @@ HDI_PART void HDI_OF(tile_product)(const int pack, const int nv, const int nc, c
 /* C -= A B for nv nums of rows, the last one perhaps in part. */
 HDI_PART void HDI_OF(tile_multiply)(const int pack, const int nv, const int nc, const int unit,
                                     const HDI_OF(tile) *t) {
-    enum { whole = 1 };
     hdi_num x[HDI_OF(most_cols)][HDI_OF(most_regs)];
     const int64_t inner = HDI_ENTRY * HDI_ROWS;
     double *c = t->c;
     int64_t step = t->c_col;
     int j, v;
     HDI_OF(tile_product)(pack, nv, nc, unit, t, x);
-    if (t->n == HDI_ROWS * nv && t->nc == nc && t->diag <= whole - nc) {
+    if (t->n == HDI_ROWS * nv && t->diag <= 1 - nc) {
         HDI_EACH(j, nc) {
+            if (j >= t->nc) continue;
             HDI_EACH(v, nv) {
                 const hdi_num old = t->store ? HDI_OF(num_zero)() : HDI_OF(num_load)(pack, c + inner * v);
                 HDI_OF(num_store)(pack, c + inner * v,
@@ -4463,10 +4463,12 @@ static const hdi_kernels *hdi_kernels_get(int level, int pack) {
 static void hdi_kernels_rows(const hdi_kernels *o, double *x, int64_t n, int64_t cols, const double *a,
                              int64_t depth, const double *b, int64_t b_row, int64_t b_col) {
     hdi_product g;
-    memset(&g, 0, sizeof g);
     g.c = x;
     g.a = a;
     g.b = b;
+    g.work = NULL;
+    g.first = 0;
+    g.lower = g.packed = g.store = 0;
     g.c_col = g.a_col = g.n = n;
     g.b_row = b_row;
     g.b_col = b_col;
@@ -13354,9 +13356,10 @@ static void hdi_sweep_forward(const hdi_sweep *z, int32_t v, double *y, double *
     const hdi_factor *f = z->f;
     const int64_t p = hdi_front_pivots(f->sym, v), u = hdi_front_below(f->sym, v);
     const int64_t row = (int64_t)f->width * z->k;
+    double *panel = f->panel + f->width * f->sym->panel[v];
     int64_t q, k, n;
     for (q = 0; q * HDI_PANEL < p; q++) {
-        const hdi_block b = hdi_sweep_block(f, v, q);
+        const hdi_block b = hdi_block_of(panel, f->width, p + u, p, q);
         const int64_t end = b.begin + b.width;
         hdi_solve g;
         if (row == 1) {
@@ -13431,13 +13434,14 @@ static void hdi_sweep_backward(const hdi_sweep *z, int32_t v, double *y, double 
     const int64_t p = hdi_front_pivots(f->sym, v), u = hdi_front_below(f->sym, v);
     const int64_t row = (int64_t)f->width * z->k;
     const int32_t *idx = f->sym->row + f->sym->row_ptr[v];
+    double *panel = f->panel + f->width * f->sym->panel[v];
     int64_t i, q;
     if (!hdi_sweep_clear(z, v, y)) hdi_sweep_divide(z, v, y);
     if (row == 1) for (i = 0; i < u; i++) rows[i] = z->x[idx[i]];
     else for (i = 0; i < u; i++)
         for (q = 0; q < row; q += 8) hdi_entry_copy(8, rows + row * i + q, z->x + row * idx[i] + q);
     for (q = (p - 1) / HDI_PANEL; q >= 0; q--) {
-        const hdi_block b = hdi_sweep_block(f, v, q);
+        const hdi_block b = hdi_block_of(panel, f->width, p + u, p, q);
         const int64_t end = b.begin + b.width;
         double *own = y + row * b.begin;
         hdi_solve g;
