@@ -26739,7 +26739,7 @@ static void hdi_halves_finish(hdi_halves *z, int32_t q, int32_t m, double to_val
     hdi_heat_call *h = z->h;
     const hd_laplacian *lap = h->heat->source;
     const size_t column = (size_t)q * (size_t)h->ask.n_times + (size_t)m;
-    const double grow = 1 / (exp(1) * z->later[m] * h->heat->scale);
+    const double grow = z->s > 0 ? 1 / (exp(1) * z->later[m] * h->heat->scale) : 0;
     const double step = ldexp(DBL_MIN * DBL_EPSILON, hdi_high32(-z->exponent[q], 0)) / h->heat->scale;
     double *u = h->ask.U + column * h->ask.ldu, size, all, largest = 0;
     hdi_parts off, one;
@@ -26747,7 +26747,7 @@ static void hdi_halves_finish(hdi_halves *z, int32_t q, int32_t m, double to_val
     hdi_gather(lap, u, z->x);
     size = sqrt(hdi_max(0, hdi_b_norm2(lap, z->x, z->work)));
     off = hdi_halves_parts(&z->second, size);
-    one = hdi_parts_scale(z->s > 0 ? grow : 0, hdi_halves_parts(&z->first, z->size[q]));
+    one = hdi_parts_scale(grow, hdi_halves_parts(&z->first, z->size[q]));
     off.rational += one.rational;
     off.solver += one.solver;
     off.rounding += one.rounding + z->slip[q] + 4 * DBL_EPSILON * size;
