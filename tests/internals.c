@@ -65,6 +65,9 @@ static void int_check(int ok, const char *file, int line, const char *what, cons
 #define CHECK(cond) int_check((cond) != 0, __FILE__, __LINE__, #cond, "%s", "does not hold")
 #define CHECK_MSG(cond, ...) int_check((cond) != 0, __FILE__, __LINE__, #cond, __VA_ARGS__)
 
+#include "../tools/trials.h"
+#include "kit.h"
+
 /* ---- [01] scalar ---- */
 
 /* (3 + 4i) b / b for b in four directions, of all sizes. */
@@ -158,30 +161,6 @@ static void int_sums(void) {
 
 /* ---- [03] memory ---- */
 
-/* Takes that are only added up: as many bytes as blocks of their own would count, and 2^60 where a number has no meaning. */
-static void int_tally(void) {
-    hd_context ctx;
-    hd_error e = int_no_error();
-    uint64_t bytes;
-    hdi_scope s = hdi_scope_tally(&bytes, &e), real;
-    memset(&ctx, 0, sizeof ctx);
-    real = hdi_scope_begin(&ctx, &e);
-    CHECK(!HDI_TAKE(&s, double, 7) && HDI_TAKE(&real, double, 7));
-    CHECK(!HDI_TAKE(&s, char, 0) && HDI_TAKE(&real, char, 0));
-    CHECK(!HDI_TAKE(&s, hd_c64, 1000) && HDI_TAKE(&real, hd_c64, 1000));
-    CHECK(bytes == ctx.bytes_in_use && e.status == HD_OK);
-    CHECK(hdi_scope_end(&real) == HD_OK && ctx.bytes_in_use == 0);
-    hdi_scope_count(&bytes, UINT64_MAX / 8, 8);
-    CHECK(bytes == UINT64_C(1) << 60);
-    hdi_scope_count(&bytes, 5, 8);
-    CHECK(bytes == UINT64_C(1) << 60);
-    ctx.byte_limit = 1000;
-    ctx.bytes_in_use = 900;
-    CHECK(hdi_need(&ctx, 100, "one more", &e) == HD_OK);
-    CHECK(hdi_need(&ctx, 101, "one more", &e) == HD_ERR_MEMORY_LIMIT && e.value == 1001);
-    CHECK(strcmp(e.text, "one more would bring the memory in use to 0.1 MB, and the byte limit is 0.1 MB") == 0);
-}
-
 static void *int_odd_alloc(void *user, size_t size) {
     char *p = (char *)malloc(size + 8);
     (void)user;
@@ -219,33 +198,6 @@ static void int_memory(void) {
         CHECK(hdi_alloc(&ctx, PTRDIFF_MAX - HDI_ALIGN - HDI_HEADER + k, 1, &e) == NULL);
         CHECK(e.status == (k ? HD_ERR_TOO_LARGE : HD_ERR_MEMORY_LIMIT));
     }
-}
-
-/* A scope frees what it has, but for what is kept; after one failure all fail; one that is full gives no more. */
-static void int_scope(void) {
-    hd_context ctx;
-    hd_error e = int_no_error();
-    hdi_scope s;
-    double *kept;
-    int i, missing = 0, set = 0;
-    memset(&ctx, 0, sizeof ctx);
-    s = hdi_scope_begin(&ctx, &e);
-    CHECK(e.status == HD_OK && e.face == -1 && e.pole == -1);
-    kept = (double *)hdi_take_zero(&s, 10, sizeof(double));
-    CHECK(hdi_take(&s, 3, sizeof(int32_t)) && hdi_keep(&s, kept) == kept);
-    ctx.allocation_limit = ctx.allocations;
-    CHECK(hdi_take(&s, 1, 1) == NULL && e.status == HD_ERR_MEMORY_LIMIT);
-    ctx.allocation_limit = 0;
-    CHECK(hdi_take(&s, 1, 1) == NULL);
-    CHECK(hdi_scope_end(&s) == HD_ERR_MEMORY_LIMIT && ctx.bytes_in_use > 0);
-    for (i = 0; i < 10; i++) set += kept[i] != 0;
-    hdi_free(&ctx, kept);
-    CHECK(set == 0 && ctx.bytes_in_use == 0);
-    hdi_error_clear(&e);
-    s = hdi_scope_begin(&ctx, &e);
-    for (i = 0; i < HDI_SCOPE_MOST; i++) missing += HDI_TAKE(&s, int32_t, i) == NULL;
-    CHECK(missing == 0 && e.status == HD_OK && HDI_TAKE(&s, int32_t, 1) == NULL && e.status == HD_ERR_TOO_LARGE);
-    CHECK(hdi_scope_end(&s) == HD_ERR_TOO_LARGE && ctx.bytes_in_use == 0);
 }
 
 /* Advice on large blocks begins where pages do, be they of 4, 16 or 64 KB, and stays within the block. */
@@ -318,9 +270,9 @@ static void int_sorting(void) {
     for (k = 0; k < 14; k++)
         for (form = 0; form < 7; form++) {
             const int64_t n = sizes[k];
-            hdi_pair *a = DENSE_NEW(hdi_pair, n), *b = DENSE_NEW(hdi_pair, n);
-            uint64_t *work = DENSE_NEW(uint64_t, 2 * n + 1);
-            int32_t *x = DENSE_NEW(int32_t, n + 1);
+            hdi_pair *a = KIT_NEW(hdi_pair, n), *b = KIT_NEW(hdi_pair, n);
+            uint64_t *work = KIT_NEW(uint64_t, 2 * n + 1);
+            int32_t *x = KIT_NEW(int32_t, n + 1);
             for (i = 0; i < n; i++) {
                 a[i].key = b[i].key = int_key(form, i, n, &seed);
                 a[i].id = b[i].id = n - i;
@@ -339,10 +291,6 @@ static void int_sorting(void) {
             hdi_sort_indices(x, n, work);
             for (i = 0; i < n && (uint64_t)x[i] == b[i].key; i++) {}
             CHECK_MSG(i == n && x[n] == 5 && work[2 * n] == 77, "%d indices of form %d are not sorted", (int)n, form);
-            free(a);
-            free(b);
-            free(work);
-            free(x);
         }
 }
 
@@ -371,7 +319,7 @@ static void int_tridiagonal(void) {
     int k;
     for (k = 0; k < 6; k++) {
         const int32_t m = sizes[k];
-        double *d = DENSE_NEW(double, 4 * m + 2), *e = d + m + 1, *z0 = e + m + 1, *z1 = z0 + m, worst = 0;
+        double *d = KIT_NEW(double, 4 * m + 2), *e = d + m + 1, *z0 = e + m + 1, *z1 = z0 + m, worst = 0;
         int32_t i, j, at;
         d[m] = e[m] = NAN;                       /* not theirs */
         for (i = 0; i < m; i++) {
@@ -390,7 +338,6 @@ static void int_tridiagonal(void) {
             worst = fmax(worst, fabs(z0[at] * z1[at] - (j % 2 ? edge : -edge)));    /* the last component has that sign */
         }
         CHECK_MSG(worst < 1e-12, "m = %d: off by %g", (int)m, worst);
-        free(d);
     }
 }
 
@@ -447,54 +394,9 @@ static void int_collinear(void) {
 
 /* ---- [19] precond ---- */
 
-/* The order by its definition: each vertex follows its first neighbour in the order, those that follow the same one stand by degree.
- * Returns how often that does not hold; width: the largest distance of neighbours. Components come one after the other. */
-static int32_t int_not_cuthill_mckee(const hd_csr *a, const int32_t *perm, int32_t *width) {
-    int32_t *at = DENSE_NEW(int32_t, 2 * a->n_rows), *up = at + a->n_rows, i, wrong = 0;
-    int64_t p;
-    for (i = 0; i < a->n_rows; i++) at[i] = -1;
-    for (i = 0; i < a->n_rows; i++) at[perm[i]] = i;
-    for (i = *width = 0; i < a->n_rows; i++) {
-        const int64_t *ptr = a->row_ptr + perm[i];
-        wrong += at[i] < 0;                      /* not a permutation */
-        for (up[i] = i, p = ptr[0]; p < ptr[1]; p++)
-            if (at[a->col[p]] < up[i]) up[i] = at[a->col[p]];
-        if (i - up[i] > *width) *width = i - up[i];
-        if (i == 0 || up[i] == i) continue;
-        wrong += up[i] < up[i - 1];
-        wrong += up[i] == up[i - 1] && ptr[1] - ptr[0] < a->row_ptr[perm[i - 1] + 1] - a->row_ptr[perm[i - 1]];
-    }
-    free(at);
-    return wrong;
-}
-
-static void int_cuthill_mckee(void) {
-    const double offset[3] = {2, 0, 0};
-    shape s = shape_grid(40, 8, 0.2), two = shape_grid(5, 5, 0), both = shape_disjoint(&s, &two, offset);
-    hd_laplacian *lap = NULL;
-    hd_csr shuffled;
-    hd_context ctx;
-    hd_error e = int_no_error();
-    uint64_t seed = 3;
-    int32_t *perm = DENSE_NEW(int32_t, both.n), wrong, width = 0;
-    memset(&ctx, 0, sizeof ctx);
-    CHECK(hd_laplacian_triangles(&lap, both.xyz, both.n, both.tri, both.n_tri, NULL, &e) == HD_OK);
-    dense_shuffle(perm, both.n, &seed);
-    CHECK(hd_csr_permute(&shuffled, &lap->L, perm, NULL, &e) == HD_OK);
-    CHECK(hdi_precond_cuthill_mckee(&shuffled, perm, &ctx, &e) == HD_OK);
-    wrong = int_not_cuthill_mckee(&shuffled, perm, &width);
-    CHECK_MSG(wrong == 0 && width <= 20, "%d vertices out of order, bandwidth %d of a strip 8 wide", (int)wrong, (int)width);
-    hd_csr_free(&shuffled, NULL);
-    hd_laplacian_free(lap);
-    free(perm);
-    shape_free(&s);
-    shape_free(&two);
-    shape_free(&both);
-}
-
 static dense_c64 *int_dense_of(const hdi_upper *up, const hd_c64 *u, const hd_c64 *d) {
     const int32_t n = up->n;
-    dense_c64 *a = DENSE_NEW(dense_c64, n * n);
+    dense_c64 *a = KIT_NEW(dense_c64, n * n);
     int32_t i;
     int64_t p;
     for (i = 0; i < n; i++) {
@@ -510,9 +412,9 @@ enum { INT_ENTRIES, INT_DIAGONAL, INT_FILL, INT_SUMS, INT_SOLVED, INT_OFF };
 
 static void int_ildl_of(const hdi_upper *up, double keep, double off[INT_OFF]) {
     const int32_t n = up->n;
-    hd_c64 *u = DENSE_NEW(hd_c64, up->ptr[n] + 4 * n), *d = u + up->ptr[n], *diag = d + n, *b = diag + n, *x = b + n;
-    int64_t *mark = DENSE_NEW(int64_t, n), p;
-    dense_c64 *a, *f, *m = DENSE_NEW(dense_c64, n * n);
+    hd_c64 *u = KIT_NEW(hd_c64, up->ptr[n] + 4 * n), *d = u + up->ptr[n], *diag = d + n, *b = diag + n, *x = b + n;
+    int64_t *mark = KIT_NEW(int64_t, n), p;
+    dense_c64 *a, *f, *m = KIT_NEW(dense_c64, n * n);
     hdi_precond of;
     uint64_t seed = 5;
     int32_t i, j, k;
@@ -558,11 +460,6 @@ static void int_ildl_of(const hdi_upper *up, double keep, double off[INT_OFF]) {
         off[INT_SUMS] = fmax(off[INT_SUMS], hypot(sum.re, sum.im));
         off[INT_SOLVED] = fmax(off[INT_SOLVED], hypot(left.re, left.im));
     }
-    free(u);
-    free(mark);
-    free(a);
-    free(f);
-    free(m);
 }
 
 /* Where elimination makes no fill the incomplete factors are the complete ones. Else they have the entries of A, and with keep 0 its
@@ -597,73 +494,6 @@ static void int_ildl(void) {
         }
 }
 
-/* The path with n vertices and B = tridiag(1, 4, 1), as a Laplacian. */
-static hd_laplacian *int_path(int32_t n) {
-    int32_t *i = DENSE_NEW(int32_t, 6 * n), *j = i + 3 * n, k, q;
-    double *l = DENSE_NEW(double, 6 * n), *b = l + 3 * n;
-    hd_laplacian *lap = NULL;
-    hd_csr L, B;
-    hd_error e = int_no_error();
-    int64_t c = 0;
-    for (k = 0; k < n; k++)
-        for (q = k - 1; q <= k + 1; q++) {
-            if (q < 0 || q == n) continue;
-            i[c] = k;
-            j[c] = q;
-            l[c] = q != k ? -1 : 2 - (k == 0) - (k == n - 1);
-            b[c++] = q != k ? 1 : 4;
-        }
-    CHECK(hd_csr_from_triplets(&L, n, n, c, i, j, l, NULL, &e) == HD_OK);
-    CHECK(hd_csr_from_triplets(&B, n, n, c, i, j, b, NULL, &e) == HD_OK);
-    CHECK(hd_laplacian_matrices(&lap, &L, &B, 0, NULL, &e) == HD_OK);
-    hd_csr_free(&L, NULL);
-    hd_csr_free(&B, NULL);
-    free(i);
-    free(l);
-    return lap;
-}
-
-/* On a path no elimination fills in, so both incomplete factors are exact; Jacobi and SSOR by their definitions. */
-static void int_precond_make(void) {
-    enum { N = 23 };
-    hd_laplacian *lap = int_path(N);
-    const hdi_system a = {lap, 1.5, {-0.2, 5}};
-    hd_context ctx;
-    hd_error e = int_no_error();
-    hdi_upper up;
-    hdi_precond m;
-    hd_c64 u[N], d[N], work[N], x[N], ax[N], back[N];
-    int64_t mark[N + 1];
-    uint64_t seed = 7;
-    int32_t i, kind;
-    memset(&ctx, 0, sizeof ctx);
-    CHECK(hdi_upper_make(&up, &lap->L, &ctx, &e) == HD_OK && up.ptr[N] == N - 1);
-    for (i = 0; i < N; i++) x[i] = hdi_c(dense_signed(&seed), dense_signed(&seed));
-    hdi_system_apply(&a, x, ax);
-    for (kind = HD_PRECOND_JACOBI; kind <= HD_PRECOND_MILDL; kind++) {
-        double worst = 0;
-        memset(&m, 0, sizeof m);
-        m.kind = (hd_precond)kind;
-        m.up = &up;
-        m.u = kind == HD_PRECOND_JACOBI ? NULL : u;
-        m.d_inv = d;
-        mark[N] = 4711;
-        hdi_precond_make(&m, &a, work, mark);
-        CHECK(mark[N] == 4711);
-        if (kind >= HD_PRECOND_ILDL) hdi_precond_apply(&m, ax, back);
-        for (i = 0; i < N; i++) {
-            const int ends = (i == 0) + (i == N - 1);
-            const hd_c64 diag = hdi_c(1.5 * (2 - ends) - 0.2 * 4, 20), off = hdi_c(-1.5 - 0.2, 5);
-            if (kind >= HD_PRECOND_ILDL) worst = hdi_max(worst, hdi_cabs(hdi_csub(back[i], x[i])));
-            else worst = hdi_max(worst, hdi_cabs(hdi_csub(hdi_cmul(diag, d[i]), hdi_c(1, 0))));
-            if (kind < HD_PRECOND_ILDL && m.u && i + 1 < N) worst = hdi_max(worst, hdi_cabs(hdi_csub(hdi_cmul(u[i], diag), off)));
-        }
-        CHECK_MSG(worst < 1e-13, "preconditioner %d: off by %g", (int)kind, worst);
-    }
-    hdi_upper_free(&ctx, &up);
-    hd_laplacian_free(lap);
-}
-
 /* The share of the way from the first residual to the target, by powers of ten. */
 static void int_krylov_done(void) {
     CHECK(fabs(hdi_krylov_done(1e3, 1e1, 1e-5) - 0.25) < 1e-15 && fabs(hdi_krylov_done(1e-2, 1e-8, 1e-10) - 0.75) < 1e-15);
@@ -671,7 +501,23 @@ static void int_krylov_done(void) {
     CHECK(hdi_krylov_done(5, 1e-3, 1e-3) == 1 && hdi_krylov_done(1e-3, 1e-3, 1e-2) == 1);
 }
 
-/* ---- [15] analysis and [16] schedule, against dense elimination; [17] factors and sweeps, [18] inverses ---- */
+/* ---- helpers ---- */
+
+static void int_free_pair(void *p) {
+    dense_pair_free((dense_pair *)p);
+    free(p);
+}
+
+/* Eigenpairs of two dense matrices, which stay as they are. */
+static const dense_pair *int_solved(const double *L, const double *B, int32_t n) {
+    dense_pair *pair = KIT_NEW(dense_pair, 1);
+    double *own[2] = {DENSE_NEW(double, n * n), DENSE_NEW(double, n * n)};
+    memcpy(own[0], L, (size_t)(n * n) * sizeof *L);
+    memcpy(own[1], B, (size_t)(n * n) * sizeof *B);
+    CHECK(dense_pair_solve(pair, own[0], own[1], n));
+    kit_list[kit_count - 1].destroy = int_free_pair;
+    return pair;
+}
 
 static double int_off(const double *a, const double *b, int64_t n) {
     return dense_max_diff(a, b, n) / (1 + dense_max_abs(b, n));
@@ -682,445 +528,13 @@ static void int_noise(double *x, int64_t n, uint64_t *seed) {
     for (i = 0; i < n; i++) x[i] = dense_signed(seed);
 }
 
-/* Patterns: a grid, a random graph that falls apart, a path, a star, no edge at all, and full matrices joined by some of
- * their rows, so that fronts have about as many pivots and rows as one likes. */
-typedef struct int_kind { const char *name; int32_t n, of, joint; } int_kind;
-static const int_kind int_kinds[] = {
-    {"grid", 144, 0, 0}, {"random", 90, 0, 0}, {"path", 54, 0, 0}, {"star", 61, 0, 0}, {"diagonal", 30, 0, 0},
-    {"full", HDI_PANEL + 9, HDI_PANEL + 9, 0}, {"4, 33", 41, 4, 33}, {"7, 3", 31, 7, 3}, {"9, 12", 48, 9, 12},
-    {"23, 50", 96, 23, 50}, {"33, 9", 75, 33, 9},
-};
-enum { INT_KINDS = sizeof int_kinds / sizeof *int_kinds };
-
-static int int_joined(int kind, int32_t a, int32_t b, uint64_t *seed) {
-    const int32_t of = int_kinds[kind].of;
-    switch (kind) {
-        case 0: return a - b == 12 || (a % 12 && (a - b == 1 || a - b == 13));
-        case 1: return dense_random(seed) % 70 < 2;
-        case 2: return b == a - 1;
-        case 3: return b == 0;
-        case 4: return 0;
-        default: return a / of == b / of || a >= int_kinds[kind].n - int_kinds[kind].joint;
-    }
-}
-
-static hd_csr int_pattern(int kind) {
-    const int32_t n = int_kinds[kind].n;
-    int32_t *i = DENSE_NEW(int32_t, 2 * n * n), *j = i + n * n, a, b, c = 0;
-    uint64_t seed = 5;
-    hd_csr out;
-    for (a = 0; a < n; a++) {
-        i[c] = a;
-        j[c++] = a;
-        for (b = 0; b < a; b++) {
-            if (!int_joined(kind, a, b, &seed)) continue;
-            i[c] = j[c + 1] = a;
-            j[c] = i[c + 1] = b;
-            c += 2;
-        }
-    }
-    CHECK(hd_csr_from_triplets(&out, n, n, c, i, j, NULL, NULL, NULL) == HD_OK);
-    free(i);
-    return out;
-}
-
-/* l [n n]: where L of P A P' has entries, diagonal included, by elimination. */
-static char *int_fill(const hd_csr *a, const int32_t *perm) {
-    const int32_t n = a->n_rows;
-    char *l = DENSE_NEW(char, n * n);
-    int32_t *inv = DENSE_NEW(int32_t, n), i, j, k;
-    int64_t p;
-    for (i = 0; i < n; i++) inv[perm[i]] = i;
-    for (i = 0; i < n; i++)
-        for (p = a->row_ptr[i]; p < a->row_ptr[i + 1]; p++) l[inv[i] * n + inv[a->col[p]]] = 1;
-    for (k = 0; k < n; k++)
-        for (i = k + 1; i < n; i++)
-            for (j = k + 1; l[i * n + k] && j < n; j++) l[i * n + j] |= l[j * n + k];
-    free(inv);
-    return l;
-}
-
-/* Every entry of L has a place in its front, and the counts are those of the entries. */
-static void int_fill_right(const hdi_symbolic *s, const hd_csr *a, const char *what) {
-    char *l = int_fill(a, s->perm);
-    int64_t nnz = 0, p;
-    int32_t i, j, lost = 0;
-    double flops = 0;
-    for (j = 0; j < s->n; j++) {
-        const int32_t v = s->super_of[j];
-        int32_t count = 0;
-        for (i = j; i < s->n; i++) {
-            int inside = s->super_of[i] == v;
-            if (!l[i * s->n + j]) continue;
-            count++;
-            for (p = s->row_ptr[v]; p < s->row_ptr[v + 1]; p++) inside |= s->row[p] == i;
-            lost += !inside;
-        }
-        nnz += count;
-        flops += (double)count * count;
-    }
-    CHECK_MSG(lost == 0, "%s: %d entries of L have no place", what, (int)lost);
-    CHECK_MSG(nnz == s->nnz && flops == s->flops && s->flops_done >= s->flops,
-              "%s: %lld non-zeros and %g flops, not %lld and %g", what,
-              (long long)s->nnz, s->flops, (long long)nnz, flops);
-    free(l);
-}
-
-/* Fronts share out the pivots, rows ascend and stand in the parent's front where rel says, and so do the entries of A. */
-static void int_fronts_right(const hdi_symbolic *s, const hd_csr *a, const char *what) {
-    int32_t *seen = DENSE_NEW(int32_t, s->n + 1), v, k, i, row, col, wrong = s->super[0] != 0 || s->super[s->n_super] != s->n;
-    int64_t p, entries = 0;
-    for (i = 0; i < s->n; i++) wrong += seen[s->perm[i]]++ != 0;
-    for (v = 0; v < s->n_super; v++) {
-        const int32_t up = s->parent[v], width = up < 0 ? 0 : s->super[up + 1] - s->super[up];
-        wrong += s->super[v] >= s->super[v + 1] || (up != -1 && up <= v) || (up == -1) != (s->row_ptr[v] == s->row_ptr[v + 1]);
-        for (i = s->super[v]; i < s->super[v + 1]; i++) wrong += s->super_of[i] != v;
-        for (p = s->row_ptr[v]; p < s->row_ptr[v + 1]; p++) {
-            const int32_t at = s->rel[p];
-            wrong += s->row[p] < (p > s->row_ptr[v] ? s->row[p - 1] + 1 : s->super[v + 1]) || s->row[p] >= s->n;
-            wrong += at < 0 || (at < width ? s->super[up] + at : s->row[s->row_ptr[up] + at - width]) != s->row[p];
-        }
-        for (k = s->kid_ptr[v]; k < s->kid_ptr[v + 1]; k++) wrong += s->parent[s->kid[k]] != v;
-        for (p = s->a_ptr[v]; p < s->a_ptr[v + 1]; p++, entries++) {
-            hdi_entry_place(s, v, p, &row, &col);
-            for (i = s->perm[col]; a->row_ptr[i + 1] <= s->a_from[p]; i++) {}
-            wrong += i != s->perm[col] || s->a_from[p] < a->row_ptr[i] || s->perm[row] != a->col[s->a_from[p]] || row < col;
-        }
-    }
-    memset(seen, 0, (size_t)s->n * sizeof *seen);
-    for (k = 0; k < s->n_tasks; k++)             /* and so do subtrees and the top */
-        for (v = s->task_begin[k]; v < s->task_end[k]; v++) {
-            seen[v]++;
-            wrong += s->task_of[v] != k || (s->parent[v] >= 0 && s->task_of[s->parent[v]] >= 0 && s->task_of[s->parent[v]] != k);
-        }
-    for (k = 0; k < s->n_top; k++) {
-        seen[s->top[k]]++;
-        wrong += s->task_of[s->top[k]] != -1 - k || (k > 0 && s->top[k] <= s->top[k - 1]);
-    }
-    for (v = 0; v < s->n_super; v++) wrong += seen[v] != 1;
-    CHECK_MSG(wrong == 0 && entries == (a->nnz + s->n) / 2, "%s: %d numbers are wrong; %lld entries", what, (int)wrong,
-              (long long)entries);
-    free(seen);
-}
-
-/* Places in memory: what v leaves is held until its parent is through. Subtrees go on at the same time, then the top in
- * turn; vectors of the top all stay. No two overlap that are held at the same time. */
-static void int_places(const hdi_symbolic *s, int triangle, const char *what) {
-    const int64_t *at = triangle ? s->update : s->vector, size = triangle ? s->work : s->vector_size;
-    int32_t v, w, clash = 0;
-    for (v = 0; v < s->n_super; v++) {
-        const int32_t up = s->parent[v], task = s->task_of[v];
-        const int64_t u = hdi_front_below(s, v), end = at[v] + (triangle ? u * (u + 1) / 2 : u);
-        clash += u > 0 && (at[v] < 0 || end > size);
-        for (w = 0; w < s->n_super && u > 0; w++) {
-            const int64_t below = hdi_front_below(s, w), last = at[w] + (triangle ? below * (below + 1) / 2 : below);
-            int both;
-            if (s->task_of[w] >= 0) both = task == s->task_of[w] ? v < w && w <= up : task >= 0;
-            else both = (task < 0 ? v < w : s->task_of[up] < 0) && (w <= up || !triangle);
-            clash += both && below > 0 && at[v] < last && at[w] < end;
-        }
-    }
-    CHECK_MSG(clash == 0, "%s: %d %s are another's or nowhere", what, (int)clash, triangle ? "updates" : "vectors");
-}
-
-/* Symmetric matrices on one pattern, diagonally dominant: four complex ones, and as the last a real one, whose pivots have
- * both signs; the inverses; X, with zeros here and there, and forms x_i' Z x_i of its rows. */
-enum { INT_REAL = 4, INT_MATRICES };
-typedef struct int_system {
-    hd_csr a;
-    double *real, *x;
-    hd_c64 *z[INT_MATRICES];
-    dense_c64 *inverse[INT_MATRICES], *form[INT_MATRICES];
-} int_system;
-
-/* In [-1, 1), the same for (i,j) and (j,i). */
-static double int_entry(int32_t i, int32_t j, int salt) {
-    uint64_t seed = ((uint64_t)(i > j ? i : j) * 1009 + (uint64_t)(i > j ? j : i)) * 64 + (uint64_t)salt + 1;
-    (void)dense_random(&seed);
-    return dense_signed(&seed);
-}
-
-/* In place, by Gauss and Jordan; without pivots from elsewhere, as the diagonal dominates. */
-static void int_dense_invert(dense_c64 *a, int32_t n) {
-    int32_t i, j, k;
-    for (k = 0; k < n; k++) {
-        dense_c64 *row = a + k * n;
-        const dense_c64 pivot = row[k];
-        row[k] = dense_c(1, 0);
-        for (j = 0; j < n; j++) row[j] = dense_cquotient(row[j], pivot);
-        for (i = 0; i < n; i++) {
-            const dense_c64 f = a[i * n + k];
-            if (i == k || (f.re == 0 && f.im == 0)) continue;
-            a[i * n + k] = dense_c(0, 0);
-            for (j = 0; j < n; j++) a[i * n + j] = dense_cfma(a[i * n + j], f, row[j]);
-        }
-    }
-}
-
-static dense_c64 int_form(const int_system *y, const dense_c64 *inverse, int32_t i) {
-    dense_c64 sum = dense_c(0, 0);
-    int64_t p, q;
-    for (p = y->a.row_ptr[i]; p < y->a.row_ptr[i + 1]; p++)
-        for (q = y->a.row_ptr[i]; q < y->a.row_ptr[i + 1] && y->x[p] != 0; q++)
-            sum = dense_cfma(sum, dense_c(-y->x[p] * y->x[q], 0), inverse[y->a.col[p] * y->a.n_rows + y->a.col[q]]);
-    return sum;
-}
-
-static int_system int_system_make(int kind) {
-    int_system y;
-    int32_t n, i, j, q;
-    int64_t p;
-    y.a = int_pattern(kind);
-    n = y.a.n_rows;
-    y.real = DENSE_NEW(double, y.a.nnz);
-    y.x = DENSE_NEW(double, y.a.nnz);
-    for (q = 0; q < INT_MATRICES; q++) {
-        y.z[q] = DENSE_NEW(hd_c64, y.a.nnz);
-        y.inverse[q] = DENSE_NEW(dense_c64, n * n);
-        y.form[q] = DENSE_NEW(dense_c64, n);
-        for (i = 0; i < n; i++)
-            for (p = y.a.row_ptr[i]; p < y.a.row_ptr[i + 1]; p++) {
-                const double most = 1.5 * (double)(y.a.row_ptr[i + 1] - y.a.row_ptr[i]);
-                const double turn = q < INT_REAL ? 1 + q : i % 3 ? 0 : acos(-1.0);
-                j = y.a.col[p];
-                y.z[q][p] = hdi_c(int_entry(i, j, 2 * q), int_entry(i, j, 2 * q + 1));
-                if (i == j) y.z[q][p] = hdi_c(most * cos(turn), most * sin(turn));
-                if (q == INT_REAL) y.real[p] = y.z[q][p].re;
-                if (q == INT_REAL) y.z[q][p].im = 0;
-                y.x[p] = int_entry(i, j, 20) < -0.6 ? 0 : int_entry(i, j, 21);
-                y.inverse[q][i * n + j] = dense_c(y.z[q][p].re, y.z[q][p].im);
-            }
-        int_dense_invert(y.inverse[q], n);
-        for (i = 0; i < n; i++) y.form[q][i] = int_form(&y, y.inverse[q], i);
-    }
-    return y;
-}
-
-static void int_system_free(int_system *y) {
-    int q;
-    for (q = 0; q < INT_MATRICES; q++) {
-        free(y->z[q]);
-        free(y->inverse[q]);
-        free(y->form[q]);
-    }
-    free(y->real);
-    free(y->x);
-    hd_csr_free(&y->a, NULL);
-}
-
-/* A x = b for k right-hand sides side by side, of which x has rows of k entries in elimination order. sparse: few
- * non-zeros, and fronts that see none of them are told to be out of it. */
-static void int_sweeps_right(const int_system *y, const hdi_factor *f, int32_t k, int sparse, const char *what) {
-    const hdi_symbolic *s = f->sym;
-    const int32_t n = s->n, w = f->width, row = w * k;
-    double *x = DENSE_NEW(double, n * row), *b = DENSE_NEW(double, n * row), worst;
-    double *work = DENSE_NEW(double, hdi_sweep_size(s, w, k));
-    int32_t *inv = DENSE_NEW(int32_t, n), i, r, q;
-    char *active = DENSE_NEW(char, s->n_super);
-    uint64_t seed = 17;
-    hdi_sweep z;
-    int64_t p;
-    for (i = 0; i < n; i++) {
-        inv[s->perm[i]] = i;
-        if (sparse && i % 61 != 7) continue;
-        int_noise(b + i * row, row, &seed);
-        hdi_sweep_touch(s, i, active);
-    }
-    memcpy(x, b, (size_t)(n * row) * sizeof *x);
-    for (i = 0; (uint64_t)i < hdi_sweep_size(s, w, k); i++) work[i] = 1e300;
-    z = hdi_sweep_open(f, k, x, work);
-    if (sparse) z.active = active;
-    hdi_sweep_run(&z, k % 2 ? f->ctx : NULL);
-    for (i = 0; i < n; i++)
-        for (p = y->a.row_ptr[i]; p < y->a.row_ptr[i + 1]; p++)
-            for (r = 0; r < k; r++)
-                for (q = 0; q < (w == 1 ? 1 : 4); q++) {
-                    const hd_c64 a = y->z[w == 1 ? INT_REAL : q][p];
-                    const double *v = x + inv[y->a.col[p]] * row + w * r + q;
-                    double *to = b + inv[i] * row + w * r + q;
-                    to[0] -= a.re * v[0] - (w == 1 ? 0 : a.im * v[4]);
-                    if (w > 1) to[4] -= a.re * v[4] + a.im * v[0];
-                }
-    worst = dense_max_abs(b, n * row);
-    CHECK_MSG(worst < 1e-13, "%s, width %d, %d side by side: residual %g", what, (int)w, (int)k, worst);
-    free(x);
-    free(b);
-    free(work);
-    free(inv);
-    free(active);
-}
-
-/* What an inversion should add: numbers of the diagonal or of forms by pivots, or of entries. */
-static double *int_inverse_wanted(const int_system *y, const hdi_symbolic *s, int32_t w, hdi_wanted wanted, int64_t count) {
-    double *want = DENSE_NEW(double, w * count);
-    int32_t q, v, i, j;
-    int64_t p;
-    for (q = 0; q < (w == 1 ? 1 : 4); q++)
-        for (v = 0; v < s->n_super; v++)
-            for (p = s->a_ptr[v]; p < s->a_ptr[v + 1]; p++) {
-                const int m = w == 1 ? INT_REAL : q;
-                dense_c64 c;
-                int64_t at;
-                hdi_entry_place(s, v, p, &i, &j);
-                if (wanted != HDI_WANT_ENTRIES && i != j) continue;
-                at = q * count + (wanted == HDI_WANT_ENTRIES ? p : i);
-                c = wanted == HDI_WANT_FORMS ? y->form[m][s->perm[i]] : y->inverse[m][s->perm[i] * s->n + s->perm[j]];
-                want[at] = c.re;
-                if (w > 1) want[at + 4 * count] = c.im;
-            }
-    return want;
-}
-
-/* Every number, added to what is there. cols: the most columns that forms take together; 0: as it comes. */
-static void int_inverse_right(const int_system *y, hdi_factor *f, hdi_wanted wanted, int32_t cols, const char *what) {
-    const hdi_symbolic *s = f->sym;
-    const int32_t w = f->width;
-    const int64_t count = wanted == HDI_WANT_ENTRIES ? s->a_ptr[s->n_super] : s->n;
-    double coef[HDI_PACK * HDI_PACK] = {0}, *got = DENSE_NEW(double, w * count),
-        *want = int_inverse_wanted(y, s, w, wanted, count);
-    hd_error e = int_no_error();
-    hdi_scope keep = hdi_scope_begin(f->ctx, &e);
-    hdi_forms forms;
-    hdi_inverse z;
-    int64_t p;
-    hdi_inverse_take(&z, s, w, &keep);
-    if (wanted == HDI_WANT_FORMS) CHECK(hdi_forms_make(&forms, s, w, &y->a, y->x, f->ctx, &e) == HD_OK);
-    if (cols && cols < forms.cols) forms.cols = cols;
-    if (cols && forms.n_slots > 2) forms.n_slots = 2;
-    for (p = 0; p < w; p++) coef[p * w + p] = 1;
-    for (p = 0; p < w * count; p++) got[p] = 3;
-    z.coef = coef;
-    z.n_sets = w;
-    z.wanted = wanted;
-    z.forms = &forms;
-    z.values = got;
-    z.stride = count;
-    CHECK_MSG(hdi_inverse_run(&z, f, &e) == HD_OK, "%s: %s", what, e.text);
-    for (p = 0; p < w * count; p++) got[p] -= 3;
-    CHECK_MSG(dense_max_diff(got, want, w * count) < 1e-13, "%s, width %d, wanted %d, blocks of %d: off by %g", what, (int)w,
-              (int)wanted,
-              (int)cols, dense_max_diff(got, want, w * count));
-    if (wanted == HDI_WANT_FORMS) hdi_forms_free(&forms, f->ctx);
-    hdi_scope_end(&keep);
-    free(got);
-    free(want);
-}
-
-/* All fronts to the top, where blocks of columns are tasks; those of small matrices are all in subtrees otherwise. */
-static void int_all_top(hdi_symbolic *s) {
-    int32_t v;
-    s->n_tasks = s->task_pivots = s->task_update = 0;
-    s->n_top = s->n_super;
-    for (v = 0; v < s->n_super; v++) {
-        s->top[v] = v;
-        s->task_of[v] = -1;
-    }
-}
-
-static void int_factor_right(const int_system *y, const hdi_symbolic *s, int32_t width, hd_context *ctx, const char *what) {
-    hd_error e = int_no_error();
-    hdi_values v;
-    hdi_factor f;
-    int32_t q;
-    memset(&v, 0, sizeof v);
-    v.real = width == 1 ? y->real : NULL;
-    for (q = 0; q < 4 && width > 1; q++) v.z[q] = y->z[q];
-    CHECK_MSG(hdi_factor_make(&f, s, width, ctx, &e) == HD_OK && hdi_factor_run(&f, &v, &e) == HD_OK, "%s: %s", what, e.text);
-    for (q = 0; q < 4; q++) int_sweeps_right(y, &f, q / 2 ? width == 1 ? 8 : 13 : 1, q % 2, what);
-    int_inverse_right(y, &f, HDI_WANT_DIAGONAL, 0, what);
-    int_inverse_right(y, &f, HDI_WANT_ENTRIES, 0, what);
-    for (q = 0; q < (y->a.nnz < 10000 ? 3 : 1); q++) int_inverse_right(y, &f, HDI_WANT_FORMS, 2 * q, what);
-    hdi_factor_free(&f);
-}
-
-static void int_analysis_right(const hdi_symbolic *s, const hd_csr *a, int dense, const char *what) {
-    int_fronts_right(s, a, what);
-    if (dense) int_fill_right(s, a, what);
-    int_places(s, 0, what);
-    int_places(s, 1, what);
-}
-
-/* A pattern by minimum degree and by another order, in subtrees and at the top, at all levels of instructions. */
-static void int_factors_of(const int_system *y, int kind, int way) {
-    static const hd_simd simds[3] = {HD_SIMD_NONE, HD_SIMD_AVX2, HD_SIMD_AVX512};
-    int32_t *perm = DENSE_NEW(int32_t, y->a.n_rows), i;
-    uint64_t seed = 8;
-    hd_context ctx;
-    hd_error e = int_no_error();
-    hdi_symbolic s;
-    char what[80];
-    memset(&ctx, 0, sizeof ctx);
-    ctx.simd = simds[way / 4];
-    sprintf(what, "%s, way %d", int_kinds[kind].name, way);
-    for (i = 0; i < y->a.n_rows; i++) perm[i] = i;
-    if (way % 2) CHECK(hdi_amd_order(&y->a, perm, &ctx, &e) == HD_OK);
-    else if (kind < 5) dense_shuffle(perm, y->a.n_rows, &seed);
-    CHECK_MSG(hdi_symbolic_make(&s, &y->a, perm, &ctx, &e) == HD_OK, "%s: %s", what, e.text);
-    if (way < 2) int_analysis_right(&s, &y->a, 1, what);
-    if (way & 2) int_all_top(&s);
-    int_factor_right(y, &s, 1, &ctx, what);
-    int_factor_right(y, &s, HDI_PACK, &ctx, what);
-    hdi_symbolic_free(&ctx, &s);
-    CHECK(ctx.bytes_in_use == 0);
-    free(perm);
-}
-
-static void int_factors(int kind) {
-    int_system y;
-    int way;
-    if (kind >= INT_KINDS) return;
-    y = int_system_make(kind);
-    for (way = 0; way < 4 * (hdi_simd_best() + 1); way += kind < 5 ? 1 : 2) int_factors_of(&y, kind, way);
-    int_system_free(&y);
-}
-
-/* Meshes with many subtrees and a top. */
-static void int_schedules(void) {
-    shape s[3];
-    const double offset[3] = {3, 0, 0};
-    int q, k;
-    s[0] = shape_bumpy(4, 3);
-    s[1] = shape_grid(70, 60, 0.3);
-    s[2] = shape_disjoint(s, s + 1, offset);
-    for (q = 0; q < 3; q++) {
-        hd_laplacian *lap = NULL;
-        int32_t *perm = DENSE_NEW(int32_t, s[q].n);
-        CHECK(hd_laplacian_triangles(&lap, s[q].xyz, s[q].n, s[q].tri, s[q].n_tri, NULL, NULL) == HD_OK);
-        for (k = 0; k < 2; k++) {
-            hd_context ctx;
-            hd_error e = int_no_error();
-            hdi_symbolic y;
-            memset(&ctx, 0, sizeof ctx);
-            if (k) CHECK(hdi_nd_order(&lap->L, lap->xyz, perm, &ctx, &e) == HD_OK);
-            else CHECK(hdi_amd_order(&lap->L, perm, &ctx, &e) == HD_OK);
-            CHECK(hdi_symbolic_make(&y, &lap->L, perm, &ctx, &e) == HD_OK && y.n_tasks > 1 && y.n_top > 0);
-            int_analysis_right(&y, &lap->L, 0, "mesh");
-            hdi_symbolic_free(&ctx, &y);
-            CHECK(ctx.bytes_in_use == 0);
-        }
-        free(perm);
-        hd_laplacian_free(lap);
-        shape_free(s + q);
-    }
-}
-
-
 /* ---- [22] poles: what checks and bounds rest on ---- */
 
-static hd_laplacian *int_mesh(int kind, hd_laplacian_kind form) {
-    shape s = kind == 0 ? shape_bumpy(2, 5) : kind == 1 ? shape_grid(14, 9, 0.3) : shape_icosphere(3);
-    hd_laplacian *lap = NULL;
-    hd_laplacian_opts o;
-    memset(&o, 0, sizeof o);
-    o.kind = form;
-    CHECK(hd_laplacian_triangles(&lap, s.xyz, s.n, s.tri, s.n_tri, &o, NULL) == HD_OK);
-    shape_free(&s);
-    return lap;
-}
+static hd_laplacian *int_mesh(int voronoi) { return kit_pair(voronoi ? "flat/14/9/0.3 vor" : "flat/14/9/0.3 fem"); }
 
 /* l L + b B, dense, or the absolute values. */
 static double *int_dense(const hd_laplacian *lap, double l, double b, int absolute) {
-    double *d = DENSE_NEW(double, lap->n_active * lap->n_active);
+    double *d = KIT_NEW(double, lap->n_active * lap->n_active);
     int64_t p;
     int32_t i;
     for (i = 0; i < lap->n_active; i++)
@@ -1134,7 +548,7 @@ static double *int_dense(const hd_laplacian *lap, double l, double b, int absolu
 /* Pole q's part of a right-hand side: residual and size of its solution, their share of the answer and of B times it. */
 static void int_check_right(const hdi_check *c, const double *L, const double *B, int q, double *want_u, double *want_bu) {
     const int32_t n = c->lap->n_active;
-    double *part = DENSE_NEW(double, 6 * n), *l = part + 2 * n, *b = l + 2 * n, norm2 = 0, size2 = 0, first2 = 0;
+    double *part = KIT_NEW(double, 6 * n), *l = part + 2 * n, *b = l + 2 * n, norm2 = 0, size2 = 0, first2 = 0;
     int32_t i, k;
     for (k = 0; k < 2; k++) {                    /* real parts, then imaginary ones */
         for (i = 0; i < n; i++) part[k * n + i] = c->x[c->stride * i + q + 4 * k];
@@ -1156,14 +570,13 @@ static void int_check_right(const hdi_check *c, const double *L, const double *B
               (q > 0 || fabs(first2 / c->first2 - 1) < 1e-12),
               "pole %d: residual %g, told %g; size %g, told %g; norm %g, told %g", q, norm2, c->norm2[q], size2, c->size2[q],
                   first2, c->first2);
-    free(part);
 }
 
 /* Checks of packs for one to so many right-hand sides together, by their definition. */
 static void int_checks_of(const hd_laplacian *lap, void (*check)(hdi_check *const *c, int32_t k), int32_t k) {
     const int32_t n = lap->n_active;
-    double *x = DENSE_NEW(double, HDI_PACK * 6 * n), *rhs = DENSE_NEW(double, 6 * n), *weight = DENSE_NEW(double, 2 * n),
-        *u = DENSE_NEW(double, 14 * n);
+    double *x = KIT_NEW(double, HDI_PACK * 6 * n), *rhs = KIT_NEW(double, 6 * n), *weight = KIT_NEW(double, 2 * n),
+        *u = KIT_NEW(double, 14 * n);
     double *L = int_dense(lap, 1, 0, 0), *B = int_dense(lap, 0, 1, 0), *want = u + 12 * n;
     hdi_check c[6], *list[6];
     uint64_t seed = 9;
@@ -1194,26 +607,19 @@ static void int_checks_of(const hd_laplacian *lap, void (*check)(hdi_check *cons
                   "%d checked together: %g, %g off", (int)k,
                   int_off(c[r].u, want, n), int_off(c[r].bu, want + n, n));
     }
-    free(x);
-    free(rhs);
-    free(weight);
-    free(u);
-    free(L);
-    free(B);
 }
 
 static void int_checks(void) {
     int form;
     int32_t k;
     for (form = 0; form < 2; form++) {
-        hd_laplacian *lap = int_mesh(1, form ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM);
+        const hd_laplacian *lap = int_mesh(form);
         for (k = 1; k <= HDI_CHECK_MOST; k++) {
             int_checks_of(lap, hdi_check_c, k);
 #if HDI_X86
             if (hdi_simd_best() == 2) int_checks_of(lap, hdi_check_512, k);
 #endif
         }
-        hd_laplacian_free(lap);
     }
 }
 
@@ -1222,11 +628,11 @@ static void int_checks(void) {
 static void int_noise_weights(void) {
     int form;
     for (form = 0; form < 2; form++) {
-        hd_laplacian *lap = int_mesh(1, form ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM);
+        const hd_laplacian *lap = int_mesh(form);
         const int32_t n = lap->n_active;
-        double *M = int_dense(lap, 0.3, 1.7, 1), *noise = DENSE_NEW(double, 2 * n), *want = DENSE_NEW(double, n), top,
+        double *M = int_dense(lap, 0.3, 1.7, 1), *noise = KIT_NEW(double, 2 * n), *want = KIT_NEW(double, n), top,
             bound = hdi_lambda_bound(lap);
-        dense_pair pair;
+        const dense_pair *pair;
         int32_t i, j;
         hdi_noise_weights(lap, 0.3, 1.7, noise, noise + n);
         for (i = 0; i < n; i++) {
@@ -1237,14 +643,9 @@ static void int_noise_weights(void) {
         }
         for (j = 0; j < n; j++) want[j] = noise[j] / want[j] - 1;
         CHECK_MSG(dense_max_abs(want, n) < 1e-12, "form %d: off by %g", form, dense_max_abs(want, n));
-        CHECK(dense_pair_solve(&pair, int_dense(lap, 1, 0, 0), int_dense(lap, 0, 1, 0), n));
-        top = dense_max_abs(pair.lambda, n);
+        pair = int_solved(int_dense(lap, 1, 0, 0), int_dense(lap, 0, 1, 0), n);
+        top = dense_max_abs(pair->lambda, n);
         CHECK_MSG(bound >= top && bound <= 20 * top, "bound %g, eigenvalue %g", bound, top);
-        dense_pair_free(&pair);
-        hd_laplacian_free(lap);
-        free(M);
-        free(noise);
-        free(want);
     }
 }
 
@@ -1322,12 +723,12 @@ static void int_no_numbers(void) {
 static void int_lanczos_bound(void) {
     enum { N = 60 };
     static const double times[4] = {0.1, 1, 10, 100};
-    double *T = DENSE_NEW(double, N * N), *one = DENSE_NEW(double, N * N), *room = DENSE_NEW(double, 9 * N + 2),
+    double *T = KIT_NEW(double, N * N), *one = KIT_NEW(double, N * N), *room = KIT_NEW(double, 9 * N + 2),
         *got = room + 7 * N + 2, *want = got + N;
     double start[N] = {1}, loosest = 0;
     hd_c64 work[2 * N];
     hd_rational set;
-    dense_pair whole, part;
+    const dense_pair *whole, *part;
     hdi_lanczos z;
     hd_error e = int_no_error();
     uint64_t seed = 12;
@@ -1347,21 +748,22 @@ static void int_lanczos_bound(void) {
         if (i + 1 < N) T[i * N + i + 1] = T[(i + 1) * N + i] = z.beta[i + 1];
         one[i * N + i] = 1;
     }
-    CHECK(hdi_rational_get(&set, HD_POLES_UNIFORM, 14, &e) == HD_OK && dense_pair_solve(&whole, T, one, N));
+    CHECK(hdi_rational_get(&set, HD_POLES_UNIFORM, 14, &e) == HD_OK);
+    whole = int_solved(T, one, N);
     for (m = 1; m < N; m += 3) {
-        double *Tm = DENSE_NEW(double, m * m), *Im = DENSE_NEW(double, m * m);
+        double *Tm = KIT_NEW(double, m * m), *Im = KIT_NEW(double, m * m);
         for (i = 0; i < m; i++) {
             for (j = 0; j < m; j++) Tm[i * m + j] = T[i * N + j];
             Im[i * m + i] = 1;
         }
-        CHECK(dense_pair_solve(&part, Tm, Im, m));
+        part = int_solved(Tm, Im, m);
         z.m = m;
         for (k = 0; k < 4; k++) {
             double bound = -1, error = 0;
             CHECK(hdi_lanczos_bound(&z, times[k], &bound, &e) == HD_OK);
-            dense_pair_heat(&whole, times[k], start, want);
+            dense_pair_heat(whole, times[k], start, want);
             memset(got, 0, N * sizeof *got);
-            dense_pair_heat(&part, times[k], start, got);
+            dense_pair_heat(part, times[k], start, got);
             for (i = 0; i < N; i++) error = hypot(error, want[i] - got[i]);
             CHECK_MSG(error <= bound * (1 + 1e-9) + 1e-14, "m %d, t %g: error %g, bound %g", (int)m, times[k], error, bound);
             if (error > 1e-10 && times[k] <= 1) loosest = fmax(loosest, bound / error);
@@ -1369,11 +771,8 @@ static void int_lanczos_bound(void) {
             CHECK_MSG(dense_max_diff(z.y, got, m) < 2e-13, "m %d, t %g: coefficients off by %g", (int)m, times[k],
                       dense_max_diff(z.y, got, m));
         }
-        dense_pair_free(&part);
     }
     CHECK_MSG(loosest < 20, "bounds up to %g times the error", loosest);
-    dense_pair_free(&whole);
-    free(room);
 }
 
 /* (F(a) - F(b))/(a - b) of F(x) = exp(-tau (1/x - 1)) against long double, for a and b that are far from and very near each
@@ -1405,7 +804,7 @@ static void int_silan_slopes(void) {
 /* Eigenvalues 1/(1 + g lambda) above one show that L is not semidefinite, but not where the solves themselves are off by as
  * much. */
 static void int_ritz_above(void) {
-    hdi_silan *z = DENSE_NEW(hdi_silan, 1);
+    hdi_silan *z = KIT_NEW(hdi_silan, 1);
     double known[2] = {1.05, 1};                 /* an eigenvalue, and its vector */
     hd_error e = int_no_error();
     hdi_ritz s;
@@ -1417,7 +816,6 @@ static void int_ritz_above(void) {
     CHECK(hdi_silan_ritz(z, 0, 1, &s, &e) == HD_OK);
     z->noise[0][0] = 1e-5;
     CHECK(hdi_silan_ritz(z, 0, 1, &s, &e) < 0);
-    free(z);
 }
 
 static hd_status int_elim(hdi_elim *m, const hd_laplacian *lap, hd_context *ctx, hd_error *e) {
@@ -1462,21 +860,21 @@ static double int_silan_error(hdi_silan *z, hdi_lane *lane, int32_t r, double t,
  * the shift is made for, and far from it. wide: right-hand sides side by side. */
 static void int_silan_bound_of(int kind, int32_t wide, double t) {
     static const double factors[5] = {0.03, 0.3, 1, 3, 30};
-    hd_laplacian *lap = int_mesh(kind, kind ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM);
+    const hd_laplacian *lap = kit_pair(kind ? "flat/14/9/0.3 vor" : "bumpy/2/5 fem");
     const int32_t n = lap->n_active, k = wide == 1 ? 1 : 3;
-    double *want = DENSE_NEW(double, n), *y = DENSE_NEW(double, 45 * 8), loosest = 0;
-    hdi_silan *z = DENSE_NEW(hdi_silan, 1);
+    double *want = KIT_NEW(double, n), *y = KIT_NEW(double, 45 * 8), loosest = 0;
+    hdi_silan *z = KIT_NEW(hdi_silan, 1);
     hdi_ritz ritz;
     hd_context ctx;
     hd_error e;
     hdi_elim m;
     hdi_lane lane[3];
-    dense_pair pair;
+    const dense_pair *pair;
     int32_t r, step, looked = 0;
     int q;
     CHECK(int_elim(&m, lap, &ctx, &e) == HD_OK);
     t *= lap->h * lap->h * m.scale;
-    CHECK(dense_pair_solve(&pair, int_dense(m.lap, 1, 0, 0), int_dense(m.lap, 0, 1, 0), n));
+    pair = int_solved(int_dense(m.lap, 1, 0, 0), int_dense(m.lap, 0, 1, 0), n);
     for (r = 0; r < k; r++) int_lane(lane + r, m.lap, r, &ctx, &e);
     CHECK(hdi_elim_shift(&m, hdi_krylov_shift(0, t, t, 0), &e) == HD_OK && m.shift / t > 0.05 && m.shift / t <= 0.2);
     z->wide = wide;
@@ -1487,13 +885,13 @@ static void int_silan_bound_of(int kind, int32_t wide, double t) {
     for (step = 1; step <= 45; step++) {
         CHECK(hdi_silan_step(z, &ctx, &e) == HD_OK && z->steps == step);
         for (q = 0; q < 5 * k && (step <= 12 || step % 4 == 0); q++) {
-            const double at = t * factors[q % 5], eps = 1e-15 * fmin(at * dense_max_abs(pair.lambda, n), 1e3) + 3e-14;
+            const double at = t * factors[q % 5], eps = 1e-15 * fmin(at * dense_max_abs(pair->lambda, n), 1e3) + 3e-14;
             double bound, error;
             r = q / 5;
             if (step > 1 && !(z->beta[step - 1][r] > 1e-13)) continue;
             CHECK(hdi_silan_ritz(z, r, step, &ritz, &e) == HD_OK);
             bound = hdi_ritz_bound(&ritz, at / z->g);
-            error = int_silan_error(z, lane, r, at, &pair, y, want);
+            error = int_silan_error(z, lane, r, at, pair, y, want);
             looked++;
             CHECK_MSG(error <= bound + eps, "mesh %d, wide %d, right-hand side %d, step %d, t %g: error %g, bound %g", kind,
                       (int)wide, (int)r,
@@ -1511,16 +909,11 @@ static void int_silan_bound_of(int kind, int32_t wide, double t) {
     for (r = 0; r < k; r++) hdi_lane_free(lane + r, &ctx);
     hdi_elim_free(&m);
     CHECK(ctx.bytes_in_use == 0);
-    dense_pair_free(&pair);
-    hd_laplacian_free(lap);
-    free(z);
-    free(y);
-    free(want);
 }
 
-static void int_silan_bounds(int turn) {
+static void int_silan_bounds(void) {
     int q;
-    for (q = 3 * turn; q < 3 * turn + 3; q++) int_silan_bound_of(q / 2 % 2, q % 2 ? 8 : 1, pow(20, q / 4 - 0.5));
+    for (q = 0; q < 12; q++) int_silan_bound_of(q / 2 % 2, q % 2 ? 8 : 1, pow(20, q / 4 - 0.5));
 }
 
 /* ---- [24] to [28]: damaged factors ---- */
@@ -1569,22 +962,19 @@ static void int_damage(hd_heat *heat, double by, int random) {
 }
 
 /* Asked again, a plan takes the factors that it has, and its report covers what the damage did: at every time. */
-static void int_damages_seen(size_t k) {
+static void int_damages_seen(void) {
+    size_t k;
     int way;
-    for (; k < sizeof int_damages / sizeof *int_damages; k += 5)
+    for (k = 0; k < sizeof int_damages / sizeof *int_damages; k++)
         for (way = 0; way < 4; way++) {
             const int_damaged *x = int_damages + k;
-            hd_laplacian *lap = int_mesh(1, way / 2 ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM);
+            const hd_laplacian *lap = int_mesh(way / 2);
             const int64_t room = (x->n_times + 1) * (int64_t)lap->n;
-            double t[12], *before = DENSE_NEW(double, 2 * room), *after = before + room, most = 0;
-            hd_heat *heat = NULL;
-            hd_heat_opts o;
+            double t[12], *before = KIT_NEW(double, 2 * room), *after = before + room, most = 0;
+            hd_heat *heat = kit_heat(lap, x->query <= INT_COLUMN && x->n_times > 1 ? "method=krylov" : "method=direct");
             hd_report rep[2];
             int32_t n, q;
-            memset(&o, 0, sizeof o);
-            o.method = x->query <= INT_COLUMN && x->n_times > 1 ? HD_METHOD_KRYLOV : HD_METHOD_DIRECT;
             for (q = 0; q < 12; q++) t[q] = lap->h * lap->h * pow(1.4, q);
-            CHECK(hd_heat_create(&heat, lap, &o, NULL) == HD_OK);
             heat->modes.barred = 1;              /* poles, not eigenpairs */
             n = int_ask(heat, x, t, before, rep);
             int_damage(heat, 1e-5, way % 2);
@@ -1596,17 +986,14 @@ static void int_damages_seen(size_t k) {
                       "query %d, %d times, way %d: off by %g, bounds %g and %g", (int)x->query, (int)x->n_times, way, most,
                           rep[0].error_bound,
                       rep[1].error_bound);
-            hd_heat_free(heat);
-            hd_laplacian_free(lap);
-            free(before);
         }
 }
 
 /* Rows at which rounding is measured: largest diagonal entries of B^-1 L, and of L times a diagonal, and one that is named. */
 static void int_probe_rows(void) {
-    hd_laplacian *lap = int_mesh(1, HD_LAPLACIAN_FEM);
+    const hd_laplacian *lap = int_mesh(0);
     const int32_t n = lap->n_active;
-    double *k = DENSE_NEW(double, n);
+    double *k = KIT_NEW(double, n);
     uint64_t seed = 8;
     int32_t i, round, p;
     for (round = 0; round < 20; round++) {
@@ -1621,26 +1008,18 @@ static void int_probe_rows(void) {
         for (p = 0; p < probe.k; p++) found |= (probe.row[p] == first) + 2 * (probe.row[p] == second) + 4 * (probe.row[p] == round);
         CHECK_MSG(found == 7 && probe.k <= 3, "rows %d, %d: %d", (int)first, (int)second, (int)found);
     }
-    hd_laplacian_free(lap);
-    free(k);
 }
 
 /* Pairs whose bound by the usual degree is too large take the highest one, as distances do, where eigenpairs are barred. */
 static void int_pairs_degree(void) {
-    hd_laplacian *lap = int_mesh(2, HD_LAPLACIAN_FEM);
+    const hd_laplacian *lap = kit_pair("ico/3 fem");
     const int32_t i[3] = {5, 80, 300}, j[3] = {300, 81, 600};
-    hd_heat *heat = NULL;
-    hd_heat_opts o;
+    hd_heat *heat = kit_heat(lap, "method=direct");
     hd_report rep;
     double d[3];
-    memset(&o, 0, sizeof o);
-    o.method = HD_METHOD_DIRECT;
-    CHECK(hd_heat_create(&heat, lap, &o, NULL) == HD_OK);
     heat->modes.barred = 1;
     CHECK(heat_pairs(heat, HD_DISTANCE_CLASSICAL, 150 * lap->h * lap->h, 3, i, j, NULL, d, &rep) == HD_OK);
     CHECK_MSG(rep.error_bound <= 1e-6 && rep.degree == 14, "degree %d, bound %g: %s", (int)rep.degree, rep.error_bound, rep.reason);
-    hd_heat_free(heat);
-    hd_laplacian_free(lap);
 }
 
 /* Lists of pairs fall into parts of at most so many vertices, each as long as can be. */
@@ -1659,7 +1038,7 @@ static void int_pairs_few(void) {
 
 /* The proof sees a pair that is taken away, and a shift too near; and the same pair twice is seen, wherever the two stand. */
 static void int_spectrum_proof(void) {
-    hd_laplacian *lap = int_mesh(2, HD_LAPLACIAN_FEM);
+    const hd_laplacian *lap = kit_pair("ico/3 fem");
     hd_context ctx;
     hd_error e;
     hdi_elim m;
@@ -1678,12 +1057,11 @@ static void int_spectrum_proof(void) {
     CHECK(!hdi_spec_sure(&z));
     hdi_spec_free(&z);
     hdi_elim_free(&m);
-    hd_laplacian_free(lap);
 }
 
 /* The same pair twice is seen, wherever the two stand. */
 static void int_spectrum_twice(void) {
-    hd_laplacian *lap = int_mesh(0, HD_LAPLACIAN_FEM);
+    const hd_laplacian *lap = kit_pair("bumpy/2/5 fem");
     hd_spectrum_opts o;
     hd_spectrum *twice = NULL;
     int32_t i;
@@ -1695,7 +1073,6 @@ static void int_spectrum_twice(void) {
         CHECK(!hdi_spec_distinct(lap, twice));
         hd_spectrum_free(twice);
     }
-    hd_laplacian_free(lap);
 }
 
 /* ---- [21] rational: pieces of shared sets, of which test_shared.h sees the whole ---- */
@@ -1902,47 +1279,6 @@ static void int_polygon(void) {
 
 /* ---- [04] context: tasks of threads ---- */
 
-/* Tasks of a loop that release others: each is done once, after what it waits for, by any number of threads. A
- * binary tree, from the leaves up. */
-typedef struct int_tree { hd_context *ctx; int32_t *order, *pending; int64_t *sum; int32_t leaves; int64_t wrong; } int_tree;
-
-static void int_tree_task(void *arg, int64_t index, int32_t worker) {
-    int_tree *w = (int_tree *)arg;
-    const int32_t i = (int32_t)index, up = i / 2;
-    (void)worker;
-    if (i < w->leaves) w->sum[i] = w->sum[2 * i] + w->sum[2 * i + 1];
-    else w->sum[i] = i;
-    if (up > 0 && HDI_ATOMIC_ADD(w->pending + up, -1) == 0) hdi_release(w->ctx->threads, up, w->order);
-}
-
-static void int_release(void) {
-    enum { LEAVES = 512 };
-    int32_t order[2 * LEAVES], pending[2 * LEAVES], i, threads, round;
-    int64_t sum[2 * LEAVES];
-    for (threads = 2; threads < 9; threads++) {
-        hd_context ctx;
-        int_tree w;
-        memset(&ctx, 0, sizeof ctx);
-        memset(&w, 0, sizeof w);
-        ctx.n_threads = threads;
-        w.ctx = &ctx;
-        w.order = order;
-        w.pending = pending;
-        w.sum = sum;
-        w.leaves = LEAVES;
-        hdi_hold(&ctx);
-        for (round = 0; round < 50 && hdi_threads_own(&ctx, 2 * LEAVES); round++) {
-            for (i = 0; i < 2 * LEAVES; i++) pending[i] = 2;
-            for (i = 0; i < LEAVES; i++) order[i] = LEAVES + i;
-            memset(sum, 0, sizeof sum);
-            hdi_parallel_ordered(&ctx, 2 * LEAVES - 1, LEAVES, order, int_tree_task, &w);
-            CHECK(sum[1] == (int64_t)LEAVES * (3 * LEAVES - 1) / 2);
-        }
-        hdi_let_go(&ctx);
-        CHECK(!ctx.threads && ctx.regions == (uint64_t)round);
-    }
-}
-
 #if HDI_THREADS
 /* The caller's tasks wait until another thread has one, and that one until the caller sleeps. */
 typedef struct int_nap { hd_threads *threads; int32_t begun, slept; } int_nap;
@@ -1992,74 +1328,18 @@ static void int_few_tasks(void) {
 #endif
 }
 
-static void int_all(void) {
-    int_release();
-    int_few_tasks();
-    int_division();
-    int_not_finite();
-    int_complex();
-    int_sizes();
-    int_texts();
-    int_tally();
-    int_sums();
-    int_arrays();
-    int_memory();
-    int_scope();
-    int_large_pages();
-    int_sorting();
-    int_union_find();
-    int_tridiagonal();
-    int_tridiagonal_odd();
-    int_collinear();
-    int_cuthill_mckee();
-    int_krylov_done();
-    int_ildl();
-    int_precond_make();
-    int_factors(0);
-    int_factors(1);
-    int_factors(2);
-    int_factors(3);
-    int_factors(4);
-    int_factors(5);
-    int_factors(6);
-    int_factors(7);
-    int_factors(8);
-    int_factors(9);
-    int_factors(10);
-    int_schedules();
-    int_checks();
-    int_noise_weights();
-    int_pole_bounds();
-    int_resolvent_pole();
-    int_no_numbers();
-    int_lanczos_bound();
-    int_silan_slopes();
-    int_ritz_above();
-    int_silan_bounds(0);
-    int_silan_bounds(1);
-    int_silan_bounds(2);
-    int_silan_bounds(3);
-    int_damages_seen(0);
-    int_damages_seen(1);
-    int_damages_seen(2);
-    int_damages_seen(3);
-    int_damages_seen(4);
-    int_probe_rows();
-    int_pairs_degree();
-    int_pairs_few();
-    int_spectrum_proof();
-    int_spectrum_twice();
-    int_least_squares();
-    int_exp_rest();
-    int_shared_bounds();
-    int_length_area();
-    int_around();
-    int_selection();
-    int_eigen3();
-    int_polygon();
-}
+/* The tests, in groups that free what they made. */
+static void (*const int_tests[])(void) = {
+    int_few_tasks, int_division, int_not_finite, int_complex, int_sizes, int_texts, int_sums, int_arrays, int_memory,
+    int_large_pages, int_sorting, int_union_find, int_tridiagonal, int_tridiagonal_odd, int_collinear, int_krylov_done,
+    int_ildl, int_checks, int_noise_weights, int_pole_bounds, int_resolvent_pole, int_no_numbers, int_lanczos_bound,
+    int_silan_slopes, int_ritz_above, int_probe_rows, int_pairs_degree, int_pairs_few, int_spectrum_proof,
+    int_spectrum_twice, int_least_squares, int_exp_rest, int_shared_bounds, int_length_area, int_around, int_selection,
+    int_eigen3, int_polygon, int_silan_bounds, int_damages_seen,
+};
 
 int main(int argc, char **argv) {
+    size_t k;
 #if HDI_THREADS
     GUARD_THREADS(sizeof(hd_threads));
 #endif
@@ -2067,7 +1347,10 @@ int main(int argc, char **argv) {
         fprintf(stderr, "usage: internals [--traps]; traps are those of glibc on x86\n");
         return 2;
     }
-    int_all();
+    for (k = 0; k < sizeof int_tests / sizeof *int_tests; k++) {
+        int_tests[k]();
+        kit_release(0);
+    }
     printf("%lld passed, %lld failed\n", (long long)int_passed, (long long)int_failed);
     return int_failed > 0;
 }

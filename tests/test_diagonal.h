@@ -189,21 +189,28 @@ static void diag_inverse_shapes(void) {
     }
 }
 
-/* At every level of instructions: random patterns, mesh-like ones, and fronts of more pivots than a panel or a tile holds. */
+/* At every level of instructions: random patterns, mesh-like ones, and fronts of all numbers of pivots and rows. */
 static void diag_inverse_levels(void) {
-    int level, q;
+    static const int kinds[6] = {LDL_RANDOM, LDL_GRID, LDL_DENSE, LDL_BAND, LDL_BIPARTITE, LDL_DENSE};
+    static const int32_t sizes[6] = {90, 400, 75, 120, 90, 141};
+    const int32_t mark = kit_mark();
+    int level, q, way;
+    int32_t i;
     for (level = 0; level < 4; level++) {
         hd_context ctx;
         memset(&ctx, 0, sizeof ctx);
         ctx.simd = ldl_simds[level];
-        for (q = 0; q < 6; q++) {
-            static const int kinds[6] = {LDL_RANDOM, LDL_GRID, LDL_DENSE, LDL_BAND, LDL_BIPARTITE, LDL_DENSE};
-            static const int32_t sizes[6] = {90, 400, 75, 120, 90, 141};
-            hd_csr a = kit_own_csr(ldl_shape(kinds[q], sizes[q], 1, (uint64_t)(q + 50)));
-            const hd_ldl_opts o = ldl_opts_of(HD_ORDERING_AUTO, NULL, NULL, &ctx);
-            hd_ldl *f = ldl_make(&a, &o, ldl_shape_name(kinds[q]));
-            diag_inverse_of(&a, f, 3, q % 2, sizes[q] <= 150 && level < 2, (uint64_t)q, ldl_shape_name(kinds[q]));
-            hd_ldl_free(f);
+        for (q = 0; q < 6 + LDL_JOINTS; q++) {
+            const hd_csr *a = kit_csr(q < 6 ? ldl_shape(kinds[q], sizes[q], 1, (uint64_t)(q + 50)) : ldl_joined(q - 6));
+            int32_t *natural = KIT_NEW(int32_t, a->n_rows);
+            for (i = 0; i < a->n_rows; i++) natural[i] = i;
+            for (way = 0; way < 2; way++) {
+                const hd_ldl_opts o = ldl_opts_of(way ? HD_ORDERING_OWN : HD_ORDERING_AUTO, natural, NULL, &ctx);
+                hd_ldl *f = ldl_make(a, &o, "levels");
+                diag_inverse_of(a, f, 3 + way, q % 2, a->n_rows < 100 || (way == 0 && a->n_rows < 150), (uint64_t)q, "levels");
+                hd_ldl_free(f);
+            }
+            kit_release(mark);
         }
         CHECK(ctx.bytes_in_use == 0);
     }
@@ -362,7 +369,23 @@ static const case_row diag_rows[] = {
     {"shape=leak/30/0.01|drain/30/0.5 op=I|tri query=distance|pairs kind=classical|weighted|commute|biharmonic k=4 th=0.7|2", 2e-5, 0, 0},
 };
 
-static void diag_cases(void) { CASES(diag_rows); }
+/* What sums over entries of inverses, at every level of instructions: with a full B too, several times and columns together. */
+static const case_row diag_level_rows[] = {
+    {"shape=bumpy/1/5|grid/9/2 op=fem|vor query=diagonal|edges kernel=operator|symmetric method=direct th=0.7|10", 1e-6, 0, 0},
+    {"shape=bumpy/1/5|grid/9/2 op=fem|vor query=distance kind=classical|weighted method=direct k=9 times=1|3 span=50 th=0.7|10", 1e-6, 0, 0},
+    {"shape=bumpy/1/5|grid/9/2 op=fem|vor query=distance kind=classical|weighted k=9 poles=diagonal degree=14 th=0.7|2", 1e-5, 0, 0},
+    {"shape=bumpy/1/5|grid/9/2 op=fem|vor query=apply|column|entries method=direct k=9 th=0.7|10", 2e-6, 0, 0},
+};
+
+static void diag_cases(void) {
+    int level;
+    CASES(diag_rows);
+    for (level = 1; level < 4; level++) {
+        trial_serial.simd = ldl_simds[level];
+        CASES(diag_level_rows);
+    }
+    trial_serial.simd = HD_SIMD_AUTO;
+}
 
 /* The set that was asked for, the smallest value, parts of the bounds; and the same numbers in edges as in the diagonal. */
 static void diag_reports(void) {

@@ -105,6 +105,19 @@ static hd_csr ldl_shape(int kind, int32_t n, int diagonal, uint64_t seed) {
     return ldl_pattern(&g, diagonal);
 }
 
+/* Full matrices of so many rows, joined by the last rows of all: fronts of any number of pivots and rows, the last larger than a panel. */
+static const struct { int32_t n, of, joint; } ldl_joints[] = {{41, 4, 33}, {31, 7, 3}, {48, 9, 12}, {96, 23, 50}, {75, 33, 9}, {137, 137, 0}};
+enum { LDL_JOINTS = sizeof ldl_joints / sizeof *ldl_joints };
+
+static hd_csr ldl_joined(int kind) {
+    ldl_edges g = ldl_edges_of(ldl_joints[kind].n);
+    int32_t i, j;
+    for (i = 0; i < g.n; i++)
+        for (j = 0; j < i; j++)
+            if (i / ldl_joints[kind].of == j / ldl_joints[kind].of || i >= g.n - ldl_joints[kind].joint) ldl_join(&g, i, j);
+    return ldl_pattern(&g, 1);
+}
+
 /* Edges, twice as likely among neighbours in number as elsewhere. */
 static hd_csr ldl_random_pattern(int32_t n, double degree, uint64_t seed) {
     ldl_edges g = ldl_edges_of(n);
@@ -603,23 +616,26 @@ static void ldl_all_random(void) {
     }
 }
 
-/* Dense matrices across the sizes at which blocked kernels change: every remainder, and more than one block. */
+/* Dense matrices across the sizes at which blocked kernels change, and fronts of some pivots and rows, at every level of instructions. */
 static void ldl_all_dense(void) {
     static const int32_t sizes[10] = {4, 5, 7, 8, 9, 15, 31, 64, 97, 257};
     const int32_t mark = kit_mark();
-    int s, q;
-    for (s = 0; s < 10; s++)
+    int s, q, way, i;
+    for (s = 0; s < 10 + LDL_JOINTS; s++)
         for (q = 0; q < 4; q++) {
-            const ldl_problem p = ldl_problem_of(ldl_shape(LDL_DENSE, sizes[s], 1, 3), 1 + (s + q) % 5, (uint64_t)s + 1);
-            hd_context ctx;
-            hd_ldl_opts o = ldl_opts_of(HD_ORDERING_AUTO, NULL, NULL, &ctx);
-            hd_ldl *f;
-            memset(&ctx, 0, sizeof ctx);
-            ctx.simd = ldl_simds[q];
-            f = ldl_make(&p.a, &o, "dense");
-            ldl_ask(f, &p, o.ordering, 1, sizes[s] < 65, "dense");
-            ldl_ask(f, &p, o.ordering, 5, 0, "dense");
-            hd_ldl_free(f);
+            const ldl_problem p = ldl_problem_of(s < 10 ? ldl_shape(LDL_DENSE, sizes[s], 1, 3) : ldl_joined(s - 10), 1 + (s + q) % 5, (uint64_t)s + 1);
+            for (way = 0; way < 3 && (s >= 10 || way == 0); way++) {      /* automatic; own: random, natural */
+                hd_context ctx;
+                hd_ldl_opts o = ldl_opts_of(ldl_orderings[way ? 3 : 0], p.perm, NULL, &ctx);
+                hd_ldl *f;
+                memset(&ctx, 0, sizeof ctx);
+                ctx.simd = ldl_simds[q];
+                for (i = 0; way == 2 && i < p.n; i++) p.perm[i] = i;
+                f = ldl_make(&p.a, &o, "dense");
+                ldl_ask(f, &p, o.ordering, 1, p.n < 65, "dense");
+                ldl_ask(f, &p, o.ordering, LDL_SIDES, 0, "dense");
+                hd_ldl_free(f);
+            }
             kit_release(mark);
         }
 }
@@ -744,9 +760,12 @@ static void ldl_quasidefinite_of(int32_t n, uint64_t seed) {
     for (i = 0; i < n; i++) negative += lambda[i] < 0;
     for (way = 0; way < 4; way++) {
         double *xyz = DENSE_NEW(double, 3 * n);
-        hd_ldl_opts o = ldl_opts_of(ldl_orderings[way], p.perm, xyz, NULL);
+        hd_context ctx;
+        hd_ldl_opts o = ldl_opts_of(ldl_orderings[way], p.perm, xyz, &ctx);
         hd_ldl_report rep;
         hd_ldl *f;
+        memset(&ctx, 0, sizeof ctx);
+        ctx.simd = ldl_simds[((uint64_t)way + seed) % 4];
         memcpy(xyz, p.xyz, 3 * (size_t)n * sizeof *xyz);
         f = ldl_make(a, &o, "quasi-definite");
         memset(xyz, 0xff, 3 * (size_t)n * sizeof *xyz);
