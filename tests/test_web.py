@@ -161,8 +161,8 @@ def native_library():
         cc = program(os.environ.get("CC", "cc"), "gcc", "clang")
         lib = os.path.join(FOLDER, "web.so")
         BUILT["native"] = None
-        if cc:
-            subprocess.run([cc, "-std=gnu99", "-O2", "-ffp-contract=off", "-DNDEBUG", "-DHEATDIFF_NO_SIMD", "-fPIC",
+        if cc:                                   # times are printed with --large only
+            subprocess.run([cc, "-std=gnu99", "-O2" if LARGE else "-O1", "-ffp-contract=off", "-DNDEBUG", "-DHEATDIFF_NO_SIMD", "-fPIC",
                             "-shared", "-Wno-unused-function", os.path.join(WEB, "web.c"), "-o", lib, "-lm"], check=True)
             BUILT["native"] = lib
     return BUILT["native"]
