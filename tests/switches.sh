@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Builds with the switches HEATDIFF_NO_..., each alone and sensible sets together. Sets are built by gcc (C99, -O1) in two files,
-# tests/switches.c runs, and what is left out is really gone from the object. Each switch and each set is read through without
-# warnings, in one file with HEATDIFF_STATIC, by one of the other compilers.   Usage: switches.sh WORKFOLDER
+# Builds with the switches HEATDIFF_NO_..., each alone and sensible sets together. Sets are built by gcc in two files (C99, -Og: quick, and
+# what nothing calls goes), tests/switches.c runs, and what is left out is really gone from the object. Each switch and each set is read
+# through without warnings, in one file with HEATDIFF_STATIC, by one of the other compilers.   Usage: switches.sh WORKFOLDER
 set -euo pipefail
 export top=$(cd "$(dirname "$0")/.." && pwd)
 export work=$1
@@ -34,7 +34,7 @@ one() {   # NUMBER SWITCHES
   for name in "$@"; do flags="$flags -DHEATDIFF_NO_$name"; done
   case " $* " in *" SIMD "*) plain="" ;; esac
   if [ $# -gt 1 ]; then
-    gcc -std=c99 -O1 $warn $flags $plain -c "$work/impl.c" -o "$work/$number.o"
+    gcc -std=c99 -Og $warn $flags $plain -c "$work/impl.c" -o "$work/$number.o"
     gcc -std=c99 $warn $flags "$top/tests/switches.c" "$work/$number.o" -o "$work/$number" -lm
     "$work/$number" >"$work/$number.txt" || { cat "$work/$number.txt"; echo "gcc, without $*: failed"; return 1; }
     for name in "$@"; do
