@@ -70,8 +70,8 @@
      [12] operators  the pair (L, B) of triangles, polygons, points and the caller's own matrices
      [13] degree     orderings by minimum degree, breadth-first orderings
      [14] dissection nested dissection of meshes in space
-     [15] analysis   elimination tree, supernodes, plan of memory
-     [16] schedule   tasks of a factorisation and their order
+     [15] analysis   elimination tree, supernodes, fronts, tasks, plan of memory
+     [16] order      the choice of an elimination order
      [17] direct     multifrontal L D L' and triangular solves
      [18] selinv     selected inversion: entries of the inverse, quadratic forms
      [19] precond    Jacobi, SSOR and incomplete L D L'
@@ -2169,6 +2169,7 @@ static double hdi_min(double a, double b) { return a < b ? a : b; }
 /* The larger one, or NaN. */
 static double hdi_worst(double a, double b) { return a >= b || hdi_nan(a) ? a : b; }
 static int64_t hdi_least(int64_t a, int64_t b) { return a < b ? a : b; }
+static int64_t hdi_most(int64_t a, int64_t b) { return a < b ? b : a; }
 
 /* By value, so that no branch has to be guessed. */
 static HDI_INLINE int32_t hdi_low32(int32_t a, int32_t b) { return a < b ? a : b; }
@@ -12325,17 +12326,19 @@ static hd_status hdi_nd_order(const hd_csr *a, const double *xyz, int32_t *perm,
 }
 
 /* ==== [15] analysis ====
- * From an elimination order to supernodes and the rows of their fronts. Nearly linear in the non-zeros of A,
- * the number of supernodes and the lengths of their row lists. May call [08].
+ * From an elimination order to supernodes and the rows of their fronts, subtrees that can go on at the same
+ * time, and the places of all that lives for a while. Nearly linear in the non-zeros of A and the lengths of
+ * the row lists. May call [14].
  * This work is based on
- *   J. Liu, The role of elimination trees in sparse factorization, 1990 (trees, postorders)
+ *   J. Liu, The role of elimination trees in sparse factorization, 1990 (trees, postorders, the stack)
+ *   J. Liu, On the storage requirement in the out-of-core multifrontal method for sparse factorization, 1986
  *   J. Gilbert, E. Ng, B. Peyton, An efficient algorithm to compute row and column counts for sparse Cholesky
  *   factorization, 1994
  *   C. Ashcraft, R. Grimes, The influence of relaxed supernode partitions on the multifrontal method, 1989
  * A front is a dense lower triangle over the rows of a supernode: its p pivots, then u rows below. Its first
  * p columns become columns of L (the panel, m = p + u rows), the rest is the update matrix for its parent. */
 
-enum { HDI_PANEL = 128, HDI_SYM_BLOCKS = 10 };
+enum { HDI_PANEL = 128, HDI_SYM_BLOCKS = 24 };
 
 typedef struct hdi_symbolic {
     int32_t n, n_super;
@@ -12360,7 +12363,6 @@ typedef struct hdi_symbolic {
     double flops_done;           /* the same with the zeros that are computed on */
     hd_ordering ordering;
 
-    /* the schedule, of room [16] */
     int32_t n_tasks;             /* subtrees that can be worked on at the same time */
     int32_t *task_begin, *task_end;  /* [n_tasks] their supernodes */
     int32_t *task_of;            /* [n_super] below 0: top[-1 - task_of] */
@@ -12393,131 +12395,132 @@ static void hdi_front_shape(const hdi_symbolic *s, int32_t v, int64_t *p, int64_
     *m = *p + *u;
 }
 
-/* A supernode while they are merged. */
+/* ---- work space ---- */
+
+/* A forest on the numbers from 0 to n - 1, in which every parent has a larger number than its children. */
+typedef struct hdi_forest {
+    int32_t n;
+    int32_t *parent;             /* [n] -1: a root; -2: not part of the forest */
+    int32_t *kid, *next;         /* [n] first child, and next child of the same parent; -1: none */
+} hdi_forest;
+
+/* What is known of a row of L while columns are counted: the last column of A with an entry in it, and the
+ * last of those that is a leaf of the row's subtree. -1: none. */
+typedef struct hdi_row_seen { int32_t column, leaf; } hdi_row_seen;
+
+/* A supernode while supernodes are merged. Its own columns are those from begin up to that of the next node.
+ * Nodes that are merged into one front form a list, the lowest first. The last one has the numbers of the
+ * front. */
 typedef struct hdi_node {
-    int32_t pivots, rows;            /* rows of the front, pivots included */
-    int32_t first, last;             /* list of columns, linked by next_col */
-    int64_t zeros;                   /* let in by merging */
-    int32_t merged;                  /* into its parent */
+    int32_t begin;
+    int32_t pivots, rows;        /* of the front: columns, and rows with the pivots included */
+    int32_t first, then;         /* first node of its list; the node after it in a list, -1: none */
+    int32_t merged;              /* into its parent */
+    int64_t zeros;               /* let in by merging */
 } hdi_node;
 
-/* A supernode while rows are collected: the last row that it got, its parent, where its next row goes. */
+/* A supernode while its rows are collected: the last row that it got, its parent, where its next row goes. */
 typedef struct hdi_sym_walk {
     int32_t mark, up;
     int64_t fill;
 } hdi_sym_walk;
 
-/* Work space of an analysis. The arrays of one step serve the next under their own names where that is
- * possible. */
+/* The arrays of an analysis. Columns are columns of L. At first they are numbered by the order given, then by
+ * a postorder of their tree, which leaves their non-zeros as they are. */
 typedef struct hdi_sym_work {
-    int64_t *lower_ptr, *upper_ptr;  /* [n + 1] lower triangle of P A P' by rows and by columns, no
-                                        diagonal */
-    int32_t *below;                  /* [n] length of each row of lower: there may be gaps between them */
-    int32_t *lower, *upper;          /* [nnz] */
-    int32_t *parent, *count;         /* [n] elimination tree (then that of the supernodes), and column counts
-                                        of L */
-    int32_t *inv;                    /* [n] inverse of the order */
-    int32_t *next_col;               /* [n] next column of the same supernode */
-    int32_t *order;                  /* [n] a postorder */
-    int32_t *mark;                   /* [n] */
-    int32_t *head, *next, *stack;    /* [n] lists of children, and a walk through them */
-    hdi_node *node;                  /* [n] */
-    hdi_pair *pair;                  /* [n] */
-    hdi_sym_walk *walk;              /* [n_super] */
+    const hd_csr *a;
+    int32_t *perm, *place;       /* [n] the row of A of a column, and the column of a row of A */
+    hdi_forest given;            /* elimination tree of the order given: the parent of a column is the row of
+                                    its first non-zero below the diagonal */
+    int32_t *ancestor;           /* [n] shortcuts from a column to the root of its tree so far */
+    int32_t *order;              /* [n] a postorder of that tree */
+    int32_t *parent;             /* [n] that tree, by the numbers of the postorder */
+    int32_t *count;              /* [n] non-zeros of a column, diagonal included */
+    int32_t *first;              /* [n] the first column of the subtree of a column */
+    int32_t *set;                /* [n] union-find: a column that has been counted joins its parent */
+    hdi_row_seen *seen;          /* [n] */
+    int32_t *node_of;            /* [n] node of a column */
+    hdi_node *node;              /* [n + 1] */
+    hdi_forest tree;             /* of the nodes; merged ones do not belong to it */
+    int64_t *peak;               /* [n] the most room that a node and all below it need for update matrices */
+    hdi_pair *pair;              /* [n] children of a node, to be sorted */
+    int32_t *node_order;         /* [n] the node of a supernode */
+    int32_t *number;             /* [n] the supernode of a node */
+    hdi_sym_walk *walk;          /* [n] by supernodes */
+    int32_t *before;             /* [n] columns in a row of A before its pivot */
+    int32_t *at;                 /* [n] where a row of the matrix stands in the front at hand */
+    double *work;                /* [n] multiply-adds of a supernode and all below it */
+    char *side;                  /* [n] which stack a supernode uses */
 } hdi_sym_work;
 
-static void hdi_sym_work_take(hdi_sym_work *w, const hd_csr *a, hdi_scope *s) {
-    const uint64_t n = (uint64_t)a->n_rows + 1, nnz = (uint64_t)a->nnz;
-    w->lower_ptr = HDI_TAKE(s, int64_t, n);
-    w->upper_ptr = HDI_TAKE(s, int64_t, n);
-    w->below = HDI_TAKE(s, int32_t, n);
-    w->lower = HDI_TAKE(s, int32_t, nnz);
-    w->upper = HDI_TAKE(s, int32_t, nnz);
-    w->parent = HDI_TAKE(s, int32_t, n);
-    w->count = HDI_TAKE(s, int32_t, n);
-    w->inv = HDI_TAKE(s, int32_t, n);
-    w->next_col = HDI_TAKE(s, int32_t, n);
-    w->order = HDI_TAKE(s, int32_t, n);
-    w->mark = HDI_TAKE(s, int32_t, n);
-    w->head = HDI_TAKE(s, int32_t, n);
-    w->next = HDI_TAKE(s, int32_t, n);
-    w->stack = HDI_TAKE(s, int32_t, n);
-    w->node = HDI_TAKE(s, hdi_node, n);
-    w->pair = HDI_TAKE(s, hdi_pair, n);
+static hd_status hdi_sym_work_take(hdi_sym_work *w, const hd_csr *a, int32_t *perm, hdi_scope *s) {
+    int32_t **const narrow[] = {&w->place, &w->given.parent, &w->given.kid, &w->given.next, &w->ancestor,
+                                &w->order, &w->parent, &w->count, &w->first, &w->set, &w->node_of,
+                                &w->tree.parent, &w->tree.kid, &w->tree.next, &w->node_order, &w->number,
+                                &w->before, &w->at};
+    size_t k;
+    for (k = 0; k < sizeof narrow / sizeof *narrow; k++) *narrow[k] = HDI_TAKE(s, int32_t, a->n_rows);
+    w->seen = HDI_TAKE(s, hdi_row_seen, a->n_rows);
+    w->node = HDI_TAKE(s, hdi_node, (int64_t)a->n_rows + 1);
+    w->peak = HDI_TAKE(s, int64_t, a->n_rows);
+    w->pair = HDI_TAKE(s, hdi_pair, a->n_rows);
+    w->walk = HDI_TAKE(s, hdi_sym_walk, a->n_rows);
+    w->work = HDI_TAKE(s, double, a->n_rows);
+    w->side = HDI_TAKE(s, char, a->n_rows);
+    w->a = a;
+    w->perm = perm;
+    w->given.n = a->n_rows;
+    return s->e->status;
 }
 
-/* ---- tree and counts ---- */
+/* ---- trees and counts ---- */
 
-/* What the tasks of a loop over rows or supernodes share. */
-typedef struct hdi_sym_job {
-    const hd_csr *a;
-    const int32_t *perm;
-    hdi_symbolic *s;
-    hdi_sym_work *w;
-} hdi_sym_job;
-
-/* Rows that a task reads, and numbers that it may use at once: see hdi_sym_places. */
-enum { HDI_SYM_ROWS = 8192, HDI_SYM_PLACES = 8 };
-
-/* The inverse of the order. lower_ptr at the first row of the block: entries of A in all its rows. */
-static void hdi_sym_invert_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_sym_job *job = (const hdi_sym_job *)arg;
-    const int64_t *ptr = job->a->row_ptr;
-    int64_t j, sum = 0;
-    for (j = begin; j < end; j++) {
-        const int32_t row = job->perm[j];
-        job->w->inv[row] = (int32_t)j;
-        sum += ptr[row + 1] - ptr[row];
+/* Makes the lists of children, ascending, from the parents. */
+static void hdi_forest_link(const hdi_forest *f) {
+    int32_t i;
+    hdi_fill_i32(f->kid, f->n, -1);
+    for (i = f->n; i-- > 0;) {
+        if (f->parent[i] < 0) continue;
+        f->next[i] = f->kid[f->parent[i]];
+        f->kid[f->parent[i]] = i;
     }
-    job->w->lower_ptr[begin] = sum;
 }
 
-/* The block's rows of lower, from lower_ptr[begin] on. Without branches, which would be unpredictable. */
-static void hdi_sym_lower_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_sym_job *job = (const hdi_sym_job *)arg;
-    const hd_csr *a = job->a;
-    const int32_t *perm = job->perm, *inv = job->w->inv;
-    int32_t *lower = job->w->lower;
-    int64_t j, p, q = job->w->lower_ptr[begin];
-    for (j = begin; j < end; j++) {
-        job->w->lower_ptr[j] = q;
-        if (j + HDI_ROWS_AHEAD < end) HDI_PREFETCH(a->col + a->row_ptr[perm[j + HDI_ROWS_AHEAD]]);
-        for (p = a->row_ptr[perm[j]]; p < a->row_ptr[perm[j] + 1]; p++) {
-            const int32_t i = inv[a->col[p]];
-            lower[q] = i;
-            q += i < j;
+/* The first of v and all below it in postorder. */
+static int32_t hdi_forest_leaf(const hdi_forest *f, int32_t v) {
+    while (f->kid[v] >= 0) v = f->kid[v];
+    return v;
+}
+
+/* order[k] = number k of the postorder that takes children as their lists do. Returns how many there are. */
+static int32_t hdi_forest_postorder(const hdi_forest *f, int32_t *order) {
+    int32_t root, v, k = 0;
+    for (root = 0; root < f->n; root++) {
+        if (f->parent[root] != -1) continue;
+        for (v = hdi_forest_leaf(f, root); v != root;) {
+            order[k++] = v;
+            v = f->next[v] < 0 ? f->parent[v] : hdi_forest_leaf(f, f->next[v]);
         }
-        job->w->below[j] = (int32_t)(q - job->w->lower_ptr[j]);
+        order[k++] = root;
     }
+    return k;
 }
 
-/* Lower triangle of P A P' by rows, in no order: columns below the row's own. w->inv becomes the inverse of
- * perm. */
-static void hdi_sym_triangle(const hdi_sym_job *job, hd_context *ctx) {
-    hdi_sym_job of = *job;
-    const int32_t n = job->a->n_rows;
-    int64_t *ptr = job->w->lower_ptr, begin, sum = 0;
-    hdi_parallel_ranges(ctx, n, HDI_SYM_ROWS, hdi_sym_invert_task, &of);
-    for (begin = 0; HDI_AUDIT && begin < n; begin++) HEATDIFF_ASSERT(of.w->inv[of.perm[begin]] == begin);
-    for (begin = 0; begin < n; begin += HDI_SYM_ROWS) {
-        const int64_t entries = ptr[begin];
-        ptr[begin] = sum;
-        sum += entries;
-    }
-    hdi_parallel_ranges(ctx, n, HDI_SYM_ROWS, hdi_sym_lower_task, &of);
+/* Rows of A are read in the order of the columns: this fetches one that comes soon. */
+static HDI_INLINE void hdi_sym_fetch(const hd_csr *a, const int32_t *perm, int32_t j) {
+    if (j + HDI_ROWS_AHEAD < a->n_rows) HDI_PREFETCH(a->col + a->row_ptr[perm[j + HDI_ROWS_AHEAD]]);
 }
 
-/* Elimination tree: parent[k] is the row of the first non-zero below the diagonal of column k of L. ancestor
- * [n] shortens the walks. */
-static void hdi_sym_etree(int32_t n, const hdi_sym_work *w, int32_t *parent, int32_t *ancestor) {
-    const int64_t *ptr = w->lower_ptr;
-    const int32_t *col = w->lower;
-    int32_t i, k, next;
+/* The elimination tree of the order given. */
+static void hdi_sym_etree(const hdi_sym_work *w) {
+    const hd_csr *a = w->a;
+    int32_t i, k, next, *parent = w->given.parent, *ancestor = w->ancestor;
     int64_t p;
-    for (i = 0; i < n; i++) {
+    for (i = 0; i < a->n_rows; i++) {
+        hdi_sym_fetch(a, w->perm, i);
         parent[i] = ancestor[i] = -1;
-        for (p = ptr[i]; p < ptr[i] + w->below[i]; p++) {
-            for (k = col[p]; k != -1 && k != i; k = next) {
+        for (p = a->row_ptr[w->perm[i]]; p < a->row_ptr[w->perm[i] + 1]; p++) {
+            for (k = w->place[a->col[p]]; k != -1 && k < i; k = next) {
                 next = ancestor[k];
                 ancestor[k] = i;
                 if (next == -1) parent[k] = i;
@@ -12526,228 +12529,145 @@ static void hdi_sym_etree(int32_t n, const hdi_sym_work *w, int32_t *parent, int
     }
 }
 
-/* Children of each node as linked lists, ascending. */
-static void hdi_sym_children(int32_t n, const int32_t *parent, int32_t *head, int32_t *next) {
-    int32_t i;
-    hdi_fill_i32(head, n, -1);
-    for (i = n; i-- > 0;) {
-        if (parent[i] < 0) continue;
-        next[i] = head[parent[i]];
-        head[parent[i]] = i;
+/* Brings the columns to a postorder of their tree. */
+static void hdi_sym_postorder(const hdi_sym_work *w) {
+    const hdi_forest *f = &w->given;
+    int32_t k;
+    for (k = 0; k < f->n; k++) w->place[w->perm[k]] = k;
+    for (k = 0; HDI_AUDIT && k < f->n; k++) HEATDIFF_ASSERT(w->place[w->perm[k]] == k);
+    hdi_sym_etree(w);
+    hdi_forest_link(f);
+    hdi_forest_postorder(f, w->order);
+    for (k = 0; k < f->n; k++) w->place[w->perm[w->order[k]]] = k;
+    for (k = 0; k < f->n; k++) {
+        const int32_t up = f->parent[w->order[k]];
+        w->parent[k] = up < 0 ? -1 : w->place[w->perm[up]];
     }
+    for (k = 0; k < f->n; k++) w->perm[w->place[k]] = k;
 }
 
-/* w->order[k] = k-th node of a postorder of the forest with the children in w->head and w->next; the lists
- * are used up. Roots have parent -1. Returns the number of nodes. */
-static int32_t hdi_sym_postorder(int32_t n, const int32_t *parent, hdi_sym_work *w) {
-    int32_t i, k = 0, top;
-    for (i = 0; i < n; i++) {
-        if (parent[i] != -1) continue;
-        w->stack[0] = i;
-        for (top = 0; top >= 0;) {
-            const int32_t v = w->stack[top], child = w->head[v];
-            if (child < 0) {
-                w->order[k++] = v;
-                top--;
-            } else {
-                w->head[v] = w->next[child];
-                w->stack[++top] = child;
-            }
-        }
-    }
-    return k;
-}
-
-/* Column counts of L, diagonal included, for a postordered tree. Row i of L is a subtree of the tree, its
- * leaves entries of A; a column's count is what the leaves add to it less what their least common ancestors
- * take back. */
-static void hdi_sym_counts(int32_t n, hdi_sym_work *w) {
-    const int32_t *parent = w->parent;
-    int32_t *first = w->head, *last_leaf = w->next, *last_seen = w->stack, *set = w->mark, *count = w->count;
-    int32_t j, q;
+/* Column counts of L. Row i of L is a subtree of the tree, its leaves are entries of A. A column's count is
+ * what the leaves add to it, less what the least common ancestors of neighbouring leaves take back. */
+static void hdi_sym_counts(const hdi_sym_work *w) {
+    const hd_csr *a = w->a;
+    const int32_t n = a->n_rows, *parent = w->parent;
+    int32_t j, q, *count = w->count, *first = w->first;
     int64_t p;
+    hdi_fill_own(w->set, n);
+    hdi_fill_i32(first, n, -1);
     for (j = 0; j < n; j++) {
-        first[j] = last_leaf[j] = last_seen[j] = -1;
-        set[j] = j;
-    }
-    for (j = 0; j < n; j++) {
+        w->seen[j].column = w->seen[j].leaf = -1;
         count[j] = first[j] == -1;               /* a leaf of the tree */
         for (q = j; q != -1 && first[q] == -1; q = parent[q]) first[q] = j;
     }
     for (j = 0; j < n; j++) {
+        hdi_sym_fetch(a, w->perm, j);
         if (parent[j] >= 0) count[parent[j]]--;
-        for (p = w->upper_ptr[j]; p < w->upper_ptr[j + 1]; p++) {
-            const int32_t i = w->upper[p];
-            if (first[j] > last_seen[i]) {       /* j is a leaf of row subtree i */
+        for (p = a->row_ptr[w->perm[j]]; p < a->row_ptr[w->perm[j] + 1]; p++) {
+            const int32_t i = w->place[a->col[p]];
+            hdi_row_seen *row = w->seen + i;
+            if (i <= j) continue;
+            if (first[j] > row->column) {        /* j is a leaf of row subtree i */
                 count[j]++;
-                if (last_leaf[i] >= 0) count[hdi_find(set, last_leaf[i])]--;
-                last_leaf[i] = j;
+                if (row->leaf >= 0) count[hdi_find(w->set, row->leaf)]--;
+                row->leaf = j;
             }
-            last_seen[i] = j;
+            row->column = j;
         }
-        if (parent[j] >= 0) set[j] = parent[j];
+        if (parent[j] >= 0) w->set[j] = parent[j];
     }
     for (j = 0; j < n; j++)
         if (parent[j] >= 0) count[parent[j]] += count[j];
 }
 
-/* w->upper: the lower triangle by columns, i.e. for each column the rows below it, renumbered by w->order. */
-static void hdi_sym_upper(int32_t n, hdi_sym_work *w) {
-    int64_t *ptr = w->upper_ptr;
-    int32_t i, p;
-    memset(ptr, 0, ((size_t)n + 1) * sizeof *ptr);
-    for (i = 0; i < n; i++)
-        for (p = 0; p < w->below[i]; p++) ptr[w->inv[w->lower[w->lower_ptr[i] + p]]]++;
-    hdi_prefix_sum(ptr, n);
-    for (i = 0; i < n; i++) {
-        const int32_t row = w->order[i], *lower = w->lower + w->lower_ptr[row];
-        for (p = 0; p < w->below[row]; p++) w->upper[ptr[w->inv[lower[p]]]++] = i;
-    }
-    for (i = n; i > 0; i--) ptr[i] = ptr[i - 1];
-    ptr[0] = 0;
-}
-
-/* x[i] becomes x[order[i]]. spare [n]. */
-static void hdi_sym_reorder(int32_t *x, const int32_t *order, int32_t n, int32_t *spare) {
-    int32_t i;
-    memcpy(spare, x, (size_t)n * sizeof *spare);
-    for (i = 0; i < n; i++) x[i] = spare[order[i]];
-}
-
-/* Elimination tree, postorder and column counts; perm and w->below become postordered. */
-static void hdi_sym_tree(const hd_csr *a, int32_t *perm, hdi_sym_work *w, hd_context *ctx) {
-    const int32_t n = a->n_rows;
-    int32_t i;
-    hdi_sym_job job;
-    memset(&job, 0, sizeof job);
-    job.a = a;
-    job.perm = perm;
-    job.w = w;
-    hdi_sym_triangle(&job, ctx);
-    hdi_sym_etree(n, w, w->parent, w->head);
-    hdi_sym_children(n, w->parent, w->head, w->next);
-    hdi_sym_postorder(n, w->parent, w);
-    for (i = 0; i < n; i++) w->inv[w->order[i]] = i;    /* old place -> new place */
-    hdi_sym_reorder(w->parent, w->order, n, w->mark);
-    for (i = 0; i < n; i++)
-        if (w->parent[i] >= 0) w->parent[i] = w->inv[w->parent[i]];
-    hdi_sym_upper(n, w);
-    hdi_sym_counts(n, w);
-    hdi_sym_reorder(perm, w->order, n, w->mark);
-    hdi_sym_reorder(w->below, w->order, n, w->mark);
-}
-
 /* ---- supernodes ---- */
 
-/* Entries of the trapezoid of p columns over m rows. */
-static int64_t hdi_trapezoid(int64_t m, int64_t p) { return m * p - p * (p - 1) / 2; }
-static int64_t hdi_node_size(const hdi_node *v) { return hdi_trapezoid(v->rows, v->pivots); }
-static int64_t hdi_node_update(const hdi_node *v) { return hdi_triangle(v->rows - v->pivots); }
-
-/* Whether to merge the child into its parent: when the zeros that this lets in are few, or the front is so
- * small that its own overhead costs more. Tuned on meshes of 36K to 1M vertices for pole lanes and real
- * factors alike. */
-static int hdi_sym_worth_merging(const hdi_node *child, const hdi_node *parent) {
-    const int64_t p = (int64_t)child->pivots + parent->pivots;
-    const int64_t all = hdi_trapezoid((int64_t)child->pivots + parent->rows, p);
-    const int64_t fresh = all - hdi_node_size(child) - hdi_node_size(parent);
-    const double share = (double)(child->zeros + parent->zeros + fresh) / (double)all;
-    return fresh == 0 || p <= 6 || (p <= 12 && share < 0.3) || (p <= 24 && share < 0.1) || share < 0.03;
+/* Neighbouring columns with the same structure, in postorder. */
+static void hdi_sym_nodes(hdi_sym_work *w) {
+    const int32_t n = w->a->n_rows;
+    int32_t j, k = -1;
+    for (j = 0; j < n; j++) {
+        if (j == 0 || w->parent[j - 1] != j || w->count[j - 1] != w->count[j] + 1) {
+            hdi_node *v = w->node + ++k;
+            memset(v, 0, sizeof *v);
+            v->begin = j;
+            v->rows = w->count[j];
+            v->first = k;
+            v->then = -1;
+        }
+        w->node[k].pivots++;
+        w->node_of[j] = k;
+    }
+    w->tree.n = k + 1;
+    w->node[k + 1].begin = n;
+    for (k = 0; k < w->tree.n; k++) {
+        const int32_t up = w->parent[w->node[k + 1].begin - 1];
+        w->tree.parent[k] = up < 0 ? -1 : w->node_of[up];
+    }
 }
 
-static void hdi_sym_merge(hdi_node *child, hdi_node *parent, int32_t *next_col) {
-    const int64_t before = hdi_node_size(child) + hdi_node_size(parent);
-    parent->pivots += child->pivots;
+static int64_t hdi_node_update(const hdi_node *v) { return hdi_triangle((int64_t)v->rows - v->pivots); }
+
+/* Merges node c into its parent v, with its columns first, when the zeros that this lets in are few, or the
+ * front is so small that its own overhead costs more. Tuned on meshes of 36K to 1M vertices for pole lanes
+ * and real factors alike. */
+static void hdi_sym_merge(hdi_node *node, int32_t c, int32_t v) {
+    hdi_node *child = node + c, *parent = node + v;
+    const int64_t m = (int64_t)child->pivots + parent->rows, p = (int64_t)child->pivots + parent->pivots;
+    const int64_t fresh = child->pivots * (m - child->rows), zeros = child->zeros + parent->zeros + fresh;
+    const double share = (double)zeros / (double)(m * p - p * (p - 1) / 2);
+    if (fresh > 0 && p > 6 && (p > 12 || share >= 0.3) && (p > 24 || share >= 0.1) && share >= 0.03) return;
     parent->rows += child->pivots;
-    parent->zeros += child->zeros + hdi_node_size(parent) - before;
-    next_col[child->last] = parent->first;       /* the child's columns come first */
+    parent->pivots += child->pivots;
+    parent->zeros = zeros;
+    child->then = parent->first;
     parent->first = child->first;
     child->merged = 1;
 }
 
-/* Supernodes of a postordered tree: columns with the same structure. Returns their number; nodes are in
- * postorder, w->parent becomes theirs. */
-static int32_t hdi_sym_supernodes(int32_t n, hdi_sym_work *w) {
-    hdi_node *node = w->node;
-    int32_t j, k, n_nodes = 0, *of = w->order;
-    for (j = 0; j < n; j++) {
-        w->next_col[j] = -1;
-        if (j > 0 && w->parent[j - 1] == j && w->count[j - 1] == w->count[j] + 1) {
-            node->pivots++;
-            w->next_col[j - 1] = j;
-        } else {
-            node = w->node + n_nodes++;
-            memset(node, 0, sizeof *node);
-            node->pivots = 1;
-            node->rows = w->count[j];
-            node->first = j;
-        }
-        node->last = j;
-        of[j] = n_nodes - 1;
-    }
-    for (k = 0; k < n_nodes; k++) {              /* in place: node k does not come before column k */
-        const int32_t up = w->parent[w->node[k].last];
-        w->parent[k] = up < 0 ? -1 : of[up];
-    }
-    return n_nodes;
-}
-
 /* Merges children into parents from the leaves up: into each node first the child with most rows below, which
- * lets in fewest zeros, then the others. The parents of what is left become direct, those of merged nodes
- * -2. */
-static void hdi_sym_relax(int32_t n_nodes, hdi_sym_work *w) {
+ * lets in fewest zeros, then the others. */
+static void hdi_sym_relax(const hdi_sym_work *w) {
     hdi_node *node = w->node;
-    int32_t s, c;
-    hdi_sym_children(n_nodes, w->parent, w->head, w->next);
-    for (s = 0; s < n_nodes; s++) {              /* children have gone through their own merges */
-        int32_t best = w->head[s];
-        for (c = w->head[s]; c >= 0; c = w->next[c])
+    const hdi_forest *f = &w->tree;
+    int32_t v, c;
+    hdi_forest_link(f);
+    for (v = 0; v < f->n; v++) {                 /* children have gone through their own merges */
+        int32_t best = f->kid[v];
+        for (c = best; c >= 0; c = f->next[c])
             if (node[c].rows - node[c].pivots > node[best].rows - node[best].pivots) best = c;
-        if (best >= 0 && hdi_sym_worth_merging(node + best, node + s))
-            hdi_sym_merge(node + best, node + s, w->next_col);
-        for (c = w->head[s]; c >= 0; c = w->next[c])
-            if (c != best && hdi_sym_worth_merging(node + c, node + s))
-                hdi_sym_merge(node + c, node + s, w->next_col);
+        if (best >= 0) hdi_sym_merge(node, best, v);
+        for (c = f->kid[v]; c >= 0; c = f->next[c])
+            if (c != best) hdi_sym_merge(node, c, v);
     }
-    for (s = n_nodes; s-- > 0;) {                /* parents are decided before their children */
-        const int32_t up = w->parent[s];
-        if (up >= 0 && node[up].merged) w->parent[s] = w->parent[up];
+    for (v = f->n; v-- > 0;) {                   /* parents are decided before their children */
+        const int32_t up = f->parent[v];
+        if (up >= 0 && node[up].merged) f->parent[v] = f->parent[up];
     }
-    for (s = 0; s < n_nodes; s++)
-        if (node[s].merged) w->parent[s] = -2;
+    for (v = 0; v < f->n; v++)
+        if (node[v].merged) f->parent[v] = -2;
 }
 
-/* Sorts the children of node s: those come first whose subtrees need much more room while under way than they
- * leave behind (Liu). peak[s]: the room that s and all below it need. */
-static void hdi_sym_sort_children(int32_t s, int64_t *peak, hdi_sym_work *w) {
-    int64_t held = 0, most = 0, n = 0, q;
-    int32_t c;
-    for (c = w->head[s]; c >= 0; c = w->next[c]) {
-        w->pair[n].key = (uint64_t)(peak[c] - hdi_node_update(w->node + c));
+/* Sorts the children of node v: those come first whose subtrees need much more room while under way than they
+ * leave behind (Liu 1986). */
+static void hdi_sym_sort_kids(const hdi_sym_work *w, int32_t v) {
+    const hdi_forest *f = &w->tree;
+    int32_t c, *link = f->kid + v;
+    int64_t held = 0, n = 0;
+    for (c = *link; c >= 0; c = f->next[c]) {
+        w->pair[n].key = (uint64_t)(w->peak[c] - hdi_node_update(w->node + c));
         w->pair[n++].id = c;
     }
     hdi_sort_pairs(w->pair, n);
-    w->head[s] = -1;
-    for (q = 0; q < n; q++) {                    /* ascending, put in front of each other: descending */
-        c = (int32_t)w->pair[q].id;
-        w->next[c] = w->head[s];
-        w->head[s] = c;
-    }
-    for (c = w->head[s]; c >= 0; c = w->next[c]) {
-        if (held + peak[c] > most) most = held + peak[c];
+    w->peak[v] = 0;
+    while (n-- > 0) {
+        c = *link = (int32_t)w->pair[n].id;
+        link = f->next + c;
+        w->peak[v] = hdi_most(w->peak[v], held + w->peak[c]);
         held += hdi_node_update(w->node + c);
     }
-    held += hdi_node_update(w->node + s);
-    peak[s] = held > most ? held : most;
-}
-
-/* A postorder of the merged nodes in w->order that needs little room. Returns their number. */
-static int32_t hdi_sym_order_nodes(int32_t n_nodes, hdi_sym_work *w) {
-    int32_t s;
-    hdi_sym_children(n_nodes, w->parent, w->head, w->next);
-    for (s = 0; s < n_nodes; s++)
-        if (!w->node[s].merged) hdi_sym_sort_children(s, w->upper_ptr, w);
-    return hdi_sym_postorder(n_nodes, w->parent, w);
+    *link = -1;
+    w->peak[v] = hdi_most(w->peak[v], held + hdi_node_update(w->node + v));
 }
 
 /* Panels of packs come in blocks of at most HDI_PANEL columns, each from its first pivot's row on: what
@@ -12758,77 +12678,73 @@ static int64_t hdi_panel_block(int64_t m, int64_t p, int64_t q) {
     return HDI_PANEL * (full * m - HDI_PANEL * (full * (full - 1) / 2)) + rest * (m - HDI_PANEL * full);
 }
 
-/* Numbers the supernodes and their columns. perm comes in postordered; s->perm is the elimination order. A
- * row of A has as many entries before its own pivot as it had in the order given: both follow the same tree.
- * So the places of the entries are known now: a_ptr, and w->lower_ptr. */
-static void hdi_sym_number(hdi_symbolic *s, const hd_csr *a, hdi_sym_work *w, const int32_t *perm) {
-    int64_t lower = 0, upper = 0;
-    int32_t k, c, i = 0, *number = w->head;
+/* Arrays by pivots and by supernodes. */
+static hd_status hdi_sym_take_supernodes(hdi_symbolic *s, hdi_scope *keep) {
+    const uint64_t supers = (uint64_t)s->n_super + 1;
+    int64_t **const wide[] = {&s->row_ptr, &s->panel, &s->panel_pack, &s->a_ptr, &s->update, &s->vector};
+    int32_t **const narrow[] = {&s->super, &s->parent, &s->inner, &s->kid_ptr, &s->kid, &s->task_begin,
+                                &s->task_end, &s->task_of, &s->top};
+    size_t k;
+    s->perm = HDI_TAKE(keep, int32_t, s->n);
+    s->super_of = HDI_TAKE(keep, int32_t, s->n);
+    for (k = 0; k < sizeof wide / sizeof *wide; k++) *wide[k] = HDI_TAKE(keep, int64_t, supers);
+    for (k = 0; k < sizeof narrow / sizeof *narrow; k++) *narrow[k] = HDI_TAKE(keep, int32_t, supers);
+    return keep->e->status;
+}
+
+/* Sizes of supernode k, which comes from node v. */
+static void hdi_sym_measure(hdi_symbolic *s, int32_t k, const hdi_node *v) {
+    const int64_t m = v->rows, p = v->pivots;
+    int64_t c;
+    s->super[k + 1] = s->super[k] + v->pivots;
+    s->row_ptr[k + 1] = s->row_ptr[k] + m - p;
+    s->panel[k + 1] = s->panel[k] + m * p;
+    s->panel_pack[k + 1] = s->panel_pack[k] + hdi_panel_block(m, p, p / HDI_PANEL + 1);
+    s->largest_front = hdi_high32(s->largest_front, v->rows);
+    s->largest_pivots = hdi_high32(s->largest_pivots, v->pivots);
+    s->largest_update = hdi_high32(s->largest_update, v->rows - v->pivots);
+    for (c = 0; c < p; c++) s->flops_done += (double)(m - c) * (double)(m - c);
+}
+
+/* Numbers the supernodes by the order of their nodes, and the columns by their supernodes. */
+static void hdi_sym_number(hdi_symbolic *s, const hdi_sym_work *w) {
+    int32_t k, q, j, i = 0;
     s->super[0] = 0;
-    s->row_ptr[0] = s->panel[0] = s->panel_pack[0] = s->a_ptr[0] = 0;
-    for (k = 0; k < s->n_super; k++) number[w->order[k]] = k;
+    s->row_ptr[0] = s->panel[0] = s->panel_pack[0] = 0;
+    for (k = 0; k < s->n_super; k++) w->number[w->node_order[k]] = k;
     for (k = 0; k < s->n_super; k++) {
-        const hdi_node *v = w->node + w->order[k];
-        const int64_t m = v->rows, p = v->pivots;
-        const int32_t up = w->parent[w->order[k]];
-        for (c = v->first; c >= 0; c = w->next_col[c]) {
-            s->perm[i] = perm[c];
-            w->lower_ptr[i] = lower;
-            lower += w->below[c];
-            upper += a->row_ptr[perm[c] + 1] - a->row_ptr[perm[c]] - w->below[c];
-            s->super_of[i++] = k;
+        const int32_t v = w->node_order[k], up = w->tree.parent[v];
+        s->parent[k] = up < 0 ? -1 : w->number[up];
+        hdi_sym_measure(s, k, w->node + v);
+        for (q = w->node[v].first; q >= 0; q = w->node[q].then) {
+            for (j = w->node[q].begin; j < w->node[q + 1].begin; j++) {
+                s->perm[i] = w->perm[j];
+                w->place[w->perm[j]] = i;
+                s->super_of[i++] = k;
+            }
         }
-        s->a_ptr[k + 1] = upper;
-        s->super[k + 1] = i;
-        s->parent[k] = up < 0 ? -1 : number[up];
-        s->row_ptr[k + 1] = s->row_ptr[k] + m - p;
-        s->panel[k + 1] = s->panel[k] + m * p;
-        s->panel_pack[k + 1] = s->panel_pack[k] + hdi_panel_block(m, p, p / HDI_PANEL + 1);
-        if (m > s->largest_front) s->largest_front = v->rows;
-        if (p > s->largest_pivots) s->largest_pivots = v->pivots;
-        if (m - p > s->largest_update) s->largest_update = v->rows - v->pivots;
-        for (c = 0; c < p; c++) s->flops_done += (double)(m - c) * (double)(m - c);
     }
-    w->lower_ptr[i] = lower;
     s->stored = s->panel_pack[s->n_super];
+    hdi_group(s->parent, s->n_super, s->n_super, s->kid_ptr, s->kid);
+}
+
+/* Supernodes, merged, in an order that needs little room, and the elimination order. */
+static hd_status hdi_sym_supernodes(hdi_symbolic *s, hdi_sym_work *w, hdi_scope *keep) {
+    int32_t v;
+    for (v = 0; v < s->n; v++) {
+        s->nnz += w->count[v];
+        s->flops += (double)w->count[v] * w->count[v];
+    }
+    hdi_sym_nodes(w);
+    hdi_sym_relax(w);
+    hdi_forest_link(&w->tree);
+    for (v = 0; v < w->tree.n; v++) hdi_sym_sort_kids(w, v);
+    s->n_super = hdi_forest_postorder(&w->tree, w->node_order);
+    if (hdi_sym_take_supernodes(s, keep) >= 0) hdi_sym_number(s, w);
+    return keep->e->status;
 }
 
 /* ---- fronts ---- */
-
-/* Entries of the supernodes that hold rows [begin,end) of the final order: those of the lower triangle by
- * columns as entries of A, with rows still in the whole matrix; of the others the supernode of their column,
- * by rows in w->lower. */
-static void hdi_sym_fill_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_sym_job *job = (const hdi_sym_job *)arg;
-    const hd_csr *a = job->a;
-    hdi_symbolic *s = job->s;
-    const int32_t *inv = job->w->inv, *perm = s->perm;
-    const int64_t *below = job->w->lower_ptr;
-    int64_t r, p, j, *from[2], unused_wide;
-    int32_t v = s->super_of[begin], *to[2], *col[2], unused;
-    /* the block may begin within a supernode */
-    for (r = s->a_ptr[v], j = s->super[v]; j < begin; j++)
-        r += a->row_ptr[perm[j] + 1] - a->row_ptr[perm[j]] - (below[j + 1] - below[j]);
-    to[0] = s->a_row + r;
-    col[0] = s->a_col + r;
-    from[0] = s->a_from + r;
-    to[1] = job->w->lower + below[begin];
-    col[1] = &unused;
-    from[1] = &unused_wide;
-    for (; j < end; j++) {
-        const int32_t first = s->super[s->super_of[j]];
-        if (j + HDI_ROWS_AHEAD < end) HDI_PREFETCH(a->col + a->row_ptr[perm[j + HDI_ROWS_AHEAD]]);
-        for (p = a->row_ptr[perm[j]]; p < a->row_ptr[perm[j] + 1]; p++) {
-            const int32_t i = inv[a->col[p]], entry[2] = {i, s->super_of[i]};
-            const int before = i < j;            /* as likely as not: no branches from here on */
-            *to[before]++ = entry[before];
-            *col[before] = (int32_t)j - first;
-            *from[before] = p;
-            col[0] += !before;
-            from[0] += !before;
-        }
-    }
-}
 
 /* Row i of L is a subtree of the supernodes' tree, walked up from the entries of row i of A: v and those
  * above it, before supernode end, get row i. */
@@ -12839,417 +12755,254 @@ static void hdi_sym_climb(hdi_sym_walk *walk, int32_t *row, int32_t i, int32_t v
     }
 }
 
-/* Rows of L that reach from the top into the subtrees, by subtrees: of subtree k its entries (row, supernode)
- * are pair [ptr[k], ptr[k+1]), rows ascending. */
-static void hdi_sym_cross(const hdi_symbolic *s, const hdi_sym_work *w, int64_t *ptr, int32_t *pair) {
-    int64_t p;
-    int32_t k, i, pass;
-    memset(ptr, 0, ((size_t)s->n_tasks + 1) * sizeof *ptr);
-    for (pass = 0; pass < 2; pass++) {
-        for (k = 0; k < s->n_top; k++) {
-            for (i = s->super[s->top[k]]; i < s->super[s->top[k] + 1]; i++) {
-                for (p = w->lower_ptr[i]; p < w->lower_ptr[i + 1]; p++) {
-                    const int32_t task = s->task_of[w->lower[p]];
-                    if (task < 0) continue;
-                    if (pass) {
-                        pair[2 * ptr[task]] = i;
-                        pair[2 * ptr[task] + 1] = w->lower[p];
-                    }
-                    ptr[task]++;
-                }
-            }
-        }
-        if (pass == 0) hdi_prefix_sum(ptr, s->n_tasks);
-    }
-    for (k = s->n_tasks; k > 0; k--) ptr[k] = ptr[k - 1];
-    ptr[0] = 0;
-}
-
-/* Rows below the pivots of a subtree: from its own rows, then from those of the top, so that they ascend. */
-static void hdi_sym_rows_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_sym_job *job = (const hdi_sym_job *)arg;
-    const hdi_symbolic *s = job->s;
-    const hdi_sym_work *w = job->w;
-    const int32_t end = s->task_end[index];
-    int64_t p;
-    int32_t i;
-    (void)worker;
-    for (i = s->super[s->task_begin[index]]; i < s->super[end]; i++)
-        for (p = w->lower_ptr[i]; p < w->lower_ptr[i + 1]; p++)
-            hdi_sym_climb(w->walk, s->row, i, w->lower[p], s->super_of[i]);
-    for (p = w->upper_ptr[index]; p < w->upper_ptr[index + 1]; p++)
-        hdi_sym_climb(w->walk, s->row, w->upper[2 * p], w->upper[2 * p + 1], end);
-}
-
-/* Rows below the pivots of all supernodes. w->stack: the first of a supernode and those above it that belongs
- * to the top. */
-static void hdi_sym_rows(hdi_sym_job *job, hd_context *ctx) {
-    const hdi_symbolic *s = job->s;
-    const hdi_sym_work *w = job->w;
-    int32_t i, k, v, *above = w->stack;
-    int64_t p;
-    for (v = s->n_super; v-- > 0;) {
+/* Fills the rows below the pivots of all supernodes, and the entries of A by fronts; the rows of the entries
+ * are still those of the whole matrix. A processor cannot predict whether an entry of A stands before the
+ * pivot of its row or after it. So each entry is written to both lists, and only the list where it belongs
+ * gets longer. */
+static void hdi_sym_rows(hdi_symbolic *s, const hdi_sym_work *w) {
+    const hd_csr *a = w->a;
+    int64_t p, r = 0;
+    int32_t j, v, q;
+    s->a_ptr[0] = 0;
+    for (v = 0; v < s->n_super; v++) {
         w->walk[v].mark = -1;
         w->walk[v].up = s->parent[v];
         w->walk[v].fill = s->row_ptr[v];
-        above[v] = s->task_of[v] < 0 ? v : s->parent[v] < 0 ? -1 : above[s->parent[v]];
     }
-    hdi_sym_cross(s, w, w->upper_ptr, w->upper);
-    hdi_parallel(ctx, s->n_tasks, hdi_sym_rows_task, job);
-    for (k = 0; k < s->n_top; k++)
-        for (i = s->super[s->top[k]]; i < s->super[s->top[k] + 1]; i++)
-            for (p = w->lower_ptr[i]; p < w->lower_ptr[i + 1]; p++)
-                hdi_sym_climb(w->walk, s->row, i, above[w->lower[p]], s->top[k]);
-}
-
-/* Places of the rows of c in its parent's front, where place tells those of rows below the pivots. */
-static void hdi_sym_relative(hdi_symbolic *s, int32_t c, const int32_t *place) {
-    const int32_t up = s->parent[c], begin = s->super[up], end = s->super[up + 1];
-    int64_t p = s->row_ptr[c];
-    for (; p < s->row_ptr[c + 1] && s->row[p] < end; p++) s->rel[p] = s->row[p] - begin;
-    s->inner[c] = (int32_t)(p - s->row_ptr[c]);
-    for (; p < s->row_ptr[c + 1]; p++) s->rel[p] = place[s->row[p]];
-}
-
-/* Rows within the fronts, of entries and of the children's rows, for an eighth of the supernodes: each has an
- * array [n] of places that the steps before have left free. */
-static void hdi_sym_places_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_sym_job *job = (const hdi_sym_job *)arg;
-    const hdi_sym_work *w = job->w;
-    hdi_symbolic *s = job->s;
-    int32_t *const spare[HDI_SYM_PLACES] = {w->mark,     w->head,  w->next,  w->stack,
-                                            w->next_col, w->order, w->count, w->parent};
-    int32_t v = (int32_t)(s->n_super * index / HDI_SYM_PLACES), k, *place = spare[index];
-    const int32_t last = (int32_t)(s->n_super * (index + 1) / HDI_SYM_PLACES);
-    int64_t p;
-    (void)worker;
-    for (; v < last; v++) {
-        const int32_t begin = s->super[v], end = s->super[v + 1];
-        for (p = s->row_ptr[v]; p < s->row_ptr[v + 1]; p++)
-            place[s->row[p]] = (int32_t)(p - s->row_ptr[v]) + end - begin;
-        for (p = s->a_ptr[v]; p < s->a_ptr[v + 1]; p++) {
-            const int32_t i = s->a_row[p];
-            s->a_row[p] = i < end ? i - begin : place[i];
+    for (j = 0; j < s->n; j++) {
+        const int32_t first = s->super[v = s->super_of[j]];
+        hdi_sym_fetch(a, s->perm, j);
+        for (p = a->row_ptr[s->perm[j]], q = 0; p < a->row_ptr[s->perm[j] + 1]; p++) {
+            const int32_t i = w->place[a->col[p]];
+            s->a_row[r] = i;
+            s->a_col[r] = j - first;
+            s->a_from[r] = p;
+            r += i >= j;
+            w->before[q] = i;
+            q += i < j;
         }
-        for (k = s->kid_ptr[v]; k < s->kid_ptr[v + 1]; k++) hdi_sym_relative(s, s->kid[k], place);
-        if (s->parent[v] < 0) s->inner[v] = 0;
+        s->a_ptr[v + 1] = r;
+        while (q-- > 0) hdi_sym_climb(w->walk, s->row, j, s->super_of[w->before[q]], v);
+    }
+    HEATDIFF_ASSERT(r <= (a->nnz + s->n) / 2);
+    for (v = 0; HDI_AUDIT && v < s->n_super; v++) HEATDIFF_ASSERT(w->walk[v].fill == s->row_ptr[v + 1]);
+}
+
+/* Finds where the entries of A and the rows of children stand in each front. */
+static void hdi_sym_places(hdi_symbolic *s, int32_t *at) {
+    int32_t v, k;
+    int64_t p;
+    for (v = 0; v < s->n_super; v++) {
+        const int32_t begin = s->super[v], pivots = hdi_front_pivots(s, v);
+        const int32_t *row = s->row + s->row_ptr[v];
+        s->inner[v] = 0;
+        for (k = 0; k < pivots; k++) at[begin + k] = k;
+        for (k = 0; k < hdi_front_below(s, v); k++) at[row[k]] = pivots + k;
+        for (p = s->a_ptr[v]; p < s->a_ptr[v + 1]; p++) s->a_row[p] = at[s->a_row[p]];
+        for (k = s->kid_ptr[v]; k < s->kid_ptr[v + 1]; k++) {
+            const int32_t c = s->kid[k];
+            for (p = s->row_ptr[c]; p < s->row_ptr[c + 1]; p++) {
+                s->rel[p] = at[s->row[p]];
+                s->inner[c] += s->rel[p] < pivots;
+            }
+        }
     }
 }
 
-/* Arrays by pivots and by supernodes. */
-static void hdi_sym_take_supernodes(hdi_symbolic *s, hdi_scope *keep) {
-    const uint64_t n1 = (uint64_t)s->n + 1, supers = (uint64_t)s->n_super + 1;
-    int64_t *wide = HDI_TAKE(keep, int64_t, 6 * supers);
-    int32_t *narrow = HDI_TAKE(keep, int32_t, 9 * supers);
-    s->perm = HDI_TAKE(keep, int32_t, n1);
-    s->super_of = HDI_TAKE(keep, int32_t, n1);
-    if (keep->e->status < 0) return;
-    s->row_ptr = wide;
-    s->panel = wide + supers;
-    s->panel_pack = wide + 2 * supers;
-    s->a_ptr = wide + 3 * supers;
-    s->update = wide + 4 * supers;
-    s->vector = wide + 5 * supers;
-    s->super = narrow;
-    s->parent = narrow + supers;
-    s->inner = narrow + 2 * supers;
-    s->kid_ptr = narrow + 3 * supers;
-    s->kid = narrow + 4 * supers;
-    s->task_begin = narrow + 5 * supers;
-    s->task_end = narrow + 6 * supers;
-    s->task_of = narrow + 7 * supers;
-    s->top = narrow + 8 * supers;
-}
-
-/* Supernodes of the pattern under the order perm, which is used up. */
-static hd_status hdi_sym_nodes(hdi_symbolic *s, const hd_csr *a, int32_t *perm, hdi_sym_work *w,
-                               hdi_scope *keep) {
-    int32_t i, n_nodes;
-    hdi_sym_tree(a, perm, w, keep->ctx);
-    if (hdi_progress(keep->ctx, "analyse", 0.4, keep->e) < 0) return keep->e->status;
-    for (i = 0; i < s->n; i++) {
-        s->nnz += w->count[i];
-        s->flops += (double)w->count[i] * w->count[i];
-    }
-    n_nodes = hdi_sym_supernodes(s->n, w);
-    hdi_sym_relax(n_nodes, w);
-    s->n_super = hdi_sym_order_nodes(n_nodes, w);
-    hdi_sym_take_supernodes(s, keep);
-    if (keep->e->status >= 0) hdi_sym_number(s, a, w, perm);
-    return keep->e->status;
-}
-
-/* The fronts: their rows and entries. The supernodes have been shared out to subtrees and the top. */
-static hd_status hdi_sym_fronts(hdi_symbolic *s, const hd_csr *a, hdi_sym_work *w, hdi_scope *keep) {
-    const int64_t rows = s->row_ptr[s->n_super], entries = s->a_ptr[s->n_super];
-    hdi_sym_job job;
-    int32_t j;
+/* Makes the rows and the entries of all fronts. */
+static hd_status hdi_sym_fronts(hdi_symbolic *s, const hdi_sym_work *w, hdi_scope *keep) {
+    /* one entry more than the triangle has: the last one written may turn out to belong to the other list */
+    const int64_t rows = s->row_ptr[s->n_super], entries = (w->a->nnz + s->n) / 2 + 1;
     s->row = HDI_TAKE(keep, int32_t, rows);
     s->rel = HDI_TAKE(keep, int32_t, rows);
     s->a_from = HDI_TAKE(keep, int64_t, entries);
     s->a_row = HDI_TAKE(keep, int32_t, entries);
     s->a_col = HDI_TAKE(keep, int32_t, entries);
     if (keep->e->status < 0 || hdi_progress(keep->ctx, "analyse", 0.6, keep->e) < 0) return keep->e->status;
-    job.a = a;
-    job.perm = s->perm;
-    job.s = s;
-    job.w = w;
-    for (j = 0; j < s->n; j++) w->inv[s->perm[j]] = j;
-    hdi_parallel_ranges(keep->ctx, s->n, HDI_SYM_ROWS, hdi_sym_fill_task, &job);
-    hdi_sym_rows(&job, keep->ctx);
-    hdi_group(s->parent, s->n_super, s->n_super, s->kid_ptr, s->kid);
-    hdi_parallel(keep->ctx, HDI_SYM_PLACES, hdi_sym_places_task, &job);
+    hdi_sym_rows(s, w);
+    hdi_sym_places(s, w->at);
     return HD_OK;
-}
-
-/* ==== [16] schedule ====
- * What the analysis leaves open: the elimination order itself, the subtrees that go on at the same time, and
- * the places of all that lives for a while. May call [15].
- * This work is based on
- *   J. Liu, The role of elimination trees in sparse factorization, 1990 (the multifrontal stack) */
-
-/* ---- memory ---- */
-/* Sizes and lifetimes are known, so that places are given out beforehand: best fit in a list of gaps,
- * ascending and coalesced; end is where the space beyond them begins. */
-typedef struct hdi_gap { int64_t at, size; } hdi_gap;
-
-typedef struct hdi_gaps {
-    hdi_gap *gap;
-    int32_t n, room;
-    int64_t end;
-} hdi_gaps;
-
-/* Moves gap i and all after it by so many places. */
-static void hdi_gaps_shift(hdi_gaps *g, int32_t i, int32_t by) {
-    memmove(g->gap + i + by, g->gap + i, (size_t)(g->n - i) * sizeof *g->gap);
-    g->n += by;
-}
-
-/* [at, at + size) is free from now on. */
-static void hdi_gaps_free(hdi_gaps *g, int64_t at, int64_t size) {
-    hdi_gap *gap = g->gap;
-    int32_t i;
-    if (size == 0) return;
-    for (i = g->n; i > 0 && gap[i - 1].at > at; i--) {}
-    if (i > 0 && gap[i - 1].at + gap[i - 1].size == at) {
-        gap[--i].size += size;
-    } else if (g->n < g->room) {
-        hdi_gaps_shift(g, i, 1);
-        gap[i].at = at;
-        gap[i].size = size;
-    } else {
-        return;                                  /* a full list forgets: only a loss of space */
-    }
-    if (i + 1 < g->n && gap[i].at + gap[i].size == gap[i + 1].at) {
-        gap[i].size += gap[i + 1].size;
-        gap[i + 1].at = gap[i].at;
-        gap[i + 1].size = gap[i].size;
-        hdi_gaps_shift(g, i + 1, -1);
-    }
-    if (gap[g->n - 1].at + gap[g->n - 1].size == g->end) g->end = gap[--g->n].at;
-}
-
-static int64_t hdi_gaps_take(hdi_gaps *g, int64_t size) {
-    int32_t i, best = -1;
-    int64_t at = g->end;
-    for (i = 0; i < g->n; i++)
-        if (g->gap[i].size >= size && (best < 0 || g->gap[i].size < g->gap[best].size)) best = i;
-    if (best < 0) {
-        g->end += size;
-        return at;
-    }
-    at = g->gap[best].at;
-    g->gap[best].at += size;
-    g->gap[best].size -= size;
-    if (g->gap[best].size == 0) hdi_gaps_shift(g, best + 1, -1);
-    return at;
-}
-
-/* Places under way, of update matrices or of vectors of solves. */
-typedef struct hdi_sched_space {
-    const hdi_symbolic *s;
-    hdi_gaps gaps;
-    hdi_pair *roots;             /* [n_super] */
-    int64_t *at;                 /* [n_super] where each supernode's is */
-    int matrices;                /* 0: vectors */
-} hdi_sched_space;
-
-/* Entries of the update matrix, or vector, of a supernode. */
-static int64_t hdi_sched_size(const hdi_sched_space *z, int32_t v) {
-    const int64_t u = hdi_front_below(z->s, v);
-    return z->matrices ? hdi_triangle(u) : u;
-}
-
-/* Places for a run of supernodes in the order in which they are worked on: list[begin..end), or these numbers
- * themselves. Children give their places back. Returns how far it got. */
-static int64_t hdi_sched_place(hdi_sched_space *z, const int32_t *list, int32_t begin, int32_t end) {
-    const hdi_symbolic *s = z->s;
-    int64_t most = z->gaps.end;
-    int32_t q, k;
-    for (q = begin; q < end; q++) {
-        const int32_t v = list ? list[q] : q;
-        z->at[v] = hdi_gaps_take(&z->gaps, hdi_sched_size(z, v));
-        if (z->gaps.end > most) most = z->gaps.end;
-        for (k = s->kid_ptr[v]; k < s->kid_ptr[v + 1]; k++)
-            hdi_gaps_free(&z->gaps, z->at[s->kid[k]], hdi_sched_size(z, s->kid[k]));
-    }
-    return most;
-}
-
-/* What the roots of the subtrees leave behind, by places. Returns how many there are. */
-static int64_t hdi_sched_roots(hdi_sched_space *z) {
-    const hdi_symbolic *s = z->s;
-    int64_t n = 0;
-    int32_t k, q;
-    for (k = 0; k < s->n_top; k++) {
-        for (q = s->kid_ptr[s->top[k]]; q < s->kid_ptr[s->top[k] + 1]; q++) {
-            const int32_t c = s->kid[q];
-            if (s->task_of[c] < 0 || hdi_front_below(s, c) == 0) continue;
-            z->roots[n].key = (uint64_t)z->at[c];
-            z->roots[n++].id = hdi_sched_size(z, c);
-        }
-    }
-    hdi_sort_pairs(z->roots, n);
-    return n;
-}
-
-/* All places: a space of its own for every subtree, of which only what its roots leave behind stays; the top
- * takes what it finds free. Vectors of the top have places of their own: their fronts are worked on in any
- * order that the tree allows. Returns the size of it all. */
-static int64_t hdi_sched_spaces(hdi_sched_space *z) {
-    const hdi_symbolic *s = z->s;
-    int64_t base = 0, from = 0, n_roots, i;
-    int32_t k;
-    for (k = 0; k < s->n_tasks; k++) {
-        z->gaps.n = 0;
-        z->gaps.end = base;
-        base = hdi_sched_place(z, NULL, s->task_begin[k], s->task_end[k]);
-    }
-    n_roots = hdi_sched_roots(z);
-    z->gaps.n = 0;
-    z->gaps.end = base + 1;                      /* so that no gap touches it */
-    for (i = 0; i <= n_roots; i++) {
-        const int64_t to = i < n_roots ? (int64_t)z->roots[i].key : base;
-        hdi_gaps_free(&z->gaps, from, to - from);
-        if (i < n_roots) from = to + z->roots[i].id;
-    }
-    if (z->matrices) return hdi_sched_place(z, s->top, 0, s->n_top);
-    for (k = 0; k < s->n_top; k++, base += hdi_sched_size(z, s->top[k - 1])) z->at[s->top[k]] = base;
-    return base;
 }
 
 /* ---- tasks ---- */
 
 /* A subtree has at most this share of all work, that two threads and more find enough of them. Below the
  * least work, in multiply-adds, it takes longer to hand out a task than to do it. */
-enum { HDI_SCHED_SHARES = 48, HDI_SCHED_LEAST = 100000, HDI_SCHED_GAPS = 1024 };
+enum { HDI_TASK_SHARES = 48, HDI_TASK_LEAST = 100000 };
 
 /* Work of a front, in multiply-adds or so: the sum of its squared column lengths, and a little for its being
  * there. */
-static double hdi_sched_front_work(double m, double p) {
+static double hdi_sym_front_work(double m, double p) {
     const double u = m - p;
     return p * u * u + u * p * p + p * p * p / 3 + 40 * m;
 }
 
-/* task_of: the root of each supernode's subtree, -1: top. sum [n_super]: work of all below a supernode, 0 on
- * entry. Returns the most work of a task. */
-static double hdi_sched_subtrees(hdi_symbolic *s, double *sum) {
-    int32_t *task = s->task_of, v;
-    double total = 0, limit;
+/* work [n_super]: that of each supernode and all below it. Returns the most work of a task. */
+static double hdi_sym_work_below(const hdi_symbolic *s, double *work) {
+    double total = 0;
+    int32_t v, k;
     for (v = 0; v < s->n_super; v++) {
-        const double work = hdi_sched_front_work((double)hdi_front_rows(s, v), hdi_front_pivots(s, v));
-        sum[v] += work;
-        total += work;
-        if (s->parent[v] >= 0) sum[s->parent[v]] += sum[v];
+        work[v] = hdi_sym_front_work((double)hdi_front_rows(s, v), hdi_front_pivots(s, v));
+        total += work[v];
+        for (k = s->kid_ptr[v]; k < s->kid_ptr[v + 1]; k++) work[v] += work[s->kid[k]];
     }
-    limit = hdi_max(total / (double)HDI_SCHED_SHARES, HDI_SCHED_LEAST);
-    for (v = s->n_super; v-- > 0;) {
-        const int32_t up = s->parent[v];
-        task[v] = sum[v] > limit ? -1 : up < 0 || task[up] == -1 ? v : task[up];
-    }
-    return limit;
+    return hdi_max(total / (double)HDI_TASK_SHARES, HDI_TASK_LEAST);
 }
 
-/* Cuts the forest into subtrees that can go on at the same time, small neighbours together; the rest is the
- * top, where the fronts are large enough to be shared. */
-static void hdi_sched_tasks(hdi_symbolic *s, double *sum) {
-    const double limit = hdi_sched_subtrees(s, sum);
-    int32_t *task = s->task_of, v, k;
-    double open = 0;
+/* Cuts the forest into subtrees that can go on at the same time. Small neighbours become one task. The other
+ * supernodes are the top; their fronts are large enough to be shared by threads. */
+static void hdi_sym_tasks(hdi_symbolic *s, double *work) {
+    const double most = hdi_sym_work_below(s, work);
+    double room = 0;                             /* how much more work the last task may take */
+    int32_t v, q = 0;                            /* supernodes before q are in a task or in the top */
     for (v = 0; v < s->n_super; v++) {
-        if (task[v] < 0) {
-            task[v] = -1 - s->n_top;
+        if (work[v] > most) {
+            s->task_of[v] = -1 - s->n_top;
             s->top[s->n_top++] = v;
-            /* a top node in between ends a task, whose supernodes are consecutive */
-            open = HUGE_VAL;
-            continue;
-        }
-        if (v == 0 || task[v - 1] != task[v]) {  /* a subtree begins */
-            if (v > 0 && task[v - 1] >= 0 && open + sum[task[v]] <= limit) {
-                open += sum[task[v]];
-            } else {
-                s->task_begin[s->n_tasks++] = v;
-                open = sum[task[v]];
+            room = 0;                            /* the supernodes of a task are consecutive */
+            q = v + 1;
+        } else if (s->parent[v] < 0 || work[s->parent[v]] > most) {
+            if (work[v] > room) {
+                s->task_begin[s->n_tasks++] = q;
+                room = most;
+            }
+            room -= work[v];
+            s->task_end[s->n_tasks - 1] = v + 1;
+            for (; q <= v; q++) {
+                s->task_of[q] = s->n_tasks - 1;
+                s->task_pivots = hdi_high32(s->task_pivots, hdi_front_pivots(s, q));
+                s->task_update = hdi_high32(s->task_update, (int32_t)hdi_front_below(s, q));
             }
         }
-        s->task_end[s->n_tasks - 1] = v + 1;
     }
-    for (k = 0; k < s->n_tasks; k++) {
-        for (v = s->task_begin[k]; v < s->task_end[k]; v++) {
-            task[v] = k;
-            if (hdi_front_pivots(s, v) > s->task_pivots) s->task_pivots = hdi_front_pivots(s, v);
-            if (hdi_front_below(s, v) > s->task_update)
-                s->task_update = (int32_t)hdi_front_below(s, v);
+}
+
+/* ---- memory ---- */
+/* A front leaves an update matrix, or a vector, for its parent. Each task has a space for what its fronts
+ * leave, and so has the top. In a space two stacks grow towards each other from both ends: fronts of even
+ * depth use the one, fronts of odd depth the other. In postorder all children of a front are on top of their
+ * stack when the front is pushed on the other one; then they are popped. So a space is only as large as what
+ * lives in it at the same time. An inversion goes from the roots to the leaves. There everything lives for
+ * the same steps in reverse, so these places are safe for it as well. */
+
+enum { HDI_SIDE_LOW, HDI_SIDE_HIGH, HDI_SIDE_APART, HDI_SIDES };
+
+typedef struct hdi_stacks {
+    const hdi_symbolic *s;
+    int matrices;                /* 0: vectors of u entries */
+    int64_t *at;                 /* [n_super] where each begins */
+    char *side;                  /* [n_super] the stack of each; APART: on none */
+    int64_t used[HDI_SIDES];
+} hdi_stacks;
+
+static int64_t hdi_stacks_size(const hdi_stacks *z, int32_t v) {
+    const int64_t u = hdi_front_below(z->s, v);
+    return z->matrices ? hdi_triangle(u) : u;
+}
+
+/* Whether its parent is not in the same task, or not in the top with it. */
+static int hdi_stacks_root(const hdi_symbolic *s, int32_t v) {
+    const int32_t up = s->parent[v];
+    return up < 0 || (s->task_of[up] < 0) != (s->task_of[v] < 0);
+}
+
+/* Gives places to the fronts of task k, or to those of the top if k < 0, in a space that begins at base. With
+ * apart, roots are on no stack: their places are counted in z->used. Returns the end of the space. */
+static int64_t hdi_stacks_run(hdi_stacks *z, int32_t k, int apart, int64_t base) {
+    const hdi_symbolic *s = z->s;
+    const int32_t begin = k < 0 ? 0 : s->task_begin[k], end = k < 0 ? s->n_super : s->task_end[k];
+    int64_t most = 0, *used = z->used;
+    int32_t v, q;
+    used[HDI_SIDE_LOW] = used[HDI_SIDE_HIGH] = 0;
+    for (v = begin; v < end; v++) {
+        if ((s->task_of[v] < 0) != (k < 0)) continue;
+        if (apart && hdi_stacks_root(s, v)) z->side[v] = HDI_SIDE_APART;
+        z->at[v] = used[(int)z->side[v]];
+        used[(int)z->side[v]] += hdi_stacks_size(z, v);
+        most = hdi_most(most, used[HDI_SIDE_LOW] + used[HDI_SIDE_HIGH]);
+        for (q = s->kid_ptr[v + 1]; q-- > s->kid_ptr[v];) {
+            const int32_t c = s->kid[q];
+            if (hdi_stacks_root(s, c)) continue;
+            used[(int)z->side[c]] -= hdi_stacks_size(z, c);
+            /* c was on top of its stack, so no place is given out again before it is free */
+            HEATDIFF_ASSERT(z->side[c] != z->side[v] && z->at[c] == used[(int)z->side[c]]);
         }
     }
+    for (v = begin; v < end; v++) {
+        if ((s->task_of[v] < 0) != (k < 0)) continue;
+        if (z->side[v] == HDI_SIDE_LOW) z->at[v] += base;
+        if (z->side[v] == HDI_SIDE_HIGH) z->at[v] = base + most - z->at[v] - hdi_stacks_size(z, v);
+    }
+    return base + most;
 }
 
-/* Places for update matrices and vectors. */
-static void hdi_sched_make(hdi_symbolic *s, hdi_scope *temp) {
-    hdi_sched_space z;
+/* Gives all places and returns the size of all spaces. The spaces of the tasks follow one another, because
+ * tasks go on at the same time. The top comes when the tasks are done, so its matrices share the space of the
+ * first tasks. The roots of those tasks stand apart, behind that space, because they stay until the top has
+ * taken them. Vectors of the top have places of their own, because a solve takes the fronts of the top in any
+ * order that the tree allows. */
+static int64_t hdi_stacks_place(hdi_stacks *z) {
+    const hdi_symbolic *s = z->s;
+    const int32_t n = s->n_tasks;
+    int64_t top, end = 0;
+    int32_t v, k;
+    z->used[HDI_SIDE_APART] = 0;
+    for (v = s->n_super; v-- > 0;)
+        z->side[v] = s->parent[v] < 0 || z->side[s->parent[v]] ? HDI_SIDE_LOW : HDI_SIDE_HIGH;
+    top = z->matrices ? hdi_stacks_run(z, -1, 0, 0) : 0;
+    for (k = 0; k < n && end < top; k++) end = hdi_stacks_run(z, k, 1, end);
+    end = hdi_most(end, top);
+    for (v = 0; v < s->n_super; v++)
+        if (z->side[v] == HDI_SIDE_APART) z->at[v] += end;
+    end += z->used[HDI_SIDE_APART];
+    for (; k < n; k++) end = hdi_stacks_run(z, k, 0, end);
+    for (k = 0; k < s->n_top && !z->matrices; k++) {
+        z->at[s->top[k]] = end;
+        end += hdi_stacks_size(z, s->top[k]);
+    }
+    return end;
+}
+
+static void hdi_sym_memory(hdi_symbolic *s, char *side) {
+    hdi_stacks z;
     z.s = s;
-    z.roots = HDI_TAKE(temp, hdi_pair, (int64_t)s->n_super + 1);
-    z.gaps.room = HDI_SCHED_GAPS;
-    z.gaps.gap = HDI_TAKE(temp, hdi_gap, z.gaps.room);
-    if (temp->e->status < 0) return;
+    z.side = side;
     z.matrices = 1;
     z.at = s->update;
-    s->work = hdi_sched_spaces(&z);
+    s->work = hdi_stacks_place(&z);
     z.matrices = 0;
     z.at = s->vector;
-    s->vector_size = hdi_sched_spaces(&z);
+    s->vector_size = hdi_stacks_place(&z);
 }
 
-/* The steps of an analysis. Blocks that stay are taken from keep. */
-static void hdi_symbolic_run(hdi_symbolic *s, const hd_csr *a, int32_t *perm, hdi_scope *keep) {
-    hdi_scope temp = hdi_scope_begin(keep->ctx, keep->e);
-    double *sum = HDI_TAKE_ZERO(&temp, double, (int64_t)a->n_rows + 1);
+/* Analysis of a symmetric pattern under the order perm, which is used up. */
+static hd_status hdi_symbolic_make(hdi_symbolic *s, const hd_csr *a, int32_t *perm, hd_context *ctx,
+                                   hd_error *e) {
+    hdi_scope keep = hdi_scope_begin(ctx, e), temp = hdi_scope_begin(ctx, e);
     hdi_sym_work w;
     memset(s, 0, sizeof *s);
     s->n = a->n_rows;
-    hdi_sym_work_take(&w, a, &temp);
-    if (keep->e->status >= 0 && hdi_sym_nodes(s, a, perm, &w, keep) >= 0) {
-        w.walk = HDI_TAKE(&temp, hdi_sym_walk, s->n_super);
-        if (keep->e->status >= 0) hdi_sched_tasks(s, sum);
-        if (keep->e->status >= 0 && hdi_sym_fronts(s, a, &w, keep) >= 0) hdi_sched_make(s, &temp);
+    if (hdi_sym_work_take(&w, a, perm, &temp) >= 0) {
+        hdi_sym_postorder(&w);
+        hdi_sym_counts(&w);
+        if (hdi_progress(ctx, "analyse", 0.4, e) >= 0 && hdi_sym_supernodes(s, &w, &keep) >= 0 &&
+            hdi_sym_fronts(s, &w, &keep) >= 0) {
+            hdi_sym_tasks(s, w.work);
+            hdi_sym_memory(s, w.side);
+        }
     }
     hdi_scope_end(&temp);
-}
-
-/* Analysis and schedule of a symmetric pattern under the order perm, which is used up. */
-static hd_status hdi_symbolic_make(hdi_symbolic *s, const hd_csr *a, int32_t *perm, hd_context *ctx,
-                                   hd_error *e) {
-    hdi_scope keep = hdi_scope_begin(ctx, e);
-    hdi_symbolic_run(s, a, perm, &keep);
     if (e->status < 0) {
         memset(s, 0, sizeof *s);
         return hdi_scope_end(&keep);
     }
-    for (; s->n_blocks < keep.n; s->n_blocks++) s->block[s->n_blocks] = keep.block[s->n_blocks];
+    s->n_blocks = keep.n;
+    memcpy(s->block, keep.block, (size_t)keep.n * sizeof *keep.block);
     return HD_OK;
 }
 
-/* ---- the order ---- */
+/* ==== [16] order ====
+ * Which elimination order: what a caller may ask for, and the choice where it is left open. May call [15]. */
 
 /* From so many rows on nested dissection pays for itself: it takes four to nine times as long to find as
  * minimum degree, and saves half of the flops. For the poles of a set that is soon. One real factor and some
@@ -13304,7 +13057,7 @@ static hd_status hdi_order_find(const hdi_order *o, hd_ordering kind, const hd_c
     return hdi_order_check(o->own, n, ctx, e);
 }
 
-/* Order, analysis and schedule of a symmetric pattern. */
+/* Order and analysis of a symmetric pattern. */
 static hd_status hdi_symbolic_order(hdi_symbolic *s, const hd_csr *a, const hdi_order *o, hd_context *ctx,
                                     hd_error *e) {
     hdi_scope scope = hdi_scope_begin(ctx, e);

@@ -770,6 +770,15 @@ static hd_progress rob_on_progress(void *user, const char *stage, double done) {
     return ++p->calls == p->stop_at ? p->answer : HD_PROGRESS_CONTINUE;
 }
 
+/* From now on the context's progress is counted, and cancelled at this call; 0: at none. */
+static void rob_watch(rob_progress *p, hd_context *ctx, int64_t stop_at) {
+    memset(p, 0, sizeof *p);
+    p->stop_at = stop_at;
+    p->answer = HD_PROGRESS_CANCEL;
+    ctx->progress = rob_on_progress;
+    ctx->progress_user = p;
+}
+
 /* ---- scripts ---- */
 
 static hd_status call_words(call_world *w, const char *words, int keep);

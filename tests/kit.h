@@ -166,14 +166,19 @@ static hd_laplacian *kit_path(int32_t n, int l, int b) {
     return kit_graph(n, n - 1, from, to, w, mass);
 }
 
+/* A plan by options, without a context of its own: that must live until the group ends. */
+static hd_heat *kit_plan(const hd_laplacian *lap, const hd_heat_opts *o) {
+    hd_heat *heat = NULL;
+    hd_error e;
+    if (hd_heat_create(&heat, lap, o, &e) < 0) truth_stop(e.text);
+    return (hd_heat *)kit_keep(heat, kit_free_heat);
+}
+
 /* A plan by words of tools/trials.h: kit_heat(lap, "method=direct degree=9 tol=1e-10"); one thread. */
 static hd_heat *kit_heat(const hd_laplacian *lap, const char *options) {
     const trial c = trial_parse(options);
     const hd_heat_opts o = trial_options(&c);
-    hd_heat *heat = NULL;
-    hd_error e;
-    if (hd_heat_create(&heat, lap, &o, &e) < 0) truth_stop(e.text);
-    return (hd_heat *)kit_keep(heat, kit_free_heat);
+    return kit_plan(lap, &o);
 }
 
 /* What is made elsewhere and freed with the rest. */
@@ -186,7 +191,6 @@ static hd_csr *kit_csr(hd_csr a) {
 
 static hd_csr kit_own_csr(hd_csr a) { return *kit_csr(a); }
 static hd_laplacian *kit_own_laplacian(hd_laplacian *lap) { return (hd_laplacian *)kit_keep(lap, kit_free_laplacian); }
-static hd_heat *kit_own_heat(hd_heat *heat) { return (hd_heat *)kit_keep(heat, kit_free_heat); }
 
 static shape kit_own_shape(shape s) {
     trial_body *b = KIT_NEW(trial_body, 1);

@@ -97,8 +97,6 @@ static hd_laplacian *test_laplacian_at(const shape *s, const double *xyz, hd_lap
     return lap;
 }
 
-static hd_laplacian *test_laplacian(const shape *s, hd_laplacian_kind kind) { return test_laplacian_at(s, s->xyz, kind, 0, NULL); }
-
 /* The values of a sparse matrix, or val instead of its own, in a dense one. */
 static double *test_dense(const hd_csr *a, const double *val) {
     double *d = DENSE_NEW(double, (int64_t)a->n_rows * a->n_cols);

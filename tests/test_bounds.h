@@ -293,7 +293,7 @@ static void bnd_truck(void) {
     hd_report r, c;
     int32_t i, at = -1;
     if (!s.xyz) return;
-    lap = (hd_laplacian *)kit_keep(test_laplacian(&s, HD_LAPLACIAN_FEM), kit_free_laplacian);
+    lap = kit_triangles(&s, HD_LAPLACIAN_FEM);
     columns = kit_heat(lap, "method=krylov tol=1e-13");
     D = KIT_NEW(double, s.n);
     u = KIT_NEW(double, s.n);

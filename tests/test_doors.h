@@ -134,26 +134,23 @@ static const door_row door_rows[] = {
     {"update_view geodesic_update_view", HD_OK, "", NULL, "mesh.tri_i32=NULL mesh.n_indices=1"},
 
     /* options of eigenpairs, shifted systems, plans */
+    {NULL, BAD "unknown ordering", NULL,
+     "so.ordering=99; so.ordering=-1; ho.ordering=-1; ho.ordering=99; go.ordering=99; go.ordering=-1"},
+    {NULL, BAD "no permutation", NULL, "own so.perm=NULL; own ho.perm=NULL; own go.perm=NULL; own fo.perm=NULL"},
+    {NULL, HD_ERR_INDEX, "", NULL, "own so.perm=tri; own go.perm=tri; own fo.perm=tri"},
+    {NULL, BAD "unknown preconditioner", NULL, "vo.precond=99; vo.precond=-1; ho.precond=-1; ho.precond=9"},
+    {NULL, BAD "max_iterations", NULL, "vo.max_iterations=-1; ho.max_iterations=-1"},
+    {NULL, BAD "tol is not in", NULL, "so.tol=-1; so.tol=1; so.tol=nan; vo.tol=nan; vo.tol=-1; vo.tol=1; ho.tol=-1e-3; ho.tol=1; ho.tol=nan"},
     {"eigenpairs", BAD "neither a count nor a bound", NULL, "so.count=-1"},
     {"eigenpairs", BAD "neither a count nor", NULL, "so.count=0"},
     {"eigenpairs", BAD "more pairs than rows", NULL, "so.count=22"}, {"eigenpairs", BAD "below is negative", NULL, "so.below=-1"},
     {"eigenpairs", BAD "below is negative or not finite", NULL, "so.below=nan"},
-    {"eigenpairs", BAD "tol is not in", NULL, "so.tol=-1; so.tol=1; so.tol=nan"},
-    {"eigenpairs", BAD "unknown ordering", NULL, "so.ordering=99; so.ordering=-1"},
-    {"eigenpairs", BAD "no permutation", NULL, "own so.perm=NULL"}, {"eigenpairs", HD_ERR_INDEX, "", NULL, "own so.perm=tri"},
-    {"shifted", BAD "tol is not in", NULL, "vo.tol=nan; vo.tol=-1; vo.tol=1"},
     {"shifted", BAD "cocg, cocr or minres", NULL, "vo.solver=4; vo.solver=-1"},
-    {"shifted", BAD "unknown preconditioner", NULL, "vo.precond=99; vo.precond=-1"},
-    {"shifted", BAD "max_iterations", NULL, "vo.max_iterations=-1"},
     {"plan", BAD "unknown method", NULL, "ho.method=-1; ho.method=9"},
     {"plan", BAD "unknown solver", NULL, "ho.solver=-1; ho.solver=9"},
-    {"plan", BAD "unknown preconditioner", NULL, "ho.precond=-1; ho.precond=9"},
     {"plan", BAD "poles are uniform", NULL, "ho.poles=-1; ho.poles=3"},
     {"plan", BAD "degrees 2 to 14", NULL, "ho.poles=4 ho.degree=1"}, {"plan", BAD "", "value=1", "ho.poles=2 ho.degree=1"},
     {"plan", BAD "", NULL, "ho.degree=-1; ho.degree=15; lanczos ho.rational=set"},
-    {"plan", BAD "tol", NULL, "ho.tol=-1e-3; ho.tol=1; ho.tol=nan"}, {"plan", BAD "max_iterations", NULL, "ho.max_iterations=-1"},
-    {"plan", BAD "unknown ordering", NULL, "ho.ordering=-1; ho.ordering=99"},
-    {"plan", BAD "no permutation", NULL, "own ho.perm=NULL"},
     {"plan", BAD "no use for poles", NULL, "krylov ho.rational=set; krylov ho.poles=1; krylov ho.degree=7"},
     {"plan", BAD "belong to the iterative", NULL, "krylov cocg; direct cocg; direct jacobi"},
 
@@ -163,8 +160,6 @@ static const door_row door_rows[] = {
     {"geodesic", BAD "t_in_h2 is negative or not", NULL, "go.t_in_h2=inf"},
     {"geodesic", BAD "unknown mass", NULL, "go.mass=-1; go.mass=99"},
     {"geodesic", BAD "unknown border", NULL, "go.border=-1; go.border=99"},
-    {"geodesic", BAD "unknown ordering", NULL, "go.ordering=99"}, {"geodesic", BAD "no permutation", NULL, "own go.perm=NULL"},
-    {"geodesic", HD_ERR_INDEX, "", NULL, "own go.perm=tri"},
     {"geodesic", BAD "lambda is not between", NULL, "go.lambda=-1; go.lambda=1e101; go.lambda=nan"},
     {"geodesic", BAD "6..128", NULL, "go.neighbours=5; go.neighbours=129"},
     {"geodesic", BAD "mollify", NULL, "go.mollify=nan; go.mollify=2"},
@@ -265,6 +260,8 @@ static int doors_listed(const char *list, const char *item, char mark) {
 
 /* Does the row speak of these words and this call? */
 static int doors_applies(int row, const char *words, const call_row *c) {
+    static const char *const options[6] = {"lo.a->lap_opts", "ho.a->heat_opts", "so.a->spectrum_opts", "go.a->geodesic_opts", "fo.a->ldl_opts",
+                                           "vo.a->solve_opts"};
     const char *last = strrchr(words, ' '), *field = last ? last + 1 : words;
     char name[48];
     int k;
@@ -273,6 +270,8 @@ static int doors_applies(int row, const char *words, const call_row *c) {
     for (k = 0; k < DOOR_ROWS; k++)
         if (door_rows[k].which && doors_listed(door_rows[k].words, words, ';') && doors_listed(door_rows[k].which, c->name, ' '))
             return 0;
+    for (k = 0; k < 6; k++)                      /* of options: every call that takes them */
+        if (strncmp(field, options[k], 3) == 0) return call_takes(c, options[k] + 3, strlen(options[k] + 3));
     snprintf(name, sizeof name, "a->%.*s", (int)strcspn(field, "="), field);
     return call_takes(c, name, strlen(name));
 }
@@ -475,12 +474,9 @@ static void doors_half_updated(doors *d) {
     int told = 0;
     hd_status st = HD_ERR_CANCELLED;
     d->w.a = d->good;
-    memset(&p, 0, sizeof p);
-    p.answer = HD_PROGRESS_CANCEL;
     CHECK(call_words(&d->w, "geodesic_update geodesic_set", 0) >= 0);
     memcpy(before, d->w.out, sizeof before);
-    d->ctx.progress = rob_on_progress;
-    d->ctx.progress_user = &p;
+    rob_watch(&p, &d->ctx, 0);
     for (p.stop_at = 1; p.stop_at < 100; p.stop_at++) {
         p.calls = 0;
         st = call_words(&d->w, "geodesic_update", 0);

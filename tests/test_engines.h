@@ -31,43 +31,7 @@ static hd_heat *eng_plan(const hd_laplacian *lap, hd_method method, hd_pole_kind
     hd_heat_opts o = eng_opts(method);
     o.poles = poles;
     o.degree = degree;
-    return eng_create(lap, &o);
-}
-
-/* Triangles between any three of n points in a cube: edges with many faces, slivers, vertices in no face. */
-static shape eng_soup(int32_t n, int32_t n_tri, uint64_t seed) {
-    shape s = shape_make(n, n_tri);
-    int32_t i, v[3];
-    for (i = 0; i < n; i++) {
-        const double x = dense_signed(&seed), y = dense_signed(&seed);
-        shape_put_vertex(&s, i, x, y, dense_signed(&seed));
-    }
-    for (i = 0; i < n_tri; i++) {
-        do {
-            int k;
-            for (k = 0; k < 3; k++) v[k] = (int32_t)(dense_random(&seed) % (uint64_t)n);
-        } while (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]);
-        shape_put_triangle(&s, i, v[0], v[1], v[2]);
-    }
-    return s;
-}
-
-/* The shape with vertices that are in no face: the first, the last, and every fifth. */
-static shape eng_with_inert(const shape *b) {
-    const int32_t n = b->n + b->n / 4 + 2;
-    shape s = shape_make(n, b->n_tri);
-    int32_t *to = KIT_NEW(int32_t, b->n), i, k = 0;
-    for (i = 0; i < n; i++) {
-        if (i % 5 == 0 || k == b->n) {
-            shape_put_vertex(&s, i, 9 + i, 8, 7);
-            continue;
-        }
-        memcpy(s.xyz + 3 * i, b->xyz + 3 * k, 3 * sizeof(double));
-        to[k++] = i;
-    }
-    CHECK(k == b->n && to[k - 1] < n - 1);
-    for (i = 0; i < 3 * b->n_tri; i++) s.tri[i] = to[b->tri[i]];
-    return s;
+    return kit_plan(lap, &o);
 }
 
 /* A grid graph with heat leaking out everywhere, and masses over three decades: nothing is conserved, B is diagonal. */
@@ -91,7 +55,7 @@ static hd_laplacian *eng_leaking(int32_t nx, int32_t ny) {
     CHECK(lap && !lap->conserves);
     hd_csr_free(&L, NULL);
     hd_csr_free(&B, NULL);
-    return lap;
+    return kit_own_laplacian(lap);
 }
 
 /* A set of poles by number, see trial_packs. */
@@ -159,7 +123,7 @@ static void eng_large(void) {
     int q, k, z;
     for (q = 0; q < 2; q++) {
         const shape *s = q ? &grid : &ball;
-        hd_laplacian *lap = kit_own_laplacian(test_laplacian(s, op_kinds[q]));
+        hd_laplacian *lap = kit_triangles(s, op_kinds[q]);
         const int32_t n = s->n;
         const double t = 15 * lap->h * lap->h, times[3] = {t, 30 * t, 5 * t};
         double *F = KIT_NEW(double, K * n), *want = KIT_NEW(double, K * n), *u = KIT_NEW(double, K * n), *all = KIT_NEW(double, 3 * n);
@@ -180,17 +144,15 @@ static void eng_large(void) {
             CHECK(eng_ok(heat_times(heat, 3, times, HD_KERNEL_OPERATOR, 0, F, all, 0, &rep), &rep, "large"));
             CHECK_MSG(dense_max_diff(all, want, n) <= 1e-7 * dense_max_abs(want, n), "%s, times: off by %g", eng_name(eng_methods[k]),
                 dense_max_diff(all, want, n));
-            hd_heat_free(heat);
         }
-        hd_heat_free(oracle);
     }
 }
 
 /* Fronts of hundreds of rows, and batches next to each other: few, then many columns, against single ones and the other method. */
 static void eng_batches(void) {
     enum { K = 26 };
-    shape s = kit_own_shape(eng_soup(900, 2700, 6));
-    hd_laplacian *lap = kit_own_laplacian(test_laplacian(&s, HD_LAPLACIAN_VORONOI_COT));
+    shape s = kit_own_shape(trial_jumble(900, 2700, 6));
+    hd_laplacian *lap = kit_triangles(&s, HD_LAPLACIAN_VORONOI_COT);
     hd_heat *direct = eng_plan(lap, HD_METHOD_DIRECT, HD_POLES_DEFAULT, 0), *krylov = eng_plan(lap, HD_METHOD_KRYLOV, HD_POLES_DEFAULT, 0);
     const double t = 3 * lap->h * lap->h;
     const int32_t n = s.n;
@@ -213,8 +175,6 @@ static void eng_batches(void) {
                 dense_max_diff(u + q * n, v, n) / top);
         }
     }
-    hd_heat_free(direct);
-    hd_heat_free(krylov);
 }
 
 /* ---- sets of poles ---- */
@@ -231,7 +191,6 @@ static void eng_sets(void) {
             CHECK(heat_column(heat, 3 * lap->h * lap->h, 5, u, &rep) >= 0);
             CHECK_MSG(rep.degree == k && rep.n_poles == (k + 1) / 2 && rep.poles == (hd_pole_kind)kind, "degree %d of %d", (int)rep.degree, k);
             CHECK_MSG(rep.residual < 1e-12, "degree %d: residual %g", k, rep.residual);
-            hd_heat_free(heat);
         }
     for (k = 0; k < TRIAL_PACKS; k++) {
         hd_heat_opts o = eng_opts(HD_METHOD_DIRECT);
@@ -239,12 +198,11 @@ static void eng_sets(void) {
         const hd_rational kept = set;
         hd_heat *heat;
         o.rational = &set;
-        heat = eng_create(lap, &o);
+        heat = kit_plan(lap, &o);
         memset(&set, 0x55, sizeof set);          /* it was copied */
         CHECK(eng_ok(heat_column(heat, lap->h * lap->h, 3, u, &rep), &rep, "own set"));
         CHECK(rep.poles == HD_POLES_OWN && rep.n_poles == kept.n_poles && rep.degree == kept.degree && rep.error_rational == 0);
         CHECK_MSG(rep.mass_drift == 0 && rep.method == HD_METHOD_DIRECT, "set %d: drift %g", k, rep.mass_drift);
-        hd_heat_free(heat);
     }
 }
 
@@ -266,7 +224,6 @@ static void eng_reports(void) {
             eng_check_report(&rep, eng_methods[k], "report");
             CHECK(rep.error_bound >= rep.error_rational && rep.error_bound >= rep.error_solver && rep.error_bound >= rep.error_rounding);
             if (q % 6 < 4) CHECK(rep.evidence_b != HD_EVIDENCE_NONE && rep.evidence_rounding != HD_EVIDENCE_NONE);
-            hd_heat_free(heat);
         }
 }
 
@@ -342,12 +299,11 @@ static void eng_nothing_to_do(const hd_laplacian *lap, hd_method method) {
         CHECK_MSG(dense_max_diff(u, f, k * k * n) <= 1e-13 * 4, "%s: nothing moves by %g", eng_name(method), dense_max_diff(u, f, k * k * n));
         for (i = 0; i < k * k * n; i++) CHECK(i / n == 1 || u[i] == 0);
     }
-    hd_heat_free(heat);
 }
 
 static void eng_counts(void) {
-    shape ball = kit_own_shape(shape_icosphere(1)), inert = kit_own_shape(eng_with_inert(&ball));
-    hd_laplacian *lap = kit_own_laplacian(test_laplacian(&inert, HD_LAPLACIAN_FEM)), *grid = kit_pair("flat/8/5/0.3 vor");
+    shape inert = kit_own_shape(trial_spare(shape_icosphere(1)));
+    hd_laplacian *lap = kit_triangles(&inert, HD_LAPLACIAN_FEM), *grid = kit_pair("flat/8/5/0.3 vor");
     int k;
     for (k = 0; k < 2; k++) {
         eng_counts_of(lap, eng_methods[k]);
@@ -418,7 +374,7 @@ static void eng_reuse_of(const hd_laplacian *lap, hd_heat_opts *o, const char *w
 
 static void eng_reuse(void) {
     shape s = kit_own_shape(shape_bumpy(2, 8));
-    hd_laplacian *lap = kit_own_laplacian(test_laplacian(&s, HD_LAPLACIAN_FEM));
+    hd_laplacian *lap = kit_triangles(&s, HD_LAPLACIAN_FEM);
     hd_heat_opts o = eng_opts(HD_METHOD_DIRECT);
     hd_rational set = eng_own_set(3);
     eng_reuse_of(lap, &o, "direct");
@@ -437,9 +393,9 @@ static void eng_reuse(void) {
 static void eng_switch(void) {
     enum { K = 40, TIMES = 40 };
     shape s = kit_own_shape(shape_bumpy(3, 7));
-    hd_laplacian *lap = kit_own_laplacian(test_laplacian(&s, HD_LAPLACIAN_FEM));
+    hd_laplacian *lap = kit_triangles(&s, HD_LAPLACIAN_FEM);
     const hd_heat_opts o = eng_opts(HD_METHOD_AUTO);
-    hd_heat *heat = eng_create(lap, &o);
+    hd_heat *heat = kit_plan(lap, &o);
     double *first = KIT_NEW(double, (K + TIMES) * s.n), *u = KIT_NEW(double, (K + TIMES) * s.n), times[TIMES];
     int32_t sources[K], i;
     int round;
@@ -457,7 +413,6 @@ static void eng_switch(void) {
             (rep.error_bound + rep2.error_bound) * dense_max_abs(out + 5 * s.n, s.n));
         if (round) CHECK_MSG(memcmp(first, u, (size_t)(K + TIMES) * (size_t)s.n * sizeof *u) == 0, "round %d: other answers", round);
     }
-    hd_heat_free(heat);
 }
 
 /* ---- many times ---- */
@@ -467,8 +422,8 @@ static void eng_times(void) {
     static const double all[5][7] = {{5, 0.5, 80, 5, 20, 0.5, 11}, {3, 0, 40, -0.0, 1}, {7}, {0, 0}, {4, 4, 4}};
     static const int32_t counts[5] = {7, 5, 1, 2, 3};
     enum { PAD = 2 };
-    shape ball = kit_own_shape(shape_icosphere(1)), s = kit_own_shape(eng_with_inert(&ball));
-    hd_laplacian *lap = kit_own_laplacian(test_laplacian(&s, HD_LAPLACIAN_VORONOI_COT));
+    shape s = kit_own_shape(trial_spare(shape_icosphere(1)));
+    hd_laplacian *lap = kit_triangles(&s, HD_LAPLACIAN_VORONOI_COT);
     const int32_t n = lap->n, ld = n + PAD, source = lap->vertex[lap->n_active / 2];
     double *U = KIT_NEW(double, 8 * ld), *u = KIT_NEW(double, n), *f = kit_random(n, 3), times[7];
     hd_report rep, one;
@@ -495,7 +450,6 @@ static void eng_times(void) {
                 for (i = counts[z] * ld; i < 8 * ld; i++) CHECK(U[i] == 4321);
             }
         CHECK(heat_times(heat, 0, NULL, HD_KERNEL_OPERATOR, source, NULL, u, 0, &rep) == HD_ERR_ARGUMENT);
-        hd_heat_free(heat);
     }
 }
 
@@ -521,23 +475,20 @@ static void eng_times_columns_of(const hd_laplacian *lap, double unit, const cha
             }
         }
     }
-    hd_heat_free(heat);
 }
 
 static void eng_times_columns(void) {
-    shape ball = kit_own_shape(shape_icosphere(2)), s = kit_own_shape(eng_with_inert(&ball));
-    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
+    shape s = kit_own_shape(trial_spare(shape_icosphere(2)));
+    hd_laplacian *lap = kit_triangles(&s, HD_LAPLACIAN_FEM);
     eng_times_columns_of(lap, lap->h * lap->h, "columns and times");
-    hd_laplacian_free(lap);
     lap = eng_leaking(12, 9);
     eng_times_columns_of(lap, 0.02, "columns and times, leaking");
-    hd_laplacian_free(lap);
 }
 
 /* A source without mass at many times. */
 static void eng_times_inert(void) {
-    shape ball = kit_own_shape(shape_icosphere(0)), s = kit_own_shape(eng_with_inert(&ball));
-    hd_laplacian *lap = kit_own_laplacian(test_laplacian(&s, HD_LAPLACIAN_FEM));
+    shape s = kit_own_shape(trial_spare(shape_icosphere(0)));
+    hd_laplacian *lap = kit_triangles(&s, HD_LAPLACIAN_FEM);
     const double times[3] = {0.3, 0.1, 0.2};
     double *u = KIT_NEW(double, 3 * s.n);
     int k, z;
@@ -550,7 +501,6 @@ static void eng_times_inert(void) {
             CHECK(eng_ok(heat_times(heat, 3, times, k ? HD_KERNEL_SYMMETRIC : HD_KERNEL_OPERATOR, 5, NULL, u, 0, &rep), &rep, "inert"));
             for (i = 0; i < 3 * s.n; i++) CHECK(u[i] == (k == 0 && i % s.n == 5));
             CHECK(rep.error_bound == 0 && rep.iterations == 0);
-            hd_heat_free(heat);
         }
     }
 }
@@ -624,7 +574,7 @@ static void eng_threads_of(const shape *s, hd_laplacian_kind kind, hd_heat_opts 
 }
 
 static void eng_threads(void) {
-    shape ball = kit_own_shape(shape_bumpy(3, 6)), soup = kit_own_shape(eng_soup(600, 1200, 4));
+    shape ball = kit_own_shape(shape_bumpy(3, 6)), soup = kit_own_shape(trial_jumble(600, 1200, 4));
     eng_threads_of(&ball, HD_LAPLACIAN_FEM, eng_opts(HD_METHOD_DIRECT), "direct");
     eng_threads_of(&ball, HD_LAPLACIAN_VORONOI_COT, eng_opts(HD_METHOD_KRYLOV), "krylov");
     eng_threads_of(&soup, HD_LAPLACIAN_VORONOI_COT, eng_opts(HD_METHOD_DIRECT), "direct, soup");
@@ -639,7 +589,7 @@ static void eng_extreme_times(void) {
     shape a = kit_own_shape(shape_icosphere(1)), b = kit_own_shape(shape_grid(5, 4, 0.2)), s = kit_own_shape(shape_disjoint(&a, &b, offset));
     int q, k, z;
     for (q = 0; q < 2; q++) {
-        hd_laplacian *lap = kit_own_laplacian(test_laplacian(&s, op_kinds[q]));
+        hd_laplacian *lap = kit_triangles(&s, op_kinds[q]);
         double *f = KIT_NEW(double, s.n), *u = KIT_NEW(double, s.n), mean[2];
         int32_t i, c;
         for (i = 0; i < s.n; i++) f[i] = 1.5 + sin(i);
@@ -659,7 +609,6 @@ static void eng_extreme_times(void) {
                 CHECK_MSG(off <= (z < 6 ? 3e-9 : 1e-8), "%s, t %g: off by %g", eng_name(eng_methods[k]), times[z], off);
                 CHECK(rep.mass_drift < 1e-12);
             }
-            hd_heat_free(heat);
         }
     }
 }
@@ -670,7 +619,7 @@ static void eng_extreme_times(void) {
 static void eng_warnings(void) {
     static const double when[2][2] = {{1e-3, 1e4}, {1e4, 1e-3}};
     shape s = kit_own_shape(shape_icosphere(1));
-    hd_laplacian *lap = kit_own_laplacian(test_laplacian(&s, HD_LAPLACIAN_FEM));
+    hd_laplacian *lap = kit_triangles(&s, HD_LAPLACIAN_FEM);
     double *u = KIT_NEW(double, 2 * s.n), times[2], rest;
     int k, q, z, tol, seen[2] = {0, 0};
     for (k = 0; k < 2; k++) {
@@ -681,7 +630,7 @@ static void eng_warnings(void) {
                 hd_heat *heat;
                 hd_report rep;
                 o.tol = pow(10, -tol);
-                heat = eng_create(lap, &o);
+                heat = kit_plan(lap, &o);
                 for (q = 0; q < 2; q++) {
                     times[q] = when[z][q] * lap->h * lap->h;
                     st = heat_column(heat, times[q], 7, u, &rep);
@@ -694,7 +643,6 @@ static void eng_warnings(void) {
                     seen[st == HD_OK] |= 1 << k;
                 }
                 if (k == 0) CHECK(heat_times(heat, 2, times, HD_KERNEL_OPERATOR, 7, NULL, u, 0, &rep) == worst && rep.status == worst);
-                hd_heat_free(heat);
             }
         }
     }
@@ -704,7 +652,7 @@ static void eng_warnings(void) {
 /* The degree that one of the fields needs serves all; the time that failed is told. */
 static void eng_told(void) {
     shape s = kit_own_shape(shape_icosphere(1));
-    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_VORONOI_COT);
+    hd_laplacian *lap = kit_triangles(&s, HD_LAPLACIAN_VORONOI_COT);
     const double t = lap->h * lap->h, times[3] = {1e-9 * t, 500 * t, 1e-8 * t};
     const int32_t n = s.n;
     double *F = KIT_NEW(double, 2 * n), *u = KIT_NEW(double, 3 * n), mean = 0;
@@ -734,9 +682,7 @@ static void eng_told(void) {
         hd_context ctx;
         rob_progress p;
         memset(&ctx, 0, sizeof ctx);
-        memset(&p, 0, sizeof p);
-        ctx.progress = rob_on_progress;
-        ctx.progress_user = &p;
+        rob_watch(&p, &ctx, 0);
         o = eng_opts(eng_methods[k]);
         o.context = &ctx;
         heat = eng_create(lap, &o);
@@ -746,7 +692,6 @@ static void eng_told(void) {
             (long long)p.solving);
         hd_heat_free(heat);
     }
-    hd_laplacian_free(lap);
 }
 
 /* ---- orders of elimination ---- */
@@ -754,8 +699,8 @@ static void eng_told(void) {
 static void eng_orderings(void) {
     static const hd_ordering kinds[5] = {HD_ORDERING_AUTO, HD_ORDERING_MINIMUM_DEGREE, HD_ORDERING_NESTED_DISSECTION, HD_ORDERING_OWN,
         HD_ORDERING_OWN};
-    shape ball = kit_own_shape(shape_bumpy(2, 8)), s = kit_own_shape(eng_with_inert(&ball));
-    hd_laplacian *lap = kit_own_laplacian(test_laplacian(&s, HD_LAPLACIAN_FEM));
+    shape s = kit_own_shape(trial_spare(shape_bumpy(2, 8)));
+    hd_laplacian *lap = kit_triangles(&s, HD_LAPLACIAN_FEM);
     const int32_t n = s.n, sources[4] = {1, 0, 77, 1};
     const double t = 10 * lap->h * lap->h;
     int32_t *perm = KIT_NEW(int32_t, n), *rows = KIT_NEW(int32_t, n), i, m;
@@ -777,7 +722,7 @@ static void eng_orderings(void) {
                 if (lap->row[perm[i]] >= 0) rows[m++] = lap->row[perm[i]];
             o.ordering = kinds[q];
             o.perm = kinds[q] == HD_ORDERING_OWN ? perm : NULL;
-            heat = eng_create(lap, &o);
+            heat = kit_plan(lap, &o);
             for (i = 0; i < n; i++) perm[i] = -1;    /* it was copied */
             if (!eng_ok(heat_columns(heat, t, HD_KERNEL_OPERATOR, 4, sources, q ? u : first, 0, &rep), &rep, "ordering")) continue;
             CHECK_MSG(q == 0 || dense_max_diff(u, first, 4 * n) <= (k ? 1e-8 : 1e-12), "%s: ordering %d differs by %g", eng_name(eng_methods[k]),
@@ -791,15 +736,14 @@ static void eng_orderings(void) {
                 rep.factor_flops, flops);
             CHECK_MSG(rep.growth > 0.1 && rep.growth < (k ? 1.0000001 : 4.2), "growth %g", rep.growth);
             hd_ldl_free(f);
-            hd_heat_free(heat);
         }
     }
 }
 
 /* What is not a permutation is told with its place. */
 static void eng_bad_perms(void) {
-    shape ball = kit_own_shape(shape_icosphere(0)), s = kit_own_shape(eng_with_inert(&ball));
-    hd_laplacian *lap = kit_own_laplacian(test_laplacian(&s, HD_LAPLACIAN_FEM));
+    shape s = kit_own_shape(trial_spare(shape_icosphere(0)));
+    hd_laplacian *lap = kit_triangles(&s, HD_LAPLACIAN_FEM);
     const int32_t n = s.n;
     int32_t *perm = KIT_NEW(int32_t, n), i, twice = 3;
     double *u = KIT_NEW(double, n);
@@ -839,7 +783,7 @@ static void eng_bad_perms(void) {
 /* ---- the choice ---- */
 
 static hd_method eng_chosen(const hd_laplacian *lap, const hd_heat_opts *o, double t, int32_t k, int times, const char *reason) {
-    hd_heat *heat = eng_create(lap, o);
+    hd_heat *heat = kit_plan(lap, o);
     double *u = KIT_NEW(double, (times ? times : k) * lap->n), *at = KIT_NEW(double, times + 1);
     int32_t *sources = KIT_NEW(int32_t, k), i;
     hd_report rep;
@@ -849,13 +793,12 @@ static hd_method eng_chosen(const hd_laplacian *lap, const hd_heat_opts *o, doub
     else CHECK(heat_columns(heat, t, HD_KERNEL_OPERATOR, k, sources, u, 0, &rep) >= 0);
     CHECK(rep.method != HD_METHOD_AUTO);
     CHECK_MSG(rep.reason && (!reason || strstr(rep.reason, reason)), "%s: %s", eng_name(rep.method), rep.reason ? rep.reason : "no reason");
-    hd_heat_free(heat);
     return rep.method;
 }
 
 static void eng_choice(void) {
     shape s = kit_own_shape(shape_bumpy(3, 2));
-    hd_laplacian *fem = kit_own_laplacian(test_laplacian(&s, HD_LAPLACIAN_FEM)), *voronoi = kit_own_laplacian(test_laplacian(&s, HD_LAPLACIAN_VORONOI_COT));
+    hd_laplacian *fem = kit_triangles(&s, HD_LAPLACIAN_FEM), *voronoi = kit_triangles(&s, HD_LAPLACIAN_VORONOI_COT);
     const double hh = fem->h * fem->h;
     const hd_heat_opts none = eng_opts(HD_METHOD_AUTO);
     hd_rational set = eng_own_set(3);
@@ -888,9 +831,8 @@ static void eng_choice(void) {
         CHECK(eng_chosen(fem, &o, 2 * hh, 2, 0, "asked") == (hd_method)k);
         CHECK(eng_chosen(voronoi, &o, 20 * hh, 1, 3, "asked") == (hd_method)k);
     }
-    heat = eng_create(fem, &none);
+    heat = kit_plan(fem, &none);
     CHECK(heat_column(heat, 0, 3, u, &rep) == HD_OK && rep.method != HD_METHOD_AUTO && rep.reason && rep.factor_nnz == 0);
-    hd_heat_free(heat);
 }
 
 /* Auto, asked for columns one by one at one t, goes over to the factors of the poles after some calls, and stays with them. */
@@ -898,7 +840,7 @@ static void eng_habit(const shape *s, hd_laplacian_kind kind, double c, const ch
     hd_laplacian *lap = kit_own_laplacian(test_laplacian_at(s, s->xyz, kind, 1, NULL));
     const double t = c * lap->h * lap->h;
     const hd_heat_opts none = eng_opts(HD_METHOD_AUTO), krylov = eng_opts(HD_METHOD_KRYLOV), direct = eng_opts(HD_METHOD_DIRECT);
-    hd_heat *heat = eng_create(lap, &none), *asked = eng_create(lap, &krylov), *other = eng_create(lap, &direct), *moving = eng_create(lap, &none);
+    hd_heat *heat = kit_plan(lap, &none), *asked = kit_plan(lap, &krylov), *other = kit_plan(lap, &direct), *moving = kit_plan(lap, &none);
     double *u = KIT_NEW(double, lap->n), *want = KIT_NEW(double, lap->n);
     hd_report rep, rep2;
     int k, expected = 0, round;
@@ -926,16 +868,12 @@ static void eng_habit(const shape *s, hd_laplacian_kind kind, double c, const ch
         CHECK(eng_ok(heat_column(moving, t * (1 + 0.5 * (k % 2)), 3, u, &rep), &rep, what) && rep.method == HD_METHOD_KRYLOV);
         CHECK(eng_ok(heat_column(asked, t, 3, u, &rep), &rep, what) && rep.method == HD_METHOD_KRYLOV && strcmp(rep.reason, "asked for") == 0);
     }
-    hd_heat_free(heat);
-    hd_heat_free(asked);
-    hd_heat_free(other);
-    hd_heat_free(moving);
 }
 
 /* The same within byte limits: never an error and never too many bytes where the first call has an answer, and direct only where
  * its factors fit beside what is there. */
 static void eng_habit_limits(const shape *s) {
-    hd_laplacian *lap = test_laplacian(s, HD_LAPLACIAN_FEM);
+    hd_laplacian *lap = kit_triangles(s, HD_LAPLACIAN_FEM);
     const double t = 30 * lap->h * lap->h;
     double *u = KIT_NEW(double, lap->n), *want = KIT_NEW(double, lap->n);
     hd_heat_opts o = eng_opts(HD_METHOD_DIRECT);
@@ -967,14 +905,13 @@ static void eng_habit_limits(const shape *s) {
         CHECK(ctx.bytes_in_use == 0);
     }
     CHECK_MSG(seen == (1 << HD_METHOD_DIRECT | 1 << HD_METHOD_KRYLOV | 1 << HD_METHOD_ITERATIVE), "seen: %d", seen);
-    hd_laplacian_free(lap);
 }
 
 /* Fields have factors of another set. Where they alternate with columns, no call factorises what the one before has made. */
 static void eng_habit_mixed(const shape *s) {
-    hd_laplacian *lap = kit_own_laplacian(test_laplacian(s, HD_LAPLACIAN_FEM));
+    hd_laplacian *lap = kit_triangles(s, HD_LAPLACIAN_FEM);
     const hd_heat_opts none = eng_opts(HD_METHOD_AUTO);
-    hd_heat *heat = eng_create(lap, &none);
+    hd_heat *heat = kit_plan(lap, &none);
     const double t = 30 * lap->h * lap->h;
     double *u = KIT_NEW(double, lap->n), *f = KIT_NEW(double, lap->n);
     hd_report rep;
@@ -989,7 +926,6 @@ static void eng_habit_mixed(const shape *s) {
     }
     CHECK_MSG(switches <= 1, "%d switches", switches);
     CHECK((last[0] == HD_METHOD_DIRECT) != (last[1] == HD_METHOD_DIRECT));
-    hd_heat_free(heat);
 }
 
 static void eng_habits(void) {
@@ -1048,7 +984,7 @@ static void eng_choice_limits(void) {
     shape s = kit_own_shape(shape_bumpy(3, 2));
     int q;
     for (q = 0; q < 2; q++) {
-        hd_laplacian *lap = kit_own_laplacian(test_laplacian(&s, op_kinds[q]));
+        hd_laplacian *lap = kit_triangles(&s, op_kinds[q]);
         eng_choice_limits_of(lap, 40 * lap->h * lap->h, 1);
         eng_choice_limits_of(lap, 4 * lap->h * lap->h, 9);
     }
@@ -1057,7 +993,7 @@ static void eng_choice_limits(void) {
 /* A plan that once had to do without factors takes them again when there is room: the same bits as a new one. */
 static void eng_limit_lifted(void) {
     shape s = kit_own_shape(shape_bumpy(3, 2));
-    hd_laplacian *lap = test_laplacian(&s, HD_LAPLACIAN_FEM);
+    hd_laplacian *lap = kit_triangles(&s, HD_LAPLACIAN_FEM);
     const double t = 40 * lap->h * lap->h;
     double *u = KIT_NEW(double, lap->n), *want = KIT_NEW(double, lap->n);
     hd_heat_opts o = eng_opts(HD_METHOD_ITERATIVE);
@@ -1087,13 +1023,12 @@ static void eng_limit_lifted(void) {
     CHECK(eng_ok(heat_column(heat, t, 7, u, &rep), &rep, "limit lifted") && rep.method != HD_METHOD_ITERATIVE);
     CHECK(memcmp(u, want, (size_t)lap->n * sizeof *u) == 0);
     hd_heat_free(heat);
-    hd_laplacian_free(lap);
 }
 
 /* ---- errors ---- */
 
 static void eng_no_coordinates(void) {
-    hd_laplacian *own = kit_own_laplacian(eng_leaking(4, 3));
+    hd_laplacian *own = eng_leaking(4, 3);
     int32_t perm[12];
     double u[12];
     hd_heat *heat = NULL;
@@ -1132,7 +1067,7 @@ static void eng_again(void) {
     enum { FIELDS = 40 };
     static const hd_method methods[3] = {HD_METHOD_ITERATIVE, HD_METHOD_ITERATIVE, HD_METHOD_KRYLOV};
     shape ball = kit_own_shape(shape_icosphere(2));
-    hd_laplacian *lap = kit_own_laplacian(test_laplacian(&ball, HD_LAPLACIAN_FEM));
+    hd_laplacian *lap = kit_triangles(&ball, HD_LAPLACIAN_FEM);
     double *F = KIT_NEW(double, FIELDS * (int64_t)ball.n), *u = KIT_NEW(double, FIELDS * (int64_t)ball.n);
     uint64_t seed = 5;
     int32_t k, v;
@@ -1143,7 +1078,7 @@ static void eng_again(void) {
         hd_report rep[2];
         hd_heat *heat;
         if (k == 1) o.solver = HD_SOLVER_COCG;   /* pole by pole; else Lanczos */
-        heat = eng_create(lap, &o);
+        heat = kit_plan(lap, &o);
         for (v = 0; v < 2; v++) CHECK(heat_apply(heat, 3 * lap->h * lap->h, 1, F, 0, u + v * ball.n, 0, rep + v) >= 0);
         CHECK_MSG(rep[0].iterations > 0 && rep[1].iterations == rep[0].iterations, "%lld iterations, then %lld", (long long)rep[0].iterations,
                   (long long)rep[1].iterations);
@@ -1151,7 +1086,6 @@ static void eng_again(void) {
         CHECK(heat_apply(heat, 3 * lap->h * lap->h, FIELDS, F, 0, u, 0, rep + 1) >= 0);
         CHECK_MSG(rep[1].iterations == FIELDS * rep[0].iterations, "%lld iterations for %d fields, %lld for one", (long long)rep[1].iterations, (int)FIELDS, (long long)rep[0].iterations);
         for (v = 1; v < FIELDS; v++) CHECK(memcmp(u, u + v * ball.n, (size_t)ball.n * sizeof *u) == 0);
-        hd_heat_free(heat);
     }
 }
 
@@ -1165,7 +1099,7 @@ static void eng_constant_first(void) {
     uint64_t seed = 3;
     int32_t v, last;
     for (v = 0; v < s.n; v++) s.xyz[3 * v + 1] *= 1e-3;      /* slivers, where solves round much */
-    lap = test_laplacian(&s, HD_LAPLACIAN_VORONOI_COT);
+    lap = kit_triangles(&s, HD_LAPLACIAN_VORONOI_COT);
     for (v = 0; v < K * s.n; v++) f[v] = dense_signed(&seed);
     for (last = 0; last < 2; last++) {
         hd_heat *heat = eng_plan(lap, HD_METHOD_KRYLOV, HD_POLES_DEFAULT, 0);
@@ -1175,10 +1109,8 @@ static void eng_constant_first(void) {
         for (v = 0; v < s.n; v++) one[v] = 1;
         CHECK(hd_heat_apply(heat, 1, &t, K, f, 0, u, 0, &rep, NULL) >= 0 && rep.evidence_rounding == HD_EVIDENCE_MEASURED);
         rounding[last] = rep.error_rounding;
-        hd_heat_free(heat);
     }
     CHECK_MSG(fabs(rounding[0] - rounding[1]) <= 1e-6 * rounding[0], "rounding %g with the constant first, %g with it last", rounding[0], rounding[1]);
-    hd_laplacian_free(lap);
 }
 
 static void test_engines(void) {

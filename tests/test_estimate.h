@@ -480,7 +480,7 @@ static void est_decades(void) {
     double before = 0, flops = 0, t[TIMES];
     int decades, q;
     for (decades = 2; decades <= 290; decades += 24) {
-        hd_heat *heat = eng_create(lap, NULL);
+        hd_heat *heat = kit_plan(lap, NULL);
         hd_estimate to;
         for (q = 0; q < TIMES; q++) t[q] = lap->h * lap->h * pow(10, decades * q / (TIMES - 1.0));
         CHECK(hd_heat_estimate(heat, HD_QUERY_COLUMNS, TIMES, t, 1, &to, NULL) == HD_OK);
@@ -488,7 +488,6 @@ static void est_decades(void) {
                   to.cost[HD_METHOD_KRYLOV].seconds, before, to.cost[HD_METHOD_KRYLOV].flops, flops);
         before = to.cost[HD_METHOD_KRYLOV].seconds;
         flops = to.cost[HD_METHOD_KRYLOV].flops;
-        hd_heat_free(heat);
     }
 }
 

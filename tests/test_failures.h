@@ -77,20 +77,13 @@ static void fail_end(fail_world *f, const fail_case *c) {
     test_memory_done(&f->m, &f->ctx, c->script);
 }
 
-static void fail_watch(fail_world *f, int64_t stop_at) {
-    f->p.stop_at = stop_at;
-    f->p.answer = HD_PROGRESS_CANCEL;
-    f->ctx.progress = rob_on_progress;
-    f->ctx.progress_user = &f->p;
-}
-
 static void fail_clean(fail_world *f, const fail_case *c, fail_want *want) {
     fail_begin(f, c);
     want->out = (double *)dense_alloc((int64_t)f->w.out_size, 1);
     want->again = (double *)dense_alloc((int64_t)f->w.out_size, 1);
     want->before = f->ctx.bytes_in_use;
     want->calls = f->m.calls;
-    fail_watch(f, 0);
+    rob_watch(&f->p, &f->ctx, 0);
     CHECK_MSG(call_test(&f->w, c->script) >= 0, "%s: %s", c->script, f->w.e.text);
     CHECK_MSG(f->ctx.bytes_in_use == f->m.bytes && f->ctx.allocations == (uint64_t)f->m.calls, "%s: other books", c->script);
     want->calls = f->m.calls - want->calls;
@@ -178,7 +171,7 @@ static void fail_each_progress(fail_world *f, const fail_case *c, const fail_wan
     hd_status st;
     for (k = 1; k <= want->progress; k++) {
         fail_begin(f, c);
-        fail_watch(f, k);
+        rob_watch(&f->p, &f->ctx, k);
         st = call_test(&f->w, c->script);
         CHECK_MSG(st == HD_ERR_CANCELLED, "%s: cancelled at %lld, but %s", c->script, (long long)k, hd_status_name(st));
         CHECK_MSG(f->p.calls == k, "%s: cancelled at %lld, but asked %lld times", c->script, (long long)k, (long long)f->p.calls);
@@ -389,7 +382,7 @@ static void fail_minus_zero(void) {
     static const int32_t i[2] = {0, 3}, j[2] = {5, 3};
     static const double t = -0.0;
     double K[2], d[2];
-    hd_laplacian *lap = kit_own_laplacian(test_laplacian(&fail_data.s, HD_LAPLACIAN_VORONOI_COT));
+    hd_laplacian *lap = kit_triangles(&fail_data.s, HD_LAPLACIAN_VORONOI_COT);
     hd_heat *heat = NULL;
     CHECK(hd_heat_create(&heat, lap, NULL, NULL) == HD_OK);
     CHECK(hd_heat_pairs(heat, HD_DISTANCE_CLASSICAL, 1, &t, 2, i, j, K, d, NULL, NULL) == HD_OK);

@@ -114,7 +114,7 @@ static double gall_mean_edge(const shape_poly *s) {
 /* The heat of the values of phi at the sources above the least one of their component, with the same border as the heat of the sources. */
 static void gall_dense_values(const double *L, const double *mass, double t, hd_geodesic_border border, const char *held, const double *phi, const int32_t *component,
                               const int32_t *sources, int32_t k, int32_t n, double *v) {
-    double *one = DENSE_NEW(double, n), *least = DENSE_NEW(double, n);
+    double *one = KIT_NEW(double, n), *least = KIT_NEW(double, n);
     int32_t i, q, p;
     for (i = 0; i < n; i++) least[i] = HUGE_VAL;
     for (i = 0; i < n; i++) v[i] = 0;
@@ -130,16 +130,14 @@ static void gall_dense_values(const double *L, const double *mass, double t, hd_
         gall_dense_heat(L, mass, t, held, sources + q, 1, n, one);
         for (i = 0; i < n; i++) v[i] += mean * one[i] * (phi[sources[q]] - least[component[sources[q]]]);
     }
-    free(one);
-    free(least);
 }
 
 /* held: marks of the border. border: which of the three conditions. */
 static void gall_dense_distance(const shape_poly *s, double lambda, double t, hd_geodesic_border border, const char *held, const int32_t *sources, int32_t k,
                                 double *d) {
-    double *mass = DENSE_NEW(double, s->n), *L = poly_dense(s, lambda, mass), *u = DENSE_NEW(double, s->n), *w = DENSE_NEW(double, s->n), *phi = DENSE_NEW(double, s->n);
-    double *H = poly_dense(s, lambda, mass), *v = DENSE_NEW(double, s->n);
-    int32_t *component = DENSE_NEW(int32_t, s->n), i;
+    double *mass = KIT_NEW(double, s->n), *L = poly_dense(s, lambda, mass), *u = KIT_NEW(double, s->n), *w = KIT_NEW(double, s->n), *phi = KIT_NEW(double, s->n);
+    double *H = poly_dense(s, lambda, mass), *v = KIT_NEW(double, s->n);
+    int32_t *component = KIT_NEW(int32_t, s->n), i;
     gall_components(s, component);
     gall_dense_heat(L, mass, t, border == HD_GEODESIC_BORDER_DIRICHLET ? held : NULL, sources, k, s->n, u);
     if (border == HD_GEODESIC_BORDER_MEAN) {
@@ -157,14 +155,8 @@ static void gall_dense_distance(const shape_poly *s, double lambda, double t, hd
     dense_backward(L, phi, s->n);
     gall_dense_values(H, mass, t, border, held, phi, component, sources, k, s->n, v);
     geo_dense_from(NULL, u, v, phi, component, sources, k, s->n, d);
-    free(mass);
     free(L);
     free(H);
-    free(v);
-    free(u);
-    free(w);
-    free(phi);
-    free(component);
 }
 
 /* Marks the ends of edges with one face. */

@@ -23,14 +23,12 @@ static void heat_shuffled_for(void *user, int64_t n_tasks, hd_task task, void *a
 
 /* ---- against the truth ---- */
 
+#define HEAT_PAIRS "shape=bumpy/1/3|split/6/1 op=fem|vor|cot query="
 static const case_row heat_rows[] = {
     /* every solver with every kind of poles */
-    {"shape=bumpy/1/3|split/6/1 op=fem|vor|cot query=column kernel=operator|symmetric solver=auto|cocg|cocr|minres|lanczos "
-     "th=0.3|2|30|400|3000|1e4", 1e-6, 0, 0},
-    {"shape=bumpy/1/3|split/6/1 op=fem|vor|cot query=apply field=random|smooth solver=auto|cocg|cocr|minres|lanczos "
-     "th=0.3|2|30|400|3000|1e4", 1e-6, 0, 0},
-    {"shape=bumpy/1/3|split/6/1 op=fem|vor|cot query=column|apply solver=auto|cocg|cocr|minres poles=uniform|kernel degree=5|9|13 "
-     "th=0.3|2|30|1e4", 3e-3, 0, 0},
+    {HEAT_PAIRS "column kernel=operator|symmetric solver=auto|cocg|cocr|minres|lanczos th=0.3|2|30|400|3000|1e4", 1e-6, 0, 0},
+    {HEAT_PAIRS "apply field=random|smooth solver=auto|cocg|cocr|minres|lanczos th=0.3|2|30|400|3000|1e4", 1e-6, 0, 0},
+    {HEAT_PAIRS "column|apply solver=auto|cocg|cocr|minres poles=uniform|kernel degree=5|9|13 th=0.3|2|30|1e4", 3e-3, 0, 0},
     /* all degrees, where the rational error is what counts; of degree 14 a tolerance of 1e-13 is below rounding */
     {"shape=ico/1 op=vor query=column|apply solver=cocg tol=1e-13 poles=uniform|kernel degree=4|5|6|7|8|9|10|11|12|13|14 th=3", 1e-2, 0, 1},
     {"shape=ico/1 op=vor query=column|apply solver=cocg tol=1e-13 poles=uniform|kernel degree=2|3 th=3", 0, 0, 8},

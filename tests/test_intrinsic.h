@@ -21,7 +21,7 @@ static hd_laplacian *tri_make(const shape *s, hd_laplacian_kind kind, int mode) 
     hd_laplacian *lap = NULL;
     hd_error e;
     CHECK_MSG(tri_try(&lap, s, kind, mode, 0, NULL, &e) == HD_OK, "%s", e.text);
-    return lap;
+    return kit_own_laplacian(lap);
 }
 
 /* Stretched along x, so that its triangles become slivers. */
@@ -155,17 +155,16 @@ static void tri_plane(void) {
     for (k = 0; k < 3; k++) {
         shape s = kit_own_shape(shape_grid(11, 9, 0.4)), d;
         tri_stretch(&s, factors[k]);
-        d = tri_planar_delaunay(s.xyz, s.n);
+        d = kit_own_shape(tri_planar_delaunay(s.xyz, s.n));
         CHECK(d.n_tri == s.n_tri);
         for (q = 0; q < 3; q++) {
-            hd_laplacian *plain = kit_own_laplacian(tri_make(&d, op_kinds[q], TRI_PLAIN)), *lap = kit_own_laplacian(tri_make(&s, op_kinds[q], TRI_DELAUNAY));
+            hd_laplacian *plain = tri_make(&d, op_kinds[q], TRI_PLAIN), *lap = tri_make(&s, op_kinds[q], TRI_DELAUNAY);
             const double worst = tri_differ(plain, lap, NULL);
             CHECK_MSG(worst < 1e-12, "stretched by %g, kind %d: off by %g", factors[k], q, worst);
             CHECK(lap->mesh.n_sheets == 1 && lap->mesh.n_self_edges == 0 && lap->mesh.n_mollified == 0 && lap->mesh.mollify_epsilon == 0);
             CHECK(fabs(lap->mesh.smallest_intrinsic_angle - plain->mesh.smallest_angle) < 1e-12 && lap->mesh.n_flips > 0);
             CHECK(lap->mesh.n_negative_weights == plain->mesh.n_negative_weights);
         }
-        shape_free(&d);
     }
 }
 
@@ -179,7 +178,7 @@ static void tri_closed(void) {
         int64_t negative;
         tri_stretch(&s, factors[k]);
         for (q = 0; q < 3; q++) {
-            hd_laplacian *plain = kit_own_laplacian(tri_make(&s, op_kinds[q], TRI_PLAIN)), *lap[3];
+            hd_laplacian *plain = tri_make(&s, op_kinds[q], TRI_PLAIN), *lap[3];
             negative = plain->mesh.n_negative_weights;
             for (mode = TRI_DELAUNAY; mode <= TRI_TUFTED; mode++) {
                 const hd_mesh_report *r, *p = &plain->mesh;
@@ -192,8 +191,6 @@ static void tri_closed(void) {
                 CHECK(r->n_sheets == 1 && r->smallest_intrinsic_angle > r->smallest_angle && r->n_flips >= negative && negative > 0);
             }
             CHECK(tri_differ(lap[TRI_DELAUNAY], lap[TRI_TUFTED], NULL) == 0);
-            hd_laplacian_free(lap[TRI_DELAUNAY]);
-            hd_laplacian_free(lap[TRI_TUFTED]);
         }
     }
 }
@@ -217,7 +214,7 @@ static void tri_same_report(void) {
     shape_put_triangle(&t, m++, 3, 3, 4);
     t.n_tri = m;
     for (mode = TRI_DELAUNAY; mode <= TRI_TUFTED; mode++) {
-        hd_laplacian *plain = kit_own_laplacian(tri_make(&t, HD_LAPLACIAN_FEM, TRI_PLAIN)), *lap = kit_own_laplacian(tri_make(&t, HD_LAPLACIAN_FEM, mode));
+        hd_laplacian *plain = tri_make(&t, HD_LAPLACIAN_FEM, TRI_PLAIN), *lap = tri_make(&t, HD_LAPLACIAN_FEM, mode);
         const hd_mesh_report *p = &plain->mesh, *r = &lap->mesh;
         CHECK(p->n_faces == r->n_faces && p->n_faces_used == r->n_faces_used && p->n_repeated_corner == r->n_repeated_corner);
         CHECK(p->n_zero_area == r->n_zero_area && p->n_repeated_face == r->n_repeated_face && p->n_edges == r->n_edges);
@@ -238,8 +235,8 @@ static void tri_eigenvalues(void) {
     double off[2] = {0, 0};
     int k;
     tri_stretch(&s, 0.12);
-    mid = shape_subdivide(&s);
-    fine = shape_subdivide(&mid);
+    mid = kit_own_shape(shape_subdivide(&s));
+    fine = kit_own_shape(shape_subdivide(&mid));
     lap[0] = tri_make(&s, HD_LAPLACIAN_FEM, TRI_PLAIN);
     lap[1] = tri_make(&s, HD_LAPLACIAN_FEM, TRI_DELAUNAY);
     lap[2] = tri_make(&fine, HD_LAPLACIAN_FEM, TRI_DELAUNAY);
@@ -255,12 +252,7 @@ static void tri_eigenvalues(void) {
         CHECK_MSG(fabs(delaunay / best - 1) < 0.25, "eigenvalue %d: %g, refined %g, plain %g", k, delaunay, best, plain);
     }
     CHECK_MSG(off[1] < 0.9 * off[0], "relative errors of the eigenvalues sum to %g, those of the slivers to %g", off[1], off[0]);
-    for (k = 0; k < 3; k++) {
-        dense_pair_free(pair + k);
-        hd_laplacian_free(lap[k]);
-    }
-    shape_free(&mid);
-    shape_free(&fine);
+    for (k = 0; k < 3; k++) dense_pair_free(pair + k);
 }
 
 /* ---- the cover ---- */
@@ -298,25 +290,20 @@ static void tri_books(void) {
     for (pages = 3; pages <= 5; pages++) {
         shape good = kit_own_shape(tri_book(pages, angle, 4, 0, 1)), bad = kit_own_shape(tri_book(pages, angle, 5, 0.35, 4)), r;
         int32_t *to = KIT_NEW(int32_t, bad.n);
-        r = op_renumbered(&bad, 12, to);
+        r = kit_own_shape(op_renumbered(&bad, 12, to));
         for (q = 0; q < 3; q++) {
-            hd_laplacian *plain = kit_own_laplacian(tri_make(&good, op_kinds[q], TRI_PLAIN)), *lap = tri_make(&good, op_kinds[q], TRI_TUFTED), *b;
+            hd_laplacian *plain = tri_make(&good, op_kinds[q], TRI_PLAIN), *lap = tri_make(&good, op_kinds[q], TRI_TUFTED), *b;
             CHECK(lap->mesh.n_sheets == 2 && lap->mesh.n_nonmanifold_edges == 4 && lap->mesh.n_flips == 0);
             CHECK_MSG(tri_differ(plain, lap, NULL) < 1e-13, "%d pages: off by %g", pages, tri_differ(plain, lap, NULL));
-            hd_laplacian_free(lap);
             lap = tri_make(&bad, op_kinds[q], TRI_TUFTED);
             b = tri_make(&r, op_kinds[q], TRI_TUFTED);
             tri_properties(lap, 1, 1e-12, "book");
             CHECK(lap->mesh.n_nonmanifold_edges == 5 && lap->mesh.n_flips > 0 && lap->n_components == 1);
             CHECK_MSG(tri_differ(lap, b, to) < 1e-11, "%d pages renumbered: off by %g", pages, tri_differ(lap, b, to));
-            hd_laplacian_free(lap);
-            hd_laplacian_free(b);
             lap = tri_make(&bad, op_kinds[q], TRI_DELAUNAY);
             tri_properties(lap, 0, 1e-12, "book with a boundary");
             CHECK(lap->mesh.n_sheets == 2);
-            hd_laplacian_free(lap);
         }
-        shape_free(&r);
     }
 }
 
@@ -326,15 +313,14 @@ static void tri_cover_of_closed(void) {
     shape ball = kit_own_shape(shape_bumpy(2, 4)), book = kit_own_shape(tri_book(3, angle, 2, 0, 1)), both;
     int q, mode;
     tri_stretch(&ball, 5);
-    both = shape_disjoint(&ball, &book, offset);
+    both = kit_own_shape(shape_disjoint(&ball, &book, offset));
     for (q = 0; q < 3; q++) {
         for (mode = TRI_DELAUNAY; mode <= TRI_TUFTED; mode++) {
-            hd_laplacian *alone = kit_own_laplacian(tri_make(&ball, op_kinds[q], mode)), *lap = kit_own_laplacian(tri_make(&both, op_kinds[q], mode));
+            hd_laplacian *alone = tri_make(&ball, op_kinds[q], mode), *lap = tri_make(&both, op_kinds[q], mode);
             CHECK(alone->mesh.n_sheets == 1 && lap->mesh.n_sheets == 2 && lap->mesh.n_flips > alone->mesh.n_flips && alone->mesh.n_flips > 0);
             CHECK_MSG(tri_differ(alone, lap, NULL) < 1e-12, "kind %d, mode %d: off by %g", q, mode, tri_differ(alone, lap, NULL));
         }
     }
-    shape_free(&both);
 }
 
 /* An obtuse triangle and its back: the long edge goes, an edge from the obtuse corner to itself comes. By hand, with the angles a, b at its ends:
@@ -348,7 +334,7 @@ static void tri_obtuse(void) {
     memcpy(s.xyz, xyz, sizeof xyz);
     memcpy(s.tri, tri, sizeof tri);
     for (q = 0; q < 3; q++) {
-        hd_laplacian *lap = kit_own_laplacian(tri_make(&s, op_kinds[q], TRI_TUFTED)), *open = kit_own_laplacian(tri_make(&s, op_kinds[q], TRI_DELAUNAY)), *plain = kit_own_laplacian(tri_make(&s, op_kinds[q], TRI_PLAIN));
+        hd_laplacian *lap = tri_make(&s, op_kinds[q], TRI_TUFTED), *open = tri_make(&s, op_kinds[q], TRI_DELAUNAY), *plain = tri_make(&s, op_kinds[q], TRI_PLAIN);
         CHECK(lap->mesh.n_self_edges == 1 && lap->mesh.n_flips == 1 && lap->mesh.n_sheets == 2);
         CHECK(fabs(op_l(lap, 0, 2) + tan_a / 2) < 1e-15 && fabs(op_l(lap, 1, 2) + tan_b / 2) < 1e-15 && op_l(lap, 0, 1) == 0);
         CHECK(open->mesh.n_flips == 0 && tri_differ(open, plain, NULL) < 1e-15 && open->mesh.n_negative_weights == 1);
@@ -378,7 +364,6 @@ static void tri_b_ratio(void) {
     CHECK(dense_pair_solve(&pair, B, D, n));
     for (i = 0; i < n; i++) CHECK_MSG(pair.lambda[i] >= lap->b_ratio * (1 - 1e-12), "%g below %g", pair.lambda[i], lap->b_ratio);
     dense_pair_free(&pair);
-    hd_laplacian_free(lap);
 }
 
 /* A strip of n x 3 cells, glued after half a turn, or (two_sided) after a whole one. */
@@ -406,7 +391,7 @@ static shape tri_strip(int32_t n, int two_sided, double jitter) {
 /* Of all triangulations of a surface the Delaunay one has the least Dirichlet energy, whatever the values on the vertices (Rippa 1990): the plain L minus
  * the intrinsic one is positive semi-definite. */
 static void tri_energy_of(const shape *s, int mode, const char *what) {
-    hd_laplacian *plain = kit_own_laplacian(tri_make(s, HD_LAPLACIAN_VORONOI_COT, TRI_PLAIN)), *lap = kit_own_laplacian(tri_make(s, HD_LAPLACIAN_VORONOI_COT, mode));
+    hd_laplacian *plain = tri_make(s, HD_LAPLACIAN_VORONOI_COT, TRI_PLAIN), *lap = tri_make(s, HD_LAPLACIAN_VORONOI_COT, mode);
     const int32_t n = plain->n_active;
     double *a = test_dense(&plain->L, NULL), *b = test_dense(&lap->L, NULL), *one = DENSE_NEW(double, (int64_t)n * n), top;
     dense_pair pair;
@@ -426,7 +411,7 @@ static void tri_energy(void) {
     shape s = kit_own_shape(shape_bumpy(2, 9)), open = kit_own_shape(shape_grid(9, 8, 0.4)), strip = kit_own_shape(tri_strip(14, 0, 0.3)), book;
     tri_stretch(&s, 7);
     tri_stretch(&open, 5);
-    book = tri_book(3, angle, 5, 0.3, 3);
+    book = kit_own_shape(tri_book(3, angle, 5, 0.3, 3));
     tri_energy_of(&s, TRI_DELAUNAY, "ball");
     tri_energy_of(&open, TRI_DELAUNAY, "rectangle");
     tri_energy_of(&open, TRI_TUFTED, "rectangle, tufted");
@@ -434,7 +419,6 @@ static void tri_energy(void) {
     tri_energy_of(&strip, TRI_TUFTED, "Moebius, tufted");
     tri_energy_of(&book, TRI_DELAUNAY, "book");
     tri_energy_of(&book, TRI_TUFTED, "book, tufted");
-    shape_free(&book);
 }
 
 static void tri_moebius(void) {
@@ -442,7 +426,7 @@ static void tri_moebius(void) {
     for (q = 0; q < 3; q++) {
         for (mode = TRI_DELAUNAY; mode <= TRI_TUFTED; mode++) {
             shape s = kit_own_shape(tri_strip(14, 0, 0.3)), two = kit_own_shape(tri_strip(14, 1, 0.3)), turned = kit_own_shape(tri_strip(14, 1, 0.3));
-            hd_laplacian *a = kit_own_laplacian(tri_make(&s, op_kinds[q], mode)), *b, *c;
+            hd_laplacian *a = tri_make(&s, op_kinds[q], mode), *b, *c;
             int32_t f;
             CHECK(a->mesh.n_boundary_loops == 1 && a->mesh.n_sheets == 2 && a->mesh.n_nonmanifold_edges == 0 && a->mesh.n_flips > 0 && a->n_components == 1);
             tri_properties(a, mode == TRI_TUFTED, 1e-12, "Moebius");
@@ -456,8 +440,6 @@ static void tri_moebius(void) {
             CHECK(b->mesh.n_boundary_loops == 2 && b->mesh.n_sheets == (mode == TRI_TUFTED ? 2 : 1) && c->mesh.n_sheets == b->mesh.n_sheets);
             CHECK(b->mesh.n_misoriented_edges == 0 && c->mesh.n_misoriented_edges > 10 && tri_differ(b, c, NULL) < 1e-12);
             tri_properties(b, mode == TRI_TUFTED, 1e-12, "strip");
-            hd_laplacian_free(b);
-            hd_laplacian_free(c);
         }
     }
 }
@@ -486,16 +468,12 @@ static void tri_invariance(void) {
                 for (p = 0; a->L.nnz == b->L.nnz && p < a->L.nnz; p++) worst = fmax(worst, fabs(a->L.val[p] - b->L.val[p]));
                 for (i = 0; i < a->n_active; i++) worst = fmax(worst, fabs(a->mass[i] * unit - b->mass[i]) / (a->mass[i] * unit));
                 CHECK_MSG(worst < tol, "mode %d, kind %d, scale %g: off by %g", mode, q, scales[k], worst);
-                hd_laplacian_free(b);
                 shape_free(&r);
             }
-            hd_laplacian_free(a);
             r = op_renumbered(&open, 31, to);
             a = tri_make(&open, op_kinds[q], mode);
             b = tri_make(&r, op_kinds[q], mode);
             CHECK_MSG(tri_differ(a, b, to) < 1e-12, "mode %d, kind %d renumbered: off by %g", mode, q, tri_differ(a, b, to));
-            hd_laplacian_free(a);
-            hd_laplacian_free(b);
             shape_free(&r);
         }
     }
@@ -508,7 +486,7 @@ static void tri_units(void) {
     for (k = 0; k < 4; k++) {
         for (mode = TRI_DELAUNAY; mode <= TRI_TUFTED; mode++) {
             shape s = kit_own_shape(tri_book(3, angle, 4, 0.3, 3));
-            hd_laplacian *a = kit_own_laplacian(tri_make(&s, HD_LAPLACIAN_FEM, mode)), *b;
+            hd_laplacian *a = tri_make(&s, HD_LAPLACIAN_FEM, mode), *b;
             const double scale = ldexp(1, (int)exponents[k]);
             int32_t i;
             for (i = 0; i < 3 * s.n; i++) s.xyz[i] *= scale;
@@ -516,7 +494,6 @@ static void tri_units(void) {
             if (!a || !b) continue;
             CHECK(a->L.nnz == b->L.nnz && memcmp(a->L.val, b->L.val, (size_t)a->L.nnz * sizeof(double)) == 0 && b->h == a->h * scale);
             for (i = 0; i < a->n_active; i++) CHECK(b->mass[i] == a->mass[i] * scale * scale);
-            hd_laplacian_free(b);
         }
     }
 }
@@ -540,7 +517,7 @@ static void tri_left_out(void) {
     shape_put_triangle(&t, m++, 0, 1, 2);                        /* collinear */
     for (q = 0; q < 3; q++) {
         for (mode = TRI_DELAUNAY; mode <= TRI_TUFTED; mode++) {
-            hd_laplacian *a = kit_own_laplacian(tri_make(&s, op_kinds[q], mode)), *b = kit_own_laplacian(tri_make(&t, op_kinds[q], mode));
+            hd_laplacian *a = tri_make(&s, op_kinds[q], mode), *b = tri_make(&t, op_kinds[q], mode);
             CHECK(b->mesh.n_repeated_face == 2 && b->mesh.n_zero_area == 2 && b->mesh.n_repeated_corner == 1 && b->mesh.n_inert == 3);
             CHECK(b->n_active == s.n && tri_differ(a, b, NULL) == 0 && a->h == b->h);
         }
@@ -649,7 +626,7 @@ static double tri_smallest_heat(const hd_laplacian *lap, double t, int32_t colum
 }
 
 static void tri_principle_of(const shape *s, int mode, double h2, int32_t columns, int plain_fails, const char *what) {
-    hd_laplacian *plain = kit_own_laplacian(tri_make(s, HD_LAPLACIAN_VORONOI_COT, TRI_PLAIN)), *lap = kit_own_laplacian(tri_make(s, HD_LAPLACIAN_VORONOI_COT, mode));
+    hd_laplacian *plain = tri_make(s, HD_LAPLACIAN_VORONOI_COT, TRI_PLAIN), *lap = tri_make(s, HD_LAPLACIAN_VORONOI_COT, mode);
     const double t = h2 * plain->h * plain->h;
     double bound, bound_plain, least, least_plain;
     least = tri_smallest_heat(lap, t, columns, &bound);
@@ -699,7 +676,7 @@ static void tri_maximum_principle(void) {
         s = tri_file(names[q]);
         for (k = 0; s.xyz && k < 3; k++) tri_principle_of(&s, q ? TRI_TUFTED : TRI_DELAUNAY, times[k], 6, k == 0 && q, names[q]);
         if (s.xyz) {
-            hd_laplacian *lap = kit_own_laplacian(tri_make(&s, HD_LAPLACIAN_FEM, TRI_TUFTED));
+            hd_laplacian *lap = tri_make(&s, HD_LAPLACIAN_FEM, TRI_TUFTED);
             tri_properties(lap, 1, 1e-4, names[q]);
         }
         shape_free(&s);
@@ -744,7 +721,7 @@ static hd_laplacian *tri_points(const double *xyz, int32_t n, hd_laplacian_kind 
     hd_laplacian *lap = NULL;
     hd_error e;
     CHECK_MSG(tri_points_try(&lap, xyz, n, kind, NULL, &e) == HD_OK, "%s", e.text);
-    return lap;
+    return kit_own_laplacian(lap);
 }
 
 /* Points of a plane, tilted in space: away from the border all stars agree with the Delaunay triangulation of all points. */
@@ -760,7 +737,7 @@ static void tri_points_plane(void) {
             op_rotate(d.xyz + 3 * i, 2);
         }
         for (q = 0; q < 3; q++) {
-            hd_laplacian *want = kit_own_laplacian(tri_make(&d, op_kinds[q], TRI_PLAIN)), *lap = kit_own_laplacian(tri_points(s.xyz, s.n, op_kinds[q]));
+            hd_laplacian *want = tri_make(&d, op_kinds[q], TRI_PLAIN), *lap = tri_points(s.xyz, s.n, op_kinds[q]);
             double worst = 0;
             int64_t p;
             CHECK(lap->n_active == s.n && lap->mesh.n_sheets == 2 && lap->n_components == 1);
@@ -811,7 +788,7 @@ static void tri_points_sphere(void) {
     CHECK(dense_pair_solve(&pair, test_dense(&lap->L, NULL), test_dense_mass(lap), lap->n_active));
     tri_sort(pair.lambda, lap->n_active);
     for (k = 1; k <= 8; k++) CHECK_MSG(fabs(pair.lambda[k] / (k <= 3 ? 2 : 6) - 1) < 0.06, "eigenvalue %d: %g", k, pair.lambda[k]);
-    r = op_renumbered(&s, 5, to);
+    r = kit_own_shape(op_renumbered(&s, 5, to));
     other = tri_points(r.xyz, r.n, HD_LAPLACIAN_VORONOI_COT);
     {   /* which of the copies of a face meet is told by their numbers, where neighbours do not agree; so this is not to the last digits */
         double *u = KIT_NEW(double, s.n), *v = KIT_NEW(double, s.n), *x = KIT_NEW(double, s.n), worst = 0;
@@ -823,9 +800,6 @@ static void tri_points_sphere(void) {
         CHECK_MSG(worst < 1e-3, "renumbered: off by %g", worst);
     }
     dense_pair_free(&pair);
-    hd_laplacian_free(lap);
-    hd_laplacian_free(other);
-    shape_free(&r);
 }
 
 /* Points in one place, on a line, too few; noise; a plane seen edge on. */

@@ -1271,13 +1271,9 @@ static int ldl_survives_at(const ldl_problem *p, hd_c64 *want, int cancel, int b
     ctx.parallel_user = &calls;
     if (reverse) ctx.parallel_for = sparse_reverse_for;
     f = ldl_make(&p->a, &o, "survives");
-    memset(&progress, 0, sizeof progress);
-    progress.stop_at = k;
-    progress.answer = HD_PROGRESS_CANCEL;
     if (before == 1) CHECK(hd_ldl_factor_complex(f, p->k, p->val, NULL, NULL) == HD_OK);
     if (before == 2) CHECK(hd_ldl_factor(f, p->real, NULL, NULL) == HD_OK);
-    ctx.progress_user = &progress;
-    if (cancel) ctx.progress = rob_on_progress;
+    if (cancel) rob_watch(&progress, &ctx, k);
     else if (k) m.fail_at = m.calls + k;
     if (k) {
         st = hd_ldl_factor_complex(f, p->k, p->val, NULL, &e);
@@ -1327,11 +1323,7 @@ static void ldl_cancelled(void) {
             hd_ldl *f = ldl_mark;
             rob_progress progress;
             hd_error e;
-            memset(&progress, 0, sizeof progress);
-            progress.stop_at = k;
-            progress.answer = HD_PROGRESS_CANCEL;
-            ctx.progress = rob_on_progress;
-            ctx.progress_user = &progress;
+            rob_watch(&progress, &ctx, k);
             st = hd_ldl_analyse(&f, &a, &o, NULL, &e);
             CHECK((st == HD_OK || st == HD_ERR_CANCELLED) && e.status == st && (st == HD_OK) == (f != ldl_mark));
             if (st == HD_OK) hd_ldl_free(f);
@@ -1487,7 +1479,7 @@ static void ldl_meshes(void) {
     const shape *grid = kit_shape("flat/141/141/0.3"), *plate = kit_shape("flat/20/30/0.2");
     const shape two = kit_own_shape(shape_disjoint(kit_shape("bumpy/3/1"), plate, offset));
     ldl_mesh_of(grid, kit_pair("flat/141/141/0.3 fem"), 0, "grid of 20 thousand");
-    ldl_mesh_of(&two, kit_own_laplacian(test_laplacian(&two, HD_LAPLACIAN_VORONOI_COT)), 0, "two pieces");
+    ldl_mesh_of(&two, kit_triangles(&two, HD_LAPLACIAN_VORONOI_COT), 0, "two pieces");
     ldl_mesh_of(plate, kit_pair("flat/20/30/0.2 cot"), 1, "all rows at one point");    /* nothing to dissect by, and still right */
 }
 

@@ -100,7 +100,7 @@ static void mov_errors(void) {
     hd_laplacian *none = NULL;
     hd_error e;
     int32_t i;
-    before = DENSE_NEW(double, lap->L.nnz);
+    before = KIT_NEW(double, lap->L.nnz);
     memcpy(before, lap->L.val, (size_t)lap->L.nnz * sizeof *before);
     memcpy(xyz, s.xyz, 3 * (size_t)s.n * sizeof *xyz);
     xyz[7] = NAN;
@@ -120,7 +120,6 @@ static void mov_errors(void) {
     memcpy(xyz + 3 * s.tri[0], s.xyz + 3 * s.tri[1], 3 * sizeof *xyz);
     CHECK(hd_laplacian_update(lap, xyz, &e) == HD_OK && lap->mesh.n_zero_area >= 1 && lap->mesh.n_faces_used + lap->mesh.n_zero_area == s.n_tri);
     CHECK(hd_laplacian_update(lap, s.xyz, &e) == HD_OK && memcmp(before, lap->L.val, (size_t)lap->L.nnz * sizeof *before) == 0 && lap->mesh.n_zero_area == 0);
-    free(before);
 }
 
 /* Geodesic distances of a plan that moves with the mesh. */
@@ -661,7 +660,7 @@ static void mov_points(const shape *s) {
 }
 
 static void test_moving(void) {
-    shape ball = kit_own_shape(shape_bumpy(3, 5)), sheet = kit_own_shape(shape_grid(13, 11, 0.3)), soup = kit_own_shape(eng_soup(300, 500, 9));
+    shape ball = kit_own_shape(shape_bumpy(3, 5)), sheet = kit_own_shape(shape_grid(13, 11, 0.3)), soup = kit_own_shape(trial_jumble(300, 500, 9));
     mov_frames(&ball, HD_LAPLACIAN_FEM, "ball, fem");
     mov_frames(&ball, HD_LAPLACIAN_COT, "ball, cot");
     mov_frames(&sheet, HD_LAPLACIAN_VORONOI_COT, "sheet, voronoi-cot");
@@ -688,7 +687,7 @@ static void test_moving(void) {
     mov_lost(HD_LAPLACIAN_FEM, 27);
     mov_lost(HD_LAPLACIAN_VORONOI_COT, 41);
     {
-        shape flat = shape_grid(9, 7, 0);        /* its whole area overflows before that of a face does */
+        shape flat = kit_own_shape(shape_grid(9, 7, 0));        /* its whole area overflows before that of a face does */
         shape_poly split = kit_own_poly(shape_poly_of(&flat)), mixed = shape_trominoes(4, 5, 0.1);
         const int32_t held[2] = {10, 24};
         hd_laplacian_opts o;
@@ -704,7 +703,6 @@ static void test_moving(void) {
         mov_refused(&mixed, HD_LAPLACIAN_POLYGON, o, "trominoes, held");
         mov_geodesic_refused(&flat, HD_GEODESIC_BORDER_NATURAL);
         mov_geodesic_refused(&flat, HD_GEODESIC_BORDER_MEAN);
-        shape_free(&flat);
         shape_poly_free(&mixed);
     }
     mov_geodesic(&ball, "ball");

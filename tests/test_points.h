@@ -205,7 +205,7 @@ static hd_laplacian *pts_make(const double *xyz, int32_t n, hd_laplacian_kind ki
     o.kind = kind;
     o.bandwidth = bandwidth;
     CHECK_MSG(hd_laplacian_points(&lap, xyz, n, &o, &e) == HD_OK, "%s", e.text);
-    return lap;
+    return kit_own_laplacian(lap);
 }
 
 /* Every entry by the formulas of the operators, from coordinates and masses; zero rows; symmetric to the last bit. */
@@ -266,7 +266,7 @@ static void pts_operators(void) {
     for (blue = 0; blue < 2; blue++) {
         shape s = kit_own_shape(shape_points(150, shape_on_torus, 8 * pts_pi * pts_pi, blue, 5));
         for (k = 0; k < 2; k++) {
-            hd_laplacian *lap = kit_own_laplacian(pts_make(s.xyz, s.n, kinds[k], 0)), *narrow;
+            hd_laplacian *lap = pts_make(s.xyz, s.n, kinds[k], 0), *narrow;
             double sum = 0, h = 0;
             int32_t i, j;
             CHECK(lap->kind == kinds[k] && lap->n_active == s.n && lap->points.bandwidth > 0 && lap->points.neighbours == 30);
@@ -284,7 +284,6 @@ static void pts_operators(void) {
             pts_entries(narrow, s.xyz, "torus, narrow");
             pts_spectrum(lap, "torus");
             pts_spectrum(narrow, "torus, narrow");
-            hd_laplacian_free(narrow);
         }
     }
 }
@@ -298,7 +297,7 @@ static void pts_areas(void) {
     for (which = 0; which < 2; which++) {
         for (blue = 0; blue < 2; blue++) {
             shape s = kit_own_shape(shape_points(10000, on[which], area[which], blue, 11));
-            hd_laplacian *lap = kit_own_laplacian(pts_make(s.xyz, s.n, HD_LAPLACIAN_VORONOI_EXP, 1e-3));
+            hd_laplacian *lap = pts_make(s.xyz, s.n, HD_LAPLACIAN_VORONOI_EXP, 1e-3);
             CHECK_MSG(fabs(lap->area / area[which] - 1) < (blue ? 0.003 : 0.006), "surface %d, blue %d: area %g of the true one", which, blue,
                       lap->area / area[which]);
             CHECK_MSG(lap->points.n_border < (blue ? 1 : 60), "%d cells at a border that is not there", (int)lap->points.n_border);
@@ -318,12 +317,11 @@ static void pts_plane(void) {
         CHECK_MSG(fabs(lap->mass[i] * 400 * (1 << edge) - 1) < 1e-12, "grid point %d: %g cells", (int)i, lap->mass[i] * 400);
     }
     CHECK(fabs(lap->area - 1) < 1e-12 && fabs(lap->h - 0.05) < 1e-15);
-    hd_laplacian_free(lap);
     for (i = 0; i < FINE * FINE; i++) {
         query[3 * i] = (i % FINE + 0.5) / FINE;
         query[3 * i + 1] = (i / FINE + 0.5) / FINE;
     }
-    s = shape_points(N, shape_on_square, 1, 0, 3);
+    s = kit_own_shape(shape_points(N, shape_on_square, 1, 0, 3));
     lap = pts_make(s.xyz, N, HD_LAPLACIAN_VORONOI_EXP, 0);
     CHECK(hd_neighbours_nearest(s.xyz, N, query, FINE * FINE, 1, id, NULL, NULL, NULL) == HD_OK);
     for (i = 0; i < FINE * FINE; i++) count[id[i]] += 1.0 / (FINE * FINE);
@@ -338,29 +336,25 @@ static void pts_plane(void) {
     CHECK_MSG(inner > 40 && worst < 0.02, "%d inner cells, the worst off by %g of the mean cell", (int)inner, worst);
     CHECK_MSG(lap->area > 0.85 && lap->area < 1.05, "area of 200 random points in a square %g", lap->area);
     CHECK(lap->points.n_border > 20 && lap->points.n_border < 120);
-    hd_laplacian_free(lap);
-    shape_free(&s);
 }
 
 /* Two sheets, two points' spacings apart, have twice the area of one. */
 static void pts_sheets(void) {
     enum { N = 1000 };
     shape s = kit_own_shape(shape_points(N, shape_on_square, 1, 1, 8)), t = kit_own_shape(shape_points(N, shape_on_square, 1, 1, 9)), both;
-    hd_laplacian *one = kit_own_laplacian(pts_make(s.xyz, N, HD_LAPLACIAN_VORONOI_EXP, 0)), *two;
+    hd_laplacian *one = pts_make(s.xyz, N, HD_LAPLACIAN_VORONOI_EXP, 0), *two;
     static const double gaps[] = {2, 3, 20};
     size_t k;
     for (k = 0; k < 3; k++) {
         const double offset[3] = {0, 0, gaps[k] / sqrt((double)N)};
         double each = 0;
         int32_t i;
-        both = shape_disjoint(&s, &t, offset);
+        both = kit_own_shape(shape_disjoint(&s, &t, offset));
         two = pts_make(both.xyz, both.n, HD_LAPLACIAN_VORONOI_EXP, one->points.bandwidth);
         for (i = 0; i < N; i++) each += two->mass[i];
         CHECK_MSG(fabs(each / one->area - 1) < 0.04 && fabs(two->area / one->area / 2 - 1) < 0.04, "gap %g: areas %g and %g of one sheet", gaps[k],
                   each / one->area, two->area / one->area);
         CHECK(two->n_components == (gaps[k] < 10 ? 1 : 2));
-        hd_laplacian_free(two);
-        shape_free(&both);
     }
 }
 
@@ -392,7 +386,7 @@ static void pts_invariance(void) {
     dense_shuffle(perm, N, &seed);
     for (kind = 0; kind < 2; kind++) {
         const hd_laplacian_kind k = kind ? HD_LAPLACIAN_EXP : HD_LAPLACIAN_VORONOI_EXP;
-        hd_laplacian *a = kit_own_laplacian(pts_make(s.xyz, N, k, 0)), *b;
+        hd_laplacian *a = pts_make(s.xyz, N, k, 0), *b;
         double d;
         for (i = 0; i < N; i++) {                /* a rotation by 3-4-5 about z, a cyclic turn of the axes, and a shift */
             const double *p = s.xyz + 3 * i;
@@ -403,17 +397,14 @@ static void pts_invariance(void) {
         b = pts_make(t.xyz, N, k, 0);
         d = pts_difference(a, b, NULL, 1, 1);
         CHECK_MSG(d < 1e-11, "rigid motion: %g", d);
-        hd_laplacian_free(b);
         for (i = 0; i < N; i++) for (c = 0; c < 3; c++) t.xyz[3 * i + c] = 1e-6 * s.xyz[3 * i + c];
         b = pts_make(t.xyz, N, k, 0);            /* L of voronoi-exp has no unit, that of exp 1/length^4 */
         d = pts_difference(a, b, NULL, kind ? 1 : 1e12, kind ? 1e-24 : 1);
         CHECK_MSG(d < 1e-11 && fabs(b->points.bandwidth * 1e12 / a->points.bandwidth - 1) < 1e-13, "scale: %g", d);
-        hd_laplacian_free(b);
         for (i = 0; i < N; i++) memcpy(t.xyz + 3 * perm[i], s.xyz + 3 * i, 3 * sizeof(double));
         b = pts_make(t.xyz, N, k, 0);
         d = pts_difference(a, b, perm, 1, 1);
         CHECK_MSG(d < 1e-12, "permutation: %g", d);
-        hd_laplacian_free(b);
     }
 }
 
@@ -423,7 +414,6 @@ static void pts_coincident(void) {
     hd_laplacian *a = pts_make(s.xyz, N, HD_LAPLACIAN_VORONOI_EXP, 0), *b;
     int32_t i;
     s.xyz[3 * 7] = 0;
-    hd_laplacian_free(a);
     a = pts_make(s.xyz, N, HD_LAPLACIAN_VORONOI_EXP, 0);
     memcpy(t.xyz, s.xyz, 3 * N * sizeof(double));
     for (i = 0; i < COPIES; i++) memcpy(t.xyz + 3 * (N + i), s.xyz + 3 * 5, 3 * sizeof(double));   /* more than neighbours are looked at */
@@ -437,19 +427,16 @@ static void pts_coincident(void) {
     CHECK(fabs(op_l(a, 5, 7) - (COPIES + 1) * 4 * op_l(b, 5, M - 1)) < 1e-13 * fabs(op_l(a, 5, 5)) && op_l(a, 20, 21) == op_l(b, 20, 21));
     pts_entries(b, t.xyz, "coincident");
     pts_spectrum(b, "coincident");
-    hd_laplacian_free(b);
     b = pts_make(t.xyz, M, HD_LAPLACIAN_EXP, 0);
     CHECK(b->mass[5] == 1 && b->points.n_coincident == COPIES + 3);
     pts_entries(b, t.xyz, "coincident exp");
-    hd_laplacian_free(b);
-    hd_laplacian_free(a);
 }
 
 /* Outliers are components of their own, small, and change little for the others. */
 static void pts_outliers(void) {
     enum { N = 1000 };
     shape s = kit_own_shape(shape_points(N + 2, shape_on_sphere, 4 * pts_pi, 1, 2));
-    hd_laplacian *clean = kit_own_laplacian(pts_make(s.xyz, N, HD_LAPLACIAN_VORONOI_EXP, 0)), *lap;
+    hd_laplacian *clean = pts_make(s.xyz, N, HD_LAPLACIAN_VORONOI_EXP, 0), *lap;
     hd_heat *heat = NULL;
     hd_report rep;
     double *u = KIT_NEW(double, N + 2), largest = 0;
@@ -468,7 +455,6 @@ static void pts_outliers(void) {
     CHECK(u[N] == 0 && u[N + 1] == 0 && u[3] > 0);
     CHECK(heat_column(heat, 0.1, N, u, &rep) == HD_OK && fabs(u[N] - 1) < 1e-12 && u[0] == 0);
     hd_heat_free(heat);
-    hd_laplacian_free(lap);
 }
 
 static hd_status pts_status(const double *xyz, int32_t n, hd_laplacian_kind kind, double bandwidth, double cut, int32_t neighbours, hd_error *e) {
@@ -576,7 +562,7 @@ static double pts_sphere_kernel(double t, double x) {
 static void pts_sphere(hd_laplacian_kind kind, int blue, double tol_value, double tol_kernel) {
     enum { N = 2000 };
     shape s = kit_own_shape(shape_points(N, shape_on_sphere, 4 * pts_pi, blue, 1));
-    hd_laplacian *lap = kit_own_laplacian(pts_make(s.xyz, N, kind, 0));
+    hd_laplacian *lap = pts_make(s.xyz, N, kind, 0);
     hd_heat *heat = NULL;
     hd_report rep;
     const double scale = kind == HD_LAPLACIAN_EXP ? lap->area : 1, t = 0.15;
@@ -612,7 +598,7 @@ static hd_laplacian *pts_tufted(const double *xyz, int32_t n) {
     hd_laplacian *lap = NULL;
     hd_error e;
     CHECK_MSG(hd_laplacian_tufted_points(&lap, xyz, n, NULL, NULL, NULL, &e) == HD_OK, "%s", e.text);
-    return lap;
+    return kit_own_laplacian(lap);
 }
 
 /* Largest difference of the symmetric kernel's column 0 from want, relative to its largest value. */
@@ -647,7 +633,7 @@ static void pts_shells(void) {
         hd_laplacian *lap, *cells;
         int32_t i, flagged;
         for (i = 0; i < 3 * N; i++) b.xyz[i] *= q;
-        both = shape_disjoint(&a, &b, origin);
+        both = kit_own_shape(shape_disjoint(&a, &b, origin));
         for (i = 0; i < N; i++) want[i] = pts_sphere_kernel(t, shape_dot(a.xyz, a.xyz + 3 * i));
         lap = pts_tufted(both.xyz, both.n);
         cells = pts_make(both.xyz, both.n, HD_LAPLACIAN_VORONOI_EXP, 0);
@@ -660,9 +646,6 @@ static void pts_shells(void) {
                   "%g spacings: %d places not flat", gaps[k], (int)flagged);
         CHECK(gaps[k] < 2 || lap->n_components == 2);
         CHECK(cells->points.n_not_flat == flagged);
-        hd_laplacian_free(lap);
-        hd_laplacian_free(cells);
-        shape_free(&both);
     }
 }
 
@@ -696,7 +679,6 @@ static void pts_ear(void) {
     CHECK_MSG(lap->points.n_not_flat < s.n / 5, "%d places not flat", (int)lap->points.n_not_flat);
     hd_heat_free(heat);
     hd_laplacian_free(mesh);
-    hd_laplacian_free(lap);
 }
 
 /* Noise along the normals, of up to half a spacing: triangles follow it no more than they must, and points
@@ -722,7 +704,6 @@ static void pts_noise(void) {
         CHECK_MSG(fabs(lap->area / area - 1) < most[k], "noise %g: area %+g", noise[k], lap->area / area - 1);
         CHECK_MSG(k == 2 ? lap->points.n_not_flat > N / 5 : lap->points.n_not_flat <= 5 * k,
                   "noise %g: %d places not flat", noise[k], (int)lap->points.n_not_flat);
-        hd_laplacian_free(lap);
     }
 }
 
@@ -739,7 +720,6 @@ static void pts_line(void) {
             for (u = shape_uniform(&seed), c = 0; c < 3; c++) xyz[3 * i + c] = u * to[c];
         lap = pts_make(xyz, 40, HD_LAPLACIAN_EXP, 1);
         CHECK(lap->points.n_not_flat == 0);
-        hd_laplacian_free(lap);
     }
 }
 

@@ -17,7 +17,7 @@ static hd_laplacian *poly_make(const shape_poly *s, double lambda) {
     hd_error e;
     CHECK(s->xyz != NULL);
     CHECK_MSG(poly_try(&lap, s, HD_LAPLACIAN_DEFAULT, lambda, &e) == HD_OK, "%s", e.text);
-    return lap;
+    return kit_own_laplacian(lap);
 }
 
 static shape_poly poly_copy(const shape_poly *s) {
@@ -125,7 +125,7 @@ static double *poly_dense(const shape_poly *s, double lambda, double *mass) {
 }
 
 static void poly_compare(const shape_poly *s, double lambda, double tol, const char *what) {
-    hd_laplacian *lap = kit_own_laplacian(poly_make(s, lambda));
+    hd_laplacian *lap = poly_make(s, lambda);
     double *mass = KIT_NEW(double, s->n), *L = poly_dense(s, lambda ? lambda : 1, mass), worst = 0, off = 0, area = 0;
     const double top = dense_max_abs(L, (int64_t)s->n * s->n);
     int64_t p;
@@ -176,7 +176,7 @@ static void poly_square(void) {
     memcpy(s.xyz, xyz, sizeof xyz);
     shape_put_quad(&s, 0, 1, 2, 3);
     for (k = 0; k < 3; k++) {
-        hd_laplacian *lap = kit_own_laplacian(poly_make(&s, lambdas[k]));
+        hd_laplacian *lap = poly_make(&s, lambdas[k]);
         const double l = lambdas[k] != 0 ? lambdas[k] : 1;
         for (i = 0; i < 4; i++)
             for (j = 0; j < 4; j++) {
@@ -203,9 +203,9 @@ static void poly_equals_triangles(void) {
     s[3] = shape_disjoint(s, s + 1, far_away);
     for (k = 0; k < 4; k++) {
         shape_poly p = kit_own_poly(shape_poly_of(s + k));
-        hd_laplacian *a = kit_own_laplacian(test_laplacian(s + k, HD_LAPLACIAN_FEM));
+        hd_laplacian *a = kit_triangles(s + k, HD_LAPLACIAN_FEM);
         for (q = 0; q < 3; q++) {
-            hd_laplacian *b = kit_own_laplacian(poly_make(&p, lambdas[q]));
+            hd_laplacian *b = poly_make(&p, lambdas[q]);
             const double top = dense_max_abs(a->L.val, a->L.nnz);
             CHECK(a->L.nnz == b->L.nnz && memcmp(a->L.col, b->L.col, (size_t)a->L.nnz * sizeof *a->L.col) == 0);
             CHECK_MSG(dense_max_diff(a->L.val, b->L.val, a->L.nnz) < 1e-14 * top, "lambda %g: %g", lambdas[q], dense_max_diff(a->L.val, b->L.val, a->L.nnz) / top);
@@ -233,7 +233,7 @@ static void poly_fans(void) {
         }
     CHECK(m == 14);
     for (q = 0; q < 3; q++) {
-        hd_laplacian *a = kit_own_laplacian(op_make(s.xyz, s.n, tri, m, op_kinds[q])), *b = NULL;
+        hd_laplacian *a = op_make(s.xyz, s.n, tri, m, op_kinds[q]), *b = NULL;
         hd_error e;
         CHECK(poly_try(&b, &s, op_kinds[q], 0, &e) == HD_OK);
         CHECK(a->L.nnz == b->L.nnz && memcmp(a->L.val, b->L.val, (size_t)a->L.nnz * sizeof(double)) == 0 && a->kind == b->kind && a->h == b->h);
@@ -246,7 +246,7 @@ static void poly_fans(void) {
 
 /* Symmetric to the last bit, rows sum to zero, no eigenvalue below zero, as many zeros as components. */
 static void poly_spectrum(const shape_poly *s, double lambda, int32_t components, const char *what) {
-    hd_laplacian *lap = kit_own_laplacian(poly_make(s, lambda));
+    hd_laplacian *lap = poly_make(s, lambda);
     const int32_t n = lap->n_active;
     double *L = test_dense(&lap->L, NULL), *B = test_dense_mass(lap), *keep = KIT_NEW(double, (int64_t)n * n), worst = 0, top;
     int32_t i, j, zeros = 0, negative = 0, asymmetric = 0;
@@ -332,7 +332,6 @@ static void poly_linear(void) {
                 if (i % 19 > 0 && i % 19 < 18 && i / 19 > 0 && i / 19 < 14) inner = fmax(inner, fabs(y[i]));
         }
         CHECK_MSG(inner < 1e-11, "mesh %d: L x = %g inside", k, inner);
-        hd_laplacian_free(lap);
         shape_poly_free(&s);
     }
 }
@@ -355,8 +354,6 @@ static void poly_rigid(void) {
         worst = fmax(worst, fabs(a->h * scales[k] / b->h - 1));
         worst = fmax(worst, fabs(a->mesh.smallest_angle - b->mesh.smallest_angle));
         CHECK_MSG(worst < (k == 1 ? 1e-11 : 1e-13), "scale %g: off by %g", scales[k], worst);
-        hd_laplacian_free(a);
-        hd_laplacian_free(b);
     }
 }
 
@@ -368,7 +365,7 @@ static void poly_turned(void) {
     s[1] = shape_trominoes(2, 3, 0.3);
     s[2] = poly_flower(25, 0.2);
     for (k = 0; k < 3; k++) {
-        hd_laplacian *a = kit_own_laplacian(poly_make(s + k, 0.7));
+        hd_laplacian *a = poly_make(s + k, 0.7);
         for (turn = 0; turn < 5; turn++)
             for (back = 0; back < 2; back++) {
                 shape_poly r = kit_own_poly(poly_copy(s + k));
@@ -388,7 +385,6 @@ static void poly_turned(void) {
                 CHECK(dense_max_diff(a->mass, b->mass, a->n_active) < 1e-14 * a->area);
                 CHECK(a->mesh.n_edges == b->mesh.n_edges && a->mesh.n_boundary_edges == b->mesh.n_boundary_edges);
                 CHECK(a->mesh.n_misoriented_edges == b->mesh.n_misoriented_edges);
-                hd_laplacian_free(b);
             }
         shape_poly_free(s + k);
     }
@@ -408,7 +404,6 @@ static void poly_large_face(void) {
     for (p = 0; p < 4000000; p += 2001) sum += lap->L.val[p];    /* trace: |x_(p-1) - x_(p+1)|^2 / (4 |f|), and of two k - |D'Q|^2 */
     CHECK_MSG(sum > 3996 && sum < 4000.1, "trace %.17g", sum);
     CHECK(lap->context->bytes_peak < 80e6);
-    hd_laplacian_free(lap);
     shape_poly_free(&s);
 }
 
@@ -422,7 +417,7 @@ static void poly_left_out(void) {
                                      {4, 1, 7, 6, 0}, {4, 6, 7, 1, 0}, {6, 4, 3, 2, 1, 7, 5}, {3, 5, 6, 7}};   /* repeated, turned, reversed */
     enum { N_BAD = sizeof bad / sizeof *bad };
     shape_poly s = kit_own_poly(poly_mixed()), t = shape_poly_make(16 + 12, 6 + N_BAD, 200);
-    hd_laplacian *a = kit_own_laplacian(poly_make(&s, 0)), *b;
+    hd_laplacian *a = poly_make(&s, 0), *b;
     int32_t f, i;
     memcpy(t.xyz, s.xyz, 3 * (size_t)s.n * sizeof *s.xyz);
     for (i = 0; i < 4; i++) {
@@ -447,7 +442,6 @@ static void poly_left_out(void) {
     CHECK(a->L.nnz == b->L.nnz && memcmp(a->L.val, b->L.val, (size_t)a->L.nnz * sizeof(double)) == 0 && a->h == b->h);
     CHECK(memcmp(a->mass, b->mass, (size_t)a->n_active * sizeof(double)) == 0 && fabs(a->area - b->area) < 1e-14);
     CHECK(a->mesh.n_edges == b->mesh.n_edges && a->mesh.smallest_angle == b->mesh.smallest_angle);
-    hd_laplacian_free(b);
     shape_poly_free(&t);
     t = shape_poly_make(4, 2, 8);                 /* the same corners in another order are another face */
     memcpy(t.xyz, s.xyz, 12 * sizeof(double));
@@ -455,7 +449,6 @@ static void poly_left_out(void) {
     shape_put_quad(&t, 0, 2, 1, 3);
     b = poly_make(&t, 0);
     CHECK(b->mesh.n_repeated_face == 0 && b->mesh.n_faces_used == 2);
-    hd_laplacian_free(b);
     shape_poly_free(&t);
 }
 
@@ -464,26 +457,21 @@ static void poly_edges(void) {
     hd_laplacian *lap = poly_make(&s, 0);
     int32_t keep;
     CHECK(lap->mesh.n_edges == 60 && lap->mesh.n_boundary_edges == 0 && lap->mesh.n_misoriented_edges == 0 && lap->L.nnz == 30 * 9);
-    hd_laplacian_free(lap);
     keep = s.face_idx[1];                         /* a face turned over */
     s.face_idx[1] = s.face_idx[3];
     s.face_idx[3] = keep;
     lap = poly_make(&s, 0);
     CHECK(lap->mesh.n_misoriented_edges == 4 && lap->mesh.n_nonmanifold_edges == 0);
-    hd_laplacian_free(lap);
     s.n_faces--;                                  /* a hole */
     lap = poly_make(&s, 0);
     CHECK(lap->mesh.n_boundary_loops == 1 && lap->mesh.n_boundary_edges == 4 && lap->mesh.n_edges == 60);
-    hd_laplacian_free(lap);
-    t = shape_poly_make(8, 3, 12);                /* three leaves of a book */
+    t = kit_own_poly(shape_poly_make(8, 3, 12));                /* three leaves of a book */
     for (keep = 0; keep < 24; keep++) t.xyz[keep] = cos(1.7 * keep);
     shape_put_quad(&t, 0, 1, 2, 3);
     shape_put_quad(&t, 0, 1, 4, 5);
     shape_put_quad(&t, 1, 0, 6, 7);
     lap = poly_make(&t, 0);
     CHECK(lap->mesh.n_nonmanifold_edges == 1 && lap->mesh.n_edges == 10 && lap->mesh.n_boundary_edges == 9 && lap->n_components == 1);
-    hd_laplacian_free(lap);
-    shape_poly_free(&t);
 }
 
 static void poly_errors(void) {
@@ -573,12 +561,10 @@ static void poly_long_and_notched(void) {
     CHECK(lap->mesh.n_zero_area == 1 && lap->mesh.n_inert == 4 && lap->mesh.n_faces_used == 1);
     CHECK_MSG(fabs(lap->mesh.smallest_angle - 1.5707963267948966) < 1e-15, "%.17g", lap->mesh.smallest_angle);
     area = lap->area;
-    hd_laplacian_free(lap);
     for (i = 0; i < 21; i++) s.xyz[i] = ldexp(s.xyz[i], 505);
     lap = poly_make(&s, 0);                      /* the notch near the largest doubles, and the needle */
     CHECK(lap->mesh.n_zero_area == 1 && fabs(area - 15.3) < 1e-13 && lap->area == ldexp(area, 1010));
     CHECK_MSG(fabs(lap->mesh.smallest_angle - 1.5707963267948966) < 1e-15, "%.17g", lap->mesh.smallest_angle);
-    hd_laplacian_free(lap);
     s.xyz[3] = -(s.xyz[6] = DBL_MAX);            /* nor are differences of corners doubles */
     s.xyz[7] *= 2;
     CHECK(poly_try(&lap, &s, HD_LAPLACIAN_POLYGON, 0, &e) == HD_ERR_NOT_FINITE && e.face == 0);
@@ -600,9 +586,9 @@ static void poly_heat(void) {
     lap = poly_make(&s, 0);
     L = test_dense(&lap->L, NULL);
     B = test_dense_mass(lap);
-    f = DENSE_NEW(double, s.n);
-    u = DENSE_NEW(double, s.n);
-    want = DENSE_NEW(double, s.n);
+    f = KIT_NEW(double, s.n);
+    u = KIT_NEW(double, s.n);
+    want = KIT_NEW(double, s.n);
     t = 5 * lap->h * lap->h;
     f[7] = lap->mass[7];
     CHECK(dense_pair_solve(&p, L, B, s.n));
@@ -620,10 +606,6 @@ static void poly_heat(void) {
         hd_heat_free(heat);
     }
     dense_pair_free(&p);
-    free(f);
-    free(u);
-    free(want);
-    hd_laplacian_free(lap);
 }
 
 static int poly_ascending(const void *a, const void *b) {
@@ -633,7 +615,7 @@ static int poly_ascending(const void *a, const void *b) {
 
 /* Largest relative error of the eigenvalues 2 (three times), 6 (five times) and 12 (seven times). */
 static double poly_sphere_error(shape_poly *s) {
-    hd_laplacian *lap = kit_own_laplacian(poly_make(s, 0));
+    hd_laplacian *lap = poly_make(s, 0);
     double *L = test_dense(&lap->L, NULL), *B = test_dense_mass(lap), worst = 0;
     dense_pair p;
     int k;

@@ -185,11 +185,8 @@ static void rob_stop_each_progress(const rob_job *job, hd_progress answer, hd_st
     int64_t k;
     for (k = 1; k < ROB_MOST; k++) {
         ctx = test_memory_context(&m);
-        memset(&p, 0, sizeof p);
-        p.stop_at = k;
+        rob_watch(&p, &ctx, k);
         p.answer = answer;
-        ctx.progress = rob_on_progress;
-        ctx.progress_user = &p;
         st = job->run(&ctx, job->variant);
         if (m.live != 0 || ctx.bytes_in_use != 0) test_memory_done(&m, &ctx, job->what);
         if (st >= 0) break;
@@ -212,16 +209,12 @@ static void rob_cancel_lanes(void) {
         test_memory m;
         hd_context ctx = test_memory_context(&m);
         rob_progress p;
-        memset(&p, 0, sizeof p);
-        p.stop_at = k;
-        p.answer = HD_PROGRESS_CANCEL;
         ctx.parallel_for = sparse_reverse_for;
         ctx.parallel_user = &calls_of;
-        ctx.progress_user = &p;
         call_open(&w, &d, &ctx);
         w.what = "cancelled lanes";
         CHECK(call_prepare(&w, "k=4 operator columns") == HD_OK);
-        ctx.progress = rob_on_progress;
+        rob_watch(&p, &ctx, k);
         st = call_test(&w, "columns");
         CHECK_MSG(st == (p.calls >= k ? HD_ERR_CANCELLED : HD_OK), "%s", hd_status_name(st));
         if (st < 0) CHECK_MSG(strstr(w.rep.error.text, "progress") != NULL, "%s", w.rep.error.text);

@@ -458,7 +458,7 @@ static void src_place(const shape *s, double x, double y, int32_t *vertex, doubl
  * diagonal at two corners of the square, for vertices as for other sources, and falls like h^1.7.) */
 static double src_square_error(const char *spec, int distance) {
     const shape *s = kit_shape(spec);
-    const hd_laplacian *lap = (hd_laplacian *)kit_keep(test_laplacian(s, HD_LAPLACIAN_FEM), kit_free_laplacian);
+    const hd_laplacian *lap = kit_triangles(s, HD_LAPLACIAN_FEM);
     hd_heat *heat = kit_heat(lap, "");
     const double t = 0.02, px = 1 / 3.0, py = 2 / 3.0, ss = src_interval(2 * t, px, px) * src_interval(2 * t, py, py);
     double *u = KIT_NEW(double, s->n), off = 0;
@@ -504,7 +504,7 @@ static int32_t src_crossings(const shape *s, int32_t n, double x, int middles, i
 static void src_line(void) {
     enum { N = 33 };
     const shape *s = kit_shape("flat/33/33/0");
-    const hd_laplacian *lap = (hd_laplacian *)kit_keep(test_laplacian(s, HD_LAPLACIAN_VORONOI_COT), kit_free_laplacian);
+    const hd_laplacian *lap = kit_triangles(s, HD_LAPLACIAN_VORONOI_COT);
     hd_heat *heat = kit_heat(lap, "");
     int32_t *vertex = KIT_NEW(int32_t, 12 * N), v;
     double *bary = KIT_NEW(double, 12 * N), *u = KIT_NEW(double, s->n), *w = KIT_NEW(double, s->n), off = 0, sum[3] = {0, 0, 0};

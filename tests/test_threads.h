@@ -68,17 +68,14 @@ static int thr_same(call_world *w, const call_data *d, const char *script, int64
         int64_t loops = 0;
         hd_status st;
         memset(&p, 0, sizeof p);
-        p.answer = HD_PROGRESS_CANCEL;
-        p.stop_at = stop;
         ctx.n_threads = thr_ways[q];
         ctx.parallel_for = thr_ways[q] ? NULL : heat_shuffled_for;
         ctx.parallel_user = &loops;
-        ctx.progress_user = &p;
         call_open(w, d, &ctx);
         w->what = script;
         st = call_prepare(w, script);
         CHECK_MSG(st >= 0, "%s: %s", script, w->e.text);
-        if (stop) ctx.progress = rob_on_progress;
+        if (stop) rob_watch(&p, &ctx, stop);
         loops = 0;
         ctx.regions = 0;
         st = call_test(w, script);
@@ -343,9 +340,9 @@ static void thr_light(void) {
     memset(&w, 0, sizeof w);
     call_data_make(&d, shape_bumpy(6, 4));
     t = 100 * d.h * d.h;
-    one = DENSE_NEW(double, 2 * d.s.n);          /* of each frame */
-    four = DENSE_NEW(double, 8 * d.s.n);
-    for (q = CASES_FEW; q < 2; q++) {            /* where each takes long: with threads only */
+    one = KIT_NEW(double, 2 * d.s.n);          /* of each frame */
+    four = KIT_NEW(double, 8 * d.s.n);
+    for (q = CASES_FEW; q < 2; q++) {           /* where each takes long: with threads only */
         hd_context ctx;
         memset(&ctx, 0, sizeof ctx);
         ctx.n_threads = q ? 3 : 1;
@@ -368,8 +365,6 @@ static void thr_light(void) {
         call_close(&w);
         CHECK(ctx.bytes_in_use == 0);
     }
-    free(one);
-    free(four);
     call_world_free(&w);
     call_data_free(&d);
 }

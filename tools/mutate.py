@@ -256,15 +256,17 @@ def cut(folder, name):
     files = [text] + [open(os.path.join(tests, f), encoding="utf-8").read() for f in re.findall(r'#include "(test_\w+\.h)"', text)]
     whole = "\n".join(files)
     static = set(re.findall(r"^static void (\w+)\(", whole, re.M))
-    groups = dict((g, f) for g, f in re.findall(r'\{"(\w+)", (test_\w+)', text)) if name == "runner" else {"internals": "int_all"}
+    groups = dict((g, f) for g, f in re.findall(r'\{"(\w+)", (test_\w+)', text)) if name == "runner" else {"internals": "int_tests"}
     pieces, code, todo, done = [], [], list(groups.items()), set()
     while todo:
         group, function = todo.pop(0)
         done.add(function)
         m = re.search(r"^(?:static void|int) %s\(void\)\s*\{\n(.*?)^\}" % function, whole, re.M | re.S)
-        if not m:
+        table = re.search(r"^static void \(\*const %s\[\]\)\(void\) = \{\n(.*?)^\}" % function, whole, re.M | re.S)
+        if not m and not table:
             sys.exit("mutate.py: %s has another form than expected" % function)
-        found, left = split(m.group(1).split("\n"), group, static)
+        body = m.group(1).split("\n") if m else ["    %s();" % t for t in re.findall(r"\w+", table.group(1))]
+        found, left = split(body, group, static)
         for p, call in found:
             if p.startswith("test_"):
                 todo.append((p[5:], p))
