@@ -68,14 +68,14 @@
      [10] geometry   triangles: checks, areas, cotangents, edges, defects
      [11] intrinsic  intrinsic Delaunay triangulations and the tufted cover
      [12] operators  the pair (L, B) of triangles, polygons, points and the caller's own matrices
-     [13] degree     orderings by minimum degree, breadth-first orderings
+     [13] degree     orderings by minimum degree
      [14] dissection nested dissection of meshes in space
      [15] analysis   elimination tree, supernodes, fronts, tasks, plan of memory
      [16] order      the choice of an elimination order
      [17] direct     multifrontal L D L' and triangular solves
      [18] selinv     selected inversion: entries of the inverse, quadratic forms
      [19] precond    Jacobi, SSOR and incomplete L D L'
-     [20] iterative  COCG, COCR, CS-MINRES
+     [20] iterative  COCG, CS-MINRES
      [21] rational   pole sets: tables, evaluation, sets shared by many times, fits of filters
      [22] poles      the family t L + theta_i B: factors or preconditioners, answers, error bounds
      [23] lanczos    K_t f without poles: Lanczos for the exponential, and shift-and-invert
@@ -299,7 +299,9 @@ typedef struct hd_context {
 
     /* Runs task(arg, i, worker) for every i in [0, n_tasks), in any order, and returns when all tasks are
      * done. The calling thread is worker 0; other threads have numbers of their own. NULL: the library's own
-     * threads. Results depend neither on this function nor on the number of threads. */
+     * threads. Results depend neither on this function nor on the number of threads. Some tasks, those of a
+     * factorisation among them, work for as long as they find something to do: as many threads as there are
+     * should run them side by side. None waits for another. */
     void (*parallel_for)(void *user, int64_t n_tasks, hd_task task, void *arg);
     void *parallel_user;
     /* Threads that work at the same time, the calling one included. 0: as many as the process may use
@@ -621,12 +623,10 @@ typedef enum hd_solver {
     HD_SOLVER_AUTO = 0,         /* Lanczos for small t if it costs less, else cocg */
     /* Conjugate orthogonal CG (van der Vorst, Melissen 1990); CG for real poles. */
     HD_SOLVER_COCG,
-    /* Conjugate orthogonal conjugate residuals (Sogabe, Zhang 2007); CG for real poles. */
-    HD_SOLVER_COCR,
     /* CS-MINRES (Choi 2013), which is MINRES on the Saunders process. Plain MINRES needs a Hermitian matrix.
      * For complex theta, t L + theta B is not Hermitian, and plain MINRES converges to a wrong result.
      * CS-MINRES needs a real positive definite preconditioner: here that of t L + |theta| B. */
-    HD_SOLVER_MINRES,
+    HD_SOLVER_MINRES = 3,       /* there is no 2 */
     HD_SOLVER_LANCZOS           /* for the exponential, no poles: about 1.1 sqrt(t lambda_max) steps */
 } hd_solver;
 
@@ -1245,7 +1245,7 @@ HEATDIFF_API double hd_filter_eval(const hd_filter *filter, double lambda);
 
 typedef struct hd_solve_opts {
     int32_t begin_zero;
-    hd_solver solver;           /* cocg, cocr or minres; default cocg */
+    hd_solver solver;           /* cocg or minres; default cocg */
     hd_precond precond;
     double tol;                 /* |b - A x| / |b| in the norm of diag(B)^-1; default 1e-10 */
     int32_t max_iterations;     /* default 20000 */
@@ -2088,18 +2088,23 @@ HEATDIFF_API hd_status hd_geodesic_distance_from(hd_geodesic *g, const hd_source
 extern "C" {
 #endif
 
-/* Counters that threads share. HDI_ATOMIC_GET sees all that was written before the matching HDI_ATOMIC_SET;
- * HDI_ATOMIC_ADD gives the sum. */
+/* Counters that threads share, of 32 bits. HDI_ATOMIC_GET sees all that was written before the matching
+ * HDI_ATOMIC_SET; HDI_ATOMIC_ADD gives the sum. Compilers without them have no threads of the library's own,
+ * and a user's threads share loops only whose tasks know nothing of each other. */
 #if defined(__GNUC__) || defined(__clang__)
+#define HDI_ATOMICS 1
 #define HDI_ATOMIC_GET(p) __atomic_load_n(p, __ATOMIC_ACQUIRE)
 #define HDI_ATOMIC_SET(p, v) __atomic_store_n(p, v, __ATOMIC_RELEASE)
 #define HDI_ATOMIC_ADD(p, v) __atomic_add_fetch(p, v, __ATOMIC_ACQ_REL)
-#elif HDI_THREADS
-#define HDI_ATOMIC_GET(p) ((uint32_t)InterlockedCompareExchange((volatile LONG *)(p), 0, 0))
-#define HDI_ATOMIC_SET(p, v) ((void)InterlockedExchange((volatile LONG *)(p), (LONG)(v)))
+#elif defined(_MSC_VER)
+#include <intrin.h>
+#define HDI_ATOMICS 1
+#define HDI_ATOMIC_GET(p) ((uint32_t)_InterlockedCompareExchange((volatile long *)(p), 0, 0))
+#define HDI_ATOMIC_SET(p, v) ((void)_InterlockedExchange((volatile long *)(p), (long)(v)))
 #define HDI_ATOMIC_ADD(p, v) \
-    ((uint32_t)(InterlockedExchangeAdd((volatile LONG *)(p), (LONG)(v)) + (v)))
+    ((uint32_t)(_InterlockedExchangeAdd((volatile long *)(p), (long)(v)) + (v)))
 #else
+#define HDI_ATOMICS 0
 #define HDI_ATOMIC_GET(p) (*(p))
 #define HDI_ATOMIC_SET(p, v) (*(p) = (v))
 #define HDI_ATOMIC_ADD(p, v) (*(p) += (v))
@@ -2564,13 +2569,7 @@ static hd_status hdi_progress(hd_context *ctx, const char *stage, double done, h
                     "context: progress returned neither HD_PROGRESS_CONTINUE nor HD_PROGRESS_CANCEL");
 }
 
-/* ---- threads ---- */
-/* The threads of a context. One loop is open at a time. Its tasks are claimed from a counter that never goes
- * back: a loop owns the numbers [base, base + n). So a thread that comes late, with the numbers of an earlier
- * loop, finds nothing to claim and touches nothing. The calling thread claims like the others and waits only
- * for tasks that others have claimed. Waking a thread takes a call of the system, about 5 microseconds, and
- * 50 pass until it works. Therefore threads that find nothing to claim look around for a while before they
- * sleep. */
+/* ---- threads of the system ---- */
 
 #if HDI_THREADS == HDI_THREADS_POSIX
 typedef pthread_mutex_t hdi_mutex;
@@ -2690,7 +2689,26 @@ static int32_t hdi_processors(void) {
         for (; mine; mine &= mine - 1) n++;
     return n > 0 ? n : 1;
 }
-#else
+#else                                            /* none: nothing of this is called but hdi_threads_linked */
+typedef int hdi_mutex, hdi_signal, hdi_thread;
+static void hdi_mutex_make(hdi_mutex *m) { (void)m; }
+static void hdi_mutex_end(hdi_mutex *m) { (void)m; }
+static void hdi_lock(hdi_mutex *m) { (void)m; }
+static void hdi_unlock(hdi_mutex *m) { (void)m; }
+static void hdi_signal_make(hdi_signal *c) { (void)c; }
+static void hdi_signal_end(hdi_signal *c) { (void)c; }
+static void hdi_signal_wait(hdi_signal *c, hdi_mutex *m) { (void)c, (void)m; }
+static void hdi_signal_one(hdi_signal *c) { (void)c; }
+static void hdi_signal_all(hdi_signal *c) { (void)c; }
+static int64_t hdi_process(void) { return 0; }
+#define HDI_THREAD_BODY static void *
+#define HDI_THREAD_DONE NULL
+typedef void *(*hdi_thread_body)(void *);
+static int hdi_thread_start(hdi_thread *t, hdi_thread_body body, void *arg) {
+    (void)t, (void)body, (void)arg;
+    return 0;
+}
+static void hdi_thread_join(hdi_thread t) { (void)t; }
 static int32_t hdi_processors(void) { return 1; }
 static int hdi_threads_linked(void) { return 0; }
 #endif
@@ -2701,11 +2719,39 @@ static int32_t hdi_context_width(const hd_context *ctx) {
     return ctx->n_threads > 0 ? ctx->n_threads : hdi_processors();
 }
 
-#if HDI_THREADS
-/* Threads at most. How often a thread looks around before it sleeps: 20 to 50 microseconds in all. Loops of
- * fewer tasks than HDI_TASKS_START share them with threads that run, but start none: assembling 50K vertices,
+/* ---- walks ---- */
+/* A walk does nodes, each by a task, of which some wait for others. What a node waits for is counted by those
+ * who know: a task releases the nodes that waited for it alone. Nodes stand in a list in the order in which
+ * they are released, and are claimed in that order. One thread goes through the list by itself. Threads of
+ * the user go through it in drains, tasks that claim nodes until they find none. The library's own threads
+ * look around for a while and then sleep: waking one takes a call of the system, about 5 microseconds, and 50
+ * pass until it works. The calling thread claims like the others and waits only for nodes that others have
+ * claimed. Nothing blocks, in whatever order, on however few threads, drains are run. */
+
+/* Threads at most. How often a thread looks around before it sleeps: 20 to 50 microseconds in all. Walks of
+ * fewer nodes than HDI_TASKS_START share them with threads that run, but start none: assembling 50K vertices,
  * 6 ms with 3 such loops, gained nothing alone and took 1.4 times as long on a busy machine. */
-enum { HDI_THREADS_MOST = 256, HDI_SPIN = 1000, HDI_TASKS_START = 9 };
+enum { HDI_THREADS_MOST = 256, HDI_SPIN = 1000, HDI_TASKS_START = 9, HDI_TELLS = 64,
+      HDI_DRAINS = HDI_ATOMICS ? 64 : 1 };
+
+/* Places of the list before next are claimed, those before ready may be; done of them are done. */
+typedef struct hdi_claims { uint32_t next, ready, done; } hdi_claims;
+
+typedef struct hdi_walk {
+    hd_context *ctx;
+    hd_task task;
+    void *arg;
+    int32_t *order;              /* [n] the list; NULL: all nodes are ready, by number */
+    uint32_t base, n;            /* its places are [base, base + n); there may be fewer nodes */
+    hdi_claims own, *at;         /* at: own, or the threads' */
+    hd_threads *threads;         /* NULL: one thread, or the user's */
+    const char *stage;           /* of progress; NULL: none */
+    double from, to;             /* done of the stage before and after it */
+    hd_error *e;                 /* gets what progress answers */
+    uint32_t told, stop, busy;   /* parts told of; nothing more is begun; the lock of a user's threads */
+    int32_t drains, most;        /* that are under way; the most that were */
+    int32_t caller;              /* the calling thread has one of them */
+} hdi_walk;
 
 typedef struct hdi_seat {
     struct hd_threads *threads;
@@ -2713,93 +2759,161 @@ typedef struct hdi_seat {
     hdi_thread thread;
 } hdi_seat;
 
-/* What a thread knows of the open loop. */
-typedef struct hdi_loop {
-    uint32_t base, n;
-    hd_task task;
-    void *arg;
-    const int32_t *order;        /* NULL: claim i is task i; else task order[i] */
-} hdi_loop;
-
 struct hd_threads {
     hdi_mutex lock;
     hdi_signal work, finished;   /* for the threads; for the calling one */
     int64_t process;
     int32_t asked, most;         /* n_threads of the context; threads besides the caller, at most */
     int32_t n, n_asleep, caller_asleep, leave;
-    int32_t open;                /* a loop is under way; written by the calling thread only */
-    hdi_loop loop;
-    uint32_t next, ready, done;  /* next number to claim; end of those that may be claimed; tasks done */
-    uint32_t helped;
+    int32_t open;                /* a walk is under way; written by the calling thread only */
+    hdi_walk walk;               /* what threads know of it */
+    hdi_claims at;
+    uint32_t end, helped;        /* places from here on belong to walks to come; nodes that threads did */
     hdi_seat seat[HDI_THREADS_MOST - 1];
 };
 
+/* Writes `to` if it finds `from`, and tells whether it did. */
 static int hdi_swap(uint32_t *p, uint32_t from, uint32_t to) {
 #if defined(__GNUC__) || defined(__clang__)
     return __atomic_compare_exchange_n(p, &from, to, 0, __ATOMIC_ACQ_REL, __ATOMIC_RELAXED);
+#elif HDI_ATOMICS
+    return (uint32_t)_InterlockedCompareExchange((volatile long *)p, (long)to, (long)from) == from;
 #else
-    volatile LONG *at = (volatile LONG *)p;
-    const LONG was = InterlockedCompareExchange(at, (LONG)to, (LONG)from);
-    return (uint32_t)was == from;
+    if (*p != from) return 0;
+    *p = to;
+    return 1;
 #endif
 }
 
+static int32_t hdi_claimable(const hdi_claims *c) {
+    const uint32_t next = HDI_ATOMIC_GET(&c->next);
+    return (int32_t)(HDI_ATOMIC_GET(&c->ready) - next);
+}
+
+/* A node that is the caller's from now on, or -1. Numbers of places never go back: a thread that comes late,
+ * with a walk that has ended, finds nothing to claim and touches nothing. */
+static int64_t hdi_claim(const hdi_walk *w) {
+    for (;;) {
+        const uint32_t next = HDI_ATOMIC_GET(&w->at->next), i = next - w->base;
+        if (i >= w->n || (int32_t)(HDI_ATOMIC_GET(&w->at->ready) - next) <= 0) return -1;
+        if (hdi_swap(&w->at->next, next, next + 1)) return w->order ? w->order[i] : (int64_t)i;
+    }
+}
+
+/* Whether all that was released is done: then nothing more will be. */
+static int hdi_walk_done(const hdi_walk *w) {
+    const uint32_t done = HDI_ATOMIC_GET(&w->at->done);
+    return done == HDI_ATOMIC_GET(&w->at->ready) - w->base;
+}
+
+/* Whether it was stopped: a long task may end early. */
+static int hdi_walk_stopped(const hdi_walk *w) { return HDI_ATOMIC_GET(&w->stop) != 0; }
+
 /* Tells the processor that a loop only waits. */
 static void hdi_relax(void) {
-#if defined(_MSC_VER) && !defined(__clang__)
+#if HDI_THREADS == HDI_THREADS_WINDOWS && defined(_MSC_VER) && !defined(__clang__)
     YieldProcessor();
-#elif defined(__x86_64__) || defined(__i386__)
+#elif HDI_ATOMICS && (defined(__x86_64__) || defined(__i386__))
     __builtin_ia32_pause();
-#elif defined(__aarch64__)
+#elif HDI_ATOMICS && defined(__aarch64__)
     __asm__ volatile("isb");
 #endif
 }
 
-/* How many tasks may be claimed now. */
-static int32_t hdi_claimable(hd_threads *t) {
-    const uint32_t next = HDI_ATOMIC_GET(&t->next);
-    return (int32_t)(HDI_ATOMIC_GET(&t->ready) - next);
+/* What one thread of a walk does at a time. Threads of the user turn on the spot meanwhile: it is short. */
+static void hdi_walk_lock(hdi_walk *w) {
+    if (w->threads) hdi_lock(&w->threads->lock);
+    else
+        while (!hdi_swap(&w->busy, 0, 1)) hdi_relax();
 }
 
-/* Number of a task of this loop that is the caller's from now on, or -1. */
-static int64_t hdi_claim(hd_threads *t, const hdi_loop *loop) {
-    for (;;) {
-        const uint32_t next = HDI_ATOMIC_GET(&t->next), i = next - loop->base;
-        if (i >= loop->n || (int32_t)(HDI_ATOMIC_GET(&t->ready) - next) <= 0) return -1;
-        if (hdi_swap(&t->next, next, next + 1)) return i;
+static void hdi_walk_unlock(hdi_walk *w) {
+    if (w->threads) hdi_unlock(&w->threads->lock);
+    else HDI_ATOMIC_SET(&w->busy, 0);
+}
+
+/* Wakes the calling thread and others for n nodes; the calling one also when all is done, n being 0. */
+static void hdi_threads_wake(hd_threads *t, int64_t n) {
+    if (t->caller_asleep) {
+        hdi_signal_one(&t->finished);
+        n--;
     }
+    for (n = hdi_least(n, t->n_asleep); n > 0; n--) hdi_signal_one(&t->work);
 }
 
-/* Does tasks of the loop until none can be claimed. The last task of all wakes the calling thread. */
-static void hdi_loop_work(hd_threads *t, const hdi_loop *loop, int32_t worker) {
-    int64_t i;
-    while ((i = hdi_claim(t, loop)) >= 0) {
-        loop->task(loop->arg, loop->order ? loop->order[i] : i, worker);
-        if (worker) HDI_ATOMIC_ADD(&t->helped, 1);
-        if (HDI_ATOMIC_ADD(&t->done, 1) != loop->n || worker == 0) continue;
+/* Nodes [id, id + n) may be claimed from now on. */
+static void hdi_release(hdi_walk *w, int32_t id, int32_t n) {
+    int32_t i;
+    hdi_walk_lock(w);
+    if (!w->stop) {
+        const uint32_t ready = w->at->ready;
+        for (i = 0; i < n; i++) w->order[ready - w->base + (uint32_t)i] = id + i;
+        HDI_ATOMIC_SET(&w->at->ready, ready + (uint32_t)n);
+        if (w->threads) hdi_threads_wake(w->threads, n);
+    }
+    hdi_walk_unlock(w);
+}
+
+/* Nothing more is begun. */
+static void hdi_walk_stop(hdi_walk *w) {
+    const uint32_t end = w->base + w->n;
+    uint32_t next;
+    hdi_walk_lock(w);
+    if (!w->stop) {
+        HDI_ATOMIC_SET(&w->stop, 1);
+        do next = HDI_ATOMIC_GET(&w->at->next);
+        while (!hdi_swap(&w->at->next, next, end));
+        HDI_ATOMIC_SET(&w->at->ready, end);
+        HDI_ATOMIC_ADD(&w->at->done, end - next);
+    }
+    hdi_walk_unlock(w);
+}
+
+/* How far it is, now and then. By the calling thread only. */
+static void hdi_walk_tell(hdi_walk *w) {
+    const uint32_t part = (uint32_t)((uint64_t)HDI_TELLS * HDI_ATOMIC_GET(&w->at->done) / (w->n + 1));
+    if (!w->stage || part == w->told || hdi_walk_stopped(w)) return;
+    w->told = part;
+    if (hdi_progress(w->ctx, w->stage, w->from + (w->to - w->from) * part / (double)HDI_TELLS, w->e) < 0)
+        hdi_walk_stop(w);
+}
+
+/* Claims a node and does it; 0: there is none. The last one of all wakes the calling thread. */
+static int hdi_walk_step(hdi_walk *w, int32_t worker) {
+    hd_threads *t = w->threads;
+    int64_t node;
+    uint32_t done;
+    if (worker == 0) hdi_walk_tell(w);
+    node = hdi_claim(w);
+    if (node < 0) return 0;
+    w->task(w->arg, node, worker);
+    if (t && worker) HDI_ATOMIC_ADD(&t->helped, 1);
+    done = HDI_ATOMIC_ADD(&w->at->done, 1);
+    if (t && worker && done == HDI_ATOMIC_GET(&w->at->ready) - w->base) {
         hdi_lock(&t->lock);
-        if (t->caller_asleep) hdi_signal_one(&t->finished);
+        hdi_threads_wake(t, 0);
         hdi_unlock(&t->lock);
     }
+    return 1;
 }
 
 HDI_THREAD_BODY hdi_seat_run(void *arg) {
     const hdi_seat *seat = (const hdi_seat *)arg;
     hd_threads *t = seat->threads;
-    hdi_loop loop;
+    hdi_walk walk;
     int32_t k;
     for (;;) {
-        for (k = 0; k < HDI_SPIN && hdi_claimable(t) <= 0; k++) hdi_relax();
+        for (k = 0; k < HDI_SPIN && hdi_claimable(&t->at) <= 0; k++) hdi_relax();
         hdi_lock(&t->lock);
-        while (!t->leave && hdi_claimable(t) <= 0) {
+        while (!t->leave && hdi_claimable(&t->at) <= 0) {
             t->n_asleep++;
             hdi_signal_wait(&t->work, &t->lock);
             t->n_asleep--;
         }
         if (t->leave) break;
-        loop = t->loop;
+        walk = t->walk;
         hdi_unlock(&t->lock);
-        hdi_loop_work(t, &loop, seat->worker);
+        while (hdi_walk_step(&walk, seat->worker)) {}
     }
     hdi_unlock(&t->lock);
     return HDI_THREAD_DONE;
@@ -2839,18 +2953,20 @@ static void hdi_threads_end(hd_context *ctx) {
     ctx->threads = NULL;
 }
 
-/* Threads for a loop of so many tasks, started when they are first needed. NULL: the caller does it alone. */
-static hd_threads *hdi_threads_get(hd_context *ctx, int64_t n_tasks) {
+/* Own threads that can share n nodes with the calling one, started when they are first needed. NULL: none, or
+ * they are the user's. */
+static hd_threads *hdi_threads_own(hd_context *ctx, int64_t n) {
     hd_threads *t = ctx->threads;
-    if (n_tasks < 2 || n_tasks > INT32_MAX || ctx->n_threads == 1 || ctx->n_holders == 0) return NULL;
+    if (ctx->parallel_for || n < 2 || n > INT32_MAX) return NULL;
+    if (ctx->n_threads == 1 || ctx->n_holders == 0 || !hdi_threads_linked()) return NULL;
     if (t && t->open) return NULL;               /* called by a task */
     if (t && (t->process != hdi_process() || t->asked != ctx->n_threads)) {
         hdi_threads_end(ctx);
         t = NULL;
     }
-    if (n_tasks < HDI_TASKS_START) return t && t->n > 0 ? t : NULL;
+    if (n < HDI_TASKS_START) return t && t->n > 0 ? t : NULL;
     if (!t) t = ctx->threads = hdi_threads_new(ctx);
-    while (t && t->n < t->most && t->n + 1 < n_tasks) {
+    while (t && t->n < t->most && t->n + 1 < n) {
         hdi_seat *seat = t->seat + t->n;
         seat->threads = t;
         seat->worker = t->n + 1;
@@ -2860,95 +2976,90 @@ static hd_threads *hdi_threads_get(hd_context *ctx, int64_t n_tasks) {
     return t && t->n > 0 ? t : NULL;
 }
 
-/* The calling thread has nothing to claim, but others are at work: looks around, then sleeps. */
-static void hdi_loop_wait(hd_context *ctx, hd_threads *t) {
-    const uint32_t n = t->loop.n;
-    int32_t k;
-    for (k = 0; k < HDI_SPIN && HDI_ATOMIC_GET(&t->done) != n && hdi_claimable(t) <= 0; k++) hdi_relax();
-    hdi_lock(&t->lock);
-    while (HDI_ATOMIC_GET(&t->done) != n && hdi_claimable(t) <= 0) {
-        t->caller_asleep = 1;
-        ctx->waits++;
-        hdi_signal_wait(&t->finished, &t->lock);
-        t->caller_asleep = 0;
-    }
-    hdi_unlock(&t->lock);
-}
+/* Nothing is left to claim, but others are at work. */
+static int hdi_walk_waits(const hdi_walk *w) { return !hdi_walk_done(w) && hdi_claimable(w->at) <= 0; }
 
-/* Of the loop's tasks n_ready may be claimed at once; tasks release the others. loop->base is set here. */
-static void hdi_loop_run(hd_context *ctx, hd_threads *t, hdi_loop *loop, int64_t n_ready) {
-    int64_t wake;
+/* By own threads, which claim from counters of theirs. */
+static void hdi_threads_run(hdi_walk *w) {
+    hd_threads *t = w->threads;
+    int32_t k;
     hdi_lock(&t->lock);
-    loop->base = HDI_ATOMIC_GET(&t->next);                        /* nobody claims now */
-    t->loop = *loop;
+    w->at = &t->at;
+    w->base = t->end;
+    t->end += w->n;
+    t->walk = *w;
     t->open = 1;
-    HDI_ATOMIC_SET(&t->done, 0);
-    HDI_ATOMIC_SET(&t->ready, loop->base + (uint32_t)n_ready);
-    for (wake = hdi_least(t->n_asleep, n_ready - 1); wake > 0; wake--) hdi_signal_one(&t->work);
+    HDI_ATOMIC_SET(&t->at.done, 0);
+    HDI_ATOMIC_SET(&t->at.next, w->base);
+    HDI_ATOMIC_SET(&t->at.ready, w->base + w->own.ready);
+    hdi_threads_wake(t, (int64_t)w->own.ready - 1);
     hdi_unlock(&t->lock);
-    ctx->regions++;
-    for (;;) {
-        hdi_loop_work(t, loop, 0);
-        if (HDI_ATOMIC_GET(&t->done) == loop->n) break;
-        hdi_loop_wait(ctx, t);
+    w->ctx->regions++;
+    while (!hdi_walk_done(w)) {
+        while (hdi_walk_step(w, 0)) {}
+        for (k = 0; k < HDI_SPIN && hdi_walk_waits(w); k++) hdi_relax();
+        hdi_lock(&t->lock);
+        for (; hdi_walk_waits(w); t->caller_asleep = 0, w->ctx->waits++) {
+            t->caller_asleep = 1;
+            hdi_signal_wait(&t->finished, &t->lock);
+        }
+        hdi_unlock(&t->lock);
     }
     t->open = 0;
-    ctx->helped += HDI_ATOMIC_GET(&t->helped);
+    w->ctx->helped += HDI_ATOMIC_GET(&t->helped);
     HDI_ATOMIC_SET(&t->helped, 0);
 }
 
-/* From within a task: tasks [id, id + n) of the open loop may be claimed too. */
-static void hdi_release_many(hd_threads *t, int32_t id, int32_t n, int32_t *order) {
-    int32_t i, wake = n;
-    hdi_lock(&t->lock);
-    for (i = 0; i < n; i++) order[t->ready - t->loop.base + (uint32_t)i] = id + i;
-    HDI_ATOMIC_SET(&t->ready, t->ready + (uint32_t)n);
-    if (t->caller_asleep && wake-- > 0) hdi_signal_one(&t->finished);
-    for (i = 0; i < wake && i < t->n_asleep; i++) hdi_signal_one(&t->work);
-    hdi_unlock(&t->lock);
+/* Whether a drain ends though there are nodes: when one that ended before can take one in the next round, or
+ * when the calling thread is not among those who drain, and should tell how far the walk is. */
+static int hdi_drain_leaves(const hdi_walk *w, int32_t done) {
+    if (!HDI_LOAD(&w->caller)) return (uint32_t)done > w->n / (8 * HDI_DRAINS);
+    return HDI_LOAD(&w->drains) < HDI_LOAD(&w->most) && hdi_claimable(w->at) > 1;
 }
 
-/* Threads that can share n tasks with the caller; NULL: none, or they are the user's. */
-static hd_threads *hdi_threads_own(hd_context *ctx, int64_t n_tasks) {
-    return ctx->parallel_for ? NULL : hdi_threads_get(ctx, n_tasks);
+/* By a user's thread. */
+static void hdi_drain(void *arg, int64_t index, int32_t worker) {
+    hdi_walk *w = (hdi_walk *)arg;
+    const int32_t drains = (int32_t)HDI_ATOMIC_ADD(&w->drains, 1);
+    int32_t k, done = 0, leaves = 0;
+    (void)index;
+    if (worker == 0) HDI_STORE(&w->caller, 1);
+    if (drains > HDI_LOAD(&w->most)) HDI_STORE(&w->most, drains);
+    for (k = 0; k < HDI_SPIN / HDI_DRAINS && !leaves && !hdi_walk_done(w); k++) {
+        while (!leaves && hdi_walk_step(w, worker)) leaves = hdi_drain_leaves(w, ++done);
+        hdi_relax();
+    }
+    HDI_ATOMIC_ADD(&w->drains, -1);
 }
 
-/* A loop of n tasks of which tasks release others. order [n]: the n_ready first ones; NULL: all by number. */
-static void hdi_parallel_ordered(hd_context *ctx, int32_t n, int32_t n_ready, int32_t *order, hd_task task,
-                                 void *arg) {
-    hdi_loop loop;
-    loop.n = (uint32_t)n;
-    loop.task = task;
-    loop.arg = arg;
-    loop.order = order;
-    hdi_loop_run(ctx, ctx->threads, &loop, n_ready);
+/* Whether the calling thread will do it all. */
+static int hdi_walk_alone(const hdi_walk *w) {
+    return !w->threads && (!w->ctx || !w->ctx->parallel_for || w->n < 2);
 }
-#else
-static void hdi_threads_end(hd_context *ctx) { (void)ctx; }
-static hd_threads *hdi_threads_own(hd_context *ctx, int64_t n_tasks) {
-    (void)ctx;
-    (void)n_tasks;
-    return NULL;
-}
-/* Never called: */
-static void hdi_parallel_ordered(hd_context *ctx, int32_t n, int32_t n_ready, int32_t *order, hd_task task,
-                                 void *arg) {
-    (void)ctx;
-    (void)n;
-    (void)n_ready;
-    (void)order;
-    (void)task;
-    (void)arg;
-}
-static void hdi_release_many(hd_threads *t, int32_t id, int32_t n, int32_t *order) {
-    (void)t;
-    (void)id;
-    (void)n;
-    (void)order;
-}
-#endif
 
-static void hdi_release(hd_threads *t, int32_t id, int32_t *order) { hdi_release_many(t, id, 1, order); }
+/* A walk of at most n nodes. By the threads of ctx; NULL: by this one. Nothing is released yet. */
+static void hdi_walk_open(hdi_walk *w, hd_context *ctx, int64_t n, int32_t *order, hd_task task, void *arg) {
+    memset(w, 0, sizeof *w);
+    w->ctx = ctx;
+    w->n = (uint32_t)n;
+    w->order = order;
+    w->task = task;
+    w->arg = arg;
+    w->at = &w->own;
+    w->told = UINT32_MAX;
+    w->to = 1;
+    w->threads = ctx ? hdi_threads_own(ctx, n) : NULL;
+}
+
+static void hdi_walk_run(hdi_walk *w) {
+    hd_context *ctx = w->ctx;
+    if (w->threads) hdi_threads_run(w);
+    else if (hdi_walk_alone(w))
+        while (hdi_walk_step(w, 0)) {}
+    else
+        for (; !hdi_walk_done(w); hdi_walk_tell(w))
+            ctx->parallel_for(ctx->parallel_user, HDI_DRAINS, hdi_drain, w);
+}
 
 /* An object that is made with the context holds it; its threads end with the last one. */
 static void hdi_hold(hd_context *ctx) { ctx->n_holders++; }
@@ -2964,10 +3075,13 @@ static int hdi_is_serial(const hd_context *ctx) {
     return !ctx->parallel_for && (ctx->n_holders == 0 || hdi_context_width(ctx) == 1);
 }
 
+/* Tasks that know nothing of each other. */
 static void hdi_parallel(hd_context *ctx, int64_t n_tasks, hd_task task, void *arg) {
-    const int32_t n = (int32_t)hdi_least(n_tasks, INT32_MAX);
     int64_t i;
-    if (hdi_threads_own(ctx, n_tasks)) hdi_parallel_ordered(ctx, n, n, NULL, task, arg);
+    hdi_walk w;
+    hdi_walk_open(&w, ctx, n_tasks, NULL, task, arg);
+    w.own.ready = w.n;
+    if (w.threads) hdi_walk_run(&w);
     else if (ctx->parallel_for && n_tasks > 1) ctx->parallel_for(ctx->parallel_user, n_tasks, task, arg);
     else for (i = 0; i < n_tasks; i++) task(arg, i, 0);
 }
@@ -3256,18 +3370,6 @@ static double hdi_dot(const double *HDI_RESTRICT x, const double *HDI_RESTRICT y
     }
     for (; i < n; i++) s0 += x[i] * y[i];
     return (s0 + s1) + (s2 + s3);
-}
-
-/* x' y, no conjugate: the bilinear form of complex-symmetric methods. */
-static hd_c64 hdi_cdotu(const hd_c64 *HDI_RESTRICT x, const hd_c64 *HDI_RESTRICT y, int64_t n) {
-    hd_c64 s0 = hdi_c(0, 0), s1 = s0;
-    int64_t i;
-    for (i = 0; i + 2 <= n; i += 2) {
-        s0 = hdi_cadd(s0, hdi_cmul(x[i], y[i]));
-        s1 = hdi_cadd(s1, hdi_cmul(x[i + 1], y[i + 1]));
-    }
-    for (; i < n; i++) s0 = hdi_cadd(s0, hdi_cmul(x[i], y[i]));
-    return hdi_cadd(s0, s1);
 }
 
 /* sum w_i |x_i|^2 */
@@ -10643,19 +10745,20 @@ static hd_status hdi_vertices_check(const hd_laplacian *lap, int64_t k, const in
  *   F. Pellegrini, J. Roman, P. Amestoy, Hybridizing nested dissection and halo approximate minimum degree,
  *   2000 (the halo)
  * Our own additions: all that is known of a vertex lies in one half of a cache line, and what is needed soon
- * is fetched early, which decides the speed from 1M vertices on; the hash table of twins is small; a halo
- * needs no rows. Ties: the vertex whose degree was found last goes first. */
+ * is fetched early. This decides the speed from 1M vertices on. The hash table of twins is small. The halo
+ * needs no rows. Of several vertices of least degree, the one whose degree was found last goes first. */
 
-/* A variable, an element, or what became of them. */
+/* What is known of a vertex. It begins as a variable and may become an element. It is gone when it was
+ * eliminated or merged together with another one, or when its list is part of a newer element. */
 typedef struct hdi_amd_node {
-    int32_t at;                  /* its list begins at list[at]; of a vertex gone with another: that one */
-    int32_t len;                 /* length of the list: elements first, then variables */
-    int32_t elen;                /* how many are elements; HDI_AMD_PIVOT: this is an element itself */
-    int32_t weight;              /* vertices it stands for; 0: it is gone; negative: it is in L_me */
-    int32_t mark;                /* elements: |L_e \ L_me| + flag, 0 when absorbed; variables: flag if seen */
-    int32_t degree;              /* bound of the weight of the neighbours; of elements that of the list */
-    int32_t next, prev;          /* of the same degree; later chain of the hash table, and hash. Of an element
-                                    prev is its place in the order */
+    int32_t at;                  /* its list begins at list[at]; if it went with another vertex: that one */
+    int32_t len;                 /* the length of the list, which has elements first and then variables */
+    int32_t elen;                /* how many of them are elements; HDI_AMD_PIVOT: this is an element itself */
+    int32_t weight;              /* how many vertices it stands for; 0: it is gone; negative: it is in L_me */
+    int32_t mark;                /* element: |L_e \ L_me| + flag, 0 when absorbed; variable: flag if seen */
+    int32_t degree;              /* a bound of the weight of its neighbours; element: the list's weight */
+    int32_t next, prev;          /* neighbours in the list of a degree; later the next one in a chain of the
+                                    hash table, and the hash; prev of an element is its place in the order */
 } hdi_amd_node;
 
 enum { HDI_AMD_PIVOT = -1, HDI_AMD_BITS = 10, HDI_AMD_BUCKETS = 1 << HDI_AMD_BITS };
@@ -10693,7 +10796,8 @@ static void hdi_amd_unlink(hdi_amd *g, int32_t i) {
     else g->head[g->v[i].degree] = next;
 }
 
-/* Moves all lists together. Each marks its beginning with its owner, who keeps the entry that stood there. */
+/* Moves all lists together. The first entry of each list is replaced by the number of its owner, which keeps
+ * that entry in `at` until the list has been moved. */
 static void hdi_amd_compact(hdi_amd *g) {
     int32_t i, p, q = 0, end;
     for (i = 0; i < g->n; i++) {
@@ -10716,8 +10820,8 @@ static void hdi_amd_compact(hdi_amd *g) {
     g->free = q;
 }
 
-/* Variables of list[p..p+len-1] that are not in L_me yet are put to its end at list[q], which may be that
- * same list; returns the new end. Their own lists are read next: they are fetched already. */
+/* Appends to L_me, which ends at list[q], those variables of list[p..p+len-1] that are not in it yet. Both
+ * may be the same list. Returns the new end. The variables' own lists are read next, so they are fetched. */
 static int32_t hdi_amd_collect(hdi_amd *g, int32_t p, int32_t len, int32_t q, int32_t *weight) {
     const int32_t end = p + len;
     int32_t ahead;
@@ -10734,15 +10838,16 @@ static int32_t hdi_amd_collect(hdi_amd *g, int32_t p, int32_t len, int32_t q, in
     return q;
 }
 
-/* L_me = A_me and the L_e of all its elements e, which are absorbed. Without elements it is made in place. */
+/* Makes the element me: L_me is the union of A_me and the lists L_e of all elements e of me. These elements
+ * are absorbed. If there are none, L_me is made in place. */
 static void hdi_amd_element(hdi_amd *g, int32_t me) {
     hdi_amd_node *v = g->v + me;
     int32_t begin, end, p, weight = 0;
     const int32_t elen = v->elen;
     if (elen > 0 && v->degree > g->size - g->free) hdi_amd_compact(g);
-    /* Lists that are alive hold at most the nnz entries that they began with: L_me replaces the longer ones
-     * it is made of, and whoever gets me into its list loses one entry at least. So n words and more are free
-     * after compacting, and degrees are below n. */
+    /* The lists that are alive never hold more than the nnz entries that they began with. L_me replaces the
+     * lists it is made of, which are longer together, and a variable that gets me into its list loses at
+     * least one entry. So at least n words are free after compacting, and a degree is below n. */
     HEATDIFF_ASSERT(elen == 0 || v->degree <= g->size - g->free);
     begin = end = elen > 0 ? g->free : v->at;
     v->weight = -v->weight;
@@ -10764,7 +10869,7 @@ static int32_t *hdi_amd_chain(const hdi_amd *g, int32_t hash) {
     return g->bucket + (hash >> (31 - HDI_AMD_BITS));
 }
 
-/* mark - flag = |L_e \ L_me| for all elements e that share a variable with L_me. */
+/* Computes |L_e \ L_me| for all elements e that share a variable with L_me: it is mark - flag from now on. */
 static void hdi_amd_overlaps(hdi_amd *g, const hdi_amd_node *me) {
     hdi_amd_node *v = g->v;
     const int32_t flag = g->flag, *list = g->list, *l = list + me->at, *const l_end = l + me->len;
@@ -10779,8 +10884,9 @@ static void hdi_amd_overlaps(hdi_amd *g, const hdi_amd_node *me) {
     }
 }
 
-/* A_i and E_i for the i of L_me: what me covers goes, so do elements inside L_me, me comes. Variables with no
- * neighbours outside go with me. The others get their degree outside, and are put into the hash table. */
+/* Updates the lists A_i and E_i of all i in L_me. Variables that me covers and elements that lie inside L_me
+ * leave them, and me enters. Variables without neighbours outside L_me are eliminated together with me. For
+ * the others this finds their degree outside L_me and puts them into the hash table. */
 static void hdi_amd_update(hdi_amd *g, int32_t me) {
     hdi_amd_node *v = g->v, *pivot = v + me;
     int32_t *list = g->list, *l = list + pivot->at, *const l_end = l + pivot->len;
@@ -10828,7 +10934,8 @@ static void hdi_amd_update(hdi_amd *g, int32_t me) {
     }
 }
 
-/* Merges into i those behind it in the chain that have the same elements and variables: they stay alike. */
+/* Merges into i the vertices behind it in the chain that have the same elements and variables as i. They
+ * would have the same ones for ever. */
 static void hdi_amd_twins(hdi_amd *g, int32_t i) {
     hdi_amd_node *v = g->v, *a = v + i;
     const int32_t *list = g->list;
@@ -10854,7 +10961,7 @@ static void hdi_amd_twins(hdi_amd *g, int32_t i) {
     g->flag += stamped;
 }
 
-/* Merges all twins within L_me: they are in the same chains of the hash table, which is left empty. */
+/* Merges all twins within L_me. Twins are in the same chain of the hash table. The table is left empty. */
 static void hdi_amd_merge(hdi_amd *g, const hdi_amd_node *me) {
     int32_t p, i, *head;
     for (p = me->at; p < me->at + me->len; p++) {
@@ -10885,7 +10992,7 @@ static void hdi_amd_restore(hdi_amd *g, hdi_amd_node *me) {
     if (me->len == 0) me->mark = 0;
 }
 
-/* Marks of the next step must be above all old ones. Before the numbers run out they begin anew. */
+/* The marks of the next step must be above all old ones. Before the numbers run out, all marks begin anew. */
 static void hdi_amd_next_flag(hdi_amd *g, int32_t step) {
     int32_t i;
     if (g->flag < INT32_MAX - 2 * step - g->n) {
@@ -10897,8 +11004,8 @@ static void hdi_amd_next_flag(hdi_amd *g, int32_t step) {
     g->flag = 2;
 }
 
-/* For audits: what is left has all the weight and is in the lists of degrees; elements weigh what they say;
- * and each degree lies between the weight of the neighbours and that of all lists they are in. */
+/* For audits. The variables that are left have all the weight and are in the lists of degrees, elements weigh
+ * what they say, and each degree lies between the weight of the neighbours and the weight of all lists. */
 static int hdi_amd_sound(hdi_amd *g) {
     hdi_amd_node *v = g->v;
     int32_t i, k, q, left = g->left, listed = 0, wrong = 0;
@@ -10956,8 +11063,8 @@ static void hdi_amd_run(hdi_amd *g, int32_t until) {
     }
 }
 
-/* int32 words of work space for lists of nnz entries. The elbow room of n is needed, that of a fifth of the
- * entries saves time (as in the paper). */
+/* Words of work space for lists of nnz entries. The last n words are needed (see hdi_amd_element). A fifth of
+ * the entries more saves time, as in the paper. */
 static int64_t hdi_amd_words(int32_t inner, int32_t halo, int64_t nnz) {
     const int64_t n = (int64_t)inner + halo, all = halo > 0 ? 2 * nnz : nnz;
     return (int64_t)(sizeof(hdi_amd_node) / sizeof(int32_t)) * n + n + 1 + HDI_AMD_BUCKETS + all +
@@ -10991,8 +11098,8 @@ static void hdi_amd_drop(hdi_amd *g, int32_t i) {
     g->left--;
 }
 
-/* Rows without neighbours come first in the order, those dropped as dense last, the others enter the list of
- * their degree. Returns how many the order holds without the dense ones. */
+/* Rows without neighbours come first in the order. Rows that were dropped as dense come last. All others
+ * enter the list of their degree. Returns how many rows there are without the dense ones. */
 static int32_t hdi_amd_start(hdi_amd *g) {
     int32_t i, last = g->inner, count;
     for (i = 0; i < g->inner; i++) last -= g->v[i].weight == 0;
@@ -11010,7 +11117,7 @@ static int32_t hdi_amd_start(hdi_amd *g) {
     return count;
 }
 
-/* perm [inner] from the pivots' places: those merged or eliminated with others follow them. */
+/* Fills perm [inner] from the places of the pivots. Vertices that went with another one follow it. */
 static void hdi_amd_number(hdi_amd *g, int32_t *perm) {
     hdi_amd_node *v = g->v;
     int32_t i, j, root, up;
@@ -11024,27 +11131,24 @@ static void hdi_amd_number(hdi_amd *g, int32_t *perm) {
     }
 }
 
-/* A graph to be ordered: rows of the inner vertices, 0..inner-1, in both triangles; in any order, none twice
- * in a row, the diagonal may be there. The others, the halo, count in degrees but are never eliminated. They
- * have no rows, and edges between them do not matter. */
+/* A graph to be ordered. The inner vertices, 0..inner-1, have rows: their neighbours in both triangles, in
+ * any order, none twice; the diagonal may be there. The other vertices are the halo. They count in degrees
+ * but are never eliminated. They have no rows, and edges between them do not matter. Columns from n on are
+ * skipped. */
 typedef struct hdi_amd_graph {
     int32_t n, inner;
-    const int64_t *wide;         /* [inner + 1] where rows begin, or NULL and ... */
-    const int32_t *ptr;          /* [inner + 1] ... the same as shorter numbers */
-    const int32_t *col;          /* columns 0..n-1 */
+    const int32_t *ptr, *col;    /* [inner + 1], [ptr[inner]] */
 } hdi_amd_graph;
 
-static int64_t hdi_amd_row(const hdi_amd_graph *a, int32_t i) { return a->wide ? a->wide[i] : a->ptr[i]; }
-
-/* Lists of all vertices but those with dense rows (as in AMD), which are dropped: they would be in most. */
+/* Makes the lists of all vertices. Vertices with dense rows are dropped, as in AMD: they would be in most
+ * lists. */
 static void hdi_amd_load(hdi_amd *g, const hdi_amd_graph *a) {
     const int32_t dense = (int32_t)(hdi_max(16, 10 * sqrt((double)a->n)));
-    int32_t i, q = 0;
-    int64_t p;
+    int32_t i, p, q = 0;
     for (i = 0; i < a->inner; i++) {
-        if (hdi_amd_row(a, i + 1) - hdi_amd_row(a, i) > dense) hdi_amd_drop(g, i);
-        for (p = hdi_amd_row(a, i); a->inner < a->n && p < hdi_amd_row(a, i + 1); p++)
-            if (a->col[p] >= a->inner) g->v[a->col[p]].len++;
+        if (a->ptr[i + 1] - a->ptr[i] > dense) hdi_amd_drop(g, i);
+        for (p = a->ptr[i]; a->inner < a->n && p < a->ptr[i + 1]; p++)
+            if (a->col[p] >= a->inner && a->col[p] < a->n) g->v[a->col[p]].len++;
     }
     for (i = a->inner; i < a->n; i++) {          /* room for the lists of the halo */
         if (g->v[i].len > dense) hdi_amd_drop(g, i);
@@ -11053,12 +11157,11 @@ static void hdi_amd_load(hdi_amd *g, const hdi_amd_graph *a) {
         g->v[i].len = 0;
     }
     for (i = 0; i < a->inner; i++) {
-        const int64_t end = hdi_amd_row(a, i + 1);
         g->v[i].at = q;
         if (g->v[i].weight == 0) continue;
-        for (p = hdi_amd_row(a, i); p < end; p++) {
+        for (p = a->ptr[i]; p < a->ptr[i + 1]; p++) {
             hdi_amd_node *j = g->v + a->col[p];
-            if (a->col[p] == i || j->weight == 0) continue;
+            if (a->col[p] == i || a->col[p] >= a->n || j->weight == 0) continue;
             g->list[q++] = a->col[p];
             if (a->col[p] >= a->inner) g->list[j->at + j->len++] = i;
         }
@@ -11067,7 +11170,7 @@ static void hdi_amd_load(hdi_amd *g, const hdi_amd_graph *a) {
     g->free = q;
 }
 
-/* Orders a small graph with ptr given: perm[q] is the inner vertex eliminated q-th. work
+/* Orders a small graph: perm[q] is the inner vertex that is eliminated q-th. work
  * [hdi_amd_words], below 2^31, best aligned to 64 bytes. Cannot fail. TRUSTS ITS INPUT. */
 static void hdi_amd_part(const hdi_amd_graph *a, int32_t *perm, int32_t *work) {
     hdi_amd g;
@@ -11084,13 +11187,14 @@ static hd_status hdi_amd_order(const hd_csr *a, int32_t *perm, hd_context *ctx, 
     hdi_scope s = hdi_scope_begin(ctx, e);
     const int32_t n = a->n_rows;
     const int64_t words = hdi_amd_words(n, 0, a->nnz);
-    const hdi_amd_graph rows = {n, n, a->row_ptr, NULL, a->col};
-    int32_t count, *work;
+    int32_t i, count, *ptr = HDI_TAKE(&s, int32_t, (int64_t)n + 1), *work;
+    const hdi_amd_graph rows = {n, n, ptr, a->col};
     hdi_amd g;
     if (words - 9 * (int64_t)n > INT32_MAX)   /* places in the lists are numbered by 32 bits */
-        return hdi_fail(e, HD_ERR_TOO_LARGE, "a pattern is too large for a minimum degree ordering");
+        hdi_fail(e, HD_ERR_TOO_LARGE, "a pattern is too large for a minimum degree ordering");
     work = HDI_TAKE(&s, int32_t, words);
     if (e->status < 0) return hdi_scope_end(&s);
+    for (i = 0; i <= n; i++) ptr[i] = (int32_t)a->row_ptr[i];
     hdi_amd_begin(&g, n, n, work, words);
     hdi_amd_load(&g, &rows);
     count = hdi_amd_start(&g);
@@ -11101,12 +11205,15 @@ static hd_status hdi_amd_order(const hd_csr *a, int32_t *perm, hd_context *ctx, 
 }
 
 /* ==== [14] dissection ====
- * An elimination order for matrices whose rows have a place in space: separators last. The rows are numbered
- * along a space-filling curve, so that every part is a compact graph in cache. A part is halved on its
- * clusters, small groups of neighbours that are made once and handed down: they are swept along a line or by
- * graph distance, then the cut is improved by exchanges on a few coarser copies. Around the cut that this
- * gives, the smallest separator within a band is found exactly, by vertex-disjoint paths. Small parts are
- * ordered by minimum degree, the separators around them counted as neighbours. May call [13].
+ * Nested dissection: an elimination order for matrices whose rows have a place in space. A part of the graph
+ * is cut into two halves by a separator, which comes last in the order, and both halves are treated alike.
+ * The rows are numbered along a space-filling curve, so that every part is a compact graph in cache.
+ *   1. A part has clusters: small groups of neighbours, which are made once and handed down to the halves.
+ *   2. The clusters are made coarser a few times. The coarsest copy is cut in several ways, along directions
+ *      and by graph distance, and the best cut is taken. It is improved by exchanges on each finer copy.
+ *   3. Within a band around this cut, the smallest separator is found exactly, by vertex-disjoint paths.
+ *   4. Small parts are ordered by minimum degree. The separators around them count as neighbours.
+ * May call [13].
  * This work is based on
  *   A. George, Nested dissection of a regular finite element mesh, 1973
  *   G. M. Morton, A computer oriented geodetic data base and a new technique in file sequencing, 1966
@@ -11115,8 +11222,8 @@ static hd_status hdi_amd_order(const hd_csr *a, int32_t *perm, hd_context *ctx, 
  *   L. R. Ford, D. R. Fulkerson, Flows in networks, 1962 (and Menger's theorem)
  *   C. Ashcraft, J. W. H. Liu, Applications of the Dulmage-Mendelsohn decomposition and network flow to graph
  *   bisection improvement, 1998 (smallest separators in a band)
- * The clusters that a separator cuts through live on in both halves, with the weights of edges that they had:
- * these only guide the next cut. */
+ * A cluster that a separator cuts through lives on in both halves, and its edges keep their weights. Clusters
+ * only guide the next cut. */
 
 enum {
     HDI_ND_LEAF = 1500,     /* vertices of a part that minimum degree orders: fewer cost time, not fill */
@@ -11145,8 +11252,8 @@ enum {
 #define HDI_ND_UNEVEN 0.6     /* share by which a cut costs more that leaves one side empty */
 #define HDI_ND_SWEPT 0.2      /* share of the weight by which the sides of a swept cut differ at most */
 
-/* A part, or a coarse copy of one. At the finest copy weights are 1 (ew and w are NULL), and negative entries
- * of adj are rows outside of the part, already in a separator: ~row. */
+/* A part, or a coarse copy of one. In the part itself all weights are 1 (ew and w are NULL), and entries of
+ * adj from n on are its halo: rows outside of it, which are in a separator already. Copies have no halo. */
 typedef struct hdi_nd_graph {
     int32_t n;
     int32_t *ptr, *adj;    /* neighbours of v: adj[ptr[v]..ptr[v + 1]), no diagonal */
@@ -11156,8 +11263,9 @@ typedef struct hdi_nd_graph {
     int8_t *side;          /* 0, 1, and at the finest copy 2: separator */
 } hdi_nd_graph;
 
-/* Rows first..first + n - 1 of the order are to be found. clusters = 0: none are known. */
-typedef struct hdi_nd_part { int32_t first, n, edge, n_edges, clusters, buffer; } hdi_nd_part;
+/* A part has places first..first + n - 1 of the order. Its halo has the numbers n..n + halo - 1. If
+ * clusters is 0, none are known. */
+typedef struct hdi_nd_part { int32_t first, n, halo, edge, n_edges, clusters, buffer; } hdi_nd_part;
 
 /* The graphs of parts and their clusters, each in its own slices: one of two buffers is for odd depths. */
 typedef struct hdi_nd_buffer {
@@ -11172,26 +11280,18 @@ typedef struct hdi_nd {
     float *xyz;
     int32_t *perm, *work;
     hdi_nd_part *part;               /* [HDI_ND_NODES] */
-    int32_t level;                   /* halved in step: the first part of the level under way */
-    hd_threads *threads;             /* in one loop: those who share it, ... */
-    int32_t order[HDI_ND_NODES];     /* ... the parts as they become ready, ... */
-    uint32_t done;                   /* ... and how many are done */
-    int32_t stop;
-    hd_context *ctx;
-    hd_error *error;
+    hdi_walk walk;
+    int32_t order[HDI_ND_NODES];     /* the parts as they become ready */
 } hdi_nd;
 
 /* Work space left to a task, taken from its front: what a copy of this struct took is free after it. */
 typedef struct hdi_nd_space { int32_t *at, *end; } hdi_nd_space;
 
-/* A task's space, 20 n + 2 n_edges + 1200 words for a part of n vertices, is never used up. A split takes
- * 1.25 n (rows by number, sides), and the list of a cut's vertices 2 n; what else it takes is given back
- * before the next step. Of these steps the largest is hdi_nd_cut_clusters: 1.25 c for c <= n clusters, 2
- * n_edges, and copies, each of at most 2/3 of the vertices of the one before: one of N vertices takes 3.17 N,
- * all 9.5 c; where a copy fails it keeps 3.17 N at most, takes 5.5 N for a while, and hdi_nd_first_cut 11.5 N
- * on top, or hdi_nd_descend 4.25 N on top of all copies. With N = (2/3)^l c that is 9.5 c (1 - (2/3)^l) +
- * 14.67 N <= 14.67 c: together 19.2 n at most. Rounding adds less than 30 words to each of 24 copies. The
- * flow takes 9.25 n, fresh clusters 3.17 n + 5.5 (2/3 n), those of a half 2 n; hdi_nd_leaf looks itself. */
+/* Takes work space. Tasks cannot allocate, so each has 20 n + 2 n_edges + 1200 words for a part of n
+ * vertices. That is always enough. The largest need is in hdi_nd_cut_clusters, in words for each vertex: 0.25
+ * for the sides, 2 for the list, 1.25 for weights and sides of the clusters; 2 n_edges for the edges of the
+ * copies; and at most 14.7 for the copies themselves, because each has at most 2/3 of the vertices of the one
+ * before. */
 static int32_t *hdi_nd_take(hdi_nd_space *s, int64_t words) {
     int32_t *p = s->at;
     HEATDIFF_ASSERT(words <= s->end - s->at);
@@ -11213,7 +11313,7 @@ static uint32_t hdi_nd_spread(uint32_t x) {
     return (x | x << 2) & 0x09249249u;
 }
 
-/* key[i] = place of row i on the Morton curve in a grid of 1024^3 cells; unit [3n] = places within [0, 1]. */
+/* key[i] is the place of row i on the Morton curve in a grid of 1024^3 cells. unit [3n]: places in [0, 1]. */
 static void hdi_nd_keys(const double *xyz, int32_t n, uint32_t *key, float *unit) {
     double lo[3], hi[3], width = 0;
     int32_t i, d;
@@ -11236,38 +11336,46 @@ static void hdi_nd_keys(const double *xyz, int32_t n, uint32_t *key, float *unit
     }
 }
 
-/* count[i] becomes the sum of those before it. Returns the sum of all. */
-static int32_t hdi_nd_sums(int32_t *count, int32_t n) {
-    int32_t i, sum = 0;
-    for (i = 0; i < n; i++) {
-        const int32_t c = count[i];
-        count[i] = sum;
-        sum += c;
-    }
-    return sum;
+/* Groups [0,n) by keys: list[ptr[k]..ptr[k + 1]) are the i with key[i] = k, ascending. Those with negative
+ * keys are left out. ptr [n_keys + 1]. */
+static void hdi_group(const int32_t *key, int32_t n, int32_t n_keys, int32_t *ptr, int32_t *list) {
+    int32_t i;
+    hdi_fill_i32(ptr, (int64_t)n_keys + 1, 0);
+    for (i = 0; i < n; i++)
+        if (key[i] >= 0) ptr[key[i]]++;
+    for (i = 0; i < n_keys; i++) ptr[i + 1] += ptr[i];
+    for (i = n; i-- > 0;)
+        if (key[i] >= 0) list[--ptr[key[i]]] = i;
 }
 
-/* order = the rows by ascending key: three passes of ten bits. spare [n], count [1024]. */
-static void hdi_nd_sort(const uint32_t *key, int32_t n, int32_t *order, int32_t *spare, int32_t *count) {
-    int32_t i, shift, *from = spare, *to = order;
-    for (i = 0; i < n; i++) from[i] = i;
-    for (shift = 0; shift < 30; shift += 10) {
-        int32_t *t;
-        memset(count, 0, 1024 * sizeof *count);
-        for (i = 0; i < n; i++) count[key[i] >> shift & 1023u]++;
-        hdi_nd_sums(count, 1024);
-        for (i = 0; i < n; i++) to[count[key[from[i]] >> shift & 1023u]++] = from[i];
-        t = from;
-        from = to;
-        to = t;
+/* Sorts the rows along the curve, by three digits of 11 bits. Rows with too many entries come last, and the
+ * return value is the number of the other ones. inv: the inverse of order, but -1 for rows with too many
+ * entries. spare [n], ptr [2049]. */
+static int32_t hdi_nd_number(const hd_csr *a, uint32_t *key, int32_t *order, int32_t *inv, int32_t *spare,
+                             int32_t *ptr) {
+    const double dense = 10 * sqrt((double)a->n_rows) + 16;
+    const int32_t n = a->n_rows;
+    int32_t i, shift, m = 0;
+    for (i = 0; i < n; i++) {
+        if ((double)(a->row_ptr[i + 1] - a->row_ptr[i]) > dense) key[i] = (uint32_t)1 << 30;
+        else m++;
+        order[i] = i;
     }
+    for (shift = 0; shift < 33; shift += 11) {
+        for (i = 0; i < n; i++) inv[i] = (int32_t)(key[order[i]] >> shift & 2047u);
+        hdi_group(inv, n, 2048, ptr, spare);
+        for (i = 0; i < n; i++) inv[i] = order[spare[i]];
+        memcpy(order, inv, (size_t)n * sizeof *order);
+    }
+    for (i = 0; i < n; i++) inv[order[i]] = i < m ? i : -1;
+    return m;
 }
 
 /* ---- coarse copies ---- */
 
-/* Makes clusters of neighbours: each vertex still free takes its free neighbours, up to a weight of limit. A
- * vertex that finds none joins the cluster of a neighbour, or, where none has room, the last vertex that was
- * left alone. weight [n]: of the clusters. Returns their number. */
+/* Makes clusters of neighbours. Each vertex that is still free takes its free neighbours, up to a weight of
+ * limit. A vertex that finds none joins the cluster of a neighbour. If none of these has room, it joins the
+ * last vertex that was left alone. weight [n]: of the clusters. Returns their number. */
 static int32_t hdi_nd_cluster(const hdi_nd_graph *g, int32_t limit, int32_t *weight) {
     int32_t v, p, n = 0, single = -1, *map = g->map;
     for (v = 0; v < g->n; v++) map[v] = -1;
@@ -11278,7 +11386,7 @@ static int32_t hdi_nd_cluster(const hdi_nd_graph *g, int32_t limit, int32_t *wei
         map[v] = n;
         for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
             const int32_t u = g->adj[p];
-            if (u < 0) continue;
+            if (u >= g->n) continue;
             if (map[u] < 0) {
                 const int32_t wu = g->w ? g->w[u] : 1;
                 if (sum + wu > limit) continue;
@@ -11298,20 +11406,9 @@ static int32_t hdi_nd_cluster(const hdi_nd_graph *g, int32_t limit, int32_t *wei
     return n;
 }
 
-/* Groups [0,n) by keys: list[ptr[k]..ptr[k + 1]) are the i with key[i] = k, ascending. Those with negative
- * keys are left out. ptr [n_keys + 1]. */
-static void hdi_group(const int32_t *key, int32_t n, int32_t n_keys, int32_t *ptr, int32_t *list) {
-    int32_t i;
-    hdi_fill_i32(ptr, (int64_t)n_keys + 1, 0);
-    for (i = 0; i < n; i++)
-        if (key[i] >= 0) ptr[key[i]]++;
-    for (i = 0; i < n_keys; i++) ptr[i + 1] += ptr[i];
-    for (i = n; i-- > 0;)
-        if (key[i] >= 0) list[--ptr[key[i]]] = i;
-}
-
-/* c = the graph of the clusters of g, with summed weights. c->n, c->w are set; c->adj, c->ew have room for
- * space > 0 entries. member [g->n], start [c->n + 1], mark [c->n]. 0 if the room is too small. */
+/* Makes c, the graph of the clusters of g, with summed weights. c->n and c->w are set before. c->adj and
+ * c->ew have room for space > 0 entries. member [g->n], start [c->n + 1], mark [c->n]. Returns 0 if the room
+ * is too small. */
 static int hdi_nd_contract(const hdi_nd_graph *g, hdi_nd_graph *c, int32_t space, int32_t *member,
                            int32_t *start, int32_t *mark) {
     const int32_t *map = g->map, *ew = g->ew;
@@ -11330,7 +11427,7 @@ static int hdi_nd_contract(const hdi_nd_graph *g, hdi_nd_graph *c, int32_t space
             for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
                 const int32_t u = g->adj[p], e = ew ? ew[p] : 1;
                 int32_t d, at, fresh;
-                if (u < 0) continue;
+                if (u >= g->n) continue;
                 d = map[u];                      /* no branches from here on: they would be unpredictable */
                 at = mark[d];
                 fresh = at < row;
@@ -11347,8 +11444,9 @@ static int hdi_nd_contract(const hdi_nd_graph *g, hdi_nd_graph *c, int32_t space
     return 1;
 }
 
-/* For audits: weight of the vertices, and 2^32 times that of entries between clusters (map; NULL: of all).
- * -1 unless each edge is there from both its ends with the same weight: the sum would hardly be zero. */
+/* For audits. Returns the weight of all vertices plus 2^32 times the weight of the entries between clusters
+ * (map; NULL: of all entries). Returns -1 unless each edge is there from both its ends with the same weight:
+ * a checksum, to which both ends add opposite terms, would hardly be zero otherwise. */
 static int64_t hdi_nd_weigh(const hdi_nd_graph *g, const int32_t *map) {
     int64_t weight = 0;
     uint64_t sum = 0;
@@ -11357,9 +11455,10 @@ static int64_t hdi_nd_weigh(const hdi_nd_graph *g, const int32_t *map) {
         weight += g->w ? g->w[v] : 1;
         for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
             const int64_t u = g->adj[p], e = g->ew ? g->ew[p] : 1;
-            if (u == v || u >= g->n || e <= 0) return -1;
-            if (u >= 0) sum += (uint64_t)(u - v) * (uint64_t)((1 + u % 999 * (v % 999)) * e);
-            if (u >= 0 && (!map || map[u] != map[v])) weight += e << 32;
+            if (u == v || u < 0 || e <= 0) return -1;
+            if (u >= g->n) continue;
+            sum += (uint64_t)(u - v) * (uint64_t)((1 + u % 999 * (v % 999)) * e);
+            if (!map || map[u] != map[v]) weight += e << 32;
         }
     }
     return sum == 0 ? weight : -1;
@@ -11368,7 +11467,8 @@ static int64_t hdi_nd_weigh(const hdi_nd_graph *g, const int32_t *map) {
 /* Where copies are made: the room for their entries. */
 typedef struct hdi_nd_room { int32_t *adj, *ew, n; } hdi_nd_room;
 
-/* Makes level[1], coarser than level[0]. total: weight of all vertices. 0: no room, or not much to win. */
+/* Makes level[1], a coarser copy of level[0]. total: the weight of all vertices. Returns 0 if there is no
+ * room, or if the copy would not be much smaller. */
 static int hdi_nd_coarser(hdi_nd_graph *level, int32_t total, hdi_nd_room *room, hdi_nd_space *s) {
     hdi_nd_graph *g = level, *c = level + 1;
     const int32_t mean = total / g->n, most = total / HDI_ND_CLUSTERS;
@@ -11399,7 +11499,8 @@ static int hdi_nd_coarser(hdi_nd_graph *level, int32_t total, hdi_nd_room *room,
 
 /* ---- buckets ---- */
 
-/* Lists of items for each gain and side. prev of the first is -1 - bucket, of one in none HDI_ND_NONE. */
+/* A list of items for each gain and side. prev of the first item of a list is -1 - bucket. prev of an
+ * item that is in no list is HDI_ND_NONE. */
 typedef struct hdi_nd_queue {
     int32_t head[2 * HDI_ND_BUCKETS], top[2];
     int32_t *next, *prev;
@@ -11433,7 +11534,7 @@ static int32_t hdi_nd_queue_best(hdi_nd_queue *q, int32_t side) {
 
 /* ---- cutting edges ---- */
 
-/* What a cut costs: its size, and a little for halves that differ. */
+/* What a cut costs: its size, and a little more if the halves differ in weight. */
 static double hdi_nd_cost(double cut, double a, double b) {
     const double im = (a - b) / (a + b + 1e-30);
     return (cut + 1) * (1 + HDI_ND_UNEVEN * im * im);
@@ -11465,7 +11566,7 @@ static hdi_nd_mover hdi_nd_mover_make(const hdi_nd_graph *g, hdi_nd_space *s) {
     return m;
 }
 
-/* Gains of all vertices; those on the cut enter the queue. Sets the cut's weights. */
+/* Computes the gains of all vertices and the cut's weights. Vertices on the cut enter the queue. */
 static void hdi_nd_mover_start(hdi_nd_mover *m, hdi_nd_cut *cut) {
     const hdi_nd_graph *g = m->g;
     int32_t v, p, largest = 1;
@@ -11477,7 +11578,7 @@ static void hdi_nd_mover_start(hdi_nd_mover *m, hdi_nd_cut *cut) {
         int32_t in = 0, out = 0;
         for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
             const int32_t u = g->adj[p], e = g->ew ? g->ew[p] : 1;
-            if (u < 0) continue;
+            if (u >= g->n) continue;
             out += e & -(g->side[u] ^ g->side[v]);
             in += e;
         }
@@ -11497,7 +11598,7 @@ static void hdi_nd_mover_start(hdi_nd_mover *m, hdi_nd_cut *cut) {
     memset(m->locked, 0, (size_t)g->n);
 }
 
-/* v changes its side; its neighbours' gains follow. */
+/* Moves v to the other side and updates the gains of its neighbours. */
 static void hdi_nd_mover_move(hdi_nd_mover *m, int32_t v, hdi_nd_cut *cut) {
     const hdi_nd_graph *g = m->g;
     const int8_t to = (int8_t)(1 - g->side[v]);
@@ -11510,7 +11611,7 @@ static void hdi_nd_mover_move(hdi_nd_mover *m, int32_t v, hdi_nd_cut *cut) {
     m->gain[v] = -m->gain[v];
     for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
         const int32_t u = g->adj[p], e = g->ew ? g->ew[p] : 1;
-        if (u < 0) continue;
+        if (u >= g->n) continue;
         m->gain[u] += g->side[u] == to ? -2 * e : 2 * e;
         if (m->locked[u]) continue;
         if (m->q.prev[u] != HDI_ND_NONE) hdi_nd_queue_remove(&m->q, u);
@@ -11518,8 +11619,8 @@ static void hdi_nd_mover_move(hdi_nd_mover *m, int32_t v, hdi_nd_cut *cut) {
     }
 }
 
-/* The vertex to move next: the one of largest gain, where the side that it goes to stays below `most` or
- * below the side that it leaves. -1: there is none. */
+/* The vertex to move next is the one of largest gain, provided that the side it goes to stays below `most` or
+ * below the side it leaves. Returns -1 if there is none. */
 static int32_t hdi_nd_mover_next(hdi_nd_mover *m, const hdi_nd_cut *cut) {
     int32_t s, best = -1, gain = 0;
     for (s = 0; s < 2; s++) {
@@ -11536,8 +11637,8 @@ static int32_t hdi_nd_mover_next(hdi_nd_mover *m, const hdi_nd_cut *cut) {
     return best;
 }
 
-/* Passes of Fiduccia and Mattheyses: each moves the best vertex again and again, even at a loss, no vertex
- * twice, and then goes back to the best cut seen. */
+/* Passes of Fiduccia and Mattheyses. A pass moves the best vertex again and again, even at a loss, but no
+ * vertex twice. At its end it goes back to the best cut seen. */
 static void hdi_nd_refine_edges(hdi_nd_mover *m, hdi_nd_cut *cut, int32_t passes) {
     const int64_t patience = hdi_least(20 + m->g->n / 20, HDI_ND_PATIENCE);
     while (passes-- > 0) {
@@ -11598,7 +11699,7 @@ static int32_t hdi_nd_steps(const hdi_nd_graph *g, int32_t start, int32_t *dist,
         v = queue[head++];
         for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
             const int32_t u = g->adj[p];
-            if (u < 0 || dist[u] < g->n) continue;
+            if (u >= g->n || dist[u] < g->n) continue;
             dist[u] = dist[v] + 1;
             queue[tail++] = u;
         }
@@ -11613,8 +11714,9 @@ static uint64_t hdi_nd_key(double x) {
     return u >> 63 ? ~u : u | 0x8000000000000000u;
 }
 
-/* The values along which the vertices are swept, as keys to sort by. kind 0: places along the longest
- * straight line; 1: graph distances; others: places along a direction. 0 if all are equal. work [3 g->n]. */
+/* The values along which the vertices are swept, as keys to sort by. kind 0: places along a line between two
+ * vertices far apart; 1: differences of graph distances from two such vertices; others: places along a fixed
+ * direction. Returns 0 if all values are equal. work [3 g->n]. */
 static int hdi_nd_sweep_keys(const hdi_nd *nd, const hdi_nd_graph *g, int32_t kind, hdi_pair *key,
                              int32_t *work) {
     static const signed char hdi_directions[9][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {1, -1, 0},
@@ -11643,7 +11745,7 @@ static int hdi_nd_sweep_keys(const hdi_nd *nd, const hdi_nd_graph *g, int32_t ki
     return differ;
 }
 
-/* The sides that the best place in the order of key gives. */
+/* Sets the sides: vertices up to the best place in the order of key are on side 0, the others on side 1. */
 static void hdi_nd_sweep(const hdi_nd_graph *g, const hdi_pair *key, double total) {
     double weight = 0, cut = 0, best = DBL_MAX;
     int32_t i, p, keep = 0;
@@ -11655,7 +11757,7 @@ static void hdi_nd_sweep(const hdi_nd_graph *g, const hdi_pair *key, double tota
         weight += g->w ? g->w[v] : 1;
         for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
             const int32_t u = g->adj[p], e = g->ew ? g->ew[p] : 1;
-            if (u >= 0) cut += g->side[u] ? e : -e;
+            if (u < g->n) cut += g->side[u] ? e : -e;
         }
         now = hdi_nd_cost(cut, weight, total - weight);
         if (fabs(2 * weight - total) > HDI_ND_SWEPT * total)
@@ -11712,7 +11814,8 @@ typedef struct hdi_nd_flow {
     int8_t *inside, from;       /* layer: 0 outside, else HDI_ND_MIDDLE +- the distance, less on side from */
 } hdi_nd_flow;
 
-/* The band: the separator, band[0..n), and what is at most `layers` steps from it, at most `most` a side. */
+/* Makes the band: the separator, band[0..n), and the vertices at most `layers` steps away from it, but no
+ * more than `most` on each side. */
 static void hdi_nd_flow_band(hdi_nd_flow *f, int32_t n, int32_t most, int32_t layers) {
     const hdi_nd_graph *g = f->g;
     int32_t i, p, begin = 0, room[2];
@@ -11726,7 +11829,7 @@ static void hdi_nd_flow_band(hdi_nd_flow *f, int32_t n, int32_t most, int32_t la
             const int32_t v = f->band[begin];
             for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
                 const int32_t u = g->adj[p];
-                if (u < 0 || f->inside[u] || room[g->side[u]] == 0) continue;
+                if (u >= g->n || f->inside[u] || room[g->side[u]] == 0) continue;
                 room[g->side[u]]--;
                 f->inside[u] = (int8_t)(f->inside[v] + (g->side[u] == f->from ? -1 : 1));
                 f->band[f->n_band++] = u;
@@ -11741,7 +11844,7 @@ static void hdi_nd_flow_band(hdi_nd_flow *f, int32_t n, int32_t most, int32_t la
     f->stamp = 0;
 }
 
-/* A path ends in this state: joins it to the others, which give up the steps that it takes back. */
+/* A new path ends in this state. Joins it to the others, which lose the steps that the new path goes back. */
 static void hdi_nd_flow_augment(hdi_nd_flow *f, int32_t state) {
     int32_t up;
     for (; (up = f->up[state]) >= 0; state = up) {
@@ -11753,7 +11856,7 @@ static void hdi_nd_flow_augment(hdi_nd_flow *f, int32_t state) {
     f->prev[state >> 1] = -1;
 }
 
-/* Notes that state `to` can be reached from state `from`, in the list of its layer. */
+/* State `to` can be reached from state `from`: puts it into the list of its layer. */
 static void hdi_nd_flow_push(hdi_nd_flow *f, int32_t to, int32_t from) {
     const int32_t layer = f->inside[to >> 1];
     f->seen[to] = f->stamp;
@@ -11764,8 +11867,9 @@ static void hdi_nd_flow_push(hdi_nd_flow *f, int32_t to, int32_t from) {
     if (layer > f->top) f->top = layer;
 }
 
-/* Searches one more path from vertex v; goes on from the state that is farthest towards the other side.
- * Returns 1 when there is one. What a failed search has seen is on no path, and dead from then on. */
+/* Searches one more path from vertex v. It always goes on from the state that is farthest towards the other
+ * side. Returns 1 if there is a path. If not, no state that was seen can lead to the other side any more:
+ * these states are dead from then on. */
 static int hdi_nd_flow_search(hdi_nd_flow *f, int32_t v) {
     const hdi_nd_graph *g = f->g;
     int32_t p, i;
@@ -11787,7 +11891,7 @@ static int hdi_nd_flow_search(hdi_nd_flow *f, int32_t v) {
         } else {
             for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
                 const int32_t u = g->adj[p];
-                if (u < 0) continue;
+                if (u >= g->n) continue;
                 if (f->inside[u]) {
                     if (f->seen[2 * u] < f->stamp) hdi_nd_flow_push(f, 2 * u, state);
                 } else if (g->side[u] != f->from) {
@@ -11807,11 +11911,12 @@ static int hdi_nd_flow_starts(const hdi_nd_flow *f, int32_t v) {
     const hdi_nd_graph *g = f->g;
     int32_t p;
     for (p = g->ptr[v]; p < g->ptr[v + 1]; p++)
-        if (g->adj[p] >= 0 && !f->inside[g->adj[p]] && g->side[g->adj[p]] == f->from) return 1;
+        if (g->adj[p] < g->n && !f->inside[g->adj[p]] && g->side[g->adj[p]] == f->from) return 1;
     return 0;
 }
 
-/* Sets the sides of the band around band[0..n): the smallest separator in it, that nearest to side from. */
+/* Finds the smallest separator within the band around band[0..n), and of several the one that is nearest to
+ * side `from`. Sets the sides of the band. */
 static void hdi_nd_flow_run(hdi_nd_flow *f, int32_t n, int32_t most, int32_t layers) {
     int32_t i, k = 0, paths = 0, cut = 0, begins = 0, *start;
     hdi_nd_flow_band(f, n, most, layers);
@@ -11835,7 +11940,7 @@ static void hdi_nd_flow_run(hdi_nd_flow *f, int32_t n, int32_t most, int32_t lay
 
 /* ---- parts ---- */
 
-/* The cut of level[from] taken down to level[1], improved on each copy. */
+/* Takes the cut of level[from] down to level[1] and improves it on each copy. */
 static void hdi_nd_descend(hdi_nd_graph *level, int32_t from, int32_t total, hdi_nd_space s) {
     int32_t l, v;
     for (l = from - 1; l > 0; l--) {
@@ -11849,7 +11954,7 @@ static void hdi_nd_descend(hdi_nd_graph *level, int32_t from, int32_t total, hdi
     }
 }
 
-/* Slices of the clusters of a part. */
+/* Where the clusters of a part are stored. */
 static void hdi_nd_clusters_of(const hdi_nd *nd, const hdi_nd_part *p, hdi_nd_graph *c) {
     const hdi_nd_buffer *b = nd->buffer + p->buffer;
     c->n = p->clusters;
@@ -11859,7 +11964,8 @@ static void hdi_nd_clusters_of(const hdi_nd *nd, const hdi_nd_part *p, hdi_nd_gr
     c->id = b->cid + p->first;
 }
 
-/* level[1] = clusters of clusters of level[0], about a dozen vertices each: the part's, if they fit. */
+/* Makes level[1]: clusters of clusters of level[0], of about a dozen vertices each. If they do not fit into
+ * the part's slices, it stays empty. */
 static void hdi_nd_fresh(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_graph *level, hdi_nd_space s) {
     hdi_nd_graph temp[3];
     hdi_nd_room room;
@@ -11884,12 +11990,12 @@ static void hdi_nd_fresh(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_graph
 static int hdi_nd_touches(const hdi_nd_graph *g, int32_t v) {
     int32_t p;
     for (p = g->ptr[v]; p < g->ptr[v + 1]; p++)
-        if (g->adj[p] >= 0 && g->side[g->adj[p]] != g->side[v]) return 1;
+        if (g->adj[p] < g->n && g->side[g->adj[p]] != g->side[v]) return 1;
     return 0;
 }
 
-/* The sides of level[0]: cuts the coarsest copy and takes the cut down. Returns in list the vertices that
- * touch the other side, of the side where they are fewer. */
+/* Sets the sides of level[0]: cuts the coarsest copy and takes the cut down. Fills list with the vertices of
+ * one side that touch the other side, and takes the side where these are fewer. Returns their number. */
 static int32_t hdi_nd_cut_clusters(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_graph *level,
                                    int32_t *list, hdi_nd_space s) {
     hdi_nd_room room;
@@ -11926,7 +12032,8 @@ static int32_t hdi_nd_cut_clusters(const hdi_nd *nd, const hdi_nd_part *part, hd
     return kept;
 }
 
-/* Weighs the sides of g. 0 if they differ too much, or the separator is most of it. */
+/* Counts the vertices on the sides of g. Returns 0 if the sides differ too much or the separator is
+ * too large. */
 static int hdi_nd_measure(const hdi_nd_graph *g, int32_t *size) {
     int32_t v;
     size[0] = size[1] = size[2] = 0;
@@ -11934,16 +12041,7 @@ static int hdi_nd_measure(const hdi_nd_graph *g, int32_t *size) {
     return size[0] <= g->n - g->n / 5 && size[1] <= g->n - g->n / 5 && size[2] <= g->n / 2;
 }
 
-/* Sides by number, for graphs on which all else failed. */
-static void hdi_nd_halve(const hdi_nd_graph *g) {
-    int32_t v, p;
-    for (v = 0; v < g->n; v++) g->side[v] = v >= g->n / 2;
-    for (v = 0; v < g->n / 2; v++)
-        for (p = g->ptr[v]; p < g->ptr[v + 1]; p++)
-            if (g->adj[p] >= g->n / 2) g->side[v] = 2;
-}
-
-/* Sets level[0].side to 0, 1 or 2 and size [3]. 0 if the part has no good separator. */
+/* Sets level[0].side to 0, 1, or 2 in the separator, and size [3]. Returns 0 if no separator is good. */
 static int hdi_nd_dissect(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_graph *level, hdi_nd_space s,
                           int32_t *size) {
     hdi_nd_flow f;
@@ -11965,8 +12063,6 @@ static int hdi_nd_dissect(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_grap
     f.inside = hdi_nd_take_bytes(&s, n);
     f.from = size[1] > size[0];
     hdi_nd_flow_run(&f, n_list, part->n / HDI_ND_BAND, HDI_ND_LAYERS);
-    if (hdi_nd_measure(level, size)) return 1;
-    hdi_nd_halve(level);
     return hdi_nd_measure(level, size);
 }
 
@@ -11975,7 +12071,7 @@ static int hdi_nd_separated(const hdi_nd_graph *g) {
     int32_t v, p;
     for (v = 0; v < g->n; v++)
         for (p = g->ptr[v]; p < g->ptr[v + 1]; p++)
-            if (g->adj[p] >= 0 && g->side[v] + g->side[g->adj[p]] == 1) return 0;
+            if (g->adj[p] < g->n && g->side[v] + g->side[g->adj[p]] == 1) return 0;
     return 1;
 }
 
@@ -12006,23 +12102,28 @@ static void hdi_nd_graphs_of(const hdi_nd *nd, const hdi_nd_part *p, hdi_nd_grap
     hdi_nd_clusters_of(nd, p, level + 1);
 }
 
-/* The vertices of one side into the child's slices. at [g->n]: numbers within the sides, or ~row. */
-static void hdi_nd_extract(const hdi_nd_graph *g, int8_t side, const int32_t *at, hdi_nd_graph *child) {
+/* Makes a child of the vertices of one side, in the child's slices. Neighbours that are not on this side are
+ * numbered as its halo when they are first met. number: work space for the part's vertices and its halo. */
+static void hdi_nd_extract(const hdi_nd_graph *g, int32_t halo, int8_t side, hdi_nd_part *child,
+                           const hdi_nd_graph *half, int32_t *number) {
     int32_t v, p, i = 0, z = 0;
+    for (v = 0; v < g->n; v++) number[v] = g->side[v] == side ? child->n++ : -1;
+    hdi_fill_i32(number + g->n, halo, -1);
     for (v = 0; v < g->n; v++) {
         if (g->side[v] != side) continue;
-        child->ptr[i] = z;
-        child->id[i++] = g->id[v];
+        half->ptr[i] = z;
+        half->id[i++] = g->id[v];
         for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
             const int32_t u = g->adj[p];
-            child->adj[z++] = u < 0 ? u : at[u];
+            if (number[u] < 0) number[u] = child->n + child->halo++;
+            half->adj[z++] = number[u];
         }
     }
-    child->ptr[i] = z;
+    half->ptr[i] = child->n_edges = z;
 }
 
-/* The clusters of g[0], which are in g[1], that have vertices on one side into the child's slices, with room
- * for space entries. Returns their number, 0 if the room is too small. */
+/* Copies the clusters that have vertices on one side from g[1] to the child's slices, which have room for
+ * space entries. Returns their number, or 0 if the room is too small. */
 static int32_t hdi_nd_extract_clusters(const hdi_nd_graph *g, int8_t side, hdi_nd_graph *child,
                                        int32_t space, hdi_nd_space s) {
     const hdi_nd_graph *c = g + 1;
@@ -12052,66 +12153,24 @@ static int32_t hdi_nd_extract_clusters(const hdi_nd_graph *g, int8_t side, hdi_n
     return n;
 }
 
-/* Gives the rows of the halo numbers from part->n on, in place, by a hash table in s. Returns how many there
- * are; n_edges when the space is too small and nothing has been done. */
-static int32_t hdi_nd_halo(const hdi_nd_part *part, int32_t *adj, hdi_nd_space s) {
-    int32_t p, n = 0, outer = 0, mask = 1;
-    for (p = 0; p < part->n_edges; p++) outer += adj[p] < 0;
-    while (mask < 2 * outer) mask *= 2;
-    if (2 * (int64_t)mask > s.end - s.at) return outer ? part->n_edges : 0;
-    memset(s.at, 0, 2 * (size_t)mask * sizeof *s.at);
-    for (p = 0; p < part->n_edges; p++) {
-        uint32_t h = (uint32_t)adj[p] * HDI_HASH_FACTOR >> 7;
-        int32_t *slot;
-        if (adj[p] >= 0) continue;
-        for (;; h++) {
-            slot = s.at + 2 * (h & (uint32_t)(mask - 1));
-            if (*slot == 0 || *slot == adj[p]) break;
-        }
-        if (*slot == 0) {
-            slot[0] = adj[p];
-            slot[1] = part->n + n++;
-        }
-        adj[p] = slot[1];
-    }
-    return n;
-}
-
-/* Takes the halo out of the rows. */
-static void hdi_nd_bare(hdi_nd_graph *g) {
-    int32_t v, p = 0, z = 0;
-    for (v = 0; v < g->n; v++) {
-        for (; p < g->ptr[v + 1]; p++) {
-            g->adj[z] = g->adj[p];
-            z += g->adj[p] >= 0 && g->adj[p] < g->n;
-        }
-        g->ptr[v + 1] = z;
-    }
-}
-
-/* Orders a part by minimum degree, separators around it as halo if there is space. Changes its graph. */
-static void hdi_nd_leaf(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_graph *g, hdi_nd_space s) {
-    hdi_amd_graph rows = {part->n, part->n, NULL, g->ptr, g->adj};
-    int32_t v, halo, *local = nd->perm + part->first;
+/* Orders a part by minimum degree. The separators around it count as its halo if there is space for it. */
+static void hdi_nd_leaf(const hdi_nd *nd, const hdi_nd_part *part, const hdi_nd_graph *g, hdi_nd_space s) {
+    hdi_amd_graph rows = {part->n + part->halo, part->n, g->ptr, g->adj};
+    int32_t v, *local = nd->perm + part->first;
     if (!part->n) return;
-    halo = hdi_nd_halo(part, g->adj, s);
-    if (hdi_amd_words(part->n, halo, part->n_edges) > s.end - s.at) {
-        hdi_nd_bare(g);
-        halo = 0;
-    }
-    rows.n += halo;
-    if (hdi_amd_words(part->n, halo, g->ptr[part->n]) <= s.end - s.at) hdi_amd_part(&rows, local, s.at);
-    else
-        for (v = 0; v < part->n; v++) local[v] = v;
+    if (hdi_amd_words(part->n, part->halo, part->n_edges) > s.end - s.at) rows.n = part->n;
+    HEATDIFF_ASSERT(hdi_amd_words(rows.n, 0, part->n_edges) <= s.end - s.at);
+    hdi_amd_part(&rows, local, s.at);
     for (v = 0; v < part->n; v++) local[v] = g->id[local[v]];
 }
 
-/* Halves a part into child[2], its separator last; orders a small part whole, its children are empty. */
+/* Halves a part into child[2] and puts its separator last. Small parts, and parts without a good separator,
+ * are ordered whole: their children are empty. */
 static void hdi_nd_split(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_part *child, hdi_nd_space s) {
     hdi_nd_graph level[HDI_ND_LEVELS], half[2];
     hdi_nd_space rest = s;
     const int small = part->n <= HDI_ND_LEAF || part->n_edges == 0;
-    int32_t v, size[3], n[2] = {0, 0}, last, *at = hdi_nd_take(&rest, part->n);
+    int32_t v, size[3], last, *number;
     memset(child, 0, 2 * sizeof *child);
     hdi_nd_graphs_of(nd, part, level);
     level->side = hdi_nd_take_bytes(&rest, part->n);
@@ -12122,29 +12181,23 @@ static void hdi_nd_split(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_part 
     }
     if (HDI_AUDIT && !hdi_nd_separated(level)) HEATDIFF_ASSERT(0);
     last = part->first + part->n - size[2];
-    for (v = 0; v < part->n; v++) {
-        const int8_t t = level->side[v];
-        if (t < 2) at[v] = n[t]++;
-        else {
-            nd->perm[last++] = level->id[v];
-            at[v] = ~level->id[v];
-        }
-    }
+    for (v = 0; v < part->n; v++)
+        if (level->side[v] == 2) nd->perm[last++] = level->id[v];
+    number = hdi_nd_take(&rest, (int64_t)part->n + part->halo);
     for (v = 0; v < 2; v++) {
-        child[v].first = v ? part->first + n[0] : part->first;
-        child[v].n = n[v];
-        child[v].edge = v ? part->edge + child->n_edges : part->edge;
+        child[v].first = part->first + child[0].n;
+        child[v].edge = part->edge + child[0].n_edges;
         child[v].buffer = 1 - part->buffer;
         hdi_nd_graphs_of(nd, child + v, half);
-        hdi_nd_extract(level, (int8_t)v, at, half);
-        child[v].n_edges = half->ptr[n[v]];
-        if (n[v] > HDI_ND_LEAF && level[1].n > 0)
+        hdi_nd_extract(level, part->halo, (int8_t)v, child + v, half, number);
+        if (child[v].n > HDI_ND_LEAF && level[1].n > 0)
             child[v].clusters = hdi_nd_extract_clusters(level, (int8_t)v, half,
                                                         child[v].n_edges / 4 - 1, rest);
     }
 }
 
-/* Orders a part and all below it. A child has at most 4/5 of its part: the stack grows to less than 100. */
+/* Orders a part and all parts below it. A child has at most 4/5 of the vertices of its part, so there are
+ * less than 100 parts on the stack. */
 static void hdi_nd_subtree(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_space s) {
     hdi_nd_part stack[128];
     int32_t n = 1;
@@ -12164,99 +12217,66 @@ static void hdi_nd_node(const hdi_nd *nd, int64_t i) {
     else hdi_nd_subtree(nd, nd->part + i, s);
 }
 
-static void hdi_nd_level_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_nd *nd = (const hdi_nd *)arg;
-    (void)worker;
-    hdi_nd_node(nd, nd->level + index);
-}
-
-/* A part is done: its halves may be claimed. */
-static void hdi_nd_loop_task(void *arg, int64_t index, int32_t worker) {
+/* Treats one part of the heap. After that its halves may be claimed. */
+static void hdi_nd_task(void *arg, int64_t index, int32_t worker) {
     hdi_nd *nd = (hdi_nd *)arg;
-    const double done = 0.1 + 0.8 * (double)HDI_ATOMIC_GET(&nd->done) / (double)HDI_ND_NODES;
-    if (worker == 0 && !HDI_LOAD(&nd->stop) && hdi_progress(nd->ctx, "order", done, nd->error) < 0)
-        HDI_STORE(&nd->stop, 1);
-    if (!HDI_LOAD(&nd->stop)) hdi_nd_node(nd, index);
-    HDI_ATOMIC_ADD(&nd->done, 1);
-    if (index < HDI_ND_TASKS - 1)
-        hdi_release_many(nd->threads, (int32_t)(2 * index + 1), 2, nd->order);
+    (void)worker;
+    hdi_nd_node(nd, index);
+    if (index < HDI_ND_TASKS - 1) hdi_release(&nd->walk, (int32_t)(2 * index + 1), 2);
 }
 
-/* order = rows along the curve, too long ones last; inv = its inverse, -1 for these. Returns the others. */
-static int32_t hdi_nd_number(const hd_csr *a, const uint32_t *key, int32_t *order, int32_t *inv,
-                             int32_t *count) {
-    const double dense = 10 * sqrt((double)a->n_rows) + 16;
-    int32_t i, k = 0, last = a->n_rows;
-    hdi_nd_sort(key, a->n_rows, order, inv, count);
-    for (i = 0; i < a->n_rows; i++) {
-        const int32_t r = order[i];
-        if ((double)(a->row_ptr[r + 1] - a->row_ptr[r]) > dense) inv[--last] = r;
-        else order[k++] = r;
-    }
-    for (i = k; i < a->n_rows; i++) order[i] = inv[i];
-    for (i = 0; i < a->n_rows; i++) inv[order[i]] = i < k ? i : -1;
-    return k;
-}
-
-/* Reads the matrix along the curve: blocks of rows go to the second buffer, from there to the first. */
+/* The matrix as the first part: row k of it is row order[k] of a. */
 typedef struct hdi_nd_load_job {
     const hdi_nd *nd;
     const hd_csr *a;
     const int32_t *order, *inv;
     const float *unit;         /* [3 a->n_rows] places of the rows */
-    int32_t n, *from, *to;     /* places of blocks in the second buffer; in the first, [n_blocks + 1] */
 } hdi_nd_load_job;
 
-static void hdi_nd_load_task(void *arg, int64_t index, int32_t worker) {
+/* Counts the neighbours of rows [begin, end). */
+static void hdi_nd_load_lengths(void *arg, int64_t begin, int64_t end) {
     const hdi_nd_load_job *job = (const hdi_nd_load_job *)arg;
     const hd_csr *a = job->a;
-    const hdi_nd_buffer *b = job->nd->buffer;
-    const int32_t first = (int32_t)index * HDI_ND_BLOCK;
-    const int32_t last = (int32_t)hdi_least(first + HDI_ND_BLOCK, job->n);
-    int32_t k, z = 0, *adj = b[1].adj + job->from[index];
-    int64_t p;
-    (void)worker;
-    for (k = first; k < last; k++) {
+    int64_t k, p;
+    for (k = begin; k < end; k++) {
         const int32_t r = job->order[k];
-        if (k + HDI_ROWS_AHEAD < last) HDI_PREFETCH(a->col + a->row_ptr[job->order[k + HDI_ROWS_AHEAD]]);
-        memcpy(job->nd->xyz + 3 * (size_t)k, job->unit + 3 * (size_t)r, 3 * sizeof(float));
-        b->ptr[k] = z;
-        b->id[k] = k;
-        for (p = a->row_ptr[r]; p < a->row_ptr[r + 1]; p++) {
-            adj[z] = job->inv[a->col[p]];
-            z += a->col[p] != r && adj[z] >= 0;
-        }
+        int32_t count = 0;
+        if (k + HDI_ROWS_AHEAD < end) HDI_PREFETCH(a->col + a->row_ptr[job->order[k + HDI_ROWS_AHEAD]]);
+        for (p = a->row_ptr[r]; p < a->row_ptr[r + 1]; p++)
+            count += a->col[p] != r && job->inv[a->col[p]] >= 0;
+        job->nd->buffer->ptr[k + 1] = count;
     }
-    job->to[index] = z;
 }
 
-static void hdi_nd_move_task(void *arg, int64_t index, int32_t worker) {
+/* Reads rows [begin, end), which begin where ptr says. */
+static void hdi_nd_load_rows(void *arg, int64_t begin, int64_t end) {
     const hdi_nd_load_job *job = (const hdi_nd_load_job *)arg;
     const hdi_nd_buffer *b = job->nd->buffer;
-    const int32_t first = (int32_t)index * HDI_ND_BLOCK, to = job->to[index];
-    const int32_t last = (int32_t)hdi_least(first + HDI_ND_BLOCK, job->n);
-    int32_t k;
-    (void)worker;
-    for (k = first; k < last; k++) b->ptr[k] += to;
-    memcpy(b->adj + to, b[1].adj + job->from[index], (size_t)(job->to[index + 1] - to) * sizeof(int32_t));
+    const hd_csr *a = job->a;
+    int64_t k, p;
+    for (k = begin; k < end; k++) {
+        const int32_t r = job->order[k];
+        int32_t z = b->ptr[k];
+        if (k + HDI_ROWS_AHEAD < end) HDI_PREFETCH(a->col + a->row_ptr[job->order[k + HDI_ROWS_AHEAD]]);
+        memcpy(job->nd->xyz + 3 * (size_t)k, job->unit + 3 * (size_t)r, 3 * sizeof(float));
+        b->id[k] = (int32_t)k;
+        for (p = a->row_ptr[r]; p < a->row_ptr[r + 1]; p++) {
+            const int32_t u = job->inv[a->col[p]];
+            if (a->col[p] != r && u >= 0) b->adj[z++] = u;
+        }
+    }
 }
 
-/* Reads the whole matrix as one part, its rows numbered by order. work [2 blocks + 2]: job->from, job->to. */
-static hdi_nd_part hdi_nd_load(hdi_nd_load_job *job, int32_t *work, hd_context *ctx) {
-    const int32_t n = job->n, n_blocks = (n + HDI_ND_BLOCK - 1) / HDI_ND_BLOCK;
+/* Reads the n rows that are not too long as one part. */
+static hdi_nd_part hdi_nd_load(hdi_nd_load_job *job, int32_t n, hd_context *ctx) {
+    int32_t k, *ptr = job->nd->buffer->ptr;
     hdi_nd_part part;
-    int32_t k, z = 0;
-    job->from = work;
-    job->to = work + n_blocks;
-    for (k = 0; k < n; k++) {
-        if (k % HDI_ND_BLOCK == 0) job->from[k / HDI_ND_BLOCK] = z;
-        z += (int32_t)(job->a->row_ptr[job->order[k] + 1] - job->a->row_ptr[job->order[k]]);
-    }
-    hdi_parallel(ctx, n_blocks, hdi_nd_load_task, job);
     memset(&part, 0, sizeof part);
+    hdi_parallel_ranges(ctx, n, HDI_ND_BLOCK, hdi_nd_load_lengths, job);
+    for (ptr[0] = k = 0; k < n; k++) ptr[k + 1] += ptr[k];
+    hdi_parallel_ranges(ctx, n, HDI_ND_BLOCK, hdi_nd_load_rows, job);
     part.n = n;
-    part.n_edges = job->to[n_blocks] = job->nd->buffer->ptr[n] = hdi_nd_sums(job->to, n_blocks);
-    hdi_parallel(ctx, n_blocks, hdi_nd_move_task, job);
+    part.n_edges = ptr[n];
     return part;
 }
 
@@ -12274,19 +12294,15 @@ static void hdi_nd_buffer_make(hdi_nd_buffer *b, const hd_csr *a, hdi_scope *s) 
     b->cew = b->cadj + nnz / 4 + 1;
 }
 
-/* Orders the whole: own threads share one loop, the user's take the heap level by level. */
-static void hdi_nd_run(hdi_nd *nd) {
-    double done = 0.15;
-    if (hdi_progress(nd->ctx, "order", 0.1, nd->error) < 0) return;
-    if (nd->threads) {
-        nd->order[0] = 0;
-        hdi_parallel_ordered(nd->ctx, HDI_ND_NODES, 1, nd->order, hdi_nd_loop_task, nd);
-        return;
-    }
-    for (nd->level = 0; nd->level < HDI_ND_NODES; nd->level = 2 * nd->level + 1, done += 0.05) {
-        if (hdi_progress(nd->ctx, "order", done, nd->error) < 0) return;
-        hdi_parallel(nd->ctx, nd->level + 1, hdi_nd_level_task, nd);
-    }
+/* Orders the whole matrix, which is part 0 of the heap. */
+static void hdi_nd_run(hdi_nd *nd, hd_context *ctx, hd_error *e) {
+    hdi_walk_open(&nd->walk, ctx, HDI_ND_NODES, nd->order, hdi_nd_task, nd);
+    nd->walk.stage = "order";
+    nd->walk.from = 0.1;
+    nd->walk.to = 0.9;
+    nd->walk.e = e;
+    hdi_release(&nd->walk, 0, 1);
+    hdi_walk_run(&nd->walk);
 }
 
 /* perm[k] = row of the symmetric pattern a (both triangles, the diagonal may be there) that is eliminated
@@ -12297,11 +12313,11 @@ static hd_status hdi_nd_order(const hd_csr *a, const double *xyz, int32_t *perm,
     hdi_scope s = hdi_scope_begin(ctx, e);
     const uint64_t n = (uint64_t)a->n_rows;
     int32_t i, k, *order = HDI_TAKE(&s, int32_t, n + 1), *inv = HDI_TAKE(&s, int32_t, n + 1);
-    int32_t *count = HDI_TAKE(&s, int32_t, 1024 + 2 * n / HDI_ND_BLOCK);
+    int32_t *spare = HDI_TAKE(&s, int32_t, n + 1), *ptr = HDI_TAKE(&s, int32_t, 2049);
     uint32_t *key = HDI_TAKE(&s, uint32_t, n + 1);
     float *unit = HDI_TAKE(&s, float, 3 * n + 1);
     hdi_nd nd;
-    hdi_nd_load_job job = {&nd, a, order, inv, unit, 0, NULL, NULL};
+    hdi_nd_load_job job = {&nd, a, order, inv, unit};
     if (a->nnz > INT32_MAX / 2 || n > INT32_MAX / 4)
         hdi_fail(e, HD_ERR_TOO_LARGE, "a pattern is too large for nested dissection");
     memset(&nd, 0, sizeof nd);
@@ -12312,13 +12328,11 @@ static hd_status hdi_nd_order(const hd_csr *a, const double *xyz, int32_t *perm,
     hdi_nd_buffer_make(nd.buffer, a, &s);
     hdi_nd_buffer_make(nd.buffer + 1, a, &s);
     if (e->status < 0) return hdi_scope_end(&s);
-    nd.ctx = ctx;
-    nd.error = e;
-    nd.threads = hdi_threads_own(ctx, HDI_ND_NODES);   /* started now, they share the loops before, too */
+    hdi_threads_own(ctx, HDI_ND_NODES);   /* threads that are started now share the loops below, too */
     hdi_nd_keys(xyz, a->n_rows, key, unit);
-    k = job.n = hdi_nd_number(a, key, order, inv, count);
-    nd.part[0] = hdi_nd_load(&job, count, ctx);
-    hdi_nd_run(&nd);
+    k = hdi_nd_number(a, key, order, inv, spare, ptr);
+    nd.part[0] = hdi_nd_load(&job, k, ctx);
+    hdi_nd_run(&nd, ctx, e);
     if (e->status < 0) return hdi_scope_end(&s);
     for (i = 0; i < k; i++) perm[i] = order[perm[i]];
     for (i = k; i < a->n_rows; i++) perm[i] = order[i];
@@ -13083,8 +13097,8 @@ static hd_status hdi_symbolic_order(hdi_symbolic *s, const hd_csr *a, const hdi_
  * its update matrix starts as -L21 D L21' and the children's are added afterwards, so that it is neither
  * cleared nor read before. */
 
-/* Rows of a chunk of a front that threads share, as many as the kernels take at once. The parallel efficiency
- * that bench simulates for 150K rows is 0.80, 0.68, 0.43 on 4, 8, 16 threads, with chunks of 96 rows 0.73,
+/* Rows of a chunk of a front that threads share, as many as the kernels take at once. By the critical path
+ * the parallel efficiency for 150K rows is 0.80, 0.68, 0.43 on 4, 8, 16 threads, with chunks of 96 rows 0.73,
  * 0.46, 0.25. Fronts of fewer rows than HDI_FRONT_SHARED are not shared. */
 enum { HDI_PACK_LANES = HDI_PACK / 2, HDI_FRONT_COLS = 96, HDI_FRONT_CHUNK = 48, HDI_FRONT_SHARED = 192 };
 
@@ -13110,21 +13124,16 @@ typedef struct hdi_factor {
     double *scratch;                 /* [n_tasks][scratch_size], and [chunk_size] where there is a top */
     double *chunk_scratch;           /* [chunks of the largest front][chunk_size] */
     double *second;                  /* [top_size] a second place for S, of fronts that threads share */
-    int32_t *nodes;                  /* what their nodes wait for */
-    int32_t *order;                  /* [n_order] nodes of the loop over the tree, as they become ready */
+    int32_t *counts;                 /* [count_size] of blocks and chunks of the front under way */
+    int32_t *order;                  /* [n_order] nodes of the walk over the tree, as they become ready */
     int64_t n_order;
     uint64_t scratch_size, top_size, chunk_size;   /* doubles */
     hdi_pivots *pivots;              /* [n_tasks + 1] */
     hdi_pivots all;                  /* of the last factorisation */
     double largest_entry;            /* |diagonal entry of A|, the largest */
     int32_t ready;
-    int32_t guest;                   /* work, scratch, chunk_scratch, nodes, order and pivots are another's */
-    /* a factorisation under way */
-    const hdi_values *values;
-    int32_t stop;                    /* the top is not begun, or not gone on with */
-    int32_t until;                   /* nor subtrees from this one on: those before it may fail earlier */
-    double share;
-    hd_error error;
+    int32_t guest;                   /* work, scratch, counts, order and pivots are another's */
+    const hdi_values *values;        /* of a factorisation under way */
 } hdi_factor;
 
 /* Is it the factor of a real matrix, and not a pack? */
@@ -13135,7 +13144,7 @@ static HDI_INLINE int hdi_is_real(const hdi_factor *f) { return !HDI_HAS_POLE_FA
 /* One front under way: where its parts stand, and room to work in. */
 typedef struct hdi_front {
     const hdi_factor *f;
-    int32_t v, child;                /* supernode; the child whose update matrix is added */
+    int32_t v;                       /* supernode */
     double *panel, *update, *dinv;   /* dinv: of the first pivot */
     double *d, *S;                   /* [p] pivots, [block of pivots][p] scaled rows of L: S_ik = l_ik d_k */
     double *work;                    /* of kernels */
@@ -13398,15 +13407,27 @@ static void hdi_front_extend_pack(const hdi_front *w, int64_t r0, int64_t r1) {
 
 /* ---- fronts of real numbers ---- */
 
-/* Panel and update matrix: cleared, and the entries of A. */
-static void hdi_front_assemble_real(const hdi_front *w) {
+static int64_t hdi_triangle_column(int64_t u, int64_t j) { return j * u - j * (j - 1) / 2; }
+
+/* Columns [c0,c1) of panel and update matrix: cleared, entries of A, children. */
+static void hdi_front_assemble_real(const hdi_front *w, int64_t c0, int64_t c1) {
     const hdi_symbolic *s = w->f->sym;
-    int64_t q;
-    memset(w->panel, 0, (size_t)(w->m * w->p) * sizeof *w->panel);
-    memset(w->update, 0, (size_t)hdi_triangle(w->u) * sizeof *w->update);
+    const int64_t p0 = hdi_least(c0, w->p), p1 = hdi_least(c1, w->p);
+    const int64_t u0 = hdi_triangle_column(w->u, c0 - p0), u1 = hdi_triangle_column(w->u, c1 - p1);
+    int64_t q, from, end;
+    int32_t k;
+    memset(w->panel + p0 * w->m, 0, (size_t)((p1 - p0) * w->m) * sizeof *w->panel);
+    memset(w->update + u0, 0, (size_t)(u1 - u0) * sizeof *w->update);
     for (q = s->a_ptr[w->v]; q < s->a_ptr[w->v + 1]; q++) {
         const int64_t i = s->a_row[q], j = s->a_col[q];
-        hdi_values_at(w->f->values, 1, s->a_from[q], hdi_front_row(w, i, j), w->panel + i + j * w->m);
+        if (j >= c0 && j < c1)
+            hdi_values_at(w->f->values, 1, s->a_from[q], hdi_front_row(w, i, j), w->panel + i + j * w->m);
+    }
+    for (k = s->kid_ptr[w->v]; k < s->kid_ptr[w->v + 1]; k++) {
+        const int32_t c = s->kid[k];
+        hdi_front_child_rows(s, c, c0, c1, &from, &end);
+        hdi_real_extend(w->f->real, w->panel, w->m, (int32_t)w->p, w->update, w->f->work + s->update[c],
+                        hdi_front_below(s, c), s->rel + s->row_ptr[c], from, end);
     }
 }
 
@@ -13424,17 +13445,15 @@ static int hdi_front_pivots_real(const hdi_front *w, int64_t end, hdi_pivots *no
 
 typedef enum hdi_front_stage { HDI_FRONT_ASSEMBLE, HDI_FRONT_COLUMNS, HDI_FRONT_UPDATE } hdi_front_stage;
 
-/* Rows [r0,r1) of the front's panel or update matrix; but assembling real numbers, columns of w->child's. */
+/* Rows [r0,r1) of the front's panel or update matrix; but assembling real numbers, columns of both. */
 static void hdi_front_part(const void *front, int stage, int64_t r0, int64_t r1, double *work) {
     const hdi_front *w = (const hdi_front *)front;
     const hdi_factor *f = w->f;
-    const hdi_symbolic *s = f->sym;
-    const int32_t p = (int32_t)w->p, k0 = (int32_t)w->k0, c = w->child;
+    const int32_t p = (int32_t)w->p, k0 = (int32_t)w->k0;
     hdi_pack_rows rows;
     if (hdi_is_real(f)) {
         if (stage == HDI_FRONT_ASSEMBLE)
-            hdi_real_extend(f->real, w->panel, w->m, p, w->update, f->work + s->update[c],
-                            hdi_front_below(s, c), s->rel + s->row_ptr[c], r0, r1);
+            hdi_front_assemble_real(w, r0, r1);
         else if (stage == HDI_FRONT_COLUMNS)
             hdi_real_rows(f->real, w->panel, w->m, k0, w->nb, w->S, k0 + w->nb, w->dinv, r0, r1, work);
         else
@@ -13451,212 +13470,34 @@ static void hdi_front_part(const void *front, int stage, int64_t r0, int64_t r1,
     }
 }
 
-/* Rows [begin,end) of a stage of a large front, in chunks that all threads share. Each has a part of work. */
-typedef struct hdi_chunks {
-    void (*run)(const void *front, int stage, int64_t r0, int64_t r1, double *work);
-    const void *front;
-    int stage;
-    int64_t begin, end, rows, n; /* rows of a chunk; chunks */
-    double *work;                /* [n][work_size] */
-    uint64_t work_size;
-} hdi_chunks;
-
-static void hdi_chunks_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_chunks *h = (const hdi_chunks *)arg;
-    /* the last rows of a triangle are longest */
-    const int64_t chunk = h->n - 1 - index, r0 = h->begin + chunk * h->rows;
-    (void)worker;
-    h->run(h->front, h->stage, r0, hdi_least(r0 + h->rows, h->end), h->work + h->work_size * (size_t)chunk);
-}
-
-/* h->rows, h->work and h->work_size are set. */
-static void hdi_chunks_run(hdi_chunks *h, int64_t begin, int64_t end, hd_context *ctx) {
-    h->begin = begin;
-    h->end = end;
-    h->n = (end - begin + h->rows - 1) / h->rows;
-    hdi_parallel(ctx, h->n, hdi_chunks_task, h);
-}
-
-static void hdi_front_run(const hdi_front *w, int shared, int stage, int64_t begin, int64_t end) {
-    hdi_chunks h;
-    if (end > begin && !shared) hdi_front_part(w, (int)stage, begin, end, w->work);
-    if (end <= begin || !shared) return;
-    h.run = hdi_front_part;
-    h.front = w;
-    h.stage = (int)stage;
-    h.rows = HDI_FRONT_CHUNK;
-    h.work = w->f->chunk_scratch;
-    h.work_size = w->f->chunk_size;
-    hdi_chunks_run(&h, begin, end, w->f->ctx);
-}
-
-/* ---- a large front by several threads ---- */
-/* Its nodes, part of the loop over all of the tree, with rows in chunks c and pivots in blocks k: A(c)
- * assembles rows of the panel (packs), P(k) eliminates the pivots of a block, C(c,k) their columns in the
- * rows below, U(d) computes rows of the update matrix.
- *   P(k)    waits for the chunks that hold its rows, and for all C(c,k-2), because S has two places
- *   C(c,k)  waits for P(k) and for C(c,k-1)
- *   U(d)    waits for the whole panel
- * So the next pivots are eliminated while the columns of the last ones are still computed. Node numbers: P(k)
- * and C(c,k) block by block, then the A, then the U. */
-typedef struct hdi_front_loop {
-    hdi_front w;
-    hdi_factor *f;
-    hdi_pivots *note;
-    double *S[2];
-    int32_t nb, n_blocks, n_chunks;
-    int32_t left;                /* U that are not done */
-    int32_t *pending, *order;
-    hd_threads *threads;
-} hdi_front_loop;
-
-/* Node numbers that the largest front needs at most. */
-static int64_t hdi_front_nodes(const hdi_symbolic *s, int32_t nb) {
-    const int64_t chunks = s->largest_front / HDI_FRONT_CHUNK + 1, blocks = s->largest_pivots / nb + 1;
-    return s->n_top ? blocks * (chunks + 1) + 2 * chunks + 1 : 0;
-}
-
 static int32_t hdi_front_block_size(const hdi_factor *f) {
     return hdi_is_real(f) ? (int32_t)HDI_REAL_NB : (int32_t)HDI_PACK_BLOCK;
 }
 
-/* The first row below the pivots of block k, and the first chunk with such rows. */
-static int64_t hdi_front_end(const hdi_front_loop *l, int32_t k) {
-    return hdi_least((int64_t)(k + 1) * l->nb, l->w.p);
+/* The pivots of the block under way, and their columns down to row end. 0 when one cannot be divided by. */
+static int hdi_front_block(const hdi_front *w, int64_t end, hdi_pivots *note) {
+    return hdi_is_real(w->f) ? hdi_front_pivots_real(w, end, note) : hdi_front_pivots_pack(w, note);
 }
 
-static int32_t hdi_front_first(const hdi_front_loop *l, int32_t k) {
-    const int64_t end = hdi_front_end(l, k);
-    return end < l->w.m ? (int32_t)(end / HDI_FRONT_CHUNK) : l->n_chunks;
+/* Whether threads share front v. */
+static int hdi_front_shared(const hdi_symbolic *s, int32_t v) {
+    return s->task_of[v] < 0 && hdi_front_rows(s, v) >= HDI_FRONT_SHARED;
 }
 
-static int32_t hdi_front_node(const hdi_front_loop *l, int32_t k, int32_t c) {
-    return k * (l->n_chunks + 1) + 1 + c;
-}
-
-/* Whether chunk c holds pivots of block k. */
-static int hdi_front_holds(const hdi_front_loop *l, int32_t k, int32_t c) {
-    const int64_t begin = (int64_t)k * l->nb;
-    return k < l->n_blocks && begin < (int64_t)(c + 1) * HDI_FRONT_CHUNK &&
-           hdi_front_end(l, k) > (int64_t)c * HDI_FRONT_CHUNK;
-}
-
-static void hdi_front_arrive(const hdi_front_loop *l, int32_t node) {
-    if (HDI_ATOMIC_ADD(l->pending + node, -1) == 0) hdi_release(l->threads, node, l->order);
-}
-
-/* Chunk c is done up to block k, -1 assembled: those that waited for it. */
-static void hdi_front_next(const hdi_front_loop *l, int32_t k, int32_t c) {
-    if (hdi_front_holds(l, k + 1, c)) hdi_front_arrive(l, hdi_front_node(l, k + 1, -1));
-    if (k + 1 < l->n_blocks && c >= hdi_front_first(l, k + 1))
-        hdi_front_arrive(l, hdi_front_node(l, k + 1, c));
-    if (k >= 0 && k + 2 < l->n_blocks) hdi_front_arrive(l, hdi_front_node(l, k + 2, -1));
-}
-
-/* Node P(k), or with a chunk c >= 0 C(c,k). */
-static void hdi_front_panel_node(const hdi_front_loop *l, int32_t k, int32_t c) {
-    const int64_t end = hdi_front_end(l, k), r0 = (int64_t)c * HDI_FRONT_CHUNK;
-    const int stop = HDI_LOAD(&l->f->stop);
-    hdi_front w = l->w;
-    int good = 1;
-    w.S = l->S[k % 2];
-    w.k0 = (int64_t)k * l->nb;
-    w.nb = (int32_t)(end - w.k0);
-    if (c >= 0) {
-        double *work = l->f->chunk_scratch + l->f->chunk_size * (size_t)c;
-        const int64_t r1 = hdi_least(r0 + HDI_FRONT_CHUNK, w.m);
-        if (!stop) hdi_front_part(&w, HDI_FRONT_COLUMNS, r0 > end ? r0 : end, r1, work);
-        hdi_front_next(l, k, c);
-        return;
-    }
-    if (!stop && hdi_is_real(w.f)) good = hdi_front_pivots_real(&w, end, l->note);
-    else if (!stop) good = hdi_front_pivots_pack(&w, l->note);
-    if (!good) HDI_STORE(&l->f->stop, 1);
-    for (c = hdi_front_first(l, k); c < l->n_chunks; c++) hdi_front_arrive(l, hdi_front_node(l, k, c));
-}
-
-static int32_t hdi_front_updates(const hdi_front_loop *l) {
-    return (int32_t)((l->w.u + HDI_FRONT_CHUNK - 1) / HDI_FRONT_CHUNK);
-}
-
-/* Returns 1 when it was the front's last node. */
-static int hdi_front_run_node(hdi_front_loop *l, int32_t i) {
-    const int32_t a = hdi_front_node(l, l->n_blocks, -1), updates = hdi_front_updates(l);
-    const int32_t c = i < a ? i % (l->n_chunks + 1) - 1 : i < a + l->n_chunks ? i - a : i - a - l->n_chunks;
-    const int64_t r0 = (int64_t)c * HDI_FRONT_CHUNK, r1 = r0 + HDI_FRONT_CHUNK;
-    double *work = l->f->chunk_scratch + l->f->chunk_size * (size_t)(c < 0 ? 0 : c);
-    int32_t d;
-    if (i >= a + l->n_chunks) {
-        if (!HDI_LOAD(&l->f->stop)) hdi_front_part(&l->w, HDI_FRONT_UPDATE, r0, hdi_least(r1, l->w.u), work);
-        return HDI_ATOMIC_ADD(&l->left, -1) == 0;
-    }
-    if (i < a) {
-        hdi_front_panel_node(l, i / (l->n_chunks + 1), c);
-    } else {
-        if (!HDI_LOAD(&l->f->stop))
-            hdi_front_part(&l->w, HDI_FRONT_ASSEMBLE, r0, hdi_least(r1, l->w.m), work);
-        hdi_front_next(l, -1, c);
-    }
-    if (HDI_ATOMIC_ADD(l->pending + a, -1) != 0) return 0;
-    /* once the last of them is released l may belong to the next front */
-    for (d = updates; d-- > 0;) hdi_release(l->threads, a + l->n_chunks + d, l->order);
-    return updates == 0;
-}
-
-/* What nodes wait for, unless pending is NULL. Returns how many there are. pending of the first A: the nodes
- * of the panel. */
-static int32_t hdi_front_count(hdi_front_loop *l) {
-    const int32_t a = hdi_front_node(l, l->n_blocks, -1), packs = !hdi_is_real(l->f);
-    int32_t panel = packs ? l->n_chunks : 0, k, c;
-    for (k = 0; k < l->n_blocks; k++) {
-        int32_t *pivots;
-        panel += 1 + l->n_chunks - hdi_front_first(l, k);
-        if (!l->pending) continue;
-        pivots = l->pending + hdi_front_node(l, k, -1);
-        *pivots = k > 1 ? l->n_chunks - hdi_front_first(l, k - 2) : 0;
-        for (c = 0; c < l->n_chunks; c++) *pivots += (k > 0 || packs) && hdi_front_holds(l, k, c);
-        for (c = hdi_front_first(l, k); c < l->n_chunks; c++)
-            l->pending[hdi_front_node(l, k, c)] = k > 0 || packs ? 2 : 1;
-    }
-    if (l->pending) l->pending[a] = panel;
-    l->left = hdi_front_updates(l);
-    return panel + l->left;
-}
-
-/* Takes up a front of shape w. Returns the number of its nodes. */
-static int32_t hdi_front_loop_set(hdi_front_loop *l, const hdi_front *w) {
-    l->w = *w;
-    l->S[0] = w->S;
-    l->S[1] = l->f->second;
-    l->nb = hdi_front_block_size(l->f);
-    l->n_blocks = (int32_t)((w->p + l->nb - 1) / l->nb);
-    l->n_chunks = (int32_t)((w->m + HDI_FRONT_CHUNK - 1) / HDI_FRONT_CHUNK);
-    l->pending = l->f->nodes;
-    return hdi_front_count(l);
-}
-
-/* Front v, by this thread or shared by all. 0 when a pivot cannot be divided by. */
-static int hdi_front_factor(hdi_factor *f, int32_t v, double *scratch, hdi_pivots *note, int shared) {
-    const hdi_symbolic *s = f->sym;
-    const int real = hdi_is_real(f);
+/* Front v, by this thread. 0 when a pivot cannot be divided by. */
+static int hdi_front_factor(const hdi_factor *f, int32_t v, double *scratch, hdi_pivots *note) {
     const int64_t most = hdi_front_block_size(f);
     hdi_front w = hdi_front_open(f, v, scratch);
     int64_t end;
-    int32_t k;
-    if (real) hdi_front_assemble_real(&w);
-    else hdi_front_run(&w, shared, HDI_FRONT_ASSEMBLE, 0, w.m);
-    for (k = s->kid_ptr[v]; real && k < s->kid_ptr[v + 1]; k++) {
-        w.child = s->kid[k];
-        hdi_front_run(&w, shared, HDI_FRONT_ASSEMBLE, 0, hdi_front_below(s, w.child));
-    }
+    hdi_front_part(&w, HDI_FRONT_ASSEMBLE, 0, w.m, w.work);
     for (; w.k0 < w.p; w.k0 += w.nb) {
         w.nb = (int32_t)hdi_least(w.p - w.k0, most);
         /* a small front: its columns at once */
-        end = real && !shared && w.p <= HDI_REAL_NB ? w.m : w.k0 + w.nb;
-        if (!(real ? hdi_front_pivots_real(&w, end, note) : hdi_front_pivots_pack(&w, note))) return 0;
-        hdi_front_run(&w, shared, HDI_FRONT_COLUMNS, end, w.m);
+        end = hdi_is_real(f) && w.p <= HDI_REAL_NB && !hdi_front_shared(f->sym, v) ? w.m : w.k0 + w.nb;
+        if (!hdi_front_block(&w, end, note)) return 0;
+        if (end < w.m) hdi_front_part(&w, HDI_FRONT_COLUMNS, end, w.m, w.work);
     }
-    hdi_front_run(&w, shared, HDI_FRONT_UPDATE, 0, w.u);
+    if (w.u > 0) hdi_front_part(&w, HDI_FRONT_UPDATE, 0, w.u, w.work);
     return 1;
 }
 
@@ -13664,26 +13505,6 @@ static int hdi_front_factor(hdi_factor *f, int32_t v, double *scratch, hdi_pivot
 
 static double *hdi_factor_scratch(const hdi_factor *f, int64_t i) {
     return f->scratch + f->scratch_size * (size_t)i;
-}
-
-/* No subtree from this one on need go on. Should two threads come at once, and the larger number stay, then
- * more is done than need be. */
-static void hdi_factor_stop(hdi_factor *f, int32_t until) {
-    if (until < HDI_LOAD(&f->until)) HDI_STORE(&f->until, until);
-    HDI_STORE(&f->stop, 1);
-}
-
-/* A subtree, by one thread. */
-static void hdi_factor_task(void *arg, int64_t index, int32_t worker) {
-    hdi_factor *f = (hdi_factor *)arg;
-    const hdi_symbolic *s = f->sym;
-    const double done = f->share * (double)index / s->n_tasks;
-    int32_t v;
-    if (index >= HDI_LOAD(&f->until)) return;
-    if (worker == 0 && hdi_progress(f->ctx, "factor", done, &f->error) < 0) hdi_factor_stop(f, 0);
-    for (v = s->task_begin[index]; v < s->task_end[index] && index < HDI_LOAD(&f->until); v++)
-        if (!hdi_front_factor(f, v, hdi_factor_scratch(f, index), f->pivots + index, 0))
-            hdi_factor_stop(f, (int32_t)index);
 }
 
 static void hdi_factor_free(hdi_factor *f) {
@@ -13694,41 +13515,75 @@ static void hdi_factor_free(hdi_factor *f) {
         hdi_free(f->ctx, f->work);
         hdi_free(f->ctx, f->scratch);
         hdi_free(f->ctx, f->chunk_scratch);
-        hdi_free(f->ctx, f->nodes);
+        hdi_free(f->ctx, f->counts);
         hdi_free(f->ctx, f->order);
         hdi_free(f->ctx, f->pivots);
     }
     memset(f, 0, sizeof *f);
 }
 
-/* Whether threads share front v, which belongs to the top. */
-static int hdi_factor_shared(const hdi_symbolic *s, int32_t v) {
-    return hdi_front_rows(s, v) >= HDI_FRONT_SHARED;
+/* ---- the tree as a walk ---- */
+/* Its nodes: the subtrees; then one front of the top after the other. A front is one node, by one thread, or
+ * it is shared: that node opens it, and three stages follow. Chunks of rows are assembled; then the panel;
+ * then chunks of the update matrix. In the panel P(k) eliminates the pivots of a block, and C(c,k) computes
+ * their columns in chunk c of the rows below.
+ *   P(k)    waits for all C(c,k-1) that hold its rows, and for all C(c,k-2), because S has two places
+ *   C(c,k)  waits for P(k) and for C(c,k-1)
+ * So the next pivots are eliminated while the columns of the last ones are still computed. P(k) and C(c,k)
+ * never come to chunk c before C(c,k-1) and P(k-1), so that C(c,k) begins when 2 k + 1 of them have come. */
+
+enum { HDI_FRONT_OPEN = -1 };        /* the stage before the first one */
+
+typedef struct hdi_factor_walk {
+    hdi_walk walk;
+    hdi_factor *f;
+    hdi_front w;                 /* the front of the top under way */
+    double *S[2];
+    int32_t top, stage, left;    /* which it is; nodes of the stage that are not done */
+    int32_t nb, n_blocks, n_chunks;
+    int32_t *missing, *come;     /* [n_blocks] what P(k) waits for; [n_chunks] what has come to C(c,k) */
+    int32_t until;               /* a subtree that failed: those before it go on, and may fail earlier */
+} hdi_factor_walk;
+
+/* The shape of front v in blocks and chunks. */
+static void hdi_factor_shape(hdi_factor_walk *t, int32_t v) {
+    hdi_front_shape(t->f->sym, v, &t->w.p, &t->w.u, &t->w.m);
+    t->nb = hdi_front_block_size(t->f);
+    t->n_blocks = (int32_t)((t->w.p + t->nb - 1) / t->nb);
+    t->n_chunks = (int32_t)((t->w.m + HDI_FRONT_CHUNK - 1) / HDI_FRONT_CHUNK);
 }
 
-/* Chunks of columns of child c. */
-static int32_t hdi_factor_child_nodes(const hdi_symbolic *s, int32_t c) {
-    return (int32_t)((hdi_front_below(s, c) + HDI_FRONT_CHUNK - 1) / HDI_FRONT_CHUNK);
+/* The first row below the pivots of block k, and the first chunk with such rows. */
+static int64_t hdi_factor_end(const hdi_factor_walk *t, int32_t k) {
+    return hdi_least((int64_t)(k + 1) * t->nb, t->w.p);
 }
 
-/* Nodes of the loop over all of the tree, see below. Fills f->nodes, if there is one. */
+static int32_t hdi_factor_first(const hdi_factor_walk *t, int32_t k) {
+    const int64_t end = hdi_factor_end(t, k);
+    return end < t->w.m ? (int32_t)(end / HDI_FRONT_CHUNK) : t->n_chunks;
+}
+
+/* Nodes of a stage. */
+static int32_t hdi_factor_stage(const hdi_factor_walk *t, int32_t stage) {
+    int32_t k, n = t->n_blocks;
+    if (stage == HDI_FRONT_ASSEMBLE) return t->n_chunks;
+    if (stage == HDI_FRONT_UPDATE) return (int32_t)((t->w.u + HDI_FRONT_CHUNK - 1) / HDI_FRONT_CHUNK);
+    for (k = 0; k < t->n_blocks; k++) n += t->n_chunks - hdi_factor_first(t, k);
+    return n;
+}
+
+/* Nodes of the walk. */
 static int64_t hdi_factor_nodes(hdi_factor *f) {
     const hdi_symbolic *s = f->sym;
-    int64_t n = s->n_top > 0 ? s->n_tasks : 0;
-    int32_t i, k;
-    hdi_front_loop l;
-    hdi_front w;
-    memset(&l, 0, sizeof l);
-    memset(&w, 0, sizeof w);
-    l.f = f;
-    w.f = f;
+    int64_t n = (int64_t)s->n_tasks + s->n_top;
+    int32_t i, stage;
+    hdi_factor_walk t;
+    memset(&t, 0, sizeof t);
+    t.f = f;
     for (i = 0; i < s->n_top; i++) {
-        const int32_t v = s->top[i];
-        if (!hdi_factor_shared(s, v)) continue;
-        hdi_front_shape(s, v, &w.p, &w.u, &w.m);
-        n += hdi_front_loop_set(&l, &w);
-        for (k = s->kid_ptr[v]; k < s->kid_ptr[v + 1] && hdi_is_real(f); k++)
-            n += hdi_factor_child_nodes(s, s->kid[k]);
+        hdi_factor_shape(&t, s->top[i]);
+        for (stage = HDI_FRONT_ASSEMBLE; stage <= HDI_FRONT_UPDATE && hdi_front_shared(s, s->top[i]); stage++)
+            n += hdi_factor_stage(&t, stage);
     }
     return n;
 }
@@ -13795,7 +13650,7 @@ static void hdi_factor_take(hdi_factor *f, const hdi_symbolic *sym, int32_t widt
     f->work = HDI_TAKE(s, double, (uint64_t)sym->work * (uint64_t)width);
     f->scratch = HDI_TAKE(s, double, f->scratch_size * n_parts + tops * f->top_size);
     f->chunk_scratch = HDI_TAKE(s, double, f->chunk_size * n_chunks + 1);
-    f->nodes = HDI_TAKE(s, int32_t, hdi_front_nodes(sym, hdi_front_block_size(f)) + 1);
+    f->counts = HDI_TAKE(s, int32_t, sym->largest_pivots / hdi_front_block_size(f) + (int64_t)n_chunks + 2);
     f->pivots = HDI_TAKE(s, hdi_pivots, n_parts + 1);
     f->n_order = hdi_factor_nodes(f);
     f->order = HDI_TAKE(s, int32_t, f->n_order + 1);
@@ -13847,10 +13702,7 @@ static hd_status hdi_factor_collect(hdi_factor *f, int32_t n_parts, hd_error *e)
         f->all.lane = q->lane;
         f->all.value = q->value;
     }
-    if (f->error.status < 0) {
-        *e = f->error;
-        return e->status;
-    }
+    if (e->status < 0) return e->status;
     if (f->all.failed < 0) return HD_OK;
     hdi_fail_row(e, HD_ERR_BREAKDOWN, "LDL': a pivot is not finite, or too small to divide by",
                  f->sym->perm[f->all.failed], -1, f->all.value);
@@ -13858,120 +13710,144 @@ static hd_status hdi_factor_collect(hdi_factor *f, int32_t n_parts, hd_error *e)
     return e->status;
 }
 
-/* ---- the tree as one loop ---- */
-/* Its nodes: the subtrees; then for one front of the top after the other, chunks of each child that is added
- * to it (real numbers), and those of the front. Whoever does the last node of a step does what one thread
- * must do before the next, and releases that one's. */
-
-enum { HDI_FACTOR_TASKS = 1 << 30 };
-
-typedef struct hdi_factor_loop {
-    hdi_front_loop l;            /* of the front under way */
-    int32_t top, kid;            /* which front of the top; the child that is added next */
-    int32_t assembling;
-    int32_t left;                /* subtrees, or chunks of the child, that are not done */
-} hdi_factor_loop;
-
-/* Takes up front top + 1: 1, and to be shared from here on; 0 when it is done, by this thread. */
-static int hdi_factor_open(hdi_factor_loop *t, int32_t worker) {
-    hdi_factor *f = t->l.f;
-    const hdi_symbolic *s = f->sym;
-    const int32_t v = s->top[++t->top];
-    double *scratch = hdi_factor_scratch(f, s->n_tasks);
-    hdi_front w = hdi_front_open(f, v, scratch);
-    if (worker == 0 && !HDI_LOAD(&f->stop) &&
-        hdi_progress(f->ctx, "factor", 0.5 + 0.5 * t->top / s->n_top, &f->error) < 0)
-        HDI_STORE(&f->stop, 1);
-    if (!hdi_factor_shared(s, v)) {
-        if (!HDI_LOAD(&f->stop) && !hdi_front_factor(f, v, scratch, t->l.note, 0)) HDI_STORE(&f->stop, 1);
-        return 0;
-    }
-    if (f->width == 1 && !HDI_LOAD(&f->stop)) hdi_front_assemble_real(&w);
-    (void)hdi_front_loop_set(&t->l, &w);
-    t->kid = s->kid_ptr[v];
-    return 1;
+/* Chunks from the one that holds row r0 to the one that holds row r1 - 1. */
+static int32_t hdi_factor_span(int64_t r0, int64_t r1) {
+    return (int32_t)((r1 - 1) / HDI_FRONT_CHUNK - r0 / HDI_FRONT_CHUNK + 1);
 }
 
-/* Goes on to the next step. Returns how many nodes are ready, [*id, *id + result); 0: the tree is done. */
-static int32_t hdi_factor_advance(hdi_factor_loop *t, int32_t worker, int32_t *id) {
-    hdi_factor *f = t->l.f;
+/* Takes up the next front of the top: all of it, or to be shared from here on. */
+static void hdi_factor_open(hdi_factor_walk *t) {
+    hdi_factor *f = t->f;
     const hdi_symbolic *s = f->sym;
-    const int real = f->width == 1;
-    if (!t->assembling) {
-        do {
-            if (t->top + 1 >= s->n_top) return 0;
-        } while (!hdi_factor_open(t, worker));
+    const int32_t v = s->top[t->top];
+    double *scratch = hdi_factor_scratch(f, s->n_tasks);
+    int32_t k;
+    if (hdi_walk_alone(&t->walk) || !hdi_front_shared(s, v)) {
+        if (!hdi_front_factor(f, v, scratch, f->pivots + s->n_tasks)) hdi_walk_stop(&t->walk);
+        t->stage = HDI_FRONT_UPDATE;
+        return;
     }
-    t->assembling = real && t->kid < s->kid_ptr[s->top[t->top] + 1];
-    *id = 0;
-    if (t->assembling) {
-        t->l.w.child = s->kid[t->kid++];
-        return t->left = hdi_factor_child_nodes(s, t->l.w.child);
+    t->w = hdi_front_open(f, v, scratch);
+    hdi_factor_shape(t, v);
+    t->S[0] = t->w.S;
+    t->S[1] = f->second;
+    t->missing = f->counts;
+    t->come = t->missing + t->n_blocks;
+    for (k = 0; k < t->n_blocks; k++) {
+        t->missing[k] = hdi_factor_span((int64_t)k * t->nb, hdi_factor_end(t, k));
+        if (k > 1) t->missing[k] += t->n_chunks - hdi_factor_first(t, k - 2);
     }
-    if (real) return 1;
-    *id = hdi_front_node(&t->l, t->l.n_blocks, -1);
-    return t->l.n_chunks;
+    memset(t->come, 0, (size_t)t->n_chunks * sizeof *t->come);
+}
+
+/* All of a stage is done: the next one that has nodes. */
+static void hdi_factor_next(hdi_factor_walk *t) {
+    const hdi_symbolic *s = t->f->sym;
+    for (t->left = 0; t->left == 0;) {
+        if (t->stage == HDI_FRONT_UPDATE) {
+            if (++t->top == s->n_top) return;
+            t->stage = HDI_FRONT_OPEN;
+            t->left = 1;
+            hdi_release(&t->walk, s->n_tasks + t->top, 1);
+            return;
+        }
+        t->left = hdi_factor_stage(t, ++t->stage);
+    }
+    hdi_release(&t->walk, s->n_tasks + s->n_top, t->stage == HDI_FRONT_COLUMNS ? 1 : t->left);
+}
+
+static int32_t hdi_factor_panel_node(const hdi_factor_walk *t, int32_t k, int32_t c) {
+    const hdi_symbolic *s = t->f->sym;
+    return s->n_tasks + s->n_top + k * (t->n_chunks + 1) + 1 + c;
+}
+
+/* One more thing that P(k), or C(c,k), waits for. */
+static void hdi_factor_arrive(const hdi_factor_walk *t, hdi_walk *walk, int32_t k) {
+    if (k < t->n_blocks && HDI_ATOMIC_ADD(t->missing + k, -1) == 0)
+        hdi_release(walk, hdi_factor_panel_node(t, k, -1), 1);
+}
+
+static void hdi_factor_come(const hdi_factor_walk *t, hdi_walk *walk, int32_t c) {
+    const int32_t come = (int32_t)HDI_ATOMIC_ADD(t->come + c, 1);
+    if (come % 2) hdi_release(walk, hdi_factor_panel_node(t, come / 2, c), 1);
+}
+
+/* Node P(k), or with a chunk c >= 0 C(c,k). */
+static void hdi_factor_panel(hdi_factor_walk *t, int32_t k, int32_t c) {
+    const int64_t end = hdi_factor_end(t, k), r0 = (int64_t)c * HDI_FRONT_CHUNK, r1 = r0 + HDI_FRONT_CHUNK;
+    hdi_front w = t->w;
+    w.S = t->S[k % 2];
+    w.k0 = (int64_t)k * t->nb;
+    w.nb = (int32_t)(end - w.k0);
+    if (c >= 0) {
+        hdi_front_part(&w, HDI_FRONT_COLUMNS, r0 > end ? r0 : end, hdi_least(r1, w.m),
+                       w.f->chunk_scratch + w.f->chunk_size * (size_t)c);
+        hdi_factor_come(t, &t->walk, c);
+        if (r0 < hdi_factor_end(t, k + 1) && r1 > end) hdi_factor_arrive(t, &t->walk, k + 1);
+        hdi_factor_arrive(t, &t->walk, k + 2);
+        return;
+    }
+    if (!hdi_front_block(&w, end, t->f->pivots + t->f->sym->n_tasks)) hdi_walk_stop(&t->walk);
+    for (c = hdi_factor_first(t, k); c < t->n_chunks; c++) hdi_factor_come(t, &t->walk, c);
+}
+
+/* A subtree. */
+static void hdi_factor_task(hdi_factor_walk *t, int32_t i) {
+    hdi_factor *f = t->f;
+    int32_t v;
+    for (v = f->sym->task_begin[i]; v < f->sym->task_end[i]; v++) {
+        if (hdi_walk_stopped(&t->walk) && i >= HDI_LOAD(&t->until)) return;
+        if (hdi_front_factor(f, v, hdi_factor_scratch(f, i), f->pivots + i)) continue;
+        /* should two threads come at once, and the larger number stay, then more is done than need be */
+        if (HDI_LOAD(&t->until) == 0 || i < HDI_LOAD(&t->until)) HDI_STORE(&t->until, i);
+        hdi_walk_stop(&t->walk);
+        return;
+    }
 }
 
 static void hdi_factor_node(void *arg, int64_t index, int32_t worker) {
-    hdi_factor_loop *t = (hdi_factor_loop *)arg;
-    hdi_factor *f = t->l.f;
-    int32_t id, n;
-    if (index >= HDI_FACTOR_TASKS) {
-        hdi_factor_task(f, index - HDI_FACTOR_TASKS, worker);
-        if (HDI_ATOMIC_ADD(&t->left, -1) != 0) return;
-    } else if (t->assembling) {
-        const int64_t r0 = index * HDI_FRONT_CHUNK, end = hdi_front_below(f->sym, t->l.w.child);
-        if (!HDI_LOAD(&f->stop))
-            hdi_front_part(&t->l.w, HDI_FRONT_ASSEMBLE, r0, hdi_least(r0 + HDI_FRONT_CHUNK, end), NULL);
-        if (HDI_ATOMIC_ADD(&t->left, -1) != 0) return;
-    } else if (!hdi_front_run_node(&t->l, (int32_t)index)) {
-        return;
+    hdi_factor_walk *t = (hdi_factor_walk *)arg;
+    const hdi_factor *f = t->f;
+    const int32_t n_tasks = f->sym->n_tasks, i = (int32_t)index - n_tasks - f->sym->n_top;
+    (void)worker;
+    if (index < n_tasks) {
+        hdi_factor_task(t, (int32_t)index);
+    } else if (i < 0) {
+        hdi_factor_open(t);
+    } else if (t->stage == HDI_FRONT_COLUMNS) {
+        hdi_factor_panel(t, i / (t->n_chunks + 1), i % (t->n_chunks + 1) - 1);
+    } else {
+        /* the last rows of a triangle are longest */
+        const int64_t c = hdi_factor_stage(t, t->stage) - 1 - i, r0 = c * HDI_FRONT_CHUNK;
+        const int64_t rows = t->stage == HDI_FRONT_UPDATE ? t->w.u : t->w.m;
+        hdi_front_part(&t->w, t->stage, r0, hdi_least(r0 + HDI_FRONT_CHUNK, rows),
+                       f->chunk_scratch + f->chunk_size * (size_t)c);
     }
-    n = hdi_factor_advance(t, worker, &id);
-    if (n > 0) hdi_release_many(t->l.threads, id, n, t->l.order);
-}
-
-/* All fronts, by several threads. */
-static void hdi_factor_share(hdi_factor *f, hd_threads *threads) {
-    const hdi_symbolic *s = f->sym;
-    hdi_factor_loop t;
-    int32_t i, ready = s->n_tasks, id = HDI_FACTOR_TASKS;
-    memset(&t, 0, sizeof t);
-    t.l.f = f;
-    t.l.note = f->pivots + s->n_tasks;
-    t.l.threads = threads;
-    t.l.order = f->order;
-    t.top = -1;
-    t.left = ready;
-    if (ready == 0) ready = hdi_factor_advance(&t, 0, &id);
-    for (i = 0; i < ready; i++) f->order[i] = id + i;
-    hdi_parallel_ordered(f->ctx, (int32_t)f->n_order, ready, f->order, hdi_factor_node, &t);
+    if (HDI_ATOMIC_ADD(&t->left, -1) == 0) hdi_factor_next(t);
 }
 
 /* All fronts: subtrees at the same time, then the top, whose fronts are shared. */
 static hd_status hdi_factor_run(hdi_factor *f, const hdi_values *values, hd_error *e) {
-    const hdi_symbolic *s = f->sym;
-    const int32_t n_parts = s->n_tasks + 1;
-    double *scratch = hdi_factor_scratch(f, s->n_tasks);
-    const int64_t n = f->n_order < HDI_FACTOR_TASKS ? f->n_order : 0;
-    hd_threads *threads = hdi_threads_own(f->ctx, n);
+    const int32_t n_tasks = f->sym->n_tasks;
+    hdi_factor_walk t;
     int32_t i;
-    f->ready = f->stop = 0;
-    f->until = s->n_tasks;
+    memset(&t, 0, sizeof t);
+    t.f = f;
+    t.top = -1;
+    t.stage = HDI_FRONT_UPDATE;
+    t.left = n_tasks;
+    f->ready = 0;
     f->values = values;
-    f->share = s->n_top > 0 ? 0.5 : 1;
-    hdi_error_clear(&f->error);
-    for (i = 0; i < n_parts; i++) hdi_pivots_clear(f->pivots + i);
-    if (threads) hdi_factor_share(f, threads);
-    else hdi_parallel(f->ctx, s->n_tasks, hdi_factor_task, f);
-    for (i = 0; i < s->n_top && !threads && !f->stop; i++) {
-        const int shared = hdi_factor_shared(s, s->top[i]);
-        if (hdi_progress(f->ctx, "factor", 0.5 + 0.5 * i / s->n_top, &f->error) < 0) break;
-        if (!hdi_front_factor(f, s->top[i], scratch, f->pivots + s->n_tasks, shared)) break;
-    }
+    for (i = 0; i <= n_tasks; i++) hdi_pivots_clear(f->pivots + i);
+    hdi_walk_open(&t.walk, f->ctx, f->n_order, f->order, hdi_factor_node, &t);
+    if (hdi_walk_alone(&t.walk)) t.walk.n = (uint32_t)(n_tasks + f->sym->n_top);
+    t.walk.stage = "factor";
+    t.walk.e = e;
+    if (n_tasks > 0) hdi_release(&t.walk, 0, n_tasks);
+    else hdi_factor_next(&t);
+    hdi_walk_run(&t.walk);
     f->values = NULL;
-    if (hdi_factor_collect(f, n_parts, e) < 0) return e->status;
+    if (hdi_factor_collect(f, n_tasks + 1, e) < 0) return e->status;
     f->ready = 1;
     return HD_OK;
 }
@@ -13990,8 +13866,8 @@ typedef struct hdi_sweep {
                                     it: zero. NULL: they are in x, which otherwise is only written */
     const char *wanted;          /* backward: fronts whose part of x is asked for, closed towards the roots;
                                     NULL: all */
-    int32_t *pending, *order;    /* shared by threads: what nodes wait for; the nodes as they become ready */
-    hd_threads *threads;
+    hdi_walk *walk;
+    int32_t *pending, *order;    /* [2 nodes] what they wait for; nodes as they become ready */
 } hdi_sweep;
 
 /* The children's vectors, into the pivots' part of x and into t, which is cleared before. */
@@ -14183,21 +14059,10 @@ static void hdi_sweep_front(const hdi_sweep *z, int32_t v) {
     hdi_sweep_forward(z, v, y, t);
 }
 
-static void hdi_sweep_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_sweep *z = (const hdi_sweep *)arg;
-    const int32_t begin = z->f->sym->task_begin[index], end = z->f->sym->task_end[index];
-    int32_t v;
-    (void)worker;
-    if (z->backward)
-        for (v = end; v-- > begin;) hdi_sweep_front(z, v);
-    else
-        for (v = begin; v < end; v++) hdi_sweep_front(z, v);
-}
-
-/* ---- a sweep as one loop ---- */
-/* Its nodes: the subtrees and the fronts of the top, forward, then the same backward. A front of the top
- * waits for its children forward, a subtree for the parents of its roots backward. Whoever does the last
- * thing that a node waits for releases it. */
+/* ---- a sweep as a walk ---- */
+/* Its nodes: the subtrees and the fronts of the top on the way up, then the same on the way down. Upwards a
+ * front of the top waits for its children; downwards it waits for its parent, and a subtree for the parents
+ * of its roots. What has no such parent goes down when it has come up. */
 
 /* A sweep that reads fewer bytes is done by one thread. At 10 GB/s two would need as long, with the 50
  * microseconds that a thread takes to begin. */
@@ -14205,9 +14070,10 @@ static void hdi_sweep_task(void *arg, int64_t index, int32_t worker) {
 
 static int32_t hdi_sweep_nodes(const hdi_symbolic *s) { return s->n_tasks + s->n_top; }
 
-/* One of the things that a node waits for is done. */
-static void hdi_sweep_arrive(const hdi_sweep *z, int32_t node, int32_t *pending) {
-    if (HDI_ATOMIC_ADD(pending, -1) == 0) hdi_release(z->threads, node, z->order);
+/* The node of supernode v: its subtree, or the front itself. */
+static int32_t hdi_sweep_node_of(const hdi_symbolic *s, int32_t v) {
+    const int32_t task = s->task_of[v];
+    return task >= 0 ? task : s->n_tasks - 1 - task;
 }
 
 /* Whether supernode v hands its vector to a front of the top. */
@@ -14215,39 +14081,39 @@ static int hdi_sweep_below_top(const hdi_symbolic *s, int32_t v) {
     return s->parent[v] >= 0 && s->task_of[s->parent[v]] < 0;
 }
 
-/* Forward, supernode v is done, whose parent belongs to the top. */
-static void hdi_sweep_up(const hdi_sweep *z, int32_t v) {
+/* What nodes wait for. */
+static void hdi_sweep_count(const hdi_sweep *z) {
     const hdi_symbolic *s = z->f->sym;
-    const int32_t node = s->n_tasks - 1 - s->task_of[s->parent[v]];
-    hdi_sweep_arrive(z, node, z->pending + node);
+    const int32_t n = hdi_sweep_nodes(s);
+    int32_t *up = z->pending, *down = z->pending + n, i, k;
+    memset(up, 0, 2 * (size_t)n * sizeof *up);
+    for (i = 0; i < s->n_top; i++) {
+        const int32_t v = s->top[i];
+        up[s->n_tasks + i] = s->kid_ptr[v + 1] - s->kid_ptr[v];
+        for (k = s->kid_ptr[v]; k < s->kid_ptr[v + 1]; k++) down[hdi_sweep_node_of(s, s->kid[k])]++;
+    }
+    for (i = 0; i < n; i++)
+        if (down[i] == 0) down[i] = -1;          /* waits for its own way up */
 }
 
-/* What subtree k waits for backward. */
-static int32_t hdi_sweep_roots(const hdi_symbolic *s, int32_t k) {
-    int32_t v, n = 0;
-    for (v = s->task_begin[k]; v < s->task_end[k]; v++) n += hdi_sweep_below_top(s, v);
-    return n;
+/* One of the things that a node waits for is done. */
+static void hdi_sweep_arrive(const hdi_sweep *z, int32_t node) {
+    if (HDI_ATOMIC_ADD(z->pending + node, -1) == 0) hdi_release(z->walk, node, 1);
 }
 
-/* Node i is done: those that waited for it. */
+/* Node i is done, upwards or downwards: those that waited for it. */
 static void hdi_sweep_next(const hdi_sweep *z, int32_t i) {
     const hdi_symbolic *s = z->f->sym;
-    const int32_t n = hdi_sweep_nodes(s), v = i < s->n_tasks ? -1 : s->top[i - s->n_tasks];
-    int32_t k;
-    if (z->backward) {
-        for (k = v < 0 ? 0 : s->kid_ptr[v]; v >= 0 && k < s->kid_ptr[v + 1]; k++) {
-            const int32_t task = s->task_of[s->kid[k]];
-            if (task < 0) hdi_release(z->threads, n + s->n_tasks - 1 - task, z->order);
-            else hdi_sweep_arrive(z, n + task, z->pending + task);
-        }
-    } else if (v >= 0) {
-        if (s->parent[v] >= 0) hdi_sweep_up(z, v);
-        else hdi_release(z->threads, n + i, z->order);
-    } else {
-        z->pending[i] = hdi_sweep_roots(s, i);
-        if (z->pending[i] == 0) hdi_release(z->threads, n + i, z->order);
-        for (k = s->task_begin[i]; k < s->task_end[i]; k++)
-            if (hdi_sweep_below_top(s, k)) hdi_sweep_up(z, k);
+    const int32_t n = hdi_sweep_nodes(s), top = i < s->n_tasks ? -1 : s->top[i - s->n_tasks];
+    int32_t v;
+    if (!z->backward) {
+        const int32_t begin = top < 0 ? s->task_begin[i] : top, end = top < 0 ? s->task_end[i] : top + 1;
+        if (z->pending[n + i] < 0) hdi_release(z->walk, n + i, 1);
+        for (v = begin; v < end; v++)
+            if (hdi_sweep_below_top(s, v)) hdi_sweep_arrive(z, hdi_sweep_node_of(s, s->parent[v]));
+    } else if (top >= 0) {
+        for (v = s->kid_ptr[top]; v < s->kid_ptr[top + 1]; v++)
+            hdi_sweep_arrive(z, n + hdi_sweep_node_of(s, s->kid[v]));
     }
 }
 
@@ -14255,53 +14121,30 @@ static void hdi_sweep_node(void *arg, int64_t index, int32_t worker) {
     hdi_sweep z = *(const hdi_sweep *)arg;
     const hdi_symbolic *s = z.f->sym;
     const int32_t n = hdi_sweep_nodes(s), i = (int32_t)index % n;
+    int32_t v;
+    (void)worker;
     z.backward = index >= n;
-    if (i < s->n_tasks) hdi_sweep_task(&z, i, worker);
-    else hdi_sweep_front(&z, s->top[i - s->n_tasks]);
+    if (i >= s->n_tasks) hdi_sweep_front(&z, s->top[i - s->n_tasks]);
+    else if (z.backward)
+        for (v = s->task_end[i]; v-- > s->task_begin[i];) hdi_sweep_front(&z, v);
+    else
+        for (v = s->task_begin[i]; v < s->task_end[i]; v++) hdi_sweep_front(&z, v);
     hdi_sweep_next(&z, i);
-}
-
-/* All of it, or with active the way back. */
-static void hdi_sweep_share(hdi_sweep *z, hd_context *ctx) {
-    const hdi_symbolic *s = z->f->sym;
-    const int32_t n = hdi_sweep_nodes(s);
-    int32_t n_ready = 0, k;
-    for (k = 0; k < s->n_tasks; k++) {
-        z->pending[k] = z->active ? hdi_sweep_roots(s, k) : 0;
-        if (z->pending[k] == 0) z->order[n_ready++] = z->active ? n + k : k;
-    }
-    for (k = 0; k < s->n_top; k++) {
-        const int32_t v = s->top[k], node = s->n_tasks + k;
-        z->pending[node] = s->kid_ptr[v + 1] - s->kid_ptr[v];
-        if (z->active ? s->parent[v] < 0 : z->pending[node] == 0)
-            z->order[n_ready++] = z->active ? n + node : node;
-    }
-    hdi_parallel_ordered(ctx, z->active ? n : 2 * n, n_ready, z->order, hdi_sweep_node, z);
 }
 
 /* x = A^-1 x. On all threads with ctx, else (from within a task) on this one. */
 static void hdi_sweep_run(hdi_sweep *z, hd_context *ctx) {
     const hdi_symbolic *s = z->f->sym;
     const double bytes = 2 * 8.0 * z->f->width * (double)z->f->panel_at[s->n_super];
+    const int32_t n = hdi_sweep_nodes(s);
+    hdi_walk w;
     int32_t i;
-    if (ctx && !ctx->parallel_for && bytes < HDI_SWEEP_SHARED) ctx = NULL;
-    if (ctx) z->threads = hdi_threads_own(ctx, hdi_sweep_nodes(s));
-    z->backward = 0;
-    if (z->threads && !z->active) {
-        hdi_sweep_share(z, ctx);
-        return;
-    }
-    if (ctx && !z->active) hdi_parallel(ctx, s->n_tasks, hdi_sweep_task, z);
-    else for (i = 0; i < s->n_tasks; i++) hdi_sweep_task(z, i, 0);
-    for (i = 0; i < s->n_top; i++) hdi_sweep_front(z, s->top[i]);
-    if (z->threads) {
-        hdi_sweep_share(z, ctx);
-        return;
-    }
-    z->backward = 1;
-    for (i = s->n_top; i-- > 0;) hdi_sweep_front(z, s->top[i]);
-    if (ctx) hdi_parallel(ctx, s->n_tasks, hdi_sweep_task, z);
-    else for (i = s->n_tasks; i-- > 0;) hdi_sweep_task(z, i, 0);
+    hdi_walk_open(&w, bytes < HDI_SWEEP_SHARED ? NULL : ctx, 2 * n, z->order, hdi_sweep_node, z);
+    z->walk = &w;
+    hdi_sweep_count(z);
+    for (i = 0; i < n; i++)
+        if (z->pending[i] == 0) hdi_release(&w, i, 1);
+    hdi_walk_run(&w);
 }
 
 /* Doubles that a sweep of k right-hand sides works with besides x: vec, pending and order. */
@@ -14319,7 +14162,7 @@ static hdi_sweep hdi_sweep_open(const hdi_factor *f, int32_t k, double *x, doubl
     z.vec = work;
     work += (int64_t)f->width * k * f->sym->vector_size;
     z.pending = (int32_t *)(void *)work;
-    z.order = z.pending + hdi_sweep_nodes(f->sym);
+    z.order = z.pending + 2 * (int64_t)hdi_sweep_nodes(f->sym);
     return z;
 }
 
@@ -14614,9 +14457,6 @@ typedef struct hdi_inverse {
     int64_t stride;              /* from set to set */
     double *scratch, *chunk;     /* [n_tasks][scratch_size] and one for the top; [chunks][chunk_size] */
     uint64_t scratch_size, top_size, chunk_size;
-    int32_t stop;
-    double done;
-    hd_error error;
 } hdi_inverse;
 
 /* The parts of one front; a block of pivots [k0,k1) under way. */
@@ -14848,8 +14688,6 @@ static void hdi_inverse_child_pack(const hdi_inverse_front *w, int64_t r0, int64
 
 /* ---- real fronts ---- */
 
-static int64_t hdi_triangle_column(int64_t u, int64_t j) { return j * u - j * (j - 1) / 2; }
-
 /* Entry (j,j) of Z; those below it in its column follow. */
 static const double *hdi_inverse_at_real(const hdi_inverse_front *w, int64_t j) {
     return j < w->p ? w->z + j * (w->m + 1) : w->update + hdi_triangle_column(w->u, j - w->p);
@@ -15001,7 +14839,7 @@ static void hdi_inverse_child_real(const hdi_inverse_front *w, int64_t r0, int64
 /* ---- fronts ---- */
 
 typedef enum hdi_inverse_stage {
-    HDI_INVERSE_M, HDI_INVERSE_BELOW, HDI_INVERSE_CORNER, HDI_INVERSE_CHILD
+    HDI_INVERSE_M, HDI_INVERSE_BELOW, HDI_INVERSE_CORNER, HDI_INVERSE_FORMS, HDI_INVERSE_CHILD
 } hdi_inverse_stage;
 
 /* One stage for rows [r0,r1). */
@@ -15021,21 +14859,6 @@ static void hdi_inverse_part(const void *front, int stage, int64_t r0, int64_t r
         if (real) hdi_inverse_child_real(w, r0, r1);
         else hdi_inverse_child_pack(w, r0, r1);
     }
-}
-
-/* Rows [begin,end) of a stage: at once, or with z as chunks. */
-static void hdi_inverse_stage_run(const hdi_inverse *z, const hdi_inverse_front *w, int stage,
-                                  int64_t begin, int64_t end) {
-    hdi_chunks h;
-    if (end > begin && !z) hdi_inverse_part(w, (int)stage, begin, end, w->buffer);
-    if (end <= begin || !z) return;
-    h.run = hdi_inverse_part;
-    h.front = w;
-    h.stage = (int)stage;
-    h.rows = stage == HDI_INVERSE_CORNER ? (int64_t)HDI_REAL_MR : (int64_t)HDI_INV_CHUNK;
-    h.work = z->chunk;
-    h.work_size = z->chunk_size;
-    hdi_chunks_run(&h, begin, end, w->f->ctx);
 }
 
 /* Entry (i,j) of Z, j <= i. */
@@ -15395,25 +15218,24 @@ typedef struct hdi_form_job {
     const hdi_inverse *z;
     const hdi_inverse_front *w;
     const hdi_pair *list;
-    int32_t n, n_blocks, begin;
+    int32_t n, n_blocks;
 } hdi_form_job;
 
-/* Block begin + index, at a place of its own. */
-static void hdi_form_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_form_job *job = (const hdi_form_job *)arg;
+/* Block `at`, at a place of its own among as many blocks as there are places. */
+static void hdi_form_task(const hdi_form_job *job, int64_t at) {
     const hdi_forms *q = job->z->forms;
     const hdi_symbolic *s = job->z->f->sym;
-    const int64_t at = job->begin + index, from = at * job->n / job->n_blocks, task = s->task_of[job->w->v];
+    const int64_t from = at * job->n / job->n_blocks, slot = at % HDI_FORM_SLOTS;
+    const int64_t task = s->task_of[job->w->v];
     const hdi_form_places *places = q->place + (task < 0), *before = q->place;
-    const int64_t number = task >= 0 ? task : index, n_before = task >= 0 ? 0 : before->n;
+    const int64_t number = task >= 0 ? task : slot, n_before = task >= 0 ? 0 : before->n;
     double *room = q->room + before->size * (size_t)n_before + places->size * (size_t)number;
     hdi_form_block b;
-    (void)worker;
     b.q = q;
     b.w = job->w;
     b.list = job->list + from;
     b.k = (int32_t)((at + 1) * job->n / job->n_blocks - from);
-    b.active = q->active + (task >= 0 ? 0 : (1 + index) * s->n_super);
+    b.active = q->active + (task >= 0 ? 0 : (1 + slot) * s->n_super);
     b.column = q->column + before->pivots * n_before + places->pivots * number;
     b.end = room + places->size;
     b.aside = room;
@@ -15448,17 +15270,6 @@ static hdi_form_job hdi_forms_open(const hdi_inverse *z, const hdi_inverse_front
     job.list = order;
     job.n_blocks = (int32_t)hdi_forms_blocks(q, job.n);
     return job;
-}
-
-/* All forms of a front's pivots; in the top by all threads. */
-static void hdi_forms_front(const hdi_inverse *z, const hdi_inverse_front *w) {
-    const hdi_forms *q = z->forms;
-    const int32_t task = w->f->sym->task_of[w->v];
-    hdi_form_job job = hdi_forms_open(z, w);
-    for (; job.begin < job.n_blocks; job.begin += task >= 0 ? 1 : q->n_slots) {
-        if (task >= 0) hdi_form_task(&job, 0, 0);
-        else hdi_parallel(w->f->ctx, hdi_least(job.n_blocks - job.begin, q->n_slots), hdi_form_task, &job);
-    }
 }
 
 /* Rows on the stack at most, for columns of the fronts of subtrees and for those of all. need [n_super]. */
@@ -15575,249 +15386,213 @@ static uint64_t hdi_forms_bytes(const hdi_symbolic *s, int32_t width, uint64_t l
 
 /* ---- the run ---- */
 
-/* What is wanted of the front's columns. */
+/* Entries or the diagonal of the front's columns. */
 static void hdi_inverse_emit(const hdi_inverse *z, const hdi_inverse_front *w) {
     const hdi_symbolic *s = w->f->sym;
     int64_t n;
-    if (z->wanted == HDI_WANT_FORMS) hdi_forms_front(z, w);
-    else if (z->wanted == HDI_WANT_DIAGONAL)
+    if (z->wanted == HDI_WANT_DIAGONAL)
         for (n = 0; n < w->p; n++) hdi_inverse_put(z, hdi_inverse_at(w, n, n), s->super[w->v] + n);
     else
         for (n = s->a_ptr[w->v]; n < s->a_ptr[w->v + 1]; n++)
             hdi_inverse_put(z, hdi_inverse_at(w, s->a_row[n], s->a_col[n]), n);
 }
 
-/* Z of front v, whose Z22 is there: its columns, what is wanted of them, and the children's Z22. shared: all
- * threads, else this one. */
-static void hdi_inverse_front_run(const hdi_inverse *z, int32_t v, double *scratch, int shared) {
-    const hdi_symbolic *s = z->f->sym;
-    const hdi_inverse *all = shared ? z : NULL;
-    const int real = z->f->width == 1;
-    const int32_t nr = z->f->real->nr;
-    hdi_inverse_front w = hdi_inverse_open(z->f, v, scratch);
-    int64_t u;
-    int32_t k;
-    hdi_factor_fetch(z->f, v, 1);
-    for (w.k0 = (w.p - 1) / HDI_PANEL * HDI_PANEL; w.k0 >= 0; w.k0 -= HDI_PANEL) {
-        w.k1 = hdi_least(w.k0 + HDI_PANEL, w.p);
-        u = w.m - w.k1;
-        if (real) hdi_inverse_pivots_real(&w);
-        else hdi_inverse_pivots_pack(&w);
-        if (w.k1 == w.m) continue;
-        hdi_inverse_stage_run(all, &w, HDI_INVERSE_M, w.k1, w.m);
-        if (real) hdi_inverse_slices_real(w.slices, nr, w.M, u, u, w.k1 - w.k0);
-        hdi_inverse_stage_run(all, &w, HDI_INVERSE_BELOW, w.k1, w.m);
-        if (real) hdi_inverse_slices_real(w.slices, nr, w.z + w.k1 + w.k0 * w.m, w.m, u, w.k1 - w.k0);
-        hdi_inverse_stage_run(all, &w, HDI_INVERSE_CORNER, 0, w.k1 - w.k0);
-    }
-    hdi_inverse_emit(z, &w);
-    for (k = s->kid_ptr[v]; k < s->kid_ptr[v + 1]; k++) {
-        w.child = s->kid[k];
-        hdi_inverse_stage_run(all, &w, HDI_INVERSE_CHILD, 0, hdi_front_below(s, w.child));
-    }
-}
-
-/* ---- the way down as one loop ---- */
-/* Its nodes: chunks of a stage of a front of the top, one stage after the other; then the subtrees. Whoever
- * does the last chunk of a stage does what one thread must do before the next, and releases that one's. */
-
-enum { HDI_INVERSE_FORMS = HDI_INVERSE_CHILD + 1, HDI_INVERSE_WHOLE, HDI_INVERSE_TASKS = 1 << 30 };
-
-/* A stage on the way: of front s->top[top], rows [begin,end) in chunks of `rows`. WHOLE: a small front. */
+/* A front whose Z22 is there, and the stage that it is in: [begin,end) of rows, of blocks of forms, or of the
+ * rows of one child after the other. */
 typedef struct hdi_inverse_step {
-    int32_t top, stage, kid;
-    int64_t k0, k1, begin, end, rows;
-} hdi_inverse_step;
-
-typedef struct hdi_inverse_loop {
-    hdi_inverse *z;
+    const hdi_inverse *z;
     hdi_inverse_front w;
     hdi_form_job form;
-    hdi_inverse_step at;
-    double *scratch;
-    int32_t left;                /* nodes of the stage that are not done */
-    int32_t *order;
-    hd_threads *threads;
-} hdi_inverse_loop;
+    int32_t stage;
+    int64_t begin, end;
+} hdi_inverse_step;
 
-static void hdi_inverse_step_set(hdi_inverse_step *c, int stage, int64_t begin, int64_t end, int64_t rows) {
+static void hdi_inverse_begin(hdi_inverse_step *c, const hdi_inverse *z, int32_t v, double *scratch) {
+    c->z = z;
+    c->w = hdi_inverse_open(z->f, v, scratch);
+    c->w.k0 = c->w.p;
+    c->stage = HDI_INVERSE_CORNER;               /* of no block: the last one comes next */
+    hdi_factor_fetch(z->f, v, 1);
+}
+
+static int64_t hdi_inverse_children(const hdi_symbolic *s, int32_t v) {
+    int64_t n = 0;
+    int32_t k;
+    for (k = s->kid_ptr[v]; k < s->kid_ptr[v + 1]; k++) n += hdi_front_below(s, s->kid[k]);
+    return n;
+}
+
+static void hdi_inverse_set(hdi_inverse_step *c, int stage, int64_t begin, int64_t end) {
     c->stage = (int32_t)stage;
     c->begin = begin;
     c->end = end;
-    c->rows = rows;
 }
 
-static int64_t hdi_inverse_step_nodes(const hdi_inverse_step *c) {
-    return (c->end - c->begin + c->rows - 1) / c->rows;
+/* The columns are there: what is wanted of them. */
+static void hdi_inverse_columns(hdi_inverse_step *c) {
+    hdi_inverse_set(c, HDI_INVERSE_FORMS, 0, 0);
+    if (c->z->wanted != HDI_WANT_FORMS) {
+        hdi_inverse_emit(c->z, &c->w);
+        return;
+    }
+    c->form = hdi_forms_open(c->z, &c->w);
+    c->end = hdi_least(c->form.n_blocks, HDI_FORM_SLOTS);
 }
 
-/* The first stage of the front c->top: its last block of pivots. */
-static void hdi_inverse_step_front(const hdi_symbolic *s, hdi_inverse_step *c) {
-    const int32_t v = s->top[c->top];
-    const int64_t m = hdi_front_rows(s, v);
-    c->kid = s->kid_ptr[v];
-    c->k1 = hdi_front_pivots(s, v);
-    c->k0 = (c->k1 - 1) / HDI_PANEL * HDI_PANEL;
-    if (m < 2 * (int64_t)HDI_INV_CHUNK) hdi_inverse_step_set(c, HDI_INVERSE_WHOLE, 0, 1, 1);
-    else hdi_inverse_step_set(c, HDI_INVERSE_M, c->k1, m, HDI_INV_CHUNK);
-}
-
-/* The next stage, which may have no nodes. 0: there is none. Depends on nothing but the schedule. */
-static int hdi_inverse_step_next(const hdi_inverse *z, const hdi_symbolic *s, hdi_inverse_step *c) {
-    const int32_t v = s->top[hdi_low32(c->top, s->n_top - 1)];
-    const int64_t m = hdi_front_rows(s, v), p = hdi_front_pivots(s, v);
-    const int forms = z->wanted == HDI_WANT_FORMS;
+/* Goes on to the next stage, after what one thread must do before it. 0: there is none. */
+static int hdi_inverse_next(hdi_inverse_step *c) {
+    hdi_inverse_front *w = &c->w;
+    const int real = w->f->width == 1;
+    const int32_t nr = w->f->real->nr;
+    const int64_t u = w->m - w->k1, n = w->k1 - w->k0;
     if (c->stage == HDI_INVERSE_M) {
-        hdi_inverse_step_set(c, HDI_INVERSE_BELOW, c->k1, m, HDI_INV_CHUNK);
+        if (real) hdi_inverse_slices_real(w->slices, nr, w->M, u, u, n);
+        hdi_inverse_set(c, HDI_INVERSE_BELOW, w->k1, w->m);
     } else if (c->stage == HDI_INVERSE_BELOW) {
-        hdi_inverse_step_set(c, HDI_INVERSE_CORNER, 0, c->k1 < m ? c->k1 - c->k0 : 0, (int64_t)HDI_REAL_MR);
-    } else if (c->stage == HDI_INVERSE_CORNER && c->k0 > 0) {
-        c->k1 = c->k0;
-        c->k0 -= HDI_PANEL;
-        hdi_inverse_step_set(c, HDI_INVERSE_M, c->k1, m, HDI_INV_CHUNK);
+        if (real) hdi_inverse_slices_real(w->slices, nr, w->z + w->k1 + w->k0 * w->m, w->m, u, n);
+        hdi_inverse_set(c, HDI_INVERSE_CORNER, 0, u > 0 ? n : 0);
+    } else if (c->stage == HDI_INVERSE_CORNER && w->k0 > 0) {
+        w->k1 = w->k0;
+        w->k0 = (w->k1 - 1) / HDI_PANEL * HDI_PANEL;
+        if (real) hdi_inverse_pivots_real(w);
+        else hdi_inverse_pivots_pack(w);
+        hdi_inverse_set(c, HDI_INVERSE_M, w->k1, w->m);
     } else if (c->stage == HDI_INVERSE_CORNER) {
-        hdi_inverse_step_set(c, HDI_INVERSE_FORMS, 0, 0, 1);
-        if (forms) c->end = hdi_least(hdi_forms_blocks(z->forms, p), z->forms->n_slots);
-    } else if (c->stage == HDI_INVERSE_FORMS && forms && c->end < hdi_forms_blocks(z->forms, p)) {
-        c->begin = c->end;
-        c->end = hdi_least(hdi_forms_blocks(z->forms, p), c->begin + z->forms->n_slots);
-    } else if (c->stage != HDI_INVERSE_WHOLE && c->kid < s->kid_ptr[v + 1]) {
-        hdi_inverse_step_set(c, HDI_INVERSE_CHILD, 0, hdi_front_below(s, s->kid[c->kid++]), HDI_INV_CHUNK);
+        hdi_inverse_columns(c);
+    } else if (c->stage == HDI_INVERSE_FORMS && c->z->wanted == HDI_WANT_FORMS && c->end < c->form.n_blocks) {
+        hdi_inverse_set(c, HDI_INVERSE_FORMS, c->end, hdi_least(c->form.n_blocks, c->end + HDI_FORM_SLOTS));
+    } else if (c->stage == HDI_INVERSE_FORMS) {
+        hdi_inverse_set(c, HDI_INVERSE_CHILD, 0, hdi_inverse_children(w->f->sym, w->v));
     } else {
-        if (c->top-- == 0) return 0;
-        hdi_inverse_step_front(s, c);
+        return 0;
     }
     return 1;
 }
 
-/* Before M of a front's last block: the front. */
-static void hdi_inverse_enter_front(hdi_inverse_loop *l, int32_t worker) {
-    hdi_inverse *z = l->z;
-    const hdi_symbolic *s = z->f->sym;
-    const double done = 0.5 * (s->n_top - 1 - l->at.top) / s->n_top;
-    if (HDI_LOAD(&z->stop)) return;
-    if (worker == 0 && hdi_progress(z->f->ctx, "invert", done, &z->error) < 0) HDI_STORE(&z->stop, 1);
-    l->w = hdi_inverse_open(z->f, s->top[l->at.top], l->scratch);
-    hdi_factor_fetch(z->f, l->w.v, 1);
-}
-
-/* What one thread does before the stage. */
-static void hdi_inverse_enter(hdi_inverse_loop *l, int32_t worker) {
-    hdi_inverse_front *w = &l->w;
-    const hdi_inverse_step *c = &l->at;
-    const hdi_symbolic *s = l->z->f->sym;
-    const int real = l->z->f->width == 1;
-    const int32_t nr = l->z->f->real->nr;
-    const int64_t p = hdi_front_pivots(s, s->top[c->top]), n = c->k1 - c->k0;
-    if (c->stage == HDI_INVERSE_WHOLE || (c->stage == HDI_INVERSE_M && c->k1 == p))
-        hdi_inverse_enter_front(l, worker);
-    if (HDI_LOAD(&l->z->stop)) return;
-    w->k0 = c->k0;
-    w->k1 = c->k1;
-    if (c->stage == HDI_INVERSE_M) {
-        if (real) hdi_inverse_pivots_real(w);
-        else hdi_inverse_pivots_pack(w);
-    } else if (c->stage == HDI_INVERSE_BELOW && real && w->k1 < w->m) {
-        hdi_inverse_slices_real(w->slices, nr, w->M, w->m - w->k1, w->m - w->k1, n);
-    } else if (c->stage == HDI_INVERSE_CORNER && real && w->k1 < w->m) {
-        hdi_inverse_slices_real(w->slices, nr, w->z + w->k1 + w->k0 * w->m, w->m, w->m - w->k1, n);
-    } else if (c->stage == HDI_INVERSE_FORMS && l->z->wanted != HDI_WANT_FORMS) {
-        hdi_inverse_emit(l->z, w);
-    } else if (c->stage == HDI_INVERSE_FORMS) {
-        if (c->begin == 0) l->form = hdi_forms_open(l->z, w);
-        l->form.begin = (int32_t)c->begin;
-    } else if (c->stage == HDI_INVERSE_CHILD) {
-        w->child = s->kid[c->kid - 1];
-    }
-}
-
-/* Goes on to the next stage that has nodes, or after the last one to the subtrees. Sets what is ready then:
- * nodes [*id, *id + result). */
-static int32_t hdi_inverse_advance(hdi_inverse_loop *l, int32_t worker, int32_t *id) {
-    const hdi_symbolic *s = l->z->f->sym;
-    do {
-        if (!hdi_inverse_step_next(l->z, s, &l->at)) {
-            *id = HDI_INVERSE_TASKS;
-            return s->n_tasks;
-        }
-        hdi_inverse_enter(l, worker);
-    } while (hdi_inverse_step_nodes(&l->at) == 0);
-    *id = 0;
-    l->left = (int32_t)hdi_inverse_step_nodes(&l->at);
-    return l->left;
-}
-
-/* Chunk i of the stage. */
-static void hdi_inverse_chunk(hdi_inverse_loop *l, int32_t i) {
-    const hdi_inverse_step *c = &l->at;
-    /* the last rows of a triangle are longest */
-    const int64_t chunk = hdi_inverse_step_nodes(c) - 1 - i, r0 = c->begin + chunk * c->rows;
-    if (c->stage == HDI_INVERSE_WHOLE) {
-        hdi_inverse_front_run(l->z, l->w.v, l->scratch, 0);
-    } else if (c->stage == HDI_INVERSE_FORMS) {
-        if (c->begin + i < l->form.n_blocks) hdi_form_task(&l->form, i, 0);
-    } else {
-        hdi_inverse_part(&l->w, c->stage, r0, hdi_least(r0 + c->rows, c->end),
-                         l->z->chunk + l->z->chunk_size * (size_t)chunk);
-    }
-}
-
-static void hdi_inverse_task(void *arg, int64_t index, int32_t worker) {
-    hdi_inverse *z = (hdi_inverse *)arg;
-    const hdi_symbolic *s = z->f->sym;
-    const int64_t i = s->n_tasks - 1 - index;
-    const double done = z->done + (1 - z->done) * (double)index / s->n_tasks;
-    int32_t v;
-    if (HDI_LOAD(&z->stop)) return;
-    if (worker == 0 && hdi_progress(z->f->ctx, "invert", done, &z->error) < 0) HDI_STORE(&z->stop, 1);
-    for (v = s->task_end[i]; v-- > s->task_begin[i] && !HDI_LOAD(&z->stop);)
-        hdi_inverse_front_run(z, v, z->scratch + z->scratch_size * (size_t)i, 0);
-}
-
-static void hdi_inverse_node(void *arg, int64_t index, int32_t worker) {
-    hdi_inverse_loop *l = (hdi_inverse_loop *)arg;
-    int32_t id, n;
-    if (index >= HDI_INVERSE_TASKS) {
-        hdi_inverse_task(l->z, index - HDI_INVERSE_TASKS, worker);
+/* [r0,r1) of the stage. */
+static void hdi_inverse_do(const hdi_inverse_step *c, int64_t r0, int64_t r1, double *buffer) {
+    const hdi_symbolic *s = c->w.f->sym;
+    hdi_inverse_front w;
+    int32_t k;
+    if (c->stage == HDI_INVERSE_FORMS) {
+        for (; r0 < r1; r0++) hdi_form_task(&c->form, r0);
         return;
     }
-    if (!HDI_LOAD(&l->z->stop)) hdi_inverse_chunk(l, (int32_t)index);
-    if (HDI_ATOMIC_ADD(&l->left, -1) != 0) return;
-    n = hdi_inverse_advance(l, worker, &id);
-    hdi_release_many(l->threads, id, n, l->order);
+    if (c->stage != HDI_INVERSE_CHILD) {
+        hdi_inverse_part(&c->w, c->stage, r0, r1, buffer);
+        return;
+    }
+    w = c->w;
+    for (k = s->kid_ptr[w.v]; k < s->kid_ptr[w.v + 1] && r1 > 0; k++) {
+        const int64_t u = hdi_front_below(s, s->kid[k]);
+        w.child = s->kid[k];
+        if (r0 < u) hdi_inverse_part(&w, HDI_INVERSE_CHILD, r0 > 0 ? r0 : 0, hdi_least(r1, u), NULL);
+        r0 -= u;
+        r1 -= u;
+    }
 }
 
-/* A step before the first stage. */
-static hdi_inverse_step hdi_inverse_step_begin(const hdi_symbolic *s) {
+/* Front v, by this thread. */
+static void hdi_inverse_front_run(const hdi_inverse *z, int32_t v, double *scratch) {
     hdi_inverse_step c;
-    memset(&c, 0, sizeof c);
-    c.top = s->n_top;
-    hdi_inverse_step_set(&c, HDI_INVERSE_WHOLE, 0, 0, 1);
-    return c;
+    hdi_inverse_begin(&c, z, v, scratch);
+    while (hdi_inverse_next(&c))
+        if (c.begin < c.end) hdi_inverse_do(&c, c.begin, c.end, c.w.buffer);
 }
 
-/* Nodes of the loop. */
-static int64_t hdi_inverse_count(const hdi_inverse *z, const hdi_symbolic *s) {
-    hdi_inverse_step c = hdi_inverse_step_begin(s);
-    int64_t n = s->n_tasks;
-    while (hdi_inverse_step_next(z, s, &c)) n += hdi_inverse_step_nodes(&c);
+/* ---- the way down as a walk ---- */
+/* Its nodes: one front of the top after the other, then the subtrees. A front is one node, by one thread, or
+ * it is shared: that node opens it, and chunks of one stage after the other follow. */
+
+typedef struct hdi_inverse_walk {
+    hdi_walk walk;
+    hdi_inverse_step at;
+    double *scratch;             /* of the top */
+    int32_t top, left;           /* the front of the top under way; nodes of the stage that are not done */
+    int32_t whole;               /* it is done by one thread */
+} hdi_inverse_walk;
+
+/* Whether threads share front v. */
+static int hdi_inverse_shared(const hdi_symbolic *s, int32_t v) {
+    return hdi_front_rows(s, v) >= 2 * (int64_t)HDI_INV_CHUNK;
+}
+
+/* Rows of a node. */
+static int64_t hdi_inverse_rows(int32_t stage) {
+    if (stage == HDI_INVERSE_FORMS) return 1;
+    return stage == HDI_INVERSE_CORNER ? (int64_t)HDI_REAL_MR : (int64_t)HDI_INV_CHUNK;
+}
+
+static int64_t hdi_inverse_chunks(int32_t stage, int64_t rows) {
+    return (rows + hdi_inverse_rows(stage) - 1) / hdi_inverse_rows(stage);
+}
+
+/* Nodes of the walk, at most. */
+static int64_t hdi_inverse_nodes(const hdi_inverse *z, const hdi_symbolic *s) {
+    int64_t n = (int64_t)s->n_tasks + s->n_top, k0, k1;
+    int32_t i;
+    for (i = 0; i < s->n_top; i++) {
+        const int64_t m = hdi_front_rows(s, s->top[i]), p = hdi_front_pivots(s, s->top[i]);
+        if (!hdi_inverse_shared(s, s->top[i])) continue;
+        n += hdi_inverse_chunks(HDI_INVERSE_CHILD, hdi_inverse_children(s, s->top[i]));
+        if (z->wanted == HDI_WANT_FORMS) n += hdi_forms_blocks(z->forms, p);
+        for (k1 = p; k1 > 0; k1 = k0) {
+            k0 = (k1 - 1) / HDI_PANEL * HDI_PANEL;
+            n += 2 * hdi_inverse_chunks(HDI_INVERSE_M, m - k1);
+            n += hdi_inverse_chunks(HDI_INVERSE_CORNER, k1 - k0);
+        }
+    }
     return n;
 }
 
-/* All of it by several threads. order [n]. */
-static void hdi_inverse_share(hdi_inverse *z, hd_threads *threads, int32_t n, int32_t *order,
-                              double *scratch) {
-    hdi_inverse_loop l;
-    int32_t ready, id, i;
-    memset(&l, 0, sizeof l);
-    l.z = z;
-    l.at = hdi_inverse_step_begin(z->f->sym);
-    l.scratch = scratch;
-    l.order = order;
-    l.threads = threads;
-    ready = hdi_inverse_advance(&l, 0, &id);
-    for (i = 0; i < ready; i++) order[i] = id + i;
-    hdi_parallel_ordered(z->f->ctx, n, ready, order, hdi_inverse_node, &l);
+/* All of a stage is done: the next one that has nodes, or the next front, or the subtrees. */
+static void hdi_inverse_advance(hdi_inverse_walk *t) {
+    const hdi_symbolic *s = t->at.z->f->sym;
+    while (!t->whole && hdi_inverse_next(&t->at)) {
+        t->left = (int32_t)hdi_inverse_chunks(t->at.stage, t->at.end - t->at.begin);
+        if (t->left > 0) {
+            hdi_release(&t->walk, s->n_tasks + s->n_top, t->left);
+            return;
+        }
+    }
+    t->left = 1;
+    if (t->top-- > 0) hdi_release(&t->walk, s->n_tasks + t->top, 1);
+    else hdi_release(&t->walk, 0, s->n_tasks);
+}
+
+/* Takes up the next front of the top. */
+static void hdi_inverse_top(hdi_inverse_walk *t) {
+    const hdi_inverse *z = t->at.z;
+    const int32_t v = z->f->sym->top[t->top];
+    t->whole = hdi_walk_alone(&t->walk) || !hdi_inverse_shared(z->f->sym, v);
+    if (t->whole) hdi_inverse_front_run(z, v, t->scratch);
+    else hdi_inverse_begin(&t->at, z, v, t->scratch);
+}
+
+static void hdi_inverse_node(void *arg, int64_t index, int32_t worker) {
+    hdi_inverse_walk *t = (hdi_inverse_walk *)arg;
+    const hdi_inverse *z = t->at.z;
+    const hdi_symbolic *s = z->f->sym;
+    const int32_t i = (int32_t)index - s->n_tasks - s->n_top;
+    int32_t v;
+    (void)worker;
+    if (index < s->n_tasks) {                    /* the last subtree first */
+        const int32_t task = s->n_tasks - 1 - (int32_t)index;
+        for (v = s->task_end[task]; v-- > s->task_begin[task] && !hdi_walk_stopped(&t->walk);)
+            hdi_inverse_front_run(z, v, z->scratch + z->scratch_size * (size_t)task);
+        return;
+    }
+    if (i < 0) {
+        hdi_inverse_top(t);
+    } else {
+        /* the last rows of a triangle are longest */
+        const int64_t rows = hdi_inverse_rows(t->at.stage);
+        const int64_t chunk = hdi_inverse_chunks(t->at.stage, t->at.end - t->at.begin) - 1 - i;
+        const int64_t r0 = t->at.begin + chunk * rows;
+        double *buffer = t->at.stage > HDI_INVERSE_CORNER ? NULL : z->chunk + z->chunk_size * (size_t)chunk;
+        hdi_inverse_do(&t->at, r0, hdi_least(r0 + rows, t->at.end), buffer);
+    }
+    if (HDI_ATOMIC_ADD(&t->left, -1) == 0) hdi_inverse_advance(t);
 }
 
 /* The arrays that inverting factors of the given width takes. */
@@ -15851,7 +15626,7 @@ static uint64_t hdi_inverse_bytes(const hdi_symbolic *s, int32_t width, int fact
     keep.left = room;
     if (factor) hdi_factor_take(&f, s, width, &keep);
     hdi_inverse_take(&z, s, width, &keep);
-    hdi_scope_count(&later, (uint64_t)(s->n_top > 0 ? hdi_inverse_count(&z, s) : 0), sizeof(int32_t));
+    hdi_scope_count(&later, (uint64_t)hdi_inverse_nodes(&z, s), sizeof(int32_t));
     if (order) *order = later;
     return bytes + later;
 }
@@ -15860,24 +15635,23 @@ static uint64_t hdi_inverse_bytes(const hdi_symbolic *s, int32_t width, int fact
  * the factor's update matrices. */
 static hd_status hdi_inverse_run(hdi_inverse *z, hdi_factor *f, hd_error *e) {
     const hdi_symbolic *s = f->sym;
-    double *scratch = z->scratch + z->scratch_size * (size_t)s->n_tasks;
     hdi_scope scope = hdi_scope_begin(f->ctx, e);
-    const int64_t n = s->n_top > 0 ? hdi_inverse_count(z, s) : 0;
-    int32_t i, *order = HDI_TAKE(&scope, int32_t, n);
-    hd_threads *threads = n > 0 && n < HDI_INVERSE_TASKS ? hdi_threads_own(f->ctx, n) : NULL;
+    const int64_t n = hdi_inverse_nodes(z, s);
+    int32_t *order = HDI_TAKE(&scope, int32_t, n);
+    hdi_inverse_walk t;
     if (!order) return hdi_scope_end(&scope);
+    memset(&t, 0, sizeof t);
     z->f = f;
-    z->stop = 0;
-    z->done = s->n_top > 0 ? 0.5 : 0;
-    hdi_error_clear(&z->error);
-    if (threads) hdi_inverse_share(z, threads, (int32_t)n, order, scratch);
-    for (i = s->n_top; i-- > 0 && !threads && !z->stop;) {
-        const int shared = hdi_front_rows(s, s->top[i]) >= 2 * HDI_INV_CHUNK;
-        if (hdi_progress(f->ctx, "invert", 0.5 * (s->n_top - 1 - i) / s->n_top, &z->error) < 0) z->stop = 1;
-        else hdi_inverse_front_run(z, s->top[i], scratch, shared);
-    }
-    if (!threads && !z->stop) hdi_parallel(f->ctx, s->n_tasks, hdi_inverse_task, z);
-    if (z->error.status < 0) *e = z->error;
+    t.at.z = z;
+    t.scratch = z->scratch + z->scratch_size * (size_t)s->n_tasks;
+    t.top = s->n_top;
+    t.whole = 1;                                 /* of no front */
+    hdi_walk_open(&t.walk, f->ctx, n, order, hdi_inverse_node, &t);
+    if (hdi_walk_alone(&t.walk)) t.walk.n = (uint32_t)(s->n_tasks + s->n_top);
+    t.walk.stage = "invert";
+    t.walk.e = e;
+    hdi_inverse_advance(&t);
+    hdi_walk_run(&t.walk);
     return hdi_scope_end(&scope);
 }
 
@@ -16053,13 +15827,12 @@ static hd_status hdi_ldl_some_entries(hd_ldl *f, int packs, int64_t n, const int
 }
 
 /* ==== [19] precond ====
- * Preconditioners M = (I + U') D (I + U), U strictly upper triangular on the pattern of L, D diagonal: one
- * application serves them all, complex-symmetric and real. May call [12].
- *   none    D = I, U = 0         jacobi  D = diag(A), U = 0
+ * Preconditioners M = (I + U') D (I + U), U strictly upper triangular on the pattern of L, D diagonal,
+ * complex-symmetric or real, and the order of rows that suits them. May call [12].
+ *   jacobi  D = diag(A), U = 0
  *   ssor    D = diag(A), U = D^-1 upper(A): with omega = 1 the product form of SSOR
  *   ildl    incomplete LDL' without fill
- *   mildl   the same, with a part of the dropped fill added to the diagonal, which keeps what smooth vectors
- *           see of A
+ *   mildl   adds most of the dropped fill to the diagonal, which keeps what smooth vectors see of A
  * This work is based on
  *   I. Gustafsson, A class of first order factorization methods, 1978 (mildl)
  *   E. Cuthill, J. McKee, Reducing the bandwidth of sparse symmetric matrices, 1969
@@ -16068,109 +15841,81 @@ static hd_status hdi_ldl_some_entries(hd_ldl *f, int packs, int64_t n, const int
  * one: on the bunny, mildl needs 752 steps instead of 1404 in the order of the file, and 1834 in a random
  * one. */
 
-/* ---- the order ---- */
-
-/* Vertices of the component of start, breadth first, each ring by ascending degree; returns their number.
- * seen [n] is stamp for those visited. last: where the last level begins. work: as many pairs as the widest
- * row. */
-static int32_t hdi_precond_levels(const hd_csr *a, int32_t start, int32_t *order, int32_t *seen,
-                                  int32_t stamp, hdi_pair *work, int32_t *last, int32_t *depth) {
-    int32_t n = 1, head = 0, level_end = 1;
+/* Vertices of the component of order[0], breadth first, each ring by ascending degree. seen [n] is stamp for
+ * those visited. work: as many pairs as the widest row. last: where the last level begins; count: of
+ * all. Returns the number of levels. */
+static int32_t hdi_precond_levels(const hd_csr *a, int32_t *order, int32_t *seen, int32_t stamp,
+                                  hdi_pair *work, int32_t *last, int32_t *count) {
+    int32_t n = 1, head = 0, depth;
     int64_t p, k, q;
-    order[0] = start;
-    seen[start] = stamp;
-    *last = 0;
-    *depth = 0;
-    for (; head < n; head++) {
-        const int32_t i = order[head];
-        if (head == level_end) {
-            *last = head;
-            level_end = n;
-            ++*depth;
+    seen[order[0]] = stamp;
+    for (depth = 0; head < n; depth++) {
+        const int32_t level_end = n;
+        for (*last = head; head < level_end; head++) {
+            const int32_t i = order[head];
+            for (k = 0, p = a->row_ptr[i]; p < a->row_ptr[i + 1]; p++) {
+                const int32_t j = a->col[p];
+                if (seen[j] == stamp) continue;
+                seen[j] = stamp;
+                work[k].key = (uint64_t)(a->row_ptr[j + 1] - a->row_ptr[j]);
+                work[k++].id = j;
+            }
+            hdi_sort_pairs(work, k);
+            for (q = 0; q < k; q++) order[n++] = (int32_t)work[q].id;
         }
-        for (k = 0, p = a->row_ptr[i]; p < a->row_ptr[i + 1]; p++) {
-            const int32_t j = a->col[p];
-            if (seen[j] == stamp) continue;
-            seen[j] = stamp;
-            work[k].key = (uint64_t)(a->row_ptr[j + 1] - a->row_ptr[j]);
-            work[k++].id = j;
-        }
-        hdi_sort_pairs(work, k);
-        for (q = 0; q < k; q++) order[n++] = (int32_t)work[q].id;
     }
-    return n;
+    *count = n;
+    return depth;
 }
 
-/* Cuthill-McKee order of a symmetric pattern: perm[new] = old. */
-static hd_status hdi_precond_cuthill_mckee(const hd_csr *a, int32_t *perm, hd_context *ctx, hd_error *e) {
+/* The same pair in Cuthill-McKee order. Each component begins at an end: at the last level as seen from any
+ * vertex, walked again from there while that adds levels. */
+static hd_laplacian *hdi_precond_ordered(const hd_laplacian *lap, hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
+    const hd_csr *a = &lap->L;
     const int32_t n = a->n_rows;
-    int32_t *seen = HDI_TAKE(&s, int32_t, n), i, k, count, last, depth, deeper, start, done = 0, stamp = 0;
-    int64_t widest = 1;
-    hdi_pair *work;
-    for (i = 0; i < n; i++)
-        if (a->row_ptr[i + 1] - a->row_ptr[i] > widest) widest = a->row_ptr[i + 1] - a->row_ptr[i];
-    work = HDI_TAKE(&s, hdi_pair, widest);
-    if (e->status < 0) return hdi_scope_end(&s);
-    hdi_fill_i32(seen, n, -1);
-    for (i = 0; i < n; i++) {
-        if (seen[i] >= 0) continue;              /* a new component: walk to an end of it */
-        start = i;
-        count = hdi_precond_levels(a, start, perm + done, seen, stamp++, work, &last, &depth);
-        for (k = 0; k < 4 && count > 1; k++) {
-            /* levels are sorted by degree only within rings, any of the last will do */
-            start = perm[done + last];
-            hdi_precond_levels(a, start, perm + done, seen, stamp++, work, &last, &deeper);
+    int32_t *perm = HDI_TAKE(&s, int32_t, n), *seen = HDI_TAKE(&s, int32_t, n);
+    int32_t i, walk, depth, deeper, last = 0, count, done = 0, stamp = 0;
+    hdi_pair *work = HDI_TAKE(&s, hdi_pair, hdi_fullest(a->row_ptr, n));
+    hd_laplacian *out = NULL;
+    if (work) hdi_fill_i32(seen, n, -1);
+    for (i = 0; work && i < n; i++) {
+        if (seen[i] >= 0) continue;
+        for (walk = depth = 0; walk < 5; walk++, depth = deeper) {
+            perm[done] = walk ? perm[done + last] : i;
+            deeper = hdi_precond_levels(a, perm + done, seen, stamp++, work, &last, &count);
             if (deeper <= depth) break;
-            depth = deeper;
         }
         done += count;
     }
-    return hdi_scope_end(&s);
-}
-
-/* The same pair in an order that iterations like. */
-static hd_laplacian *hdi_precond_ordered(const hd_laplacian *lap, hd_context *ctx, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(ctx, e);
-    int32_t *perm = HDI_TAKE(&s, int32_t, lap->n_active);
-    hd_laplacian *out = NULL;
-    if (perm && hdi_precond_cuthill_mckee(&lap->L, perm, ctx, e) >= 0)
-        out = hdi_pair_renumber(lap, perm, ctx, e);
+    if (work) out = hdi_pair_renumber(lap, perm, ctx, e);
     hdi_scope_end(&s);
     return out;
 }
 
-/* ---- factors ---- */
-
 /* The strictly upper pattern of L: rows ascend, and so do columns within a row. */
 typedef struct hdi_upper {
     int32_t n;
-    int64_t *ptr;    /* [n + 1] */
+    int64_t *ptr;    /* [n + 1] one block of memory with col */
     int32_t *col;
 } hdi_upper;
 
-static void hdi_upper_free(hd_context *ctx, hdi_upper *u) {
-    hdi_free(ctx, u->ptr);
-    hdi_free(ctx, u->col);
-    memset(u, 0, sizeof *u);
-}
-
+/* L has a symmetric pattern with a full diagonal. */
 static hd_status hdi_upper_make(hdi_upper *u, const hd_csr *L, hd_context *ctx, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(ctx, e);
-    int64_t *ptr = HDI_TAKE(&s, int64_t, (int64_t)L->n_rows + 1), p, nnz = 0;
-    /* a symmetric pattern with full diagonal */
-    int32_t *col = HDI_TAKE(&s, int32_t, (L->nnz - L->n_rows) / 2), i;
-    if (e->status < 0) return hdi_scope_end(&s);
-    for (i = 0; i < L->n_rows; i++) {
-        ptr[i] = nnz;
-        for (p = L->row_ptr[i]; p < L->row_ptr[i + 1]; p++)
-            if (L->col[p] > i) col[nnz++] = L->col[p];
-    }
-    ptr[L->n_rows] = nnz;
+    const int64_t n = L->n_rows;
+    int64_t p, nnz = 0;
+    int32_t i;
+    u->ptr = HDI_NEW(ctx, int64_t, (n + 1 + (L->nnz - n + 3) / 4), e);
+    if (!u->ptr) return e->status;
     u->n = L->n_rows;
-    u->ptr = (int64_t *)hdi_keep(&s, ptr);
-    u->col = (int32_t *)hdi_keep(&s, col);
-    return hdi_scope_end(&s);
+    u->col = (int32_t *)(void *)(u->ptr + n + 1);
+    for (i = 0; i < u->n; i++) {
+        u->ptr[i] = nnz;
+        for (p = L->row_ptr[i]; p < L->row_ptr[i + 1]; p++)
+            if (L->col[p] > i) u->col[nnz++] = L->col[p];
+    }
+    u->ptr[n] = nnz;
+    return HD_OK;
 }
 
 /* A = t L + theta B, never formed. */
@@ -16180,24 +15925,13 @@ typedef struct hdi_system {
     hd_c64 theta;
 } hdi_system;
 
-/* Upper values and diagonal of A; u may be NULL. */
-static void hdi_system_upper(const hdi_system *a, const hdi_upper *up, hd_c64 *u, hd_c64 *d) {
-    const hd_laplacian *lap = a->lap;
-    int32_t i;
-    int64_t p, q = 0;
-    for (i = 0; i < up->n; i++) {
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
-            const double l = a->t * lap->L.val[p];
-            if (lap->L.col[p] < i) continue;
-            if (lap->L.col[p] == i) {
-                d[i] = hdi_c(l + a->theta.re * lap->b_diag[i], a->theta.im * lap->b_diag[i]);
-                continue;
-            }
-            if (u)
-                u[q++] = lap->B ? hdi_c(l + a->theta.re * lap->B[p], a->theta.im * lap->B[p]) : hdi_c(l, 0);
-        }
-    }
-}
+/* Values of a preconditioner: U and D^-1; while it is made, those of A. */
+typedef struct hdi_precond {
+    hd_precond kind;
+    const hdi_upper *up;
+    hd_c64 *u;       /* [nnz of up] or NULL */
+    hd_c64 *d;       /* [n] or NULL */
+} hdi_precond;
 
 #define HDI_ILDL_LEAST 1e-3   /* share of its diagonal entry that a pivot must keep */
 #define HDI_MILDL_KEPT 0.97   /* share of the dropped fill that goes to the diagonal; 1: pivots may vanish */
@@ -16211,100 +15945,81 @@ static hd_c64 hdi_ildl_pivot(hd_c64 d, hd_c64 a) {
     return d.re * re + d.im * im > HDI_ILDL_LEAST * (a.re * re + a.im * im) ? d : a;
 }
 
-/* An entry loses w x; a share of what it loses goes to a diagonal entry. */
-static void hdi_ildl_entry(hd_c64 *entry, hd_c64 *diagonal, double keep, hd_c64 w, hd_c64 x) {
-    const hd_c64 wx = hdi_cmul(w, x);
-    *entry = hdi_csub(*entry, wx);
-    *diagonal = hdi_cadd(*diagonal, hdi_cscale(keep, wx));
+/* The first place at or after p whose column is at least c. Steps double: what is near is found at once, what
+ * is far without looking at all between. */
+static int64_t hdi_ildl_seek(const int32_t *col, int64_t p, int64_t end, int32_t c) {
+    int64_t step = 1;
+    for (; p + step <= end && col[p + step - 1] < c; step *= 2) p += step;
+    return p + hdi_lower_bound(col + p, hdi_least(step, end - p), c);
 }
 
-/* Right-looking incomplete LDL' of the complex-symmetric A, plain transpose. On entry u holds the upper part,
- * d and diag the diagonal; on exit u the factor. Row k updates the entries (i, j) between its own columns;
- * where the pattern has none, `keep` of the update goes to the diagonal entries of i and j. Work per row k:
- * the shorter of the two searches, so that a vertex with very many neighbours costs no square of their
- * number. mark [n] = -1 on entry. */
-static void hdi_ildl(const hdi_upper *up, hd_c64 *u, hd_c64 *d, const hd_c64 *diag, double keep,
-                     int64_t *mark) {
+/* Right-looking incomplete LDL' of the complex-symmetric A, plain transpose. Row k updates the entries (i, j)
+ * between its own columns; where the pattern has none, `keep` of the update goes to the diagonal entries of i
+ * and j. A vertex with very many neighbours costs no square of their number. diag [n] is work. */
+static void hdi_ildl(const hdi_precond *m, hd_c64 *diag, double keep) {
+    const int32_t *col = m->up->col;
+    const int64_t *ptr = m->up->ptr;
+    hd_c64 *u = m->u, *d = m->d;
     int32_t k;
-    int64_t p, q;
-    for (k = 0; k < up->n; k++) {
-        const int64_t begin = up->ptr[k], end = up->ptr[k + 1];
+    int64_t p, q, r;
+    memcpy(diag, d, (size_t)m->up->n * sizeof *d);
+    for (k = 0; k < m->up->n; k++) {
         hd_c64 sum = hdi_c(0, 0);
         d[k] = hdi_ildl_pivot(d[k], diag[k]);
-        for (p = begin; p < end; p++) {
-            mark[up->col[p]] = p;
+        for (p = ptr[k]; p < ptr[k + 1]; p++) {
             u[p] = hdi_cdiv(u[p], d[k]);
             sum = hdi_cadd(sum, u[p]);
         }
-        for (p = begin; p < end; p++) {
-            const int32_t i = up->col[p];
-            const int64_t row = up->ptr[i], row_len = up->ptr[i + 1] - row;
+        for (p = ptr[k]; p < ptr[k + 1]; p++) {
+            const int32_t i = col[p];
             const hd_c64 w = hdi_cmul(u[p], d[k]);
-            hd_c64 kept = hdi_c(0, 0);
-            if (row_len > 8 * (end - p)) {     /* look up the columns of k in the longer row i */
-                for (q = p + 1; q < end; q++) {
-                    const int64_t at = row + hdi_lower_bound(up->col + row, row_len, up->col[q]);
-                    if (at == row + row_len || up->col[at] != up->col[q]) continue;
-                    hdi_ildl_entry(u + at, d + up->col[q], keep, w, u[q]);
-                    kept = hdi_cadd(kept, u[q]);
-                }
-            } else {
-                for (q = up->ptr[i]; q < up->ptr[i + 1]; q++) {
-                    const int64_t at = mark[up->col[q]];
-                    if (at < begin) continue;
-                    hdi_ildl_entry(u + q, d + up->col[q], keep, w, u[at]);
-                    kept = hdi_cadd(kept, u[at]);
+            hd_c64 dropped = hdi_csub(sum, u[p]);
+            for (q = p + 1, r = ptr[i]; q < ptr[k + 1] && r < ptr[i + 1];) {
+                if (col[q] < col[r]) {
+                    q = hdi_ildl_seek(col, q + 1, ptr[k + 1], col[r]);
+                } else if (col[r] < col[q]) {
+                    r = hdi_ildl_seek(col, r + 1, ptr[i + 1], col[q]);
+                } else {
+                    const hd_c64 kept = u[q], update = hdi_cmul(w, kept);
+                    u[r] = hdi_csub(u[r], update);
+                    d[col[q]] = hdi_cadd(d[col[q]], hdi_cscale(keep, update));
+                    dropped = hdi_csub(dropped, kept);
+                    q++;
+                    r++;
                 }
             }
-            /* its own update, and what was not kept of the rest of the row: the lines above put back what is
-             * before p */
-            d[i] = hdi_csub(d[i], hdi_cmul(w, u[p]));
-            d[i] = hdi_csub(d[i], hdi_cscale(keep, hdi_cmul(w, hdi_csub(hdi_csub(sum, u[p]), kept))));
+            /* entries before p are among the dropped ones; those that were kept have been put back */
+            d[i] = hdi_csub(d[i], hdi_cmul(w, hdi_cadd(u[p], hdi_cscale(keep, dropped))));
         }
     }
 }
 
-typedef struct hdi_precond {
-    hd_precond kind;
-    const hdi_upper *up;
-    hd_c64 *u;        /* [nnz of up] or NULL */
-    hd_c64 *d_inv;    /* [n] or NULL */
-} hdi_precond;
-
-/* Fills m, whose arrays are there. work [n] complex, mark [n]. */
-static void hdi_precond_make(hdi_precond *m, const hdi_system *a, hd_c64 *work, int64_t *mark) {
-    const int32_t n = m->up->n;
+static void hdi_ssor(const hdi_precond *m, hd_c64 *work, double keep) {
     int32_t i;
     int64_t p;
-    if (m->kind == HD_PRECOND_NONE) return;
-    hdi_system_upper(a, m->up, m->u, m->d_inv);
-    if (m->kind == HD_PRECOND_SSOR) {
-        for (i = 0; i < n; i++)
-            for (p = m->up->ptr[i]; p < m->up->ptr[i + 1]; p++) m->u[p] = hdi_cdiv(m->u[p], m->d_inv[i]);
-    } else if (m->kind != HD_PRECOND_JACOBI) {
-        memcpy(work, m->d_inv, (size_t)n * sizeof *work);
-        for (i = 0; i < n; i++) mark[i] = -1;
-        hdi_ildl(m->up, m->u, m->d_inv, work, m->kind == HD_PRECOND_MILDL ? HDI_MILDL_KEPT : 0, mark);
-    }
-    for (i = 0; i < n; i++) m->d_inv[i] = hdi_cdiv(hdi_c(1, 0), m->d_inv[i]);
+    (void)work;
+    (void)keep;
+    for (i = 0; i < m->up->n; i++)
+        for (p = m->up->ptr[i]; p < m->up->ptr[i + 1]; p++) m->u[p] = hdi_cdiv(m->u[p], m->d[i]);
 }
 
-/* z = M^-1 r: (I + U') w = r, z = (I + U)^-1 D^-1 w. z may not be r. */
-static void hdi_precond_apply(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z) {
+static void hdi_apply_none(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z) {
+    memcpy(z, r, (size_t)m->up->n * sizeof *z);
+}
+
+static void hdi_apply_diagonal(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z) {
+    int32_t i;
+    for (i = 0; i < m->up->n; i++) z[i] = hdi_cmul(r[i], m->d[i]);
+}
+
+/* (I + U') w = r, z = (I + U)^-1 D^-1 w. */
+static void hdi_apply_factors(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z) {
     const int64_t *HDI_RESTRICT ptr = m->up->ptr;
     const int32_t *HDI_RESTRICT col = m->up->col;
     const hd_c64 *HDI_RESTRICT u = m->u;
     const int32_t n = m->up->n;
     int32_t i;
     int64_t p;
-    if (!m->d_inv) {
-        memcpy(z, r, (size_t)n * sizeof *z);
-        return;
-    }
-    if (!u) {
-        for (i = 0; i < n; i++) z[i] = hdi_cmul(r[i], m->d_inv[i]);
-        return;
-    }
     memcpy(z, r, (size_t)n * sizeof *z);
     for (i = 0; i < n; i++) {
         const hd_c64 w = z[i];
@@ -16313,12 +16028,53 @@ static void hdi_precond_apply(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r
         for (p = ptr[i]; p < ptr[i + 1]; p++) z[col[p]] = hdi_csub(z[col[p]], hdi_cmul(u[p], w));
     }
     for (i = n; i-- > 0;) {
-        hd_c64 w = hdi_cmul(z[i], m->d_inv[i]);
+        hd_c64 w = hdi_cmul(z[i], m->d[i]);
         HDI_PREFETCH_AT(u, ptr[i] - HDI_AHEAD / 4);
         HDI_PREFETCH_AT(col, ptr[i] - HDI_AHEAD);
         for (p = ptr[i]; p < ptr[i + 1]; p++) w = hdi_csub(w, hdi_cmul(u[p], z[col[p]]));
         z[i] = w;
     }
+}
+
+/* All there is to know of a preconditioner. make (NULL: nothing to do) turns the values of A into U and D,
+ * with a work array [n]; apply makes z = M^-1 r, z not r. */
+typedef struct hdi_precond_row {
+    int32_t rows, entries;   /* values for each row and for each entry above the diagonal */
+    double steps;            /* of cocg, about, relative to those with mildl */
+    void (*apply)(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z);
+    void (*make)(const hdi_precond *m, hd_c64 *work, double keep);
+    double keep;             /* share of the dropped fill that goes to the diagonal */
+} hdi_precond_row;
+
+static const hdi_precond_row hdi_preconds[] = {                             /* by hd_precond */
+    {1, 1, 1, hdi_apply_factors, hdi_ildl, HDI_MILDL_KEPT},                 /* auto */
+    {0, 0, 5.5, hdi_apply_none, NULL, 0},
+    {1, 0, 5, hdi_apply_diagonal, NULL, 0},
+    {1, 1, 2, hdi_apply_factors, hdi_ssor, 0},
+    {1, 1, 1.4, hdi_apply_factors, hdi_ildl, 0},
+    {1, 1, 1, hdi_apply_factors, hdi_ildl, HDI_MILDL_KEPT}
+};
+
+/* Does not compile where a kind has no row. */
+typedef char hdi_preconds_all[sizeof hdi_preconds / sizeof *hdi_preconds == HD_PRECOND_MILDL + 1 ? 1 : -1];
+
+/* Fills m, whose arrays are there. work [n] */
+static void hdi_precond_make(const hdi_precond *m, const hdi_system *a, hd_c64 *work) {
+    const hdi_precond_row *row = hdi_preconds + m->kind;
+    const hd_csr *L = &a->lap->L;
+    int32_t i;
+    int64_t p = 0, q = 0;
+    for (i = 0; row->rows && i < L->n_rows; i++) {
+        for (; p < L->row_ptr[i + 1]; p++) {     /* the diagonal of A, and what is above it */
+            const int32_t j = L->col[p];
+            const double b = j == i ? a->lap->b_diag[i] : a->lap->B ? a->lap->B[p] : 0;
+            const hd_c64 v = hdi_c(a->t * L->val[p] + a->theta.re * b, a->theta.im * b);
+            if (j == i) m->d[i] = v;
+            else if (m->u && j > i) m->u[q++] = v;
+        }
+    }
+    if (row->make) row->make(m, work, row->keep);
+    for (i = 0; row->rows && i < L->n_rows; i++) m->d[i] = hdi_cdiv(hdi_c(1, 0), m->d[i]);
 }
 
 /* ==== [20] iterative ====
@@ -16328,75 +16084,61 @@ static void hdi_precond_apply(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r
  * This work is based on
  *   H. van der Vorst, J. Melissen, A Petrov-Galerkin type method for solving Ax = b, where A is symmetric
  *     complex, 1990 (cocg)
- *   T. Sogabe, S.-L. Zhang, A COCR method for solving complex symmetric linear systems, 2007 (cocr)
  *   S.-C. Choi, Minimal residual methods for complex symmetric, skew symmetric, and skew Hermitian systems,
  *     2013 (minres)
  *   Y. Saad, M. Yeung, J. Erhel, F. Guyomarc'h, A deflated version of the conjugate gradient algorithm, 2000
  * Deviation: if L 1 = 0, the constants W of the components are known eigenvectors, A W = theta B W. The
- * caller takes them out of the right-hand side (1'b = 0 for each component), and the solvers keep them out
- * of all directions. So the smallest eigenvalue does not slow the iteration. The caller adds their part of
+ * caller takes them out of the right-hand side (1'b = 0 for each component), and every step keeps them out
+ * of its direction. So the smallest eigenvalue does not slow the iteration. The caller adds their part of
  * the solution, which is known exactly, and heat is conserved. */
 
 /* y = A x on rows; returns x'y. */
 static hd_c64 hdi_system_apply(const hdi_system *a, const hd_c64 *HDI_RESTRICT x, hd_c64 *HDI_RESTRICT y) {
     const int64_t *HDI_RESTRICT Ap = a->lap->L.row_ptr;
     const int32_t *HDI_RESTRICT Aj = a->lap->L.col;
-    const double *HDI_RESTRICT Lx = a->lap->L.val, *HDI_RESTRICT Bx = a->lap->B;
-    const double *HDI_RESTRICT b = a->lap->mass;
-    const double t = a->t;
-    const hd_c64 theta = a->theta;
+    const double *HDI_RESTRICT Lx = a->lap->L.val, *HDI_RESTRICT Bx = a->lap->B, *mass = a->lap->mass;
     hd_c64 dot = hdi_c(0, 0);
     const int32_t n = a->lap->n_active;
     int32_t i;
     int64_t p = 0;
     for (i = 0; i < n; i++) {
         const int64_t end = Ap[i + 1];
-        hd_c64 l = hdi_c(0, 0), m = hdi_c(0, 0), s;
+        hd_c64 l = hdi_c(0, 0), b = l;
         HDI_PREFETCH_AT(Lx, p + HDI_AHEAD);
         HDI_PREFETCH_AT(Aj, p + HDI_AHEAD);
         if (Bx) {
             HDI_PREFETCH_AT(Bx, p + HDI_AHEAD);
             for (; p < end; p++) {
                 const hd_c64 v = x[Aj[p]];
-                l.re += Lx[p] * v.re;
-                l.im += Lx[p] * v.im;
-                m.re += Bx[p] * v.re;
-                m.im += Bx[p] * v.im;
+                l = hdi_cadd(l, hdi_cscale(Lx[p], v));
+                b = hdi_cadd(b, hdi_cscale(Bx[p], v));
             }
         } else {
-            for (; p < end; p++) {
-                const hd_c64 v = x[Aj[p]];
-                l.re += Lx[p] * v.re;
-                l.im += Lx[p] * v.im;
-            }
-            m = hdi_cscale(b[i], x[i]);
+            for (; p < end; p++) l = hdi_cadd(l, hdi_cscale(Lx[p], x[Aj[p]]));
+            b = hdi_cscale(mass[i], x[i]);
         }
-        s = hdi_cadd(hdi_cscale(t, l), hdi_cmul(theta, m));
-        y[i] = s;
-        dot = hdi_cadd(dot, hdi_cmul(x[i], s));
+        y[i] = hdi_cadd(hdi_cscale(a->t, l), hdi_cmul(a->theta, b));
+        dot = hdi_cadd(dot, hdi_cmul(x[i], y[i]));
     }
     return dot;
 }
 
-/* Subtracts from z its B-mean on every component, if L 1 = 0. sums [n_components] is work. */
-static void hdi_deflate(const hd_laplacian *lap, hd_c64 *z, hd_c64 *sums) {
-    const int32_t *comp = lap->component;
+/* Takes out of r its part in B W, if L 1 = 0: mean [n_components] receives W'r relative to the masses. */
+static void hdi_deflate(const hd_laplacian *lap, hd_c64 *r, hd_c64 *mean) {
+    const int32_t n = lap->conserves ? lap->n_active : 0, *comp = lap->component;
     int32_t i;
-    if (!lap->conserves) return;
-    memset(sums, 0, (size_t)lap->n_components * sizeof *sums);
-    for (i = 0; i < lap->n_active; i++)
-        sums[comp[i]] = hdi_cadd(sums[comp[i]], hdi_cscale(lap->mass[i], z[i]));
-    for (i = 0; i < lap->n_components; i++) sums[i] = hdi_cscale(1 / lap->component_mass[i], sums[i]);
-    for (i = 0; i < lap->n_active; i++) z[i] = hdi_csub(z[i], sums[comp[i]]);
+    memset(mean, 0, (size_t)lap->n_components * sizeof *mean);
+    for (i = 0; i < n; i++) mean[comp[i]] = hdi_cadd(mean[comp[i]], r[i]);
+    for (i = 0; i < lap->n_components; i++) mean[i] = hdi_cscale(1 / lap->component_mass[i], mean[i]);
+    for (i = 0; i < n; i++) r[i] = hdi_csub(r[i], hdi_cscale(lap->mass[i], mean[comp[i]]));
 }
 
 /* Limits of an iteration, set by hand. They only matter where rounding stops the residual from falling. */
-/* |r|/|b|: below it, the level that rounding allows is computed and watched */
-#define HDI_KRYLOV_NEAR 1e-9
+#define HDI_KRYLOV_NEAR 1e-9     /* |r|/|b|: below it the level that rounding allows is watched */
 #define HDI_KRYLOV_USABLE 1e-7   /* |r|/|b|: a solution at most this bad is handed out, with a warning */
 #define HDI_KRYLOV_ASTRAY 1e3    /* a recurrence that grows by this from its best has lost its way */
+#define HDI_KRYLOV_FLOOR 0.07    /* of the bound on rounding: less than twice that is usually seen */
 enum {
-    HDI_KRYLOV_VECTORS = 8,
     HDI_KRYLOV_PATIENCE = 50,    /* steps without halving the residual, besides as many as the best took */
     HDI_KRYLOV_LOOK = 16         /* steps between looks at the progress callback */
 };
@@ -16405,12 +16147,12 @@ enum {
 typedef struct hdi_krylov {
     hdi_system a;
     const hdi_precond *m;
-    hd_solver solver;
-    const double *weight;                /* [n] 1/diag(B): the residual's norm */
-    hd_c64 *sums;                        /* [n_components] */
-    hd_c64 *spare;                       /* [n] the best x so far, kept while a round may spoil it */
+    hd_solver solver;                    /* cocg or minres */
+    const double *weight, *noise;        /* [n] 1/diag(B): the residual's norm; weights of its rounding */
+    hd_c64 *mean;                        /* [n_components] */
     hd_c64 *x, *r;                       /* [n] solution and residual */
-    hd_c64 *v[HDI_KRYLOV_VECTORS - 2];   /* [n] each, as many as the solver needs */
+    hd_c64 *best;                        /* [n] the best x so far, kept while a round may spoil it */
+    hd_c64 *v[6];                        /* [n] each, as many as the solver needs */
     double r_norm, b_norm;               /* in the norm of diag(B)^-1 */
     int64_t iterations;
     int32_t broken, ready;
@@ -16418,109 +16160,49 @@ typedef struct hdi_krylov {
     double beta, beta_old, c1, c2;
 } hdi_krylov;
 
-/* Vectors that a system under solution takes, x and r included. One more after them is work within a step. A
- * system that waits needs x alone: hdi_krylov_residual makes r again, to the last bit. */
-static int hdi_krylov_vectors(hd_solver solver) {
-    return solver == HD_SOLVER_COCG ? 3 : solver == HD_SOLVER_COCR ? 6 : 7;
+/* Vectors besides x. A system that waits needs x alone. */
+static int hdi_krylov_vectors(hd_solver solver) { return solver == HD_SOLVER_MINRES ? 8 : 4; }
+
+/* Begins at x = 0; b_norm: what residuals are reported against. */
+static void hdi_krylov_start(hdi_krylov *k, double b_norm) {
+    memset(k->x, 0, (size_t)k->a.lap->n_active * sizeof *k->x);
+    k->b_norm = b_norm;
+    k->iterations = 0;
 }
 
-/* z = M^-1 r without its constants. */
-static void hdi_krylov_precond(hdi_krylov *k, const hd_c64 *r, hd_c64 *z) {
-    hdi_precond_apply(k->m, r, z);
-    hdi_deflate(k->a.lap, z, k->sums);
-}
-
-/* r without its part in B W, and its norm. That part is rounding, which no direction can bring down. It would
- * change nothing but the means of x, which the caller sets. */
-static void hdi_krylov_measure(hdi_krylov *k) {
-    const hd_laplacian *lap = k->a.lap;
-    const int32_t n = lap->conserves ? lap->n_active : 0, *c = lap->component;
-    int32_t i;
-    memset(k->sums, 0, (size_t)lap->n_components * sizeof *k->sums);
-    for (i = 0; i < n; i++) k->sums[c[i]] = hdi_cadd(k->sums[c[i]], k->r[i]);
-    for (i = 0; i < n; i++)
-        k->r[i] = hdi_csub(k->r[i], hdi_cscale(lap->mass[i] / lap->component_mass[c[i]], k->sums[c[i]]));
-    k->r_norm = sqrt(hdi_cnorm2w(k->r, k->weight, lap->n_active));
-    k->ready = 0;
-}
-
-/* r = b - A x and its norm, computed from x. The recurrences drift away from this residual. */
+/* r = b - A x and its norm, computed from x. The recurrences drift away from this residual. The part of r in
+ * B W is rounding, which no direction can bring down. It would change nothing but the means of x, which the
+ * caller sets. */
 static void hdi_krylov_residual(hdi_krylov *k, const hd_c64 *b) {
+    const int32_t n = k->a.lap->n_active;
     int32_t i;
     hdi_system_apply(&k->a, k->x, k->r);
-    for (i = 0; i < k->a.lap->n_active; i++) k->r[i] = hdi_csub(b[i], k->r[i]);
-    hdi_krylov_measure(k);
+    for (i = 0; i < n; i++) k->r[i] = hdi_csub(b[i], k->r[i]);
+    hdi_deflate(k->a.lap, k->r, k->mean);
+    k->r_norm = sqrt(hdi_cnorm2w(k->r, k->weight, n));
+    k->ready = k->broken = 0;
 }
 
-/* A bound on what rounding contributes to the residual of x, in the same norm. Usually less than half of
- * it is seen. */
-static double hdi_krylov_noise(const hdi_krylov *k) {
+/* z = M^-1 r up to its constants, the means that k->mean receives. Returns r'z, for minres r^* z, which the
+ * constants do not change, since 1'r = 0. Rows of a component mostly follow each other. */
+static hd_c64 hdi_krylov_precond(hdi_krylov *k, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z) {
     const hd_laplacian *lap = k->a.lap;
-    const double theta = hdi_cabs(k->a.theta);
-    double sum = 0;
-    int64_t p = 0;
-    int32_t i;
-    for (i = 0; i < lap->n_active; i++) {
-        double a = theta * lap->b_diag[i];
-        for (; p < lap->L.row_ptr[i + 1]; p++) a += k->a.t * fabs(lap->L.val[p]);
-        a *= hdi_cabs(k->x[i]);                  /* first, since x is small where a is large */
-        sum += k->weight[i] * a * a;
+    const double sign = k->solver == HD_SOLVER_MINRES ? -1 : 1;
+    const int32_t *comp = lap->component;
+    hd_c64 dot = hdi_c(0, 0);
+    int32_t i = 0;
+    hdi_preconds[k->m->kind].apply(k->m, r, z);
+    memset(k->mean, 0, (size_t)lap->n_components * sizeof *k->mean);
+    while (i < lap->n_active) {
+        const int32_t c = comp[i];
+        hd_c64 sum = hdi_c(0, 0);
+        for (; i < lap->n_active && comp[i] == c; i++) {
+            dot = hdi_cadd(dot, hdi_cmul(hdi_c(r[i].re, sign * r[i].im), z[i]));
+            sum = hdi_cadd(sum, hdi_cscale(lap->mass[i], z[i]));
+        }
+        if (lap->conserves) k->mean[c] = hdi_cadd(k->mean[c], hdi_cscale(1 / lap->component_mass[c], sum));
     }
-    return DBL_EPSILON * sqrt(sum);
-}
-
-/* x += alpha p, r -= alpha q; returns the new norm of r. */
-static double hdi_krylov_step(hdi_krylov *k, hd_c64 alpha, const hd_c64 *HDI_RESTRICT p,
-                              const hd_c64 *HDI_RESTRICT q) {
-    hd_c64 *HDI_RESTRICT x = k->x, *HDI_RESTRICT r = k->r;
-    const double *HDI_RESTRICT w = k->weight;
-    const int32_t n = k->a.lap->n_active;
-    double norm = 0;
-    int32_t i;
-    for (i = 0; i < n; i++) {
-        x[i] = hdi_cadd(x[i], hdi_cmul(alpha, p[i]));
-        r[i] = hdi_csub(r[i], hdi_cmul(alpha, q[i]));
-        norm += w[i] * hdi_cabs2(r[i]);
-    }
-    return sqrt(norm);
-}
-
-/* z = M^-1 r with its constants left in; k->sums receives their B-means. Returns r'z, which the constants do
- * not change, since 1'r = 0. */
-static hd_c64 hdi_krylov_precond_dot(hdi_krylov *k, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z) {
-    const hd_laplacian *lap = k->a.lap;
-    const double *HDI_RESTRICT b = lap->mass;
-    const int32_t n = lap->n_active, *comp = lap->n_components > 1 ? lap->component : NULL;
-    hd_c64 dot = hdi_c(0, 0), mean = dot, *sums = k->sums;
-    int32_t i;
-    hdi_precond_apply(k->m, r, z);
-    memset(sums, 0, (size_t)lap->n_components * sizeof *sums);
-    for (i = 0; i < n; i++) {
-        dot = hdi_cadd(dot, hdi_cmul(r[i], z[i]));
-        if (comp) sums[comp[i]] = hdi_cadd(sums[comp[i]], hdi_cscale(b[i], z[i]));
-        else mean = hdi_cadd(mean, hdi_cscale(b[i], z[i]));
-    }
-    if (!comp) sums[0] = mean;
-    for (i = 0; i < lap->n_components; i++)
-        sums[i] = hdi_cscale(lap->conserves ? 1 / lap->component_mass[i] : 0, sums[i]);
     return dot;
-}
-
-/* p = z - its B-means in k->sums + beta p */
-static void hdi_krylov_deflated_direction(const hdi_krylov *k, hd_c64 beta, const hd_c64 *HDI_RESTRICT z,
-                                          hd_c64 *HDI_RESTRICT p) {
-    const int32_t n = k->a.lap->n_active, *comp = k->a.lap->n_components > 1 ? k->a.lap->component : NULL;
-    const hd_c64 mean = k->sums[0];
-    int32_t i;
-    for (i = 0; i < n; i++)
-        p[i] = hdi_cadd(hdi_csub(z[i], comp ? k->sums[comp[i]] : mean), hdi_cmul(beta, p[i]));
-}
-
-/* p = z + beta p */
-static void hdi_krylov_direction(hd_c64 beta, const hd_c64 *HDI_RESTRICT z, hd_c64 *HDI_RESTRICT p,
-                                 int32_t n) {
-    int32_t i;
-    for (i = 0; i < n; i++) p[i] = hdi_cadd(z[i], hdi_cmul(beta, p[i]));
 }
 
 /* A quotient of the recurrence. The method is marked as broken if it is not finite. */
@@ -16532,77 +16214,58 @@ static hd_c64 hdi_krylov_quotient(hdi_krylov *k, hd_c64 a, hd_c64 b) {
 }
 
 static void hdi_cocg_step(hdi_krylov *k) {
-    hd_c64 *p = k->v[0], *q = k->v[1], alpha, rho;
-    if (!k->ready) {
-        memset(p, 0, (size_t)k->a.lap->n_active * sizeof *p);
-        k->rho = hdi_krylov_precond_dot(k, k->r, q);
-        hdi_krylov_deflated_direction(k, hdi_c(0, 0), q, p);
-    }
-    alpha = hdi_krylov_quotient(k, k->rho, hdi_system_apply(&k->a, p, q));
+    const int32_t n = k->a.lap->n_active, *comp = k->a.lap->component;
+    hd_c64 *HDI_RESTRICT p = k->v[0], *HDI_RESTRICT q = k->v[1];
+    hd_c64 *HDI_RESTRICT x = k->x, *HDI_RESTRICT r = k->r;
+    const hd_c64 rho = hdi_krylov_precond(k, r, q);
+    hd_c64 alpha, beta = hdi_c(0, 0);
+    double norm = 0;
+    int32_t i;
+    if (k->ready) beta = hdi_krylov_quotient(k, rho, k->rho);
+    else memset(p, 0, (size_t)n * sizeof *p);
+    for (i = 0; i < n; i++) p[i] = hdi_cadd(hdi_csub(q[i], k->mean[comp[i]]), hdi_cmul(beta, p[i]));
+    alpha = hdi_krylov_quotient(k, rho, hdi_system_apply(&k->a, p, q));
     if (k->broken) return;
-    k->r_norm = hdi_krylov_step(k, alpha, p, q);
-    rho = hdi_krylov_precond_dot(k, k->r, q);    /* q is free now: z = M^-1 r */
-    hdi_krylov_deflated_direction(k, hdi_krylov_quotient(k, rho, k->rho), q, p);
+    for (i = 0; i < n; i++) {
+        x[i] = hdi_cadd(x[i], hdi_cmul(alpha, p[i]));
+        r[i] = hdi_csub(r[i], hdi_cmul(alpha, q[i]));
+        norm += k->weight[i] * hdi_cabs2(r[i]);
+    }
+    k->r_norm = sqrt(norm);
     k->rho = rho;
 }
 
-static void hdi_cocr_step(hdi_krylov *k) {
-    const int32_t n = k->a.lap->n_active;
-    hd_c64 *p = k->v[0], *q = k->v[1], *z = k->v[2], *az = k->v[3], *mq = k->v[4], alpha, rho;
-    int32_t i;
-    if (!k->ready) {
-        hdi_krylov_precond(k, k->r, z);
-        k->rho = hdi_system_apply(&k->a, z, az);
-        memcpy(p, z, (size_t)n * sizeof *p);
-        memcpy(q, az, (size_t)n * sizeof *q);
-    }
-    hdi_krylov_precond(k, q, mq);
-    alpha = hdi_krylov_quotient(k, k->rho, hdi_cdotu(q, mq, n));
-    if (k->broken) return;
-    k->r_norm = hdi_krylov_step(k, alpha, p, q);
-    for (i = 0; i < n; i++) z[i] = hdi_csub(z[i], hdi_cmul(alpha, mq[i]));
-    rho = hdi_system_apply(&k->a, z, az);
-    alpha = hdi_krylov_quotient(k, rho, k->rho);
-    hdi_krylov_direction(alpha, z, p, n);
-    hdi_krylov_direction(alpha, az, q, n);
-    k->rho = rho;
-}
-
-/* The square root of y^* M y = w^* y, where y = M^-1 w. M is real and positive definite. */
-static double hdi_minres_beta(hdi_krylov *k, const hd_c64 *w, const hd_c64 *y) {
-    const int32_t n = k->a.lap->n_active;
-    double s = 0;
-    int32_t i;
-    for (i = 0; i < n; i++) s += w[i].re * y[i].re + w[i].im * y[i].im;
+/* y = M^-1 w (v[2], v[1]) and beta, the square root of w^* y. M is real and positive definite. */
+static void hdi_minres_beta(hdi_krylov *k) {
+    const double s = hdi_krylov_precond(k, k->v[1], k->v[2]).re;
     if (!(s >= 0)) k->broken = 1;
-    return s > 0 ? sqrt(s) : 0;
+    k->beta = s > 0 ? sqrt(s) : 0;
 }
 
 /* MINRES on the Saunders process A conj(V_k) = V_(k+1) T_k: V is unitary in the geometry of M, T is complex
- * symmetric and tridiagonal with real off-diagonals. */
+ * symmetric and tridiagonal with real off-diagonals. Vectors: w_old, w, y, d, d_old, v. */
 static void hdi_minres_start(hdi_krylov *k) {
-    const int32_t n = k->a.lap->n_active;
-    hd_c64 *w_old = k->v[0], *w = k->v[1], *y = k->v[2], *d = k->v[3], *d_old = k->v[4];
-    int32_t i;
-    memcpy(w, k->r, (size_t)n * sizeof *w);
-    hdi_krylov_precond(k, w, y);
-    k->beta = hdi_minres_beta(k, w, y);
+    const size_t bytes = (size_t)k->a.lap->n_active * sizeof *k->r;
+    memset(k->v[0], 0, bytes);
+    memset(k->v[3], 0, bytes);
+    memset(k->v[4], 0, bytes);
+    memcpy(k->v[1], k->r, bytes);
+    hdi_minres_beta(k);
     k->beta_old = k->c1 = 1;
     k->phibar = hdi_c(k->beta, 0);
     k->c2 = 0;                                   /* T has no entry above its first diagonal one */
     k->s1 = k->s2 = hdi_c(0, 0);
-    for (i = 0; i < n; i++) w_old[i] = d[i] = d_old[i] = hdi_c(0, 0);
     if (k->beta == 0) k->broken = 1;
 }
 
-/* One step of the process. The direction v = conj(y)/beta goes to v[5], the next w to v[1], and the next
- * y = M^-1 w to v[2]. Returns the diagonal entry v'Av of T. */
+/* One step of the process: the direction v = conj(y)/beta, the next w, y and beta. Returns the diagonal entry
+ * v'Av of T. */
 static hd_c64 hdi_minres_extend(hdi_krylov *k) {
-    const int32_t n = k->a.lap->n_active;
+    const int32_t n = k->a.lap->n_active, *comp = k->a.lap->component;
     const double beta = k->beta;
     hd_c64 *w_old = k->v[0], *w = k->v[1], *y = k->v[2], *v = k->v[5], alpha;
     int32_t i;
-    for (i = 0; i < n; i++) v[i] = hdi_cscale(1 / beta, hdi_cconj(y[i]));
+    for (i = 0; i < n; i++) v[i] = hdi_cscale(1 / beta, hdi_cconj(hdi_csub(y[i], k->mean[comp[i]])));
     alpha = hdi_system_apply(&k->a, v, y);
     for (i = 0; i < n; i++) {                    /* w_old becomes the new w */
         const hd_c64 u = hdi_csub(y[i], hdi_cscale(beta / k->beta_old, w_old[i]));
@@ -16610,9 +16273,8 @@ static hd_c64 hdi_minres_extend(hdi_krylov *k) {
     }
     k->v[0] = w;
     k->v[1] = w_old;
-    hdi_krylov_precond(k, w_old, y);
     k->beta_old = beta;
-    k->beta = hdi_minres_beta(k, w_old, y);
+    hdi_minres_beta(k);
     return alpha;
 }
 
@@ -16620,8 +16282,8 @@ static hd_c64 hdi_minres_extend(hdi_krylov *k) {
 static void hdi_minres_step(hdi_krylov *k) {
     const int32_t n = k->a.lap->n_active;
     const hd_c64 *v = k->v[5];
-    hd_c64 *d = k->v[3], *d_old = k->v[4], alpha, eps, delta, gbar, gamma, phi, s;
-    double dbar, size, c;
+    hd_c64 *d = k->v[3], *d_old = k->v[4], alpha, eps, delta, gbar, inverse, phi, psi, s;
+    double dbar, size, c, norm = 0;
     int32_t i;
     if (!k->ready) hdi_minres_start(k);
     if (k->broken) return;
@@ -16630,42 +16292,33 @@ static void hdi_minres_step(hdi_krylov *k) {
     dbar = k->c2 * k->beta_old;
     delta = hdi_cadd(hdi_c(k->c1 * dbar, 0), hdi_cmul(k->s1, alpha));
     gbar = hdi_csub(hdi_cscale(k->c1, alpha), hdi_cscale(dbar, hdi_cconj(k->s1)));
-    size = hypot(hdi_cabs(gbar), k->beta);
+    c = hdi_cabs(gbar);
+    size = hypot(c, k->beta);
     if (size == 0) {
         k->broken = 1;
         return;
     }
-    c = hdi_cabs(gbar) / size;
-    gamma = hdi_cabs(gbar) > 0 ? hdi_cscale(size / hdi_cabs(gbar), gbar) : hdi_c(size, 0);
-    s = hdi_cscale(k->beta / (size * size), gamma);
+    s = c > 0 ? hdi_cscale(1 / c, gbar) : hdi_c(1, 0);   /* gamma/size */
+    inverse = hdi_cscale(1 / size, hdi_cconj(s));        /* 1/gamma */
+    s = hdi_cscale(k->beta / size, s);
+    c /= size;
     phi = hdi_cscale(c, k->phibar);
     k->phibar = hdi_cscale(-1, hdi_cmul(hdi_cconj(s), k->phibar));
+    psi = hdi_cscale(k->beta > 0 ? c / k->beta : 0, k->phibar);
     for (i = 0; i < n; i++) {
         const hd_c64 u = hdi_csub(hdi_csub(v[i], hdi_cmul(delta, d[i])), hdi_cmul(eps, d_old[i]));
-        d_old[i] = hdi_cdiv(u, gamma);
+        d_old[i] = hdi_cmul(u, inverse);
         k->x[i] = hdi_cadd(k->x[i], hdi_cmul(phi, d_old[i]));
+        k->r[i] = hdi_cadd(hdi_cscale(hdi_cabs2(s), k->r[i]), hdi_cmul(psi, k->v[1][i]));
+        norm += k->weight[i] * hdi_cabs2(k->r[i]);
     }
     k->v[3] = d_old;
     k->v[4] = d;
-    phi = hdi_cscale(k->beta > 0 ? c / k->beta : 0, k->phibar);
-    for (i = 0; i < n; i++)
-        k->r[i] = hdi_cadd(hdi_cscale(hdi_cabs2(s), k->r[i]), hdi_cmul(phi, k->v[1][i]));
-    k->r_norm = sqrt(hdi_cnorm2w(k->r, k->weight, n));
+    k->r_norm = sqrt(norm);
     k->c2 = k->c1;
     k->s2 = k->s1;
     k->c1 = c;
     k->s1 = s;
-}
-
-/* Begins at x = 0. The residual is reported against b_norm. */
-static void hdi_krylov_start(hdi_krylov *k, const hd_c64 *b, double b_norm) {
-    const size_t bytes = (size_t)k->a.lap->n_active * sizeof *k->x;
-    memset(k->x, 0, bytes);
-    memcpy(k->r, b, bytes);
-    hdi_krylov_measure(k);
-    k->b_norm = b_norm;
-    k->iterations = 0;
-    k->broken = 0;
 }
 
 /* How a running solver reports progress and learns that it shall stop. */
@@ -16692,24 +16345,23 @@ static double hdi_krylov_done(double start, double now, double target) {
 }
 
 /* Iterates until the recurrence says |r| <= target, or until it gains no more. Near the level of rounding it
- * ends at floor_share times hdi_krylov_noise, since recurrences go astray below. start: |r| at the beginning,
- * for progress. left: steps allowed, counted down. */
+ * ends at floor_share times the bound on it, since recurrences go astray below. start: |r| at the beginning,
+ * for progress. most: iterations in all. */
 static hd_status hdi_krylov_round(hdi_krylov *k, double target, double floor_share, double start,
-                                  int64_t *left,
-                                  const hdi_watch *watch, hd_error *e) {
+                                  int64_t most, const hdi_watch *watch, hd_error *e) {
     double best = k->r_norm, least = target;
     int64_t step, best_step = 0;
     int near_rounding = 0;
-    for (step = 1; k->r_norm > least && !k->broken && *left > 0; step++, --*left) {
+    for (step = 1; k->r_norm > least && !k->broken && k->iterations < most; step++) {
         if (!near_rounding && k->r_norm < HDI_KRYLOV_NEAR * k->b_norm) {
             near_rounding = 1;
-            least = hdi_max(target, floor_share * hdi_krylov_noise(k));
+            least = hdi_max(target,
+                            floor_share * sqrt(hdi_cnorm2w(k->x, k->noise, k->a.lap->n_active)));
         }
         if (step % HDI_KRYLOV_LOOK == 1 &&
             hdi_watch_look(watch, hdi_krylov_done(start, k->r_norm, target), e) < 0) return e->status;
-        if (k->solver == HD_SOLVER_COCG) hdi_cocg_step(k);
-        else if (k->solver == HD_SOLVER_COCR) hdi_cocr_step(k);
-        else hdi_minres_step(k);
+        if (k->solver == HD_SOLVER_MINRES) hdi_minres_step(k);
+        else hdi_cocg_step(k);
         if (!hdi_finite(k->r_norm)) k->broken = 1;
         k->ready = 1;
         k->iterations += !k->broken;
@@ -16731,30 +16383,25 @@ static hd_status hdi_krylov_run(hdi_krylov *k, const hd_c64 *b, double target, i
                                 const hdi_watch *watch, hd_error *e) {
     const size_t bytes = (size_t)k->a.lap->n_active * sizeof *k->x;
     const double start = k->r_norm;
-    double before = k->r_norm, floor_share = 0.5;
-    int64_t left = max_iterations;
+    double before, floor_share = HDI_KRYLOV_FLOOR;
     if (!hdi_finite(start))
         return hdi_fail(e, HD_ERR_BREAKDOWN, "iterations leave the range of doubles: masses are too small");
-    while (k->r_norm > target) {
-        memcpy(k->spare, k->x, bytes);
-        if (hdi_krylov_round(k, target, floor_share, start, &left, watch, e) < 0) return e->status;
+    for (; k->r_norm > target; floor_share /= 4) {
+        before = k->r_norm;
+        memcpy(k->best, k->x, bytes);
+        if (hdi_krylov_round(k, target, floor_share, start, max_iterations, watch, e) < 0) return e->status;
         hdi_krylov_residual(k, b);               /* the recurrence says done: only x itself can confirm it */
         if (k->r_norm <= target) return HD_OK;
-        if (left <= 0)
+        if (k->iterations >= max_iterations)
             return hdi_fail(e, HD_ERR_NOT_CONVERGED,
                             "the iteration did not reach the tolerance in max_iterations steps");
-        if (!(k->r_norm <= before / 2)) {
-            if (!(k->r_norm <= before)) {
-                memcpy(k->x, k->spare, bytes);
-                hdi_krylov_residual(k, b);
-            }
-            if (k->r_norm <= HDI_KRYLOV_USABLE * k->b_norm) return HD_WARN_ACCURACY;
-            return hdi_fail(e, HD_ERR_BREAKDOWN,
-                            "the iteration broke down: no step brings the residual down");
+        if (k->r_norm <= before / 2) continue;
+        if (!(k->r_norm <= before)) {
+            memcpy(k->x, k->best, bytes);
+            hdi_krylov_residual(k, b);
         }
-        before = k->r_norm;
-        floor_share /= 4;
-        k->broken = 0;
+        if (k->r_norm <= HDI_KRYLOV_USABLE * k->b_norm) return HD_WARN_ACCURACY;
+        return hdi_fail(e, HD_ERR_BREAKDOWN, "the iteration broke down: no step brings the residual down");
     }
     return HD_OK;
 }
@@ -18840,16 +18487,16 @@ static int hdi_family_turns(const hdi_family *fam) { return fam->n_values < fam-
 
 /* Room for the preconditioners of the set. */
 static hd_status hdi_family_room(hdi_family *fam, hd_error *e) {
-    const uint64_t n = (uint64_t)fam->lap->n_active, upper = (uint64_t)fam->up->ptr[n];
-    const uint64_t size =
-        fam->precond == HD_PRECOND_NONE ? 0 : fam->precond == HD_PRECOND_JACOBI ? n : n + upper;
+    const hdi_precond_row *row = hdi_preconds + fam->precond;
+    const uint64_t n = (uint64_t)(row->rows * fam->up->n);
+    const uint64_t upper = (uint64_t)(row->entries * fam->up->ptr[fam->up->n]), size = n + upper + 1;
     int32_t i, room = fam->set.n_poles;
     if (fam->n_values < room) {
         hdi_family_free(fam);
-        fam->values = HDI_NEW(fam->ctx, hd_c64, (uint64_t)room * (size + 1), e);
+        fam->values = HDI_NEW(fam->ctx, hd_c64, (uint64_t)room * size, e);
         if (room > 1 && hdi_over_limit(fam->ctx, e)) {
             hdi_error_clear(e);
-            fam->values = HDI_NEW(fam->ctx, hd_c64, size + 1, e);
+            fam->values = HDI_NEW(fam->ctx, hd_c64, size, e);
             room = 1;
         }
         if (!fam->values) return e->status;
@@ -18858,25 +18505,21 @@ static hd_status hdi_family_room(hdi_family *fam, hd_error *e) {
     for (i = 0; i < fam->set.n_poles; i++) {
         fam->m[i].kind = fam->precond;
         fam->m[i].up = fam->up;
-        fam->m[i].d_inv = size ? fam->values + (hdi_family_turns(fam) ? 0 : (size_t)i * (size + 1)) : NULL;
-        fam->m[i].u = size > n ? fam->m[i].d_inv + n : NULL;
+        fam->m[i].d = fam->values + (hdi_family_turns(fam) ? 0 : (size_t)i * size);
+        fam->m[i].u = upper ? fam->m[i].d + n : NULL;
     }
     return HD_OK;
 }
 
-/* Complex numbers of work that a preconditioner takes: n of them, and n integers. */
-static uint64_t hdi_fill_work(uint64_t n) { return n + (n + 1) / 2; }
-
-/* Makes the preconditioner of pole p. */
+/* Makes the preconditioner of pole p. work [n] */
 static void hdi_family_make(const hdi_family *fam, int32_t p, hd_c64 *work) {
-    hdi_precond m = fam->m[p];
     hdi_system a;
     a.lap = fam->lap;
     a.t = fam->t;
     a.theta = fam->set.theta[p];
     /* real, positive definite */
     if (fam->solver == HD_SOLVER_MINRES) a.theta = hdi_c(hdi_cabs(a.theta), 0);
-    hdi_precond_make(&m, &a, work, (int64_t *)(void *)(work + fam->lap->n_active));
+    hdi_precond_make(fam->m + p, &a, work);
 }
 
 typedef struct hdi_fill_job {
@@ -18886,12 +18529,11 @@ typedef struct hdi_fill_job {
 
 static void hdi_fill_task(void *arg, int64_t index, int32_t worker) {
     const hdi_fill_job *job = (const hdi_fill_job *)arg;
-    const uint64_t stride = hdi_fill_work((uint64_t)job->fam->lap->n_active);
     (void)worker;
-    hdi_family_make(job->fam, (int32_t)index, job->work + stride * (size_t)index);
+    hdi_family_make(job->fam, (int32_t)index, job->work + index * job->fam->lap->n_active);
 }
 
-/* Makes the preconditioners, one parallel task each. work: [hdi_fill_work] for each of them. */
+/* Makes the preconditioners, one parallel task each. work [n] for each of them. */
 static hd_status hdi_family_fill(hdi_family *fam, hd_c64 *work, hd_error *e) {
     hdi_fill_job job;
     if (fam->filled) return HD_OK;
@@ -19025,21 +18667,20 @@ static hd_status hdi_lane_lanczos(hdi_lane *lane, const hd_laplacian *lap, int32
 }
 
 /* Room for the systems of a set: b, the vectors that all systems share, as they run one after the other, x of
- * each, sums, and inner products. The whole of it serves to make preconditioners before. The last two of
- * those shared are the lane's work between solves. What the lane held is lost. */
+ * each, means, and inner products. The whole of it serves to make preconditioners before. Two of those shared
+ * are the lane's work between solves. What the lane held is lost. */
 static hd_status hdi_lane_systems_make(hdi_lane *lane, const hdi_family *fam, hd_error *e) {
     const uint64_t n = (uint64_t)fam->lap->n_active, count = (uint64_t)fam->set.n_poles;
-    const uint64_t shared = (uint64_t)hdi_krylov_vectors(fam->solver) + 1;
+    const uint64_t shared = (uint64_t)hdi_krylov_vectors(fam->solver);
     const uint64_t vectors = (1 + shared + count) * n + (uint64_t)fam->lap->n_components;
     const uint64_t size = vectors + count * (sizeof(hdi_gram) / sizeof(hd_c64));
-    const uint64_t fill = count * hdi_fill_work(n);
     hdi_free(fam->ctx, lane->f);
     hdi_free(fam->ctx, lane->b);
     hdi_free(fam->ctx, lane->k);
     lane->b = NULL;
     lane->k = NULL;
     lane->f = HDI_NEW(fam->ctx, double, 3 * n, e);
-    if (lane->f) lane->b = HDI_NEW(fam->ctx, hd_c64, size > fill ? size : fill, e);
+    if (lane->f) lane->b = HDI_NEW(fam->ctx, hd_c64, size, e);
     if (lane->b) lane->k = HDI_NEW(fam->ctx, hdi_krylov, count + 1, e);
     if (!lane->k) {
         hdi_lane_free(lane, fam->ctx);
@@ -19055,26 +18696,25 @@ static hd_status hdi_lane_systems_make(hdi_lane *lane, const hdi_family *fam, hd
 
 /* The systems of a set, and their constants. */
 static hd_status hdi_lane_systems(hdi_lane *lane, const hdi_family *fam, hd_error *e) {
-    const uint64_t n = (uint64_t)fam->lap->n_active;
-    const int n_vec = hdi_krylov_vectors(fam->solver);
-    int32_t i;
-    int j;
+    const int64_t n = fam->lap->n_active;
+    const int32_t shared = hdi_krylov_vectors(fam->solver);
+    int32_t i, j;
     if ((!lane->k || lane->n_systems < fam->set.n_poles) && hdi_lane_systems_make(lane, fam, e) < 0)
         return e->status;
     for (i = 0; i < fam->set.n_poles; i++) {
         hdi_krylov *k = lane->k + i;
-        hd_c64 *v = lane->b + n;
         memset(k, 0, sizeof *k);
-        k->r = v;
-        for (j = 0; j < n_vec - 1; j++) k->v[j] = v += n;
-        k->spare = v += n;
-        k->x = v += n * (uint64_t)(i + 1);
-        k->sums = lane->b + n * (uint64_t)(n_vec + 2 + lane->n_systems);
+        k->r = lane->b + n;
+        k->best = k->r + n;
+        for (j = 0; j + 2 < shared; j++) k->v[j] = k->best + n * (j + 1);
+        k->x = k->r + n * (shared + i);
+        k->mean = k->r + n * (shared + lane->n_systems);
         k->a.lap = fam->lap;
         k->a.t = fam->t;
         k->a.theta = fam->set.theta[i];
         k->solver = fam->solver;
         k->weight = fam->weight;
+        k->noise = fam->noise;
         k->m = fam->m + i;
     }
     return HD_OK;
@@ -19236,17 +18876,17 @@ static hd_status hdi_lane_run(hdi_lane *lane, const hdi_family *fam, int fresh, 
         const double fair = hdi_max(left / (p + 1), 0.1 * aim / n_poles);
         const double share = weight > 0 ? fair / weight : DBL_MAX;
         const double target = share * sqrt(fam->lap->b_ratio) * hdi_pole_distance(fam->set.theta[p]);
-        const int runs = fresh || k->r_norm > target;
+        const int runs = fresh || k->r_norm > target, warm = fresh && p < last && b_norm > 0;
         if (runs && hdi_family_turns(fam)) hdi_family_make(fam, p, k->r);
-        if (fresh) hdi_krylov_start(k, lane->b, b_norm);
-        else if (runs) hdi_krylov_residual(k, lane->b);
-        if (fresh && p < last && b_norm > 0) {
-            hdi_warm_start(lane, fam, p, last, gram);
+        if (fresh) hdi_krylov_start(k, b_norm);
+        if (warm) hdi_warm_start(lane, fam, p, last, gram);
+        if (runs) hdi_krylov_residual(k, lane->b);
+        if (warm && !(k->r_norm < b_norm)) {
+            hdi_krylov_start(k, b_norm);
             hdi_krylov_residual(k, lane->b);
-            if (!(k->r_norm < b_norm)) hdi_krylov_start(k, lane->b, b_norm);
         }
         part.from = watch->from + part.share * (n_poles - 1 - p);
-        status = hdi_krylov_run(k, lane->b, target, fam->max_iterations - k->iterations, &part, e);
+        status = hdi_krylov_run(k, lane->b, target, fam->max_iterations, &part, e);
         if (status < 0) {
             if (status == HD_ERR_NOT_CONVERGED) e->value = k->r_norm / k->b_norm;
             if (status != HD_ERR_CANCELLED) e->pole = p;
@@ -23635,9 +23275,10 @@ static hd_status hdi_heat_seats(hd_heat *heat, int32_t n, hd_error *e) {
 
 static void hdi_heat_free_iterative(hd_heat *heat) {
     hdi_family_free(&heat->fam);
-    hdi_upper_free(heat->ctx, &heat->up);
+    hdi_free(heat->ctx, heat->up.ptr);
     hdi_free(heat->ctx, heat->weight);
     hdi_laplacian_free(heat->lap, heat->ctx);
+    heat->up.ptr = NULL;
     heat->weight = NULL;
     heat->lap = NULL;
 }
@@ -23662,9 +23303,7 @@ static hd_status hdi_heat_iterative(hd_heat *heat, hd_error *e) {
     heat->fam.lap = heat->lap;
     heat->fam.up = &heat->up;
     heat->fam.weight = heat->weight;
-    heat->fam.solver = HD_SOLVER_COCG;
-    if (heat->opts.solver == HD_SOLVER_COCR || heat->opts.solver == HD_SOLVER_MINRES)
-        heat->fam.solver = heat->opts.solver;
+    heat->fam.solver = heat->opts.solver == HD_SOLVER_MINRES ? HD_SOLVER_MINRES : HD_SOLVER_COCG;
     heat->fam.precond = heat->opts.precond;
     heat->fam.max_iterations = heat->opts.max_iterations;
     return e->status;
@@ -23763,7 +23402,7 @@ static hd_status hdi_solve_rhs(const hd_laplacian *lap, const hd_c64 *rhs, int *
 static double hdi_shifted_load(const hd_heat *heat, const hd_c64 *rhs, int exponent, hd_c64 theta,
                                hdi_lane *lane, hd_c64 *x) {
     const hd_laplacian *lap = heat->lap;
-    hd_c64 *sums = lane->k->sums;
+    const hd_c64 *mean = lane->k->mean;
     double norm;
     int32_t i, v;
     for (i = 0; i < lap->n_active; i++) {
@@ -23771,17 +23410,9 @@ static double hdi_shifted_load(const hd_heat *heat, const hd_c64 *rhs, int expon
         lane->b[i] = hdi_c(ldexp(r.re, -exponent), ldexp(r.im, -exponent));
     }
     norm = sqrt(hdi_cnorm2w(lane->b, heat->weight, lap->n_active));
-    memset(sums, 0, (size_t)lap->n_components * sizeof *sums);
+    hdi_deflate(lap, lane->b, lane->k->mean);
     for (v = 0; v < lap->n; v++) x[v] = hdi_c(0, 0);
-    if (!lap->conserves) return norm;
-    for (i = 0; i < lap->n_active; i++)
-        sums[lap->component[i]] = hdi_cadd(sums[lap->component[i]], lane->b[i]);
-    for (i = 0; i < lap->n_components; i++) sums[i] = hdi_cscale(1 / lap->component_mass[i], sums[i]);
-    for (i = 0; i < lap->n_active; i++) {
-        const hd_c64 mean = sums[lap->component[i]];
-        lane->b[i] = hdi_csub(lane->b[i], hdi_cscale(lap->mass[i], mean));
-        x[lap->vertex[i]] = hdi_cdiv(mean, theta);
-    }
+    for (i = 0; i < lap->n_active; i++) x[lap->vertex[i]] = hdi_cdiv(mean[lap->component[i]], theta);
     return norm;
 }
 
@@ -23801,12 +23432,16 @@ static hd_status hdi_shifted_prepare(hd_heat *heat, double t, hd_c64 theta, hd_e
 
 #define HDI_TOL_SOLVE 1e-10
 
+static int hdi_solver_known(hd_solver s) {
+    return s == HD_SOLVER_AUTO || s == HD_SOLVER_COCG || s == HD_SOLVER_MINRES || s == HD_SOLVER_LANCZOS;
+}
+
 static hd_status hdi_solve_check(double t, hd_c64 theta, const hd_solve_opts *o, hd_error *e) {
     hdi_refuse_value(!hdi_finite(t) || t < 0, "solve: t is negative or not finite", t, e);
     hdi_refuse(!hdi_cfinite(theta) || (theta.im == 0 && theta.re <= 0),
                "solve: theta lies on (-inf, 0] or is not finite", e);
-    hdi_refuse(o->solver < HD_SOLVER_AUTO || o->solver > HD_SOLVER_MINRES,
-               "solve: the solver is cocg, cocr or minres", e);
+    hdi_refuse(!hdi_solver_known(o->solver) || o->solver == HD_SOLVER_LANCZOS,
+               "solve: the solver is cocg or minres", e);
     hdi_refuse(o->precond < HD_PRECOND_AUTO || o->precond > HD_PRECOND_MILDL, "solve: unknown preconditioner",
                e);
     hdi_refuse(!hdi_finite(o->tol) || o->tol < 0 || o->tol >= 1, "solve: tol is not in [0, 1)", e);
@@ -23835,7 +23470,8 @@ static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const 
     watch.share = 1;
     watch.stage = "solve";
     b_norm = hdi_shifted_load(heat, rhs, exponent, theta, lane, x);
-    hdi_krylov_start(k, lane->b, b_norm);
+    hdi_krylov_start(k, b_norm);
+    hdi_krylov_residual(k, lane->b);
     status = hdi_krylov_run(k, lane->b, tol * b_norm, heat->fam.max_iterations, &watch, e);
     for (i = 0; i < lap->n_active; i++) x[lap->vertex[i]] = k->x[i] = hdi_cadd(x[lap->vertex[i]], k->x[i]);
     if (report) {
@@ -23947,7 +23583,6 @@ static double hdi_lanczos_steps(const hd_heat *heat, double t) {
 
 /* Of all poles together. Solutions at hand give a good start: twice the poles do not take twice as many. */
 static double hdi_cocg_steps(const hd_heat *heat, double t, int32_t poles) {
-    static const double hdi_steps_of[] = {1, 5.5, 5, 2, 1.4, 1};   /* by hd_precond */
     const hdi_steps_scales *s = &heat->scales;
     const hd_laplacian *lap = heat->source;
     const double wide = hdi_max(1, (double)lap->L.nnz / (7.0 * lap->n_active));
@@ -23955,7 +23590,7 @@ static double hdi_cocg_steps(const hd_heat *heat, double t, int32_t poles) {
     double one = HDI_COCG_GROWTH * pow(bounded * s->local / pow(wide, HDI_COCG_WIDE), HDI_COCG_POWER);
     one += 1 + (lap->B ? HDI_COCG_FULL_B : 0);
     one *= exp(HDI_COCG_OBTUSE * s->obtuse * s->obtuse) * hdi_steps_digits(heat);
-    one *= heat->opts.solver == HD_SOLVER_MINRES ? 3.5 : hdi_steps_of[heat->opts.precond];
+    one *= heat->opts.solver == HD_SOLVER_MINRES ? 3.5 : hdi_preconds[heat->opts.precond].steps;
     return hdi_min(one * sqrt(5.0 * poles), (double)heat->opts.max_iterations * poles);
 }
 
@@ -23994,7 +23629,7 @@ static hdi_work hdi_cocg_work(const hd_heat *heat, double t, int32_t poles, doub
     const hd_laplacian *lap = heat->source;
     const double nnz = (double)lap->L.nnz, n = lap->n_active, full = lap->B ? 1.2 : 1;
     const int made = heat->fam.filled && heat->fam.t == t;
-    const int plain = heat->opts.precond == HD_PRECOND_NONE || heat->opts.precond == HD_PRECOND_JACOBI;
+    const int plain = !hdi_preconds[heat->opts.precond].entries;
     hdi_work w;
     w.steps = hdi_cocg_steps(heat, t, poles);
     w.flops = k * w.steps * ((lap->B ? 8 : 4) * nnz + (plain ? 0 : 8 * nnz) + 40 * n);
@@ -26697,7 +26332,7 @@ static void hdi_heat_built(const hd_heat_opts *o, hd_error *e) {
 static hd_status hdi_heat_check(const hd_heat_opts *o, hd_error *e) {
     const int from_two = o->poles == HD_POLES_KERNEL || o->poles == HD_POLES_DIAGONAL;
     hdi_refuse(o->method < HD_METHOD_AUTO || o->method > HD_METHOD_KRYLOV, "heat: unknown method", e);
-    hdi_refuse(o->solver < HD_SOLVER_AUTO || o->solver > HD_SOLVER_LANCZOS, "heat: unknown solver", e);
+    hdi_refuse(!hdi_solver_known(o->solver), "heat: unknown solver", e);
     hdi_refuse(o->precond < HD_PRECOND_AUTO || o->precond > HD_PRECOND_MILDL, "heat: unknown preconditioner",
                e);
     hdi_refuse(o->poles != HD_POLES_DIAGONAL && (o->poles < HD_POLES_DEFAULT || o->poles > HD_POLES_KERNEL),
@@ -30091,17 +29726,14 @@ static int hdi_estimate_open(const hdi_estimate *x) {
 static double hdi_bytes_iterative(const hd_heat *heat, double t, int32_t k, int32_t poles) {
     const double n = heat->source->n_active, nnz = (double)heat->source->L.nnz;
     const double lanes = hdi_low32(k, HDI_LANES_ITERATIVE);
-    const int vectors = hdi_krylov_vectors(heat->opts.solver == HD_SOLVER_MINRES ? HD_SOLVER_MINRES
-                                           : HD_SOLVER_COCG);
+    const hdi_precond_row *row = hdi_preconds + heat->opts.precond;
     double bytes = HDI_ESTIMATE_SMALL;
     if (!heat->lap) bytes += nnz * (heat->source->B ? 20 : 12) + 36 * n + 4.0 * heat->source->n;
     if (!heat->weight) bytes += 8 * n + 4 * (nnz - n) / 2 + 32 * n;
     if (hdi_heat_choose(heat, t) == HD_SOLVER_LANCZOS)
         return bytes + lanes * (80 * n + 88.0 * hdi_lanczos_most(t, heat->lambda_max));
-    /* hdi_lane_systems_make: the vectors, or if they are more the room to make preconditioners */
-    bytes += lanes * (24 * n + 16 * hdi_max((2 + vectors + poles) * n, 1.5 * poles * n));
-    if (heat->opts.precond == HD_PRECOND_NONE) return bytes;
-    return bytes + 16.0 * poles * (heat->opts.precond == HD_PRECOND_JACOBI ? n : n + (nnz - n) / 2);
+    bytes += lanes * (24 + 16.0 * (1 + hdi_krylov_vectors(heat->opts.solver) + poles)) * n;
+    return bytes + 16.0 * poles * (row->rows * n + row->entries * (nnz - n) / 2);
 }
 
 /* Bytes and flops of shift-and-invert Lanczos. Bases that exist are grown. */

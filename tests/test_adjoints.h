@@ -18,7 +18,7 @@
     ADJ_EVERY(pairs, " query=adjoint field=random|smooth|delta th=0.1|1 k=3 times=2 span=5", bound, sets), \
     ADJ_EVERY(pairs, " query=derivative|adjoint t=0|1e-25 field=random|smooth", 1e-11, 1e-11), \
     {pairs " query=derivative field=level th=0.1|1 method=auto|direct|iterative seed=10|20|30|40", 0, 0, faint}, \
-    {pairs " query=derivative field=level th=0.1|1 method=iterative solver=cocr|minres|lanczos seed=10|20|30|40", 0, 0, faint}
+    {pairs " query=derivative field=level th=0.1|1 method=iterative solver=cocg|minres|lanczos seed=10|20|30|40", 0, 0, faint}
 
 #define ADJ_DRAIN "shape=drain/12/1e-3 op=heavy12|heavy16|heavy20 query=adjoint field=delta t=60 seed=1|2|3|4"
 

@@ -724,7 +724,7 @@ natural or dirichlet :: info ico.obj --border neumann
 --solver takes :: {kernel ico.obj --source 0|diffuse ico.obj --input f.txt} --t 1 --method {krylov|direct} --solver {cocg|lanczos}
 --precond takes :: {kernel ico.obj --source 0|diffuse ico.obj --input f.txt} --t 1 --method {krylov|direct} --precond ildl
 --ordering takes :: {kernel ico.obj --source 0|diffuse ico.obj --input f.txt} --t 1 --method iterative --ordering amd
---ordering takes :: {kernel ico.obj --source 0|diffuse ico.obj --input f.txt} --t 1 --solver cocr --ordering dissection
+--ordering takes :: {kernel ico.obj --source 0|diffuse ico.obj --input f.txt} --t 1 --solver minres --ordering dissection
 --t :: {hks ico.obj|distance ico.obj --source 0|pairs ico.obj --input p.txt|sample ico.obj --count 2}
 --method takes auto or direct :: {hks ico.obj|distance ico.obj --source 0|sample ico.obj --count 2} --t 1 --method {krylov|iterative}
 --solver :: {hks ico.obj|distance ico.obj --source 0|sample ico.obj --count 2} --t 1 --solver cocg
@@ -741,7 +741,7 @@ TAKEN = table("""
 kernel ico.obj --source 0 --t 1 --degree 1 --poles uniform
 kernel ico.obj --source 0 --t 1 --method direct {--degree 9 --poles kernel|--ordering amd}
 kernel ico.obj --source 0 --t 1 --method krylov {--ordering dissection|--tol 1e-6}
-kernel ico.obj --source 0 --t 1 {--ordering amd|--method auto --solver cocr|--method iterative --ordering auto|--simd none}
+kernel ico.obj --source 0 --t 1 {--ordering amd|--method auto --solver minres|--method iterative --ordering auto|--simd none}
 kernel {patch-9.off|ico.obj} --source 0 --t {auto:1,2h2|auto:17}
 diffuse ico.obj --t 1 --input ones-12.txt --degree 1 --method direct
 pairs ico.obj --input p.txt --t 1 --method krylov
@@ -1376,7 +1376,7 @@ kernel five.obj --source 1 --t 0.3 --laplacian {fem|voronoi-cot|cot} :: kernel f
 kernel ico.obj --source 3 --t 2h2 --laplacian polygon --lambda {0.1|1|10} :: \
     kernel ico.obj --source 3 --t 2h2 --laplacian voronoi-cot :: 1e-7
 kernel ico.obj --source 0,1 --t 1,2 {--degree 13|--poles uniform|--precond ildl} :: kernel ico.obj --source 0,1 --t 1,2 :: 1e-6
-kernel patch-9.off --source 11 --t 8h2 --solver {cocg|cocr|minres|lanczos} --precond {none|jacobi|ssor|ildl|mildl} :: \
+kernel patch-9.off --source 11 --t 8h2 --solver {cocg|minres|lanczos} --precond {none|jacobi|ssor|ildl|mildl} :: \
     kernel patch-9.off --source 11 --t 8h2 --tol 1e-12 :: 1e-7
 kernel patch-9.off --source 11 --t 8h2 --method iterative --poles {uniform|kernel} :: \
     kernel patch-9.off --source 11 --t 8h2 --tol 1e-12 :: 1e-7
@@ -1798,8 +1798,8 @@ kernel book.obj --tufted --source 0 --t 0.1 :: intrinsic=tufted sheets=2 mass_dr
 kernel square-12.obj --border dirichlet --source 30 --t 0.02 :: held=48 inert=0 mass_drift=0
 hks square-12.obj --filter wave:5,0.4 :: filter=wave:5,0.4 poles=filter times#0 filter_error<1.1e-10 error_rational>0
 info squashed.obj --lengths sides-98.txt :: lengths=sides-98.txt box_low!
-diffuse patch-9.off --input ones-100.txt --t 2 --poles uniform --degree 7 --solver cocr --precond ssor :: \
-    poles=uniform degree=7 solver=cocr precond=ssor
+diffuse patch-9.off --input ones-100.txt --t 2 --poles uniform --degree 7 --solver cocg --precond ssor :: \
+    poles=uniform degree=7 solver=cocg precond=ssor
 kernel torus-40-24.obj --source 9 --t 30h2 --method direct --poles kernel --degree 13 :: poles=kernel degree=13
 kernel torus-40-24.obj --source 9 --t 30h2 {--degree 9|--poles kernel} :: method=direct/iterative
 hks torus-40-24.obj --t 10h2 --method direct --poles uniform --degree 14 :: poles=uniform degree=14

@@ -819,10 +819,10 @@ static void eng_choice(void) {
         CHECK(eng_chosen(fem, &o, 5 * hh, 1, 20, NULL) != HD_METHOD_KRYLOV);
         CHECK(eng_chosen(fem, &o, 300 * hh, 64, 0, NULL) == HD_METHOD_DIRECT);
     }
-    for (k = 0; k < 6; k++) {                    /* nor solvers and preconditioners */
+    for (k = 0; k < 5; k++) {                    /* nor solvers and preconditioners */
         o = none;
-        if (k < 4) o.solver = k == 0 ? HD_SOLVER_COCG : k == 1 ? HD_SOLVER_COCR : k == 2 ? HD_SOLVER_MINRES : HD_SOLVER_LANCZOS;
-        else o.precond = k == 4 ? HD_PRECOND_JACOBI : HD_PRECOND_MILDL;
+        if (k < 3) o.solver = k == 0 ? HD_SOLVER_COCG : k == 1 ? HD_SOLVER_MINRES : HD_SOLVER_LANCZOS;
+        else o.precond = k == 3 ? HD_PRECOND_JACOBI : HD_PRECOND_MILDL;
         CHECK(eng_chosen(fem, &o, 3 * hh, 8, 0, "asked") == HD_METHOD_ITERATIVE);
         CHECK(eng_chosen(fem, &o, hh, 1, 4, "asked") == HD_METHOD_ITERATIVE);
     }

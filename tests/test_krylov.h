@@ -3,7 +3,7 @@
 #ifndef TEST_KRYLOV_H
 #define TEST_KRYLOV_H
 
-static const hd_solver kry_solvers[3] = {HD_SOLVER_COCG, HD_SOLVER_COCR, HD_SOLVER_MINRES};
+static const hd_solver kry_solvers[2] = {HD_SOLVER_COCG, HD_SOLVER_MINRES};
 static const hd_precond kry_preconds[5] = {HD_PRECOND_NONE, HD_PRECOND_JACOBI, HD_PRECOND_SSOR, HD_PRECOND_ILDL, HD_PRECOND_MILDL};
 
 /* Poles on both sides, some nearly imaginary, some far from the axis: a stray conjugate cannot hide. */
@@ -103,14 +103,14 @@ static void kry_all(const hd_laplacian *lap, double unit, const char *what) {
     static const double times[3] = {0.4, 25, 3000};
     hd_c64 *rhs = KIT_NEW(hd_c64, lap->n), *want = KIT_NEW(hd_c64, lap->n);
     int i;
-    for (i = 0; i < 18 * 15; i++) {              /* times, shifts; solvers, preconditioners */
-        const double t = times[i / 90] * unit;
-        const hd_c64 theta = kry_thetas[i / 15 % 6];
-        if (i % 15 == 0) {
+    for (i = 0; i < 18 * 10; i++) {              /* times, shifts; solvers, preconditioners */
+        const double t = times[i / 60] * unit;
+        const hd_c64 theta = kry_thetas[i / 10 % 6];
+        if (i % 10 == 0) {
             kry_random(lap, (uint64_t)(1 + i), rhs);
             kry_dense(lap, t, theta, rhs, want);
         }
-        kry_one(lap, t, theta, rhs, want, kry_solvers[i / 5 % 3], kry_preconds[i % 5], what);
+        kry_one(lap, t, theta, rhs, want, kry_solvers[i / 5 % 2], kry_preconds[i % 5], what);
     }
 }
 
@@ -159,7 +159,7 @@ static void kry_tiny(void) {
     hd_c64 rhs = {3, -4}, x;
     int k, q;
     CHECK(hd_laplacian_matrices(&lap, &L, &B, 0, NULL, NULL) == HD_OK && lap->conserves == 0);
-    for (k = 0; k < 3; k++) {
+    for (k = 0; k < 2; k++) {
         for (q = 0; q < 5; q++) {
             hd_solve_opts o;
             memset(&o, 0, sizeof o);
@@ -217,7 +217,7 @@ static void kry_special(void) {
     int k;
     kry_random(lap, 6, rhs);
     kry_dense(lap, 0, test_c(-3, 7), rhs, want);
-    for (k = 0; k < 3; k++) kry_one(lap, 0, test_c(-3, 7), rhs, want, kry_solvers[k], HD_PRECOND_AUTO, "t = 0");
+    for (k = 0; k < 2; k++) kry_one(lap, 0, test_c(-3, 7), rhs, want, kry_solvers[k], HD_PRECOND_AUTO, "t = 0");
     memset(rhs, 0, (size_t)lap->n * sizeof *rhs);
     memset(x, 0x7f, (size_t)lap->n * sizeof *x);
     CHECK(hd_shifted_solve(lap, 1, test_c(1, 1), rhs, x, NULL, &rep, NULL) == HD_OK);
@@ -238,7 +238,7 @@ static void kry_not_converged(void) {
     hd_error e;
     int k;
     kry_random(lap, 8, rhs);
-    for (k = 0; k < 3; k++) {
+    for (k = 0; k < 2; k++) {
         double own;
         memset(&o, 0, sizeof o);
         memset(&rep, 0, sizeof rep);
@@ -263,7 +263,7 @@ static void kry_errors(void) {
     hd_error e;
     int k;
     memset(rhs, 0, sizeof rhs);
-    for (k = 0; k < 3; k++)
+    for (k = 0; k < 2; k++)
         CHECK(hd_shifted_solve(lap, 1, test_c(bad[k][0], bad[k][1]), rhs, x, NULL, NULL, &e) == HD_ERR_ARGUMENT && e.status == HD_ERR_ARGUMENT);
 }
 
@@ -286,7 +286,7 @@ static void kry_sizes(void) {
         for (v = 0; v < 3 * s.n; v++) own.xyz[v] *= scales[pick];
         lap = kit_triangles(&own, pick ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM);
         h2 = lap->h * lap->h;
-        for (k = 0; k < 3; k++) {
+        for (k = 0; k < 2; k++) {
             o.solver = kry_solvers[k];
             for (q = 0; q < 6; q++) {
                 double off = 0;

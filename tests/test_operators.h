@@ -484,12 +484,12 @@ static hd_status op_scaled_heat(double scale, hd_laplacian_kind kind, hd_solver 
 static void op_extreme_scale(void) {
     enum { N = 42 };
     const double scales[6] = {1e-100, 1e-80, 1e-30, 1e30, 1e80, 1e100};
-    static const hd_solver solvers[5] = {HD_SOLVER_AUTO, HD_SOLVER_COCG, HD_SOLVER_COCR, HD_SOLVER_MINRES, HD_SOLVER_LANCZOS};
+    static const hd_solver solvers[4] = {HD_SOLVER_AUTO, HD_SOLVER_COCG, HD_SOLVER_MINRES, HD_SOLVER_LANCZOS};
     double want[N], u[N];
     hd_report rep;
     int k, q, v;
     for (q = 0; q < 2; q++) {
-        for (v = 0; v < 5; v++) {
+        for (v = 0; v < 4; v++) {
             CHECK(op_scaled_heat(1, op_kinds[q], solvers[v], want, &rep) == HD_OK);
             for (k = 0; k < 6; k++) {
                 const hd_status st = op_scaled_heat(scales[k], op_kinds[q], solvers[v], u, &rep);

@@ -166,7 +166,7 @@ static void pts_within_edges(void) {
 }
 
 static void pts_neighbour_errors(void) {
-    double xyz[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0}, query[6] = {0, 0, 0, 1, 1, NAN}, d2[9];
+    double xyz[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0}, query[12] = {0, 0, 0, 1, 1, 1, 0, 0, 0, 0, NAN, 0}, d2[9];
     int32_t id[9];
     hd_csr a, before;
     hd_error e;
@@ -177,7 +177,7 @@ static void pts_neighbour_errors(void) {
     CHECK(hd_neighbours_nearest(NULL, 3, NULL, 3, 1, id, NULL, NULL, &e) == HD_ERR_ARGUMENT);
     CHECK(hd_neighbours_nearest(xyz, -1, NULL, 3, 1, id, NULL, NULL, &e) == HD_ERR_ARGUMENT);
     CHECK(hd_neighbours_nearest(xyz, 3, query, -2, 1, id, NULL, NULL, &e) == HD_ERR_ARGUMENT);
-    CHECK(hd_neighbours_nearest(xyz, 3, query, 2, 1, id, NULL, NULL, &e) == HD_ERR_NOT_FINITE && e.row == 1 && e.column == 2);
+    CHECK(hd_neighbours_nearest(xyz, 3, query, 4, 1, id, NULL, NULL, &e) == HD_ERR_NOT_FINITE && e.row == 3 && e.column == 1);
     CHECK(hd_neighbours_radius(&a, xyz, 3, NULL, 0, -1, NULL, &e) == HD_ERR_ARGUMENT);
     CHECK(hd_neighbours_radius(&a, xyz, 3, NULL, 0, NAN, NULL, &e) == HD_ERR_ARGUMENT);
     CHECK(hd_neighbours_radius(NULL, xyz, 3, NULL, 0, 1, NULL, &e) == HD_ERR_ARGUMENT);
@@ -594,10 +594,13 @@ static void pts_sphere(hd_laplacian_kind kind, int blue, double tol_value, doubl
 
 /* ---- tufted: thin parts ---- */
 
+/* Each point makes six triangles or so, which count three times where its neighbours make them too. */
 static hd_laplacian *pts_tufted(const double *xyz, int32_t n) {
     hd_laplacian *lap = NULL;
     hd_error e;
     CHECK_MSG(hd_laplacian_tufted_points(&lap, xyz, n, NULL, NULL, NULL, &e) == HD_OK, "%s", e.text);
+    CHECK_MSG(lap->mesh.n_faces > 3 * n && lap->mesh.n_faces < 9 * n && lap->mesh.n_faces_used <= lap->mesh.n_faces, "%d faces of %d points",
+              (int)lap->mesh.n_faces, (int)n);
     return kit_own_laplacian(lap);
 }
 

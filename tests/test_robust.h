@@ -22,11 +22,11 @@ enum { ROB_MUST = 1, ROB_MAY = 2, ROB_SOLVES = 4, ROB_QUIET = 8, ROB_MOST = 2000
 static const struct { const char *script; int flags; } rob_scripts[] = {
     {"triangles", 0}, {"voronoi triangles", 0}, {"cot triangles", 0}, {"matrices", ROB_QUIET}, {"b=whole matrices", ROB_QUIET},
     {"cocg k=6 columns", ROB_MUST | ROB_SOLVES}, {"cocg voronoi k=6 columns", ROB_MUST | ROB_SOLVES},
-    {"cocr k=6 columns", ROB_MUST | ROB_SOLVES}, {"minres k=6 columns", ROB_MUST | ROB_SOLVES},
+    {"minres k=6 columns", ROB_MUST | ROB_SOLVES},
     {"lanczos k=6 columns", ROB_SOLVES}, {"lanczos voronoi k=6 columns", ROB_SOLVES}, {"cocg k=6 apply", ROB_MUST | ROB_SOLVES},
     {"minres voronoi k=6 apply", ROB_MUST | ROB_SOLVES}, {"lanczos voronoi k=6 apply", ROB_SOLVES},
     {"cocg operator entries", ROB_MUST | ROB_SOLVES}, {"lanczos voronoi operator entries", ROB_SOLVES},
-    {"cocg time=0.5 shifted", ROB_SOLVES}, {"cocr time=0.5 shifted", ROB_SOLVES}, {"minres time=0.5 shifted", ROB_SOLVES},
+    {"cocg time=0.5 shifted", ROB_SOLVES}, {"minres time=0.5 shifted", ROB_SOLVES},
     {"points", 0}, {"exp points", 0}, {"queries=moved n_queries=7 nearest", 0}, {"queries=moved n_queries=7 radius", 0},
     {"tufted_points", 0}, {"delaunay triangles", 0}, {"dissection solve", 0}, {"own solve_c", 0},
     {"factor_c solve_c factor | solve", 0}, {"mean geodesic | geodesic_each", 0}, {"tufted geodesic | geodesic_each", 0},

@@ -95,7 +95,7 @@ static int thr_same(call_world *w, const call_data *d, const char *script, int64
 
 /* Every call, and solvers that a plan would not choose. */
 static void thr_calls(void) {
-    static const char *const more[8] = {"iterative cocg columns", "iterative cocr k=1 apply", "iterative minres columns",
+    static const char *const more[8] = {"iterative cocg columns", "iterative cocg k=1 apply", "iterative minres columns",
                                         "krylov columns", "iterative lanczos columns", "voronoi delaunay triangles",
                                         "weighted distance", "held border pairs"};
     call_data d;
@@ -123,6 +123,44 @@ static void thr_orders(void) {
     CHECK(thr_same(&w, &d, "dissection | analyse", 0) >= (thr_own() ? 4 : 1));
     CHECK(thr_same(&w, &d, "dissection analyse | factor solve", 0) >= (thr_own() ? 4 : 1));
     for (stop = 1; stop <= 3; stop++) thr_same(&w, &d, "dissection | analyse", stop);
+    call_world_free(&w);
+    call_data_free(&d);
+}
+
+/* A user's loop in which the calling thread takes no part. */
+static void thr_aside_for(void *user, int64_t n_tasks, hd_task task, void *arg) {
+    int64_t i;
+    (void)user;
+    for (i = 0; i < n_tasks; i++) task(arg, i, 1);
+}
+
+/* Then progress is told between loops, and can cancel. */
+static void thr_aside(void) {
+    call_data d;
+    call_world w;
+    int64_t stop;
+    memset(&w, 0, sizeof w);
+    call_data_make(&d, shape_bumpy(5, 2));
+    for (stop = 1; stop <= 2; stop++) {
+        static const char script[] = "dissection analyse | factor";
+        hd_context ctx;
+        rob_progress p;
+        memset(&ctx, 0, sizeof ctx);
+        memset(&p, 0, sizeof p);
+        p.answer = HD_PROGRESS_CANCEL;
+        p.stop_at = stop;
+        ctx.parallel_for = thr_aside_for;
+        ctx.progress_user = &p;
+        call_open(&w, &d, &ctx);
+        w.what = "aside";
+        CHECK(call_prepare(&w, script) >= 0);
+        ctx.progress = rob_on_progress;
+        CHECK_MSG(call_test(&w, script) == HD_ERR_CANCELLED && p.calls == stop, "%d calls of progress", (int)p.calls);
+        ctx.progress = NULL;
+        CHECK(call_test(&w, script) >= 0);       /* all of it now */
+        call_close(&w);
+        CHECK(ctx.bytes_in_use == 0);
+    }
     call_world_free(&w);
     call_data_free(&d);
 }
@@ -395,6 +433,7 @@ static void thr_lives(void) {
 static void test_threads(void) {
     thr_calls();
     thr_orders();
+    thr_aside();
     thr_lives();
     thr_light();
 #ifdef GUARD_IN_USE

@@ -4,7 +4,7 @@
              [MESH ...]
        bench parts [MESH ...]
        bench busy [--threads N] [--seconds S] [MESH ...]
-       bench tasks|estimate|choices [MESH ...]
+       bench estimate|choices [MESH ...]
 
    Build:  cc -O2 tools/bench.c -o bench -lm
    With the rivals (see bench_rivals.h; CMake does this if it finds them):
@@ -40,9 +40,8 @@
        eigen      Eigen's SimplicialLDLT; one column through the poles by UMFPACK and by Eigen's SparseLU.
                   Slow: above 60000 rows only on request
 
-   tasks counts, without any clock, what threads could gain: work, critical path and parallel efficiency of a
-   factor and of its inversion. estimate compares what hd_heat_estimate says with what a run takes. choices
-   times all methods for columns and says how often the default is the fastest.
+   estimate compares what hd_heat_estimate says with what a run takes. choices times all methods for columns
+   and says how often the default is the fastest.
 
    How it is measured. Both sides start with the same two matrices in memory and use the same number of
    threads. After a warm-up they take turns, and the best run of each counts; only freeing is left out. A
@@ -1862,172 +1861,6 @@ static void bench_mesh(const settings *set, const char *name, const double *xyz,
 #define BENCH_BUSY 1
 #endif
 
-/* ---- work and critical path ---- */
-/* A factor and its inversion on more threads than the machine has: tasks of the plan take their multiply-adds
- * as time, and each thread that is free claims the task that has been ready longest, as the library's threads
- * do. Waking, copying and the limits of memory are not in it. */
-
-enum { SIM_MOST = 1024 };                        /* threads: more than there are tasks at a time */
-
-typedef struct sim { double thread[SIM_MOST]; int32_t n; double end; } sim;   /* thread: when each is free */
-
-/* The task goes to the thread that is free first. Returns when it is done. */
-static double sim_claim(sim *s, double ready, double work) {
-    int32_t k, first = 0;
-    double done;
-    for (k = 1; k < s->n; k++)
-        if (s->thread[k] < s->thread[first]) first = k;
-    done = hdi_max(ready, s->thread[first]) + work;
-    s->thread[first] = done;
-    if (done > s->end) s->end = done;
-    return done;
-}
-
-/* All threads meet, and one of them works before the others go on. */
-static void sim_meet(sim *s, double work) {
-    int32_t k;
-    s->end += work;
-    for (k = 0; k < s->n; k++) s->thread[k] = s->end;
-}
-
-/* The factor of a front with p pivots and u rows below, as a whole. */
-static double sim_front_work(double p, double u) { return p * p * p / 6 + p * p * u / 2 + p * u * u / 2; }
-
-/* A front that threads share, by blocks of pivots and chunks of rows; the next pivots begin when their rows are done. */
-static void sim_front(sim *s, double m, double p, double nb) {
-    enum { MOST = 4096 };
-    static double done[MOST];                    /* when each chunk is done up to the block before */
-    const int32_t chunks = (int32_t)ceil(m / HDI_FRONT_CHUNK);
-    double k0, pivots, all = s->end, last = s->end;
-    int32_t c;
-    for (c = 0; c < chunks && c < MOST; c++) done[c] = s->end;
-    for (k0 = 0; k0 < p; k0 += nb) {
-        const double b = hdi_min(nb, p - k0);
-        c = (int32_t)((k0 + b - 1) / HDI_FRONT_CHUNK);
-        pivots = sim_claim(s, hdi_max(done[c], last), b * b * (k0 / 2 + b / 3));
-        last = all;
-        for (c = (int32_t)((k0 + b) / HDI_FRONT_CHUNK); c < chunks && c < MOST; c++) {
-            const double r0 = hdi_max(k0 + b, c * (double)HDI_FRONT_CHUNK), r1 = hdi_min(m, (c + 1) * (double)HDI_FRONT_CHUNK);
-            if (r1 > r0) done[c] = sim_claim(s, hdi_max(pivots, done[c]), (r1 - r0) * b * (k0 + b / 2));
-            all = hdi_max(all, done[c]);
-        }
-    }
-    sim_meet(s, 0);
-    for (c = (int32_t)ceil((m - p) / HDI_FRONT_CHUNK); c-- > 0;) {
-        const double r0 = c * (double)HDI_FRONT_CHUNK, r1 = hdi_min(m - p, r0 + HDI_FRONT_CHUNK);
-        sim_claim(s, s->thread[0], p * (r1 * r1 - r0 * r0) / 2);
-    }
-    sim_meet(s, 0);
-}
-
-/* Time of a factor of packs on n threads, in multiply-adds. */
-static double sim_factor(const hdi_symbolic *f, int32_t n) {
-    sim s;
-    int32_t k, v;
-    memset(&s, 0, sizeof s);
-    s.n = n;
-    for (k = 0; k < f->n_tasks; k++) {
-        double work = 0;
-        for (v = f->task_begin[k]; v < f->task_end[k]; v++)
-            work += sim_front_work(hdi_front_pivots(f, v), (double)hdi_front_below(f, v));
-        sim_claim(&s, 0, work);
-    }
-    sim_meet(&s, 0);
-    for (k = 0; k < f->n_top; k++) {
-        const double p = hdi_front_pivots(f, f->top[k]), u = (double)hdi_front_below(f, f->top[k]);
-        if (hdi_factor_shared(f, f->top[k])) sim_front(&s, p + u, p, HDI_PACK_BLOCK);
-        else sim_meet(&s, sim_front_work(p, u));
-    }
-    return s.end;
-}
-
-/* Rows [r0,r1) of a stage of the inversion with b pivots and r rows below them. */
-static double sim_stage_work(int stage, double b, double r, double r0, double r1) {
-    if (stage == HDI_INVERSE_M) return (r1 - r0) * b * b / 2;
-    if (stage == HDI_INVERSE_BELOW) return (r1 - r0) * r * b;
-    return stage == HDI_INVERSE_CORNER ? r * (r1 * r1 - r0 * r0) / 2 : 0;
-}
-
-/* T and the first part of Z11 of a block of b pivots, by one thread. */
-static double sim_pivots_work(double b) { return b * b * b / 3; }
-
-/* The inversion of a front as a whole. */
-static double sim_inverse_front(double m, double p) {
-    double work = 0, k0, k1 = p;
-    for (k0 = floor((p - 1) / HDI_PANEL) * HDI_PANEL; k1 > 0; k0 -= HDI_PANEL) {
-        const double b = k1 - k0, r = m - k1;
-        work += sim_pivots_work(b) + sim_stage_work(HDI_INVERSE_M, b, r, 0, r) +
-                sim_stage_work(HDI_INVERSE_BELOW, b, r, 0, r) + sim_stage_work(HDI_INVERSE_CORNER, b, r, 0, b);
-        k1 = k0;
-    }
-    return work;
-}
-
-/* Time of the inversion of a pack on n threads: the stages of the top, in the order of the library, then the subtrees. */
-static double sim_inverse(const hdi_symbolic *f, int32_t n) {
-    hdi_inverse_step c = hdi_inverse_step_begin(f);
-    hdi_inverse z;
-    sim s;
-    int32_t k, v;
-    memset(&s, 0, sizeof s);
-    memset(&z, 0, sizeof z);
-    s.n = n;
-    z.wanted = HDI_WANT_DIAGONAL;
-    while (f->n_top > 0 && hdi_inverse_step_next(&z, f, &c)) {
-        const double m = (double)hdi_front_rows(f, f->top[c.top]), b = (double)(c.k1 - c.k0), r = m - (double)c.k1;
-        int64_t i, from = c.stage == HDI_INVERSE_CORNER ? 0 : c.k1;
-        if (c.stage == HDI_INVERSE_WHOLE) sim_meet(&s, sim_inverse_front(m, hdi_front_pivots(f, f->top[c.top])));
-        if (c.stage == HDI_INVERSE_M) sim_meet(&s, sim_pivots_work(b));
-        if (c.stage > HDI_INVERSE_CORNER) continue;
-        for (i = hdi_inverse_step_nodes(&c); i-- > 0;) {
-            const int64_t r0 = c.begin + i * c.rows - from, r1 = hdi_least(r0 + c.rows, c.end - from);
-            sim_claim(&s, 0, sim_stage_work(c.stage, b, r, (double)r0, (double)r1));
-        }
-        sim_meet(&s, 0);
-    }
-    for (k = f->n_tasks; k-- > 0;) {
-        double work = 0;
-        for (v = f->task_begin[k]; v < f->task_end[k]; v++)
-            work += sim_inverse_front((double)hdi_front_rows(f, v), hdi_front_pivots(f, v));
-        sim_claim(&s, 0, work);
-    }
-    return s.end;
-}
-
-static void sim_print(const hd_laplacian *lap) {
-    static const int32_t n[] = {2, 4, 8, 16};
-    double (*const run[2])(const hdi_symbolic *, int32_t) = {sim_factor, sim_inverse};
-    hd_ldl_opts o;
-    hd_ldl *f = NULL;
-    int k, q;
-    memset(&o, 0, sizeof o);
-    o.xyz = lap->xyz;
-    if (hd_ldl_analyse(&f, &lap->L, &o, NULL, NULL) >= 0) {
-        printf("  %d subtrees, %d fronts above them\n", (int)f->sym.n_tasks, (int)f->sym.n_top);
-        for (q = 0; q < 2; q++) {
-            const double work = run[q](&f->sym, 1), path = run[q](&f->sym, SIM_MOST);
-            printf("  %s by the plan's tasks: %.3g G multiply-adds, critical path %.3g G (1/%.1f); parallel efficiency on",
-                   q ? "inversion" : "factor", 1e-9 * work, 1e-9 * path, work / path);
-            for (k = 0; k < 4; k++) printf(" %d: %.2f", (int)n[k], work / run[q](&f->sym, n[k]) / n[k]);
-            printf(" threads\n");
-        }
-    }
-    hd_ldl_free(f);
-}
-
-/* The tasks of the plan for meshes, without any clock. */
-static void tasks_mesh(const char *name, const double *xyz, int32_t n, const int32_t *tri, int32_t n_tri) {
-    hd_laplacian *lap = NULL;
-    hd_error e;
-    if (hd_laplacian_triangles(&lap, xyz, n, tri, n_tri, NULL, &e) < 0) {
-        fprintf(stderr, "bench: %s: %s\n", name, e.text);
-        return;
-    }
-    printf("%s, %d rows\n", name, (int)lap->n_active);
-    sim_print(lap);
-    hd_laplacian_free(lap);
-}
-
 #ifdef BENCH_BUSY
 enum { BUSY_MOST = 64, BUSY_RUNS = 41 };
 
@@ -2359,7 +2192,7 @@ static int usage(const char *what) {
     fprintf(stderr, "usage: bench [--threads LIST] [--jobs LIST] [--columns K] [--seconds S] [--umfpack] "
                     "[--fresh] [--csv] [MESH ...]\n"
                     "       bench parts [MESH ...]\n"
-                    "       bench tasks|estimate|choices [MESH ...]\n"
+                    "       bench estimate|choices [MESH ...]\n"
                     "       bench busy [--threads N] [--seconds S] [MESH ...]\n"
                     "  --threads 1,2   numbers of threads, one after another; default: all\n"
                     "  --jobs LIST     of "
@@ -2471,11 +2304,6 @@ static int bench_job(int argc, char **argv, mesh_job job) {
         for (i = job == choices_mesh ? 4 : 5; i <= (job == choices_mesh ? 6 : 8); i++)
             bench_shape(NULL, job, "bumpy", shape_bumpy(i, 5), NULL);
         if (job == choices_mesh) bench_shape(NULL, job, "grid", shape_grid(100, 100, 0.3), NULL);
-    } else if (job == tasks_mesh) {
-        bench_shape(NULL, job, "torus", shape_torus(500, 300, 1, 0.4), NULL);
-        bench_shape(NULL, job, "bumpy", shape_bumpy(7, 1), NULL);
-        bench_shape(NULL, job, "torus", shape_torus(1250, 800, 1, 0.4), NULL);
-        bench_shape(NULL, job, "demo", shape_demo(1000000), NULL);
     } else {
         bench_shape(NULL, job, "torus", shape_torus(1000, 500, 1, 0.4), NULL);
         bench_shape(NULL, job, "bumpy", shape_bumpy(7, 1), NULL);
@@ -2491,7 +2319,6 @@ int main(int argc, char **argv) {
         printf("memcpy of 256 MB: %.1f GB/s, read and written counted\n", 1e-9 * copy_speed(256000000));
         return bench_job(argc, argv, parts_mesh);
     }
-    if (argc > 1 && !strcmp(argv[1], "tasks")) return bench_job(argc, argv, tasks_mesh);
     if (argc > 1 && !strcmp(argv[1], "estimate")) return bench_job(argc, argv, estimate_mesh);
     if (argc > 1 && !strcmp(argv[1], "choices")) return bench_job(argc, argv, choices_mesh);
     memset(&set, 0, sizeof set);

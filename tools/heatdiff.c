@@ -314,7 +314,7 @@ static const word SIMDS[] = {
     { "auto", HD_SIMD_AUTO }, { "none", HD_SIMD_NONE }, { "avx2", HD_SIMD_AVX2 },
     { "avx512", HD_SIMD_AVX512 }, { NULL, 0 } };
 static const word SOLVERS[] = {
-    { "cocg", HD_SOLVER_COCG }, { "cocr", HD_SOLVER_COCR }, { "minres", HD_SOLVER_MINRES },
+    { "cocg", HD_SOLVER_COCG }, { "minres", HD_SOLVER_MINRES },
     { "lanczos", HD_SOLVER_LANCZOS }, { NULL, 0 } };
 static const word PRECONDS[] = {
     { "none", HD_PRECOND_NONE }, { "jacobi", HD_PRECOND_JACOBI }, { "ssor", HD_PRECOND_SSOR },
@@ -884,8 +884,8 @@ static const option_def OPTIONS[] = {
       "of direct and krylov: amd (minimum degree), dissection\n"
       "(nested, in space) or auto (default: by the size)" },
     { "solver", 0, CMD_ANYHOW, 0, parse_words, AT(solver), SOLVERS, 0, 0, "NAME",
-      "cocg, cocr, minres or lanczos",
-      "of iterative: cocg, cocr, minres or lanczos (default: by the\ntime)" },
+      "cocg, minres or lanczos",
+      "of iterative: cocg, minres or lanczos (default: by the time)" },
     { "precond", 0, CMD_ANYHOW, 0, parse_words, AT(precond), PRECONDS, 0, 0, "NAME",
       "none, jacobi, ssor, ildl or mildl", "of iterative: none, jacobi, ssor, ildl or mildl (default)" },
     { "max-iterations", 0, CMD_ANYHOW, 0, parse_integer, AT(max_iterations), NULL, 1, 2000000000, "N",
