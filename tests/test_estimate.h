@@ -193,7 +193,8 @@ static void est_limits(const hd_laplacian *lap) {
     hd_estimate all, e;
     hd_report rep;
     uint64_t limit;
-    int fit = 0, not_fit = 0;
+    char text[80];
+    int fit = 0, not_fit = 0, told = 0;
     memset(&ctx, 0, sizeof ctx);
     o.context = &ctx;
     heat = eng_create(lap, &o);
@@ -208,12 +209,17 @@ static void est_limits(const hd_laplacian *lap) {
         st = hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, 1, &t, U, 0, &rep, NULL);
         if (e.cost[0].fits) CHECK_MSG(st >= 0, "%llu: %s", (unsigned long long)limit, rep.error.text);
         else if (e.analysed && e.cost[0].bytes > 1.1 * e.bytes_left) CHECK_MSG(st == HD_ERR_MEMORY_LIMIT, "%llu", (unsigned long long)limit);
+        if (st < 0 && strstr(rep.error.text, " would bring ")) {      /* told before it begins, with both numbers */
+            snprintf(text, sizeof text, "in use to %.1f MB, and the byte limit is %.1f MB", ceil(rep.error.value / 1e5) / 10, ceil((double)limit / 1e5) / 10);
+            CHECK_MSG(strstr(rep.error.text, text) && rep.error.value > (double)limit, "%s", rep.error.text);
+            told++;
+        }
         fit += e.cost[0].fits;
         not_fit += !e.cost[0].fits;
         CHECK(hd_heat_estimate(heat, HD_QUERY_COLUMNS, 1, &t, 20, &e, NULL) == HD_OK);
         if (e.cost[0].fits) CHECK_MSG(est_run(heat, lap, &c, U, &rep) >= 0, "%llu, %s: %s", (unsigned long long)limit, eng_name(e.method), rep.error.text);
     }
-    CHECK(fit > 2 && not_fit > 2);
+    CHECK(fit > 2 && not_fit > 2 && told > 2);
     hd_heat_free(heat);
 }
 

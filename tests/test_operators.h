@@ -369,8 +369,7 @@ static void op_star(void) {
     shape s = kit_own_shape(shape_make(RIM + 1, RIM));
     const clock_t start = clock();
     double seconds, *u = KIT_NEW(double, RIM + 1), sum = 0, want = 0;
-    hd_heat_opts ho;
-    hd_heat *heat = NULL;
+    hd_heat *heat;
     hd_report rep;
     hd_laplacian *lap;
     int32_t i;
@@ -387,18 +386,13 @@ static void op_star(void) {
         CHECK(lap->mesh.n_edges == 2 * (int64_t)RIM && lap->mesh.n_boundary_loops == 1 && lap->mesh.n_repeated_face == 0);
         CHECK(fabs(lap->area - 3.14159265358979) < 1e-8);
     }
-    memset(&ho, 0, sizeof ho);
-    ho.poles = HD_POLES_KERNEL;
-    ho.degree = 4;
-    ho.tol = 1e-4;
-    CHECK(hd_heat_create(&heat, lap, &ho, NULL) == HD_OK);
+    heat = kit_heat(lap, "poles=kernel degree=4 tol=1e-4");
     CHECK(heat_column(heat, 1e-6, RIM / 2, u, &rep) >= 0);
     for (i = 0; i <= RIM; i++) sum += u[i];
     want = 1;                                    /* B = I: the heat of the column is that of its source */
     CHECK_MSG(fabs(sum - want) < 1e-9, "star: %.17g", sum);
     seconds = (double)(clock() - start) / CLOCKS_PER_SEC;
     CHECK_MSG(seconds < 60, "star: %.1f s", seconds);    /* far above what it takes, far below a square of the degree */
-    hd_heat_free(heat);
 }
 
 static void op_errors(void) {

@@ -576,7 +576,7 @@ static void poly_long_and_notched(void) {
 
 /* By every method, against the dense eigensolution. */
 static void poly_heat(void) {
-    static const hd_method methods[3] = {HD_METHOD_DIRECT, HD_METHOD_KRYLOV, HD_METHOD_ITERATIVE};
+    static const char *const methods[3] = {"method=direct", "method=krylov", "method=iterative"};
     shape_poly s = kit_own_poly(shape_hex_sphere(2));
     hd_laplacian *lap;
     double *L, *B, *f, *u, *want, t;
@@ -594,16 +594,11 @@ static void poly_heat(void) {
     CHECK(dense_pair_solve(&p, L, B, s.n));
     dense_pair_heat(&p, t, f, want);
     for (k = 0; k < 3; k++) {
-        hd_heat_opts o;
-        hd_heat *heat = NULL;
+        hd_heat *heat = kit_heat(lap, methods[k]);
         hd_report rep;
-        memset(&o, 0, sizeof o);
-        o.method = methods[k];
-        CHECK(hd_heat_create(&heat, lap, &o, NULL) == HD_OK);
         CHECK(heat_column(heat, t, 7, u, &rep) == HD_OK);
         CHECK_MSG(dense_max_diff(u, want, s.n) < 1e-7 * dense_max_abs(want, s.n) && rep.mass_drift < 1e-12, "method %d: %g, drift %g", k,
                   dense_max_diff(u, want, s.n) / dense_max_abs(want, s.n), rep.mass_drift);
-        hd_heat_free(heat);
     }
     dense_pair_free(&p);
 }

@@ -204,7 +204,7 @@ static void rob_cancel_lanes(void) {
     int64_t calls_of = 0, k;
     hd_status st = HD_ERR_CANCELLED;
     memset(&w, 0, sizeof w);
-    call_data_make(&d, shape_icosphere(1));
+    call_data_make(&d, shape_icosphere(3));
     for (k = 1; k < 200 && st == HD_ERR_CANCELLED; k += 3) {
         test_memory m;
         hd_context ctx = test_memory_context(&m);
@@ -223,7 +223,7 @@ static void rob_cancel_lanes(void) {
         call_close(&w);
         test_memory_done(&m, &ctx, w.what);
     }
-    CHECK(k > 4 && k < 200 && calls_of > 0);
+    CHECK_MSG(k > 4 && k < 200 && calls_of > 0, "%d cancelled, %d loops", (int)k, (int)calls_of);
     call_world_free(&w);
     call_data_free(&d);
 }
