@@ -3456,158 +3456,113 @@ static int hdi_tridiag_eigen(double *d, double *e, double *z0, double *z1, int32
 static int64_t hdi_triangle(int64_t u) { return u * (u + 1) / 2; }
 
 /* ==== [07] kernels ====
- * The dense parts of a sparse factorisation, each written once: fronts of real numbers, and of packs of four
- * complex ones. May call [06]. The room has three parts:
- *   what kernels are given, and the tables through which the rest of the file calls them
- *   the vectors of each instruction set, a layer of some forty short functions
+ * The dense arithmetic of a sparse factorisation, written once: C -= A B, a triangular solve, the elimination
+ * of a few pivots, and two ways to copy. A matrix has entries of `width` doubles: a real number, or a pack
+ * of four complex ones. May call [06]. The room has three parts:
+ *   what kernels are given, and the table through which the rest of the file calls them
+ *   the vectors of each instruction set, a dozen short functions each
  *   the kernels themselves, which are read once for each set, and at last the choice of the set
  * For AVX2 and AVX-512 the file includes itself with HDI_SET named anew; everything else in it is closed
  * then. It knows its name from the compiler, or from HEATDIFF_FILENAME. Plain C is read in place: with
  * HEATDIFF_NO_SIMD, and on other processors, nothing is included.
  * Within one set every entry goes through the same operations in the same order however rows are shared out,
- * so that results do not depend on threads. The optional BLAS is called here only.
- * Kernels trust their input. No two arguments overlap unless said. */
-
-/* ---- real fronts ---- */
-/* A front is the dense part of a sparse LDL' factorisation that belongs to one supernode: m rows, of which
- * the first p are pivots, and u = m - p. Its panel P (column-major, m x p) becomes L, its update matrix U (u
- * x u, lower triangle, packed by columns) becomes U - L21 D L21' and goes to the parent. This work is based
- * on
- *   I. Duff, J. Reid, "The multifrontal solution of indefinite sparse symmetric linear equations", ACM TOMS
- *     9, 1983: fronts, packed updates;
+ * so that results do not depend on threads.
+ * Four matrices stand side by side, and not in two planes, of real and of imaginary parts, multiplied by the
+ * kernels of real numbers: with AVX-512 planes are as fast from 12 pivots on, but two to three times slower
+ * in the small fronts that meshes have most of, and 1.4 times in plain C.
+ * Kernels trust their input. No two arguments overlap unless said.
+ * This work is based on
  *   K. Goto, R. van de Geijn, "Anatomy of high-performance matrix multiplication", ACM TOMS 34, 2008: blocks
  *     for registers and caches;
  *   J. Dongarra, I. Duff, D. Sorensen, H. van der Vorst, "Numerical linear algebra for high-performance
- *     computers", 1998: left-looking LDL'.
- * Ours: B = D L21' is copied into slices of nr columns, scaled on the way; A = L21 is read where it lies when
- * the front is small.
- *
- * Slices: a matrix B with kc rows and n columns is stored as slices of nr columns, slice c at B + c kc nr,
- * its entry (k,j) at [k nr + j]. Columns past the last are zero. */
+ *     computers", 1998: left-looking LDL'. */
 
-enum {
-    HDI_REAL_KC = 128,  /* columns of L taken at a time: 24 rows of them stay in a 48 KB cache */
-    HDI_REAL_NC = 512,  /* columns of U taken at a time: their slices (512 KB) stay in the second cache */
-    HDI_REAL_NB = 64,   /* pivots eliminated at a time in a large front, a multiple of nr */
-    HDI_REAL_MR = 24,   /* largest mr */
-    HDI_REAL_NR = 8     /* largest nr */
-};
-#define HDI_PIVOT_LEAST (DBL_MIN / 4)   /* the largest number whose inverse overflows, 2^-1024 */
+/* A pack entry is re[4], im[4]: the same entry of four complex matrices. */
+enum { HDI_PACK = 8, HDI_PACK_LANES = 4 };
+enum { HDI_PANEL = 128 };              /* columns of a block of a panel, see [17] */
+enum { HDI_TILE_ROWS = 24, HDI_TILE_COLS = 8 };   /* of the largest tile */
+#define HDI_PIVOT_LEAST (DBL_MIN / 4)  /* the largest number whose inverse overflows, 2^-1024 */
 
-/* One instruction set. mr x nr is the register tile. L, A, P point at the entry (first row, first column)
- * named; ld is the distance of columns. */
-typedef struct hdi_real_ops {
-    int32_t mr, nr;
-    /* slices B = (L diag(d))': L has n rows and kc columns. */
-    void (*pack)(double *B, const double *L, int64_t ld, const double *d, int32_t n, int32_t kc);
-    /* A = rows of L copied, mr apart, zeros past the last: n <= mr rows, kc columns. */
-    void (*copy)(double *A, const double *L, int64_t ld, int32_t n, int32_t kc);
-    /* Pivots k..k+nc-1, nc <= nr, in their own rows and the n <= mr - nr rows that follow: a -= L B over the
-     * k columns before, B one slice; then LDL'. P at (k,0). d goes to the diagonal of P, 1/d to dinv[k..],
-     * and rows k.. of the slice B become D L' of the block. */
-    void (*block)(double *P, int64_t ld, int32_t k, int32_t nc, int32_t n, double *B, double *dinv);
-    /* n <= mr rows below pivots k..k+nb-1, from column k1 <= k: L(:,c) = (a - L(:,k1..c-1) B(k1..c-1,c))
-     * dinv(c), c ascending. P at (row,0); B slices of kb rows. */
-    void (*rows)(double *P, int64_t ld, int32_t n, int32_t k1, int32_t k, int32_t nb, const double *B,
-                 int32_t kb, const double *dinv);
-    /* C -= A B: n <= mr rows, nb columns, ld apart, inner kc. Slices of kb rows. */
-    void (*gemm)(double *C, int64_t ld, int32_t n, int32_t nb, const double *A, int64_t lda, const double *B,
-                 int32_t kb, int32_t kc);
-    /* U -= A B in rows i..i+n-1, n <= mr, columns j0..j1-1 as far as the triangle goes, j1 <= i + n. Slices
-     * begin at column j0. */
-    void (*update)(double *U, int64_t u, int64_t i, int32_t n, int64_t j0, int64_t j1, const double *A,
-                   int64_t lda, const double *B, int32_t kc);
-    /* y += x */
-    void (*add)(double *y, const double *x, int64_t n);
-    /* b = L11^-1 b, y -= L b: nc <= 8 columns, L at (0,0) of L11; below it n1 rows whose y follows b, then n2
-     * whose y is t. first: t is not read, t = -L b. */
-    void (*forward)(double *b, const double *L, int64_t ld, int32_t nc, int64_t n1, double *t, int64_t n2,
-                    int first);
-    /* b = L11^-T (b - L' y), the same rows. */
-    void (*backward)(double *b, const double *L, int64_t ld, int32_t nc, int64_t n1, const double *t,
-                     int64_t n2);
-    /* t = x[idx] */
-    void (*gather)(double *t, const double *x, const int32_t *idx, int64_t n);
-    /* For eight right-hand sides, rows of eight: y[i] -= L x, x[nc] -= L' y, y being y[idx[i]], or y[i] if
-     * idx is NULL. */
-    void (*gemv8)(double *y, const int32_t *idx, const double *L, int64_t ld, int64_t n, const double *x,
-                  int32_t nc);
-    void (*dots8)(double *x, const double *L, int64_t ld, int64_t n, const double *y, const int32_t *idx,
-                  int32_t nc);
-    /* x = L^-1 x, x = L^-T x: unit lower L, nc <= 8. */
-    void (*lower8)(double *x, const double *L, int64_t ld, int32_t nc);
-    void (*upper8)(double *x, const double *L, int64_t ld, int32_t nc);
-} hdi_real_ops;
-
-/* C -= A B for n <= mr rows and nc <= nr columns; column j + 1 of C lies step - j dec after column j. Entries
- * with row < j + diag are left alone. A has kc columns, lda apart; B is one slice of kc rows. */
-typedef struct hdi_real_tile {
-    double *C;
-    const double *A, *B;
-    int64_t step, dec, lda;
-    int32_t n, nc, diag, kc;
-} hdi_real_tile;
-
-/* ---- packs: four complex numbers side by side ---- */
-/* An entry of a pack matrix is re[4], im[4]: the same entry for four poles. Every operation on entries is one
- * on vectors without any shuffle. */
-enum { HDI_PACK = 8, HDI_PACK_ROWS = 48, HDI_PACK_DEPTH = 64, HDI_PACK_BLOCK = 16 };
-/* Sweeps of many right-hand sides: rows that are taken at a time on the way down, so that a chunk of a panel
- * stays in the caches while the next one is fetched; entries that are fetched ahead on the way up. */
-enum { HDI_PACK_CHUNK = 32, HDI_PACK_AHEAD = 64 };
-
-/* C(i,j) = or -= sum_k A(i,k) B(j,k), k in [0,depth), for i in [i0,i1), j in [j0,j1), with lower only j <= i.
- * A(i,k) is at a + i a_row + k a_col, all strides in doubles; C(i,j) at c + i c_row + 8 j, or, packed, at c +
- * 8 (i (i + 1)/2 + j). */
-typedef struct hdi_pack_job {
-    const double *a, *b;
+/* C -= A B, or with store C = -A B. All distances are counted in entries. Rows of C and A are consecutive;
+ * A(i,k) is at a + i + k a_col. C(i,j) is at c + i + j c_col; with packed columns, those of a triangle, the
+ * distance c_col shrinks by one from column to column. B comes in groups of nr columns: B(k,j) is at b +
+ * (j / nr) b_next + k b_row + (j % nr) b_col. With lower, entries of C above its diagonal are left alone:
+ * row i of C is row i + first of a matrix whose columns are those of C. */
+typedef struct hdi_product {
     double *c;
-    int64_t a_row, a_col, b_row, b_col, c_row;
-    int64_t depth, b_first;          /* b is row b_first of B */
+    const double *a, *b;
+    int64_t c_col, a_col, b_row, b_col, b_next;
+    int64_t n, cols, depth, first;
     int lower, packed, store;
-} hdi_pack_job;
+    double *work;                /* NULL, or [TILE_ROWS][depth] for a copy of rows of A */
+} hdi_product;
 
-static HDI_INLINE double *hdi_pack_row(const hdi_pack_job *g, int64_t i) {
-    return g->c + (g->packed ? HDI_PACK * hdi_triangle(i) : i * g->c_row);
+/* X = (X - X0 B0) inv(B1) dinv in n rows of a matrix: X0 are `before` columns that are done, X the nb columns
+ * after them, B0 and B1 the parts of B before and from row `before` on; B1 is upper triangular with ones on
+ * its diagonal, times D when dinv = 1/D is given. x is the first column of X0, the distances are those of
+ * hdi_product. dinv NULL: ones. */
+typedef struct hdi_solve {
+    double *x;
+    const double *b, *dinv;
+    int64_t x_col, b_row, b_col, b_next;
+    int64_t n, before, nb;
+} hdi_solve;
+
+/* nc <= nr pivots in their own rows and the n <= mr - nr rows that follow: X - X0 S0 over the columns before,
+ * then LDL'. x is the first pivot's row, the first column before. d goes to the diagonal, 1/d to dinv, and
+ * from row `before` on the slice s becomes D L' of the pivots. */
+typedef struct hdi_eliminate {
+    double *x, *s, *dinv;
+    int64_t x_col, before;
+    int32_t nc, n;
+} hdi_eliminate;
+
+/* One real right-hand side in nc <= 8 columns of L, whose triangle is at l. Up: x = L^-1 x for the nc rows,
+ * then x -= L x in the n rows that follow them, and t -= L x in u rows below. Down:
+ * x = L^-T (x - L' (x, t)). */
+typedef struct hdi_single {
+    const double *l;
+    double *x, *t;
+    int64_t ld, n, u;
+    int32_t nc;
+} hdi_single;
+
+/* The kernels of one instruction set and width. A tile has mr x nr entries. Slices: groups of nr columns of a
+ * matrix B, row by row, which is the form in which multiply reads fastest: b_row = nr, b_col = 1. */
+typedef struct hdi_kernels {
+    int32_t width, mr, nr;
+    void (*multiply)(const hdi_product *g);
+    void (*solve)(const hdi_solve *g);
+    /* Stops before a pivot that cannot be divided by: it is on the diagonal. */
+    void (*eliminate)(const hdi_eliminate *g);
+    /* Slices b, b_next apart, of B(k,j) = x(j,k) d(k): n columns, depth rows; x(j,k) is at x + j row + k col.
+     * d NULL: ones. Columns past n are left alone or get any number. */
+    void (*slices)(double *b, int64_t b_next, const double *x, int64_t row, int64_t col, const double *d,
+                   int64_t n, int64_t depth);
+    /* y += x, n doubles */
+    void (*add)(double *y, const double *x, int64_t n);
+    void (*up)(const hdi_single *g);
+    void (*down)(const hdi_single *g);
+} hdi_kernels;
+
+/* The inverses of n of a pack's numbers; infinite where there is none. 0: there is such a number. By
+ * R. Smith, "Algorithm 116: Complex division", 1962; inline, so that kernels keep their registers. */
+static HDI_INLINE int hdi_pack_invert(const double *d, double *inverse, int n) {
+    int q, good = 1;
+    for (q = 0; q < n; q++) {
+        const double re = d[q], im = d[q + HDI_PACK_LANES];
+        const int flat = fabs(re) >= fabs(im);
+        const double r = flat ? im / re : re / im, s = flat ? re + im * r : im + re * r;
+        const double one = 1 / s, other = r / s;
+        const int is_number = hdi_finite(one) && hdi_finite(other);
+        inverse[q] = is_number ? flat ? one : other : HUGE_VAL;
+        inverse[q + HDI_PACK_LANES] = flat ? -other : -one;
+        good = good && is_number;
+    }
+    return good;
 }
 
-/* Rows [r0,r1) of a panel, columns [k0,k0+nb): l_ik = (a_ik - sum_{j in [k0,k)} l_ij s_kj) dinv_k, in place.
- * s_kj is at s + (k - k0) s_row + 8 (j - k0). */
-typedef struct hdi_pack_rows {
-    double *panel;
-    int64_t row, first;          /* doubles from row to row; panel is row first */
-    const double *s, *dinv;
-    int64_t s_row;
-    int32_t nb;
-} hdi_pack_rows;
-
-/* A block of columns of a panel in a sweep with k right-hand sides, whose rows of k entries stand side by
- * side: n pivots' rows from the block's first on, then u rows below. Row i of the pivots is y + i x_row, row
- * i below t + i x_row on the way up, and x + below[i] x_row on the way down. */
-typedef struct hdi_pack_sweep {
-    const double *l;
-    int64_t row, x_row;              /* doubles from row to row of the block, and of x, y and t */
-    int64_t width, n, u, k;          /* columns of the block; n >= width */
-    double *y, *t;
-    const double *x;
-    const int32_t *below;
-} hdi_pack_sweep;
-
-typedef struct hdi_pack_ops {
-    void (*multiply)(const hdi_pack_job *g, int64_t i0, int64_t i1, int64_t j0, int64_t j1);
-    void (*solve_rows)(const hdi_pack_rows *g, int64_t r0, int64_t r1);
-    void (*scale)(const double *panel, int64_t row, int64_t r0, int64_t r1, int64_t k0, int64_t k1,
-                  const double *d, double *s);
-    void (*add)(double *to, const double *from, const int32_t *rel, int64_t b0, int64_t b1, int64_t off);
-    void (*forward)(const double *l, int64_t u, int64_t p, const double *y, double *t);
-    void (*backward)(const double *l, const int32_t *row, int64_t u, int64_t p, double *y, const double *x);
-    /* up: y1 = L11^-1 y1, y2 -= L21 y1, t -= L31 y1; down: y1 = L11^-T (y1 - L21' y2 - L31' x[below]), where
-     * y1 are the block's own rows of y, y2 those that follow */
-    void (*up)(const hdi_pack_sweep *g);
-    void (*down)(const hdi_pack_sweep *g);
-} hdi_pack_ops;
-
-/* s = l d for an entry */
+/* s = l d for a pack entry */
 static HDI_INLINE void hdi_pack_times(const double *HDI_RESTRICT l, const double *HDI_RESTRICT d,
                                       double *HDI_RESTRICT s) {
     int q;
@@ -3618,36 +3573,24 @@ static HDI_INLINE void hdi_pack_times(const double *HDI_RESTRICT l, const double
 }
 
 /* ---- vectors of each instruction set ---- */
-/* What a set has to define, here by name_set. A port to wider vectors adds one such layer, and one more
- * reading of the kernels where the set is chosen. Vectors of two lanes (SSE2, NEON, WASM) are those of plain
- * C, which only tells them apart.
- *   vec                  HDI_WIDTH doubles
+/* A set defines, here by name_set, vectors vec of HDI_WIDTH doubles for which the compiler knows + - *, and
  *   all(a)               a in every lane
  *   load, store          anywhere in memory
- *   load_tail(p, n)      the first n lanes, then zeros; 0 < n < width, and n = width too where masks is 1
- *   load_some(p, n)      the same for any n; lanes from n on are not read
- *   rows, rows_of        rows lo..hi-1 of a tile as a set
- *   load_rows, store_rows(.., g, q)  lanes for rows q.. of it; others are neither read nor written
- *   add, sub, mul        and fma = a b + c, fnma = c - a b, fms = a b - c, fnma1 of single numbers
- *   cross_minus          a b - c d; cross_plus: a b + c d. Contracted or not, as the compiler does with plain
- *     C
- *   lane(v, k), low(v)   lane k everywhere; the lowest as a number
- *   sum(v), gather(x, idx)  when the set has kernels for a single right-hand side
- * and as constants:
- *   cols, regs           the tile of real kernels is regs vectors by cols columns, a multiple of width
- *   fused                products of entries are summed with fma
- *   masks                load_tail costs no more than load
- *   apart                the sums of a backward step are closed between its two parts
- *   tile_rows, tile_cols, solve_rows, sweep_rows, sweep_cols, sweep_many  entries of packs that are held in
- *     registers; half entries of the first three and of the last, if vectors have two lanes */
+ *   rows, rows_of(lo, hi), has(g, q)   rows lo..hi-1 of a tile as a set; whether q is one of them
+ *   load_rows(p, g, q), store_rows(p, v, g, q)   lanes for rows q.. of it; others are neither read nor
+ *                        written, and are zero in a vector that is loaded
+ *   fma, fnma            a b + c, c - a b
+ *   lane(v, k), pick(v, k)  lane k everywhere; as a number
+ * and as constants the tiles that fit its registers: rows and columns of vectors of real numbers, and of
+ * entries of packs; of packs with fewer than four lanes, parts of entries. */
 #define HDI_IN2 static HDI_INLINE
 #define HDI_IN4 static HDI_AVX2 HDI_INLINE
 #define HDI_IN8 static HDI_AVX512 HDI_INLINE
 
-/* Two lanes, where the compiler has vectors; its own arithmetic serves every processor, and NEON adds its
- * multiply-adds. On x87 registers vectors would live in memory. */
+/* Two lanes where the compiler has vectors; its own arithmetic serves every processor, and NEON adds its
+ * multiply-adds. Else, and on x87 registers, single numbers. */
 #define HDI_TARGET_plain
-#if (defined(__GNUC__) || defined(__clang__)) && !defined(HEATDIFF_NO_SIMD) && \
+#if (defined(__GNUC__) || defined(__clang__)) && !defined(__TINYC__) && !defined(HEATDIFF_NO_SIMD) && \
     (!defined(__i386__) || defined(__SSE2__))
 #define HDI_V2 1
 #else
@@ -3660,82 +3603,23 @@ static HDI_INLINE void hdi_pack_times(const double *HDI_RESTRICT l, const double
 #define HDI_NEON 0
 #endif
 
-/* Tiles that stay in the registers: 32 of NEON, 16 elsewhere. GCC keeps 2 x 2 halves in 16, which clang 14
- * and the engine of node 20 do not: the same product in GF/s with tiles of 2 x 2, 3 x 1 and 2 x 1 is gcc 26,
- * 25, 23; clang 21, 26, 25; node 21, 21, 27. 2 x 1 also suits scalars, of which compilers make vectors. */
+/* NEON has 32 registers, others 16. GCC keeps 2 x 2 parts of packs in 16, which clang 14 and the engine of
+ * node 20 do not: the same product in GF/s with tiles of 2 x 2, 3 x 1 and 2 x 1 is gcc 26, 25, 23; clang 21,
+ * 26, 25; node 21, 21, 27. 2 x 1 also suits scalars, of which compilers make vectors. */
 #if HDI_NEON
-enum {
-    hdi_regs_plain = 4, hdi_fused_plain = 1, hdi_tile_rows_plain = 3, hdi_tile_cols_plain = 3,
-    hdi_solve_rows_plain = 4
-};
-#elif HDI_V2 && defined(__x86_64__)
-#ifdef __clang__
-enum { hdi_tile_rows_plain = 3, hdi_tile_cols_plain = 1 };
-#else
-enum { hdi_tile_rows_plain = 2, hdi_tile_cols_plain = 2 };
-#endif
-enum { hdi_regs_plain = 2, hdi_fused_plain = 0, hdi_solve_rows_plain = 4 };
-#elif defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD != 0
+enum { hdi_regs_plain = 4, hdi_cols_plain = 4, hdi_pack_regs_plain = 3, hdi_pack_cols_plain = 3 };
+#elif defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD != 0 && !HDI_V2
 /* Entry by entry: what a register keeps beyond a double would differ from tile to tile. */
-enum {
-    hdi_regs_plain = 2, hdi_fused_plain = 0, hdi_tile_rows_plain = 1, hdi_tile_cols_plain = 1,
-    hdi_solve_rows_plain = 1
-};
+enum { hdi_regs_plain = 1, hdi_cols_plain = 1, hdi_pack_regs_plain = 1, hdi_pack_cols_plain = 1 };
+#elif HDI_V2 && defined(__x86_64__) && defined(__clang__)
+enum { hdi_regs_plain = 2, hdi_cols_plain = 4, hdi_pack_regs_plain = 3, hdi_pack_cols_plain = 1 };
+#elif HDI_V2 && defined(__x86_64__)
+enum { hdi_regs_plain = 2, hdi_cols_plain = 4, hdi_pack_regs_plain = 2, hdi_pack_cols_plain = 2 };
 #else
-enum {
-    hdi_regs_plain = 2, hdi_fused_plain = 0, hdi_tile_rows_plain = 2, hdi_tile_cols_plain = 1,
-    hdi_solve_rows_plain = 3
-};
+enum { hdi_regs_plain = 2, hdi_cols_plain = 4, hdi_pack_regs_plain = 2, hdi_pack_cols_plain = 1 };
 #endif
-enum {
-    hdi_cols_plain = 4, hdi_masks_plain = 0, hdi_apart_plain = 1, hdi_sweep_rows_plain = 1,
-    hdi_sweep_cols_plain = 2, hdi_sweep_many_plain = hdi_tile_rows_plain > 1 ? 4 : 1
-};
+enum { hdi_most_regs_plain = 4, hdi_most_cols_plain = 4 };
 
-#if HDI_V2
-typedef double hdi_v2 __attribute__((vector_size(16)));
-typedef double hdi_v2_anywhere __attribute__((vector_size(16), aligned(8), may_alias));
-HDI_IN2 hdi_v2 hdi_two(double a, double b) { const hdi_v2 v = {a, b}; return v; }
-HDI_IN2 hdi_v2 hdi_load_plain(const double *p) {
-    return *(const hdi_v2_anywhere *)(const void *)p;
-}
-HDI_IN2 void hdi_store_plain(double *p, hdi_v2 v) { *(hdi_v2_anywhere *)(void *)p = v; }
-HDI_IN2 double hdi_low_plain(hdi_v2 v) { return v[0]; }
-HDI_IN2 double hdi_high_plain(hdi_v2 v) { return v[1]; }
-HDI_IN2 hdi_v2 hdi_add_plain(hdi_v2 a, hdi_v2 b) { return a + b; }
-HDI_IN2 hdi_v2 hdi_sub_plain(hdi_v2 a, hdi_v2 b) { return a - b; }
-HDI_IN2 hdi_v2 hdi_mul_plain(hdi_v2 a, hdi_v2 b) { return a * b; }
-#if HDI_NEON
-HDI_IN2 hdi_v2 hdi_fma_plain(hdi_v2 a, hdi_v2 b, hdi_v2 c) { return vfmaq_f64(c, a, b); }
-HDI_IN2 hdi_v2 hdi_fnma_plain(hdi_v2 a, hdi_v2 b, hdi_v2 c) { return vfmsq_f64(c, a, b); }
-HDI_IN2 hdi_v2 hdi_fms_plain(hdi_v2 a, hdi_v2 b, hdi_v2 c) { return vfmaq_f64(-c, a, b); }
-HDI_IN2 double hdi_fnma1_plain(double a, double b, double c) { return __builtin_fma(-a, b, c); }
-#else
-HDI_IN2 hdi_v2 hdi_fma_plain(hdi_v2 a, hdi_v2 b, hdi_v2 c) { return a * b + c; }
-HDI_IN2 hdi_v2 hdi_fnma_plain(hdi_v2 a, hdi_v2 b, hdi_v2 c) { return c - a * b; }
-#endif
-HDI_IN2 hdi_v2 hdi_cross_minus_plain(hdi_v2 a, hdi_v2 b, hdi_v2 c, hdi_v2 d) { return a * b - c * d; }
-HDI_IN2 hdi_v2 hdi_cross_plus_plain(hdi_v2 a, hdi_v2 b, hdi_v2 c, hdi_v2 d) { return a * b + c * d; }
-#else
-typedef struct hdi_v2 { double a, b; } hdi_v2;
-HDI_IN2 hdi_v2 hdi_two(double a, double b) { hdi_v2 v; v.a = a; v.b = b; return v; }
-HDI_IN2 hdi_v2 hdi_load_plain(const double *p) { return hdi_two(p[0], p[1]); }
-HDI_IN2 void hdi_store_plain(double *p, hdi_v2 v) { p[0] = v.a; p[1] = v.b; }
-HDI_IN2 double hdi_low_plain(hdi_v2 v) { return v.a; }
-HDI_IN2 double hdi_high_plain(hdi_v2 v) { return v.b; }
-HDI_IN2 hdi_v2 hdi_add_plain(hdi_v2 a, hdi_v2 b) { return hdi_two(a.a + b.a, a.b + b.b); }
-HDI_IN2 hdi_v2 hdi_sub_plain(hdi_v2 a, hdi_v2 b) { return hdi_two(a.a - b.a, a.b - b.b); }
-HDI_IN2 hdi_v2 hdi_mul_plain(hdi_v2 a, hdi_v2 b) { return hdi_two(a.a * b.a, a.b * b.b); }
-HDI_IN2 hdi_v2 hdi_fma_plain(hdi_v2 a, hdi_v2 b, hdi_v2 c) { return hdi_add_plain(hdi_mul_plain(a, b), c); }
-HDI_IN2 hdi_v2 hdi_fnma_plain(hdi_v2 a, hdi_v2 b, hdi_v2 c) { return hdi_sub_plain(c, hdi_mul_plain(a, b)); }
-HDI_IN2 hdi_v2 hdi_cross_minus_plain(hdi_v2 a, hdi_v2 b, hdi_v2 c, hdi_v2 d) {
-    return hdi_sub_plain(hdi_mul_plain(a, b), hdi_mul_plain(c, d));
-}
-HDI_IN2 hdi_v2 hdi_cross_plus_plain(hdi_v2 a, hdi_v2 b, hdi_v2 c, hdi_v2 d) {
-    return hdi_add_plain(hdi_mul_plain(a, b), hdi_mul_plain(c, d));
-}
-#endif
-typedef hdi_v2 hdi_vec_plain;
 typedef struct hdi_span { int32_t lo, hi; } hdi_span;
 typedef hdi_span hdi_rows_plain;
 HDI_IN2 hdi_span hdi_rows_of_plain(int32_t lo, int32_t hi) {
@@ -3744,59 +3628,73 @@ HDI_IN2 hdi_span hdi_rows_of_plain(int32_t lo, int32_t hi) {
     g.hi = hi;
     return g;
 }
-HDI_IN2 hdi_v2 hdi_all_plain(double a) { return hdi_two(a, a); }
-#if !HDI_NEON
-HDI_IN2 hdi_v2 hdi_fms_plain(hdi_v2 a, hdi_v2 b, hdi_v2 c) { return hdi_sub_plain(hdi_mul_plain(a, b), c); }
-HDI_IN2 double hdi_fnma1_plain(double a, double b, double c) { return c - a * b; }
-#endif
-HDI_IN2 hdi_v2 hdi_lane_plain(hdi_v2 v, int k) {
-    return hdi_all_plain(k ? hdi_high_plain(v) : hdi_low_plain(v));
-}
-HDI_IN2 double hdi_sum_plain(hdi_v2 v) { return hdi_low_plain(v) + hdi_high_plain(v); }
-HDI_IN2 hdi_v2 hdi_gather_plain(const double *x, const int32_t *idx) { return hdi_two(x[idx[0]], x[idx[1]]); }
-HDI_IN2 hdi_v2 hdi_load_tail_plain(const double *p, int64_t n) { (void)n; return hdi_two(p[0], 0); }
-HDI_IN2 hdi_v2 hdi_load_some_plain(const double *p, int64_t n) {
-    return n >= 2 ? hdi_load_plain(p) : hdi_two(n > 0 ? p[0] : 0.0, 0);
-}
-HDI_IN2 hdi_v2 hdi_load_rows_plain(const double *p, hdi_span g, int32_t q) {
-    const int first = g.lo <= q && g.hi > q, second = g.lo <= q + 1 && g.hi > q + 1;
+HDI_IN2 int hdi_has_plain(hdi_span g, int32_t q) { return g.lo <= q && q < g.hi; }
+
+#if HDI_V2
+#define HDI_PLAIN_WIDTH 2
+typedef double hdi_vec_plain __attribute__((vector_size(16)));
+typedef double hdi_v2_anywhere __attribute__((vector_size(16), aligned(8), may_alias));
+HDI_IN2 hdi_vec_plain hdi_two(double a, double b) { const hdi_vec_plain v = {a, b}; return v; }
+HDI_IN2 hdi_vec_plain hdi_all_plain(double a) { return hdi_two(a, a); }
+HDI_IN2 hdi_vec_plain hdi_load_plain(const double *p) { return *(const hdi_v2_anywhere *)(const void *)p; }
+HDI_IN2 void hdi_store_plain(double *p, hdi_vec_plain v) { *(hdi_v2_anywhere *)(void *)p = v; }
+HDI_IN2 double hdi_pick_plain(hdi_vec_plain v, int k) { return k ? v[1] : v[0]; }
+HDI_IN2 hdi_vec_plain hdi_load_rows_plain(const double *p, hdi_span g, int32_t q) {
+    const int first = hdi_has_plain(g, q), second = hdi_has_plain(g, q + 1);
     return first && second ? hdi_load_plain(p) : hdi_two(first ? p[0] : 0.0, second ? p[1] : 0.0);
 }
-HDI_IN2 void hdi_store_rows_plain(double *p, hdi_v2 v, hdi_span g, int32_t q) {
-    const int first = g.lo <= q && g.hi > q, second = g.lo <= q + 1 && g.hi > q + 1;
+HDI_IN2 void hdi_store_rows_plain(double *p, hdi_vec_plain v, hdi_span g, int32_t q) {
+    const int first = hdi_has_plain(g, q), second = hdi_has_plain(g, q + 1);
     if (first && second) hdi_store_plain(p, v);
-    else if (first) p[0] = hdi_low_plain(v);
-    else if (second) p[1] = hdi_high_plain(v);
+    else if (first) p[0] = v[0];
+    else if (second) p[1] = v[1];
 }
+#else
+#define HDI_PLAIN_WIDTH 1
+typedef double hdi_vec_plain;
+HDI_IN2 double hdi_all_plain(double a) { return a; }
+HDI_IN2 double hdi_load_plain(const double *p) { return *p; }
+HDI_IN2 void hdi_store_plain(double *p, double v) { *p = v; }
+HDI_IN2 double hdi_pick_plain(double v, int k) { (void)k; return v; }
+HDI_IN2 double hdi_load_rows_plain(const double *p, hdi_span g, int32_t q) {
+    return hdi_has_plain(g, q) ? *p : 0.0;
+}
+HDI_IN2 void hdi_store_rows_plain(double *p, double v, hdi_span g, int32_t q) {
+    if (hdi_has_plain(g, q)) *p = v;
+}
+#endif
+HDI_IN2 hdi_vec_plain hdi_lane_plain(hdi_vec_plain v, int k) { return hdi_all_plain(hdi_pick_plain(v, k)); }
+#if HDI_NEON
+HDI_IN2 hdi_vec_plain hdi_fma_plain(hdi_vec_plain a, hdi_vec_plain b, hdi_vec_plain c) {
+    return vfmaq_f64(c, a, b);
+}
+HDI_IN2 hdi_vec_plain hdi_fnma_plain(hdi_vec_plain a, hdi_vec_plain b, hdi_vec_plain c) {
+    return vfmsq_f64(c, a, b);
+}
+#else
+HDI_IN2 hdi_vec_plain hdi_fma_plain(hdi_vec_plain a, hdi_vec_plain b, hdi_vec_plain c) { return a * b + c; }
+HDI_IN2 hdi_vec_plain hdi_fnma_plain(hdi_vec_plain a, hdi_vec_plain b, hdi_vec_plain c) { return c - a * b; }
+#endif
+/* For packs in vectors of eight lanes, which only AVX-512 has. */
+HDI_IN2 hdi_vec_plain hdi_twice_plain(const double *x) { return hdi_load_plain(x); }
+HDI_IN2 hdi_vec_plain hdi_half_plain(hdi_vec_plain v, int k) { (void)k; return v; }
+HDI_IN2 hdi_vec_plain hdi_join_plain(hdi_vec_plain p, hdi_vec_plain q) { (void)q; return p; }
 
 #if HDI_X86
-typedef __m256d hdi_v4;
-typedef __m512d hdi_v8;
+typedef __m256d hdi_vec_avx2;
+typedef __m512d hdi_vec_avx512;
 
-/* AVX2 with FMA. Tiles of 12 x 4. */
 enum {
-    hdi_cols_avx2 = 4, hdi_regs_avx2 = 3, hdi_fused_avx2 = 1, hdi_masks_avx2 = 0, hdi_apart_avx2 = 0,
-    hdi_tile_rows_avx2 = 2, hdi_tile_cols_avx2 = 2, hdi_solve_rows_avx2 = 2, hdi_sweep_rows_avx2 = 2,
-    hdi_sweep_cols_avx2 = 4, hdi_sweep_many_avx2 = 4
+    hdi_regs_avx2 = 3, hdi_cols_avx2 = 4, hdi_pack_regs_avx2 = 2, hdi_pack_cols_avx2 = 2,
+    hdi_most_regs_avx2 = 3, hdi_most_cols_avx2 = 4
 };
 #define HDI_TARGET_avx2 HDI_AVX2
-typedef __m256d hdi_vec_avx2;
-typedef hdi_span hdi_rows_avx2;
-HDI_IN4 hdi_span hdi_rows_of_avx2(int32_t lo, int32_t hi) { return hdi_rows_of_plain(lo, hi); }
-HDI_IN4 hdi_v4 hdi_all_avx2(double a) { return _mm256_set1_pd(a); }
-HDI_IN4 hdi_v4 hdi_load_avx2(const double *p) { return _mm256_loadu_pd(p); }
-HDI_IN4 void hdi_store_avx2(double *p, hdi_v4 v) { _mm256_storeu_pd(p, v); }
-HDI_IN4 hdi_v4 hdi_add_avx2(hdi_v4 a, hdi_v4 b) { return _mm256_add_pd(a, b); }
-HDI_IN4 hdi_v4 hdi_sub_avx2(hdi_v4 a, hdi_v4 b) { return _mm256_sub_pd(a, b); }
-HDI_IN4 hdi_v4 hdi_mul_avx2(hdi_v4 a, hdi_v4 b) { return _mm256_mul_pd(a, b); }
-HDI_IN4 hdi_v4 hdi_fma_avx2(hdi_v4 a, hdi_v4 b, hdi_v4 c) { return _mm256_fmadd_pd(a, b, c); }
-HDI_IN4 hdi_v4 hdi_fnma_avx2(hdi_v4 a, hdi_v4 b, hdi_v4 c) { return _mm256_fnmadd_pd(a, b, c); }
-HDI_IN4 hdi_v4 hdi_fms_avx2(hdi_v4 a, hdi_v4 b, hdi_v4 c) { return _mm256_fmsub_pd(a, b, c); }
-HDI_IN4 double hdi_fnma1_avx2(double a, double b, double c) { return __builtin_fma(-a, b, c); }
-HDI_IN4 hdi_v4 hdi_cross_minus_avx2(hdi_v4 a, hdi_v4 b, hdi_v4 c, hdi_v4 d) { return a * b - c * d; }
-HDI_IN4 hdi_v4 hdi_cross_plus_avx2(hdi_v4 a, hdi_v4 b, hdi_v4 c, hdi_v4 d) { return a * b + c * d; }
-HDI_IN4 double hdi_low_avx2(hdi_v4 v) { return _mm256_cvtsd_f64(v); }
-HDI_IN4 hdi_v4 hdi_lane_avx2(hdi_v4 v, int k) {
+HDI_IN4 __m256d hdi_all_avx2(double a) { return _mm256_set1_pd(a); }
+HDI_IN4 __m256d hdi_load_avx2(const double *p) { return _mm256_loadu_pd(p); }
+HDI_IN4 void hdi_store_avx2(double *p, __m256d v) { _mm256_storeu_pd(p, v); }
+HDI_IN4 __m256d hdi_fma_avx2(__m256d a, __m256d b, __m256d c) { return _mm256_fmadd_pd(a, b, c); }
+HDI_IN4 __m256d hdi_fnma_avx2(__m256d a, __m256d b, __m256d c) { return _mm256_fnmadd_pd(a, b, c); }
+HDI_IN4 __m256d hdi_lane_avx2(__m256d v, int k) {
     switch (k) {
         case 0: return _mm256_permute4x64_pd(v, 0x00);
         case 1: return _mm256_permute4x64_pd(v, 0x55);
@@ -3804,81 +3702,64 @@ HDI_IN4 hdi_v4 hdi_lane_avx2(hdi_v4 v, int k) {
         default: return _mm256_permute4x64_pd(v, 0xff);
     }
 }
-HDI_IN4 double hdi_sum_avx2(hdi_v4 v) {
-    const __m256d pairs = _mm256_hadd_pd(v, v);
-    return _mm_cvtsd_f64(_mm_add_pd(_mm256_castpd256_pd128(pairs), _mm256_extractf128_pd(pairs, 1)));
-}
-HDI_IN4 hdi_v4 hdi_gather_avx2(const double *x, const int32_t *idx) {
-    return _mm256_i32gather_pd(x, _mm_loadu_si128((const __m128i *)(const void *)idx), 8);
-}
-/* lanes lo..hi-1 */
-HDI_IN4 __m256i hdi_lanes_avx2(int64_t lo, int64_t hi) {
+HDI_IN4 double hdi_pick_avx2(__m256d v, int k) { return _mm256_cvtsd_f64(hdi_lane_avx2(v, k)); }
+typedef hdi_span hdi_rows_avx2;
+HDI_IN4 hdi_span hdi_rows_of_avx2(int32_t lo, int32_t hi) { return hdi_rows_of_plain(lo, hi); }
+HDI_IN4 int hdi_has_avx2(hdi_span g, int32_t q) { return hdi_has_plain(g, q); }
+HDI_IN4 __m256d hdi_load_rows_avx2(const double *p, hdi_span g, int32_t q) {
     const __m256i lane = _mm256_set_epi64x(3, 2, 1, 0);
-    return _mm256_and_si256(_mm256_cmpgt_epi64(_mm256_set1_epi64x(hi), lane),
-                            _mm256_cmpgt_epi64(lane, _mm256_set1_epi64x(lo - 1)));
-}
-HDI_IN4 hdi_v4 hdi_load_tail_avx2(const double *p, int64_t n) {
-    return _mm256_maskload_pd(p, hdi_lanes_avx2(0, n));
-}
-HDI_IN4 hdi_v4 hdi_load_some_avx2(const double *p, int64_t n) {
-    return n >= 4 ? _mm256_loadu_pd(p) : hdi_load_tail_avx2(p, n);
-}
-HDI_IN4 hdi_v4 hdi_load_rows_avx2(const double *p, hdi_span g, int32_t q) {
     if (g.lo <= q && g.hi >= q + 4) return _mm256_loadu_pd(p);
-    return _mm256_maskload_pd(p, hdi_lanes_avx2(g.lo - q, g.hi - q));
+    return _mm256_maskload_pd(p, _mm256_andnot_si256(_mm256_cmpgt_epi64(_mm256_set1_epi64x(g.lo - q), lane),
+                                                     _mm256_cmpgt_epi64(_mm256_set1_epi64x(g.hi - q), lane)));
 }
 /* By halves and singles: masked stores are slow on some processors. */
-HDI_IN4 void hdi_store_rows_avx2(double *p, hdi_v4 v, hdi_span g, int32_t q) {
+HDI_IN4 void hdi_store_rows_avx2(double *p, __m256d v, hdi_span g, int32_t q) {
     const int32_t lo = g.lo - q, hi = g.hi - q;
-    if (lo <= 0 && hi >= 4) _mm256_storeu_pd(p, v);
-    else {
-        const __m128d a = _mm256_castpd256_pd128(v), b = _mm256_extractf128_pd(v, 1);
-        if (lo <= 0 && hi >= 2) _mm_storeu_pd(p, a);
-        else if (lo <= 0 && hi >= 1) _mm_storel_pd(p, a);
-        else if (lo <= 1 && hi >= 2) _mm_storeh_pd(p + 1, a);
-        if (lo <= 2 && hi >= 4) _mm_storeu_pd(p + 2, b);
-        else if (lo <= 2 && hi >= 3) _mm_storel_pd(p + 2, b);
-        else if (lo <= 3 && hi >= 4) _mm_storeh_pd(p + 3, b);
-    }
+    const __m128d a = _mm256_castpd256_pd128(v), b = _mm256_extractf128_pd(v, 1);
+    if (lo <= 0 && hi >= 2) _mm_storeu_pd(p, a);
+    else if (lo <= 0 && hi >= 1) _mm_storel_pd(p, a);
+    else if (lo <= 1 && hi >= 2) _mm_storeh_pd(p + 1, a);
+    if (lo <= 2 && hi >= 4) _mm_storeu_pd(p + 2, b);
+    else if (lo <= 2 && hi >= 3) _mm_storel_pd(p + 2, b);
+    else if (lo <= 3 && hi >= 4) _mm_storeh_pd(p + 3, b);
 }
+HDI_IN4 __m256d hdi_twice_avx2(const double *x) { return _mm256_loadu_pd(x); }
+HDI_IN4 __m256d hdi_half_avx2(__m256d v, int k) { (void)k; return v; }
+HDI_IN4 __m256d hdi_join_avx2(__m256d p, __m256d q) { (void)q; return p; }
 
-/* AVX-512. Tiles of 24 x 8. */
 enum {
-    hdi_cols_avx512 = 8, hdi_regs_avx512 = 3, hdi_fused_avx512 = 1, hdi_masks_avx512 = 1,
-    hdi_tile_rows_avx512 = 4, hdi_tile_cols_avx512 = 3, hdi_solve_rows_avx512 = 6, hdi_sweep_rows_avx512 = 4,
-    hdi_sweep_cols_avx512 = 8, hdi_sweep_many_avx512 = 8
+    hdi_regs_avx512 = 3, hdi_cols_avx512 = 8, hdi_pack_regs_avx512 = 4, hdi_pack_cols_avx512 = 3,
+    hdi_most_regs_avx512 = 4, hdi_most_cols_avx512 = 8
 };
 #define HDI_TARGET_avx512 HDI_AVX512
-typedef __m512d hdi_vec_avx512;
+HDI_IN8 __m512d hdi_all_avx512(double a) { return _mm512_set1_pd(a); }
+HDI_IN8 __m512d hdi_load_avx512(const double *p) { return _mm512_loadu_pd(p); }
+HDI_IN8 void hdi_store_avx512(double *p, __m512d v) { _mm512_storeu_pd(p, v); }
+HDI_IN8 __m512d hdi_fma_avx512(__m512d a, __m512d b, __m512d c) { return _mm512_fmadd_pd(a, b, c); }
+HDI_IN8 __m512d hdi_fnma_avx512(__m512d a, __m512d b, __m512d c) { return _mm512_fnmadd_pd(a, b, c); }
+HDI_IN8 __m512d hdi_lane_avx512(__m512d v, int k) {
+    return _mm512_permutexvar_pd(_mm512_set1_epi64(k), v);
+}
+HDI_IN8 double hdi_pick_avx512(__m512d v, int k) { return _mm512_cvtsd_f64(hdi_lane_avx512(v, k)); }
 typedef uint32_t hdi_rows_avx512;                /* a bit for each */
 HDI_IN8 uint32_t hdi_rows_of_avx512(int32_t lo, int32_t hi) {
-    return ((1u << hi) - 1u) & ~0u << (lo > 0 ? lo : 0);
+    return ((1u << (hi > 0 ? hi : 0)) - 1u) & ~0u << (lo > 0 ? lo : 0);
 }
-HDI_IN8 hdi_v8 hdi_all_avx512(double a) { return _mm512_set1_pd(a); }
-HDI_IN8 hdi_v8 hdi_load_avx512(const double *p) { return _mm512_loadu_pd(p); }
-HDI_IN8 void hdi_store_avx512(double *p, hdi_v8 v) { _mm512_storeu_pd(p, v); }
-HDI_IN8 hdi_v8 hdi_add_avx512(hdi_v8 a, hdi_v8 b) { return _mm512_add_pd(a, b); }
-HDI_IN8 hdi_v8 hdi_sub_avx512(hdi_v8 a, hdi_v8 b) { return _mm512_sub_pd(a, b); }
-HDI_IN8 hdi_v8 hdi_mul_avx512(hdi_v8 a, hdi_v8 b) { return _mm512_mul_pd(a, b); }
-HDI_IN8 hdi_v8 hdi_fma_avx512(hdi_v8 a, hdi_v8 b, hdi_v8 c) { return _mm512_fmadd_pd(a, b, c); }
-HDI_IN8 hdi_v8 hdi_fnma_avx512(hdi_v8 a, hdi_v8 b, hdi_v8 c) { return _mm512_fnmadd_pd(a, b, c); }
-HDI_IN8 double hdi_low_avx512(hdi_v8 v) { return _mm512_cvtsd_f64(v); }
-HDI_IN8 hdi_v8 hdi_lane_avx512(hdi_v8 v, int k) { return _mm512_permutexvar_pd(_mm512_set1_epi64(k), v); }
-HDI_IN8 hdi_v8 hdi_load_tail_avx512(const double *p, int64_t n) {
-    return _mm512_maskz_loadu_pd((__mmask8)(n >= 8 ? 0xff : n > 0 ? (1u << n) - 1u : 0), p);
+HDI_IN8 int hdi_has_avx512(uint32_t g, int32_t q) { return (int)(g >> q & 1u); }
+HDI_IN8 __m512d hdi_load_rows_avx512(const double *p, uint32_t g, int32_t q) {
+    return _mm512_maskz_loadu_pd((__mmask8)(g >> q & 0xffu), p);
 }
-HDI_IN8 hdi_v8 hdi_load_some_avx512(const double *p, int64_t n) { return hdi_load_tail_avx512(p, n); }
-HDI_IN8 hdi_v8 hdi_load_rows_avx512(const double *p, uint32_t g, int32_t q) {
-    return _mm512_maskz_loadu_pd((__mmask8)(g >> q & 0xff), p);
+HDI_IN8 void hdi_store_rows_avx512(double *p, __m512d v, uint32_t g, int32_t q) {
+    _mm512_mask_storeu_pd(p, (__mmask8)(g >> q & 0xffu), v);
 }
-HDI_IN8 void hdi_store_rows_avx512(double *p, hdi_v8 v, uint32_t g, int32_t q) {
-    _mm512_mask_storeu_pd(p, (__mmask8)(g >> q & 0xff), v);
+/* (x, x) of four doubles; (h, h) of half k of v */
+HDI_IN8 __m512d hdi_twice_avx512(const double *x) { return _mm512_broadcast_f64x4(_mm256_loadu_pd(x)); }
+HDI_IN8 __m512d hdi_half_avx512(__m512d v, int k) {
+    return k ? _mm512_shuffle_f64x2(v, v, 0xee) : _mm512_shuffle_f64x2(v, v, 0x44);
 }
-/* (x, x) of four doubles */
-HDI_IN8 hdi_v8 hdi_twice512(const double *x) { return _mm512_broadcast_f64x4(_mm256_loadu_pd(x)); }
-/* sum of products from its two halves: p - swap(q) below, p + swap(q) above */
-HDI_IN8 hdi_v8 hdi_join512(hdi_v8 p, hdi_v8 q) {
-    const hdi_v8 t = _mm512_shuffle_f64x2(q, q, 0x4e);
+/* The sum of products of a pack entry (re, im) from its two parts: p - swap(q) below, p + swap(q) above. */
+HDI_IN8 __m512d hdi_join_avx512(__m512d p, __m512d q) {
+    const __m512d t = _mm512_shuffle_f64x2(q, q, 0x4e);
     return _mm512_mask_sub_pd(_mm512_add_pd(p, t), 0x0f, p, t);
 }
 #endif
@@ -3886,13 +3767,13 @@ HDI_IN8 hdi_v8 hdi_join512(hdi_v8 p, hdi_v8 q) {
 /* Plain C comes first, where the file is read. */
 #define HDI_SET plain
 #define HDI_SOLO plain
-#define HDI_WIDTH 2
+#define HDI_WIDTH HDI_PLAIN_WIDTH
 #endif /* HEATDIFF_IMPLEMENTED */
 
 /* ---- the kernels, once for each instruction set ---- */
-/* The text from here to the choice of the set is read once for each set. HDI_OF(name) is name_set, HDI_SOLO
- * the set whose kernels for one right-hand side are taken. HDI_KERNEL begins what the tables hold, HDI_PART
- * what is made part of it, with constants for the arguments that are const int. */
+/* The text from here to the choice of the set is read once for each set. HDI_OF(name) is name_set.
+ * HDI_KERNEL begins what the tables hold, HDI_PART what is made part of it, with constants for the arguments
+ * that are const int. Of these, pack is 0 for real numbers and 1 for packs. */
 
 #ifdef HDI_SET
 #ifndef HDI_OF
@@ -3906,948 +3787,627 @@ HDI_IN8 hdi_v8 hdi_join512(hdi_v8 p, hdi_v8 q) {
 #define HDI_EACH(i, n) HDI_UNROLL for (i = 0; i < (n); i++)
 
 #define hdi_vec HDI_OF(vec)
-#define hdi_vall HDI_OF(all)
-#define hdi_vload HDI_OF(load)
-#define hdi_vstore HDI_OF(store)
-#define hdi_vadd HDI_OF(add)
-#define hdi_vsub HDI_OF(sub)
-#define hdi_vmul HDI_OF(mul)
-#define hdi_vfma HDI_OF(fma)
-#define hdi_vfnma HDI_OF(fnma)
-#define hdi_vlane HDI_OF(lane)
-#define hdi_vlow HDI_OF(low)
-#define HDI_COLS ((int32_t)HDI_OF(cols))
-#define HDI_REGS ((int32_t)HDI_OF(regs))
+#define hdi_num HDI_OF(num)
+#define HDI_ENTRY (pack ? (int)HDI_PACK : 1)                     /* doubles of an entry */
+#define HDI_ROWS (pack ? 1 : HDI_WIDTH)                          /* rows that a num holds */
+#define HDI_REGS (pack ? (int)HDI_OF(pack_regs) : (int)HDI_OF(regs))
+#define HDI_COLS (pack ? (int)HDI_OF(pack_cols) : (int)HDI_OF(cols))
+#define HDI_NUMBERS (pack ? 4 : 1)
+#define HDI_ABREAST (pack ? HDI_WIDTH < 4 ? HDI_WIDTH : 4 : 1)   /* numbers of an entry that a vector holds */
 #endif
 
-/* B = (L diag(d))' in slices */
-HDI_KERNEL void HDI_OF(real_pack)(double *B, const double *L, int64_t ld, const double *d, int32_t n,
-                                  int32_t kc) {
-    int32_t k, q;
-    for (; n > 0; n -= HDI_COLS, L += HDI_COLS) {
-        const double *l = L;
-        for (k = 0; k < kc; k++, l += ld, B += HDI_COLS) {
-            HDI_UNROLL
-            for (q = 0; q < HDI_COLS; q += HDI_WIDTH)
-                hdi_vstore(B + q, hdi_vmul(HDI_OF(load_some)(l + q, n - q), hdi_vall(d[k])));
+/* What registers hold: a num, some rows of a column; a factor, by which all rows of a num are multiplied; or
+ * a sum of such products. Of real numbers re is a vector of rows, or the factor in every lane. Of packs, re
+ * and im are the parts of one entry, or of some of its numbers; but with eight lanes a num is re alone, a
+ * factor is (re, re) and (im, im), and a sum keeps the products with both apart until its end. */
+typedef struct HDI_OF(num) { hdi_vec re, im; } HDI_OF(num);
+
+HDI_PART hdi_num HDI_OF(num_of)(hdi_vec re, hdi_vec im) {
+    hdi_num x;
+    x.re = re;
+    x.im = im;
+    return x;
+}
+HDI_PART hdi_num HDI_OF(num_zero)(void) { return HDI_OF(num_of)(HDI_OF(all)(0), HDI_OF(all)(0)); }
+HDI_PART hdi_num HDI_OF(num_load)(const int pack, const double *p) {
+    const hdi_vec re = HDI_OF(load)(p);
+    if (pack && HDI_WIDTH < 8) return HDI_OF(num_of)(re, HDI_OF(load)(p + 4));
+    return HDI_OF(num_of)(re, re);
+}
+HDI_PART void HDI_OF(num_store)(const int pack, double *p, hdi_num x) {
+    HDI_OF(store)(p, x.re);
+    if (pack && HDI_WIDTH < 8) HDI_OF(store)(p + 4, x.im);
+}
+/* The same for those of rows q.. that are in a set. */
+HDI_PART hdi_num HDI_OF(num_load_rows)(const int pack, const double *p, HDI_OF(rows) g, int32_t q) {
+    hdi_vec re;
+    if (pack) return HDI_OF(has)(g, q) ? HDI_OF(num_load)(1, p) : HDI_OF(num_zero)();
+    re = HDI_OF(load_rows)(p, g, q);
+    return HDI_OF(num_of)(re, re);
+}
+HDI_PART void HDI_OF(num_store_rows)(const int pack, double *p, hdi_num x, HDI_OF(rows) g, int32_t q) {
+    if (!pack) HDI_OF(store_rows)(p, x.re, g, q);
+    else if (HDI_OF(has)(g, q)) HDI_OF(num_store)(1, p, x);
+}
+HDI_PART hdi_num HDI_OF(num_minus)(hdi_num a, hdi_num b) {
+    return HDI_OF(num_of)(a.re - b.re, a.im - b.im);
+}
+HDI_PART hdi_num HDI_OF(factor_load)(const int pack, const double *p) {
+    hdi_vec re;
+    if (pack && HDI_WIDTH == 8) return HDI_OF(num_of)(HDI_OF(twice)(p), HDI_OF(twice)(p + 4));
+    if (pack) return HDI_OF(num_load)(1, p);
+    re = HDI_OF(all)(*p);
+    return HDI_OF(num_of)(re, re);
+}
+/* Row k of a num as a factor. */
+HDI_PART hdi_num HDI_OF(factor_row)(const int pack, hdi_num x, const int k) {
+    hdi_vec re;
+    if (pack && HDI_WIDTH == 8) return HDI_OF(num_of)(HDI_OF(half)(x.re, 0), HDI_OF(half)(x.re, 1));
+    if (pack) return x;
+    re = HDI_OF(lane)(x.re, k);
+    return HDI_OF(num_of)(re, re);
+}
+/* sum += a f */
+HDI_PART void HDI_OF(sum_add)(const int pack, hdi_num *s, hdi_num a, hdi_num f) {
+    s->re = HDI_OF(fma)(a.re, f.re, s->re);
+    if (!pack) return;
+    if (HDI_WIDTH == 8) {
+        s->im = HDI_OF(fma)(a.re, f.im, s->im);
+        return;
+    }
+    s->re = HDI_OF(fnma)(a.im, f.im, s->re);
+    s->im = HDI_OF(fma)(a.re, f.im, HDI_OF(fma)(a.im, f.re, s->im));
+}
+HDI_PART hdi_num HDI_OF(sum_end)(const int pack, hdi_num s) {
+    if (pack && HDI_WIDTH == 8) s.re = HDI_OF(join)(s.re, s.im);
+    return s;
+}
+/* What is left of c when the sum s of products is taken from it; the next product a f taken as well. Packs of
+ * eight lanes go on with the sum, and take it from c at the end. */
+HDI_PART hdi_num HDI_OF(left_begin)(const int pack, hdi_num c, hdi_num s) {
+    return pack && HDI_WIDTH == 8 ? s : HDI_OF(num_minus)(c, s);
+}
+HDI_PART void HDI_OF(left_take)(const int pack, hdi_num *s, hdi_num a, hdi_num f) {
+    if (pack && HDI_WIDTH == 8) {
+        HDI_OF(sum_add)(1, s, a, f);
+        return;
+    }
+    s->re = HDI_OF(fnma)(a.re, f.re, s->re);
+    if (!pack) return;
+    s->re = HDI_OF(fma)(a.im, f.im, s->re);
+    s->im = HDI_OF(fnma)(a.re, f.im, HDI_OF(fnma)(a.im, f.re, s->im));
+}
+HDI_PART hdi_num HDI_OF(left_end)(const int pack, hdi_num c, hdi_num s) {
+    return pack && HDI_WIDTH == 8 ? HDI_OF(num_minus)(c, HDI_OF(sum_end)(1, s)) : s;
+}
+/* a f */
+HDI_PART hdi_num HDI_OF(num_times)(const int pack, hdi_num a, hdi_num f) {
+    const hdi_vec re = a.re * f.re;
+    if (!pack) return HDI_OF(num_of)(re, re);
+    if (HDI_WIDTH == 8) return HDI_OF(sum_end)(1, HDI_OF(num_of)(re, a.re * f.im));
+    return HDI_OF(num_of)(HDI_OF(fnma)(a.im, f.im, re), HDI_OF(fma)(a.re, f.im, a.im * f.re));
+}
+
+/* ---- a tile ---- */
+
+/* One tile of a product or of a solve: n rows, nc columns; `off` are the columns of B in doubles where they
+ * are not side by side, the last one again where there are fewer. Side by side, more than nc are read. */
+typedef struct HDI_OF(tile) {
+    double *c;
+    const double *a, *b;
+    const int64_t *off;
+    int64_t c_col, a_col, b_row;     /* doubles */
+    int64_t depth, diag;             /* entries with row < column + diag are left alone */
+    int32_t n, nc;
+    int packed, store;
+} HDI_OF(tile);
+
+/* x = A B in nv nums of n rows; rest: rows of the last num. */
+HDI_PART void HDI_OF(tile_sum)(const int pack, const int nv, const int nc, const int unit, const int part,
+                               const HDI_OF(tile) *t, hdi_num (*x)[HDI_OF(most_regs)]) {
+    const HDI_OF(rows) g = HDI_OF(rows_of)(0, t->n);
+    const double *a = t->a, *b = t->b;
+    int64_t k;
+    int j, v;
+    HDI_EACH(j, nc)
+        HDI_EACH(v, nv) x[j][v] = HDI_OF(num_zero)();
+    for (k = t->depth; k > 0; k--, a += t->a_col, b += t->b_row) {
+        hdi_num f, rows[HDI_OF(most_regs)];
+        HDI_EACH(v, nv) {
+            const double *from = a + HDI_ENTRY * HDI_ROWS * v;
+            rows[v] = part && v == nv - 1 ? HDI_OF(num_load_rows)(pack, from, g, HDI_ROWS * v)
+                                          : HDI_OF(num_load)(pack, from);
+        }
+        HDI_EACH(j, nc) {
+            f = HDI_OF(factor_load)(pack, b + (unit ? HDI_ENTRY * j : t->off[j]));
+            HDI_EACH(v, nv) HDI_OF(sum_add)(pack, &x[j][v], rows[v], f);
         }
     }
 }
 
-HDI_KERNEL void HDI_OF(real_copy)(double *A, const double *L, int64_t ld, int32_t n, int32_t kc) {
-    enum { mr = HDI_REGS * HDI_WIDTH };
-    int32_t k, q;
-    for (k = 0; k < kc; k++, L += ld, A += mr) {
-        HDI_UNROLL
-        for (q = 0; q < mr; q += HDI_WIDTH) hdi_vstore(A + q, HDI_OF(load_some)(L + q, n - q));
-    }
+HDI_PART void HDI_OF(tile_product)(const int pack, const int nv, const int nc, const int unit,
+                                   const HDI_OF(tile) *t, hdi_num (*x)[HDI_OF(most_regs)]) {
+    if (pack || (HDI_WIDTH < 8 && t->n == HDI_ROWS * nv)) HDI_OF(tile_sum)(pack, nv, nc, unit, 0, t, x);
+    else HDI_OF(tile_sum)(pack, nv, nc, unit, 1, t, x);   /* masks of AVX-512 cost nothing */
 }
 
-/* x(:,j) += a b_j for the columns of a slice */
-HDI_PART void HDI_OF(real_term)(hdi_vec (*x)[HDI_REGS], const int nv, const hdi_vec *a, const double *b) {
+/* C -= A B for nv nums of rows, the last one perhaps in part. */
+HDI_PART void HDI_OF(tile_multiply)(const int pack, const int nv, const int nc, const int unit,
+                                    const HDI_OF(tile) *t) {
+    hdi_num x[HDI_OF(most_cols)][HDI_OF(most_regs)];
+    const int64_t inner = HDI_ENTRY * HDI_ROWS;
+    double *c = t->c;
+    int64_t step = t->c_col;
     int j, v;
-    HDI_EACH(j, HDI_COLS) {
-        const hdi_vec s = hdi_vall(b[j]);
-        HDI_EACH(v, nv) x[j][v] = hdi_vfma(a[v], s, x[j][v]);
-    }
-}
-
-HDI_PART void HDI_OF(real_zero)(hdi_vec (*x)[HDI_REGS], const int nv) {
-    int j, v;
-    HDI_EACH(j, HDI_COLS)
-        HDI_EACH(v, nv) x[j][v] = hdi_vall(0);
-}
-
-/* x = A B in nv vectors of rows: n of them, of which part is only a part of the last vector. */
-HDI_PART void HDI_OF(real_sum)(hdi_vec (*x)[HDI_REGS], const int nv, const int part, int32_t n,
-                               const double *A, int64_t lda, const double *B, int32_t kc) {
-    const int32_t last = HDI_WIDTH * (nv - 1);
-    int32_t k;
-    int v;
-    for (k = 0; k < kc; k++, A += lda, B += HDI_COLS) {
-        hdi_vec a[HDI_REGS];
-        HDI_EACH(v, nv)
-            a[v] = part && v == nv - 1 ? HDI_OF(load_tail)(A + last, n - last) : hdi_vload(A + HDI_WIDTH * v);
-        HDI_OF(real_term)(x, nv, a, B);
-    }
-}
-
-HDI_PART void HDI_OF(real_product)(hdi_vec (*x)[HDI_REGS], const int nv, int32_t n, const double *A,
-                                   int64_t lda, const double *B, int32_t kc) {
-    HDI_OF(real_zero)(x, nv);
-    if (!HDI_OF(masks) && n == HDI_WIDTH * nv) HDI_OF(real_sum)(x, nv, 0, n, A, lda, B, kc);
-    else HDI_OF(real_sum)(x, nv, 1, n, A, lda, B, kc);
-}
-
-/* C -= A B for a tile whose n rows fill nv vectors, the last one perhaps in part. */
-HDI_PART void HDI_OF(real_tile)(const int nv, const hdi_real_tile *t) {
-    hdi_vec x[HDI_COLS][HDI_REGS];
-    double *C = t->C;
-    int64_t step = t->step;
-    int j, v;
-    HDI_OF(real_product)(x, nv, t->n, t->A, t->lda, t->B, t->kc);
-    if (t->n == HDI_WIDTH * nv && t->nc == HDI_COLS && t->diag <= 1 - HDI_COLS) {
-        HDI_EACH(j, HDI_COLS) {
-            HDI_EACH(v, nv) hdi_vstore(C + HDI_WIDTH * v, hdi_vsub(hdi_vload(C + HDI_WIDTH * v), x[j][v]));
-            C += step;
-            step -= t->dec;
+    HDI_OF(tile_product)(pack, nv, nc, unit, t, x);
+    if (t->n == HDI_ROWS * nv && t->diag <= 1 - nc) {
+        HDI_EACH(j, nc) {
+            if (j >= t->nc) continue;
+            HDI_EACH(v, nv) {
+                const hdi_num old = t->store ? HDI_OF(num_zero)() : HDI_OF(num_load)(pack, c + inner * v);
+                HDI_OF(num_store)(pack, c + inner * v,
+                                  HDI_OF(num_minus)(old, HDI_OF(sum_end)(pack, x[j][v])));
+            }
+            c += step;
+            if (t->packed) step -= HDI_ENTRY;
         }
         return;
     }
     /* Loads before stores: columns lie so close that a masked load would overlap the store before it, and
      * wait for it. */
-    HDI_EACH(j, HDI_COLS) {
-        const HDI_OF(rows) g = HDI_OF(rows_of)(t->diag + j, t->n);
+    HDI_EACH(j, nc) {
+        const HDI_OF(rows) g = HDI_OF(rows_of)((int32_t)t->diag + j, t->n);
         if (j >= t->nc) continue;
-        HDI_EACH(v, nv)
-            x[j][v] = hdi_vsub(HDI_OF(load_rows)(C + HDI_WIDTH * v, g, HDI_WIDTH * v), x[j][v]);
-        C += step;
-        step -= t->dec;
+        HDI_EACH(v, nv) {
+            const hdi_num old = t->store ? HDI_OF(num_zero)()
+                                         : HDI_OF(num_load_rows)(pack, c + inner * v, g, HDI_ROWS * v);
+            x[j][v] = HDI_OF(num_minus)(old, HDI_OF(sum_end)(pack, x[j][v]));
+        }
+        c += step;
+        if (t->packed) step -= HDI_ENTRY;
     }
-    C = t->C;
-    step = t->step;
-    HDI_EACH(j, HDI_COLS) {
-        const HDI_OF(rows) g = HDI_OF(rows_of)(t->diag + j, t->n);
+    c = t->c;
+    step = t->c_col;
+    HDI_EACH(j, nc) {
+        const HDI_OF(rows) g = HDI_OF(rows_of)((int32_t)t->diag + j, t->n);
         if (j >= t->nc) continue;
-        HDI_EACH(v, nv) HDI_OF(store_rows)(C + HDI_WIDTH * v, x[j][v], g, HDI_WIDTH * v);
-        C += step;
-        step -= t->dec;
+        HDI_EACH(v, nv) HDI_OF(num_store_rows)(pack, c + inner * v, x[j][v], g, HDI_ROWS * v);
+        c += step;
+        if (t->packed) step -= HDI_ENTRY;
     }
 }
 
-/* One row of tiles; next is the distance of slices, s the first column less the first row, which grows with
- * packed columns only. */
-HDI_KERNEL void HDI_OF(real_tiles)(const hdi_real_tile *first, int64_t n_cols, int64_t next, int64_t s) {
-    hdi_real_tile t = *first;
-    double *C = first->C;
-    for (; n_cols > 0; n_cols -= HDI_COLS) {
-        /* vectors wholly above the diagonal */
-        const int32_t up = s < HDI_WIDTH ? 0 : (int32_t)(s - s % HDI_WIDTH);
-        t.C = C + up;
-        t.A = first->A + up;
-        t.n = first->n - up;
-        t.diag = s < -HDI_COLS ? -HDI_COLS : (int32_t)(s - up);
-        t.nc = n_cols < HDI_COLS ? (int32_t)n_cols : HDI_COLS;
-        if (t.n > HDI_WIDTH * (HDI_REGS - 1)) HDI_OF(real_tile)(HDI_REGS, &t);
-        else if (HDI_REGS > 3 && t.n > 2 * HDI_WIDTH) HDI_OF(real_tile)(3, &t);
-        else if (HDI_REGS > 2 && t.n > HDI_WIDTH) HDI_OF(real_tile)(2, &t);
-        else HDI_OF(real_tile)(1, &t);
-        t.B += next;
-        C += HDI_COLS * t.step - t.dec * (HDI_COLS * (HDI_COLS - 1) / 2);
-        t.step -= t.dec * HDI_COLS;
-        s += t.dec * HDI_COLS;
-    }
-}
-
-HDI_KERNEL void HDI_OF(real_gemm)(double *C, int64_t ld, int32_t n, int32_t nb, const double *A, int64_t lda,
-                                  const double *B, int32_t kb, int32_t kc) {
-    const hdi_real_tile t = {C, A, B, ld, 0, lda, n, 0, 0, kc};
-    HDI_OF(real_tiles)(&t, nb, (int64_t)kb * HDI_COLS, -HDI_COLS);
-}
-
-HDI_KERNEL void HDI_OF(real_update)(double *U, int64_t u, int64_t i, int32_t n, int64_t j0, int64_t j1,
-                                    const double *A, int64_t lda, const double *B, int32_t kc) {
-    double *C = U + (j0 * u - j0 * (j0 - 1) / 2 - j0 + i);
-    const hdi_real_tile t = {C, A, B, u - j0 - 1, 1, lda, n, 0, 0, kc};
-    HDI_OF(real_tiles)(&t, j1 - j0, (int64_t)kc * HDI_COLS, j0 - i);
-}
-
-/* X = (C - A B) over kc columns, then X = X inv(D L') with the block's D L' in the rows of B that follow. */
-HDI_PART void HDI_OF(real_solve)(const int nv, const hdi_real_tile *t, const double *dinv) {
+/* X = (C - A B), then X = X inv(B1) dinv with the rows of B that follow: a column is C less the sum of all
+ * products with columns before it. dinv NULL: ones. */
+HDI_PART void HDI_OF(tile_solve)(const int pack, const int nv, const int nc, const int unit,
+                                 const HDI_OF(tile) *t, const double *dinv) {
     const HDI_OF(rows) g = HDI_OF(rows_of)(0, t->n);
-    const double *B = t->B + (int64_t)t->kc * HDI_COLS;
-    hdi_vec x[HDI_COLS][HDI_REGS];
-    double *C = t->C;
+    const double *b = t->b + t->depth * t->b_row;
+    const int64_t inner = HDI_ENTRY * HDI_ROWS;
+    hdi_num s[HDI_OF(most_cols)][HDI_OF(most_regs)], x[HDI_OF(most_regs)], f;
+    const int late = pack && HDI_WIDTH == 8;     /* c is loaded once more */
     int j, k, v;
-    HDI_OF(real_product)(x, nv, t->n, t->A, t->lda, t->B, t->kc);
-    HDI_EACH(j, HDI_COLS) {
+    HDI_OF(tile_product)(pack, nv, nc, unit, t, s);
+    HDI_EACH(j, nc) {
+        const double *c = t->c + j * t->c_col;
+        if (j >= t->nc || late) continue;
+        HDI_EACH(v, nv) {
+            x[v] = v < nv - 1 ? HDI_OF(num_load)(pack, c + inner * v)
+                              : HDI_OF(num_load_rows)(pack, c + inner * v, g, HDI_ROWS * v);
+            s[j][v] = HDI_OF(left_begin)(pack, x[v], s[j][v]);
+        }
+    }
+    HDI_EACH(j, nc) {
+        double *c = t->c + j * t->c_col;
         if (j >= t->nc) continue;
         HDI_EACH(v, nv) {
-            const double *c = C + j * t->step + HDI_WIDTH * v;
-            x[j][v] = hdi_vsub(v < nv - 1 ? hdi_vload(c) : HDI_OF(load_rows)(c, g, HDI_WIDTH * v), x[j][v]);
+            x[v] = HDI_OF(left_end)(pack, late ? HDI_OF(num_load)(pack, c + inner * v) : s[j][v], s[j][v]);
+            if (dinv) x[v] = HDI_OF(num_times)(pack, x[v], HDI_OF(factor_load)(pack, dinv + HDI_ENTRY * j));
+            if (v < nv - 1) HDI_OF(num_store)(pack, c + inner * v, x[v]);
+            else HDI_OF(num_store_rows)(pack, c + inner * v, x[v], g, HDI_ROWS * v);
         }
-    }
-    HDI_UNROLL
-    for (j = 0; j < HDI_COLS; j++, B += HDI_COLS, C += t->step) {
-        if (j == t->nc) return;
-        HDI_EACH(v, nv) {
-            x[j][v] = hdi_vmul(x[j][v], hdi_vall(dinv[j]));
-            if (v < nv - 1) hdi_vstore(C + HDI_WIDTH * v, x[j][v]);
-            else HDI_OF(store_rows)(C + HDI_WIDTH * v, x[j][v], g, HDI_WIDTH * v);
+        HDI_EACH(k, nc) {
+            if (k <= j || k >= t->nc) continue;
+            f = HDI_OF(factor_load)(pack, b + (unit ? HDI_ENTRY * k : t->off[k]));
+            HDI_EACH(v, nv) HDI_OF(left_take)(pack, &s[k][v], x[v], f);
         }
-        HDI_EACH(k, HDI_COLS) {
-            const hdi_vec b = hdi_vall(B[k]);
-            if (k <= j) continue;
-            HDI_EACH(v, nv) x[k][v] = hdi_vfnma(x[j][v], b, x[k][v]);
-        }
+        b += t->b_row;
     }
 }
 
-HDI_KERNEL void HDI_OF(real_rows)(double *P, int64_t ld, int32_t n, int32_t k1, int32_t k, int32_t nb,
-                                  const double *B, int32_t kb, const double *dinv) {
-    hdi_real_tile t;
-    t.C = P + k * ld;
-    t.step = t.lda = ld;
-    t.dec = 0;
-    t.n = n;
-    t.diag = -HDI_COLS;
-    t.A = P + k1 * ld;
-    t.B = B + (int64_t)k1 * HDI_COLS;
-    t.kc = k - k1;
-    dinv += k;
-    for (; nb > 0; nb -= HDI_COLS, dinv += HDI_COLS) {
-        t.nc = nb < HDI_COLS ? nb : HDI_COLS;
-        if (n > HDI_WIDTH * (HDI_REGS - 1)) HDI_OF(real_solve)(HDI_REGS, &t, dinv);
-        else if (HDI_REGS > 3 && n > 2 * HDI_WIDTH) HDI_OF(real_solve)(3, &t, dinv);
-        else if (HDI_REGS > 2 && n > HDI_WIDTH) HDI_OF(real_solve)(2, &t, dinv);
-        else HDI_OF(real_solve)(1, &t, dinv);
-        t.C += HDI_COLS * ld;
-        t.B += (int64_t)kb * HDI_COLS;
-        t.kc += HDI_COLS;
+HDI_PART void HDI_OF(tile_one)(const int pack, const int solve, const int nv, const int nc, const int unit,
+                               const HDI_OF(tile) *t, const double *dinv) {
+    if (solve) HDI_OF(tile_solve)(pack, nv, nc, unit, t, dinv);
+    else HDI_OF(tile_multiply)(pack, nv, nc, unit, t);
+}
+
+/* A tile of at most HDI_REGS nums; dinv of a solve. A column alone, of which packs have many, is a tile of
+ * its own. */
+HDI_PART void HDI_OF(tile_run)(const int pack, const int solve, const int unit, const HDI_OF(tile) *t,
+                               const double *dinv) {
+    const int nv = (t->n + HDI_ROWS - 1) / HDI_ROWS;
+    if (pack && HDI_COLS > 1 && t->nc == 1) {
+        if (nv >= HDI_REGS) HDI_OF(tile_one)(pack, solve, HDI_REGS, 1, unit, t, dinv);
+        else if (HDI_REGS > 3 && nv == 3) HDI_OF(tile_one)(pack, solve, 3, 1, unit, t, dinv);
+        else if (HDI_REGS > 2 && nv == 2) HDI_OF(tile_one)(pack, solve, 2, 1, unit, t, dinv);
+        else if (HDI_REGS > 1) HDI_OF(tile_one)(pack, solve, 1, 1, unit, t, dinv);
+    } else {
+        if (nv >= HDI_REGS) HDI_OF(tile_one)(pack, solve, HDI_REGS, HDI_COLS, unit, t, dinv);
+        else if (HDI_REGS > 3 && nv == 3) HDI_OF(tile_one)(pack, solve, 3, HDI_COLS, unit, t, dinv);
+        else if (HDI_REGS > 2 && nv == 2) HDI_OF(tile_one)(pack, solve, 2, HDI_COLS, unit, t, dinv);
+        else if (HDI_REGS > 1) HDI_OF(tile_one)(pack, solve, 1, HDI_COLS, unit, t, dinv);
     }
 }
 
-/* Vectors of a block of pivots: the first hold the nc pivots' own rows, the others n rows that follow; rows
- * of vector v, and how many. */
-HDI_PART int32_t HDI_OF(real_first)(const int v, int32_t nc) {
-    enum { top = HDI_COLS / HDI_WIDTH };
-    return v < top ? HDI_WIDTH * v : nc + HDI_WIDTH * (v - top);
-}
-HDI_PART int32_t HDI_OF(real_count)(const int v, int32_t nc, int32_t n) {
-    return v < HDI_COLS / HDI_WIDTH ? nc - HDI_WIDTH * v : n - HDI_WIDTH * (v - HDI_COLS / HDI_WIDTH);
-}
-
-/* For the rows below the pivots the same operations as in real_solve. */
-HDI_PART void HDI_OF(real_pivots)(const int nv, double *P, int64_t ld, int32_t kc, int32_t nc, int32_t n,
-                                  double *S, double *dinv) {
-    enum { top = HDI_COLS / HDI_WIDTH };
-    const double *row = P, *slice = S;
-    double *C = P + kc * ld, *T = S + (int64_t)kc * HDI_COLS;
-    hdi_vec x[HDI_COLS][HDI_REGS];
-    int j, k, v;
-    HDI_OF(real_zero)(x, nv);
-    for (k = 0; k < kc; k++, row += ld, slice += HDI_COLS) {
-        hdi_vec a[HDI_REGS];
-        HDI_EACH(v, nv) a[v] = HDI_OF(load_some)(row + HDI_OF(real_first)(v, nc),
-                                                 HDI_OF(real_count)(v, nc, n));
-        HDI_OF(real_term)(x, nv, a, slice);
-    }
-    HDI_EACH(j, HDI_COLS) {
-        if (j >= nc) continue;
-        HDI_EACH(v, nv) {
-            const double *c = C + j * ld + HDI_OF(real_first)(v, nc);
-            x[j][v] = hdi_vsub(HDI_OF(load_some)(c, HDI_OF(real_count)(v, nc, n)), x[j][v]);
-        }
-    }
-    HDI_UNROLL
-    for (j = 0; j < HDI_COLS; j++, C += ld, T += HDI_COLS) {
-        hdi_vec l[HDI_REGS];
-        double d, q;
-        if (j == nc) return;
-        d = hdi_vlow(hdi_vlane(x[j][j / HDI_WIDTH], j % HDI_WIDTH));
-        if (fabs(d) <= HDI_PIVOT_LEAST) {        /* which hdi_real_block finds on the diagonal */
-            C[j] = d;
-            return;
-        }
-        q = 1 / d;
-        dinv[kc + j] = q;
-        HDI_EACH(v, nv) {
-            const int32_t first = v < top ? j + 1 - HDI_WIDTH * v : 0;
-            l[v] = hdi_vmul(x[j][v], hdi_vall(q));
-            if (v < top) hdi_vstore(T + HDI_WIDTH * v, x[j][v]);
-            HDI_OF(store_rows)(C + HDI_OF(real_first)(v, nc), l[v],
-                               HDI_OF(rows_of)(first, HDI_OF(real_count)(v, nc, n)), 0);
-        }
-        C[j] = d;
-        HDI_EACH(k, HDI_COLS) {
-            if (k <= j) continue;
-            HDI_EACH(v, nv) x[k][v] = hdi_vfnma(l[v], hdi_vlane(x[j][k / HDI_WIDTH], k % HDI_WIDTH), x[k][v]);
-        }
-    }
-}
-
-HDI_KERNEL void HDI_OF(real_block)(double *P, int64_t ld, int32_t k, int32_t nc, int32_t n, double *B,
-                                   double *dinv) {
-    enum { top = HDI_COLS / HDI_WIDTH };
-    if (top + 2 <= HDI_REGS && n > HDI_WIDTH) HDI_OF(real_pivots)(HDI_REGS, P, ld, k, nc, n, B, dinv);
-    else if (top + 1 <= HDI_REGS && n > 0) HDI_OF(real_pivots)(top + 1, P, ld, k, nc, n, B, dinv);
-    else HDI_OF(real_pivots)(top, P, ld, k, nc, n, B, dinv);
-}
-
-/* One right-hand side is bound by memory, and runs are short: AVX-512 takes AVX2's kernels, measured as fast
- * or faster. */
-#if HDI_WIDTH <= 4
-HDI_KERNEL void HDI_OF(real_add)(double *y, const double *x, int64_t n) {
-    for (; n >= HDI_WIDTH; n -= HDI_WIDTH, x += HDI_WIDTH, y += HDI_WIDTH)
-        hdi_vstore(y, hdi_vadd(hdi_vload(y), hdi_vload(x)));
-    for (; n > 0; n--) *y++ += *x++;
-}
-
-HDI_KERNEL void HDI_OF(real_gather)(double *t, const double *x, const int32_t *idx, int64_t n) {
-    for (; n >= HDI_WIDTH; n -= HDI_WIDTH, t += HDI_WIDTH, idx += HDI_WIDTH)
-        hdi_vstore(t, HDI_OF(gather)(x, idx));
-    for (; n > 0; n--) *t++ = x[*idx++];
-}
-
-/* The eight columns from L on; missing ones are the last one again. */
-HDI_PART void HDI_OF(real_columns)(const double **l, const double *L, int64_t ld, int32_t nc) {
+/* Offsets of nc columns of B. */
+HDI_PART void HDI_OF(tile_off)(const int pack, int64_t *off, int64_t b_col, int64_t nc) {
+    const int cols = HDI_COLS;
     int j;
-    HDI_EACH(j, 8) l[j] = L + (j < nc ? j : nc - 1) * ld;
+    HDI_EACH(j, cols) off[j] = HDI_ENTRY * b_col * (j < nc ? j : nc - 1);
 }
 
-/* y - L b in the rows from i on that fill a vector, or, with part, in the rest of them. Even columns are
- * summed apart from odd ones. wide: more than four columns. */
-HDI_PART hdi_vec HDI_OF(real_minus)(hdi_vec y, const double *const *l, int64_t i, const int part,
-                                    int32_t rest, const hdi_vec *b, int wide) {
+/* ---- products ---- */
+
+/* Rows that are taken at a time: real ones are copied so that a tile's are in one piece. */
+#define HDI_BLOCK (pack ? 48 : HDI_ROWS * HDI_REGS)
+
+/* Rows i0.. of a product, number h of every entry. */
+HDI_PART void HDI_OF(product_rows)(const int pack, const int unit, const hdi_product *g, int64_t i0, int h) {
+    const int64_t end = hdi_least(i0 + HDI_BLOCK, g->n);
+    const int64_t cols = g->lower ? hdi_least(g->cols, g->first + end) : g->cols;
+    const double *a = g->a + HDI_ENTRY * i0 + h;
+    int64_t full[HDI_OF(most_cols)], rest[HDI_OF(most_cols)], j, i, a_col = g->a_col, step = g->c_col;
+    double *c = g->c + HDI_ENTRY * i0 + h;
+    HDI_OF(tile) t;
+    if (!unit) HDI_OF(tile_off)(pack, full, g->b_col, HDI_COLS);
+    if (!pack && g->work && cols > 96) {     /* many columns: the rows are worth a copy in one piece */
+        const HDI_OF(rows) rows = HDI_OF(rows_of)(0, (int32_t)(end - i0));
+        int64_t k, q;
+        for (k = 0; k < g->depth; k++)
+            for (q = 0; q < end - i0; q += HDI_WIDTH)
+                HDI_OF(store)(g->work + HDI_BLOCK * k + q,
+                              HDI_OF(load_rows)(a + k * a_col + q, rows, (int32_t)q));
+        a = g->work;
+        a_col = HDI_BLOCK;
+    }
+    t.a_col = HDI_ENTRY * a_col;
+    t.b_row = HDI_ENTRY * g->b_row;
+    t.depth = g->depth;
+    t.packed = g->packed;
+    t.store = g->store;
+    t.b = g->b + h;
+    for (j = 0; j < cols; j += HDI_COLS) {
+        t.nc = (int32_t)hdi_least(cols - j, HDI_COLS);
+        t.off = full;
+        if (!unit && t.nc < HDI_COLS) {
+            HDI_OF(tile_off)(pack, rest, g->b_col, t.nc);
+            t.off = rest;
+        }
+        t.c_col = HDI_ENTRY * step;
+        t.diag = g->lower ? j - g->first - i0 : -HDI_COLS;
+        /* nums wholly above the diagonal */
+        i = t.diag < HDI_ROWS ? 0 : t.diag - t.diag % HDI_ROWS;
+        for (t.diag -= i; i < end - i0; i += HDI_ROWS * HDI_REGS, t.diag -= HDI_ROWS * HDI_REGS) {
+            t.c = c + HDI_ENTRY * i;
+            t.a = a + HDI_ENTRY * i;
+            t.n = (int32_t)hdi_least(end - i0 - i, HDI_ROWS * HDI_REGS);
+            HDI_OF(tile_run)(pack, 0, unit, &t, NULL);
+        }
+        c += HDI_ENTRY * (HDI_COLS * step - (g->packed ? HDI_COLS * (HDI_COLS - 1) / 2 : 0));
+        if (g->packed) step -= HDI_COLS;
+        t.b += HDI_ENTRY * g->b_next;
+    }
+}
+
+HDI_PART void HDI_OF(product)(const int pack, const hdi_product *g) {
+    int64_t i;
+    int h;
+    for (h = 0; h < HDI_NUMBERS; h += HDI_ABREAST) {
+        for (i = 0; i < g->n; i += HDI_BLOCK) {
+            if (g->b_col == 1) HDI_OF(product_rows)(pack, 1, g, i, h);
+            else HDI_OF(product_rows)(pack, 0, g, i, h);
+        }
+    }
+}
+
+/* ---- solves ---- */
+
+HDI_PART void HDI_OF(solve_rows)(const int pack, const int unit, const hdi_solve *g) {
+    int64_t full[HDI_OF(most_cols)], rest[HDI_OF(most_cols)], i, j;
+    HDI_OF(tile) t;
+    int h;
+    if (!unit) HDI_OF(tile_off)(pack, full, g->b_col, HDI_COLS);
+    if (!unit) HDI_OF(tile_off)(pack, rest, g->b_col, (g->nb - 1) % HDI_COLS + 1);
+    t.c_col = t.a_col = HDI_ENTRY * g->x_col;
+    t.b_row = HDI_ENTRY * g->b_row;
+    for (h = 0; h < HDI_NUMBERS; h += HDI_ABREAST) {
+        for (i = 0; i < g->n; i += HDI_ROWS * HDI_REGS) {
+            t.n = (int32_t)hdi_least(g->n - i, HDI_ROWS * HDI_REGS);
+            t.a = g->x + HDI_ENTRY * i + h;
+            t.b = g->b + h;
+            for (j = 0; j < g->nb; j += HDI_COLS, t.b += HDI_ENTRY * g->b_next) {
+                t.nc = (int32_t)hdi_least(g->nb - j, HDI_COLS);
+                t.off = t.nc < HDI_COLS ? rest : full;
+                t.depth = g->before + j;
+                t.c = g->x + HDI_ENTRY * (i + (g->before + j) * g->x_col) + h;
+                HDI_OF(tile_run)(pack, 1, unit, &t, g->dinv ? g->dinv + HDI_ENTRY * j + h : NULL);
+            }
+        }
+    }
+}
+
+HDI_PART void HDI_OF(solve)(const int pack, const hdi_solve *g) {
+    if (g->b_col == 1) HDI_OF(solve_rows)(pack, 1, g);
+    else HDI_OF(solve_rows)(pack, 0, g);
+}
+
+/* Nums of a block of pivots: the first hold the nc pivots' own rows, the others n rows that follow. The first
+ * row of num v, and which of its rows there are, from `first` on. */
+HDI_PART int32_t HDI_OF(pivot_first)(const int pack, const int v, int32_t nc) {
+    const int top = HDI_COLS / HDI_ROWS;
+    return v < top ? HDI_ROWS * v : nc + HDI_ROWS * (v - top);
+}
+HDI_PART HDI_OF(rows) HDI_OF(pivot_rows)(const int pack, const int v, int32_t first, const hdi_eliminate *g) {
+    const int top = HDI_COLS / HDI_ROWS;
+    const int32_t n = v < top ? g->nc - HDI_ROWS * v : g->n - HDI_ROWS * (v - top);
+    return HDI_OF(rows_of)(first, n < HDI_ROWS ? n : HDI_ROWS);
+}
+
+/* 1/d as a factor, also to `to`. 0: it is none. */
+HDI_PART int HDI_OF(pivot_invert)(const int pack, hdi_num d, const int row, double *to, hdi_num *f) {
+    double size[HDI_PACK];
+    if (pack) {
+        HDI_OF(num_store)(1, size, d);
+        if (!hdi_pack_invert(size, to, HDI_ABREAST)) return 0;
+    } else {
+        size[0] = HDI_OF(pick)(d.re, row);
+        if (fabs(size[0]) <= HDI_PIVOT_LEAST) return 0;
+        *to = 1 / size[0];
+    }
+    *f = HDI_OF(factor_load)(pack, to);
+    return 1;
+}
+
+/* For the rows below the pivots the same operations as in a solve. */
+HDI_PART void HDI_OF(pivots)(const int pack, const int nv, const hdi_eliminate *g, int h) {
+    const int cols = HDI_COLS, top = cols / HDI_ROWS, late = pack && HDI_WIDTH == 8;
+    const double *row = g->x + h, *slice = g->s + h;
+    double *c = g->x + HDI_ENTRY * g->before * g->x_col + h;
+    double *s = g->s + HDI_ENTRY * g->before * cols + h, *dinv = g->dinv + h;
+    hdi_num sum[HDI_OF(most_cols)][HDI_OF(most_regs)], x[HDI_OF(most_regs)], l[HDI_OF(most_regs)], f;
+    int64_t k;
+    int i, j, v;
+    HDI_EACH(j, cols)
+        HDI_EACH(v, nv) sum[j][v] = HDI_OF(num_zero)();
+    for (k = 0; k < g->before; k++, row += HDI_ENTRY * g->x_col, slice += HDI_ENTRY * cols) {
+        HDI_EACH(v, nv)
+            l[v] = HDI_OF(num_load_rows)(pack, row + HDI_ENTRY * HDI_OF(pivot_first)(pack, v, g->nc),
+                                         HDI_OF(pivot_rows)(pack, v, 0, g), 0);
+        HDI_EACH(j, cols) {
+            f = HDI_OF(factor_load)(pack, slice + HDI_ENTRY * (j < g->nc ? j : 0));
+            HDI_EACH(v, nv) HDI_OF(sum_add)(pack, &sum[j][v], l[v], f);
+        }
+    }
+    HDI_EACH(j, cols) {
+        if (j >= g->nc || late) continue;
+        HDI_EACH(v, nv) {
+            const double *from = c + HDI_ENTRY * (j * g->x_col + HDI_OF(pivot_first)(pack, v, g->nc));
+            x[v] = HDI_OF(num_load_rows)(pack, from, HDI_OF(pivot_rows)(pack, v, 0, g), 0);
+            sum[j][v] = HDI_OF(left_begin)(pack, x[v], sum[j][v]);
+        }
+    }
+    HDI_EACH(j, cols) {
+        if (j >= g->nc) continue;
+        HDI_EACH(v, nv) {
+            x[v] = sum[j][v];
+            if (late) x[v] = HDI_OF(num_load_rows)(pack, c + HDI_ENTRY * HDI_OF(pivot_first)(pack, v, g->nc),
+                                                   HDI_OF(pivot_rows)(pack, v, 0, g), 0);
+            x[v] = HDI_OF(left_end)(pack, x[v], sum[j][v]);
+        }
+        if (pack) HDI_OF(num_store)(1, c + HDI_PACK * j, x[j / HDI_ROWS]);
+        else c[j] = HDI_OF(pick)(x[j / HDI_ROWS].re, j % HDI_ROWS);
+        if (!HDI_OF(pivot_invert)(pack, x[j / HDI_ROWS], j % HDI_ROWS, dinv + HDI_ENTRY * j, &f)) return;
+        HDI_EACH(v, nv) {
+            const int first = v < top ? j + 1 - HDI_ROWS * v : 0;
+            l[v] = HDI_OF(num_times)(pack, x[v], f);
+            if (v < top) HDI_OF(num_store)(pack, s + HDI_ENTRY * HDI_ROWS * v, x[v]);
+            HDI_OF(num_store_rows)(pack, c + HDI_ENTRY * HDI_OF(pivot_first)(pack, v, g->nc), l[v],
+                                   HDI_OF(pivot_rows)(pack, v, first, g), 0);
+        }
+        HDI_EACH(i, cols) {
+            if (i <= j) continue;
+            f = HDI_OF(factor_row)(pack, x[i / HDI_ROWS], i % HDI_ROWS);
+            HDI_EACH(v, nv) HDI_OF(left_take)(pack, &sum[i][v], l[v], f);
+        }
+        c += HDI_ENTRY * g->x_col;
+        s += HDI_ENTRY * cols;
+    }
+}
+
+HDI_PART void HDI_OF(eliminate)(const int pack, const hdi_eliminate *g) {
+    const int top = HDI_COLS / HDI_ROWS;
+    int h;
+    for (h = 0; h < HDI_NUMBERS; h += HDI_ABREAST) {
+        if (top + 2 <= HDI_REGS && g->n > HDI_ROWS) HDI_OF(pivots)(pack, HDI_REGS, g, h);
+        else if (top + 1 <= HDI_REGS && g->n > 0) HDI_OF(pivots)(pack, top + 1, g, h);
+        else HDI_OF(pivots)(pack, top, g, h);
+    }
+}
+
+/* ---- copies ---- */
+
+HDI_PART void HDI_OF(slice)(const int pack, double *b, const double *x, int64_t row, int64_t col,
+                            const double *d, int64_t n, int64_t depth) {
+    const int cols = HDI_COLS;
+    const HDI_OF(rows) rows = HDI_OF(rows_of)(0, (int32_t)n);
+    int64_t k, j;
+    int q;
+    for (k = 0; k < depth; k++, x += HDI_ENTRY * col, b += HDI_ENTRY * cols) {
+        if (!pack && row == 1) {
+            HDI_UNROLL
+            for (q = 0; q < cols; q += HDI_WIDTH) {
+                hdi_vec v = HDI_OF(load_rows)(x + q, rows, q);
+                if (d) v = v * HDI_OF(all)(d[k]);
+                HDI_OF(store)(b + q, v);
+            }
+            continue;
+        }
+        for (j = 0; j < n; j++) {
+            const double *from = x + HDI_ENTRY * j * row;
+            if (!pack) b[j] = d ? *from * d[k] : *from;
+            for (q = 0; pack && q < 4; q += HDI_ABREAST) {
+                hdi_num v = HDI_OF(num_load)(1, from + q);
+                if (d) v = HDI_OF(num_times)(1, v, HDI_OF(factor_load)(1, d + HDI_PACK * k + q));
+                HDI_OF(num_store)(1, b + HDI_PACK * j + q, v);
+            }
+        }
+    }
+}
+
+HDI_PART void HDI_OF(slices)(const int pack, double *b, int64_t b_next, const double *x, int64_t row,
+                             int64_t col, const double *d, int64_t n, int64_t depth) {
+    int64_t j;
+    for (j = 0; j < n; j += HDI_COLS, b += HDI_ENTRY * b_next)
+        HDI_OF(slice)(pack, b, x + HDI_ENTRY * j * row, row, col, d, hdi_least(n - j, HDI_COLS), depth);
+}
+
+HDI_KERNEL void HDI_OF(add)(double *y, const double *x, int64_t n) {
+    for (; n >= HDI_WIDTH; n -= HDI_WIDTH, x += HDI_WIDTH, y += HDI_WIDTH)
+        HDI_OF(store)(y, HDI_OF(load)(y) + HDI_OF(load)(x));
+    if (n > 0) {
+        const HDI_OF(rows) g = HDI_OF(rows_of)(0, (int32_t)n);
+        HDI_OF(store_rows)(y, HDI_OF(load_rows)(y, g, 0) + HDI_OF(load_rows)(x, g, 0), g, 0);
+    }
+}
+
+/* ---- one real right-hand side ---- */
+/* It is bound by memory, and runs are short: AVX-512 takes AVX2's kernels, measured as fast or faster. A
+ * vector goes along the rows. */
+
+#if HDI_WIDTH <= 4
+/* Row i of the eight columns from l on; missing ones are the last one again. */
+HDI_PART void HDI_OF(single_columns)(const double **l, const hdi_single *g) {
+    int j;
+    HDI_EACH(j, 8) l[j] = g->l + g->nc + (j < g->nc ? j : g->nc - 1) * g->ld;
+}
+
+/* y -= L b for a vector of rows; even columns are summed apart from odd ones. wide: more than four. */
+HDI_PART void HDI_OF(single_up_rows)(double *y, const double *const *l, int64_t i, const int part,
+                                     HDI_OF(rows) g, const hdi_vec *b, int wide) {
     hdi_vec s[2];
     int j;
-    s[0] = y;
-    s[1] = hdi_vall(0);
-    HDI_EACH(j, 8) {
-        if (j >= 4 && !wide) continue;
-        s[j % 2] = hdi_vfnma(part ? HDI_OF(load_tail)(l[j] + i, rest) : hdi_vload(l[j] + i), b[j], s[j % 2]);
-    }
-    return hdi_vadd(s[0], s[1]);
+    s[0] = part ? HDI_OF(load_rows)(y + i, g, 0) : HDI_OF(load)(y + i);
+    s[1] = HDI_OF(all)(0);
+    HDI_EACH(j, 8)
+        if (j < 4 || wide)
+            s[j % 2] = HDI_OF(fnma)(part ? HDI_OF(load_rows)(l[j] + i, g, 0) : HDI_OF(load)(l[j] + i), b[j],
+                                    s[j % 2]);
+    if (part) HDI_OF(store_rows)(y + i, s[0] + s[1], g, 0);
+    else HDI_OF(store)(y + i, s[0] + s[1]);
 }
 
-HDI_PART void HDI_OF(real_sweep)(double *y, const double *const *l, int64_t n, const hdi_vec *b, int wide,
-                                 const int keep) {
+HDI_PART void HDI_OF(single_up_part)(double *y, const double *const *l, int64_t n, const hdi_vec *b,
+                                     int wide) {
     int64_t i;
     for (i = 0; i + HDI_WIDTH <= n; i += HDI_WIDTH)
-        hdi_vstore(y + i, HDI_OF(real_minus)(keep ? hdi_vload(y + i) : hdi_vall(0), l, i, 0, 0, b, wide));
-    if (i < n) {
-        const int32_t rest = (int32_t)(n - i);
-        const hdi_vec from = keep ? HDI_OF(load_tail)(y + i, rest) : hdi_vall(0);
-        const hdi_vec to = HDI_OF(real_minus)(from, l, i, 1, rest, b, wide);
-        HDI_OF(store_rows)(y + i, to, HDI_OF(rows_of)(0, rest), 0);
-    }
+        HDI_OF(single_up_rows)(y, l, i, 0, HDI_OF(rows_of)(0, HDI_WIDTH), b, wide);
+    if (i < n) HDI_OF(single_up_rows)(y, l, i, 1, HDI_OF(rows_of)(0, (int32_t)(n - i)), b, wide);
 }
 
-HDI_KERNEL void HDI_OF(real_forward)(double *b, const double *L, int64_t ld, int32_t nc, int64_t n1,
-                                     double *t, int64_t n2, int first) {
+HDI_KERNEL void HDI_OF(single_up)(const hdi_single *g) {
     const double *l[8];
-    double x[8];
     hdi_vec v[8];
+    double x[8];
     int j, k;
-    HDI_EACH(j, 8) x[j] = j < nc ? b[j] : 0.0;
+    HDI_EACH(j, 8) x[j] = j < g->nc ? g->x[j] : 0.0;
     HDI_EACH(j, 8)
         HDI_EACH(k, 8)
-            if (k > j && k < nc) x[k] = HDI_OF(fnma1)(L[k + j * ld], x[j], x[k]);
+            if (k > j && k < g->nc) x[k] -= g->l[k + j * g->ld] * x[j];
     HDI_EACH(j, 8) {
-        v[j] = hdi_vall(x[j]);
-        if (j < nc) b[j] = x[j];
+        v[j] = HDI_OF(all)(x[j]);
+        if (j < g->nc) g->x[j] = x[j];
     }
-    HDI_OF(real_columns)(l, L + nc, ld, nc);
-    HDI_OF(real_sweep)(b + nc, l, n1, v, nc > 4, 1);
-    HDI_EACH(j, 8) l[j] += n1;
-    if (first) HDI_OF(real_sweep)(t, l, n2, v, nc > 4, 0);
-    else HDI_OF(real_sweep)(t, l, n2, v, nc > 4, 1);
+    HDI_OF(single_columns)(l, g);
+    HDI_OF(single_up_part)(g->x + g->nc, l, g->n, v, g->nc > 4);
+    HDI_EACH(j, 8) l[j] += g->n;
+    HDI_OF(single_up_part)(g->t, l, g->u, v, g->nc > 4);
 }
 
 /* s += L' y */
-HDI_PART void HDI_OF(real_dots)(hdi_vec *s, const double *const *l, int64_t n, const double *y, int wide) {
+HDI_PART void HDI_OF(single_down_part)(hdi_vec *s, const double *const *l, int64_t n, const double *y,
+                                       int wide) {
+    HDI_OF(rows) g;
     int64_t i;
     int j;
     for (i = 0; i + HDI_WIDTH <= n; i += HDI_WIDTH) {
-        const hdi_vec v = hdi_vload(y + i);
+        const hdi_vec v = HDI_OF(load)(y + i);
         HDI_EACH(j, 8)
-            if (j < 4 || wide) s[j] = hdi_vfma(hdi_vload(l[j] + i), v, s[j]);
+            if (j < 4 || wide) s[j] = HDI_OF(fma)(HDI_OF(load)(l[j] + i), v, s[j]);
     }
-    if (i < n) {
-        const hdi_vec v = HDI_OF(load_tail)(y + i, n - i);
-        HDI_EACH(j, 8) s[j] = hdi_vfma(HDI_OF(load_tail)(l[j] + i, n - i), v, s[j]);
-    }
+    if (i == n) return;
+    g = HDI_OF(rows_of)(0, (int32_t)(n - i));
+    HDI_EACH(j, 8)
+        s[j] = HDI_OF(fma)(HDI_OF(load_rows)(l[j] + i, g, 0), HDI_OF(load_rows)(y + i, g, 0), s[j]);
 }
 
-HDI_KERNEL void HDI_OF(real_backward)(double *b, const double *L, int64_t ld, int32_t nc, int64_t n1,
-                                      const double *t, int64_t n2) {
+HDI_KERNEL void HDI_OF(single_down)(const hdi_single *g) {
     const double *l[8];
     hdi_vec s[8];
     double x[8];
     int j, k;
-    HDI_OF(real_columns)(l, L + nc, ld, nc);
-    HDI_EACH(j, 8) s[j] = hdi_vall(0);
-    HDI_OF(real_dots)(s, l, n1, b + nc, nc > 4);
+    HDI_OF(single_columns)(l, g);
+    HDI_EACH(j, 8) s[j] = HDI_OF(all)(0);
+    HDI_OF(single_down_part)(s, l, g->n, g->x + g->nc, g->nc > 4);
+    HDI_EACH(j, 8) l[j] += g->n;
+    HDI_OF(single_down_part)(s, l, g->u, g->t, g->nc > 4);
     HDI_EACH(j, 8) {
-        l[j] += n1;
-        x[j] = 0;
-        if (!HDI_OF(apart)) continue;
-        x[j] = HDI_OF(sum)(s[j]);
-        s[j] = hdi_vall(0);
+        x[j] = HDI_OF(pick)(s[j], 0);
+        HDI_EACH(k, HDI_WIDTH)
+            if (k > 0) x[j] += HDI_OF(pick)(s[j], k);
+        x[j] = j < g->nc ? g->x[j] - x[j] : 0.0;
     }
-    HDI_OF(real_dots)(s, l, n2, t, nc > 4);
-    HDI_EACH(j, 8) x[j] = j < nc ? b[j] - (x[j] + HDI_OF(sum)(s[j])) : 0.0;
     HDI_UNROLL
     for (k = 7; k > 0; k--) {
         HDI_EACH(j, 8)
-            if (j < k && k < nc) x[j] = HDI_OF(fnma1)(L[k + j * ld], x[k], x[j]);
+            if (j < k && k < g->nc) x[j] -= g->l[k + j * g->ld] * x[k];
     }
     HDI_EACH(j, 8)
-        if (j < nc) b[j] = x[j];
+        if (j < g->nc) g->x[j] = x[j];
 }
 #endif
 
-/* y -= L x in n_rows rows from i on: eight right-hand sides */
-HDI_PART void HDI_OF(real_gemv8_rows)(const int n_rows, double *y, const int32_t *idx, const double *l,
-                                      int64_t ld, int64_t i, const double *x, int32_t nc) {
-    enum { n_vec = 8 / HDI_WIDTH };
-    hdi_vec s[HDI_WIDTH][n_vec];
-    int32_t k;
-    int r, v;
-    HDI_EACH(r, n_rows)
-        HDI_EACH(v, n_vec) s[r][v] = hdi_vall(0);
-    l += i;
-    for (k = 0; k < nc; k++, l += ld, x += 8) {
-        if (n_rows > 2) HDI_PREFETCH(l + 32);
-        HDI_EACH(r, n_rows) {
-            const hdi_vec a = hdi_vall(l[r]);
-            HDI_EACH(v, n_vec) s[r][v] = hdi_vfma(hdi_vload(x + HDI_WIDTH * v), a, s[r][v]);
-        }
-    }
-    HDI_EACH(r, n_rows) {
-        double *to = y + 8 * (idx ? (int64_t)idx[i + r] : i + r);
-        HDI_EACH(v, n_vec) hdi_vstore(to + HDI_WIDTH * v, hdi_vsub(hdi_vload(to + HDI_WIDTH * v), s[r][v]));
-    }
+/* ---- what the tables hold ---- */
+
+HDI_KERNEL void HDI_OF(real_product)(const hdi_product *g) { HDI_OF(product)(0, g); }
+HDI_KERNEL void HDI_OF(pack_product)(const hdi_product *g) { HDI_OF(product)(1, g); }
+HDI_KERNEL void HDI_OF(real_solve)(const hdi_solve *g) { HDI_OF(solve)(0, g); }
+HDI_KERNEL void HDI_OF(pack_solve)(const hdi_solve *g) { HDI_OF(solve)(1, g); }
+HDI_KERNEL void HDI_OF(real_eliminate)(const hdi_eliminate *g) { HDI_OF(eliminate)(0, g); }
+HDI_KERNEL void HDI_OF(pack_eliminate)(const hdi_eliminate *g) { HDI_OF(eliminate)(1, g); }
+HDI_KERNEL void HDI_OF(real_slices)(double *b, int64_t b_next, const double *x, int64_t row, int64_t col,
+                                    const double *d, int64_t n, int64_t depth) {
+    HDI_OF(slices)(0, b, b_next, x, row, col, d, n, depth);
+}
+HDI_KERNEL void HDI_OF(pack_slices)(double *b, int64_t b_next, const double *x, int64_t row, int64_t col,
+                                    const double *d, int64_t n, int64_t depth) {
+    HDI_OF(slices)(1, b, b_next, x, row, col, d, n, depth);
 }
 
-HDI_KERNEL void HDI_OF(real_gemv8)(double *y, const int32_t *idx, const double *L, int64_t ld, int64_t n,
-                                   const double *x, int32_t nc) {
-    int64_t i = 0;
-    for (; i + HDI_WIDTH <= n; i += HDI_WIDTH) HDI_OF(real_gemv8_rows)(HDI_WIDTH, y, idx, L, ld, i, x, nc);
-    if (HDI_WIDTH > 2)
-        for (; i + 2 <= n; i += 2) HDI_OF(real_gemv8_rows)(2, y, idx, L, ld, i, x, nc);
-    if (i < n) HDI_OF(real_gemv8_rows)(1, y, idx, L, ld, i, x, nc);
-}
-
-/* x -= L' y for nc <= n_cols columns */
-HDI_PART void HDI_OF(real_dots8_cols)(const int n_cols, double *x, const double *L, int64_t ld, int64_t n,
-                                      const double *y, const int32_t *idx, int32_t nc) {
-    enum { n_vec = 8 / HDI_WIDTH };
-    const double *l[HDI_WIDTH];
-    hdi_vec s[HDI_WIDTH][n_vec];
-    int64_t i;
-    int j, v;
-    HDI_EACH(j, n_cols) {
-        l[j] = L + (j < nc ? j : nc - 1) * ld;
-        HDI_EACH(v, n_vec) s[j][v] = hdi_vall(0);
-    }
-    for (i = 0; i < n; i++) {
-        const double *from = y + 8 * (idx ? (int64_t)idx[i] : i);
-        HDI_EACH(j, n_cols) {
-            const hdi_vec a = hdi_vall(l[j][i]);
-            HDI_EACH(v, n_vec) s[j][v] = hdi_vfma(hdi_vload(from + HDI_WIDTH * v), a, s[j][v]);
-        }
-    }
-    HDI_UNROLL
-    for (j = 0; j < n_cols; j++, x += 8) {
-        if (j >= nc) continue;
-        HDI_EACH(v, n_vec) hdi_vstore(x + HDI_WIDTH * v, hdi_vsub(hdi_vload(x + HDI_WIDTH * v), s[j][v]));
-    }
-}
-
-HDI_KERNEL void HDI_OF(real_dots8)(double *x, const double *L, int64_t ld, int64_t n, const double *y,
-                                   const int32_t *idx, int32_t nc) {
-    for (; nc > HDI_WIDTH / 2; nc -= HDI_WIDTH, x += 8 * HDI_WIDTH, L += HDI_WIDTH * ld)
-        HDI_OF(real_dots8_cols)(HDI_WIDTH, x, L, ld, n, y, idx, nc);
-    if (nc > 0) HDI_OF(real_dots8_cols)(HDI_WIDTH / 2, x, L, ld, n, y, idx, nc);
-}
-
-#if HDI_WIDTH == 2
-/* Sums first, then the difference: eight rows do not fit into the registers. */
-HDI_KERNEL void HDI_OF(real_lower8)(double *x, const double *L, int64_t ld, int32_t nc) {
-    int32_t j;
-    for (j = 1; j < nc; j++) HDI_OF(real_gemv8)(x + 8 * j, NULL, L + j, ld, 1, x, j);
-}
-
-HDI_KERNEL void HDI_OF(real_upper8)(double *x, const double *L, int64_t ld, int32_t nc) {
-    int32_t j;
-    for (j = nc - 2; j >= 0; j--)
-        HDI_OF(real_dots8)(x + 8 * j, L + j + 1 + j * ld, ld, nc - 1 - j, x + 8 * (j + 1), NULL, 1);
-}
-#else
-/* The solve with the triangle, whose row k and column j < k is at L[k + j ld], or its transpose. */
-HDI_PART void HDI_OF(real_triangle8)(const int up, double *x, const double *L, int64_t ld, int32_t nc) {
-    hdi_vec v[8];
-    int32_t j, k;
-    HDI_EACH(j, 8) v[j] = j < nc ? hdi_vload(x + 8 * j) : hdi_vall(0);
-    HDI_EACH(k, 8) {
-        HDI_EACH(j, 8) {
-            if (!up && j < k && k < nc) v[k] = hdi_vfnma(v[j], hdi_vall(L[k + j * ld]), v[k]);
-            if (up && j < 7 - k && 7 - k < nc) v[j] = hdi_vfnma(v[7 - k], hdi_vall(L[7 - k + j * ld]), v[j]);
-        }
-    }
-    HDI_EACH(j, 8)
-        if (j < nc) hdi_vstore(x + 8 * j, v[j]);
-}
-
-HDI_KERNEL void HDI_OF(real_lower8)(double *x, const double *L, int64_t ld, int32_t nc) {
-    int v;
-    for (v = 0; v < 8; v += HDI_WIDTH) HDI_OF(real_triangle8)(0, x + v, L, ld, nc);
-}
-
-HDI_KERNEL void HDI_OF(real_upper8)(double *x, const double *L, int64_t ld, int32_t nc) {
-    int v;
-    for (v = 0; v < 8; v += HDI_WIDTH) HDI_OF(real_triangle8)(1, x + v, L, ld, nc);
-}
-#endif
-
-/* ---- packs ---- */
-
-#if HDI_WIDTH == 8
-/* An entry is one register. A product with the factor (r, m) = ((re, re), (im, im)) is summed in two halves,
- * and only the sums are brought together: re = p.lo - q.hi, im = p.hi + q.lo. */
-typedef struct HDI_OF(entry) { hdi_vec v; } HDI_OF(entry);
-typedef struct HDI_OF(twice) { hdi_vec r, m; } HDI_OF(twice);
-typedef struct HDI_OF(total) { hdi_vec p, q; } HDI_OF(total);
-
-HDI_PART void HDI_OF(entry_load)(HDI_OF(entry) *x, const double *from) { x->v = hdi_vload(from); }
-HDI_PART void HDI_OF(entry_store)(double *to, const HDI_OF(entry) *x) { hdi_vstore(to, x->v); }
-HDI_PART void HDI_OF(twice_load)(HDI_OF(twice) *f, const double *from) {
-    f->r = hdi_twice512(from);
-    f->m = hdi_twice512(from + 4);
-}
-/* s = x */
-HDI_PART void HDI_OF(total_begin)(HDI_OF(total) *s, const HDI_OF(entry) *x) {
-    s->p = x->v;
-    s->q = hdi_vall(0);
-}
-HDI_PART void HDI_OF(total_zero)(HDI_OF(total) *s) { s->p = s->q = hdi_vall(0); }
-/* s += x f */
-HDI_PART void HDI_OF(total_add)(HDI_OF(total) *s, const HDI_OF(entry) *x, const HDI_OF(twice) *f) {
-    s->p = hdi_vfma(x->v, f->r, s->p);
-    s->q = hdi_vfma(x->v, f->m, s->q);
-}
-/* s -= x f */
-HDI_PART void HDI_OF(total_take)(HDI_OF(total) *s, const HDI_OF(entry) *x, const HDI_OF(twice) *f) {
-    s->p = hdi_vfnma(x->v, f->r, s->p);
-    s->q = hdi_vfnma(x->v, f->m, s->q);
-}
-HDI_PART void HDI_OF(total_end)(HDI_OF(entry) *x, const HDI_OF(total) *s) { x->v = hdi_join512(s->p, s->q); }
-/* x = x f */
-HDI_PART void HDI_OF(entry_times)(HDI_OF(entry) *x, const HDI_OF(twice) *f) {
-    x->v = hdi_join512(hdi_vmul(x->v, f->r), hdi_vmul(x->v, f->m));
-}
-HDI_PART void HDI_OF(entry_scale)(HDI_OF(entry) *x, const HDI_OF(twice) *f) { HDI_OF(entry_times)(x, f); }
-/* c = c - s, or -s */
-HDI_PART void HDI_OF(total_put)(double *c, const HDI_OF(total) *s, int store) {
-    hdi_vstore(c, hdi_vsub(store ? hdi_vall(0) : hdi_vload(c), hdi_join512(s->p, s->q)));
-}
-/* Sweeps: what is taken from y is summed apart. */
-HDI_PART void HDI_OF(sweep_begin)(HDI_OF(total) *s, const double *y) { (void)y; HDI_OF(total_zero)(s); }
-HDI_PART void HDI_OF(sweep_take)(HDI_OF(total) *s, const HDI_OF(entry) *x, const HDI_OF(twice) *f) {
-    HDI_OF(total_add)(s, x, f);
-}
-HDI_PART void HDI_OF(sweep_end)(double *y, const HDI_OF(total) *s) { HDI_OF(total_put)(y, s, 0); }
-#else
-/* An entry is its real parts and its imaginary parts: of all four numbers, or of two of them. */
-typedef struct HDI_OF(entry) { hdi_vec re, im; } HDI_OF(entry);
-typedef HDI_OF(entry) HDI_OF(twice);
-typedef HDI_OF(entry) HDI_OF(total);
-
-HDI_PART void HDI_OF(entry_load)(HDI_OF(entry) *x, const double *from) {
-    x->re = hdi_vload(from);
-    x->im = hdi_vload(from + 4);
-}
-HDI_PART void HDI_OF(entry_store)(double *to, const HDI_OF(entry) *x) {
-    hdi_vstore(to, x->re);
-    hdi_vstore(to + 4, x->im);
-}
-HDI_PART void HDI_OF(twice_load)(HDI_OF(twice) *f, const double *from) { HDI_OF(entry_load)(f, from); }
-HDI_PART void HDI_OF(total_begin)(HDI_OF(total) *s, const HDI_OF(entry) *x) { *s = *x; }
-HDI_PART void HDI_OF(total_end)(HDI_OF(entry) *x, const HDI_OF(total) *s) { *x = *s; }
-HDI_PART void HDI_OF(total_zero)(HDI_OF(total) *s) { s->re = s->im = hdi_vall(0); }
-/* s -= x f, summed as plain C does */
-HDI_PART void HDI_OF(sweep_take)(HDI_OF(total) *s, const HDI_OF(entry) *x, const HDI_OF(twice) *f) {
-    s->re = hdi_vsub(s->re, HDI_OF(cross_minus)(x->re, f->re, x->im, f->im));
-    s->im = hdi_vsub(s->im, HDI_OF(cross_plus)(x->im, f->re, x->re, f->im));
-}
-/* s += x f, s -= x f, by fma where the set has it */
-HDI_PART void HDI_OF(total_add)(HDI_OF(total) *s, const HDI_OF(entry) *x, const HDI_OF(twice) *f) {
-    if (HDI_OF(fused)) {
-        s->re = hdi_vfnma(x->im, f->im, hdi_vfma(x->re, f->re, s->re));
-        s->im = hdi_vfma(x->re, f->im, hdi_vfma(x->im, f->re, s->im));
-    } else {
-        s->re = hdi_vadd(s->re, HDI_OF(cross_minus)(x->re, f->re, x->im, f->im));
-        s->im = hdi_vadd(s->im, HDI_OF(cross_plus)(x->im, f->re, x->re, f->im));
-    }
-}
-HDI_PART void HDI_OF(total_take)(HDI_OF(total) *s, const HDI_OF(entry) *x, const HDI_OF(twice) *f) {
-    if (!HDI_OF(fused)) {
-        HDI_OF(sweep_take)(s, x, f);
-        return;
-    }
-    s->re = hdi_vfma(x->im, f->im, hdi_vfnma(x->re, f->re, s->re));
-    s->im = hdi_vfnma(x->re, f->im, hdi_vfnma(x->im, f->re, s->im));
-}
-/* x = x f as plain C does, and by fma where the set has it */
-HDI_PART void HDI_OF(entry_scale)(HDI_OF(entry) *x, const HDI_OF(twice) *f) {
-    const hdi_vec re = x->re;
-    x->re = HDI_OF(cross_minus)(re, f->re, x->im, f->im);
-    x->im = HDI_OF(cross_plus)(re, f->im, x->im, f->re);
-}
-HDI_PART void HDI_OF(entry_times)(HDI_OF(entry) *x, const HDI_OF(twice) *f) {
-    const hdi_vec re = x->re;
-    if (!HDI_OF(fused)) {
-        HDI_OF(entry_scale)(x, f);
-        return;
-    }
-    x->re = HDI_OF(fms)(re, f->re, hdi_vmul(x->im, f->im));
-    x->im = hdi_vfma(re, f->im, hdi_vmul(x->im, f->re));
-}
-/* c = c - s, or -s; of zero with the sign that the set has always given it */
-HDI_PART void HDI_OF(total_put)(double *c, const HDI_OF(total) *s, int store) {
-    const hdi_vec zero = hdi_vall(HDI_OF(fused) ? 0.0 : -0.0);
-    hdi_vstore(c, hdi_vsub(store ? zero : hdi_vload(c), s->re));
-    hdi_vstore(c + 4, hdi_vsub(store ? zero : hdi_vload(c + 4), s->im));
-}
-HDI_PART void HDI_OF(sweep_begin)(HDI_OF(total) *s, const double *y) { HDI_OF(entry_load)(s, y); }
-HDI_PART void HDI_OF(sweep_end)(double *y, const HDI_OF(total) *s) { HDI_OF(entry_store)(y, s); }
-#endif
-
-/* Vectors of two lanes hold half of an entry: the numbers h and h + 1 of its four. Products go over a tile
- * once for each half, with twice as many entries in registers. Sweeps wait for the memory and hold both
- * halves: c counts the halves of successive entries. */
-#ifndef HDI_ABREAST
-#define HDI_ABREAST (HDI_WIDTH < 4 ? HDI_WIDTH : 4)   /* numbers of an entry in a vector */
-#define HDI_HALVES (4 / HDI_ABREAST)
-#endif
-HDI_PART int64_t HDI_OF(pack_at)(int c) {
-    return HDI_PACK * (c / HDI_HALVES) + HDI_ABREAST * (c % HDI_HALVES);
-}
-
-/* A tile of mr x nr entries, half h of them. */
-HDI_PART void HDI_OF(pack_half)(const hdi_pack_job *g, const int mr, const int nr, int64_t i0, int64_t j0,
-                                int h) {
-    const double *a = g->a + i0 * g->a_row + h, *b = g->b + (j0 - g->b_first) * g->b_row + h;
-    HDI_OF(total) s[HDI_OF(tile_rows)][HDI_OF(tile_cols)];
-    int64_t k;
-    int i, j;
-    HDI_EACH(i, mr)
-        HDI_EACH(j, nr) HDI_OF(total_zero)(&s[i][j]);
-    for (k = g->depth; k > 0; k--, a += g->a_col, b += g->b_col) {
-        HDI_OF(twice) f[HDI_OF(tile_cols)];
-        HDI_EACH(j, nr) HDI_OF(twice_load)(&f[j], b + j * g->b_row);
-        HDI_EACH(i, mr) {
-            HDI_OF(entry) x;
-            HDI_OF(entry_load)(&x, a + i * g->a_row);
-            HDI_EACH(j, nr) HDI_OF(total_add)(&s[i][j], &x, &f[j]);
-        }
-    }
-    HDI_EACH(i, mr) {
-        double *c = hdi_pack_row(g, i0 + i) + HDI_PACK * j0 + h;
-        HDI_EACH(j, nr)
-            if (!g->lower || j0 + j <= i0 + i) HDI_OF(total_put)(c + HDI_PACK * j, &s[i][j], g->store);
-    }
-}
-
-HDI_PART void HDI_OF(pack_tile)(const hdi_pack_job *g, const int mr, const int nr, int64_t i0, int64_t j0) {
-    int h;
-    for (h = 0; h < 4; h += HDI_ABREAST) HDI_OF(pack_half)(g, mr, nr, i0, j0, h);
-}
-
-/* Rows i..end-1 of nr columns. */
-HDI_PART void HDI_OF(pack_columns)(const hdi_pack_job *g, const int nr, int64_t i, int64_t end, int64_t j) {
-    enum { mr = HDI_OF(tile_rows) };
-    for (; i + mr <= end; i += mr) HDI_OF(pack_tile)(g, mr, nr, i, j);
-    if (mr > 3 && end - i == 3) HDI_OF(pack_tile)(g, 3, nr, i, j);
-    else if (mr > 2 && end - i == 2) HDI_OF(pack_tile)(g, 2, nr, i, j);
-    else if (mr > 1 && end - i == 1) HDI_OF(pack_tile)(g, 1, nr, i, j);
-}
-
-HDI_KERNEL void HDI_OF(pack_multiply)(const hdi_pack_job *g, int64_t i0, int64_t i1, int64_t j0, int64_t j1) {
-    enum { nr = HDI_OF(tile_cols) };
-    int64_t ib, i, j;
-    for (ib = i0; ib < i1; ib += HDI_PACK_ROWS) {
-        const int64_t ie = hdi_least(ib + HDI_PACK_ROWS, i1), je = g->lower ? hdi_least(ie, j1) : j1;
-        for (j = j0; j < je; j += nr) {
-            i = g->lower && j > ib ? j : ib;
-            if (je - j >= nr) HDI_OF(pack_columns)(g, nr, i, ie, j);
-            else if (nr > 2 && je - j == 2) HDI_OF(pack_columns)(g, 2, i, ie, j);
-            else if (nr > 1) HDI_OF(pack_columns)(g, 1, i, ie, j);
-        }
-    }
-}
-
-/* mr rows at once, for independent chains of multiply-adds. */
-HDI_PART void HDI_OF(pack_solve_half)(const hdi_pack_rows *g, const int mr, double *x, int h) {
-    int32_t k, j;
-    int i;
-    x += h;
-    for (k = 0; k < g->nb; k++, x += HDI_PACK) {
-        const double *s = g->s + k * g->s_row + h;
-        HDI_OF(total) t[HDI_OF(solve_rows)];
-        HDI_OF(entry) y;
-        HDI_OF(twice) f;
-        HDI_EACH(i, mr) {
-            HDI_OF(entry_load)(&y, x + i * g->row);
-            HDI_OF(total_begin)(&t[i], &y);
-        }
-        for (j = -k; j < 0; j++, s += HDI_PACK) {
-            HDI_OF(twice_load)(&f, s);
-            HDI_EACH(i, mr) {
-                HDI_OF(entry_load)(&y, x + i * g->row + HDI_PACK * j);
-                HDI_OF(total_take)(&t[i], &y, &f);
-            }
-        }
-        HDI_OF(twice_load)(&f, g->dinv + HDI_PACK * k + h);
-        HDI_EACH(i, mr) {
-            HDI_OF(total_end)(&y, &t[i]);
-            HDI_OF(entry_times)(&y, &f);
-            HDI_OF(entry_store)(x + i * g->row, &y);
-        }
-    }
-}
-
-HDI_PART void HDI_OF(pack_solve_tile)(const hdi_pack_rows *g, const int mr, double *x) {
-    int h;
-    for (h = 0; h < 4; h += HDI_ABREAST) HDI_OF(pack_solve_half)(g, mr, x, h);
-}
-
-HDI_KERNEL void HDI_OF(pack_solve_rows)(const hdi_pack_rows *g, int64_t r0, int64_t r1) {
-    enum { mr = HDI_OF(solve_rows) };
-    int64_t i = r0 - g->first;
-    r1 -= g->first;
-    for (; i + mr <= r1; i += mr) HDI_OF(pack_solve_tile)(g, mr, g->panel + i * g->row);
-    if (mr > 2)
-        for (; i + 2 <= r1; i += 2) HDI_OF(pack_solve_tile)(g, 2, g->panel + i * g->row);
-    if (mr > 1 && i < r1) HDI_OF(pack_solve_tile)(g, 1, g->panel + i * g->row);
-}
-
-/* S(i,k) = l_ik d_k for rows [r0,r1), columns [k0,k1) of a panel; S by rows of k1 - k0 entries, row 0 being
- * r0. */
-HDI_KERNEL void HDI_OF(pack_scale)(const double *panel, int64_t row, int64_t r0, int64_t r1, int64_t k0,
-                                   int64_t k1, const double *d, double *s) {
-    int64_t i, k;
-    int h;
-    for (i = r0; i < r1; i++) {
-        for (k = k0; k < k1; k++, s += HDI_PACK) {
-            HDI_UNROLL
-            for (h = 0; h < 4; h += HDI_ABREAST) {
-                HDI_OF(entry) x;
-                HDI_OF(twice) f;
-                HDI_OF(entry_load)(&x, panel + i * row + HDI_PACK * k + h);
-                HDI_OF(twice_load)(&f, d + HDI_PACK * k + h);
-                HDI_OF(entry_scale)(&x, &f);
-                HDI_OF(entry_store)(s + h, &x);
-            }
-        }
-    }
-}
-
-/* to[rel_b] += from[b] for b in [b0,b1), entries; off is taken off rel. */
-HDI_KERNEL void HDI_OF(pack_add)(double *to, const double *from, const int32_t *rel, int64_t b0, int64_t b1,
-                                 int64_t off) {
-    int64_t b;
-    int q;
-    for (b = b0; b < b1; b++) {
-        double *t = to + HDI_PACK * (rel[b] - off);
-        const double *f = from + HDI_PACK * b;
-        HDI_UNROLL
-        for (q = 0; q < HDI_PACK; q += HDI_WIDTH)
-            hdi_vstore(t + q, hdi_vadd(hdi_vload(t + q), hdi_vload(f + q)));
-    }
-}
-
-/* Sweeps of one right-hand side through u rows of a panel. Forward: t_i -= sum_k l_ik y_k. */
-HDI_PART void HDI_OF(pack_forward_rows)(const int n_rows, const double *l, int64_t p, const double *y,
-                                        double *t) {
-    HDI_OF(total) s[HDI_OF(sweep_rows) * HDI_HALVES];
-    int64_t k;
-    int i;
-    HDI_EACH(i, n_rows * HDI_HALVES) HDI_OF(sweep_begin)(&s[i], t + HDI_OF(pack_at)(i));
-    for (k = 0; k < p; k++, l += HDI_PACK) {
-        HDI_OF(twice) f[HDI_HALVES];
-        HDI_EACH(i, HDI_HALVES) HDI_OF(twice_load)(&f[i], y + HDI_PACK * k + HDI_OF(pack_at)(i));
-        HDI_EACH(i, n_rows * HDI_HALVES) {
-            HDI_OF(entry) x;
-            HDI_OF(entry_load)(&x, l + HDI_PACK * p * (i / HDI_HALVES) + HDI_OF(pack_at)(i % HDI_HALVES));
-            HDI_OF(sweep_take)(&s[i], &x, &f[i % HDI_HALVES]);
-        }
-    }
-    HDI_EACH(i, n_rows * HDI_HALVES) HDI_OF(sweep_end)(t + HDI_OF(pack_at)(i), &s[i]);
-}
-
-HDI_KERNEL void HDI_OF(pack_forward)(const double *l, int64_t u, int64_t p, const double *y, double *t) {
-    enum { n_rows = HDI_OF(sweep_rows) };
-    int64_t i = 0;
-    for (; i + n_rows <= u; i += n_rows)
-        HDI_OF(pack_forward_rows)(n_rows, l + HDI_PACK * p * i, p, y, t + HDI_PACK * i);
-    if (n_rows > 1)
-        for (; i < u; i++) HDI_OF(pack_forward_rows)(1, l + HDI_PACK * p * i, p, y, t + HDI_PACK * i);
-}
-
-/* Backward: y_k -= sum_i l_ik x[row_i] for n_cols pivots; row NULL: row_i = i. */
-HDI_PART void HDI_OF(pack_backward_cols)(const int n_cols, const double *l, const int32_t *row, int64_t u,
-                                         int64_t p, double *y, const double *x) {
-    HDI_OF(total) s[HDI_OF(sweep_cols) * HDI_HALVES];
-    int64_t i;
-    int c;
-    HDI_EACH(c, n_cols * HDI_HALVES) HDI_OF(sweep_begin)(&s[c], y + HDI_OF(pack_at)(c));
-    for (i = 0; i < u; i++, l += HDI_PACK * p) {
-        HDI_OF(twice) f[HDI_HALVES];
-        const double *from = x + HDI_PACK * (row ? (int64_t)row[i] : i);
-        HDI_PREFETCH_AT(l, 1024);
-        HDI_EACH(c, HDI_HALVES) HDI_OF(twice_load)(&f[c], from + HDI_OF(pack_at)(c));
-        HDI_EACH(c, n_cols * HDI_HALVES) {
-            HDI_OF(entry) v;
-            HDI_OF(entry_load)(&v, l + HDI_OF(pack_at)(c));
-            HDI_OF(sweep_take)(&s[c], &v, &f[c % HDI_HALVES]);
-        }
-    }
-    HDI_EACH(c, n_cols * HDI_HALVES) HDI_OF(sweep_end)(y + HDI_OF(pack_at)(c), &s[c]);
-}
-
-HDI_KERNEL void HDI_OF(pack_backward)(const double *l, const int32_t *row, int64_t u, int64_t p, double *y,
-                                      const double *x) {
-    enum { most = HDI_OF(sweep_cols) };
-    int64_t k;
-    for (k = 0; k + most <= p; k += most)
-        HDI_OF(pack_backward_cols)(most, l + HDI_PACK * k, row, u, p, y + HDI_PACK * k, x);
-    l += HDI_PACK * k;
-    y += HDI_PACK * k;
-    switch (p - k) {
-        case 1: if (most > 1) HDI_OF(pack_backward_cols)(1, l, row, u, p, y, x); break;
-        case 2: if (most > 2) HDI_OF(pack_backward_cols)(2, l, row, u, p, y, x); break;
-        case 3: if (most > 3) HDI_OF(pack_backward_cols)(3, l, row, u, p, y, x); break;
-        case 4: if (most > 4) HDI_OF(pack_backward_cols)(4, l, row, u, p, y, x); break;
-        case 5: if (most > 5) HDI_OF(pack_backward_cols)(5, l, row, u, p, y, x); break;
-        case 6: if (most > 6) HDI_OF(pack_backward_cols)(6, l, row, u, p, y, x); break;
-        case 7: if (most > 7) HDI_OF(pack_backward_cols)(7, l, row, u, p, y, x); break;
-        default: break;
-    }
-}
-
-/* Sweeps of many right-hand sides: s += sum_q l_q x_q in n_cols of them, q in [0,n). l_q is step doubles
- * after the one before, x_q in row q of x, or with listed in row list[q]. Every entry of L is read once for
- * all right-hand sides, and waited for: what comes `ahead` of it in memory is fetched. */
-HDI_PART void HDI_OF(pack_many_sum)(const int n_cols, const int listed, HDI_OF(total) *s, const double *l,
-                                    int64_t step, int64_t ahead, int64_t n, const double *x, int64_t x_row,
-                                    const int32_t *list) {
-    int64_t q;
-    int c;
-    for (q = 0; q < n; q++, l += step) {
-        const double *from = x + x_row * (listed ? (int64_t)list[q] : q);
-        HDI_OF(twice) f;
-        HDI_OF(twice_load)(&f, l);
-        HDI_PREFETCH_AT(l, ahead);
-        HDI_EACH(c, n_cols) {
-            HDI_OF(entry) v;
-            HDI_OF(entry_load)(&v, from + HDI_PACK * c);
-            HDI_OF(total_add)(&s[c], &v, &f);
-        }
-    }
-}
-
-HDI_PART void HDI_OF(pack_many_zero)(const int n_cols, HDI_OF(total) *s) {
-    int c;
-    HDI_EACH(c, n_cols) HDI_OF(total_zero)(&s[c]);
-}
-
-/* y -= s */
-HDI_PART void HDI_OF(pack_many_put)(const int n_cols, double *y, const HDI_OF(total) *s) {
-    int c;
-    HDI_EACH(c, n_cols) HDI_OF(total_put)(y + HDI_PACK * c, &s[c], 0);
-}
-
-HDI_PART void HDI_OF(pack_up_cols)(const int n_cols, const hdi_pack_sweep *g) {
-    HDI_OF(total) s[HDI_OF(sweep_many)];
-    const double *l = g->l;
-    int64_t i;
-    for (i = 0; i < g->n + g->u; i++, l += g->row) {
-        double *to = i < g->n ? g->y + g->x_row * i : g->t + g->x_row * (i - g->n);
-        HDI_OF(pack_many_zero)(n_cols, s);
-        HDI_OF(pack_many_sum)(n_cols, 0, s, l, HDI_PACK, (int32_t)HDI_PACK * HDI_PACK_AHEAD,
-                              hdi_least(i, g->width), g->y, g->x_row, NULL);
-        HDI_OF(pack_many_put)(n_cols, to, s);
-    }
-}
-
-/* Rows in chunks from below: for the pivots that come before a chunk, and to the pivots in it, one by one. */
-HDI_PART void HDI_OF(pack_down_cols)(const int n_cols, const hdi_pack_sweep *g) {
-    HDI_OF(total) s[HDI_OF(sweep_many)];
-    const double *l = g->l, *below = l + g->row * g->n;
-    const int64_t ahead = -HDI_PACK_CHUNK * g->row;
-    int64_t c, end = g->u, begin = g->n > HDI_PACK_CHUNK ? 0 : hdi_least(g->u, HDI_PACK_CHUNK);
-    double *y = g->y;
-    for (; end > begin; end -= hdi_least(end - begin, HDI_PACK_CHUNK)) {
-        const int64_t from = end - hdi_least(end - begin, HDI_PACK_CHUNK);
-        for (c = 0; c < g->width; c++) {
-            HDI_OF(pack_many_zero)(n_cols, s);
-            HDI_OF(pack_many_sum)(n_cols, 1, s, below + g->row * from + HDI_PACK * c, g->row, ahead,
-                                  end - from, g->x, g->x_row, g->below + from);
-            HDI_OF(pack_many_put)(n_cols, y + g->x_row * c, s);
-        }
-    }
-    for (end = g->n; end > 0; end = begin) {
-        const int64_t rest = end == g->n && end <= HDI_PACK_CHUNK ? hdi_least(g->u, HDI_PACK_CHUNK) : 0;
-        begin = end > HDI_PACK_CHUNK ? end - HDI_PACK_CHUNK : 0;
-        for (c = hdi_least(end, g->width) - 1; c >= 0; c--) {
-            const int64_t first = c < begin ? begin : c + 1;
-            HDI_OF(pack_many_zero)(n_cols, s);
-            HDI_OF(pack_many_sum)(n_cols, 1, s, below + HDI_PACK * c, g->row, ahead, rest, g->x,
-                                  g->x_row, g->below);
-            HDI_OF(pack_many_sum)(n_cols, 0, s, l + g->row * first + HDI_PACK * c, g->row, ahead,
-                                  end - first, y + g->x_row * first, g->x_row, NULL);
-            HDI_OF(pack_many_put)(n_cols, y + g->x_row * c, s);
-        }
-    }
-}
-
-/* Half h of all entries; and then all but n right-hand sides. */
-HDI_PART hdi_pack_sweep HDI_OF(pack_many_part)(const hdi_pack_sweep *g, int h) {
-    hdi_pack_sweep part = *g;
-    part.l += h;
-    part.x += h;
-    part.y += h;
-    if (part.t) part.t += h;
-    return part;
-}
-
-HDI_PART void HDI_OF(pack_many_next)(hdi_pack_sweep *g, int n) {
-    g->x += HDI_PACK * n;
-    g->y += HDI_PACK * n;
-    if (g->t) g->t += HDI_PACK * n;
-    g->k -= n;
-}
-
-HDI_KERNEL void HDI_OF(pack_up)(const hdi_pack_sweep *g) {
-    enum { most = HDI_OF(sweep_many) };
-    int h;
-    for (h = 0; h < 4; h += HDI_ABREAST) {
-        hdi_pack_sweep part = HDI_OF(pack_many_part)(g, h);
-        for (; part.k >= most; HDI_OF(pack_many_next)(&part, most)) HDI_OF(pack_up_cols)(most, &part);
-        for (; most > 4 && part.k >= 4; HDI_OF(pack_many_next)(&part, 4)) HDI_OF(pack_up_cols)(4, &part);
-        for (; part.k > 0; HDI_OF(pack_many_next)(&part, 1)) HDI_OF(pack_up_cols)(1, &part);
-    }
-}
-
-HDI_KERNEL void HDI_OF(pack_down)(const hdi_pack_sweep *g) {
-    enum { most = HDI_OF(sweep_many) };
-    int h;
-    for (h = 0; h < 4; h += HDI_ABREAST) {
-        hdi_pack_sweep part = HDI_OF(pack_many_part)(g, h);
-        for (; part.k >= most; HDI_OF(pack_many_next)(&part, most)) HDI_OF(pack_down_cols)(most, &part);
-        for (; most > 4 && part.k >= 4; HDI_OF(pack_many_next)(&part, 4)) HDI_OF(pack_down_cols)(4, &part);
-        for (; part.k > 0; HDI_OF(pack_many_next)(&part, 1)) HDI_OF(pack_down_cols)(1, &part);
-    }
-}
-
-static const hdi_real_ops *HDI_OF(real_ops)(void) {
-    static const hdi_real_ops hdi_ops = {
-        HDI_REGS * HDI_WIDTH, HDI_COLS,
-        HDI_OF(real_pack), HDI_OF(real_copy), HDI_OF(real_block), HDI_OF(real_rows), HDI_OF(real_gemm),
-        HDI_OF(real_update), HDI_PASTE(real_add, HDI_SOLO), HDI_PASTE(real_forward, HDI_SOLO),
-        HDI_PASTE(real_backward, HDI_SOLO), HDI_PASTE(real_gather, HDI_SOLO),
-        HDI_OF(real_gemv8), HDI_OF(real_dots8), HDI_OF(real_lower8), HDI_OF(real_upper8)
+static const hdi_kernels *HDI_OF(real_kernels)(void) {
+    static const hdi_kernels hdi_table = {
+        1, HDI_OF(regs) * HDI_WIDTH, HDI_OF(cols), HDI_OF(real_product), HDI_OF(real_solve),
+        HDI_OF(real_eliminate), HDI_OF(real_slices), HDI_OF(add), HDI_PASTE(single_up, HDI_SOLO),
+        HDI_PASTE(single_down, HDI_SOLO)
     };
-    return &hdi_ops;
+    return &hdi_table;
 }
 
-static const hdi_pack_ops *HDI_OF(pack_ops)(void) {
-    static const hdi_pack_ops hdi_ops = {HDI_OF(pack_multiply), HDI_OF(pack_solve_rows), HDI_OF(pack_scale),
-                                         HDI_OF(pack_add), HDI_OF(pack_forward), HDI_OF(pack_backward),
-                                         HDI_OF(pack_up), HDI_OF(pack_down)};
-    return &hdi_ops;
+static const hdi_kernels *HDI_OF(pack_kernels)(void) {
+    static const hdi_kernels hdi_table = {
+        HDI_PACK, HDI_OF(pack_regs), HDI_OF(pack_cols), HDI_OF(pack_product), HDI_OF(pack_solve),
+        HDI_OF(pack_eliminate), HDI_OF(pack_slices), HDI_OF(add), NULL, NULL
+    };
+    return &hdi_table;
 }
 
 #undef HDI_SET
@@ -4886,247 +4446,36 @@ static const hdi_pack_ops *HDI_OF(pack_ops)(void) {
 #include HEATDIFF_FILENAME
 #endif
 
-/* Kernels of a level: 0 plain C, 1 AVX2, 2 AVX-512. Never NULL: a level that was not compiled gives the plain
- * kernels. */
-static const hdi_real_ops *hdi_real_ops_get(int level) {
+/* Kernels of a level: 0 plain C, 1 AVX2, 2 AVX-512; of real numbers, or of packs. Never NULL: a level that
+ * was not compiled gives the plain kernels. */
+static const hdi_kernels *hdi_kernels_get(int level, int pack) {
+    const int packs = HDI_HAS_POLE_FACTORS && pack;
 #if HDI_X86
-    if (level >= 2) return hdi_real_ops_avx512();
-    if (level == 1) return hdi_real_ops_avx2();
+    if (level >= 2) return packs ? hdi_pack_kernels_avx512() : hdi_real_kernels_avx512();
+    if (level == 1) return packs ? hdi_pack_kernels_avx2() : hdi_real_kernels_avx2();
 #endif
     (void)level;
-    return hdi_real_ops_plain();
+    return packs ? hdi_pack_kernels_plain() : hdi_real_kernels_plain();
 }
 
-static const hdi_pack_ops *hdi_pack_ops_get(int level) {
-#if HDI_X86
-    if (level >= 2) return hdi_pack_ops_avx512();
-    if (level == 1) return hdi_pack_ops_avx2();
-#endif
-    (void)level;
-    return hdi_pack_ops_plain();
-}
-
-/* ---- factorisation ---- */
-
-/* What the pivots of a part of the tree looked like. */
-typedef struct hdi_pivots {
-    double largest, smallest;        /* absolute values, over all matrices */
-    int64_t negative;                /* real pivots below zero */
-    int32_t failed, lane;            /* pivot that cannot be divided by, -1 none; its matrix */
-    double value;
-} hdi_pivots;
-
-static void hdi_pivots_clear(hdi_pivots *q) {
-    memset(q, 0, sizeof *q);
-    q->smallest = HUGE_VAL;
-    q->failed = -1;
-}
-
-static void hdi_pivots_add(hdi_pivots *q, double largest, double smallest) {
-    if (largest > q->largest) q->largest = largest;
-    if (smallest < q->smallest) q->smallest = smallest;
-}
-
-/* Columns of L, and of U padded to slices, that are taken at a time in fronts of at most p pivots and u rows
- * below. */
-static int64_t hdi_real_depth(int64_t p) { return hdi_least(p, HDI_REAL_KC); }
-static int64_t hdi_real_span(int64_t u) {
-    return hdi_least((u + HDI_REAL_NR - 1) / HDI_REAL_NR * HDI_REAL_NR, HDI_REAL_NC);
-}
-
-/* Work, in doubles: of one thread in hdi_real_update and hdi_real_rows for such fronts, and of S. */
-static int64_t hdi_real_work(int64_t u, int64_t p) {
-#ifdef HEATDIFF_USE_BLAS
-    if (u > 0 && p >= HDI_REAL_KC) return HDI_REAL_KC * (HDI_REAL_NC + HDI_REAL_MR + 1);
-#endif
-    return hdi_real_depth(p) * (hdi_real_span(u) + HDI_REAL_MR + 1);
-}
-static int64_t hdi_real_s_size(int64_t p) {
-    const int64_t nb = HDI_REAL_NB;
-    return (p + HDI_REAL_NR) * (p < nb ? p + HDI_REAL_NR : nb);
-}
-
-/* Rows r0..r1-1 below pivots k0..k0+nb-1: L(r,K) = (P(r,K) - L(r,0..k0-1) S) inv(D L') for S as
- * hdi_real_block left it; rows of S per slice: kb. work [hdi_real_work(u, p)] is used only when k0 >=
- * HDI_REAL_KC. */
-static void hdi_real_rows(const hdi_real_ops *o, double *P, int64_t m, int32_t k0, int32_t nb,
-                          const double *S, int32_t kb, const double *dinv,
-                          int64_t r0, int64_t r1, double *work) {
-    const int32_t k1 = k0 - k0 % HDI_REAL_KC, mr = o->mr, nr = o->nr;
-    int64_t r;
-    int32_t j;
-    for (r = r0; r < r1; r += mr) {
-        const int32_t n = (int32_t)(r1 - r < mr ? r1 - r : mr);
-        for (j = 0; j < k1; j += HDI_REAL_KC) {
-            o->copy(work, P + r + j * m, m, n, HDI_REAL_KC);
-            o->gemm(P + r + k0 * m, m, n, nb, work, mr, S + (int64_t)j * nr, kb, HDI_REAL_KC);
-        }
-        o->rows(P + r, m, n, k1, k0, nb, S, kb, dinv);
-    }
-}
-
-/* Pivots K = k0..k0+nb-1 in rows k0..end-1: LDL' of P(K,K) - L(K,0..k0-1) D L(K,0..k0-1)', and as
- * hdi_real_rows, to the last bit, below K. nb <= HDI_REAL_NB, k0 a multiple of nr; end = k0 + nb, or up to m
- * when k0 + nb <= HDI_REAL_KC. S [k0 + nb rows of slices] becomes D L(K,0..k0+nb-1)'. d is left on the
- * diagonal of P. work [hdi_real_work(u, p)]. Returns -1, or the first pivot that is not finite, or
- * whose inverse is not. */
-static int64_t hdi_real_block(const hdi_real_ops *o, double *P, int64_t m, int32_t k0, int32_t nb,
-                              int64_t end, double *S, double *dinv, hdi_pivots *pivots, double *work) {
-    const int32_t nr = o->nr, kb = k0 + nb;
-    int32_t k, j;
-    for (k = k0; k < kb; k += nr, S += (int64_t)kb * nr) {
-        const int32_t nc = kb - k < nr ? kb - k : nr;
-        const int32_t n = (int32_t)(end - k - nc < o->mr - nr ? end - k - nc : o->mr - nr);
-        double *slice = S;
-        for (j = 0; j < k; j += HDI_REAL_KC) {
-            const int32_t kc = k - j < HDI_REAL_KC ? k - j : HDI_REAL_KC;
-            double d[HDI_REAL_KC];
-            int32_t q;
-            for (q = 0; q < kc; q++) d[q] = P[(j + q) * (m + 1)];
-            o->pack(slice, P + k + j * m, m, d, nc, kc);
-            slice += (int64_t)kc * nr;
-        }
-        o->block(P + k, m, k, nc, n, S, dinv);
-        for (j = k; j < k + nc; j++) {
-            const double d = P[j * (m + 1)], a = fabs(d);
-            if (a <= HDI_PIVOT_LEAST || !hdi_finite(a)) return j;
-            hdi_pivots_add(pivots, a, a);
-            pivots->negative += d < 0;
-        }
-        if (k + nc + n < end) hdi_real_rows(o, P, m, k, nc, S, kb, dinv, k + nc + n, end, work);
-    }
-    return -1;
-}
-
-#ifdef HEATDIFF_USE_BLAS
-/* hdi_real_update by the BLAS' dgemm, in blocks of 128 rows and 256 columns, for fronts that are worth the
- * calls. Update of 1000 rows by 500 pivots on one core: plain C 22 GF/s, OpenBLAS 0.3.21 40 (58 when told to
- * use AVX-512), our AVX2 kernels 62, AVX-512 115: so only plain C gives way to it. */
-enum { HDI_BLAS_LEAST = 128, HDI_BLAS_ROWS = 128, HDI_BLAS_COLS = 256 };
-
-static void hdi_blas_update(double *U, int64_t u, const double *P, int64_t m, int32_t p, double *work,
-                            int64_t r0, int64_t r1) {
-    double *S = work, *C = work + HDI_BLAS_COLS * HDI_REAL_KC;
-    const int ld = (int)m, ld_s = HDI_BLAS_COLS, ld_c = HDI_BLAS_ROWS;
-    const double one = 1, zero = 0;
-    int64_t g, i, j, r;
-    int32_t k, q;
-    for (g = 0; g < r1; g += HDI_BLAS_COLS) {
-        const int cols = (int)(r1 - g < HDI_BLAS_COLS ? r1 - g : HDI_BLAS_COLS);
-        for (k = 0; k < p; k += HDI_REAL_KC) {
-            const int depth = p - k < HDI_REAL_KC ? p - k : HDI_REAL_KC;
-            for (q = 0; q < depth; q++)
-                for (j = 0; j < cols; j++)
-                    S[j + q * HDI_BLAS_COLS] = P[p + g + j + (k + q) * m] * P[(k + q) * (m + 1)];
-            for (r = r0 > g ? r0 : g; r < r1; r += HDI_BLAS_ROWS) {
-                const int rows = (int)(r1 - r < HDI_BLAS_ROWS ? r1 - r : HDI_BLAS_ROWS);
-                dgemm_("N", "T", &rows, &cols, &depth, &one, P + p + r + k * m, &ld, S, &ld_s, &zero, C,
-                       &ld_c);
-                for (j = 0; j < cols; j++) {
-                    const int64_t c = g + j;
-                    double *to = U + (c * u - c * (c - 1) / 2 - c);
-                    for (i = r > c ? r : c; i < r + rows; i++) to[i] -= C[i - r + j * HDI_BLAS_ROWS];
-                }
-            }
-        }
-    }
-}
-#endif
-
-/* Rows r0..r1-1 of U -= L21 D L21', columns as far as the diagonal. work [hdi_real_work(u, p)]. */
-static void hdi_real_update(const hdi_real_ops *o, double *U, int64_t u, const double *P, int64_t m,
-                            int32_t p, double *work, int64_t r0, int64_t r1) {
-    const int32_t mr = o->mr;
-    double *B = work, *copy = work + hdi_real_depth(p) * hdi_real_span(u),
-        *d = copy + hdi_real_depth(p) * HDI_REAL_MR;
-    int64_t g, i;
-    int32_t k, q;
-#ifdef HEATDIFF_USE_BLAS
-    if (o == hdi_real_ops_plain() && u >= HDI_BLAS_LEAST && p >= HDI_BLAS_LEAST) {
-        hdi_blas_update(U, u, P, m, p, work, r0, r1);
-        return;
-    }
-#endif
-    for (g = 0; g < r1; g += HDI_REAL_NC) {
-        const int64_t g1 = r1 - g < HDI_REAL_NC ? r1 : g + HDI_REAL_NC;
-        for (k = 0; k < p; k += HDI_REAL_KC) {
-            const int32_t kc = p - k < HDI_REAL_KC ? p - k : HDI_REAL_KC;
-            for (q = 0; q < kc; q++) d[q] = P[(k + q) * (m + 1)];
-            o->pack(B, P + p + g + k * m, m, d, (int32_t)(g1 - g), kc);
-            for (i = r0 > g ? r0 : g; i < r1; i += mr) {
-                const int32_t n = (int32_t)(r1 - i < mr ? r1 - i : mr);
-                const int64_t j1 = i + n < g1 ? i + n : g1;
-                const double *A = P + p + i + k * m;
-                if (j1 - g > 96) {  /* many columns: the rows are worth a copy in one piece */
-                    o->copy(copy, A, m, n, kc);
-                    o->update(U, u, i, n, g, j1, copy, mr, B, kc);
-                } else o->update(U, u, i, n, g, j1, A, m, B, kc);
-            }
-        }
-    }
-}
-
-/* The child's packed update, columns c0..c1-1, added to the parent's front: (i,j) goes to (rel[i], rel[j]),
- * rel ascending. Different columns of one child never meet. */
-static void hdi_real_extend(const hdi_real_ops *o, double *P, int64_t m, int32_t p, double *U,
-                            const double *child, int64_t uc, const int32_t *rel, int64_t c0, int64_t c1) {
-    enum { n_runs = 64 };
-    const int64_t u = m - p;
-    int32_t run[n_runs + 1];  /* rows that go to consecutive places, from run[q] to run[q + 1] - 1 */
-    int64_t i, j;
-    int32_t n = 0, q, first = 0;
-    for (i = c0; i < uc; i++)
-        if (i == c0 || rel[i] != rel[i - 1] + 1) {
-            if (n == n_runs) break;
-            run[n++] = (int32_t)i;
-        }
-    run[i < uc ? n - 1 : n] = (int32_t)i;
-    for (j = c0; j < c1; j++) {
-        const int64_t at = rel[j];
-        const double *c = child + (j * uc - j * (j - 1) / 2 - j);
-        double *y = at < p ? P + at * m : U + ((at - p) * u - (at - p) * (at - p - 1) / 2 - at);
-        if (i == uc && uc - c0 >= 4 * n) {
-            while (first + 1 < n && run[first + 1] <= j) first++;
-            for (q = first; q < n; q++) {
-                const int64_t a = q == first ? j : run[q];
-                o->add(y + rel[a], c + a, run[q + 1] - a);
-            }
-        } else {
-            int64_t r;
-            for (r = j; r < uc; r++) y[rel[r]] += c[r];
-        }
-    }
-}
-
-/* ---- solves ---- */
-
-/* x1 = L11^-T (dinv x1 - L21' x[idx]). t [m - p]. dinv may be NULL: ones. */
-static void hdi_real_backward(const hdi_real_ops *o, const double *P, int64_t m, int32_t p,
-                              const double *dinv, double *x1, const double *x,
-                              const int32_t *idx, double *t) {
-    int32_t k;
-    o->gather(t, x, idx, m - p);
-    if (dinv)
-        for (k = 0; k < p; k++) x1[k] *= dinv[k];
-    for (k = (p - 1) & ~7; k >= 0; k -= 8) {
-        const int32_t nc = p - k < 8 ? p - k : 8;
-        o->backward(x1 + k, P + k + k * m, m, nc, p - k - nc, t, m - p);
-    }
-}
-
-/* The same for eight right-hand sides, x row-major [.][8]. */
-static void hdi_real_backward8(const hdi_real_ops *o, const double *P, int64_t m, int32_t p,
-                               const double *dinv, double *x1, const double *x, const int32_t *idx) {
-    int32_t k, j, r;
-    for (k = (p - 1) & ~7; k >= 0; k -= 8) {
-        const int32_t nc = p - k < 8 ? p - k : 8;
-        double *b = x1 + 8 * k;
-        for (j = 0; j < nc && dinv; j++)
-            for (r = 0; r < 8; r++) b[8 * j + r] *= dinv[k + j];
-        if (m > p) o->dots8(b, P + p + k * m, m, m - p, x, idx, nc);
-        if (k + nc < p) o->dots8(b, P + k + nc + k * m, m, p - k - nc, b + 8 * nc, NULL, nc);
-        o->upper8(b, P + k + k * m, m, nc);
-    }
+/* X = X - A B for matrices of which a few rows stand side by side, as right-hand sides do: X [cols][n] and A
+ * [depth][n], B(k,j) at b + k b_row + j b_col. */
+static void hdi_kernels_rows(const hdi_kernels *o, double *x, int64_t n, int64_t cols, const double *a,
+                             int64_t depth, const double *b, int64_t b_row, int64_t b_col) {
+    hdi_product g;
+    g.c = x;
+    g.a = a;
+    g.b = b;
+    g.work = NULL;
+    g.first = 0;
+    g.lower = g.packed = g.store = 0;
+    g.c_col = g.a_col = g.n = n;
+    g.b_row = b_row;
+    g.b_col = b_col;
+    g.b_next = o->nr * b_col;
+    g.cols = cols;
+    g.depth = depth;
+    if (n > 0 && cols > 0 && depth > 0) o->multiply(&g);
 }
 
 /* ==== [08] sparse ====
@@ -12352,7 +11701,7 @@ static hd_status hdi_nd_order(const hd_csr *a, const double *xyz, int32_t *perm,
  * A front is a dense lower triangle over the rows of a supernode: its p pivots, then u rows below. Its first
  * p columns become columns of L (the panel, m = p + u rows), the rest is the update matrix for its parent. */
 
-enum { HDI_PANEL = 128, HDI_SYM_BLOCKS = 24 };
+enum { HDI_SYM_BLOCKS = 24 };
 
 typedef struct hdi_symbolic {
     int32_t n, n_super;
@@ -12366,13 +11715,13 @@ typedef struct hdi_symbolic {
     int32_t *row;                /* rows below the pivots, ascending, in elimination order */
     int32_t *rel;                /* where each stands in the parent's front */
     int32_t *inner;              /* [n_super] how many of them are pivots there */
-    int64_t *panel, *panel_pack; /* [n_super + 1] where panels begin, in entries: real, packs */
+    int64_t *panel;              /* [n_super + 1] where panels begin, in entries */
     int64_t *a_ptr;              /* [n_super + 1] */
     int64_t *a_from;             /* entry of A (lower triangle in elimination order) ... */
     int32_t *a_row, *a_col;      /* ... and its place in the front */
     int32_t largest_front, largest_update, largest_pivots;
     int64_t nnz;                 /* of L without the zeros that amalgamation lets in */
-    int64_t stored;              /* entries of all panels of packs */
+    int64_t stored;              /* entries of all panels */
     double flops;                /* of a real factorisation: sum of squared column counts */
     double flops_done;           /* the same with the zeros that are computed on */
     hd_ordering ordering;
@@ -12684,10 +12033,10 @@ static void hdi_sym_sort_kids(const hdi_sym_work *w, int32_t v) {
     w->peak[v] = hdi_most(w->peak[v], held + hdi_node_update(w->node + v));
 }
 
-/* Panels of packs come in blocks of at most HDI_PANEL columns, each from its first pivot's row on: what
- * stands above the diagonal of a wide panel is not kept. Entries before block q of a panel of m rows and p
+/* Panels come in blocks of at most HDI_PANEL columns, each from its first pivot's row on: what stands above
+ * the diagonal of a wide panel is not kept. Entries before block q of a panel of m rows and p
  * columns: */
-static int64_t hdi_panel_block(int64_t m, int64_t p, int64_t q) {
+static HDI_INLINE int64_t hdi_panel_block(int64_t m, int64_t p, int64_t q) {
     const int64_t full = q * HDI_PANEL < p ? q : p / HDI_PANEL, rest = q * HDI_PANEL < p ? 0 : p % HDI_PANEL;
     return HDI_PANEL * (full * m - HDI_PANEL * (full * (full - 1) / 2)) + rest * (m - HDI_PANEL * full);
 }
@@ -12695,7 +12044,7 @@ static int64_t hdi_panel_block(int64_t m, int64_t p, int64_t q) {
 /* Arrays by pivots and by supernodes. */
 static hd_status hdi_sym_take_supernodes(hdi_symbolic *s, hdi_scope *keep) {
     const uint64_t supers = (uint64_t)s->n_super + 1;
-    int64_t **const wide[] = {&s->row_ptr, &s->panel, &s->panel_pack, &s->a_ptr, &s->update, &s->vector};
+    int64_t **const wide[] = {&s->row_ptr, &s->panel, &s->a_ptr, &s->update, &s->vector};
     int32_t **const narrow[] = {&s->super, &s->parent, &s->inner, &s->kid_ptr, &s->kid, &s->task_begin,
                                 &s->task_end, &s->task_of, &s->top};
     size_t k;
@@ -12712,8 +12061,7 @@ static void hdi_sym_measure(hdi_symbolic *s, int32_t k, const hdi_node *v) {
     int64_t c;
     s->super[k + 1] = s->super[k] + v->pivots;
     s->row_ptr[k + 1] = s->row_ptr[k] + m - p;
-    s->panel[k + 1] = s->panel[k] + m * p;
-    s->panel_pack[k + 1] = s->panel_pack[k] + hdi_panel_block(m, p, p / HDI_PANEL + 1);
+    s->panel[k + 1] = s->panel[k] + hdi_panel_block(m, p, p / HDI_PANEL + 1);
     s->largest_front = hdi_high32(s->largest_front, v->rows);
     s->largest_pivots = hdi_high32(s->largest_pivots, v->pivots);
     s->largest_update = hdi_high32(s->largest_update, v->rows - v->pivots);
@@ -12724,7 +12072,7 @@ static void hdi_sym_measure(hdi_symbolic *s, int32_t k, const hdi_node *v) {
 static void hdi_sym_number(hdi_symbolic *s, const hdi_sym_work *w) {
     int32_t k, q, j, i = 0;
     s->super[0] = 0;
-    s->row_ptr[0] = s->panel[0] = s->panel_pack[0] = 0;
+    s->row_ptr[0] = s->panel[0] = 0;
     for (k = 0; k < s->n_super; k++) w->number[w->node_order[k]] = k;
     for (k = 0; k < s->n_super; k++) {
         const int32_t v = w->node_order[k], up = w->tree.parent[v];
@@ -12738,7 +12086,7 @@ static void hdi_sym_number(hdi_symbolic *s, const hdi_sym_work *w) {
             }
         }
     }
-    s->stored = s->panel_pack[s->n_super];
+    s->stored = s->panel[s->n_super];
     hdi_group(s->parent, s->n_super, s->n_super, s->kid_ptr, s->kid);
 }
 
@@ -13100,7 +12448,7 @@ static hd_status hdi_symbolic_order(hdi_symbolic *s, const hd_csr *a, const hdi_
 /* Rows of a chunk of a front that threads share, as many as the kernels take at once. By the critical path
  * the parallel efficiency for 150K rows is 0.80, 0.68, 0.43 on 4, 8, 16 threads, with chunks of 96 rows 0.73,
  * 0.46, 0.25. Fronts of fewer rows than HDI_FRONT_SHARED are not shared. */
-enum { HDI_PACK_LANES = HDI_PACK / 2, HDI_FRONT_COLS = 96, HDI_FRONT_CHUNK = 48, HDI_FRONT_SHARED = 192 };
+enum { HDI_FRONT_CHUNK = 48, HDI_FRONT_SHARED = 192 };
 
 /* Where values of A come from: real numbers, up to four complex matrices, or t L + theta B, by entries of the
  * pattern that was analysed. */
@@ -13112,14 +12460,31 @@ typedef struct hdi_values {
     hd_c64 theta[HDI_PACK_LANES];
 } hdi_values;
 
+/* What the pivots of a part of the tree looked like. */
+typedef struct hdi_pivots {
+    double largest, smallest;        /* absolute values, over all matrices */
+    int64_t negative;                /* real pivots below zero */
+    int32_t failed, lane;            /* pivot that cannot be divided by, -1 none; its matrix */
+    double value;
+} hdi_pivots;
+
+static void hdi_pivots_clear(hdi_pivots *q) {
+    memset(q, 0, sizeof *q);
+    q->smallest = HUGE_VAL;
+    q->failed = -1;
+}
+
+static void hdi_pivots_add(hdi_pivots *q, double largest, double smallest) {
+    if (largest > q->largest) q->largest = largest;
+    if (smallest < q->smallest) q->smallest = smallest;
+}
+
 typedef struct hdi_factor {
     const hdi_symbolic *sym;
     hd_context *ctx;
     int32_t width;                   /* doubles per entry: 1 real, HDI_PACK a pack */
-    const hdi_pack_ops *pack;
-    const hdi_real_ops *real;
-    const int64_t *panel_at;         /* [n_super + 1] sym->panel or sym->panel_pack */
-    double *panel, *dinv;            /* [panel_at[n_super]], [n] entries */
+    const hdi_kernels *ops;
+    double *panel, *dinv;            /* [sym->panel[n_super]], [n] entries */
     double *work;                    /* [sym->work] entries: update matrices */
     double *scratch;                 /* [n_tasks][scratch_size], and [chunk_size] where there is a top */
     double *chunk_scratch;           /* [chunks of the largest front][chunk_size] */
@@ -13136,9 +12501,6 @@ typedef struct hdi_factor {
     const hdi_values *values;        /* of a factorisation under way */
 } hdi_factor;
 
-/* Is it the factor of a real matrix, and not a pack? */
-static HDI_INLINE int hdi_is_real(const hdi_factor *f) { return !HDI_HAS_POLE_FACTORS || f->width == 1; }
-
 /* ---- parts of a front ---- */
 
 /* One front under way: where its parts stand, and room to work in. */
@@ -13146,28 +12508,30 @@ typedef struct hdi_front {
     const hdi_factor *f;
     int32_t v;                       /* supernode */
     double *panel, *update, *dinv;   /* dinv: of the first pivot */
-    double *d, *S;                   /* [p] pivots, [block of pivots][p] scaled rows of L: S_ik = l_ik d_k */
-    double *work;                    /* of kernels */
+    double *S;                       /* slices of D L' of the block of pivots */
+    double *work;                    /* of a stage */
     int64_t m, p, u, k0;
     int32_t nb;                      /* block of pivots [k0,k0+nb) under way */
 } hdi_front;
 
-/* Doubles of scratch for fronts of at most so many pivots and rows below: of packs their pivots, their block
- * of scaled rows, and a block of columns of the update; of real ones the scaled rows, and the work of their
- * kernels. */
-static uint64_t hdi_front_scratch(int32_t pivots, int32_t below, int32_t width) {
-    const uint64_t p = (uint64_t)pivots, rows = p * HDI_PACK_BLOCK;
-    const int64_t depth = hdi_least(pivots, HDI_PACK_DEPTH);
-    const uint64_t cols = (uint64_t)(hdi_least(below, HDI_FRONT_COLS) * depth);
-    if (width == 1) return (uint64_t)(hdi_real_s_size(pivots) + hdi_real_work(below, pivots)) + 64;
-    return HDI_PACK * (p + (rows > cols ? rows : cols)) + 64;
-}
+/* How much of a front is taken at a time: pivots, columns of L, columns of U. */
+static int64_t hdi_front_pivot_block(int32_t width) { return width == 1 ? 64 : 16; }
+static int64_t hdi_front_depth(int32_t width) { return width == 1 ? HDI_PANEL : 64; }
+static int64_t hdi_front_span(int32_t width) { return width == 1 ? 512 : 96; }
 
-/* Doubles of scratch for a chunk of rows of such fronts: a block of columns of the update, or work of the
- * kernels. */
+/* Doubles of S, and of the work of a stage, for fronts of at most so many pivots and rows below: pivots of a
+ * block, slices of columns of U, and a copy of rows. */
+static int64_t hdi_front_s_size(int32_t pivots, int32_t width) {
+    return width * pivots * (hdi_least(pivots, hdi_front_pivot_block(width)) + HDI_TILE_COLS);
+}
 static uint64_t hdi_front_chunk_scratch(int32_t pivots, int32_t below, int32_t width) {
-    const int64_t cols = hdi_least(below, HDI_FRONT_COLS) * hdi_least(pivots, HDI_PACK_DEPTH);
-    return (uint64_t)(width == 1 ? hdi_real_work(below, pivots) : HDI_PACK * cols) + 64;
+    const int64_t depth = hdi_least(pivots, hdi_front_depth(width));
+    const int64_t span = hdi_least(below, hdi_front_span(width)) + HDI_TILE_COLS;
+    const int64_t copy = width == 1 ? depth * HDI_TILE_ROWS : 0;
+    return (uint64_t)(width * (hdi_least(pivots, HDI_PANEL) + depth * span) + copy) + 64;
+}
+static uint64_t hdi_front_scratch(int32_t pivots, int32_t below, int32_t width) {
+    return (uint64_t)hdi_front_s_size(pivots, width) + hdi_front_chunk_scratch(pivots, below, width);
 }
 
 static hdi_front hdi_front_open(const hdi_factor *f, int32_t v, double *scratch) {
@@ -13177,12 +12541,11 @@ static hdi_front hdi_front_open(const hdi_factor *f, int32_t v, double *scratch)
     w.f = f;
     w.v = v;
     hdi_front_shape(s, v, &w.p, &w.u, &w.m);
-    w.panel = f->panel + f->width * f->panel_at[v];
+    w.panel = f->panel + f->width * s->panel[v];
     w.update = f->work + f->width * s->update[v];
     w.dinv = f->dinv + (int64_t)f->width * s->super[v];
-    w.d = scratch;                               /* real pivots stay on the diagonal */
-    w.S = f->width == 1 ? scratch : scratch + HDI_PACK * w.p;
-    w.work = f->width == 1 ? w.S + hdi_real_s_size(w.p) : w.S;
+    w.S = scratch;
+    w.work = scratch + hdi_front_s_size((int32_t)w.p, f->width);
     return w;
 }
 
@@ -13209,274 +12572,343 @@ static int32_t hdi_front_row(const hdi_front *w, int64_t i, int64_t j) {
     return i == j ? w->f->sym->perm[w->f->sym->super[w->v] + j] : -1;
 }
 
-/* ---- fronts of packs ---- */
+/* Block q of a panel: columns [begin, begin + width) and rows from begin on, column by column, ld entries
+ * apart. at: its entry (begin,begin). */
+typedef struct hdi_block { double *at; int64_t begin, width, ld; int32_t entry; } hdi_block;
 
-/* A block of columns of a panel of packs: columns [begin,begin+width), rows from begin on. at: its entry
- * (0,0), were it there. */
-typedef struct hdi_block { double *at; int64_t begin, width, row; } hdi_block;
-
-static hdi_block hdi_block_of(double *panel, int64_t m, int64_t p, int64_t q) {
+static HDI_INLINE hdi_block hdi_block_of(double *panel, int32_t entry, int64_t m, int64_t p, int64_t q) {
     hdi_block b;
     b.begin = q * HDI_PANEL;
     b.width = hdi_least(p - b.begin, HDI_PANEL);
-    b.row = HDI_PACK * b.width;
-    b.at = panel + HDI_PACK * hdi_panel_block(m, p, q);
+    b.ld = m - b.begin;
+    b.entry = entry;
+    b.at = panel + entry * hdi_panel_block(m, p, q);
     return b;
 }
 
-/* Entry (i,k) of the front, i at least the block's first row. */
-static double *hdi_block_at(const hdi_block *b, int64_t i, int64_t k) {
-    return b->at + (i - b->begin) * b->row + HDI_PACK * (k - b->begin);
+/* Entry (i,k) of the front. */
+static HDI_INLINE double *hdi_block_at(const hdi_block *b, int64_t i, int64_t k) {
+    return b->at + b->entry * (i - b->begin + (k - b->begin) * b->ld);
 }
 
-/* Rows of child c's update matrix that fall into rows [r0,r1) of its parent's front. */
-static void hdi_front_child_rows(const hdi_symbolic *s, int32_t c, int64_t r0, int64_t r1, int64_t *from,
-                                 int64_t *end) {
-    const int32_t *rel = s->rel + s->row_ptr[c];
-    const int64_t u = hdi_front_below(s, c);
-    *from = hdi_lower_bound(rel, u, r0);
-    *end = hdi_lower_bound(rel, u, r1);
+static hdi_block hdi_front_block(const hdi_front *w, int64_t q) {
+    return hdi_block_of(w->panel, w->f->width, w->m, w->p, q);
 }
 
-/* The pivots' columns of child c's update matrix into rows [r0,r1) of the panel. */
-static void hdi_front_child_pack(const hdi_front *w, int32_t c, int64_t r0, int64_t r1) {
-    const hdi_symbolic *s = w->f->sym;
-    const int32_t *rel = s->rel + s->row_ptr[c];
-    const int64_t u = hdi_front_below(s, c);
-    const double *child = w->f->work + HDI_PACK * s->update[c];
-    int64_t from, end, q, a, b0 = 0, b1;
-    hdi_front_child_rows(s, c, r0, r1, &from, &end);
-    /* the child's columns that fall into block q */
-    for (q = 0; q * HDI_PANEL < w->p && b0 < u; q++, b0 = b1) {
-        const hdi_block b = hdi_block_of(w->panel, w->m, w->p, q);
-        b1 = hdi_lower_bound(rel, u, b.begin + b.width);
-        for (a = from > b0 ? from : b0; a < end; a++)
-            w->f->pack->add(hdi_block_at(&b, rel[a], b.begin), child + HDI_PACK * hdi_triangle(a), rel, b0,
-                            a < b1 ? a + 1 : b1, b.begin);
+/* Entry (j,j) of a triangle of u rows packed by columns; those below it follow. */
+static HDI_INLINE int64_t hdi_triangle_column(int64_t u, int64_t j) { return j * u - j * (j - 1) / 2; }
+
+static HDI_INLINE void hdi_entry_copy(int32_t width, double *to, const double *from) {
+    if (width == 1) *to = *from;
+    else memcpy(to, from, HDI_PACK * sizeof *to);
+}
+
+static void hdi_clear(double *to, int64_t doubles) {
+    if (doubles > 0) memset(to, 0, (size_t)doubles * sizeof *to);
+}
+
+/* ---- assembly ---- */
+
+/* Runs of rows [from,end) that go to consecutive places: run[q] is the first of run q, run[n] is end. Returns
+ * n, or 0: there are too many, or they are too short for real numbers. */
+enum { HDI_FRONT_RUNS = 64 };
+static int32_t hdi_front_runs(const int32_t *rel, int64_t from, int64_t end, int32_t width, int32_t *run) {
+    int32_t n = 0;
+    int64_t i;
+    for (i = from; i < end; i++) {
+        if (i > from && rel[i] == rel[i - 1] + 1) continue;
+        if (n == HDI_FRONT_RUNS) return 0;
+        run[n++] = (int32_t)i;
     }
+    run[n] = (int32_t)end;
+    return width == 1 && end - from < 4 * n ? 0 : n;
+}
+
+/* Rows of child c's update matrix that fall into rows [r0,r1) of the front, added to it: the columns that are
+ * pivots there, or with below the others. Entry (i,j) goes to (rel[i], rel[j]). */
+static void hdi_front_child(const hdi_front *w, int32_t c, int64_t r0, int64_t r1, int below) {
+    const hdi_factor *f = w->f;
+    const hdi_symbolic *s = f->sym;
+    const int32_t *rel = s->rel + s->row_ptr[c], width = f->width;
+    const int64_t u = hdi_front_below(s, c), inner = s->inner[c];
+    const int64_t from = r0 == 0 ? 0 : r0 == w->p ? inner : hdi_lower_bound(rel, u, r0);
+    const int64_t end = r1 == w->m ? u : hdi_lower_bound(rel, u, r1);
+    const double *child = f->work + width * s->update[c];
+    int32_t run[HDI_FRONT_RUNS + 1], first = 0, n, q;
+    int64_t i, j = below ? inner : 0;
+    const int64_t j1 = below ? end : hdi_least(inner, end);
+    hdi_block b = hdi_front_block(w, 0);
+    if (from == end) return;
+    n = hdi_front_runs(rel, from, end, width, run);
+    for (; j < j1; j++) {
+        const int64_t i0 = hdi_most(from, j), at = rel[j];
+        const double *x = child + width * (hdi_triangle_column(u, j) - j);
+        double *y = w->update + width * (hdi_triangle_column(w->u, at - w->p) - at);
+        if (!below) {
+            if (at >= b.begin + HDI_PANEL) b = hdi_front_block(w, at / HDI_PANEL);
+            y = b.at + width * ((at - b.begin) * b.ld - b.begin);
+        }
+        while (first + 1 < n && run[first + 1] <= i0) first++;
+        for (q = first; q < n; q++) {
+            i = hdi_most(run[q], i0);
+            f->ops->add(y + width * rel[i], x + width * i, width * (run[q + 1] - i));
+        }
+        if (n > 0) continue;
+        if (width == 1) for (i = i0; i < end; i++) y[rel[i]] += x[i];
+        else for (i = i0; i < end; i++) f->ops->add(y + width * rel[i], x + width * i, width);
+    }
+}
+
+static void hdi_front_children(const hdi_front *w, int64_t r0, int64_t r1, int below) {
+    const hdi_symbolic *s = w->f->sym;
+    int32_t k;
+    for (k = s->kid_ptr[w->v]; k < s->kid_ptr[w->v + 1]; k++) hdi_front_child(w, s->kid[k], r0, r1, below);
 }
 
 /* Rows [r0,r1) of the panel: cleared, entries of A, children. */
-static void hdi_front_assemble_pack(const hdi_front *w, int64_t r0, int64_t r1) {
+static void hdi_front_assemble(const hdi_front *w, int64_t r0, int64_t r1) {
     const hdi_symbolic *s = w->f->sym;
-    int64_t q;
-    int32_t k;
+    const int32_t width = w->f->width;
+    hdi_block own;
+    int64_t q, k;
     for (q = 0; q * HDI_PANEL < w->p; q++) {
-        const hdi_block b = hdi_block_of(w->panel, w->m, w->p, q);
-        const int64_t begin = r0 > b.begin ? r0 : b.begin;
-        const int64_t count = (r1 - begin) * b.row;
-        if (count > 0) memset(hdi_block_at(&b, begin, b.begin), 0, (size_t)count * sizeof *b.at);
+        const hdi_block b = hdi_front_block(w, q);
+        const int64_t first = hdi_most(r0, b.begin);
+        if (r0 <= b.begin && r1 == w->m) hdi_clear(b.at, width * b.width * b.ld);
+        else for (k = 0; k < b.width; k++)
+            hdi_clear(hdi_block_at(&b, first, b.begin + k), width * (r1 - first));
     }
+    own = hdi_front_block(w, 0);
     for (q = s->a_ptr[w->v]; q < s->a_ptr[w->v + 1]; q++) {
         const int64_t i = s->a_row[q], j = s->a_col[q];
-        if (i >= r0 && i < r1) {
-            const hdi_block b = hdi_block_of(w->panel, w->m, w->p, j / HDI_PANEL);
-            hdi_values_at(w->f->values, HDI_PACK, s->a_from[q], hdi_front_row(w, i, j),
-                          hdi_block_at(&b, i, j));
-        }
+        if (i < r0 || i >= r1) continue;
+        if (j < own.begin || j >= own.begin + HDI_PANEL) own = hdi_front_block(w, j / HDI_PANEL);
+        hdi_values_at(w->f->values, width, s->a_from[q], hdi_front_row(w, i, j), hdi_block_at(&own, i, j));
     }
-    for (k = s->kid_ptr[w->v]; k < s->kid_ptr[w->v + 1]; k++) hdi_front_child_pack(w, s->kid[k], r0, r1);
+    hdi_front_children(w, r0, r1, 0);
 }
 
-/* Entries (i,k0..k0+nb) of rows [r0,r1): minus sum_{k < k0} l_ik s_jk, block by block of the columns before;
- * S is by rows of k0 + nb entries. */
-static void hdi_front_before_pack(const hdi_front *w, int64_t r0, int64_t r1, int lower) {
-    const hdi_block to = hdi_block_of(w->panel, w->m, w->p, w->k0 / HDI_PANEL);
-    hdi_pack_job g;
+/* ---- elimination ---- */
+
+/* The diagonal of columns [k, k + n) of a block. */
+static void hdi_front_diagonal(const hdi_block *b, int64_t k, int64_t n, double *d) {
+    int64_t i;
+    for (i = k; i < k + n; i++) hdi_entry_copy(b->entry, d + b->entry * (i - k), hdi_block_at(b, i, i));
+}
+
+/* Rows [r0,r1) of columns [k,k+n) of the block under way: minus L D L' over the blocks of columns before.
+ * s: slices of D L' for these columns, of rows as many as S has. */
+static void hdi_front_before(const hdi_front *w, int64_t r0, int64_t r1, int64_t k, int64_t n,
+                             const double *s) {
+    const hdi_kernels *o = w->f->ops;
+    const hdi_block to = hdi_front_block(w, k / HDI_PANEL);
+    hdi_product g;
     int64_t q;
+    if (to.begin == 0) return;
     memset(&g, 0, sizeof g);
-    g.a_col = g.b_col = HDI_PACK;
-    g.b_row = HDI_PACK * (w->k0 + w->nb);
-    g.c = hdi_block_at(&to, r0, w->k0);
-    g.c_row = to.row;
-    g.lower = lower;
-    for (q = 0; q * HDI_PANEL < w->k0; q++) {
-        const hdi_block b = hdi_block_of(w->panel, w->m, w->p, q);
+    g.c = hdi_block_at(&to, r0, k);
+    g.c_col = to.ld;
+    g.b_row = o->nr;
+    g.b_col = 1;
+    g.b_next = o->nr * (w->k0 + w->nb);
+    g.n = r1 - r0;
+    g.cols = n;
+    for (q = 0; q * HDI_PANEL < to.begin; q++) {
+        const hdi_block b = hdi_front_block(w, q);
         g.a = hdi_block_at(&b, r0, b.begin);
-        g.a_row = b.row;
-        g.b = w->S + HDI_PACK * b.begin;
-        g.depth = hdi_least(w->k0 - b.begin, b.width);
-        w->f->pack->multiply(&g, 0, r1 - r0, 0, w->nb);
+        g.a_col = b.ld;
+        g.b = s + w->f->width * o->nr * b.begin;
+        g.depth = b.width;
+        o->multiply(&g);
     }
 }
 
-static hdi_pack_rows hdi_front_rows_pack(const hdi_front *w) {
-    const hdi_block b = hdi_block_of(w->panel, w->m, w->p, w->k0 / HDI_PANEL);
-    hdi_pack_rows r;
-    r.panel = hdi_block_at(&b, b.begin, w->k0);
-    r.row = b.row;
-    r.first = b.begin;
-    r.s = w->S + HDI_PACK * w->k0;
-    r.s_row = HDI_PACK * (w->k0 + w->nb);
-    r.dinv = w->dinv + HDI_PACK * w->k0;
-    r.nb = w->nb;
-    return r;
+/* Rows [r0,r1) below pivots [k,k+n) of the block under way: L, once the blocks before are subtracted. */
+static void hdi_front_solve(const hdi_front *w, int64_t r0, int64_t r1, int64_t k, int64_t n,
+                            const double *s) {
+    const hdi_kernels *o = w->f->ops;
+    const hdi_block b = hdi_front_block(w, k / HDI_PANEL);
+    hdi_solve g;
+    g.x = hdi_block_at(&b, r0, b.begin);
+    g.x_col = b.ld;
+    g.b = s + w->f->width * o->nr * b.begin;
+    g.b_row = o->nr;
+    g.b_col = 1;
+    g.b_next = o->nr * (w->k0 + w->nb);
+    g.dinv = w->dinv + w->f->width * k;
+    g.n = r1 - r0;
+    g.before = k - b.begin;
+    g.nb = n;
+    if (g.n > 0) o->solve(&g);
 }
 
-/* Notes the four pivots number k of the front, d, and inverts them. 0 when one cannot be divided by. */
-static int hdi_front_invert_pack(const hdi_front *w, int64_t k, const double *d, hdi_pivots *note) {
-    double *dinv = w->dinv + HDI_PACK * k;
-    int c;
-    for (c = 0; c < HDI_PACK_LANES; c++) {
-        const double size = hdi_pythag(d[c], d[c + HDI_PACK_LANES]);
-        hd_c64 one = hdi_c(0, 0);
-        if (hdi_finite(size) && size > 0) one = hdi_cdiv(hdi_c(1, 0), hdi_c(d[c], d[c + HDI_PACK_LANES]));
-        if (!hdi_finite(size) || !(size > 0) || !hdi_cfinite(one)) {
-            note->failed = w->f->sym->super[w->v] + (int32_t)k;
-            note->lane = c;
-            note->value = size;
-            return 0;
-        }
-        hdi_pivots_add(note, size, size);
-        dinv[c] = one.re;
-        dinv[c + HDI_PACK_LANES] = one.im;
-    }
-    return 1;
-}
-
-/* Pivots [k0,k0+nb): their rows of L and S, left-looking. 0 when one cannot be divided by. */
-static int hdi_front_pivots_pack(const hdi_front *w, hdi_pivots *note) {
-    const int64_t k0 = w->k0, s_row = HDI_PACK * (k0 + w->nb);
-    const hdi_block own = hdi_block_of(w->panel, w->m, w->p, k0 / HDI_PANEL);
-    hdi_pack_rows r = hdi_front_rows_pack(w);
+/* D L' of pivots [k,k+n) over all columns before them, as a slice. */
+static void hdi_front_slice(const hdi_front *w, int64_t k, int64_t n, double *s) {
+    const hdi_kernels *o = w->f->ops;
+    double *d = w->work;
     int64_t q;
-    int32_t i, j, c;
-    for (q = 0; q * HDI_PANEL < k0; q++) {
-        const hdi_block b = hdi_block_of(w->panel, w->m, w->p, q);
-        for (i = 0; i < w->nb; i++)
-            w->f->pack->scale(hdi_block_at(&b, k0 + i, b.begin), 0, 0, 1, 0,
-                              hdi_least(k0 - b.begin, b.width), w->d + HDI_PACK * b.begin,
-                                  w->S + i * s_row + HDI_PACK * b.begin);
+    for (q = 0; q * HDI_PANEL < k; q++) {
+        const hdi_block b = hdi_front_block(w, q);
+        const int64_t cols = hdi_least(k - b.begin, b.width);
+        hdi_front_diagonal(&b, b.begin, cols, d);
+        o->slices(s + w->f->width * o->nr * b.begin, 0, hdi_block_at(&b, k, b.begin), 1, b.ld, d, n, cols);
     }
-    hdi_front_before_pack(w, k0, k0 + w->nb, 1);
-    for (i = 0; i < w->nb; i++) {
-        double *x = hdi_block_at(&own, k0 + i, k0), *s = w->S + i * s_row + HDI_PACK * k0, t[HDI_PACK];
-        double *d = w->d + HDI_PACK * (k0 + i);
-        r.nb = i;
-        if (i > 0) w->f->pack->solve_rows(&r, k0 + i, k0 + i + 1);
-        memcpy(d, x + HDI_PACK * i, HDI_PACK * sizeof *d);
-        for (j = 0; j < i; j++) {
-            hdi_pack_times(x + HDI_PACK * j, w->d + HDI_PACK * (k0 + j), s + HDI_PACK * j);
-            hdi_pack_times(x + HDI_PACK * j, s + HDI_PACK * j, t);
-            for (c = 0; c < HDI_PACK; c++) d[c] -= t[c];
+}
+
+/* Notes pivots [k,k+n). 0: one cannot be divided by. */
+static int hdi_front_note(const hdi_front *w, int64_t k, int64_t n, hdi_pivots *note) {
+    const hdi_block b = hdi_front_block(w, k / HDI_PANEL);
+    int64_t i;
+    int q;
+    for (i = k; i < k + n; i++) {
+        const double *d = hdi_block_at(&b, i, i), *dinv = w->dinv + b.entry * i;
+        for (q = 0; q < (b.entry == 1 ? 1 : (int)HDI_PACK_LANES); q++) {
+            const double size = b.entry == 1 ? fabs(*d) : hdi_pythag(d[q], d[q + HDI_PACK_LANES]);
+            const int good = hdi_finite(size) && (b.entry == 1 ? size > HDI_PIVOT_LEAST
+                                                               : size > 0 && hdi_finite(dinv[q]));
+            if (!good) {
+                note->failed = w->f->sym->super[w->v] + (int32_t)i;
+                note->lane = q;
+                note->value = b.entry == 1 ? *d : size;
+                return 0;
+            }
+            hdi_pivots_add(note, size, size);
         }
-        if (!hdi_front_invert_pack(w, k0 + i, d, note)) return 0;
+        note->negative += b.entry == 1 && *d < 0;
     }
     return 1;
 }
 
-/* Rows [r0,r1) of U = -L21 D L21'. S: room for HDI_FRONT_COLS rows of HDI_PACK_DEPTH entries. */
-static void hdi_front_update_pack(const hdi_front *w, double *S, int64_t r0, int64_t r1) {
-    hdi_pack_job g;
-    int64_t k, j;
-    memset(&g, 0, sizeof g);
-    g.c = w->update;
-    g.a_col = g.b_col = HDI_PACK;
-    g.lower = g.packed = 1;
-    for (k = 0; k < w->p; k += HDI_PACK_DEPTH) {
-        const hdi_block b = hdi_block_of(w->panel, w->m, w->p, k / HDI_PANEL);
-        g.depth = hdi_least(w->p - k, HDI_PACK_DEPTH);
-        g.store = k == 0;
-        g.a = hdi_block_at(&b, w->p, k);
-        g.a_row = b.row;
-        g.b = S;
-        g.b_row = HDI_PACK * g.depth;
-        for (j = 0; j < r1; j += HDI_FRONT_COLS) {
-            const int64_t end = hdi_least(j + HDI_FRONT_COLS, r1);
-            w->f->pack->scale(g.a, b.row, j, end, 0, g.depth, w->d + HDI_PACK * k, S);
-            g.b_first = j;
-            w->f->pack->multiply(&g, r0 > j ? r0 : j, r1, j, end);
+/* The block of pivots in rows [k0,end): end is k0 + nb, or further down. S gets its D L'. 0: a pivot cannot
+ * be divided by. */
+static int hdi_front_eliminate(const hdi_front *w, int64_t end, hdi_pivots *note) {
+    const hdi_kernels *o = w->f->ops;
+    const int64_t kb = w->k0 + w->nb, width = w->f->width;
+    const hdi_block own = hdi_front_block(w, w->k0 / HDI_PANEL);
+    double *s = w->S;
+    int64_t k;
+    for (k = w->k0; k < kb; k += o->nr, s += width * o->nr * kb) {
+        hdi_eliminate g;
+        g.nc = (int32_t)hdi_least(kb - k, o->nr);
+        g.n = (int32_t)hdi_least(end - k - g.nc, o->mr - o->nr);
+        hdi_front_slice(w, k, g.nc, s);
+        hdi_front_before(w, k, end, k, g.nc, s);
+        g.x = hdi_block_at(&own, k, own.begin);
+        g.x_col = own.ld;
+        g.before = k - own.begin;
+        g.s = s + width * o->nr * own.begin;
+        g.dinv = w->dinv + width * k;
+        o->eliminate(&g);
+        if (!hdi_front_note(w, k, g.nc, note)) return 0;
+        hdi_front_solve(w, k + g.nc + g.n, end, k, g.nc, s);
+    }
+    return 1;
+}
+
+/* ---- the update matrix ---- */
+
+#ifdef HEATDIFF_USE_BLAS
+/* The update by the BLAS' dgemm, in blocks of 128 rows and 256 columns, for fronts that are worth the calls.
+ * Update of 1000 rows by 500 pivots on one core: plain C 22 GF/s, OpenBLAS 0.3.21 40 (58 when told to use
+ * AVX-512), our AVX2 kernels 62, AVX-512 115: so only plain C gives way to it. */
+enum { HDI_BLAS_LEAST = 128, HDI_BLAS_ROWS = 128, HDI_BLAS_COLS = 256 };
+
+static int hdi_blas_serves(int32_t pivots, int32_t below, int32_t width) {
+    return width == 1 && pivots >= HDI_BLAS_LEAST && below >= HDI_BLAS_LEAST;
+}
+
+static uint64_t hdi_blas_work(void) { return HDI_BLAS_COLS * (HDI_PANEL + HDI_BLAS_ROWS); }
+
+static void hdi_blas_update(const hdi_front *w, double *S, int64_t r0, int64_t r1) {
+    double *C = S + HDI_BLAS_COLS * HDI_PANEL;
+    const int ld_s = HDI_BLAS_COLS, ld_c = HDI_BLAS_ROWS;
+    const double one = 1, zero = 0;
+    int64_t g, i, j, r, q;
+    for (g = 0; g < r1; g += HDI_BLAS_COLS) {
+        const int cols = (int)hdi_least(r1 - g, HDI_BLAS_COLS);
+        for (q = 0; q * HDI_PANEL < w->p; q++) {
+            const hdi_block b = hdi_front_block(w, q);
+            const int depth = (int)b.width, ld = (int)b.ld;
+            for (i = 0; i < depth; i++)
+                for (j = 0; j < cols; j++)
+                    S[j + i * HDI_BLAS_COLS] = *hdi_block_at(&b, w->p + g + j, b.begin + i) *
+                                               *hdi_block_at(&b, b.begin + i, b.begin + i);
+            for (r = hdi_most(r0, g); r < r1; r += HDI_BLAS_ROWS) {
+                const int rows = (int)hdi_least(r1 - r, HDI_BLAS_ROWS);
+                dgemm_("N", "T", &rows, &cols, &depth, &one, hdi_block_at(&b, w->p + r, b.begin), &ld, S,
+                       &ld_s, &zero, C, &ld_c);
+                for (j = 0; j < cols; j++) {
+                    double *to = w->update + (hdi_triangle_column(w->u, g + j) - g - j);
+                    for (i = hdi_most(r, g + j); i < r + rows; i++)
+                        to[i] = (q ? to[i] : 0) - C[i - r + j * HDI_BLAS_ROWS];
+                }
+            }
         }
     }
 }
+#endif
 
-/* Children's update matrices into rows [r0,r1) of the front's own. */
-static void hdi_front_extend_pack(const hdi_front *w, int64_t r0, int64_t r1) {
-    const hdi_symbolic *s = w->f->sym;
-    int64_t a, end;
-    int32_t k;
-    for (k = s->kid_ptr[w->v]; k < s->kid_ptr[w->v + 1]; k++) {
-        const int32_t c = s->kid[k], *rel = s->rel + s->row_ptr[c];
-        const double *from = w->f->work + HDI_PACK * s->update[c];
-        hdi_front_child_rows(s, c, w->p + r0, w->p + r1, &a, &end);
-        for (; a < end; a++)
-            w->f->pack->add(w->update + HDI_PACK * hdi_triangle(rel[a] - w->p),
-                            from + HDI_PACK * hdi_triangle(a), rel, s->inner[c], a + 1, w->p);
+/* Rows [r0,r1) of U = -L21 D L21', then the children's. */
+static void hdi_front_update(const hdi_front *w, int64_t r0, int64_t r1, double *work) {
+    const hdi_kernels *o = w->f->ops;
+    const int64_t width = w->f->width, depth = hdi_least(w->p, hdi_front_depth(w->f->width));
+    const int64_t span = hdi_front_span(w->f->width);
+    double *d = work, *s = d + width * hdi_least(w->p, HDI_PANEL);
+    hdi_product g;
+    int64_t j, k;
+    memset(&g, 0, sizeof g);
+    g.lower = g.packed = 1;
+    g.b_row = o->nr;
+    g.b_col = 1;
+    g.b = s;
+    g.work = s + width * depth * (hdi_least(w->u, span) + HDI_TILE_COLS);
+    for (j = 0; j < r1; j += span) {
+        const int64_t end = hdi_least(j + span, r1), row = hdi_most(r0, j);
+        g.c = w->update + width * (hdi_triangle_column(w->u, j) + row - j);
+        g.c_col = w->u - j - 1;
+        g.first = row - j;
+        g.n = r1 - row;
+        g.cols = end - j;
+        for (k = 0; k < w->p && g.n > 0; k += g.depth) {
+            const hdi_block b = hdi_front_block(w, k / HDI_PANEL);
+            g.depth = hdi_least(hdi_least(w->p, b.begin + HDI_PANEL) - k, depth);
+            g.b_next = o->nr * g.depth;
+            g.store = k == 0;
+            g.a = hdi_block_at(&b, w->p + row, k);
+            g.a_col = b.ld;
+            hdi_front_diagonal(&b, k, g.depth, d);
+            o->slices(s, g.b_next, hdi_block_at(&b, w->p + j, k), 1, b.ld, d, g.cols, g.depth);
+            o->multiply(&g);
+        }
     }
-}
-
-/* ---- fronts of real numbers ---- */
-
-static int64_t hdi_triangle_column(int64_t u, int64_t j) { return j * u - j * (j - 1) / 2; }
-
-/* Columns [c0,c1) of panel and update matrix: cleared, entries of A, children. */
-static void hdi_front_assemble_real(const hdi_front *w, int64_t c0, int64_t c1) {
-    const hdi_symbolic *s = w->f->sym;
-    const int64_t p0 = hdi_least(c0, w->p), p1 = hdi_least(c1, w->p);
-    const int64_t u0 = hdi_triangle_column(w->u, c0 - p0), u1 = hdi_triangle_column(w->u, c1 - p1);
-    int64_t q, from, end;
-    int32_t k;
-    memset(w->panel + p0 * w->m, 0, (size_t)((p1 - p0) * w->m) * sizeof *w->panel);
-    memset(w->update + u0, 0, (size_t)(u1 - u0) * sizeof *w->update);
-    for (q = s->a_ptr[w->v]; q < s->a_ptr[w->v + 1]; q++) {
-        const int64_t i = s->a_row[q], j = s->a_col[q];
-        if (j >= c0 && j < c1)
-            hdi_values_at(w->f->values, 1, s->a_from[q], hdi_front_row(w, i, j), w->panel + i + j * w->m);
-    }
-    for (k = s->kid_ptr[w->v]; k < s->kid_ptr[w->v + 1]; k++) {
-        const int32_t c = s->kid[k];
-        hdi_front_child_rows(s, c, c0, c1, &from, &end);
-        hdi_real_extend(w->f->real, w->panel, w->m, (int32_t)w->p, w->update, w->f->work + s->update[c],
-                        hdi_front_below(s, c), s->rel + s->row_ptr[c], from, end);
-    }
-}
-
-/* Pivots [k0,k0+nb) and their columns down to row end. */
-static int hdi_front_pivots_real(const hdi_front *w, int64_t end, hdi_pivots *note) {
-    const int64_t bad = hdi_real_block(w->f->real, w->panel, w->m, (int32_t)w->k0, w->nb, end,
-                                       w->S, w->dinv, note, w->work);
-    if (bad < 0) return 1;
-    note->failed = w->f->sym->super[w->v] + (int32_t)bad;
-    note->value = w->panel[bad * (w->m + 1)];
-    return 0;
+    hdi_front_children(w, w->p + r0, w->p + r1, 1);
 }
 
 /* ---- fronts ---- */
 
 typedef enum hdi_front_stage { HDI_FRONT_ASSEMBLE, HDI_FRONT_COLUMNS, HDI_FRONT_UPDATE } hdi_front_stage;
 
-/* Rows [r0,r1) of the front's panel or update matrix; but assembling real numbers, columns of both. */
+/* Rows [r0,r1) of the front's panel, or of its update matrix. */
 static void hdi_front_part(const void *front, int stage, int64_t r0, int64_t r1, double *work) {
     const hdi_front *w = (const hdi_front *)front;
-    const hdi_factor *f = w->f;
-    const int32_t p = (int32_t)w->p, k0 = (int32_t)w->k0;
-    hdi_pack_rows rows;
-    if (hdi_is_real(f)) {
-        if (stage == HDI_FRONT_ASSEMBLE)
-            hdi_front_assemble_real(w, r0, r1);
-        else if (stage == HDI_FRONT_COLUMNS)
-            hdi_real_rows(f->real, w->panel, w->m, k0, w->nb, w->S, k0 + w->nb, w->dinv, r0, r1, work);
-        else
-            hdi_real_update(f->real, w->update, w->u, w->panel, w->m, p, work, r0, r1);
-    } else if (stage == HDI_FRONT_ASSEMBLE) {
-        hdi_front_assemble_pack(w, r0, r1);
+    if (stage == HDI_FRONT_ASSEMBLE) {
+        hdi_front_assemble(w, r0, r1);
     } else if (stage == HDI_FRONT_COLUMNS) {
-        rows = hdi_front_rows_pack(w);
-        hdi_front_before_pack(w, r0, r1, 0);
-        f->pack->solve_rows(&rows, r0, r1);
+        hdi_front_before(w, r0, r1, w->k0, w->nb, w->S);
+        hdi_front_solve(w, r0, r1, w->k0, w->nb, w->S);
+#ifdef HEATDIFF_USE_BLAS
+    } else if (hdi_blas_serves((int32_t)w->p, (int32_t)w->u, w->f->width) &&
+               w->f->ops == hdi_kernels_get(0, 0)) {
+        hdi_blas_update(w, work, r0, r1);
+        hdi_front_children(w, w->p + r0, w->p + r1, 1);
+#endif
     } else {
-        hdi_front_update_pack(w, work, r0, r1);
-        hdi_front_extend_pack(w, r0, r1);
+        hdi_front_update(w, r0, r1, work);
     }
 }
 
 static int32_t hdi_front_block_size(const hdi_factor *f) {
-    return hdi_is_real(f) ? (int32_t)HDI_REAL_NB : (int32_t)HDI_PACK_BLOCK;
-}
-
-/* The pivots of the block under way, and their columns down to row end. 0 when one cannot be divided by. */
-static int hdi_front_block(const hdi_front *w, int64_t end, hdi_pivots *note) {
-    return hdi_is_real(w->f) ? hdi_front_pivots_real(w, end, note) : hdi_front_pivots_pack(w, note);
+    return (int32_t)hdi_front_pivot_block(f->width);
 }
 
 /* Whether threads share front v. */
@@ -13488,13 +12920,13 @@ static int hdi_front_shared(const hdi_symbolic *s, int32_t v) {
 static int hdi_front_factor(const hdi_factor *f, int32_t v, double *scratch, hdi_pivots *note) {
     const int64_t most = hdi_front_block_size(f);
     hdi_front w = hdi_front_open(f, v, scratch);
-    int64_t end;
     hdi_front_part(&w, HDI_FRONT_ASSEMBLE, 0, w.m, w.work);
     for (; w.k0 < w.p; w.k0 += w.nb) {
+        int64_t end;
         w.nb = (int32_t)hdi_least(w.p - w.k0, most);
         /* a small front: its columns at once */
-        end = hdi_is_real(f) && w.p <= HDI_REAL_NB && !hdi_front_shared(f->sym, v) ? w.m : w.k0 + w.nb;
-        if (!hdi_front_block(&w, end, note)) return 0;
+        end = w.p <= most && !hdi_front_shared(f->sym, v) ? w.m : w.k0 + w.nb;
+        if (!hdi_front_eliminate(&w, end, note)) return 0;
         if (end < w.m) hdi_front_part(&w, HDI_FRONT_COLUMNS, end, w.m, w.work);
     }
     if (w.u > 0) hdi_front_part(&w, HDI_FRONT_UPDATE, 0, w.u, w.work);
@@ -13594,7 +13026,6 @@ static hdi_factor hdi_factor_of(const hdi_symbolic *sym, int32_t width) {
     memset(&f, 0, sizeof f);
     f.sym = sym;
     f.width = width;
-    f.panel_at = width == 1 ? sym->panel : sym->panel_pack;
     f.scratch_size = hdi_front_scratch(sym->task_pivots, sym->task_update, width);
     f.top_size = hdi_front_scratch(sym->largest_pivots, sym->largest_update, width);
     f.chunk_size = hdi_front_chunk_scratch(sym->largest_pivots, sym->largest_update, width);
@@ -13614,7 +13045,7 @@ static uint64_t hdi_factor_parts(const hdi_symbolic *s) {
 /* The numbers of a factor. */
 static void hdi_factor_take_numbers(hdi_factor *f, hdi_scope *s) {
     const uint64_t w = (uint64_t)f->width;
-    f->panel = HDI_TAKE(s, double, (uint64_t)f->panel_at[f->sym->n_super] * w);
+    f->panel = HDI_TAKE(s, double, ((uint64_t)f->sym->panel[f->sym->n_super] + HDI_TILE_COLS) * w);
     f->dinv = HDI_TAKE(s, double, (uint64_t)f->sym->n * w);
 }
 
@@ -13656,8 +13087,7 @@ static void hdi_factor_take(hdi_factor *f, const hdi_symbolic *sym, int32_t widt
     f->order = HDI_TAKE(s, int32_t, f->n_order + 1);
     if (f->scratch && n_chunks > 0) f->second = f->scratch + f->scratch_size * n_parts + f->top_size;
     if (s->tally) return;
-    f->pack = HDI_HAS_POLE_FACTORS ? hdi_pack_ops_get(hdi_simd_level(s->ctx)) : NULL;
-    f->real = HDI_HAS_DIRECT ? hdi_real_ops_get(hdi_simd_level(s->ctx)) : NULL;
+    f->ops = HDI_HAS_DIRECT ? hdi_kernels_get(hdi_simd_level(s->ctx), width > 1) : NULL;
     f->ctx = s->ctx;
 }
 
@@ -13787,7 +13217,7 @@ static void hdi_factor_panel(hdi_factor_walk *t, int32_t k, int32_t c) {
         hdi_factor_arrive(t, &t->walk, k + 2);
         return;
     }
-    if (!hdi_front_block(&w, end, t->f->pivots + t->f->sym->n_tasks)) hdi_walk_stop(&t->walk);
+    if (!hdi_front_eliminate(&w, end, t->f->pivots + t->f->sym->n_tasks)) hdi_walk_stop(&t->walk);
     for (c = hdi_factor_first(t, k); c < t->n_chunks; c++) hdi_factor_come(t, &t->walk, c);
 }
 
@@ -13896,71 +13326,68 @@ static void hdi_sweep_children(const hdi_sweep *z, int32_t v, double *y, double 
     }
 }
 
-/* A block of supernode v's panel, for several right-hand sides. */
-static hdi_pack_sweep hdi_sweep_block(const hdi_sweep *z, int32_t v, const hdi_block *b, double *y,
-                                      double *t) {
-    const hdi_symbolic *s = z->f->sym;
-    hdi_pack_sweep g;
-    g.l = b->at;
-    g.row = b->row;
-    g.x_row = HDI_PACK * z->k;
-    g.width = b->width;
-    g.n = hdi_front_pivots(s, v) - b->begin;
-    g.u = hdi_front_below(s, v);
-    g.k = z->k;
-    g.y = y + g.x_row * b->begin;
+/* Block q of supernode v's panel. */
+static hdi_block hdi_sweep_block(const hdi_factor *f, int32_t v, int64_t q) {
+    int64_t p, u, m;
+    hdi_front_shape(f->sym, v, &p, &u, &m);
+    return hdi_block_of(f->panel + f->width * f->sym->panel[v], f->width, m, p, q);
+}
+
+/* Columns of L that are taken at a time on the way up: so many streams of memory at most. */
+enum { HDI_SWEEP_DEPTH = 32 };
+
+/* The same for one real right-hand side, columns k..k+7 of a block; or x = L11^-T (x - L' (x, t)) in them. */
+static void hdi_sweep_single(const hdi_sweep *z, const hdi_block *b, int64_t k, int64_t p, int64_t u,
+                             double *y, double *t, int down) {
+    hdi_single g;
+    g.l = b->at + k * (b->ld + 1);
+    g.x = y + b->begin + k;
     g.t = t;
-    g.x = z->x;
-    g.below = s->row + s->row_ptr[v];
-    return g;
+    g.ld = b->ld;
+    g.nc = (int32_t)hdi_least(b->width - k, 8);
+    g.n = p - b->begin - k - g.nc;
+    g.u = u;
+    if (down) z->f->ops->down(&g);
+    else z->f->ops->up(&g);
 }
 
 /* y = L11^-1 y, t -= L21 y */
-static void hdi_sweep_forward_pack(const hdi_sweep *z, int32_t v, double *y, double *t) {
+static void hdi_sweep_forward(const hdi_sweep *z, int32_t v, double *y, double *t) {
     const hdi_factor *f = z->f;
     const int64_t p = hdi_front_pivots(f->sym, v), u = hdi_front_below(f->sym, v);
-    int64_t i, q;
+    const int64_t row = (int64_t)f->width * z->k;
+    double *panel = f->panel + f->width * f->sym->panel[v];
+    int64_t q, k, n;
     for (q = 0; q * HDI_PANEL < p; q++) {
-        const hdi_block b = hdi_block_of(f->panel + HDI_PACK * f->panel_at[v], p + u, p, q);
-        double *l = b.at, *w = y + HDI_PACK * b.begin;
-        if (z->k > 1) {
-            const hdi_pack_sweep g = hdi_sweep_block(z, v, &b, y, t);
-            f->pack->up(&g);
+        const hdi_block b = hdi_block_of(panel, f->width, p + u, p, q);
+        const int64_t end = b.begin + b.width;
+        hdi_solve g;
+        if (row == 1) {
+            for (k = 0; k < b.width; k += 8) hdi_sweep_single(z, &b, k, p, u, y, t, 0);
             continue;
         }
-        for (i = 1; i < b.width; i++) f->pack->forward(l + i * b.row, 1, i, w, w + HDI_PACK * i);
-        f->pack->forward(l + b.width * b.row, p - b.begin - b.width, b.width, w, w + b.row);
-        f->pack->forward(l + (p - b.begin) * b.row, u, b.width, w, t);
-    }
-}
-
-static void hdi_sweep_forward_real(const hdi_sweep *z, int32_t v, double *y, double *t) {
-    const hdi_factor *f = z->f;
-    const int32_t p = hdi_front_pivots(f->sym, v);
-    const int64_t u = hdi_front_below(f->sym, v), m = p + u;
-    const double *panel = f->panel + f->panel_at[v];
-    int32_t k, nc;
-    for (k = 0; k < p; k += 8) {
-        nc = p - k < 8 ? p - k : 8;
-        if (z->k == 1) {
-            f->real->forward(y + k, panel + k + k * m, m, nc, p - k - nc, t, u, 0);
-            continue;
+        g.x = y + row * b.begin;
+        g.x_col = g.n = z->k;
+        g.b = b.at;
+        g.b_row = b.ld;
+        g.b_col = 1;
+        g.b_next = f->ops->nr;
+        g.before = 0;
+        g.nb = b.width;
+        g.dinv = NULL;
+        f->ops->solve(&g);
+        for (k = 0; k < b.width; k += n) {
+            n = hdi_least(b.width - k, HDI_SWEEP_DEPTH);
+            hdi_kernels_rows(f->ops, y + row * end, z->k, p - end, g.x + row * k, n,
+                             hdi_block_at(&b, end, b.begin + k), b.ld, 1);
+            hdi_kernels_rows(f->ops, t, z->k, u, g.x + row * k, n, hdi_block_at(&b, p, b.begin + k), b.ld, 1);
         }
-        if (k) f->real->gemv8(y + 8 * k, NULL, panel + k, m, nc, y, k);
-        f->real->lower8(y + 8 * k, panel + k + k * m, m, nc);
     }
-    if (z->k > 1 && u > 0) f->real->gemv8(t, NULL, panel + p, m, u, y, p);
-}
-
-static void hdi_sweep_forward(const hdi_sweep *z, int32_t v, double *y, double *t) {
-    if (hdi_is_real(z->f)) hdi_sweep_forward_real(z, v, y, t);
-    else hdi_sweep_forward_pack(z, v, y, t);
 }
 
 /* The pivots' part of the right-hand sides, where they are given apart from x. */
 static void hdi_sweep_take(const hdi_sweep *z, int32_t v, double *y) {
-    const int32_t *super = z->f->sym->super + v;
-    const int width = hdi_is_real(z->f) ? 1 : HDI_PACK;
+    const int32_t *super = z->f->sym->super + v, width = z->f->width;
     int32_t i, r;
     if (!z->rhs) return;
     for (i = super[0]; i < super[1]; i++) {
@@ -13983,49 +13410,61 @@ static int hdi_sweep_clear(const hdi_sweep *z, int32_t v, double *y) {
 }
 
 /* y = D^-1 y */
-static void hdi_sweep_divide_pack(const hdi_sweep *z, int32_t v, double *y) {
-    const hdi_symbolic *s = z->f->sym;
-    const int64_t p = hdi_front_pivots(s, v);
-    const double *dinv = z->f->dinv + HDI_PACK * (int64_t)s->super[v];
+static void hdi_sweep_divide(const hdi_sweep *z, int32_t v, double *y) {
+    const int64_t p = hdi_front_pivots(z->f->sym, v), width = z->f->width;
+    const double *d = z->f->dinv + width * z->f->sym->super[v];
     double t[HDI_PACK];
     int64_t i;
-    for (i = 0; i < p * z->k; i++) {
-        memcpy(t, y + HDI_PACK * i, sizeof t);
-        hdi_pack_times(t, dinv + HDI_PACK * (i / z->k), y + HDI_PACK * i);
+    int32_t r;
+    for (i = 0; i < p; i++, d += width) {
+        for (r = 0; r < z->k; r++, y += width) {
+            if (width == 1) {
+                *y *= *d;
+                continue;
+            }
+            memcpy(t, y, sizeof t);
+            hdi_pack_times(t, d, y);
+        }
     }
 }
 
-/* y = L11^-T (D^-1 y - L21' x[rows]) */
-static void hdi_sweep_backward_pack(const hdi_sweep *z, int32_t v, double *y) {
+/* y = L11^-T (D^-1 y - L21' x[rows]). rows: room for the rows below. */
+static void hdi_sweep_backward(const hdi_sweep *z, int32_t v, double *y, double *rows) {
     const hdi_factor *f = z->f;
     const int64_t p = hdi_front_pivots(f->sym, v), u = hdi_front_below(f->sym, v);
+    const int64_t row = (int64_t)f->width * z->k;
     const int32_t *idx = f->sym->row + f->sym->row_ptr[v];
+    double *panel = f->panel + f->width * f->sym->panel[v];
     int64_t i, q;
-    if (!hdi_sweep_clear(z, v, y)) hdi_sweep_divide_pack(z, v, y);
+    if (!hdi_sweep_clear(z, v, y)) hdi_sweep_divide(z, v, y);
+    if (row == 1) for (i = 0; i < u; i++) rows[i] = z->x[idx[i]];
+    else for (i = 0; i < u; i++)
+        for (q = 0; q < row; q += 8) hdi_entry_copy(8, rows + row * i + q, z->x + row * idx[i] + q);
     for (q = (p - 1) / HDI_PANEL; q >= 0; q--) {
-        const hdi_block b = hdi_block_of(f->panel + HDI_PACK * f->panel_at[v], p + u, p, q);
-        double *l = b.at, *w = y + HDI_PACK * b.begin;
-        if (z->k > 1) {
-            const hdi_pack_sweep g = hdi_sweep_block(z, v, &b, y, NULL);
-            f->pack->down(&g);
+        const hdi_block b = hdi_block_of(panel, f->width, p + u, p, q);
+        const int64_t end = b.begin + b.width;
+        double *own = y + row * b.begin;
+        hdi_solve g;
+        if (row == 1) {
+            for (i = (b.width - 1) / 8 * 8; i >= 0; i -= 8) hdi_sweep_single(z, &b, i, p, u, y, rows, 1);
             continue;
         }
-        f->pack->backward(l + (p - b.begin) * b.row, idx, u, b.width, w, z->x);
-        f->pack->backward(l + b.width * b.row, NULL, p - b.begin - b.width, b.width, w, w + b.row);
-        for (i = b.width - 1; i > 0; i--)
-            f->pack->backward(l + i * b.row, NULL, 1, i, w, w + HDI_PACK * i);
+        hdi_kernels_rows(f->ops, own, z->k, b.width, rows, u, hdi_block_at(&b, p, b.begin), 1, b.ld);
+        hdi_kernels_rows(f->ops, own, z->k, b.width, y + row * end, p - end, hdi_block_at(&b, end, b.begin),
+                         1, b.ld);
+        /* L11' from its last row and column on is like L11 */
+        g.x = own + row * (b.width - 1);
+        g.n = z->k;
+        g.x_col = -g.n;
+        g.b = hdi_block_at(&b, end - 1, end - 1);
+        g.b_row = -1;
+        g.b_col = -b.ld;
+        g.b_next = -f->ops->nr * b.ld;
+        g.before = 0;
+        g.nb = b.width;
+        g.dinv = NULL;
+        f->ops->solve(&g);
     }
-}
-
-static void hdi_sweep_backward_real(const hdi_sweep *z, int32_t v, double *y, double *gather) {
-    const hdi_factor *f = z->f;
-    const hdi_symbolic *s = f->sym;
-    const int32_t p = hdi_front_pivots(s, v), *idx = s->row + s->row_ptr[v];
-    const int64_t m = hdi_front_rows(s, v);
-    const double *panel = f->panel + f->panel_at[v];
-    const double *dinv = hdi_sweep_clear(z, v, y) ? NULL : f->dinv + s->super[v];
-    if (z->k == 1) hdi_real_backward(f->real, panel, m, p, dinv, y, z->x, idx, gather);
-    else hdi_real_backward8(f->real, panel, m, p, dinv, y, z->x, idx);
 }
 
 /* Fronts are too short for the processor to see where they lead: fetches as much of the panels as v's own
@@ -14033,7 +13472,7 @@ static void hdi_sweep_backward_real(const hdi_sweep *z, int32_t v, double *y, do
  * function without effect. */
 static HDI_INLINE void hdi_factor_fetch(const hdi_factor *f, int32_t v, int backward) {
     enum { AHEAD = 1024, MOST = 8192 };          /* doubles */
-    const int64_t *at = f->panel_at, end = f->width * at[f->sym->n_super];
+    const int64_t *at = f->sym->panel, end = f->width * at[f->sym->n_super];
     const int64_t ahead = (f->width == 1 ? 1 : 2) * (backward ? -AHEAD : AHEAD);
     const int64_t first = f->width * at[v] + ahead, last = f->width * at[v + 1] + ahead;
     int64_t i;
@@ -14050,8 +13489,7 @@ static void hdi_sweep_front(const hdi_sweep *z, int32_t v) {
     if (only && !only[v]) return;
     hdi_factor_fetch(f, v, z->backward);
     if (z->backward) {
-        if (hdi_is_real(f)) hdi_sweep_backward_real(z, v, y, t);
-        else hdi_sweep_backward_pack(z, v, y);
+        hdi_sweep_backward(z, v, y, t);
         return;
     }
     hdi_sweep_take(z, v, y);
@@ -14135,7 +13573,7 @@ static void hdi_sweep_node(void *arg, int64_t index, int32_t worker) {
 /* x = A^-1 x. On all threads with ctx, else (from within a task) on this one. */
 static void hdi_sweep_run(hdi_sweep *z, hd_context *ctx) {
     const hdi_symbolic *s = z->f->sym;
-    const double bytes = 2 * 8.0 * z->f->width * (double)z->f->panel_at[s->n_super];
+    const double bytes = 2 * 8.0 * z->f->width * (double)s->panel[s->n_super];
     const int32_t n = hdi_sweep_nodes(s);
     hdi_walk w;
     int32_t i;
@@ -14200,7 +13638,7 @@ static void hdi_ldl_tell(const hd_ldl *f, const hdi_factor *of, hd_ldl_report *r
     rep->ordering = f->sym.ordering;
     rep->n_supernodes = f->sym.n_super;
     rep->factor_nnz = f->sym.nnz;
-    rep->stored = of ? of->panel_at[f->sym.n_super] : f->sym.stored;
+    rep->stored = f->sym.stored;
     rep->factor_flops = f->sym.flops;
     if (!of) return;
     rep->n_matrices = of->width == 1 ? 1 : f->n_matrices;
@@ -14416,12 +13854,13 @@ static hd_status hdi_ldl_leading(const hd_ldl *f, size_t ldb, size_t ldx, hd_err
  * stood: its life is that of the update matrix run backwards, so that the plan of memory serves both. What is
  * new, the columns of the pivots, lives in a scratch panel until the children have taken their parts. */
 
-enum { HDI_INV_ROWS = 48, HDI_INV_DEPTH = 64, HDI_INV_DEPTH_REAL = 128, HDI_INV_CHUNK = 48,
-      HDI_INV_PIVOTS = 24, HDI_INV_SLICE = 6 };
+enum { HDI_INV_ROWS = 48, HDI_INV_DEPTH = 64, HDI_INV_CHUNK = 48, HDI_INV_PIVOTS = 24 };
 
 /* What is wanted of an inverse Z: its entries in A's lower triangle in the order of sym->a_from; by pivots,
- * its diagonal, or the quadratic forms x_j' Z x_j. */
-typedef enum hdi_wanted { HDI_WANT_ENTRIES, HDI_WANT_DIAGONAL, HDI_WANT_FORMS } hdi_wanted;
+ * its diagonal, or the quadratic forms x_j' Z x_j; or the entries and after them the diagonal. */
+typedef enum hdi_wanted {
+    HDI_WANT_ENTRIES, HDI_WANT_DIAGONAL, HDI_WANT_FORMS, HDI_WANT_BOTH
+} hdi_wanted;
 
 /* Places where blocks of columns are worked on: one for each subtree, or one for each block under way in a
  * front of the top. Of each: columns [pivots] and room [aside, then the rest of size]. */
@@ -14463,376 +13902,228 @@ typedef struct hdi_inverse {
 typedef struct hdi_inverse_front {
     hdi_factor *f;
     double *panel, *z, *update;  /* L; Z of the pivots' columns in the same layout; Z22, a packed triangle */
-    double *T, *S, *M, *D, *slices, *buffer;   /* D: -1/d of the pivots, then ones */
+    double *T, *S, *M, *D, *buffer;   /* T: -L11^-T; S, M: slices, of T' and of M; D: -1/d */
     int64_t m, p, u, k0, k1;
     int32_t v, child;            /* child: whose Z22 is taken out */
 } hdi_inverse_front;
 
-/* Doubles of a block of rows of Z that is gathered, and of all scratch of a front of at most so many rows and
- * pivots and stored entries. */
+/* How much is taken at a time: rows that are gathered, and their entries. */
+static int64_t hdi_inverse_height(int32_t width) {
+    return width == 1 ? (int)HDI_TILE_ROWS : (int)HDI_INV_ROWS;
+}
+static int64_t hdi_inverse_depth(int32_t width) { return width == 1 ? (int)HDI_PANEL : (int)HDI_INV_DEPTH; }
+
+/* Doubles of rows that are gathered, or of rows of M, and of all scratch of a front of at most so many rows
+ * and pivots and stored entries. */
 static uint64_t hdi_inverse_buffer(int32_t width) {
-    return width == 1 ? (uint64_t)HDI_REAL_MR * HDI_INV_DEPTH_REAL
-        : (uint64_t)HDI_PACK * HDI_INV_ROWS * HDI_INV_DEPTH;
+    return (uint64_t)(width * HDI_INV_ROWS * HDI_PANEL);
 }
 
 static uint64_t hdi_inverse_scratch(int64_t m, int64_t p, int64_t stored, int32_t width) {
-    const int64_t w = hdi_least(p, HDI_PANEL), slices = width == 1 ? (m + w) * (w + HDI_REAL_NR) : 0;
-    const int64_t entries = stored + 2 * w * w + m * (w + HDI_INV_SLICE) + w + HDI_INV_PIVOTS;
-    return (uint64_t)(width * entries + slices) + hdi_inverse_buffer(width) + 64;
+    const int64_t n = hdi_least(p, HDI_PANEL), wide = n + HDI_TILE_COLS;
+    return (uint64_t)(width * (stored + n * n + n * wide + m * wide + n)) + hdi_inverse_buffer(width) + 64;
 }
 
 static hdi_inverse_front hdi_inverse_open(hdi_factor *f, int32_t v, double *scratch) {
     const hdi_symbolic *s = f->sym;
     hdi_inverse_front w;
-    int64_t most;
+    int64_t n;
     memset(&w, 0, sizeof w);
     w.f = f;
     w.v = v;
     hdi_front_shape(s, v, &w.p, &w.u, &w.m);
-    w.panel = f->panel + f->width * f->panel_at[v];
+    w.panel = f->panel + f->width * s->panel[v];
     w.update = f->work + f->width * s->update[v];
-    most = hdi_least(w.p, HDI_PANEL);
+    n = hdi_least(w.p, HDI_PANEL);
     w.z = scratch;
-    w.T = w.z + f->width * (f->panel_at[v + 1] - f->panel_at[v]);
-    w.S = w.T + f->width * most * most;
-    w.M = w.S + f->width * most * most;
-    w.D = w.M + f->width * w.m * (most + HDI_INV_SLICE);
-    w.slices = w.D + f->width * (most + HDI_INV_PIVOTS);
-    w.buffer = w.slices + (f->width == 1 ? (w.m + most) * (most + HDI_REAL_NR) : 0);
+    w.T = w.z + f->width * (s->panel[v + 1] - s->panel[v]);
+    w.S = w.T + f->width * n * n;
+    w.M = w.S + f->width * n * (n + HDI_TILE_COLS);
+    w.D = w.M + f->width * w.m * (n + HDI_TILE_COLS);
+    w.buffer = w.D + f->width * n;
     return w;
 }
 
-/* ---- packs ---- */
-
-/* Entry (i,j) of Z, j <= i, and how many of its row follow in place. */
-static const double *hdi_inverse_at_pack(const hdi_inverse_front *w, int64_t i, int64_t j, int64_t *run) {
-    if (j < w->p) {
-        const hdi_block b = hdi_block_of(w->z, w->m, w->p, j / HDI_PANEL);
-        *run = b.begin + b.width - j;
-        return hdi_block_at(&b, i, j);
-    }
-    *run = i - j + 1;
-    return w->update + HDI_PACK * (hdi_triangle(i - w->p) + j - w->p);
+static hdi_block hdi_inverse_block(const hdi_inverse_front *w, double *panel) {
+    return hdi_block_of(panel, w->f->width, w->m, w->p, w->k0 / HDI_PANEL);
 }
 
-/* Rows [i0,i1), columns [j0,j1) of the symmetric Z, by rows. */
-static void hdi_inverse_gather_pack(const hdi_inverse_front *w, int64_t i0, int64_t i1, int64_t j0,
-                                    int64_t j1, double *to) {
-    const int64_t row = HDI_PACK * (j1 - j0);
-    int64_t i, j, run, end;
-    for (i = i0; i < i1; i++) {
-        for (j = j0, end = hdi_least(i + 1, j1); j < end; j += run) {
-            const double *from = hdi_inverse_at_pack(w, i, j, &run);
-            run = hdi_least(run, end - j);
-            memcpy(to + (i - i0) * row + HDI_PACK * (j - j0), from, (size_t)run * HDI_PACK * sizeof *to);
-        }
+/* Entry (j,j) of Z; those below it in its column follow. */
+static const double *hdi_inverse_column(const hdi_inverse_front *w, int64_t j) {
+    hdi_block b;
+    if (j >= w->p) return w->update + w->f->width * hdi_triangle_column(w->u, j - w->p);
+    b = hdi_block_of(w->z, w->f->width, w->m, w->p, j / HDI_PANEL);
+    return hdi_block_at(&b, j, j);
+}
+
+/* Entry (i,j) of Z, j <= i. */
+static const double *hdi_inverse_at(const hdi_inverse_front *w, int64_t i, int64_t j) {
+    return hdi_inverse_column(w, j) + w->f->width * (i - j);
+}
+
+/* to = from, n entries; from_step and to_step from entry to entry. */
+static void hdi_entries_copy(int32_t width, double *to, int64_t to_step, const double *from,
+                             int64_t from_step, int64_t n) {
+    int64_t i;
+    if (width == 1) for (i = 0; i < n; i++) to[i * to_step] = from[i * from_step];
+    else for (i = 0; i < n; i++)
+        hdi_entry_copy(HDI_PACK, to + HDI_PACK * i * to_step, from + HDI_PACK * i * from_step);
+}
+
+/* Rows [i0,i1), columns [j0,j1) of the symmetric Z, by columns of ld. */
+static void hdi_inverse_gather(const hdi_inverse_front *w, int64_t i0, int64_t i1, int64_t j0, int64_t j1,
+                               int64_t ld, double *to) {
+    const int32_t width = w->f->width;
+    int64_t i, j;
+    for (j = j0; j < j1 && j < i1; j++) {
+        const int64_t first = hdi_most(i0, j);
+        memcpy(to + width * ((j - j0) * ld + first - i0), hdi_inverse_at(w, first, j),
+               (size_t)(width * (i1 - first)) * sizeof *to);
     }
-    for (j = j0 > i0 ? j0 : i0 + 1; j < j1; j++) {   /* above the diagonal: entry (j,i) */
-        double *column = to + HDI_PACK * (j - j0);
-        for (i = i0, end = hdi_least(i1, j); i < end; i += run) {
-            const double *from = hdi_inverse_at_pack(w, j, i, &run);
-            int64_t q;
-            run = hdi_least(run, end - i);
-            for (q = 0; q < run; q++)
-                memcpy(column + (i + q - i0) * row, from + HDI_PACK * q, HDI_PACK * sizeof *to);
-        }
+    for (i = i0; i < i1; i++) {                  /* above the diagonal: entry (j,i) */
+        const int64_t first = hdi_most(j0, i + 1);
+        if (first < j1)
+            hdi_entries_copy(width, to + width * ((first - j0) * ld + i - i0), ld,
+                             hdi_inverse_at(w, first, i), 1, j1 - first);
     }
 }
 
-/* T = -L11^-T (from T L11' = -I, some columns at a time) and Z11 = L11^-T D^-1 L11^-1 of the block, by rows
- * of as many entries. */
-static void hdi_inverse_pivots_pack(const hdi_inverse_front *w) {
-    const hdi_block l = hdi_block_of(w->panel, w->m, w->p, w->k0 / HDI_PANEL);
-    const hdi_block z = hdi_block_of(w->z, w->m, w->p, w->k0 / HDI_PANEL);
-    const int64_t n = w->k1 - w->k0, row = HDI_PACK * n;
-    const double *dinv = w->f->dinv + HDI_PACK * (w->f->sym->super[w->v] + w->k0);
-    double *one = w->D + row;
-    hdi_pack_rows x;
-    hdi_pack_job g;
+/* A product of which B stands in slices. */
+static hdi_product hdi_inverse_product(const hdi_inverse_front *w, const double *slices, int64_t b_next,
+                                       int64_t depth) {
+    const hdi_kernels *o = w->f->ops;
+    hdi_product g;
+    memset(&g, 0, sizeof g);
+    g.b = slices;
+    g.b_row = o->nr;
+    g.b_col = 1;
+    g.b_next = b_next;
+    g.depth = depth;
+    g.store = 1;
+    return g;
+}
+
+/* T = -L11^-T, from T L11' = -I, and Z11 = T D^-1 T' of the block; S: slices of T'. */
+static void hdi_inverse_pivots(const hdi_inverse_front *w) {
+    const hdi_kernels *o = w->f->ops;
+    const hdi_block l = hdi_inverse_block(w, w->panel), z = hdi_inverse_block(w, w->z);
+    const int64_t n = w->k1 - w->k0, width = w->f->width;
+    const double *dinv = w->f->dinv + width * (w->f->sym->super[w->v] + w->k0);
+    hdi_solve x;
+    hdi_product g = hdi_inverse_product(w, w->S, o->nr * n, n);
     int64_t i, k;
-    memset(w->T, 0, (size_t)(n * row) * sizeof *w->T);
-    memset(&x, 0, sizeof x);
-    memset(&g, 0, sizeof g);
-    for (i = 0; i < row; i++) w->D[i] = -dinv[i];
-    for (i = 0; i < HDI_PACK * hdi_least(n, HDI_INV_PIVOTS); i++) one[i] = (i & 4) == 0;
-    x.row = g.a_row = g.c_row = row;
-    x.dinv = one;
-    x.s_row = g.b_row = l.row;
-    g.a_col = g.b_col = HDI_PACK;
-    g.store = 1;
-    for (k = 0; k < n; k += HDI_INV_PIVOTS) {
-        const int64_t nb = hdi_least(n - k, HDI_INV_PIVOTS);
-        int q;
-        for (i = k; i < k + nb; i++)
-            for (q = 0; q < 4; q++) w->T[i * row + HDI_PACK * i + q] = -1;
-        g.c = w->T + HDI_PACK * k;
-        for (i = 0; i < k; i += HDI_INV_PIVOTS) {
-            g.a = w->T + HDI_PACK * i;
-            g.b = l.at + k * l.row + HDI_PACK * i;
-            g.depth = k - i;
-            w->f->pack->multiply(&g, i, i + HDI_INV_PIVOTS, 0, nb);
-        }
-        x.panel = g.c;
-        x.s = l.at + k * l.row + HDI_PACK * k;
-        x.nb = (int32_t)nb;
-        w->f->pack->solve_rows(&x, 0, k + nb);
+    hdi_clear(w->T, width * n * n);
+    for (i = 0; i < n; i++)
+        for (k = 0; k < (width == 1 ? 1 : HDI_PACK_LANES); k++) w->T[width * i * (n + 1) + k] = -1;
+    for (i = 0; i < width * n; i++) w->D[i] = -dinv[i];
+    x.x = w->T;
+    x.dinv = NULL;
+    x.x_col = n;
+    x.b_row = l.ld;
+    x.b_col = 1;
+    x.b_next = o->nr;
+    for (k = 0; k < n; k += HDI_INV_PIVOTS) {    /* T is an upper triangle */
+        x.b = hdi_block_at(&l, w->k0 + k, w->k0);
+        x.before = k;
+        x.nb = hdi_least(n - k, HDI_INV_PIVOTS);
+        x.n = k + x.nb;
+        o->solve(&x);
     }
-    w->f->pack->scale(w->T, row, 0, n, 0, n, w->D, w->S);
-    g.b_row = row;
+    o->slices(w->S, o->nr * n, w->T, 1, n, w->D, n, n);
     g.c = z.at;
-    g.c_row = z.row;
+    g.c_col = z.ld;
+    g.a = w->T;
+    g.a_col = n;
+    g.n = g.cols = n;
     g.lower = 1;
-    for (i = 0; i < n; i += HDI_INV_PIVOTS) {    /* (T S')(i,k) begins at entry i */
-        g.a = w->T + HDI_PACK * i;
-        g.b = w->S + HDI_PACK * i;
-        g.depth = n - i;
-        w->f->pack->multiply(&g, i, hdi_least(i + HDI_INV_PIVOTS, n), 0, hdi_least(i + HDI_INV_PIVOTS, n));
-    }
+    o->multiply(&g);
+    o->slices(w->S, o->nr * n, w->T, 1, n, NULL, n, n);
 }
 
-/* M stands in slices of some columns, by rows: entry (row k1 + r, column j) at row r of slice j /
- * HDI_INV_SLICE. Rows of a matrix of 128 columns are 8 KB apart, and a tile's columns of them would all fall
- * into one set of the cache. */
-static double *hdi_inverse_slice_pack(const hdi_inverse_front *w, int64_t r, int64_t j) {
-    return w->M + HDI_PACK * (j * (w->m - w->k1) + r * HDI_INV_SLICE);
-}
-
-/* Rows [r0,r1) of M = L21 L11^-1, rows counted in the front; T is triangular. */
-static void hdi_inverse_m_pack(const hdi_inverse_front *w, int64_t r0, int64_t r1) {
-    const hdi_block l = hdi_block_of(w->panel, w->m, w->p, w->k0 / HDI_PANEL);
-    const int64_t n = w->k1 - w->k0;
-    hdi_pack_job g;
+/* Rows [r0,r1) of M = L21 L11^-1 = -L21 T', rows counted in the front, into slices. */
+static void hdi_inverse_m(const hdi_inverse_front *w, int64_t r0, int64_t r1, double *buffer) {
+    const hdi_kernels *o = w->f->ops;
+    const hdi_block l = hdi_inverse_block(w, w->panel);
+    const int64_t n = w->k1 - w->k0, width = w->f->width, u = w->m - w->k1;
     int64_t r, j;
-    memset(&g, 0, sizeof g);
-    g.a_row = l.row;
-    g.a_col = g.b_col = HDI_PACK;
-    g.b_row = HDI_PACK * n;
-    g.c_row = (int64_t)HDI_PACK * HDI_INV_SLICE;
-    g.store = 1;
     for (r = r0; r < r1; r += HDI_INV_ROWS) {
-        for (j = 0; j < n; j += HDI_INV_SLICE) {
+        hdi_product g = hdi_inverse_product(w, NULL, o->nr * n, 0);
+        g.n = g.c_col = hdi_least(r1 - r, HDI_INV_ROWS);
+        g.a_col = l.ld;
+        for (j = 0; j < n; j += g.cols) {        /* T' is a lower triangle */
+            g.cols = hdi_least(n - j, 4 * o->nr);
+            g.b = w->S + width * (j * n + j * o->nr);
             g.a = hdi_block_at(&l, r, w->k0 + j);
-            g.b = w->T + HDI_PACK * (j * n + j);
-            g.c = hdi_inverse_slice_pack(w, r - w->k1, j);
+            g.c = buffer + width * j * g.n;
             g.depth = n - j;
-            w->f->pack->multiply(&g, 0, hdi_least(r1 - r, HDI_INV_ROWS), 0, hdi_least(n - j, HDI_INV_SLICE));
+            o->multiply(&g);
         }
+        o->slices(w->M + width * o->nr * (r - w->k1), o->nr * u, buffer, g.n, 1, NULL, n, g.n);
     }
 }
 
 /* Rows [r0,r1) of Z21 = -Z22 M. */
-static void hdi_inverse_below_pack(const hdi_inverse_front *w, int64_t r0, int64_t r1, double *buffer) {
-    const hdi_block z = hdi_block_of(w->z, w->m, w->p, w->k0 / HDI_PANEL);
-    const int64_t n = w->k1 - w->k0;
-    hdi_pack_job g;
-    int64_t r, d, j;
-    memset(&g, 0, sizeof g);
-    g.a = buffer;
-    g.a_col = g.b_row = HDI_PACK;
-    g.b_col = (int64_t)HDI_PACK * HDI_INV_SLICE;
-    g.c_row = z.row;
-    for (r = r0; r < r1; r += HDI_INV_ROWS) {
-        const int64_t end = hdi_least(r + HDI_INV_ROWS, r1);
-        for (d = w->k1; d < w->m; d += HDI_INV_DEPTH) {
-            g.depth = hdi_least(w->m - d, HDI_INV_DEPTH);
-            g.a_row = HDI_PACK * g.depth;
-            g.store = d == w->k1;
-            hdi_inverse_gather_pack(w, r, end, d, d + g.depth, buffer);
-            for (j = 0; j < n; j += HDI_INV_SLICE) {
-                g.b = hdi_inverse_slice_pack(w, d - w->k1, j);
-                g.c = hdi_block_at(&z, r, w->k0 + j);
-                w->f->pack->multiply(&g, 0, end - r, 0, hdi_least(n - j, HDI_INV_SLICE));
-            }
+static void hdi_inverse_below(const hdi_inverse_front *w, int64_t r0, int64_t r1, double *buffer) {
+    const hdi_kernels *o = w->f->ops;
+    const hdi_block z = hdi_inverse_block(w, w->z);
+    const int64_t rows = hdi_inverse_height(w->f->width), depth = hdi_inverse_depth(w->f->width);
+    int64_t r, j;
+    for (r = r0; r < r1; r += rows) {
+        hdi_product g = hdi_inverse_product(w, NULL, o->nr * (w->m - w->k1), 0);
+        g.n = g.a_col = hdi_least(rows, r1 - r);
+        g.c = hdi_block_at(&z, r, w->k0);
+        g.c_col = z.ld;
+        g.a = buffer;
+        g.cols = w->k1 - w->k0;
+        for (j = w->k1; j < w->m; j += g.depth) {
+            g.depth = hdi_least(w->m - j, depth);
+            g.store = j == w->k1;
+            g.b = w->M + w->f->width * o->nr * (j - w->k1);
+            hdi_inverse_gather(w, r, r + g.n, j, j + g.depth, g.n, buffer);
+            o->multiply(&g);
         }
     }
 }
 
 /* Rows [r0,r1) of Z11 -= Z21' M, counted from the block's first pivot. */
-static void hdi_inverse_corner_pack(const hdi_inverse_front *w, int64_t r0, int64_t r1) {
-    const hdi_block z = hdi_block_of(w->z, w->m, w->p, w->k0 / HDI_PANEL);
-    hdi_pack_job g;
-    int64_t d, j;
-    memset(&g, 0, sizeof g);
-    g.a_row = g.b_row = HDI_PACK;
-    g.a_col = z.row;
-    g.b_col = (int64_t)HDI_PACK * HDI_INV_SLICE;
-    g.c = z.at;
-    g.c_row = z.row;
-    g.lower = 1;
-    for (d = w->k1; d < w->m; d += HDI_INV_DEPTH) {
-        g.depth = hdi_least(w->m - d, HDI_INV_DEPTH);
-        g.a = hdi_block_at(&z, d, w->k0);
-        for (j = 0; j < r1; j += HDI_INV_SLICE) {
-            g.b = hdi_inverse_slice_pack(w, d - w->k1, j);
-            g.b_first = j;
-            w->f->pack->multiply(&g, r0 > j ? r0 : j, r1, j, hdi_least(r1, j + HDI_INV_SLICE));
+static void hdi_inverse_corner(const hdi_inverse_front *w, int64_t r0, int64_t r1, double *buffer) {
+    const hdi_kernels *o = w->f->ops;
+    const hdi_block z = hdi_inverse_block(w, w->z);
+    const int64_t rows = hdi_inverse_height(w->f->width), depth = hdi_inverse_depth(w->f->width);
+    int64_t r, i, j;
+    for (r = r0; r < r1; r += rows) {
+        hdi_product g = hdi_inverse_product(w, NULL, o->nr * (w->m - w->k1), 0);
+        g.n = g.a_col = hdi_least(rows, r1 - r);
+        g.c = hdi_block_at(&z, w->k0 + r, w->k0);
+        g.c_col = z.ld;
+        g.a = buffer;
+        g.cols = r + g.n;
+        g.first = r;
+        g.lower = 1;
+        g.store = 0;
+        for (j = w->k1; j < w->m; j += g.depth) {
+            g.depth = hdi_least(w->m - j, depth);
+            g.b = w->M + w->f->width * o->nr * (j - w->k1);
+            for (i = 0; i < g.n; i++)
+                hdi_entries_copy(w->f->width, buffer + w->f->width * i, g.n,
+                                 hdi_block_at(&z, j, w->k0 + r + i), 1, g.depth);
+            o->multiply(&g);
         }
     }
 }
 
-/* Rows [r0,r1) of the child's Z22, out of the finished front. */
-static void hdi_inverse_child_pack(const hdi_inverse_front *w, int64_t r0, int64_t r1) {
+/* Columns [r0,r1) of the child's Z22, out of the finished front. */
+static void hdi_inverse_child(const hdi_inverse_front *w, int64_t r0, int64_t r1) {
     const hdi_symbolic *s = w->f->sym;
-    const int32_t c = w->child, *rel = s->rel + s->row_ptr[c];
-    double *to = w->f->work + HDI_PACK * (s->update[c] + hdi_triangle(r0));
-    int64_t a, b, run;
-    for (a = r0; a < r1; a++) {
-        for (b = 0; b <= a;) {
-            const int64_t first = rel[b];
-            const double *from = hdi_inverse_at_pack(w, rel[a], first, &run);
-            for (; b <= a && rel[b] < first + run; b++, to += HDI_PACK)
-                memcpy(to, from + HDI_PACK * (rel[b] - first), HDI_PACK * sizeof *to);
-        }
-    }
-}
-
-/* ---- real fronts ---- */
-
-/* Entry (j,j) of Z; those below it in its column follow. */
-static const double *hdi_inverse_at_real(const hdi_inverse_front *w, int64_t j) {
-    return j < w->p ? w->z + j * (w->m + 1) : w->update + hdi_triangle_column(w->u, j - w->p);
-}
-
-/* Rows [i0,i1), at most mr, columns [j0,j1) of the symmetric Z, by columns of mr, zeros past the last row. */
-static void hdi_inverse_gather_real(const hdi_inverse_front *w, int64_t i0, int64_t i1, int64_t j0,
-                                    int64_t j1, double *to) {
-    const int64_t mr = w->f->real->mr;
-    int64_t i, j;
-    if (i1 - i0 < mr) memset(to, 0, (size_t)(mr * (j1 - j0)) * sizeof *to);
-    for (j = j0; j < j1 && j < i1; j++) {
-        const double *from = hdi_inverse_at_real(w, j) - j;
-        for (i = i0 > j ? i0 : j; i < i1; i++) to[(j - j0) * mr + i - i0] = from[i];
-    }
-    for (i = i0; i < i1; i++) {                  /* above the diagonal: entry (j,i) */
-        const double *from = hdi_inverse_at_real(w, i) - i;
-        for (j = j0 > i ? j0 : i + 1; j < j1; j++) to[(j - j0) * mr + i - i0] = from[j];
-    }
-}
-
-/* Slices of nr columns of X (column-major, rows x cols): entry (k,j) at [k nr + j] of its slice, zeros past
- * the last column. */
-static void hdi_inverse_slices_real(double *to, int32_t nr, const double *x, int64_t ld, int64_t rows,
-                                    int64_t cols) {
-    int64_t j, k;
-    for (j = 0; j < cols; j++) {
-        double *slice = to + j / nr * (rows * nr) + j % nr;
-        for (k = 0; k < rows; k++) slice[k * nr] = x[j * ld + k];
-    }
-    for (; j % nr; j++) {
-        double *slice = to + j / nr * (rows * nr) + j % nr;
-        for (k = 0; k < rows; k++) slice[k * nr] = 0;
-    }
-}
-
-static void hdi_inverse_clear_real(double *c, int64_t ld, int64_t rows, int64_t cols) {
-    int64_t j;
-    for (j = 0; j < cols; j++) memset(c + j * ld, 0, (size_t)rows * sizeof *c);
-}
-
-/* C = C - X' Y, column-major; X and Y of `depth` rows, Y in w->slices, of its n columns. */
-typedef struct hdi_inverse_cross {
-    double *c;
-    const double *x;
-    int64_t c_ld, x_ld, n, depth;
-} hdi_inverse_cross;
-
-/* The columns [i0,i1) of X. */
-static void hdi_inverse_cross_real(const hdi_inverse_front *w, const hdi_inverse_cross *g, int64_t i0,
-                                   int64_t i1,
-                                   double *buffer) {
-    const hdi_real_ops *o = w->f->real;
-    const int32_t n = (int32_t)g->n, depth = (int32_t)g->depth;
-    int64_t i, j;
-    for (i = i0; i < i1; i += o->mr) {
-        const int32_t rows = (int32_t)hdi_least(i1 - i, o->mr);
-        for (j = 0; j < g->depth; j += HDI_INV_DEPTH_REAL) {
-            const int32_t here = (int32_t)hdi_least(g->depth - j, HDI_INV_DEPTH_REAL);
-            hdi_inverse_slices_real(buffer, o->mr, g->x + i * g->x_ld + j, g->x_ld, here, rows);
-            o->gemm(g->c + i, g->c_ld, rows, n, buffer, o->mr, w->slices + j * o->nr, depth, here);
-        }
-    }
-}
-
-/* T = -L11^-1, column-major, in slices too, and Z11 = L11^-T D^-1 L11^-1. */
-static void hdi_inverse_pivots_real(const hdi_inverse_front *w) {
-    const int64_t n = w->k1 - w->k0;
-    const double *l = w->panel + w->k0 * (w->m + 1), *dinv = w->f->dinv + w->f->sym->super[w->v] + w->k0;
-    double *z = w->z + w->k0 * (w->m + 1);
-    hdi_inverse_cross g;
-    int64_t i, j, k;
-    memset(w->T, 0, (size_t)(n * n) * sizeof *w->T);
-    for (k = 0; k < n; k++) {
-        double *t = w->T + k * n;
-        t[k] = -1;
-        for (j = k; j < n; j += 8) {
-            const int64_t nc = hdi_least(n - j, 8);
-            const double *column = l + j * (w->m + 1);
-            w->f->real->forward(t + j, column, w->m, (int32_t)nc, n - j - nc, NULL, 0, 0);
-        }
-        for (i = 0; i < n; i++) w->S[k * n + i] = -dinv[i] * t[i];
-    }
-    hdi_inverse_slices_real(w->slices, w->f->real->nr, w->S, n, n, n);
-    hdi_inverse_clear_real(z, w->m, n, n);
-    g.c = z;
-    g.x = w->T;
-    g.c_ld = w->m;
-    g.x_ld = g.n = g.depth = n;
-    hdi_inverse_cross_real(w, &g, 0, n, w->buffer);
-    hdi_inverse_slices_real(w->slices, w->f->real->nr, w->T, n, n, n);
-}
-
-static void hdi_inverse_m_real(const hdi_inverse_front *w, int64_t r0, int64_t r1, double *buffer) {
-    const hdi_real_ops *o = w->f->real;
-    const int32_t n = (int32_t)(w->k1 - w->k0);
-    const int64_t u = w->m - w->k1;
-    int64_t r;
-    hdi_inverse_clear_real(w->M + r0 - w->k1, u, r1 - r0, n);
-    for (r = r0; r < r1; r += o->mr) {
-        const int32_t rows = (int32_t)hdi_least(r1 - r, o->mr);
-        o->copy(buffer, w->panel + r + w->k0 * w->m, w->m, rows, n);
-        o->gemm(w->M + r - w->k1, u, rows, n, buffer, o->mr, w->slices, n, n);
-    }
-}
-
-/* Rows [r0,r1) of Z21 = -Z22 M; slices are those of M. */
-static void hdi_inverse_below_real(const hdi_inverse_front *w, int64_t r0, int64_t r1, double *buffer) {
-    const hdi_real_ops *o = w->f->real;
-    const int32_t n = (int32_t)(w->k1 - w->k0);
-    int64_t r, j;
-    hdi_inverse_clear_real(w->z + r0 + w->k0 * w->m, w->m, r1 - r0, n);
-    for (r = r0; r < r1; r += o->mr) {
-        const int64_t end = hdi_least(r + o->mr, r1);
-        for (j = w->k1; j < w->m; j += HDI_INV_DEPTH_REAL) {
-            const int64_t last = hdi_least(j + HDI_INV_DEPTH_REAL, w->m);
-            const double *m = w->slices + (j - w->k1) * o->nr;
-            hdi_inverse_gather_real(w, r, end, j, last, buffer);
-            o->gemm(w->z + r + w->k0 * w->m, w->m, (int32_t)(end - r), n, buffer, o->mr, m,
-                    (int32_t)(w->m - w->k1), (int32_t)(last - j));
-        }
-    }
-}
-
-/* Columns [r0,r1) of Z11 -= M' Z21, counted from the block's first pivot; slices are those of Z21. */
-static void hdi_inverse_corner_real(const hdi_inverse_front *w, int64_t r0, int64_t r1, double *buffer) {
-    hdi_inverse_cross g;
-    g.c = w->z + w->k0 * (w->m + 1);
-    g.x = w->M;
-    g.c_ld = w->m;
-    g.x_ld = g.depth = w->m - w->k1;
-    g.n = w->k1 - w->k0;
-    hdi_inverse_cross_real(w, &g, r0, r1, buffer);
-}
-
-/* Columns [r0,r1) of the child's Z22. */
-static void hdi_inverse_child_real(const hdi_inverse_front *w, int64_t r0, int64_t r1) {
-    const hdi_symbolic *s = w->f->sym;
-    const int32_t c = w->child, *rel = s->rel + s->row_ptr[c];
+    const int32_t c = w->child, *rel = s->rel + s->row_ptr[c], width = w->f->width;
     const int64_t u = hdi_front_below(s, c);
-    double *to = w->f->work + s->update[c] + hdi_triangle_column(u, r0);
+    double *to = w->f->work + width * (s->update[c] + hdi_triangle_column(u, r0));
     int64_t a, b;
     for (b = r0; b < r1; b++) {
-        const double *from = hdi_inverse_at_real(w, rel[b]) - rel[b];
-        for (a = b; a < u; a++) *to++ = from[rel[a]];
+        const double *from = hdi_inverse_column(w, rel[b]) - width * rel[b];
+        if (width == 1) for (a = b; a < u; a++) *to++ = from[rel[a]];
+        else for (a = b; a < u; a++, to += HDI_PACK)
+            memcpy(to, from + HDI_PACK * (int64_t)rel[a], HDI_PACK * sizeof *to);
     }
 }
 
@@ -14845,26 +14136,10 @@ typedef enum hdi_inverse_stage {
 /* One stage for rows [r0,r1). */
 static void hdi_inverse_part(const void *front, int stage, int64_t r0, int64_t r1, double *buffer) {
     const hdi_inverse_front *w = (const hdi_inverse_front *)front;
-    const int real = w->f->width == 1;
-    if (stage == HDI_INVERSE_M) {
-        if (real) hdi_inverse_m_real(w, r0, r1, buffer);
-        else hdi_inverse_m_pack(w, r0, r1);
-    } else if (stage == HDI_INVERSE_BELOW) {
-        if (real) hdi_inverse_below_real(w, r0, r1, buffer);
-        else hdi_inverse_below_pack(w, r0, r1, buffer);
-    } else if (stage == HDI_INVERSE_CORNER) {
-        if (real) hdi_inverse_corner_real(w, r0, r1, buffer);
-        else hdi_inverse_corner_pack(w, r0, r1);
-    } else {
-        if (real) hdi_inverse_child_real(w, r0, r1);
-        else hdi_inverse_child_pack(w, r0, r1);
-    }
-}
-
-/* Entry (i,j) of Z, j <= i. */
-static const double *hdi_inverse_at(const hdi_inverse_front *w, int64_t i, int64_t j) {
-    int64_t run;
-    return w->f->width == 1 ? hdi_inverse_at_real(w, j) + (i - j) : hdi_inverse_at_pack(w, i, j, &run);
+    if (stage == HDI_INVERSE_M) hdi_inverse_m(w, r0, r1, buffer);
+    else if (stage == HDI_INVERSE_BELOW) hdi_inverse_below(w, r0, r1, buffer);
+    else if (stage == HDI_INVERSE_CORNER) hdi_inverse_corner(w, r0, r1, buffer);
+    else hdi_inverse_child(w, r0, r1);
 }
 
 /* sum_c coef[c] z_c for every set, to place `at`. */
@@ -14911,7 +14186,7 @@ typedef struct hdi_form_block {
     uint64_t *active;
     int32_t *column;
     double *top, *end;           /* of the stack */
-    double *aside, *work;        /* rows of a child, and what Z r works with */
+    double *aside;               /* rows of a child */
     double sum[(int)HDI_FORM_COLS * HDI_PACK];
 } hdi_form_block;
 
@@ -14927,12 +14202,6 @@ static int32_t hdi_form_count(uint64_t set) {
     int32_t n = 0;
     for (set &= ~HDI_FORM_OPEN; set; set &= set - 1) n++;
     return n;
-}
-
-/* Doubles that Z r works with, for blocks of so many columns. */
-static uint64_t hdi_form_work(int32_t width, int32_t cols) {
-    if (width == 1) return 0;
-    return (uint64_t)width * HDI_INV_ROWS * (uint64_t)cols + hdi_inverse_buffer(width);
 }
 
 /* Doubles of a row of k columns. */
@@ -15063,9 +14332,10 @@ static void hdi_form_lift(hdi_form_block *b, int32_t v, const double *t, int32_t
     n = hdi_form_row(f->width, n);
     for (i = 0; i < u; i++, t += row) {
         double *HDI_RESTRICT y = rows + rel[i] * (int64_t)n;
-        if (f->width > 1) f->pack->add(y, t, to, 0, k, 0);
-        else
-            for (c = 0; c < k; c++) y[to[c]] += t[c];
+        for (c = 0; c < k; c++) {
+            if (f->width == 1) y[to[c]] += t[c];
+            else f->ops->add(y + HDI_PACK * to[c], t + HDI_PACK * c, HDI_PACK);
+        }
     }
 }
 
@@ -15088,70 +14358,29 @@ static void hdi_form_front(hdi_form_block *b, int32_t v) {
     hdi_form_lift(b, v, t, row, list, k);
 }
 
-/* sum -= 2 r c, n rows of k columns. */
-static void hdi_form_products(double *sum, const double *r, const double *c, int64_t n, int32_t k) {
-    double t[HDI_PACK];
-    int64_t i;
-    int32_t j;
-    int q;
-    for (i = 0; i < n; i++) {
-        for (j = 0; j < k; j++, r += HDI_PACK, c += HDI_PACK) {
-            hdi_pack_times(r, c, t);
-            for (q = 0; q < HDI_PACK; q++) sum[HDI_PACK * j + q] -= 2 * t[q];
-        }
-    }
-}
-
-/* sum += r' Z r for the rows of J: with W its lower triangle and half of its diagonal, 2 r' W r. c = -W r. */
-static void hdi_form_square_pack(hdi_form_block *b, const double *r) {
+/* sum += r' Z r for the rows of J: with z the part of a column of Z below its diagonal entry z0, and x the
+ * column's row of r, x (z0 x + 2 z' r). */
+static void hdi_form_square(hdi_form_block *b, const double *r, int32_t row) {
     const hdi_inverse_front *w = b->w;
-    const int64_t row = HDI_PACK * b->k;
-    double *c = b->work, *buffer = c + HDI_INV_ROWS * row;
-    hdi_pack_job g;
-    int64_t i0, i, j, n;
-    memset(&g, 0, sizeof g);
-    g.a_col = g.b_row = HDI_PACK;
-    g.b_col = g.c_row = row;
-    g.c = c;
-    for (i0 = 0; i0 < w->m; i0 += n) {
-        n = hdi_least(HDI_INV_ROWS, w->m - i0);
-        g.a = buffer;
-        hdi_inverse_gather_pack(w, i0, i0 + n, i0, i0 + n, buffer);
-        for (i = 0; i < HDI_PACK * n * n; i++) buffer[i] *= 0.5;
-        g.depth = n;
-        g.a_row = HDI_PACK * n;
-        g.b = r + i0 * row;
-        g.store = 1;
-        w->f->pack->multiply(&g, 0, n, 0, b->k);
-        g.store = 0;
-        for (j = 0; j < i0; j += g.depth) {
-            g.depth = hdi_least(HDI_INV_DEPTH, (j < w->p ? hdi_least(i0, w->p) : i0) - j);
-            g.a = buffer;
-            g.a_row = HDI_PACK * g.depth;
-            g.b = r + j * row;
-            if (j < w->p) {                      /* in place; blocks are of whole depths */
-                const hdi_block block = hdi_block_of(w->z, w->m, w->p, j / HDI_PANEL);
-                g.a = hdi_block_at(&block, i0, j);
-                g.a_row = block.row;
-            } else {
-                hdi_inverse_gather_pack(w, i0, i0 + n, j, j + g.depth, buffer);
-            }
-            w->f->pack->multiply(&g, 0, n, 0, b->k);
-        }
-        hdi_form_products(b->sum, r + i0 * row, c, n, b->k);
-    }
-}
-
-static void hdi_form_square_real(hdi_form_block *b, const double *r, int32_t row) {
-    const hdi_inverse_front *w = b->w;
+    const int32_t width = w->f->width;
     int64_t j;
-    int32_t c;
+    int32_t c, q;
     for (j = 0; j < w->m; j++) {
-        const double *z = hdi_inverse_at_real(w, j), *x = r + j * row;
-        double t[HDI_FORM_COLS_REAL] = {0};
-        if (row == 1) t[0] = -hdi_dot(z + 1, x + 1, w->m - j - 1);
-        else w->f->real->dots8(t, z + 1, w->m, w->m - j - 1, x + row, NULL, 1);
-        for (c = 0; c < b->k; c++) b->sum[c] += x[c] * (z[0] * x[c] - 2 * t[c]);
+        const double *z = hdi_inverse_column(w, j), *x = r + j * row;
+        double t[HDI_FORM_COLS * HDI_PACK], s[HDI_PACK];
+        memset(t, 0, (size_t)row * sizeof *t);
+        hdi_kernels_rows(w->f->ops, t, row / width, 1, x + row, w->m - j - 1, z + width, 1, 0);
+        for (c = 0; c < b->k; c++) {
+            double *sum = b->sum + width * c;
+            if (width == 1) {
+                *sum += x[c] * (*z * x[c] - 2 * t[c]);
+                continue;
+            }
+            hdi_pack_times(z, x + HDI_PACK * c, s);
+            for (q = 0; q < HDI_PACK; q++) t[HDI_PACK * c + q] = s[q] - 2 * t[HDI_PACK * c + q];
+            hdi_pack_times(x + HDI_PACK * c, t + HDI_PACK * c, s);
+            for (q = 0; q < HDI_PACK; q++) sum[q] += s[q];
+        }
     }
 }
 
@@ -15167,8 +14396,7 @@ static void hdi_form_run(const hdi_inverse *z, hdi_form_block *b) {
         if (b->active[v]) hdi_form_front(b, v);
     r = hdi_form_open(b, v, b->k);
     hdi_form_own(b, r, row);
-    if (width == 1) hdi_form_square_real(b, r, row);
-    else hdi_form_square_pack(b, r);
+    hdi_form_square(b, r, row);
     b->active[v] = 0;
     for (c = 0; c < b->k; c++) {
         b->column[b->list[c].id] = -1;
@@ -15239,8 +14467,7 @@ static void hdi_form_task(const hdi_form_job *job, int64_t at) {
     b.column = q->column + before->pivots * n_before + places->pivots * number;
     b.end = room + places->size;
     b.aside = room;
-    b.work = room + places->aside;
-    b.top = b.work + hdi_form_work(job->z->f->width, q->cols);
+    b.top = room + places->aside;
     hdi_form_run(job->z, &b);
 }
 
@@ -15313,20 +14540,17 @@ enum { HDI_FORM_SMALL = 65536 };     /* doubles of room that are never too many 
 /* How many columns a block has. Fewer where the room for all blocks that go on at the same time would be more
  * than half of the factor: on trees on which stacks grow high. */
 static void hdi_forms_size(hdi_forms *q, const hdi_symbolic *s, int32_t width, int64_t *need) {
-    const int64_t stored = width == 1 ? s->panel[s->n_super] : s->stored;
     int64_t in_tasks, in_all;
     uint64_t row;
-    int k;
     hdi_form_rows(s, need, &in_tasks, &in_all);
     q->n_slots = s->n_top ? HDI_FORM_SLOTS : 0;
     q->cols = width == 1 ? HDI_FORM_COLS_REAL : HDI_FORM_COLS;
-    while (q->cols > 1 && q->cols * (s->n_tasks * in_tasks + q->n_slots * in_all) > stored / 2 +
+    while (q->cols > 1 && q->cols * (s->n_tasks * in_tasks + q->n_slots * in_all) > s->stored / 2 +
            HDI_FORM_SMALL)
         q->cols = width == 1 ? 1 : q->cols / 2;
     row = (uint64_t)width * (uint64_t)q->cols;
     q->place[0] = hdi_form_places_of(s->n_tasks, s->task_pivots, s->task_update, in_tasks, row);
     q->place[1] = hdi_form_places_of(q->n_slots, s->largest_pivots, s->largest_update, in_all, row);
-    for (k = 0; k < 2; k++) q->place[k].size += hdi_form_work(width, q->cols);
 }
 
 /* The arrays of forms whose sizes are known. Returns how many numbers q->column has. */
@@ -15389,10 +14613,11 @@ static uint64_t hdi_forms_bytes(const hdi_symbolic *s, int32_t width, uint64_t l
 /* Entries or the diagonal of the front's columns. */
 static void hdi_inverse_emit(const hdi_inverse *z, const hdi_inverse_front *w) {
     const hdi_symbolic *s = w->f->sym;
+    const int64_t first = s->super[w->v] + (z->wanted == HDI_WANT_BOTH ? s->a_ptr[s->n_super] : 0);
     int64_t n;
-    if (z->wanted == HDI_WANT_DIAGONAL)
-        for (n = 0; n < w->p; n++) hdi_inverse_put(z, hdi_inverse_at(w, n, n), s->super[w->v] + n);
-    else
+    if (z->wanted != HDI_WANT_ENTRIES)
+        for (n = 0; n < w->p; n++) hdi_inverse_put(z, hdi_inverse_at(w, n, n), first + n);
+    if (z->wanted != HDI_WANT_DIAGONAL)
         for (n = s->a_ptr[w->v]; n < s->a_ptr[w->v + 1]; n++)
             hdi_inverse_put(z, hdi_inverse_at(w, s->a_row[n], s->a_col[n]), n);
 }
@@ -15442,20 +14667,15 @@ static void hdi_inverse_columns(hdi_inverse_step *c) {
 /* Goes on to the next stage, after what one thread must do before it. 0: there is none. */
 static int hdi_inverse_next(hdi_inverse_step *c) {
     hdi_inverse_front *w = &c->w;
-    const int real = w->f->width == 1;
-    const int32_t nr = w->f->real->nr;
     const int64_t u = w->m - w->k1, n = w->k1 - w->k0;
     if (c->stage == HDI_INVERSE_M) {
-        if (real) hdi_inverse_slices_real(w->slices, nr, w->M, u, u, n);
         hdi_inverse_set(c, HDI_INVERSE_BELOW, w->k1, w->m);
     } else if (c->stage == HDI_INVERSE_BELOW) {
-        if (real) hdi_inverse_slices_real(w->slices, nr, w->z + w->k1 + w->k0 * w->m, w->m, u, n);
         hdi_inverse_set(c, HDI_INVERSE_CORNER, 0, u > 0 ? n : 0);
     } else if (c->stage == HDI_INVERSE_CORNER && w->k0 > 0) {
         w->k1 = w->k0;
         w->k0 = (w->k1 - 1) / HDI_PANEL * HDI_PANEL;
-        if (real) hdi_inverse_pivots_real(w);
-        else hdi_inverse_pivots_pack(w);
+        hdi_inverse_pivots(w);
         hdi_inverse_set(c, HDI_INVERSE_M, w->k1, w->m);
     } else if (c->stage == HDI_INVERSE_CORNER) {
         hdi_inverse_columns(c);
@@ -15520,7 +14740,7 @@ static int hdi_inverse_shared(const hdi_symbolic *s, int32_t v) {
 /* Rows of a node. */
 static int64_t hdi_inverse_rows(int32_t stage) {
     if (stage == HDI_INVERSE_FORMS) return 1;
-    return stage == HDI_INVERSE_CORNER ? (int64_t)HDI_REAL_MR : (int64_t)HDI_INV_CHUNK;
+    return stage == HDI_INVERSE_CORNER ? (int64_t)HDI_TILE_ROWS : (int64_t)HDI_INV_CHUNK;
 }
 
 static int64_t hdi_inverse_chunks(int32_t stage, int64_t rows) {
@@ -15597,14 +14817,13 @@ static void hdi_inverse_node(void *arg, int64_t index, int32_t worker) {
 
 /* The arrays that inverting factors of the given width takes. */
 static void hdi_inverse_take(hdi_inverse *z, const hdi_symbolic *s, int32_t width, hdi_scope *keep) {
-    const int64_t *at = width == 1 ? s->panel : s->panel_pack;
-    const int32_t chunks = s->largest_front / HDI_INV_CHUNK + HDI_PANEL / (int32_t)HDI_REAL_MR + 2;
+    const int32_t chunks = s->largest_front / HDI_INV_CHUNK + HDI_PANEL / HDI_TILE_ROWS + 2;
     uint64_t size;
     int32_t v;
     memset(z, 0, sizeof *z);
     for (v = 0; v < s->n_super; v++) {
         const int64_t m = hdi_front_rows(s, v);
-        size = hdi_inverse_scratch(m, hdi_front_pivots(s, v), at[v + 1] - at[v], width);
+        size = hdi_inverse_scratch(m, hdi_front_pivots(s, v), s->panel[v + 1] - s->panel[v], width);
         if (s->n_top && size > z->top_size) z->top_size = size;
         if (s->task_of[v] >= 0 && size > z->scratch_size) z->scratch_size = size;
     }
@@ -15658,11 +14877,10 @@ static hd_status hdi_inverse_run(hdi_inverse *z, hdi_factor *f, hd_error *e) {
 /* ---- what hd_ldl asks for ---- */
 
 /* The analysis' entries x to their places in the pattern and to those across the diagonal, `stride` doubles
- * from one place to the next. Diagonal ones to diag, unless NULL. val may be NULL. Returns how many there are
- * on the diagonal. */
-static int32_t hdi_ldl_spread(const hd_ldl *f, const double *x, double *val, double *diag, int stride) {
+ * from one place to the next. */
+static void hdi_ldl_spread(const hd_ldl *f, const double *x, double *val, int stride) {
     const hdi_symbolic *s = &f->sym;
-    int32_t v, found = 0;
+    int32_t v;
     int64_t q;
     for (v = 0; v < s->n_super; v++) {
         for (q = s->a_ptr[v]; q < s->a_ptr[v + 1]; q++) {
@@ -15670,20 +14888,11 @@ static int32_t hdi_ldl_spread(const hd_ldl *f, const double *x, double *val, dou
             /* the entry's row and column */
             const int32_t i = s->perm[s->super[v] + s->a_col[q]], j = f->col[p];
             const int64_t row = f->row_ptr[j];
-            if (val) val[stride * p] = x[q];
-            if (i == j) found++;
-            if (i == j && diag) diag[(int64_t)stride * i] = x[q];
-            if (i != j && val)
+            val[stride * p] = x[q];
+            if (i != j)
                 val[stride * (row + hdi_lower_bound(f->col + row, f->row_ptr[j + 1] - row, i))] = x[q];
         }
     }
-    return found;
-}
-
-/* The diagonal by pivots x [n], to the rows of A. */
-static void hdi_ldl_diagonal(const hd_ldl *f, const double *x, double *diag, int stride) {
-    int32_t i;
-    for (i = 0; i < f->n; i++) diag[(int64_t)stride * f->sym.perm[i]] = x[i];
 }
 
 /* One factor, real or of up to four matrices: part c of matrix q goes to values + stride (q nnz) + c, and so
@@ -15691,34 +14900,24 @@ static void hdi_ldl_diagonal(const hd_ldl *f, const double *x, double *diag, int
 static hd_status hdi_ldl_invert(hd_ldl *f, hdi_factor *of, int32_t n_matrices, double *values, double *diag,
                                 hd_error *e) {
     const int32_t stride = of->width == 1 ? 1 : 2, n_sets = stride * n_matrices;
-    const int64_t entries = f->sym.a_ptr[f->sym.n_super], n = f->n;
-    const int64_t size = values && entries > n ? entries : n;
+    const int64_t entries = values ? f->sym.a_ptr[f->sym.n_super] : 0, n = diag ? f->n : 0;
     hdi_scope s = hdi_scope_begin(f->ctx, e);
-    double coef[HDI_PACK * HDI_PACK], *x = HDI_TAKE(&s, double, n_sets * size);
-    int32_t q, found = 0;
+    double coef[HDI_PACK * HDI_PACK], *x = HDI_TAKE_ZERO(&s, double, n_sets * (entries + n));
+    int32_t q, i;
     hdi_inverse z;
     memset(coef, 0, sizeof coef);
     for (q = 0; q < n_sets; q++) coef[q * of->width + hdi_pack_part(q, stride)] = 1;
     hdi_inverse_take(&z, &f->sym, of->width, &s);
-    if (e->status < 0) return hdi_scope_end(&s);
     z.coef = coef;
     z.n_sets = n_sets;
     z.values = x;
-    if (values) {
-        memset(x, 0, (size_t)(n_sets * entries) * sizeof *x);
-        z.stride = entries;
-        (void)hdi_inverse_run(&z, of, e);
-        for (q = 0; q < n_sets && e->status >= 0; q++)
-            found = hdi_ldl_spread(f, x + q * entries, values + stride * (q / stride * f->nnz) + q % stride,
-                                   diag ? diag + stride * (q / stride * n) + q % stride : NULL, stride);
-    }
-    if (diag && e->status >= 0 && (!values || found < f->n)) {
-        memset(x, 0, (size_t)(n_sets * n) * sizeof *x);
-        z.wanted = HDI_WANT_DIAGONAL;
-        z.stride = n;
-        (void)hdi_inverse_run(&z, of, e);
-        for (q = 0; q < n_sets && e->status >= 0; q++)
-            hdi_ldl_diagonal(f, x + q * n, diag + stride * (q / stride * n) + q % stride, stride);
+    z.stride = entries + n;
+    z.wanted = !values ? HDI_WANT_DIAGONAL : diag ? HDI_WANT_BOTH : HDI_WANT_ENTRIES;
+    if (e->status >= 0) (void)hdi_inverse_run(&z, of, e);
+    for (q = 0; q < n_sets && e->status >= 0; q++, x += z.stride) {
+        if (values) hdi_ldl_spread(f, x, values + stride * (q / stride * f->nnz) + q % stride, stride);
+        for (i = 0; i < n; i++)
+            diag[stride * (q / stride * n + f->sym.perm[i]) + q % stride] = x[entries + i];
     }
     return hdi_scope_end(&s);
 }
@@ -18963,16 +18162,17 @@ static void hdi_check_c(hdi_check *const *c, int32_t k) {
 
 #if HDI_X86
 /* The sums for one right-hand side. */
-typedef struct hdi_check512 { hdi_v8 l, b, norm, first, size; } hdi_check512;
+typedef struct hdi_check512 { __m512d l, b, norm, first, size; } hdi_check512;
 
 /* Row i is complete: l and b hold its products with L and B. */
 static HDI_AVX512 HDI_INLINE void hdi_check512_row(hdi_check *h, hdi_check512 *s, int32_t i,
                                                    const double *x) {
-    const hdi_v8 t = _mm512_set1_pd(h->t), re = hdi_twice512(h->theta), im = hdi_twice512(h->theta + 4);
-    const hdi_v8 turned = _mm512_mask_sub_pd(im, 0x0f, _mm512_setzero_pd(), im);
-    const hdi_v8 weight = _mm512_set1_pd(h->weight[i]), noise = _mm512_set1_pd(h->noise[i]);
-    const hdi_v8 v = _mm512_loadu_pd(x), coef = _mm512_loadu_pd(h->coef);
-    hdi_v8 r = _mm512_fnmadd_pd(t, s->l, _mm512_maskz_mov_pd(0x0f, _mm512_set1_pd(h->rhs[i])));
+    const __m512d t = _mm512_set1_pd(h->t), re = hdi_twice_avx512(h->theta);
+    const __m512d im = hdi_twice_avx512(h->theta + 4);
+    const __m512d turned = _mm512_mask_sub_pd(im, 0x0f, _mm512_setzero_pd(), im);
+    const __m512d weight = _mm512_set1_pd(h->weight[i]), noise = _mm512_set1_pd(h->noise[i]);
+    const __m512d v = _mm512_loadu_pd(x), coef = _mm512_loadu_pd(h->coef);
+    __m512d r = _mm512_fnmadd_pd(t, s->l, _mm512_maskz_mov_pd(0x0f, _mm512_set1_pd(h->rhs[i])));
     r = _mm512_fnmadd_pd(re, s->b, r);
     r = _mm512_fnmadd_pd(turned, _mm512_shuffle_f64x2(s->b, s->b, 0x4e), r);
     s->norm = _mm512_fmadd_pd(_mm512_mul_pd(weight, r), r, s->norm);
@@ -18998,7 +18198,7 @@ static HDI_AVX512 HDI_INLINE void hdi_check512_end(hdi_check *h, const hdi_check
 /* For n right-hand sides, whose rows of x stand side by side. */
 static HDI_AVX512 HDI_INLINE void hdi_check512_of(hdi_check *const *c, const int n) {
     const hd_laplacian *lap = c[0]->lap;
-    const hdi_v8 zero = _mm512_setzero_pd();
+    const __m512d zero = _mm512_setzero_pd();
     const int64_t stride = c[0]->stride;
     const int full = lap->B != NULL;
     hdi_check512 s[HDI_CHECK_MOST];
@@ -19017,10 +18217,10 @@ static HDI_AVX512 HDI_INLINE void hdi_check512_of(hdi_check *const *c, const int
         }
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
             const double *from = c[0]->x + stride * lap->L.col[p];
-            const hdi_v8 lx = _mm512_set1_pd(lap->L.val[p]), bx = full ? _mm512_set1_pd(lap->B[p]) : zero;
+            const __m512d lx = _mm512_set1_pd(lap->L.val[p]), bx = full ? _mm512_set1_pd(lap->B[p]) : zero;
             HDI_UNROLL
             for (r = 0; r < n; r++) {
-                const hdi_v8 v = _mm512_loadu_pd(from + HDI_PACK * r);
+                const __m512d v = _mm512_loadu_pd(from + HDI_PACK * r);
                 s[r].l = _mm512_fmadd_pd(lx, v, s[r].l);
                 if (full) s[r].b = _mm512_fmadd_pd(bx, v, s[r].b);
             }
@@ -19033,8 +18233,8 @@ static HDI_AVX512 HDI_INLINE void hdi_check512_of(hdi_check *const *c, const int
 }
 
 /* The sums of eight vectors' entries. */
-static HDI_AVX512 HDI_INLINE hdi_v8 hdi_sums512(const hdi_v8 *v) {
-    hdi_v8 two[4], four[2];
+static HDI_AVX512 HDI_INLINE __m512d hdi_sums512(const __m512d *v) {
+    __m512d two[4], four[2];
     int r;
     HDI_UNROLL
     for (r = 0; r < 4; r++)
@@ -19049,20 +18249,21 @@ static HDI_AVX512 HDI_INLINE hdi_v8 hdi_sums512(const hdi_v8 *v) {
 }
 
 /* Row i of eight right-hand sides is complete, at its solutions; u and bu receive its part of the answers. */
-static HDI_AVX512 HDI_INLINE void hdi_check512_rows(hdi_check *const *c, const hdi_v8 *l, const hdi_v8 *b,
+static HDI_AVX512 HDI_INLINE void hdi_check512_rows(hdi_check *const *c, const __m512d *l, const __m512d *b,
                                                     double (*sum)[3][HDI_PACK], int32_t i, const double *at,
-                                                    hdi_v8 *u, hdi_v8 *bu) {
+                                                    __m512d *u, __m512d *bu) {
     const hdi_check *h = c[0];
-    const hdi_v8 t = _mm512_set1_pd(h->t), re = hdi_twice512(h->theta), im = hdi_twice512(h->theta + 4);
-    const hdi_v8 turned = _mm512_mask_sub_pd(im, 0x0f, _mm512_setzero_pd(), im);
-    const hdi_v8 weight = _mm512_set1_pd(h->weight[i]), noise = _mm512_set1_pd(h->noise[i]);
-    const hdi_v8 coef = _mm512_loadu_pd(h->coef);
-    hdi_v8 cv[HDI_CHECK_BATCH], cb[HDI_CHECK_BATCH];
+    const __m512d t = _mm512_set1_pd(h->t), re = hdi_twice_avx512(h->theta);
+    const __m512d im = hdi_twice_avx512(h->theta + 4);
+    const __m512d turned = _mm512_mask_sub_pd(im, 0x0f, _mm512_setzero_pd(), im);
+    const __m512d weight = _mm512_set1_pd(h->weight[i]), noise = _mm512_set1_pd(h->noise[i]);
+    const __m512d coef = _mm512_loadu_pd(h->coef);
+    __m512d cv[HDI_CHECK_BATCH], cb[HDI_CHECK_BATCH];
     int r;
     HDI_UNROLL
     for (r = 0; r < HDI_CHECK_BATCH; r++, sum++) {
-        const hdi_v8 v = _mm512_loadu_pd(at + HDI_PACK * r);
-        hdi_v8 rest = _mm512_fnmadd_pd(t, l[r], _mm512_maskz_mov_pd(0x0f, _mm512_set1_pd(c[r]->rhs[i])));
+        const __m512d v = _mm512_loadu_pd(at + HDI_PACK * r);
+        __m512d rest = _mm512_fnmadd_pd(t, l[r], _mm512_maskz_mov_pd(0x0f, _mm512_set1_pd(c[r]->rhs[i])));
         rest = _mm512_fnmadd_pd(re, b[r], rest);
         rest = _mm512_fnmadd_pd(turned, _mm512_shuffle_f64x2(b[r], b[r], 0x4e), rest);
         _mm512_storeu_pd(sum[0][0], _mm512_fmadd_pd(_mm512_mul_pd(weight, rest), rest,
@@ -19078,11 +18279,11 @@ static HDI_AVX512 HDI_INLINE void hdi_check512_rows(hdi_check *const *c, const h
 
 /* The same of the lone real pole: l and b for all right-hand sides, x their row; sum: norm, size, first. Its
  * part is taken from u and bu. */
-static HDI_AVX512 HDI_INLINE void hdi_check512_real(hdi_check *const *c, const hdi_real_check *z, hdi_v8 l,
-                                                    hdi_v8 b, int32_t i, const double *x, hdi_v8 *sum) {
-    const hdi_v8 v = _mm512_loadu_pd(x), weight = _mm512_set1_pd(c[0]->weight[i]);
+static HDI_AVX512 HDI_INLINE void hdi_check512_real(hdi_check *const *c, const hdi_real_check *z, __m512d l,
+                                                    __m512d b, int32_t i, const double *x, __m512d *sum) {
+    const __m512d v = _mm512_loadu_pd(x), weight = _mm512_set1_pd(c[0]->weight[i]);
     double rhs[HDI_CHECK_BATCH];
-    hdi_v8 rest;
+    __m512d rest;
     int r;
     for (r = 0; r < HDI_CHECK_BATCH; r++) rhs[r] = c[r]->rhs[i];
     rest = _mm512_fnmadd_pd(_mm512_set1_pd(c[0]->t), l, _mm512_loadu_pd(rhs));
@@ -19093,7 +18294,7 @@ static HDI_AVX512 HDI_INLINE void hdi_check512_real(hdi_check *const *c, const h
 }
 
 /* Row i of the answers. There are more of them than the processor looks ahead for. */
-static HDI_AVX512 HDI_INLINE void hdi_check512_put(hdi_check *const *c, int32_t i, hdi_v8 u, hdi_v8 bu) {
+static HDI_AVX512 HDI_INLINE void hdi_check512_put(hdi_check *const *c, int32_t i, __m512d u, __m512d bu) {
     double part[2][HDI_CHECK_BATCH];
     int r;
     _mm512_storeu_pd(part[0], u);
@@ -19110,7 +18311,7 @@ static HDI_AVX512 HDI_INLINE void hdi_check512_put(hdi_check *const *c, int32_t 
 
 /* What the sums have come to. */
 static HDI_AVX512 void hdi_check512_close(hdi_check *const *c, double (*sum)[3][HDI_PACK],
-                                          const hdi_v8 *real, hdi_real_check *z) {
+                                          const __m512d *real, hdi_real_check *z) {
     int r, q;
     _mm512_storeu_pd(z->norm2, real[0]);
     _mm512_storeu_pd(z->size2, real[1]);
@@ -19128,10 +18329,10 @@ static HDI_AVX512 void hdi_check512_close(hdi_check *const *c, double (*sum)[3][
 static HDI_AVX512 HDI_INLINE void hdi_check512_batch(hdi_check *const *c, const double *xr,
                                                      hdi_real_check *z) {
     const hd_laplacian *lap = c[0]->lap;
-    const hdi_v8 zero = _mm512_setzero_pd(), a = _mm512_set1_pd(z->a);
+    const __m512d zero = _mm512_setzero_pd(), a = _mm512_set1_pd(z->a);
     const int64_t stride = c[0]->stride;
     double sum[HDI_CHECK_BATCH][3][HDI_PACK];
-    hdi_v8 real[3];
+    __m512d real[3];
     int64_t p;
     int32_t i;
     int r;
@@ -19140,8 +18341,8 @@ static HDI_AVX512 HDI_INLINE void hdi_check512_batch(hdi_check *const *c, const 
     for (i = 0; i < lap->n_active; i++) {
         const double *at = c[0]->x + stride * i;
         const double *at_real = xr ? xr + HDI_CHECK_BATCH * (int64_t)i : at;
-        const hdi_v8 mass = lap->B ? zero : _mm512_set1_pd(lap->mass[i]);
-        hdi_v8 l[HDI_CHECK_BATCH], b[HDI_CHECK_BATCH], lr = zero, br = zero, u, bu;
+        const __m512d mass = lap->B ? zero : _mm512_set1_pd(lap->mass[i]);
+        __m512d l[HDI_CHECK_BATCH], b[HDI_CHECK_BATCH], lr = zero, br = zero, u, bu;
         HDI_UNROLL
         for (r = 0; r < HDI_CHECK_BATCH; r++) {
             HDI_PREFETCH_AT(at, HDI_CHECK_AHEAD * stride + HDI_PACK * r);
@@ -19151,10 +18352,10 @@ static HDI_AVX512 HDI_INLINE void hdi_check512_batch(hdi_check *const *c, const 
         if (xr) br = _mm512_mul_pd(mass, _mm512_loadu_pd(at_real));
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
             const int64_t j = lap->L.col[p];
-            const hdi_v8 lx = _mm512_set1_pd(lap->L.val[p]), bx = lap->B ? _mm512_set1_pd(lap->B[p]) : zero;
+            const __m512d lx = _mm512_set1_pd(lap->L.val[p]), bx = lap->B ? _mm512_set1_pd(lap->B[p]) : zero;
             HDI_UNROLL
             for (r = 0; r < HDI_CHECK_BATCH; r++) {
-                const hdi_v8 v = _mm512_loadu_pd(c[0]->x + stride * j + HDI_PACK * r);
+                const __m512d v = _mm512_loadu_pd(c[0]->x + stride * j + HDI_PACK * r);
                 l[r] = _mm512_fmadd_pd(lx, v, l[r]);
                 b[r] = _mm512_fmadd_pd(bx, v, b[r]);
             }
@@ -19486,7 +18687,7 @@ static void hdi_batch_pack(const hdi_elim *m, int32_t i, hdi_lane *const *lane, 
         together = together && at[r] == at[0] + r;
     }
 #if HDI_X86
-    if (together && m->pack[i].pack == hdi_pack_ops_get(2)) hdi_check_512(list, k);
+    if (together && m->pack[i].ops == hdi_kernels_get(2, 1)) hdi_check_512(list, k);
     else
 #endif
     hdi_check_c(list, k);
@@ -19522,7 +18723,7 @@ static void hdi_batch_real(const hdi_elim *m, int32_t r, hdi_lane *lane, const d
 /* Whether all is checked by the kernel for full batches. */
 static int hdi_batch_is_full(const hdi_elim *m, int32_t n_list) {
 #if HDI_X86
-    return n_list == HDI_CHECK_BATCH && m->n_used > 0 && m->pack[0].pack == hdi_pack_ops_get(2);
+    return n_list == HDI_CHECK_BATCH && m->n_used > 0 && m->pack[0].ops == hdi_kernels_get(2, 1);
 #else
     (void)m, (void)n_list;
     return 0;
@@ -21422,7 +20623,7 @@ typedef struct hdi_slab {
 
 /* A pass of columns [first, first + cols) of a slab over blocks of right-hand sides [n_blocks][n][8]. */
 typedef struct hdi_slab_pass {
-    const hdi_real_ops *ops;
+    const hdi_kernels *ops;
     const hdi_slab *slab;
     int32_t n, first, cols, n_blocks, n_chunks, copy;
     double *w;                   /* [n_blocks][n][8] */
@@ -21456,8 +20657,8 @@ static void hdi_slab_dots_task(void *arg, int64_t index, int32_t worker) {
         const int64_t row = HDI_SPEC_TILE * tile, n = hdi_least(p->n - row, HDI_SPEC_TILE);
         const double *v = hdi_slab_at(p->slab, (int32_t)tile, p->first);
         for (q = 0; q < p->n_blocks; q++)
-            p->ops->dots8(h + q * size, v, HDI_SPEC_TILE, n, p->w + 8 * (row + (int64_t)q * p->n),
-                          NULL, p->cols);
+            hdi_kernels_rows(p->ops, h + q * size, 8, p->cols, p->w + 8 * (row + (int64_t)q * p->n), n, v, 1,
+                             HDI_SPEC_TILE);
     }
 }
 
@@ -21470,8 +20671,8 @@ static void hdi_slab_add_task(void *arg, int64_t begin, int64_t end) {
         const int64_t row = HDI_SPEC_TILE * tile, n = hdi_least(p->n - row, HDI_SPEC_TILE);
         double *v = hdi_slab_at(p->slab, (int32_t)tile, p->first);
         for (q = 0; q < p->n_blocks && !p->copy; q++)
-            p->ops->gemv8(p->w + 8 * (row + (int64_t)q * p->n), NULL, v, HDI_SPEC_TILE, n,
-                          p->h + 8 * (int64_t)q * p->cols, p->cols);
+            hdi_kernels_rows(p->ops, p->w + 8 * (row + (int64_t)q * p->n), 8, n,
+                             p->h + 8 * (int64_t)q * p->cols, p->cols, v, HDI_SPEC_TILE, 1);
         for (q = 0; q < p->cols && p->copy; q++)
             for (i = 0; i < n; i++) v[HDI_SPEC_TILE * q + i] = p->w[8 * (row + i) + q];
     }
@@ -21484,7 +20685,7 @@ typedef struct hdi_spec {
     hd_context *ctx;
     hdi_elim *m;
     const hd_laplacian *lap;
-    const hdi_real_ops *ops;
+    const hdi_kernels *ops;
     int32_t n;
     hdi_factor factor;
     double sigma, off;           /* shift of the factor; how far from sigma its count may be wrong */
@@ -21586,7 +20787,7 @@ static hd_status hdi_spec_make(hdi_spec *s, hdi_elim *m, int32_t count, double t
     s->lap = m->lap;
     s->n = m->lap->n_active;
     s->tol = tol;
-    s->ops = hdi_real_ops_get(hdi_simd_level(m->ctx));
+    s->ops = hdi_kernels_get(hdi_simd_level(m->ctx), 0);
     s->most = columns;
     s->n_group = n_group;
     if (hdi_slab_make(&s->basis, s->n, s->most + 2 * HDI_SPEC_WIDE, s->ctx, e) < 0) return e->status;
@@ -22270,7 +21471,8 @@ static double hdi_spec_count_off(hdi_spec *s) {
         const int32_t *row = sym->row + sym->row_ptr[f];
         const int64_t m = hdi_front_rows(sym, f);
         for (j = 0; j < pivots; j++) {
-            const double *l = s->factor.panel + s->factor.panel_at[f] + j * m;
+            const hdi_block b = hdi_sweep_block(&s->factor, f, j / HDI_PANEL);
+            const double *l = hdi_block_at(&b, j, j) - j;
             double w = 1;
             for (p = j + 1; p < m; p++) w += fabs(l[p]);
             w *= fabs(l[j]);
@@ -30872,32 +30074,32 @@ static int hdi_geo_divergence8_plain(const hd_geodesic *g, const double *HDI_RES
 /* hdi_geo_flow for four columns at a time. */
 static HDI_AVX2 int hdi_geo_divergence8_256(const hd_geodesic *g, const double *u, const double *least,
                                             double *b) {
-    const hdi_v4 zero = _mm256_setzero_pd(), one = _mm256_set1_pd(1);
-    const hdi_v4 sign = _mm256_set1_pd(-0.0);
+    const __m256d zero = _mm256_setzero_pd(), one = _mm256_set1_pd(1);
+    const __m256d sign = _mm256_set1_pd(-0.0);
     int32_t f, c;
     int faint = 0;
     for (f = 0; f < g->n_faces; f++) {
         const hdi_geo_face *a = g->face + f;
-        const hdi_v4 minus = _mm256_set1_pd(-a->copies);
+        const __m256d minus = _mm256_set1_pd(-a->copies);
         const int64_t i = hdi_geo_at(a, 0), j = hdi_geo_at(a, 1), k = hdi_geo_at(a, 2);
-        const hdi_v4 l = _mm256_set1_pd(a->l), p = _mm256_set1_pd(a->p), q = _mm256_set1_pd(a->q);
-        const hdi_v4 flat = _mm256_set1_pd(HDI_GEO_FLAT * a->l * a->l);
+        const __m256d l = _mm256_set1_pd(a->l), p = _mm256_set1_pd(a->p), q = _mm256_set1_pd(a->q);
+        const __m256d flat = _mm256_set1_pd(HDI_GEO_FLAT * a->l * a->l);
         for (c = 0; c < HDI_GEO_WIDE; c += 4) {
-            const hdi_v4 u0 = _mm256_andnot_pd(sign, _mm256_loadu_pd(u + i + c));
-            const hdi_v4 u1 = _mm256_andnot_pd(sign, _mm256_loadu_pd(u + j + c));
-            const hdi_v4 u2 = _mm256_andnot_pd(sign, _mm256_loadu_pd(u + k + c));
-            const hdi_v4 m = _mm256_max_pd(_mm256_max_pd(u0, u1), u2);
-            const hdi_v4 lit = _mm256_cmp_pd(m, _mm256_loadu_pd(least + c), _CMP_GE_OQ);
-            const hdi_v4 s = _mm256_and_pd(lit, _mm256_div_pd(one, _mm256_blendv_pd(one, m, lit)));
-            const hdi_v4 d1 = _mm256_mul_pd(_mm256_sub_pd(u1, u0), s);
-            const hdi_v4 d2 = _mm256_mul_pd(_mm256_sub_pd(u2, u0), s);
-            const hdi_v4 x = _mm256_mul_pd(q, d1), y = _mm256_fmsub_pd(l, d2, _mm256_mul_pd(p, d1));
-            const hdi_v4 norm2 = _mm256_fmadd_pd(x, x, _mm256_mul_pd(y, y));
-            const hdi_v4 slope = _mm256_cmp_pd(norm2, flat, _CMP_GT_OQ);
-            const hdi_v4 length = _mm256_sqrt_pd(_mm256_blendv_pd(one, norm2, slope));
-            const hdi_v4 w = _mm256_and_pd(slope, _mm256_div_pd(minus, length));
-            const hdi_v4 g1 = _mm256_mul_pd(_mm256_fmsub_pd(q, x, _mm256_mul_pd(p, y)), w);
-            const hdi_v4 g2 = _mm256_mul_pd(_mm256_mul_pd(l, y), w);
+            const __m256d u0 = _mm256_andnot_pd(sign, _mm256_loadu_pd(u + i + c));
+            const __m256d u1 = _mm256_andnot_pd(sign, _mm256_loadu_pd(u + j + c));
+            const __m256d u2 = _mm256_andnot_pd(sign, _mm256_loadu_pd(u + k + c));
+            const __m256d m = _mm256_max_pd(_mm256_max_pd(u0, u1), u2);
+            const __m256d lit = _mm256_cmp_pd(m, _mm256_loadu_pd(least + c), _CMP_GE_OQ);
+            const __m256d s = _mm256_and_pd(lit, _mm256_div_pd(one, _mm256_blendv_pd(one, m, lit)));
+            const __m256d d1 = _mm256_mul_pd(_mm256_sub_pd(u1, u0), s);
+            const __m256d d2 = _mm256_mul_pd(_mm256_sub_pd(u2, u0), s);
+            const __m256d x = _mm256_mul_pd(q, d1), y = _mm256_fmsub_pd(l, d2, _mm256_mul_pd(p, d1));
+            const __m256d norm2 = _mm256_fmadd_pd(x, x, _mm256_mul_pd(y, y));
+            const __m256d slope = _mm256_cmp_pd(norm2, flat, _CMP_GT_OQ);
+            const __m256d length = _mm256_sqrt_pd(_mm256_blendv_pd(one, norm2, slope));
+            const __m256d w = _mm256_and_pd(slope, _mm256_div_pd(minus, length));
+            const __m256d g1 = _mm256_mul_pd(_mm256_fmsub_pd(q, x, _mm256_mul_pd(p, y)), w);
+            const __m256d g2 = _mm256_mul_pd(_mm256_mul_pd(l, y), w);
             faint |= (_mm256_movemask_pd(_mm256_cmp_pd(m, zero, _CMP_GT_OQ)) & ~_mm256_movemask_pd(lit)) << c;
             _mm256_storeu_pd(b + i + c, _mm256_sub_pd(_mm256_loadu_pd(b + i + c), _mm256_add_pd(g1, g2)));
             _mm256_storeu_pd(b + j + c, _mm256_add_pd(_mm256_loadu_pd(b + j + c), g1));
@@ -30909,30 +30111,30 @@ static HDI_AVX2 int hdi_geo_divergence8_256(const hd_geodesic *g, const double *
 
 static HDI_AVX512 int hdi_geo_divergence8_512(const hd_geodesic *g, const double *u, const double *least,
                                               double *b) {
-    const hdi_v8 zero = _mm512_setzero_pd(), one = _mm512_set1_pd(1);
-    const hdi_v8 sign = _mm512_set1_pd(-0.0), low = _mm512_loadu_pd(least);
+    const __m512d zero = _mm512_setzero_pd(), one = _mm512_set1_pd(1);
+    const __m512d sign = _mm512_set1_pd(-0.0), low = _mm512_loadu_pd(least);
     int32_t f;
     int faint = 0;
     for (f = 0; f < g->n_faces; f++) {
         const hdi_geo_face *a = g->face + f;
-        const hdi_v8 minus = _mm512_set1_pd(-a->copies);
+        const __m512d minus = _mm512_set1_pd(-a->copies);
         const int64_t i = hdi_geo_at(a, 0), j = hdi_geo_at(a, 1), k = hdi_geo_at(a, 2);
-        const hdi_v8 l = _mm512_set1_pd(a->l), p = _mm512_set1_pd(a->p), q = _mm512_set1_pd(a->q);
-        const hdi_v8 u0 = _mm512_andnot_pd(sign, _mm512_loadu_pd(u + i));
-        const hdi_v8 u1 = _mm512_andnot_pd(sign, _mm512_loadu_pd(u + j));
-        const hdi_v8 u2 = _mm512_andnot_pd(sign, _mm512_loadu_pd(u + k));
-        const hdi_v8 m = _mm512_max_pd(_mm512_max_pd(u0, u1), u2);
+        const __m512d l = _mm512_set1_pd(a->l), p = _mm512_set1_pd(a->p), q = _mm512_set1_pd(a->q);
+        const __m512d u0 = _mm512_andnot_pd(sign, _mm512_loadu_pd(u + i));
+        const __m512d u1 = _mm512_andnot_pd(sign, _mm512_loadu_pd(u + j));
+        const __m512d u2 = _mm512_andnot_pd(sign, _mm512_loadu_pd(u + k));
+        const __m512d m = _mm512_max_pd(_mm512_max_pd(u0, u1), u2);
         const __mmask8 lit = _mm512_cmp_pd_mask(m, low, _CMP_GE_OQ);
-        const hdi_v8 s = _mm512_maskz_div_pd(lit, one, m);
-        const hdi_v8 d1 = _mm512_mul_pd(_mm512_sub_pd(u1, u0), s);
-        const hdi_v8 d2 = _mm512_mul_pd(_mm512_sub_pd(u2, u0), s);
-        const hdi_v8 x = _mm512_mul_pd(q, d1), y = _mm512_fmsub_pd(l, d2, _mm512_mul_pd(p, d1));
-        const hdi_v8 norm2 = _mm512_fmadd_pd(x, x, _mm512_mul_pd(y, y));
+        const __m512d s = _mm512_maskz_div_pd(lit, one, m);
+        const __m512d d1 = _mm512_mul_pd(_mm512_sub_pd(u1, u0), s);
+        const __m512d d2 = _mm512_mul_pd(_mm512_sub_pd(u2, u0), s);
+        const __m512d x = _mm512_mul_pd(q, d1), y = _mm512_fmsub_pd(l, d2, _mm512_mul_pd(p, d1));
+        const __m512d norm2 = _mm512_fmadd_pd(x, x, _mm512_mul_pd(y, y));
         const __mmask8 slope = _mm512_cmp_pd_mask(norm2, _mm512_set1_pd(HDI_GEO_FLAT * a->l * a->l),
                                                   _CMP_GT_OQ);
-        const hdi_v8 w = _mm512_maskz_div_pd(slope, minus, _mm512_sqrt_pd(norm2));
-        const hdi_v8 g1 = _mm512_mul_pd(_mm512_fmsub_pd(q, x, _mm512_mul_pd(p, y)), w);
-        const hdi_v8 g2 = _mm512_mul_pd(_mm512_mul_pd(l, y), w);
+        const __m512d w = _mm512_maskz_div_pd(slope, minus, _mm512_sqrt_pd(norm2));
+        const __m512d g1 = _mm512_mul_pd(_mm512_fmsub_pd(q, x, _mm512_mul_pd(p, y)), w);
+        const __m512d g2 = _mm512_mul_pd(_mm512_mul_pd(l, y), w);
         faint |= _mm512_cmp_pd_mask(m, zero, _CMP_GT_OQ) & ~lit;
         _mm512_storeu_pd(b + i, _mm512_sub_pd(_mm512_loadu_pd(b + i), _mm512_add_pd(g1, g2)));
         _mm512_storeu_pd(b + j, _mm512_add_pd(_mm512_loadu_pd(b + j), g1));

@@ -50,14 +50,6 @@ static const char *const adj_plans[ADJ_PLANS] = {"method=direct", "method=direct
     "method=direct poles=diagonal degree=12", "method=krylov tol=1e-10",
     "method=iterative", "method=iterative solver=lanczos tol=1e-10", "method=auto"};
 
-static hd_heat *adj_plan(const hd_laplacian *lap, int which) {
-    const trial c = trial_parse(adj_plans[which]);
-    const hd_heat_opts o = trial_options(&c);
-    hd_heat *heat = NULL;
-    CHECK(hd_heat_create(&heat, lap, &o, NULL) == HD_OK);
-    return heat;
-}
-
 /* A smooth field, a rough one, and a single vertex; vertices without a row have values too. */
 static double *adj_fields(const hd_laplacian *lap, size_t ld) {
     double *f = DENSE_NEW(double, (int64_t)ld * ADJ_FIELDS);
@@ -191,7 +183,7 @@ static void adj_identities(void) {
 static void adj_factors_shared(void) {
     shape s = kit_own_shape(shape_icosphere(3));
     hd_laplacian *lap = kit_triangles(&s, HD_LAPLACIAN_FEM);
-    hd_heat *heat = adj_plan(lap, ADJ_TRAIN), *other = adj_plan(lap, ADJ_TRAIN);
+    hd_heat *heat = kit_heat(lap, adj_plans[ADJ_TRAIN]), *other = kit_heat(lap, adj_plans[ADJ_TRAIN]);
     const size_t n = (size_t)lap->n;
     const double t = 0.1, t2 = 0.2;
     double *f = adj_fields(lap, n), *u = KIT_NEW(double, 4 * n);
