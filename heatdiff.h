@@ -3536,7 +3536,7 @@ typedef struct hdi_kernels {
     /* Stops before a pivot that cannot be divided by: it is on the diagonal. */
     void (*eliminate)(const hdi_eliminate *g);
     /* Slices b, b_next apart, of B(k,j) = x(j,k) d(k): n columns, depth rows; x(j,k) is at x + j row + k col.
-     * d NULL: ones. Columns past n are left alone or get any number. */
+     * d NULL: ones. Columns past n are zero. */
     void (*slices)(double *b, int64_t b_next, const double *x, int64_t row, int64_t col, const double *d,
                    int64_t n, int64_t depth);
     /* y += x, n doubles */
@@ -3550,14 +3550,19 @@ typedef struct hdi_kernels {
 static HDI_INLINE int hdi_pack_invert(const double *d, double *inverse, int n) {
     int q, good = 1;
     for (q = 0; q < n; q++) {
-        const double re = d[q], im = d[q + HDI_PACK_LANES];
-        const int flat = fabs(re) >= fabs(im);
-        const double r = flat ? im / re : re / im, s = flat ? re + im * r : im + re * r;
-        const double one = 1 / s, other = r / s;
-        const int is_number = hdi_finite(one) && hdi_finite(other);
-        inverse[q] = is_number ? flat ? one : other : HUGE_VAL;
-        inverse[q + HDI_PACK_LANES] = flat ? -other : -one;
-        good = good && is_number;
+        const double a = fabs(d[q]), b = fabs(d[q + HDI_PACK_LANES]), size = a < b ? b : a;
+        const double unit = size > 1 ? 0.25 : 1;     /* the sum below stays in the range of doubles */
+        const double re = unit * d[q], im = unit * d[q + HDI_PACK_LANES];
+        if (!(a <= DBL_MAX) || !(b <= DBL_MAX) || size <= HDI_PIVOT_LEAST) {
+            inverse[q] = HUGE_VAL;
+            good = 0;
+        } else if (a >= b) {
+            inverse[q] = unit / (re + im * (im / re));
+            inverse[q + HDI_PACK_LANES] = -inverse[q] * (im / re);
+        } else {
+            inverse[q + HDI_PACK_LANES] = -unit / (im + re * (re / im));
+            inverse[q] = -inverse[q + HDI_PACK_LANES] * (re / im);
+        }
     }
     return good;
 }
@@ -4236,6 +4241,11 @@ HDI_PART void HDI_OF(eliminate)(const int pack, const hdi_eliminate *g) {
 
 /* ---- copies ---- */
 
+HDI_PART void HDI_OF(zero)(double *x, int n) {
+    int q;
+    HDI_EACH(q, n) x[q] = 0;
+}
+
 HDI_PART void HDI_OF(slice)(const int pack, double *b, const double *x, int64_t row, int64_t col,
                             const double *d, int64_t n, int64_t depth) {
     const int cols = HDI_COLS;
@@ -4252,8 +4262,12 @@ HDI_PART void HDI_OF(slice)(const int pack, double *b, const double *x, int64_t 
             }
             continue;
         }
-        for (j = 0; j < n; j++) {
+        for (j = 0; j < cols; j++) {
             const double *from = x + HDI_ENTRY * j * row;
+            if (j >= n) {
+                HDI_OF(zero)(b + HDI_ENTRY * j, HDI_ENTRY);
+                continue;
+            }
             if (!pack) b[j] = d ? *from * d[k] : *from;
             for (q = 0; pack && q < 4; q += HDI_ABREAST) {
                 hdi_num v = HDI_OF(num_load)(1, from + q);
@@ -12519,19 +12533,23 @@ static int64_t hdi_front_pivot_block(int32_t width) { return width == 1 ? 64 : 1
 static int64_t hdi_front_depth(int32_t width) { return width == 1 ? HDI_PANEL : 64; }
 static int64_t hdi_front_span(int32_t width) { return width == 1 ? 512 : 96; }
 
-/* Doubles of S, and of the work of a stage, for fronts of at most so many pivots and rows below: pivots of a
- * block, slices of columns of U, and a copy of rows. */
-static int64_t hdi_front_s_size(int32_t pivots, int32_t width) {
-    return width * pivots * (hdi_least(pivots, hdi_front_pivot_block(width)) + HDI_TILE_COLS);
+/* Doubles of the diagonal of a block of a panel, of S, and of what an update takes besides: slices of columns
+ * of U and a copy of rows. S and the latter are not there at the same time. For fronts of at most so many
+ * pivots and rows below. */
+static int64_t hdi_front_d_size(int64_t pivots, int32_t width) {
+    return width * hdi_least(pivots, HDI_PANEL);
 }
 static uint64_t hdi_front_chunk_scratch(int32_t pivots, int32_t below, int32_t width) {
     const int64_t depth = hdi_least(pivots, hdi_front_depth(width));
     const int64_t span = hdi_least(below, hdi_front_span(width)) + HDI_TILE_COLS;
     const int64_t copy = width == 1 ? depth * HDI_TILE_ROWS : 0;
-    return (uint64_t)(width * (hdi_least(pivots, HDI_PANEL) + depth * span) + copy) + 64;
+    return (uint64_t)(hdi_front_d_size(pivots, width) + width * depth * span + copy) + 64;
 }
 static uint64_t hdi_front_scratch(int32_t pivots, int32_t below, int32_t width) {
-    return (uint64_t)hdi_front_s_size(pivots, width) + hdi_front_chunk_scratch(pivots, below, width);
+    const int64_t s = width * pivots * (hdi_least(pivots, hdi_front_pivot_block(width)) + HDI_TILE_COLS);
+    const uint64_t with_s = (uint64_t)(hdi_front_d_size(pivots, width) + s) + 64;
+    const uint64_t update = hdi_front_chunk_scratch(pivots, below, width);
+    return with_s > update ? with_s : update;
 }
 
 static hdi_front hdi_front_open(const hdi_factor *f, int32_t v, double *scratch) {
@@ -12544,8 +12562,8 @@ static hdi_front hdi_front_open(const hdi_factor *f, int32_t v, double *scratch)
     w.panel = f->panel + f->width * s->panel[v];
     w.update = f->work + f->width * s->update[v];
     w.dinv = f->dinv + (int64_t)f->width * s->super[v];
-    w.S = scratch;
-    w.work = scratch + hdi_front_s_size((int32_t)w.p, f->width);
+    w.work = scratch;
+    w.S = scratch + hdi_front_d_size(w.p, f->width);
     return w;
 }
 
@@ -12853,7 +12871,7 @@ static void hdi_front_update(const hdi_front *w, int64_t r0, int64_t r1, double 
     const hdi_kernels *o = w->f->ops;
     const int64_t width = w->f->width, depth = hdi_least(w->p, hdi_front_depth(w->f->width));
     const int64_t span = hdi_front_span(w->f->width);
-    double *d = work, *s = d + width * hdi_least(w->p, HDI_PANEL);
+    double *d = work, *s = d + hdi_front_d_size(w->p, w->f->width);
     hdi_product g;
     int64_t j, k;
     memset(&g, 0, sizeof g);
@@ -13047,6 +13065,8 @@ static void hdi_factor_take_numbers(hdi_factor *f, hdi_scope *s) {
     const uint64_t w = (uint64_t)f->width;
     f->panel = HDI_TAKE(s, double, ((uint64_t)f->sym->panel[f->sym->n_super] + HDI_TILE_COLS) * w);
     f->dinv = HDI_TAKE(s, double, (uint64_t)f->sym->n * w);
+    /* kernels read a few entries more than they use */
+    if (f->panel) hdi_clear(f->panel + f->width * f->sym->panel[f->sym->n_super], f->width * HDI_TILE_COLS);
 }
 
 /* f becomes another factor like its host, with its own numbers but the host's room to work in. Neither is
@@ -13916,7 +13936,7 @@ static int64_t hdi_inverse_depth(int32_t width) { return width == 1 ? (int)HDI_P
 /* Doubles of rows that are gathered, or of rows of M, and of all scratch of a front of at most so many rows
  * and pivots and stored entries. */
 static uint64_t hdi_inverse_buffer(int32_t width) {
-    return (uint64_t)(width * HDI_INV_ROWS * HDI_PANEL);
+    return (uint64_t)(width * hdi_inverse_height(width) * hdi_inverse_depth(width));
 }
 
 static uint64_t hdi_inverse_scratch(int64_t m, int64_t p, int64_t stored, int32_t width) {
@@ -14045,10 +14065,11 @@ static void hdi_inverse_m(const hdi_inverse_front *w, int64_t r0, int64_t r1, do
     const hdi_kernels *o = w->f->ops;
     const hdi_block l = hdi_inverse_block(w, w->panel);
     const int64_t n = w->k1 - w->k0, width = w->f->width, u = w->m - w->k1;
+    const int64_t rows = (int64_t)hdi_inverse_buffer(w->f->width) / (width * n);
     int64_t r, j;
-    for (r = r0; r < r1; r += HDI_INV_ROWS) {
+    for (r = r0; r < r1; r += rows) {
         hdi_product g = hdi_inverse_product(w, NULL, o->nr * n, 0);
-        g.n = g.c_col = hdi_least(r1 - r, HDI_INV_ROWS);
+        g.n = g.c_col = hdi_least(r1 - r, rows);
         g.a_col = l.ld;
         for (j = 0; j < n; j += g.cols) {        /* T' is a lower triangle */
             g.cols = hdi_least(n - j, 4 * o->nr);

@@ -63,9 +63,9 @@ static int64_t cases_warned(void) {
 
 /* One case in so many, where each takes long: under sanitizers, which look at each access and not at values, and for tools/mutate.py. */
 #if defined(__SANITIZE_ADDRESS__) || defined(GUARD_OFF) || defined(CASES_SPARSE)
-enum { CASES_STRIDE = 7 };
+enum { CASES_STRIDE = 7, CASES_FEW = 1 };
 #else
-enum { CASES_STRIDE = 1 };
+enum { CASES_STRIDE = 1, CASES_FEW = 0 };
 #endif
 
 static void cases_one(case_run *run, const char *text) {

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The tests under checkers. In each mode a planted error first proves that the checker is on.
-#     sanitize.sh WORKFOLDER [all]                    addresses and undefined behaviour, as CI does, but for seven slow groups, whose
+#     sanitize.sh WORKFOLDER [all]                    addresses and undefined behaviour, as CI does, but for nine slow groups, whose
 #                                                     code the others run as well; all: these too
 #     sanitize.sh WORKFOLDER python [COUNT]           the arguments that test_python.py throws, under the address sanitizer
 #     sanitize.sh WORKFOLDER address|memory|threads|traps|valgrind [GROUP...]
@@ -38,17 +38,38 @@ one() {
   [ $status = 0 ] || { head -60 "$log"; return 1; }
 }
 
-# each COMPILER FLAGS...: builds what is needed, side by side, and runs the groups
-each() {
-  local cc=$1 p builds=()
-  shift
+# two COMPILER FLAGS...: builds runner and internals, each with an implementation of its own: the guard of tests/guard.h looks at it
+two() {
+  local p builds=()
   for p in runner internals; do
     [ "$p $groups" != "runner internals" ] || continue
     [ $p = runner ] || [ -z "$groups" ] || grep -qx internals <<<"$groups" || continue
-    $cc -std=c99 -g -O1 "$@" -I"$top" "$top/tests/$p.c" -o "$work/$p.$mode" -lm &
+    "$@" "$top/tests/$p.c" -o "$work/$p.$mode" -lm &
     builds+=($!)
   done
   for p in "${builds[@]}"; do wait "$p"; done
+}
+
+# shared COMPILER FLAGS...: the same where the checker takes the guard's place; the implementation, which takes long to compile, is that
+# of internals.c for both
+shared() {
+  local a b
+  "$@" -Dmain=internals_main -c "$top/tests/internals.c" -o "$work/internals.$mode.o" &
+  a=$!
+  "$@" -w -DTEST_LINKED -DCASES_SPARSE -c "$top/tests/runner.c" -o "$work/runner.$mode.o" &
+  b=$!
+  wait $a
+  wait $b
+  printf 'int internals_main(int, char **);\nint main(int n, char **v) { return internals_main(n, v); }\n' >"$work/start.c"
+  "$@" "$work/start.c" "$work/internals.$mode.o" -o "$work/internals.$mode" -lm
+  "$@" "$work/runner.$mode.o" "$work/internals.$mode.o" -o "$work/runner.$mode" -lm
+}
+
+# each BUILD COMPILER FLAGS...: BUILD, one of these two, builds what is needed, side by side; then the groups run
+each() {
+  local build=$1 cc=$2
+  shift 2
+  $build $cc -std=c99 -g1 -O1 "$@" -I"$top"
   [ -n "$groups" ] || groups=$(printf 'internals\n'; "$work/runner.$mode" --list)
   groups=$( (grep -xF "$long" <<<"$groups"; grep -vxF "$long" <<<"$groups") || true)
   groups=$(grep -vxF "$left_out" <<<"$groups")
@@ -61,14 +82,14 @@ unwritten='#include <stdio.h>
 int main(int c, char **v) { int a[4]; (void)v; a[c] = 1; if (a[c + 1] > 7) puts("a"); return 0; }'
 flag=
 jobs=2
-long=$(printf '%s\n' failures engines estimate internals diagonal filters)      # they begin, so that the end is not a wait for one of them
+long=$(printf '%s\n' failures threads engines estimate internals diagonal filters)      # they begin, so that the end is not a wait for one of them
 left_out=none
 shift $(($# < 2 ? $# : 2))
 groups=$(printf '%s\n' "$@")
 case "$mode" in
 memory)
   planted clang -g -fsanitize=memory <<<"$unwritten"
-  each clang -fno-omit-frame-pointer -fsanitize=memory -fsanitize-memory-track-origins ;;
+  each shared clang -fno-omit-frame-pointer -fsanitize=memory -fsanitize-memory-track-origins ;;
 threads)
   jobs=1
   [ -n "$groups" ] || groups=$(printf '%s\n' threads large_t estimate engines spectrum)
@@ -78,18 +99,18 @@ static int n;
 static void *add(void *p) { int i; for (i = 0; i < 1000; i++) n++; return p; }
 int main(void) { pthread_t t; pthread_create(&t, 0, add, 0); add(0); pthread_join(t, 0); return 0; }
 C
-  each gcc -fsanitize=thread ;;
+  each two gcc -fsanitize=thread ;;
 traps)
   flag=--traps
   planted gcc -D_GNU_SOURCE <<'C'
 #include <fenv.h>
 int main(int c, char **v) { volatile double x = c - 1; (void)v; feenableexcept(FE_ALL_EXCEPT); x = 1 / x; return 0; }
 C
-  each gcc ;;
+  each two gcc ;;
 valgrind)
   wrap='valgrind --quiet --leak-check=full --show-leak-kinds=all --errors-for-leak-kinds=all --error-exitcode=9 --fair-sched=try'
   planted gcc -g <<<"$unwritten"
-  each gcc -O2 -DHEATDIFF_NO_SIMD ;;             # vectors take valgrind ten times as long; the other modes have them
+  each two gcc -O2 -DHEATDIFF_NO_SIMD ;;             # vectors take valgrind ten times as long; the other modes have them
 python)
   gcc -g -O1 -fsanitize=address,undefined -fno-sanitize-recover=all -shared -fPIC "$top/tools/heatdiff_shared.c" \
     -o "$work/libheatdiff.so" -lm
@@ -100,14 +121,14 @@ python)
   fi
   python "$top/tests/test_python.py" --throw "${groups:-5000}" 2>"$work/python.log" || { tail -50 "$work/python.log"; exit 1; } ;;
 address | all)
-  flags="-g -fsanitize=address,undefined -fno-sanitize-recover=all"
+  flags="-fsanitize=address,undefined -fno-sanitize-recover=all"
   for cc in gcc clang; do
     command -v $cc >/dev/null || continue
     planted $cc $flags <<<'#include <stdlib.h>
 int main(int c, char **v) { char *p = (char *)malloc(4); (void)v; p[3 + c] = 1; c = p[3]; free(p); return c; }'
   done
   [ "$mode" = all ] || [ -n "$groups" ] || left_out=$(printf '%s\n' estimate engines points deep spectrum ldl geodesic diagonal filters)
-  each gcc $flags ;;
+  each shared gcc $flags ;;
 *)
   echo "usage: sanitize.sh WORKFOLDER [address | all | python [COUNT] | memory | threads | traps | valgrind [GROUP...]]"
   exit 2 ;;

@@ -178,7 +178,7 @@ static void sign_sphere(void) {
     static const char *const pairs[3] = {"ico/3 fem", "ico/4 fem", "ico/5 fem"};
     double Z[3], before[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL};
     int level, k, l;
-    for (level = 0; level < 3; level++) {
+    for (level = 0; level < 3 - CASES_FEW; level++) {
         CHECK(hd_heat_trace(kit_heat(kit_pair(pairs[level]), ""), 3, t, Z, NULL, NULL, NULL) == HD_OK);
         for (k = 0; k < 3; k++) {
             double want = 0, off;
