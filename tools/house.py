@@ -38,7 +38,7 @@ FOREIGN = ("dgemm_", "WIN32_LEAN_AND_MEAN", "NOMINMAX", "syscall", "DWORD")   # 
 
 # What holds today. Whenever --check says that a limit can come down, --tighten brings it down.
 LIMITS = {
-    "lines": 33661,           # goal 16000; raised from 23000 by eigenpairs, estimates, filters, sources and more
+    "lines": 32269,           # goal 16000; raised from 23000 by eigenpairs, estimates, filters, sources and more
     "api": 1016,              # lines of room [api]; goal 1100
     "median": 10,             # lines of a function; goal 13
     "longest": 58,            # lines of the longest function; goal 60
@@ -46,7 +46,7 @@ LIMITS = {
     "widest": 110,            # characters of the widest line; goal 110
     "wide": 0,                # lines wider than that; goal 0
     "wide-declarations": 0,   # code in the public part wider than 100; goal 0
-    "arguments": 9,           # private functions with more than eight arguments, kernels all; goal 0
+    "arguments": 2,           # private functions with more than eight arguments, kernels all; goal 0
     "macros": 36,             # function-like macros in the whole file; no goal of its own
     "kernel-macros": 6,       # function-like macros in room [kernels]; goal below 40
     "twins": 1,               # pairs of places that share six or more lines; goal 0
