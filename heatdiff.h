@@ -3621,7 +3621,9 @@ enum { hdi_regs_plain = 2, hdi_cols_plain = 4, hdi_pack_regs_plain = 3, hdi_pack
 #elif HDI_V2 && defined(__x86_64__)
 enum { hdi_regs_plain = 2, hdi_cols_plain = 4, hdi_pack_regs_plain = 2, hdi_pack_cols_plain = 2 };
 #else
-enum { hdi_regs_plain = 2, hdi_cols_plain = 4, hdi_pack_regs_plain = 2, hdi_pack_cols_plain = 1 };
+enum {
+    hdi_regs_plain = HDI_V2 ? 2 : 4, hdi_cols_plain = 4, hdi_pack_regs_plain = 2, hdi_pack_cols_plain = 1
+};
 #endif
 enum { hdi_most_regs_plain = 4, hdi_most_cols_plain = 4 };
 
@@ -3800,6 +3802,12 @@ HDI_IN8 __m512d hdi_join_avx512(__m512d p, __m512d q) {
 #define HDI_NUMBERS (pack ? 4 : 1)
 #define HDI_ABREAST (pack ? HDI_WIDTH < 4 ? HDI_WIDTH : 4 : 1)   /* numbers of an entry that a vector holds */
 #endif
+
+/* A tile holds the rows of its own columns' pivots; else this does not compile. */
+enum {
+    HDI_OF(tile_fits) = 1 / (HDI_OF(regs) * HDI_WIDTH >= (int)HDI_OF(cols) &&
+                             HDI_OF(pack_regs) >= (int)HDI_OF(pack_cols))
+};
 
 /* What registers hold: a num, some rows of a column; a factor, by which all rows of a num are multiplied; or
  * a sum of such products. Of real numbers re is a vector of rows, or the factor in every lane. Of packs, re
