@@ -14396,7 +14396,7 @@ static void hdi_form_square(hdi_form_block *b, const double *r, int32_t row) {
     int32_t c, q;
     for (j = 0; j < w->m; j++) {
         const double *z = hdi_inverse_column(w, j), *x = r + j * row;
-        double t[HDI_FORM_COLS * HDI_PACK], s[HDI_PACK];
+        double t[(int)HDI_FORM_COLS * (int)HDI_PACK], s[HDI_PACK];
         memset(t, 0, (size_t)row * sizeof *t);
         hdi_kernels_rows(w->f->ops, t, row / width, 1, x + row, w->m - j - 1, z + width, 1, 0);
         for (c = 0; c < b->k; c++) {
@@ -14846,7 +14846,7 @@ static void hdi_inverse_node(void *arg, int64_t index, int32_t worker) {
 
 /* The arrays that inverting factors of the given width takes. */
 static void hdi_inverse_take(hdi_inverse *z, const hdi_symbolic *s, int32_t width, hdi_scope *keep) {
-    const int32_t chunks = s->largest_front / HDI_INV_CHUNK + HDI_PANEL / HDI_TILE_ROWS + 2;
+    const int32_t chunks = s->largest_front / HDI_INV_CHUNK + (int)HDI_PANEL / (int)HDI_TILE_ROWS + 2;
     uint64_t size;
     int32_t v;
     memset(z, 0, sizeof *z);
