@@ -3620,10 +3620,10 @@ enum { hdi_regs_plain = 1, hdi_cols_plain = 1, hdi_pack_regs_plain = 1, hdi_pack
 enum { hdi_regs_plain = 2, hdi_cols_plain = 4, hdi_pack_regs_plain = 3, hdi_pack_cols_plain = 1 };
 #elif HDI_V2 && defined(__x86_64__)
 enum { hdi_regs_plain = 2, hdi_cols_plain = 4, hdi_pack_regs_plain = 2, hdi_pack_cols_plain = 2 };
+#elif HDI_V2
+enum { hdi_regs_plain = 2, hdi_cols_plain = 4, hdi_pack_regs_plain = 2, hdi_pack_cols_plain = 1 };
 #else
-enum {
-    hdi_regs_plain = HDI_V2 ? 2 : 4, hdi_cols_plain = 4, hdi_pack_regs_plain = 2, hdi_pack_cols_plain = 1
-};
+enum { hdi_regs_plain = 4, hdi_cols_plain = 4, hdi_pack_regs_plain = 2, hdi_pack_cols_plain = 1 };
 #endif
 enum { hdi_most_regs_plain = 4, hdi_most_cols_plain = 4 };
 
@@ -3804,10 +3804,7 @@ HDI_IN8 __m512d hdi_join_avx512(__m512d p, __m512d q) {
 #endif
 
 /* A tile holds the rows of its own columns' pivots; else this does not compile. */
-enum {
-    HDI_OF(tile_fits) = 1 / (HDI_OF(regs) * HDI_WIDTH >= (int)HDI_OF(cols) &&
-                             HDI_OF(pack_regs) >= (int)HDI_OF(pack_cols))
-};
+enum { HDI_OF(tile_fits) = 1 / ((int)HDI_OF(regs) * HDI_WIDTH >= (int)HDI_OF(cols)) };
 
 /* What registers hold: a num, some rows of a column; a factor, by which all rows of a num are multiplied; or
  * a sum of such products. Of real numbers re is a vector of rows, or the factor in every lane. Of packs, re
@@ -4249,11 +4246,6 @@ HDI_PART void HDI_OF(eliminate)(const int pack, const hdi_eliminate *g) {
 
 /* ---- copies ---- */
 
-HDI_PART void HDI_OF(zero)(double *x, int n) {
-    int q;
-    HDI_EACH(q, n) x[q] = 0;
-}
-
 HDI_PART void HDI_OF(slice)(const int pack, double *b, const double *x, int64_t row, int64_t col,
                             const double *d, int64_t n, int64_t depth) {
     const int cols = HDI_COLS;
@@ -4272,10 +4264,8 @@ HDI_PART void HDI_OF(slice)(const int pack, double *b, const double *x, int64_t 
         }
         for (j = 0; j < cols; j++) {
             const double *from = x + HDI_ENTRY * j * row;
-            if (j >= n) {
-                HDI_OF(zero)(b + HDI_ENTRY * j, HDI_ENTRY);
-                continue;
-            }
+            for (q = 0; j >= n && q < HDI_ENTRY; q++) b[HDI_ENTRY * j + q] = 0;
+            if (j >= n) continue;
             if (!pack) b[j] = d ? *from * d[k] : *from;
             for (q = 0; pack && q < 4; q += HDI_ABREAST) {
                 hdi_num v = HDI_OF(num_load)(1, from + q);
@@ -14396,7 +14386,7 @@ static void hdi_form_square(hdi_form_block *b, const double *r, int32_t row) {
     int32_t c, q;
     for (j = 0; j < w->m; j++) {
         const double *z = hdi_inverse_column(w, j), *x = r + j * row;
-        double t[HDI_FORM_COLS * HDI_PACK], s[HDI_PACK];
+        double t[(int)HDI_FORM_COLS * (int)HDI_PACK], s[HDI_PACK];
         memset(t, 0, (size_t)row * sizeof *t);
         hdi_kernels_rows(w->f->ops, t, row / width, 1, x + row, w->m - j - 1, z + width, 1, 0);
         for (c = 0; c < b->k; c++) {
@@ -14846,7 +14836,7 @@ static void hdi_inverse_node(void *arg, int64_t index, int32_t worker) {
 
 /* The arrays that inverting factors of the given width takes. */
 static void hdi_inverse_take(hdi_inverse *z, const hdi_symbolic *s, int32_t width, hdi_scope *keep) {
-    const int32_t chunks = s->largest_front / HDI_INV_CHUNK + HDI_PANEL / HDI_TILE_ROWS + 2;
+    const int32_t chunks = s->largest_front / HDI_INV_CHUNK + (int)HDI_PANEL / (int)HDI_TILE_ROWS + 2;
     uint64_t size;
     int32_t v;
     memset(z, 0, sizeof *z);
