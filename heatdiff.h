@@ -3630,9 +3630,7 @@ enum { hdi_most_regs_plain = 4, hdi_most_cols_plain = 4 };
 typedef struct hdi_span { int32_t lo, hi; } hdi_span;
 typedef hdi_span hdi_rows_plain;
 HDI_IN2 hdi_span hdi_rows_of_plain(int32_t lo, int32_t hi) {
-    hdi_span g;
-    g.lo = lo;
-    g.hi = hi;
+    const hdi_span g = {lo, hi};
     return g;
 }
 HDI_IN2 int hdi_has_plain(hdi_span g, int32_t q) { return g.lo <= q && q < g.hi; }
@@ -3801,6 +3799,14 @@ HDI_IN8 __m512d hdi_join_avx512(__m512d p, __m512d q) {
 #define HDI_COLS (pack ? (int)HDI_OF(pack_cols) : (int)HDI_OF(cols))
 #define HDI_NUMBERS (pack ? 4 : 1)
 #define HDI_ABREAST (pack ? HDI_WIDTH < 4 ? HDI_WIDTH : 4 : 1)   /* numbers of an entry that a vector holds */
+/* Code of their own for columns of B that are side by side, and for each entry of a small triangle. */
+#ifdef __OPTIMIZE_SIZE__
+#define HDI_UNITS 0
+#define HDI_SPREAD
+#else
+#define HDI_UNITS 1
+#define HDI_SPREAD HDI_UNROLL
+#endif
 #endif
 
 /* A tile holds the rows of its own columns' pivots; else this does not compile. */
@@ -3813,9 +3819,7 @@ enum { HDI_OF(tile_fits) = 1 / ((int)HDI_OF(regs) * HDI_WIDTH >= (int)HDI_OF(col
 typedef struct HDI_OF(num) { hdi_vec re, im; } HDI_OF(num);
 
 HDI_PART hdi_num HDI_OF(num_of)(hdi_vec re, hdi_vec im) {
-    hdi_num x;
-    x.re = re;
-    x.im = im;
+    const hdi_num x = {re, im};
     return x;
 }
 HDI_PART hdi_num HDI_OF(num_zero)(void) { return HDI_OF(num_of)(HDI_OF(all)(0), HDI_OF(all)(0)); }
@@ -4114,7 +4118,7 @@ HDI_PART void HDI_OF(product)(const int pack, const hdi_product *g) {
     int h;
     for (h = 0; h < HDI_NUMBERS; h += HDI_ABREAST) {
         for (i = 0; i < g->n; i += HDI_BLOCK) {
-            if (g->b_col == 1) HDI_OF(product_rows)(pack, 1, g, i, h);
+            if (HDI_UNITS && g->b_col == 1) HDI_OF(product_rows)(pack, 1, g, i, h);
             else HDI_OF(product_rows)(pack, 0, g, i, h);
         }
     }
@@ -4147,7 +4151,7 @@ HDI_PART void HDI_OF(solve_rows)(const int pack, const int unit, const hdi_solve
 }
 
 HDI_PART void HDI_OF(solve)(const int pack, const hdi_solve *g) {
-    if (g->b_col == 1) HDI_OF(solve_rows)(pack, 1, g);
+    if (HDI_UNITS && g->b_col == 1) HDI_OF(solve_rows)(pack, 1, g);
     else HDI_OF(solve_rows)(pack, 0, g);
 }
 
@@ -4331,18 +4335,19 @@ HDI_KERNEL void HDI_OF(single_up)(const hdi_single *g) {
     hdi_vec v[8];
     double x[8];
     int j, k;
-    HDI_EACH(j, 8) x[j] = j < g->nc ? g->x[j] : 0.0;
-    HDI_EACH(j, 8)
-        HDI_EACH(k, 8)
+    HDI_SPREAD for (j = 0; j < 8; j++) x[j] = j < g->nc ? g->x[j] : 0.0;
+    HDI_SPREAD for (j = 0; j < 8; j++)
+        HDI_SPREAD for (k = 0; k < 8; k++)
             if (k > j && k < g->nc) x[k] -= g->l[k + j * g->ld] * x[j];
     HDI_EACH(j, 8) {
         v[j] = HDI_OF(all)(x[j]);
         if (j < g->nc) g->x[j] = x[j];
     }
     HDI_OF(single_columns)(l, g);
-    HDI_OF(single_up_part)(g->x + g->nc, l, g->n, v, g->nc > 4);
-    HDI_EACH(j, 8) l[j] += g->n;
-    HDI_OF(single_up_part)(g->t, l, g->u, v, g->nc > 4);
+    for (k = 0; k < 2; k++) {
+        HDI_OF(single_up_part)(k ? g->t : g->x + g->nc, l, k ? g->u : g->n, v, g->nc > 4);
+        HDI_EACH(j, 8) l[j] += g->n;
+    }
 }
 
 /* s += L' y */
@@ -4366,24 +4371,25 @@ HDI_KERNEL void HDI_OF(single_down)(const hdi_single *g) {
     const double *l[8];
     hdi_vec s[8];
     double x[8];
-    int j, k;
+    int i, j, k;
     HDI_OF(single_columns)(l, g);
     HDI_EACH(j, 8) s[j] = HDI_OF(all)(0);
-    HDI_OF(single_down_part)(s, l, g->n, g->x + g->nc, g->nc > 4);
-    HDI_EACH(j, 8) l[j] += g->n;
-    HDI_OF(single_down_part)(s, l, g->u, g->t, g->nc > 4);
+    for (k = 0; k < 2; k++) {
+        HDI_OF(single_down_part)(s, l, k ? g->u : g->n, k ? g->t : g->x + g->nc, g->nc > 4);
+        HDI_EACH(j, 8) l[j] += g->n;
+    }
     HDI_EACH(j, 8) {
         x[j] = HDI_OF(pick)(s[j], 0);
         HDI_EACH(k, HDI_WIDTH)
             if (k > 0) x[j] += HDI_OF(pick)(s[j], k);
         x[j] = j < g->nc ? g->x[j] - x[j] : 0.0;
     }
-    HDI_UNROLL
-    for (k = 7; k > 0; k--) {
-        HDI_EACH(j, 8)
+    HDI_SPREAD for (i = 0; i < 7; i++) {
+        k = 7 - i;
+        HDI_SPREAD for (j = 0; j < 8; j++)
             if (j < k && k < g->nc) x[j] -= g->l[k + j * g->ld] * x[k];
     }
-    HDI_EACH(j, 8)
+    HDI_SPREAD for (j = 0; j < 8; j++)
         if (j < g->nc) g->x[j] = x[j];
 }
 #endif
@@ -4475,12 +4481,10 @@ static const hdi_kernels *hdi_kernels_get(int level, int pack) {
 static void hdi_kernels_rows(const hdi_kernels *o, double *x, int64_t n, int64_t cols, const double *a,
                              int64_t depth, const double *b, int64_t b_row, int64_t b_col) {
     hdi_product g;
+    memset(&g, 0, sizeof g);
     g.c = x;
     g.a = a;
     g.b = b;
-    g.work = NULL;
-    g.first = 0;
-    g.lower = g.packed = g.store = 0;
     g.c_col = g.a_col = g.n = n;
     g.b_row = b_row;
     g.b_col = b_col;
@@ -14183,11 +14187,9 @@ static void hdi_inverse_put(const hdi_inverse *z, const double *from, int64_t at
  * has been inverted. Plain transposes. Half of a mesh's columns have nothing below, and r is x_j. The others
  * go through the fronts on their ways to J in blocks; a front sees those that have come to it. Sweeps and
  * forms are three times the multiply-adds of the factorisation, of which whole solves would take 13 to 33
- * times. The other exact way is an analysis on the pattern of B^2, whose selected inverse has all that B Z B
- * needs. Both measured in turn, for a mesh of 50,000 vertices with its column, in seconds of processor time:
- * 0.67 here, 2.05 there, peak memory 345 and 1040 MB; at 150,000 vertices 2.9 and 10.3 s, 0.99 and 3.2 GB. So
- * this is the only one that is kept: twice the time of the diagonal of Z, and its memory. A million vertices
- * take 48 s and 6.7 GB; there B^2 does not fit 24 GB. */
+ * times. The other exact way, a selected inverse on the pattern of B^2, takes three times the time and
+ * memory: at 150,000 vertices 2.9 and 10.3 s of processor time, 0.99 and 3.2 GB. A million take 48 s and
+ * 6.7 GB here. */
 
 enum { HDI_FORM_COLS = 24, HDI_FORM_COLS_REAL = 8, HDI_FORM_SLOTS = 8, HDI_FORM_NEAR = 32 };
 #define HDI_FORM_OPEN ((uint64_t)1 << 63)   /* of active: the front's rows are on the stack */
