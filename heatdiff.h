@@ -63,7 +63,7 @@
      [05] arrays     prefix sums, sorting, union-find
      [06] vectors    dot products and norms, small dense eigenproblems and least squares
      [07] kernels    dense fronts, real and in lanes of four complex matrices, for each instruction set
-     [08] sparse     compressed rows: build, check, transpose, multiply, renumber
+     [08] sparse     compressed rows: build, check, multiply
      [09] spatial    k-d tree: nearest neighbours and radius search
      [10] geometry   triangles: checks, areas, cotangents, edges, defects
      [11] intrinsic  intrinsic Delaunay triangulations and the tufted cover
@@ -926,7 +926,7 @@ HEATDIFF_API const char *hd_status_text(hd_status status);  /* "out of memory" *
 /* ---- sparse matrices ---- */
 
 /* A from triplets (i, j, v) in any order. Values at the same place are summed in the order given. Free out
- * with hd_csr_free and the same ctx, as the results of the functions below.
+ * with hd_csr_free and the same ctx.
  * i, j   [n_triplets] in [0, n_rows) and [0, n_cols)
  * v      [n_triplets], or NULL: a pattern
  * Errors HD_ERR_INDEX (row: index of the triplet), HD_ERR_NOT_FINITE (row: index of the triplet; if a sum
@@ -943,28 +943,6 @@ HEATDIFF_API hd_status hd_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t
  * Cost   O(nnz) */
 HEATDIFF_API hd_status hd_csr_check(const hd_csr *a, int32_t symmetric, hd_context *ctx,
                                     hd_error *err);
-
-/* out = A'.
- * Errors as hd_csr_check
- * Cost   O(n_rows + n_cols + nnz) */
-HEATDIFF_API hd_status hd_csr_transpose(hd_csr *out, const hd_csr *a, hd_context *ctx,
-                                        hd_error *err);
-
-/* out = A B.
- * Errors HD_ERR_ARGUMENT (row, column: the inner sizes, if they differ), HD_ERR_NOT_FINITE (row,
- *        column: an entry overflows), and as hd_csr_check
- * Cost   O(flops), and sorting the rows
- * Source Gustavson 1978 */
-HEATDIFF_API hd_status hd_csr_product(hd_csr *out, const hd_csr *a, const hd_csr *b,
-                                      hd_context *ctx, hd_error *err);
-
-/* out = P A P' for a square A: row i of out is row perm[i] of A, and columns likewise.
- * perm   [n_rows] a permutation
- * Errors HD_ERR_INDEX (row: perm is not a permutation there), HD_ERR_ARGUMENT: A is not square; and as
- *        hd_csr_check
- * Cost   O(n_rows + nnz) */
-HEATDIFF_API hd_status hd_csr_permute(hd_csr *out, const hd_csr *a, const int32_t *perm,
-                                      hd_context *ctx, hd_error *err);
 
 /* y = A x. x [n_cols] and y [n_rows] must not overlap. ctx is for threads. A is not checked: see
  * hd_csr_check. Cost: 2 nnz flops. */
@@ -4495,7 +4473,7 @@ static void hdi_kernels_rows(const hdi_kernels *o, double *x, int64_t n, int64_t
 }
 
 /* ==== [08] sparse ====
- * Compressed rows: build, check, transpose, multiply, renumber. May call [06]. */
+ * Compressed rows: build, check, multiply. May call [06]. */
 
 static void hdi_csr_free(hd_context *ctx, hd_csr *a) {
     hdi_free(ctx, a->row_ptr);
@@ -4561,17 +4539,6 @@ static void hdi_csr_merge(hd_csr *a) {
     a->nnz = q;
 }
 
-/* For sums that may have overflowed. */
-static hd_status hdi_csr_check_finite(const hd_csr *a, const char *text, hd_error *e) {
-    int32_t i;
-    int64_t p;
-    for (i = 0; a->val && i < a->n_rows; i++)
-        for (p = a->row_ptr[i]; p < a->row_ptr[i + 1]; p++)
-            if (!hdi_finite(a->val[p]))
-                return hdi_fail_row(e, HD_ERR_NOT_FINITE, text, i, a->col[p], a->val[p]);
-    return HD_OK;
-}
-
 /* Work arrays in s. */
 static hd_status hdi_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_cols, int64_t n,
                                        const int32_t *ti, const int32_t *tj, const double *tv,
@@ -4579,6 +4546,7 @@ static hd_status hdi_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_co
     hd_error *e = s->e;
     hd_csr t, a;
     int64_t q;
+    int32_t i;
     for (q = 0; q < n; q++) {
         const int bad_row = ti[q] < 0 || ti[q] >= n_rows;
         if (bad_row || tj[q] < 0 || tj[q] >= n_cols)
@@ -4601,9 +4569,13 @@ static hd_status hdi_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_co
     hdi_rewind(t.row_ptr, n_cols);
     hdi_csr_transpose_into(&t, &a);
     hdi_csr_merge(&a);
-    if (hdi_csr_check_finite(&a, "triplets: the sum of those at one place is not finite", e) >= 0)
-        *out = hdi_csr_keep(s, a);
-    return e->status;
+    for (i = 0; tv && i < n_rows; i++)
+        for (q = a.row_ptr[i]; q < a.row_ptr[i + 1]; q++)
+            if (!hdi_finite(a.val[q]))
+                return hdi_fail_row(e, HD_ERR_NOT_FINITE, "triplets: the sum of those at one place is not finite",
+                                    i, a.col[q], a.val[q]);
+    *out = hdi_csr_keep(s, a);
+    return HD_OK;
 }
 
 /* Whether a stores the entry (i,j), zero or not. */
@@ -4680,15 +4652,6 @@ static hd_status hdi_csr_check(const hd_csr *a, int symmetric, hd_context *ctx, 
     return symmetric ? hdi_csr_check_symmetric(a, ctx, e) : HD_OK;
 }
 
-static hd_status hdi_csr_transpose(hd_csr *out, const hd_csr *a, hd_context *ctx, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(ctx, e);
-    hd_csr t = hdi_csr_take(&s, a->n_cols, a->n_rows, a->nnz, a->val != NULL);
-    if (e->status < 0) return hdi_scope_end(&s);
-    hdi_csr_transpose_into(a, &t);
-    *out = hdi_csr_keep(&s, t);
-    return hdi_scope_end(&s);
-}
-
 /* Columns of row i of A B, unsorted, into col (NULL: counted only). mark [b->n_cols] holds the last row
  * that saw a column. */
 static int64_t hdi_product_row(const hd_csr *a, const hd_csr *b, int32_t i, int32_t *mark,
@@ -4704,74 +4667,6 @@ static int64_t hdi_product_row(const hd_csr *a, const hd_csr *b, int32_t i, int3
         }
     }
     return n;
-}
-
-static hd_status hdi_csr_product(hd_csr *out, const hd_csr *a, const hd_csr *b, hd_context *ctx,
-                                 hd_error *e) {
-    hdi_scope s = hdi_scope_begin(ctx, e);
-    const int values = a->val && b->val;
-    int32_t *mark = HDI_TAKE(&s, int32_t, b->n_cols);
-    double *sum = HDI_TAKE(&s, double, b->n_cols);
-    uint64_t *work = HDI_TAKE(&s, uint64_t, 2 * (int64_t)b->n_cols);
-    int64_t nnz = 0, p, q;
-    hd_csr c;
-    int32_t i;
-    if (e->status < 0) return hdi_scope_end(&s);
-    hdi_fill_i32(mark, b->n_cols, -1);
-    for (i = 0; i < a->n_rows; i++) nnz += hdi_product_row(a, b, i, mark, NULL);
-    c = hdi_csr_take(&s, a->n_rows, b->n_cols, nnz, values);
-    if (e->status < 0) return hdi_scope_end(&s);
-    hdi_fill_i32(mark, b->n_cols, -1);
-    for (i = 0; i < a->n_rows; i++) {
-        int32_t *col = c.col + c.row_ptr[i];
-        const int64_t n = hdi_product_row(a, b, i, mark, col);
-        c.row_ptr[i + 1] = c.row_ptr[i] + n;
-        hdi_sort_indices(col, n, work);
-        if (!values) continue;
-        for (p = 0; p < n; p++) sum[col[p]] = 0;
-        for (p = a->row_ptr[i]; p < a->row_ptr[i + 1]; p++)
-            for (q = b->row_ptr[a->col[p]]; q < b->row_ptr[a->col[p] + 1]; q++)
-                sum[b->col[q]] += a->val[p] * b->val[q];
-        for (p = 0; p < n; p++) c.val[c.row_ptr[i] + p] = sum[col[p]];
-    }
-    if (hdi_csr_check_finite(&c, "product: an entry is not finite", e) >= 0) *out = hdi_csr_keep(&s, c);
-    return hdi_scope_end(&s);
-}
-
-static hd_status hdi_csr_permute(hd_csr *out, const hd_csr *a, const int32_t *perm, hd_context *ctx,
-                                 hd_error *e) {
-    hdi_scope s = hdi_scope_begin(ctx, e);
-    int32_t *inverse = HDI_TAKE(&s, int32_t, a->n_rows);
-    hd_csr b, t;
-    int32_t i;
-    int64_t p;
-    if (e->status < 0) return hdi_scope_end(&s);
-    hdi_fill_i32(inverse, a->n_rows, -1);
-    for (i = 0; i < a->n_rows; i++) {
-        if (perm[i] < 0 || perm[i] >= a->n_rows || inverse[perm[i]] >= 0) {
-            hdi_fail_row(e, HD_ERR_INDEX, "permutation: an index is out of range or occurs twice", i, -1,
-                         perm[i]);
-            return hdi_scope_end(&s);
-        }
-        inverse[perm[i]] = i;
-    }
-    /* (P A P')', rows in the old order of columns */
-    t = hdi_csr_take(&s, a->n_rows, a->n_rows, a->nnz, a->val != NULL);
-    b = hdi_csr_take(&s, a->n_rows, a->n_rows, a->nnz, a->val != NULL);
-    if (e->status < 0) return hdi_scope_end(&s);
-    for (i = 0; i < a->n_rows; i++) {
-        int64_t q = t.row_ptr[i];
-        for (p = a->row_ptr[perm[i]]; p < a->row_ptr[perm[i] + 1]; p++, q++) {
-            t.col[q] = inverse[a->col[p]];
-            if (t.val) t.val[q] = a->val[p];
-        }
-        t.row_ptr[i + 1] = q;
-    }
-    hdi_csr_transpose_into(&t, &b);    /* twice transposed: the columns of every row ascend */
-    memset(t.row_ptr, 0, ((size_t)t.n_rows + 1) * sizeof *t.row_ptr);
-    hdi_csr_transpose_into(&b, &t);
-    *out = hdi_csr_keep(&s, t);
-    return hdi_scope_end(&s);
 }
 
 /* How far ahead of a sweep over a matrix its entries are asked for, once a row. The processor's own
@@ -31263,36 +31158,6 @@ HEATDIFF_API hd_status hd_csr_check(const hd_csr *a, int32_t symmetric, hd_conte
     hdi_call c;
     if (hdi_enter(&c, ctx, err) < 0) return c.e->status;
     return a ? hdi_csr_check(a, symmetric, c.ctx, c.e) : hdi_missing(c.e);
-}
-
-HEATDIFF_API hd_status hd_csr_transpose(hd_csr *out, const hd_csr *a, hd_context *ctx, hd_error *err) {
-    hdi_call c;
-    if (hdi_enter(&c, ctx, err) < 0) return c.e->status;
-    if (!out || !a) return hdi_missing(c.e);
-    return hdi_csr_check_rows(a, c.e) < 0 ? c.e->status : hdi_csr_transpose(out, a, c.ctx, c.e);
-}
-
-HEATDIFF_API hd_status hd_csr_product(hd_csr *out, const hd_csr *a, const hd_csr *b, hd_context *ctx,
-                                      hd_error *err) {
-    hdi_call c;
-    if (hdi_enter(&c, ctx, err) < 0) return c.e->status;
-    if (!out || !a || !b) return hdi_missing(c.e);
-    if (hdi_csr_check_rows(a, c.e) < 0 || hdi_csr_check_rows(b, c.e) < 0) return c.e->status;
-    if (a->n_cols != b->n_rows)
-        return hdi_fail_row(c.e, HD_ERR_ARGUMENT, "product: the inner sizes differ", a->n_cols, b->n_rows, 0);
-    return hdi_csr_product(out, a, b, c.ctx, c.e);
-}
-
-HEATDIFF_API hd_status hd_csr_permute(hd_csr *out, const hd_csr *a, const int32_t *perm, hd_context *ctx,
-                                      hd_error *err) {
-    hdi_call c;
-    if (hdi_enter(&c, ctx, err) < 0) return c.e->status;
-    if (!out || !a || (a->n_rows > 0 && !perm)) return hdi_missing(c.e);
-    if (hdi_csr_check_rows(a, c.e) < 0) return c.e->status;
-    if (a->n_rows != a->n_cols)
-        return hdi_fail_row(c.e, HD_ERR_ARGUMENT, "permute: the matrix is not square", a->n_rows, a->n_cols,
-                            0);
-    return hdi_csr_permute(out, a, perm, c.ctx, c.e);
 }
 
 HEATDIFF_API void hd_csr_apply(const hd_csr *a, const double *x, double *y, hd_context *ctx) {
