@@ -6739,7 +6739,7 @@ static int32_t hdi_star_hull(hdi_star_point *p, int32_t n, int *closed) {
  * own cover: half of it is not stored. A flip must also lower the sum of the six cotangents. In exact
  * arithmetic it always does (Rippa 1990), and so rounding cannot make flips run in circles. Zero-area faces
  * are left out before. Lengths are in units of the mean edge length: nothing overflows, and results do not
- * depend on the unit of the coordinates. */
+ * depend on the unit of the coordinates. Only what a flip needs is unfolded. */
 
 static int32_t hdi_side_next(int32_t s) { return s % 3 == 2 ? s - 2 : s + 1; }
 static int32_t hdi_side_prev(int32_t s) { return s % 3 == 0 ? s + 2 : s - 1; }
@@ -6763,30 +6763,17 @@ typedef struct hdi_soup {
 
 static int32_t hdi_soup_copies(const hdi_soup *soup, int32_t f) { return soup->copies ? soup->copies[f] : 1; }
 
-/* Faces of a bucket: its keys, sorted, second corner << 32 | third corner << 1 | odd, become faces from
- * number m on. Returns how many there are; with soup NULL they are only counted. */
-static int64_t hdi_soup_bucket(hdi_soup *soup, int64_t m, int32_t i, const uint64_t *key,
-                               int64_t n) {
-    int64_t p, q, count = 0;
-    for (p = 0; p < n; p = q, count++) {
-        int32_t odd = 0;
-        for (q = p; q < n && key[q] >> 1 == key[p] >> 1; q++) odd += (int32_t)(key[q] & 1);
-        if (!soup) continue;
-        soup->tri[3 * (m + count)] = i;
-        soup->tri[3 * (m + count) + 1] = hdi_key_vertex(key[p]);
-        soup->tri[3 * (m + count) + 2] = (int32_t)((key[p] & 0xffffffffu) >> 1);
-        soup->copies[m + count] = (int32_t)(q - p);
-        soup->odd[m + count] = odd;
-    }
-    return count;
-}
-
-/* Gathers the m triangles tri by their smallest corners: keys as above, bucket i from ptr[i] on. ptr [n +
- * 1] zeros. */
-static void hdi_soup_gather(const int32_t *tri, int64_t m, int32_t n, int64_t *ptr, uint64_t *key) {
-    int64_t f;
+/* Gathers the m triangles tri by their smallest corners: bucket i from ptr[i] on, its keys second corner << 32
+ * | third corner << 1 | odd, sorted. ptr [n + 1] zeros. Returns how many different triangles there are, or
+ * -1 without memory. */
+static int64_t hdi_soup_gather(const int32_t *tri, int64_t m, int32_t n, int64_t *ptr, uint64_t *key,
+                               hdi_scope *s) {
+    uint64_t *work;
+    int64_t f, p, count = 0;
     for (f = 0; f < m; f++) ptr[hdi_low32(tri[3 * f], hdi_low32(tri[3 * f + 1], tri[3 * f + 2]))]++;
     hdi_prefix_sum(ptr, n);
+    work = HDI_TAKE(s, uint64_t, hdi_fullest(ptr, n));
+    if (!work) return -1;
     for (f = 0; f < m; f++) {
         const int32_t a = tri[3 * f], b = tri[3 * f + 1], c = tri[3 * f + 2];
         const int32_t first = hdi_low32(a, hdi_low32(b, c)), last = hdi_high32(a, hdi_high32(b, c));
@@ -6795,28 +6782,34 @@ static void hdi_soup_gather(const int32_t *tri, int64_t m, int32_t n, int64_t *p
         key[ptr[first]++] = (uint64_t)(middle << 32 | (int64_t)last << 1 | odd);
     }
     hdi_rewind(ptr, n);
+    for (f = 0; f < n; f++) {
+        hdi_sort_keys(key + ptr[f], ptr[f + 1] - ptr[f], work);
+        for (p = ptr[f]; p < ptr[f + 1]; p++) count += p == ptr[f] || key[p] >> 1 != key[p - 1] >> 1;
+    }
+    return count;
 }
 
 /* Different faces of the m triangles tri, into soup in s. */
-static hd_status hdi_soup_faces(hdi_soup *soup, const int32_t *tri, int64_t m, int32_t n,
-                                hdi_scope *s) {
+static hd_status hdi_soup_faces(hdi_soup *soup, const int32_t *tri, int64_t m, int32_t n, hdi_scope *s) {
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
-    int64_t *ptr = HDI_TAKE_ZERO(&own, int64_t, (int64_t)n + 1), f = 0, count = 0;
-    uint64_t *key = HDI_TAKE(&own, uint64_t, m), *work;
+    int64_t *ptr = HDI_TAKE_ZERO(&own, int64_t, (int64_t)n + 1), f = -1, p, count;
+    uint64_t *key = HDI_TAKE(&own, uint64_t, m);
     int32_t i;
-    if (s->e->status < 0) return hdi_scope_end(&own);
-    hdi_soup_gather(tri, m, n, ptr, key);
-    work = HDI_TAKE(&own, uint64_t, hdi_fullest(ptr, n));
-    if (!work) return hdi_scope_end(&own);
-    for (i = 0; i < n; i++) {
-        hdi_sort_keys(key + ptr[i], ptr[i + 1] - ptr[i], work);
-        count += hdi_soup_bucket(NULL, 0, i, key + ptr[i], ptr[i + 1] - ptr[i]);
-    }
+    count = key ? hdi_soup_gather(tri, m, n, ptr, key, &own) : -1;
+    if (count < 0) return hdi_scope_end(&own);
     soup->tri = HDI_TAKE(s, int32_t, 3 * count);
-    soup->copies = HDI_TAKE(s, int32_t, count);
-    soup->odd = HDI_TAKE(s, int32_t, count);
-    if (s->e->status < 0) return hdi_scope_end(&own);
-    for (i = 0; i < n; i++) f += hdi_soup_bucket(soup, f, i, key + ptr[i], ptr[i + 1] - ptr[i]);
+    soup->copies = HDI_TAKE_ZERO(s, int32_t, count);
+    soup->odd = HDI_TAKE_ZERO(s, int32_t, count);
+    for (i = 0; soup->odd && i < n; i++) {
+        for (p = ptr[i]; p < ptr[i + 1]; p++) {
+            if (p == ptr[i] || key[p] >> 1 != key[p - 1] >> 1) f++;
+            soup->tri[3 * f] = i;
+            soup->tri[3 * f + 1] = hdi_key_vertex(key[p]);
+            soup->tri[3 * f + 2] = (int32_t)((key[p] & 0xffffffffu) >> 1);
+            soup->copies[f]++;
+            soup->odd[f] += (int32_t)(key[p] & 1);
+        }
+    }
     soup->mesh.tri = soup->tri;
     soup->mesh.n = n;
     soup->mesh.m = (int32_t)count;
@@ -6849,86 +6842,52 @@ static hdi_edge_tally hdi_soup_edges(hdi_soup *soup, int32_t *border) {
     return tally;
 }
 
-/* A job on blocks of faces. add and n_short are of a block: what its worst face lacks to satisfy the
- * triangle inequality with delta to spare, and how many faces lack anything. */
-typedef struct hdi_soup_job {
-    hdi_soup *soup;
-    double delta, *add, most_add;
-    int64_t *n_short;
-} hdi_soup_job;
-
-static void hdi_soup_length_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_soup_job *job = (const hdi_soup_job *)arg;
-    hdi_soup *soup = job->soup;
+/* Lengths of face f. Returns by how much they satisfy the triangle inequality. */
+static double hdi_soup_measure(const hdi_soup *soup, int32_t f) {
     const hdi_mesh *mesh = &soup->mesh;
-    double add = 0;
-    int64_t f, n_short = 0;
+    const int32_t *v = mesh->tri + hdi_triple(f);
+    double *len = soup->len + hdi_triple(f);
     int q;
-    for (f = begin; f < end; f++) {
-        const int32_t *v = mesh->tri + 3 * f;
-        double *len = soup->len + 3 * f, spare;
-        if (!(mesh->area[f] > 0)) continue;
-        for (q = 0; q < 3; q++)
-            len[q] = (mesh->len ? hdi_mesh_lengths(mesh, (int32_t)f)[q]
-                      : hdi_edge_length(mesh->xyz, v[q], v[hdi_next3[q]])) / soup->unit;
-        spare = hdi_min(len[0] + len[1] - len[2],
-                        hdi_min(len[2] + len[0] - len[1], len[2] + len[1] - len[0]));
-        if (job->delta < 0) continue;
-        if (spare < job->delta) n_short += hdi_soup_copies(soup, (int32_t)f);
-        add = hdi_max(add, job->delta - spare);
-    }
-    job->add[begin / HDI_FACES_PER_TASK] = add;
-    job->n_short[begin / HDI_FACES_PER_TASK] = n_short;
-}
-
-static void hdi_soup_cot_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_soup_job *job = (const hdi_soup_job *)arg;
-    hdi_soup *soup = job->soup;
-    int64_t f;
-    int q;
-    for (f = begin; f < end; f++) {
-        double *len = soup->len + 3 * f, *cot = soup->mesh.cot + 3 * f;
-        cot[0] = cot[1] = cot[2] = soup->area[f] = 0;
-        if (!(soup->mesh.area[f] > 0)) continue;
-        for (q = 0; q < 3; q++) len[q] += job->most_add;
-        soup->area[f] = hdi_length_area(len[0], len[1], len[2]);
-        if (soup->area[f] > 0) hdi_length_cots(len, soup->area[f], cot);
-    }
+    for (q = 0; q < 3; q++)
+        len[q] = (mesh->len ? hdi_mesh_lengths(mesh, f)[q]
+                  : hdi_edge_length(mesh->xyz, v[q], v[hdi_next3[q]])) / soup->unit;
+    return hdi_min(len[0] + len[1] - len[2], hdi_min(len[2] + len[0] - len[1], len[2] + len[1] - len[0]));
 }
 
 /* Lengths, mollified, with their areas and cotangents. Mollification (Sharp, Crane 2020, section 4.5)
  * adds to all sides the smallest length that makes every triangle satisfy the triangle inequality with
  * delta to spare; delta < 0: none. */
 static hd_status hdi_soup_lengths(hdi_soup *soup, double delta, hd_mesh_report *rep, hdi_scope *s) {
-    const int64_t m = soup->mesh.m, n_tasks = (m + HDI_FACES_PER_TASK - 1) / HDI_FACES_PER_TASK;
-    hdi_soup_job job;
-    int64_t i, n_short = 0;
-    soup->mesh.cot = soup->mesh.cot ? soup->mesh.cot : HDI_TAKE(s, double, 3 * m);
-    soup->area = HDI_TAKE(s, double, m);
-    soup->len = HDI_TAKE(s, double, 3 * m);
-    job.soup = soup;
-    job.delta = delta;
-    job.most_add = 0;
-    job.add = HDI_TAKE(s, double, n_tasks);
-    job.n_short = HDI_TAKE(s, int64_t, n_tasks);
+    hdi_mesh *mesh = &soup->mesh;
+    double add = 0;
+    int32_t f;
+    int q;
+    if (!mesh->cot) mesh->cot = HDI_TAKE(s, double, hdi_triple(mesh->m));
+    soup->area = HDI_TAKE_ZERO(s, double, mesh->m);
+    soup->len = HDI_TAKE(s, double, hdi_triple(mesh->m));
     if (s->e->status < 0) return s->e->status;
-    hdi_parallel_ranges(s->ctx, m, HDI_FACES_PER_TASK, hdi_soup_length_task, &job);
-    for (i = 0; i < n_tasks; i++) {
-        job.most_add = hdi_max(job.most_add, job.add[i]);
-        n_short += job.n_short[i];
+    for (f = 0; f < mesh->m; f++) {
+        const double spare = mesh->area[f] > 0 ? hdi_soup_measure(soup, f) : HUGE_VAL;
+        if (delta >= 0 && spare < delta) rep->n_mollified += hdi_soup_copies(soup, f);
+        if (delta >= 0) add = hdi_max(add, delta - spare);
     }
-    hdi_parallel_ranges(s->ctx, m, HDI_FACES_PER_TASK, hdi_soup_cot_task, &job);
-    rep->n_mollified = (int32_t)n_short;
-    rep->mollify_epsilon = job.most_add * soup->unit;
+    rep->mollify_epsilon = add * soup->unit;
+    for (f = 0; f < mesh->m; f++) {
+        double *len = soup->len + hdi_triple(f), *cot = mesh->cot + hdi_triple(f);
+        cot[0] = cot[1] = cot[2] = 0;
+        if (!(mesh->area[f] > 0)) continue;
+        for (q = 0; q < 3; q++) len[q] += add;
+        soup->area[f] = hdi_length_area(len[0], len[1], len[2]);
+        if (soup->area[f] > 0) hdi_length_cots(len, soup->area[f], cot);
+    }
     return HD_OK;
 }
 
-/* Edges and lengths of a soup whose faces have their area. border [n] as in hdi_soup_edges. */
-static hd_status hdi_soup_finish(hdi_soup *soup, double delta, hd_mesh_report *rep, int32_t *border,
-                                 hdi_scope *s) {
+/* Edges and lengths of a soup whose faces have their area. */
+static hd_status hdi_soup_finish(hdi_soup *soup, double delta, hd_mesh_report *rep, hdi_scope *s) {
     const hdi_mesh *mesh = &soup->mesh;
+    int32_t *border = HDI_TAKE(s, int32_t, mesh->n), f;
     hdi_edge_tally tally;
-    int32_t f;
     for (f = 0; f < mesh->m; f++) soup->total += mesh->area[f] * hdi_soup_copies(soup, f);
     if (!border || hdi_sides_make(&soup->sides, mesh, s) < 0) return s->e->status;
     tally = hdi_soup_edges(soup, border);
@@ -6956,7 +6915,7 @@ static hd_status hdi_soup_make(hdi_soup *soup, const double *xyz, int32_t n, con
         rep->n_faces += soup->copies[f];
         *(soup->mesh.area[f] > 0 ? &rep->n_faces_used : &rep->n_zero_area) += soup->copies[f];
     }
-    return hdi_soup_finish(soup, delta, rep, HDI_TAKE(s, int32_t, n), s);
+    return hdi_soup_finish(soup, delta, rep, s);
 }
 
 /* The soup of a mesh, which hdi_mesh_faces has measured, in s. */
@@ -6965,50 +6924,44 @@ static hd_status hdi_soup_of_mesh(hdi_soup *soup, const hdi_mesh *mesh, double d
     memset(soup, 0, sizeof *soup);
     soup->mesh = *mesh;
     soup->share = 1;
-    return hdi_soup_finish(soup, delta, rep, HDI_TAKE(s, int32_t, mesh->n), s);
+    return hdi_soup_finish(soup, delta, rep, s);
 }
 
 /* ---- covers ----
  * The intrinsic triangulation of a soup: of itself where all its faces can be turned to one side, else of
- * its two-sheeted cover. A face has copies on it, front and back in turn. Meshes are unfolded as a whole.
- * Of the stars of points only a part is unfolded: what matters are the lengths of all faces, which are
- * those in space unless they are flipped, and the gluing of those few edges that may not be Delaunay and
- * of what comes to lie beside them. Faces get sides of their own (all copies, front and back) when one of
- * their edges is glued, and an edge is glued, all its sides at once, when it is looked at. */
+ * its two-sheeted cover. A face has copies on it, front and back in turn. Only a part is unfolded: what
+ * matters are the lengths of all faces, which are those in space unless they are flipped, and the gluing of
+ * those few edges that may not be Delaunay and of what comes to lie beside them. Faces get sides of their
+ * own (all copies and sheets) when one of their edges is glued, and an edge is glued, all its sides at once,
+ * when it is looked at. */
 
 enum { HDI_SIDE_OPEN = -1, HDI_SIDE_LOOSE = -2 };    /* instead of a twin: boundary; not glued yet */
 /* flips stop after so many, which no mesh has ever come near to; what is left is counted */
 enum { HDI_FLIPS_PER_SIDE = 64 };
+
+typedef struct hdi_side {
+    double len;         /* the same on both sides of an edge */
+    int32_t vert;       /* where the side begins; it runs to where the next side of its face begins */
+    int32_t twin;       /* the side glued to it, which runs the other way; or see above */
+    int32_t next;       /* on the stack: the side below, or -1; HDI_SIDE_LOOSE: it is not there */
+} hdi_side;
 
 typedef struct hdi_cover {
     const hdi_soup *soup;
     hd_context *ctx;
     hd_error *e;
     int32_t n_sheets;
-    int32_t in_parts;   /* 1: faces are unfolded when they are needed */
+    int close;          /* 1: the boundary is glued to the other sheet; 0: it stays open */
+    int32_t *sheet;     /* [2 m] the connected sheets, united: the front of face f is 2 f, its back 2 f + 1 */
     int32_t n, room;    /* faces that are unfolded, and those that there is room for */
-    int32_t *vert;      /* [3 n] where side s begins; it runs to where the next side of its face begins */
-    int32_t *twin;      /* [3 n] the side glued to it, which runs the other way; or see above */
-    double *len;        /* [3 n] the same on both sides of an edge */
+    hdi_side *side;     /* [3 n] */
     double *area;       /* [n] 0: these lengths make no triangle, the face contributes nothing */
     int32_t *first;     /* [m] the first copy of a face; -1: none yet */
-    int32_t step;       /* from there to the next copy */
-    int32_t *stack;     /* [3 room] sides to look at */
-    int32_t depth;
-    signed char *waits; /* [3 room] 1: on the stack */
+    int32_t stack;      /* the side to look at next; -1: none */
     signed char *glued; /* [3 m] at the first side of an edge */
     hdi_pair *list;     /* [most faces at an edge] */
     int64_t most_flips, work;
 } hdi_cover;
-
-static void hdi_cover_free(hdi_cover *c) {
-    hdi_free(c->ctx, c->vert);
-    hdi_free(c->ctx, c->twin);
-    hdi_free(c->ctx, c->len);
-    hdi_free(c->ctx, c->area);
-    hdi_free(c->ctx, c->stack);
-    hdi_free(c->ctx, c->waits);
-}
 
 /* old with n elements in a block of room elements; NULL, old freed, when there is none. */
 static void *hdi_regrow(hdi_cover *c, void *old, int64_t n, int64_t room, size_t size) {
@@ -7018,81 +6971,106 @@ static void *hdi_regrow(hdi_cover *c, void *old, int64_t n, int64_t room, size_t
     return block;
 }
 
-/* Room for more faces: at least twice as many as before, if they come in parts. */
+/* Room for more faces: at least twice as many as before. */
 static hd_status hdi_cover_room(hdi_cover *c, int64_t more) {
-    const int64_t n = c->n, need = n + more, twice = 2 * (int64_t)c->room;
-    const int64_t room = !c->in_parts ? need : need > twice ? need + 1024 : twice;
+    const int64_t n = c->n, need = n + more, twice = 2 * (int64_t)c->room, most = INT32_MAX / 3;
+    const int64_t room = hdi_least(need > twice ? need + 1024 : twice, need > most ? need : most);
     if (need <= c->room) return HD_OK;
-    if (3 * room > INT32_MAX)
+    if (room > most)
         return hdi_fail(c->e, HD_ERR_TOO_LARGE, "more than 2^31 face corners in a cover of two sheets");
-    c->vert = (int32_t *)hdi_regrow(c, c->vert, 3 * n, 3 * room, sizeof(int32_t));
-    c->twin = (int32_t *)hdi_regrow(c, c->twin, 3 * n, 3 * room, sizeof(int32_t));
-    c->len = (double *)hdi_regrow(c, c->len, 3 * n, 3 * room, sizeof(double));
-    c->area = (double *)hdi_regrow(c, c->area, n, room, sizeof(double));
-    c->stack = (int32_t *)hdi_regrow(c, c->stack, c->depth, 3 * room, sizeof(int32_t));
-    c->waits = (signed char *)hdi_regrow(c, c->waits, 3 * n, 3 * room, 1);
+    c->side = (hdi_side *)hdi_regrow(c, c->side, 3 * n, 3 * room, sizeof *c->side);
+    c->area = (double *)hdi_regrow(c, c->area, n, room, sizeof *c->area);
     if (c->e->status >= 0) c->room = (int32_t)room;
     return c->e->status;
 }
 
-static hd_status hdi_cover_begin(hdi_cover *c, const hdi_soup *soup, int in_parts, hdi_scope *s) {
+/* Unites the sheets of faces that share an edge of two faces. If no front is united with its own back, the
+ * surface has two sides: the other sheet is a mirror image, and one is enough. */
+static int hdi_cover_orientable(const hdi_cover *c) {
+    const hdi_mesh *mesh = &c->soup->mesh;
+    const hdi_sides *g = &c->soup->sides;
+    int32_t v, p, q;
+    hdi_fill_own(c->sheet, 2 * mesh->m);
+    for (v = 0; v < mesh->n; v++) {
+        for (p = g->ptr[v]; p < g->ptr[v + 1]; p = q) {
+            const int32_t a = 2 * hdi_key_face(g->key[p]);
+            int32_t b;
+            q = hdi_sides_run(g, p, g->ptr[v + 1]);
+            if (q - p != 2) continue;
+            b = 2 * hdi_key_face(g->key[p + 1]);
+            /* sides that run the same way: front meets back */
+            if (mesh->tri[hdi_key_side(g->key[p])] == mesh->tri[hdi_key_side(g->key[p + 1])]) b ^= 1;
+            hdi_unite(c->sheet, a, b);
+            hdi_unite(c->sheet, a ^ 1, b ^ 1);
+        }
+    }
+    for (v = 0; v < mesh->m; v++)
+        if (hdi_find(c->sheet, 2 * v) == hdi_find(c->sheet, 2 * v + 1)) return 0;
+    return 1;
+}
+
+/* Nothing is unfolded yet. rep knows the edges of the soup. */
+static hd_status hdi_cover_begin(hdi_cover *c, const hdi_soup *soup, int close, const hd_mesh_report *rep,
+                                 hdi_scope *s) {
+    const int32_t m = soup->mesh.m;
+    int32_t f;
     memset(c, 0, sizeof *c);
     c->soup = soup;
     c->ctx = s->ctx;
     c->e = s->e;
-    c->n_sheets = 2;
-    c->in_parts = in_parts;
-    c->step = 1;
-    c->first = HDI_TAKE(s, int32_t, soup->mesh.m);
-    c->glued = HDI_TAKE_ZERO(s, signed char, hdi_triple(soup->mesh.m));
+    c->close = close || soup->copies;
+    c->stack = -1;
+    c->first = HDI_TAKE(s, int32_t, m);
+    c->glued = HDI_TAKE_ZERO(s, signed char, hdi_triple(m));
     c->list = HDI_TAKE(s, hdi_pair, soup->sides.most);
-    if (s->e->status >= 0) hdi_fill_i32(c->first, soup->mesh.m, -1);
-    return s->e->status;
+    if (!soup->copies) c->sheet = HDI_TAKE(s, int32_t, 2 * (int64_t)m);
+    if (s->e->status < 0) return s->e->status;
+    hdi_fill_i32(c->first, m, -1);
+    c->n_sheets = soup->copies || rep->n_nonmanifold_edges || (close && rep->n_boundary_edges) ||
+                  !hdi_cover_orientable(c) ? 2 : 1;
+    for (f = 0; f < m; f++)
+        c->most_flips += 3 * HDI_FLIPS_PER_SIDE * c->n_sheets * (int64_t)hdi_soup_copies(soup, f);
+    return HD_OK;
 }
 
-/* Side s of the soup where face number at of the cover is a copy of its face; the back runs the other way
- * round. */
-static int32_t hdi_sheet_side(int32_t at, int32_t s, int back) { return 3 * at + (back ? 2 - s % 3 : s % 3); }
-
-/* That side on copy k, front or back. */
+/* Side s of the soup on copy k of its face, front or back, which runs the other way round;
+ * HDI_SIDE_OPEN: this sheet is not stored. Of two connected sheets the one whose root is a front is. */
 static int32_t hdi_cover_side(const hdi_cover *c, int32_t s, int32_t k, int back) {
-    return hdi_sheet_side(c->first[s / 3] + (2 * k + back) * c->step, s, back);
-}
-
-/* A copy of face f becomes face number at. */
-static void hdi_cover_put(hdi_cover *c, int32_t f, int32_t at, int back) {
-    const hdi_soup *soup = c->soup;
-    int32_t q;
-    for (q = 0; q < 3; q++) {
-        const int32_t s = 3 * f + q, to = hdi_sheet_side(at, s, back);
-        c->vert[to] = soup->mesh.tri[back ? hdi_side_next(s) : s];
-        c->len[to] = soup->len[s];
-        c->twin[to] = c->in_parts ? HDI_SIDE_LOOSE : HDI_SIDE_OPEN;
-        c->waits[to] = 0;
-    }
-    c->area[at] = soup->area[f];
+    const int32_t at = c->first[s / 3] + c->n_sheets * k, q = back ? 2 - s % 3 : s % 3;
+    if (c->n_sheets == 2) return 3 * (at + back) + q;
+    return hdi_find(c->sheet, 2 * (s / 3) + back) & 1 ? HDI_SIDE_OPEN : 3 * at + q;
 }
 
 /* Unfolds face f: all its copies. */
 static hd_status hdi_cover_face(hdi_cover *c, int32_t f) {
-    const int64_t copies = 2 * (int64_t)hdi_soup_copies(c->soup, f);
-    int32_t k;
+    const hdi_soup *soup = c->soup;
+    const int32_t copies = hdi_soup_copies(soup, f);
+    int32_t k, q, at;
     if (c->first[f] >= 0) return HD_OK;
-    if (hdi_cover_room(c, copies) < 0) return c->e->status;
+    if (hdi_cover_room(c, c->n_sheets * (int64_t)copies) < 0) return c->e->status;
     c->first[f] = c->n;
-    for (k = 0; k < copies; k++) hdi_cover_put(c, f, c->n++, k & 1);
+    for (k = 0; k < c->n_sheets * copies; k++) c->area[c->n++] = soup->area[f];
+    for (k = 0; k < 6 * copies; k++) {
+        const int32_t s = 3 * f + k % 3, back = k / 3 % 2;
+        if ((at = hdi_cover_side(c, s, k / 6, back)) < 0) continue;
+        q = back ? hdi_side_next(s) : s;
+        c->side[at].vert = soup->mesh.tri[q];
+        c->side[at].len = soup->len[s];
+        c->side[at].twin = c->side[at].next = HDI_SIDE_LOOSE;
+    }
     return HD_OK;
 }
 
+/* Sheets that are not stored are boundary for those that are. */
 static void hdi_glue(hdi_cover *c, int32_t a, int32_t b) {
-    c->twin[a] = b;
-    c->twin[b] = a;
+    if (a >= 0) c->side[a].twin = b;
+    if (b >= 0) c->side[b].twin = a;
 }
 
 static void hdi_cover_push(hdi_cover *c, int32_t side) {
-    if (c->twin[side] < 0 || c->waits[side]) return;
-    c->stack[c->depth++] = side;
-    c->waits[side] = 1;
+    if (side < 0 || c->side[side].twin < 0 || c->side[side].next != HDI_SIDE_LOOSE) return;
+    c->side[side].next = c->stack;
+    c->stack = side;
 }
 
 static void hdi_unit3(const double *from, const double *to, double *out) {
@@ -7124,15 +7102,14 @@ static void hdi_sort_around(const hdi_mesh *mesh, int32_t lo, int32_t hi, hdi_pa
     hdi_sort_pairs(list, n);
 }
 
-/* Glues the edge whose sides are keys [p, q) at vertex v: in layers of copies, in each by angle, around
- * the edge the side of a face that looks counterclockwise to the side of the next one that looks back at
- * it. A single face at the boundary is glued front to back. If faces are unfolded in parts, the edge goes
- * on the stack. */
+/* Glues the edge whose sides are keys [p, q) at vertex v, and puts it on the stack: in layers of copies, in
+ * each by angle, around the edge the side of a face that looks counterclockwise to the side of the next one
+ * that looks back at it. A single face at the boundary is glued front to back, or left open. */
 static hd_status hdi_cover_glue(hdi_cover *c, int32_t v, int32_t p, int32_t q) {
     const hdi_mesh *mesh = &c->soup->mesh;
     const uint64_t *key = c->soup->sides.key;
     const int32_t n = q - p;
-    int32_t i, layer, most = 0, first = -1, last = -1;
+    int32_t i, layer, most = 0, first = HDI_SIDE_LOOSE, last = HDI_SIDE_LOOSE;
     if (c->glued[p]) return HD_OK;
     c->glued[p] = 1;
     for (i = 0; i < n; i++) {
@@ -7150,24 +7127,29 @@ static hd_status hdi_cover_glue(hdi_cover *c, int32_t v, int32_t p, int32_t q) {
             int32_t clock;
             if (layer >= hdi_soup_copies(c->soup, side / 3)) continue;
             clock = hdi_cover_side(c, side, layer, !back);
-            if (last >= 0) hdi_glue(c, last, clock);
-            else first = clock;
-            if (last >= 0 && c->in_parts) hdi_cover_push(c, clock);
+            if (last == HDI_SIDE_LOOSE) first = clock;
+            else hdi_glue(c, last, clock);
+            if (last != HDI_SIDE_LOOSE) hdi_cover_push(c, clock);
             last = hdi_cover_side(c, side, layer, back);
         }
     }
-    hdi_glue(c, last, first);
-    if (c->in_parts) hdi_cover_push(c, first);
+    if (n > 1 || most > 1 || c->close) {
+        hdi_glue(c, last, first);
+    } else {
+        hdi_glue(c, last, HDI_SIDE_OPEN);
+        hdi_glue(c, HDI_SIDE_OPEN, first);
+    }
+    hdi_cover_push(c, first);
     return HD_OK;
 }
 
 /* Glues the edge of side s of the cover, if it is not yet: then s is still a side of its own face. */
 static hd_status hdi_cover_need(hdi_cover *c, int32_t s) {
     const hdi_sides *g = &c->soup->sides;
-    const int32_t i = c->vert[s], j = c->vert[hdi_side_next(s)], lo = hdi_low32(i, j), hi = hdi_high32(i, j);
-    const int32_t end = g->ptr[lo + 1];
+    const int32_t i = c->side[s].vert, j = c->side[hdi_side_next(s)].vert;
+    const int32_t lo = hdi_low32(i, j), hi = hdi_high32(i, j), end = g->ptr[lo + 1];
     int32_t p = g->ptr[lo], q = end;
-    if (c->twin[s] != HDI_SIDE_LOOSE) return HD_OK;
+    if (c->side[s].twin != HDI_SIDE_LOOSE) return HD_OK;
     while (p < q) {                              /* the first key of hi */
         const int32_t middle = p + (q - p) / 2;
         if (hdi_key_vertex(g->key[middle]) < hi) p = middle + 1;
@@ -7176,110 +7158,18 @@ static hd_status hdi_cover_need(hdi_cover *c, int32_t s) {
     return hdi_cover_glue(c, lo, p, hdi_sides_run(g, p, end));
 }
 
-/* mate [3 m]: the other side of edges with two faces, -1 elsewhere. */
-static void hdi_mesh_mates(const hdi_mesh *mesh, const hdi_sides *g, int32_t *mate) {
-    int32_t v, p, q;
-    hdi_fill_i32(mate, hdi_triple(mesh->m), -1);
-    for (v = 0; v < mesh->n; v++) {
-        for (p = g->ptr[v]; p < g->ptr[v + 1]; p = q) {
-            q = hdi_sides_run(g, p, g->ptr[v + 1]);
-            if (q - p != 2) continue;
-            mate[hdi_key_side(g->key[p])] = (int32_t)hdi_key_side(g->key[p + 1]);
-            mate[hdi_key_side(g->key[p + 1])] = (int32_t)hdi_key_side(g->key[p]);
-        }
-    }
-}
-
-/* turned[f] = 1 for faces that have to be turned over so that all mates run opposite ways; 0 if the
- * surface has only one side. queue [m]. */
-static int hdi_mesh_orient(const hdi_mesh *mesh, const int32_t *mate, signed char *turned,
-                           int32_t *queue) {
-    int32_t start, head, tail, q;
-    memset(turned, -1, (size_t)mesh->m);
-    for (start = 0; start < mesh->m; start++) {
-        if (turned[start] >= 0 || !(mesh->area[start] > 0)) continue;
-        turned[start] = 0;
-        queue[0] = start;
-        for (head = 0, tail = 1; head < tail; head++) {
-            for (q = 0; q < 3; q++) {
-                const int32_t s = 3 * queue[head] + q, t = mate[s], f = t / 3;
-                int want;
-                if (t < 0) continue;
-                want = turned[queue[head]] ^ (mesh->tri[s] == mesh->tri[t]);
-                if (turned[f] >= 0 && turned[f] != want) return 0;
-                if (turned[f] >= 0) continue;
-                turned[f] = (signed char)want;
-                queue[tail++] = f;
-            }
-        }
-    }
-    return 1;
-}
-
-/* Glues the mates of a mesh that is its own cover. */
-static void hdi_cover_glue_mates(hdi_cover *c, const int32_t *mate, const signed char *turned) {
-    int32_t s;
-    for (s = 0; s < 3 * c->soup->mesh.m; s++) {
-        const int32_t t = mate[s];
-        if (t < 0 || t > s) continue;
-        hdi_glue(c, hdi_sheet_side(c->first[s / 3], s, turned[s / 3]),
-                 hdi_sheet_side(c->first[t / 3], t, turned[t / 3]));
-    }
-}
-
-/* Glues all edges of a cover of two sheets. With close the boundary is glued to the other sheet, else it
- * stays open. */
-static hd_status hdi_cover_glue_all(hdi_cover *c, int close) {
-    const hdi_sides *g = &c->soup->sides;
-    int32_t v, p, q;
-    for (v = 0; v < c->soup->mesh.n; v++) {
-        for (p = g->ptr[v]; p < g->ptr[v + 1]; p = q) {
-            q = hdi_sides_run(g, p, g->ptr[v + 1]);
-            if ((q - p > 1 || close) && hdi_cover_glue(c, v, p, q) < 0) return c->e->status;
-        }
-    }
-    return HD_OK;
-}
-
-/* Unfolds and glues a whole mesh: all fronts come first, then all backs. With close the cover has no
- * boundary (the tufted cover). rep knows the edges of the mesh. */
-static hd_status hdi_cover_whole(hdi_cover *c, int close, const hd_mesh_report *rep, hdi_scope *s) {
-    const hdi_mesh *mesh = &c->soup->mesh;
-    int32_t *mate = HDI_TAKE(s, int32_t, hdi_triple(mesh->m)), *queue = HDI_TAKE(s, int32_t, mesh->m), f,
-            used = 0;
-    signed char *turned = HDI_TAKE(s, signed char, mesh->m);
-    int one;
-    if (s->e->status < 0) return s->e->status;
-    hdi_mesh_mates(mesh, &c->soup->sides, mate);
-    one = !rep->n_nonmanifold_edges && !(close && rep->n_boundary_edges) &&
-          hdi_mesh_orient(mesh, mate, turned, queue);
-    c->n_sheets = one ? 1 : 2;
-    for (f = 0; f < mesh->m; f++)
-        if (mesh->area[f] > 0) c->first[f] = used++;
-    if (hdi_cover_room(c, (int64_t)used * c->n_sheets) < 0) return c->e->status;
-    c->step = used;
-    c->n = used * c->n_sheets;
-    c->most_flips = HDI_FLIPS_PER_SIDE * hdi_triple(c->n);
-    for (f = 0; f < mesh->m; f++) {
-        if (c->first[f] < 0) continue;
-        hdi_cover_put(c, f, c->first[f], one && turned[f]);
-        if (!one) hdi_cover_put(c, f, c->first[f] + used, 1);
-    }
-    if (one) hdi_cover_glue_mates(c, mate, turned);
-    return one ? HD_OK : hdi_cover_glue_all(c, close);
-}
-
 /* ---- flips ---- */
-
-/* Cotangent of the angle opposite to side s, of a face with area. */
-static double hdi_side_cot(const hdi_cover *t, int32_t s) {
-    const double a = t->len[s], b = t->len[hdi_side_next(s)], c = t->len[hdi_side_prev(s)];
-    return (b * b + c * c - a * a) / (4 * t->area[s / 3]);
-}
 
 /* Four times the sum of the cotangents of a triangle; also what their rounding errors are relative to. */
 static double hdi_harmonic(double a, double b, double c, double area) {
     return (a * a + b * b + c * c) / area;
+}
+
+/* The same of the face of side s, which has an area; *cot receives the cotangent of the angle opposite to s. */
+static double hdi_side_harmonic(const hdi_cover *t, int32_t s, double *cot) {
+    const double a = t->side[s].len, b = t->side[hdi_side_next(s)].len, c = t->side[hdi_side_prev(s)].len;
+    *cot = (b * b + c * c - a * a) / (4 * t->area[s / 3]);
+    return hdi_harmonic(a, b, c, t->area[s / 3]);
 }
 
 /* An edge is Delaunay when the cotangents opposite to it do not sum to less than zero, up to this much of
@@ -7287,16 +7177,12 @@ static double hdi_harmonic(double a, double b, double c, double area) {
 #define HDI_DELAUNAY_TOL 1e-14
 
 static int hdi_not_delaunay(const hdi_cover *t, int32_t a) {
-    const int32_t b = t->twin[a], f = a / 3, g = b / 3;
-    const double *p = t->len + hdi_triple(f), *q = t->len + hdi_triple(b < 0 ? 0 : g);
-    double sum;
+    const int32_t b = t->side[a].twin;
+    double cot_a, cot_b, all;
     /* where a face is glued to itself the two sides are equal: Delaunay */
-    if (b < 0 || f == g) return 0;
-    if (!(t->area[f] > 0) || !(t->area[g] > 0)) return 0;
-    sum = hdi_side_cot(t, a) + hdi_side_cot(t, b);
-    if (sum >= 0) return 0;
-    return sum < -HDI_DELAUNAY_TOL * (hdi_harmonic(p[0], p[1], p[2], t->area[f]) +
-                                      hdi_harmonic(q[0], q[1], q[2], t->area[g]));
+    if (b < 0 || a / 3 == b / 3 || !(t->area[a / 3] > 0) || !(t->area[b / 3] > 0)) return 0;
+    all = hdi_side_harmonic(t, a, &cot_a) + hdi_side_harmonic(t, b, &cot_b);
+    return cot_a + cot_b < -HDI_DELAUNAY_TOL * all;
 }
 
 /* Flips the edge of side a, from i to j, which is not Delaunay: side a comes to run from l to k, the
@@ -7305,40 +7191,38 @@ static int hdi_not_delaunay(const hdi_cover *t, int32_t a) {
  *   before  a = ij, a1 = jk, a2 = ki    b = ji, b1 = il, b2 = lj
  *   after   a = lk, a1 = ki, a2 = il    b = kl, b1 = lj, b2 = jk */
 static int hdi_flip(hdi_cover *t, int32_t a) {
-    const int32_t b = t->twin[a], a1 = hdi_side_next(a), a2 = hdi_side_prev(a), b1 = hdi_side_next(b),
+    hdi_side *side = t->side;
+    const int32_t b = side[a].twin, a1 = hdi_side_next(a), a2 = hdi_side_prev(a), b1 = hdi_side_next(b),
                   b2 = hdi_side_prev(b);
     const int32_t from[4] = {a2, b1, b2, a1}, to[4] = {a1, a2, b1, b2};
-    int32_t twin[4], vert[4], k, q;
-    double len[4], x, y, d, area_f, area_g, before, after;
+    const double len = side[a].len, len_0 = side[a2].len, len_1 = side[b1].len, len_2 = side[b2].len,
+                 len_3 = side[a1].len;
+    hdi_side old[4];
+    int32_t k, q;
+    double x, y, d, area_f, area_g, before, after;
+    /* The two triangles laid out in the plane, the edge along x: k and l are d apart. */
+    x = ((len_0 - len_3) * (len_0 + len_3) + (len_2 - len_1) * (len_2 + len_1)) / (2 * len);
+    y = 2 * (t->area[a / 3] + t->area[b / 3]) / len;
+    d = sqrt(x * x + y * y);
+    area_f = hdi_length_area(d, len_0, len_1);
+    area_g = hdi_length_area(d, len_2, len_3);
+    if (!(area_f > 0 && area_g > 0)) return 0;
+    before = hdi_harmonic(len, len_0, len_3, t->area[a / 3]) + hdi_harmonic(len, len_1, len_2, t->area[b / 3]);
+    after = hdi_harmonic(d, len_0, len_1, area_f) + hdi_harmonic(d, len_2, len_3, area_g);
+    if (!(after < before)) return 0;
     for (k = 0; k < 4; k++) {
-        len[k] = t->len[from[k]];
-        vert[k] = t->vert[from[k]];
-        twin[k] = t->twin[from[k]];
-        for (q = 0; q < 4; q++) {
-            if (twin[k] != from[q]) continue;    /* outer sides that are glued to each other */
-            twin[k] = to[q];
-            break;
+        old[k] = side[from[k]];
+        for (q = 0; q < 4; q++) {                /* outer sides that are glued to each other */
+            if (side[from[k]].twin == from[q]) old[k].twin = to[q];
         }
     }
-    /* The two triangles laid out in the plane, the edge along x: k and l are d apart. */
-    x = ((len[0] - len[3]) * (len[0] + len[3]) + (len[2] - len[1]) * (len[2] + len[1])) / (2 * t->len[a]);
-    y = 2 * (t->area[a / 3] + t->area[b / 3]) / t->len[a];
-    d = sqrt(x * x + y * y);
-    area_f = hdi_length_area(d, len[0], len[1]);
-    area_g = hdi_length_area(d, len[2], len[3]);
-    if (!(area_f > 0 && area_g > 0)) return 0;
-    before = hdi_harmonic(t->len[a], len[0], len[3], t->area[a / 3]) +
-             hdi_harmonic(t->len[a], len[1], len[2], t->area[b / 3]);
-    after = hdi_harmonic(d, len[0], len[1], area_f) + hdi_harmonic(d, len[2], len[3], area_g);
-    if (!(after < before)) return 0;
-    t->vert[a] = vert[2];                        /* l, where b2 begins */
-    t->vert[b] = vert[0];                        /* k, where a2 begins */
-    t->len[a] = t->len[b] = d;
+    side[a].vert = side[b2].vert;                /* l */
+    side[b].vert = side[a2].vert;                /* k */
+    side[a].len = side[b].len = d;
     for (k = 0; k < 4; k++) {
-        t->len[to[k]] = len[k];
-        t->vert[to[k]] = vert[k];
-        t->twin[to[k]] = twin[k];
-        if (twin[k] >= 0) t->twin[twin[k]] = to[k];
+        side[to[k]].len = old[k].len;
+        side[to[k]].vert = old[k].vert;
+        hdi_glue(t, to[k], old[k].twin);
     }
     t->area[a / 3] = area_f;
     t->area[b / 3] = area_g;
@@ -7347,7 +7231,7 @@ static int hdi_flip(hdi_cover *t, int32_t a) {
 
 /* The four sides around the edge of side a. */
 static int32_t hdi_side_around(const hdi_cover *c, int32_t a, int k) {
-    const int32_t side = k < 2 ? c->twin[a] : a;
+    const int32_t side = k < 2 ? c->side[a].twin : a;
     return k & 1 ? hdi_side_next(side) : hdi_side_prev(side);
 }
 
@@ -7355,9 +7239,10 @@ static int32_t hdi_side_around(const hdi_cover *c, int32_t a, int k) {
  * edges around it, last come first served. done: for the progress. */
 static hd_status hdi_cover_flip(hdi_cover *c, double done, hd_mesh_report *rep) {
     int k;
-    while (c->depth > 0) {
-        const int32_t a = c->stack[--c->depth];
-        c->waits[a] = 0;
+    while (c->stack >= 0) {
+        const int32_t a = c->stack;
+        c->stack = c->side[a].next;
+        c->side[a].next = HDI_SIDE_LOOSE;
         if (!(++c->work & 0xfffff) && hdi_progress(c->ctx, "flip edges", done, c->e) < 0) return c->e->status;
         if (rep->n_flips >= c->most_flips || !hdi_not_delaunay(c, a)) continue;
         for (k = 0; k < 4; k++)
@@ -7365,19 +7250,6 @@ static hd_status hdi_cover_flip(hdi_cover *c, double done, hd_mesh_report *rep) 
         if (!hdi_flip(c, a)) continue;
         rep->n_flips++;
         for (k = 0; k < 4; k++) hdi_cover_push(c, hdi_side_around(c, a, k));
-    }
-    return HD_OK;
-}
-
-/* All edges, by their first side: the order depends on nothing but the mesh. */
-static hd_status hdi_cover_flip_all(hdi_cover *c, hd_mesh_report *rep) {
-    const int32_t n_sides = 3 * c->n;
-    int32_t seed;
-    for (seed = 0; seed < n_sides; seed++) {
-        /* boundary, or done as its other side: who moves is put on the stack */
-        if (c->twin[seed] < seed) continue;
-        hdi_cover_push(c, seed);
-        if (hdi_cover_flip(c, (double)seed / n_sides, rep) < 0) return c->e->status;
     }
     return HD_OK;
 }
@@ -7402,111 +7274,108 @@ static int hdi_soup_suspect(const hdi_soup *soup, int32_t p, int32_t q) {
     return !(least + (copies == 1 ? least : next) >= 0);
 }
 
-/* Edges by their vertices, of those that may have to be flipped. */
-static hd_status hdi_cover_flip_parts(hdi_cover *c, hd_mesh_report *rep) {
+/* Edges by their vertices, of those that may have to be flipped: the order depends on nothing but the
+ * mesh. */
+static hd_status hdi_cover_flip_all(hdi_cover *c, hd_mesh_report *rep) {
     const hdi_soup *soup = c->soup;
     const hdi_sides *g = &soup->sides;
     int32_t v, p, q;
-    for (v = 0; v < soup->mesh.m; v++)
-        c->most_flips += 6 * HDI_FLIPS_PER_SIDE * (int64_t)hdi_soup_copies(soup, v);
     for (v = 0; v < soup->mesh.n; v++) {
         const double done = (double)v / soup->mesh.n;
+        if (!(v & 0xffff) && hdi_progress(c->ctx, "flip edges", done, c->e) < 0) return c->e->status;
         for (p = g->ptr[v]; p < g->ptr[v + 1]; p = q) {
             q = hdi_sides_run(g, p, g->ptr[v + 1]);
             if (c->glued[p] || !hdi_soup_suspect(soup, p, q)) continue;
             if (hdi_cover_glue(c, v, p, q) < 0 || hdi_cover_flip(c, done, rep) < 0) return c->e->status;
         }
-        if (!(v & 0xffff) && hdi_progress(c->ctx, "flip edges", done, c->e) < 0) return c->e->status;
     }
     return HD_OK;
 }
 
 static void hdi_cover_count(const hdi_cover *c, hd_mesh_report *rep) {
-    int32_t side;
-    for (side = 0; side < 3 * c->n; side++) {
-        if (c->twin[side] < side) continue;
-        rep->n_not_delaunay += hdi_not_delaunay(c, side);
-        rep->n_self_edges += c->vert[side] == c->vert[hdi_side_next(side)];
+    int32_t a;
+    for (a = 0; a < 3 * c->n; a++) {
+        if (c->side[a].twin < a) continue;
+        rep->n_not_delaunay += hdi_not_delaunay(c, a);
+        rep->n_self_edges += c->side[a].vert == c->side[hdi_side_next(a)].vert;
     }
     rep->n_sheets = c->n_sheets;
 }
 
 /* ---- the result as a mesh ---- */
 
-/* Face number at of the flat mesh, from its lengths: area and cotangents times weight. */
-static void hdi_flat_face(hdi_mesh *flat, int32_t at, const double *len, double area, double unit,
-                          double weight, double *steepest) {
-    double *cot = flat->cot + hdi_triple(at);
+/* An intrinsic triangulation, as long as its scope lives. */
+typedef struct hdi_flat {
+    hdi_mesh mesh;              /* areas and cotangents of its triangles, times their weights */
+    hdi_soup soup;              /* what it was made of */
+    int32_t *tri;               /* [3 mesh.m] */
+    int32_t *copies;            /* [mesh.m] parts that a triangle counts */
+    double unit;                /* parts of a triangle that counts once; 0: there are no triangles */
+    const int32_t *name;        /* [soup.mesh.n] of points: the caller's number of each; NULL: their own */
+} hdi_flat;
+
+/* Adds a triangle: area and cotangents from its lengths, times its weight. */
+static void hdi_flat_add(hdi_flat *flat, const int32_t *v, const double *len, double area, int32_t copies,
+                         double *steepest) {
+    const double weight = copies / flat->unit, unit = flat->soup.unit;
+    const int32_t at = flat->mesh.m++;
+    double *cot = flat->mesh.cot + hdi_triple(at);
     int q;
-    flat->area[at] = 0;
+    memcpy(flat->tri + hdi_triple(at), v, 3 * sizeof *v);
+    flat->copies[at] = copies;
+    flat->mesh.area[at] = 0;
     if (!(area > 0)) return;
     hdi_length_cots(len, area, cot);
     if (!hdi_finite(fabs(cot[0]) + fabs(cot[1]) + fabs(cot[2]))) return;
     *steepest = hdi_max(*steepest, hdi_max(cot[0], hdi_max(cot[1], cot[2])));
     for (q = 0; q < 3; q++) cot[q] *= weight;
     area *= weight * unit * unit;
-    flat->area[at] = area / 12 < DBL_MIN ? 0 : area;
+    flat->mesh.area[at] = area / 12 < DBL_MIN ? 0 : area;
 }
 
-/* A triangle whose first and last corner are the same vertex is turned by one corner: equal ones come first,
- * and the mass of the vertex is summed in that order. */
-static void hdi_flat_turn(int32_t *v, double *len) {
-    const double last = len[2];
-    if (v[0] != v[2] || v[0] == v[1]) return;
-    v[2] = v[1];
-    v[1] = v[0];
-    len[2] = len[1];
-    len[1] = len[0];
-    len[0] = last;
-}
-
-/* The triangles of a cover as a mesh for the operators (no coordinates), in s: in parts, first the faces
- * that were not unfolded, as often as they come, then the others one by one. A copy weighs its share,
- * divided among the sheets. */
-static hd_status hdi_cover_flat(hdi_mesh *flat, const hdi_cover *c, hd_mesh_report *rep,
-                                hdi_scope *s) {
+/* The triangles of a cover as a mesh for the operators (no coordinates), in s: first the faces that were not
+ * unfolded, as often as they come, then the others one by one. A copy weighs its share, divided among the
+ * sheets. */
+static hd_status hdi_cover_flat(hdi_flat *flat, const hdi_cover *c, hd_mesh_report *rep, hdi_scope *s) {
     const hdi_soup *soup = c->soup;
-    const int32_t m = c->in_parts ? soup->mesh.m : 0;
-    const int64_t n_corners = hdi_triple(m) + hdi_triple(c->n);
     double steepest = -HUGE_VAL;
-    int32_t f, i, *tri;
-    memset(flat, 0, sizeof *flat);
-    if (n_corners > INT32_MAX)
+    int64_t m = c->n;
+    int32_t f;
+    for (f = 0; f < soup->mesh.m; f++) m += c->first[f] < 0 && soup->area[f] > 0;
+    if (3 * m > INT32_MAX)
         return hdi_fail(s->e, HD_ERR_TOO_LARGE, "more than 2^31 face corners in an intrinsic triangulation");
-    tri = HDI_TAKE(s, int32_t, n_corners);
-    flat->n = soup->mesh.n;
-    flat->m = m + c->n;
-    flat->tri = tri;
-    flat->cot = HDI_TAKE(s, double, n_corners);
-    flat->area = HDI_TAKE(s, double, flat->m);
+    flat->tri = HDI_TAKE(s, int32_t, 3 * m);
+    flat->copies = HDI_TAKE(s, int32_t, m);
+    flat->unit = soup->share * c->n_sheets;
+    hdi_mesh_clear(&flat->mesh, NULL, soup->mesh.n, flat->tri, 0);
+    flat->mesh.cot = HDI_TAKE(s, double, 3 * m);
+    flat->mesh.area = HDI_TAKE(s, double, m);
     if (s->e->status < 0) return s->e->status;
-    if (m) memcpy(tri, soup->mesh.tri, (size_t)hdi_triple(m) * sizeof *tri);
-    for (f = 0; f < m; f++)
-        hdi_flat_face(flat, f, soup->len + hdi_triple(f), c->first[f] < 0 ? soup->area[f] : 0, soup->unit,
-                      hdi_soup_copies(soup, f) / soup->share, &steepest);
-    for (i = 0; i < c->n; i++) {
-        double *len = c->len + hdi_triple(i);
-        if (!c->in_parts) hdi_flat_turn(c->vert + hdi_triple(i), len);
-        hdi_flat_face(flat, m + i, len, c->area[i], soup->unit, 1 / (soup->share * c->n_sheets), &steepest);
+    for (f = 0; f < soup->mesh.m; f++)
+        if (c->first[f] < 0 && soup->area[f] > 0)
+            hdi_flat_add(flat, soup->mesh.tri + hdi_triple(f), soup->len + hdi_triple(f), soup->area[f],
+                         c->n_sheets * hdi_soup_copies(soup, f), &steepest);
+    for (f = 0; f < c->n; f++) {
+        const hdi_side *side = c->side + hdi_triple(f);
+        const int32_t v[3] = {side[0].vert, side[1].vert, side[2].vert};
+        const double len[3] = {side[0].len, side[1].len, side[2].len};
+        hdi_flat_add(flat, v, len, c->area[f], 1, &steepest);
     }
-    if (c->n) memcpy(tri + hdi_triple(m), c->vert, (size_t)hdi_triple(c->n) * sizeof *tri);
     rep->smallest_intrinsic_angle = hdi_finite(steepest) ? atan2(1, steepest) : 0;
     return HD_OK;
 }
 
-/* The intrinsic Delaunay triangulation of a soup as a mesh for the operators: of a mesh, with close
+/* The intrinsic Delaunay triangulation of the soup of flat as a mesh for the operators: of a mesh, with close
  * without boundary; or of the tufted cover of stars. */
-static hd_status hdi_soup_delaunay(hdi_mesh *flat, const hdi_soup *soup, int close,
-                                   hd_mesh_report *rep, hdi_scope *s) {
+static hd_status hdi_soup_delaunay(hdi_flat *flat, int close, hd_mesh_report *rep, hdi_scope *s) {
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
     hdi_cover c;
-    hd_status status = hdi_cover_begin(&c, soup, soup->copies != NULL, &own);
-    if (status >= 0 && !c.in_parts) status = hdi_cover_whole(&c, close, rep, &own);
-    if (status >= 0 && !c.in_parts) status = hdi_progress(s->ctx, "flip edges", 0, s->e);
-    if (status >= 0) status = c.in_parts ? hdi_cover_flip_parts(&c, rep) : hdi_cover_flip_all(&c, rep);
-    if (status >= 0) hdi_cover_count(&c, rep);
-    if (status >= 0) (void)hdi_cover_flat(flat, &c, rep, s);
-    hdi_cover_free(&c);
+    if (hdi_cover_begin(&c, &flat->soup, close, rep, &own) >= 0 && hdi_cover_flip_all(&c, rep) >= 0) {
+        hdi_cover_count(&c, rep);
+        (void)hdi_cover_flat(flat, &c, rep, s);
+    }
+    hdi_free(c.ctx, c.side);
+    hdi_free(c.ctx, c.area);
     return hdi_scope_end(&own);
 }
 
@@ -8323,21 +8192,6 @@ typedef struct hdi_intrinsic_task {
     double delta;       /* of mollification, relative to the mean edge length; negative: none */
 } hdi_intrinsic_task;
 
-/* An intrinsic triangulation, as long as its scope lives. */
-typedef struct hdi_flat {
-    hdi_mesh mesh;              /* areas and cotangents of its triangles, times their weights */
-    hdi_soup soup;              /* what it was made of */
-    const int32_t *name;        /* [soup.mesh.n] of points: the caller's number of each; NULL: their own */
-} hdi_flat;
-
-/* The number of parts of which one triangle of a flat mesh counts a whole number, and how many. */
-static double hdi_flat_unit(const hdi_flat *flat, int32_t n_sheets) { return flat->soup.share * n_sheets; }
-
-static int32_t hdi_flat_copies(const hdi_flat *flat, int32_t f, double unit) {
-    const int in_parts = flat->soup.copies && f < flat->soup.mesh.m;
-    return in_parts ? flat->soup.copies[f] * (int32_t)(unit / flat->soup.share) : 1;
-}
-
 /* Rows, L and B from intrinsic triangles that are Delaunay, with areas and cotangents but without
  * coordinates. */
 static hd_status hdi_lap_flat(hd_laplacian *lap, const hdi_mesh *flat, hdi_scope *s) {
@@ -8371,7 +8225,7 @@ static hd_status hdi_lap_unfold(hd_laplacian *lap, hdi_flat *flat, hdi_mesh *mes
     if (hdi_mesh_faces(mesh, &edges, &want, rep, s) < 0) return e->status;
     if (rep->n_faces_used == 0) return hdi_fail(e, HD_ERR_EMPTY, "no vertex has mass");
     if (hdi_soup_of_mesh(&flat->soup, mesh, task->delta, rep, s) < 0) return e->status;
-    if (hdi_soup_delaunay(&flat->mesh, &flat->soup, task->close, rep, s) < 0) return e->status;
+    if (hdi_soup_delaunay(flat, task->close, rep, s) < 0) return e->status;
     if (hdi_lap_flat(lap, &flat->mesh, s) < 0 || hdi_lap_places(lap, mesh->xyz, e) < 0) return e->status;
     lap->area = flat->soup.total;
     lap->h = flat->soup.unit;
@@ -9691,7 +9545,7 @@ static hd_status hdi_lap_unfold_points(hd_laplacian *lap, hdi_flat *flat, const 
     memset(flat, 0, sizeof *flat);
     if (hdi_star_soup(&flat->soup, &job, lap, xyz, nbr_ptr, nbr, delta, s) < 0) return e->status;
     if (lap->mesh.n_faces_used == 0) hdi_fail(e, HD_ERR_EMPTY, "the points' neighbourhoods make no triangle");
-    if (e->status >= 0 && hdi_soup_delaunay(&flat->mesh, &flat->soup, 0, &lap->mesh, s) >= 0)
+    if (e->status >= 0 && hdi_soup_delaunay(flat, 0, &lap->mesh, s) >= 0)
         inner = (hd_laplacian *)hdi_alloc_zero(lap->context, 1, sizeof *inner, e);
     if (!inner) return e->status;
     flat->name = job.name;
@@ -29568,7 +29422,7 @@ static hd_status hdi_geo_faces(hd_geodesic *g, const hdi_mesh *mesh, const int32
         if (!(mesh->area[f] > 0)) continue;
         k = at[hdi_geo_first(mesh->tri + hdi_triple(f), 3, row)]++;
         if (flat) {
-            const int32_t n = hdi_flat_copies(flat, f, g->copies);
+            const int32_t n = flat->copies[f];
             g->face[k] = hdi_geo_flat_frame(mesh, f, row, g->h, n / g->copies);
             g->face[k].copies = n;
         } else g->face[k] = hdi_geo_frame(mesh, f, row, g->h);
@@ -29839,7 +29693,7 @@ static hd_status hdi_geo_make(hd_geodesic *g, const hdi_geo_input *in, const hd_
     if ((o->border == HD_GEODESIC_BORDER_NATURAL || hdi_holding_make(lap, 1, NULL, 0, e) >= 0) &&
         hdi_geo_surface_make(lap, &z, in, &s) >= 0 && hdi_lap_finite(lap->area, lap->h, e) >= 0) {
         g->n_active = lap->n_active;
-        g->copies = z.flat.mesh.m ? hdi_flat_unit(&z.flat, lap->mesh.n_sheets) : 1;
+        g->copies = z.flat.unit > 0 ? z.flat.unit : 1;
         if (o->updatable && hdi_moving_make(lap, &z.mesh, e) >= 0) g->lap = lap;
         if (e->status >= 0) (void)hdi_lap_components(lap, e);
         g->n_components = lap->n_components;
