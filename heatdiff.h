@@ -3226,35 +3226,28 @@ static void hdi_sort_pairs(hdi_pair *a, int64_t n) {
     }
 }
 
-/* Sorts keys; work [n], which short lists do not need: they are sorted by insertion, long ones in runs of
- * eight, merged. */
+/* Sorts keys by halves, which are merged; work [n / 2], which short lists do not need. */
 static void hdi_sort_keys(uint64_t *a, int64_t n, uint64_t *work) {
-    const int64_t first = n <= HDI_SHORT_LIST ? 32 : 8;
-    uint64_t *from = a, *to = work;
-    int64_t i, j, run;
-    for (i = 1; i < n; i++) {
-        const uint64_t x = a[i];
-        for (j = i; j & (first - 1) && x < a[j - 1]; j--) a[j] = a[j - 1];
-        a[j] = x;
-    }
-    for (run = first; run < n; run *= 2) {
-        uint64_t *swap = from;
-        for (i = 0; i < n; i += 2 * run) {
-            const int64_t middle = hdi_least(i + run, n), end = hdi_least(i + 2 * run, n);
-            int64_t p = i, q = middle, out = i;
-            while (p < middle && q < end) {
-                const int second = from[q] < from[p];
-                to[out++] = second ? from[q] : from[p];
-                q += second;
-                p += !second;
-            }
-            while (p < middle) to[out++] = from[p++];
-            while (q < end) to[out++] = from[q++];
+    const int64_t half = n / 2;
+    int64_t i, j, k;
+    if (n <= HDI_SHORT_LIST) {
+        for (i = 1; i < n; i++) {
+            const uint64_t x = a[i];
+            for (j = i; j > 0 && x < a[j - 1]; j--) a[j] = a[j - 1];
+            a[j] = x;
         }
-        from = to;
-        to = swap;
+        return;
     }
-    if (from != a) memcpy(a, from, (size_t)n * sizeof *a);
+    hdi_sort_keys(a, half, work);
+    hdi_sort_keys(a + half, n - half, work);
+    memcpy(work, a, (size_t)half * sizeof *a);
+    for (i = 0, j = half, k = 0; i < half && j < n; k++) {
+        const int second = a[j] < work[i];
+        a[k] = second ? a[j] : work[i];
+        j += second;
+        i += !second;
+    }
+    memcpy(a + k, work + i, (size_t)(half - i) * sizeof *a);
 }
 
 /* Sorts n indices; work [2 n]. */
@@ -3265,26 +3258,42 @@ static void hdi_sort_indices(int32_t *a, int64_t n, uint64_t *work) {
     for (i = 0; i < n; i++) a[i] = (int32_t)work[i];
 }
 
-/* The number-k smallest of a, which is rearranged (Hoare 1961). */
-static double hdi_kth(double *a, int64_t n, int64_t k) {
+/* Puts the row of `width` numbers that is k-th by its number `by` in its place, smaller ones before it, larger
+ * ones behind (Hoare 1961). Pivots are medians of three places drawn by a fixed generator: linear whatever
+ * the order, also for equal rows. */
+static HDI_INLINE void hdi_select(double *a, int64_t n, int64_t k, int width, int by) {
     int64_t lo = 0, hi = n - 1;
+    uint64_t seed = 12345;
     while (lo < hi) {
-        const double low = hdi_min(a[lo], a[hi]), high = hdi_max(a[lo], a[hi]);
-        const double pivot = hdi_max(low, hdi_min(high, a[lo + (hi - lo) / 2]));
+        double p[3], pivot;
         int64_t i = lo, j = hi;
+        int q;
+        for (q = 0; q < 3; q++) {
+            seed = seed * 6364136223846793005u + 1442695040888963407u;
+            p[q] = a[(lo + (int64_t)((seed >> 33) % (uint64_t)(hi - lo + 1))) * width + by];
+        }
+        pivot = hdi_max(hdi_min(p[0], p[1]), hdi_min(hdi_max(p[0], p[1]), p[2]));
         while (i <= j) {
-            while (a[i] < pivot) i++;
-            while (a[j] > pivot) j--;
-            if (i <= j) {
-                const double swap = a[i];
-                a[i++] = a[j];
-                a[j--] = swap;
+            while (a[i * width + by] < pivot) i++;
+            while (a[j * width + by] > pivot) j--;
+            if (i > j) break;
+            for (q = 0; q < width; q++) {
+                const double swap = a[i * width + q];
+                a[i * width + q] = a[j * width + q];
+                a[j * width + q] = swap;
             }
+            i++;
+            j--;
         }
         if (k <= j) hi = j;
         else if (k >= i) lo = i;
-        else break;
+        else return;
     }
+}
+
+/* The number-k smallest of a, which is rearranged. */
+static double hdi_kth(double *a, int64_t n, int64_t k) {
+    hdi_select(a, n, k, 1, 0);
     return a[k];
 }
 
@@ -3308,11 +3317,9 @@ static void hdi_unite(int32_t *parent, int32_t i, int32_t j) {
 static int32_t hdi_count_sets(int32_t *parent, int32_t n) {
     int32_t i, count = 0;
     for (i = 0; i < n; i++) parent[i] = hdi_find(parent, i);
-    for (i = 0; i < n; i++) {                    /* a set is a root with another member */
-        const int32_t root = parent[i];
-        if (root == i || root < 0 || parent[root] != root) continue;
-        /* counted; it is the smallest of its set, so it has been passed */
-        parent[root] = -1;
+    for (i = 0; i < n; i++) {                    /* a root is marked when its second member is met */
+        if (parent[i] == i || parent[parent[i]] < 0) continue;
+        parent[parent[i]] = -1;
         count++;
     }
     return count;
@@ -4572,8 +4579,9 @@ static hd_status hdi_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_co
     for (i = 0; tv && i < n_rows; i++)
         for (q = a.row_ptr[i]; q < a.row_ptr[i + 1]; q++)
             if (!hdi_finite(a.val[q]))
-                return hdi_fail_row(e, HD_ERR_NOT_FINITE, "triplets: the sum of those at one place is not finite",
-                                    i, a.col[q], a.val[q]);
+                return hdi_fail_row(e, HD_ERR_NOT_FINITE,
+                                    "triplets: the sum of those at one place is not finite", i, a.col[q],
+                                    a.val[q]);
     *out = hdi_csr_keep(s, a);
     return HD_OK;
 }
@@ -4747,47 +4755,15 @@ typedef struct hdi_tree {
     int32_t *id;               /* [HDI_LEAF n_leaves] of the caller */
 } hdi_tree;
 
-typedef struct hdi_point { double x[3]; int32_t id; } hdi_point;
-
-/* Puts the point that is k-th along axis in its place, smaller ones before it, larger ones behind (Hoare
- * 1961). Pivots are medians of three places drawn by a fixed generator: linear whatever the order of the
- * file, also for equal points. */
-static void hdi_select_point(hdi_point *a, int64_t n, int64_t k, int axis) {
-    int64_t lo = 0, hi = n - 1;
-    uint64_t seed = 12345;
-    while (lo < hi) {
-        double p[3], pivot;
-        int64_t i = lo, j = hi;
-        int q;
-        for (q = 0; q < 3; q++) {
-            seed = seed * 6364136223846793005u + 1442695040888963407u;
-            p[q] = a[lo + (int64_t)((seed >> 33) % (uint64_t)(hi - lo + 1))].x[axis];
-        }
-        pivot = hdi_max(hdi_min(p[0], p[1]), hdi_min(hdi_max(p[0], p[1]), p[2]));
-        while (i <= j) {
-            while (a[i].x[axis] < pivot) i++;
-            while (a[j].x[axis] > pivot) j--;
-            if (i <= j) {
-                const hdi_point swap = a[i];
-                a[i++] = a[j];
-                a[j--] = swap;
-            }
-        }
-        if (k <= j) hi = j;
-        else if (k >= i) lo = i;
-        else return;
-    }
-}
-
-/* Box of the node's points; returns its longest axis. */
-static int hdi_cell_box(hdi_cell *node, const hdi_point *a, int64_t n) {
+/* Box of the node's points, in rows of three coordinates and a number; returns its longest axis. */
+static int hdi_cell_box(hdi_cell *node, const double *a, int64_t n) {
     int64_t i;
     int c, axis = 0;
-    for (c = 0; c < 3; c++) node->lo[c] = node->hi[c] = n > 0 ? a[0].x[c] : 0;
+    for (c = 0; c < 3; c++) node->lo[c] = node->hi[c] = n > 0 ? a[c] : 0;
     for (i = 1; i < n; i++) {
         for (c = 0; c < 3; c++) {
-            node->lo[c] = hdi_min(node->lo[c], a[i].x[c]);
-            node->hi[c] = hdi_max(node->hi[c], a[i].x[c]);
+            node->lo[c] = hdi_min(node->lo[c], a[4 * i + c]);
+            node->hi[c] = hdi_max(node->hi[c], a[4 * i + c]);
         }
     }
     for (c = 1; c < 3; c++)
@@ -4795,7 +4771,7 @@ static int hdi_cell_box(hdi_cell *node, const hdi_point *a, int64_t n) {
     return axis;
 }
 
-static void hdi_tree_split(hdi_tree *t, hdi_point *a) {
+static void hdi_tree_split(hdi_tree *t, double *a) {
     int32_t v;
     t->node[0].first = 0;
     t->node[0].count = t->n_leaves;
@@ -4804,10 +4780,10 @@ static void hdi_tree_split(hdi_tree *t, hdi_point *a) {
         const int64_t begin = (int64_t)node->first * HDI_LEAF,
                       size = (int64_t)node->count * HDI_LEAF;
         const int64_t end = hdi_least(t->n, begin + size);
-        const int axis = hdi_cell_box(node, a + begin, end - begin);
+        const int axis = hdi_cell_box(node, a + 4 * begin, end - begin);
         const int32_t left = node->count / 2;
         if (!left) continue;
-        hdi_select_point(a + begin, end - begin, (int64_t)left * HDI_LEAF, axis);
+        hdi_select(a + 4 * begin, end - begin, (int64_t)left * HDI_LEAF, 4, axis);
         node[1].first = node->first;
         node[1].count = left;
         node[2 * left].first = node->first + left;
@@ -4843,7 +4819,7 @@ static hd_status hdi_tree_make(hdi_tree *t, const double *xyz, int32_t n, hdi_sc
     /* none: one leaf that is all padding */
     const int64_t n_leaves = n > 0 ? ((int64_t)n + HDI_LEAF - 1) / HDI_LEAF : 1;
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
-    hdi_point *a = HDI_TAKE(&own, hdi_point, n);
+    double *a = HDI_TAKE(&own, double, 4 * (int64_t)n);
     int64_t i;
     int c;
     t->xyz = xyz;
@@ -4854,15 +4830,15 @@ static hd_status hdi_tree_make(hdi_tree *t, const double *xyz, int32_t n, hdi_sc
     t->id = HDI_TAKE(s, int32_t, HDI_LEAF * n_leaves);
     if (s->e->status < 0) return hdi_scope_end(&own);
     for (i = 0; i < n; i++) {
-        hdi_copy3(a[i].x, hdi_at3(xyz, i));
-        a[i].id = (int32_t)i;
+        hdi_copy3(a + 4 * i, hdi_at3(xyz, i));
+        a[4 * i + 3] = (double)i;
     }
     hdi_tree_split(t, a);
     for (i = 0; i < HDI_LEAF * n_leaves; i++) {
         double *x = t->x + 3 * HDI_LEAF * (i / HDI_LEAF) + i % HDI_LEAF;
         /* infinitely far: in no result */
-        for (c = 0; c < 3; c++) x[c * HDI_LEAF] = i < n ? a[i].x[c] : HUGE_VAL;
-        t->id[i] = i < n ? a[i].id : -1;
+        for (c = 0; c < 3; c++) x[c * HDI_LEAF] = i < n ? a[4 * i + c] : HUGE_VAL;
+        t->id[i] = i < n ? (int32_t)a[4 * i + 3] : -1;
     }
     return hdi_scope_end(&own);
 }
@@ -4959,8 +4935,9 @@ static double hdi_box_distance(const hdi_cell *v, const double *q) {
     return a * a + b * b + c * c;
 }
 
-/* Everything no farther than f->bound, which shrinks when the k nearest are wanted: nearer halves first. */
-static void hdi_search(const hdi_tree *t, const double *q, hdi_found *f) {
+/* Everything no farther than f->bound, which shrinks when the k nearest are wanted: nearer halves first. Not
+ * inlined: two searches round distances alike. */
+static HDI_NOINLINE void hdi_search(const hdi_tree *t, const double *q, hdi_found *f) {
     struct { int32_t node; double d; } stack[HDI_TREE_STACK];
     int32_t v = 0;
     int top = 0;
@@ -5002,25 +4979,25 @@ typedef struct hdi_search_job {
     int64_t n_queries, per_task;
     int32_t k, *index;         /* k nearest: [k n_queries] */
     double *distance2;         /* NULL: not wanted */
-    double radius2;            /* all within a radius: counts first, then columns and distances */
-    hd_csr *out;
-    int32_t *kept;             /* [n_queries] entries of the rows; NULL: they are still counted */
+    double radius2;            /* all within a radius */
+    hd_csr *out;               /* columns and distances; without val the rows are counted */
     hdi_found *found;          /* [tasks] */
 } hdi_search_job;
 
 /* query NULL: the tree's own points. */
-static void hdi_search_begin(hdi_search_job *job, const hdi_tree *t, const double *query,
-                             int64_t n_queries) {
-    memset(job, 0, sizeof *job);
-    job->t = t;
-    job->query = query ? query : t->xyz;
-    job->order = query ? NULL : t->id;
-    job->n_queries = n_queries;
+static hdi_search_job hdi_search_of(const hdi_tree *t, const double *query, int64_t n_queries) {
+    hdi_search_job job;
+    memset(&job, 0, sizeof job);
+    job.t = t;
+    job.query = query ? query : t->xyz;
+    job.order = query ? NULL : t->id;
+    job.n_queries = n_queries;
+    return job;
 }
 
-/* Tasks, and work arrays for the candidates of each, in s. Together these stay below 64 MiB (28 bytes a
- * candidate). */
-static hd_status hdi_search_take(hdi_search_job *job, int64_t room, hdi_scope *s) {
+/* Runs the tasks with room for so many candidates each, in s. The work arrays of all together stay below 64
+ * MiB (28 bytes a candidate). */
+static hd_status hdi_search_run(hdi_search_job *job, int64_t room, hdi_range_task task, hdi_scope *s) {
     const int64_t size = room + HDI_LEAF, blocks = (job->n_queries + 255) / 256,
                   fit = 1 + ((int64_t)64 << 20) / (28 * size);
     const int64_t tasks = hdi_least(hdi_least(blocks, HDI_SEARCH_TASKS), fit);
@@ -5037,6 +5014,7 @@ static hd_status hdi_search_take(hdi_search_job *job, int64_t room, hdi_scope *s
         job->found[i].id = id + i * size;
         job->found[i].sorted = sorted + i * size;
     }
+    hdi_parallel_ranges(s->ctx, job->n_queries, job->per_task, task, job);
     return HD_OK;
 }
 
@@ -5058,9 +5036,10 @@ static void hdi_nearest_task(void *arg, int64_t begin, int64_t end) {
         hdi_found_bound(f, before ? hdi_raise(limit * limit) : HDI_NO_BOUND);
         hdi_search(job->t, q, f);
         m = hdi_found_sort(f);
-        for (p = 0; p < k; p++) job->index[v * k + p] = p < m ? (int32_t)f->sorted[p].id : -1;
-        for (p = 0; job->distance2 && p < k; p++)
-            job->distance2[v * k + p] = p < m ? hdi_key_square(f->sorted + p) : HUGE_VAL;
+        for (p = 0; p < k; p++) {
+            job->index[v * k + p] = p < m ? (int32_t)f->sorted[p].id : -1;
+            if (job->distance2) job->distance2[v * k + p] = p < m ? hdi_key_square(f->sorted + p) : HUGE_VAL;
+        }
         before = m == k ? q : NULL;
         if (before) reach = sqrt(hdi_key_square(f->sorted + k - 1));
     }
@@ -5071,66 +5050,37 @@ static void hdi_nearest_task(void *arg, int64_t begin, int64_t end) {
 static hd_status hdi_nearest(const hdi_tree *t, const double *query, int64_t n_queries, int32_t k,
                              int32_t *index, double *distance2, hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
-    hdi_search_job job;
-    hdi_search_begin(&job, t, query, n_queries);
+    hdi_search_job job = hdi_search_of(t, query, n_queries);
     job.k = k;
     job.index = index;
     job.distance2 = distance2;
-    if (hdi_search_take(&job, 2 * (int64_t)k + 32, &s) >= 0)
-        hdi_parallel_ranges(ctx, n_queries, job.per_task, hdi_nearest_task, &job);
+    (void)hdi_search_run(&job, 2 * (int64_t)k + 32, hdi_nearest_task, &s);
     return hdi_scope_end(&s);
 }
 
-/* One row: columns ascending. What was gathered is sorted by id with its place as a payload. */
-static void hdi_within_row(const hdi_found *f, int32_t *col, double *val) {
-    /* room for twice as many */
-    uint64_t *key = (uint64_t *)(void *)f->sorted, *work = key + f->m;
-    int64_t p;
-    for (p = 0; p < f->m; p++) key[p] = (uint64_t)f->id[p] << 32 | (uint64_t)p;
-    hdi_sort_keys(key, f->m, work);
-    for (p = 0; p < f->m; p++) {
-        col[p] = (int32_t)(key[p] >> 32);
-        if (val) val[p] = f->d[key[p] & 0xffffffffu];
-    }
-}
-
-/* Counts are of a radius that is a little larger: compilers may round the distances of one pass otherwise
- * than those of the other. */
+/* Counts the rows, or writes them, columns ascending: sorted by id with the place as a payload. */
 static void hdi_within_task(void *arg, int64_t begin, int64_t end) {
     const hdi_search_job *job = (const hdi_search_job *)arg;
-    const double bound = job->kept ? job->radius2 : job->radius2 * (1 + 8 * DBL_EPSILON) + DBL_MIN;
     hdi_found *f = job->found + begin / job->per_task;
-    hd_csr *out = job->out;
-    int64_t i;
-    f->k = job->kept ? 0 : HDI_COUNT;
+    uint64_t *key = (uint64_t *)(void *)f->sorted;   /* room for twice as many */
+    int64_t i, p;
     for (i = begin; i < end; i++) {
-        const int64_t v = job->order ? job->order[i] : i;
+        const int64_t v = job->order ? job->order[i] : i, row = job->out->row_ptr[v];
+        f->k = job->out->val ? 0 : HDI_COUNT;
         f->counted = 0;
-        hdi_found_bound(f, bound);
+        hdi_found_bound(f, job->radius2);
         hdi_search(job->t, hdi_at3(job->query, v), f);
-        if (job->kept) {
-            hdi_within_row(f, out->col + out->row_ptr[v], out->val + out->row_ptr[v]);
-            job->kept[v] = (int32_t)f->m;
-        } else {
-            out->row_ptr[v] = f->counted + f->m;
+        if (!job->out->val) {
+            job->out->row_ptr[v] = f->counted + f->m;
+            continue;
+        }
+        for (p = 0; p < f->m; p++) key[p] = (uint64_t)f->id[p] << 32 | (uint64_t)p;
+        hdi_sort_keys(key, f->m, key + f->m);
+        for (p = 0; p < f->m; p++) {
+            job->out->col[row + p] = (int32_t)(key[p] >> 32);
+            job->out->val[row + p] = f->d[key[p] & 0xffffffffu];
         }
     }
-}
-
-/* Closes the gaps that rows with fewer entries than were counted leave. */
-static void hdi_within_close(hd_csr *a, const int32_t *kept) {
-    int64_t to = 0;
-    int32_t i;
-    for (i = 0; i < a->n_rows; i++) {
-        const int64_t from = a->row_ptr[i];
-        if (from != to) {
-            memmove(a->col + to, a->col + from, (size_t)kept[i] * sizeof *a->col);
-            memmove(a->val + to, a->val + from, (size_t)kept[i] * sizeof *a->val);
-        }
-        a->row_ptr[i] = to;
-        to += kept[i];
-    }
-    a->nnz = a->row_ptr[a->n_rows] = to;
 }
 
 /* out: row i lists the points of the tree whose squared distance from query i is at most radius2, values
@@ -5139,24 +5089,18 @@ static hd_status hdi_within(hd_csr *out, const hdi_tree *t, const double *query,
                             double radius2, hd_context *ctx, hd_error *e) {
     enum { ROOM = 256 };       /* of the first pass, which keeps no candidates */
     hdi_scope s = hdi_scope_begin(ctx, e), passes = hdi_scope_begin(ctx, e);
-    hdi_search_job job;
+    hdi_search_job job = hdi_search_of(t, query, n_queries);
     hd_csr a = hdi_csr_take(&s, n_queries, t->n, 0, 0);
-    int64_t widest = 0, i;
-    hdi_search_begin(&job, t, query, n_queries);
+    int64_t widest;
     job.radius2 = radius2;
     job.out = &a;
-    if (hdi_search_take(&job, ROOM, &passes) >= 0)
-        hdi_parallel_ranges(ctx, n_queries, job.per_task, hdi_within_task, &job);
+    if (e->status >= 0) (void)hdi_search_run(&job, ROOM, hdi_within_task, &passes);
     if (hdi_scope_end(&passes) < 0) return hdi_scope_end(&s);
-    for (i = 0; i < n_queries; i++) widest = a.row_ptr[i] > widest ? a.row_ptr[i] : widest;
     a.nnz = hdi_prefix_sum(a.row_ptr, n_queries);
+    widest = hdi_fullest(a.row_ptr, n_queries);
     a.col = HDI_TAKE(&s, int32_t, a.nnz);
     a.val = HDI_TAKE(&s, double, a.nnz);
-    job.kept = HDI_TAKE(&passes, int32_t, n_queries);
-    if (hdi_search_take(&job, widest, &passes) >= 0) {
-        hdi_parallel_ranges(ctx, n_queries, job.per_task, hdi_within_task, &job);
-        hdi_within_close(&a, job.kept);
-    }
+    if (e->status >= 0) (void)hdi_search_run(&job, widest, hdi_within_task, &passes);
     if (hdi_scope_end(&passes) >= 0) *out = hdi_csr_keep(&s, a);
     return hdi_scope_end(&s);
 }
@@ -6763,9 +6707,9 @@ typedef struct hdi_soup {
 
 static int32_t hdi_soup_copies(const hdi_soup *soup, int32_t f) { return soup->copies ? soup->copies[f] : 1; }
 
-/* Gathers the m triangles tri by their smallest corners: bucket i from ptr[i] on, its keys second corner << 32
- * | third corner << 1 | odd, sorted. ptr [n + 1] zeros. Returns how many different triangles there are, or
- * -1 without memory. */
+/* Gathers the m triangles tri by their smallest corners: bucket i from ptr[i] on, its keys sorted, second
+ * corner << 32 | third corner << 1 | odd. ptr [n + 1] zeros. Returns how many different triangles there are,
+ * or -1 without memory. */
 static int64_t hdi_soup_gather(const int32_t *tri, int64_t m, int32_t n, int64_t *ptr, uint64_t *key,
                                hdi_scope *s) {
     uint64_t *work;
@@ -7165,7 +7109,7 @@ static double hdi_harmonic(double a, double b, double c, double area) {
     return (a * a + b * b + c * c) / area;
 }
 
-/* The same of the face of side s, which has an area; *cot receives the cotangent of the angle opposite to s. */
+/* The same of the face of side s, which has an area. *cot receives the cotangent of the angle opposite. */
 static double hdi_side_harmonic(const hdi_cover *t, int32_t s, double *cot) {
     const double a = t->side[s].len, b = t->side[hdi_side_next(s)].len, c = t->side[hdi_side_prev(s)].len;
     *cot = (b * b + c * c - a * a) / (4 * t->area[s / 3]);
@@ -7207,7 +7151,8 @@ static int hdi_flip(hdi_cover *t, int32_t a) {
     area_f = hdi_length_area(d, len_0, len_1);
     area_g = hdi_length_area(d, len_2, len_3);
     if (!(area_f > 0 && area_g > 0)) return 0;
-    before = hdi_harmonic(len, len_0, len_3, t->area[a / 3]) + hdi_harmonic(len, len_1, len_2, t->area[b / 3]);
+    before = hdi_harmonic(len, len_0, len_3, t->area[a / 3]) +
+             hdi_harmonic(len, len_1, len_2, t->area[b / 3]);
     after = hdi_harmonic(d, len_0, len_1, area_f) + hdi_harmonic(d, len_2, len_3, area_g);
     if (!(after < before)) return 0;
     for (k = 0; k < 4; k++) {

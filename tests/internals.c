@@ -1181,29 +1181,28 @@ static void int_around(void) {
 
 /* The k-th of numbers and of points along an axis, among which many may be equal; and lists of keys in order. */
 static void int_selection(void) {
-    hdi_point point[100];
-    double a[100];
+    double point[400], a[100];
     uint64_t key[200], sum, seed = 6;
     int32_t n, k, i, bad = 0;
     for (n = 1; n < 100; n += 7) {
         for (k = 0; k < n; k++) {
             for (i = 0, sum = 0; i < n; i++) {
-                memset(point + i, 0, sizeof *point);
-                a[i] = point[i].x[k % 3] = k % 2 ? (double)(dense_random(&seed) % 5) : dense_signed(&seed);
-                point[i].id = i;
+                point[4 * i] = point[4 * i + 1] = point[4 * i + 2] = 0;
+                a[i] = point[4 * i + k % 3] = k % 2 ? (double)(dense_random(&seed) % 5) : dense_signed(&seed);
+                point[4 * i + 3] = i;
                 key[i] = k % 2 ? dense_random(&seed) % 9 : dense_random(&seed);
                 sum += key[i] * key[i];
             }
             (void)hdi_kth(a, n, k);
-            hdi_select_point(point, n, k, k % 3);
+            hdi_select(point, n, k, 4, k % 3);
             hdi_sort_keys(key, n, key + 100);
             for (i = 0; i < n; i++) {
-                const double x = point[i].x[k % 3];
-                bad += i < k ? a[i] > a[k] || x > point[k].x[k % 3] : a[i] < a[k] || x < point[k].x[k % 3];
+                const double x = point[4 * i + k % 3];
+                bad += i < k ? a[i] > a[k] || x > point[4 * k + k % 3] : a[i] < a[k] || x < point[4 * k + k % 3];
                 bad += i > 0 && key[i] < key[i - 1];
                 sum -= key[i] * key[i];
             }
-            bad += sum != 0 || a[k] != point[k].x[k % 3];    /* two ways, the same numbers */
+            bad += sum != 0 || a[k] != point[4 * k + k % 3];    /* two ways, the same numbers */
         }
     }
     CHECK_MSG(bad == 0, "%d times another one than the k-th", (int)bad);
