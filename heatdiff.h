@@ -1862,11 +1862,9 @@ HEATDIFF_API hd_status hd_geodesic_distance_from(hd_geodesic *g, const hd_source
 /* Threads of the system: none, POSIX or Windows. */
 #define HDI_THREADS_POSIX 1
 #define HDI_THREADS_WINDOWS 2
-#if defined(HEATDIFF_NO_THREADS) || defined(__TINYC__)
-#define HDI_THREADS 0
-#elif !defined(__GNUC__) && !defined(__clang__) && !defined(_MSC_VER)
-#define HDI_THREADS 0
-#elif (defined(__wasm__) || defined(__EMSCRIPTEN__)) && !defined(__EMSCRIPTEN_PTHREADS__)
+#if defined(HEATDIFF_NO_THREADS) || defined(__TINYC__) || \
+    (!defined(__GNUC__) && !defined(__clang__) && !defined(_MSC_VER)) || \
+    ((defined(__wasm__) || defined(__EMSCRIPTEN__)) && !defined(__EMSCRIPTEN_PTHREADS__))
 #define HDI_THREADS 0
 #elif defined(_WIN32)
 #define HDI_THREADS HDI_THREADS_WINDOWS
@@ -1928,97 +1926,91 @@ HEATDIFF_API hd_status hd_geodesic_distance_from(hd_geodesic *g, const hd_source
 #define HDI_AUDIT 0
 #endif
 
+/* Counters that threads share have 32 bits. HDI_ATOMIC_GET sees all that was written before the matching
+ * HDI_ATOMIC_SET; HDI_ATOMIC_ADD gives the sum. Compilers without them have no threads of the library's own,
+ * and a user's threads share loops only whose tasks know nothing of each other. */
 #if defined(__GNUC__) || defined(__clang__)
 #define HDI_RESTRICT __restrict__
+#define HDI_INLINE inline __attribute__((always_inline))
+#define HDI_NOINLINE __attribute__((noinline))
 #define HDI_LOAD(p) __atomic_load_n(p, __ATOMIC_RELAXED)
 #define HDI_STORE(p, v) __atomic_store_n(p, v, __ATOMIC_RELAXED)
 #define HDI_PREFETCH(p) __builtin_prefetch(p)
 /* Of p[i], which may lie outside of the array: no pointer may, so that it is a number. */
 #define HDI_PREFETCH_AT(p, i)                                                                      \
     __builtin_prefetch((const void *)((uintptr_t)(p) + (uintptr_t)(i) * sizeof *(p)))
+#define HDI_ATOMICS 1
+#define HDI_ATOMIC_GET(p) __atomic_load_n(p, __ATOMIC_ACQUIRE)
+#define HDI_ATOMIC_SET(p, v) __atomic_store_n(p, v, __ATOMIC_RELEASE)
+#define HDI_ATOMIC_ADD(p, v) __atomic_add_fetch(p, v, __ATOMIC_ACQ_REL)
+#pragma GCC diagnostic push
+#ifndef __clang__
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"   /* of GCC's own avx512fintrin.h, which means it */
+#endif
+#ifdef __cplusplus
+#pragma GCC diagnostic ignored "-Wold-style-cast"        /* C has no other */
+#endif
 #else
 #define HDI_RESTRICT
+#define HDI_INLINE inline
+#define HDI_NOINLINE
 #define HDI_LOAD(p) (*(p))
 #define HDI_STORE(p, v) (*(p) = (v))
 #define HDI_PREFETCH(p) ((void)0)
 #define HDI_PREFETCH_AT(p, i) ((void)0)
+#ifdef _MSC_VER
+#include <intrin.h>
+#define HDI_ATOMICS 1
+#define HDI_ATOMIC_GET(p) ((uint32_t)_InterlockedCompareExchange((volatile long *)(p), 0, 0))
+#define HDI_ATOMIC_SET(p, v) ((void)_InterlockedExchange((volatile long *)(p), (long)(v)))
+#define HDI_ATOMIC_ADD(p, v) \
+    ((uint32_t)(_InterlockedExchangeAdd((volatile long *)(p), (long)(v)) + (v)))
+#else
+#define HDI_ATOMICS 0
+#define HDI_ATOMIC_GET(p) (*(p))
+#define HDI_ATOMIC_SET(p, v) (*(p) = (v))
+#define HDI_ATOMIC_ADD(p, v) (*(p) += (v))
+#endif
+#endif
+/* Loops of at most eight rounds over registers: without them the arrays would live in memory. */
+#if defined(__clang__)
+#define HDI_UNROLL _Pragma("clang loop unroll(full)")
+#elif defined(__GNUC__)
+#define HDI_UNROLL _Pragma("GCC unroll 8")
+#else
+#define HDI_UNROLL
 #endif
 
-/* What this build has, 1 or 0, and the switch that left it out, by itself or because it implies that. A room
- * is entered through few functions. These ask first, and compilers drop whatever nobody reaches any more: all
- * code is checked in every build, and no room has a condition inside. */
-#ifdef HEATDIFF_NO_DIRECT
-#define HDI_HAS_DIRECT 0
-#define HDI_WHY_DIRECT "HEATDIFF_NO_DIRECT"
-#else
-#define HDI_HAS_DIRECT 1
-#define HDI_WHY_DIRECT ""
-#endif
-#ifdef HEATDIFF_NO_POLE_FACTORS
-#define HDI_HAS_POLE_FACTORS 0
-#define HDI_WHY_POLE_FACTORS "HEATDIFF_NO_POLE_FACTORS"
-#else
-#define HDI_HAS_POLE_FACTORS HDI_HAS_DIRECT
-#define HDI_WHY_POLE_FACTORS HDI_WHY_DIRECT
-#endif
-#ifdef HEATDIFF_NO_DIAGONAL
-#define HDI_HAS_DIAGONAL 0
-#define HDI_WHY_DIAGONAL "HEATDIFF_NO_DIAGONAL"
-#else
-#define HDI_HAS_DIAGONAL HDI_HAS_POLE_FACTORS
-#define HDI_WHY_DIAGONAL HDI_WHY_POLE_FACTORS
-#endif
-#ifdef HEATDIFF_NO_DIFFUSION
-#define HDI_HAS_DIFFUSION 0
-#define HDI_WHY_DIFFUSION "HEATDIFF_NO_DIFFUSION"
-#else
-#define HDI_HAS_DIFFUSION HDI_HAS_DIAGONAL
-#define HDI_WHY_DIFFUSION HDI_WHY_DIAGONAL
-#endif
-#ifdef HEATDIFF_NO_GEODESIC
-#define HDI_HAS_GEODESIC 0
-#define HDI_WHY_GEODESIC "HEATDIFF_NO_GEODESIC"
-#else
-#define HDI_HAS_GEODESIC HDI_HAS_DIRECT
-#define HDI_WHY_GEODESIC HDI_WHY_DIRECT
-#endif
-#ifdef HEATDIFF_NO_SPECTRUM
-#define HDI_HAS_SPECTRUM 0
-#define HDI_WHY_SPECTRUM "HEATDIFF_NO_SPECTRUM"
-#else
-#define HDI_HAS_SPECTRUM HDI_HAS_DIRECT
-#define HDI_WHY_SPECTRUM HDI_WHY_DIRECT
-#endif
+/* What this build has, and the switch that left it out, by itself or because it implies that: the text of a
+ * macro that is not defined is its name. A room is entered through few functions. These ask first, and
+ * compilers drop whatever nobody reaches any more: all code is checked in every build, and no function has a
+ * condition inside. */
+#define HDI_QUOTE(x) #x
+#define HDI_QUOTED(x) HDI_QUOTE(x)
+#define HDI_BUILT(without) (sizeof HDI_QUOTED(without) == sizeof #without)
+#define HDI_WHY(without, implied) (sizeof HDI_QUOTED(without) == sizeof #without ? implied : #without)
+#define HDI_HAS_DIRECT HDI_BUILT(HEATDIFF_NO_DIRECT)
+#define HDI_HAS_POLE_FACTORS (HDI_HAS_DIRECT && HDI_BUILT(HEATDIFF_NO_POLE_FACTORS))
+#define HDI_HAS_DIAGONAL (HDI_HAS_POLE_FACTORS && HDI_BUILT(HEATDIFF_NO_DIAGONAL))
+#define HDI_HAS_DIFFUSION (HDI_HAS_DIAGONAL && HDI_BUILT(HEATDIFF_NO_DIFFUSION))
+#define HDI_HAS_GEODESIC (HDI_HAS_DIRECT && HDI_BUILT(HEATDIFF_NO_GEODESIC))
+#define HDI_HAS_SPECTRUM (HDI_HAS_DIRECT && HDI_BUILT(HEATDIFF_NO_SPECTRUM))
 #define HDI_HAS_MODES HDI_HAS_SPECTRUM   /* answers at large t from eigenpairs */
-#ifdef HEATDIFF_NO_ITERATIVE
-#define HDI_HAS_ITERATIVE 0
+#define HDI_HAS_ITERATIVE HDI_BUILT(HEATDIFF_NO_ITERATIVE)
+#define HDI_HAS_INTRINSIC HDI_BUILT(HEATDIFF_NO_INTRINSIC)
+#define HDI_HAS_POINTS HDI_BUILT(HEATDIFF_NO_POINTS)
+#define HDI_HAS_POLYGONS HDI_BUILT(HEATDIFF_NO_POLYGONS)
+#define HDI_WHY_DIRECT "HEATDIFF_NO_DIRECT"
+#define HDI_WHY_POLE_FACTORS HDI_WHY(HEATDIFF_NO_POLE_FACTORS, HDI_WHY_DIRECT)
+#define HDI_WHY_DIAGONAL HDI_WHY(HEATDIFF_NO_DIAGONAL, HDI_WHY_POLE_FACTORS)
+#define HDI_WHY_DIFFUSION HDI_WHY(HEATDIFF_NO_DIFFUSION, HDI_WHY_DIAGONAL)
+#define HDI_WHY_GEODESIC HDI_WHY(HEATDIFF_NO_GEODESIC, HDI_WHY_DIRECT)
+#define HDI_WHY_SPECTRUM HDI_WHY(HEATDIFF_NO_SPECTRUM, HDI_WHY_DIRECT)
 #define HDI_WHY_ITERATIVE "HEATDIFF_NO_ITERATIVE"
-#else
-#define HDI_HAS_ITERATIVE 1
-#define HDI_WHY_ITERATIVE ""
-#endif
-#ifdef HEATDIFF_NO_INTRINSIC
-#define HDI_HAS_INTRINSIC 0
 #define HDI_WHY_INTRINSIC "HEATDIFF_NO_INTRINSIC"
-#else
-#define HDI_HAS_INTRINSIC 1
-#define HDI_WHY_INTRINSIC ""
-#endif
-#ifdef HEATDIFF_NO_POINTS
-#define HDI_HAS_POINTS 0
 #define HDI_WHY_POINTS "HEATDIFF_NO_POINTS"
-#else
-#define HDI_HAS_POINTS 1
-#define HDI_WHY_POINTS ""
-#endif
-#ifdef HEATDIFF_NO_POLYGONS
-#define HDI_HAS_POLYGONS 0
 #define HDI_WHY_POLYGONS "HEATDIFF_NO_POLYGONS"
-#else
-#define HDI_HAS_POLYGONS 1
-#define HDI_WHY_POLYGONS ""
-#endif
-#if !HDI_HAS_DIRECT && !HDI_HAS_ITERATIVE
+#if defined(HEATDIFF_NO_DIRECT) && defined(HEATDIFF_NO_ITERATIVE)
 #error "heatdiff.h: HEATDIFF_NO_DIRECT and HEATDIFF_NO_ITERATIVE leave no method"
 #endif
 
@@ -2036,56 +2028,9 @@ HEATDIFF_API hd_status hd_geodesic_distance_from(hd_geodesic *g, const hd_source
 #else
 #define HDI_X86 0
 #endif
-#if defined(__GNUC__) || defined(__clang__)
-#define HDI_INLINE inline __attribute__((always_inline))
-#define HDI_NOINLINE __attribute__((noinline))
-#else
-#define HDI_INLINE inline
-#define HDI_NOINLINE
-#endif
-/* Loops of at most eight rounds over registers: without them the arrays would live in memory. */
-#if defined(__clang__)
-#define HDI_UNROLL _Pragma("clang loop unroll(full)")
-#elif defined(__GNUC__)
-#define HDI_UNROLL _Pragma("GCC unroll 8")
-#else
-#define HDI_UNROLL
-#endif
-
-#if defined(__GNUC__) || defined(__clang__)
-#pragma GCC diagnostic push
-#ifndef __clang__
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"   /* of GCC's own avx512fintrin.h, which means it */
-#endif
-#ifdef __cplusplus
-#pragma GCC diagnostic ignored "-Wold-style-cast"        /* C has no other */
-#endif
-#endif
 
 #ifdef __cplusplus
 extern "C" {
-#endif
-
-/* Counters that threads share, of 32 bits. HDI_ATOMIC_GET sees all that was written before the matching
- * HDI_ATOMIC_SET; HDI_ATOMIC_ADD gives the sum. Compilers without them have no threads of the library's own,
- * and a user's threads share loops only whose tasks know nothing of each other. */
-#if defined(__GNUC__) || defined(__clang__)
-#define HDI_ATOMICS 1
-#define HDI_ATOMIC_GET(p) __atomic_load_n(p, __ATOMIC_ACQUIRE)
-#define HDI_ATOMIC_SET(p, v) __atomic_store_n(p, v, __ATOMIC_RELEASE)
-#define HDI_ATOMIC_ADD(p, v) __atomic_add_fetch(p, v, __ATOMIC_ACQ_REL)
-#elif defined(_MSC_VER)
-#include <intrin.h>
-#define HDI_ATOMICS 1
-#define HDI_ATOMIC_GET(p) ((uint32_t)_InterlockedCompareExchange((volatile long *)(p), 0, 0))
-#define HDI_ATOMIC_SET(p, v) ((void)_InterlockedExchange((volatile long *)(p), (long)(v)))
-#define HDI_ATOMIC_ADD(p, v) \
-    ((uint32_t)(_InterlockedExchangeAdd((volatile long *)(p), (long)(v)) + (v)))
-#else
-#define HDI_ATOMICS 0
-#define HDI_ATOMIC_GET(p) (*(p))
-#define HDI_ATOMIC_SET(p, v) (*(p) = (v))
-#define HDI_ATOMIC_ADD(p, v) (*(p) += (v))
 #endif
 
 #if HDI_THREADS == HDI_THREADS_POSIX && defined(__linux__) && !defined(__cplusplus)
@@ -2306,14 +2251,23 @@ static void hdi_refuse_value(int bad, const char *text, double value, hd_error *
     if (bad && e->status >= 0) (void)hdi_fail_row(e, HD_ERR_ARGUMENT, text, -1, -1, value);
 }
 
-/* For what this build has no code for: room is one of HDI_HAS_..., what says it in the field's words. */
-#define HDI_LEFT_OUT(e, room, what) \
-    hdi_fail(e, HD_ERR_NOT_BUILT, "this build leaves out " what " (" HDI_WHY_##room ")")
 /* Appends a text, as far as there is room. */
 static void hdi_text_add(hd_error *e, const char *text) {
     const size_t used = strlen(e->text), len = strlen(text), most = sizeof e->text - 1 - used;
     memcpy(e->text + used, text, len < most ? len : most);
     e->text[used + (len < most ? len : most)] = 0;
+}
+
+/* For what this build has no code for: room is one of HDI_HAS_..., what says it in the field's words. */
+#define HDI_LEFT_OUT(e, room, what) hdi_left_out(e, what, HDI_WHY_##room)
+
+static hd_status hdi_left_out(hd_error *e, const char *what, const char *why) {
+    hdi_fail(e, HD_ERR_NOT_BUILT, "this build leaves out ");
+    hdi_text_add(e, what);
+    hdi_text_add(e, " (");
+    hdi_text_add(e, why);
+    hdi_text_add(e, ")");
+    return e->status;
 }
 
 /* Appends a number of bytes in MB (1e6 bytes), rounded up to one decimal. */
@@ -15554,7 +15508,7 @@ static const double hdi_rat_table[] = {
     -0.98196506093423674, 10.467711454192054, -0.078142978167783206, 0.21550257610584828,
     -4.5075605895604021, 13.008767567859003, -0.0010383125651999775, -0.0086362070804686056,
     -9.7413256359447953, 15.840947521360885, 2.0671816855185641e-05, 6.5573823084788806e-05,
-#if HDI_HAS_DIAGONAL
+#if !defined(HEATDIFF_NO_DIRECT) && !defined(HEATDIFF_NO_POLE_FACTORS) && !defined(HEATDIFF_NO_DIAGONAL)
     /* diagonal r = 2 */
     0, 0.067537133737907679, 0.084246004368216873,
     0.093165638432949657, 0.78606720760465709, 0.0084246004368216873, -0.39955314986781715,
