@@ -3212,9 +3212,9 @@ static void hdi_sort_indices(int32_t *a, int64_t n, uint64_t *work) {
     for (i = 0; i < n; i++) a[i] = (int32_t)work[i];
 }
 
-/* Puts the row of `width` numbers that is k-th by its number `by` in its place, smaller ones before it, larger
- * ones behind (Hoare 1961). Pivots are medians of three places drawn by a fixed generator: linear whatever
- * the order, also for equal rows. */
+/* Puts the row of `width` numbers that is k-th by its number `by` in its place, smaller ones before it,
+ * larger ones behind (Hoare 1961). Pivots are medians of three places drawn by a fixed generator: linear
+ * whatever the order, also for equal rows. */
 static HDI_INLINE void hdi_select(double *a, int64_t n, int64_t k, int width, int by) {
     int64_t lo = 0, hi = n - 1;
     uint64_t seed = 12345;
@@ -4540,17 +4540,14 @@ static hd_status hdi_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_co
     return HD_OK;
 }
 
-/* Whether a stores the entry (i,j), zero or not. */
-static int hdi_csr_stores(const hd_csr *a, int32_t i, int32_t j) {
-    int64_t p = a->row_ptr[i], end = a->row_ptr[i + 1];
-    while (p < end) {
-        const int64_t middle = p + (end - p) / 2;
-        if (a->col[middle] == j) return 1;
-        if (a->col[middle] < j) p = middle + 1;
-        else end = middle;
-    }
-    return 0;
+/* The place of the entry (i,j), zero or not; -1: it is not stored. */
+static int64_t hdi_csr_find(const hd_csr *a, int32_t i, int32_t j) {
+    const int64_t end = a->row_ptr[i + 1];
+    const int64_t p = a->row_ptr[i] + hdi_lower_bound(a->col + a->row_ptr[i], end - a->row_ptr[i], j);
+    return p < end && a->col[p] == j ? p : -1;
 }
+
+static int hdi_csr_stores(const hd_csr *a, int32_t i, int32_t j) { return hdi_csr_find(a, i, j) >= 0; }
 
 static hd_status hdi_csr_check_rows(const hd_csr *a, hd_error *e) {
     const int64_t *ptr = a->row_ptr;
@@ -4585,33 +4582,33 @@ static hd_status hdi_csr_check_rows(const hd_csr *a, hd_error *e) {
  * file. */
 #define HDI_SYMMETRY_TOL 1e-12
 
-static hd_status hdi_csr_check_symmetric(const hd_csr *a, hd_context *ctx, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(ctx, e);
-    hd_csr t;
-    int32_t i;
+/* A missing entry is a zero. Of several pairs that differ the first one is told. */
+static hd_status hdi_csr_check_symmetric(const hd_csr *a, hd_error *e) {
+    int32_t i, row = INT32_MAX, col = 0;
+    double value = 0;
+    int64_t p, q;
     if (a->n_rows != a->n_cols)
         return hdi_fail_row(e, HD_ERR_NOT_SYMMETRIC, "matrix: not square", a->n_rows, a->n_cols, 0);
-    t = hdi_csr_take(&s, a->n_cols, a->n_rows, a->nnz, a->val != NULL);
-    if (e->status < 0) return hdi_scope_end(&s);
-    hdi_csr_transpose_into(a, &t);
-    for (i = 0; i < a->n_rows && !e->status; i++) {   /* merge the rows: a missing entry is a zero */
-        int64_t p = a->row_ptr[i], q = t.row_ptr[i];
-        const int64_t p_end = a->row_ptr[i + 1], q_end = t.row_ptr[i + 1];
-        while ((p < p_end || q < q_end) && !e->status) {
-            const int32_t cp = p < p_end ? a->col[p] : INT32_MAX, cq = q < q_end ? t.col[q] : INT32_MAX;
-            const double x = cp > cq ? 0 : a->val ? a->val[p] : 1, y = cq > cp ? 0 : a->val ? t.val[q] : 1;
-            if (fabs(x - y) > HDI_SYMMETRY_TOL * hdi_max(fabs(x), fabs(y)))
-                hdi_fail_row(e, HD_ERR_NOT_SYMMETRIC, "matrix: not symmetric", i, cp <= cq ? cp : cq, x - y);
-            p += cp <= cq;
-            q += cq <= cp;
+    for (i = 0; i < a->n_rows; i++) {
+        for (p = a->row_ptr[i]; p < a->row_ptr[i + 1]; p++) {
+            const int32_t j = a->col[p], lo = hdi_low32(i, j), hi = hdi_high32(i, j);
+            double x = a->val ? a->val[p] : 1, y;
+            q = hdi_csr_find(a, j, i);
+            y = q < 0 ? 0 : a->val ? a->val[q] : 1;
+            if (fabs(x - y) <= HDI_SYMMETRY_TOL * hdi_max(fabs(x), fabs(y)) || lo > row) continue;
+            if (lo == row && hi >= col) continue;
+            row = lo;
+            col = hi;
+            value = i == lo ? x - y : y - x;
         }
     }
-    return hdi_scope_end(&s);
+    return row < INT32_MAX ? hdi_fail_row(e, HD_ERR_NOT_SYMMETRIC, "matrix: not symmetric", row, col, value)
+                           : HD_OK;
 }
 
-static hd_status hdi_csr_check(const hd_csr *a, int symmetric, hd_context *ctx, hd_error *e) {
+static hd_status hdi_csr_check(const hd_csr *a, int symmetric, hd_error *e) {
     if (hdi_csr_check_rows(a, e) < 0) return e->status;
-    return symmetric ? hdi_csr_check_symmetric(a, ctx, e) : HD_OK;
+    return symmetric ? hdi_csr_check_symmetric(a, e) : HD_OK;
 }
 
 /* Columns of row i of A B, unsorted, into col (NULL: counted only). mark [b->n_cols] holds the last row
@@ -7153,24 +7150,18 @@ static hd_status hdi_cover_flip(hdi_cover *c, double done, hd_mesh_report *rep) 
     return HD_OK;
 }
 
-/* Whether the edge of keys [p, q) may have to be flipped, however its faces are glued: whether the two
- * smallest cotangents opposite to it sum to less than zero. Two faces that come equally often always
- * follow each other. */
+/* Whether the edge of keys [p, q) may have to be flipped: two faces that come equally often always follow each
+ * other, else any two cotangents opposite to the edge may meet. */
 static int hdi_soup_suspect(const hdi_soup *soup, int32_t p, int32_t q) {
     const uint64_t *key = soup->sides.key;
-    double least = HUGE_VAL, next = HUGE_VAL;
-    int64_t copies = 0;
+    const int32_t copies = hdi_soup_copies(soup, hdi_key_face(key[p]));
+    const double first = soup->mesh.cot[hdi_key_opposite(key[p])];
+    double least = first;
     int32_t i;
-    for (i = p; i < q; i++) {
-        const int32_t here = hdi_soup_copies(soup, hdi_key_face(key[i]));
-        const int alone = q - p == 2 && here == hdi_soup_copies(soup, hdi_key_face(key[p + q - 1 - i]));
-        const double cot = soup->mesh.cot[hdi_key_opposite(key[i])];
-        next = hdi_min(next, hdi_max(cot, least));
-        least = hdi_min(least, cot);
-        if (here > 1 && !alone) next = hdi_min(next, cot);
-        copies += here;
-    }
-    return !(least + (copies == 1 ? least : next) >= 0);
+    if (q - p == 2 && hdi_soup_copies(soup, hdi_key_face(key[p + 1])) == copies)
+        return !(first + soup->mesh.cot[hdi_key_opposite(key[p + 1])] >= 0);
+    for (i = p + 1; i < q; i++) least = hdi_min(least, soup->mesh.cot[hdi_key_opposite(key[i])]);
+    return !(least >= 0);
 }
 
 /* Edges by their vertices, of those that may have to be flipped: the order depends on nothing but the
@@ -14798,7 +14789,7 @@ typedef struct hdi_precond {
     hd_precond kind;
     const hdi_upper *up;
     hd_c64 *u;       /* [nnz of up] or NULL */
-    hd_c64 *d;       /* [n] or NULL */
+    hd_c64 *d;       /* [n]; jacobi and more */
 } hdi_precond;
 
 #define HDI_ILDL_LEAST 1e-3   /* share of its diagonal entry that a pivot must keep */
@@ -14823,7 +14814,8 @@ static int64_t hdi_ildl_seek(const int32_t *col, int64_t p, int64_t end, int32_t
 
 /* Right-looking incomplete LDL' of the complex-symmetric A, plain transpose. Row k updates the entries (i, j)
  * between its own columns; where the pattern has none, `keep` of the update goes to the diagonal entries of i
- * and j. A vertex with very many neighbours costs no square of their number. diag [n] is work. */
+ * and j. A vertex with very many neighbours costs no square of their number. ssor updates nothing. diag [n] is
+ * work. */
 static void hdi_ildl(const hdi_precond *m, hd_c64 *diag, double keep) {
     const int32_t *col = m->up->col;
     const int64_t *ptr = m->up->ptr;
@@ -14838,7 +14830,7 @@ static void hdi_ildl(const hdi_precond *m, hd_c64 *diag, double keep) {
             u[p] = hdi_cdiv(u[p], d[k]);
             sum = hdi_cadd(sum, u[p]);
         }
-        for (p = ptr[k]; p < ptr[k + 1]; p++) {
+        for (p = ptr[k]; m->kind != HD_PRECOND_SSOR && p < ptr[k + 1]; p++) {
             const int32_t i = col[p];
             const hd_c64 w = hdi_cmul(u[p], d[k]);
             hd_c64 dropped = hdi_csub(sum, u[p]);
@@ -14862,26 +14854,8 @@ static void hdi_ildl(const hdi_precond *m, hd_c64 *diag, double keep) {
     }
 }
 
-static void hdi_ssor(const hdi_precond *m, hd_c64 *work, double keep) {
-    int32_t i;
-    int64_t p;
-    (void)work;
-    (void)keep;
-    for (i = 0; i < m->up->n; i++)
-        for (p = m->up->ptr[i]; p < m->up->ptr[i + 1]; p++) m->u[p] = hdi_cdiv(m->u[p], m->d[i]);
-}
-
-static void hdi_apply_none(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z) {
-    memcpy(z, r, (size_t)m->up->n * sizeof *z);
-}
-
-static void hdi_apply_diagonal(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z) {
-    int32_t i;
-    for (i = 0; i < m->up->n; i++) z[i] = hdi_cmul(r[i], m->d[i]);
-}
-
-/* (I + U') w = r, z = (I + U)^-1 D^-1 w. */
-static void hdi_apply_factors(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z) {
+/* z = M^-1 r, z not r: (I + U') w = r, z = (I + U)^-1 D^-1 w. */
+static void hdi_precond_apply(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z) {
     const int64_t *HDI_RESTRICT ptr = m->up->ptr;
     const int32_t *HDI_RESTRICT col = m->up->col;
     const hd_c64 *HDI_RESTRICT u = m->u;
@@ -14889,38 +14863,33 @@ static void hdi_apply_factors(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r
     int32_t i;
     int64_t p;
     memcpy(z, r, (size_t)n * sizeof *z);
-    for (i = 0; i < n; i++) {
+    for (i = 0; u && i < n; i++) {
         const hd_c64 w = z[i];
         HDI_PREFETCH_AT(u, ptr[i] + HDI_AHEAD / 4);
         HDI_PREFETCH_AT(col, ptr[i] + HDI_AHEAD);
         for (p = ptr[i]; p < ptr[i + 1]; p++) z[col[p]] = hdi_csub(z[col[p]], hdi_cmul(u[p], w));
     }
-    for (i = n; i-- > 0;) {
+    for (i = m->kind == HD_PRECOND_NONE ? 0 : n; i-- > 0;) {
         hd_c64 w = hdi_cmul(z[i], m->d[i]);
-        HDI_PREFETCH_AT(u, ptr[i] - HDI_AHEAD / 4);
-        HDI_PREFETCH_AT(col, ptr[i] - HDI_AHEAD);
-        for (p = ptr[i]; p < ptr[i + 1]; p++) w = hdi_csub(w, hdi_cmul(u[p], z[col[p]]));
+        if (u) {
+            HDI_PREFETCH_AT(u, ptr[i] - HDI_AHEAD / 4);
+            HDI_PREFETCH_AT(col, ptr[i] - HDI_AHEAD);
+            for (p = ptr[i]; p < ptr[i + 1]; p++) w = hdi_csub(w, hdi_cmul(u[p], z[col[p]]));
+        }
         z[i] = w;
     }
 }
 
-/* All there is to know of a preconditioner. make (NULL: nothing to do) turns the values of A into U and D,
- * with a work array [n]; apply makes z = M^-1 r, z not r. */
+/* All there is to know of a preconditioner. */
 typedef struct hdi_precond_row {
     int32_t rows, entries;   /* values for each row and for each entry above the diagonal */
     double steps;            /* of cocg, about, relative to those with mildl */
-    void (*apply)(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z);
-    void (*make)(const hdi_precond *m, hd_c64 *work, double keep);
     double keep;             /* share of the dropped fill that goes to the diagonal */
 } hdi_precond_row;
 
 static const hdi_precond_row hdi_preconds[] = {                             /* by hd_precond */
-    {1, 1, 1, hdi_apply_factors, hdi_ildl, HDI_MILDL_KEPT},                 /* auto */
-    {0, 0, 5.5, hdi_apply_none, NULL, 0},
-    {1, 0, 5, hdi_apply_diagonal, NULL, 0},
-    {1, 1, 2, hdi_apply_factors, hdi_ssor, 0},
-    {1, 1, 1.4, hdi_apply_factors, hdi_ildl, 0},
-    {1, 1, 1, hdi_apply_factors, hdi_ildl, HDI_MILDL_KEPT}
+    {1, 1, 1, HDI_MILDL_KEPT},                                              /* auto */
+    {0, 0, 5.5, 0}, {1, 0, 5, 0}, {1, 1, 2, 0}, {1, 1, 1.4, 0}, {1, 1, 1, HDI_MILDL_KEPT}
 };
 
 /* Does not compile where a kind has no row. */
@@ -14941,7 +14910,7 @@ static void hdi_precond_make(const hdi_precond *m, const hdi_system *a, hd_c64 *
             else if (m->u && j > i) m->u[q++] = v;
         }
     }
-    if (row->make) row->make(m, work, row->keep);
+    if (m->u) hdi_ildl(m, work, row->keep);
     for (i = 0; row->rows && i < L->n_rows; i++) m->d[i] = hdi_cdiv(hdi_c(1, 0), m->d[i]);
 }
 
@@ -15059,7 +15028,7 @@ static hd_c64 hdi_krylov_precond(hdi_krylov *k, const hd_c64 *HDI_RESTRICT r, hd
     const int32_t *comp = lap->component;
     hd_c64 dot = hdi_c(0, 0);
     int32_t i = 0;
-    hdi_preconds[k->m->kind].apply(k->m, r, z);
+    hdi_precond_apply(k->m, r, z);
     memset(k->mean, 0, (size_t)lap->n_components * sizeof *k->mean);
     while (i < lap->n_active) {
         const int32_t c = comp[i];
@@ -30910,7 +30879,7 @@ HEATDIFF_API hd_status hd_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t
 HEATDIFF_API hd_status hd_csr_check(const hd_csr *a, int32_t symmetric, hd_context *ctx, hd_error *err) {
     hdi_call c;
     if (hdi_enter(&c, ctx, err) < 0) return c.e->status;
-    return a ? hdi_csr_check(a, symmetric, c.ctx, c.e) : hdi_missing(c.e);
+    return a ? hdi_csr_check(a, symmetric, c.e) : hdi_missing(c.e);
 }
 
 HEATDIFF_API void hd_csr_apply(const hd_csr *a, const double *x, double *y, hd_context *ctx) {
@@ -31071,7 +31040,7 @@ HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L
     if (!out || !L || !B || !L->val || !B->val) return hdi_lap_done(out, lap, hdi_missing(c.e));
     hdi_refuse(!hdi_finite(h) || h < 0, "laplacian of matrices: h is negative or not finite", c.e);
     hdi_no_border(opts, c.e);
-    if (c.e->status < 0 || hdi_csr_check(L, 1, c.ctx, c.e) < 0 || hdi_csr_check(B, 1, c.ctx, c.e) < 0)
+    if (c.e->status < 0 || hdi_csr_check(L, 1, c.e) < 0 || hdi_csr_check(B, 1, c.e) < 0)
         return hdi_lap_done(out, lap, c.e->status);
     if (L->n_rows != B->n_rows)
         return hdi_lap_done(out, lap,
@@ -31185,7 +31154,7 @@ HEATDIFF_API hd_status hd_laplacian_update_matrices(hd_laplacian *lap, const hd_
     hdi_refuse(!hdi_finite(h) || h < 0, "update of matrices: h is negative or not finite", c.e);
     hdi_refuse(L->n_rows != lap->n || B->n_rows != lap->n || L->n_cols != lap->n || B->n_cols != lap->n,
                "update of matrices: a matrix has another size", c.e);
-    if (c.e->status >= 0 && hdi_csr_check(L, 0, c.ctx, c.e) >= 0 && hdi_csr_check(B, 0, c.ctx, c.e) >= 0 &&
+    if (c.e->status >= 0 && hdi_csr_check(L, 0, c.e) >= 0 && hdi_csr_check(B, 0, c.e) >= 0 &&
         hdi_pair_replace(all, L, B, h, c.e) >= 0)
         hdi_held_update(lap);
     return c.e->status;
@@ -31260,7 +31229,7 @@ HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ld
     if (!out || !a) return hdi_missing(c.e);
     shape = *a;
     shape.val = NULL;
-    if (hdi_csr_check(&shape, 1, c.ctx, c.e) < 0) return c.e->status;
+    if (hdi_csr_check(&shape, 1, c.e) < 0) return c.e->status;
     f = (hd_ldl *)hdi_alloc_zero(c.ctx, 1, sizeof *f, c.e);
     if (!f) return c.e->status;
     f->ctx = hdi_enter_keep(&c, &f->context);

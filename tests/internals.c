@@ -435,7 +435,7 @@ static void int_ildl_of(const hdi_upper *up, double keep, double off[INT_OFF]) {
         }
     }
     for (i = 0; i < n; i++) d[i] = hdi_cdiv(hdi_c(1, 0), d[i]);
-    hdi_preconds[of.kind].apply(&of, b, x);
+    hdi_precond_apply(&of, b, x);
     for (k = 0; k < INT_OFF; k++) off[k] = 0;
     for (i = 0; i < n; i++) {
         dense_c64 sum = dense_c(0, 0), left = dense_c(b[i].re, b[i].im);
