@@ -1935,7 +1935,7 @@ HEATDIFF_API hd_status hd_geodesic_distance_from(hd_geodesic *g, const hd_source
 #define HDI_NOINLINE __attribute__((noinline))
 #define HDI_LOAD(p) __atomic_load_n(p, __ATOMIC_RELAXED)
 #define HDI_STORE(p, v) __atomic_store_n(p, v, __ATOMIC_RELAXED)
-#define HDI_PREFETCH(p) __builtin_prefetch(p)
+#define HDI_PREFETCH __builtin_prefetch
 /* Of p[i], which may lie outside of the array: no pointer may, so that it is a number. */
 #define HDI_PREFETCH_AT(p, i)                                                                      \
     __builtin_prefetch((const void *)((uintptr_t)(p) + (uintptr_t)(i) * sizeof *(p)))
@@ -1956,7 +1956,7 @@ HEATDIFF_API hd_status hd_geodesic_distance_from(hd_geodesic *g, const hd_source
 #define HDI_NOINLINE
 #define HDI_LOAD(p) (*(p))
 #define HDI_STORE(p, v) (*(p) = (v))
-#define HDI_PREFETCH(p) ((void)0)
+#define HDI_PREFETCH (void)
 #define HDI_PREFETCH_AT(p, i) ((void)0)
 #ifdef _MSC_VER
 #include <intrin.h>
@@ -1967,8 +1967,8 @@ HEATDIFF_API hd_status hd_geodesic_distance_from(hd_geodesic *g, const hd_source
     ((uint32_t)(_InterlockedExchangeAdd((volatile long *)(p), (long)(v)) + (v)))
 #else
 #define HDI_ATOMICS 0
-#define HDI_ATOMIC_GET(p) (*(p))
-#define HDI_ATOMIC_SET(p, v) (*(p) = (v))
+#define HDI_ATOMIC_GET HDI_LOAD
+#define HDI_ATOMIC_SET HDI_STORE
 #define HDI_ATOMIC_ADD(p, v) (*(p) += (v))
 #endif
 #endif
