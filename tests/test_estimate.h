@@ -408,7 +408,7 @@ static void est_ground(void) {
         ctx.bytes_peak = ctx.bytes_in_use;
         CHECK(est_run(heat, lap, &c, u, &rep) >= 0);
         bytes[k] = e.cost[0].bytes;
-        peak[k] = (double)(ctx.bytes_peak - e.bytes_in_use);
+        peak[k] = (double)ctx.bytes_peak - e.bytes_in_use;
         hd_heat_free(heat);
     }
     CHECK_MSG(bytes[1] - bytes[0] == peak[1] - peak[0], "%.0f bytes more, estimated %.0f", peak[1] - peak[0], bytes[1] - bytes[0]);
