@@ -253,7 +253,7 @@ static void est_room(const hd_laplacian *lap, const est_case *c, const char *wha
     }
     for (q = 0; q < n; q++) most = fmax(most, fabs(U[0][q]));
     for (q = 0; q < n && fabs(U[0][q] - U[1][q]) <= (rep[0].error_bound + rep[1].error_bound) * most * 1.001; q++) {}
-    CHECK_MSG(q == n || !isfinite(rep[1].error_bound), "%s: %g, not %g, with bounds %g and %g", what, U[1][q], U[0][q], rep[1].error_bound, rep[0].error_bound);
+    CHECK_MSG(q == n || !isfinite(rep[1].error_bound), "%s: %g, not %g, with bounds %g and %g", what, U[1][q % n], U[0][q % n], rep[1].error_bound, rep[0].error_bound);
     CHECK_MSG(e.method != HD_METHOD_DIRECT || (memcmp(U[0], U[2], n * sizeof **U) == 0 && rep[0].error_bound == rep[2].error_bound),
               "%s: other bits, bounds %g and %g", what, rep[0].error_bound, rep[2].error_bound);
     for (pass = 0; pass < 3; pass++) free(U[pass]);
