@@ -4379,10 +4379,10 @@ HDI_KERNEL void HDI_OF(single_down)(const hdi_single *g) {
         HDI_EACH(j, 8) l[j] += g->n;
     }
     HDI_EACH(j, 8) {
-        x[j] = HDI_OF(pick)(s[j], 0);
-        HDI_EACH(k, HDI_WIDTH)
-            if (k > 0) x[j] += HDI_OF(pick)(s[j], k);
-        x[j] = j < g->nc ? g->x[j] - x[j] : 0.0;
+        x[j] = 0;
+        if (j >= g->nc) continue;
+        HDI_EACH(k, HDI_WIDTH) x[j] += HDI_OF(pick)(s[j], k);
+        x[j] = g->x[j] - x[j];
     }
     HDI_SPREAD for (i = 0; i < 7; i++) {
         k = 7 - i;
@@ -13071,29 +13071,6 @@ static void hdi_factor_take_numbers(hdi_factor *f, hdi_scope *s) {
     if (f->panel) hdi_clear(f->panel + f->width * f->sym->panel[f->sym->n_super], f->width * HDI_TILE_COLS);
 }
 
-/* f becomes another factor like its host, with its own numbers but the host's room to work in. Neither is
- * factorised or inverted while the other one is. The host lives longer. */
-static hd_status hdi_factor_make_guest(hdi_factor *f, const hdi_factor *host, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(host->ctx, e);
-    *f = *host;
-    f->guest = 1;
-    f->ready = 0;
-    hdi_factor_take_numbers(f, &s);
-    if (e->status >= 0) return HD_OK;
-    memset(f, 0, sizeof *f);
-    return hdi_scope_end(&s);
-}
-
-/* The bytes of that. */
-static uint64_t hdi_factor_guest_bytes(const hdi_symbolic *sym, int32_t width) {
-    hd_error none;
-    uint64_t bytes;
-    hdi_scope s = hdi_scope_tally(&bytes, &none);
-    hdi_factor f = hdi_factor_of(sym, width);
-    hdi_factor_take_numbers(&f, &s);
-    return bytes;
-}
-
 /* A factor of the given width with the arrays that factoring and refactoring need. */
 static void hdi_factor_take(hdi_factor *f, const hdi_symbolic *sym, int32_t width, hdi_scope *s) {
     const uint64_t n_parts = hdi_factor_parts(sym), n_chunks = hdi_factor_chunks(sym);
@@ -13113,31 +13090,52 @@ static void hdi_factor_take(hdi_factor *f, const hdi_symbolic *sym, int32_t widt
     f->ctx = s->ctx;
 }
 
-/* Room for a factor. */
-static hd_status hdi_factor_make(hdi_factor *f, const hdi_symbolic *sym, int32_t width, hd_context *ctx,
-                                 hd_error *e) {
+/* Room for a factor. With a host f becomes another one like it, with its own numbers but the host's room to
+ * work in: neither is factorised or inverted while the other one is, and the host lives longer. */
+static hd_status hdi_factor_room(hdi_factor *f, const hdi_factor *host, const hdi_symbolic *sym,
+                                 int32_t width, hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
-    hdi_factor_take(f, sym, width, &s);
+    if (host) {
+        *f = *host;
+        f->guest = 1;
+        f->ready = 0;
+        hdi_factor_take_numbers(f, &s);
+    } else {
+        hdi_factor_take(f, sym, width, &s);
+    }
     if (e->status >= 0) return HD_OK;            /* the blocks are f's own now */
     memset(f, 0, sizeof *f);
     return hdi_scope_end(&s);
 }
 
-/* The bytes of that. */
-static uint64_t hdi_factor_bytes(const hdi_symbolic *sym, int32_t width) {
-    hd_error none;
-    uint64_t bytes;
-    hdi_scope s = hdi_scope_tally(&bytes, &none);
-    hdi_factor f;
-    hdi_factor_take(&f, sym, width, &s);
-    return bytes;
+static hd_status hdi_factor_make(hdi_factor *f, const hdi_symbolic *sym, int32_t width, hd_context *ctx,
+                                 hd_error *e) {
+    return hdi_factor_room(f, NULL, sym, width, ctx, e);
 }
 
 /* Pack i of several that are factorised in turn: those after the first are its guests. */
 static hd_status hdi_factor_make_pack(hdi_factor *pack, int32_t i, const hdi_symbolic *sym, hd_context *ctx,
                                       hd_error *e) {
-    if (i > 0) return hdi_factor_make_guest(pack + i, pack, e);
-    return hdi_factor_make(pack, sym, HDI_PACK, ctx, e);
+    return hdi_factor_room(pack + i, i > 0 ? pack : NULL, sym, HDI_PACK, ctx, e);
+}
+
+/* The bytes of a factor, or of a guest. */
+static uint64_t hdi_factor_tally(const hdi_symbolic *sym, int32_t width, int guest) {
+    hd_error none;
+    uint64_t bytes;
+    hdi_scope s = hdi_scope_tally(&bytes, &none);
+    hdi_factor f = hdi_factor_of(sym, width);
+    if (guest) hdi_factor_take_numbers(&f, &s);
+    else hdi_factor_take(&f, sym, width, &s);
+    return bytes;
+}
+
+static uint64_t hdi_factor_bytes(const hdi_symbolic *sym, int32_t width) {
+    return hdi_factor_tally(sym, width, 0);
+}
+
+static uint64_t hdi_factor_guest_bytes(const hdi_symbolic *sym, int32_t width) {
+    return hdi_factor_tally(sym, width, 1);
 }
 
 /* Collects what the parts saw. Of several failures that of the lowest pivot is reported: no thread stops a
@@ -13305,6 +13303,16 @@ static hd_status hdi_factor_run(hdi_factor *f, const hdi_values *values, hd_erro
 }
 
 /* ---- solves ---- */
+
+/* Where the numbers of an entry stand outside, by rows of the matrix: number q of row i is in[q][stride i].
+ * NULL in both: zero, and no answer is asked for. They are fetched some pivots ahead. */
+typedef struct hdi_ports {
+    const double *in[HDI_PACK];
+    double *out[HDI_PACK];
+    const int32_t *row;          /* [n] of a pivot */
+    int32_t stride;
+} hdi_ports;
+
 /* x has n entries in elimination order. On the way up a front hands a vector to its parent, as it does with
  * update matrices, so that subtrees are independent both ways. Right-hand sides with few non-zeros touch few
  * fronts: active [n_super] marks them, closed towards the roots; NULL: all. */
@@ -13316,35 +13324,37 @@ typedef struct hdi_sweep {
     const char *active;          /* forward */
     const double *const *rhs;    /* [k][n] real right-hand sides, the same for all matrices of a pack; NULL in
                                     it: zero. NULL: they are in x, which otherwise is only written */
+    const hdi_ports *ports;      /* right-hand sides and answers, of 8 numbers or one for a pivot; or NULL */
     const char *wanted;          /* backward: fronts whose part of x is asked for, closed towards the roots;
                                     NULL: all */
     hdi_walk *walk;
     int32_t *pending, *order;    /* [2 nodes] what they wait for; nodes as they become ready */
 } hdi_sweep;
 
+/* to[rel[i]] += from[i] for entries [i,end) of w doubles; what goes to consecutive places at once. */
+static void hdi_sweep_add(const hdi_kernels *o, int64_t w, double *to, const int32_t *rel, int64_t i,
+                          int64_t end, const double *from) {
+    int64_t j;
+    for (; w == 1 && i < end; i++) to[rel[i]] += from[i];
+    for (; i < end; i = j) {
+        for (j = i + 1; j < end && rel[j] == rel[j - 1] + 1; j++) {}
+        o->add(to + w * rel[i], from + w * i, w * (j - i));
+    }
+}
+
 /* The children's vectors, into the pivots' part of x and into t, which is cleared before. */
 static void hdi_sweep_children(const hdi_sweep *z, int32_t v, double *y, double *t) {
     const hdi_symbolic *s = z->f->sym;
     const int64_t p = hdi_front_pivots(s, v), w = (int64_t)z->f->width * z->k;
-    int64_t i, q;
-    int32_t k, e;
+    int32_t k;
     memset(t, 0, (size_t)(w * hdi_front_below(s, v)) * sizeof *t);
     for (k = s->kid_ptr[v]; k < s->kid_ptr[v + 1]; k++) {
-        const int32_t c = s->kid[k], *HDI_RESTRICT rel = s->rel + s->row_ptr[c];
+        const int32_t c = s->kid[k], *rel = s->rel + s->row_ptr[c];
         const int64_t uc = hdi_front_below(s, c), inner = s->inner[c];
-        const double *HDI_RESTRICT from = z->vec + w * s->vector[c];
-        double *HDI_RESTRICT below = t - w * p;
+        const double *from = z->vec + w * s->vector[c];
         if (z->active && !z->active[c]) continue;
-        if (w == 1) {
-            for (i = 0; i < inner; i++) y[rel[i]] += from[i];
-            for (; i < uc; i++) below[rel[i]] += from[i];
-            continue;
-        }
-        for (i = 0; i < uc; i++) {
-            double *HDI_RESTRICT to = (i < inner ? y : below) + w * rel[i];
-            for (q = 0; q < w; q += 8)
-                for (e = 0; e < 8; e++) to[q + e] += from[w * i + q + e];
-        }
+        hdi_sweep_add(z->f->ops, w, y, rel, 0, inner, from);
+        hdi_sweep_add(z->f->ops, w, t - w * p, rel, inner, uc, from);
     }
 }
 
@@ -13373,6 +13383,23 @@ static void hdi_sweep_single(const hdi_sweep *z, const hdi_block *b, int64_t k, 
     else z->f->ops->up(&g);
 }
 
+/* x = L11^-1 x for a block and several right-hand sides; or x = L11^-T x: from its last row and column on L11'
+ * is like L11. */
+static void hdi_sweep_triangle(const hdi_sweep *z, const hdi_block *b, double *x, int down) {
+    const int64_t last = b->width - 1, ld = b->ld;
+    hdi_solve g;
+    memset(&g, 0, sizeof g);
+    g.n = z->k;
+    g.nb = b->width;
+    g.x = down ? x + b->entry * z->k * last : x;
+    g.x_col = down ? -g.n : g.n;
+    g.b = down ? b->at + b->entry * last * (ld + 1) : b->at;
+    g.b_row = down ? -1 : ld;
+    g.b_col = down ? -ld : 1;
+    g.b_next = z->f->ops->nr * g.b_col;
+    z->f->ops->solve(&g);
+}
+
 /* y = L11^-1 y, t -= L21 y */
 static void hdi_sweep_forward(const hdi_sweep *z, int32_t v, double *y, double *t) {
     const hdi_factor *f = z->f;
@@ -13383,26 +13410,34 @@ static void hdi_sweep_forward(const hdi_sweep *z, int32_t v, double *y, double *
     for (q = 0; q * HDI_PANEL < p; q++) {
         const hdi_block b = hdi_block_of(panel, f->width, p + u, p, q);
         const int64_t end = b.begin + b.width;
-        hdi_solve g;
+        double *own = y + row * b.begin;
         if (row == 1) {
             for (k = 0; k < b.width; k += 8) hdi_sweep_single(z, &b, k, p, u, y, t, 0);
             continue;
         }
-        g.x = y + row * b.begin;
-        g.x_col = g.n = z->k;
-        g.b = b.at;
-        g.b_row = b.ld;
-        g.b_col = 1;
-        g.b_next = f->ops->nr;
-        g.before = 0;
-        g.nb = b.width;
-        g.dinv = NULL;
-        f->ops->solve(&g);
+        hdi_sweep_triangle(z, &b, own, 0);
         for (k = 0; k < b.width; k += n) {
             n = hdi_least(b.width - k, HDI_SWEEP_DEPTH);
-            hdi_kernels_rows(f->ops, y + row * end, z->k, p - end, g.x + row * k, n,
+            hdi_kernels_rows(f->ops, y + row * end, z->k, p - end, own + row * k, n,
                              hdi_block_at(&b, end, b.begin + k), b.ld, 1);
-            hdi_kernels_rows(f->ops, t, z->k, u, g.x + row * k, n, hdi_block_at(&b, p, b.begin + k), b.ld, 1);
+            hdi_kernels_rows(f->ops, t, z->k, u, own + row * k, n, hdi_block_at(&b, p, b.begin + k), b.ld,
+                             1);
+        }
+    }
+}
+
+/* The pivots' part of the right-hand sides from outside, or of the answers to there. */
+static void hdi_sweep_ports(const hdi_sweep *z, int32_t v, double *y, int down) {
+    const int32_t *super = z->f->sym->super + v, n = z->f->sym->n, ahead = down ? -24 : 24;
+    const hdi_ports *g = z->ports;
+    int32_t i, r;
+    for (i = super[0]; g && i < super[1]; i++) {
+        const int32_t next = i + ahead >= 0 && i + ahead < n ? i + ahead : i;
+        const int64_t at = (int64_t)g->stride * g->row[i], soon = (int64_t)g->stride * g->row[next];
+        for (r = 0; r < z->f->width * z->k; r++, y++) {
+            if (!down) *y = g->in[r] ? g->in[r][at] : 0;
+            else if (g->out[r]) g->out[r][at] = *y;
+            if (g->in[r]) HDI_PREFETCH((down ? g->out[r] : g->in[r]) + soon);
         }
     }
 }
@@ -13411,8 +13446,8 @@ static void hdi_sweep_forward(const hdi_sweep *z, int32_t v, double *y, double *
 static void hdi_sweep_take(const hdi_sweep *z, int32_t v, double *y) {
     const int32_t *super = z->f->sym->super + v, width = z->f->width;
     int32_t i, r;
-    if (!z->rhs) return;
-    for (i = super[0]; i < super[1]; i++) {
+    hdi_sweep_ports(z, v, y, 0);
+    for (i = super[0]; z->rhs && i < super[1]; i++) {
         for (r = 0; r < z->k; r++, y += width) {
             y[0] = z->rhs[r] ? z->rhs[r][i] : 0;
             if (width == 1) continue;
@@ -13438,15 +13473,14 @@ static void hdi_sweep_divide(const hdi_sweep *z, int32_t v, double *y) {
     double t[HDI_PACK];
     int64_t i;
     int32_t r;
-    for (i = 0; i < p; i++, d += width) {
-        for (r = 0; r < z->k; r++, y += width) {
-            if (width == 1) {
-                *y *= *d;
-                continue;
-            }
-            memcpy(t, y, sizeof t);
-            hdi_pack_times(t, d, y);
-        }
+    for (i = 0; i < p && width == 1; i++) {
+        const double inverse = d[i];
+        if (z->k == 1) *y++ *= inverse;
+        else for (r = 0; r < 8; r++) *y++ *= inverse;
+    }
+    for (i = 0; i < p * z->k && width > 1; i++, y += HDI_PACK) {
+        memcpy(t, y, sizeof t);
+        hdi_pack_times(t, d + HDI_PACK * (i / z->k), y);
     }
 }
 
@@ -13459,14 +13493,13 @@ static void hdi_sweep_backward(const hdi_sweep *z, int32_t v, double *y, double 
     double *panel = f->panel + f->width * f->sym->panel[v];
     int64_t i, q;
     if (!hdi_sweep_clear(z, v, y)) hdi_sweep_divide(z, v, y);
-    if (row == 1) for (i = 0; i < u; i++) rows[i] = z->x[idx[i]];
-    else for (i = 0; i < u; i++)
+    for (i = 0; row == 1 && i < u; i++) rows[i] = z->x[idx[i]];
+    for (; i < u; i++)
         for (q = 0; q < row; q += 8) hdi_entry_copy(8, rows + row * i + q, z->x + row * idx[i] + q);
     for (q = (p - 1) / HDI_PANEL; q >= 0; q--) {
         const hdi_block b = hdi_block_of(panel, f->width, p + u, p, q);
         const int64_t end = b.begin + b.width;
         double *own = y + row * b.begin;
-        hdi_solve g;
         if (row == 1) {
             for (i = (b.width - 1) / 8 * 8; i >= 0; i -= 8) hdi_sweep_single(z, &b, i, p, u, y, rows, 1);
             continue;
@@ -13474,18 +13507,7 @@ static void hdi_sweep_backward(const hdi_sweep *z, int32_t v, double *y, double 
         hdi_kernels_rows(f->ops, own, z->k, b.width, rows, u, hdi_block_at(&b, p, b.begin), 1, b.ld);
         hdi_kernels_rows(f->ops, own, z->k, b.width, y + row * end, p - end, hdi_block_at(&b, end, b.begin),
                          1, b.ld);
-        /* L11' from its last row and column on is like L11 */
-        g.x = own + row * (b.width - 1);
-        g.n = z->k;
-        g.x_col = -g.n;
-        g.b = hdi_block_at(&b, end - 1, end - 1);
-        g.b_row = -1;
-        g.b_col = -b.ld;
-        g.b_next = -f->ops->nr * b.ld;
-        g.before = 0;
-        g.nb = b.width;
-        g.dinv = NULL;
-        f->ops->solve(&g);
+        hdi_sweep_triangle(z, &b, own, 1);
     }
 }
 
@@ -13512,6 +13534,7 @@ static void hdi_sweep_front(const hdi_sweep *z, int32_t v) {
     hdi_factor_fetch(f, v, z->backward);
     if (z->backward) {
         hdi_sweep_backward(z, v, y, t);
+        hdi_sweep_ports(z, v, y, 1);
         return;
     }
     hdi_sweep_take(z, v, y);
@@ -13706,27 +13729,37 @@ static hd_status hdi_ldl_values(const hd_ldl *f, const double *val, int stride, 
     return HD_OK;
 }
 
-static hd_status hdi_ldl_factor(hd_ldl *f, const double *val, hd_error *e) {
+/* Factor i of k matrices: the real one, or a pack, where a matrix that is not there is the last one again. */
+static hd_status hdi_ldl_factor_one(hd_ldl *f, hdi_factor *of, int32_t i, int32_t k, const double *val,
+                                    hd_error *e) {
+    const int packs = of->width > 1;
+    const int32_t first = HDI_PACK_LANES * i;
     hdi_values v;
-    double largest = 0;
-    if (hdi_ldl_values(f, val, 1, &largest, e) < 0) return e->status;
-    if (!f->real.ctx && hdi_factor_make(&f->real, &f->sym, 1, f->ctx, e) < 0) return e->status;
+    int32_t q;
     memset(&v, 0, sizeof v);
     v.real = val;
-    f->real.largest_entry = largest;
-    return hdi_factor_run(&f->real, &v, e);
+    of->largest_entry = 0;
+    for (q = 0; q < (packs ? (int32_t)HDI_PACK_LANES : 1); q++) {
+        const double *z = val && packs ? val + 2 * f->nnz * hdi_least(first + q, k - 1) : val;
+        v.z[q] = (const hd_c64 *)(const void *)z;
+        if (first + q < k && hdi_ldl_values(f, z, packs ? 2 : 1, &of->largest_entry, e) < 0) {
+            if (packs) e->pole = first + q;
+            return e->status;
+        }
+    }
+    if (hdi_factor_run(of, &v, e) < 0 && e->pole >= 0) e->pole += first;
+    return e->status;
 }
 
-/* Room for packs for k matrices. */
-static hd_status hdi_ldl_packs(hd_ldl *f, int32_t k, hd_error *e) {
+/* Room for the real factor, or with k > 0 for packs for k matrices. */
+static hd_status hdi_ldl_make(hd_ldl *f, int32_t k, hd_error *e) {
     const int32_t want = k / HDI_PACK_LANES + (k % HDI_PACK_LANES > 0);
     hdi_factor *pack;
-    int32_t i;
+    if (k == 0 && !f->real.ctx) return hdi_factor_make(&f->real, &f->sym, 1, f->ctx, e);
     if (f->n_packs >= want) return HD_OK;
-    pack = (hdi_factor *)hdi_alloc(f->ctx, (uint64_t)want, sizeof *pack, e);
+    pack = (hdi_factor *)hdi_alloc_zero(f->ctx, (uint64_t)want, sizeof *pack, e);
     if (!pack) return e->status;
-    memset(pack, 0, (size_t)want * sizeof *pack);
-    for (i = 0; i < f->n_packs; i++) pack[i] = f->pack[i];
+    if (f->n_packs > 0) memcpy(pack, f->pack, (size_t)f->n_packs * sizeof *pack);
     hdi_free(f->ctx, f->pack);
     f->pack = pack;
     for (; f->n_packs < want; f->n_packs++)
@@ -13734,38 +13767,23 @@ static hd_status hdi_ldl_packs(hd_ldl *f, int32_t k, hd_error *e) {
     return HD_OK;
 }
 
-/* Pack i of k matrices; a matrix that is not there is the last one again. */
-static hd_status hdi_ldl_factor_pack(hd_ldl *f, int32_t i, int32_t k, const hd_c64 *val, hd_error *e) {
-    hdi_factor *pack = f->pack + i;
-    hdi_values v;
-    int32_t q;
-    memset(&v, 0, sizeof v);
-    pack->largest_entry = 0;
-    for (q = 0; q < HDI_PACK_LANES; q++) {
-        const int32_t matrix = HDI_PACK_LANES * i + q;
-        v.z[q] = f->nnz > 0 ? val + f->nnz * hdi_least(matrix, k - 1) : val;
-        if (f->nnz > 0 && matrix < k && hdi_ldl_values(f, &v.z[q]->re, 2, &pack->largest_entry, e) < 0) {
-            e->pole = matrix;
-            return e->status;
-        }
-    }
-    if (hdi_factor_run(pack, &v, e) < 0 && e->pole >= 0) e->pole += HDI_PACK_LANES * i;
-    return e->status;
-}
-
-static hd_status hdi_ldl_factor_complex(hd_ldl *f, int32_t k, const hd_c64 *val, hd_ldl_report *rep,
-                                        hd_error *e) {
-    hd_ldl_report one;
+/* The real matrix, with k 0, or k complex ones. */
+static hd_status hdi_ldl_factor(hd_ldl *f, int32_t k, const double *val, hd_ldl_report *rep, hd_error *e) {
+    hd_ldl_report all, one;
     int32_t i;
-    if (hdi_ldl_packs(f, k, e) < 0) return e->status;
-    for (i = 0; HDI_PACK_LANES * i < k; i++) {
-        if (hdi_ldl_factor_pack(f, i, k, val, e) < 0) return e->status;
-        hdi_ldl_tell(f, f->pack + i, &one);
-        if (i == 0) *rep = one;
-        rep->growth = hdi_max(rep->growth, one.growth);
-        rep->smallest_pivot = hdi_min(rep->smallest_pivot, one.smallest_pivot);
+    f->n_matrices = f->real.ready = 0;
+    if (hdi_ldl_make(f, k, e) < 0) return e->status;
+    for (i = 0; i == 0 || HDI_PACK_LANES * i < k; i++) {
+        hdi_factor *of = k > 0 ? f->pack + i : &f->real;
+        if (hdi_ldl_factor_one(f, of, i, k > 0 ? k : 1, val, e) < 0) return e->status;
+        hdi_ldl_tell(f, of, &one);
+        if (i == 0) all = one;
+        all.growth = hdi_max(all.growth, one.growth);
+        all.smallest_pivot = hdi_min(all.smallest_pivot, one.smallest_pivot);
     }
-    rep->n_matrices = f->n_matrices = k;
+    f->n_matrices = k;
+    if (k > 0) all.n_matrices = k;
+    if (rep) *rep = all;
     return HD_OK;
 }
 
@@ -13780,41 +13798,26 @@ static hd_status hdi_ldl_room(hd_ldl *f, int which, hd_error *e) {
     return e->status;
 }
 
-/* Real right-hand sides [q, q + n_cols), at most 8 side by side: one alone, or eight, some of them zero. */
-static void hdi_ldl_solve_real(hd_ldl *f, int32_t q, int32_t n_cols, const double *b, size_t ldb, double *x,
-                               size_t ldx) {
-    const int32_t wide = n_cols > 1 ? 8 : 1;
-    double *at = f->x[0];
-    hdi_sweep z = hdi_sweep_open(&f->real, wide, f->x[0], f->work[0]);
-    int32_t i, r;
-    for (i = 0; i < f->n; i++, at += wide)
-        for (r = 0; r < wide; r++)
-            at[r] = r < n_cols ? b[(size_t)(q + r) * ldb + (size_t)f->sym.perm[i]] : 0;
-    hdi_sweep_run(&z, f->ctx);
-    for (i = 0, at = f->x[0]; i < f->n; i++, at += wide)
-        for (r = 0; r < n_cols; r++)
-            x[(size_t)(q + r) * ldx + (size_t)f->sym.perm[i]] = at[r];
-}
-
-/* One right-hand side for each matrix of pack p, or with ldb 0 the same for all. */
-static void hdi_ldl_solve_pack(hd_ldl *f, int32_t p, const hd_c64 *b, size_t ldb, hd_c64 *x, size_t ldx) {
-    const int32_t lanes = hdi_ldl_lanes(f, p);
-    double *at = f->x[1];
-    hdi_sweep z = hdi_sweep_open(f->pack + p, 1, f->x[1], f->work[1]);
-    int32_t i, q;
-    b += HDI_PACK_LANES * (size_t)p * ldb;
-    x += HDI_PACK_LANES * (size_t)p * ldx;
-    for (i = 0; i < f->n; i++, at += HDI_PACK) {
-        for (q = 0; q < HDI_PACK_LANES; q++) {
-            const hd_c64 v = b[(size_t)(q < lanes ? q : 0) * ldb + (size_t)f->sym.perm[i]];
-            at[q] = v.re;
-            at[q + HDI_PACK_LANES] = v.im;
-        }
+/* n right-hand sides of the real factor, 8 at most, or one for each of n matrices of a pack: ldb and ldx
+ * numbers apart, of one double or two. */
+static void hdi_ldl_solve(hd_ldl *f, const hdi_factor *of, int32_t n, const double *b, size_t ldb, double *x,
+                          size_t ldx) {
+    const int packs = of->width > 1;
+    const int32_t stride = packs ? 2 : 1, most = (int32_t)HDI_PACK / stride;
+    hdi_sweep z = hdi_sweep_open(of, packs || n == 1 ? 1 : 8, f->x[packs], f->work[packs]);
+    hdi_ports g;
+    int32_t q;
+    memset(&g, 0, sizeof g);
+    g.row = f->sym.perm;
+    g.stride = stride;
+    for (q = 0; q < HDI_PACK; q++) {
+        const size_t lane = (size_t)(q % most), part = (size_t)(q / most);
+        if (q % most >= n) continue;
+        g.in[q] = b + (size_t)stride * lane * ldb + part;
+        g.out[q] = x + (size_t)stride * lane * ldx + part;
     }
+    z.ports = &g;
     hdi_sweep_run(&z, f->ctx);
-    for (i = 0, at = f->x[1]; i < f->n; i++, at += HDI_PACK)
-        for (q = 0; q < lanes; q++)
-            x[(size_t)q * ldx + (size_t)f->sym.perm[i]] = hdi_c(at[q], at[q + HDI_PACK_LANES]);
 }
 
 static void hdi_ldl_free(hd_ldl *f) {
@@ -31661,23 +31664,16 @@ HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ld
 HEATDIFF_API hd_status hd_ldl_factor(hd_ldl *f, const double *val, hd_ldl_report *report, hd_error *err) {
     hdi_call c;
     if (hdi_ldl_enter(&c, f, 0, f && (f->nnz == 0 || val), err) < 0 || !HDI_HAS_DIRECT) return c.e->status;
-    f->n_matrices = f->real.ready = 0;
-    if (hdi_ldl_factor(f, val, c.e) < 0) return c.e->status;
-    hdi_ldl_tell(f, &f->real, report);
-    return HD_OK;
+    return hdi_ldl_factor(f, 0, val, report, c.e);
 }
 
 HEATDIFF_API hd_status hd_ldl_factor_complex(hd_ldl *f, int32_t k, const hd_c64 *val, hd_ldl_report *report,
                                              hd_error *err) {
-    hd_ldl_report all;
     hdi_call c;
     if (hdi_ldl_enter(&c, f, 1, f && (f->nnz == 0 || val), err) < 0 || !HDI_HAS_POLE_FACTORS)
         return c.e->status;
     if (k < 1) return hdi_fail(c.e, HD_ERR_ARGUMENT, "ldl: the number of matrices is not positive");
-    f->n_matrices = f->real.ready = 0;
-    if (hdi_ldl_factor_complex(f, k, val, &all, c.e) < 0) return c.e->status;
-    if (report) *report = all;
-    return HD_OK;
+    return hdi_ldl_factor(f, k, val ? &val->re : NULL, report, c.e);
 }
 
 HEATDIFF_API hd_status hd_ldl_solve(hd_ldl *f, int32_t k, const double *b, size_t ldb, double *x, size_t ldx,
@@ -31690,10 +31686,13 @@ HEATDIFF_API hd_status hd_ldl_solve(hd_ldl *f, int32_t k, const double *b, size_
     ldb = ldb ? ldb : (size_t)f->n;
     ldx = ldx ? ldx : (size_t)f->n;
     if (hdi_ldl_leading(f, ldb, ldx, c.e) < 0 || hdi_ldl_room(f, 0, c.e) < 0) return c.e->status;
-    for (q = 0; q < k; q += 8) {                 /* in place no answer may reach what is still to be read */
-        const int32_t at = ldx > ldb ? (k - 1) / 8 * 8 - q : q;
-        hdi_ldl_solve_real(f, at, k - at < 8 ? k - at : 8, b, ldb, x, ldx);
+    for (q = 0; q < k && b == x && ldb != ldx; q++) {
+        const size_t at = (size_t)(ldx > ldb ? k - 1 - q : q);   /* none is written over before it has moved */
+        memmove(x + at * ldx, x + at * ldb, (size_t)f->n * sizeof *x);
     }
+    if (b == x) ldb = ldx;
+    for (q = 0; q < k; q += 8)
+        hdi_ldl_solve(f, &f->real, k - q < 8 ? k - q : 8, b + (size_t)q * ldb, ldb, x + (size_t)q * ldx, ldx);
     return HD_OK;
 }
 
@@ -31709,8 +31708,12 @@ HEATDIFF_API hd_status hd_ldl_solve_complex(hd_ldl *f, const hd_c64 *b, size_t l
         return hdi_fail(c.e, HD_ERR_ARGUMENT,
                         "ldl: x may be b only when both have the same leading dimension");
     if (hdi_ldl_room(f, 1, c.e) < 0) return c.e->status;
-    p = (f->n_matrices + HDI_PACK_LANES - 1) / HDI_PACK_LANES;
-    while (p-- > 0) hdi_ldl_solve_pack(f, p, b, ldb, x, ldx);   /* from the last: x may be the b of all */
+    p = (f->n_matrices - 1) / HDI_PACK_LANES;
+    for (; p >= 0; p--) {                        /* from the last: x may be the b of all */
+        const size_t first = HDI_PACK_LANES * (size_t)p;
+        hdi_ldl_solve(f, f->pack + p, hdi_ldl_lanes(f, p), b ? &b[first * ldb].re : NULL, ldb,
+                      x ? &x[first * ldx].re : NULL, ldx);
+    }
     return HD_OK;
 }
 
