@@ -12513,7 +12513,8 @@ typedef struct hdi_factor {
     hdi_pivots all;                  /* of the last factorisation */
     double largest_entry;            /* |diagonal entry of A|, the largest */
     int32_t ready;
-    int32_t guest;                   /* work, scratch, counts, order and pivots are another's */
+    void *block[8];                  /* its own of these arrays: a guest has the numbers only */
+    int32_t n_blocks;
     const hdi_values *values;        /* of a factorisation under way */
 } hdi_factor;
 
@@ -12927,10 +12928,6 @@ static void hdi_front_part(const void *front, int stage, int64_t r0, int64_t r1,
     }
 }
 
-static int32_t hdi_front_block_size(const hdi_factor *f) {
-    return (int32_t)hdi_front_pivot_block(f->width);
-}
-
 /* Whether threads share front v. */
 static int hdi_front_shared(const hdi_symbolic *s, int32_t v) {
     return s->task_of[v] < 0 && hdi_front_rows(s, v) >= HDI_FRONT_SHARED;
@@ -12938,7 +12935,7 @@ static int hdi_front_shared(const hdi_symbolic *s, int32_t v) {
 
 /* Front v, by this thread. 0 when a pivot cannot be divided by. */
 static int hdi_front_factor(const hdi_factor *f, int32_t v, double *scratch, hdi_pivots *note) {
-    const int64_t most = hdi_front_block_size(f);
+    const int64_t most = hdi_front_pivot_block(f->width);
     hdi_front w = hdi_front_open(f, v, scratch);
     hdi_front_part(&w, HDI_FRONT_ASSEMBLE, 0, w.m, w.work);
     for (; w.k0 < w.p; w.k0 += w.nb) {
@@ -12959,18 +12956,13 @@ static double *hdi_factor_scratch(const hdi_factor *f, int64_t i) {
     return f->scratch + f->scratch_size * (size_t)i;
 }
 
+/* Frees what only factoring needs, which is all but the numbers. */
+static void hdi_factor_settle(hdi_factor *f) {
+    while (f->n_blocks > 2) hdi_free(f->ctx, f->block[--f->n_blocks]);
+}
+
 static void hdi_factor_free(hdi_factor *f) {
-    if (!f->ctx) return;
-    hdi_free(f->ctx, f->panel);
-    hdi_free(f->ctx, f->dinv);
-    if (!f->guest) {
-        hdi_free(f->ctx, f->work);
-        hdi_free(f->ctx, f->scratch);
-        hdi_free(f->ctx, f->chunk_scratch);
-        hdi_free(f->ctx, f->counts);
-        hdi_free(f->ctx, f->order);
-        hdi_free(f->ctx, f->pivots);
-    }
+    while (f->n_blocks > 0) hdi_free(f->ctx, f->block[--f->n_blocks]);
     memset(f, 0, sizeof *f);
 }
 
@@ -13000,7 +12992,7 @@ typedef struct hdi_factor_walk {
 /* The shape of front v in blocks and chunks. */
 static void hdi_factor_shape(hdi_factor_walk *t, int32_t v) {
     hdi_front_shape(t->f->sym, v, &t->w.p, &t->w.u, &t->w.m);
-    t->nb = hdi_front_block_size(t->f);
+    t->nb = (int32_t)hdi_front_pivot_block(t->f->width);
     t->n_blocks = (int32_t)((t->w.p + t->nb - 1) / t->nb);
     t->n_chunks = (int32_t)((t->w.m + HDI_FRONT_CHUNK - 1) / HDI_FRONT_CHUNK);
 }
@@ -13052,16 +13044,6 @@ static hdi_factor hdi_factor_of(const hdi_symbolic *sym, int32_t width) {
     return f;
 }
 
-/* Room to work in: chunks that the largest front of the top has. */
-static uint64_t hdi_factor_chunks(const hdi_symbolic *s) {
-    return (uint64_t)(s->n_top ? s->largest_front / HDI_FRONT_CHUNK + 1 : 0);
-}
-
-/* Parts of the tree that have a scratch and pivots of their own. */
-static uint64_t hdi_factor_parts(const hdi_symbolic *s) {
-    return (uint64_t)(s->n_tasks > 0 ? s->n_tasks : 1);
-}
-
 /* The numbers of a factor. */
 static void hdi_factor_take_numbers(hdi_factor *f, hdi_scope *s) {
     const uint64_t w = (uint64_t)f->width;
@@ -13073,14 +13055,16 @@ static void hdi_factor_take_numbers(hdi_factor *f, hdi_scope *s) {
 
 /* A factor of the given width with the arrays that factoring and refactoring need. */
 static void hdi_factor_take(hdi_factor *f, const hdi_symbolic *sym, int32_t width, hdi_scope *s) {
-    const uint64_t n_parts = hdi_factor_parts(sym), n_chunks = hdi_factor_chunks(sym);
+    const uint64_t n_chunks = (uint64_t)(sym->n_top ? sym->largest_front / HDI_FRONT_CHUNK + 1 : 0);
+    const uint64_t n_parts = (uint64_t)(sym->n_tasks > 0 ? sym->n_tasks : 1);
     const uint64_t tops = sym->n_top > 0 ? n_chunks > 0 ? 2 : 1 : 0;
     *f = hdi_factor_of(sym, width);
     hdi_factor_take_numbers(f, s);
     f->work = HDI_TAKE(s, double, (uint64_t)sym->work * (uint64_t)width);
     f->scratch = HDI_TAKE(s, double, f->scratch_size * n_parts + tops * f->top_size);
     f->chunk_scratch = HDI_TAKE(s, double, f->chunk_size * n_chunks + 1);
-    f->counts = HDI_TAKE(s, int32_t, sym->largest_pivots / hdi_front_block_size(f) + (int64_t)n_chunks + 2);
+    f->counts = HDI_TAKE(s, int32_t, sym->largest_pivots / hdi_front_pivot_block(width) + (int64_t)n_chunks +
+                         2);
     f->pivots = HDI_TAKE(s, hdi_pivots, n_parts + 1);
     f->n_order = hdi_factor_nodes(f);
     f->order = HDI_TAKE(s, int32_t, f->n_order + 1);
@@ -13097,15 +13081,15 @@ static hd_status hdi_factor_room(hdi_factor *f, const hdi_factor *host, const hd
     hdi_scope s = hdi_scope_begin(ctx, e);
     if (host) {
         *f = *host;
-        f->guest = 1;
         f->ready = 0;
         hdi_factor_take_numbers(f, &s);
     } else {
         hdi_factor_take(f, sym, width, &s);
     }
-    if (e->status >= 0) return HD_OK;            /* the blocks are f's own now */
-    memset(f, 0, sizeof *f);
-    return hdi_scope_end(&s);
+    f->n_blocks = s.n;
+    memcpy(f->block, s.block, sizeof f->block);
+    if (e->status < 0) hdi_factor_free(f);
+    return e->status;
 }
 
 static hd_status hdi_factor_make(hdi_factor *f, const hdi_symbolic *sym, int32_t width, hd_context *ctx,
@@ -13383,8 +13367,8 @@ static void hdi_sweep_single(const hdi_sweep *z, const hdi_block *b, int64_t k, 
     else z->f->ops->up(&g);
 }
 
-/* x = L11^-1 x for a block and several right-hand sides; or x = L11^-T x: from its last row and column on L11'
- * is like L11. */
+/* x = L11^-1 x for a block and several right-hand sides; or x = L11^-T x, because L11' from its last row and
+ * column on is like L11. */
 static void hdi_sweep_triangle(const hdi_sweep *z, const hdi_block *b, double *x, int down) {
     const int64_t last = b->width - 1, ld = b->ld;
     hdi_solve g;
@@ -13559,45 +13543,29 @@ static int32_t hdi_sweep_node_of(const hdi_symbolic *s, int32_t v) {
     return task >= 0 ? task : s->n_tasks - 1 - task;
 }
 
-/* Whether supernode v hands its vector to a front of the top. */
-static int hdi_sweep_below_top(const hdi_symbolic *s, int32_t v) {
-    return s->parent[v] >= 0 && s->task_of[s->parent[v]] < 0;
-}
-
-/* What nodes wait for. */
-static void hdi_sweep_count(const hdi_sweep *z) {
-    const hdi_symbolic *s = z->f->sym;
-    const int32_t n = hdi_sweep_nodes(s);
-    int32_t *up = z->pending, *down = z->pending + n, i, k;
-    memset(up, 0, 2 * (size_t)n * sizeof *up);
-    for (i = 0; i < s->n_top; i++) {
-        const int32_t v = s->top[i];
-        up[s->n_tasks + i] = s->kid_ptr[v + 1] - s->kid_ptr[v];
-        for (k = s->kid_ptr[v]; k < s->kid_ptr[v + 1]; k++) down[hdi_sweep_node_of(s, s->kid[k])]++;
-    }
-    for (i = 0; i < n; i++)
-        if (down[i] == 0) down[i] = -1;          /* waits for its own way up */
-}
-
-/* One of the things that a node waits for is done. */
+/* One of the things that a node waits for is done; or, while they are counted, known. */
 static void hdi_sweep_arrive(const hdi_sweep *z, int32_t node) {
-    if (HDI_ATOMIC_ADD(z->pending + node, -1) == 0) hdi_release(z->walk, node, 1);
+    if (!z->walk) z->pending[node]++;
+    else if (HDI_ATOMIC_ADD(z->pending + node, -1) == 0) hdi_release(z->walk, node, 1);
 }
 
-/* Node i is done, upwards or downwards: those that waited for it. */
+/* Node i is done: those that wait for it. */
 static void hdi_sweep_next(const hdi_sweep *z, int32_t i) {
     const hdi_symbolic *s = z->f->sym;
-    const int32_t n = hdi_sweep_nodes(s), top = i < s->n_tasks ? -1 : s->top[i - s->n_tasks];
-    int32_t v;
-    if (!z->backward) {
-        const int32_t begin = top < 0 ? s->task_begin[i] : top, end = top < 0 ? s->task_end[i] : top + 1;
-        if (z->pending[n + i] < 0) hdi_release(z->walk, n + i, 1);
-        for (v = begin; v < end; v++)
-            if (hdi_sweep_below_top(s, v)) hdi_sweep_arrive(z, hdi_sweep_node_of(s, s->parent[v]));
-    } else if (top >= 0) {
-        for (v = s->kid_ptr[top]; v < s->kid_ptr[top + 1]; v++)
+    const int32_t n = hdi_sweep_nodes(s), top = i % n < s->n_tasks ? -1 : s->top[i % n - s->n_tasks];
+    int32_t v = top < 0 ? s->task_begin[i % n] : top, alone = 1;
+    const int32_t end = top < 0 ? s->task_end[i % n] : top + 1;
+    if (i >= n) {
+        for (v = top < 0 ? 0 : s->kid_ptr[top]; top >= 0 && v < s->kid_ptr[top + 1]; v++)
             hdi_sweep_arrive(z, n + hdi_sweep_node_of(s, s->kid[v]));
+        return;
     }
+    for (; v < end; v++) {
+        if (s->parent[v] < end) continue;        /* none, or in the same subtree */
+        hdi_sweep_arrive(z, hdi_sweep_node_of(s, s->parent[v]));
+        alone = 0;
+    }
+    if (alone) hdi_sweep_arrive(z, n + i);
 }
 
 static void hdi_sweep_node(void *arg, int64_t index, int32_t worker) {
@@ -13612,7 +13580,7 @@ static void hdi_sweep_node(void *arg, int64_t index, int32_t worker) {
         for (v = s->task_end[i]; v-- > s->task_begin[i];) hdi_sweep_front(&z, v);
     else
         for (v = s->task_begin[i]; v < s->task_end[i]; v++) hdi_sweep_front(&z, v);
-    hdi_sweep_next(&z, i);
+    hdi_sweep_next(&z, (int32_t)index);
 }
 
 /* x = A^-1 x. On all threads with ctx, else (from within a task) on this one. */
@@ -13623,8 +13591,10 @@ static void hdi_sweep_run(hdi_sweep *z, hd_context *ctx) {
     hdi_walk w;
     int32_t i;
     hdi_walk_open(&w, bytes < HDI_SWEEP_SHARED ? NULL : ctx, 2 * n, z->order, hdi_sweep_node, z);
+    z->walk = NULL;
+    memset(z->pending, 0, 2 * (size_t)n * sizeof *z->pending);
+    for (i = 0; i < 2 * n; i++) hdi_sweep_next(z, i);
     z->walk = &w;
-    hdi_sweep_count(z);
     for (i = 0; i < n; i++)
         if (z->pending[i] == 0) hdi_release(&w, i, 1);
     hdi_walk_run(&w);
@@ -29619,10 +29589,7 @@ static hd_status hdi_geo_factor(hd_geodesic *g, hdi_factor *f, const hd_laplacia
         e->row = -1;
         return e->status;
     }
-    hdi_free(g->ctx, f->work);
-    hdi_free(g->ctx, f->scratch);
-    hdi_free(g->ctx, f->chunk_scratch);
-    f->work = f->scratch = f->chunk_scratch = NULL;
+    hdi_factor_settle(f);
     return HD_OK;
 }
 
@@ -31505,7 +31472,7 @@ HEATDIFF_API hd_status hd_ldl_solve(hd_ldl *f, int32_t k, const double *b, size_
     ldx = ldx ? ldx : (size_t)f->n;
     if (hdi_ldl_leading(f, ldb, ldx, c.e) < 0 || hdi_ldl_room(f, 0, c.e) < 0) return c.e->status;
     for (q = 0; q < k && b == x && ldb != ldx; q++) {
-        const size_t at = (size_t)(ldx > ldb ? k - 1 - q : q);   /* none is written over before it has moved */
+        const size_t at = (size_t)(ldx > ldb ? k - 1 - q : q);   /* none is written over before it moves */
         memmove(x + at * ldx, x + at * ldb, (size_t)f->n * sizeof *x);
     }
     if (b == x) ldb = ldx;
