@@ -4264,8 +4264,7 @@ HDI_PART void HDI_OF(eliminate)(const int pack, const hdi_eliminate *g) {
     const int top = HDI_COLS / HDI_ROWS;
     int h;
     for (h = 0; h < HDI_NUMBERS; h += HDI_ABREAST) {
-        if (top + 2 <= HDI_REGS && g->n > HDI_ROWS) HDI_OF(pivots)(pack, HDI_REGS, g, h);
-        else if (top + 1 <= HDI_REGS && g->n > 0) HDI_OF(pivots)(pack, top + 1, g, h);
+        if (top < HDI_REGS && g->n > 0) HDI_OF(pivots)(pack, HDI_REGS, g, h);
         else HDI_OF(pivots)(pack, top, g, h);
     }
 }
