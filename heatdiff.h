@@ -13943,7 +13943,7 @@ typedef struct hdi_inverse_front {
     double *panel, *z, *update;  /* L; Z of the pivots' columns in the same layout; Z22, a packed triangle */
     double *T, *S, *M, *D, *buffer;   /* T: -L11^-T; S, M: slices, of T' and of M; D: -1/d */
     int64_t m, p, u, k0, k1;
-    int32_t v, child;            /* child: whose Z22 is taken out */
+    int32_t v;
 } hdi_inverse_front;
 
 /* How much is taken at a time: rows that are gathered, and their entries. */
@@ -14152,10 +14152,10 @@ static void hdi_inverse_corner(const hdi_inverse_front *w, int64_t r0, int64_t r
     }
 }
 
-/* Columns [r0,r1) of the child's Z22, out of the finished front. */
-static void hdi_inverse_child(const hdi_inverse_front *w, int64_t r0, int64_t r1) {
+/* Columns [r0,r1) of child c's Z22, out of the finished front. */
+static void hdi_inverse_child(const hdi_inverse_front *w, int32_t c, int64_t r0, int64_t r1) {
     const hdi_symbolic *s = w->f->sym;
-    const int32_t c = w->child, *rel = s->rel + s->row_ptr[c], width = w->f->width;
+    const int32_t *rel = s->rel + s->row_ptr[c], width = w->f->width;
     const int64_t u = hdi_front_below(s, c);
     double *to = w->f->work + width * (s->update[c] + hdi_triangle_column(u, r0));
     int64_t a, b;
@@ -14172,15 +14172,6 @@ static void hdi_inverse_child(const hdi_inverse_front *w, int64_t r0, int64_t r1
 typedef enum hdi_inverse_stage {
     HDI_INVERSE_M, HDI_INVERSE_BELOW, HDI_INVERSE_CORNER, HDI_INVERSE_FORMS, HDI_INVERSE_CHILD
 } hdi_inverse_stage;
-
-/* One stage for rows [r0,r1). */
-static void hdi_inverse_part(const void *front, int stage, int64_t r0, int64_t r1, double *buffer) {
-    const hdi_inverse_front *w = (const hdi_inverse_front *)front;
-    if (stage == HDI_INVERSE_M) hdi_inverse_m(w, r0, r1, buffer);
-    else if (stage == HDI_INVERSE_BELOW) hdi_inverse_below(w, r0, r1, buffer);
-    else if (stage == HDI_INVERSE_CORNER) hdi_inverse_corner(w, r0, r1, buffer);
-    else hdi_inverse_child(w, r0, r1);
-}
 
 /* sum_c coef[c] z_c for every set, to place `at`. */
 static void hdi_inverse_put(const hdi_inverse *z, const double *from, int64_t at) {
@@ -14512,17 +14503,6 @@ static void hdi_inverse_set(hdi_inverse_step *c, int stage, int64_t begin, int64
     c->end = end;
 }
 
-/* The columns are there: what is wanted of them. */
-static void hdi_inverse_columns(hdi_inverse_step *c) {
-    hdi_inverse_set(c, HDI_INVERSE_FORMS, 0, 0);
-    if (c->z->wanted != HDI_WANT_FORMS) {
-        hdi_inverse_emit(c->z, &c->w);
-        return;
-    }
-    hdi_form_near(c->z, &c->w);
-    c->end = hdi_least(hdi_form_blocks(c->z->forms, c->w.v), HDI_FORM_SLOTS);
-}
-
 /* Goes on to the next stage, after what one thread must do before it. 0: there is none. */
 static int hdi_inverse_next(hdi_inverse_step *c) {
     hdi_inverse_front *w = &c->w;
@@ -14537,8 +14517,10 @@ static int hdi_inverse_next(hdi_inverse_step *c) {
         w->k0 = (w->k1 - 1) / HDI_PANEL * HDI_PANEL;
         hdi_inverse_pivots(w);
         hdi_inverse_set(c, HDI_INVERSE_M, w->k1, w->m);
-    } else if (c->stage == HDI_INVERSE_CORNER) {
-        hdi_inverse_columns(c);
+    } else if (c->stage == HDI_INVERSE_CORNER) {     /* the columns are there */
+        if (c->z->wanted != HDI_WANT_FORMS) hdi_inverse_emit(c->z, w);
+        else hdi_form_near(c->z, w);
+        hdi_inverse_set(c, HDI_INVERSE_FORMS, 0, hdi_least(blocks, HDI_FORM_SLOTS));
     } else if (c->stage == HDI_INVERSE_FORMS && c->end < blocks) {
         hdi_inverse_set(c, HDI_INVERSE_FORMS, c->end, hdi_least(blocks, c->end + HDI_FORM_SLOTS));
     } else if (c->stage == HDI_INVERSE_FORMS) {
@@ -14551,22 +14533,16 @@ static int hdi_inverse_next(hdi_inverse_step *c) {
 
 /* [r0,r1) of the stage. */
 static void hdi_inverse_do(const hdi_inverse_step *c, int64_t r0, int64_t r1, double *buffer) {
-    const hdi_symbolic *s = c->w.f->sym;
-    hdi_inverse_front w;
-    int32_t k;
-    if (c->stage == HDI_INVERSE_FORMS) {
-        for (; r0 < r1; r0++) hdi_form_run(c->z, &c->w, r0);
-        return;
-    }
-    if (c->stage != HDI_INVERSE_CHILD) {
-        hdi_inverse_part(&c->w, c->stage, r0, r1, buffer);
-        return;
-    }
-    w = c->w;
-    for (k = s->kid_ptr[w.v]; k < s->kid_ptr[w.v + 1] && r1 > 0; k++) {
+    const hdi_inverse_front *w = &c->w;
+    const hdi_symbolic *s = w->f->sym;
+    int32_t k = s->kid_ptr[w->v];
+    if (c->stage == HDI_INVERSE_M) hdi_inverse_m(w, r0, r1, buffer);
+    else if (c->stage == HDI_INVERSE_BELOW) hdi_inverse_below(w, r0, r1, buffer);
+    else if (c->stage == HDI_INVERSE_CORNER) hdi_inverse_corner(w, r0, r1, buffer);
+    else if (c->stage == HDI_INVERSE_FORMS) for (; r0 < r1; r0++) hdi_form_run(c->z, w, r0);
+    else for (; r1 > 0; k++) {
         const int64_t u = hdi_front_below(s, s->kid[k]);
-        w.child = s->kid[k];
-        if (r0 < u) hdi_inverse_part(&w, HDI_INVERSE_CHILD, r0 > 0 ? r0 : 0, hdi_least(r1, u), NULL);
+        if (r0 < u) hdi_inverse_child(w, s->kid[k], hdi_most(r0, 0), hdi_least(r1, u));
         r0 -= u;
         r1 -= u;
     }
