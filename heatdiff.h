@@ -4263,10 +4263,8 @@ HDI_PART void HDI_OF(pivots)(const int pack, const int nv, const hdi_eliminate *
 HDI_PART void HDI_OF(eliminate)(const int pack, const hdi_eliminate *g) {
     const int top = HDI_COLS / HDI_ROWS;
     int h;
-    for (h = 0; h < HDI_NUMBERS; h += HDI_ABREAST) {
-        if (top < HDI_REGS && g->n > 0) HDI_OF(pivots)(pack, HDI_REGS, g, h);
-        else HDI_OF(pivots)(pack, top, g, h);
-    }
+    for (h = 0; h < HDI_NUMBERS; h += HDI_ABREAST)
+        HDI_OF(pivots)(pack, top < HDI_REGS ? HDI_REGS : top, g, h);
 }
 
 /* ---- copies ---- */
