@@ -3425,7 +3425,8 @@ enum { HDI_TILE_ROWS = 24, HDI_TILE_COLS = 8 };   /* of the largest tile */
 /* C -= A B, or with store C = -A B. All distances are counted in entries. Rows of C and A are consecutive;
  * A(i,k) is at a + i + k a_col. C(i,j) is at c + i + j c_col; with packed columns, those of a triangle, the
  * distance c_col shrinks by one from column to column. B comes in groups of nr columns: B(k,j) is at b +
- * (j / nr) b_next + k b_row + (j % nr) b_col. With lower, entries of C above its diagonal are left alone:
+ * (j / nr) b_next + k b_row + (j % nr) b_col; with real numbers b_col is 1, or C has a multiple of eight
+ * rows. With lower, entries of C above its diagonal are left alone:
  * row i of C is row i + first of a matrix whose columns are those of C. */
 typedef struct hdi_product {
     double *c;
@@ -3738,14 +3739,15 @@ HDI_IN8 __m512d hdi_join_avx512(__m512d p, __m512d q) {
 #define HDI_COLS (pack ? (int)HDI_OF(pack_cols) : (int)HDI_OF(cols))
 #define HDI_NUMBERS (pack ? 4 : 1)
 #define HDI_ABREAST (pack ? HDI_WIDTH < 4 ? HDI_WIDTH : 4 : 1)   /* numbers of an entry that a vector holds */
-/* Code of their own for columns of B that are side by side, and for each entry of a small triangle. */
+/* Code of their own for real columns of B that are side by side, and for each entry of a small triangle. */
 #ifdef __OPTIMIZE_SIZE__
 #define HDI_UNITS 0
 #define HDI_SPREAD
 #else
-#define HDI_UNITS 1
+#define HDI_UNITS (!pack)
 #define HDI_SPREAD HDI_UNROLL
 #endif
+#define HDI_EIGHT (8 / HDI_WIDTH < HDI_REGS ? 8 / HDI_WIDTH : HDI_REGS)   /* nums of eight real rows */
 #endif
 
 /* A tile holds the rows of its own columns' pivots; else this does not compile. */
@@ -3880,40 +3882,57 @@ HDI_PART void HDI_OF(tile_sum)(const int pack, const int nv, const int nc, const
 
 HDI_PART void HDI_OF(tile_product)(const int pack, const int nv, const int nc, const int unit,
                                    const HDI_OF(tile) *t, hdi_num (*x)[HDI_OF(most_regs)]) {
-    if (pack || (HDI_WIDTH < 8 && t->n == HDI_ROWS * nv)) HDI_OF(tile_sum)(pack, nv, nc, unit, 0, t, x);
-    else HDI_OF(tile_sum)(pack, nv, nc, unit, 1, t, x);   /* masks of AVX-512 cost nothing */
+    const int whole = HDI_UNITS && !unit, common = nv == HDI_REGS && HDI_WIDTH < 8;   /* 8 have masks */
+    if (pack || whole || (common && t->n == HDI_ROWS * nv)) HDI_OF(tile_sum)(pack, nv, nc, unit, 0, t, x);
+    else HDI_OF(tile_sum)(pack, nv, nc, unit, 1, t, x);
+}
+
+/* C -= X for a tile of which only a part counts. Loads before stores: columns lie so close that a masked load
+ * would overlap the store before it, and wait for it. */
+HDI_KERNEL HDI_NOINLINE void HDI_OF(tile_rest)(int pack, const HDI_OF(tile) *t, int nv, double *x) {
+    int store, j, v;
+    for (store = 0; store < 2; store++) {
+        double *c = t->c, *at = x;
+        int64_t step = t->c_col;
+        for (j = 0; j < t->nc; j++, c += step, step -= t->packed ? HDI_ENTRY : 0) {
+            const HDI_OF(rows) g = HDI_OF(rows_of)((int32_t)t->diag + j, t->n);
+            for (v = 0; v < nv; v++, at += HDI_ENTRY * HDI_ROWS) {
+                double *to = c + HDI_ENTRY * HDI_ROWS * v;
+                hdi_num old = HDI_OF(num_load)(pack, at);
+                if (store) HDI_OF(num_store_rows)(pack, to, old, g, HDI_ROWS * v);
+                else if (t->store) old = HDI_OF(num_minus)(HDI_OF(num_zero)(), old);
+                else old = HDI_OF(num_minus)(HDI_OF(num_load_rows)(pack, to, g, HDI_ROWS * v), old);
+                HDI_OF(num_store)(pack, at, old);
+            }
+        }
+    }
 }
 
 /* C -= A B for nv nums of rows, the last one perhaps in part. */
 HDI_PART void HDI_OF(tile_multiply)(const int pack, const int nv, const int nc, const int unit,
                                     const HDI_OF(tile) *t) {
+    double rest[(int)HDI_OF(most_cols) * HDI_OF(most_regs) * (int)HDI_PACK];
     hdi_num x[HDI_OF(most_cols)][HDI_OF(most_regs)];
     const int64_t inner = HDI_ENTRY * HDI_ROWS;
+    const int masked = !pack && HDI_WIDTH == 8;
     double *c = t->c;
     int64_t step = t->c_col;
     int j, v;
     HDI_OF(tile_product)(pack, nv, nc, unit, t, x);
-    if (t->n == HDI_ROWS * nv && t->diag <= 1 - nc) {
-        HDI_EACH(j, nc) {
-            if (j >= t->nc) continue;
-            HDI_EACH(v, nv) {
-                const hdi_num old = t->store ? HDI_OF(num_zero)() : HDI_OF(num_load)(pack, c + inner * v);
-                HDI_OF(num_store)(pack, c + inner * v,
-                                  HDI_OF(num_minus)(old, HDI_OF(sum_end)(pack, x[j][v])));
-            }
-            c += step;
-            if (t->packed) step -= HDI_ENTRY;
-        }
+    if (!masked && (t->n < HDI_ROWS * nv || t->diag > 1 - nc)) {
+        HDI_EACH(j, nc)
+            HDI_EACH(v, nv)
+                HDI_OF(num_store)(pack, rest + inner * (nv * j + v), HDI_OF(sum_end)(pack, x[j][v]));
+        HDI_OF(tile_rest)(pack, t, nv, rest);
         return;
     }
-    /* Loads before stores: columns lie so close that a masked load would overlap the store before it, and
-     * wait for it. */
     HDI_EACH(j, nc) {
         const HDI_OF(rows) g = HDI_OF(rows_of)((int32_t)t->diag + j, t->n);
         if (j >= t->nc) continue;
         HDI_EACH(v, nv) {
-            const hdi_num old = t->store ? HDI_OF(num_zero)()
-                                         : HDI_OF(num_load_rows)(pack, c + inner * v, g, HDI_ROWS * v);
+            hdi_num old = HDI_OF(num_zero)();
+            if (!t->store && masked) old = HDI_OF(num_load_rows)(pack, c + inner * v, g, HDI_ROWS * v);
+            else if (!t->store) old = HDI_OF(num_load)(pack, c + inner * v);
             x[j][v] = HDI_OF(num_minus)(old, HDI_OF(sum_end)(pack, x[j][v]));
         }
         c += step;
@@ -3924,7 +3943,10 @@ HDI_PART void HDI_OF(tile_multiply)(const int pack, const int nv, const int nc, 
     HDI_EACH(j, nc) {
         const HDI_OF(rows) g = HDI_OF(rows_of)((int32_t)t->diag + j, t->n);
         if (j >= t->nc) continue;
-        HDI_EACH(v, nv) HDI_OF(num_store_rows)(pack, c + inner * v, x[j][v], g, HDI_ROWS * v);
+        HDI_EACH(v, nv) {
+            if (masked) HDI_OF(num_store_rows)(pack, c + inner * v, x[j][v], g, HDI_ROWS * v);
+            else HDI_OF(num_store)(pack, c + inner * v, x[j][v]);
+        }
         c += step;
         if (t->packed) step -= HDI_ENTRY;
     }
@@ -3974,22 +3996,22 @@ HDI_PART void HDI_OF(tile_one)(const int pack, const int solve, const int nv, co
     else HDI_OF(tile_multiply)(pack, nv, nc, unit, t);
 }
 
+HDI_PART void HDI_OF(tile_rows)(const int pack, const int solve, const int nc, const int unit,
+                                const HDI_OF(tile) *t, const double *dinv) {
+    const int nv = (t->n + HDI_ROWS - 1) / HDI_ROWS;
+    if (nv >= HDI_REGS) HDI_OF(tile_one)(pack, solve, HDI_REGS, nc, unit, t, dinv);
+    else if (HDI_REGS > 3 && nv == 3) HDI_OF(tile_one)(pack, solve, 3, nc, unit, t, dinv);
+    else if (HDI_REGS > 2 && nv == 2) HDI_OF(tile_one)(pack, solve, 2, nc, unit, t, dinv);
+    else if (HDI_REGS > 1) HDI_OF(tile_one)(pack, solve, 1, nc, unit, t, dinv);
+}
+
 /* A tile of at most HDI_REGS nums; dinv of a solve. A column alone, of which packs have many, is a tile of
  * its own. */
 HDI_PART void HDI_OF(tile_run)(const int pack, const int solve, const int unit, const HDI_OF(tile) *t,
                                const double *dinv) {
-    const int nv = (t->n + HDI_ROWS - 1) / HDI_ROWS;
-    if (pack && HDI_COLS > 1 && t->nc == 1) {
-        if (nv >= HDI_REGS) HDI_OF(tile_one)(pack, solve, HDI_REGS, 1, unit, t, dinv);
-        else if (HDI_REGS > 3 && nv == 3) HDI_OF(tile_one)(pack, solve, 3, 1, unit, t, dinv);
-        else if (HDI_REGS > 2 && nv == 2) HDI_OF(tile_one)(pack, solve, 2, 1, unit, t, dinv);
-        else if (HDI_REGS > 1) HDI_OF(tile_one)(pack, solve, 1, 1, unit, t, dinv);
-    } else {
-        if (nv >= HDI_REGS) HDI_OF(tile_one)(pack, solve, HDI_REGS, HDI_COLS, unit, t, dinv);
-        else if (HDI_REGS > 3 && nv == 3) HDI_OF(tile_one)(pack, solve, 3, HDI_COLS, unit, t, dinv);
-        else if (HDI_REGS > 2 && nv == 2) HDI_OF(tile_one)(pack, solve, 2, HDI_COLS, unit, t, dinv);
-        else if (HDI_REGS > 1) HDI_OF(tile_one)(pack, solve, 1, HDI_COLS, unit, t, dinv);
-    }
+    if (HDI_UNITS && !unit) HDI_OF(tile_one)(pack, solve, HDI_EIGHT, HDI_COLS, unit, t, dinv);
+    else if (pack && HDI_COLS > 1 && t->nc == 1) HDI_OF(tile_rows)(pack, solve, 1, unit, t, dinv);
+    else HDI_OF(tile_rows)(pack, solve, HDI_COLS, unit, t, dinv);
 }
 
 /* Offsets of nc columns of B. */
@@ -4180,11 +4202,8 @@ HDI_PART void HDI_OF(pivots)(const int pack, const int nv, const hdi_eliminate *
 HDI_PART void HDI_OF(eliminate)(const int pack, const hdi_eliminate *g) {
     const int top = HDI_COLS / HDI_ROWS;
     int h;
-    for (h = 0; h < HDI_NUMBERS; h += HDI_ABREAST) {
-        if (top + 2 <= HDI_REGS && g->n > HDI_ROWS) HDI_OF(pivots)(pack, HDI_REGS, g, h);
-        else if (top + 1 <= HDI_REGS && g->n > 0) HDI_OF(pivots)(pack, top + 1, g, h);
-        else HDI_OF(pivots)(pack, top, g, h);
-    }
+    for (h = 0; h < HDI_NUMBERS; h += HDI_ABREAST)
+        HDI_OF(pivots)(pack, top < HDI_REGS ? HDI_REGS : top, g, h);
 }
 
 /* ---- copies ---- */
@@ -4318,10 +4337,10 @@ HDI_KERNEL void HDI_OF(single_down)(const hdi_single *g) {
         HDI_EACH(j, 8) l[j] += g->n;
     }
     HDI_EACH(j, 8) {
-        x[j] = HDI_OF(pick)(s[j], 0);
-        HDI_EACH(k, HDI_WIDTH)
-            if (k > 0) x[j] += HDI_OF(pick)(s[j], k);
-        x[j] = j < g->nc ? g->x[j] - x[j] : 0.0;
+        x[j] = 0;
+        if (j >= g->nc) continue;
+        HDI_EACH(k, HDI_WIDTH) x[j] += HDI_OF(pick)(s[j], k);
+        x[j] = g->x[j] - x[j];
     }
     HDI_SPREAD for (i = 0; i < 7; i++) {
         k = 7 - i;
@@ -12135,7 +12154,8 @@ typedef struct hdi_factor {
     hdi_pivots all;                  /* of the last factorisation */
     double largest_entry;            /* |diagonal entry of A|, the largest */
     int32_t ready;
-    int32_t guest;                   /* work, scratch, counts, order and pivots are another's */
+    void *block[8];                  /* its own of these arrays: a guest has the numbers only */
+    int32_t n_blocks;
     const hdi_values *values;        /* of a factorisation under way */
 } hdi_factor;
 
@@ -12549,10 +12569,6 @@ static void hdi_front_part(const void *front, int stage, int64_t r0, int64_t r1,
     }
 }
 
-static int32_t hdi_front_block_size(const hdi_factor *f) {
-    return (int32_t)hdi_front_pivot_block(f->width);
-}
-
 /* Whether threads share front v. */
 static int hdi_front_shared(const hdi_symbolic *s, int32_t v) {
     return s->task_of[v] < 0 && hdi_front_rows(s, v) >= HDI_FRONT_SHARED;
@@ -12560,7 +12576,7 @@ static int hdi_front_shared(const hdi_symbolic *s, int32_t v) {
 
 /* Front v, by this thread. 0 when a pivot cannot be divided by. */
 static int hdi_front_factor(const hdi_factor *f, int32_t v, double *scratch, hdi_pivots *note) {
-    const int64_t most = hdi_front_block_size(f);
+    const int64_t most = hdi_front_pivot_block(f->width);
     hdi_front w = hdi_front_open(f, v, scratch);
     hdi_front_part(&w, HDI_FRONT_ASSEMBLE, 0, w.m, w.work);
     for (; w.k0 < w.p; w.k0 += w.nb) {
@@ -12581,18 +12597,13 @@ static double *hdi_factor_scratch(const hdi_factor *f, int64_t i) {
     return f->scratch + f->scratch_size * (size_t)i;
 }
 
+/* Frees what only factoring needs, which is all but the numbers. */
+static void hdi_factor_settle(hdi_factor *f) {
+    while (f->n_blocks > 2) hdi_free(f->ctx, f->block[--f->n_blocks]);
+}
+
 static void hdi_factor_free(hdi_factor *f) {
-    if (!f->ctx) return;
-    hdi_free(f->ctx, f->panel);
-    hdi_free(f->ctx, f->dinv);
-    if (!f->guest) {
-        hdi_free(f->ctx, f->work);
-        hdi_free(f->ctx, f->scratch);
-        hdi_free(f->ctx, f->chunk_scratch);
-        hdi_free(f->ctx, f->counts);
-        hdi_free(f->ctx, f->order);
-        hdi_free(f->ctx, f->pivots);
-    }
+    while (f->n_blocks > 0) hdi_free(f->ctx, f->block[--f->n_blocks]);
     memset(f, 0, sizeof *f);
 }
 
@@ -12622,7 +12633,7 @@ typedef struct hdi_factor_walk {
 /* The shape of front v in blocks and chunks. */
 static void hdi_factor_shape(hdi_factor_walk *t, int32_t v) {
     hdi_front_shape(t->f->sym, v, &t->w.p, &t->w.u, &t->w.m);
-    t->nb = hdi_front_block_size(t->f);
+    t->nb = (int32_t)hdi_front_pivot_block(t->f->width);
     t->n_blocks = (int32_t)((t->w.p + t->nb - 1) / t->nb);
     t->n_chunks = (int32_t)((t->w.m + HDI_FRONT_CHUNK - 1) / HDI_FRONT_CHUNK);
 }
@@ -12674,16 +12685,6 @@ static hdi_factor hdi_factor_of(const hdi_symbolic *sym, int32_t width) {
     return f;
 }
 
-/* Room to work in: chunks that the largest front of the top has. */
-static uint64_t hdi_factor_chunks(const hdi_symbolic *s) {
-    return (uint64_t)(s->n_top ? s->largest_front / HDI_FRONT_CHUNK + 1 : 0);
-}
-
-/* Parts of the tree that have a scratch and pivots of their own. */
-static uint64_t hdi_factor_parts(const hdi_symbolic *s) {
-    return (uint64_t)(s->n_tasks > 0 ? s->n_tasks : 1);
-}
-
 /* The numbers of a factor. */
 static void hdi_factor_take_numbers(hdi_factor *f, hdi_scope *s) {
     const uint64_t w = (uint64_t)f->width;
@@ -12693,39 +12694,18 @@ static void hdi_factor_take_numbers(hdi_factor *f, hdi_scope *s) {
     if (f->panel) hdi_clear(f->panel + f->width * f->sym->panel[f->sym->n_super], f->width * HDI_TILE_COLS);
 }
 
-/* f becomes another factor like its host, with its own numbers but the host's room to work in. Neither is
- * factorised or inverted while the other one is. The host lives longer. */
-static hd_status hdi_factor_make_guest(hdi_factor *f, const hdi_factor *host, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(host->ctx, e);
-    *f = *host;
-    f->guest = 1;
-    f->ready = 0;
-    hdi_factor_take_numbers(f, &s);
-    if (e->status >= 0) return HD_OK;
-    memset(f, 0, sizeof *f);
-    return hdi_scope_end(&s);
-}
-
-/* The bytes of that. */
-static uint64_t hdi_factor_guest_bytes(const hdi_symbolic *sym, int32_t width) {
-    hd_error none;
-    uint64_t bytes;
-    hdi_scope s = hdi_scope_tally(&bytes, &none);
-    hdi_factor f = hdi_factor_of(sym, width);
-    hdi_factor_take_numbers(&f, &s);
-    return bytes;
-}
-
 /* A factor of the given width with the arrays that factoring and refactoring need. */
 static void hdi_factor_take(hdi_factor *f, const hdi_symbolic *sym, int32_t width, hdi_scope *s) {
-    const uint64_t n_parts = hdi_factor_parts(sym), n_chunks = hdi_factor_chunks(sym);
+    const uint64_t n_chunks = (uint64_t)(sym->n_top ? sym->largest_front / HDI_FRONT_CHUNK + 1 : 0);
+    const uint64_t n_parts = (uint64_t)(sym->n_tasks > 0 ? sym->n_tasks : 1);
     const uint64_t tops = sym->n_top > 0 ? n_chunks > 0 ? 2 : 1 : 0;
     *f = hdi_factor_of(sym, width);
     hdi_factor_take_numbers(f, s);
     f->work = HDI_TAKE(s, double, (uint64_t)sym->work * (uint64_t)width);
     f->scratch = HDI_TAKE(s, double, f->scratch_size * n_parts + tops * f->top_size);
     f->chunk_scratch = HDI_TAKE(s, double, f->chunk_size * n_chunks + 1);
-    f->counts = HDI_TAKE(s, int32_t, sym->largest_pivots / hdi_front_block_size(f) + (int64_t)n_chunks + 2);
+    f->counts = HDI_TAKE(s, int32_t, sym->largest_pivots / hdi_front_pivot_block(width) + (int64_t)n_chunks +
+                         2);
     f->pivots = HDI_TAKE(s, hdi_pivots, n_parts + 1);
     f->n_order = hdi_factor_nodes(f);
     f->order = HDI_TAKE(s, int32_t, f->n_order + 1);
@@ -12735,31 +12715,52 @@ static void hdi_factor_take(hdi_factor *f, const hdi_symbolic *sym, int32_t widt
     f->ctx = s->ctx;
 }
 
-/* Room for a factor. */
-static hd_status hdi_factor_make(hdi_factor *f, const hdi_symbolic *sym, int32_t width, hd_context *ctx,
-                                 hd_error *e) {
+/* Room for a factor. With a host f becomes another one like it, with its own numbers but the host's room to
+ * work in: neither is factorised or inverted while the other one is, and the host lives longer. */
+static hd_status hdi_factor_room(hdi_factor *f, const hdi_factor *host, const hdi_symbolic *sym,
+                                 int32_t width, hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
-    hdi_factor_take(f, sym, width, &s);
-    if (e->status >= 0) return HD_OK;            /* the blocks are f's own now */
-    memset(f, 0, sizeof *f);
-    return hdi_scope_end(&s);
+    if (host) {
+        *f = *host;
+        f->ready = 0;
+        hdi_factor_take_numbers(f, &s);
+    } else {
+        hdi_factor_take(f, sym, width, &s);
+    }
+    f->n_blocks = s.n;
+    memcpy(f->block, s.block, sizeof f->block);
+    if (e->status < 0) hdi_factor_free(f);
+    return e->status;
 }
 
-/* The bytes of that. */
-static uint64_t hdi_factor_bytes(const hdi_symbolic *sym, int32_t width) {
-    hd_error none;
-    uint64_t bytes;
-    hdi_scope s = hdi_scope_tally(&bytes, &none);
-    hdi_factor f;
-    hdi_factor_take(&f, sym, width, &s);
-    return bytes;
+static hd_status hdi_factor_make(hdi_factor *f, const hdi_symbolic *sym, int32_t width, hd_context *ctx,
+                                 hd_error *e) {
+    return hdi_factor_room(f, NULL, sym, width, ctx, e);
 }
 
 /* Pack i of several that are factorised in turn: those after the first are its guests. */
 static hd_status hdi_factor_make_pack(hdi_factor *pack, int32_t i, const hdi_symbolic *sym, hd_context *ctx,
                                       hd_error *e) {
-    if (i > 0) return hdi_factor_make_guest(pack + i, pack, e);
-    return hdi_factor_make(pack, sym, HDI_PACK, ctx, e);
+    return hdi_factor_room(pack + i, i > 0 ? pack : NULL, sym, HDI_PACK, ctx, e);
+}
+
+/* The bytes of a factor, or of a guest. */
+static uint64_t hdi_factor_tally(const hdi_symbolic *sym, int32_t width, int guest) {
+    hd_error none;
+    uint64_t bytes;
+    hdi_scope s = hdi_scope_tally(&bytes, &none);
+    hdi_factor f = hdi_factor_of(sym, width);
+    if (guest) hdi_factor_take_numbers(&f, &s);
+    else hdi_factor_take(&f, sym, width, &s);
+    return bytes;
+}
+
+static uint64_t hdi_factor_bytes(const hdi_symbolic *sym, int32_t width) {
+    return hdi_factor_tally(sym, width, 0);
+}
+
+static uint64_t hdi_factor_guest_bytes(const hdi_symbolic *sym, int32_t width) {
+    return hdi_factor_tally(sym, width, 1);
 }
 
 /* Collects what the parts saw. Of several failures that of the lowest pivot is reported: no thread stops a
@@ -12927,6 +12928,16 @@ static hd_status hdi_factor_run(hdi_factor *f, const hdi_values *values, hd_erro
 }
 
 /* ---- solves ---- */
+
+/* Where the numbers of an entry stand outside, by rows of the matrix: number q of row i is in[q][stride i].
+ * NULL in both: zero, and no answer is asked for. They are fetched some pivots ahead. */
+typedef struct hdi_ports {
+    const double *in[HDI_PACK];
+    double *out[HDI_PACK];
+    const int32_t *row;          /* [n] of a pivot */
+    int32_t stride;
+} hdi_ports;
+
 /* x has n entries in elimination order. On the way up a front hands a vector to its parent, as it does with
  * update matrices, so that subtrees are independent both ways. Right-hand sides with few non-zeros touch few
  * fronts: active [n_super] marks them, closed towards the roots; NULL: all. */
@@ -12938,35 +12949,37 @@ typedef struct hdi_sweep {
     const char *active;          /* forward */
     const double *const *rhs;    /* [k][n] real right-hand sides, the same for all matrices of a pack; NULL in
                                     it: zero. NULL: they are in x, which otherwise is only written */
+    const hdi_ports *ports;      /* right-hand sides and answers, of 8 numbers or one for a pivot; or NULL */
     const char *wanted;          /* backward: fronts whose part of x is asked for, closed towards the roots;
                                     NULL: all */
     hdi_walk *walk;
     int32_t *pending, *order;    /* [2 nodes] what they wait for; nodes as they become ready */
 } hdi_sweep;
 
+/* to[rel[i]] += from[i] for entries [i,end) of w doubles; what goes to consecutive places at once. */
+static void hdi_sweep_add(const hdi_kernels *o, int64_t w, double *to, const int32_t *rel, int64_t i,
+                          int64_t end, const double *from) {
+    int64_t j;
+    for (; w == 1 && i < end; i++) to[rel[i]] += from[i];
+    for (; i < end; i = j) {
+        for (j = i + 1; j < end && rel[j] == rel[j - 1] + 1; j++) {}
+        o->add(to + w * rel[i], from + w * i, w * (j - i));
+    }
+}
+
 /* The children's vectors, into the pivots' part of x and into t, which is cleared before. */
 static void hdi_sweep_children(const hdi_sweep *z, int32_t v, double *y, double *t) {
     const hdi_symbolic *s = z->f->sym;
     const int64_t p = hdi_front_pivots(s, v), w = (int64_t)z->f->width * z->k;
-    int64_t i, q;
-    int32_t k, e;
+    int32_t k;
     memset(t, 0, (size_t)(w * hdi_front_below(s, v)) * sizeof *t);
     for (k = s->kid_ptr[v]; k < s->kid_ptr[v + 1]; k++) {
-        const int32_t c = s->kid[k], *HDI_RESTRICT rel = s->rel + s->row_ptr[c];
+        const int32_t c = s->kid[k], *rel = s->rel + s->row_ptr[c];
         const int64_t uc = hdi_front_below(s, c), inner = s->inner[c];
-        const double *HDI_RESTRICT from = z->vec + w * s->vector[c];
-        double *HDI_RESTRICT below = t - w * p;
+        const double *from = z->vec + w * s->vector[c];
         if (z->active && !z->active[c]) continue;
-        if (w == 1) {
-            for (i = 0; i < inner; i++) y[rel[i]] += from[i];
-            for (; i < uc; i++) below[rel[i]] += from[i];
-            continue;
-        }
-        for (i = 0; i < uc; i++) {
-            double *HDI_RESTRICT to = (i < inner ? y : below) + w * rel[i];
-            for (q = 0; q < w; q += 8)
-                for (e = 0; e < 8; e++) to[q + e] += from[w * i + q + e];
-        }
+        hdi_sweep_add(z->f->ops, w, y, rel, 0, inner, from);
+        hdi_sweep_add(z->f->ops, w, t - w * p, rel, inner, uc, from);
     }
 }
 
@@ -12995,6 +13008,23 @@ static void hdi_sweep_single(const hdi_sweep *z, const hdi_block *b, int64_t k, 
     else z->f->ops->up(&g);
 }
 
+/* x = L11^-1 x for a block and several right-hand sides; or x = L11^-T x, because L11' from its last row and
+ * column on is like L11. */
+static void hdi_sweep_triangle(const hdi_sweep *z, const hdi_block *b, double *x, int down) {
+    const int64_t last = b->width - 1, ld = b->ld;
+    hdi_solve g;
+    memset(&g, 0, sizeof g);
+    g.n = z->k;
+    g.nb = b->width;
+    g.x = down ? x + b->entry * z->k * last : x;
+    g.x_col = down ? -g.n : g.n;
+    g.b = down ? b->at + b->entry * last * (ld + 1) : b->at;
+    g.b_row = down ? -1 : ld;
+    g.b_col = down ? -ld : 1;
+    g.b_next = z->f->ops->nr * g.b_col;
+    z->f->ops->solve(&g);
+}
+
 /* y = L11^-1 y, t -= L21 y */
 static void hdi_sweep_forward(const hdi_sweep *z, int32_t v, double *y, double *t) {
     const hdi_factor *f = z->f;
@@ -13005,26 +13035,34 @@ static void hdi_sweep_forward(const hdi_sweep *z, int32_t v, double *y, double *
     for (q = 0; q * HDI_PANEL < p; q++) {
         const hdi_block b = hdi_block_of(panel, f->width, p + u, p, q);
         const int64_t end = b.begin + b.width;
-        hdi_solve g;
+        double *own = y + row * b.begin;
         if (row == 1) {
             for (k = 0; k < b.width; k += 8) hdi_sweep_single(z, &b, k, p, u, y, t, 0);
             continue;
         }
-        g.x = y + row * b.begin;
-        g.x_col = g.n = z->k;
-        g.b = b.at;
-        g.b_row = b.ld;
-        g.b_col = 1;
-        g.b_next = f->ops->nr;
-        g.before = 0;
-        g.nb = b.width;
-        g.dinv = NULL;
-        f->ops->solve(&g);
+        hdi_sweep_triangle(z, &b, own, 0);
         for (k = 0; k < b.width; k += n) {
             n = hdi_least(b.width - k, HDI_SWEEP_DEPTH);
-            hdi_kernels_rows(f->ops, y + row * end, z->k, p - end, g.x + row * k, n,
+            hdi_kernels_rows(f->ops, y + row * end, z->k, p - end, own + row * k, n,
                              hdi_block_at(&b, end, b.begin + k), b.ld, 1);
-            hdi_kernels_rows(f->ops, t, z->k, u, g.x + row * k, n, hdi_block_at(&b, p, b.begin + k), b.ld, 1);
+            hdi_kernels_rows(f->ops, t, z->k, u, own + row * k, n, hdi_block_at(&b, p, b.begin + k), b.ld,
+                             1);
+        }
+    }
+}
+
+/* The pivots' part of the right-hand sides from outside, or of the answers to there. */
+static void hdi_sweep_ports(const hdi_sweep *z, int32_t v, double *y, int down) {
+    const int32_t *super = z->f->sym->super + v, n = z->f->sym->n, ahead = down ? -24 : 24;
+    const hdi_ports *g = z->ports;
+    int32_t i, r;
+    for (i = super[0]; g && i < super[1]; i++) {
+        const int32_t next = i + ahead >= 0 && i + ahead < n ? i + ahead : i;
+        const int64_t at = (int64_t)g->stride * g->row[i], soon = (int64_t)g->stride * g->row[next];
+        for (r = 0; r < z->f->width * z->k; r++, y++) {
+            if (!down) *y = g->in[r] ? g->in[r][at] : 0;
+            else if (g->out[r]) g->out[r][at] = *y;
+            if (g->in[r]) HDI_PREFETCH((down ? g->out[r] : g->in[r]) + soon);
         }
     }
 }
@@ -13033,8 +13071,8 @@ static void hdi_sweep_forward(const hdi_sweep *z, int32_t v, double *y, double *
 static void hdi_sweep_take(const hdi_sweep *z, int32_t v, double *y) {
     const int32_t *super = z->f->sym->super + v, width = z->f->width;
     int32_t i, r;
-    if (!z->rhs) return;
-    for (i = super[0]; i < super[1]; i++) {
+    hdi_sweep_ports(z, v, y, 0);
+    for (i = super[0]; z->rhs && i < super[1]; i++) {
         for (r = 0; r < z->k; r++, y += width) {
             y[0] = z->rhs[r] ? z->rhs[r][i] : 0;
             if (width == 1) continue;
@@ -13060,15 +13098,14 @@ static void hdi_sweep_divide(const hdi_sweep *z, int32_t v, double *y) {
     double t[HDI_PACK];
     int64_t i;
     int32_t r;
-    for (i = 0; i < p; i++, d += width) {
-        for (r = 0; r < z->k; r++, y += width) {
-            if (width == 1) {
-                *y *= *d;
-                continue;
-            }
-            memcpy(t, y, sizeof t);
-            hdi_pack_times(t, d, y);
-        }
+    for (i = 0; i < p && width == 1; i++) {
+        const double inverse = d[i];
+        if (z->k == 1) *y++ *= inverse;
+        else for (r = 0; r < 8; r++) *y++ *= inverse;
+    }
+    for (i = 0; i < p * z->k && width > 1; i++, y += HDI_PACK) {
+        memcpy(t, y, sizeof t);
+        hdi_pack_times(t, d + HDI_PACK * (i / z->k), y);
     }
 }
 
@@ -13081,14 +13118,13 @@ static void hdi_sweep_backward(const hdi_sweep *z, int32_t v, double *y, double 
     double *panel = f->panel + f->width * f->sym->panel[v];
     int64_t i, q;
     if (!hdi_sweep_clear(z, v, y)) hdi_sweep_divide(z, v, y);
-    if (row == 1) for (i = 0; i < u; i++) rows[i] = z->x[idx[i]];
-    else for (i = 0; i < u; i++)
+    for (i = 0; row == 1 && i < u; i++) rows[i] = z->x[idx[i]];
+    for (; i < u; i++)
         for (q = 0; q < row; q += 8) hdi_entry_copy(8, rows + row * i + q, z->x + row * idx[i] + q);
     for (q = (p - 1) / HDI_PANEL; q >= 0; q--) {
         const hdi_block b = hdi_block_of(panel, f->width, p + u, p, q);
         const int64_t end = b.begin + b.width;
         double *own = y + row * b.begin;
-        hdi_solve g;
         if (row == 1) {
             for (i = (b.width - 1) / 8 * 8; i >= 0; i -= 8) hdi_sweep_single(z, &b, i, p, u, y, rows, 1);
             continue;
@@ -13096,18 +13132,7 @@ static void hdi_sweep_backward(const hdi_sweep *z, int32_t v, double *y, double 
         hdi_kernels_rows(f->ops, own, z->k, b.width, rows, u, hdi_block_at(&b, p, b.begin), 1, b.ld);
         hdi_kernels_rows(f->ops, own, z->k, b.width, y + row * end, p - end, hdi_block_at(&b, end, b.begin),
                          1, b.ld);
-        /* L11' from its last row and column on is like L11 */
-        g.x = own + row * (b.width - 1);
-        g.n = z->k;
-        g.x_col = -g.n;
-        g.b = hdi_block_at(&b, end - 1, end - 1);
-        g.b_row = -1;
-        g.b_col = -b.ld;
-        g.b_next = -f->ops->nr * b.ld;
-        g.before = 0;
-        g.nb = b.width;
-        g.dinv = NULL;
-        f->ops->solve(&g);
+        hdi_sweep_triangle(z, &b, own, 1);
     }
 }
 
@@ -13134,6 +13159,7 @@ static void hdi_sweep_front(const hdi_sweep *z, int32_t v) {
     hdi_factor_fetch(f, v, z->backward);
     if (z->backward) {
         hdi_sweep_backward(z, v, y, t);
+        hdi_sweep_ports(z, v, y, 1);
         return;
     }
     hdi_sweep_take(z, v, y);
@@ -13158,45 +13184,29 @@ static int32_t hdi_sweep_node_of(const hdi_symbolic *s, int32_t v) {
     return task >= 0 ? task : s->n_tasks - 1 - task;
 }
 
-/* Whether supernode v hands its vector to a front of the top. */
-static int hdi_sweep_below_top(const hdi_symbolic *s, int32_t v) {
-    return s->parent[v] >= 0 && s->task_of[s->parent[v]] < 0;
-}
-
-/* What nodes wait for. */
-static void hdi_sweep_count(const hdi_sweep *z) {
-    const hdi_symbolic *s = z->f->sym;
-    const int32_t n = hdi_sweep_nodes(s);
-    int32_t *up = z->pending, *down = z->pending + n, i, k;
-    memset(up, 0, 2 * (size_t)n * sizeof *up);
-    for (i = 0; i < s->n_top; i++) {
-        const int32_t v = s->top[i];
-        up[s->n_tasks + i] = s->kid_ptr[v + 1] - s->kid_ptr[v];
-        for (k = s->kid_ptr[v]; k < s->kid_ptr[v + 1]; k++) down[hdi_sweep_node_of(s, s->kid[k])]++;
-    }
-    for (i = 0; i < n; i++)
-        if (down[i] == 0) down[i] = -1;          /* waits for its own way up */
-}
-
-/* One of the things that a node waits for is done. */
+/* One of the things that a node waits for is done; or, while they are counted, known. */
 static void hdi_sweep_arrive(const hdi_sweep *z, int32_t node) {
-    if (HDI_ATOMIC_ADD(z->pending + node, -1) == 0) hdi_release(z->walk, node, 1);
+    if (!z->walk) z->pending[node]++;
+    else if (HDI_ATOMIC_ADD(z->pending + node, -1) == 0) hdi_release(z->walk, node, 1);
 }
 
-/* Node i is done, upwards or downwards: those that waited for it. */
+/* Node i is done: those that wait for it. */
 static void hdi_sweep_next(const hdi_sweep *z, int32_t i) {
     const hdi_symbolic *s = z->f->sym;
-    const int32_t n = hdi_sweep_nodes(s), top = i < s->n_tasks ? -1 : s->top[i - s->n_tasks];
-    int32_t v;
-    if (!z->backward) {
-        const int32_t begin = top < 0 ? s->task_begin[i] : top, end = top < 0 ? s->task_end[i] : top + 1;
-        if (z->pending[n + i] < 0) hdi_release(z->walk, n + i, 1);
-        for (v = begin; v < end; v++)
-            if (hdi_sweep_below_top(s, v)) hdi_sweep_arrive(z, hdi_sweep_node_of(s, s->parent[v]));
-    } else if (top >= 0) {
-        for (v = s->kid_ptr[top]; v < s->kid_ptr[top + 1]; v++)
+    const int32_t n = hdi_sweep_nodes(s), top = i % n < s->n_tasks ? -1 : s->top[i % n - s->n_tasks];
+    int32_t v = top < 0 ? s->task_begin[i % n] : top, alone = 1;
+    const int32_t end = top < 0 ? s->task_end[i % n] : top + 1;
+    if (i >= n) {
+        for (v = top < 0 ? 0 : s->kid_ptr[top]; top >= 0 && v < s->kid_ptr[top + 1]; v++)
             hdi_sweep_arrive(z, n + hdi_sweep_node_of(s, s->kid[v]));
+        return;
     }
+    for (; v < end; v++) {
+        if (s->parent[v] < end) continue;        /* none, or in the same subtree */
+        hdi_sweep_arrive(z, hdi_sweep_node_of(s, s->parent[v]));
+        alone = 0;
+    }
+    if (alone) hdi_sweep_arrive(z, n + i);
 }
 
 static void hdi_sweep_node(void *arg, int64_t index, int32_t worker) {
@@ -13211,7 +13221,7 @@ static void hdi_sweep_node(void *arg, int64_t index, int32_t worker) {
         for (v = s->task_end[i]; v-- > s->task_begin[i];) hdi_sweep_front(&z, v);
     else
         for (v = s->task_begin[i]; v < s->task_end[i]; v++) hdi_sweep_front(&z, v);
-    hdi_sweep_next(&z, i);
+    hdi_sweep_next(&z, (int32_t)index);
 }
 
 /* x = A^-1 x. On all threads with ctx, else (from within a task) on this one. */
@@ -13222,8 +13232,10 @@ static void hdi_sweep_run(hdi_sweep *z, hd_context *ctx) {
     hdi_walk w;
     int32_t i;
     hdi_walk_open(&w, bytes < HDI_SWEEP_SHARED ? NULL : ctx, 2 * n, z->order, hdi_sweep_node, z);
+    z->walk = NULL;
+    memset(z->pending, 0, 2 * (size_t)n * sizeof *z->pending);
+    for (i = 0; i < 2 * n; i++) hdi_sweep_next(z, i);
     z->walk = &w;
-    hdi_sweep_count(z);
     for (i = 0; i < n; i++)
         if (z->pending[i] == 0) hdi_release(&w, i, 1);
     hdi_walk_run(&w);
@@ -13328,27 +13340,37 @@ static hd_status hdi_ldl_values(const hd_ldl *f, const double *val, int stride, 
     return HD_OK;
 }
 
-static hd_status hdi_ldl_factor(hd_ldl *f, const double *val, hd_error *e) {
+/* Factor i of k matrices: the real one, or a pack, where a matrix that is not there is the last one again. */
+static hd_status hdi_ldl_factor_one(hd_ldl *f, hdi_factor *of, int32_t i, int32_t k, const double *val,
+                                    hd_error *e) {
+    const int packs = of->width > 1;
+    const int32_t first = HDI_PACK_LANES * i;
     hdi_values v;
-    double largest = 0;
-    if (hdi_ldl_values(f, val, 1, &largest, e) < 0) return e->status;
-    if (!f->real.ctx && hdi_factor_make(&f->real, &f->sym, 1, f->ctx, e) < 0) return e->status;
+    int32_t q;
     memset(&v, 0, sizeof v);
     v.real = val;
-    f->real.largest_entry = largest;
-    return hdi_factor_run(&f->real, &v, e);
+    of->largest_entry = 0;
+    for (q = 0; q < (packs ? (int32_t)HDI_PACK_LANES : 1); q++) {
+        const double *z = val && packs ? val + 2 * f->nnz * hdi_least(first + q, k - 1) : val;
+        v.z[q] = (const hd_c64 *)(const void *)z;
+        if (first + q < k && hdi_ldl_values(f, z, packs ? 2 : 1, &of->largest_entry, e) < 0) {
+            if (packs) e->pole = first + q;
+            return e->status;
+        }
+    }
+    if (hdi_factor_run(of, &v, e) < 0 && e->pole >= 0) e->pole += first;
+    return e->status;
 }
 
-/* Room for packs for k matrices. */
-static hd_status hdi_ldl_packs(hd_ldl *f, int32_t k, hd_error *e) {
+/* Room for the real factor, or with k > 0 for packs for k matrices. */
+static hd_status hdi_ldl_make(hd_ldl *f, int32_t k, hd_error *e) {
     const int32_t want = k / HDI_PACK_LANES + (k % HDI_PACK_LANES > 0);
     hdi_factor *pack;
-    int32_t i;
+    if (k == 0 && !f->real.ctx) return hdi_factor_make(&f->real, &f->sym, 1, f->ctx, e);
     if (f->n_packs >= want) return HD_OK;
-    pack = (hdi_factor *)hdi_alloc(f->ctx, (uint64_t)want, sizeof *pack, e);
+    pack = (hdi_factor *)hdi_alloc_zero(f->ctx, (uint64_t)want, sizeof *pack, e);
     if (!pack) return e->status;
-    memset(pack, 0, (size_t)want * sizeof *pack);
-    for (i = 0; i < f->n_packs; i++) pack[i] = f->pack[i];
+    if (f->n_packs > 0) memcpy(pack, f->pack, (size_t)f->n_packs * sizeof *pack);
     hdi_free(f->ctx, f->pack);
     f->pack = pack;
     for (; f->n_packs < want; f->n_packs++)
@@ -13356,38 +13378,23 @@ static hd_status hdi_ldl_packs(hd_ldl *f, int32_t k, hd_error *e) {
     return HD_OK;
 }
 
-/* Pack i of k matrices; a matrix that is not there is the last one again. */
-static hd_status hdi_ldl_factor_pack(hd_ldl *f, int32_t i, int32_t k, const hd_c64 *val, hd_error *e) {
-    hdi_factor *pack = f->pack + i;
-    hdi_values v;
-    int32_t q;
-    memset(&v, 0, sizeof v);
-    pack->largest_entry = 0;
-    for (q = 0; q < HDI_PACK_LANES; q++) {
-        const int32_t matrix = HDI_PACK_LANES * i + q;
-        v.z[q] = f->nnz > 0 ? val + f->nnz * hdi_least(matrix, k - 1) : val;
-        if (f->nnz > 0 && matrix < k && hdi_ldl_values(f, &v.z[q]->re, 2, &pack->largest_entry, e) < 0) {
-            e->pole = matrix;
-            return e->status;
-        }
-    }
-    if (hdi_factor_run(pack, &v, e) < 0 && e->pole >= 0) e->pole += HDI_PACK_LANES * i;
-    return e->status;
-}
-
-static hd_status hdi_ldl_factor_complex(hd_ldl *f, int32_t k, const hd_c64 *val, hd_ldl_report *rep,
-                                        hd_error *e) {
-    hd_ldl_report one;
+/* The real matrix, with k 0, or k complex ones. */
+static hd_status hdi_ldl_factor(hd_ldl *f, int32_t k, const double *val, hd_ldl_report *rep, hd_error *e) {
+    hd_ldl_report all, one;
     int32_t i;
-    if (hdi_ldl_packs(f, k, e) < 0) return e->status;
-    for (i = 0; HDI_PACK_LANES * i < k; i++) {
-        if (hdi_ldl_factor_pack(f, i, k, val, e) < 0) return e->status;
-        hdi_ldl_tell(f, f->pack + i, &one);
-        if (i == 0) *rep = one;
-        rep->growth = hdi_max(rep->growth, one.growth);
-        rep->smallest_pivot = hdi_min(rep->smallest_pivot, one.smallest_pivot);
+    f->n_matrices = f->real.ready = 0;
+    if (hdi_ldl_make(f, k, e) < 0) return e->status;
+    for (i = 0; i == 0 || HDI_PACK_LANES * i < k; i++) {
+        hdi_factor *of = k > 0 ? f->pack + i : &f->real;
+        if (hdi_ldl_factor_one(f, of, i, k > 0 ? k : 1, val, e) < 0) return e->status;
+        hdi_ldl_tell(f, of, &one);
+        if (i == 0) all = one;
+        all.growth = hdi_max(all.growth, one.growth);
+        all.smallest_pivot = hdi_min(all.smallest_pivot, one.smallest_pivot);
     }
-    rep->n_matrices = f->n_matrices = k;
+    f->n_matrices = k;
+    if (k > 0) all.n_matrices = k;
+    if (rep) *rep = all;
     return HD_OK;
 }
 
@@ -13402,41 +13409,26 @@ static hd_status hdi_ldl_room(hd_ldl *f, int which, hd_error *e) {
     return e->status;
 }
 
-/* Real right-hand sides [q, q + n_cols), at most 8 side by side: one alone, or eight, some of them zero. */
-static void hdi_ldl_solve_real(hd_ldl *f, int32_t q, int32_t n_cols, const double *b, size_t ldb, double *x,
-                               size_t ldx) {
-    const int32_t wide = n_cols > 1 ? 8 : 1;
-    double *at = f->x[0];
-    hdi_sweep z = hdi_sweep_open(&f->real, wide, f->x[0], f->work[0]);
-    int32_t i, r;
-    for (i = 0; i < f->n; i++, at += wide)
-        for (r = 0; r < wide; r++)
-            at[r] = r < n_cols ? b[(size_t)(q + r) * ldb + (size_t)f->sym.perm[i]] : 0;
-    hdi_sweep_run(&z, f->ctx);
-    for (i = 0, at = f->x[0]; i < f->n; i++, at += wide)
-        for (r = 0; r < n_cols; r++)
-            x[(size_t)(q + r) * ldx + (size_t)f->sym.perm[i]] = at[r];
-}
-
-/* One right-hand side for each matrix of pack p, or with ldb 0 the same for all. */
-static void hdi_ldl_solve_pack(hd_ldl *f, int32_t p, const hd_c64 *b, size_t ldb, hd_c64 *x, size_t ldx) {
-    const int32_t lanes = hdi_ldl_lanes(f, p);
-    double *at = f->x[1];
-    hdi_sweep z = hdi_sweep_open(f->pack + p, 1, f->x[1], f->work[1]);
-    int32_t i, q;
-    b += HDI_PACK_LANES * (size_t)p * ldb;
-    x += HDI_PACK_LANES * (size_t)p * ldx;
-    for (i = 0; i < f->n; i++, at += HDI_PACK) {
-        for (q = 0; q < HDI_PACK_LANES; q++) {
-            const hd_c64 v = b[(size_t)(q < lanes ? q : 0) * ldb + (size_t)f->sym.perm[i]];
-            at[q] = v.re;
-            at[q + HDI_PACK_LANES] = v.im;
-        }
+/* n right-hand sides of the real factor, 8 at most, or one for each of n matrices of a pack: ldb and ldx
+ * numbers apart, of one double or two. */
+static void hdi_ldl_solve(hd_ldl *f, const hdi_factor *of, int32_t n, const double *b, size_t ldb, double *x,
+                          size_t ldx) {
+    const int packs = of->width > 1;
+    const int32_t stride = packs ? 2 : 1, most = (int32_t)HDI_PACK / stride;
+    hdi_sweep z = hdi_sweep_open(of, packs || n == 1 ? 1 : 8, f->x[packs], f->work[packs]);
+    hdi_ports g;
+    int32_t q;
+    memset(&g, 0, sizeof g);
+    g.row = f->sym.perm;
+    g.stride = stride;
+    for (q = 0; q < HDI_PACK; q++) {
+        const size_t lane = (size_t)(q % most), part = (size_t)(q / most);
+        if (q % most >= n) continue;
+        g.in[q] = b + (size_t)stride * lane * ldb + part;
+        g.out[q] = x + (size_t)stride * lane * ldx + part;
     }
+    z.ports = &g;
     hdi_sweep_run(&z, f->ctx);
-    for (i = 0, at = f->x[1]; i < f->n; i++, at += HDI_PACK)
-        for (q = 0; q < lanes; q++)
-            x[(size_t)q * ldx + (size_t)f->sym.perm[i]] = hdi_c(at[q], at[q + HDI_PACK_LANES]);
 }
 
 static void hdi_ldl_free(hd_ldl *f) {
@@ -13544,7 +13536,7 @@ typedef struct hdi_inverse_front {
     double *panel, *z, *update;  /* L; Z of the pivots' columns in the same layout; Z22, a packed triangle */
     double *T, *S, *M, *D, *buffer;   /* T: -L11^-T; S, M: slices, of T' and of M; D: -1/d */
     int64_t m, p, u, k0, k1;
-    int32_t v, child;            /* child: whose Z22 is taken out */
+    int32_t v;
 } hdi_inverse_front;
 
 /* How much is taken at a time: rows that are gathered, and their entries. */
@@ -13753,10 +13745,10 @@ static void hdi_inverse_corner(const hdi_inverse_front *w, int64_t r0, int64_t r
     }
 }
 
-/* Columns [r0,r1) of the child's Z22, out of the finished front. */
-static void hdi_inverse_child(const hdi_inverse_front *w, int64_t r0, int64_t r1) {
+/* Columns [r0,r1) of child c's Z22, out of the finished front. */
+static void hdi_inverse_child(const hdi_inverse_front *w, int32_t c, int64_t r0, int64_t r1) {
     const hdi_symbolic *s = w->f->sym;
-    const int32_t c = w->child, *rel = s->rel + s->row_ptr[c], width = w->f->width;
+    const int32_t *rel = s->rel + s->row_ptr[c], width = w->f->width;
     const int64_t u = hdi_front_below(s, c);
     double *to = w->f->work + width * (s->update[c] + hdi_triangle_column(u, r0));
     int64_t a, b;
@@ -13773,15 +13765,6 @@ static void hdi_inverse_child(const hdi_inverse_front *w, int64_t r0, int64_t r1
 typedef enum hdi_inverse_stage {
     HDI_INVERSE_M, HDI_INVERSE_BELOW, HDI_INVERSE_CORNER, HDI_INVERSE_FORMS, HDI_INVERSE_CHILD
 } hdi_inverse_stage;
-
-/* One stage for rows [r0,r1). */
-static void hdi_inverse_part(const void *front, int stage, int64_t r0, int64_t r1, double *buffer) {
-    const hdi_inverse_front *w = (const hdi_inverse_front *)front;
-    if (stage == HDI_INVERSE_M) hdi_inverse_m(w, r0, r1, buffer);
-    else if (stage == HDI_INVERSE_BELOW) hdi_inverse_below(w, r0, r1, buffer);
-    else if (stage == HDI_INVERSE_CORNER) hdi_inverse_corner(w, r0, r1, buffer);
-    else hdi_inverse_child(w, r0, r1);
-}
 
 /* sum_c coef[c] z_c for every set, to place `at`. */
 static void hdi_inverse_put(const hdi_inverse *z, const double *from, int64_t at) {
@@ -13823,7 +13806,7 @@ static const int32_t *hdi_form_list(const hdi_forms *q, const hdi_symbolic *s, i
 }
 
 /* Seats below front w for its columns, and in the fronts between those that they touch and w; returns their
- * entries, and the first of the fronts. Real rows are all alike: sweeps take one column or eight. */
+ * entries, and the first of the fronts. Real rows are all alike: kernels take eight columns. */
 static int64_t hdi_form_touch(const hdi_forms *q, const hdi_symbolic *s, int32_t w, const int32_t *list,
                               int32_t k, hdi_form_seat *seat, int32_t *least) {
     int64_t at = 0, p;
@@ -14050,8 +14033,9 @@ static uint64_t hdi_forms_make(hdi_forms *q, const hdi_symbolic *s, int32_t widt
     if (keep->e->status < 0) return 0;
     for (i = 0; i < s->n; i++) q->inv[s->perm[i]] = i;
     hdi_forms_order(q, s);
-    while ((size = hdi_forms_size(q, s)) > (uint64_t)(s->stored / 2 + HDI_FORM_SMALL) && q->cols > 1)
-        q->cols = width == 1 ? 1 : q->cols / 2;
+    while ((size = hdi_forms_size(q, s)) > (uint64_t)(s->stored / 2 + HDI_FORM_SMALL) && width > 1 &&
+           q->cols > 1)
+        q->cols /= 2;
     return size;
 }
 
@@ -14112,17 +14096,6 @@ static void hdi_inverse_set(hdi_inverse_step *c, int stage, int64_t begin, int64
     c->end = end;
 }
 
-/* The columns are there: what is wanted of them. */
-static void hdi_inverse_columns(hdi_inverse_step *c) {
-    hdi_inverse_set(c, HDI_INVERSE_FORMS, 0, 0);
-    if (c->z->wanted != HDI_WANT_FORMS) {
-        hdi_inverse_emit(c->z, &c->w);
-        return;
-    }
-    hdi_form_near(c->z, &c->w);
-    c->end = hdi_least(hdi_form_blocks(c->z->forms, c->w.v), HDI_FORM_SLOTS);
-}
-
 /* Goes on to the next stage, after what one thread must do before it. 0: there is none. */
 static int hdi_inverse_next(hdi_inverse_step *c) {
     hdi_inverse_front *w = &c->w;
@@ -14137,8 +14110,10 @@ static int hdi_inverse_next(hdi_inverse_step *c) {
         w->k0 = (w->k1 - 1) / HDI_PANEL * HDI_PANEL;
         hdi_inverse_pivots(w);
         hdi_inverse_set(c, HDI_INVERSE_M, w->k1, w->m);
-    } else if (c->stage == HDI_INVERSE_CORNER) {
-        hdi_inverse_columns(c);
+    } else if (c->stage == HDI_INVERSE_CORNER) {     /* the columns are there */
+        if (c->z->wanted != HDI_WANT_FORMS) hdi_inverse_emit(c->z, w);
+        else hdi_form_near(c->z, w);
+        hdi_inverse_set(c, HDI_INVERSE_FORMS, 0, hdi_least(blocks, HDI_FORM_SLOTS));
     } else if (c->stage == HDI_INVERSE_FORMS && c->end < blocks) {
         hdi_inverse_set(c, HDI_INVERSE_FORMS, c->end, hdi_least(blocks, c->end + HDI_FORM_SLOTS));
     } else if (c->stage == HDI_INVERSE_FORMS) {
@@ -14151,22 +14126,16 @@ static int hdi_inverse_next(hdi_inverse_step *c) {
 
 /* [r0,r1) of the stage. */
 static void hdi_inverse_do(const hdi_inverse_step *c, int64_t r0, int64_t r1, double *buffer) {
-    const hdi_symbolic *s = c->w.f->sym;
-    hdi_inverse_front w;
-    int32_t k;
-    if (c->stage == HDI_INVERSE_FORMS) {
-        for (; r0 < r1; r0++) hdi_form_run(c->z, &c->w, r0);
-        return;
-    }
-    if (c->stage != HDI_INVERSE_CHILD) {
-        hdi_inverse_part(&c->w, c->stage, r0, r1, buffer);
-        return;
-    }
-    w = c->w;
-    for (k = s->kid_ptr[w.v]; k < s->kid_ptr[w.v + 1] && r1 > 0; k++) {
+    const hdi_inverse_front *w = &c->w;
+    const hdi_symbolic *s = w->f->sym;
+    int32_t k = s->kid_ptr[w->v];
+    if (c->stage == HDI_INVERSE_M) hdi_inverse_m(w, r0, r1, buffer);
+    else if (c->stage == HDI_INVERSE_BELOW) hdi_inverse_below(w, r0, r1, buffer);
+    else if (c->stage == HDI_INVERSE_CORNER) hdi_inverse_corner(w, r0, r1, buffer);
+    else if (c->stage == HDI_INVERSE_FORMS) for (; r0 < r1; r0++) hdi_form_run(c->z, w, r0);
+    else for (; r1 > 0; k++) {
         const int64_t u = hdi_front_below(s, s->kid[k]);
-        w.child = s->kid[k];
-        if (r0 < u) hdi_inverse_part(&w, HDI_INVERSE_CHILD, r0 > 0 ? r0 : 0, hdi_least(r1, u), NULL);
+        if (r0 < u) hdi_inverse_child(w, s->kid[k], hdi_most(r0, 0), hdi_least(r1, u));
         r0 -= u;
         r1 -= u;
     }
@@ -29216,10 +29185,7 @@ static hd_status hdi_geo_factor(hd_geodesic *g, hdi_factor *f, const hd_laplacia
         e->row = -1;
         return e->status;
     }
-    hdi_free(g->ctx, f->work);
-    hdi_free(g->ctx, f->scratch);
-    hdi_free(g->ctx, f->chunk_scratch);
-    f->work = f->scratch = f->chunk_scratch = NULL;
+    hdi_factor_settle(f);
     return HD_OK;
 }
 
@@ -31049,23 +31015,16 @@ HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ld
 HEATDIFF_API hd_status hd_ldl_factor(hd_ldl *f, const double *val, hd_ldl_report *report, hd_error *err) {
     hdi_call c;
     if (hdi_ldl_enter(&c, f, 0, f && (f->nnz == 0 || val), err) < 0 || !HDI_HAS_DIRECT) return c.e->status;
-    f->n_matrices = f->real.ready = 0;
-    if (hdi_ldl_factor(f, val, c.e) < 0) return c.e->status;
-    hdi_ldl_tell(f, &f->real, report);
-    return HD_OK;
+    return hdi_ldl_factor(f, 0, val, report, c.e);
 }
 
 HEATDIFF_API hd_status hd_ldl_factor_complex(hd_ldl *f, int32_t k, const hd_c64 *val, hd_ldl_report *report,
                                              hd_error *err) {
-    hd_ldl_report all;
     hdi_call c;
     if (hdi_ldl_enter(&c, f, 1, f && (f->nnz == 0 || val), err) < 0 || !HDI_HAS_POLE_FACTORS)
         return c.e->status;
     if (k < 1) return hdi_fail(c.e, HD_ERR_ARGUMENT, "ldl: the number of matrices is not positive");
-    f->n_matrices = f->real.ready = 0;
-    if (hdi_ldl_factor_complex(f, k, val, &all, c.e) < 0) return c.e->status;
-    if (report) *report = all;
-    return HD_OK;
+    return hdi_ldl_factor(f, k, val ? &val->re : NULL, report, c.e);
 }
 
 HEATDIFF_API hd_status hd_ldl_solve(hd_ldl *f, int32_t k, const double *b, size_t ldb, double *x, size_t ldx,
@@ -31078,10 +31037,13 @@ HEATDIFF_API hd_status hd_ldl_solve(hd_ldl *f, int32_t k, const double *b, size_
     ldb = ldb ? ldb : (size_t)f->n;
     ldx = ldx ? ldx : (size_t)f->n;
     if (hdi_ldl_leading(f, ldb, ldx, c.e) < 0 || hdi_ldl_room(f, 0, c.e) < 0) return c.e->status;
-    for (q = 0; q < k; q += 8) {                 /* in place no answer may reach what is still to be read */
-        const int32_t at = ldx > ldb ? (k - 1) / 8 * 8 - q : q;
-        hdi_ldl_solve_real(f, at, k - at < 8 ? k - at : 8, b, ldb, x, ldx);
+    for (q = 0; q < k && b == x && ldb != ldx; q++) {
+        const size_t at = (size_t)(ldx > ldb ? k - 1 - q : q);   /* none is written over before it moves */
+        memmove(x + at * ldx, x + at * ldb, (size_t)f->n * sizeof *x);
     }
+    if (b == x) ldb = ldx;
+    for (q = 0; q < k; q += 8)
+        hdi_ldl_solve(f, &f->real, k - q < 8 ? k - q : 8, b + (size_t)q * ldb, ldb, x + (size_t)q * ldx, ldx);
     return HD_OK;
 }
 
@@ -31097,8 +31059,12 @@ HEATDIFF_API hd_status hd_ldl_solve_complex(hd_ldl *f, const hd_c64 *b, size_t l
         return hdi_fail(c.e, HD_ERR_ARGUMENT,
                         "ldl: x may be b only when both have the same leading dimension");
     if (hdi_ldl_room(f, 1, c.e) < 0) return c.e->status;
-    p = (f->n_matrices + HDI_PACK_LANES - 1) / HDI_PACK_LANES;
-    while (p-- > 0) hdi_ldl_solve_pack(f, p, b, ldb, x, ldx);   /* from the last: x may be the b of all */
+    p = (f->n_matrices - 1) / HDI_PACK_LANES;
+    for (; p >= 0; p--) {                        /* from the last: x may be the b of all */
+        const size_t first = HDI_PACK_LANES * (size_t)p;
+        hdi_ldl_solve(f, f->pack + p, hdi_ldl_lanes(f, p), b ? &b[first * ldb].re : NULL, ldb,
+                      x ? &x[first * ldx].re : NULL, ldx);
+    }
     return HD_OK;
 }
 
