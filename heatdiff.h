@@ -5336,7 +5336,9 @@ static HDI_INLINE int32_t hdi_corner_face(const hdi_mesh *mesh, int64_t c) {
     return hdi_is_poly(mesh) ? mesh->of[c] : (int32_t)c / 3;
 }
 
-static const double *hdi_corner_at(const hdi_mesh *mesh, int64_t c) { return hdi_at3(mesh->xyz, mesh->tri[c]); }
+static const double *hdi_corner_at(const hdi_mesh *mesh, int64_t c) {
+    return hdi_at3(mesh->xyz, mesh->tri[c]);
+}
 
 /* The corners of the same face before and after c. */
 static int64_t hdi_corner_before(const hdi_mesh *mesh, int64_t c) {
@@ -5819,7 +5821,8 @@ static int hdi_poly_gradients(const hdi_mesh *mesh, int32_t f, double area) {
     int q, good = 1;
     for (c = mesh->ptr[f]; c < mesh->ptr[f + 1]; c++) {
         double *g = mesh->g + 3 * c;
-        hdi_sub3(hdi_corner_at(mesh, hdi_corner_before(mesh, c)), hdi_corner_at(mesh, hdi_corner_after(mesh, c)), g);
+        hdi_sub3(hdi_corner_at(mesh, hdi_corner_before(mesh, c)),
+                 hdi_corner_at(mesh, hdi_corner_after(mesh, c)), g);
         for (q = 0; q < 3; q++) g[q] /= 2 * sqrt(area);
         good &= hdi_near3(g);
     }
@@ -5951,12 +5954,16 @@ static HDI_INLINE int hdi_corner_way(const hdi_mesh *mesh, int64_t c) {
     return mesh->tri[hdi_corner_after(mesh, c)] < mesh->tri[hdi_corner_before(mesh, c)];
 }
 
-/* A number for the corners of the face in the order from its smallest corner c (the hash of Fowler, Noll
- * and Vo, a vertex at a time). */
+/* A number for the corners of the face in the order from its smallest corner c: of a triangle the two others,
+ * of a polygon the hash of Fowler, Noll and Vo, a vertex at a time. */
 static HDI_INLINE uint64_t hdi_corner_key(const hdi_mesh *mesh, int64_t c) {
     const int forward = hdi_corner_way(mesh, c);
     uint64_t key = 14695981039346656037u;
     int64_t at = c;
+    if (!hdi_is_poly(mesh)) {
+        const int32_t a = mesh->tri[hdi_corner_before(mesh, c)], b = mesh->tri[hdi_corner_after(mesh, c)];
+        return (uint64_t)hdi_low32(a, b) << 32 | (uint64_t)hdi_high32(a, b);
+    }
     do {
         key = (key ^ (uint64_t)mesh->tri[at]) * 1099511628211u;
         at = hdi_corner_step(mesh, at, forward);
@@ -7297,7 +7304,7 @@ static hd_status hdi_soup_delaunay(hdi_mesh *flat, const hdi_soup *soup, int clo
  * listed there. */
 
 /* ---- rows from corners ----
- * Every mesh is faces with k corners and an element matrix each. A row of the pair is the sum over the corners
+ * Every mesh is faces with k corners and an element matrix each. A row of the pair is a sum over the corners
  * at its vertex, in the order of the faces: both rows of a pair of vertices add the same numbers in the same
  * order, so that L is symmetric to the last bit, and any thread can fill any row. */
 
@@ -7306,11 +7313,10 @@ typedef enum hdi_lump { HDI_LUMP_PARTS, HDI_LUMP_MIXED, HDI_LUMP_ONES } hdi_lump
 
 /* What a vertex shares with another one. */
 typedef struct hdi_entry {
+    double L, B;                /* sums of elements, and of areas */
+    double size;                /* length of the side, where lengths are given; or of what L sums up */
     int32_t to;                 /* the other one */
     int32_t faces, forward;     /* of which their edge is a side; sides that run from the vertex to it */
-    double L, B;                /* sums of elements, and of areas */
-    double most;                /* sum of the sizes that rounding in L is relative to, without coordinates */
-    double length;              /* of the side, if lengths are given */
 } hdi_entry;
 
 /* What one vertex shares with others: first itself, then those it has faces with, as they come. */
@@ -7349,8 +7355,8 @@ typedef struct hdi_rows {
 
 enum { HDI_MOVING_BLOCKS = 20 };
 
-/* What an update needs: of meshes the faces that had an area, and work; of the caller's matrices what is named
- * there. */
+/* What an update needs: of meshes the faces that had an area, and work; of the caller's matrices what is
+ * named there. */
 typedef struct hd_moving {
     struct hdi_moving_pair *pair;
     void *block[HDI_MOVING_BLOCKS];  /* all that is allocated */
@@ -7564,11 +7570,11 @@ static double hdi_poly_entry(const hdi_mesh *mesh, int64_t c, int64_t d, int64_t
     return k == 3 ? first : first - mesh->lambda * (beside + (u[0] * v[0] + u[1] * v[1]));
 }
 
-/* The mass that corner q of a triangle has by the mixed rule. In a face without obtuse angle, (|ab|^2 cot c +
- * |ac|^2 cot b) / 8 at a is area/4 (1 + cot b cot c), as |ab|^2 = 2 area (cot a + cot b) and the three products
- * of two cotangents sum to 1. Here they are divided by their sum, so that the shares add up to the area
- * whatever rounding does, and cotangents may carry a factor. The tip of a needle, which has the smallest
- * angle, has a quarter. */
+/* The mass that corner q of a triangle has by the mixed rule. In a face without obtuse angle, (|ab|^2 cot c
+ * + |ac|^2 cot b) / 8 at a is area/4 (1 + cot b cot c), as |ab|^2 = 2 area (cot a + cot b) and the three
+ * products of two cotangents sum to 1. Here they are divided by their sum, so that the shares add up to the
+ * area whatever rounding does, and cotangents may carry a factor. The tip of a needle, which has the
+ * smallest angle, has a quarter. */
 static double hdi_mixed_mass(const double *cot, int64_t q, double area) {
     const double least = hdi_min(cot[0], hdi_min(cot[1], cot[2]));
     const double most = hdi_max(cot[0], hdi_max(cot[1], cot[2]));
@@ -7580,21 +7586,22 @@ static double hdi_mixed_mass(const double *cot, int64_t q, double area) {
 
 /* The entry of vertex v. */
 static HDI_INLINE hdi_entry *hdi_ring_entry(hdi_ring *r, int32_t v) {
-    uint32_t at = (uint32_t)r->place[v];
-    hdi_entry *e;
-    if (at < (uint32_t)r->n && r->entry[at].to == v) return r->entry + at;
+    const int32_t at = r->place[v];
+    hdi_entry *e = r->entry + at;
+    if ((at < r->n) & (e->to == v)) return e;
     r->place[v] = r->n;
     e = r->entry + r->n++;
-    memset(e, 0, sizeof *e);
+    e->L = e->B = e->size = 0;
+    e->faces = e->forward = 0;
     e->to = v;
     return e;
 }
 
-/* Adds corner c of face f, which has k corners from begin on. */
-static HDI_INLINE void hdi_ring_corner(hdi_ring *r, const hdi_mesh *mesh, hdi_lump lump, int64_t c, int32_t f,
-                                       int64_t begin, int64_t k) {
+/* Adds corner c of a face with this area, which has k corners from begin on. */
+static HDI_INLINE void hdi_ring_corner(hdi_ring *r, const hdi_mesh *mesh, hdi_lump lump, int64_t c,
+                                       double area, int64_t begin, int64_t k, int poly) {
     const int64_t end = begin + k, before = c > begin ? c - 1 : end - 1, after = c + 1 < end ? c + 1 : begin;
-    const double area = mesh->area[f], *cot = mesh->cot + begin;
+    const double *cot = poly ? NULL : mesh->cot + begin;
     int64_t d;
     if (area > 0) r->mass += lump == HDI_LUMP_MIXED ? hdi_mixed_mass(cot, c - begin, area) : area / (double)k;
     for (d = begin; d < end; d++) {
@@ -7602,13 +7609,10 @@ static HDI_INLINE void hdi_ring_corner(hdi_ring *r, const hdi_mesh *mesh, hdi_lu
         if (d == c) continue;
         e = hdi_ring_entry(r, mesh->tri[d]);
         if (!(area > 0)) continue;
-        if (hdi_is_poly(mesh)) {
-            e->L += hdi_poly_entry(mesh, c, d, k, d == before || d == after);
-        } else {
-            e->L -= cot[3 + 2 * begin - c - d] / 2;
-            if (mesh->len) e->length = mesh->len[d == after ? c : d];
-            else if (!mesh->xyz) e->most += fabs(cot[0]) + fabs(cot[1]) + fabs(cot[2]);
-        }
+        if (poly) e->L += hdi_poly_entry(mesh, c, d, k, d == before || d == after);
+        else e->L -= cot[3 + 2 * begin - c - d] / 2;
+        if (!poly && mesh->len) e->size = mesh->len[d == after ? c : d];
+        else if (!mesh->xyz) e->size += fabs(cot[0]) + fabs(cot[1]) + fabs(cot[2]);
         e->B += area;
         e->faces += d == before || d == after;
         e->forward += d == after;
@@ -7627,11 +7631,12 @@ static void hdi_ring_make(hdi_ring *r, const hdi_mesh *mesh, hdi_lump lump, int3
         const int64_t c = mesh->corner[p];
         const int32_t f = hdi_corner_face(mesh, c);
         const int64_t begin = hdi_face_begin(mesh, f);
-        if (hdi_is_poly(mesh)) hdi_ring_corner(r, mesh, lump, c, f, begin, mesh->ptr[f + 1] - begin);
-        else hdi_ring_corner(r, mesh, lump, c, f, begin, 3);
+        const double area = mesh->area[f];
+        if (hdi_is_poly(mesh)) hdi_ring_corner(r, mesh, lump, c, area, begin, mesh->ptr[f + 1] - begin, 1);
+        else hdi_ring_corner(r, mesh, lump, c, area, begin, 3, 0);
     }
     for (q = 1; q < r->n && !mesh->xyz && !mesh->len; q++)
-        if (r->entry[q].L > 0 && r->entry[q].L <= 1e-13 * r->entry[q].most) r->entry[q].L = 0;
+        if (r->entry[q].L > 0 && r->entry[q].L <= 1e-13 * r->entry[q].size) r->entry[q].L = 0;
     if (lump == HDI_LUMP_ONES) r->mass = 1;
 }
 
@@ -7662,7 +7667,7 @@ static void hdi_rows_edges(const hdi_rows *x, hdi_ring *r, hdi_rows_tally *tally
         tally->n_negative += e->L > 0;
         if (e->faces > 0 && (mesh->xyz || mesh->len))
             hdi_edge_count(&tally->edges, e->faces, e->forward,
-                           mesh->len ? e->length : hdi_edge_length(mesh->xyz, v, e->to));
+                           mesh->len ? e->size : hdi_edge_length(mesh->xyz, v, e->to));
     }
 }
 
@@ -7692,28 +7697,6 @@ static void hdi_rows_write(const hdi_rows *x, const hdi_ring *r, int32_t i) {
     if (B) B[diagonal] = lap->b_diag[i] = r->mass / 2 + r->entry[0].B / 12;
 }
 
-static void hdi_rows_task(void *arg, int64_t strand, int32_t worker) {
-    hdi_rows *x = (hdi_rows *)arg;
-    const hdi_mesh *mesh = &x->mesh;
-    const int64_t n = mesh->n, size = hdi_block_size(n);
-    hdi_ring r = hdi_rows_ring(x, strand);
-    int64_t b;
-    (void)worker;
-    for (b = strand; b * size < n; b += x->strands) {
-        hdi_rows_tally tally;
-        int32_t v;
-        memset(&tally, 0, sizeof tally);
-        for (v = (int32_t)(b * size); v < hdi_least(n, (b + 1) * size); v++) {
-            x->border[v] = 0;
-            if (mesh->at[v] == mesh->at[v + 1]) continue;
-            hdi_ring_make(&r, mesh, x->lump, v);
-            hdi_rows_edges(x, &r, &tally);
-            if (x->lap) hdi_rows_write(x, &r, x->lap->row[x->name ? x->name[v] : v]);
-        }
-        x->tally[b] = tally;
-    }
-}
-
 /* The vertices that v has faces with. */
 static HDI_INLINE int32_t hdi_corner_count(const hdi_mesh *mesh, int32_t v, int32_t *mark) {
     int32_t n = 0;
@@ -7730,25 +7713,34 @@ static HDI_INLINE int32_t hdi_corner_count(const hdi_mesh *mesh, int32_t v, int3
     return n;
 }
 
-/* Finds faces that repeat others, but not in covers, and counts the entries of rows. */
-static void hdi_count_task(void *arg, int64_t strand, int32_t worker) {
-    hdi_rows *x = (hdi_rows *)arg;
+/* The block of vertices [begin, end): counts rows while there are no entries, then fills them. In covers
+ * faces repeat others by right. */
+static void hdi_rows_block(hdi_rows *x, hdi_ring *r, int32_t begin, int32_t end, hdi_rows_tally *tally) {
     const hdi_mesh *mesh = &x->mesh;
-    const int64_t n = mesh->n, size = hdi_block_size(n);
-    hdi_ring r = hdi_rows_ring(x, strand);
-    int64_t b;
-    (void)worker;
-    hdi_fill_i32(r.place, n, -1);
-    for (b = strand; b * size < n; b += x->strands) {
-        int32_t v;
-        x->tally[b].n_repeated_face = 0;
-        for (v = (int32_t)(b * size); v < hdi_least(n, (b + 1) * size); v++) {
-            if (mesh->xyz || mesh->len) x->tally[b].n_repeated_face += hdi_mesh_repeats(mesh, v, r.order);
-            x->count[v] = hdi_corner_count(mesh, v, r.place);
+    int32_t v;
+    memset(tally, 0, sizeof *tally);
+    for (v = begin; v < end; v++) {
+        x->border[v] = 0;
+        if (!x->entry) {
+            if (mesh->xyz || mesh->len) tally->n_repeated_face += hdi_mesh_repeats(mesh, v, r->order);
+            x->count[v] = hdi_corner_count(mesh, v, r->place);
+        } else if (mesh->at[v] < mesh->at[v + 1]) {
+            hdi_ring_make(r, mesh, x->lump, v);
+            hdi_rows_edges(x, r, tally);
+            if (x->lap) hdi_rows_write(x, r, x->lap->row[x->name ? x->name[v] : v]);
         }
     }
 }
 
+static void hdi_rows_task(void *arg, int64_t strand, int32_t worker) {
+    hdi_rows *x = (hdi_rows *)arg;
+    const int64_t n = x->mesh.n, size = hdi_block_size(n);
+    hdi_ring r = hdi_rows_ring(x, strand);
+    int64_t b;
+    (void)worker;
+    for (b = strand; b * size < n; b += x->strands)
+        hdi_rows_block(x, &r, (int32_t)(b * size), (int32_t)hdi_least(n, (b + 1) * size), x->tally + b);
+}
 
 /* Finds faces that repeat others, counts the entries of rows and takes the work arrays for them, in s. The
  * corners of the mesh are listed. */
@@ -7765,7 +7757,8 @@ static hd_status hdi_rows_begin(hdi_rows *x, const hdi_mesh *mesh, hd_mesh_repor
     x->place = HDI_TAKE(&own, int32_t, x->strands * n);
     x->order = HDI_TAKE(&own, hdi_pair, x->strands * x->most);
     if (s->e->status < 0) return hdi_scope_end(&own);
-    hdi_parallel(s->ctx, x->strands, hdi_count_task, x);
+    hdi_fill_i32(x->place, x->strands * n, -1);
+    hdi_parallel(s->ctx, x->strands, hdi_rows_task, x);
     for (i = 0; i < blocks; i++) {
         rep->n_repeated_face += x->tally[i].n_repeated_face;
         rep->n_faces_used -= x->tally[i].n_repeated_face;
@@ -7854,8 +7847,8 @@ static hd_status hdi_lap_assemble(hd_laplacian *lap, hdi_rows *x, const double *
     return hdi_progress(lap->context, "assemble", 0.8, e);
 }
 
-/* (L, B), places and h of triangles or polygons. What is known of the faces comes to live in s. full: B is, if
- * its kind is. */
+/* (L, B), places and h of triangles or polygons. What is known of the faces comes to live in s. full: B is,
+ * if its kind is. */
 static hd_status hdi_lap_mesh(hd_laplacian *lap, hdi_mesh *mesh, int full, hdi_scope *s) {
     hdi_scope own = hdi_scope_begin(lap->context, s->e);
     hdi_rows x;
@@ -7936,7 +7929,8 @@ static hd_status hdi_moving_masses(const hdi_mesh *mesh, hd_error *e) {
         int alive = mesh->at[v] == mesh->at[v + 1];
         for (; p < mesh->at[v + 1]; p++) alive |= mesh->area[hdi_corner_face(mesh, mesh->corner[p])] > 0;
         if (!alive)
-            return hdi_fail_face(e, HD_ERR_EMPTY, "update: no face at the vertex has an area any more", -1, v, 0);
+            return hdi_fail_face(e, HD_ERR_EMPTY, "update: no face at the vertex has an area any more", -1,
+                                 v, 0);
     }
     return HD_OK;
 }
