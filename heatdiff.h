@@ -13410,26 +13410,22 @@ typedef enum hdi_wanted {
     HDI_WANT_ENTRIES, HDI_WANT_DIAGONAL, HDI_WANT_FORMS, HDI_WANT_BOTH
 } hdi_wanted;
 
-/* Places where blocks of columns are worked on: one for each subtree, or one for each block under way in a
- * front of the top. Of each: columns [pivots] and room [aside, then the rest of size]. */
-typedef struct hdi_form_places {
-    int64_t n, pivots;
-    uint64_t aside, size;        /* doubles: rows of a child; all */
-} hdi_form_places;
+/* What a block of columns has below its front: the pivots of a front that its columns [lo,hi) touch have rows
+ * of that many entries, from entry `at` of the room on. hi 0: not touched. */
+typedef struct hdi_form_seat { int64_t at; int32_t lo, hi; } hdi_form_seat;
 
 /* The x_j of quadratic forms, columns of a symmetric matrix X on the pattern that was analysed, and room for
- * them. */
+ * them. Blocks of columns are worked on in places: one for each subtree, n_slots for fronts of the top. */
 typedef struct hdi_forms {
     const hd_csr *a;             /* the pattern */
     const double *x;             /* X by its entries */
+    int32_t width, cols, n_slots;    /* columns of a block at most; blocks at the same time in a top front */
     int32_t *inv;                /* [n] pivot of a row of A */
-    int32_t cols, n_slots;       /* columns of a block at most; blocks at the same time in a top front */
-    hdi_form_places place[2];    /* of subtrees, of the top */
-    uint64_t *active;            /* [1 + n_slots][n_super], subtrees share the first: which columns of the
-                                    block have come to a front. 0 between blocks */
-    int32_t *column;             /* by places: place in the block of a pivot's column, -1: not in it */
-    hdi_pair *order;             /* [n_tasks][task_pivots], [largest_pivots] */
-    double *room;                /* by places */
+    int32_t *order, *far;        /* [n] pivots; of each front far come first, and go into blocks */
+    hdi_form_seat *seat;         /* [1 + SLOTS][n_super], subtrees share the first */
+    hdi_pair *list;              /* [largest_pivots] */
+    double *room;                /* [n_tasks][size[0]], [n_slots][size[1]] */
+    uint64_t size[2];
 } hdi_forms;
 
 /* Inversion under way. Wanted of it are weighted sums over the numbers of an entry or form (four complex ones
@@ -13718,49 +13714,51 @@ static void hdi_inverse_put(const hdi_inverse *z, const double *from, int64_t at
  * 6.7 GB here. */
 
 enum { HDI_FORM_COLS = 24, HDI_FORM_COLS_REAL = 8, HDI_FORM_SLOTS = 8, HDI_FORM_NEAR = 32 };
-#define HDI_FORM_OPEN ((uint64_t)1 << 63)   /* of active: the front's rows are on the stack */
+enum { HDI_FORM_SMALL = 65536 };     /* doubles of room that are never too many */
 
-/* A block of columns of front J under way. The rows of fronts stand on a stack. Those of a front are put
- * there when the first of its children that is touched is done, or when it has none; when the front is done
- * they are added to those of its parent. So the stack only ever holds the front under way and some of its
- * ancestors. A row has entries for the columns that have come to the front; with a real factor for eight
- * columns, or for one. */
+/* Blocks of front v's columns, and the k columns of one. */
+static int64_t hdi_form_blocks(const hdi_forms *q, int32_t v) { return (q->far[v] + q->cols - 1) / q->cols; }
+
+static const int32_t *hdi_form_list(const hdi_forms *q, const hdi_symbolic *s, int32_t v, int64_t block,
+                                    int32_t *k) {
+    const int64_t n = hdi_form_blocks(q, v), from = block * q->far[v] / n;
+    *k = (int32_t)((block + 1) * q->far[v] / n - from);
+    return q->order + s->super[v] + from;
+}
+
+/* Seats below front w for its columns, and in the fronts between those that they touch and w; returns their
+ * entries, and the first of the fronts. Real rows are all alike: sweeps take one column or eight. */
+static int64_t hdi_form_touch(const hdi_forms *q, const hdi_symbolic *s, int32_t w, const int32_t *list,
+                              int32_t k, hdi_form_seat *seat, int32_t *least) {
+    int64_t at = 0, p;
+    int32_t c, v;
+    *least = w;
+    for (c = 0; c < k; c++) {
+        const int64_t row = s->perm[list[c]];
+        const int32_t lo = q->width == 1 ? 0 : c, hi = q->width == 1 ? q->cols : c + 1;
+        for (p = q->a->row_ptr[row]; p < q->a->row_ptr[row + 1]; p++) {
+            v = s->super_of[q->inv[q->a->col[p]]];
+            if (v < *least) *least = v;
+            for (; v < w && seat[v].hi < hi; v = s->parent[v]) {
+                if (seat[v].hi == 0) seat[v].lo = lo;
+                seat[v].hi = hi;
+            }
+        }
+    }
+    for (v = *least; v < w; v++) {
+        seat[v].at = at;
+        at += hdi_front_pivots(s, v) * (int64_t)(seat[v].hi - seat[v].lo);
+    }
+    return at;
+}
+
+/* A block of columns of front J under way: the rows of its seats, and r, a row for each row of J. */
 typedef struct hdi_form_block {
-    const hdi_forms *q;
     const hdi_inverse_front *w;  /* J */
-    const hdi_pair *list;        /* [k] first row and pivot of the columns */
-    int32_t k;
-    uint64_t *active;
-    int32_t *column;
-    double *top, *end;           /* of the stack */
-    double *aside;               /* rows of a child */
-    double sum[(int)HDI_FORM_COLS * HDI_PACK];
+    const hdi_form_seat *seat;
+    double *room, *r;
+    int32_t cols;                /* of r */
 } hdi_form_block;
-
-/* The columns of a set, ascending; returns their number. */
-static int32_t hdi_form_list(uint64_t set, int32_t *list) {
-    int32_t c, n = 0;
-    for (c = 0, set &= ~HDI_FORM_OPEN; set; c++, set >>= 1)
-        if (set & 1) list[n++] = c;
-    return n;
-}
-
-static int32_t hdi_form_count(uint64_t set) {
-    int32_t n = 0;
-    for (set &= ~HDI_FORM_OPEN; set; set &= set - 1) n++;
-    return n;
-}
-
-/* Doubles of a row of k columns. */
-static int32_t hdi_form_row(int32_t width, int32_t k) {
-    return width > 1 ? width * k : k > 1 ? HDI_FORM_COLS_REAL : 1;
-}
-
-/* Adds x to an entry. */
-static void hdi_form_add(int32_t width, double x, double *to) {
-    int32_t q;
-    for (q = 0; q < (width == 1 ? 1 : HDI_PACK_LANES); q++) to[q] += x;
-}
 
 /* Where pivot i of the matrix stands in the front. */
 static int64_t hdi_form_place(const hdi_inverse_front *w, int32_t i) {
@@ -13769,388 +13767,207 @@ static int64_t hdi_form_place(const hdi_inverse_front *w, int32_t i) {
     return w->p + hdi_lower_bound(s->row + s->row_ptr[w->v], w->u, i);
 }
 
-/* Rows of front v, cleared when they are new: they are on top of the stack. It has room for all: fronts are
- * worked on in the order of the tree, so that of the ways from J down to the front under way those fronts are
- * open that an earlier child has handed rows to, as hdi_form_rows counts them, and no front has more columns
- * than the block. */
-static double *hdi_form_open(hdi_form_block *b, int32_t v, int32_t k) {
-    const hdi_factor *f = b->w->f;
-    const int64_t size = hdi_front_rows(f->sym, v) * hdi_form_row(f->width, k);
-    if (!(b->active[v] & HDI_FORM_OPEN)) {
-        b->active[v] |= HDI_FORM_OPEN;
-        HEATDIFF_ASSERT(size <= b->end - b->top);
-        memset(b->top, 0, (size_t)size * sizeof *b->top);
-        b->top += size;
-    }
-    return b->top - size;
-}
-
-/* Marks what the block's columns touch below J; returns the first. */
-static int32_t hdi_form_touch(hdi_form_block *b) {
+/* Column c of pivot i's row. */
+static double *hdi_form_at(const hdi_form_block *b, int32_t i, int32_t c) {
     const hdi_symbolic *s = b->w->f->sym;
-    const int32_t first = s->super[b->w->v];
-    int32_t c, v, least = b->w->v;
-    int64_t p;
-    for (c = 0; c < b->k; c++) {
-        const int64_t row = s->perm[first + b->list[c].id];
-        const uint64_t bit = (uint64_t)1 << c;
-        for (p = b->q->a->row_ptr[row]; p < b->q->a->row_ptr[row + 1]; p++) {
-            const int32_t i = b->q->inv[b->q->a->col[p]];
-            if (i >= first || b->q->x[p] == 0) continue;
-            v = s->super_of[i];
-            if (v < least) least = v;
-            for (; v != b->w->v && !(b->active[v] & bit); v = s->parent[v]) b->active[v] |= bit;
-        }
-    }
-    return least;
+    const int32_t v = s->super_of[i], width = b->w->f->width;
+    const hdi_form_seat *at = b->seat + v;
+    if (v >= b->w->v) return b->r + width * (hdi_form_place(b->w, i) * b->cols + c);
+    return b->room + width * (at->at + (i - s->super[v]) * (int64_t)(at->hi - at->lo) + c - at->lo);
 }
 
-/* Entries of x at the pivots of front v below J, those of the columns of set. */
-static void hdi_form_below(const hdi_form_block *b, int32_t v, uint64_t set, double *y, int32_t row) {
-    const hdi_symbolic *s = b->w->f->sym;
-    const int32_t width = b->w->f->width, p = hdi_front_pivots(s, v), first = s->super[b->w->v];
-    const int32_t *rows = s->row + s->row_ptr[v];
-    int64_t n;
-    for (n = s->a_ptr[v]; n < s->a_ptr[v + 1]; n++) {
-        const int32_t at = s->a_row[n] < p ? -1 : rows[s->a_row[n] - p] - first;
-        const int32_t c = at >= 0 && at < b->w->p ? b->column[at] : -1;
-        double x;
-        if (c < 0 || (x = b->q->x[s->a_from[n]]) == 0) continue;
-        hdi_form_add(width, x, y + s->a_col[n] * (int64_t)row +
-                     width * hdi_form_count(set & (((uint64_t)1 << c) - 1)));
-    }
-}
-
-/* Entries of x in the rows of J, of all columns. */
-static void hdi_form_own(const hdi_form_block *b, double *r, int32_t row) {
-    const hdi_symbolic *s = b->w->f->sym;
-    const int32_t width = b->w->f->width, first = s->super[b->w->v];
-    int32_t c;
-    int64_t p;
-    for (c = 0; c < b->k; c++) {
-        const int64_t of = s->perm[first + b->list[c].id];
-        for (p = b->q->a->row_ptr[of]; p < b->q->a->row_ptr[of + 1]; p++) {
-            const int32_t i = b->q->inv[b->q->a->col[p]];
-            if (i >= first) hdi_form_add(width, b->q->x[p], r + hdi_form_place(b->w, i) * row + width * c);
-        }
-    }
-}
-
-/* sum += y^2/d of n pivots, for the k columns listed. */
-static void hdi_form_squares(hdi_form_block *b, const double *dinv, const double *y, int32_t row, int64_t n,
-                             const int32_t *list, int32_t k) {
-    const int32_t width = b->w->f->width;
-    int64_t i;
+/* sum += a b f for k entries a and b, and one f. */
+static void hdi_form_add(int32_t width, int32_t k, const double *a, const double *b, const double *f,
+                         double *sum) {
+    double ab[HDI_PACK], abf[HDI_PACK];
     int32_t c, q;
-    for (i = 0; i < n; i++, y += row, dinv += width) {
-        for (c = 0; c < k; c++) {
-            double *to = b->sum + width * list[c], t[HDI_PACK], z[HDI_PACK];
-            if (width == 1) {
-                *to += y[c] * y[c] * *dinv;
-                continue;
-            }
-            hdi_pack_times(y + HDI_PACK * c, y + HDI_PACK * c, t);
-            hdi_pack_times(t, dinv, z);
-            for (q = 0; q < HDI_PACK; q++) to[q] += z[q];
-        }
+    if (width == 1) {
+        for (c = 0; c < k; c++) sum[c] += a[c] * b[c] * *f;
+        return;
+    }
+    for (c = 0; c < k; c++, a += HDI_PACK, b += HDI_PACK, sum += HDI_PACK) {
+        hdi_pack_times(a, b, ab);
+        hdi_pack_times(ab, f, abf);
+        for (q = 0; q < HDI_PACK; q++) sum[q] += abf[q];
     }
 }
 
-/* What is left below the pivots of front v, to its parent: t by rows of the k columns listed. */
-static void hdi_form_lift(hdi_form_block *b, int32_t v, const double *t, int32_t row, const int32_t *list,
-                          int32_t k) {
-    const hdi_factor *f = b->w->f;
+/* sum += y_k^2/d_k for the pivots of front v below J, and what is left goes to the rows after. t: work */
+static void hdi_form_front(const hdi_form_block *b, int32_t v, double *t, double *sum) {
+    hdi_factor *f = b->w->f;
     const hdi_symbolic *s = f->sym;
-    const int32_t up = s->parent[v], *rel = s->rel + s->row_ptr[v];
-    const int64_t u = hdi_front_below(s, v);
-    int32_t kept[HDI_FORM_COLS], to[HDI_FORM_COLS];
-    int32_t n = up == b->w->v ? b->k : hdi_form_list(b->active[up], kept), c, a;
+    const int64_t first = s->super[v], p = hdi_front_pivots(s, v), u = hdi_front_below(s, v);
+    const int32_t lo = b->seat[v].lo, k = b->seat[v].hi - lo, row = f->width * k;
+    double *y = hdi_form_at(b, s->super[v], lo);
     int64_t i;
-    double *rows;
-    if (!(b->active[up] & HDI_FORM_OPEN)) {      /* where t stands now */
-        memcpy(b->aside, t, (size_t)(u * row) * sizeof *t);
-        t = b->aside;
-    }
-    for (c = a = 0; c < k; c++) {
-        while (up != b->w->v && kept[a] != list[c]) a++;
-        to[c] = up == b->w->v ? list[c] : a;
-    }
-    rows = hdi_form_open(b, up, n);
-    n = hdi_form_row(f->width, n);
-    for (i = 0; i < u; i++, t += row) {
-        double *HDI_RESTRICT y = rows + rel[i] * (int64_t)n;
-        for (c = 0; c < k; c++) {
-            if (f->width == 1) y[to[c]] += t[c];
-            else f->ops->add(y + HDI_PACK * to[c], t + HDI_PACK * c, HDI_PACK);
-        }
-    }
-}
-
-/* Front v below J, for the columns that have come to it. */
-static void hdi_form_front(hdi_form_block *b, int32_t v) {
-    const hdi_factor *f = b->w->f;
-    const int64_t p = hdi_front_pivots(f->sym, v);
-    int32_t list[HDI_FORM_COLS];
-    const int32_t k = hdi_form_list(b->active[v], list), row = hdi_form_row(f->width, k);
-    double *y = hdi_form_open(b, v, k), *t = y + p * row;
     hdi_sweep z;
     memset(&z, 0, sizeof z);
     z.f = f;
-    z.k = f->width == 1 ? row : k;
-    hdi_form_below(b, v, b->active[v] & ~HDI_FORM_OPEN, y, row);
+    z.k = k;
+    memset(t, 0, (size_t)(u * row) * sizeof *t);
     hdi_sweep_forward(&z, v, y, t);
-    hdi_form_squares(b, f->dinv + (int64_t)f->width * f->sym->super[v], y, row, p, list, k);
-    b->active[v] = 0;
-    b->top = y;
-    hdi_form_lift(b, v, t, row, list, k);
+    for (i = 0; i < p; i++, y += row)
+        hdi_form_add(f->width, k, y, y, f->dinv + f->width * (first + i), sum + f->width * lo);
+    for (i = 0; i < u; i++, t += row) f->ops->add(hdi_form_at(b, s->row[s->row_ptr[v] + i], lo), t, row);
 }
 
 /* sum += r' Z r for the rows of J: with z the part of a column of Z below its diagonal entry z0, and x the
- * column's row of r, x (z0 x + 2 z' r). */
-static void hdi_form_square(hdi_form_block *b, const double *r, int32_t row) {
+ * column's row of r, z0 x x + 2 (z' r) x. */
+static void hdi_form_square(const hdi_form_block *b, double *sum) {
+    static const double minus_two[HDI_PACK] = {-2, -2, -2, -2, 0, 0, 0, 0};
     const hdi_inverse_front *w = b->w;
-    const int32_t width = w->f->width;
+    const int32_t width = w->f->width, row = width * b->cols;
+    double t[(int)HDI_FORM_COLS * (int)HDI_PACK];
     int64_t j;
-    int32_t c, q;
     for (j = 0; j < w->m; j++) {
-        const double *z = hdi_inverse_column(w, j), *x = r + j * row;
-        double t[(int)HDI_FORM_COLS * (int)HDI_PACK], s[HDI_PACK];
+        const double *z = hdi_inverse_column(w, j), *x = b->r + j * row;
         memset(t, 0, (size_t)row * sizeof *t);
-        hdi_kernels_rows(w->f->ops, t, row / width, 1, x + row, w->m - j - 1, z + width, 1, 0);
-        for (c = 0; c < b->k; c++) {
-            double *sum = b->sum + width * c;
-            if (width == 1) {
-                *sum += x[c] * (*z * x[c] - 2 * t[c]);
-                continue;
-            }
-            hdi_pack_times(z, x + HDI_PACK * c, s);
-            for (q = 0; q < HDI_PACK; q++) t[HDI_PACK * c + q] = s[q] - 2 * t[HDI_PACK * c + q];
-            hdi_pack_times(x + HDI_PACK * c, t + HDI_PACK * c, s);
-            for (q = 0; q < HDI_PACK; q++) sum[q] += s[q];
-        }
+        hdi_kernels_rows(w->f->ops, t, b->cols, 1, x + row, w->m - j - 1, z + width, 1, 0);
+        hdi_form_add(width, b->cols, x, x, z, sum);
+        hdi_form_add(width, b->cols, x, t, minus_two, sum);
     }
 }
 
 /* The forms of a block of columns. */
-static void hdi_form_run(const hdi_inverse *z, hdi_form_block *b) {
+static void hdi_form_run(const hdi_inverse *z, const hdi_inverse_front *w, int64_t block) {
+    const hdi_forms *q = z->forms;
     const hdi_symbolic *s = z->f->sym;
-    const int32_t width = z->f->width, row = hdi_form_row(width, b->k);
-    int32_t c, v;
-    double *r;
-    memset(b->sum, 0, sizeof b->sum);
-    for (c = 0; c < b->k; c++) b->column[b->list[c].id] = c;
-    for (v = hdi_form_touch(b); v < b->w->v; v++)
-        if (b->active[v]) hdi_form_front(b, v);
-    r = hdi_form_open(b, v, b->k);
-    hdi_form_own(b, r, row);
-    hdi_form_square(b, r, row);
-    b->active[v] = 0;
-    for (c = 0; c < b->k; c++) {
-        b->column[b->list[c].id] = -1;
-        hdi_inverse_put(z, b->sum + width * c, s->super[v] + b->list[c].id);
-    }
-}
-
-/* The form of pivot j's column when all of its non-zeros are in the rows of its front, and few: 1. Else 0,
- * and the first of them. */
-static int hdi_form_near(const hdi_inverse *z, const hdi_inverse_front *w, int64_t j, int32_t *least) {
-    const hdi_symbolic *s = w->f->sym;
-    const hdi_forms *q = z->forms;
-    const int32_t first = s->super[w->v], width = w->f->width;
-    const int64_t row = s->perm[first + j];
-    int64_t at[HDI_FORM_NEAR], p;
-    double x[HDI_FORM_NEAR], sum[HDI_PACK];
-    int32_t n = 0, a, b, c;
-    *least = (int32_t)(first + j);
-    for (p = q->a->row_ptr[row]; p < q->a->row_ptr[row + 1]; p++) {
-        const int32_t i = q->inv[q->a->col[p]];
-        if (q->x[p] == 0) continue;
-        if (i < *least) *least = i;
-        if (n < HDI_FORM_NEAR) {
-            at[n] = i;
-            x[n] = q->x[p];
-        }
-        n++;
-    }
-    if (*least < first || n > HDI_FORM_NEAR) return 0;
-    memset(sum, 0, sizeof sum);
-    for (a = 0; a < n; a++) {
-        at[a] = hdi_form_place(w, (int32_t)at[a]);
-        for (b = 0; b <= a; b++) {
-            const int in_order = at[a] > at[b];
-            const double *from = hdi_inverse_at(w, in_order ? at[a] : at[b], in_order ? at[b] : at[a]);
-            const double xx = (a == b ? 1 : 2) * x[a] * x[b];
-            if (width == 1) sum[0] += xx * from[0];
-            else
-                for (c = 0; c < HDI_PACK; c++) sum[c] += xx * from[c];
-        }
-    }
-    hdi_inverse_put(z, sum, first + j);
-    return 1;
-}
-
-typedef struct hdi_form_job {
-    const hdi_inverse *z;
-    const hdi_inverse_front *w;
-    const hdi_pair *list;
-    int32_t n, n_blocks;
-} hdi_form_job;
-
-/* Block `at`, at a place of its own among as many blocks as there are places. */
-static void hdi_form_task(const hdi_form_job *job, int64_t at) {
-    const hdi_forms *q = job->z->forms;
-    const hdi_symbolic *s = job->z->f->sym;
-    const int64_t from = at * job->n / job->n_blocks, slot = at % HDI_FORM_SLOTS;
-    const int64_t task = s->task_of[job->w->v];
-    const hdi_form_places *places = q->place + (task < 0), *before = q->place;
-    const int64_t number = task >= 0 ? task : slot, n_before = task >= 0 ? 0 : before->n;
-    double *room = q->room + before->size * (size_t)n_before + places->size * (size_t)number;
+    const int32_t width = z->f->width, lanes = width == 1 ? 1 : HDI_PACK_LANES;
+    const int32_t task = s->task_of[w->v], slot = (int32_t)(block % HDI_FORM_SLOTS);
+    hdi_form_seat *seat = q->seat + (task < 0 ? (1 + (int64_t)slot) * s->n_super : 0);
+    int32_t k, c, v, i;
+    const int32_t *list = hdi_form_list(q, s, w->v, block, &k);
+    const int64_t below = hdi_form_touch(q, s, w->v, list, k, seat, &v);
+    double sum[(int)HDI_FORM_COLS * HDI_PACK];
     hdi_form_block b;
-    b.q = q;
-    b.w = job->w;
-    b.list = job->list + from;
-    b.k = (int32_t)((at + 1) * job->n / job->n_blocks - from);
-    b.active = q->active + (task >= 0 ? 0 : (1 + slot) * s->n_super);
-    b.column = q->column + before->pivots * n_before + places->pivots * number;
-    b.end = room + places->size;
-    b.aside = room;
-    b.top = room + places->aside;
-    hdi_form_run(job->z, &b);
+    int64_t p, size;
+    b.w = w;
+    b.seat = seat;
+    b.cols = width == 1 ? q->cols : k;
+    b.room = q->room + (task < 0 ? q->size[0] * (uint64_t)s->n_tasks + q->size[1] * (uint64_t)slot
+                                 : q->size[0] * (uint64_t)task);
+    b.r = b.room + width * below;
+    size = width * (below + w->m * b.cols);
+    memset(sum, 0, sizeof sum);
+    memset(b.room, 0, (size_t)size * sizeof *b.room);
+    for (c = 0; c < k; c++) {
+        const int64_t row = s->perm[list[c]];
+        for (p = q->a->row_ptr[row]; p < q->a->row_ptr[row + 1]; p++)
+            for (i = 0; i < lanes; i++) hdi_form_at(&b, q->inv[q->a->col[p]], c)[i] = q->x[p];
+    }
+    for (; v < w->v; v++) {
+        if (seat[v].hi > 0) hdi_form_front(&b, v, b.room + size, sum);
+        seat[v].lo = seat[v].hi = 0;
+    }
+    hdi_form_square(&b, sum);
+    for (c = 0; c < k; c++) hdi_inverse_put(z, sum + width * c, list[c]);
 }
 
-/* Blocks of columns of p pivots, at most. */
-static int64_t hdi_forms_blocks(const hdi_forms *q, int64_t p) { return (p + q->cols - 1) / q->cols; }
-
-/* The forms of a front's pivots, one by one where that is possible; of the others the blocks. They do not
- * depend on who works on them. They are sorted by the fronts where they begin, because columns that begin
- * close to each other share more of their ways. */
-static hdi_form_job hdi_forms_open(const hdi_inverse *z, const hdi_inverse_front *w) {
+/* The forms of a front's columns that have few non-zeros and all of them in the rows of the front, which half
+ * of a mesh's columns have. */
+static void hdi_form_near(const hdi_inverse *z, const hdi_inverse_front *w) {
     const hdi_forms *q = z->forms;
     const hdi_symbolic *s = w->f->sym;
-    const int32_t task = s->task_of[w->v];
-    hdi_pair *order = q->order + (int64_t)(task >= 0 ? task : s->n_tasks) * s->task_pivots;
-    hdi_form_job job;
-    int64_t j;
-    int32_t least;
-    memset(&job, 0, sizeof job);
-    for (j = 0; j < w->p; j++) {
-        if (hdi_form_near(z, w, j, &least)) continue;
-        order[job.n].key = (uint64_t)least;
-        order[job.n++].id = j;
-    }
-    hdi_sort_pairs(order, job.n);
-    job.z = z;
-    job.w = w;
-    job.list = order;
-    job.n_blocks = (int32_t)hdi_forms_blocks(q, job.n);
-    return job;
-}
-
-/* Rows on the stack at most, for columns of the fronts of subtrees and for those of all. need [n_super]. */
-static void hdi_form_rows(const hdi_symbolic *s, int64_t *need, int64_t *in_tasks, int64_t *in_all) {
-    int32_t v, k;
-    *in_tasks = *in_all = 0;
-    for (v = 0; v < s->n_super; v++) {
-        const int64_t m = hdi_front_rows(s, v);
-        need[v] = m;
-        for (k = s->kid_ptr[v]; k < s->kid_ptr[v + 1]; k++) {   /* v's rows come after the first child */
-            const int64_t sum = need[s->kid[k]] + (k > s->kid_ptr[v] ? m : 0);
-            if (sum > need[v]) need[v] = sum;
+    const int32_t width = w->f->width;
+    int64_t j, p, o;
+    int32_t c;
+    for (j = s->super[w->v] + q->far[w->v]; j < s->super[w->v + 1]; j++) {
+        const int64_t row = s->perm[q->order[j]], begin = q->a->row_ptr[row], end = q->a->row_ptr[row + 1];
+        double sum[HDI_PACK] = {0};
+        int64_t at[HDI_FORM_NEAR];
+        for (p = begin; p < end; p++) {
+            const int64_t a = at[p - begin] = hdi_form_place(w, q->inv[q->a->col[p]]);
+            for (o = begin; o <= p; o++) {
+                const int64_t b = at[o - begin];
+                const double *from = hdi_inverse_at(w, hdi_most(a, b), hdi_least(a, b));
+                for (c = 0; c < width; c++) sum[c] += (o == p ? 1 : 2) * q->x[p] * q->x[o] * from[c];
+            }
         }
-        if (need[v] > *in_all) *in_all = need[v];
-        if (s->task_of[v] >= 0 && need[v] > *in_tasks) *in_tasks = need[v];
+        hdi_inverse_put(z, sum, q->order[j]);
     }
 }
 
-static void hdi_forms_free(hdi_forms *q, hd_context *ctx) {
-    hdi_free(ctx, q->inv);
-    hdi_free(ctx, q->active);
-    hdi_free(ctx, q->column);
-    hdi_free(ctx, q->order);
-    hdi_free(ctx, q->room);
+/* The order of the columns of each front. Those of blocks are sorted by the pivots where they begin, because
+ * columns that begin close to each other share more of their ways. */
+static void hdi_forms_order(hdi_forms *q, const hdi_symbolic *s) {
+    int32_t v, j, i;
+    int64_t p;
+    for (v = 0; v < s->n_super; v++) {
+        int32_t n = 0, end = s->super[v + 1];
+        for (j = s->super[v]; j < s->super[v + 1]; j++) {
+            const int64_t row = s->perm[j], degree = q->a->row_ptr[row + 1] - q->a->row_ptr[row];
+            int32_t least = j;
+            for (p = 0; p < degree; p++) {
+                i = q->inv[q->a->col[q->a->row_ptr[row] + p]];
+                if (i < least) least = i;
+            }
+            if (least >= s->super[v] && degree <= HDI_FORM_NEAR) {
+                q->order[--end] = j;
+                continue;
+            }
+            q->list[n].key = (uint64_t)least;
+            q->list[n++].id = j;
+        }
+        hdi_sort_pairs(q->list, n);
+        for (i = 0; i < n; i++) q->order[s->super[v] + i] = (int32_t)q->list[i].id;
+        q->far[v] = n;
+    }
+}
+
+/* Room for blocks of q->cols columns; returns it in doubles. */
+static uint64_t hdi_forms_size(hdi_forms *q, const hdi_symbolic *s) {
+    int32_t v, k, least;
+    int64_t block;
+    q->size[0] = q->size[1] = 0;
+    q->n_slots = 0;
+    for (v = 0; v < s->n_super; v++) {
+        const int top = s->task_of[v] < 0;
+        const int64_t blocks = hdi_form_blocks(q, v);
+        const int64_t rows = hdi_front_rows(s, v) + (top ? s->largest_update : s->task_update);
+        if (top && blocks > q->n_slots) q->n_slots = (int32_t)hdi_least(blocks, HDI_FORM_SLOTS);
+        for (block = 0; block < blocks; block++) {
+            const int32_t *list = hdi_form_list(q, s, v, block, &k);
+            const int64_t below = hdi_form_touch(q, s, v, list, k, q->seat, &least);
+            const uint64_t size = (uint64_t)(q->width * (below + rows * (q->width == 1 ? q->cols : k)));
+            for (; least < v; least++) q->seat[least].lo = q->seat[least].hi = 0;
+            if (size > q->size[top]) q->size[top] = size;
+        }
+    }
+    return (uint64_t)s->n_tasks * q->size[0] + (uint64_t)q->n_slots * q->size[1];
+}
+
+/* For the forms of X on the pattern of a, with factors of the given width: what is needed but the room, whose
+ * doubles are returned. Blocks have fewer columns where the room would be more than half of the factor. */
+static uint64_t hdi_forms_make(hdi_forms *q, const hdi_symbolic *s, int32_t width, const hd_csr *a,
+                               hdi_scope *keep) {
+    uint64_t size;
+    int32_t i;
     memset(q, 0, sizeof *q);
-}
-
-/* Sizes of n places with so many pivots, rows of a child and rows on the stack, each of `row` doubles. */
-static hdi_form_places hdi_form_places_of(int64_t n, int64_t pivots, int64_t below, int64_t rows,
-                                          uint64_t row) {
-    hdi_form_places p;
-    p.n = n;
-    p.pivots = pivots;
-    p.aside = (uint64_t)below * row;
-    p.size = p.aside + (uint64_t)rows * row;
-    return p;
-}
-
-enum { HDI_FORM_SMALL = 65536 };     /* doubles of room that are never too many */
-
-/* How many columns a block has. Fewer where the room for all blocks that go on at the same time would be more
- * than half of the factor: on trees on which stacks grow high. */
-static void hdi_forms_size(hdi_forms *q, const hdi_symbolic *s, int32_t width, int64_t *need) {
-    int64_t in_tasks, in_all;
-    uint64_t row;
-    hdi_form_rows(s, need, &in_tasks, &in_all);
-    q->n_slots = s->n_top ? HDI_FORM_SLOTS : 0;
-    q->cols = width == 1 ? HDI_FORM_COLS_REAL : HDI_FORM_COLS;
-    while (q->cols > 1 && q->cols * (s->n_tasks * in_tasks + q->n_slots * in_all) > s->stored / 2 +
-           HDI_FORM_SMALL)
-        q->cols = width == 1 ? 1 : q->cols / 2;
-    row = (uint64_t)width * (uint64_t)q->cols;
-    q->place[0] = hdi_form_places_of(s->n_tasks, s->task_pivots, s->task_update, in_tasks, row);
-    q->place[1] = hdi_form_places_of(q->n_slots, s->largest_pivots, s->largest_update, in_all, row);
-}
-
-/* The arrays of forms whose sizes are known. Returns how many numbers q->column has. */
-static int64_t hdi_forms_take(hdi_forms *q, const hdi_symbolic *s, hdi_scope *keep) {
-    const hdi_form_places *p = q->place;
-    const int64_t columns = p[0].n * p[0].pivots + p[1].n * p[1].pivots;
-    q->inv = HDI_TAKE(keep, int32_t, s->n);
-    q->active = HDI_TAKE_ZERO(keep, uint64_t, (1 + (int64_t)q->n_slots) * s->n_super);
-    q->column = HDI_TAKE(keep, int32_t, columns);
-    q->order = HDI_TAKE(keep, hdi_pair, p[0].n * p[0].pivots + s->largest_pivots);
-    q->room = HDI_TAKE(keep, double, (uint64_t)p[0].n * p[0].size + (uint64_t)p[1].n * p[1].size);
-    return columns;
-}
-
-/* Room for the forms of x on the pattern of a, with factors of the given width. */
-static hd_status hdi_forms_make(hdi_forms *q, const hdi_symbolic *s, int32_t width, const hd_csr *a,
-                                const double *x, hd_context *ctx, hd_error *e) {
-    hdi_scope temp = hdi_scope_begin(ctx, e), keep = temp;
-    int64_t *need = HDI_TAKE(&temp, int64_t, (int64_t)s->n_super + 1), columns, i;
-    memset(q, 0, sizeof *q);
-    if (e->status < 0) return hdi_scope_end(&temp);
     q->a = a;
-    q->x = x;
-    hdi_forms_size(q, s, width, need);
-    columns = hdi_forms_take(q, s, &keep);
-    if (e->status < 0) {
-        memset(q, 0, sizeof *q);
-        hdi_scope_end(&keep);
-        return hdi_scope_end(&temp);
-    }
-    for (i = 0; i < s->n; i++) q->inv[s->perm[i]] = (int32_t)i;
-    hdi_fill_i32(q->column, columns, -1);
-    return hdi_scope_end(&temp);                 /* what keep holds is q's own now */
+    q->width = width;
+    q->cols = width == 1 ? HDI_FORM_COLS_REAL : HDI_FORM_COLS;
+    q->inv = HDI_TAKE(keep, int32_t, s->n);
+    q->order = HDI_TAKE(keep, int32_t, s->n);
+    q->far = HDI_TAKE(keep, int32_t, s->n_super);
+    q->seat = HDI_TAKE_ZERO(keep, hdi_form_seat, (1 + (int64_t)HDI_FORM_SLOTS) * s->n_super);
+    q->list = HDI_TAKE(keep, hdi_pair, s->largest_pivots);
+    if (keep->e->status < 0) return 0;
+    for (i = 0; i < s->n; i++) q->inv[s->perm[i]] = i;
+    hdi_forms_order(q, s);
+    while ((size = hdi_forms_size(q, s)) > (uint64_t)(s->stored / 2 + HDI_FORM_SMALL) && q->cols > 1)
+        q->cols = width == 1 ? 1 : q->cols / 2;
+    return size;
 }
 
-/* The bytes of that, and what its temporary array takes beyond bytes that come later. That array is made to
- * find out. */
-static uint64_t hdi_forms_bytes(const hdi_symbolic *s, int32_t width, uint64_t later, hd_context *ctx,
+/* The bytes of that and of the room. It is made to find out. */
+static uint64_t hdi_forms_bytes(const hdi_symbolic *s, int32_t width, const hd_csr *a, hd_context *ctx,
                                 hd_error *e) {
-    hdi_scope temp = hdi_scope_begin(ctx, e), tally;
-    const int64_t count = (int64_t)s->n_super + 1;
-    int64_t *need = HDI_TAKE(&temp, int64_t, count);
-    uint64_t bytes = 0, first = 0;
-    hd_error none;
+    hdi_scope temp = hdi_scope_begin(ctx, e);
+    uint64_t bytes = ctx->bytes_in_use;
     hdi_forms q;
-    memset(&q, 0, sizeof q);
-    tally = hdi_scope_tally(&bytes, &none);
-    if (need) {
-        hdi_forms_size(&q, s, width, need);
-        (void)hdi_forms_take(&q, s, &tally);
-        hdi_scope_count(&first, (uint64_t)count, sizeof *need);
-        bytes += first > later ? first - later : 0;
-    }
+    const uint64_t room = hdi_forms_make(&q, s, width, a, &temp);
+    bytes = ctx->bytes_in_use - bytes;
+    hdi_scope_count(&bytes, room, sizeof(double));
     hdi_scope_end(&temp);
     return bytes;
 }
@@ -14174,7 +13991,6 @@ static void hdi_inverse_emit(const hdi_inverse *z, const hdi_inverse_front *w) {
 typedef struct hdi_inverse_step {
     const hdi_inverse *z;
     hdi_inverse_front w;
-    hdi_form_job form;
     int32_t stage;
     int64_t begin, end;
 } hdi_inverse_step;
@@ -14207,14 +14023,15 @@ static void hdi_inverse_columns(hdi_inverse_step *c) {
         hdi_inverse_emit(c->z, &c->w);
         return;
     }
-    c->form = hdi_forms_open(c->z, &c->w);
-    c->end = hdi_least(c->form.n_blocks, HDI_FORM_SLOTS);
+    hdi_form_near(c->z, &c->w);
+    c->end = hdi_least(hdi_form_blocks(c->z->forms, c->w.v), HDI_FORM_SLOTS);
 }
 
 /* Goes on to the next stage, after what one thread must do before it. 0: there is none. */
 static int hdi_inverse_next(hdi_inverse_step *c) {
     hdi_inverse_front *w = &c->w;
     const int64_t u = w->m - w->k1, n = w->k1 - w->k0;
+    const int64_t blocks = c->z->wanted == HDI_WANT_FORMS ? hdi_form_blocks(c->z->forms, w->v) : 0;
     if (c->stage == HDI_INVERSE_M) {
         hdi_inverse_set(c, HDI_INVERSE_BELOW, w->k1, w->m);
     } else if (c->stage == HDI_INVERSE_BELOW) {
@@ -14226,8 +14043,8 @@ static int hdi_inverse_next(hdi_inverse_step *c) {
         hdi_inverse_set(c, HDI_INVERSE_M, w->k1, w->m);
     } else if (c->stage == HDI_INVERSE_CORNER) {
         hdi_inverse_columns(c);
-    } else if (c->stage == HDI_INVERSE_FORMS && c->z->wanted == HDI_WANT_FORMS && c->end < c->form.n_blocks) {
-        hdi_inverse_set(c, HDI_INVERSE_FORMS, c->end, hdi_least(c->form.n_blocks, c->end + HDI_FORM_SLOTS));
+    } else if (c->stage == HDI_INVERSE_FORMS && c->end < blocks) {
+        hdi_inverse_set(c, HDI_INVERSE_FORMS, c->end, hdi_least(blocks, c->end + HDI_FORM_SLOTS));
     } else if (c->stage == HDI_INVERSE_FORMS) {
         hdi_inverse_set(c, HDI_INVERSE_CHILD, 0, hdi_inverse_children(w->f->sym, w->v));
     } else {
@@ -14242,7 +14059,7 @@ static void hdi_inverse_do(const hdi_inverse_step *c, int64_t r0, int64_t r1, do
     hdi_inverse_front w;
     int32_t k;
     if (c->stage == HDI_INVERSE_FORMS) {
-        for (; r0 < r1; r0++) hdi_form_task(&c->form, r0);
+        for (; r0 < r1; r0++) hdi_form_run(c->z, &c->w, r0);
         return;
     }
     if (c->stage != HDI_INVERSE_CHILD) {
@@ -14302,7 +14119,7 @@ static int64_t hdi_inverse_nodes(const hdi_inverse *z, const hdi_symbolic *s) {
         const int64_t m = hdi_front_rows(s, s->top[i]), p = hdi_front_pivots(s, s->top[i]);
         if (!hdi_inverse_shared(s, s->top[i])) continue;
         n += hdi_inverse_chunks(HDI_INVERSE_CHILD, hdi_inverse_children(s, s->top[i]));
-        if (z->wanted == HDI_WANT_FORMS) n += hdi_forms_blocks(z->forms, p);
+        if (z->wanted == HDI_WANT_FORMS) n += hdi_form_blocks(z->forms, s->top[i]);
         for (k1 = p; k1 > 0; k1 = k0) {
             k0 = (k1 - 1) / HDI_PANEL * HDI_PANEL;
             n += 2 * hdi_inverse_chunks(HDI_INVERSE_M, m - k1);
@@ -14380,21 +14197,19 @@ static void hdi_inverse_take(hdi_inverse *z, const hdi_symbolic *s, int32_t widt
     z->chunk = HDI_TAKE(keep, double, s->n_top ? z->chunk_size * (uint64_t)chunks : 1);
 }
 
-/* The bytes of that, and of the order that hdi_inverse_run takes: of this alone to *order, unless NULL. Also
- * those of the factor, if asked for; less the room that is there. */
-static uint64_t hdi_inverse_bytes(const hdi_symbolic *s, int32_t width, int factor, uint64_t room,
-                                  uint64_t *order) {
+/* The bytes of that, and of the order that hdi_inverse_run takes without forms. Also those of the factor, if
+ * asked for; less the room that is there. */
+static uint64_t hdi_inverse_bytes(const hdi_symbolic *s, int32_t width, int factor, uint64_t room) {
     hd_error none;
-    uint64_t bytes, later = 0;
+    uint64_t bytes;
     hdi_scope keep = hdi_scope_tally(&bytes, &none);
     hdi_factor f;
     hdi_inverse z;
     keep.left = room;
     if (factor) hdi_factor_take(&f, s, width, &keep);
     hdi_inverse_take(&z, s, width, &keep);
-    hdi_scope_count(&later, (uint64_t)hdi_inverse_nodes(&z, s), sizeof(int32_t));
-    if (order) *order = later;
-    return bytes + later;
+    hdi_scope_count(&bytes, (uint64_t)hdi_inverse_nodes(&z, s), sizeof(int32_t));
+    return bytes;
 }
 
 /* Inverts the factor; coef, n_sets, wanted (with forms, its x), values and stride are set. Uses the space of
@@ -18714,12 +18529,16 @@ static void hdi_elim_invert_width(hdi_elim *m, hdi_factor *f, int32_t n, const h
     hdi_forms forms;
     hdi_inverse z;
     hdi_scope s;
+    uint64_t room;
     int32_t i, k;
     if (n == 0 || e->status < 0) return;
     s = hdi_scope_begin(m->ctx, e);
-    memset(&forms, 0, sizeof forms);
     hdi_inverse_take(&z, &m->sym, width, &s);
-    if (b && e->status >= 0) (void)hdi_forms_make(&forms, &m->sym, width, &m->source->L, b, m->ctx, e);
+    if (b) {
+        room = hdi_forms_make(&forms, &m->sym, width, &m->source->L, &s);
+        forms.room = HDI_TAKE(&s, double, room);
+        forms.x = b;
+    }
     z.coef = coef;
     z.n_sets = sums->n_sets;
     z.wanted = sums->wanted;
@@ -18734,7 +18553,6 @@ static void hdi_elim_invert_width(hdi_elim *m, hdi_factor *f, int32_t n, const h
         }
         (void)hdi_inverse_run(&z, f + i, e);
     }
-    if (b) hdi_forms_free(&forms, m->ctx);
     hdi_scope_end(&s);
 }
 
@@ -18870,16 +18688,16 @@ static uint64_t hdi_elim_inverse_need(const hdi_elim *m, const hd_rational *set,
                                       int32_t n_sets, hd_error *e) {
     const int forms = after == HDI_AFTER_FORMS;
     const int32_t widths[2] = {hdi_set_lone(set) ? 1 : 0, hdi_set_packs(set) > 0 ? HDI_PACK : 0};
-    uint64_t most = 0, bytes = 0, order;
+    uint64_t most = 0, bytes = 0;
     int q;
     if (after == HDI_AFTER_SOLVES) return 0;
     if (after == HDI_AFTER_BOUND)
-        return hdi_inverse_bytes(&m->sym, 1, !hdi_set_lone(set), hdi_elim_room(m, hdi_set_packs(set)), NULL);
+        return hdi_inverse_bytes(&m->sym, 1, !hdi_set_lone(set), hdi_elim_room(m, hdi_set_packs(set)));
     for (q = 0; q < 2 && e->status >= 0; q++) {
         uint64_t need;
         if (!widths[q]) continue;
-        need = hdi_inverse_bytes(&m->sym, widths[q], 0, 0, &order);
-        if (forms) need += hdi_forms_bytes(&m->sym, widths[q], order, m->ctx, e);
+        need = hdi_inverse_bytes(&m->sym, widths[q], 0, 0);
+        if (forms) need += hdi_forms_bytes(&m->sym, widths[q], &m->source->L, m->ctx, e);
         if (most < need) most = need;
     }
     hdi_scope_count(&bytes, HDI_PACK * (uint64_t)n_sets, sizeof(double));
@@ -19999,12 +19817,12 @@ static uint64_t hdi_ground_need(const hdi_elim *m, const hdi_ground *g, int form
         hdi_scope_count(&held, n, sizeof(char));
         hdi_scope_count(&held, 3 * n, sizeof(double));
         hdi_scope_count(&held, 2 * n_comp, sizeof(double));
-        make = hdi_inverse_bytes(&m->sym, 1, 0, 0, NULL);
+        make = hdi_inverse_bytes(&m->sym, 1, 0, 0);
         hdi_scope_count(&make, nnz, sizeof(double));
         hdi_scope_count(&make, n_comp, sizeof(char));
     }
     if (forms && !g->formed) {
-        form = hdi_factor_bytes(&m->sym, HDI_PACK) + hdi_inverse_bytes(&m->sym, HDI_PACK, 0, 0, NULL);
+        form = hdi_factor_bytes(&m->sym, HDI_PACK) + hdi_inverse_bytes(&m->sym, HDI_PACK, 0, 0);
         hdi_scope_count(&form, nnz, sizeof(hd_c64));
         hdi_scope_count(&form, hdi_sweep_size(&m->sym, 1, 1), sizeof(double));
         hdi_scope_count(&form, 2 * n, sizeof(double));

@@ -17,7 +17,7 @@ gone() {
     DIRECT) echo "hdi_front_factor hdi_nd_split hdi_amd_run hdi_symbolic_order hdi_sweep_run hdi_elim_make hdi_silan_run hdi_real_product_plain" \
                  "$(gone POLE_FACTORS) $(gone GEODESIC) $(gone SPECTRUM)" ;;
     POLE_FACTORS) echo "hdi_pack_product_plain hdi_batch_run hdi_elim_poles $(gone DIAGONAL)" ;;
-    DIAGONAL) echo "hdi_inverse_run hdi_form_task hdi_ground_make hdi_diagonal_once hdi_trace_window hdi_filters_run hdi_fading_poles $(gone DIFFUSION)" ;;
+    DIAGONAL) echo "hdi_inverse_run hdi_form_run hdi_ground_make hdi_diagonal_once hdi_trace_window hdi_filters_run hdi_fading_poles $(gone DIFFUSION)" ;;
     SPECTRUM) echo "hdi_spec_run hdi_spec_sums_run hdi_modes_distance hdi_modes_pairs hdi_pairs_by_modes hdi_sample_modes hdi_slab_dots_task" ;;
     DIFFUSION) echo "hdi_metric_make hdi_pairs_once hdi_sample_run" ;;
     ITERATIVE) echo "hdi_krylov_run hdi_precond_ordered hdi_fill_task hdi_lanczos_first hdi_family_run" ;;
