@@ -6737,7 +6737,7 @@ static hd_status hdi_soup_make(hdi_soup *soup, const double *xyz, int32_t n, con
     return hdi_soup_finish(soup, delta, rep, HDI_TAKE(s, int32_t, n), s);
 }
 
-/* The soup of a mesh, which hdi_mesh_faces has measured, in s. */
+/* The soup of a mesh, which hdi_mesh_make has measured, in s. */
 static hd_status hdi_soup_of_mesh(hdi_soup *soup, const hdi_mesh *mesh, double delta,
                                   hd_mesh_report *rep, hdi_scope *s) {
     memset(soup, 0, sizeof *soup);
