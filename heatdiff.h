@@ -7372,9 +7372,11 @@ static void hdi_moving_free(hdi_moving *x, hd_context *ctx) {
 
 /* Vertices held at zero. */
 typedef struct hd_holding {
-    int border;                 /* those of the boundary too */
+    int border;                 /* those of the boundary too; 2: they are marked, and nothing is held */
+    int conserves;              /* as of a Laplacian that holds none */
     char *mark;                 /* [n] 1: held */
-    hd_laplacian *whole;        /* for updates: the Laplacian that holds none */
+    char *leak;                 /* [n] 1: heat flows from here to a vertex that is held */
+    hd_laplacian *whole;        /* of updatable matrices: the Laplacian that holds none */
 } hdi_holding;
 
 /* [n] where a mesh marks the vertices of its boundary; NULL: they are not asked for. */
@@ -7401,6 +7403,7 @@ static void hdi_holding_free(hdi_holding *x, hd_context *ctx) {
     if (x->whole) hdi_lap_clear(x->whole, ctx);
     hdi_free(ctx, x->whole);
     hdi_free(ctx, x->mark);
+    hdi_free(ctx, x->leak);
     hdi_free(ctx, x);
 }
 
@@ -7413,6 +7416,7 @@ static hd_status hdi_holding_make(hd_laplacian *lap, int border, const int32_t *
     if (!x) return e->status;
     x->border = border;
     x->mark = (char *)hdi_alloc_zero(lap->context, (uint64_t)lap->n, 1, e);
+    if (x->mark) x->leak = (char *)hdi_alloc_zero(lap->context, (uint64_t)lap->n, 1, e);
     for (q = 0; q < n_held && x->mark; q++) x->mark[held[q]] = 1;
     return e->status;
 }
@@ -7458,16 +7462,25 @@ static hdi_lump hdi_lap_lump(hd_laplacian_kind kind) {
                                               : HDI_LUMP_PARTS;
 }
 
-/* Numbers the rows: vertices with mass in their order. Fills row, vertex, mass, b_diag, n_active. */
-static hd_status hdi_lap_rows(hd_laplacian *lap, const double *vertex_mass, hd_error *e) {
-    int32_t v, k = 0;
+static hd_status hdi_held_all(hd_error *e) {
+    return hdi_fail(e, HD_ERR_EMPTY, "laplacian: all vertices with mass are held at zero");
+}
+
+/* Numbers the rows: vertices with mass, and of meshes not held, in their order. Fills row, vertex, mass, b_diag,
+ * n_active. */
+static hd_status hdi_lap_rows(hd_laplacian *lap, const double *vertex_mass, const char *held, hd_error *e) {
+    int32_t v, k = 0, n_inert = 0;
     hd_context *ctx = lap->context;
     lap->row = HDI_NEW(ctx, int32_t, lap->n, e);
     if (!lap->row) return e->status;
-    for (v = 0; v < lap->n; v++) lap->row[v] = vertex_mass[v] > 0 ? k++ : HD_ROW_INERT;
+    for (v = 0; v < lap->n; v++) {
+        n_inert += !(vertex_mass[v] > 0);
+        lap->row[v] = held && held[v] ? HD_ROW_HELD : vertex_mass[v] > 0 ? k++ : HD_ROW_INERT;
+    }
     lap->n_active = k;
-    lap->mesh.n_inert = lap->n - k;
-    if (k == 0) return hdi_fail(e, HD_ERR_EMPTY, "no vertex has mass");
+    lap->mesh.n_inert = n_inert;
+    if (n_inert == lap->n) return hdi_fail(e, HD_ERR_EMPTY, "no vertex has mass");
+    if (k == 0) return hdi_held_all(e);
     lap->vertex = HDI_NEW(ctx, int32_t, k, e);
     if (lap->vertex) lap->mass = HDI_NEW(ctx, double, k, e);
     if (e->status < 0) return e->status;
@@ -7519,12 +7532,31 @@ static hd_status hdi_lap_components(hd_laplacian *lap, hd_error *e) {
     return e->status;
 }
 
+/* Which components conserve their heat, of a Laplacian with its masses. An infinite one takes the constants out
+ * of all formulas: their part of K_t f is the heat divided by the mass. */
+static void hdi_held_components(hd_laplacian *lap) {
+    const hdi_holding *x = lap->holding;
+    int32_t i, leaks = 0;
+    if (!x || x->border == 2) return;
+    lap->conserves = x->conserves;
+    for (i = 0; i < lap->n_active && x->conserves; i++) {
+        double *mass = lap->component_mass + lap->component[i];
+        if (*mass < 0 || !x->leak[lap->vertex[i]]) continue;
+        *mass = -HUGE_VAL;                       /* not what a sum that overflows is */
+        leaks++;
+    }
+    for (i = 0; i < lap->n_components; i++) lap->component_mass[i] = fabs(lap->component_mass[i]);
+    if (leaks > 0) lap->conserves = leaks < lap->n_components ? 2 : 0;
+    if (!lap->conserves) hdi_lap_component_masses(lap);
+}
+
 /* Ends an update, once L, B and mass have their new values. */
 static void hdi_lap_renewed(hd_laplacian *lap) {
     lap->version++;
     if (!lap->component) return;                 /* the whole of what is held needs none */
     hdi_lap_connect(lap);
     hdi_lap_component_masses(lap);
+    hdi_held_components(lap);
 }
 
 /* The area of m faces. */
@@ -7671,12 +7703,15 @@ static void hdi_rows_edges(const hdi_rows *x, hdi_ring *r, hdi_rows_tally *tally
     }
 }
 
-/* Row i of L and B. An edge from the vertex to itself has no weight, and is twice in its B. */
-static void hdi_rows_write(const hdi_rows *x, const hdi_ring *r, int32_t i) {
+/* The row of vertex v in L and B, if it has one. A column without a row adds to the diagonal and is not written. An edge from the vertex to
+ * itself has no weight, and is twice in its B. */
+static void hdi_rows_write(const hdi_rows *x, const hdi_ring *r, int32_t v) {
     hd_laplacian *lap = x->lap;
-    double *L = lap->L.val, *B = lap->B, sum = 0;
+    const int32_t i = lap->row[x->name ? x->name[v] : v];
+    double *L = lap->L.val, *B = lap->B, sum = 0, b_sum = 0;
     int64_t at = lap->L.row_ptr[i], diagonal = at;
-    int32_t q;
+    int32_t q, n_held = 0, leaks = 0;
+    if (i < 0) return;
     for (q = 0; q < r->n; q++) {
         const hdi_entry *e = r->entry + r->order[q].id;
         const int32_t j = lap->row[r->order[q].key];
@@ -7685,9 +7720,14 @@ static void hdi_rows_write(const hdi_rows *x, const hdi_ring *r, int32_t i) {
             continue;
         }
         sum += e->L;
+        if (j < 0) {
+            n_held++;
+            leaks |= e->L != 0;
+            continue;
+        }
         lap->L.col[at] = j;
         L[at] = e->L;
-        if (B) B[at] = e->B / 12;
+        if (B) b_sum += B[at] = e->B / 12;
         at++;
     }
     lap->L.col[diagonal] = i;
@@ -7695,6 +7735,8 @@ static void hdi_rows_write(const hdi_rows *x, const hdi_ring *r, int32_t i) {
     lap->mass[i] = r->mass;
     /* a sixth of the areas that the mass has thirds of */
     if (B) B[diagonal] = lap->b_diag[i] = r->mass / 2 + r->entry[0].B / 12;
+    if (B && n_held) lap->mass[i] = b_sum + B[diagonal];
+    if (lap->holding) lap->holding->leak[lap->vertex[i]] = (char)leaks;
 }
 
 /* The vertices that v has faces with. */
@@ -7727,7 +7769,7 @@ static void hdi_rows_block(hdi_rows *x, hdi_ring *r, int32_t begin, int32_t end,
         } else if (mesh->at[v] < mesh->at[v + 1]) {
             hdi_ring_make(r, mesh, x->lump, v);
             hdi_rows_edges(x, r, tally);
-            if (x->lap) hdi_rows_write(x, r, x->lap->row[x->name ? x->name[v] : v]);
+            if (x->lap) hdi_rows_write(x, r, v);
         }
     }
 }
@@ -7791,26 +7833,39 @@ static double hdi_rows_report(hdi_rows *x, hd_mesh_report *rep) {
 }
 
 /* Marks the vertices of the border where that is asked for. */
-static void hdi_rows_border(const hdi_rows *x, const hd_laplacian *lap) {
+static void hdi_rows_border(hdi_rows *x, const hd_laplacian *lap) {
     char *mark = hdi_lap_border(lap);
     int32_t v;
-    for (v = 0; v < lap->n && mark; v++) mark[v] |= x->border[v];
+    if (!mark || (!x->mesh.xyz && !x->mesh.len)) return;
+    hdi_parallel(lap->context, x->strands, hdi_rows_task, x);
+    for (v = 0; v < lap->n; v++) mark[v] |= x->border[v];
+}
+
+/* Takes the columns of vertices without a row out of the counts. */
+static void hdi_rows_held(const hdi_rows *x, const hd_laplacian *lap) {
+    hdi_ring r = hdi_rows_ring(x, 0);
+    int32_t v, q;
+    for (v = 0; v < x->mesh.n && lap->holding; v++) {
+        if (x->mesh.at[v] == x->mesh.at[v + 1] || lap->row[x->name ? x->name[v] : v] >= 0) continue;
+        hdi_ring_make(&r, &x->mesh, x->lump, v);
+        for (q = 1; q < r.n; q++) x->count[r.entry[q].to]--;
+    }
 }
 
 /* Rows for the vertices that have faces, and room for their values. */
 static hd_status hdi_lap_pattern(hd_laplacian *lap, const hdi_rows *x, int full, hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
     const hdi_mesh *mesh = &x->mesh;
+    const int holds = lap->holding && lap->holding->border != 2;
     double *mass = HDI_TAKE_ZERO(&s, double, lap->n), *B = NULL, *b_diag = NULL;
     int64_t nnz = 0;
     hd_csr L;
     int32_t v;
-    for (v = 0; v < mesh->n && mass; v++) {
-        if (mesh->at[v] == mesh->at[v + 1]) continue;
-        mass[x->name ? x->name[v] : v] = 1;
-        nnz += x->count[v] + 1;
-    }
-    if (!mass || hdi_lap_rows(lap, mass, e) < 0) return hdi_scope_end(&s);
+    for (v = 0; v < mesh->n && mass; v++)
+        if (mesh->at[v] < mesh->at[v + 1]) mass[x->name ? x->name[v] : v] = 1;
+    if (!mass || hdi_lap_rows(lap, mass, holds ? lap->holding->mark : NULL, e) < 0) return hdi_scope_end(&s);
+    hdi_rows_held(x, lap);
+    for (v = 0; v < mesh->n; v++) nnz += lap->row[x->name ? x->name[v] : v] >= 0 ? x->count[v] + 1 : 0;
     L = hdi_csr_take(&s, lap->n_active, lap->n_active, nnz, 1);
     if (full) B = HDI_TAKE(&s, double, nnz);
     if (full) b_diag = HDI_TAKE(&s, double, lap->n_active);
@@ -7839,6 +7894,7 @@ static void hdi_lap_values(hd_laplacian *lap, hdi_rows *x) {
 /* Rows, L and B of a mesh that x knows. full: B is, if its kind is. */
 static hd_status hdi_lap_assemble(hd_laplacian *lap, hdi_rows *x, const double *xyz, int full, hd_error *e) {
     x->lump = hdi_lap_lump(lap->kind);
+    hdi_rows_border(x, lap);
     if (hdi_lap_pattern(lap, x, full && lap->kind == HD_LAPLACIAN_FEM, e) < 0 ||
         hdi_progress(lap->context, "assemble", 0.4, e) < 0 || hdi_lap_places(lap, xyz, e) < 0)
         return e->status;
@@ -7856,7 +7912,6 @@ static hd_status hdi_lap_mesh(hd_laplacian *lap, hdi_mesh *mesh, int full, hdi_s
         hdi_lap_assemble(lap, &x, mesh->xyz, full, s->e) < 0)
         return hdi_scope_end(&own);
     lap->h = hdi_rows_report(&x, &lap->mesh);
-    hdi_rows_border(&x, lap);
     lap->area = hdi_sum_areas(mesh->area, mesh->m);
     /* element matrix area/12 (1 1' + I) >= 1/2 of its diagonal, area/12 I */
     lap->b_ratio = lap->B ? 0.5 : 1;
@@ -8309,7 +8364,7 @@ static hd_status hdi_lap_matrices(hd_laplacian *lap, const hd_csr *L, const hd_c
     for (i = 0; i < lap->n; i++)
         for (p = B->row_ptr[i]; p < B->row_ptr[i + 1]; p++)
             if (B->val[p] != 0) present[i] = 1;
-    if (hdi_lap_rows(lap, present, e) < 0) return hdi_scope_end(&s);
+    if (hdi_lap_rows(lap, present, NULL, e) < 0) return hdi_scope_end(&s);
     for (i = 0; i < lap->n_active; i++) nnz += hdi_pair_row(lap, L, B, lap->vertex[i], NULL, NULL, NULL);
     a = hdi_csr_take(&s, lap->n_active, lap->n_active, nnz, 1);
     Bx = HDI_TAKE(&s, double, nnz);
@@ -8461,130 +8516,88 @@ static hd_status hdi_pair_update(hd_laplacian *lap, const hd_csr *L, const hd_cs
 /* ---- vertices held at zero ----
  * Dirichlet conditions: what is held has no row and no column, in L nor in B. What is left is again a pair, L
  * positive semi-definite and B >= b_ratio diag(B), as parts of the whole that are cut out by rows and
- * columns. */
+ * columns. Meshes leave them out while their rows are filled, points and matrices are cut here. */
 
-/* The rows of the whole on the columns that are left. Fills all of L, B, mass and b_diag. */
-static void hdi_held_values(hd_laplacian *lap, const hd_laplacian *whole) {
-    int64_t p, q = 0;
-    int32_t i;
-    for (i = 0; i < lap->n_active; i++) {
-        const int32_t from = whole->row[lap->vertex[i]];
+/* The rows of the whole on the columns that are left, into lap, which may be the whole itself. Fills all of L,
+ * B, mass, b_diag, xyz, vertex and row. */
+static void hdi_held_cut(hd_laplacian *lap, const hd_laplacian *whole) {
+    const hdi_holding *x = lap->holding;
+    const int32_t n = whole->n_active;
+    int64_t p = 0, q = 0;
+    int32_t i, k = 0;
+    for (i = 0; i < n; i++) lap->row[whole->vertex[i]] = x->mark[whole->vertex[i]] ? HD_ROW_HELD : k++;
+    for (i = 0; i < n; i++) {
+        const int32_t v = whole->vertex[i], j = lap->row[v];
+        const int64_t end = whole->L.row_ptr[i + 1];
         double sum = 0;
-        for (p = whole->L.row_ptr[from]; p < whole->L.row_ptr[from + 1]; p++) {
-            const int32_t j = lap->row[whole->vertex[whole->L.col[p]]];
-            if (j < 0) continue;
-            lap->L.col[q] = j;
+        x->leak[v] = 0;
+        for (; p < end; p++) {
+            const int32_t c = lap->row[whole->vertex[whole->L.col[p]]];
+            if (c < 0) x->leak[v] |= whole->L.val[p] != 0;
+            if (c < 0 || j < 0) continue;
+            lap->L.col[q] = c;
             lap->L.val[q] = whole->L.val[p];
             if (lap->B) sum += lap->B[q] = whole->B[p];
             q++;
         }
-        lap->L.row_ptr[i + 1] = q;
-        lap->mass[i] = lap->B ? sum : whole->mass[from];
-        lap->b_diag[i] = whole->b_diag[from];
+        if (j < 0) continue;
+        lap->L.row_ptr[j + 1] = q;
+        lap->mass[j] = lap->B ? sum : whole->mass[i];
+        lap->b_diag[j] = whole->b_diag[i];
+        if (lap->xyz) hdi_copy3(lap->xyz + hdi_triple(j), hdi_at3(whole->xyz, i));
     }
+    for (i = 0; i < n; i++)
+        if (lap->row[whole->vertex[i]] >= 0) lap->vertex[lap->row[whole->vertex[i]]] = whole->vertex[i];
+    lap->L.n_rows = lap->L.n_cols = lap->n_active = k;
+    lap->L.nnz = q;
 }
 
-/* Does an entry of L lead from this row to a vertex that is held? */
-static int hdi_held_leaks(const hd_laplacian *lap, const hd_laplacian *whole, int32_t i) {
-    const int32_t from = whole->row[lap->vertex[i]];
-    int64_t p;
-    for (p = whole->L.row_ptr[from]; p < whole->L.row_ptr[from + 1]; p++)
-        if (whole->L.val[p] != 0 && lap->row[whole->vertex[whole->L.col[p]]] < 0) return 1;
-    return 0;
-}
-
-/* Which components conserve their heat. Masses are known. An infinite one takes the constants out of all
- * formulas: their part of K_t f is the heat divided by the mass. */
-static void hdi_held_components(hd_laplacian *lap, const hd_laplacian *whole) {
-    int32_t i, leaks = 0;
-    lap->conserves = whole->conserves;
-    for (i = 0; i < lap->n_active && whole->conserves; i++) {
-        double *mass = lap->component_mass + lap->component[i];
-        if (*mass < 0 || !hdi_held_leaks(lap, whole, i)) continue;
-        *mass = -HUGE_VAL;                       /* not what a sum that overflows is */
-        leaks++;
-    }
-    for (i = 0; i < lap->n_components; i++) lap->component_mass[i] = fabs(lap->component_mass[i]);
-    if (leaks > 0) lap->conserves = leaks < lap->n_components ? 2 : 0;
-    if (!lap->conserves) hdi_lap_component_masses(lap);
-}
-
-/* Rows for the vertices with mass that are not held. */
-static hd_status hdi_held_rows(hd_laplacian *lap, const hd_laplacian *whole, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
-    const char *mark = lap->holding->mark;
-    double *left = HDI_TAKE(&s, double, lap->n);
-    int32_t v, n = 0;
-    if (!left) return hdi_scope_end(&s);
-    for (v = 0; v < lap->n; v++) {
-        left[v] = whole->row[v] >= 0 && !mark[v];
-        n += left[v] > 0;
-    }
-    if (n == 0) hdi_fail(e, HD_ERR_EMPTY, "laplacian: all vertices with mass are held at zero");
-    if (n == 0 || hdi_lap_rows(lap, left, e) < 0) return hdi_scope_end(&s);
-    lap->mesh.n_inert = whole->mesh.n_inert;
-    for (v = 0; v < lap->n; v++)
-        if (mark[v]) lap->row[v] = HD_ROW_HELD;
-    return hdi_scope_end(&s);
-}
-
-/* Room for the pair and its places, if the whole has some, and the values. */
-static hd_status hdi_held_fill(hd_laplacian *lap, const hd_laplacian *whole, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
-    const int32_t n = lap->n_active;
-    int64_t nnz = 0, p;
-    int32_t i;
-    double *B, *b_diag, *xyz;
-    hd_csr L;
-    for (i = 0; i < whole->n_active; i++)
-        for (p = whole->L.row_ptr[i]; p < whole->L.row_ptr[i + 1] && lap->row[whole->vertex[i]] >= 0; p++)
-            nnz += lap->row[whole->vertex[whole->L.col[p]]] >= 0;
-    L = hdi_csr_take(&s, n, n, nnz, 1);
-    B = whole->B ? HDI_TAKE(&s, double, nnz) : NULL;
-    b_diag = whole->B ? HDI_TAKE(&s, double, n) : NULL;
-    xyz = whole->xyz ? HDI_TAKE(&s, double, hdi_triple(n)) : NULL;
-    if (e->status < 0) return hdi_scope_end(&s);
-    lap->L = hdi_csr_keep(&s, L);
-    lap->B = (double *)hdi_keep(&s, B);
-    lap->xyz = (double *)hdi_keep(&s, xyz);
-    if (b_diag) lap->b_diag = (double *)hdi_keep(&s, b_diag);
-    for (i = 0; i < n && xyz; i++)
-        hdi_copy3(xyz + hdi_triple(i), hdi_at3(whole->xyz, whole->row[lap->vertex[i]]));
-    hdi_held_values(lap, whole);
-    return hdi_scope_end(&s);
-}
-
-/* The pair of lap becomes that of a Laplacian of its own, the whole. */
+/* The pair of lap becomes that of a Laplacian of its own, the whole; lap has room for as much. */
 static hd_laplacian *hdi_held_whole(hd_laplacian *lap, hd_error *e) {
-    hd_laplacian *whole = (hd_laplacian *)hdi_alloc(lap->context, 1, sizeof *whole, e);
-    if (!whole) return NULL;
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    hd_laplacian *whole = HDI_TAKE(&s, hd_laplacian, 1);
+    const int64_t n = lap->n_active, nnz = lap->L.nnz;
+    hd_csr L = hdi_csr_take(&s, lap->n_active, lap->n_active, nnz, 1);
+    double *B = lap->B ? HDI_TAKE(&s, double, nnz) : NULL, *mass = HDI_TAKE(&s, double, n);
+    double *b_diag = lap->B ? HDI_TAKE(&s, double, n) : mass;
+    int32_t *vertex = HDI_TAKE(&s, int32_t, n), *row = HDI_TAKE(&s, int32_t, lap->n);
+    if (e->status < 0) {
+        (void)hdi_scope_end(&s);
+        return NULL;
+    }
+    s.n = 0;                                     /* all of it is kept */
     *whole = *lap;
     whole->holding = NULL;
-    memset(&lap->L, 0, sizeof lap->L);
-    lap->B = lap->mass = lap->b_diag = lap->xyz = NULL;
-    lap->vertex = lap->row = NULL;
+    memcpy(row, lap->row, (size_t)lap->n * sizeof *row);
+    lap->L = L;
+    lap->B = B;
+    lap->mass = mass;
+    lap->b_diag = b_diag;
+    lap->vertex = vertex;
+    lap->row = row;
     lap->moving = NULL;
     return lap->holding->whole = whole;
 }
 
-/* Ends the making of a Laplacian, which holds no vertex so far: takes out those that are marked, and finds
- * the components of what is left. */
+/* Ends the making of a Laplacian: takes out the vertices to hold that still have rows, and finds the components
+ * of what is left. */
 static hd_status hdi_lap_hold(hd_laplacian *lap, hd_error *e) {
     hdi_holding *x = lap->holding;
-    const hd_laplacian *whole = NULL;
+    const hd_laplacian *whole = lap;
     int32_t v, rows = 0;
     for (v = 0; v < lap->n && x; v++) {
         lap->n_held += x->mark[v];
         rows += x->mark[v] && lap->row[v] >= 0;
         if (x->mark[v] && lap->row[v] < 0) lap->row[v] = HD_ROW_HELD;
     }
-    if (rows > 0) {
-        whole = hdi_held_whole(lap, e);
-        if (!whole || hdi_held_rows(lap, whole, e) < 0 || hdi_held_fill(lap, whole, e) < 0) return e->status;
-    }
+    if (x) x->conserves = lap->conserves;
+    if (rows == lap->n_active) return hdi_held_all(e);
+    if (rows > 0 && lap->moving) whole = hdi_held_whole(lap, e);
+    if (!whole) return e->status;
+    if (rows > 0) hdi_held_cut(lap, whole);
     if (hdi_lap_components(lap, e) < 0) return e->status;
-    if (whole) hdi_held_components(lap, whole);
-    if (whole && whole->moving) return HD_OK;
+    hdi_held_components(lap);
+    if (whole != lap || (lap->moving && !lap->moving->pair)) return HD_OK;
     hdi_holding_free(x, lap->context);
     lap->holding = NULL;
     return HD_OK;
@@ -8592,23 +8605,19 @@ static hd_status hdi_lap_hold(hd_laplacian *lap, hd_error *e) {
 
 /* What updates change: the Laplacian itself, or the one that holds none. */
 static hd_laplacian *hdi_lap_moved(hd_laplacian *lap) {
-    return lap->holding ? lap->holding->whole : lap;
+    return lap->holding && lap->holding->whole ? lap->holding->whole : lap;
 }
 
 /* Takes over what an update has changed in the whole. */
 static void hdi_held_update(hd_laplacian *lap) {
     const hd_laplacian *whole = hdi_lap_moved(lap);
-    int32_t i;
     if (whole == lap) return;
     lap->h = whole->h;
     lap->area = whole->area;
     lap->b_ratio = whole->b_ratio;
-    lap->mesh = whole->mesh;
-    for (i = 0; i < lap->n_active && lap->xyz; i++)
-        hdi_copy3(lap->xyz + hdi_triple(i), hdi_at3(whole->xyz, whole->row[lap->vertex[i]]));
-    hdi_held_values(lap, whole);
+    lap->holding->conserves = whole->conserves;
+    hdi_held_cut(lap, whole);
     hdi_lap_renewed(lap);
-    hdi_held_components(lap, whole);
 }
 
 /* ---- pairs renumbered ---- */
@@ -9047,7 +9056,7 @@ static hd_status hdi_lap_points(hd_laplacian *lap, const double *xyz, hd_error *
     if (rep->bandwidth == 0) rep->bandwidth = hdi_cloud_bandwidth(&cloud, work);
     rep->cut_radius = sqrt(-4 * log(rep->weight_cut) * rep->bandwidth);
     hdi_cloud_masses(&cloud, lap, places.place, places.first, work);
-    if (hdi_lap_rows(lap, work, e) < 0 || hdi_progress(lap->context, "assemble", 0.4, e) < 0)
+    if (hdi_lap_rows(lap, work, NULL, e) < 0 || hdi_progress(lap->context, "assemble", 0.4, e) < 0)
         return hdi_scope_end(&s);
     if (hdi_lap_places(lap, xyz, e) < 0) return hdi_scope_end(&s);
     if (hdi_cloud_assemble(lap, -4 * log(rep->weight_cut) * rep->bandwidth, e) < 0) return hdi_scope_end(&s);
@@ -29279,7 +29288,7 @@ static hd_status hdi_geo_make(hd_geodesic *g, const hdi_geo_input *in, const hd_
     g->border = o->border;
     g->t_asked = o->t;
     g->t_in_h2 = o->t_in_h2 > 0 ? o->t_in_h2 : 1;
-    if ((o->border == HD_GEODESIC_BORDER_NATURAL || hdi_holding_make(lap, 1, NULL, 0, e) >= 0) &&
+    if ((o->border == HD_GEODESIC_BORDER_NATURAL || hdi_holding_make(lap, 2, NULL, 0, e) >= 0) &&
         hdi_geo_surface_make(lap, &z, in, &s) >= 0 && hdi_lap_finite(lap->area, lap->h, e) >= 0) {
         g->n_active = lap->n_active;
         g->copies = z.flat.mesh.m ? hdi_flat_unit(&z.flat, lap->mesh.n_sheets) : 1;
