@@ -5961,7 +5961,7 @@ static HDI_INLINE uint64_t hdi_corner_key(const hdi_mesh *mesh, int64_t c) {
     uint64_t key = 14695981039346656037u;
     int64_t at = c;
     if (!hdi_is_poly(mesh)) {
-        const int32_t a = mesh->tri[hdi_corner_before(mesh, c)], b = mesh->tri[hdi_corner_after(mesh, c)];
+        const int32_t q = (int32_t)c % 3, *v = mesh->tri + c - q, a = v[hdi_next3[q]], b = v[hdi_prev3[q]];
         return (uint64_t)hdi_low32(a, b) << 32 | (uint64_t)hdi_high32(a, b);
     }
     do {
@@ -5982,31 +5982,16 @@ static int hdi_corner_same(const hdi_mesh *mesh, int64_t c, int64_t d) {
     return a == c && b == d;
 }
 
-/* Is no corner of the face of c at a smaller vertex? */
-static HDI_INLINE int hdi_corner_first(const hdi_mesh *mesh, int64_t c) {
-    const int32_t f = hdi_corner_face(mesh, c), v = mesh->tri[c];
-    const int64_t end = hdi_face_begin(mesh, f + 1);
-    int64_t d;
-    int first = 1;
-    for (d = hdi_face_begin(mesh, f); d < end; d++) first &= mesh->tri[d] >= v;
-    return first;
-}
-
-/* Faces of which v is the smallest corner get area 0 if they have the corners of an earlier one in the same
- * cyclic order. pair: room for all corners at v. Returns their number. */
-static int32_t hdi_mesh_repeats(const hdi_mesh *mesh, int32_t v, hdi_pair *pair) {
-    int64_t p, n = 0, first = 0;
-    int32_t count = 0;
-    for (p = mesh->at[v]; p < mesh->at[v + 1]; p++) {
-        if (!hdi_corner_first(mesh, mesh->corner[p])) continue;
-        pair[n].key = hdi_corner_key(mesh, mesh->corner[p]);
-        pair[n++].id = mesh->corner[p];
-    }
-    hdi_sort_pairs(pair, n);
+/* Of n faces with the same smallest vertex, known by their corners there, those get area 0 that have the
+ * corners of an earlier one in the same cyclic order. Returns their number. */
+static int32_t hdi_mesh_repeats(const hdi_mesh *mesh, hdi_pair *face, int32_t n) {
+    int32_t p, first = 0, count = 0;
+    for (p = 0; p < n; p++) face[p].key = hdi_corner_key(mesh, face[p].id);
+    hdi_sort_pairs(face, n);
     for (p = 1; p < n; p++) {
-        if (pair[p].key != pair[first].key) first = p;
-        else if (hdi_corner_same(mesh, pair[p].id, pair[first].id)) {
-            mesh->area[hdi_corner_face(mesh, pair[p].id)] = 0;
+        if (face[p].key != face[first].key) first = p;
+        else if (hdi_corner_same(mesh, face[p].id, face[first].id)) {
+            mesh->area[hdi_corner_face(mesh, face[p].id)] = 0;
             count++;
         }
     }
@@ -7466,8 +7451,8 @@ static hd_status hdi_held_all(hd_error *e) {
     return hdi_fail(e, HD_ERR_EMPTY, "laplacian: all vertices with mass are held at zero");
 }
 
-/* Numbers the rows: vertices with mass, and of meshes not held, in their order. Fills row, vertex, mass, b_diag,
- * n_active. */
+/* Numbers the rows: vertices with mass, and of meshes not held, in their order. Fills row, vertex, mass,
+ * b_diag, n_active. */
 static hd_status hdi_lap_rows(hd_laplacian *lap, const double *vertex_mass, const char *held, hd_error *e) {
     int32_t v, k = 0, n_inert = 0;
     hd_context *ctx = lap->context;
@@ -7532,8 +7517,8 @@ static hd_status hdi_lap_components(hd_laplacian *lap, hd_error *e) {
     return e->status;
 }
 
-/* Which components conserve their heat, of a Laplacian with its masses. An infinite one takes the constants out
- * of all formulas: their part of K_t f is the heat divided by the mass. */
+/* Which components conserve their heat, of a Laplacian with its masses. An infinite one takes the constants
+ * out of all formulas: their part of K_t f is the heat divided by the mass. */
 static void hdi_held_components(hd_laplacian *lap) {
     const hdi_holding *x = lap->holding;
     int32_t i, leaks = 0;
@@ -7653,23 +7638,27 @@ static HDI_INLINE void hdi_ring_corner(hdi_ring *r, const hdi_mesh *mesh, hdi_lu
 
 /* All that vertex v shares with others. Without coordinates, weights above zero, which are there by rounding
  * only, become zero when they are below 1e-13 of the cotangents that they are made of. */
-static void hdi_ring_make(hdi_ring *r, const hdi_mesh *mesh, hdi_lump lump, int32_t v) {
+static void hdi_ring_make(hdi_ring *ring, const hdi_mesh *from, hdi_lump lump, int32_t v) {
+    const hdi_mesh mesh = *from;                 /* copies, which stores cannot change */
+    hdi_ring r = *ring;
     int64_t p;
     int32_t q;
-    r->n = 0;
-    r->mass = 0;
-    (void)hdi_ring_entry(r, v);
-    for (p = mesh->at[v]; p < mesh->at[v + 1]; p++) {
-        const int64_t c = mesh->corner[p];
-        const int32_t f = hdi_corner_face(mesh, c);
-        const int64_t begin = hdi_face_begin(mesh, f);
-        const double area = mesh->area[f];
-        if (hdi_is_poly(mesh)) hdi_ring_corner(r, mesh, lump, c, area, begin, mesh->ptr[f + 1] - begin, 1);
-        else hdi_ring_corner(r, mesh, lump, c, area, begin, 3, 0);
+    r.n = 0;
+    r.mass = 0;
+    (void)hdi_ring_entry(&r, v);
+    for (p = mesh.at[v]; p < mesh.at[v + 1]; p++) {
+        const int64_t c = mesh.corner[p];
+        const int32_t f = hdi_corner_face(&mesh, c);
+        const int64_t begin = hdi_face_begin(&mesh, f);
+        if (hdi_is_poly(&mesh))
+            hdi_ring_corner(&r, &mesh, lump, c, mesh.area[f], begin, mesh.ptr[f + 1] - begin, 1);
+        else
+            hdi_ring_corner(&r, &mesh, lump, c, mesh.area[f], begin, 3, 0);
     }
-    for (q = 1; q < r->n && !mesh->xyz && !mesh->len; q++)
-        if (r->entry[q].L > 0 && r->entry[q].L <= 1e-13 * r->entry[q].size) r->entry[q].L = 0;
-    if (lump == HDI_LUMP_ONES) r->mass = 1;
+    for (q = 1; q < r.n && !mesh.xyz && !mesh.len; q++)
+        if (r.entry[q].L > 0 && r.entry[q].L <= 1e-13 * r.entry[q].size) r.entry[q].L = 0;
+    ring->n = r.n;
+    ring->mass = lump == HDI_LUMP_ONES ? 1 : r.mass;
 }
 
 /* The ring of strand number `strand`. */
@@ -7703,8 +7692,8 @@ static void hdi_rows_edges(const hdi_rows *x, hdi_ring *r, hdi_rows_tally *tally
     }
 }
 
-/* The row of vertex v in L and B, if it has one. A column without a row adds to the diagonal and is not written. An edge from the vertex to
- * itself has no weight, and is twice in its B. */
+/* The row of vertex v in L and B, if it has one. A column without a row adds to the diagonal and is not
+ * written. An edge from the vertex to itself has no weight, and is twice in its B. */
 static void hdi_rows_write(const hdi_rows *x, const hdi_ring *r, int32_t v) {
     hd_laplacian *lap = x->lap;
     const int32_t i = lap->row[x->name ? x->name[v] : v];
@@ -7739,20 +7728,28 @@ static void hdi_rows_write(const hdi_rows *x, const hdi_ring *r, int32_t v) {
     if (lap->holding) lap->holding->leak[lap->vertex[i]] = (char)leaks;
 }
 
-/* The vertices that v has faces with. */
-static HDI_INLINE int32_t hdi_corner_count(const hdi_mesh *mesh, int32_t v, int32_t *mark) {
-    int32_t n = 0;
+/* Counts the vertices that v has faces with. Those faces of which it is the smallest come to be first in
+ * order; returns their number. */
+static int32_t hdi_rows_count(hdi_rows *x, const hdi_ring *r, int32_t v) {
+    const hdi_mesh *mesh = &x->mesh;
+    int32_t n = 0, n_faces = 0, *mark = r->place;
     int64_t p, d;
     mark[v] = v;
     for (p = mesh->at[v]; p < mesh->at[v + 1]; p++) {
         const int32_t f = hdi_corner_face(mesh, mesh->corner[p]);
         const int64_t end = hdi_face_begin(mesh, f + 1);
+        int smallest = 1;
         for (d = hdi_face_begin(mesh, f); d < end; d++) {
-            n += mark[mesh->tri[d]] != v;
-            mark[mesh->tri[d]] = v;
+            const int32_t j = mesh->tri[d];
+            smallest &= j >= v;
+            n += mark[j] != v;
+            mark[j] = v;
         }
+        r->order[n_faces].id = mesh->corner[p];
+        n_faces += smallest;
     }
-    return n;
+    x->count[v] = n;
+    return n_faces;
 }
 
 /* The block of vertices [begin, end): counts rows while there are no entries, then fills them. In covers
@@ -7764,8 +7761,8 @@ static void hdi_rows_block(hdi_rows *x, hdi_ring *r, int32_t begin, int32_t end,
     for (v = begin; v < end; v++) {
         x->border[v] = 0;
         if (!x->entry) {
-            if (mesh->xyz || mesh->len) tally->n_repeated_face += hdi_mesh_repeats(mesh, v, r->order);
-            x->count[v] = hdi_corner_count(mesh, v, r->place);
+            const int32_t n = hdi_rows_count(x, r, v);
+            if (mesh->xyz || mesh->len) tally->n_repeated_face += hdi_mesh_repeats(mesh, r->order, n);
         } else if (mesh->at[v] < mesh->at[v + 1]) {
             hdi_ring_make(r, mesh, x->lump, v);
             hdi_rows_edges(x, r, tally);
@@ -8518,8 +8515,8 @@ static hd_status hdi_pair_update(hd_laplacian *lap, const hd_csr *L, const hd_cs
  * positive semi-definite and B >= b_ratio diag(B), as parts of the whole that are cut out by rows and
  * columns. Meshes leave them out while their rows are filled, points and matrices are cut here. */
 
-/* The rows of the whole on the columns that are left, into lap, which may be the whole itself. Fills all of L,
- * B, mass, b_diag, xyz, vertex and row. */
+/* The rows of the whole on the columns that are left, into lap, which may be the whole itself. Fills all of
+ * L, B, mass, b_diag, xyz, vertex and row. */
 static void hdi_held_cut(hd_laplacian *lap, const hd_laplacian *whole) {
     const hdi_holding *x = lap->holding;
     const int32_t n = whole->n_active;
@@ -8579,8 +8576,8 @@ static hd_laplacian *hdi_held_whole(hd_laplacian *lap, hd_error *e) {
     return lap->holding->whole = whole;
 }
 
-/* Ends the making of a Laplacian: takes out the vertices to hold that still have rows, and finds the components
- * of what is left. */
+/* Ends the making of a Laplacian: takes out the vertices to hold that still have rows, and finds the
+ * components of what is left. */
 static hd_status hdi_lap_hold(hd_laplacian *lap, hd_error *e) {
     hdi_holding *x = lap->holding;
     const hd_laplacian *whole = lap;
