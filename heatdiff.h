@@ -1124,8 +1124,8 @@ HEATDIFF_API hd_status hd_laplacian_apply(const hd_laplacian *lap, double alpha,
  * xyz    [3 n] finite
  * Rows, pattern, held vertices and faces that were left out stay as they are. Faces that lose their area are
  * counted in lap->mesh and add nothing; their entries may become zero, and what they alone join falls apart.
- * All values, components and the report are those of a new Laplacian: to the last bit for the kind polygon,
- * up to rounding in the order of sums for triangles. All arrays keep their places.
+ * All values, components and the report are those of a new Laplacian, to the last bit. All arrays keep their
+ * places.
  * Points have no update. The pairs that are joined, the planes and the cells follow from the places, so that
  * new places make a new pattern.
  * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (vertex, or face: too large, or none: the whole area);
@@ -8387,11 +8387,9 @@ static hd_status hdi_lap_matrices(hd_laplacian *lap, const hd_csr *L, const hd_c
     return hdi_scope_end(&s);
 }
 
-/* Matrices whose values change: what to go back to after an error, and work. */
+/* Matrices whose values change: room for new ones, and work. */
 typedef struct hdi_moving_pair {
-    hd_laplacian before;
     double *L, *B, *mass, *b_diag;
-    double *full, *diag;        /* [nnz] B and [n_active] its diagonal where lap has none */
     double *root;               /* [n_active] see hdi_pair_measure */
 } hdi_moving_pair;
 
@@ -8402,30 +8400,11 @@ static hd_status hdi_moving_pair_make(hd_laplacian *lap, hd_error *e) {
     if (!x || !z) return hdi_scope_end(&s);
     z->L = HDI_TAKE(&s, double, lap->L.nnz);
     z->B = HDI_TAKE(&s, double, lap->L.nnz);
-    z->full = lap->B ? NULL : HDI_TAKE(&s, double, lap->L.nnz);
     z->mass = HDI_TAKE(&s, double, lap->n_active);
     z->b_diag = HDI_TAKE(&s, double, lap->n_active);
-    z->diag = HDI_TAKE(&s, double, lap->n_active);
     z->root = HDI_TAKE(&s, double, lap->n_active);
     if (e->status >= 0) x->pair = z;
     return hdi_moving_keep(x, &s);
-}
-
-/* Copies the values of lap to where an error finds them, or with `back` from there. */
-static void hdi_moving_pair_copy(hd_laplacian *lap, int back) {
-    hdi_moving_pair *z = lap->moving->pair;
-    const size_t n = (size_t)lap->n_active, nnz = (size_t)lap->L.nnz;
-    double *const here[] = {lap->L.val, lap->B, lap->mass, lap->b_diag};
-    double *const kept[] = {z->L, z->B, z->mass, z->b_diag};
-    const size_t count[] = {nnz, nnz, n, n};
-    int q;
-    for (q = 0; q < 4; q++)
-        if (here[q]) memcpy(back ? here[q] : kept[q], back ? kept[q] : here[q], count[q] * sizeof(double));
-}
-
-static void hdi_moving_pair_restore(hd_laplacian *lap) {
-    *lap = lap->moving->pair->before;
-    hdi_moving_pair_copy(lap, 1);
 }
 
 /* The values of a matrix over vertices into val, on the pattern of lap. */
@@ -8482,32 +8461,43 @@ static hd_status hdi_pair_inert(const hd_laplacian *lap, const hd_csr *B, hd_err
     return HD_OK;
 }
 
-/* New values, all but components and a proof about B. The matrices are checked by rows. After an error lap is
- * as it was. */
-static hd_status hdi_pair_update(hd_laplacian *lap, const hd_csr *L, const hd_csr *B, hd_error *e) {
-    hdi_moving_pair *z = lap->moving->pair;
-    const int full = lap->B != NULL;
+/* next becomes lap with new values, all but components and a proof about B. The matrices are checked
+ * by rows. */
+static hd_status hdi_pair_next(hd_laplacian *next, const hd_laplacian *lap, const hd_csr *L, const hd_csr *B,
+                               hd_error *e) {
+    const hdi_moving_pair *z = lap->moving->pair;
     int diagonal = 1;
-    z->before = *lap;
-    hdi_moving_pair_copy(lap, 0);
-    if (!full) {                                 /* for a while */
-        lap->B = z->full;
-        lap->b_diag = z->diag;
-    }
-    lap->area = 0;
-    if (hdi_pair_inert(lap, B, e) >= 0 && hdi_pair_refill(lap, L, lap->L.val, e) >= 0 &&
-        hdi_pair_refill(lap, B, lap->B, e) >= 0 && hdi_pair_symmetric(lap, lap->L.val, e) >= 0 &&
-        hdi_pair_symmetric(lap, lap->B, e) >= 0 && hdi_pair_measure(lap, z->root, &diagonal, e) >= 0)
-        (void)hdi_pair_semidefinite(lap, z->root, e);
-    if (e->status >= 0 && !full && !diagonal)
-        hdi_fail(e, HD_ERR_STRUCTURE, "update of matrices: B was diagonal, and is not any more");
-    if (e->status < 0) {
-        hdi_moving_pair_restore(lap);
+    *next = *lap;
+    next->L.val = z->L;
+    next->B = z->B;
+    next->mass = z->mass;
+    next->b_diag = z->b_diag;
+    next->area = 0;
+    if (hdi_pair_inert(lap, B, e) < 0 || hdi_pair_refill(lap, L, z->L, e) < 0 ||
+        hdi_pair_refill(lap, B, z->B, e) < 0 || hdi_pair_symmetric(lap, z->L, e) < 0 ||
+        hdi_pair_symmetric(lap, z->B, e) < 0 || hdi_pair_measure(next, z->root, &diagonal, e) < 0 ||
+        hdi_pair_semidefinite(next, z->root, e) < 0)
         return e->status;
-    }
-    lap->B = z->before.B;
-    lap->b_diag = z->before.b_diag;
+    if (!lap->B && !diagonal)
+        return hdi_fail(e, HD_ERR_STRUCTURE, "update of matrices: B was diagonal, and is not any more");
+    if (lap->B) return HD_OK;
+    next->B = NULL;
+    next->b_diag = next->mass;
     return HD_OK;
+}
+
+/* Takes the values of next, and all that follows from them. */
+static void hdi_pair_take(hd_laplacian *lap, const hd_laplacian *next) {
+    const size_t rows = (size_t)lap->n_active * sizeof(double), all = (size_t)lap->L.nnz * sizeof(double);
+    memcpy(lap->L.val, next->L.val, all);
+    memcpy(lap->mass, next->mass, rows);
+    if (lap->B) memcpy(lap->B, next->B, all);
+    if (lap->B) memcpy(lap->b_diag, next->b_diag, rows);
+    lap->h = next->h;
+    lap->area = next->area;
+    lap->b_ratio = next->b_ratio;
+    lap->conserves = next->conserves;
+    hdi_lap_renewed(lap);
 }
 
 /* ---- vertices held at zero ----
@@ -8627,110 +8617,40 @@ static void *hdi_copy(const void *from, uint64_t count, size_t size, hd_context 
 
 enum { HDI_ROWS_AHEAD = 8 };     /* rows of a matrix taken in any order are asked for so many rows early */
 
-/* Rows up to this length are sorted by counting, for each entry, those that go before it: each row by itself,
- * so that threads can share them. One thread takes 1.1 to 1.35 times as long with this as by transposing. */
-enum { HDI_RANK_MOST = 32, HDI_RANK_ROWS = 4096 };
-
-typedef struct hdi_permute_job {
-    const hd_laplacian *lap;
-    const int32_t *perm, *inv;
-    hd_csr a;                    /* P L P', and P B P' */
-    double *B;
-    int64_t *fill;               /* [n + 1] */
-} hdi_permute_job;
-
-/* Fetches row i + HDI_ROWS_AHEAD. */
-static HDI_INLINE void hdi_permute_fetch(const hdi_permute_job *job, int64_t i, int64_t end) {
-    const hd_laplacian *lap = job->lap;
-    if (i + HDI_ROWS_AHEAD < end) {
-        const int64_t ahead = lap->L.row_ptr[job->perm[i + HDI_ROWS_AHEAD]];
-        HDI_PREFETCH(lap->L.col + ahead);
-        HDI_PREFETCH(lap->L.val + ahead);
-        if (lap->B) HDI_PREFETCH(lap->B + ahead);
-    }
-}
-
-/* Rows [begin,end), none longer than HDI_RANK_MOST. */
-static void hdi_permute_ranked(void *arg, int64_t begin, int64_t end) {
-    const hdi_permute_job *job = (const hdi_permute_job *)arg;
-    const hd_laplacian *lap = job->lap;
-    int32_t col[HDI_RANK_MOST], k, j, b;
-    int64_t i;
-    for (i = begin; i < end; i++) {
-        const int64_t from = lap->L.row_ptr[job->perm[i]], to = job->a.row_ptr[i];
-        const int32_t n = (int32_t)(job->a.row_ptr[i + 1] - to);
-        hdi_permute_fetch(job, i, end);
-        for (k = 0; k < n; k++) col[k] = job->inv[lap->L.col[from + k]];
-        for (; k % 8; k++) col[k] = INT32_MAX;
-        for (k = 0; k < n; k++) {
-            const int32_t own = col[k];
-            int32_t rank = 0;
-            int64_t q;
-            for (b = 0; b < n; b += 8)
-                for (j = 0; j < 8; j++) rank += col[b + j] < own;
-            q = to + rank;
-            job->a.col[q] = col[k];
-            job->a.val[q] = lap->L.val[from + k];
-            if (job->B) job->B[q] = lap->B[from + k];
-        }
-    }
-}
-
-/* All rows: entry (i, k) is put where (k, i) belongs, which is the same and leaves the columns of every row
- * ascending. */
-static void hdi_permute_transposed(const hdi_permute_job *job) {
-    const hd_laplacian *lap = job->lap;
-    const int32_t n = lap->n_active;
-    int32_t i;
-    int64_t p;
-    for (i = 0; i < n; i++) {
-        hdi_permute_fetch(job, i, n);
-        for (p = lap->L.row_ptr[job->perm[i]]; p < lap->L.row_ptr[job->perm[i] + 1]; p++) {
-            const int64_t q = job->fill[job->inv[lap->L.col[p]]]++;
-            job->a.col[q] = i;
-            job->a.val[q] = lap->L.val[p];
-            if (job->B) job->B[q] = lap->B[p];
-        }
-    }
-}
-
-/* P L P' and P B P' into out, whose perm is a valid one. */
+/* P L P' and P B P' into out, whose perm is a valid one: entry (i, k) is put where (k, i) belongs, which is
+ * the same and leaves the columns of every row ascending. */
 static hd_status hdi_pair_permute(hd_laplacian *out, const hd_laplacian *lap, const int32_t *perm,
                                   hd_context *ctx, hd_error *e) {
     const int32_t n = lap->n_active;
-    const uint64_t n1 = (uint64_t)n + 1, nnz = (uint64_t)lap->L.nnz;
+    const int64_t *ptr = lap->L.row_ptr;
     hdi_scope s = hdi_scope_begin(ctx, e), keep = hdi_scope_begin(ctx, e);
     int32_t *inv = HDI_TAKE(&s, int32_t, n), i;
-    int64_t longest = 0;
-    hdi_permute_job job;
-    memset(&job, 0, sizeof job);
-    job.lap = lap;
-    job.perm = perm;
-    job.inv = inv;
-    job.fill = HDI_TAKE(&s, int64_t, n1);
-    job.a = lap->L;
-    job.a.row_ptr = HDI_TAKE(&keep, int64_t, n1);
-    job.a.col = HDI_TAKE(&keep, int32_t, nnz);
-    job.a.val = HDI_TAKE(&keep, double, nnz);
-    if (lap->B) job.B = HDI_TAKE(&keep, double, nnz);
+    int64_t *fill = HDI_TAKE(&s, int64_t, n), p;
+    hd_csr a = hdi_csr_take(&keep, n, n, lap->L.nnz, 1);
+    double *B = lap->B ? HDI_TAKE(&keep, double, lap->L.nnz) : NULL;
     if (e->status < 0) {
         hdi_scope_end(&s);
         return hdi_scope_end(&keep);
     }
-    job.a.row_ptr[0] = 0;
     for (i = 0; i < n; i++) {
-        const int64_t row = lap->L.row_ptr[perm[i] + 1] - lap->L.row_ptr[perm[i]];
         inv[perm[i]] = i;
-        job.fill[i] = job.a.row_ptr[i];
-        job.a.row_ptr[i + 1] = job.a.row_ptr[i] + row;
-        if (row > longest) longest = row;
+        fill[i] = a.row_ptr[i];
+        a.row_ptr[i + 1] = a.row_ptr[i] + ptr[perm[i] + 1] - ptr[perm[i]];
     }
-    if (longest <= HDI_RANK_MOST && !hdi_is_serial(ctx))
-        hdi_parallel_ranges(ctx, n, HDI_RANK_ROWS, hdi_permute_ranked, &job);
-    else
-        hdi_permute_transposed(&job);
-    out->L = job.a;
-    out->B = job.B;
+    for (i = 0; i < n; i++) {
+        const int64_t ahead = ptr[perm[i + HDI_ROWS_AHEAD < n ? i + HDI_ROWS_AHEAD : i]];
+        HDI_PREFETCH(lap->L.col + ahead);
+        HDI_PREFETCH(lap->L.val + ahead);
+        HDI_PREFETCH((B ? lap->B : lap->L.val) + ahead);
+        for (p = ptr[perm[i]]; p < ptr[perm[i] + 1]; p++) {
+            const int64_t q = fill[inv[lap->L.col[p]]]++;
+            a.col[q] = i;
+            a.val[q] = lap->L.val[p];
+            if (B) B[q] = lap->B[p];
+        }
+    }
+    out->L = a;
+    out->B = B;
     keep.n = 0;                                  /* all of it is the caller's now */
     return hdi_scope_end(&s);
 }
@@ -18295,13 +18215,10 @@ static hd_status hdi_lap_ratio_known(hd_laplacian *lap, hd_error *e) {
 /* Takes the values of new matrices, or leaves all as it was. */
 static hd_status hdi_pair_replace(hd_laplacian *lap, const hd_csr *L, const hd_csr *B, double h,
                                   hd_error *e) {
-    if (hdi_pair_update(lap, L, B, e) < 0) return e->status;
-    if (hdi_lap_ratio_known(lap, e) < 0) {
-        hdi_moving_pair_restore(lap);
-        return e->status;
-    }
-    lap->h = h;
-    hdi_lap_renewed(lap);
+    hd_laplacian next;
+    if (hdi_pair_next(&next, lap, L, B, e) < 0 || hdi_lap_ratio_known(&next, e) < 0) return e->status;
+    next.h = h;
+    hdi_pair_take(lap, &next);
     return HD_OK;
 }
 
