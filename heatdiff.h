@@ -3486,7 +3486,8 @@ enum { HDI_TILE_ROWS = 24, HDI_TILE_COLS = 8 };   /* of the largest tile */
 /* C -= A B, or with store C = -A B. All distances are counted in entries. Rows of C and A are consecutive;
  * A(i,k) is at a + i + k a_col. C(i,j) is at c + i + j c_col; with packed columns, those of a triangle, the
  * distance c_col shrinks by one from column to column. B comes in groups of nr columns: B(k,j) is at b +
- * (j / nr) b_next + k b_row + (j % nr) b_col. With lower, entries of C above its diagonal are left alone:
+ * (j / nr) b_next + k b_row + (j % nr) b_col; with real numbers b_col is 1, or C has a multiple of eight
+ * rows. With lower, entries of C above its diagonal are left alone:
  * row i of C is row i + first of a matrix whose columns are those of C. */
 typedef struct hdi_product {
     double *c;
@@ -3799,14 +3800,15 @@ HDI_IN8 __m512d hdi_join_avx512(__m512d p, __m512d q) {
 #define HDI_COLS (pack ? (int)HDI_OF(pack_cols) : (int)HDI_OF(cols))
 #define HDI_NUMBERS (pack ? 4 : 1)
 #define HDI_ABREAST (pack ? HDI_WIDTH < 4 ? HDI_WIDTH : 4 : 1)   /* numbers of an entry that a vector holds */
-/* Code of their own for columns of B that are side by side, and for each entry of a small triangle. */
+/* Code of their own for real columns of B that are side by side, and for each entry of a small triangle. */
 #ifdef __OPTIMIZE_SIZE__
 #define HDI_UNITS 0
 #define HDI_SPREAD
 #else
-#define HDI_UNITS 1
+#define HDI_UNITS (!pack)
 #define HDI_SPREAD HDI_UNROLL
 #endif
+#define HDI_EIGHT (8 / HDI_WIDTH < HDI_REGS ? 8 / HDI_WIDTH : HDI_REGS)   /* nums of eight real rows */
 #endif
 
 /* A tile holds the rows of its own columns' pivots; else this does not compile. */
@@ -3941,40 +3943,57 @@ HDI_PART void HDI_OF(tile_sum)(const int pack, const int nv, const int nc, const
 
 HDI_PART void HDI_OF(tile_product)(const int pack, const int nv, const int nc, const int unit,
                                    const HDI_OF(tile) *t, hdi_num (*x)[HDI_OF(most_regs)]) {
-    if (pack || (HDI_WIDTH < 8 && t->n == HDI_ROWS * nv)) HDI_OF(tile_sum)(pack, nv, nc, unit, 0, t, x);
-    else HDI_OF(tile_sum)(pack, nv, nc, unit, 1, t, x);   /* masks of AVX-512 cost nothing */
+    const int whole = HDI_UNITS && !unit, common = nv == HDI_REGS && HDI_WIDTH < 8;   /* 8 have masks */
+    if (pack || whole || (common && t->n == HDI_ROWS * nv)) HDI_OF(tile_sum)(pack, nv, nc, unit, 0, t, x);
+    else HDI_OF(tile_sum)(pack, nv, nc, unit, 1, t, x);
+}
+
+/* C -= X for a tile of which only a part counts. Loads before stores: columns lie so close that a masked load
+ * would overlap the store before it, and wait for it. */
+HDI_KERNEL HDI_NOINLINE void HDI_OF(tile_rest)(int pack, const HDI_OF(tile) *t, int nv, double *x) {
+    int store, j, v;
+    for (store = 0; store < 2; store++) {
+        double *c = t->c, *at = x;
+        int64_t step = t->c_col;
+        for (j = 0; j < t->nc; j++, c += step, step -= t->packed ? HDI_ENTRY : 0) {
+            const HDI_OF(rows) g = HDI_OF(rows_of)((int32_t)t->diag + j, t->n);
+            for (v = 0; v < nv; v++, at += HDI_ENTRY * HDI_ROWS) {
+                double *to = c + HDI_ENTRY * HDI_ROWS * v;
+                hdi_num old = HDI_OF(num_load)(pack, at);
+                if (store) HDI_OF(num_store_rows)(pack, to, old, g, HDI_ROWS * v);
+                else if (t->store) old = HDI_OF(num_minus)(HDI_OF(num_zero)(), old);
+                else old = HDI_OF(num_minus)(HDI_OF(num_load_rows)(pack, to, g, HDI_ROWS * v), old);
+                HDI_OF(num_store)(pack, at, old);
+            }
+        }
+    }
 }
 
 /* C -= A B for nv nums of rows, the last one perhaps in part. */
 HDI_PART void HDI_OF(tile_multiply)(const int pack, const int nv, const int nc, const int unit,
                                     const HDI_OF(tile) *t) {
+    double rest[(int)HDI_OF(most_cols) * HDI_OF(most_regs) * (int)HDI_PACK];
     hdi_num x[HDI_OF(most_cols)][HDI_OF(most_regs)];
     const int64_t inner = HDI_ENTRY * HDI_ROWS;
+    const int masked = !pack && HDI_WIDTH == 8;
     double *c = t->c;
     int64_t step = t->c_col;
     int j, v;
     HDI_OF(tile_product)(pack, nv, nc, unit, t, x);
-    if (t->n == HDI_ROWS * nv && t->diag <= 1 - nc) {
-        HDI_EACH(j, nc) {
-            if (j >= t->nc) continue;
-            HDI_EACH(v, nv) {
-                const hdi_num old = t->store ? HDI_OF(num_zero)() : HDI_OF(num_load)(pack, c + inner * v);
-                HDI_OF(num_store)(pack, c + inner * v,
-                                  HDI_OF(num_minus)(old, HDI_OF(sum_end)(pack, x[j][v])));
-            }
-            c += step;
-            if (t->packed) step -= HDI_ENTRY;
-        }
+    if (!masked && (t->n < HDI_ROWS * nv || t->diag > 1 - nc)) {
+        HDI_EACH(j, nc)
+            HDI_EACH(v, nv)
+                HDI_OF(num_store)(pack, rest + inner * (nv * j + v), HDI_OF(sum_end)(pack, x[j][v]));
+        HDI_OF(tile_rest)(pack, t, nv, rest);
         return;
     }
-    /* Loads before stores: columns lie so close that a masked load would overlap the store before it, and
-     * wait for it. */
     HDI_EACH(j, nc) {
         const HDI_OF(rows) g = HDI_OF(rows_of)((int32_t)t->diag + j, t->n);
         if (j >= t->nc) continue;
         HDI_EACH(v, nv) {
-            const hdi_num old = t->store ? HDI_OF(num_zero)()
-                                         : HDI_OF(num_load_rows)(pack, c + inner * v, g, HDI_ROWS * v);
+            hdi_num old = HDI_OF(num_zero)();
+            if (!t->store && masked) old = HDI_OF(num_load_rows)(pack, c + inner * v, g, HDI_ROWS * v);
+            else if (!t->store) old = HDI_OF(num_load)(pack, c + inner * v);
             x[j][v] = HDI_OF(num_minus)(old, HDI_OF(sum_end)(pack, x[j][v]));
         }
         c += step;
@@ -3985,7 +4004,10 @@ HDI_PART void HDI_OF(tile_multiply)(const int pack, const int nv, const int nc, 
     HDI_EACH(j, nc) {
         const HDI_OF(rows) g = HDI_OF(rows_of)((int32_t)t->diag + j, t->n);
         if (j >= t->nc) continue;
-        HDI_EACH(v, nv) HDI_OF(num_store_rows)(pack, c + inner * v, x[j][v], g, HDI_ROWS * v);
+        HDI_EACH(v, nv) {
+            if (masked) HDI_OF(num_store_rows)(pack, c + inner * v, x[j][v], g, HDI_ROWS * v);
+            else HDI_OF(num_store)(pack, c + inner * v, x[j][v]);
+        }
         c += step;
         if (t->packed) step -= HDI_ENTRY;
     }
@@ -4035,22 +4057,22 @@ HDI_PART void HDI_OF(tile_one)(const int pack, const int solve, const int nv, co
     else HDI_OF(tile_multiply)(pack, nv, nc, unit, t);
 }
 
+HDI_PART void HDI_OF(tile_rows)(const int pack, const int solve, const int nc, const int unit,
+                                const HDI_OF(tile) *t, const double *dinv) {
+    const int nv = (t->n + HDI_ROWS - 1) / HDI_ROWS;
+    if (nv >= HDI_REGS) HDI_OF(tile_one)(pack, solve, HDI_REGS, nc, unit, t, dinv);
+    else if (HDI_REGS > 3 && nv == 3) HDI_OF(tile_one)(pack, solve, 3, nc, unit, t, dinv);
+    else if (HDI_REGS > 2 && nv == 2) HDI_OF(tile_one)(pack, solve, 2, nc, unit, t, dinv);
+    else if (HDI_REGS > 1) HDI_OF(tile_one)(pack, solve, 1, nc, unit, t, dinv);
+}
+
 /* A tile of at most HDI_REGS nums; dinv of a solve. A column alone, of which packs have many, is a tile of
  * its own. */
 HDI_PART void HDI_OF(tile_run)(const int pack, const int solve, const int unit, const HDI_OF(tile) *t,
                                const double *dinv) {
-    const int nv = (t->n + HDI_ROWS - 1) / HDI_ROWS;
-    if (pack && HDI_COLS > 1 && t->nc == 1) {
-        if (nv >= HDI_REGS) HDI_OF(tile_one)(pack, solve, HDI_REGS, 1, unit, t, dinv);
-        else if (HDI_REGS > 3 && nv == 3) HDI_OF(tile_one)(pack, solve, 3, 1, unit, t, dinv);
-        else if (HDI_REGS > 2 && nv == 2) HDI_OF(tile_one)(pack, solve, 2, 1, unit, t, dinv);
-        else if (HDI_REGS > 1) HDI_OF(tile_one)(pack, solve, 1, 1, unit, t, dinv);
-    } else {
-        if (nv >= HDI_REGS) HDI_OF(tile_one)(pack, solve, HDI_REGS, HDI_COLS, unit, t, dinv);
-        else if (HDI_REGS > 3 && nv == 3) HDI_OF(tile_one)(pack, solve, 3, HDI_COLS, unit, t, dinv);
-        else if (HDI_REGS > 2 && nv == 2) HDI_OF(tile_one)(pack, solve, 2, HDI_COLS, unit, t, dinv);
-        else if (HDI_REGS > 1) HDI_OF(tile_one)(pack, solve, 1, HDI_COLS, unit, t, dinv);
-    }
+    if (HDI_UNITS && !unit) HDI_OF(tile_one)(pack, solve, HDI_EIGHT, HDI_COLS, unit, t, dinv);
+    else if (pack && HDI_COLS > 1 && t->nc == 1) HDI_OF(tile_rows)(pack, solve, 1, unit, t, dinv);
+    else HDI_OF(tile_rows)(pack, solve, HDI_COLS, unit, t, dinv);
 }
 
 /* Offsets of nc columns of B. */
@@ -4242,8 +4264,7 @@ HDI_PART void HDI_OF(eliminate)(const int pack, const hdi_eliminate *g) {
     const int top = HDI_COLS / HDI_ROWS;
     int h;
     for (h = 0; h < HDI_NUMBERS; h += HDI_ABREAST) {
-        if (top + 2 <= HDI_REGS && g->n > HDI_ROWS) HDI_OF(pivots)(pack, HDI_REGS, g, h);
-        else if (top + 1 <= HDI_REGS && g->n > 0) HDI_OF(pivots)(pack, top + 1, g, h);
+        if (top < HDI_REGS && g->n > 0) HDI_OF(pivots)(pack, HDI_REGS, g, h);
         else HDI_OF(pivots)(pack, top, g, h);
     }
 }
@@ -13374,7 +13395,7 @@ typedef struct hdi_inverse_front {
     double *panel, *z, *update;  /* L; Z of the pivots' columns in the same layout; Z22, a packed triangle */
     double *T, *S, *M, *D, *buffer;   /* T: -L11^-T; S, M: slices, of T' and of M; D: -1/d */
     int64_t m, p, u, k0, k1;
-    int32_t v, child;            /* child: whose Z22 is taken out */
+    int32_t v;
 } hdi_inverse_front;
 
 /* How much is taken at a time: rows that are gathered, and their entries. */
@@ -13583,10 +13604,10 @@ static void hdi_inverse_corner(const hdi_inverse_front *w, int64_t r0, int64_t r
     }
 }
 
-/* Columns [r0,r1) of the child's Z22, out of the finished front. */
-static void hdi_inverse_child(const hdi_inverse_front *w, int64_t r0, int64_t r1) {
+/* Columns [r0,r1) of child c's Z22, out of the finished front. */
+static void hdi_inverse_child(const hdi_inverse_front *w, int32_t c, int64_t r0, int64_t r1) {
     const hdi_symbolic *s = w->f->sym;
-    const int32_t c = w->child, *rel = s->rel + s->row_ptr[c], width = w->f->width;
+    const int32_t *rel = s->rel + s->row_ptr[c], width = w->f->width;
     const int64_t u = hdi_front_below(s, c);
     double *to = w->f->work + width * (s->update[c] + hdi_triangle_column(u, r0));
     int64_t a, b;
@@ -13603,15 +13624,6 @@ static void hdi_inverse_child(const hdi_inverse_front *w, int64_t r0, int64_t r1
 typedef enum hdi_inverse_stage {
     HDI_INVERSE_M, HDI_INVERSE_BELOW, HDI_INVERSE_CORNER, HDI_INVERSE_FORMS, HDI_INVERSE_CHILD
 } hdi_inverse_stage;
-
-/* One stage for rows [r0,r1). */
-static void hdi_inverse_part(const void *front, int stage, int64_t r0, int64_t r1, double *buffer) {
-    const hdi_inverse_front *w = (const hdi_inverse_front *)front;
-    if (stage == HDI_INVERSE_M) hdi_inverse_m(w, r0, r1, buffer);
-    else if (stage == HDI_INVERSE_BELOW) hdi_inverse_below(w, r0, r1, buffer);
-    else if (stage == HDI_INVERSE_CORNER) hdi_inverse_corner(w, r0, r1, buffer);
-    else hdi_inverse_child(w, r0, r1);
-}
 
 /* sum_c coef[c] z_c for every set, to place `at`. */
 static void hdi_inverse_put(const hdi_inverse *z, const double *from, int64_t at) {
@@ -13653,7 +13665,7 @@ static const int32_t *hdi_form_list(const hdi_forms *q, const hdi_symbolic *s, i
 }
 
 /* Seats below front w for its columns, and in the fronts between those that they touch and w; returns their
- * entries, and the first of the fronts. Real rows are all alike: sweeps take one column or eight. */
+ * entries, and the first of the fronts. Real rows are all alike: kernels take eight columns. */
 static int64_t hdi_form_touch(const hdi_forms *q, const hdi_symbolic *s, int32_t w, const int32_t *list,
                               int32_t k, hdi_form_seat *seat, int32_t *least) {
     int64_t at = 0, p;
@@ -13880,8 +13892,9 @@ static uint64_t hdi_forms_make(hdi_forms *q, const hdi_symbolic *s, int32_t widt
     if (keep->e->status < 0) return 0;
     for (i = 0; i < s->n; i++) q->inv[s->perm[i]] = i;
     hdi_forms_order(q, s);
-    while ((size = hdi_forms_size(q, s)) > (uint64_t)(s->stored / 2 + HDI_FORM_SMALL) && q->cols > 1)
-        q->cols = width == 1 ? 1 : q->cols / 2;
+    while ((size = hdi_forms_size(q, s)) > (uint64_t)(s->stored / 2 + HDI_FORM_SMALL) && width > 1 &&
+           q->cols > 1)
+        q->cols /= 2;
     return size;
 }
 
@@ -13942,17 +13955,6 @@ static void hdi_inverse_set(hdi_inverse_step *c, int stage, int64_t begin, int64
     c->end = end;
 }
 
-/* The columns are there: what is wanted of them. */
-static void hdi_inverse_columns(hdi_inverse_step *c) {
-    hdi_inverse_set(c, HDI_INVERSE_FORMS, 0, 0);
-    if (c->z->wanted != HDI_WANT_FORMS) {
-        hdi_inverse_emit(c->z, &c->w);
-        return;
-    }
-    hdi_form_near(c->z, &c->w);
-    c->end = hdi_least(hdi_form_blocks(c->z->forms, c->w.v), HDI_FORM_SLOTS);
-}
-
 /* Goes on to the next stage, after what one thread must do before it. 0: there is none. */
 static int hdi_inverse_next(hdi_inverse_step *c) {
     hdi_inverse_front *w = &c->w;
@@ -13967,8 +13969,10 @@ static int hdi_inverse_next(hdi_inverse_step *c) {
         w->k0 = (w->k1 - 1) / HDI_PANEL * HDI_PANEL;
         hdi_inverse_pivots(w);
         hdi_inverse_set(c, HDI_INVERSE_M, w->k1, w->m);
-    } else if (c->stage == HDI_INVERSE_CORNER) {
-        hdi_inverse_columns(c);
+    } else if (c->stage == HDI_INVERSE_CORNER) {     /* the columns are there */
+        if (c->z->wanted != HDI_WANT_FORMS) hdi_inverse_emit(c->z, w);
+        else hdi_form_near(c->z, w);
+        hdi_inverse_set(c, HDI_INVERSE_FORMS, 0, hdi_least(blocks, HDI_FORM_SLOTS));
     } else if (c->stage == HDI_INVERSE_FORMS && c->end < blocks) {
         hdi_inverse_set(c, HDI_INVERSE_FORMS, c->end, hdi_least(blocks, c->end + HDI_FORM_SLOTS));
     } else if (c->stage == HDI_INVERSE_FORMS) {
@@ -13981,22 +13985,16 @@ static int hdi_inverse_next(hdi_inverse_step *c) {
 
 /* [r0,r1) of the stage. */
 static void hdi_inverse_do(const hdi_inverse_step *c, int64_t r0, int64_t r1, double *buffer) {
-    const hdi_symbolic *s = c->w.f->sym;
-    hdi_inverse_front w;
-    int32_t k;
-    if (c->stage == HDI_INVERSE_FORMS) {
-        for (; r0 < r1; r0++) hdi_form_run(c->z, &c->w, r0);
-        return;
-    }
-    if (c->stage != HDI_INVERSE_CHILD) {
-        hdi_inverse_part(&c->w, c->stage, r0, r1, buffer);
-        return;
-    }
-    w = c->w;
-    for (k = s->kid_ptr[w.v]; k < s->kid_ptr[w.v + 1] && r1 > 0; k++) {
+    const hdi_inverse_front *w = &c->w;
+    const hdi_symbolic *s = w->f->sym;
+    int32_t k = s->kid_ptr[w->v];
+    if (c->stage == HDI_INVERSE_M) hdi_inverse_m(w, r0, r1, buffer);
+    else if (c->stage == HDI_INVERSE_BELOW) hdi_inverse_below(w, r0, r1, buffer);
+    else if (c->stage == HDI_INVERSE_CORNER) hdi_inverse_corner(w, r0, r1, buffer);
+    else if (c->stage == HDI_INVERSE_FORMS) for (; r0 < r1; r0++) hdi_form_run(c->z, w, r0);
+    else for (; r1 > 0; k++) {
         const int64_t u = hdi_front_below(s, s->kid[k]);
-        w.child = s->kid[k];
-        if (r0 < u) hdi_inverse_part(&w, HDI_INVERSE_CHILD, r0 > 0 ? r0 : 0, hdi_least(r1, u), NULL);
+        if (r0 < u) hdi_inverse_child(w, s->kid[k], hdi_most(r0, 0), hdi_least(r1, u));
         r0 -= u;
         r1 -= u;
     }
