@@ -4263,10 +4263,8 @@ HDI_PART void HDI_OF(pivots)(const int pack, const int nv, const hdi_eliminate *
 HDI_PART void HDI_OF(eliminate)(const int pack, const hdi_eliminate *g) {
     const int top = HDI_COLS / HDI_ROWS;
     int h;
-    for (h = 0; h < HDI_NUMBERS; h += HDI_ABREAST) {
-        if (top < HDI_REGS && g->n > 0) HDI_OF(pivots)(pack, HDI_REGS, g, h);
-        else HDI_OF(pivots)(pack, top, g, h);
-    }
+    for (h = 0; h < HDI_NUMBERS; h += HDI_ABREAST)
+        HDI_OF(pivots)(pack, top < HDI_REGS ? HDI_REGS : top, g, h);
 }
 
 /* ---- copies ---- */
@@ -4400,10 +4398,10 @@ HDI_KERNEL void HDI_OF(single_down)(const hdi_single *g) {
         HDI_EACH(j, 8) l[j] += g->n;
     }
     HDI_EACH(j, 8) {
-        x[j] = HDI_OF(pick)(s[j], 0);
-        HDI_EACH(k, HDI_WIDTH)
-            if (k > 0) x[j] += HDI_OF(pick)(s[j], k);
-        x[j] = j < g->nc ? g->x[j] - x[j] : 0.0;
+        x[j] = 0;
+        if (j >= g->nc) continue;
+        HDI_EACH(k, HDI_WIDTH) x[j] += HDI_OF(pick)(s[j], k);
+        x[j] = g->x[j] - x[j];
     }
     HDI_SPREAD for (i = 0; i < 7; i++) {
         k = 7 - i;
@@ -11986,7 +11984,8 @@ typedef struct hdi_factor {
     hdi_pivots all;                  /* of the last factorisation */
     double largest_entry;            /* |diagonal entry of A|, the largest */
     int32_t ready;
-    int32_t guest;                   /* work, scratch, counts, order and pivots are another's */
+    void *block[8];                  /* its own of these arrays: a guest has the numbers only */
+    int32_t n_blocks;
     const hdi_values *values;        /* of a factorisation under way */
 } hdi_factor;
 
@@ -12400,10 +12399,6 @@ static void hdi_front_part(const void *front, int stage, int64_t r0, int64_t r1,
     }
 }
 
-static int32_t hdi_front_block_size(const hdi_factor *f) {
-    return (int32_t)hdi_front_pivot_block(f->width);
-}
-
 /* Whether threads share front v. */
 static int hdi_front_shared(const hdi_symbolic *s, int32_t v) {
     return s->task_of[v] < 0 && hdi_front_rows(s, v) >= HDI_FRONT_SHARED;
@@ -12411,7 +12406,7 @@ static int hdi_front_shared(const hdi_symbolic *s, int32_t v) {
 
 /* Front v, by this thread. 0 when a pivot cannot be divided by. */
 static int hdi_front_factor(const hdi_factor *f, int32_t v, double *scratch, hdi_pivots *note) {
-    const int64_t most = hdi_front_block_size(f);
+    const int64_t most = hdi_front_pivot_block(f->width);
     hdi_front w = hdi_front_open(f, v, scratch);
     hdi_front_part(&w, HDI_FRONT_ASSEMBLE, 0, w.m, w.work);
     for (; w.k0 < w.p; w.k0 += w.nb) {
@@ -12432,18 +12427,13 @@ static double *hdi_factor_scratch(const hdi_factor *f, int64_t i) {
     return f->scratch + f->scratch_size * (size_t)i;
 }
 
+/* Frees what only factoring needs, which is all but the numbers. */
+static void hdi_factor_settle(hdi_factor *f) {
+    while (f->n_blocks > 2) hdi_free(f->ctx, f->block[--f->n_blocks]);
+}
+
 static void hdi_factor_free(hdi_factor *f) {
-    if (!f->ctx) return;
-    hdi_free(f->ctx, f->panel);
-    hdi_free(f->ctx, f->dinv);
-    if (!f->guest) {
-        hdi_free(f->ctx, f->work);
-        hdi_free(f->ctx, f->scratch);
-        hdi_free(f->ctx, f->chunk_scratch);
-        hdi_free(f->ctx, f->counts);
-        hdi_free(f->ctx, f->order);
-        hdi_free(f->ctx, f->pivots);
-    }
+    while (f->n_blocks > 0) hdi_free(f->ctx, f->block[--f->n_blocks]);
     memset(f, 0, sizeof *f);
 }
 
@@ -12473,7 +12463,7 @@ typedef struct hdi_factor_walk {
 /* The shape of front v in blocks and chunks. */
 static void hdi_factor_shape(hdi_factor_walk *t, int32_t v) {
     hdi_front_shape(t->f->sym, v, &t->w.p, &t->w.u, &t->w.m);
-    t->nb = hdi_front_block_size(t->f);
+    t->nb = (int32_t)hdi_front_pivot_block(t->f->width);
     t->n_blocks = (int32_t)((t->w.p + t->nb - 1) / t->nb);
     t->n_chunks = (int32_t)((t->w.m + HDI_FRONT_CHUNK - 1) / HDI_FRONT_CHUNK);
 }
@@ -12525,16 +12515,6 @@ static hdi_factor hdi_factor_of(const hdi_symbolic *sym, int32_t width) {
     return f;
 }
 
-/* Room to work in: chunks that the largest front of the top has. */
-static uint64_t hdi_factor_chunks(const hdi_symbolic *s) {
-    return (uint64_t)(s->n_top ? s->largest_front / HDI_FRONT_CHUNK + 1 : 0);
-}
-
-/* Parts of the tree that have a scratch and pivots of their own. */
-static uint64_t hdi_factor_parts(const hdi_symbolic *s) {
-    return (uint64_t)(s->n_tasks > 0 ? s->n_tasks : 1);
-}
-
 /* The numbers of a factor. */
 static void hdi_factor_take_numbers(hdi_factor *f, hdi_scope *s) {
     const uint64_t w = (uint64_t)f->width;
@@ -12544,39 +12524,18 @@ static void hdi_factor_take_numbers(hdi_factor *f, hdi_scope *s) {
     if (f->panel) hdi_clear(f->panel + f->width * f->sym->panel[f->sym->n_super], f->width * HDI_TILE_COLS);
 }
 
-/* f becomes another factor like its host, with its own numbers but the host's room to work in. Neither is
- * factorised or inverted while the other one is. The host lives longer. */
-static hd_status hdi_factor_make_guest(hdi_factor *f, const hdi_factor *host, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(host->ctx, e);
-    *f = *host;
-    f->guest = 1;
-    f->ready = 0;
-    hdi_factor_take_numbers(f, &s);
-    if (e->status >= 0) return HD_OK;
-    memset(f, 0, sizeof *f);
-    return hdi_scope_end(&s);
-}
-
-/* The bytes of that. */
-static uint64_t hdi_factor_guest_bytes(const hdi_symbolic *sym, int32_t width) {
-    hd_error none;
-    uint64_t bytes;
-    hdi_scope s = hdi_scope_tally(&bytes, &none);
-    hdi_factor f = hdi_factor_of(sym, width);
-    hdi_factor_take_numbers(&f, &s);
-    return bytes;
-}
-
 /* A factor of the given width with the arrays that factoring and refactoring need. */
 static void hdi_factor_take(hdi_factor *f, const hdi_symbolic *sym, int32_t width, hdi_scope *s) {
-    const uint64_t n_parts = hdi_factor_parts(sym), n_chunks = hdi_factor_chunks(sym);
+    const uint64_t n_chunks = (uint64_t)(sym->n_top ? sym->largest_front / HDI_FRONT_CHUNK + 1 : 0);
+    const uint64_t n_parts = (uint64_t)(sym->n_tasks > 0 ? sym->n_tasks : 1);
     const uint64_t tops = sym->n_top > 0 ? n_chunks > 0 ? 2 : 1 : 0;
     *f = hdi_factor_of(sym, width);
     hdi_factor_take_numbers(f, s);
     f->work = HDI_TAKE(s, double, (uint64_t)sym->work * (uint64_t)width);
     f->scratch = HDI_TAKE(s, double, f->scratch_size * n_parts + tops * f->top_size);
     f->chunk_scratch = HDI_TAKE(s, double, f->chunk_size * n_chunks + 1);
-    f->counts = HDI_TAKE(s, int32_t, sym->largest_pivots / hdi_front_block_size(f) + (int64_t)n_chunks + 2);
+    f->counts = HDI_TAKE(s, int32_t, sym->largest_pivots / hdi_front_pivot_block(width) + (int64_t)n_chunks +
+                         2);
     f->pivots = HDI_TAKE(s, hdi_pivots, n_parts + 1);
     f->n_order = hdi_factor_nodes(f);
     f->order = HDI_TAKE(s, int32_t, f->n_order + 1);
@@ -12586,31 +12545,52 @@ static void hdi_factor_take(hdi_factor *f, const hdi_symbolic *sym, int32_t widt
     f->ctx = s->ctx;
 }
 
-/* Room for a factor. */
-static hd_status hdi_factor_make(hdi_factor *f, const hdi_symbolic *sym, int32_t width, hd_context *ctx,
-                                 hd_error *e) {
+/* Room for a factor. With a host f becomes another one like it, with its own numbers but the host's room to
+ * work in: neither is factorised or inverted while the other one is, and the host lives longer. */
+static hd_status hdi_factor_room(hdi_factor *f, const hdi_factor *host, const hdi_symbolic *sym,
+                                 int32_t width, hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
-    hdi_factor_take(f, sym, width, &s);
-    if (e->status >= 0) return HD_OK;            /* the blocks are f's own now */
-    memset(f, 0, sizeof *f);
-    return hdi_scope_end(&s);
+    if (host) {
+        *f = *host;
+        f->ready = 0;
+        hdi_factor_take_numbers(f, &s);
+    } else {
+        hdi_factor_take(f, sym, width, &s);
+    }
+    f->n_blocks = s.n;
+    memcpy(f->block, s.block, sizeof f->block);
+    if (e->status < 0) hdi_factor_free(f);
+    return e->status;
 }
 
-/* The bytes of that. */
-static uint64_t hdi_factor_bytes(const hdi_symbolic *sym, int32_t width) {
-    hd_error none;
-    uint64_t bytes;
-    hdi_scope s = hdi_scope_tally(&bytes, &none);
-    hdi_factor f;
-    hdi_factor_take(&f, sym, width, &s);
-    return bytes;
+static hd_status hdi_factor_make(hdi_factor *f, const hdi_symbolic *sym, int32_t width, hd_context *ctx,
+                                 hd_error *e) {
+    return hdi_factor_room(f, NULL, sym, width, ctx, e);
 }
 
 /* Pack i of several that are factorised in turn: those after the first are its guests. */
 static hd_status hdi_factor_make_pack(hdi_factor *pack, int32_t i, const hdi_symbolic *sym, hd_context *ctx,
                                       hd_error *e) {
-    if (i > 0) return hdi_factor_make_guest(pack + i, pack, e);
-    return hdi_factor_make(pack, sym, HDI_PACK, ctx, e);
+    return hdi_factor_room(pack + i, i > 0 ? pack : NULL, sym, HDI_PACK, ctx, e);
+}
+
+/* The bytes of a factor, or of a guest. */
+static uint64_t hdi_factor_tally(const hdi_symbolic *sym, int32_t width, int guest) {
+    hd_error none;
+    uint64_t bytes;
+    hdi_scope s = hdi_scope_tally(&bytes, &none);
+    hdi_factor f = hdi_factor_of(sym, width);
+    if (guest) hdi_factor_take_numbers(&f, &s);
+    else hdi_factor_take(&f, sym, width, &s);
+    return bytes;
+}
+
+static uint64_t hdi_factor_bytes(const hdi_symbolic *sym, int32_t width) {
+    return hdi_factor_tally(sym, width, 0);
+}
+
+static uint64_t hdi_factor_guest_bytes(const hdi_symbolic *sym, int32_t width) {
+    return hdi_factor_tally(sym, width, 1);
 }
 
 /* Collects what the parts saw. Of several failures that of the lowest pivot is reported: no thread stops a
@@ -12778,6 +12758,16 @@ static hd_status hdi_factor_run(hdi_factor *f, const hdi_values *values, hd_erro
 }
 
 /* ---- solves ---- */
+
+/* Where the numbers of an entry stand outside, by rows of the matrix: number q of row i is in[q][stride i].
+ * NULL in both: zero, and no answer is asked for. They are fetched some pivots ahead. */
+typedef struct hdi_ports {
+    const double *in[HDI_PACK];
+    double *out[HDI_PACK];
+    const int32_t *row;          /* [n] of a pivot */
+    int32_t stride;
+} hdi_ports;
+
 /* x has n entries in elimination order. On the way up a front hands a vector to its parent, as it does with
  * update matrices, so that subtrees are independent both ways. Right-hand sides with few non-zeros touch few
  * fronts: active [n_super] marks them, closed towards the roots; NULL: all. */
@@ -12789,35 +12779,37 @@ typedef struct hdi_sweep {
     const char *active;          /* forward */
     const double *const *rhs;    /* [k][n] real right-hand sides, the same for all matrices of a pack; NULL in
                                     it: zero. NULL: they are in x, which otherwise is only written */
+    const hdi_ports *ports;      /* right-hand sides and answers, of 8 numbers or one for a pivot; or NULL */
     const char *wanted;          /* backward: fronts whose part of x is asked for, closed towards the roots;
                                     NULL: all */
     hdi_walk *walk;
     int32_t *pending, *order;    /* [2 nodes] what they wait for; nodes as they become ready */
 } hdi_sweep;
 
+/* to[rel[i]] += from[i] for entries [i,end) of w doubles; what goes to consecutive places at once. */
+static void hdi_sweep_add(const hdi_kernels *o, int64_t w, double *to, const int32_t *rel, int64_t i,
+                          int64_t end, const double *from) {
+    int64_t j;
+    for (; w == 1 && i < end; i++) to[rel[i]] += from[i];
+    for (; i < end; i = j) {
+        for (j = i + 1; j < end && rel[j] == rel[j - 1] + 1; j++) {}
+        o->add(to + w * rel[i], from + w * i, w * (j - i));
+    }
+}
+
 /* The children's vectors, into the pivots' part of x and into t, which is cleared before. */
 static void hdi_sweep_children(const hdi_sweep *z, int32_t v, double *y, double *t) {
     const hdi_symbolic *s = z->f->sym;
     const int64_t p = hdi_front_pivots(s, v), w = (int64_t)z->f->width * z->k;
-    int64_t i, q;
-    int32_t k, e;
+    int32_t k;
     memset(t, 0, (size_t)(w * hdi_front_below(s, v)) * sizeof *t);
     for (k = s->kid_ptr[v]; k < s->kid_ptr[v + 1]; k++) {
-        const int32_t c = s->kid[k], *HDI_RESTRICT rel = s->rel + s->row_ptr[c];
+        const int32_t c = s->kid[k], *rel = s->rel + s->row_ptr[c];
         const int64_t uc = hdi_front_below(s, c), inner = s->inner[c];
-        const double *HDI_RESTRICT from = z->vec + w * s->vector[c];
-        double *HDI_RESTRICT below = t - w * p;
+        const double *from = z->vec + w * s->vector[c];
         if (z->active && !z->active[c]) continue;
-        if (w == 1) {
-            for (i = 0; i < inner; i++) y[rel[i]] += from[i];
-            for (; i < uc; i++) below[rel[i]] += from[i];
-            continue;
-        }
-        for (i = 0; i < uc; i++) {
-            double *HDI_RESTRICT to = (i < inner ? y : below) + w * rel[i];
-            for (q = 0; q < w; q += 8)
-                for (e = 0; e < 8; e++) to[q + e] += from[w * i + q + e];
-        }
+        hdi_sweep_add(z->f->ops, w, y, rel, 0, inner, from);
+        hdi_sweep_add(z->f->ops, w, t - w * p, rel, inner, uc, from);
     }
 }
 
@@ -12846,6 +12838,23 @@ static void hdi_sweep_single(const hdi_sweep *z, const hdi_block *b, int64_t k, 
     else z->f->ops->up(&g);
 }
 
+/* x = L11^-1 x for a block and several right-hand sides; or x = L11^-T x, because L11' from its last row and
+ * column on is like L11. */
+static void hdi_sweep_triangle(const hdi_sweep *z, const hdi_block *b, double *x, int down) {
+    const int64_t last = b->width - 1, ld = b->ld;
+    hdi_solve g;
+    memset(&g, 0, sizeof g);
+    g.n = z->k;
+    g.nb = b->width;
+    g.x = down ? x + b->entry * z->k * last : x;
+    g.x_col = down ? -g.n : g.n;
+    g.b = down ? b->at + b->entry * last * (ld + 1) : b->at;
+    g.b_row = down ? -1 : ld;
+    g.b_col = down ? -ld : 1;
+    g.b_next = z->f->ops->nr * g.b_col;
+    z->f->ops->solve(&g);
+}
+
 /* y = L11^-1 y, t -= L21 y */
 static void hdi_sweep_forward(const hdi_sweep *z, int32_t v, double *y, double *t) {
     const hdi_factor *f = z->f;
@@ -12856,26 +12865,34 @@ static void hdi_sweep_forward(const hdi_sweep *z, int32_t v, double *y, double *
     for (q = 0; q * HDI_PANEL < p; q++) {
         const hdi_block b = hdi_block_of(panel, f->width, p + u, p, q);
         const int64_t end = b.begin + b.width;
-        hdi_solve g;
+        double *own = y + row * b.begin;
         if (row == 1) {
             for (k = 0; k < b.width; k += 8) hdi_sweep_single(z, &b, k, p, u, y, t, 0);
             continue;
         }
-        g.x = y + row * b.begin;
-        g.x_col = g.n = z->k;
-        g.b = b.at;
-        g.b_row = b.ld;
-        g.b_col = 1;
-        g.b_next = f->ops->nr;
-        g.before = 0;
-        g.nb = b.width;
-        g.dinv = NULL;
-        f->ops->solve(&g);
+        hdi_sweep_triangle(z, &b, own, 0);
         for (k = 0; k < b.width; k += n) {
             n = hdi_least(b.width - k, HDI_SWEEP_DEPTH);
-            hdi_kernels_rows(f->ops, y + row * end, z->k, p - end, g.x + row * k, n,
+            hdi_kernels_rows(f->ops, y + row * end, z->k, p - end, own + row * k, n,
                              hdi_block_at(&b, end, b.begin + k), b.ld, 1);
-            hdi_kernels_rows(f->ops, t, z->k, u, g.x + row * k, n, hdi_block_at(&b, p, b.begin + k), b.ld, 1);
+            hdi_kernels_rows(f->ops, t, z->k, u, own + row * k, n, hdi_block_at(&b, p, b.begin + k), b.ld,
+                             1);
+        }
+    }
+}
+
+/* The pivots' part of the right-hand sides from outside, or of the answers to there. */
+static void hdi_sweep_ports(const hdi_sweep *z, int32_t v, double *y, int down) {
+    const int32_t *super = z->f->sym->super + v, n = z->f->sym->n, ahead = down ? -24 : 24;
+    const hdi_ports *g = z->ports;
+    int32_t i, r;
+    for (i = super[0]; g && i < super[1]; i++) {
+        const int32_t next = i + ahead >= 0 && i + ahead < n ? i + ahead : i;
+        const int64_t at = (int64_t)g->stride * g->row[i], soon = (int64_t)g->stride * g->row[next];
+        for (r = 0; r < z->f->width * z->k; r++, y++) {
+            if (!down) *y = g->in[r] ? g->in[r][at] : 0;
+            else if (g->out[r]) g->out[r][at] = *y;
+            if (g->in[r]) HDI_PREFETCH((down ? g->out[r] : g->in[r]) + soon);
         }
     }
 }
@@ -12884,8 +12901,8 @@ static void hdi_sweep_forward(const hdi_sweep *z, int32_t v, double *y, double *
 static void hdi_sweep_take(const hdi_sweep *z, int32_t v, double *y) {
     const int32_t *super = z->f->sym->super + v, width = z->f->width;
     int32_t i, r;
-    if (!z->rhs) return;
-    for (i = super[0]; i < super[1]; i++) {
+    hdi_sweep_ports(z, v, y, 0);
+    for (i = super[0]; z->rhs && i < super[1]; i++) {
         for (r = 0; r < z->k; r++, y += width) {
             y[0] = z->rhs[r] ? z->rhs[r][i] : 0;
             if (width == 1) continue;
@@ -12911,15 +12928,14 @@ static void hdi_sweep_divide(const hdi_sweep *z, int32_t v, double *y) {
     double t[HDI_PACK];
     int64_t i;
     int32_t r;
-    for (i = 0; i < p; i++, d += width) {
-        for (r = 0; r < z->k; r++, y += width) {
-            if (width == 1) {
-                *y *= *d;
-                continue;
-            }
-            memcpy(t, y, sizeof t);
-            hdi_pack_times(t, d, y);
-        }
+    for (i = 0; i < p && width == 1; i++) {
+        const double inverse = d[i];
+        if (z->k == 1) *y++ *= inverse;
+        else for (r = 0; r < 8; r++) *y++ *= inverse;
+    }
+    for (i = 0; i < p * z->k && width > 1; i++, y += HDI_PACK) {
+        memcpy(t, y, sizeof t);
+        hdi_pack_times(t, d + HDI_PACK * (i / z->k), y);
     }
 }
 
@@ -12932,14 +12948,13 @@ static void hdi_sweep_backward(const hdi_sweep *z, int32_t v, double *y, double 
     double *panel = f->panel + f->width * f->sym->panel[v];
     int64_t i, q;
     if (!hdi_sweep_clear(z, v, y)) hdi_sweep_divide(z, v, y);
-    if (row == 1) for (i = 0; i < u; i++) rows[i] = z->x[idx[i]];
-    else for (i = 0; i < u; i++)
+    for (i = 0; row == 1 && i < u; i++) rows[i] = z->x[idx[i]];
+    for (; i < u; i++)
         for (q = 0; q < row; q += 8) hdi_entry_copy(8, rows + row * i + q, z->x + row * idx[i] + q);
     for (q = (p - 1) / HDI_PANEL; q >= 0; q--) {
         const hdi_block b = hdi_block_of(panel, f->width, p + u, p, q);
         const int64_t end = b.begin + b.width;
         double *own = y + row * b.begin;
-        hdi_solve g;
         if (row == 1) {
             for (i = (b.width - 1) / 8 * 8; i >= 0; i -= 8) hdi_sweep_single(z, &b, i, p, u, y, rows, 1);
             continue;
@@ -12947,18 +12962,7 @@ static void hdi_sweep_backward(const hdi_sweep *z, int32_t v, double *y, double 
         hdi_kernels_rows(f->ops, own, z->k, b.width, rows, u, hdi_block_at(&b, p, b.begin), 1, b.ld);
         hdi_kernels_rows(f->ops, own, z->k, b.width, y + row * end, p - end, hdi_block_at(&b, end, b.begin),
                          1, b.ld);
-        /* L11' from its last row and column on is like L11 */
-        g.x = own + row * (b.width - 1);
-        g.n = z->k;
-        g.x_col = -g.n;
-        g.b = hdi_block_at(&b, end - 1, end - 1);
-        g.b_row = -1;
-        g.b_col = -b.ld;
-        g.b_next = -f->ops->nr * b.ld;
-        g.before = 0;
-        g.nb = b.width;
-        g.dinv = NULL;
-        f->ops->solve(&g);
+        hdi_sweep_triangle(z, &b, own, 1);
     }
 }
 
@@ -12985,6 +12989,7 @@ static void hdi_sweep_front(const hdi_sweep *z, int32_t v) {
     hdi_factor_fetch(f, v, z->backward);
     if (z->backward) {
         hdi_sweep_backward(z, v, y, t);
+        hdi_sweep_ports(z, v, y, 1);
         return;
     }
     hdi_sweep_take(z, v, y);
@@ -13009,45 +13014,29 @@ static int32_t hdi_sweep_node_of(const hdi_symbolic *s, int32_t v) {
     return task >= 0 ? task : s->n_tasks - 1 - task;
 }
 
-/* Whether supernode v hands its vector to a front of the top. */
-static int hdi_sweep_below_top(const hdi_symbolic *s, int32_t v) {
-    return s->parent[v] >= 0 && s->task_of[s->parent[v]] < 0;
-}
-
-/* What nodes wait for. */
-static void hdi_sweep_count(const hdi_sweep *z) {
-    const hdi_symbolic *s = z->f->sym;
-    const int32_t n = hdi_sweep_nodes(s);
-    int32_t *up = z->pending, *down = z->pending + n, i, k;
-    memset(up, 0, 2 * (size_t)n * sizeof *up);
-    for (i = 0; i < s->n_top; i++) {
-        const int32_t v = s->top[i];
-        up[s->n_tasks + i] = s->kid_ptr[v + 1] - s->kid_ptr[v];
-        for (k = s->kid_ptr[v]; k < s->kid_ptr[v + 1]; k++) down[hdi_sweep_node_of(s, s->kid[k])]++;
-    }
-    for (i = 0; i < n; i++)
-        if (down[i] == 0) down[i] = -1;          /* waits for its own way up */
-}
-
-/* One of the things that a node waits for is done. */
+/* One of the things that a node waits for is done; or, while they are counted, known. */
 static void hdi_sweep_arrive(const hdi_sweep *z, int32_t node) {
-    if (HDI_ATOMIC_ADD(z->pending + node, -1) == 0) hdi_release(z->walk, node, 1);
+    if (!z->walk) z->pending[node]++;
+    else if (HDI_ATOMIC_ADD(z->pending + node, -1) == 0) hdi_release(z->walk, node, 1);
 }
 
-/* Node i is done, upwards or downwards: those that waited for it. */
+/* Node i is done: those that wait for it. */
 static void hdi_sweep_next(const hdi_sweep *z, int32_t i) {
     const hdi_symbolic *s = z->f->sym;
-    const int32_t n = hdi_sweep_nodes(s), top = i < s->n_tasks ? -1 : s->top[i - s->n_tasks];
-    int32_t v;
-    if (!z->backward) {
-        const int32_t begin = top < 0 ? s->task_begin[i] : top, end = top < 0 ? s->task_end[i] : top + 1;
-        if (z->pending[n + i] < 0) hdi_release(z->walk, n + i, 1);
-        for (v = begin; v < end; v++)
-            if (hdi_sweep_below_top(s, v)) hdi_sweep_arrive(z, hdi_sweep_node_of(s, s->parent[v]));
-    } else if (top >= 0) {
-        for (v = s->kid_ptr[top]; v < s->kid_ptr[top + 1]; v++)
+    const int32_t n = hdi_sweep_nodes(s), top = i % n < s->n_tasks ? -1 : s->top[i % n - s->n_tasks];
+    int32_t v = top < 0 ? s->task_begin[i % n] : top, alone = 1;
+    const int32_t end = top < 0 ? s->task_end[i % n] : top + 1;
+    if (i >= n) {
+        for (v = top < 0 ? 0 : s->kid_ptr[top]; top >= 0 && v < s->kid_ptr[top + 1]; v++)
             hdi_sweep_arrive(z, n + hdi_sweep_node_of(s, s->kid[v]));
+        return;
     }
+    for (; v < end; v++) {
+        if (s->parent[v] < end) continue;        /* none, or in the same subtree */
+        hdi_sweep_arrive(z, hdi_sweep_node_of(s, s->parent[v]));
+        alone = 0;
+    }
+    if (alone) hdi_sweep_arrive(z, n + i);
 }
 
 static void hdi_sweep_node(void *arg, int64_t index, int32_t worker) {
@@ -13062,7 +13051,7 @@ static void hdi_sweep_node(void *arg, int64_t index, int32_t worker) {
         for (v = s->task_end[i]; v-- > s->task_begin[i];) hdi_sweep_front(&z, v);
     else
         for (v = s->task_begin[i]; v < s->task_end[i]; v++) hdi_sweep_front(&z, v);
-    hdi_sweep_next(&z, i);
+    hdi_sweep_next(&z, (int32_t)index);
 }
 
 /* x = A^-1 x. On all threads with ctx, else (from within a task) on this one. */
@@ -13073,8 +13062,10 @@ static void hdi_sweep_run(hdi_sweep *z, hd_context *ctx) {
     hdi_walk w;
     int32_t i;
     hdi_walk_open(&w, bytes < HDI_SWEEP_SHARED ? NULL : ctx, 2 * n, z->order, hdi_sweep_node, z);
+    z->walk = NULL;
+    memset(z->pending, 0, 2 * (size_t)n * sizeof *z->pending);
+    for (i = 0; i < 2 * n; i++) hdi_sweep_next(z, i);
     z->walk = &w;
-    hdi_sweep_count(z);
     for (i = 0; i < n; i++)
         if (z->pending[i] == 0) hdi_release(&w, i, 1);
     hdi_walk_run(&w);
@@ -13179,27 +13170,37 @@ static hd_status hdi_ldl_values(const hd_ldl *f, const double *val, int stride, 
     return HD_OK;
 }
 
-static hd_status hdi_ldl_factor(hd_ldl *f, const double *val, hd_error *e) {
+/* Factor i of k matrices: the real one, or a pack, where a matrix that is not there is the last one again. */
+static hd_status hdi_ldl_factor_one(hd_ldl *f, hdi_factor *of, int32_t i, int32_t k, const double *val,
+                                    hd_error *e) {
+    const int packs = of->width > 1;
+    const int32_t first = HDI_PACK_LANES * i;
     hdi_values v;
-    double largest = 0;
-    if (hdi_ldl_values(f, val, 1, &largest, e) < 0) return e->status;
-    if (!f->real.ctx && hdi_factor_make(&f->real, &f->sym, 1, f->ctx, e) < 0) return e->status;
+    int32_t q;
     memset(&v, 0, sizeof v);
     v.real = val;
-    f->real.largest_entry = largest;
-    return hdi_factor_run(&f->real, &v, e);
+    of->largest_entry = 0;
+    for (q = 0; q < (packs ? (int32_t)HDI_PACK_LANES : 1); q++) {
+        const double *z = val && packs ? val + 2 * f->nnz * hdi_least(first + q, k - 1) : val;
+        v.z[q] = (const hd_c64 *)(const void *)z;
+        if (first + q < k && hdi_ldl_values(f, z, packs ? 2 : 1, &of->largest_entry, e) < 0) {
+            if (packs) e->pole = first + q;
+            return e->status;
+        }
+    }
+    if (hdi_factor_run(of, &v, e) < 0 && e->pole >= 0) e->pole += first;
+    return e->status;
 }
 
-/* Room for packs for k matrices. */
-static hd_status hdi_ldl_packs(hd_ldl *f, int32_t k, hd_error *e) {
+/* Room for the real factor, or with k > 0 for packs for k matrices. */
+static hd_status hdi_ldl_make(hd_ldl *f, int32_t k, hd_error *e) {
     const int32_t want = k / HDI_PACK_LANES + (k % HDI_PACK_LANES > 0);
     hdi_factor *pack;
-    int32_t i;
+    if (k == 0 && !f->real.ctx) return hdi_factor_make(&f->real, &f->sym, 1, f->ctx, e);
     if (f->n_packs >= want) return HD_OK;
-    pack = (hdi_factor *)hdi_alloc(f->ctx, (uint64_t)want, sizeof *pack, e);
+    pack = (hdi_factor *)hdi_alloc_zero(f->ctx, (uint64_t)want, sizeof *pack, e);
     if (!pack) return e->status;
-    memset(pack, 0, (size_t)want * sizeof *pack);
-    for (i = 0; i < f->n_packs; i++) pack[i] = f->pack[i];
+    if (f->n_packs > 0) memcpy(pack, f->pack, (size_t)f->n_packs * sizeof *pack);
     hdi_free(f->ctx, f->pack);
     f->pack = pack;
     for (; f->n_packs < want; f->n_packs++)
@@ -13207,38 +13208,23 @@ static hd_status hdi_ldl_packs(hd_ldl *f, int32_t k, hd_error *e) {
     return HD_OK;
 }
 
-/* Pack i of k matrices; a matrix that is not there is the last one again. */
-static hd_status hdi_ldl_factor_pack(hd_ldl *f, int32_t i, int32_t k, const hd_c64 *val, hd_error *e) {
-    hdi_factor *pack = f->pack + i;
-    hdi_values v;
-    int32_t q;
-    memset(&v, 0, sizeof v);
-    pack->largest_entry = 0;
-    for (q = 0; q < HDI_PACK_LANES; q++) {
-        const int32_t matrix = HDI_PACK_LANES * i + q;
-        v.z[q] = f->nnz > 0 ? val + f->nnz * hdi_least(matrix, k - 1) : val;
-        if (f->nnz > 0 && matrix < k && hdi_ldl_values(f, &v.z[q]->re, 2, &pack->largest_entry, e) < 0) {
-            e->pole = matrix;
-            return e->status;
-        }
-    }
-    if (hdi_factor_run(pack, &v, e) < 0 && e->pole >= 0) e->pole += HDI_PACK_LANES * i;
-    return e->status;
-}
-
-static hd_status hdi_ldl_factor_complex(hd_ldl *f, int32_t k, const hd_c64 *val, hd_ldl_report *rep,
-                                        hd_error *e) {
-    hd_ldl_report one;
+/* The real matrix, with k 0, or k complex ones. */
+static hd_status hdi_ldl_factor(hd_ldl *f, int32_t k, const double *val, hd_ldl_report *rep, hd_error *e) {
+    hd_ldl_report all, one;
     int32_t i;
-    if (hdi_ldl_packs(f, k, e) < 0) return e->status;
-    for (i = 0; HDI_PACK_LANES * i < k; i++) {
-        if (hdi_ldl_factor_pack(f, i, k, val, e) < 0) return e->status;
-        hdi_ldl_tell(f, f->pack + i, &one);
-        if (i == 0) *rep = one;
-        rep->growth = hdi_max(rep->growth, one.growth);
-        rep->smallest_pivot = hdi_min(rep->smallest_pivot, one.smallest_pivot);
+    f->n_matrices = f->real.ready = 0;
+    if (hdi_ldl_make(f, k, e) < 0) return e->status;
+    for (i = 0; i == 0 || HDI_PACK_LANES * i < k; i++) {
+        hdi_factor *of = k > 0 ? f->pack + i : &f->real;
+        if (hdi_ldl_factor_one(f, of, i, k > 0 ? k : 1, val, e) < 0) return e->status;
+        hdi_ldl_tell(f, of, &one);
+        if (i == 0) all = one;
+        all.growth = hdi_max(all.growth, one.growth);
+        all.smallest_pivot = hdi_min(all.smallest_pivot, one.smallest_pivot);
     }
-    rep->n_matrices = f->n_matrices = k;
+    f->n_matrices = k;
+    if (k > 0) all.n_matrices = k;
+    if (rep) *rep = all;
     return HD_OK;
 }
 
@@ -13253,41 +13239,26 @@ static hd_status hdi_ldl_room(hd_ldl *f, int which, hd_error *e) {
     return e->status;
 }
 
-/* Real right-hand sides [q, q + n_cols), at most 8 side by side: one alone, or eight, some of them zero. */
-static void hdi_ldl_solve_real(hd_ldl *f, int32_t q, int32_t n_cols, const double *b, size_t ldb, double *x,
-                               size_t ldx) {
-    const int32_t wide = n_cols > 1 ? 8 : 1;
-    double *at = f->x[0];
-    hdi_sweep z = hdi_sweep_open(&f->real, wide, f->x[0], f->work[0]);
-    int32_t i, r;
-    for (i = 0; i < f->n; i++, at += wide)
-        for (r = 0; r < wide; r++)
-            at[r] = r < n_cols ? b[(size_t)(q + r) * ldb + (size_t)f->sym.perm[i]] : 0;
-    hdi_sweep_run(&z, f->ctx);
-    for (i = 0, at = f->x[0]; i < f->n; i++, at += wide)
-        for (r = 0; r < n_cols; r++)
-            x[(size_t)(q + r) * ldx + (size_t)f->sym.perm[i]] = at[r];
-}
-
-/* One right-hand side for each matrix of pack p, or with ldb 0 the same for all. */
-static void hdi_ldl_solve_pack(hd_ldl *f, int32_t p, const hd_c64 *b, size_t ldb, hd_c64 *x, size_t ldx) {
-    const int32_t lanes = hdi_ldl_lanes(f, p);
-    double *at = f->x[1];
-    hdi_sweep z = hdi_sweep_open(f->pack + p, 1, f->x[1], f->work[1]);
-    int32_t i, q;
-    b += HDI_PACK_LANES * (size_t)p * ldb;
-    x += HDI_PACK_LANES * (size_t)p * ldx;
-    for (i = 0; i < f->n; i++, at += HDI_PACK) {
-        for (q = 0; q < HDI_PACK_LANES; q++) {
-            const hd_c64 v = b[(size_t)(q < lanes ? q : 0) * ldb + (size_t)f->sym.perm[i]];
-            at[q] = v.re;
-            at[q + HDI_PACK_LANES] = v.im;
-        }
+/* n right-hand sides of the real factor, 8 at most, or one for each of n matrices of a pack: ldb and ldx
+ * numbers apart, of one double or two. */
+static void hdi_ldl_solve(hd_ldl *f, const hdi_factor *of, int32_t n, const double *b, size_t ldb, double *x,
+                          size_t ldx) {
+    const int packs = of->width > 1;
+    const int32_t stride = packs ? 2 : 1, most = (int32_t)HDI_PACK / stride;
+    hdi_sweep z = hdi_sweep_open(of, packs || n == 1 ? 1 : 8, f->x[packs], f->work[packs]);
+    hdi_ports g;
+    int32_t q;
+    memset(&g, 0, sizeof g);
+    g.row = f->sym.perm;
+    g.stride = stride;
+    for (q = 0; q < HDI_PACK; q++) {
+        const size_t lane = (size_t)(q % most), part = (size_t)(q / most);
+        if (q % most >= n) continue;
+        g.in[q] = b + (size_t)stride * lane * ldb + part;
+        g.out[q] = x + (size_t)stride * lane * ldx + part;
     }
+    z.ports = &g;
     hdi_sweep_run(&z, f->ctx);
-    for (i = 0, at = f->x[1]; i < f->n; i++, at += HDI_PACK)
-        for (q = 0; q < lanes; q++)
-            x[(size_t)q * ldx + (size_t)f->sym.perm[i]] = hdi_c(at[q], at[q + HDI_PACK_LANES]);
 }
 
 static void hdi_ldl_free(hd_ldl *f) {
@@ -29062,10 +29033,7 @@ static hd_status hdi_geo_factor(hd_geodesic *g, hdi_factor *f, const hd_laplacia
         e->row = -1;
         return e->status;
     }
-    hdi_free(g->ctx, f->work);
-    hdi_free(g->ctx, f->scratch);
-    hdi_free(g->ctx, f->chunk_scratch);
-    f->work = f->scratch = f->chunk_scratch = NULL;
+    hdi_factor_settle(f);
     return HD_OK;
 }
 
@@ -30914,23 +30882,16 @@ HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ld
 HEATDIFF_API hd_status hd_ldl_factor(hd_ldl *f, const double *val, hd_ldl_report *report, hd_error *err) {
     hdi_call c;
     if (hdi_ldl_enter(&c, f, 0, f && (f->nnz == 0 || val), err) < 0 || !HDI_HAS_DIRECT) return c.e->status;
-    f->n_matrices = f->real.ready = 0;
-    if (hdi_ldl_factor(f, val, c.e) < 0) return c.e->status;
-    hdi_ldl_tell(f, &f->real, report);
-    return HD_OK;
+    return hdi_ldl_factor(f, 0, val, report, c.e);
 }
 
 HEATDIFF_API hd_status hd_ldl_factor_complex(hd_ldl *f, int32_t k, const hd_c64 *val, hd_ldl_report *report,
                                              hd_error *err) {
-    hd_ldl_report all;
     hdi_call c;
     if (hdi_ldl_enter(&c, f, 1, f && (f->nnz == 0 || val), err) < 0 || !HDI_HAS_POLE_FACTORS)
         return c.e->status;
     if (k < 1) return hdi_fail(c.e, HD_ERR_ARGUMENT, "ldl: the number of matrices is not positive");
-    f->n_matrices = f->real.ready = 0;
-    if (hdi_ldl_factor_complex(f, k, val, &all, c.e) < 0) return c.e->status;
-    if (report) *report = all;
-    return HD_OK;
+    return hdi_ldl_factor(f, k, val ? &val->re : NULL, report, c.e);
 }
 
 HEATDIFF_API hd_status hd_ldl_solve(hd_ldl *f, int32_t k, const double *b, size_t ldb, double *x, size_t ldx,
@@ -30943,10 +30904,13 @@ HEATDIFF_API hd_status hd_ldl_solve(hd_ldl *f, int32_t k, const double *b, size_
     ldb = ldb ? ldb : (size_t)f->n;
     ldx = ldx ? ldx : (size_t)f->n;
     if (hdi_ldl_leading(f, ldb, ldx, c.e) < 0 || hdi_ldl_room(f, 0, c.e) < 0) return c.e->status;
-    for (q = 0; q < k; q += 8) {                 /* in place no answer may reach what is still to be read */
-        const int32_t at = ldx > ldb ? (k - 1) / 8 * 8 - q : q;
-        hdi_ldl_solve_real(f, at, k - at < 8 ? k - at : 8, b, ldb, x, ldx);
+    for (q = 0; q < k && b == x && ldb != ldx; q++) {
+        const size_t at = (size_t)(ldx > ldb ? k - 1 - q : q);   /* none is written over before it moves */
+        memmove(x + at * ldx, x + at * ldb, (size_t)f->n * sizeof *x);
     }
+    if (b == x) ldb = ldx;
+    for (q = 0; q < k; q += 8)
+        hdi_ldl_solve(f, &f->real, k - q < 8 ? k - q : 8, b + (size_t)q * ldb, ldb, x + (size_t)q * ldx, ldx);
     return HD_OK;
 }
 
@@ -30962,8 +30926,12 @@ HEATDIFF_API hd_status hd_ldl_solve_complex(hd_ldl *f, const hd_c64 *b, size_t l
         return hdi_fail(c.e, HD_ERR_ARGUMENT,
                         "ldl: x may be b only when both have the same leading dimension");
     if (hdi_ldl_room(f, 1, c.e) < 0) return c.e->status;
-    p = (f->n_matrices + HDI_PACK_LANES - 1) / HDI_PACK_LANES;
-    while (p-- > 0) hdi_ldl_solve_pack(f, p, b, ldb, x, ldx);   /* from the last: x may be the b of all */
+    p = (f->n_matrices - 1) / HDI_PACK_LANES;
+    for (; p >= 0; p--) {                        /* from the last: x may be the b of all */
+        const size_t first = HDI_PACK_LANES * (size_t)p;
+        hdi_ldl_solve(f, f->pack + p, hdi_ldl_lanes(f, p), b ? &b[first * ldb].re : NULL, ldb,
+                      x ? &x[first * ldx].re : NULL, ldx);
+    }
     return HD_OK;
 }
 
