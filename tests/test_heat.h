@@ -520,8 +520,6 @@ static void heat_not_converged(void) {
     }
 }
 
-/* ---- threads ---- */
-
 /* Lanczos stops soon after its bound has come to the tolerance, however many steps apart it looks. */
 static void heat_lanczos_pace(void) {
     const hd_laplacian *lap = kit_pair("bumpy/3/4 fem");
@@ -536,6 +534,8 @@ static void heat_lanczos_pace(void) {
     }
     CHECK_MSG(below < 0.8, "%g decades more than asked for, at nine tolerances", below);
 }
+
+/* ---- threads ---- */
 
 static hd_progress heat_progress(void *user, const char *stage, double done) {
     ++*(int64_t *)user;
