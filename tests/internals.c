@@ -263,26 +263,25 @@ static void int_sorting(void) {
         for (form = 0; form < 7; form++) {
             const int64_t n = sizes[k];
             hdi_pair *a = KIT_NEW(hdi_pair, n), *b = KIT_NEW(hdi_pair, n);
-            uint64_t *work = KIT_NEW(uint64_t, 2 * n + 1);
-            int32_t *x = KIT_NEW(int32_t, n + 1);
+            uint64_t *work = KIT_NEW(uint64_t, n / 2 + 1), *x = KIT_NEW(uint64_t, n + 1);
             for (i = 0; i < n; i++) {
                 a[i].key = b[i].key = int_key(form, i, n, &seed);
                 a[i].id = b[i].id = n - i;
-                x[i] = (int32_t)(a[i].key % 100003);
+                x[i] = a[i].key % 100003;
             }
             x[n] = 5;                            /* not theirs */
-            work[2 * n] = 77;
+            work[n / 2] = 77;
             hdi_sort_pairs(a, n);
             qsort(b, (size_t)n, sizeof *b, int_compare);
             CHECK_MSG(memcmp(a, b, (size_t)n * sizeof *a) == 0, "%d pairs of form %d are not sorted", (int)n, form);
             for (i = 0; i < n; i++) {
-                b[i].key = (uint64_t)x[i];
+                b[i].key = x[i];
                 b[i].id = 0;
             }
             qsort(b, (size_t)n, sizeof *b, int_compare);
-            hdi_sort_indices(x, n, work);
-            for (i = 0; i < n && (uint64_t)x[i] == b[i].key; i++) {}
-            CHECK_MSG(i == n && x[n] == 5 && work[2 * n] == 77, "%d indices of form %d are not sorted", (int)n, form);
+            hdi_sort_keys(x, n, work);
+            for (i = 0; i < n && x[i] == b[i].key; i++) {}
+            CHECK_MSG(i == n && x[n] == 5 && work[n / 2] == 77, "%d keys of form %d are not sorted", (int)n, form);
         }
 }
 
