@@ -13336,14 +13336,18 @@ typedef struct hdi_sweep {
     int32_t *pending, *order;    /* [2 nodes] what they wait for; nodes as they become ready */
 } hdi_sweep;
 
-/* to[rel[i]] += from[i] for entries [i,end) of w doubles; what goes to consecutive places at once. */
-static void hdi_sweep_add(const hdi_kernels *o, int64_t w, double *to, const int32_t *rel, int64_t i,
-                          int64_t end, const double *from) {
-    int64_t j;
+/* to[rel[i]] += from[i] for entries [i,end) of w doubles, one or some eights. */
+static HDI_INLINE void hdi_sweep_add(int64_t w, double *to, const int32_t *rel, int64_t i, int64_t end,
+                                     const double *from) {
+    double sum[8];
+    int64_t q;
+    int e;
     for (; w == 1 && i < end; i++) to[rel[i]] += from[i];
-    for (; i < end; i = j) {
-        for (j = i + 1; j < end && rel[j] == rel[j - 1] + 1; j++) {}
-        o->add(to + w * rel[i], from + w * i, w * (j - i));
+    for (; i < end; i++) {
+        for (q = 0; q < w; q += 8) {
+            for (e = 0; e < 8; e++) sum[e] = to[w * rel[i] + q + e] + from[w * i + q + e];
+            memcpy(to + w * rel[i] + q, sum, sizeof sum);
+        }
     }
 }
 
@@ -13358,8 +13362,8 @@ static void hdi_sweep_children(const hdi_sweep *z, int32_t v, double *y, double 
         const int64_t uc = hdi_front_below(s, c), inner = s->inner[c];
         const double *from = z->vec + w * s->vector[c];
         if (z->active && !z->active[c]) continue;
-        hdi_sweep_add(z->f->ops, w, y, rel, 0, inner, from);
-        hdi_sweep_add(z->f->ops, w, t - w * p, rel, inner, uc, from);
+        hdi_sweep_add(w, y, rel, 0, inner, from);
+        hdi_sweep_add(w, t - w * p, rel, inner, uc, from);
     }
 }
 
@@ -13432,17 +13436,23 @@ static void hdi_sweep_forward(const hdi_sweep *z, int32_t v, double *y, double *
 }
 
 /* The pivots' part of the right-hand sides from outside, or of the answers to there. */
-static void hdi_sweep_ports(const hdi_sweep *z, int32_t v, double *y, int down) {
+static HDI_INLINE void hdi_sweep_ports(const hdi_sweep *z, int32_t v, double *y, int down) {
     const int32_t *super = z->f->sym->super + v, n = z->f->sym->n, ahead = down ? -24 : 24;
     const hdi_ports *g = z->ports;
     int32_t i, r;
-    for (i = super[0]; g && i < super[1]; i++) {
+    for (i = super[0]; g && z->f->width * z->k == 1 && i < super[1]; i++, y++) {
+        if (down) g->out[0][g->row[i]] = *y;
+        else *y = g->in[0][g->row[i]];
+    }
+    for (; g && i < super[1]; i++) {
         const int32_t next = i + ahead >= 0 && i + ahead < n ? i + ahead : i;
         const int64_t at = (int64_t)g->stride * g->row[i], soon = (int64_t)g->stride * g->row[next];
         for (r = 0; r < z->f->width * z->k; r++, y++) {
-            if (!down) *y = g->in[r] ? g->in[r][at] : 0;
-            else if (g->out[r]) g->out[r][at] = *y;
-            if (g->in[r]) HDI_PREFETCH((down ? g->out[r] : g->in[r]) + soon);
+            const double *from = g->in[r];
+            double *to = g->out[r];
+            if (!down) *y = from ? from[at] : 0;
+            else if (to) to[at] = *y;
+            HDI_PREFETCH_AT(down ? to : from, soon);
         }
     }
 }
