@@ -1124,8 +1124,8 @@ HEATDIFF_API hd_status hd_laplacian_apply(const hd_laplacian *lap, double alpha,
  * xyz    [3 n] finite
  * Rows, pattern, held vertices and faces that were left out stay as they are. Faces that lose their area are
  * counted in lap->mesh and add nothing; their entries may become zero, and what they alone join falls apart.
- * All values, components and the report are those of a new Laplacian: to the last bit for the kind polygon,
- * up to rounding in the order of sums for triangles. All arrays keep their places.
+ * All values, components and the report are those of a new Laplacian, to the last bit. All arrays keep their
+ * places.
  * Points have no update. The pairs that are joined, the planes and the cells follow from the places, so that
  * new places make a new pattern.
  * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (vertex, or face: too large, or none: the whole area);
@@ -4263,10 +4263,8 @@ HDI_PART void HDI_OF(pivots)(const int pack, const int nv, const hdi_eliminate *
 HDI_PART void HDI_OF(eliminate)(const int pack, const hdi_eliminate *g) {
     const int top = HDI_COLS / HDI_ROWS;
     int h;
-    for (h = 0; h < HDI_NUMBERS; h += HDI_ABREAST) {
-        if (top < HDI_REGS && g->n > 0) HDI_OF(pivots)(pack, HDI_REGS, g, h);
-        else HDI_OF(pivots)(pack, top, g, h);
-    }
+    for (h = 0; h < HDI_NUMBERS; h += HDI_ABREAST)
+        HDI_OF(pivots)(pack, top < HDI_REGS ? HDI_REGS : top, g, h);
 }
 
 /* ---- copies ---- */
@@ -5311,14 +5309,22 @@ static hd_status hdi_neighbours_tree(hdi_tree *tree, const double *xyz, int32_t 
  * faces are left out, edges and masses of triangle meshes; polygons; cells and tangent planes of points.
  * May call [09]. */
 
+/* Faces with any number of corners, which are numbered through all faces, and what is measured of them. */
 typedef struct hdi_mesh {
     const double *xyz;
-    const double *len;  /* [3 m] by the caller's faces, sides from corner to corner; NULL: see xyz */
-    const int32_t *tri;
+    const double *len;  /* [corners] of triangles: sides from corner to corner; NULL: see xyz */
+    const int64_t *ptr; /* [m + 1] of polygons: the first corner of each; NULL: triangles */
+    const int32_t *tri; /* [corners] vertices */
     const int32_t *face;/* [m] the caller's number of each face; NULL: their own */
     int32_t n, m;
-    double *cot;        /* [3 m] cotangent at each corner */
-    double *area;       /* [m] 0: the face is left out */
+    double lambda;      /* of polygons */
+    double *area;       /* [m] of polygons: length of the vector area; 0: the face is left out */
+    double *cot;        /* [corners] of triangles: cotangents */
+    double *g;          /* [3 corners] of polygons: (corner before - corner after) / (2 sqrt(area)) */
+    double *w;          /* [2 corners] of polygons: see hdi_poly_frame; of those with three corners not set */
+    int32_t *of;        /* [corners] of polygons: the face of a corner */
+    int64_t *at;        /* [n + 1] corners at each vertex, faces ascending, where there was an area */
+    int32_t *corner;    /* [corners] */
 } hdi_mesh;
 
 static void hdi_mesh_clear(hdi_mesh *mesh, const double *xyz, int32_t n, const int32_t *tri,
@@ -5336,8 +5342,32 @@ static hd_status hdi_corner_fail(int64_t i, int64_t id, hd_error *e) {
 }
 
 /* Lengths of face f. */
-static const double *hdi_mesh_lengths(const hdi_mesh *mesh, int32_t f) {
-    return mesh->len + 3 * (int64_t)(mesh->face ? mesh->face[f] : f);
+static const double *hdi_mesh_lengths(const hdi_mesh *mesh, int32_t f) { return mesh->len + hdi_triple(f); }
+
+static int hdi_is_poly(const hdi_mesh *mesh) { return HDI_HAS_POLYGONS && mesh->ptr; }
+
+/* The first corner of face f, or behind the last of all faces. */
+static HDI_INLINE int64_t hdi_face_begin(const hdi_mesh *mesh, int32_t f) {
+    return hdi_is_poly(mesh) ? mesh->ptr[f] : hdi_triple(f);
+}
+
+static HDI_INLINE int32_t hdi_corner_face(const hdi_mesh *mesh, int64_t c) {
+    return hdi_is_poly(mesh) ? mesh->of[c] : (int32_t)c / 3;
+}
+
+static const double *hdi_corner_at(const hdi_mesh *mesh, int64_t c) {
+    return hdi_at3(mesh->xyz, mesh->tri[c]);
+}
+
+/* The corners of the same face before and after c. */
+static int64_t hdi_corner_before(const hdi_mesh *mesh, int64_t c) {
+    const int32_t f = hdi_corner_face(mesh, c);
+    return c > hdi_face_begin(mesh, f) ? c - 1 : hdi_face_begin(mesh, f + 1) - 1;
+}
+
+static int64_t hdi_corner_after(const hdi_mesh *mesh, int64_t c) {
+    const int32_t f = hdi_corner_face(mesh, c);
+    return c + 1 < hdi_face_begin(mesh, f + 1) ? c + 1 : hdi_face_begin(mesh, f);
 }
 
 /* A side may be longer than the two others together by this much of their sum: lengths are rounded. */
@@ -5579,10 +5609,20 @@ static HDI_INLINE int hdi_face_cots(double edge[3][3], double twice, int exponen
     return 1;
 }
 
+/* Face f is too large to be measured. */
+static double hdi_tally_bad(hdi_face_tally *t, const hdi_mesh *mesh, int32_t f, double area) {
+    const int32_t id = mesh->face ? mesh->face[f] : f;
+    if (t->bad >= 0 && t->bad <= id) return 0;
+    t->bad = id;
+    t->bad_vertex = mesh->tri[hdi_face_begin(mesh, f)];
+    t->bad_area = area;
+    return 0;
+}
+
 /* Area of face f, and its cotangents; 0 where it has none or where a cotangent would not be finite. */
 static HDI_INLINE double hdi_face_measure(const hdi_mesh *mesh, int32_t f, double *cot,
                                           hdi_face_tally *tally) {
-    const int32_t *v = mesh->tri + 3 * (int64_t)f;
+    const int32_t *v = mesh->tri + hdi_triple(f);
     double edge[3][3], cross[3], len[3], twice, scaled = 0;
     int exponent = 0, good;
     if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) {
@@ -5597,15 +5637,7 @@ static HDI_INLINE double hdi_face_measure(const hdi_mesh *mesh, int32_t f, doubl
         twice = scaled = hdi_norm3(cross);
         if (exponent) twice = hdi_scale(scaled, 2 * exponent);
     }
-    if (!hdi_finite(twice)) {
-        const int32_t id = mesh->face ? mesh->face[f] : f;
-        if (tally->bad < 0 || id < tally->bad) {
-            tally->bad = id;
-            tally->bad_vertex = v[0];
-            tally->bad_area = twice;
-        }
-        return 0;
-    }
+    if (!hdi_finite(twice)) return hdi_tally_bad(tally, mesh, f, twice);
     good = twice / 24 >= DBL_MIN;
     if (good && mesh->len) {
         hdi_length_cots(len, hdi_length_area(len[0], len[1], len[2]), cot);
@@ -5653,49 +5685,336 @@ static hd_status hdi_tally_report(const hdi_face_tally *tally, int32_t m, hd_mes
     return HD_OK;
 }
 
+/* ---- polygons ---- */
+
+static hd_status hdi_poly_check(const double *xyz, int32_t n, const int64_t *ptr,
+                                const int32_t *idx, int32_t m, hd_error *e) {
+    int64_t c;
+    int32_t f;
+    if (hdi_mesh_check(xyz, n, NULL, 0, e) < 0) return e->status;
+    if (m > 0 && ptr[0] != 0)
+        return hdi_fail_face(e, HD_ERR_STRUCTURE, "face_ptr does not begin with 0", 0, -1, (double)ptr[0]);
+    for (f = 0; f < m; f++)
+        if (ptr[f + 1] < ptr[f])
+            return hdi_fail_face(e, HD_ERR_STRUCTURE, "face_ptr descends", f, -1, (double)ptr[f + 1]);
+    if (m > 0 && ptr[m] > INT32_MAX) return hdi_fail(e, HD_ERR_TOO_LARGE, "more than 2^31 face corners");
+    if (m > 0 && ptr[m] > 0 && !idx)
+        return hdi_fail(e, HD_ERR_ARGUMENT, "an argument that must not be NULL is NULL");
+    for (f = 0; f < m; f++)
+        for (c = ptr[f]; c < ptr[f + 1]; c++)
+            if (idx[c] < 0 || idx[c] >= n)
+                return hdi_fail_face(e, HD_ERR_INDEX, "a face names a vertex that does not exist", f, -1,
+                                     idx[c]);
+    return HD_OK;
+}
+
+/* The edge from corner c to the next. */
+static void hdi_poly_edge(const hdi_mesh *mesh, int64_t c, double *edge) {
+    hdi_sub3(hdi_corner_at(mesh, hdi_corner_after(mesh, c)), hdi_corner_at(mesh, c), edge);
+}
+
+/* Differences of corners of f are below 2^this, as are their products if this is HDI_POLY_MOST at most; 0 if
+ * all are far from overflow. */
+#define HDI_POLY_MOST 510
+static int hdi_poly_exponent(const hdi_mesh *mesh, int32_t f) {
+    const int64_t begin = mesh->ptr[f], end = mesh->ptr[f + 1];
+    double most = 0, spoke[3];
+    int near3 = 1, exponent, q;
+    int64_t c;
+    for (c = begin; c < end; c++) near3 &= hdi_near3(hdi_corner_at(mesh, c));
+    if (near3) return 0;
+    for (c = begin + 1; c < end; c++) {
+        hdi_sub3_scaled(hdi_corner_at(mesh, c), hdi_corner_at(mesh, begin), 1, spoke);
+        for (q = 0; q < 3; q++) most = hdi_max(most, fabs(spoke[q]));
+    }
+    frexp(most, &exponent);
+    return most < HDI_FAR ? 0 : exponent + 2;
+}
+
+/* An area in units of 2^(2 exponent) as one in units of 1. Where products of differences overflow, the face
+ * is a needle without area, or too large. */
+static double hdi_poly_unscale(double area, int exponent) {
+    area = hdi_scale(area, 2 * exponent);
+    if (exponent <= HDI_POLY_MOST) return area;
+    return area < HDI_FAR * HDI_FAR ? 0 : HUGE_VAL;
+}
+
+/* Twice the vector area of face f, as a fan from its first corner. Returns its length, or 0 when nothing
+ * but the rounding of the sum is left of it, as in a bow tie. A triangle is one cross product of two
+ * edges: 0 only if that is exactly zero. */
+static double hdi_poly_area(const hdi_mesh *mesh, int32_t f, double *twice) {
+    const int64_t begin = mesh->ptr[f], end = mesh->ptr[f + 1];
+    const int exponent = hdi_poly_exponent(mesh, f);
+    double spoke[3], edge[3], cross[3], length, sum = 0;
+    int64_t c;
+    int q;
+    twice[0] = twice[1] = twice[2] = 0;
+    for (c = begin + 1; c + 1 < end; c++) {
+        hdi_sub3_scaled(hdi_corner_at(mesh, c), hdi_corner_at(mesh, begin), exponent, spoke);
+        hdi_sub3_scaled(hdi_corner_at(mesh, c + 1), hdi_corner_at(mesh, c), exponent, edge);
+        hdi_cross3(spoke, edge, cross);
+        for (q = 0; q < 3; q++) twice[q] += cross[q];
+        sum += hdi_norm3(cross);
+    }
+    length = hdi_norm3(twice);
+    if (length <= 4 * DBL_EPSILON * (double)(end - begin - 2) * sum) return 0;
+    if (!exponent) return length;
+    for (q = 0; q < 3; q++) twice[q] = hdi_scale(twice[q], 2 * exponent);
+    return hdi_poly_unscale(length, exponent);
+}
+
+/* Fills frame with two orthonormal vectors in the plane across the unit normal, the first along the
+ * longest edge as projected into it. Returns its length. */
+static double hdi_poly_axes(const hdi_mesh *mesh, int32_t f, const double *normal,
+                            double frame[2][3]) {
+    double longest = 0, edge[3], length, along;
+    int64_t c;
+    int q;
+    for (c = mesh->ptr[f]; c < mesh->ptr[f + 1]; c++) {
+        hdi_poly_edge(mesh, c, edge);
+        along = hdi_dot3(edge, normal);
+        for (q = 0; q < 3; q++) edge[q] -= along * normal[q];
+        length = hdi_norm3(edge);
+        if (!(length > longest)) continue;
+        longest = length;
+        for (q = 0; q < 3; q++) frame[0][q] = edge[q] / length;
+    }
+    if (longest > 0) hdi_cross3(normal, frame[0], frame[1]);
+    return longest;
+}
+
+/* The projector on the kernel of the transposed projected edges is I - Q Q', Q [k x 2] an orthonormal
+ * basis of their range: Gram and Schmidt, orthogonalised twice. What is kept are the rows of w = D'Q, D
+ * the difference along the edges. 0 when the face has no plane. */
+static int hdi_poly_frame(const hdi_mesh *mesh, int32_t f, const double *normal) {
+    const int64_t begin = mesh->ptr[f], k = mesh->ptr[f + 1] - begin;
+    double *q = mesh->w + 2 * begin, frame[2][3], edge[3], dot, norm, last[2];
+    const double longest = hdi_poly_axes(mesh, f, normal, frame);
+    int64_t p;
+    int turn;
+    if (!(longest > 0)) return 0;
+    for (p = 0, norm = 0; p < k; p++) {
+        hdi_poly_edge(mesh, begin + p, edge);
+        q[2 * p] = hdi_dot3(edge, frame[0]) / longest;
+        q[2 * p + 1] = hdi_dot3(edge, frame[1]) / longest;
+        norm += q[2 * p] * q[2 * p];
+    }
+    for (p = 0, norm = sqrt(norm); p < k; p++) q[2 * p] /= norm;
+    for (turn = 0; turn < 2; turn++) {
+        for (p = 0, dot = 0; p < k; p++) dot += q[2 * p] * q[2 * p + 1];
+        for (p = 0; p < k; p++) q[2 * p + 1] -= dot * q[2 * p];
+    }
+    for (p = 0, norm = 0; p < k; p++) norm += q[2 * p + 1] * q[2 * p + 1];
+    norm = sqrt(norm);
+    /* narrower than that: its direction is rounding */
+    for (p = 0; p < k; p++) q[2 * p + 1] = norm > 1e-12 ? q[2 * p + 1] / norm : 0;
+    last[0] = q[2 * k - 2];
+    last[1] = q[2 * k - 1];
+    for (p = k - 1; p >= 0; p--) {
+        q[2 * p] = (p > 0 ? q[2 * p - 2] : last[0]) - q[2 * p];
+        q[2 * p + 1] = (p > 0 ? q[2 * p - 1] : last[1]) - q[2 * p + 1];
+    }
+    return 1;
+}
+
+/* The cotangent of the smallest angle at the corners of f that bend inwards. */
+static double hdi_poly_steepest(const hdi_mesh *mesh, int32_t f, const double *normal) {
+    double most = -HUGE_VAL, in[3], out[3], cross[3];
+    int64_t c;
+    for (c = mesh->ptr[f]; c < mesh->ptr[f + 1]; c++) {
+        double across, along;
+        hdi_poly_edge(mesh, hdi_corner_before(mesh, c), in);
+        hdi_poly_edge(mesh, c, out);
+        hdi_cross3(in, out, cross);
+        if (hdi_dot3(cross, normal) < 0) continue;
+        across = hdi_norm3(cross);
+        along = hdi_dot3(in, out);
+        most = hdi_max(most, across > 0 ? -along / across : along < 0 ? HUGE_VAL : -HUGE_VAL);
+    }
+    return most;
+}
+
+/* g of face f; 0 when a square of it could overflow. */
+static int hdi_poly_gradients(const hdi_mesh *mesh, int32_t f, double area) {
+    int64_t c;
+    int q, good = 1;
+    for (c = mesh->ptr[f]; c < mesh->ptr[f + 1]; c++) {
+        double *g = mesh->g + 3 * c;
+        hdi_sub3(hdi_corner_at(mesh, hdi_corner_before(mesh, c)),
+                 hdi_corner_at(mesh, hdi_corner_after(mesh, c)), g);
+        for (q = 0; q < 3; q++) g[q] /= 2 * sqrt(area);
+        good &= hdi_near3(g);
+    }
+    return good;
+}
+
+/* The area of face f, which becomes the mesh's, and all that is kept of its corners. */
+static double hdi_poly_measure(const hdi_mesh *mesh, int32_t f, hdi_face_tally *tally) {
+    const int64_t begin = mesh->ptr[f], end = mesh->ptr[f + 1];
+    double normal[3], twice;
+    int64_t c, d;
+    int q;
+    for (c = begin; c < end; c++) {
+        for (d = begin; d < c && mesh->tri[d] != mesh->tri[c]; d++) {}
+        if (d == c) continue;
+        tally->n_repeated_corner++;
+        return 0;
+    }
+    twice = end - begin < 3 ? 0 : hdi_poly_area(mesh, f, normal);
+    if (!hdi_finite(twice)) return hdi_tally_bad(tally, mesh, f, twice);
+    for (q = 0; q < 3 && twice > 0; q++) normal[q] /= twice;
+    if (twice == 0 || twice / (8 * (double)(end - begin)) < DBL_MIN ||
+        !hdi_poly_gradients(mesh, f, twice / 2) || (end - begin > 3 && !hdi_poly_frame(mesh, f, normal))) {
+        tally->n_zero_area++;
+        return 0;
+    }
+    tally->steepest = hdi_max(tally->steepest, hdi_poly_steepest(mesh, f, normal));
+    return twice / 2;
+}
+
+/* ---- areas of all faces, and the corners at each vertex ---- */
+
+/* Loops over faces or vertices are cut into so many blocks at most, of so many at least. */
+enum { HDI_BLOCKS_MOST = 64, HDI_BLOCK_LEAST = 4096 };
+
 enum { HDI_FACES_PER_TASK = 8192 };                         /* some 0.2 ms of work */
-/* what will be needed is asked for so early: three misses of memory */
-enum { HDI_FACES_AHEAD = 16, HDI_VERTICES_AHEAD = 8 };
+enum { HDI_FACES_AHEAD = 16 };                              /* what will be needed is asked for so early */
+
+static int64_t hdi_block_size(int64_t n) {
+    const int64_t size = (n + HDI_BLOCKS_MOST - 1) / HDI_BLOCKS_MOST;
+    return hdi_most(size, (int64_t)HDI_BLOCK_LEAST);
+}
 
 /* Asks for the corners of face f. */
 static HDI_INLINE void hdi_face_ahead(const hdi_mesh *mesh, int64_t f) {
     const int32_t *ahead = mesh->tri + 3 * f;
-    if (mesh->len) return;
+    if (!mesh->xyz || hdi_is_poly(mesh)) return;
     HDI_PREFETCH(hdi_at3(mesh->xyz, ahead[0]));
     HDI_PREFETCH(hdi_at3(mesh->xyz, ahead[1]));
     HDI_PREFETCH(hdi_at3(mesh->xyz, ahead[2]));
     (void)ahead;
 }
 
-typedef struct hdi_measure_job { const hdi_mesh *mesh; hdi_face_tally *tally; } hdi_measure_job;
+typedef struct hdi_measure_job {
+    const hdi_mesh *mesh;
+    hdi_face_tally tally[HDI_BLOCKS_MOST];
+} hdi_measure_job;
 
 static void hdi_measure_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_measure_job *job = (const hdi_measure_job *)arg;
+    hdi_measure_job *job = (hdi_measure_job *)arg;
+    const hdi_mesh *mesh = job->mesh;
     hdi_face_tally tally;
-    int64_t f;
+    int32_t f;
     hdi_tally_clear(&tally);
-    for (f = begin; f < end; f++) {
-        hdi_face_ahead(job->mesh, hdi_least(f + HDI_FACES_AHEAD, end - 1));
-        job->mesh->area[f] = hdi_face_measure(job->mesh, (int32_t)f, job->mesh->cot + 3 * f, &tally);
+    for (f = (int32_t)begin; f < end; f++) {
+        hdi_face_ahead(mesh, hdi_least((int64_t)f + HDI_FACES_AHEAD, end - 1));
+        mesh->area[f] = hdi_is_poly(mesh) ? hdi_poly_measure(mesh, f, &tally)
+                                          : hdi_face_measure(mesh, f, mesh->cot + hdi_triple(f), &tally);
     }
-    job->tally[begin / HDI_FACES_PER_TASK] = tally;
+    job->tally[begin / hdi_block_size(mesh->m)] = tally;
 }
 
-/* All faces of a mesh whose indices are fine: cot and area. */
+/* All faces of a mesh whose indices are fine. Allocates nothing. */
 static hd_status hdi_faces_measure(const hdi_mesh *mesh, hd_mesh_report *rep, hdi_scope *s) {
-    const int64_t n_tasks = ((int64_t)mesh->m + HDI_FACES_PER_TASK - 1) / HDI_FACES_PER_TASK;
-    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
+    const int64_t size = hdi_block_size(mesh->m);
     hdi_face_tally all;
     hdi_measure_job job;
     int64_t i;
     hdi_tally_clear(&all);
     job.mesh = mesh;
-    job.tally = HDI_TAKE(&own, hdi_face_tally, n_tasks);
-    if (!job.tally) return hdi_scope_end(&own);
-    hdi_parallel_ranges(s->ctx, mesh->m, HDI_FACES_PER_TASK, hdi_measure_task, &job);
-    for (i = 0; i < n_tasks; i++) hdi_tally_add(&all, job.tally + i);
-    (void)hdi_tally_report(&all, mesh->m, rep, s->e);
-    return hdi_scope_end(&own);
+    hdi_parallel_ranges(s->ctx, mesh->m, size, hdi_measure_task, &job);
+    for (i = 0; i * size < mesh->m; i++) hdi_tally_add(&all, job.tally + i);
+    return hdi_tally_report(&all, mesh->m, rep, s->e);
+}
+
+/* Arrays for what is measured of the faces, in s, and the corners at each vertex. */
+static hd_status hdi_mesh_take(hdi_mesh *mesh, hdi_scope *s) {
+    const int64_t n = hdi_face_begin(mesh, mesh->m);
+    mesh->area = HDI_TAKE(s, double, mesh->m);
+    mesh->at = HDI_TAKE(s, int64_t, (int64_t)mesh->n + 1);
+    mesh->corner = HDI_TAKE(s, int32_t, n);
+    if (!hdi_is_poly(mesh)) mesh->cot = HDI_TAKE(s, double, n);
+    if (!hdi_is_poly(mesh)) return s->e->status;
+    mesh->g = HDI_TAKE(s, double, 3 * n);
+    mesh->w = HDI_TAKE(s, double, 2 * n);
+    mesh->of = HDI_TAKE(s, int32_t, n);
+    return s->e->status;
+}
+
+static void hdi_mesh_of(hdi_mesh *mesh) {
+    int64_t c;
+    int32_t f;
+    for (f = 0; f < mesh->m && hdi_is_poly(mesh); f++)
+        for (c = mesh->ptr[f]; c < mesh->ptr[f + 1]; c++) mesh->of[c] = f;
+}
+
+/* Lists the corners at all vertices, of the faces that have an area. */
+static void hdi_mesh_corners(hdi_mesh *mesh) {
+    int64_t *HDI_RESTRICT at = mesh->at, c, end;
+    int32_t f;
+    memset(at, 0, ((size_t)mesh->n + 1) * sizeof *at);
+    for (f = 0, c = 0; f < mesh->m; f++)
+        for (end = hdi_face_begin(mesh, f + 1); c < end; c++) at[mesh->tri[c]] += mesh->area[f] > 0;
+    hdi_prefix_sum(at, mesh->n);
+    for (f = 0, c = 0; f < mesh->m; f++, c = end) {
+        end = hdi_face_begin(mesh, f + 1);
+        for (; mesh->area[f] > 0 && c < end; c++) mesh->corner[at[mesh->tri[c]]++] = (int32_t)c;
+    }
+    hdi_rewind(at, mesh->n);
+}
+
+/* A face is read from its smallest corner towards the smaller of its neighbours: faces with the same corners
+ * in the same cyclic order are all read alike. One step of that from c, and whether it goes forward. */
+static HDI_INLINE int64_t hdi_corner_step(const hdi_mesh *mesh, int64_t c, int forward) {
+    return forward ? hdi_corner_after(mesh, c) : hdi_corner_before(mesh, c);
+}
+
+static HDI_INLINE int hdi_corner_way(const hdi_mesh *mesh, int64_t c) {
+    return mesh->tri[hdi_corner_after(mesh, c)] < mesh->tri[hdi_corner_before(mesh, c)];
+}
+
+/* A number for the corners of the face in the order from its smallest corner c: of a triangle the two others,
+ * of a polygon the hash of Fowler, Noll and Vo, a vertex at a time. */
+static HDI_INLINE uint64_t hdi_corner_key(const hdi_mesh *mesh, int64_t c) {
+    const int forward = hdi_corner_way(mesh, c);
+    uint64_t key = 14695981039346656037u;
+    int64_t at = c;
+    if (!hdi_is_poly(mesh)) {
+        const int32_t q = (int32_t)c % 3, *v = mesh->tri + c - q, a = v[hdi_next3[q]], b = v[hdi_prev3[q]];
+        return (uint64_t)hdi_low32(a, b) << 32 | (uint64_t)hdi_high32(a, b);
+    }
+    do {
+        key = (key ^ (uint64_t)mesh->tri[at]) * 1099511628211u;
+        at = hdi_corner_step(mesh, at, forward);
+    } while (at != c);
+    return key;
+}
+
+static int hdi_corner_same(const hdi_mesh *mesh, int64_t c, int64_t d) {
+    const int forward_c = hdi_corner_way(mesh, c), forward_d = hdi_corner_way(mesh, d);
+    int64_t a = c, b = d;
+    do {
+        if (mesh->tri[a] != mesh->tri[b]) return 0;
+        a = hdi_corner_step(mesh, a, forward_c);
+        b = hdi_corner_step(mesh, b, forward_d);
+    } while (a != c && b != d);
+    return a == c && b == d;
+}
+
+/* Of n faces with the same smallest vertex, known by their corners there, those get area 0 that have the
+ * corners of an earlier one in the same cyclic order. Returns their number. */
+static int32_t hdi_mesh_repeats(const hdi_mesh *mesh, hdi_pair *face, int32_t n) {
+    int32_t p, first = 0, count = 0;
+    for (p = 0; p < n; p++) face[p].key = hdi_corner_key(mesh, face[p].id);
+    hdi_sort_pairs(face, n);
+    for (p = 1; p < n; p++) {
+        if (face[p].key != face[first].key) first = p;
+        else if (hdi_corner_same(mesh, face[p].id, face[first].id)) {
+            mesh->area[hdi_corner_face(mesh, face[p].id)] = 0;
+            count++;
+        }
+    }
+    return count;
 }
 
 /* ---- sides ----
@@ -5810,701 +6129,38 @@ static HDI_INLINE double hdi_side_length(const hdi_mesh *mesh, uint64_t key, int
     return hdi_edge_length(mesh->xyz, i, j);
 }
 
-/* Do the faces at each edge agree on its length? The sides are sorted. */
-static hd_status hdi_lengths_agree(const hdi_mesh *mesh, const hdi_sides *g, hd_error *e) {
-    int32_t i, p;
-    for (i = 0; i < mesh->n; i++)
-        for (p = g->ptr[i] + 1; p < g->ptr[i + 1]; p++) {
-            const double a = hdi_side_length(mesh, g->key[p - 1], 0, 0);
-            const double b = hdi_side_length(mesh, g->key[p], 0, 0);
-            const int32_t f = hdi_key_face(g->key[p]);
-            if (hdi_key_vertex(g->key[p]) != hdi_key_vertex(g->key[p - 1])) continue;
-            if (fabs(a - b) > HDI_LENGTH_AGREE * hdi_max(a, b))
-                return hdi_fail_face(e, HD_ERR_ARGUMENT, "two faces give their edge different lengths",
-                                     mesh->face ? mesh->face[f] : f, i, b);
-        }
-    return HD_OK;
-}
-
-/* The edges of a mesh from each vertex to later ones, in order. */
-typedef struct hdi_edges {
-    /* [n + 1], [n] those of a vertex: from its first on, before its last; in between there may be unused
-     * ones */
-    int32_t *first, *last;
-    int32_t *to;                /* the later vertex; in intrinsic triangulations also the vertex itself */
-    double *w;                  /* minus half the cotangents opposite to it */
-    double *b;                  /* a twelfth of the areas of its faces; NULL: not wanted */
-    int32_t *smaller, *larger;  /* [n] neighbours of a vertex: those before it and those after it */
-    double length;              /* of all edges, each once */
-    int32_t shift;              /* 2^shift vertices a block, which few edges leave */
-} hdi_edges;
-
-/* Room for so many edges, with weights and areas if they are wanted. */
-static hd_status hdi_edges_take(hdi_edges *g, int32_t n, int64_t room, int weights, int areas,
-                                hdi_scope *s) {
-    memset(g, 0, sizeof *g);
-    g->shift = 31;
-    g->first = HDI_TAKE(s, int32_t, (int64_t)n + 1);
-    if (g->first) g->last = g->first + 1;
-    g->to = HDI_TAKE(s, int32_t, room);
-    if (weights) g->w = HDI_TAKE(s, double, room);
-    if (areas) g->b = HDI_TAKE(s, double, room);
-    g->smaller = HDI_TAKE_ZERO(s, int32_t, n);
-    g->larger = HDI_TAKE_ZERO(s, int32_t, n);
-    return s->e->status;
-}
-
-/* All cotangents of the faces of a run of sides: what the rounding error of their edge's weight is
- * relative to. */
-static double hdi_run_cotangents(const hdi_mesh *mesh, const uint64_t *run, int64_t n) {
-    double sum = 0;
-    int64_t p;
-    for (p = 0; p < n; p++) {
-        const double *cot = mesh->cot + 3 * (int64_t)hdi_key_face(run[p]);
-        sum += fabs(cot[0]) + fabs(cot[1]) + fabs(cot[2]);
-    }
-    return sum;
-}
-
-/* The edges of Delaunay triangles without coordinates, which may run from a vertex to itself. Weights
- * above zero, which are there by rounding only, become zero when they are below 1e-13 of the cotangents
- * that they are made of. */
-static hd_status hdi_edges_flat(hdi_edges *g, const hdi_mesh *mesh, int full, hdi_scope *s) {
-    hdi_sides sides;
-    int32_t i, p, q, r, n_edges = 0;
-    if (hdi_edges_take(g, mesh->n, hdi_triple(mesh->m), 1, full, s) < 0) return s->e->status;
-    if (hdi_sides_make(&sides, mesh, s) < 0) return s->e->status;
-    for (i = 0; i < mesh->n; i++) {
-        g->first[i] = n_edges;
-        hdi_sides_sort(&sides, i);
-        for (p = sides.ptr[i]; p < sides.ptr[i + 1]; p = q, n_edges++) {
-            const uint64_t *key = sides.key;
-            const int32_t j = hdi_key_vertex(key[p]);
-            double w = 0, b = 0;
-            q = hdi_sides_run(&sides, p, sides.ptr[i + 1]);
-            for (r = p; r < q; r++) {
-                w -= mesh->cot[hdi_key_opposite(key[r])] / 2;
-                b += mesh->area[hdi_key_face(key[r])];
-            }
-            if (w > 0 && w <= 1e-13 * hdi_run_cotangents(mesh, key + p, q - p)) w = 0;
-            g->to[n_edges] = j;
-            g->w[n_edges] = w;
-            if (full) g->b[n_edges] = b / 12;
-            if (j == i) continue;
-            g->larger[i]++;
-            g->smaller[j]++;
-        }
-    }
-    g->first[mesh->n] = n_edges;
-    return HD_OK;
-}
-
-/* How masses are lumped. */
-typedef enum hdi_lump { HDI_LUMP_THIRDS, HDI_LUMP_MIXED, HDI_LUMP_ONES } hdi_lump;
-
-/* Adds the shares of a face. The mixed rule of a face without obtuse angle, (|ab|^2 cot c + |ac|^2 cot b)
- * / 8 at a, is area/4 (1 + cot b cot c) there, as |ab|^2 = 2 area (cot a + cot b) and the three products
- * of two cotangents sum to 1. Here they are divided by their sum, so that the shares add up to the area
- * whatever rounding does, and cotangents may carry a factor. */
-static HDI_INLINE void hdi_face_masses(double *mass, const int32_t *v, const double *cot,
-                                       double area, hdi_lump lump) {
-    if (lump == HDI_LUMP_THIRDS) {
-        mass[v[0]] += area / 3;
-        mass[v[1]] += area / 3;
-        mass[v[2]] += area / 3;
-    } else if (lump == HDI_LUMP_ONES) {
-        mass[v[0]] = mass[v[1]] = mass[v[2]] = 1;
-    } else {
-        const double x[3] = {cot[1] * cot[2], cot[2] * cot[0], cot[0] * cot[1]}, sum = x[0] + x[1] + x[2],
-                     quarter = area / 4;
-        const double obtuse = hdi_min(cot[0], hdi_min(cot[1], cot[2])) < 0,
-                     most = hdi_max(cot[0], hdi_max(cot[1], cot[2]));
-        const int round = hdi_finite(sum) && sum > 1e-100;
-        const double flat = quarter * obtuse, scale = quarter / (round ? sum : 1) * (1 - obtuse);
-        int q;
-        /* without branches: which angle is obtuse is anyone's guess */
-        if (round) {
-            mass[v[0]] += quarter + (flat * (cot[0] < 0) + scale * x[0]);
-            mass[v[1]] += quarter + (flat * (cot[1] < 0) + scale * x[1]);
-            mass[v[2]] += quarter + (flat * (cot[2] < 0) + scale * x[2]);
-        } else { /* a needle: its tip, which has the smallest angle, a quarter */
-            for (q = 0; q < 3; q++)
-                mass[v[q]] += quarter + (obtuse > 0 ? flat * (cot[q] < 0) : cot[q] < most ? quarter / 2 : 0);
-        }
-    }
-}
-
-static void hdi_mesh_masses(const hdi_mesh *mesh, hdi_lump lump, double *mass) {
-    int64_t f;
-    memset(mass, 0, (size_t)mesh->n * sizeof *mass);
-    for (f = 0; f < mesh->m; f++)
-        if (mesh->area[f] > 0)
-            hdi_face_masses(mass, mesh->tri + 3 * f, mesh->cot + 3 * f, mesh->area[f], lump);
-}
-
-/* ---- edges of a triangle mesh ----
- * Faces are put in the order of their smallest corners, so that what meets is near in memory. Then blocks
- * of vertices are worked on in parallel: their faces are measured, and, when all sides are gathered,
- * their edges to later vertices are runs of sides. Only what has to be summed in the order of the faces,
- * or unites blocks, is done by one thread. All sums are taken in the same order, however many threads
- * there are. */
-
-/* larger: fewer edges leave a block; smaller: more threads have work */
-enum { HDI_BLOCK_SHIFT = 14, HDI_BLOCKS_MOST = 64 };
-
-/* Blocks of n vertices: the size as a power of two. */
-static int32_t hdi_block_shift(int32_t n) {
-    int32_t shift = HDI_BLOCK_SHIFT;
-    while (n >> shift >= HDI_BLOCKS_MOST) shift++;
-    return shift;
-}
-
-typedef struct hdi_pass {
-    hdi_mesh *mesh;
-    hdi_edges *edges;
-    hdi_sides sides;
-    int32_t *face_ptr;          /* [n + 1] faces by their smallest corner */
-    int32_t shift;              /* 2^shift vertices a block */
-    struct {
-        hdi_face_tally faces;
-        hdi_edge_tally edges;
-    } block[HDI_BLOCKS_MOST];
-} hdi_pass;
-
-/* The m faces of the mesh, in the order of their smallest corners, into tri and face. Returns how many of
- * them leave their block of 2^shift vertices. */
-static int32_t hdi_pass_sort(hdi_pass *s, int32_t shift, int32_t *tri, int32_t *face) {
-    const int32_t n = s->mesh->n, m = s->mesh->m, *v = s->mesh->tri;
-    int32_t *HDI_RESTRICT at = s->face_ptr, f, i, sum = 0, leaving = 0;
-    memset(at, 0, ((size_t)n + 1) * sizeof *at);
-    for (f = 0; f < m; f++, v += 3) {
-        const int32_t low = hdi_low32(hdi_low32(v[0], v[1]), v[2]),
-                      high = hdi_high32(hdi_high32(v[0], v[1]), v[2]);
-        at[low]++;
-        leaving += (low ^ high) >> shift != 0;
-    }
-    for (i = 0; i < n; i++) {
-        const int32_t count = at[i];
-        at[i] = sum;
-        sum += count;
-    }
-    for (f = 0, v = s->mesh->tri; f < m; f++, v += 3) {
-        const int32_t to = at[hdi_low32(hdi_low32(v[0], v[1]), v[2])]++;
-        memcpy(tri + hdi_triple(to), v, 3 * sizeof *v);
-        face[to] = f;
-    }
-    memmove(at + 1, at, (size_t)n * sizeof *at);
-    at[0] = 0;
-    s->mesh->tri = tri;
-    s->mesh->face = face;
-    return leaving;
-}
-
-/* Faces of vertex i that have the same corners as an earlier one get area 0. pair: work for long lists. */
-static void hdi_pass_repeats(const hdi_pass *s, int32_t i, hdi_face_tally *tally, hdi_pair *pair) {
-    const int32_t begin = s->face_ptr[i], n = s->face_ptr[i + 1] - begin,
-                  *v = s->mesh->tri + hdi_triple(begin);
-    double *area = s->mesh->area + begin;
-    hdi_pair few[HDI_SHORT_LIST];
-    int32_t p;
-    if (n > HDI_SHORT_LIST && !pair) return;
-    if (n <= HDI_SHORT_LIST) pair = few;
-    /* the sum of the two others and the larger say it all; no sum is 0 */
-    for (p = 0; p < n; p++, v += 3) {
-        const uint64_t sum = (uint64_t)((int64_t)v[0] + v[1] + v[2] - i);
-        const uint64_t most = (uint64_t)hdi_high32(hdi_high32(v[0], v[1]), v[2]);
-        pair[p].key = area[p] > 0 ? sum << 31 | most : (uint64_t)p;
-        pair[p].id = p;
-    }
-    hdi_sort_pairs(pair, n);
-    for (p = 1; p < n; p++) {
-        if (pair[p].key != pair[p - 1].key) continue;
-        area[pair[p].id] = 0;
-        tally->n_repeated_face++;
-    }
-}
-
-static void hdi_pass_measure(void *arg, int64_t begin, int64_t end) {
-    const hdi_pass *s = (const hdi_pass *)arg;
-    const hdi_mesh *mesh = s->mesh;
-    hdi_face_tally tally;
-    int64_t i;
-    int32_t f;
-    hdi_tally_clear(&tally);
-    for (f = s->face_ptr[begin]; f < s->face_ptr[end]; f++) {
-        hdi_face_ahead(mesh, f + HDI_FACES_AHEAD < mesh->m ? f + HDI_FACES_AHEAD : f);
-        mesh->area[f] = hdi_face_measure(mesh, f, mesh->cot + hdi_triple(f), &tally);
-    }
-    for (i = begin; i < end; i++)
-        if (s->face_ptr[i + 1] - s->face_ptr[i] > 1) hdi_pass_repeats(s, (int32_t)i, &tally, NULL);
-    ((hdi_pass *)arg)->block[begin >> s->shift].faces = tally;
-}
-
-/* The edges of the run of sides [p, q), into place at of the edges if these are wanted. */
-static HDI_INLINE void hdi_pass_edge(const hdi_pass *s, int32_t p, int32_t q, int32_t i, int32_t at,
-                                     hdi_edge_tally *tally) {
-    const uint64_t *key = s->sides.key;
-    const hdi_mesh *mesh = s->mesh;
-    const int32_t j = hdi_key_vertex(key[p]), n = q - p;
-    hdi_edges *g = s->edges;
-    double w = -mesh->cot[hdi_key_opposite(key[p])] / 2, b = mesh->area[hdi_key_face(key[p])];
-    int32_t forward = mesh->tri[hdi_key_side(key[p])] == i;
-    while (++p < q) {
-        forward += mesh->tri[hdi_key_side(key[p])] == i;
-        w -= mesh->cot[hdi_key_opposite(key[p])] / 2;
-        b += mesh->area[hdi_key_face(key[p])];
-    }
-    g->to[at] = n == 1 ? ~j : j;
-    if (g->w) g->w[at] = w;
-    if (g->b) g->b[at] = b / 12;
-    hdi_edge_count(tally, n, forward, hdi_side_length(mesh, key[q - 1], i, j));
-}
-
-/* The edges of a block of vertices; boundary edges are marked by ~. */
-static void hdi_pass_edges(void *arg, int64_t begin, int64_t end) {
-    hdi_pass *s = (hdi_pass *)arg;
-    hdi_edges *g = s->edges;
-    hdi_edge_tally *block = &s->block[begin >> s->shift].edges;
-    int32_t at = s->sides.ptr[begin], i, p, q;
-    for (i = (int32_t)begin; i < end; i++) {
-        hdi_edge_tally tally = {0, 0, 0, 0, 0};
-        const int32_t last = s->sides.ptr[i + 1];
-        if (last - s->sides.ptr[i] <= HDI_SHORT_LIST) hdi_sides_sort(&s->sides, i);
-        g->first[i] = at;
-        for (p = s->sides.ptr[i]; p < last; p = q) {
-            q = hdi_sides_run(&s->sides, p, last);
-            hdi_pass_edge(s, p, q, i, at++, &tally);
-        }
-        g->last[i] = at;
-        g->larger[i] = tally.n_edges;
-        hdi_edge_tally_add(block, &tally);
-    }
-}
-
-/* Counts the edges from earlier vertices. Joins in border the ends of boundary edges, whose marks are taken
- * away. mark [n]: becomes 1 at their ends, unless NULL. */
-static void hdi_pass_join(hdi_edges *g, int32_t n, int32_t *border, char *mark) {
-    int32_t i, p;
-    hdi_fill_own(border, n);
-    for (i = 0; i < n; i++) {
-        for (p = g->first[i]; p < g->last[i]; p++) {
-            if (g->to[p] < 0) {
-                g->to[p] = ~g->to[p];
-                hdi_unite(border, i, g->to[p]);
-                if (mark) mark[i] = mark[g->to[p]] = 1;
-            }
-            g->smaller[g->to[p]]++;
-        }
-    }
-}
-
-/* Areas and cotangents of all faces; those that contribute nothing get area 0. */
-static hd_status hdi_pass_faces(hdi_pass *pass, hd_mesh_report *rep, hdi_scope *own) {
-    const int32_t n = pass->mesh->n, *ptr = pass->face_ptr;
-    hdi_face_tally tally;
-    hdi_pair *work = NULL;
-    int32_t i, most = 0;
-    hdi_tally_clear(&tally);
-    hdi_parallel_ranges(own->ctx, n, (int64_t)1 << pass->shift, hdi_pass_measure, pass);
-    for (i = 0; i <= (n - 1) >> pass->shift; i++) hdi_tally_add(&tally, &pass->block[i].faces);
-    for (i = 0; i < n; i++) most = hdi_high32(most, ptr[i + 1] - ptr[i]);
-    if (most > HDI_SHORT_LIST) work = HDI_TAKE(own, hdi_pair, most);
-    for (i = 0; i < n && work; i++)
-        if (ptr[i + 1] - ptr[i] > HDI_SHORT_LIST) hdi_pass_repeats(pass, i, &tally, work);
-    return own->e->status < 0 ? own->e->status : hdi_tally_report(&tally, pass->mesh->m, rep, own->e);
-}
-
-/* What a mesh is asked for besides its areas. */
-typedef struct hdi_mesh_wants {
-    int weights, areas;         /* of edges: cotangents, and areas for a full B */
-    hdi_lump lump;
-    double *mass;               /* [n] masses of the vertices; NULL: not wanted */
-    char *border;               /* [n] becomes 1 at vertices of the boundary; NULL: not wanted */
-} hdi_mesh_wants;
-
-static hd_status hdi_pass_run(hdi_pass *pass, const hdi_mesh_wants *want, hd_mesh_report *rep,
-                              hdi_scope *own) {
-    hdi_mesh *mesh = pass->mesh;
-    hdi_edge_tally tally = {0, 0, 0, 0, 0};
-    int32_t i, *border = HDI_TAKE(own, int32_t, mesh->n);
-    if (!border || hdi_pass_faces(pass, rep, own) < 0) return own->e->status;
-    if (want->mass) hdi_mesh_masses(mesh, want->lump, want->mass);
-    if (hdi_sides_make(&pass->sides, mesh, own) < 0) return own->e->status;
-    for (i = 0; i < mesh->n; i++)                /* short ones need no work array */
-        if (pass->sides.ptr[i + 1] - pass->sides.ptr[i] > HDI_SHORT_LIST) hdi_sides_sort(&pass->sides, i);
-    hdi_parallel_ranges(own->ctx, mesh->n, (int64_t)1 << pass->shift, hdi_pass_edges, pass);
-    if (mesh->len && hdi_lengths_agree(mesh, &pass->sides, own->e) < 0) return own->e->status;
-    for (i = 0; i < HDI_BLOCKS_MOST; i++) hdi_edge_tally_add(&tally, &pass->block[i].edges);
-    hdi_pass_join(pass->edges, mesh->n, border, want->border);
-    pass->edges->length = tally.length;
-    hdi_edge_report(&tally, border, mesh->n, rep);
-    return HD_OK;
-}
-
-/* Checks the mesh, measures the faces, finds the edges, and leaves out the faces that contribute nothing.
- * The arrays live in s. The faces of the mesh are in an order of their own then, without cotangents. */
-static hd_status hdi_mesh_faces(hdi_mesh *mesh, hdi_edges *edges, const hdi_mesh_wants *want,
-                                hd_mesh_report *rep, hdi_scope *s) {
+/* Do the faces at each edge agree on its length? */
+static hd_status hdi_lengths_agree(const hdi_mesh *mesh, hdi_scope *s) {
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
-    const int64_t n_corners = hdi_triple(mesh->m);
-    int32_t *tri, *face, leaving;
-    hdi_pass pass;
-    memset(&pass, 0, sizeof pass);
-    pass.mesh = mesh;
-    pass.edges = edges;
-    pass.shift = hdi_block_shift(mesh->n);
-    rep->n_faces = mesh->m;
-    if (n_corners > INT32_MAX) hdi_fail(s->e, HD_ERR_TOO_LARGE, "more than 2^31 face corners");
-    if (s->e->status < 0 || hdi_mesh_check(mesh->xyz, mesh->n, mesh->tri, mesh->m, s->e) < 0 ||
-        (mesh->len && hdi_lengths_check(mesh->len, mesh->m, s->e) < 0))
-        return hdi_scope_end(&own);
-    if (hdi_edges_take(edges, mesh->n, n_corners, want->weights, want->areas, s) < 0)
-        return hdi_scope_end(&own);
-    edges->last = HDI_TAKE(s, int32_t, mesh->n);
-    tri = HDI_TAKE(s, int32_t, n_corners);
-    face = HDI_TAKE(s, int32_t, mesh->m);
-    mesh->area = HDI_TAKE(s, double, mesh->m);
-    mesh->cot = HDI_TAKE(&own, double, n_corners);
-    pass.face_ptr = HDI_TAKE(&own, int32_t, (int64_t)mesh->n + 1);
-    if (s->e->status < 0) return hdi_scope_end(&own);
-    leaving = hdi_pass_sort(&pass, pass.shift, tri, face);
-    (void)hdi_pass_run(&pass, want, rep, &own);
-    edges->shift = leaving <= mesh->m / 4 && !hdi_is_serial(s->ctx) ? pass.shift : 31;
-    mesh->cot = NULL;
+    hdi_sides g;
+    int32_t i, p;
+    if (hdi_sides_make(&g, mesh, &own) < 0) return hdi_scope_end(&own);
+    for (i = 0; i < mesh->n && s->e->status >= 0; i++) {
+        hdi_sides_sort(&g, i);
+        for (p = g.ptr[i] + 1; p < g.ptr[i + 1] && s->e->status >= 0; p++) {
+            const double a = mesh->len[hdi_key_side(g.key[p - 1])], b = mesh->len[hdi_key_side(g.key[p])];
+            if (hdi_key_vertex(g.key[p]) == hdi_key_vertex(g.key[p - 1]) &&
+                fabs(a - b) > HDI_LENGTH_AGREE * hdi_max(a, b))
+                hdi_fail_face(s->e, HD_ERR_ARGUMENT, "two faces give their edge different lengths",
+                              hdi_key_face(g.key[p]), i, b);
+        }
+    }
     return hdi_scope_end(&own);
 }
 
-/* ---- polygons ---- */
-
-/* Faces with any number of corners. What the operator needs of a face is kept per corner. */
-typedef struct hdi_poly {
-    const double *xyz;
-    const int64_t *ptr;
-    const int32_t *idx;
-    int32_t n, m;
-    double lambda;
-    double *area;        /* [m] length of the vector area; 0: the face is left out */
-    double *g;           /* [3 corners] (corner before - corner after) / (2 sqrt(area)) */
-    double *w;           /* [2 corners] see hdi_poly_frame; of triangles not set */
-    int32_t *face;       /* [corners] the face of a corner */
-    int64_t *corner_ptr; /* [n + 1] corners at each vertex, as indices into idx, faces ascending */
-    int32_t *corner;     /* [corners]; corners of faces left out are not listed */
-} hdi_poly;
-
-static hd_status hdi_poly_check(const double *xyz, int32_t n, const int64_t *ptr,
-                                const int32_t *idx, int32_t m, hd_error *e) {
-    int64_t c;
-    int32_t f;
-    if (hdi_mesh_check(xyz, n, NULL, 0, e) < 0) return e->status;
-    if (m > 0 && ptr[0] != 0)
-        return hdi_fail_face(e, HD_ERR_STRUCTURE, "face_ptr does not begin with 0", 0, -1, (double)ptr[0]);
-    for (f = 0; f < m; f++)
-        if (ptr[f + 1] < ptr[f])
-            return hdi_fail_face(e, HD_ERR_STRUCTURE, "face_ptr descends", f, -1, (double)ptr[f + 1]);
-    if (m > 0 && ptr[m] > INT32_MAX) return hdi_fail(e, HD_ERR_TOO_LARGE, "more than 2^31 face corners");
-    if (m > 0 && ptr[m] > 0 && !idx)
-        return hdi_fail(e, HD_ERR_ARGUMENT, "an argument that must not be NULL is NULL");
-    for (f = 0; f < m; f++)
-        for (c = ptr[f]; c < ptr[f + 1]; c++)
-            if (idx[c] < 0 || idx[c] >= n)
-                return hdi_fail_face(e, HD_ERR_INDEX, "a face names a vertex that does not exist", f, -1,
-                                     idx[c]);
-    return HD_OK;
-}
-
-static const double *hdi_poly_at(const hdi_poly *poly, int64_t corner) {
-    return poly->xyz + 3 * (int64_t)poly->idx[corner];
-}
-
-/* The corners of the same face before and after c. */
-static int64_t hdi_poly_before(const hdi_poly *poly, int64_t c) {
-    const int32_t f = poly->face[c];
-    return c > poly->ptr[f] ? c - 1 : poly->ptr[f + 1] - 1;
-}
-
-static int64_t hdi_poly_after(const hdi_poly *poly, int64_t c) {
-    const int32_t f = poly->face[c];
-    return c + 1 < poly->ptr[f + 1] ? c + 1 : poly->ptr[f];
-}
-
-/* The edge from corner c to the next. */
-static void hdi_poly_edge(const hdi_poly *poly, int64_t c, double *edge) {
-    hdi_sub3(hdi_poly_at(poly, hdi_poly_after(poly, c)), hdi_poly_at(poly, c), edge);
-}
-
-/* Differences of corners of f are below 2^this, as are their products if this is HDI_POLY_MOST at most; 0 if
- * all are far from overflow. */
-#define HDI_POLY_MOST 510
-static int hdi_poly_exponent(const hdi_poly *poly, int32_t f) {
-    const int64_t begin = poly->ptr[f], end = poly->ptr[f + 1];
-    double most = 0, spoke[3];
-    int near3 = 1, exponent, q;
-    int64_t c;
-    for (c = begin; c < end; c++) near3 &= hdi_near3(hdi_poly_at(poly, c));
-    if (near3) return 0;
-    for (c = begin + 1; c < end; c++) {
-        hdi_sub3_scaled(hdi_poly_at(poly, c), hdi_poly_at(poly, begin), 1, spoke);
-        for (q = 0; q < 3; q++) most = hdi_max(most, fabs(spoke[q]));
-    }
-    frexp(most, &exponent);
-    return most < HDI_FAR ? 0 : exponent + 2;
-}
-
-/* An area in units of 2^(2 exponent) as one in units of 1. Where products of differences overflow, the face
- * is a needle without area, or too large. */
-static double hdi_poly_unscale(double area, int exponent) {
-    area = hdi_scale(area, 2 * exponent);
-    if (exponent <= HDI_POLY_MOST) return area;
-    return area < HDI_FAR * HDI_FAR ? 0 : HUGE_VAL;
-}
-
-/* Twice the vector area of face f, as a fan from its first corner. Returns its length, or 0 when nothing
- * but the rounding of the sum is left of it, as in a bow tie. A triangle is one cross product of two
- * edges: 0 only if that is exactly zero. */
-static double hdi_poly_area(const hdi_poly *poly, int32_t f, double *twice) {
-    const int64_t begin = poly->ptr[f], end = poly->ptr[f + 1];
-    const int exponent = hdi_poly_exponent(poly, f);
-    double spoke[3], edge[3], cross[3], length, sum = 0;
-    int64_t c;
-    int q;
-    twice[0] = twice[1] = twice[2] = 0;
-    for (c = begin + 1; c + 1 < end; c++) {
-        hdi_sub3_scaled(hdi_poly_at(poly, c), hdi_poly_at(poly, begin), exponent, spoke);
-        hdi_sub3_scaled(hdi_poly_at(poly, c + 1), hdi_poly_at(poly, c), exponent, edge);
-        hdi_cross3(spoke, edge, cross);
-        for (q = 0; q < 3; q++) twice[q] += cross[q];
-        sum += hdi_norm3(cross);
-    }
-    length = hdi_norm3(twice);
-    if (length <= 4 * DBL_EPSILON * (double)(end - begin - 2) * sum) return 0;
-    if (!exponent) return length;
-    for (q = 0; q < 3; q++) twice[q] = hdi_scale(twice[q], 2 * exponent);
-    return hdi_poly_unscale(length, exponent);
-}
-
-/* Fills frame with two orthonormal vectors in the plane across the unit normal, the first along the
- * longest edge as projected into it. Returns its length. */
-static double hdi_poly_axes(const hdi_poly *poly, int32_t f, const double *normal,
-                            double frame[2][3]) {
-    double longest = 0, edge[3], length, along;
-    int64_t c;
-    int q;
-    for (c = poly->ptr[f]; c < poly->ptr[f + 1]; c++) {
-        hdi_poly_edge(poly, c, edge);
-        along = hdi_dot3(edge, normal);
-        for (q = 0; q < 3; q++) edge[q] -= along * normal[q];
-        length = hdi_norm3(edge);
-        if (!(length > longest)) continue;
-        longest = length;
-        for (q = 0; q < 3; q++) frame[0][q] = edge[q] / length;
-    }
-    if (longest > 0) hdi_cross3(normal, frame[0], frame[1]);
-    return longest;
-}
-
-/* The projector on the kernel of the transposed projected edges is I - Q Q', Q [k x 2] an orthonormal
- * basis of their range: Gram and Schmidt, orthogonalised twice. What is kept are the rows of w = D'Q, D
- * the difference along the edges. 0 when the face has no plane. */
-static int hdi_poly_frame(const hdi_poly *poly, int32_t f, const double *normal) {
-    const int64_t begin = poly->ptr[f], k = poly->ptr[f + 1] - begin;
-    double *q = poly->w + 2 * begin, frame[2][3], edge[3], dot, norm, last[2];
-    const double longest = hdi_poly_axes(poly, f, normal, frame);
-    int64_t p;
-    int turn;
-    if (!(longest > 0)) return 0;
-    for (p = 0, norm = 0; p < k; p++) {
-        hdi_poly_edge(poly, begin + p, edge);
-        q[2 * p] = hdi_dot3(edge, frame[0]) / longest;
-        q[2 * p + 1] = hdi_dot3(edge, frame[1]) / longest;
-        norm += q[2 * p] * q[2 * p];
-    }
-    for (p = 0, norm = sqrt(norm); p < k; p++) q[2 * p] /= norm;
-    for (turn = 0; turn < 2; turn++) {
-        for (p = 0, dot = 0; p < k; p++) dot += q[2 * p] * q[2 * p + 1];
-        for (p = 0; p < k; p++) q[2 * p + 1] -= dot * q[2 * p];
-    }
-    for (p = 0, norm = 0; p < k; p++) norm += q[2 * p + 1] * q[2 * p + 1];
-    norm = sqrt(norm);
-    /* narrower than that: its direction is rounding */
-    for (p = 0; p < k; p++) q[2 * p + 1] = norm > 1e-12 ? q[2 * p + 1] / norm : 0;
-    last[0] = q[2 * k - 2];
-    last[1] = q[2 * k - 1];
-    for (p = k - 1; p >= 0; p--) {
-        q[2 * p] = (p > 0 ? q[2 * p - 2] : last[0]) - q[2 * p];
-        q[2 * p + 1] = (p > 0 ? q[2 * p - 1] : last[1]) - q[2 * p + 1];
-    }
-    return 1;
-}
-
-/* Smallest angle at the corners of f that bend inwards, at most pi. */
-static double hdi_poly_angle(const hdi_poly *poly, int32_t f, const double *normal) {
-    double least = 4, in[3], out[3], cross[3];
-    int64_t c;
-    for (c = poly->ptr[f]; c < poly->ptr[f + 1]; c++) {
-        hdi_poly_edge(poly, hdi_poly_before(poly, c), in);
-        hdi_poly_edge(poly, c, out);
-        hdi_cross3(in, out, cross);
-        if (hdi_dot3(cross, normal) >= 0) least = hdi_min(least, atan2(hdi_norm3(cross), -hdi_dot3(in, out)));
-    }
-    return least;
-}
-
-/* g of face f; 0 when a square of it could overflow. */
-static int hdi_poly_gradients(const hdi_poly *poly, int32_t f, double area) {
-    int64_t c;
-    int q, good = 1;
-    for (c = poly->ptr[f]; c < poly->ptr[f + 1]; c++) {
-        double *g = poly->g + 3 * c;
-        hdi_sub3(hdi_poly_at(poly, hdi_poly_before(poly, c)), hdi_poly_at(poly, hdi_poly_after(poly, c)), g);
-        for (q = 0; q < 3; q++) g[q] /= 2 * sqrt(area);
-        good &= hdi_near3(g);
-    }
-    return good;
-}
-
-/* Everything about face f. mark [n] holds the last face that saw a vertex. */
-static hd_status hdi_poly_measure(const hdi_poly *poly, int32_t f, int32_t *mark,
-                                  hd_mesh_report *rep, hd_error *e) {
-    const int64_t begin = poly->ptr[f], end = poly->ptr[f + 1];
-    double normal[3], twice;
-    int64_t c;
-    int q;
-    poly->area[f] = 0;
-    for (c = begin; c < end; c++) {
-        if (mark[poly->idx[c]] == f) {
-            rep->n_repeated_corner++;
-            return HD_OK;
-        }
-        mark[poly->idx[c]] = f;
-    }
-    twice = end - begin < 3 ? 0 : hdi_poly_area(poly, f, normal);
-    if (!hdi_finite(twice))
-        return hdi_fail_face(e, HD_ERR_NOT_FINITE, "a face is too large: its area is not finite", f,
-                             poly->idx[begin], twice);
-    if (twice == 0 || twice / (8 * (double)(end - begin)) < DBL_MIN ||
-        !hdi_poly_gradients(poly, f, twice / 2)) {
-        rep->n_zero_area++;
-        return HD_OK;
-    }
-    for (q = 0; q < 3; q++) normal[q] /= twice;
-    if (end - begin > 3 && !hdi_poly_frame(poly, f, normal)) {
-        rep->n_zero_area++;
-        return HD_OK;
-    }
-    poly->area[f] = twice / 2;
-    rep->smallest_angle = hdi_min(rep->smallest_angle, hdi_poly_angle(poly, f, normal));
-    return HD_OK;
-}
-
-/* Corner lists of all vertices, over the faces that have an area. */
-static void hdi_poly_corners(hdi_poly *poly) {
-    const int64_t n_corners = poly->m ? poly->ptr[poly->m] : 0;
-    int64_t c;
-    memset(poly->corner_ptr, 0, ((size_t)poly->n + 1) * sizeof *poly->corner_ptr);
-    for (c = 0; c < n_corners; c++)
-        if (poly->area[poly->face[c]] > 0) poly->corner_ptr[poly->idx[c]]++;
-    hdi_prefix_sum(poly->corner_ptr, poly->n);
-    for (c = 0; c < n_corners; c++)
-        if (poly->area[poly->face[c]] > 0)
-            poly->corner[poly->corner_ptr[poly->idx[c]]++] = (int32_t)c;
-    hdi_rewind(poly->corner_ptr, poly->n);
-}
-
-/* A face is read from its smallest corner towards the smaller of its neighbours: faces with the same corners
- * in the same cyclic order are all read alike. One step of that from c, and whether it goes forward. */
-static int64_t hdi_poly_step(const hdi_poly *poly, int64_t c, int forward) {
-    return forward ? hdi_poly_after(poly, c) : hdi_poly_before(poly, c);
-}
-
-static int hdi_poly_way(const hdi_poly *poly, int64_t c) {
-    return poly->idx[hdi_poly_after(poly, c)] < poly->idx[hdi_poly_before(poly, c)];
-}
-
-/* A number for the corners of the face in the order from its smallest corner c (the hash of Fowler, Noll
- * and Vo, a vertex at a time). */
-static uint64_t hdi_poly_key(const hdi_poly *poly, int64_t c) {
-    const int forward = hdi_poly_way(poly, c);
-    uint64_t key = 14695981039346656037u;
-    int64_t at = c;
-    do {
-        key = (key ^ (uint64_t)poly->idx[at]) * 1099511628211u;
-        at = hdi_poly_step(poly, at, forward);
-    } while (at != c);
-    return key;
-}
-
-static int hdi_poly_same(const hdi_poly *poly, int64_t c, int64_t d) {
-    const int forward_c = hdi_poly_way(poly, c), forward_d = hdi_poly_way(poly, d);
-    int64_t a = c, b = d;
-    do {
-        if (poly->idx[a] != poly->idx[b]) return 0;
-        a = hdi_poly_step(poly, a, forward_c);
-        b = hdi_poly_step(poly, b, forward_d);
-    } while (a != c && b != d);
-    return a == c && b == d;
-}
-
-/* Gives faces that repeat an earlier one area 0: around each vertex, the faces in which it is the
- * smallest corner are sorted by their keys. least [m] the smallest corner of each face; work: as many
- * pairs as the busiest vertex has corners. */
-static void hdi_poly_repeats(hdi_poly *poly, int32_t *least, hdi_pair *work, hd_mesh_report *rep) {
-    const int64_t n_corners = poly->m ? poly->ptr[poly->m] : 0;
-    int64_t c, p, n, first;
-    int32_t i;
-    hdi_fill_i32(least, poly->m, -1);
-    for (c = 0; c < n_corners; c++) {
-        int32_t *best = least + poly->face[c];
-        if (*best < 0 || poly->idx[c] < poly->idx[*best]) *best = (int32_t)c;
-    }
-    for (i = 0; i < poly->n; i++) {
-        n = 0;
-        for (p = poly->corner_ptr[i]; p < poly->corner_ptr[i + 1]; p++) {
-            c = poly->corner[p];
-            if (least[poly->face[c]] != c) continue;
-            work[n].key = hdi_poly_key(poly, c);
-            work[n++].id = c;
-        }
-        hdi_sort_pairs(work, n);
-        for (p = 1, first = 0; p < n; p++) {
-            if (work[p].key != work[first].key) first = p;
-            else if (hdi_poly_same(poly, work[p].id, work[first].id)) {
-                poly->area[poly->face[work[p].id]] = 0;
-                rep->n_repeated_face++;
-            }
-        }
-    }
-}
-
-/* As hdi_mesh_faces. The input must have passed hdi_poly_check. */
-static hd_status hdi_poly_make(hdi_poly *poly, hd_mesh_report *rep, hdi_scope *s) {
-    const int64_t n_corners = poly->m ? poly->ptr[poly->m] : 0;
-    const int32_t m = poly->m;
-    int32_t *mark, f;
-    hdi_pair *work;
-    int64_t c;
-    rep->n_faces = m;
-    rep->smallest_angle = m > 0 ? 4 : 0;
-    poly->area = HDI_TAKE(s, double, m);
-    poly->g = HDI_TAKE(s, double, 3 * n_corners);
-    poly->w = HDI_TAKE(s, double, 2 * n_corners);
-    poly->face = HDI_TAKE(s, int32_t, n_corners);
-    poly->corner_ptr = HDI_TAKE(s, int64_t, (int64_t)poly->n + 1);
-    poly->corner = HDI_TAKE(s, int32_t, n_corners);
-    mark = HDI_TAKE(s, int32_t, poly->n > m ? poly->n : m);
-    if (s->e->status < 0) return s->e->status;
-    for (f = 0; f < m; f++)
-        for (c = poly->ptr[f]; c < poly->ptr[f + 1]; c++) poly->face[c] = f;
-    hdi_fill_i32(mark, poly->n, -1);
-    for (f = 0; f < m; f++)
-        if (hdi_poly_measure(poly, f, mark, rep, s->e) < 0) return s->e->status;
-    hdi_poly_corners(poly);
-    work = HDI_TAKE(s, hdi_pair, hdi_fullest(poly->corner_ptr, poly->n));
-    if (!work) return s->e->status;
-    hdi_poly_repeats(poly, mark, work, rep);
-    if (rep->n_repeated_face) hdi_poly_corners(poly);
-    for (f = 0; f < m; f++) rep->n_faces_used += poly->area[f] > 0;
-    if (!rep->n_faces_used) rep->smallest_angle = 0;
-    return HD_OK;
+/* Checks the mesh, measures its faces and lists the corners at each vertex, in s. The corners of polygons are
+ * checked before. */
+static hd_status hdi_mesh_make(hdi_mesh *mesh, hd_mesh_report *rep, hdi_scope *s) {
+    rep->n_faces = mesh->m;
+    if (!hdi_is_poly(mesh) && hdi_triple(mesh->m) > INT32_MAX)
+        return hdi_fail(s->e, HD_ERR_TOO_LARGE, "more than 2^31 face corners");
+    if ((!hdi_is_poly(mesh) && hdi_mesh_check(mesh->xyz, mesh->n, mesh->tri, mesh->m, s->e) < 0) ||
+        (mesh->len && hdi_lengths_check(mesh->len, mesh->m, s->e) < 0) || hdi_mesh_take(mesh, s) < 0)
+        return s->e->status;
+    hdi_mesh_of(mesh);
+    if (hdi_faces_measure(mesh, rep, s) < 0) return s->e->status;
+    hdi_mesh_corners(mesh);
+    return mesh->len ? hdi_lengths_agree(mesh, s) : HD_OK;
 }
 
 /* Fans from the first corner of each face, into tri; NULL: counted only. Returns the number of triangles. */
@@ -7085,7 +6741,7 @@ static hd_status hdi_soup_make(hdi_soup *soup, const double *xyz, int32_t n, con
     return hdi_soup_finish(soup, delta, rep, HDI_TAKE(s, int32_t, n), s);
 }
 
-/* The soup of a mesh, which hdi_mesh_faces has measured, in s. */
+/* The soup of a mesh, which hdi_mesh_make has measured, in s. */
 static hd_status hdi_soup_of_mesh(hdi_soup *soup, const hdi_mesh *mesh, double delta,
                                   hd_mesh_report *rep, hdi_scope *s) {
     memset(soup, 0, sizeof *soup);
@@ -7651,39 +7307,85 @@ static hd_status hdi_soup_delaunay(hdi_mesh *flat, const hdi_soup *soup, int clo
  * Voronoi areas go negative on obtuse triangles; mixed ones do not. Deviations of polygons and point sets are
  * listed there. */
 
+/* ---- rows from corners ----
+ * Every mesh is faces with k corners and an element matrix each. A row of the pair is a sum over the corners
+ * at its vertex, in the order of the faces: both rows of a pair of vertices add the same numbers in the same
+ * order, so that L is symmetric to the last bit, and any thread can fill any row. */
+
+/* How masses are lumped. */
+typedef enum hdi_lump { HDI_LUMP_PARTS, HDI_LUMP_MIXED, HDI_LUMP_ONES } hdi_lump;
+
+/* What a vertex shares with another one. */
+typedef struct hdi_entry {
+    double L, B;                /* sums of elements, and of areas */
+    double size;                /* length of the side, where lengths are given; or of what L sums up */
+    int32_t to;                 /* the other one */
+    int32_t faces, forward;     /* of which their edge is a side; sides that run from the vertex to it */
+} hdi_entry;
+
+/* What one vertex shares with others: first itself, then those it has faces with, as they come. */
+typedef struct hdi_ring {
+    int32_t *place;             /* [n] where a vertex is in entry, if it is there */
+    hdi_entry *entry;
+    hdi_pair *order;            /* [longest row] entries by their vertices */
+    int32_t n;
+    double mass;
+} hdi_ring;
+
+/* What a block of vertices adds to the report. */
+typedef struct hdi_rows_tally {
+    hdi_edge_tally edges;
+    int32_t n_repeated_face;
+    int64_t n_negative;
+} hdi_rows_tally;
+
+/* Blocks of vertices are worked on by so many tasks, each with its own work arrays. */
+enum { HDI_STRANDS = 8 };
+
+typedef struct hdi_rows {
+    hdi_mesh mesh;
+    hd_laplacian *lap;          /* whose rows are filled; NULL: edges are counted */
+    const int32_t *name;        /* [n] the vertices of lap; NULL: the same */
+    hdi_lump lump;
+    int32_t strands;
+    int64_t most;               /* entries of the longest row */
+    int32_t *place;             /* [strands n], see hdi_ring */
+    hdi_entry *entry;           /* [strands most] */
+    hdi_pair *order;            /* [strands most] */
+    int32_t *count;             /* [n] how many others have faces with a vertex; then work */
+    char *border;               /* [n] 1: at an edge with one face */
+    hdi_rows_tally tally[HDI_BLOCKS_MOST];
+} hdi_rows;
+
 enum { HDI_MOVING_BLOCKS = 20 };
 
-/* What an update needs. Of a triangle mesh: the faces that had an area, in the order of their sums. Of
- * polygons and of the caller's matrices what is named there. */
+/* What an update needs: of meshes the faces that had an area, and work; of the caller's matrices what is
+ * named there. */
 typedef struct hd_moving {
-    struct hdi_moving_poly *poly;
     struct hdi_moving_pair *pair;
     void *block[HDI_MOVING_BLOCKS];  /* all that is allocated */
     int32_t n_blocks;
-    int32_t m;
-    int32_t *tri;               /* [3 m] */
-    int32_t *face;              /* [m] the caller's numbers */
-    int64_t *place;             /* [6 m] entries of L: (a,b) and (b,a) of the sides ab, bc, ca */
-    double *cot, *area;         /* [3 m], [m] */
-    double *mass;               /* [n] by vertices */
-    int32_t *border;            /* [n_active] work */
+    int32_t *face;              /* [faces] the caller's numbers */
+    hdi_rows fill;
 } hdi_moving;
+
+static void hdi_moving_free(hdi_moving *x, hd_context *ctx) {
+    while (x && x->n_blocks > 0) hdi_free(ctx, x->block[--x->n_blocks]);
+    hdi_free(ctx, x);
+}
 
 /* Vertices held at zero. */
 typedef struct hd_holding {
-    int border;                 /* those of the boundary too */
+    int border;                 /* those of the boundary too; 2: they are marked, and nothing is held */
+    int conserves;              /* as of a Laplacian that holds none */
     char *mark;                 /* [n] 1: held */
-    hd_laplacian *whole;        /* for updates: the Laplacian that holds none */
+    char *leak;                 /* [n] 1: heat flows from here to a vertex that is held */
+    hd_laplacian *whole;        /* of updatable matrices: the Laplacian that holds none */
 } hdi_holding;
 
 /* [n] where a mesh marks the vertices of its boundary; NULL: they are not asked for. */
 static char *hdi_lap_border(const hd_laplacian *lap) {
     return lap->holding && lap->holding->border ? lap->holding->mark : NULL;
-}
-
-static void hdi_moving_free(hdi_moving *x, hd_context *ctx) {
-    while (x && x->n_blocks > 0) hdi_free(ctx, x->block[--x->n_blocks]);
-    hdi_free(ctx, x);
 }
 
 /* Frees what a Laplacian points to. */
@@ -7705,6 +7407,7 @@ static void hdi_holding_free(hdi_holding *x, hd_context *ctx) {
     if (x->whole) hdi_lap_clear(x->whole, ctx);
     hdi_free(ctx, x->whole);
     hdi_free(ctx, x->mark);
+    hdi_free(ctx, x->leak);
     hdi_free(ctx, x);
 }
 
@@ -7717,6 +7420,7 @@ static hd_status hdi_holding_make(hd_laplacian *lap, int border, const int32_t *
     if (!x) return e->status;
     x->border = border;
     x->mark = (char *)hdi_alloc_zero(lap->context, (uint64_t)lap->n, 1, e);
+    if (x->mark) x->leak = (char *)hdi_alloc_zero(lap->context, (uint64_t)lap->n, 1, e);
     for (q = 0; q < n_held && x->mark; q++) x->mark[held[q]] = 1;
     return e->status;
 }
@@ -7757,21 +7461,30 @@ static void hdi_lap_drop(hd_laplacian *lap) {
 }
 
 static hdi_lump hdi_lap_lump(hd_laplacian_kind kind) {
-    return kind == HD_LAPLACIAN_FEM   ? HDI_LUMP_THIRDS
-           : kind == HD_LAPLACIAN_COT ? HDI_LUMP_ONES
-                                      : HDI_LUMP_MIXED;
+    return kind == HD_LAPLACIAN_COT           ? HDI_LUMP_ONES
+           : kind == HD_LAPLACIAN_VORONOI_COT ? HDI_LUMP_MIXED
+                                              : HDI_LUMP_PARTS;
 }
 
-/* Numbers the rows: vertices with mass in their order. Fills row, vertex, mass, b_diag, n_active. */
-static hd_status hdi_lap_rows(hd_laplacian *lap, const double *vertex_mass, hd_error *e) {
-    int32_t v, k = 0;
+static hd_status hdi_held_all(hd_error *e) {
+    return hdi_fail(e, HD_ERR_EMPTY, "laplacian: all vertices with mass are held at zero");
+}
+
+/* Numbers the rows: vertices with mass, and of meshes not held, in their order. Fills row, vertex, mass,
+ * b_diag, n_active. */
+static hd_status hdi_lap_rows(hd_laplacian *lap, const double *vertex_mass, const char *held, hd_error *e) {
+    int32_t v, k = 0, n_inert = 0;
     hd_context *ctx = lap->context;
     lap->row = HDI_NEW(ctx, int32_t, lap->n, e);
     if (!lap->row) return e->status;
-    for (v = 0; v < lap->n; v++) lap->row[v] = vertex_mass[v] > 0 ? k++ : HD_ROW_INERT;
+    for (v = 0; v < lap->n; v++) {
+        n_inert += !(vertex_mass[v] > 0);
+        lap->row[v] = held && held[v] ? HD_ROW_HELD : vertex_mass[v] > 0 ? k++ : HD_ROW_INERT;
+    }
     lap->n_active = k;
-    lap->mesh.n_inert = lap->n - k;
-    if (k == 0) return hdi_fail(e, HD_ERR_EMPTY, "no vertex has mass");
+    lap->mesh.n_inert = n_inert;
+    if (n_inert == lap->n) return hdi_fail(e, HD_ERR_EMPTY, "no vertex has mass");
+    if (k == 0) return hdi_held_all(e);
     lap->vertex = HDI_NEW(ctx, int32_t, k, e);
     if (lap->vertex) lap->mass = HDI_NEW(ctx, double, k, e);
     if (e->status < 0) return e->status;
@@ -7823,138 +7536,31 @@ static hd_status hdi_lap_components(hd_laplacian *lap, hd_error *e) {
     return e->status;
 }
 
+/* Which components conserve their heat, of a Laplacian with its masses. An infinite one takes the constants
+ * out of all formulas: their part of K_t f is the heat divided by the mass. */
+static void hdi_held_components(hd_laplacian *lap) {
+    const hdi_holding *x = lap->holding;
+    int32_t i, leaks = 0;
+    if (!x || x->border == 2) return;
+    lap->conserves = x->conserves;
+    for (i = 0; i < lap->n_active && x->conserves; i++) {
+        double *mass = lap->component_mass + lap->component[i];
+        if (*mass < 0 || !x->leak[lap->vertex[i]]) continue;
+        *mass = -HUGE_VAL;                       /* not what a sum that overflows is */
+        leaks++;
+    }
+    for (i = 0; i < lap->n_components; i++) lap->component_mass[i] = fabs(lap->component_mass[i]);
+    if (leaks > 0) lap->conserves = leaks < lap->n_components ? 2 : 0;
+    if (!lap->conserves) hdi_lap_component_masses(lap);
+}
+
 /* Ends an update, once L, B and mass have their new values. */
 static void hdi_lap_renewed(hd_laplacian *lap) {
     lap->version++;
     if (!lap->component) return;                 /* the whole of what is held needs none */
     hdi_lap_connect(lap);
     hdi_lap_component_masses(lap);
-}
-
-typedef struct hdi_lap_job {
-    hd_laplacian *lap;
-    const hdi_edges *g;
-    int64_t *next;              /* [n_active] where each row goes on */
-    int64_t *negative;          /* [blocks of 2^g->shift rows] edges with a weight above zero */
-} hdi_lap_job;
-
-/* The edge with number p from row i to a later row j, into that row. */
-static HDI_INLINE void hdi_lap_mirror(const hdi_lap_job *job, int32_t i, int32_t j, int32_t p) {
-    const int64_t at = job->next[j]++;
-    job->lap->L.col[at] = i;
-    job->lap->L.val[at] = job->g->w[p];
-    if (job->lap->B) job->lap->B[at] = job->g->b[p];
-}
-
-/* Row i from its diagonal on; what it has before was written by those rows: each edge goes into both its
- * rows, so that L and B are symmetric to the last bit. Rows from end on have their part already. Returns
- * the number of weights above zero. */
-static HDI_INLINE int64_t hdi_lap_row(const hdi_lap_job *job, int32_t i, int32_t end) {
-    hd_laplacian *lap = job->lap;
-    const hdi_edges *g = job->g;
-    const int32_t v = lap->vertex[i], last = g->last[v], *row = lap->row;
-    const int64_t diagonal = job->next[i];
-    double *L = lap->L.val, *B = lap->B, sum = 0, loops = 0;
-    int32_t *col = lap->L.col, p;
-    int64_t at, negative = 0;
-    for (at = lap->L.row_ptr[i]; at < diagonal; at++) sum += L[at];
-    for (p = g->first[v]; p < last; p++) {
-        const int32_t j = row[g->to[p]];
-        const double w = g->w[p];
-        /* an edge from the vertex to itself: no weight, and twice in its B */
-        if (j == i) {
-            loops += B ? 2 * g->b[p] : 0;
-            continue;
-        }
-        negative += w > 0;
-        sum += w;
-        col[++at] = j;
-        L[at] = w;
-        if (B) B[at] = g->b[p];
-        if (j < end) hdi_lap_mirror(job, i, j, p);
-    }
-    col[diagonal] = i;
-    L[diagonal] = -sum;
-    /* a sixth of the areas that the mass has thirds of */
-    if (B) B[diagonal] = lap->b_diag[i] = lap->mass[i] / 2 + loops;
-    return negative;
-}
-
-/* The row behind the block of row i. */
-static int32_t hdi_lap_block_end(const hdi_lap_job *job, int64_t block) {
-    return (int32_t)hdi_least(job->lap->n_active, (block + 1) << job->g->shift);
-}
-
-static void hdi_lap_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_lap_job *job = (const hdi_lap_job *)arg;
-    const hd_laplacian *lap = job->lap;
-    const hdi_edges *g = job->g;
-    const int32_t end = hdi_lap_block_end(job, index);
-    int32_t i;
-    int64_t negative = 0;
-    (void)worker;
-    for (i = (int32_t)(index << g->shift); i < end; i++) {
-        const int32_t v = lap->vertex[i + HDI_VERTICES_AHEAD < end ? i + HDI_VERTICES_AHEAD : i];
-        /* the farthest neighbour: its row is new to the caches, those of others are in use */
-        if (g->last[v] > g->first[v]) {
-            const int32_t far_row = lap->row[g->to[g->last[v] - 1]];
-            const int64_t at = lap->L.row_ptr[far_row];
-            HDI_PREFETCH(lap->L.col + at);
-            HDI_PREFETCH(lap->L.val + at);
-            HDI_PREFETCH(lap->B ? lap->B + at : lap->L.val + at);
-        }
-        negative += hdi_lap_row(job, i, end);
-    }
-    job->negative[index] = negative;
-}
-
-/* Block by block, the edges that leave it, into their later rows, where they come first. */
-static void hdi_lap_crossing(const hdi_lap_job *job, int64_t n_blocks) {
-    const hdi_edges *g = job->g;
-    const hd_laplacian *lap = job->lap;
-    int64_t b;
-    int32_t i = 0, p;
-    for (b = 0; b + 1 < n_blocks; b++) {
-        const int32_t end = hdi_lap_block_end(job, b), behind = lap->vertex[end];
-        for (; i < end; i++) {
-            const int32_t v = lap->vertex[i], last = g->last[v];
-            for (p = last; p > g->first[v] && g->to[p - 1] >= behind; p--) {}
-            for (; p < last; p++) hdi_lap_mirror(job, i, lap->row[g->to[p]], p);
-        }
-    }
-}
-
-/* Pattern and values of L and, if the edges have areas, of a full B. */
-static hd_status hdi_lap_assemble(hd_laplacian *lap, const hdi_edges *g, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
-    const int full = g->b != NULL;
-    int64_t nnz = 0, n_blocks, b;
-    double *B = NULL, *b_diag = NULL;
-    hdi_lap_job job;
-    hd_csr L;
-    int32_t i;
-    job.lap = lap;
-    job.g = g;
-    job.next = HDI_TAKE(&s, int64_t, lap->n_active);
-    job.negative = HDI_TAKE(&s, int64_t, HDI_BLOCKS_MOST);
-    for (i = 0; i < lap->n_active; i++) nnz += 1 + g->smaller[lap->vertex[i]] + g->larger[lap->vertex[i]];
-    L = hdi_csr_take(&s, lap->n_active, lap->n_active, nnz, 1);
-    if (full) B = HDI_TAKE(&s, double, nnz);
-    if (full) b_diag = HDI_TAKE(&s, double, lap->n_active);
-    if (e->status < 0) return hdi_scope_end(&s);
-    lap->L = hdi_csr_keep(&s, L);
-    lap->B = (double *)hdi_keep(&s, B);
-    if (full) lap->b_diag = (double *)hdi_keep(&s, b_diag);
-    for (i = 0; i < lap->n_active; i++) {
-        const int32_t v = lap->vertex[i];
-        job.next[i] = L.row_ptr[i];
-        L.row_ptr[i + 1] = L.row_ptr[i] + 1 + g->smaller[v] + g->larger[v];
-    }
-    n_blocks = ((lap->n_active - 1) >> g->shift) + 1;
-    hdi_lap_crossing(&job, n_blocks);
-    hdi_parallel(lap->context, n_blocks, hdi_lap_task, &job);
-    for (b = 0; b < n_blocks; b++) lap->mesh.n_negative_weights += job.negative[b];
-    return hdi_scope_end(&s);
+    hdi_held_components(lap);
 }
 
 /* The area of m faces. */
@@ -7981,37 +7587,354 @@ static hd_status hdi_lap_places(hd_laplacian *lap, const double *xyz, hd_error *
     return HD_OK;
 }
 
-/* (L, B), places and h of the mesh, whose arrays come to live in s. full: B is, if its kind
- * is. */
+/* ---- polygons ----
+ * Of a face with k corners X [k x 3], edges E, middles of edges B_f, the difference D along the edges and
+ * the vector area of length |f|,
+ *     L_f = D'(B_f B_f'/|f| + lambda C C') D,
+ * where C is an orthonormal basis of the kernel of the transposed edges projected along the vector area.
+ * Deviations from Alexa and Wardetzky, all of form: D'B_f is half the differences of next but one
+ * corners, g sqrt(|f|) here, which knows no origin; C C' = I - Q Q' with Q two columns, so that L_f = g
+ * g' + lambda (D'D - w w') costs a few products an entry, no k x k block is ever made, and faces of
+ * hundreds of corners are fine. Their M has a positive definite part for any lambda > 0; we take one
+ * number for all faces. On triangles the second part is zero, and is not computed. */
+
+/* L_f between the different corners c and d of a face of k corners; beside: they share an edge of it. The
+ * same to the last bit for (d, c). */
+static double hdi_poly_entry(const hdi_mesh *mesh, int64_t c, int64_t d, int64_t k, int beside) {
+    const double *u = mesh->w + 2 * c, *v = mesh->w + 2 * d,
+                 first = hdi_dot3(mesh->g + 3 * c, mesh->g + 3 * d);
+    return k == 3 ? first : first - mesh->lambda * (beside + (u[0] * v[0] + u[1] * v[1]));
+}
+
+/* The mass that corner q of a triangle has by the mixed rule. In a face without obtuse angle, (|ab|^2 cot c
+ * + |ac|^2 cot b) / 8 at a is area/4 (1 + cot b cot c), as |ab|^2 = 2 area (cot a + cot b) and the three
+ * products of two cotangents sum to 1. Here they are divided by their sum, so that the shares add up to the
+ * area whatever rounding does, and cotangents may carry a factor. The tip of a needle, which has the
+ * smallest angle, has a quarter. */
+static double hdi_mixed_mass(const double *cot, int64_t q, double area) {
+    const double least = hdi_min(cot[0], hdi_min(cot[1], cot[2]));
+    const double most = hdi_max(cot[0], hdi_max(cot[1], cot[2]));
+    const double sum = cot[1] * cot[2] + cot[2] * cot[0] + cot[0] * cot[1];
+    if (least < 0) return cot[q] < 0 ? area / 2 : area / 4;
+    if (!(hdi_finite(sum) && sum > 1e-100)) return cot[q] < most ? area / 4 + area / 8 : area / 4;
+    return area / 4 + area / 4 * (cot[hdi_next3[q]] * cot[hdi_prev3[q]] / sum);
+}
+
+/* The entry of vertex v. */
+static HDI_INLINE hdi_entry *hdi_ring_entry(hdi_ring *r, int32_t v) {
+    const int32_t at = r->place[v];
+    hdi_entry *e = r->entry + at;
+    if ((at < r->n) & (e->to == v)) return e;
+    r->place[v] = r->n;
+    e = r->entry + r->n++;
+    e->L = e->B = e->size = 0;
+    e->faces = e->forward = 0;
+    e->to = v;
+    return e;
+}
+
+/* Adds corner c of a face with this area, which has k corners from begin on. */
+static HDI_INLINE void hdi_ring_corner(hdi_ring *r, const hdi_mesh *mesh, hdi_lump lump, int64_t c,
+                                       double area, int64_t begin, int64_t k, int poly) {
+    const int64_t end = begin + k, before = c > begin ? c - 1 : end - 1, after = c + 1 < end ? c + 1 : begin;
+    const double *cot = poly ? NULL : mesh->cot + begin;
+    int64_t d;
+    if (area > 0) r->mass += lump == HDI_LUMP_MIXED ? hdi_mixed_mass(cot, c - begin, area) : area / (double)k;
+    for (d = begin; d < end; d++) {
+        hdi_entry *e;
+        if (d == c) continue;
+        e = hdi_ring_entry(r, mesh->tri[d]);
+        if (!(area > 0)) continue;
+        if (poly) e->L += hdi_poly_entry(mesh, c, d, k, d == before || d == after);
+        else e->L -= cot[3 + 2 * begin - c - d] / 2;
+        if (!poly && mesh->len) e->size = mesh->len[d == after ? c : d];
+        else if (!mesh->xyz) e->size += fabs(cot[0]) + fabs(cot[1]) + fabs(cot[2]);
+        e->B += area;
+        e->faces += d == before || d == after;
+        e->forward += d == after;
+    }
+}
+
+/* All that vertex v shares with others. Without coordinates, weights above zero, which are there by rounding
+ * only, become zero when they are below 1e-13 of the cotangents that they are made of. */
+static void hdi_ring_make(hdi_ring *ring, const hdi_mesh *from, hdi_lump lump, int32_t v) {
+    const hdi_mesh mesh = *from;                 /* copies, which stores cannot change */
+    hdi_ring r = *ring;
+    int64_t p;
+    int32_t q;
+    r.n = 0;
+    r.mass = 0;
+    (void)hdi_ring_entry(&r, v);
+    for (p = mesh.at[v]; p < mesh.at[v + 1]; p++) {
+        const int64_t c = mesh.corner[p];
+        const int32_t f = hdi_corner_face(&mesh, c);
+        const int64_t begin = hdi_face_begin(&mesh, f);
+        if (hdi_is_poly(&mesh))
+            hdi_ring_corner(&r, &mesh, lump, c, mesh.area[f], begin, mesh.ptr[f + 1] - begin, 1);
+        else
+            hdi_ring_corner(&r, &mesh, lump, c, mesh.area[f], begin, 3, 0);
+    }
+    for (q = 1; q < r.n && !mesh.xyz && !mesh.len; q++)
+        if (r.entry[q].L > 0 && r.entry[q].L <= 1e-13 * r.entry[q].size) r.entry[q].L = 0;
+    ring->n = r.n;
+    ring->mass = lump == HDI_LUMP_ONES ? 1 : r.mass;
+}
+
+/* The ring of strand number `strand`. */
+static hdi_ring hdi_rows_ring(const hdi_rows *x, int64_t strand) {
+    hdi_ring r;
+    memset(&r, 0, sizeof r);
+    r.place = x->place + strand * x->mesh.n;
+    if (x->entry) r.entry = x->entry + strand * x->most;
+    r.order = x->order + strand * x->most;
+    return r;
+}
+
+/* Sorts the entries and counts the edges to later vertices. */
+static void hdi_rows_edges(const hdi_rows *x, hdi_ring *r, hdi_rows_tally *tally) {
+    const hdi_mesh *mesh = &x->mesh;
+    const int32_t v = r->entry[0].to;
+    int32_t q;
+    for (q = 0; q < r->n; q++) {
+        r->order[q].key = (uint64_t)(x->name ? x->name[r->entry[q].to] : r->entry[q].to);
+        r->order[q].id = q;
+    }
+    hdi_sort_pairs(r->order, r->n);
+    for (q = 0; q < r->n; q++) {
+        const hdi_entry *e = r->entry + r->order[q].id;
+        if (e->faces == 1) x->border[v] = 1;
+        if (e->to <= v) continue;
+        tally->n_negative += e->L > 0;
+        if (e->faces > 0 && (mesh->xyz || mesh->len))
+            hdi_edge_count(&tally->edges, e->faces, e->forward,
+                           mesh->len ? e->size : hdi_edge_length(mesh->xyz, v, e->to));
+    }
+}
+
+/* The row of vertex v in L and B, if it has one. A column without a row adds to the diagonal and is not
+ * written. An edge from the vertex to itself has no weight, and is twice in its B. */
+static void hdi_rows_write(const hdi_rows *x, const hdi_ring *r, int32_t v) {
+    hd_laplacian *lap = x->lap;
+    const int32_t i = lap->row[x->name ? x->name[v] : v];
+    double *L = lap->L.val, *B = lap->B, sum = 0, b_sum = 0;
+    int64_t at = lap->L.row_ptr[i], diagonal = at;
+    int32_t q, n_held = 0, leaks = 0;
+    if (i < 0) return;
+    for (q = 0; q < r->n; q++) {
+        const hdi_entry *e = r->entry + r->order[q].id;
+        const int32_t j = lap->row[r->order[q].key];
+        if (j == i) {
+            diagonal = at++;
+            continue;
+        }
+        sum += e->L;
+        if (j < 0) {
+            n_held++;
+            leaks |= e->L != 0;
+            continue;
+        }
+        lap->L.col[at] = j;
+        L[at] = e->L;
+        if (B) b_sum += B[at] = e->B / 12;
+        at++;
+    }
+    lap->L.col[diagonal] = i;
+    L[diagonal] = -sum;
+    lap->mass[i] = r->mass;
+    /* a sixth of the areas that the mass has thirds of */
+    if (B) B[diagonal] = lap->b_diag[i] = r->mass / 2 + r->entry[0].B / 12;
+    if (B && n_held) lap->mass[i] = b_sum + B[diagonal];
+    if (lap->holding) lap->holding->leak[lap->vertex[i]] = (char)leaks;
+}
+
+/* Counts the vertices that v has faces with. Those faces of which it is the smallest come to be first in
+ * order; returns their number. */
+static int32_t hdi_rows_count(hdi_rows *x, const hdi_ring *r, int32_t v) {
+    const hdi_mesh *mesh = &x->mesh;
+    int32_t n = 0, n_faces = 0, *mark = r->place;
+    int64_t p, d;
+    mark[v] = v;
+    for (p = mesh->at[v]; p < mesh->at[v + 1]; p++) {
+        const int32_t f = hdi_corner_face(mesh, mesh->corner[p]);
+        const int64_t end = hdi_face_begin(mesh, f + 1);
+        int smallest = 1;
+        for (d = hdi_face_begin(mesh, f); d < end; d++) {
+            const int32_t j = mesh->tri[d];
+            smallest &= j >= v;
+            n += mark[j] != v;
+            mark[j] = v;
+        }
+        r->order[n_faces].id = mesh->corner[p];
+        n_faces += smallest;
+    }
+    x->count[v] = n;
+    return n_faces;
+}
+
+/* The block of vertices [begin, end): counts rows while there are no entries, then fills them. In covers
+ * faces repeat others by right. */
+static void hdi_rows_block(hdi_rows *x, hdi_ring *r, int32_t begin, int32_t end, hdi_rows_tally *tally) {
+    const hdi_mesh *mesh = &x->mesh;
+    int32_t v;
+    memset(tally, 0, sizeof *tally);
+    for (v = begin; v < end; v++) {
+        x->border[v] = 0;
+        if (!x->entry) {
+            const int32_t n = hdi_rows_count(x, r, v);
+            if (mesh->xyz || mesh->len) tally->n_repeated_face += hdi_mesh_repeats(mesh, r->order, n);
+        } else if (mesh->at[v] < mesh->at[v + 1]) {
+            hdi_ring_make(r, mesh, x->lump, v);
+            hdi_rows_edges(x, r, tally);
+            if (x->lap) hdi_rows_write(x, r, v);
+        }
+    }
+}
+
+static void hdi_rows_task(void *arg, int64_t strand, int32_t worker) {
+    hdi_rows *x = (hdi_rows *)arg;
+    const int64_t n = x->mesh.n, size = hdi_block_size(n);
+    hdi_ring r = hdi_rows_ring(x, strand);
+    int64_t b;
+    (void)worker;
+    for (b = strand; b * size < n; b += x->strands)
+        hdi_rows_block(x, &r, (int32_t)(b * size), (int32_t)hdi_least(n, (b + 1) * size), x->tally + b);
+}
+
+/* Finds faces that repeat others, counts the entries of rows and takes the work arrays for them, in s. The
+ * corners of the mesh are listed. */
+static hd_status hdi_rows_begin(hdi_rows *x, const hdi_mesh *mesh, hd_mesh_report *rep, hdi_scope *s) {
+    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
+    const int64_t n = mesh->n, size = hdi_block_size(n), blocks = (n + size - 1) / size;
+    int64_t i;
+    memset(x, 0, sizeof *x);
+    x->mesh = *mesh;
+    x->strands = hdi_is_serial(s->ctx) ? 1 : (int32_t)hdi_least(HDI_STRANDS, blocks);
+    x->most = hdi_fullest(mesh->at, n);
+    x->count = HDI_TAKE(s, int32_t, n);
+    x->border = HDI_TAKE(s, char, n);
+    x->place = HDI_TAKE(&own, int32_t, x->strands * n);
+    x->order = HDI_TAKE(&own, hdi_pair, x->strands * x->most);
+    if (s->e->status < 0) return hdi_scope_end(&own);
+    hdi_fill_i32(x->place, x->strands * n, -1);
+    hdi_parallel(s->ctx, x->strands, hdi_rows_task, x);
+    for (i = 0; i < blocks; i++) {
+        rep->n_repeated_face += x->tally[i].n_repeated_face;
+        rep->n_faces_used -= x->tally[i].n_repeated_face;
+    }
+    for (i = 0, x->most = 1; i < n; i++) x->most = x->most > x->count[i] ? x->most : x->count[i] + 1;
+    (void)hdi_scope_end(&own);
+    x->place = HDI_TAKE_ZERO(s, int32_t, x->strands * n);
+    x->entry = HDI_TAKE(s, hdi_entry, x->strands * x->most);
+    x->order = HDI_TAKE(s, hdi_pair, x->strands * x->most);
+    return s->e->status;
+}
+
+/* What is known of the edges of a mesh in space, once its rows are filled. Returns their mean length. */
+static double hdi_rows_report(hdi_rows *x, hd_mesh_report *rep) {
+    const int64_t size = hdi_block_size(x->mesh.n);
+    hdi_edge_tally all = {0, 0, 0, 0, 0};
+    hdi_ring r = hdi_rows_ring(x, 0);
+    int64_t b;
+    int32_t v, q;
+    for (b = 0; b * size < x->mesh.n; b++) hdi_edge_tally_add(&all, &x->tally[b].edges);
+    hdi_fill_own(x->count, x->mesh.n);
+    for (v = 0; v < x->mesh.n; v++) {
+        if (!x->border[v]) continue;
+        hdi_ring_make(&r, &x->mesh, x->lump, v);
+        for (q = 1; q < r.n; q++)
+            if (r.entry[q].faces == 1) hdi_unite(x->count, v, r.entry[q].to);
+    }
+    hdi_edge_report(&all, x->count, x->mesh.n, rep);
+    return all.length / (double)all.n_edges;
+}
+
+/* Marks the vertices of the border where that is asked for. */
+static void hdi_rows_border(hdi_rows *x, const hd_laplacian *lap) {
+    char *mark = hdi_lap_border(lap);
+    int32_t v;
+    if (!mark || (!x->mesh.xyz && !x->mesh.len)) return;
+    hdi_parallel(lap->context, x->strands, hdi_rows_task, x);
+    for (v = 0; v < lap->n; v++) mark[v] |= x->border[v];
+}
+
+/* Takes the columns of vertices without a row out of the counts. */
+static void hdi_rows_held(const hdi_rows *x, const hd_laplacian *lap) {
+    hdi_ring r = hdi_rows_ring(x, 0);
+    int32_t v, q;
+    for (v = 0; v < x->mesh.n && lap->holding; v++) {
+        if (x->mesh.at[v] == x->mesh.at[v + 1] || lap->row[x->name ? x->name[v] : v] >= 0) continue;
+        hdi_ring_make(&r, &x->mesh, x->lump, v);
+        for (q = 1; q < r.n; q++) x->count[r.entry[q].to]--;
+    }
+}
+
+/* Rows for the vertices that have faces, and room for their values. */
+static hd_status hdi_lap_pattern(hd_laplacian *lap, const hdi_rows *x, int full, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    const hdi_mesh *mesh = &x->mesh;
+    const int holds = lap->holding && lap->holding->border != 2;
+    double *mass = HDI_TAKE_ZERO(&s, double, lap->n), *B = NULL, *b_diag = NULL;
+    int64_t nnz = 0;
+    hd_csr L;
+    int32_t v;
+    for (v = 0; v < mesh->n && mass; v++)
+        if (mesh->at[v] < mesh->at[v + 1]) mass[x->name ? x->name[v] : v] = 1;
+    if (!mass || hdi_lap_rows(lap, mass, holds ? lap->holding->mark : NULL, e) < 0) return hdi_scope_end(&s);
+    hdi_rows_held(x, lap);
+    for (v = 0; v < mesh->n; v++) nnz += lap->row[x->name ? x->name[v] : v] >= 0 ? x->count[v] + 1 : 0;
+    L = hdi_csr_take(&s, lap->n_active, lap->n_active, nnz, 1);
+    if (full) B = HDI_TAKE(&s, double, nnz);
+    if (full) b_diag = HDI_TAKE(&s, double, lap->n_active);
+    if (e->status < 0) return hdi_scope_end(&s);
+    lap->L = hdi_csr_keep(&s, L);
+    lap->B = (double *)hdi_keep(&s, B);
+    if (full) lap->b_diag = (double *)hdi_keep(&s, b_diag);
+    for (v = 0; v < mesh->n; v++) {
+        const int32_t i = lap->row[x->name ? x->name[v] : v];
+        if (i >= 0) lap->L.row_ptr[i] = x->count[v] + 1;
+    }
+    hdi_prefix_sum(lap->L.row_ptr, lap->n_active);
+    return hdi_scope_end(&s);
+}
+
+/* Values of the rows, and what the report says of weights. */
+static void hdi_lap_values(hd_laplacian *lap, hdi_rows *x) {
+    const int64_t size = hdi_block_size(x->mesh.n);
+    int64_t b;
+    x->lap = lap;
+    hdi_parallel(lap->context, x->strands, hdi_rows_task, x);
+    lap->mesh.n_negative_weights = 0;
+    for (b = 0; b * size < x->mesh.n; b++) lap->mesh.n_negative_weights += x->tally[b].n_negative;
+}
+
+/* Rows, L and B of a mesh that x knows. full: B is, if its kind is. */
+static hd_status hdi_lap_assemble(hd_laplacian *lap, hdi_rows *x, const double *xyz, int full, hd_error *e) {
+    x->lump = hdi_lap_lump(lap->kind);
+    hdi_rows_border(x, lap);
+    if (hdi_lap_pattern(lap, x, full && lap->kind == HD_LAPLACIAN_FEM, e) < 0 ||
+        hdi_progress(lap->context, "assemble", 0.4, e) < 0 || hdi_lap_places(lap, xyz, e) < 0)
+        return e->status;
+    hdi_lap_values(lap, x);
+    lap->conserves = 1;
+    return hdi_progress(lap->context, "assemble", 0.8, e);
+}
+
+/* (L, B), places and h of triangles or polygons. What is known of the faces comes to live in s. full: B is,
+ * if its kind is. */
 static hd_status hdi_lap_mesh(hd_laplacian *lap, hdi_mesh *mesh, int full, hdi_scope *s) {
     hdi_scope own = hdi_scope_begin(lap->context, s->e);
-    double *vertex_mass = HDI_TAKE(&own, double, lap->n);
-    hd_error *e = s->e;
-    hdi_edges edges;
-    hdi_mesh_wants want;
-    want.weights = 1;
-    want.areas = full && lap->kind == HD_LAPLACIAN_FEM;
-    want.lump = hdi_lap_lump(lap->kind);
-    want.mass = vertex_mass;
-    want.border = hdi_lap_border(lap);
-    if (!vertex_mass || hdi_mesh_faces(mesh, &edges, &want, &lap->mesh, s) < 0) return hdi_scope_end(&own);
-    if (hdi_lap_rows(lap, vertex_mass, e) < 0 || hdi_progress(lap->context, "assemble", 0.4, e) < 0)
+    hdi_rows x;
+    if (hdi_mesh_make(mesh, &lap->mesh, s) < 0 || hdi_rows_begin(&x, mesh, &lap->mesh, &own) < 0 ||
+        hdi_lap_assemble(lap, &x, mesh->xyz, full, s->e) < 0)
         return hdi_scope_end(&own);
-    if (hdi_lap_places(lap, mesh->xyz, e) < 0 || hdi_lap_assemble(lap, &edges, e) < 0 ||
-        hdi_progress(lap->context, "assemble", 0.8, e) < 0)
-        return hdi_scope_end(&own);
-    lap->h = edges.length / (double)lap->mesh.n_edges;
+    lap->h = hdi_rows_report(&x, &lap->mesh);
     lap->area = hdi_sum_areas(mesh->area, mesh->m);
+    /* element matrix area/12 (1 1' + I) >= 1/2 of its diagonal, area/12 I */
+    lap->b_ratio = lap->B ? 0.5 : 1;
     return hdi_scope_end(&own);
 }
 
 /* ---- meshes that move ---- */
-
-/* The entry (i,j) of L, which is there. */
-static int64_t hdi_lap_entry(const hd_laplacian *lap, int32_t i, int32_t j) {
-    const int64_t begin = lap->L.row_ptr[i];
-    return begin + hdi_lower_bound(lap->L.col + begin, lap->L.row_ptr[i + 1] - begin, j);
-}
 
 /* Freed with the Laplacian, whatever comes. */
 static hdi_moving *hdi_moving_new(hd_laplacian *lap, hd_error *e) {
@@ -8026,418 +7949,93 @@ static hd_status hdi_moving_keep(hdi_moving *x, hdi_scope *s) {
     return HD_OK;
 }
 
-static hd_status hdi_moving_make(hd_laplacian *lap, const hdi_mesh *mesh, hd_error *e) {
+/* Copies the faces that have an area. */
+static hd_status hdi_moving_faces(hdi_mesh *to, int32_t **face, const hdi_mesh *from, hdi_scope *s) {
+    int64_t n = 0, *ptr = NULL;
+    int32_t f, m = 0, *tri;
+    for (f = 0; f < from->m; f++) {
+        m += from->area[f] > 0;
+        n += from->area[f] > 0 ? hdi_face_begin(from, f + 1) - hdi_face_begin(from, f) : 0;
+    }
+    tri = HDI_TAKE(s, int32_t, n);
+    *face = HDI_TAKE(s, int32_t, m);
+    if (hdi_is_poly(from)) ptr = HDI_TAKE(s, int64_t, (int64_t)m + 1);
+    if (s->e->status < 0) return s->e->status;
+    for (f = 0, m = 0, n = 0; f < from->m; f++) {
+        const int64_t begin = hdi_face_begin(from, f), k = hdi_face_begin(from, f + 1) - begin;
+        if (ptr) ptr[m] = n;
+        if (!(from->area[f] > 0)) continue;
+        memcpy(tri + n, from->tri + begin, (size_t)k * sizeof *tri);
+        n += k;
+        (*face)[m++] = f;
+    }
+    if (ptr) ptr[m] = n;
+    hdi_mesh_clear(to, NULL, from->n, tri, m);
+    to->ptr = ptr;
+    to->face = *face;
+    to->lambda = from->lambda;
+    return hdi_mesh_take(to, s);
+}
+
+static hd_status hdi_moving_make(hd_laplacian *lap, const hdi_mesh *from, hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
-    const uint64_t m = (uint64_t)lap->mesh.n_faces_used;
     hdi_moving *x = hdi_moving_new(lap, e);
-    int32_t f, q;
-    if (!x) return hdi_scope_end(&s);
-    x->tri = HDI_TAKE(&s, int32_t, 3 * m);
-    x->face = HDI_TAKE(&s, int32_t, m);
-    x->place = HDI_TAKE(&s, int64_t, 6 * m);
-    x->cot = HDI_TAKE(&s, double, 3 * m);
-    x->area = HDI_TAKE(&s, double, m);
-    x->mass = HDI_TAKE(&s, double, lap->n);
-    x->border = HDI_TAKE(&s, int32_t, lap->n_active);
-    for (f = 0; f < mesh->m && e->status >= 0; f++) {
-        int32_t *v = x->tri + hdi_triple(x->m);
-        if (!(mesh->area[f] > 0)) continue;
-        memcpy(v, mesh->tri + hdi_triple(f), 3 * sizeof *v);
-        x->face[x->m] = mesh->face ? mesh->face[f] : f;
-        for (q = 0; q < 3; q++) {
-            const int32_t i = lap->row[v[q]], j = lap->row[v[hdi_next3[q]]];
-            x->place[2 * (hdi_triple(x->m) + q)] = hdi_lap_entry(lap, i, j);
-            x->place[2 * (hdi_triple(x->m) + q) + 1] = hdi_lap_entry(lap, j, i);
-        }
-        x->m++;
-    }
-    return hdi_moving_keep(x, &s);
-}
-
-/* Has each row's vertex a mass? */
-static hd_status hdi_moving_masses(const hd_laplacian *lap, hd_error *e) {
-    const double *mass = lap->moving->mass;
-    int32_t i;
-    for (i = 0; i < lap->n_active; i++)
-        if (!(mass[lap->vertex[i]] > 0))
-            return hdi_fail_face(e, HD_ERR_EMPTY, "update: no face at the vertex has an area any more", -1,
-                                 lap->vertex[i], mass[lap->vertex[i]]);
-    return HD_OK;
-}
-
-/* Counts the edges of faces that have an area and returns their mean length. L holds the counts before it
- * gets its values: entry (i,j) that of faces which run from i to j. */
-static double hdi_moving_edges(hd_laplacian *lap) {
-    const hdi_moving *x = lap->moving;
-    hdi_edge_tally tally = {0, 0, 0, 0, 0};
-    double *L = lap->L.val;
-    int32_t f, i, q;
-    int64_t p;
-    memset(L, 0, (size_t)lap->L.nnz * sizeof *L);
-    for (f = 0; f < x->m; f++)
-        for (q = 0; q < 3 && x->area[f] > 0; q++) L[x->place[2 * (hdi_triple(f) + q)]]++;
-    hdi_fill_own(x->border, lap->n_active);
-    for (i = 0; i < lap->n_active; i++) {
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
-            const int32_t j = lap->L.col[p];
-            const double faces = j > i ? L[p] + L[hdi_lap_entry(lap, j, i)] : 0;
-            if (faces == 0) continue;
-            hdi_edge_count(&tally, (int64_t)faces, (int64_t)L[p], hdi_edge_length(lap->xyz, i, j));
-            if (faces == 1) hdi_unite(x->border, i, j);
-        }
-    }
-    hdi_edge_report(&tally, x->border, lap->n_active, &lap->mesh);
-    return tally.length / (double)tally.n_edges;
-}
-
-/* Off-diagonal entries from the faces, in the order of the assembly. */
-static void hdi_moving_sides(hd_laplacian *lap) {
-    const hdi_moving *x = lap->moving;
-    double *L = lap->L.val, *B = lap->B;
-    int32_t f, q;
-    memset(L, 0, (size_t)lap->L.nnz * sizeof *L);
-    if (B) memset(B, 0, (size_t)lap->L.nnz * sizeof *B);
-    for (f = 0; f < x->m; f++)
-        for (q = 0; q < 3 && x->area[f] > 0; q++) {      /* side q is opposite to corner q + 2 */
-            const int64_t *at = x->place + 2 * (hdi_triple(f) + q);
-            L[at[0]] -= x->cot[hdi_triple(f) + hdi_prev3[q]] / 2;
-            if (B) B[at[0]] += x->area[f];
-            L[at[1]] = L[at[0]];
-            if (B) B[at[1]] = B[at[0]];
-        }
-}
-
-/* Diagonals and masses from that. */
-static void hdi_moving_rows(hd_laplacian *lap) {
-    double *L = lap->L.val, *B = lap->B, length = 0;
-    int32_t i;
-    int64_t p, diagonal = 0;
-    lap->mesh.n_negative_weights = 0;
-    for (i = 0; i < lap->n_active; i++) {
-        double sum = 0;
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
-            const int32_t j = lap->L.col[p];
-            if (j == i) diagonal = p;
-            if (j == i) continue;
-            sum += L[p];
-            if (B) B[p] /= 12;
-            if (j < i) continue;
-            lap->mesh.n_negative_weights += L[p] > 0;
-            length += hdi_edge_length(lap->xyz, i, j);
-        }
-        L[diagonal] = -sum;
-        lap->mass[i] = lap->moving->mass[lap->vertex[i]];
-        if (B) B[diagonal] = lap->b_diag[i] = lap->mass[i] / 2;
-    }
-    lap->h = length / (double)lap->mesh.n_edges;
-}
-
-/* Takes up new places, and what the report says of faces measured anew. unused: left out from the start. */
-static void hdi_moving_tell(hd_laplacian *lap, const double *xyz, const hd_mesh_report *rep, int32_t unused) {
-    int32_t i;
-    for (i = 0; i < lap->n_active; i++) hdi_copy3(lap->xyz + hdi_triple(i), hdi_at3(xyz, lap->vertex[i]));
-    lap->mesh.n_zero_area = rep->n_zero_area + unused - lap->mesh.n_repeated_corner
-                          - lap->mesh.n_repeated_face;
-    lap->mesh.n_faces_used = rep->n_faces_used;
-    lap->mesh.smallest_angle = rep->smallest_angle;
-}
-
-/* Measures the faces and the masses of vertices anew. Nothing of the Laplacian changes before all is fine. */
-static hd_status hdi_lap_update(hd_laplacian *lap, const double *xyz, hd_error *e) {
-    hdi_moving *x = lap->moving;
-    hdi_face_tally tally;
     hd_mesh_report rep;
     hdi_mesh mesh;
-    const int32_t before = lap->mesh.n_faces_used;
-    double area, h = 0;
     int32_t f;
-    if (hdi_mesh_check(xyz, lap->n, NULL, 0, e) < 0) return e->status;
-    memset(&rep, 0, sizeof rep);
-    hdi_mesh_clear(&mesh, xyz, lap->n, x->tri, x->m);
-    mesh.face = x->face;
-    mesh.cot = x->cot;
-    mesh.area = x->area;
-    hdi_tally_clear(&tally);
-    for (f = 0; f < x->m; f++) x->area[f] = hdi_face_measure(&mesh, f, x->cot + hdi_triple(f), &tally);
-    if (hdi_tally_report(&tally, x->m, &rep, e) < 0) return e->status;
-    hdi_mesh_masses(&mesh, hdi_lap_lump(lap->kind), x->mass);
-    area = hdi_sum_areas(x->area, x->m);
-    if (hdi_moving_masses(lap, e) < 0 || hdi_lap_finite(area, 0, e) < 0) return e->status;
-    lap->area = area;
-    hdi_moving_tell(lap, xyz, &rep, lap->mesh.n_faces - x->m);
-    if (before < x->m || rep.n_faces_used < x->m) h = hdi_moving_edges(lap);   /* else all are edges */
-    hdi_moving_sides(lap);
-    hdi_moving_rows(lap);
-    if (h > 0) lap->h = h;
-    hdi_lap_renewed(lap);
-    return HD_OK;
-}
-
-static hd_status hdi_lap_triangles(hd_laplacian *lap, hdi_mesh *mesh, int updatable, hdi_scope *s) {
-    if (hdi_lap_mesh(lap, mesh, 1, s) < 0) return s->e->status;
-    /* element matrix area/12 (1 1' + I) >= 1/2 of its diagonal, area/12 I */
-    lap->b_ratio = lap->kind == HD_LAPLACIAN_FEM ? 0.5 : 1;
-    lap->conserves = 1;
-    return updatable ? hdi_moving_make(lap, mesh, s->e) : HD_OK;
-}
-
-/* ---- polygons ----
- * Of a face with k corners X [k x 3], edges E, middles of edges B_f, the difference D along the edges and
- * the vector area of length |f|,
- *     L_f = D'(B_f B_f'/|f| + lambda C C') D,
- * where C is an orthonormal basis of the kernel of the transposed edges projected along the vector area.
- * Deviations from Alexa and Wardetzky, all of form: D'B_f is half the differences of next but one
- * corners, g sqrt(|f|) here, which knows no origin; C C' = I - Q Q' with Q two columns, so that L_f = g
- * g' + lambda (D'D - w w') costs a few products an entry, no k x k block is ever made, and faces of
- * hundreds of corners are fine. Their M has a positive definite part for any lambda > 0; we take one
- * number for all faces. On triangles the second part is zero, and is not computed. */
-
-/* L_f between the different corners c and d of a face of k corners; beside: they share an edge of it. The
- * same to the last bit for (d, c). */
-static double hdi_poly_entry(const hdi_poly *poly, int64_t c, int64_t d, int64_t k, int beside) {
-    const double *u = poly->w + 2 * c, *v = poly->w + 2 * d,
-                 first = hdi_dot3(poly->g + 3 * c, poly->g + 3 * d);
-    return k == 3 ? first : first - poly->lambda * (beside + (u[0] * v[0] + u[1] * v[1]));
-}
-
-/* Distinct vertices of the faces at v, v itself first, as rows of lap, unsorted, into col. mark
- * [n_active] as in hdi_product_row. Returns how many. */
-static int64_t hdi_poly_ring(const hdi_poly *poly, const hd_laplacian *lap, int32_t v,
-                             int32_t *mark, int32_t *col) {
-    const int32_t i = lap->row[v];
-    int64_t p, d, n = 1;
-    mark[i] = i;
-    col[0] = i;
-    for (p = poly->corner_ptr[v]; p < poly->corner_ptr[v + 1]; p++) {
-        const int32_t f = poly->face[poly->corner[p]];
-        for (d = poly->ptr[f]; d < poly->ptr[f + 1]; d++) {
-            const int32_t j = lap->row[poly->idx[d]];
-            if (mark[j] == i) continue;
-            mark[j] = i;
-            col[n++] = j;
-        }
-    }
-    return n;
-}
-
-/* The pattern of L, columns ascending. mark [n_active]; col [n_active], work [n_active] serve rows of any
- * length. */
-static hd_status hdi_poly_pattern(hd_laplacian *lap, const hdi_poly *poly, int32_t *mark,
-                                  hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
-    int32_t *col = HDI_TAKE(&s, int32_t, lap->n_active), i;
-    uint64_t *work = HDI_TAKE(&s, uint64_t, 2 * (int64_t)lap->n_active);
-    int64_t nnz = 0;
-    hd_csr L;
-    if (e->status < 0) return hdi_scope_end(&s);
-    hdi_fill_i32(mark, lap->n_active, -1);
-    for (i = 0; i < lap->n_active; i++) nnz += hdi_poly_ring(poly, lap, lap->vertex[i], mark, col);
-    L = hdi_csr_take(&s, lap->n_active, lap->n_active, nnz, 1);
-    if (e->status < 0) return hdi_scope_end(&s);
-    lap->L = hdi_csr_keep(&s, L);
-    hdi_fill_i32(mark, lap->n_active, -1);
-    for (i = 0; i < lap->n_active; i++) {
-        const int64_t begin = lap->L.row_ptr[i], n = hdi_poly_ring(poly, lap, lap->vertex[i], mark, col);
-        hdi_sort_indices(col, n, work);
-        memcpy(lap->L.col + begin, col, (size_t)n * sizeof *col);
-        lap->L.row_ptr[i + 1] = begin + n;
-    }
-    return hdi_scope_end(&s);
-}
-
-/* Work arrays of a row: of each entry its place, how many faces it is an edge of, and in how many of them
- * the edge runs from the row's vertex to the other one. */
-typedef struct hdi_poly_work {
-    int64_t *place;             /* [n_active] where a column stands in this row */
-    int32_t *count, *forward;   /* [widest row] */
-} hdi_poly_work;
-
-/* Values of row i, and the faces along each of its edges. Both rows of a pair add in the order of the
- * faces, so that L is symmetric to the last bit. */
-static void hdi_poly_row(hd_laplacian *lap, const hdi_poly *poly, int32_t i,
-                         const hdi_poly_work *work) {
-    const int32_t v = lap->vertex[i];
-    const int64_t begin = lap->L.row_ptr[i], n = lap->L.row_ptr[i + 1] - begin;
-    double *L = lap->L.val + begin, sum = 0;
-    int64_t p, d;
-    for (p = 0; p < n; p++) {
-        work->place[lap->L.col[begin + p]] = p;
-        L[p] = 0;
-        work->count[p] = work->forward[p] = 0;
-    }
-    for (p = poly->corner_ptr[v]; p < poly->corner_ptr[v + 1]; p++) {
-        const int64_t c = poly->corner[p], before = hdi_poly_before(poly, c), after = hdi_poly_after(poly, c);
-        const int32_t f = poly->face[c];
-        for (d = poly->ptr[f]; d < poly->ptr[f + 1]; d++) {
-            const int64_t at = work->place[lap->row[poly->idx[d]]];
-            const int beside = d == before || d == after;
-            if (d == c) continue;
-            L[at] += hdi_poly_entry(poly, c, d, poly->ptr[f + 1] - poly->ptr[f], beside);
-            work->count[at] += beside;
-            work->forward[at] += d == after;
-        }
-    }
-    for (p = 0; p < n; p++)
-        if (lap->L.col[begin + p] != i) sum += L[p];
-    L[work->place[i]] = -sum;
-}
-
-/* Counts the edges of row i; boundary edges are united in border. An entry without a face is a diagonal
- * of polygons. */
-static void hdi_poly_row_edges(hd_laplacian *lap, const double *xyz, int32_t i,
-                               const hdi_poly_work *work, hdi_edge_tally *all, int32_t *border) {
-    const int64_t begin = lap->L.row_ptr[i];
-    char *mark = hdi_lap_border(lap);
-    hdi_edge_tally tally = {0, 0, 0, 0, 0};
-    int64_t p;
-    for (p = begin; p < lap->L.row_ptr[i + 1]; p++) {
-        const int32_t j = lap->L.col[p], faces = work->count[p - begin];
-        if (j <= i) continue;
-        lap->mesh.n_negative_weights += lap->L.val[p] > 0;
-        if (faces == 0) continue;
-        hdi_edge_count(&tally, faces, work->forward[p - begin],
-                       hdi_edge_length(xyz, lap->vertex[i], lap->vertex[j]));
-        if (faces == 1) hdi_unite(border, i, j);
-        if (faces == 1 && mark) mark[lap->vertex[i]] = mark[lap->vertex[j]] = 1;
-    }
-    hdi_edge_tally_add(all, &tally);
-}
-
-static void hdi_poly_work_take(hdi_poly_work *work, const hd_laplacian *lap, hdi_scope *s) {
-    const int64_t widest = hdi_fullest(lap->L.row_ptr, lap->n_active);
-    work->place = HDI_TAKE(s, int64_t, lap->n_active);
-    work->count = HDI_TAKE(s, int32_t, widest);
-    work->forward = HDI_TAKE(s, int32_t, widest);
-}
-
-/* Values of L, edges and h. border [n_active]: work. */
-static void hdi_poly_values(hd_laplacian *lap, const hdi_poly *poly, const hdi_poly_work *work,
-                            int32_t *border) {
-    hdi_edge_tally tally = {0, 0, 0, 0, 0};
-    int32_t i;
-    hdi_fill_own(border, lap->n_active);
-    lap->mesh.n_negative_weights = 0;
-    for (i = 0; i < lap->n_active; i++) {
-        hdi_poly_row(lap, poly, i, work);
-        hdi_poly_row_edges(lap, poly->xyz, i, work, &tally, border);
-    }
-    hdi_edge_report(&tally, border, lap->n_active, &lap->mesh);
-    lap->h = tally.length / (double)tally.n_edges;
-}
-
-/* Area of each face to its corners in equal parts. */
-static double hdi_poly_mass(const hdi_poly *poly, int32_t v) {
-    double sum = 0;
-    int64_t p;
-    for (p = poly->corner_ptr[v]; p < poly->corner_ptr[v + 1]; p++) {
-        const int32_t f = poly->face[poly->corner[p]];
-        sum += poly->area[f] / (double)(poly->ptr[f + 1] - poly->ptr[f]);
-    }
-    return sum;
-}
-
-/* Polygons that move: copies of the faces, and work. */
-typedef struct hdi_moving_poly {
-    hdi_poly poly;
-    char *left_out;             /* [m] from the start */
-    int32_t n_left_out;
-    int32_t *mark;              /* [n] */
-    hdi_poly_work work;
-} hdi_moving_poly;
-
-static hd_status hdi_moving_poly_make(hd_laplacian *lap, const hdi_poly *from, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
-    const int32_t m = from->m;
-    const int64_t n_corners = from->ptr[m], n = lap->n;
-    hdi_moving *x = hdi_moving_new(lap, e);
-    hdi_moving_poly *z = HDI_TAKE(&s, hdi_moving_poly, 1);
-    int64_t *ptr = HDI_TAKE(&s, int64_t, (int64_t)m + 1);
-    int32_t *idx = HDI_TAKE(&s, int32_t, n_corners), f;
-    if (!x || !idx) return hdi_scope_end(&s);
-    z->poly = *from;
-    z->poly.area = HDI_TAKE(&s, double, m);
-    z->poly.g = HDI_TAKE(&s, double, 3 * n_corners);
-    z->poly.w = HDI_TAKE(&s, double, 2 * n_corners);
-    z->poly.face = HDI_TAKE(&s, int32_t, n_corners);
-    z->poly.corner_ptr = HDI_TAKE(&s, int64_t, n + 1);
-    z->poly.corner = HDI_TAKE(&s, int32_t, n_corners);
-    z->left_out = HDI_TAKE(&s, char, m);
-    z->mark = HDI_TAKE(&s, int32_t, n);
-    x->border = HDI_TAKE(&s, int32_t, lap->n_active);
-    x->mass = HDI_TAKE(&s, double, n);
-    hdi_poly_work_take(&z->work, lap, &s);
-    if (e->status < 0) return hdi_scope_end(&s);
-    memcpy(ptr, from->ptr, ((size_t)m + 1) * sizeof *ptr);
-    memcpy(idx, from->idx, (size_t)n_corners * sizeof *idx);
-    memcpy(z->poly.face, from->face, (size_t)n_corners * sizeof *idx);
-    z->poly.ptr = ptr;
-    z->poly.idx = idx;
-    z->n_left_out = 0;
-    for (f = 0; f < m; f++) z->n_left_out += z->left_out[f] = !(from->area[f] > 0);
-    x->poly = z;
+    if (!x || hdi_moving_faces(&mesh, &x->face, from, &s) < 0) return hdi_scope_end(&s);
+    for (f = 0; f < mesh.m; f++) mesh.area[f] = 1;         /* all of them are listed */
+    hdi_mesh_of(&mesh);
+    hdi_mesh_corners(&mesh);
+    (void)hdi_rows_begin(&x->fill, &mesh, &rep, &s);
+    x->fill.lump = hdi_lap_lump(lap->kind);
     return hdi_moving_keep(x, &s);
 }
 
-/* As hdi_lap_update. L is made as in a new Laplacian, from the same sums. */
-static hd_status hdi_moving_poly_update(hd_laplacian *lap, const double *xyz, hd_error *e) {
-    hdi_moving *x = lap->moving;
-    hdi_moving_poly *z = x->poly;
-    hdi_poly *poly = &z->poly;
-    hd_mesh_report rep;
-    double area;
-    int32_t f, i;
-    memset(&rep, 0, sizeof rep);
-    rep.smallest_angle = 4;                      /* above any */
-    poly->xyz = xyz;
-    if (hdi_mesh_check(xyz, lap->n, NULL, 0, e) < 0) return e->status;
-    hdi_fill_i32(z->mark, lap->n, -1);
-    for (f = 0; f < poly->m; f++) {
-        poly->area[f] = 0;
-        if (!z->left_out[f] && hdi_poly_measure(poly, f, z->mark, &rep, e) < 0) return e->status;
-        rep.n_faces_used += poly->area[f] > 0;
+/* Has each vertex that had a face still one with an area? */
+static hd_status hdi_moving_masses(const hdi_mesh *mesh, hd_error *e) {
+    int64_t p = 0;
+    int32_t v;
+    for (v = 0; v < mesh->n; v++) {
+        int alive = mesh->at[v] == mesh->at[v + 1];
+        for (; p < mesh->at[v + 1]; p++) alive |= mesh->area[hdi_corner_face(mesh, mesh->corner[p])] > 0;
+        if (!alive)
+            return hdi_fail_face(e, HD_ERR_EMPTY, "update: no face at the vertex has an area any more", -1,
+                                 v, 0);
     }
-    hdi_poly_corners(poly);
-    for (i = 0; i < lap->n; i++) x->mass[i] = hdi_poly_mass(poly, i);
-    area = hdi_sum_areas(poly->area, poly->m);
-    if (hdi_moving_masses(lap, e) < 0 || hdi_lap_finite(area, 0, e) < 0) return e->status;
-    hdi_moving_tell(lap, xyz, &rep, z->n_left_out);
+    return HD_OK;
+}
+
+/* Measures the faces anew and fills the rows again. Nothing of the Laplacian changes before all is fine. */
+static hd_status hdi_lap_update(hd_laplacian *lap, const double *xyz, hd_error *e) {
+    hdi_scope none = hdi_scope_begin(lap->context, e);
+    hdi_rows *x = &lap->moving->fill;
+    hd_mesh_report *to = &lap->mesh, rep;
+    double area;
+    int32_t i;
+    if (hdi_mesh_check(xyz, lap->n, NULL, 0, e) < 0) return e->status;
+    x->mesh.xyz = xyz;
+    memset(&rep, 0, sizeof rep);
+    if (hdi_faces_measure(&x->mesh, &rep, &none) < 0 || hdi_moving_masses(&x->mesh, e) < 0) return e->status;
+    area = hdi_sum_areas(x->mesh.area, x->mesh.m);
+    if (hdi_lap_finite(area, 0, e) < 0) return e->status;
+    hdi_lap_values(lap, x);
     lap->area = area;
-    for (i = 0; i < lap->n_active; i++) lap->mass[i] = x->mass[lap->vertex[i]];
-    hdi_poly_values(lap, poly, &z->work, x->border);
+    lap->h = hdi_rows_report(x, to);
+    for (i = 0; i < lap->n_active; i++) hdi_copy3(lap->xyz + hdi_triple(i), hdi_at3(xyz, lap->vertex[i]));
+    to->n_faces_used = rep.n_faces_used;
+    to->n_zero_area = to->n_faces - rep.n_faces_used - to->n_repeated_corner - to->n_repeated_face;
+    to->smallest_angle = rep.smallest_angle;
+    x->mesh.xyz = NULL;
     hdi_lap_renewed(lap);
     return HD_OK;
 }
 
-/* poly: xyz, ptr, idx, n, m and lambda set, the input checked. What is known of the faces then lives in
- * keep. */
-static hd_status hdi_lap_poly(hd_laplacian *lap, hdi_poly *poly, hdi_scope *keep) {
-    hd_error *e = keep->e;
+/* Triangles or polygons as they are. */
+static hd_status hdi_lap_plain(hd_laplacian *lap, const hdi_mesh *given, int updatable, hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
-    double *vertex_mass;
-    hdi_poly_work work;
-    int32_t *mark, v;
-    if (hdi_poly_make(poly, &lap->mesh, keep) < 0) return hdi_scope_end(&s);
-    vertex_mass = HDI_TAKE(&s, double, lap->n);
-    if (!vertex_mass) return hdi_scope_end(&s);
-    for (v = 0; v < lap->n; v++) vertex_mass[v] = hdi_poly_mass(poly, v);
-    if (hdi_lap_rows(lap, vertex_mass, e) < 0 || hdi_progress(lap->context, "assemble", 0.3, e) < 0)
-        return hdi_scope_end(&s);
-    if (hdi_lap_places(lap, poly->xyz, e) < 0) return hdi_scope_end(&s);
-    mark = HDI_TAKE(&s, int32_t, lap->n_active);
-    if (!mark || hdi_poly_pattern(lap, poly, mark, e) < 0) return hdi_scope_end(&s);
-    hdi_poly_work_take(&work, lap, &s);
-    if (e->status < 0) return hdi_scope_end(&s);
-    hdi_poly_values(lap, poly, &work, mark);
-    lap->area = hdi_sum_areas(poly->area, poly->m);
-    if (hdi_progress(lap->context, "assemble", 0.8, e) < 0) return hdi_scope_end(&s);
-    lap->b_ratio = 1;
-    lap->conserves = 1;
-    return hdi_scope_end(&s);
-}
-
-static hd_status hdi_lap_polygons(hd_laplacian *lap, hdi_poly *poly, int updatable, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
-    if (hdi_lap_poly(lap, poly, &s) >= 0 && updatable) (void)hdi_moving_poly_make(lap, poly, e);
+    hdi_mesh mesh = *given;
+    if (hdi_lap_mesh(lap, &mesh, 1, &s) >= 0 && updatable) (void)hdi_moving_make(lap, &mesh, e);
     return hdi_scope_end(&s);
 }
 
@@ -8465,22 +8063,33 @@ static int32_t hdi_flat_copies(const hdi_flat *flat, int32_t f, double unit) {
 }
 
 /* Rows, L and B from intrinsic triangles that are Delaunay, with areas and cotangents but without
- * coordinates. */
-static hd_status hdi_lap_flat(hd_laplacian *lap, const hdi_mesh *flat, hdi_scope *s) {
-    const int full = lap->kind == HD_LAPLACIAN_FEM;
-    hd_error *e = s->e;
-    hdi_edges edges;
-    double *vertex_mass;
-    if (hdi_edges_flat(&edges, flat, full, s) < 0) return e->status;
-    vertex_mass = HDI_TAKE(s, double, flat->n);
-    if (!vertex_mass) return e->status;
-    hdi_mesh_masses(flat, hdi_lap_lump(lap->kind), vertex_mass);
-    if (hdi_lap_rows(lap, vertex_mass, e) < 0 || hdi_progress(lap->context, "assemble", 0.5, e) < 0)
-        return e->status;
+ * coordinates. xyz of the vertices of lap, which name numbers; NULL: their own. */
+static hd_status hdi_lap_flat(hd_laplacian *lap, const hdi_mesh *flat, const int32_t *name, const double *xyz,
+                              hdi_scope *s) {
+    hdi_mesh mesh = *flat;
+    hdi_rows x;
+    mesh.at = HDI_TAKE(s, int64_t, (int64_t)mesh.n + 1);
+    mesh.corner = HDI_TAKE(s, int32_t, hdi_triple(mesh.m));
+    if (s->e->status < 0) return s->e->status;
+    hdi_mesh_corners(&mesh);
+    if (hdi_rows_begin(&x, &mesh, &lap->mesh, s) < 0) return s->e->status;
+    x.name = name;
     /* The smallest eigenvalue of the element 1/2, 1/6; 1/6, 1/6 of corners v, v, w, and of that of three
      * corners. */
-    lap->b_ratio = !full ? 1 : lap->mesh.n_self_edges ? 1 - sqrt(1.0 / 3) : 0.5;
-    return hdi_lap_assemble(lap, &edges, e);
+    lap->b_ratio = lap->kind != HD_LAPLACIAN_FEM ? 1 : lap->mesh.n_self_edges ? 1 - sqrt(1.0 / 3) : 0.5;
+    return hdi_lap_assemble(lap, &x, xyz, 1, s->e);
+}
+
+/* Measures the faces of a mesh in s, and reports its edges. */
+static hd_status hdi_lap_edges(hd_laplacian *lap, hdi_mesh *mesh, hdi_scope *s) {
+    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
+    hdi_rows x;
+    if (hdi_mesh_make(mesh, &lap->mesh, s) < 0 || hdi_rows_begin(&x, mesh, &lap->mesh, &own) < 0)
+        return hdi_scope_end(&own);
+    hdi_parallel(s->ctx, x.strands, hdi_rows_task, &x);
+    (void)hdi_rows_report(&x, &lap->mesh);
+    hdi_rows_border(&x, lap);
+    return hdi_scope_end(&own);
 }
 
 /* (L, B) of the intrinsic Delaunay triangulation of a mesh, or of its cover: each sheet counts half. mesh,
@@ -8489,20 +8098,14 @@ static hd_status hdi_lap_unfold(hd_laplacian *lap, hdi_flat *flat, hdi_mesh *mes
                                 const hdi_intrinsic_task *task, hdi_scope *s) {
     hd_mesh_report *rep = &lap->mesh;
     hd_error *e = s->e;
-    hdi_edges edges;
-    hdi_mesh_wants want;
     memset(flat, 0, sizeof *flat);
-    memset(&want, 0, sizeof want);
-    want.border = hdi_lap_border(lap);
-    if (hdi_mesh_faces(mesh, &edges, &want, rep, s) < 0) return e->status;
+    if (hdi_lap_edges(lap, mesh, s) < 0) return e->status;
     if (rep->n_faces_used == 0) return hdi_fail(e, HD_ERR_EMPTY, "no vertex has mass");
     if (hdi_soup_of_mesh(&flat->soup, mesh, task->delta, rep, s) < 0) return e->status;
     if (hdi_soup_delaunay(&flat->mesh, &flat->soup, task->close, rep, s) < 0) return e->status;
-    if (hdi_lap_flat(lap, &flat->mesh, s) < 0 || hdi_lap_places(lap, mesh->xyz, e) < 0) return e->status;
     lap->area = flat->soup.total;
     lap->h = flat->soup.unit;
-    lap->conserves = 1;
-    return hdi_progress(lap->context, "assemble", 0.8, e);
+    return hdi_lap_flat(lap, &flat->mesh, NULL, mesh->xyz, s);
 }
 
 /* The triangles as they are, or with a task their intrinsic Delaunay triangulation. */
@@ -8512,7 +8115,7 @@ static hd_status hdi_lap_faces(hd_laplacian *lap, const hdi_mesh *given, const h
     hdi_mesh mesh = *given;
     hdi_flat flat;
     if (HDI_HAS_INTRINSIC && task) (void)hdi_lap_unfold(lap, &flat, &mesh, task, &s);
-    else (void)hdi_lap_triangles(lap, &mesh, updatable, &s);
+    else (void)hdi_lap_plain(lap, given, updatable, e);
     return hdi_scope_end(&s);
 }
 
@@ -8533,23 +8136,23 @@ static int hdi_intrinsic_opts(const hd_laplacian_opts *opts, hdi_intrinsic_task 
 }
 
 /* Errors of an update name the polygons that the triangles of x come from. of: room for all triangles. */
-static void hdi_moving_fans(hdi_moving *x, const hdi_poly *poly, int32_t *of) {
+static void hdi_moving_fans(hdi_moving *x, const hdi_mesh *poly, int32_t *of) {
     int64_t k, t = 0;
     int32_t f, i;
     for (f = 0; f < poly->m; f++)
         for (k = poly->ptr[f + 1] - poly->ptr[f]; k > 2; k--) of[t++] = f;
-    for (i = 0; i < x->m; i++) x->face[i] = of[x->face[i]];
+    for (i = 0; i < x->fill.mesh.m; i++) x->face[i] = of[x->face[i]];
 }
 
 /* The faces split as fans, for the operators of triangles. */
-static hd_status hdi_lap_fans(hd_laplacian *lap, const hdi_poly *poly,
+static hd_status hdi_lap_fans(hd_laplacian *lap, const hdi_mesh *poly,
                               const hdi_intrinsic_task *task, int updatable, hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
-    const int64_t m = hdi_poly_fans(poly->ptr, poly->idx, poly->m, NULL);
+    const int64_t m = hdi_poly_fans(poly->ptr, poly->tri, poly->m, NULL);
     int32_t *tri = HDI_TAKE(&s, int32_t, 3 * m);
     hdi_mesh mesh;
     if (!tri) return hdi_scope_end(&s);
-    hdi_poly_fans(poly->ptr, poly->idx, poly->m, tri);
+    hdi_poly_fans(poly->ptr, poly->tri, poly->m, tri);
     hdi_mesh_clear(&mesh, poly->xyz, lap->n, tri, (int32_t)m);
     if (hdi_lap_faces(lap, &mesh, task, updatable, e) < 0 && e->face >= 0)
         e->face = hdi_poly_face_of(poly->ptr, poly->m, e->face);
@@ -8777,7 +8380,7 @@ static hd_status hdi_lap_matrices(hd_laplacian *lap, const hd_csr *L, const hd_c
     for (i = 0; i < lap->n; i++)
         for (p = B->row_ptr[i]; p < B->row_ptr[i + 1]; p++)
             if (B->val[p] != 0) present[i] = 1;
-    if (hdi_lap_rows(lap, present, e) < 0) return hdi_scope_end(&s);
+    if (hdi_lap_rows(lap, present, NULL, e) < 0) return hdi_scope_end(&s);
     for (i = 0; i < lap->n_active; i++) nnz += hdi_pair_row(lap, L, B, lap->vertex[i], NULL, NULL, NULL);
     a = hdi_csr_take(&s, lap->n_active, lap->n_active, nnz, 1);
     Bx = HDI_TAKE(&s, double, nnz);
@@ -8803,11 +8406,9 @@ static hd_status hdi_lap_matrices(hd_laplacian *lap, const hd_csr *L, const hd_c
     return hdi_scope_end(&s);
 }
 
-/* Matrices whose values change: what to go back to after an error, and work. */
+/* Matrices whose values change: room for new ones, and work. */
 typedef struct hdi_moving_pair {
-    hd_laplacian before;
     double *L, *B, *mass, *b_diag;
-    double *full, *diag;        /* [nnz] B and [n_active] its diagonal where lap has none */
     double *root;               /* [n_active] see hdi_pair_measure */
 } hdi_moving_pair;
 
@@ -8818,30 +8419,11 @@ static hd_status hdi_moving_pair_make(hd_laplacian *lap, hd_error *e) {
     if (!x || !z) return hdi_scope_end(&s);
     z->L = HDI_TAKE(&s, double, lap->L.nnz);
     z->B = HDI_TAKE(&s, double, lap->L.nnz);
-    z->full = lap->B ? NULL : HDI_TAKE(&s, double, lap->L.nnz);
     z->mass = HDI_TAKE(&s, double, lap->n_active);
     z->b_diag = HDI_TAKE(&s, double, lap->n_active);
-    z->diag = HDI_TAKE(&s, double, lap->n_active);
     z->root = HDI_TAKE(&s, double, lap->n_active);
     if (e->status >= 0) x->pair = z;
     return hdi_moving_keep(x, &s);
-}
-
-/* Copies the values of lap to where an error finds them, or with `back` from there. */
-static void hdi_moving_pair_copy(hd_laplacian *lap, int back) {
-    hdi_moving_pair *z = lap->moving->pair;
-    const size_t n = (size_t)lap->n_active, nnz = (size_t)lap->L.nnz;
-    double *const here[] = {lap->L.val, lap->B, lap->mass, lap->b_diag};
-    double *const kept[] = {z->L, z->B, z->mass, z->b_diag};
-    const size_t count[] = {nnz, nnz, n, n};
-    int q;
-    for (q = 0; q < 4; q++)
-        if (here[q]) memcpy(back ? here[q] : kept[q], back ? kept[q] : here[q], count[q] * sizeof(double));
-}
-
-static void hdi_moving_pair_restore(hd_laplacian *lap) {
-    *lap = lap->moving->pair->before;
-    hdi_moving_pair_copy(lap, 1);
 }
 
 /* The values of a matrix over vertices into val, on the pattern of lap. */
@@ -8864,6 +8446,12 @@ static hd_status hdi_pair_refill(const hd_laplacian *lap, const hd_csr *a, doubl
         }
     }
     return HD_OK;
+}
+
+/* The entry (i,j) of L, which is there. */
+static int64_t hdi_lap_entry(const hd_laplacian *lap, int32_t i, int32_t j) {
+    const int64_t begin = lap->L.row_ptr[i];
+    return begin + hdi_lower_bound(lap->L.col + begin, lap->L.row_ptr[i + 1] - begin, j);
 }
 
 static hd_status hdi_pair_symmetric(const hd_laplacian *lap, const double *val, hd_error *e) {
@@ -8892,161 +8480,130 @@ static hd_status hdi_pair_inert(const hd_laplacian *lap, const hd_csr *B, hd_err
     return HD_OK;
 }
 
-/* New values, all but components and a proof about B. The matrices are checked by rows. After an error lap is
- * as it was. */
-static hd_status hdi_pair_update(hd_laplacian *lap, const hd_csr *L, const hd_csr *B, hd_error *e) {
-    hdi_moving_pair *z = lap->moving->pair;
-    const int full = lap->B != NULL;
+/* next becomes lap with new values, all but components and a proof about B. The matrices are checked
+ * by rows. */
+static hd_status hdi_pair_next(hd_laplacian *next, const hd_laplacian *lap, const hd_csr *L, const hd_csr *B,
+                               hd_error *e) {
+    const hdi_moving_pair *z = lap->moving->pair;
     int diagonal = 1;
-    z->before = *lap;
-    hdi_moving_pair_copy(lap, 0);
-    if (!full) {                                 /* for a while */
-        lap->B = z->full;
-        lap->b_diag = z->diag;
-    }
-    lap->area = 0;
-    if (hdi_pair_inert(lap, B, e) >= 0 && hdi_pair_refill(lap, L, lap->L.val, e) >= 0 &&
-        hdi_pair_refill(lap, B, lap->B, e) >= 0 && hdi_pair_symmetric(lap, lap->L.val, e) >= 0 &&
-        hdi_pair_symmetric(lap, lap->B, e) >= 0 && hdi_pair_measure(lap, z->root, &diagonal, e) >= 0)
-        (void)hdi_pair_semidefinite(lap, z->root, e);
-    if (e->status >= 0 && !full && !diagonal)
-        hdi_fail(e, HD_ERR_STRUCTURE, "update of matrices: B was diagonal, and is not any more");
-    if (e->status < 0) {
-        hdi_moving_pair_restore(lap);
+    *next = *lap;
+    next->L.val = z->L;
+    next->B = z->B;
+    next->mass = z->mass;
+    next->b_diag = z->b_diag;
+    next->area = 0;
+    if (hdi_pair_inert(lap, B, e) < 0 || hdi_pair_refill(lap, L, z->L, e) < 0 ||
+        hdi_pair_refill(lap, B, z->B, e) < 0 || hdi_pair_symmetric(lap, z->L, e) < 0 ||
+        hdi_pair_symmetric(lap, z->B, e) < 0 || hdi_pair_measure(next, z->root, &diagonal, e) < 0 ||
+        hdi_pair_semidefinite(next, z->root, e) < 0)
         return e->status;
-    }
-    lap->B = z->before.B;
-    lap->b_diag = z->before.b_diag;
+    if (!lap->B && !diagonal)
+        return hdi_fail(e, HD_ERR_STRUCTURE, "update of matrices: B was diagonal, and is not any more");
+    if (lap->B) return HD_OK;
+    next->B = NULL;
+    next->b_diag = next->mass;
     return HD_OK;
+}
+
+/* Takes the values of next, and all that follows from them. */
+static void hdi_pair_take(hd_laplacian *lap, const hd_laplacian *next) {
+    const size_t rows = (size_t)lap->n_active * sizeof(double), all = (size_t)lap->L.nnz * sizeof(double);
+    memcpy(lap->L.val, next->L.val, all);
+    memcpy(lap->mass, next->mass, rows);
+    if (lap->B) memcpy(lap->B, next->B, all);
+    if (lap->B) memcpy(lap->b_diag, next->b_diag, rows);
+    lap->h = next->h;
+    lap->area = next->area;
+    lap->b_ratio = next->b_ratio;
+    lap->conserves = next->conserves;
+    hdi_lap_renewed(lap);
 }
 
 /* ---- vertices held at zero ----
  * Dirichlet conditions: what is held has no row and no column, in L nor in B. What is left is again a pair, L
  * positive semi-definite and B >= b_ratio diag(B), as parts of the whole that are cut out by rows and
- * columns. */
+ * columns. Meshes leave them out while their rows are filled, points and matrices are cut here. */
 
-/* The rows of the whole on the columns that are left. Fills all of L, B, mass and b_diag. */
-static void hdi_held_values(hd_laplacian *lap, const hd_laplacian *whole) {
-    int64_t p, q = 0;
-    int32_t i;
-    for (i = 0; i < lap->n_active; i++) {
-        const int32_t from = whole->row[lap->vertex[i]];
+/* The rows of the whole on the columns that are left, into lap, which may be the whole itself. Fills all of
+ * L, B, mass, b_diag, xyz, vertex and row. */
+static void hdi_held_cut(hd_laplacian *lap, const hd_laplacian *whole) {
+    const hdi_holding *x = lap->holding;
+    const int32_t n = whole->n_active;
+    int64_t p = 0, q = 0;
+    int32_t i, k = 0;
+    for (i = 0; i < n; i++) lap->row[whole->vertex[i]] = x->mark[whole->vertex[i]] ? HD_ROW_HELD : k++;
+    for (i = 0; i < n; i++) {
+        const int32_t v = whole->vertex[i], j = lap->row[v];
+        const int64_t end = whole->L.row_ptr[i + 1];
         double sum = 0;
-        for (p = whole->L.row_ptr[from]; p < whole->L.row_ptr[from + 1]; p++) {
-            const int32_t j = lap->row[whole->vertex[whole->L.col[p]]];
-            if (j < 0) continue;
-            lap->L.col[q] = j;
+        x->leak[v] = 0;
+        for (; p < end; p++) {
+            const int32_t c = lap->row[whole->vertex[whole->L.col[p]]];
+            if (c < 0) x->leak[v] |= whole->L.val[p] != 0;
+            if (c < 0 || j < 0) continue;
+            lap->L.col[q] = c;
             lap->L.val[q] = whole->L.val[p];
             if (lap->B) sum += lap->B[q] = whole->B[p];
             q++;
         }
-        lap->L.row_ptr[i + 1] = q;
-        lap->mass[i] = lap->B ? sum : whole->mass[from];
-        lap->b_diag[i] = whole->b_diag[from];
+        if (j < 0) continue;
+        lap->L.row_ptr[j + 1] = q;
+        lap->mass[j] = lap->B ? sum : whole->mass[i];
+        lap->b_diag[j] = whole->b_diag[i];
+        if (lap->xyz) hdi_copy3(lap->xyz + hdi_triple(j), hdi_at3(whole->xyz, i));
     }
+    for (i = 0; i < n; i++)
+        if (lap->row[whole->vertex[i]] >= 0) lap->vertex[lap->row[whole->vertex[i]]] = whole->vertex[i];
+    lap->L.n_rows = lap->L.n_cols = lap->n_active = k;
+    lap->L.nnz = q;
 }
 
-/* Does an entry of L lead from this row to a vertex that is held? */
-static int hdi_held_leaks(const hd_laplacian *lap, const hd_laplacian *whole, int32_t i) {
-    const int32_t from = whole->row[lap->vertex[i]];
-    int64_t p;
-    for (p = whole->L.row_ptr[from]; p < whole->L.row_ptr[from + 1]; p++)
-        if (whole->L.val[p] != 0 && lap->row[whole->vertex[whole->L.col[p]]] < 0) return 1;
-    return 0;
-}
-
-/* Which components conserve their heat. Masses are known. An infinite one takes the constants out of all
- * formulas: their part of K_t f is the heat divided by the mass. */
-static void hdi_held_components(hd_laplacian *lap, const hd_laplacian *whole) {
-    int32_t i, leaks = 0;
-    lap->conserves = whole->conserves;
-    for (i = 0; i < lap->n_active && whole->conserves; i++) {
-        double *mass = lap->component_mass + lap->component[i];
-        if (*mass < 0 || !hdi_held_leaks(lap, whole, i)) continue;
-        *mass = -HUGE_VAL;                       /* not what a sum that overflows is */
-        leaks++;
-    }
-    for (i = 0; i < lap->n_components; i++) lap->component_mass[i] = fabs(lap->component_mass[i]);
-    if (leaks > 0) lap->conserves = leaks < lap->n_components ? 2 : 0;
-    if (!lap->conserves) hdi_lap_component_masses(lap);
-}
-
-/* Rows for the vertices with mass that are not held. */
-static hd_status hdi_held_rows(hd_laplacian *lap, const hd_laplacian *whole, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
-    const char *mark = lap->holding->mark;
-    double *left = HDI_TAKE(&s, double, lap->n);
-    int32_t v, n = 0;
-    if (!left) return hdi_scope_end(&s);
-    for (v = 0; v < lap->n; v++) {
-        left[v] = whole->row[v] >= 0 && !mark[v];
-        n += left[v] > 0;
-    }
-    if (n == 0) hdi_fail(e, HD_ERR_EMPTY, "laplacian: all vertices with mass are held at zero");
-    if (n == 0 || hdi_lap_rows(lap, left, e) < 0) return hdi_scope_end(&s);
-    lap->mesh.n_inert = whole->mesh.n_inert;
-    for (v = 0; v < lap->n; v++)
-        if (mark[v]) lap->row[v] = HD_ROW_HELD;
-    return hdi_scope_end(&s);
-}
-
-/* Room for the pair and its places, if the whole has some, and the values. */
-static hd_status hdi_held_fill(hd_laplacian *lap, const hd_laplacian *whole, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
-    const int32_t n = lap->n_active;
-    int64_t nnz = 0, p;
-    int32_t i;
-    double *B, *b_diag, *xyz;
-    hd_csr L;
-    for (i = 0; i < whole->n_active; i++)
-        for (p = whole->L.row_ptr[i]; p < whole->L.row_ptr[i + 1] && lap->row[whole->vertex[i]] >= 0; p++)
-            nnz += lap->row[whole->vertex[whole->L.col[p]]] >= 0;
-    L = hdi_csr_take(&s, n, n, nnz, 1);
-    B = whole->B ? HDI_TAKE(&s, double, nnz) : NULL;
-    b_diag = whole->B ? HDI_TAKE(&s, double, n) : NULL;
-    xyz = whole->xyz ? HDI_TAKE(&s, double, hdi_triple(n)) : NULL;
-    if (e->status < 0) return hdi_scope_end(&s);
-    lap->L = hdi_csr_keep(&s, L);
-    lap->B = (double *)hdi_keep(&s, B);
-    lap->xyz = (double *)hdi_keep(&s, xyz);
-    if (b_diag) lap->b_diag = (double *)hdi_keep(&s, b_diag);
-    for (i = 0; i < n && xyz; i++)
-        hdi_copy3(xyz + hdi_triple(i), hdi_at3(whole->xyz, whole->row[lap->vertex[i]]));
-    hdi_held_values(lap, whole);
-    return hdi_scope_end(&s);
-}
-
-/* The pair of lap becomes that of a Laplacian of its own, the whole. */
+/* The pair of lap becomes that of a Laplacian of its own, the whole; lap has room for as much. */
 static hd_laplacian *hdi_held_whole(hd_laplacian *lap, hd_error *e) {
-    hd_laplacian *whole = (hd_laplacian *)hdi_alloc(lap->context, 1, sizeof *whole, e);
-    if (!whole) return NULL;
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    hd_laplacian *whole = HDI_TAKE(&s, hd_laplacian, 1);
+    const int64_t n = lap->n_active, nnz = lap->L.nnz;
+    hd_csr L = hdi_csr_take(&s, lap->n_active, lap->n_active, nnz, 1);
+    double *B = lap->B ? HDI_TAKE(&s, double, nnz) : NULL, *mass = HDI_TAKE(&s, double, n);
+    double *b_diag = lap->B ? HDI_TAKE(&s, double, n) : mass;
+    int32_t *vertex = HDI_TAKE(&s, int32_t, n), *row = HDI_TAKE(&s, int32_t, lap->n);
+    if (e->status < 0) {
+        (void)hdi_scope_end(&s);
+        return NULL;
+    }
+    s.n = 0;                                     /* all of it is kept */
     *whole = *lap;
     whole->holding = NULL;
-    memset(&lap->L, 0, sizeof lap->L);
-    lap->B = lap->mass = lap->b_diag = lap->xyz = NULL;
-    lap->vertex = lap->row = NULL;
+    memcpy(row, lap->row, (size_t)lap->n * sizeof *row);
+    lap->L = L;
+    lap->B = B;
+    lap->mass = mass;
+    lap->b_diag = b_diag;
+    lap->vertex = vertex;
+    lap->row = row;
     lap->moving = NULL;
     return lap->holding->whole = whole;
 }
 
-/* Ends the making of a Laplacian, which holds no vertex so far: takes out those that are marked, and finds
- * the components of what is left. */
+/* Ends the making of a Laplacian: takes out the vertices to hold that still have rows, and finds the
+ * components of what is left. */
 static hd_status hdi_lap_hold(hd_laplacian *lap, hd_error *e) {
     hdi_holding *x = lap->holding;
-    const hd_laplacian *whole = NULL;
+    const hd_laplacian *whole = lap;
     int32_t v, rows = 0;
     for (v = 0; v < lap->n && x; v++) {
         lap->n_held += x->mark[v];
         rows += x->mark[v] && lap->row[v] >= 0;
         if (x->mark[v] && lap->row[v] < 0) lap->row[v] = HD_ROW_HELD;
     }
-    if (rows > 0) {
-        whole = hdi_held_whole(lap, e);
-        if (!whole || hdi_held_rows(lap, whole, e) < 0 || hdi_held_fill(lap, whole, e) < 0) return e->status;
-    }
+    if (x) x->conserves = lap->conserves;
+    if (rows == lap->n_active) return hdi_held_all(e);
+    if (rows > 0 && lap->moving) whole = hdi_held_whole(lap, e);
+    if (!whole) return e->status;
+    if (rows > 0) hdi_held_cut(lap, whole);
     if (hdi_lap_components(lap, e) < 0) return e->status;
-    if (whole) hdi_held_components(lap, whole);
-    if (whole && whole->moving) return HD_OK;
+    hdi_held_components(lap);
+    if (whole != lap || (lap->moving && !lap->moving->pair)) return HD_OK;
     hdi_holding_free(x, lap->context);
     lap->holding = NULL;
     return HD_OK;
@@ -9054,23 +8611,19 @@ static hd_status hdi_lap_hold(hd_laplacian *lap, hd_error *e) {
 
 /* What updates change: the Laplacian itself, or the one that holds none. */
 static hd_laplacian *hdi_lap_moved(hd_laplacian *lap) {
-    return lap->holding ? lap->holding->whole : lap;
+    return lap->holding && lap->holding->whole ? lap->holding->whole : lap;
 }
 
 /* Takes over what an update has changed in the whole. */
 static void hdi_held_update(hd_laplacian *lap) {
     const hd_laplacian *whole = hdi_lap_moved(lap);
-    int32_t i;
     if (whole == lap) return;
     lap->h = whole->h;
     lap->area = whole->area;
     lap->b_ratio = whole->b_ratio;
-    lap->mesh = whole->mesh;
-    for (i = 0; i < lap->n_active && lap->xyz; i++)
-        hdi_copy3(lap->xyz + hdi_triple(i), hdi_at3(whole->xyz, whole->row[lap->vertex[i]]));
-    hdi_held_values(lap, whole);
+    lap->holding->conserves = whole->conserves;
+    hdi_held_cut(lap, whole);
     hdi_lap_renewed(lap);
-    hdi_held_components(lap, whole);
 }
 
 /* ---- pairs renumbered ---- */
@@ -9083,110 +8636,40 @@ static void *hdi_copy(const void *from, uint64_t count, size_t size, hd_context 
 
 enum { HDI_ROWS_AHEAD = 8 };     /* rows of a matrix taken in any order are asked for so many rows early */
 
-/* Rows up to this length are sorted by counting, for each entry, those that go before it: each row by itself,
- * so that threads can share them. One thread takes 1.1 to 1.35 times as long with this as by transposing. */
-enum { HDI_RANK_MOST = 32, HDI_RANK_ROWS = 4096 };
-
-typedef struct hdi_permute_job {
-    const hd_laplacian *lap;
-    const int32_t *perm, *inv;
-    hd_csr a;                    /* P L P', and P B P' */
-    double *B;
-    int64_t *fill;               /* [n + 1] */
-} hdi_permute_job;
-
-/* Fetches row i + HDI_ROWS_AHEAD. */
-static HDI_INLINE void hdi_permute_fetch(const hdi_permute_job *job, int64_t i, int64_t end) {
-    const hd_laplacian *lap = job->lap;
-    if (i + HDI_ROWS_AHEAD < end) {
-        const int64_t ahead = lap->L.row_ptr[job->perm[i + HDI_ROWS_AHEAD]];
-        HDI_PREFETCH(lap->L.col + ahead);
-        HDI_PREFETCH(lap->L.val + ahead);
-        if (lap->B) HDI_PREFETCH(lap->B + ahead);
-    }
-}
-
-/* Rows [begin,end), none longer than HDI_RANK_MOST. */
-static void hdi_permute_ranked(void *arg, int64_t begin, int64_t end) {
-    const hdi_permute_job *job = (const hdi_permute_job *)arg;
-    const hd_laplacian *lap = job->lap;
-    int32_t col[HDI_RANK_MOST], k, j, b;
-    int64_t i;
-    for (i = begin; i < end; i++) {
-        const int64_t from = lap->L.row_ptr[job->perm[i]], to = job->a.row_ptr[i];
-        const int32_t n = (int32_t)(job->a.row_ptr[i + 1] - to);
-        hdi_permute_fetch(job, i, end);
-        for (k = 0; k < n; k++) col[k] = job->inv[lap->L.col[from + k]];
-        for (; k % 8; k++) col[k] = INT32_MAX;
-        for (k = 0; k < n; k++) {
-            const int32_t own = col[k];
-            int32_t rank = 0;
-            int64_t q;
-            for (b = 0; b < n; b += 8)
-                for (j = 0; j < 8; j++) rank += col[b + j] < own;
-            q = to + rank;
-            job->a.col[q] = col[k];
-            job->a.val[q] = lap->L.val[from + k];
-            if (job->B) job->B[q] = lap->B[from + k];
-        }
-    }
-}
-
-/* All rows: entry (i, k) is put where (k, i) belongs, which is the same and leaves the columns of every row
- * ascending. */
-static void hdi_permute_transposed(const hdi_permute_job *job) {
-    const hd_laplacian *lap = job->lap;
-    const int32_t n = lap->n_active;
-    int32_t i;
-    int64_t p;
-    for (i = 0; i < n; i++) {
-        hdi_permute_fetch(job, i, n);
-        for (p = lap->L.row_ptr[job->perm[i]]; p < lap->L.row_ptr[job->perm[i] + 1]; p++) {
-            const int64_t q = job->fill[job->inv[lap->L.col[p]]]++;
-            job->a.col[q] = i;
-            job->a.val[q] = lap->L.val[p];
-            if (job->B) job->B[q] = lap->B[p];
-        }
-    }
-}
-
-/* P L P' and P B P' into out, whose perm is a valid one. */
+/* P L P' and P B P' into out, whose perm is a valid one: entry (i, k) is put where (k, i) belongs, which is
+ * the same and leaves the columns of every row ascending. */
 static hd_status hdi_pair_permute(hd_laplacian *out, const hd_laplacian *lap, const int32_t *perm,
                                   hd_context *ctx, hd_error *e) {
     const int32_t n = lap->n_active;
-    const uint64_t n1 = (uint64_t)n + 1, nnz = (uint64_t)lap->L.nnz;
+    const int64_t *ptr = lap->L.row_ptr;
     hdi_scope s = hdi_scope_begin(ctx, e), keep = hdi_scope_begin(ctx, e);
     int32_t *inv = HDI_TAKE(&s, int32_t, n), i;
-    int64_t longest = 0;
-    hdi_permute_job job;
-    memset(&job, 0, sizeof job);
-    job.lap = lap;
-    job.perm = perm;
-    job.inv = inv;
-    job.fill = HDI_TAKE(&s, int64_t, n1);
-    job.a = lap->L;
-    job.a.row_ptr = HDI_TAKE(&keep, int64_t, n1);
-    job.a.col = HDI_TAKE(&keep, int32_t, nnz);
-    job.a.val = HDI_TAKE(&keep, double, nnz);
-    if (lap->B) job.B = HDI_TAKE(&keep, double, nnz);
+    int64_t *fill = HDI_TAKE(&s, int64_t, n), p;
+    hd_csr a = hdi_csr_take(&keep, n, n, lap->L.nnz, 1);
+    double *B = lap->B ? HDI_TAKE(&keep, double, lap->L.nnz) : NULL;
     if (e->status < 0) {
         hdi_scope_end(&s);
         return hdi_scope_end(&keep);
     }
-    job.a.row_ptr[0] = 0;
     for (i = 0; i < n; i++) {
-        const int64_t row = lap->L.row_ptr[perm[i] + 1] - lap->L.row_ptr[perm[i]];
         inv[perm[i]] = i;
-        job.fill[i] = job.a.row_ptr[i];
-        job.a.row_ptr[i + 1] = job.a.row_ptr[i] + row;
-        if (row > longest) longest = row;
+        fill[i] = a.row_ptr[i];
+        a.row_ptr[i + 1] = a.row_ptr[i] + ptr[perm[i] + 1] - ptr[perm[i]];
     }
-    if (longest <= HDI_RANK_MOST && !hdi_is_serial(ctx))
-        hdi_parallel_ranges(ctx, n, HDI_RANK_ROWS, hdi_permute_ranked, &job);
-    else
-        hdi_permute_transposed(&job);
-    out->L = job.a;
-    out->B = job.B;
+    for (i = 0; i < n; i++) {
+        const int64_t ahead = ptr[perm[i + HDI_ROWS_AHEAD < n ? i + HDI_ROWS_AHEAD : i]];
+        HDI_PREFETCH(lap->L.col + ahead);
+        HDI_PREFETCH(lap->L.val + ahead);
+        HDI_PREFETCH((B ? lap->B : lap->L.val) + ahead);
+        for (p = ptr[perm[i]]; p < ptr[perm[i] + 1]; p++) {
+            const int64_t q = fill[inv[lap->L.col[p]]]++;
+            a.col[q] = i;
+            a.val[q] = lap->L.val[p];
+            if (B) B[q] = lap->B[p];
+        }
+    }
+    out->L = a;
+    out->B = B;
     keep.n = 0;                                  /* all of it is the caller's now */
     return hdi_scope_end(&s);
 }
@@ -9509,7 +8992,7 @@ static hd_status hdi_lap_points(hd_laplacian *lap, const double *xyz, hd_error *
     if (rep->bandwidth == 0) rep->bandwidth = hdi_cloud_bandwidth(&cloud, work);
     rep->cut_radius = sqrt(-4 * log(rep->weight_cut) * rep->bandwidth);
     hdi_cloud_masses(&cloud, lap, places.place, places.first, work);
-    if (hdi_lap_rows(lap, work, e) < 0 || hdi_progress(lap->context, "assemble", 0.4, e) < 0)
+    if (hdi_lap_rows(lap, work, NULL, e) < 0 || hdi_progress(lap->context, "assemble", 0.4, e) < 0)
         return hdi_scope_end(&s);
     if (hdi_lap_places(lap, xyz, e) < 0) return hdi_scope_end(&s);
     if (hdi_cloud_assemble(lap, -4 * log(rep->weight_cut) * rep->bandwidth, e) < 0) return hdi_scope_end(&s);
@@ -9752,24 +9235,6 @@ static int32_t *hdi_stars(hdi_star_job *job, int32_t *m, hd_laplacian *lap, hdi_
     return tri;
 }
 
-/* Rows and matrices of the pair from, whose vertex v is name[v] of lap, in the order of lap's
- * vertices. */
-static hd_status hdi_lap_renumber(hd_laplacian *lap, const hd_laplacian *from, const int32_t *name,
-                                  hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
-    const int32_t rows = from->n_active;
-    int32_t *perm = HDI_TAKE(&s, int32_t, rows), r;
-    double *mass = HDI_TAKE_ZERO(&s, double, lap->n);
-    if (e->status < 0) return hdi_scope_end(&s);
-    for (r = 0; r < rows; r++) mass[name[from->vertex[r]]] = from->mass[r];
-    if (hdi_lap_rows(lap, mass, e) < 0) return hdi_scope_end(&s);
-    for (r = 0; r < rows; r++) perm[lap->row[name[from->vertex[r]]]] = r;
-    if (hdi_pair_permute(lap, from, perm, lap->context, e) < 0) return hdi_scope_end(&s);
-    if (from->B) lap->b_diag = HDI_NEW(lap->context, double, rows, e);
-    for (r = 0; r < rows && e->status >= 0; r++) lap->b_diag[r] = from->b_diag[perm[r]];
-    return hdi_scope_end(&s);
-}
-
 /* The soup of the stars of all points. xyz and name live in s, nothing else is left of neighbours and
  * stars. */
 static hd_status hdi_star_soup(hdi_soup *soup, hdi_star_job *job, hd_laplacian *lap,
@@ -9812,29 +9277,14 @@ static hd_status hdi_lap_unfold_points(hd_laplacian *lap, hdi_flat *flat, const 
                                        const int64_t *nbr_ptr, const int32_t *nbr, double delta,
                                        hdi_scope *s) {
     hd_error *e = s->e;
-    hd_laplacian *inner = NULL;
     hdi_star_job job;
     memset(flat, 0, sizeof *flat);
     if (hdi_star_soup(&flat->soup, &job, lap, xyz, nbr_ptr, nbr, delta, s) < 0) return e->status;
     if (lap->mesh.n_faces_used == 0) hdi_fail(e, HD_ERR_EMPTY, "the points' neighbourhoods make no triangle");
-    if (e->status >= 0 && hdi_soup_delaunay(&flat->mesh, &flat->soup, 0, &lap->mesh, s) >= 0)
-        inner = (hd_laplacian *)hdi_alloc_zero(lap->context, 1, sizeof *inner, e);
-    if (!inner) return e->status;
+    if (e->status < 0 || hdi_soup_delaunay(&flat->mesh, &flat->soup, 0, &lap->mesh, s) < 0) return e->status;
     flat->name = job.name;
-    inner->n = job.n;
-    inner->kind = lap->kind;
-    inner->context = lap->context;
-    inner->mesh = lap->mesh;
-    if (hdi_lap_flat(inner, &flat->mesh, s) >= 0) {
-        lap->mesh = inner->mesh;
-        lap->area = flat->soup.total / flat->soup.share;
-        lap->b_ratio = inner->b_ratio;
-        lap->conserves = 1;
-        if (hdi_lap_renumber(lap, inner, job.name, e) >= 0 && hdi_lap_places(lap, xyz, e) >= 0)
-            (void)hdi_progress(lap->context, "assemble", 0.8, e);
-    }
-    hdi_laplacian_free(inner, lap->context);
-    return e->status;
+    lap->area = flat->soup.total / flat->soup.share;
+    return hdi_lap_flat(lap, &flat->mesh, job.name, xyz, s);
 }
 
 static hd_status hdi_tufted_points(hd_laplacian *lap, const double *xyz, const int64_t *nbr_ptr,
@@ -18744,13 +18194,10 @@ static hd_status hdi_lap_ratio_known(hd_laplacian *lap, hd_error *e) {
 /* Takes the values of new matrices, or leaves all as it was. */
 static hd_status hdi_pair_replace(hd_laplacian *lap, const hd_csr *L, const hd_csr *B, double h,
                                   hd_error *e) {
-    if (hdi_pair_update(lap, L, B, e) < 0) return e->status;
-    if (hdi_lap_ratio_known(lap, e) < 0) {
-        hdi_moving_pair_restore(lap);
-        return e->status;
-    }
-    lap->h = h;
-    hdi_lap_renewed(lap);
+    hd_laplacian next;
+    if (hdi_pair_next(&next, lap, L, B, e) < 0 || hdi_lap_ratio_known(&next, e) < 0) return e->status;
+    next.h = h;
+    hdi_pair_take(lap, &next);
     return HD_OK;
 }
 
@@ -29310,7 +28757,6 @@ static hdi_geo_input hdi_geo_input_of(const double *xyz, const int32_t *tri, int
 typedef struct hdi_geo_surface {
     hdi_mesh mesh;
     hdi_flat flat;               /* intrinsic triangles */
-    hdi_poly poly;               /* polygons that stay whole */
 } hdi_geo_surface;
 
 /* Columns of a batch, and the fewest that are worth one. A batch always costs as much as a full one. */
@@ -29482,7 +28928,7 @@ static hd_status hdi_geo_faces(hd_geodesic *g, const hdi_mesh *mesh, const int32
 }
 
 /* The same of polygons. */
-static hd_status hdi_geo_poly_faces(hd_geodesic *g, const hdi_poly *poly, hd_error *e) {
+static hd_status hdi_geo_poly_faces(hd_geodesic *g, const hdi_mesh *poly, hd_error *e) {
     hdi_scope s = hdi_scope_begin(g->ctx, e);
     int64_t *at = HDI_TAKE_ZERO(&s, int64_t, (int64_t)g->n_active + 1), c, n = 0;
     int32_t *order = HDI_TAKE(&s, int32_t, poly->m), f, k;
@@ -29499,22 +28945,22 @@ static hd_status hdi_geo_poly_faces(hd_geodesic *g, const hdi_poly *poly, hd_err
     if (e->status < 0) return hdi_scope_end(&s);
     for (f = 0; f < poly->m; f++)
         if (poly->area[f] > 0)
-            at[hdi_geo_first(poly->idx + poly->ptr[f], poly->ptr[f + 1] - poly->ptr[f], g->row)]++;
+            at[hdi_geo_first(poly->tri + poly->ptr[f], poly->ptr[f + 1] - poly->ptr[f], g->row)]++;
     hdi_prefix_sum(at, g->n_active);
     for (f = 0; f < poly->m; f++)
         if (poly->area[f] > 0)
-            order[at[hdi_geo_first(poly->idx + poly->ptr[f], poly->ptr[f + 1] - poly->ptr[f], g->row)]++] = f;
+            order[at[hdi_geo_first(poly->tri + poly->ptr[f], poly->ptr[f + 1] - poly->ptr[f], g->row)]++] = f;
     for (k = 0, n = 0; k < g->n_faces; k++) {
         double most = 0;
         z->ptr[k] = n;
         for (c = poly->ptr[order[k]]; c < poly->ptr[order[k] + 1]; c++, n++) {
             double *side = z->side + 3 * n;
             int q;
-            hdi_sub3(hdi_poly_at(poly, hdi_poly_before(poly, c)), hdi_poly_at(poly, hdi_poly_after(poly, c)),
-                     side);
+            hdi_sub3(hdi_corner_at(poly, hdi_corner_before(poly, c)),
+                     hdi_corner_at(poly, hdi_corner_after(poly, c)), side);
             for (q = 0; q < 3; q++) side[q] /= 2 * g->h;
             most = hdi_max(most, hdi_dot3(side, side));
-            z->row[n] = g->row[poly->idx[c]];
+            z->row[n] = g->row[poly->tri[c]];
         }
         z->flat[k] = HDI_GEO_FLAT * most;
     }
@@ -29681,18 +29127,13 @@ static hd_status hdi_geo_unfold(hd_laplacian *lap, hdi_geo_surface *z, const hdi
 static hd_status hdi_geo_surface_make(hd_laplacian *lap, hdi_geo_surface *z, const hdi_geo_input *in,
                                       hdi_scope *s) {
     memset(z, 0, sizeof *z);
-    hdi_mesh_clear(&z->mesh, in->xyz, lap->n, in->tri, in->m);
+    hdi_mesh_clear(&z->mesh, in->xyz, lap->n, in->ptr ? in->idx : in->tri, in->m);
     z->mesh.len = in->len;
+    z->mesh.ptr = in->ptr;
+    z->mesh.lambda = in->lambda;
     if (hdi_progress(lap->context, "assemble", 0, s->e) < 0) return s->e->status;
     if (HDI_HAS_INTRINSIC && in->flips) return hdi_geo_unfold(lap, z, in, s);
-    if (!HDI_HAS_POLYGONS || !in->ptr) return hdi_lap_mesh(lap, &z->mesh, 0, s);
-    z->poly.xyz = in->xyz;
-    z->poly.ptr = in->ptr;
-    z->poly.idx = in->idx;
-    z->poly.n = lap->n;
-    z->poly.m = in->m;
-    z->poly.lambda = in->lambda;
-    return hdi_lap_poly(lap, &z->poly, s);
+    return hdi_lap_mesh(lap, &z->mesh, 0, s);
 }
 
 /* Points in the place of an earlier one, which the triangles leave out, share its row. */
@@ -29721,7 +29162,7 @@ static hd_status hdi_geo_store(hd_geodesic *g, const hd_laplacian *lap, const hd
         return hdi_scope_end(&s);
     }
     if (!HDI_HAS_POLYGONS || !in->ptr) return hdi_geo_faces(g, &z->mesh, g->row, NULL, e);
-    if (hdi_geo_poly_faces(g, &z->poly, e) < 0) return e->status;
+    if (hdi_geo_poly_faces(g, &z->mesh, e) < 0) return e->status;
     return hdi_geo_poly_rows(g, lap, e);
 }
 
@@ -29737,7 +29178,7 @@ static hd_status hdi_geo_make(hd_geodesic *g, const hdi_geo_input *in, const hd_
     g->border = o->border;
     g->t_asked = o->t;
     g->t_in_h2 = o->t_in_h2 > 0 ? o->t_in_h2 : 1;
-    if ((o->border == HD_GEODESIC_BORDER_NATURAL || hdi_holding_make(lap, 1, NULL, 0, e) >= 0) &&
+    if ((o->border == HD_GEODESIC_BORDER_NATURAL || hdi_holding_make(lap, 2, NULL, 0, e) >= 0) &&
         hdi_geo_surface_make(lap, &z, in, &s) >= 0 && hdi_lap_finite(lap->area, lap->h, e) >= 0) {
         g->n_active = lap->n_active;
         g->copies = z.flat.mesh.m ? hdi_flat_unit(&z.flat, lap->mesh.n_sheets) : 1;
@@ -29756,9 +29197,9 @@ static hd_status hdi_geo_make(hd_geodesic *g, const hdi_geo_input *in, const hd_
 
 /* The plan for new coordinates. Queries do not read g->lap: until g->ready is 0 nothing has changed. */
 static hd_status hdi_geo_update(hd_geodesic *g, const double *xyz, hd_error *e) {
-    const hdi_moving *moving = g->lap->moving;
+    const hdi_mesh *moving = &g->lap->moving->fill.mesh;
     double *mass = g->x;
-    hdi_mesh mesh;
+    hdi_mesh mesh = *moving;
     int32_t f;
     if (hdi_lap_update(g->lap, xyz, e) < 0) return e->status;
     for (f = 0; f < moving->m; f++)
@@ -29769,8 +29210,7 @@ static hd_status hdi_geo_update(hd_geodesic *g, const double *xyz, hd_error *e) 
     g->ready = 0;
     g->x = g->mass;
     g->mass = mass;
-    hdi_mesh_clear(&mesh, xyz, g->n, moving->tri, moving->m);
-    mesh.area = moving->area;
+    mesh.xyz = xyz;
     for (f = 0; f < g->n_faces; f++) g->face[f] = hdi_geo_frame(&mesh, g->from[f], g->row, g->h);
     hdi_factor_free(&g->heat);
     hdi_factor_free(&g->poisson);
@@ -31214,17 +30654,13 @@ HEATDIFF_API hd_status hd_laplacian_polygons(hd_laplacian **out, const double *x
     const hd_laplacian_kind kind = hdi_lap_kind(opts, flips ? HD_LAPLACIAN_FEM : HD_LAPLACIAN_POLYGON);
     const int splits = hdi_kind_of_triangles(kind), updatable = opts && opts->updatable;
     hdi_intrinsic_task task;
-    hdi_poly poly;
+    hdi_mesh poly;
     hdi_call c;
     hd_laplacian *lap = hdi_lap_new(opts, n, kind, err, &c);
     if (!lap) return c.e->status;
     if (!HDI_HAS_POLYGONS) return hdi_lap_done(out, lap, HDI_LEFT_OUT(c.e, POLYGONS, "polygons"));
-    memset(&poly, 0, sizeof poly);
-    poly.xyz = xyz;
+    hdi_mesh_clear(&poly, xyz, n, face_idx, n_faces);
     poly.ptr = face_ptr;
-    poly.idx = face_idx;
-    poly.n = n;
-    poly.m = n_faces;
     poly.lambda = opts && opts->lambda != 0 ? opts->lambda : 1;
     if (!out || (n > 0 && !xyz) || (n_faces > 0 && !face_ptr)) hdi_missing(c.e);
     hdi_refuse(n_faces < 0, "laplacian: a size is negative", c.e);
@@ -31238,7 +30674,7 @@ HEATDIFF_API hd_status hd_laplacian_polygons(hd_laplacian **out, const double *x
     if (hdi_lap_begin(&c) < 0 || hdi_poly_check(xyz, n, face_ptr, face_idx, n_faces, c.e) < 0)
         return hdi_lap_done(out, lap, c.e->status);
     return hdi_lap_end(out, lap, splits ? hdi_lap_fans(lap, &poly, flips ? &task : NULL, updatable, c.e)
-                                        : hdi_lap_polygons(lap, &poly, updatable, c.e), c.e);
+                                        : hdi_lap_plain(lap, &poly, updatable, c.e), c.e);
 }
 
 HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L, const hd_csr *B, double h,
@@ -31346,8 +30782,7 @@ HEATDIFF_API hd_status hd_laplacian_update(hd_laplacian *lap, const double *xyz,
     hdi_refuse(all->moving && all->moving->pair,
                "update: matrices of your own take hd_laplacian_update_matrices", c.e);
     if (c.e->status < 0) return c.e->status;
-    if ((all->moving->poly ? hdi_moving_poly_update(all, xyz, c.e) : hdi_lap_update(all, xyz, c.e)) >= 0)
-        hdi_held_update(lap);
+    if (hdi_lap_update(all, xyz, c.e) >= 0) hdi_held_update(lap);
     return c.e->status;
 }
 
