@@ -520,6 +520,21 @@ static void heat_not_converged(void) {
     }
 }
 
+/* Lanczos stops soon after its bound has come to the tolerance, however many steps apart it looks. */
+static void heat_lanczos_pace(void) {
+    const hd_laplacian *lap = kit_pair("bumpy/3/4 fem");
+    double *u = KIT_NEW(double, lap->n), below = 0;
+    int k;
+    for (k = 8; k <= 16; k++) {
+        char options[60];
+        hd_report rep;
+        snprintf(options, sizeof options, "method=iterative solver=lanczos tol=%g", pow(10, -0.5 * k));
+        CHECK(heat_column(kit_heat(lap, options), 3000 * lap->h * lap->h, 3, u, &rep) >= 0 && rep.iterations > 120);
+        below += -0.5 * k - log10(rep.error_bound_b);
+    }
+    CHECK_MSG(below < 0.8, "%g decades more than asked for, at nine tolerances", below);
+}
+
 /* ---- threads ---- */
 
 static hd_progress heat_progress(void *user, const char *stage, double done) {
@@ -586,6 +601,7 @@ static void test_heat(void) {
     heat_reuse();
     heat_errors();
     heat_not_converged();
+    heat_lanczos_pace();
     heat_threads();
 }
 
