@@ -395,7 +395,7 @@ typedef struct hd_laplacian_opts {
      * 6..128. Default 30. */
     int32_t neighbours;
     /* Triangles and polygons, without intrinsic_delaunay and tufted: 1: hd_laplacian_update may be called.
-     * Takes 110 bytes more for each triangle, or 60 for each corner of polygons. Own matrices: 1:
+     * Takes 90 bytes more for each triangle, or 65 for each corner of polygons. Own matrices: 1:
      * hd_laplacian_update_matrices may be called. Takes 24 bytes more for each entry. Points refuse it. */
     int32_t updatable;
     /* Meshes: natural, or Dirichlet: every vertex at the border of the faces used is held at zero. The border
