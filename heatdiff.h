@@ -63,7 +63,7 @@
      [05] arrays     prefix sums, sorting, union-find
      [06] vectors    dot products and norms, small dense eigenproblems and least squares
      [07] kernels    dense fronts, real and in lanes of four complex matrices, for each instruction set
-     [08] sparse     compressed rows: build, check, transpose, multiply, renumber
+     [08] sparse     compressed rows: build, check, multiply
      [09] spatial    k-d tree: nearest neighbours and radius search
      [10] geometry   triangles: checks, areas, cotangents, edges, defects
      [11] intrinsic  intrinsic Delaunay triangulations and the tufted cover
@@ -926,7 +926,7 @@ HEATDIFF_API const char *hd_status_text(hd_status status);  /* "out of memory" *
 /* ---- sparse matrices ---- */
 
 /* A from triplets (i, j, v) in any order. Values at the same place are summed in the order given. Free out
- * with hd_csr_free and the same ctx, as the results of the functions below.
+ * with hd_csr_free and the same ctx.
  * i, j   [n_triplets] in [0, n_rows) and [0, n_cols)
  * v      [n_triplets], or NULL: a pattern
  * Errors HD_ERR_INDEX (row: index of the triplet), HD_ERR_NOT_FINITE (row: index of the triplet; if a sum
@@ -943,28 +943,6 @@ HEATDIFF_API hd_status hd_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t
  * Cost   O(nnz) */
 HEATDIFF_API hd_status hd_csr_check(const hd_csr *a, int32_t symmetric, hd_context *ctx,
                                     hd_error *err);
-
-/* out = A'.
- * Errors as hd_csr_check
- * Cost   O(n_rows + n_cols + nnz) */
-HEATDIFF_API hd_status hd_csr_transpose(hd_csr *out, const hd_csr *a, hd_context *ctx,
-                                        hd_error *err);
-
-/* out = A B.
- * Errors HD_ERR_ARGUMENT (row, column: the inner sizes, if they differ), HD_ERR_NOT_FINITE (row,
- *        column: an entry overflows), and as hd_csr_check
- * Cost   O(flops), and sorting the rows
- * Source Gustavson 1978 */
-HEATDIFF_API hd_status hd_csr_product(hd_csr *out, const hd_csr *a, const hd_csr *b,
-                                      hd_context *ctx, hd_error *err);
-
-/* out = P A P' for a square A: row i of out is row perm[i] of A, and columns likewise.
- * perm   [n_rows] a permutation
- * Errors HD_ERR_INDEX (row: perm is not a permutation there), HD_ERR_ARGUMENT: A is not square; and as
- *        hd_csr_check
- * Cost   O(n_rows + nnz) */
-HEATDIFF_API hd_status hd_csr_permute(hd_csr *out, const hd_csr *a, const int32_t *perm,
-                                      hd_context *ctx, hd_error *err);
 
 /* y = A x. x [n_cols] and y [n_rows] must not overlap. ctx is for threads. A is not checked: see
  * hd_csr_check. Cost: 2 nnz flops. */
@@ -1884,11 +1862,9 @@ HEATDIFF_API hd_status hd_geodesic_distance_from(hd_geodesic *g, const hd_source
 /* Threads of the system: none, POSIX or Windows. */
 #define HDI_THREADS_POSIX 1
 #define HDI_THREADS_WINDOWS 2
-#if defined(HEATDIFF_NO_THREADS) || defined(__TINYC__)
-#define HDI_THREADS 0
-#elif !defined(__GNUC__) && !defined(__clang__) && !defined(_MSC_VER)
-#define HDI_THREADS 0
-#elif (defined(__wasm__) || defined(__EMSCRIPTEN__)) && !defined(__EMSCRIPTEN_PTHREADS__)
+#if defined(HEATDIFF_NO_THREADS) || defined(__TINYC__) || \
+    (!defined(__GNUC__) && !defined(__clang__) && !defined(_MSC_VER)) || \
+    ((defined(__wasm__) || defined(__EMSCRIPTEN__)) && !defined(__EMSCRIPTEN_PTHREADS__))
 #define HDI_THREADS 0
 #elif defined(_WIN32)
 #define HDI_THREADS HDI_THREADS_WINDOWS
@@ -1950,97 +1926,91 @@ HEATDIFF_API hd_status hd_geodesic_distance_from(hd_geodesic *g, const hd_source
 #define HDI_AUDIT 0
 #endif
 
+/* Counters that threads share have 32 bits. HDI_ATOMIC_GET sees all that was written before the matching
+ * HDI_ATOMIC_SET; HDI_ATOMIC_ADD gives the sum. Compilers without them have no threads of the library's own,
+ * and a user's threads share loops only whose tasks know nothing of each other. */
 #if defined(__GNUC__) || defined(__clang__)
 #define HDI_RESTRICT __restrict__
+#define HDI_INLINE inline __attribute__((always_inline))
+#define HDI_NOINLINE __attribute__((noinline))
 #define HDI_LOAD(p) __atomic_load_n(p, __ATOMIC_RELAXED)
 #define HDI_STORE(p, v) __atomic_store_n(p, v, __ATOMIC_RELAXED)
-#define HDI_PREFETCH(p) __builtin_prefetch(p)
+#define HDI_PREFETCH __builtin_prefetch
 /* Of p[i], which may lie outside of the array: no pointer may, so that it is a number. */
 #define HDI_PREFETCH_AT(p, i)                                                                      \
     __builtin_prefetch((const void *)((uintptr_t)(p) + (uintptr_t)(i) * sizeof *(p)))
+#define HDI_ATOMICS 1
+#define HDI_ATOMIC_GET(p) __atomic_load_n(p, __ATOMIC_ACQUIRE)
+#define HDI_ATOMIC_SET(p, v) __atomic_store_n(p, v, __ATOMIC_RELEASE)
+#define HDI_ATOMIC_ADD(p, v) __atomic_add_fetch(p, v, __ATOMIC_ACQ_REL)
+#pragma GCC diagnostic push
+#ifndef __clang__
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"   /* of GCC's own avx512fintrin.h, which means it */
+#endif
+#ifdef __cplusplus
+#pragma GCC diagnostic ignored "-Wold-style-cast"        /* C has no other */
+#endif
 #else
 #define HDI_RESTRICT
+#define HDI_INLINE inline
+#define HDI_NOINLINE
 #define HDI_LOAD(p) (*(p))
 #define HDI_STORE(p, v) (*(p) = (v))
-#define HDI_PREFETCH(p) ((void)0)
+#define HDI_PREFETCH (void)
 #define HDI_PREFETCH_AT(p, i) ((void)0)
+#ifdef _MSC_VER
+#include <intrin.h>
+#define HDI_ATOMICS 1
+#define HDI_ATOMIC_GET(p) ((uint32_t)_InterlockedCompareExchange((volatile long *)(p), 0, 0))
+#define HDI_ATOMIC_SET(p, v) ((void)_InterlockedExchange((volatile long *)(p), (long)(v)))
+#define HDI_ATOMIC_ADD(p, v) \
+    ((uint32_t)(_InterlockedExchangeAdd((volatile long *)(p), (long)(v)) + (v)))
+#else
+#define HDI_ATOMICS 0
+#define HDI_ATOMIC_GET HDI_LOAD
+#define HDI_ATOMIC_SET HDI_STORE
+#define HDI_ATOMIC_ADD(p, v) (*(p) += (v))
+#endif
+#endif
+/* Loops of at most eight rounds over registers: without them the arrays would live in memory. */
+#if defined(__clang__)
+#define HDI_UNROLL _Pragma("clang loop unroll(full)")
+#elif defined(__GNUC__)
+#define HDI_UNROLL _Pragma("GCC unroll 8")
+#else
+#define HDI_UNROLL
 #endif
 
-/* What this build has, 1 or 0, and the switch that left it out, by itself or because it implies that. A room
- * is entered through few functions. These ask first, and compilers drop whatever nobody reaches any more: all
- * code is checked in every build, and no room has a condition inside. */
-#ifdef HEATDIFF_NO_DIRECT
-#define HDI_HAS_DIRECT 0
-#define HDI_WHY_DIRECT "HEATDIFF_NO_DIRECT"
-#else
-#define HDI_HAS_DIRECT 1
-#define HDI_WHY_DIRECT ""
-#endif
-#ifdef HEATDIFF_NO_POLE_FACTORS
-#define HDI_HAS_POLE_FACTORS 0
-#define HDI_WHY_POLE_FACTORS "HEATDIFF_NO_POLE_FACTORS"
-#else
-#define HDI_HAS_POLE_FACTORS HDI_HAS_DIRECT
-#define HDI_WHY_POLE_FACTORS HDI_WHY_DIRECT
-#endif
-#ifdef HEATDIFF_NO_DIAGONAL
-#define HDI_HAS_DIAGONAL 0
-#define HDI_WHY_DIAGONAL "HEATDIFF_NO_DIAGONAL"
-#else
-#define HDI_HAS_DIAGONAL HDI_HAS_POLE_FACTORS
-#define HDI_WHY_DIAGONAL HDI_WHY_POLE_FACTORS
-#endif
-#ifdef HEATDIFF_NO_DIFFUSION
-#define HDI_HAS_DIFFUSION 0
-#define HDI_WHY_DIFFUSION "HEATDIFF_NO_DIFFUSION"
-#else
-#define HDI_HAS_DIFFUSION HDI_HAS_DIAGONAL
-#define HDI_WHY_DIFFUSION HDI_WHY_DIAGONAL
-#endif
-#ifdef HEATDIFF_NO_GEODESIC
-#define HDI_HAS_GEODESIC 0
-#define HDI_WHY_GEODESIC "HEATDIFF_NO_GEODESIC"
-#else
-#define HDI_HAS_GEODESIC HDI_HAS_DIRECT
-#define HDI_WHY_GEODESIC HDI_WHY_DIRECT
-#endif
-#ifdef HEATDIFF_NO_SPECTRUM
-#define HDI_HAS_SPECTRUM 0
-#define HDI_WHY_SPECTRUM "HEATDIFF_NO_SPECTRUM"
-#else
-#define HDI_HAS_SPECTRUM HDI_HAS_DIRECT
-#define HDI_WHY_SPECTRUM HDI_WHY_DIRECT
-#endif
+/* What this build has, and the switch that left it out, by itself or because it implies that: the text of a
+ * macro that is not defined is its name. A room is entered through few functions. These ask first, and
+ * compilers drop whatever nobody reaches any more: all code is checked in every build, and no function has a
+ * condition inside. */
+#define HDI_QUOTE(x) #x
+#define HDI_QUOTED(x) HDI_QUOTE(x)
+#define HDI_BUILT(without) (sizeof HDI_QUOTED(without) == sizeof #without)
+#define HDI_WHY(without, implied) (sizeof HDI_QUOTED(without) == sizeof #without ? implied : #without)
+#define HDI_HAS_DIRECT HDI_BUILT(HEATDIFF_NO_DIRECT)
+#define HDI_HAS_POLE_FACTORS (HDI_HAS_DIRECT && HDI_BUILT(HEATDIFF_NO_POLE_FACTORS))
+#define HDI_HAS_DIAGONAL (HDI_HAS_POLE_FACTORS && HDI_BUILT(HEATDIFF_NO_DIAGONAL))
+#define HDI_HAS_DIFFUSION (HDI_HAS_DIAGONAL && HDI_BUILT(HEATDIFF_NO_DIFFUSION))
+#define HDI_HAS_GEODESIC (HDI_HAS_DIRECT && HDI_BUILT(HEATDIFF_NO_GEODESIC))
+#define HDI_HAS_SPECTRUM (HDI_HAS_DIRECT && HDI_BUILT(HEATDIFF_NO_SPECTRUM))
 #define HDI_HAS_MODES HDI_HAS_SPECTRUM   /* answers at large t from eigenpairs */
-#ifdef HEATDIFF_NO_ITERATIVE
-#define HDI_HAS_ITERATIVE 0
+#define HDI_HAS_ITERATIVE HDI_BUILT(HEATDIFF_NO_ITERATIVE)
+#define HDI_HAS_INTRINSIC HDI_BUILT(HEATDIFF_NO_INTRINSIC)
+#define HDI_HAS_POINTS HDI_BUILT(HEATDIFF_NO_POINTS)
+#define HDI_HAS_POLYGONS HDI_BUILT(HEATDIFF_NO_POLYGONS)
+#define HDI_WHY_DIRECT "HEATDIFF_NO_DIRECT"
+#define HDI_WHY_POLE_FACTORS HDI_WHY(HEATDIFF_NO_POLE_FACTORS, HDI_WHY_DIRECT)
+#define HDI_WHY_DIAGONAL HDI_WHY(HEATDIFF_NO_DIAGONAL, HDI_WHY_POLE_FACTORS)
+#define HDI_WHY_DIFFUSION HDI_WHY(HEATDIFF_NO_DIFFUSION, HDI_WHY_DIAGONAL)
+#define HDI_WHY_GEODESIC HDI_WHY(HEATDIFF_NO_GEODESIC, HDI_WHY_DIRECT)
+#define HDI_WHY_SPECTRUM HDI_WHY(HEATDIFF_NO_SPECTRUM, HDI_WHY_DIRECT)
 #define HDI_WHY_ITERATIVE "HEATDIFF_NO_ITERATIVE"
-#else
-#define HDI_HAS_ITERATIVE 1
-#define HDI_WHY_ITERATIVE ""
-#endif
-#ifdef HEATDIFF_NO_INTRINSIC
-#define HDI_HAS_INTRINSIC 0
 #define HDI_WHY_INTRINSIC "HEATDIFF_NO_INTRINSIC"
-#else
-#define HDI_HAS_INTRINSIC 1
-#define HDI_WHY_INTRINSIC ""
-#endif
-#ifdef HEATDIFF_NO_POINTS
-#define HDI_HAS_POINTS 0
 #define HDI_WHY_POINTS "HEATDIFF_NO_POINTS"
-#else
-#define HDI_HAS_POINTS 1
-#define HDI_WHY_POINTS ""
-#endif
-#ifdef HEATDIFF_NO_POLYGONS
-#define HDI_HAS_POLYGONS 0
 #define HDI_WHY_POLYGONS "HEATDIFF_NO_POLYGONS"
-#else
-#define HDI_HAS_POLYGONS 1
-#define HDI_WHY_POLYGONS ""
-#endif
-#if !HDI_HAS_DIRECT && !HDI_HAS_ITERATIVE
+#if defined(HEATDIFF_NO_DIRECT) && defined(HEATDIFF_NO_ITERATIVE)
 #error "heatdiff.h: HEATDIFF_NO_DIRECT and HEATDIFF_NO_ITERATIVE leave no method"
 #endif
 
@@ -2058,56 +2028,9 @@ HEATDIFF_API hd_status hd_geodesic_distance_from(hd_geodesic *g, const hd_source
 #else
 #define HDI_X86 0
 #endif
-#if defined(__GNUC__) || defined(__clang__)
-#define HDI_INLINE inline __attribute__((always_inline))
-#define HDI_NOINLINE __attribute__((noinline))
-#else
-#define HDI_INLINE inline
-#define HDI_NOINLINE
-#endif
-/* Loops of at most eight rounds over registers: without them the arrays would live in memory. */
-#if defined(__clang__)
-#define HDI_UNROLL _Pragma("clang loop unroll(full)")
-#elif defined(__GNUC__)
-#define HDI_UNROLL _Pragma("GCC unroll 8")
-#else
-#define HDI_UNROLL
-#endif
-
-#if defined(__GNUC__) || defined(__clang__)
-#pragma GCC diagnostic push
-#ifndef __clang__
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"   /* of GCC's own avx512fintrin.h, which means it */
-#endif
-#ifdef __cplusplus
-#pragma GCC diagnostic ignored "-Wold-style-cast"        /* C has no other */
-#endif
-#endif
 
 #ifdef __cplusplus
 extern "C" {
-#endif
-
-/* Counters that threads share, of 32 bits. HDI_ATOMIC_GET sees all that was written before the matching
- * HDI_ATOMIC_SET; HDI_ATOMIC_ADD gives the sum. Compilers without them have no threads of the library's own,
- * and a user's threads share loops only whose tasks know nothing of each other. */
-#if defined(__GNUC__) || defined(__clang__)
-#define HDI_ATOMICS 1
-#define HDI_ATOMIC_GET(p) __atomic_load_n(p, __ATOMIC_ACQUIRE)
-#define HDI_ATOMIC_SET(p, v) __atomic_store_n(p, v, __ATOMIC_RELEASE)
-#define HDI_ATOMIC_ADD(p, v) __atomic_add_fetch(p, v, __ATOMIC_ACQ_REL)
-#elif defined(_MSC_VER)
-#include <intrin.h>
-#define HDI_ATOMICS 1
-#define HDI_ATOMIC_GET(p) ((uint32_t)_InterlockedCompareExchange((volatile long *)(p), 0, 0))
-#define HDI_ATOMIC_SET(p, v) ((void)_InterlockedExchange((volatile long *)(p), (long)(v)))
-#define HDI_ATOMIC_ADD(p, v) \
-    ((uint32_t)(_InterlockedExchangeAdd((volatile long *)(p), (long)(v)) + (v)))
-#else
-#define HDI_ATOMICS 0
-#define HDI_ATOMIC_GET(p) (*(p))
-#define HDI_ATOMIC_SET(p, v) (*(p) = (v))
-#define HDI_ATOMIC_ADD(p, v) (*(p) += (v))
 #endif
 
 #if HDI_THREADS == HDI_THREADS_POSIX && defined(__linux__) && !defined(__cplusplus)
@@ -2328,14 +2251,23 @@ static void hdi_refuse_value(int bad, const char *text, double value, hd_error *
     if (bad && e->status >= 0) (void)hdi_fail_row(e, HD_ERR_ARGUMENT, text, -1, -1, value);
 }
 
-/* For what this build has no code for: room is one of HDI_HAS_..., what says it in the field's words. */
-#define HDI_LEFT_OUT(e, room, what) \
-    hdi_fail(e, HD_ERR_NOT_BUILT, "this build leaves out " what " (" HDI_WHY_##room ")")
 /* Appends a text, as far as there is room. */
 static void hdi_text_add(hd_error *e, const char *text) {
     const size_t used = strlen(e->text), len = strlen(text), most = sizeof e->text - 1 - used;
     memcpy(e->text + used, text, len < most ? len : most);
     e->text[used + (len < most ? len : most)] = 0;
+}
+
+/* For what this build has no code for: room is one of HDI_HAS_..., what says it in the field's words. */
+#define HDI_LEFT_OUT(e, room, what) hdi_left_out(e, what, HDI_WHY_##room)
+
+static hd_status hdi_left_out(hd_error *e, const char *what, const char *why) {
+    hdi_fail(e, HD_ERR_NOT_BUILT, "this build leaves out ");
+    hdi_text_add(e, what);
+    hdi_text_add(e, " (");
+    hdi_text_add(e, why);
+    hdi_text_add(e, ")");
+    return e->status;
 }
 
 /* Appends a number of bytes in MB (1e6 bytes), rounded up to one decimal. */
@@ -3248,65 +3180,66 @@ static void hdi_sort_pairs(hdi_pair *a, int64_t n) {
     }
 }
 
-/* Sorts keys; work [n], which short lists do not need: they are sorted by insertion, long ones in runs of
- * eight, merged. */
+/* Sorts keys by halves, which are merged; work [n / 2], which short lists do not need. */
 static void hdi_sort_keys(uint64_t *a, int64_t n, uint64_t *work) {
-    const int64_t first = n <= HDI_SHORT_LIST ? 32 : 8;
-    uint64_t *from = a, *to = work;
-    int64_t i, j, run;
-    for (i = 1; i < n; i++) {
-        const uint64_t x = a[i];
-        for (j = i; j & (first - 1) && x < a[j - 1]; j--) a[j] = a[j - 1];
-        a[j] = x;
-    }
-    for (run = first; run < n; run *= 2) {
-        uint64_t *swap = from;
-        for (i = 0; i < n; i += 2 * run) {
-            const int64_t middle = hdi_least(i + run, n), end = hdi_least(i + 2 * run, n);
-            int64_t p = i, q = middle, out = i;
-            while (p < middle && q < end) {
-                const int second = from[q] < from[p];
-                to[out++] = second ? from[q] : from[p];
-                q += second;
-                p += !second;
-            }
-            while (p < middle) to[out++] = from[p++];
-            while (q < end) to[out++] = from[q++];
+    const int64_t half = n / 2;
+    int64_t i, j, k;
+    if (n <= HDI_SHORT_LIST) {
+        for (i = 1; i < n; i++) {
+            const uint64_t x = a[i];
+            for (j = i; j > 0 && x < a[j - 1]; j--) a[j] = a[j - 1];
+            a[j] = x;
         }
-        from = to;
-        to = swap;
+        return;
     }
-    if (from != a) memcpy(a, from, (size_t)n * sizeof *a);
+    hdi_sort_keys(a, half, work);
+    hdi_sort_keys(a + half, n - half, work);
+    memcpy(work, a, (size_t)half * sizeof *a);
+    for (i = 0, j = half, k = 0; i < half && j < n; k++) {
+        const int second = a[j] < work[i];
+        a[k] = second ? a[j] : work[i];
+        j += second;
+        i += !second;
+    }
+    memcpy(a + k, work + i, (size_t)(half - i) * sizeof *a);
 }
 
-/* Sorts n indices; work [2 n]. */
-static void hdi_sort_indices(int32_t *a, int64_t n, uint64_t *work) {
-    int64_t i;
-    for (i = 0; i < n; i++) work[i] = (uint64_t)a[i];
-    hdi_sort_keys(work, n, work + n);
-    for (i = 0; i < n; i++) a[i] = (int32_t)work[i];
-}
-
-/* The number-k smallest of a, which is rearranged (Hoare 1961). */
-static double hdi_kth(double *a, int64_t n, int64_t k) {
+/* Puts the row of `width` numbers that is k-th by its number `by` in its place, smaller ones before it,
+ * larger ones behind (Hoare 1961). Pivots are medians of three places drawn by a fixed generator: linear
+ * whatever the order, also for equal rows. */
+static HDI_INLINE void hdi_select(double *a, int64_t n, int64_t k, int width, int by) {
     int64_t lo = 0, hi = n - 1;
+    uint64_t seed = 12345;
     while (lo < hi) {
-        const double low = hdi_min(a[lo], a[hi]), high = hdi_max(a[lo], a[hi]);
-        const double pivot = hdi_max(low, hdi_min(high, a[lo + (hi - lo) / 2]));
+        double p[3], pivot;
         int64_t i = lo, j = hi;
+        int q;
+        for (q = 0; q < 3; q++) {
+            seed = seed * 6364136223846793005u + 1442695040888963407u;
+            p[q] = a[(lo + (int64_t)((seed >> 33) % (uint64_t)(hi - lo + 1))) * width + by];
+        }
+        pivot = hdi_max(hdi_min(p[0], p[1]), hdi_min(hdi_max(p[0], p[1]), p[2]));
         while (i <= j) {
-            while (a[i] < pivot) i++;
-            while (a[j] > pivot) j--;
-            if (i <= j) {
-                const double swap = a[i];
-                a[i++] = a[j];
-                a[j--] = swap;
+            while (a[i * width + by] < pivot) i++;
+            while (a[j * width + by] > pivot) j--;
+            if (i > j) break;
+            for (q = 0; q < width; q++) {
+                const double swap = a[i * width + q];
+                a[i * width + q] = a[j * width + q];
+                a[j * width + q] = swap;
             }
+            i++;
+            j--;
         }
         if (k <= j) hi = j;
         else if (k >= i) lo = i;
-        else break;
+        else return;
     }
+}
+
+/* The number-k smallest of a, which is rearranged. */
+static double hdi_kth(double *a, int64_t n, int64_t k) {
+    hdi_select(a, n, k, 1, 0);
     return a[k];
 }
 
@@ -3330,11 +3263,9 @@ static void hdi_unite(int32_t *parent, int32_t i, int32_t j) {
 static int32_t hdi_count_sets(int32_t *parent, int32_t n) {
     int32_t i, count = 0;
     for (i = 0; i < n; i++) parent[i] = hdi_find(parent, i);
-    for (i = 0; i < n; i++) {                    /* a set is a root with another member */
-        const int32_t root = parent[i];
-        if (root == i || root < 0 || parent[root] != root) continue;
-        /* counted; it is the smallest of its set, so it has been passed */
-        parent[root] = -1;
+    for (i = 0; i < n; i++) {                    /* a root is marked when its second member is met */
+        if (parent[i] == i || parent[parent[i]] < 0) continue;
+        parent[parent[i]] = -1;
         count++;
     }
     return count;
@@ -4514,7 +4445,7 @@ static void hdi_kernels_rows(const hdi_kernels *o, double *x, int64_t n, int64_t
 }
 
 /* ==== [08] sparse ====
- * Compressed rows: build, check, transpose, multiply, renumber. May call [06]. */
+ * Compressed rows: build, check, multiply. May call [06]. */
 
 static void hdi_csr_free(hd_context *ctx, hd_csr *a) {
     hdi_free(ctx, a->row_ptr);
@@ -4580,17 +4511,6 @@ static void hdi_csr_merge(hd_csr *a) {
     a->nnz = q;
 }
 
-/* For sums that may have overflowed. */
-static hd_status hdi_csr_check_finite(const hd_csr *a, const char *text, hd_error *e) {
-    int32_t i;
-    int64_t p;
-    for (i = 0; a->val && i < a->n_rows; i++)
-        for (p = a->row_ptr[i]; p < a->row_ptr[i + 1]; p++)
-            if (!hdi_finite(a->val[p]))
-                return hdi_fail_row(e, HD_ERR_NOT_FINITE, text, i, a->col[p], a->val[p]);
-    return HD_OK;
-}
-
 /* Work arrays in s. */
 static hd_status hdi_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_cols, int64_t n,
                                        const int32_t *ti, const int32_t *tj, const double *tv,
@@ -4598,6 +4518,7 @@ static hd_status hdi_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_co
     hd_error *e = s->e;
     hd_csr t, a;
     int64_t q;
+    int32_t i;
     for (q = 0; q < n; q++) {
         const int bad_row = ti[q] < 0 || ti[q] >= n_rows;
         if (bad_row || tj[q] < 0 || tj[q] >= n_cols)
@@ -4620,22 +4541,24 @@ static hd_status hdi_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_co
     hdi_rewind(t.row_ptr, n_cols);
     hdi_csr_transpose_into(&t, &a);
     hdi_csr_merge(&a);
-    if (hdi_csr_check_finite(&a, "triplets: the sum of those at one place is not finite", e) >= 0)
-        *out = hdi_csr_keep(s, a);
-    return e->status;
+    for (i = 0; tv && i < n_rows; i++)
+        for (q = a.row_ptr[i]; q < a.row_ptr[i + 1]; q++)
+            if (!hdi_finite(a.val[q]))
+                return hdi_fail_row(e, HD_ERR_NOT_FINITE,
+                                    "triplets: the sum of those at one place is not finite", i, a.col[q],
+                                    a.val[q]);
+    *out = hdi_csr_keep(s, a);
+    return HD_OK;
 }
 
-/* Whether a stores the entry (i,j), zero or not. */
-static int hdi_csr_stores(const hd_csr *a, int32_t i, int32_t j) {
-    int64_t p = a->row_ptr[i], end = a->row_ptr[i + 1];
-    while (p < end) {
-        const int64_t middle = p + (end - p) / 2;
-        if (a->col[middle] == j) return 1;
-        if (a->col[middle] < j) p = middle + 1;
-        else end = middle;
-    }
-    return 0;
+/* The place of the entry (i,j), zero or not; -1: it is not stored. */
+static int64_t hdi_csr_find(const hd_csr *a, int32_t i, int32_t j) {
+    const int64_t end = a->row_ptr[i + 1];
+    const int64_t p = a->row_ptr[i] + hdi_lower_bound(a->col + a->row_ptr[i], end - a->row_ptr[i], j);
+    return p < end && a->col[p] == j ? p : -1;
 }
+
+static int hdi_csr_stores(const hd_csr *a, int32_t i, int32_t j) { return hdi_csr_find(a, i, j) >= 0; }
 
 static hd_status hdi_csr_check_rows(const hd_csr *a, hd_error *e) {
     const int64_t *ptr = a->row_ptr;
@@ -4670,127 +4593,33 @@ static hd_status hdi_csr_check_rows(const hd_csr *a, hd_error *e) {
  * file. */
 #define HDI_SYMMETRY_TOL 1e-12
 
-static hd_status hdi_csr_check_symmetric(const hd_csr *a, hd_context *ctx, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(ctx, e);
-    hd_csr t;
-    int32_t i;
+/* A missing entry is a zero. Of several pairs that differ the first one is told. */
+static hd_status hdi_csr_check_symmetric(const hd_csr *a, hd_error *e) {
+    int32_t i, row = INT32_MAX, col = 0;
+    double value = 0;
+    int64_t p, q;
     if (a->n_rows != a->n_cols)
         return hdi_fail_row(e, HD_ERR_NOT_SYMMETRIC, "matrix: not square", a->n_rows, a->n_cols, 0);
-    t = hdi_csr_take(&s, a->n_cols, a->n_rows, a->nnz, a->val != NULL);
-    if (e->status < 0) return hdi_scope_end(&s);
-    hdi_csr_transpose_into(a, &t);
-    for (i = 0; i < a->n_rows && !e->status; i++) {   /* merge the rows: a missing entry is a zero */
-        int64_t p = a->row_ptr[i], q = t.row_ptr[i];
-        const int64_t p_end = a->row_ptr[i + 1], q_end = t.row_ptr[i + 1];
-        while ((p < p_end || q < q_end) && !e->status) {
-            const int32_t cp = p < p_end ? a->col[p] : INT32_MAX, cq = q < q_end ? t.col[q] : INT32_MAX;
-            const double x = cp > cq ? 0 : a->val ? a->val[p] : 1, y = cq > cp ? 0 : a->val ? t.val[q] : 1;
-            if (fabs(x - y) > HDI_SYMMETRY_TOL * hdi_max(fabs(x), fabs(y)))
-                hdi_fail_row(e, HD_ERR_NOT_SYMMETRIC, "matrix: not symmetric", i, cp <= cq ? cp : cq, x - y);
-            p += cp <= cq;
-            q += cq <= cp;
+    for (i = 0; i < a->n_rows; i++) {
+        for (p = a->row_ptr[i]; p < a->row_ptr[i + 1]; p++) {
+            const int32_t j = a->col[p], lo = hdi_low32(i, j), hi = hdi_high32(i, j);
+            double x = a->val ? a->val[p] : 1, y;
+            q = hdi_csr_find(a, j, i);
+            y = q < 0 ? 0 : a->val ? a->val[q] : 1;
+            if (fabs(x - y) <= HDI_SYMMETRY_TOL * hdi_max(fabs(x), fabs(y)) || lo > row) continue;
+            if (lo == row && hi >= col) continue;
+            row = lo;
+            col = hi;
+            value = i == lo ? x - y : y - x;
         }
     }
-    return hdi_scope_end(&s);
+    return row < INT32_MAX ? hdi_fail_row(e, HD_ERR_NOT_SYMMETRIC, "matrix: not symmetric", row, col, value)
+                           : HD_OK;
 }
 
-static hd_status hdi_csr_check(const hd_csr *a, int symmetric, hd_context *ctx, hd_error *e) {
+static hd_status hdi_csr_check(const hd_csr *a, int symmetric, hd_error *e) {
     if (hdi_csr_check_rows(a, e) < 0) return e->status;
-    return symmetric ? hdi_csr_check_symmetric(a, ctx, e) : HD_OK;
-}
-
-static hd_status hdi_csr_transpose(hd_csr *out, const hd_csr *a, hd_context *ctx, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(ctx, e);
-    hd_csr t = hdi_csr_take(&s, a->n_cols, a->n_rows, a->nnz, a->val != NULL);
-    if (e->status < 0) return hdi_scope_end(&s);
-    hdi_csr_transpose_into(a, &t);
-    *out = hdi_csr_keep(&s, t);
-    return hdi_scope_end(&s);
-}
-
-/* Columns of row i of A B, unsorted, into col (NULL: counted only). mark [b->n_cols] holds the last row
- * that saw a column. */
-static int64_t hdi_product_row(const hd_csr *a, const hd_csr *b, int32_t i, int32_t *mark,
-                               int32_t *col) {
-    int64_t p, q, n = 0;
-    for (p = a->row_ptr[i]; p < a->row_ptr[i + 1]; p++) {
-        const int32_t k = a->col[p];
-        for (q = b->row_ptr[k]; q < b->row_ptr[k + 1]; q++) {
-            if (mark[b->col[q]] == i) continue;
-            mark[b->col[q]] = i;
-            if (col) col[n] = b->col[q];
-            n++;
-        }
-    }
-    return n;
-}
-
-static hd_status hdi_csr_product(hd_csr *out, const hd_csr *a, const hd_csr *b, hd_context *ctx,
-                                 hd_error *e) {
-    hdi_scope s = hdi_scope_begin(ctx, e);
-    const int values = a->val && b->val;
-    int32_t *mark = HDI_TAKE(&s, int32_t, b->n_cols);
-    double *sum = HDI_TAKE(&s, double, b->n_cols);
-    uint64_t *work = HDI_TAKE(&s, uint64_t, 2 * (int64_t)b->n_cols);
-    int64_t nnz = 0, p, q;
-    hd_csr c;
-    int32_t i;
-    if (e->status < 0) return hdi_scope_end(&s);
-    hdi_fill_i32(mark, b->n_cols, -1);
-    for (i = 0; i < a->n_rows; i++) nnz += hdi_product_row(a, b, i, mark, NULL);
-    c = hdi_csr_take(&s, a->n_rows, b->n_cols, nnz, values);
-    if (e->status < 0) return hdi_scope_end(&s);
-    hdi_fill_i32(mark, b->n_cols, -1);
-    for (i = 0; i < a->n_rows; i++) {
-        int32_t *col = c.col + c.row_ptr[i];
-        const int64_t n = hdi_product_row(a, b, i, mark, col);
-        c.row_ptr[i + 1] = c.row_ptr[i] + n;
-        hdi_sort_indices(col, n, work);
-        if (!values) continue;
-        for (p = 0; p < n; p++) sum[col[p]] = 0;
-        for (p = a->row_ptr[i]; p < a->row_ptr[i + 1]; p++)
-            for (q = b->row_ptr[a->col[p]]; q < b->row_ptr[a->col[p] + 1]; q++)
-                sum[b->col[q]] += a->val[p] * b->val[q];
-        for (p = 0; p < n; p++) c.val[c.row_ptr[i] + p] = sum[col[p]];
-    }
-    if (hdi_csr_check_finite(&c, "product: an entry is not finite", e) >= 0) *out = hdi_csr_keep(&s, c);
-    return hdi_scope_end(&s);
-}
-
-static hd_status hdi_csr_permute(hd_csr *out, const hd_csr *a, const int32_t *perm, hd_context *ctx,
-                                 hd_error *e) {
-    hdi_scope s = hdi_scope_begin(ctx, e);
-    int32_t *inverse = HDI_TAKE(&s, int32_t, a->n_rows);
-    hd_csr b, t;
-    int32_t i;
-    int64_t p;
-    if (e->status < 0) return hdi_scope_end(&s);
-    hdi_fill_i32(inverse, a->n_rows, -1);
-    for (i = 0; i < a->n_rows; i++) {
-        if (perm[i] < 0 || perm[i] >= a->n_rows || inverse[perm[i]] >= 0) {
-            hdi_fail_row(e, HD_ERR_INDEX, "permutation: an index is out of range or occurs twice", i, -1,
-                         perm[i]);
-            return hdi_scope_end(&s);
-        }
-        inverse[perm[i]] = i;
-    }
-    /* (P A P')', rows in the old order of columns */
-    t = hdi_csr_take(&s, a->n_rows, a->n_rows, a->nnz, a->val != NULL);
-    b = hdi_csr_take(&s, a->n_rows, a->n_rows, a->nnz, a->val != NULL);
-    if (e->status < 0) return hdi_scope_end(&s);
-    for (i = 0; i < a->n_rows; i++) {
-        int64_t q = t.row_ptr[i];
-        for (p = a->row_ptr[perm[i]]; p < a->row_ptr[perm[i] + 1]; p++, q++) {
-            t.col[q] = inverse[a->col[p]];
-            if (t.val) t.val[q] = a->val[p];
-        }
-        t.row_ptr[i + 1] = q;
-    }
-    hdi_csr_transpose_into(&t, &b);    /* twice transposed: the columns of every row ascend */
-    memset(t.row_ptr, 0, ((size_t)t.n_rows + 1) * sizeof *t.row_ptr);
-    hdi_csr_transpose_into(&b, &t);
-    *out = hdi_csr_keep(&s, t);
-    return hdi_scope_end(&s);
+    return symmetric ? hdi_csr_check_symmetric(a, e) : HD_OK;
 }
 
 /* How far ahead of a sweep over a matrix its entries are asked for, once a row. The processor's own
@@ -4871,47 +4700,15 @@ typedef struct hdi_tree {
     int32_t *id;               /* [HDI_LEAF n_leaves] of the caller */
 } hdi_tree;
 
-typedef struct hdi_point { double x[3]; int32_t id; } hdi_point;
-
-/* Puts the point that is k-th along axis in its place, smaller ones before it, larger ones behind (Hoare
- * 1961). Pivots are medians of three places drawn by a fixed generator: linear whatever the order of the
- * file, also for equal points. */
-static void hdi_select_point(hdi_point *a, int64_t n, int64_t k, int axis) {
-    int64_t lo = 0, hi = n - 1;
-    uint64_t seed = 12345;
-    while (lo < hi) {
-        double p[3], pivot;
-        int64_t i = lo, j = hi;
-        int q;
-        for (q = 0; q < 3; q++) {
-            seed = seed * 6364136223846793005u + 1442695040888963407u;
-            p[q] = a[lo + (int64_t)((seed >> 33) % (uint64_t)(hi - lo + 1))].x[axis];
-        }
-        pivot = hdi_max(hdi_min(p[0], p[1]), hdi_min(hdi_max(p[0], p[1]), p[2]));
-        while (i <= j) {
-            while (a[i].x[axis] < pivot) i++;
-            while (a[j].x[axis] > pivot) j--;
-            if (i <= j) {
-                const hdi_point swap = a[i];
-                a[i++] = a[j];
-                a[j--] = swap;
-            }
-        }
-        if (k <= j) hi = j;
-        else if (k >= i) lo = i;
-        else return;
-    }
-}
-
-/* Box of the node's points; returns its longest axis. */
-static int hdi_cell_box(hdi_cell *node, const hdi_point *a, int64_t n) {
+/* Box of the node's points, in rows of three coordinates and a number; returns its longest axis. */
+static int hdi_cell_box(hdi_cell *node, const double *a, int64_t n) {
     int64_t i;
     int c, axis = 0;
-    for (c = 0; c < 3; c++) node->lo[c] = node->hi[c] = n > 0 ? a[0].x[c] : 0;
+    for (c = 0; c < 3; c++) node->lo[c] = node->hi[c] = n > 0 ? a[c] : 0;
     for (i = 1; i < n; i++) {
         for (c = 0; c < 3; c++) {
-            node->lo[c] = hdi_min(node->lo[c], a[i].x[c]);
-            node->hi[c] = hdi_max(node->hi[c], a[i].x[c]);
+            node->lo[c] = hdi_min(node->lo[c], a[4 * i + c]);
+            node->hi[c] = hdi_max(node->hi[c], a[4 * i + c]);
         }
     }
     for (c = 1; c < 3; c++)
@@ -4919,7 +4716,7 @@ static int hdi_cell_box(hdi_cell *node, const hdi_point *a, int64_t n) {
     return axis;
 }
 
-static void hdi_tree_split(hdi_tree *t, hdi_point *a) {
+static void hdi_tree_split(hdi_tree *t, double *a) {
     int32_t v;
     t->node[0].first = 0;
     t->node[0].count = t->n_leaves;
@@ -4928,10 +4725,10 @@ static void hdi_tree_split(hdi_tree *t, hdi_point *a) {
         const int64_t begin = (int64_t)node->first * HDI_LEAF,
                       size = (int64_t)node->count * HDI_LEAF;
         const int64_t end = hdi_least(t->n, begin + size);
-        const int axis = hdi_cell_box(node, a + begin, end - begin);
+        const int axis = hdi_cell_box(node, a + 4 * begin, end - begin);
         const int32_t left = node->count / 2;
         if (!left) continue;
-        hdi_select_point(a + begin, end - begin, (int64_t)left * HDI_LEAF, axis);
+        hdi_select(a + 4 * begin, end - begin, (int64_t)left * HDI_LEAF, 4, axis);
         node[1].first = node->first;
         node[1].count = left;
         node[2 * left].first = node->first + left;
@@ -4967,7 +4764,7 @@ static hd_status hdi_tree_make(hdi_tree *t, const double *xyz, int32_t n, hdi_sc
     /* none: one leaf that is all padding */
     const int64_t n_leaves = n > 0 ? ((int64_t)n + HDI_LEAF - 1) / HDI_LEAF : 1;
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
-    hdi_point *a = HDI_TAKE(&own, hdi_point, n);
+    double *a = HDI_TAKE(&own, double, 4 * (int64_t)n);
     int64_t i;
     int c;
     t->xyz = xyz;
@@ -4978,15 +4775,15 @@ static hd_status hdi_tree_make(hdi_tree *t, const double *xyz, int32_t n, hdi_sc
     t->id = HDI_TAKE(s, int32_t, HDI_LEAF * n_leaves);
     if (s->e->status < 0) return hdi_scope_end(&own);
     for (i = 0; i < n; i++) {
-        hdi_copy3(a[i].x, hdi_at3(xyz, i));
-        a[i].id = (int32_t)i;
+        hdi_copy3(a + 4 * i, hdi_at3(xyz, i));
+        a[4 * i + 3] = (double)i;
     }
     hdi_tree_split(t, a);
     for (i = 0; i < HDI_LEAF * n_leaves; i++) {
         double *x = t->x + 3 * HDI_LEAF * (i / HDI_LEAF) + i % HDI_LEAF;
         /* infinitely far: in no result */
-        for (c = 0; c < 3; c++) x[c * HDI_LEAF] = i < n ? a[i].x[c] : HUGE_VAL;
-        t->id[i] = i < n ? a[i].id : -1;
+        for (c = 0; c < 3; c++) x[c * HDI_LEAF] = i < n ? a[4 * i + c] : HUGE_VAL;
+        t->id[i] = i < n ? (int32_t)a[4 * i + 3] : -1;
     }
     return hdi_scope_end(&own);
 }
@@ -5083,8 +4880,9 @@ static double hdi_box_distance(const hdi_cell *v, const double *q) {
     return a * a + b * b + c * c;
 }
 
-/* Everything no farther than f->bound, which shrinks when the k nearest are wanted: nearer halves first. */
-static void hdi_search(const hdi_tree *t, const double *q, hdi_found *f) {
+/* Everything no farther than f->bound, which shrinks when the k nearest are wanted: nearer halves first. Not
+ * inlined: two searches round distances alike. */
+static HDI_NOINLINE void hdi_search(const hdi_tree *t, const double *q, hdi_found *f) {
     struct { int32_t node; double d; } stack[HDI_TREE_STACK];
     int32_t v = 0;
     int top = 0;
@@ -5126,25 +4924,25 @@ typedef struct hdi_search_job {
     int64_t n_queries, per_task;
     int32_t k, *index;         /* k nearest: [k n_queries] */
     double *distance2;         /* NULL: not wanted */
-    double radius2;            /* all within a radius: counts first, then columns and distances */
-    hd_csr *out;
-    int32_t *kept;             /* [n_queries] entries of the rows; NULL: they are still counted */
+    double radius2;            /* all within a radius */
+    hd_csr *out;               /* columns and distances; without val the rows are counted */
     hdi_found *found;          /* [tasks] */
 } hdi_search_job;
 
 /* query NULL: the tree's own points. */
-static void hdi_search_begin(hdi_search_job *job, const hdi_tree *t, const double *query,
-                             int64_t n_queries) {
-    memset(job, 0, sizeof *job);
-    job->t = t;
-    job->query = query ? query : t->xyz;
-    job->order = query ? NULL : t->id;
-    job->n_queries = n_queries;
+static hdi_search_job hdi_search_of(const hdi_tree *t, const double *query, int64_t n_queries) {
+    hdi_search_job job;
+    memset(&job, 0, sizeof job);
+    job.t = t;
+    job.query = query ? query : t->xyz;
+    job.order = query ? NULL : t->id;
+    job.n_queries = n_queries;
+    return job;
 }
 
-/* Tasks, and work arrays for the candidates of each, in s. Together these stay below 64 MiB (28 bytes a
- * candidate). */
-static hd_status hdi_search_take(hdi_search_job *job, int64_t room, hdi_scope *s) {
+/* Runs the tasks with room for so many candidates each, in s. The work arrays of all together stay below 64
+ * MiB (28 bytes a candidate). */
+static hd_status hdi_search_run(hdi_search_job *job, int64_t room, hdi_range_task task, hdi_scope *s) {
     const int64_t size = room + HDI_LEAF, blocks = (job->n_queries + 255) / 256,
                   fit = 1 + ((int64_t)64 << 20) / (28 * size);
     const int64_t tasks = hdi_least(hdi_least(blocks, HDI_SEARCH_TASKS), fit);
@@ -5161,6 +4959,7 @@ static hd_status hdi_search_take(hdi_search_job *job, int64_t room, hdi_scope *s
         job->found[i].id = id + i * size;
         job->found[i].sorted = sorted + i * size;
     }
+    hdi_parallel_ranges(s->ctx, job->n_queries, job->per_task, task, job);
     return HD_OK;
 }
 
@@ -5182,9 +4981,10 @@ static void hdi_nearest_task(void *arg, int64_t begin, int64_t end) {
         hdi_found_bound(f, before ? hdi_raise(limit * limit) : HDI_NO_BOUND);
         hdi_search(job->t, q, f);
         m = hdi_found_sort(f);
-        for (p = 0; p < k; p++) job->index[v * k + p] = p < m ? (int32_t)f->sorted[p].id : -1;
-        for (p = 0; job->distance2 && p < k; p++)
-            job->distance2[v * k + p] = p < m ? hdi_key_square(f->sorted + p) : HUGE_VAL;
+        for (p = 0; p < k; p++) {
+            job->index[v * k + p] = p < m ? (int32_t)f->sorted[p].id : -1;
+            if (job->distance2) job->distance2[v * k + p] = p < m ? hdi_key_square(f->sorted + p) : HUGE_VAL;
+        }
         before = m == k ? q : NULL;
         if (before) reach = sqrt(hdi_key_square(f->sorted + k - 1));
     }
@@ -5195,66 +4995,37 @@ static void hdi_nearest_task(void *arg, int64_t begin, int64_t end) {
 static hd_status hdi_nearest(const hdi_tree *t, const double *query, int64_t n_queries, int32_t k,
                              int32_t *index, double *distance2, hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
-    hdi_search_job job;
-    hdi_search_begin(&job, t, query, n_queries);
+    hdi_search_job job = hdi_search_of(t, query, n_queries);
     job.k = k;
     job.index = index;
     job.distance2 = distance2;
-    if (hdi_search_take(&job, 2 * (int64_t)k + 32, &s) >= 0)
-        hdi_parallel_ranges(ctx, n_queries, job.per_task, hdi_nearest_task, &job);
+    (void)hdi_search_run(&job, 2 * (int64_t)k + 32, hdi_nearest_task, &s);
     return hdi_scope_end(&s);
 }
 
-/* One row: columns ascending. What was gathered is sorted by id with its place as a payload. */
-static void hdi_within_row(const hdi_found *f, int32_t *col, double *val) {
-    /* room for twice as many */
-    uint64_t *key = (uint64_t *)(void *)f->sorted, *work = key + f->m;
-    int64_t p;
-    for (p = 0; p < f->m; p++) key[p] = (uint64_t)f->id[p] << 32 | (uint64_t)p;
-    hdi_sort_keys(key, f->m, work);
-    for (p = 0; p < f->m; p++) {
-        col[p] = (int32_t)(key[p] >> 32);
-        if (val) val[p] = f->d[key[p] & 0xffffffffu];
-    }
-}
-
-/* Counts are of a radius that is a little larger: compilers may round the distances of one pass otherwise
- * than those of the other. */
+/* Counts the rows, or writes them, columns ascending: sorted by id with the place as a payload. */
 static void hdi_within_task(void *arg, int64_t begin, int64_t end) {
     const hdi_search_job *job = (const hdi_search_job *)arg;
-    const double bound = job->kept ? job->radius2 : job->radius2 * (1 + 8 * DBL_EPSILON) + DBL_MIN;
     hdi_found *f = job->found + begin / job->per_task;
-    hd_csr *out = job->out;
-    int64_t i;
-    f->k = job->kept ? 0 : HDI_COUNT;
+    uint64_t *key = (uint64_t *)(void *)f->sorted;   /* room for twice as many */
+    int64_t i, p;
     for (i = begin; i < end; i++) {
-        const int64_t v = job->order ? job->order[i] : i;
+        const int64_t v = job->order ? job->order[i] : i, row = job->out->row_ptr[v];
+        f->k = job->out->val ? 0 : HDI_COUNT;
         f->counted = 0;
-        hdi_found_bound(f, bound);
+        hdi_found_bound(f, job->radius2);
         hdi_search(job->t, hdi_at3(job->query, v), f);
-        if (job->kept) {
-            hdi_within_row(f, out->col + out->row_ptr[v], out->val + out->row_ptr[v]);
-            job->kept[v] = (int32_t)f->m;
-        } else {
-            out->row_ptr[v] = f->counted + f->m;
+        if (!job->out->val) {
+            job->out->row_ptr[v] = f->counted + f->m;
+            continue;
+        }
+        for (p = 0; p < f->m; p++) key[p] = (uint64_t)f->id[p] << 32 | (uint64_t)p;
+        hdi_sort_keys(key, f->m, key + f->m);
+        for (p = 0; p < f->m; p++) {
+            job->out->col[row + p] = (int32_t)(key[p] >> 32);
+            job->out->val[row + p] = f->d[key[p] & 0xffffffffu];
         }
     }
-}
-
-/* Closes the gaps that rows with fewer entries than were counted leave. */
-static void hdi_within_close(hd_csr *a, const int32_t *kept) {
-    int64_t to = 0;
-    int32_t i;
-    for (i = 0; i < a->n_rows; i++) {
-        const int64_t from = a->row_ptr[i];
-        if (from != to) {
-            memmove(a->col + to, a->col + from, (size_t)kept[i] * sizeof *a->col);
-            memmove(a->val + to, a->val + from, (size_t)kept[i] * sizeof *a->val);
-        }
-        a->row_ptr[i] = to;
-        to += kept[i];
-    }
-    a->nnz = a->row_ptr[a->n_rows] = to;
 }
 
 /* out: row i lists the points of the tree whose squared distance from query i is at most radius2, values
@@ -5263,24 +5034,18 @@ static hd_status hdi_within(hd_csr *out, const hdi_tree *t, const double *query,
                             double radius2, hd_context *ctx, hd_error *e) {
     enum { ROOM = 256 };       /* of the first pass, which keeps no candidates */
     hdi_scope s = hdi_scope_begin(ctx, e), passes = hdi_scope_begin(ctx, e);
-    hdi_search_job job;
+    hdi_search_job job = hdi_search_of(t, query, n_queries);
     hd_csr a = hdi_csr_take(&s, n_queries, t->n, 0, 0);
-    int64_t widest = 0, i;
-    hdi_search_begin(&job, t, query, n_queries);
+    int64_t widest;
     job.radius2 = radius2;
     job.out = &a;
-    if (hdi_search_take(&job, ROOM, &passes) >= 0)
-        hdi_parallel_ranges(ctx, n_queries, job.per_task, hdi_within_task, &job);
+    if (e->status >= 0) (void)hdi_search_run(&job, ROOM, hdi_within_task, &passes);
     if (hdi_scope_end(&passes) < 0) return hdi_scope_end(&s);
-    for (i = 0; i < n_queries; i++) widest = a.row_ptr[i] > widest ? a.row_ptr[i] : widest;
     a.nnz = hdi_prefix_sum(a.row_ptr, n_queries);
+    widest = hdi_fullest(a.row_ptr, n_queries);
     a.col = HDI_TAKE(&s, int32_t, a.nnz);
     a.val = HDI_TAKE(&s, double, a.nnz);
-    job.kept = HDI_TAKE(&passes, int32_t, n_queries);
-    if (hdi_search_take(&job, widest, &passes) >= 0) {
-        hdi_parallel_ranges(ctx, n_queries, job.per_task, hdi_within_task, &job);
-        hdi_within_close(&a, job.kept);
-    }
+    if (e->status >= 0) (void)hdi_search_run(&job, widest, hdi_within_task, &passes);
     if (hdi_scope_end(&passes) >= 0) *out = hdi_csr_keep(&s, a);
     return hdi_scope_end(&s);
 }
@@ -6521,7 +6286,7 @@ static int32_t hdi_star_hull(hdi_star_point *p, int32_t n, int *closed) {
  * own cover: half of it is not stored. A flip must also lower the sum of the six cotangents. In exact
  * arithmetic it always does (Rippa 1990), and so rounding cannot make flips run in circles. Zero-area faces
  * are left out before. Lengths are in units of the mean edge length: nothing overflows, and results do not
- * depend on the unit of the coordinates. */
+ * depend on the unit of the coordinates. Only what a flip needs is unfolded. */
 
 static int32_t hdi_side_next(int32_t s) { return s % 3 == 2 ? s - 2 : s + 1; }
 static int32_t hdi_side_prev(int32_t s) { return s % 3 == 0 ? s + 2 : s - 1; }
@@ -6545,30 +6310,17 @@ typedef struct hdi_soup {
 
 static int32_t hdi_soup_copies(const hdi_soup *soup, int32_t f) { return soup->copies ? soup->copies[f] : 1; }
 
-/* Faces of a bucket: its keys, sorted, second corner << 32 | third corner << 1 | odd, become faces from
- * number m on. Returns how many there are; with soup NULL they are only counted. */
-static int64_t hdi_soup_bucket(hdi_soup *soup, int64_t m, int32_t i, const uint64_t *key,
-                               int64_t n) {
-    int64_t p, q, count = 0;
-    for (p = 0; p < n; p = q, count++) {
-        int32_t odd = 0;
-        for (q = p; q < n && key[q] >> 1 == key[p] >> 1; q++) odd += (int32_t)(key[q] & 1);
-        if (!soup) continue;
-        soup->tri[3 * (m + count)] = i;
-        soup->tri[3 * (m + count) + 1] = hdi_key_vertex(key[p]);
-        soup->tri[3 * (m + count) + 2] = (int32_t)((key[p] & 0xffffffffu) >> 1);
-        soup->copies[m + count] = (int32_t)(q - p);
-        soup->odd[m + count] = odd;
-    }
-    return count;
-}
-
-/* Gathers the m triangles tri by their smallest corners: keys as above, bucket i from ptr[i] on. ptr [n +
- * 1] zeros. */
-static void hdi_soup_gather(const int32_t *tri, int64_t m, int32_t n, int64_t *ptr, uint64_t *key) {
-    int64_t f;
+/* Gathers the m triangles tri by their smallest corners: bucket i from ptr[i] on, its keys sorted, second
+ * corner << 32 | third corner << 1 | odd. ptr [n + 1] zeros. Returns how many different triangles there are,
+ * or -1 without memory. */
+static int64_t hdi_soup_gather(const int32_t *tri, int64_t m, int32_t n, int64_t *ptr, uint64_t *key,
+                               hdi_scope *s) {
+    uint64_t *work;
+    int64_t f, p, count = 0;
     for (f = 0; f < m; f++) ptr[hdi_low32(tri[3 * f], hdi_low32(tri[3 * f + 1], tri[3 * f + 2]))]++;
     hdi_prefix_sum(ptr, n);
+    work = HDI_TAKE(s, uint64_t, hdi_fullest(ptr, n));
+    if (!work) return -1;
     for (f = 0; f < m; f++) {
         const int32_t a = tri[3 * f], b = tri[3 * f + 1], c = tri[3 * f + 2];
         const int32_t first = hdi_low32(a, hdi_low32(b, c)), last = hdi_high32(a, hdi_high32(b, c));
@@ -6577,28 +6329,34 @@ static void hdi_soup_gather(const int32_t *tri, int64_t m, int32_t n, int64_t *p
         key[ptr[first]++] = (uint64_t)(middle << 32 | (int64_t)last << 1 | odd);
     }
     hdi_rewind(ptr, n);
+    for (f = 0; f < n; f++) {
+        hdi_sort_keys(key + ptr[f], ptr[f + 1] - ptr[f], work);
+        for (p = ptr[f]; p < ptr[f + 1]; p++) count += p == ptr[f] || key[p] >> 1 != key[p - 1] >> 1;
+    }
+    return count;
 }
 
 /* Different faces of the m triangles tri, into soup in s. */
-static hd_status hdi_soup_faces(hdi_soup *soup, const int32_t *tri, int64_t m, int32_t n,
-                                hdi_scope *s) {
+static hd_status hdi_soup_faces(hdi_soup *soup, const int32_t *tri, int64_t m, int32_t n, hdi_scope *s) {
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
-    int64_t *ptr = HDI_TAKE_ZERO(&own, int64_t, (int64_t)n + 1), f = 0, count = 0;
-    uint64_t *key = HDI_TAKE(&own, uint64_t, m), *work;
+    int64_t *ptr = HDI_TAKE_ZERO(&own, int64_t, (int64_t)n + 1), f = -1, p, count;
+    uint64_t *key = HDI_TAKE(&own, uint64_t, m);
     int32_t i;
-    if (s->e->status < 0) return hdi_scope_end(&own);
-    hdi_soup_gather(tri, m, n, ptr, key);
-    work = HDI_TAKE(&own, uint64_t, hdi_fullest(ptr, n));
-    if (!work) return hdi_scope_end(&own);
-    for (i = 0; i < n; i++) {
-        hdi_sort_keys(key + ptr[i], ptr[i + 1] - ptr[i], work);
-        count += hdi_soup_bucket(NULL, 0, i, key + ptr[i], ptr[i + 1] - ptr[i]);
-    }
+    count = key ? hdi_soup_gather(tri, m, n, ptr, key, &own) : -1;
+    if (count < 0) return hdi_scope_end(&own);
     soup->tri = HDI_TAKE(s, int32_t, 3 * count);
-    soup->copies = HDI_TAKE(s, int32_t, count);
-    soup->odd = HDI_TAKE(s, int32_t, count);
-    if (s->e->status < 0) return hdi_scope_end(&own);
-    for (i = 0; i < n; i++) f += hdi_soup_bucket(soup, f, i, key + ptr[i], ptr[i + 1] - ptr[i]);
+    soup->copies = HDI_TAKE_ZERO(s, int32_t, count);
+    soup->odd = HDI_TAKE_ZERO(s, int32_t, count);
+    for (i = 0; soup->odd && i < n; i++) {
+        for (p = ptr[i]; p < ptr[i + 1]; p++) {
+            if (p == ptr[i] || key[p] >> 1 != key[p - 1] >> 1) f++;
+            soup->tri[3 * f] = i;
+            soup->tri[3 * f + 1] = hdi_key_vertex(key[p]);
+            soup->tri[3 * f + 2] = (int32_t)((key[p] & 0xffffffffu) >> 1);
+            soup->copies[f]++;
+            soup->odd[f] += (int32_t)(key[p] & 1);
+        }
+    }
     soup->mesh.tri = soup->tri;
     soup->mesh.n = n;
     soup->mesh.m = (int32_t)count;
@@ -6631,86 +6389,52 @@ static hdi_edge_tally hdi_soup_edges(hdi_soup *soup, int32_t *border) {
     return tally;
 }
 
-/* A job on blocks of faces. add and n_short are of a block: what its worst face lacks to satisfy the
- * triangle inequality with delta to spare, and how many faces lack anything. */
-typedef struct hdi_soup_job {
-    hdi_soup *soup;
-    double delta, *add, most_add;
-    int64_t *n_short;
-} hdi_soup_job;
-
-static void hdi_soup_length_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_soup_job *job = (const hdi_soup_job *)arg;
-    hdi_soup *soup = job->soup;
+/* Lengths of face f. Returns by how much they satisfy the triangle inequality. */
+static double hdi_soup_measure(const hdi_soup *soup, int32_t f) {
     const hdi_mesh *mesh = &soup->mesh;
-    double add = 0;
-    int64_t f, n_short = 0;
+    const int32_t *v = mesh->tri + hdi_triple(f);
+    double *len = soup->len + hdi_triple(f);
     int q;
-    for (f = begin; f < end; f++) {
-        const int32_t *v = mesh->tri + 3 * f;
-        double *len = soup->len + 3 * f, spare;
-        if (!(mesh->area[f] > 0)) continue;
-        for (q = 0; q < 3; q++)
-            len[q] = (mesh->len ? hdi_mesh_lengths(mesh, (int32_t)f)[q]
-                      : hdi_edge_length(mesh->xyz, v[q], v[hdi_next3[q]])) / soup->unit;
-        spare = hdi_min(len[0] + len[1] - len[2],
-                        hdi_min(len[2] + len[0] - len[1], len[2] + len[1] - len[0]));
-        if (job->delta < 0) continue;
-        if (spare < job->delta) n_short += hdi_soup_copies(soup, (int32_t)f);
-        add = hdi_max(add, job->delta - spare);
-    }
-    job->add[begin / HDI_FACES_PER_TASK] = add;
-    job->n_short[begin / HDI_FACES_PER_TASK] = n_short;
-}
-
-static void hdi_soup_cot_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_soup_job *job = (const hdi_soup_job *)arg;
-    hdi_soup *soup = job->soup;
-    int64_t f;
-    int q;
-    for (f = begin; f < end; f++) {
-        double *len = soup->len + 3 * f, *cot = soup->mesh.cot + 3 * f;
-        cot[0] = cot[1] = cot[2] = soup->area[f] = 0;
-        if (!(soup->mesh.area[f] > 0)) continue;
-        for (q = 0; q < 3; q++) len[q] += job->most_add;
-        soup->area[f] = hdi_length_area(len[0], len[1], len[2]);
-        if (soup->area[f] > 0) hdi_length_cots(len, soup->area[f], cot);
-    }
+    for (q = 0; q < 3; q++)
+        len[q] = (mesh->len ? hdi_mesh_lengths(mesh, f)[q]
+                  : hdi_edge_length(mesh->xyz, v[q], v[hdi_next3[q]])) / soup->unit;
+    return hdi_min(len[0] + len[1] - len[2], hdi_min(len[2] + len[0] - len[1], len[2] + len[1] - len[0]));
 }
 
 /* Lengths, mollified, with their areas and cotangents. Mollification (Sharp, Crane 2020, section 4.5)
  * adds to all sides the smallest length that makes every triangle satisfy the triangle inequality with
  * delta to spare; delta < 0: none. */
 static hd_status hdi_soup_lengths(hdi_soup *soup, double delta, hd_mesh_report *rep, hdi_scope *s) {
-    const int64_t m = soup->mesh.m, n_tasks = (m + HDI_FACES_PER_TASK - 1) / HDI_FACES_PER_TASK;
-    hdi_soup_job job;
-    int64_t i, n_short = 0;
-    soup->mesh.cot = soup->mesh.cot ? soup->mesh.cot : HDI_TAKE(s, double, 3 * m);
-    soup->area = HDI_TAKE(s, double, m);
-    soup->len = HDI_TAKE(s, double, 3 * m);
-    job.soup = soup;
-    job.delta = delta;
-    job.most_add = 0;
-    job.add = HDI_TAKE(s, double, n_tasks);
-    job.n_short = HDI_TAKE(s, int64_t, n_tasks);
+    hdi_mesh *mesh = &soup->mesh;
+    double add = 0;
+    int32_t f;
+    int q;
+    if (!mesh->cot) mesh->cot = HDI_TAKE(s, double, hdi_triple(mesh->m));
+    soup->area = HDI_TAKE_ZERO(s, double, mesh->m);
+    soup->len = HDI_TAKE(s, double, hdi_triple(mesh->m));
     if (s->e->status < 0) return s->e->status;
-    hdi_parallel_ranges(s->ctx, m, HDI_FACES_PER_TASK, hdi_soup_length_task, &job);
-    for (i = 0; i < n_tasks; i++) {
-        job.most_add = hdi_max(job.most_add, job.add[i]);
-        n_short += job.n_short[i];
+    for (f = 0; f < mesh->m; f++) {
+        const double spare = mesh->area[f] > 0 ? hdi_soup_measure(soup, f) : HUGE_VAL;
+        if (delta >= 0 && spare < delta) rep->n_mollified += hdi_soup_copies(soup, f);
+        if (delta >= 0) add = hdi_max(add, delta - spare);
     }
-    hdi_parallel_ranges(s->ctx, m, HDI_FACES_PER_TASK, hdi_soup_cot_task, &job);
-    rep->n_mollified = (int32_t)n_short;
-    rep->mollify_epsilon = job.most_add * soup->unit;
+    rep->mollify_epsilon = add * soup->unit;
+    for (f = 0; f < mesh->m; f++) {
+        double *len = soup->len + hdi_triple(f), *cot = mesh->cot + hdi_triple(f);
+        cot[0] = cot[1] = cot[2] = 0;
+        if (!(mesh->area[f] > 0)) continue;
+        for (q = 0; q < 3; q++) len[q] += add;
+        soup->area[f] = hdi_length_area(len[0], len[1], len[2]);
+        if (soup->area[f] > 0) hdi_length_cots(len, soup->area[f], cot);
+    }
     return HD_OK;
 }
 
-/* Edges and lengths of a soup whose faces have their area. border [n] as in hdi_soup_edges. */
-static hd_status hdi_soup_finish(hdi_soup *soup, double delta, hd_mesh_report *rep, int32_t *border,
-                                 hdi_scope *s) {
+/* Edges and lengths of a soup whose faces have their area. */
+static hd_status hdi_soup_finish(hdi_soup *soup, double delta, hd_mesh_report *rep, hdi_scope *s) {
     const hdi_mesh *mesh = &soup->mesh;
+    int32_t *border = HDI_TAKE(s, int32_t, mesh->n), f;
     hdi_edge_tally tally;
-    int32_t f;
     for (f = 0; f < mesh->m; f++) soup->total += mesh->area[f] * hdi_soup_copies(soup, f);
     if (!border || hdi_sides_make(&soup->sides, mesh, s) < 0) return s->e->status;
     tally = hdi_soup_edges(soup, border);
@@ -6738,7 +6462,7 @@ static hd_status hdi_soup_make(hdi_soup *soup, const double *xyz, int32_t n, con
         rep->n_faces += soup->copies[f];
         *(soup->mesh.area[f] > 0 ? &rep->n_faces_used : &rep->n_zero_area) += soup->copies[f];
     }
-    return hdi_soup_finish(soup, delta, rep, HDI_TAKE(s, int32_t, n), s);
+    return hdi_soup_finish(soup, delta, rep, s);
 }
 
 /* The soup of a mesh, which hdi_mesh_make has measured, in s. */
@@ -6747,50 +6471,44 @@ static hd_status hdi_soup_of_mesh(hdi_soup *soup, const hdi_mesh *mesh, double d
     memset(soup, 0, sizeof *soup);
     soup->mesh = *mesh;
     soup->share = 1;
-    return hdi_soup_finish(soup, delta, rep, HDI_TAKE(s, int32_t, mesh->n), s);
+    return hdi_soup_finish(soup, delta, rep, s);
 }
 
 /* ---- covers ----
  * The intrinsic triangulation of a soup: of itself where all its faces can be turned to one side, else of
- * its two-sheeted cover. A face has copies on it, front and back in turn. Meshes are unfolded as a whole.
- * Of the stars of points only a part is unfolded: what matters are the lengths of all faces, which are
- * those in space unless they are flipped, and the gluing of those few edges that may not be Delaunay and
- * of what comes to lie beside them. Faces get sides of their own (all copies, front and back) when one of
- * their edges is glued, and an edge is glued, all its sides at once, when it is looked at. */
+ * its two-sheeted cover. A face has copies on it, front and back in turn. Only a part is unfolded: what
+ * matters are the lengths of all faces, which are those in space unless they are flipped, and the gluing of
+ * those few edges that may not be Delaunay and of what comes to lie beside them. Faces get sides of their
+ * own (all copies and sheets) when one of their edges is glued, and an edge is glued, all its sides at once,
+ * when it is looked at. */
 
 enum { HDI_SIDE_OPEN = -1, HDI_SIDE_LOOSE = -2 };    /* instead of a twin: boundary; not glued yet */
 /* flips stop after so many, which no mesh has ever come near to; what is left is counted */
 enum { HDI_FLIPS_PER_SIDE = 64 };
+
+typedef struct hdi_side {
+    double len;         /* the same on both sides of an edge */
+    int32_t vert;       /* where the side begins; it runs to where the next side of its face begins */
+    int32_t twin;       /* the side glued to it, which runs the other way; or see above */
+    int32_t next;       /* on the stack: the side below, or -1; HDI_SIDE_LOOSE: it is not there */
+} hdi_side;
 
 typedef struct hdi_cover {
     const hdi_soup *soup;
     hd_context *ctx;
     hd_error *e;
     int32_t n_sheets;
-    int32_t in_parts;   /* 1: faces are unfolded when they are needed */
+    int close;          /* 1: the boundary is glued to the other sheet; 0: it stays open */
+    int32_t *sheet;     /* [2 m] the connected sheets, united: the front of face f is 2 f, its back 2 f + 1 */
     int32_t n, room;    /* faces that are unfolded, and those that there is room for */
-    int32_t *vert;      /* [3 n] where side s begins; it runs to where the next side of its face begins */
-    int32_t *twin;      /* [3 n] the side glued to it, which runs the other way; or see above */
-    double *len;        /* [3 n] the same on both sides of an edge */
+    hdi_side *side;     /* [3 n] */
     double *area;       /* [n] 0: these lengths make no triangle, the face contributes nothing */
     int32_t *first;     /* [m] the first copy of a face; -1: none yet */
-    int32_t step;       /* from there to the next copy */
-    int32_t *stack;     /* [3 room] sides to look at */
-    int32_t depth;
-    signed char *waits; /* [3 room] 1: on the stack */
+    int32_t stack;      /* the side to look at next; -1: none */
     signed char *glued; /* [3 m] at the first side of an edge */
     hdi_pair *list;     /* [most faces at an edge] */
     int64_t most_flips, work;
 } hdi_cover;
-
-static void hdi_cover_free(hdi_cover *c) {
-    hdi_free(c->ctx, c->vert);
-    hdi_free(c->ctx, c->twin);
-    hdi_free(c->ctx, c->len);
-    hdi_free(c->ctx, c->area);
-    hdi_free(c->ctx, c->stack);
-    hdi_free(c->ctx, c->waits);
-}
 
 /* old with n elements in a block of room elements; NULL, old freed, when there is none. */
 static void *hdi_regrow(hdi_cover *c, void *old, int64_t n, int64_t room, size_t size) {
@@ -6800,81 +6518,106 @@ static void *hdi_regrow(hdi_cover *c, void *old, int64_t n, int64_t room, size_t
     return block;
 }
 
-/* Room for more faces: at least twice as many as before, if they come in parts. */
+/* Room for more faces: at least twice as many as before. */
 static hd_status hdi_cover_room(hdi_cover *c, int64_t more) {
-    const int64_t n = c->n, need = n + more, twice = 2 * (int64_t)c->room;
-    const int64_t room = !c->in_parts ? need : need > twice ? need + 1024 : twice;
+    const int64_t n = c->n, need = n + more, twice = 2 * (int64_t)c->room, most = INT32_MAX / 3;
+    const int64_t room = hdi_least(need > twice ? need + 1024 : twice, need > most ? need : most);
     if (need <= c->room) return HD_OK;
-    if (3 * room > INT32_MAX)
+    if (room > most)
         return hdi_fail(c->e, HD_ERR_TOO_LARGE, "more than 2^31 face corners in a cover of two sheets");
-    c->vert = (int32_t *)hdi_regrow(c, c->vert, 3 * n, 3 * room, sizeof(int32_t));
-    c->twin = (int32_t *)hdi_regrow(c, c->twin, 3 * n, 3 * room, sizeof(int32_t));
-    c->len = (double *)hdi_regrow(c, c->len, 3 * n, 3 * room, sizeof(double));
-    c->area = (double *)hdi_regrow(c, c->area, n, room, sizeof(double));
-    c->stack = (int32_t *)hdi_regrow(c, c->stack, c->depth, 3 * room, sizeof(int32_t));
-    c->waits = (signed char *)hdi_regrow(c, c->waits, 3 * n, 3 * room, 1);
+    c->side = (hdi_side *)hdi_regrow(c, c->side, 3 * n, 3 * room, sizeof *c->side);
+    c->area = (double *)hdi_regrow(c, c->area, n, room, sizeof *c->area);
     if (c->e->status >= 0) c->room = (int32_t)room;
     return c->e->status;
 }
 
-static hd_status hdi_cover_begin(hdi_cover *c, const hdi_soup *soup, int in_parts, hdi_scope *s) {
+/* Unites the sheets of faces that share an edge of two faces. If no front is united with its own back, the
+ * surface has two sides: the other sheet is a mirror image, and one is enough. */
+static int hdi_cover_orientable(const hdi_cover *c) {
+    const hdi_mesh *mesh = &c->soup->mesh;
+    const hdi_sides *g = &c->soup->sides;
+    int32_t v, p, q;
+    hdi_fill_own(c->sheet, 2 * mesh->m);
+    for (v = 0; v < mesh->n; v++) {
+        for (p = g->ptr[v]; p < g->ptr[v + 1]; p = q) {
+            const int32_t a = 2 * hdi_key_face(g->key[p]);
+            int32_t b;
+            q = hdi_sides_run(g, p, g->ptr[v + 1]);
+            if (q - p != 2) continue;
+            b = 2 * hdi_key_face(g->key[p + 1]);
+            /* sides that run the same way: front meets back */
+            if (mesh->tri[hdi_key_side(g->key[p])] == mesh->tri[hdi_key_side(g->key[p + 1])]) b ^= 1;
+            hdi_unite(c->sheet, a, b);
+            hdi_unite(c->sheet, a ^ 1, b ^ 1);
+        }
+    }
+    for (v = 0; v < mesh->m; v++)
+        if (hdi_find(c->sheet, 2 * v) == hdi_find(c->sheet, 2 * v + 1)) return 0;
+    return 1;
+}
+
+/* Nothing is unfolded yet. rep knows the edges of the soup. */
+static hd_status hdi_cover_begin(hdi_cover *c, const hdi_soup *soup, int close, const hd_mesh_report *rep,
+                                 hdi_scope *s) {
+    const int32_t m = soup->mesh.m;
+    int32_t f;
     memset(c, 0, sizeof *c);
     c->soup = soup;
     c->ctx = s->ctx;
     c->e = s->e;
-    c->n_sheets = 2;
-    c->in_parts = in_parts;
-    c->step = 1;
-    c->first = HDI_TAKE(s, int32_t, soup->mesh.m);
-    c->glued = HDI_TAKE_ZERO(s, signed char, hdi_triple(soup->mesh.m));
+    c->close = close || soup->copies;
+    c->stack = -1;
+    c->first = HDI_TAKE(s, int32_t, m);
+    c->glued = HDI_TAKE_ZERO(s, signed char, hdi_triple(m));
     c->list = HDI_TAKE(s, hdi_pair, soup->sides.most);
-    if (s->e->status >= 0) hdi_fill_i32(c->first, soup->mesh.m, -1);
-    return s->e->status;
+    if (!soup->copies) c->sheet = HDI_TAKE(s, int32_t, 2 * (int64_t)m);
+    if (s->e->status < 0) return s->e->status;
+    hdi_fill_i32(c->first, m, -1);
+    c->n_sheets = soup->copies || rep->n_nonmanifold_edges || (close && rep->n_boundary_edges) ||
+                  !hdi_cover_orientable(c) ? 2 : 1;
+    for (f = 0; f < m; f++)
+        c->most_flips += 3 * HDI_FLIPS_PER_SIDE * c->n_sheets * (int64_t)hdi_soup_copies(soup, f);
+    return HD_OK;
 }
 
-/* Side s of the soup where face number at of the cover is a copy of its face; the back runs the other way
- * round. */
-static int32_t hdi_sheet_side(int32_t at, int32_t s, int back) { return 3 * at + (back ? 2 - s % 3 : s % 3); }
-
-/* That side on copy k, front or back. */
+/* Side s of the soup on copy k of its face, front or back, which runs the other way round;
+ * HDI_SIDE_OPEN: this sheet is not stored. Of two connected sheets the one whose root is a front is. */
 static int32_t hdi_cover_side(const hdi_cover *c, int32_t s, int32_t k, int back) {
-    return hdi_sheet_side(c->first[s / 3] + (2 * k + back) * c->step, s, back);
-}
-
-/* A copy of face f becomes face number at. */
-static void hdi_cover_put(hdi_cover *c, int32_t f, int32_t at, int back) {
-    const hdi_soup *soup = c->soup;
-    int32_t q;
-    for (q = 0; q < 3; q++) {
-        const int32_t s = 3 * f + q, to = hdi_sheet_side(at, s, back);
-        c->vert[to] = soup->mesh.tri[back ? hdi_side_next(s) : s];
-        c->len[to] = soup->len[s];
-        c->twin[to] = c->in_parts ? HDI_SIDE_LOOSE : HDI_SIDE_OPEN;
-        c->waits[to] = 0;
-    }
-    c->area[at] = soup->area[f];
+    const int32_t at = c->first[s / 3] + c->n_sheets * k, q = back ? 2 - s % 3 : s % 3;
+    if (c->n_sheets == 2) return 3 * (at + back) + q;
+    return hdi_find(c->sheet, 2 * (s / 3) + back) & 1 ? HDI_SIDE_OPEN : 3 * at + q;
 }
 
 /* Unfolds face f: all its copies. */
 static hd_status hdi_cover_face(hdi_cover *c, int32_t f) {
-    const int64_t copies = 2 * (int64_t)hdi_soup_copies(c->soup, f);
-    int32_t k;
+    const hdi_soup *soup = c->soup;
+    const int32_t copies = hdi_soup_copies(soup, f);
+    int32_t k, q, at;
     if (c->first[f] >= 0) return HD_OK;
-    if (hdi_cover_room(c, copies) < 0) return c->e->status;
+    if (hdi_cover_room(c, c->n_sheets * (int64_t)copies) < 0) return c->e->status;
     c->first[f] = c->n;
-    for (k = 0; k < copies; k++) hdi_cover_put(c, f, c->n++, k & 1);
+    for (k = 0; k < c->n_sheets * copies; k++) c->area[c->n++] = soup->area[f];
+    for (k = 0; k < 6 * copies; k++) {
+        const int32_t s = 3 * f + k % 3, back = k / 3 % 2;
+        if ((at = hdi_cover_side(c, s, k / 6, back)) < 0) continue;
+        q = back ? hdi_side_next(s) : s;
+        c->side[at].vert = soup->mesh.tri[q];
+        c->side[at].len = soup->len[s];
+        c->side[at].twin = c->side[at].next = HDI_SIDE_LOOSE;
+    }
     return HD_OK;
 }
 
+/* Sheets that are not stored are boundary for those that are. */
 static void hdi_glue(hdi_cover *c, int32_t a, int32_t b) {
-    c->twin[a] = b;
-    c->twin[b] = a;
+    if (a >= 0) c->side[a].twin = b;
+    if (b >= 0) c->side[b].twin = a;
 }
 
 static void hdi_cover_push(hdi_cover *c, int32_t side) {
-    if (c->twin[side] < 0 || c->waits[side]) return;
-    c->stack[c->depth++] = side;
-    c->waits[side] = 1;
+    if (side < 0 || c->side[side].twin < 0 || c->side[side].next != HDI_SIDE_LOOSE) return;
+    c->side[side].next = c->stack;
+    c->stack = side;
 }
 
 static void hdi_unit3(const double *from, const double *to, double *out) {
@@ -6906,15 +6649,14 @@ static void hdi_sort_around(const hdi_mesh *mesh, int32_t lo, int32_t hi, hdi_pa
     hdi_sort_pairs(list, n);
 }
 
-/* Glues the edge whose sides are keys [p, q) at vertex v: in layers of copies, in each by angle, around
- * the edge the side of a face that looks counterclockwise to the side of the next one that looks back at
- * it. A single face at the boundary is glued front to back. If faces are unfolded in parts, the edge goes
- * on the stack. */
+/* Glues the edge whose sides are keys [p, q) at vertex v, and puts it on the stack: in layers of copies, in
+ * each by angle, around the edge the side of a face that looks counterclockwise to the side of the next one
+ * that looks back at it. A single face at the boundary is glued front to back, or left open. */
 static hd_status hdi_cover_glue(hdi_cover *c, int32_t v, int32_t p, int32_t q) {
     const hdi_mesh *mesh = &c->soup->mesh;
     const uint64_t *key = c->soup->sides.key;
     const int32_t n = q - p;
-    int32_t i, layer, most = 0, first = -1, last = -1;
+    int32_t i, layer, most = 0, first = HDI_SIDE_LOOSE, last = HDI_SIDE_LOOSE;
     if (c->glued[p]) return HD_OK;
     c->glued[p] = 1;
     for (i = 0; i < n; i++) {
@@ -6932,24 +6674,29 @@ static hd_status hdi_cover_glue(hdi_cover *c, int32_t v, int32_t p, int32_t q) {
             int32_t clock;
             if (layer >= hdi_soup_copies(c->soup, side / 3)) continue;
             clock = hdi_cover_side(c, side, layer, !back);
-            if (last >= 0) hdi_glue(c, last, clock);
-            else first = clock;
-            if (last >= 0 && c->in_parts) hdi_cover_push(c, clock);
+            if (last == HDI_SIDE_LOOSE) first = clock;
+            else hdi_glue(c, last, clock);
+            if (last != HDI_SIDE_LOOSE) hdi_cover_push(c, clock);
             last = hdi_cover_side(c, side, layer, back);
         }
     }
-    hdi_glue(c, last, first);
-    if (c->in_parts) hdi_cover_push(c, first);
+    if (n > 1 || most > 1 || c->close) {
+        hdi_glue(c, last, first);
+    } else {
+        hdi_glue(c, last, HDI_SIDE_OPEN);
+        hdi_glue(c, HDI_SIDE_OPEN, first);
+    }
+    hdi_cover_push(c, first);
     return HD_OK;
 }
 
 /* Glues the edge of side s of the cover, if it is not yet: then s is still a side of its own face. */
 static hd_status hdi_cover_need(hdi_cover *c, int32_t s) {
     const hdi_sides *g = &c->soup->sides;
-    const int32_t i = c->vert[s], j = c->vert[hdi_side_next(s)], lo = hdi_low32(i, j), hi = hdi_high32(i, j);
-    const int32_t end = g->ptr[lo + 1];
+    const int32_t i = c->side[s].vert, j = c->side[hdi_side_next(s)].vert;
+    const int32_t lo = hdi_low32(i, j), hi = hdi_high32(i, j), end = g->ptr[lo + 1];
     int32_t p = g->ptr[lo], q = end;
-    if (c->twin[s] != HDI_SIDE_LOOSE) return HD_OK;
+    if (c->side[s].twin != HDI_SIDE_LOOSE) return HD_OK;
     while (p < q) {                              /* the first key of hi */
         const int32_t middle = p + (q - p) / 2;
         if (hdi_key_vertex(g->key[middle]) < hi) p = middle + 1;
@@ -6958,110 +6705,18 @@ static hd_status hdi_cover_need(hdi_cover *c, int32_t s) {
     return hdi_cover_glue(c, lo, p, hdi_sides_run(g, p, end));
 }
 
-/* mate [3 m]: the other side of edges with two faces, -1 elsewhere. */
-static void hdi_mesh_mates(const hdi_mesh *mesh, const hdi_sides *g, int32_t *mate) {
-    int32_t v, p, q;
-    hdi_fill_i32(mate, hdi_triple(mesh->m), -1);
-    for (v = 0; v < mesh->n; v++) {
-        for (p = g->ptr[v]; p < g->ptr[v + 1]; p = q) {
-            q = hdi_sides_run(g, p, g->ptr[v + 1]);
-            if (q - p != 2) continue;
-            mate[hdi_key_side(g->key[p])] = (int32_t)hdi_key_side(g->key[p + 1]);
-            mate[hdi_key_side(g->key[p + 1])] = (int32_t)hdi_key_side(g->key[p]);
-        }
-    }
-}
-
-/* turned[f] = 1 for faces that have to be turned over so that all mates run opposite ways; 0 if the
- * surface has only one side. queue [m]. */
-static int hdi_mesh_orient(const hdi_mesh *mesh, const int32_t *mate, signed char *turned,
-                           int32_t *queue) {
-    int32_t start, head, tail, q;
-    memset(turned, -1, (size_t)mesh->m);
-    for (start = 0; start < mesh->m; start++) {
-        if (turned[start] >= 0 || !(mesh->area[start] > 0)) continue;
-        turned[start] = 0;
-        queue[0] = start;
-        for (head = 0, tail = 1; head < tail; head++) {
-            for (q = 0; q < 3; q++) {
-                const int32_t s = 3 * queue[head] + q, t = mate[s], f = t / 3;
-                int want;
-                if (t < 0) continue;
-                want = turned[queue[head]] ^ (mesh->tri[s] == mesh->tri[t]);
-                if (turned[f] >= 0 && turned[f] != want) return 0;
-                if (turned[f] >= 0) continue;
-                turned[f] = (signed char)want;
-                queue[tail++] = f;
-            }
-        }
-    }
-    return 1;
-}
-
-/* Glues the mates of a mesh that is its own cover. */
-static void hdi_cover_glue_mates(hdi_cover *c, const int32_t *mate, const signed char *turned) {
-    int32_t s;
-    for (s = 0; s < 3 * c->soup->mesh.m; s++) {
-        const int32_t t = mate[s];
-        if (t < 0 || t > s) continue;
-        hdi_glue(c, hdi_sheet_side(c->first[s / 3], s, turned[s / 3]),
-                 hdi_sheet_side(c->first[t / 3], t, turned[t / 3]));
-    }
-}
-
-/* Glues all edges of a cover of two sheets. With close the boundary is glued to the other sheet, else it
- * stays open. */
-static hd_status hdi_cover_glue_all(hdi_cover *c, int close) {
-    const hdi_sides *g = &c->soup->sides;
-    int32_t v, p, q;
-    for (v = 0; v < c->soup->mesh.n; v++) {
-        for (p = g->ptr[v]; p < g->ptr[v + 1]; p = q) {
-            q = hdi_sides_run(g, p, g->ptr[v + 1]);
-            if ((q - p > 1 || close) && hdi_cover_glue(c, v, p, q) < 0) return c->e->status;
-        }
-    }
-    return HD_OK;
-}
-
-/* Unfolds and glues a whole mesh: all fronts come first, then all backs. With close the cover has no
- * boundary (the tufted cover). rep knows the edges of the mesh. */
-static hd_status hdi_cover_whole(hdi_cover *c, int close, const hd_mesh_report *rep, hdi_scope *s) {
-    const hdi_mesh *mesh = &c->soup->mesh;
-    int32_t *mate = HDI_TAKE(s, int32_t, hdi_triple(mesh->m)), *queue = HDI_TAKE(s, int32_t, mesh->m), f,
-            used = 0;
-    signed char *turned = HDI_TAKE(s, signed char, mesh->m);
-    int one;
-    if (s->e->status < 0) return s->e->status;
-    hdi_mesh_mates(mesh, &c->soup->sides, mate);
-    one = !rep->n_nonmanifold_edges && !(close && rep->n_boundary_edges) &&
-          hdi_mesh_orient(mesh, mate, turned, queue);
-    c->n_sheets = one ? 1 : 2;
-    for (f = 0; f < mesh->m; f++)
-        if (mesh->area[f] > 0) c->first[f] = used++;
-    if (hdi_cover_room(c, (int64_t)used * c->n_sheets) < 0) return c->e->status;
-    c->step = used;
-    c->n = used * c->n_sheets;
-    c->most_flips = HDI_FLIPS_PER_SIDE * hdi_triple(c->n);
-    for (f = 0; f < mesh->m; f++) {
-        if (c->first[f] < 0) continue;
-        hdi_cover_put(c, f, c->first[f], one && turned[f]);
-        if (!one) hdi_cover_put(c, f, c->first[f] + used, 1);
-    }
-    if (one) hdi_cover_glue_mates(c, mate, turned);
-    return one ? HD_OK : hdi_cover_glue_all(c, close);
-}
-
 /* ---- flips ---- */
-
-/* Cotangent of the angle opposite to side s, of a face with area. */
-static double hdi_side_cot(const hdi_cover *t, int32_t s) {
-    const double a = t->len[s], b = t->len[hdi_side_next(s)], c = t->len[hdi_side_prev(s)];
-    return (b * b + c * c - a * a) / (4 * t->area[s / 3]);
-}
 
 /* Four times the sum of the cotangents of a triangle; also what their rounding errors are relative to. */
 static double hdi_harmonic(double a, double b, double c, double area) {
     return (a * a + b * b + c * c) / area;
+}
+
+/* The same of the face of side s, which has an area. *cot receives the cotangent of the angle opposite. */
+static double hdi_side_harmonic(const hdi_cover *t, int32_t s, double *cot) {
+    const double a = t->side[s].len, b = t->side[hdi_side_next(s)].len, c = t->side[hdi_side_prev(s)].len;
+    *cot = (b * b + c * c - a * a) / (4 * t->area[s / 3]);
+    return hdi_harmonic(a, b, c, t->area[s / 3]);
 }
 
 /* An edge is Delaunay when the cotangents opposite to it do not sum to less than zero, up to this much of
@@ -7069,16 +6724,12 @@ static double hdi_harmonic(double a, double b, double c, double area) {
 #define HDI_DELAUNAY_TOL 1e-14
 
 static int hdi_not_delaunay(const hdi_cover *t, int32_t a) {
-    const int32_t b = t->twin[a], f = a / 3, g = b / 3;
-    const double *p = t->len + hdi_triple(f), *q = t->len + hdi_triple(b < 0 ? 0 : g);
-    double sum;
+    const int32_t b = t->side[a].twin;
+    double cot_a, cot_b, all;
     /* where a face is glued to itself the two sides are equal: Delaunay */
-    if (b < 0 || f == g) return 0;
-    if (!(t->area[f] > 0) || !(t->area[g] > 0)) return 0;
-    sum = hdi_side_cot(t, a) + hdi_side_cot(t, b);
-    if (sum >= 0) return 0;
-    return sum < -HDI_DELAUNAY_TOL * (hdi_harmonic(p[0], p[1], p[2], t->area[f]) +
-                                      hdi_harmonic(q[0], q[1], q[2], t->area[g]));
+    if (b < 0 || a / 3 == b / 3 || !(t->area[a / 3] > 0) || !(t->area[b / 3] > 0)) return 0;
+    all = hdi_side_harmonic(t, a, &cot_a) + hdi_side_harmonic(t, b, &cot_b);
+    return cot_a + cot_b < -HDI_DELAUNAY_TOL * all;
 }
 
 /* Flips the edge of side a, from i to j, which is not Delaunay: side a comes to run from l to k, the
@@ -7087,40 +6738,39 @@ static int hdi_not_delaunay(const hdi_cover *t, int32_t a) {
  *   before  a = ij, a1 = jk, a2 = ki    b = ji, b1 = il, b2 = lj
  *   after   a = lk, a1 = ki, a2 = il    b = kl, b1 = lj, b2 = jk */
 static int hdi_flip(hdi_cover *t, int32_t a) {
-    const int32_t b = t->twin[a], a1 = hdi_side_next(a), a2 = hdi_side_prev(a), b1 = hdi_side_next(b),
+    hdi_side *side = t->side;
+    const int32_t b = side[a].twin, a1 = hdi_side_next(a), a2 = hdi_side_prev(a), b1 = hdi_side_next(b),
                   b2 = hdi_side_prev(b);
     const int32_t from[4] = {a2, b1, b2, a1}, to[4] = {a1, a2, b1, b2};
-    int32_t twin[4], vert[4], k, q;
-    double len[4], x, y, d, area_f, area_g, before, after;
+    const double len = side[a].len, len_0 = side[a2].len, len_1 = side[b1].len, len_2 = side[b2].len,
+                 len_3 = side[a1].len;
+    hdi_side old[4];
+    int32_t k, q;
+    double x, y, d, area_f, area_g, before, after;
+    /* The two triangles laid out in the plane, the edge along x: k and l are d apart. */
+    x = ((len_0 - len_3) * (len_0 + len_3) + (len_2 - len_1) * (len_2 + len_1)) / (2 * len);
+    y = 2 * (t->area[a / 3] + t->area[b / 3]) / len;
+    d = sqrt(x * x + y * y);
+    area_f = hdi_length_area(d, len_0, len_1);
+    area_g = hdi_length_area(d, len_2, len_3);
+    if (!(area_f > 0 && area_g > 0)) return 0;
+    before = hdi_harmonic(len, len_0, len_3, t->area[a / 3]) +
+             hdi_harmonic(len, len_1, len_2, t->area[b / 3]);
+    after = hdi_harmonic(d, len_0, len_1, area_f) + hdi_harmonic(d, len_2, len_3, area_g);
+    if (!(after < before)) return 0;
     for (k = 0; k < 4; k++) {
-        len[k] = t->len[from[k]];
-        vert[k] = t->vert[from[k]];
-        twin[k] = t->twin[from[k]];
-        for (q = 0; q < 4; q++) {
-            if (twin[k] != from[q]) continue;    /* outer sides that are glued to each other */
-            twin[k] = to[q];
-            break;
+        old[k] = side[from[k]];
+        for (q = 0; q < 4; q++) {                /* outer sides that are glued to each other */
+            if (side[from[k]].twin == from[q]) old[k].twin = to[q];
         }
     }
-    /* The two triangles laid out in the plane, the edge along x: k and l are d apart. */
-    x = ((len[0] - len[3]) * (len[0] + len[3]) + (len[2] - len[1]) * (len[2] + len[1])) / (2 * t->len[a]);
-    y = 2 * (t->area[a / 3] + t->area[b / 3]) / t->len[a];
-    d = sqrt(x * x + y * y);
-    area_f = hdi_length_area(d, len[0], len[1]);
-    area_g = hdi_length_area(d, len[2], len[3]);
-    if (!(area_f > 0 && area_g > 0)) return 0;
-    before = hdi_harmonic(t->len[a], len[0], len[3], t->area[a / 3]) +
-             hdi_harmonic(t->len[a], len[1], len[2], t->area[b / 3]);
-    after = hdi_harmonic(d, len[0], len[1], area_f) + hdi_harmonic(d, len[2], len[3], area_g);
-    if (!(after < before)) return 0;
-    t->vert[a] = vert[2];                        /* l, where b2 begins */
-    t->vert[b] = vert[0];                        /* k, where a2 begins */
-    t->len[a] = t->len[b] = d;
+    side[a].vert = side[b2].vert;                /* l */
+    side[b].vert = side[a2].vert;                /* k */
+    side[a].len = side[b].len = d;
     for (k = 0; k < 4; k++) {
-        t->len[to[k]] = len[k];
-        t->vert[to[k]] = vert[k];
-        t->twin[to[k]] = twin[k];
-        if (twin[k] >= 0) t->twin[twin[k]] = to[k];
+        side[to[k]].len = old[k].len;
+        side[to[k]].vert = old[k].vert;
+        hdi_glue(t, to[k], old[k].twin);
     }
     t->area[a / 3] = area_f;
     t->area[b / 3] = area_g;
@@ -7129,7 +6779,7 @@ static int hdi_flip(hdi_cover *t, int32_t a) {
 
 /* The four sides around the edge of side a. */
 static int32_t hdi_side_around(const hdi_cover *c, int32_t a, int k) {
-    const int32_t side = k < 2 ? c->twin[a] : a;
+    const int32_t side = k < 2 ? c->side[a].twin : a;
     return k & 1 ? hdi_side_next(side) : hdi_side_prev(side);
 }
 
@@ -7137,9 +6787,10 @@ static int32_t hdi_side_around(const hdi_cover *c, int32_t a, int k) {
  * edges around it, last come first served. done: for the progress. */
 static hd_status hdi_cover_flip(hdi_cover *c, double done, hd_mesh_report *rep) {
     int k;
-    while (c->depth > 0) {
-        const int32_t a = c->stack[--c->depth];
-        c->waits[a] = 0;
+    while (c->stack >= 0) {
+        const int32_t a = c->stack;
+        c->stack = c->side[a].next;
+        c->side[a].next = HDI_SIDE_LOOSE;
         if (!(++c->work & 0xfffff) && hdi_progress(c->ctx, "flip edges", done, c->e) < 0) return c->e->status;
         if (rep->n_flips >= c->most_flips || !hdi_not_delaunay(c, a)) continue;
         for (k = 0; k < 4; k++)
@@ -7151,144 +6802,122 @@ static hd_status hdi_cover_flip(hdi_cover *c, double done, hd_mesh_report *rep) 
     return HD_OK;
 }
 
-/* All edges, by their first side: the order depends on nothing but the mesh. */
-static hd_status hdi_cover_flip_all(hdi_cover *c, hd_mesh_report *rep) {
-    const int32_t n_sides = 3 * c->n;
-    int32_t seed;
-    for (seed = 0; seed < n_sides; seed++) {
-        /* boundary, or done as its other side: who moves is put on the stack */
-        if (c->twin[seed] < seed) continue;
-        hdi_cover_push(c, seed);
-        if (hdi_cover_flip(c, (double)seed / n_sides, rep) < 0) return c->e->status;
-    }
-    return HD_OK;
-}
-
-/* Whether the edge of keys [p, q) may have to be flipped, however its faces are glued: whether the two
- * smallest cotangents opposite to it sum to less than zero. Two faces that come equally often always
- * follow each other. */
+/* Whether the edge of keys [p, q) may have to be flipped: two faces that come equally often always follow
+ * each other, else any two cotangents opposite to the edge may meet. */
 static int hdi_soup_suspect(const hdi_soup *soup, int32_t p, int32_t q) {
     const uint64_t *key = soup->sides.key;
-    double least = HUGE_VAL, next = HUGE_VAL;
-    int64_t copies = 0;
+    const int32_t copies = hdi_soup_copies(soup, hdi_key_face(key[p]));
+    const double first = soup->mesh.cot[hdi_key_opposite(key[p])];
+    double least = first;
     int32_t i;
-    for (i = p; i < q; i++) {
-        const int32_t here = hdi_soup_copies(soup, hdi_key_face(key[i]));
-        const int alone = q - p == 2 && here == hdi_soup_copies(soup, hdi_key_face(key[p + q - 1 - i]));
-        const double cot = soup->mesh.cot[hdi_key_opposite(key[i])];
-        next = hdi_min(next, hdi_max(cot, least));
-        least = hdi_min(least, cot);
-        if (here > 1 && !alone) next = hdi_min(next, cot);
-        copies += here;
-    }
-    return !(least + (copies == 1 ? least : next) >= 0);
+    if (q - p == 2 && hdi_soup_copies(soup, hdi_key_face(key[p + 1])) == copies)
+        return !(first + soup->mesh.cot[hdi_key_opposite(key[p + 1])] >= 0);
+    for (i = p + 1; i < q; i++) least = hdi_min(least, soup->mesh.cot[hdi_key_opposite(key[i])]);
+    return !(least >= 0);
 }
 
-/* Edges by their vertices, of those that may have to be flipped. */
-static hd_status hdi_cover_flip_parts(hdi_cover *c, hd_mesh_report *rep) {
+/* Edges by their vertices, of those that may have to be flipped: the order depends on nothing but the
+ * mesh. */
+static hd_status hdi_cover_flip_all(hdi_cover *c, hd_mesh_report *rep) {
     const hdi_soup *soup = c->soup;
     const hdi_sides *g = &soup->sides;
     int32_t v, p, q;
-    for (v = 0; v < soup->mesh.m; v++)
-        c->most_flips += 6 * HDI_FLIPS_PER_SIDE * (int64_t)hdi_soup_copies(soup, v);
     for (v = 0; v < soup->mesh.n; v++) {
         const double done = (double)v / soup->mesh.n;
+        if (!(v & 0xffff) && hdi_progress(c->ctx, "flip edges", done, c->e) < 0) return c->e->status;
         for (p = g->ptr[v]; p < g->ptr[v + 1]; p = q) {
             q = hdi_sides_run(g, p, g->ptr[v + 1]);
             if (c->glued[p] || !hdi_soup_suspect(soup, p, q)) continue;
             if (hdi_cover_glue(c, v, p, q) < 0 || hdi_cover_flip(c, done, rep) < 0) return c->e->status;
         }
-        if (!(v & 0xffff) && hdi_progress(c->ctx, "flip edges", done, c->e) < 0) return c->e->status;
     }
     return HD_OK;
 }
 
 static void hdi_cover_count(const hdi_cover *c, hd_mesh_report *rep) {
-    int32_t side;
-    for (side = 0; side < 3 * c->n; side++) {
-        if (c->twin[side] < side) continue;
-        rep->n_not_delaunay += hdi_not_delaunay(c, side);
-        rep->n_self_edges += c->vert[side] == c->vert[hdi_side_next(side)];
+    int32_t a;
+    for (a = 0; a < 3 * c->n; a++) {
+        if (c->side[a].twin < a) continue;
+        rep->n_not_delaunay += hdi_not_delaunay(c, a);
+        rep->n_self_edges += c->side[a].vert == c->side[hdi_side_next(a)].vert;
     }
     rep->n_sheets = c->n_sheets;
 }
 
 /* ---- the result as a mesh ---- */
 
-/* Face number at of the flat mesh, from its lengths: area and cotangents times weight. */
-static void hdi_flat_face(hdi_mesh *flat, int32_t at, const double *len, double area, double unit,
-                          double weight, double *steepest) {
-    double *cot = flat->cot + hdi_triple(at);
+/* An intrinsic triangulation, as long as its scope lives. */
+typedef struct hdi_flat {
+    hdi_mesh mesh;              /* areas and cotangents of its triangles, times their weights */
+    hdi_soup soup;              /* what it was made of */
+    int32_t *tri;               /* [3 mesh.m] */
+    int32_t *copies;            /* [mesh.m] parts that a triangle counts */
+    double unit;                /* parts of a triangle that counts once; 0: there are no triangles */
+    const int32_t *name;        /* [soup.mesh.n] of points: the caller's number of each; NULL: their own */
+} hdi_flat;
+
+/* Adds a triangle: area and cotangents from its lengths, times its weight. */
+static void hdi_flat_add(hdi_flat *flat, const int32_t *v, const double *len, double area, int32_t copies,
+                         double *steepest) {
+    const double weight = copies / flat->unit, unit = flat->soup.unit;
+    const int32_t at = flat->mesh.m++;
+    double *cot = flat->mesh.cot + hdi_triple(at);
     int q;
-    flat->area[at] = 0;
+    memcpy(flat->tri + hdi_triple(at), v, 3 * sizeof *v);
+    flat->copies[at] = copies;
+    flat->mesh.area[at] = 0;
     if (!(area > 0)) return;
     hdi_length_cots(len, area, cot);
     if (!hdi_finite(fabs(cot[0]) + fabs(cot[1]) + fabs(cot[2]))) return;
     *steepest = hdi_max(*steepest, hdi_max(cot[0], hdi_max(cot[1], cot[2])));
     for (q = 0; q < 3; q++) cot[q] *= weight;
     area *= weight * unit * unit;
-    flat->area[at] = area / 12 < DBL_MIN ? 0 : area;
+    flat->mesh.area[at] = area / 12 < DBL_MIN ? 0 : area;
 }
 
-/* A triangle whose first and last corner are the same vertex is turned by one corner: equal ones come first,
- * and the mass of the vertex is summed in that order. */
-static void hdi_flat_turn(int32_t *v, double *len) {
-    const double last = len[2];
-    if (v[0] != v[2] || v[0] == v[1]) return;
-    v[2] = v[1];
-    v[1] = v[0];
-    len[2] = len[1];
-    len[1] = len[0];
-    len[0] = last;
-}
-
-/* The triangles of a cover as a mesh for the operators (no coordinates), in s: in parts, first the faces
- * that were not unfolded, as often as they come, then the others one by one. A copy weighs its share,
- * divided among the sheets. */
-static hd_status hdi_cover_flat(hdi_mesh *flat, const hdi_cover *c, hd_mesh_report *rep,
-                                hdi_scope *s) {
+/* The triangles of a cover as a mesh for the operators (no coordinates), in s: first the faces that were not
+ * unfolded, as often as they come, then the others one by one. A copy weighs its share, divided among the
+ * sheets. */
+static hd_status hdi_cover_flat(hdi_flat *flat, const hdi_cover *c, hd_mesh_report *rep, hdi_scope *s) {
     const hdi_soup *soup = c->soup;
-    const int32_t m = c->in_parts ? soup->mesh.m : 0;
-    const int64_t n_corners = hdi_triple(m) + hdi_triple(c->n);
     double steepest = -HUGE_VAL;
-    int32_t f, i, *tri;
-    memset(flat, 0, sizeof *flat);
-    if (n_corners > INT32_MAX)
+    int64_t m = c->n;
+    int32_t f;
+    for (f = 0; f < soup->mesh.m; f++) m += c->first[f] < 0 && soup->area[f] > 0;
+    if (3 * m > INT32_MAX)
         return hdi_fail(s->e, HD_ERR_TOO_LARGE, "more than 2^31 face corners in an intrinsic triangulation");
-    tri = HDI_TAKE(s, int32_t, n_corners);
-    flat->n = soup->mesh.n;
-    flat->m = m + c->n;
-    flat->tri = tri;
-    flat->cot = HDI_TAKE(s, double, n_corners);
-    flat->area = HDI_TAKE(s, double, flat->m);
+    flat->tri = HDI_TAKE(s, int32_t, 3 * m);
+    flat->copies = HDI_TAKE(s, int32_t, m);
+    flat->unit = soup->share * c->n_sheets;
+    hdi_mesh_clear(&flat->mesh, NULL, soup->mesh.n, flat->tri, 0);
+    flat->mesh.cot = HDI_TAKE(s, double, 3 * m);
+    flat->mesh.area = HDI_TAKE(s, double, m);
     if (s->e->status < 0) return s->e->status;
-    if (m) memcpy(tri, soup->mesh.tri, (size_t)hdi_triple(m) * sizeof *tri);
-    for (f = 0; f < m; f++)
-        hdi_flat_face(flat, f, soup->len + hdi_triple(f), c->first[f] < 0 ? soup->area[f] : 0, soup->unit,
-                      hdi_soup_copies(soup, f) / soup->share, &steepest);
-    for (i = 0; i < c->n; i++) {
-        double *len = c->len + hdi_triple(i);
-        if (!c->in_parts) hdi_flat_turn(c->vert + hdi_triple(i), len);
-        hdi_flat_face(flat, m + i, len, c->area[i], soup->unit, 1 / (soup->share * c->n_sheets), &steepest);
+    for (f = 0; f < soup->mesh.m; f++)
+        if (c->first[f] < 0 && soup->area[f] > 0)
+            hdi_flat_add(flat, soup->mesh.tri + hdi_triple(f), soup->len + hdi_triple(f), soup->area[f],
+                         c->n_sheets * hdi_soup_copies(soup, f), &steepest);
+    for (f = 0; f < c->n; f++) {
+        const hdi_side *side = c->side + hdi_triple(f);
+        const int32_t v[3] = {side[0].vert, side[1].vert, side[2].vert};
+        const double len[3] = {side[0].len, side[1].len, side[2].len};
+        hdi_flat_add(flat, v, len, c->area[f], 1, &steepest);
     }
-    if (c->n) memcpy(tri + hdi_triple(m), c->vert, (size_t)hdi_triple(c->n) * sizeof *tri);
     rep->smallest_intrinsic_angle = hdi_finite(steepest) ? atan2(1, steepest) : 0;
     return HD_OK;
 }
 
-/* The intrinsic Delaunay triangulation of a soup as a mesh for the operators: of a mesh, with close
+/* The intrinsic Delaunay triangulation of the soup of flat as a mesh for the operators: of a mesh, with close
  * without boundary; or of the tufted cover of stars. */
-static hd_status hdi_soup_delaunay(hdi_mesh *flat, const hdi_soup *soup, int close,
-                                   hd_mesh_report *rep, hdi_scope *s) {
+static hd_status hdi_soup_delaunay(hdi_flat *flat, int close, hd_mesh_report *rep, hdi_scope *s) {
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
     hdi_cover c;
-    hd_status status = hdi_cover_begin(&c, soup, soup->copies != NULL, &own);
-    if (status >= 0 && !c.in_parts) status = hdi_cover_whole(&c, close, rep, &own);
-    if (status >= 0 && !c.in_parts) status = hdi_progress(s->ctx, "flip edges", 0, s->e);
-    if (status >= 0) status = c.in_parts ? hdi_cover_flip_parts(&c, rep) : hdi_cover_flip_all(&c, rep);
-    if (status >= 0) hdi_cover_count(&c, rep);
-    if (status >= 0) (void)hdi_cover_flat(flat, &c, rep, s);
-    hdi_cover_free(&c);
+    if (hdi_cover_begin(&c, &flat->soup, close, rep, &own) >= 0 && hdi_cover_flip_all(&c, rep) >= 0) {
+        hdi_cover_count(&c, rep);
+        (void)hdi_cover_flat(flat, &c, rep, s);
+    }
+    hdi_free(c.ctx, c.side);
+    hdi_free(c.ctx, c.area);
     return hdi_scope_end(&own);
 }
 
@@ -8047,21 +7676,6 @@ typedef struct hdi_intrinsic_task {
     double delta;       /* of mollification, relative to the mean edge length; negative: none */
 } hdi_intrinsic_task;
 
-/* An intrinsic triangulation, as long as its scope lives. */
-typedef struct hdi_flat {
-    hdi_mesh mesh;              /* areas and cotangents of its triangles, times their weights */
-    hdi_soup soup;              /* what it was made of */
-    const int32_t *name;        /* [soup.mesh.n] of points: the caller's number of each; NULL: their own */
-} hdi_flat;
-
-/* The number of parts of which one triangle of a flat mesh counts a whole number, and how many. */
-static double hdi_flat_unit(const hdi_flat *flat, int32_t n_sheets) { return flat->soup.share * n_sheets; }
-
-static int32_t hdi_flat_copies(const hdi_flat *flat, int32_t f, double unit) {
-    const int in_parts = flat->soup.copies && f < flat->soup.mesh.m;
-    return in_parts ? flat->soup.copies[f] * (int32_t)(unit / flat->soup.share) : 1;
-}
-
 /* Rows, L and B from intrinsic triangles that are Delaunay, with areas and cotangents but without
  * coordinates. xyz of the vertices of lap, which name numbers; NULL: their own. */
 static hd_status hdi_lap_flat(hd_laplacian *lap, const hdi_mesh *flat, const int32_t *name, const double *xyz,
@@ -8102,7 +7716,7 @@ static hd_status hdi_lap_unfold(hd_laplacian *lap, hdi_flat *flat, hdi_mesh *mes
     if (hdi_lap_edges(lap, mesh, s) < 0) return e->status;
     if (rep->n_faces_used == 0) return hdi_fail(e, HD_ERR_EMPTY, "no vertex has mass");
     if (hdi_soup_of_mesh(&flat->soup, mesh, task->delta, rep, s) < 0) return e->status;
-    if (hdi_soup_delaunay(&flat->mesh, &flat->soup, task->close, rep, s) < 0) return e->status;
+    if (hdi_soup_delaunay(flat, task->close, rep, s) < 0) return e->status;
     lap->area = flat->soup.total;
     lap->h = flat->soup.unit;
     return hdi_lap_flat(lap, &flat->mesh, NULL, mesh->xyz, s);
@@ -9281,7 +8895,7 @@ static hd_status hdi_lap_unfold_points(hd_laplacian *lap, hdi_flat *flat, const 
     memset(flat, 0, sizeof *flat);
     if (hdi_star_soup(&flat->soup, &job, lap, xyz, nbr_ptr, nbr, delta, s) < 0) return e->status;
     if (lap->mesh.n_faces_used == 0) hdi_fail(e, HD_ERR_EMPTY, "the points' neighbourhoods make no triangle");
-    if (e->status < 0 || hdi_soup_delaunay(&flat->mesh, &flat->soup, 0, &lap->mesh, s) < 0) return e->status;
+    if (e->status < 0 || hdi_soup_delaunay(flat, 0, &lap->mesh, s) < 0) return e->status;
     flat->name = job.name;
     lap->area = flat->soup.total / flat->soup.share;
     return hdi_lap_flat(lap, &flat->mesh, job.name, xyz, s);
@@ -14377,7 +13991,7 @@ typedef struct hdi_precond {
     hd_precond kind;
     const hdi_upper *up;
     hd_c64 *u;       /* [nnz of up] or NULL */
-    hd_c64 *d;       /* [n] or NULL */
+    hd_c64 *d;       /* [n]; jacobi and more */
 } hdi_precond;
 
 #define HDI_ILDL_LEAST 1e-3   /* share of its diagonal entry that a pivot must keep */
@@ -14402,7 +14016,8 @@ static int64_t hdi_ildl_seek(const int32_t *col, int64_t p, int64_t end, int32_t
 
 /* Right-looking incomplete LDL' of the complex-symmetric A, plain transpose. Row k updates the entries (i, j)
  * between its own columns; where the pattern has none, `keep` of the update goes to the diagonal entries of i
- * and j. A vertex with very many neighbours costs no square of their number. diag [n] is work. */
+ * and j. A vertex with very many neighbours costs no square of their number. ssor has no updates. diag [n] is
+ * work. */
 static void hdi_ildl(const hdi_precond *m, hd_c64 *diag, double keep) {
     const int32_t *col = m->up->col;
     const int64_t *ptr = m->up->ptr;
@@ -14417,7 +14032,7 @@ static void hdi_ildl(const hdi_precond *m, hd_c64 *diag, double keep) {
             u[p] = hdi_cdiv(u[p], d[k]);
             sum = hdi_cadd(sum, u[p]);
         }
-        for (p = ptr[k]; p < ptr[k + 1]; p++) {
+        for (p = ptr[k]; m->kind != HD_PRECOND_SSOR && p < ptr[k + 1]; p++) {
             const int32_t i = col[p];
             const hd_c64 w = hdi_cmul(u[p], d[k]);
             hd_c64 dropped = hdi_csub(sum, u[p]);
@@ -14441,26 +14056,8 @@ static void hdi_ildl(const hdi_precond *m, hd_c64 *diag, double keep) {
     }
 }
 
-static void hdi_ssor(const hdi_precond *m, hd_c64 *work, double keep) {
-    int32_t i;
-    int64_t p;
-    (void)work;
-    (void)keep;
-    for (i = 0; i < m->up->n; i++)
-        for (p = m->up->ptr[i]; p < m->up->ptr[i + 1]; p++) m->u[p] = hdi_cdiv(m->u[p], m->d[i]);
-}
-
-static void hdi_apply_none(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z) {
-    memcpy(z, r, (size_t)m->up->n * sizeof *z);
-}
-
-static void hdi_apply_diagonal(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z) {
-    int32_t i;
-    for (i = 0; i < m->up->n; i++) z[i] = hdi_cmul(r[i], m->d[i]);
-}
-
-/* (I + U') w = r, z = (I + U)^-1 D^-1 w. */
-static void hdi_apply_factors(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z) {
+/* z = M^-1 r, z not r: (I + U') w = r, z = (I + U)^-1 D^-1 w. */
+static void hdi_precond_apply(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z) {
     const int64_t *HDI_RESTRICT ptr = m->up->ptr;
     const int32_t *HDI_RESTRICT col = m->up->col;
     const hd_c64 *HDI_RESTRICT u = m->u;
@@ -14468,38 +14065,33 @@ static void hdi_apply_factors(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r
     int32_t i;
     int64_t p;
     memcpy(z, r, (size_t)n * sizeof *z);
-    for (i = 0; i < n; i++) {
+    for (i = 0; u && i < n; i++) {
         const hd_c64 w = z[i];
         HDI_PREFETCH_AT(u, ptr[i] + HDI_AHEAD / 4);
         HDI_PREFETCH_AT(col, ptr[i] + HDI_AHEAD);
         for (p = ptr[i]; p < ptr[i + 1]; p++) z[col[p]] = hdi_csub(z[col[p]], hdi_cmul(u[p], w));
     }
-    for (i = n; i-- > 0;) {
+    for (i = m->kind == HD_PRECOND_NONE ? 0 : n; i-- > 0;) {
         hd_c64 w = hdi_cmul(z[i], m->d[i]);
-        HDI_PREFETCH_AT(u, ptr[i] - HDI_AHEAD / 4);
-        HDI_PREFETCH_AT(col, ptr[i] - HDI_AHEAD);
-        for (p = ptr[i]; p < ptr[i + 1]; p++) w = hdi_csub(w, hdi_cmul(u[p], z[col[p]]));
+        if (u) {
+            HDI_PREFETCH_AT(u, ptr[i] - HDI_AHEAD / 4);
+            HDI_PREFETCH_AT(col, ptr[i] - HDI_AHEAD);
+            for (p = ptr[i]; p < ptr[i + 1]; p++) w = hdi_csub(w, hdi_cmul(u[p], z[col[p]]));
+        }
         z[i] = w;
     }
 }
 
-/* All there is to know of a preconditioner. make (NULL: nothing to do) turns the values of A into U and D,
- * with a work array [n]; apply makes z = M^-1 r, z not r. */
+/* All there is to know of a preconditioner. */
 typedef struct hdi_precond_row {
     int32_t rows, entries;   /* values for each row and for each entry above the diagonal */
     double steps;            /* of cocg, about, relative to those with mildl */
-    void (*apply)(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z);
-    void (*make)(const hdi_precond *m, hd_c64 *work, double keep);
     double keep;             /* share of the dropped fill that goes to the diagonal */
 } hdi_precond_row;
 
 static const hdi_precond_row hdi_preconds[] = {                             /* by hd_precond */
-    {1, 1, 1, hdi_apply_factors, hdi_ildl, HDI_MILDL_KEPT},                 /* auto */
-    {0, 0, 5.5, hdi_apply_none, NULL, 0},
-    {1, 0, 5, hdi_apply_diagonal, NULL, 0},
-    {1, 1, 2, hdi_apply_factors, hdi_ssor, 0},
-    {1, 1, 1.4, hdi_apply_factors, hdi_ildl, 0},
-    {1, 1, 1, hdi_apply_factors, hdi_ildl, HDI_MILDL_KEPT}
+    {1, 1, 1, HDI_MILDL_KEPT},                                              /* auto */
+    {0, 0, 5.5, 0}, {1, 0, 5, 0}, {1, 1, 2, 0}, {1, 1, 1.4, 0}, {1, 1, 1, HDI_MILDL_KEPT}
 };
 
 /* Does not compile where a kind has no row. */
@@ -14520,7 +14112,7 @@ static void hdi_precond_make(const hdi_precond *m, const hdi_system *a, hd_c64 *
             else if (m->u && j > i) m->u[q++] = v;
         }
     }
-    if (row->make) row->make(m, work, row->keep);
+    if (m->u) hdi_ildl(m, work, row->keep);
     for (i = 0; row->rows && i < L->n_rows; i++) m->d[i] = hdi_cdiv(hdi_c(1, 0), m->d[i]);
 }
 
@@ -14638,7 +14230,7 @@ static hd_c64 hdi_krylov_precond(hdi_krylov *k, const hd_c64 *HDI_RESTRICT r, hd
     const int32_t *comp = lap->component;
     hd_c64 dot = hdi_c(0, 0);
     int32_t i = 0;
-    hdi_preconds[k->m->kind].apply(k->m, r, z);
+    hdi_precond_apply(k->m, r, z);
     memset(k->mean, 0, (size_t)lap->n_components * sizeof *k->mean);
     while (i < lap->n_active) {
         const int32_t c = comp[i];
@@ -15087,7 +14679,7 @@ static const double hdi_rat_table[] = {
     -0.98196506093423674, 10.467711454192054, -0.078142978167783206, 0.21550257610584828,
     -4.5075605895604021, 13.008767567859003, -0.0010383125651999775, -0.0086362070804686056,
     -9.7413256359447953, 15.840947521360885, 2.0671816855185641e-05, 6.5573823084788806e-05,
-#if HDI_HAS_DIAGONAL
+#if !defined(HEATDIFF_NO_DIRECT) && !defined(HEATDIFF_NO_POLE_FACTORS) && !defined(HEATDIFF_NO_DIAGONAL)
     /* diagonal r = 2 */
     0, 0.067537133737907679, 0.084246004368216873,
     0.093165638432949657, 0.78606720760465709, 0.0084246004368216873, -0.39955314986781715,
@@ -28899,7 +28491,7 @@ static hd_status hdi_geo_faces(hd_geodesic *g, const hdi_mesh *mesh, const int32
         if (!(mesh->area[f] > 0)) continue;
         k = at[hdi_geo_first(mesh->tri + hdi_triple(f), 3, row)]++;
         if (flat) {
-            const int32_t n = hdi_flat_copies(flat, f, g->copies);
+            const int32_t n = flat->copies[f];
             g->face[k] = hdi_geo_flat_frame(mesh, f, row, g->h, n / g->copies);
             g->face[k].copies = n;
         } else g->face[k] = hdi_geo_frame(mesh, f, row, g->h);
@@ -29162,7 +28754,7 @@ static hd_status hdi_geo_make(hd_geodesic *g, const hdi_geo_input *in, const hd_
     if ((o->border == HD_GEODESIC_BORDER_NATURAL || hdi_holding_make(lap, 2, NULL, 0, e) >= 0) &&
         hdi_geo_surface_make(lap, &z, in, &s) >= 0 && hdi_lap_finite(lap->area, lap->h, e) >= 0) {
         g->n_active = lap->n_active;
-        g->copies = z.flat.mesh.m ? hdi_flat_unit(&z.flat, lap->mesh.n_sheets) : 1;
+        g->copies = z.flat.unit > 0 ? z.flat.unit : 1;
         if (o->updatable && hdi_moving_make(lap, &z.mesh, e) >= 0) g->lap = lap;
         if (e->status >= 0) (void)hdi_lap_components(lap, e);
         g->n_components = lap->n_components;
@@ -30479,37 +30071,7 @@ HEATDIFF_API hd_status hd_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t
 HEATDIFF_API hd_status hd_csr_check(const hd_csr *a, int32_t symmetric, hd_context *ctx, hd_error *err) {
     hdi_call c;
     if (hdi_enter(&c, ctx, err) < 0) return c.e->status;
-    return a ? hdi_csr_check(a, symmetric, c.ctx, c.e) : hdi_missing(c.e);
-}
-
-HEATDIFF_API hd_status hd_csr_transpose(hd_csr *out, const hd_csr *a, hd_context *ctx, hd_error *err) {
-    hdi_call c;
-    if (hdi_enter(&c, ctx, err) < 0) return c.e->status;
-    if (!out || !a) return hdi_missing(c.e);
-    return hdi_csr_check_rows(a, c.e) < 0 ? c.e->status : hdi_csr_transpose(out, a, c.ctx, c.e);
-}
-
-HEATDIFF_API hd_status hd_csr_product(hd_csr *out, const hd_csr *a, const hd_csr *b, hd_context *ctx,
-                                      hd_error *err) {
-    hdi_call c;
-    if (hdi_enter(&c, ctx, err) < 0) return c.e->status;
-    if (!out || !a || !b) return hdi_missing(c.e);
-    if (hdi_csr_check_rows(a, c.e) < 0 || hdi_csr_check_rows(b, c.e) < 0) return c.e->status;
-    if (a->n_cols != b->n_rows)
-        return hdi_fail_row(c.e, HD_ERR_ARGUMENT, "product: the inner sizes differ", a->n_cols, b->n_rows, 0);
-    return hdi_csr_product(out, a, b, c.ctx, c.e);
-}
-
-HEATDIFF_API hd_status hd_csr_permute(hd_csr *out, const hd_csr *a, const int32_t *perm, hd_context *ctx,
-                                      hd_error *err) {
-    hdi_call c;
-    if (hdi_enter(&c, ctx, err) < 0) return c.e->status;
-    if (!out || !a || (a->n_rows > 0 && !perm)) return hdi_missing(c.e);
-    if (hdi_csr_check_rows(a, c.e) < 0) return c.e->status;
-    if (a->n_rows != a->n_cols)
-        return hdi_fail_row(c.e, HD_ERR_ARGUMENT, "permute: the matrix is not square", a->n_rows, a->n_cols,
-                            0);
-    return hdi_csr_permute(out, a, perm, c.ctx, c.e);
+    return a ? hdi_csr_check(a, symmetric, c.e) : hdi_missing(c.e);
 }
 
 HEATDIFF_API void hd_csr_apply(const hd_csr *a, const double *x, double *y, hd_context *ctx) {
@@ -30666,7 +30228,7 @@ HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L
     if (!out || !L || !B || !L->val || !B->val) return hdi_lap_done(out, lap, hdi_missing(c.e));
     hdi_refuse(!hdi_finite(h) || h < 0, "laplacian of matrices: h is negative or not finite", c.e);
     hdi_no_border(opts, c.e);
-    if (c.e->status < 0 || hdi_csr_check(L, 1, c.ctx, c.e) < 0 || hdi_csr_check(B, 1, c.ctx, c.e) < 0)
+    if (c.e->status < 0 || hdi_csr_check(L, 1, c.e) < 0 || hdi_csr_check(B, 1, c.e) < 0)
         return hdi_lap_done(out, lap, c.e->status);
     if (L->n_rows != B->n_rows)
         return hdi_lap_done(out, lap,
@@ -30779,7 +30341,7 @@ HEATDIFF_API hd_status hd_laplacian_update_matrices(hd_laplacian *lap, const hd_
     hdi_refuse(!hdi_finite(h) || h < 0, "update of matrices: h is negative or not finite", c.e);
     hdi_refuse(L->n_rows != lap->n || B->n_rows != lap->n || L->n_cols != lap->n || B->n_cols != lap->n,
                "update of matrices: a matrix has another size", c.e);
-    if (c.e->status >= 0 && hdi_csr_check(L, 0, c.ctx, c.e) >= 0 && hdi_csr_check(B, 0, c.ctx, c.e) >= 0 &&
+    if (c.e->status >= 0 && hdi_csr_check(L, 0, c.e) >= 0 && hdi_csr_check(B, 0, c.e) >= 0 &&
         hdi_pair_replace(all, L, B, h, c.e) >= 0)
         hdi_held_update(lap);
     return c.e->status;
@@ -30854,7 +30416,7 @@ HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ld
     if (!out || !a) return hdi_missing(c.e);
     shape = *a;
     shape.val = NULL;
-    if (hdi_csr_check(&shape, 1, c.ctx, c.e) < 0) return c.e->status;
+    if (hdi_csr_check(&shape, 1, c.e) < 0) return c.e->status;
     f = (hd_ldl *)hdi_alloc_zero(c.ctx, 1, sizeof *f, c.e);
     if (!f) return c.e->status;
     f->ctx = hdi_enter_keep(&c, &f->context);

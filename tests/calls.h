@@ -44,8 +44,8 @@ typedef struct call_args {
     hd_c64 *z, *zd;
     int32_t *vertex;
 
-    hd_csr A, A2, L, B, full;                /* structs, and pointers to them */
-    hd_csr *a, *a2, *l, *b, *whole;         /* whole: the full one, for b */
+    hd_csr A, L, B, full;                    /* structs, and pointers to them */
+    hd_csr *a, *l, *b, *whole;              /* whole: the full one, for b */
     hd_mesh_view mesh, *view;
     hd_laplacian_opts lo, *lap_opts;
     hd_heat_opts ho, *heat_opts;
@@ -69,9 +69,6 @@ typedef struct call_args {
     X(triplets, hd_csr_from_triplets, "",                                                                                      \
       (a->out_csr, a->rows, a->cols, a->n_triplets, a->triplet_i, a->triplet_j, a->triplet_v, a->ctx, a->err))                 \
     X(check, hd_csr_check, "", (a->a, a->symmetric, a->ctx, a->err))                                                           \
-    X(transpose, hd_csr_transpose, "", (a->out_csr, a->a, a->ctx, a->err))                                                     \
-    X(product, hd_csr_product, "", (a->out_csr, a->a, a->a2, a->ctx, a->err))                                                  \
-    X(permute, hd_csr_permute, "", (a->out_csr, a->a, a->perm, a->ctx, a->err))                                                \
     V(csr_apply, hd_csr_apply, "", hd_csr_apply(a->a, a->f, a->u, a->ctx))                                                     \
     X(triangles, hd_laplacian_triangles, "", (a->out_lap, a->xyz, a->n, a->tri, a->n_tri, a->lap_opts, a->err))                \
     X(view, hd_laplacian_view, "", (a->out_lap, a->view, a->lap_opts, a->err))                                                 \
@@ -207,10 +204,10 @@ static const call_field call_fields[] = {
     P(xyz), P(moved), P(lengths), P(queries), P(triplet_v), P(f), P(val), P(val2), P(with_nan), P(with_inf), P(t), P(late),
     P(endless), P(fading), P(low), P(bad), P(zero), P(c), P(set_t), P(tri), P(nbr), P(own_nbr), P(perm), P(ids), P(other),
     P(far_id), P(low_id), P(triplet_i), P(triplet_j), P(face_ptr), P(nbr_ptr), P(own_ptr), P(bent), P(sources), P(curve), P(zval),
-    P(zb), P(set), P(set2), P(filter), P(filter2), P(u), P(v), P(bound), P(z), P(zd), P(vertex), P(a), P(a2), P(l), P(b),
+    P(zb), P(set), P(set2), P(filter), P(filter2), P(u), P(v), P(bound), P(z), P(zd), P(vertex), P(a), P(l), P(b),
     P(whole),
     P(view), P(lap_opts), P(heat_opts), P(spectrum_opts), P(geodesic_opts), P(ldl_opts), P(solve_opts), P(estimate), P(rep),
-    P(geodesic_rep), P(err), I(A.n_rows), I(A.n_cols), L(A.nnz), P(A.row_ptr), P(A.col), P(A.val), L(A2.nnz), P(A2.val),
+    P(geodesic_rep), P(err), I(A.n_rows), I(A.n_cols), L(A.nnz), P(A.row_ptr), P(A.col), P(A.val),
     I(L.n_rows), I(L.n_cols), P(L.row_ptr), P(L.val), I(B.n_rows), I(B.n_cols), P(B.row_ptr), P(B.col), P(B.val), L(B.nnz),
     P(full.row_ptr), P(full.col), P(full.val), L(full.nnz), P(solve_rep), P(ldl_rep), I(mesh.begin_zero), I(mesh.end_zero),
     P(mesh.xyz_float), P(mesh.xyz_double), P(mesh.tri_u16), P(mesh.tri_i32), L(mesh.n), L(mesh.n_indices), S(mesh.stride),
@@ -522,7 +519,7 @@ static void call_data_make(call_data *d, shape s) {
     a->other = other;
     a->low_id = low;
     a->far_id = d->far_id;
-    a->A = a->A2 = d->A;
+    a->A = d->A;
     a->val = d->A.val;
     a->L = d->L;
     a->B = d->B;
@@ -614,7 +611,6 @@ static void call_open(call_world *w, const call_data *d, hd_context *ctx) {
     a->out_set = w->sets;
     a->set_t = &a->set_time;
     a->a = &a->A;
-    a->a2 = &a->A2;
     a->l = &a->L;
     a->b = &a->B;
     a->whole = &a->full;

@@ -263,26 +263,25 @@ static void int_sorting(void) {
         for (form = 0; form < 7; form++) {
             const int64_t n = sizes[k];
             hdi_pair *a = KIT_NEW(hdi_pair, n), *b = KIT_NEW(hdi_pair, n);
-            uint64_t *work = KIT_NEW(uint64_t, 2 * n + 1);
-            int32_t *x = KIT_NEW(int32_t, n + 1);
+            uint64_t *work = KIT_NEW(uint64_t, n / 2 + 1), *x = KIT_NEW(uint64_t, n + 1);
             for (i = 0; i < n; i++) {
                 a[i].key = b[i].key = int_key(form, i, n, &seed);
                 a[i].id = b[i].id = n - i;
-                x[i] = (int32_t)(a[i].key % 100003);
+                x[i] = a[i].key % 100003;
             }
             x[n] = 5;                            /* not theirs */
-            work[2 * n] = 77;
+            work[n / 2] = 77;
             hdi_sort_pairs(a, n);
             qsort(b, (size_t)n, sizeof *b, int_compare);
             CHECK_MSG(memcmp(a, b, (size_t)n * sizeof *a) == 0, "%d pairs of form %d are not sorted", (int)n, form);
             for (i = 0; i < n; i++) {
-                b[i].key = (uint64_t)x[i];
+                b[i].key = x[i];
                 b[i].id = 0;
             }
             qsort(b, (size_t)n, sizeof *b, int_compare);
-            hdi_sort_indices(x, n, work);
-            for (i = 0; i < n && (uint64_t)x[i] == b[i].key; i++) {}
-            CHECK_MSG(i == n && x[n] == 5 && work[2 * n] == 77, "%d indices of form %d are not sorted", (int)n, form);
+            hdi_sort_keys(x, n, work);
+            for (i = 0; i < n && x[i] == b[i].key; i++) {}
+            CHECK_MSG(i == n && x[n] == 5 && work[n / 2] == 77, "%d keys of form %d are not sorted", (int)n, form);
         }
 }
 
@@ -435,7 +434,7 @@ static void int_ildl_of(const hdi_upper *up, double keep, double off[INT_OFF]) {
         }
     }
     for (i = 0; i < n; i++) d[i] = hdi_cdiv(hdi_c(1, 0), d[i]);
-    hdi_preconds[of.kind].apply(&of, b, x);
+    hdi_precond_apply(&of, b, x);
     for (k = 0; k < INT_OFF; k++) off[k] = 0;
     for (i = 0; i < n; i++) {
         dense_c64 sum = dense_c(0, 0), left = dense_c(b[i].re, b[i].im);
@@ -1181,29 +1180,28 @@ static void int_around(void) {
 
 /* The k-th of numbers and of points along an axis, among which many may be equal; and lists of keys in order. */
 static void int_selection(void) {
-    hdi_point point[100];
-    double a[100];
+    double point[400], a[100];
     uint64_t key[200], sum, seed = 6;
     int32_t n, k, i, bad = 0;
     for (n = 1; n < 100; n += 7) {
         for (k = 0; k < n; k++) {
             for (i = 0, sum = 0; i < n; i++) {
-                memset(point + i, 0, sizeof *point);
-                a[i] = point[i].x[k % 3] = k % 2 ? (double)(dense_random(&seed) % 5) : dense_signed(&seed);
-                point[i].id = i;
+                point[4 * i] = point[4 * i + 1] = point[4 * i + 2] = 0;
+                a[i] = point[4 * i + k % 3] = k % 2 ? (double)(dense_random(&seed) % 5) : dense_signed(&seed);
+                point[4 * i + 3] = i;
                 key[i] = k % 2 ? dense_random(&seed) % 9 : dense_random(&seed);
                 sum += key[i] * key[i];
             }
             (void)hdi_kth(a, n, k);
-            hdi_select_point(point, n, k, k % 3);
+            hdi_select(point, n, k, 4, k % 3);
             hdi_sort_keys(key, n, key + 100);
             for (i = 0; i < n; i++) {
-                const double x = point[i].x[k % 3];
-                bad += i < k ? a[i] > a[k] || x > point[k].x[k % 3] : a[i] < a[k] || x < point[k].x[k % 3];
+                const double x = point[4 * i + k % 3];
+                bad += i < k ? a[i] > a[k] || x > point[4 * k + k % 3] : a[i] < a[k] || x < point[4 * k + k % 3];
                 bad += i > 0 && key[i] < key[i - 1];
                 sum -= key[i] * key[i];
             }
-            bad += sum != 0 || a[k] != point[k].x[k % 3];    /* two ways, the same numbers */
+            bad += sum != 0 || a[k] != point[4 * k + k % 3];    /* two ways, the same numbers */
         }
     }
     CHECK_MSG(bad == 0, "%d times another one than the k-th", (int)bad);

@@ -107,6 +107,26 @@ static double *test_dense(const hd_csr *a, const double *val) {
     return d;
 }
 
+/* A copy of a square matrix; with perm [n_rows] its row i and column i are those number perm[i] of a. */
+static hd_csr test_csr_ordered(const hd_csr *a, const int32_t *perm) {
+    int32_t *row = DENSE_NEW(int32_t, a->nnz), *col = DENSE_NEW(int32_t, a->nnz), *inverse = DENSE_NEW(int32_t, a->n_rows), i;
+    hd_csr out;
+    int64_t p;
+    memset(&out, 0, sizeof out);
+    for (i = 0; i < a->n_rows; i++) inverse[perm ? perm[i] : i] = i;
+    for (i = 0; i < a->n_rows; i++) {
+        for (p = a->row_ptr[i]; p < a->row_ptr[i + 1]; p++) {
+            row[p] = inverse[i];
+            col[p] = inverse[a->col[p]];
+        }
+    }
+    CHECK(hd_csr_from_triplets(&out, a->n_rows, a->n_cols, a->nnz, row, col, a->val, NULL, NULL) == HD_OK);
+    free(row);
+    free(col);
+    free(inverse);
+    return out;
+}
+
 /* B of a Laplacian on its rows, dense. */
 static double *test_dense_mass(const hd_laplacian *lap) {
     double *d = lap->B ? test_dense(&lap->L, lap->B) : DENSE_NEW(double, (int64_t)lap->n_active * lap->n_active);

@@ -92,13 +92,10 @@ static const door_row door_rows[] = {
     {"triplets", HD_ERR_INDEX, "", "value=-1", "n_triplets=2 triplet_i=low_id"},
     {"triplets", HD_ERR_INDEX, "", "value=21", "n_triplets=2 triplet_i=far_id"},
     {"triplets", HD_ERR_INDEX, "", "row=1", "n_triplets=2 triplet_j=low_id; n_triplets=2 triplet_j=far_id"},
-    {"permute", HD_ERR_INDEX, "", NULL, "perm=tri"},
 
     /* matrices */
-    {NULL, HD_ERR_STRUCTURE, "negative size", NULL, "A.nnz=-1 a=a; A.n_rows=-1 a=a; A.n_cols=-1 a=a; A2.nnz=-1 a2=a2"},
+    {NULL, HD_ERR_STRUCTURE, "negative size", NULL, "A.nnz=-1 a=a; A.n_rows=-1 a=a; A.n_cols=-1 a=a"},
     {NULL, HD_ERR_STRUCTURE, "missing array", NULL, "A.row_ptr=NULL a=a; A.col=NULL a=a"},
-    {"product", BAD "inner sizes", "row=22", "A.n_cols=22"}, {"permute", BAD "not square", "column=22", "A.n_cols=22"},
-    {"product permute transpose", HD_OK, "", NULL, "A.val=NULL"}, {"product", HD_OK, "", NULL, "A2.val=NULL"},
     {NULL, BAD "must not be NULL", NULL, "L.val=NULL l=l; B.val=NULL b=b"},
     {NULL, HD_ERR_STRUCTURE, "does not begin with 0", NULL, "L.row_ptr=bent l=l; B.row_ptr=bent b=b"},
     {"update_matrices", BAD "another size", NULL, "L.n_rows=8; B.n_rows=8; L.n_cols=10; B.n_cols=10"},
@@ -179,7 +176,7 @@ enum { DOOR_ROWS = sizeof door_rows / sizeof *door_rows };
 /* Arguments that must not be NULL. */
 static const char *const door_pointers =
     "lap heat spectrum geodesic ldl out_lap out_heat out_spectrum out_geodesic out_ldl out_csr out_set xyz moved lengths tri "
-    "face_ptr view triplet_i triplet_j a a2 l b perm val zval f zb t c ids other sources set filter u z vertex estimate "
+    "face_ptr view triplet_i triplet_j a l b val zval f zb t c ids other sources set filter u z vertex estimate "
     "spectrum_opts";
 
 typedef struct doors {
@@ -381,22 +378,6 @@ static void doors_context(void) {
 
 /* ---- what is taken ---- */
 
-/* A pattern without values has a product and a permutation without values. */
-static void doors_patterns(const doors *d) {
-    const hd_csr *const B = &d->data.B;
-    int32_t perm[CALL_SMALL], k;
-    hd_csr pattern = d->data.L, out;
-    hd_status st;
-    pattern.val = NULL;
-    for (k = 0; k < CALL_SMALL; k++) perm[k] = CALL_SMALL - 1 - k;
-    for (k = 0; k < 3; k++) {
-        st = k == 0 ? hd_csr_product(&out, &pattern, B, NULL, NULL) : k == 1 ? hd_csr_product(&out, B, &pattern, NULL, NULL)
-                    : hd_csr_permute(&out, &pattern, perm, NULL, NULL);
-        CHECK(st == HD_OK && !out.val && out.nnz == pattern.nnz && out.col[0] == 0 && out.col[1] == 1);
-        hd_csr_free(&out, NULL);
-    }
-}
-
 /* The Laplacian exp is divided by the area, and its times come in the square of it: the mean of the logs is one time. */
 static void doors_times_exp(doors *d) {
     double area, t[3];
@@ -493,7 +474,6 @@ static void doors_half_updated(doors *d) {
 static void doors_taken(void) {
     static doors d;
     doors_open(&d);
-    doors_patterns(&d);
     doors_times_exp(&d);
     doors_one_vertex();
     doors_apart(&d);

@@ -1433,7 +1433,7 @@ static void ldl_mesh_of(const shape *s, const hd_laplacian *lap, int flat, const
     int32_t i, k;
     int64_t q;
     int way;
-    CHECK(hd_csr_transpose(&copy, &lap->L, NULL, NULL) == HD_OK);
+    copy = test_csr_ordered(&lap->L, NULL);
     p = ldl_problem_of(copy, K, 1);
     CHECK(hd_rational_get(&set, HD_POLES_KERNEL, 2 * K, NULL) == HD_OK && set.n_poles == K);
     for (k = 0, p.growth = 0; k < K; k++) p.growth = fmax(p.growth, ldl_growth_bound(set.theta[k]));

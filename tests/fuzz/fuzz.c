@@ -1215,7 +1215,7 @@ static void fz_csr(fz_in *in, const fz_matrix *m, fz_context *c) {
     const hd_csr *const a = &m->a;
     hd_csr out;
     hd_error e;
-    int32_t perm[20], i[24], j[24], k, n = fz_below(in, 24);
+    int32_t i[24], j[24], k, n = fz_below(in, 24);
     double v[24], x[20], y[20];
     fz_what = "csr";
     if (fz_status(hd_csr_check(a, fz_byte(in) & 1, &c->ctx, &e), &e, c) == HD_OK && a->n_cols < 20) {
@@ -1223,11 +1223,6 @@ static void fz_csr(fz_in *in, const fz_matrix *m, fz_context *c) {
         hd_csr_apply(a, x, y, &c->ctx);
         FZ(fz_no_nan(y, 0));
     }
-    fz_csr_out(hd_csr_transpose(&out, a, &c->ctx, &e), &out, &e, c);
-    fz_csr_out(hd_csr_product(&out, a, a, &c->ctx, &e), &out, &e, c);
-    for (k = 0; k < 20; k++) perm[k] = a->n_rows > 0 ? (k + 1) % a->n_rows : 0;
-    if (fz_byte(in) > 200) perm[0] = fz_int(in, a->n_rows);
-    fz_csr_out(hd_csr_permute(&out, a, perm, &c->ctx, &e), &out, &e, c);
     for (k = 0; k < n; k++) {
         i[k] = fz_int(in, 9);
         j[k] = fz_int(in, 7);
