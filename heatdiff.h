@@ -11050,25 +11050,10 @@ typedef struct hdi_nd_load_job {
     const hdi_nd *nd;
     const hd_csr *a;
     const int32_t *inv;
+    int counted;
 } hdi_nd_load_job;
 
-/* Counts the neighbours of rows [begin, end). */
-static void hdi_nd_load_lengths(void *arg, int64_t begin, int64_t end) {
-    const hdi_nd_load_job *job = (const hdi_nd_load_job *)arg;
-    const hdi_nd_buffer *b = job->nd->buffer;
-    const hd_csr *a = job->a;
-    int64_t k, p;
-    for (k = begin; k < end; k++) {
-        const int32_t r = b->id[k];
-        int32_t count = 0;
-        if (k + HDI_ROWS_AHEAD < end) HDI_PREFETCH(a->col + a->row_ptr[b->id[k + HDI_ROWS_AHEAD]]);
-        for (p = a->row_ptr[r]; p < a->row_ptr[r + 1]; p++)
-            count += a->col[p] != r && job->inv[a->col[p]] >= 0;
-        b->ptr[k + 1] = count;
-    }
-}
-
-/* Reads rows [begin, end), which begin where ptr says. */
+/* Counts the neighbours of rows [begin, end), or reads them to where ptr says. */
 static void hdi_nd_load_rows(void *arg, int64_t begin, int64_t end) {
     const hdi_nd_load_job *job = (const hdi_nd_load_job *)arg;
     const hdi_nd_buffer *b = job->nd->buffer;
@@ -11076,12 +11061,15 @@ static void hdi_nd_load_rows(void *arg, int64_t begin, int64_t end) {
     int64_t k, p;
     for (k = begin; k < end; k++) {
         const int32_t r = b->id[k];
-        int32_t z = b->ptr[k];
+        int32_t z = job->counted ? b->ptr[k] : 0;
         if (k + HDI_ROWS_AHEAD < end) HDI_PREFETCH(a->col + a->row_ptr[b->id[k + HDI_ROWS_AHEAD]]);
         for (p = a->row_ptr[r]; p < a->row_ptr[r + 1]; p++) {
             const int32_t u = job->inv[a->col[p]];
-            if (a->col[p] != r && u >= 0) b->adj[z++] = u;
+            if (a->col[p] == r || u < 0) continue;
+            if (job->counted) b->adj[z] = u;
+            z++;
         }
+        if (!job->counted) b->ptr[k + 1] = z;
     }
 }
 
@@ -11090,8 +11078,9 @@ static hdi_nd_part hdi_nd_load(hdi_nd_load_job *job, int32_t n, hd_context *ctx)
     int32_t k, *ptr = job->nd->buffer->ptr;
     hdi_nd_part part;
     memset(&part, 0, sizeof part);
-    hdi_parallel_ranges(ctx, n, HDI_ND_BLOCK, hdi_nd_load_lengths, job);
+    hdi_parallel_ranges(ctx, n, HDI_ND_BLOCK, hdi_nd_load_rows, job);
     for (ptr[0] = k = 0; k < n; k++) ptr[k + 1] += ptr[k];
+    job->counted = 1;
     hdi_parallel_ranges(ctx, n, HDI_ND_BLOCK, hdi_nd_load_rows, job);
     part.n = n;
     part.n_edges = ptr[n];
@@ -11132,7 +11121,7 @@ static hd_status hdi_nd_order(const hd_csr *a, const double *xyz, int32_t *perm,
     const uint64_t n = (uint64_t)a->n_rows;
     int32_t k, *inv = HDI_TAKE(&s, int32_t, n + 1);
     hdi_nd nd;
-    hdi_nd_load_job job = {&nd, a, inv};
+    hdi_nd_load_job job = {&nd, a, inv, 0};
     if (a->nnz > INT32_MAX / 2 || n > INT32_MAX / 4)
         hdi_fail(e, HD_ERR_TOO_LARGE, "a pattern is too large for nested dissection");
     memset(&nd, 0, sizeof nd);
