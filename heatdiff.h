@@ -395,7 +395,7 @@ typedef struct hd_laplacian_opts {
      * 6..128. Default 30. */
     int32_t neighbours;
     /* Triangles and polygons, without intrinsic_delaunay and tufted: 1: hd_laplacian_update may be called.
-     * Takes 110 bytes more for each triangle, or 60 for each corner of polygons. Own matrices: 1:
+     * Takes 90 bytes more for each triangle, or 65 for each corner of polygons. Own matrices: 1:
      * hd_laplacian_update_matrices may be called. Takes 24 bytes more for each entry. Points refuse it. */
     int32_t updatable;
     /* Meshes: natural, or Dirichlet: every vertex at the border of the faces used is held at zero. The border
@@ -11756,12 +11756,11 @@ static int64_t hdi_stacks_run(hdi_stacks *z, int32_t k, int apart, int64_t base)
  * first tasks. The roots of those tasks stand apart, behind that space, because they stay until the top has
  * taken them. Vectors of the top have places of their own, because a solve takes the fronts of the top in any
  * order that the tree allows. */
-static int64_t hdi_stacks_place(hdi_stacks *z) {
-    const hdi_symbolic *s = z->s;
+static int64_t hdi_stacks_place(const hdi_symbolic *s, int matrices, int64_t *at, char *side) {
     const int32_t n = s->n_tasks;
+    hdi_stacks stacks = {s, matrices, at, side, {0}}, *z = &stacks;
     int64_t top, end = 0;
     int32_t v, k;
-    z->used[HDI_SIDE_APART] = 0;
     for (v = s->n_super; v-- > 0;)
         z->side[v] = s->parent[v] < 0 || z->side[s->parent[v]] ? HDI_SIDE_LOW : HDI_SIDE_HIGH;
     top = z->matrices ? hdi_stacks_run(z, -1, 0, 0) : 0;
@@ -11778,18 +11777,6 @@ static int64_t hdi_stacks_place(hdi_stacks *z) {
     return end;
 }
 
-static void hdi_sym_memory(hdi_symbolic *s, char *side) {
-    hdi_stacks z;
-    z.s = s;
-    z.side = side;
-    z.matrices = 1;
-    z.at = s->update;
-    s->work = hdi_stacks_place(&z);
-    z.matrices = 0;
-    z.at = s->vector;
-    s->vector_size = hdi_stacks_place(&z);
-}
-
 /* Analysis of a symmetric pattern under the order perm, which is used up. */
 static hd_status hdi_symbolic_make(hdi_symbolic *s, const hd_csr *a, int32_t *perm, hd_context *ctx,
                                    hd_error *e) {
@@ -11803,7 +11790,8 @@ static hd_status hdi_symbolic_make(hdi_symbolic *s, const hd_csr *a, int32_t *pe
         if (hdi_progress(ctx, "analyse", 0.4, e) >= 0 && hdi_sym_supernodes(s, &w, &keep) >= 0 &&
             hdi_sym_fronts(s, &w, &keep) >= 0) {
             hdi_sym_tasks(s, w.work);
-            hdi_sym_memory(s, w.side);
+            s->work = hdi_stacks_place(s, 1, s->update, w.side);
+            s->vector_size = hdi_stacks_place(s, 0, s->vector, w.side);
         }
     }
     hdi_scope_end(&temp);
@@ -12025,11 +12013,6 @@ static HDI_INLINE void hdi_values_at(const hdi_values *a, int32_t width, int64_t
     }
 }
 
-/* Row of A of entry (i,j) of the front when it is on the diagonal, else -1. */
-static int32_t hdi_front_row(const hdi_front *w, int64_t i, int64_t j) {
-    return i == j ? w->f->sym->perm[w->f->sym->super[w->v] + j] : -1;
-}
-
 /* Block q of a panel: columns [begin, begin + width) and rows from begin on, column by column, ld entries
  * apart. at: its entry (begin,begin). */
 typedef struct hdi_block { double *at; int64_t begin, width, ld; int32_t entry; } hdi_block;
@@ -12141,7 +12124,8 @@ static void hdi_front_assemble(const hdi_front *w, int64_t r0, int64_t r1) {
         const int64_t i = s->a_row[q], j = s->a_col[q];
         if (i < r0 || i >= r1) continue;
         if (j < own.begin || j >= own.begin + HDI_PANEL) own = hdi_front_block(w, j / HDI_PANEL);
-        hdi_values_at(w->f->values, width, s->a_from[q], hdi_front_row(w, i, j), hdi_block_at(&own, i, j));
+        hdi_values_at(w->f->values, width, s->a_from[q], i == j ? s->perm[s->super[w->v] + j] : -1,
+                      hdi_block_at(&own, i, j));
     }
     hdi_front_children(w, r0, r1, 0);
 }
@@ -12581,11 +12565,6 @@ static hd_status hdi_factor_collect(hdi_factor *f, int32_t n_parts, hd_error *e)
     return e->status;
 }
 
-/* Chunks from the one that holds row r0 to the one that holds row r1 - 1. */
-static int32_t hdi_factor_span(int64_t r0, int64_t r1) {
-    return (int32_t)((r1 - 1) / HDI_FRONT_CHUNK - r0 / HDI_FRONT_CHUNK + 1);
-}
-
 /* Takes up the next front of the top: all of it, or to be shared from here on. */
 static void hdi_factor_open(hdi_factor_walk *t) {
     hdi_factor *f = t->f;
@@ -12605,7 +12584,9 @@ static void hdi_factor_open(hdi_factor_walk *t) {
     t->missing = f->counts;
     t->come = t->missing + t->n_blocks;
     for (k = 0; k < t->n_blocks; k++) {
-        t->missing[k] = hdi_factor_span((int64_t)k * t->nb, hdi_factor_end(t, k));
+        /* from the chunk of its first row to that of its last one */
+        t->missing[k] = (int32_t)((hdi_factor_end(t, k) - 1) / HDI_FRONT_CHUNK) + 1;
+        t->missing[k] -= k * t->nb / HDI_FRONT_CHUNK;
         if (k > 1) t->missing[k] += t->n_chunks - hdi_factor_first(t, k - 2);
     }
     memset(t->come, 0, (size_t)t->n_chunks * sizeof *t->come);
@@ -12752,14 +12733,18 @@ typedef struct hdi_sweep {
     int32_t *pending, *order;    /* [2 nodes] what they wait for; nodes as they become ready */
 } hdi_sweep;
 
-/* to[rel[i]] += from[i] for entries [i,end) of w doubles; what goes to consecutive places at once. */
-static void hdi_sweep_add(const hdi_kernels *o, int64_t w, double *to, const int32_t *rel, int64_t i,
-                          int64_t end, const double *from) {
-    int64_t j;
+/* to[rel[i]] += from[i] for entries [i,end) of w doubles, one or some eights. */
+static HDI_INLINE void hdi_sweep_add(int64_t w, double *to, const int32_t *rel, int64_t i, int64_t end,
+                                     const double *from) {
+    double sum[8];
+    int64_t q;
+    int e;
     for (; w == 1 && i < end; i++) to[rel[i]] += from[i];
-    for (; i < end; i = j) {
-        for (j = i + 1; j < end && rel[j] == rel[j - 1] + 1; j++) {}
-        o->add(to + w * rel[i], from + w * i, w * (j - i));
+    for (; i < end; i++) {
+        for (q = 0; q < w; q += 8) {
+            for (e = 0; e < 8; e++) sum[e] = to[w * rel[i] + q + e] + from[w * i + q + e];
+            memcpy(to + w * rel[i] + q, sum, sizeof sum);
+        }
     }
 }
 
@@ -12774,8 +12759,8 @@ static void hdi_sweep_children(const hdi_sweep *z, int32_t v, double *y, double 
         const int64_t uc = hdi_front_below(s, c), inner = s->inner[c];
         const double *from = z->vec + w * s->vector[c];
         if (z->active && !z->active[c]) continue;
-        hdi_sweep_add(z->f->ops, w, y, rel, 0, inner, from);
-        hdi_sweep_add(z->f->ops, w, t - w * p, rel, inner, uc, from);
+        hdi_sweep_add(w, y, rel, 0, inner, from);
+        hdi_sweep_add(w, t - w * p, rel, inner, uc, from);
     }
 }
 
@@ -12848,17 +12833,23 @@ static void hdi_sweep_forward(const hdi_sweep *z, int32_t v, double *y, double *
 }
 
 /* The pivots' part of the right-hand sides from outside, or of the answers to there. */
-static void hdi_sweep_ports(const hdi_sweep *z, int32_t v, double *y, int down) {
+static HDI_INLINE void hdi_sweep_ports(const hdi_sweep *z, int32_t v, double *y, int down) {
     const int32_t *super = z->f->sym->super + v, n = z->f->sym->n, ahead = down ? -24 : 24;
     const hdi_ports *g = z->ports;
     int32_t i, r;
-    for (i = super[0]; g && i < super[1]; i++) {
+    for (i = super[0]; g && z->f->width * z->k == 1 && i < super[1]; i++, y++) {
+        if (down) g->out[0][g->row[i]] = *y;
+        else *y = g->in[0][g->row[i]];
+    }
+    for (; g && i < super[1]; i++) {
         const int32_t next = i + ahead >= 0 && i + ahead < n ? i + ahead : i;
         const int64_t at = (int64_t)g->stride * g->row[i], soon = (int64_t)g->stride * g->row[next];
         for (r = 0; r < z->f->width * z->k; r++, y++) {
-            if (!down) *y = g->in[r] ? g->in[r][at] : 0;
-            else if (g->out[r]) g->out[r][at] = *y;
-            if (g->in[r]) HDI_PREFETCH((down ? g->out[r] : g->in[r]) + soon);
+            const double *from = g->in[r];
+            double *to = g->out[r];
+            if (!down) *y = from ? from[at] : 0;
+            else if (to) to[at] = *y;
+            HDI_PREFETCH_AT(down ? to : from, soon);
         }
     }
 }

@@ -663,6 +663,40 @@ static void mov_points(const shape *s) {
     CHECK(hd_laplacian_tufted_points(&lap, s->xyz, s->n, NULL, NULL, &o, &e) == HD_ERR_ARGUMENT && !lap && strstr(e.text, "triangles") != NULL);
 }
 
+/* Vertices held at zero, with the border or without it: an update fills what a new Laplacian has. kind polygon: its triangles
+ * as polygons. */
+static void mov_held(hd_laplacian_kind kind, hd_border border) {
+    shape s = kit_own_shape(shape_grid(11, 8, 0.2));
+    const int32_t held[3] = {25, 26, 50};
+    int64_t *ptr = KIT_NEW(int64_t, s.n_tri + 1);
+    double *xyz = KIT_NEW(double, 3 * s.n);
+    hd_laplacian *lap[2] = {NULL, NULL};
+    hd_laplacian_opts o;
+    hd_error e;
+    int frame, k;
+    int32_t i;
+    memset(&o, 0, sizeof o);
+    o.kind = kind;
+    o.border = border;
+    o.held = held;
+    o.n_held = 3;
+    for (i = 0; i <= s.n_tri; i++) ptr[i] = 3 * i;
+    for (frame = 0; frame < 3; frame++) {
+        mov_bend(&s, 0.4 * frame, xyz);
+        for (k = frame > 0; k < 2; k++) {
+            o.updatable = k == 0;
+            CHECK((kind == HD_LAPLACIAN_POLYGON ? hd_laplacian_polygons(lap + k, xyz, s.n, ptr, s.tri, s.n_tri, &o, &e)
+                                                : hd_laplacian_triangles(lap + k, xyz, s.n, s.tri, s.n_tri, &o, &e)) == HD_OK);
+        }
+        if (frame > 0) CHECK_MSG(hd_laplacian_update(lap[0], xyz, &e) == HD_OK, "held: %s", e.text);
+        CHECK(lap[0]->n_held == lap[1]->n_held && lap[0]->conserves == 0 && lap[0]->n_components == lap[1]->n_components);
+        mov_same_bits(lap[0], lap[1], "held");
+        hd_laplacian_free(lap[1]);
+        lap[1] = NULL;
+    }
+    hd_laplacian_free(lap[0]);
+}
+
 /* Pairs of every kind that is made of faces: some of them come twice, have no area, stand three at an edge, or are turned over. */
 static void mov_all_symmetric(const shape *s) {
     hd_laplacian_opts o;
@@ -694,12 +728,17 @@ static void mov_all_symmetric(const shape *s) {
 }
 
 static void test_moving(void) {
+    int kind;
     shape ball = kit_own_shape(shape_bumpy(3, 5)), sheet = kit_own_shape(shape_grid(13, 11, 0.3)), soup = kit_own_shape(trial_jumble(300, 500, 9));
     mov_frames(&ball, HD_LAPLACIAN_FEM, "ball, fem");
     mov_frames(&ball, HD_LAPLACIAN_COT, "ball, cot");
     mov_frames(&sheet, HD_LAPLACIAN_VORONOI_COT, "sheet, voronoi-cot");
     mov_frames(&soup, HD_LAPLACIAN_FEM, "soup, fem");
     mov_errors();
+    for (kind = HD_LAPLACIAN_FEM; kind <= HD_LAPLACIAN_POLYGON; kind++) {
+        mov_held((hd_laplacian_kind)kind, HD_BORDER_NATURAL);
+        mov_held((hd_laplacian_kind)kind, HD_BORDER_DIRICHLET);
+    }
     mov_all_symmetric(&ball);
     mov_all_symmetric(&soup);
     {
