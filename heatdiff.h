@@ -9224,9 +9224,9 @@ typedef struct hdi_amd {
     int32_t flag, longest;       /* see mark; the heaviest element */
     int32_t free, size;          /* list[free..size-1] is unused */
     int32_t *head;               /* [n + 1] first variable of each degree, or -1 */
-    int32_t *bucket;             /* [HDI_AMD_BUCKETS] */
     int32_t *list;
     hdi_amd_node *v;             /* [n] */
+    int32_t bucket[HDI_AMD_BUCKETS];
 } hdi_amd;
 
 static void hdi_amd_link(hdi_amd *g, int32_t i, int32_t degree) {
@@ -9315,7 +9315,7 @@ static void hdi_amd_element(hdi_amd *g, int32_t me) {
 }
 
 /* The chain of the hash table for a hash of 31 bits. */
-static int32_t *hdi_amd_chain(const hdi_amd *g, int32_t hash) {
+static int32_t *hdi_amd_chain(hdi_amd *g, int32_t hash) {
     return g->bucket + (hash >> (31 - HDI_AMD_BITS));
 }
 
@@ -9517,8 +9517,7 @@ static void hdi_amd_run(hdi_amd *g, int32_t until) {
  * the entries more saves time, as in the paper. */
 static int64_t hdi_amd_words(int32_t inner, int32_t halo, int64_t nnz) {
     const int64_t n = (int64_t)inner + halo, all = halo > 0 ? 2 * nnz : nnz;
-    return (int64_t)(sizeof(hdi_amd_node) / sizeof(int32_t)) * n + n + 1 + HDI_AMD_BUCKETS + all +
-        all / 5 + n;
+    return (int64_t)(sizeof(hdi_amd_node) / sizeof(int32_t)) * n + n + 1 + all + all / 5 + n;
 }
 
 /* Lays out the work space of words. */
@@ -9530,10 +9529,10 @@ static void hdi_amd_begin(hdi_amd *g, int32_t n, int32_t inner, int32_t *work, i
     g->flag = 2;
     g->v = (hdi_amd_node *)(void *)work;
     g->head = (int32_t *)(void *)(g->v + n);
-    g->bucket = g->head + n + 1;
-    g->list = g->bucket + HDI_AMD_BUCKETS;
+    g->list = g->head + n + 1;
     g->size = (int32_t)(work + words - g->list);
-    hdi_fill_i32(g->head, n + 1 + HDI_AMD_BUCKETS, -1);   /* and the buckets */
+    hdi_fill_i32(g->head, n + 1, -1);
+    hdi_fill_i32(g->bucket, HDI_AMD_BUCKETS, -1);
     for (i = 0; i < n; i++) {
         g->v[i].at = g->v[i].len = g->v[i].elen = g->v[i].degree = 0;
         g->v[i].weight = g->v[i].mark = 1;
@@ -9727,7 +9726,8 @@ typedef struct hdi_nd_buffer {
  * the last HDI_ND_TASKS of them are ordered with all below them. */
 typedef struct hdi_nd {
     hdi_nd_buffer buffer[2];
-    float *xyz;
+    const double *xyz;
+    double lo[3], width;             /* of the box around all rows, halved */
     int32_t *perm, *work;
     hdi_nd_part *part;               /* [HDI_ND_NODES] */
     hdi_walk walk;
@@ -9763,27 +9763,22 @@ static uint32_t hdi_nd_spread(uint32_t x) {
     return (x | x << 2) & 0x09249249u;
 }
 
-/* key[i] is the place of row i on the Morton curve in a grid of 1024^3 cells. unit [3n]: places in [0, 1]. */
-static void hdi_nd_keys(const double *xyz, int32_t n, uint32_t *key, float *unit) {
-    double lo[3], hi[3], width = 0;
+/* Finds a box around all rows. Halves: a difference of two must not overflow. */
+static void hdi_nd_frame(hdi_nd *nd, int32_t n) {
+    double hi[3] = {-DBL_MAX, -DBL_MAX, -DBL_MAX};
     int32_t i, d;
-    /* halves: a difference of two must not overflow */
-    for (d = 0; d < 3; d++) lo[d] = hi[d] = n ? 0.5 * xyz[d] : 0;
+    for (d = 0; d < 3; d++) nd->lo[d] = DBL_MAX;
     for (i = 0; i < 3 * n; i++) {
-        lo[i % 3] = hdi_min(lo[i % 3], 0.5 * xyz[i]);
-        hi[i % 3] = hdi_max(hi[i % 3], 0.5 * xyz[i]);
+        nd->lo[i % 3] = hdi_min(nd->lo[i % 3], 0.5 * nd->xyz[i]);
+        hi[i % 3] = hdi_max(hi[i % 3], 0.5 * nd->xyz[i]);
     }
-    for (d = 0; d < 3; d++) width = hdi_max(width, hi[d] - lo[d]);
-    if (!(width > 0)) width = 1;
-    for (i = 0; i < n; i++) {
-        key[i] = 0;
-        for (d = 0; d < 3; d++) {
-            const size_t q = 3 * (size_t)i + (size_t)d;
-            const double u = (0.5 * xyz[q] - lo[d]) / width;
-            unit[q] = (float)u;
-            key[i] |= hdi_nd_spread((uint32_t)(u * 1023)) << d;
-        }
-    }
+    for (nd->width = d = 0; d < 3; d++) nd->width = hdi_max(nd->width, hi[d] - nd->lo[d]);
+    if (!(nd->width > 0)) nd->width = 1;
+}
+
+/* Where a row is in the box, from 0 to 1. */
+static double hdi_nd_place(const hdi_nd *nd, int32_t row, int32_t d) {
+    return (0.5 * nd->xyz[3 * (size_t)row + (size_t)d] - nd->lo[d]) / nd->width;
 }
 
 /* Groups [0,n) by keys: list[ptr[k]..ptr[k + 1]) are the i with key[i] = k, ascending. Those with negative
@@ -9798,24 +9793,24 @@ static void hdi_group(const int32_t *key, int32_t n, int32_t n_keys, int32_t *pt
         if (key[i] >= 0) list[--ptr[key[i]]] = i;
 }
 
-/* Sorts the rows along the curve, by three digits of 11 bits. Rows with too many entries come last, and the
- * return value is the number of the other ones. inv: the inverse of order, but -1 for rows with too many
- * entries. spare [n], ptr [2049]. */
-static int32_t hdi_nd_number(const hd_csr *a, uint32_t *key, int32_t *order, int32_t *inv, int32_t *spare,
-                             int32_t *ptr) {
+/* Sorts the rows along the Morton curve in a grid of 1024^3 cells, by three digits of 10 bits. Rows with too
+ * many entries come last, and the return value is the number of the other ones. inv: the inverse of order,
+ * but -1 for rows with too many entries. work [2 n + 1025]. */
+static int32_t hdi_nd_number(const hdi_nd *nd, const hd_csr *a, int32_t *order, int32_t *inv, int32_t *work) {
     const double dense = 10 * sqrt((double)a->n_rows) + 16;
     const int32_t n = a->n_rows;
-    int32_t i, shift, m = 0;
+    int32_t i, d, shift, m = 0, last = n, *key = work, *list = key + n, *ptr = list + n;
     for (i = 0; i < n; i++) {
-        if ((double)(a->row_ptr[i + 1] - a->row_ptr[i]) > dense) key[i] = (uint32_t)1 << 30;
-        else m++;
-        order[i] = i;
+        if ((double)(a->row_ptr[i + 1] - a->row_ptr[i]) > dense) order[--last] = i;
+        else order[m++] = i;
+        for (key[i] = d = 0; d < 3; d++)
+            key[i] |= (int32_t)(hdi_nd_spread((uint32_t)(1023 * hdi_nd_place(nd, i, d))) << d);
     }
-    for (shift = 0; shift < 33; shift += 11) {
-        for (i = 0; i < n; i++) inv[i] = (int32_t)(key[order[i]] >> shift & 2047u);
-        hdi_group(inv, n, 2048, ptr, spare);
-        for (i = 0; i < n; i++) inv[i] = order[spare[i]];
-        memcpy(order, inv, (size_t)n * sizeof *order);
+    for (shift = 0; shift < 30; shift += 10) {
+        for (i = 0; i < m; i++) inv[i] = key[order[i]] >> shift & 1023;
+        hdi_group(inv, m, 1024, ptr, list);
+        for (i = 0; i < m; i++) inv[i] = order[list[i]];
+        memcpy(order, inv, (size_t)m * sizeof *order);
     }
     for (i = 0; i < n; i++) inv[order[i]] = i < m ? i : -1;
     return m;
@@ -10119,20 +10114,17 @@ static void hdi_nd_refine_edges(hdi_nd_mover *m, hdi_nd_cut *cut, int32_t passes
 
 /* ---- the first cut ---- */
 
-static const float *hdi_nd_place(const hdi_nd *nd, const hdi_nd_graph *g, int32_t v) {
-    return nd->xyz + 3 * (size_t)g->id[v];
-}
-
-static int32_t hdi_nd_farthest(const hdi_nd *nd, const hdi_nd_graph *g, const float *from) {
-    int32_t v, i, far_v = 0;
+static int32_t hdi_nd_farthest(const hdi_nd *nd, const hdi_nd_graph *g, int32_t from) {
+    int32_t v, d, far_v = 0;
     double most = -1;
     for (v = 0; v < g->n; v++) {
-        const float *at = hdi_nd_place(nd, g, v);
-        double d, x[3];
-        for (i = 0; i < 3; i++) x[i] = (double)at[i] - (double)from[i];
-        d = x[0] * x[0] + x[1] * x[1] + x[2] * x[2];
-        if (d > most) {
-            most = d;
+        double x, sum = 0;
+        for (d = 0; d < 3; d++) {
+            x = hdi_nd_place(nd, g->id[v], d) - hdi_nd_place(nd, g->id[from], d);
+            sum += x * x;
+        }
+        if (sum > most) {
+            most = sum;
             far_v = v;
         }
     }
@@ -10179,16 +10171,14 @@ static int hdi_nd_sweep_keys(const hdi_nd *nd, const hdi_nd_graph *g, int32_t ki
         b = hdi_nd_steps(g, a, db, queue);
         hdi_nd_steps(g, b, da, queue);
     } else if (kind == 0) {
-        const float *pa, *pb;
-        a = hdi_nd_farthest(nd, g, hdi_nd_place(nd, g, 0));
-        pa = hdi_nd_place(nd, g, a);
-        pb = hdi_nd_place(nd, g, hdi_nd_farthest(nd, g, pa));
-        for (v = 0; v < 3; v++) d[v] = (double)pb[v] - (double)pa[v];
+        a = hdi_nd_farthest(nd, g, 0);
+        b = hdi_nd_farthest(nd, g, a);
+        for (v = 0; v < 3; v++) d[v] = hdi_nd_place(nd, g->id[b], v) - hdi_nd_place(nd, g->id[a], v);
     } else for (v = 0; v < 3; v++) d[v] = hdi_directions[(kind - 2) % 9][v];
     for (v = 0; v < g->n; v++) {
-        const float *x = hdi_nd_place(nd, g, v);
-        key[v].key = hdi_nd_key(kind == 1 ? (double)(da[v] - db[v])
-                                : d[0] * (double)x[0] + d[1] * (double)x[1] + d[2] * (double)x[2]);
+        double x = kind == 1 ? da[v] - db[v] : 0;
+        for (b = 0; kind != 1 && b < 3; b++) x += d[b] * (double)(float)hdi_nd_place(nd, g->id[v], b);
+        key[v].key = hdi_nd_key(x);
         key[v].id = v;
         if (key[v].key != key[0].key) differ = 1;
     }
@@ -10646,74 +10636,54 @@ static void hdi_nd_split(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_part 
     }
 }
 
-/* Orders a part and all parts below it. A child has at most 4/5 of the vertices of its part, so there are
- * less than 100 parts on the stack. */
+/* Orders a part and all parts below it. A child has at most 4/5 of the vertices of its part, so calls are
+ * less than 100 deep. */
 static void hdi_nd_subtree(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_space s) {
-    hdi_nd_part stack[128];
-    int32_t n = 1;
-    stack[0] = *part;
-    while (n > 0) {
-        const hdi_nd_part p = stack[--n];
-        if (!p.n) continue;
-        hdi_nd_split(nd, &p, stack + n, s);
-        n += 2;
-    }
-}
-
-/* Part i of the heap. */
-static void hdi_nd_node(const hdi_nd *nd, int64_t i) {
-    const hdi_nd_space s = hdi_nd_space_of(nd, i);
-    if (i < HDI_ND_TASKS - 1) hdi_nd_split(nd, nd->part + i, nd->part + 2 * i + 1, s);
-    else hdi_nd_subtree(nd, nd->part + i, s);
+    hdi_nd_part child[2];
+    if (!part->n) return;
+    hdi_nd_split(nd, part, child, s);
+    hdi_nd_subtree(nd, child, s);
+    hdi_nd_subtree(nd, child + 1, s);
 }
 
 /* Treats one part of the heap. After that its halves may be claimed. */
 static void hdi_nd_task(void *arg, int64_t index, int32_t worker) {
     hdi_nd *nd = (hdi_nd *)arg;
+    const hdi_nd_space s = hdi_nd_space_of(nd, index);
     (void)worker;
-    hdi_nd_node(nd, index);
-    if (index < HDI_ND_TASKS - 1) hdi_release(&nd->walk, (int32_t)(2 * index + 1), 2);
+    if (index >= HDI_ND_TASKS - 1) {
+        hdi_nd_subtree(nd, nd->part + index, s);
+        return;
+    }
+    hdi_nd_split(nd, nd->part + index, nd->part + 2 * index + 1, s);
+    hdi_release(&nd->walk, (int32_t)(2 * index + 1), 2);
 }
 
-/* The matrix as the first part: row k of it is row order[k] of a. */
+/* The matrix as the first part: its vertex k is row id[k] of a. */
 typedef struct hdi_nd_load_job {
     const hdi_nd *nd;
     const hd_csr *a;
-    const int32_t *order, *inv;
-    const float *unit;         /* [3 a->n_rows] places of the rows */
+    const int32_t *inv;
+    int counted;
 } hdi_nd_load_job;
 
-/* Counts the neighbours of rows [begin, end). */
-static void hdi_nd_load_lengths(void *arg, int64_t begin, int64_t end) {
-    const hdi_nd_load_job *job = (const hdi_nd_load_job *)arg;
-    const hd_csr *a = job->a;
-    int64_t k, p;
-    for (k = begin; k < end; k++) {
-        const int32_t r = job->order[k];
-        int32_t count = 0;
-        if (k + HDI_ROWS_AHEAD < end) HDI_PREFETCH(a->col + a->row_ptr[job->order[k + HDI_ROWS_AHEAD]]);
-        for (p = a->row_ptr[r]; p < a->row_ptr[r + 1]; p++)
-            count += a->col[p] != r && job->inv[a->col[p]] >= 0;
-        job->nd->buffer->ptr[k + 1] = count;
-    }
-}
-
-/* Reads rows [begin, end), which begin where ptr says. */
+/* Counts the neighbours of rows [begin, end), or reads them to where ptr says. */
 static void hdi_nd_load_rows(void *arg, int64_t begin, int64_t end) {
     const hdi_nd_load_job *job = (const hdi_nd_load_job *)arg;
     const hdi_nd_buffer *b = job->nd->buffer;
     const hd_csr *a = job->a;
     int64_t k, p;
     for (k = begin; k < end; k++) {
-        const int32_t r = job->order[k];
-        int32_t z = b->ptr[k];
-        if (k + HDI_ROWS_AHEAD < end) HDI_PREFETCH(a->col + a->row_ptr[job->order[k + HDI_ROWS_AHEAD]]);
-        memcpy(job->nd->xyz + 3 * (size_t)k, job->unit + 3 * (size_t)r, 3 * sizeof(float));
-        b->id[k] = (int32_t)k;
+        const int32_t r = b->id[k];
+        int32_t z = job->counted ? b->ptr[k] : 0;
+        if (k + HDI_ROWS_AHEAD < end) HDI_PREFETCH(a->col + a->row_ptr[b->id[k + HDI_ROWS_AHEAD]]);
         for (p = a->row_ptr[r]; p < a->row_ptr[r + 1]; p++) {
             const int32_t u = job->inv[a->col[p]];
-            if (a->col[p] != r && u >= 0) b->adj[z++] = u;
+            if (a->col[p] == r || u < 0) continue;
+            if (job->counted) b->adj[z] = u;
+            z++;
         }
+        if (!job->counted) b->ptr[k + 1] = z;
     }
 }
 
@@ -10722,8 +10692,9 @@ static hdi_nd_part hdi_nd_load(hdi_nd_load_job *job, int32_t n, hd_context *ctx)
     int32_t k, *ptr = job->nd->buffer->ptr;
     hdi_nd_part part;
     memset(&part, 0, sizeof part);
-    hdi_parallel_ranges(ctx, n, HDI_ND_BLOCK, hdi_nd_load_lengths, job);
+    hdi_parallel_ranges(ctx, n, HDI_ND_BLOCK, hdi_nd_load_rows, job);
     for (ptr[0] = k = 0; k < n; k++) ptr[k + 1] += ptr[k];
+    job->counted = 1;
     hdi_parallel_ranges(ctx, n, HDI_ND_BLOCK, hdi_nd_load_rows, job);
     part.n = n;
     part.n_edges = ptr[n];
@@ -10762,30 +10733,25 @@ static hd_status hdi_nd_order(const hd_csr *a, const double *xyz, int32_t *perm,
                               hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
     const uint64_t n = (uint64_t)a->n_rows;
-    int32_t i, k, *order = HDI_TAKE(&s, int32_t, n + 1), *inv = HDI_TAKE(&s, int32_t, n + 1);
-    int32_t *spare = HDI_TAKE(&s, int32_t, n + 1), *ptr = HDI_TAKE(&s, int32_t, 2049);
-    uint32_t *key = HDI_TAKE(&s, uint32_t, n + 1);
-    float *unit = HDI_TAKE(&s, float, 3 * n + 1);
+    int32_t k, *inv = HDI_TAKE(&s, int32_t, n + 1);
     hdi_nd nd;
-    hdi_nd_load_job job = {&nd, a, order, inv, unit};
+    hdi_nd_load_job job = {&nd, a, inv, 0};
     if (a->nnz > INT32_MAX / 2 || n > INT32_MAX / 4)
         hdi_fail(e, HD_ERR_TOO_LARGE, "a pattern is too large for nested dissection");
     memset(&nd, 0, sizeof nd);
     nd.perm = perm;
-    nd.xyz = HDI_TAKE(&s, float, 3 * n + 1);
+    nd.xyz = xyz;
     nd.work = HDI_TAKE(&s, int32_t, hdi_nd_words(a->n_rows, (int32_t)a->nnz, HDI_ND_TASKS));
     nd.part = HDI_TAKE(&s, hdi_nd_part, HDI_ND_NODES);
     hdi_nd_buffer_make(nd.buffer, a, &s);
     hdi_nd_buffer_make(nd.buffer + 1, a, &s);
     if (e->status < 0) return hdi_scope_end(&s);
     hdi_threads_own(ctx, HDI_ND_NODES);   /* threads that are started now share the loops below, too */
-    hdi_nd_keys(xyz, a->n_rows, key, unit);
-    k = hdi_nd_number(a, key, order, inv, spare, ptr);
+    hdi_nd_frame(&nd, a->n_rows);
+    k = hdi_nd_number(&nd, a, nd.buffer->id, inv, nd.work);
+    memcpy(perm, nd.buffer->id, (size_t)n * sizeof *perm);   /* rows with too many entries stay last */
     nd.part[0] = hdi_nd_load(&job, k, ctx);
     hdi_nd_run(&nd, ctx, e);
-    if (e->status < 0) return hdi_scope_end(&s);
-    for (i = 0; i < k; i++) perm[i] = order[perm[i]];
-    for (i = k; i < a->n_rows; i++) perm[i] = order[i];
     return hdi_scope_end(&s);
 }
 
