@@ -13294,7 +13294,7 @@ static void hdi_form_front(const hdi_form_block *b, int32_t v, double *t, double
 /* sum += r' Z r for the rows of J: with z the part of a column of Z below its diagonal entry z0, and x the
  * column's row of r, z0 x x + 2 (z' r) x. */
 static void hdi_form_square(const hdi_form_block *b, double *sum) {
-    static const double minus_two[HDI_PACK] = {-2, -2, -2, -2, 0, 0, 0, 0};
+    static const double hdi_minus_two[HDI_PACK] = {-2, -2, -2, -2, 0, 0, 0, 0};
     const hdi_inverse_front *w = b->w;
     const int32_t width = w->f->width, row = width * b->cols;
     double t[(int)HDI_FORM_COLS * (int)HDI_PACK];
@@ -13304,7 +13304,7 @@ static void hdi_form_square(const hdi_form_block *b, double *sum) {
         memset(t, 0, (size_t)row * sizeof *t);
         hdi_kernels_rows(w->f->ops, t, b->cols, 1, x + row, w->m - j - 1, z + width, 1, 0);
         hdi_form_add(width, b->cols, x, x, z, sum);
-        hdi_form_add(width, b->cols, x, t, minus_two, sum);
+        hdi_form_add(width, b->cols, x, t, hdi_minus_two, sum);
     }
 }
 
