@@ -12910,7 +12910,7 @@ typedef struct hdi_forms {
     const double *x;             /* X by its entries */
     int32_t width, cols, n_slots;    /* columns of a block at most; blocks at the same time in a top front */
     int32_t *inv;                /* [n] pivot of a row of A */
-    int32_t *order, *far;        /* [n] pivots; of each front far come first, and go into blocks */
+    int32_t *order, *n_far;      /* [n] pivots; of each front n_far come first, and go into blocks */
     hdi_form_seat *seat;         /* [1 + SLOTS][n_super], subtrees share the first */
     hdi_pair *list;              /* [largest_pivots] */
     double *room;                /* [n_tasks][size[0]], [n_slots][size[1]] */
@@ -13197,12 +13197,14 @@ enum { HDI_FORM_COLS = 24, HDI_FORM_COLS_REAL = 8, HDI_FORM_SLOTS = 8, HDI_FORM_
 enum { HDI_FORM_SMALL = 65536 };     /* doubles of room that are never too many */
 
 /* Blocks of front v's columns, and the k columns of one. */
-static int64_t hdi_form_blocks(const hdi_forms *q, int32_t v) { return (q->far[v] + q->cols - 1) / q->cols; }
+static int64_t hdi_form_blocks(const hdi_forms *q, int32_t v) {
+    return (q->n_far[v] + q->cols - 1) / q->cols;
+}
 
 static const int32_t *hdi_form_list(const hdi_forms *q, const hdi_symbolic *s, int32_t v, int64_t block,
                                     int32_t *k) {
-    const int64_t n = hdi_form_blocks(q, v), from = block * q->far[v] / n;
-    *k = (int32_t)((block + 1) * q->far[v] / n - from);
+    const int64_t n = hdi_form_blocks(q, v), from = block * q->n_far[v] / n;
+    *k = (int32_t)((block + 1) * q->n_far[v] / n - from);
     return q->order + s->super[v] + from;
 }
 
@@ -13351,7 +13353,7 @@ static void hdi_form_near(const hdi_inverse *z, const hdi_inverse_front *w) {
     const int32_t width = w->f->width;
     int64_t j, p, o;
     int32_t c;
-    for (j = s->super[w->v] + q->far[w->v]; j < s->super[w->v + 1]; j++) {
+    for (j = s->super[w->v] + q->n_far[w->v]; j < s->super[w->v + 1]; j++) {
         const int64_t row = s->perm[q->order[j]], begin = q->a->row_ptr[row], end = q->a->row_ptr[row + 1];
         double sum[HDI_PACK] = {0};
         int64_t at[HDI_FORM_NEAR];
@@ -13390,7 +13392,7 @@ static void hdi_forms_order(hdi_forms *q, const hdi_symbolic *s) {
         }
         hdi_sort_pairs(q->list, n);
         for (i = 0; i < n; i++) q->order[s->super[v] + i] = (int32_t)q->list[i].id;
-        q->far[v] = n;
+        q->n_far[v] = n;
     }
 }
 
@@ -13428,7 +13430,7 @@ static uint64_t hdi_forms_make(hdi_forms *q, const hdi_symbolic *s, int32_t widt
     q->cols = width == 1 ? HDI_FORM_COLS_REAL : HDI_FORM_COLS;
     q->inv = HDI_TAKE(keep, int32_t, s->n);
     q->order = HDI_TAKE(keep, int32_t, s->n);
-    q->far = HDI_TAKE(keep, int32_t, s->n_super);
+    q->n_far = HDI_TAKE(keep, int32_t, s->n_super);
     q->seat = HDI_TAKE_ZERO(keep, hdi_form_seat, (1 + (int64_t)HDI_FORM_SLOTS) * s->n_super);
     q->list = HDI_TAKE(keep, hdi_pair, s->largest_pivots);
     if (keep->e->status < 0) return 0;
