@@ -3879,8 +3879,7 @@ HDI_PART void HDI_OF(tile_product)(const int pack, const int nv, const int nc, c
     else HDI_OF(tile_sum)(pack, nv, nc, unit, 1, t, x);
 }
 
-/* C -= X for a tile of which only a part counts. Loads before stores: columns lie so close that a masked load
- * would overlap the store before it, and wait for it. */
+/* C -= X in a part of a tile. A masked load that overlaps a store would wait for it: all loads come first. */
 HDI_KERNEL HDI_NOINLINE void HDI_OF(tile_rest)(int pack, const HDI_OF(tile) *t, int nv, double *x) {
     int store, j, v;
     for (store = 0; store < 2; store++) {
@@ -13320,7 +13319,7 @@ static void hdi_form_run(const hdi_inverse *z, const hdi_inverse_front *w, int64
     int32_t k, c, v, i;
     const int32_t *list = hdi_form_list(q, s, w->v, block, &k);
     const int64_t below = hdi_form_touch(q, s, w->v, list, k, seat, &v);
-    double sum[(int)HDI_FORM_COLS * HDI_PACK];
+    double sum[(int)HDI_FORM_COLS * HDI_PACK] = {0};
     hdi_form_block b;
     int64_t p, size;
     b.w = w;
@@ -13330,7 +13329,6 @@ static void hdi_form_run(const hdi_inverse *z, const hdi_inverse_front *w, int64
                                  : q->size[0] * (uint64_t)task);
     b.r = b.room + width * below;
     size = width * (below + w->m * b.cols);
-    memset(sum, 0, sizeof sum);
     memset(b.room, 0, (size_t)size * sizeof *b.room);
     for (c = 0; c < k; c++) {
         const int64_t row = s->perm[list[c]];
