@@ -7547,13 +7547,12 @@ static hd_status hdi_lap_assemble(hd_laplacian *lap, hdi_rows *x, const double *
     return hdi_progress(lap->context, "assemble", 0.8, e);
 }
 
-/* (L, B), places and h of triangles or polygons. What is known of the faces comes to live in s. full: B is,
- * if its kind is. */
-static hd_status hdi_lap_mesh(hd_laplacian *lap, hdi_mesh *mesh, int full, hdi_scope *s) {
-    hdi_scope own = hdi_scope_begin(lap->context, s->e);
+/* (L, B), places and h of triangles or polygons that are measured. full: B is, if its kind is. */
+static hd_status hdi_lap_mesh(hd_laplacian *lap, const hdi_mesh *mesh, int full, hd_error *e) {
+    hdi_scope own = hdi_scope_begin(lap->context, e);
     hdi_rows x;
-    if (hdi_mesh_make(mesh, &lap->mesh, s) < 0 || hdi_rows_begin(&x, mesh, &lap->mesh, &own) < 0 ||
-        hdi_lap_assemble(lap, &x, mesh->xyz, full, s->e) < 0)
+    if (hdi_rows_begin(&x, mesh, &lap->mesh, &own) < 0 ||
+        hdi_lap_assemble(lap, &x, mesh->xyz, full, e) < 0)
         return hdi_scope_end(&own);
     lap->h = hdi_rows_report(&x, &lap->mesh);
     lap->area = hdi_sum_areas(mesh->area, mesh->m);
@@ -7663,7 +7662,8 @@ static hd_status hdi_lap_update(hd_laplacian *lap, const double *xyz, hd_error *
 static hd_status hdi_lap_plain(hd_laplacian *lap, const hdi_mesh *given, int updatable, hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
     hdi_mesh mesh = *given;
-    if (hdi_lap_mesh(lap, &mesh, 1, &s) >= 0 && updatable) (void)hdi_moving_make(lap, &mesh, e);
+    if (hdi_mesh_make(&mesh, &lap->mesh, &s) >= 0 && hdi_lap_mesh(lap, &mesh, 1, e) >= 0 && updatable)
+        (void)hdi_moving_make(lap, &mesh, e);
     return hdi_scope_end(&s);
 }
 
@@ -7693,13 +7693,12 @@ static hd_status hdi_lap_flat(hd_laplacian *lap, const hdi_mesh *flat, const int
     return hdi_lap_assemble(lap, &x, xyz, 1, s->e);
 }
 
-/* Measures the faces of a mesh in s, and reports its edges. */
-static hd_status hdi_lap_edges(hd_laplacian *lap, hdi_mesh *mesh, hdi_scope *s) {
-    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
+/* Reports the edges of a mesh. */
+static hd_status hdi_lap_edges(hd_laplacian *lap, const hdi_mesh *mesh, hd_error *e) {
+    hdi_scope own = hdi_scope_begin(lap->context, e);
     hdi_rows x;
-    if (hdi_mesh_make(mesh, &lap->mesh, s) < 0 || hdi_rows_begin(&x, mesh, &lap->mesh, &own) < 0)
-        return hdi_scope_end(&own);
-    hdi_parallel(s->ctx, x.strands, hdi_rows_task, &x);
+    if (hdi_rows_begin(&x, mesh, &lap->mesh, &own) < 0) return hdi_scope_end(&own);
+    hdi_parallel(lap->context, x.strands, hdi_rows_task, &x);
     (void)hdi_rows_report(&x, &lap->mesh);
     hdi_rows_border(&x, lap);
     return hdi_scope_end(&own);
@@ -7712,7 +7711,7 @@ static hd_status hdi_lap_unfold(hd_laplacian *lap, hdi_flat *flat, hdi_mesh *mes
     hd_mesh_report *rep = &lap->mesh;
     hd_error *e = s->e;
     memset(flat, 0, sizeof *flat);
-    if (hdi_lap_edges(lap, mesh, s) < 0) return e->status;
+    if (hdi_mesh_make(mesh, rep, s) < 0 || hdi_lap_edges(lap, mesh, e) < 0) return e->status;
     if (rep->n_faces_used == 0) return hdi_fail(e, HD_ERR_EMPTY, "no vertex has mass");
     if (hdi_soup_of_mesh(&flat->soup, mesh, task->delta, rep, s) < 0) return e->status;
     if (hdi_soup_delaunay(flat, task->close, rep, s) < 0) return e->status;
@@ -28672,7 +28671,7 @@ static hd_status hdi_geo_surface_make(hd_laplacian *lap, hdi_geo_surface *z, con
     z->mesh.lambda = in->lambda;
     if (hdi_progress(lap->context, "assemble", 0, s->e) < 0) return s->e->status;
     if (HDI_HAS_INTRINSIC && in->flips) return hdi_geo_unfold(lap, z, in, s);
-    return hdi_lap_mesh(lap, &z->mesh, 0, s);
+    return hdi_mesh_make(&z->mesh, &lap->mesh, s) < 0 ? s->e->status : hdi_lap_mesh(lap, &z->mesh, 0, s->e);
 }
 
 /* Points in the place of an earlier one, which the triangles leave out, share its row. */

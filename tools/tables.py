@@ -10,7 +10,7 @@ import subprocess
 import sys
 
 CHECKED = {     # sha256 of script and table
-    "poles.py": "7dfff990e5073d87b9c4e3f3350d1b443712db301617cee272e4dcaee45f5063",
+    "poles.py": "7f49fe8cdc676bb52dbae32bb0a432be1aec899996702b2ded93805f593e5886",
     "shared_poles.py": "ff750f7ba0efefa8d04cfaebcbed730b5e5ba774b41e475c1efb134f1a3c54b3",
 }
 TOOLS = os.path.dirname(os.path.abspath(__file__))
