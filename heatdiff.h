@@ -7437,7 +7437,7 @@ static hd_status hdi_rows_begin(hdi_rows *x, const hdi_mesh *mesh, hd_mesh_repor
     memset(x, 0, sizeof *x);
     x->mesh = *mesh;
     x->strands = hdi_is_serial(s->ctx) ? 1 : (int32_t)hdi_least(HDI_STRANDS, blocks);
-    x->most = hdi_fullest(mesh->at, n);
+    x->most = hdi_fullest(mesh->at, n) / 32 * 32 + 32;   /* so strands share no line of a cache */
     x->count = HDI_TAKE(s, int32_t, n);
     x->border = HDI_TAKE(s, char, n);
     x->place = HDI_TAKE(&own, int32_t, x->strands * n);
@@ -7449,7 +7449,7 @@ static hd_status hdi_rows_begin(hdi_rows *x, const hdi_mesh *mesh, hd_mesh_repor
         rep->n_repeated_face += x->tally[i].n_repeated_face;
         rep->n_faces_used -= x->tally[i].n_repeated_face;
     }
-    for (i = 0, x->most = 1; i < n; i++) x->most = x->most > x->count[i] ? x->most : x->count[i] + 1;
+    for (i = 0, x->most = 32; i < n; i++) x->most = hdi_most(x->most, x->count[i] / 32 * 32 + 32);
     (void)hdi_scope_end(&own);
     x->place = HDI_TAKE_ZERO(s, int32_t, x->strands * n);
     x->entry = HDI_TAKE(s, hdi_entry, x->strands * x->most);
