@@ -82,7 +82,7 @@
      [24] ground     L with one vertex of each component held: distances without a time
      [25] spectrum   the smallest eigenpairs, counted and complete
      [26] plan       hd_heat: choice of method, kept factors and bases, the run of a request, its report
-     [27] kernel     diagonals and edges, by selected inversion
+     [27] kernel     diagonals and traces, by selected inversion
      [28] diffusion  diffusion distances, pairs, sampling; what a query would take
      [29] geodesic   the heat method
      [30] api        arguments, lifetimes and bodies of the public functions
@@ -122,7 +122,7 @@
      HEATDIFF_NO_POLE_FACTORS  factors of complex matrices: method direct, hd_ldl_*_complex; implies
                                NO_DIAGONAL
      HEATDIFF_NO_DIAGONAL      selected inversion: hd_heat_diagonal, hd_heat_normalised, hd_heat_trace,
-                               hd_heat_scale_invariant, hd_heat_filter_diagonals, hd_heat_edges,
+                               hd_heat_scale_invariant, hd_heat_filter_diagonals,
                                hd_ldl_inverse*, diagonal pole sets; implies NO_DIFFUSION. The error bounds of
                                method direct are larger then, and times so large that only the means are
                                left take longer
@@ -810,7 +810,6 @@ typedef enum hd_query {
     HD_QUERY_PAIRS,               /* hd_heat_pairs, classical or weighted: distinct vertices in the pairs */
     HD_QUERY_DIAGONAL,            /* hd_heat_diagonal of k_t; no k */
     HD_QUERY_DIAGONAL_OPERATOR,   /* hd_heat_diagonal of K_t; no k */
-    HD_QUERY_EDGES,               /* hd_heat_edges; no k */
     HD_QUERY_TRACE,               /* hd_heat_trace; no k */
     HD_QUERY_NORMALISED,          /* hd_heat_normalised; no k */
     HD_QUERY_SCALE_INVARIANT,     /* hd_heat_scale_invariant: t are all its times; no k */
@@ -1393,7 +1392,7 @@ HEATDIFF_API hd_status hd_heat_set_rational(hd_heat *heat, const hd_rational *se
  *        Where all heat flows out (every component has held vertices, or an L of your own does not conserve
  *        it) the answer falls like exp(-t lambda_1) instead, while the error of poles does not. With the
  *        method auto or direct it then comes from the few eigenpairs left, as in hd_heat_distance. The same
- *        holds for columns, entries, diagonals, edges and the trace, but not for derivatives. Answers among
+ *        holds for columns, entries, diagonals and the trace, but not for derivatives. Answers among
  *        the smallest doubles have fewer digits, which the bound includes. Where all values underflow to 0 it
  *        is above 1 or infinite, with HD_WARN_ACCURACY
  * F      n x k doubles, column-major, columns ldf apart (0: n)
@@ -1567,18 +1566,6 @@ HEATDIFF_API hd_status hd_times_auto(const hd_laplacian *lap, int32_t n_times, d
  * not above zero, which rounding can do */
 HEATDIFF_API hd_status hd_times_spectral(const hd_laplacian *lap, int32_t n_times,
                                          const double *c, double *t, hd_error *err);
-
-/* k_t(i,j) for all edges (i,j) of the mesh and on the diagonal, from the inversion of hd_heat_diagonal.
- * kernel HD_KERNEL_SYMMETRIC, because entries of K_t = k_t B are not symmetric
- * t      > 0
- * values [L.nnz n_times], time by time, on the pattern of the Laplacian's L; indices are rows, not vertices
- * If B is not diagonal, a0 B^-1 is left out as in hd_heat_diagonal. With default poles and degree, degree 14
- * takes over if the rational part of the bound is above 5e-7. Rounding is measured in the rows where it is
- * largest.
- * Errors and cost as hd_heat_diagonal */
-HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, hd_kernel kernel, int32_t n_times,
-                                     const double *t, double *values, hd_report *report,
-                                     hd_error *err);
 
 /* Diffusion distances from each of k sources to every vertex.
  * t      > 0. Commute and biharmonic have no time: t is ignored, n_times is 0 or 1. With a filter d^2 is the
@@ -24418,7 +24405,7 @@ static void hdi_heat_take_set(hd_heat *heat, const hd_rational *set) {
 }
 
 /* ==== [27] kernel ====
- * Owns entries of the kernel that come by selected inversion: diagonals, edges, and how their rounding is
+ * Owns entries of the kernel that come by selected inversion: diagonals, traces, and how their rounding is
  * measured. May call [26].
  * This work is based on
  *   A. Erisman, W. Tinney, On computing certain elements of the inverse of a sparse matrix, 1975 */
@@ -24878,143 +24865,6 @@ static hd_status hdi_diagonal_once(hdi_heat_call *h, hd_kernel kernel, double *o
     return hdi_scope_end(&scope);
 }
 
-/* The analysis' entries on the pattern of the source's L. The analysis has one of (i,j) and (j,i). */
-static void hdi_entries_spread(const hdi_elim *m, const double *k, double unit, double *val) {
-    const hdi_symbolic *s = &m->sym;
-    const hd_csr *a = &m->source->L;
-    int32_t v, i, j;
-    int64_t n;
-    for (v = 0; v < s->n_super; v++) {
-        for (n = s->a_ptr[v]; n < s->a_ptr[v + 1]; n++) {
-            const int64_t p = s->a_from[n];
-            int64_t other;
-            hdi_entry_place(s, v, n, &i, &j);
-            val[p] = unit * k[n];
-            if (i == j) continue;
-            /* a_from is entry (j,i): rows of A are walked from column j */
-            i = s->perm[i];
-            j = s->perm[j];
-            other = a->row_ptr[i] +
-                    hdi_lower_bound(a->col + a->row_ptr[i], a->row_ptr[i + 1] - a->row_ptr[i], j);
-            val[other] = unit * k[n];
-        }
-    }
-}
-
-/* Adds a0 B^-1 where B is diagonal, and notes the rational error. The error of an entry (i,j) is at most the
- * larger one of (i,i) and (j,j). k and g [n]: their diagonals. */
-static void hdi_edges_judge(const hdi_elim *m, hdi_entries *x, double *k, double *g, hdi_ledger *ledger) {
-    const hdi_symbolic *s = &m->sym;
-    const hd_laplacian *lap = m->lap;
-    hdi_parts part;
-    int32_t v, i;
-    int64_t n;
-    memset(&part, 0, sizeof part);
-    if (lap->B) x->left_out = fabs(m->set.a0);
-    for (v = 0; v < s->n_super; v++) {
-        for (n = s->a_ptr[v]; n < s->a_ptr[v + 1]; n++) {
-            if (s->a_row[n] != s->a_col[n]) continue;
-            i = s->super[v] + s->a_col[n];
-            if (!lap->B) x->k[n] += m->set.a0 / lap->mass[i];
-            k[i] = x->k[n];
-            g[i] = x->g[n];
-            part.rational = m->scale * hdi_entry_error(x, lap, i, g[i]);
-            part.rounding = 4 * DBL_EPSILON * m->scale * fabs(k[i]);
-            hdi_ledger_note(ledger, m->scale * k[i], part);
-        }
-    }
-}
-
-/* Rounding of a row: of the probe's own entry, and what its column differs by from the entries of the row. */
-static hdi_parts hdi_edges_rounding(const hd_heat *heat, const hdi_probe *probe, int32_t q, const double *k,
-                                    const double *g, const double *values) {
-    const hd_laplacian *lap = heat->source, *in = heat->elim.lap;
-    const hd_rational *set = &heat->elim.set;
-    const int32_t at = probe->row[q], row = lap->row[in->vertex[at]];
-    const double f = lap->B ? 0 : 1 / in->mass[at];
-    double by, there = hdi_probe_value(heat, probe, q, set, 1, f, g[at], &by), most;
-    /* Columns of uniform sets carry the constants exactly, which the entries do not. A full B's entries are
-     * without a0 B^-1. */
-    const int comparable = set->a0 == 0 || (set->kind == HD_POLES_OWN && !lap->B);
-    hdi_parts part;
-    int64_t p;
-    most = heat->scale * (HDI_PROBE_SAFETY * fabs(there - k[at]) + by);
-    for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1] && comparable; p++) {
-        const int32_t j = in->row[lap->vertex[lap->L.col[p]]];
-        const double off = hdi_max(1, g[at] > 0 ? sqrt(hdi_max(0, g[j]) / g[at]) : 1) * by;
-        most = hdi_max(most, fabs(heat->scale * heat->lane[q].u[j] - values[p]) + heat->scale * off);
-    }
-    memset(&part, 0, sizeof part);
-    part.rounding = set->kind == HD_POLES_OWN ? HDI_PROBE_OWN * most : most;
-    part.rounding += 4 * DBL_EPSILON * heat->scale * fabs(k[at]);
-    return part;
-}
-
-/* Rounding of the entries, from probes; k and g as above. */
-static hd_status hdi_edges_probe(hdi_heat_call *h, const double *k, const double *g, const double *values,
-                                 hdi_ledger *ledger) {
-    const hd_heat *heat = h->heat;
-    const hd_rational *set = &heat->elim.set;
-    const int32_t n = h->lap->n_active;
-    const double closeness = heat->scale * hdi_own_near(heat, set, h->t) * hdi_largest_spread(h->lap);
-    hdi_probe probe;
-    int32_t i, top = 0;
-    for (i = 1; i < n; i++)
-        if (k[i] > k[top]) top = i;
-    probe = hdi_probe_rows(h->lap, k, n > 0 ? top : -1);
-    if (hdi_probe_run(h, &probe, HD_KERNEL_SYMMETRIC, set) < 0) return h->e->status;
-    for (i = 0; i < probe.k; i++) {
-        hdi_parts part = hdi_edges_rounding(heat, &probe, i, k, g, values);
-        part.rounding += closeness;
-        hdi_ledger_note(ledger, heat->scale * k[probe.row[i]], part);
-    }
-    return HD_OK;
-}
-
-/* Where t is so large that k_t is 1/mass of the component. */
-static void hdi_edges_equal(hdi_heat_call *h, double *values) {
-    const hd_laplacian *lap = h->heat->source;
-    hdi_ledger ledger = hdi_inverse_ledger(h, 0);
-    hdi_parts part;
-    int32_t i;
-    int64_t p;
-    memset(&part, 0, sizeof part);
-    for (i = 0; i < lap->n_active; i++) {
-        const double k = 1 / lap->component_mass[lap->component[i]];
-        part.rounding = (double)lap->n_active * DBL_EPSILON * k;
-        hdi_ledger_note(&ledger, k, part);
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) values[p] = k;
-    }
-    hdi_ledger_close(&ledger, h->rep);
-}
-
-/* The edges with the set's degree, into values. *rational: the largest rational error relative to the largest
- * value. */
-static hd_status hdi_edges_once(hdi_heat_call *h, double *values, double *rational) {
-    hd_heat *heat = h->heat;
-    hdi_scope scope = hdi_scope_begin(heat->ctx, h->e);
-    const hdi_symbolic *s = &heat->elim.sym;
-    const int64_t size = s->a_ptr[s->n_super];
-    double *room = HDI_TAKE(&scope, double, 2 * (uint64_t)size);
-    double *k = HDI_TAKE(&scope, double, 2 * (uint64_t)s->n);
-    hdi_ledger ledger;
-    hdi_entries x;
-    *rational = 0;
-    h->lap = heat->elim.lap;
-    h->equal = h->e->status >= 0 && hdi_heat_equal(heat, h->t, h->e);
-    if (h->equal) {
-        hdi_edges_equal(h, values);
-    } else if (h->e->status >= 0 && hdi_entries_make(h, HDI_WANT_ENTRIES, room, size, &x) >= 0) {
-        ledger = hdi_inverse_ledger(h, 0);
-        hdi_edges_judge(&heat->elim, &x, k, k + s->n, &ledger);
-        *rational = hdi_quotient(ledger.off.rational, ledger.largest);
-        hdi_entries_spread(&heat->elim, x.k, heat->scale, values);
-        (void)hdi_edges_probe(h, k, k + s->n, values, &ledger);
-        hdi_ledger_close(&ledger, h->rep);
-    }
-    return hdi_scope_end(&scope);
-}
-
 /* Goes on from the highest degree of poles, whose factors did not fit the byte limit, to the default. Returns
  * 0 where there is no reason to. */
 static int hdi_degree_retreat(hd_heat *heat, int32_t *degree, hd_error *e) {
@@ -25025,26 +24875,20 @@ static int hdi_degree_retreat(hd_heat *heat, int32_t *degree, hd_error *e) {
     return 1;
 }
 
-static hd_status hdi_entries_once(hdi_heat_call *h, hd_kernel kernel, int edges, double *out,
-                                  double *rational) {
-    return edges ? hdi_edges_once(h, out, rational) : hdi_diagonal_once(h, kernel, out, rational);
-}
-
-/* The diagonal of the kernel on vertices, or with `edges` k_t on the pattern of L, with the set's degree by
- * default. Tiny cells among large ones and slivers have errors relative to their own value that may be above
- * the promise. Where the bound shows this, or for edges the bound relative to the largest value, the highest
- * degree takes over. The error seen is about a fifth of the bound on all meshes tried. */
-static hd_status hdi_entries_sure(hdi_heat_call *h, hd_kernel kernel, int edges, double *out) {
+/* The diagonal of the kernel on vertices, with the set's degree by default. Tiny cells among large ones and
+ * slivers have errors relative to their own value that may be above the promise. Where the bound shows this,
+ * the highest degree takes over. The error seen is about a fifth of the bound on all meshes tried. */
+static hd_status hdi_diagonal_sure(hdi_heat_call *h, hd_kernel kernel, double *out) {
     const hd_report before = *h->rep;
     const hd_heat *heat = h->heat;
     double rational;
-    if (hdi_entries_once(h, kernel, edges, out, &rational) < 0) return h->e->status;
+    if (hdi_diagonal_once(h, kernel, out, &rational) < 0) return h->e->status;
     if (heat->poles_asked || heat->exacting || h->degree) return HD_OK;
     if (rational <= hdi_diagonal_limit(heat->source, kernel)) return HD_OK;
     h->degree = HDI_RAT_KERNEL_MAX;
     do {
         *h->rep = before;
-        (void)hdi_entries_once(h, kernel, edges, out, &rational);
+        (void)hdi_diagonal_once(h, kernel, out, &rational);
     } while (hdi_degree_retreat(h->heat, &h->degree, h->e));
     h->degree = 0;
     return h->e->status;
@@ -25224,7 +25068,7 @@ static hd_status hdi_diagonal_poles(hdi_heat_call *h, hd_kernel kernel, double *
     for (q = 0; q < h->ask.n_times && h->e->status >= 0; q++) {
         if (done && done[q]) continue;
         h->t = hdi_heat_scaled(heat, h->ask.t[q]);
-        if (hdi_entries_sure(h, kernel, 0, D + (size_t)q * ldd) < 0) h->e->column = q;
+        if (hdi_diagonal_sure(h, kernel, D + (size_t)q * ldd) < 0) h->e->column = q;
     }
     return h->e->status;
 }
@@ -25551,71 +25395,9 @@ static void hdi_fading_trace(hdi_heat_call *h, double t, double *Z, double *boun
     hdi_ledger_close(&ledger, h->rep);
 }
 
-/* k_t on the pattern of L, by rows. */
-typedef struct hdi_fading_edges {
-    const hdi_modes *of;
-    const hd_laplacian *lap;
-    const double *w;             /* [count] exp(-t (theta_i - low)) */
-    double *out;
-} hdi_fading_edges;
-
-static void hdi_fading_edges_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_fading_edges *a = (const hdi_fading_edges *)arg;
-    const hd_spectrum *s = &a->of->s;
-    const hd_csr *L = &a->lap->L;
-    int64_t i, p;
-    int32_t q;
-    for (p = L->row_ptr[begin]; p < L->row_ptr[end]; p++) a->out[p] = 0;
-    for (q = 0; q < s->count; q++) {
-        const double *x = s->vector + (int64_t)q * s->n;
-        for (i = begin; i < end; i++) {
-            const double own = a->w[q] * x[a->lap->vertex[i]];
-            for (p = L->row_ptr[i]; p < L->row_ptr[i + 1]; p++)
-                a->out[p] += own * x[a->lap->vertex[L->col[p]]];
-        }
-    }
-}
-
-/* All edges from the pairs that are there; one bound for all of them. */
-static hd_status hdi_fading_edges_run(hdi_heat_call *h, double t, double *out) {
-    hd_heat *heat = h->heat;
-    const hd_laplacian *lap = heat->source;
-    const uint64_t n = (uint64_t)lap->n, count = (uint64_t)heat->modes.s.count;
-    hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
-    double *work = HDI_TAKE(&s, double, 3 * count + 3 * n);
-    hdi_ledger ledger = hdi_modes_ledger();
-    hdi_parts off;
-    hdi_fading_far most;
-    hdi_fading_edges a;
-    hdi_decay x;
-    int64_t p;
-    if (!work) return hdi_scope_end(&s);
-    x = hdi_decay_at(&heat->modes, t, work);
-    most = hdi_fading_reach(&heat->modes, &x, work + 3 * count);
-    a.of = &heat->modes;
-    a.lap = lap;
-    a.w = x.weight;
-    a.out = out;
-    hdi_parallel_ranges(heat->ctx, lap->n_active, 1024, hdi_fading_edges_task, &a);
-    off.rational = hdi_decayed(&x, x.cut * most.left * most.left);
-    off.solver = hdi_decayed(&x, (x.mixed * x.mixed * most.left + 2 * most.side) * most.left +
-                                 most.found * most.inner);
-    for (p = 0; p < lap->L.nnz; p++) {
-        out[p] = hdi_decayed(&x, out[p]);
-        off.rounding = hdi_decayed(&x, 2 * x.rounding * most.found * (most.found + most.left)) +
-                       8 * (1 + hdi_min(x.depth, HDI_EQUAL_BEYOND)) * DBL_EPSILON * fabs(out[p]) +
-                       4 * DBL_MIN * DBL_EPSILON;
-        hdi_ledger_note(&ledger, out[p], off);
-    }
-    hdi_modes_tell(heat, h->rep);
-    hdi_ledger_close(&ledger, h->rep);
-    return hdi_scope_end(&s);
-}
-
-/* A diagonal or, with Z, a trace, or edges. */
+/* A diagonal or, with Z, a trace. */
 typedef struct hdi_fading_to {
     hd_kernel kernel;
-    int edges;
     double *D;
     size_t ldd;
     double *Z, *bound;
@@ -25631,7 +25413,6 @@ static int hdi_fading_values(hdi_heat_call *h, int32_t q, int32_t most, const hd
     if (!hdi_modes_enough(h->heat, t, hdi_fading_depth(h->heat), most, h->e)) return 0;
     *h->rep = one;
     if (to->Z) hdi_fading_trace(h, t, to->Z + q, to->bound ? to->bound + q : NULL);
-    else if (to->edges) (void)hdi_fading_edges_run(h, t, to->D + (size_t)q * to->ldd);
     else (void)hdi_fading_diagonal_run(h, t, to->kernel, to->D + (size_t)q * to->ldd);
     if (h->e->status < 0) return 0;
     one = *h->rep;
@@ -25641,23 +25422,7 @@ static int hdi_fading_values(hdi_heat_call *h, int32_t q, int32_t most, const hd
     return 1;
 }
 
-/* Edges at the times of a call that are not done. */
-static hd_status hdi_edges_poles(hdi_heat_call *h, double *values, const char *done) {
-    const size_t nnz = (size_t)h->heat->source->L.nnz;
-    int32_t q;
-    if (hdi_heat_analysed(h->heat, h->e) < 0) return h->e->status;
-    hdi_inverse_tell(h);
-    for (q = 0; q < h->ask.n_times && h->e->status >= 0; q++) {
-        if (done && done[q]) continue;
-        h->t = hdi_heat_scaled(h->heat, h->ask.t[q]);
-        if (hdi_entries_sure(h, HD_KERNEL_SYMMETRIC, 1, values + (size_t)q * nnz) < 0)
-            h->e->column = q;
-    }
-    return h->e->status;
-}
-
 static hd_status hdi_fading_poles(hdi_heat_call *h, const hdi_fading_to *to, const char *done) {
-    if (to->edges) return hdi_edges_poles(h, to->D, done);
     return to->Z ? hdi_trace_poles(h, to->Z, to->bound, done)
                  : hdi_diagonal_poles(h, to->kernel, to->D, to->ldd, done);
 }
@@ -25713,12 +25478,11 @@ static hd_status hdi_fading_run(hdi_heat_call *h, void *what) {
     return HDI_HAS_MODES && hdi_fading(h) ? hdi_fading_times(h, to) : hdi_fading_poles(h, to, NULL);
 }
 
-/* A query for diagonals or edges in D, ldd apart, or for traces in Z with bounds. */
-static hd_status hdi_fading_ask(hdi_heat_call *h, hd_kernel kernel, int edges, double *D, size_t ldd,
-                                double *Z, double *bound) {
+/* A query for diagonals in D, ldd apart, or for traces in Z with bounds. */
+static hd_status hdi_fading_ask(hdi_heat_call *h, hd_kernel kernel, double *D, size_t ldd, double *Z,
+                                double *bound) {
     hdi_fading_to to;
     to.kernel = kernel;
-    to.edges = edges;
     to.D = D;
     to.ldd = ldd;
     to.Z = Z;
@@ -25923,7 +25687,7 @@ static hd_status hdi_signature_run(hdi_heat_call *h, int32_t n_freq, double *D, 
     hdi_circle c;
     size_t v;
     int32_t j, sure = 1;
-    if (h->e->status < 0 || hdi_fading_ask(h, HD_KERNEL_SYMMETRIC, 0, x, n, NULL, NULL) < 0)
+    if (h->e->status < 0 || hdi_fading_ask(h, HD_KERNEL_SYMMETRIC, x, n, NULL, NULL) < 0)
         return h->e->status;
     for (j = 0; j < m; j++) {
         circle[2 * j] = cos(two_pi * j / m);
@@ -27810,17 +27574,17 @@ static hd_status hdi_estimate_solves(const hdi_estimate *x, double held) {
     return h->e->status;
 }
 
-/* A diagonal, edges or a metric at one time, by poles of a degree (0: the default), then k columns. */
+/* A diagonal or a metric at one time, by poles of a degree (0: the default), then k columns. */
 static hd_status hdi_estimate_inverse(const hdi_estimate *x, int32_t degree, hd_cost *c) {
     hdi_heat_call *h = x->h;
     const hd_laplacian *lap = h->heat->source;
     const double n = lap->n_active, entries = (double)((lap->L.nnz - lap->n_active) / 2) + n;
     const int distance = x->query >= HD_QUERY_DISTANCE;
-    const int pattern = x->query == HD_QUERY_EDGES || (x->query == HD_QUERY_DIAGONAL_OPERATOR && lap->B);
+    const int pattern = x->query == HD_QUERY_DIAGONAL_OPERATOR && lap->B;
     const hdi_after after = x->query == HD_QUERY_DISTANCE_WEIGHTED && lap->B ? HDI_AFTER_FORMS
                                                                              : HDI_AFTER_INVERSE;
-    /* of the runs: the two sums, then the arrays of a diagonal, of edges or of a metric */
-    double held = 16 * (pattern ? entries : n) + (distance ? 40 : x->query == HD_QUERY_EDGES ? 16 : 32) * n;
+    /* of the runs: the two sums, then the arrays of a diagonal or of a metric */
+    double held = 16 * (pattern ? entries : n) + (distance ? 40 : 32) * n;
     /* a distance is kept in the caller's array, and a column of the resolvent is held beside its metric */
     const double later = distance ? 32 * n + 16.0 * x->k + 24.0 * lap->n : 0;
     const int32_t solves = hdi_high32(distance ? x->k : 0, HDI_PROBES);
@@ -30720,7 +30484,7 @@ HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t
     if (hdi_diagonal_begin(&h, heat, kernel, n_times, t, D != NULL, report, err) < 0 ||
         !HDI_HAS_DIAGONAL) return hdi_heat_end(&h);
     ldd = hdi_leading(&h, ldd);
-    if (h.e->status >= 0) (void)hdi_fading_ask(&h, kernel, 0, D, ldd, NULL, NULL);
+    if (h.e->status >= 0) (void)hdi_fading_ask(&h, kernel, D, ldd, NULL, NULL);
     return hdi_heat_end(&h);
 }
 
@@ -30729,7 +30493,7 @@ HEATDIFF_API hd_status hd_heat_trace(hd_heat *heat, int32_t n_times, const doubl
     hdi_heat_call h;
     if (hdi_diagonal_begin(&h, heat, HD_KERNEL_OPERATOR, n_times, t, Z != NULL, report, err) < 0 ||
         !HDI_HAS_DIAGONAL) return hdi_heat_end(&h);
-    if (h.e->status >= 0) (void)hdi_fading_ask(&h, HD_KERNEL_OPERATOR, 0, NULL, 0, Z, bound);
+    if (h.e->status >= 0) (void)hdi_fading_ask(&h, HD_KERNEL_OPERATOR, NULL, 0, Z, bound);
     return hdi_heat_end(&h);
 }
 
@@ -30757,7 +30521,7 @@ HEATDIFF_API hd_status hd_heat_normalised(hd_heat *heat, int32_t n_times, const 
         !HDI_HAS_DIAGONAL) return hdi_heat_end(&h);
     ldd = hdi_leading(&h, ldd);
     Z = HDI_TAKE(&h.s, double, n_times);
-    if (h.e->status >= 0 && hdi_fading_ask(&h, HD_KERNEL_SYMMETRIC, 0, D, ldd, NULL, NULL) >= 0) {
+    if (h.e->status >= 0 && hdi_fading_ask(&h, HD_KERNEL_SYMMETRIC, D, ldd, NULL, NULL) >= 0) {
         if (hd_heat_trace(heat, n_times, t, Z, NULL, &trace, NULL) >= 0)
             hdi_signature_normalise(heat->source, n_times, D, ldd, Z, h.rep, &trace);
         else *h.e = trace.error;
@@ -30784,19 +30548,6 @@ HEATDIFF_API hd_status hd_heat_scale_invariant(hd_heat *heat, double t0, double 
     if (!D) hdi_missing(h.e);
     ldd = hdi_leading(&h, ldd);
     if (h.e->status >= 0) (void)hdi_signature_run(&h, n_freq, D, ldd);
-    return hdi_heat_end(&h);
-}
-
-HEATDIFF_API hd_status hd_heat_edges(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t,
-                                     double *values, hd_report *report, hd_error *err) {
-    hdi_heat_call h;
-    if (hdi_diagonal_begin(&h, heat, kernel, n_times, t, values != NULL, report, err) < 0 ||
-        !HDI_HAS_DIAGONAL) return hdi_heat_end(&h);
-    if (kernel != HD_KERNEL_SYMMETRIC)
-        hdi_fail(h.e, HD_ERR_ARGUMENT,
-                 "edges: the kernel is the symmetric one; K_t = k_t B is not symmetric");
-    if (h.e->status >= 0)
-        (void)hdi_fading_ask(&h, kernel, 1, values, (size_t)heat->source->L.nnz, NULL, NULL);
     return hdi_heat_end(&h);
 }
 

@@ -29,10 +29,6 @@ static hd_status heat_diagonal(hd_heat *heat, int32_t n_times, const double *t, 
     return hd_heat_diagonal(heat, kernel, n_times, t, D, ldd, report, NULL);
 }
 
-static hd_status heat_edges(hd_heat *heat, double t, double *values, hd_report *report) {
-    return hd_heat_edges(heat, HD_KERNEL_SYMMETRIC, 1, &t, values, report, NULL);
-}
-
 static hd_status heat_entries(hd_heat *heat, double t, hd_kernel kernel, int64_t n_pairs, const int32_t *i, const int32_t *j,
                               double *values, hd_report *report) {
     return hd_heat_entries(heat, kernel, 1, &t, n_pairs, i, j, values, report, NULL);

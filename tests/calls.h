@@ -121,7 +121,6 @@ typedef struct call_args {
       (a->heat, a->time, a->time1, a->n_scale, a->n_freq, a->u, a->ld, a->rep, a->err))                                        \
     X(times_auto, hd_times_auto, "", (a->lap, a->n_times, a->u, a->err))                                                       \
     X(times_spectral, hd_times_spectral, "", (a->lap, a->n_times, a->c, a->u, a->err))                                         \
-    X(edges, hd_heat_edges, "", (a->heat, (hd_kernel)a->kernel, a->n_times, a->t, a->u, a->rep, a->err))                       \
     X(distance, hd_heat_distance, "",                                                                                          \
       (a->heat, (hd_distance_kind)a->kind, a->n_times, a->t, a->k, a->ids, a->u, a->ld, a->rep, a->err))                       \
     X(distance_from, hd_heat_distance_from, "",                                                                                \

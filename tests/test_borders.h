@@ -195,7 +195,7 @@ static void bord_pairs_others(void) {
 #define BORD_QUERIES(pairs) \
     {pairs " query=column kernel=operator|symmetric k=4" BORD_COLUMNS, 5e-6, 0, 0}, {pairs " query=apply|from k=3" BORD_COLUMNS, 5e-6, 0, 0}, \
     {pairs " query=times method=auto|krylov times=4 span=20 th=1", 5e-6, 0, 0}, \
-    {pairs " query=diagonal|edges kernel=operator|symmetric th=1|4", 5e-6, 0, 0}, {pairs " query=diagonal times=4 span=20 th=1", 5e-6, 0, 0}, \
+    {pairs " query=diagonal kernel=operator|symmetric th=1|4", 5e-6, 0, 0}, {pairs " query=diagonal times=4 span=20 th=1", 5e-6, 0, 0}, \
     {pairs " query=entries kernel=operator|symmetric k=30 th=1|4", 1e-5, 0, 0}, {pairs " query=pairs kind=classical|weighted k=30 th=0.5|2", 1e-5, 0, 0}, \
     {pairs " query=distance kind=classical|weighted k=3 th=0.5|2", 1e-5, 0, 0}, {pairs " query=distance kind=classical|weighted times=4 span=4 th=0.5", 1e-5, 0, 0}, \
     {pairs " query=pairs|distance kind=commute|biharmonic k=30", 1e-6, 0, 0}

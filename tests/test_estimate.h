@@ -17,7 +17,6 @@ static const est_case EST_CASES[] = {
     {HD_QUERY_DIAGONAL, HD_METHOD_DIRECT, 16, 0, 1, 1000, 0},
     {HD_QUERY_DIAGONAL, HD_METHOD_AUTO, 2, 0, 1, 3, 0},
     {HD_QUERY_DIAGONAL_OPERATOR, HD_METHOD_AUTO, 1, 0, 5, 1, 0},
-    {HD_QUERY_EDGES, HD_METHOD_AUTO, 2, 0, 5, 2, 0},
     {HD_QUERY_TRACE, HD_METHOD_AUTO, 1, 0, 5, 1, 0},
     {HD_QUERY_TRACE, HD_METHOD_DIRECT, 16, 0, 1, 1000, 0},
     {HD_QUERY_TRACE, HD_METHOD_AUTO, 2, 0, 1, 3, 0},
@@ -36,7 +35,7 @@ static const est_case EST_CASES[] = {
 enum { EST_N_CASES = sizeof EST_CASES / sizeof EST_CASES[0], EST_MOST_TIMES = 16, EST_MOST_K = 100 };
 
 static int64_t est_values(const hd_laplacian *lap, const est_case *c) {
-    const int64_t rows = c->query == HD_QUERY_EDGES ? lap->L.nnz : lap->n;
+    const int64_t rows = lap->n;
     return rows * (c->k > 0 ? c->k : 1) * (c->n_times > 0 ? c->n_times : 1);
 }
 
@@ -62,7 +61,6 @@ static hd_status est_run(hd_heat *heat, const hd_laplacian *lap, const est_case 
         case HD_QUERY_TRACE: return hd_heat_trace(heat, c->n_times, t, U, NULL, rep, NULL);
         case HD_QUERY_NORMALISED: return hd_heat_normalised(heat, c->n_times, t, U, 0, rep, NULL);
         case HD_QUERY_SCALE_INVARIANT: return hd_heat_scale_invariant(heat, t[0], t[c->n_times - 1], c->n_times, c->n_times < 7 ? 2 : 4, U, 0, rep, NULL);
-        case HD_QUERY_EDGES: return hd_heat_edges(heat, HD_KERNEL_SYMMETRIC, c->n_times, t, U, rep, NULL);
         default: return hd_heat_distance(heat, (hd_distance_kind)(c->query - HD_QUERY_DISTANCE), c->n_times, t, c->k, source, U, 0, rep, NULL);
     }
 }

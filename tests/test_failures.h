@@ -282,7 +282,7 @@ static void fail_methods(void) {
 /* What few eigenpairs serve where heat fades. */
 static void fail_fading(void) {
     static const char *const words[8] = {"n_times=1 k=1 f=u apply", "k=6 columns", "operator entries", "diagonal",
-                                         "operator diagonal", "edges", "trace", "query=3 estimate"};
+                                         "operator diagonal", "trace", "query=3 estimate"};
     char text[200];
     fail_case c;
     int q, w;

@@ -298,7 +298,7 @@ static void filt_arguments(void) {
 #define FILT_PAIR(pairs) \
     {pairs FILT_FITTED " query=column kernel=operator|symmetric method=direct|iterative", 1e-6, 0, 0}, \
     {pairs FILT_FITTED " query=apply method=direct|iterative", 1e-6, 0, 0}, \
-    {pairs FILT_FITTED " query=diagonal kernel=operator|symmetric method=direct", 1e-6, 0, 0}, {pairs FILT_FITTED " query=edges method=direct", 1e-6, 0, 0}, \
+    {pairs FILT_FITTED " query=diagonal kernel=operator|symmetric method=direct", 1e-6, 0, 0}, \
     {pairs FILT_FITTED " query=distance|pairs kind=classical|weighted method=direct k=3", 1e-5, 0, 0}, \
     {pairs FILT_FITTED " query=entries kernel=operator|symmetric method=direct|iterative k=20", 1e-6, 0, 0}
 

@@ -14,7 +14,7 @@ static shape all_needles(void) { return trial_needles(2); }
 #define ALL_COLUMNS " query=column kernel=operator|symmetric method=auto|direct|krylov|iterative k=2 th=0.7|5|60"
 #define ALL_ENTRIES " query=entries kernel=operator|symmetric method=auto|direct|krylov|iterative k=24 th=0.7|5"
 #define ALL_PAIRS " query=pairs kind=classical|weighted method=auto|direct|krylov|iterative k=24 th=0.7|5"
-#define ALL_DIAGONAL " query=diagonal|edges kernel=operator|symmetric method=auto|direct th=0.7|5|40"
+#define ALL_DIAGONAL " query=diagonal kernel=operator|symmetric method=auto|direct th=0.7|5|40"
 #define ALL_DISTANCE " query=distance kind=classical|weighted method=auto|direct k=3 th=0.7|5|10"
 #define ALL_TIMELESS " query=pairs|distance kind=commute|biharmonic method=auto|direct k=6"
 #define ALL_QUERIES(pairs) \

@@ -22,7 +22,6 @@
      semigroup  K_s K_t = K_(s+t), in the norm of B
      eigenpairs sums over the smallest eigenpairs, with their own bounds, against the columns
      diagonal   against columns, trace against diagonal
-     edges      values along the edges against columns
      entries    against columns
      distance   by diagonals against pairs by columns, symmetry, the triangle inequality, columns from sources
      adjoint    g'K_t f = f'K_t'g
@@ -414,14 +413,14 @@ static uint64_t hash_of(const mesh *m) {
 /* ==== [2] outcomes ==== */
 
 enum { QUERY_LAPLACIAN, QUERY_AUTO, QUERY_DIRECT, QUERY_KRYLOV, QUERY_COCG, QUERY_LANCZOS, QUERY_SEMIGROUP,
-       QUERY_SPECTRUM, QUERY_DIAGONAL, QUERY_EDGES, QUERY_ENTRIES, QUERY_DISTANCE, QUERY_PAIRS, QUERY_ADJOINT,
+       QUERY_SPECTRUM, QUERY_DIAGONAL, QUERY_ENTRIES, QUERY_DISTANCE, QUERY_PAIRS, QUERY_ADJOINT,
        QUERY_DERIVATIVE, QUERY_GEODESIC, QUERIES };
 /* calls, bounds: how many of them a case asks for and gets if all goes well. */
 static const struct query { const char *name; int calls, bounds; share least; } queries[QUERIES] = {
     {"Laplacian", 1, 0, {96, 0}},       {"column: auto", 2, 2, {96, 88}},   {"column: direct", 2, 2, {96, 88}},
     {"column: krylov", 2, 2, {95, 87}}, {"column: COCG", 2, 2, {94, 94}},   {"column: Lanczos", 2, 2, {94, 94}},
     {"field", 3, 3, {96, 90}},          {"eigenpairs", 2, 1, {94, 94}},     {"diagonal, trace", 3, 3, {96, 88}},
-    {"edges", 1, 1, {96, 88}},          {"entries", 1, 1, {95, 87}},        {"distance", 4, 4, {95, 87}},
+    {"entries", 1, 1, {95, 87}},        {"distance", 4, 4, {95, 87}},
     {"pairs", 4, 4, {95, 85}},          {"adjoint", 2, 2, {96, 88}},        {"derivative", 2, 2, {95, 76}},
     {"geodesic", 2, 0, {89, 0}}};
 /* The same for kept cases, and for each query on each kind of surface. */
@@ -855,24 +854,6 @@ static void check_diagonal(work *w, hd_heat *heat, const answer *a) {
     free(d);
 }
 
-static void check_edges(work *w, hd_heat *heat, const answer *a) {
-    const hd_laplacian *lap = w->lap;
-    double *v = room(lap->L.nnz);
-    hd_report r;
-    int64_t p;
-    int q;
-    if (answered(w, QUERY_EDGES, hd_heat_edges(heat, HD_KERNEL_SYMMETRIC, 1, &w->t, v, &r, NULL), &r) &&
-        all_finite(w, v, lap->L.nnz) && a->k)
-        for (q = 0; q < 3; q++) {
-            const int32_t i = lap->row[w->source[q]];
-            const double *u = a->k + (int64_t)q * w->n;
-            for (p = i < 0 ? 0 : lap->L.row_ptr[i]; i >= 0 && p < lap->L.row_ptr[i + 1]; p++)
-                within(w, "edges and columns", fabs(v[p] - u[lap->vertex[lap->L.col[p]]]),
-                       times(r.error_bound, largest(v, lap->L.nnz)) + times(a->bound_k, largest(u, w->n)));
-        }
-    free(v);
-}
-
 static void check_entries(work *w, hd_heat *heat, const answer *a) {
     const int32_t i[4] = {draw(&w->chance, w->n), draw(&w->chance, w->n), w->source[0], w->source[1]},
                   j[4] = {w->source[0], w->source[1], w->source[2], w->source[1]};
@@ -1056,7 +1037,6 @@ static void run_queries(work *w) {
         check_semigroup(w, chance(&w->chance, 0.5) ? direct : krylov);
         check_spectrum(w, a + 1);
         check_diagonal(w, direct, a + 2);
-        check_edges(w, direct, a + 2);
         check_entries(w, krylov, a + 1);
         for (i = 0; i < 4; i++) check_distance(w, direct, (hd_distance_kind)i);
         check_adjoint(w, chance(&w->chance, 0.5) ? direct : krylov);

@@ -5,7 +5,7 @@
    shape     a maker and up to four numbers, see trial_body_make
    op        fem, vor, cot, poly, with +id, +tuft, +held, +pin; vexp, exp, tuft for points; I, diag, massN, heavyN, tri, near for graphs
    scale     coordinates are multiplied by this
-   query     apply, column, times, derivative, adjoint, from, filter, entries, pairs, diagonal, edges, distance, distance_from
+   query     apply, column, times, derivative, adjoint, from, filter, entries, pairs, diagonal, distance, distance_from
    kernel    operator, symmetric
    kind      classical, weighted, commute, biharmonic; for times: weighted asks for a column instead of a field
    method, solver, precond, poles, degree, tol    options of the plan
@@ -16,7 +16,7 @@
    curve, apart   1: a source is a curve; its points may lie in several components
    field, seed    of a field; what else is drawn
 
-   truth.h makes the truth. A comparison is one column of an answer, or one list of entries, pairs or edges. */
+   truth.h makes the truth. A comparison is one column of an answer, or one list of entries or pairs. */
 
 #ifndef TRIALS_H
 #define TRIALS_H
@@ -562,14 +562,14 @@ static double trial_unit(const hd_laplacian *lap) {
 /* ==== [5] cases ==== */
 
 enum { QUERY_APPLY, QUERY_COLUMN, QUERY_TIMES, QUERY_DERIVATIVE, QUERY_ADJOINT, QUERY_FROM, QUERY_FILTER,
-       QUERY_ENTRIES, QUERY_PAIRS, QUERY_DIAGONAL, QUERY_EDGES, QUERY_DISTANCE, QUERY_DISTANCE_FROM, QUERY_COUNT };
+       QUERY_ENTRIES, QUERY_PAIRS, QUERY_DIAGONAL, QUERY_DISTANCE, QUERY_DISTANCE_FROM, QUERY_COUNT };
 enum { OWN_NONE, OWN_COPY, OWN_COPY0, OWN_LOOSE, OWN_NEAR, OWN_RANDOM, OWN_RESOLVENT, OWN_A0, OWN_PACKS, OWN_FITTED };   /* the last two are not drawn */
 enum { FIELD_RANDOM, FIELD_SMOOTH, FIELD_NEARLY, FIELD_HUGE, FIELD_TINY, FIELD_DELTA, FIELD_ALTERNATE,
        FIELD_MODE, FIELD_CONSTANT, FIELD_STEP, FIELD_LINEAR, FIELD_ZERO, FIELD_LEVEL, FIELD_COUNT };
 
 static const char *const trial_queries[] = {"apply",    "column", "times",    "derivative",    "adjoint",
                                           "from",     "filter", "entries",  "pairs",         "diagonal",
-                                          "edges",    "distance", "distance_from", NULL};
+                                          "distance", "distance_from", NULL};
 static const char *const trial_kernels[] = {"operator", "symmetric", NULL};
 static const char *const trial_kinds[] = {"classical", "weighted", "commute", "biharmonic", NULL};
 static const char *const trial_methods[] = {"auto", "iterative", "direct", "krylov", NULL};
@@ -1328,23 +1328,6 @@ static void trial_run_diagonal(trial_work *w, hd_heat *heat) {
     free(t);
 }
 
-static void trial_run_edges(trial_work *w, hd_heat *heat) {
-    const hd_laplacian *lap = w->s->lap;
-    double *values = TRUTH_NEW(double, lap->L.nnz);
-    int32_t i;
-    int64_t p;
-    trial_row_name(w, "edges");
-    hd_heat_edges(heat, HD_KERNEL_SYMMETRIC, 1, &w->c->t, values, &w->rep, NULL);
-    if (!trial_failed(w)) {
-        trial_filter_for(w, w->c->t, 0);
-        for (i = 0; i < lap->n_active; i++)
-            for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
-                w->want[p] = trial_want_entry(w, lap->vertex[i], lap->vertex[lap->L.col[p]], 0, 0, 0, w->off + p);
-        trial_compare(w, values, lap->L.nnz, 0, 0, -1);
-    }
-    free(values);
-}
-
 static void trial_run_distance(trial_work *w, hd_heat *heat) {
     const trial *c = w->c;
     const hd_laplacian *lap = w->s->lap;
@@ -1620,7 +1603,6 @@ static int trial_run_one(trial_subject *s, const trial *c, const char *text, int
     case QUERY_DISTANCE_FROM: trial_run_distance_from(&w, heat); break;
     case QUERY_ENTRIES: case QUERY_PAIRS: trial_run_entries(&w, heat); break;
     case QUERY_DIAGONAL: trial_run_diagonal(&w, heat); break;
-    case QUERY_EDGES: trial_run_edges(&w, heat); break;
     default: trial_run_distance(&w, heat);
     }
     free(w.want);

@@ -602,7 +602,7 @@ static void fz_one_more(hd_heat *heat, const hd_laplacian *lap, fz_query *q, fz_
 }
 
 static void fz_one(hd_heat *heat, const hd_laplacian *lap, fz_query *q, fz_in *in, const fz_context *c) {
-    static const char *const names[] = {"fields", "columns", "diagonal", "edges", "distance", "pairs", "sample", "entries", "estimate"};
+    static const char *const names[] = {"fields", "columns", "diagonal", "trace", "distance", "pairs", "sample", "entries", "estimate"};
     const int64_t n = lap->n;
     const uint8_t way = fz_byte(in), which = way % 9;
     hd_report rep;
@@ -620,7 +620,7 @@ static void fz_one(hd_heat *heat, const hd_laplacian *lap, fz_query *q, fz_in *i
         return;
     }
     if (which == 2) st = hd_heat_diagonal(heat, q->kernel, q->n_times, q->t, q->u, 0, &rep, &e), values = n * q->n_times;
-    if (which == 3) st = hd_heat_edges(heat, HD_KERNEL_SYMMETRIC, q->n_times, q->t, q->u, &rep, &e), values = lap->L.nnz * q->n_times;
+    if (which == 3) st = hd_heat_trace(heat, q->n_times, q->t, q->u, NULL, &rep, &e), values = q->n_times;
     if (which == 4) {
         if (q->kind >= HD_DISTANCE_COMMUTE) q->n_times = 1;
         st = hd_heat_distance(heat, q->kind, q->n_times, q->t, q->k, q->id, q->u, 0, &rep, &e), values = n * q->n_times * q->k;
