@@ -79,7 +79,7 @@
      [21] rational   pole sets: tables, evaluation, sets shared by many times, fits of filters
      [22] poles      the family t L + theta_i B: factors or preconditioners, answers, error bounds
      [23] lanczos    K_t f without poles: Lanczos for the exponential, and shift-and-invert
-     [24] ground     L with one vertex of each component held: distances without a time
+     [24] ground     sources; L with one vertex of each component held: distances without a time
      [25] spectrum   the smallest eigenpairs, counted and complete
      [26] plan       hd_heat: choice of method, kept factors and bases, the run of a request, its report
      [27] kernel     diagonals and traces, by selected inversion
@@ -7785,6 +7785,24 @@ static void hdi_pair_apply(const hd_laplacian *lap, double alpha, double beta,
     }
 }
 
+static void hdi_gather(const hd_laplacian *lap, const double *on_vertices, double *on_rows) {
+    int32_t i;
+    for (i = 0; i < lap->n_active; i++) on_rows[i] = on_vertices[lap->vertex[i]];
+}
+
+/* y = (alpha L + beta B) x on vertices. */
+static hd_status hdi_lap_apply(const hd_laplacian *lap, double alpha, double beta, const double *x, double *y,
+                               hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    double *in = HDI_TAKE(&s, double, lap->n_active), *out = HDI_TAKE(&s, double, lap->n_active);
+    int32_t v;
+    if (e->status < 0) return hdi_scope_end(&s);
+    hdi_gather(lap, x, in);
+    hdi_pair_apply(lap, alpha, beta, in, out);
+    for (v = 0; v < lap->n; v++) y[v] = lap->row[v] >= 0 ? out[lap->row[v]] : 0;
+    return hdi_scope_end(&s);
+}
+
 /* |x|_B^2; work [n_active] is used when B is not diagonal. */
 static double hdi_b_norm2(const hd_laplacian *lap, const double *x, double *work) {
     if (!lap->B) return hdi_norm2w(x, lap->mass, lap->n_active);
@@ -7914,56 +7932,6 @@ static hd_status hdi_pair_semidefinite(const hd_laplacian *lap, const double *ro
                                 lap->vertex[i], lap->vertex[j], lap->L.val[p]);
         }
     }
-    return HD_OK;
-}
-
-/* Where rows of B are not dominated by their diagonal, as in finite elements: the smallest eigenvalue of
- * D^-1 B, D = diag(B), by 40 Lanczos steps. An estimate from above, to be proven: see hdi_lap_ratio. work
- * [4 n]. */
-static hd_status hdi_pair_ratio(const hd_laplacian *lap, double *work, double *ratio, hd_error *e) {
-    enum { STEPS = 40 };
-    const int32_t n = lap->n_active;
-    double *v = work, *v_old = v + n, *w = v_old + n, *s = w + n, d[STEPS], off[STEPS], z[2 * STEPS],
-           beta = 0, norm = 0, least;
-    int32_t i, m = 0, k;
-    /* B in the scaling D^-1/2 B D^-1/2; an uneven start, the same every time */
-    for (i = 0; i < n; i++) {
-        s[i] = 1 / sqrt(lap->b_diag[i]);
-        v[i] = 1 + 0.5 * sin(1.7 * i);
-        v_old[i] = 0;
-        norm += v[i] * v[i];
-    }
-    for (i = 0; i < n; i++) v[i] /= sqrt(norm);
-    while (m < STEPS && m < n) {
-        double alpha = 0;
-        norm = 0;
-        for (i = 0; i < n; i++) v[i] *= s[i];
-        hdi_pair_apply(lap, 0, 1, v, w);
-        for (i = 0; i < n; i++) {
-            v[i] /= s[i];
-            w[i] = w[i] * s[i] - beta * v_old[i];
-            alpha += v[i] * w[i];
-        }
-        for (i = 0; i < n; i++) {
-            w[i] -= alpha * v[i];
-            norm += w[i] * w[i];
-        }
-        d[m] = alpha;
-        beta = sqrt(norm);
-        off[m++] = beta;
-        if (beta < 1e-14) break;
-        for (i = 0; i < n; i++) {
-            v_old[i] = v[i];
-            v[i] = w[i] / beta;
-        }
-    }
-    for (k = 0; k < 2 * STEPS; k++) z[k] = 0;
-    if (!hdi_tridiag_eigen(d, off, z, z + STEPS, m))
-        return hdi_fail(e, HD_ERR_BREAKDOWN, "B: the estimate of its smallest eigenvalue did not converge");
-    for (least = d[0], k = 1; k < m; k++) least = hdi_min(least, d[k]);
-    if (!(least > 1e-12) && !(lap->b_ratio > 0))
-        return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "B is not positive definite", -1, -1, least);
-    *ratio = least;
     return HD_OK;
 }
 
@@ -8894,248 +8862,6 @@ static hd_status hdi_tufted_points(hd_laplacian *lap, const double *xyz, const i
     return hdi_scope_end(&s);
 }
 
-/* ---- sources ---- */
-
-/* A source as weights of vertices, which ascend: a functional of fields. One vertex with weight 1 has weight
- * NULL. */
-typedef struct hdi_terms {
-    int32_t n, one;              /* one: that vertex */
-    const int32_t *vertex;       /* [n] */
-    const double *weight;        /* [n] */
-} hdi_terms;
-
-static hdi_terms hdi_terms_vertex(int32_t v) {
-    hdi_terms c;
-    c.n = 1;
-    c.one = v;
-    c.vertex = NULL;
-    c.weight = NULL;
-    return c;
-}
-
-static int32_t hdi_terms_at(const hdi_terms *c, int32_t q) { return c->weight ? c->vertex[q] : c->one; }
-static double hdi_terms_weight(const hdi_terms *c, int32_t q) { return c->weight ? c->weight[q] : 1; }
-
-/* The value of a field by vertices at the source. */
-static double hdi_terms_value(const hdi_terms *c, const double *u) {
-    double sum = 0;
-    int32_t q;
-    for (q = 0; q < c->n; q++) sum += hdi_terms_weight(c, q) * u[hdi_terms_at(c, q)];
-    return sum;
-}
-
-/* The component that all of a source is in, or -1. */
-static int32_t hdi_terms_component(const hd_laplacian *lap, const hdi_terms *c) {
-    int32_t q, own = -1;
-    for (q = 0; q < c->n; q++) {
-        const int32_t r = lap->row[hdi_terms_at(c, q)];
-        if (r < 0 || (q > 0 && lap->component[r] != own)) return -1;
-        own = lap->component[r];
-    }
-    return own;
-}
-
-/* An error at a point of a source. */
-static hd_status hdi_source_fail(hd_error *e, hd_status status, const char *text, int32_t point,
-                                 int32_t vertex, double value) {
-    hdi_fail_face(e, status, text, -1, vertex, value);
-    e->row = point;
-    return status;
-}
-
-static int32_t hdi_source_corners(const hd_source *s) { return s->corners ? s->corners : 1; }
-
-/* What point q has of its corner c. */
-static double hdi_source_part(const hd_source *s, int32_t q, int32_t c) {
-    const int32_t n = hdi_source_corners(s);
-    return s->bary ? s->bary[(int64_t)q * n + c] : 1.0 / n;
-}
-
-/* Barycentric coordinates sum to 1 up to the first. Sums of weights in size, and lengths, are between the
- * others. */
-#define HDI_SOURCE_SUM 1e-6
-#define HDI_SOURCE_LEAST 1e-100
-#define HDI_SOURCE_MOST 1e100
-
-static hd_status hdi_source_check_point(const hd_source *s, int32_t q, int32_t n, hd_error *e) {
-    const int32_t corners = hdi_source_corners(s);
-    double sum = 0;
-    int32_t c;
-    for (c = 0; c < corners; c++) {
-        const int32_t v = s->vertex[(int64_t)q * corners + c];
-        const double b = hdi_source_part(s, q, c);
-        if (v < 0 || v >= n)
-            return hdi_source_fail(e, HD_ERR_INDEX, "source: a vertex is not in the mesh", q, v, v);
-        if (!hdi_finite(b) || b < 0)
-            return hdi_source_fail(e, hdi_finite(b) ? HD_ERR_ARGUMENT : HD_ERR_NOT_FINITE,
-                                   "source: a barycentric coordinate is negative or not finite", q, v, b);
-        sum += b;
-    }
-    if (!(fabs(sum - 1) <= HDI_SOURCE_SUM))
-        return hdi_source_fail(e, hdi_finite(sum) ? HD_ERR_ARGUMENT : HD_ERR_NOT_FINITE,
-                               "source: the barycentric coordinates of a point do not sum to 1", q, -1, sum);
-    if (!s->curve && s->weight && !hdi_finite(s->weight[q]))
-        return hdi_source_fail(e, HD_ERR_NOT_FINITE, "source: the weight of a point is not finite", q, -1,
-                               s->weight[q]);
-    if (s->curve && s->length && q + 1 < s->count && !(hdi_finite(s->length[q]) && s->length[q] >= 0))
-        return hdi_source_fail(e, hdi_finite(s->length[q]) ? HD_ERR_ARGUMENT : HD_ERR_NOT_FINITE,
-                               "source: the length of a piece is negative or not finite", q, -1,
-                               s->length[q]);
-    return HD_OK;
-}
-
-/* Checks everything but whether points lie in faces, which matrices do not tell. n: vertices. */
-static hd_status hdi_source_check(const hd_source *s, int32_t n, hd_error *e) {
-    int32_t q;
-    if (s->begin_zero || s->end_zero)
-        return hdi_fail(e, HD_ERR_ARGUMENT, "source: not cleared before use");
-    if (s->count < 1 || s->corners < 0)
-        return hdi_fail(e, HD_ERR_ARGUMENT, "source: there is no point, or a number of corners is negative");
-    if (!s->vertex) return hdi_missing(e);
-    if (s->curve && s->count < 2)
-        return hdi_fail(e, HD_ERR_ARGUMENT, "source: a curve has at least two points");
-    if (s->curve && s->weight)
-        return hdi_fail(e, HD_ERR_ARGUMENT, "source: points of a curve have no weights");
-    if ((int64_t)s->count * hdi_source_corners(s) > INT32_MAX)
-        return hdi_fail(e, HD_ERR_TOO_LARGE, "source: there are too many points");
-    for (q = 0; q < s->count; q++)
-        if (hdi_source_check_point(s, q, n, e) < 0) return e->status;
-    return HD_OK;
-}
-
-/* The place of point q, by coordinates of rows. */
-static hd_status hdi_source_place(const hd_source *s, int32_t q, const double *xyz, const int32_t *row,
-                                  double *to, hd_error *e) {
-    int32_t c, i;
-    to[0] = to[1] = to[2] = 0;
-    for (c = 0; c < hdi_source_corners(s); c++) {
-        const int32_t v = s->vertex[(int64_t)q * hdi_source_corners(s) + c];
-        const double b = hdi_source_part(s, q, c);
-        if (b > 0 && (!xyz || row[v] < 0))
-            return hdi_source_fail(e, HD_ERR_ARGUMENT,
-                                   "source: a curve needs coordinates that are not there; give its lengths",
-                                   q, v, 0);
-        for (i = 0; i < 3 && b > 0; i++) to[i] += b * xyz[3 * (int64_t)row[v] + i];
-    }
-    return HD_OK;
-}
-
-/* The length of the piece of a curve from point q to the next. */
-static double hdi_source_piece(const hd_source *s, int32_t q, const double *xyz, const int32_t *row,
-                               hd_error *e) {
-    double a[3], b[3];
-    if (q < 0 || q + 1 >= s->count) return 0;
-    if (s->length) return s->length[q];
-    if (hdi_source_place(s, q, xyz, row, a, e) < 0 || hdi_source_place(s, q + 1, xyz, row, b, e) < 0)
-        return 0;
-    hdi_sub3(a, b, a);
-    return hdi_norm3(a);
-}
-
-/* Divides weights by their sum, which size is the size of. */
-static hd_status hdi_terms_normalise(double *weight, int32_t n, double size, hd_error *e) {
-    double sum = 0;
-    int32_t q;
-    for (q = 0; q < n; q++) sum += weight[q];
-    if (!(sum > (double)n * DBL_EPSILON * size))
-        return hdi_fail_row(e, HD_ERR_ARGUMENT, "source: the sum of its weights is not positive", -1, -1,
-                            sum);
-    for (q = 0; q < n; q++) weight[q] /= sum;
-    return HD_OK;
-}
-
-/* Sums weights [n] of the same vertex, and leaves out zeros. */
-static int32_t hdi_terms_sum(const hd_source *s, hdi_pair *order, int32_t n, const double *part,
-                             int32_t *vertex, double *weight) {
-    int32_t q, m = 0;
-    for (q = 0; q < n; q++) {
-        order[q].key = (uint64_t)s->vertex[q];
-        order[q].id = q;
-    }
-    hdi_sort_pairs(order, n);
-    for (q = 0; q < n; q++) {
-        const int32_t v = (int32_t)order[q].key;
-        if (part[order[q].id] == 0) continue;
-        if (m > 0 && vertex[m - 1] == v) {
-            weight[m - 1] += part[order[q].id];
-        } else {
-            vertex[m] = v;
-            weight[m++] = part[order[q].id];
-        }
-    }
-    return m;
-}
-
-/* Room for sources: the first two for one after another, the others for all of them. */
-typedef struct hdi_terms_room {
-    hdi_pair *order;
-    double *part;
-    int32_t *vertex;
-    double *weight;
-} hdi_terms_room;
-
-static hdi_terms_room hdi_terms_take(hdi_scope *work, hdi_scope *keep, int64_t most, int64_t all) {
-    hdi_terms_room room;
-    room.order = HDI_TAKE(work, hdi_pair, most);
-    room.part = HDI_TAKE(work, double, most);
-    room.vertex = HDI_TAKE(keep, int32_t, all);
-    room.weight = HDI_TAKE(keep, double, all);
-    return room;
-}
-
-/* A source that is checked as weights of vertices. xyz by rows, or NULL; row [n]. normal: of sum 1. What it
- * takes of room is gone from there. */
-static hd_status hdi_terms_make(hdi_terms *to, const hd_source *s, const double *xyz, const int32_t *row,
-                                int normal, hdi_terms_room *room, hd_error *e) {
-    const int32_t corners = hdi_source_corners(s);
-    int32_t q, c;
-    double size = 0, before = 0;
-    for (q = 0; q < s->count; q++) {
-        const double piece = s->curve ? hdi_source_piece(s, q, xyz, row, e) : 0;
-        const double w = s->curve ? (before + piece) / 2 : s->weight ? s->weight[q] : 1;
-        double sum = 0;
-        before = piece;
-        if (e->status < 0) return e->status;
-        for (c = 0; c < corners; c++) sum += hdi_source_part(s, q, c);
-        for (c = 0; c < corners; c++) room->part[q * corners + c] = w * (hdi_source_part(s, q, c) / sum);
-        size += fabs(w);
-    }
-    if (!(size >= HDI_SOURCE_LEAST && size <= HDI_SOURCE_MOST))
-        return hdi_fail_row(e, HD_ERR_ARGUMENT,
-                            "source: its weight, or the length of its curve, is zero or out of range", -1, -1,
-                            size);
-    to->n = hdi_terms_sum(s, room->order, s->count * corners, room->part, room->vertex, room->weight);
-    if (normal && hdi_terms_normalise(room->weight, to->n, size, e) < 0) return e->status;
-    to->vertex = room->vertex;
-    to->weight = room->weight;
-    if (to->n == 1 && to->weight[0] == 1) *to = hdi_terms_vertex(to->vertex[0]);
-    room->vertex += to->n;
-    room->weight += to->n;
-    return HD_OK;
-}
-
-/* All sources of a call. */
-static hdi_terms *hdi_terms_all(int32_t k, const hd_source *sources, const hd_laplacian *lap, int normal,
-                                hdi_scope *keep) {
-    hdi_scope work = hdi_scope_begin(keep->ctx, keep->e);
-    hdi_terms *all = HDI_TAKE(keep, hdi_terms, (int64_t)k + 1);
-    hd_error *e = keep->e;
-    hdi_terms_room room;
-    int64_t most = 1, total = 1;
-    int32_t q;
-    for (q = 0; q < k && e->status >= 0; q++) {
-        const int64_t size = (int64_t)sources[q].count * hdi_source_corners(sources + q);
-        if (hdi_source_check(sources + q, lap->n, e) < 0) e->column = q;
-        else most = most > size ? most : size;
-        total += size;
-    }
-    room = hdi_terms_take(&work, keep, most, total);
-    for (q = 0; q < k && e->status >= 0; q++)
-        if (hdi_terms_make(all + q, sources + q, lap->xyz, lap->row, normal, &room, e) < 0) e->column = q;
-    (void)hdi_scope_end(&work);
-    return all;
-}
-
 /* By Weyl's law the k-th eigenvalue of a surface is about 4 pi k/area. At the longest time the 2nd of them
  * has faded to a ten-thousandth, at the shortest time the 300th. */
 #define HDI_TIMES_SHORTEST 0.0024
@@ -9151,20 +8877,6 @@ static void hdi_lap_times(const hd_laplacian *lap, int32_t n_times, double *t) {
     for (q = 0; q < n_times; q++)
         t[q] = area * HDI_TIMES_SHORTEST * pow(HDI_TIMES_LONGEST / HDI_TIMES_SHORTEST,
                                                n_times > 1 ? q / (double)(n_times - 1) : 0.5);
-}
-
-static hd_status hdi_vertex_check(const hd_laplacian *lap, int32_t v, hd_error *e) {
-    if (v >= 0 && v < lap->n) return HD_OK;
-    return hdi_fail_face(e, HD_ERR_INDEX, "heat: a source or vertex is not in the mesh", -1, v, v);
-}
-
-/* Checks sources, or vertices of pairs. *which becomes the index of one that is not in the mesh. */
-static hd_status hdi_vertices_check(const hd_laplacian *lap, int64_t k, const int32_t *vertex, int64_t *which,
-                                    hd_error *e) {
-    int64_t q;
-    for (q = 0; q < k && e->status >= 0; q++)
-        if (hdi_vertex_check(lap, vertex[q], e) < 0) *which = q;
-    return e->status;
 }
 
 /* ==== [13] degree ====
@@ -17617,24 +17329,6 @@ static void hdi_batch_run(const hdi_elim *m, const hdi_batch *b, hdi_lane *lane,
     }
 }
 
-static void hdi_gather(const hd_laplacian *lap, const double *on_vertices, double *on_rows) {
-    int32_t i;
-    for (i = 0; i < lap->n_active; i++) on_rows[i] = on_vertices[lap->vertex[i]];
-}
-
-/* y = (alpha L + beta B) x on vertices. */
-static hd_status hdi_lap_apply(const hd_laplacian *lap, double alpha, double beta, const double *x, double *y,
-                               hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
-    double *in = HDI_TAKE(&s, double, lap->n_active), *out = HDI_TAKE(&s, double, lap->n_active);
-    int32_t v;
-    if (e->status < 0) return hdi_scope_end(&s);
-    hdi_gather(lap, x, in);
-    hdi_pair_apply(lap, alpha, beta, in, out);
-    for (v = 0; v < lap->n; v++) y[v] = lap->row[v] >= 0 ? out[lap->row[v]] : 0;
-    return hdi_scope_end(&s);
-}
-
 /* B without the zeros that the common pattern has. */
 static hd_csr hdi_lap_mass_matrix(const hd_laplacian *lap, hdi_scope *s) {
     int64_t nnz = 0, p;
@@ -17670,36 +17364,34 @@ static int hdi_lap_exceeds(const hd_laplacian *lap, const hd_csr *b, double sigm
     return 0;
 }
 
-/* A proven b_ratio where that of Gershgorin's theorem, which lap has, is poor. Values from an estimate
- * downwards are each tried by a factorisation. Its rounding is that of a matrix E with |x'Ex| <= eps (nnz(L)
- * + 2 n) x'diag(B)x (after Rump 2006), which is added to sigma. Where all tries fail, B has a negative
- * eigenvalue, or the ratio is not known. */
+/* B with a smaller ratio counts as one that is not positive definite. */
+#define HDI_RATIO_LEAST 1e-12
+
+/* A proven b_ratio where that of Gershgorin's theorem, which lap has, is poor, as in finite elements: 1/2,
+ * 1/4 and so on are each tried by a factorisation. Its rounding is that of a matrix E with |x'Ex| <= eps
+ * (nnz(L) + 2 n) x'diag(B)x (after Rump 2006), which is added to sigma. Where all tries fail, B has a
+ * negative eigenvalue, or the ratio is not known. */
 static hd_status hdi_lap_ratio(hd_laplacian *lap, hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
     const double dominant = hdi_max(lap->b_ratio, 0);
-    double *work = HDI_TAKE(&s, double, 4 * (int64_t)lap->n_active), least, sigma, slack;
     const hdi_order order = {HD_ORDERING_MINIMUM_DEGREE, NULL, NULL};
-    int32_t tries;
     hd_csr b = hdi_lap_mass_matrix(lap, &s);
-    double *value = HDI_TAKE(&s, double, b.nnz);
+    double *value = HDI_TAKE(&s, double, b.nnz), sigma = 0.5, slack;
     hdi_symbolic sym;
     hdi_factor f;
     memset(&sym, 0, sizeof sym);
     memset(&f, 0, sizeof f);
     lap->b_ratio = dominant;
-    if (e->status >= 0 && hdi_pair_ratio(lap, work, &least, e) >= 0 &&
-        hdi_symbolic_order(&sym, &b, &order, lap->context, e) >= 0 &&
+    if (e->status >= 0 && hdi_symbolic_order(&sym, &b, &order, lap->context, e) >= 0 &&
         hdi_factor_make(&f, &sym, 1, lap->context, e) >= 0) {
         slack = DBL_EPSILON * ((double)sym.nnz + 2.0 * lap->n_active);
-        for (tries = 0; e->status >= 0; tries++) {
-            sigma = tries == 0 ? 0.8 * least : ldexp(least, 1 - 2 * tries);
-            if (sigma < hdi_max(dominant, 1e-12)) break;
+        for (; e->status >= 0 && sigma >= hdi_max(dominant, HDI_RATIO_LEAST); sigma /= 2) {
             if (hdi_lap_exceeds(lap, &b, sigma + slack, value, &f, e)) {
                 lap->b_ratio = sigma;
                 break;
             }
-            if (tries != 1 || e->status < 0 || hdi_lap_exceeds(lap, &b, -slack, value, &f, e)) continue;
-            if (f.all.negative)
+            if (sigma < 0.5 || dominant > 0 || e->status < 0) continue;
+            if (!hdi_lap_exceeds(lap, &b, HDI_RATIO_LEAST, value, &f, e) && f.all.negative)
                 hdi_fail(e, HD_ERR_NOT_POSITIVE, "B is not positive definite: it has a negative pivot");
         }
     }
@@ -18991,8 +18683,267 @@ static hd_status hdi_silan_answer(hdi_silan *z, int32_t r, double t, const doubl
 }
 
 /* ==== [24] ground ====
- * Owns the pair grounded, that is L with one vertex of each component held at zero: its inverse, for
- * distances without a time, and a bound on the smallest eigenvalue that is not zero. May call [22]. */
+ * Owns sources as weights of vertices, and the pair grounded, that is L with one vertex of each component
+ * held at zero: its inverse, for distances without a time, and a bound on the smallest eigenvalue that is
+ * not zero. May call [22]. */
+
+/* ---- sources ---- */
+
+/* A source as weights of vertices, which ascend: a functional of fields. One vertex with weight 1 has weight
+ * NULL. */
+typedef struct hdi_terms {
+    int32_t n, one;              /* one: that vertex */
+    const int32_t *vertex;       /* [n] */
+    const double *weight;        /* [n] */
+} hdi_terms;
+
+static hdi_terms hdi_terms_vertex(int32_t v) {
+    hdi_terms c;
+    c.n = 1;
+    c.one = v;
+    c.vertex = NULL;
+    c.weight = NULL;
+    return c;
+}
+
+static int32_t hdi_terms_at(const hdi_terms *c, int32_t q) { return c->weight ? c->vertex[q] : c->one; }
+static double hdi_terms_weight(const hdi_terms *c, int32_t q) { return c->weight ? c->weight[q] : 1; }
+
+/* The value of a field by vertices at the source. */
+static double hdi_terms_value(const hdi_terms *c, const double *u) {
+    double sum = 0;
+    int32_t q;
+    for (q = 0; q < c->n; q++) sum += hdi_terms_weight(c, q) * u[hdi_terms_at(c, q)];
+    return sum;
+}
+
+/* The component that all of a source is in, or -1. */
+static int32_t hdi_terms_component(const hd_laplacian *lap, const hdi_terms *c) {
+    int32_t q, own = -1;
+    for (q = 0; q < c->n; q++) {
+        const int32_t r = lap->row[hdi_terms_at(c, q)];
+        if (r < 0 || (q > 0 && lap->component[r] != own)) return -1;
+        own = lap->component[r];
+    }
+    return own;
+}
+
+/* An error at a point of a source. */
+static hd_status hdi_source_fail(hd_error *e, hd_status status, const char *text, int32_t point,
+                                 int32_t vertex, double value) {
+    hdi_fail_face(e, status, text, -1, vertex, value);
+    e->row = point;
+    return status;
+}
+
+static int32_t hdi_source_corners(const hd_source *s) { return s->corners ? s->corners : 1; }
+
+/* What point q has of its corner c. */
+static double hdi_source_part(const hd_source *s, int32_t q, int32_t c) {
+    const int32_t n = hdi_source_corners(s);
+    return s->bary ? s->bary[(int64_t)q * n + c] : 1.0 / n;
+}
+
+/* Barycentric coordinates sum to 1 up to the first. Sums of weights in size, and lengths, are between the
+ * others. */
+#define HDI_SOURCE_SUM 1e-6
+#define HDI_SOURCE_LEAST 1e-100
+#define HDI_SOURCE_MOST 1e100
+
+static hd_status hdi_source_check_point(const hd_source *s, int32_t q, int32_t n, hd_error *e) {
+    const int32_t corners = hdi_source_corners(s);
+    double sum = 0;
+    int32_t c;
+    for (c = 0; c < corners; c++) {
+        const int32_t v = s->vertex[(int64_t)q * corners + c];
+        const double b = hdi_source_part(s, q, c);
+        if (v < 0 || v >= n)
+            return hdi_source_fail(e, HD_ERR_INDEX, "source: a vertex is not in the mesh", q, v, v);
+        if (!hdi_finite(b) || b < 0)
+            return hdi_source_fail(e, hdi_finite(b) ? HD_ERR_ARGUMENT : HD_ERR_NOT_FINITE,
+                                   "source: a barycentric coordinate is negative or not finite", q, v, b);
+        sum += b;
+    }
+    if (!(fabs(sum - 1) <= HDI_SOURCE_SUM))
+        return hdi_source_fail(e, hdi_finite(sum) ? HD_ERR_ARGUMENT : HD_ERR_NOT_FINITE,
+                               "source: the barycentric coordinates of a point do not sum to 1", q, -1, sum);
+    if (!s->curve && s->weight && !hdi_finite(s->weight[q]))
+        return hdi_source_fail(e, HD_ERR_NOT_FINITE, "source: the weight of a point is not finite", q, -1,
+                               s->weight[q]);
+    if (s->curve && s->length && q + 1 < s->count && !(hdi_finite(s->length[q]) && s->length[q] >= 0))
+        return hdi_source_fail(e, hdi_finite(s->length[q]) ? HD_ERR_ARGUMENT : HD_ERR_NOT_FINITE,
+                               "source: the length of a piece is negative or not finite", q, -1,
+                               s->length[q]);
+    return HD_OK;
+}
+
+/* Checks everything but whether points lie in faces, which matrices do not tell. n: vertices. */
+static hd_status hdi_source_check(const hd_source *s, int32_t n, hd_error *e) {
+    int32_t q;
+    if (s->begin_zero || s->end_zero)
+        return hdi_fail(e, HD_ERR_ARGUMENT, "source: not cleared before use");
+    if (s->count < 1 || s->corners < 0)
+        return hdi_fail(e, HD_ERR_ARGUMENT, "source: there is no point, or a number of corners is negative");
+    if (!s->vertex) return hdi_missing(e);
+    if (s->curve && s->count < 2)
+        return hdi_fail(e, HD_ERR_ARGUMENT, "source: a curve has at least two points");
+    if (s->curve && s->weight)
+        return hdi_fail(e, HD_ERR_ARGUMENT, "source: points of a curve have no weights");
+    if ((int64_t)s->count * hdi_source_corners(s) > INT32_MAX)
+        return hdi_fail(e, HD_ERR_TOO_LARGE, "source: there are too many points");
+    for (q = 0; q < s->count; q++)
+        if (hdi_source_check_point(s, q, n, e) < 0) return e->status;
+    return HD_OK;
+}
+
+/* The place of point q, by coordinates of rows. */
+static hd_status hdi_source_place(const hd_source *s, int32_t q, const double *xyz, const int32_t *row,
+                                  double *to, hd_error *e) {
+    int32_t c, i;
+    to[0] = to[1] = to[2] = 0;
+    for (c = 0; c < hdi_source_corners(s); c++) {
+        const int32_t v = s->vertex[(int64_t)q * hdi_source_corners(s) + c];
+        const double b = hdi_source_part(s, q, c);
+        if (b > 0 && (!xyz || row[v] < 0))
+            return hdi_source_fail(e, HD_ERR_ARGUMENT,
+                                   "source: a curve needs coordinates that are not there; give its lengths",
+                                   q, v, 0);
+        for (i = 0; i < 3 && b > 0; i++) to[i] += b * xyz[3 * (int64_t)row[v] + i];
+    }
+    return HD_OK;
+}
+
+/* The length of the piece of a curve from point q to the next. */
+static double hdi_source_piece(const hd_source *s, int32_t q, const double *xyz, const int32_t *row,
+                               hd_error *e) {
+    double a[3], b[3];
+    if (q < 0 || q + 1 >= s->count) return 0;
+    if (s->length) return s->length[q];
+    if (hdi_source_place(s, q, xyz, row, a, e) < 0 || hdi_source_place(s, q + 1, xyz, row, b, e) < 0)
+        return 0;
+    hdi_sub3(a, b, a);
+    return hdi_norm3(a);
+}
+
+/* Divides weights by their sum, which size is the size of. */
+static hd_status hdi_terms_normalise(double *weight, int32_t n, double size, hd_error *e) {
+    double sum = 0;
+    int32_t q;
+    for (q = 0; q < n; q++) sum += weight[q];
+    if (!(sum > (double)n * DBL_EPSILON * size))
+        return hdi_fail_row(e, HD_ERR_ARGUMENT, "source: the sum of its weights is not positive", -1, -1,
+                            sum);
+    for (q = 0; q < n; q++) weight[q] /= sum;
+    return HD_OK;
+}
+
+/* Sums weights [n] of the same vertex, and leaves out zeros. */
+static int32_t hdi_terms_sum(const hd_source *s, hdi_pair *order, int32_t n, const double *part,
+                             int32_t *vertex, double *weight) {
+    int32_t q, m = 0;
+    for (q = 0; q < n; q++) {
+        order[q].key = (uint64_t)s->vertex[q];
+        order[q].id = q;
+    }
+    hdi_sort_pairs(order, n);
+    for (q = 0; q < n; q++) {
+        const int32_t v = (int32_t)order[q].key;
+        if (part[order[q].id] == 0) continue;
+        if (m > 0 && vertex[m - 1] == v) {
+            weight[m - 1] += part[order[q].id];
+        } else {
+            vertex[m] = v;
+            weight[m++] = part[order[q].id];
+        }
+    }
+    return m;
+}
+
+/* Room for sources: the first two for one after another, the others for all of them. */
+typedef struct hdi_terms_room {
+    hdi_pair *order;
+    double *part;
+    int32_t *vertex;
+    double *weight;
+} hdi_terms_room;
+
+static hdi_terms_room hdi_terms_take(hdi_scope *work, hdi_scope *keep, int64_t most, int64_t all) {
+    hdi_terms_room room;
+    room.order = HDI_TAKE(work, hdi_pair, most);
+    room.part = HDI_TAKE(work, double, most);
+    room.vertex = HDI_TAKE(keep, int32_t, all);
+    room.weight = HDI_TAKE(keep, double, all);
+    return room;
+}
+
+/* A source that is checked as weights of vertices. xyz by rows, or NULL; row [n]. normal: of sum 1. What it
+ * takes of room is gone from there. */
+static hd_status hdi_terms_make(hdi_terms *to, const hd_source *s, const double *xyz, const int32_t *row,
+                                int normal, hdi_terms_room *room, hd_error *e) {
+    const int32_t corners = hdi_source_corners(s);
+    int32_t q, c;
+    double size = 0, before = 0;
+    for (q = 0; q < s->count; q++) {
+        const double piece = s->curve ? hdi_source_piece(s, q, xyz, row, e) : 0;
+        const double w = s->curve ? (before + piece) / 2 : s->weight ? s->weight[q] : 1;
+        double sum = 0;
+        before = piece;
+        if (e->status < 0) return e->status;
+        for (c = 0; c < corners; c++) sum += hdi_source_part(s, q, c);
+        for (c = 0; c < corners; c++) room->part[q * corners + c] = w * (hdi_source_part(s, q, c) / sum);
+        size += fabs(w);
+    }
+    if (!(size >= HDI_SOURCE_LEAST && size <= HDI_SOURCE_MOST))
+        return hdi_fail_row(e, HD_ERR_ARGUMENT,
+                            "source: its weight, or the length of its curve, is zero or out of range", -1, -1,
+                            size);
+    to->n = hdi_terms_sum(s, room->order, s->count * corners, room->part, room->vertex, room->weight);
+    if (normal && hdi_terms_normalise(room->weight, to->n, size, e) < 0) return e->status;
+    to->vertex = room->vertex;
+    to->weight = room->weight;
+    if (to->n == 1 && to->weight[0] == 1) *to = hdi_terms_vertex(to->vertex[0]);
+    room->vertex += to->n;
+    room->weight += to->n;
+    return HD_OK;
+}
+
+/* All sources of a call. */
+static hdi_terms *hdi_terms_all(int32_t k, const hd_source *sources, const hd_laplacian *lap, int normal,
+                                hdi_scope *keep) {
+    hdi_scope work = hdi_scope_begin(keep->ctx, keep->e);
+    hdi_terms *all = HDI_TAKE(keep, hdi_terms, (int64_t)k + 1);
+    hd_error *e = keep->e;
+    hdi_terms_room room;
+    int64_t most = 1, total = 1;
+    int32_t q;
+    for (q = 0; q < k && e->status >= 0; q++) {
+        const int64_t size = (int64_t)sources[q].count * hdi_source_corners(sources + q);
+        if (hdi_source_check(sources + q, lap->n, e) < 0) e->column = q;
+        else most = most > size ? most : size;
+        total += size;
+    }
+    room = hdi_terms_take(&work, keep, most, total);
+    for (q = 0; q < k && e->status >= 0; q++)
+        if (hdi_terms_make(all + q, sources + q, lap->xyz, lap->row, normal, &room, e) < 0) e->column = q;
+    (void)hdi_scope_end(&work);
+    return all;
+}
+
+static hd_status hdi_vertex_check(const hd_laplacian *lap, int32_t v, hd_error *e) {
+    if (v >= 0 && v < lap->n) return HD_OK;
+    return hdi_fail_face(e, HD_ERR_INDEX, "heat: a source or vertex is not in the mesh", -1, v, v);
+}
+
+/* Checks sources, or vertices of pairs. *which becomes the index of one that is not in the mesh. */
+static hd_status hdi_vertices_check(const hd_laplacian *lap, int64_t k, const int32_t *vertex, int64_t *which,
+                                    hd_error *e) {
+    int64_t q;
+    for (q = 0; q < k && e->status >= 0; q++)
+        if (hdi_vertex_check(lap, vertex[q], e) < 0) *which = q;
+    return e->status;
+}
+
+/* ---- the pair grounded ---- */
 
 /* L with one vertex of each component held at zero. All by rows in elimination order. */
 typedef struct hdi_ground {
@@ -19006,7 +18957,6 @@ typedef struct hdi_ground {
     int32_t formed, traced;      /* traced: largest_trace is known, if all else is gone, too */
 } hdi_ground;
 
-/* ---- the pair grounded ---- */
 /* With one vertex of each component held at zero L has an inverse G, and
  *     commute time  d^2 = (e_i - e_j)' G (e_i - e_j),     biharmonic  d^2 = |P G (e_i - e_j)|_B^2,
  * where P takes out the mean of each component. Both are exact, whatever the spectrum. diag(G) comes by

@@ -767,7 +767,7 @@ static void op_matrices_ratio(void) {
         CHECK_MSG(lap->b_ratio >= 9.9e-10 && lap->b_ratio <= exact, "%g, exact %g", lap->b_ratio, exact);
         hd_laplacian_free(lap);
     }
-    for (i = 0; i < N; i++)                      /* below zero, which 40 steps of Lanczos do not see */
+    for (i = 0; i < N; i++)                      /* just below zero */
         for (p = B.row_ptr[i]; p < B.row_ptr[i + 1]; p++) B.val[p] = B.col[p] == i ? 1 - 1e-7 : 0.5;
     CHECK(hd_laplacian_matrices(&lap, &L, &B, 0, NULL, &e) == HD_ERR_NOT_POSITIVE);
     for (i = 0; i < N; i++)                      /* nearly singular, but Gershgorin says not quite */
