@@ -3446,6 +3446,29 @@ typedef struct hdi_single {
     int32_t nc;
 } hdi_single;
 
+/* R = F - (t L + theta B) X in rows [begin, end) of blocks X [n][8]: four complex numbers side by side, as in
+ * packs, or eight real ones. Row i of block r is at x + i stride + 8 r. l NULL: without L. b NULL: B is the
+ * diagonal mass. Number q has its own theta: re, and im twice the same four, or zeros with real numbers.
+ * Complex block r has one real F, f[r], for all four; number q of a real block has f[q], with entries f_step
+ * apart. NULL is zero. So u[r] += Re(coef' x), with - Im(coef) in coef[4..7]; real u[q] += coef[q] x. */
+typedef struct hdi_residual {
+    const int64_t *row_ptr;
+    const int32_t *col;
+    const double *l, *b, *mass;
+    const double *x;
+    int64_t stride, f_step;
+    int32_t begin, end, n_blocks;
+    int real;
+    double t, re[HDI_PACK], im[HDI_PACK], coef[HDI_PACK];
+    double first[HDI_PACK];      /* 1 for real parts, 0 for imaginary ones */
+    const double *f[HDI_PACK];
+    double *u[HDI_PACK];
+    double *r, *bx;              /* one block: R and B X, or NULL */
+    /* of each block |R|^2 in the norm of weight, |X|^2 in that of noise, and X'BX, by numbers; or NULL */
+    double (*sum)[3][HDI_PACK];
+    const double *weight, *noise;
+} hdi_residual;
+
 /* The kernels of one instruction set and width. A tile has mr x nr entries. Slices: groups of nr columns of a
  * matrix B, row by row, which is the form in which multiply reads fastest: b_row = nr, b_col = 1. */
 typedef struct hdi_kernels {
@@ -3462,6 +3485,7 @@ typedef struct hdi_kernels {
     void (*add)(double *y, const double *x, int64_t n);
     void (*up)(const hdi_single *g);
     void (*down)(const hdi_single *g);
+    void (*residual)(const hdi_residual *g);
 } hdi_kernels;
 
 /* The inverses of n of a pack's numbers; infinite where there is none. 0: there is such a number. By
@@ -3504,7 +3528,7 @@ static HDI_INLINE void hdi_pack_times(const double *HDI_RESTRICT l, const double
  *   load_rows(p, g, q), store_rows(p, v, g, q)   lanes for rows q.. of it; others are neither read nor
  *                        written, and are zero in a vector that is loaded
  *   fma, fnma            a b + c, c - a b
- *   lane(v, k), pick(v, k)  lane k everywhere; as a number
+ *   lane(v, k), pick(v, k), total(v)  lane k everywhere; as a number; the sum of all
  * and as constants the tiles that fit its registers: rows and columns of vectors of real numbers, and of
  * entries of packs; of packs with fewer than four lanes, parts of entries. */
 #define HDI_IN2 static HDI_INLINE
@@ -3587,6 +3611,9 @@ HDI_IN2 void hdi_store_rows_plain(double *p, double v, hdi_span g, int32_t q) {
     if (hdi_has_plain(g, q)) *p = v;
 }
 #endif
+HDI_IN2 double hdi_total_plain(hdi_vec_plain v) {
+    return HDI_PLAIN_WIDTH == 1 ? hdi_pick_plain(v, 0) : hdi_pick_plain(v, 0) + hdi_pick_plain(v, 1);
+}
 HDI_IN2 hdi_vec_plain hdi_lane_plain(hdi_vec_plain v, int k) { return hdi_all_plain(hdi_pick_plain(v, k)); }
 #if HDI_NEON
 HDI_IN2 hdi_vec_plain hdi_fma_plain(hdi_vec_plain a, hdi_vec_plain b, hdi_vec_plain c) {
@@ -3627,6 +3654,10 @@ HDI_IN4 __m256d hdi_lane_avx2(__m256d v, int k) {
     }
 }
 HDI_IN4 double hdi_pick_avx2(__m256d v, int k) { return _mm256_cvtsd_f64(hdi_lane_avx2(v, k)); }
+HDI_IN4 double hdi_total_avx2(__m256d v) {
+    const __m128d two = _mm_add_pd(_mm256_castpd256_pd128(v), _mm256_extractf128_pd(v, 1));
+    return _mm_cvtsd_f64(_mm_add_sd(two, _mm_unpackhi_pd(two, two)));
+}
 typedef hdi_span hdi_rows_avx2;
 HDI_IN4 hdi_span hdi_rows_of_avx2(int32_t lo, int32_t hi) { return hdi_rows_of_plain(lo, hi); }
 HDI_IN4 int hdi_has_avx2(hdi_span g, int32_t q) { return hdi_has_plain(g, q); }
@@ -3665,6 +3696,9 @@ HDI_IN8 __m512d hdi_lane_avx512(__m512d v, int k) {
     return _mm512_permutexvar_pd(_mm512_set1_epi64(k), v);
 }
 HDI_IN8 double hdi_pick_avx512(__m512d v, int k) { return _mm512_cvtsd_f64(hdi_lane_avx512(v, k)); }
+HDI_IN8 double hdi_total_avx512(__m512d v) {
+    return hdi_total_avx2(_mm256_add_pd(_mm512_castpd512_pd256(v), _mm512_extractf64x4_pd(v, 1)));
+}
 typedef uint32_t hdi_rows_avx512;                /* a bit for each */
 HDI_IN8 uint32_t hdi_rows_of_avx512(int32_t lo, int32_t hi) {
     return ((1u << (hi > 0 ? hi : 0)) - 1u) & ~0u << (lo > 0 ? lo : 0);
@@ -3727,6 +3761,7 @@ HDI_IN8 __m512d hdi_join_avx512(__m512d p, __m512d q) {
 #define HDI_SPREAD HDI_UNROLL
 #endif
 #define HDI_EIGHT (8 / HDI_WIDTH < HDI_REGS ? 8 / HDI_WIDTH : HDI_REGS)   /* nums of eight real rows */
+#define HDI_RESIDUAL_BLOCKS (HDI_WIDTH == 8 ? 8 : HDI_WIDTH == 4 ? 2 : 1)   /* whose sums registers hold */
 #endif
 
 /* A tile holds the rows of its own columns' pivots; else this does not compile. */
@@ -4232,6 +4267,87 @@ HDI_KERNEL void HDI_OF(add)(double *y, const double *x, int64_t n) {
     }
 }
 
+/* ---- rows of L and B against blocks ---- */
+
+enum { HDI_OF(residual_ahead) = 8 };
+#define HDI_VECS (8 / HDI_WIDTH)                 /* vectors of eight numbers */
+
+/* Row i of block r is complete: x, and its products l and b with L and B. */
+HDI_PART void HDI_OF(residual_end)(const int real, const hdi_residual *g, int64_t i, int32_t r,
+                                   const double *x, const hdi_vec *l, const hdi_vec *b) {
+    const hdi_vec t = HDI_OF(all)(g->t), own = HDI_OF(all)(real || !g->f[r] ? 0 : g->f[r][i]);
+    double f[HDI_PACK] = {0}, add[HDI_PACK];
+    hdi_vec sum = HDI_OF(all)(0);
+    int q, k;
+    for (q = 0; real && q < 8; q++)
+        if (g->f[q]) f[q] = g->f[q][i * g->f_step];
+    HDI_EACH(k, HDI_VECS) {
+        const int at = k * HDI_WIDTH, other = (k + HDI_VECS / 2) % HDI_VECS;
+        const hdi_vec v = HDI_OF(load)(x + at), im = HDI_OF(load)(g->im + at);
+        hdi_vec z = HDI_OF(load)(g->re + at) * b[k], rest = own * HDI_OF(load)(g->first + at);
+        if (real) rest = HDI_OF(load)(f + at);
+        if (!real && HDI_VECS == 1) z = HDI_OF(join)(z, im * b[k]);
+        else if (!real && at < 4) z = HDI_OF(fnma)(im, b[other], z);
+        else if (!real) z = HDI_OF(fma)(im, b[other], z);
+        rest = HDI_OF(fnma)(t, l[k], rest) - z;
+        if (real && g->r) HDI_OF(store)(g->r + 8 * i + at, rest);
+        if (real && g->bx) HDI_OF(store)(g->bx + 8 * i + at, b[k]);
+        if (g->sum) {
+            double *norm = g->sum[r][0] + at, *size = g->sum[r][1] + at, *energy = g->sum[r][2] + at;
+            HDI_OF(store)(norm, HDI_OF(fma)(HDI_OF(all)(g->weight[i]) * rest, rest, HDI_OF(load)(norm)));
+            HDI_OF(store)(size, HDI_OF(fma)(HDI_OF(all)(g->noise[i]) * v, v, HDI_OF(load)(size)));
+            HDI_OF(store)(energy, HDI_OF(fma)(v, b[k], HDI_OF(load)(energy)));
+        }
+        sum = HDI_OF(fma)(HDI_OF(load)(g->coef + at), v, sum);
+        HDI_OF(store)(add + at, HDI_OF(load)(g->coef + at) * v);
+    }
+    if (!real && g->u[r]) g->u[r][i] += HDI_OF(total)(sum);
+    for (q = 0; real && q < 8; q++)
+        if (g->u[q]) g->u[q][i] += add[q];
+}
+
+/* Row i of blocks [r, r + n). */
+HDI_PART void HDI_OF(residual_row)(const int n, const int real, const hdi_residual *g, int64_t i, int32_t r) {
+    const double *x = g->x + 8 * (int64_t)r, *own = x + i * g->stride;
+    const hdi_vec zero = HDI_OF(all)(0), mass = g->b ? zero : HDI_OF(all)(g->mass[i]);
+    hdi_vec l[HDI_RESIDUAL_BLOCKS][HDI_VECS], b[HDI_RESIDUAL_BLOCKS][HDI_VECS];
+    int64_t p;
+    int q, k;
+    HDI_EACH(q, n) {
+        HDI_PREFETCH_AT(own, HDI_OF(residual_ahead) * g->stride + 8 * q);
+        HDI_EACH(k, HDI_VECS) {
+            l[q][k] = zero;
+            b[q][k] = mass * HDI_OF(load)(own + 8 * q + k * HDI_WIDTH);
+        }
+    }
+    for (p = g->row_ptr[i]; p < g->row_ptr[i + 1] && (g->l || g->b); p++) {
+        const double *from = x + g->stride * g->col[p];
+        const hdi_vec lp = g->l ? HDI_OF(all)(g->l[p]) : zero, bp = g->b ? HDI_OF(all)(g->b[p]) : zero;
+        HDI_EACH(q, n)
+            HDI_EACH(k, HDI_VECS) {
+                const hdi_vec v = HDI_OF(load)(from + 8 * q + k * HDI_WIDTH);
+                l[q][k] = HDI_OF(fma)(lp, v, l[q][k]);
+                if (g->b) b[q][k] = HDI_OF(fma)(bp, v, b[q][k]);
+            }
+    }
+    HDI_EACH(q, n) HDI_OF(residual_end)(real, g, i, r + q, own + 8 * q, l[q], b[q]);
+}
+
+HDI_KERNEL void HDI_OF(residual)(const hdi_residual *g) {
+    int64_t i;
+    int32_t r;
+    for (i = g->begin; i < g->end; i++) {
+        for (r = 0; i % 8 == 0 && r < HDI_PACK; r++) {   /* more arrays than the processor looks ahead for */
+            if (g->u[r]) HDI_PREFETCH_AT(g->u[r], i + 64);
+            if (g->f[r]) HDI_PREFETCH_AT(g->f[r], (i + 64) * g->f_step);
+        }
+        for (r = 0; !g->real && r + HDI_RESIDUAL_BLOCKS <= g->n_blocks; r += HDI_RESIDUAL_BLOCKS)
+            HDI_OF(residual_row)(HDI_RESIDUAL_BLOCKS, 0, g, i, r);
+        for (; r < g->n_blocks && !g->real; r++) HDI_OF(residual_row)(1, 0, g, i, r);
+        if (g->real) HDI_OF(residual_row)(1, 1, g, i, 0);
+    }
+}
+
 /* ---- one real right-hand side ---- */
 /* It is bound by memory, and runs are short: AVX-512 takes AVX2's kernels, measured as fast or faster. A
  * vector goes along the rows. */
@@ -4351,7 +4467,7 @@ static const hdi_kernels *HDI_OF(real_kernels)(void) {
     static const hdi_kernels hdi_table = {
         1, HDI_OF(regs) * HDI_WIDTH, HDI_OF(cols), HDI_OF(real_product), HDI_OF(real_solve),
         HDI_OF(real_eliminate), HDI_OF(real_slices), HDI_OF(add), HDI_PASTE(single_up, HDI_SOLO),
-        HDI_PASTE(single_down, HDI_SOLO)
+        HDI_PASTE(single_down, HDI_SOLO), HDI_OF(residual)
     };
     return &hdi_table;
 }
@@ -4359,7 +4475,7 @@ static const hdi_kernels *HDI_OF(real_kernels)(void) {
 static const hdi_kernels *HDI_OF(pack_kernels)(void) {
     static const hdi_kernels hdi_table = {
         HDI_PACK, HDI_OF(pack_regs), HDI_OF(pack_cols), HDI_OF(pack_product), HDI_OF(pack_solve),
-        HDI_OF(pack_eliminate), HDI_OF(pack_slices), HDI_OF(add), NULL, NULL
+        HDI_OF(pack_eliminate), HDI_OF(pack_slices), HDI_OF(add), NULL, NULL, HDI_OF(residual)
     };
     return &hdi_table;
 }
@@ -16250,11 +16366,8 @@ static hd_status hdi_family_fill(hdi_family *fam, hd_c64 *work, hd_error *e) {
 }
 
 /* Most right-hand sides at a time: in all, by iterations, and in a batch with the factors of the poles.
- * Batches at a time. Right-hand sides that one check of residuals takes. */
-enum { HDI_LANES = 24, HDI_LANES_ITERATIVE = 4, HDI_LANES_BATCH = 8, HDI_BATCHES = 3, HDI_CHECK_MOST = 4 };
-
-/* Right-hand sides of a full batch, which AVX-512 checks in one pass, and rows that it fetches ahead. */
-enum { HDI_CHECK_BATCH = HDI_LANES_BATCH, HDI_CHECK_AHEAD = 8 };
+ * Batches at a time. */
+enum { HDI_LANES = 24, HDI_LANES_ITERATIVE = 4, HDI_LANES_BATCH = 8, HDI_BATCHES = 3 };
 
 enum { HDI_LANCZOS_MAX = 4096 };
 
@@ -16611,288 +16724,6 @@ static double hdi_resolvent_ratio(hd_c64 theta) {
 
 /* ---- the same by factorisation ---- */
 
-/* Measures the solutions of a pack's four systems for one right-hand side, in one pass over L and B. */
-typedef struct hdi_check {
-    const hd_laplacian *lap;
-    double t, theta[HDI_PACK];   /* re[4], im[4] */
-    double coef[HDI_PACK];       /* u += coef' x, by real and imaginary parts */
-    const double *weight, *noise;/* 1/diag(B); weights of rounding */
-    const double *rhs, *x;       /* x: its row i at x + i stride */
-    int64_t stride;
-    double *u, *bu;              /* the answer, and B times it */
-    double norm2[4], size2[4];   /* |rhs - A x|^2 in the norm of weight; |x|^2 in that of noise */
-    double first2;               /* |x|_B^2 of the first system */
-} hdi_check;
-
-/* The same of a real pole's solutions, for a batch of right-hand sides. */
-typedef struct hdi_real_check {
-    double theta, a;             /* the pole; u -= a x */
-    double norm2[HDI_CHECK_BATCH], size2[HDI_CHECK_BATCH], first2[HDI_CHECK_BATCH];
-} hdi_real_check;
-
-static void hdi_check_c(hdi_check *const *c, int32_t k) {
-    const hd_laplacian *lap = c[0]->lap;
-    int64_t p;
-    int32_t i, r;
-    int q;
-    for (r = 0; r < k; r++) {
-        hdi_check *h = c[r];
-        for (i = 0; i < lap->n_active; i++) {
-            const double *x = h->x + h->stride * i;
-            double l[HDI_PACK], b[HDI_PACK];
-            for (q = 0; q < HDI_PACK; q++) {
-                l[q] = 0;
-                b[q] = lap->B ? 0 : lap->mass[i] * x[q];
-            }
-            for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
-                const double *v = h->x + h->stride * lap->L.col[p];
-                for (q = 0; q < HDI_PACK; q++) l[q] += lap->L.val[p] * v[q];
-                if (lap->B) for (q = 0; q < HDI_PACK; q++) b[q] += lap->B[p] * v[q];
-            }
-            for (q = 0; q < 4; q++) {
-                const double re = h->rhs[i] - h->t * l[q] - (h->theta[q] * b[q] - h->theta[q + 4] * b[q + 4]);
-                const double im = -h->t * l[q + 4] - (h->theta[q] * b[q + 4] + h->theta[q + 4] * b[q]);
-                h->norm2[q] += h->weight[i] * (re * re + im * im);
-                h->size2[q] += h->noise[i] * (x[q] * x[q] + x[q + 4] * x[q + 4]);
-            }
-            h->first2 += x[0] * b[0] + x[4] * b[4];
-            for (q = 0; q < HDI_PACK; q++) {
-                h->u[i] += h->coef[q] * x[q];
-                h->bu[i] += h->coef[q] * b[q];
-            }
-        }
-    }
-}
-
-#if HDI_X86
-/* The sums for one right-hand side. */
-typedef struct hdi_check512 { __m512d l, b, norm, first, size; } hdi_check512;
-
-/* Row i is complete: l and b hold its products with L and B. */
-static HDI_AVX512 HDI_INLINE void hdi_check512_row(hdi_check *h, hdi_check512 *s, int32_t i,
-                                                   const double *x) {
-    const __m512d t = _mm512_set1_pd(h->t), re = hdi_twice_avx512(h->theta);
-    const __m512d im = hdi_twice_avx512(h->theta + 4);
-    const __m512d turned = _mm512_mask_sub_pd(im, 0x0f, _mm512_setzero_pd(), im);
-    const __m512d weight = _mm512_set1_pd(h->weight[i]), noise = _mm512_set1_pd(h->noise[i]);
-    const __m512d v = _mm512_loadu_pd(x), coef = _mm512_loadu_pd(h->coef);
-    __m512d r = _mm512_fnmadd_pd(t, s->l, _mm512_maskz_mov_pd(0x0f, _mm512_set1_pd(h->rhs[i])));
-    r = _mm512_fnmadd_pd(re, s->b, r);
-    r = _mm512_fnmadd_pd(turned, _mm512_shuffle_f64x2(s->b, s->b, 0x4e), r);
-    s->norm = _mm512_fmadd_pd(_mm512_mul_pd(weight, r), r, s->norm);
-    s->first = _mm512_fmadd_pd(v, s->b, s->first);
-    s->size = _mm512_fmadd_pd(_mm512_mul_pd(noise, v), v, s->size);
-    h->u[i] += _mm512_reduce_add_pd(_mm512_mul_pd(coef, v));
-    h->bu[i] += _mm512_reduce_add_pd(_mm512_mul_pd(coef, s->b));
-}
-
-static HDI_AVX512 HDI_INLINE void hdi_check512_end(hdi_check *h, const hdi_check512 *s) {
-    double norm[HDI_PACK], size[HDI_PACK], first[HDI_PACK];
-    int q;
-    _mm512_storeu_pd(norm, s->norm);
-    _mm512_storeu_pd(size, s->size);
-    _mm512_storeu_pd(first, s->first);
-    for (q = 0; q < 4; q++) {
-        h->norm2[q] += norm[q] + norm[q + 4];
-        h->size2[q] += size[q] + size[q + 4];
-    }
-    h->first2 += first[0] + first[4];
-}
-
-/* For n right-hand sides, whose rows of x stand side by side. */
-static HDI_AVX512 HDI_INLINE void hdi_check512_of(hdi_check *const *c, const int n) {
-    const hd_laplacian *lap = c[0]->lap;
-    const __m512d zero = _mm512_setzero_pd();
-    const int64_t stride = c[0]->stride;
-    const int full = lap->B != NULL;
-    hdi_check512 s[HDI_CHECK_MOST];
-    int64_t p;
-    int32_t i;
-    int r;
-    HDI_UNROLL
-    for (r = 0; r < n; r++) s[r].norm = s[r].first = s[r].size = zero;
-    for (i = 0; i < lap->n_active; i++) {
-        const double *at = c[0]->x + stride * i;
-        HDI_UNROLL
-        for (r = 0; r < n; r++) {
-            s[r].l = s[r].b = zero;
-            if (full) continue;
-            s[r].b = _mm512_mul_pd(_mm512_set1_pd(lap->mass[i]), _mm512_loadu_pd(at + HDI_PACK * r));
-        }
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
-            const double *from = c[0]->x + stride * lap->L.col[p];
-            const __m512d lx = _mm512_set1_pd(lap->L.val[p]), bx = full ? _mm512_set1_pd(lap->B[p]) : zero;
-            HDI_UNROLL
-            for (r = 0; r < n; r++) {
-                const __m512d v = _mm512_loadu_pd(from + HDI_PACK * r);
-                s[r].l = _mm512_fmadd_pd(lx, v, s[r].l);
-                if (full) s[r].b = _mm512_fmadd_pd(bx, v, s[r].b);
-            }
-        }
-        HDI_UNROLL
-        for (r = 0; r < n; r++) hdi_check512_row(c[r], &s[r], i, at + HDI_PACK * r);
-    }
-    HDI_UNROLL
-    for (r = 0; r < n; r++) hdi_check512_end(c[r], &s[r]);
-}
-
-/* The sums of eight vectors' entries. */
-static HDI_AVX512 HDI_INLINE __m512d hdi_sums512(const __m512d *v) {
-    __m512d two[4], four[2];
-    int r;
-    HDI_UNROLL
-    for (r = 0; r < 4; r++)
-        two[r] = _mm512_add_pd(_mm512_unpacklo_pd(v[2 * r], v[2 * r + 1]),
-                               _mm512_unpackhi_pd(v[2 * r], v[2 * r + 1]));
-    HDI_UNROLL
-    for (r = 0; r < 2; r++)
-        four[r] = _mm512_add_pd(_mm512_shuffle_f64x2(two[2 * r], two[2 * r + 1], 0x88),
-                                _mm512_shuffle_f64x2(two[2 * r], two[2 * r + 1], 0xdd));
-    return _mm512_add_pd(_mm512_shuffle_f64x2(four[0], four[1], 0x88),
-                         _mm512_shuffle_f64x2(four[0], four[1], 0xdd));
-}
-
-/* Row i of eight right-hand sides is complete, at its solutions; u and bu receive its part of the answers. */
-static HDI_AVX512 HDI_INLINE void hdi_check512_rows(hdi_check *const *c, const __m512d *l, const __m512d *b,
-                                                    double (*sum)[3][HDI_PACK], int32_t i, const double *at,
-                                                    __m512d *u, __m512d *bu) {
-    const hdi_check *h = c[0];
-    const __m512d t = _mm512_set1_pd(h->t), re = hdi_twice_avx512(h->theta);
-    const __m512d im = hdi_twice_avx512(h->theta + 4);
-    const __m512d turned = _mm512_mask_sub_pd(im, 0x0f, _mm512_setzero_pd(), im);
-    const __m512d weight = _mm512_set1_pd(h->weight[i]), noise = _mm512_set1_pd(h->noise[i]);
-    const __m512d coef = _mm512_loadu_pd(h->coef);
-    __m512d cv[HDI_CHECK_BATCH], cb[HDI_CHECK_BATCH];
-    int r;
-    HDI_UNROLL
-    for (r = 0; r < HDI_CHECK_BATCH; r++, sum++) {
-        const __m512d v = _mm512_loadu_pd(at + HDI_PACK * r);
-        __m512d rest = _mm512_fnmadd_pd(t, l[r], _mm512_maskz_mov_pd(0x0f, _mm512_set1_pd(c[r]->rhs[i])));
-        rest = _mm512_fnmadd_pd(re, b[r], rest);
-        rest = _mm512_fnmadd_pd(turned, _mm512_shuffle_f64x2(b[r], b[r], 0x4e), rest);
-        _mm512_storeu_pd(sum[0][0], _mm512_fmadd_pd(_mm512_mul_pd(weight, rest), rest,
-                                                    _mm512_loadu_pd(sum[0][0])));
-        _mm512_storeu_pd(sum[0][1], _mm512_fmadd_pd(_mm512_mul_pd(noise, v), v, _mm512_loadu_pd(sum[0][1])));
-        _mm512_storeu_pd(sum[0][2], _mm512_fmadd_pd(v, b[r], _mm512_loadu_pd(sum[0][2])));
-        cv[r] = _mm512_mul_pd(coef, v);
-        cb[r] = _mm512_mul_pd(coef, b[r]);
-    }
-    *u = hdi_sums512(cv);
-    *bu = hdi_sums512(cb);
-}
-
-/* The same of the lone real pole: l and b for all right-hand sides, x their row; sum: norm, size, first. Its
- * part is taken from u and bu. */
-static HDI_AVX512 HDI_INLINE void hdi_check512_real(hdi_check *const *c, const hdi_real_check *z, __m512d l,
-                                                    __m512d b, int32_t i, const double *x, __m512d *sum) {
-    const __m512d v = _mm512_loadu_pd(x), weight = _mm512_set1_pd(c[0]->weight[i]);
-    double rhs[HDI_CHECK_BATCH];
-    __m512d rest;
-    int r;
-    for (r = 0; r < HDI_CHECK_BATCH; r++) rhs[r] = c[r]->rhs[i];
-    rest = _mm512_fnmadd_pd(_mm512_set1_pd(c[0]->t), l, _mm512_loadu_pd(rhs));
-    rest = _mm512_fnmadd_pd(_mm512_set1_pd(z->theta), b, rest);
-    sum[0] = _mm512_fmadd_pd(_mm512_mul_pd(weight, rest), rest, sum[0]);
-    sum[1] = _mm512_fmadd_pd(_mm512_mul_pd(_mm512_set1_pd(c[0]->noise[i]), v), v, sum[1]);
-    sum[2] = _mm512_fmadd_pd(v, b, sum[2]);
-}
-
-/* Row i of the answers. There are more of them than the processor looks ahead for. */
-static HDI_AVX512 HDI_INLINE void hdi_check512_put(hdi_check *const *c, int32_t i, __m512d u, __m512d bu) {
-    double part[2][HDI_CHECK_BATCH];
-    int r;
-    _mm512_storeu_pd(part[0], u);
-    _mm512_storeu_pd(part[1], bu);
-    for (r = 0; r < HDI_CHECK_BATCH; r++) {
-        c[r]->u[i] += part[0][r];
-        c[r]->bu[i] += part[1][r];
-        if (i % 8) continue;
-        HDI_PREFETCH_AT(c[r]->u, i + 64);
-        HDI_PREFETCH_AT(c[r]->bu, i + 64);
-        HDI_PREFETCH_AT(c[r]->rhs, i + 64);
-    }
-}
-
-/* What the sums have come to. */
-static HDI_AVX512 void hdi_check512_close(hdi_check *const *c, double (*sum)[3][HDI_PACK],
-                                          const __m512d *real, hdi_real_check *z) {
-    int r, q;
-    _mm512_storeu_pd(z->norm2, real[0]);
-    _mm512_storeu_pd(z->size2, real[1]);
-    _mm512_storeu_pd(z->first2, real[2]);
-    for (r = 0; r < HDI_CHECK_BATCH; r++) {
-        for (q = 0; q < 4; q++) {
-            c[r]->norm2[q] = sum[r][0][q] + sum[r][0][q + 4];
-            c[r]->size2[q] = sum[r][1][q] + sum[r][1][q + 4];
-        }
-        c[r]->first2 = sum[r][2][0] + sum[r][2][4];
-    }
-}
-
-/* For HDI_CHECK_BATCH right-hand sides side by side, and with xr the lone real pole's solutions, by rows. */
-static HDI_AVX512 HDI_INLINE void hdi_check512_batch(hdi_check *const *c, const double *xr,
-                                                     hdi_real_check *z) {
-    const hd_laplacian *lap = c[0]->lap;
-    const __m512d zero = _mm512_setzero_pd(), a = _mm512_set1_pd(z->a);
-    const int64_t stride = c[0]->stride;
-    double sum[HDI_CHECK_BATCH][3][HDI_PACK];
-    __m512d real[3];
-    int64_t p;
-    int32_t i;
-    int r;
-    memset(sum, 0, sizeof sum);
-    real[0] = real[1] = real[2] = zero;
-    for (i = 0; i < lap->n_active; i++) {
-        const double *at = c[0]->x + stride * i;
-        const double *at_real = xr ? xr + HDI_CHECK_BATCH * (int64_t)i : at;
-        const __m512d mass = lap->B ? zero : _mm512_set1_pd(lap->mass[i]);
-        __m512d l[HDI_CHECK_BATCH], b[HDI_CHECK_BATCH], lr = zero, br = zero, u, bu;
-        HDI_UNROLL
-        for (r = 0; r < HDI_CHECK_BATCH; r++) {
-            HDI_PREFETCH_AT(at, HDI_CHECK_AHEAD * stride + HDI_PACK * r);
-            l[r] = zero;
-            b[r] = _mm512_mul_pd(mass, _mm512_loadu_pd(at + HDI_PACK * r));
-        }
-        if (xr) br = _mm512_mul_pd(mass, _mm512_loadu_pd(at_real));
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
-            const int64_t j = lap->L.col[p];
-            const __m512d lx = _mm512_set1_pd(lap->L.val[p]), bx = lap->B ? _mm512_set1_pd(lap->B[p]) : zero;
-            HDI_UNROLL
-            for (r = 0; r < HDI_CHECK_BATCH; r++) {
-                const __m512d v = _mm512_loadu_pd(c[0]->x + stride * j + HDI_PACK * r);
-                l[r] = _mm512_fmadd_pd(lx, v, l[r]);
-                b[r] = _mm512_fmadd_pd(bx, v, b[r]);
-            }
-            if (!xr) continue;
-            lr = _mm512_fmadd_pd(lx, _mm512_loadu_pd(xr + HDI_CHECK_BATCH * j), lr);
-            br = _mm512_fmadd_pd(bx, _mm512_loadu_pd(xr + HDI_CHECK_BATCH * j), br);
-        }
-        hdi_check512_rows(c, l, b, sum, i, at, &u, &bu);
-        if (xr) {
-            hdi_check512_real(c, z, lr, br, i, at_real, real);
-            u = _mm512_fnmadd_pd(a, _mm512_loadu_pd(at_real), u);
-            bu = _mm512_fnmadd_pd(a, br, bu);
-        }
-        hdi_check512_put(c, i, u, bu);
-    }
-    hdi_check512_close(c, sum, real, z);
-}
-
-static HDI_AVX512 void hdi_check_512_batch(hdi_check *const *c, const double *xr, hdi_real_check *z) {
-    if (xr) hdi_check512_batch(c, xr, z);
-    else hdi_check512_batch(c, NULL, z);
-}
-
-static HDI_AVX512 void hdi_check_512(hdi_check *const *c, int32_t k) {
-    switch (k) {
-        case 1: hdi_check512_of(c, 1); break;
-        case 2: hdi_check512_of(c, 2); break;
-        case 3: hdi_check512_of(c, 3); break;
-        default: hdi_check512_of(c, HDI_CHECK_MOST); break;
-    }
-}
-#endif
-
 /* What a plan has analysed and factorised: the pair in elimination order, and either the poles of a set at a
  * time in packs, with a lone real pole in the real factor, or B + g L for shift-and-invert Lanczos. */
 typedef struct hdi_elim {
@@ -17108,179 +16939,111 @@ static void hdi_lane_first(hdi_lane *lane, const hd_laplacian *lap, const hd_rat
     if (hdi_finite(factor)) lane->energy = hdi_min(lane->energy, factor * (fabs(sum) + lane->f_norm * error));
 }
 
-/* The check of pack i for a right-hand side and its solutions; nothing is added to an answer yet. */
-static hdi_check hdi_check_open(const hdi_elim *m, int32_t i, const double *rhs, const double *x,
-                                int64_t stride) {
-    hdi_check h;
+/* The rows of t L + theta B for solutions x, see hdi_residual; the sums are zero. */
+static hdi_residual hdi_residual_open(const hd_laplacian *lap, double t, const double *x, int32_t n_blocks,
+                                      double (*sum)[3][HDI_PACK]) {
+    hdi_residual g;
     int q;
-    memset(&h, 0, sizeof h);
-    h.lap = m->lap;
-    h.t = m->t;
-    for (q = 0; q < 4; q++) {
-        h.theta[q] = m->set.theta[hdi_elim_pole(m, i, q)].re;
-        h.theta[q + 4] = m->set.theta[hdi_elim_pole(m, i, q)].im;
-    }
-    h.weight = m->weight;
-    h.noise = m->noise;
-    h.rhs = rhs;
-    h.x = x;
-    h.stride = stride;
-    return h;
+    memset(&g, 0, sizeof g);
+    memset(sum, 0, (size_t)n_blocks * sizeof *sum);
+    g.row_ptr = lap->L.row_ptr;
+    g.col = lap->L.col;
+    g.l = lap->L.val;
+    for (q = 0; q < 4; q++) g.first[q] = 1;
+    g.b = lap->B;
+    g.mass = lap->mass;
+    g.t = t;
+    g.x = x;
+    g.stride = HDI_PACK * (int64_t)n_blocks;
+    g.f_step = 1;
+    g.end = lap->n_active;
+    g.n_blocks = n_blocks;
+    g.sum = sum;
+    return g;
 }
 
-static hdi_check hdi_batch_check(const hdi_elim *m, int32_t i, const hdi_lane *lane, const double *x,
-                                 int64_t stride) {
-    const int32_t n_here = hdi_low32(m->set.n_poles - (m->lone + 1 + 4 * i), 4);
-    hdi_check h = hdi_check_open(m, i, lane->rhs, x, stride);
+static void hdi_residual_run(const hdi_residual *g, hd_context *ctx) {
+    hdi_kernels_get(hdi_simd_level(ctx), 0)->residual(g);
+}
+
+/* The same of the poles of pack i, or for i < 0 of the lone real pole. w [n_poles]: weights of an answer. */
+static hdi_residual hdi_elim_residual(const hdi_elim *m, int32_t i, const hd_c64 *w, const double *x,
+                                      int32_t n_blocks, double (*sum)[3][HDI_PACK]) {
+    hdi_residual g = hdi_residual_open(m->lap, m->t, x, n_blocks, sum);
     int q;
-    for (q = 0; q < 4; q++) {
-        const hd_c64 a = m->set.a[hdi_elim_pole(m, i, q)];
-        const double count = q < n_here ? hdi_rat_count(&m->set, hdi_elim_pole(m, i, q)) : 0;
-        h.coef[q] = -count * a.re;
-        h.coef[q + 4] = count * a.im;
+    g.real = i < 0;
+    g.weight = m->weight;
+    g.noise = m->noise;
+    for (q = 0; q < HDI_PACK; q++) {
+        const int32_t p = i < 0 ? m->lone : hdi_elim_pole(m, i, q % 4);
+        const int repeated = i >= 0 && m->lone + 1 + 4 * i + q % 4 > p;
+        g.re[q] = m->set.theta[p].re;
+        g.im[q] = m->set.theta[p].im;
+        g.coef[q] = repeated ? 0 : q < 4 || i < 0 ? w[p].re : -w[p].im;
     }
-    h.u = lane->u;
-    h.bu = lane->tmp;
-    return h;
+    return g;
 }
 
-/* What the check of pack i has measured for a lane. */
-static void hdi_batch_note(const hdi_elim *m, int32_t i, const hdi_check *h, hdi_lane *to) {
-    const int32_t n_here = hdi_low32(m->set.n_poles - (m->lone + 1 + 4 * i), 4);
-    int32_t p;
-    int q;
-    for (q = 0; q < n_here; q++) {
-        p = hdi_elim_pole(m, i, q);
-        hdi_lane_residual(to, m->lap, &m->set, p, sqrt(h->norm2[q]), sqrt(h->size2[q]), 0);
-        if (to->watch < 0) continue;
-        to->pole_value[p] = hdi_c(h->x[h->stride * to->watch + q], h->x[h->stride * to->watch + q + 4]);
-    }
-    if (i > 0) return;
-    p = hdi_elim_pole(m, 0, 0);
-    hdi_lane_first(to, m->lap, &m->set, p, hdi_max(0, h->first2), sqrt(h->norm2[0]) + sqrt(h->size2[0]), h->x,
-                   h->stride);
+/* Notes for a lane what is measured of pole p, number q of a block. Re x of row i is at x + i stride. */
+static void hdi_batch_note(const hdi_elim *m, int32_t p, double (*sum)[HDI_PACK], int q, const double *x,
+                           int64_t stride, hdi_lane *to) {
+    const int pair = p != m->lone;
+    const double norm = sqrt(sum[0][q] + (pair ? sum[0][q + 4] : 0));
+    const double size = sqrt(sum[1][q] + (pair ? sum[1][q + 4] : 0));
+    const double *at = x + stride * hdi_high32(to->watch, 0);
+    hdi_lane_residual(to, m->lap, &m->set, p, norm, size, 0);
+    if (to->watch >= 0) to->pole_value[p] = hdi_c(at[0], pair ? at[4] : 0);
+    if (p > m->lone + 1) return;
+    hdi_lane_first(to, m->lap, &m->set, p, hdi_max(0, sum[2][q] + (pair ? sum[2][q + 4] : 0)), norm + size, x,
+                   stride);
 }
 
-/* The same for the lone real pole. x by rows of wide. */
-static void hdi_batch_real_note(const hdi_elim *m, const hdi_real_check *c, int32_t r, hdi_lane *to,
-                                const double *x, int32_t wide) {
-    hdi_lane_residual(to, m->lap, &m->set, 0, sqrt(c->norm2[r]), sqrt(c->size2[r]), 0);
-    if (to->watch >= 0) to->pole_value[0] = hdi_c(x[(int64_t)wide * to->watch + r], 0);
-    hdi_lane_first(to, m->lap, &m->set, 0, hdi_max(0, c->first2[r]), sqrt(c->norm2[r]) + sqrt(c->size2[r]),
-                   x + r, wide);
-}
-
-static hdi_real_check hdi_batch_real_check(const hdi_elim *m) {
-    hdi_real_check c;
-    memset(&c, 0, sizeof c);
-    c.theta = m->set.theta[0].re;
-    c.a = m->set.a[0].re;
-    return c;
-}
-
-/* Checks a pack's systems for the lanes listed, and adds their part of the answer and its bounds. The
- * solution of lane[r] is at x + 8 at[r]. */
-static void hdi_batch_pack(const hdi_elim *m, int32_t i, hdi_lane *const *lane, const int32_t *at, int32_t k,
-                           const double *x, int64_t stride) {
-    hdi_check c[HDI_CHECK_MOST], *list[HDI_CHECK_MOST] = {NULL};
-    int32_t r;
-    int together = 1;
+/* Checks the solutions x of k lanes for the poles of pack i, or for i < 0 the lone real pole, and adds their
+ * part of the answers and its bounds. A real block holds all lanes. */
+static void hdi_batch_check(const hdi_elim *m, int32_t i, const double *x, hdi_lane *lane, int32_t k) {
+    const int32_t first = i < 0 ? m->lone : m->lone + 1 + 4 * i, n_blocks = i < 0 ? 1 : k;
+    const int32_t n_here = i < 0 ? 1 : hdi_low32(m->set.n_poles - first, 4);
+    double sum[HDI_LANES_BATCH][3][HDI_PACK];
+    hd_c64 w[HD_MAX_POLES];
+    hdi_residual g;
+    int32_t p, r;
+    for (p = 0; p < m->set.n_poles; p++) w[p] = hdi_cscale(-hdi_rat_count(&m->set, p), m->set.a[p]);
+    g = hdi_elim_residual(m, i, w, x, n_blocks, sum);
     for (r = 0; r < k; r++) {
-        c[r] = hdi_batch_check(m, i, lane[r], x + HDI_PACK * at[r], stride);
-        list[r] = c + r;
-        together = together && at[r] == at[0] + r;
+        g.f[r] = lane[r].skip ? NULL : lane[r].rhs;
+        g.u[r] = lane[r].skip ? NULL : lane[r].u;
     }
-#if HDI_X86
-    if (together && m->pack[i].ops == hdi_kernels_get(2, 1)) hdi_check_512(list, k);
-    else
-#endif
-    hdi_check_c(list, k);
-    for (r = 0; r < k; r++) hdi_batch_note(m, i, c + r, lane[r]);
+    hdi_residual_run(&g, m->ctx);
+    for (r = 0; r < k; r++)
+        for (p = 0; p < n_here && !lane[r].skip; p++)
+            hdi_batch_note(m, first + p, i < 0 ? sum[0] : sum[r], i < 0 ? r : p,
+                           x + (i < 0 ? r : HDI_PACK * r + p), g.stride, lane + r);
 }
 
-/* The lone real pole's part for lane r. */
-static void hdi_batch_real(const hdi_elim *m, int32_t r, hdi_lane *lane, const double *xr, int32_t wide) {
-    const hd_laplacian *lap = m->lap;
-    const int64_t stride = wide;
-    const double *x = xr + r;
-    hdi_real_check c = hdi_batch_real_check(m);
-    int64_t p;
+/* The same of one right-hand side and the lone real pole; x [n]. */
+static void hdi_batch_check_one(const hdi_elim *m, const double *x, hdi_lane *lane) {
+    const int32_t n = m->sym.n;
+    const double a = m->set.a[0].re;
+    double sum[3][HDI_PACK];
     int32_t i;
-    for (i = 0; i < lap->n_active; i++) {
-        double l = 0, b = 0, rest;
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
-            const double v = x[stride * lap->L.col[p]];
-            l += lap->L.val[p] * v;
-            if (lap->B) b += lap->B[p] * v;
-        }
-        if (!lap->B) b = lap->mass[i] * x[stride * i];
-        rest = lane->rhs[i] - m->t * l - c.theta * b;
-        c.norm2[r] += m->weight[i] * rest * rest;
-        c.size2[r] += m->noise[i] * x[stride * i] * x[stride * i];
-        c.first2[r] += x[stride * i] * b;
-        lane->u[i] -= c.a * x[stride * i];
-        lane->tmp[i] -= c.a * b;
+    if (lane->skip) return;
+    memset(sum, 0, sizeof sum);
+    sum[2][0] = hdi_b_norm2(m->lap, x, lane->tmp);
+    hdi_pair_apply(m->lap, m->t, m->set.theta[0].re, x, lane->tmp);
+    for (i = 0; i < n; i++) {
+        const double rest = lane->rhs[i] - lane->tmp[i];
+        sum[0][0] += m->weight[i] * rest * rest;
+        sum[1][0] += m->noise[i] * x[i] * x[i];
+        lane->u[i] -= a * x[i];
     }
-    hdi_batch_real_note(m, &c, r, lane, xr, wide);
-}
-
-/* Whether all is checked by the kernel for full batches. */
-static int hdi_batch_is_full(const hdi_elim *m, int32_t n_list) {
-#if HDI_X86
-    return n_list == HDI_CHECK_BATCH && m->n_used > 0 && m->pack[0].ops == hdi_kernels_get(2, 1);
-#else
-    (void)m, (void)n_list;
-    return 0;
-#endif
-}
-
-/* Eight lanes in one pass over L and B: pack i, and with xr the lone real pole. */
-static void hdi_batch_full(const hdi_elim *m, int32_t i, hdi_lane *const *lane, const double *x,
-                           int64_t stride, const double *xr) {
-#if HDI_X86
-    hdi_real_check real = hdi_batch_real_check(m);
-    hdi_check c[HDI_CHECK_BATCH], *list[HDI_CHECK_BATCH];
-    int32_t r;
-    for (r = 0; r < HDI_CHECK_BATCH; r++) {
-        c[r] = hdi_batch_check(m, i, lane[r], x + HDI_PACK * r, stride);
-        list[r] = c + r;
-    }
-    hdi_check_512_batch(list, xr, &real);
-    for (r = 0; r < HDI_CHECK_BATCH; r++) {
-        if (xr) hdi_batch_real_note(m, &real, r, lane[r], xr, HDI_CHECK_BATCH);
-        hdi_batch_note(m, i, c + r, lane[r]);
-    }
-#else
-    (void)m, (void)i, (void)lane, (void)x, (void)stride, (void)xr;
-#endif
-}
-
-/* Checks the solutions of pack i, and with the first those of the lone real pole. */
-static void hdi_batch_check_all(const hdi_elim *m, int32_t i, const hdi_batch *b, hdi_lane *lane, int32_t k) {
-    const double *xr = i == 0 && m->lone >= 0 ? b->xr : NULL;
-    const int64_t stride = HDI_PACK * (int64_t)k;
-    hdi_lane *list[HDI_CHECK_BATCH] = {NULL};
-    int32_t r, n_list = 0, at[HDI_CHECK_BATCH];
-    for (r = 0; r < k; r++) {
-        if (lane[r].skip) continue;
-        list[n_list] = lane + r;
-        at[n_list++] = r;
-    }
-    if (hdi_batch_is_full(m, n_list)) {
-        hdi_batch_full(m, i, list, b->x, stride, xr);
-        return;
-    }
-    for (r = 0; r < k && xr; r++)
-        if (!lane[r].skip) hdi_batch_real(m, r, lane + r, xr, k > 1 ? 8 : 1);
-    for (r = 0; r < n_list && i < m->n_used; r += HDI_CHECK_MOST)
-        hdi_batch_pack(m, i, list + r, at + r, hdi_low32(n_list - r, HDI_CHECK_MOST), b->x, stride);
+    hdi_batch_note(m, 0, sum, 0, x, 1, lane);
 }
 
 /* Solves for the lone real pole. */
 static void hdi_batch_solve_real(const hdi_elim *m, const hdi_batch *b, const hdi_lane *lane, int32_t k,
                                  const char *active, hd_context *ctx) {
     hdi_sweep z = hdi_sweep_open(&m->real, k > 1 ? 8 : 1, b->xr, b->work);
-    const double *rhs[HDI_CHECK_BATCH] = {NULL};
+    const double *rhs[HDI_LANES_BATCH] = {NULL};
     int32_t r;
     for (r = 0; r < k; r++) rhs[r] = lane[r].skip ? NULL : lane[r].rhs;
     z.rhs = rhs;
@@ -17304,10 +17067,7 @@ static void hdi_batch_run(const hdi_elim *m, const hdi_batch *b, hdi_lane *lane,
         rhs[r] = lane[r].skip ? NULL : lane[r].rhs;
         for (j = 0; j < n; j++) {
             const double v = lane[r].skip ? 0 : lane[r].rhs[j];
-            if (!lane[r].skip) {
-                lane[r].u[j] = m->set.a0 * lane[r].f[j];
-                lane[r].tmp[j] = m->set.a0 * v;  /* B u, as far as it has got */
-            }
+            if (!lane[r].skip) lane[r].u[j] = m->set.a0 * lane[r].f[j];
             if (v == 0) continue;
             norm2 += m->weight[j] * v * v;
             if (touched++ < 64 * (int64_t)k) hdi_sweep_touch(s, (int32_t)j, b->active);
@@ -17317,15 +17077,17 @@ static void hdi_batch_run(const hdi_elim *m, const hdi_batch *b, hdi_lane *lane,
         lane[r].energy = lane[r].f_norm * lane[r].f_norm;
     }
     active = touched < 64 * (int64_t)k ? b->active : NULL;
-    if (m->lone >= 0) hdi_batch_solve_real(m, b, lane, k, active, ctx);
-    for (i = 0; i < hdi_high32(m->n_used, 1); i++) {
-        if (i < m->n_used) {                     /* or there is none beside the lone pole */
-            z = hdi_sweep_open(m->pack + i, k, b->x, b->work);
-            z.rhs = rhs;
-            z.active = active;
-            hdi_sweep_run(&z, ctx);
-        }
-        hdi_batch_check_all(m, i, b, lane, k);
+    if (m->lone >= 0) {
+        hdi_batch_solve_real(m, b, lane, k, active, ctx);
+        if (k == 1) hdi_batch_check_one(m, b->xr, lane);
+        else hdi_batch_check(m, -1, b->xr, lane, k);
+    }
+    for (i = 0; i < m->n_used; i++) {
+        z = hdi_sweep_open(m->pack + i, k, b->x, b->work);
+        z.rhs = rhs;
+        z.active = active;
+        hdi_sweep_run(&z, ctx);
+        hdi_batch_check(m, i, b->x, lane, k);
     }
 }
 
@@ -17604,12 +17366,8 @@ static hd_status hdi_family_run(const hdi_family *fam, double tol, double drift_
  * relative to the answer is above limit. */
 static hd_status hdi_elim_finish(const hdi_elim *m, double limit, double drift_t, int dense, hdi_lane *lane) {
     const hd_laplacian *lap = m->lap;
-    int32_t i;
     hdi_conserve(lap, lane, m->set.kind == HD_POLES_OWN ? hdi_rational_eval(&m->set, 0) : 1);
-    /* B u, what was added included */
-    for (i = 0; i < lap->n_active && lap->conserves; i++)
-        lane->tmp[i] += lap->mass[i] * lane->sums[lap->component[i]];
-    lane->u_norm = sqrt(hdi_max(0, hdi_dot(lane->u, lane->tmp, lap->n_active)));
+    lane->u_norm = sqrt(hdi_max(0, hdi_b_norm2(lap, lane->u, lane->tmp)));
     if (hdi_lane_negative(lap, lane)) lane->negative = 1;
     hdi_rational_bound(lap, &m->set, lane);
     hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, drift_t, dense));
@@ -26537,7 +26295,8 @@ static void hdi_distance_shared_rhs(hdi_distance_shared *z, const hdi_terms *sou
 /* Solves for the poles of pack i, and measures the residuals. */
 static void hdi_distance_shared_solve(hdi_distance_shared *z, int32_t i) {
     const hdi_elim *m = z->m;
-    hdi_check check, *list = &check;
+    double sum[1][3][HDI_PACK];
+    hdi_residual check;
     hdi_sweep sweep;
     const double *rhs = z->rhs;
     int32_t q;
@@ -26545,12 +26304,12 @@ static void hdi_distance_shared_solve(hdi_distance_shared *z, int32_t i) {
     sweep.rhs = &rhs;
     sweep.active = z->active;
     hdi_sweep_run(&sweep, m->ctx);
-    check = hdi_check_open(m, i, z->rhs, z->x, HDI_PACK);
-    check.u = z->rhs + m->sym.n;
-    check.bu = check.u + m->sym.n;
-    hdi_check_c(&list, 1);
+    check = hdi_elim_residual(m, i, m->set.a, z->x, 1, sum);
+    check.f[0] = z->rhs;
+    hdi_residual_run(&check, m->ctx);
     for (q = 0; q < 4 && 4 * i + q < m->set.n_poles; q++)
-        z->pole_off[4 * i + q] = hdi_residual_seen(sqrt(check.norm2[q]), sqrt(check.size2[q]));
+        z->pole_off[4 * i + q] = hdi_residual_seen(sqrt(sum[0][0][q] + sum[0][0][q + 4]),
+                                                   sqrt(sum[0][1][q] + sum[0][1][q + 4]));
 }
 
 /* The columns of a source at all times. Shared sets have pairs of poles only. */

@@ -533,82 +533,80 @@ static double *int_dense(const hd_laplacian *lap, double l, double b, int absolu
     return d;
 }
 
-/* Pole q's part of a right-hand side: residual and size of its solution, their share of the answer and of B times it. */
-static void int_check_right(const hdi_check *c, const double *L, const double *B, int q, double *want_u, double *want_bu) {
-    const int32_t n = c->lap->n_active;
-    double *part = KIT_NEW(double, 6 * n), *l = part + 2 * n, *b = l + 2 * n, norm2 = 0, size2 = 0, first2 = 0;
+/* Number q of block r: its residual, sizes and share of the answer by their definition. Real numbers are complex ones
+ * whose imaginary parts count nothing. */
+static void int_residual_right(const hdi_residual *g, const double *L, const double *B, int32_t r, int q, double *want_u) {
+    const int32_t n = g->end, parts = g->real ? 1 : 2;
+    double *part = KIT_NEW(double, 6 * n), *l = part + 2 * n, *b = l + 2 * n, want[3] = {0}, got[3] = {0};
     int32_t i, k;
-    for (k = 0; k < 2; k++) {                    /* real parts, then imaginary ones */
-        for (i = 0; i < n; i++) part[k * n + i] = c->x[c->stride * i + q + 4 * k];
+    for (k = 0; k < parts; k++) {
+        for (i = 0; i < n; i++) part[k * n + i] = g->x[g->stride * i + 8 * r + q + 4 * k];
         dense_apply(L, part + k * n, l + k * n, n);
         dense_apply(B, part + k * n, b + k * n, n);
         for (i = 0; i < n; i++) {
-            size2 += c->noise[i] * part[k * n + i] * part[k * n + i];
-            first2 += part[k * n + i] * b[k * n + i];
-            want_u[i] += c->coef[q + 4 * k] * part[k * n + i];
-            want_bu[i] += c->coef[q + 4 * k] * b[k * n + i];
+            want[1] += g->noise[i] * part[k * n + i] * part[k * n + i];
+            want[2] += part[k * n + i] * b[k * n + i];
+            want_u[i] += g->coef[q + 4 * k] * part[k * n + i];
         }
+        for (i = 0; i < 3; i++) got[i] += g->sum[r][i][q + 4 * k];
     }
     for (i = 0; i < n; i++) {
-        const double re = c->rhs[i] - c->t * l[i] - c->theta[q] * b[i] + c->theta[q + 4] * b[n + i];
-        const double im = -c->t * l[n + i] - c->theta[q] * b[n + i] - c->theta[q + 4] * b[i];
-        norm2 += c->weight[i] * (re * re + im * im);
+        const double re = g->f[g->real ? q : r][i] - g->t * l[i] - g->re[q] * b[i] + g->im[q] * b[n + i];
+        const double im = g->real ? 0 : -g->t * l[n + i] - g->re[q] * b[n + i] - g->im[q] * b[i];
+        want[0] += g->weight[i] * (re * re + im * im);
+        if (!g->r) continue;
+        CHECK(fabs(g->r[8 * i + q] - re) < 1e-12 * (1 + fabs(re)) && fabs(g->bx[8 * i + q] - b[i]) < 1e-12);
     }
-    CHECK_MSG(fabs(norm2 / c->norm2[q] - 1) < 1e-12 && fabs(size2 / c->size2[q] - 1) < 1e-12 &&
-              (q > 0 || fabs(first2 / c->first2 - 1) < 1e-12),
-              "pole %d: residual %g, told %g; size %g, told %g; norm %g, told %g", q, norm2, c->norm2[q], size2, c->size2[q],
-                  first2, c->first2);
+    for (i = 0; i < 3; i++)
+        CHECK_MSG(fabs(want[i] / got[i] - 1) < 1e-12, "sum %d of number %d, block %d: %g, told %g", (int)i, q, (int)r,
+                  want[i], got[i]);
 }
 
-/* Checks of packs for one to so many right-hand sides together, by their definition. */
-static void int_checks_of(const hd_laplacian *lap, void (*check)(hdi_check *const *c, int32_t k), int32_t k) {
-    const int32_t n = lap->n_active;
-    double *x = KIT_NEW(double, HDI_PACK * 6 * n), *rhs = KIT_NEW(double, 6 * n), *weight = KIT_NEW(double, 2 * n),
-        *u = KIT_NEW(double, 14 * n);
-    double *L = int_dense(lap, 1, 0, 0), *B = int_dense(lap, 0, 1, 0), *want = u + 12 * n;
-    hdi_check c[6], *list[6];
+/* k blocks together, by the kernels of one level. */
+static void int_residual_of(const hd_laplacian *lap, int level, int real, int32_t k) {
+    const int32_t n = lap->n_active, count = real ? 8 : k, each = real ? 1 : 4;
+    double *x = KIT_NEW(double, HDI_PACK * 6 * n), *f = KIT_NEW(double, 8 * n), *weight = KIT_NEW(double, 2 * n),
+        *u = KIT_NEW(double, 8 * n), *want = KIT_NEW(double, n), sum[6][3][HDI_PACK],
+        *L = int_dense(lap, 1, 0, 0), *B = int_dense(lap, 0, 1, 0);
+    hdi_residual g = hdi_residual_open(lap, 0.7, x, k, sum);
     uint64_t seed = 9;
-    int32_t i, r, q;
-    int_noise(x, HDI_PACK * 6 * n, &seed);
-    int_noise(rhs, 6 * n, &seed);
+    int32_t i;
+    int q;
+    int_noise(x, HDI_PACK * k * n, &seed);
+    int_noise(f, 8 * n, &seed);
+    int_noise(g.coef, HDI_PACK, &seed);
     for (i = 0; i < 2 * n; i++) weight[i] = 1 + 0.1 * (i % 7);
-    memset(c, 0, sizeof c);
-    for (r = 0; r < k; r++) {
-        list[r] = c + r;
-        c[r].lap = lap;
-        c[r].t = 0.7;
-        int_noise(c[r].coef, HDI_PACK, &seed);
-        for (q = 0; q < HDI_PACK; q++) c[r].theta[q] = 0.4 * q - 1.3;
-        c[r].weight = weight;
-        c[r].noise = weight + n;
-        c[r].rhs = rhs + r * n;
-        c[r].x = x + HDI_PACK * r;
-        c[r].stride = HDI_PACK * 6;
-        c[r].u = u + r * n;
-        c[r].bu = u + (6 + r) * n;
+    for (q = 0; q < HDI_PACK; q++) {
+        g.re[q] = 0.4 * (real ? q : q % 4) - 1.3;
+        g.im[q] = real ? 0 : 0.3 + 0.2 * (q % 4);
     }
-    check(list, k);
-    for (r = 0; r < k; r++) {
-        memset(want, 0, 2 * (size_t)n * sizeof *want);
-        for (q = 0; q < 4; q++) int_check_right(c + r, L, B, q, want, want + n);
-        CHECK_MSG(int_off(c[r].u, want, n) < 1e-13 && int_off(c[r].bu, want + n, n) < 1e-13,
-                  "%d checked together: %g, %g off", (int)k,
-                  int_off(c[r].u, want, n), int_off(c[r].bu, want + n, n));
+    g.real = real;
+    g.weight = weight;
+    g.noise = weight + n;
+    for (i = 0; i < count; i++) {
+        g.f[i] = f + i * n;
+        g.u[i] = u + i * n;
+    }
+    if (real) {
+        g.r = KIT_NEW(double, 8 * n);
+        g.bx = KIT_NEW(double, 8 * n);
+    }
+    hdi_kernels_get(level, 0)->residual(&g);
+    for (i = 0; i < count; i++) {
+        memset(want, 0, (size_t)n * sizeof *want);
+        for (q = 0; q < each; q++) int_residual_right(&g, L, B, real ? 0 : i, real ? i : q, want);
+        CHECK_MSG(int_off(u + i * n, want, n) < 1e-13, "%d blocks together: %g off", (int)k, int_off(u + i * n, want, n));
     }
 }
 
-static void int_checks(void) {
-    int form;
+static void int_residuals(void) {
+    int form, level;
     int32_t k;
-    for (form = 0; form < 2; form++) {
-        const hd_laplacian *lap = int_mesh(form);
-        for (k = 1; k <= HDI_CHECK_MOST; k++) {
-            int_checks_of(lap, hdi_check_c, k);
-#if HDI_X86
-            if (hdi_simd_best() == 2) int_checks_of(lap, hdi_check_512, k);
-#endif
+    for (form = 0; form < 2; form++)
+        for (level = 0; level <= hdi_simd_best(); level++) {
+            for (k = 1; k <= 6; k++) int_residual_of(int_mesh(form), level, 0, k);
+            int_residual_of(int_mesh(form), level, 1, 1);
         }
-    }
 }
 
 /* Weights of rounding: noise_j = sum_i M_ij c_i^2/D_i sum_k M_ik with M = t |L| + theta |B|, c_i half a unit for each term
@@ -1313,7 +1311,7 @@ static void int_few_tasks(void) {
 static void (*const int_tests[])(void) = {
     int_few_tasks, int_division, int_not_finite, int_complex, int_sizes, int_texts, int_sums, int_arrays, int_memory,
     int_large_pages, int_sorting, int_union_find, int_tridiagonal, int_tridiagonal_odd, int_collinear, int_krylov_done,
-    int_ildl, int_checks, int_noise_weights, int_pole_bounds, int_resolvent_pole, int_no_numbers, int_lanczos_bound,
+    int_ildl, int_residuals, int_noise_weights, int_pole_bounds, int_resolvent_pole, int_no_numbers, int_lanczos_bound,
     int_silan_slopes, int_ritz_above, int_probe_rows, int_pairs_degree, int_spectrum_proof,
     int_spectrum_twice, int_least_squares, int_exp_rest, int_shared_bounds, int_length_area, int_around, int_selection,
     int_eigen3, int_polygon, int_silan_bounds, int_damages_1, int_damages_2, int_damages_3,
