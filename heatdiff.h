@@ -396,7 +396,7 @@ typedef struct hd_laplacian_opts {
     int32_t neighbours;
     /* Triangles and polygons, without intrinsic_delaunay and tufted: 1: hd_laplacian_update may be called.
      * Takes 90 bytes more for each triangle, or 65 for each corner of polygons. Own matrices: 1:
-     * hd_laplacian_update_matrices may be called. Takes 24 bytes more for each entry. Points refuse it. */
+     * hd_laplacian_update_matrices may be called. Points refuse it. */
     int32_t updatable;
     /* Meshes: natural, or Dirichlet: every vertex at the border of the faces used is held at zero. The border
      * of points and matrices is not known for certain, so they refuse Dirichlet: list vertices in held. */
@@ -1123,7 +1123,7 @@ HEATDIFF_API hd_status hd_laplacian_update_view(hd_laplacian *lap, const hd_mesh
  * The pair is that of a new Laplacian of these matrices, to the last bit, if that has the same pattern.
  * Errors as hd_laplacian_matrices; HD_ERR_STRUCTURE (row, column, value: an entry that was not there). After
  *        an error nothing has changed
- * Cost   linear, and allocates nothing, unless B has to be factorised as in hd_laplacian_matrices */
+ * Cost   linear, with room for new values, unless B has to be factorised as in hd_laplacian_matrices */
 HEATDIFF_API hd_status hd_laplacian_update_matrices(hd_laplacian *lap, const hd_csr *L,
                                                     const hd_csr *B, double h, hd_error *err);
 
@@ -7090,10 +7090,8 @@ typedef struct hdi_rows {
 
 enum { HDI_MOVING_BLOCKS = 20 };
 
-/* What an update needs: of meshes the faces that had an area, and work; of the caller's matrices what is
- * named there. */
+/* What an update needs: of meshes the faces that had an area, and work; of the caller's matrices nothing. */
 typedef struct hd_moving {
-    struct hdi_moving_pair *pair;
     void *block[HDI_MOVING_BLOCKS];  /* all that is allocated */
     int32_t n_blocks;
     int32_t *face;              /* [faces] the caller's numbers */
@@ -7108,10 +7106,8 @@ static void hdi_moving_free(hdi_moving *x, hd_context *ctx) {
 /* Vertices held at zero. */
 typedef struct hd_holding {
     int border;                 /* those of the boundary too; 2: they are marked, and nothing is held */
-    int conserves;              /* as of a Laplacian that holds none */
     char *mark;                 /* [n] 1: held */
     char *leak;                 /* [n] 1: heat flows from here to a vertex that is held */
-    hd_laplacian *whole;        /* of updatable matrices: the Laplacian that holds none */
 } hdi_holding;
 
 /* [n] where a mesh marks the vertices of its boundary; NULL: they are not asked for. */
@@ -7119,24 +7115,16 @@ static char *hdi_lap_border(const hd_laplacian *lap) {
     return lap->holding && lap->holding->border ? lap->holding->mark : NULL;
 }
 
-/* Frees what a Laplacian points to. */
-static void hdi_lap_clear(hd_laplacian *lap, hd_context *ctx) {
-    hdi_moving_free(lap->moving, ctx);
-    hdi_csr_free(ctx, &lap->L);
+/* Frees the values of a pair. */
+static void hdi_pair_free(hd_laplacian *lap, hd_context *ctx) {
     if (lap->b_diag != lap->mass) hdi_free(ctx, lap->b_diag);
+    hdi_free(ctx, lap->L.val);
     hdi_free(ctx, lap->B);
     hdi_free(ctx, lap->mass);
-    hdi_free(ctx, lap->vertex);
-    hdi_free(ctx, lap->row);
-    hdi_free(ctx, lap->component);
-    hdi_free(ctx, lap->xyz);
-    hdi_free(ctx, lap->component_mass);
 }
 
 static void hdi_holding_free(hdi_holding *x, hd_context *ctx) {
     if (!x) return;
-    if (x->whole) hdi_lap_clear(x->whole, ctx);
-    hdi_free(ctx, x->whole);
     hdi_free(ctx, x->mark);
     hdi_free(ctx, x->leak);
     hdi_free(ctx, x);
@@ -7174,7 +7162,15 @@ static hd_status hdi_lap_held(hd_laplacian *lap, const hd_laplacian_opts *o, hd_
 static void hdi_laplacian_free(hd_laplacian *lap, hd_context *ctx) {
     if (!lap) return;
     hdi_holding_free(lap->holding, ctx);
-    hdi_lap_clear(lap, ctx);
+    hdi_moving_free(lap->moving, ctx);
+    hdi_pair_free(lap, ctx);
+    hdi_free(ctx, lap->L.row_ptr);
+    hdi_free(ctx, lap->L.col);
+    hdi_free(ctx, lap->vertex);
+    hdi_free(ctx, lap->row);
+    hdi_free(ctx, lap->component);
+    hdi_free(ctx, lap->xyz);
+    hdi_free(ctx, lap->component_mass);
     hdi_free(ctx, lap);
 }
 
@@ -7273,8 +7269,7 @@ static void hdi_held_components(hd_laplacian *lap) {
     const hdi_holding *x = lap->holding;
     int32_t i, leaks = 0;
     if (!x || x->border == 2) return;
-    lap->conserves = x->conserves;
-    for (i = 0; i < lap->n_active && x->conserves; i++) {
+    for (i = 0; i < lap->n_active && lap->conserves; i++) {
         double *mass = lap->component_mass + lap->component[i];
         if (*mass < 0 || !x->leak[lap->vertex[i]]) continue;
         *mass = -HUGE_VAL;                       /* not what a sum that overflows is */
@@ -7288,7 +7283,6 @@ static void hdi_held_components(hd_laplacian *lap) {
 /* Ends an update, once L, B and mass have their new values. */
 static void hdi_lap_renewed(hd_laplacian *lap) {
     lap->version++;
-    if (!lap->component) return;                 /* the whole of what is held needs none */
     hdi_lap_connect(lap);
     hdi_lap_component_masses(lap);
     hdi_held_components(lap);
@@ -7634,6 +7628,7 @@ static void hdi_lap_values(hd_laplacian *lap, hdi_rows *x) {
     int64_t b;
     x->lap = lap;
     hdi_parallel(lap->context, x->strands, hdi_rows_task, x);
+    lap->conserves = 1;
     lap->mesh.n_negative_weights = 0;
     for (b = 0; b * size < x->mesh.n; b++) lap->mesh.n_negative_weights += x->tally[b].n_negative;
 }
@@ -7646,7 +7641,6 @@ static hd_status hdi_lap_assemble(hd_laplacian *lap, hdi_rows *x, const double *
         hdi_progress(lap->context, "assemble", 0.4, e) < 0 || hdi_lap_places(lap, xyz, e) < 0)
         return e->status;
     hdi_lap_values(lap, x);
-    lap->conserves = 1;
     return hdi_progress(lap->context, "assemble", 0.8, e);
 }
 
@@ -7948,169 +7942,152 @@ static void hdi_component_add(const hd_laplacian *lap, const double *value, doub
 
 /* ---- the caller's own matrices ---- */
 
-/* Merges row v of L and B (both over vertices) on the active columns, the diagonal always there. An explicit
+/* The columns of row v of the pair: the union of L and B (both over vertices), and the diagonal. An explicit
  * zero whose mirror entry neither matrix stores is left out: the pattern becomes symmetric. col NULL: counts
  * only. */
-static int64_t hdi_pair_row(const hd_laplacian *lap, const hd_csr *L, const hd_csr *B, int32_t v,
-                            int32_t *col, double *Lx, double *Bx) {
+static int64_t hdi_pair_shape(const hd_laplacian *lap, const hd_csr *L, const hd_csr *B, int32_t v,
+                              int32_t *col) {
     int64_t p = L->row_ptr[v], q = B->row_ptr[v], n = 0;
     const int64_t p_end = L->row_ptr[v + 1], q_end = B->row_ptr[v + 1];
     int diagonal = 0;
     while (p < p_end || q < q_end || !diagonal) {
-        const int32_t cp = p < p_end ? L->col[p] : INT32_MAX, cq = q < q_end ? B->col[q] : INT32_MAX,
-                      cd = diagonal ? INT32_MAX : v;
-        const int32_t c = cp < cq ? (cp < cd ? cp : cd) : (cq < cd ? cq : cd);
-        const double l = cp == c ? L->val[p] : 0, b = cq == c ? B->val[q] : 0;
-        const int kept = l != 0 || b != 0 || c == v || hdi_csr_stores(L, c, v) || hdi_csr_stores(B, c, v);
-        if (lap->row[c] >= 0 && kept) {
-            if (col) {
-                col[n] = lap->row[c];
-                Lx[n] = l;
-                Bx[n] = b;
-            }
+        const int32_t cp = p < p_end ? L->col[p] : INT32_MAX, cq = q < q_end ? B->col[q] : INT32_MAX;
+        const int32_t c = hdi_low32(hdi_low32(cp, cq), diagonal ? INT32_MAX : v);
+        const int zero = !(cp == c && L->val[p] != 0) && !(cq == c && B->val[q] != 0);
+        if (lap->row[c] >= 0 && (!zero || c == v || hdi_csr_stores(L, c, v) || hdi_csr_stores(B, c, v))) {
+            if (col) col[n] = lap->row[c];
             n++;
         }
         p += cp == c;
         q += cq == c;
-        diagonal |= cd == c;
+        diagonal |= c == v;
     }
     return n;
+}
+
+/* Rows of the vertices that have entries in B, and the pattern of the pair. */
+static hd_status hdi_pair_pattern(hd_laplacian *lap, const hd_csr *L, const hd_csr *B, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    double *present = HDI_TAKE_ZERO(&s, double, lap->n);
+    int64_t nnz = 0, p;
+    int32_t i;
+    hd_csr a;
+    if (!present) return hdi_scope_end(&s);
+    for (i = 0; i < lap->n; i++)
+        for (p = B->row_ptr[i]; p < B->row_ptr[i + 1]; p++)
+            if (B->val[p] != 0) present[i] = 1;
+    if (hdi_lap_rows(lap, present, lap->holding ? lap->holding->mark : NULL, e) < 0) return hdi_scope_end(&s);
+    for (i = 0; i < lap->n_active; i++) nnz += hdi_pair_shape(lap, L, B, lap->vertex[i], NULL);
+    a = hdi_csr_take(&s, lap->n_active, lap->n_active, nnz, 0);
+    if (e->status < 0) return hdi_scope_end(&s);
+    for (i = 0, nnz = 0; i < lap->n_active; i++)
+        a.row_ptr[i + 1] = nnz += hdi_pair_shape(lap, L, B, lap->vertex[i], a.col + nnz);
+    lap->L = hdi_csr_keep(&s, a);
+    return hdi_scope_end(&s);
 }
 
 /* Numbers of the caller's matrices lie between this and its inverse: sums over all rows, and inverses of
  * masses times numbers that are not large themselves, stay within the range of doubles. */
 #define HDI_PAIR_MOST 1e290
 
-/* b = B 1, diag(B) and their signs; is B diagonal, how dominant is its diagonal; is L 1 = 0, up to the
- * rounding of its entries. root [n]: sqrt(diag(L)), raised by what the tolerance of the check for symmetry
- * leaves open. */
-static hd_status hdi_pair_measure(hd_laplacian *lap, double *root, int *diagonal, hd_error *e) {
-    int32_t i;
+/* What is summed up over a row of the caller's matrices; inert vertices do not count. */
+typedef struct hdi_pair_row {
+    double l_diag, l_abs, b_diag, b_all, b_mass; /* b_mass: without vertices held */
+    hdi_sum l_sum, b_off;                        /* b_off: sizes of the entries beside the diagonal */
+} hdi_pair_row;
+
+static hd_status hdi_pair_sums(const hd_laplacian *lap, const hd_csr *L, const hd_csr *B, int32_t v,
+                               hdi_pair_row *r, hd_error *e) {
     int64_t p;
-    *diagonal = 1;
-    lap->conserves = 1;
+    memset(r, 0, sizeof *r);
+    for (p = L->row_ptr[v]; p < L->row_ptr[v + 1]; p++) {
+        if (lap->row[L->col[p]] == HD_ROW_INERT) continue;
+        hdi_sum_add(&r->l_sum, L->val[p]);
+        r->l_abs += fabs(L->val[p]);
+        if (L->col[p] == v) r->l_diag = L->val[p];
+    }
+    for (p = B->row_ptr[v]; p < B->row_ptr[v + 1]; p++) {
+        const int32_t j = lap->row[B->col[p]];
+        if (B->val[p] != 0 && (j == HD_ROW_INERT || lap->row[v] == HD_ROW_INERT))
+            return hdi_fail_row(e, HD_ERR_STRUCTURE, "update of matrices: a vertex without mass stays so", v,
+                                B->col[p], B->val[p]);
+        r->b_all += B->val[p];
+        if (j >= 0) r->b_mass += B->val[p];
+        if (B->col[p] == v) r->b_diag = B->val[p];
+        else hdi_sum_add(&r->b_off, fabs(B->val[p]));
+    }
+    return HD_OK;
+}
+
+static hd_status hdi_pair_check(const hdi_pair_row *r, int32_t v, hd_error *e) {
+    if (!(r->b_diag > 0))
+        return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "B: a diagonal entry is not positive", v, v, r->b_diag);
+    if (r->b_diag < 1 / HDI_PAIR_MOST)
+        return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "B: a diagonal entry is below 1e-290", v, v, r->b_diag);
+    if (!(r->b_diag + r->b_off.high <= HDI_PAIR_MOST))
+        return hdi_fail_row(e, HD_ERR_NOT_FINITE, "B: the sizes of a row's entries exceed 1e290 together", v,
+                            -1, r->b_diag + r->b_off.high);
+    if (!(r->l_abs <= HDI_PAIR_MOST))
+        return hdi_fail_row(e, HD_ERR_NOT_FINITE, "L: the sizes of a row's entries exceed 1e290 together", v,
+                            -1, r->l_abs);
+    if (r->l_diag + 1e-12 * r->l_abs < 0)
+        return hdi_fail_row(e, HD_ERR_NOT_POSITIVE,
+                            "L has a negative diagonal entry: L is positive semi-definite "
+                            "here, minus the cotangent matrix of libigl",
+                            v, v, r->l_diag);
+    return HD_OK;
+}
+
+/* b = B 1, diag(B) and their signs; is B diagonal, how dominant is its diagonal; is L 1 = 0, up to the
+ * rounding of its entries. Rows of vertices held are looked at, too. root [n]: sqrt(diag(L)), raised by what
+ * the tolerance of the check for symmetry leaves open; vertices without mass have no limit. */
+static hd_status hdi_pair_measure(hd_laplacian *lap, const hd_csr *L, const hd_csr *B, double *root,
+                                  int *diagonal, hd_error *e) {
+    int32_t v;
+    *diagonal = lap->conserves = 1;
     lap->b_ratio = 1;
-    for (i = 0; i < lap->n_active; i++) {
-        const int32_t v = lap->vertex[i];
-        hdi_sum l_sum = {0, 0}, b_off = {0, 0};
-        double l_abs = 0, l_diag = 0, b_sum = 0, b_diag = 0;
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
-            hdi_sum_add(&l_sum, lap->L.val[p]);
-            l_abs += fabs(lap->L.val[p]);
-            b_sum += lap->B[p];
-            if (lap->L.col[p] != i) {
-                hdi_sum_add(&b_off, fabs(lap->B[p]));
-                continue;
-            }
-            l_diag = lap->L.val[p];
-            b_diag = lap->B[p];
-        }
-        if (!(b_diag > 0))
-            return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "B: a diagonal entry is not positive", v, v, b_diag);
-        if (b_diag < 1 / HDI_PAIR_MOST)
-            return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "B: a diagonal entry is below 1e-290", v, v, b_diag);
-        if (!(b_diag + b_off.high <= HDI_PAIR_MOST))
-            return hdi_fail_row(e, HD_ERR_NOT_FINITE, "B: the sizes of a row's entries exceed 1e290 together",
-                                v, -1, b_diag + b_off.high);
-        if (!(l_abs <= HDI_PAIR_MOST))
-            return hdi_fail_row(e, HD_ERR_NOT_FINITE, "L: the sizes of a row's entries exceed 1e290 together",
-                                v, -1, l_abs);
-        if (l_diag + 1e-12 * l_abs < 0)
-            return hdi_fail_row(e, HD_ERR_NOT_POSITIVE,
-                                "L has a negative diagonal entry: L is positive semi-definite "
-                                "here, minus the cotangent matrix of libigl",
-                                v, v, l_diag);
-        root[i] = sqrt(l_diag + 1e-12 * l_abs);
-        if (fabs(l_sum.high + l_sum.low) > 4 * DBL_EPSILON * l_abs) lap->conserves = 0;
-        if (b_off.high > 0) {                    /* Gershgorin */
+    lap->area = 0;
+    for (v = 0; v < lap->n; v++) {
+        const int32_t i = lap->row[v];
+        hdi_pair_row r;
+        root[v] = HUGE_VAL;
+        if (hdi_pair_sums(lap, L, B, v, &r, e) < 0) return e->status;
+        if (i == HD_ROW_INERT || (i == HD_ROW_HELD && r.b_diag == 0 && r.b_off.high == 0)) continue;
+        if (hdi_pair_check(&r, v, e) < 0) return e->status;
+        root[v] = sqrt(r.l_diag + 1e-12 * r.l_abs);
+        if (fabs(r.l_sum.high + r.l_sum.low) > 4 * DBL_EPSILON * r.l_abs) lap->conserves = 0;
+        if (r.b_off.high > 0) {                  /* Gershgorin */
+            const double rest = (r.b_diag - r.b_off.high) - r.b_off.low;
             *diagonal = 0;
-            b_off.high = (b_diag - b_off.high) - b_off.low;
-            lap->b_ratio = hdi_min(lap->b_ratio, (1 - 4 * DBL_EPSILON) * b_off.high / b_diag);
+            lap->b_ratio = hdi_min(lap->b_ratio, (1 - 4 * DBL_EPSILON) * rest / r.b_diag);
         }
-        lap->mass[i] = b_sum;
-        lap->b_diag[i] = b_diag;
-        lap->area += b_sum;
+        lap->area += r.b_all;
+        if (i < 0) continue;
+        lap->mass[i] = r.b_mass;
+        lap->b_diag[i] = r.b_diag;
     }
     return HD_OK;
 }
 
 /* What every positive semi-definite L satisfies: L_ij^2 <= L_ii L_jj. root as above. */
-static hd_status hdi_pair_semidefinite(const hd_laplacian *lap, const double *root, hd_error *e) {
-    int32_t i, j;
+static hd_status hdi_pair_semidefinite(const hd_csr *L, const double *root, hd_error *e) {
+    int32_t v;
     int64_t p;
-    for (i = 0; i < lap->n_active; i++) {
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
-            j = lap->L.col[p];
-            if (j <= i || fabs(lap->L.val[p]) <= (1 + 1e-10) * root[i] * root[j]) continue;
+    for (v = 0; v < L->n_rows; v++) {
+        for (p = L->row_ptr[v]; p < L->row_ptr[v + 1]; p++) {
+            const int32_t c = L->col[p];
+            if (c <= v || !(fabs(L->val[p]) > (1 + 1e-10) * root[v] * root[c])) continue;
             return hdi_fail_row(e, HD_ERR_NOT_POSITIVE,
                                 "L is not positive semi-definite: an entry is larger than the "
                                 "diagonal entries of its row and column allow",
-                                lap->vertex[i], lap->vertex[j], lap->L.val[p]);
+                                v, c, L->val[p]);
         }
     }
     return HD_OK;
 }
 
-static hd_status hdi_lap_matrices(hd_laplacian *lap, const hd_csr *L, const hd_csr *B,
-                                  hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
-    double *present = HDI_TAKE_ZERO(&s, double, lap->n), *b_diag, *root, *Bx;
-    int64_t nnz = 0, p;
-    hd_csr a;
-    int32_t i;
-    int diagonal;
-    if (!present) return hdi_scope_end(&s);
-    for (i = 0; i < lap->n; i++)
-        for (p = B->row_ptr[i]; p < B->row_ptr[i + 1]; p++)
-            if (B->val[p] != 0) present[i] = 1;
-    if (hdi_lap_rows(lap, present, NULL, e) < 0) return hdi_scope_end(&s);
-    for (i = 0; i < lap->n_active; i++) nnz += hdi_pair_row(lap, L, B, lap->vertex[i], NULL, NULL, NULL);
-    a = hdi_csr_take(&s, lap->n_active, lap->n_active, nnz, 1);
-    Bx = HDI_TAKE(&s, double, nnz);
-    b_diag = HDI_TAKE(&s, double, lap->n_active);
-    root = HDI_TAKE(&s, double, lap->n_active);
-    if (e->status < 0) return hdi_scope_end(&s);
-    lap->L = hdi_csr_keep(&s, a);
-    lap->B = (double *)hdi_keep(&s, Bx);
-    lap->b_diag = (double *)hdi_keep(&s, b_diag);
-    for (i = 0; i < lap->n_active; i++) {
-        p = lap->L.row_ptr[i];
-        lap->L.row_ptr[i + 1] = p + hdi_pair_row(lap, L, B, lap->vertex[i], lap->L.col + p, lap->L.val + p,
-                                                 lap->B + p);
-    }
-    if (hdi_pair_measure(lap, root, &diagonal, e) < 0) return hdi_scope_end(&s);
-    if (hdi_pair_semidefinite(lap, root, e) < 0) return hdi_scope_end(&s);
-    if (diagonal) {
-        hdi_free(lap->context, lap->B);
-        hdi_free(lap->context, lap->b_diag);
-        lap->B = NULL;
-        lap->b_diag = lap->mass;
-    }
-    return hdi_scope_end(&s);
-}
-
-/* Matrices whose values change: room for new ones, and work. */
-typedef struct hdi_moving_pair {
-    double *L, *B, *mass, *b_diag;
-    double *root;               /* [n_active] see hdi_pair_measure */
-} hdi_moving_pair;
-
-static hd_status hdi_moving_pair_make(hd_laplacian *lap, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
-    hdi_moving *x = hdi_moving_new(lap, e);
-    hdi_moving_pair *z = HDI_TAKE(&s, hdi_moving_pair, 1);
-    if (!x || !z) return hdi_scope_end(&s);
-    z->L = HDI_TAKE(&s, double, lap->L.nnz);
-    z->B = HDI_TAKE(&s, double, lap->L.nnz);
-    z->mass = HDI_TAKE(&s, double, lap->n_active);
-    z->b_diag = HDI_TAKE(&s, double, lap->n_active);
-    z->root = HDI_TAKE(&s, double, lap->n_active);
-    if (e->status >= 0) x->pair = z;
-    return hdi_moving_keep(x, &s);
-}
-
 /* The values of a matrix over vertices into val, on the pattern of lap. */
-static hd_status hdi_pair_refill(const hd_laplacian *lap, const hd_csr *a, double *val, hd_error *e) {
+static hd_status hdi_pair_values(const hd_laplacian *lap, const hd_csr *a, double *val, hd_error *e) {
     int32_t i;
     int64_t p, q;
     for (i = 0; i < lap->n_active; i++) {
@@ -8131,182 +8108,100 @@ static hd_status hdi_pair_refill(const hd_laplacian *lap, const hd_csr *a, doubl
     return HD_OK;
 }
 
-/* The entry (i,j) of L, which is there. */
-static int64_t hdi_lap_entry(const hd_laplacian *lap, int32_t i, int32_t j) {
-    const int64_t begin = lap->L.row_ptr[i];
-    return begin + hdi_lower_bound(lap->L.col + begin, lap->L.row_ptr[i + 1] - begin, j);
-}
-
-static hd_status hdi_pair_symmetric(const hd_laplacian *lap, const double *val, hd_error *e) {
-    int32_t i;
-    int64_t p;
-    for (i = 0; i < lap->n_active; i++) {
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1] && lap->L.col[p] < i; p++) {
-            const double x = val[p], y = val[hdi_lap_entry(lap, lap->L.col[p], i)];
-            if (fabs(x - y) > HDI_SYMMETRY_TOL * hdi_max(fabs(x), fabs(y)))
-                return hdi_fail_row(e, HD_ERR_NOT_SYMMETRIC, "matrix: not symmetric", lap->vertex[i],
-                                    lap->vertex[lap->L.col[p]], x - y);
-        }
-    }
-    return HD_OK;
-}
-
-/* B must not come to vertices that had none. */
-static hd_status hdi_pair_inert(const hd_laplacian *lap, const hd_csr *B, hd_error *e) {
-    int32_t v;
-    int64_t p;
-    for (v = 0; v < lap->n; v++)
-        for (p = B->row_ptr[v]; p < B->row_ptr[v + 1]; p++)
-            if (B->val[p] != 0 && (lap->row[v] < 0 || lap->row[B->col[p]] < 0))
-                return hdi_fail_row(e, HD_ERR_STRUCTURE, "update of matrices: a vertex without mass stays so",
-                                    v, B->col[p], B->val[p]);
-    return HD_OK;
-}
-
-/* next becomes lap with new values, all but components and a proof about B. The matrices are checked
- * by rows. */
+/* next becomes lap with new values, which live in s, all but components and a proof about B. The matrices are
+ * checked by rows. */
 static hd_status hdi_pair_next(hd_laplacian *next, const hd_laplacian *lap, const hd_csr *L, const hd_csr *B,
-                               hd_error *e) {
-    const hdi_moving_pair *z = lap->moving->pair;
+                               hdi_scope *s) {
+    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
+    double *root = HDI_TAKE(&own, double, lap->n);
     int diagonal = 1;
     *next = *lap;
-    next->L.val = z->L;
-    next->B = z->B;
-    next->mass = z->mass;
-    next->b_diag = z->b_diag;
-    next->area = 0;
-    if (hdi_pair_inert(lap, B, e) < 0 || hdi_pair_refill(lap, L, z->L, e) < 0 ||
-        hdi_pair_refill(lap, B, z->B, e) < 0 || hdi_pair_symmetric(lap, z->L, e) < 0 ||
-        hdi_pair_symmetric(lap, z->B, e) < 0 || hdi_pair_measure(next, z->root, &diagonal, e) < 0 ||
-        hdi_pair_semidefinite(next, z->root, e) < 0)
-        return e->status;
-    if (!lap->B && !diagonal)
-        return hdi_fail(e, HD_ERR_STRUCTURE, "update of matrices: B was diagonal, and is not any more");
-    if (lap->B) return HD_OK;
-    next->B = NULL;
-    next->b_diag = next->mass;
-    return HD_OK;
+    next->L.val = HDI_TAKE(s, double, lap->L.nnz);
+    next->B = HDI_TAKE(s, double, lap->L.nnz);
+    next->mass = HDI_TAKE(s, double, lap->n_active);
+    next->b_diag = HDI_TAKE(s, double, lap->n_active);
+    if (s->e->status < 0 || hdi_pair_values(lap, L, next->L.val, s->e) < 0 ||
+        hdi_pair_values(lap, B, next->B, s->e) < 0 ||
+        hdi_pair_measure(next, L, B, root, &diagonal, s->e) < 0 || hdi_pair_semidefinite(L, root, s->e) < 0)
+        return hdi_scope_end(&own);
+    if (lap->component && !lap->B && !diagonal)
+        hdi_fail(s->e, HD_ERR_STRUCTURE, "update of matrices: B was diagonal, and is not any more");
+    if (lap->component ? !lap->B : diagonal) {
+        next->B = NULL;
+        next->b_diag = next->mass;
+    }
+    return hdi_scope_end(&own);
 }
 
-/* Takes the values of next, and all that follows from them. */
-static void hdi_pair_take(hd_laplacian *lap, const hd_laplacian *next) {
-    const size_t rows = (size_t)lap->n_active * sizeof(double), all = (size_t)lap->L.nnz * sizeof(double);
-    memcpy(lap->L.val, next->L.val, all);
-    memcpy(lap->mass, next->mass, rows);
-    if (lap->B) memcpy(lap->B, next->B, all);
-    if (lap->B) memcpy(lap->b_diag, next->b_diag, rows);
-    lap->h = next->h;
-    lap->area = next->area;
-    lap->b_ratio = next->b_ratio;
-    lap->conserves = next->conserves;
-    hdi_lap_renewed(lap);
+/* Takes the values of next, which live in s and come from L, in the place of its own. */
+static void hdi_pair_take(hd_laplacian *lap, const hd_laplacian *next, const hd_csr *L, hdi_scope *s) {
+    int64_t p;
+    int32_t v;
+    hdi_pair_free(lap, lap->context);
+    *lap = *next;
+    hdi_keep(s, lap->L.val);
+    hdi_keep(s, lap->B);
+    hdi_keep(s, lap->mass);
+    if (lap->B) hdi_keep(s, lap->b_diag);
+    for (v = 0; v < lap->n && lap->holding; v++) {
+        lap->holding->leak[v] = 0;
+        for (p = L->row_ptr[v]; p < L->row_ptr[v + 1]; p++)
+            lap->holding->leak[v] |= lap->row[L->col[p]] == HD_ROW_HELD && L->val[p] != 0;
+    }
 }
 
 /* ---- vertices held at zero ----
  * Dirichlet conditions: what is held has no row and no column, in L nor in B. What is left is again a pair, L
  * positive semi-definite and B >= b_ratio diag(B), as parts of the whole that are cut out by rows and
- * columns. Meshes leave them out while their rows are filled, points and matrices are cut here. */
+ * columns. Meshes and matrices leave them out while their rows are filled, points are cut here. */
 
-/* The rows of the whole on the columns that are left, into lap, which may be the whole itself. Fills all of
- * L, B, mass, b_diag, xyz, vertex and row. */
-static void hdi_held_cut(hd_laplacian *lap, const hd_laplacian *whole) {
-    const hdi_holding *x = lap->holding;
-    const int32_t n = whole->n_active;
+/* Cuts them out of a pair with diagonal B. */
+static void hdi_held_cut(hd_laplacian *lap) {
+    char *leak = lap->holding->leak;
+    const int32_t n = lap->n_active;
     int64_t p = 0, q = 0;
     int32_t i, k = 0;
-    for (i = 0; i < n; i++) lap->row[whole->vertex[i]] = x->mark[whole->vertex[i]] ? HD_ROW_HELD : k++;
+    for (i = 0; i < n; i++)
+        lap->row[lap->vertex[i]] = lap->holding->mark[lap->vertex[i]] ? HD_ROW_HELD : k++;
     for (i = 0; i < n; i++) {
-        const int32_t v = whole->vertex[i], j = lap->row[v];
-        const int64_t end = whole->L.row_ptr[i + 1];
-        double sum = 0;
-        x->leak[v] = 0;
+        const int32_t v = lap->vertex[i], j = lap->row[v];
+        const int64_t end = lap->L.row_ptr[i + 1];
         for (; p < end; p++) {
-            const int32_t c = lap->row[whole->vertex[whole->L.col[p]]];
-            if (c < 0) x->leak[v] |= whole->L.val[p] != 0;
+            const int32_t c = lap->row[lap->vertex[lap->L.col[p]]];
+            if (c < 0) leak[v] |= lap->L.val[p] != 0;
             if (c < 0 || j < 0) continue;
             lap->L.col[q] = c;
-            lap->L.val[q] = whole->L.val[p];
-            if (lap->B) sum += lap->B[q] = whole->B[p];
-            q++;
+            lap->L.val[q++] = lap->L.val[p];
         }
         if (j < 0) continue;
         lap->L.row_ptr[j + 1] = q;
-        lap->mass[j] = lap->B ? sum : whole->mass[i];
-        lap->b_diag[j] = whole->b_diag[i];
-        if (lap->xyz) hdi_copy3(lap->xyz + hdi_triple(j), hdi_at3(whole->xyz, i));
+        lap->mass[j] = lap->mass[i];
+        hdi_copy3(lap->xyz + hdi_triple(j), hdi_at3(lap->xyz, i));
     }
     for (i = 0; i < n; i++)
-        if (lap->row[whole->vertex[i]] >= 0) lap->vertex[lap->row[whole->vertex[i]]] = whole->vertex[i];
+        if (lap->row[lap->vertex[i]] >= 0) lap->vertex[lap->row[lap->vertex[i]]] = lap->vertex[i];
     lap->L.n_rows = lap->L.n_cols = lap->n_active = k;
     lap->L.nnz = q;
-}
-
-/* The pair of lap becomes that of a Laplacian of its own, the whole; lap has room for as much. */
-static hd_laplacian *hdi_held_whole(hd_laplacian *lap, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
-    hd_laplacian *whole = HDI_TAKE(&s, hd_laplacian, 1);
-    const int64_t n = lap->n_active, nnz = lap->L.nnz;
-    hd_csr L = hdi_csr_take(&s, lap->n_active, lap->n_active, nnz, 1);
-    double *B = lap->B ? HDI_TAKE(&s, double, nnz) : NULL, *mass = HDI_TAKE(&s, double, n);
-    double *b_diag = lap->B ? HDI_TAKE(&s, double, n) : mass;
-    int32_t *vertex = HDI_TAKE(&s, int32_t, n), *row = HDI_TAKE(&s, int32_t, lap->n);
-    if (e->status < 0) {
-        (void)hdi_scope_end(&s);
-        return NULL;
-    }
-    s.n = 0;                                     /* all of it is kept */
-    *whole = *lap;
-    whole->holding = NULL;
-    memcpy(row, lap->row, (size_t)lap->n * sizeof *row);
-    lap->L = L;
-    lap->B = B;
-    lap->mass = mass;
-    lap->b_diag = b_diag;
-    lap->vertex = vertex;
-    lap->row = row;
-    lap->moving = NULL;
-    return lap->holding->whole = whole;
 }
 
 /* Ends the making of a Laplacian: takes out the vertices to hold that still have rows, and finds the
  * components of what is left. */
 static hd_status hdi_lap_hold(hd_laplacian *lap, hd_error *e) {
     hdi_holding *x = lap->holding;
-    const hd_laplacian *whole = lap;
     int32_t v, rows = 0;
     for (v = 0; v < lap->n && x; v++) {
         lap->n_held += x->mark[v];
         rows += x->mark[v] && lap->row[v] >= 0;
         if (x->mark[v] && lap->row[v] < 0) lap->row[v] = HD_ROW_HELD;
     }
-    if (x) x->conserves = lap->conserves;
     if (rows == lap->n_active) return hdi_held_all(e);
-    if (rows > 0 && lap->moving) whole = hdi_held_whole(lap, e);
-    if (!whole) return e->status;
-    if (rows > 0) hdi_held_cut(lap, whole);
+    if (rows > 0) hdi_held_cut(lap);
     if (hdi_lap_components(lap, e) < 0) return e->status;
     hdi_held_components(lap);
-    if (whole != lap || (lap->moving && !lap->moving->pair)) return HD_OK;
+    if (lap->moving) return HD_OK;
     hdi_holding_free(x, lap->context);
     lap->holding = NULL;
     return HD_OK;
-}
-
-/* What updates change: the Laplacian itself, or the one that holds none. */
-static hd_laplacian *hdi_lap_moved(hd_laplacian *lap) {
-    return lap->holding && lap->holding->whole ? lap->holding->whole : lap;
-}
-
-/* Takes over what an update has changed in the whole. */
-static void hdi_held_update(hd_laplacian *lap) {
-    const hd_laplacian *whole = hdi_lap_moved(lap);
-    if (whole == lap) return;
-    lap->h = whole->h;
-    lap->area = whole->area;
-    lap->b_ratio = whole->b_ratio;
-    lap->holding->conserves = whole->conserves;
-    hdi_held_cut(lap, whole);
-    hdi_lap_renewed(lap);
 }
 
 /* ---- pairs renumbered ---- */
@@ -17173,11 +17068,13 @@ static hd_status hdi_lap_ratio_known(hd_laplacian *lap, hd_error *e) {
 /* Takes the values of new matrices, or leaves all as it was. */
 static hd_status hdi_pair_replace(hd_laplacian *lap, const hd_csr *L, const hd_csr *B, double h,
                                   hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
     hd_laplacian next;
-    if (hdi_pair_next(&next, lap, L, B, e) < 0 || hdi_lap_ratio_known(&next, e) < 0) return e->status;
-    next.h = h;
-    hdi_pair_take(lap, &next);
-    return HD_OK;
+    if (hdi_pair_next(&next, lap, L, B, &s) >= 0 && hdi_lap_ratio_known(&next, e) >= 0) {
+        next.h = h;
+        hdi_pair_take(lap, &next, L, &s);
+    }
+    return hdi_scope_end(&s);
 }
 
 /* The means of the right-hand side, where constants are conserved, into lane->sums; else zeros. */
@@ -29673,9 +29570,8 @@ HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L
                             hdi_fail_row(c.e, HD_ERR_ARGUMENT,
                                          "laplacian of matrices: L and B differ in size", L->n_rows,
                                          B->n_rows, 0));
-    lap->h = h;
-    (void)hdi_lap_matrices(lap, L, B, c.e);
-    if (hdi_lap_ratio_known(lap, c.e) >= 0 && opts && opts->updatable) (void)hdi_moving_pair_make(lap, c.e);
+    if (hdi_pair_pattern(lap, L, B, c.e) >= 0 && hdi_pair_replace(lap, L, B, h, c.e) >= 0 && opts &&
+        opts->updatable) (void)hdi_moving_new(lap, c.e);
     return hdi_lap_end(out, lap, c.e->status, c.e);
 }
 
@@ -29754,34 +29650,28 @@ HEATDIFF_API hd_status hd_laplacian_apply(const hd_laplacian *lap, double alpha,
 }
 
 HEATDIFF_API hd_status hd_laplacian_update(hd_laplacian *lap, const double *xyz, hd_error *err) {
-    hd_laplacian *all;
     hdi_call c;
     if (hdi_enter(&c, lap ? lap->context : NULL, err) < 0) return c.e->status;
     if (!lap || !xyz) return hdi_missing(c.e);
-    all = hdi_lap_moved(lap);
-    hdi_refuse(!all->moving, "update: the Laplacian was not made with the option updatable", c.e);
-    hdi_refuse(all->moving && all->moving->pair,
+    hdi_refuse(!lap->moving, "update: the Laplacian was not made with the option updatable", c.e);
+    hdi_refuse(lap->moving && lap->kind == HD_LAPLACIAN_MATRICES,
                "update: matrices of your own take hd_laplacian_update_matrices", c.e);
-    if (c.e->status < 0) return c.e->status;
-    if (hdi_lap_update(all, xyz, c.e) >= 0) hdi_held_update(lap);
-    return c.e->status;
+    return c.e->status < 0 ? c.e->status : hdi_lap_update(lap, xyz, c.e);
 }
 
 HEATDIFF_API hd_status hd_laplacian_update_matrices(hd_laplacian *lap, const hd_csr *L, const hd_csr *B,
                                                     double h, hd_error *err) {
-    hd_laplacian *all;
     hdi_call c;
     if (hdi_enter(&c, lap ? lap->context : NULL, err) < 0) return c.e->status;
     if (!lap || !L || !B || !L->val || !B->val) return hdi_missing(c.e);
-    all = hdi_lap_moved(lap);
-    hdi_refuse(!all->moving || !all->moving->pair,
+    hdi_refuse(!lap->moving || lap->kind != HD_LAPLACIAN_MATRICES,
                "update of matrices: the Laplacian was not made of matrices with the option updatable", c.e);
     hdi_refuse(!hdi_finite(h) || h < 0, "update of matrices: h is negative or not finite", c.e);
     hdi_refuse(L->n_rows != lap->n || B->n_rows != lap->n || L->n_cols != lap->n || B->n_cols != lap->n,
                "update of matrices: a matrix has another size", c.e);
-    if (c.e->status >= 0 && hdi_csr_check(L, 0, c.e) >= 0 && hdi_csr_check(B, 0, c.e) >= 0 &&
-        hdi_pair_replace(all, L, B, h, c.e) >= 0)
-        hdi_held_update(lap);
+    if (c.e->status >= 0 && hdi_csr_check(L, 1, c.e) >= 0 && hdi_csr_check(B, 1, c.e) >= 0 &&
+        hdi_pair_replace(lap, L, B, h, c.e) >= 0)
+        hdi_lap_renewed(lap);
     return c.e->status;
 }
 

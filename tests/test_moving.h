@@ -422,15 +422,15 @@ static void mov_matrix_frames(const shape *s, hd_laplacian_kind kind, const char
         plan[k] = eng_create(lap, &ho);
     }
     for (frame = 0; frame < 4; frame++) {
-        int64_t calls;
+        uint64_t bytes;
         mov_bend(s, 0.3 * (3 - frame), xyz);
         CHECK(hd_laplacian_update(mesh, xyz, NULL) == HD_OK);
         memcpy(L.val, mesh->L.val, (size_t)L.nnz * sizeof(double));
         memcpy(B.val, diagonal ? mesh->mass : mesh->B, (size_t)B.nnz * sizeof(double));
         if (frame == 2) L.val[0] += 0.5;         /* heat is lost there */
-        calls = m.calls;
+        bytes = m.bytes;
         CHECK_MSG(hd_laplacian_update_matrices(lap, &L, &B, mesh->h, &e) == HD_OK, "%s: %s", what, e.text);
-        CHECK_MSG((m.calls == calls || !diagonal) && lap->version == frame + 1, "%s: the update allocates", what);
+        CHECK_MSG(m.bytes == bytes && lap->version == frame + 1, "%s: the update keeps memory", what);
         o.updatable = 0;
         o.context = NULL;
         fresh = NULL;
@@ -506,7 +506,7 @@ static void mov_matrix_pattern(void) {
     hd_csr_free(&bad, NULL);
     more[6] = 0.2;
     CHECK(hd_csr_from_triplets(&bad, N, N, N + 2, M, W, more, NULL, &e) == HD_OK);
-    CHECK(hd_laplacian_update_matrices(lap, &L, &bad, 1, &e) == HD_ERR_NOT_SYMMETRIC && e.row == 1 && e.column == 0);
+    CHECK(hd_laplacian_update_matrices(lap, &L, &bad, 1, &e) == HD_ERR_NOT_SYMMETRIC && e.row == 0 && e.column == 1);
     hd_csr_free(&bad, NULL);
     CHECK(hd_laplacian_apply(lap, 1, 10, x, y, &e) == HD_OK && y[0] == 11 && y[1] == -1 && lap->version == 1);
     hd_laplacian_free(lap);
