@@ -3396,7 +3396,7 @@ static int64_t hdi_triangle(int64_t u) { return u * (u + 1) / 2; }
  *     computers", 1998: left-looking LDL'. */
 
 /* A pack entry is re[4], im[4]: the same entry of four complex matrices. */
-enum { HDI_PACK = 8, HDI_PACK_LANES = 4 };
+enum { HDI_PACK = 8, HDI_PACK_LANES = 4, HDI_WIDE = 8 };   /* HDI_WIDE: real vectors in a block */
 enum { HDI_PANEL = 128 };              /* columns of a block of a panel, see [17] */
 enum { HDI_TILE_ROWS = 24, HDI_TILE_COLS = 8 };   /* of the largest tile */
 #define HDI_PIVOT_LEAST (DBL_MIN / 4)  /* the largest number whose inverse overflows, 2^-1024 */
@@ -13848,17 +13848,17 @@ static void hdi_deflate(const hd_laplacian *lap, hd_c64 *r, hd_c64 *mean) {
 }
 
 /* Limits of an iteration, set by hand. They only matter where rounding stops the residual from falling. */
-#define HDI_KRYLOV_NEAR 1e-9     /* |r|/|b|: below it the level that rounding allows is watched */
-#define HDI_KRYLOV_USABLE 1e-7   /* |r|/|b|: a solution at most this bad is handed out, with a warning */
-#define HDI_KRYLOV_ASTRAY 1e3    /* a recurrence that grows by this from its best has lost its way */
-#define HDI_KRYLOV_FLOOR 0.07    /* of the bound on rounding: less than twice that is usually seen */
+#define HDI_ITERATION_NEAR 1e-9     /* |r|/|b|: below it the level that rounding allows is watched */
+#define HDI_ITERATION_USABLE 1e-7   /* |r|/|b|: a solution at most this bad is handed out, with a warning */
+#define HDI_ITERATION_ASTRAY 1e3    /* a recurrence that grows by this from its best has lost its way */
+#define HDI_ITERATION_FLOOR 0.07    /* of the bound on rounding: less than twice that is usually seen */
 enum {
-    HDI_KRYLOV_PATIENCE = 50,    /* steps without halving the residual, besides as many as the best took */
-    HDI_KRYLOV_LOOK = 16         /* steps between looks at the progress callback */
+    HDI_ITERATION_PATIENCE = 50,    /* steps without halving the residual, besides as many as the best took */
+    HDI_ITERATION_LOOK = 16         /* steps between looks at the progress callback */
 };
 
 /* One system under solution. It can be stopped and taken up again. */
-typedef struct hdi_krylov {
+typedef struct hdi_iteration {
     hdi_system a;
     const hdi_precond *m;
     hd_solver solver;                    /* cocg or minres */
@@ -13872,13 +13872,13 @@ typedef struct hdi_krylov {
     int32_t broken, ready;
     hd_c64 rho, phibar, s1, s2;          /* recurrences */
     double beta, beta_old, c1, c2;
-} hdi_krylov;
+} hdi_iteration;
 
 /* Vectors besides x. A system that waits needs x alone. */
-static int hdi_krylov_vectors(hd_solver solver) { return solver == HD_SOLVER_MINRES ? 8 : 4; }
+static int hdi_iteration_vectors(hd_solver solver) { return solver == HD_SOLVER_MINRES ? 8 : 4; }
 
 /* Begins at x = 0; b_norm: what residuals are reported against. */
-static void hdi_krylov_start(hdi_krylov *k, double b_norm) {
+static void hdi_iteration_start(hdi_iteration *k, double b_norm) {
     memset(k->x, 0, (size_t)k->a.lap->n_active * sizeof *k->x);
     k->b_norm = b_norm;
     k->iterations = 0;
@@ -13887,7 +13887,7 @@ static void hdi_krylov_start(hdi_krylov *k, double b_norm) {
 /* r = b - A x and its norm, computed from x. The recurrences drift away from this residual. The part of r in
  * B W is rounding, which no direction can bring down. It would change nothing but the means of x, which the
  * caller sets. */
-static void hdi_krylov_residual(hdi_krylov *k, const hd_c64 *b) {
+static void hdi_iteration_residual(hdi_iteration *k, const hd_c64 *b) {
     const int32_t n = k->a.lap->n_active;
     int32_t i;
     hdi_system_apply(&k->a, k->x, k->r);
@@ -13899,7 +13899,7 @@ static void hdi_krylov_residual(hdi_krylov *k, const hd_c64 *b) {
 
 /* z = M^-1 r up to its constants, the means that k->mean receives. Returns r'z, for minres r^* z, which the
  * constants do not change, since 1'r = 0. Rows of a component mostly follow each other. */
-static hd_c64 hdi_krylov_precond(hdi_krylov *k, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z) {
+static hd_c64 hdi_iteration_precond(hdi_iteration *k, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z) {
     const hd_laplacian *lap = k->a.lap;
     const double sign = k->solver == HD_SOLVER_MINRES ? -1 : 1;
     const int32_t *comp = lap->component;
@@ -13920,25 +13920,25 @@ static hd_c64 hdi_krylov_precond(hdi_krylov *k, const hd_c64 *HDI_RESTRICT r, hd
 }
 
 /* A quotient of the recurrence. The method is marked as broken if it is not finite. */
-static hd_c64 hdi_krylov_quotient(hdi_krylov *k, hd_c64 a, hd_c64 b) {
+static hd_c64 hdi_iteration_quotient(hdi_iteration *k, hd_c64 a, hd_c64 b) {
     const int zero = b.re == 0 && b.im == 0;
     const hd_c64 q = zero ? b : hdi_cdiv(a, b);
     if (zero || !hdi_cfinite(q)) k->broken = 1;
     return q;
 }
 
-static void hdi_cocg_step(hdi_krylov *k) {
+static void hdi_cocg_step(hdi_iteration *k) {
     const int32_t n = k->a.lap->n_active, *comp = k->a.lap->component;
     hd_c64 *HDI_RESTRICT p = k->v[0], *HDI_RESTRICT q = k->v[1];
     hd_c64 *HDI_RESTRICT x = k->x, *HDI_RESTRICT r = k->r;
-    const hd_c64 rho = hdi_krylov_precond(k, r, q);
+    const hd_c64 rho = hdi_iteration_precond(k, r, q);
     hd_c64 alpha, beta = hdi_c(0, 0);
     double norm = 0;
     int32_t i;
-    if (k->ready) beta = hdi_krylov_quotient(k, rho, k->rho);
+    if (k->ready) beta = hdi_iteration_quotient(k, rho, k->rho);
     else memset(p, 0, (size_t)n * sizeof *p);
     for (i = 0; i < n; i++) p[i] = hdi_cadd(hdi_csub(q[i], k->mean[comp[i]]), hdi_cmul(beta, p[i]));
-    alpha = hdi_krylov_quotient(k, rho, hdi_system_apply(&k->a, p, q));
+    alpha = hdi_iteration_quotient(k, rho, hdi_system_apply(&k->a, p, q));
     if (k->broken) return;
     for (i = 0; i < n; i++) {
         x[i] = hdi_cadd(x[i], hdi_cmul(alpha, p[i]));
@@ -13950,15 +13950,15 @@ static void hdi_cocg_step(hdi_krylov *k) {
 }
 
 /* y = M^-1 w (v[2], v[1]) and beta, the square root of w^* y. M is real and positive definite. */
-static void hdi_minres_beta(hdi_krylov *k) {
-    const double s = hdi_krylov_precond(k, k->v[1], k->v[2]).re;
+static void hdi_minres_beta(hdi_iteration *k) {
+    const double s = hdi_iteration_precond(k, k->v[1], k->v[2]).re;
     if (!(s >= 0)) k->broken = 1;
     k->beta = s > 0 ? sqrt(s) : 0;
 }
 
 /* MINRES on the Saunders process A conj(V_k) = V_(k+1) T_k: V is unitary in the geometry of M, T is complex
  * symmetric and tridiagonal with real off-diagonals. Vectors: w_old, w, y, d, d_old, v. */
-static void hdi_minres_start(hdi_krylov *k) {
+static void hdi_minres_start(hdi_iteration *k) {
     const size_t bytes = (size_t)k->a.lap->n_active * sizeof *k->r;
     memset(k->v[0], 0, bytes);
     memset(k->v[3], 0, bytes);
@@ -13974,7 +13974,7 @@ static void hdi_minres_start(hdi_krylov *k) {
 
 /* One step of the process: the direction v = conj(y)/beta, the next w, y and beta. Returns the diagonal entry
  * v'Av of T. */
-static hd_c64 hdi_minres_extend(hdi_krylov *k) {
+static hd_c64 hdi_minres_extend(hdi_iteration *k) {
     const int32_t n = k->a.lap->n_active, *comp = k->a.lap->component;
     const double beta = k->beta;
     hd_c64 *w_old = k->v[0], *w = k->v[1], *y = k->v[2], *v = k->v[5], alpha;
@@ -13993,7 +13993,7 @@ static hd_c64 hdi_minres_extend(hdi_krylov *k) {
 }
 
 /* T is factorised as Q R by rotations [c s; -conj(s) c]. Its new column is (eps delta gamma) in R. */
-static void hdi_minres_step(hdi_krylov *k) {
+static void hdi_minres_step(hdi_iteration *k) {
     const int32_t n = k->a.lap->n_active;
     const hd_c64 *v = k->v[5];
     hd_c64 *d = k->v[3], *d_old = k->v[4], alpha, eps, delta, gbar, inverse, phi, psi, s;
@@ -14052,7 +14052,7 @@ static hd_status hdi_watch_look(const hdi_watch *w, double done, hd_error *e) {
 
 /* The share of the work that is done when a residual has come from start down to now, on a logarithmic
  * scale. */
-static double hdi_krylov_done(double start, double now, double target) {
+static double hdi_iteration_done(double start, double now, double target) {
     if (!(now > target) || !(start > target)) return 1;
     if (!(target > 0) || !hdi_finite(start) || !hdi_finite(now)) return 0;   /* bounds may be infinite */
     return hdi_max(0, (log(start) - log(now)) / (log(start) - log(target)));
@@ -14061,19 +14061,19 @@ static double hdi_krylov_done(double start, double now, double target) {
 /* Iterates until the recurrence says |r| <= target, or until it gains no more. Near the level of rounding it
  * ends at floor_share times the bound on it, since recurrences go astray below. start: |r| at the beginning,
  * for progress. most: iterations in all. */
-static hd_status hdi_krylov_round(hdi_krylov *k, double target, double floor_share, double start,
+static hd_status hdi_krylov_round(hdi_iteration *k, double target, double floor_share, double start,
                                   int64_t most, const hdi_watch *watch, hd_error *e) {
     double best = k->r_norm, least = target;
     int64_t step, best_step = 0;
     int near_rounding = 0;
     for (step = 1; k->r_norm > least && !k->broken && k->iterations < most; step++) {
-        if (!near_rounding && k->r_norm < HDI_KRYLOV_NEAR * k->b_norm) {
+        if (!near_rounding && k->r_norm < HDI_ITERATION_NEAR * k->b_norm) {
             near_rounding = 1;
             least = hdi_max(target,
                             floor_share * sqrt(hdi_cnorm2w(k->x, k->noise, k->a.lap->n_active)));
         }
-        if (step % HDI_KRYLOV_LOOK == 1 &&
-            hdi_watch_look(watch, hdi_krylov_done(start, k->r_norm, target), e) < 0) return e->status;
+        if (step % HDI_ITERATION_LOOK == 1 &&
+            hdi_watch_look(watch, hdi_iteration_done(start, k->r_norm, target), e) < 0) return e->status;
         if (k->solver == HD_SOLVER_MINRES) hdi_minres_step(k);
         else hdi_cocg_step(k);
         if (!hdi_finite(k->r_norm)) k->broken = 1;
@@ -14082,9 +14082,9 @@ static hd_status hdi_krylov_round(hdi_krylov *k, double target, double floor_sha
         if (k->r_norm < best / 2) {
             best = k->r_norm;
             best_step = step;
-        } else if (best < HDI_KRYLOV_USABLE * k->b_norm &&
-                   (step - best_step > HDI_KRYLOV_PATIENCE + best_step ||
-                    k->r_norm > HDI_KRYLOV_ASTRAY * best)) {
+        } else if (best < HDI_ITERATION_USABLE * k->b_norm &&
+                   (step - best_step > HDI_ITERATION_PATIENCE + best_step ||
+                    k->r_norm > HDI_ITERATION_ASTRAY * best)) {
             break;
         }
     }
@@ -14093,18 +14093,18 @@ static hd_status hdi_krylov_round(hdi_krylov *k, double target, double floor_sha
 
 /* Solves until |b - A x|, computed from x, is at most target. Rounding may keep it above. Then the solver
  * stops when another round does not halve it, and returns the best x with HD_WARN_ACCURACY. */
-static hd_status hdi_krylov_run(hdi_krylov *k, const hd_c64 *b, double target, int64_t max_iterations,
+static hd_status hdi_iteration_run(hdi_iteration *k, const hd_c64 *b, double target, int64_t max_iterations,
                                 const hdi_watch *watch, hd_error *e) {
     const size_t bytes = (size_t)k->a.lap->n_active * sizeof *k->x;
     const double start = k->r_norm;
-    double before, floor_share = HDI_KRYLOV_FLOOR;
+    double before, floor_share = HDI_ITERATION_FLOOR;
     if (!hdi_finite(start))
         return hdi_fail(e, HD_ERR_BREAKDOWN, "iterations leave the range of doubles: masses are too small");
     for (; k->r_norm > target; floor_share /= 4) {
         before = k->r_norm;
         memcpy(k->best, k->x, bytes);
         if (hdi_krylov_round(k, target, floor_share, start, max_iterations, watch, e) < 0) return e->status;
-        hdi_krylov_residual(k, b);               /* the recurrence says done: only x itself can confirm it */
+        hdi_iteration_residual(k, b);            /* the recurrence says done: only x itself can confirm it */
         if (k->r_norm <= target) return HD_OK;
         if (k->iterations >= max_iterations)
             return hdi_fail(e, HD_ERR_NOT_CONVERGED,
@@ -14112,9 +14112,9 @@ static hd_status hdi_krylov_run(hdi_krylov *k, const hd_c64 *b, double target, i
         if (k->r_norm <= before / 2) continue;
         if (!(k->r_norm <= before)) {
             memcpy(k->x, k->best, bytes);
-            hdi_krylov_residual(k, b);
+            hdi_iteration_residual(k, b);
         }
-        if (k->r_norm <= HDI_KRYLOV_USABLE * k->b_norm) return HD_WARN_ACCURACY;
+        if (k->r_norm <= HDI_ITERATION_USABLE * k->b_norm) return HD_WARN_ACCURACY;
         return hdi_fail(e, HD_ERR_BREAKDOWN, "the iteration broke down: no step brings the residual down");
     }
     return HD_OK;
@@ -16120,7 +16120,7 @@ static void hdi_noise_weights(const hd_laplacian *lap, double t, double theta, d
 }
 
 /* Largest |theta| of a set. */
-static double hdi_rat_reach(const hd_rational *set) {
+static double hdi_rat_largest(const hd_rational *set) {
     double most = 0;
     int32_t p;
     for (p = 0; p < set->n_poles; p++) most = hdi_max(most, hdi_cabs(set->theta[p]));
@@ -16133,7 +16133,7 @@ static double hdi_pole_size(const hd_rational *set, int32_t p) {
 }
 
 /* max (1 + x)/|x + theta| over x >= 0 */
-static double hdi_pole_reach(hd_c64 theta) {
+static double hdi_pole_gain(hd_c64 theta) {
     const double x = theta.re < 1 ? theta.im * theta.im / (1 - theta.re) - theta.re : -1;
     const double inside = x > 0 ? (1 + x) / hypot(x + theta.re, theta.im) : 0;
     return hdi_max(inside, hdi_max(1, 1 / hdi_cabs(theta)));
@@ -16193,11 +16193,11 @@ static void hdi_family_set(hdi_family *fam, const hd_rational *set, double t) {
     if (held) return;
     fam->filled = 0;
     fam->t = t;
-    hdi_noise_weights(fam->lap, t, hdi_rat_reach(set), fam->noise, fam->noise_work);
+    hdi_noise_weights(fam->lap, t, hdi_rat_largest(set), fam->noise, fam->noise_work);
 }
 
 /* Do poles make their preconditioners in turns? */
-static int hdi_family_turns(const hdi_family *fam) { return fam->n_values < fam->set.n_poles; }
+static int hdi_family_shares(const hdi_family *fam) { return fam->n_values < fam->set.n_poles; }
 
 /* Room for the preconditioners of the set. */
 static hd_status hdi_family_room(hdi_family *fam, hd_error *e) {
@@ -16219,7 +16219,7 @@ static hd_status hdi_family_room(hdi_family *fam, hd_error *e) {
     for (i = 0; i < fam->set.n_poles; i++) {
         fam->m[i].kind = fam->precond;
         fam->m[i].up = fam->up;
-        fam->m[i].d = fam->values + (hdi_family_turns(fam) ? 0 : (size_t)i * size);
+        fam->m[i].d = fam->values + (hdi_family_shares(fam) ? 0 : (size_t)i * size);
         fam->m[i].u = upper ? fam->m[i].d + n : NULL;
     }
     return HD_OK;
@@ -16255,7 +16255,7 @@ static hd_status hdi_family_fill(hdi_family *fam, hd_c64 *work, hd_error *e) {
     if (hdi_progress(fam->ctx, "precondition", 0, e) < 0) return e->status;
     job.fam = fam;
     job.work = work;
-    if (!hdi_family_turns(fam)) hdi_parallel(fam->ctx, fam->set.n_poles, hdi_fill_task, &job);
+    if (!hdi_family_shares(fam)) hdi_parallel(fam->ctx, fam->set.n_poles, hdi_fill_task, &job);
     fam->filled = 1;
     return HD_OK;
 }
@@ -16296,7 +16296,7 @@ typedef struct hdi_lane {
     double *tmp;                 /* [4 n] after u, or work of the systems */
     double *target, *sums, *spare_sums;  /* [n_components] heat per component, work */
     hd_c64 *b;                   /* begins the systems' arrays */
-    hdi_krylov *k;               /* [n_systems] */
+    hdi_iteration *k;               /* [n_systems] */
     hdi_gram *gram;              /* [n_systems] */
     hdi_lanczos lanczos;
     int32_t n_systems, skip;
@@ -16382,7 +16382,7 @@ static hd_status hdi_lane_lanczos(hdi_lane *lane, const hd_laplacian *lap, int32
  * are the lane's work between solves. What the lane held is lost. */
 static hd_status hdi_lane_systems_make(hdi_lane *lane, const hdi_family *fam, hd_error *e) {
     const uint64_t n = (uint64_t)fam->lap->n_active, count = (uint64_t)fam->set.n_poles;
-    const uint64_t shared = (uint64_t)hdi_krylov_vectors(fam->solver);
+    const uint64_t shared = (uint64_t)hdi_iteration_vectors(fam->solver);
     const uint64_t vectors = (1 + shared + count) * n + (uint64_t)fam->lap->n_components;
     const uint64_t size = vectors + count * (sizeof(hdi_gram) / sizeof(hd_c64));
     hdi_free(fam->ctx, lane->f);
@@ -16392,7 +16392,7 @@ static hd_status hdi_lane_systems_make(hdi_lane *lane, const hdi_family *fam, hd
     lane->k = NULL;
     lane->f = HDI_NEW(fam->ctx, double, 3 * n, e);
     if (lane->f) lane->b = HDI_NEW(fam->ctx, hd_c64, size, e);
-    if (lane->b) lane->k = HDI_NEW(fam->ctx, hdi_krylov, count + 1, e);
+    if (lane->b) lane->k = HDI_NEW(fam->ctx, hdi_iteration, count + 1, e);
     if (!lane->k) {
         hdi_lane_free(lane, fam->ctx);
         return e->status;
@@ -16408,12 +16408,12 @@ static hd_status hdi_lane_systems_make(hdi_lane *lane, const hdi_family *fam, hd
 /* The systems of a set, and their constants. */
 static hd_status hdi_lane_systems(hdi_lane *lane, const hdi_family *fam, hd_error *e) {
     const int64_t n = fam->lap->n_active;
-    const int32_t shared = hdi_krylov_vectors(fam->solver);
+    const int32_t shared = hdi_iteration_vectors(fam->solver);
     int32_t i, j;
     if ((!lane->k || lane->n_systems < fam->set.n_poles) && hdi_lane_systems_make(lane, fam, e) < 0)
         return e->status;
     for (i = 0; i < fam->set.n_poles; i++) {
-        hdi_krylov *k = lane->k + i;
+        hdi_iteration *k = lane->k + i;
         memset(k, 0, sizeof *k);
         k->r = lane->b + n;
         k->best = k->r + n;
@@ -16432,7 +16432,7 @@ static hd_status hdi_lane_systems(hdi_lane *lane, const hdi_family *fam, hd_erro
 }
 
 /* Bound on |x - exact|_B by the residual. */
-static double hdi_pole_error(const hdi_krylov *k) {
+static double hdi_pole_error(const hdi_iteration *k) {
     return k->r_norm * hdi_ratio_root(k->a.lap) / hdi_pole_distance(k->a.theta);
 }
 
@@ -16446,12 +16446,12 @@ static void hdi_lane_residual(hdi_lane *lane, const hd_laplacian *lap, const hd_
                               double found, double rounding, int iterated) {
     const double weight = hdi_pole_size(set, p) * hdi_ratio_root(lap);
     const double by_b = weight / hdi_pole_distance(set->theta[p]);
-    const double by_m = weight * hdi_pole_reach(set->theta[p]);
+    const double by_m = weight * hdi_pole_gain(set->theta[p]);
     const double solver = iterated ? found : 0, rest = rounding + found - solver;
     /* The sum of the answers loses half a unit of each |a x| twice a pole; |x|_B by that is at most
      * rounding/|theta|. */
     const double sum =
-        weight / hdi_rat_reach(set) * rounding * (2 * set->n_poles + 2) / (HDI_NOISE_TERMS + 1);
+        weight / hdi_rat_largest(set) * rounding * (2 * set->n_poles + 2) / (HDI_NOISE_TERMS + 1);
     lane->pole_off[p] = hdi_residual_seen(found, rounding);
     lane->seen_b += by_b * lane->pole_off[p];
     lane->seen_m += by_m * lane->pole_off[p];
@@ -16581,23 +16581,23 @@ static hd_status hdi_lane_run(hdi_lane *lane, const hdi_family *fam, int fresh, 
     int32_t p;
     part.share = n_poles > 0 ? watch->share / n_poles : 0;
     for (p = n_poles; p-- > 0;) {
-        hdi_krylov *k = lane->k + p;
+        hdi_iteration *k = lane->k + p;
         const int32_t last = p + HDI_WARM_POLES < n_poles ? p + HDI_WARM_POLES : n_poles - 1;
         const double weight = hdi_pole_size(&fam->set, p);
         const double fair = hdi_max(left / (p + 1), 0.1 * aim / n_poles);
         const double share = weight > 0 ? fair / weight : DBL_MAX;
         const double target = share * sqrt(fam->lap->b_ratio) * hdi_pole_distance(fam->set.theta[p]);
         const int runs = fresh || k->r_norm > target, warm = fresh && p < last && b_norm > 0;
-        if (runs && hdi_family_turns(fam)) hdi_family_make(fam, p, k->r);
-        if (fresh) hdi_krylov_start(k, b_norm);
+        if (runs && hdi_family_shares(fam)) hdi_family_make(fam, p, k->r);
+        if (fresh) hdi_iteration_start(k, b_norm);
         if (warm) hdi_warm_start(lane, fam, p, last, gram);
-        if (runs) hdi_krylov_residual(k, lane->b);
+        if (runs) hdi_iteration_residual(k, lane->b);
         if (warm && !(k->r_norm < b_norm)) {
-            hdi_krylov_start(k, b_norm);
-            hdi_krylov_residual(k, lane->b);
+            hdi_iteration_start(k, b_norm);
+            hdi_iteration_residual(k, lane->b);
         }
         part.from = watch->from + part.share * (n_poles - 1 - p);
-        status = hdi_krylov_run(k, lane->b, target, fam->max_iterations, &part, e);
+        status = hdi_iteration_run(k, lane->b, target, fam->max_iterations, &part, e);
         if (status < 0) {
             if (status == HD_ERR_NOT_CONVERGED) e->value = k->r_norm / k->b_norm;
             if (status != HD_ERR_CANCELLED) e->pole = p;
@@ -16629,8 +16629,8 @@ typedef struct hdi_elim {
     double *weight;              /* [n] 1/diag(B) */
     /* [n] weights of rounding, of the poles' matrices and of B + shift L; [n] work after them */
     double *noise, *noise_shift;
-    double *reach;               /* [n] bound of diag((B + tL)^-1) for reach_t, or NULL */
-    double reach_t;
+    double *resolvent;           /* [n] bound of diag((B + tL)^-1) for resolvent_t, or NULL */
+    double resolvent_t;
     hdi_symbolic sym;
     hdi_factor *pack, real, shifted;     /* pack [HD_MAX_POLES/4] */
     int32_t n_packs, n_used;     /* packs that have room; packs of the set */
@@ -16647,8 +16647,8 @@ static void hdi_elim_drop(hdi_elim *m) {
     while (m->n_packs > 0) hdi_factor_free(m->pack + --m->n_packs);
     hdi_factor_free(&m->real);
     hdi_factor_free(&m->shifted);
-    hdi_free(m->ctx, m->reach);
-    m->reach = NULL;
+    hdi_free(m->ctx, m->resolvent);
+    m->resolvent = NULL;
     m->filled = 0;
 }
 
@@ -16769,7 +16769,7 @@ static hd_status hdi_elim_poles(hdi_elim *m, const hd_rational *set, double t, h
     m->set = *set;                               /* weights cost nothing */
     if (there) return HD_OK;
     m->filled = 0;
-    m->reach_t = -1;
+    m->resolvent_t = -1;
     m->t = t;
     m->lone = hdi_set_lone(set) ? 0 : -1;
     m->n_used = hdi_set_packs(set);
@@ -16788,7 +16788,7 @@ static hd_status hdi_elim_poles(hdi_elim *m, const hd_rational *set, double t, h
             return e->status;
         }
     }
-    hdi_noise_weights(m->lap, t, hdi_rat_reach(set), m->noise, m->noise_shift + m->lap->n_active);
+    hdi_noise_weights(m->lap, t, hdi_rat_largest(set), m->noise, m->noise_shift + m->lap->n_active);
     m->filled = 1;
     return HD_OK;
 }
@@ -17165,7 +17165,7 @@ static void hdi_rational_bound(const hd_laplacian *lap, const hd_rational *set, 
     }
     for (p = 0; p < set->n_poles; p++)           /* the sum of the answers again: |x_v| <= sqrt(g_v) |x|_M */
         lane->off_m.rounding += (set->n_poles + 1) * DBL_EPSILON * hdi_pole_size(set, p) *
-            hdi_pole_reach(set->theta[p]) * sqrt(lane->energy);
+            hdi_pole_gain(set->theta[p]) * sqrt(lane->energy);
     if (set->a0 != 0 && lane->f_off > 0) {       /* nothing is known of f's error in the norm of B + tL */
         lane->off.rounding += fabs(set->a0) * lane->f_off;
         lane->off_m.rounding = HUGE_VAL;
@@ -17406,38 +17406,39 @@ static double hdi_constant_part(const hd_laplacian *lap, int32_t i) {
 }
 
 /* A factor for the rounding of an inverse's entries that serve as bounds. */
-#define HDI_REACH_SLACK 1.01
+#define HDI_RESOLVENT_SLACK 1.01
 
 /* Bytes of the first pack's update matrices, which are free between its factorisations and inversions. */
 static uint64_t hdi_elim_room(const hdi_elim *m, int32_t packs) {
     return packs > 0 ? HDI_PACK * sizeof(double) * (uint64_t)m->sym.work : 0;
 }
 
-/* m->reach: a bound of diag((B + tL)^-1) for the time of the poles, from the real factor at hand or a new
+/* m->resolvent: a bound of diag((B + tL)^-1) for the time of the poles, from the real factor at hand or a new
  * one, in the room of the first pack where it fits. */
 static hd_status hdi_elim_bound(hdi_elim *m, hd_error *e) {
-    const double theta = m->lone >= 0 ? m->set.theta[0].re : 1, factor = HDI_REACH_SLACK * hdi_max(1, theta);
+    const double theta = m->lone >= 0 ? m->set.theta[0].re : 1;
+    const double factor = HDI_RESOLVENT_SLACK * hdi_max(1, theta);
     hdi_factor own, *real = m->lone >= 0 ? &m->real : &own;
     hdi_scope s;
     int32_t i;
-    if (m->reach && m->reach_t == m->t) return HD_OK;
+    if (m->resolvent && m->resolvent_t == m->t) return HD_OK;
     s = hdi_scope_begin(m->ctx, e);
-    if (!m->reach) m->reach = HDI_NEW(m->ctx, double, m->sym.n, e);
+    if (!m->resolvent) m->resolvent = HDI_NEW(m->ctx, double, m->sym.n, e);
     s.left = hdi_elim_room(m, m->n_used);
     if (s.left > 0) s.room = (char *)(void *)m->pack->work;
     if (m->lone < 0) hdi_factor_take(&own, &m->sym, 1, &s);
     if (e->status >= 0 && (m->lone >= 0 || hdi_elim_real(m, real, m->t, theta, e) >= 0) &&
-        hdi_elim_inverse_diagonal(m, real, &factor, m->reach, &s) >= 0) {
+        hdi_elim_inverse_diagonal(m, real, &factor, m->resolvent, &s) >= 0) {
         for (i = 0; i < m->sym.n; i++) {
             const double most = hdi_inverse_mass(m->lap, i);
-            if (!(m->reach[i] > 0 && m->reach[i] < most)) m->reach[i] = most;
-            m->reach[i] = hdi_max(m->reach[i], hdi_constant_part(m->lap, i));
+            if (!(m->resolvent[i] > 0 && m->resolvent[i] < most)) m->resolvent[i] = most;
+            m->resolvent[i] = hdi_max(m->resolvent[i], hdi_constant_part(m->lap, i));
         }
-        m->reach_t = m->t;
+        m->resolvent_t = m->t;
     }
     if (e->status < 0) {
-        hdi_free(m->ctx, m->reach);
-        m->reach = NULL;
+        hdi_free(m->ctx, m->resolvent);
+        m->resolvent = NULL;
     }
     return hdi_scope_end(&s);
 }
@@ -17452,8 +17453,8 @@ static uint64_t hdi_elim_factor_need(const hdi_elim *m, const hd_rational *set, 
     if (packs > 0 && m->n_packs == 0) bytes += hdi_factor_bytes(&m->sym, HDI_PACK);
     if (guests > 0) bytes += (uint64_t)guests * hdi_factor_guest_bytes(&m->sym, HDI_PACK);
     if (hdi_set_lone(set) && !m->real.ctx) bytes += hdi_factor_bytes(&m->sym, 1);
-    if (after == HDI_AFTER_BOUND && !m->reach)
-        hdi_scope_count(&bytes, (uint64_t)m->sym.n, sizeof *m->reach);
+    if (after == HDI_AFTER_BOUND && !m->resolvent)
+        hdi_scope_count(&bytes, (uint64_t)m->sym.n, sizeof *m->resolvent);
     return bytes;
 }
 
@@ -17700,8 +17701,8 @@ static hd_status hdi_lanczos_first(const hdi_lanczos_task *task, double f0_norm,
             return e->status;
         }
         if (start == 0) start = lane->off.solver;
-        if (hdi_watch_look(watch, 0.5 * hdi_krylov_done(start, lane->off.solver, tol * lane->u_norm), e) < 0)
-            return e->status;
+        if (hdi_watch_look(watch, 0.5 * hdi_iteration_done(start, lane->off.solver, tol * lane->u_norm),
+                           e) < 0) return e->status;
         look = z->m +
                hdi_lanczos_pace(z->m, looked, lane->off.solver, f0_norm * bound_before, tol * lane->u_norm);
         looked = z->m;
@@ -17758,42 +17759,42 @@ static hd_status hdi_lanczos_run(const hdi_lanczos_task *task, hdi_lane *lane, c
     return status;
 }
 
-enum { HDI_SILAN_MAX = 160, HDI_SILAN_POINTS = 96, HDI_SILAN_WIDE = 8 };
+enum { HDI_KRYLOV_MAX = 160, HDI_KRYLOV_POINTS = 96 };
 
 /* The process for 1 or 8 right-hand sides side by side. All times share it. */
-typedef struct hdi_silan {
+typedef struct hdi_krylov {
     const hdi_elim *m;
     int32_t k, wide, steps;      /* right-hand sides, 1 or 8, steps taken */
-    double *v[HDI_SILAN_MAX + 1];/* [n][wide] the basis */
+    double *v[HDI_KRYLOV_MAX + 1];/* [n][wide] the basis */
     double *c, *w, *work;        /* [n][wide] B v and S B v; sweeps */
     double *probe;               /* [2 n] a solution and its residual */
     double *ahead;               /* [8][n] answers at several times, wide == 1 */
     double *y;                   /* [y_size] coefficients of answers */
     int32_t y_size;
-    double alpha[HDI_SILAN_MAX][HDI_SILAN_WIDE], beta[HDI_SILAN_MAX + 1][HDI_SILAN_WIDE];
-    double noise[HDI_SILAN_MAX][HDI_SILAN_WIDE];   /* what rounding can do to a solve, in the norm of D^-1 */
+    double alpha[HDI_KRYLOV_MAX][HDI_WIDE], beta[HDI_KRYLOV_MAX + 1][HDI_WIDE];
+    double noise[HDI_KRYLOV_MAX][HDI_WIDE];   /* what rounding can do to a solve, in the norm of D^-1 */
     double solved;               /* largest residual found of a solve over that */
-    double f_norm[HDI_SILAN_WIDE], whole[HDI_SILAN_WIDE];   /* |f|_B without and with its constants */
+    double f_norm[HDI_WIDE], whole[HDI_WIDE];   /* |f|_B without and with its constants */
     /* of T_m of each right-hand side, when done: eigenvalues, then rows of the eigenvectors */
-    double *eigen[HDI_SILAN_WIDE];
-    int32_t eigen_m[HDI_SILAN_WIDE];      /* 0: not known */
-    int32_t eigen_room[HDI_SILAN_WIDE];   /* the largest m that there is room for */
-    int32_t done[HDI_SILAN_WIDE];/* steps that were enough, 0: not yet */
+    double *eigen[HDI_WIDE];
+    int32_t eigen_m[HDI_WIDE];      /* 0: not known */
+    int32_t eigen_room[HDI_WIDE];   /* the largest m that there is room for */
+    int32_t done[HDI_WIDE];/* steps that were enough, 0: not yet */
     double g;
     double from;                 /* the time that the fields are answers of, with bounds on their errors */
-    hdi_parts before[HDI_SILAN_WIDE];
+    hdi_parts before[HDI_WIDE];
     double last;                 /* the last time of the windows that will go on from this one, or 0 */
-} hdi_silan;
+} hdi_krylov;
 
 /* ---- shift-and-invert Lanczos ---- */
 /* Lanczos in the B inner product for S = (B + g L)^-1 B, whose large eigenvalues are those of the smooth
  * modes. With S V = V T + beta v e_m',
  *   exp(-t B^-1 L) f ~ |f|_B V exp(-t (T^-1 - 1)/g) e_1
  * for every t around 10 g. One real factor and one basis serve all these times. */
-static void hdi_silan_free(hdi_silan *z, hd_context *ctx) {
+static void hdi_krylov_free(hdi_krylov *z, hd_context *ctx) {
     int32_t i;
-    for (i = 0; i <= HDI_SILAN_MAX; i++) hdi_free(ctx, z->v[i]);
-    for (i = 0; i < HDI_SILAN_WIDE; i++) hdi_free(ctx, z->eigen[i]);
+    for (i = 0; i <= HDI_KRYLOV_MAX; i++) hdi_free(ctx, z->v[i]);
+    for (i = 0; i < HDI_WIDE; i++) hdi_free(ctx, z->eigen[i]);
     hdi_free(ctx, z->c);
     hdi_free(ctx, z->work);
     hdi_free(ctx, z->ahead);
@@ -17815,13 +17816,13 @@ static void hdi_mass_rows_body(const hd_laplacian *lap, int32_t wide, const doub
             y[i] = lap->B ? s : lap->mass[i] * x[i];
             continue;
         }
-        to = y + HDI_SILAN_WIDE * (int64_t)i;
-        for (r = 0; r < HDI_SILAN_WIDE; r++)
-            to[r] = lap->B ? 0 : lap->mass[i] * x[HDI_SILAN_WIDE * (int64_t)i + r];
+        to = y + HDI_WIDE * (int64_t)i;
+        for (r = 0; r < HDI_WIDE; r++)
+            to[r] = lap->B ? 0 : lap->mass[i] * x[HDI_WIDE * (int64_t)i + r];
         for (p = lap->L.row_ptr[i]; lap->B && p < lap->L.row_ptr[i + 1]; p++) {
             const double b = lap->B[p];
-            const double *HDI_RESTRICT from = x + HDI_SILAN_WIDE * (int64_t)lap->L.col[p];
-            for (r = 0; r < HDI_SILAN_WIDE; r++) to[r] += b * from[r];
+            const double *HDI_RESTRICT from = x + HDI_WIDE * (int64_t)lap->L.col[p];
+            for (r = 0; r < HDI_WIDE; r++) to[r] += b * from[r];
         }
     }
 }
@@ -17857,13 +17858,13 @@ static void hdi_wide_dots(const double *HDI_RESTRICT x, const double *HDI_RESTRI
         out[0] = hdi_dot(x, y, n);
         return;
     }
-    for (r = 0; r < HDI_SILAN_WIDE; r++) out[r] = 0;
+    for (r = 0; r < HDI_WIDE; r++) out[r] = 0;
     for (i = 0; i < n; i++)
-        for (r = 0; r < HDI_SILAN_WIDE; r++) out[r] += x[HDI_SILAN_WIDE * i + r] * y[HDI_SILAN_WIDE * i + r];
+        for (r = 0; r < HDI_WIDE; r++) out[r] += x[HDI_WIDE * i + r] * y[HDI_WIDE * i + r];
 }
 
 /* Right-hand side r of the start: the lane's f and rhs = B f without their constants, of norm one. */
-static void hdi_silan_take(hdi_silan *z, int32_t r, hdi_lane *lane) {
+static void hdi_krylov_take(hdi_krylov *z, int32_t r, hdi_lane *lane) {
     const hd_laplacian *lap = z->m->lap;
     double *v = z->v[0], norm = 0;
     int64_t i;
@@ -17892,7 +17893,7 @@ static void hdi_silan_take(hdi_silan *z, int32_t r, hdi_lane *lane) {
 }
 
 /* Starts with the fields of z->k lanes. */
-static hd_status hdi_silan_start(hdi_silan *z, hdi_lane *lane, hd_context *ctx, hd_error *e) {
+static hd_status hdi_krylov_start(hdi_krylov *z, hdi_lane *lane, hd_context *ctx, hd_error *e) {
     const uint64_t n = (uint64_t)z->m->lap->n_active, count = n * (uint64_t)z->wide;
     int32_t r;
     if (!z->v[0]) z->v[0] = HDI_NEW(ctx, double, count, e);
@@ -17904,13 +17905,13 @@ static hd_status hdi_silan_start(hdi_silan *z, hdi_lane *lane, hd_context *ctx, 
     z->solved = 0;
     z->steps = 0;
     memset(z->eigen_m, 0, sizeof z->eigen_m);
-    for (r = 0; r < z->wide; r++) hdi_silan_take(z, r, r < z->k ? lane + r : NULL);
+    for (r = 0; r < z->wide; r++) hdi_krylov_take(z, r, r < z->k ? lane + r : NULL);
     return HD_OK;
 }
 
 /* Compares the residuals of the solves w = S B v with the bounds on their rounding. Only some of the first
  * solves are measured. */
-static void hdi_silan_probe(hdi_silan *z) {
+static void hdi_krylov_probe(hdi_krylov *z) {
     const hd_laplacian *lap = z->m->lap;
     double *x = z->probe, *rest = x + lap->n_active;
     int32_t i, r;
@@ -17932,21 +17933,21 @@ static void hdi_wide_norms(const double *HDI_RESTRICT x, const double *HDI_RESTR
                            int32_t wide, double *out) {
     int64_t i;
     int r;
-    for (r = 0; r < HDI_SILAN_WIDE; r++) out[r] = 0;
+    for (r = 0; r < HDI_WIDE; r++) out[r] = 0;
     if (wide == 1) out[0] = hdi_norm2w(x, weight, n);
     for (i = 0; wide > 1 && i < n; i++)
-        for (r = 0; r < HDI_SILAN_WIDE; r++)
-            out[r] += weight[i] * (x[HDI_SILAN_WIDE * i + r] * x[HDI_SILAN_WIDE * i + r]);
-    for (r = 0; r < HDI_SILAN_WIDE; r++) out[r] = sqrt(out[r]);
+        for (r = 0; r < HDI_WIDE; r++)
+            out[r] += weight[i] * (x[HDI_WIDE * i + r] * x[HDI_WIDE * i + r]);
+    for (r = 0; r < HDI_WIDE; r++) out[r] = sqrt(out[r]);
 }
 
 /* One step for all. */
-static hd_status hdi_silan_step(hdi_silan *z, hd_context *ctx, hd_error *e) {
+static hd_status hdi_krylov_step(hdi_krylov *z, hd_context *ctx, hd_error *e) {
     const hd_laplacian *lap = z->m->lap;
     const int64_t n = lap->n_active, count = n * z->wide;
     const int32_t j = z->steps, wide = z->wide;
     const double *HDI_RESTRICT v = z->v[j], *HDI_RESTRICT v_old = j > 0 ? z->v[j - 1] : z->v[j];
-    double *HDI_RESTRICT w = z->w, norm[HDI_SILAN_WIDE], inv[HDI_SILAN_WIDE], *HDI_RESTRICT next;
+    double *HDI_RESTRICT w = z->w, norm[HDI_WIDE], inv[HDI_WIDE], *HDI_RESTRICT next;
     hdi_sweep s;
     int64_t i;
     int32_t r;
@@ -17956,16 +17957,16 @@ static hd_status hdi_silan_step(hdi_silan *z, hd_context *ctx, hd_error *e) {
     s = hdi_sweep_open(&z->m->shifted, wide, w, z->work);
     hdi_sweep_run(&s, ctx);
     hdi_wide_norms(w, z->m->noise_shift, n, wide, z->noise[j]);
-    if (j == 0 || j == 3) hdi_silan_probe(z);
+    if (j == 0 || j == 3) hdi_krylov_probe(z);
     hdi_wide_dots(w, z->c, n, wide, z->alpha[j]);
     for (r = 0; r < wide; r++) inv[r] = j > 0 ? z->beta[j][r] : 0;
     if (wide == 1)
         for (i = 0; i < n; i++) w[i] -= z->alpha[j][0] * v[i] + inv[0] * v_old[i];
     else
         for (i = 0; i < n; i++)
-            for (r = 0; r < HDI_SILAN_WIDE; r++)
-                w[HDI_SILAN_WIDE * i + r] -= z->alpha[j][r] * v[HDI_SILAN_WIDE * i + r] +
-                    inv[r] * v_old[HDI_SILAN_WIDE * i + r];
+            for (r = 0; r < HDI_WIDE; r++)
+                w[HDI_WIDE * i + r] -= z->alpha[j][r] * v[HDI_WIDE * i + r] +
+                    inv[r] * v_old[HDI_WIDE * i + r];
     hdi_mass_apply(lap, wide, w, z->c, ctx);
     hdi_wide_dots(w, z->c, n, wide, norm);
     for (r = 0; r < wide; r++) {
@@ -17980,9 +17981,9 @@ static hd_status hdi_silan_step(hdi_silan *z, hd_context *ctx, hd_error *e) {
         }
     } else {
         for (i = 0; i < n; i++) {
-            for (r = 0; r < HDI_SILAN_WIDE; r++) {
-                next[HDI_SILAN_WIDE * i + r] = w[HDI_SILAN_WIDE * i + r] * inv[r];
-                z->c[HDI_SILAN_WIDE * i + r] *= inv[r];
+            for (r = 0; r < HDI_WIDE; r++) {
+                next[HDI_WIDE * i + r] = w[HDI_WIDE * i + r] * inv[r];
+                z->c[HDI_WIDE * i + r] *= inv[r];
             }
         }
     }
@@ -17991,9 +17992,9 @@ static hd_status hdi_silan_step(hdi_silan *z, hd_context *ctx, hd_error *e) {
 }
 
 /* Eigenvalues of T_m of right-hand side r, and rows p and q of its eigenvectors. */
-static int hdi_silan_eigen(const hdi_silan *z, int32_t r, int32_t m, int32_t p, int32_t q, double *d,
+static int hdi_krylov_eigen(const hdi_krylov *z, int32_t r, int32_t m, int32_t p, int32_t q, double *d,
                            double *x, double *y) {
-    double off[HDI_SILAN_MAX];
+    double off[HDI_KRYLOV_MAX];
     int32_t i;
     for (i = 0; i < m; i++) {
         d[i] = z->alpha[i][r];
@@ -18005,27 +18006,27 @@ static int hdi_silan_eigen(const hdi_silan *z, int32_t r, int32_t m, int32_t p, 
 }
 
 /* exp(-s (1/mu - 1)/g) for an eigenvalue mu of T in (0, 1]. Tiny ones are rounding of modes that are gone. */
-static double hdi_silan_decay(double mu, double s_over_g) {
+static double hdi_krylov_decay(double mu, double s_over_g) {
     if (mu > 1e-15) return exp(-s_over_g * hdi_max(0, 1 / mu - 1));
     return s_over_g > 0 ? 0 : 1;
 }
 
-/* Point k of HDI_SILAN_POINTS in (0, 1], which are dense at both ends: the square of the sine of a part of
+/* Point k of HDI_KRYLOV_POINTS in (0, 1], which are dense at both ends: the square of the sine of a part of
  * the right angle. What lies between them is below the maximum on them times the first number, and below that
  * on every other one times the second. Tuned on meshes of 1K to 1M vertices. The sine is its Taylor series up
  * to x^9, to 2e-9: with that of the C library come 6 KB of code for large arguments. */
-#define HDI_SILAN_BETWEEN 1.2
-#define HDI_SILAN_BETWEEN2 1.5
+#define HDI_KRYLOV_BETWEEN 1.2
+#define HDI_KRYLOV_BETWEEN2 1.5
 
-static double hdi_silan_point(int32_t k) {
-    const int32_t low = hdi_low32(k, HDI_SILAN_POINTS - k);
-    const double x = 1.5707963267948966 * low / (double)HDI_SILAN_POINTS, q = x * x;
+static double hdi_krylov_point(int32_t k) {
+    const int32_t low = hdi_low32(k, HDI_KRYLOV_POINTS - k);
+    const double x = 1.5707963267948966 * low / (double)HDI_KRYLOV_POINTS, q = x * x;
     const double s = x * (1 - q / 6 * (1 - q / 20 * (1 - q / 42 * (1 - q / 72))));
     return low == k ? s * s : 1 - s * s;
 }
 
 /* (F(a) - F(b))/(a - b) for F(x) = exp(-tau (1/x - 1)), a and b in (0, 1]; fa, fb: F there. */
-static double hdi_silan_slope(double a, double fa, double b, double fb, double tau) {
+static double hdi_krylov_slope(double a, double fa, double b, double fb, double tau) {
     const double d = a - b;
     double x;
     if (fabs(d) > 0.1 * a) return (fa - fb) / d;
@@ -18038,10 +18039,10 @@ static double hdi_silan_slope(double a, double fa, double b, double fb, double t
 /* What error bounds need of T_m: its eigenvalues, and their weights in e_1 and between e_1 and e_m. */
 typedef struct hdi_ritz {
     int32_t m;
-    double beta, mu[HDI_SILAN_MAX], first[HDI_SILAN_MAX], both[HDI_SILAN_MAX];
+    double beta, mu[HDI_KRYLOV_MAX], first[HDI_KRYLOV_MAX], both[HDI_KRYLOV_MAX];
 } hdi_ritz;
 
-static hd_status hdi_silan_ritz(const hdi_silan *z, int32_t r, int32_t m, hdi_ritz *s, hd_error *e) {
+static hd_status hdi_krylov_ritz(const hdi_krylov *z, int32_t r, int32_t m, hdi_ritz *s, hd_error *e) {
     const double *known = z->eigen_m[r] == m ? z->eigen[r] : NULL;
     int32_t i;
     s->m = m;
@@ -18050,7 +18051,7 @@ static hd_status hdi_silan_ritz(const hdi_silan *z, int32_t r, int32_t m, hdi_ri
         memcpy(s->mu, known, (size_t)m * sizeof *known);
         memcpy(s->first, known + m, (size_t)m * sizeof *known);
         memcpy(s->both, known + (int64_t)m * m, (size_t)m * sizeof *known);
-    } else if (!hdi_silan_eigen(z, r, m, 0, m - 1, s->mu, s->first, s->both)) return hdi_lanczos_failed(e);
+    } else if (!hdi_krylov_eigen(z, r, m, 0, m - 1, s->mu, s->first, s->both)) return hdi_lanczos_failed(e);
     for (i = 0; i < m; i++) {
         /* 1/(1 + g lambda); but what is left of a constant is only rounding */
         if (s->mu[i] > 1.001 + 10 * (1 + z->solved) * z->noise[0][r] && z->f_norm[r] > 1e-8 * z->whole[r])
@@ -18065,7 +18066,7 @@ static double hdi_ritz_size(const hdi_ritz *s, double tau) {
     double sum = 0;
     int32_t i;
     for (i = 0; i < s->m; i++) {
-        const double part = s->first[i] * hdi_silan_decay(s->mu[i], tau);
+        const double part = s->first[i] * hdi_krylov_decay(s->mu[i], tau);
         sum += part * part;
     }
     return sqrt(sum);
@@ -18076,20 +18077,20 @@ static double hdi_ritz_size(const hdi_ritz *s, double tau) {
  * difference. S has its eigenvalues in (0, 1], where the sum is a smooth function of them, so that its
  * maximum on enough points is the bound. */
 static double hdi_ritz_bound(const hdi_ritz *s, double tau) {
-    double f[HDI_SILAN_MAX], most = 0;
+    double f[HDI_KRYLOV_MAX], most = 0;
     int32_t i, k;
-    for (i = 0; i < s->m; i++) f[i] = hdi_silan_decay(s->mu[i], tau);
-    for (k = 1; k <= HDI_SILAN_POINTS; k++) {
-        const double at = hdi_silan_point(k), fa = hdi_silan_decay(at, tau);
+    for (i = 0; i < s->m; i++) f[i] = hdi_krylov_decay(s->mu[i], tau);
+    for (k = 1; k <= HDI_KRYLOV_POINTS; k++) {
+        const double at = hdi_krylov_point(k), fa = hdi_krylov_decay(at, tau);
         double sum = 0;
-        for (i = 0; i < s->m; i++) sum += s->both[i] * hdi_silan_slope(s->mu[i], f[i], at, fa, tau);
+        for (i = 0; i < s->m; i++) sum += s->both[i] * hdi_krylov_slope(s->mu[i], f[i], at, fa, tau);
         most = hdi_max(most, fabs(sum));
     }
-    return HDI_SILAN_BETWEEN * s->beta * most;
+    return HDI_KRYLOV_BETWEEN * s->beta * most;
 }
 
 /* All rows of T's eigenvectors, two at a time by the same rotations. They are kept for all times. */
-static hd_status hdi_silan_vectors(hdi_silan *z, int32_t r, int32_t m, hd_error *e) {
+static hd_status hdi_krylov_vectors(hdi_krylov *z, int32_t r, int32_t m, hd_error *e) {
     hd_context *ctx = z->m->ctx;
     int32_t k;
     if (z->eigen_m[r] == m) return HD_OK;
@@ -18102,8 +18103,8 @@ static hd_status hdi_silan_vectors(hdi_silan *z, int32_t r, int32_t m, hd_error 
         z->eigen_room[r] = m;
     }
     for (k = 0; k < m; k += 2) {
-        double *x = z->eigen[r] + (int64_t)(k + 1) * m, spare[HDI_SILAN_MAX];
-        if (!hdi_silan_eigen(z, r, m, k, k + 1 < m ? k + 1 : k, z->eigen[r], x, k + 1 < m ? x + m : spare))
+        double *x = z->eigen[r] + (int64_t)(k + 1) * m, spare[HDI_KRYLOV_MAX];
+        if (!hdi_krylov_eigen(z, r, m, k, k + 1 < m ? k + 1 : k, z->eigen[r], x, k + 1 < m ? x + m : spare))
             return hdi_lanczos_failed(e);
     }
     z->eigen_m[r] = m;
@@ -18112,22 +18113,22 @@ static hd_status hdi_silan_vectors(hdi_silan *z, int32_t r, int32_t m, hd_error 
 
 /* Coefficients of the basis for right-hand side r at time t, times |f|_B: y = exp(-t (T^-1 - 1)/g) e_1, and
  * zeros up to the longest basis. */
-static hd_status hdi_silan_coefficients(hdi_silan *z, int32_t r, double t, double *y, hd_error *e) {
+static hd_status hdi_krylov_coefficients(hdi_krylov *z, int32_t r, double t, double *y, hd_error *e) {
     const int32_t m = hdi_high32(z->done[r], 0);
-    double first[HDI_SILAN_MAX];
+    double first[HDI_KRYLOV_MAX];
     const double *mu;
     int32_t i;
     for (i = m; i < z->steps; i++) y[i] = 0;
     if (m == 0) return HD_OK;
-    if (hdi_silan_vectors(z, r, m, e) < 0) return e->status;
+    if (hdi_krylov_vectors(z, r, m, e) < 0) return e->status;
     mu = z->eigen[r];
-    for (i = 0; i < m; i++) first[i] = z->f_norm[r] * mu[m + i] * hdi_silan_decay(mu[i], t / z->g);
+    for (i = 0; i < m; i++) first[i] = z->f_norm[r] * mu[m + i] * hdi_krylov_decay(mu[i], t / z->g);
     for (i = 0; i < m; i++) y[i] = hdi_dot(mu + (int64_t)(i + 1) * m, first, m);
     return HD_OK;
 }
 
 /* Room for the coefficients of so many answers. */
-static hd_status hdi_silan_places(hdi_silan *z, int32_t count, hd_context *ctx, hd_error *e) {
+static hd_status hdi_krylov_places(hdi_krylov *z, int32_t count, hd_context *ctx, hd_error *e) {
     const int32_t size = count * z->steps + 1;
     if (z->y_size >= size) return HD_OK;
     hdi_free(ctx, z->y);
@@ -18138,50 +18139,50 @@ static hd_status hdi_silan_places(hdi_silan *z, int32_t count, hd_context *ctx, 
 }
 
 /* Answers summed up in one pass over the basis: of one right-hand side at several times, or the reverse. */
-typedef struct hdi_silan_sum {
+typedef struct hdi_krylov_sum {
     int32_t count;
-    const double *y[HDI_SILAN_WIDE];   /* [steps] coefficients of each */
-    double *u[HDI_SILAN_WIDE];   /* [n], or NULL: not wanted */
-    const double *means[HDI_SILAN_WIDE];   /* [n_components] the constants of each */
-} hdi_silan_sum;
+    const double *y[HDI_WIDE];   /* [steps] coefficients of each */
+    double *u[HDI_WIDE];   /* [n], or NULL: not wanted */
+    const double *means[HDI_WIDE];   /* [n_components] the constants of each */
+} hdi_krylov_sum;
 
-enum { HDI_SILAN_BLOCK = 64 };  /* rows whose sums stay in the first cache */
+enum { HDI_KRYLOV_BLOCK = 64 };  /* rows whose sums stay in the first cache */
 
 /* Rows [begin, end) of all sums, side by side: s [rows][8]. */
-static void hdi_silan_sum_block(const hdi_silan *z, const hdi_silan_sum *a, int64_t begin, int64_t end,
+static void hdi_krylov_sum_block(const hdi_krylov *z, const hdi_krylov_sum *a, int64_t begin, int64_t end,
                                 double *HDI_RESTRICT s) {
     int32_t j, p;
     int64_t i;
     for (j = 0; j < z->steps; j++) {
         const double *HDI_RESTRICT v = z->v[j] + z->wide * begin;
         if (z->wide > 1) {
-            double y[HDI_SILAN_WIDE];
-            for (p = 0; p < HDI_SILAN_WIDE; p++) y[p] = p < a->count ? a->y[p][j] : 0;
+            double y[HDI_WIDE];
+            for (p = 0; p < HDI_WIDE; p++) y[p] = p < a->count ? a->y[p][j] : 0;
             for (i = 0; i < end - begin; i++)
-                for (p = 0; p < HDI_SILAN_WIDE; p++)
-                    s[HDI_SILAN_WIDE * i + p] += y[p] * v[HDI_SILAN_WIDE * i + p];
+                for (p = 0; p < HDI_WIDE; p++)
+                    s[HDI_WIDE * i + p] += y[p] * v[HDI_WIDE * i + p];
         } else {
             for (p = 0; p < a->count; p++)
-                for (i = 0; i < end - begin; i++) s[HDI_SILAN_BLOCK * p + i] += a->y[p][j] * v[i];
+                for (i = 0; i < end - begin; i++) s[HDI_KRYLOV_BLOCK * p + i] += a->y[p][j] * v[i];
         }
     }
 }
 
-typedef struct hdi_silan_sum_job { const hdi_silan *z; const hdi_silan_sum *a; } hdi_silan_sum_job;
+typedef struct hdi_krylov_sum_job { const hdi_krylov *z; const hdi_krylov_sum *a; } hdi_krylov_sum_job;
 
-static void hdi_silan_sum_task(void *arg, int64_t first, int64_t last) {
-    const hdi_silan_sum_job *job = (const hdi_silan_sum_job *)arg;
-    const hdi_silan_sum *a = job->a;
+static void hdi_krylov_sum_task(void *arg, int64_t first, int64_t last) {
+    const hdi_krylov_sum_job *job = (const hdi_krylov_sum_job *)arg;
+    const hdi_krylov_sum *a = job->a;
     const int32_t *component = job->z->m->lap->component;
-    const int64_t row = job->z->wide > 1 ? HDI_SILAN_WIDE : 1;
-    const int64_t column = job->z->wide > 1 ? 1 : HDI_SILAN_BLOCK;
+    const int64_t row = job->z->wide > 1 ? HDI_WIDE : 1;
+    const int64_t column = job->z->wide > 1 ? 1 : HDI_KRYLOV_BLOCK;
     int64_t begin, i;
     int32_t p;
-    for (begin = first; begin < last; begin += HDI_SILAN_BLOCK) {
-        const int64_t end = begin + HDI_SILAN_BLOCK < last ? begin + HDI_SILAN_BLOCK : last;
-        double s[(int32_t)HDI_SILAN_WIDE * HDI_SILAN_BLOCK];
+    for (begin = first; begin < last; begin += HDI_KRYLOV_BLOCK) {
+        const int64_t end = begin + HDI_KRYLOV_BLOCK < last ? begin + HDI_KRYLOV_BLOCK : last;
+        double s[(int32_t)HDI_WIDE * HDI_KRYLOV_BLOCK];
         memset(s, 0, sizeof s);
-        hdi_silan_sum_block(job->z, a, begin, end, s);
+        hdi_krylov_sum_block(job->z, a, begin, end, s);
         for (p = 0; p < a->count; p++)
             for (i = begin; i < end && a->u[p]; i++)
                 a->u[p][i] = a->means[p][component[i]] + s[row * (i - begin) + column * p];
@@ -18189,29 +18190,29 @@ static void hdi_silan_sum_task(void *arg, int64_t first, int64_t last) {
 }
 
 /* u = the constants and the part of the basis, for each answer. */
-static void hdi_silan_sum_run(const hdi_silan *z, const hdi_silan_sum *a, hd_context *ctx) {
-    hdi_silan_sum_job job;
+static void hdi_krylov_sum_run(const hdi_krylov *z, const hdi_krylov_sum *a, hd_context *ctx) {
+    hdi_krylov_sum_job job;
     job.z = z;
     job.a = a;
-    hdi_parallel_ranges(ctx, z->m->lap->n_active, HDI_ROWS_PER_TASK, hdi_silan_sum_task, &job);
+    hdi_parallel_ranges(ctx, z->m->lap->n_active, HDI_ROWS_PER_TASK, hdi_krylov_sum_task, &job);
 }
 
 /* What a window hands on to the next may bring this share of the error that is asked for at the last time of
  * all. Answers there count as no smaller than the second number times what is handed on: where they are, a
  * later window begins with the fields again. */
-#define HDI_SILAN_SHARE 0.25
-#define HDI_SILAN_FADES 1e-3
+#define HDI_KRYLOV_SHARE 0.25
+#define HDI_KRYLOV_FADES 1e-3
 
 /* The error bound of right-hand side r at the worst of the times: *miss times what is asked for, *bound
  * relative to |f|_B. fixed: |constants|_B^2. It ends early where two times miss already. */
-static hd_status hdi_silan_miss(const hdi_silan *z, int32_t r, const double *t, int32_t n_times, double tol,
+static hd_status hdi_krylov_miss(const hdi_krylov *z, int32_t r, const double *t, int32_t n_times, double tol,
                                 double fixed, double miss_bound[2], hd_error *e) {
     const double before = z->before[r].solver / z->f_norm[r], rest = fixed / (z->f_norm[r] * z->f_norm[r]);
     hdi_ritz s;
     int32_t q;
     miss_bound[0] = miss_bound[1] = 0;
     if (!(z->beta[z->steps][r] > 0)) return HD_OK;
-    if (hdi_silan_ritz(z, r, z->steps, &s, e) < 0) return e->status;
+    if (hdi_krylov_ritz(z, r, z->steps, &s, e) < 0) return e->status;
     for (q = 0; q < n_times && (q < 2 || miss_bound[0] <= 1); q++) {
         /* the last and the first are the worst, as a rule */
         const double tau = (t[q == 0 ? n_times - 1 : q - 1] - z->from) / z->g;
@@ -18220,7 +18221,7 @@ static hd_status hdi_silan_miss(const hdi_silan *z, int32_t r, const double *t, 
         asked = tol * sqrt(asked * asked + rest);
         if (q == 0 && z->last > 0) {
             const double last = hdi_ritz_size(&s, (z->last - z->from) / z->g);
-            asked = HDI_SILAN_SHARE * hdi_max(tol * sqrt(last * last + rest), HDI_SILAN_FADES * asked);
+            asked = HDI_KRYLOV_SHARE * hdi_max(tol * sqrt(last * last + rest), HDI_KRYLOV_FADES * asked);
         } else asked -= before;
         miss_bound[0] = hdi_max(miss_bound[0], asked > 0 ? bound / asked : bound > 0 ? HUGE_VAL : 0);
         miss_bound[1] = hdi_max(miss_bound[1], bound);
@@ -18231,24 +18232,24 @@ static hd_status hdi_silan_miss(const hdi_silan *z, int32_t r, const double *t, 
 /* Convergence has stopped when so many steps do not halve what is missing. An answer that has died away has
  * no digits left, and none is missed when the error is below this, relative to f. Tuned on meshes of 1K to 1M
  * vertices. */
-#define HDI_SILAN_PATIENCE 12
-#define HDI_SILAN_FAILED 1e-6
+#define HDI_KRYLOV_PATIENCE 12
+#define HDI_KRYLOV_FAILED 1e-6
 
 /* Steps to the next look, 1 to 8: each gains about a factor of two, and is taken to gain 2^(1/0.6). */
-#define HDI_SILAN_GAIN 3.1748021039363992
-static int32_t hdi_silan_pace(double miss) {
-    double gain = HDI_SILAN_GAIN * HDI_SILAN_GAIN;
+#define HDI_KRYLOV_GAIN 3.1748021039363992
+static int32_t hdi_krylov_pace(double miss) {
+    double gain = HDI_KRYLOV_GAIN * HDI_KRYLOV_GAIN;
     int32_t steps = 1;
-    for (; steps < 8 && miss >= gain; gain *= HDI_SILAN_GAIN) steps++;
+    for (; steps < 8 && miss >= gain; gain *= HDI_KRYLOV_GAIN) steps++;
     return steps;
 }
 
 /* Steps until the bounds of all right-hand sides at all times are below tol times their answers. fixed[r] is
  * |constants|_B^2. */
-static hd_status hdi_silan_run(hdi_silan *z, const double *t, int32_t n_times, double tol,
+static hd_status hdi_krylov_run(hdi_krylov *z, const double *t, int32_t n_times, double tol,
                                const double *fixed, hd_context *ctx, hd_error *e) {
-    double best[HDI_SILAN_WIDE], now[2], miss_all;
-    int32_t r, left = 0, look = 4, best_m[HDI_SILAN_WIDE], most = HDI_SILAN_MAX - 1;
+    double best[HDI_WIDE], now[2], miss_all;
+    int32_t r, left = 0, look = 4, best_m[HDI_WIDE], most = HDI_KRYLOV_MAX - 1;
     hd_status worst = HD_OK;
     for (r = 0; r < z->k; r++) {
         left += z->done[r] == 0;
@@ -18257,17 +18258,17 @@ static hd_status hdi_silan_run(hdi_silan *z, const double *t, int32_t n_times, d
     }
     while (left > 0) {
         if (hdi_progress(ctx, "solve", hdi_min(0.95, z->steps / 40.0), e) < 0) return e->status;
-        if (hdi_silan_step(z, ctx, e) < 0) return e->status;
+        if (hdi_krylov_step(z, ctx, e) < 0) return e->status;
         if (z->steps < look && z->steps < most) continue;
         miss_all = 1;
         for (r = 0; r < z->k; r++) {
             if (z->done[r]) continue;
-            if (hdi_silan_miss(z, r, t, n_times, tol, fixed[r], now, e) < 0) return e->status;
+            if (hdi_krylov_miss(z, r, t, n_times, tol, fixed[r], now, e) < 0) return e->status;
             if (now[0] < best[r] / 2 && z->steps < most) {
                 best[r] = now[0];
                 best_m[r] = z->steps;
-            } else if (z->steps > best_m[r] + HDI_SILAN_PATIENCE || z->steps >= most) {
-                if (now[0] > 1 && now[1] > HDI_SILAN_FAILED)
+            } else if (z->steps > best_m[r] + HDI_KRYLOV_PATIENCE || z->steps >= most) {
+                if (now[0] > 1 && now[1] > HDI_KRYLOV_FAILED)
                     return hdi_fail(e, HD_ERR_NOT_CONVERGED,
                                     "shift-and-invert Lanczos did not reach the tolerance");
                 if (now[0] > 1) worst = HD_WARN_ACCURACY;
@@ -18279,7 +18280,7 @@ static hd_status hdi_silan_run(hdi_silan *z, const double *t, int32_t n_times, d
             }
             miss_all = hdi_max(miss_all, now[0]);
         }
-        look = z->steps + hdi_silan_pace(miss_all);
+        look = z->steps + hdi_krylov_pace(miss_all);
     }
     return worst;
 }
@@ -18289,19 +18290,19 @@ static hd_status hdi_silan_run(hdi_silan *z, const double *t, int32_t n_times, d
  * divided differences as in hdi_ritz_bound. The residual of a solve is an error that is no larger in the B
  * norm. y: the answer's coefficients. given: the error of the right-hand side, which is an error of the first
  * step. T's eigenvectors are there. */
-static double hdi_silan_rounding(const hdi_silan *z, int32_t r, int32_t m, double t, const double *y,
+static double hdi_krylov_rounding(const hdi_krylov *z, int32_t r, int32_t m, double t, const double *y,
                                  double given) {
-    double f[HDI_SILAN_MAX], most[HDI_SILAN_MAX], slope[HDI_SILAN_MAX], sum = 0, size = 0;
+    double f[HDI_KRYLOV_MAX], most[HDI_KRYLOV_MAX], slope[HDI_KRYLOV_MAX], sum = 0, size = 0;
     const double *mu = z->eigen[r], *vectors = mu + m, tau = t / z->g, root = hdi_ratio_root(z->m->lap);
     int32_t i, j, k;
     for (i = 0; i < m; i++) {
-        f[i] = hdi_silan_decay(mu[i], tau);
+        f[i] = hdi_krylov_decay(mu[i], tau);
         most[i] = 0;
         size += fabs(y[i]);
     }
-    for (k = 2; k <= HDI_SILAN_POINTS; k += 2) {
-        const double at = hdi_silan_point(k), fa = hdi_silan_decay(at, tau);
-        for (i = 0; i < m; i++) slope[i] = vectors[i] * hdi_silan_slope(mu[i], f[i], at, fa, tau);
+    for (k = 2; k <= HDI_KRYLOV_POINTS; k += 2) {
+        const double at = hdi_krylov_point(k), fa = hdi_krylov_decay(at, tau);
+        for (i = 0; i < m; i++) slope[i] = vectors[i] * hdi_krylov_slope(mu[i], f[i], at, fa, tau);
         for (j = 0; j < m; j++)
             most[j] = hdi_max(most[j], fabs(hdi_dot(vectors + (int64_t)j * m, slope, m)));
     }
@@ -18310,13 +18311,13 @@ static double hdi_silan_rounding(const hdi_silan *z, int32_t r, int32_t m, doubl
         const double solve = hdi_residual_seen(z->solved * z->noise[j][r], z->noise[j][r]);
         const double size_j = fabs(z->alpha[j][r]) + z->beta[j][r] * (j > 0) + z->beta[j + 1][r];
         const double step = root * (solve + product) + 4 * DBL_EPSILON * size_j;
-        sum += HDI_SILAN_BETWEEN2 * most[j] * step;
+        sum += HDI_KRYLOV_BETWEEN2 * most[j] * step;
     }
-    return z->f_norm[r] * sum + HDI_SILAN_BETWEEN2 * most[0] * given + m * DBL_EPSILON * size;
+    return z->f_norm[r] * sum + HDI_KRYLOV_BETWEEN2 * most[0] * given + m * DBL_EPSILON * size;
 }
 
 /* Judges the answer in lane->u of right-hand side r, a time t after z->from. y: its coefficients. */
-static hd_status hdi_silan_answer(hdi_silan *z, int32_t r, double t, const double *y, double drift,
+static hd_status hdi_krylov_answer(hdi_krylov *z, int32_t r, double t, const double *y, double drift,
                                   hdi_lane *lane, hd_error *e) {
     const hd_laplacian *lap = z->m->lap;
     const int32_t m = z->done[r];
@@ -18325,9 +18326,9 @@ static hd_status hdi_silan_answer(hdi_silan *z, int32_t r, double t, const doubl
     lane->rounding = HD_EVIDENCE_MEASURED;
     lane->steps = m > 0 ? m : 0;
     if (m > 0) {
-        if (hdi_silan_ritz(z, r, m, &s, e) < 0) return e->status;   /* its eigenvectors are there */
+        if (hdi_krylov_ritz(z, r, m, &s, e) < 0) return e->status;   /* its eigenvectors are there */
         lane->off.solver = hdi_ritz_bound(&s, t / z->g) * z->f_norm[r];
-        lane->off.rounding = hdi_silan_rounding(z, r, m, t, y, lane->rhs_off);
+        lane->off.rounding = hdi_krylov_rounding(z, r, m, t, y, lane->rhs_off);
     }
     lane->off.solver += z->before[r].solver;     /* K_t makes no error larger */
     lane->off.rounding += z->before[r].rounding;
@@ -18885,7 +18886,6 @@ static uint64_t hdi_ground_room(const hdi_elim *m) {
  * from new vectors that are orthogonal to all that was found. */
 
 enum {
-    HDI_SPEC_WIDE = HDI_SILAN_WIDE,  /* vectors in a block, as many as a sweep takes side by side */
     HDI_SPEC_TILE = 64,              /* rows of a tile: some 300 columns of it stay in the second cache */
     HDI_SPEC_CHUNKS = 32,            /* parts of a sum over rows, whatever the number of threads */
     HDI_SPEC_GROUP = 8,              /* blocks that go through a slab at a time */
@@ -19108,7 +19108,7 @@ typedef struct hdi_spec {
     double lost;                 /* largest column of a block that was dropped */
     int32_t stuck;               /* Ritz pairs that cannot come nearer for rounding */
     int32_t fresh;               /* columns after them: the newest block, which T does not have yet */
-    double couple[HDI_SPEC_WIDE * HDI_SPEC_WIDE];   /* the newest block times this lacks in the last one */
+    double couple[HDI_WIDE * HDI_WIDE];   /* the newest block times this lacks in the last one */
     double *T, *A, *z;           /* [most][most] projected matrix, twice; eigenvectors */
     double *d, *off_ritz;        /* [most] eigenvalues, residuals */
     double *w, *bw, *tmp;        /* [n][8] a block, B times it, and another */
@@ -19160,23 +19160,23 @@ static int32_t hdi_spec_chunks(int32_t n) {
 
 /* Doubles of the coefficients of a group in a slab. */
 static uint64_t hdi_spec_h(int32_t most, int32_t n_group) {
-    return (uint64_t)(most + HDI_SPEC_WIDE) * HDI_SPEC_WIDE * (uint64_t)n_group;
+    return (uint64_t)(most + HDI_WIDE) * HDI_WIDE * (uint64_t)n_group;
 }
 
 /* Doubles that hdi_spec_make takes, but for a sweep. */
 static double hdi_spec_doubles(int32_t n, int32_t count) {
     const int32_t most = hdi_spec_most(n, count), group = hdi_spec_group(count);
     const double tiles = (double)HDI_SPEC_TILE * hdi_slab_tiles(n), m = most;
-    return tiles * (m + 2 * HDI_SPEC_WIDE) + 3 * m * (m + 2) +
+    return tiles * (m + 2 * HDI_WIDE) + 3 * m * (m + 2) +
            (double)hdi_spec_h(most, group) * (hdi_spec_chunks(n) + 1) +
-           (double)n * (5 + 3 * HDI_SPEC_WIDE + 2 * HDI_SPEC_WIDE * group);
+           (double)n * (5 + 3 * HDI_WIDE + 2 * HDI_WIDE * group);
 }
 
 /* Room for runs. */
 static hd_status hdi_spec_make(hdi_spec *s, hdi_elim *m, int32_t count, double tol, hd_error *e) {
     const int32_t columns = hdi_spec_most(m->lap->n_active, count), n_group = hdi_spec_group(count);
     const uint64_t n = (uint64_t)m->lap->n_active, most = (uint64_t)columns;
-    const uint64_t wide = HDI_SPEC_WIDE, h = hdi_spec_h(columns, n_group);
+    const uint64_t wide = HDI_WIDE, h = hdi_spec_h(columns, n_group);
     const uint64_t group = n * wide * (uint64_t)n_group;
     memset(s, 0, sizeof *s);
     s->ctx = m->ctx;
@@ -19187,12 +19187,12 @@ static hd_status hdi_spec_make(hdi_spec *s, hdi_elim *m, int32_t count, double t
     s->ops = hdi_kernels_get(hdi_simd_level(m->ctx), 0);
     s->most = columns;
     s->n_group = n_group;
-    if (hdi_slab_make(&s->basis, s->n, s->most + 2 * HDI_SPEC_WIDE, s->ctx, e) < 0) return e->status;
+    if (hdi_slab_make(&s->basis, s->n, s->most + 2 * HDI_WIDE, s->ctx, e) < 0) return e->status;
     s->value = HDI_NEW(s->ctx, double, 2 * n, e);
     if (s->value) s->slab_of = HDI_NEW(s->ctx, int32_t, 2 * n, e);
     if (s->slab_of) s->T = HDI_NEW(s->ctx, double, 3 * most * most + 5 * most, e);
     if (s->T) s->w = HDI_NEW(s->ctx, double, 3 * n * wide, e);
-    if (s->w) s->sweep = HDI_NEW(s->ctx, double, hdi_sweep_size(&m->sym, 1, HDI_SPEC_WIDE), e);
+    if (s->w) s->sweep = HDI_NEW(s->ctx, double, hdi_sweep_size(&m->sym, 1, HDI_WIDE), e);
     if (s->sweep) s->h = HDI_NEW(s->ctx, double, h * (uint64_t)(hdi_spec_chunks(s->n) + 1), e);
     if (s->h) s->group = HDI_NEW(s->ctx, double, 2 * group + 2 * n, e);
     if (e->status < 0) return e->status;
@@ -19259,7 +19259,7 @@ static void hdi_spec_project(const hdi_spec *s, const hdi_slab *slab, int32_t fi
 typedef struct hdi_spec_apply {
     const hd_laplacian *lap;
     const double *x, *z;
-    double *y, shift[HDI_SPEC_WIDE];
+    double *y, shift[HDI_WIDE];
 } hdi_spec_apply;
 
 static void hdi_spec_apply_task(void *arg, int64_t begin, int64_t end) {
@@ -19267,12 +19267,12 @@ static void hdi_spec_apply_task(void *arg, int64_t begin, int64_t end) {
     int64_t i, p;
     int r;
     for (i = begin; i < end; i++) {
-        double sum[HDI_SPEC_WIDE] = {0};
+        double sum[HDI_WIDE] = {0};
         for (p = a->lap->L.row_ptr[i]; p < a->lap->L.row_ptr[i + 1]; p++) {
             const double l = a->lap->L.val[p], *x = a->x + 8 * (int64_t)a->lap->L.col[p];
-            for (r = 0; r < HDI_SPEC_WIDE; r++) sum[r] += l * x[r];
+            for (r = 0; r < HDI_WIDE; r++) sum[r] += l * x[r];
         }
-        for (r = 0; r < HDI_SPEC_WIDE; r++) a->y[8 * i + r] = sum[r] - a->shift[r] * a->z[8 * i + r];
+        for (r = 0; r < HDI_WIDE; r++) a->y[8 * i + r] = sum[r] - a->shift[r] * a->z[8 * i + r];
     }
 }
 
@@ -19284,26 +19284,26 @@ static void hdi_spec_residuals(const hdi_spec *s, const double *shift, const dou
     a.x = x;
     a.z = bx;
     a.y = y;
-    for (r = 0; r < HDI_SPEC_WIDE; r++) a.shift[r] = shift ? shift[r] : s->sigma;
+    for (r = 0; r < HDI_WIDE; r++) a.shift[r] = shift ? shift[r] : s->sigma;
     hdi_parallel_ranges(s->ctx, s->n, HDI_ROWS_PER_TASK, hdi_spec_apply_task, &a);
 }
 
 static void hdi_spec_mass(const hdi_spec *s, const double *x, double *y) {
-    hdi_mass_apply(s->lap, HDI_SPEC_WIDE, x, y, s->ctx);
+    hdi_mass_apply(s->lap, HDI_WIDE, x, y, s->ctx);
 }
 
 /* w = (L - sigma B)^-1 w in place */
 static void hdi_spec_sweep(hdi_spec *s, double *w) {
-    hdi_sweep z = hdi_sweep_open(&s->factor, HDI_SPEC_WIDE, w, s->sweep);
+    hdi_sweep z = hdi_sweep_open(&s->factor, HDI_WIDE, w, s->sweep);
     hdi_sweep_run(&z, s->ctx);
-    s->n_solves += HDI_SPEC_WIDE;
+    s->n_solves += HDI_WIDE;
 }
 
 /* w = (L - sigma B)^-1 bw. Returns how large the residual bw - (L - sigma B) w is against w: the size of a
  * change of L that would explain it, a backward error. measure: look at it. */
 static double hdi_spec_inverse(hdi_spec *s, int measure) {
     const int64_t size = 8 * (int64_t)s->n;
-    double error[HDI_SPEC_WIDE], norm[HDI_SPEC_WIDE], worst = 0;
+    double error[HDI_WIDE], norm[HDI_WIDE], worst = 0;
     int64_t i;
     int r, turn;
     memcpy(s->w, s->bw, (size_t)size * sizeof *s->w);
@@ -19318,9 +19318,9 @@ static double hdi_spec_inverse(hdi_spec *s, int measure) {
             if (measure) continue;
             break;
         }
-        hdi_wide_norms(s->tmp, s->m->weight, s->n, HDI_SPEC_WIDE, error);
-        hdi_wide_dots(s->w, s->group, s->n, HDI_SPEC_WIDE, norm);
-        for (r = 0; r < HDI_SPEC_WIDE; r++)
+        hdi_wide_norms(s->tmp, s->m->weight, s->n, HDI_WIDE, error);
+        hdi_wide_dots(s->w, s->group, s->n, HDI_WIDE, norm);
+        for (r = 0; r < HDI_WIDE; r++)
             if (norm[r] > 0) worst = hdi_max(worst, error[r] / sqrt(norm[r]));
     }
     return worst;
@@ -19333,13 +19333,13 @@ typedef struct hdi_spec_scale { double *w, *bw; const double *R; } hdi_spec_scal
 
 static void hdi_spec_scale_task(void *arg, int64_t begin, int64_t end) {
     const hdi_spec_scale *a = (const hdi_spec_scale *)arg;
-    double inv[HDI_SPEC_WIDE];
+    double inv[HDI_WIDE];
     int64_t i;
     int q, k;
-    for (q = 0; q < HDI_SPEC_WIDE; q++) inv[q] = a->R[9 * q] > 0 ? 1 / a->R[9 * q] : 0;
+    for (q = 0; q < HDI_WIDE; q++) inv[q] = a->R[9 * q] > 0 ? 1 / a->R[9 * q] : 0;
     for (i = begin; i < end; i++) {
         double *x = a->w + 8 * i, *y = a->bw + 8 * i;
-        for (q = 0; q < HDI_SPEC_WIDE; q++) {
+        for (q = 0; q < HDI_WIDE; q++) {
             for (k = 0; k < q; k++) {
                 x[q] -= a->R[8 * k + q] * x[k];
                 y[q] -= a->R[8 * k + q] * y[k];
@@ -19367,11 +19367,11 @@ static void hdi_spec_scale_task(void *arg, int64_t begin, int64_t end) {
  * them; drop NULL: none. Returns how far G is from the identity. */
 static double hdi_spec_cholesky(const double *G, double *R, double *scale, const double *norm,
                                 double *drop) {
-    int weak[HDI_SPEC_WIDE] = {0};
+    int weak[HDI_WIDE] = {0};
     double off = 0;
     int q, k, p;
-    memset(R, 0, HDI_SPEC_WIDE * HDI_SPEC_WIDE * sizeof *R);
-    for (q = 0; q < HDI_SPEC_WIDE; q++) {
+    memset(R, 0, HDI_WIDE * HDI_WIDE * sizeof *R);
+    for (q = 0; q < HDI_WIDE; q++) {
         const double size = G[9 * q] > 0 ? sqrt(G[9 * q]) : 0;
         double sum = G[9 * q];
         for (k = 0; k < q; k++) {
@@ -19398,8 +19398,8 @@ static double hdi_spec_cholesky(const double *G, double *R, double *scale, const
 /* total = R total, both upper triangular */
 static void hdi_spec_compose(const double *R, double *total) {
     int i, j, k;
-    for (i = 0; i < HDI_SPEC_WIDE; i++) {
-        for (j = i; j < HDI_SPEC_WIDE; j++) {
+    for (i = 0; i < HDI_WIDE; i++) {
+        for (j = i; j < HDI_WIDE; j++) {
             double sum = 0;
             for (k = i; k <= j; k++) sum += R[8 * i + k] * total[8 * k + j];
             total[8 * i + j] = sum;
@@ -19410,16 +19410,16 @@ static void hdi_spec_compose(const double *R, double *total) {
 /* w -= V V' bw for the basis and the slabs nearby. removed [8]: norms of what was taken out. */
 static void hdi_spec_clean(hdi_spec *s, double *removed) {
     int32_t i, j, q;
-    for (q = 0; q < HDI_SPEC_WIDE; q++) removed[q] = 0;
+    for (q = 0; q < HDI_WIDE; q++) removed[q] = 0;
     for (i = 0; i <= s->n_slabs; i++) {
         const hdi_slab *slab = i < s->n_slabs ? s->slab + i : &s->basis;
         const int32_t cols = i < s->n_slabs ? slab->cols : s->cols;
         if (i < s->n_slabs && !s->beside[i]) continue;
         hdi_spec_project(s, slab, 0, cols, s->w, s->bw, 1, s->h);
         for (j = 0; j < cols; j++)
-            for (q = 0; q < HDI_SPEC_WIDE; q++) removed[q] += s->h[8 * j + q] * s->h[8 * j + q];
+            for (q = 0; q < HDI_WIDE; q++) removed[q] += s->h[8 * j + q] * s->h[8 * j + q];
     }
-    for (q = 0; q < HDI_SPEC_WIDE; q++) removed[q] = sqrt(removed[q]);
+    for (q = 0; q < HDI_WIDE; q++) removed[q] = sqrt(removed[q]);
     hdi_spec_mass(s, s->w, s->bw);
 }
 
@@ -19440,24 +19440,24 @@ static void hdi_spec_local(hdi_spec *s) {
  * couple receives the triangular factor. Parts in the last two blocks go first, then what rounding left in
  * all vectors; again for columns that become much smaller by it. */
 static void hdi_spec_append(hdi_spec *s) {
-    double norm[HDI_SPEC_WIDE], scale[HDI_SPEC_WIDE], removed[HDI_SPEC_WIDE], G[64], R[64], off = 1;
+    double norm[HDI_WIDE], scale[HDI_WIDE], removed[HDI_WIDE], G[64], R[64], off = 1;
     int again = 1;
     hdi_spec_scale job;
     int32_t q, pass;
     memset(s->couple, 0, sizeof s->couple);
-    for (q = 0; q < HDI_SPEC_WIDE; q++) s->couple[9 * q] = scale[q] = 1;
+    for (q = 0; q < HDI_WIDE; q++) s->couple[9 * q] = scale[q] = 1;
     hdi_spec_mass(s, s->w, s->bw);
-    hdi_wide_dots(s->w, s->bw, s->n, HDI_SPEC_WIDE, norm);
-    for (q = 0; q < HDI_SPEC_WIDE; q++) norm[q] = norm[q] > 0 ? sqrt(norm[q]) : 0;
+    hdi_wide_dots(s->w, s->bw, s->n, HDI_WIDE, norm);
+    for (q = 0; q < HDI_WIDE; q++) norm[q] = norm[q] > 0 ? sqrt(norm[q]) : 0;
     if (s->cols > 0) hdi_spec_local(s);
     for (pass = 0; pass < 2 || ((off > 0.1 || again) && pass < HDI_SPEC_PASSES); pass++) {
         const int clean = again;
         if (clean) hdi_spec_clean(s, removed);
-        hdi_spec_add(s, hdi_spec_pass(s, &s->basis, s->cols, HDI_SPEC_WIDE, s->w, 1), NULL, 1);
-        hdi_spec_dots(s, hdi_spec_pass(s, &s->basis, s->cols, HDI_SPEC_WIDE, s->bw, 1), G);
+        hdi_spec_add(s, hdi_spec_pass(s, &s->basis, s->cols, HDI_WIDE, s->w, 1), NULL, 1);
+        hdi_spec_dots(s, hdi_spec_pass(s, &s->basis, s->cols, HDI_WIDE, s->bw, 1), G);
         off = hdi_spec_cholesky(G, R, scale, norm, pass > 0 ? &s->lost : NULL);
         again = off == HUGE_VAL;
-        for (q = 0; q < HDI_SPEC_WIDE; q++) {
+        for (q = 0; q < HDI_WIDE; q++) {
             again |= clean && R[9 * q] > 0 && removed[q] > HDI_SPEC_SHRUNK * R[9 * q];
             again |= R[9 * q] > 0 && R[9 * q] < HDI_SPEC_SHRUNK * sqrt(hdi_max(G[9 * q], 0));
         }
@@ -19471,9 +19471,9 @@ static void hdi_spec_append(hdi_spec *s) {
 
 /* The columns of w that are there become columns of the basis, and T their coupling with the last block. */
 static void hdi_spec_take(hdi_spec *s) {
-    int32_t from[HDI_SPEC_WIDE], n = 0, i, k, q;
-    double C[HDI_SPEC_WIDE * HDI_SPEC_WIDE] = {0};
-    for (q = 0; q < HDI_SPEC_WIDE; q++)
+    int32_t from[HDI_WIDE], n = 0, i, k, q;
+    double C[HDI_WIDE * HDI_WIDE] = {0};
+    for (q = 0; q < HDI_WIDE; q++)
         if (s->couple[9 * q] > 0) from[n++] = q;
     for (i = 0; i < n; i++) for (k = 0; k < s->width; k++) C[8 * i + k] = s->couple[8 * from[i] + k];
     memcpy(s->couple, C, sizeof C);
@@ -19545,14 +19545,14 @@ static hd_status hdi_spec_ritz(hdi_spec *s, int full, hd_error *e) {
         s->off_ritz[i] = d2 > 0 ? sqrt(sum) / d2 : HUGE_VAL;
         reached = hdi_spec_converged(s, i);
         if (d2 > 0)
-            s->off_ritz[i] += ((double)HDI_SPEC_WIDE * DBL_EPSILON * largest + s->lost) / d2;
+            s->off_ritz[i] += ((double)HDI_WIDE * DBL_EPSILON * largest + s->lost) / d2;
         s->stuck += reached && !hdi_spec_converged(s, i);
     }
     return HD_OK;
 }
 
 /* The smallest Ritz value above the shift that has not converged: those below it are taken. */
-static double hdi_spec_reach(const hdi_spec *s) {
+static double hdi_spec_frontier(const hdi_spec *s) {
     double reach = HUGE_VAL;
     int32_t i;
     for (i = 0; i < s->cols; i++)
@@ -19569,7 +19569,7 @@ static int hdi_spec_taken(const hdi_spec *s, int32_t i, double reach) {
  * until the basis is full. */
 static hd_status hdi_spec_lanczos(hdi_spec *s, int32_t missing, int32_t beyond, hd_error *e) {
     const double limit = 0.1 * s->tol * hdi_max(fabs(s->sigma), s->unit);
-    int32_t look = missing + beyond + 4 * HDI_SPEC_WIDE, i;
+    int32_t look = missing + beyond + 4 * HDI_WIDE, i;
     double error;
     s->cols = s->last = s->before = s->width = s->fresh = 0;
     s->lost = 0;
@@ -19597,7 +19597,7 @@ static hd_status hdi_spec_lanczos(hdi_spec *s, int32_t missing, int32_t beyond, 
         if (hdi_spec_ritz(s, 0, e) < 0) return e->status;
         if (s->fresh == 0 || s->cols + s->fresh > s->most || s->stuck) return HD_OK;
         {
-            const double reach = hdi_spec_reach(s);
+            const double reach = hdi_spec_frontier(s);
             int32_t left = missing, right = beyond;
             for (i = 0; i < s->cols; i++) {
                 if (!hdi_spec_taken(s, i, reach)) continue;
@@ -19606,7 +19606,7 @@ static hd_status hdi_spec_lanczos(hdi_spec *s, int32_t missing, int32_t beyond, 
             }
             if (left <= 0 && right <= 0) return HD_OK;
         }
-        look = s->cols + HDI_SPEC_STEPS * HDI_SPEC_WIDE;
+        look = s->cols + HDI_SPEC_STEPS * HDI_WIDE;
     }
 }
 
@@ -19699,25 +19699,25 @@ static double hdi_spec_measure(hdi_spec *s, const double *value, const double *x
     int r;
     hdi_spec_mass(s, x, bx);
     hdi_spec_residuals(s, value, x, bx, s->tmp);
-    hdi_wide_norms(s->tmp, s->m->weight, s->n, HDI_SPEC_WIDE, norm);
-    for (r = 0; r < HDI_SPEC_WIDE; r++) worst = hdi_max(worst, norm[r] / hdi_max(fabs(value[r]), s->unit));
+    hdi_wide_norms(s->tmp, s->m->weight, s->n, HDI_WIDE, norm);
+    for (r = 0; r < HDI_WIDE; r++) worst = hdi_max(worst, norm[r] / hdi_max(fabs(value[r]), s->unit));
     return worst;
 }
 
 /* Puts the Ritz vectors nearest to the shift, of which[0..n), after the basis. A step of inverse iteration
  * enlarges the rounding of a residual in their direction by the quotient of the distances to the shift. */
 static void hdi_spec_nearest(hdi_spec *s, const int32_t *which, int32_t n) {
-    int32_t closest[HDI_SPEC_WIDE], m = 0, i, j;
+    int32_t closest[HDI_WIDE], m = 0, i, j;
     for (i = 0; i < n; i++) {
         for (j = m; j > 0 && fabs(s->d[closest[j - 1]]) < fabs(s->d[which[i]]); j--)
-            if (j < HDI_SPEC_WIDE) closest[j] = closest[j - 1];
-        if (j < HDI_SPEC_WIDE) closest[j] = which[i];
-        m = hdi_low32(m + 1, HDI_SPEC_WIDE);
+            if (j < HDI_WIDE) closest[j] = closest[j - 1];
+        if (j < HDI_WIDE) closest[j] = which[i];
+        m = hdi_low32(m + 1, HDI_WIDE);
     }
     hdi_spec_coefficients(s, closest, m);
     memset(s->w, 0, 8 * (size_t)s->n * sizeof *s->w);
     hdi_spec_add(s, hdi_spec_pass(s, &s->basis, 0, s->cols + s->fresh, s->w, 1), s->h, 0);
-    hdi_spec_add(s, hdi_spec_pass(s, &s->basis, s->most + HDI_SPEC_WIDE, HDI_SPEC_WIDE, s->w, 1), NULL, 1);
+    hdi_spec_add(s, hdi_spec_pass(s, &s->basis, s->most + HDI_WIDE, HDI_WIDE, s->w, 1), NULL, 1);
 }
 
 /* x - (L - sigma B)^-1 r for the residuals r in tmp of the first n columns: a step of inverse iteration. The
@@ -19725,12 +19725,12 @@ static void hdi_spec_nearest(hdi_spec *s, const int32_t *which, int32_t n) {
 static void hdi_spec_polish(hdi_spec *s, double *x, int32_t n) {
     const int64_t size = 8 * (int64_t)s->n;
     const int32_t cols = s->cols;
-    double removed[HDI_SPEC_WIDE];
+    double removed[HDI_WIDE];
     int64_t i;
     memcpy(s->w, s->tmp, (size_t)size * sizeof *s->w);
     hdi_spec_sweep(s, s->w);
     hdi_spec_mass(s, s->w, s->bw);
-    hdi_spec_project(s, &s->basis, s->most + HDI_SPEC_WIDE, HDI_SPEC_WIDE, s->w, s->bw, 1, s->h);
+    hdi_spec_project(s, &s->basis, s->most + HDI_WIDE, HDI_WIDE, s->w, s->bw, 1, s->h);
     s->cols = 0;
     hdi_spec_clean(s, removed);
     s->cols = cols;
@@ -19739,7 +19739,7 @@ static void hdi_spec_polish(hdi_spec *s, double *x, int32_t n) {
 
 /* The same while residuals are too large, for the eigenvalues of block x. Steps that worsen it are undone. */
 static void hdi_spec_polish_all(hdi_spec *s, const double *value, double *x, double *bx, int32_t n) {
-    double norm[HDI_SPEC_WIDE], worst = hdi_spec_measure(s, value, x, bx, norm), now;
+    double norm[HDI_WIDE], worst = hdi_spec_measure(s, value, x, bx, norm), now;
     int32_t tries;
     int64_t i;
     for (tries = 0; tries < 2 && worst > HDI_SPEC_POLISH * s->tol; tries++, worst = now) {
@@ -19755,7 +19755,7 @@ static void hdi_spec_polish_all(hdi_spec *s, const double *value, double *x, dou
  * orthogonal to the columns before. bx: work. */
 static void hdi_spec_settle(hdi_spec *s, double *x, double *bx, int32_t at, int32_t n) {
     const hdi_slab *slab = s->slab + s->n_slabs - 1;
-    double G[64] = {0}, R[64], h[8 * HDI_SPEC_WIDE], scale[HDI_SPEC_WIDE], norm[HDI_SPEC_WIDE];
+    double G[64] = {0}, R[64], h[8 * HDI_WIDE], scale[HDI_WIDE], norm[HDI_WIDE];
     hdi_spec_scale job;
     int32_t q, r;
     hdi_spec_mass(s, x, bx);
@@ -19764,7 +19764,7 @@ static void hdi_spec_settle(hdi_spec *s, double *x, double *bx, int32_t at, int3
     hdi_spec_add(s, hdi_spec_pass(s, slab, at, n, x, 1), NULL, 1);
     hdi_spec_dots(s, hdi_spec_pass(s, slab, at, n, bx, 1), h);
     for (q = 0; q < n; q++) for (r = 0; r < n; r++) G[8 * q + r] = h[8 * q + r];
-    for (q = 0; q < HDI_SPEC_WIDE; q++) norm[q] = scale[q] = 1;
+    for (q = 0; q < HDI_WIDE; q++) norm[q] = scale[q] = 1;
     (void)hdi_spec_cholesky(G, R, scale, norm, NULL);
     job.w = x;
     job.bw = bx;
@@ -19780,7 +19780,7 @@ static void hdi_spec_settle(hdi_spec *s, double *x, double *bx, int32_t at, int3
 static void hdi_spec_lock_group(hdi_spec *s, const int32_t *which, int32_t n, int32_t first) {
     const int32_t n_blocks = (n + 7) / 8;
     const int64_t size = 8 * (int64_t)s->n;
-    double twin[8 * HDI_SPEC_GROUP], norm[HDI_SPEC_WIDE], noise[HDI_SPEC_WIDE], value[HDI_SPEC_WIDE];
+    double twin[8 * HDI_SPEC_GROUP], norm[HDI_WIDE], noise[HDI_WIDE], value[HDI_WIDE];
     int32_t q, r;
     hdi_spec_coefficients(s, which, n);
     memset(s->group, 0, (size_t)(n_blocks * size) * sizeof *s->group);
@@ -19788,7 +19788,7 @@ static void hdi_spec_lock_group(hdi_spec *s, const int32_t *which, int32_t n, in
     for (q = 0; q < 2 * n_blocks; q++) {
         double *x = s->group + q % n_blocks * size, *bx = s->group_b + q % n_blocks * size;
         const int32_t at = 8 * (q % n_blocks), here = hdi_low32(8, n - at);
-        for (r = 0; r < HDI_SPEC_WIDE; r++) value[r] = r < here ? hdi_spec_lambda(s, which[at + r]) : 0;
+        for (r = 0; r < HDI_WIDE; r++) value[r] = r < here ? hdi_spec_lambda(s, which[at + r]) : 0;
         if (q < n_blocks) {
             hdi_spec_polish_all(s, value, x, bx, here);
             continue;
@@ -19796,7 +19796,7 @@ static void hdi_spec_lock_group(hdi_spec *s, const int32_t *which, int32_t n, in
         if (q == n_blocks) hdi_spec_unlock(s, n, twin);
         hdi_spec_settle(s, x, bx, first + at, here);
         (void)hdi_spec_measure(s, value, x, bx, norm);
-        hdi_wide_norms(x, s->noise, s->n, HDI_SPEC_WIDE, noise);
+        hdi_wide_norms(x, s->noise, s->n, HDI_WIDE, noise);
         for (r = 0; r < here; r++) {
             if (twin[at + r] > 0.1 || s->found == s->n) continue;   /* found before */
             s->n_poor += norm[r] > s->tol * hdi_max(fabs(value[r]), s->unit) + noise[r] ||
@@ -19812,7 +19812,7 @@ static hd_status hdi_spec_lock(hdi_spec *s, hd_error *e) {
     double reach;
     if (s->cols == 0) return HD_OK;
     if (hdi_spec_ritz(s, 1, e) < 0) return e->status;
-    reach = hdi_spec_reach(s);
+    reach = hdi_spec_frontier(s);
     hdi_noise_weights(s->lap, 1, 2 * fabs(s->sigma), s->noise, s->noise + s->n);
     for (i = 0; i < s->cols; i++) {
         if (!hdi_spec_taken(s, i, reach)) continue;
@@ -20674,7 +20674,7 @@ struct hd_heat {
     hdi_heat_order *other;
     int32_t light;
     hdi_modes modes;             /* so too */
-    hdi_silan *silan;
+    hdi_krylov *silan;
     double *batch_room;          /* arrays of the batches */
     uint64_t batch_doubles;
     hd_laplacian *lap;           /* to iterate on: renumbered and scaled */
@@ -20924,7 +20924,7 @@ static hd_status hdi_heat_turn(hd_heat *heat, int light, hd_error *e) {
     heat->ground = heat->other->ground;
     *heat->other = now;
     heat->light = light;
-    if (HDI_HAS_DIRECT && heat->silan) hdi_silan_free(heat->silan, heat->ctx);
+    if (HDI_HAS_DIRECT && heat->silan) hdi_krylov_free(heat->silan, heat->ctx);
     return HD_OK;
 }
 
@@ -20945,7 +20945,7 @@ static void hdi_heat_shed(hd_heat *heat, int pairs) {
     hdi_free(heat->ctx, heat->batch_room);
     heat->batch_room = NULL;
     heat->batch_doubles = 0;
-    if (HDI_HAS_DIRECT && heat->silan) hdi_silan_free(heat->silan, heat->ctx);
+    if (HDI_HAS_DIRECT && heat->silan) hdi_krylov_free(heat->silan, heat->ctx);
     hdi_free(heat->ctx, heat->silan);
     heat->silan = NULL;
     if (HDI_HAS_DIAGONAL) hdi_ground_free(&heat->ground, heat->ctx);
@@ -21053,7 +21053,7 @@ static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const 
                                    double tol, hd_solve_report *report, hd_error *e) {
     const hd_laplacian *lap;
     hdi_lane *lane;
-    hdi_krylov *k;
+    hdi_iteration *k;
     hdi_watch watch;
     hd_status status;
     double b_norm;
@@ -21069,9 +21069,9 @@ static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const 
     watch.share = 1;
     watch.stage = "solve";
     b_norm = hdi_shifted_load(heat, rhs, exponent, theta, lane, x);
-    hdi_krylov_start(k, b_norm);
-    hdi_krylov_residual(k, lane->b);
-    status = hdi_krylov_run(k, lane->b, tol * b_norm, heat->fam.max_iterations, &watch, e);
+    hdi_iteration_start(k, b_norm);
+    hdi_iteration_residual(k, lane->b);
+    status = hdi_iteration_run(k, lane->b, tol * b_norm, heat->fam.max_iterations, &watch, e);
     for (i = 0; i < lap->n_active; i++) x[lap->vertex[i]] = k->x[i] = hdi_cadd(x[lap->vertex[i]], k->x[i]);
     if (report) {
         const double error = hdi_pole_error(k);
@@ -21352,7 +21352,7 @@ static void hdi_elim_renew(hdi_elim *m, const hd_laplacian *lap, int64_t *fill) 
     m->scale = hdi_pair_scale(m->lap);
     for (i = 0; i < lap->n_active; i++) m->weight[i] = 1 / m->lap->b_diag[i];
     m->filled = m->shifted.ready = 0;
-    m->reach_t = -1;
+    m->resolvent_t = -1;
 }
 
 /* Brings the copies of the pair up to date after an update of the Laplacian. Orderings, analyses and all room
@@ -21549,7 +21549,7 @@ typedef struct hdi_windows { int32_t n; double steps, longest; } hdi_windows;
 #define HDI_STEPS_HANDED_ON 3
 
 static double hdi_krylov_steps(double ratio, int goes_on) {
-    const double most = 0.9 * (double)HDI_SILAN_MAX;
+    const double most = 0.9 * (double)HDI_KRYLOV_MAX;
     return hdi_min(goes_on ? 14 + 1.8 * sqrt(ratio) : 22 + 2.8 * sqrt(ratio), most);
 }
 
@@ -21637,8 +21637,8 @@ static hdi_cost hdi_heat_cost(const hdi_heat_call *h) {
     c.direct_bytes = 64 * packs * g.stored + 200 * n + 8 * g.real_stored;
     c.krylov_bytes = 8 * f.real_stored + 8 * n * (k > 1 ? 8 * w.longest : w.longest) + 200 * n;
     c.direct_bytes += hdi_min(k, HDI_LANES) * 140 * n;       /* lanes, and rows of a batch */
-    c.krylov_bytes += hdi_min(k, HDI_SILAN_WIDE) * 80 * n;
-    if (k <= 3 && h->n_times > 1) c.krylov_bytes += HDI_SILAN_WIDE * 8 * n;   /* sums at several times */
+    c.krylov_bytes += hdi_min(k, HDI_WIDE) * 80 * n;
+    if (k <= 3 && h->n_times > 1) c.krylov_bytes += HDI_WIDE * 8 * n;   /* sums at several times */
     if (hdi_heat_full(heat)->n_packs >= packs) c.direct_bytes = 0;   /* there already */
     if (heat->silan) c.krylov_bytes = 0;
     c.krylov += HDI_FRESH_BYTE * c.krylov_bytes;
@@ -22217,7 +22217,7 @@ static void hdi_heat_note(hdi_heat_call *h, hdi_ledger ledger, int32_t i, int ow
     hdi_lane *lane = h->lane + i;
     const hdi_elim *m = &h->heat->elim;
     const int solved = h->method == HD_METHOD_DIRECT && h->t > 0 && !h->equal && !h->by_pairs;
-    const double *reach = solved && m->reach && m->reach_t == m->t ? m->reach : NULL;
+    const double *reach = solved && m->resolvent && m->resolvent_t == m->t ? m->resolvent : NULL;
     ledger.known.rounding = lane->rounding;
     lane->step = hdi_heat_step(h, lane);
     if (lane->dual) hdi_pair_apply(h->lap, 0, 1, lane->u, lane->tmp);
@@ -22313,7 +22313,7 @@ static hd_status hdi_iterative_prepare(hdi_heat_call *h) {
     for (i = 0; i < h->n_lanes; i++)
         if (hdi_lane_systems(h->lane + i, &heat->fam, h->e) < 0) return h->e->status;
     if (hdi_family_fill(&heat->fam, h->lane->b, h->e) < 0) return h->e->status;
-    if (hdi_family_turns(&heat->fam)) h->n_lanes = 1;
+    if (hdi_family_shares(&heat->fam)) h->n_lanes = 1;
     return HD_OK;
 }
 
@@ -22555,8 +22555,8 @@ static uint64_t hdi_krylov_need(const hdi_elim *m, int32_t wide, int32_t steps) 
 /* The steps of a basis for n items and the times [q0, q1). */
 static hd_status hdi_krylov_basis(hdi_heat_call *h, int32_t n, int32_t q0, int32_t q1) {
     hd_heat *heat = h->heat;
-    hdi_silan *z = heat->silan;
-    double fixed[HDI_SILAN_WIDE];
+    hdi_krylov *z = heat->silan;
+    double fixed[HDI_WIDE];
     int32_t i;
     const double g = hdi_krylov_shift(z->from, h->times[q0], h->times[q1 - 1], heat->lambda_max);
     /* a step is the least */
@@ -22567,13 +22567,13 @@ static hd_status hdi_krylov_basis(hdi_heat_call *h, int32_t n, int32_t q0, int32
     z->g = heat->elim.shift;
     z->k = n;
     z->last = q1 < h->n_times ? h->times[h->n_times - 1] : 0;
-    if (hdi_silan_start(z, h->lane, heat->ctx, h->e) < 0) return h->e->status;
+    if (hdi_krylov_start(z, h->lane, heat->ctx, h->e) < 0) return h->e->status;
     for (i = 0; i < n; i++) fixed[i] = h->lane[i].skip ? 0 : hdi_lane_means_norm2(h->lane + i, h->lap);
-    return hdi_silan_run(z, h->times + q0, q1 - q0, heat->opts.tol, fixed, heat->ctx, h->e);
+    return hdi_krylov_run(z, h->times + q0, q1 - q0, heat->opts.tol, fixed, heat->ctx, h->e);
 }
 
 /* The answers of n items at time q, whose sums are in place p and after in a. counted: steps are told. */
-static hd_status hdi_krylov_store(hdi_heat_call *h, int32_t n, int32_t q, const hdi_silan_sum *a, int32_t p,
+static hd_status hdi_krylov_store(hdi_heat_call *h, int32_t n, int32_t q, const hdi_krylov_sum *a, int32_t p,
                                   int counted, hd_status status) {
     const hd_heat *heat = h->heat;
     const size_t bytes = (size_t)h->lap->n_active * sizeof *h->lane->u;
@@ -22583,7 +22583,7 @@ static hd_status hdi_krylov_store(hdi_heat_call *h, int32_t n, int32_t q, const 
         lane->status = status;
         if (lane->skip) continue;
         if (a->u[p + i] != lane->u) memcpy(lane->u, a->u[p + i], bytes);
-        if (hdi_silan_answer(heat->silan, i, h->times[q] - heat->silan->from, a->y[p + i], heat->drift, lane,
+        if (hdi_krylov_answer(heat->silan, i, h->times[q] - heat->silan->from, a->y[p + i], heat->drift, lane,
                              h->e) < 0) return h->e->status;
         if (counted) lane->steps = 0;
         if (lane->off.solver > heat->opts.tol * lane->u_norm ||
@@ -22596,18 +22596,18 @@ static hd_status hdi_krylov_store(hdi_heat_call *h, int32_t n, int32_t q, const 
 /* The answers of n items at the times [q0, q1), from their basis: each pass as many as a sum has places. */
 static hd_status hdi_krylov_answers(hdi_heat_call *h, int32_t n, int32_t q0, int32_t q1, hd_status status) {
     hd_context *ctx = h->heat->ctx;
-    hdi_silan *z = h->heat->silan;
+    hdi_krylov *z = h->heat->silan;
     const int64_t rows = h->lap->n_active;
     const int abreast = z->wide > 1;             /* else one item, at several times */
-    const int32_t places = abreast ? n : hdi_low32(q1 - q0, HDI_SILAN_WIDE);
-    hdi_silan_sum a;
+    const int32_t places = abreast ? n : hdi_low32(q1 - q0, HDI_WIDE);
+    hdi_krylov_sum a;
     int32_t p, q, n_here;
     memset(&a, 0, sizeof a);
     if (!abreast && q1 - q0 > 1 && !z->ahead)
-        z->ahead = HDI_NEW(ctx, double, HDI_SILAN_WIDE * (uint64_t)rows, h->e);
-    if (h->e->status < 0 || hdi_silan_places(z, places, ctx, h->e) < 0) return h->e->status;
+        z->ahead = HDI_NEW(ctx, double, HDI_WIDE * (uint64_t)rows, h->e);
+    if (h->e->status < 0 || hdi_krylov_places(z, places, ctx, h->e) < 0) return h->e->status;
     for (q = q0; q < q1; q += n_here) {
-        n_here = abreast ? 1 : hdi_low32(q1 - q, HDI_SILAN_WIDE);
+        n_here = abreast ? 1 : hdi_low32(q1 - q, HDI_WIDE);
         a.count = n * n_here;
         for (p = 0; p < a.count; p++) {
             const hdi_lane *lane = h->lane + (abreast ? p : 0);
@@ -22615,10 +22615,10 @@ static hd_status hdi_krylov_answers(hdi_heat_call *h, int32_t n, int32_t q0, int
             a.u[p] = lane->skip ? NULL : n_here > 1 ? z->ahead + rows * p : lane->u;
             a.means[p] = lane->sums;
             a.y[p] = z->y + z->steps * p;
-            if (hdi_silan_coefficients(z, abreast ? p : 0, t, z->y + z->steps * p, h->e) < 0)
+            if (hdi_krylov_coefficients(z, abreast ? p : 0, t, z->y + z->steps * p, h->e) < 0)
                 return h->e->status;
         }
-        hdi_silan_sum_run(z, &a, ctx);
+        hdi_krylov_sum_run(z, &a, ctx);
         for (p = 0; p < n_here; p++)
             if (hdi_krylov_store(h, n, q + p, &a, p, q + p > q0, status) < 0) return h->e->status;
     }
@@ -22628,7 +22628,7 @@ static hd_status hdi_krylov_answers(hdi_heat_call *h, int32_t n, int32_t q0, int
 /* The next window begins with the answers at time `from`, or (0) with the fields themselves. */
 static void hdi_krylov_begin(hdi_heat_call *h, int32_t n, double from) {
     const hd_laplacian *lap = h->lap;
-    hdi_silan *z = h->heat->silan;
+    hdi_krylov *z = h->heat->silan;
     int32_t i;
     z->from = from;
     memset(z->before, 0, sizeof z->before);
@@ -22648,7 +22648,7 @@ static void hdi_krylov_begin(hdi_heat_call *h, int32_t n, double from) {
  * there is estimated by their basis. */
 static int hdi_krylov_goes_on(const hdi_heat_call *h, int32_t n, double to) {
     const hd_heat *heat = h->heat;
-    const hdi_silan *z = heat->silan;
+    const hdi_krylov *z = heat->silan;
     int32_t i;
     for (i = 0; i < n; i++) {
         const hdi_lane *lane = h->lane + i;
@@ -22658,7 +22658,7 @@ static int hdi_krylov_goes_on(const hdi_heat_call *h, int32_t n, double to) {
         fixed = hdi_lane_means_norm2(lane, h->lap);
         size = 0;
         if (z->done[i] > 0) {
-            if (hdi_silan_ritz(z, i, z->done[i], &s, h->e) < 0) return 0;
+            if (hdi_krylov_ritz(z, i, z->done[i], &s, h->e) < 0) return 0;
             size = z->f_norm[i] * hdi_ritz_size(&s, (to - z->from) / z->g);
         }
         size = sqrt(size * size + fixed) / 2;
@@ -22687,12 +22687,12 @@ static hd_status hdi_krylov_items(hdi_heat_call *h, int32_t n, int32_t n_windows
 
 static hd_status hdi_heat_by_krylov(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
-    const int32_t wide = h->ask.k > 3 ? HDI_SILAN_WIDE : 1;
+    const int32_t wide = h->ask.k > 3 ? HDI_WIDE : 1;
     const int32_t n_windows = hdi_krylov_windows(h, hdi_heat_fill(heat)).n;
     int32_t n;
-    if (heat->silan && heat->silan->wide != wide) hdi_silan_free(heat->silan, heat->ctx);
+    if (heat->silan && heat->silan->wide != wide) hdi_krylov_free(heat->silan, heat->ctx);
     if (!heat->silan) {
-        heat->silan = (hdi_silan *)hdi_alloc_zero(heat->ctx, 1, sizeof *heat->silan, h->e);
+        heat->silan = (hdi_krylov *)hdi_alloc_zero(heat->ctx, 1, sizeof *heat->silan, h->e);
         if (!heat->silan) return h->e->status;
     }
     heat->silan->wide = wide;
@@ -22875,7 +22875,7 @@ static double hdi_modes_need(const hd_heat *heat, int32_t count) {
     const double tiles = (double)HDI_SPEC_TILE * hdi_slab_tiles(n), gaps = HDI_SPEC_GAPS;
     const double doubles = hdi_spec_doubles(n, count) + 2 * tiles * (count + gaps) + 2.0 * heat->source->n;
     if (!heat->elim.ctx) return 8 * doubles + 8 * hdi_heat_fill(heat).real_stored;
-    return 8 * (doubles + (double)hdi_sweep_size(&heat->elim.sym, 1, HDI_SPEC_WIDE)) +
+    return 8 * (doubles + (double)hdi_sweep_size(&heat->elim.sym, 1, HDI_WIDE)) +
            (double)hdi_factor_bytes(&heat->elim.sym, 1);
 }
 
@@ -24191,7 +24191,7 @@ static double hdi_probe_value(const hd_heat *heat, const hdi_probe *x, int32_t q
     for (p = 0; p < set->n_poles; p++) {
         const double weight = hdi_pole_size(set, p) * root * lane->pole_off[p];
         value -= hdi_rat_count(set, p) / tau * hdi_cmul(set->a[p], lane->pole_value[p]).re;
-        by_m += weight * hdi_pole_reach(set->theta[p]);
+        by_m += weight * hdi_pole_gain(set->theta[p]);
         by_b += weight / hdi_pole_distance(set->theta[p]);
     }
     by_m = g > 0 && hdi_finite(g) ? sqrt(g) * by_m : HUGE_VAL;
@@ -26245,7 +26245,7 @@ static double hdi_distance_shared_off(const hdi_distance_shared *z, int32_t q) {
     double off = 0;
     int32_t p;
     for (p = 0; p < set->n_poles; p++)
-        off += 2 * hdi_cabs(set->a[p]) * z->pole_off[p] * root * hdi_pole_reach(set->theta[p]);
+        off += 2 * hdi_cabs(set->a[p]) * z->pole_off[p] * root * hdi_pole_gain(set->theta[p]);
     return off;
 }
 
@@ -27109,7 +27109,7 @@ static double hdi_bytes_iterative(const hd_heat *heat, double t, int32_t k, int3
     if (!heat->weight) bytes += 8 * n + 4 * (nnz - n) / 2 + 32 * n;
     if (hdi_heat_choose(heat, t) == HD_SOLVER_LANCZOS)
         return bytes + lanes * (80 * n + 88.0 * hdi_lanczos_most(t, heat->lambda_max));
-    bytes += lanes * (24 + 16.0 * (1 + hdi_krylov_vectors(heat->opts.solver) + poles)) * n;
+    bytes += lanes * (24 + 16.0 * (1 + hdi_iteration_vectors(heat->opts.solver) + poles)) * n;
     return bytes + 16.0 * poles * (row->rows * n + row->entries * (nnz - n) / 2);
 }
 
@@ -27121,13 +27121,13 @@ static void hdi_estimate_krylov(const hdi_estimate *x, double seconds, double he
     const double n = heat->source->n_active;
     const hdi_windows w = hdi_krylov_windows(x->h, f);
     const double longer = several ? 1.3 : 1.15;  /* more than expected, to be safe */
-    const double steps = hdi_min(HDI_SILAN_MAX, longer * w.longest);
-    const int32_t wide = x->k > 3 ? HDI_SILAN_WIDE : 1;
-    double bytes = HDI_ESTIMATE_SMALL + (double)sizeof(hdi_silan) + wide * 56 * n + held;
+    const double steps = hdi_min(HDI_KRYLOV_MAX, longer * w.longest);
+    const int32_t wide = x->k > 3 ? HDI_WIDE : 1;
+    double bytes = HDI_ESTIMATE_SMALL + (double)sizeof(hdi_krylov) + wide * 56 * n + held;
     if (heat->elim.ctx)
         bytes += (double)hdi_krylov_need(&heat->elim, wide, (int32_t)steps);
     else bytes += 8 * f.real_stored + 8 * n * wide * (steps + 4) + 200 * n;
-    if (several && wide == 1) bytes += HDI_SILAN_WIDE * 8 * n;   /* sums at several times */
+    if (several && wide == 1) bytes += HDI_WIDE * 8 * n;   /* sums at several times */
     hdi_cost_add(c, w.n * f.flops + x->k * w.steps * 4 * f.nnz, seconds, bytes);
 }
 

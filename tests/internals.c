@@ -484,9 +484,9 @@ static void int_ildl(void) {
 
 /* The share of the way from the first residual to the target, by powers of ten. */
 static void int_krylov_done(void) {
-    CHECK(fabs(hdi_krylov_done(1e3, 1e1, 1e-5) - 0.25) < 1e-15 && fabs(hdi_krylov_done(1e-2, 1e-8, 1e-10) - 0.75) < 1e-15);
-    CHECK(hdi_krylov_done(5, 5, 1e-3) == 0 && hdi_krylov_done(5, 1, 0) == 0);
-    CHECK(hdi_krylov_done(5, 1e-3, 1e-3) == 1 && hdi_krylov_done(1e-3, 1e-3, 1e-2) == 1);
+    CHECK(fabs(hdi_iteration_done(1e3, 1e1, 1e-5) - 0.25) < 1e-15 && fabs(hdi_iteration_done(1e-2, 1e-8, 1e-10) - 0.75) < 1e-15);
+    CHECK(hdi_iteration_done(5, 5, 1e-3) == 0 && hdi_iteration_done(5, 1, 0) == 0);
+    CHECK(hdi_iteration_done(5, 1e-3, 1e-3) == 1 && hdi_iteration_done(1e-3, 1e-3, 1e-2) == 1);
 }
 
 /* ---- helpers ---- */
@@ -763,7 +763,7 @@ static void int_lanczos_bound(void) {
 
 /* (F(a) - F(b))/(a - b) of F(x) = exp(-tau (1/x - 1)) against long double, for a and b that are far from and very near each
  * other. */
-static void int_silan_slopes(void) {
+static void int_krylov_slopes(void) {
     static const double taus[7] = {0.01, 0.1, 1, 10, 30, 1000, 1e5};
     uint64_t seed = 19;
     int k;
@@ -772,7 +772,7 @@ static void int_silan_slopes(void) {
             tau = taus[k % 7];
         const double other = k % 3 == 0 ? pow(10, -6 * fabs(dense_signed(&seed))) : fmin(1, a * (1 + (k % 2 ? near : -near)));
         const double b = k % 97 == 0 ? a : other;
-        const double fa = hdi_silan_decay(a, tau), fb = hdi_silan_decay(b, tau), got = hdi_silan_slope(a, fa, b, fb, tau);
+        const double fa = hdi_krylov_decay(a, tau), fb = hdi_krylov_decay(b, tau), got = hdi_krylov_slope(a, fa, b, fb, tau);
         const double lost = fabs(a - b) > 0.05 * a ? 1e-14 * (fa + fb) / fabs(a - b) : 0;
         const long double high = a > b ? a : b, low = a > b ? b : a, d = high - low;
         long double want = expl(-tau * (1 / high - 1));
@@ -781,16 +781,16 @@ static void int_silan_slopes(void) {
         CHECK_MSG(fabs(got - (double)want) <= lost + 1e-290 + 1e-8 * (double)want, "a %.17g, b %.17g, tau %g: %g, not %g", a,
                   b, tau, got, (double)want);
     }
-    CHECK(hdi_silan_decay(1, 30) == 1 && hdi_silan_decay(1.0000001, 30) == 1 && hdi_silan_decay(0, 3) == 0 &&
-          hdi_silan_decay(-1e-17, 3) == 0);
-    CHECK(hdi_silan_decay(1e-20, 0) == 1 && fabs(hdi_silan_decay(0.5, 2) - exp(-2)) < 1e-16 &&
-          hdi_silan_slope(1e-18, 0, 1e-18, 0, 3) == 0);
+    CHECK(hdi_krylov_decay(1, 30) == 1 && hdi_krylov_decay(1.0000001, 30) == 1 && hdi_krylov_decay(0, 3) == 0 &&
+          hdi_krylov_decay(-1e-17, 3) == 0);
+    CHECK(hdi_krylov_decay(1e-20, 0) == 1 && fabs(hdi_krylov_decay(0.5, 2) - exp(-2)) < 1e-16 &&
+          hdi_krylov_slope(1e-18, 0, 1e-18, 0, 3) == 0);
 }
 
 /* Eigenvalues 1/(1 + g lambda) above one show that L is not semidefinite, but not where the solves themselves are off by as
  * much. */
 static void int_ritz_above(void) {
-    hdi_silan *z = KIT_NEW(hdi_silan, 1);
+    hdi_krylov *z = KIT_NEW(hdi_krylov, 1);
     double known[2] = {1.05, 1};                 /* an eigenvalue, and its vector */
     hd_error e = int_no_error();
     hdi_ritz s;
@@ -799,9 +799,9 @@ static void int_ritz_above(void) {
     z->f_norm[0] = z->whole[0] = 1;
     z->solved = 9;
     z->noise[0][0] = 1e-3;
-    CHECK(hdi_silan_ritz(z, 0, 1, &s, &e) == HD_OK);
+    CHECK(hdi_krylov_ritz(z, 0, 1, &s, &e) == HD_OK);
     z->noise[0][0] = 1e-5;
-    CHECK(hdi_silan_ritz(z, 0, 1, &s, &e) < 0);
+    CHECK(hdi_krylov_ritz(z, 0, 1, &s, &e) < 0);
 }
 
 static hd_status int_elim(hdi_elim *m, const hd_laplacian *lap, hd_context *ctx, hd_error *e) {
@@ -822,9 +822,9 @@ static void int_lane(hdi_lane *lane, const hd_laplacian *lap, int32_t r, hd_cont
 }
 
 /* The error of right-hand side r at time t after z's steps, relative to |f|; the answer is taken as a plan takes it. */
-static double int_silan_error(hdi_silan *z, hdi_lane *lane, int32_t r, double t, const dense_pair *pair, double *y,
+static double int_krylov_error(hdi_krylov *z, hdi_lane *lane, int32_t r, double t, const dense_pair *pair, double *y,
                               double *want) {
-    hdi_silan_sum sum;
+    hdi_krylov_sum sum;
     hd_error e = int_no_error();
     int32_t i;
     memset(&sum, 0, sizeof sum);
@@ -833,9 +833,9 @@ static double int_silan_error(hdi_silan *z, hdi_lane *lane, int32_t r, double t,
     sum.means[r] = lane[r].sums;
     for (i = 0; i <= r; i++) sum.y[i] = y + 45 * i;
     z->done[r] = z->steps;
-    CHECK(hdi_silan_coefficients(z, r, t, y + 45 * r, &e) == HD_OK);
-    hdi_silan_sum_run(z, &sum, z->m->ctx);
-    CHECK(hdi_silan_answer(z, r, t, sum.y[r], 0, lane + r, &e) == HD_OK);
+    CHECK(hdi_krylov_coefficients(z, r, t, y + 45 * r, &e) == HD_OK);
+    hdi_krylov_sum_run(z, &sum, z->m->ctx);
+    CHECK(hdi_krylov_answer(z, r, t, sum.y[r], 0, lane + r, &e) == HD_OK);
     z->done[r] = 0;
     dense_pair_heat(pair, t, lane[r].rhs, want);
     for (i = 0; i < pair->n; i++) want[i] -= lane[r].u[i];
@@ -844,12 +844,12 @@ static double int_silan_error(hdi_silan *z, hdi_lane *lane, int32_t r, double t,
 
 /* After each number of steps the bound against the error of the answer, for times from a third to three times the one that
  * the shift is made for, and far from it. wide: right-hand sides side by side. */
-static void int_silan_bound_of(int kind, int32_t wide, double t) {
+static void int_krylov_bound_of(int kind, int32_t wide, double t) {
     static const double factors[5] = {0.03, 0.3, 1, 3, 30};
     const hd_laplacian *lap = kit_pair(kind ? "flat/14/9/0.3 vor" : "bumpy/2/5 fem");
     const int32_t n = lap->n_active, k = wide == 1 ? 1 : 3;
     double *want = KIT_NEW(double, n), *y = KIT_NEW(double, 45 * 8), loosest = 0;
-    hdi_silan *z = KIT_NEW(hdi_silan, 1);
+    hdi_krylov *z = KIT_NEW(hdi_krylov, 1);
     hdi_ritz ritz;
     hd_context ctx;
     hd_error e;
@@ -867,17 +867,17 @@ static void int_silan_bound_of(int kind, int32_t wide, double t) {
     z->m = &m;
     z->k = k;
     z->g = m.shift;
-    CHECK(hdi_silan_start(z, lane, &ctx, &e) == HD_OK);
+    CHECK(hdi_krylov_start(z, lane, &ctx, &e) == HD_OK);
     for (step = 1; step <= 45; step++) {
-        CHECK(hdi_silan_step(z, &ctx, &e) == HD_OK && z->steps == step);
+        CHECK(hdi_krylov_step(z, &ctx, &e) == HD_OK && z->steps == step);
         for (q = 0; q < 5 * k && (step <= 12 || step % 4 == 0); q++) {
             const double at = t * factors[q % 5], eps = 1e-15 * fmin(at * dense_max_abs(pair->lambda, n), 1e3) + 3e-14;
             double bound, error;
             r = q / 5;
             if (step > 1 && !(z->beta[step - 1][r] > 1e-13)) continue;
-            CHECK(hdi_silan_ritz(z, r, step, &ritz, &e) == HD_OK);
+            CHECK(hdi_krylov_ritz(z, r, step, &ritz, &e) == HD_OK);
             bound = hdi_ritz_bound(&ritz, at / z->g);
-            error = int_silan_error(z, lane, r, at, pair, y, want);
+            error = int_krylov_error(z, lane, r, at, pair, y, want);
             looked++;
             CHECK_MSG(error <= bound + eps, "mesh %d, wide %d, right-hand side %d, step %d, t %g: error %g, bound %g", kind,
                       (int)wide, (int)r,
@@ -891,15 +891,15 @@ static void int_silan_bound_of(int kind, int32_t wide, double t) {
     CHECK_MSG(looked > 40 && loosest > 1 && loosest <= 100,
               "mesh %d, wide %d: looked %d times, bounds up to %g times the error", kind, (int)wide,
               (int)looked, loosest);
-    hdi_silan_free(z, &ctx);
+    hdi_krylov_free(z, &ctx);
     for (r = 0; r < k; r++) hdi_lane_free(lane + r, &ctx);
     hdi_elim_free(&m);
     CHECK(ctx.bytes_in_use == 0);
 }
 
-static void int_silan_bounds(void) {
+static void int_krylov_bounds(void) {
     int q;
-    for (q = 0; q < 12; q++) int_silan_bound_of(q / 2 % 2, q % 2 ? 8 : 1, pow(20, q / 4 - 0.5));
+    for (q = 0; q < 12; q++) int_krylov_bound_of(q / 2 % 2, q % 2 ? 8 : 1, pow(20, q / 4 - 0.5));
 }
 
 /* ---- [24] to [28]: damaged factors ---- */
@@ -1312,9 +1312,9 @@ static void (*const int_tests[])(void) = {
     int_few_tasks, int_division, int_not_finite, int_complex, int_sizes, int_texts, int_sums, int_arrays, int_memory,
     int_large_pages, int_sorting, int_union_find, int_tridiagonal, int_tridiagonal_odd, int_collinear, int_krylov_done,
     int_ildl, int_residuals, int_noise_weights, int_pole_bounds, int_resolvent_pole, int_no_numbers, int_lanczos_bound,
-    int_silan_slopes, int_ritz_above, int_probe_rows, int_pairs_degree, int_spectrum_proof,
+    int_krylov_slopes, int_ritz_above, int_probe_rows, int_pairs_degree, int_spectrum_proof,
     int_spectrum_twice, int_least_squares, int_exp_rest, int_shared_bounds, int_length_area, int_around, int_selection,
-    int_eigen3, int_polygon, int_silan_bounds, int_damages_1, int_damages_2, int_damages_3,
+    int_eigen3, int_polygon, int_krylov_bounds, int_damages_1, int_damages_2, int_damages_3,
     int_damages_4, int_damages_5,
 };
 
