@@ -11,7 +11,7 @@ import sys
 
 CHECKED = {     # sha256 of script and table
     "poles.py": "7f49fe8cdc676bb52dbae32bb0a432be1aec899996702b2ded93805f593e5886",
-    "shared_poles.py": "ff750f7ba0efefa8d04cfaebcbed730b5e5ba774b41e475c1efb134f1a3c54b3",
+    "shared_poles.py": "f468919995d6e22d2f65ebd36d3f3ad66d5b6538f5500ab7af981192ea3a661f",
 }
 TOOLS = os.path.dirname(os.path.abspath(__file__))
 
