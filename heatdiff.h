@@ -6030,30 +6030,26 @@ static hd_status hdi_mesh_make(hdi_mesh *mesh, hd_mesh_report *rep, hdi_scope *s
     return mesh->len ? hdi_lengths_agree(mesh, s) : HD_OK;
 }
 
-/* Fans from the first corner of each face, into tri; NULL: counted only. Returns the number of triangles. */
-static int64_t hdi_poly_fans(const int64_t *ptr, const int32_t *idx, int32_t m, int32_t *tri) {
-    int64_t t = 0, c;
-    int32_t f;
-    for (f = 0; f < m; f++) {
+/* Triangles as fans from the first corner of each face, in s. Errors name the polygons. */
+static hd_status hdi_poly_fans(hdi_mesh *to, const hdi_mesh *poly, hdi_scope *s) {
+    const int64_t *ptr = poly->ptr;
+    int64_t m = 0, t = 0, c;
+    int32_t f, *tri, *face;
+    for (f = 0; f < poly->m; f++) m += hdi_most(0, ptr[f + 1] - ptr[f] - 2);
+    tri = HDI_TAKE(s, int32_t, 3 * m);
+    face = HDI_TAKE(s, int32_t, m);
+    if (s->e->status < 0) return s->e->status;
+    for (f = 0; f < poly->m; f++) {
         for (c = ptr[f] + 1; c + 1 < ptr[f + 1]; c++, t++) {
-            if (!tri) continue;
-            tri[3 * t] = idx[ptr[f]];
-            tri[3 * t + 1] = idx[c];
-            tri[3 * t + 2] = idx[c + 1];
+            tri[3 * t] = poly->tri[ptr[f]];
+            tri[3 * t + 1] = poly->tri[c];
+            tri[3 * t + 2] = poly->tri[c + 1];
+            face[t] = f;
         }
     }
-    return t;
-}
-
-/* The face that triangle t is of. */
-static int32_t hdi_poly_face_of(const int64_t *ptr, int32_t m, int64_t t) {
-    int32_t f;
-    for (f = 0; f < m; f++) {
-        const int64_t k = ptr[f + 1] - ptr[f] - 2;
-        if (k > t) return f;
-        if (k > 0) t -= k;
-    }
-    return -1;
+    hdi_mesh_clear(to, poly->xyz, poly->n, tri, (int32_t)m);
+    to->face = face;
+    return HD_OK;
 }
 
 /* ---- points: places, tangent planes, convex polygons, stars ---- */
@@ -7094,7 +7090,6 @@ enum { HDI_MOVING_BLOCKS = 20 };
 typedef struct hd_moving {
     void *block[HDI_MOVING_BLOCKS];  /* all that is allocated */
     int32_t n_blocks;
-    int32_t *face;              /* [faces] the caller's numbers */
     hdi_rows fill;
 } hdi_moving;
 
@@ -7644,20 +7639,6 @@ static hd_status hdi_lap_assemble(hd_laplacian *lap, hdi_rows *x, const double *
     return hdi_progress(lap->context, "assemble", 0.8, e);
 }
 
-/* (L, B), places and h of triangles or polygons that are measured. full: B is, if its kind is. */
-static hd_status hdi_lap_mesh(hd_laplacian *lap, const hdi_mesh *mesh, int full, hd_error *e) {
-    hdi_scope own = hdi_scope_begin(lap->context, e);
-    hdi_rows x;
-    if (hdi_rows_begin(&x, mesh, &lap->mesh, &own) < 0 ||
-        hdi_lap_assemble(lap, &x, mesh->xyz, full, e) < 0)
-        return hdi_scope_end(&own);
-    lap->h = hdi_rows_report(&x, &lap->mesh);
-    lap->area = hdi_sum_areas(mesh->area, mesh->m);
-    /* element matrix area/12 (1 1' + I) >= 1/2 of its diagonal, area/12 I */
-    lap->b_ratio = lap->B ? 0.5 : 1;
-    return hdi_scope_end(&own);
-}
-
 /* ---- meshes that move ---- */
 
 /* Freed with the Laplacian, whatever comes. */
@@ -7666,54 +7647,28 @@ static hdi_moving *hdi_moving_new(hd_laplacian *lap, hd_error *e) {
     return lap->moving = x;
 }
 
-/* Ends the scope; its blocks become x's, if all are there. */
-static hd_status hdi_moving_keep(hdi_moving *x, hdi_scope *s) {
-    if (s->e->status < 0) return hdi_scope_end(s);
+/* Keeps a mesh and its rows, all that lives in s, with a copy of the faces. The corners of those that were
+ * left out become one vertex, so that they stay out whatever they would measure. */
+static hd_status hdi_moving_make(hd_laplacian *lap, const hdi_rows *from, hdi_scope *s) {
+    const hdi_mesh *mesh = &from->mesh;
+    const int64_t n = hdi_face_begin(mesh, mesh->m), m = mesh->m;
+    hdi_moving *x = hdi_moving_new(lap, s->e);
+    int32_t *tri = HDI_TAKE(s, int32_t, n), *face = mesh->face ? HDI_TAKE(s, int32_t, m) : NULL, f;
+    int64_t *ptr = hdi_is_poly(mesh) ? HDI_TAKE(s, int64_t, m + 1) : NULL, c = 0;
+    if (s->e->status < 0) return s->e->status;
+    for (f = 0; f < m; f++) {
+        const int64_t begin = hdi_face_begin(mesh, f), end = hdi_face_begin(mesh, f + 1);
+        for (; c < end; c++) tri[c] = mesh->tri[mesh->area[f] > 0 ? c : begin];
+    }
+    if (face) memcpy(face, mesh->face, (size_t)m * sizeof *face);
+    if (ptr) memcpy(ptr, mesh->ptr, ((size_t)m + 1) * sizeof *ptr);
+    x->fill = *from;
+    x->fill.mesh.xyz = NULL;
+    x->fill.mesh.tri = tri;
+    x->fill.mesh.face = face;
+    x->fill.mesh.ptr = ptr;
     for (; s->n > 0; s->n--) x->block[x->n_blocks++] = s->block[s->n - 1];
     return HD_OK;
-}
-
-/* Copies the faces that have an area. */
-static hd_status hdi_moving_faces(hdi_mesh *to, int32_t **face, const hdi_mesh *from, hdi_scope *s) {
-    int64_t n = 0, *ptr = NULL;
-    int32_t f, m = 0, *tri;
-    for (f = 0; f < from->m; f++) {
-        m += from->area[f] > 0;
-        n += from->area[f] > 0 ? hdi_face_begin(from, f + 1) - hdi_face_begin(from, f) : 0;
-    }
-    tri = HDI_TAKE(s, int32_t, n);
-    *face = HDI_TAKE(s, int32_t, m);
-    if (hdi_is_poly(from)) ptr = HDI_TAKE(s, int64_t, (int64_t)m + 1);
-    if (s->e->status < 0) return s->e->status;
-    for (f = 0, m = 0, n = 0; f < from->m; f++) {
-        const int64_t begin = hdi_face_begin(from, f), k = hdi_face_begin(from, f + 1) - begin;
-        if (ptr) ptr[m] = n;
-        if (!(from->area[f] > 0)) continue;
-        memcpy(tri + n, from->tri + begin, (size_t)k * sizeof *tri);
-        n += k;
-        (*face)[m++] = f;
-    }
-    if (ptr) ptr[m] = n;
-    hdi_mesh_clear(to, NULL, from->n, tri, m);
-    to->ptr = ptr;
-    to->face = *face;
-    to->lambda = from->lambda;
-    return hdi_mesh_take(to, s);
-}
-
-static hd_status hdi_moving_make(hd_laplacian *lap, const hdi_mesh *from, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
-    hdi_moving *x = hdi_moving_new(lap, e);
-    hd_mesh_report rep;
-    hdi_mesh mesh;
-    int32_t f;
-    if (!x || hdi_moving_faces(&mesh, &x->face, from, &s) < 0) return hdi_scope_end(&s);
-    for (f = 0; f < mesh.m; f++) mesh.area[f] = 1;         /* all of them are listed */
-    hdi_mesh_of(&mesh);
-    hdi_mesh_corners(&mesh);
-    (void)hdi_rows_begin(&x->fill, &mesh, &rep, &s);
-    x->fill.lump = hdi_lap_lump(lap->kind);
-    return hdi_moving_keep(x, &s);
 }
 
 /* Has each vertex that had a face still one with an area? */
@@ -7755,12 +7710,28 @@ static hd_status hdi_lap_update(hd_laplacian *lap, const double *xyz, hd_error *
     return HD_OK;
 }
 
+/* (L, B), places and h of triangles or polygons that are measured and live in s. full: B is, if its kind is.
+ * updatable: they move from s to the Laplacian. */
+static hd_status hdi_lap_mesh(hd_laplacian *lap, const hdi_mesh *mesh, int full, int updatable,
+                              hdi_scope *s) {
+    hdi_scope own = hdi_scope_begin(lap->context, s->e);
+    hdi_rows x;
+    if (hdi_rows_begin(&x, mesh, &lap->mesh, updatable ? s : &own) < 0 ||
+        hdi_lap_assemble(lap, &x, mesh->xyz, full, s->e) < 0)
+        return hdi_scope_end(&own);
+    lap->h = hdi_rows_report(&x, &lap->mesh);
+    lap->area = hdi_sum_areas(mesh->area, mesh->m);
+    /* element matrix area/12 (1 1' + I) >= 1/2 of its diagonal, area/12 I */
+    lap->b_ratio = lap->B ? 0.5 : 1;
+    if (updatable) (void)hdi_moving_make(lap, &x, s);
+    return hdi_scope_end(&own);
+}
+
 /* Triangles or polygons as they are. */
 static hd_status hdi_lap_plain(hd_laplacian *lap, const hdi_mesh *given, int updatable, hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
     hdi_mesh mesh = *given;
-    if (hdi_mesh_make(&mesh, &lap->mesh, &s) >= 0 && hdi_lap_mesh(lap, &mesh, 1, e) >= 0 && updatable)
-        (void)hdi_moving_make(lap, &mesh, e);
+    if (hdi_mesh_make(&mesh, &lap->mesh, &s) >= 0) (void)hdi_lap_mesh(lap, &mesh, 1, updatable, &s);
     return hdi_scope_end(&s);
 }
 
@@ -7844,28 +7815,12 @@ static int hdi_intrinsic_opts(const hd_laplacian_opts *opts, hdi_intrinsic_task 
     return 1;
 }
 
-/* Errors of an update name the polygons that the triangles of x come from. of: room for all triangles. */
-static void hdi_moving_fans(hdi_moving *x, const hdi_mesh *poly, int32_t *of) {
-    int64_t k, t = 0;
-    int32_t f, i;
-    for (f = 0; f < poly->m; f++)
-        for (k = poly->ptr[f + 1] - poly->ptr[f]; k > 2; k--) of[t++] = f;
-    for (i = 0; i < x->fill.mesh.m; i++) x->face[i] = of[x->face[i]];
-}
-
 /* The faces split as fans, for the operators of triangles. */
 static hd_status hdi_lap_fans(hd_laplacian *lap, const hdi_mesh *poly,
                               const hdi_intrinsic_task *task, int updatable, hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
-    const int64_t m = hdi_poly_fans(poly->ptr, poly->tri, poly->m, NULL);
-    int32_t *tri = HDI_TAKE(&s, int32_t, 3 * m);
     hdi_mesh mesh;
-    if (!tri) return hdi_scope_end(&s);
-    hdi_poly_fans(poly->ptr, poly->tri, poly->m, tri);
-    hdi_mesh_clear(&mesh, poly->xyz, lap->n, tri, (int32_t)m);
-    if (hdi_lap_faces(lap, &mesh, task, updatable, e) < 0 && e->face >= 0)
-        e->face = hdi_poly_face_of(poly->ptr, poly->m, e->face);
-    if (e->status >= 0 && lap->moving) hdi_moving_fans(lap->moving, poly, tri);
+    if (hdi_poly_fans(&mesh, poly, &s) >= 0) (void)hdi_lap_faces(lap, &mesh, task, updatable, e);
     return hdi_scope_end(&s);
 }
 
@@ -27533,8 +27488,9 @@ typedef struct hdi_geo_input {
     const int32_t *tri;          /* [3 m] triangles; or */
     const int64_t *ptr;          /* [m + 1] polygons with their corners in idx; or neither: points, */
     const int32_t *idx;
+    const int32_t *face;         /* [m] the caller's number of each; NULL: their own */
     int32_t m;
-    int points;
+    int points, updatable;
     const int64_t *nbr_ptr;      /* with or without their neighbours */
     const int32_t *nbr;
     int flips;                   /* intrinsic triangles, as task says */
@@ -27704,7 +27660,7 @@ static hd_status hdi_geo_faces(hd_geodesic *g, const hdi_mesh *mesh, const int32
                                const hdi_flat *flat, hd_error *e) {
     hdi_scope s = hdi_scope_begin(g->ctx, e);
     int64_t *at = HDI_TAKE_ZERO(&s, int64_t, (int64_t)g->n_active + 1);
-    int32_t f, used = 0;
+    int32_t f;
     for (f = 0; f < mesh->m; f++) g->n_faces += mesh->area[f] > 0;
     g->face = (hdi_geo_face *)hdi_geo_alloc(g, g->n_faces, sizeof *g->face, e);
     if (g->lap) g->from = hdi_geo_ints(g, g->n_faces, e);
@@ -27721,7 +27677,7 @@ static hd_status hdi_geo_faces(hd_geodesic *g, const hdi_mesh *mesh, const int32
             g->face[k] = hdi_geo_flat_frame(mesh, f, row, g->h, n / g->copies);
             g->face[k].copies = n;
         } else g->face[k] = hdi_geo_frame(mesh, f, row, g->h);
-        if (g->from) g->from[k] = used++;
+        if (g->from) g->from[k] = f;
     }
     return hdi_scope_end(&s);
 }
@@ -27929,10 +27885,13 @@ static hd_status hdi_geo_surface_make(hd_laplacian *lap, hdi_geo_surface *z, con
     hdi_mesh_clear(&z->mesh, in->xyz, lap->n, in->ptr ? in->idx : in->tri, in->m);
     z->mesh.len = in->len;
     z->mesh.ptr = in->ptr;
+    z->mesh.face = in->face;
     z->mesh.lambda = in->lambda;
     if (hdi_progress(lap->context, "assemble", 0, s->e) < 0) return s->e->status;
     if (HDI_HAS_INTRINSIC && in->flips) return hdi_geo_unfold(lap, z, in, s);
-    return hdi_mesh_make(&z->mesh, &lap->mesh, s) < 0 ? s->e->status : hdi_lap_mesh(lap, &z->mesh, 0, s->e);
+    return hdi_mesh_make(&z->mesh, &lap->mesh, s) < 0
+               ? s->e->status
+               : hdi_lap_mesh(lap, &z->mesh, 0, in->updatable, s);
 }
 
 /* Points in the place of an earlier one, which the triangles leave out, share its row. */
@@ -27981,7 +27940,7 @@ static hd_status hdi_geo_make(hd_geodesic *g, const hdi_geo_input *in, const hd_
         hdi_geo_surface_make(lap, &z, in, &s) >= 0 && hdi_lap_finite(lap->area, lap->h, e) >= 0) {
         g->n_active = lap->n_active;
         g->copies = z.flat.unit > 0 ? z.flat.unit : 1;
-        if (o->updatable && hdi_moving_make(lap, &z.mesh, e) >= 0) g->lap = lap;
+        if (o->updatable) g->lap = lap;
         if (e->status >= 0) (void)hdi_lap_components(lap, e);
         g->n_components = lap->n_components;
     }
@@ -28001,10 +27960,9 @@ static hd_status hdi_geo_update(hd_geodesic *g, const double *xyz, hd_error *e) 
     hdi_mesh mesh = *moving;
     int32_t f;
     if (hdi_lap_update(g->lap, xyz, e) < 0) return e->status;
-    for (f = 0; f < moving->m; f++)
-        if (!(moving->area[f] > 0))
-            return hdi_fail_face(e, HD_ERR_EMPTY, "geodesic: a face has no area any more", moving->face[f],
-                                 -1, 0);
+    for (f = 0; f < moving->m; f++)              /* of those left out all corners are one */
+        if (!(moving->area[f] > 0) && moving->tri[hdi_triple(f)] != moving->tri[hdi_triple(f) + 1])
+            return hdi_fail_face(e, HD_ERR_EMPTY, "geodesic: a face has no area any more", f, -1, 0);
     if (hdi_geo_masses(g, g->lap, mass, e) < 0) return e->status;
     g->ready = 0;
     g->x = g->mass;
@@ -29133,15 +29091,16 @@ static void hdi_geo_tell_plan(const hd_geodesic *g, hd_geodesic_report *rep) {
 static hd_status hdi_geo_make_fans(hd_geodesic *g, const hdi_geo_input *in, const hd_geodesic_opts *o,
                                    hd_error *e) {
     hdi_scope s = hdi_scope_begin(g->ctx, e);
-    const int64_t m = hdi_poly_fans(in->ptr, in->idx, in->m, NULL);
-    int32_t *tri = HDI_TAKE(&s, int32_t, 3 * m);
     hdi_geo_input split = *in;
-    if (!tri) return hdi_scope_end(&s);
-    split.m = (int32_t)hdi_poly_fans(in->ptr, in->idx, in->m, tri);
-    split.tri = tri;
+    hdi_mesh poly, mesh;
+    hdi_mesh_clear(&poly, in->xyz, g->n, in->idx, in->m);
+    poly.ptr = in->ptr;
+    if (hdi_poly_fans(&mesh, &poly, &s) < 0) return hdi_scope_end(&s);
+    split.m = mesh.m;
+    split.tri = mesh.tri;
+    split.face = mesh.face;
     split.ptr = NULL;
-    if (hdi_geo_make(g, &split, o, e) < 0 && e->face >= 0)
-        e->face = hdi_poly_face_of(in->ptr, in->m, e->face);
+    (void)hdi_geo_make(g, &split, o, e);
     return hdi_scope_end(&s);
 }
 
@@ -29165,6 +29124,7 @@ static hd_status hdi_geo_check(const hd_geodesic_opts *o, hdi_geo_input *in, hd_
     hdi_refuse(o->border < HD_GEODESIC_BORDER_NATURAL || o->border > HD_GEODESIC_BORDER_DIRICHLET,
                "geodesic: unknown border", e);
     in->flips = hdi_intrinsic_opts(&like, &in->task, e) || in->points;
+    in->updatable = o->updatable;
     in->lambda = o->lambda != 0 ? o->lambda : HDI_LAMBDA_GEODESIC;
     in->neighbours = o->neighbours ? o->neighbours : HDI_NEIGHBOURS;
     hdi_refuse(!hdi_finite(in->lambda) || !(in->lambda > 0 && in->lambda <= 1e100),
