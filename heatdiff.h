@@ -3318,51 +3318,58 @@ static void hdi_axpy(double a, const double *HDI_RESTRICT x, double *HDI_RESTRIC
     for (i = 0; i < n; i++) y[i] += a * x[i];
 }
 
+/* x and y [r] through a rotation. */
+static void hdi_rotate(double *HDI_RESTRICT x, double *HDI_RESTRICT y, double c, double s, int32_t r) {
+    int32_t q;
+    for (q = 0; q < r; q++) {
+        const double a = x[q], b = y[q];
+        y[q] = s * a + c * b;
+        x[q] = c * a - s * b;
+    }
+}
+
+/* One implicit QL step with Wilkinson's shift on rows l..k of a tridiagonal matrix. */
+static void hdi_tridiag_step(double *d, double *e, double *z, int32_t l, int32_t k, int32_t r) {
+    double g = (d[l + 1] - d[l]) / (2 * e[l]), t = hdi_pythag(g, 1), s = 1, c = 1, p = 0;
+    int32_t i;
+    g = d[k] - d[l] + e[l] / (g + (g >= 0 ? t : -t));
+    for (i = k - 1; i >= l; i--) {               /* chase the bulge upwards */
+        const double f = s * e[i], b = c * e[i];
+        t = hdi_pythag(f, g);
+        e[i + 1] = t;
+        if (t == 0) {
+            d[i + 1] -= p;
+            e[k] = 0;
+            return;
+        }
+        s = f / t;
+        c = g / t;
+        g = d[i + 1] - p;
+        t = (d[i] - g) * s + 2 * c * b;
+        p = s * t;
+        d[i + 1] = g + p;
+        g = c * t - b;
+        hdi_rotate(z + (int64_t)i * r, z + (int64_t)(i + 1) * r, c, s, r);
+    }
+    d[l] -= p;
+    e[l] = g;
+    e[k] = 0;
+}
+
 /* Eigenvalues of the symmetric tridiagonal matrix with diagonal d [m] and off-diagonal e [m] (e[i] is between
- * i and i + 1, e[m - 1] is unused), by implicit QL with Wilkinson's shift (Bowdler, Martin, Reinsch,
- * Wilkinson 1968). z0, z1 [m] are two rows that go through the same rotations: put in rows of the identity,
- * they come out as rows of the eigenvectors. Overwrites all. 0 when it does not converge. */
-static int hdi_tridiag_eigen(double *d, double *e, double *z0, double *z1, int32_t m) {
-    int32_t l, i, k, sweep;
+ * i and i + 1, e[m - 1] is unused), by implicit QL (Bowdler, Martin, Reinsch, Wilkinson 1968). z [m][r]: r
+ * rows of the identity, which stand as columns, become those rows of the eigenvectors. Overwrites all. 0 when
+ * it does not converge. */
+static int hdi_tridiag_eigen(double *d, double *e, double *z, int32_t m, int32_t r) {
+    int32_t l, k, tries;
     if (m > 0) e[m - 1] = 0;
     for (l = 0; l < m; l++) {
-        for (sweep = 0;; sweep++) {
-            double g, r, s = 1, c = 1, p = 0;
+        for (tries = 0;; tries++) {
             for (k = l; k < m - 1; k++)
                 if (fabs(e[k]) <= DBL_EPSILON * (fabs(d[k]) + fabs(d[k + 1]))) break;
             if (k == l) break;
-            if (sweep == 60) return 0;
-            g = (d[l + 1] - d[l]) / (2 * e[l]);
-            r = hdi_pythag(g, 1);
-            g = d[k] - d[l] + e[l] / (g + (g >= 0 ? r : -r));
-            for (i = k - 1; i >= l; i--) {       /* chase the bulge upwards */
-                const double f = s * e[i], b = c * e[i];
-                double z;
-                r = hdi_pythag(f, g);
-                e[i + 1] = r;
-                if (r == 0) {
-                    d[i + 1] -= p;
-                    e[k] = 0;
-                    break;
-                }
-                s = f / r;
-                c = g / r;
-                g = d[i + 1] - p;
-                r = (d[i] - g) * s + 2 * c * b;
-                p = s * r;
-                d[i + 1] = g + p;
-                g = c * r - b;
-                z = z0[i + 1];
-                z0[i + 1] = s * z0[i] + c * z;
-                z0[i] = c * z0[i] - s * z;
-                z = z1[i + 1];
-                z1[i + 1] = s * z1[i] + c * z;
-                z1[i] = c * z1[i] - s * z;
-            }
-            if (r == 0 && i >= l) continue;
-            d[l] -= p;
-            e[l] = g;
-            e[k] = 0;
+            if (tries == 60) return 0;
+            hdi_tridiag_step(d, e, z, l, k, r);
         }
     }
     return 1;
@@ -16125,7 +16132,7 @@ static int32_t hdi_lanczos_most(double t, double lambda_max) {
 typedef struct hdi_lanczos {
     double *v, *c, *c_old;                /* [n] v_m, B v_m, B v_(m-1) */
     double *alpha, *beta;                 /* [room + 1] T: diagonal, and beta[j] between j - 1 and j */
-    double *d, *e, *z0, *z1, *y;          /* [room + 1] */
+    double *d, *e, *ends, *y;             /* [room + 1], ends [room + 1][2]: first and last of eigenvectors */
     hd_c64 *work;                         /* [2 room] */
     double noise;                         /* largest error of a step by rounding, in the B norm */
     int32_t m, room;                      /* steps: done, at most */
@@ -16216,9 +16223,8 @@ static hd_status hdi_lane_lanczos(hdi_lane *lane, const hd_laplacian *lap, int32
     z->beta = z->alpha + most;
     z->d = z->beta + most;
     z->e = z->d + most;
-    z->z0 = z->e + most;
-    z->z1 = z->z0 + most;
-    z->y = z->z1 + most;
+    z->ends = z->e + most;
+    z->y = z->ends + 2 * most;
     z->work = (hd_c64 *)(void *)(z->y + most);
     return HD_OK;
 }
@@ -16680,13 +16686,13 @@ static void hdi_lane_first(hdi_lane *lane, const hd_laplacian *lap, const hd_rat
     if (hdi_finite(factor)) lane->energy = hdi_min(lane->energy, factor * (fabs(sum) + lane->f_norm * error));
 }
 
-/* The rows of t L + theta B for solutions x, see hdi_residual; the sums are zero. */
+/* The rows of t L + theta B for solutions x, see hdi_residual; sum, or NULL, is zero. */
 static hdi_residual hdi_residual_open(const hd_laplacian *lap, double t, const double *x, int32_t n_blocks,
                                       double (*sum)[3][HDI_PACK]) {
     hdi_residual g;
     int q;
     memset(&g, 0, sizeof g);
-    memset(sum, 0, (size_t)n_blocks * sizeof *sum);
+    if (sum) memset(sum, 0, (size_t)n_blocks * sizeof *sum);
     g.row_ptr = lap->L.row_ptr;
     g.col = lap->L.col;
     g.l = lap->L.val;
@@ -16703,8 +16709,41 @@ static hdi_residual hdi_residual_open(const hd_laplacian *lap, double t, const d
     return g;
 }
 
+typedef struct hdi_residual_job {
+    const hdi_residual *g;
+    const hdi_kernels *ops;
+} hdi_residual_job;
+
+static void hdi_residual_task(void *arg, int64_t begin, int64_t end) {
+    const hdi_residual_job *job = (const hdi_residual_job *)arg;
+    hdi_residual part = *job->g;
+    part.begin = (int32_t)begin;
+    part.end = (int32_t)end;
+    job->ops->residual(&part);
+}
+
+/* Threads share the rows where nothing is summed over them. */
 static void hdi_residual_run(const hdi_residual *g, hd_context *ctx) {
-    hdi_kernels_get(hdi_simd_level(ctx), 0)->residual(g);
+    hdi_residual_job job;
+    job.g = g;
+    job.ops = hdi_kernels_get(hdi_simd_level(ctx), 0);
+    if (g->sum) job.ops->residual(g);
+    else hdi_parallel_ranges(ctx, g->end, HDI_ROWS_PER_TASK, hdi_residual_task, &job);
+}
+
+/* y = B x for a block, or for wide = 1 a vector. */
+static void hdi_mass_apply(const hd_laplacian *lap, int32_t wide, const double *x, double *y,
+                           hd_context *ctx) {
+    hdi_residual g;
+    int32_t i;
+    if (wide == 1 && lap->B) hdi_pair_apply(lap, 0, 1, x, y);
+    for (i = 0; wide == 1 && !lap->B && i < lap->n_active; i++) y[i] = lap->mass[i] * x[i];
+    if (wide == 1) return;
+    g = hdi_residual_open(lap, 0, x, 1, NULL);
+    g.real = 1;
+    g.l = NULL;
+    g.bx = y;
+    hdi_residual_run(&g, ctx);
 }
 
 /* The same of the poles of pack i, or for i < 0 of the lone real pole. w [n_poles]: weights of an answer. */
@@ -17370,10 +17409,10 @@ static hd_status hdi_lanczos_bound(hdi_lanczos *z, double t, double *bound, hd_e
     for (i = 0; i < m; i++) {
         z->d[i] = z->alpha[i];
         z->e[i] = i + 1 < m ? z->beta[i + 1] : 0;
-        z->z0[i] = i == 0;
-        z->z1[i] = i == m - 1;
+        z->ends[2 * i] = i == 0;
+        z->ends[2 * i + 1] = i == m - 1;
     }
-    if (!hdi_tridiag_eigen(z->d, z->e, z->z0, z->z1, m)) return hdi_lanczos_failed(e);
+    if (!hdi_tridiag_eigen(z->d, z->e, z->ends, m, 2)) return hdi_lanczos_failed(e);
     for (i = 0; i < m; i++) {
         least = hdi_min(least, z->d[i]);
         most = hdi_max(most, fabs(z->d[i]));
@@ -17381,7 +17420,7 @@ static hd_status hdi_lanczos_bound(hdi_lanczos *z, double t, double *bound, hd_e
     if (least < -1e-8 * most - 2 * sqrt((double)m) * z->noise) return hdi_not_semidefinite(e);
     for (i = 0; i < m; i++) {
         const double x = t * z->d[i];
-        sum += z->z0[i] * z->z1[i] * (fabs(x) > 1e-8 ? -expm1(-x) / x : 1 - x / 2);
+        sum += z->ends[2 * i] * z->ends[2 * i + 1] * (fabs(x) > 1e-8 ? -expm1(-x) / x : 1 - x / 2);
     }
     *bound = t * z->beta[m] * fabs(sum);
     return HD_OK;
@@ -17489,7 +17528,8 @@ static double hdi_lanczos_rounding(const hdi_lanczos *z, double t) {
     int32_t i, k;
     for (k = 24; k >= 0; k--) {
         to = ldexp(t, -2 * k);
-        for (size = 0, i = 0; i < m; i++) size += z->z0[i] * z->z0[i] * exp(-2 * from * hdi_max(0, z->d[i]));
+        for (size = 0, i = 0; i < m; i++)
+            size += z->ends[2 * i] * z->ends[2 * i] * exp(-2 * from * hdi_max(0, z->d[i]));
         integral += sqrt(size) * (to - from);
         from = to;
     }
@@ -17621,7 +17661,7 @@ typedef struct hdi_krylov {
     double noise[HDI_KRYLOV_MAX][HDI_WIDE];   /* what rounding can do to a solve, in the norm of D^-1 */
     double solved;               /* largest residual found of a solve over that */
     double f_norm[HDI_WIDE], whole[HDI_WIDE];   /* |f|_B without and with its constants */
-    /* of T_m of each right-hand side, when done: eigenvalues, then rows of the eigenvectors */
+    /* of T_m of each right-hand side, when done: eigenvalues, then the eigenvectors one by one */
     double *eigen[HDI_WIDE];
     int32_t eigen_m[HDI_WIDE];      /* 0: not known */
     int32_t eigen_room[HDI_WIDE];   /* the largest m that there is room for */
@@ -17646,53 +17686,6 @@ static void hdi_krylov_free(hdi_krylov *z, hd_context *ctx) {
     hdi_free(ctx, z->ahead);
     hdi_free(ctx, z->y);
     memset(z, 0, sizeof *z);
-}
-
-/* y = B x for wide right-hand sides side by side. */
-static void hdi_mass_rows_body(const hd_laplacian *lap, int32_t wide, const double *HDI_RESTRICT x,
-                               double *HDI_RESTRICT y, int32_t begin, int32_t end) {
-    double *HDI_RESTRICT to;
-    int32_t i, r;
-    int64_t p;
-    for (i = begin; i < end; i++) {
-        if (wide == 1) {
-            double s = 0;
-            for (p = lap->L.row_ptr[i]; lap->B && p < lap->L.row_ptr[i + 1]; p++)
-                s += lap->B[p] * x[lap->L.col[p]];
-            y[i] = lap->B ? s : lap->mass[i] * x[i];
-            continue;
-        }
-        to = y + HDI_WIDE * (int64_t)i;
-        for (r = 0; r < HDI_WIDE; r++)
-            to[r] = lap->B ? 0 : lap->mass[i] * x[HDI_WIDE * (int64_t)i + r];
-        for (p = lap->L.row_ptr[i]; lap->B && p < lap->L.row_ptr[i + 1]; p++) {
-            const double b = lap->B[p];
-            const double *HDI_RESTRICT from = x + HDI_WIDE * (int64_t)lap->L.col[p];
-            for (r = 0; r < HDI_WIDE; r++) to[r] += b * from[r];
-        }
-    }
-}
-
-typedef struct hdi_mass_job {
-    const hd_laplacian *lap;
-    int32_t wide;
-    const double *x;
-    double *y;
-} hdi_mass_job;
-
-static void hdi_mass_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_mass_job *j = (const hdi_mass_job *)arg;
-    hdi_mass_rows_body(j->lap, j->wide, j->x, j->y, (int32_t)begin, (int32_t)end);
-}
-
-static void hdi_mass_apply(const hd_laplacian *lap, int32_t wide, const double *x, double *y,
-                           hd_context *ctx) {
-    hdi_mass_job j;
-    j.lap = lap;
-    j.wide = wide;
-    j.x = x;
-    j.y = y;
-    hdi_parallel_ranges(ctx, lap->n_active, HDI_ROWS_PER_TASK, hdi_mass_task, &j);
 }
 
 /* out[r] = sum_i x_ir y_ir */
@@ -17787,15 +17780,37 @@ static void hdi_wide_norms(const double *HDI_RESTRICT x, const double *HDI_RESTR
     for (r = 0; r < HDI_WIDE; r++) out[r] = sqrt(out[r]);
 }
 
+/* w -= alpha v + beta v_old, and v = w/beta with c = B v, for `wide` vectors side by side. */
+static HDI_INLINE void hdi_krylov_subtract(const int wide, double *HDI_RESTRICT w,
+                                           const double *HDI_RESTRICT v, const double *HDI_RESTRICT v_old,
+                                           const double *alpha, const double *beta, int64_t n) {
+    int64_t i;
+    int r;
+    for (i = 0; i < n; i++)
+        for (r = 0; r < wide; r++)
+            w[wide * i + r] -= alpha[r] * v[wide * i + r] + beta[r] * v_old[wide * i + r];
+}
+
+static HDI_INLINE void hdi_krylov_divide(const int wide, const double *HDI_RESTRICT w, double *HDI_RESTRICT v,
+                                         double *HDI_RESTRICT c, const double *inverse, int64_t n) {
+    int64_t i;
+    int r;
+    for (i = 0; i < n; i++) {
+        for (r = 0; r < wide; r++) {
+            v[wide * i + r] = w[wide * i + r] * inverse[r];
+            c[wide * i + r] *= inverse[r];
+        }
+    }
+}
+
 /* One step for all. */
 static hd_status hdi_krylov_step(hdi_krylov *z, hd_context *ctx, hd_error *e) {
     const hd_laplacian *lap = z->m->lap;
     const int64_t n = lap->n_active, count = n * z->wide;
     const int32_t j = z->steps, wide = z->wide;
-    const double *HDI_RESTRICT v = z->v[j], *HDI_RESTRICT v_old = j > 0 ? z->v[j - 1] : z->v[j];
-    double *HDI_RESTRICT w = z->w, norm[HDI_WIDE], inv[HDI_WIDE], *HDI_RESTRICT next;
+    const double *v = z->v[j], *v_old = j > 0 ? z->v[j - 1] : z->v[j];
+    double *w = z->w, norm[HDI_WIDE], inv[HDI_WIDE];
     hdi_sweep s;
-    int64_t i;
     int32_t r;
     if (!z->v[j + 1]) z->v[j + 1] = HDI_NEW(ctx, double, count, e);
     if (!z->v[j + 1]) return e->status;
@@ -17806,49 +17821,32 @@ static hd_status hdi_krylov_step(hdi_krylov *z, hd_context *ctx, hd_error *e) {
     if (j == 0 || j == 3) hdi_krylov_probe(z);
     hdi_wide_dots(w, z->c, n, wide, z->alpha[j]);
     for (r = 0; r < wide; r++) inv[r] = j > 0 ? z->beta[j][r] : 0;
-    if (wide == 1)
-        for (i = 0; i < n; i++) w[i] -= z->alpha[j][0] * v[i] + inv[0] * v_old[i];
-    else
-        for (i = 0; i < n; i++)
-            for (r = 0; r < HDI_WIDE; r++)
-                w[HDI_WIDE * i + r] -= z->alpha[j][r] * v[HDI_WIDE * i + r] +
-                    inv[r] * v_old[HDI_WIDE * i + r];
+    if (wide == 1) hdi_krylov_subtract(1, w, v, v_old, z->alpha[j], inv, n);
+    else hdi_krylov_subtract(HDI_WIDE, w, v, v_old, z->alpha[j], inv, n);
     hdi_mass_apply(lap, wide, w, z->c, ctx);
     hdi_wide_dots(w, z->c, n, wide, norm);
     for (r = 0; r < wide; r++) {
         z->beta[j + 1][r] = norm[r] > 0 ? sqrt(norm[r]) : 0;
         inv[r] = norm[r] > 0 ? 1 / z->beta[j + 1][r] : 0;
     }
-    next = z->v[j + 1];
-    if (wide == 1) {
-        for (i = 0; i < n; i++) {
-            next[i] = w[i] * inv[0];
-            z->c[i] *= inv[0];
-        }
-    } else {
-        for (i = 0; i < n; i++) {
-            for (r = 0; r < HDI_WIDE; r++) {
-                next[HDI_WIDE * i + r] = w[HDI_WIDE * i + r] * inv[r];
-                z->c[HDI_WIDE * i + r] *= inv[r];
-            }
-        }
-    }
+    if (wide == 1) hdi_krylov_divide(1, w, z->v[j + 1], z->c, inv, n);
+    else hdi_krylov_divide(HDI_WIDE, w, z->v[j + 1], z->c, inv, n);
     z->steps = j + 1;
     return HD_OK;
 }
 
-/* Eigenvalues of T_m of right-hand side r, and rows p and q of its eigenvectors. */
-static int hdi_krylov_eigen(const hdi_krylov *z, int32_t r, int32_t m, int32_t p, int32_t q, double *d,
-                           double *x, double *y) {
+/* Eigenvalues d of T_m of right-hand side r, and its eigenvectors v [m][rows]: all rows, or the first and the
+ * last. */
+static int hdi_krylov_eigen(const hdi_krylov *z, int32_t r, int32_t m, int32_t rows, double *d, double *v) {
     double off[HDI_KRYLOV_MAX];
     int32_t i;
+    memset(v, 0, (size_t)m * (size_t)rows * sizeof *v);
     for (i = 0; i < m; i++) {
         d[i] = z->alpha[i][r];
         off[i] = i + 1 < m ? z->beta[i + 1][r] : 0;
-        x[i] = i == p;
-        y[i] = i == q;
     }
-    return hdi_tridiag_eigen(d, off, x, y, m);
+    for (i = 0; i < rows; i++) v[(int64_t)(i < rows - 1 ? i : m - 1) * rows + i] = 1;
+    return hdi_tridiag_eigen(d, off, v, m, rows);
 }
 
 /* exp(-s (1/mu - 1)/g) for an eigenvalue mu of T in (0, 1]. Tiny ones are rounding of modes that are gone. */
@@ -17889,20 +17887,21 @@ typedef struct hdi_ritz {
 } hdi_ritz;
 
 static hd_status hdi_krylov_ritz(const hdi_krylov *z, int32_t r, int32_t m, hdi_ritz *s, hd_error *e) {
-    const double *known = z->eigen_m[r] == m ? z->eigen[r] : NULL;
+    const int known = z->eigen_m[r] == m;
+    const int32_t rows = known ? m : 2;
+    double ends[2 * HDI_KRYLOV_MAX];
+    const double *v = known ? z->eigen[r] + m : ends;
     int32_t i;
     s->m = m;
     s->beta = z->beta[m][r];
-    if (known) {
-        memcpy(s->mu, known, (size_t)m * sizeof *known);
-        memcpy(s->first, known + m, (size_t)m * sizeof *known);
-        memcpy(s->both, known + (int64_t)m * m, (size_t)m * sizeof *known);
-    } else if (!hdi_krylov_eigen(z, r, m, 0, m - 1, s->mu, s->first, s->both)) return hdi_lanczos_failed(e);
+    if (known) memcpy(s->mu, z->eigen[r], (size_t)m * sizeof *s->mu);
+    else if (!hdi_krylov_eigen(z, r, m, 2, s->mu, ends)) return hdi_lanczos_failed(e);
     for (i = 0; i < m; i++) {
         /* 1/(1 + g lambda); but what is left of a constant is only rounding */
         if (s->mu[i] > 1.001 + 10 * (1 + z->solved) * z->noise[0][r] && z->f_norm[r] > 1e-8 * z->whole[r])
             return hdi_not_semidefinite(e);
-        s->both[i] *= s->first[i];
+        s->first[i] = v[(int64_t)i * rows];
+        s->both[i] = s->first[i] * v[(int64_t)i * rows + rows - 1];
     }
     return HD_OK;
 }
@@ -17935,10 +17934,9 @@ static double hdi_ritz_bound(const hdi_ritz *s, double tau) {
     return HDI_KRYLOV_BETWEEN * s->beta * most;
 }
 
-/* All rows of T's eigenvectors, two at a time by the same rotations. They are kept for all times. */
+/* All of T's eigenvectors. They are kept for all times. */
 static hd_status hdi_krylov_vectors(hdi_krylov *z, int32_t r, int32_t m, hd_error *e) {
     hd_context *ctx = z->m->ctx;
-    int32_t k;
     if (z->eigen_m[r] == m) return HD_OK;
     z->eigen_m[r] = 0;
     if (z->eigen_room[r] < m) {
@@ -17948,11 +17946,7 @@ static hd_status hdi_krylov_vectors(hdi_krylov *z, int32_t r, int32_t m, hd_erro
         if (!z->eigen[r]) return e->status;
         z->eigen_room[r] = m;
     }
-    for (k = 0; k < m; k += 2) {
-        double *x = z->eigen[r] + (int64_t)(k + 1) * m, spare[HDI_KRYLOV_MAX];
-        if (!hdi_krylov_eigen(z, r, m, k, k + 1 < m ? k + 1 : k, z->eigen[r], x, k + 1 < m ? x + m : spare))
-            return hdi_lanczos_failed(e);
-    }
+    if (!hdi_krylov_eigen(z, r, m, m, z->eigen[r], z->eigen[r] + m)) return hdi_lanczos_failed(e);
     z->eigen_m[r] = m;
     return HD_OK;
 }
@@ -17961,15 +17955,16 @@ static hd_status hdi_krylov_vectors(hdi_krylov *z, int32_t r, int32_t m, hd_erro
  * zeros up to the longest basis. */
 static hd_status hdi_krylov_coefficients(hdi_krylov *z, int32_t r, double t, double *y, hd_error *e) {
     const int32_t m = hdi_high32(z->done[r], 0);
-    double first[HDI_KRYLOV_MAX];
     const double *mu;
     int32_t i;
-    for (i = m; i < z->steps; i++) y[i] = 0;
+    for (i = 0; i < z->steps; i++) y[i] = 0;
     if (m == 0) return HD_OK;
     if (hdi_krylov_vectors(z, r, m, e) < 0) return e->status;
     mu = z->eigen[r];
-    for (i = 0; i < m; i++) first[i] = z->f_norm[r] * mu[m + i] * hdi_krylov_decay(mu[i], t / z->g);
-    for (i = 0; i < m; i++) y[i] = hdi_dot(mu + (int64_t)(i + 1) * m, first, m);
+    for (i = 0; i < m; i++) {
+        const double *v = mu + (int64_t)(i + 1) * m;
+        hdi_axpy(z->f_norm[r] * v[0] * hdi_krylov_decay(mu[i], t / z->g), v, y, m);
+    }
     return HD_OK;
 }
 
@@ -18138,7 +18133,7 @@ static hd_status hdi_krylov_run(hdi_krylov *z, const double *t, int32_t n_times,
  * step. T's eigenvectors are there. */
 static double hdi_krylov_rounding(const hdi_krylov *z, int32_t r, int32_t m, double t, const double *y,
                                  double given) {
-    double f[HDI_KRYLOV_MAX], most[HDI_KRYLOV_MAX], slope[HDI_KRYLOV_MAX], sum = 0, size = 0;
+    double f[HDI_KRYLOV_MAX], most[HDI_KRYLOV_MAX], at_j[HDI_KRYLOV_MAX], sum = 0, size = 0;
     const double *mu = z->eigen[r], *vectors = mu + m, tau = t / z->g, root = hdi_ratio_root(z->m->lap);
     int32_t i, j, k;
     for (i = 0; i < m; i++) {
@@ -18148,9 +18143,12 @@ static double hdi_krylov_rounding(const hdi_krylov *z, int32_t r, int32_t m, dou
     }
     for (k = 2; k <= HDI_KRYLOV_POINTS; k += 2) {
         const double at = hdi_krylov_point(k), fa = hdi_krylov_decay(at, tau);
-        for (i = 0; i < m; i++) slope[i] = vectors[i] * hdi_krylov_slope(mu[i], f[i], at, fa, tau);
-        for (j = 0; j < m; j++)
-            most[j] = hdi_max(most[j], fabs(hdi_dot(vectors + (int64_t)j * m, slope, m)));
+        memset(at_j, 0, (size_t)m * sizeof *at_j);
+        for (i = 0; i < m; i++) {
+            const double *v = vectors + (int64_t)i * m;
+            hdi_axpy(v[0] * hdi_krylov_slope(mu[i], f[i], at, fa, tau), v, at_j, m);
+        }
+        for (j = 0; j < m; j++) most[j] = hdi_max(most[j], fabs(at_j[j]));
     }
     for (j = 0; j < m; j++) {
         const double product = z->m->lap->B ? z->noise[j][r] : 0;   /* of B w, the next right-hand side */
@@ -18798,60 +18796,12 @@ static void hdi_spec_reduce(double *A, double *d, double *e, double *z, int32_t 
     }
 }
 
-/* Columns x and y of r entries through a rotation. */
-static void hdi_spec_rotate(double *HDI_RESTRICT x, double *HDI_RESTRICT y, double c, double s, int32_t r) {
-    int32_t q;
-    for (q = 0; q < r; q++) {
-        const double a = x[q], b = y[q];
-        y[q] = s * a + c * b;
-        x[q] = c * a - s * b;
-    }
-}
-
-/* One implicit QL step on rows l..k of a tridiagonal matrix, with Wilkinson's shift. */
-static void hdi_spec_step(double *d, double *e, double *z, int32_t l, int32_t k, int32_t r) {
-    double g = (d[l + 1] - d[l]) / (2 * e[l]), t = hdi_pythag(g, 1), s = 1, c = 1, p = 0;
-    int32_t i;
-    g = d[k] - d[l] + e[l] / (g + (g >= 0 ? t : -t));
-    for (i = k - 1; i >= l; i--) {
-        const double f = s * e[i], b = c * e[i];
-        t = hdi_pythag(f, g);
-        e[i + 1] = t;
-        if (t == 0) {
-            d[i + 1] -= p;
-            e[k] = 0;
-            return;
-        }
-        s = f / t;
-        c = g / t;
-        g = d[i + 1] - p;
-        t = (d[i] - g) * s + 2 * c * b;
-        p = s * t;
-        d[i + 1] = g + p;
-        g = c * t - b;
-        hdi_spec_rotate(z + (int64_t)i * r, z + (int64_t)(i + 1) * r, c, s, r);
-    }
-    d[l] -= p;
-    e[l] = g;
-    e[k] = 0;
-}
-
 /* Eigenvalues d [m] of the symmetric A [m][m], which is overwritten. z [m][r]: r rows of the identity become
  * those rows of the eigenvectors, column by column. work [3 m]. 0 when it does not converge. */
 static int hdi_spec_eigen(double *A, double *d, double *z, int32_t m, int32_t r, double *work) {
     double *e = work + 2 * (int64_t)m;
-    int32_t l, k, tries;
     hdi_spec_reduce(A, d, e, z, m, r, work);
-    for (l = 0; l < m; l++) {
-        for (tries = 0;; tries++) {
-            for (k = l; k < m - 1; k++)
-                if (fabs(e[k]) <= DBL_EPSILON * (fabs(d[k]) + fabs(d[k + 1]))) break;
-            if (k == l) break;
-            if (tries == 60) return 0;
-            hdi_spec_step(d, e, z, l, k, r);
-        }
-    }
-    return 1;
+    return hdi_tridiag_eigen(d, e, z, m, r);
 }
 
 /* ---- slabs ---- */
@@ -19101,37 +19051,20 @@ static void hdi_spec_project(const hdi_spec *s, const hdi_slab *slab, int32_t fi
 
 /* ---- operators on blocks ---- */
 
-/* y = L x - shift_r z, by rows of eight. */
-typedef struct hdi_spec_apply {
-    const hd_laplacian *lap;
-    const double *x, *z;
-    double *y, shift[HDI_WIDE];
-} hdi_spec_apply;
-
-static void hdi_spec_apply_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_spec_apply *a = (const hdi_spec_apply *)arg;
-    int64_t i, p;
-    int r;
-    for (i = begin; i < end; i++) {
-        double sum[HDI_WIDE] = {0};
-        for (p = a->lap->L.row_ptr[i]; p < a->lap->L.row_ptr[i + 1]; p++) {
-            const double l = a->lap->L.val[p], *x = a->x + 8 * (int64_t)a->lap->L.col[p];
-            for (r = 0; r < HDI_WIDE; r++) sum[r] += l * x[r];
-        }
-        for (r = 0; r < HDI_WIDE; r++) a->y[8 * i + r] = sum[r] - a->shift[r] * a->z[8 * i + r];
+/* r = f - (L - shift B) x by numbers, f or zero, and bx = B x. */
+static void hdi_spec_residual(const hdi_spec *s, const double *shift, const double *f, const double *x,
+                              double *bx, double *r) {
+    hdi_residual g = hdi_residual_open(s->lap, 1, x, 1, NULL);
+    int q;
+    g.real = 1;
+    g.f_step = HDI_WIDE;
+    g.r = r;
+    g.bx = bx;
+    for (q = 0; q < HDI_WIDE; q++) {
+        g.f[q] = f ? f + q : NULL;
+        g.re[q] = shift ? -shift[q] : -s->sigma;
     }
-}
-
-static void hdi_spec_residuals(const hdi_spec *s, const double *shift, const double *x, const double *bx,
-                               double *y) {
-    hdi_spec_apply a;
-    int r;
-    a.lap = s->lap;
-    a.x = x;
-    a.z = bx;
-    a.y = y;
-    for (r = 0; r < HDI_WIDE; r++) a.shift[r] = shift ? shift[r] : s->sigma;
-    hdi_parallel_ranges(s->ctx, s->n, HDI_ROWS_PER_TASK, hdi_spec_apply_task, &a);
+    hdi_residual_run(&g, s->ctx);
 }
 
 static void hdi_spec_mass(const hdi_spec *s, const double *x, double *y) {
@@ -19155,9 +19088,7 @@ static double hdi_spec_inverse(hdi_spec *s, int measure) {
     memcpy(s->w, s->bw, (size_t)size * sizeof *s->w);
     hdi_spec_sweep(s, s->w);
     for (turn = 0; turn < 1 + s->refine && (measure || s->refine); turn++) {
-        hdi_spec_mass(s, s->w, s->group);
-        hdi_spec_residuals(s, NULL, s->w, s->group, s->tmp);
-        for (i = 0; i < size; i++) s->tmp[i] = s->bw[i] - s->tmp[i];
+        hdi_spec_residual(s, NULL, s->bw, s->w, s->group, s->tmp);
         if (turn < s->refine) {
             hdi_spec_sweep(s, s->tmp);
             for (i = 0; i < size; i++) s->w[i] += s->tmp[i];
@@ -19543,8 +19474,7 @@ static void hdi_spec_unlock(hdi_spec *s, int32_t n, double *twin) {
 static double hdi_spec_measure(hdi_spec *s, const double *value, const double *x, double *bx, double *norm) {
     double worst = 0;
     int r;
-    hdi_spec_mass(s, x, bx);
-    hdi_spec_residuals(s, value, x, bx, s->tmp);
+    hdi_spec_residual(s, value, NULL, x, bx, s->tmp);
     hdi_wide_norms(s->tmp, s->m->weight, s->n, HDI_WIDE, norm);
     for (r = 0; r < HDI_WIDE; r++) worst = hdi_max(worst, norm[r] / hdi_max(fabs(value[r]), s->unit));
     return worst;
@@ -19566,7 +19496,7 @@ static void hdi_spec_nearest(hdi_spec *s, const int32_t *which, int32_t n) {
     hdi_spec_add(s, hdi_spec_pass(s, &s->basis, s->most + HDI_WIDE, HDI_WIDE, s->w, 1), NULL, 1);
 }
 
-/* x - (L - sigma B)^-1 r for the residuals r in tmp of the first n columns: a step of inverse iteration. The
+/* x + (L - sigma B)^-1 r for the residuals r in tmp of the first n columns: a step of inverse iteration. The
  * change has no part in the slabs nearby, nor in the vectors next to the shift. */
 static void hdi_spec_polish(hdi_spec *s, double *x, int32_t n) {
     const int64_t size = 8 * (int64_t)s->n;
@@ -19580,7 +19510,7 @@ static void hdi_spec_polish(hdi_spec *s, double *x, int32_t n) {
     s->cols = 0;
     hdi_spec_clean(s, removed);
     s->cols = cols;
-    for (i = 0; i < size; i++) x[i] -= i % 8 < n ? s->w[i] : 0;
+    for (i = 0; i < size; i++) x[i] += i % 8 < n ? s->w[i] : 0;
 }
 
 /* The same while residuals are too large, for the eigenvalues of block x. Steps that worsen it are undone. */
@@ -19592,7 +19522,7 @@ static void hdi_spec_polish_all(hdi_spec *s, const double *value, double *x, dou
         hdi_spec_polish(s, x, n);
         now = hdi_spec_measure(s, value, x, bx, norm);
         if (now <= worst) continue;
-        for (i = 0; i < 8 * (int64_t)s->n; i++) x[i] += i % 8 < n ? s->w[i] : 0;
+        for (i = 0; i < 8 * (int64_t)s->n; i++) x[i] -= i % 8 < n ? s->w[i] : 0;
         return;
     }
 }

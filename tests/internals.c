@@ -310,23 +310,23 @@ static void int_tridiagonal(void) {
     int k;
     for (k = 0; k < 6; k++) {
         const int32_t m = sizes[k];
-        double *d = KIT_NEW(double, 4 * m + 2), *e = d + m + 1, *z0 = e + m + 1, *z1 = z0 + m, worst = 0;
+        double *d = KIT_NEW(double, 4 * m + 2), *e = d + m + 1, *z = e + m + 1, worst = 0;
         int32_t i, j, at;
         d[m] = e[m] = NAN;                       /* not theirs */
         for (i = 0; i < m; i++) {
             d[i] = 2;
             e[i] = i + 1 < m ? -1 : 1e300;       /* the last is not to be used */
-            z0[i] = i == 0;
-            z1[i] = i == m - 1;
+            z[2 * i] = i == 0;
+            z[2 * i + 1] = i == m - 1;
         }
-        CHECK(hdi_tridiag_eigen(d, e, z0, z1, m));
+        CHECK(hdi_tridiag_eigen(d, e, z, m, 2));
         for (j = 1; j <= m; j++) {
             const double want = 2 - 2 * cos(pi * j / (m + 1)), edge = 2.0 / (m + 1) * pow(sin(pi * j / (m + 1)), 2);
             for (i = 1, at = 0; i < m; i++)
                 if (fabs(d[i] - want) < fabs(d[at] - want)) at = i;
             worst = fmax(worst, fabs(d[at] - want));
-            worst = fmax(worst, fabs(z0[at] * z0[at] - edge));
-            worst = fmax(worst, fabs(z0[at] * z1[at] - (j % 2 ? edge : -edge)));    /* the last component has that sign */
+            worst = fmax(worst, fabs(z[2 * at] * z[2 * at] - edge));
+            worst = fmax(worst, fabs(z[2 * at] * z[2 * at + 1] - (j % 2 ? edge : -edge)));    /* the last component has that sign */
         }
         CHECK_MSG(worst < 1e-12, "m = %d: off by %g", (int)m, worst);
     }
@@ -334,9 +334,9 @@ static void int_tridiagonal(void) {
 
 /* Blocks that fall apart with zero diagonals, and graded entries: moments of the spectrum, and (T)_00. Then nothing, and no numbers. */
 static void int_tridiagonal_odd(void) {
-    double d[30] = {0}, e[30] = {1, 0, 2}, z0[30] = {1}, z1[30] = {0}, sum = 0, square = 0, first = 0, trace = 0;
+    double d[30] = {0}, e[30] = {1, 0, 2}, z[60] = {1}, sum = 0, square = 0, first = 0, trace = 0;
     int i;
-    CHECK(hdi_tridiag_eigen(d, e, z0, z1, 6));   /* +-1, +-2, 0, 0 */
+    CHECK(hdi_tridiag_eigen(d, e, z, 6, 2));   /* +-1, +-2, 0, 0 */
     for (i = 0; i < 6; i++) {
         sum += d[i];
         square += d[i] * d[i];
@@ -345,19 +345,19 @@ static void int_tridiagonal_odd(void) {
     for (i = 0, sum = 0; i < 30; i++) {
         d[i] = pow(10, -i);
         e[i] = 0.3 * pow(10, -i);
-        z0[i] = i == 0;
-        z1[i] = i == 29;
+        z[2 * i] = i == 0;
+        z[2 * i + 1] = i == 29;
         trace += d[i];
     }
-    CHECK(hdi_tridiag_eigen(d, e, z0, z1, 30));
+    CHECK(hdi_tridiag_eigen(d, e, z, 30, 2));
     for (i = 0; i < 30; i++) {
         sum += d[i];
-        first += z0[i] * z0[i] * d[i];
+        first += z[2 * i] * z[2 * i] * d[i];
     }
     CHECK(fabs(sum - trace) < 1e-14 && fabs(first - 1) < 1e-14);
-    CHECK(hdi_tridiag_eigen(d, e, z0, z1, 0));
+    CHECK(hdi_tridiag_eigen(d, e, z, 0, 2));
     d[0] = d[1] = e[0] = (double)NAN;            /* nothing ever gets small */
-    CHECK(!hdi_tridiag_eigen(d, e, z0, z1, 2));
+    CHECK(!hdi_tridiag_eigen(d, e, z, 2, 2));
 }
 
 /* ---- [10] geometry ---- */
@@ -722,9 +722,8 @@ static void int_lanczos_bound(void) {
     memset(&z, 0, sizeof z);
     z.d = room;
     z.e = z.d + N;
-    z.z0 = z.e + N;
-    z.z1 = z.z0 + N;
-    z.y = z.z1 + N;
+    z.ends = z.e + N;
+    z.y = z.ends + 2 * N;
     z.alpha = z.y + N;
     z.beta = z.alpha + N;
     z.work = work;
