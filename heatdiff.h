@@ -14455,8 +14455,11 @@ static double hdi_rat_count(const hd_rational *set, int32_t i) { return set->the
 static double hdi_rational_eval(const hd_rational *set, double x) {
     double sum = set->a0;
     int32_t i;
-    for (i = 0; i < set->n_poles; i++)
-        sum += hdi_rat_count(set, i) * hdi_cdiv(set->a[i], hdi_csub(hdi_c(x, 0), set->theta[i])).re;
+    for (i = 0; i < set->n_poles; i++) {
+        const hd_c64 theta = set->theta[i], a = set->a[i];
+        const double d = x - theta.re, unit = hdi_rat_count(set, i) / (d * d + theta.im * theta.im);
+        sum += unit * (a.re * d - a.im * theta.im);
+    }
     return sum;
 }
 
@@ -14509,6 +14512,92 @@ static double hdi_set_largest(const hd_rational *set) {
 /* min |x - theta| over x <= 0, which is min |t lambda + theta|: the distance of A from a singular matrix,
  * in the B geometry. */
 static double hdi_pole_distance(hd_c64 theta) { return theta.re >= 0 ? hdi_cabs(theta) : fabs(theta.im); }
+
+/* ---- weights for given poles ---- */
+
+/* The x with the smallest |A x - b|, by Householder reflections. A is rows x cols of full rank, column-
+ * major, rows >= cols; it is overwritten. x replaces the beginning of b. If A has no full rank, x is
+ * finite, but no more can be said. */
+static void hdi_least_squares(double *A, int64_t rows, int64_t cols, double *b) {
+    int64_t j, k;
+    for (k = 0; k < cols; k++) {
+        double *v = A + k * rows + k;
+        const int64_t m = rows - k;
+        const double norm = sqrt(hdi_dot(v, v, m)), head = v[0] > 0 ? -norm : norm;
+        if (norm == 0) continue;
+        v[0] -= head;                            /* I - v v'/(-head v0) takes the column to (head, 0, ..) */
+        for (j = k + 1; j < cols; j++)
+            hdi_axpy(hdi_dot(v, v + (j - k) * rows, m) / (head * v[0]), v, v + (j - k) * rows, m);
+        hdi_axpy(hdi_dot(v, b + k, m) / (head * v[0]), v, b + k, m);
+        v[0] = head;
+    }
+    for (k = cols - 1; k >= 0; k--) {
+        b[k] = A[k * rows + k] != 0 ? b[k] / A[k * rows + k] : 0;
+        hdi_axpy(-b[k], A + k * rows, b, k);
+    }
+}
+
+/* The error of a set is made small in the sense of least squares:
+ *   sum over points k of u_k^2 (f_k - c(x_k))^2 -> min,   c(x) = a0 + sum a_i/(x - theta_i).
+ * Poles that are not real count twice, by their real part. */
+typedef struct hdi_residues {
+    int64_t n;                   /* points */
+    int32_t exact, constant;     /* c is f at the first point; is there an a0? else it becomes 0 */
+    const double *x, *u, *f;     /* [n] points, weights, values */
+    double *work;                /* hdi_residues_room */
+} hdi_residues;
+
+/* The weight of a point where c is f, beside those of a column, which are near one. What errors elsewhere
+ * could move is the square of its inverse. */
+#define HDI_RESIDUES_EXACT 1e10
+
+static uint64_t hdi_residues_room(int32_t points, int32_t n_poles) {
+    const uint64_t cols = 2 * (uint64_t)n_poles + 1;
+    return ((uint64_t)points + cols) * (cols + 1) + cols;
+}
+
+/* A column [n]: of a0 where p is NULL, else of the real or the imaginary part of a pole's weight. */
+static void hdi_residues_column(const hdi_residues *k, const hd_c64 *p, int im, double *c) {
+    int64_t i;
+    for (i = 0; i < k->n; i++) {
+        const double d = p ? k->x[i] - p->re : 0, v = p ? p->im : 0, unit = v != 0 ? 2 : 1;
+        const double part = !p ? 1 : unit * (im ? -v : d) / (d * d + v * v);
+        c[i] = (i < k->exact ? 1 : k->u[i]) * part;
+    }
+}
+
+/* Weights of the set's poles. A little damping, of the size of rounding, keeps them small in directions that
+ * the error does not feel. */
+static void hdi_residues_fit(const hdi_residues *k, hd_rational *set) {
+    const int64_t constant = k->constant ? 1 : 0;
+    int64_t cols = constant, rows, c = 0, r;
+    double *A = k->work, *b, *scale;
+    int32_t i, im;
+    for (i = 0; i < set->n_poles; i++) cols += set->theta[i].im != 0 ? 2 : 1;
+    rows = k->n + cols;
+    b = A + rows * cols;
+    scale = b + rows;
+    memset(A, 0, (size_t)(rows * (cols + 1)) * sizeof *A);
+    for (i = 0; i < set->n_poles; i++)
+        for (im = 0; im < (set->theta[i].im != 0 ? 2 : 1); im++, c++)
+            hdi_residues_column(k, set->theta + i, im, A + c * rows);
+    if (constant) hdi_residues_column(k, NULL, 0, A + c * rows);
+    for (c = 0; c < cols; c++) {
+        double *column = A + c * rows;
+        scale[c] = sqrt(hdi_dot(column + k->exact, column + k->exact, k->n - k->exact));
+        for (r = 0; r < k->n; r++) column[r] *= (r < k->exact ? HDI_RESIDUES_EXACT : 1) / scale[c];
+        column[k->n + c] = 2 * DBL_EPSILON;
+    }
+    for (r = 0; r < k->n; r++) b[r] = (r < k->exact ? HDI_RESIDUES_EXACT : k->u[r]) * k->f[r];
+    hdi_least_squares(A, rows, cols, b);
+    set->a0 = constant ? b[cols - 1] / scale[cols - 1] : 0;
+    for (c = 0, i = 0; i < set->n_poles; i++, c++) {
+        set->a[i] = hdi_c(b[c] / scale[c], 0);
+        if (set->theta[i].im == 0) continue;
+        c++;
+        set->a[i].im = b[c] / scale[c];
+    }
+}
 
 /* ---- shared sets ---- */
 /* Poles that serve all times t in [t0, lambda t0], with weights of their own for each time: t0 L + theta_i
@@ -14766,28 +14855,6 @@ static int hdi_shared_pick(hd_rational *out, double lambda, double target) {
     return 0;
 }
 
-/* The x with the smallest |A x - b|, by Householder reflections. A is rows x cols of full rank, column-
- * major, rows >= cols; it is overwritten. x replaces the beginning of b. If A has no full rank, x is
- * finite, but no more can be said. */
-static void hdi_least_squares(double *A, int64_t rows, int64_t cols, double *b) {
-    int64_t j, k;
-    for (k = 0; k < cols; k++) {
-        double *v = A + k * rows + k;
-        const int64_t m = rows - k;
-        const double norm = sqrt(hdi_dot(v, v, m)), head = v[0] > 0 ? -norm : norm;
-        if (norm == 0) continue;
-        v[0] -= head;                            /* I - v v'/(-head v0) takes the column to (head, 0, ..) */
-        for (j = k + 1; j < cols; j++)
-            hdi_axpy(hdi_dot(v, v + (j - k) * rows, m) / (head * v[0]), v, v + (j - k) * rows, m);
-        hdi_axpy(hdi_dot(v, b + k, m) / (head * v[0]), v, b + k, m);
-        v[0] = head;
-    }
-    for (k = cols - 1; k >= 0; k--) {
-        b[k] = A[k * rows + k] != 0 ? b[k] / A[k * rows + k] : 0;
-        hdi_axpy(-b[k], A + k * rows, b, k);
-    }
-}
-
 /* (1 + tau y)(exp(-tau y) - c(-y)) at y = p/q, where q = 0 means infinity. size receives the sum of the
  * moduli of all terms. */
 static double hdi_shared_error(const hd_rational *set, double tau, double p, double q, double *size) {
@@ -14815,133 +14882,12 @@ static void hdi_shared_range(const hd_rational *set, double *least, double *most
     }
 }
 
-/* The least squares problem of the fit. Its rows are the points y_k, k < points, and infinity. Its
- * unknowns are Re a, Im a, scaled and then reflected by I - v v', so that c(0) = 1 fixes the first of
- * them. */
-typedef struct hdi_shared_work {
-    int32_t n, points;
-    int64_t rows;                /* points + 1 */
-    double *A, *b;               /* [rows 2n], [rows] weighted with 1 + tau y */
-    double *M, *x;               /* [(rows + 2n - 1) (2n - 1)], [rows + 2n - 1] of one step */
-    double *w, *e;               /* [rows] Lawson's weights; errors */
-    double *scale, *v, *best;    /* [2n] */
-    double first;                /* the unknown that is known */
-} hdi_shared_work;
-
-static int32_t hdi_shared_points(int32_t n_poles) { return 8 * n_poles + 96; }
+static int32_t hdi_shared_points(int32_t n_poles) { return 8 * n_poles + 98; }
 
 /* Doubles that hdi_shared_fit works in. */
 static uint64_t hdi_shared_room(int32_t n_poles) {
-    const uint64_t n = (uint64_t)(2 * n_poles);
-    const uint64_t rows = (uint64_t)hdi_shared_points(n_poles) + 1;
-    return rows * n + rows + (rows + n) * n + 2 * rows + 3 * n;
-}
-
-static hdi_shared_work hdi_shared_begin(int32_t n_poles, double *room) {
-    hdi_shared_work k;
-    const int32_t n = 2 * n_poles;
-    k.n = n_poles;
-    k.points = hdi_shared_points(n_poles);
-    k.rows = k.points + 1;
-    k.A = room;
-    k.b = k.A + k.rows * n;
-    k.M = k.b + k.rows;
-    k.x = k.M + (k.rows + n - 1) * (n - 1);
-    k.w = k.x + (k.rows + n - 1);
-    k.e = k.w + k.rows;
-    k.scale = k.e + k.rows;
-    k.v = k.scale + n;
-    k.best = k.v + n;
-    k.first = 0;
-    return k;
-}
-
-/* A, b: the weighted problem, with columns scaled to a norm near 1. Points are spaced evenly in log y,
- * from 0.02 times the smallest |theta| to 15 times the largest, as in tools/shared_poles.py. */
-static void hdi_shared_matrix(hdi_shared_work *k, const hd_rational *set, double tau) {
-    double least, most;
-    int64_t r;
-    int32_t i;
-    hdi_shared_range(set, &least, &most);
-    for (r = 0; r < k->rows; r++) {
-        const int last = r == k->points;
-        const double part = (double)r / (k->points - 1), q = last ? 0 : 1;
-        const double p = last ? 1 : 0.02 * least * exp(part * log(750 * most / least));
-        k->b[r] = last ? 0 : (1 + tau * p) * exp(-tau * p);
-        for (i = 0; i < k->n; i++) {             /* -2 Re a/(p + theta q): x = -y */
-            const hd_c64 d = hdi_c(p + q * set->theta[i].re, q * set->theta[i].im);
-            const hd_c64 f = hdi_cdiv(hdi_c(-2 * (q + tau * p), 0), d);
-            k->A[i * k->rows + r] = f.re;
-            k->A[(k->n + i) * k->rows + r] = -f.im;
-        }
-    }
-    for (i = 0; i < k->n; i++) {                 /* one scale for both parts */
-        double *re = k->A + i * k->rows, *im = re + k->n * k->rows;
-        const double s = 1 / sqrt(hdi_dot(re, re, k->rows) + hdi_dot(im, im, k->rows));
-        for (r = 0; r < k->rows; r++) {
-            re[r] *= s;
-            im[r] *= s;
-        }
-        k->scale[i] = k->scale[k->n + i] = s;
-    }
-}
-
-/* Replaces A by A (I - v v'). After that, c(0) = 1 means x_0 = first. */
-static void hdi_shared_condition(hdi_shared_work *k, const hd_rational *set) {
-    const int32_t n = 2 * k->n;
-    double norm, head;
-    int32_t i;
-    for (i = 0; i < k->n; i++) {
-        const hd_c64 f = hdi_cdiv(hdi_c(-2, 0), set->theta[i]);
-        k->v[i] = k->scale[i] * f.re;
-        k->v[k->n + i] = k->scale[i] * -f.im;
-    }
-    norm = sqrt(hdi_dot(k->v, k->v, n));
-    head = k->v[0] > 0 ? -norm : norm;
-    k->first = 1 / head;
-    k->v[0] -= head;
-    norm = sqrt(-head * k->v[0]);                /* |v|/sqrt(2) */
-    for (i = 0; i < n; i++) k->v[i] /= norm;
-    memset(k->e, 0, (size_t)k->rows * sizeof(double));
-    for (i = 0; i < n; i++) hdi_axpy(k->v[i], k->A + i * k->rows, k->e, k->rows);
-    for (i = 0; i < n; i++) hdi_axpy(-k->v[i], k->e, k->A + i * k->rows, k->rows);
-}
-
-/* One weighted least squares problem. Sets x [2n] and the errors e at the points, and returns the largest.
- * A little damping, of the size of rounding, keeps the weights small in directions that the error does not
- * feel. */
-static double hdi_shared_step(hdi_shared_work *k) {
-    const int32_t n = 2 * k->n;
-    const int64_t ld = k->rows + n - 1;
-    double worst = 0;
-    int64_t r;
-    int32_t i;
-    memset(k->M, 0, (size_t)ld * (size_t)(n - 1) * sizeof(double));
-    memset(k->x, 0, (size_t)ld * sizeof(double));
-    for (i = 1; i < n; i++) {
-        double *m = k->M + (i - 1) * ld;
-        for (r = 0; r < k->rows; r++) m[r] = k->w[r] * k->A[i * k->rows + r];
-        m[k->rows + i - 1] = 2 * DBL_EPSILON;
-    }
-    for (r = 0; r < k->rows; r++) {
-        k->e[r] = k->b[r] - k->first * k->A[r];
-        k->x[r] = k->w[r] * k->e[r];
-    }
-    hdi_least_squares(k->M, ld, n - 1, k->x);
-    for (i = 1; i < n; i++) hdi_axpy(-k->x[i - 1], k->A + i * k->rows, k->e, k->rows);
-    for (r = 0; r < k->rows; r++) worst = hdi_max(worst, fabs(k->e[r]));
-    return worst;
-}
-
-/* The weights a of the last step, with reflection and scaling undone. */
-static void hdi_shared_take(const hdi_shared_work *k, double *a) {
-    const int32_t n = 2 * k->n;
-    double dot;
-    int32_t i;
-    a[0] = k->first;
-    for (i = 1; i < n; i++) a[i] = k->x[i - 1];
-    dot = hdi_dot(k->v, a, n);
-    for (i = 0; i < n; i++) a[i] = k->scale[i] * (a[i] - dot * k->v[i]);
+    const int32_t points = hdi_shared_points(n_poles);
+    return 4 * (uint64_t)points + hdi_residues_room(points, n_poles);
 }
 
 /* How far the exponential part of the weighted error is from a polynomial of degree m on y in [c - w, c +
@@ -15004,31 +14950,48 @@ static void hdi_shared_bound(hd_rational *set, double tau, double goal) {
 
 /* The weights of a shared set for the time tau t0, tau > 0, and their errors. Least squares and Lawson's
  * steps bring the largest (1 + tau y)|e| near its minimum. Both errors are bounds for all y >= 0 and for
- * any tau; they are small for tau in [1, lambda] of the pick. room: hdi_shared_room doubles. THE SET IS
- * TRUSTED: only pairs, Im theta > 0. */
+ * any tau; they are small for tau in [1, lambda] of the pick. Points are y = 0, where c is 1, a grid even in
+ * log y from 0.02 times the smallest |theta| to 15 times the largest, as in tools/shared_poles.py, and one so
+ * far out that it stands for infinity. room: hdi_shared_room doubles. */
 static void hdi_shared_fit(hd_rational *set, double tau, double *room) {
-    hdi_shared_work k = hdi_shared_begin(set->n_poles, room);
-    double lowest = HUGE_VAL;
-    int32_t step, i;
-    int64_t r;
-    hdi_shared_matrix(&k, set, tau);
-    hdi_shared_condition(&k, set);
-    for (r = 0; r < k.rows; r++) k.w[r] = 1;
+    const int32_t n = hdi_shared_points(set->n_poles);
+    double *x = room, *u = x + n, *f = u + n, *w = f + n, least, most, lowest = HUGE_VAL;
+    hd_rational best = *set;
+    hdi_residues k;
+    int32_t step, r;
+    memset(&k, 0, sizeof k);
+    k.n = n;
+    k.exact = 1;
+    k.x = x;
+    k.u = u;
+    k.f = f;
+    k.work = w + n;
+    hdi_shared_range(set, &least, &most);
+    for (r = 0; r < n; r++) {
+        x[r] = r == 0 ? 0 : -0.02 * least * exp((r - 1.0) / (n - 3) * log(750 * most / least));
+        if (r == n - 1) x[r] = -1e20 * most;
+        f[r] = exp(tau * x[r]);
+        w[r] = 1;
+    }
     for (step = 0; step <= HDI_SHARED_LAWSON; step++) {
-        const double worst = hdi_shared_step(&k);
-        double top = 0;
+        double worst = 0, top = 0;
+        for (r = 0; r < n; r++) u[r] = w[r] * (1 - tau * x[r]);
+        hdi_residues_fit(&k, set);
+        for (r = 1; r < n; r++) {
+            u[r] = (1 - tau * x[r]) * fabs(f[r] - hdi_rational_eval(set, x[r]));
+            worst = hdi_max(worst, u[r]);
+        }
         if (worst < lowest) {
             lowest = worst;
-            hdi_shared_take(&k, k.best);
+            best = *set;
         }
-        for (r = 0; r < k.rows; r++) {
-            k.w[r] *= sqrt(fabs(k.e[r]) / worst + 1e-3);
-            top = hdi_max(top, k.w[r]);
+        for (r = 1; r < n; r++) {
+            w[r] *= sqrt(u[r] / worst + 1e-3);
+            top = hdi_max(top, w[r]);
         }
-        for (r = 0; r < k.rows; r++) k.w[r] /= top;
+        for (r = 1; r < n; r++) w[r] /= top;
     }
-    set->a0 = 0;
-    for (i = 0; i < k.n; i++) set->a[i] = hdi_c(k.best[i], k.best[k.n + i]);
+    *set = best;
     hdi_shared_bound(set, tau, lowest);
 }
 
@@ -17248,38 +17211,31 @@ static hd_status hdi_elim_inverse_diagonal(const hdi_elim *m, hdi_factor *f, con
 enum { HDI_RESOLVENT_POLES = 8, HDI_RESOLVENT_POINTS = 160 };
 
 /* Weights with (B + tL)^-1 <= (1 + *slack) sum_p Re(weight_p (tL + theta_p B)^-1): 1/(1 + x) by least squares
- * of the relative error, for sets of few poles. Returns 0 where there are none. work: columns [2
- * HDI_RESOLVENT_POLES + 1][HDI_RESOLVENT_POINTS]. */
+ * of the relative error, for sets of few poles. Returns 0 where there are none. */
 static int hdi_resolvent_weights(const hd_rational *set, hd_c64 *weight, double *slack) {
-    double work[(2 * HDI_RESOLVENT_POLES + 1) * HDI_RESOLVENT_POINTS];
-    double *b = work + 2 * HDI_RESOLVENT_POLES * HDI_RESOLVENT_POINTS, worst = 0;
-    int32_t p, i, cols = 0;
+    enum { COLS = 2 * HDI_RESOLVENT_POLES + 1, N = HDI_RESOLVENT_POINTS };
+    double x[N], u[N], f[N], work[(N + COLS) * (COLS + 1) + COLS], worst = 0;
+    hd_rational fit = *set;
+    hdi_residues k;
+    int32_t i, p;
     if (set->n_poles > HDI_RESOLVENT_POLES) return 0;
-    for (p = 0; p < set->n_poles; cols += set->theta[p].im != 0 ? 2 : 1, p++) {
-        for (i = 0; i < HDI_RESOLVENT_POINTS; i++) {
-            const double s = (i + 0.5) / (double)HDI_RESOLVENT_POINTS;
-            const double x = 2 * s / ((1 - s) * (1 - s));
-            const hd_c64 f = hdi_cdiv(hdi_c(1 + x, 0), hdi_c(x + set->theta[p].re, set->theta[p].im));
-            work[cols * HDI_RESOLVENT_POINTS + i] = f.re;
-            if (set->theta[p].im != 0) work[(cols + 1) * HDI_RESOLVENT_POINTS + i] = -f.im;
-            b[i] = 1;
-        }
+    for (i = 0; i < N; i++) {
+        const double s = (i + 0.5) / N;
+        u[i] = 1 + 2 * s / ((1 - s) * (1 - s));
+        x[i] = 1 - u[i];
+        f[i] = 1 / u[i];
     }
-    hdi_least_squares(work, HDI_RESOLVENT_POINTS, cols, b);
-    for (p = 0, cols = 0; p < set->n_poles; p++) {
-        const int pair = set->theta[p].im != 0;
-        weight[p] = hdi_c(b[cols], pair ? b[cols + 1] : 0);
-        cols += pair ? 2 : 1;
-    }
-    for (i = 0; i <= 8 * HDI_RESOLVENT_POINTS; i++) {   /* the end is x = infinity */
-        /* x = s/q */
-        const double s = i / (8 * (double)HDI_RESOLVENT_POINTS), q = 0.5 * (1 - s) * (1 - s);
-        double sum = 0;
-        for (p = 0; p < set->n_poles; p++)
-            sum += hdi_cmul(weight[p],
-                            hdi_cdiv(hdi_c(q + s, 0),
-                                     hdi_c(s + q * set->theta[p].re, q * set->theta[p].im))).re;
-        worst = hdi_max(worst, fabs(sum - 1));
+    memset(&k, 0, sizeof k);
+    k.n = N;
+    k.x = x;
+    k.u = u;
+    k.f = f;
+    k.work = work;
+    hdi_residues_fit(&k, &fit);
+    for (p = 0; p < set->n_poles; p++) weight[p] = hdi_cscale(-hdi_rat_count(set, p), fit.a[p]);
+    for (i = 0; i <= 8 * N; i++) {               /* the end is as good as infinity */
+        const double s = i / (8 * (double)N), far = 2 * s / hdi_max((1 - s) * (1 - s), 1e-20);
+        worst = hdi_max(worst, fabs((1 + far) * hdi_rational_eval(&fit, -far) - 1));
     }
     *slack = 2 * worst;
     return worst < 0.2;
