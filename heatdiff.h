@@ -411,7 +411,7 @@ typedef struct hd_laplacian_opts {
 } hd_laplacian_opts;
 
 /* A triangle mesh as it lies in a vertex buffer and an index buffer. Clear the struct, then set one pointer
- * to positions and one to indices; the type of the pointer says how the buffer is read. Nothing need be
+ * to positions and one to indices; the type of the pointer says how the buffer is read. Positions need not be
  * aligned. Only lists of triangles are read: strips and fans must be converted before.
  * NOTE: a buffer often repeats vertices along seams of texture coordinates or normals. Repeated vertices are
  * different vertices, and no heat crosses such a seam. Weld them first. */
@@ -421,9 +421,8 @@ typedef struct hd_mesh_view {
     const double *xyz_double;   /* or this */
     size_t stride;              /* bytes from one vertex to the next; 0: packed, three numbers */
     int64_t n;                  /* vertices */
-    const uint16_t *tri_u16;    /* indices, three for each triangle */
+    const uint16_t *tri_u16;    /* aligned indices, three for each triangle */
     const uint32_t *tri_u32;    /* or this */
-    const int16_t *tri_i16;     /* or this */
     const int32_t *tri_i32;     /* or this */
     int64_t n_indices;          /* three times the number of triangles */
     int32_t end_zero;
@@ -434,7 +433,7 @@ typedef struct hd_mesh_report {
     int32_t n_faces;                 /* given */
     int32_t n_faces_used;            /* assembled */
     int32_t n_repeated_corner;       /* left out: two corners are the same vertex */
-    /* Left out: the cross product of two edges is exactly zero, or an area or cotangent overflows. Polygons:
+    /* Left out: the cross product of two edges is exactly zero. Polygons:
      * fewer than three corners, or a zero vector area (for more than three corners, up to rounding). */
     int32_t n_zero_area;
     /* Left out: same corners as an earlier face. Polygons: in the same cyclic order, in either direction. */
@@ -964,8 +963,10 @@ HEATDIFF_API void hd_csr_free(hd_csr *a, hd_context *ctx);
  * positive (for boundaries see hd_laplacian_opts), and with voronoi-cot or cot heat obeys the maximum
  * principle. Entries that only rounding made positive, below 1e-13 of the cotangents of the faces at the
  * edge, are set to zero.
- * Errors HD_ERR_INDEX (face, value: the id), HD_ERR_NOT_FINITE (vertex), HD_ERR_EMPTY,
- *        HD_ERR_ARGUMENT, HD_ERR_MEMORY, HD_ERR_CANCELLED
+ * Errors HD_ERR_INDEX (face, value: the id), HD_ERR_NOT_FINITE (vertex), HD_ERR_EMPTY, HD_ERR_MEMORY,
+ *        HD_ERR_CANCELLED, HD_ERR_ARGUMENT (also by vertex and value: a coordinate beyond 1e100, or all
+ *        vertices within 1e-100 of each other, but not in one place; by face, vertex and value: an area that
+ *        is not zero and outside 1e-100 .. 1e100, or of a face with a weight above 1e100)
  * Cost   O(n + n_tri + flips) */
 HEATDIFF_API hd_status hd_laplacian_triangles(hd_laplacian **out, const double *xyz, int32_t n,
                                               const int32_t *tri, int32_t n_tri,
@@ -975,11 +976,11 @@ HEATDIFF_API hd_status hd_laplacian_triangles(hd_laplacian **out, const double *
  * hd_laplacian_triangles on the same numbers as doubles and int32_t, to the last bit.
  * view   its buffers are not used after this call
  * Errors as hd_laplacian_triangles, with the face and the vertex as they are in the buffers. HD_ERR_ARGUMENT:
- *        the view was not cleared, not exactly one pointer to positions or to indices is set, the stride
- *        is shorter than a position, or n_indices is not a multiple of three. HD_ERR_TOO_LARGE: more than
- *        2^31 - 1 vertices or faces, or positions beyond the address space
- * Cost   24 bytes for each vertex and 12 for each face, for the time of the call. Aligned int32_t, and packed
- *        and aligned doubles, are read in place */
+ *        the view was not cleared, not exactly one pointer to positions or to indices is set, indices are
+ *        not aligned, the stride is shorter than a position, or n_indices is not a multiple of three.
+ *        HD_ERR_TOO_LARGE: more than 2^31 - 1 vertices or faces, or positions beyond the address space
+ * Cost   24 bytes for each vertex and 12 for each face, for the time of the call. Indices of 32 bits, and
+ *        packed and aligned doubles, are read in place */
 HEATDIFF_API hd_status hd_laplacian_view(hd_laplacian **out, const hd_mesh_view *view,
                                          const hd_laplacian_opts *opts, hd_error *err);
 
@@ -996,8 +997,8 @@ HEATDIFF_API hd_status hd_laplacian_view(hd_laplacian **out, const hd_mesh_view 
  * and curves (hd_source) need their lengths. With the distances of vertices in space as lengths, L and B are
  * those of hd_laplacian_triangles to rounding.
  * Errors  as hd_laplacian_triangles; HD_ERR_ARGUMENT or HD_ERR_NOT_FINITE (face, value: a length) if a length
- *         is negative or not finite, if a face breaks the triangle inequality, or if two faces do not agree
- *         (vertex: where their edge begins)
+ *         is not finite, or not 0 and outside 1e-100 .. 1e100, if a face breaks the triangle inequality,
+ *         or if two faces do not agree (vertex: where their edge begins)
  * Cost    as hd_laplacian_triangles */
 HEATDIFF_API hd_status hd_laplacian_lengths(hd_laplacian **out, const double *lengths, int32_t n,
                                             const int32_t *tri, int32_t n_tri,
@@ -1017,8 +1018,8 @@ HEATDIFF_API hd_status hd_laplacian_lengths(hd_laplacian **out, const double *le
  * On triangles the kind polygon has the cotangent L for any lambda. lap->h is the polygons' mean edge length.
  * The pattern of L contains the diagonals of the faces. hd_mesh_report says which faces are left out.
  * Errors   HD_ERR_INDEX (face, value: the id), HD_ERR_STRUCTURE (face: face_ptr descends there),
- *          HD_ERR_NOT_FINITE (vertex or face), HD_ERR_TOO_LARGE, HD_ERR_EMPTY, HD_ERR_ARGUMENT,
- *          HD_ERR_MEMORY, HD_ERR_CANCELLED
+ *          HD_ERR_NOT_FINITE (vertex), HD_ERR_ARGUMENT (sizes: as of hd_laplacian_triangles),
+ *          HD_ERR_TOO_LARGE, HD_ERR_EMPTY, HD_ERR_MEMORY, HD_ERR_CANCELLED
  * Cost     a face with k corners: at most k^2 entries of L and as much time; work arrays are linear in k
  * Source   Alexa, Wardetzky 2011: L is the sum of D'M_f D over the faces, with their M_f, and with D the
  *          differences along the edges. The combinatorial part of M_f has one weight lambda for all faces */
@@ -1041,8 +1042,9 @@ HEATDIFF_API hd_status hd_laplacian_polygons(hd_laplacian **out, const double *x
  * Points at the same place share its cell. Points without area are inert for voronoi-exp. Points that no
  * other point reaches become components of their own. Cells at a border end at the hull of the neighbours.
  * lap->points counts each of these cases.
- * Errors HD_ERR_NOT_FINITE (vertex), HD_ERR_ARGUMENT, HD_ERR_EMPTY (fewer than two places, or all on a line),
- *        HD_ERR_MEMORY, HD_ERR_CANCELLED
+ * Errors HD_ERR_NOT_FINITE (vertex), HD_ERR_ARGUMENT (also by vertex: a coordinate beyond 1e100, or all
+ *        points within 1e-100 of each other, but not in one place), HD_ERR_EMPTY (fewer than two places, or
+ *        all on a line), HD_ERR_MEMORY, HD_ERR_CANCELLED
  * Cost   O(n log n + nnz)
  * Source Liu, Prabhakaran, Guo 2012 (voronoi-exp); Belkin, Niyogi 2008 (exp). Differences: weights are cut by
  *        distance, so that L is symmetric; neighbours more than 45 degrees off the tangent plane count with
@@ -1105,7 +1107,7 @@ HEATDIFF_API hd_status hd_laplacian_apply(const hd_laplacian *lap, double alpha,
  * places.
  * Points have no update. The pairs that are joined, the planes and the cells follow from the places, so that
  * new places make a new pattern.
- * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (vertex, or face: too large, or none: the whole area);
+ * Errors HD_ERR_ARGUMENT (sizes: as of hd_laplacian_triangles), HD_ERR_NOT_FINITE (vertex);
  *        HD_ERR_EMPTY (vertex: none of its faces has an area any more). After an error nothing has changed
  * Cost   one pass over faces and entries; allocates nothing. Not while a plan on lap is at work */
 HEATDIFF_API hd_status hd_laplacian_update(hd_laplacian *lap, const double *xyz, hd_error *err);
@@ -1139,8 +1141,8 @@ HEATDIFF_API void hd_laplacian_free(hd_laplacian *lap);  /* NULL is fine */
  * index      [k m] ids of points, k for each query, nearest first. Equally distant points are ordered by id.
  *            A query that is a point of the set finds itself too. -1 beyond n
  * distance2  [k m] squared distances, infinite beyond n; NULL: not wanted
- * xyz        [3 n] the points, finite
- * query      [3 m] the query points; NULL: all n points, m = n
+ * xyz        [3 n] the points, as of hd_laplacian_points
+ * query      [3 m] the query points, at most 1e100; NULL: all n points, m = n
  * The result is exact.
  * Errors     HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (vertex, or row for a query), HD_ERR_MEMORY, HD_ERR_CANCELLED
  * Cost       O((n + k m) log n)
@@ -2126,9 +2128,11 @@ static HDI_INLINE double hdi_det2(double a, double b, double c, double d) {
 /* Products of differences of smaller numbers do not overflow, nor do sums of them. */
 #define HDI_FAR 1e150
 
-static HDI_INLINE int hdi_near3(const double *a) {
-    return (fabs(a[0]) < HDI_FAR) & (fabs(a[1]) < HDI_FAR) & (fabs(a[2]) < HDI_FAR);
-}
+/* Coordinates reach to this, and sizes and areas down to its inverse: products of two of them neither
+ * overflow nor vanish. */
+#define HDI_RANGE 1e100
+
+static int hdi_in_range(double x) { return x >= 1 / HDI_RANGE && x <= HDI_RANGE; }
 
 /* x 2^exponent and a / b, infinite where they would overflow; a >= 0, b > 0. */
 static double hdi_scale(double x, int exponent) {
@@ -2139,13 +2143,6 @@ static double hdi_scale(double x, int exponent) {
 }
 
 static double hdi_divide(double a, double b) { return b >= 1 || a <= DBL_MAX * b ? a / b : HUGE_VAL; }
-
-/* (a - b) 2^-exponent. By halves, whose difference does not overflow. */
-static void hdi_sub3_scaled(const double *a, const double *b, int exponent, double *out) {
-    int q;
-    if (!exponent) hdi_sub3(a, b, out);
-    else for (q = 0; q < 3; q++) out[q] = ldexp(a[q] / 2 - b[q] / 2, 1 - exponent);
-}
 
 static HDI_INLINE void hdi_cross3(const double *a, const double *b, double *out) {
     out[0] = hdi_det2(a[1], b[2], a[2], b[1]);
@@ -4784,7 +4781,6 @@ static void hdi_csr_apply(const hd_csr *a, const double *x, double *y, hd_contex
  * first bound from the one before it, its neighbour in the order of the leaves: the k neighbours of that one
  * are near this one too, by way of it. */
 
-#define HDI_LARGEST_EXTENT 1e150     /* of points: sums of three squares are below 1e301 */
 #define HDI_NO_BOUND 1e305           /* larger than any squared distance */
 
 enum {
@@ -4845,27 +4841,36 @@ static void hdi_tree_split(hdi_tree *t, double *a) {
     }
 }
 
-/* Finite points and queries, whose squared distances are finite too. */
-static hd_status hdi_points_check(const double *xyz, int32_t n, const double *query, int32_t m,
-                                  hd_error *e) {
-    double lo[3] = {0, 0, 0}, hi[3] = {0, 0, 0}, size = 0;
-    int64_t i;
-    int pass, c;
-    for (pass = 0; pass < 2; pass++) {
-        const double *x = pass ? query : xyz;
-        for (i = 0; i < hdi_triple(pass ? m : n) && x; i++) {
-            if (!hdi_finite(x[i]))
-                return pass ? hdi_fail_row(e, HD_ERR_NOT_FINITE, "a coordinate of a query is not finite",
-                                           i / 3, i % 3, x[i])
-                            : hdi_fail_face(e, HD_ERR_NOT_FINITE, "a coordinate is not finite", -1, i / 3,
-                                            x[i]);
-            lo[i % 3] = hdi_min(lo[i % 3], x[i]);
-            hi[i % 3] = hdi_max(hi[i % 3], x[i]);
-        }
+/* Coordinates are finite and at most 1e100. Points are all in one place, or spread over 1e-100 at least. */
+static hd_status hdi_points_check(const double *xyz, int32_t n, hd_error *e) {
+    double size = 0;
+    int64_t i, at = 0;
+    for (i = 0; i < hdi_triple(n); i++) {
+        const double x = xyz[i];
+        double away;
+        if (!hdi_finite(x))
+            return hdi_fail_face(e, HD_ERR_NOT_FINITE, "a coordinate is not finite", -1, i / 3, x);
+        if (fabs(x) > HDI_RANGE)
+            return hdi_fail_face(e, HD_ERR_ARGUMENT, "a coordinate is beyond 1e100", -1, i / 3, x);
+        away = fabs(x - xyz[i % 3]);
+        if (away > size) at = i / 3;
+        size = hdi_max(size, away);
     }
-    for (c = 0; c < 3; c++) size = hdi_max(size, hi[c] - lo[c]);
-    if (size < HDI_LARGEST_EXTENT) return HD_OK;
-    return hdi_fail_row(e, HD_ERR_NOT_FINITE, "points: squared distances are not finite", -1, -1, size);
+    if (size == 0 || hdi_in_range(size)) return HD_OK;
+    return hdi_fail_face(e, HD_ERR_ARGUMENT, "all points are within 1e-100 of each other", -1, at, size);
+}
+
+static hd_status hdi_queries_check(const double *query, int32_t m, hd_error *e) {
+    int64_t i;
+    for (i = 0; i < hdi_triple(m); i++) {
+        if (!hdi_finite(query[i]))
+            return hdi_fail_row(e, HD_ERR_NOT_FINITE, "a coordinate of a query is not finite", i / 3, i % 3,
+                                query[i]);
+        if (fabs(query[i]) > HDI_RANGE)
+            return hdi_fail_row(e, HD_ERR_ARGUMENT, "a coordinate of a query is beyond 1e100", i / 3, i % 3,
+                                query[i]);
+    }
+    return HD_OK;
 }
 
 /* The tree of finite points, in s. id of point i: i. Cost O(n log n). */
@@ -5166,7 +5171,7 @@ static hd_status hdi_neighbours_check(const double *xyz, int32_t n, const double
     if (n < 0 || (query && *m < 0)) return hdi_fail(e, HD_ERR_ARGUMENT, "neighbours: a size is negative");
     if (!query) *m = n;
     if (n > 0 && !xyz) return hdi_missing(e);
-    return hdi_points_check(xyz, n, query, *m, e);
+    return hdi_points_check(xyz, n, e) < 0 || !query ? e->status : hdi_queries_check(query, *m, e);
 }
 
 static hd_status hdi_neighbours_tree(hdi_tree *tree, const double *xyz, int32_t n, const hdi_call *c,
@@ -5189,7 +5194,7 @@ typedef struct hdi_mesh {
     const double *len;  /* [corners] of triangles: sides from corner to corner; NULL: see xyz */
     const int64_t *ptr; /* [m + 1] of polygons: the first corner of each; NULL: triangles */
     const int32_t *tri; /* [corners] vertices */
-    const int32_t *face;/* [m] the caller's number of each face; NULL: their own */
+    const int32_t *face;/* [m] the caller's number of each face, ascending; NULL: their own */
     int32_t n, m;
     double lambda;      /* of polygons */
     double *area;       /* [m] of polygons: length of the vector area; 0: the face is left out */
@@ -5208,11 +5213,6 @@ static void hdi_mesh_clear(hdi_mesh *mesh, const double *xyz, int32_t n, const i
     mesh->tri = tri;
     mesh->n = n;
     mesh->m = m;
-}
-
-/* id: what corner i of all faces names. */
-static hd_status hdi_corner_fail(int64_t i, int64_t id, hd_error *e) {
-    return hdi_fail_face(e, HD_ERR_INDEX, "a face names a vertex that does not exist", i / 3, -1, (double)id);
 }
 
 /* Lengths of face f. */
@@ -5244,6 +5244,29 @@ static int64_t hdi_corner_after(const hdi_mesh *mesh, int64_t c) {
     return c + 1 < hdi_face_begin(mesh, f + 1) ? c + 1 : hdi_face_begin(mesh, f);
 }
 
+/* ---- what is refused ---- */
+
+/* Coordinates, and the corners of m faces: triangles if ptr is NULL. xyz NULL: there are none. */
+static hd_status hdi_mesh_check(const double *xyz, int32_t n, const int64_t *ptr, const int32_t *tri,
+                                int32_t m, hd_error *e) {
+    int64_t c, end = hdi_triple(m);
+    int32_t f;
+    if (xyz && hdi_points_check(xyz, n, e) < 0) return e->status;
+    if (ptr && m > 0 && ptr[0] != 0)
+        return hdi_fail_face(e, HD_ERR_STRUCTURE, "face_ptr does not begin with 0", 0, -1, (double)ptr[0]);
+    for (f = 0; ptr && f < m; f++, end = ptr[f])
+        if (ptr[f + 1] < ptr[f])
+            return hdi_fail_face(e, HD_ERR_STRUCTURE, "face_ptr descends", f, -1, (double)ptr[f + 1]);
+    if (end > INT32_MAX) return hdi_fail(e, HD_ERR_TOO_LARGE, "more than 2^31 face corners");
+    if (end > 0 && !tri) return hdi_missing(e);
+    for (f = 0, c = 0; f < m; f++)
+        for (end = ptr ? ptr[f + 1] : c + 3; c < end; c++)
+            if (tri[c] < 0 || tri[c] >= n)
+                return hdi_fail_face(e, HD_ERR_INDEX, "a face names a vertex that does not exist", f, -1,
+                                     tri[c]);
+    return HD_OK;
+}
+
 /* A side may be longer than the two others together by this much of their sum: lengths are rounded. */
 #define HDI_LENGTH_ROUNDING (8 * DBL_EPSILON)
 /* The lengths that faces give one edge may differ by this much of it. */
@@ -5253,97 +5276,26 @@ static hd_status hdi_lengths_check(const double *len, int32_t m, hd_error *e) {
     int32_t f;
     int q;
     for (f = 0; f < m; f++, len += 3) {
-        const double sum = len[0] / 2 + len[1] / 2 + len[2] / 2;     /* half of it cannot overflow */
+        const double half = (len[0] + len[1] + len[2]) / 2;
         for (q = 0; q < 3; q++) {
             if (!hdi_finite(len[q]))
                 return hdi_fail_face(e, HD_ERR_NOT_FINITE, "a length is not finite", f, -1, len[q]);
             if (len[q] < 0)
                 return hdi_fail_face(e, HD_ERR_ARGUMENT, "a length is negative", f, -1, len[q]);
+            if (len[q] != 0 && !hdi_in_range(len[q]))
+                return hdi_fail_face(e, HD_ERR_ARGUMENT, "a length is not 0 and outside 1e-100 .. 1e100", f,
+                                     -1, len[q]);
         }
-        for (q = 0; q < 3; q++) {
-            if (len[q] > sum * (1 + HDI_LENGTH_ROUNDING))
+        for (q = 0; q < 3; q++)
+            if (len[q] > half * (1 + HDI_LENGTH_ROUNDING))
                 return hdi_fail_face(e, HD_ERR_ARGUMENT,
                                      "a side of a face is longer than the two others together", f, -1,
                                      len[q]);
-        }
     }
-    return HD_OK;
-}
-
-static hd_status hdi_mesh_check(const double *xyz, int32_t n, const int32_t *tri, int32_t m,
-                                hd_error *e) {
-    int64_t i;
-    for (i = 0; i < 3 * (int64_t)n && xyz; i++)
-        if (!hdi_finite(xyz[i]))
-            return hdi_fail_face(e, HD_ERR_NOT_FINITE, "a coordinate is not finite", -1, i / 3, xyz[i]);
-    for (i = 0; i < 3 * (int64_t)m; i++)
-        if (tri[i] < 0 || tri[i] >= n) return hdi_corner_fail(i, tri[i], e);
     return HD_OK;
 }
 
 /* ---- vertex and index buffers ---- */
-
-/* Bytes of a position. */
-static size_t hdi_view_wide(const hd_mesh_view *v) {
-    return 3 * (v->xyz_float ? sizeof(float) : sizeof(double));
-}
-
-static int hdi_aligned(const void *p, size_t size) { return (size_t)p % size == 0; }
-
-/* Positions as packed doubles. Bytes are copied, since they need not be aligned. */
-static const double *hdi_view_places(const hd_mesh_view *v, hdi_scope *s) {
-    const size_t wide = hdi_view_wide(v), stride = v->stride ? v->stride : wide;
-    const void *first = v->xyz_float ? (const void *)v->xyz_float : v->xyz_double;
-    const char *from = (const char *)first;
-    double *xyz, *to;
-    float p[3];
-    int64_t i;
-    if (!v->xyz_float && stride == wide && hdi_aligned(first, sizeof(double))) return v->xyz_double;
-    to = xyz = HDI_TAKE(s, double, 3 * v->n);
-    for (i = 0; i < v->n && xyz; i++, to += 3) {
-        memcpy(v->xyz_float ? (void *)p : to, from + (size_t)i * stride, wide);
-        if (!v->xyz_float) continue;
-        to[0] = (double)p[0];
-        to[1] = (double)p[1];
-        to[2] = (double)p[2];
-    }
-    return xyz;
-}
-
-/* Index number i of a buffer of the type that the view has. */
-static int64_t hdi_view_index(const hd_mesh_view *v, const char *first, int64_t i) {
-    const char *at = first + (size_t)i * (v->tri_u16 || v->tri_i16 ? 2 : 4);
-    uint16_t half;
-    uint32_t full;
-    memcpy(&half, at, sizeof half);
-    if (v->tri_u16) return half;
-    if (v->tri_i16) return half < 0x8000 ? half : (int64_t)half - 0x10000;
-    memcpy(&full, at, sizeof full);
-    if (v->tri_u32) return full;
-    return full < 0x80000000u ? full : (int64_t)full - (int64_t)0x100000000;
-}
-
-/* Indices as int32_t. Those of no vertex are an error here, as not all of them are in the range of the type.
- * Coordinates that are not finite come before it, as they do for packed arrays. */
-static const int32_t *hdi_view_corners(const hd_mesh_view *v, const double *xyz, hdi_scope *s) {
-    const void *first = v->tri_u16 ? (const void *)v->tri_u16 : v->tri_i16 ? (const void *)v->tri_i16
-                      : v->tri_u32 ? (const void *)v->tri_u32 : v->tri_i32;
-    const char *from = (const char *)first;
-    int32_t *tri;
-    int64_t i;
-    if (v->tri_i32 && hdi_aligned(first, sizeof(int32_t))) return v->tri_i32;
-    tri = HDI_TAKE(s, int32_t, v->n_indices);
-    for (i = 0; i < v->n_indices && tri; i++) {
-        const int64_t id = hdi_view_index(v, from, i);
-        if (id < 0 || id >= v->n) {
-            if (hdi_mesh_check(xyz, (int32_t)v->n, NULL, 0, s->e) >= 0)
-                hdi_corner_fail(i, id, s->e);
-            return NULL;
-        }
-        tri[i] = (int32_t)id;
-    }
-    return tri;
-}
 
 /* The arrays of a view: the caller's where they are as we want them, else copies. */
 typedef struct hdi_view {
@@ -5353,19 +5305,28 @@ typedef struct hdi_view {
     int32_t n, n_tri;
 } hdi_view;
 
-/* Reads a view whose sizes are checked. faces: its indices are wanted too. */
-static hd_status hdi_view_read(hdi_view *out, const hd_mesh_view *v, int faces) {
-    out->n = (int32_t)v->n;
-    out->xyz = hdi_view_places(v, &out->s);
-    if (!faces || out->s.e->status < 0) return out->s.e->status;
-    out->n_tri = (int32_t)(v->n_indices / 3);
-    out->tri = hdi_view_corners(v, out->xyz, &out->s);
-    return out->s.e->status;
+/* Bytes of a position, and from one to the next. */
+static size_t hdi_view_wide(const hd_mesh_view *v) {
+    return 3 * (v->xyz_float ? sizeof(float) : sizeof(double));
 }
+static size_t hdi_view_stride(const hd_mesh_view *v) { return v->stride ? v->stride : hdi_view_wide(v); }
 
-/* Sizes. No position may lie beyond the address space. */
-static hd_status hdi_view_sizes(const hd_mesh_view *v, int faces, hd_error *e) {
-    const size_t wide = hdi_view_wide(v), stride = v->stride ? v->stride : wide;
+static int hdi_aligned(const void *p, size_t size) { return (size_t)p % size == 0; }
+
+/* faces: the indices are wanted too. No position may lie beyond the address space. */
+static hd_status hdi_view_check(const hd_mesh_view *v, int faces, hd_error *e) {
+    const size_t wide = hdi_view_wide(v), stride = hdi_view_stride(v);
+    const int places = (v->xyz_float != NULL) + (v->xyz_double != NULL);
+    const int indices = (v->tri_u16 != NULL) + (v->tri_u32 != NULL) + (v->tri_i32 != NULL);
+    hdi_refuse(!HDI_CLEARED(v), "mesh view: not cleared before use", e);
+    hdi_refuse(places > 1 || (v->n > 0 && places < 1),
+               "mesh view: set one of xyz_float and xyz_double", e);
+    hdi_refuse(faces && (indices > 1 || (v->n_indices > 0 && indices < 1)),
+               "mesh view: set one of tri_u16, tri_u32 and tri_i32", e);
+    hdi_refuse(faces && !(hdi_aligned(v->tri_u16, sizeof *v->tri_u16) &&
+                          hdi_aligned(v->tri_u32, sizeof *v->tri_u32) &&
+                          hdi_aligned(v->tri_i32, sizeof *v->tri_i32)),
+               "mesh view: the indices are not aligned", e);
     hdi_refuse(v->n < 0 || (faces && v->n_indices < 0), "mesh view: a count is negative", e);
     hdi_refuse_value(stride < wide, "mesh view: the stride is shorter than a position", (double)stride, e);
     hdi_refuse_value(faces && v->n_indices % 3 != 0,
@@ -5379,16 +5340,37 @@ static hd_status hdi_view_sizes(const hd_mesh_view *v, int faces, hd_error *e) {
     return HD_OK;
 }
 
-static hd_status hdi_view_check(const hd_mesh_view *v, int faces, hd_error *e) {
-    const int places = (v->xyz_float != NULL) + (v->xyz_double != NULL);
-    const int indices = (v->tri_u16 != NULL) + (v->tri_u32 != NULL) + (v->tri_i16 != NULL)
-                      + (v->tri_i32 != NULL);
-    hdi_refuse(!HDI_CLEARED(v), "mesh view: not cleared before use", e);
-    hdi_refuse(places > 1 || (v->n > 0 && places < 1),
-               "mesh view: set one of xyz_float and xyz_double", e);
-    hdi_refuse(faces && (indices > 1 || (v->n_indices > 0 && indices < 1)),
-               "mesh view: set one of tri_u16, tri_u32, tri_i16 and tri_i32", e);
-    return e->status < 0 ? e->status : hdi_view_sizes(v, faces, e);
+/* Positions as packed doubles. Bytes are copied, since they need not be aligned. */
+static const double *hdi_view_places(const hd_mesh_view *v, hdi_scope *s) {
+    const size_t wide = hdi_view_wide(v), stride = hdi_view_stride(v);
+    const void *first = v->xyz_float ? (const void *)v->xyz_float : v->xyz_double;
+    const char *from = (const char *)first;
+    double *xyz, *to;
+    float p[3];
+    int64_t i;
+    int q;
+    if (!v->xyz_float && stride == wide && hdi_aligned(first, sizeof(double))) return v->xyz_double;
+    to = xyz = HDI_TAKE(s, double, 3 * v->n);
+    for (i = 0; i < v->n && xyz; i++, to += 3) {
+        memcpy(v->xyz_float ? (void *)p : to, from + (size_t)i * stride, wide);
+        for (q = 0; q < 3 && v->xyz_float; q++) to[q] = (double)p[q];
+    }
+    return xyz;
+}
+
+/* Indices as int32_t. Ids that these cannot hold are an error here, after one in the coordinates. */
+static hd_status hdi_view_corners(hdi_view *out, const hd_mesh_view *v) {
+    hd_error *e = out->s.e;
+    int32_t *wide = v->tri_u16 ? HDI_TAKE(&out->s, int32_t, v->n_indices) : NULL;
+    int64_t i;
+    out->tri = v->tri_i32 ? v->tri_i32 : v->tri_u32 ? (const int32_t *)(const void *)v->tri_u32 : wide;
+    for (i = 0; i < v->n_indices && e->status >= 0; i++) {
+        if (wide) wide[i] = v->tri_u16[i];
+        if (v->tri_u32 && v->tri_u32[i] > INT32_MAX && hdi_points_check(out->xyz, out->n, e) >= 0)
+            hdi_fail_face(e, HD_ERR_INDEX, "a face names a vertex that does not exist", i / 3, -1,
+                          (double)v->tri_u32[i]);
+    }
+    return e->status;
 }
 
 /* Opens a view; its scope is to be ended in any case. faces: its indices are wanted too. */
@@ -5396,7 +5378,11 @@ static hd_status hdi_view_open(hdi_view *out, const hd_mesh_view *v, int faces, 
     memset(out, 0, sizeof *out);
     out->s = hdi_scope_begin(c->ctx, c->e);
     if (!v) return hdi_missing(c->e);
-    return hdi_view_check(v, faces, c->e) < 0 ? c->e->status : hdi_view_read(out, v, faces);
+    if (hdi_view_check(v, faces, c->e) < 0) return c->e->status;
+    out->n = (int32_t)v->n;
+    out->n_tri = faces ? (int32_t)(v->n_indices / 3) : 0;
+    out->xyz = hdi_view_places(v, &out->s);
+    return faces && c->e->status >= 0 ? hdi_view_corners(out, v) : c->e->status;
 }
 
 /* Opens a view of new positions for n vertices. */
@@ -5406,15 +5392,7 @@ static hd_status hdi_view_positions(hdi_view *out, const hd_mesh_view *v, int32_
                         (double)v->n);
 }
 
-/* ---- faces ---- */
-
-/* What a block of faces adds to the report. */
-typedef struct hdi_face_tally {
-    int32_t n_repeated_corner, n_repeated_face, n_zero_area;
-    int32_t bad, bad_vertex;                       /* bad: the first face whose area is not finite, or -1 */
-    /* steepest: the largest cotangent, of the smallest angle */
-    double steepest, bad_area;
-} hdi_face_tally;
+/* ---- triangles ---- */
 
 static const signed char hdi_next3[3] = {1, 2, 0}, hdi_prev3[3] = {2, 0, 1};
 
@@ -5438,179 +5416,34 @@ static void hdi_length_cots(const double *len, double area, double *cot) {
     }
 }
 
-/* Twice the area of face f by its lengths. len [3]: these in a unit near the longest, which is a power of two
- * and leaves them exact. */
-static double hdi_face_lengths(const hdi_mesh *mesh, int32_t f, double *len) {
-    const double *given = hdi_mesh_lengths(mesh, f);
-    int q, exponent = 0;
-    frexp(hdi_max(given[0], hdi_max(given[1], given[2])), &exponent);
-    for (q = 0; q < 3; q++) len[q] = ldexp(given[q], -exponent);
-    return ldexp(2 * hdi_length_area(len[0], len[1], len[2]), 2 * exponent);
-}
-
-/* The edges of a face, each opposite to its corner, in units of 2^exponent. Returns the exponent: 0 unless
- * products of edges could overflow. */
-static HDI_INLINE int hdi_face_edges(const double *xyz, const int32_t *v, double edge[3][3]) {
+/* Area and cotangents of the triangle with corners v; 0, and no cotangents, if it has none. */
+static HDI_INLINE double hdi_triangle_measure(const double *xyz, const int32_t *v, double *cot) {
     const double *const p[3] = {hdi_at3(xyz, v[0]), hdi_at3(xyz, v[1]), hdi_at3(xyz, v[2])};
-    double most = 0;
-    int exponent, c, q;
-    if (hdi_near3(p[0]) & hdi_near3(p[1]) & hdi_near3(p[2])) {
-        hdi_sub3(p[2], p[1], edge[0]);
-        hdi_sub3(p[0], p[2], edge[1]);
-        hdi_sub3(p[1], p[0], edge[2]);
-        return 0;
-    }
-    for (q = 0; q < 9; q++) most = hdi_max(most, fabs(p[q / 3][q % 3] / 2 - p[(q / 3 + 1) % 3][q % 3] / 2));
-    frexp(most, &exponent);
-    exponent = most < HDI_FAR ? 0 : exponent + 1;
-    for (c = 0; c < 3; c++) hdi_sub3_scaled(p[(c + 2) % 3], p[(c + 1) % 3], exponent, edge[c]);
-    return exponent;
-}
-
-/* Cotangents at the corners, of edges and twice the area in units of 2^exponent and of its square. Whether
- * they and the products of edges are finite. */
-static HDI_INLINE int hdi_face_cots(double edge[3][3], double twice, int exponent, double *cot) {
-    double most, limit = DBL_MAX / 4;
-    cot[0] = -hdi_dot3(edge[1], edge[2]);
-    cot[1] = -hdi_dot3(edge[2], edge[0]);
-    cot[2] = -hdi_dot3(edge[0], edge[1]);
-    most = hdi_max(fabs(cot[0]), hdi_max(fabs(cot[1]), fabs(cot[2])));
-    if (exponent) limit = ldexp(limit, -2 * exponent);
-    if (twice < DBL_MIN || most > limit || most > DBL_MAX / 4 * hdi_min(1, twice)) return 0;
-    cot[0] /= twice;
-    cot[1] /= twice;
-    cot[2] /= twice;
-    return 1;
-}
-
-/* Face f is too large to be measured. */
-static double hdi_tally_bad(hdi_face_tally *t, const hdi_mesh *mesh, int32_t f, double area) {
-    const int32_t id = mesh->face ? mesh->face[f] : f;
-    if (t->bad >= 0 && t->bad <= id) return 0;
-    t->bad = id;
-    t->bad_vertex = mesh->tri[hdi_face_begin(mesh, f)];
-    t->bad_area = area;
-    return 0;
-}
-
-/* Area of face f, and its cotangents; 0 where it has none or where a cotangent would not be finite. */
-static HDI_INLINE double hdi_face_measure(const hdi_mesh *mesh, int32_t f, double *cot,
-                                          hdi_face_tally *tally) {
-    const int32_t *v = mesh->tri + hdi_triple(f);
-    double edge[3][3], cross[3], len[3], twice, scaled = 0;
-    int exponent = 0, good;
-    if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) {
-        tally->n_repeated_corner++;
-        return 0;
-    }
-    if (mesh->len) {
-        twice = hdi_face_lengths(mesh, f, len);
-    } else {
-        exponent = hdi_face_edges(mesh->xyz, v, edge);
-        hdi_cross3(edge[2], edge[0], cross);
-        twice = scaled = hdi_norm3(cross);
-        if (exponent) twice = hdi_scale(scaled, 2 * exponent);
-    }
-    if (!hdi_finite(twice)) return hdi_tally_bad(tally, mesh, f, twice);
-    good = twice / 24 >= DBL_MIN;
-    if (good && mesh->len) {
-        hdi_length_cots(len, hdi_length_area(len[0], len[1], len[2]), cot);
-        good = hdi_finite(fabs(cot[0]) + fabs(cot[1]) + fabs(cot[2]));
-    } else if (good) {
-        good = hdi_face_cots(edge, scaled, exponent, cot);
-    }
-    if (!good) {
-        tally->n_zero_area++;
-        return 0;
-    }
-    tally->steepest = hdi_max(tally->steepest, hdi_max(cot[0], hdi_max(cot[1], cot[2])));
+    double edge[3][3], cross[3], twice;          /* edges opposite to the corners */
+    hdi_sub3(p[2], p[1], edge[0]);
+    hdi_sub3(p[0], p[2], edge[1]);
+    hdi_sub3(p[1], p[0], edge[2]);
+    hdi_cross3(edge[2], edge[0], cross);
+    twice = hdi_norm3(cross);
+    if (!(twice > 0)) return 0;
+    cot[0] = -hdi_dot3(edge[1], edge[2]) / twice;
+    cot[1] = -hdi_dot3(edge[2], edge[0]) / twice;
+    cot[2] = -hdi_dot3(edge[0], edge[1]) / twice;
     return twice / 2;
 }
 
-static void hdi_tally_clear(hdi_face_tally *tally) {
-    memset(tally, 0, sizeof *tally);
-    tally->bad = tally->bad_vertex = -1;
-    tally->steepest = -HUGE_VAL;
-}
-
-static void hdi_tally_add(hdi_face_tally *all, const hdi_face_tally *t) {
-    all->n_repeated_corner += t->n_repeated_corner;
-    all->n_repeated_face += t->n_repeated_face;
-    all->n_zero_area += t->n_zero_area;
-    all->steepest = hdi_max(all->steepest, t->steepest);
-    if (t->bad < 0 || (all->bad >= 0 && all->bad < t->bad)) return;
-    all->bad = t->bad;
-    all->bad_vertex = t->bad_vertex;
-    all->bad_area = t->bad_area;
-}
-
-/* What the report says of faces one by one. */
-static hd_status hdi_tally_report(const hdi_face_tally *tally, int32_t m, hd_mesh_report *rep,
-                                  hd_error *e) {
-    if (tally->bad >= 0)
-        return hdi_fail_face(e, HD_ERR_NOT_FINITE, "a face is too large: its area is not finite", tally->bad,
-                             tally->bad_vertex, tally->bad_area);
-    rep->n_faces = m;
-    rep->n_repeated_corner = tally->n_repeated_corner;
-    rep->n_repeated_face = tally->n_repeated_face;
-    rep->n_zero_area = tally->n_zero_area;
-    rep->n_faces_used = m - tally->n_repeated_corner - tally->n_repeated_face - tally->n_zero_area;
-    rep->smallest_angle = rep->n_faces_used > 0 ? atan2(1, tally->steepest) : 0;
-    return HD_OK;
+/* The same of sides. */
+static double hdi_sides_measure(const double *len, double *cot) {
+    const double area = hdi_length_area(len[0], len[1], len[2]);
+    if (area > 0) hdi_length_cots(len, area, cot);
+    return area;
 }
 
 /* ---- polygons ---- */
 
-static hd_status hdi_poly_check(const double *xyz, int32_t n, const int64_t *ptr,
-                                const int32_t *idx, int32_t m, hd_error *e) {
-    int64_t c;
-    int32_t f;
-    if (hdi_mesh_check(xyz, n, NULL, 0, e) < 0) return e->status;
-    if (m > 0 && ptr[0] != 0)
-        return hdi_fail_face(e, HD_ERR_STRUCTURE, "face_ptr does not begin with 0", 0, -1, (double)ptr[0]);
-    for (f = 0; f < m; f++)
-        if (ptr[f + 1] < ptr[f])
-            return hdi_fail_face(e, HD_ERR_STRUCTURE, "face_ptr descends", f, -1, (double)ptr[f + 1]);
-    if (m > 0 && ptr[m] > INT32_MAX) return hdi_fail(e, HD_ERR_TOO_LARGE, "more than 2^31 face corners");
-    if (m > 0 && ptr[m] > 0 && !idx)
-        return hdi_fail(e, HD_ERR_ARGUMENT, "an argument that must not be NULL is NULL");
-    for (f = 0; f < m; f++)
-        for (c = ptr[f]; c < ptr[f + 1]; c++)
-            if (idx[c] < 0 || idx[c] >= n)
-                return hdi_fail_face(e, HD_ERR_INDEX, "a face names a vertex that does not exist", f, -1,
-                                     idx[c]);
-    return HD_OK;
-}
-
 /* The edge from corner c to the next. */
 static void hdi_poly_edge(const hdi_mesh *mesh, int64_t c, double *edge) {
     hdi_sub3(hdi_corner_at(mesh, hdi_corner_after(mesh, c)), hdi_corner_at(mesh, c), edge);
-}
-
-/* Differences of corners of f are below 2^this, as are their products if this is HDI_POLY_MOST at most; 0 if
- * all are far from overflow. */
-#define HDI_POLY_MOST 510
-static int hdi_poly_exponent(const hdi_mesh *mesh, int32_t f) {
-    const int64_t begin = mesh->ptr[f], end = mesh->ptr[f + 1];
-    double most = 0, spoke[3];
-    int near3 = 1, exponent, q;
-    int64_t c;
-    for (c = begin; c < end; c++) near3 &= hdi_near3(hdi_corner_at(mesh, c));
-    if (near3) return 0;
-    for (c = begin + 1; c < end; c++) {
-        hdi_sub3_scaled(hdi_corner_at(mesh, c), hdi_corner_at(mesh, begin), 1, spoke);
-        for (q = 0; q < 3; q++) most = hdi_max(most, fabs(spoke[q]));
-    }
-    frexp(most, &exponent);
-    return most < HDI_FAR ? 0 : exponent + 2;
-}
-
-/* An area in units of 2^(2 exponent) as one in units of 1. Where products of differences overflow, the face
- * is a needle without area, or too large. */
-static double hdi_poly_unscale(double area, int exponent) {
-    area = hdi_scale(area, 2 * exponent);
-    if (exponent <= HDI_POLY_MOST) return area;
-    return area < HDI_FAR * HDI_FAR ? 0 : HUGE_VAL;
 }
 
 /* Twice the vector area of face f, as a fan from its first corner. Returns its length, or 0 when nothing
@@ -5618,23 +5451,19 @@ static double hdi_poly_unscale(double area, int exponent) {
  * edges: 0 only if that is exactly zero. */
 static double hdi_poly_area(const hdi_mesh *mesh, int32_t f, double *twice) {
     const int64_t begin = mesh->ptr[f], end = mesh->ptr[f + 1];
-    const int exponent = hdi_poly_exponent(mesh, f);
     double spoke[3], edge[3], cross[3], length, sum = 0;
     int64_t c;
     int q;
     twice[0] = twice[1] = twice[2] = 0;
     for (c = begin + 1; c + 1 < end; c++) {
-        hdi_sub3_scaled(hdi_corner_at(mesh, c), hdi_corner_at(mesh, begin), exponent, spoke);
-        hdi_sub3_scaled(hdi_corner_at(mesh, c + 1), hdi_corner_at(mesh, c), exponent, edge);
+        hdi_sub3(hdi_corner_at(mesh, c), hdi_corner_at(mesh, begin), spoke);
+        hdi_poly_edge(mesh, c, edge);
         hdi_cross3(spoke, edge, cross);
         for (q = 0; q < 3; q++) twice[q] += cross[q];
         sum += hdi_norm3(cross);
     }
     length = hdi_norm3(twice);
-    if (length <= 4 * DBL_EPSILON * (double)(end - begin - 2) * sum) return 0;
-    if (!exponent) return length;
-    for (q = 0; q < 3; q++) twice[q] = hdi_scale(twice[q], 2 * exponent);
-    return hdi_poly_unscale(length, exponent);
+    return length > 4 * DBL_EPSILON * (double)(end - begin - 2) * sum ? length : 0;
 }
 
 /* Fills frame with two orthonormal vectors in the plane across the unit normal, the first along the
@@ -5653,20 +5482,19 @@ static double hdi_poly_axes(const hdi_mesh *mesh, int32_t f, const double *norma
         longest = length;
         for (q = 0; q < 3; q++) frame[0][q] = edge[q] / length;
     }
-    if (longest > 0) hdi_cross3(normal, frame[0], frame[1]);
+    hdi_cross3(normal, frame[0], frame[1]);
     return longest;
 }
 
 /* The projector on the kernel of the transposed projected edges is I - Q Q', Q [k x 2] an orthonormal
  * basis of their range: Gram and Schmidt, orthogonalised twice. What is kept are the rows of w = D'Q, D
- * the difference along the edges. 0 when the face has no plane. */
-static int hdi_poly_frame(const hdi_mesh *mesh, int32_t f, const double *normal) {
+ * the difference along the edges. */
+static void hdi_poly_frame(const hdi_mesh *mesh, int32_t f, const double *normal) {
     const int64_t begin = mesh->ptr[f], k = mesh->ptr[f + 1] - begin;
-    double *q = mesh->w + 2 * begin, frame[2][3], edge[3], dot, norm, last[2];
+    double *q = mesh->w + 2 * begin, frame[2][3] = {{0, 0, 0}, {0, 0, 0}}, edge[3], dot, norm, last[2];
     const double longest = hdi_poly_axes(mesh, f, normal, frame);
     int64_t p;
     int turn;
-    if (!(longest > 0)) return 0;
     for (p = 0, norm = 0; p < k; p++) {
         hdi_poly_edge(mesh, begin + p, edge);
         q[2 * p] = hdi_dot3(edge, frame[0]) / longest;
@@ -5688,7 +5516,6 @@ static int hdi_poly_frame(const hdi_mesh *mesh, int32_t f, const double *normal)
         q[2 * p] = (p > 0 ? q[2 * p - 2] : last[0]) - q[2 * p];
         q[2 * p + 1] = (p > 0 ? q[2 * p - 1] : last[1]) - q[2 * p + 1];
     }
-    return 1;
 }
 
 /* The cotangent of the smallest angle at the corners of f that bend inwards. */
@@ -5708,41 +5535,23 @@ static double hdi_poly_steepest(const hdi_mesh *mesh, int32_t f, const double *n
     return most;
 }
 
-/* g of face f; 0 when a square of it could overflow. */
-static int hdi_poly_gradients(const hdi_mesh *mesh, int32_t f, double area) {
+/* The area of face f, and all that is kept of its corners. 0: it has none. weight: the largest square of a
+ * gradient. */
+static double hdi_poly_measure(const hdi_mesh *mesh, int32_t f, double *steepest, double *weight) {
+    double normal[3], twice = hdi_poly_area(mesh, f, normal);
     int64_t c;
-    int q, good = 1;
+    int q;
+    if (!(twice > 0)) return 0;
+    for (q = 0; q < 3; q++) normal[q] /= twice;
     for (c = mesh->ptr[f]; c < mesh->ptr[f + 1]; c++) {
         double *g = mesh->g + 3 * c;
         hdi_sub3(hdi_corner_at(mesh, hdi_corner_before(mesh, c)),
                  hdi_corner_at(mesh, hdi_corner_after(mesh, c)), g);
-        for (q = 0; q < 3; q++) g[q] /= 2 * sqrt(area);
-        good &= hdi_near3(g);
+        for (q = 0; q < 3; q++) g[q] /= sqrt(2 * twice);
+        *weight = hdi_max(*weight, hdi_dot3(g, g));
     }
-    return good;
-}
-
-/* The area of face f, which becomes the mesh's, and all that is kept of its corners. */
-static double hdi_poly_measure(const hdi_mesh *mesh, int32_t f, hdi_face_tally *tally) {
-    const int64_t begin = mesh->ptr[f], end = mesh->ptr[f + 1];
-    double normal[3], twice;
-    int64_t c, d;
-    int q;
-    for (c = begin; c < end; c++) {
-        for (d = begin; d < c && mesh->tri[d] != mesh->tri[c]; d++) {}
-        if (d == c) continue;
-        tally->n_repeated_corner++;
-        return 0;
-    }
-    twice = end - begin < 3 ? 0 : hdi_poly_area(mesh, f, normal);
-    if (!hdi_finite(twice)) return hdi_tally_bad(tally, mesh, f, twice);
-    for (q = 0; q < 3 && twice > 0; q++) normal[q] /= twice;
-    if (twice == 0 || twice / (8 * (double)(end - begin)) < DBL_MIN ||
-        !hdi_poly_gradients(mesh, f, twice / 2) || (end - begin > 3 && !hdi_poly_frame(mesh, f, normal))) {
-        tally->n_zero_area++;
-        return 0;
-    }
-    tally->steepest = hdi_max(tally->steepest, hdi_poly_steepest(mesh, f, normal));
+    if (mesh->ptr[f + 1] - mesh->ptr[f] > 3) hdi_poly_frame(mesh, f, normal);
+    *steepest = hdi_poly_steepest(mesh, f, normal);
     return twice / 2;
 }
 
@@ -5759,6 +5568,45 @@ static int64_t hdi_block_size(int64_t n) {
     return hdi_most(size, (int64_t)HDI_BLOCK_LEAST);
 }
 
+/* What a block of faces adds to the report. */
+typedef struct hdi_face_tally {
+    int32_t n_repeated_corner, n_zero_area, refused;   /* refused: the first one, or -1 */
+    double steepest;                                   /* the largest cotangent, of the smallest angle */
+} hdi_face_tally;
+
+typedef struct hdi_measure_job {
+    const hdi_mesh *mesh;
+    hdi_face_tally tally[HDI_BLOCKS_MOST];
+} hdi_measure_job;
+
+static HDI_INLINE int hdi_corners_repeat(const int32_t *v, int64_t k) {
+    int64_t c, d;
+    for (c = 1; c < k; c++)
+        for (d = 0; d < c; d++)
+            if (v[c] == v[d]) return 1;
+    return 0;
+}
+
+/* Area of face f, and what is kept of its corners. 0: it is left out. */
+static HDI_INLINE double hdi_face_measure(const hdi_mesh *mesh, int32_t f, hdi_face_tally *t) {
+    const int64_t begin = hdi_face_begin(mesh, f), k = hdi_is_poly(mesh) ? mesh->ptr[f + 1] - begin : 3;
+    const int32_t *v = mesh->tri + begin;
+    double *cot = mesh->cot + begin, area, steepest = 0, weight = 0;
+    if (hdi_corners_repeat(v, k)) {
+        t->n_repeated_corner++;
+        return 0;
+    }
+    if (hdi_is_poly(mesh)) area = hdi_poly_measure(mesh, f, &steepest, &weight);
+    else area = mesh->len ? hdi_sides_measure(mesh->len + begin, cot)
+                          : hdi_triangle_measure(mesh->xyz, v, cot);
+    t->n_zero_area += area == 0;
+    if (area == 0) return 0;
+    if (!hdi_is_poly(mesh)) steepest = weight = hdi_max(cot[0], hdi_max(cot[1], cot[2]));
+    if (t->refused < 0 && !(hdi_in_range(area) && weight <= HDI_RANGE)) t->refused = f;
+    t->steepest = hdi_max(t->steepest, steepest);
+    return area;
+}
+
 /* Asks for the corners of face f. */
 static HDI_INLINE void hdi_face_ahead(const hdi_mesh *mesh, int64_t f) {
     const int32_t *ahead = mesh->tri + 3 * f;
@@ -5769,21 +5617,14 @@ static HDI_INLINE void hdi_face_ahead(const hdi_mesh *mesh, int64_t f) {
     (void)ahead;
 }
 
-typedef struct hdi_measure_job {
-    const hdi_mesh *mesh;
-    hdi_face_tally tally[HDI_BLOCKS_MOST];
-} hdi_measure_job;
-
 static void hdi_measure_task(void *arg, int64_t begin, int64_t end) {
     hdi_measure_job *job = (hdi_measure_job *)arg;
     const hdi_mesh *mesh = job->mesh;
-    hdi_face_tally tally;
+    hdi_face_tally tally = {0, 0, -1, -HUGE_VAL};
     int32_t f;
-    hdi_tally_clear(&tally);
     for (f = (int32_t)begin; f < end; f++) {
         hdi_face_ahead(mesh, hdi_least((int64_t)f + HDI_FACES_AHEAD, end - 1));
-        mesh->area[f] = hdi_is_poly(mesh) ? hdi_poly_measure(mesh, f, &tally)
-                                          : hdi_face_measure(mesh, f, mesh->cot + hdi_triple(f), &tally);
+        mesh->area[f] = hdi_face_measure(mesh, f, &tally);
     }
     job->tally[begin / hdi_block_size(mesh->m)] = tally;
 }
@@ -5791,14 +5632,28 @@ static void hdi_measure_task(void *arg, int64_t begin, int64_t end) {
 /* All faces of a mesh whose indices are fine. Allocates nothing. */
 static hd_status hdi_faces_measure(const hdi_mesh *mesh, hd_mesh_report *rep, hdi_scope *s) {
     const int64_t size = hdi_block_size(mesh->m);
-    hdi_face_tally all;
+    hdi_face_tally all = {0, 0, -1, -HUGE_VAL};
     hdi_measure_job job;
     int64_t i;
-    hdi_tally_clear(&all);
     job.mesh = mesh;
     hdi_parallel_ranges(s->ctx, mesh->m, size, hdi_measure_task, &job);
-    for (i = 0; i * size < mesh->m; i++) hdi_tally_add(&all, job.tally + i);
-    return hdi_tally_report(&all, mesh->m, rep, s->e);
+    for (i = 0; i * size < mesh->m; i++) {
+        all.n_repeated_corner += job.tally[i].n_repeated_corner;
+        all.n_zero_area += job.tally[i].n_zero_area;
+        all.steepest = hdi_max(all.steepest, job.tally[i].steepest);
+        if (all.refused < 0) all.refused = job.tally[i].refused;
+    }
+    if (all.refused >= 0)
+        return hdi_fail_face(s->e, HD_ERR_ARGUMENT,
+                             "the area of a face is outside 1e-100 .. 1e100, or a weight of it above 1e100",
+                             mesh->face ? mesh->face[all.refused] : all.refused,
+                             mesh->tri[hdi_face_begin(mesh, all.refused)], mesh->area[all.refused]);
+    rep->n_faces = mesh->m;
+    rep->n_repeated_corner = all.n_repeated_corner;
+    rep->n_zero_area = all.n_zero_area;
+    rep->n_faces_used = mesh->m - all.n_repeated_corner - all.n_zero_area;
+    rep->smallest_angle = rep->n_faces_used > 0 ? atan2(1, all.steepest) : 0;
+    return HD_OK;
 }
 
 /* Arrays for what is measured of the faces, in s, and the corners at each vertex. */
@@ -5892,14 +5747,13 @@ static int32_t hdi_mesh_repeats(const hdi_mesh *mesh, hdi_pair *face, int32_t n)
 }
 
 /* ---- sides ----
- * The sides of all faces with area, gathered by the smaller of their two vertices and sorted by the
- * larger one, then by face: an edge is a run of sides. */
+ * The sides of all faces with area, listed by the smaller of their two vertices and sorted by the larger one,
+ * then by face: an edge is a run of sides. */
 
 typedef struct hdi_sides {
     int32_t *ptr;               /* [n + 1] where those of a vertex begin */
     int32_t most;               /* sides of the busiest vertex, at least 1 */
     uint64_t *key;              /* [3 m] larger vertex << 32 | 4 face + corner where the side begins */
-    uint64_t *work;             /* [most] */
 } hdi_sides;
 
 static int32_t hdi_key_face(uint64_t key) { return (int32_t)((key & 0xffffffffu) >> 2); }
@@ -5918,46 +5772,28 @@ static HDI_INLINE int32_t hdi_sides_run(const hdi_sides *g, int32_t p, int32_t e
     return p;
 }
 
-static void hdi_sides_gather(const hdi_mesh *mesh, hdi_sides *g) {
-    const int32_t *v = mesh->tri;
-    int32_t f, i, q, sum = 0, *at = g->ptr;
-    g->most = 1;
-    memset(at, 0, ((size_t)mesh->n + 1) * sizeof *at);
-    for (f = 0; f < mesh->m; f++, v += 3) {
-        if (!(mesh->area[f] > 0)) continue;
-        at[hdi_low32(v[0], v[1])]++;
-        at[hdi_low32(v[1], v[2])]++;
-        at[hdi_low32(v[2], v[0])]++;
-    }
-    for (i = 0; i < mesh->n; i++) {
-        const int32_t count = at[i];
-        at[i] = sum;
-        sum += count;
-        g->most = hdi_high32(g->most, count);
-    }
-    for (f = 0, v = mesh->tri; f < mesh->m; f++, v += 3) {
-        if (!(mesh->area[f] > 0)) continue;
-        for (q = 0; q < 3; q++) {
-            const int32_t a = v[q], b = v[hdi_next3[q]];
-            g->key[at[hdi_low32(a, b)]++] = (uint64_t)hdi_high32(a, b) << 32
-                                          | ((uint64_t)f << 2) | (uint64_t)q;
-        }
-    }
-    memmove(at + 1, at, (size_t)mesh->n * sizeof *at);
-    at[0] = 0;
-}
-
-static void hdi_sides_sort(hdi_sides *g, int32_t i) {
-    hdi_sort_keys(g->key + g->ptr[i], g->ptr[i + 1] - g->ptr[i], g->work);
-}
-
-/* Gathers the sides, in s; sorting them is left to the caller. */
+/* Of a mesh whose corners are listed, in s. */
 static hd_status hdi_sides_make(hdi_sides *g, const hdi_mesh *mesh, hdi_scope *s) {
-    g->ptr = HDI_TAKE(s, int32_t, (int64_t)mesh->n + 1);
+    uint64_t *work;
+    int32_t i, n = 0;
+    int64_t p;
+    g->ptr = HDI_TAKE_ZERO(s, int32_t, (int64_t)mesh->n + 1);
     g->key = HDI_TAKE(s, uint64_t, hdi_triple(mesh->m));
     if (s->e->status < 0) return s->e->status;
-    hdi_sides_gather(mesh, g);
-    g->work = HDI_TAKE(s, uint64_t, g->most);
+    for (i = 0, g->most = 1; i < mesh->n; i++) {
+        for (p = mesh->at[i]; p < mesh->at[i + 1]; p++) {
+            const int32_t f = mesh->corner[p] / 3, q = mesh->corner[p] % 3, *v = mesh->tri + hdi_triple(f);
+            const uint64_t after = (uint64_t)v[hdi_next3[q]], before = (uint64_t)v[hdi_prev3[q]];
+            if (!(mesh->area[f] > 0)) continue;
+            if (after > (uint64_t)i) g->key[n++] = after << 32 | (uint64_t)f << 2 | (uint64_t)q;
+            if (before > (uint64_t)i) g->key[n++] = before << 32 | (uint64_t)f << 2 | (uint64_t)hdi_prev3[q];
+        }
+        g->ptr[i + 1] = n;
+        g->most = hdi_high32(g->most, n - g->ptr[i]);
+    }
+    work = HDI_TAKE(s, uint64_t, g->most);
+    for (i = 0; i < mesh->n && work; i++)
+        hdi_sort_keys(g->key + g->ptr[i], g->ptr[i + 1] - g->ptr[i], work);
     return s->e->status;
 }
 
@@ -6010,7 +5846,6 @@ static hd_status hdi_lengths_agree(const hdi_mesh *mesh, hdi_scope *s) {
     int32_t i, p;
     if (hdi_sides_make(&g, mesh, &own) < 0) return hdi_scope_end(&own);
     for (i = 0; i < mesh->n && s->e->status >= 0; i++) {
-        hdi_sides_sort(&g, i);
         for (p = g.ptr[i] + 1; p < g.ptr[i + 1] && s->e->status >= 0; p++) {
             const double a = mesh->len[hdi_key_side(g.key[p - 1])], b = mesh->len[hdi_key_side(g.key[p])];
             if (hdi_key_vertex(g.key[p]) == hdi_key_vertex(g.key[p - 1]) &&
@@ -6022,13 +5857,10 @@ static hd_status hdi_lengths_agree(const hdi_mesh *mesh, hdi_scope *s) {
     return hdi_scope_end(&own);
 }
 
-/* Checks the mesh, measures its faces and lists the corners at each vertex, in s. The corners of polygons are
- * checked before. */
+/* Checks the mesh, measures its faces and lists the corners at each vertex, in s. */
 static hd_status hdi_mesh_make(hdi_mesh *mesh, hd_mesh_report *rep, hdi_scope *s) {
     rep->n_faces = mesh->m;
-    if (!hdi_is_poly(mesh) && hdi_triple(mesh->m) > INT32_MAX)
-        return hdi_fail(s->e, HD_ERR_TOO_LARGE, "more than 2^31 face corners");
-    if ((!hdi_is_poly(mesh) && hdi_mesh_check(mesh->xyz, mesh->n, mesh->tri, mesh->m, s->e) < 0) ||
+    if (hdi_mesh_check(mesh->xyz, mesh->n, mesh->ptr, mesh->tri, mesh->m, s->e) < 0 ||
         (mesh->len && hdi_lengths_check(mesh->len, mesh->m, s->e) < 0) || hdi_mesh_take(mesh, s) < 0)
         return s->e->status;
     hdi_mesh_of(mesh);
@@ -6477,7 +6309,6 @@ static hdi_edge_tally hdi_soup_edges(hdi_soup *soup, int32_t *border) {
     int32_t i, p, q;
     hdi_fill_own(border, mesh->n);
     for (i = 0; i < mesh->n; i++) {
-        hdi_sides_sort(g, i);
         for (p = g->ptr[i]; p < g->ptr[i + 1]; p = q) {
             const int32_t j = hdi_key_vertex(g->key[p]), end = hdi_sides_run(g, p, g->ptr[i + 1]);
             int64_t copies = 0, forward = 0;
@@ -6559,9 +6390,9 @@ static hd_status hdi_soup_make(hdi_soup *soup, const double *xyz, int32_t n, con
     soup->share = 3;
     if (hdi_soup_faces(soup, tri, m, n, s) < 0) return s->e->status;
     soup->mesh.xyz = xyz;
-    soup->mesh.cot = HDI_TAKE(s, double, hdi_triple(soup->mesh.m));
-    soup->mesh.area = HDI_TAKE(s, double, soup->mesh.m);
-    if (s->e->status < 0 || hdi_faces_measure(&soup->mesh, &faces, s) < 0) return s->e->status;
+    if (hdi_mesh_take(&soup->mesh, s) < 0 || hdi_faces_measure(&soup->mesh, &faces, s) < 0)
+        return s->e->status;
+    hdi_mesh_corners(&soup->mesh);
     rep->smallest_angle = faces.smallest_angle;
     for (f = 0; f < soup->mesh.m; f++) {
         rep->n_faces += soup->copies[f];
@@ -7699,7 +7530,7 @@ static hd_status hdi_lap_update(hd_laplacian *lap, const double *xyz, hd_error *
     hd_mesh_report *to = &lap->mesh, rep;
     double area;
     int32_t i;
-    if (hdi_mesh_check(xyz, lap->n, NULL, 0, e) < 0) return e->status;
+    if (hdi_points_check(xyz, lap->n, e) < 0) return e->status;
     x->mesh.xyz = xyz;
     memset(&rep, 0, sizeof rep);
     if (hdi_faces_measure(&x->mesh, &rep, &none) < 0 || hdi_moving_masses(&x->mesh, e) < 0) return e->status;
@@ -8519,7 +8350,7 @@ static hd_status hdi_lap_points(hd_laplacian *lap, const double *xyz, hd_error *
     hdi_cloud cloud;
     double *work;
     memset(&cloud, 0, sizeof cloud);
-    if (hdi_points_check(xyz, lap->n, NULL, 0, e) < 0) return hdi_scope_end(&s);
+    if (hdi_points_check(xyz, lap->n, e) < 0) return hdi_scope_end(&s);
     if (hdi_places_make(&places, xyz, lap->n, &s) < 0) return hdi_scope_end(&s);
     if (places.n < 2) hdi_fail(e, HD_ERR_EMPTY, "points: fewer than two different ones");
     work = HDI_TAKE(&s, double, lap->n);
@@ -8700,7 +8531,7 @@ static hd_status hdi_star_search(hdi_star_job *job, const double *xyz, int32_t n
     int64_t *ptr;
     hdi_places places;
     hdi_tree tree;
-    if (hdi_points_check(xyz, n_points, NULL, 0, s->e) < 0) return hdi_scope_end(&own);
+    if (hdi_points_check(xyz, n_points, s->e) < 0) return hdi_scope_end(&own);
     if (hdi_places_make(&places, xyz, n_points, &own) < 0) return hdi_scope_end(&own);
     if (hdi_star_order(job, &tree, places.xyz, places.n, places.first, &own, keep) < 0)
         return hdi_scope_end(&own);
@@ -8725,7 +8556,7 @@ static hd_status hdi_star_given(hdi_star_job *job, const double *xyz, int32_t n,
     int32_t *inverse = HDI_TAKE(&own, int32_t, n), v;
     int64_t *ptr = HDI_TAKE(s, int64_t, (int64_t)n + 1), p, q = 0;
     hdi_tree tree;
-    if (s->e->status < 0 || hdi_mesh_check(xyz, n, NULL, 0, s->e) < 0) return hdi_scope_end(&own);
+    if (s->e->status < 0 || hdi_points_check(xyz, n, s->e) < 0) return hdi_scope_end(&own);
     if (hdi_star_check(nbr_ptr, nbr, n, s->e) < 0) return hdi_scope_end(&own);
     job->ptr = ptr;
     job->nbr = HDI_TAKE(s, int32_t, nbr_ptr[n]);
@@ -29034,7 +28865,7 @@ static hd_status hdi_geo_create(hd_geodesic **out, int32_t n, hdi_geo_input *in,
     hdi_refuse(n < 0 || in->m < 0, "geodesic: a size is negative", c->e);
     if (hdi_geo_check(o, in, c->e) < 0) return c->e->status;
     if (o->ordering == HD_ORDERING_OWN && hdi_order_check(o->perm, n, c->ctx, c->e) < 0) return c->e->status;
-    if (in->ptr && hdi_poly_check(in->xyz, n, in->ptr, in->idx, in->m, c->e) < 0) return c->e->status;
+    if (in->ptr && hdi_mesh_check(in->xyz, n, in->ptr, in->idx, in->m, c->e) < 0) return c->e->status;
     g = (hd_geodesic *)hdi_alloc_zero(c->ctx, 1, sizeof *g, c->e);
     if (!g) return c->e->status;
     g->ctx = hdi_enter_keep(c, &g->context);
@@ -29286,7 +29117,7 @@ HEATDIFF_API hd_status hd_laplacian_polygons(hd_laplacian **out, const double *x
     hdi_refuse(hdi_intrinsic_opts(opts, &task, c.e) && !splits,
                "laplacian of polygons: intrinsic triangulations are for fem, voronoi-cot and cot", c.e);
     hdi_refuse(flips && updatable, "laplacian of polygons: an intrinsic triangulation is not updatable", c.e);
-    if (hdi_lap_begin(&c) < 0 || hdi_poly_check(xyz, n, face_ptr, face_idx, n_faces, c.e) < 0)
+    if (hdi_lap_begin(&c) < 0 || hdi_mesh_check(xyz, n, face_ptr, face_idx, n_faces, c.e) < 0)
         return hdi_lap_done(out, lap, c.e->status);
     return hdi_lap_end(out, lap, splits ? hdi_lap_fans(lap, &poly, flips ? &task : NULL, updatable, c.e)
                                         : hdi_lap_plain(lap, &poly, updatable, c.e), c.e);

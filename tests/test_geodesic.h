@@ -396,7 +396,7 @@ static void geo_stages_ordered(shape s, int32_t source, double t) {
 /* ---- properties ---- */
 
 static void geo_moved(void) {
-    static const double scales[5] = {1, 1e-3, 1e-140, 250, 1e140};
+    static const double scales[5] = {1, 1e-3, 1e-45, 250, 1e45};
     shape s = kit_own_shape(shape_bumpy(3, 8)), r;
     const int32_t sources[2] = {17, 400};
     double *want = geo_of(&s, 0, sources, 2), *d, worst;

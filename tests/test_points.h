@@ -184,7 +184,8 @@ static void pts_neighbour_errors(void) {
     xyz[4] = INFINITY;
     CHECK(hd_neighbours_radius(&a, xyz, 3, NULL, 0, 1, NULL, &e) == HD_ERR_NOT_FINITE && e.vertex == 1);
     xyz[4] = 1e200;
-    CHECK(hd_neighbours_nearest(xyz, 3, NULL, 0, 1, id, NULL, NULL, &e) == HD_ERR_NOT_FINITE);
+    CHECK(hd_neighbours_nearest(xyz, 3, NULL, 0, 1, id, NULL, NULL, &e) == HD_ERR_ARGUMENT && e.vertex == 1 && e.value == 1e200);
+    CHECK(hd_neighbours_nearest(NULL, 0, xyz, 3, 1, id, NULL, NULL, &e) == HD_ERR_ARGUMENT && e.row == 1 && e.column == 1 && e.value == 1e200);
     CHECK(memcmp(&a, &before, sizeof a) == 0);
     xyz[4] = 0;
     CHECK(hd_neighbours_nearest(xyz, 3, NULL, 0, 2, id, NULL, NULL, NULL) == HD_OK && id[0] == 0 && id[1] == 1 && id[2] == 1);
@@ -501,8 +502,8 @@ static void pts_errors(void) {
     CHECK(pts_status(s.xyz, 3, HD_LAPLACIAN_VORONOI_EXP, 0, 0, 0, &e) == HD_OK);
     s.xyz[10] = NAN;
     CHECK(pts_status(s.xyz, 50, HD_LAPLACIAN_EXP, 0, 0, 0, &e) == HD_ERR_NOT_FINITE && e.vertex == 3 && e.value != e.value);
-    s.xyz[10] = 1e200;
-    CHECK(pts_status(s.xyz, 50, HD_LAPLACIAN_EXP, 0, 0, 0, &e) == HD_ERR_NOT_FINITE);
+    s.xyz[10] = -1e101;
+    CHECK(pts_status(s.xyz, 50, HD_LAPLACIAN_EXP, 0, 0, 0, &e) == HD_ERR_ARGUMENT && e.vertex == 3 && e.value == -1e101);
     s.xyz[10] = keep;
     for (i = 0; i < 150; i++) s.xyz[i] *= 1e-170;
     CHECK(pts_status(s.xyz, 50, HD_LAPLACIAN_EXP, 0, 0, 0, &e) == HD_ERR_ARGUMENT && e.vertex >= 0);

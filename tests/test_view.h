@@ -4,19 +4,19 @@
 #ifndef TEST_VIEW_H
 #define TEST_VIEW_H
 
-/* The shape as a buffer: positions of one type, stride bytes apart from offset on, and indices of one type from offset on. */
+/* The shape as a buffer: positions of one type, stride bytes apart from byte offset on, and indices of one type, offset of them later. */
 typedef struct view_buffers {
     char *vertices, *indices;
     shape s;                             /* the same numbers as they come out of the buffer */
     hd_mesh_view view;
 } view_buffers;
 
-enum view_index { VIEW_U16, VIEW_U32, VIEW_I16, VIEW_I32 };
+enum view_index { VIEW_U16, VIEW_U32, VIEW_I32, VIEW_TYPES };
 
 static void view_put_index(char *to, enum view_index type, int64_t value) {
     const uint16_t half = (uint16_t)value;
     const uint32_t full = (uint32_t)value;
-    if (type == VIEW_U16 || type == VIEW_I16) memcpy(to, &half, sizeof half);
+    if (type == VIEW_U16) memcpy(to, &half, sizeof half);
     else memcpy(to, &full, sizeof full);
 }
 
@@ -29,13 +29,13 @@ static void view_put_position(char *to, int floats, const double *p) {
 }
 
 static view_buffers view_make(const shape *s, int floats, size_t stride, enum view_index type, size_t offset) {
-    const size_t wide = floats ? 12 : 24, step = stride ? stride : wide, size = type == VIEW_U16 || type == VIEW_I16 ? 2 : 4;
+    const size_t wide = floats ? 12 : 24, step = stride ? stride : wide, size = type == VIEW_U16 ? 2 : 4;
     view_buffers b;
     const void *xyz, *tri;
     int32_t i;
     memset(&b, 0, sizeof b);
     b.vertices = DENSE_NEW(char, offset + (size_t)s->n * step + wide);
-    b.indices = DENSE_NEW(char, offset + 3 * (size_t)s->n_tri * size);
+    b.indices = DENSE_NEW(char, (offset + 3 * (size_t)s->n_tri) * size);
     memset(b.vertices, 0x7f, offset + (size_t)s->n * step + wide);
     b.s.n = s->n;
     b.s.n_tri = s->n_tri;
@@ -44,14 +44,13 @@ static view_buffers view_make(const shape *s, int floats, size_t stride, enum vi
     memcpy(b.s.tri, s->tri, 3 * (size_t)s->n_tri * sizeof *s->tri);
     for (i = 0; i < 3 * s->n; i++) b.s.xyz[i] = floats ? (double)(float)s->xyz[i] : s->xyz[i];
     for (i = 0; i < s->n; i++) view_put_position(b.vertices + offset + (size_t)i * step, floats, s->xyz + 3 * i);
-    for (i = 0; i < 3 * s->n_tri; i++) view_put_index(b.indices + offset + (size_t)i * size, type, s->tri[i]);
+    for (i = 0; i < 3 * s->n_tri; i++) view_put_index(b.indices + (offset + (size_t)i) * size, type, s->tri[i]);
     xyz = b.vertices + offset;
-    tri = b.indices + offset;
+    tri = b.indices + offset * size;
     if (floats) b.view.xyz_float = (const float *)xyz;
     else b.view.xyz_double = (const double *)xyz;
     if (type == VIEW_U16) b.view.tri_u16 = (const uint16_t *)tri;
     else if (type == VIEW_U32) b.view.tri_u32 = (const uint32_t *)tri;
-    else if (type == VIEW_I16) b.view.tri_i16 = (const int16_t *)tri;
     else b.view.tri_i32 = (const int32_t *)tri;
     b.view.stride = stride;
     b.view.n = s->n;
@@ -111,8 +110,8 @@ static void view_forms(void) {
     static const size_t strides[5] = {0, 12, 13, 14, 32}, wide_strides[4] = {0, 24, 25, 40};
     size_t k, offset;
     for (offset = 0; offset < 2; offset++) {
-        for (k = 0; k < 5; k++) view_answers(&s, &moved, 1, strides[k], (enum view_index)(k % 4), offset);
-        for (k = 0; k < 4; k++) view_answers(&s, &moved, 0, wide_strides[k], (enum view_index)k, offset);
+        for (k = 0; k < 5; k++) view_answers(&s, &moved, 1, strides[k], (enum view_index)(k % VIEW_TYPES), offset);
+        for (k = 0; k < 4; k++) view_answers(&s, &moved, 0, wide_strides[k], (enum view_index)(k % VIEW_TYPES), offset);
     }
 }
 
@@ -131,17 +130,18 @@ static hd_error view_refused(const hd_mesh_view *v) {
 
 /* Data that cannot be: the error of hd_laplacian_triangles, and where the type cannot hold the value, the value itself. */
 static void view_bad_data(void) {
-    static const enum view_index types[4] = {VIEW_U16, VIEW_U32, VIEW_I16, VIEW_I32};
-    static const double values[4] = {65535, 4294967295.0, -1, -1};
+    static const double values[VIEW_TYPES] = {65535, 4294967295.0, -1};
     shape s = kit_own_shape(shape_grid(6, 5, 0));
     hd_laplacian *lap = NULL;
     hd_error e, want;
     int k;
-    for (k = 0; k < 4; k++) {
-        view_buffers b = view_make(&s, 1, 20, types[k], 1);
+    for (k = 0; k < VIEW_TYPES; k++) {
+        const enum view_index type = (enum view_index)k;
+        view_buffers b = view_make(&s, 1, 20, type, 1);
+        const size_t size = k ? 4 : 2;
         float *broken;
         char *at = b.vertices + 1 + 20 * 7 + 4;
-        view_put_index(b.indices + 1 + 11 * (k % 2 ? 4 : 2), types[k], -1);
+        view_put_index(b.indices + 12 * size, type, -1);
         e = view_refused(&b.view);
         b.s.tri[11] = -1;
         CHECK(hd_laplacian_triangles(&lap, b.s.xyz, s.n, b.s.tri, s.n_tri, NULL, &want) < 0);
@@ -152,10 +152,15 @@ static void view_bad_data(void) {
         memcpy(at, broken, sizeof *broken);
         e = view_refused(&b.view);
         CHECK(e.status == HD_ERR_NOT_FINITE && e.vertex == 7 && e.face == -1);
-        view_put_index(b.indices + 1 + 11 * (k % 2 ? 4 : 2), types[k], s.tri[11]);
+        view_put_index(b.indices + 12 * size, type, s.tri[11]);
         e = view_refused(&b.view);
         CHECK(e.status == HD_ERR_NOT_FINITE && e.vertex == 7 && e.face == -1);
         free(broken);
+        b.view.tri_u16 = k ? NULL : (const uint16_t *)(const void *)(b.indices + 1);
+        b.view.tri_u32 = k == 1 ? (const uint32_t *)(const void *)(b.indices + 2) : NULL;
+        b.view.tri_i32 = k == 2 ? (const int32_t *)(const void *)(b.indices + 3) : NULL;
+        e = view_refused(&b.view);
+        CHECK(e.status == HD_ERR_ARGUMENT && strstr(e.text, "not aligned"));
         view_free(&b);
     }
 }

@@ -1456,7 +1456,6 @@ static void fz_options(const uint8_t *data, size_t size) {
         fz_scribble(&in, &view, sizeof view);
         view.xyz_float = NULL;
         view.tri_u16 = NULL;
-        view.tri_i16 = NULL;
         view.xyz_double = s.xyz;
         view.tri_i32 = fz_byte(&in) & 3 ? s.tri : NULL;
         view.tri_u32 = fz_byte(&in) & 3 ? NULL : (const uint32_t *)s.tri;
