@@ -8007,95 +8007,29 @@ static void *hdi_copy(const void *from, uint64_t count, size_t size, hd_context 
 
 enum { HDI_ROWS_AHEAD = 8 };     /* rows of a matrix taken in any order are asked for so many rows early */
 
-/* P L P' and P B P' into out, whose perm is a valid one: entry (i, k) is put where (k, i) belongs, which is
- * the same and leaves the columns of every row ascending. */
-static hd_status hdi_pair_permute(hd_laplacian *out, const hd_laplacian *lap, const int32_t *perm,
-                                  hd_context *ctx, hd_error *e) {
-    const int32_t n = lap->n_active;
-    const int64_t *ptr = lap->L.row_ptr;
-    hdi_scope s = hdi_scope_begin(ctx, e), keep = hdi_scope_begin(ctx, e);
-    int32_t *inv = HDI_TAKE(&s, int32_t, n), i;
-    int64_t *fill = HDI_TAKE(&s, int64_t, n), p;
-    hd_csr a = hdi_csr_take(&keep, n, n, lap->L.nnz, 1);
-    double *B = lap->B ? HDI_TAKE(&keep, double, lap->L.nnz) : NULL;
-    if (e->status < 0) {
-        hdi_scope_end(&s);
-        return hdi_scope_end(&keep);
-    }
-    for (i = 0; i < n; i++) {
-        inv[perm[i]] = i;
-        fill[i] = a.row_ptr[i];
-        a.row_ptr[i + 1] = a.row_ptr[i] + ptr[perm[i] + 1] - ptr[perm[i]];
-    }
-    for (i = 0; i < n; i++) {
-        const int64_t ahead = ptr[perm[i + HDI_ROWS_AHEAD < n ? i + HDI_ROWS_AHEAD : i]];
-        HDI_PREFETCH(lap->L.col + ahead);
-        HDI_PREFETCH(lap->L.val + ahead);
-        HDI_PREFETCH((B ? lap->B : lap->L.val) + ahead);
-        for (p = ptr[perm[i]]; p < ptr[perm[i] + 1]; p++) {
-            const int64_t q = fill[inv[lap->L.col[p]]]++;
-            a.col[q] = i;
-            a.val[q] = lap->L.val[p];
-            if (B) B[q] = lap->B[p];
-        }
-    }
-    out->L = a;
-    out->B = B;
-    keep.n = 0;                                  /* all of it is the caller's now */
-    return hdi_scope_end(&s);
-}
-
-/* A Laplacian with rows renumbered: row i of out is row perm[i] of lap. out lives in ctx. */
-static hd_laplacian *hdi_pair_renumber(const hd_laplacian *lap, const int32_t *perm,
-                                       hd_context *ctx, hd_error *e) {
-    const size_t n = (size_t)lap->n_active;
-    hd_laplacian *out;
-    int32_t i;
-    out = (hd_laplacian *)hdi_copy(lap, 1, sizeof *lap, ctx, e);
-    if (!out) return NULL;
-    memset(&out->L, 0, sizeof out->L);
-    out->context = ctx;
-    out->B = NULL;
-    out->xyz = NULL;                             /* an order has been found */
-    out->moving = NULL;
-    out->holding = NULL;
-    out->mass = (double *)hdi_copy(lap->mass, n, sizeof(double), ctx, e);
-    out->vertex = (int32_t *)hdi_copy(lap->vertex, n, sizeof(int32_t), ctx, e);
-    out->component = (int32_t *)hdi_copy(lap->component, n, sizeof(int32_t), ctx, e);
-    out->row = (int32_t *)hdi_copy(lap->row, (uint64_t)lap->n, sizeof(int32_t), ctx, e);
-    out->component_mass = (double *)hdi_copy(lap->component_mass, (uint64_t)hdi_lap_components_most(lap),
-                                             sizeof(double), ctx, e);
-    out->b_diag = lap->B ? (double *)hdi_copy(lap->b_diag, n, sizeof(double), ctx, e) : out->mass;
-    if (e->status < 0 || hdi_pair_permute(out, lap, perm, ctx, e) < 0) {
-        hdi_laplacian_free(out, ctx);
-        return NULL;
-    }
-    for (i = 0; i < lap->n_active; i++) {
-        out->mass[i] = lap->mass[perm[i]];
-        out->b_diag[i] = lap->b_diag[perm[i]];
-        out->component[i] = lap->component[perm[i]];
-        out->vertex[i] = lap->vertex[perm[i]];
-        out->row[out->vertex[i]] = i;
-    }
-    return out;
-}
-
-/* The values of lap, which have changed, into its copy in another order. fill [n_active]. */
+/* The values of lap, which may have changed, into its copy in another order. Entry (i, k) is put where (k, i)
+ * belongs, which is the same and leaves the columns of every row ascending. fill [n_active]. */
 static void hdi_pair_refresh(hd_laplacian *out, const hd_laplacian *lap, int64_t *fill) {
+    const int32_t n = out->n_active, *vertex = out->vertex;
+    const int64_t *ptr = lap->L.row_ptr;
     int32_t i;
     int64_t p;
-    for (i = 0; i < out->n_active; i++) {
-        const int32_t from = lap->row[out->vertex[i]];
-        fill[i] = out->L.row_ptr[i];
+    for (i = 0; i < n; i++) {
+        const int32_t from = lap->row[vertex[i]];
+        fill[from] = out->L.row_ptr[i];
         out->mass[i] = lap->mass[from];
         out->b_diag[i] = lap->b_diag[from];
         out->component[i] = lap->component[from];
     }
-    /* as in hdi_pair_permute: row i of one is column i of the other */
-    for (i = 0; i < out->n_active; i++) {
-        const int32_t from = lap->row[out->vertex[i]];
-        for (p = lap->L.row_ptr[from]; p < lap->L.row_ptr[from + 1]; p++) {
-            const int64_t q = fill[out->row[lap->vertex[lap->L.col[p]]]]++;
+    for (i = 0; i < n; i++) {
+        const int32_t from = lap->row[vertex[i]];
+        const int64_t ahead = ptr[lap->row[vertex[i + HDI_ROWS_AHEAD < n ? i + HDI_ROWS_AHEAD : i]]];
+        HDI_PREFETCH(lap->L.col + ahead);
+        HDI_PREFETCH(lap->L.val + ahead);
+        HDI_PREFETCH((lap->B ? lap->B : lap->L.val) + ahead);
+        for (p = ptr[from]; p < ptr[from + 1]; p++) {
+            const int64_t q = fill[lap->L.col[p]]++;
+            out->L.col[q] = i;
             out->L.val[q] = lap->L.val[p];
             if (lap->B) out->B[q] = lap->B[p];
         }
@@ -8106,6 +8040,49 @@ static void hdi_pair_refresh(hd_laplacian *out, const hd_laplacian *lap, int64_t
     out->area = lap->area;
     out->b_ratio = lap->b_ratio;
     out->conserves = lap->conserves;
+}
+
+/* A Laplacian with rows renumbered: row i of out is row perm[i] of lap. out lives in ctx. */
+static hd_laplacian *hdi_pair_renumber(const hd_laplacian *lap, const int32_t *perm,
+                                       hd_context *ctx, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(ctx, e), keep = hdi_scope_begin(ctx, e);
+    const int32_t n = lap->n_active;
+    int64_t *fill = HDI_TAKE(&s, int64_t, n);
+    hd_laplacian *out = HDI_TAKE(&keep, hd_laplacian, 1);
+    const hd_csr L = hdi_csr_take(&keep, n, n, lap->L.nnz, 1);
+    double *B = lap->B ? HDI_TAKE(&keep, double, lap->L.nnz) : NULL, *mass = HDI_TAKE(&keep, double, n);
+    double *b_diag = lap->B ? HDI_TAKE(&keep, double, n) : mass;
+    double *component_mass = HDI_TAKE(&keep, double, hdi_lap_components_most(lap));
+    int32_t *vertex = HDI_TAKE(&keep, int32_t, n), *row = HDI_TAKE(&keep, int32_t, lap->n);
+    int32_t *component = HDI_TAKE(&keep, int32_t, n), i;
+    if (e->status < 0) {
+        (void)hdi_scope_end(&s);
+        (void)hdi_scope_end(&keep);
+        return NULL;
+    }
+    keep.n = 0;                                  /* all of it is the caller's now */
+    *out = *lap;
+    out->L = L;
+    out->B = B;
+    out->mass = mass;
+    out->b_diag = b_diag;
+    out->component_mass = component_mass;
+    out->vertex = vertex;
+    out->row = row;
+    out->component = component;
+    out->context = ctx;
+    out->xyz = NULL;                             /* an order has been found */
+    out->moving = NULL;
+    out->holding = NULL;
+    memcpy(row, lap->row, (size_t)lap->n * sizeof *row);
+    for (i = 0; i < n; i++) {
+        vertex[i] = lap->vertex[perm[i]];
+        row[vertex[i]] = i;
+        L.row_ptr[i + 1] = L.row_ptr[i] + lap->L.row_ptr[perm[i] + 1] - lap->L.row_ptr[perm[i]];
+    }
+    hdi_pair_refresh(out, lap, fill);
+    (void)hdi_scope_end(&s);
+    return out;
 }
 
 /* Multiplies B by a power of four that brings its largest diagonal entry near one, and returns it: exp(-t
