@@ -6789,7 +6789,6 @@ typedef struct hdi_flat {
     int32_t *tri;               /* [3 mesh.m] */
     int32_t *copies;            /* [mesh.m] parts that a triangle counts */
     double unit;                /* parts of a triangle that counts once; 0: there are no triangles */
-    const int32_t *name;        /* [soup.mesh.n] of points: the caller's number of each; NULL: their own */
 } hdi_flat;
 
 /* Adds a triangle: area and cotangents from its lengths, times its weight. */
@@ -6910,7 +6909,6 @@ enum { HDI_STRANDS = 8 };
 typedef struct hdi_rows {
     hdi_mesh mesh;
     hd_laplacian *lap;          /* whose rows are filled; NULL: edges are counted */
-    const int32_t *name;        /* [n] the vertices of lap; NULL: the same */
     hdi_lump lump;
     int32_t strands;
     int64_t most;               /* entries of the longest row */
@@ -7254,7 +7252,7 @@ static void hdi_rows_edges(const hdi_rows *x, hdi_ring *r, hdi_rows_tally *tally
     const int32_t v = r->entry[0].to;
     int32_t q;
     for (q = 0; q < r->n; q++) {
-        r->order[q].key = (uint64_t)(x->name ? x->name[r->entry[q].to] : r->entry[q].to);
+        r->order[q].key = (uint64_t)r->entry[q].to;
         r->order[q].id = q;
     }
     hdi_sort_pairs(r->order, r->n);
@@ -7273,7 +7271,7 @@ static void hdi_rows_edges(const hdi_rows *x, hdi_ring *r, hdi_rows_tally *tally
  * written. An edge from the vertex to itself has no weight, and is twice in its B. */
 static void hdi_rows_write(const hdi_rows *x, const hdi_ring *r, int32_t v) {
     hd_laplacian *lap = x->lap;
-    const int32_t i = lap->row[x->name ? x->name[v] : v];
+    const int32_t i = lap->row[v];
     double *L = lap->L.val, *B = lap->B, sum = 0, b_sum = 0;
     int64_t at = lap->L.row_ptr[i], diagonal = at;
     int32_t q, n_held = 0, leaks = 0;
@@ -7420,7 +7418,7 @@ static void hdi_rows_held(const hdi_rows *x, const hd_laplacian *lap) {
     hdi_ring r = hdi_rows_ring(x, 0);
     int32_t v, q;
     for (v = 0; v < x->mesh.n && lap->holding; v++) {
-        if (x->mesh.at[v] == x->mesh.at[v + 1] || lap->row[x->name ? x->name[v] : v] >= 0) continue;
+        if (x->mesh.at[v] == x->mesh.at[v + 1] || lap->row[v] >= 0) continue;
         hdi_ring_make(&r, &x->mesh, x->lump, v);
         for (q = 1; q < r.n; q++) x->count[r.entry[q].to]--;
     }
@@ -7436,10 +7434,10 @@ static hd_status hdi_lap_pattern(hd_laplacian *lap, const hdi_rows *x, int full,
     hd_csr L;
     int32_t v;
     for (v = 0; v < mesh->n && mass; v++)
-        if (mesh->at[v] < mesh->at[v + 1]) mass[x->name ? x->name[v] : v] = 1;
+        if (mesh->at[v] < mesh->at[v + 1]) mass[v] = 1;
     if (!mass || hdi_lap_rows(lap, mass, holds ? lap->holding->mark : NULL, e) < 0) return hdi_scope_end(&s);
     hdi_rows_held(x, lap);
-    for (v = 0; v < mesh->n; v++) nnz += lap->row[x->name ? x->name[v] : v] >= 0 ? x->count[v] + 1 : 0;
+    for (v = 0; v < mesh->n; v++) nnz += lap->row[v] >= 0 ? x->count[v] + 1 : 0;
     L = hdi_csr_take(&s, lap->n_active, lap->n_active, nnz, 1);
     if (full) B = HDI_TAKE(&s, double, nnz);
     if (full) b_diag = HDI_TAKE(&s, double, lap->n_active);
@@ -7447,10 +7445,8 @@ static hd_status hdi_lap_pattern(hd_laplacian *lap, const hdi_rows *x, int full,
     lap->L = hdi_csr_keep(&s, L);
     lap->B = (double *)hdi_keep(&s, B);
     if (full) lap->b_diag = (double *)hdi_keep(&s, b_diag);
-    for (v = 0; v < mesh->n; v++) {
-        const int32_t i = lap->row[x->name ? x->name[v] : v];
-        if (i >= 0) lap->L.row_ptr[i] = x->count[v] + 1;
-    }
+    for (v = 0; v < mesh->n; v++)
+        if (lap->row[v] >= 0) lap->L.row_ptr[lap->row[v]] = x->count[v] + 1;
     hdi_prefix_sum(lap->L.row_ptr, lap->n_active);
     return hdi_scope_end(&s);
 }
@@ -7548,19 +7544,22 @@ static hd_status hdi_lap_update(hd_laplacian *lap, const double *xyz, hd_error *
     return HD_OK;
 }
 
-/* (L, B), places and h of triangles or polygons that are measured and live in s. full: B is, if its kind is.
- * updatable: they move from s to the Laplacian. */
-static hd_status hdi_lap_mesh(hd_laplacian *lap, const hdi_mesh *mesh, int full, int updatable,
-                              hdi_scope *s) {
+/* (L, B), places and h of faces that are measured and live in s. xyz: of their vertices. full: B is, if its
+ * kind is. updatable: the faces move from s to the Laplacian. */
+static hd_status hdi_lap_mesh(hd_laplacian *lap, const hdi_mesh *mesh, const double *xyz, int full,
+                              int updatable, hdi_scope *s) {
     hdi_scope own = hdi_scope_begin(lap->context, s->e);
     hdi_rows x;
     if (hdi_rows_begin(&x, mesh, &lap->mesh, updatable ? s : &own) < 0 ||
-        hdi_lap_assemble(lap, &x, mesh->xyz, full, s->e) < 0)
+        hdi_lap_assemble(lap, &x, xyz, full, s->e) < 0)
         return hdi_scope_end(&own);
-    lap->h = hdi_rows_report(&x, &lap->mesh);
-    lap->area = hdi_sum_areas(mesh->area, mesh->m);
-    /* element matrix area/12 (1 1' + I) >= 1/2 of its diagonal, area/12 I */
-    lap->b_ratio = lap->B ? 0.5 : 1;
+    if (mesh->xyz || mesh->len) {                /* of intrinsic triangles it is known */
+        lap->h = hdi_rows_report(&x, &lap->mesh);
+        lap->area = hdi_sum_areas(mesh->area, mesh->m);
+    }
+    /* The element matrix area/12 (1 1' + I) is at least 1/2 of its diagonal, area/12 I; that of a triangle
+     * with corners v, v, w at least 1 - sqrt(1/3), and that of corners v, v, v is its diagonal. */
+    lap->b_ratio = !lap->B ? 1 : lap->mesh.n_self_edges ? 1 - sqrt(1.0 / 3) : 0.5;
     if (updatable) (void)hdi_moving_make(lap, &x, s);
     return hdi_scope_end(&own);
 }
@@ -7569,7 +7568,7 @@ static hd_status hdi_lap_mesh(hd_laplacian *lap, const hdi_mesh *mesh, int full,
 static hd_status hdi_lap_plain(hd_laplacian *lap, const hdi_mesh *given, int updatable, hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
     hdi_mesh mesh = *given;
-    if (hdi_mesh_make(&mesh, &lap->mesh, &s) >= 0) (void)hdi_lap_mesh(lap, &mesh, 1, updatable, &s);
+    if (hdi_mesh_make(&mesh, &lap->mesh, &s) >= 0) (void)hdi_lap_mesh(lap, &mesh, mesh.xyz, 1, updatable, &s);
     return hdi_scope_end(&s);
 }
 
@@ -7580,24 +7579,6 @@ typedef struct hdi_intrinsic_task {
     int close;          /* tufted: the boundary is glued to the other sheet */
     double delta;       /* of mollification, relative to the mean edge length; negative: none */
 } hdi_intrinsic_task;
-
-/* Rows, L and B from intrinsic triangles that are Delaunay, with areas and cotangents but without
- * coordinates. xyz of the vertices of lap, which name numbers; NULL: their own. */
-static hd_status hdi_lap_flat(hd_laplacian *lap, const hdi_mesh *flat, const int32_t *name, const double *xyz,
-                              hdi_scope *s) {
-    hdi_mesh mesh = *flat;
-    hdi_rows x;
-    mesh.at = HDI_TAKE(s, int64_t, (int64_t)mesh.n + 1);
-    mesh.corner = HDI_TAKE(s, int32_t, hdi_triple(mesh.m));
-    if (s->e->status < 0) return s->e->status;
-    hdi_mesh_corners(&mesh);
-    if (hdi_rows_begin(&x, &mesh, &lap->mesh, s) < 0) return s->e->status;
-    x.name = name;
-    /* The smallest eigenvalue of the element 1/2, 1/6; 1/6, 1/6 of corners v, v, w, and of that of three
-     * corners. */
-    lap->b_ratio = lap->kind != HD_LAPLACIAN_FEM ? 1 : lap->mesh.n_self_edges ? 1 - sqrt(1.0 / 3) : 0.5;
-    return hdi_lap_assemble(lap, &x, xyz, 1, s->e);
-}
 
 /* Reports the edges of a mesh. */
 static hd_status hdi_lap_edges(hd_laplacian *lap, const hdi_mesh *mesh, hd_error *e) {
@@ -7610,6 +7591,22 @@ static hd_status hdi_lap_edges(hd_laplacian *lap, const hdi_mesh *mesh, hd_error
     return hdi_scope_end(&own);
 }
 
+/* (L, B) of the intrinsic Delaunay triangulation of the soup of flat, in s. name: the caller's numbers of its
+ * vertices, which its triangles come to have, too; NULL: their own. */
+static hd_status hdi_lap_flat(hd_laplacian *lap, hdi_flat *flat, int close, const int32_t *name,
+                              const double *xyz, hdi_scope *s) {
+    hdi_mesh *mesh = &flat->mesh;
+    int64_t c;
+    if (hdi_soup_delaunay(flat, close, &lap->mesh, s) < 0) return s->e->status;
+    for (c = 0; c < hdi_triple(mesh->m) && name; c++) flat->tri[c] = name[flat->tri[c]];
+    mesh->n = lap->n;
+    mesh->at = HDI_TAKE(s, int64_t, (int64_t)mesh->n + 1);
+    mesh->corner = HDI_TAKE(s, int32_t, hdi_triple(mesh->m));
+    if (s->e->status < 0) return s->e->status;
+    hdi_mesh_corners(mesh);
+    return hdi_lap_mesh(lap, mesh, xyz, 1, 0, s);
+}
+
 /* (L, B) of the intrinsic Delaunay triangulation of a mesh, or of its cover: each sheet counts half. mesh,
  * with xyz, tri, n and m set, and flat live in s. */
 static hd_status hdi_lap_unfold(hd_laplacian *lap, hdi_flat *flat, hdi_mesh *mesh,
@@ -7620,10 +7617,9 @@ static hd_status hdi_lap_unfold(hd_laplacian *lap, hdi_flat *flat, hdi_mesh *mes
     if (hdi_mesh_make(mesh, rep, s) < 0 || hdi_lap_edges(lap, mesh, e) < 0) return e->status;
     if (rep->n_faces_used == 0) return hdi_fail(e, HD_ERR_EMPTY, "no vertex has mass");
     if (hdi_soup_of_mesh(&flat->soup, mesh, task->delta, rep, s) < 0) return e->status;
-    if (hdi_soup_delaunay(flat, task->close, rep, s) < 0) return e->status;
     lap->area = flat->soup.total;
     lap->h = flat->soup.unit;
-    return hdi_lap_flat(lap, &flat->mesh, NULL, mesh->xyz, s);
+    return hdi_lap_flat(lap, flat, task->close, NULL, mesh->xyz, s);
 }
 
 /* The triangles as they are, or with a task their intrinsic Delaunay triangulation. */
@@ -8628,11 +8624,10 @@ static hd_status hdi_lap_unfold_points(hd_laplacian *lap, hdi_flat *flat, const 
     hdi_star_job job;
     memset(flat, 0, sizeof *flat);
     if (hdi_star_soup(&flat->soup, &job, lap, xyz, nbr_ptr, nbr, delta, s) < 0) return e->status;
-    if (lap->mesh.n_faces_used == 0) hdi_fail(e, HD_ERR_EMPTY, "the points' neighbourhoods make no triangle");
-    if (e->status < 0 || hdi_soup_delaunay(flat, 0, &lap->mesh, s) < 0) return e->status;
-    flat->name = job.name;
+    if (lap->mesh.n_faces_used == 0)
+        return hdi_fail(e, HD_ERR_EMPTY, "the points' neighbourhoods make no triangle");
     lap->area = flat->soup.total / flat->soup.share;
-    return hdi_lap_flat(lap, &flat->mesh, job.name, xyz, s);
+    return hdi_lap_flat(lap, flat, 0, job.name, xyz, s);
 }
 
 static hd_status hdi_tufted_points(hd_laplacian *lap, const double *xyz, const int64_t *nbr_ptr,
@@ -27585,7 +27580,7 @@ static hd_status hdi_geo_surface_make(hd_laplacian *lap, hdi_geo_surface *z, con
     if (HDI_HAS_INTRINSIC && in->flips) return hdi_geo_unfold(lap, z, in, s);
     return hdi_mesh_make(&z->mesh, &lap->mesh, s) < 0
                ? s->e->status
-               : hdi_lap_mesh(lap, &z->mesh, 0, in->updatable, s);
+               : hdi_lap_mesh(lap, &z->mesh, in->xyz, 0, in->updatable, s);
 }
 
 /* Points in the place of an earlier one, which the triangles leave out, share its row. */
@@ -27601,17 +27596,11 @@ static hd_status hdi_geo_coincident(hd_geodesic *g, const double *xyz, hd_error 
 /* The faces as the passes over them want them. */
 static hd_status hdi_geo_store(hd_geodesic *g, const hd_laplacian *lap, const hdi_geo_surface *z,
                                const hdi_geo_input *in, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(g->ctx, e);
-    const hdi_mesh *flat = &z->flat.mesh;
-    int32_t *row, i;
-    if (HDI_HAS_INTRINSIC && in->flips && !z->flat.name)
-        return hdi_geo_faces(g, flat, g->row, &z->flat, e);
-    if (HDI_HAS_INTRINSIC && HDI_HAS_POINTS && in->flips) {
-        row = HDI_TAKE(&s, int32_t, flat->n);
-        for (i = 0; i < flat->n && row; i++) row[i] = g->row[z->flat.name[i]];
-        if (row && hdi_geo_faces(g, flat, row, &z->flat, e) >= 0 && !in->nbr_ptr)
+    if (HDI_HAS_INTRINSIC && in->flips) {
+        if (hdi_geo_faces(g, &z->flat.mesh, g->row, &z->flat, e) >= 0 && HDI_HAS_POINTS && in->points &&
+            !in->nbr_ptr)
             (void)hdi_geo_coincident(g, in->xyz, e);
-        return hdi_scope_end(&s);
+        return e->status;
     }
     if (!HDI_HAS_POLYGONS || !in->ptr) return hdi_geo_faces(g, &z->mesh, g->row, NULL, e);
     if (hdi_geo_poly_faces(g, &z->mesh, e) < 0) return e->status;
