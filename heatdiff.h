@@ -11030,6 +11030,60 @@ typedef struct hdi_factor {
     const hdi_values *values;        /* of a factorisation under way */
 } hdi_factor;
 
+/* ---- passes ---- */
+/* A pass works on every front once: upwards the subtrees at the same time, then the fronts of the top one after
+ * the other; downwards the other way round. It is a walk. Its nodes are the subtrees, the fronts of the top,
+ * and the parts of a front that threads share, stage after stage. */
+
+typedef struct hdi_pass {
+    hdi_walk walk;
+    const hdi_symbolic *sym;
+    void *arg;
+    void (*subtree)(void *arg, int32_t i);
+    void (*front)(void *arg, int32_t v);     /* does front v of the top, or begins it: threads share it */
+    /* The next stage of what was begun: how many parts it has, of which *ready wait for none. 0: it is done. */
+    int32_t (*stage)(void *arg, int32_t *ready);
+    void (*part)(void *arg, int32_t i);
+    int32_t down, step, left;    /* the subtrees or fronts of the top that come next; nodes under way that
+                                    are not done */
+} hdi_pass;
+
+/* What is under way is done: what comes next. */
+static void hdi_pass_next(hdi_pass *p) {
+    const hdi_symbolic *s = p->sym;
+    int32_t first = s->n_tasks + s->n_top, ready;
+    p->left = p->stage(p->arg, &ready);
+    while (p->left == 0 && p->step <= s->n_top) {
+        const int32_t i = p->down ? s->n_top - p->step : p->step;    /* 0: the subtrees */
+        first = i > 0 ? s->n_tasks + i - 1 : 0;
+        p->left = ready = i > 0 ? 1 : s->n_tasks;
+        p->step++;
+    }
+    if (p->left > 0) hdi_release(&p->walk, first, ready);
+}
+
+static void hdi_pass_node(void *arg, int64_t index, int32_t worker) {
+    hdi_pass *p = (hdi_pass *)arg;
+    const hdi_symbolic *s = p->sym;
+    const int32_t i = (int32_t)index - s->n_tasks;
+    (void)worker;
+    if (i < 0) p->subtree(p->arg, (int32_t)index);
+    else if (i < s->n_top) p->front(p->arg, s->top[i]);
+    else p->part(p->arg, i - s->n_top);
+    if (HDI_ATOMIC_ADD(&p->left, -1) == 0) hdi_pass_next(p);
+}
+
+/* order [n]: room for the nodes, as they become ready. stage: of progress */
+static void hdi_pass_run(hdi_pass *p, hd_context *ctx, int64_t n, int32_t *order, const char *stage,
+                         hd_error *e) {
+    hdi_walk_open(&p->walk, ctx, n, order, hdi_pass_node, p);
+    if (hdi_walk_alone(&p->walk)) p->walk.n = (uint32_t)(p->sym->n_tasks + p->sym->n_top);
+    p->walk.stage = stage;
+    p->walk.e = e;
+    hdi_pass_next(p);
+    hdi_walk_run(&p->walk);
+}
+
 /* ---- parts of a front ---- */
 
 /* One front under way: where its parts stand, and room to work in. */
@@ -11418,8 +11472,7 @@ static void hdi_front_update(const hdi_front *w, int64_t r0, int64_t r1, double 
 typedef enum hdi_front_stage { HDI_FRONT_ASSEMBLE, HDI_FRONT_COLUMNS, HDI_FRONT_UPDATE } hdi_front_stage;
 
 /* Rows [r0,r1) of the front's panel, or of its update matrix. */
-static void hdi_front_part(const void *front, int stage, int64_t r0, int64_t r1, double *work) {
-    const hdi_front *w = (const hdi_front *)front;
+static void hdi_front_part(const hdi_front *w, hdi_front_stage stage, int64_t r0, int64_t r1, double *work) {
     if (stage == HDI_FRONT_ASSEMBLE) {
         hdi_front_assemble(w, r0, r1);
     } else if (stage == HDI_FRONT_COLUMNS) {
@@ -11474,31 +11527,27 @@ static void hdi_factor_free(hdi_factor *f) {
     memset(f, 0, sizeof *f);
 }
 
-/* ---- the tree as a walk ---- */
-/* Its nodes: the subtrees; then one front of the top after the other. A front is one node, by one thread, or
- * it is shared: that node opens it, and three stages follow. Chunks of rows are assembled; then the panel;
- * then chunks of the update matrix. In the panel P(k) eliminates the pivots of a block, and C(c,k) computes
- * their columns in chunk c of the rows below.
+/* ---- fronts that threads share ---- */
+/* Three stages: chunks of rows are assembled; then the panel; then chunks of the update matrix. In the panel
+ * P(k) eliminates the pivots of a block, and C(c,k) computes their columns in chunk c of the rows below.
  *   P(k)    waits for all C(c,k-1) that hold its rows, and for all C(c,k-2), because S has two places
  *   C(c,k)  waits for P(k) and for C(c,k-1)
  * So the next pivots are eliminated while the columns of the last ones are still computed. P(k) and C(c,k)
  * never come to chunk c before C(c,k-1) and P(k-1), so that C(c,k) begins when 2 k + 1 of them have come. */
 
-enum { HDI_FRONT_OPEN = -1 };        /* the stage before the first one */
-
-typedef struct hdi_factor_walk {
-    hdi_walk walk;
+typedef struct hdi_factor_pass {
+    hdi_pass pass;
     hdi_factor *f;
-    hdi_front w;                 /* the front of the top under way */
+    hdi_front w;                 /* the front that is shared */
     double *S[2];
-    int32_t top, stage, left;    /* which it is; nodes of the stage that are not done */
+    int32_t stage;               /* of it: hdi_front_stage, or before the first one */
     int32_t nb, n_blocks, n_chunks;
     int32_t *missing, *come;     /* [n_blocks] what P(k) waits for; [n_chunks] what has come to C(c,k) */
     int32_t until;               /* a subtree that failed: those before it go on, and may fail earlier */
-} hdi_factor_walk;
+} hdi_factor_pass;
 
 /* The shape of front v in blocks and chunks. */
-static void hdi_factor_shape(hdi_factor_walk *t, int32_t v) {
+static void hdi_factor_shape(hdi_factor_pass *t, int32_t v) {
     hdi_front_shape(t->f->sym, v, &t->w.p, &t->w.u, &t->w.m);
     t->nb = (int32_t)hdi_front_pivot_block(t->f->width);
     t->n_blocks = (int32_t)((t->w.p + t->nb - 1) / t->nb);
@@ -11506,17 +11555,17 @@ static void hdi_factor_shape(hdi_factor_walk *t, int32_t v) {
 }
 
 /* The first row below the pivots of block k, and the first chunk with such rows. */
-static int64_t hdi_factor_end(const hdi_factor_walk *t, int32_t k) {
+static int64_t hdi_factor_end(const hdi_factor_pass *t, int32_t k) {
     return hdi_least((int64_t)(k + 1) * t->nb, t->w.p);
 }
 
-static int32_t hdi_factor_first(const hdi_factor_walk *t, int32_t k) {
+static int32_t hdi_factor_first(const hdi_factor_pass *t, int32_t k) {
     const int64_t end = hdi_factor_end(t, k);
     return end < t->w.m ? (int32_t)(end / HDI_FRONT_CHUNK) : t->n_chunks;
 }
 
 /* Nodes of a stage. */
-static int32_t hdi_factor_stage(const hdi_factor_walk *t, int32_t stage) {
+static int32_t hdi_factor_stage(const hdi_factor_pass *t, int32_t stage) {
     int32_t k, n = t->n_blocks;
     if (stage == HDI_FRONT_ASSEMBLE) return t->n_chunks;
     if (stage == HDI_FRONT_UPDATE) return (int32_t)((t->w.u + HDI_FRONT_CHUNK - 1) / HDI_FRONT_CHUNK);
@@ -11529,7 +11578,7 @@ static int64_t hdi_factor_nodes(hdi_factor *f) {
     const hdi_symbolic *s = f->sym;
     int64_t n = (int64_t)s->n_tasks + s->n_top;
     int32_t i, stage;
-    hdi_factor_walk t;
+    hdi_factor_pass t;
     memset(&t, 0, sizeof t);
     t.f = f;
     for (i = 0; i < s->n_top; i++) {
@@ -11652,20 +11701,20 @@ static hd_status hdi_factor_collect(hdi_factor *f, int32_t n_parts, hd_error *e)
     return e->status;
 }
 
-/* Takes up the next front of the top: all of it, or to be shared from here on. */
-static void hdi_factor_open(hdi_factor_walk *t) {
+/* Front v of the top. */
+static void hdi_factor_top(void *arg, int32_t v) {
+    hdi_factor_pass *t = (hdi_factor_pass *)arg;
     hdi_factor *f = t->f;
     const hdi_symbolic *s = f->sym;
-    const int32_t v = s->top[t->top];
     double *scratch = hdi_factor_scratch(f, s->n_tasks);
     int32_t k;
-    if (hdi_walk_alone(&t->walk) || !hdi_front_shared(s, v)) {
-        if (!hdi_front_factor(f, v, scratch, f->pivots + s->n_tasks)) hdi_walk_stop(&t->walk);
-        t->stage = HDI_FRONT_UPDATE;
+    if (hdi_walk_alone(&t->pass.walk) || !hdi_front_shared(s, v)) {
+        if (!hdi_front_factor(f, v, scratch, f->pivots + s->n_tasks)) hdi_walk_stop(&t->pass.walk);
         return;
     }
     t->w = hdi_front_open(f, v, scratch);
     hdi_factor_shape(t, v);
+    t->stage = -1;
     t->S[0] = t->w.S;
     t->S[1] = f->second;
     t->missing = f->counts;
@@ -11679,40 +11728,28 @@ static void hdi_factor_open(hdi_factor_walk *t) {
     memset(t->come, 0, (size_t)t->n_chunks * sizeof *t->come);
 }
 
-/* All of a stage is done: the next one that has nodes. */
-static void hdi_factor_next(hdi_factor_walk *t) {
-    const hdi_symbolic *s = t->f->sym;
-    for (t->left = 0; t->left == 0;) {
-        if (t->stage == HDI_FRONT_UPDATE) {
-            if (++t->top == s->n_top) return;
-            t->stage = HDI_FRONT_OPEN;
-            t->left = 1;
-            hdi_release(&t->walk, s->n_tasks + t->top, 1);
-            return;
-        }
-        t->left = hdi_factor_stage(t, ++t->stage);
-    }
-    hdi_release(&t->walk, s->n_tasks + s->n_top, t->stage == HDI_FRONT_COLUMNS ? 1 : t->left);
+static int32_t hdi_factor_next(void *arg, int32_t *ready) {
+    hdi_factor_pass *t = (hdi_factor_pass *)arg;
+    const int32_t n = t->stage < HDI_FRONT_UPDATE ? hdi_factor_stage(t, ++t->stage) : 0;
+    *ready = t->stage == HDI_FRONT_COLUMNS ? 1 : n;
+    return n;
 }
 
-static int32_t hdi_factor_panel_node(const hdi_factor_walk *t, int32_t k, int32_t c) {
-    const hdi_symbolic *s = t->f->sym;
-    return s->n_tasks + s->n_top + k * (t->n_chunks + 1) + 1 + c;
-}
-
-/* One more thing that P(k), or C(c,k), waits for. */
-static void hdi_factor_arrive(const hdi_factor_walk *t, hdi_walk *walk, int32_t k) {
+/* One more thing that P(k), or C(c,k), waits for. Parts of the panel: P(0), C(0,0), C(1,0), ..., P(1), ... */
+static void hdi_factor_arrive(hdi_factor_pass *t, int32_t k) {
+    const int32_t first = t->f->sym->n_tasks + t->f->sym->n_top;
     if (k < t->n_blocks && HDI_ATOMIC_ADD(t->missing + k, -1) == 0)
-        hdi_release(walk, hdi_factor_panel_node(t, k, -1), 1);
+        hdi_release(&t->pass.walk, first + k * (t->n_chunks + 1), 1);
 }
 
-static void hdi_factor_come(const hdi_factor_walk *t, hdi_walk *walk, int32_t c) {
+static void hdi_factor_come(hdi_factor_pass *t, int32_t c) {
+    const int32_t first = t->f->sym->n_tasks + t->f->sym->n_top;
     const int32_t come = (int32_t)HDI_ATOMIC_ADD(t->come + c, 1);
-    if (come % 2) hdi_release(walk, hdi_factor_panel_node(t, come / 2, c), 1);
+    if (come % 2) hdi_release(&t->pass.walk, first + come / 2 * (t->n_chunks + 1) + 1 + c, 1);
 }
 
 /* Node P(k), or with a chunk c >= 0 C(c,k). */
-static void hdi_factor_panel(hdi_factor_walk *t, int32_t k, int32_t c) {
+static void hdi_factor_panel(hdi_factor_pass *t, int32_t k, int32_t c) {
     const int64_t end = hdi_factor_end(t, k), r0 = (int64_t)c * HDI_FRONT_CHUNK, r1 = r0 + HDI_FRONT_CHUNK;
     hdi_front w = t->w;
     w.S = t->S[k % 2];
@@ -11721,70 +11758,59 @@ static void hdi_factor_panel(hdi_factor_walk *t, int32_t k, int32_t c) {
     if (c >= 0) {
         hdi_front_part(&w, HDI_FRONT_COLUMNS, r0 > end ? r0 : end, hdi_least(r1, w.m),
                        w.f->chunk_scratch + w.f->chunk_size * (size_t)c);
-        hdi_factor_come(t, &t->walk, c);
-        if (r0 < hdi_factor_end(t, k + 1) && r1 > end) hdi_factor_arrive(t, &t->walk, k + 1);
-        hdi_factor_arrive(t, &t->walk, k + 2);
+        hdi_factor_come(t, c);
+        if (r0 < hdi_factor_end(t, k + 1) && r1 > end) hdi_factor_arrive(t, k + 1);
+        hdi_factor_arrive(t, k + 2);
         return;
     }
-    if (!hdi_front_eliminate(&w, end, t->f->pivots + t->f->sym->n_tasks)) hdi_walk_stop(&t->walk);
-    for (c = hdi_factor_first(t, k); c < t->n_chunks; c++) hdi_factor_come(t, &t->walk, c);
+    if (!hdi_front_eliminate(&w, end, t->f->pivots + t->f->sym->n_tasks)) hdi_walk_stop(&t->pass.walk);
+    for (c = hdi_factor_first(t, k); c < t->n_chunks; c++) hdi_factor_come(t, c);
 }
 
-/* A subtree. */
-static void hdi_factor_task(hdi_factor_walk *t, int32_t i) {
+static void hdi_factor_subtree(void *arg, int32_t i) {
+    hdi_factor_pass *t = (hdi_factor_pass *)arg;
     hdi_factor *f = t->f;
     int32_t v;
     for (v = f->sym->task_begin[i]; v < f->sym->task_end[i]; v++) {
-        if (hdi_walk_stopped(&t->walk) && i >= HDI_LOAD(&t->until)) return;
+        if (hdi_walk_stopped(&t->pass.walk) && i >= HDI_LOAD(&t->until)) return;
         if (hdi_front_factor(f, v, hdi_factor_scratch(f, i), f->pivots + i)) continue;
         /* should two threads come at once, and the larger number stay, then more is done than need be */
         if (HDI_LOAD(&t->until) == 0 || i < HDI_LOAD(&t->until)) HDI_STORE(&t->until, i);
-        hdi_walk_stop(&t->walk);
+        hdi_walk_stop(&t->pass.walk);
         return;
     }
 }
 
-static void hdi_factor_node(void *arg, int64_t index, int32_t worker) {
-    hdi_factor_walk *t = (hdi_factor_walk *)arg;
-    const hdi_factor *f = t->f;
-    const int32_t n_tasks = f->sym->n_tasks, i = (int32_t)index - n_tasks - f->sym->n_top;
-    (void)worker;
-    if (index < n_tasks) {
-        hdi_factor_task(t, (int32_t)index);
-    } else if (i < 0) {
-        hdi_factor_open(t);
-    } else if (t->stage == HDI_FRONT_COLUMNS) {
+static void hdi_factor_part(void *arg, int32_t i) {
+    hdi_factor_pass *t = (hdi_factor_pass *)arg;
+    if (t->stage == HDI_FRONT_COLUMNS) {
         hdi_factor_panel(t, i / (t->n_chunks + 1), i % (t->n_chunks + 1) - 1);
     } else {
         /* the last rows of a triangle are longest */
         const int64_t c = hdi_factor_stage(t, t->stage) - 1 - i, r0 = c * HDI_FRONT_CHUNK;
         const int64_t rows = t->stage == HDI_FRONT_UPDATE ? t->w.u : t->w.m;
-        hdi_front_part(&t->w, t->stage, r0, hdi_least(r0 + HDI_FRONT_CHUNK, rows),
-                       f->chunk_scratch + f->chunk_size * (size_t)c);
+        hdi_front_part(&t->w, (hdi_front_stage)t->stage, r0, hdi_least(r0 + HDI_FRONT_CHUNK, rows),
+                       t->f->chunk_scratch + t->f->chunk_size * (size_t)c);
     }
-    if (HDI_ATOMIC_ADD(&t->left, -1) == 0) hdi_factor_next(t);
 }
 
-/* All fronts: subtrees at the same time, then the top, whose fronts are shared. */
 static hd_status hdi_factor_run(hdi_factor *f, const hdi_values *values, hd_error *e) {
     const int32_t n_tasks = f->sym->n_tasks;
-    hdi_factor_walk t;
+    hdi_factor_pass t;
     int32_t i;
     memset(&t, 0, sizeof t);
     t.f = f;
-    t.top = -1;
-    t.stage = HDI_FRONT_UPDATE;
-    t.left = n_tasks;
+    t.pass.sym = f->sym;
+    t.pass.arg = &t;
+    t.pass.subtree = hdi_factor_subtree;
+    t.pass.front = hdi_factor_top;
+    t.pass.stage = hdi_factor_next;
+    t.pass.part = hdi_factor_part;
+    t.stage = HDI_FRONT_UPDATE;                  /* nothing is begun */
     f->ready = 0;
     f->values = values;
     for (i = 0; i <= n_tasks; i++) hdi_pivots_clear(f->pivots + i);
-    hdi_walk_open(&t.walk, f->ctx, f->n_order, f->order, hdi_factor_node, &t);
-    if (hdi_walk_alone(&t.walk)) t.walk.n = (uint32_t)(n_tasks + f->sym->n_top);
-    t.walk.stage = "factor";
-    t.walk.e = e;
-    if (n_tasks > 0) hdi_release(&t.walk, 0, n_tasks);
-    else hdi_factor_next(&t);
-    hdi_walk_run(&t.walk);
+    hdi_pass_run(&t.pass, f->ctx, f->n_order, f->order, "factor", e);
     f->values = NULL;
     if (hdi_factor_collect(f, n_tasks + 1, e) < 0) return e->status;
     f->ready = 1;
@@ -11792,15 +11818,6 @@ static hd_status hdi_factor_run(hdi_factor *f, const hdi_values *values, hd_erro
 }
 
 /* ---- solves ---- */
-
-/* Where the numbers of an entry stand outside, by rows of the matrix: number q of row i is in[q][stride i].
- * NULL in both: zero, and no answer is asked for. They are fetched some pivots ahead. */
-typedef struct hdi_ports {
-    const double *in[HDI_PACK];
-    double *out[HDI_PACK];
-    const int32_t *row;          /* [n] of a pivot */
-    int32_t stride;
-} hdi_ports;
 
 /* x has n entries in elimination order. On the way up a front hands a vector to its parent, as it does with
  * update matrices, so that subtrees are independent both ways. Right-hand sides with few non-zeros touch few
@@ -11813,7 +11830,6 @@ typedef struct hdi_sweep {
     const char *active;          /* forward */
     const double *const *rhs;    /* [k][n] real right-hand sides, the same for all matrices of a pack; NULL in
                                     it: zero. NULL: they are in x, which otherwise is only written */
-    const hdi_ports *ports;      /* right-hand sides and answers, of 8 numbers or one for a pivot; or NULL */
     const char *wanted;          /* backward: fronts whose part of x is asked for, closed towards the roots;
                                     NULL: all */
     hdi_walk *walk;
@@ -11919,33 +11935,10 @@ static void hdi_sweep_forward(const hdi_sweep *z, int32_t v, double *y, double *
     }
 }
 
-/* The pivots' part of the right-hand sides from outside, or of the answers to there. */
-static HDI_INLINE void hdi_sweep_ports(const hdi_sweep *z, int32_t v, double *y, int down) {
-    const int32_t *super = z->f->sym->super + v, n = z->f->sym->n, ahead = down ? -24 : 24;
-    const hdi_ports *g = z->ports;
-    int32_t i, r;
-    for (i = super[0]; g && z->f->width * z->k == 1 && i < super[1]; i++, y++) {
-        if (down) g->out[0][g->row[i]] = *y;
-        else *y = g->in[0][g->row[i]];
-    }
-    for (; g && i < super[1]; i++) {
-        const int32_t next = i + ahead >= 0 && i + ahead < n ? i + ahead : i;
-        const int64_t at = (int64_t)g->stride * g->row[i], soon = (int64_t)g->stride * g->row[next];
-        for (r = 0; r < z->f->width * z->k; r++, y++) {
-            const double *from = g->in[r];
-            double *to = g->out[r];
-            if (!down) *y = from ? from[at] : 0;
-            else if (to) to[at] = *y;
-            HDI_PREFETCH_AT(down ? to : from, soon);
-        }
-    }
-}
-
 /* The pivots' part of the right-hand sides, where they are given apart from x. */
 static void hdi_sweep_take(const hdi_sweep *z, int32_t v, double *y) {
     const int32_t *super = z->f->sym->super + v, width = z->f->width;
     int32_t i, r;
-    hdi_sweep_ports(z, v, y, 0);
     for (i = super[0]; z->rhs && i < super[1]; i++) {
         for (r = 0; r < z->k; r++, y += width) {
             y[0] = z->rhs[r] ? z->rhs[r][i] : 0;
@@ -12033,7 +12026,6 @@ static void hdi_sweep_front(const hdi_sweep *z, int32_t v) {
     hdi_factor_fetch(f, v, z->backward);
     if (z->backward) {
         hdi_sweep_backward(z, v, y, t);
-        hdi_sweep_ports(z, v, y, 1);
         return;
     }
     hdi_sweep_take(z, v, y);
@@ -12284,25 +12276,31 @@ static hd_status hdi_ldl_room(hd_ldl *f, int which, hd_error *e) {
 }
 
 /* n right-hand sides of the real factor, 8 at most, or one for each of n matrices of a pack: ldb and ldx
- * numbers apart, of one double or two. */
+ * numbers apart, of one double or two. A lane that is not there is the last one again. */
 static void hdi_ldl_solve(hd_ldl *f, const hdi_factor *of, int32_t n, const double *b, size_t ldb, double *x,
                           size_t ldx) {
     const int packs = of->width > 1;
-    const int32_t stride = packs ? 2 : 1, most = (int32_t)HDI_PACK / stride;
-    hdi_sweep z = hdi_sweep_open(of, packs || n == 1 ? 1 : 8, f->x[packs], f->work[packs]);
-    hdi_ports g;
-    int32_t q;
-    memset(&g, 0, sizeof g);
-    g.row = f->sym.perm;
-    g.stride = stride;
+    const int32_t stride = packs ? 2 : 1, lanes = (int32_t)HDI_PACK / stride, *row = f->sym.perm;
+    const int32_t k = packs || n == 1 ? 1 : 8;
+    hdi_sweep z = hdi_sweep_open(of, k, f->x[packs], f->work[packs]);
+    const double *in[HDI_PACK];
+    double *out[HDI_PACK], *y = z.x;
+    int32_t q, i;
     for (q = 0; q < HDI_PACK; q++) {
-        const size_t lane = (size_t)(q % most), part = (size_t)(q / most);
-        if (q % most >= n) continue;
-        g.in[q] = b + (size_t)stride * lane * ldb + part;
-        g.out[q] = x + (size_t)stride * lane * ldx + part;
+        const size_t lane = (size_t)hdi_least(q % lanes, n - 1), part = (size_t)(q / lanes);
+        in[q] = b + (size_t)stride * lane * ldb + part;
+        out[q] = x + (size_t)stride * lane * ldx + part;
     }
-    z.ports = &g;
+    for (i = 0; i < f->n && of->width * k == 1; i++) y[i] = b[row[i]];
+    for (; i < f->n; i++, y += HDI_PACK) {
+        HDI_UNROLL for (q = 0; q < HDI_PACK; q++) y[q] = in[q][stride * (int64_t)row[i]];
+    }
     hdi_sweep_run(&z, f->ctx);
+    y = z.x;
+    for (i = 0; i < f->n && of->width * k == 1; i++) x[row[i]] = y[i];
+    for (; i < f->n; i++, y += HDI_PACK) {
+        HDI_UNROLL for (q = 0; q < HDI_PACK; q++) out[q][stride * (int64_t)row[i]] = y[q];
+    }
 }
 
 static void hdi_ldl_free(hd_ldl *f) {
@@ -13024,17 +13022,13 @@ static void hdi_inverse_front_run(const hdi_inverse *z, int32_t v, double *scrat
         if (c.begin < c.end) hdi_inverse_do(&c, c.begin, c.end, c.w.buffer);
 }
 
-/* ---- the way down as a walk ---- */
-/* Its nodes: one front of the top after the other, then the subtrees. A front is one node, by one thread, or
- * it is shared: that node opens it, and chunks of one stage after the other follow. */
+/* ---- the pass ---- */
 
-typedef struct hdi_inverse_walk {
-    hdi_walk walk;
-    hdi_inverse_step at;
+typedef struct hdi_inverse_pass {
+    hdi_pass pass;
+    hdi_inverse_step at;         /* the front that is shared */
     double *scratch;             /* of the top */
-    int32_t top, left;           /* the front of the top under way; nodes of the stage that are not done */
-    int32_t whole;               /* it is done by one thread */
-} hdi_inverse_walk;
+} hdi_inverse_pass;
 
 /* Whether threads share front v. */
 static int hdi_inverse_shared(const hdi_symbolic *s, int32_t v) {
@@ -13069,54 +13063,42 @@ static int64_t hdi_inverse_nodes(const hdi_inverse *z, const hdi_symbolic *s) {
     return n;
 }
 
-/* All of a stage is done: the next one that has nodes, or the next front, or the subtrees. */
-static void hdi_inverse_advance(hdi_inverse_walk *t) {
-    const hdi_symbolic *s = t->at.z->f->sym;
-    while (!t->whole && hdi_inverse_next(&t->at)) {
-        t->left = (int32_t)hdi_inverse_chunks(t->at.stage, t->at.end - t->at.begin);
-        if (t->left > 0) {
-            hdi_release(&t->walk, s->n_tasks + s->n_top, t->left);
-            return;
-        }
-    }
-    t->left = 1;
-    if (t->top-- > 0) hdi_release(&t->walk, s->n_tasks + t->top, 1);
-    else hdi_release(&t->walk, 0, s->n_tasks);
-}
-
-/* Takes up the next front of the top. */
-static void hdi_inverse_top(hdi_inverse_walk *t) {
+/* Front v of the top. */
+static void hdi_inverse_top(void *arg, int32_t v) {
+    hdi_inverse_pass *t = (hdi_inverse_pass *)arg;
     const hdi_inverse *z = t->at.z;
-    const int32_t v = z->f->sym->top[t->top];
-    t->whole = hdi_walk_alone(&t->walk) || !hdi_inverse_shared(z->f->sym, v);
-    if (t->whole) hdi_inverse_front_run(z, v, t->scratch);
-    else hdi_inverse_begin(&t->at, z, v, t->scratch);
+    if (hdi_walk_alone(&t->pass.walk) || !hdi_inverse_shared(z->f->sym, v))
+        hdi_inverse_front_run(z, v, t->scratch);
+    else
+        hdi_inverse_begin(&t->at, z, v, t->scratch);
 }
 
-static void hdi_inverse_node(void *arg, int64_t index, int32_t worker) {
-    hdi_inverse_walk *t = (hdi_inverse_walk *)arg;
+static int32_t hdi_inverse_stage_next(void *arg, int32_t *ready) {
+    hdi_inverse_step *c = &((hdi_inverse_pass *)arg)->at;
+    *ready = 0;
+    while (*ready == 0 && hdi_inverse_next(c)) *ready = (int32_t)hdi_inverse_chunks(c->stage, c->end - c->begin);
+    return *ready;
+}
+
+static void hdi_inverse_part(void *arg, int32_t i) {
+    const hdi_inverse_step *c = &((const hdi_inverse_pass *)arg)->at;
+    /* the last rows of a triangle are longest */
+    const int64_t rows = hdi_inverse_rows(c->stage);
+    const int64_t chunk = hdi_inverse_chunks(c->stage, c->end - c->begin) - 1 - i;
+    const int64_t r0 = c->begin + chunk * rows;
+    double *buffer = c->stage > HDI_INVERSE_CORNER ? NULL : c->z->chunk + c->z->chunk_size * (size_t)chunk;
+    hdi_inverse_do(c, r0, hdi_least(r0 + rows, c->end), buffer);
+}
+
+/* The last subtree first. */
+static void hdi_inverse_subtree(void *arg, int32_t i) {
+    const hdi_inverse_pass *t = (const hdi_inverse_pass *)arg;
     const hdi_inverse *z = t->at.z;
     const hdi_symbolic *s = z->f->sym;
-    const int32_t i = (int32_t)index - s->n_tasks - s->n_top;
+    const int32_t task = s->n_tasks - 1 - i;
     int32_t v;
-    (void)worker;
-    if (index < s->n_tasks) {                    /* the last subtree first */
-        const int32_t task = s->n_tasks - 1 - (int32_t)index;
-        for (v = s->task_end[task]; v-- > s->task_begin[task] && !hdi_walk_stopped(&t->walk);)
-            hdi_inverse_front_run(z, v, z->scratch + z->scratch_size * (size_t)task);
-        return;
-    }
-    if (i < 0) {
-        hdi_inverse_top(t);
-    } else {
-        /* the last rows of a triangle are longest */
-        const int64_t rows = hdi_inverse_rows(t->at.stage);
-        const int64_t chunk = hdi_inverse_chunks(t->at.stage, t->at.end - t->at.begin) - 1 - i;
-        const int64_t r0 = t->at.begin + chunk * rows;
-        double *buffer = t->at.stage > HDI_INVERSE_CORNER ? NULL : z->chunk + z->chunk_size * (size_t)chunk;
-        hdi_inverse_do(&t->at, r0, hdi_least(r0 + rows, t->at.end), buffer);
-    }
-    if (HDI_ATOMIC_ADD(&t->left, -1) == 0) hdi_inverse_advance(t);
+    for (v = s->task_end[task]; v-- > s->task_begin[task] && !hdi_walk_stopped(&t->pass.walk);)
+        hdi_inverse_front_run(z, v, z->scratch + z->scratch_size * (size_t)task);
 }
 
 /* The arrays that inverting factors of the given width takes. */
@@ -13159,20 +13141,21 @@ static hd_status hdi_inverse_run(hdi_inverse *z, hdi_factor *f, hd_error *e) {
     hdi_scope scope = hdi_scope_begin(f->ctx, e);
     const int64_t n = hdi_inverse_nodes(z, s);
     int32_t *order = HDI_TAKE(&scope, int32_t, n);
-    hdi_inverse_walk t;
+    hdi_inverse_pass t;
     if (!order) return hdi_scope_end(&scope);
     memset(&t, 0, sizeof t);
     z->f = f;
     t.at.z = z;
+    t.at.stage = HDI_INVERSE_CHILD;              /* nothing is begun */
     t.scratch = z->scratch + z->scratch_size * (size_t)s->n_tasks;
-    t.top = s->n_top;
-    t.whole = 1;                                 /* of no front */
-    hdi_walk_open(&t.walk, f->ctx, n, order, hdi_inverse_node, &t);
-    if (hdi_walk_alone(&t.walk)) t.walk.n = (uint32_t)(s->n_tasks + s->n_top);
-    t.walk.stage = "invert";
-    t.walk.e = e;
-    hdi_inverse_advance(&t);
-    hdi_walk_run(&t.walk);
+    t.pass.sym = s;
+    t.pass.arg = &t;
+    t.pass.down = 1;
+    t.pass.subtree = hdi_inverse_subtree;
+    t.pass.front = hdi_inverse_top;
+    t.pass.stage = hdi_inverse_stage_next;
+    t.pass.part = hdi_inverse_part;
+    hdi_pass_run(&t.pass, f->ctx, n, order, "invert", e);
     return hdi_scope_end(&scope);
 }
 
