@@ -3973,7 +3973,7 @@ HDI_PART void HDI_OF(tile_multiply)(const int pack, const int nv, const int nc, 
  * products with columns before it. dinv NULL: ones. */
 HDI_PART void HDI_OF(tile_solve)(const int pack, const int nv, const int nc, const int unit,
                                  const HDI_OF(tile) *t, const double *dinv) {
-    const HDI_OF(rows) g = HDI_OF(rows_of)(0, t->n);
+    const HDI_OF(rows) g = HDI_OF(rows_of)(0, HDI_UNITS && !unit ? HDI_ROWS * nv : t->n);
     const double *b = t->b + t->depth * t->b_row;
     const int64_t inner = HDI_ENTRY * HDI_ROWS;
     hdi_num s[HDI_OF(most_cols)][HDI_OF(most_regs)], x[HDI_OF(most_regs)], f;
@@ -4091,15 +4091,50 @@ HDI_PART void HDI_OF(product_rows)(const int pack, const int unit, const hdi_pro
     }
 }
 
+/* Columns j.. of a product of real rows by eights, as right-hand sides stand: whole vectors, and nothing but
+ * C -= A B. */
+HDI_PART void HDI_OF(product_eight)(const int unit, const int nc, const hdi_product *g, int64_t i, int64_t j) {
+    hdi_num x[HDI_OF(most_cols)][HDI_OF(most_regs)];
+    int64_t off[HDI_OF(most_cols)];
+    double *c = g->c + i + j * g->c_col;
+    HDI_OF(tile) t;
+    const int pack = 0;
+    int k, v;
+    HDI_EACH(k, nc) off[k] = g->b_col * (j + k < g->cols ? k : g->cols - 1 - j);
+    t.a_col = g->a_col;
+    t.b_row = g->b_row;
+    t.depth = g->depth;
+    t.a = g->a + i;
+    t.b = g->b + j * g->b_col;
+    t.off = off;
+    HDI_OF(tile_sum)(pack, HDI_EIGHT, nc, unit, 0, &t, x);
+    HDI_EACH(k, nc) {
+        if (j + k >= g->cols) continue;
+        HDI_EACH(v, HDI_EIGHT)
+            HDI_OF(store)(c + HDI_WIDTH * v, HDI_OF(load)(c + HDI_WIDTH * v) - x[k][v].re);
+        c += g->c_col;
+    }
+}
+
+HDI_PART void HDI_OF(product_eights)(const int unit, const hdi_product *g) {
+    const int pack = 0, half = HDI_COLS > 1 ? HDI_COLS / 2 : 1;
+    int64_t i, j;
+    for (i = 0; i < g->n; i += HDI_EIGHT * HDI_WIDTH) {
+        for (j = 0; j + half < g->cols; j += HDI_COLS) HDI_OF(product_eight)(unit, HDI_COLS, g, i, j);
+        if (j < g->cols) HDI_OF(product_eight)(unit, half, g, i, j);
+    }
+}
+
 HDI_PART void HDI_OF(product)(const int pack, const hdi_product *g) {
     int64_t i;
     int h;
-    for (h = 0; h < HDI_NUMBERS; h += HDI_ABREAST) {
-        for (i = 0; i < g->n; i += HDI_BLOCK) {
-            if (HDI_UNITS && g->b_col == 1) HDI_OF(product_rows)(pack, 1, g, i, h);
-            else HDI_OF(product_rows)(pack, 0, g, i, h);
-        }
+    if (HDI_UNITS && (g->b_col != 1 || (g->n == 8 && !g->lower && !g->store))) {
+        if (g->b_col == 1) HDI_OF(product_eights)(1, g);
+        else HDI_OF(product_eights)(0, g);
+        return;
     }
+    for (h = 0; h < HDI_NUMBERS; h += HDI_ABREAST)
+        for (i = 0; i < g->n; i += HDI_BLOCK) HDI_OF(product_rows)(pack, HDI_UNITS, g, i, h);
 }
 
 /* ---- solves ---- */
@@ -12022,8 +12057,11 @@ static void hdi_sweep_front(const hdi_sweep *z, int32_t v) {
     const int64_t w = (int64_t)f->width * z->k;
     double *y = z->x + w * f->sym->super[v], *t = z->vec + w * f->sym->vector[v];
     const char *only = z->backward ? z->wanted : z->active;
+    int64_t i;
     if (only && !only[v]) return;
     hdi_factor_fetch(f, v, z->backward);
+    for (i = 0; i < w * hdi_front_pivots(f->sym, v); i += 8)
+        HDI_PREFETCH_AT(y, z->backward ? i - 64 * w : i + 64 * w);
     if (z->backward) {
         hdi_sweep_backward(z, v, y, t);
         return;
