@@ -4093,7 +4093,8 @@ HDI_PART void HDI_OF(product_rows)(const int pack, const int unit, const hdi_pro
 
 /* Columns j.. of a product of real rows by eights, as right-hand sides stand: whole vectors, and nothing but
  * C -= A B. */
-HDI_PART void HDI_OF(product_eight)(const int unit, const int nc, const hdi_product *g, int64_t i, int64_t j) {
+HDI_PART void HDI_OF(product_eight)(const int unit, const int nc, const hdi_product *g, int64_t i,
+                                    int64_t j) {
     hdi_num x[HDI_OF(most_cols)][HDI_OF(most_regs)];
     int64_t off[HDI_OF(most_cols)];
     double *c = g->c + i + j * g->c_col;
@@ -11066,9 +11067,9 @@ typedef struct hdi_factor {
 } hdi_factor;
 
 /* ---- passes ---- */
-/* A pass works on every front once: upwards the subtrees at the same time, then the fronts of the top one after
- * the other; downwards the other way round. It is a walk. Its nodes are the subtrees, the fronts of the top,
- * and the parts of a front that threads share, stage after stage. */
+/* A pass works on every front once: upwards the subtrees at the same time, then the fronts of the top one
+ * after the other; downwards the other way round. It is a walk. Its nodes are the subtrees, the fronts of the
+ * top, and the parts of a front that threads share, stage after stage. */
 
 typedef struct hdi_pass {
     hdi_walk walk;
@@ -11076,7 +11077,7 @@ typedef struct hdi_pass {
     void *arg;
     void (*subtree)(void *arg, int32_t i);
     void (*front)(void *arg, int32_t v);     /* does front v of the top, or begins it: threads share it */
-    /* The next stage of what was begun: how many parts it has, of which *ready wait for none. 0: it is done. */
+    /* The next stage of what was begun: its parts, of which *ready wait for none. 0: it is done. */
     int32_t (*stage)(void *arg, int32_t *ready);
     void (*part)(void *arg, int32_t i);
     int32_t down, step, left;    /* the subtrees or fronts of the top that come next; nodes under way that
@@ -13114,7 +13115,8 @@ static void hdi_inverse_top(void *arg, int32_t v) {
 static int32_t hdi_inverse_stage_next(void *arg, int32_t *ready) {
     hdi_inverse_step *c = &((hdi_inverse_pass *)arg)->at;
     *ready = 0;
-    while (*ready == 0 && hdi_inverse_next(c)) *ready = (int32_t)hdi_inverse_chunks(c->stage, c->end - c->begin);
+    while (*ready == 0 && hdi_inverse_next(c))
+        *ready = (int32_t)hdi_inverse_chunks(c->stage, c->end - c->begin);
     return *ready;
 }
 
