@@ -19834,75 +19834,79 @@ static void hdi_spectrum_free(hd_spectrum *s) {
 
 /* ---- kernels from eigenpairs ---- */
 
-/* A function of the eigenvalues at one time: exp(-t lambda), 1/lambda or 1/lambda^2, the last two for values
- * that are not of constants. rest: it is no larger for those left out. error: what the residuals and rounding
- * can do to a sum over the pairs with entries of norm one. With S = B^-1 L, S X = X Theta + R the error of
- * exp is the integral of exp(-(t - s) S) R exp(-s Theta), at most |r_i| min(t, 1/theta_i) for each pair; of
- * the others it is S^-1 R Theta^-1, and that of their product. */
-typedef struct hdi_spec_filter {
+/* Sums over the pairs: kernels or distances of k sources at n_times times, or a diagonal. */
+typedef struct hdi_spec_sums {
     const hd_spectrum *of;
-    double t;
-    int power;                   /* 0: exp; 1, 2: of 1/lambda */
-    double rest, error;
+    int distance, diagonal;      /* squares of differences, or of entries, instead of products */
+    int mass;                    /* of B x instead of x */
+    int power;                   /* 0: of exp(-t lambda); 1, 2: of 1/lambda, without a time */
+    int32_t n_times, k;
+    const double *t;
+    const int32_t *sources;      /* [k], or NULL: the diagonal, or terms */
+    const hd_source *from;       /* [k] sources that need not be vertices, instead; they become terms */
+    const hdi_terms *terms;
+    hdi_scope scope;
+    double *out, *bound;         /* column q n_times + m for source q and time m, ld apart; bound or NULL */
+    size_t ld;
+    /* for one source and time */
+    double *x, *weight;          /* [count] the source in the vectors; the function of eigenvalues */
+    double rest, error;          /* see hdi_spec_filter */
+    double left, whole;          /* of the source: what is left out of the diagonal, and all of it */
     /* eigenvalues count times unit, so that squares stay in the range of doubles, and distances times root */
     double unit, root;
-} hdi_spec_filter;
+    double *column, *off;
+} hdi_spec_sums;
 
-/* A product of two parts of a bound, each at least 0: nothing times infinity is nothing. */
-static double hdi_spec_times(double a, double b) {
-    if (a == 0 || b == 0) return 0;
-    if (fabs(b) > 1 && fabs(a) > DBL_MAX / fabs(b)) return (a < 0) == (b < 0) ? HUGE_VAL : -HUGE_VAL;
-    return a * b;
+static hdi_spec_sums hdi_spec_sums_of(int32_t n_times, const double *t, int32_t k, double *out, double *bound,
+                                      size_t ld) {
+    hdi_spec_sums a;
+    memset(&a, 0, sizeof a);
+    a.k = k;
+    a.n_times = n_times;
+    a.t = t;
+    a.out = out;
+    a.bound = bound;
+    a.ld = ld;
+    return a;
 }
 
-static double hdi_spec_weight(const hdi_spec_filter *f, int32_t i) {
-    const double x = f->unit * hdi_max(f->of->value[i], 0);
-    if (f->power == 0) return exp(-hdi_spec_times(f->t, x));
-    return i < f->of->n_constant || x == 0 ? 0 : hdi_min(f->power == 1 ? 1 / x : 1 / (x * x), DBL_MAX);
-}
-
-static hdi_spec_filter hdi_spec_filter_of(const hd_spectrum *s, double t, int power) {
-    const int32_t first = s->n_constant < s->count ? s->n_constant : s->count;
-    const double root = hdi_ratio_root(s->lap);
-    hdi_spec_filter f;
-    double low = first < s->count ? s->value[first] : s->next, next = hdi_max(s->next, 0), sum = 0, most = 0;
+/* weight: exp(-t lambda), 1/lambda or 1/lambda^2, the last two for values that are not of constants. rest: it
+ * is no larger for those left out. error: what the residuals and rounding can do to a sum over the pairs with
+ * entries of norm one. With S = B^-1 L, S X = X Theta + R the error of exp is the integral of exp(-(t - s) S)
+ * R exp(-s Theta), at most |r_i| min(t, 1/theta_i) for each pair; of the others it is S^-1 R Theta^-1, and
+ * that of their product. */
+static void hdi_spec_filter(hdi_spec_sums *a, double t) {
+    const hd_spectrum *s = a->of;
+    const int32_t first = hdi_low32(s->n_constant, s->count);
+    const double lowest = first < s->count ? s->value[first] : s->next;
+    const double unit = a->power && lowest > 0 && hdi_finite(lowest) ? hdi_even_unit(lowest) : 1;
+    const double low = unit * lowest, next = unit * hdi_max(s->next, 0), root = hdi_ratio_root(s->lap);
+    double sum = 0, most = 0;
     int32_t i;
-    memset(&f, 0, sizeof f);
-    f.of = s;
-    f.t = t;
-    f.power = power;
-    f.unit = power && low > 0 && hdi_finite(low) ? hdi_even_unit(low) : 1;
-    f.root = power == 2 ? f.unit : sqrt(f.unit);
-    low *= f.unit;
-    next *= f.unit;
-    if (power == 0) f.rest = exp(-hdi_spec_times(t, next));
-    else f.rest = next > 0 ? 1 / (power == 1 ? next : next * next) : HUGE_VAL;
+    a->unit = unit;
+    a->root = a->power == 2 ? unit : sqrt(unit);
+    a->rest = a->power == 0 ? exp(-hdi_bound_times(t, next))
+              : next > 0 ? 1 / (a->power == 1 ? next : next * next) : HUGE_VAL;
     for (i = 0; i < s->count; i++) {
-        const double x = f.unit * s->value[i], w = hdi_spec_weight(&f, i);
-        double by = 0, r = hdi_spec_times(root, hdi_spec_times(s->residual[i], hdi_max(x, low)));
-        if (power == 0) by = x > 0 ? hdi_min(t, 1 / x) : t;
-        else if (i >= s->n_constant) by = power == 1 ? 1 / (low * x) : (1 / x + 1 / low) / (low * x);
-        r = hdi_spec_times(fabs(r), fabs(by));
-        sum += power && i >= s->n_constant && x <= 0 ? HUGE_VAL : r * r;    /* 1/x is not known at all */
-        most = hdi_max(most, w);
+        const double x = unit * s->value[i], y = hdi_max(x, 0);
+        double by = 0, r = hdi_bound_times(root, hdi_bound_times(s->residual[i], hdi_max(x, low)));
+        if (a->power == 0) {
+            a->weight[i] = exp(-hdi_bound_times(t, y));
+            by = x > 0 ? hdi_min(t, 1 / x) : t;
+        } else if (i < first) a->weight[i] = 0;
+        else {
+            a->weight[i] = y == 0 ? 0 : hdi_min(a->power == 1 ? 1 / y : 1 / (y * y), DBL_MAX);
+            by = a->power == 1 ? 1 / (low * x) : (1 / x + 1 / low) / (low * x);
+        }
+        r = hdi_bound_times(fabs(r), fabs(by));
+        sum += a->power && i >= first && x <= 0 ? HUGE_VAL : r * r;   /* 1/x is not known at all */
+        most = hdi_max(most, a->weight[i]);
     }
-    f.error = 2 * sqrt(sum) + 4 * (HDI_NOISE_TERMS + s->count) * DBL_EPSILON * most;
-    return f;
+    a->error = 2 * sqrt(sum) + 4 * (HDI_NOISE_TERMS + s->count) * DBL_EPSILON * most;
 }
-
-/* Sums over the pairs for one source. x: the source's entries in the vectors; distance: squares of
- * differences instead of products; mass: of B x instead of x. */
-typedef struct hdi_spec_sum {
-    hdi_spec_filter f;
-    double *x, *weight;          /* [count] */
-    double left, whole;          /* of the source: what is left out of the diagonal, and all of it */
-    int distance, mass, diagonal;
-    double *out, *bound;         /* [n]; bound may be NULL */
-} hdi_spec_sum;
 
 /* Entry of vector q, or of B times it. */
-static double hdi_spec_entry(const hdi_spec_sum *a, int32_t q, int32_t row, int mass) {
-    const hd_spectrum *s = a->f.of;
+static double hdi_spec_entry(const hd_spectrum *s, int32_t q, int32_t row, int mass) {
     const double *x = s->vector + (int64_t)q * s->n;
     return mass ? hdi_spec_mass_row(s->lap, x, row) : x[s->lap->vertex[row]];
 }
@@ -19917,51 +19921,49 @@ static double hdi_spec_root_off(double a, double off) {
 enum { HDI_SPEC_ROWS = 512 };
 
 /* The sums of n rows from the given one on. */
-static void hdi_spec_sum_rows(const hdi_spec_sum *a, int32_t row, int32_t n, double *sum) {
-    const int32_t *vertex = a->f.of->lap->vertex + row;
-    const int mass = a->distance && a->mass;     /* of the vectors; of one factor only for diagonals */
+static void hdi_spec_sum_rows(const hdi_spec_sums *a, int32_t row, int32_t n, double *sum) {
+    const int32_t *vertex = a->of->lap->vertex + row;
+    const int mass = a->mass && (a->distance || a->diagonal);   /* else of the source alone */
     int32_t q, i;
     for (i = 0; i < n; i++) sum[i] = 0;
-    for (q = 0; q < a->f.of->count; q++) {
-        const double *x = a->f.of->vector + (int64_t)q * a->f.of->n;
+    for (q = 0; q < a->of->count; q++) {
+        const double *x = a->of->vector + (int64_t)q * a->of->n;
         const double w = a->weight[q], at = a->x[q];
-        for (i = 0; i < n && !mass && !a->diagonal && !a->distance; i++) sum[i] += w * x[vertex[i]] * at;
-        for (i = 0; i < n && a->diagonal; i++)
-            sum[i] += w * x[vertex[i]] * (a->mass ? hdi_spec_entry(a, q, row + i, 1) : x[vertex[i]]);
-        for (i = 0; i < n && a->distance; i++) {
-            const double d = (mass ? hdi_spec_entry(a, q, row + i, 1) : x[vertex[i]]) - at;
-            sum[i] += w * d * d;
+        for (i = 0; i < n; i++) {
+            const double y = x[vertex[i]], other = mass ? hdi_spec_entry(a->of, q, row + i, 1) : y;
+            if (a->distance) sum[i] += w * (other - at) * (other - at);
+            else sum[i] += w * y * (a->diagonal ? other : at);
         }
     }
 }
 
 /* The value of a row and its bound, from its sum. */
-static void hdi_spec_sum_store(const hdi_spec_sum *a, int32_t row, double sum) {
-    const hd_spectrum *s = a->f.of;
-    const hd_laplacian *lap = s->lap;
-    const int32_t v = lap->vertex[row];
-    const int other = a->distance && a->mass;
-    const double left = other ? s->left_mass[v] : s->left[v];
-    const double whole = other ? lap->b_diag[row] : hdi_inverse_mass(lap, row);
-    double off;
-    if (a->distance) {
-        const double far_left = sqrt(left) + sqrt(a->left), far_all = sqrt(whole) + sqrt(a->whole);
-        off = hdi_spec_times(a->f.rest, far_left * far_left) + hdi_spec_times(a->f.error, far_all * far_all);
-        off = a->f.root * hdi_spec_root_off(sum, off);
-        sum = a->f.root * sqrt(sum);
-    } else {
-        const double l = a->diagonal ? a->mass ? s->left_mass[v] : left : a->left;
-        const double w = a->diagonal ? a->mass ? lap->b_diag[row] : whole : a->whole;
-        /* roots first: products of inverse masses may leave the range of doubles */
-        off = hdi_spec_times(a->f.rest, sqrt(left) * sqrt(l)) +
-              hdi_spec_times(a->f.error, sqrt(whole) * sqrt(w));
+static void hdi_spec_sum_store(const hdi_spec_sums *a, int32_t row, double sum) {
+    const hd_spectrum *s = a->of;
+    const int32_t v = s->lap->vertex[row];
+    const double inverse = hdi_inverse_mass(s->lap, row), mass = s->lap->b_diag[row];
+    const double left = a->distance && a->mass ? s->left_mass[v] : s->left[v];
+    const double whole = a->distance && a->mass ? mass : inverse;
+    double left2 = a->left, whole2 = a->whole, off;
+    if (a->diagonal) {
+        left2 = a->mass ? s->left_mass[v] : left;
+        whole2 = a->mass ? mass : whole;
     }
-    a->out[v] = sum;
-    if (a->bound) a->bound[v] = off;
+    if (a->distance) {
+        const double far_left = sqrt(left) + sqrt(left2), far_all = sqrt(whole) + sqrt(whole2);
+        off = hdi_bound_times(a->rest, far_left * far_left) + hdi_bound_times(a->error, far_all * far_all);
+        off = a->root * hdi_spec_root_off(sum, off);
+        sum = a->root * sqrt(sum);
+    } else {                                     /* roots first: products may leave the range of doubles */
+        off = hdi_bound_times(a->rest, sqrt(left) * sqrt(left2)) +
+              hdi_bound_times(a->error, sqrt(whole) * sqrt(whole2));
+    }
+    a->column[v] = sum;
+    if (a->off) a->off[v] = off;
 }
 
 static void hdi_spec_sum_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_spec_sum *a = (const hdi_spec_sum *)arg;
+    const hdi_spec_sums *a = (const hdi_spec_sums *)arg;
     double sum[HDI_SPEC_ROWS];
     int64_t i;
     int32_t k, n;
@@ -19974,125 +19976,67 @@ static void hdi_spec_sum_task(void *arg, int64_t begin, int64_t end) {
 
 /* The source's entries in the vectors, and what bounds follow from: of a sum of vertices by the triangle
  * inequality. Those without a row count nothing. */
-static void hdi_spec_sum_from(hdi_spec_sum *a, const hdi_terms *from) {
-    const hd_spectrum *s = a->f.of;
-    const hd_laplacian *lap = s->lap;
+static void hdi_spec_sum_from(hdi_spec_sums *a, const hdi_terms *from) {
+    const hd_spectrum *s = a->of;
     double left = 0, whole = 0, most = 0;
     int32_t q, i;
-    for (q = 0; q < s->count; q++) {
-        a->weight[q] = hdi_spec_weight(&a->f, q);
-        a->x[q] = 0;
-        most = hdi_max(most, a->weight[q]);
-    }
+    a->left = a->whole = 0;
+    memset(a->x, 0, (size_t)s->count * sizeof *a->x);
     for (i = 0; i < from->n; i++) {
-        const int32_t v = hdi_terms_at(from, i), row = lap->row[v];
+        const int32_t v = hdi_terms_at(from, i), row = s->lap->row[v];
         const double w = hdi_terms_weight(from, i);
         if (row < 0) continue;
-        for (q = 0; q < s->count; q++) a->x[q] += w * hdi_spec_entry(a, q, row, a->mass);
+        for (q = 0; q < s->count; q++) a->x[q] += w * hdi_spec_entry(s, q, row, a->mass);
         a->left = a->mass ? s->left_mass[v] : s->left[v];
-        a->whole = a->mass ? lap->b_diag[row] : hdi_inverse_mass(lap, row);
+        a->whole = a->mass ? s->lap->b_diag[row] : hdi_inverse_mass(s->lap, row);
         left += fabs(w) * sqrt(a->left);
         whole += fabs(w) * sqrt(a->whole);
     }
     if (!from->weight) return;
     a->left = left * left;
     a->whole = whole * whole;
-    a->f.error += 4 * from->n * DBL_EPSILON * most;   /* rounding of the sums */
+    for (q = 0; q < s->count; q++) most = hdi_max(most, a->weight[q]);
+    a->error += 4 * from->n * DBL_EPSILON * most;   /* rounding of the sums */
 }
 
-/* Runs a sum. from: its source, without a vertex for diagonals. work [2 count]. inert: what vertices without
- * mass get. */
-static void hdi_spec_sum_run(hdi_spec_sum *a, const hdi_terms *from, double inert, double *work,
-                             hd_context *ctx) {
-    const hd_spectrum *s = a->f.of;
-    const hd_laplacian *lap = s->lap;
-    int32_t q;
-    a->x = work;
-    a->weight = work + s->count;
-    a->left = a->whole = 0;
-    hdi_spec_sum_from(a, from);
-    for (q = 0; q < s->n; q++) {
-        a->out[q] = lap->row[q] == HD_ROW_HELD ? 0 : inert;
-        if (a->bound) a->bound[q] = 0;
-    }
-    hdi_parallel_ranges(ctx, lap->n_active, 1024, hdi_spec_sum_task, a);
-}
-
-/* A vertex without mass has a zero kernel row: distances to it are those from the origin. */
-static void hdi_spec_sum_inert(hdi_spec_sum *a) {
-    const hd_spectrum *s = a->f.of;
-    const double off = hdi_spec_times(a->f.rest, a->left) + hdi_spec_times(a->f.error, a->whole);
+/* Vertices without a row: those without mass have a zero kernel row, so that distances to them are those from
+ * the origin. Without a time, other components, and they, are out of reach. */
+static void hdi_spec_sum_others(const hdi_spec_sums *a, const hdi_terms *from) {
+    const hd_laplacian *lap = a->of->lap;
+    const int32_t own = a->power ? hdi_terms_component(lap, from) : -1;
+    const double off = hdi_bound_times(a->rest, a->left) + hdi_bound_times(a->error, a->whole);
     double sum = 0;
-    int32_t q;
-    for (q = 0; q < s->count; q++) sum += a->weight[q] * a->x[q] * a->x[q];
-    for (q = 0; q < s->n; q++) {
-        if (s->lap->row[q] >= 0) continue;
-        a->out[q] = sqrt(sum);
-        if (a->bound) a->bound[q] = hdi_spec_root_off(sum, off);
-    }
-}
-
-/* Sums of a query: kernels or distances of k sources at n_times times, or a diagonal. */
-typedef struct hdi_spec_sums {
-    hdi_spec_sum sum;            /* says which */
-    const hd_spectrum *of;
-    int32_t n_times, k, power;   /* power: of 1/lambda, for distances without a time */
-    const double *t;
-    const int32_t *sources;      /* [k], or NULL: the diagonal, or terms */
-    const hd_source *from;       /* [k] sources that need not be vertices, instead; they become terms */
-    const hdi_terms *terms;
-    hdi_scope scope;
-    double *work;                /* [2 count + 1] */
-    double *out, *bound;         /* column q n_times + m for source q and time m, ld apart */
-    size_t ld;
-} hdi_spec_sums;
-
-static hdi_spec_sums hdi_spec_sums_of(int32_t n_times, const double *t, int32_t k, double *out, double *bound,
-                                      size_t ld) {
-    hdi_spec_sums x;
-    memset(&x, 0, sizeof x);
-    x.k = k;
-    x.n_times = n_times;
-    x.t = t;
-    x.out = out;
-    x.bound = bound;
-    x.ld = ld;
-    return x;
-}
-
-/* Without a time, other components are out of reach. */
-static void hdi_spec_sum_apart(const hd_laplacian *lap, const hdi_terms *from, double *out, double *bound) {
-    const int32_t own = hdi_terms_component(lap, from);
-    int32_t v;
+    int32_t q, v;
+    for (q = 0; q < a->of->count && a->distance; q++) sum += a->weight[q] * a->x[q] * a->x[q];
     for (v = 0; v < lap->n; v++) {
         const int32_t row = lap->row[v];
-        if ((!from->weight && v == from->one) || (row >= 0 && lap->component[row] == own)) continue;
-        out[v] = HUGE_VAL;
-        if (bound) bound[v] = 0;
+        const int apart = a->power && (from->weight || v != from->one);
+        if (row >= 0 && (!apart || lap->component[row] == own)) continue;
+        if (apart) a->column[v] = HUGE_VAL;
+        else if (a->distance) a->column[v] = a->power ? 0 : sqrt(sum);
+        else a->column[v] = row == HD_ROW_INERT && a->diagonal && a->mass;
+        if (a->off) a->off[v] = a->distance && !a->power ? hdi_spec_root_off(sum, off) : 0;
+    }
+    for (q = 0; q < from->n && a->mass && !a->distance; q++) {
+        v = hdi_terms_at(from, q);
+        if (lap->row[v] == HD_ROW_INERT) a->column[v] = hdi_terms_weight(from, q);
     }
 }
 
-static void hdi_spec_sums_run(hdi_spec_sums *x, hd_context *ctx) {
-    hdi_spec_sum *a = &x->sum;
-    const hd_laplacian *lap = x->of->lap;
+static void hdi_spec_sums_run(hdi_spec_sums *a, hd_context *ctx) {
     hdi_terms from;
-    int32_t q, m, i;
+    int32_t q, m;
     memset(&from, 0, sizeof from);
-    for (q = 0; q < x->k; q++) {
-        if (!a->diagonal) from = x->terms ? x->terms[q] : hdi_terms_vertex(x->sources[q]);
-        for (m = 0; m < x->n_times; m++) {
-            const size_t at = (size_t)q * (size_t)x->n_times + (size_t)m;
-            a->out = x->out + at * x->ld;
-            a->bound = x->bound ? x->bound + at * x->ld : NULL;
-            a->f = hdi_spec_filter_of(x->of, a->distance ? 2 * hdi_min(x->t[m], DBL_MAX / 2) : x->t[m],
-                                      x->power);
-            hdi_spec_sum_run(a, &from, a->diagonal && a->mass, x->work, ctx);
-            if (x->power) hdi_spec_sum_apart(lap, &from, a->out, a->bound);
-            else if (a->distance) hdi_spec_sum_inert(a);
-            for (i = 0; i < from.n && a->mass && !a->distance; i++) {
-                const int32_t v = hdi_terms_at(&from, i);
-                if (lap->row[v] == HD_ROW_INERT) a->out[v] = hdi_terms_weight(&from, i);
-            }
+    for (q = 0; q < a->k; q++) {
+        if (!a->diagonal) from = a->terms ? a->terms[q] : hdi_terms_vertex(a->sources[q]);
+        for (m = 0; m < a->n_times; m++) {
+            const size_t at = ((size_t)q * (size_t)a->n_times + (size_t)m) * a->ld;
+            a->column = a->out + at;
+            a->off = a->bound ? a->bound + at : NULL;
+            hdi_spec_filter(a, a->distance ? 2 * hdi_min(a->t[m], DBL_MAX / 2) : a->t[m]);
+            hdi_spec_sum_from(a, &from);
+            hdi_parallel_ranges(ctx, a->of->lap->n_active, 1024, hdi_spec_sum_task, a);
+            hdi_spec_sum_others(a, &from);
         }
     }
 }
@@ -20103,7 +20047,7 @@ static hd_status hdi_sum_begin(hdi_call *c, hdi_spec_sums *x, const hd_spectrum 
     if (hdi_enter(c, s ? s->context : NULL, err) < 0) return c->e->status;
     if (!HDI_HAS_SPECTRUM) return HDI_LEFT_OUT(c->e, SPECTRUM, "eigenpairs");
     if (!s || (x->n_times > 0 && !x->t) || (x->k > 0 && !x->out)) return hdi_missing(c->e);
-    if (!x->sum.diagonal && x->k > 0 && !x->sources && !x->from) return hdi_missing(c->e);
+    if (!x->diagonal && x->k > 0 && !x->sources && !x->from) return hdi_missing(c->e);
     hdi_refuse(x->n_times < 1, "spectrum: there is no time", c->e);
     hdi_refuse(x->k < 0, "spectrum: a number of columns is negative", c->e);
     hdi_refuse(x->ld != 0 && x->ld < (size_t)s->n, "spectrum: columns would overlap", c->e);
@@ -20116,8 +20060,9 @@ static hd_status hdi_sum_begin(hdi_call *c, hdi_spec_sums *x, const hd_spectrum 
     x->of = s;
     x->ld = x->ld ? x->ld : (size_t)s->n;
     x->scope = hdi_scope_begin(c->ctx, c->e);
-    x->work = HDI_TAKE(&x->scope, double, 2 * (uint64_t)s->count + 1);
-    if (x->from && x->work) x->terms = hdi_terms_all(x->k, x->from, s->lap, x->sum.distance, &x->scope);
+    x->x = HDI_TAKE(&x->scope, double, 2 * (uint64_t)s->count + 1);
+    x->weight = x->x ? x->x + s->count : NULL;
+    if (x->from && x->x) x->terms = hdi_terms_all(x->k, x->from, s->lap, x->distance, &x->scope);
     return c->e->status < 0 ? hdi_scope_end(&x->scope) : HD_OK;
 }
 
@@ -20131,7 +20076,7 @@ static hd_status hdi_sum_columns(hdi_spec_sums *x, const hd_spectrum *s, hd_kern
     if (hdi_sum_begin(&c, x, s, err) < 0) return c.e->status;
     hdi_refuse(kernel != HD_KERNEL_OPERATOR && kernel != HD_KERNEL_SYMMETRIC, "spectrum: unknown kernel",
                c.e);
-    x->sum.mass = kernel == HD_KERNEL_OPERATOR;
+    x->mass = kernel == HD_KERNEL_OPERATOR;
     return hdi_sum_end(&c, x);
 }
 
@@ -20141,7 +20086,7 @@ static hd_status hdi_sum_distance(hdi_spec_sums *x, const hd_spectrum *s, hd_dis
     const double zero = 0;
     hdi_call c;
     x->power = power;
-    x->sum.distance = 1;
+    x->distance = 1;
     if (power && x->n_times <= 1) {              /* no time */
         x->n_times = 1;
         x->t = &zero;
@@ -20150,7 +20095,7 @@ static hd_status hdi_sum_distance(hdi_spec_sums *x, const hd_spectrum *s, hd_dis
     hdi_refuse(kind < HD_DISTANCE_CLASSICAL || kind > HD_DISTANCE_BIHARMONIC, "spectrum: unknown distance",
                c.e);
     hdi_refuse(power && x->n_times > 1, "spectrum: this distance has no time", c.e);
-    x->sum.mass = kind == HD_DISTANCE_WEIGHTED;
+    x->mass = kind == HD_DISTANCE_WEIGHTED;
     return hdi_sum_end(&c, x);
 }
 
@@ -29207,7 +29152,7 @@ HEATDIFF_API hd_status hd_spectrum_diagonal(const hd_spectrum *s, hd_kernel kern
                                             const double *t, double *D, double *bound, size_t ldd,
                                             hd_error *err) {
     hdi_spec_sums x = hdi_spec_sums_of(n_times, t, 1, D, bound, ldd);
-    x.sum.diagonal = 1;
+    x.diagonal = 1;
     return hdi_sum_columns(&x, s, kernel, err);
 }
 
