@@ -5230,7 +5230,7 @@ typedef struct hdi_mesh {
     const double *len;  /* [corners] of triangles: sides from corner to corner; NULL: see xyz */
     const int64_t *ptr; /* [m + 1] of polygons: the first corner of each; NULL: triangles */
     const int32_t *tri; /* [corners] vertices */
-    const int32_t *face;/* [m] the caller's number of each face, ascending; NULL: their own */
+    const int32_t *face;/* [m] the caller's number of each face; NULL: their own */
     int32_t n, m;
     double lambda;      /* of polygons */
     double *area;       /* [m] of polygons: length of the vector area; 0: the face is left out */
@@ -5250,6 +5250,8 @@ static void hdi_mesh_clear(hdi_mesh *mesh, const double *xyz, int32_t n, const i
     mesh->n = n;
     mesh->m = m;
 }
+
+static int32_t hdi_face_name(const hdi_mesh *mesh, int32_t f) { return mesh->face ? mesh->face[f] : f; }
 
 /* Lengths of face f. */
 static const double *hdi_mesh_lengths(const hdi_mesh *mesh, int32_t f) { return mesh->len + hdi_triple(f); }
@@ -5432,6 +5434,8 @@ static hd_status hdi_view_positions(hdi_view *out, const hd_mesh_view *v, int32_
 
 static const signed char hdi_next3[3] = {1, 2, 0}, hdi_prev3[3] = {2, 0, 1};
 
+static HDI_INLINE int32_t hdi_face_low(const int32_t *v) { return hdi_low32(v[0], hdi_low32(v[1], v[2])); }
+
 /* Area of the triangle with these sides, relatively exact for any shape; 0 where they make none (W. Kahan,
  * Miscalculating area and angles of a needle-like triangle, 2014). */
 static double hdi_length_area(double a, double b, double c) {
@@ -5606,9 +5610,13 @@ static int64_t hdi_block_size(int64_t n) {
 
 /* What a block of faces adds to the report. */
 typedef struct hdi_face_tally {
-    int32_t n_repeated_corner, n_zero_area, refused;   /* refused: the first one, or -1 */
+    int32_t n_repeated_corner, n_zero_area, refused;   /* refused: the one that is named first, or -1 */
     double steepest;                                   /* the largest cotangent, of the smallest angle */
 } hdi_face_tally;
+
+static void hdi_face_refuse(const hdi_mesh *mesh, int32_t f, hdi_face_tally *t) {
+    if (t->refused < 0 || hdi_face_name(mesh, f) < hdi_face_name(mesh, t->refused)) t->refused = f;
+}
 
 typedef struct hdi_measure_job {
     const hdi_mesh *mesh;
@@ -5638,7 +5646,7 @@ static HDI_INLINE double hdi_face_measure(const hdi_mesh *mesh, int32_t f, hdi_f
     t->n_zero_area += area == 0;
     if (area == 0) return 0;
     if (!hdi_is_poly(mesh)) steepest = weight = hdi_max(cot[0], hdi_max(cot[1], cot[2]));
-    if (t->refused < 0 && !(hdi_in_range(area) && weight <= HDI_RANGE)) t->refused = f;
+    if (!(hdi_in_range(area) && weight <= HDI_RANGE)) hdi_face_refuse(mesh, f, t);
     t->steepest = hdi_max(t->steepest, steepest);
     return area;
 }
@@ -5677,13 +5685,13 @@ static hd_status hdi_faces_measure(const hdi_mesh *mesh, hd_mesh_report *rep, hd
         all.n_repeated_corner += job.tally[i].n_repeated_corner;
         all.n_zero_area += job.tally[i].n_zero_area;
         all.steepest = hdi_max(all.steepest, job.tally[i].steepest);
-        if (all.refused < 0) all.refused = job.tally[i].refused;
+        if (job.tally[i].refused >= 0) hdi_face_refuse(mesh, job.tally[i].refused, &all);
     }
     if (all.refused >= 0)
         return hdi_fail_face(s->e, HD_ERR_ARGUMENT,
                              "the area of a face is outside 1e-100 .. 1e100, or a weight of it above 1e100",
-                             mesh->face ? mesh->face[all.refused] : all.refused,
-                             mesh->tri[hdi_face_begin(mesh, all.refused)], mesh->area[all.refused]);
+                             hdi_face_name(mesh, all.refused), mesh->tri[hdi_face_begin(mesh, all.refused)],
+                             mesh->area[all.refused]);
     rep->n_faces = mesh->m;
     rep->n_repeated_corner = all.n_repeated_corner;
     rep->n_zero_area = all.n_zero_area;
@@ -5893,11 +5901,42 @@ static hd_status hdi_lengths_agree(const hdi_mesh *mesh, hdi_scope *s) {
     return hdi_scope_end(&own);
 }
 
+/* Triangles in space whose smallest corners jump about become a copy in s that is sorted by these: what
+ * neighbours need is then at hand. */
+static hd_status hdi_mesh_sort(hdi_mesh *mesh, hdi_scope *s) {
+    enum { NEARBY = 4096 };                      /* vertices, whose coordinates fit into a cache */
+    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
+    int32_t *tri, *face, f, last = 0, jumps = 0;
+    int64_t *at;
+    for (f = 0; f < mesh->m && mesh->xyz && !hdi_is_poly(mesh); f++) {
+        const int32_t low = hdi_face_low(mesh->tri + hdi_triple(f));
+        jumps += (low > last ? low - last : last - low) > NEARBY;
+        last = low;
+    }
+    if (jumps <= mesh->m / 16) return hdi_scope_end(&own);
+    at = HDI_TAKE_ZERO(&own, int64_t, (int64_t)mesh->n + 1);
+    tri = HDI_TAKE(s, int32_t, hdi_triple(mesh->m));
+    face = HDI_TAKE(s, int32_t, mesh->m);
+    if (s->e->status < 0) return hdi_scope_end(&own);
+    for (f = 0; f < mesh->m; f++) at[hdi_face_low(mesh->tri + hdi_triple(f))]++;
+    hdi_prefix_sum(at, mesh->n);
+    for (f = 0; f < mesh->m; f++) {
+        const int32_t *v = mesh->tri + hdi_triple(f);
+        const int64_t to = at[hdi_face_low(v)]++;
+        memcpy(tri + 3 * to, v, 3 * sizeof *v);
+        face[to] = hdi_face_name(mesh, f);
+    }
+    mesh->tri = tri;
+    mesh->face = face;
+    return hdi_scope_end(&own);
+}
+
 /* Checks the mesh, measures its faces and lists the corners at each vertex, in s. */
 static hd_status hdi_mesh_make(hdi_mesh *mesh, hd_mesh_report *rep, hdi_scope *s) {
     rep->n_faces = mesh->m;
     if (hdi_mesh_check(mesh->xyz, mesh->n, mesh->ptr, mesh->tri, mesh->m, s->e) < 0 ||
-        (mesh->len && hdi_lengths_check(mesh->len, mesh->m, s->e) < 0) || hdi_mesh_take(mesh, s) < 0)
+        (mesh->len && hdi_lengths_check(mesh->len, mesh->m, s->e) < 0) || hdi_mesh_sort(mesh, s) < 0 ||
+        hdi_mesh_take(mesh, s) < 0)
         return s->e->status;
     hdi_mesh_of(mesh);
     if (hdi_faces_measure(mesh, rep, s) < 0) return s->e->status;
@@ -27611,7 +27650,8 @@ static hd_status hdi_geo_update(hd_geodesic *g, const double *xyz, hd_error *e) 
     if (hdi_lap_update(g->lap, xyz, e) < 0) return e->status;
     for (f = 0; f < moving->m; f++)              /* of those left out all corners are one */
         if (!(moving->area[f] > 0) && moving->tri[hdi_triple(f)] != moving->tri[hdi_triple(f) + 1])
-            return hdi_fail_face(e, HD_ERR_EMPTY, "geodesic: a face has no area any more", f, -1, 0);
+            return hdi_fail_face(e, HD_ERR_EMPTY, "geodesic: a face has no area any more",
+                                 hdi_face_name(moving, f), -1, 0);
     if (hdi_geo_masses(g, g->lap, mass, e) < 0) return e->status;
     g->ready = 0;
     g->x = g->mass;
