@@ -3115,6 +3115,18 @@ static void hdi_rewind(int64_t *ptr, int64_t n) {
     ptr[0] = 0;
 }
 
+/* Groups [0,n) by keys: list[ptr[k]..ptr[k + 1]) are the i with key[i] = k, ascending. Those with negative
+ * keys are left out. ptr [n_keys + 1]. */
+static void hdi_group(const int32_t *key, int32_t n, int32_t n_keys, int32_t *ptr, int32_t *list) {
+    int32_t i;
+    hdi_fill_i32(ptr, (int64_t)n_keys + 1, 0);
+    for (i = 0; i < n; i++)
+        if (key[i] >= 0) ptr[key[i]]++;
+    for (i = 0; i < n_keys; i++) ptr[i + 1] += ptr[i];
+    for (i = n; i-- > 0;)
+        if (key[i] >= 0) list[--ptr[key[i]]] = i;
+}
+
 /* The size of the fullest of n buckets, at least 1. */
 static int64_t hdi_fullest(const int64_t *ptr, int64_t n) {
     int64_t i, most = 1;
@@ -9206,8 +9218,8 @@ static hd_status hdi_amd_order(const hd_csr *a, int32_t *perm, hd_context *ctx, 
  * is cut into two halves by a separator, which comes last in the order, and both halves are treated alike.
  * The rows are numbered along a space-filling curve, so that every part is a compact graph in cache.
  *   1. A part has clusters: small groups of neighbours, which are made once and handed down to the halves.
- *   2. The clusters are made coarser a few times. The coarsest copy is cut in several ways, along directions
- *      and by graph distance, and the best cut is taken. It is improved by exchanges on each finer copy.
+ *   2. The graph of the clusters is made coarser a few times. The coarsest copy is cut in several ways, along
+ *      directions and by graph distance, and the best cut is taken. Exchanges improve it on each finer copy.
  *   3. Within a band around this cut, the smallest separator is found exactly, by vertex-disjoint paths.
  *   4. Small parts are ordered by minimum degree. The separators around them count as neighbours.
  * May call [13].
@@ -9227,13 +9239,11 @@ enum {
     HDI_ND_FRESH = 50,      /* clusters of a part that are too few to cut */
     HDI_ND_COARSE = 100,    /* vertices of a coarsest copy, about */
     HDI_ND_LAYERS = 5,      /* of the band, on each side of a cut: 3 cost a tenth more flops, 8 gain little */
-    HDI_ND_WORDS = 20,      /* work space: words for a vertex */
-    HDI_ND_SLACK = 1200,    /* and for a task */
-    HDI_ND_LEVELS = 24,     /* most copies of a part */
+    HDI_ND_WORDS = 20,      /* work space: words for a vertex; 5/2 more for an entry */
+    HDI_ND_LEVELS = 24,     /* most copies of a part, itself included */
     HDI_ND_BUCKETS = 128,   /* gains that are told apart, for each side */
     HDI_ND_TASKS = 64,      /* parts that are ordered in parallel, */
     HDI_ND_NODES = 2 * HDI_ND_TASKS - 1,   /* with all that were halved to make them */
-    HDI_ND_BLOCK = 8192,    /* rows that are read by a task */
     HDI_ND_LARGE = 20000,   /* parts of more vertices are swept in 11 ways, */
     HDI_ND_MIDDLING = 3000, /* those of more than this in 5, others in 2 */
     HDI_ND_PASSES = 3,      /* of exchanges on each copy */
@@ -9242,6 +9252,7 @@ enum {
     HDI_ND_CLUSTERS = 24,   /* share of all that a cluster weighs at most: the coarsest copy can be halved */
     HDI_ND_MIDDLE = 64,     /* the separator's layer in a band */
     HDI_ND_NONE = -2147483647,
+    HDI_ND_LOCKED = HDI_ND_NONE + 1,
     HDI_ND_DEAD = 2147483647
 };
 
@@ -9254,45 +9265,42 @@ enum {
 typedef struct hdi_nd_graph {
     int32_t n;
     int32_t *ptr, *adj;    /* neighbours of v: adj[ptr[v]..ptr[v + 1]), no diagonal */
-    int32_t *ew, *w;       /* weights of entries and vertices: edges and vertices of the part within */
     int32_t *id;           /* the row whose place stands for v */
-    int32_t *map;          /* vertex of the next coarser copy */
-    int8_t *side;          /* 0, 1, and at the finest copy 2: separator */
+    int32_t *map;          /* vertex of the next coarser copy; of a part: its cluster */
+    int32_t *ew, *w;       /* weights of entries and vertices: edges and vertices of the part within */
+    int8_t *side;          /* 0, 1, and in the part 2: separator */
 } hdi_nd_graph;
+
+static int32_t hdi_nd_weight(const hdi_nd_graph *g, int32_t v) { return g->w ? g->w[v] : 1; }
+static int32_t hdi_nd_edge(const hdi_nd_graph *g, int32_t p) { return g->ew ? g->ew[p] : 1; }
 
 /* A part has places first..first + n - 1 of the order. Its halo has the numbers n..n + halo - 1. If
  * clusters is 0, none are known. */
 typedef struct hdi_nd_part { int32_t first, n, halo, edge, n_edges, clusters, buffer; } hdi_nd_part;
 
-/* The graphs of parts and their clusters, each in its own slices: one of two buffers is for odd depths. */
-typedef struct hdi_nd_buffer {
-    int32_t *ptr, *adj, *id, *map;   /* [2 n], [nnz], [n], [n]; ptr has n + 1 words for every part */
-    int32_t *cptr, *cadj, *cew, *cid; /* [2 n], [nnz / 4], [nnz / 4], [n] */
-} hdi_nd_buffer;
-
 /* Everything that the tasks share. Parts form a heap: part i is halved into parts 2 i + 1 and 2 i + 2, but
  * the last HDI_ND_TASKS of them are ordered with all below them. */
 typedef struct hdi_nd {
-    hdi_nd_buffer buffer[2];
     const double *xyz;
     double lo[3], width;             /* of the box around all rows, halved */
     int32_t *perm, *work;
-    hdi_nd_part *part;               /* [HDI_ND_NODES] */
+    hdi_nd_graph buffer[2][2];       /* the graphs of all parts, and of their clusters, each in slices of its
+                                        own: one of two buffers is for odd depths. ptr [2 n] has n + 1 words
+                                        for every part. There are fewer clusters than vertices, and
+                                        nnz / 4 entries between them */
+    hdi_nd_part part[HDI_ND_NODES];
     hdi_walk walk;
     int32_t order[HDI_ND_NODES];     /* the parts as they become ready */
 } hdi_nd;
 
-/* Work space left to a task, taken from its front: what a copy of this struct took is free after it. */
+/* Work space left to a part, taken from its front: what a copy of this struct took is free after it. */
 typedef struct hdi_nd_space { int32_t *at, *end; } hdi_nd_space;
 
-/* Takes work space. Tasks cannot allocate, so each has 20 n + 2 n_edges + 1200 words for a part of n
- * vertices. That is always enough. The largest need is in hdi_nd_cut_clusters, in words for each vertex: 0.25
- * for the sides, 2 for the list, 1.25 for weights and sides of the clusters; 2 n_edges for the edges of the
- * copies; and at most 14.7 for the copies themselves, because each has at most 2/3 of the vertices of the one
- * before. */
+static int64_t hdi_nd_left(const hdi_nd_space *s) { return s->end - s->at; }
+
 static int32_t *hdi_nd_take(hdi_nd_space *s, int64_t words) {
     int32_t *p = s->at;
-    HEATDIFF_ASSERT(words <= s->end - s->at);
+    HEATDIFF_ASSERT(words <= hdi_nd_left(s));
     s->at += words;
     return p;
 }
@@ -9329,39 +9337,48 @@ static double hdi_nd_place(const hdi_nd *nd, int32_t row, int32_t d) {
     return (0.5 * nd->xyz[3 * (size_t)row + (size_t)d] - nd->lo[d]) / nd->width;
 }
 
-/* Groups [0,n) by keys: list[ptr[k]..ptr[k + 1]) are the i with key[i] = k, ascending. Those with negative
- * keys are left out. ptr [n_keys + 1]. */
-static void hdi_group(const int32_t *key, int32_t n, int32_t n_keys, int32_t *ptr, int32_t *list) {
-    int32_t i;
-    hdi_fill_i32(ptr, (int64_t)n_keys + 1, 0);
-    for (i = 0; i < n; i++)
-        if (key[i] >= 0) ptr[key[i]]++;
-    for (i = 0; i < n_keys; i++) ptr[i + 1] += ptr[i];
-    for (i = n; i-- > 0;)
-        if (key[i] >= 0) list[--ptr[key[i]]] = i;
-}
-
-/* Sorts the rows along the Morton curve in a grid of 1024^3 cells, by three digits of 10 bits. Rows with too
- * many entries come last, and the return value is the number of the other ones. inv: the inverse of order,
- * but -1 for rows with too many entries. work [2 n + 1025]. */
-static int32_t hdi_nd_number(const hdi_nd *nd, const hd_csr *a, int32_t *order, int32_t *inv, int32_t *work) {
+/* Numbers the rows along the Morton curve in a grid of 1024^3 cells: vertex k of part 0 is row id[k]. Rows
+ * with too many entries come last, and the return value is the number of the other ones. inv: the vertex of
+ * a row, -1 for rows with too many entries. key [n], work [n / 2]. */
+static int32_t hdi_nd_number(hdi_nd *nd, const hd_csr *a, int32_t *inv, uint64_t *key, uint64_t *work) {
     const double dense = 10 * sqrt((double)a->n_rows) + 16;
     const int32_t n = a->n_rows;
-    int32_t i, d, shift, m = 0, last = n, *key = work, *list = key + n, *ptr = list + n;
+    int32_t i, d, m = 0;
+    hdi_nd_frame(nd, n);
     for (i = 0; i < n; i++) {
-        if ((double)(a->row_ptr[i + 1] - a->row_ptr[i]) > dense) order[--last] = i;
-        else order[m++] = i;
-        for (key[i] = d = 0; d < 3; d++)
-            key[i] |= (int32_t)(hdi_nd_spread((uint32_t)(1023 * hdi_nd_place(nd, i, d))) << d);
+        const int too_many = (double)(a->row_ptr[i + 1] - a->row_ptr[i]) > dense;
+        uint32_t cell = 0;
+        for (d = 0; d < 3; d++) cell |= hdi_nd_spread((uint32_t)(1023 * hdi_nd_place(nd, i, d))) << d;
+        key[i] = (uint64_t)(too_many ? UINT32_MAX : cell) << 32 | (uint32_t)i;
+        m += !too_many;
     }
-    for (shift = 0; shift < 30; shift += 10) {
-        for (i = 0; i < m; i++) inv[i] = key[order[i]] >> shift & 1023;
-        hdi_group(inv, m, 1024, ptr, list);
-        for (i = 0; i < m; i++) inv[i] = order[list[i]];
-        memcpy(order, inv, (size_t)m * sizeof *order);
+    hdi_sort_keys(key, n, work);
+    for (i = 0; i < n; i++) {
+        nd->buffer[0][0].id[i] = (int32_t)(uint32_t)key[i];
+        inv[nd->buffer[0][0].id[i]] = i < m ? i : -1;
     }
-    for (i = 0; i < n; i++) inv[order[i]] = i < m ? i : -1;
     return m;
+}
+
+/* The n rows that are not too long as one part. */
+static hdi_nd_part hdi_nd_load(const hdi_nd *nd, const hd_csr *a, const int32_t *inv, int32_t n) {
+    const hdi_nd_graph *g = nd->buffer[0];
+    hdi_nd_part part = {0, 0, 0, 0, 0, 0, 0};
+    int64_t p;
+    int32_t k, z = 0;
+    for (k = 0; k < n; k++) {
+        const int32_t r = g->id[k];
+        if (k + HDI_ROWS_AHEAD < n) HDI_PREFETCH(a->col + a->row_ptr[g->id[k + HDI_ROWS_AHEAD]]);
+        g->ptr[k] = z;
+        for (p = a->row_ptr[r]; p < a->row_ptr[r + 1]; p++) {
+            const int32_t u = inv[a->col[p]];
+            if (u >= 0 && u != k) g->adj[z++] = u;
+        }
+    }
+    g->ptr[n] = z;
+    part.n = n;
+    part.n_edges = z;
+    return part;
 }
 
 /* ---- coarse copies ---- */
@@ -9371,26 +9388,27 @@ static int32_t hdi_nd_number(const hdi_nd *nd, const hd_csr *a, int32_t *order, 
  * last vertex that was left alone. weight [n]: of the clusters. Returns their number. */
 static int32_t hdi_nd_cluster(const hdi_nd_graph *g, int32_t limit, int32_t *weight) {
     int32_t v, p, n = 0, single = -1, *map = g->map;
-    for (v = 0; v < g->n; v++) map[v] = -1;
+    hdi_fill_i32(map, g->n, -1);
     for (v = 0; v < g->n; v++) {
-        int32_t wv, sum, join = -1;
+        const int32_t wv = hdi_nd_weight(g, v);
+        int32_t join = -1;
         if (map[v] >= 0) continue;
-        sum = wv = g->w ? g->w[v] : 1;
         map[v] = n;
+        weight[n] = wv;
         for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
-            const int32_t u = g->adj[p];
+            const int32_t u = g->adj[p], wu = u < g->n ? hdi_nd_weight(g, u) : 0;
             if (u >= g->n) continue;
-            if (map[u] < 0) {
-                const int32_t wu = g->w ? g->w[u] : 1;
-                if (sum + wu > limit) continue;
+            if (map[u] < 0 && weight[n] + wu <= limit) {
                 map[u] = n;
-                sum += wu;
-            } else if (join < 0 && map[u] != n && weight[map[u]] + wv <= limit + limit / 4) join = map[u];
+                weight[n] += wu;
+            } else if (join < 0 && map[u] >= 0 && map[u] != n && weight[map[u]] + wv <= limit + limit / 4) {
+                join = map[u];
+            }
         }
-        if (sum == wv && join < 0 && single >= 0 && weight[single] + wv <= limit) join = single;
-        if (sum > wv || join < 0) {
-            if (sum == wv) single = n;
-            weight[n++] = sum;
+        if (weight[n] == wv && join < 0 && single >= 0 && weight[single] + wv <= limit) join = single;
+        if (weight[n] > wv || join < 0) {
+            if (weight[n] == wv) single = n;
+            n++;
         } else {
             map[v] = join;
             weight[join] += wv;
@@ -9399,12 +9417,11 @@ static int32_t hdi_nd_cluster(const hdi_nd_graph *g, int32_t limit, int32_t *wei
     return n;
 }
 
-/* Makes c, the graph of the clusters of g, with summed weights. c->n and c->w are set before. c->adj and
- * c->ew have room for space > 0 entries. member [g->n], start [c->n + 1], mark [c->n]. Returns 0 if the room
- * is too small. */
-static int hdi_nd_contract(const hdi_nd_graph *g, hdi_nd_graph *c, int32_t space, int32_t *member,
+/* Makes c, the graph of the clusters of g, with summed weights; c->n is set before. Copies have room for
+ * space > 0 entries. member [g->n], start [c->n + 1], mark [c->n]. Returns 0 if the room is too small. */
+static int hdi_nd_contract(const hdi_nd_graph *g, hdi_nd_graph *c, int64_t space, int32_t *member,
                            int32_t *start, int32_t *mark) {
-    const int32_t *map = g->map, *ew = g->ew;
+    const int32_t *map = g->map, bin = (int32_t)(space - 1);   /* edges in a cluster go there */
     int32_t v, i, m, p, z = 0, *adj = c->adj, *sum = c->ew;
     hdi_group(map, g->n, c->n, start, member);
     hdi_fill_i32(mark, c->n, -1);
@@ -9412,13 +9429,14 @@ static int hdi_nd_contract(const hdi_nd_graph *g, hdi_nd_graph *c, int32_t space
         const int32_t row = z;
         c->ptr[i] = z;
         c->id[i] = g->id[member[start[i]]];
-        mark[i] = space - 1;                     /* where edges inside the cluster go, to be forgotten */
-        sum[space - 1] = 0;
+        c->w[i] = sum[bin] = 0;
+        mark[i] = bin;
         for (m = start[i]; m < start[i + 1]; m++) {
             v = member[m];
-            if (g->ptr[v + 1] - g->ptr[v] >= space - z) return 0;
+            c->w[i] += hdi_nd_weight(g, v);
+            if (g->ptr[v + 1] - g->ptr[v] > bin - z) return 0;
             for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
-                const int32_t u = g->adj[p], e = ew ? ew[p] : 1;
+                const int32_t u = g->adj[p], e = hdi_nd_edge(g, p);
                 int32_t d, at, fresh;
                 if (u >= g->n) continue;
                 d = map[u];                      /* no branches from here on: they would be unpredictable */
@@ -9445,9 +9463,9 @@ static int64_t hdi_nd_weigh(const hdi_nd_graph *g, const int32_t *map) {
     uint64_t sum = 0;
     int32_t v, p;
     for (v = 0; v < g->n; v++) {
-        weight += g->w ? g->w[v] : 1;
+        weight += hdi_nd_weight(g, v);
         for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
-            const int64_t u = g->adj[p], e = g->ew ? g->ew[p] : 1;
+            const int64_t u = g->adj[p], e = hdi_nd_edge(g, p);
             if (u == v || u < 0 || e <= 0) return -1;
             if (u >= g->n) continue;
             sum += (uint64_t)(u - v) * (uint64_t)((1 + u % 999 * (v % 999)) * e);
@@ -9457,75 +9475,63 @@ static int64_t hdi_nd_weigh(const hdi_nd_graph *g, const int32_t *map) {
     return sum == 0 ? weight : -1;
 }
 
-/* Where copies are made: the room for their entries. */
-typedef struct hdi_nd_room { int32_t *adj, *ew, n; } hdi_nd_room;
-
-/* Makes level[1], a coarser copy of level[0]. total: the weight of all vertices. Returns 0 if there is no
+/* Makes g[1], the graph of clusters of g[0]. total: the weight of all vertices. Returns 0 if there is no
  * room, or if the copy would not be much smaller. */
-static int hdi_nd_coarser(hdi_nd_graph *level, int32_t total, hdi_nd_room *room, hdi_nd_space *s) {
-    hdi_nd_graph *g = level, *c = level + 1;
-    const int32_t mean = total / g->n, most = total / HDI_ND_CLUSTERS;
-    hdi_nd_space temp;
-    int32_t *weight, *member, *start, *mark;
-    g->map = hdi_nd_take(s, g->n);
-    weight = hdi_nd_take(s, g->n);
-    c->n = hdi_nd_cluster(g, 8 * mean < most ? 8 * mean : most, weight);
-    if (c->n > g->n - g->n / 3) return 0;
-    s->at = weight + c->n;
-    c->w = weight;
-    c->ptr = hdi_nd_take(s, c->n + 1);
-    c->id = hdi_nd_take(s, c->n);
-    c->side = hdi_nd_take_bytes(s, c->n);
-    c->adj = room->adj;
-    c->ew = room->ew;
-    temp = *s;
+static int hdi_nd_coarser(hdi_nd_graph *g, int32_t total, hdi_nd_space *s) {
+    const int32_t mean = total / g->n, limit = hdi_low32(8 * mean, total / HDI_ND_CLUSTERS);
+    hdi_nd_graph *c = g + 1;
+    hdi_nd_space own = *s, temp;
+    int32_t *start, *mark, *member;
+    int64_t space;
+    if (hdi_nd_left(s) < 2 * (int64_t)g->n) return 0;
+    if (g->w) g->map = hdi_nd_take(&own, g->n);  /* a part has it */
+    c->n = hdi_nd_cluster(g, limit, own.at);
+    if (c->n > g->n - g->n / 3 || hdi_nd_left(&own) < 6 * (int64_t)c->n + g->n + 4) return 0;
+    c->ptr = hdi_nd_take(&own, c->n + 1);
+    c->id = hdi_nd_take(&own, c->n);
+    c->w = hdi_nd_take(&own, c->n);
+    c->side = hdi_nd_take_bytes(&own, c->n);
+    temp = own;
     member = hdi_nd_take(&temp, g->n);
     start = hdi_nd_take(&temp, c->n + 1);
     mark = hdi_nd_take(&temp, c->n);
-    if (!hdi_nd_contract(g, c, room->n, member, start, mark)) return 0;
+    space = hdi_nd_left(&temp) / 2;
+    c->adj = temp.at;
+    c->ew = temp.at + space;
+    if (space == 0 || !hdi_nd_contract(g, c, space, member, start, mark)) return 0;
+    space = c->ptr[c->n];
+    c->adj = (int32_t *)memmove(hdi_nd_take(&own, space), c->adj, (size_t)space * sizeof(int32_t));
+    c->ew = (int32_t *)memmove(hdi_nd_take(&own, space), c->ew, (size_t)space * sizeof(int32_t));
     if (HDI_AUDIT && hdi_nd_weigh(c, NULL) != hdi_nd_weigh(g, g->map)) HEATDIFF_ASSERT(0);
-    room->n -= c->ptr[c->n];
-    room->adj += c->ptr[c->n];
-    room->ew += c->ptr[c->n];
+    if (hdi_nd_left(&own) < 8 * (int64_t)c->n + 8) return 0;   /* hdi_nd_first_cut takes them */
+    *s = own;
     return 1;
 }
 
-/* ---- buckets ---- */
+/* ---- cutting edges ---- */
 
-/* A list of items for each gain and side. prev of the first item of a list is -1 - bucket. prev of an
- * item that is in no list is HDI_ND_NONE. */
-typedef struct hdi_nd_queue {
+/* Moves vertices from side to side. Those that may move next are in a list for each side and gain. prev of
+ * the first vertex of a list is -1 - its number; of a vertex in no list it is NONE, or LOCKED if it has
+ * moved. */
+typedef struct hdi_nd_mover {
+    const hdi_nd_graph *g;
     int32_t head[2 * HDI_ND_BUCKETS], top[2];
     int32_t *next, *prev;
-} hdi_nd_queue;
+    int32_t *gain, *moved;    /* gain[v]: weight of the edges to the other side less of those to its own */
+    int32_t shift;            /* gains of 2^shift are told apart */
+    double weight[2], cut, most;   /* of the sides, of the edges between them; most of a side */
+} hdi_nd_mover;
 
-static void hdi_nd_queue_add(hdi_nd_queue *q, int32_t item, int32_t side, int32_t gain) {
-    const int32_t b = side * HDI_ND_BUCKETS + gain, h = q->head[b];
-    q->next[item] = h;
-    q->prev[item] = -1 - b;
-    if (h >= 0) q->prev[h] = item;
-    q->head[b] = item;
-    if (gain > q->top[side]) q->top[side] = gain;
+/* For graphs of up to n vertices. */
+static hdi_nd_mover hdi_nd_mover_make(int32_t n, int32_t total, hdi_nd_space *s) {
+    hdi_nd_mover m;
+    m.most = HDI_ND_HEAVIER * total;
+    m.gain = hdi_nd_take(s, n);
+    m.next = hdi_nd_take(s, n);
+    m.prev = hdi_nd_take(s, n);
+    m.moved = hdi_nd_take(s, n);
+    return m;
 }
-
-static void hdi_nd_queue_remove(hdi_nd_queue *q, int32_t item) {
-    const int32_t next = q->next[item], prev = q->prev[item];
-    if (prev >= 0) q->next[prev] = next;
-    else q->head[-1 - prev] = next;
-    if (next >= 0) q->prev[next] = prev;
-    q->prev[item] = HDI_ND_NONE;
-}
-
-/* The item of largest gain on a side, or -1. */
-static int32_t hdi_nd_queue_best(hdi_nd_queue *q, int32_t side) {
-    const int32_t *head = q->head + side * HDI_ND_BUCKETS;
-    int32_t t = q->top[side];
-    while (t >= 0 && head[t] < 0) t--;
-    q->top[side] = t;
-    return t < 0 ? -1 : head[t];
-}
-
-/* ---- cutting edges ---- */
 
 /* What a cut costs: its size, and a little more if the halves differ in weight. */
 static double hdi_nd_cost(double cut, double a, double b) {
@@ -9533,137 +9539,132 @@ static double hdi_nd_cost(double cut, double a, double b) {
     return (cut + 1) * (1 + HDI_ND_UNEVEN * im * im);
 }
 
-typedef struct hdi_nd_cut { double weight[2], cut, most; } hdi_nd_cut;
-
-typedef struct hdi_nd_mover {
-    const hdi_nd_graph *g;
-    hdi_nd_queue q;
-    int32_t *gain, *moved;    /* gain[v]: weight of the edges to the other side less of those to its own */
-    int8_t *locked;
-    int32_t shift;            /* gains of 2^shift are told apart */
-} hdi_nd_mover;
-
-static int32_t hdi_nd_bucket(const hdi_nd_mover *m, int32_t gain) {
-    const int32_t half = HDI_ND_BUCKETS / 2, b = half + (gain < 0 ? -(-gain >> m->shift) : gain >> m->shift);
-    return b < 0 ? 0 : b >= HDI_ND_BUCKETS ? HDI_ND_BUCKETS - 1 : b;
+/* The cost of the cut at hand. */
+static double hdi_nd_mover_cost(const hdi_nd_mover *m) {
+    return hdi_max(m->weight[0], m->weight[1]) > m->most ? DBL_MAX
+        : hdi_nd_cost(m->cut, m->weight[0], m->weight[1]);
 }
 
-static hdi_nd_mover hdi_nd_mover_make(const hdi_nd_graph *g, hdi_nd_space *s) {
-    hdi_nd_mover m;
-    m.g = g;
-    m.gain = hdi_nd_take(s, g->n);
-    m.q.next = hdi_nd_take(s, g->n);
-    m.q.prev = hdi_nd_take(s, g->n);
-    m.moved = hdi_nd_take(s, g->n);
-    m.locked = hdi_nd_take_bytes(s, g->n);
-    return m;
+static void hdi_nd_mover_add(hdi_nd_mover *m, int32_t v) {
+    const int32_t half = HDI_ND_BUCKETS / 2, side = m->g->side[v], gain = m->gain[v];
+    const int32_t k = half + (gain < 0 ? -(-gain >> m->shift) : gain >> m->shift);
+    const int32_t at = hdi_high32(0, hdi_low32(k, HDI_ND_BUCKETS - 1)), b = side * HDI_ND_BUCKETS + at;
+    m->next[v] = m->head[b];
+    m->prev[v] = -1 - b;
+    if (m->head[b] >= 0) m->prev[m->head[b]] = v;
+    m->head[b] = v;
+    m->top[side] = hdi_high32(m->top[side], at);
 }
 
-/* Computes the gains of all vertices and the cut's weights. Vertices on the cut enter the queue. */
-static void hdi_nd_mover_start(hdi_nd_mover *m, hdi_nd_cut *cut) {
+static void hdi_nd_mover_remove(hdi_nd_mover *m, int32_t v) {
+    const int32_t next = m->next[v], prev = m->prev[v];
+    if (prev == HDI_ND_NONE) return;
+    if (prev >= 0) m->next[prev] = next;
+    else m->head[-1 - prev] = next;
+    if (next >= 0) m->prev[next] = prev;
+}
+
+/* Computes the gains of all vertices and the cut's weights. Vertices on the cut enter the lists. */
+static void hdi_nd_mover_start(hdi_nd_mover *m) {
     const hdi_nd_graph *g = m->g;
-    int32_t v, p, largest = 1;
-    double sum = 0;
-    cut->weight[0] = cut->weight[1] = 0;
-    memset(m->q.head, 0xff, sizeof m->q.head);
-    m->q.top[0] = m->q.top[1] = -1;
+    int32_t v, p, n = 0, largest = 1;
+    m->cut = m->weight[0] = m->weight[1] = 0;
+    m->top[0] = m->top[1] = -1;
+    m->shift = 0;
+    hdi_fill_i32(m->head, 2 * HDI_ND_BUCKETS, -1);
     for (v = 0; v < g->n; v++) {
         int32_t in = 0, out = 0;
         for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
-            const int32_t u = g->adj[p], e = g->ew ? g->ew[p] : 1;
+            const int32_t u = g->adj[p], e = hdi_nd_edge(g, p);
             if (u >= g->n) continue;
             out += e & -(g->side[u] ^ g->side[v]);
             in += e;
         }
         in -= out;
         m->gain[v] = out - in;
-        m->q.prev[v] = out ? HDI_ND_NONE + 1 : HDI_ND_NONE;   /* a mark: to be entered below */
-        if (out > in && out > largest) largest = out;
-        if (out && in > largest) largest = in;
-        sum += out;
-        cut->weight[g->side[v]] += g->w ? g->w[v] : 1;
+        m->prev[v] = HDI_ND_NONE;
+        m->weight[g->side[v]] += hdi_nd_weight(g, v);
+        if (!out) continue;
+        m->moved[n++] = v;
+        m->cut += 0.5 * out;
+        largest = hdi_high32(largest, hdi_high32(in, out));
     }
-    cut->cut = 0.5 * sum;
-    m->shift = 0;
     while (largest >> m->shift >= HDI_ND_BUCKETS / 2) m->shift++;
-    for (v = 0; v < g->n; v++)
-        if (m->q.prev[v] != HDI_ND_NONE) hdi_nd_queue_add(&m->q, v, g->side[v], hdi_nd_bucket(m, m->gain[v]));
-    memset(m->locked, 0, (size_t)g->n);
+    for (v = 0; v < n; v++) hdi_nd_mover_add(m, m->moved[v]);
 }
 
 /* Moves v to the other side and updates the gains of its neighbours. */
-static void hdi_nd_mover_move(hdi_nd_mover *m, int32_t v, hdi_nd_cut *cut) {
+static void hdi_nd_mover_move(hdi_nd_mover *m, int32_t v) {
     const hdi_nd_graph *g = m->g;
     const int8_t to = (int8_t)(1 - g->side[v]);
-    const int32_t wv = g->w ? g->w[v] : 1;
     int32_t p;
     g->side[v] = to;
-    cut->weight[to] += wv;
-    cut->weight[1 - to] -= wv;
-    cut->cut -= m->gain[v];
+    m->weight[to] += hdi_nd_weight(g, v);
+    m->weight[1 - to] -= hdi_nd_weight(g, v);
+    m->cut -= m->gain[v];
     m->gain[v] = -m->gain[v];
     for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
-        const int32_t u = g->adj[p], e = g->ew ? g->ew[p] : 1;
+        const int32_t u = g->adj[p], e = hdi_nd_edge(g, p);
         if (u >= g->n) continue;
         m->gain[u] += g->side[u] == to ? -2 * e : 2 * e;
-        if (m->locked[u]) continue;
-        if (m->q.prev[u] != HDI_ND_NONE) hdi_nd_queue_remove(&m->q, u);
-        hdi_nd_queue_add(&m->q, u, g->side[u], hdi_nd_bucket(m, m->gain[u]));
+        if (m->prev[u] == HDI_ND_LOCKED) continue;
+        hdi_nd_mover_remove(m, u);
+        hdi_nd_mover_add(m, u);
     }
 }
 
 /* The vertex to move next is the one of largest gain, provided that the side it goes to stays below `most` or
  * below the side it leaves. Returns -1 if there is none. */
-static int32_t hdi_nd_mover_next(hdi_nd_mover *m, const hdi_nd_cut *cut) {
-    int32_t s, best = -1, gain = 0;
+static int32_t hdi_nd_mover_next(hdi_nd_mover *m) {
+    int32_t s, best = -1;
     for (s = 0; s < 2; s++) {
-        const int32_t v = hdi_nd_queue_best(&m->q, s);
+        const int32_t *head = m->head + s * HDI_ND_BUCKETS;
+        int32_t v;
         double after;
-        if (v < 0) continue;
-        after = cut->weight[1 - s] + (m->g->w ? m->g->w[v] : 1);
-        if (after > cut->most && after >= cut->weight[s]) continue;
-        if (best >= 0 && (m->gain[v] < gain || (m->gain[v] == gain && cut->weight[1] <= cut->weight[0])))
-            continue;
+        while (m->top[s] >= 0 && head[m->top[s]] < 0) m->top[s]--;
+        if (m->top[s] < 0) continue;
+        v = head[m->top[s]];
+        after = m->weight[1 - s] + hdi_nd_weight(m->g, v);
+        if (after > m->most && after >= m->weight[s]) continue;
+        if (best >= 0 && (m->gain[v] < m->gain[best] ||
+                          (m->gain[v] == m->gain[best] && m->weight[1] <= m->weight[0]))) continue;
         best = v;
-        gain = m->gain[v];
     }
     return best;
 }
 
 /* Passes of Fiduccia and Mattheyses. A pass moves the best vertex again and again, even at a loss, but no
  * vertex twice. At its end it goes back to the best cut seen. */
-static void hdi_nd_refine_edges(hdi_nd_mover *m, hdi_nd_cut *cut, int32_t passes) {
-    const int64_t patience = hdi_least(20 + m->g->n / 20, HDI_ND_PATIENCE);
-    while (passes-- > 0) {
-        double first, best;
-        int32_t n = 0, keep = 0, v;
-        hdi_nd_mover_start(m, cut);
-        first = best = hdi_nd_cost(cut->cut, cut->weight[0], cut->weight[1]);
-        if (hdi_max(cut->weight[0], cut->weight[1]) > cut->most) first = best = DBL_MAX;
-        while (n - keep < patience && (v = hdi_nd_mover_next(m, cut)) >= 0) {
-            double now;
-            hdi_nd_queue_remove(&m->q, v);
-            m->locked[v] = 1;
-            hdi_nd_mover_move(m, v, cut);
+static void hdi_nd_refine(hdi_nd_mover *m, const hdi_nd_graph *g) {
+    const int64_t patience = hdi_least(20 + g->n / 20, HDI_ND_PATIENCE);
+    double first, best = 0;
+    int32_t v, pass;
+    m->g = g;
+    for (pass = 0; pass < HDI_ND_PASSES; pass++) {
+        int32_t n = 0, keep = 0;
+        hdi_nd_mover_start(m);
+        first = best = hdi_nd_mover_cost(m);
+        while (n - keep < patience && (v = hdi_nd_mover_next(m)) >= 0) {
+            hdi_nd_mover_remove(m, v);
+            m->prev[v] = HDI_ND_LOCKED;
+            hdi_nd_mover_move(m, v);
             m->moved[n++] = v;
-            now = hdi_nd_cost(cut->cut, cut->weight[0], cut->weight[1]);
-            if (now < best && hdi_max(cut->weight[0], cut->weight[1]) <= cut->most) {
-                best = now;
-                keep = n;
-            }
+            if (hdi_nd_mover_cost(m) >= best) continue;
+            best = hdi_nd_mover_cost(m);
+            keep = n;
         }
-        while (n > keep) hdi_nd_mover_move(m, m->moved[--n], cut);
-        if (HDI_AUDIT) hdi_nd_mover_start(m, cut);   /* anew: this costs what the moves have led to */
-        HEATDIFF_ASSERT(best >= DBL_MAX ||
-            fabs(hdi_nd_cost(cut->cut, cut->weight[0], cut->weight[1]) - best) <= 1e-9 * best);
+        while (n > keep) hdi_nd_mover_move(m, m->moved[--n]);
+        if (HDI_AUDIT) hdi_nd_mover_start(m);    /* anew: this costs what the moves have led to */
+        HEATDIFF_ASSERT(best >= DBL_MAX || fabs(hdi_nd_mover_cost(m) - best) <= 1e-9 * best);
         if (!(best < first)) break;
     }
 }
 
 /* ---- the first cut ---- */
 
+/* The vertex whose place is farthest from that of a vertex. */
 static int32_t hdi_nd_farthest(const hdi_nd *nd, const hdi_nd_graph *g, int32_t from) {
-    int32_t v, d, far_v = 0;
+    int32_t v, d, found = 0;
     double most = -1;
     for (v = 0; v < g->n; v++) {
         double x, sum = 0;
@@ -9671,18 +9672,17 @@ static int32_t hdi_nd_farthest(const hdi_nd *nd, const hdi_nd_graph *g, int32_t 
             x = hdi_nd_place(nd, g->id[v], d) - hdi_nd_place(nd, g->id[from], d);
             sum += x * x;
         }
-        if (sum > most) {
-            most = sum;
-            far_v = v;
-        }
+        if (sum <= most) continue;
+        most = sum;
+        found = v;
     }
-    return far_v;
+    return found;
 }
 
 /* dist = number of edges from start; g->n where none leads. Returns the vertex reached last. */
 static int32_t hdi_nd_steps(const hdi_nd_graph *g, int32_t start, int32_t *dist, int32_t *queue) {
     int32_t v, p, head = 0, tail = 1;
-    for (v = 0; v < g->n; v++) dist[v] = g->n;
+    hdi_fill_i32(dist, g->n, g->n);
     dist[start] = 0;
     queue[0] = start;
     while (head < tail) {
@@ -9697,42 +9697,6 @@ static int32_t hdi_nd_steps(const hdi_nd_graph *g, int32_t start, int32_t *dist,
     return queue[tail - 1];
 }
 
-/* A monotone map of doubles to integers. */
-static uint64_t hdi_nd_key(double x) {
-    uint64_t u;
-    memcpy(&u, &x, sizeof u);
-    return u >> 63 ? ~u : u | 0x8000000000000000u;
-}
-
-/* The values along which the vertices are swept, as keys to sort by. kind 0: places along a line between two
- * vertices far apart; 1: differences of graph distances from two such vertices; others: places along a fixed
- * direction. Returns 0 if all values are equal. work [3 g->n]. */
-static int hdi_nd_sweep_keys(const hdi_nd *nd, const hdi_nd_graph *g, int32_t kind, hdi_pair *key,
-                             int32_t *work) {
-    static const signed char hdi_directions[9][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {1, -1, 0},
-                                                 {1, 0, 1}, {1, 0, -1}, {0, 1, 1}, {0, 1, -1}};
-    int32_t v, a, b, *da = work, *db = work + g->n, *queue = work + 2 * g->n;
-    int differ = 0;
-    double d[3] = {0, 0, 0};
-    if (kind == 1) {
-        a = hdi_nd_steps(g, hdi_nd_steps(g, 0, da, queue), da, queue);
-        b = hdi_nd_steps(g, a, db, queue);
-        hdi_nd_steps(g, b, da, queue);
-    } else if (kind == 0) {
-        a = hdi_nd_farthest(nd, g, 0);
-        b = hdi_nd_farthest(nd, g, a);
-        for (v = 0; v < 3; v++) d[v] = hdi_nd_place(nd, g->id[b], v) - hdi_nd_place(nd, g->id[a], v);
-    } else for (v = 0; v < 3; v++) d[v] = hdi_directions[(kind - 2) % 9][v];
-    for (v = 0; v < g->n; v++) {
-        double x = kind == 1 ? da[v] - db[v] : 0;
-        for (b = 0; kind != 1 && b < 3; b++) x += d[b] * (double)(float)hdi_nd_place(nd, g->id[v], b);
-        key[v].key = hdi_nd_key(x);
-        key[v].id = v;
-        if (key[v].key != key[0].key) differ = 1;
-    }
-    return differ;
-}
-
 /* Sets the sides: vertices up to the best place in the order of key are on side 0, the others on side 1. */
 static void hdi_nd_sweep(const hdi_nd_graph *g, const hdi_pair *key, double total) {
     double weight = 0, cut = 0, best = DBL_MAX;
@@ -9740,46 +9704,71 @@ static void hdi_nd_sweep(const hdi_nd_graph *g, const hdi_pair *key, double tota
     memset(g->side, 1, (size_t)g->n);
     for (i = 0; i < g->n; i++) {
         const int32_t v = (int32_t)key[i].id;
-        double now;
+        double now, apart;
         g->side[v] = 0;
-        weight += g->w ? g->w[v] : 1;
-        for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
-            const int32_t u = g->adj[p], e = g->ew ? g->ew[p] : 1;
-            if (u < g->n) cut += g->side[u] ? e : -e;
-        }
-        now = hdi_nd_cost(cut, weight, total - weight);
-        if (fabs(2 * weight - total) > HDI_ND_SWEPT * total)
-            now = 1e30 * (1 + fabs(2 * weight - total) / total);
-        if (now < best) {
-            best = now;
-            keep = i + 1;
-        }
+        weight += hdi_nd_weight(g, v);
+        for (p = g->ptr[v]; p < g->ptr[v + 1]; p++)
+            if (g->adj[p] < g->n) cut += (2 * g->side[g->adj[p]] - 1) * hdi_nd_edge(g, p);
+        apart = fabs(2 * weight - total) / total;
+        now = apart > HDI_ND_SWEPT ? 1e30 * (1 + apart) : hdi_nd_cost(cut, weight, total - weight);
+        if (now >= best) continue;
+        best = now;
+        keep = i + 1;
     }
     for (i = keep; i < g->n; i++) g->side[key[i].id] = 1;
 }
 
+/* A monotone map of doubles to integers. */
+static uint64_t hdi_nd_key(double x) {
+    const uint64_t u = hdi_bits(x);
+    return u >> 63 ? ~u : u | 0x8000000000000000u;
+}
+
+/* The values along which the vertices are swept, as keys to sort by. kind 0: places along a line between two
+ * vertices far apart; 1: differences of graph distances from two such vertices; others: places along a fixed
+ * direction. work [3 g->n] */
+static void hdi_nd_sweep_keys(const hdi_nd *nd, const hdi_nd_graph *g, int32_t kind, hdi_pair *key,
+                              int32_t *work) {
+    static const signed char hdi_directions[9][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {1, -1, 0},
+                                                 {1, 0, 1}, {1, 0, -1}, {0, 1, 1}, {0, 1, -1}};
+    int32_t v, d, a, b, *da = work, *db = work + g->n, *queue = work + 2 * g->n;
+    double way[3] = {0, 0, 0};
+    if (kind == 1) {
+        a = hdi_nd_steps(g, hdi_nd_steps(g, 0, da, queue), da, queue);
+        b = hdi_nd_steps(g, a, db, queue);
+        hdi_nd_steps(g, b, da, queue);
+    } else {
+        a = hdi_nd_farthest(nd, g, 0);
+        b = hdi_nd_farthest(nd, g, a);
+        for (d = 0; d < 3; d++)
+            way[d] = kind > 1 ? hdi_directions[kind - 2][d]
+                              : hdi_nd_place(nd, g->id[b], d) - hdi_nd_place(nd, g->id[a], d);
+    }
+    for (v = 0; v < g->n; v++) {
+        double x = kind == 1 ? da[v] - db[v] : 0;
+        for (d = 0; d < 3; d++) x += way[d] * (double)(float)hdi_nd_place(nd, g->id[v], d);
+        key[v].key = hdi_nd_key(x);
+        key[v].id = v;
+    }
+}
+
 /* Cuts the coarsest copy: the best of several sweeps, each refined. */
-static void hdi_nd_first_cut(const hdi_nd *nd, const hdi_nd_graph *g, int32_t total, hdi_nd_space s) {
+static void hdi_nd_first_cut(const hdi_nd *nd, const hdi_nd_graph *g, int32_t total, hdi_nd_mover *m,
+                             hdi_nd_space s) {
     const int32_t tries = total > HDI_ND_LARGE ? 11 : total > HDI_ND_MIDDLING ? 5 : 2;
-    int32_t t, any = 0, *work;
+    int8_t *side = hdi_nd_take_bytes(&s, g->n);
+    int32_t t, *work = hdi_nd_take(&s, 3 * (int64_t)g->n);
+    hdi_pair *key = (hdi_pair *)(void *)hdi_nd_take(&s, 4 * (int64_t)g->n + 1);
     double best = DBL_MAX;
-    hdi_pair *key;
-    int8_t *side;
-    hdi_nd_mover m = hdi_nd_mover_make(g, &s);
-    hdi_nd_cut cut;
-    cut.most = HDI_ND_HEAVIER * total;
-    side = hdi_nd_take_bytes(&s, g->n);
-    work = hdi_nd_take(&s, 3 * (int64_t)g->n);
-    if ((uintptr_t)s.at % sizeof(uint64_t)) hdi_nd_take(&s, 1);
-    key = (hdi_pair *)((void *)hdi_nd_take(&s, 4 * (int64_t)g->n));
+    if ((uintptr_t)key % sizeof(uint64_t)) key = (hdi_pair *)(void *)((int32_t *)(void *)key + 1);
+    memset(side, 0, (size_t)g->n);
     for (t = 0; t < tries; t++) {
         double cost;
-        if (!hdi_nd_sweep_keys(nd, g, t, key, work) && (any || t + 1 < tries)) continue;
-        any = 1;
+        hdi_nd_sweep_keys(nd, g, t, key, work);
         hdi_sort_pairs(key, g->n);
         hdi_nd_sweep(g, key, total);
-        hdi_nd_refine_edges(&m, &cut, HDI_ND_PASSES);
-        cost = hdi_nd_cost(cut.cut, cut.weight[0], cut.weight[1]);
+        hdi_nd_refine(m, g);
+        cost = hdi_nd_cost(m->cut, m->weight[0], m->weight[1]);
         if (cost >= best) continue;
         best = cost;
         memcpy(side, g->side, (size_t)g->n);
@@ -9788,6 +9777,14 @@ static void hdi_nd_first_cut(const hdi_nd *nd, const hdi_nd_graph *g, int32_t to
 }
 
 /* ---- smallest separator in a band ---- */
+
+/* Whether v has a neighbour on this side. */
+static int hdi_nd_meets(const hdi_nd_graph *g, int32_t v, int32_t side) {
+    int32_t p;
+    for (p = g->ptr[v]; p < g->ptr[v + 1]; p++)
+        if (g->adj[p] < g->n && g->side[g->adj[p]] == side) return 1;
+    return 0;
+}
 
 /* Vertex-disjoint paths through the band around a separator, from what lies beyond it on side `from` to what
  * lies beyond it on the other side. The largest number of such paths is the smallest number of vertices that
@@ -9799,36 +9796,37 @@ typedef struct hdi_nd_flow {
     int32_t *seen, stamp;       /* states reached: [2 v], [2 v + 1] = stamp */
     int32_t *up, *log, n_log;   /* of a search: the state before each, all states seen */
     int32_t *link, head[2 * HDI_ND_MIDDLE], top;   /* states to go on from, by layer; farthest layer */
-    int8_t *inside, from;       /* layer: 0 outside, else HDI_ND_MIDDLE +- the distance, less on side from */
+    int8_t *layer, from;        /* 0 outside, else HDI_ND_MIDDLE +- the distance, less on side from */
 } hdi_nd_flow;
 
-/* Makes the band: the separator, band[0..n), and the vertices at most `layers` steps away from it, but no
- * more than `most` on each side. */
-static void hdi_nd_flow_band(hdi_nd_flow *f, int32_t n, int32_t most, int32_t layers) {
+/* Makes the band: the separator, band[0..n), and the vertices few steps away from it, but no more than a
+ * share on each side. Until it is cut, all of it counts as separator. */
+static void hdi_nd_flow_band(hdi_nd_flow *f, int32_t n) {
     const hdi_nd_graph *g = f->g;
-    int32_t i, p, begin = 0, room[2];
-    room[0] = room[1] = most;
-    f->n_band = n;
-    memset(f->inside, 0, (size_t)g->n);
-    for (i = 0; i < n; i++) f->inside[f->band[i]] = HDI_ND_MIDDLE;
-    while (layers-- > 0 && begin < f->n_band) {
-        const int32_t end = f->n_band;
+    int32_t i, p, steps, begin = 0, room[2];
+    room[0] = room[1] = g->n / HDI_ND_BAND;
+    memset(f->layer, 0, (size_t)g->n);
+    for (i = 0; i < n; i++) f->layer[f->band[i]] = HDI_ND_MIDDLE;
+    for (steps = 0; steps < HDI_ND_LAYERS; steps++) {
+        const int32_t end = n;
         for (; begin < end; begin++) {
             const int32_t v = f->band[begin];
             for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
                 const int32_t u = g->adj[p];
-                if (u >= g->n || f->inside[u] || room[g->side[u]] == 0) continue;
+                if (u >= g->n || f->layer[u] || room[g->side[u]] == 0) continue;
                 room[g->side[u]]--;
-                f->inside[u] = (int8_t)(f->inside[v] + (g->side[u] == f->from ? -1 : 1));
-                f->band[f->n_band++] = u;
+                f->layer[u] = (int8_t)(f->layer[v] + (g->side[u] == f->from ? -1 : 1));
+                f->band[n++] = u;
             }
         }
     }
-    for (i = 0; i < f->n_band; i++) {
+    for (i = 0; i < n; i++) {
         const int32_t v = f->band[i];
+        g->side[v] = 2;
         f->prev[v] = HDI_ND_NONE;
         f->seen[2 * v] = f->seen[2 * v + 1] = 0;
     }
+    f->n_band = n;
     f->stamp = 0;
 }
 
@@ -9844,9 +9842,10 @@ static void hdi_nd_flow_augment(hdi_nd_flow *f, int32_t state) {
     f->prev[state >> 1] = -1;
 }
 
-/* State `to` can be reached from state `from`: puts it into the list of its layer. */
+/* State `to` can be reached from state `from`: puts it into the list of its layer, if it was not seen yet. */
 static void hdi_nd_flow_push(hdi_nd_flow *f, int32_t to, int32_t from) {
-    const int32_t layer = f->inside[to >> 1];
+    const int32_t layer = f->layer[to >> 1];
+    if (f->seen[to] >= f->stamp) return;
     f->seen[to] = f->stamp;
     f->up[to] = from;
     f->link[to] = f->head[layer];
@@ -9860,14 +9859,13 @@ static void hdi_nd_flow_push(hdi_nd_flow *f, int32_t to, int32_t from) {
  * these states are dead from then on. */
 static int hdi_nd_flow_search(hdi_nd_flow *f, int32_t v) {
     const hdi_nd_graph *g = f->g;
-    int32_t p, i;
-    for (i = 0; i <= 2 * HDI_ND_LAYERS; i++) f->head[HDI_ND_MIDDLE - HDI_ND_LAYERS + i] = -1;
+    int32_t p;
+    hdi_fill_i32(f->head, 2 * HDI_ND_MIDDLE, -1);
     f->stamp++;
     f->n_log = f->top = 0;
     hdi_nd_flow_push(f, 2 * v, -1);
-    while (f->top >= HDI_ND_MIDDLE - HDI_ND_LAYERS) {
+    while (f->top > 0) {
         const int32_t state = f->head[f->top];
-        int32_t to = -1;
         if (state < 0) {
             f->top--;
             continue;
@@ -9875,143 +9873,73 @@ static int hdi_nd_flow_search(hdi_nd_flow *f, int32_t v) {
         f->head[f->top] = f->link[state];
         v = state >> 1;
         if (!(state & 1)) {             /* through v, or where a path is there already, back along it */
-            to = f->prev[v] == HDI_ND_NONE ? state + 1 : f->prev[v] < 0 ? -1 : 2 * f->prev[v] + 1;
-        } else {
-            for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
-                const int32_t u = g->adj[p];
-                if (u >= g->n) continue;
-                if (f->inside[u]) {
-                    if (f->seen[2 * u] < f->stamp) hdi_nd_flow_push(f, 2 * u, state);
-                } else if (g->side[u] != f->from) {
-                    hdi_nd_flow_augment(f, state);
-                    return 1;
-                }
-            }
-            if (f->prev[v] != HDI_ND_NONE) to = state - 1;
+            if (f->prev[v] == HDI_ND_NONE) hdi_nd_flow_push(f, state + 1, state);
+            else if (f->prev[v] >= 0) hdi_nd_flow_push(f, 2 * f->prev[v] + 1, state);
+            continue;
         }
-        if (to >= 0 && f->seen[to] < f->stamp) hdi_nd_flow_push(f, to, state);
+        for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
+            const int32_t u = g->adj[p];
+            if (u >= g->n) continue;
+            if (g->side[u] == 2) {
+                hdi_nd_flow_push(f, 2 * u, state);
+            } else if (g->side[u] != f->from) {
+                hdi_nd_flow_augment(f, state);
+                return 1;
+            }
+        }
+        if (f->prev[v] != HDI_ND_NONE) hdi_nd_flow_push(f, state - 1, state);
     }
     while (f->n_log > 0) f->seen[f->log[--f->n_log]] = HDI_ND_DEAD;
     return 0;
 }
 
-static int hdi_nd_flow_starts(const hdi_nd_flow *f, int32_t v) {
-    const hdi_nd_graph *g = f->g;
-    int32_t p;
-    for (p = g->ptr[v]; p < g->ptr[v + 1]; p++)
-        if (g->adj[p] < g->n && !f->inside[g->adj[p]] && g->side[g->adj[p]] == f->from) return 1;
-    return 0;
-}
-
-/* Finds the smallest separator within the band around band[0..n), and of several the one that is nearest to
- * side `from`. Sets the sides of the band. */
-static void hdi_nd_flow_run(hdi_nd_flow *f, int32_t n, int32_t most, int32_t layers) {
-    int32_t i, k = 0, paths = 0, cut = 0, begins = 0, *start;
-    hdi_nd_flow_band(f, n, most, layers);
-    start = f->band + f->n_band;
-    for (i = 0; i < f->n_band; i++)
-        if (hdi_nd_flow_starts(f, f->band[i])) start[k++] = f->band[i];
-    for (i = 0; i < k; i++)
-        if (f->seen[2 * start[i]] != HDI_ND_DEAD && f->prev[start[i]] != -1)
-            paths += hdi_nd_flow_search(f, start[i]);
-    for (i = 0; i < k; i++) f->seen[2 * start[i]] = HDI_ND_DEAD;
-    f->stamp = HDI_ND_DEAD;
-    for (i = 0; i < f->n_band; i++) {
-        const int32_t v = f->band[i];
-        f->g->side[v] = f->seen[2 * v + 1] == f->stamp ? f->from
-            : (int8_t)(f->seen[2 * v] == f->stamp ? 2 : 1 - f->from);
-        cut += f->g->side[v] == 2;
-        begins += f->prev[v] == -1;
+/* Replaces the separator list[0..n) by the smallest one within the band around it, and of several by the one
+ * that is nearest to the heavier side. Sets the sides of the band. list [2 g->n] */
+static void hdi_nd_flow_run(const hdi_nd_graph *g, int32_t *list, int32_t n, int8_t from, hdi_nd_space s) {
+    hdi_nd_flow f;
+    int32_t i, paths = 0, cut = 0;
+    f.g = g;
+    f.from = from;
+    f.band = list;
+    f.prev = hdi_nd_take(&s, g->n);
+    f.seen = hdi_nd_take(&s, 2 * (int64_t)g->n);
+    f.up = hdi_nd_take(&s, 2 * (int64_t)g->n);
+    f.link = hdi_nd_take(&s, 2 * (int64_t)g->n);
+    f.log = hdi_nd_take(&s, 2 * (int64_t)g->n);
+    f.layer = hdi_nd_take_bytes(&s, g->n);
+    hdi_nd_flow_band(&f, n);
+    for (i = 0; i < f.n_band; i++) {
+        const int32_t v = f.band[i];
+        if (!hdi_nd_meets(g, v, from)) continue;
+        if (f.seen[2 * v] != HDI_ND_DEAD) paths += hdi_nd_flow_search(&f, v);
+        f.seen[2 * v] = HDI_ND_DEAD;    /* it begins a path, or leads nowhere */
     }
-    if (HDI_AUDIT && (cut != paths || begins != paths || cut > n)) HEATDIFF_ASSERT(0);   /* Menger */
+    for (i = 0; i < f.n_band; i++) {
+        const int32_t v = f.band[i];
+        const int in = f.seen[2 * v] == HDI_ND_DEAD, out = f.seen[2 * v + 1] == HDI_ND_DEAD;
+        g->side[v] = out ? from : (int8_t)(in ? 2 : 1 - from);
+        cut += g->side[v] == 2;
+    }
+    if (HDI_AUDIT && (cut != paths || cut > n)) HEATDIFF_ASSERT(0);   /* Menger */
 }
 
 /* ---- parts ---- */
 
-/* Takes the cut of level[from] down to level[1] and improves it on each copy. */
-static void hdi_nd_descend(hdi_nd_graph *level, int32_t from, int32_t total, hdi_nd_space s) {
-    int32_t l, v;
-    for (l = from - 1; l > 0; l--) {
-        hdi_nd_graph *g = level + l;
-        hdi_nd_space temp = s;
-        hdi_nd_mover m = hdi_nd_mover_make(g, &temp);
-        hdi_nd_cut cut;
-        cut.most = HDI_ND_HEAVIER * total;
-        for (v = 0; v < g->n; v++) g->side[v] = g[1].side[g->map[v]];
-        hdi_nd_refine_edges(&m, &cut, HDI_ND_PASSES);
+/* Sets the sides of a part by its copies g[1..l]: cuts the coarsest copy and takes the cut down. Fills list
+ * with the vertices of one side that touch the other side: that where these are fewer. Returns their
+ * number. */
+static int32_t hdi_nd_cut(const hdi_nd *nd, hdi_nd_graph *g, int32_t l, int32_t *list, hdi_nd_mover *m,
+                          hdi_nd_space s) {
+    int32_t v, p, n = 0, kept = 0, touch[2] = {0, 0};
+    int32_t *near_cut = l > 0 ? m->gain : NULL;
+    hdi_nd_first_cut(nd, g + l, g->n, m, s);
+    while (l-- > 0) {
+        for (v = 0; v < g[l].n; v++) g[l].side[v] = g[l + 1].side[g[l].map[v]];
+        if (l > 0) hdi_nd_refine(m, g + l);
     }
-}
-
-/* Where the clusters of a part are stored. */
-static void hdi_nd_clusters_of(const hdi_nd *nd, const hdi_nd_part *p, hdi_nd_graph *c) {
-    const hdi_nd_buffer *b = nd->buffer + p->buffer;
-    c->n = p->clusters;
-    c->ptr = b->cptr + 2 * (size_t)p->first;
-    c->adj = b->cadj + p->edge / 4;
-    c->ew = b->cew + p->edge / 4;
-    c->id = b->cid + p->first;
-}
-
-/* Makes level[1]: clusters of clusters of level[0], of about a dozen vertices each. If they do not fit into
- * the part's slices, it stays empty. */
-static void hdi_nd_fresh(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_graph *level, hdi_nd_space s) {
-    hdi_nd_graph temp[3];
-    hdi_nd_room room;
-    int32_t v, n = 0, *map = level->map;
-    temp[0] = *level;
-    room.n = part->n_edges;
-    room.adj = hdi_nd_take(&s, room.n);
-    room.ew = hdi_nd_take(&s, room.n);
-    while (n < 2 && (n == 0 || temp[n].n > 2 * HDI_ND_COARSE) && hdi_nd_coarser(temp + n, part->n, &room, &s))
-        n++;
-    level[1].n = 0;
-    if (n == 0 || temp[n].ptr[temp[n].n] > part->n_edges / 4 - 1) return;
-    for (v = 0; v < part->n; v++) map[v] = n == 1 ? temp[0].map[v] : temp[1].map[temp[0].map[v]];
-    hdi_nd_clusters_of(nd, part, level + 1);
-    level[1].n = temp[n].n;
-    memcpy(level[1].ptr, temp[n].ptr, (size_t)(temp[n].n + 1) * sizeof(int32_t));
-    memcpy(level[1].adj, temp[n].adj, (size_t)temp[n].ptr[temp[n].n] * sizeof(int32_t));
-    memcpy(level[1].ew, temp[n].ew, (size_t)temp[n].ptr[temp[n].n] * sizeof(int32_t));
-    memcpy(level[1].id, temp[n].id, (size_t)temp[n].n * sizeof(int32_t));
-}
-
-static int hdi_nd_touches(const hdi_nd_graph *g, int32_t v) {
-    int32_t p;
-    for (p = g->ptr[v]; p < g->ptr[v + 1]; p++)
-        if (g->adj[p] < g->n && g->side[g->adj[p]] != g->side[v]) return 1;
-    return 0;
-}
-
-/* Sets the sides of level[0]: cuts the coarsest copy and takes the cut down. Fills list with the vertices of
- * one side that touch the other side, and takes the side where these are fewer. Returns their number. */
-static int32_t hdi_nd_cut_clusters(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_graph *level,
-                                   int32_t *list, hdi_nd_space s) {
-    hdi_nd_room room;
-    hdi_nd_graph *g = level;
-    int32_t l, v, p, n = 0, kept = 0, touch[2] = {0, 0};
-    int8_t *near_cut = NULL;
-    l = level[1].n > 0;
-    if (l) {
-        level[1].w = hdi_nd_take(&s, level[1].n);
-        level[1].side = hdi_nd_take_bytes(&s, level[1].n);
-        memset(level[1].w, 0, (size_t)level[1].n * sizeof(int32_t));
-        for (v = 0; v < g->n; v++) level[1].w[g->map[v]]++;
-    }
-    room.n = part->n_edges;
-    room.adj = hdi_nd_take(&s, room.n);
-    room.ew = hdi_nd_take(&s, room.n);
-    while (l + 1 < HDI_ND_LEVELS && level[l].n > HDI_ND_COARSE &&
-           hdi_nd_coarser(level + l, part->n, &room, &s))
-        l++;
-    hdi_nd_first_cut(nd, level + l, part->n, s);
-    hdi_nd_descend(level, l, part->n, s);
-    if (l > 0) {
-        near_cut = hdi_nd_take_bytes(&s, level[1].n);
-        for (v = 0; v < level[1].n; v++) near_cut[v] = (int8_t)hdi_nd_touches(level + 1, v);
-        for (v = 0; v < g->n; v++) g->side[v] = level[1].side[g->map[v]];
-    }
+    for (v = 0; near_cut && v < g[1].n; v++) near_cut[v] = hdi_nd_meets(g + 1, v, 1 - g[1].side[v]);
     for (v = 0; v < g->n; v++) {
-        if ((near_cut && !near_cut[g->map[v]]) || !hdi_nd_touches(g, v)) continue;
+        if ((near_cut && !near_cut[g->map[v]]) || !hdi_nd_meets(g, v, 1 - g->side[v])) continue;
         touch[g->side[v]]++;
         list[n++] = v;
     }
@@ -10029,69 +9957,66 @@ static int hdi_nd_measure(const hdi_nd_graph *g, int32_t *size) {
     return size[0] <= g->n - g->n / 5 && size[1] <= g->n - g->n / 5 && size[2] <= g->n / 2;
 }
 
-/* Sets level[0].side to 0, 1, or 2 in the separator, and size [3]. Returns 0 if no separator is good. */
-static int hdi_nd_dissect(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_graph *level, hdi_nd_space s,
-                          int32_t *size) {
-    hdi_nd_flow f;
-    hdi_nd_graph kept[2];
-    const int64_t n = part->n;
-    int32_t n_list;
-    f.g = level;
-    f.band = hdi_nd_take(&s, 2 * n);
-    if (level[1].n < HDI_ND_FRESH) hdi_nd_fresh(nd, part, level, s);
-    memcpy(kept, level, sizeof kept);
-    n_list = hdi_nd_cut_clusters(nd, part, level, f.band, s);
-    memcpy(level, kept, sizeof kept);   /* without what was in work space */
-    hdi_nd_measure(level, size);
-    f.prev = hdi_nd_take(&s, n);
-    f.seen = hdi_nd_take(&s, 2 * n);
-    f.up = hdi_nd_take(&s, 2 * n);
-    f.link = hdi_nd_take(&s, 2 * n);
-    f.log = hdi_nd_take(&s, 2 * n);
-    f.inside = hdi_nd_take_bytes(&s, n);
-    f.from = size[1] > size[0];
-    hdi_nd_flow_run(&f, n_list, part->n / HDI_ND_BAND, HDI_ND_LAYERS);
-    return hdi_nd_measure(level, size);
-}
-
-/* For audits: no edge joins one side to the other. */
-static int hdi_nd_separated(const hdi_nd_graph *g) {
-    int32_t v, p;
-    for (v = 0; v < g->n; v++)
-        for (p = g->ptr[v]; p < g->ptr[v + 1]; p++)
-            if (g->adj[p] < g->n && g->side[v] + g->side[g->adj[p]] == 1) return 0;
+/* Makes the clusters level[1] of the part level[0]: clusters of clusters, of about a dozen vertices each.
+ * Returns 0 if there are none. */
+static int hdi_nd_clusters(hdi_nd_graph *level, hdi_nd_space *s) {
+    int32_t v;
+    if (!hdi_nd_coarser(level, level->n, s)) return 0;
+    if (level[1].n <= 2 * HDI_ND_COARSE || !hdi_nd_coarser(level + 1, level->n, s)) return 1;
+    for (v = 0; v < level->n; v++) level->map[v] = level[1].map[level->map[v]];
+    level[1] = level[2];
     return 1;
 }
 
-/* Words of work space for so many vertices, entries and tasks. */
-static size_t hdi_nd_words(int32_t n, int32_t n_edges, int64_t tasks) {
-    return HDI_ND_WORDS * (size_t)n + 2 * (size_t)n_edges + HDI_ND_SLACK * (size_t)tasks;
+/* Sets the sides of the part level[0] to 0, 1, or 2 in the separator, and size [3]. Its clusters level[1] are
+ * made if there are too few. Returns 0 if no separator is good. */
+static int hdi_nd_dissect(const hdi_nd *nd, hdi_nd_graph *level, int32_t halo, hdi_nd_space *s,
+                          int32_t *size) {
+    hdi_nd_graph *g = level;
+    hdi_nd_space rest = *s;
+    hdi_nd_mover m;
+    int32_t *list = hdi_nd_take(s, 2 * (int64_t)g->n), n, v, l = 1;
+    if (level[1].n < HDI_ND_FRESH) {
+        rest.at = s->at;
+        rest.end -= 10 * (int64_t)g->n + halo;   /* for paths, exchanges, and the numbers of the children */
+        l = hdi_nd_clusters(level, &rest);
+        s->at = l ? rest.at : s->at;
+        level[1].n = l ? level[1].n : 0;
+    } else {
+        level[1].side = hdi_nd_take_bytes(s, level[1].n);
+        level[1].w = hdi_nd_take(s, level[1].n);
+        hdi_fill_i32(level[1].w, level[1].n, 0);
+        for (v = 0; v < g->n; v++) level[1].w[g->map[v]]++;
+    }
+    rest = *s;
+    m = hdi_nd_mover_make(level[l].n, g->n, &rest);
+    while (l > 0 && l + 1 < HDI_ND_LEVELS && level[l].n > HDI_ND_COARSE &&
+           hdi_nd_coarser(level + l, g->n, &rest))
+        l++;
+    n = hdi_nd_cut(nd, level, l, list, &m, rest);
+    hdi_nd_measure(g, size);
+    hdi_nd_flow_run(g, list, n, size[1] > size[0], *s);
+    return hdi_nd_measure(g, size);
 }
 
-/* The space of part i of the heap lies within that of the part it comes from, apart from all others. */
-static hdi_nd_space hdi_nd_space_of(const hdi_nd *nd, int64_t i) {
-    const hdi_nd_part *p = nd->part + i;
-    hdi_nd_space s;
-    while (i < HDI_ND_TASKS - 1) i = 2 * i + 1;
-    s.at = nd->work + hdi_nd_words(p->first, p->edge, i - (HDI_ND_TASKS - 1));
-    s.end = s.at + hdi_nd_words(p->n, p->n_edges, 1);
-    return s;
+/* g[0]: the part, g[1]: its clusters, in their slices. */
+static void hdi_nd_graphs_of(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_graph *g) {
+    memcpy(g, nd->buffer[part->buffer], 2 * sizeof *g);
+    g[0].n = part->n;
+    g[0].ptr += 2 * (size_t)part->first;
+    g[0].adj += part->edge;
+    g[0].id += part->first;
+    g[0].map += part->first;
+    g[1].n = part->clusters;
+    g[1].ptr += part->first;
+    g[1].adj += part->edge / 4;
+    g[1].ew += part->edge / 4;
+    g[1].id += part->first;
 }
 
-/* level[0] = the part, level[1] = its clusters. */
-static void hdi_nd_graphs_of(const hdi_nd *nd, const hdi_nd_part *p, hdi_nd_graph *level) {
-    const hdi_nd_buffer *b = nd->buffer + p->buffer;
-    memset(level, 0, 2 * sizeof *level);
-    level->n = p->n;
-    level->ptr = b->ptr + 2 * (size_t)p->first;
-    level->adj = b->adj + p->edge;
-    level->id = b->id + p->first;
-    level->map = b->map + p->first;
-    hdi_nd_clusters_of(nd, p, level + 1);
-}
-
-/* Makes a child of the vertices of one side, in the child's slices. Neighbours that are not on this side are
- * numbered as its halo when they are first met. number: work space for the part's vertices and its halo. */
+/* Makes a child of the vertices of one side of g, in the child's slices. Neighbours that are not on this side
+ * are numbered as its halo when they are first met. number: work space for the part's vertices and its
+ * halo. */
 static void hdi_nd_extract(const hdi_nd_graph *g, int32_t halo, int8_t side, hdi_nd_part *child,
                            const hdi_nd_graph *half, int32_t *number) {
     int32_t v, p, i = 0, z = 0;
@@ -10110,13 +10035,12 @@ static void hdi_nd_extract(const hdi_nd_graph *g, int32_t halo, int8_t side, hdi
     half->ptr[i] = child->n_edges = z;
 }
 
-/* Copies the clusters that have vertices on one side from g[1] to the child's slices, which have room for
- * space entries. Returns their number, or 0 if the room is too small. */
-static int32_t hdi_nd_extract_clusters(const hdi_nd_graph *g, int8_t side, hdi_nd_graph *child,
-                                       int32_t space, hdi_nd_space s) {
-    const hdi_nd_graph *c = g + 1;
-    int32_t v, p, i = 0, n = 0, z = 0, *number = hdi_nd_take(&s, c->n), *list = hdi_nd_take(&s, c->n);
-    for (v = 0; v < c->n; v++) number[v] = -1;
+/* Copies the clusters c that have vertices on one side of g to the child's slices half, which have room for
+ * space entries. Returns their number, or 0 if there is no room. number [2 c->n] */
+static int32_t hdi_nd_extract_clusters(const hdi_nd_graph *g, const hdi_nd_graph *c, int8_t side,
+                                       const hdi_nd_graph *half, int32_t space, int32_t *number) {
+    int32_t v, p, i = 0, n = 0, z = 0, *list = number + c->n;
+    hdi_fill_i32(number, c->n, -1);
     for (v = 0; v < g->n; v++) {
         const int32_t q = g->map[v];
         if (g->side[v] != side) continue;
@@ -10124,20 +10048,21 @@ static int32_t hdi_nd_extract_clusters(const hdi_nd_graph *g, int8_t side, hdi_n
             list[n] = q;
             number[q] = n++;
         }
-        child->map[i++] = number[q];
+        half[0].map[i++] = number[q];
     }
+    if (n >= i) return 0;
     for (i = 0; i < n; i++) {
         v = list[i];
-        child[1].ptr[i] = z;
-        child[1].id[i] = c->id[v];
+        half[1].ptr[i] = z;
+        half[1].id[i] = c->id[v];
         if (c->ptr[v + 1] - c->ptr[v] > space - z) return 0;
         for (p = c->ptr[v]; p < c->ptr[v + 1]; p++) {
-            child[1].adj[z] = number[c->adj[p]];
-            child[1].ew[z] = c->ew[p];
-            z += child[1].adj[z] >= 0;
+            half[1].adj[z] = number[c->adj[p]];
+            half[1].ew[z] = c->ew[p];
+            z += half[1].adj[z] >= 0;
         }
     }
-    child[1].ptr[n] = z;
+    half[1].ptr[n] = z;
     return n;
 }
 
@@ -10146,32 +10071,39 @@ static void hdi_nd_leaf(const hdi_nd *nd, const hdi_nd_part *part, const hdi_nd_
     hdi_amd_graph rows = {part->n + part->halo, part->n, g->ptr, g->adj};
     int32_t v, *local = nd->perm + part->first;
     if (!part->n) return;
-    if (hdi_amd_words(part->n, part->halo, part->n_edges) > s.end - s.at) rows.n = part->n;
-    HEATDIFF_ASSERT(hdi_amd_words(rows.n, 0, part->n_edges) <= s.end - s.at);
+    if (hdi_amd_words(part->n, part->halo, part->n_edges) > hdi_nd_left(&s)) rows.n = part->n;
+    HEATDIFF_ASSERT(hdi_amd_words(rows.n, 0, part->n_edges) <= hdi_nd_left(&s));
     hdi_amd_part(&rows, local, s.at);
     for (v = 0; v < part->n; v++) local[v] = g->id[local[v]];
+}
+
+/* Work space of a part. With so much there is nearly always room for the halo of a leaf. */
+static size_t hdi_nd_words(int32_t n, int32_t n_edges) {
+    return HDI_ND_WORDS * (size_t)n + 5 * (size_t)n_edges / 2;
 }
 
 /* Halves a part into child[2] and puts its separator last. Small parts, and parts without a good separator,
  * are ordered whole: their children are empty. */
 static void hdi_nd_split(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_part *child, hdi_nd_space s) {
-    hdi_nd_graph level[HDI_ND_LEVELS], half[2];
-    hdi_nd_space rest = s;
     const int small = part->n <= HDI_ND_LEAF || part->n_edges == 0;
+    hdi_nd_space rest = s;
+    hdi_nd_graph level[HDI_ND_LEVELS], half[2];
     int32_t v, size[3], last, *number;
     memset(child, 0, 2 * sizeof *child);
+    memset(level, 0, sizeof level);
     hdi_nd_graphs_of(nd, part, level);
-    level->side = hdi_nd_take_bytes(&rest, part->n);
     if (HDI_AUDIT && (hdi_nd_weigh(level, NULL) < 0 || hdi_nd_weigh(level + 1, NULL) < 0)) HEATDIFF_ASSERT(0);
-    if (small || !hdi_nd_dissect(nd, part, level, rest, size)) {
+    if (!small) level->side = hdi_nd_take_bytes(&rest, part->n);
+    if (small || !hdi_nd_dissect(nd, level, part->halo, &rest, size)) {
         hdi_nd_leaf(nd, part, level, s);
         return;
     }
-    if (HDI_AUDIT && !hdi_nd_separated(level)) HEATDIFF_ASSERT(0);
+    for (v = 0; HDI_AUDIT && v < part->n; v++)
+        HEATDIFF_ASSERT(level->side[v] == 2 || !hdi_nd_meets(level, v, 1 - level->side[v]));
     last = part->first + part->n - size[2];
     for (v = 0; v < part->n; v++)
         if (level->side[v] == 2) nd->perm[last++] = level->id[v];
-    number = hdi_nd_take(&rest, (int64_t)part->n + part->halo);
+    number = hdi_nd_take(&rest, 2 * (int64_t)part->n + part->halo);
     for (v = 0; v < 2; v++) {
         child[v].first = part->first + child[0].n;
         child[v].edge = part->edge + child[0].n_edges;
@@ -10179,8 +10111,8 @@ static void hdi_nd_split(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_part 
         hdi_nd_graphs_of(nd, child + v, half);
         hdi_nd_extract(level, part->halo, (int8_t)v, child + v, half, number);
         if (child[v].n > HDI_ND_LEAF && level[1].n > 0)
-            child[v].clusters = hdi_nd_extract_clusters(level, (int8_t)v, half,
-                                                        child[v].n_edges / 4 - 1, rest);
+            child[v].clusters = hdi_nd_extract_clusters(level, level + 1, (int8_t)v, half,
+                                                        child[v].n_edges / 4 - 1, number);
     }
 }
 
@@ -10194,84 +10126,20 @@ static void hdi_nd_subtree(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_spa
     hdi_nd_subtree(nd, child + 1, s);
 }
 
-/* Treats one part of the heap. After that its halves may be claimed. */
+/* Treats one part of the heap. After that its halves may be claimed. The space of a part lies within that of
+ * the part it comes from, apart from all others. */
 static void hdi_nd_task(void *arg, int64_t index, int32_t worker) {
     hdi_nd *nd = (hdi_nd *)arg;
-    const hdi_nd_space s = hdi_nd_space_of(nd, index);
+    hdi_nd_part *part = nd->part + index;
+    int32_t *work = nd->work + hdi_nd_words(part->first, part->edge);
+    const hdi_nd_space s = {work, work + hdi_nd_words(part->n, part->n_edges)};
     (void)worker;
     if (index >= HDI_ND_TASKS - 1) {
-        hdi_nd_subtree(nd, nd->part + index, s);
+        hdi_nd_subtree(nd, part, s);
         return;
     }
-    hdi_nd_split(nd, nd->part + index, nd->part + 2 * index + 1, s);
+    hdi_nd_split(nd, part, nd->part + 2 * index + 1, s);
     hdi_release(&nd->walk, (int32_t)(2 * index + 1), 2);
-}
-
-/* The matrix as the first part: its vertex k is row id[k] of a. */
-typedef struct hdi_nd_load_job {
-    const hdi_nd *nd;
-    const hd_csr *a;
-    const int32_t *inv;
-    int counted;
-} hdi_nd_load_job;
-
-/* Counts the neighbours of rows [begin, end), or reads them to where ptr says. */
-static void hdi_nd_load_rows(void *arg, int64_t begin, int64_t end) {
-    const hdi_nd_load_job *job = (const hdi_nd_load_job *)arg;
-    const hdi_nd_buffer *b = job->nd->buffer;
-    const hd_csr *a = job->a;
-    int64_t k, p;
-    for (k = begin; k < end; k++) {
-        const int32_t r = b->id[k];
-        int32_t z = job->counted ? b->ptr[k] : 0;
-        if (k + HDI_ROWS_AHEAD < end) HDI_PREFETCH(a->col + a->row_ptr[b->id[k + HDI_ROWS_AHEAD]]);
-        for (p = a->row_ptr[r]; p < a->row_ptr[r + 1]; p++) {
-            const int32_t u = job->inv[a->col[p]];
-            if (a->col[p] == r || u < 0) continue;
-            if (job->counted) b->adj[z] = u;
-            z++;
-        }
-        if (!job->counted) b->ptr[k + 1] = z;
-    }
-}
-
-/* Reads the n rows that are not too long as one part. */
-static hdi_nd_part hdi_nd_load(hdi_nd_load_job *job, int32_t n, hd_context *ctx) {
-    int32_t k, *ptr = job->nd->buffer->ptr;
-    hdi_nd_part part;
-    memset(&part, 0, sizeof part);
-    hdi_parallel_ranges(ctx, n, HDI_ND_BLOCK, hdi_nd_load_rows, job);
-    for (ptr[0] = k = 0; k < n; k++) ptr[k + 1] += ptr[k];
-    job->counted = 1;
-    hdi_parallel_ranges(ctx, n, HDI_ND_BLOCK, hdi_nd_load_rows, job);
-    part.n = n;
-    part.n_edges = ptr[n];
-    return part;
-}
-
-static void hdi_nd_buffer_make(hdi_nd_buffer *b, const hd_csr *a, hdi_scope *s) {
-    const uint64_t n = (uint64_t)a->n_rows + 1, nnz = (uint64_t)a->nnz + 1;
-    int32_t *p = HDI_TAKE(s, int32_t, 7 * n + nnz + 2 * (nnz / 4 + 1));
-    if (!p) return;
-    b->ptr = p;
-    b->cptr = b->ptr + 2 * n;
-    b->id = b->cptr + 2 * n;
-    b->map = b->id + n;
-    b->cid = b->map + n;
-    b->adj = b->cid + n;
-    b->cadj = b->adj + nnz;
-    b->cew = b->cadj + nnz / 4 + 1;
-}
-
-/* Orders the whole matrix, which is part 0 of the heap. */
-static void hdi_nd_run(hdi_nd *nd, hd_context *ctx, hd_error *e) {
-    hdi_walk_open(&nd->walk, ctx, HDI_ND_NODES, nd->order, hdi_nd_task, nd);
-    nd->walk.stage = "order";
-    nd->walk.from = 0.1;
-    nd->walk.to = 0.9;
-    nd->walk.e = e;
-    hdi_release(&nd->walk, 0, 1);
-    hdi_walk_run(&nd->walk);
 }
 
 /* perm[k] = row of the symmetric pattern a (both triangles, the diagonal may be there) that is eliminated
@@ -10280,26 +10148,38 @@ static void hdi_nd_run(hdi_nd *nd, hd_context *ctx, hd_error *e) {
 static hd_status hdi_nd_order(const hd_csr *a, const double *xyz, int32_t *perm, hd_context *ctx,
                               hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
-    const uint64_t n = (uint64_t)a->n_rows;
-    int32_t k, *inv = HDI_TAKE(&s, int32_t, n + 1);
+    const uint64_t n = (uint64_t)a->n_rows, nnz = (uint64_t)a->nnz;
+    int32_t k, q, *inv = HDI_TAKE(&s, int32_t, n + 1);
+    uint64_t *work;
     hdi_nd nd;
-    hdi_nd_load_job job = {&nd, a, inv, 0};
     if (a->nnz > INT32_MAX / 2 || n > INT32_MAX / 4)
         hdi_fail(e, HD_ERR_TOO_LARGE, "a pattern is too large for nested dissection");
+    work = HDI_TAKE(&s, uint64_t, hdi_nd_words(a->n_rows, (int32_t)a->nnz) / 2 + 1);
     memset(&nd, 0, sizeof nd);
     nd.perm = perm;
     nd.xyz = xyz;
-    nd.work = HDI_TAKE(&s, int32_t, hdi_nd_words(a->n_rows, (int32_t)a->nnz, HDI_ND_TASKS));
-    nd.part = HDI_TAKE(&s, hdi_nd_part, HDI_ND_NODES);
-    hdi_nd_buffer_make(nd.buffer, a, &s);
-    hdi_nd_buffer_make(nd.buffer + 1, a, &s);
+    nd.work = (int32_t *)(void *)work;
+    for (k = 0; k < 2; k++) {
+        hdi_nd_graph *g = nd.buffer[k];
+        for (q = 0; q < 2; q++) {
+            const uint64_t room = q ? nnz / 4 + 1 : nnz;
+            g[q].ptr = HDI_TAKE(&s, int32_t, q ? n : 2 * n + 1);
+            g[q].id = HDI_TAKE(&s, int32_t, n);
+            g[q].adj = HDI_TAKE(&s, int32_t, room);
+            if (q) g[q].ew = HDI_TAKE(&s, int32_t, room);
+            else g[q].map = HDI_TAKE(&s, int32_t, n);
+        }
+    }
     if (e->status < 0) return hdi_scope_end(&s);
-    hdi_threads_own(ctx, HDI_ND_NODES);   /* threads that are started now share the loops below, too */
-    hdi_nd_frame(&nd, a->n_rows);
-    k = hdi_nd_number(&nd, a, nd.buffer->id, inv, nd.work);
-    memcpy(perm, nd.buffer->id, (size_t)n * sizeof *perm);   /* rows with too many entries stay last */
-    nd.part[0] = hdi_nd_load(&job, k, ctx);
-    hdi_nd_run(&nd, ctx, e);
+    nd.part[0] = hdi_nd_load(&nd, a, inv, hdi_nd_number(&nd, a, inv, work, work + n));
+    memcpy(perm, nd.buffer[0][0].id, (size_t)n * sizeof *perm);   /* rows with too many entries stay last */
+    hdi_walk_open(&nd.walk, ctx, HDI_ND_NODES, nd.order, hdi_nd_task, &nd);
+    nd.walk.stage = "order";
+    nd.walk.from = 0.1;
+    nd.walk.to = 0.9;
+    nd.walk.e = e;
+    hdi_release(&nd.walk, 0, 1);
+    hdi_walk_run(&nd.walk);
     return hdi_scope_end(&s);
 }
 
