@@ -21,7 +21,7 @@ static const door_row door_rows[] = {
     {"inverse_at_c", HD_OK, "", NULL, "ids=NULL other=NULL z=NULL n_pairs=0"},
     {"nearest", HD_OK, "", NULL, "queries=xyz n_queries=0 vertex=NULL"}, {"distance", HD_OK, "", NULL, "k=0 ids=NULL u=NULL"},
     {"eigen_columns columns", HD_OK, "", NULL, "k=0 ids=NULL"},
-    {"diagonal trace normalised edges distance distance_from", BAD "t is not positive and finite", "column=0", "t=zero"},
+    {"diagonal trace normalised distance distance_from", BAD "t is not positive and finite", "column=0", "t=zero"},
     {"shared_poles", BAD "a time is not positive", "row=0", "t=zero"},
 
     /* sizes */
@@ -44,7 +44,7 @@ static const door_row door_rows[] = {
     {NULL, BAD "there is no time", NULL, "n_times=0; n_times=-1"},
     {"shared_poles", BAD "a time is not positive", "row=1", "n_times=2 t=low"},
     {"shared_poles", BAD "a time is not positive or not finite", "row=1", "n_times=2 t=bad"},
-    {"diagonal trace normalised edges distance distance_from", BAD "t is not positive and finite", "column=1",
+    {"diagonal trace normalised distance distance_from", BAD "t is not positive and finite", "column=1",
      "n_times=2 t=low; n_times=2 t=bad"},
     {"apply derivative adjoint columns columns_from pairs entries estimate", BAD "t is negative or not finite", "column=1",
      "n_times=2 t=low; n_times=2 t=bad"},
@@ -71,10 +71,10 @@ static const door_row door_rows[] = {
     /* kinds, and objects of the wrong kind */
     {"eigen_columns eigen_diagonal eigen_columns_from", BAD "unknown kernel", NULL, "kernel=9; kernel=-1"},
     {NULL, BAD "operator or symmetric", NULL, "kernel=9; kernel=-1"},
-    {"edges", BAD "the kernel is the symmetric one", NULL, "kernel=0"}, {NULL, BAD "unknown", NULL, "kind=-1; kind=99"},
+    {NULL, BAD "unknown", NULL, "kind=-1; kind=99"},
     {NULL, BAD "unknown query", NULL, "query=99; query=-1"}, {NULL, BAD "uniform, kernel or diagonal", NULL, "poles=99"},
     {NULL, BAD "degrees 1 to 14", "value=99", "degree=99"},
-    {"diagonal trace normalised scale_invariant edges distance sample sample_from distance_from",
+    {"diagonal trace normalised scale_invariant distance sample sample_from distance_from",
      BAD "need the direct method", NULL, "heat=heat2"},
     {"distance", BAD "need the direct method", NULL, "heat=heat2 commute"},
     {"filter_diagonals", BAD "no set of a filter", NULL, "heat=heat2"},

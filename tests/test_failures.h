@@ -228,7 +228,7 @@ enum { FAIL_ANY, FAIL_ONCE, FAIL_DIRECT };
 static const struct { const char *words; int who, depends; } fail_asked[] = {
     {"k=1 apply", FAIL_ANY, 0}, {"k=6 columns", FAIL_ANY, 0}, {"operator column", FAIL_ANY, 0}, {"operator entries", FAIL_ANY, 0},
     {"k=1 derivative", FAIL_ONCE, 0}, {"k=1 adjoint", FAIL_ONCE, 0}, {"columns_from", FAIL_ONCE, 0}, {"diagonal", FAIL_DIRECT, 0},
-    {"operator diagonal", FAIL_DIRECT, 0}, {"edges", FAIL_DIRECT, 0}, {"distance", FAIL_DIRECT, 1},
+    {"operator diagonal", FAIL_DIRECT, 0}, {"distance", FAIL_DIRECT, 1},
     {"k=1 weighted distance", FAIL_DIRECT, 1}, {"commute k=2 distance", FAIL_DIRECT, 0},
     {"biharmonic k=2 distance", FAIL_DIRECT, 0}, {"pairs", FAIL_ANY, 1}, {"weighted pairs", FAIL_DIRECT, 1},
     {"commute u=NULL pairs", FAIL_DIRECT, 0}, {"biharmonic pairs", FAIL_DIRECT, 0}, {"sample", FAIL_DIRECT, 1},
@@ -281,14 +281,14 @@ static void fail_methods(void) {
 
 /* What few eigenpairs serve where heat fades. */
 static void fail_fading(void) {
-    static const char *const words[8] = {"n_times=1 k=1 f=u apply", "k=6 columns", "operator entries", "diagonal",
+    static const char *const words[7] = {"n_times=1 k=1 f=u apply", "k=6 columns", "operator entries", "diagonal",
                                          "operator diagonal", "trace", "query=3 estimate"};
     char text[200];
     fail_case c;
     int q, w;
     c.script = text;
     c.goes_on = FAIL_DEPENDS;                    /* with poles */
-    for (q = 0; q < 8; q++)
+    for (q = 0; q < 7; q++)
         for (w = 0; w < 2; w++) {
             snprintf(text, sizeof text, "%s t=fading n_times=3 %s", w ? "held border voronoi" : "held", words[q]);
             fail_run(&c);
