@@ -15851,6 +15851,14 @@ enum { HDI_WARM_POLES = 6, HDI_WARM_MAX = 2 * HDI_WARM_POLES };
 /* Inner products of a solution with itself and those of the next poles, see hdi_warm_products. */
 typedef hd_c64 hdi_gram[HDI_WARM_POLES + 1][2];
 
+/* Further sums of the poles' solutions beside an answer: sum p of Re(weight_p x_p) for n rows of weights,
+ * which are stride apart, into [n] arrays one after the other. */
+typedef struct hdi_extra {
+    int32_t n, stride;
+    const hd_c64 *weight;
+    double *sum;
+} hdi_extra;
+
 /* One right-hand side. Arrays are [n] by rows unless said otherwise. */
 typedef struct hdi_lane {
     double *f, *rhs, *u;         /* the field, B f, the answer */
@@ -15879,8 +15887,7 @@ typedef struct hdi_lane {
     int32_t watch;               /* direct: a row whose entries of all solutions are kept, -1: none */
     hd_c64 pole_value[HD_MAX_POLES];
     double pole_off[HD_MAX_POLES];   /* residual of each in the norm of diag(B)^-1, as far as it is seen */
-    /* what these residuals make of the answer, in the norms of B and of B + tL */
-    double seen_b, seen_m;
+    hdi_extra rows;               /* direct */
     int64_t steps;               /* of Lanczos */
     hd_status status;
     hd_error error;
@@ -16013,8 +16020,6 @@ static void hdi_lane_residual(hdi_lane *lane, const hd_laplacian *lap, const hd_
     const double sum =
         weight / hdi_rat_largest(set) * rounding * (2 * set->n_poles + 2) / (HDI_NOISE_TERMS + 1);
     lane->pole_off[p] = hdi_residual_seen(found, rounding);
-    lane->seen_b += by_b * lane->pole_off[p];
-    lane->seen_m += by_m * lane->pole_off[p];
     lane->off.solver += by_b * solver;
     lane->off_m.solver += by_m * solver;
     lane->off.rounding += by_b * rest + sum;
@@ -16025,7 +16030,6 @@ static void hdi_lane_residual(hdi_lane *lane, const hd_laplacian *lap, const hd_
 static void hdi_lane_clear_off(hdi_lane *lane) {
     memset(&lane->off, 0, sizeof lane->off);
     memset(&lane->off_m, 0, sizeof lane->off_m);
-    lane->seen_b = lane->seen_m = 0;
     lane->rounding = HD_EVIDENCE_PROVEN;
     lane->residual = 0;
     lane->negative = 0;
@@ -16527,6 +16531,51 @@ static void hdi_batch_check_one(const hdi_elim *m, const double *x, hdi_lane *la
     hdi_batch_note(m, 0, sum, 0, x, 1, lane);
 }
 
+/* The coefficients [8] by which real and imaginary parts of the four systems of pack i add up to the sum of
+ * Re(w_p x_p) over its poles p. */
+static void hdi_elim_coef(const hdi_elim *m, int32_t i, const hd_c64 *w, double *coef) {
+    int32_t q;
+    for (q = 0; q < 4; q++) {
+        const int32_t p = m->lone + 1 + 4 * i + q;
+        coef[q] = p < m->set.n_poles ? w[p].re : 0;
+        coef[q + 4] = p < m->set.n_poles ? -w[p].im : 0;
+    }
+}
+
+/* Adds what the solutions x of pack i, or with i = -1 of the lone real pole, give to the further sums of k
+ * lanes. */
+static void hdi_batch_extra(const hdi_elim *m, int32_t i, const double *x, const hdi_lane *lane, int32_t k) {
+    const int64_t n = m->sym.n, stride = i < 0 && k == 1 ? 1 : i < 0 ? HDI_PACK : HDI_PACK * (int64_t)k;
+    const int32_t apart = i < 0 ? 1 : HDI_PACK;
+    double coef[HDI_PACK] = {0};
+    int64_t j;
+    int32_t r, row, q;
+    for (r = 0; r < k; r++) {
+        const double *HDI_RESTRICT from = x + apart * r;
+        for (row = 0; row < lane[r].rows.n && !lane[r].skip; row++) {
+            const hd_c64 *w = lane[r].rows.weight + (int64_t)row * lane[r].rows.stride;
+            double *HDI_RESTRICT to = lane[r].rows.sum + row * n;
+            if (i < 0) coef[0] = w[0].re;
+            else hdi_elim_coef(m, i, w, coef);
+            for (j = 0; j < n; j++)
+                for (q = 0; q < apart; q++) to[j] += coef[q] * from[stride * j + q];
+        }
+    }
+}
+
+/* Puts the constants of a right-hand side that was solved without them into its further sums. */
+static void hdi_batch_extra_means(const hdi_elim *m, hdi_lane *lane) {
+    const hd_laplacian *lap = m->lap;
+    int32_t row, p, i;
+    for (row = 0; row < lane->rows.n && lap->conserves && !lane->skip; row++) {
+        const hd_c64 *w = lane->rows.weight + (int64_t)row * lane->rows.stride;
+        double *to = lane->rows.sum + (int64_t)row * lap->n_active, c = 0;
+        for (p = 0; p < m->set.n_poles; p++) c += hdi_cdiv(w[p], m->set.theta[p]).re;
+        for (i = 0; i < lap->n_active; i++)
+            to[i] += c * lane->target[lap->component[i]] / lap->component_mass[lap->component[i]];
+    }
+}
+
 /* Solves for the lone real pole. */
 static void hdi_batch_solve_real(const hdi_elim *m, const hdi_batch *b, const hdi_lane *lane, int32_t k,
                                  const char *active, hd_context *ctx) {
@@ -16569,6 +16618,7 @@ static void hdi_batch_run(const hdi_elim *m, const hdi_batch *b, hdi_lane *lane,
         hdi_batch_solve_real(m, b, lane, k, active, ctx);
         if (k == 1) hdi_batch_check_one(m, b->xr, lane);
         else hdi_batch_check(m, -1, b->xr, lane, k);
+        hdi_batch_extra(m, -1, b->xr, lane, k);
     }
     for (i = 0; i < m->n_used; i++) {
         z = hdi_sweep_open(m->pack + i, k, b->x, b->work);
@@ -16576,6 +16626,7 @@ static void hdi_batch_run(const hdi_elim *m, const hdi_batch *b, hdi_lane *lane,
         z.active = active;
         hdi_sweep_run(&z, ctx);
         hdi_batch_check(m, i, b->x, lane, k);
+        hdi_batch_extra(m, i, b->x, lane, k);
     }
 }
 
@@ -16865,17 +16916,6 @@ static hd_status hdi_elim_finish(const hdi_elim *m, double limit, double drift_t
 }
 
 /* ---- entries of the kernel without columns ---- */
-
-/* The coefficients [8] by which real and imaginary parts of the four systems of pack i add up to the sum of
- * Re(w_p x_p) over its poles p. */
-static void hdi_elim_coef(const hdi_elim *m, int32_t i, const hd_c64 *w, double *coef) {
-    int32_t q;
-    for (q = 0; q < 4; q++) {
-        const int32_t p = m->lone + 1 + 4 * i + q;
-        coef[q] = p < m->set.n_poles ? w[p].re : 0;
-        coef[q + 4] = p < m->set.n_poles ? -w[p].im : 0;
-    }
-}
 
 /* Weighted sums of the inverses of all poles: values [n_sets][stride] += sum over poles p of
  * Re(weight[set][p] Z_p), Z_p = (t L + theta_p B)^-1: entries of the lower triangle in the order of the
@@ -20745,8 +20785,8 @@ typedef struct hdi_heat_call {
     double still;
     int32_t equal;               /* t is so large that each component has its mean */
     int32_t by_pairs;            /* answers are sums over eigenpairs */
-    /* [k] the columns' errors by rounding, as seen, in both norms; NULL: not wanted */
-    double *off_b, *off_m;
+    hdi_extra rows;              /* direct: further sums of every item, one after the other */
+    double *off_b, *off_m;       /* [k] by residuals, see hdi_column_off; NULL: not wanted */
     hdi_lane *lane;              /* the plan's */
     int32_t n_lanes, batch;      /* lanes for items; first item in lane 0 */
     int32_t stop;
@@ -21634,6 +21674,20 @@ static hdi_ledger hdi_heat_ledger(const hdi_heat_call *h) {
     return hdi_ledger_begin(rational, solver, HD_EVIDENCE_PROVEN, 0);
 }
 
+/* What the residuals of a column's systems make of its sum by the weights of set, in the norms of B and of
+ * B + tL. Poles of times that share them differ by a factor, and so do the solutions; residuals are the
+ * same. */
+static void hdi_column_off(const hd_laplacian *lap, const hdi_lane *lane, const hd_rational *set,
+                           double *by_b, double *by_m) {
+    int32_t p;
+    *by_b = *by_m = 0;
+    for (p = 0; p < set->n_poles && !lane->skip; p++) {
+        const double weight = hdi_pole_size(set, p) * hdi_ratio_root(lap) * lane->pole_off[p];
+        *by_b += weight / hdi_pole_distance(set->theta[p]);
+        *by_m += weight * hdi_pole_gain(set->theta[p]);
+    }
+}
+
 /* Judges lane i of the batch. */
 static void hdi_heat_note(hdi_heat_call *h, hdi_ledger ledger, int32_t i, int own) {
     hdi_lane *lane = h->lane + i;
@@ -21645,8 +21699,7 @@ static void hdi_heat_note(hdi_heat_call *h, hdi_ledger ledger, int32_t i, int ow
     if (lane->dual) hdi_pair_apply(h->lap, 0, 1, lane->u, lane->tmp);
     hdi_heat_judge(h->lap, lane, h->ask.list ? NULL : &ledger, reach, own, h->by_pairs, h->rep);
     if (h->ask.list) h->ask.list->ledger[h->now].known = ledger.known;
-    if (h->off_b) h->off_b[h->batch + i] = lane->seen_b;
-    if (h->off_m) h->off_m[h->batch + i] = lane->seen_m;
+    if (h->off_b) hdi_column_off(h->lap, lane, &m->set, h->off_b + h->batch + i, h->off_m + h->batch + i);
 }
 
 /* Report and errors of the lanes, in their order. The first failure is reported, unless it only says that
@@ -21702,8 +21755,14 @@ static hd_status hdi_heat_lanes(hdi_heat_call *h, int32_t most) {
 static int32_t hdi_heat_load_some(hdi_heat_call *h) {
     const int32_t n = hdi_low32(h->ask.k - h->batch, h->n_lanes);
     int32_t i;
-    for (i = 0; i < n; i++)
+    for (i = 0; i < n; i++) {
+        const size_t before = (size_t)(h->batch + i) * (size_t)h->rows.n * (size_t)h->lap->n_active;
         if (hdi_heat_load(h, h->batch + i, h->lane + i) < 0) break;
+        h->lane[i].rows = h->rows;
+        if (!h->rows.n) continue;
+        h->lane[i].rows.sum += before;
+        memset(h->lane[i].rows.sum, 0, (size_t)h->rows.n * (size_t)h->lap->n_active * sizeof(double));
+    }
     return n;
 }
 
@@ -21908,6 +21967,7 @@ static void hdi_batches_task(void *arg, int64_t index, int32_t worker) {
     hdi_batch_run(&heat->elim, &batch, lane, n, b->count > 1 ? NULL : heat->ctx);
     for (r = 0; r < n; r++) {
         if (lane[r].skip) continue;
+        if (h->deflated) hdi_batch_extra_means(&heat->elim, lane + r);
         lane[r].status = hdi_elim_finish(&heat->elim, heat->limit, h->t * heat->drift, h->deflated, lane + r);
         if (lane[r].negative) lane[r].status = hdi_not_semidefinite(&lane[r].error);
     }
@@ -22402,6 +22462,184 @@ static int hdi_modes_good(const hd_heat *heat, double t, const hd_report *rep) {
     return rep->error_bound <= HDI_MODES_HELP || t * heat->modes.low > HDI_MODES_FADED;
 }
 
+/* The worse of two reports, counts added. */
+static void hdi_report_merge(hd_report *all, const hd_report *one) {
+    hd_report sum = *one;
+    int32_t p;
+    sum.status = all->status > sum.status ? all->status : sum.status;
+    sum.iterations += all->iterations;
+    for (p = 0; p < HD_MAX_POLES; p++) sum.pole_iterations[p] += all->pole_iterations[p];
+    sum.degree = hdi_high32(all->degree, sum.degree);
+    sum.n_poles = hdi_high32(all->n_poles, sum.n_poles);
+    sum.growth = hdi_max(all->growth, sum.growth);
+    sum.residual = hdi_max(all->residual, sum.residual);
+    sum.error_rational = hdi_max(all->error_rational, sum.error_rational);
+    sum.error_solver = hdi_max(all->error_solver, sum.error_solver);
+    sum.error_rounding = hdi_max(all->error_rounding, sum.error_rounding);
+    hdi_evidence_worst(&sum.evidence_rational, all->evidence_rational);
+    hdi_evidence_worst(&sum.evidence_solver, all->evidence_solver);
+    hdi_evidence_worst(&sum.evidence_rounding, all->evidence_rounding);
+    hdi_evidence_worst(&sum.evidence_b, all->evidence_b);
+    sum.error_bound_b = hdi_max(all->error_bound_b, sum.error_bound_b);
+    sum.error_bound = hdi_max(all->error_bound, sum.error_bound);
+    sum.mass_drift = hdi_max(all->mass_drift, sum.mass_drift);
+    sum.error_relative = hdi_max(all->error_relative, sum.error_relative);
+    if (all->smallest > 0 && (sum.smallest == 0 || all->smallest < sum.smallest))
+        sum.smallest = all->smallest;
+    sum.n_lost += all->n_lost;
+    *all = sum;
+}
+
+/* t times the smallest eigenvalue, which is a guess while no pairs are there. */
+static double hdi_modes_lowest(const hd_heat *heat, double t) {
+    return heat->modes.s.value ? t * heat->modes.low : t * heat->scale * heat->scales.lowest;
+}
+
+/* ---- which way ---- */
+
+/* A query that eigenpairs can answer as well as poles. Both ways answer the time under way, h->now; what
+ * they find goes into the call's report, which is blank before. Each kind of query begins with this
+ * struct. */
+typedef struct hdi_task hdi_task;
+struct hdi_task {
+    hdi_heat_call *h;
+    int serves;                  /* may eigenpairs answer? */
+    double from;                 /* they come first where t times the smallest eigenvalue is this or more */
+    double depth;                /* how far they have to reach above the smallest eigenvalue, times t */
+    hd_status (*pairs)(hdi_task *task);
+    hd_status (*poles)(hdi_task *task);
+    /* Answers times that are not done together, if that is cheaper, and sets their place in done; their
+     * reports go to one [n_times]. NULL: there is no such way. */
+    hd_status (*together)(hdi_task *task, char *done, hd_report *one);
+};
+
+/* In done: the time is settled; it is answered by poles, and eigenpairs may do better. */
+enum { HDI_DONE_FOR_GOOD = 1, HDI_DONE_BY_POLES };
+
+/* Are at most so many eigenpairs expected to answer at time t? */
+static HDI_INLINE int hdi_task_near(const hdi_task *task, double t, int32_t most) {
+    return HDI_HAS_MODES && task->serves && t > 0 && hdi_modes_allowed(task->h->heat) &&
+           hdi_modes_expected(task->h->heat, task->depth / t) <= most;
+}
+
+/* Are eigenpairs tried before poles at time t? */
+static HDI_INLINE int hdi_task_first(const hdi_task *task, double t) {
+    return hdi_task_near(task, t, HDI_MODES_FIRST) && hdi_modes_lowest(task->h->heat, t) >= task->from;
+}
+
+/* Takes up time q of the call, as if nothing had been tried. */
+static void hdi_task_at(hdi_heat_call *h, int32_t q) {
+    memset(h->rep, 0, sizeof *h->rep);
+    hdi_error_clear(h->e);
+    h->now = q;
+    h->t = h->ask.t ? hdi_heat_scaled(h->heat, h->ask.t[q]) : 0;
+    h->times = &h->t;
+    h->n_times = 1;
+    h->time_column = NULL;
+    h->still = 0;
+    h->equal = 0;
+    h->batch = 0;
+    h->lap = h->heat->source;
+    if (h->ask.list)
+        h->ask.list->ledger[q] = hdi_ledger_begin(HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, 0);
+}
+
+/* Time q from at most `most` eigenpairs, which are found if need be: more of them where those left out
+ * show in the bound. Returns 0 where there are not enough. */
+static int hdi_task_pairs(hdi_task *task, int32_t q, int32_t most) {
+    hdi_heat_call *h = task->h;
+    const double t = h->ask.t[q];
+    double depth = task->depth;
+    int tries, there = 0;
+    for (tries = 0; tries < 3; tries++) {
+        if (!hdi_modes_enough(h->heat, t, depth, most, h->e)) return there && h->e->status >= 0;
+        hdi_task_at(h, q);
+        if (task->pairs(task) < 0 || hdi_modes_good(h->heat, t, h->rep) ||
+            h->rep->error_rational <= HDI_MODES_TOL) break;
+        depth += log(h->rep->error_rational / HDI_MODES_TOL);
+        there = hdi_finite(depth);
+        if (!there) break;
+    }
+    return 1;
+}
+
+/* Time q, which poles have answered: from eigenpairs after all, if the bound is not as it should be and
+ * theirs is lower. bound: theirs, if they were tried before, or negative. */
+static hd_status hdi_task_help(hdi_task *task, int32_t q, double bound) {
+    hdi_heat_call *h = task->h;
+    const double by_poles = h->rep->error_bound;
+    const int32_t most = bound < 0 ? HDI_MODES_MOST : HDI_MODES_FIRST;
+    if (by_poles <= HDI_MODES_HELP || (bound >= 0 && by_poles <= bound) || !task->serves ||
+        !hdi_task_near(task, h->ask.t[q], most)) return h->e->status;
+    hdi_heat_drop(h->heat);
+    if (!hdi_task_pairs(task, q, most) || h->e->status < 0 || h->rep->error_bound <= by_poles)
+        return h->e->status;
+    hdi_task_at(h, q);
+    return task->poles(task);
+}
+
+/* Time q: from eigenpairs where few are left, else by poles. Where the bound is not as it should be the
+ * other way is tried too, and the one with the lower bound taken. */
+static hd_status hdi_task_time(hdi_task *task, int32_t q) {
+    hdi_heat_call *h = task->h;
+    double bound = -1;
+    hdi_task_at(h, q);
+    if (task->serves && hdi_task_first(task, h->ask.t[q]) && hdi_task_pairs(task, q, HDI_MODES_FIRST)) {
+        if (h->e->status < 0 || hdi_modes_good(h->heat, h->ask.t[q], h->rep)) return h->e->status;
+        bound = h->rep->error_bound;
+    }
+    if (h->e->status < 0) return h->e->status;
+    hdi_task_at(h, q);
+    if (task->poles(task) >= 0) return hdi_task_help(task, q, bound);
+    if (bound < 0 || !hdi_over_limit(h->heat->ctx, h->e)) return h->e->status;
+    hdi_heat_drop(h->heat);                      /* an answer is better than none */
+    hdi_error_clear(h->e);
+    (void)hdi_task_pairs(task, q, HDI_MODES_FIRST);
+    return h->e->status;
+}
+
+/* All times of a call: first those that few eigenpairs serve, then the others together or one by one. */
+static hd_status hdi_task_run(hdi_heat_call *h, void *what) {
+    hdi_task *task = (hdi_task *)what;
+    const int32_t n = hdi_high32(h->ask.n_times, 1);
+    hd_report *one, all;
+    char *done;
+    int32_t q;
+    int begun = 0;
+    if (n == 1) return hdi_task_time(task, 0);
+    one = HDI_TAKE_ZERO(&h->s, hd_report, n);
+    done = HDI_TAKE_ZERO(&h->s, char, n);
+    for (q = 0; q < n && h->e->status >= 0; q++) {
+        if (!task->serves || !hdi_task_first(task, h->ask.t[q])) continue;
+        done[q] = HDI_DONE_FOR_GOOD;
+        (void)hdi_task_time(task, q);
+        one[q] = *h->rep;
+    }
+    if (h->e->status >= 0 && task->together) {
+        hdi_task_at(h, 0);
+        if (task->together(task, done, one) < 0) return h->e->status;
+    }
+    for (q = 0; q < n && h->e->status >= 0; q++) {
+        if (done[q] == HDI_DONE_FOR_GOOD) continue;
+        *h->rep = one[q];
+        if (done[q]) (void)hdi_task_help(task, q, -1);
+        else (void)hdi_task_time(task, q);
+        one[q] = *h->rep;
+        if (h->e->status < 0) h->e->column = q;
+    }
+    if (h->e->status < 0) return h->e->status;
+    memset(&all, 0, sizeof all);
+    hdi_error_clear(&all.error);
+    for (q = 0; q < n; q++) {
+        if (!one[q].reason) continue;            /* it is in the report of another */
+        if (begun) hdi_report_merge(&all, one + q);
+        else all = one[q];
+        begun = 1;
+    }
+    *h->rep = all;
+    return HD_OK;
+}
+
 /* ---- heat that fades ---- */
 /* Where heat flows out everything falls like exp(-t lambda_1), but the errors of poles do not. There few
  * eigenpairs are left too, and K_t f = sum_i exp(-t lambda_i) c_i x_i with c = X' B f has errors that fall as
@@ -22441,19 +22679,13 @@ static double hdi_fading_depth(const hd_heat *heat) {
     return hdi_max(0, log(span * span / (HDI_FADING_LOW * hdi_modes_tol(heat))));
 }
 
-/* Are no more than `most` pairs expected to do at time t? */
-static int hdi_fading_near(const hd_heat *heat, double t, int32_t most) {
-    return t > 0 && hdi_modes_expected(heat, hdi_fading_depth(heat) / t) <= most;
-}
-
-/* t (scaled) times the smallest eigenvalue, which is a guess while no pairs are there. */
-static double hdi_fading_lowest(const hd_heat *heat, double t) {
-    return heat->modes.s.value ? t / heat->scale * heat->modes.low : t * heat->scales.lowest;
-}
-
-static HDI_INLINE int hdi_fading_first(const hdi_heat_call *h, double t) {
-    return hdi_fading(h) && hdi_fading_lowest(h->heat, t * h->heat->scale) >= HDI_FADING_FROM &&
-           hdi_fading_near(h->heat, t, HDI_MODES_FIRST);
+/* Sets up a query whose answers fade. */
+static void hdi_fading_task(hdi_task *task, hdi_heat_call *h) {
+    memset(task, 0, sizeof *task);
+    task->h = h;
+    task->from = HDI_FADING_FROM;
+    task->serves = HDI_HAS_MODES && hdi_fading(h);
+    if (HDI_HAS_MODES && task->serves) task->depth = hdi_fading_depth(h->heat);
 }
 
 /* The factor of |c_q| in s(c), and what s(c) and the last sum have besides for each |c|. */
@@ -22505,7 +22737,7 @@ typedef struct hdi_fading_sum {
     double *u;
 } hdi_fading_sum;
 
-static void hdi_fading_task(void *arg, int64_t begin, int64_t end) {
+static void hdi_fading_rows(void *arg, int64_t begin, int64_t end) {
     const hdi_fading_sum *a = (const hdi_fading_sum *)arg;
     const hd_spectrum *s = &a->of->s;
     const int32_t *vertex = s->lap->vertex;
@@ -22569,7 +22801,7 @@ static void hdi_fading_lane(const hdi_heat_call *h, const hdi_decay *x, const hd
     a.c = work;
     a.decay = x;
     a.u = lane->u;
-    hdi_parallel_ranges(h->heat->ctx, lap->n_active, 1024, hdi_fading_task, &a);
+    hdi_parallel_ranges(h->heat->ctx, lap->n_active, 1024, hdi_fading_rows, &a);
     hdi_fading_bound(h, x, most, &size, lane);
 }
 
@@ -22601,39 +22833,8 @@ static hd_status hdi_fading_answer(hdi_heat_call *h, double t) {
     return h->e->status;
 }
 
-/* Where a time begins again. */
-typedef struct hdi_fading_start { hd_report rep; double t; } hdi_fading_start;
-
-static void hdi_fading_again(hdi_heat_call *h, const hdi_fading_start *from) {
-    *h->rep = from->rep;
-    h->t = from->t;
-    h->still = 0;
-    h->batch = 0;                                /* the fields are as they were: iterations may take over */
-    h->lap = h->heat->source;
-    if (!h->ask.list) return;
-    h->ask.list->ledger[h->now] = hdi_ledger_begin(HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, 0);
-}
-
-/* The request at one time from at most `most` pairs, which are found if need be: more of them where those
- * left out show in the bound. Returns 0 where there are not enough. */
-static int hdi_fading_pairs(hdi_heat_call *h, const hdi_fading_start *from, int32_t most) {
-    const double t = h->ask.t[h->now];
-    double depth = hdi_fading_depth(h->heat);
-    int tries, there = 0;
-    for (tries = 0; tries < 3; tries++) {
-        if (!hdi_modes_enough(h->heat, t, depth, most, h->e)) return there && h->e->status >= 0;
-        hdi_fading_again(h, from);
-        if (hdi_fading_answer(h, t) < 0 || hdi_modes_good(h->heat, t, h->rep) ||
-            h->rep->error_rational <= HDI_MODES_TOL) break;
-        depth += log(h->rep->error_rational / HDI_MODES_TOL);
-        there = hdi_finite(depth);
-        if (!there) break;
-    }
-    return 1;
-}
-
 /* Copies fields that their answers would overwrite, to ask for them again. Returns 0 if there is no room. */
-static int hdi_fading_keep(hdi_heat_call *h) {
+static int hdi_fields_keep(hdi_heat_call *h) {
     const size_t n = (size_t)h->heat->source->n;
     double *copy;
     int32_t q;
@@ -22752,50 +22953,6 @@ static hd_status hdi_heat_chosen(hdi_heat_call *h) {
     return h->e->status;
 }
 
-/* One time of heat that fades: from eigenpairs where few are left, else by the method picked for it. Where
- * the bound is not as it should be the other way is tried too, and the one with the lower bound taken. */
-static hd_status hdi_heat_fading(hdi_heat_call *h, void *what) {
-    const double t = h->ask.t[h->now];
-    hdi_fading_start from;
-    double bound = HUGE_VAL;
-    int32_t most = HDI_MODES_FIRST;
-    (void)what;
-    from.rep = *h->rep;
-    from.t = h->t;
-    if (!hdi_fading(h)) {                        /* spare: begun anew */
-        hdi_fading_again(h, &from);
-        return hdi_heat_chosen(h);
-    }
-    if (hdi_fading_first(h, t) && hdi_fading_pairs(h, &from, most)) {
-        if (h->e->status < 0 || hdi_modes_good(h->heat, t, h->rep)) return h->e->status;
-        bound = h->rep->error_bound;
-    }
-    if (h->e->status < 0) return h->e->status;
-    hdi_fading_again(h, &from);
-    if (hdi_heat_chosen(h) < 0 || h->rep->error_bound <= HDI_MODES_HELP) return h->e->status;
-    if (bound == HUGE_VAL && hdi_fading(h)) {
-        most = HDI_MODES_MOST;
-        bound = h->rep->error_bound;
-        hdi_heat_drop(h->heat);
-        if (hdi_fading_pairs(h, &from, most) && (h->e->status < 0 || h->rep->error_bound <= bound))
-            return h->e->status;
-        if (h->e->status < 0) return h->e->status;
-        hdi_fading_again(h, &from);
-        return hdi_heat_chosen(h);
-    }
-    if (h->rep->error_bound <= bound) return h->e->status;
-    (void)hdi_fading_pairs(h, &from, most);
-    return h->e->status;
-}
-
-/* Answers the time under way. */
-static hd_status hdi_heat_single(hdi_heat_call *h) {
-    if (HDI_HAS_MODES && h->t > 0 && hdi_fading(h) &&
-        hdi_fading_near(h->heat, h->ask.t[h->now], HDI_MODES_MOST) && hdi_fading_keep(h))
-        return hdi_heat_sparing(h, hdi_heat_fading, NULL);
-    return h->e->status < 0 ? h->e->status : hdi_heat_chosen(h);
-}
-
 static hd_status hdi_sources_check(hdi_heat_call *h, int32_t k, const int32_t *sources) {
     return hdi_vertices_check(h->heat->source, k, sources, &h->e->column, h->e);
 }
@@ -22863,34 +23020,6 @@ static hd_status hdi_direct_only(hdi_heat_call *h) {
     return HD_OK;
 }
 
-/* The worse of two reports, counts added. */
-static void hdi_report_merge(hd_report *all, const hd_report *one) {
-    hd_report sum = *one;
-    int32_t p;
-    sum.status = all->status > sum.status ? all->status : sum.status;
-    sum.iterations += all->iterations;
-    for (p = 0; p < HD_MAX_POLES; p++) sum.pole_iterations[p] += all->pole_iterations[p];
-    sum.degree = hdi_high32(all->degree, sum.degree);
-    sum.n_poles = hdi_high32(all->n_poles, sum.n_poles);
-    sum.growth = hdi_max(all->growth, sum.growth);
-    sum.residual = hdi_max(all->residual, sum.residual);
-    sum.error_rational = hdi_max(all->error_rational, sum.error_rational);
-    sum.error_solver = hdi_max(all->error_solver, sum.error_solver);
-    sum.error_rounding = hdi_max(all->error_rounding, sum.error_rounding);
-    hdi_evidence_worst(&sum.evidence_rational, all->evidence_rational);
-    hdi_evidence_worst(&sum.evidence_solver, all->evidence_solver);
-    hdi_evidence_worst(&sum.evidence_rounding, all->evidence_rounding);
-    hdi_evidence_worst(&sum.evidence_b, all->evidence_b);
-    sum.error_bound_b = hdi_max(all->error_bound_b, sum.error_bound_b);
-    sum.error_bound = hdi_max(all->error_bound, sum.error_bound);
-    sum.mass_drift = hdi_max(all->mass_drift, sum.mass_drift);
-    sum.error_relative = hdi_max(all->error_relative, sum.error_relative);
-    if (all->smallest > 0 && (sum.smallest == 0 || all->smallest < sum.smallest))
-        sum.smallest = all->smallest;
-    sum.n_lost += all->n_lost;
-    *all = sum;
-}
-
 /* Leaves out of the sorted times those that are done: [ask.n_times] by their columns, or NULL. */
 static void hdi_heat_skip(hdi_heat_call *h, double *times, int32_t *column, const char *done) {
     int32_t q, n = 0;
@@ -22929,79 +23058,49 @@ static hd_status hdi_heat_sort_times(hdi_heat_call *h, double factor, const char
     return HD_OK;
 }
 
-/* Time q of several into the report of all. begun: it has others already. */
-static hd_status hdi_heat_one_time(hdi_heat_call *h, int32_t q, int *begun) {
-    hdi_heat_call c = *h;
-    hd_report one;
-    memset(&one, 0, sizeof one);
-    hdi_error_clear(&one.error);
-    memset(&c.s, 0, sizeof c.s);
-    c.rep = &one;
-    c.e = &one.error;
-    c.err = NULL;
-    c.now = q;
-    c.t = hdi_heat_scaled(h->heat, h->ask.t[q]);
-    c.times = &c.t;
-    c.n_times = 1;
-    c.time_column = NULL;
-    (void)hdi_heat_single(&c);
-    (void)hdi_heat_end(&c);
-    if (one.status < 0 || !*begun) *h->rep = one;
-    else hdi_report_merge(h->rep, &one);
-    if (one.status < 0) h->e->column = q;
-    *begun = 1;
-    return one.status;
+/* The ways to answer a request at a time. */
+static hd_status hdi_columns_by_pairs(hdi_task *task) {
+    return hdi_fading_answer(task->h, task->h->ask.t[task->h->now]);
 }
 
-/* Answers many times with one or a few krylov bases, where that is the method. Returns 0 where it is not. */
-static int hdi_heat_together(hdi_heat_call *h, const char *done) {
+static hd_status hdi_columns_by_poles(hdi_task *task) { return hdi_heat_chosen(task->h); }
+
+/* Many times with one or a few krylov bases, where that is the method. */
+static hd_status hdi_columns_together(hdi_task *task, char *done, hd_report *one) {
+    hdi_heat_call *h = task->h;
     hd_heat *heat = h->heat;
-    int32_t q;
-    if (!HDI_HAS_DIRECT) return 0;
-    if (hdi_heat_sort_times(h, 1, done) < 0) return 1;
-    if (h->n_times == 0) return 1;
-    if (h->times[0] * heat->lambda_max < HDI_STILL || hdi_heat_engine(h) < 0 || h->method != HD_METHOD_KRYLOV)
-        return h->e->status < 0 && !hdi_heat_retreat(h);
-    if (hdi_heat_equal(heat, h->t, h->e) || h->e->status < 0) return h->e->status < 0;
-    if (hdi_heat_by_krylov(h) < 0) return !hdi_heat_retreat(h);
-    for (q = 0; q < h->ask.n_times && h->ask.list; q++) hdi_ledger_close(h->ask.list->ledger + q, h->rep);
-    return 1;
-}
-
-/* Many times. Those that few eigenpairs serve come one by one and before the others. */
-static hd_status hdi_heat_several(hdi_heat_call *h) {
-    const hd_report clear = *h->rep;
-    char *done = NULL;
-    hd_report late;
-    int begun = 0, whole;
-    int32_t q;
-    if (HDI_HAS_MODES && hdi_fading(h)) {
-        done = HDI_TAKE(&h->s, char, h->ask.n_times);
-        if (!done) return h->e->status;
-        for (q = 0; q < h->ask.n_times; q++) {
-            done[q] = (char)hdi_fading_first(h, h->ask.t[q]);
-            if (done[q] && hdi_heat_one_time(h, q, &begun) < 0) return h->rep->status;
-        }
+    int32_t q, first;
+    if (!HDI_HAS_DIRECT || hdi_heat_sort_times(h, 1, done) < 0 || h->n_times == 0) return h->e->status;
+    first = h->time_column[0];
+    if (h->times[0] * heat->lambda_max < HDI_STILL) return HD_OK;
+    if (hdi_heat_engine(h) >= 0) {
+        if (h->method != HD_METHOD_KRYLOV || hdi_heat_equal(heat, h->t, h->e) || h->e->status < 0)
+            return h->e->status;
+        (void)hdi_heat_by_krylov(h);
     }
-    late = *h->rep;
-    *h->rep = clear;
-    whole = hdi_heat_together(h, done);
-    if (h->e->status < 0) return h->e->status;
-    if (whole && begun && h->n_times > 0) hdi_report_merge(h->rep, &late);
-    else if (begun) *h->rep = late;
-    if (whole && !(HDI_HAS_MODES && hdi_fading(h) && h->rep->error_bound > HDI_MODES_HELP)) return HD_OK;
-    if (whole) *h->rep = late;
-    for (q = 0; q < h->ask.n_times; q++)
-        if (!(done && done[q]) && hdi_heat_one_time(h, q, &begun) < 0) break;
-    return h->rep->status;
+    if (h->e->status < 0) return hdi_heat_retreat(h) ? HD_OK : h->e->status;
+    for (q = 0; q < h->ask.n_times && h->ask.list; q++)
+        if (!done[q]) hdi_ledger_close(h->ask.list->ledger + q, h->rep);
+    if (task->serves && h->rep->error_bound > HDI_MODES_HELP) return HD_OK;   /* one by one, then */
+    for (q = 0; q < h->ask.n_times; q++) done[q] = HDI_DONE_FOR_GOOD;
+    one[first] = *h->rep;
+    return HD_OK;
 }
 
 /* Runs a request whose arguments are checked. */
 static hd_status hdi_heat_run(hdi_heat_call *h) {
     const int32_t spare = h->heat ? h->heat->spare : 0;
+    hdi_task task;
     if (h->e->status < 0 || h->ask.k == 0) return hdi_heat_end(h);
-    if (h->ask.n_times == 1) (void)hdi_heat_single(h);
-    else (void)hdi_heat_several(h);
+    hdi_fading_task(&task, h);
+    task.pairs = HDI_HAS_MODES ? hdi_columns_by_pairs : NULL;
+    task.poles = hdi_columns_by_poles;
+    task.together = hdi_columns_together;
+    if (task.serves && h->ask.n_times == 1)
+        task.serves = hdi_task_near(&task, h->ask.t[0], HDI_MODES_MOST) && hdi_fields_keep(h);
+    if (h->e->status < 0) return hdi_heat_end(h);
+    if (task.serves) (void)hdi_heat_sparing(h, hdi_task_run, &task);
+    else (void)hdi_task_run(h, &task);
     h->heat->spare = spare;
     return hdi_heat_end(h);
 }
@@ -23437,7 +23536,7 @@ static void hdi_heat_take_set(hd_heat *heat, const hd_rational *set) {
  * This work is based on
  *   A. Erisman, W. Tinney, On computing certain elements of the inverse of a sparse matrix, 1975 */
 
-/* ---- diagonals ---- */
+/* ---- columns within a call ---- */
 
 /* What the report says of selected inversion. */
 static void hdi_inverse_tell(hdi_heat_call *h) {
@@ -23458,7 +23557,8 @@ typedef struct hdi_columns {
     const hdi_terms *terms;      /* instead of sources */
     double *U;                   /* NULL: only the lanes' accounts are wanted */
     size_t ldu;
-    double *off_b, *off_m;       /* [k] */
+    hdi_extra rows;              /* of every column; n = 0: none */
+    double *off_b, *off_m;       /* [k] NULL: not wanted */
 } hdi_columns;
 
 /* The columns. The larger residual stays in to (NULL: not wanted). */
@@ -23477,6 +23577,7 @@ static hd_status hdi_direct_columns(hd_heat *heat, const hdi_columns *c, hd_repo
         h.ask.ldu = c->ldu;
         h.equal = c->equal;
         h.watching = c->watching;
+        h.rows = c->rows;
         h.off_b = c->off_b;
         h.off_m = c->off_m;
         h.lap = heat->elim.lap;
@@ -23486,6 +23587,164 @@ static hd_status hdi_direct_columns(hd_heat *heat, const hdi_columns *c, hd_repo
     if (hdi_heat_end(&h) < 0) *e = rep.error;
     else if (to) to->residual = hdi_max(to->residual, rep.residual);
     return e->status;
+}
+
+/* ---- inverses ---- */
+
+/* Functions of the pair that share their poles: that of one time, those of times that share a set, or
+ * filters. Selected inversion gives for each of them entries of the kernel k, and of a bound g of (B +
+ * tL)^-1. All is in elimination order and in the unit of the scaled pair. */
+typedef struct hdi_inverses {
+    int32_t count;
+    const double *t;             /* [count] scaled times, the first is that of the factors; NULL: all are */
+    hd_rational *set;            /* [count] in terms of their own times */
+    hdi_wanted wanted;
+    int64_t size;                /* of the values of one function */
+    int64_t *place;              /* [n] of the diagonal among them; NULL: they are the diagonal */
+    hd_c64 *weight;              /* [2 count][n_poles] of k and of g, in turn */
+    double *slack;               /* [count] g has to be multiplied by; HUGE_VAL: it is no bound */
+    int by_pole;                 /* values are those of the poles, real and imaginary parts in turn */
+    double *values;              /* [2 count or 2 n_poles][size] */
+    double *sum;                 /* by_pole: [2 size] k and g of the function at hand */
+} hdi_inverses;
+
+static double hdi_inverses_tau(const hdi_inverses *x, int32_t q) { return x->t ? x->t[q] / x->t[0] : 1; }
+
+/* Place of each row's diagonal entry among the analysis' entries. */
+static void hdi_inverses_places(const hdi_symbolic *s, int64_t *place) {
+    int32_t v;
+    int64_t at;
+    for (v = 0; v < s->n_super; v++)
+        for (at = s->a_ptr[v]; at < s->a_ptr[v + 1]; at++)
+            if (s->a_row[at] == s->a_col[at]) place[s->super[v] + s->a_col[at]] = at;
+}
+
+/* Room for so many functions, whose sets have to be filled in. */
+static hd_status hdi_inverses_take(hdi_inverses *x, const hdi_heat_call *h, int32_t count, hdi_wanted wanted,
+                                   hdi_scope *s) {
+    const hdi_symbolic *sym = &h->heat->elim.sym;
+    memset(x, 0, sizeof *x);
+    x->count = count;
+    x->wanted = wanted;
+    x->size = wanted == HDI_WANT_ENTRIES ? sym->a_ptr[sym->n_super] : sym->n;
+    x->set = HDI_TAKE_ZERO(s, hd_rational, count);
+    x->slack = HDI_TAKE(s, double, count);
+    if (wanted == HDI_WANT_ENTRIES) x->place = HDI_TAKE(s, int64_t, sym->n);
+    if (x->place && s->e->status >= 0) hdi_inverses_places(sym, x->place);
+    return s->e->status;
+}
+
+/* Weights for k, and for g: by least squares, or those of a single pole. */
+static void hdi_inverses_weigh(hdi_inverses *x, int32_t q) {
+    const hd_rational *set = x->set + q;
+    const double tau = hdi_inverses_tau(x, q);
+    hd_c64 *k = x->weight + 2 * (size_t)q * (size_t)set->n_poles, *g = k + set->n_poles;
+    double slack = 0, factor = 1;
+    int32_t p, best = 0;
+    if (!hdi_resolvent_weights(set, g, &slack)) {
+        slack = 0;
+        best = hdi_resolvent_pole(set, &factor);
+        for (p = 0; p < set->n_poles; p++) g[p] = hdi_c(p == best ? factor : 0, 0);
+    }
+    x->slack[q] = best >= 0 ? 1 + slack : HUGE_VAL;
+    for (p = 0; p < set->n_poles; p++) {
+        k[p] = hdi_cscale(-hdi_rat_count(set, p) / tau, set->a[p]);
+        g[p] = hdi_cscale(1 / tau, g[p]);
+    }
+}
+
+/* Factors at the first time, and the values: for each function or, if these are more, for each pole. */
+static hd_status hdi_inverses_run(hdi_heat_call *h, hdi_inverses *x, hdi_scope *s) {
+    hdi_elim *m = &h->heat->elim;
+    const int32_t n_poles = x->set->n_poles, n_sets = 2 * hdi_low32(x->count, hdi_high32(n_poles, 1));
+    const size_t weights = 2 * (size_t)x->count * (size_t)n_poles;
+    hdi_elim_sums sums;
+    hd_status status;
+    int32_t q;
+    x->by_pole = n_sets < 2 * x->count;
+    x->weight = HDI_TAKE_ZERO(s, hd_c64, weights + (size_t)n_sets * (size_t)n_poles);
+    x->values = HDI_TAKE_ZERO(s, double, (uint64_t)n_sets * (uint64_t)x->size);
+    if (x->by_pole) x->sum = HDI_TAKE(s, double, 2 * (uint64_t)x->size);
+    if (h->e->status < 0) return h->e->status;
+    if (x->t) h->t = x->t[0];
+    h->set = x->set;
+    h->lap = m->lap;
+    status = hdi_direct_factors(h, x->wanted == HDI_WANT_FORMS ? HDI_AFTER_FORMS : HDI_AFTER_INVERSE, n_sets);
+    h->set = NULL;
+    if (status < 0) return status;
+    for (q = 0; q < x->count; q++) hdi_inverses_weigh(x, q);
+    sums.weight = x->by_pole ? x->weight + weights : x->weight;
+    for (q = 0; q < n_sets && x->by_pole; q++)
+        x->weight[weights + (size_t)(q * n_poles + q / 2)] = q % 2 ? hdi_c(0, -1) : hdi_c(1, 0);
+    sums.n_sets = n_sets;
+    sums.wanted = x->wanted;
+    sums.values = x->values;
+    sums.stride = x->size;
+    if (hdi_progress(h->heat->ctx, "invert", 0, h->e) < 0) return h->e->status;
+    return hdi_elim_invert(m, &sums, h->e);
+}
+
+/* The values of function q: k, or with `bound` g before its factor. */
+static const double *hdi_inverses_get(const hdi_inverses *x, int32_t q, int bound) {
+    const int32_t n_poles = x->set->n_poles;
+    const hd_c64 *w = x->weight + (2 * (size_t)q + (size_t)bound) * (size_t)n_poles;
+    double *HDI_RESTRICT sum = x->sum + (bound ? x->size : 0);
+    int64_t i;
+    int32_t p;
+    if (!x->by_pole) return x->values + (2 * (size_t)q + (size_t)bound) * (size_t)x->size;
+    memset(sum, 0, (size_t)x->size * sizeof *sum);
+    for (p = 0; p < n_poles; p++) {
+        const double *re = x->values + 2 * (size_t)p * (size_t)x->size, *im = re + x->size;
+        for (i = 0; i < x->size; i++) sum[i] += w[p].re * re[i] - w[p].im * im[i];
+    }
+    return sum;
+}
+
+/* The diagonal entry of (B + tL)^-1, or of that of forms with B, from g: a bound where the slack is
+ * finite, else a guess, which serves to measure rounding. */
+static double hdi_inverses_bound(const hdi_inverses *x, int32_t q, double g, double constants) {
+    return hdi_max(g, constants) * (hdi_finite(x->slack[q]) ? x->slack[q] : 1);
+}
+
+/* 1, or infinite where that is no bound. */
+static double hdi_inverses_sure(const hdi_inverses *x, int32_t q) {
+    return hdi_finite(x->slack[q]) ? 1 : HUGE_VAL;
+}
+
+/* Errors of a set relative to two forms: that of (B + tL)^-1 and that of B^-1; 0 where bounds hold for the
+ * set's own function. */
+static double hdi_set_off_weighted(const hd_rational *set) {
+    return hdi_set_uniform(set) == 0 ? 0 : hdi_set_weighted(set);
+}
+
+/* The smaller of two bounds: weighted times a form, or uniform times another one. */
+static double hdi_set_off(const hd_rational *set, double form, double spread) {
+    const double weighted = hdi_set_off_weighted(set), uniform = hdi_set_uniform(set) * spread;
+    return hdi_finite(weighted) && hdi_finite(form) ? hdi_min(weighted * form, uniform) : uniform;
+}
+
+/* Place of each of the analysis' entries: row and column in elimination order. */
+static void hdi_entry_place(const hdi_symbolic *s, int32_t v, int64_t n, int32_t *i, int32_t *j) {
+    const int32_t begin = s->super[v], end = s->super[v + 1];
+    *j = begin + s->a_col[n];
+    *i = begin + s->a_row[n];
+    if (*i >= end) *i = s->row[s->row_ptr[v] + *i - end];
+}
+
+/* a0 + diag(k B) for a full B, from the entries of k on the pattern of B. */
+static void hdi_operator_diagonal(const hdi_elim *m, double a0, const double *k, double *diag) {
+    const hdi_symbolic *s = &m->sym;
+    int32_t v, i, j;
+    int64_t n;
+    for (i = 0; i < s->n; i++) diag[i] = a0;
+    for (v = 0; v < s->n_super; v++) {
+        for (n = s->a_ptr[v]; n < s->a_ptr[v + 1]; n++) {
+            const double kb = k[n] * m->source->B[s->a_from[n]] * m->scale;
+            hdi_entry_place(s, v, n, &i, &j);
+            diag[i] += kb;
+            if (i != j) diag[j] += kb;
+        }
+    }
 }
 
 /* ---- rounding of inversions ---- */
@@ -23543,14 +23802,6 @@ static double hdi_own_rounding(const hd_heat *heat, const hd_rational *set, doub
     return HDI_PROBE_OWN * seen + closeness * most;
 }
 
-/* A bound of the largest entry of diag(B^-1). A matrix whose B norm is x has entries below x times this. */
-static double hdi_largest_spread(const hd_laplacian *lap) {
-    double most = 0;
-    int32_t i;
-    for (i = 0; i < lap->n_active; i++) most = hdi_max(most, 1 / lap->b_diag[i]);
-    return hdi_quotient(most, lap->b_ratio);
-}
-
 typedef struct hdi_probe { int32_t k, row[HDI_PROBES]; } hdi_probe;
 
 /* The rows where t L_ii/b_ii and where t L_ii k_ii is largest, and `also` (-1: none). */
@@ -23577,9 +23828,10 @@ static hdi_probe hdi_probe_rows(const hd_laplacian *lap, const double *k, int32_
     return x;
 }
 
-/* Solves for the columns of these rows by the poles of set at the call's time, into the plan's lanes. */
-static hd_status hdi_probe_run(hdi_heat_call *h, const hdi_probe *x, hd_kernel kernel,
-                               const hd_rational *set) {
+/* Solves for the columns of these rows by the poles of set at the call's time, into the plan's lanes.
+ * rows: sums by other weights, or NULL. */
+static hd_status hdi_probe_run(hdi_heat_call *h, const hdi_probe *x, hd_kernel kernel, const hd_rational *set,
+                               const hdi_extra *rows) {
     const hd_rational own = *set;                /* it may be the plan's, which the call sets anew */
     int32_t vertex[HDI_PROBES], i;
     hdi_columns c;
@@ -23591,6 +23843,7 @@ static hd_status hdi_probe_run(hdi_heat_call *h, const hdi_probe *x, hd_kernel k
     c.k = x->k;
     c.sources = vertex;
     c.watching = 1;
+    if (rows) c.rows = *rows;
     return x->k > 0 ? hdi_direct_columns(h->heat, &c, h->rep, h->e) : h->e->status;
 }
 
@@ -23601,116 +23854,24 @@ static double hdi_probe_seen(double probe, double off, double value, double size
     return hdi_nan(seen) ? HUGE_VAL : seen;
 }
 
-/* Probe q's own entry by the weights of `set`, a set in terms of a time that is tau times that of the
+/* Probe r's own entry by the weights of `set`, a set in terms of a time that is tau times that of the
  * factors, and a bound on its error. g: of diag((B + tL)^-1) there. f: what a0 multiplies. */
-static double hdi_probe_value(const hd_heat *heat, const hdi_probe *x, int32_t q, const hd_rational *set,
+static double hdi_probe_value(const hd_heat *heat, const hdi_probe *x, int32_t r, const hd_rational *set,
                               double tau, double f, double g, double *off) {
     const hd_laplacian *lap = heat->elim.lap;
-    const hdi_lane *lane = heat->lane + q;
-    const double root = hdi_ratio_root(lap);
-    double value = set->a0 * f, by_b = 0, by_m = 0;
+    const hdi_lane *lane = heat->lane + r;
+    double value = set->a0 * f, by_b, by_m;
     int32_t p;
-    for (p = 0; p < set->n_poles; p++) {
-        const double weight = hdi_pole_size(set, p) * root * lane->pole_off[p];
+    for (p = 0; p < set->n_poles; p++)
         value -= hdi_rat_count(set, p) / tau * hdi_cmul(set->a[p], lane->pole_value[p]).re;
-        by_m += weight * hdi_pole_gain(set->theta[p]);
-        by_b += weight / hdi_pole_distance(set->theta[p]);
-    }
+    hdi_column_off(lap, lane, set, &by_b, &by_m);
     by_m = g > 0 && hdi_finite(g) ? sqrt(g) * by_m : HUGE_VAL;
-    *off = hdi_min(by_m, by_b * root / sqrt(lap->b_diag[x->row[q]])) + 4 * DBL_EPSILON * fabs(value);
+    *off = hdi_min(by_m, by_b * hdi_ratio_root(lap) / sqrt(lap->b_diag[x->row[r]])) +
+           4 * DBL_EPSILON * fabs(value);
     return value;
 }
 
-/* Entries of k_t for one time, in elimination order and in the unit of the scaled pair. */
-typedef struct hdi_entries {
-    /* [n] or by the analysis' entries; g: diag((B + tL)^-1) or a bound of it, both in turn */
-    double *k, *g;
-    double weighted, uniform;    /* of the set: |error| <= weighted g, uniform diag(B^-1) */
-    double left_out;             /* besides, times diag(B^-1): a0 of a set where B is full */
-    hd_rational resolvent;       /* the poles with weights for g */
-} hdi_entries;
-
-/* Weights of the poles for g, by least squares or those of a single pole. The resolvent of x gets them too.
- * Returns the factor by which g can be too small, HUGE_VAL where it is no bound. */
-static double hdi_entries_resolvent(const hd_rational *set, hd_c64 *weight, hdi_entries *x) {
-    double factor = 1, slack = 0;
-    int32_t p, best = 0;
-    if (!hdi_resolvent_weights(set, weight, &slack)) {
-        slack = 0;
-        best = hdi_resolvent_pole(set, &factor);
-        for (p = 0; p < set->n_poles; p++) weight[p] = hdi_c(p == best ? factor : 0, 0);
-    }
-    x->resolvent = *set;
-    x->resolvent.kind = HD_POLES_OWN;
-    x->resolvent.a0 = x->resolvent.max_error = x->resolvent.max_weighted_error = 0;
-    for (p = 0; p < set->n_poles; p++) x->resolvent.a[p] = hdi_cscale(-1 / hdi_rat_count(set, p), weight[p]);
-    return best >= 0 ? 1 + slack : HUGE_VAL;
-}
-
-/* Factors for h->t, and from them k and g. room [2 size]. */
-static hd_status hdi_entries_make(hdi_heat_call *h, hdi_wanted wanted, double *room, int64_t size,
-                                  hdi_entries *x) {
-    hdi_elim *m = &h->heat->elim;
-    const hd_laplacian *lap = m->lap;
-    hd_c64 weight[2 * HD_MAX_POLES];
-    hdi_elim_sums sums;
-    double slack;
-    int32_t p, i;
-    memset(room, 0, (size_t)(2 * size) * sizeof *room);
-    memset(weight, 0, sizeof weight);
-    if (hdi_direct_factors(h, wanted == HDI_WANT_FORMS ? HDI_AFTER_FORMS : HDI_AFTER_INVERSE, 2) < 0)
-        return h->e->status;
-    for (p = 0; p < m->set.n_poles; p++) weight[p] = hdi_cscale(-hdi_rat_count(&m->set, p), m->set.a[p]);
-    slack = hdi_entries_resolvent(&m->set, weight + m->set.n_poles, x);
-    sums.n_sets = 2;
-    sums.weight = weight;
-    sums.wanted = wanted;
-    sums.values = room;
-    sums.stride = size;
-    if (hdi_progress(h->heat->ctx, "invert", 0, h->e) < 0 || hdi_elim_invert(m, &sums, h->e) < 0)
-        return h->e->status;
-    x->k = room;
-    x->g = room + size;
-    x->uniform = hdi_set_uniform(&m->set);       /* 0: bounds hold for c itself */
-    x->weighted = x->uniform == 0 ? 0 : hdi_finite(slack) ? slack * hdi_set_weighted(&m->set) : HUGE_VAL;
-    x->left_out = 0;
-    for (i = 0; i < m->sym.n && wanted != HDI_WANT_ENTRIES; i++) {
-        const double unit = wanted == HDI_WANT_FORMS ? lap->mass[i] * lap->mass[i] : 1;
-        x->g[i] = hdi_max(x->g[i], hdi_constant_part(lap, i) * unit);
-    }
-    return HD_OK;
-}
-
-/* Bound on the rational error of k_t(i,i), from g(i,i). */
-static double hdi_entry_error(const hdi_entries *x, const hd_laplacian *lap, int32_t i, double g) {
-    const double spread = hdi_inverse_mass(lap, i), out = x->left_out > 0 ? x->left_out * spread : 0;
-    const double uniform = x->uniform > 0 ? x->uniform * spread : 0;
-    return (hdi_finite(x->weighted) ? hdi_min(x->weighted * hdi_max(0, g), uniform) : uniform) + out;
-}
-
-/* Place of each of the analysis' entries: row and column in elimination order. */
-static void hdi_entry_place(const hdi_symbolic *s, int32_t v, int64_t n, int32_t *i, int32_t *j) {
-    const int32_t begin = s->super[v], end = s->super[v + 1];
-    *j = begin + s->a_col[n];
-    *i = begin + s->a_row[n];
-    if (*i >= end) *i = s->row[s->row_ptr[v] + *i - end];
-}
-
-/* a0 + diag(k B) for a full B, from the entries of k on the pattern of B. */
-static void hdi_operator_diagonal(const hdi_elim *m, double a0, const double *k, double *diag) {
-    const hdi_symbolic *s = &m->sym;
-    int32_t v, i, j;
-    int64_t n;
-    for (i = 0; i < s->n; i++) diag[i] = a0;
-    for (v = 0; v < s->n_super; v++) {
-        for (n = s->a_ptr[v]; n < s->a_ptr[v + 1]; n++) {
-            const double kb = k[n] * m->source->B[s->a_from[n]] * m->scale;
-            hdi_entry_place(s, v, n, &i, &j);
-            diag[i] += kb;
-            if (i != j) diag[j] += kb;
-        }
-    }
-}
+/* ---- diagonals and traces ---- */
 
 /* The highest degree takes over where the bound of a diagonal's error, relative to the value itself, is above
  * this. The errors themselves are below 1e-7 then. Tuned on meshes of 1K to 1M vertices; with B = I errors
@@ -23726,9 +23887,28 @@ static double hdi_diagonal_limit(const hd_laplacian *lap, hd_kernel kernel) {
     return loose * (plain ? HDI_DIAGONAL_SURE_PLAIN : HDI_DIAGONAL_SURE);
 }
 
+/* Largest weighted error of shared sets for diagonals, and for distances, where much cancels. Tuned on meshes
+ * of 1K to 1M vertices. */
+#define HDI_SHARED_TOL 2.5e-8
+#define HDI_SHARED_DISTANCE_TOL 2e-10
+
+/* A query for diagonals, traces or both. */
+typedef struct hdi_diagonals {
+    hdi_task task;
+    hd_kernel kernel;
+    double *D;                   /* [n n_times], columns ldd apart; NULL: not wanted */
+    size_t ldd;
+    double *Z, *bound;           /* [n_times] traces of K_t; NULL: not wanted */
+} hdi_diagonals;
+
+/* What is wanted of inversions. A full B needs entries beside the diagonal for that of K_t = k_t B. */
+static hdi_wanted hdi_diagonals_wanted(const hdi_diagonals *to) {
+    const int mass = to->Z || to->kernel == HD_KERNEL_OPERATOR;
+    return mass && to->task.h->heat->source->B ? HDI_WANT_ENTRIES : HDI_WANT_DIAGONAL;
+}
+
 /* The ledger of values found by inversion. */
-static hdi_ledger hdi_inverse_ledger(const hdi_heat_call *h, int relative) {
-    const hd_rational *set = &h->heat->elim.set;
+static hdi_ledger hdi_inverse_ledger(const hdi_heat_call *h, const hd_rational *set, int relative) {
     const int exact_a0 = set->a0 == 0 || !h->heat->source->B;
     const int itself = set->kind == HD_POLES_OWN && hdi_set_uniform(set) == 0 && exact_a0;
     const hd_evidence rational = h->equal || itself ? HD_EVIDENCE_NONE : hdi_set_evidence(set);
@@ -23744,15 +23924,52 @@ typedef struct hdi_diagonal {
     double *own;                 /* [n] work */
 } hdi_diagonal;
 
+static hdi_diagonal hdi_diagonal_take(int32_t n, hdi_scope *s) {
+    hdi_diagonal d;
+    memset(&d, 0, sizeof d);
+    d.value = HDI_TAKE(s, double, 4 * (uint64_t)n);
+    if (!d.value) return d;
+    d.off = d.value + n;
+    d.g = d.off + n;
+    d.own = d.g + n;
+    return d;
+}
+
+/* That of function q. Rounding is relative to the value; for a function of the caller's, which may vanish,
+ * to the resolvent. Where B is full its inverse is not at hand, and a0 B^-1 is of the size of the set's
+ * error. */
+static void hdi_diagonal_read(const hdi_heat_call *h, const hdi_inverses *x, int32_t q, hdi_diagonal *d) {
+    const hdi_elim *m = &h->heat->elim;
+    const hd_laplacian *lap = m->lap;
+    const hd_rational *set = x->set + q;
+    const double *k = hdi_inverses_get(x, q, 0), *g = hdi_inverses_get(x, q, 1);
+    const int mass = d->kernel == HD_KERNEL_OPERATOR, full = mass && lap->B;
+    const double left_out = lap->B && !full ? fabs(set->a0) : 0, sure = hdi_inverses_sure(x, q);
+    int32_t i;
+    d->size = set->kind == HD_POLES_OWN ? d->own : d->value;
+    if (full) hdi_operator_diagonal(m, set->a0, k, d->value);
+    for (i = 0; i < m->sym.n; i++) {
+        const int64_t at = x->place ? x->place[i] : i;
+        const double spread = hdi_inverse_mass(lap, i), b = mass ? lap->mass[i] : 1;
+        d->g[i] = hdi_inverses_bound(x, q, g[at], hdi_constant_part(lap, i));
+        d->own[i] = (d->g[i] > 0 && d->g[i] < spread ? d->g[i] : spread) * (mass ? lap->b_diag[i] : 1);
+        if (full) {
+            d->off[i] = hdi_set_off(set, sure * sqrt(d->g[i] * lap->b_diag[i]), hdi_ratio_root(lap));
+            continue;
+        }
+        d->value[i] = b * (k[at] + (lap->B ? 0 : set->a0 / lap->mass[i]));
+        d->off[i] = b * (hdi_set_off(set, sure * d->g[i], spread) + hdi_bound_times(left_out, spread));
+    }
+}
+
 /* Gives a diagonal to vertices, in the caller's unit, and its errors to the report: off, and rounding
  * relative to size. Returns the largest off relative to its value. */
-static double hdi_diagonal_tell(hdi_heat_call *h, const hdi_diagonal *d, double rounding, double *out) {
-    const hd_laplacian *lap = h->lap;
+static double hdi_diagonal_tell(hdi_heat_call *h, const hdi_diagonal *d, hdi_ledger ledger, double rounding,
+                                double *out, hd_report *rep) {
+    const hd_laplacian *lap = h->heat->elim.lap;
     const double unit = d->kernel == HD_KERNEL_SYMMETRIC ? h->heat->scale : 1;
-    hdi_ledger ledger = hdi_inverse_ledger(h, 1);
     double most = 0;
     int32_t i, v;
-    h->relative = 1;
     for (v = 0; v < lap->n; v++) out[v] = d->kernel == HD_KERNEL_OPERATOR && lap->row[v] == HD_ROW_INERT;
     for (i = 0; i < lap->n_active; i++) {
         const double value = d->value[i], seen = rounding > 0 ? unit * rounding * fabs(d->size[i]) : 0;
@@ -23764,79 +23981,55 @@ static double hdi_diagonal_tell(hdi_heat_call *h, const hdi_diagonal *d, double 
         hdi_ledger_note(&ledger, unit * value, part);
         most = hdi_max(most, hdi_quotient(d->off[i], fabs(value)));
     }
-    hdi_ledger_close(&ledger, h->rep);
+    hdi_ledger_close(&ledger, rep);
     return most;
 }
 
-/* Where t is so large that k_t(i,i) = 1/mass of the component. */
-static void hdi_diagonal_equal(hdi_heat_call *h, const hdi_diagonal *d, double *out) {
-    const hd_laplacian *lap = h->lap;
+/* Gives a trace and the bound on its error to the caller, and to the report where that has no diagonal. */
+static void hdi_trace_tell(const hdi_diagonals *to, hdi_ledger ledger, int32_t q, double value, hdi_parts off,
+                           hd_report *rep) {
+    if (!hdi_finite(off.rounding)) off.rounding = HUGE_VAL;      /* where 0 times infinity is no number */
+    to->Z[q] = value;
+    if (to->bound) to->bound[q] = hdi_parts_sum(&off);
+    if (to->D) return;
+    hdi_ledger_note(&ledger, value, off);
+    hdi_ledger_close(&ledger, rep);
+}
+
+/* The trace of function q, from the diagonal of K, which is there. work [n] */
+static double hdi_trace_read(const hdi_heat_call *h, const hdi_inverses *x, int32_t q, const hdi_diagonal *d,
+                             double rounding, double *work, hdi_parts *off) {
+    const hd_laplacian *lap = h->heat->elim.lap;
+    const hd_rational *set = x->set + q;
+    double value = 0, size = 0, form = 0, components = 0;
     int32_t i;
+    if (lap->B) hdi_operator_diagonal(&h->heat->elim, 0, hdi_inverses_get(x, q, 1), work);
     for (i = 0; i < lap->n_active; i++) {
-        const double unit = d->kernel == HD_KERNEL_OPERATOR ? lap->mass[i] : 1;
-        d->value[i] = unit / lap->component_mass[lap->component[i]];
-        d->off[i] = 0;
+        value += d->value[i];
+        size += fabs(d->size[i]);
+        form += lap->B ? work[i] * x->slack[q] : d->g[i] * lap->mass[i];
     }
-    (void)hdi_diagonal_tell(h, d, (double)lap->n_active * DBL_EPSILON, out);
+    for (i = 0; i < lap->n_components && lap->conserves; i++)
+        components += hdi_finite(lap->component_mass[i]);
+    form = hdi_finite(x->slack[q]) ? hdi_max(form, components) : HUGE_VAL;
+    memset(off, 0, sizeof *off);
+    off->rational = hdi_set_off(set, form, lap->n_active);
+    off->rounding = rounding * size + 4 * DBL_EPSILON * fabs(value);
+    return value;
 }
 
-/* The diagonal of K_t for a full B, from all entries of k_t on the pattern of B. */
-static void hdi_diagonal_full(const hdi_elim *m, const hdi_entries *x, const hdi_diagonal *d) {
-    const hdi_symbolic *s = &m->sym;
-    const hd_laplacian *lap = m->lap;
-    int32_t v, i;
-    int64_t n;
-    hdi_operator_diagonal(m, m->set.a0, x->k, d->value);
-    for (v = 0; v < s->n_super; v++) {
-        for (n = s->a_ptr[v]; n < s->a_ptr[v + 1]; n++) {
-            if (s->a_row[n] != s->a_col[n]) continue;
-            i = s->super[v] + s->a_col[n];
-            d->g[i] = hdi_max(x->g[n], hdi_constant_part(lap, i));
-        }
-    }
-    for (i = 0; i < s->n; i++) {
-        const double form = sqrt(hdi_max(0, d->g[i]) * lap->b_diag[i]);
-        const double weighted = hdi_finite(x->weighted) ? x->weighted * form : HUGE_VAL;
-        d->off[i] = hdi_min(x->weighted == 0 ? 0 : weighted, x->uniform * hdi_ratio_root(lap));
-    }
-}
-
-/* The diagonal of k_t, or for a diagonal B of K_t. */
-static void hdi_diagonal_plain(const hdi_elim *m, hdi_entries *x, const hdi_diagonal *d) {
-    const hd_laplacian *lap = m->lap;
-    const double a0 = m->set.a0;
-    int32_t i;
-    /* a full B's inverse is not at hand, and a0 is of the size of the set's error */
-    if (lap->B) x->left_out = fabs(a0);
-    for (i = 0; i < m->sym.n; i++) {
-        const double b = d->kernel == HD_KERNEL_OPERATOR ? lap->mass[i] : 1;
-        d->g[i] = x->g[i];
-        d->value[i] = b * (x->k[i] + (lap->B ? 0 : a0 / lap->mass[i]));
-        d->off[i] = b * hdi_entry_error(x, lap, i, x->g[i]);
-    }
-}
-
-/* Rounding is relative to the value; for a function of the caller's, which may vanish, to the resolvent. */
-static void hdi_diagonal_own(const hd_laplacian *lap, hdi_diagonal *d) {
-    int32_t i;
-    for (i = 0; i < lap->n_active; i++) {
-        const double most = hdi_inverse_mass(lap, i), g = d->g[i] > 0 && d->g[i] < most ? d->g[i] : most;
-        d->own[i] = g * (d->kernel == HD_KERNEL_OPERATOR ? lap->b_diag[i] : 1);
-    }
-    d->size = d->own;
-}
-
-/* What rounding does to a diagonal by a set, relative to size, from probes that were run. */
-static double hdi_diagonal_seen(const hdi_heat_call *h, const hdi_diagonal *d, const hdi_probe *probe,
-                                const hd_rational *set) {
-    const hd_laplacian *lap = h->lap;
+/* What rounding does to the diagonal of function q, relative to size, from probes that were run. */
+static double hdi_diagonal_seen(const hdi_heat_call *h, const hdi_inverses *x, int32_t q,
+                                const hdi_diagonal *d, const hdi_probe *probe) {
+    const hd_laplacian *lap = h->heat->elim.lap;
+    const hd_rational *set = x->set + q;
     const int mass = d->kernel == HD_KERNEL_OPERATOR;
     double rounding = 0;
-    int32_t i;
-    for (i = 0; i < probe->k; i++) {
-        const int32_t row = probe->row[i];
+    int32_t r;
+    for (r = 0; r < probe->k; r++) {
+        const int32_t row = probe->row[r];
         const double f = mass ? 1 : lap->B ? 0 : 1 / lap->mass[row];
-        double by, there = hdi_probe_value(h->heat, probe, i, set, 1, f, d->g[row], &by);
+        double by, there = hdi_probe_value(h->heat, probe, r, set, hdi_inverses_tau(x, q), f, d->g[row], &by);
         rounding = hdi_max(rounding, hdi_probe_seen(there, by, d->value[row], d->size[row]));
     }
     /* of K_t with a full B the parts of other eigenvectors, x(v) (B x)(v), may be negative */
@@ -23845,51 +24038,100 @@ static double hdi_diagonal_seen(const hdi_heat_call *h, const hdi_diagonal *d, c
     return rounding;
 }
 
-/* Runs probes at the rows where rounding in this diagonal may be largest. */
-static hd_status hdi_diagonal_probe(hdi_heat_call *h, const hdi_diagonal *d, const hd_rational *set,
+/* Runs probes at the rows where rounding in the diagonals may be largest, which it is in that of the last. */
+static hd_status hdi_diagonal_probe(hdi_heat_call *h, const hdi_inverses *x, hdi_diagonal *d,
                                     hdi_probe *probe) {
-    const hd_laplacian *lap = h->lap;
+    const hd_laplacian *lap = h->heat->elim.lap;
     int32_t i, worst = 0;
+    hdi_diagonal_read(h, x, x->count - 1, d);
     for (i = 1; i < lap->n_active; i++)
         if (d->off[i] * d->value[worst] > d->off[worst] * d->value[i]) worst = i;
     *probe = hdi_probe_rows(lap, d->value, lap->n_active > 0 ? worst : -1);
-    return hdi_probe_run(h, probe, d->kernel, set);
+    return hdi_probe_run(h, probe, d->kernel, x->set, NULL);
 }
 
-/* The kernel's diagonal at one time with the set for it, on vertices, and its bounds into the report.
- * *relative: the largest of the rational errors relative to the value. */
-static hd_status hdi_diagonal_once(hdi_heat_call *h, hd_kernel kernel, double *out, double *relative) {
-    hd_heat *heat = h->heat;
-    hdi_elim *m = &heat->elim;
-    const int full = kernel == HD_KERNEL_OPERATOR && heat->source->B;
-    hdi_scope scope = hdi_scope_begin(heat->ctx, h->e);
-    double *room;
-    hdi_diagonal d;
+/* Diagonals, or with `trace` traces, of all functions of x. Function q belongs to time column[q] of the
+ * query, and its report is one[column[q]], or the call's. *relative: the largest rational error relative
+ * to its value. */
+static hd_status hdi_diagonals_read(const hdi_diagonals *to, const hdi_inverses *x, int trace,
+                                    const int32_t *column, hd_report *one, double *relative) {
+    hdi_heat_call *h = to->task.h;
+    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
+    const int32_t n = h->heat->elim.sym.n;
+    hdi_diagonal d = hdi_diagonal_take(n, &s);
+    double *work = trace && h->heat->source->B ? HDI_TAKE(&s, double, n) : NULL;
     hdi_probe probe;
-    hdi_entries x;
-    int64_t size;
-    *relative = 0;
-    if (hdi_heat_analysed(heat, h->e) < 0) return hdi_scope_end(&scope);
-    h->lap = m->lap;
-    h->equal = hdi_heat_equal(heat, h->t, h->e);
-    size = full ? m->sym.a_ptr[m->sym.n_super] : m->sym.n;
-    room = HDI_TAKE(&scope, double, 2 * size);
-    d.value = d.size = HDI_TAKE(&scope, double, 4 * (uint64_t)m->sym.n);
-    if (h->e->status < 0) return hdi_scope_end(&scope);
-    d.kernel = kernel;
-    d.off = d.value + m->sym.n;
-    d.g = d.off + m->sym.n;
-    d.own = d.g + m->sym.n;
-    if (h->equal) {
-        hdi_diagonal_equal(h, &d, out);
-    } else if (hdi_entries_make(h, full ? HDI_WANT_ENTRIES : HDI_WANT_DIAGONAL, room, size, &x) >= 0) {
-        if (full) hdi_diagonal_full(m, &x, &d);
-        else hdi_diagonal_plain(m, &x, &d);
-        if (m->set.kind == HD_POLES_OWN) hdi_diagonal_own(m->lap, &d);
-        if (hdi_diagonal_probe(h, &d, &m->set, &probe) >= 0)
-            *relative = hdi_diagonal_tell(h, &d, hdi_diagonal_seen(h, &d, &probe, &m->set), out);
+    int32_t q;
+    d.kernel = trace ? HD_KERNEL_OPERATOR : to->kernel;
+    if (h->e->status < 0 || hdi_diagonal_probe(h, x, &d, &probe) < 0) return hdi_scope_end(&s);
+    for (q = 0; q < x->count; q++) {
+        hd_report *rep = one ? one + column[q] : h->rep;
+        hdi_ledger ledger = hdi_inverse_ledger(h, x->set + q, 1);
+        double seen;
+        hdi_parts off;
+        if (rep != h->rep && !rep->reason) *rep = *h->rep;
+        hdi_diagonal_read(h, x, q, &d);
+        seen = hdi_diagonal_seen(h, x, q, &d, &probe);
+        if (trace) {
+            const double value = hdi_trace_read(h, x, q, &d, seen, work, &off);
+            hdi_trace_tell(to, ledger, column[q], value, off, rep);
+            *relative = hdi_max(*relative, hdi_quotient(off.rational, fabs(value)));
+        } else {
+            double *out = to->D + (size_t)column[q] * to->ldd;
+            *relative = hdi_max(*relative, hdi_diagonal_tell(h, &d, ledger, seen, out, rep));
+        }
     }
-    return hdi_scope_end(&scope);
+    return hdi_scope_end(&s);
+}
+
+/* All that is wanted of functions whose sets are there. */
+static hd_status hdi_diagonals_of(const hdi_diagonals *to, hdi_inverses *x, const int32_t *column,
+                                  hd_report *one, double *relative, hdi_scope *s) {
+    hdi_heat_call *h = to->task.h;
+    h->relative = 1;
+    *relative = 0;
+    if (hdi_inverses_run(h, x, s) < 0) return h->e->status;
+    if (to->D && hdi_diagonals_read(to, x, 0, column, one, relative) < 0) return h->e->status;
+    return to->Z ? hdi_diagonals_read(to, x, 1, column, one, relative) : HD_OK;
+}
+
+/* Time q where t is so large that k_t(i,i) = 1/mass of the component. */
+static hd_status hdi_diagonals_equal(const hdi_diagonals *to, int32_t q, hd_report *rep) {
+    hdi_heat_call *h = to->task.h;
+    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
+    const hd_laplacian *lap = h->heat->elim.lap;
+    hdi_diagonal d = hdi_diagonal_take(lap->n_active, &s);
+    const hdi_parts off = {0, 0, 0};
+    double count = 0;
+    int32_t i;
+    h->equal = h->relative = 1;
+    d.kernel = to->kernel;
+    d.size = d.value;
+    for (i = 0; i < lap->n_active && d.value; i++) {
+        const double unit = d.kernel == HD_KERNEL_OPERATOR ? lap->mass[i] : 1;
+        d.value[i] = unit / lap->component_mass[lap->component[i]];
+        d.off[i] = 0;
+    }
+    for (i = 0; i < lap->n_components; i++) count += hdi_finite(lap->component_mass[i]);
+    if (h->e->status >= 0) {
+        const hdi_ledger ledger = hdi_inverse_ledger(h, &h->heat->elim.set, 1);
+        if (to->D)
+            (void)hdi_diagonal_tell(h, &d, ledger, (double)lap->n_active * DBL_EPSILON,
+                                    to->D + (size_t)q * to->ldd, rep);
+        if (to->Z) hdi_trace_tell(to, ledger, q, count, off, rep);
+    }
+    h->equal = 0;
+    return hdi_scope_end(&s);
+}
+
+/* The time under way by the set for it. *relative as above. */
+static hd_status hdi_diagonals_once(const hdi_diagonals *to, double *relative) {
+    hdi_heat_call *h = to->task.h;
+    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
+    hdi_inverses x;
+    if (hdi_inverses_take(&x, h, 1, hdi_diagonals_wanted(to), &s) >= 0 && hdi_heat_set(h, x.set) >= 0)
+        (void)hdi_diagonals_of(to, &x, &h->now, NULL, relative, &s);
+    return hdi_scope_end(&s);
 }
 
 /* Goes on from the highest degree of poles, whose factors did not fit the byte limit, to the default. Returns
@@ -23902,31 +24144,33 @@ static int hdi_degree_retreat(hd_heat *heat, int32_t *degree, hd_error *e) {
     return 1;
 }
 
-/* The diagonal of the kernel on vertices, with the set's degree by default. Tiny cells among large ones and
- * slivers have errors relative to their own value that may be above the promise. Where the bound shows this,
- * the highest degree takes over. The error seen is about a fifth of the bound on all meshes tried. */
-static hd_status hdi_diagonal_sure(hdi_heat_call *h, hd_kernel kernel, double *out) {
-    const hd_report before = *h->rep;
-    const hd_heat *heat = h->heat;
-    double rational;
-    if (hdi_diagonal_once(h, kernel, out, &rational) < 0) return h->e->status;
-    if (heat->poles_asked || heat->exacting || h->degree) return HD_OK;
-    if (rational <= hdi_diagonal_limit(heat->source, kernel)) return HD_OK;
+/* The time under way by poles, with the set's degree by default. Tiny cells among large ones and slivers have
+ * errors relative to their own value that may be above the promise. Where the bound shows this, the highest
+ * degree takes over. The error seen is about a fifth of the bound on all meshes tried. */
+static hd_status hdi_diagonals_by_poles(hdi_task *task) {
+    const hdi_diagonals *to = (const hdi_diagonals *)task;
+    hdi_heat_call *h = task->h;
+    hd_heat *heat = h->heat;
+    const hd_kernel kernel = to->D ? to->kernel : HD_KERNEL_SYMMETRIC;
+    double relative;
+    hd_report before;
+    if (hdi_heat_analysed(heat, h->e) < 0) return h->e->status;
+    hdi_inverse_tell(h);
+    before = *h->rep;
+    if (hdi_heat_equal(heat, h->t, h->e)) return hdi_diagonals_equal(to, h->now, h->rep);
+    if (h->e->status < 0 || hdi_diagonals_once(to, &relative) < 0) return h->e->status;
+    if (heat->poles_asked || heat->exacting || relative <= hdi_diagonal_limit(heat->source, kernel))
+        return HD_OK;
     h->degree = HDI_RAT_KERNEL_MAX;
     do {
         *h->rep = before;
-        (void)hdi_diagonal_once(h, kernel, out, &rational);
-    } while (hdi_degree_retreat(h->heat, &h->degree, h->e));
+        (void)hdi_diagonals_once(to, &relative);
+    } while (hdi_degree_retreat(heat, &h->degree, h->e));
     h->degree = 0;
     return h->e->status;
 }
 
-/* Largest weighted error of shared sets for diagonals, and for distances, where much cancels. Tuned on meshes
- * of 1K to 1M vertices. */
-#define HDI_SHARED_TOL 2.5e-8
-#define HDI_SHARED_DISTANCE_TOL 2e-10
-
-/* ---- diagonals at many times ---- */
+/* ---- at many times ---- */
 
 /* May the times of a call share their poles? */
 static int hdi_shared_may(const hd_heat *heat) {
@@ -23948,358 +24192,52 @@ static int32_t hdi_shared_windows(const double *times, int32_t n_times, double t
     return best;
 }
 
-/* Times that share the poles of the first: (t L + tau theta B)^-1 = (t0 L + theta B)^-1 / tau. */
-typedef struct hdi_window {
-    int32_t n_times;
-    const double *t;             /* [n_times] scaled, ascending */
-    hd_rational *set;            /* [n_times] */
-    hd_c64 *weight;              /* [2 n_times][n_poles] of k and of a bound of g, for every time in turn */
-    double *values;              /* [2 n_times][n] k and g by rows in elimination order */
-    size_t n;
-} hdi_window;
-
-/* k of time q in an array as values, and g n further on. */
-static double *hdi_window_at(const hdi_window *w, double *values, int32_t q) {
-    return values + 2 * (size_t)q * w->n;
-}
-
-/* Room for times q0 to q1 - 1 of a call. */
-static void hdi_window_take(hdi_window *w, const hdi_heat_call *h, int32_t q0, int32_t q1, hdi_scope *s) {
-    const uint64_t sets = 2 * (uint64_t)(q1 - q0);
-    w->n_times = q1 - q0;
-    w->t = h->times + q0;
-    w->n = (size_t)h->heat->elim.sym.n;
-    w->set = HDI_TAKE(s, hd_rational, w->n_times);
-    w->weight = HDI_TAKE_ZERO(s, hd_c64, sets * HD_MAX_POLES);
-    w->values = HDI_TAKE_ZERO(s, double, sets * w->n);
-}
-
-/* Weights for k and for (B + tL)^-1 at time q. */
-static void hdi_window_weights(const hdi_window *w, int32_t q, hd_c64 *k, hd_c64 *g) {
-    const hd_rational *set = w->set + q;
-    const double tau = w->t[q] / w->t[0];
-    double factor = 1;
-    const int32_t best = hdi_resolvent_pole(set, &factor);
-    int32_t p;
-    for (p = 0; p < set->n_poles; p++) {
-        k[p] = hdi_cscale(-hdi_rat_count(set, p) / tau, set->a[p]);
-        g[p] = hdi_c(p == best ? factor / tau : 0, 0);
-    }
-}
-
-/* The sets, the factors at the first time, and the values. */
-static hd_status hdi_window_run(hdi_heat_call *h, const hdi_window *w, double tol, hdi_wanted wanted) {
-    hdi_elim *m = &h->heat->elim;
-    hd_context *ctx = h->heat->ctx;
-    hdi_elim_sums sums;
-    hd_status status;
-    hd_c64 *k;
-    int32_t q;
-    if (h->e->status < 0 || hdi_rational_shared(w->set, w->n_times, w->t, tol, ctx, h->e) < 0)
-        return h->e->status;
-    h->t = w->t[0];
-    h->set = w->set;
-    h->lap = m->lap;
-    status = hdi_direct_factors(h, wanted == HDI_WANT_FORMS ? HDI_AFTER_FORMS : HDI_AFTER_INVERSE,
-                                2 * w->n_times);
-    h->set = NULL;
-    if (status < 0) return status;
-    for (k = w->weight, q = 0; q < w->n_times; k += 2 * w->set->n_poles, q++)
-        hdi_window_weights(w, q, k, k + w->set->n_poles);
-    sums.n_sets = 2 * w->n_times;
-    sums.weight = w->weight;
-    sums.wanted = wanted;
-    sums.values = w->values;
-    sums.stride = m->sym.n;
-    if (hdi_progress(ctx, "invert", 0, h->e) < 0) return h->e->status;
-    return hdi_elim_invert(m, &sums, h->e);
-}
-
-/* The row where k is smallest beside g, and rounding with it largest. */
-static int32_t hdi_window_worst(const double *k, const double *g, int32_t n) {
-    double least = 0;
-    int32_t i, worst = -1;
-    for (i = 0; i < n; i++) {
-        if (worst >= 0 && !(g[i] * least > k[i])) continue;
-        worst = i;
-        least = hdi_quotient(k[i], g[i]);
-    }
-    return worst;
-}
-
-/* What rounding does to k at time q, relative to it, as the probes see it and values below the constants. */
-static double hdi_window_rounding(const hd_heat *heat, const hdi_window *w, const hdi_probe *x, int32_t q) {
-    const double *value = hdi_window_at(w, w->values, q), *g = value + w->n;
-    double most = hdi_below_constants(heat->elim.lap, w->set + q, value, 0);
-    int32_t r;
-    for (r = 0; r < x->k; r++) {
-        const int32_t row = x->row[r];
-        double by, there = hdi_probe_value(heat, x, r, w->set + q, w->t[q] / w->t[0], 0, g[row], &by);
-        most = hdi_max(most, hdi_probe_seen(there, by, value[row], value[row]));
-    }
-    return most;
-}
-
-/* k_t(v,v) for times q0 to q1 - 1 of the call by one set of poles. */
-static hd_status hdi_diagonal_window(hdi_heat_call *h, int32_t q0, int32_t q1, double *D, size_t ldd) {
-    const hdi_elim *m = &h->heat->elim;
-    const hd_laplacian *lap = m->lap;
-    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
-    hdi_window w;
-    hdi_diagonal d;
-    hdi_probe probe;
-    int32_t q, i;
-    memset(&d, 0, sizeof d);
-    d.kernel = HD_KERNEL_SYMMETRIC;
-    hdi_window_take(&w, h, q0, q1, &s);
-    d.off = HDI_TAKE(&s, double, w.n);
-    if (hdi_window_run(h, &w, HDI_SHARED_TOL, HDI_WANT_DIAGONAL) < 0) return hdi_scope_end(&s);
-    d.value = hdi_window_at(&w, w.values, w.n_times - 1);   /* at the last time rounding is largest */
-    probe = hdi_probe_rows(lap, d.value, hdi_window_worst(d.value, d.value + w.n, m->sym.n));
-    if (hdi_probe_run(h, &probe, HD_KERNEL_SYMMETRIC, w.set) < 0) return hdi_scope_end(&s);
-    for (q = 0; q < w.n_times; q++) {
-        const hd_rational *set = w.set + q;
-        d.value = d.size = hdi_window_at(&w, w.values, q);
-        d.g = d.value + w.n;
-        for (i = 0; i < m->sym.n; i++) {
-            const double spread = lap->b_ratio * lap->b_diag[i];
-            d.off[i] = hdi_min(set->max_weighted_error * hdi_max(0, d.g[i]), set->max_error / spread);
-        }
-        (void)hdi_diagonal_tell(h, &d, hdi_window_rounding(h->heat, &w, &probe, q),
-                                D + (size_t)h->time_column[q0 + q] * ldd);
-    }
-    return hdi_scope_end(&s);
-}
-
 /* Do so many packs cost less than so many times one by one? Each of these takes a set of degree 9, that is a
  * pack and a real factor, which costs an eighth of a pack. */
 static int hdi_shared_pays(int32_t packs, int32_t n_times) { return 8 * packs < 9 * n_times; }
 
-/* All times of a call that are not done: with shared poles where that takes fewer packs, else one by one. */
-static hd_status hdi_diagonal_poles(hdi_heat_call *h, hd_kernel kernel, double *D, size_t ldd,
-                                    const char *done) {
-    hd_heat *heat = h->heat;
-    int32_t q, q1, n, w, packs = 0, windows = 0;
-    if (hdi_heat_analysed(heat, h->e) < 0 || hdi_heat_sort_times(h, 1, done) < 0) return h->e->status;
-    hdi_inverse_tell(h);
-    n = h->n_times;
-    if (kernel == HD_KERNEL_SYMMETRIC && n > 1 && hdi_shared_may(heat))
-        windows = hdi_shared_windows(h->times, n, HDI_SHARED_TOL, &packs);
-    if (windows > 0 && hdi_shared_pays(packs, n) && !hdi_heat_equal(heat, h->t, h->e)) {
-        for (w = 0, q = 0; q < n && h->e->status >= 0; w++, q = q1) {
-            q1 = hdi_window_end(h->times, n, q, w, windows);
-            (void)hdi_diagonal_window(h, q, q1, D, ldd);
-        }
-        return h->e->status;
-    }
-    for (q = 0; q < h->ask.n_times && h->e->status >= 0; q++) {
-        if (done && done[q]) continue;
-        h->t = hdi_heat_scaled(heat, h->ask.t[q]);
-        if (hdi_diagonal_sure(h, kernel, D + (size_t)q * ldd) < 0) h->e->column = q;
-    }
-    return h->e->status;
+/* Room for times q0 to q1 - 1 of the call, sorted, and the sets that they share. */
+static hd_status hdi_window_take(hdi_inverses *x, hdi_heat_call *h, int32_t q0, int32_t q1, hdi_wanted wanted,
+                                 double tol, hdi_scope *s) {
+    if (hdi_inverses_take(x, h, q1 - q0, wanted, s) < 0) return h->e->status;
+    x->t = h->times + q0;
+    return hdi_rational_shared(x->set, x->count, x->t, tol, h->heat->ctx, h->e);
 }
 
-/* ---- traces ---- */
-
-/* tr(K_t) from the traces of (t0 L + theta_p B)^-1 B over the poles: at any time that shares the poles it is
- * a sum of these with the set's weights. Two sets of an inversion belong to a pole, real and imaginary part.
- * By rows in elimination order and in the unit of the scaled pair. */
-typedef struct hdi_trace {
-    hdi_window w;                /* its times, and their sets; not its arrays */
-    int64_t size;                /* of a set's values */
-    double *values;              /* [2 n_poles][size] of the inverses: entries or diagonals */
-    double *diag;                /* [2 n_poles][n] diagonals of the inverses times B; in values if B is */
-    double *last;                /* [n] the diagonal of K_t at the last time */
-    hdi_probe probe;
-    double g[HDI_PROBES];        /* [probe.k] diag((B + tL)^-1) at the last time */
-} hdi_trace;
-
-/* The sum over poles of Re(w_p z_p), z_p entry i of the sets at x, stride apart. */
-static double hdi_trace_sum(const hd_c64 *w, int32_t n_poles, const double *x, int64_t stride, int64_t i) {
-    double sum = 0;
-    int32_t p;
-    for (p = 0; p < n_poles; p++)
-        sum += w[p].re * x[2 * p * stride + i] - w[p].im * x[(2 * p + 1) * stride + i];
-    return sum;
-}
-
-/* Factors at the first time, and the two parts of every pole's inverse. */
-static hd_status hdi_trace_invert(hdi_heat_call *h, hdi_trace *z, hdi_scope *s) {
-    hdi_elim *m = &h->heat->elim;
-    const int full = h->heat->source->B != NULL;
-    const int32_t n_poles = z->w.set->n_poles;
-    hd_c64 *unit = HDI_TAKE_ZERO(s, hd_c64, 2 * n_poles * n_poles);
-    hdi_elim_sums sums;
-    int32_t p;
-    z->size = full ? m->sym.a_ptr[m->sym.n_super] : m->sym.n;
-    z->values = HDI_TAKE_ZERO(s, double, (uint64_t)(2 * n_poles * z->size));
-    z->diag = full ? HDI_TAKE_ZERO(s, double, (uint64_t)(2 * n_poles) * z->w.n) : z->values;
-    z->last = HDI_TAKE(s, double, z->w.n);
-    if (h->e->status < 0) return h->e->status;
-    for (p = 0; p < n_poles; p++) {
-        unit[2 * p * n_poles + p] = hdi_c(1, 0);
-        unit[(2 * p + 1) * n_poles + p] = hdi_c(0, -1);
-    }
-    h->t = z->w.t[0];
-    h->set = z->w.set;
-    h->lap = m->lap;
-    if (hdi_direct_factors(h, HDI_AFTER_INVERSE, 2 * n_poles) < 0) return h->e->status;
-    h->set = NULL;
-    sums.n_sets = 2 * n_poles;
-    sums.weight = unit;
-    sums.wanted = full ? HDI_WANT_ENTRIES : HDI_WANT_DIAGONAL;
-    sums.values = z->values;
-    sums.stride = z->size;
-    if (hdi_progress(h->heat->ctx, "invert", 0, h->e) < 0) return h->e->status;
-    return hdi_elim_invert(m, &sums, h->e);
-}
-
-/* The diagonal of K_t at the last time, the rows to be probed, and g there. */
-static void hdi_trace_probes(const hdi_elim *m, hdi_trace *z) {
-    const hdi_symbolic *s = &m->sym;
-    const hd_laplacian *lap = m->lap;
-    const int64_t n = (int64_t)z->w.n;
-    const int32_t n_poles = z->w.set->n_poles, last = z->w.n_times - 1;
-    hd_c64 k[HD_MAX_POLES], g[HD_MAX_POLES];
-    int32_t i, r, v, set;
-    int64_t at;
-    hdi_window_weights(&z->w, last, k, g);
-    for (i = 0; i < n; i++) z->last[i] = z->w.set[last].a0 + hdi_trace_sum(k, n_poles, z->diag, n, i);
-    for (i = 0, r = -1; i < n; i++)
-        if (r < 0 || z->last[i] * lap->b_diag[r] < z->last[r] * lap->b_diag[i]) r = i;
-    z->probe = hdi_probe_rows(lap, z->last, r);
-    for (r = 0; r < z->probe.k; r++) z->g[r] = hdi_constant_part(lap, z->probe.row[r]);
-    if (!lap->B) {
-        for (r = 0; r < z->probe.k; r++) {
-            i = z->probe.row[r];
-            z->g[r] = hdi_max(z->g[r], hdi_trace_sum(g, n_poles, z->diag, n, i) / lap->mass[i]);
-        }
-        return;
-    }
-    for (v = 0; v < s->n_super; v++)
-        for (at = s->a_ptr[v]; at < s->a_ptr[v + 1]; at++)
-            for (set = 0; set < z->probe.k && s->a_row[at] == s->a_col[at]; set++)
-                if (z->probe.row[set] == s->super[v] + s->a_col[at])
-                    z->g[set] = hdi_max(z->g[set], hdi_trace_sum(g, n_poles, z->values, z->size, at));
-}
-
-/* Diagonals of the inverses times B. */
-static void hdi_trace_diagonals(const hdi_elim *m, const hdi_trace *z) {
-    const hd_laplacian *lap = m->lap;
-    const int64_t n = (int64_t)z->w.n;
-    int32_t set, i;
-    for (set = 0; set < 2 * z->w.set->n_poles; set++) {
-        double *diag = z->diag + set * n;
-        if (lap->B) hdi_operator_diagonal(m, 0, z->values + set * z->size, diag);
-        for (i = 0; i < n && !lap->B; i++) diag[i] *= lap->mass[i];
-    }
-}
-
-/* The trace at time q of the window and bounds on its errors. */
-static double hdi_trace_at(hdi_heat_call *h, const hdi_trace *z, int32_t q, hdi_parts *off) {
-    const hd_rational *set = z->w.set + q;
-    const hd_laplacian *lap = h->lap;
-    double factor = 1;
-    /* without a pole for it g is not known */
-    const double weighted = hdi_resolvent_pole(set, &factor) < 0 ? HUGE_VAL : hdi_set_weighted(set);
-    const double uniform = hdi_set_uniform(set) * lap->n_active;
-    const int32_t n_poles = set->n_poles;
-    double value = set->a0 * lap->n_active, spread = 0, seen = 0;
-    hd_c64 k[HD_MAX_POLES], g[HD_MAX_POLES];
-    int32_t i, r;
-    hdi_window_weights(&z->w, q, k, g);
-    for (i = 0; i < lap->n_active; i++) {
-        value += hdi_trace_sum(k, n_poles, z->diag, lap->n_active, i);
-        spread += hdi_trace_sum(g, n_poles, z->diag, lap->n_active, i);
-    }
-    for (i = 0, r = 0; i < lap->n_components; i++) r += hdi_finite(lap->component_mass[i]);
-    spread = hdi_max(spread, lap->conserves ? r : 0);
-    for (r = 0; r < z->probe.k; r++) {
-        const int32_t row = z->probe.row[r];
-        const double here = set->a0 + hdi_trace_sum(k, n_poles, z->diag, lap->n_active, row);
-        double by, there = hdi_probe_value(h->heat, &z->probe, r, set, z->w.t[q] / z->w.t[0], 1,
-                                           z->g[r], &by);
-        seen = hdi_max(seen, hdi_probe_seen(there, by, here, here));
-    }
-    if (set->kind == HD_POLES_OWN)
-        seen = HDI_PROBE_OWN * seen + hdi_quotient(hdi_own_near(h->heat, set, h->t), lap->b_ratio);
-    memset(off, 0, sizeof *off);
-    off->rational = hdi_min(uniform, hdi_finite(weighted) ? weighted * spread : HUGE_VAL);
-    off->rounding = seen * hdi_max(fabs(value), set->kind == HD_POLES_OWN ? lap->n_active : 0) +
-                    4 * DBL_EPSILON * fabs(value);
-    if (!hdi_finite(off->rounding)) off->rounding = HUGE_VAL;    /* where 0 times infinity is no number */
-    return value;
-}
-
-/* Notes a trace, its bound relative to itself. */
-static void hdi_trace_note(hdi_heat_call *h, int32_t q, double value, hdi_parts off, double *Z,
-                           double *bound) {
-    hdi_ledger ledger = hdi_inverse_ledger(h, 1);
-    h->relative = 1;
-    hdi_ledger_note(&ledger, value, off);
-    hdi_ledger_close(&ledger, h->rep);
-    Z[q] = value;
-    if (bound) bound[q] = hdi_parts_sum(&off);
-}
-
-/* Traces at times q0 to q1 - 1 of the call, sorted, by one set of poles: shared, or that of the options. */
-static hd_status hdi_trace_window(hdi_heat_call *h, int32_t q0, int32_t q1, double *Z, double *bound) {
-    hdi_elim *m = &h->heat->elim;
+/* Times q0 to q1 - 1 of the call, sorted, by one set of poles. */
+static hd_status hdi_diagonals_window(const hdi_diagonals *to, int32_t q0, int32_t q1, hd_report *one) {
+    hdi_heat_call *h = to->task.h;
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
-    hdi_trace z;
-    hdi_parts off;
-    int32_t q;
-    memset(&z, 0, sizeof z);
-    z.w.n_times = q1 - q0;
-    z.w.t = h->times + q0;
-    z.w.n = (size_t)m->sym.n;
-    z.w.set = HDI_TAKE(&s, hd_rational, z.w.n_times);
-    if (h->e->status < 0) return hdi_scope_end(&s);
-    if (h->heat->poles_asked || h->heat->exacting) (void)hdi_heat_set(h, z.w.set);
-    else (void)hdi_rational_shared(z.w.set, z.w.n_times, z.w.t, HDI_SHARED_TOL, h->heat->ctx, h->e);
-    if (h->e->status >= 0 && hdi_trace_invert(h, &z, &s) >= 0) {
-        hdi_trace_diagonals(m, &z);
-        hdi_trace_probes(m, &z);
-        (void)hdi_probe_run(h, &z.probe, HD_KERNEL_OPERATOR, z.w.set);
-    }
-    for (q = 0; q < z.w.n_times && h->e->status >= 0; q++) {
-        const double value = hdi_trace_at(h, &z, q, &off);
-        hdi_trace_note(h, h->time_column[q0 + q], value, off, Z, bound);
-    }
+    hdi_inverses x;
+    double relative;
+    if (hdi_window_take(&x, h, q0, q1, hdi_diagonals_wanted(to), HDI_SHARED_TOL, &s) >= 0)
+        (void)hdi_diagonals_of(to, &x, h->time_column + q0, one, &relative, &s);
     return hdi_scope_end(&s);
 }
 
-/* Where only the means are left: one for each component that keeps its heat. Takes off times from the end.
- * Returns how many are left. */
-static int32_t hdi_trace_late(hdi_heat_call *h, double *Z, double *bound) {
-    const hd_laplacian *lap = h->heat->source;
-    const hdi_parts off = {0, 0, 0};
-    double count = 0;
-    int32_t n = h->n_times, i;
-    for (i = 0; i < lap->n_components; i++) count += hdi_finite(lap->component_mass[i]);
-    for (; n > 0 && hdi_heat_equal(h->heat, h->times[n - 1], h->e); n--) {
-        h->equal = 1;
-        hdi_trace_note(h, h->time_column[n - 1], count, off, Z, bound);
-    }
-    h->equal = 0;
-    return n;
-}
-
-/* The traces at all times of a call that are not done. */
-static hd_status hdi_trace_poles(hdi_heat_call *h, double *Z, double *bound, const char *done) {
-    const hd_heat *heat = h->heat;
-    int32_t n, q0, q1, w, windows = 0, packs = 0;
-    if (hdi_heat_analysed(h->heat, h->e) < 0) return h->e->status;
+/* With shared poles where that takes fewer packs; those where only the means are left need none. The
+ * diagonal of K_t with a full B stays alone: its bound may ask for the highest degree. */
+static hd_status hdi_diagonals_together(hdi_task *task, char *done, hd_report *one) {
+    const hdi_diagonals *to = (const hdi_diagonals *)task;
+    hdi_heat_call *h = task->h;
+    hd_heat *heat = h->heat;
+    const int alone = to->D && to->kernel == HD_KERNEL_OPERATOR && heat->source->B;
+    int32_t n, w, q, q1, packs = 0, windows = 0;
+    if (hdi_heat_analysed(heat, h->e) < 0 || hdi_heat_sort_times(h, 1, done) < 0) return h->e->status;
     hdi_inverse_tell(h);
-    if (hdi_heat_sort_times(h, 1, done) < 0) return h->e->status;
-    n = hdi_trace_late(h, Z, bound);
-    if (n > 1 && hdi_shared_may(heat))
+    for (n = h->n_times; n > 0 && hdi_heat_equal(heat, h->times[n - 1], h->e); n--) {
+        const int32_t at = h->time_column[n - 1];
+        one[at] = *h->rep;
+        done[at] = HDI_DONE_FOR_GOOD;
+        if (hdi_diagonals_equal(to, at, one + at) < 0) return h->e->status;
+    }
+    if (n > 1 && hdi_shared_may(heat) && !alone)
         windows = hdi_shared_windows(h->times, n, HDI_SHARED_TOL, &packs);
-    if (!hdi_shared_pays(packs, n)) windows = 0;
-    for (w = 0, q0 = 0; q0 < n && h->e->status >= 0; w++, q0 = q1) {
-        q1 = windows > 0 ? hdi_window_end(h->times, n, q0, w, windows) : q0 + 1;
-        (void)hdi_trace_window(h, q0, q1, Z, bound);
+    if (h->e->status < 0 || windows == 0 || !hdi_shared_pays(packs, n)) return h->e->status;
+    for (w = 0, q = 0; q < n && h->e->status >= 0; w++, q = q1) {
+        q1 = hdi_window_end(h->times, n, q, w, windows);
+        if (hdi_diagonals_window(to, q, q1, one) < 0) return h->e->status;
+        for (; q < q1; q++) done[h->time_column[q]] = HDI_DONE_BY_POLES;
     }
     return h->e->status;
 }
@@ -24399,10 +24337,10 @@ static hd_status hdi_fading_diagonal_run(hdi_heat_call *h, double t, hd_kernel k
 
 /* The same for the trace. Of the eigenvalues found each has one of the pair nearby (Weyl), the others are at
  * least next; there are as many of these as rows that are left. */
-static void hdi_fading_trace(hdi_heat_call *h, double t, double *Z, double *bound) {
+static void hdi_fading_trace(const hdi_diagonals *to, double t) {
+    hdi_heat_call *h = to->task.h;
     const hdi_modes *x = &h->heat->modes;
     const double others = (double)h->heat->source->n_active - x->s.count;
-    hdi_ledger ledger = hdi_modes_ledger();
     hdi_parts off = {0, 0, 0};
     double value = 0;
     int32_t q;
@@ -24415,216 +24353,65 @@ static void hdi_fading_trace(hdi_heat_call *h, double t, double *Z, double *boun
     off.rounding = 8 * (2 + hdi_min(t * x->low, HDI_EQUAL_BEYOND)) * DBL_EPSILON * value +
                    (4 + x->s.count) * DBL_MIN * DBL_EPSILON;
     h->relative = 1;
-    *Z = value;
-    if (bound) *bound = hdi_parts_sum(&off);
     hdi_modes_tell(h->heat, h->rep);
-    hdi_ledger_note(&ledger, value, off);
-    hdi_ledger_close(&ledger, h->rep);
+    hdi_trace_tell(to, hdi_modes_ledger(), h->now, value, off, h->rep);
 }
 
-/* A diagonal or, with Z, a trace. */
-typedef struct hdi_fading_to {
-    hd_kernel kernel;
-    double *D;
-    size_t ldd;
-    double *Z, *bound;
-} hdi_fading_to;
-
-/* It at time q of the call from at most `most` pairs. Returns 0 where its bound is not as it should be. */
-static int hdi_fading_values(hdi_heat_call *h, int32_t q, int32_t most, const hdi_fading_to *to) {
-    const double t = h->ask.t[q];
-    const hd_report before = *h->rep;
-    hd_report one;
-    memset(&one, 0, sizeof one);
-    hdi_error_clear(&one.error);
-    if (!hdi_modes_enough(h->heat, t, hdi_fading_depth(h->heat), most, h->e)) return 0;
-    *h->rep = one;
-    if (to->Z) hdi_fading_trace(h, t, to->Z + q, to->bound ? to->bound + q : NULL);
-    else (void)hdi_fading_diagonal_run(h, t, to->kernel, to->D + (size_t)q * to->ldd);
-    if (h->e->status < 0) return 0;
-    one = *h->rep;
-    *h->rep = before;
-    if (!hdi_modes_good(h->heat, t, &one)) return 0;
-    hdi_report_merge(h->rep, &one);
-    return 1;
-}
-
-static hd_status hdi_fading_poles(hdi_heat_call *h, const hdi_fading_to *to, const char *done) {
-    return to->Z ? hdi_trace_poles(h, to->Z, to->bound, done)
-                 : hdi_diagonal_poles(h, to->kernel, to->D, to->ldd, done);
-}
-
-/* Times that are not done and that at most `most` pairs serve: done becomes 1. Returns how many are tried. */
-static int32_t hdi_fading_some(hdi_heat_call *h, const hdi_fading_to *to, int32_t most, char *done) {
-    int32_t q, tried = 0;
-    for (q = 0; q < h->ask.n_times && h->e->status >= 0; q++) {
-        const double t = h->ask.t[q];
-        if (done[q] || !(most > HDI_MODES_FIRST ? hdi_fading(h) && hdi_fading_near(h->heat, t, most)
-                                                : hdi_fading_first(h, t))) continue;
-        done[q] = (char)hdi_fading_values(h, q, most, to);
-        if (h->e->status < 0) h->e->column = q;
-        tried++;
-    }
-    return tried;
-}
-
-/* Poles for the times that are not done, after others, into one report. */
-static hd_status hdi_fading_rest(hdi_heat_call *h, const hdi_fading_to *to, const char *done) {
-    hd_report others = *h->rep, rest;
-    int32_t q, n_done = 0;
-    for (q = 0; q < h->ask.n_times; q++) n_done += done[q];
-    if (n_done == h->ask.n_times) return HD_OK;
-    memset(h->rep, 0, sizeof *h->rep);
-    hdi_error_clear(h->e);
-    if (hdi_fading_poles(h, to, done) < 0 || n_done == 0) return h->e->status;
-    rest = *h->rep;
-    *h->rep = others;
-    hdi_report_merge(h->rep, &rest);
-    return HD_OK;
-}
-
-/* All times where heat fades: from eigenpairs where few are left, else by poles. If the bound is not as it
- * should be then, more eigenpairs are asked for help, and poles do what is left once more. */
-static hd_status hdi_fading_times(hdi_heat_call *h, const hdi_fading_to *to) {
-    char *done = HDI_TAKE_ZERO(&h->s, char, h->ask.n_times);
-    hd_report late, all;
-    if (!done || hdi_heat_analysed(h->heat, h->e) < 0) return h->e->status;
-    (void)hdi_fading_some(h, to, HDI_MODES_FIRST, done);
-    late = *h->rep;
-    if (h->e->status < 0 || hdi_fading_rest(h, to, done) < 0) return h->e->status;
-    if (h->rep->error_bound <= HDI_MODES_HELP) return HD_OK;
-    all = *h->rep;
-    *h->rep = late;
-    if (hdi_fading_some(h, to, HDI_MODES_MOST, done) == 0) *h->rep = all;
-    else if (h->e->status >= 0) (void)hdi_fading_rest(h, to, done);
+/* The time under way from the pairs that are there. */
+static hd_status hdi_diagonals_by_pairs(hdi_task *task) {
+    const hdi_diagonals *to = (const hdi_diagonals *)task;
+    hdi_heat_call *h = task->h;
+    const double t = h->ask.t[h->now];
+    if (to->D && hdi_fading_diagonal_run(h, t, to->kernel, to->D + (size_t)h->now * to->ldd) < 0)
+        return h->e->status;
+    if (to->Z) hdi_fading_trace(to, t);
     return h->e->status;
 }
 
-static hd_status hdi_fading_run(hdi_heat_call *h, void *what) {
-    const hdi_fading_to *to = (const hdi_fading_to *)what;
-    return HDI_HAS_MODES && hdi_fading(h) ? hdi_fading_times(h, to) : hdi_fading_poles(h, to, NULL);
-}
-
-/* A query for diagonals in D, ldd apart, or for traces in Z with bounds. */
-static hd_status hdi_fading_ask(hdi_heat_call *h, hd_kernel kernel, double *D, size_t ldd, double *Z,
-                                double *bound) {
-    hdi_fading_to to;
+/* A query for diagonals in D, ldd apart, for traces in Z with bounds, or for both. */
+static hd_status hdi_diagonals_run(hdi_heat_call *h, hd_kernel kernel, double *D, size_t ldd, double *Z,
+                                   double *bound) {
+    hdi_diagonals to;
+    hdi_fading_task(&to.task, h);
+    to.task.pairs = HDI_HAS_MODES ? hdi_diagonals_by_pairs : NULL;
+    to.task.poles = hdi_diagonals_by_poles;
+    to.task.together = hdi_diagonals_together;
     to.kernel = kernel;
     to.D = D;
     to.ldd = ldd;
     to.Z = Z;
     to.bound = bound;
-    return hdi_heat_sparing(h, hdi_fading_run, &to);
+    return hdi_heat_sparing(h, hdi_task_run, &to.task);
 }
 
 /* ---- filters that share their poles ---- */
-
-/* Place of each row's diagonal entry among an inverse's values. */
-static void hdi_filters_places(const hdi_elim *m, int full, int64_t *place) {
-    const hdi_symbolic *s = &m->sym;
-    int32_t v;
-    int64_t at;
-    for (v = 0; v < s->n && !full; v++) place[v] = v;
-    for (v = 0; v < s->n_super && full; v++)
-        for (at = s->a_ptr[v]; at < s->a_ptr[v + 1]; at++)
-            if (s->a_row[at] == s->a_col[at]) place[s->super[v] + s->a_col[at]] = at;
-}
-
-/* Diagonals of k for many sets from the inverses of their poles. */
-typedef struct hdi_filters {
-    hdi_trace z;
-    hdi_diagonal d;              /* of the set at hand */
-    hdi_entries x;
-    int64_t *place;              /* [n] */
-    hd_c64 g[HD_MAX_POLES];      /* weights of the resolvent, which all sets share */
-} hdi_filters;
-
-/* The diagonal of set q and its rational errors. */
-static void hdi_filters_at(const hdi_heat_call *h, hdi_filters *a, int32_t q) {
-    const hd_laplacian *lap = h->lap;
-    const hdi_trace *z = &a->z;
-    const hd_rational *set = z->w.set + q;
-    hd_c64 k[HD_MAX_POLES];
-    int32_t p, i;
-    for (p = 0; p < set->n_poles; p++) k[p] = hdi_cscale(-hdi_rat_count(set, p), set->a[p]);
-    a->x.uniform = hdi_set_uniform(set);
-    a->x.weighted = a->x.uniform == 0 ? 0 : hdi_finite(a->d.g[0]) ? hdi_set_weighted(set) : HUGE_VAL;
-    a->x.left_out = lap->B ? fabs(set->a0) : 0;
-    for (i = 0; i < lap->n_active; i++) {
-        const double sum = hdi_trace_sum(k, set->n_poles, z->values, z->size, a->place[i]);
-        a->d.value[i] = sum + (lap->B ? 0 : set->a0 / lap->mass[i]);
-        a->d.off[i] = hdi_entry_error(&a->x, lap, i, a->d.g[i]);
-    }
-}
-
-/* What bounds its errors: diag((B + tL)^-1) from the poles, or infinite. */
-static void hdi_filters_resolvent(const hdi_heat_call *h, hdi_filters *a) {
-    const hd_laplacian *lap = h->lap;
-    const hdi_trace *z = &a->z;
-    const double slack = hdi_entries_resolvent(z->w.set, a->g, &a->x);
-    int32_t i;
-    for (i = 0; i < lap->n_active; i++) {
-        const double g = hdi_trace_sum(a->g, z->w.set->n_poles, z->values, z->size, a->place[i]);
-        a->d.g[i] = hdi_finite(slack) ? slack * hdi_max(g, hdi_constant_part(lap, i)) : HUGE_VAL;
-    }
-}
-
-static hd_status hdi_filters_take(hdi_heat_call *h, hdi_filters *a, const hd_rational *sets, int32_t count,
-                                  hdi_scope *s) {
-    const uint64_t n = (uint64_t)h->heat->elim.sym.n;
-    double *t = HDI_TAKE(s, double, count);
-    int32_t q;
-    memset(a, 0, sizeof *a);
-    a->z.w.n_times = count;
-    a->z.w.t = t;
-    a->z.w.n = (size_t)n;
-    a->z.w.set = HDI_TAKE(s, hd_rational, count);
-    a->place = HDI_TAKE(s, int64_t, n);
-    a->d.value = HDI_TAKE(s, double, 4 * n);
-    if (h->e->status < 0) return h->e->status;
-    a->d.kernel = HD_KERNEL_SYMMETRIC;
-    a->d.off = a->d.value + n;
-    a->d.g = a->d.off + n;
-    a->d.own = a->d.g + n;
-    for (q = 0; q < count; q++) {
-        t[q] = h->t;
-        a->z.w.set[q] = sets[q];
-        a->z.w.set[q].kind = HD_POLES_OWN;
-    }
-    return HD_OK;
-}
 
 /* Diagonals of k, n values ldd apart, and traces of K with bounds, or NULL, for sets that share the poles and
  * the time of the call. */
 static hd_status hdi_filters_run(hdi_heat_call *h, const hd_rational *sets, int32_t count, double *D,
                                  size_t ldd, double *Z, double *bound) {
-    hdi_elim *m = &h->heat->elim;
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
-    hdi_filters a;
-    hdi_probe probe;
-    hdi_parts off;
-    int32_t q;
+    hdi_diagonals to;
+    hdi_inverses x;
+    double relative;
+    int32_t *column, q;
+    memset(&to, 0, sizeof to);
+    to.task.h = h;
+    to.kernel = HD_KERNEL_SYMMETRIC;
+    to.D = D;
+    to.ldd = ldd;
+    to.Z = Z;
+    to.bound = bound;
     if (hdi_heat_analysed(h->heat, h->e) < 0) return hdi_scope_end(&s);
     hdi_inverse_tell(h);
-    if (hdi_filters_take(h, &a, sets, count, &s) < 0 || hdi_trace_invert(h, &a.z, &s) < 0)
-        return hdi_scope_end(&s);
-    hdi_filters_places(m, m->source->B != NULL, a.place);
-    hdi_filters_resolvent(h, &a);
+    column = HDI_TAKE(&s, int32_t, count);
+    if (hdi_inverses_take(&x, h, count, hdi_diagonals_wanted(&to), &s) < 0) return hdi_scope_end(&s);
     for (q = 0; q < count; q++) {
-        hdi_filters_at(h, &a, q);
-        hdi_diagonal_own(h->lap, &a.d);
-        if (q == 0 && hdi_diagonal_probe(h, &a.d, a.z.w.set, &probe) < 0) return hdi_scope_end(&s);
-        (void)hdi_diagonal_tell(h, &a.d, hdi_diagonal_seen(h, &a.d, &probe, a.z.w.set + q),
-                                D + (size_t)q * ldd);
+        column[q] = q;
+        x.set[q] = sets[q];
+        x.set[q].kind = HD_POLES_OWN;
     }
-    if (!Z) return hdi_scope_end(&s);
-    hdi_trace_diagonals(m, &a.z);
-    hdi_trace_probes(m, &a.z);
-    (void)hdi_probe_run(h, &a.z.probe, HD_KERNEL_OPERATOR, a.z.w.set);
-    for (q = 0; q < count && h->e->status >= 0; q++) {
-        Z[q] = hdi_trace_at(h, &a.z, q, &off);
-        if (bound) bound[q] = hdi_parts_sum(&off);
-    }
+    (void)hdi_diagonals_of(&to, &x, column, NULL, &relative, &s);
     return hdi_scope_end(&s);
 }
 
@@ -24714,7 +24501,7 @@ static hd_status hdi_signature_run(hdi_heat_call *h, int32_t n_freq, double *D, 
     hdi_circle c;
     size_t v;
     int32_t j, sure = 1;
-    if (h->e->status < 0 || hdi_fading_ask(h, HD_KERNEL_SYMMETRIC, x, n, NULL, NULL) < 0)
+    if (h->e->status < 0 || hdi_diagonals_run(h, HD_KERNEL_SYMMETRIC, x, n, NULL, NULL) < 0)
         return h->e->status;
     for (j = 0; j < m; j++) {
         circle[2 * j] = cos(two_pi * j / m);
@@ -24777,19 +24564,22 @@ static int hdi_heat_filtered(const hd_heat *heat) {
     return heat->opts.rational && heat->opts.rational->t > 0;
 }
 
-/* The parts of distances of one kind at one time: d^2 = f_ss - 2 f_sv + f_vv, f(v,v) by rows of the source,
- * and bounds on their errors. The rational error of f is at most weighted times a form with diagonal g, and
- * at most uniform times one with diagonal spread. Rounding of a column is at most sqrt(g_v) times a number
- * that comes with each column. */
+static int hdi_distance_timeless(hd_distance_kind kind) { return kind >= HD_DISTANCE_COMMUTE; }
+
+/* The parts of distances of one kind at one time: d^2 = f_ss - 2 f_sv + f_vv, f(v,v) by rows of the
+ * source, and bounds on their errors. The rational error of f is at most that of the set for forms with
+ * the diagonals g and spread. Rounding of a column is at most sqrt(g_v) times a number that comes with
+ * each column. */
 typedef struct hdi_metric {
+    hdi_heat_call *h;
     hd_distance_kind kind;
+    int timeless, equal;         /* equal: t is as good as infinite */
     double t;                    /* of columns, scaled */
     double root;                 /* of distances to roots of d^2: squares in their unit may leave the range */
-    hd_rational set;             /* of the factors */
-    int filter, equal;           /* no time; t is as good as infinite */
+    hd_rational set;             /* of f; the factors have its poles, or those of a time that shares them */
+    hd_c64 bound[HD_MAX_POLES];  /* weights of the poles for g */
     double *diag, *g, *spread;
-    hd_rational resolvent;       /* weights for g */
-    double weighted, uniform;    /* HUGE_VAL: it bounds nothing */
+    double sure;                 /* 1, or infinite where g is no bound */
     double left_out;             /* times the form of spread, besides: a0 B^-1 of a full B */
     /* of diag, relative to it, or with own to g: of any function of the caller's, which may vanish */
     double rounding;
@@ -24802,6 +24592,11 @@ typedef struct hdi_metric_column { double *u, off_m, off_b; } hdi_metric_column;
 /* What rounding of a function of the caller's is relative to: the resolvent, or where that is no bound the
  * mass. */
 static double hdi_own_size(double g, double spread) { return g > 0 && hdi_finite(g) ? g : spread; }
+
+/* Are distances weighted by a full B? */
+static int hdi_metric_full(const hd_heat *heat, hd_distance_kind kind) {
+    return kind == HD_DISTANCE_WEIGHTED && heat->source->B != NULL;
+}
 
 /* Commute and biharmonic, from L grounded. */
 static hd_status hdi_metric_ground(hdi_heat_call *h, hdi_metric *x, hdi_scope *scope) {
@@ -24857,105 +24652,161 @@ static void hdi_metric_equal(const hd_laplacian *lap, hdi_metric *x) {
     x->rounding = (double)lap->n_active * DBL_EPSILON;
 }
 
-/* Measures what rounding does to the diagonal. */
-static hd_status hdi_metric_probe(hdi_heat_call *h, hdi_metric *x, const hdi_entries *entries) {
-    hd_heat *heat = h->heat;
-    const hdi_elim *m = &heat->elim;
-    const hd_laplacian *lap = m->lap;
-    const int full = x->kind == HD_DISTANCE_WEIGHTED && lap->B;
-    const hdi_probe probe = hdi_probe_rows(lap, entries->k, -1);
-    int32_t i;
-    if (hdi_probe_run(h, &probe, full ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC, &x->set) < 0)
-        return h->e->status;
-    for (i = 0; i < probe.k; i++) {
-        const int32_t row = probe.row[i];
-        const double b = lap->b_diag[row], g = full ? HUGE_VAL : entries->g[row];
-        double value = entries->k[row], by;
-        double there = hdi_probe_value(heat, &probe, i, &x->set, 1, full, g, &by);
-        if (full) {                              /* f is (B K)(v,v): the column is K e_v */
-            hdi_pair_apply(lap, 0, 1, heat->lane[i].u, heat->lane[i].tmp);
-            there = heat->lane[i].tmp[row];
-            by *= sqrt(b) / (hdi_ratio_root(lap) / sqrt(b));   /* |(B e)_v| <= sqrt(B_vv) |e|_B */
-            value = x->diag[m->sym.perm[row]] * heat->scale;
-        }
-        by = hdi_probe_seen(there, by, value,
-                            x->own ? hdi_own_size(entries->g[row], hdi_inverse_mass(lap, row)) : value);
-        x->rounding = hdi_max(x->rounding, by);
-    }
-    return HD_OK;
+/* What residuals make of a column of the kernel becomes what they make of one of f. */
+static void hdi_metric_off(const hd_heat *heat, const hdi_metric *x, hdi_metric_column *c) {
+    const int weighted = x->kind == HD_DISTANCE_WEIGHTED;
+    const double unit = weighted ? 1 / sqrt(heat->scale) : sqrt(heat->scale);
+    c->off_m *= unit;
+    c->off_b *= unit * (weighted ? sqrt(heat->scale) : 1);
 }
 
-/* The diagonal by inversion of the factors of the poles, at h->t. */
-static hd_status hdi_metric_invert(hdi_heat_call *h, hdi_metric *x, hdi_scope *scope) {
-    hd_heat *heat = h->heat;
-    hdi_elim *m = &heat->elim;
+/* The diagonals of function q of an inversion. */
+static void hdi_metric_read(const hd_heat *heat, const hdi_inverses *in, int32_t q, hdi_metric *x) {
+    const hdi_elim *m = &heat->elim;
     const hd_laplacian *lap = heat->source;
-    const int weighted = x->kind == HD_DISTANCE_WEIGHTED, full = weighted && lap->B != NULL;
-    double *room = HDI_TAKE(scope, double, 2 * (uint64_t)m->sym.n);
-    hdi_entries entries;
+    const int weighted = x->kind == HD_DISTANCE_WEIGHTED, full = hdi_metric_full(heat, x->kind);
+    const double *k = hdi_inverses_get(in, q, 0), *g = hdi_inverses_get(in, q, 1);
+    const size_t n_poles = (size_t)in->set[q].n_poles;
     int32_t i;
-    if (!room) return h->e->status;
-    if (hdi_entries_make(h, full ? HDI_WANT_FORMS : HDI_WANT_DIAGONAL, room, m->sym.n, &entries) < 0)
-        return h->e->status;
-    if (lap->B && !full) x->left_out = fabs(m->set.a0);
+    x->set = in->set[q];
+    x->own = x->set.kind == HD_POLES_OWN;
+    x->sure = hdi_inverses_sure(in, q);
+    x->left_out = lap->B && !full ? fabs(x->set.a0) : 0;
+    memcpy(x->bound, in->weight + (2 * (size_t)q + 1) * n_poles, n_poles * sizeof *x->bound);
     for (i = 0; i < m->sym.n; i++) {
         const int32_t r = m->sym.perm[i];
         /* no square of b */
         const double b = lap->b_diag[r], plain = weighted ? b * m->lap->mass[i] : heat->scale;
-        const double unit = full ? 1 / heat->scale : plain;
-        x->diag[r] = unit * (entries.k[i] + (lap->B ? 0 : m->set.a0 / m->lap->mass[i])) +
-                     (full ? m->set.a0 * b : 0);
-        x->g[r] = unit * entries.g[i];
+        const double unit = full ? 1 / heat->scale : plain, mass = full ? m->lap->mass[i] : 1;
+        const double constants = hdi_constant_part(m->lap, i) * mass * mass;
+        x->diag[r] = unit * (k[i] + (lap->B ? 0 : x->set.a0 / m->lap->mass[i])) + (full ? x->set.a0 * b : 0);
+        x->g[r] = unit * hdi_inverses_bound(in, q, g[i], constants);
         x->spread[r] = weighted ? b : hdi_inverse_mass(lap, r);
     }
-    x->own = m->set.kind == HD_POLES_OWN;
-    x->set = m->set;
-    x->resolvent = entries.resolvent;
-    x->weighted = entries.weighted;
-    x->uniform = entries.uniform;
-    if (hdi_metric_probe(h, x, &entries) < 0) return h->e->status;
+}
+
+/* The value (B K)(v,v) of probe r, whose column of K is u, and a bound on its error. g: of B (B + tL)^-1
+ * B. */
+static double hdi_metric_probe_full(const hd_heat *heat, const hdi_metric *x, int32_t r, int32_t row,
+                                    const double *u, double g, double *off) {
+    const hd_laplacian *lap = heat->elim.lap;
+    double value = 0, by_b, by_m;
+    int64_t p;
+    for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1]; p++) value += lap->B[p] * u[lap->L.col[p]];
+    hdi_column_off(lap, heat->lane + r, &x->set, &by_b, &by_m);
+    /* |(B e)_v| is at most sqrt(B_vv) |e|_B, and sqrt(g) times the norm of B + tL */
+    *off = hdi_min(sqrt(lap->b_diag[row]) * by_b, hdi_finite(g) ? sqrt(g) * by_m : HUGE_VAL) +
+           4 * DBL_EPSILON * fabs(value);
+    return value;
+}
+
+/* What rounding does to the diagonal, which is function q of an inversion, by probes that were run. rows:
+ * of their columns of K where f is weighted by a full B. */
+static void hdi_metric_seen(const hdi_heat_call *h, const hdi_inverses *in, int32_t q, const hdi_probe *probe,
+                            const hdi_extra *rows, hdi_metric *x) {
+    const hd_heat *heat = h->heat;
+    const hdi_elim *m = &heat->elim;
+    const hd_laplacian *lap = m->lap;
+    const double *k = hdi_inverses_get(in, q, 0), *g = hdi_inverses_get(in, q, 1);
+    const int full = hdi_metric_full(heat, x->kind);
+    double by, there;
+    int32_t r, i;
+    x->rounding = 0;
+    for (r = 0; r < probe->k; r++) {
+        const int32_t row = probe->row[r];
+        const double bound = hdi_inverses_bound(in, q, g[row], full ? 0 : hdi_constant_part(lap, row));
+        const double size = x->own ? hdi_own_size(bound, hdi_inverse_mass(lap, row)) : 0;
+        double value = k[row];
+        if (full) {
+            const double *u = rows->sum + ((size_t)r * (size_t)rows->n + (size_t)q) * (size_t)m->sym.n;
+            there = hdi_metric_probe_full(heat, x, r, row, u, bound, &by);
+        } else {
+            there = hdi_probe_value(heat, probe, r, &x->set, hdi_inverses_tau(in, q), 0, bound, &by);
+        }
+        x->rounding = hdi_max(x->rounding, hdi_probe_seen(there, by, value, x->own ? size : value));
+    }
     if (x->own) {                                /* from here on g is what rounding is relative to */
-        for (i = 0; i < m->sym.n; i++)
-            entries.g[i] = hdi_own_size(entries.g[i], hdi_quotient(1 / m->lap->b_diag[i], m->lap->b_ratio));
-        x->rounding = hdi_own_rounding(heat, &x->set, h->t, x->rounding, entries.g, 0);
+        const double closeness = hdi_own_near(heat, &x->set, h->t);
+        double most = 0;
+        for (i = 0; i < m->sym.n && closeness > 0; i++) {
+            const double spread = hdi_quotient(1 / lap->b_diag[i], lap->b_ratio);
+            const double own = hdi_own_size(hdi_inverses_bound(in, q, g[i], 0), spread);
+            most = hdi_max(most, hdi_quotient(spread, own));
+        }
+        x->rounding = HDI_PROBE_OWN * x->rounding + closeness * most;
     }
     if (x->set.a0 == 0)
-        x->rounding = hdi_max(x->rounding, hdi_below_constants(m->lap, &x->set, entries.k, full ? 2 : 0));
+        x->rounding = hdi_max(x->rounding, hdi_below_constants(lap, &x->set, k, full ? 2 : 0));
+}
+
+/* Runs the probes of an inversion whose last function has the values k. */
+static hd_status hdi_metric_probe(hdi_heat_call *h, const hdi_inverses *in, hd_distance_kind kind,
+                                  hdi_probe *probe, hdi_extra *rows, hdi_scope *s) {
+    const hdi_elim *m = &h->heat->elim;
+    const int full = hdi_metric_full(h->heat, kind);
+    *probe = hdi_probe_rows(m->lap, hdi_inverses_get(in, in->count - 1, 0), -1);
+    memset(rows, 0, sizeof *rows);
+    if (full) {
+        rows->n = in->count;
+        rows->weight = in->weight;
+        rows->stride = 2 * in->set->n_poles;
+        rows->sum = HDI_TAKE(s, double, (uint64_t)HDI_PROBES * (uint64_t)in->count * (uint64_t)m->sym.n);
+        if (!rows->sum) return h->e->status;
+    }
+    return hdi_probe_run(h, probe, full ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC, in->set, rows);
+}
+
+/* Room for the diagonals in keep. */
+static hd_status hdi_metric_take(hdi_heat_call *h, hd_distance_kind kind, hdi_metric *x, hdi_scope *keep) {
+    const size_t n = (size_t)h->heat->source->n_active;
+    memset(x, 0, sizeof *x);
+    x->h = h;
+    x->kind = kind;
+    x->timeless = hdi_distance_timeless(kind);
+    x->root = 1;
+    x->diag = HDI_TAKE(keep, double, 3 * n + 1);
+    if (!x->diag) return keep->e->status;
+    x->g = x->diag + n;
+    x->spread = x->g + n;
     return HD_OK;
 }
 
-/* The metric of a kind at a time, by poles of a degree (0: by default). keep holds its arrays. */
-static hd_status hdi_metric_make(hd_heat *heat, hd_distance_kind kind, double t, int32_t degree,
-                                 hdi_metric *x, hdi_scope *keep, hd_report *rep) {
-    const size_t n = (size_t)heat->source->n_active;
-    hd_error *e = keep->e;
+/* The metric of one time by poles. */
+static hd_status hdi_metric_invert(hdi_heat_call *h, hdi_metric *x, hdi_scope *s) {
+    const hdi_wanted wanted = hdi_metric_full(h->heat, x->kind) ? HDI_WANT_FORMS : HDI_WANT_DIAGONAL;
+    hdi_inverses in;
+    hdi_probe probe;
+    hdi_extra rows;
+    if (hdi_inverses_take(&in, h, 1, wanted, s) < 0 || hdi_heat_set(h, in.set) < 0 ||
+        hdi_inverses_run(h, &in, s) < 0 || hdi_metric_probe(h, &in, x->kind, &probe, &rows, s) < 0)
+        return h->e->status;
+    hdi_metric_read(h->heat, &in, 0, x);
+    hdi_metric_seen(h, &in, 0, &probe, &rows, x);
+    return HD_OK;
+}
+
+/* The time of columns, scaled: d^2 of a filter is the sum of the filter itself. */
+static double hdi_distance_time(const hd_heat *heat, double t) {
+    return hdi_min((hdi_heat_filtered(heat) ? 1 : 2) * hdi_heat_scaled(heat, t), 1e300);
+}
+
+/* The metric of a kind at the time under way, by poles of a degree (0: by default). keep holds its arrays. */
+static hd_status hdi_metric_make(hdi_heat_call *h, hd_distance_kind kind, int32_t degree, hdi_metric *x,
+                                 hdi_scope *keep) {
+    hd_heat *heat = h->heat;
     hdi_scope scope;
-    hdi_heat_call h;
-    memset(x, 0, sizeof *x);
-    x->kind = kind;
-    x->filter = kind >= HD_DISTANCE_COMMUTE;
-    x->diag = HDI_TAKE(keep, double, 3 * n + 1);
-    if (!x->diag) return e->status;
-    x->g = x->diag + n;
-    x->spread = x->g + n;
-    /* d^2 of a filter is the sum of the filter itself */
-    x->t = hdi_min((hdi_heat_filtered(heat) ? 1 : 2) * hdi_heat_scaled(heat, t), 1e300);
-    x->root = 1;
-    scope = hdi_scope_begin(heat->ctx, e);
-    if (hdi_heat_begin(&h, heat, HDI_QUERY_SYMMETRIC, rep, NULL) >= 0 && hdi_heat_analysed(heat, h.e) >= 0) {
-        hdi_inverse_tell(&h);
-        h.t = x->t;
-        h.degree = degree;
-        h.lap = heat->elim.lap;
-        h.relative = 1;
-        x->equal = !x->filter && hdi_heat_equal(heat, x->t, h.e);
-        if (x->filter) (void)hdi_metric_ground(&h, x, &scope);
-        else if (x->equal) hdi_metric_equal(heat->source, x);
-        else if (h.e->status >= 0) (void)hdi_metric_invert(&h, x, &scope);
-    }
-    if (h.e->status < 0) *e = *h.e;
-    hdi_heat_end(&h);
-    if (e->status < 0) hdi_free(heat->ctx, hdi_keep(keep, x->diag));   /* another try may follow */
+    if (hdi_metric_take(h, kind, x, keep) < 0 || hdi_heat_analysed(heat, h->e) < 0) return h->e->status;
+    scope = hdi_scope_begin(heat->ctx, h->e);
+    hdi_inverse_tell(h);
+    if (!x->timeless) h->t = x->t = hdi_distance_time(heat, h->ask.t[h->now]);
+    h->degree = degree;
+    h->lap = heat->elim.lap;
+    x->equal = !x->timeless && hdi_heat_equal(heat, x->t, h->e);
+    if (x->timeless) (void)hdi_metric_ground(h, x, &scope);
+    else if (x->equal) hdi_metric_equal(heat->source, x);
+    else if (h->e->status >= 0) (void)hdi_metric_invert(h, x, &scope);
+    h->degree = 0;
+    if (h->e->status < 0) hdi_free(heat->ctx, hdi_keep(keep, x->diag));   /* another try may follow */
     return hdi_scope_end(&scope);
 }
 
@@ -24971,101 +24822,97 @@ static void hdi_metric_of_column(const hd_laplacian *lap, const hdi_metric *x, d
     for (i = 0; i < lap->n; i++) u[i] = lap->row[i] < 0 ? 0 : work[lap->n_active + lap->row[i]];
 }
 
-/* Distances of a kind from k sources to all vertices. Those of source r go to D + r ld. */
+/* The same of a sum by rows in elimination order, in the unit of the scaled pair. */
+static void hdi_metric_of_rows(const hd_heat *heat, const hdi_metric *x, const double *sum, double *u,
+                               double *work) {
+    const hd_laplacian *lap = heat->elim.lap;
+    const double unit = x->kind == HD_DISTANCE_WEIGHTED ? 1 : heat->scale;
+    int32_t i;
+    memset(u, 0, (size_t)lap->n * sizeof *u);
+    for (i = 0; i < lap->n_active; i++) u[lap->vertex[i]] = unit * sum[i];
+    hdi_metric_of_column(heat->source, x, u, work);
+}
+
+/* A query for distances of a kind from k sources to all vertices. */
 typedef struct hdi_distances {
+    hdi_task task;
     hd_distance_kind kind;
     int32_t k;
-    const int32_t *sources;
-    const hdi_terms *terms;      /* instead of sources; NULL: vertices */
-    double *D;
+    const hdi_terms *source;     /* [k] */
+    double *D;                   /* source r at time q: column r n_times + q */
     size_t ld;
 } hdi_distances;
 
-static hdi_terms hdi_distances_source(const hdi_distances *to, int32_t r) {
-    return to->terms ? to->terms[r] : hdi_terms_vertex(to->sources[r]);
-}
-
-/* Their sources have to be set. */
-static hdi_distances hdi_distances_to(hd_distance_kind kind, int32_t k, double *D, size_t ld) {
-    hdi_distances x;
-    x.kind = kind;
-    x.k = k;
-    x.sources = NULL;
-    x.terms = NULL;
-    x.D = D;
-    x.ld = ld;
-    return x;
-}
-
-/* From one source. */
-static hdi_distances hdi_distances_one(const hd_heat *heat, hd_distance_kind kind, const int32_t *source,
-                                       double *D) {
-    hdi_distances x = hdi_distances_to(kind, 1, D, (size_t)heat->source->n);
-    x.sources = source;
-    return x;
+static double *hdi_distances_at(const hdi_distances *to, int32_t r, int32_t q) {
+    const size_t n_times = (size_t)hdi_high32(to->task.h->ask.n_times, 1);
+    return to->D + ((size_t)r * n_times + (size_t)q) * to->ld;
 }
 
 /* Columns of f from L grounded. */
-static hd_status hdi_metric_columns_ground(hd_heat *heat, const hdi_metric *x, const hdi_distances *to,
-                                           hdi_metric_column *c, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(heat->ctx, e);
+static hd_status hdi_metric_columns_ground(const hdi_metric *x, const hdi_terms *source, int32_t k,
+                                           hdi_metric_column *c) {
+    hdi_heat_call *h = x->h;
+    const hd_heat *heat = h->heat;
     const hdi_elim *m = &heat->elim;
     const int forms = x->kind == HD_DISTANCE_BIHARMONIC;
+    hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
     double *work = HDI_TAKE(&s, double, hdi_ground_room(m)), *u = HDI_TAKE(&s, double, m->sym.n);
     int32_t r, i;
-    for (r = 0; r < to->k && e->status >= 0; r++) {
-        const hdi_terms source = hdi_distances_source(to, r);
-        if (hdi_progress(heat->ctx, "solve", (double)r / to->k, e) < 0) break;
+    for (r = 0; r < k && h->e->status >= 0; r++) {
+        if (hdi_progress(heat->ctx, "solve", (double)r / k, h->e) < 0) break;
         c[r].off_m = 0;
         c[r].off_b = HUGE_VAL;
         memset(c[r].u, 0, (size_t)heat->source->n * sizeof(double));
-        if (hdi_terms_component(m->lap, &source) < 0) continue;
-        c[r].off_m = hdi_ground_column(m, &heat->ground, &source, forms, u, work);
+        if (hdi_terms_component(m->lap, source + r) < 0) continue;
+        c[r].off_m = hdi_ground_column(m, &heat->ground, source + r, forms, u, work);
         for (i = 0; i < m->sym.n; i++) c[r].u[m->lap->vertex[i]] = u[i];
     }
     return hdi_scope_end(&s);
 }
 
-/* The request to the plan for columns that become columns of f. */
-static hdi_columns hdi_metric_query(const hdi_metric *x, const hd_rational *set, const hdi_distances *to) {
-    hdi_columns query;
-    memset(&query, 0, sizeof query);
-    query.t = x->t;
-    query.kernel = x->kind == HD_DISTANCE_WEIGHTED ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
-    query.set = set;
-    query.k = to->k;
-    query.sources = to->sources;
-    query.terms = to->terms;
-    query.U = to->D;
-    query.ldu = to->ld;
-    return query;
+/* Solves for k sources. set: that of the factors; U: columns of the kernel, ldu apart, or NULL; rows: of
+ * every source; off [2 k]: what residuals make of the columns, or NULL. */
+static hd_status hdi_metric_solve(const hdi_metric *x, const hd_rational *set, const hdi_terms *source,
+                                  int32_t k, double *U, size_t ldu, const hdi_extra *rows, double *off) {
+    hdi_heat_call *h = x->h;
+    hdi_columns c;
+    memset(&c, 0, sizeof c);
+    c.t = h->t;
+    c.kernel = x->kind == HD_DISTANCE_WEIGHTED ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
+    c.set = set;
+    c.k = k;
+    c.terms = source;
+    c.equal = x->equal;
+    c.U = U;
+    c.ldu = ldu;
+    c.rows = *rows;
+    c.off_b = off;
+    c.off_m = off ? off + k : NULL;
+    return hdi_direct_columns(h->heat, &c, h->rep, h->e);
 }
 
-/* Columns of f for the sources; c [k]. rep: residual. */
-static hd_status hdi_metric_columns(hd_heat *heat, const hdi_metric *x, const hdi_distances *to,
-                                    hdi_metric_column *c, hd_report *rep, hd_error *e) {
-    hdi_scope s;
-    const int weighted = x->kind == HD_DISTANCE_WEIGHTED;
-    const double unit = weighted ? 1 / sqrt(heat->scale) : sqrt(heat->scale);
-    hdi_columns query = hdi_metric_query(x, &x->set, to);
-    double *work, *off;
+/* Columns of f for k sources, HDI_LANES at most, into c [k], whose u is set here: ld apart. sum [k][n]:
+ * those of the bound g by rows, or NULL. work [2 n] */
+static hd_status hdi_metric_columns(const hdi_metric *x, const hdi_terms *source, int32_t k, double *u,
+                                    size_t ld, double *sum, double *work, hdi_metric_column *c) {
+    hdi_heat_call *h = x->h;
+    double off[2 * HDI_LANES] = {0};
+    hdi_extra rows;
     int32_t r;
-    for (r = 0; r < to->k; r++) c[r].u = to->D + (size_t)r * to->ld;
-    if (x->filter) return hdi_metric_columns_ground(heat, x, to, c, e);
-    s = hdi_scope_begin(heat->ctx, e);
-    off = HDI_TAKE_ZERO(&s, double, 2 * (uint64_t)to->k + 1);
-    work = HDI_TAKE(&s, double, 2 * (uint64_t)heat->source->n_active + 1);
-    if (e->status < 0) return hdi_scope_end(&s);
-    query.equal = x->equal;
-    query.off_b = off;
-    query.off_m = off + to->k;
-    (void)hdi_direct_columns(heat, &query, rep, e);
-    for (r = 0; r < to->k && e->status >= 0; r++) {
-        hdi_metric_of_column(heat->source, x, c[r].u, work);
-        c[r].off_m = unit * query.off_m[r];
-        c[r].off_b = unit * query.off_b[r] * (weighted ? sqrt(heat->scale) : 1);
+    for (r = 0; r < k; r++) c[r].u = u + (size_t)r * ld;
+    if (x->timeless) return hdi_metric_columns_ground(x, source, k, c);
+    rows.n = sum != NULL;
+    rows.stride = 0;
+    rows.weight = x->bound;
+    rows.sum = sum;
+    if (hdi_metric_solve(x, &x->set, source, k, u, ld, &rows, x->equal ? NULL : off) < 0) return h->e->status;
+    for (r = 0; r < k; r++) {
+        hdi_metric_of_column(h->heat->source, x, c[r].u, work);
+        c[r].off_b = off[r];
+        c[r].off_m = off[k + r];
+        hdi_metric_off(h->heat, x, c + r);
     }
-    return hdi_scope_end(&s);
+    return HD_OK;
 }
 
 /* Bound on the rational error of d^2 between s and v: by the form of g, whose column g_sv may be known, and
@@ -25073,16 +24920,13 @@ static hd_status hdi_metric_columns(hd_heat *heat, const hdi_metric *x, const hd
 static double hdi_metric_rational(const hdi_metric *x, double gs, double gv, const double *gsv, double ss,
                                   double sv) {
     const double root = sqrt(hdi_max(0, gs)) + sqrt(hdi_max(0, gv)), wide = sqrt(ss) + sqrt(sv);
-    double form = root * root, bound = HUGE_VAL;
-    if (x->filter || x->equal) return 0;
-    if (x->uniform == 0) return x->left_out > 0 ? x->left_out * wide * wide : 0;
+    double form = root * root;
+    if (x->timeless || x->equal) return 0;
     if (gsv)
         form = hdi_min(form,
                        hdi_max(0, gs + gv - 2 * *gsv) +
                        (x->rounding + 8 * DBL_EPSILON) * (fabs(gs) + fabs(gv)));
-    if (hdi_finite(x->weighted)) bound = x->weighted * form;
-    bound = hdi_min(bound, x->uniform * wide * wide);
-    return x->left_out > 0 ? bound + x->left_out * wide * wide : bound;
+    return hdi_set_off(&x->set, x->sure * form, wide * wide) + hdi_bound_times(x->left_out, wide * wide);
 }
 
 /* f, g and spread of a source itself. Of a vertex they are those of the diagonals. Of several f and g are
@@ -25138,7 +24982,7 @@ static void hdi_metric_distance(const hd_laplacian *lap, const hdi_metric *x, co
             u[v] = 0;
             continue;
         }
-        if (x->filter && (r < 0 || own < 0 || lap->component[r] != own)) {
+        if (x->timeless && (r < 0 || own < 0 || lap->component[r] != own)) {
             u[v] = HUGE_VAL;
             continue;
         }
@@ -25168,9 +25012,15 @@ static void hdi_metric_distance(const hd_laplacian *lap, const hdi_metric *x, co
 }
 
 static hdi_ledger hdi_metric_ledger(const hdi_metric *x) {
-    const int none = x->filter || x->equal || (x->uniform == 0 && x->left_out == 0);
+    const int none = x->timeless || x->equal || (hdi_set_uniform(&x->set) == 0 && x->left_out == 0);
     return hdi_ledger_begin(none ? HD_EVIDENCE_NONE : hdi_set_evidence(&x->set), HD_EVIDENCE_NONE,
                             HD_EVIDENCE_MEASURED, 1);
+}
+
+/* Is a column of the bound g of use? */
+static int hdi_metric_bounded(const hdi_metric *x) {
+    const double weighted = hdi_set_off_weighted(&x->set);
+    return !x->timeless && !x->equal && weighted > 0 && hdi_finite(weighted) && hdi_finite(x->sure);
 }
 
 /* The default goes to the highest degree where the bound on the error relative to the largest distance is
@@ -25181,41 +25031,35 @@ static hdi_ledger hdi_metric_ledger(const hdi_metric *x) {
 
 /* Are the poles the caller's choice, or of the highest degree in any case? */
 static int hdi_metric_settled(const hd_heat *heat, hd_distance_kind kind) {
-    return kind >= HD_DISTANCE_COMMUTE || heat->poles_asked || heat->exacting;
+    return hdi_distance_timeless(kind) || heat->poles_asked || heat->exacting;
 }
 
-/* The same columns of the resolvent's bound g, in f's units. */
-static hd_status hdi_metric_resolvent(hd_heat *heat, const hdi_metric *x, const hdi_terms *source, double *g,
-                                      double *work, hd_error *e) {
-    hdi_distances to = hdi_distances_one(heat, x->kind, NULL, g);
-    hdi_columns query;
-    to.terms = source;
-    query = hdi_metric_query(x, &x->resolvent, &to);
-    if (hdi_direct_columns(heat, &query, NULL, e) >= 0) hdi_metric_of_column(heat->source, x, g, work);
-    return e->status;
-}
-
-/* One time, all sources. degree 0: by default. */
-static hd_status hdi_distance_once(hd_heat *heat, const hdi_distances *to, double t, int32_t degree,
-                                   hd_report *rep, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(heat->ctx, e);
-    const size_t n = (size_t)heat->source->n;
-    double *work = HDI_TAKE(&s, double, 2 * n + 1), *g = NULL;
-    hdi_metric_column *column = HDI_TAKE(&s, hdi_metric_column, (uint64_t)to->k + 1);
+/* All sources at the time under way. degree 0: by default. */
+static hd_status hdi_distances_once(const hdi_distances *to, int32_t degree) {
+    hdi_heat_call *h = to->task.h;
+    const hd_laplacian *lap = h->heat->source;
+    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
+    const size_t n = (size_t)lap->n, ld = to->ld * (size_t)hdi_high32(h->ask.n_times, 1);
+    const int32_t most = hdi_low32(to->k, HDI_LANES);
+    double *work = HDI_TAKE(&s, double, 2 * n + 1), *g = NULL, *sum = NULL;
+    hdi_metric_column c[HDI_LANES];
     hdi_metric x;
-    int32_t r;
-    memset(rep, 0, sizeof *rep);
-    if (e->status < 0 || hdi_metric_make(heat, to->kind, t, degree, &x, &s, rep) < 0)
-        return hdi_scope_end(&s);
-    rep->error_relative = 0;
-    (void)hdi_metric_columns(heat, &x, to, column, rep, e);
-    if (!x.filter && !x.equal && x.weighted > 0 && hdi_finite(x.weighted)) g = HDI_TAKE(&s, double, n);
-    for (r = 0; r < to->k && e->status >= 0; r++) {
-        const hdi_terms source = hdi_distances_source(to, r);
-        hdi_ledger ledger = hdi_metric_ledger(&x);
-        if (g && hdi_metric_resolvent(heat, &x, &source, g, work, e) < 0) break;
-        hdi_metric_distance(heat->source, &x, &source, column + r, g, rep, &ledger);
-        hdi_ledger_close(&ledger, rep);
+    int32_t r, k, i;
+    if (h->e->status < 0 || hdi_metric_make(h, to->kind, degree, &x, &s) < 0) return hdi_scope_end(&s);
+    if (hdi_metric_bounded(&x)) {
+        g = HDI_TAKE(&s, double, n);
+        sum = HDI_TAKE(&s, double, (uint64_t)most * (uint64_t)lap->n_active);
+    }
+    for (r = 0; r < to->k && h->e->status >= 0; r += k) {
+        double *u = hdi_distances_at(to, r, h->now);
+        k = hdi_low32(to->k - r, most);
+        if (hdi_metric_columns(&x, to->source + r, k, u, ld, sum, work, c) < 0) break;
+        for (i = 0; i < k; i++) {
+            hdi_ledger ledger = hdi_metric_ledger(&x);
+            if (g) hdi_metric_of_rows(h->heat, &x, sum + (size_t)i * (size_t)lap->n_active, g, work);
+            hdi_metric_distance(lap, &x, to->source + r + i, c + i, g, h->rep, &ledger);
+            hdi_ledger_close(&ledger, h->rep);
+        }
     }
     return hdi_scope_end(&s);
 }
@@ -25391,466 +25235,192 @@ static void hdi_mode_sum_run(hdi_mode_sum *a, hdi_terms source, double *d, hdi_l
         if (v != only) hdi_mode_sum_note(a, v, ledger, rep);
 }
 
-/* The sum at time t. work [2 count + 2 n] */
-static hdi_mode_sum hdi_mode_sum_at(const hd_heat *heat, hd_distance_kind kind, double t, double *work) {
+/* Makes the sum for the time under way; arrays are in s. */
+static hd_status hdi_mode_sum_make(hdi_mode_sum *a, hdi_heat_call *h, hd_distance_kind kind, hdi_scope *s) {
+    hd_heat *heat = h->heat;
     const hdi_modes *of = &heat->modes;
-    hdi_mode_sum a;
-    memset(&a, 0, sizeof a);
-    a.of = of;
-    a.lap = heat->source;
-    a.weighted = kind == HD_DISTANCE_WEIGHTED;
-    a.x = a.weighted && of->bx ? of->bx : of->s.vector;
-    a.unit = a.weighted ? sqrt(heat->scale) : 1 / sqrt(heat->scale);   /* the scale is a power of four */
-    a.decay = hdi_decay_at(of, t, work);
-    a.part = work + 2 * (int64_t)of->s.count;
-    return a;
+    const uint64_t count = (uint64_t)of->s.count;
+    double *work;
+    hdi_modes_tell(heat, h->rep);
+    memset(a, 0, sizeof *a);
+    a->of = of;
+    a->lap = heat->source;
+    a->weighted = kind == HD_DISTANCE_WEIGHTED;
+    if (a->weighted && hdi_modes_mass(heat, h->e) < 0) return h->e->status;
+    work = HDI_TAKE(s, double, 2 * ((uint64_t)heat->source->n + count) + 1);
+    if (!work) return h->e->status;
+    a->x = a->weighted && of->bx ? of->bx : of->s.vector;
+    a->unit = a->weighted ? sqrt(heat->scale) : 1 / sqrt(heat->scale);   /* the scale is a power of four */
+    a->decay = hdi_decay_at(of, h->ask.t[h->now], work);
+    a->part = work + 2 * count;
+    return HD_OK;
 }
 
-/* How far eigenvalues have to reach above the lowest one, times t: exp of it is |y| over the part that may be
- * left out. The largest distance is at least about 1/sqrt(mass) times exp(-t low). */
-static double hdi_modes_depth(const hd_heat *heat) {
-    return hdi_max(0, log(2 * hdi_modes_span(heat) / hdi_modes_tol(heat)));    /* 0: tol is all there is */
+/* ---- distances to all vertices ---- */
+
+/* Distances at the time under way by poles. Where much cancels, or is sure to, the highest degree takes
+ * over if there is room for its factors. */
+static hd_status hdi_distances_by_poles(hdi_task *task) {
+    const hdi_distances *to = (const hdi_distances *)task;
+    hdi_heat_call *h = task->h;
+    hd_heat *heat = h->heat;
+    const int settled = hdi_metric_settled(heat, to->kind);
+    const double t = settled ? 0 : h->ask.t[h->now];
+    const double expected = heat->source->h > 0 ? HDI_DISTANCE_EXPECTED * sqrt(t) / heat->source->h : 0;
+    const int sure = !settled && to->kind == HD_DISTANCE_CLASSICAL && expected > HDI_DISTANCE_SURE;
+    int32_t degree = HDI_RAT_KERNEL_MAX;
+    if (!sure && hdi_distances_once(to, 0) < 0) return h->e->status;
+    if (settled || (!sure && h->rep->error_rational <= HDI_DISTANCE_SURE)) return h->e->status;
+    do {
+        hdi_task_at(h, h->now);
+        (void)hdi_distances_once(to, degree);
+    } while (hdi_degree_retreat(heat, &degree, h->e));
+    return h->e->status;
 }
 
-/* May eigenpairs serve distances of this kind? */
-static int hdi_modes_apply(const hd_heat *heat, hd_distance_kind kind) {
-    return kind <= HD_DISTANCE_WEIGHTED && hdi_modes_allowed(heat);
-}
-
-/* Are no more than `most` eigenpairs expected to do at time t? */
-static HDI_INLINE int hdi_modes_near(const hd_heat *heat, hd_distance_kind kind, double t, int32_t most) {
-    return HDI_HAS_MODES && t > 0 && hdi_modes_apply(heat, kind) &&
-           hdi_modes_expected(heat, hdi_modes_depth(heat) / t) <= most;
-}
-
-/* Are eigenpairs tried before poles at time t? */
-static HDI_INLINE int hdi_modes_first(const hd_heat *heat, hd_distance_kind kind, double t) {
-    return hdi_modes_near(heat, kind, t, HDI_MODES_FIRST);
-}
-
-/* Are there eigenpairs enough for time t, if need be after finding them? At most `most` are looked for. */
-static HDI_INLINE int hdi_modes_reach(hd_heat *heat, hd_distance_kind kind, double t, int32_t most,
-                                      hd_error *e) {
-    return HDI_HAS_MODES && t > 0 && hdi_modes_apply(heat, kind) &&   /* t may be -0 */
-           hdi_modes_enough(heat, t, hdi_modes_depth(heat), most, e) &&
-           (kind == HD_DISTANCE_CLASSICAL || hdi_modes_mass(heat, e) >= 0);
-}
-
-/* Distances of all sources at time t from the eigenpairs that are there. */
-static hd_status hdi_modes_distance(hd_heat *heat, const hdi_distances *to, double t, hd_report *rep,
-                                    hd_error *e) {
-    hdi_scope s = hdi_scope_begin(heat->ctx, e);
-    const uint64_t n = (uint64_t)heat->source->n, count = (uint64_t)heat->modes.s.count;
-    double *work = HDI_TAKE(&s, double, 2 * (n + count) + 1);
+/* Distances of all sources at the time under way from the eigenpairs that are there. */
+static hd_status hdi_distances_by_pairs(hdi_task *task) {
+    const hdi_distances *to = (const hdi_distances *)task;
+    hdi_heat_call *h = task->h;
+    hd_heat *heat = h->heat;
+    hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
     hdi_mode_sum sum;
     int32_t r;
-    memset(rep, 0, sizeof *rep);
-    hdi_modes_tell(heat, rep);
-    if (work) sum = hdi_mode_sum_at(heat, to->kind, t, work);
-    for (r = 0; r < to->k && work; r++) {
+    if (hdi_mode_sum_make(&sum, h, to->kind, &s) < 0) return hdi_scope_end(&s);
+    for (r = 0; r < to->k; r++) {
         hdi_ledger ledger = hdi_modes_ledger();
-        if (hdi_progress(heat->ctx, "solve", (double)r / to->k, e) < 0) break;
-        hdi_mode_sum_run(&sum, hdi_distances_source(to, r), to->D + (size_t)r * to->ld, &ledger,
-                         rep, heat->ctx);
-        hdi_ledger_close(&ledger, rep);
+        if (hdi_progress(heat->ctx, "solve", (double)r / to->k, h->e) < 0) break;
+        hdi_mode_sum_run(&sum, to->source[r], hdi_distances_at(to, r, h->now), &ledger, h->rep, heat->ctx);
+        hdi_ledger_close(&ledger, h->rep);
     }
     return hdi_scope_end(&s);
 }
 
-/* Distances at one time by poles. Where much cancels, or is sure to, the highest degree takes over if there
- * is room for its factors. */
-static hd_status hdi_distance_poles(hd_heat *heat, const hdi_distances *to, double t, hd_report *rep,
-                                   hd_error *e) {
-    const int settled = hdi_metric_settled(heat, to->kind);
-    const double expected = heat->source->h > 0 ? HDI_DISTANCE_EXPECTED * sqrt(t) / heat->source->h : 0;
-    const int sure = !settled && to->kind == HD_DISTANCE_CLASSICAL && expected > HDI_DISTANCE_SURE;
-    int32_t degree = HDI_RAT_KERNEL_MAX;
-    if (!sure && hdi_distance_once(heat, to, t, 0, rep, e) < 0) return e->status;
-    if (settled || (!sure && rep->error_rational <= HDI_DISTANCE_SURE)) return e->status;
-    do (void)hdi_distance_once(heat, to, t, degree, rep, e);
-    while (hdi_degree_retreat(heat, &degree, e));
-    return e->status;
-}
-
-/* Distances at one time, which poles have made: by eigenpairs after all, if the bound is not as it should be
- * and these have a lower one. */
-static hd_status hdi_distance_help(hd_heat *heat, const hdi_distances *to, double t, hd_report *rep,
-                                   hd_error *e) {
-    const double bound = rep->error_bound;
-    if (bound <= HDI_MODES_HELP || !hdi_modes_near(heat, to->kind, t, HDI_MODES_MOST)) return e->status;
-    hdi_heat_drop(heat);
-    if (!hdi_modes_reach(heat, to->kind, t, HDI_MODES_MOST, e)) return e->status;
-    if (hdi_modes_distance(heat, to, t, rep, e) < 0 || rep->error_bound <= bound) return e->status;
-    if (hdi_distance_poles(heat, to, t, rep, e) >= 0 || !hdi_over_limit(heat->ctx, e)) return e->status;
-    hdi_heat_shed(heat, 1);                      /* without the pairs, as before */
-    hdi_error_clear(e);
-    return hdi_distance_poles(heat, to, t, rep, e);
-}
-
-/* Distances at one time: from eigenpairs where few are left, else by poles. Where the bound is not as it
- * should be the other way is tried too, and the one with the lower bound taken. */
-static hd_status hdi_distance_time(hd_heat *heat, const hdi_distances *to, double t, hd_report *rep,
-                                   hd_error *e) {
-    double bound;
-    if (!hdi_modes_first(heat, to->kind, t) || !hdi_modes_reach(heat, to->kind, t, HDI_MODES_FIRST, e)) {
-        if (e->status < 0 || hdi_distance_poles(heat, to, t, rep, e) < 0) return e->status;
-        return hdi_distance_help(heat, to, t, rep, e);
-    }
-    if (hdi_modes_distance(heat, to, t, rep, e) < 0 || hdi_modes_good(heat, t, rep)) return e->status;
-    bound = rep->error_bound;
-    (void)hdi_distance_poles(heat, to, t, rep, e);
-    if (e->status < 0 ? !hdi_over_limit(heat->ctx, e) : rep->error_bound <= bound) return e->status;
-    hdi_heat_drop(heat);
-    hdi_error_clear(e);
-    return hdi_modes_distance(heat, to, t, rep, e);
-}
-
-/* Adds the report of one time to that of the call. */
-static void hdi_distance_note(hdi_heat_call *h, const hd_report *one, int *begun) {
-    if (*begun) hdi_report_merge(h->rep, one);
-    else *h->rep = *one;
-    *begun = 1;
-}
-
-/* The late times of a call from eigenpairs, the last one first; h->times is sorted. done [n_times]: of these
- * 1. Returns how many of the earlier ones are left. */
-static int32_t hdi_distance_late(hdi_heat_call *h, const hdi_distances *to, char *done, int *begun) {
-    int32_t q = h->n_times;
-    memset(done, 0, (size_t)h->n_times);
-    for (; q > 0 && h->e->status >= 0; q--) {
-        const int32_t column = h->time_column[q - 1];
-        const double t = h->ask.t[column];
-        hdi_distances one = *to;
-        hd_report rep;
-        if (!hdi_modes_first(h->heat, to->kind, t) ||
-            !hdi_modes_reach(h->heat, to->kind, t, HDI_MODES_FIRST, h->e)) break;
-        one.ld = to->ld * (size_t)h->n_times;
-        one.D = to->D + (size_t)column * to->ld;
-        if (hdi_modes_distance(h->heat, &one, t, &rep, h->e) < 0 || !hdi_modes_good(h->heat, t, &rep)) break;
-        hdi_distance_note(h, &rep, begun);
-        done[column] = 1;
-    }
-    return q;
-}
-
-/* ---- distances at many times ---- */
-
-/* Distances of the first two kinds at times that share their poles. Rows are in elimination order. */
-typedef struct hdi_distance_shared {
-    hdi_heat_call *h;
-    const hdi_elim *m;
-    hdi_window w;
-    const int32_t *time_column;  /* [n_times] which of the call's times each is */
-    int weighted, full;          /* full: weighted, and B is full */
-    double unit;                 /* of f to the plan's numbers */
-    double *column;              /* [2 n_times][n] of k and g, or with full of K_t and of g B */
-    double *x, *sweep, *rhs;     /* [n][8], a sweep's, [3 n] */
-    double *product;             /* full: [2 n] */
-    double *g;                   /* by vertices */
-    double *rounding;            /* [n_times] of the diagonals, relative */
-    char *active;                /* [n_super] */
-    double pole_off[HD_MAX_POLES];   /* residuals as seen, in the norm of D^-1, of the column */
-    hd_report *one;              /* [n_times] */
-    hdi_metric metric;
-} hdi_distance_shared;
-
-/* Room for times q0 to q1 - 1 of the call. */
-static hd_status hdi_distance_shared_take(hdi_distance_shared *z, hdi_heat_call *h, hd_distance_kind kind,
-                                          int32_t q0, int32_t q1, hdi_scope *s) {
-    const uint64_t n = (uint64_t)h->heat->elim.sym.n, n_times = (uint64_t)(q1 - q0);
-    memset(z, 0, sizeof *z);
-    hdi_window_take(&z->w, h, q0, q1, s);
-    z->h = h;
-    z->m = &h->heat->elim;
-    z->time_column = h->time_column + q0;
-    z->weighted = kind == HD_DISTANCE_WEIGHTED;
-    z->full = z->weighted && z->m->lap->B;
-    z->unit = z->weighted ? 1 / h->heat->scale : h->heat->scale;
-    z->column = HDI_TAKE(s, double, 2 * n_times * n);
-    z->x = HDI_TAKE(s, double, HDI_PACK * n);
-    z->sweep = HDI_TAKE(s, double, hdi_sweep_size(&z->m->sym, HDI_PACK, 1));
-    z->rhs = HDI_TAKE(s, double, 3 * n);
-    z->product = z->full ? HDI_TAKE(s, double, 2 * n) : NULL;
-    z->g = HDI_TAKE(s, double, h->heat->source->n);
-    z->rounding = HDI_TAKE_ZERO(s, double, n_times);
-    z->one = HDI_TAKE_ZERO(s, hd_report, n_times);
-    z->active = HDI_TAKE(s, char, (int64_t)z->m->sym.n_super + 1);
-    z->metric.kind = kind;
-    z->metric.root = 1;
-    z->metric.diag = HDI_TAKE(s, double, 3 * n + 1);
-    if (s->e->status < 0) return s->e->status;
-    z->metric.g = z->metric.diag + n;
-    z->metric.spread = z->metric.g + n;
-    return HD_OK;
-}
-
-/* Adds a row to the right-hand side, e_row or with full B e_row, and to the part that its sweeps touch. */
-static void hdi_distance_shared_row(hdi_distance_shared *z, int32_t row, double weight) {
-    const hd_laplacian *lap = z->m->lap;
-    int64_t p;
-    hdi_sweep_touch(&z->m->sym, row, z->active);
-    if (!z->full) z->rhs[row] = weight;
-    for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1] && z->full; p++) {
-        hdi_sweep_touch(&z->m->sym, lap->L.col[p], z->active);
-        z->rhs[lap->L.col[p]] += weight * lap->B[p];
-    }
-}
-
-/* The right-hand side of a source. A diagonal B of the weighted distance is multiplied later for a vertex,
- * and here for several. */
-static void hdi_distance_shared_rhs(hdi_distance_shared *z, const hdi_terms *source) {
-    const hd_laplacian *lap = z->m->lap;
-    const int mass = z->weighted && !z->full && source->weight;
-    int32_t q;
-    memset(z->rhs, 0, 3 * z->w.n * sizeof *z->rhs);
-    memset(z->active, 0, (size_t)z->m->sym.n_super);
-    for (q = 0; q < source->n; q++) {
-        const int32_t row = lap->row[hdi_terms_at(source, q)];
-        if (row < 0) continue;
-        hdi_distance_shared_row(z, row, hdi_terms_weight(source, q) * (mass ? lap->mass[row] : 1));
-    }
-}
-
-/* Solves for the poles of pack i, and measures the residuals. */
-static void hdi_distance_shared_solve(hdi_distance_shared *z, int32_t i) {
-    const hdi_elim *m = z->m;
-    double sum[1][3][HDI_PACK];
-    hdi_residual check;
-    hdi_sweep sweep;
-    const double *rhs = z->rhs;
-    int32_t q;
-    sweep = hdi_sweep_open(m->pack + i, 1, z->x, z->sweep);
-    sweep.rhs = &rhs;
-    sweep.active = z->active;
-    hdi_sweep_run(&sweep, m->ctx);
-    check = hdi_elim_residual(m, i, m->set.a, z->x, 1, sum);
-    check.f[0] = z->rhs;
-    hdi_residual_run(&check, m->ctx);
-    for (q = 0; q < 4 && 4 * i + q < m->set.n_poles; q++)
-        z->pole_off[4 * i + q] = hdi_residual_seen(sqrt(sum[0][0][q] + sum[0][0][q + 4]),
-                                                   sqrt(sum[0][1][q] + sum[0][1][q + 4]));
-}
-
-/* The columns of a source at all times. Shared sets have pairs of poles only. */
-static void hdi_distance_shared_column(hdi_distance_shared *z, const hdi_terms *source) {
-    const hdi_elim *m = z->m;
-    const double *x = z->x;
-    double coef[HDI_PACK];
-    int64_t j;
-    int32_t i, k, q;
-    memset(z->column, 0, 2 * (size_t)z->w.n_times * z->w.n * sizeof *z->column);
-    hdi_distance_shared_rhs(z, source);
-    for (i = 0; i < m->n_used; i++) {
-        hdi_distance_shared_solve(z, i);
-        for (k = 0; k < 2 * z->w.n_times; k++) {
-            double *HDI_RESTRICT to = z->column + (int64_t)k * m->sym.n;
-            hdi_elim_coef(m, i, z->w.weight + (int64_t)k * m->set.n_poles, coef);
-            for (j = 0; j < m->sym.n; j++)
-                for (q = 0; q < HDI_PACK; q++) to[j] += coef[q] * x[HDI_PACK * j + q];
-        }
-    }
-}
-
-/* The columns of time q. Where B is full they become those of f. */
-static const double *hdi_distance_shared_at(const hdi_distance_shared *z, int32_t q) {
-    const double *c = hdi_window_at(&z->w, z->column, q);
-    if (!z->full) return c;
-    hdi_pair_apply(z->m->lap, 0, 1, c, z->product);
-    hdi_pair_apply(z->m->lap, 0, 1, c + z->w.n, z->product + z->w.n);
-    return z->product;
-}
-
-/* The bound that the residuals of a column give for the answer at time q, in the norm of B + tL. */
-static double hdi_distance_shared_off(const hdi_distance_shared *z, int32_t q) {
-    const hd_rational *set = z->w.set + q;
-    const double root = hdi_ratio_root(z->m->lap);
-    double off = 0;
-    int32_t p;
-    for (p = 0; p < set->n_poles; p++)
-        off += 2 * hdi_cabs(set->a[p]) * z->pole_off[p] * root * hdi_pole_gain(set->theta[p]);
-    return off;
-}
-
-/* Measures rounding of the diagonals against columns of some rows, found as those of sources are. */
-static void hdi_distance_shared_probe(hdi_distance_shared *z) {
-    const hd_laplacian *lap = z->m->lap;
-    const double *last = hdi_window_at(&z->w, z->w.values, z->w.n_times - 1);
-    const hdi_probe probe = hdi_probe_rows(lap, last, -1);
-    int32_t i, q;
-    for (i = 0; i < probe.k; i++) {
-        const int32_t row = probe.row[i];
-        const hdi_terms at = hdi_terms_vertex(lap->vertex[row]);
-        hdi_distance_shared_column(z, &at);
-        for (q = 0; q < z->w.n_times; q++) {
-            const double *f = hdi_window_at(&z->w, z->w.values, q), *g = f + z->w.n;
-            const double off = hdi_distance_shared_off(z, q) * sqrt(hdi_max(0, g[row]));
-            const double there = hdi_distance_shared_at(z, q)[row];
-            z->rounding[q] = hdi_max(z->rounding[q], hdi_probe_seen(there, off, f[row], f[row]));
-        }
-    }
-    for (q = 0; q < z->w.n_times; q++) {
-        const double *f = hdi_window_at(&z->w, z->w.values, q);
-        z->rounding[q] = hdi_max(z->rounding[q], hdi_below_constants(lap, z->w.set + q, f, z->full ? 2 : 0));
-    }
-}
-
-/* Distances from a source at time q, whose columns are there (zero without rows), into u by vertices. */
-static void hdi_distance_shared_judge(hdi_distance_shared *z, int32_t q, const hdi_terms *source, double *u) {
-    const hdi_elim *m = z->m;
-    const hd_laplacian *lap = z->h->heat->source;
-    const hd_rational *set = z->w.set + q;
-    const double *f = hdi_window_at(&z->w, z->w.values, q), *c = hdi_distance_shared_at(z, q);
-    const int32_t row = source->weight ? -1 : m->lap->row[source->one];
-    const double bs = z->weighted && !z->full && row >= 0 ? m->lap->mass[row] : 1;
-    hdi_metric_column of;
-    hdi_ledger ledger;
-    int32_t i;
-    memset(u, 0, (size_t)lap->n * sizeof *u);
-    memset(z->g, 0, (size_t)lap->n * sizeof *z->g);
-    for (i = 0; i < m->sym.n; i++) {
-        const int32_t at = m->sym.perm[i], v = m->lap->vertex[i];
-        const double b = z->weighted && !z->full ? m->lap->mass[i] : 1, unit = z->unit * b * b;
-        z->metric.diag[at] = unit * f[i];
-        z->metric.g[at] = unit * f[m->sym.n + i];
-        z->metric.spread[at] = z->weighted ? lap->b_diag[at] : hdi_inverse_mass(lap, at);
-        u[v] = z->unit * b * bs * c[i];
-        z->g[v] = z->unit * b * bs * c[m->sym.n + i];
-    }
-    z->metric.weighted = set->max_weighted_error;
-    z->metric.uniform = set->max_error;
-    z->metric.rounding = z->rounding[q];
-    of.u = u;
-    of.off_m = hdi_distance_shared_off(z, q) * (sqrt(z->unit) * bs);
-    of.off_b = HUGE_VAL;
-    ledger = hdi_metric_ledger(&z->metric);
-    hdi_metric_distance(lap, &z->metric, source, &of, z->g, z->one + q, &ledger);
-    hdi_ledger_close(&ledger, z->one + q);
-}
-
-/* The times of a window into the report of the call, those that eigenpairs do better by these. one: their
- * reports; column: which of the call's times each is. */
-static hd_status hdi_distance_shared_end(hdi_heat_call *h, const hdi_distances *to, hd_report *one,
-                                         const int32_t *column, int32_t n_times) {
-    int32_t q;
-    for (q = 0; q < n_times && h->e->status >= 0; q++) {
-        hdi_distances at = *to;
-        at.ld = to->ld * (size_t)h->n_times;
-        at.D = to->D + (size_t)column[q] * to->ld;
-        if (hdi_distance_help(h->heat, &at, h->ask.t[column[q]], one + q, h->e) < 0) break;
-        hdi_report_merge(one + q, h->rep);       /* the method stays that of the window */
-        *h->rep = one[q];
-    }
-    hdi_free(h->heat->ctx, one);
-    return h->e->status;
-}
-
-/* Distances of the first two kinds at times q0 to q1 - 1 of the call by one set of poles. */
-static hd_status hdi_distance_window(hdi_heat_call *h, const hdi_distances *to, int32_t q0, int32_t q1) {
-    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
-    const int32_t *row = h->heat->elim.lap->row;
-    hdi_distance_shared z;
-    hdi_terms source;
+/* Distances at times q0 to q1 - 1 of the call, sorted, by one set of poles: one source after the other. */
+static hd_status hdi_distances_window(const hdi_distances *to, int32_t q0, int32_t q1, hd_report *one) {
+    hdi_heat_call *h = to->task.h;
+    const hd_heat *heat = h->heat;
+    const hd_laplacian *lap = heat->source;
+    const hdi_wanted wanted = hdi_metric_full(heat, to->kind) ? HDI_WANT_FORMS : HDI_WANT_DIAGONAL;
+    const size_t n = (size_t)lap->n_active;
+    const int32_t *column = h->time_column + q0;
+    hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
+    hdi_extra rows, probes;
+    hdi_inverses in;
+    hdi_metric x;
     hdi_probe probe;
+    double *g = HDI_TAKE(&s, double, lap->n), *work = HDI_TAKE(&s, double, 2 * n + 1);
+    double *rounding = HDI_TAKE(&s, double, q1 - q0);
     int32_t q, r;
-    h->relative = 1;
-    if (hdi_distance_shared_take(&z, h, to->kind, q0, q1, &s) < 0) return hdi_scope_end(&s);
-    if (hdi_window_run(h, &z.w, HDI_SHARED_DISTANCE_TOL, z.full ? HDI_WANT_FORMS : HDI_WANT_DIAGONAL) < 0)
+    if (hdi_metric_take(h, to->kind, &x, &s) < 0 ||
+        hdi_window_take(&in, h, q0, q1, wanted, HDI_SHARED_DISTANCE_TOL, &s) < 0 ||
+        hdi_inverses_run(h, &in, &s) < 0 || hdi_metric_probe(h, &in, to->kind, &probe, &probes, &s) < 0)
         return hdi_scope_end(&s);
-    hdi_distance_shared_probe(&z);
-    for (r = 0; r < to->k; r++) {
-        double *D = to->D + (size_t)r * (size_t)h->n_times * to->ld;
-        if (hdi_progress(h->heat->ctx, "solve", (double)r / to->k, h->e) < 0) break;
-        memset(z.column, 0, 2 * (size_t)(q1 - q0) * z.w.n * sizeof *z.column);
-        memset(z.pole_off, 0, sizeof z.pole_off);
-        source = hdi_distances_source(to, r);
-        if (source.weight || row[source.one] >= 0) hdi_distance_shared_column(&z, &source);
-        for (q = 0; q < z.w.n_times; q++)
-            hdi_distance_shared_judge(&z, q, &source, D + (size_t)z.time_column[q] * to->ld);
+    rows.n = 2 * in.count;
+    rows.weight = in.weight;
+    rows.stride = in.set->n_poles;
+    rows.sum = HDI_TAKE(&s, double, (uint64_t)rows.n * n);
+    for (q = 0; q < in.count && h->e->status >= 0; q++) {
+        one[column[q]] = *h->rep;
+        hdi_metric_read(heat, &in, q, &x);
+        hdi_metric_seen(h, &in, q, &probe, &probes, &x);
+        rounding[q] = x.rounding;
     }
-    if (z.w.n > 0 && to->k > 0 && h->e->status >= 0) {   /* how well the systems are solved */
-        probe.k = 1;
-        source = hdi_distances_source(to, 0);
-        probe.row[0] = hdi_high32(row[hdi_terms_at(&source, 0)], 0);
-        (void)hdi_probe_run(h, &probe, HD_KERNEL_SYMMETRIC, z.w.set);
+    for (r = 0; r < to->k && h->e->status >= 0; r++) {
+        if (hdi_metric_solve(&x, in.set, to->source + r, 1, NULL, 0, &rows, NULL) < 0) break;
+        for (q = 0; q < in.count; q++) {
+            double *u = hdi_distances_at(to, r, column[q]);
+            const double *sum = rows.sum + 2 * (size_t)q * n;
+            hdi_metric_column c;
+            hdi_ledger ledger;
+            hdi_metric_read(heat, &in, q, &x);
+            x.rounding = rounding[q];
+            c.u = u;
+            hdi_metric_of_rows(heat, &x, sum, u, work);
+            hdi_metric_of_rows(heat, &x, sum + n, g, work);
+            hdi_column_off(heat->elim.lap, heat->lane, &x.set, &c.off_b, &c.off_m);
+            hdi_metric_off(heat, &x, &c);
+            ledger = hdi_metric_ledger(&x);
+            hdi_metric_distance(lap, &x, to->source + r, &c, g, one + column[q], &ledger);
+            hdi_ledger_close(&ledger, one + column[q]);
+        }
     }
-    if (h->e->status >= 0) (void)hdi_keep(&s, z.one);
-    if (hdi_scope_end(&s) < 0) return h->e->status;
-    return hdi_distance_shared_end(h, to, z.one, z.time_column, q1 - q0);
+    return hdi_scope_end(&s);
 }
 
-/* The first n_times of the sorted times with shared poles, where that is cheaper than one by one. Returns 0
- * where it is not, or not possible. */
-static int hdi_distance_windows(hdi_heat_call *h, const hdi_distances *to, int32_t n_times) {
+/* With shared poles, where that is cheaper than one by one. */
+static hd_status hdi_distances_together(hdi_task *task, char *done, hd_report *one) {
+    const hdi_distances *to = (const hdi_distances *)task;
+    hdi_heat_call *h = task->h;
     hd_heat *heat = h->heat;
-    int32_t packs = 0, windows, w, q0, q1;
-    if (n_times < 2 || !hdi_shared_may(heat) || hdi_heat_analysed(heat, h->e) < 0) return 0;
-    windows = hdi_shared_windows(h->times, n_times, HDI_SHARED_DISTANCE_TOL, &packs);
-    if (windows == 0 || packs > n_times || hdi_heat_equal(heat, h->times[n_times - 1], h->e) ||
-        h->e->status < 0) return 0;
+    int32_t packs = 0, windows, w, q0, q1, n;
+    if (!hdi_shared_may(heat) || hdi_heat_analysed(heat, h->e) < 0 || hdi_heat_sort_times(h, 2, done) < 0)
+        return h->e->status;
+    n = h->n_times;
+    if (n < 2) return HD_OK;
+    windows = hdi_shared_windows(h->times, n, HDI_SHARED_DISTANCE_TOL, &packs);
+    if (windows == 0 || packs > n || hdi_heat_equal(heat, h->times[n - 1], h->e) || h->e->status < 0)
+        return h->e->status;
     hdi_inverse_tell(h);
-    for (w = 0, q0 = 0; q0 < n_times; w++, q0 = q1) {
-        q1 = hdi_window_end(h->times, n_times, q0, w, windows);
-        if (hdi_distance_window(h, to, q0, q1) < 0) break;
+    for (w = 0, q0 = 0; q0 < n; w++, q0 = q1) {
+        q1 = hdi_window_end(h->times, n, q0, w, windows);
+        if (hdi_distances_window(to, q0, q1, one) < 0) return h->e->status;
+        for (; q0 < q1; q0++) done[h->time_column[q0]] = HDI_DONE_BY_POLES;
     }
-    return 1;
-}
-
-/* Distances from one to all: all times and sources of a call. */
-static hd_status hdi_distance_run(hdi_heat_call *h, void *what) {
-    hdi_distances to = *(const hdi_distances *)what;
-    const int timeless = to.kind >= HD_DISTANCE_COMMUTE;
-    const int32_t n_times = timeless ? 1 : h->ask.n_times;
-    const size_t ldd = to.ld;
-    double *const D = to.D;
-    char *done = HDI_TAKE_ZERO(&h->s, char, n_times);
-    hd_report one;
-    int32_t q;
-    int begun = 0;
-    if (done && n_times > 1 && hdi_heat_sort_times(h, 2, NULL) >= 0) {
-        const int32_t early = hdi_distance_late(h, &to, done, &begun);
-        if (early == 0 || h->e->status < 0) return h->e->status;
-        if (hdi_distance_windows(h, &to, early)) return h->e->status;
-    }
-    to.ld = ldd * (size_t)n_times;
-    for (q = 0; q < n_times && h->e->status >= 0; q++) {
-        if (done[q]) continue;
-        to.D = D + (size_t)q * ldd;
-        (void)hdi_distance_time(h->heat, &to, timeless ? 0 : h->ask.t[q], &one, h->e);
-        if (h->e->status < 0) h->e->column = q;
-        else hdi_distance_note(h, &one, &begun);
-    }
-    return h->e->status;
+    return HD_OK;
 }
 
 /* ---- pairs ---- */
 
-/* Pairs at one time: vertices i and j, and where entries and distances go, each NULL or [n]. */
+/* A query for distances of pairs of vertices. */
 typedef struct hdi_pairs {
+    hdi_task task;
     hd_distance_kind kind;
     int64_t n;
     const int32_t *i, *j;
-    double *K, *d;
-    hd_report *of_k;             /* of the entries alone; with d, may be NULL */
-    double *bound;               /* of the distances alone; may be NULL */
-    hdi_ledger *before;          /* [2] of entries and distances of the pairs so far; NULL: there are none */
-    int more;                    /* others follow, and end the ledgers */
+    double *d;                   /* [n] for each time */
 } hdi_pairs;
 
-/* Distinct vertices of the pairs, ascending, and where each pair's two stand among them. order, list, place
- * [2 n]. Returns their number. */
-static int32_t hdi_pairs_vertices(const hdi_pairs *x, hdi_pair *order, int32_t *list, int32_t *place) {
-    int32_t n = 0;
+/* Some of the pairs, and columns of their vertices. */
+typedef struct hdi_pairs_part {
+    int64_t n;
+    const int32_t *i, *j;
+    double *d;
+    int32_t n_vertex, *vertex;   /* distinct ones, ascending */
+    int32_t *place;              /* [2 n] which of them each pair's two are */
+    double *U, *size;            /* their columns, and the norms of B of these */
+    double *work;                /* [2 n_active] */
+} hdi_pairs_part;
+
+/* Finds the vertices. */
+static hd_status hdi_pairs_vertices(hdi_pairs_part *x, hdi_scope *s) {
+    hdi_pair *order = HDI_TAKE(s, hdi_pair, 2 * (uint64_t)x->n);
     int64_t q;
+    x->vertex = HDI_TAKE(s, int32_t, 2 * (uint64_t)x->n);
+    x->place = HDI_TAKE(s, int32_t, 2 * (uint64_t)x->n);
+    if (s->e->status < 0) return s->e->status;
     for (q = 0; q < 2 * x->n; q++) {
         order[q].key = (uint64_t)(q % 2 ? x->j[q / 2] : x->i[q / 2]);
         order[q].id = q;
     }
     hdi_sort_pairs(order, 2 * x->n);
-    for (q = 0; q < 2 * x->n; q++) {
-        if (q == 0 || order[q].key != order[q - 1].key) list[n++] = (int32_t)order[q].key;
-        place[order[q].id] = n - 1;
+    for (q = 0, x->n_vertex = 0; q < 2 * x->n; q++) {
+        if (q == 0 || order[q].key != order[q - 1].key) x->vertex[x->n_vertex++] = (int32_t)order[q].key;
+        x->place[order[q].id] = x->n_vertex - 1;
     }
-    return n;
+    return HD_OK;
+}
+
+/* How many of the n pairs, from the first on, have at most so many vertices. mark: by vertex, below stamp. */
+static int64_t hdi_pairs_few(const int32_t *i, const int32_t *j, int64_t n, int64_t most, int64_t stamp,
+                             int64_t *mark) {
+    int64_t q, count = 0;
+    for (q = 0; q < n; q++) {
+        count += (mark[i[q]] != stamp) + (mark[j[q]] != stamp && i[q] != j[q]);
+        if (count > most && q > 0) break;
+        mark[i[q]] = mark[j[q]] = stamp;
+    }
+    return q;
 }
 
 /* |u - v|_B of fields on vertices of any size; v NULL: |u|_B. B scale is near one. work [2 n_active]. */
@@ -25889,28 +25459,6 @@ static void hdi_parts_share(hdi_parts *to, const hdi_parts *as) {
     to->rounding = all * (as->rounding / sum);
 }
 
-/* K_t(i,j) for pair q from the columns ui of i and uj of j: (K_t e_j)_i, or if symmetric (k_t(i,.) B)_j. */
-static double hdi_pairs_entry(const hd_laplacian *lap, const hdi_pairs *x, int64_t q, const double *ui,
-                              const double *uj) {
-    const int32_t i = x->i[q], j = x->j[q], row = lap->row[j];
-    double sum = 0;
-    int64_t p;
-    if (x->kind == HD_DISTANCE_WEIGHTED) return uj[i];
-    if (row < 0) return i == j && row == HD_ROW_INERT;
-    if (!lap->B) return ui[j] * lap->mass[row];
-    for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1]; p++)
-        sum += lap->B[p] * ui[lap->vertex[lap->L.col[p]]];
-    return sum;
-}
-
-/* The error of that entry for one of the column with |e|_B = 1: e_i, or |(B e)_j| <= sqrt(B_jj) |e|_B. */
-static double hdi_pairs_entry_off(const hd_laplacian *lap, const hdi_pairs *x, int64_t q) {
-    const int weighted = x->kind == HD_DISTANCE_WEIGHTED;
-    const int32_t row = lap->row[weighted ? x->i[q] : x->j[q]];
-    if (row < 0) return 0;
-    return weighted ? hdi_ratio_root(lap) / sqrt(lap->b_diag[row]) : sqrt(lap->b_diag[row]);
-}
-
 /* The error of the column of v, whose size is given, in the norm of B: relative errors are below bound. That
  * of a vertex without a row is exact. */
 static double hdi_pairs_column_off(const hd_laplacian *lap, int32_t v, double size, double bound) {
@@ -25918,335 +25466,173 @@ static double hdi_pairs_column_off(const hd_laplacian *lap, int32_t v, double si
     return size > 0 ? bound * size : hdi_finite(bound) ? 0 : HUGE_VAL;
 }
 
-/* Columns of the distinct vertices of pairs, and which of them each pair's two are. */
-typedef struct hdi_pair_columns {
-    double *U;
-    const int32_t *place;
-    double *size;                /* of each column, its norm of B */
-    double *work;                /* [2 n_active] */
-} hdi_pair_columns;
+/* Most doubles of columns that are held at the same time: half a GiB. */
+#define HDI_PAIRS_DOUBLES (INT64_C(1) << 26)
 
-/* Kernel entries and distances |K_t B^-1 (e_i - e_j)|_B of the pairs from columns at t. The distances lose
- * nothing beside what the columns are off by: the report's bound of columns becomes that of distances. */
-static void hdi_pairs_of_columns(const hd_heat *heat, const hdi_pairs *x, const hdi_pair_columns *c,
-                                 hd_report *rep) {
+/* Distances |K_t B^-1 (e_i - e_j)|_B from the columns. They lose nothing beside what the columns are off
+ * by. rep: of these. */
+static void hdi_pairs_note(const hd_heat *heat, const hdi_pairs_part *x, hd_report *rep, hdi_ledger *all) {
     const hd_laplacian *lap = heat->source;
     const size_t n = (size_t)lap->n;
-    const double bound_b = rep->error_bound_b;
-    hdi_ledger of_k =
-        hdi_ledger_begin(rep->evidence_rational, rep->evidence_solver, rep->evidence_rounding, 0);
-    hdi_ledger of_d = of_k;
-    hdi_parts part, share;
-    int64_t q, n_lost = 0;
+    hdi_ledger of = hdi_ledger_begin(rep->evidence_rational, rep->evidence_solver, rep->evidence_rounding, 1);
+    hdi_parts part = {0, 0, 0}, share;
+    int64_t q;
     share.rational = rep->error_rational;
     share.solver = rep->error_solver;
     share.rounding = rep->error_rounding;
-    memset(&part, 0, sizeof part);
-    of_d.relative = 0;
     for (q = 0; q < x->n; q++) {
-        const double *ui = c->U + n * (size_t)c->place[2 * q];
-        const double *uj = c->U + n * (size_t)c->place[2 * q + 1];
-        const double size_i = c->size[c->place[2 * q]], size_j = c->size[c->place[2 * q + 1]];
-        const double off_i = hdi_pairs_column_off(lap, x->i[q], size_i, bound_b);
-        const double off_j = hdi_pairs_column_off(lap, x->j[q], size_j, bound_b);
-        if (x->K) {
-            const double entry = hdi_pairs_entry_off(lap, x, q);
-            const double off = x->kind == HD_DISTANCE_WEIGHTED ? off_j : off_i;
-            x->K[q] = hdi_pairs_entry(lap, x, q, ui, uj);
-            part.rounding = (entry > 0 ? off * entry : 0) + 8 * DBL_EPSILON * fabs(x->K[q]);
-            hdi_ledger_note(&of_k, x->K[q], part);
-        }
-        if (!x->d) continue;
+        const int32_t i = x->place[2 * q], j = x->place[2 * q + 1];
         x->d[q] = 0;
         if (x->i[q] == x->j[q]) continue;
-        x->d[q] = hdi_vertex_norm(lap, ui, uj, c->work, heat->scale);
-        part.rounding = off_i + off_j + 4 * DBL_EPSILON * (size_i + size_j);
-        n_lost += x->d[q] < 10 * part.rounding;
-        hdi_ledger_note(&of_d, x->d[q], part);
+        x->d[q] = hdi_vertex_norm(lap, x->U + n * (size_t)i, x->U + n * (size_t)j, x->work, heat->scale);
+        part.rounding = hdi_pairs_column_off(lap, x->i[q], x->size[i], rep->error_bound_b) +
+                        hdi_pairs_column_off(lap, x->j[q], x->size[j], rep->error_bound_b) +
+                        4 * DBL_EPSILON * (x->size[i] + x->size[j]);
+        rep->n_lost += x->d[q] < 10 * part.rounding;
+        hdi_ledger_note(&of, x->d[q], part);
     }
-    rep->error_bound = rep->error_rational = rep->error_solver = rep->error_rounding = 0;
-    rep->error_relative = rep->smallest = 0;
-    rep->error_bound_b = HUGE_VAL;
-    rep->evidence_b = HD_EVIDENCE_NONE;
-    hdi_parts_share(&of_k.off, &share);
-    hdi_parts_share(&of_d.off, &share);
-    if (x->before) {
-        hdi_ledger_join(x->before, &of_k);
-        hdi_ledger_join(x->before + 1, &of_d);
-        of_k = x->before[0];
-        of_d = x->before[1];
-    }
-    if (!x->more) hdi_ledger_close(&of_k, rep);
-    rep->smallest = 0;                           /* of the distances */
-    if (x->of_k) *x->of_k = *rep;
-    rep->n_lost = n_lost;
-    if (x->bound) *x->bound = hdi_quotient(hdi_parts_sum(&of_d.off), of_d.largest);
-    if (!x->more) hdi_ledger_close(&of_d, rep);
+    hdi_parts_share(&of.off, &share);
+    hdi_ledger_join(all, &of);
 }
 
-/* Distances from entries and the diagonal, for more vertices than columns fit; each is judged by itself. */
-static hd_status hdi_pairs_distances(hd_heat *heat, const hdi_pairs *p, double t, hd_report *rep) {
-    hd_error *e = &rep->error;
-    hdi_scope s = hdi_scope_begin(heat->ctx, e);
-    double *f = HDI_TAKE(&s, double, heat->source->n);
-    hdi_ledger ledger;
+/* Some pairs at the time under way from columns by poles of a degree (0: by default). */
+static hd_status hdi_pairs_some(hdi_heat_call *h, const hdi_pairs *to, hdi_pairs_part *x, int32_t degree,
+                                hd_report *rep, hdi_ledger *all) {
+    const hd_kernel kernel = to->kind == HD_DISTANCE_WEIGHTED ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
+    const hd_heat *heat = h->heat;
+    const uint64_t n = (uint64_t)heat->source->n;
+    hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
+    hdi_heat_call c;
+    int32_t q;
+    if (hdi_pairs_vertices(x, &s) < 0) return hdi_scope_end(&s);
+    x->work = HDI_TAKE(&s, double, 2 * n + 1);
+    x->U = HDI_TAKE(&s, double, n * (uint64_t)x->n_vertex);
+    x->size = HDI_TAKE(&s, double, x->n_vertex);
+    if (h->e->status < 0) return hdi_scope_end(&s);
+    if (hdi_kernel_begin(&c, h->heat, kernel, rep, NULL) >= 0 &&
+        hdi_times_check(&c, 1, h->ask.t + h->now, 0) >= 0) {
+        c.ask.k = x->n_vertex;
+        c.ask.sources = x->vertex;
+        c.ask.U = x->U;
+        c.ask.ldu = (size_t)n;
+        c.degree = degree;
+    }
+    if (hdi_heat_run(&c) < 0) *h->e = rep->error;
+    for (q = 0; q < x->n_vertex && h->e->status >= 0; q++)
+        x->size[q] = hdi_vertex_norm(heat->source, x->U + n * (uint64_t)q, NULL, x->work, heat->scale);
+    if (h->e->status >= 0) hdi_pairs_note(heat, x, rep, all);
+    return hdi_scope_end(&s);
+}
+
+/* All pairs at the time under way, as many at once as their columns have room for. */
+static hd_status hdi_pairs_columns(const hdi_pairs *to, int32_t degree, int64_t *mark) {
+    hdi_heat_call *h = to->task.h;
+    const int64_t room = HDI_PAIRS_DOUBLES / h->heat->source->n;
+    hdi_ledger all = hdi_ledger_begin(HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, 1);
+    hd_report one, sum;
+    hdi_pairs_part x;
+    int64_t p;
+    for (p = 0; p < to->n; p += x.n) {
+        x.i = to->i + p;
+        x.j = to->j + p;
+        x.d = to->d + to->n * h->now + p;
+        x.n = mark ? hdi_pairs_few(x.i, x.j, to->n - p, room, to->n * h->now + p + 1, mark) : to->n;
+        if (hdi_pairs_some(h, to, &x, degree, &one, &all) < 0) return h->e->status;
+        if (p == 0) sum = one;
+        else hdi_report_merge(&sum, &one);
+    }
+    sum.error_bound = sum.error_rational = sum.error_solver = sum.error_rounding = 0;
+    sum.error_relative = sum.smallest = 0;
+    sum.error_bound_b = HUGE_VAL;
+    sum.evidence_b = HD_EVIDENCE_NONE;
+    *h->rep = sum;
+    hdi_ledger_close(&all, h->rep);
+    return h->e->status;
+}
+
+/* Distances from columns and the diagonal, for more vertices than columns fit; each is judged by itself. */
+static hd_status hdi_pairs_one_by_one(const hdi_pairs *to) {
+    hdi_heat_call *h = to->task.h;
+    const hd_laplacian *lap = h->heat->source;
+    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
+    double *f = HDI_TAKE(&s, double, lap->n), *work = HDI_TAKE(&s, double, 2 * (uint64_t)lap->n + 1);
+    double *out = to->d + to->n * h->now;
+    hdi_ledger ledger, all;
     hdi_metric_column c;
     hdi_metric x;
     int64_t q;
-    if (!f || hdi_metric_make(heat, p->kind, t, 0, &x, &s, rep) < 0) return hdi_scope_end(&s);
-    rep->error_relative = 0;
+    if (h->e->status < 0 || hdi_metric_make(h, to->kind, 0, &x, &s) < 0) return hdi_scope_end(&s);
     ledger = hdi_metric_ledger(&x);
-    for (q = 0; q < p->n && e->status >= 0; q++) {   /* a column for each run of the same first vertex */
-        double d;
-        if (q == 0 || p->i[q] != p->i[q - 1]) {
-            const hdi_distances to = hdi_distances_one(heat, p->kind, p->i + q, f);
-            hdi_ledger all = hdi_metric_ledger(&x);
-            if (hdi_metric_columns(heat, &x, &to, &c, rep, e) < 0) break;
-            const hdi_terms from = hdi_terms_vertex(p->i[q]);
-            hdi_metric_distance(heat->source, &x, &from, &c, NULL, rep, &all);
+    for (q = 0; q < to->n && h->e->status >= 0; q++) {   /* a column for each run of the same first vertex */
+        const hdi_terms from = hdi_terms_vertex(to->i[q]);
+        const double *d = f + to->j[q];
+        if (q == 0 || to->i[q] != to->i[q - 1]) {
+            if (hdi_metric_columns(&x, &from, 1, f, (size_t)lap->n, NULL, work, &c) < 0) break;
+            all = hdi_metric_ledger(&x);
+            hdi_metric_distance(lap, &x, &from, &c, NULL, h->rep, &all);
             /* of the pairs, as of all vertices */
             ledger.off.rational = hdi_max(ledger.off.rational, all.off.rational);
             ledger.off.rounding = hdi_max(ledger.off.rounding, all.off.rounding);
             ledger.relative = hdi_max(ledger.relative, all.relative);
         }
-        p->d[q] = d = f[p->j[q]];
-        if (!hdi_finite(d)) continue;
-        ledger.largest = hdi_max(ledger.largest, d);
-        if (d > 0) ledger.smallest = hdi_min(ledger.smallest, d);
-        ledger.n_values += p->i[q] != p->j[q];
+        out[q] = *d;
+        if (!hdi_finite(*d)) continue;
+        ledger.largest = hdi_max(ledger.largest, *d);
+        if (*d > 0) ledger.smallest = hdi_min(ledger.smallest, *d);
+        ledger.n_values += to->i[q] != to->j[q];
     }
-    if (e->status >= 0) hdi_ledger_close(&ledger, rep);
+    if (h->e->status >= 0) hdi_ledger_close(&ledger, h->rep);
     return hdi_scope_end(&s);
 }
 
-/* The pairs without columns in store. */
-static hd_status hdi_pairs_by_entries(hd_heat *heat, const hdi_pairs *x, double t, hd_report *rep) {
-    hdi_heat_call h;
-    hdi_entry_list list;
-    hd_report one;
-    memset(rep, 0, sizeof *rep);
-    hdi_error_clear(&rep->error);
-    if (x->K && x->kind < HD_DISTANCE_COMMUTE) {
-        if (hdi_kernel_begin(&h, heat, HD_KERNEL_OPERATOR, rep, NULL) >= 0 &&
-            hdi_times_check(&h, 1, &t, 0) >= 0) {
-            list.values = x->K;
-            (void)hdi_entry_list_make(&h, &list, x->n, x->i, x->j);
-        }
-        if (hdi_heat_run(&h) < 0) return rep->status;
+/* Distances at the time under way from columns of all vertices of the pairs or, where these have no room,
+ * by the metric. The highest degree takes over where the direct method's bound is not as it should be. */
+static hd_status hdi_pairs_by_poles(hdi_task *task) {
+    const hdi_pairs *to = (const hdi_pairs *)task;
+    hdi_heat_call *h = task->h;
+    hd_heat *heat = h->heat;
+    const int32_t n = heat->source->n;
+    hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
+    int64_t *mark = NULL;
+    int32_t degree = HDI_RAT_KERNEL_MAX;
+    int fits = !hdi_distance_timeless(to->kind) && !hdi_heat_filtered(heat);
+    if (fits && 2 * to->n > HDI_PAIRS_DOUBLES / n) {
+        mark = HDI_TAKE_ZERO(&s, int64_t, n);
+        if (!mark) return hdi_scope_end(&s);
+        fits = hdi_direct_barred(heat) ||
+               hdi_pairs_few(to->i, to->j, to->n, HDI_PAIRS_DOUBLES / n, INT64_MAX, mark) == to->n;
     }
-    if (!x->d) return rep->status;
-    memset(&one, 0, sizeof one);
-    hdi_error_clear(&one.error);
-    rep->error_relative = 0;                     /* of the distances */
-    if (hdi_pairs_distances(heat, x, t, &one) < 0) {
-        rep->error = one.error;
-        return rep->status = one.error.status;
-    }
-    if (x->of_k) *x->of_k = *rep;
-    if (x->bound) *x->bound = one.error_bound;
-    hdi_report_merge(rep, &one);
-    return rep->status;
+    if (fits && hdi_pairs_columns(to, 0, mark) >= 0 && h->rep->error_bound > HDI_MODES_HELP &&
+        !hdi_metric_settled(heat, to->kind) && h->rep->method == HD_METHOD_DIRECT)
+        do {
+            hdi_task_at(h, h->now);
+            (void)hdi_pairs_columns(to, degree, mark);
+        } while (hdi_degree_retreat(heat, &degree, h->e));
+    if (!fits) (void)hdi_pairs_one_by_one(to);
+    return hdi_scope_end(&s);
 }
 
-/* Distances of the pairs at time t from the eigenpairs that are there. */
-static hd_status hdi_modes_pairs(hd_heat *heat, const hdi_pairs *x, double t, hd_report *rep) {
-    hd_error *e = &rep->error;
-    hdi_scope s = hdi_scope_begin(heat->ctx, e);
-    const uint64_t n = (uint64_t)heat->source->n, count = (uint64_t)heat->modes.s.count;
-    double *work = HDI_TAKE(&s, double, 3 * n + 2 * count + 1);
+/* Distances of the pairs at the time under way from the eigenpairs that are there. */
+static hd_status hdi_pairs_by_pairs(hdi_task *task) {
+    const hdi_pairs *to = (const hdi_pairs *)task;
+    hdi_heat_call *h = task->h;
+    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
+    double *work = HDI_TAKE(&s, double, h->heat->source->n), *d = to->d + to->n * h->now;
     hdi_ledger ledger = hdi_modes_ledger();
     hdi_mode_sum sum;
     int64_t q;
-    if (!work) return hdi_scope_end(&s);
-    hdi_modes_tell(heat, rep);
-    sum = hdi_mode_sum_at(heat, x->kind, t, work + n);
+    if (!work || hdi_mode_sum_make(&sum, h, to->kind, &s) < 0) return hdi_scope_end(&s);
     sum.d = work;
-    for (q = 0; q < x->n; q++) {
-        x->d[q] = 0;
-        if (x->i[q] == x->j[q]) continue;
-        hdi_mode_sum_from(&sum, hdi_terms_vertex(x->i[q]));
-        hdi_mode_sum_task(&sum, x->j[q], (int64_t)x->j[q] + 1);
-        x->d[q] = work[x->j[q]];
-        hdi_mode_sum_note(&sum, x->j[q], &ledger, rep);
+    for (q = 0; q < to->n; q++) {
+        d[q] = 0;
+        if (to->i[q] == to->j[q]) continue;
+        hdi_mode_sum_from(&sum, hdi_terms_vertex(to->i[q]));
+        hdi_mode_sum_task(&sum, to->j[q], (int64_t)to->j[q] + 1);
+        d[q] = work[to->j[q]];
+        hdi_mode_sum_note(&sum, to->j[q], &ledger, h->rep);
     }
-    hdi_ledger_close(&ledger, rep);
+    hdi_ledger_close(&ledger, h->rep);
     return hdi_scope_end(&s);
-}
-
-/* Most doubles of columns that are held at the same time: half a GiB. */
-#define HDI_PAIRS_DOUBLES (INT64_C(1) << 26)
-
-/* Pairs at time t, from columns by poles of a degree (0: by default); rep gets the report. */
-static hd_status hdi_pairs_columns(hd_heat *heat, const hdi_pairs *x, double t, int32_t degree,
-                                   hd_report *rep) {
-    const uint64_t n = (uint64_t)heat->source->n, twice = 2 * (uint64_t)x->n;
-    const hd_kernel kernel = x->kind == HD_DISTANCE_WEIGHTED ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
-    hd_error *e = &rep->error;
-    hdi_scope s = hdi_scope_begin(heat->ctx, e);
-    hdi_pair *order = HDI_TAKE(&s, hdi_pair, twice);
-    int32_t *list = HDI_TAKE(&s, int32_t, twice), *place = HDI_TAKE(&s, int32_t, twice), n_list, q;
-    hdi_pair_columns c;
-    hdi_heat_call h;
-    c.place = place;
-    c.work = HDI_TAKE(&s, double, 2 * n + 1);
-    if (e->status < 0) return rep->status = hdi_scope_end(&s);
-    n_list = hdi_pairs_vertices(x, order, list, place);
-    if (x->kind >= HD_DISTANCE_COMMUTE || (x->d && hdi_heat_filtered(heat)) ||
-        (uint64_t)n_list * n > HDI_PAIRS_DOUBLES) {
-        hdi_scope_end(&s);
-        return hdi_pairs_by_entries(heat, x, t, rep);
-    }
-    c.U = HDI_TAKE(&s, double, n * (uint64_t)n_list);
-    c.size = HDI_TAKE(&s, double, n_list);
-    if (e->status < 0) return rep->status = hdi_scope_end(&s);
-    if (hdi_kernel_begin(&h, heat, kernel, rep, NULL) >= 0 && hdi_times_check(&h, 1, &t, 0) >= 0) {
-        h.ask.k = n_list;
-        h.ask.sources = list;
-        h.ask.U = c.U;
-        h.ask.ldu = (size_t)n;
-        h.degree = degree;
-    }
-    if (hdi_heat_run(&h) >= 0) {
-        for (q = 0; q < n_list; q++)
-            c.size[q] = hdi_vertex_norm(heat->source, c.U + n * (uint64_t)q, NULL, c.work, heat->scale);
-        hdi_pairs_of_columns(heat, x, &c, rep);
-    }
-    hdi_scope_end(&s);
-    return rep->status;
-}
-
-/* The distances of pairs at time t from eigenpairs, of which at most `most` are looked for. Returns 0, with
- * nothing written, where there are none, or where the bound is neither as it should be nor below `bound`; rep
- * is then set for errors only. */
-static int hdi_pairs_by_modes(hd_heat *heat, const hdi_pairs *x, double t, int32_t most, double bound,
-                              hd_report *rep) {
-    hd_report one;
-    hdi_pairs y = *x;
-    hdi_scope s;
-    int taken = 0;
-    memset(&one, 0, sizeof one);
-    hdi_error_clear(&one.error);
-    s = hdi_scope_begin(heat->ctx, &one.error);
-    y.d = NULL;
-    if (hdi_modes_reach(heat, x->kind, t, most, &one.error)) y.d = HDI_TAKE(&s, double, x->n);
-    if (y.d && hdi_modes_pairs(heat, &y, t, &one) >= 0)
-        taken = one.error_bound < bound || hdi_modes_good(heat, t, &one);
-    if (taken) memcpy(x->d, y.d, (size_t)x->n * sizeof *y.d);
-    if (hdi_over_limit(heat->ctx, &one.error)) hdi_error_clear(&one.error);
-    if (one.error.status < 0) one.status = one.error.status;
-    if (taken || one.status < 0) *rep = one;
-    hdi_scope_end(&s);
-    return taken;
-}
-
-/* Pairs at time t from columns. Distances take the highest degree where the direct method's bound is not as
- * it should be; entries stay as they are without distances. */
-static hd_status hdi_pairs_poles(hd_heat *heat, const hdi_pairs *x, double t, hd_report *rep) {
-    hdi_pairs y = *x;
-    int32_t degree = HDI_RAT_KERNEL_MAX;
-    if (hdi_pairs_columns(heat, x, t, 0, rep) < 0 || !x->d || hdi_metric_settled(heat, x->kind) ||
-        *x->bound <= HDI_MODES_HELP || rep->method != HD_METHOD_DIRECT)
-        return rep->status;
-    y.K = NULL;
-    y.of_k = NULL;
-    do (void)hdi_pairs_columns(heat, &y, t, degree, rep);
-    while (hdi_degree_retreat(heat, &degree, &rep->error));
-    if (rep->status >= 0 && x->K) {
-        hd_report all = *x->of_k;
-        hdi_report_merge(&all, rep);
-        *rep = all;
-    }
-    return rep->status;
-}
-
-/* Pairs at time t: entries from columns, and distances too, or as hdi_distance_time takes them. */
-static hd_status hdi_pairs_once(hd_heat *heat, const hdi_pairs *pairs, double t, hd_report *rep) {
-    hdi_pairs x = *pairs;
-    hd_report of_k, all;
-    double bound = 0;
-    memset(&of_k, 0, sizeof of_k);
-    memset(rep, 0, sizeof *rep);
-    hdi_error_clear(&rep->error);
-    if (x.d && hdi_modes_first(heat, x.kind, t)) {
-        const int taken = hdi_pairs_by_modes(heat, &x, t, HDI_MODES_FIRST, 0, rep);
-        x.d = NULL;
-        if (rep->status < 0 || (taken && !x.K)) return rep->status;
-        if (taken) {
-            if (hdi_pairs_columns(heat, &x, t, 0, &of_k) >= 0) hdi_report_merge(rep, &of_k);
-            else *rep = of_k;
-            return rep->status;
-        }
-        x.d = pairs->d;
-    }
-    x.of_k = &of_k;
-    x.bound = &bound;
-    if (hdi_pairs_poles(heat, &x, t, rep) < 0 || !x.d || bound <= HDI_MODES_HELP ||
-        !hdi_modes_near(heat, x.kind, t, HDI_MODES_MOST)) return rep->status;
-    hdi_heat_drop(heat);
-    if (!hdi_pairs_by_modes(heat, &x, t, HDI_MODES_MOST, bound, rep) || !x.K) return rep->status;
-    all = of_k;
-    hdi_report_merge(&all, rep);
-    *rep = all;
-    return rep->status;
-}
-
-/* How many of the n pairs, from the first on, have at most so many vertices. mark: by vertex, below stamp. */
-static int64_t hdi_pairs_few(const int32_t *i, const int32_t *j, int64_t n, int64_t most, int64_t stamp,
-                             int64_t *mark) {
-    int64_t q, count = 0;
-    for (q = 0; q < n; q++) {
-        count += (mark[i[q]] != stamp) + (mark[j[q]] != stamp && i[q] != j[q]);
-        if (count > most && q > 0) break;
-        mark[i[q]] = mark[j[q]] = stamp;
-    }
-    return q;
-}
-
-/* The pairs at all times of a call. Without the direct method distances come from columns alone, for as many
- * pairs at a time as these have room for. */
-static hd_status hdi_pairs_times(hdi_heat_call *h, void *what) {
-    const hdi_pairs *all = (const hdi_pairs *)what;
-    const int timeless = all->kind >= HD_DISTANCE_COMMUTE;
-    const int32_t n_times = timeless ? 1 : h->ask.n_times, n = h->heat->source->n;
-    int64_t *mark = all->d && hdi_direct_barred(h->heat) ? HDI_TAKE_ZERO(&h->s, int64_t, n) : NULL, p;
-    hdi_ledger before[2];
-    hdi_pairs x = *all;
-    hd_report one;
-    int32_t q;
-    x.before = mark ? before : NULL;
-    for (q = 0; q < n_times && h->e->status >= 0; q++) {
-        before[0] = before[1] = hdi_ledger_begin(HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, 0);
-        for (p = 0; p < all->n; p += x.n) {
-            const int64_t left = all->n - p, stamp = q * all->n + p + 1;
-            x.i = all->i + p;
-            x.j = all->j + p;
-            x.n = mark ? hdi_pairs_few(x.i, x.j, left, HDI_PAIRS_DOUBLES / n, stamp, mark) : left;
-            x.K = all->K ? all->K + all->n * q + p : NULL;
-            x.d = all->d ? all->d + all->n * q + p : NULL;
-            x.more = x.n < left;
-            if (hdi_pairs_once(h->heat, &x, timeless ? 0 : h->ask.t[q], &one) < 0) {
-                *h->rep = one;
-                if (n_times > 1) h->e->column = q;
-                return h->e->status;
-            }
-            if (q == 0 && p == 0) *h->rep = one;
-            else hdi_report_merge(h->rep, &one);
-        }
-    }
-    return h->e->status;
-}
-
-static hd_status hdi_pairs_run(hdi_heat_call *h, hd_distance_kind kind, int64_t n_pairs, const int32_t *i,
-                               const int32_t *j, double *K, double *d) {
-    hdi_pairs x;
-    memset(&x, 0, sizeof x);
-    x.kind = kind;
-    x.n = n_pairs;
-    x.i = i;
-    x.j = j;
-    x.K = K;
-    x.d = d;
-    return hdi_heat_sparing(h, hdi_pairs_times, &x);
 }
 
 /* ---- farthest points ---- */
@@ -26259,122 +25645,99 @@ static int32_t hdi_sample_next(const hd_laplacian *lap, const double *nearest) {
     return best;
 }
 
-/* Farthest points under way, and where distances to the last one come from: a metric, or else eigenpairs. */
+/* A query for farthest points, and where distances to the last one come from: a metric, or else
+ * eigenpairs. */
 typedef struct hdi_samples {
+    hdi_task task;
     hd_distance_kind kind;
     double t;
     int32_t count, n_given, *vertex;
     int32_t n_from;              /* sources that come before all vertices */
     const hdi_terms *terms;      /* [n_from] */
-    double *distance, *nearest, *u;
+    double *distance, *nearest, *u, *work;
     const hdi_metric *x;
     hdi_mode_sum *sum;
 } hdi_samples;
 
 /* Distances from a source into u. */
-static hd_status hdi_sample_distances(hd_heat *heat, const hdi_samples *a, const hdi_terms *from,
-                                      hd_report *rep, hd_error *e) {
-    hdi_distances to = hdi_distances_one(heat, a->kind, NULL, a->u);
+static hd_status hdi_sample_distances(const hdi_samples *a, const hdi_terms *from) {
+    hdi_heat_call *h = a->task.h;
+    const hd_laplacian *lap = h->heat->source;
+    hdi_ledger ledger = a->sum ? hdi_modes_ledger() : hdi_metric_ledger(a->x);
     hdi_metric_column c;
-    hdi_ledger ledger;
-    to.terms = from;
     if (a->sum) {
-        ledger = hdi_modes_ledger();
-        hdi_mode_sum_run(a->sum, *from, a->u, &ledger, rep, heat->ctx);
+        hdi_mode_sum_run(a->sum, *from, a->u, &ledger, h->rep, h->heat->ctx);
     } else {
-        if (hdi_metric_columns(heat, a->x, &to, &c, rep, e) < 0) return e->status;
-        ledger = hdi_metric_ledger(a->x);
-        hdi_metric_distance(heat->source, a->x, from, &c, NULL, rep, &ledger);
+        if (hdi_metric_columns(a->x, from, 1, a->u, (size_t)lap->n, NULL, a->work, &c) < 0)
+            return h->e->status;
+        hdi_metric_distance(lap, a->x, from, &c, NULL, h->rep, &ledger);
     }
-    hdi_ledger_close(&ledger, rep);
-    return HD_OK;
+    hdi_ledger_close(&ledger, h->rep);
+    return h->e->status;
 }
 
 /* All points, each the one that is farthest from those before it. This function is based on
  *   T. Gonzalez, Clustering to minimize the maximum intercluster distance, 1985 */
-static hd_status hdi_sample_points(hd_heat *heat, const hdi_samples *a, hd_report *rep, hd_error *e) {
-    const hd_laplacian *lap = heat->source;
+static hd_status hdi_sample_points(const hdi_samples *a) {
+    hdi_heat_call *h = a->task.h;
+    const hd_laplacian *lap = h->heat->source;
     int32_t *vertex = a->vertex, q, v;
-    rep->error_relative = 0;
     for (v = 0; v < lap->n; v++) a->nearest[v] = HUGE_VAL;
-    for (q = -a->n_from; q < a->count && e->status >= 0; q++) {
+    for (q = -a->n_from; q < a->count && h->e->status >= 0; q++) {
         const int first = q == -a->n_from;
         hdi_terms from;
         if (q >= 0) {
             if (q >= a->n_given) vertex[q] = first ? lap->vertex[0] : hdi_sample_next(lap, a->nearest);
             if (a->distance) a->distance[q] = first ? 0 : hdi_max(0, a->nearest[vertex[q]]);
         }
-        if (q + 1 == a->count || hdi_progress(heat->ctx, "sample", hdi_max(0, q) / a->count, e) < 0) break;
+        if (q + 1 == a->count || hdi_progress(h->heat->ctx, "sample", hdi_max(0, q) / a->count, h->e) < 0)
+            break;
         from = q < 0 ? a->terms[a->n_from + q] : hdi_terms_vertex(vertex[q]);
-        if (hdi_sample_distances(heat, a, &from, rep, e) < 0) break;
+        if (hdi_sample_distances(a, &from) < 0) break;
         for (v = 0; v < lap->n; v++) a->nearest[v] = hdi_min(a->nearest[v], a->u[v]);
         if (q >= 0) a->nearest[vertex[q]] = -1;  /* not again, even when no distance is left */
     }
-    return e->status;
+    return h->e->status;
 }
 
 /* The points by distances from poles. */
-static hd_status hdi_sample_poles(hd_heat *heat, hdi_samples *a, hd_report *rep, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(heat->ctx, e);
-    int32_t degree = hdi_metric_settled(heat, a->kind) ? 0 : HDI_RAT_KERNEL_MAX;
+static hd_status hdi_sample_by_poles(hdi_task *task) {
+    hdi_samples *a = (hdi_samples *)task;
+    hdi_heat_call *h = task->h;
+    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
+    int32_t degree = hdi_metric_settled(h->heat, a->kind) ? 0 : HDI_RAT_KERNEL_MAX;
     hdi_metric x;
-    memset(rep, 0, sizeof *rep);
-    do (void)hdi_metric_make(heat, a->kind, a->t, degree, &x, &s, rep);
-    while (hdi_degree_retreat(heat, &degree, e));
+    do (void)hdi_metric_make(h, a->kind, degree, &x, &s);
+    while (hdi_degree_retreat(h->heat, &degree, h->e));
     a->x = &x;
     a->sum = NULL;
-    if (e->status >= 0) (void)hdi_sample_points(heat, a, rep, e);
+    if (h->e->status >= 0) (void)hdi_sample_points(a);
     return hdi_scope_end(&s);
 }
 
 /* The points by distances from the eigenpairs that are there. */
-static hd_status hdi_sample_modes(hd_heat *heat, hdi_samples *a, hd_report *rep, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(heat->ctx, e);
-    const uint64_t n = (uint64_t)heat->source->n, count = (uint64_t)heat->modes.s.count;
-    double *work = HDI_TAKE(&s, double, 2 * (n + count) + 1);
+static hd_status hdi_sample_by_pairs(hdi_task *task) {
+    hdi_samples *a = (hdi_samples *)task;
+    hdi_heat_call *h = task->h;
+    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
     hdi_mode_sum sum;
-    memset(rep, 0, sizeof *rep);
-    hdi_modes_tell(heat, rep);
-    if (!work) return hdi_scope_end(&s);
-    sum = hdi_mode_sum_at(heat, a->kind, a->t, work);
     a->sum = &sum;
-    (void)hdi_sample_points(heat, a, rep, e);
-    a->sum = NULL;
+    if (hdi_mode_sum_make(&sum, h, a->kind, &s) >= 0) (void)hdi_sample_points(a);
     return hdi_scope_end(&s);
 }
 
-/* The points by either, chosen as in hdi_distance_time. */
-static hd_status hdi_sample_either(hd_heat *heat, hdi_samples *a, hd_report *rep, hd_error *e) {
-    const int first = hdi_modes_first(heat, a->kind, a->t) &&
-        hdi_modes_reach(heat, a->kind, a->t, HDI_MODES_FIRST, e);
-    double bound;
-    if (first && (hdi_sample_modes(heat, a, rep, e) < 0 || hdi_modes_good(heat, a->t, rep))) return e->status;
-    bound = first ? rep->error_bound : HUGE_VAL;
-    if (e->status < 0 || hdi_sample_poles(heat, a, rep, e) < 0) return e->status;
-    if (rep->error_bound <= HDI_MODES_HELP || (first && bound >= rep->error_bound)) return e->status;
-    if (!first) {
-        if (!hdi_modes_near(heat, a->kind, a->t, HDI_MODES_MOST)) return e->status;
-        hdi_heat_drop(heat);
-        if (!hdi_modes_reach(heat, a->kind, a->t, HDI_MODES_MOST, e)) return e->status;
-    }
-    bound = rep->error_bound;
-    if (hdi_sample_modes(heat, a, rep, e) < 0 || rep->error_bound <= bound) return e->status;
-    return hdi_sample_poles(heat, a, rep, e);
-}
-
-static hd_status hdi_sample_run(hdi_heat_call *h, void *what) {
-    hdi_samples *a = (hdi_samples *)what;
-    hd_report one;
-    memset(&one, 0, sizeof one);
-    a->nearest = HDI_TAKE(&h->s, double, h->heat->source->n);
-    a->u = HDI_TAKE(&h->s, double, h->heat->source->n);
-    if (h->e->status >= 0) (void)hdi_sample_either(h->heat, a, &one, h->e);
-    one.error = *h->e;
-    *h->rep = one;
-    return h->e->status;
-}
-
 /* ---- queries of distances ---- */
+
+/* Sets up a query that eigenpairs may serve: how far these have to reach is given by
+ * exp(depth) = |y| over the part that may be left out. The largest distance is at least about
+ * 1/sqrt(mass) times exp(-t low). */
+static void hdi_distance_task(hdi_task *task, hdi_heat_call *h, hd_distance_kind kind) {
+    memset(task, 0, sizeof *task);
+    task->h = h;
+    task->serves = HDI_HAS_MODES && !hdi_distance_timeless(kind) && hdi_modes_allowed(h->heat);
+    if (HDI_HAS_MODES && task->serves)           /* 0: tol is all there is */
+        task->depth = hdi_max(0, log(2 * hdi_modes_span(h->heat) / hdi_modes_tol(h->heat)));
+}
 
 /* The start of a query of a distance. Commute and biharmonic distances have no time: n_times is 0 or 1,
  * and t is not read. */
@@ -26385,26 +25748,79 @@ static hd_status hdi_distance_begin(hdi_heat_call *h, hd_heat *heat, hd_distance
     if (!HDI_HAS_DIFFUSION) return HDI_LEFT_OUT(h->e, DIFFUSION, "diffusion distances");
     if (kind < HD_DISTANCE_CLASSICAL || kind > HD_DISTANCE_BIHARMONIC)
         return hdi_fail(h->e, HD_ERR_ARGUMENT, "distance: unknown kind");
-    if (kind < HD_DISTANCE_COMMUTE) return hdi_times_check(h, n_times, t, positive);
+    if (!hdi_distance_timeless(kind)) return hdi_times_check(h, n_times, t, positive);
     if (n_times > 1 || n_times < 0)
         return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "distance: n_times is 0 or 1 for commute and biharmonic",
                             -1, -1, n_times);
     return hdi_direct_only(h);
 }
 
-/* Distances to all vertices from the vertices in to, or from sources where that is NULL. */
-static hd_status hdi_distance_answer(hd_heat *heat, hdi_distances *to, const hd_source *sources,
-                                     int32_t n_times, const double *t, hd_report *report, hd_error *err) {
+static hdi_distances hdi_distances_to(hd_distance_kind kind, int32_t k, double *D, size_t ld) {
+    hdi_distances to;
+    memset(&to, 0, sizeof to);
+    to.kind = kind;
+    to.k = k;
+    to.D = D;
+    to.ld = ld;
+    return to;
+}
+
+/* Distances to all vertices from the vertices in ids, or from sources where that is NULL. */
+static hd_status hdi_distance_answer(hd_heat *heat, hdi_distances *to, const int32_t *ids,
+                                     const hd_source *sources, int32_t n_times, const double *t,
+                                     hd_report *report, hd_error *err) {
     hdi_heat_call h;
+    hdi_terms *terms;
+    int32_t r;
     if (hdi_distance_begin(&h, heat, to->kind, n_times, t, 1, report, err) < 0 || hdi_direct_only(&h) < 0 ||
         !HDI_HAS_DIFFUSION) return hdi_heat_end(&h);
     if (to->k < 0) hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: a number of fields or columns is negative");
-    else if (to->k > 0 && ((!to->sources && !sources) || !to->D)) hdi_missing(h.e);
+    else if (to->k > 0 && ((!ids && !sources) || !to->D)) hdi_missing(h.e);
     to->ld = hdi_leading(&h, to->ld);
-    if (h.e->status >= 0 && sources) to->terms = hdi_terms_all(to->k, sources, heat->source, 1, &h.s);
-    else if (h.e->status >= 0) (void)hdi_sources_check(&h, to->k, to->sources);
-    if (h.e->status >= 0 && to->k > 0) (void)hdi_heat_sparing(&h, hdi_distance_run, to);
+    if (h.e->status >= 0 && sources) {
+        to->source = hdi_terms_all(to->k, sources, heat->source, 1, &h.s);
+    } else if (h.e->status >= 0 && hdi_sources_check(&h, to->k, ids) >= 0) {
+        to->source = terms = HDI_TAKE(&h.s, hdi_terms, to->k);
+        for (r = 0; terms && r < to->k; r++) terms[r] = hdi_terms_vertex(ids[r]);
+    }
+    if (h.e->status < 0 || to->k == 0) return hdi_heat_end(&h);
+    hdi_distance_task(&to->task, &h, to->kind);
+    to->task.pairs = HDI_HAS_MODES ? hdi_distances_by_pairs : NULL;
+    to->task.poles = hdi_distances_by_poles;
+    to->task.together = hdi_distances_together;
+    (void)hdi_heat_sparing(&h, hdi_task_run, &to->task);
     return hdi_heat_end(&h);
+}
+
+/* Runs a query for pairs whose arguments are checked. */
+static hd_status hdi_pairs_run(hdi_heat_call *h, hdi_pairs *to) {
+    hdi_distance_task(&to->task, h, to->kind);
+    to->task.pairs = HDI_HAS_MODES ? hdi_pairs_by_pairs : NULL;
+    to->task.poles = hdi_pairs_by_poles;
+    return hdi_heat_sparing(h, hdi_task_run, &to->task);
+}
+
+/* Kernel entries, if K is there, and distances, if to->d is. */
+static hd_status hdi_pairs_answer(hdi_heat_call *h, hdi_pairs *to, int32_t n_times, const double *t,
+                                  double *K) {
+    hdi_heat_call c;
+    hdi_entry_list list;
+    hd_report one;
+    memset(&one, 0, sizeof one);
+    if (K && !hdi_distance_timeless(to->kind)) {
+        if (hdi_kernel_begin(&c, h->heat, HD_KERNEL_OPERATOR, &one, NULL) >= 0 &&
+            hdi_times_check(&c, n_times, t, 0) >= 0) {
+            list.values = K;
+            (void)hdi_entry_list_make(&c, &list, to->n, to->i, to->j);
+        }
+        if (hdi_heat_run(&c) < 0) *h->e = one.error;
+    }
+    if (h->e->status >= 0 && to->d) (void)hdi_pairs_run(h, to);
+    one.error_relative = one.smallest = 0;       /* these are of the distances */
+    if (h->e->status < 0 || !one.reason) return h->e->status;
+    if (to->d) hdi_report_merge(&one, h->rep);
+    *h->rep = one;
+    return HD_OK;
 }
 
 /* What is asked for; sources and given vertices have to be set. */
@@ -26431,7 +25847,14 @@ static hd_status hdi_sample_answer(hd_heat *heat, hdi_samples *a, const hd_sourc
     else if (!a->vertex || (a->n_from > 0 && !sources)) hdi_missing(h.e);
     if (h.e->status >= 0 && hdi_sources_check(&h, a->n_given, a->vertex) >= 0 && a->n_from > 0)
         a->terms = hdi_terms_all(a->n_from, sources, heat->source, 1, &h.s);
-    if (h.e->status >= 0) (void)hdi_heat_sparing(&h, hdi_sample_run, a);
+    a->nearest = HDI_TAKE(&h.s, double, heat->source->n);
+    a->u = HDI_TAKE(&h.s, double, heat->source->n);
+    a->work = HDI_TAKE(&h.s, double, 2 * (uint64_t)heat->source->n);
+    if (h.e->status < 0) return hdi_heat_end(&h);
+    hdi_distance_task(&a->task, &h, a->kind);
+    a->task.pairs = HDI_HAS_MODES ? hdi_sample_by_pairs : NULL;
+    a->task.poles = hdi_sample_by_poles;
+    (void)hdi_heat_sparing(&h, hdi_task_run, &a->task);
     return hdi_heat_end(&h);
 }
 
@@ -26445,6 +25868,7 @@ typedef struct hdi_estimate {
     hd_query query;
     hd_estimate *to;
     int32_t k;
+    hdi_task task;               /* for eigenpairs */
 } hdi_estimate;
 
 /* Flops and seconds of inverting factors, relative to making them. By counting, with and without full B; by
@@ -26613,8 +26037,8 @@ static hd_status hdi_estimate_inverse(const hdi_estimate *x, int32_t degree, hd_
                                                                              : HDI_AFTER_INVERSE;
     /* of the runs: the two sums, then the arrays of a diagonal or of a metric */
     double held = 16 * (pattern ? entries : n) + (distance ? 40 : 32) * n;
-    /* a distance is kept in the caller's array, and a column of the resolvent is held beside its metric */
-    const double later = distance ? 32 * n + 16.0 * x->k + 24.0 * lap->n : 0;
+    /* a distance is kept in the caller's array, and columns of the resolvent are held beside its metric */
+    const double later = distance ? 32 * n + 8 * hdi_min(x->k, HDI_LANES) * n + 24.0 * lap->n : 0;
     const int32_t solves = hdi_high32(distance ? x->k : 0, HDI_PROBES);
     hd_rational set;
     double bytes;
@@ -26690,8 +26114,7 @@ static int hdi_estimate_apart(const hdi_estimate *x) {
 /* Eigenpairs for time t. */
 static int32_t hdi_estimate_pairs(const hdi_estimate *x, double t) {
     const hd_heat *heat = x->h->heat;
-    const double depth = hdi_estimate_apart(x) ? hdi_modes_depth(heat) : hdi_fading_depth(heat);
-    return hdi_modes_count(heat, hdi_modes_expected(heat, depth / t));
+    return hdi_modes_count(heat, hdi_modes_expected(heat, x->task.depth / t));
 }
 
 /* Bytes that eigenpairs may need where more are looked for than expected: 1.14 times those for the number
@@ -26735,8 +26158,7 @@ static int32_t hdi_estimate_late(const hdi_estimate *x, hd_cost *c, double *held
     int32_t early = x->h->n_times, count;
     for (; early > 0; early--) {
         const double t = x->h->times[early - 1] / unit;
-        if (hdi_estimate_distance(x) ? !hdi_modes_first(heat, HD_DISTANCE_CLASSICAL, t)
-                                     : !hdi_fading_first(x->h, t)) break;
+        if (!hdi_task_first(&x->task, t)) break;
     }
     *held = 0;
     if (early == x->h->n_times) return early;
@@ -26749,10 +26171,7 @@ static int32_t hdi_estimate_late(const hdi_estimate *x, hd_cost *c, double *held
 
 /* Eigenpairs that may come after poles at time t, or 0. */
 static int32_t hdi_estimate_help(const hdi_estimate *x, double t) {
-    const hd_heat *heat = x->h->heat;
-    if (hdi_estimate_apart(x) ? !hdi_modes_near(heat, HD_DISTANCE_CLASSICAL, t, HDI_MODES_MOST)
-                              : !hdi_fading(x->h) || !hdi_fading_near(heat, t, HDI_MODES_MOST)) return 0;
-    return hdi_estimate_pairs(x, t);
+    return hdi_task_near(&x->task, t, HDI_MODES_MOST) ? hdi_estimate_pairs(x, t) : 0;
 }
 
 /* Commute and biharmonic distances. */
@@ -26937,8 +26356,8 @@ static hd_status hdi_estimate_columns(const hdi_estimate *x, double held) {
     double stay = 0;
     int32_t early = n_times;
     memset(&late, 0, sizeof late);
-    if (x->query < HD_QUERY_PAIRS && HDI_HAS_MODES && hdi_fading(h)) {
-        if (hdi_fading_first(h, h->times[early - 1] / h->heat->scale) && hdi_estimate_analyse(h) < 0)
+    if (x->query < HD_QUERY_PAIRS && x->task.serves) {
+        if (hdi_task_first(&x->task, h->times[early - 1] / h->heat->scale) && hdi_estimate_analyse(h) < 0)
             return h->e->status;
         early = hdi_estimate_late(x, &late, &stay);
     }
@@ -26963,7 +26382,7 @@ static hd_status hdi_estimate_columns(const hdi_estimate *x, double held) {
 }
 
 /* The estimate of a query whose arguments are checked. */
-static hd_status hdi_estimate_run(const hdi_estimate *x) {
+static hd_status hdi_estimate_run(hdi_estimate *x) {
     hdi_heat_call *h = x->h;
     const hd_heat *heat = h->heat;
     const int timeless = x->query >= HD_QUERY_DISTANCE_COMMUTE;
@@ -26971,6 +26390,8 @@ static hd_status hdi_estimate_run(const hdi_estimate *x) {
     const int distance = x->query == HD_QUERY_DISTANCE || x->query == HD_QUERY_DISTANCE_WEIGHTED;
     const double columns = (double)heat->source->n * x->k;
     hd_estimate *to = x->to;
+    if (hdi_estimate_apart(x)) hdi_distance_task(&x->task, h, HD_DISTANCE_CLASSICAL);
+    else hdi_fading_task(&x->task, h);
     if (!timeless && hdi_heat_sort_times(h, distance ? 2 : 1, NULL) < 0) return h->e->status;
     for (; h->n_times > 1 && h->times[0] * heat->lambda_max < HDI_STILL; h->n_times--) h->times++;
     if (!timeless) h->t = h->times[h->n_times - 1];
@@ -29159,7 +28580,7 @@ HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t
     if (hdi_diagonal_begin(&h, heat, kernel, n_times, t, D != NULL, report, err) < 0 ||
         !HDI_HAS_DIAGONAL) return hdi_heat_end(&h);
     ldd = hdi_leading(&h, ldd);
-    if (h.e->status >= 0) (void)hdi_fading_ask(&h, kernel, D, ldd, NULL, NULL);
+    if (h.e->status >= 0) (void)hdi_diagonals_run(&h, kernel, D, ldd, NULL, NULL);
     return hdi_heat_end(&h);
 }
 
@@ -29168,7 +28589,7 @@ HEATDIFF_API hd_status hd_heat_trace(hd_heat *heat, int32_t n_times, const doubl
     hdi_heat_call h;
     if (hdi_diagonal_begin(&h, heat, HD_KERNEL_OPERATOR, n_times, t, Z != NULL, report, err) < 0 ||
         !HDI_HAS_DIAGONAL) return hdi_heat_end(&h);
-    if (h.e->status >= 0) (void)hdi_fading_ask(&h, HD_KERNEL_OPERATOR, NULL, 0, Z, bound);
+    if (h.e->status >= 0) (void)hdi_diagonals_run(&h, HD_KERNEL_OPERATOR, NULL, 0, Z, bound);
     return hdi_heat_end(&h);
 }
 
@@ -29196,7 +28617,7 @@ HEATDIFF_API hd_status hd_heat_normalised(hd_heat *heat, int32_t n_times, const 
         !HDI_HAS_DIAGONAL) return hdi_heat_end(&h);
     ldd = hdi_leading(&h, ldd);
     Z = HDI_TAKE(&h.s, double, n_times);
-    if (h.e->status >= 0 && hdi_fading_ask(&h, HD_KERNEL_SYMMETRIC, D, ldd, NULL, NULL) >= 0) {
+    if (h.e->status >= 0 && hdi_diagonals_run(&h, HD_KERNEL_SYMMETRIC, D, ldd, NULL, NULL) >= 0) {
         if (hd_heat_trace(heat, n_times, t, Z, NULL, &trace, NULL) >= 0)
             hdi_signature_normalise(heat->source, n_times, D, ldd, Z, h.rep, &trace);
         else *h.e = trace.error;
@@ -29230,27 +28651,32 @@ HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, in
                                         const double *t, int32_t k, const int32_t *sources, double *D,
                                         size_t ldd, hd_report *report, hd_error *err) {
     hdi_distances to = hdi_distances_to(kind, k, D, ldd);
-    to.sources = sources;
-    return hdi_distance_answer(heat, &to, NULL, n_times, t, report, err);
+    return hdi_distance_answer(heat, &to, sources, NULL, n_times, t, report, err);
 }
 
 HEATDIFF_API hd_status hd_heat_distance_from(hd_heat *heat, hd_distance_kind kind, int32_t n_times,
                                              const double *t, int32_t k, const hd_source *sources, double *D,
                                              size_t ldd, hd_report *report, hd_error *err) {
     hdi_distances to = hdi_distances_to(kind, k, D, ldd);
-    return hdi_distance_answer(heat, &to, sources, n_times, t, report, err);
+    return hdi_distance_answer(heat, &to, NULL, sources, n_times, t, report, err);
 }
 
 HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, int32_t n_times, const double *t,
                                      int64_t n_pairs, const int32_t *i, const int32_t *j, double *K,
                                      double *d, hd_report *report, hd_error *err) {
     hdi_heat_call h;
+    hdi_pairs to;
     if (hdi_distance_begin(&h, heat, kind, n_times, t, 0, report, err) < 0 || !HDI_HAS_DIFFUSION)
         return hdi_heat_end(&h);
     h.relative = d != NULL;
     if (d && hdi_heat_filtered(heat)) (void)hdi_direct_only(&h);
+    to.kind = kind;
+    to.n = n_pairs;
+    to.i = i;
+    to.j = j;
+    to.d = d;
     if (h.e->status >= 0 && hdi_pairs_check(&h, n_pairs, i, j) >= 0 && n_pairs > 0)
-        (void)hdi_pairs_run(&h, kind, n_pairs, i, j, K, d);
+        (void)hdi_pairs_answer(&h, &to, n_times, t, K);
     return hdi_heat_end(&h);
 }
 

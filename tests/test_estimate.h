@@ -55,7 +55,7 @@ static hd_status est_run(hd_heat *heat, const hd_laplacian *lap, const est_case 
         case HD_QUERY_FIELDS: return hd_heat_apply(heat, c->n_times, t, c->k, U + lap->n * c->k * c->n_times, 0, U, 0, rep, NULL);
         case HD_QUERY_COLUMNS: return hd_heat_columns(heat, HD_KERNEL_OPERATOR, c->n_times, t, c->k, source, U, 0, rep, NULL);
         case HD_QUERY_PAIRS:
-            return hd_heat_pairs(heat, HD_DISTANCE_CLASSICAL, c->n_times, t, c->k / 2, source, source + c->k / 2, U, U + c->k / 2, rep, NULL);
+            return hd_heat_pairs(heat, HD_DISTANCE_CLASSICAL, c->n_times, t, c->k / 2, source, source + c->k / 2, NULL, U, rep, NULL);
         case HD_QUERY_DIAGONAL: return hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, c->n_times, t, U, 0, rep, NULL);
         case HD_QUERY_DIAGONAL_OPERATOR: return hd_heat_diagonal(heat, HD_KERNEL_OPERATOR, c->n_times, t, U, 0, rep, NULL);
         case HD_QUERY_TRACE: return hd_heat_trace(heat, c->n_times, t, U, NULL, rep, NULL);
