@@ -238,7 +238,7 @@ static void adj_errors(void) {
 
 /* Fields and meshes of extreme size give the same digits; a derivative is in their unit over an area. */
 static void adj_scales(void) {
-    static const double factors[3] = {1e-60, 1e70, 1e-40};
+    static const double factors[3] = {1e-45, 1e45, 1e-30};
     const hd_laplacian *lap = kit_pair("ico/2 fem");
     double *f = (double *)kit_keep(adj_fields(lap, (size_t)lap->n), free), *u = KIT_NEW(double, lap->n), *w = KIT_NEW(double, lap->n), t = 0.05;
     int which, k;
