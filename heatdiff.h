@@ -16545,11 +16545,11 @@ static void hdi_elim_coef(const hdi_elim *m, int32_t i, const hd_c64 *w, double 
 /* Adds what the solutions x of pack i, or with i = -1 of the lone real pole, give to the further sums of k
  * lanes. */
 static void hdi_batch_extra(const hdi_elim *m, int32_t i, const double *x, const hdi_lane *lane, int32_t k) {
-    const int64_t n = m->sym.n, stride = i < 0 && k == 1 ? 1 : i < 0 ? HDI_PACK : HDI_PACK * (int64_t)k;
-    const int32_t apart = i < 0 ? 1 : HDI_PACK;
+    const int64_t n = m->sym.n, pack = HDI_PACK, stride = i >= 0 ? pack * k : k == 1 ? 1 : pack;
+    const int64_t apart = i < 0 ? 1 : pack;
     double coef[HDI_PACK] = {0};
-    int64_t j;
-    int32_t r, row, q;
+    int64_t j, q;
+    int32_t r, row;
     for (r = 0; r < k; r++) {
         const double *HDI_RESTRICT from = x + apart * r;
         for (row = 0; row < lane[r].rows.n && !lane[r].skip; row++) {
