@@ -14779,7 +14779,6 @@ static hd_status hdi_rational_shared(hd_rational *out, int32_t n_times, const do
  * This work is based on
  *   Y. Nakatsukasa, O. Sete, L. N. Trefethen, The AAA algorithm for rational approximation, 2018
  *   O. Aberth, Iteration methods for finding all zeros of a polynomial simultaneously, 1973
- *   M. Hestenes, Inversion of matrices by biorthogonalization and related results, 1958: one-sided rotations
  * Deviations: infinity is a support point with the value 0, so that a0 = 0 unless the caller asks for it and
  * diagonals need no B^-1. Poles are the zeros of the denominator by Aberth's iteration. Those on or near the
  * spectrum are dropped. The weights a then come from least squares, and the set of the degree that does best
@@ -14792,7 +14791,7 @@ enum {
     HDI_FIT_FINER = 30,          /* so many times as many measure the error */
     HDI_FIT_JOIN = 400,          /* most points that join the fit */
     HDI_FIT_ROUNDS = 4,
-    HDI_FIT_SWEEPS = 40,         /* of rotations; 5 to 10 are the rule */
+    HDI_FIT_INVERSE = 40,        /* steps of inverse iteration */
     HDI_FIT_ABERTH = 100,        /* steps; 10 to 30 are the rule */
     HDI_FIT_ROOM = HDI_FIT_LOG + HDI_FIT_LINEAR + HDI_FIT_JOIN + 2,
     HDI_FIT_FIRST = 16,          /* filters that poles are found for, when several share them, */
@@ -14867,11 +14866,12 @@ static hd_status hdi_filter_check(const hd_filter *f, double lambda_max, hd_erro
     return text ? hdi_fail(e, HD_ERR_ARGUMENT, text) : HD_OK;
 }
 
-/* A fit under way. */
+/* A fit under way. Values are relative to the largest of each filter. */
 typedef struct hdi_fit {
+    const hd_filter *list;       /* the caller's */
+    int32_t n_list;
     /* the filters that poles are found for, and one more whose weights are */
     const hd_filter *filter[HDI_FIT_MOST + 1];
-    const hd_filter *list;       /* the caller's, of several, or NULL */
     double largest[HDI_FIT_MOST + 1];   /* |f| of each */
     int32_t count, constant;     /* filters; is there an a0? */
     double top, floor, tol;      /* lambda_max; floor/top and tol relative to it and to the largest value */
@@ -14879,34 +14879,19 @@ typedef struct hdi_fit {
     double *x;                   /* [HDI_FIT_ROOM] points, scaled */
     double *f, *r, *u;           /* [count + 1][HDI_FIT_ROOM] values, approximation; weights of the error */
     char *support;               /* [HDI_FIT_ROOM] */
-    double *A, *b;               /* [rows (most + 2)], [rows], rows = count HDI_FIT_ROOM + most + 2 */
-    double *V;                   /* [2 (most + 2)^2] */
+    double *work;                /* [rows (most + 3)], rows = count HDI_FIT_ROOM + most + 2 */
     double *z, *w;               /* [most + 2] support points, weights; w[m] is that of infinity */
     double *fz;                  /* [count][most + 2] values at the support points */
 } hdi_fit;
 
-/* A set in terms of scaled points: a0 + sum a/(x - p). */
-typedef struct hdi_fitted {
-    int32_t n, degree;
-    double a0, error;            /* weighted, at the points */
-    hd_c64 p[HD_MAX_POLES], a[HD_MAX_POLES];
-} hdi_fitted;
+/* A set in terms of scaled points, and its error at the points, weighted. */
+typedef struct hdi_fitted { double error; hd_rational set; } hdi_fitted;
 
-static double hdi_fitted_value(const hdi_fitted *s, double x) {
-    double sum = s->a0;
-    int32_t i;
-    for (i = 0; i < s->n; i++) {
-        const double d = x - s->p[i].re, im = s->p[i].im, inv = 1 / (d * d + im * im);
-        sum += (im != 0 ? 2 : 1) * (s->a[i].re * d - s->a[i].im * im) * inv;
-    }
-    return sum;
-}
-
-/* An error that names the filter, if there are several. */
+/* An error that names the filter. */
 static hd_status hdi_fit_fail(const hdi_fit *k, const hd_filter *filter, hd_status status, const char *text,
                               hd_error *e) {
     hdi_fail(e, status, text);
-    if (k->list) e->column = filter - k->list;
+    e->column = filter - k->list;
     return status;
 }
 
@@ -14927,56 +14912,39 @@ static double hdi_fit_point(int32_t i, int32_t n_log, int32_t n_linear, double f
     return hdi_max(from, (i - n_log + 0.5) / n_linear);
 }
 
-/* Value and weight of filter j at point i, not yet divided by the largest value. Weights let the filters'
- * tolerances count as the fit's. */
-static hd_status hdi_fit_put(hdi_fit *k, int32_t j, int32_t i, hd_error *e) {
+/* Value and weight of filter j at point i. Weights let the filters' tolerances count as the fit's. */
+static void hdi_fit_put(hdi_fit *k, int32_t j, int32_t i, hd_error *e) {
     const hd_filter *filter = k->filter[j];
     k->u[j * HDI_FIT_ROOM + i] = (1 + filter->weight * k->top * k->x[i]) * (k->tol / hdi_fit_tol(filter));
-    k->f[j * HDI_FIT_ROOM + i] = hdi_fit_f(k, filter, k->x[i], e);
-    return e->status;
+    k->f[j * HDI_FIT_ROOM + i] = hdi_fit_f(k, filter, k->x[i], e) / k->largest[j];
 }
 
 /* Adds a point, unless it is there. */
-static hd_status hdi_fit_add(hdi_fit *k, double x, hd_error *e) {
+static void hdi_fit_add(hdi_fit *k, double x, hd_error *e) {
     int32_t i, j;
     for (i = 0; i < k->n; i++)
-        if (k->x[i] == x) return HD_OK;
+        if (k->x[i] == x) return;
     k->x[k->n] = x;
-    for (j = 0; j < k->count; j++)
-        if (hdi_fit_put(k, j, k->n, e) < 0) return e->status;
+    for (j = 0; j < k->count; j++) hdi_fit_put(k, j, k->n, e);
     k->n++;
-    return HD_OK;
 }
 
-/* The largest value of filter j, by which all its values are divided. */
-static hd_status hdi_fit_scale(hdi_fit *k, int32_t j, hd_error *e) {
+/* Filter j on the points that are there. */
+static hd_status hdi_fit_load(hdi_fit *k, int32_t j, const hd_filter *filter, hd_error *e) {
     double *f = k->f + j * HDI_FIT_ROOM, most = 0;
     int32_t i;
-    for (i = 0; i < k->n; i++) most = hdi_max(most, fabs(f[i]));
+    k->filter[j] = filter;
+    k->largest[j] = 1;
+    for (i = 0; i < k->n; i++) {
+        hdi_fit_put(k, j, i, e);
+        most = hdi_max(most, fabs(f[i]));
+    }
+    if (e->status < 0) return e->status;
     if (!(most > 0 && hdi_finite(1 / most)))
-        return hdi_fit_fail(k, k->filter[j], HD_ERR_ARGUMENT, "filter: it is zero on the whole spectrum", e);
+        return hdi_fit_fail(k, filter, HD_ERR_ARGUMENT, "filter: it is zero on the whole spectrum", e);
     for (i = 0; i < k->n; i++) f[i] /= most;
     k->largest[j] = most;
     return HD_OK;
-}
-
-/* Another filter j on the points that are there. */
-static hd_status hdi_fit_load(hdi_fit *k, int32_t j, const hd_filter *filter, hd_error *e) {
-    int32_t i;
-    k->filter[j] = filter;
-    for (i = 0; i < k->n; i++)
-        if (hdi_fit_put(k, j, i, e) < 0) return e->status;
-    return hdi_fit_scale(k, j, e);
-}
-
-/* The first points, and the largest values. */
-static hd_status hdi_fit_begin(hdi_fit *k, hd_error *e) {
-    int32_t i;
-    (void)hdi_fit_add(k, 0, e);
-    for (i = 0; i < HDI_FIT_LOG + HDI_FIT_LINEAR && e->status >= 0; i++)
-        (void)hdi_fit_add(k, hdi_fit_point(i, HDI_FIT_LOG, HDI_FIT_LINEAR, k->floor), e);
-    for (i = 0; i < k->count && e->status >= 0; i++) (void)hdi_fit_scale(k, i, e);
-    return e->status;
 }
 
 /* ---- the AAA step ---- */
@@ -15003,45 +14971,27 @@ static void hdi_fit_choose(hdi_fit *k) {
     k->m++;
 }
 
-/* The right singular vector of the smallest singular value of R [c c], column-major, by rotations of columns
- * that become orthogonal. V [c c] work. */
-static void hdi_fit_null(double *R, double *V, int32_t c, double *w) {
-    int32_t i, j, sweep, best = 0, turned = 1;
-    double least = HUGE_VAL;
-    memset(V, 0, (size_t)c * (size_t)c * sizeof *V);
-    for (i = 0; i < c; i++) V[i * c + i] = 1;
-    for (sweep = 0; sweep < HDI_FIT_SWEEPS && turned; sweep++) {
-        turned = 0;
-        for (i = 0; i < c; i++) {
-            for (j = i + 1; j < c; j++) {
-                double *x = R + i * c, *y = R + j * c, *vx = V + i * c, *vy = V + j * c;
-                const double p = hdi_dot(x, x, c), q = hdi_dot(y, y, c), g = hdi_dot(x, y, c);
-                double zeta, t, cs, sn;
-                int32_t r;
-                if (fabs(g) <= DBL_EPSILON * sqrt(p * q)) continue;
-                turned = 1;
-                zeta = (q - p) / (2 * g);
-                t = (zeta >= 0 ? 1 : -1) / (fabs(zeta) + hdi_pythag(1, zeta));
-                cs = 1 / sqrt(1 + t * t);
-                sn = cs * t;
-                for (r = 0; r < c; r++) {
-                    const double a = x[r], b = vx[r];
-                    x[r] = cs * a - sn * y[r];
-                    y[r] = sn * a + cs * y[r];
-                    vx[r] = cs * b - sn * vy[r];
-                    vy[r] = sn * b + cs * vy[r];
-                }
-            }
-        }
-    }
+/* The right singular vector w of the smallest singular value of the triangle R [c c], in columns of ld, by
+ * inverse iteration. Among values that are close any vector serves. */
+static void hdi_fit_null(double *R, int64_t ld, int32_t c, double *w) {
+    double most = 0;
+    int32_t i, step;
+    for (i = 0; i < c; i++) most = hdi_max(most, fabs(R[i * ld + i]));
     for (i = 0; i < c; i++) {
-        const double size = hdi_dot(R + i * c, R + i * c, c);
-        if (size < least) {
-            least = size;
-            best = i;
-        }
+        w[i] = 1 / (1.0 + i);
+        if (fabs(R[i * ld + i]) < 1e-20 * most) R[i * ld + i] = 1e-20 * most;
     }
-    memcpy(w, V + best * c, (size_t)c * sizeof *w);
+    for (step = 0; step < HDI_FIT_INVERSE; step++) {
+        double norm;
+        for (i = 0; i < c; i++) w[i] = (w[i] - hdi_dot(R + i * ld, w, i)) / R[i * ld + i];
+        norm = sqrt(hdi_dot(w, w, c));
+        for (i = c - 1; i >= 0; i--) {
+            w[i] /= norm * R[i * ld + i];
+            hdi_axpy(-norm * w[i], R + i * ld, w, i);
+        }
+        norm = sqrt(hdi_dot(w, w, c));
+        for (i = 0; i < c; i++) w[i] /= norm;
+    }
 }
 
 /* The weights: those that make f times the denominator nearest to the numerator, over all other points, for
@@ -15049,7 +14999,7 @@ static void hdi_fit_null(double *R, double *V, int32_t c, double *w) {
 static void hdi_fit_weights(hdi_fit *k) {
     const int32_t c = hdi_fit_columns(k);
     const int64_t rows = (int64_t)(k->n - k->m) * k->count;
-    double *R = k->V + c * c;
+    double *A = k->work, *b = A + c * rows;
     int64_t row = 0;
     int32_t i, j, q;
     for (q = 0; q < k->count; q++) {
@@ -15057,18 +15007,14 @@ static void hdi_fit_weights(hdi_fit *k) {
         const double *fz = k->fz + q * (k->most + 2);
         for (i = 0; i < k->n; i++) {
             if (k->support[i]) continue;
-            for (j = 0; j < k->m; j++)
-                k->A[j * rows + row] = u[i] * (f[i] - fz[j]) / (k->x[i] - k->z[j]);
-            if (c > k->m) k->A[k->m * rows + row] = u[i] * f[i];
-            k->b[row++] = 0;
+            for (j = 0; j < k->m; j++) A[j * rows + row] = u[i] * (f[i] - fz[j]) / (k->x[i] - k->z[j]);
+            if (c > k->m) A[k->m * rows + row] = u[i] * f[i];
+            b[row++] = 0;
         }
     }
-    hdi_least_squares(k->A, rows, c, k->b);      /* for its triangle */
-    memset(R, 0, (size_t)c * (size_t)c * sizeof *R);
-    for (j = 0; j < c; j++)
-        for (i = 0; i <= j; i++) R[j * c + i] = k->A[j * rows + i];
+    hdi_least_squares(A, rows, c, b);            /* for its triangle */
     k->w[k->m] = 0;
-    hdi_fit_null(R, k->V, c, k->w);
+    hdi_fit_null(A, rows, c, k->w);
 }
 
 /* The approximations at all points. Returns their largest error. */
@@ -15099,7 +15045,7 @@ static double hdi_fit_values(hdi_fit *k) {
 
 /* a / b; *fine becomes 0 where b is zero or so small that the square of the quotient could overflow. */
 static hd_c64 hdi_fit_quotient(hd_c64 a, hd_c64 b, int *fine) {
-    if (fabs(b.re) + fabs(b.im) > (fabs(a.re) + fabs(a.im)) / HDI_FAR) return hdi_cdiv(a, b);
+    if (fabs(b.re) + fabs(b.im) > (fabs(a.re) + fabs(a.im)) / 1e150) return hdi_cdiv(a, b);
     *fine = 0;
     return hdi_c(0, 0);
 }
@@ -15159,93 +15105,64 @@ static int hdi_fit_serves(hd_c64 *p) {
     return p->im == 0 ? p->re < 0 : p->im < 0 && hdi_fit_distance(*p) > HDI_FIT_NEAR * size;
 }
 
-/* The poles of a step. */
-static void hdi_fit_poles(const hdi_fit *k, hdi_fitted *s) {
+/* The poles of a step. Of zeros that have not settled, which are no pairs, there may be too many. */
+static void hdi_fit_poles(const hdi_fit *k, hd_rational *set) {
     hd_c64 p[2 * HD_MAX_POLES + 1];
     int32_t i;
-    memset(s, 0, sizeof *s);
+    memset(set, 0, sizeof *set);
     hdi_fit_zeros(k, p);
-    for (i = 0; i < k->m && s->n < HD_MAX_POLES; i++)
-        if (hdi_fit_serves(p + i)) s->p[s->n++] = p[i];
+    for (i = 0; i < k->m; i++) {
+        if (!hdi_fit_serves(p + i) || set->n_poles == HD_MAX_POLES || set->degree >= k->most) continue;
+        set->degree += p[i].im != 0 ? 2 : 1;
+        set->theta[set->n_poles++] = p[i];
+    }
 }
 
 /* ---- weights ---- */
 
-/* Column c [n] of a fraction, weighted by u; im: of the imaginary part of its residue. Returns its norm. */
-static double hdi_fit_fraction(const hdi_fit *k, const double *u, hd_c64 p, int im, double *c) {
-    const double count = p.im != 0 ? 2 : 1;
+/* The weights of filter q, and their error. */
+static double hdi_fit_residues(hdi_fit *k, int32_t q, hd_rational *set) {
+    const double *f = k->f + q * HDI_FIT_ROOM, *u = k->u + q * HDI_FIT_ROOM;
+    double most = 0;
+    hdi_residues r;
     int32_t i;
-    for (i = 0; i < k->n; i++) {
-        const double d = k->x[i] - p.re, inv = u[i] * count / (d * d + p.im * p.im);
-        c[i] = im ? -p.im * inv : d * inv;
-    }
-    return sqrt(hdi_dot(c, c, k->n));
+    memset(&r, 0, sizeof r);
+    r.n = k->n;
+    r.constant = k->constant;
+    r.x = k->x;
+    r.u = u;
+    r.f = f;
+    r.work = k->work;
+    hdi_residues_fit(&r, set);
+    for (i = 0; i < k->n; i++) most = hdi_worst(most, u[i] * fabs(hdi_rational_eval(set, k->x[i]) - f[i]));
+    return most;
 }
 
-/* Weights for filter q by least squares with a little damping, of the size of rounding, which keeps them
- * small in directions that the error does not feel. */
-static void hdi_fit_residues(hdi_fit *k, int32_t q, hdi_fitted *s) {
-    const double *f = k->f + q * HDI_FIT_ROOM, *u = k->u + q * HDI_FIT_ROOM;
-    double scale[2 * HD_MAX_POLES + 1];
-    int64_t c = 0, cols = s->degree = 0, rows;
-    int32_t i, j;
-    for (i = 0; i < s->n; i++) s->degree += s->p[i].im != 0 ? 2 : 1;
-    cols = s->degree + (k->constant ? 1 : 0);
-    rows = k->n + cols;
-    memset(k->A, 0, (size_t)(rows * cols) * sizeof *k->A);
-    memset(k->b, 0, (size_t)rows * sizeof *k->b);
-    for (i = 0; i < k->n; i++) k->b[i] = u[i] * f[i];
-    for (i = 0; i < s->n; i++)
-        for (j = 0; j < (s->p[i].im != 0 ? 2 : 1); j++, c++)
-            scale[c] = hdi_fit_fraction(k, u, s->p[i], j, k->A + c * rows);
-    if (c < cols) {
-        memcpy(k->A + c * rows, u, (size_t)k->n * sizeof *u);
-        scale[c] = sqrt(hdi_dot(u, u, k->n));
-    }
-    for (c = 0; c < cols; c++) {
-        for (i = 0; i < k->n; i++) k->A[c * rows + i] /= scale[c];
-        k->A[c * rows + k->n + c] = 2 * DBL_EPSILON;
-    }
-    hdi_least_squares(k->A, rows, cols, k->b);
-    for (c = 0, i = 0; i < s->n; i++, c++) {
-        s->a[i] = hdi_c(k->b[c] / scale[c], 0);
-        if (s->p[i].im == 0) continue;
-        c++;
-        s->a[i].im = k->b[c] / scale[c];
-    }
-    s->a0 = c < cols ? k->b[c] / scale[c] : 0;
-    for (s->error = 0, i = 0; i < k->n; i++)
-        s->error = hdi_worst(s->error, u[i] * fabs(hdi_fitted_value(s, k->x[i]) - f[i]));
+/* The most that a pole gives on the spectrum. */
+static double hdi_fit_share(const hd_rational *set, int32_t i) {
+    return hdi_rat_count(set, i) * hdi_cabs(set->a[i]) / hdi_fit_distance(set->theta[i]);
 }
 
 /* Drops poles that the error would not miss. Returns how many. */
-static int32_t hdi_fit_idle(const hdi_fit *k, hdi_fitted *s) {
-    int32_t i, kept = 0, n = s->n;
+static int32_t hdi_fit_idle(const hdi_fit *k, hd_rational *set) {
+    int32_t i, kept = 0, n = set->n_poles;
+    set->degree = 0;
     for (i = 0; i < n; i++) {
-        const double most = (s->p[i].im != 0 ? 2 : 1) * hdi_cabs(s->a[i]) / hdi_fit_distance(s->p[i]);
-        if (most > 0.1 * k->tol) s->p[kept++] = s->p[i];
+        if (hdi_fit_share(set, i) <= 0.1 * k->tol) continue;
+        set->degree += set->theta[i].im != 0 ? 2 : 1;
+        set->theta[kept++] = set->theta[i];
     }
-    s->n = kept;
+    set->n_poles = kept;
     return n - kept;
 }
 
-/* Weights for all filters; s keeps the last one's, and the largest error. */
-static void hdi_fit_serve(hdi_fit *k, hdi_fitted *s) {
-    double most = 0;
-    int32_t q;
-    for (q = 0; q < k->count; q++) {
-        hdi_fit_residues(k, q, s);
-        if (k->count == 1 && hdi_fit_idle(k, s) > 0) hdi_fit_residues(k, q, s);
-        most = hdi_worst(most, s->error);
-    }
-    s->error = most;
-}
-
-/* The best set that up to `most` support points give at these points. */
+/* The best set that up to `most` support points give at these points. Its weights are those of the last
+ * filter, its error is the largest of all. */
 static void hdi_fit_run(hdi_fit *k, hdi_fitted *best) {
     const double goal = k->count > 1 ? HDI_FIT_MARGIN * k->tol : k->tol;
+    const int32_t known = k->constant ? 1 : 0;
     hdi_fitted s;
-    int32_t i, q, known = k->constant ? 1 : 0;
+    int32_t i, q;
     memset(best, 0, sizeof *best);
     memset(k->support, 0, (size_t)k->n);
     for (q = 0; q < k->count; q++) {
@@ -15261,9 +15178,13 @@ static void hdi_fit_run(hdi_fit *k, hdi_fitted *best) {
         hdi_fit_weights(k);
         off = hdi_fit_values(k);
         if (k->count > 1 && off > HDI_FIT_CLOSE * k->tol && k->m < k->most) continue;
-        hdi_fit_poles(k, &s);
-        hdi_fit_serve(k, &s);
-        if (s.error < best->error && s.degree <= k->most) *best = s;
+        hdi_fit_poles(k, &s.set);
+        for (s.error = 0, q = 0; q < k->count; q++) {
+            double error = hdi_fit_residues(k, q, &s.set);
+            if (k->count == 1 && hdi_fit_idle(k, &s.set) > 0) error = hdi_fit_residues(k, q, &s.set);
+            s.error = hdi_worst(s.error, error);
+        }
+        if (s.error < best->error && s.set.degree <= k->most) *best = s;
     }
 }
 
@@ -15272,9 +15193,9 @@ static void hdi_fit_run(hdi_fit *k, hdi_fitted *best) {
 /* Errors over the finer points, relative to the largest |f|: plain, with the fit's weight, with 1 + t x. */
 typedef struct hdi_fit_errors { double plain, fit, by_t; } hdi_fit_errors;
 
-static double hdi_fit_error(const hdi_fit *k, int32_t q, const hdi_fitted *s, double x, double t,
+static double hdi_fit_error(const hdi_fit *k, int32_t q, const hd_rational *set, double x, double t,
                             hdi_fit_errors *to, hd_error *e) {
-    const double off = fabs(hdi_fit_f(k, k->filter[q], x, e) / k->largest[q] - hdi_fitted_value(s, x));
+    const double off = fabs(hdi_fit_f(k, k->filter[q], x, e) / k->largest[q] - hdi_rational_eval(set, x));
     const double fit = (1 + k->filter[q]->weight * k->top * x) * off;
     to->plain = hdi_worst(to->plain, off);
     to->fit = hdi_worst(to->fit, fit);
@@ -15283,113 +15204,90 @@ static double hdi_fit_error(const hdi_fit *k, int32_t q, const hdi_fitted *s, do
 }
 
 /* Measures the errors of filter q. Points where that of the fit is above `join` join it if there is room: the
- * worst ones between two where it is below. Returns how many. */
-static int32_t hdi_fit_measure(hdi_fit *k, int32_t q, const hdi_fitted *s, double t, double join,
-                               hdi_fit_errors *to, hd_error *e) {
+ * worst ones between two where it is below. */
+static void hdi_fit_measure(hdi_fit *k, int32_t q, const hd_rational *set, double t, double join,
+                            hdi_fit_errors *to, hd_error *e) {
     const int32_t n_log = HDI_FIT_FINER * HDI_FIT_LOG, n_linear = HDI_FIT_FINER * HDI_FIT_LINEAR;
     const double from = k->floor > HDI_FIT_FLOOR ? k->floor : HDI_FIT_BELOW * k->floor;
     double worst = 0, at = 0;
-    int32_t i, before = k->n;
+    int32_t i;
     to->plain = to->fit = to->by_t = 0;
-    (void)hdi_fit_error(k, q, s, 0, t, to, e);
+    (void)hdi_fit_error(k, q, set, 0, t, to, e);
     for (i = 0; i < n_log + n_linear && e->status >= 0; i++) {
-        const double x = hdi_fit_point(i, n_log, n_linear, from), off = hdi_fit_error(k, q, s, x, t, to, e);
+        const double x = hdi_fit_point(i, n_log, n_linear, from), off = hdi_fit_error(k, q, set, x, t, to, e);
         if (off > worst) at = x;
         worst = hdi_max(worst, off);
         if (off > join && i + 1 < n_log + n_linear) continue;
-        if (worst > join && k->n < HDI_FIT_ROOM && hdi_fit_add(k, at, e) < 0) break;
+        if (worst > join && k->n < HDI_FIT_ROOM) hdi_fit_add(k, at, e);
         worst = 0;
     }
-    for (i = before; i < k->n; i++) k->f[i] /= k->largest[0];   /* points join the fit of one filter */
-    return k->n - before;
 }
 
 /* What rounding can add where the set is evaluated. */
-static double hdi_fit_rounding(const hdi_fitted *s) {
-    double sum = 1 + fabs(s->a0);
+static double hdi_fit_rounding(const hd_rational *set) {
+    double sum = 1 + fabs(set->a0);
     int32_t i;
-    for (i = 0; i < s->n; i++)
-        sum += (s->p[i].im != 0 ? 2 : 1) * hdi_cabs(s->a[i]) / hdi_fit_distance(s->p[i]);
+    for (i = 0; i < set->n_poles; i++) sum += hdi_fit_share(set, i);
     return 4 * DBL_EPSILON * sum;
 }
 
 /* The unit of t, in which a pole is at least 1 from the spectrum, see HDI_FIT_UNIT. */
-static double hdi_fit_unit(const hdi_fitted *s) {
-    double least = s->n > 0 ? HUGE_VAL : 1;
+static double hdi_fit_unit(const hd_rational *set) {
+    double least = set->n_poles > 0 ? HUGE_VAL : 1;
     int32_t i;
-    for (i = 0; i < s->n; i++)
-        least = hdi_min(least, hdi_max(hdi_fit_distance(s->p[i]), HDI_FIT_UNIT * hdi_cabs(s->p[i])));
+    for (i = 0; i < set->n_poles; i++)
+        least = hdi_min(least, hdi_max(hdi_fit_distance(set->theta[i]),
+                                       HDI_FIT_UNIT * hdi_cabs(set->theta[i])));
     return 1 / least;
+}
+
+/* Moves a pole forward. */
+static void hdi_fit_move(hd_rational *set, int32_t from, int32_t to) {
+    const hd_c64 theta = set->theta[from], a = set->a[from];
+    memmove(set->theta + to + 1, set->theta + to, (size_t)(from - to) * sizeof theta);
+    memmove(set->a + to + 1, set->a + to, (size_t)(from - to) * sizeof a);
+    set->theta[to] = theta;
+    set->a[to] = a;
 }
 
 /* Small |theta| first, as iterations like it; the first is real where that saves a pack of factors. */
 static void hdi_fit_sort(hd_rational *set) {
-    int32_t i, j, n = set->n_poles;
-    for (i = 1; i < n; i++) {
-        const hd_c64 theta = set->theta[i], a = set->a[i];
-        for (j = i; j > 0 && hdi_cabs(set->theta[j - 1]) > hdi_cabs(theta); j--) {
-            set->theta[j] = set->theta[j - 1];
-            set->a[j] = set->a[j - 1];
-        }
-        set->theta[j] = theta;
-        set->a[j] = a;
+    int32_t i, j;
+    for (i = 1; i < set->n_poles; i++) {
+        for (j = i; j > 0 && hdi_cabs(set->theta[j - 1]) > hdi_cabs(set->theta[i]); j--) {}
+        hdi_fit_move(set, i, j);
     }
-    for (i = 0; i < n && set->theta[i].im != 0; i++) {}
-    if (i == n) return;
-    for (; i > 0; i--) {
-        const hd_c64 theta = set->theta[i], a = set->a[i];
-        set->theta[i] = set->theta[i - 1];
-        set->a[i] = set->a[i - 1];
-        set->theta[i - 1] = theta;
-        set->a[i - 1] = a;
-    }
+    for (i = 0; i < set->n_poles && set->theta[i].im != 0; i++) {}
+    if (i < set->n_poles) hdi_fit_move(set, i, 0);
 }
 
-/* The set of filter q for x = -t lambda. unit: t lambda_max. */
-static hd_status hdi_fit_take(const hdi_fit *k, int32_t q, const hdi_fitted *s, double unit,
+/* The set of filter q for x = -t lambda, by one in terms of scaled points. unit: t lambda_max. */
+static hd_status hdi_fit_take(const hdi_fit *k, int32_t q, const hd_rational *set, double unit,
                               const hdi_fit_errors *off, hd_rational *out, hd_error *e) {
-    const double largest = k->largest[q];
+    const double largest = k->largest[q], rounding = hdi_fit_rounding(set);
+    hd_rational to = *set;
     int32_t i;
     int fine;
-    memset(out, 0, sizeof *out);
-    out->kind = HD_POLES_OWN;
-    out->degree = s->degree;
-    out->n_poles = s->n;
-    out->t = unit / k->top;
-    out->lambda_max = k->top;
-    out->largest = largest;
-    out->a0 = largest * s->a0;
-    fine = hdi_finite(out->a0) && hdi_finite(off->plain);
-    for (i = 0; i < s->n; i++) {
-        out->theta[i] = hdi_cscale(-unit, s->p[i]);
-        out->a[i] = hdi_cscale(-unit * largest, s->a[i]);
-        if (s->p[i].im == 0) out->theta[i].im = out->a[i].im = 0;
-        fine &= hdi_cfinite(out->a[i]);
+    to.kind = HD_POLES_OWN;
+    to.t = unit / k->top;
+    to.lambda_max = k->top;
+    to.largest = largest;
+    to.a0 = largest * set->a0;
+    fine = hdi_finite(to.a0) && hdi_finite(off->plain);
+    for (i = 0; i < set->n_poles; i++) {
+        to.theta[i] = hdi_cscale(-unit, set->theta[i]);
+        to.a[i] = hdi_cscale(-unit * largest, set->a[i]);
+        if (set->theta[i].im == 0) to.theta[i].im = to.a[i].im = 0;
+        fine &= hdi_cfinite(to.a[i]);
     }
     if (!fine)
         return hdi_fit_fail(k, k->filter[q], HD_ERR_BREAKDOWN,
                             "filter: a weight of its poles leaves the range of doubles", e);
-    hdi_fit_sort(out);
-    out->max_error = largest * (HDI_FIT_BETWEEN * off->plain + hdi_fit_rounding(s));
-    out->max_weighted_error = largest * (HDI_FIT_BETWEEN * off->by_t + (1 + unit) * hdi_fit_rounding(s));
+    hdi_fit_sort(&to);
+    to.max_error = largest * (HDI_FIT_BETWEEN * off->plain + rounding);
+    to.max_weighted_error = largest * (HDI_FIT_BETWEEN * off->by_t + (1 + unit) * rounding);
+    *out = to;
     return HD_OK;
-}
-
-/* Work arrays of a fit of up to so many filters. */
-static void hdi_fit_room(hdi_fit *k, int32_t count, hdi_scope *s) {
-    const uint64_t cols = (uint64_t)k->most + 2, room = HDI_FIT_ROOM;
-    const uint64_t sets = (uint64_t)count, rows = sets * room + cols;
-    k->x = HDI_TAKE(s, double, room);
-    k->f = HDI_TAKE(s, double, (sets + 1) * room);
-    k->r = HDI_TAKE(s, double, sets * room);
-    k->u = HDI_TAKE(s, double, (sets + 1) * room);
-    k->support = HDI_TAKE(s, char, room);
-    k->A = HDI_TAKE(s, double, rows * cols);
-    k->b = HDI_TAKE(s, double, rows);
-    k->V = HDI_TAKE(s, double, 2 * cols * cols);
-    k->z = HDI_TAKE(s, double, cols);
-    k->w = HDI_TAKE(s, double, cols);
-    k->fz = HDI_TAKE(s, double, sets * cols);
 }
 
 /* Where the points of a filter begin, relative to lambda_max. */
@@ -15403,62 +15301,60 @@ static double hdi_fit_floor(const hdi_fit *k, const hd_filter *filter, hd_error 
     return floor;
 }
 
-/* A fit of poles for so many filters, whose arrays and points are still to come. */
-static void hdi_fit_open(hdi_fit *k, int32_t count, const hd_filter *const *filter, const hd_filter *list,
-                         double lambda_max, hd_error *e) {
-    int32_t q;
+/* A fit: its options, the first points, and the filters that poles are found for first, evenly from the list.
+ * Work arrays in s. */
+static hd_status hdi_fit_begin(hdi_fit *k, int32_t count, const hd_filter *filters, double lambda_max,
+                               hdi_scope *s) {
+    const uint64_t sets = count > 1 ? HDI_FIT_MOST : 1, room = HDI_FIT_ROOM;
+    uint64_t cols;
+    int32_t q, i;
     memset(k, 0, sizeof *k);
-    k->list = list;
-    k->count = count;
+    k->list = filters;
+    k->n_list = count;
     k->top = lambda_max;
-    k->floor = 1;
-    k->tol = hdi_fit_tol(filter[0]);
-    k->most = filter[0]->max_degree ? filter[0]->max_degree : HDI_FIT_DEGREE;
+    k->floor = k->tol = 1;
+    k->most = count > 1 ? 2 * HD_MAX_POLES - 2 : filters->max_degree ? filters->max_degree : HDI_FIT_DEGREE;
     for (q = 0; q < count; q++) {
-        k->filter[q] = filter[q];
-        k->constant |= filter[q]->constant != 0;
-        k->floor = hdi_min(k->floor, hdi_fit_floor(k, filter[q], e));
+        k->constant |= filters[q].constant != 0;
+        k->tol = hdi_min(k->tol, hdi_fit_tol(filters + q));
+        k->floor = hdi_min(k->floor, hdi_fit_floor(k, filters + q, s->e));
     }
+    if (s->e->status < 0) return s->e->status;
+    cols = (uint64_t)k->most + 2;
+    k->x = HDI_TAKE(s, double, room);
+    k->f = HDI_TAKE(s, double, (sets + 1) * room);
+    k->r = HDI_TAKE(s, double, sets * room);
+    k->u = HDI_TAKE(s, double, (sets + 1) * room);
+    k->support = HDI_TAKE(s, char, room);
+    k->work = HDI_TAKE(s, double, (sets * room + cols) * (cols + 1));
+    k->z = HDI_TAKE(s, double, 2 * cols);
+    k->fz = HDI_TAKE(s, double, sets * cols);
+    if (s->e->status < 0) return s->e->status;
+    k->w = k->z + cols;
+    hdi_fit_add(k, 0, s->e);
+    for (i = 0; i < HDI_FIT_LOG + HDI_FIT_LINEAR; i++)
+        hdi_fit_add(k, hdi_fit_point(i, HDI_FIT_LOG, HDI_FIT_LINEAR, k->floor), s->e);
+    k->count = hdi_low32(count, HDI_FIT_FIRST);
+    for (q = 0; q < k->count && s->e->status >= 0; q++)
+        (void)hdi_fit_load(k, q, filters + (int64_t)q * (count - 1) / hdi_high32(k->count - 1, 1), s->e);
+    return s->e->status;
 }
 
-static hd_status hdi_rational_fit(hd_rational *out, const hd_filter *filter, double lambda_max,
-                                  hd_context *ctx, hd_error *e) {
-    hdi_scope scope = hdi_scope_begin(ctx, e);
-    double unit = 1;
-    hdi_fit_errors off;
-    hd_rational set;
-    hdi_fitted s;
-    hdi_fit k;
-    int32_t round;
-    if (hdi_filter_check(filter, lambda_max, e) < 0) return e->status;
-    hdi_fit_open(&k, 1, &filter, NULL, lambda_max, e);
-    hdi_fit_room(&k, 1, &scope);
-    if (e->status < 0 || hdi_fit_begin(&k, e) < 0) return hdi_scope_end(&scope);
-    for (round = 0; round < HDI_FIT_ROUNDS && e->status >= 0; round++) {
-        hdi_fit_run(&k, &s);
-        unit = hdi_fit_unit(&s);
-        if (!hdi_fit_measure(&k, 0, &s, unit, 1.5 * hdi_max(k.tol, s.error), &off, e)) break;
-    }
-    if (e->status >= 0 && hdi_fit_take(&k, 0, &s, unit, &off, &set, e) >= 0) *out = set;
-    (void)hdi_scope_end(&scope);
-    return e->status < 0 ? e->status : off.fit <= k.tol ? HD_OK : HD_WARN_ACCURACY;
-}
-
-/* The sets of all filters by the poles of s. Returns the filter that they serve worst, or -1 where the
- * tolerances of all are kept. */
-static int32_t hdi_fit_sets(hdi_fit *k, hdi_fitted *s, int32_t count, const hd_filter *filters,
-                            hd_rational *out, hd_error *e) {
-    const double unit = hdi_fit_unit(s);
+/* The sets of all filters by the poles of s. Of a lone filter, points join the fit where the error between
+ * them is larger. Returns the filter that the poles serve worst, or -1 where all tolerances are kept. */
+static int32_t hdi_fit_sets(hdi_fit *k, hdi_fitted *s, hd_rational *out, hd_error *e) {
+    const double unit = hdi_fit_unit(&s->set);
+    const double join = k->n_list > 1 ? HUGE_VAL : 1.5 * hdi_max(k->tol, s->error);
     double most = 1;
     int32_t q, worst = -1;
-    for (q = 0; q < count; q++) {
+    for (q = 0; q < k->n_list; q++) {
         hdi_fit_errors off;
         double part;
-        if (hdi_fit_load(k, k->count, filters + q, e) < 0) return -1;
-        hdi_fit_residues(k, k->count, s);
-        (void)hdi_fit_measure(k, k->count, s, unit, HUGE_VAL, &off, e);
-        if (e->status < 0 || hdi_fit_take(k, k->count, s, unit, &off, out + q, e) < 0) return -1;
-        part = off.fit / hdi_fit_tol(filters + q);
+        if (hdi_fit_load(k, k->count, k->list + q, e) < 0) return -1;
+        (void)hdi_fit_residues(k, k->count, &s->set);
+        hdi_fit_measure(k, k->count, &s->set, unit, join, &off, e);
+        if (e->status < 0 || hdi_fit_take(k, k->count, &s->set, unit, &off, out + q, e) < 0) return -1;
+        part = off.fit / hdi_fit_tol(k->list + q);
         if (part <= most) continue;
         most = part;
         worst = q;
@@ -15466,14 +15362,12 @@ static int32_t hdi_fit_sets(hdi_fit *k, hdi_fitted *s, int32_t count, const hd_f
     return worst;
 }
 
-/* Sets that share their poles. These are found for some of the filters, evenly from the list, and then for
- * those as well that they serve worst. */
-static hd_status hdi_rational_fit_shared(hd_rational *out, int32_t count, const hd_filter *filters,
-                                         double lambda_max, hd_context *ctx, hd_error *e) {
+/* Sets of one filter, or of several that share their poles. These are found for some of the filters, and then
+ * for those as well that they serve worst. */
+static hd_status hdi_rational_fit(hd_rational *out, int32_t count, const hd_filter *filters,
+                                  double lambda_max, hd_context *ctx, hd_error *e) {
     hdi_scope scope = hdi_scope_begin(ctx, e);
-    const hd_filter *pick[HDI_FIT_MOST];
-    const int32_t first = hdi_low32(count, HDI_FIT_FIRST);
-    int32_t q, worst = -1;
+    int32_t q, round, worst = -1;
     hdi_fitted s;
     hdi_fit k;
     for (q = 0; q < count; q++) {
@@ -15481,20 +15375,13 @@ static hd_status hdi_rational_fit_shared(hd_rational *out, int32_t count, const 
         e->column = q;
         return e->status;
     }
-    for (q = 0; q < first; q++)
-        pick[q] = filters + (int64_t)q * (count - 1) / hdi_high32(first - 1, 1);
-    hdi_fit_open(&k, first, pick, filters, lambda_max, e);
-    for (q = 0; q < count; q++) {
-        k.constant |= filters[q].constant != 0;
-        k.tol = hdi_min(k.tol, hdi_fit_tol(filters + q));
-        k.floor = hdi_min(k.floor, hdi_fit_floor(&k, filters + q, e));
-    }
-    k.most = 2 * HD_MAX_POLES - 2;
-    hdi_fit_room(&k, HDI_FIT_MOST, &scope);
-    if (e->status < 0 || hdi_fit_begin(&k, e) < 0) return hdi_scope_end(&scope);
-    while (e->status >= 0) {
+    if (hdi_fit_begin(&k, count, filters, lambda_max, &scope) < 0) return hdi_scope_end(&scope);
+    for (round = 1; e->status >= 0; round++) {
+        const int32_t before = k.n;
         hdi_fit_run(&k, &s);
-        worst = hdi_fit_sets(&k, &s, count, filters, out, e);
+        worst = hdi_fit_sets(&k, &s, out, e);
+        if (count == 1 && (k.n == before || round == HDI_FIT_ROUNDS)) break;
+        if (count == 1) continue;
         if (worst < 0 || k.count == HDI_FIT_MOST || hdi_fit_load(&k, k.count, filters + worst, e) < 0) break;
         k.count++;
     }
@@ -28206,7 +28093,7 @@ HEATDIFF_API hd_status hd_rational_fit(hd_rational *out, const hd_filter *filter
                                        hd_context *ctx, hd_error *err) {
     hdi_call c;
     if (hdi_enter(&c, ctx, err) < 0) return c.e->status;
-    return out && filter ? hdi_rational_fit(out, filter, lambda_max, c.ctx, c.e) : hdi_missing(c.e);
+    return out && filter ? hdi_rational_fit(out, 1, filter, lambda_max, c.ctx, c.e) : hdi_missing(c.e);
 }
 
 HEATDIFF_API hd_status hd_rational_fit_shared(hd_rational *out, int32_t count, const hd_filter *filters,
@@ -28216,7 +28103,7 @@ HEATDIFF_API hd_status hd_rational_fit_shared(hd_rational *out, int32_t count, c
     if (!out || !filters) return hdi_missing(c.e);
     hdi_refuse(count < 1, "filter: there is none", c.e);
     return c.e->status < 0 ? c.e->status
-                           : hdi_rational_fit_shared(out, count, filters, lambda_max, c.ctx, c.e);
+                           : hdi_rational_fit(out, count, filters, lambda_max, c.ctx, c.e);
 }
 
 HEATDIFF_API double hd_filter_eval(const hd_filter *filter, double lambda) {
