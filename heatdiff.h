@@ -13398,8 +13398,7 @@ static int64_t hdi_ildl_seek(const int32_t *col, int64_t p, int64_t end, int32_t
 
 /* Right-looking incomplete LDL' of the complex-symmetric A, plain transpose. Row k updates the entries (i, j)
  * between its own columns; where the pattern has none, `keep` of the update goes to the diagonal entries of i
- * and j. A vertex with very many neighbours costs no square of their number. ssor has no updates. diag [n] is
- * work. */
+ * and j. A vertex with very many neighbours costs no square of their number. diag [n] is work. */
 static void hdi_ildl(const hdi_precond *m, hd_c64 *diag, double keep) {
     const int32_t *col = m->up->col;
     const int64_t *ptr = m->up->ptr;
@@ -13414,7 +13413,7 @@ static void hdi_ildl(const hdi_precond *m, hd_c64 *diag, double keep) {
             u[p] = hdi_cdiv(u[p], d[k]);
             sum = hdi_cadd(sum, u[p]);
         }
-        for (p = ptr[k]; m->kind != HD_PRECOND_SSOR && p < ptr[k + 1]; p++) {
+        for (p = ptr[k]; p < ptr[k + 1]; p++) {
             const int32_t i = col[p];
             const hd_c64 w = hdi_cmul(u[p], d[k]);
             hd_c64 dropped = hdi_csub(sum, u[p]);
@@ -13438,8 +13437,29 @@ static void hdi_ildl(const hdi_precond *m, hd_c64 *diag, double keep) {
     }
 }
 
-/* z = M^-1 r, z not r: (I + U') w = r, z = (I + U)^-1 D^-1 w. */
-static void hdi_precond_apply(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z) {
+/* ---- the kinds ---- */
+/* Each applies z = M^-1 r, z not r. */
+
+static void hdi_ssor(const hdi_precond *m, hd_c64 *diag, double keep) {
+    int32_t i;
+    int64_t p = 0;
+    (void)diag;
+    (void)keep;
+    for (i = 0; i < m->up->n; i++)
+        for (; p < m->up->ptr[i + 1]; p++) m->u[p] = hdi_cdiv(m->u[p], m->d[i]);
+}
+
+static void hdi_none_apply(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z) {
+    memcpy(z, r, (size_t)m->up->n * sizeof *z);
+}
+
+static void hdi_jacobi_apply(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z) {
+    int32_t i;
+    for (i = 0; i < m->up->n; i++) z[i] = hdi_cmul(r[i], m->d[i]);
+}
+
+/* (I + U') w = r, z = (I + U)^-1 D^-1 w. */
+static void hdi_upper_apply(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z) {
     const int64_t *HDI_RESTRICT ptr = m->up->ptr;
     const int32_t *HDI_RESTRICT col = m->up->col;
     const hd_c64 *HDI_RESTRICT u = m->u;
@@ -13447,37 +13467,45 @@ static void hdi_precond_apply(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r
     int32_t i;
     int64_t p;
     memcpy(z, r, (size_t)n * sizeof *z);
-    for (i = 0; u && i < n; i++) {
+    for (i = 0; i < n; i++) {
         const hd_c64 w = z[i];
         HDI_PREFETCH_AT(u, ptr[i] + HDI_AHEAD / 4);
         HDI_PREFETCH_AT(col, ptr[i] + HDI_AHEAD);
         for (p = ptr[i]; p < ptr[i + 1]; p++) z[col[p]] = hdi_csub(z[col[p]], hdi_cmul(u[p], w));
     }
-    for (i = m->kind == HD_PRECOND_NONE ? 0 : n; i-- > 0;) {
+    for (i = n; i-- > 0;) {
         hd_c64 w = hdi_cmul(z[i], m->d[i]);
-        if (u) {
-            HDI_PREFETCH_AT(u, ptr[i] - HDI_AHEAD / 4);
-            HDI_PREFETCH_AT(col, ptr[i] - HDI_AHEAD);
-            for (p = ptr[i]; p < ptr[i + 1]; p++) w = hdi_csub(w, hdi_cmul(u[p], z[col[p]]));
-        }
+        HDI_PREFETCH_AT(u, ptr[i] - HDI_AHEAD / 4);
+        HDI_PREFETCH_AT(col, ptr[i] - HDI_AHEAD);
+        for (p = ptr[i]; p < ptr[i + 1]; p++) w = hdi_csub(w, hdi_cmul(u[p], z[col[p]]));
         z[i] = w;
     }
 }
 
-/* All there is to know of a preconditioner. */
+/* All there is to know of a kind: a new one is a row of the table, and its functions. */
 typedef struct hdi_precond_row {
     int32_t rows, entries;   /* values for each row and for each entry above the diagonal */
     double steps;            /* of cocg, about, relative to those with mildl */
+    void (*make)(const hdi_precond *m, hd_c64 *work, double keep);   /* A to D and U; NULL: U is 0 */
     double keep;             /* share of the dropped fill that goes to the diagonal */
+    void (*apply)(const hdi_precond *m, const hd_c64 *r, hd_c64 *z);
 } hdi_precond_row;
 
-static const hdi_precond_row hdi_preconds[] = {                             /* by hd_precond */
-    {1, 1, 1, HDI_MILDL_KEPT},                                              /* auto */
-    {0, 0, 5.5, 0}, {1, 0, 5, 0}, {1, 1, 2, 0}, {1, 1, 1.4, 0}, {1, 1, 1, HDI_MILDL_KEPT}
+static const hdi_precond_row hdi_preconds[] = {              /* by hd_precond */
+    {1, 1, 1, hdi_ildl, HDI_MILDL_KEPT, hdi_upper_apply},    /* auto */
+    {0, 0, 5.5, NULL, 0, hdi_none_apply},
+    {1, 0, 5, NULL, 0, hdi_jacobi_apply},
+    {1, 1, 2, hdi_ssor, 0, hdi_upper_apply},
+    {1, 1, 1.4, hdi_ildl, 0, hdi_upper_apply},
+    {1, 1, 1, hdi_ildl, HDI_MILDL_KEPT, hdi_upper_apply}
 };
 
 /* Does not compile where a kind has no row. */
 typedef char hdi_preconds_all[sizeof hdi_preconds / sizeof *hdi_preconds == HD_PRECOND_MILDL + 1 ? 1 : -1];
+
+static void hdi_precond_apply(const hdi_precond *m, const hd_c64 *r, hd_c64 *z) {
+    hdi_preconds[m->kind].apply(m, r, z);
+}
 
 /* Fills m, whose arrays are there. work [n] */
 static void hdi_precond_make(const hdi_precond *m, const hdi_system *a, hd_c64 *work) {
@@ -13494,7 +13522,7 @@ static void hdi_precond_make(const hdi_precond *m, const hdi_system *a, hd_c64 *
             else if (m->u && j > i) m->u[q++] = v;
         }
     }
-    if (m->u) hdi_ildl(m, work, row->keep);
+    if (row->make) row->make(m, work, row->keep);
     for (i = 0; row->rows && i < L->n_rows; i++) m->d[i] = hdi_cdiv(hdi_c(1, 0), m->d[i]);
 }
 
