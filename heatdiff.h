@@ -4039,7 +4039,7 @@ HDI_PART void HDI_OF(tile_rows)(const int pack, const int solve, const int nc, c
 HDI_PART void HDI_OF(tile_run)(const int pack, const int solve, const int unit, const HDI_OF(tile) *t,
                                const double *dinv) {
     if (HDI_UNITS && !unit) HDI_OF(tile_one)(pack, solve, HDI_EIGHT, HDI_COLS, unit, t, dinv);
-    else if (pack && HDI_COLS > 1 && t->nc == 1) HDI_OF(tile_rows)(pack, solve, 1, unit, t, dinv);
+    else if (pack && !solve && HDI_COLS > 1 && t->nc == 1) HDI_OF(tile_rows)(pack, solve, 1, unit, t, dinv);
     else HDI_OF(tile_rows)(pack, solve, HDI_COLS, unit, t, dinv);
 }
 
@@ -4105,8 +4105,7 @@ HDI_PART void HDI_OF(product_rows)(const int pack, const int unit, const hdi_pro
 
 /* Columns j.. of a product of real rows by eights, as right-hand sides stand: whole vectors, and nothing but
  * C -= A B. */
-HDI_PART void HDI_OF(product_eight)(const int unit, const int nc, const hdi_product *g, int64_t i,
-                                    int64_t j) {
+HDI_PART void HDI_OF(product_eight)(const int nc, const hdi_product *g, int64_t i, int64_t j) {
     hdi_num x[HDI_OF(most_cols)][HDI_OF(most_regs)];
     int64_t off[HDI_OF(most_cols)];
     double *c = g->c + i + j * g->c_col;
@@ -4120,7 +4119,7 @@ HDI_PART void HDI_OF(product_eight)(const int unit, const int nc, const hdi_prod
     t.a = g->a + i;
     t.b = g->b + j * g->b_col;
     t.off = off;
-    HDI_OF(tile_sum)(pack, HDI_EIGHT, nc, unit, 0, &t, x);
+    HDI_OF(tile_sum)(pack, HDI_EIGHT, nc, 0, 0, &t, x);
     HDI_EACH(k, nc) {
         if (j + k >= g->cols) continue;
         HDI_EACH(v, HDI_EIGHT)
@@ -4129,12 +4128,12 @@ HDI_PART void HDI_OF(product_eight)(const int unit, const int nc, const hdi_prod
     }
 }
 
-HDI_PART void HDI_OF(product_eights)(const int unit, const hdi_product *g) {
+HDI_PART void HDI_OF(product_eights)(const hdi_product *g) {
     const int pack = 0, half = HDI_COLS > 1 ? HDI_COLS / 2 : 1;
     int64_t i, j;
     for (i = 0; i < g->n; i += HDI_EIGHT * HDI_WIDTH) {
-        for (j = 0; j + half < g->cols; j += HDI_COLS) HDI_OF(product_eight)(unit, HDI_COLS, g, i, j);
-        if (j < g->cols) HDI_OF(product_eight)(unit, half, g, i, j);
+        for (j = 0; j + half < g->cols; j += HDI_COLS) HDI_OF(product_eight)(HDI_COLS, g, i, j);
+        if (j < g->cols) HDI_OF(product_eight)(half, g, i, j);
     }
 }
 
@@ -4142,8 +4141,7 @@ HDI_PART void HDI_OF(product)(const int pack, const hdi_product *g) {
     int64_t i;
     int h;
     if (HDI_UNITS && (g->b_col != 1 || (g->n == 8 && !g->lower && !g->store))) {
-        if (g->b_col == 1) HDI_OF(product_eights)(1, g);
-        else HDI_OF(product_eights)(0, g);
+        HDI_OF(product_eights)(g);
         return;
     }
     for (h = 0; h < HDI_NUMBERS; h += HDI_ABREAST)
