@@ -26460,12 +26460,21 @@ struct hd_geodesic {
     hdi_pair *sorted;            /* [value_size] */
     int32_t value_size;
     hd_laplacian *lap;           /* of updatable plans, else NULL */
-    int32_t *from;               /* [n_faces] which of lap->moving's faces each is; updatable */
+    int32_t *from;               /* [n_faces] which of the mesh's faces each is; of updatable plans kept */
     double t_asked, t_in_h2;     /* 0: t_in_h2 h^2 */
     int32_t ready;               /* 0: the last update failed half way */
 };
 
 /* ---- making ---- */
+
+static void hdi_geo_factors_free(hd_geodesic *g, hd_context *ctx) {
+    hdi_factor *const factor[3] = {&g->heat, &g->poisson, &g->cold};
+    int q;
+    for (q = 0; q < 3; q++) {
+        if (factor[q]->ctx) factor[q]->ctx = ctx;
+        hdi_factor_free(factor[q]);
+    }
+}
 
 static void hdi_geo_free(hd_geodesic *g) {
     void *const block[] = {g->face, g->poly.ptr, g->poly.row, g->poly.side, g->poly.flat, g->held, g->mass,
@@ -26474,12 +26483,7 @@ static void hdi_geo_free(hd_geodesic *g) {
                            g->sorted, g->from};
     hd_context own, *ctx = hdi_outlive(g->ctx, &g->context, &own);
     size_t q;
-    g->heat.ctx = g->heat.ctx ? ctx : NULL;
-    g->poisson.ctx = g->poisson.ctx ? ctx : NULL;
-    g->cold.ctx = g->cold.ctx ? ctx : NULL;
-    hdi_factor_free(&g->heat);
-    hdi_factor_free(&g->poisson);
-    hdi_factor_free(&g->cold);
+    hdi_geo_factors_free(g, ctx);
     hdi_symbolic_free(ctx, &g->sym);
     hdi_csr_free(ctx, &g->poly.L);
     for (q = 0; q < sizeof block / sizeof *block; q++) hdi_free(ctx, block[q]);
@@ -26489,58 +26493,16 @@ static void hdi_geo_free(hd_geodesic *g) {
 }
 
 /* Allocates unless something failed before: a list of arrays needs one check at its end. */
-static void *hdi_geo_alloc(hd_geodesic *g, int64_t count, size_t size, hd_error *e) {
-    return e->status < 0 ? NULL : hdi_alloc(g->ctx, (uint64_t)count, size, e);
-}
+#define HDI_GEO_NEW(type, count) \
+    (type *)(e->status < 0 ? NULL : hdi_alloc(g->ctx, (uint64_t)(count), sizeof(type), e))
 
-static double *hdi_geo_doubles(hd_geodesic *g, int64_t count, hd_error *e) {
-    return (double *)hdi_geo_alloc(g, count, sizeof(double), e);
-}
-
-static int32_t *hdi_geo_ints(hd_geodesic *g, int64_t count, hd_error *e) {
-    return (int32_t *)hdi_geo_alloc(g, count, sizeof(int32_t), e);
-}
-
-static char *hdi_geo_bytes(hd_geodesic *g, int64_t count, hd_error *e) {
-    return (char *)hdi_geo_alloc(g, count, 1, e);
-}
-
-/* How far along the longest side a of a triangle the corner opposite to it lies, whose side c leads back to
- * where a begins. */
-static double hdi_geo_along(double a, double b, double c) { return (a + (c - b) * ((c + b) / a)) / 2; }
-
-/* Face f in its plane with the longest edge on the axis. The height is then as small as it can be and
- * keeps its relative precision. */
-static hdi_geo_face hdi_geo_frame(const hdi_mesh *mesh, int32_t f, const int32_t *row, double h) {
-    const int32_t *v = mesh->tri + 3 * (int64_t)f;
-    double edge[3][3], length[3];
-    hdi_geo_face out;
-    int i, q, k = 0;
-    for (q = 0; q < 3 && mesh->len; q++) {
-        length[q] = hdi_mesh_lengths(mesh, f)[q] / h;
-        if (length[q] > length[k]) k = q;
-    }
-    for (q = 0; q < 3 && !mesh->len; q++) {      /* edge q leaves corner q */
-        hdi_sub3(mesh->xyz + 3 * (int64_t)v[(q + 1) % 3], mesh->xyz + 3 * (int64_t)v[q], edge[q]);
-        for (i = 0; i < 3; i++) edge[q][i] /= h;
-        length[q] = hdi_norm3(edge[q]);
-        if (length[q] > length[k]) k = q;
-    }
-    out.l = length[k] / 2;
-    out.p = mesh->len ? hdi_geo_along(length[k], length[(k + 1) % 3], length[(k + 2) % 3]) / 2
-                      : -hdi_dot3(edge[k], edge[(k + 2) % 3]) / length[k] / 2;
-    out.q = mesh->area[f] / h / h / length[k];   /* half the height */
-    for (q = 0; q < 3; q++) out.v[q] = row[v[(k + q) % 3]];
-    out.copies = 1;
-    return out;
-}
-
-/* The same of an intrinsic triangle, whose area and cotangents are those of weight triangles. The angles at
- * the longest edge are acute, so that nothing is cancelled. */
-static hdi_geo_face hdi_geo_flat_frame(const hdi_mesh *mesh, int32_t f, const int32_t *row, double h,
-                                       double weight) {
-    const int32_t *v = mesh->tri + 3 * (int64_t)f;
-    const double *cot = mesh->cot + 3 * (int64_t)f;
+/* Triangle f in its plane with the longest edge on the axis. Its area and cotangents are those of weight
+ * triangles. The angles at the longest edge are acute, so that nothing is cancelled, and the height is as
+ * small as it can be and keeps its relative precision. */
+static hdi_geo_face hdi_geo_frame(const hdi_mesh *mesh, int32_t f, const int32_t *row, double h,
+                                  double weight) {
+    const int32_t *v = mesh->tri + hdi_triple(f);
+    const double *cot = mesh->cot + hdi_triple(f);
     const int apex = cot[0] <= cot[1] ? (cot[0] <= cot[2] ? 0 : 2) : cot[1] <= cot[2] ? 1 : 2;
     const int a = (apex + 1) % 3, b = (apex + 2) % 3;
     const double twice = 2 * mesh->area[f] / weight, length = sqrt(twice * ((cot[a] + cot[b]) / weight));
@@ -26555,81 +26517,64 @@ static hdi_geo_face hdi_geo_flat_frame(const hdi_mesh *mesh, int32_t f, const in
     return out;
 }
 
-/* The first of the n corners of a face to be eliminated. */
-static int32_t hdi_geo_first(const int32_t *v, int64_t n, const int32_t *row) {
-    int32_t least = row[v[0]];
-    int64_t c;
-    for (c = 1; c < n; c++) least = row[v[c]] < least ? row[v[c]] : least;
-    return least;
+/* All triangles, in their order. copies [mesh->m] of intrinsic ones; NULL: 1 each. */
+static void hdi_geo_frames(hd_geodesic *g, const hdi_mesh *mesh, const int32_t *copies) {
+    int32_t k;
+    for (k = 0; k < g->n_faces; k++) {
+        const int32_t n = copies ? copies[g->from[k]] : 1;
+        g->face[k] = hdi_geo_frame(mesh, g->from[k], g->row, g->h, n / g->copies);
+        g->face[k].copies = n;
+    }
 }
 
-/* The faces that have an area, sorted by the corner that is eliminated first. Passes over them then run
- * through the vectors once. row [mesh->n]; flat: they are intrinsic; NULL: they lie in space. */
-static hd_status hdi_geo_faces(hd_geodesic *g, const hdi_mesh *mesh, const int32_t *row,
-                               const hdi_flat *flat, hd_error *e) {
+/* Sorts the faces that have an area by the corner that is eliminated first. Passes over them then run through
+ * the vectors once. */
+static hd_status hdi_geo_order(hd_geodesic *g, const hdi_mesh *mesh, hd_error *e) {
     hdi_scope s = hdi_scope_begin(g->ctx, e);
-    int64_t *at = HDI_TAKE_ZERO(&s, int64_t, (int64_t)g->n_active + 1);
-    int32_t f;
-    for (f = 0; f < mesh->m; f++) g->n_faces += mesh->area[f] > 0;
-    g->face = (hdi_geo_face *)hdi_geo_alloc(g, g->n_faces, sizeof *g->face, e);
-    if (g->lap) g->from = hdi_geo_ints(g, g->n_faces, e);
-    if (e->status < 0) return hdi_scope_end(&s);
-    for (f = 0; f < mesh->m; f++)
-        if (mesh->area[f] > 0) at[hdi_geo_first(mesh->tri + hdi_triple(f), 3, row)]++;
-    hdi_prefix_sum(at, g->n_active);
-    for (f = 0; f < mesh->m; f++) {
-        int64_t k;
+    int64_t *at = HDI_TAKE_ZERO(&s, int64_t, (int64_t)g->n_active + 1), c;
+    int32_t *first = HDI_TAKE(&s, int32_t, mesh->m), f;
+    for (f = 0; f < mesh->m && e->status >= 0; f++) {
+        first[f] = g->n_active;
         if (!(mesh->area[f] > 0)) continue;
-        k = at[hdi_geo_first(mesh->tri + hdi_triple(f), 3, row)]++;
-        if (flat) {
-            const int32_t n = flat->copies[f];
-            g->face[k] = hdi_geo_flat_frame(mesh, f, row, g->h, n / g->copies);
-            g->face[k].copies = n;
-        } else g->face[k] = hdi_geo_frame(mesh, f, row, g->h);
-        if (g->from) g->from[k] = f;
+        for (c = hdi_face_begin(mesh, f); c < hdi_face_begin(mesh, f + 1); c++)
+            first[f] = hdi_low32(first[f], g->row[mesh->tri[c]]);
+        at[first[f]]++;
+        g->n_faces++;
     }
+    g->from = HDI_GEO_NEW(int32_t, g->n_faces);
+    if (!g->from) return hdi_scope_end(&s);
+    hdi_prefix_sum(at, g->n_active);
+    for (f = 0; f < mesh->m; f++)
+        if (first[f] < g->n_active) g->from[at[first[f]]++] = f;
     return hdi_scope_end(&s);
 }
 
-/* The same of polygons. */
-static hd_status hdi_geo_poly_faces(hd_geodesic *g, const hdi_mesh *poly, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(g->ctx, e);
-    int64_t *at = HDI_TAKE_ZERO(&s, int64_t, (int64_t)g->n_active + 1), c, n = 0;
-    int32_t *order = HDI_TAKE(&s, int32_t, poly->m), f, k;
+/* All polygons, in their order. */
+static hd_status hdi_geo_poly_faces(hd_geodesic *g, const hdi_mesh *mesh, hd_error *e) {
     hdi_geo_polygons *z = &g->poly;
-    for (f = 0; f < poly->m; f++)
-        if (poly->area[f] > 0) {
-            g->n_faces++;
-            n += poly->ptr[f + 1] - poly->ptr[f];
-        }
-    z->ptr = (int64_t *)hdi_geo_alloc(g, (int64_t)g->n_faces + 1, sizeof(int64_t), e);
-    z->row = hdi_geo_ints(g, n, e);
-    z->side = hdi_geo_doubles(g, 3 * n, e);
-    z->flat = hdi_geo_doubles(g, g->n_faces, e);
-    if (e->status < 0) return hdi_scope_end(&s);
-    for (f = 0; f < poly->m; f++)
-        if (poly->area[f] > 0)
-            at[hdi_geo_first(poly->tri + poly->ptr[f], poly->ptr[f + 1] - poly->ptr[f], g->row)]++;
-    hdi_prefix_sum(at, g->n_active);
-    for (f = 0; f < poly->m; f++)
-        if (poly->area[f] > 0)
-            order[at[hdi_geo_first(poly->tri + poly->ptr[f], poly->ptr[f + 1] - poly->ptr[f], g->row)]++] = f;
+    int64_t c, n = 0;
+    int32_t k;
+    int q;
+    for (k = 0; k < g->n_faces; k++) n += mesh->ptr[g->from[k] + 1] - mesh->ptr[g->from[k]];
+    z->ptr = HDI_GEO_NEW(int64_t, (int64_t)g->n_faces + 1);
+    z->row = HDI_GEO_NEW(int32_t, n);
+    z->side = HDI_GEO_NEW(double, 3 * n);
+    z->flat = HDI_GEO_NEW(double, g->n_faces);
+    if (e->status < 0) return e->status;
     for (k = 0, n = 0; k < g->n_faces; k++) {
-        double most = 0;
+        const int32_t f = g->from[k];
+        const double unit = sqrt(mesh->area[f]) / g->h;
         z->ptr[k] = n;
-        for (c = poly->ptr[order[k]]; c < poly->ptr[order[k] + 1]; c++, n++) {
+        z->flat[k] = 0;
+        for (c = mesh->ptr[f]; c < mesh->ptr[f + 1]; c++, n++) {
             double *side = z->side + 3 * n;
-            int q;
-            hdi_sub3(hdi_corner_at(poly, hdi_corner_before(poly, c)),
-                     hdi_corner_at(poly, hdi_corner_after(poly, c)), side);
-            for (q = 0; q < 3; q++) side[q] /= 2 * g->h;
-            most = hdi_max(most, hdi_dot3(side, side));
-            z->row[n] = g->row[poly->tri[c]];
+            for (q = 0; q < 3; q++) side[q] = unit * mesh->g[3 * c + q];
+            z->flat[k] = hdi_max(z->flat[k], HDI_GEO_FLAT * hdi_dot3(side, side));
+            z->row[n] = g->row[mesh->tri[c]];
         }
-        z->flat[k] = HDI_GEO_FLAT * most;
     }
     z->ptr[g->n_faces] = n;
-    return hdi_scope_end(&s);
+    return HD_OK;
 }
 
 /* L of polygons by rows in elimination order. */
@@ -26639,9 +26584,9 @@ static hd_status hdi_geo_poly_rows(hd_geodesic *g, const hd_laplacian *lap, hd_e
     int32_t i;
     a->n_rows = a->n_cols = g->n_active;
     a->nnz = lap->L.nnz;
-    a->row_ptr = (int64_t *)hdi_geo_alloc(g, (int64_t)g->n_active + 1, sizeof(int64_t), e);
-    a->col = hdi_geo_ints(g, a->nnz, e);
-    a->val = hdi_geo_doubles(g, a->nnz, e);
+    a->row_ptr = HDI_GEO_NEW(int64_t, (int64_t)g->n_active + 1);
+    a->col = HDI_GEO_NEW(int32_t, a->nnz);
+    a->val = HDI_GEO_NEW(double, a->nnz);
     if (e->status < 0) return e->status;
     for (i = 0; i < g->n_active; i++) {
         const int32_t from = g->sym.perm[i];
@@ -26678,10 +26623,10 @@ static hd_status hdi_geo_masses(hd_geodesic *g, const hd_laplacian *lap, double 
 /* The arrays over rows, in elimination order. */
 static hd_status hdi_geo_rows(hd_geodesic *g, const hd_laplacian *lap, hd_error *e) {
     int32_t i, v;
-    g->mass = hdi_geo_doubles(g, g->n_active, e);
-    g->row = hdi_geo_ints(g, g->n, e);
-    g->component = hdi_geo_ints(g, g->n_active, e);
-    g->pin = hdi_geo_ints(g, g->n_components, e);
+    g->mass = HDI_GEO_NEW(double, g->n_active);
+    g->row = HDI_GEO_NEW(int32_t, g->n);
+    g->component = HDI_GEO_NEW(int32_t, g->n_active);
+    g->pin = HDI_GEO_NEW(int32_t, g->n_components);
     if (e->status < 0) return e->status;
     for (v = 0; v < g->n; v++) g->row[v] = -1;
     for (i = 0; i < g->n_active; i++) {
@@ -26690,7 +26635,7 @@ static hd_status hdi_geo_rows(hd_geodesic *g, const hd_laplacian *lap, hd_error 
         g->component[i] = lap->component[from];
         g->pin[g->component[i]] = i;
     }
-    if (lap->holding) g->held = hdi_geo_bytes(g, g->n_active, e);
+    if (lap->holding) g->held = HDI_GEO_NEW(char, g->n_active);
     for (i = 0; i < g->n_active && g->held; i++) g->held[i] = lap->holding->mark[lap->vertex[g->sym.perm[i]]];
     return e->status < 0 ? e->status : hdi_geo_masses(g, lap, g->mass, e);
 }
@@ -26753,13 +26698,13 @@ static hd_status hdi_geo_factors(hd_geodesic *g, const hd_laplacian *lap, hd_err
 
 /* Work of the queries. */
 static hd_status hdi_geo_room(hd_geodesic *g, hd_error *e) {
-    g->active = hdi_geo_bytes(g, g->sym.n_super, e);
-    g->mark = hdi_geo_bytes(g, g->n_active, e);
-    g->value_ptr = (int64_t *)hdi_geo_alloc(g, (int64_t)g->n_components + 1, sizeof(int64_t), e);
-    g->x = hdi_geo_doubles(g, g->n_active, e);
-    g->b = hdi_geo_doubles(g, g->n_active, e);
-    g->r = hdi_geo_doubles(g, g->n_active, e);
-    g->work = hdi_geo_doubles(g, (int64_t)hdi_sweep_size(&g->sym, 1, 1), e);
+    g->active = HDI_GEO_NEW(char, g->sym.n_super);
+    g->mark = HDI_GEO_NEW(char, g->n_active);
+    g->value_ptr = HDI_GEO_NEW(int64_t, (int64_t)g->n_components + 1);
+    g->x = HDI_GEO_NEW(double, g->n_active);
+    g->b = HDI_GEO_NEW(double, g->n_active);
+    g->r = HDI_GEO_NEW(double, g->n_active);
+    g->work = HDI_GEO_NEW(double, hdi_sweep_size(&g->sym, 1, 1));
     return e->status;
 }
 
@@ -26815,15 +26760,21 @@ static hd_status hdi_geo_coincident(hd_geodesic *g, const double *xyz, hd_error 
 /* The faces as the passes over them want them. */
 static hd_status hdi_geo_store(hd_geodesic *g, const hd_laplacian *lap, const hdi_geo_surface *z,
                                const hdi_geo_input *in, hd_error *e) {
-    if (HDI_HAS_INTRINSIC && in->flips) {
-        if (hdi_geo_faces(g, &z->flat.mesh, g->row, &z->flat, e) >= 0 && HDI_HAS_POINTS && in->points &&
-            !in->nbr_ptr)
-            (void)hdi_geo_coincident(g, in->xyz, e);
-        return e->status;
+    const hdi_flat *flat = HDI_HAS_INTRINSIC && in->flips ? &z->flat : NULL;
+    const hdi_mesh *mesh = flat ? &flat->mesh : &z->mesh;
+    if (hdi_geo_order(g, mesh, e) < 0) return e->status;
+    if (hdi_is_poly(mesh)) {
+        if (hdi_geo_poly_faces(g, mesh, e) >= 0) (void)hdi_geo_poly_rows(g, lap, e);
+    } else {
+        g->face = HDI_GEO_NEW(hdi_geo_face, g->n_faces);
+        if (g->face) hdi_geo_frames(g, mesh, flat ? flat->copies : NULL);
     }
-    if (!HDI_HAS_POLYGONS || !in->ptr) return hdi_geo_faces(g, &z->mesh, g->row, NULL, e);
-    if (hdi_geo_poly_faces(g, &z->mesh, e) < 0) return e->status;
-    return hdi_geo_poly_rows(g, lap, e);
+    if (!g->lap) {
+        hdi_free(g->ctx, g->from);
+        g->from = NULL;
+    }
+    if (e->status < 0 || !HDI_HAS_POINTS || !in->points || in->nbr_ptr) return e->status;
+    return hdi_geo_coincident(g, in->xyz, e);
 }
 
 static hd_status hdi_geo_make(hd_geodesic *g, const hdi_geo_input *in, const hd_geodesic_opts *o,
@@ -26859,7 +26810,6 @@ static hd_status hdi_geo_make(hd_geodesic *g, const hdi_geo_input *in, const hd_
 static hd_status hdi_geo_update(hd_geodesic *g, const double *xyz, hd_error *e) {
     const hdi_mesh *moving = &g->lap->moving->fill.mesh;
     double *mass = g->x;
-    hdi_mesh mesh = *moving;
     int32_t f;
     if (hdi_lap_update(g->lap, xyz, e) < 0) return e->status;
     for (f = 0; f < moving->m; f++)              /* of those left out all corners are one */
@@ -26870,11 +26820,8 @@ static hd_status hdi_geo_update(hd_geodesic *g, const double *xyz, hd_error *e) 
     g->ready = 0;
     g->x = g->mass;
     g->mass = mass;
-    mesh.xyz = xyz;
-    for (f = 0; f < g->n_faces; f++) g->face[f] = hdi_geo_frame(&mesh, g->from[f], g->row, g->h);
-    hdi_factor_free(&g->heat);
-    hdi_factor_free(&g->poisson);
-    hdi_factor_free(&g->cold);
+    hdi_geo_frames(g, moving, NULL);
+    hdi_geo_factors_free(g, g->ctx);
     if (hdi_geo_factors(g, g->lap, e) >= 0) g->ready = 1;
     return e->status;
 }
