@@ -26398,7 +26398,6 @@ typedef struct hdi_geo_input {
     const int32_t *tri;          /* [3 m] triangles; or */
     const int64_t *ptr;          /* [m + 1] polygons with their corners in idx; or neither: points, */
     const int32_t *idx;
-    const int32_t *face;         /* [m] the caller's number of each; NULL: their own */
     int32_t m;
     int points, updatable;
     const int64_t *nbr_ptr;      /* with or without their neighbours */
@@ -26425,7 +26424,7 @@ typedef struct hdi_geo_surface {
 } hdi_geo_surface;
 
 /* Columns of a batch, and the fewest that are worth one. A batch always costs as much as a full one. */
-enum { HDI_GEO_WIDE = 8, HDI_GEO_WIDE_FROM = 3 };
+enum { HDI_GEO_WIDE = 8, HDI_GEO_WIDE_FROM = 3, HDI_GEO_BLOCKS = 24 };
 
 /* |u| over its largest: below, u is taken as unknown, since underflow is near */
 #define HDI_GEO_FAINT 1e-200
@@ -26463,6 +26462,8 @@ struct hd_geodesic {
     int32_t *from;               /* [n_faces] which of the mesh's faces each is; of updatable plans kept */
     double t_asked, t_in_h2;     /* 0: t_in_h2 h^2 */
     int32_t ready;               /* 0: the last update failed half way */
+    int32_t n_blocks;
+    void *block[HDI_GEO_BLOCKS]; /* what was allocated for the arrays that every plan has */
 };
 
 /* ---- making ---- */
@@ -26477,24 +26478,27 @@ static void hdi_geo_factors_free(hd_geodesic *g, hd_context *ctx) {
 }
 
 static void hdi_geo_free(hd_geodesic *g) {
-    void *const block[] = {g->face, g->poly.ptr, g->poly.row, g->poly.side, g->poly.flat, g->held, g->mass,
-                           g->row, g->component, g->pin, g->active, g->mark, g->x, g->first,
-                           g->b, g->r, g->work, g->wide_x, g->wide_b, g->wide_work, g->value_ptr, g->value,
-                           g->sorted, g->from};
     hd_context own, *ctx = hdi_outlive(g->ctx, &g->context, &own);
-    size_t q;
     hdi_geo_factors_free(g, ctx);
     hdi_symbolic_free(ctx, &g->sym);
-    hdi_csr_free(ctx, &g->poly.L);
-    for (q = 0; q < sizeof block / sizeof *block; q++) hdi_free(ctx, block[q]);
     hdi_laplacian_free(g->lap, ctx);
+    while (g->n_blocks > 0) hdi_free(ctx, g->block[--g->n_blocks]);
+    hdi_free(ctx, g->from);
+    hdi_free(ctx, g->first);
+    hdi_free(ctx, g->wide_x);
+    hdi_free(ctx, g->wide_b);
+    hdi_free(ctx, g->wide_work);
+    hdi_free(ctx, g->value);
+    hdi_free(ctx, g->sorted);
     hdi_free(ctx, g);
     hdi_let_go(ctx);
 }
 
-/* Allocates unless something failed before: a list of arrays needs one check at its end. */
-#define HDI_GEO_NEW(type, count) \
-    (type *)(e->status < 0 ? NULL : hdi_alloc(g->ctx, (uint64_t)(count), sizeof(type), e))
+/* Ends the scope; its blocks become those of the plan, if all are there. */
+static hd_status hdi_geo_keep(hd_geodesic *g, hdi_scope *s) {
+    for (; s->e->status >= 0 && s->n > 0; s->n--) g->block[g->n_blocks++] = s->block[s->n - 1];
+    return hdi_scope_end(s);
+}
 
 /* Triangle f in its plane with the longest edge on the axis. Its area and cotangents are those of weight
  * triangles. The angles at the longest edge are acute, so that nothing is cancelled, and the height is as
@@ -26541,7 +26545,7 @@ static hd_status hdi_geo_order(hd_geodesic *g, const hdi_mesh *mesh, hd_error *e
         at[first[f]]++;
         g->n_faces++;
     }
-    g->from = HDI_GEO_NEW(int32_t, g->n_faces);
+    if (e->status >= 0) g->from = HDI_NEW(g->ctx, int32_t, g->n_faces, e);
     if (!g->from) return hdi_scope_end(&s);
     hdi_prefix_sum(at, g->n_active);
     for (f = 0; f < mesh->m; f++)
@@ -26550,17 +26554,17 @@ static hd_status hdi_geo_order(hd_geodesic *g, const hdi_mesh *mesh, hd_error *e
 }
 
 /* All polygons, in their order. */
-static hd_status hdi_geo_poly_faces(hd_geodesic *g, const hdi_mesh *mesh, hd_error *e) {
+static hd_status hdi_geo_poly_faces(hd_geodesic *g, const hdi_mesh *mesh, hdi_scope *own) {
     hdi_geo_polygons *z = &g->poly;
     int64_t c, n = 0;
     int32_t k;
     int q;
     for (k = 0; k < g->n_faces; k++) n += mesh->ptr[g->from[k] + 1] - mesh->ptr[g->from[k]];
-    z->ptr = HDI_GEO_NEW(int64_t, (int64_t)g->n_faces + 1);
-    z->row = HDI_GEO_NEW(int32_t, n);
-    z->side = HDI_GEO_NEW(double, 3 * n);
-    z->flat = HDI_GEO_NEW(double, g->n_faces);
-    if (e->status < 0) return e->status;
+    z->ptr = HDI_TAKE(own, int64_t, (int64_t)g->n_faces + 1);
+    z->row = HDI_TAKE(own, int32_t, n);
+    z->side = HDI_TAKE(own, double, 3 * n);
+    z->flat = HDI_TAKE(own, double, g->n_faces);
+    if (own->e->status < 0) return own->e->status;
     for (k = 0, n = 0; k < g->n_faces; k++) {
         const int32_t f = g->from[k];
         const double unit = sqrt(mesh->area[f]) / g->h;
@@ -26578,16 +26582,16 @@ static hd_status hdi_geo_poly_faces(hd_geodesic *g, const hdi_mesh *mesh, hd_err
 }
 
 /* L of polygons by rows in elimination order. */
-static hd_status hdi_geo_poly_rows(hd_geodesic *g, const hd_laplacian *lap, hd_error *e) {
+static hd_status hdi_geo_poly_rows(hd_geodesic *g, const hd_laplacian *lap, hdi_scope *own) {
     hd_csr *a = &g->poly.L;
     int64_t n = 0, p;
     int32_t i;
     a->n_rows = a->n_cols = g->n_active;
     a->nnz = lap->L.nnz;
-    a->row_ptr = HDI_GEO_NEW(int64_t, (int64_t)g->n_active + 1);
-    a->col = HDI_GEO_NEW(int32_t, a->nnz);
-    a->val = HDI_GEO_NEW(double, a->nnz);
-    if (e->status < 0) return e->status;
+    a->row_ptr = HDI_TAKE(own, int64_t, (int64_t)g->n_active + 1);
+    a->col = HDI_TAKE(own, int32_t, a->nnz);
+    a->val = HDI_TAKE(own, double, a->nnz);
+    if (own->e->status < 0) return own->e->status;
     for (i = 0; i < g->n_active; i++) {
         const int32_t from = g->sym.perm[i];
         a->row_ptr[i] = n;
@@ -26621,13 +26625,13 @@ static hd_status hdi_geo_masses(hd_geodesic *g, const hd_laplacian *lap, double 
 }
 
 /* The arrays over rows, in elimination order. */
-static hd_status hdi_geo_rows(hd_geodesic *g, const hd_laplacian *lap, hd_error *e) {
+static hd_status hdi_geo_rows(hd_geodesic *g, const hd_laplacian *lap, hdi_scope *own) {
     int32_t i, v;
-    g->mass = HDI_GEO_NEW(double, g->n_active);
-    g->row = HDI_GEO_NEW(int32_t, g->n);
-    g->component = HDI_GEO_NEW(int32_t, g->n_active);
-    g->pin = HDI_GEO_NEW(int32_t, g->n_components);
-    if (e->status < 0) return e->status;
+    g->mass = HDI_TAKE(own, double, g->n_active);
+    g->row = HDI_TAKE(own, int32_t, g->n);
+    g->component = HDI_TAKE(own, int32_t, g->n_active);
+    g->pin = HDI_TAKE(own, int32_t, g->n_components);
+    if (own->e->status < 0) return own->e->status;
     for (v = 0; v < g->n; v++) g->row[v] = -1;
     for (i = 0; i < g->n_active; i++) {
         const int32_t from = g->sym.perm[i];
@@ -26635,9 +26639,9 @@ static hd_status hdi_geo_rows(hd_geodesic *g, const hd_laplacian *lap, hd_error 
         g->component[i] = lap->component[from];
         g->pin[g->component[i]] = i;
     }
-    if (lap->holding) g->held = HDI_GEO_NEW(char, g->n_active);
+    if (lap->holding) g->held = HDI_TAKE(own, char, g->n_active);
     for (i = 0; i < g->n_active && g->held; i++) g->held[i] = lap->holding->mark[lap->vertex[g->sym.perm[i]]];
-    return e->status < 0 ? e->status : hdi_geo_masses(g, lap, g->mass, e);
+    return own->e->status < 0 ? own->e->status : hdi_geo_masses(g, lap, g->mass, own->e);
 }
 
 /* Factors the matrix val, and frees what only factoring needs. */
@@ -26697,15 +26701,15 @@ static hd_status hdi_geo_factors(hd_geodesic *g, const hd_laplacian *lap, hd_err
 }
 
 /* Work of the queries. */
-static hd_status hdi_geo_room(hd_geodesic *g, hd_error *e) {
-    g->active = HDI_GEO_NEW(char, g->sym.n_super);
-    g->mark = HDI_GEO_NEW(char, g->n_active);
-    g->value_ptr = HDI_GEO_NEW(int64_t, (int64_t)g->n_components + 1);
-    g->x = HDI_GEO_NEW(double, g->n_active);
-    g->b = HDI_GEO_NEW(double, g->n_active);
-    g->r = HDI_GEO_NEW(double, g->n_active);
-    g->work = HDI_GEO_NEW(double, hdi_sweep_size(&g->sym, 1, 1));
-    return e->status;
+static hd_status hdi_geo_room(hd_geodesic *g, hdi_scope *own) {
+    g->active = HDI_TAKE(own, char, g->sym.n_super);
+    g->mark = HDI_TAKE(own, char, g->n_active);
+    g->value_ptr = HDI_TAKE(own, int64_t, (int64_t)g->n_components + 1);
+    g->x = HDI_TAKE(own, double, g->n_active);
+    g->b = HDI_TAKE(own, double, g->n_active);
+    g->r = HDI_TAKE(own, double, g->n_active);
+    g->work = HDI_TAKE(own, double, hdi_sweep_size(&g->sym, 1, 1));
+    return own->e->status;
 }
 
 /* Ordering and analysis. */
@@ -26734,12 +26738,14 @@ static hd_status hdi_geo_unfold(hd_laplacian *lap, hdi_geo_surface *z, const hdi
 /* L, B and the faces. */
 static hd_status hdi_geo_surface_make(hd_laplacian *lap, hdi_geo_surface *z, const hdi_geo_input *in,
                                       hdi_scope *s) {
+    hdi_mesh poly;
     memset(z, 0, sizeof *z);
     hdi_mesh_clear(&z->mesh, in->xyz, lap->n, in->ptr ? in->idx : in->tri, in->m);
     z->mesh.len = in->len;
     z->mesh.ptr = in->ptr;
-    z->mesh.face = in->face;
     z->mesh.lambda = in->lambda;
+    poly = z->mesh;
+    if (in->ptr && in->flips && hdi_poly_fans(&z->mesh, &poly, s) < 0) return s->e->status;
     if (hdi_progress(lap->context, "assemble", 0, s->e) < 0) return s->e->status;
     if (HDI_HAS_INTRINSIC && in->flips) return hdi_geo_unfold(lap, z, in, s);
     return hdi_mesh_make(&z->mesh, &lap->mesh, s) < 0
@@ -26759,14 +26765,15 @@ static hd_status hdi_geo_coincident(hd_geodesic *g, const double *xyz, hd_error 
 
 /* The faces as the passes over them want them. */
 static hd_status hdi_geo_store(hd_geodesic *g, const hd_laplacian *lap, const hdi_geo_surface *z,
-                               const hdi_geo_input *in, hd_error *e) {
+                               const hdi_geo_input *in, hdi_scope *own) {
+    hd_error *e = own->e;
     const hdi_flat *flat = HDI_HAS_INTRINSIC && in->flips ? &z->flat : NULL;
     const hdi_mesh *mesh = flat ? &flat->mesh : &z->mesh;
     if (hdi_geo_order(g, mesh, e) < 0) return e->status;
     if (hdi_is_poly(mesh)) {
-        if (hdi_geo_poly_faces(g, mesh, e) >= 0) (void)hdi_geo_poly_rows(g, lap, e);
+        if (hdi_geo_poly_faces(g, mesh, own) >= 0) (void)hdi_geo_poly_rows(g, lap, own);
     } else {
-        g->face = HDI_GEO_NEW(hdi_geo_face, g->n_faces);
+        g->face = HDI_TAKE(own, hdi_geo_face, g->n_faces);
         if (g->face) hdi_geo_frames(g, mesh, flat ? flat->copies : NULL);
     }
     if (!g->lap) {
@@ -26779,7 +26786,7 @@ static hd_status hdi_geo_store(hd_geodesic *g, const hd_laplacian *lap, const hd
 
 static hd_status hdi_geo_make(hd_geodesic *g, const hdi_geo_input *in, const hd_geodesic_opts *o,
                               hd_error *e) {
-    hdi_scope s = hdi_scope_begin(g->ctx, e);
+    hdi_scope s = hdi_scope_begin(g->ctx, e), own = hdi_scope_begin(g->ctx, e);
     hd_laplacian *lap = (hd_laplacian *)hdi_alloc_zero(g->ctx, 1, sizeof *lap, e);
     hdi_geo_surface z;
     if (!lap) return hdi_scope_end(&s);
@@ -26797,13 +26804,14 @@ static hd_status hdi_geo_make(hd_geodesic *g, const hdi_geo_input *in, const hd_
         if (e->status >= 0) (void)hdi_lap_components(lap, e);
         g->n_components = lap->n_components;
     }
-    if (e->status >= 0 && hdi_geo_analyse(g, lap, o, e) >= 0 && hdi_geo_rows(g, lap, e) >= 0 &&
-        hdi_geo_store(g, lap, &z, in, e) >= 0) {
+    if (e->status >= 0 && hdi_geo_analyse(g, lap, o, e) >= 0 && hdi_geo_rows(g, lap, &own) >= 0 &&
+        hdi_geo_store(g, lap, &z, in, &own) >= 0) {
         hdi_scope_end(&s);                       /* the mesh is not needed any more */
-        if (hdi_geo_factors(g, lap, e) >= 0) g->ready = hdi_geo_room(g, e) >= 0;
+        if (hdi_geo_factors(g, lap, e) >= 0) g->ready = hdi_geo_room(g, &own) >= 0;
     }
     if (!g->lap) hdi_laplacian_free(lap, g->ctx);
-    return hdi_scope_end(&s);
+    (void)hdi_scope_end(&s);
+    return hdi_geo_keep(g, &own);
 }
 
 /* The plan for new coordinates. Queries do not read g->lap: until g->ready is 0 nothing has changed. */
@@ -27320,7 +27328,7 @@ static double hdi_geo_nearest(const double *value, int64_t n, double phi) {
 
 /* From phi to distances: zero at the sources, infinite on components without one. Returns whether all
  * distances that should be finite are. */
-static int hdi_geo_distances(const hd_geodesic *g, const double *phi, double *d) {
+static int hdi_geo_measure(const hd_geodesic *g, const double *phi, double *d) {
     int fine = 1;
     int32_t v;
     for (v = 0; v < g->n; v++) {
@@ -27333,7 +27341,7 @@ static int hdi_geo_distances(const hd_geodesic *g, const double *phi, double *d)
 }
 
 /* The same of a batch of n single vertices. Columns with a bit in skip need not be finite. */
-static int hdi_geo_batch_distances(const hd_geodesic *g, const hdi_geo_source *s, int32_t n, int skip) {
+static int hdi_geo_batch_measure(const hd_geodesic *g, const hdi_geo_source *s, int32_t n, int skip) {
     double at[HDI_GEO_WIDE];
     int32_t own[HDI_GEO_WIDE], v, c, fine = 1;
     for (c = 0; c < n; c++) {
@@ -27420,12 +27428,12 @@ static void hdi_geo_own_source(hd_geodesic *g, const hdi_geo_source *s, double l
 }
 
 /* Distances from phi in b, of n columns side by side. least: see hdi_geo_own_source; skip: see
- * hdi_geo_batch_distances. */
+ * hdi_geo_batch_measure. */
 static hd_status hdi_geo_answer(hd_geodesic *g, const hdi_geo_source *s, int32_t n, double least, int skip,
                                 hd_error *e) {
     int32_t i, c, fine;
     if (n == 1) hdi_geo_values(g, s, g->b);
-    fine = n > 1 ? hdi_geo_batch_distances(g, s, n, skip) : hdi_geo_distances(g, g->b, s->d);
+    fine = n > 1 ? hdi_geo_batch_measure(g, s, n, skip) : hdi_geo_measure(g, g->b, s->d);
     if (!fine)
         return hdi_fail(e, HD_ERR_BREAKDOWN, "geodesic: rounding leaves nothing of the answer: the mesh has "
                                              "faces that are too thin");
@@ -27512,37 +27520,6 @@ static hd_status hdi_geo_batch(hd_geodesic *g, const hdi_geo_source *s, int32_t 
     return e->status;
 }
 
-/* Distances to k sources, each for itself. */
-static hd_status hdi_geo_all(hd_geodesic *g, const int32_t *sources, int32_t k, double *D, size_t ldd,
-                             hd_geodesic_report *rep, hd_error *e) {
-    hdi_geo_source s[HDI_GEO_WIDE];
-    int32_t q, c, n;
-    memset(s, 0, sizeof s);
-    for (q = 0; q < k && e->status >= 0; q += n) {
-        n = k - q < HDI_GEO_WIDE_FROM ? 1 : hdi_low32(k - q, HDI_GEO_WIDE);
-        if (hdi_progress(g->ctx, "solve", (double)q / k, e) < 0) break;
-        for (c = 0; c < n; c++) {
-            s[c].vertex = sources + q + c;
-            s[c].n = 1;
-            s[c].d = D + (size_t)(q + c) * ldd;
-        }
-        if (n > 1) (void)hdi_geo_batch(g, s, n, rep, e);
-        else (void)hdi_geo_alone(g, s, rep, e);
-    }
-    return e->status;
-}
-
-/* Distances to the set of vertices. */
-static hd_status hdi_geo_one(hd_geodesic *g, const int32_t *sources, int32_t k, double *d,
-                             hd_geodesic_report *rep, hd_error *e) {
-    hdi_geo_source s;
-    s.vertex = sources;
-    s.n = k;
-    s.items = NULL;
-    s.d = d;
-    return hdi_geo_alone(g, &s, rep, e);
-}
-
 /* The vertices of a source of nothing else into list; 0 where it has other points. */
 static int hdi_geo_vertices(const hd_source *s, int32_t *list) {
     const int32_t corners = hdi_source_corners(s);
@@ -27559,28 +27536,62 @@ static int hdi_geo_vertices(const hd_source *s, int32_t *list) {
     return !s->curve;
 }
 
-/* Distances to a source that is checked. */
-static hd_status hdi_geo_from(hd_geodesic *g, const hd_source *from, double *d, hd_geodesic_report *rep,
-                              hd_error *e) {
+/* n points of a source from one on. */
+static hd_source hdi_geo_points(const hd_source *all, int32_t begin, int32_t n) {
+    const int64_t at = (int64_t)begin * hdi_source_corners(all);
+    hd_source s = *all;
+    s.count = n;
+    s.vertex += at;
+    if (s.bary) s.bary += at;
+    return s;
+}
+
+/* Distances to a column that is more than a list of vertices: s->d is set. */
+static hd_status hdi_geo_from(hd_geodesic *g, const hd_source *from, hdi_geo_source *s,
+                              hd_geodesic_report *rep, hd_error *e) {
     hdi_scope scope = hdi_scope_begin(g->ctx, e);
     int32_t *list = HDI_TAKE(&scope, int32_t, from->count);
     hdi_geo_items items;
-    hdi_geo_source s;
-    s.vertex = list;
-    s.n = 0;
-    s.items = NULL;
-    s.d = d;
+    s->vertex = list;
+    s->n = 0;
     if (list && hdi_geo_vertices(from, list)) {
-        s.n = from->count;
-        if (hdi_geo_off_border(g, list, s.n, e) < 0) e->row = e->column;
+        s->n = from->count;
+        if (hdi_geo_off_border(g, list, s->n, e) < 0) e->row = e->column;
     } else if (list && g->poly.ptr) {
         (void)hdi_fail(e, HD_ERR_ARGUMENT, "geodesic: on polygons sources are vertices only");
     } else if (list && hdi_geo_items_make(&items, g, from, &scope) >= 0) {
-        s.items = &items;
+        s->items = &items;
         (void)hdi_geo_items_check(g, &items, e);
     }
-    if (e->status >= 0) (void)hdi_geo_alone(g, &s, rep, e);
+    if (e->status >= 0) (void)hdi_geo_alone(g, s, rep, e);
     return hdi_scope_end(&scope);
+}
+
+/* n columns of distances, ldd apart. Points first[m] .. first[m + 1] - 1 of all are the source of column m;
+ * first NULL: one each. They are checked. */
+static hd_status hdi_geo_distances(hd_geodesic *g, const hd_source *all, const int32_t *first, int32_t n,
+                                   double *D, size_t ldd, hd_geodesic_report *rep, hd_error *e) {
+    const int vertices = hdi_source_corners(all) == 1 && !all->curve;
+    const int batches = vertices && !first;
+    hdi_geo_source s[HDI_GEO_WIDE];
+    int32_t m, c, k;
+    memset(s, 0, sizeof s);
+    for (m = 0; m < n && e->status >= 0; m += k) {
+        k = batches && n - m >= HDI_GEO_WIDE_FROM ? hdi_low32(n - m, HDI_GEO_WIDE) : 1;
+        if (hdi_progress(g->ctx, "solve", (double)m / n, e) < 0) break;
+        for (c = 0; c < k; c++) {
+            s[c].vertex = all->vertex + (first ? first[m + c] : m + c);
+            s[c].n = first ? first[m + c + 1] - first[m + c] : 1;
+            s[c].d = D + (size_t)(m + c) * ldd;
+        }
+        if (k > 1) (void)hdi_geo_batch(g, s, k, rep, e);
+        else if (vertices) (void)hdi_geo_alone(g, s, rep, e);
+        else {
+            const hd_source part = hdi_geo_points(all, first ? first[m] : m, s->n);
+            (void)hdi_geo_from(g, &part, s, rep, e);
+        }
+    }
+    return e->status;
 }
 
 /* What a report says before anything is solved. */
@@ -27591,23 +27602,6 @@ static void hdi_geo_tell_plan(const hd_geodesic *g, hd_geodesic_report *rep) {
     rep->ordering = g->sym.ordering;
     rep->factor_nnz = g->sym.nnz;
     rep->factor_flops = (g->border == HD_GEODESIC_BORDER_MEAN ? 3 : 2) * g->sym.flops;
-}
-
-/* Polygons split into triangles. */
-static hd_status hdi_geo_make_fans(hd_geodesic *g, const hdi_geo_input *in, const hd_geodesic_opts *o,
-                                   hd_error *e) {
-    hdi_scope s = hdi_scope_begin(g->ctx, e);
-    hdi_geo_input split = *in;
-    hdi_mesh poly, mesh;
-    hdi_mesh_clear(&poly, in->xyz, g->n, in->idx, in->m);
-    poly.ptr = in->ptr;
-    if (hdi_poly_fans(&mesh, &poly, &s) < 0) return hdi_scope_end(&s);
-    split.m = mesh.m;
-    split.tri = mesh.tri;
-    split.face = mesh.face;
-    split.ptr = NULL;
-    (void)hdi_geo_make(g, &split, o, e);
-    return hdi_scope_end(&s);
 }
 
 /* ---- options and arguments ---- */
@@ -27660,9 +27654,7 @@ static hd_status hdi_geo_create(hd_geodesic **out, int32_t n, hdi_geo_input *in,
     g->ctx = hdi_enter_keep(c, &g->context);
     hdi_hold(g->ctx);
     g->n = n;
-    if (in->ptr && in->flips) (void)hdi_geo_make_fans(g, in, o, c->e);
-    else (void)hdi_geo_make(g, in, o, c->e);
-    if (c->e->status >= 0) *out = g;
+    if (hdi_geo_make(g, in, o, c->e) >= 0) *out = g;
     else hdi_geo_free(g);
     return c->e->status;
 }
@@ -27712,8 +27704,7 @@ static hd_status hdi_geo_begin(hd_geodesic *g, const int32_t *sources, int32_t k
         c->e->column = q;
         return c->e->status;
     }
-    if (hdi_geo_off_border(g, sources, k, c->e) < 0) return c->e->status;
-    return hdi_progress(g->ctx, "solve", 0, c->e);
+    return hdi_geo_off_border(g, sources, k, c->e);
 }
 
 /* ==== [30] api ====
@@ -28652,11 +28643,15 @@ HEATDIFF_API void hd_geodesic_free(hd_geodesic *g) { if (HDI_HAS_GEODESIC && g) 
 
 HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, int32_t n_sources, const int32_t *sources,
                                             double *d, hd_geodesic_report *report, hd_error *err) {
+    hd_source all = {0, 0, 1, NULL, NULL, NULL, 0, NULL, 0};
+    int32_t first[2] = {0, 0};
     hdi_call c;
     if (hdi_geo_begin(g, sources, n_sources, d, report, err, &c) < 0 || !HDI_HAS_GEODESIC)
         return hdi_geo_end(report, c.e);
+    all.vertex = sources;
+    first[1] = n_sources;
     if (n_sources < 1) hdi_fail(c.e, HD_ERR_ARGUMENT, "geodesic: there is no source");
-    else (void)hdi_geo_one(g, sources, n_sources, d, report, c.e);
+    else (void)hdi_geo_distances(g, &all, first, 1, d, 0, report, c.e);
     return hdi_geo_end(report, c.e);
 }
 
@@ -28666,19 +28661,24 @@ HEATDIFF_API hd_status hd_geodesic_distance_from(hd_geodesic *g, const hd_source
     if (hdi_geo_begin(g, NULL, 0, d, report, err, &c) < 0 || !HDI_HAS_GEODESIC)
         return hdi_geo_end(report, c.e);
     if (!source || !d) hdi_missing(c.e);
-    else if (hdi_source_check(source, g->n, c.e) >= 0) (void)hdi_geo_from(g, source, d, report, c.e);
+    else if (hdi_source_check(source, g->n, c.e) >= 0) {
+        const int32_t first[2] = {0, source->count};
+        (void)hdi_geo_distances(g, source, first, 1, d, 0, report, c.e);
+    }
     return hdi_geo_end(report, c.e);
 }
 
 HEATDIFF_API hd_status hd_geodesic_distance_each(hd_geodesic *g, int32_t k, const int32_t *sources, double *D,
                                                  size_t ldd, hd_geodesic_report *report, hd_error *err) {
+    hd_source all = {0, 0, 1, NULL, NULL, NULL, 0, NULL, 0};
     hdi_call c;
     if (hdi_geo_begin(g, sources, k, D, report, err, &c) < 0 || !HDI_HAS_GEODESIC)
         return hdi_geo_end(report, c.e);
     ldd = ldd ? ldd : (size_t)g->n;
     hdi_refuse(k < 0, "geodesic: the number of sources is negative", c.e);
     hdi_refuse(ldd < (size_t)g->n, "geodesic: the leading dimension is smaller than n", c.e);
-    (void)hdi_geo_all(g, sources, k, D, ldd, report, c.e);
+    all.vertex = sources;
+    (void)hdi_geo_distances(g, &all, NULL, c.e->status < 0 ? 0 : k, D, ldd, report, c.e);
     return hdi_geo_end(report, c.e);
 }
 
