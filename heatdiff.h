@@ -1796,10 +1796,9 @@ HEATDIFF_API void hd_geodesic_free(hd_geodesic *g);  /* NULL is fine */
  *          HD_ERR_BREAKDOWN (rounding left no number). HD_WARN_ACCURACY, only if a report is given
  * Cost     two solves and two passes over the faces; a third solve with several sources in a component; with
  *          a report two more passes. Where heat fades below 1e-200 of the source's, which is about 450 edges
- *          away at t = h^2, another solve follows for each such distance, on the part of the mesh that it
- *          reaches (report->n_stages). Such a solve allocates about 60 bytes for each vertex, for the time of
- *          the call. The first call with several sources, or with more than any before, allocates too; other
- *          calls do not
+ *          away at t = h^2, another solve and three passes follow for each such distance
+ *          (report->n_stages), with 8 bytes for each vertex for the time of the call. The first call with
+ *          several sources, or with more than any before, allocates too; other calls do not
  * Only one thread at a time may use a plan. */
 HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, int32_t n_sources,
                                             const int32_t *sources, double *d,
@@ -26365,11 +26364,10 @@ static hd_status hdi_estimate_check(hdi_heat_call *h, hd_query query, int32_t k)
  *   Far from the sources u is smaller than any double. Where it has faded, it is solved for again from the
  *     border of the region where it is known (hdi_geo_further). So distances do not end where u
  *     underflows.
- *   A triangle is stored as it lies in the plane with corners (0,0), (2l,0), (2p,2q). Everything is
- *     written in l, p and q: there are no cotangents and no cancellation.
- *   Intrinsic triangles are stored likewise, from their areas and cotangents. Covers have several copies of
- *     a face that count a part each: L, B and the divergence are all taken times g->copies, so that a copy
- *     counts a whole number. X does not change with that.
+ *   A triangle is stored as it lies in the plane with corners (0,0), (2l,0), (2p,2q), made from its area
+ *     and the cotangents at its longest edge. Everything is written in l, p and q, without cancellation.
+ *   Covers have several copies of a face that count a part each: L, B and the divergence are all taken times
+ *     g->copies, so that a copy counts a whole number. X does not change with that.
  *   Of a polygon with corners x_i, let c_i = (x_before - x_after)/2. Its first part of L is c_i . c_j / area
  *     (see [12]), which is div grad for W = sum c_i u_i, the gradient turned by a right angle, times the
  *     area. So X is -W / |W|, and c_i . X is its divergence. The second, stabilising part of L is zero on
@@ -27276,8 +27274,7 @@ static void hdi_geo_values_sort(hd_geodesic *g, int32_t n) {
     hdi_rewind(g->value_ptr, g->n_components);
 }
 
-/* Collects phi at the source: at its points, or one mean along a curve, less the known
- * distances there. */
+/* Collects phi at the source: at its points, or one mean along a curve, less the known distances there. */
 static void hdi_geo_values(hd_geodesic *g, const hdi_geo_source *s, const double *phi) {
     const hdi_geo_items *z = s->items;
     double sum = 0, length = 0;
