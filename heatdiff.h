@@ -5088,17 +5088,6 @@ typedef struct hdi_search_job {
     hdi_found *found;          /* [tasks] */
 } hdi_search_job;
 
-/* query NULL: the tree's own points. */
-static hdi_search_job hdi_search_of(const hdi_tree *t, const double *query, int64_t n_queries) {
-    hdi_search_job job;
-    memset(&job, 0, sizeof job);
-    job.t = t;
-    job.query = query ? query : t->xyz;
-    job.order = query ? NULL : t->id;
-    job.n_queries = n_queries;
-    return job;
-}
-
 /* Runs the tasks with room for so many candidates each, in s. The work arrays of all together stay below 64
  * MiB (28 bytes a candidate). */
 static hd_status hdi_search_run(hdi_search_job *job, int64_t room, hdi_range_task task, hdi_scope *s) {
@@ -5154,10 +5143,8 @@ static void hdi_nearest_task(void *arg, int64_t begin, int64_t end) {
 static hd_status hdi_nearest(const hdi_tree *t, const double *query, int64_t n_queries, int32_t k,
                              int32_t *index, double *distance2, hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
-    hdi_search_job job = hdi_search_of(t, query, n_queries);
-    job.k = k;
-    job.index = index;
-    job.distance2 = distance2;
+    hdi_search_job job = {t, query ? query : t->xyz, query ? NULL : t->id, n_queries, 0, k, index, distance2,
+                          0, NULL, NULL};
     (void)hdi_search_run(&job, 2 * (int64_t)k + 32, hdi_nearest_task, &s);
     return hdi_scope_end(&s);
 }
@@ -5193,11 +5180,10 @@ static hd_status hdi_within(hd_csr *out, const hdi_tree *t, const double *query,
                             double radius2, hd_context *ctx, hd_error *e) {
     enum { ROOM = 256 };       /* of the first pass, which keeps no candidates */
     hdi_scope s = hdi_scope_begin(ctx, e), passes = hdi_scope_begin(ctx, e);
-    hdi_search_job job = hdi_search_of(t, query, n_queries);
     hd_csr a = hdi_csr_take(&s, n_queries, t->n, 0, 0);
+    hdi_search_job job = {t, query ? query : t->xyz, query ? NULL : t->id, n_queries, 0, 0, NULL, NULL,
+                          radius2, &a, NULL};
     int64_t widest;
-    job.radius2 = radius2;
-    job.out = &a;
     if (e->status >= 0) (void)hdi_search_run(&job, ROOM, hdi_within_task, &passes);
     if (hdi_scope_end(&passes) < 0) return hdi_scope_end(&s);
     a.nnz = hdi_prefix_sum(a.row_ptr, n_queries);
@@ -5886,10 +5872,10 @@ static void hdi_edge_report(const hdi_edge_tally *t, int32_t *border, int32_t n,
     rep->n_boundary_loops = t->n_boundary ? hdi_count_sets(border, n) : 0;
 }
 
-/* The length of the edge of this side, from i to j. */
-static HDI_INLINE double hdi_side_length(const hdi_mesh *mesh, uint64_t key, int32_t i, int32_t j) {
-    if (mesh->len) return hdi_mesh_lengths(mesh, hdi_key_face(key))[hdi_key_corner(key)];
-    return hdi_edge_length(mesh->xyz, i, j);
+/* The length of the side of a triangle that begins at corner c. */
+static HDI_INLINE double hdi_side_length(const hdi_mesh *mesh, int64_t c) {
+    return mesh->len ? mesh->len[c]
+                     : hdi_edge_length(mesh->xyz, mesh->tri[c], mesh->tri[hdi_corner_after(mesh, c)]);
 }
 
 /* Do the faces at each edge agree on its length? */
@@ -6037,45 +6023,36 @@ static hd_status hdi_places_make(hdi_places *out, const double *xyz, int32_t n, 
 /* Eigenvalues w, ascending, and eigenvectors (rows of v) of a symmetric 3 x 3 matrix a, which is
  * overwritten: Jacobi's rotations. */
 static void hdi_eigen3(double a[3][3], double w[3], double v[3][3]) {
+    static const signed char from[3] = {0, 0, 1}, to[3] = {1, 2, 2};
     int sweep, p, q, i, c;
-    for (p = 0; p < 3; p++)
-        for (q = 0; q < 3; q++) v[p][q] = p == q;
+    for (p = 0; p < 9; p++) v[p / 3][p % 3] = p / 3 == p % 3;
     for (sweep = 0; sweep < 30; sweep++) {
         const double off = fabs(a[0][1]) + fabs(a[0][2]) + fabs(a[1][2]);
         if (off <= DBL_MIN || off <= 1e-17 * (fabs(a[0][0]) + fabs(a[1][1]) + fabs(a[2][2]))) break;
         for (i = 0; i < 3; i++) {
-            double theta, t, co, si;
-            p = i == 2;
-            q = i == 0 ? 1 : 2;
+            double theta, t, co;
+            p = from[i];
+            q = to[i];
             if (a[p][q] == 0) continue;
             theta = (a[q][q] - a[p][p]) / (2 * a[p][q]);
             t = (theta >= 0 ? 1 : -1) / (fabs(theta) + sqrt(theta * theta + 1));
             co = 1 / sqrt(t * t + 1);
-            si = t * co;
-            for (c = 0; c < 3; c++) {
-                const double x = a[p][c], y = a[q][c];
-                a[p][c] = co * x - si * y;
-                a[q][c] = si * x + co * y;
-            }
-            for (c = 0; c < 3; c++) {
-                const double x = a[c][p], y = a[c][q], vx = v[p][c], vy = v[q][c];
-                a[c][p] = co * x - si * y;
-                a[c][q] = si * x + co * y;
-                v[p][c] = co * vx - si * vy;
-                v[q][c] = si * vx + co * vy;
-            }
+            hdi_rotate(a[p], a[q], co, t * co, 3);
+            for (c = 0; c < 3; c++) hdi_rotate(&a[c][p], &a[c][q], co, t * co, 1);
+            hdi_rotate(v[p], v[q], co, t * co, 3);
         }
     }
     for (i = 0; i < 3; i++) w[i] = a[i][i];
-    for (p = 0; p < 2; p++) {                    /* three values in order */
-        for (q = 0; q < 2 - p; q++) {
-            if (w[q] <= w[q + 1]) continue;
-            for (c = 0; c < 4; c++) {
-                double *x = c < 3 ? &v[q][c] : w + q, *y = c < 3 ? &v[q + 1][c] : w + q + 1, swap = *x;
-                *x = *y;
-                *y = swap;
-            }
-        }
+    for (i = 0; i < 3; i++) {                    /* three values in order; a has served */
+        p = from[i];
+        q = to[i];
+        if (w[p] <= w[q]) continue;
+        a[0][0] = w[p];
+        w[p] = w[q];
+        w[q] = a[0][0];
+        memcpy(a[0], v[p], sizeof *v);
+        memcpy(v[p], v[q], sizeof *v);
+        memcpy(v[q], a[0], sizeof *v);
     }
 }
 
@@ -6331,44 +6308,32 @@ typedef struct hdi_soup {
 
 static int32_t hdi_soup_copies(const hdi_soup *soup, int32_t f) { return soup->copies ? soup->copies[f] : 1; }
 
-/* Gathers the m triangles tri by their smallest corners: bucket i from ptr[i] on, its keys sorted, second
- * corner << 32 | third corner << 1 | odd. ptr [n + 1] zeros. Returns how many different triangles there are,
- * or -1 without memory. */
-static int64_t hdi_soup_gather(const int32_t *tri, int64_t m, int32_t n, int64_t *ptr, uint64_t *key,
-                               hdi_scope *s) {
-    uint64_t *work;
-    int64_t f, p, count = 0;
-    for (f = 0; f < m; f++) ptr[hdi_low32(tri[3 * f], hdi_low32(tri[3 * f + 1], tri[3 * f + 2]))]++;
+/* Different triangles of the m in tri, corners ascending, into soup in s: by their smallest corners, then by
+ * keys, second corner << 32 | third corner << 1 | odd. */
+static hd_status hdi_soup_faces(hdi_soup *soup, const int32_t *tri, int64_t m, int32_t n, hdi_scope *s) {
+    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
+    int64_t *ptr = HDI_TAKE_ZERO(&own, int64_t, (int64_t)n + 1), f, p, count = 0;
+    uint64_t *key = HDI_TAKE(&own, uint64_t, m), *work;
+    int32_t i;
+    if (s->e->status < 0) return hdi_scope_end(&own);
+    for (f = 0; f < m; f++) ptr[hdi_face_low(tri + 3 * f)]++;
     hdi_prefix_sum(ptr, n);
-    work = HDI_TAKE(s, uint64_t, hdi_fullest(ptr, n));
-    if (!work) return -1;
-    for (f = 0; f < m; f++) {
+    work = HDI_TAKE(&own, uint64_t, hdi_fullest(ptr, n));
+    for (f = 0; work && f < m; f++) {
         const int32_t a = tri[3 * f], b = tri[3 * f + 1], c = tri[3 * f + 2];
-        const int32_t first = hdi_low32(a, hdi_low32(b, c)), last = hdi_high32(a, hdi_high32(b, c));
-        const int64_t middle = (int64_t)a + b + c - first - last,
-                      odd = ((a > b) + (b > c) + (a > c)) & 1;
+        const int32_t first = hdi_face_low(tri + 3 * f), last = hdi_high32(a, hdi_high32(b, c));
+        const int64_t middle = (int64_t)a + b + c - first - last, odd = ((a > b) + (b > c) + (a > c)) & 1;
         key[ptr[first]++] = (uint64_t)(middle << 32 | (int64_t)last << 1 | odd);
     }
     hdi_rewind(ptr, n);
-    for (f = 0; f < n; f++) {
-        hdi_sort_keys(key + ptr[f], ptr[f + 1] - ptr[f], work);
-        for (p = ptr[f]; p < ptr[f + 1]; p++) count += p == ptr[f] || key[p] >> 1 != key[p - 1] >> 1;
+    for (i = 0; work && i < n; i++) {
+        hdi_sort_keys(key + ptr[i], ptr[i + 1] - ptr[i], work);
+        for (p = ptr[i]; p < ptr[i + 1]; p++) count += p == ptr[i] || key[p] >> 1 != key[p - 1] >> 1;
     }
-    return count;
-}
-
-/* Different faces of the m triangles tri, into soup in s. */
-static hd_status hdi_soup_faces(hdi_soup *soup, const int32_t *tri, int64_t m, int32_t n, hdi_scope *s) {
-    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
-    int64_t *ptr = HDI_TAKE_ZERO(&own, int64_t, (int64_t)n + 1), f = -1, p, count;
-    uint64_t *key = HDI_TAKE(&own, uint64_t, m);
-    int32_t i;
-    count = key ? hdi_soup_gather(tri, m, n, ptr, key, &own) : -1;
-    if (count < 0) return hdi_scope_end(&own);
     soup->tri = HDI_TAKE(s, int32_t, 3 * count);
     soup->copies = HDI_TAKE_ZERO(s, int32_t, count);
     soup->odd = HDI_TAKE_ZERO(s, int32_t, count);
-    for (i = 0; soup->odd && i < n; i++) {
+    for (i = 0, f = -1; soup->odd && i < n; i++) {
         for (p = ptr[i]; p < ptr[i + 1]; p++) {
             if (p == ptr[i] || key[p] >> 1 != key[p - 1] >> 1) f++;
             soup->tri[3 * f] = i;
@@ -6378,9 +6343,7 @@ static hd_status hdi_soup_faces(hdi_soup *soup, const int32_t *tri, int64_t m, i
             soup->odd[f] += (int32_t)(key[p] & 1);
         }
     }
-    soup->mesh.tri = soup->tri;
-    soup->mesh.n = n;
-    soup->mesh.m = (int32_t)count;
+    hdi_mesh_clear(&soup->mesh, NULL, n, soup->tri, (int32_t)count);
     return hdi_scope_end(&own);
 }
 
@@ -6402,23 +6365,11 @@ static hdi_edge_tally hdi_soup_edges(hdi_soup *soup, int32_t *border) {
                 copies += all;
                 forward += hdi_key_corner(g->key[q]) < 2 ? all - odd : odd;
             }
-            hdi_edge_count(&tally, copies, forward, hdi_side_length(mesh, g->key[p], i, j));
+            hdi_edge_count(&tally, copies, forward, hdi_side_length(mesh, hdi_key_side(g->key[p])));
             if (copies == 1) hdi_unite(border, i, j);
         }
     }
     return tally;
-}
-
-/* Lengths of face f. Returns by how much they satisfy the triangle inequality. */
-static double hdi_soup_measure(const hdi_soup *soup, int32_t f) {
-    const hdi_mesh *mesh = &soup->mesh;
-    const int32_t *v = mesh->tri + hdi_triple(f);
-    double *len = soup->len + hdi_triple(f);
-    int q;
-    for (q = 0; q < 3; q++)
-        len[q] = (mesh->len ? hdi_mesh_lengths(mesh, f)[q]
-                  : hdi_edge_length(mesh->xyz, v[q], v[hdi_next3[q]])) / soup->unit;
-    return hdi_min(len[0] + len[1] - len[2], hdi_min(len[2] + len[0] - len[1], len[2] + len[1] - len[0]));
 }
 
 /* Lengths, mollified, with their areas and cotangents. Mollification (Sharp, Crane 2020, section 4.5)
@@ -6429,12 +6380,15 @@ static hd_status hdi_soup_lengths(hdi_soup *soup, double delta, hd_mesh_report *
     double add = 0;
     int32_t f;
     int q;
-    if (!mesh->cot) mesh->cot = HDI_TAKE(s, double, hdi_triple(mesh->m));
     soup->area = HDI_TAKE_ZERO(s, double, mesh->m);
     soup->len = HDI_TAKE(s, double, hdi_triple(mesh->m));
     if (s->e->status < 0) return s->e->status;
     for (f = 0; f < mesh->m; f++) {
-        const double spare = mesh->area[f] > 0 ? hdi_soup_measure(soup, f) : HUGE_VAL;
+        double *len = soup->len + hdi_triple(f), spare;
+        if (!(mesh->area[f] > 0)) continue;
+        for (q = 0; q < 3; q++) len[q] = hdi_side_length(mesh, hdi_triple(f) + q) / soup->unit;
+        spare = hdi_min(hdi_min(len[0] + len[1] - len[2], len[2] + len[0] - len[1]),
+                        len[2] + len[1] - len[0]);
         if (delta >= 0 && spare < delta) rep->n_mollified += hdi_soup_copies(soup, f);
         if (delta >= 0) add = hdi_max(add, delta - spare);
     }

@@ -283,7 +283,32 @@ static void asm_blocks(void) {
     CHECK(calls > 0);
 }
 
+/* Faces of a large mesh in random order are sorted first: the same pair to rounding, and errors name the caller's faces. */
+static void asm_jumps(void) {
+    enum { SPOILT = 5000 };
+    shape s = kit_own_shape(shape_grid(99, 99, 0.3)), r = kit_own_shape(shape_grid(99, 99, 0.3));
+    hd_laplacian_opts o;
+    hd_laplacian *a = kit_triangles(&s, HD_LAPLACIAN_FEM), *b = NULL, *none = NULL;
+    hd_error e, e2;
+    int64_t p;
+    int32_t f;
+    memset(&o, 0, sizeof o);
+    o.updatable = 1;
+    asm_shuffle(r.tri, r.n_tri, 3);
+    CHECK(hd_laplacian_triangles(&b, r.xyz, r.n, r.tri, r.n_tri, &o, &e) == HD_OK && b->L.nnz == a->L.nnz);
+    CHECK(memcmp(a->L.col, b->L.col, (size_t)a->L.nnz * sizeof *a->L.col) == 0);
+    CHECK(asm_difference(a->L.val, b->L.val, a->L.nnz) < 1e-12 && asm_difference(a->mass, b->mass, a->n_active) < 1e-12);
+    for (p = 0; p < a->L.nnz; p++) if (!CHECK(fabs(a->B[p] - b->B[p]) <= 1e-14 * a->b_diag[0])) break;
+    r.xyz[3 * SPOILT] = 1e100;
+    r.xyz[3 * SPOILT + 1] = 3e99;
+    for (f = 0; r.tri[3 * f] != SPOILT && r.tri[3 * f + 2] != SPOILT; f++) {}  /* from corner 1 two equal edges: no area */
+    CHECK_MSG(hd_laplacian_triangles(&none, r.xyz, r.n, r.tri, r.n_tri, &o, &e) == HD_ERR_ARGUMENT && !none && e.face == f, "%s, face %d, not %d", e.text, (int)e.face, (int)f);
+    CHECK(hd_laplacian_update(b, r.xyz, &e2) == HD_ERR_ARGUMENT && e2.face == f && e2.vertex == e.vertex && e2.value == e.value);
+    hd_laplacian_free(b);
+}
+
 static void test_assembly(void) {
+    asm_jumps();
     asm_blocks();
     asm_orders();
     asm_points();
