@@ -9031,24 +9031,31 @@ static int64_t hdi_amd_words(int32_t inner, int32_t halo, int64_t nnz) {
     return (int64_t)(sizeof(hdi_amd_node) / sizeof(int32_t)) * n + n + 1 + all + all / 5 + n;
 }
 
-/* Lays out the work space of words. */
-static void hdi_amd_begin(hdi_amd *g, int32_t n, int32_t inner, int32_t *work, int64_t words) {
+/* A graph to be ordered. The inner vertices, 0..inner-1, have rows: their neighbours in both triangles, in
+ * any order, none twice; the diagonal may be there. The other vertices are the halo. They count in degrees
+ * but are never eliminated. They have no rows, and edges between them do not matter. Columns from n on are
+ * skipped. */
+typedef struct hdi_amd_graph {
+    int32_t n, inner;
+    const int32_t *ptr, *col;    /* [inner + 1], [ptr[inner]] */
+} hdi_amd_graph;
+
+/* Lays out the work space. */
+static void hdi_amd_begin(hdi_amd *g, const hdi_amd_graph *a, int32_t *work) {
+    const int32_t n = a->n;
     int32_t i;
     g->n = g->left = g->least = n;
-    g->inner = inner;
+    g->inner = a->inner;
     g->done = g->free = g->longest = 0;
     g->flag = 2;
     g->v = (hdi_amd_node *)(void *)work;
     g->head = (int32_t *)(void *)(g->v + n);
     g->list = g->head + n + 1;
-    g->size = (int32_t)(work + words - g->list);
+    g->size = (int32_t)(work + hdi_amd_words(a->inner, n - a->inner, a->ptr[a->inner]) - g->list);
     hdi_fill_i32(g->head, n + 1, -1);
     hdi_fill_i32(g->bucket, HDI_AMD_BUCKETS, -1);
-    for (i = 0; i < n; i++) {
-        g->v[i].at = g->v[i].len = g->v[i].elen = g->v[i].degree = 0;
-        g->v[i].weight = g->v[i].mark = 1;
-        g->v[i].next = g->v[i].prev = -1;
-    }
+    memset(g->v, 0, (size_t)n * sizeof *g->v);
+    for (i = 0; i < n; i++) g->v[i].weight = g->v[i].mark = 1;
 }
 
 /* Takes i out of the graph. */
@@ -9058,10 +9065,41 @@ static void hdi_amd_drop(hdi_amd *g, int32_t i) {
     g->left--;
 }
 
-/* Rows without neighbours come first in the order. Rows that were dropped as dense come last. All others
- * enter the list of their degree. Returns how many rows there are without the dense ones. */
-static int32_t hdi_amd_start(hdi_amd *g) {
-    int32_t i, last = g->inner, count;
+/* Makes the lists of all vertices, but drops those with dense rows, as in AMD: most lists would have them. */
+static void hdi_amd_load(hdi_amd *g, const hdi_amd_graph *a) {
+    const int32_t dense = (int32_t)(hdi_max(16, 10 * sqrt((double)a->n)));
+    int32_t i, p, q = 0;
+    for (i = 0; i < a->inner; i++) {
+        if (a->ptr[i + 1] - a->ptr[i] > dense) hdi_amd_drop(g, i);
+        for (p = a->ptr[i]; a->inner < a->n && p < a->ptr[i + 1]; p++)
+            if (a->col[p] >= a->inner && a->col[p] < a->n) g->v[a->col[p]].len++;
+    }
+    for (i = a->inner; i < a->n; i++) {          /* room for the lists of the halo */
+        if (g->v[i].len > dense) hdi_amd_drop(g, i);
+        g->v[i].at = q;
+        q += g->v[i].len;
+        g->v[i].len = 0;
+    }
+    for (i = 0; i < a->inner; i++) {
+        g->v[i].at = q;
+        if (g->v[i].weight == 0) continue;
+        for (p = a->ptr[i]; p < a->ptr[i + 1]; p++) {
+            hdi_amd_node *j = g->v + a->col[p];
+            if (a->col[p] == i || a->col[p] >= a->n || j->weight == 0) continue;
+            g->list[q++] = a->col[p];
+            if (a->col[p] >= a->inner) g->list[j->at + j->len++] = i;
+        }
+        g->v[i].len = q - g->v[i].at;
+    }
+    g->free = q;
+}
+
+/* Begins an order of a. Rows without neighbours come first. Rows that were dropped as dense come last. All
+ * others enter the list of their degree. Returns how many rows there are without the dense ones. */
+static int32_t hdi_amd_start(hdi_amd *g, const hdi_amd_graph *a, int32_t *work) {
+    int32_t i, last = a->inner, count;
+    hdi_amd_begin(g, a, work);
+    hdi_amd_load(g, a);
     for (i = 0; i < g->inner; i++) last -= g->v[i].weight == 0;
     count = last;
     for (i = 0; i < g->inner; i++) {
@@ -9091,52 +9129,11 @@ static void hdi_amd_number(hdi_amd *g, int32_t *perm) {
     }
 }
 
-/* A graph to be ordered. The inner vertices, 0..inner-1, have rows: their neighbours in both triangles, in
- * any order, none twice; the diagonal may be there. The other vertices are the halo. They count in degrees
- * but are never eliminated. They have no rows, and edges between them do not matter. Columns from n on are
- * skipped. */
-typedef struct hdi_amd_graph {
-    int32_t n, inner;
-    const int32_t *ptr, *col;    /* [inner + 1], [ptr[inner]] */
-} hdi_amd_graph;
-
-/* Makes the lists of all vertices. Vertices with dense rows are dropped, as in AMD: they would be in most
- * lists. */
-static void hdi_amd_load(hdi_amd *g, const hdi_amd_graph *a) {
-    const int32_t dense = (int32_t)(hdi_max(16, 10 * sqrt((double)a->n)));
-    int32_t i, p, q = 0;
-    for (i = 0; i < a->inner; i++) {
-        if (a->ptr[i + 1] - a->ptr[i] > dense) hdi_amd_drop(g, i);
-        for (p = a->ptr[i]; a->inner < a->n && p < a->ptr[i + 1]; p++)
-            if (a->col[p] >= a->inner && a->col[p] < a->n) g->v[a->col[p]].len++;
-    }
-    for (i = a->inner; i < a->n; i++) {          /* room for the lists of the halo */
-        if (g->v[i].len > dense) hdi_amd_drop(g, i);
-        g->v[i].at = q;
-        q += g->v[i].len;
-        g->v[i].len = 0;
-    }
-    for (i = 0; i < a->inner; i++) {
-        g->v[i].at = q;
-        if (g->v[i].weight == 0) continue;
-        for (p = a->ptr[i]; p < a->ptr[i + 1]; p++) {
-            hdi_amd_node *j = g->v + a->col[p];
-            if (a->col[p] == i || a->col[p] >= a->n || j->weight == 0) continue;
-            g->list[q++] = a->col[p];
-            if (a->col[p] >= a->inner) g->list[j->at + j->len++] = i;
-        }
-        g->v[i].len = q - g->v[i].at;
-    }
-    g->free = q;
-}
-
 /* Orders a small graph: perm[q] is the inner vertex that is eliminated q-th. work
  * [hdi_amd_words], below 2^31, best aligned to 64 bytes. Cannot fail. TRUSTS ITS INPUT. */
 static void hdi_amd_part(const hdi_amd_graph *a, int32_t *perm, int32_t *work) {
     hdi_amd g;
-    hdi_amd_begin(&g, a->n, a->inner, work, hdi_amd_words(a->inner, a->n - a->inner, a->ptr[a->inner]));
-    hdi_amd_load(&g, a);
-    hdi_amd_run(&g, hdi_amd_start(&g));
+    hdi_amd_run(&g, hdi_amd_start(&g, a, work));
     hdi_amd_number(&g, perm);
 }
 
@@ -9155,9 +9152,7 @@ static hd_status hdi_amd_order(const hd_csr *a, int32_t *perm, hd_context *ctx, 
     work = HDI_TAKE(&s, int32_t, words);
     if (e->status < 0) return hdi_scope_end(&s);
     for (i = 0; i <= n; i++) ptr[i] = (int32_t)a->row_ptr[i];
-    hdi_amd_begin(&g, n, n, work, words);
-    hdi_amd_load(&g, &rows);
-    count = hdi_amd_start(&g);
+    count = hdi_amd_start(&g, &rows, work);
     while (g.done < count && hdi_progress(ctx, "order", (double)g.done / count, e) >= 0)
         hdi_amd_run(&g, count - g.done > HDI_AMD_STEP ? g.done + HDI_AMD_STEP : count);
     if (e->status >= 0) hdi_amd_number(&g, perm);
@@ -9201,7 +9196,7 @@ enum {
     HDI_ND_PATIENCE = 200,  /* most moves without a better cut before a pass ends */
     HDI_ND_BAND = 12,       /* a band has at most this share of a part's vertices on each side */
     HDI_ND_CLUSTERS = 24,   /* share of all that a cluster weighs at most: the coarsest copy can be halved */
-    HDI_ND_MIDDLE = 64,     /* the separator's layer in a band */
+    HDI_ND_MIDDLE = HDI_ND_LAYERS + 1,   /* the separator's layer in a band */
     HDI_ND_NONE = -2147483647,
     HDI_ND_LOCKED = HDI_ND_NONE + 1,
     HDI_ND_DEAD = 2147483647
@@ -10204,7 +10199,7 @@ static void hdi_front_shape(const hdi_symbolic *s, int32_t v, int64_t *p, int64_
     *m = *p + *u;
 }
 
-/* ---- work space ---- */
+/* ---- trees and counts ---- */
 
 /* A forest on the numbers from 0 to n - 1, in which every parent has a larger number than its children. */
 typedef struct hdi_forest {
@@ -10212,10 +10207,6 @@ typedef struct hdi_forest {
     int32_t *parent;             /* [n] -1: a root; -2: not part of the forest */
     int32_t *kid, *next;         /* [n] first child, and next child of the same parent; -1: none */
 } hdi_forest;
-
-/* What is known of a row of L while columns are counted: the last column of A with an entry in it, and the
- * last of those that is a leaf of the row's subtree. -1: none. */
-typedef struct hdi_row_seen { int32_t column, leaf; } hdi_row_seen;
 
 /* A supernode while supernodes are merged. Its own columns are those from begin up to that of the next node.
  * Nodes that are merged into one front form a list, the lowest first. The last one has the numbers of the
@@ -10228,61 +10219,26 @@ typedef struct hdi_node {
     int64_t zeros;               /* let in by merging */
 } hdi_node;
 
-/* A supernode while its rows are collected: the last row that it got, its parent, where its next row goes. */
-typedef struct hdi_sym_walk {
-    int32_t mark, up;
-    int64_t fill;
-} hdi_sym_walk;
-
-/* The arrays of an analysis. Columns are columns of L. At first they are numbered by the order given, then by
- * a postorder of their tree, which leaves their non-zeros as they are. */
+/* What the steps of an analysis hand on. Columns are columns of L. They are numbered by a postorder of their
+ * tree, which leaves their non-zeros as they are. */
 typedef struct hdi_sym_work {
     const hd_csr *a;
+    hdi_scope *temp;
     int32_t *perm, *place;       /* [n] the row of A of a column, and the column of a row of A */
-    hdi_forest given;            /* elimination tree of the order given: the parent of a column is the row of
-                                    its first non-zero below the diagonal */
-    int32_t *ancestor;           /* [n] shortcuts from a column to the root of its tree so far */
-    int32_t *order;              /* [n] a postorder of that tree */
-    int32_t *parent;             /* [n] that tree, by the numbers of the postorder */
+    int32_t *parent;             /* [n] elimination tree: the row of the first non-zero below the diagonal */
     int32_t *count;              /* [n] non-zeros of a column, diagonal included */
-    int32_t *first;              /* [n] the first column of the subtree of a column */
-    int32_t *set;                /* [n] union-find: a column that has been counted joins its parent */
-    hdi_row_seen *seen;          /* [n] */
-    int32_t *node_of;            /* [n] node of a column */
     hdi_node *node;              /* [n + 1] */
     hdi_forest tree;             /* of the nodes; merged ones do not belong to it */
-    int64_t *peak;               /* [n] the most room that a node and all below it need for update matrices */
-    hdi_pair *pair;              /* [n] children of a node, to be sorted */
-    int32_t *node_order;         /* [n] the node of a supernode */
-    int32_t *number;             /* [n] the supernode of a node */
-    hdi_sym_walk *walk;          /* [n] by supernodes */
-    int32_t *before;             /* [n] columns in a row of A before its pivot */
-    int32_t *at;                 /* [n] where a row of the matrix stands in the front at hand */
-    double *work;                /* [n] multiply-adds of a supernode and all below it */
-    char *side;                  /* [n] which stack a supernode uses */
 } hdi_sym_work;
 
-static hd_status hdi_sym_work_take(hdi_sym_work *w, const hd_csr *a, int32_t *perm, hdi_scope *s) {
-    int32_t **const narrow[] = {&w->place, &w->given.parent, &w->given.kid, &w->given.next, &w->ancestor,
-                                &w->order, &w->parent, &w->count, &w->first, &w->set, &w->node_of,
-                                &w->tree.parent, &w->tree.kid, &w->tree.next, &w->node_order, &w->number,
-                                &w->before, &w->at};
-    size_t k;
-    for (k = 0; k < sizeof narrow / sizeof *narrow; k++) *narrow[k] = HDI_TAKE(s, int32_t, a->n_rows);
-    w->seen = HDI_TAKE(s, hdi_row_seen, a->n_rows);
-    w->node = HDI_TAKE(s, hdi_node, (int64_t)a->n_rows + 1);
-    w->peak = HDI_TAKE(s, int64_t, a->n_rows);
-    w->pair = HDI_TAKE(s, hdi_pair, a->n_rows);
-    w->walk = HDI_TAKE(s, hdi_sym_walk, a->n_rows);
-    w->work = HDI_TAKE(s, double, a->n_rows);
-    w->side = HDI_TAKE(s, char, a->n_rows);
-    w->a = a;
-    w->perm = perm;
-    w->given.n = a->n_rows;
-    return s->e->status;
+static hdi_forest hdi_forest_take(int32_t n, hdi_scope *s) {
+    hdi_forest f;
+    f.n = n;
+    f.parent = HDI_TAKE(s, int32_t, n);
+    f.kid = HDI_TAKE(s, int32_t, n);
+    f.next = HDI_TAKE(s, int32_t, n);
+    return f;
 }
-
-/* ---- trees and counts ---- */
 
 /* Makes the lists of children, ascending, from the parents. */
 static void hdi_forest_link(const hdi_forest *f) {
@@ -10320,10 +10276,10 @@ static HDI_INLINE void hdi_sym_fetch(const hd_csr *a, const int32_t *perm, int32
     if (j + HDI_ROWS_AHEAD < a->n_rows) HDI_PREFETCH(a->col + a->row_ptr[perm[j + HDI_ROWS_AHEAD]]);
 }
 
-/* The elimination tree of the order given. */
-static void hdi_sym_etree(const hdi_sym_work *w) {
+/* The elimination tree of an order. ancestor [n]: shortcuts from a column to the root of its tree so far. */
+static void hdi_sym_etree(const hdi_sym_work *w, int32_t *parent, int32_t *ancestor) {
     const hd_csr *a = w->a;
-    int32_t i, k, next, *parent = w->given.parent, *ancestor = w->ancestor;
+    int32_t i, k, next;
     int64_t p;
     for (i = 0; i < a->n_rows; i++) {
         hdi_sym_fetch(a, w->perm, i);
@@ -10338,34 +10294,44 @@ static void hdi_sym_etree(const hdi_sym_work *w) {
     }
 }
 
-/* Brings the columns to a postorder of their tree. */
-static void hdi_sym_postorder(const hdi_sym_work *w) {
-    const hdi_forest *f = &w->given;
-    int32_t k;
-    for (k = 0; k < f->n; k++) w->place[w->perm[k]] = k;
-    for (k = 0; HDI_AUDIT && k < f->n; k++) HEATDIFF_ASSERT(w->place[w->perm[k]] == k);
-    hdi_sym_etree(w);
-    hdi_forest_link(f);
-    hdi_forest_postorder(f, w->order);
-    for (k = 0; k < f->n; k++) w->place[w->perm[w->order[k]]] = k;
-    for (k = 0; k < f->n; k++) {
-        const int32_t up = f->parent[w->order[k]];
+/* Brings the columns from the order given to a postorder of their tree. */
+static hd_status hdi_sym_postorder(const hdi_sym_work *w) {
+    const hdi_forest f = hdi_forest_take(w->a->n_rows, w->temp);
+    int32_t k, *order = HDI_TAKE(w->temp, int32_t, f.n), *ancestor = HDI_TAKE(w->temp, int32_t, f.n);
+    if (w->temp->e->status < 0) return w->temp->e->status;
+    for (k = 0; k < f.n; k++) w->place[w->perm[k]] = k;
+    for (k = 0; HDI_AUDIT && k < f.n; k++) HEATDIFF_ASSERT(w->place[w->perm[k]] == k);
+    hdi_sym_etree(w, f.parent, ancestor);
+    hdi_forest_link(&f);
+    hdi_forest_postorder(&f, order);
+    for (k = 0; k < f.n; k++) w->place[w->perm[order[k]]] = k;
+    for (k = 0; k < f.n; k++) {
+        const int32_t up = f.parent[order[k]];
         w->parent[k] = up < 0 ? -1 : w->place[w->perm[up]];
     }
-    for (k = 0; k < f->n; k++) w->perm[w->place[k]] = k;
+    for (k = 0; k < f.n; k++) w->perm[w->place[k]] = k;
+    return HD_OK;
 }
 
+/* What is known of a row of L while columns are counted: the last column of A with an entry in it, and the
+ * last of those that is a leaf of the row's subtree. -1: none. */
+typedef struct hdi_row_seen { int32_t column, leaf; } hdi_row_seen;
+
 /* Column counts of L. Row i of L is a subtree of the tree, its leaves are entries of A. A column's count is
- * what the leaves add to it, less what the least common ancestors of neighbouring leaves take back. */
-static void hdi_sym_counts(const hdi_sym_work *w) {
+ * what the leaves add to it, less what the least common ancestors of neighbouring leaves take back. first:
+ * the first column of a column's subtree. set: union-find; a counted column joins its parent. */
+static hd_status hdi_sym_counts(const hdi_sym_work *w) {
     const hd_csr *a = w->a;
     const int32_t n = a->n_rows, *parent = w->parent;
-    int32_t j, q, *count = w->count, *first = w->first;
+    int32_t *count = w->count, *first = HDI_TAKE(w->temp, int32_t, n), *set = HDI_TAKE(w->temp, int32_t, n);
+    int32_t j, q;
+    hdi_row_seen *seen = HDI_TAKE(w->temp, hdi_row_seen, n);
     int64_t p;
-    hdi_fill_own(w->set, n);
+    if (w->temp->e->status < 0) return w->temp->e->status;
+    hdi_fill_own(set, n);
     hdi_fill_i32(first, n, -1);
     for (j = 0; j < n; j++) {
-        w->seen[j].column = w->seen[j].leaf = -1;
+        seen[j].column = seen[j].leaf = -1;
         count[j] = first[j] == -1;               /* a leaf of the tree */
         for (q = j; q != -1 && first[q] == -1; q = parent[q]) first[q] = j;
     }
@@ -10374,25 +10340,26 @@ static void hdi_sym_counts(const hdi_sym_work *w) {
         if (parent[j] >= 0) count[parent[j]]--;
         for (p = a->row_ptr[w->perm[j]]; p < a->row_ptr[w->perm[j] + 1]; p++) {
             const int32_t i = w->place[a->col[p]];
-            hdi_row_seen *row = w->seen + i;
+            hdi_row_seen *row = seen + i;
             if (i <= j) continue;
             if (first[j] > row->column) {        /* j is a leaf of row subtree i */
                 count[j]++;
-                if (row->leaf >= 0) count[hdi_find(w->set, row->leaf)]--;
+                if (row->leaf >= 0) count[hdi_find(set, row->leaf)]--;
                 row->leaf = j;
             }
             row->column = j;
         }
-        if (parent[j] >= 0) w->set[j] = parent[j];
+        if (parent[j] >= 0) set[j] = parent[j];
     }
     for (j = 0; j < n; j++)
         if (parent[j] >= 0) count[parent[j]] += count[j];
+    return HD_OK;
 }
 
 /* ---- supernodes ---- */
 
-/* Neighbouring columns with the same structure, in postorder. */
-static void hdi_sym_nodes(hdi_sym_work *w) {
+/* Neighbouring columns with the same structure, in postorder. node_of [n]: the node of a column. */
+static void hdi_sym_nodes(hdi_sym_work *w, int32_t *node_of) {
     const int32_t n = w->a->n_rows;
     int32_t j, k = -1;
     for (j = 0; j < n; j++) {
@@ -10405,13 +10372,13 @@ static void hdi_sym_nodes(hdi_sym_work *w) {
             v->then = -1;
         }
         w->node[k].pivots++;
-        w->node_of[j] = k;
+        node_of[j] = k;
     }
     w->tree.n = k + 1;
     w->node[k + 1].begin = n;
     for (k = 0; k < w->tree.n; k++) {
         const int32_t up = w->parent[w->node[k + 1].begin - 1];
-        w->tree.parent[k] = up < 0 ? -1 : w->node_of[up];
+        w->tree.parent[k] = up < 0 ? -1 : node_of[up];
     }
 }
 
@@ -10458,25 +10425,26 @@ static void hdi_sym_relax(const hdi_sym_work *w) {
 }
 
 /* Sorts the children of node v: those come first whose subtrees need much more room while under way than they
- * leave behind (Liu 1986). */
-static void hdi_sym_sort_kids(const hdi_sym_work *w, int32_t v) {
+ * leave behind (Liu 1986). peak [n]: the most room that a node and all below it need for update matrices.
+ * pair [n]: work space. */
+static void hdi_sym_sort_kids(const hdi_sym_work *w, int32_t v, int64_t *peak, hdi_pair *pair) {
     const hdi_forest *f = &w->tree;
     int32_t c, *link = f->kid + v;
     int64_t held = 0, n = 0;
     for (c = *link; c >= 0; c = f->next[c]) {
-        w->pair[n].key = (uint64_t)(w->peak[c] - hdi_node_update(w->node + c));
-        w->pair[n++].id = c;
+        pair[n].key = (uint64_t)(peak[c] - hdi_node_update(w->node + c));
+        pair[n++].id = c;
     }
-    hdi_sort_pairs(w->pair, n);
-    w->peak[v] = 0;
+    hdi_sort_pairs(pair, n);
+    peak[v] = 0;
     while (n-- > 0) {
-        c = *link = (int32_t)w->pair[n].id;
+        c = *link = (int32_t)pair[n].id;
         link = f->next + c;
-        w->peak[v] = hdi_most(w->peak[v], held + w->peak[c]);
+        peak[v] = hdi_most(peak[v], held + peak[c]);
         held += hdi_node_update(w->node + c);
     }
     *link = -1;
-    w->peak[v] = hdi_most(w->peak[v], held + hdi_node_update(w->node + v));
+    peak[v] = hdi_most(peak[v], held + hdi_node_update(w->node + v));
 }
 
 /* Panels come in blocks of at most HDI_PANEL columns, each from its first pivot's row on: what stands above
@@ -10514,15 +10482,16 @@ static void hdi_sym_measure(hdi_symbolic *s, int32_t k, const hdi_node *v) {
     for (c = 0; c < p; c++) s->flops_done += (double)(m - c) * (double)(m - c);
 }
 
-/* Numbers the supernodes by the order of their nodes, and the columns by their supernodes. */
-static void hdi_sym_number(hdi_symbolic *s, const hdi_sym_work *w) {
+/* Numbers the supernodes by the order of their nodes, and the columns by their supernodes. number [n]: the
+ * supernode of a node. */
+static void hdi_sym_number(hdi_symbolic *s, const hdi_sym_work *w, const int32_t *order, int32_t *number) {
     int32_t k, q, j, i = 0;
     s->super[0] = 0;
     s->row_ptr[0] = s->panel[0] = 0;
-    for (k = 0; k < s->n_super; k++) w->number[w->node_order[k]] = k;
+    for (k = 0; k < s->n_super; k++) number[order[k]] = k;
     for (k = 0; k < s->n_super; k++) {
-        const int32_t v = w->node_order[k], up = w->tree.parent[v];
-        s->parent[k] = up < 0 ? -1 : w->number[up];
+        const int32_t v = order[k], up = w->tree.parent[v];
+        s->parent[k] = up < 0 ? -1 : number[up];
         hdi_sym_measure(s, k, w->node + v);
         for (q = w->node[v].first; q >= 0; q = w->node[q].then) {
             for (j = w->node[q].begin; j < w->node[q + 1].begin; j++) {
@@ -10538,21 +10507,32 @@ static void hdi_sym_number(hdi_symbolic *s, const hdi_sym_work *w) {
 
 /* Supernodes, merged, in an order that needs little room, and the elimination order. */
 static hd_status hdi_sym_supernodes(hdi_symbolic *s, hdi_sym_work *w, hdi_scope *keep) {
-    int32_t v;
+    int32_t v, *node_of = HDI_TAKE(w->temp, int32_t, s->n), *order = HDI_TAKE(w->temp, int32_t, s->n);
+    int64_t *peak = HDI_TAKE(w->temp, int64_t, s->n);
+    hdi_pair *pair = HDI_TAKE(w->temp, hdi_pair, s->n);
+    w->tree = hdi_forest_take(s->n, w->temp);
+    w->node = HDI_TAKE(w->temp, hdi_node, (int64_t)s->n + 1);
+    if (keep->e->status < 0) return keep->e->status;
     for (v = 0; v < s->n; v++) {
         s->nnz += w->count[v];
         s->flops += (double)w->count[v] * w->count[v];
     }
-    hdi_sym_nodes(w);
+    hdi_sym_nodes(w, node_of);
     hdi_sym_relax(w);
     hdi_forest_link(&w->tree);
-    for (v = 0; v < w->tree.n; v++) hdi_sym_sort_kids(w, v);
-    s->n_super = hdi_forest_postorder(&w->tree, w->node_order);
-    if (hdi_sym_take_supernodes(s, keep) >= 0) hdi_sym_number(s, w);
+    for (v = 0; v < w->tree.n; v++) hdi_sym_sort_kids(w, v, peak, pair);
+    s->n_super = hdi_forest_postorder(&w->tree, order);
+    if (hdi_sym_take_supernodes(s, keep) >= 0) hdi_sym_number(s, w, order, node_of);
     return keep->e->status;
 }
 
 /* ---- fronts ---- */
+
+/* A supernode while its rows are collected: the last row that it got, its parent, where its next row goes. */
+typedef struct hdi_sym_walk {
+    int32_t mark, up;
+    int64_t fill;
+} hdi_sym_walk;
 
 /* Row i of L is a subtree of the supernodes' tree, walked up from the entries of row i of A: v and those
  * above it, before supernode end, get row i. */
@@ -10566,16 +10546,16 @@ static void hdi_sym_climb(hdi_sym_walk *walk, int32_t *row, int32_t i, int32_t v
 /* Fills the rows below the pivots of all supernodes, and the entries of A by fronts; the rows of the entries
  * are still those of the whole matrix. A processor cannot predict whether an entry of A stands before the
  * pivot of its row or after it. So each entry is written to both lists, and only the list where it belongs
- * gets longer. */
-static void hdi_sym_rows(hdi_symbolic *s, const hdi_sym_work *w) {
+ * gets longer. before [n]: columns in a row of A before its pivot. */
+static void hdi_sym_rows(hdi_symbolic *s, const hdi_sym_work *w, hdi_sym_walk *walk, int32_t *before) {
     const hd_csr *a = w->a;
     int64_t p, r = 0;
     int32_t j, v, q;
     s->a_ptr[0] = 0;
     for (v = 0; v < s->n_super; v++) {
-        w->walk[v].mark = -1;
-        w->walk[v].up = s->parent[v];
-        w->walk[v].fill = s->row_ptr[v];
+        walk[v].mark = -1;
+        walk[v].up = s->parent[v];
+        walk[v].fill = s->row_ptr[v];
     }
     for (j = 0; j < s->n; j++) {
         const int32_t first = s->super[v = s->super_of[j]];
@@ -10586,17 +10566,18 @@ static void hdi_sym_rows(hdi_symbolic *s, const hdi_sym_work *w) {
             s->a_col[r] = j - first;
             s->a_from[r] = p;
             r += i >= j;
-            w->before[q] = i;
+            before[q] = i;
             q += i < j;
         }
         s->a_ptr[v + 1] = r;
-        while (q-- > 0) hdi_sym_climb(w->walk, s->row, j, s->super_of[w->before[q]], v);
+        while (q-- > 0) hdi_sym_climb(walk, s->row, j, s->super_of[before[q]], v);
     }
     HEATDIFF_ASSERT(r <= (a->nnz + s->n) / 2);
-    for (v = 0; HDI_AUDIT && v < s->n_super; v++) HEATDIFF_ASSERT(w->walk[v].fill == s->row_ptr[v + 1]);
+    for (v = 0; HDI_AUDIT && v < s->n_super; v++) HEATDIFF_ASSERT(walk[v].fill == s->row_ptr[v + 1]);
 }
 
-/* Finds where the entries of A and the rows of children stand in each front. */
+/* Finds where the entries of A and the rows of children stand in each front. at [n]: where a row of the
+ * matrix stands in the front at hand. */
 static void hdi_sym_places(hdi_symbolic *s, int32_t *at) {
     int32_t v, k;
     int64_t p;
@@ -10621,14 +10602,16 @@ static void hdi_sym_places(hdi_symbolic *s, int32_t *at) {
 static hd_status hdi_sym_fronts(hdi_symbolic *s, const hdi_sym_work *w, hdi_scope *keep) {
     /* one entry more than the triangle has: the last one written may turn out to belong to the other list */
     const int64_t rows = s->row_ptr[s->n_super], entries = (w->a->nnz + s->n) / 2 + 1;
+    hdi_sym_walk *walk = HDI_TAKE(w->temp, hdi_sym_walk, s->n_super);
+    int32_t *before = HDI_TAKE(w->temp, int32_t, s->n), *at = HDI_TAKE(w->temp, int32_t, s->n);
     s->row = HDI_TAKE(keep, int32_t, rows);
     s->rel = HDI_TAKE(keep, int32_t, rows);
     s->a_from = HDI_TAKE(keep, int64_t, entries);
     s->a_row = HDI_TAKE(keep, int32_t, entries);
     s->a_col = HDI_TAKE(keep, int32_t, entries);
     if (keep->e->status < 0 || hdi_progress(keep->ctx, "analyse", 0.6, keep->e) < 0) return keep->e->status;
-    hdi_sym_rows(s, w);
-    hdi_sym_places(s, w->at);
+    hdi_sym_rows(s, w, walk, before);
+    hdi_sym_places(s, at);
     return HD_OK;
 }
 
@@ -10770,23 +10753,37 @@ static int64_t hdi_stacks_place(const hdi_symbolic *s, int matrices, int64_t *at
     return end;
 }
 
+/* The steps of an analysis. */
+static hd_status hdi_symbolic_steps(hdi_symbolic *s, hdi_sym_work *w, hdi_scope *keep) {
+    const int32_t n = s->n;
+    hd_error *e = keep->e;
+    double *work = HDI_TAKE(w->temp, double, n);
+    char *side = HDI_TAKE(w->temp, char, n);
+    w->place = HDI_TAKE(w->temp, int32_t, n);
+    w->parent = HDI_TAKE(w->temp, int32_t, n);
+    w->count = HDI_TAKE(w->temp, int32_t, n);
+    if (e->status < 0 || hdi_sym_postorder(w) < 0 || hdi_sym_counts(w) < 0 ||
+        hdi_progress(keep->ctx, "analyse", 0.4, e) < 0 || hdi_sym_supernodes(s, w, keep) < 0 ||
+        hdi_sym_fronts(s, w, keep) < 0)
+        return e->status;
+    hdi_sym_tasks(s, work);
+    s->work = hdi_stacks_place(s, 1, s->update, side);
+    s->vector_size = hdi_stacks_place(s, 0, s->vector, side);
+    return HD_OK;
+}
+
 /* Analysis of a symmetric pattern under the order perm, which is used up. */
 static hd_status hdi_symbolic_make(hdi_symbolic *s, const hd_csr *a, int32_t *perm, hd_context *ctx,
                                    hd_error *e) {
     hdi_scope keep = hdi_scope_begin(ctx, e), temp = hdi_scope_begin(ctx, e);
     hdi_sym_work w;
     memset(s, 0, sizeof *s);
+    memset(&w, 0, sizeof w);
     s->n = a->n_rows;
-    if (hdi_sym_work_take(&w, a, perm, &temp) >= 0) {
-        hdi_sym_postorder(&w);
-        hdi_sym_counts(&w);
-        if (hdi_progress(ctx, "analyse", 0.4, e) >= 0 && hdi_sym_supernodes(s, &w, &keep) >= 0 &&
-            hdi_sym_fronts(s, &w, &keep) >= 0) {
-            hdi_sym_tasks(s, w.work);
-            s->work = hdi_stacks_place(s, 1, s->update, w.side);
-            s->vector_size = hdi_stacks_place(s, 0, s->vector, w.side);
-        }
-    }
+    w.a = a;
+    w.temp = &temp;
+    w.perm = perm;
+    hdi_symbolic_steps(s, &w, &keep);
     hdi_scope_end(&temp);
     if (e->status < 0) {
         memset(s, 0, sizeof *s);
