@@ -4116,7 +4116,7 @@ HDI_PART void HDI_OF(product_eight)(const int nc, const hdi_product *g, int64_t 
     t.b_row = g->b_row;
     t.depth = g->depth;
     t.a = g->a + i;
-    t.b = g->b + j * g->b_col;
+    t.b = g->b + j / HDI_COLS * g->b_next;       /* j is a multiple of HDI_COLS */
     t.off = off;
     HDI_OF(tile_sum)(pack, HDI_EIGHT, nc, 0, 0, &t, x);
     HDI_EACH(k, nc) {
