@@ -1043,7 +1043,8 @@ HEATDIFF_API hd_status hd_laplacian_polygons(hd_laplacian **out, const double *x
  * other point reaches become components of their own. Cells at a border end at the hull of the neighbours.
  * lap->points counts each of these cases.
  * Errors HD_ERR_NOT_FINITE (vertex), HD_ERR_ARGUMENT (also by vertex: a coordinate beyond 1e100, or all
- *        points within 1e-100 of each other, but not in one place), HD_ERR_EMPTY (fewer than two places, or
+ *        points within 1e-100 of each other, but not in one place; or a cell whose area is not 0 and outside
+ *        1e-100 .. 1e100), HD_ERR_EMPTY (fewer than two places, or
  *        all on a line), HD_ERR_MEMORY, HD_ERR_CANCELLED
  * Cost   O(n log n + nnz)
  * Source Liu, Prabhakaran, Guo 2012 (voronoi-exp); Belkin, Niyogi 2008 (exp). Differences: weights are cut by
@@ -1083,7 +1084,7 @@ HEATDIFF_API hd_status hd_laplacian_tufted_points(hd_laplacian **out, const doub
  * h      unit length of the caller's mesh, for lap->h; 0 if there is none
  * The pair has the union of both patterns. Explicit zeros stay if their mirror entry is stored too.
  * Errors as hd_csr_check; HD_ERR_NOT_FINITE (row, value: the sizes of its entries in L or in B add up to
- *        more than 1e290), HD_ERR_NOT_POSITIVE (row, column, value; so are entries B_ii below 1e-290),
+ *        more than 1e100), HD_ERR_NOT_POSITIVE (row, column, value; so are entries B_ii below 1e-100),
  *        HD_ERR_EMPTY, HD_ERR_MEMORY, HD_ERR_CANCELLED
  * Cost   linear, except for a factorisation of B */
 HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L, const hd_csr *B,
@@ -6917,6 +6918,35 @@ static hd_status hdi_soup_delaunay(hdi_flat *flat, int close, hd_mesh_report *re
 /* How masses are lumped. */
 typedef enum hdi_lump { HDI_LUMP_PARTS, HDI_LUMP_MIXED, HDI_LUMP_ONES } hdi_lump;
 
+/* What a Laplacian is made of. */
+typedef enum hdi_made_of {
+    HDI_OF_NONE, HDI_OF_TRIANGLES, HDI_OF_POLYGONS, HDI_OF_POINTS, HDI_OF_MATRICES
+} hdi_made_of;
+
+/* What kinds of Laplacians differ in. */
+typedef struct hdi_kind {
+    hdi_made_of of;
+    hdi_lump lump;
+    int full;                   /* B is not diagonal */
+} hdi_kind;
+
+static const hdi_kind hdi_kinds[] = {
+    {HDI_OF_NONE, HDI_LUMP_PARTS, 0},            /* HD_LAPLACIAN_DEFAULT */
+    {HDI_OF_TRIANGLES, HDI_LUMP_PARTS, 1},       /* _FEM */
+    {HDI_OF_TRIANGLES, HDI_LUMP_MIXED, 0},       /* _VORONOI_COT */
+    {HDI_OF_TRIANGLES, HDI_LUMP_ONES, 0},        /* _COT */
+    {HDI_OF_POLYGONS, HDI_LUMP_PARTS, 0},        /* _POLYGON */
+    {HDI_OF_POINTS, HDI_LUMP_MIXED, 0},          /* _VORONOI_EXP */
+    {HDI_OF_POINTS, HDI_LUMP_ONES, 0},           /* _EXP */
+    {HDI_OF_MATRICES, HDI_LUMP_PARTS, 0}         /* _MATRICES */
+};
+typedef char hdi_kinds_are_all[sizeof hdi_kinds == (HD_LAPLACIAN_MATRICES + 1) * sizeof(hdi_kind) ? 1 : -1];
+
+/* The first for a number that is none. */
+static const hdi_kind *hdi_kind_of(hd_laplacian_kind kind) {
+    return hdi_kinds + (kind >= HD_LAPLACIAN_DEFAULT && kind <= HD_LAPLACIAN_MATRICES ? kind : 0);
+}
+
 /* What a vertex shares with another one. */
 typedef struct hdi_entry {
     double L, B;                /* sums of elements, and of areas */
@@ -7056,12 +7086,6 @@ static void hdi_lap_drop(hd_laplacian *lap) {
     hdi_let_go(ctx);
 }
 
-static hdi_lump hdi_lap_lump(hd_laplacian_kind kind) {
-    return kind == HD_LAPLACIAN_COT           ? HDI_LUMP_ONES
-           : kind == HD_LAPLACIAN_VORONOI_COT ? HDI_LUMP_MIXED
-                                              : HDI_LUMP_PARTS;
-}
-
 static hd_status hdi_held_all(hd_error *e) {
     return hdi_fail(e, HD_ERR_EMPTY, "laplacian: all vertices with mass are held at zero");
 }
@@ -7165,12 +7189,6 @@ static double hdi_sum_areas(const double *area, int32_t m) {
     return sum;
 }
 
-/* Refuses a mesh whose area or mean edge length overflows, although those of its faces do not. */
-static hd_status hdi_lap_finite(double area, double h, hd_error *e) {
-    if (hdi_finite(area) && hdi_finite(h)) return HD_OK;
-    return hdi_fail(e, HD_ERR_NOT_FINITE, "coordinates are so large that the area is not finite");
-}
-
 /* Copies the places of the rows, where there are any. */
 static hd_status hdi_lap_places(hd_laplacian *lap, const double *xyz, hd_error *e) {
     int32_t i;
@@ -7210,7 +7228,7 @@ static double hdi_mixed_mass(const double *cot, int64_t q, double area) {
     const double most = hdi_max(cot[0], hdi_max(cot[1], cot[2]));
     const double sum = cot[1] * cot[2] + cot[2] * cot[0] + cot[0] * cot[1];
     if (least < 0) return cot[q] < 0 ? area / 2 : area / 4;
-    if (!(hdi_finite(sum) && sum > 1e-100)) return cot[q] < most ? area / 4 + area / 8 : area / 4;
+    if (!(sum > 1e-100)) return cot[q] < most ? area / 4 + area / 8 : area / 4;
     return area / 4 + area / 4 * (cot[hdi_next3[q]] * cot[hdi_prev3[q]] / sum);
 }
 
@@ -7502,9 +7520,9 @@ static void hdi_lap_values(hd_laplacian *lap, hdi_rows *x) {
 
 /* Rows, L and B of a mesh that x knows. full: B is, if its kind is. */
 static hd_status hdi_lap_assemble(hd_laplacian *lap, hdi_rows *x, const double *xyz, int full, hd_error *e) {
-    x->lump = hdi_lap_lump(lap->kind);
+    x->lump = hdi_kind_of(lap->kind)->lump;
     hdi_rows_border(x, lap);
-    if (hdi_lap_pattern(lap, x, full && lap->kind == HD_LAPLACIAN_FEM, e) < 0 ||
+    if (hdi_lap_pattern(lap, x, full && hdi_kind_of(lap->kind)->full, e) < 0 ||
         hdi_progress(lap->context, "assemble", 0.4, e) < 0 || hdi_lap_places(lap, xyz, e) < 0)
         return e->status;
     hdi_lap_values(lap, x);
@@ -7562,16 +7580,13 @@ static hd_status hdi_lap_update(hd_laplacian *lap, const double *xyz, hd_error *
     hdi_scope none = hdi_scope_begin(lap->context, e);
     hdi_rows *x = &lap->moving->fill;
     hd_mesh_report *to = &lap->mesh, rep;
-    double area;
     int32_t i;
     if (hdi_points_check(xyz, lap->n, e) < 0) return e->status;
     x->mesh.xyz = xyz;
     memset(&rep, 0, sizeof rep);
     if (hdi_faces_measure(&x->mesh, &rep, &none) < 0 || hdi_moving_masses(&x->mesh, e) < 0) return e->status;
-    area = hdi_sum_areas(x->mesh.area, x->mesh.m);
-    if (hdi_lap_finite(area, 0, e) < 0) return e->status;
     hdi_lap_values(lap, x);
-    lap->area = area;
+    lap->area = hdi_sum_areas(x->mesh.area, x->mesh.m);
     lap->h = hdi_rows_report(x, to);
     for (i = 0; i < lap->n_active; i++) hdi_copy3(lap->xyz + hdi_triple(i), hdi_at3(xyz, lap->vertex[i]));
     to->n_faces_used = rep.n_faces_used;
@@ -7813,10 +7828,6 @@ static hd_status hdi_pair_pattern(hd_laplacian *lap, const hd_csr *L, const hd_c
     return hdi_scope_end(&s);
 }
 
-/* Numbers of the caller's matrices lie between this and its inverse: sums over all rows, and inverses of
- * masses times numbers that are not large themselves, stay within the range of doubles. */
-#define HDI_PAIR_MOST 1e290
-
 /* What is summed up over a row of the caller's matrices; inert vertices do not count. */
 typedef struct hdi_pair_row {
     double l_diag, l_abs, b_diag, b_all, b_mass; /* b_mass: without vertices held */
@@ -7849,13 +7860,13 @@ static hd_status hdi_pair_sums(const hd_laplacian *lap, const hd_csr *L, const h
 static hd_status hdi_pair_check(const hdi_pair_row *r, int32_t v, hd_error *e) {
     if (!(r->b_diag > 0))
         return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "B: a diagonal entry is not positive", v, v, r->b_diag);
-    if (r->b_diag < 1 / HDI_PAIR_MOST)
-        return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "B: a diagonal entry is below 1e-290", v, v, r->b_diag);
-    if (!(r->b_diag + r->b_off.high <= HDI_PAIR_MOST))
-        return hdi_fail_row(e, HD_ERR_NOT_FINITE, "B: the sizes of a row's entries exceed 1e290 together", v,
+    if (r->b_diag < 1 / HDI_RANGE)
+        return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "B: a diagonal entry is below 1e-100", v, v, r->b_diag);
+    if (!(r->b_diag + r->b_off.high <= HDI_RANGE))
+        return hdi_fail_row(e, HD_ERR_NOT_FINITE, "B: the sizes of a row's entries exceed 1e100 together", v,
                             -1, r->b_diag + r->b_off.high);
-    if (!(r->l_abs <= HDI_PAIR_MOST))
-        return hdi_fail_row(e, HD_ERR_NOT_FINITE, "L: the sizes of a row's entries exceed 1e290 together", v,
+    if (!(r->l_abs <= HDI_RANGE))
+        return hdi_fail_row(e, HD_ERR_NOT_FINITE, "L: the sizes of a row's entries exceed 1e100 together", v,
                             -1, r->l_abs);
     if (r->l_diag + 1e-12 * r->l_abs < 0)
         return hdi_fail_row(e, HD_ERR_NOT_POSITIVE,
@@ -8252,8 +8263,12 @@ static hd_status hdi_cloud_measure(hdi_cloud *cloud, hd_laplacian *lap, hdi_scop
         cloud->start[i][0] = r * cos(step * i);
         cloud->start[i][1] = r * sin(step * i);
     }
-    if (hdi_progress(s->ctx, "assemble", 0.2, s->e) >= 0)
-        hdi_parallel_ranges(s->ctx, n, HDI_CELLS_PER_TASK, hdi_cell_task, cloud);
+    if (hdi_progress(s->ctx, "assemble", 0.2, s->e) < 0) return hdi_scope_end(&own);
+    hdi_parallel_ranges(s->ctx, n, HDI_CELLS_PER_TASK, hdi_cell_task, cloud);
+    for (i = 0; i < n && s->e->status >= 0; i++)
+        if (cloud->area[i] != 0 && !hdi_in_range(cloud->area[i]))
+            hdi_fail_face(s->e, HD_ERR_ARGUMENT, "points: the area of a cell is outside 1e-100 .. 1e100", -1,
+                          cloud->first[i], cloud->area[i]);
     return hdi_scope_end(&own);
 }
 
@@ -8289,7 +8304,7 @@ static void hdi_weights_task(void *arg, int64_t begin, int64_t end) {
     const hdi_weights *job = (const hdi_weights *)arg;
     hd_laplacian *lap = job->lap;
     const double quarter = -0.25 / job->bandwidth,
-                 *mass = lap->kind == HD_LAPLACIAN_VORONOI_EXP ? lap->mass : NULL;
+                 *mass = hdi_kind_of(lap->kind)->lump == HDI_LUMP_ONES ? NULL : lap->mass;
     int64_t i, p;
     for (i = begin; i < end; i++) {
         double sum = 0, *diagonal = NULL;
@@ -8344,7 +8359,8 @@ static void hdi_cloud_masses(const hdi_cloud *cloud, hd_laplacian *lap, const in
     for (i = 0; i < cloud->n; i++) copies[i] = 0;
     for (i = 0; i < lap->n; i++) copies[place[i]]++;
     for (i = 0; i < lap->n; i++)
-        mass[i] = lap->kind == HD_LAPLACIAN_EXP ? 1 : cloud->area[place[i]] / copies[place[i]];
+        mass[i] = hdi_kind_of(lap->kind)->lump == HDI_LUMP_ONES ? 1
+                                                                : cloud->area[place[i]] / copies[place[i]];
     for (i = 0; i < cloud->n; i++) {
         lap->area += cloud->area[i];
         rep->n_border += cloud->border[i];
@@ -8397,7 +8413,7 @@ static void hdi_point_opts(hd_laplacian *lap, const hd_laplacian_opts *opts, hd_
     hd_point_report *rep = &lap->points;
     rep->bandwidth = opts ? opts->bandwidth : 0;
     rep->weight_cut = opts && opts->weight_cut != 0 ? opts->weight_cut : HDI_WEIGHT_CUT;
-    hdi_refuse(lap->kind != HD_LAPLACIAN_VORONOI_EXP && lap->kind != HD_LAPLACIAN_EXP,
+    hdi_refuse(hdi_kind_of(lap->kind)->of != HDI_OF_POINTS,
                "laplacian of points: the kind is voronoi-exp or exp "
                "(hd_laplacian_tufted_points has fem, voronoi-cot and cot)", e);
     hdi_refuse(opts && opts->updatable,
@@ -23745,7 +23761,7 @@ static double hdi_probe_value(const hd_heat *heat, const hdi_probe *x, int32_t r
 #define HDI_DIAGONAL_LOOSE 50
 
 static double hdi_diagonal_limit(const hd_laplacian *lap, hd_kernel kernel) {
-    const int plain = lap->kind == HD_LAPLACIAN_COT || lap->kind == HD_LAPLACIAN_EXP;
+    const int plain = hdi_kind_of(lap->kind)->lump == HDI_LUMP_ONES;
     const double loose = kernel == HD_KERNEL_OPERATOR && lap->B ? HDI_DIAGONAL_LOOSE : 1;
     return loose * (plain ? HDI_DIAGONAL_SURE_PLAIN : HDI_DIAGONAL_SURE);
 }
@@ -26746,7 +26762,7 @@ static hd_status hdi_geo_make(hd_geodesic *g, const hdi_geo_input *in, const hd_
     g->t_asked = o->t;
     g->t_in_h2 = o->t_in_h2 > 0 ? o->t_in_h2 : 1;
     if ((o->border == HD_GEODESIC_BORDER_NATURAL || hdi_holding_make(lap, 2, NULL, 0, e) >= 0) &&
-        hdi_geo_surface_make(lap, &z, in, &s) >= 0 && hdi_lap_finite(lap->area, lap->h, e) >= 0) {
+        hdi_geo_surface_make(lap, &z, in, &s) >= 0) {
         g->n_active = lap->n_active;
         g->copies = z.flat.unit > 0 ? z.flat.unit : 1;
         if (o->updatable) g->lap = lap;
@@ -27751,9 +27767,8 @@ static hd_status hdi_lap_done(hd_laplacian **out, hd_laplacian *lap, hd_status s
     return status;
 }
 
-/* The same once the pair of all vertices is there. */
+/* The same once the pair is there. */
 static hd_status hdi_lap_end(hd_laplacian **out, hd_laplacian *lap, hd_status status, hd_error *e) {
-    if (status >= 0 && lap->kind != HD_LAPLACIAN_MATRICES) status = hdi_lap_finite(lap->area, lap->h, e);
     return hdi_lap_done(out, lap, status < 0 ? status : hdi_lap_hold(lap, e));
 }
 
@@ -27764,10 +27779,6 @@ static hd_status hdi_lap_begin(const hdi_call *c) {
 
 static hd_laplacian_kind hdi_lap_kind(const hd_laplacian_opts *opts, hd_laplacian_kind otherwise) {
     return opts && HDI_CLEARED(opts) && opts->kind != HD_LAPLACIAN_DEFAULT ? opts->kind : otherwise;
-}
-
-static int hdi_kind_of_triangles(hd_laplacian_kind kind) {
-    return kind == HD_LAPLACIAN_FEM || kind == HD_LAPLACIAN_VORONOI_COT || kind == HD_LAPLACIAN_COT;
 }
 
 /* Of a mesh by coordinates, or by lengths. missing: neither is there. */
@@ -27781,7 +27792,7 @@ static hd_status hdi_triangles_make(hd_laplacian **out, const hdi_mesh *mesh, in
     if (!out || missing || (mesh->m > 0 && !mesh->tri)) hdi_missing(c.e);
     hdi_refuse(mesh->m < 0, "laplacian: a size is negative", c.e);
     hdi_refuse(mesh->len && opts && opts->updatable, "laplacian of lengths: it is not updatable", c.e);
-    hdi_refuse(!hdi_kind_of_triangles(lap->kind),
+    hdi_refuse(hdi_kind_of(lap->kind)->of != HDI_OF_TRIANGLES,
                "laplacian of triangles: the kind is fem, voronoi-cot or cot", c.e);
     intrinsic = hdi_intrinsic_opts(opts, &task, c.e);
     hdi_refuse(intrinsic && opts->updatable,
@@ -27826,7 +27837,7 @@ HEATDIFF_API hd_status hd_laplacian_polygons(hd_laplacian **out, const double *x
                                              int32_t n_faces, const hd_laplacian_opts *opts, hd_error *err) {
     const int flips = opts && (opts->intrinsic_delaunay || opts->tufted);
     const hd_laplacian_kind kind = hdi_lap_kind(opts, flips ? HD_LAPLACIAN_FEM : HD_LAPLACIAN_POLYGON);
-    const int splits = hdi_kind_of_triangles(kind), updatable = opts && opts->updatable;
+    const int splits = hdi_kind_of(kind)->of == HDI_OF_TRIANGLES, updatable = opts && opts->updatable;
     hdi_intrinsic_task task;
     hdi_mesh poly;
     hdi_call c;
@@ -27838,7 +27849,7 @@ HEATDIFF_API hd_status hd_laplacian_polygons(hd_laplacian **out, const double *x
     poly.lambda = opts && opts->lambda != 0 ? opts->lambda : 1;
     if (!out || (n > 0 && !xyz) || (n_faces > 0 && !face_ptr)) hdi_missing(c.e);
     hdi_refuse(n_faces < 0, "laplacian: a size is negative", c.e);
-    hdi_refuse(!splits && kind != HD_LAPLACIAN_POLYGON,
+    hdi_refuse(!splits && hdi_kind_of(kind)->of != HDI_OF_POLYGONS,
                "laplacian of polygons: the kind is polygon, fem, voronoi-cot or cot", c.e);
     hdi_refuse(!hdi_finite(poly.lambda) || !(poly.lambda > 0 && poly.lambda <= 1e100),
                "laplacian of polygons: lambda is not between 0 and 1e100", c.e);
@@ -27894,7 +27905,7 @@ HEATDIFF_API hd_status hd_laplacian_tufted_points(hd_laplacian **out, const doub
     if (!HDI_HAS_INTRINSIC)
         return hdi_lap_done(out, lap, HDI_LEFT_OUT(c.e, INTRINSIC, "intrinsic triangulations"));
     if (!out || (n > 0 && !xyz) || (nbr_ptr && nbr_ptr[n] > 0 && !nbr) || (nbr && !nbr_ptr)) hdi_missing(c.e);
-    hdi_refuse(!hdi_kind_of_triangles(lap->kind),
+    hdi_refuse(hdi_kind_of(lap->kind)->of != HDI_OF_TRIANGLES,
                "tufted laplacian of points: the kind is fem, voronoi-cot or cot", c.e);
     (void)hdi_intrinsic_opts(opts, &task, c.e);
     hdi_refuse(opts && opts->updatable,

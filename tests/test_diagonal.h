@@ -937,7 +937,7 @@ static void diag_below_constants(void) {
 
 /* A path with L and B in other units: distances without a time, and their bounds, change by powers of two only. */
 static void diag_units(void) {
-    static const int units[][2] = {{0, 0}, {500, -300}, {500, -600}, {60, -950}, {40, -950}, {-500, 600}, {-100, 940}};
+    static const int units[][2] = {{0, 0}, {320, -300}, {320, -320}, {60, -320}, {40, -300}, {-320, 320}, {-100, 320}};
     const int32_t source = 1;
     double want[2][6], bound[2] = {0, 0};
     int32_t q, i, a;

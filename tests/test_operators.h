@@ -630,14 +630,14 @@ static void op_matrices_bad(void) {
     CHECK_MSG(st == HD_ERR_NOT_POSITIVE, "indefinite B: %s", hd_status_name(st));
     for (k = 0; k < indefinite.nnz; k++) indefinite.val[k] = DBL_MAX;    /* the sum of the first row overflows */
     CHECK(hd_laplacian_matrices(&lap, &L, &indefinite, 0, NULL, &e) == HD_ERR_NOT_FINITE && e.row == 0 && e.value > DBL_MAX);
-    for (k = 0; k < N; k++) B.val[k] = 1e290;    /* the most that is taken */
+    for (k = 0; k < N; k++) B.val[k] = 1e100;    /* the most that is taken */
     CHECK(hd_laplacian_matrices(&lap, &L, &B, 0, NULL, &e) >= 0);
     hd_laplacian_free(lap);
-    B.val[2] = 1.0001e290;
+    B.val[2] = 1.0001e100;
     CHECK(hd_laplacian_matrices(&lap, &L, &B, 0, NULL, &e) == HD_ERR_NOT_FINITE && e.row == 2 && e.value == B.val[2] && e.text[0] == 'B');
     B.val[2] = 1;
-    L.val[0] = 1.0001e290;                       /* the corner of the path */
-    CHECK(hd_laplacian_matrices(&lap, &L, &B, 0, NULL, &e) == HD_ERR_NOT_FINITE && e.row == 0 && e.value > 1e290 && e.text[0] == 'L');
+    L.val[0] = 1.0001e100;                       /* the corner of the path */
+    CHECK(hd_laplacian_matrices(&lap, &L, &B, 0, NULL, &e) == HD_ERR_NOT_FINITE && e.row == 0 && e.value > 1e100 && e.text[0] == 'L');
     hd_csr_free(&indefinite, NULL);
 }
 

@@ -476,8 +476,9 @@ static hd_status pts_status(const double *xyz, int32_t n, hd_laplacian_kind kind
 static void pts_errors(void) {
     shape s = kit_own_shape(shape_points(50, shape_on_sphere, 4 * pts_pi, 0, 2));
     const double keep = s.xyz[10];
+    double small[150];
     hd_error e;
-    int32_t i;
+    int32_t i, k;
     CHECK(pts_status(s.xyz, 50, HD_LAPLACIAN_DEFAULT, 0, 0, 0, &e) == HD_OK);
     CHECK(pts_status(s.xyz, 50, HD_LAPLACIAN_FEM, 0, 0, 0, &e) == HD_ERR_ARGUMENT);
     CHECK(pts_status(s.xyz, 50, HD_LAPLACIAN_COT, 0, 0, 0, &e) == HD_ERR_ARGUMENT);
@@ -492,6 +493,8 @@ static void pts_errors(void) {
     CHECK(pts_status(s.xyz, 50, HD_LAPLACIAN_VORONOI_EXP, 0, 1e-4, 128, &e) == HD_OK);
     CHECK(pts_status(s.xyz, 50, HD_LAPLACIAN_VORONOI_EXP, 1e300, 0, 6, &e) >= 0);           /* all with all */
     CHECK(pts_status(s.xyz, 50, HD_LAPLACIAN_VORONOI_EXP, 1e-300, 0, 6, &e) >= 0);          /* none with none */
+    for (k = 0; k < 150; k++) small[k] = s.xyz[k] * 1e-60;
+    CHECK(pts_status(small, 50, HD_LAPLACIAN_VORONOI_EXP, 0, 0, 0, &e) == HD_ERR_ARGUMENT && e.vertex >= 0 && e.value > 0 && e.value < 1e-100);
     CHECK(pts_status(s.xyz, -1, HD_LAPLACIAN_EXP, 0, 0, 0, &e) == HD_ERR_ARGUMENT);
     CHECK(pts_status(NULL, 3, HD_LAPLACIAN_EXP, 0, 0, 0, &e) == HD_ERR_ARGUMENT);
     CHECK(hd_laplacian_points(NULL, s.xyz, 50, NULL, &e) == HD_ERR_ARGUMENT);
