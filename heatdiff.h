@@ -4118,6 +4118,7 @@ HDI_PART void HDI_OF(product_eight)(const int nc, const hdi_product *g, int64_t 
     t.depth = g->depth;
     t.a = g->a + i;
     t.b = g->b + j / HDI_COLS * g->b_next;       /* j is a multiple of HDI_COLS */
+    t.n = HDI_EIGHT * HDI_WIDTH;
     t.off = off;
     HDI_OF(tile_sum)(pack, HDI_EIGHT, nc, 0, 0, &t, x);
     HDI_EACH(k, nc) {
