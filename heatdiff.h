@@ -24,7 +24,8 @@
    the declarations take almost no time. Two calls make a heat kernel of a triangle mesh:
 
        hd_laplacian *lap = NULL;  hd_heat *heat = NULL;  hd_error err;
-       if (hd_laplacian_triangles(&lap, xyz, n, tri, n_tri, NULL, &err) < 0) return fail(&err);
+       hd_mesh mesh = hd_triangles(xyz, n, tri, n_tri);
+       if (hd_laplacian_create(&lap, &mesh, NULL, &err) < 0) return fail(&err);
        if (hd_heat_create(&heat, lap, NULL, &err) < 0) return fail(&err);
        hd_heat_column(heat, HD_KERNEL_OPERATOR, 100 * lap->h * lap->h, source, u, NULL, NULL);
        hd_heat_free(heat);  hd_laplacian_free(lap);
@@ -133,11 +134,9 @@
      HEATDIFF_NO_ITERATIVE     iterations: method iterative, hd_shifted_solve. Your choice of poles then needs
                                method direct, and factors that do not fit byte_limit are an error
      HEATDIFF_NO_GEODESIC      hd_geodesic_*
-     HEATDIFF_NO_INTRINSIC     options intrinsic_delaunay and tufted, hd_laplacian_tufted_points,
-                               hd_geodesic_create_points
-     HEATDIFF_NO_POINTS        hd_laplacian_points, hd_laplacian_tufted_points, hd_geodesic_create_points,
-                               hd_neighbours_*
-     HEATDIFF_NO_POLYGONS      hd_laplacian_polygons, hd_geodesic_create_polygons
+     HEATDIFF_NO_INTRINSIC     the triangulations Delaunay and tufted
+     HEATDIFF_NO_POINTS        HD_POINTS, hd_neighbours_*
+     HEATDIFF_NO_POLYGONS      HD_POLYGONS
 
    Limits
      Vertices and faces are counted in 32 bits, non-zeros and offsets in 64. The library prints nothing, opens
@@ -177,9 +176,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define HD_VERSION_MAJOR 1
+#define HD_VERSION_MAJOR 2
 #define HD_VERSION_MINOR 0
-#define HD_VERSION_PATCH 1
+#define HD_VERSION_PATCH 0
 /* Versions are semantic, and compare as numbers: HD_VERSION >= HD_MAKE_VERSION(1, 2, 0). */
 #define HD_MAKE_VERSION(major, minor, patch) ((major) * 1000000 + (minor) * 1000 + (patch))
 #define HD_VERSION HD_MAKE_VERSION(HD_VERSION_MAJOR, HD_VERSION_MINOR, HD_VERSION_PATCH)
@@ -369,64 +368,81 @@ enum {
     HD_ROW_HELD = -2            /* held at zero: K_t f is zero there, for any f and t */
 };
 
+/* The triangles that operators are made on. */
+typedef enum hd_triangulation {
+    HD_TRIANGULATION_GIVEN = 0,     /* those of the mesh; points have none, and take exponential weights */
+    /* Meshes: edges are flipped along the surface until the triangulation is Delaunay. Then no cotangent
+     * weight is negative, except on boundary edges opposite to an obtuse angle. Surfaces that are not
+     * manifold or not orientable are covered twice. */
+    HD_TRIANGULATION_DELAUNAY,
+    /* The same on the tufted cover, where a second sheet is glued to the boundary: no weight is negative on
+     * any mesh. Points: triangles are made from neighbours. */
+    HD_TRIANGULATION_TUFTED
+} hd_triangulation;
+
+/* An option that does not apply to a shape or kind is an error. */
 typedef struct hd_laplacian_opts {
     int32_t begin_zero;
-    hd_laplacian_kind kind;     /* ignored by hd_laplacian_matrices */
+    hd_laplacian_kind kind;
     hd_context *context;
-    /* Polygons: weight of the stabilising term for face functions that the gradient cannot see. It has no
+    hd_triangulation triangulation;
+    /* Kind polygon: weight of the stabilising term for face functions that the gradient cannot see. It has no
      * effect on triangles; larger values stiffen faces with more corners. Default 1, at most 1e100. */
-    double lambda;
-    /* Points: s of the weights, a squared length. Default: from the sampling, see hd_laplacian_points. */
-    double bandwidth;
-    /* Points: exponentials below this value are left out, in (0, 1). Default 1e-8. */
-    double weight_cut;
-    /* Triangles: 1: edges are flipped along the surface until the triangulation is Delaunay. Then no
-     * cotangent weight is negative, except on boundary edges opposite to an obtuse angle. Surfaces that are
-     * not manifold or not orientable are covered twice. */
-    int32_t intrinsic_delaunay;
-    /* Triangles: 1: the same on the tufted cover, where a second sheet is glued to the boundary. Then no
-     * weight is negative on any mesh. */
-    int32_t tufted;
-    /* With intrinsic_delaunay or tufted: all edges are lengthened by one small number, so that every triangle
-     * satisfies the triangle inequality with a margin of mollify times the mean edge length. Default 1e-5; at
-     * most 1; negative: lengths stay as they are. */
+    double stiffening;
+    /* Exponential weights: s, a squared length. Default: from the sampling, see hd_laplacian_create. */
+    double bandwidth2;
+    double weight_cut;          /* exponentials below this are left out, in (0, 1); default 1e-8 */
+    /* Delaunay and tufted: all edges are lengthened by one small number, so that every triangle satisfies the
+     * triangle inequality with a margin of mollify times the mean edge length. Default 1e-5; at most 1;
+     * negative: lengths stay as they are. */
     double mollify;
-    /* Points: number of nearest neighbours that determine the tangent plane and the cell or star of a point,
-     * 6..128. Default 30. */
+    /* Points: nearest neighbours that determine the tangent plane and the cell or star of a point, 6..128;
+     * default 30. */
     int32_t neighbours;
-    /* Triangles and polygons, without intrinsic_delaunay and tufted: 1: hd_laplacian_update may be called.
-     * Takes 90 bytes more for each triangle, or 65 for each corner of polygons. Own matrices: 1:
-     * hd_laplacian_update_matrices may be called. Points refuse it. */
+    /* 1: hd_laplacian_update (triangles and polygons in space, as given) or hd_laplacian_update_matrices may
+     * be called. Takes 90 bytes more for each triangle, or 65 for each corner of polygons. */
     int32_t updatable;
-    /* Meshes: natural, or Dirichlet: every vertex at the border of the faces used is held at zero. The border
-     * of points and matrices is not known for certain, so they refuse Dirichlet: list vertices in held. */
+    /* Meshes: natural, or Dirichlet: every vertex at the border of the faces used is held at zero. On a mesh
+     * without border that holds nothing. Points and matrices do not know their border: use held. */
     hd_border border;
     /* Further vertices that are held at zero, with any Laplacian: [n_held] ids, repeated ones do no harm. L
      * and B lose the rows and columns of all held vertices, so that K_t is the exponential of what is left
-     * and heat flows out there. On a mesh without border HD_BORDER_DIRICHLET holds nothing.
-     * With updatable the pair of all vertices is kept as well, which doubles the memory. */
+     * and heat flows out there. With updatable the pair of all vertices is kept as well: twice the memory. */
     int32_t n_held;
     const int32_t *held;
     int32_t end_zero;
 } hd_laplacian_opts;
 
-/* A triangle mesh as it lies in a vertex buffer and an index buffer. Clear the struct, then set one pointer
- * to positions and one to indices; the type of the pointer says how the buffer is read. Positions need not be
- * aligned. Only lists of triangles are read: strips and fans must be converted before.
- * NOTE: a buffer often repeats vertices along seams of texture coordinates or normals. Repeated vertices are
- * different vertices, and no heat crosses such a seam. Weld them first. */
-typedef struct hd_mesh_view {
+typedef enum hd_shape { HD_TRIANGLES = 0, HD_POLYGONS, HD_POINTS } hd_shape;
+
+/* A surface as the caller has it: for Laplacians and geodesic plans. Clear the struct, then set what there
+ * is. Positions need not be aligned. No array is used after the call.
+ * NOTE: vertex buffers often repeat vertices along seams of texture coordinates or normals. Repeated vertices
+ * are different vertices, and no heat crosses such a seam. Weld them first. */
+typedef struct hd_mesh {
     int32_t begin_zero;
-    const float *xyz_float;     /* the x of vertex 0, followed by its y and z */
-    const double *xyz_double;   /* or this */
+    hd_shape shape;
+    int32_t n;                  /* vertices, or points */
+    const double *xyz;          /* x, y and z of each vertex, finite */
+    const float *xyz_float;     /* or this */
     size_t stride;              /* bytes from one vertex to the next; 0: packed, three numbers */
-    int64_t n;                  /* vertices */
-    const uint16_t *tri_u16;    /* aligned indices, three for each triangle */
-    const uint32_t *tri_u32;    /* or this */
-    const int32_t *tri_i32;     /* or this */
-    int64_t n_indices;          /* three times the number of triangles */
+    /* [3 n_faces] of triangles, in place of coordinates: lengths[3 f + q] is the side from corner q to the
+     * next one (after 2 comes 0), finite and not negative. All faces at an edge agree up to 1e-12 of it; two
+     * vertices have one edge only. No side may be longer than the two others together. */
+    const double *lengths;
+    int32_t n_faces;
+    /* [n_faces + 1] of polygons: face f has the corners face_ptr[f] .. face_ptr[f + 1] - 1 of all. From 0,
+     * not descending. */
+    const int64_t *face_ptr;
+    const int32_t *corner;      /* vertex ids in [0, n): three for each triangle, or as face_ptr says */
+    const uint16_t *corner_u16; /* or this, of triangles */
+    /* Of points that are triangulated: nbr[nbr_ptr[i]] .. nbr[nbr_ptr[i + 1] - 1] are neighbours of point i
+     * in any order, at most 256, some 30 nearest ones suit. The point itself, points at its place and
+     * repeated ids do no harm. NULL: they are searched. */
+    const int64_t *nbr_ptr;
+    const int32_t *nbr;
     int32_t end_zero;
-} hd_mesh_view;
+} hd_mesh;
 
 /* What was found in a mesh. Nothing here is an error: faces that cannot be used are left out and counted. */
 typedef struct hd_mesh_report {
@@ -450,8 +466,8 @@ typedef struct hd_mesh_report {
     int64_t n_negative_weights;
     double smallest_angle;           /* in radians, of the faces used; polygons: of convex corners */
 
-    /* With intrinsic_delaunay or tufted; else zero. All fields above, except n_negative_weights, describe the
-     * faces as they were given. */
+    /* Delaunay and tufted triangulations; else zero. All fields above, except n_negative_weights, describe
+     * the faces as they were given. */
     int32_t n_sheets;                /* 1, or 2: the surface is covered twice */
     int32_t n_mollified;             /* faces that needed mollification */
     double mollify_epsilon;          /* added to the length of every edge */
@@ -464,7 +480,7 @@ typedef struct hd_mesh_report {
 /* What was found in a point set, and what was chosen for it. Nothing here is an error. A place is a position
  * that holds one or more points. */
 typedef struct hd_point_report {
-    double bandwidth;                /* s of the exponential weights */
+    double bandwidth2;               /* s of the exponential weights */
     double weight_cut, cut_radius;   /* exponentials below weight_cut, beyond cut_radius, are 0 */
     int32_t neighbours;              /* used for tangent planes and cells */
     int32_t n_coincident;            /* points at the place of an earlier point: they share its cell */
@@ -486,6 +502,9 @@ typedef struct hd_laplacian {
     int32_t n_held;             /* vertices held at zero */
     int32_t n_components;       /* of the rows, joined by entries of L or B that are not zero */
     hd_laplacian_kind kind;
+    /* A bound on the largest eigenvalue of B^-1 L in 1/area, by Gershgorin's circles: up to about five times
+     * as large. HUGE_VAL if b_ratio is 0. */
+    double lambda_max;
     /* Mean length of the distinct edges, before any flip. Points: mean distance of a place to the nearest
      * other place. Matrices: as the caller gave it. */
     double h;
@@ -878,12 +897,11 @@ typedef struct hd_geodesic_opts {
      * space only. */
     int32_t updatable;
     hd_geodesic_border border;  /* of meshes */
-    /* Meshes: as in hd_laplacian_opts. Faces with more corners are split. Points always have mollify. */
-    int32_t intrinsic_delaunay, tufted;
-    double mollify;
+    hd_triangulation triangulation; /* points need tufted; faces with more corners are split */
+    double mollify;             /* as in hd_laplacian_opts */
     /* Polygons: as in hd_laplacian_opts, but by default 1/6. On squares L is then that of bilinear finite
      * elements. With 1, errors of distances are two to four times as large. */
-    double lambda;
+    double stiffening;
     int32_t neighbours;         /* of points; as in hd_laplacian_opts */
     double t_in_h2;             /* t as a multiple of h^2, where t is 0; default 1 */
     int32_t end_zero;
@@ -951,129 +969,50 @@ HEATDIFF_API void hd_csr_free(hd_csr *a, hd_context *ctx);
 
 /* ---- operators ---- */
 
-/* The Laplacian of a triangle mesh.
- * xyz    [3 n] coordinates, finite
- * tri    [3 n_tri] vertex ids in [0, n)
- * opts   kind (fem, voronoi-cot, cot), intrinsic_delaunay, tufted, mollify, context; NULL: fem
- * Faces of zero area, faces with a repeated corner, and faces with the corners of an earlier face are left
- * out and counted in out->mesh. Vertices without mass become inert. Non-manifold edges and several components
- * are allowed.
- * intrinsic_delaunay and tufted give L and B of an intrinsic Delaunay triangulation of the same surface on
- * the same vertices (Bobenko, Springborn 2007; Sharp, Crane 2020). Then no off-diagonal entry of L is
- * positive (for boundaries see hd_laplacian_opts), and with voronoi-cot or cot heat obeys the maximum
- * principle. Entries that only rounding made positive, below 1e-13 of the cotangents of the faces at the
- * edge, are set to zero.
- * Errors HD_ERR_INDEX (face, value: the id), HD_ERR_NOT_FINITE (vertex), HD_ERR_EMPTY, HD_ERR_MEMORY,
- *        HD_ERR_CANCELLED, HD_ERR_ARGUMENT (also by vertex and value: a coordinate beyond 1e100, or all
- *        vertices within 1e-100 of each other, but not in one place; by face, vertex and value: an area that
- *        is not zero and outside 1e-100 .. 1e100, or of a face with a weight above 1e100)
- * Cost   O(n + n_tri + flips) */
-HEATDIFF_API hd_status hd_laplacian_triangles(hd_laplacian **out, const double *xyz, int32_t n,
-                                              const int32_t *tri, int32_t n_tri,
-                                              const hd_laplacian_opts *opts, hd_error *err);
+/* A mesh of triangles. Other fields may be set before it is used. */
+HEATDIFF_API hd_mesh hd_triangles(const double *xyz, int32_t n, const int32_t *tri, int32_t n_tri);
 
-/* The same for a mesh in a vertex and an index buffer, without a copy to make by hand. The answer is that of
- * hd_laplacian_triangles on the same numbers as doubles and int32_t, to the last bit.
- * view   its buffers are not used after this call
- * Errors as hd_laplacian_triangles, with the face and the vertex as they are in the buffers. HD_ERR_ARGUMENT:
- *        the view was not cleared, not exactly one pointer to positions or to indices is set, indices are
- *        not aligned, the stride is shorter than a position, or n_indices is not a multiple of three.
- *        HD_ERR_TOO_LARGE: more than 2^31 - 1 vertices or faces, or positions beyond the address space
- * Cost   24 bytes for each vertex and 12 for each face, for the time of the call. Indices of 32 bits, and
- *        packed and aligned doubles, are read in place */
-HEATDIFF_API hd_status hd_laplacian_view(hd_laplacian **out, const hd_mesh_view *view,
-                                         const hd_laplacian_opts *opts, hd_error *err);
-
-/* The Laplacian of triangles that are known by the lengths of their sides alone: a surface that need not have
- * a shape in space, such as a flat torus, or one whose lengths were scaled conformally.
- * lengths [3 n_tri] lengths[3 f + q] is that of the side from corner q to the next one (q + 1, after 2 comes
- *         0), finite and not negative. All faces at an edge must agree up to 1e-12 of it; two vertices have
- *         one edge only. No side may be longer than the two others together; faces where one is as long have
- *         no area and are left out
- * opts    as in hd_laplacian_triangles, without updatable. At an edge of three faces or more
- *         intrinsic_delaunay and tufted take the sheets in the order of the faces, because their angles in
- *         space are not known
- * Everything that works on a Laplacian works on this one. lap->xyz is NULL: there is no nested dissection,
- * and curves (hd_source) need their lengths. With the distances of vertices in space as lengths, L and B are
- * those of hd_laplacian_triangles to rounding.
- * Errors  as hd_laplacian_triangles; HD_ERR_ARGUMENT or HD_ERR_NOT_FINITE (face, value: a length) if a length
- *         is not finite, or not 0 and outside 1e-100 .. 1e100, if a face breaks the triangle inequality,
- *         or if two faces do not agree (vertex: where their edge begins)
- * Cost    as hd_laplacian_triangles */
-HEATDIFF_API hd_status hd_laplacian_lengths(hd_laplacian **out, const double *lengths, int32_t n,
-                                            const int32_t *tri, int32_t n_tri,
-                                            const hd_laplacian_opts *opts, hd_error *err);
-
-/* The Laplacian of a mesh of polygons. Faces may have any number of corners, and may be triangles, non-planar
- * or non-convex.
- * xyz      [3 n] coordinates, finite
- * face_ptr [n_faces + 1] from 0, not descending. The corners of face f are face_idx[face_ptr[f]] ..
- *          face_idx[face_ptr[f + 1] - 1]
- * face_idx [face_ptr[n_faces]] vertex ids in [0, n)
- * opts     kind, lambda, context; NULL: polygon with lambda 1
- * With fem, voronoi-cot or cot every face is split into a fan of triangles from its first corner, and the
- * result is that of hd_laplacian_triangles. out->mesh then counts triangles, but errors name the polygon.
- * intrinsic_delaunay and tufted work on these triangles: with them the default kind is fem, and polygon is an
- * error.
- * On triangles the kind polygon has the cotangent L for any lambda. lap->h is the polygons' mean edge length.
- * The pattern of L contains the diagonals of the faces. hd_mesh_report says which faces are left out.
- * Errors   HD_ERR_INDEX (face, value: the id), HD_ERR_STRUCTURE (face: face_ptr descends there),
- *          HD_ERR_NOT_FINITE (vertex), HD_ERR_ARGUMENT (sizes: as of hd_laplacian_triangles),
- *          HD_ERR_TOO_LARGE, HD_ERR_EMPTY, HD_ERR_MEMORY, HD_ERR_CANCELLED
- * Cost     a face with k corners: at most k^2 entries of L and as much time; work arrays are linear in k
- * Source   Alexa, Wardetzky 2011: L is the sum of D'M_f D over the faces, with their M_f, and with D the
- *          differences along the edges. The combinatorial part of M_f has one weight lambda for all faces */
-HEATDIFF_API hd_status hd_laplacian_polygons(hd_laplacian **out, const double *xyz, int32_t n,
-                                             const int64_t *face_ptr, const int32_t *face_idx,
-                                             int32_t n_faces, const hd_laplacian_opts *opts,
-                                             hd_error *err);
-
-/* The Laplacian of points on a surface, given without faces.
- * xyz    [3 n] coordinates, finite
- * opts   kind voronoi-exp (default) or exp, bandwidth, weight_cut, neighbours, context
- * The bandwidth s balances two errors: the error of smoothing grows like s, the error of sampling falls like
- * 1/s^2. Let r_k be the distance of the k-th neighbour, and m the mean of pi r_k^2/k, the area of a point
- * (values above nine medians count as nine medians). The default is s = m (m/h^2)/4, but at least 0.3 m and
- * at most 1 m. This is 0.36 m for blue noise and 1 m for independent random points. Weights reach as far as
- * 8.6 sqrt(s). A row has about 230 s/m non-zeros: 80 and 230 for these two. weight_cut = 1e-4 halves that and
- * changes the operator by 0.1 %.
- * If s is a fixed multiple of m, the error levels off at 1 to 3 % as points become denser.
- * To go below that, let s/m grow as points become denser (Belkin, Niyogi 2008; Singer 2006).
- * Points at the same place share its cell. Points without area are inert for voronoi-exp. Points that no
- * other point reaches become components of their own. Cells at a border end at the hull of the neighbours.
- * lap->points counts each of these cases.
- * Errors HD_ERR_NOT_FINITE (vertex), HD_ERR_ARGUMENT (also by vertex: a coordinate beyond 1e100, or all
- *        points within 1e-100 of each other, but not in one place; or a cell whose area is not 0 and outside
- *        1e-100 .. 1e100), HD_ERR_EMPTY (fewer than two places, or
- *        all on a line), HD_ERR_MEMORY, HD_ERR_CANCELLED
- * Cost   O(n log n + nnz)
- * Source Liu, Prabhakaran, Guo 2012 (voronoi-exp); Belkin, Niyogi 2008 (exp). Differences: weights are cut by
- *        distance, so that L is symmetric; neighbours more than 45 degrees off the tangent plane count with
- *        their height, so that points of another sheet two spacings away do not cut a cell */
-HEATDIFF_API hd_status hd_laplacian_points(hd_laplacian **out, const double *xyz, int32_t n,
+/* The Laplacian of a mesh.
+ * Triangles have the kinds fem (default), voronoi-cot and cot. Polygons, which may be non-planar or
+ * non-convex, also have polygon, which is their default. For the others every face is split into a fan from
+ * its first corner; out->mesh then counts triangles, but errors name the polygon. Points have voronoi-exp
+ * (default) and exp, or if they are tufted, the kinds of triangles. Delaunay and tufted triangulations have
+ * those too. Faces of zero area, faces with a repeated corner, and faces with the corners of an earlier face
+ * are left out and counted in out->mesh. Vertices without mass become inert. Non-manifold edges and several
+ * components are allowed.
+ * Delaunay, tufted: L and B of an intrinsic triangulation of the same surface on the same vertices. Entries
+ *          of L that only rounding made positive, below 1e-13 of the cotangents at the edge, are set to zero.
+ *          With voronoi-cot or cot heat then obeys the maximum principle
+ * lengths  intrinsic geometry, such as a flat torus. lap->xyz is NULL: no nested dissection, and curves
+ *          (hd_source) need their lengths. At an edge of three faces or more a Delaunay or tufted
+ *          triangulation takes the sheets in the order of the faces
+ * polygons the pattern of L contains the diagonals of the faces; triangles have the cotangent L for any
+ *          stiffening
+ * points   Let r_k be the distance of the k-th neighbour, and m the mean of pi r_k^2/k, the area of a point.
+ *          The default bandwidth2 is s = m (m/h^2)/4, within 0.3 m and 1 m: 0.36 m for blue noise, 1 m for
+ *          random points. Weights reach as far as 8.6 sqrt(s), and a row has about 230 s/m non-zeros;
+ *          weight_cut = 1e-4 halves that and changes the operator by 0.1 %. With s a fixed multiple of m the
+ *          error levels off at 1 to 3 %; to go below, let s/m grow as points become denser. Points at the
+ *          same place share its cell; out->points counts all special cases
+ * tufted points have 7 to 13 non-zeros in a row. Each point's Delaunay star among its neighbours is computed
+ *          in their tangent plane. All stars form a triangle soup, which out->mesh describes, in which each
+ *          triangle counts a third. Points in no star are inert, as are searched points at the place of an
+ *          earlier one. Two sheets of a surface are kept separate if they are about two spacings apart (three
+ *          for random points). HINT: if you know normals, leave neighbours whose normals point the other way
+ *          out of nbr
+ * Errors HD_ERR_INDEX (face, value: the id), HD_ERR_NOT_FINITE (vertex, or face of a length),
+ *        HD_ERR_STRUCTURE (face: face_ptr descends there), HD_ERR_EMPTY; HD_ERR_ARGUMENT, also by vertex and
+ *        value: a coordinate beyond 1e100, or all vertices within 1e-100 of each other, but not in one place;
+ *        by face, vertex and value: an area that is not zero and outside 1e-100 .. 1e100, a weight above
+ *        1e100, a length that cannot be; vertex: where the edge begins on which two faces disagree.
+ *        Neighbours: HD_ERR_STRUCTURE, HD_ERR_INDEX, HD_ERR_TOO_LARGE (row: the point)
+ * Cost   O(n + faces + flips); a polygon with k corners k^2; points O(n log n + nnz)
+ * Source Pinkall, Polthier 1993; Meyer et al. 2003; Alexa, Wardetzky 2011, with one weight for all faces;
+ *        Bobenko, Springborn 2007; Sharp, Crane 2020, for points section 5.7. Liu, Prabhakaran, Guo 2012;
+ *        Belkin, Niyogi 2008: here weights are cut by distance, so that L is symmetric, and neighbours more
+ *        than 45 degrees off the tangent plane count with their height */
+HEATDIFF_API hd_status hd_laplacian_create(hd_laplacian **out, const hd_mesh *mesh,
                                            const hd_laplacian_opts *opts, hd_error *err);
-
-/* The tufted Laplacian of a point set on a surface: cotangent weights, none negative, 7 to 13 in a row.
- * xyz      [3 n] coordinates, finite
- * nbr_ptr  [n + 1] offsets into nbr; nbr_ptr[0] = 0. If nbr_ptr and nbr are NULL, the opts->neighbours
- *          nearest points of each point are searched; points at the place of an earlier one are inert then
- * nbr      ids of the neighbours of each point in any order, at most 256 of a point; about 30 nearest ones
- *          suit. The point itself, points at its place and repeated ids do no harm
- * opts     kind (fem, voronoi-cot, cot), neighbours, mollify, context; NULL: fem. tufted is always on
- * Each point's Delaunay star among its neighbours is computed in their tangent plane. All stars together form
- * a triangle soup in which each triangle counts a third. lap->mesh describes that soup. Points in no star are
- * inert.
- * Two sheets of a surface are kept separate if they are at least about two spacings apart (three for
- * independent random points). Closer sheets are mixed or treated as one rough sheet; lap->points.n_not_flat
- * counts such places.
- * HINT: if you know normals, leave neighbours whose normals point the other way out of nbr.
- * Errors   HD_ERR_STRUCTURE, HD_ERR_INDEX, HD_ERR_TOO_LARGE (row: the point), HD_ERR_NOT_FINITE (vertex),
- *          HD_ERR_ARGUMENT, HD_ERR_EMPTY, HD_ERR_MEMORY, HD_ERR_CANCELLED
- * Cost     O(n log n + n_neighbours + flips)
- * Source   Sharp, Crane 2020, section 5.7 */
-HEATDIFF_API hd_status hd_laplacian_tufted_points(hd_laplacian **out, const double *xyz, int32_t n,
-                                                  const int64_t *nbr_ptr, const int32_t *nbr,
-                                                  const hd_laplacian_opts *opts, hd_error *err);
 
 /* The pair of the caller's own matrices, on any graph. Both are copied.
  * L      n x n, symmetric positive semi-definite: minus the cotangent matrix of libigl. Checked are L_ii >= 0
@@ -1098,25 +1037,16 @@ HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L
 HEATDIFF_API hd_status hd_laplacian_apply(const hd_laplacian *lap, double alpha, double beta,
                                           const double *x, double *y, hd_error *err);
 
-/* New coordinates for the same faces, of a Laplacian made by hd_laplacian_triangles or hd_laplacian_polygons
- * with the option updatable. Plans notice: their next query computes with the new values, on the ordering and
- * analysis that they have.
- * xyz    [3 n] finite
+/* New positions for the same faces, of a Laplacian with the option updatable. Plans notice: their next query
+ * computes with the new values, on the ordering and analysis that they have.
+ * mesh   n as before, and positions; its faces are not read
  * Rows, pattern, held vertices and faces that were left out stay as they are. Faces that lose their area are
- * counted in lap->mesh and add nothing; their entries may become zero, and what they alone join falls apart.
- * All values, components and the report are those of a new Laplacian, to the last bit. All arrays keep their
- * places.
- * Points have no update. The pairs that are joined, the planes and the cells follow from the places, so that
- * new places make a new pattern.
- * Errors HD_ERR_ARGUMENT (sizes: as of hd_laplacian_triangles), HD_ERR_NOT_FINITE (vertex);
+ * counted and add nothing. All values, components and reports are those of a new Laplacian, to the last bit.
+ * All arrays keep their places.
+ * Errors HD_ERR_ARGUMENT (sizes: as of hd_laplacian_create), HD_ERR_NOT_FINITE (vertex);
  *        HD_ERR_EMPTY (vertex: none of its faces has an area any more). After an error nothing has changed
- * Cost   one pass over faces and entries; allocates nothing. Not while a plan on lap is at work */
-HEATDIFF_API hd_status hd_laplacian_update(hd_laplacian *lap, const double *xyz, hd_error *err);
-/* The same for positions in a vertex buffer. view->n must be lap->n; indices are ignored. Errors also as
- * hd_laplacian_view. Cost: also 24 bytes for each vertex for the time of the call, unless the positions are
- * packed and aligned doubles. */
-HEATDIFF_API hd_status hd_laplacian_update_view(hd_laplacian *lap, const hd_mesh_view *view,
-                                                hd_error *err);
+ * Cost   one pass over faces and entries. Not while a plan on lap is at work */
+HEATDIFF_API hd_status hd_laplacian_update(hd_laplacian *lap, const hd_mesh *mesh, hd_error *err);
 
 /* New values of the caller's own matrices, of a Laplacian made by hd_laplacian_matrices with the option
  * updatable. Plans notice as above.
@@ -1129,10 +1059,6 @@ HEATDIFF_API hd_status hd_laplacian_update_view(hd_laplacian *lap, const hd_mesh
  * Cost   linear, with room for new values, unless B has to be factorised as in hd_laplacian_matrices */
 HEATDIFF_API hd_status hd_laplacian_update_matrices(hd_laplacian *lap, const hd_csr *L,
                                                     const hd_csr *B, double h, hd_error *err);
-
-/* A bound on the largest eigenvalue of B^-1 L in 1/area, by Gershgorin's circles. On meshes it is up to about
- * five times as large as that eigenvalue. HUGE_VAL if b_ratio is 0. Cost: one pass over L. */
-HEATDIFF_API double hd_laplacian_lambda_max(const hd_laplacian *lap);
 
 HEATDIFF_API void hd_laplacian_free(hd_laplacian *lap);  /* NULL is fine */
 
@@ -1190,7 +1116,7 @@ HEATDIFF_API double hd_rational_eval(const hd_rational *set, double x);
 /* A set for any filter f of the spectrum: K_t becomes f(B^-1 L), and k_t becomes f(B^-1 L) B^-1.
  * out        c(-t lambda) ~ f(lambda) on [0, lambda_max] with t = out->t. Give it to hd_heat_opts.rational,
  *            and out->t to queries as their time
- * lambda_max that of hd_laplacian_lambda_max, or more; 1/area
+ * lambda_max that of the Laplacian, or more; 1/area
  * max_error is the largest |f - c| on 42,000 points, and reports call what follows from it measured. Degrees
  * rise until tol is reached. No pole lies on the spectrum.
  * Classical distances become d^2 = (e_i - e_j)' f(B^-1 L) B^-1 (e_i - e_j), and weighted ones the same with
@@ -1734,54 +1660,28 @@ HEATDIFF_API hd_status hd_heat_estimate(hd_heat *heat, hd_query query, int32_t n
 
 typedef struct hd_geodesic hd_geodesic;
 
-/* A plan for distances along the surface of a triangle mesh, by the heat method.
- * xyz    [3 n] coordinates, finite
- * tri    [3 n_tri] vertex ids in [0, n). Neither xyz nor tri is used after this call. Faces are left out as
- *        in hd_laplacian_triangles. Paths lead around holes
- * opts   NULL: t = h^2, barycentric masses, natural border. Use intrinsic_delaunay if there are slivers: on a
- *        plane of cells squeezed 1:20 it lowers mean errors from 0.19 to 0.003 of the width
- * Errors as hd_laplacian_triangles; HD_ERR_ARGUMENT, HD_ERR_BREAKDOWN (vertex: a pivot too small to
- *        divide by)
- * Cost   assembly, one analysis, two real factorisations on one pattern. The plan keeps both: 16 bytes for
- *        each non-zero of L, and about 430 bytes for each vertex
- * Source Crane, Weischedel, Wardetzky 2013, algorithm 1 and section 3.2.1 */
-HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const double *xyz, int32_t n,
-                                          const int32_t *tri, int32_t n_tri,
-                                          const hd_geodesic_opts *opts, hd_error *err);
-/* The same for triangles that are known by the lengths of their sides, with the errors of
- * hd_laplacian_lengths. */
-HEATDIFF_API hd_status hd_geodesic_create_lengths(hd_geodesic **out, const double *lengths,
-                                                  int32_t n, const int32_t *tri, int32_t n_tri,
-                                                  const hd_geodesic_opts *opts,
-                                                  hd_error *err);
-/* The same for a mesh in a vertex and an index buffer. Errors and cost of the view: see hd_laplacian_view. */
-HEATDIFF_API hd_status hd_geodesic_create_view(hd_geodesic **out, const hd_mesh_view *view,
-                                               const hd_geodesic_opts *opts, hd_error *err);
-/* The same for polygons, and for points. Faces and neighbours are given as in hd_laplacian_polygons and
- * hd_laplacian_tufted_points, and are not used after this call. Errors are those of these functions.
+/* A plan for distances along a surface, by the heat method.
+ * mesh   as in hd_laplacian_create, whose errors it has. Paths lead around holes
+ * opts   NULL: t = h^2, barycentric masses, natural border. Use a Delaunay triangulation if there are
+ *        slivers: on a plane of cells squeezed 1:20 it lowers mean errors from 0.19 to 0.003 of the width
  * Gradients on polygons are those of Alexa and Wardetzky 2011, whose divergence is L without its stabilising
- * part; masses are equal parts of the areas. Points get the triangles of the tufted cover; points in the same
- * place have the same distance. Exponential weights have no gradient, so there is no plan for them. On
- * spheres of quadrangles, hexagons and evenly spread points, distances are as accurate as on triangles with
- * edges of the same length.
- * Cost: 28 bytes more for each corner of a polygon, and 12 for each non-zero of L. */
-HEATDIFF_API hd_status hd_geodesic_create_polygons(hd_geodesic **out, const double *xyz, int32_t n,
-                                                   const int64_t *face_ptr, const int32_t *face_idx,
-                                                   int32_t n_faces, const hd_geodesic_opts *opts,
-                                                   hd_error *err);
-HEATDIFF_API hd_status hd_geodesic_create_points(hd_geodesic **out, const double *xyz, int32_t n,
-                                                 const int64_t *nbr_ptr, const int32_t *nbr,
-                                                 const hd_geodesic_opts *opts, hd_error *err);
-/* New coordinates for the same faces, of a plan made with the option updatable. Ordering and analysis stay.
- * xyz    [3 n] finite. Faces that were left out stay left out
+ * part; masses are equal parts of the areas. Points in the same place have the same distance; they must be
+ * tufted, because exponential weights have no gradient. On quadrangles, hexagons and evenly spread points,
+ * distances are as accurate as on triangles with edges of the same length.
+ * Errors HD_ERR_BREAKDOWN (vertex: a pivot too small to divide by)
+ * Cost   assembly, one analysis, two real factorisations on one pattern. The plan keeps both: 16 bytes for
+ *        each non-zero of the factor, and about 430 bytes for each vertex; polygons 28 bytes more for each
+ *        corner, and 12 for each non-zero of L
+ * Source Crane, Weischedel, Wardetzky 2013, algorithm 1 and section 3.2.1 */
+HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const hd_mesh *mesh,
+                                          const hd_geodesic_opts *opts, hd_error *err);
+/* New positions for the same triangles, of a plan made with the option updatable. Ordering and analysis stay.
+ * mesh   as in hd_laplacian_update
  * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE; HD_ERR_EMPTY (face: it has no area any more, or vertex). Then
  *        nothing has changed. After HD_ERR_BREAKDOWN, HD_ERR_MEMORY or HD_ERR_CANCELLED the plan answers no
  *        query until an update succeeds
  * Cost   one pass over faces and entries, and the two factorisations */
-HEATDIFF_API hd_status hd_geodesic_update(hd_geodesic *g, const double *xyz, hd_error *err);
-/* The same for positions in a vertex buffer. Errors and cost of the view: see hd_laplacian_update_view. */
-HEATDIFF_API hd_status hd_geodesic_update_view(hd_geodesic *g, const hd_mesh_view *view,
-                                               hd_error *err);
+HEATDIFF_API hd_status hd_geodesic_update(hd_geodesic *g, const hd_mesh *mesh, hd_error *err);
 HEATDIFF_API void hd_geodesic_free(hd_geodesic *g);  /* NULL is fine */
 
 /* The distance of every vertex to the nearest source.
@@ -5330,101 +5230,104 @@ static hd_status hdi_lengths_check(const double *len, int32_t m, hd_error *e) {
     return HD_OK;
 }
 
-/* ---- vertex and index buffers ---- */
+/* ---- what a mesh is given as ---- */
 
-/* The arrays of a view: the caller's where they are as we want them, else copies. */
-typedef struct hdi_view {
-    hdi_scope s;
-    const double *xyz;
-    const int32_t *tri;
-    int32_t n, n_tri;
-} hdi_view;
-
-/* Bytes of a position, and from one to the next. */
-static size_t hdi_view_wide(const hd_mesh_view *v) {
-    return 3 * (v->xyz_float ? sizeof(float) : sizeof(double));
+/* Bytes of a position. */
+static size_t hdi_view_wide(const hd_mesh *m) {
+    return 3 * (m->xyz_float ? sizeof(float) : sizeof(double));
 }
-static size_t hdi_view_stride(const hd_mesh_view *v) { return v->stride ? v->stride : hdi_view_wide(v); }
+
+static size_t hdi_view_stride(const hd_mesh *m) { return m->stride ? m->stride : hdi_view_wide(m); }
 
 static int hdi_aligned(const void *p, size_t size) { return (size_t)p % size == 0; }
 
-/* faces: the indices are wanted too. No position may lie beyond the address space. */
-static hd_status hdi_view_check(const hd_mesh_view *v, int faces, hd_error *e) {
-    const size_t wide = hdi_view_wide(v), stride = hdi_view_stride(v);
-    const int places = (v->xyz_float != NULL) + (v->xyz_double != NULL);
-    const int indices = (v->tri_u16 != NULL) + (v->tri_u32 != NULL) + (v->tri_i32 != NULL);
-    hdi_refuse(!HDI_CLEARED(v), "mesh view: not cleared before use", e);
-    hdi_refuse(places > 1 || (v->n > 0 && places < 1),
-               "mesh view: set one of xyz_float and xyz_double", e);
-    hdi_refuse(faces && (indices > 1 || (v->n_indices > 0 && indices < 1)),
-               "mesh view: set one of tri_u16, tri_u32 and tri_i32", e);
-    hdi_refuse(faces && !(hdi_aligned(v->tri_u16, sizeof *v->tri_u16) &&
-                          hdi_aligned(v->tri_u32, sizeof *v->tri_u32) &&
-                          hdi_aligned(v->tri_i32, sizeof *v->tri_i32)),
-               "mesh view: the indices are not aligned", e);
-    hdi_refuse(v->n < 0 || (faces && v->n_indices < 0), "mesh view: a count is negative", e);
-    hdi_refuse_value(stride < wide, "mesh view: the stride is shorter than a position", (double)stride, e);
-    hdi_refuse_value(faces && v->n_indices % 3 != 0,
-                     "mesh view: the number of indices is not a multiple of three",
-                     (double)v->n_indices, e);
+/* Checks what says where positions are. No position may lie beyond the address space. */
+static hd_status hdi_view_check_places(const hd_mesh *m, hd_error *e) {
+    const size_t wide = hdi_view_wide(m), stride = hdi_view_stride(m);
+    hdi_refuse(!HDI_CLEARED(m), "mesh: not cleared before use", e);
+    hdi_refuse(m->n < 0, "mesh: a size is negative", e);
+    hdi_refuse((m->xyz != NULL) + (m->xyz_float != NULL) + (m->lengths != NULL) > 1,
+               "mesh: set one of xyz, xyz_float and lengths", e);
+    hdi_refuse(m->lengths && m->stride, "mesh: lengths have no stride", e);
+    hdi_refuse_value(stride < wide, "mesh: the stride is shorter than a position", (double)stride, e);
+    if (e->status >= 0 && m->n > 1 && (uint64_t)(m->n - 1) > (SIZE_MAX / 2 - wide) / stride)
+        return hdi_fail(e, HD_ERR_TOO_LARGE, "mesh: positions lie beyond the address space");
+    return e->status;
+}
+
+/* Checks the rest, up to what stands in the arrays. */
+static hd_status hdi_view_check(const hd_mesh *m, hd_error *e) {
+    const int points = m->shape == HD_POINTS, faces = m->n_faces > 0 && !points;
+    const int corners = m->corner || m->corner_u16;
+    if (hdi_view_check_places(m, e) < 0) return e->status;
+    hdi_refuse(m->shape < HD_TRIANGLES || m->shape > HD_POINTS, "mesh: unknown shape", e);
+    hdi_refuse(m->n_faces < 0, "mesh: a size is negative", e);
+    hdi_refuse(m->corner && m->corner_u16, "mesh: set one of corner and corner_u16", e);
+    hdi_refuse(m->corner_u16 && m->shape != HD_TRIANGLES, "mesh: corner_u16 is for triangles", e);
+    hdi_refuse(!hdi_aligned(m->corner, sizeof(int32_t)) || !hdi_aligned(m->corner_u16, sizeof(uint16_t)),
+               "mesh: the corners are not aligned", e);
+    hdi_refuse(m->lengths && m->shape != HD_TRIANGLES, "mesh: lengths are those of triangles", e);
+    hdi_refuse(m->face_ptr && m->shape != HD_POLYGONS, "mesh: face_ptr is for polygons", e);
+    hdi_refuse(points && (m->n_faces > 0 || corners), "mesh: points have no faces", e);
+    hdi_refuse((m->nbr_ptr || m->nbr) && !points, "mesh: neighbours are those of points", e);
     if (e->status < 0) return e->status;
-    if (v->n > INT32_MAX || (faces && v->n_indices / 3 > INT32_MAX))
-        return hdi_fail(e, HD_ERR_TOO_LARGE, "mesh view: more than 2^31 - 1 vertices or faces");
-    if (v->n > 1 && (uint64_t)(v->n - 1) > (SIZE_MAX / 2 - wide) / stride)
-        return hdi_fail(e, HD_ERR_TOO_LARGE, "mesh view: positions lie beyond the address space");
+    if ((m->n > 0 && !m->xyz && !m->xyz_float && !m->lengths) ||
+        (faces && !(m->shape == HD_POLYGONS ? m->face_ptr != NULL : corners)) ||
+        (m->nbr_ptr ? m->nbr_ptr[m->n] > 0 && !m->nbr : m->nbr != NULL)) return hdi_missing(e);
     return HD_OK;
 }
 
 /* Positions as packed doubles. Bytes are copied, since they need not be aligned. */
-static const double *hdi_view_places(const hd_mesh_view *v, hdi_scope *s) {
-    const size_t wide = hdi_view_wide(v), stride = hdi_view_stride(v);
-    const void *first = v->xyz_float ? (const void *)v->xyz_float : v->xyz_double;
+static const double *hdi_view_places(const hd_mesh *m, hdi_scope *s) {
+    const size_t wide = hdi_view_wide(m), stride = hdi_view_stride(m);
+    const void *first = m->xyz_float ? (const void *)m->xyz_float : m->xyz;
     const char *from = (const char *)first;
     double *xyz, *to;
     float p[3];
-    int64_t i;
+    int32_t i;
     int q;
-    if (!v->xyz_float && stride == wide && hdi_aligned(first, sizeof(double))) return v->xyz_double;
-    to = xyz = HDI_TAKE(s, double, 3 * v->n);
-    for (i = 0; i < v->n && xyz; i++, to += 3) {
-        memcpy(v->xyz_float ? (void *)p : to, from + (size_t)i * stride, wide);
-        for (q = 0; q < 3 && v->xyz_float; q++) to[q] = (double)p[q];
+    if (!first || (m->xyz && stride == wide && hdi_aligned(first, sizeof(double)))) return m->xyz;
+    to = xyz = HDI_TAKE(s, double, hdi_triple(m->n));
+    for (i = 0; i < m->n && xyz; i++, to += 3) {
+        memcpy(m->xyz_float ? (void *)p : to, from + (size_t)i * stride, wide);
+        for (q = 0; q < 3 && m->xyz_float; q++) to[q] = (double)p[q];
     }
     return xyz;
 }
 
-/* Indices as int32_t. Ids that these cannot hold are an error here, after one in the coordinates. */
-static hd_status hdi_view_corners(hdi_view *out, const hd_mesh_view *v) {
-    hd_error *e = out->s.e;
-    int32_t *wide = v->tri_u16 ? HDI_TAKE(&out->s, int32_t, v->n_indices) : NULL;
+/* Corners as int32_t. */
+static const int32_t *hdi_view_corners(const hd_mesh *m, hdi_scope *s) {
+    const int64_t count = hdi_triple(m->n_faces);
+    int32_t *to;
     int64_t i;
-    out->tri = v->tri_i32 ? v->tri_i32 : v->tri_u32 ? (const int32_t *)(const void *)v->tri_u32 : wide;
-    for (i = 0; i < v->n_indices && e->status >= 0; i++) {
-        if (wide) wide[i] = v->tri_u16[i];
-        if (v->tri_u32 && v->tri_u32[i] > INT32_MAX && hdi_points_check(out->xyz, out->n, e) >= 0)
-            hdi_fail_face(e, HD_ERR_INDEX, "a face names a vertex that does not exist", i / 3, -1,
-                          (double)v->tri_u32[i]);
-    }
-    return e->status;
+    if (!m->corner_u16) return m->corner;
+    to = HDI_TAKE(s, int32_t, count);
+    for (i = 0; i < count && to; i++) to[i] = m->corner_u16[i];
+    return to;
 }
 
-/* Opens a view; its scope is to be ended in any case. faces: its indices are wanted too. */
-static hd_status hdi_view_open(hdi_view *out, const hd_mesh_view *v, int faces, const hdi_call *c) {
-    memset(out, 0, sizeof *out);
-    out->s = hdi_scope_begin(c->ctx, c->e);
-    if (!v) return hdi_missing(c->e);
-    if (hdi_view_check(v, faces, c->e) < 0) return c->e->status;
-    out->n = (int32_t)v->n;
-    out->n_tri = faces ? (int32_t)(v->n_indices / 3) : 0;
-    out->xyz = hdi_view_places(v, &out->s);
-    return faces && c->e->status >= 0 ? hdi_view_corners(out, v) : c->e->status;
+/* The arrays of a mesh that was checked: the caller's where they are as we want them, else copies in s. */
+typedef struct hdi_view {
+    const double *xyz;
+    const int32_t *corner;
+} hdi_view;
+
+static hd_status hdi_view_open(hdi_view *to, const hd_mesh *m, hdi_scope *s) {
+    to->xyz = hdi_view_places(m, s);
+    to->corner = s->e->status < 0 ? NULL : hdi_view_corners(m, s);
+    if (s->e->status < 0 || !HDI_HAS_POLYGONS || m->shape != HD_POLYGONS) return s->e->status;
+    return hdi_mesh_check(to->xyz, m->n, m->face_ptr, to->corner, m->n_faces, s->e);
 }
 
-/* Opens a view of new positions for n vertices. */
-static hd_status hdi_view_positions(hdi_view *out, const hd_mesh_view *v, int32_t n, const hdi_call *c) {
-    if (hdi_view_open(out, v, 0, c) < 0 || out->n == n) return c->e->status;
-    return hdi_fail_row(c->e, HD_ERR_ARGUMENT, "mesh view: the mesh has another number of vertices", -1, -1,
-                        (double)v->n);
+/* New positions for n vertices. NULL: an error. */
+static const double *hdi_view_moved(const hd_mesh *m, int32_t n, hdi_scope *s) {
+    if (!m) (void)hdi_missing(s->e);
+    else if (hdi_view_check_places(m, s->e) < 0) return NULL;
+    else if (m->n != n)
+        (void)hdi_fail_row(s->e, HD_ERR_ARGUMENT, "update: the mesh has another number of vertices", -1, -1,
+                           m->n);
+    else if (n > 0 && !m->xyz && !m->xyz_float) (void)hdi_missing(s->e);
+    return s->e->status < 0 ? NULL : hdi_view_places(m, s);
 }
 
 /* ---- triangles ---- */
@@ -7692,15 +7595,17 @@ static hd_status hdi_lap_faces(hd_laplacian *lap, const hdi_mesh *given, const h
 
 /* Checks the options of intrinsic triangulations and resolves them into task. Returns whether one is asked
  * for. */
-static int hdi_intrinsic_opts(const hd_laplacian_opts *opts, hdi_intrinsic_task *task, hd_error *e) {
-    task->close = opts && opts->tufted;
-    task->delta = opts && opts->mollify != 0 ? opts->mollify : HDI_MOLLIFY_DELTA;
-    hdi_refuse(hdi_nan(task->delta) || task->delta > 1,
-               "laplacian options: mollify is above 1 or not a number", e);
-    if (HDI_HAS_INTRINSIC || !opts || !(opts->intrinsic_delaunay || opts->tufted))
-        return opts && (opts->intrinsic_delaunay || opts->tufted);
-    if (e->status >= 0) (void)HDI_LEFT_OUT(e, INTRINSIC, "intrinsic triangulations");
-    return 1;
+static int hdi_intrinsic_opts(hd_triangulation which, double mollify, hdi_intrinsic_task *task, hd_error *e) {
+    const int flips = which != HD_TRIANGULATION_GIVEN;
+    task->close = which == HD_TRIANGULATION_TUFTED;
+    task->delta = mollify != 0 ? mollify : HDI_MOLLIFY_DELTA;
+    hdi_refuse(which < HD_TRIANGULATION_GIVEN || which > HD_TRIANGULATION_TUFTED,
+               "options: unknown triangulation", e);
+    hdi_refuse(hdi_nan(task->delta) || task->delta > 1, "options: mollify is above 1 or not a number", e);
+    hdi_refuse(mollify != 0 && !flips, "options: mollify is for Delaunay and tufted triangulations", e);
+    if (!HDI_HAS_INTRINSIC && flips && e->status >= 0)
+        (void)HDI_LEFT_OUT(e, INTRINSIC, "intrinsic triangulations");
+    return flips;
 }
 
 /* The faces split as fans, for the operators of triangles. */
@@ -8335,7 +8240,7 @@ static hd_status hdi_cloud_assemble(hd_laplacian *lap, double cut2, hd_error *e)
     if (hdi_within(&lap->L, &tree, NULL, lap->n_active, cut2, lap->context, e) < 0) return hdi_scope_end(&s);
     if (hdi_progress(lap->context, "assemble", 0.7, e) < 0) return hdi_scope_end(&s);
     job.lap = lap;
-    job.bandwidth = rep->bandwidth;
+    job.bandwidth = rep->bandwidth2;
     job.scale = hdi_divide(hdi_divide(HDI_QUARTER_INV_PI, job.bandwidth), job.bandwidth) / lap->n_active;
     hdi_parallel_ranges(lap->context, lap->n_active, HDI_CELLS_PER_TASK, hdi_weights_task, &job);
     for (i = 0; i < lap->n_active; i++) {
@@ -8343,8 +8248,8 @@ static hd_status hdi_cloud_assemble(hd_laplacian *lap, double cut2, hd_error *e)
         rep->n_isolated += count == 1;
         if (!hdi_finite(lap->L.val[lap->L.row_ptr[i]])) {
             hdi_fail_face(e, HD_ERR_NOT_FINITE,
-                          "points: a weight is not finite; the bandwidth is too small for these lengths", -1,
-                          lap->vertex[i], rep->bandwidth);
+                          "points: a weight is not finite; bandwidth2 is too small for these lengths", -1,
+                          lap->vertex[i], rep->bandwidth2);
             break;
         }
         rep->most_in_row = count > rep->most_in_row ? (int32_t)count : rep->most_in_row;
@@ -8388,13 +8293,13 @@ static hd_status hdi_lap_points(hd_laplacian *lap, const double *xyz, hd_error *
     cloud.first = places.first;
     cloud.k = (int32_t)hdi_least(cloud.n, 1 + (int64_t)rep->neighbours);
     if (hdi_cloud_measure(&cloud, lap, &s) < 0) return hdi_scope_end(&s);
-    if (rep->bandwidth == 0) rep->bandwidth = hdi_cloud_bandwidth(&cloud, work);
-    rep->cut_radius = sqrt(-4 * log(rep->weight_cut) * rep->bandwidth);
+    if (rep->bandwidth2 == 0) rep->bandwidth2 = hdi_cloud_bandwidth(&cloud, work);
+    rep->cut_radius = sqrt(-4 * log(rep->weight_cut) * rep->bandwidth2);
     hdi_cloud_masses(&cloud, lap, places.place, places.first, work);
     if (hdi_lap_rows(lap, work, NULL, e) < 0 || hdi_progress(lap->context, "assemble", 0.4, e) < 0)
         return hdi_scope_end(&s);
     if (hdi_lap_places(lap, xyz, e) < 0) return hdi_scope_end(&s);
-    if (hdi_cloud_assemble(lap, -4 * log(rep->weight_cut) * rep->bandwidth, e) < 0) return hdi_scope_end(&s);
+    if (hdi_cloud_assemble(lap, -4 * log(rep->weight_cut) * rep->bandwidth2, e) < 0) return hdi_scope_end(&s);
     lap->b_ratio = 1;
     lap->conserves = 1;
     return hdi_scope_end(&s);
@@ -8403,30 +8308,28 @@ static hd_status hdi_lap_points(hd_laplacian *lap, const double *xyz, hd_error *
 #define HDI_WEIGHT_CUT 1e-8
 enum { HDI_NEIGHBOURS = 30 };
 
-static void hdi_point_neighbours(hd_point_report *rep, const hd_laplacian_opts *opts, hd_error *e) {
-    rep->neighbours = opts && opts->neighbours ? opts->neighbours : HDI_NEIGHBOURS;
-    hdi_refuse(rep->neighbours < 6 || rep->neighbours > HDI_MOST_NEIGHBOURS,
-               "laplacian of points: neighbours is not in 6..128", e);
+/* The option neighbours of this mesh. */
+static int32_t hdi_point_neighbours(int32_t asked, const hd_mesh *m, hd_error *e) {
+    hdi_refuse(asked != 0 && (m->shape != HD_POINTS || m->nbr_ptr),
+               "options: neighbours is for points that do not come with theirs", e);
+    hdi_refuse(asked != 0 && (asked < 6 || asked > HDI_MOST_NEIGHBOURS),
+               "options: neighbours is not in 6..128", e);
+    return asked ? asked : HDI_NEIGHBOURS;
 }
 
 /* Checks the options of point sets and resolves them into lap->points. */
-static void hdi_point_opts(hd_laplacian *lap, const hd_laplacian_opts *opts, hd_error *e) {
+static void hdi_point_opts(hd_laplacian *lap, const hd_laplacian_opts *o, hd_error *e) {
+    const int weights = hdi_kind_of(lap->kind)->of == HDI_OF_POINTS;
     hd_point_report *rep = &lap->points;
-    rep->bandwidth = opts ? opts->bandwidth : 0;
-    rep->weight_cut = opts && opts->weight_cut != 0 ? opts->weight_cut : HDI_WEIGHT_CUT;
-    hdi_refuse(hdi_kind_of(lap->kind)->of != HDI_OF_POINTS,
-               "laplacian of points: the kind is voronoi-exp or exp "
-               "(hd_laplacian_tufted_points has fem, voronoi-cot and cot)", e);
-    hdi_refuse(opts && opts->updatable,
-               "laplacian of points: not updatable, because new places of points make a new pattern", e);
-    hdi_refuse(opts && (opts->intrinsic_delaunay || opts->tufted),
-               "laplacian of points: exponential weights use no triangles; "
-               "hd_laplacian_tufted_points makes some", e);
-    hdi_refuse(!hdi_finite(rep->bandwidth) || rep->bandwidth < 0,
-               "laplacian of points: the bandwidth is negative or not finite", e);
+    hdi_refuse((o->bandwidth2 != 0 || o->weight_cut != 0) && !weights,
+               "laplacian options: bandwidth2 and weight_cut are for exponential weights", e);
+    if (!weights) return;
+    rep->bandwidth2 = o->bandwidth2;
+    rep->weight_cut = o->weight_cut != 0 ? o->weight_cut : HDI_WEIGHT_CUT;
+    hdi_refuse(!hdi_finite(rep->bandwidth2) || rep->bandwidth2 < 0,
+               "laplacian of points: bandwidth2 is negative or not finite", e);
     hdi_refuse(!hdi_finite(rep->weight_cut) || !(rep->weight_cut > 0 && rep->weight_cut < 1),
                "laplacian of points: weight_cut is not in (0, 1)", e);
-    hdi_point_neighbours(rep, opts, e);
 }
 
 /* ---- point sets: the tufted Laplacian of the points' stars ---- */
@@ -26374,15 +26277,6 @@ typedef struct hdi_geo_input {
     int32_t neighbours;
 } hdi_geo_input;
 
-static hdi_geo_input hdi_geo_input_of(const double *xyz, const int32_t *tri, int32_t m) {
-    hdi_geo_input in;
-    memset(&in, 0, sizeof in);
-    in.xyz = xyz;
-    in.tri = tri;
-    in.m = m;
-    return in;
-}
-
 /* What is known of its faces while the plan is made. */
 typedef struct hdi_geo_surface {
     hdi_mesh mesh;
@@ -27574,12 +27468,8 @@ static void hdi_geo_tell_plan(const hd_geodesic *g, hd_geodesic_report *rep) {
 #define HDI_LAMBDA_GEODESIC (1.0 / 6)    /* measured from 0.05 to 1 on spheres, planes and tubes */
 
 /* Checks the options, and resolves into in what they say about the faces. */
-static hd_status hdi_geo_check(const hd_geodesic_opts *o, hdi_geo_input *in, hd_error *e) {
-    hd_laplacian_opts like;
-    memset(&like, 0, sizeof like);
-    like.intrinsic_delaunay = o->intrinsic_delaunay;
-    like.tufted = o->tufted;
-    like.mollify = o->mollify;
+static hd_status hdi_geo_check(const hd_geodesic_opts *o, const hd_mesh *m, hdi_geo_input *in,
+                               hd_error *e) {
     hdi_refuse_value(!hdi_finite(o->t) || o->t < 0, "geodesic: t is negative or not finite", o->t, e);
     hdi_refuse_value(!hdi_finite(o->t_in_h2) || o->t_in_h2 < 0, "geodesic: t_in_h2 is negative or not finite",
                      o->t_in_h2, e);
@@ -27588,14 +27478,16 @@ static hd_status hdi_geo_check(const hd_geodesic_opts *o, hdi_geo_input *in, hd_
     hdi_refuse_ordering(o->ordering, o->perm, "geodesic: unknown ordering", e);
     hdi_refuse(o->border < HD_GEODESIC_BORDER_NATURAL || o->border > HD_GEODESIC_BORDER_DIRICHLET,
                "geodesic: unknown border", e);
-    in->flips = hdi_intrinsic_opts(&like, &in->task, e) || in->points;
+    in->flips = hdi_intrinsic_opts(o->triangulation, o->mollify, &in->task, e);
     in->updatable = o->updatable;
-    in->lambda = o->lambda != 0 ? o->lambda : HDI_LAMBDA_GEODESIC;
-    in->neighbours = o->neighbours ? o->neighbours : HDI_NEIGHBOURS;
+    in->lambda = o->stiffening != 0 ? o->stiffening : HDI_LAMBDA_GEODESIC;
+    in->neighbours = hdi_point_neighbours(o->neighbours, m, e);
     hdi_refuse(!hdi_finite(in->lambda) || !(in->lambda > 0 && in->lambda <= 1e100),
-               "geodesic: lambda is not between 0 and 1e100", e);
-    hdi_refuse(in->neighbours < 6 || in->neighbours > HDI_MOST_NEIGHBOURS,
-               "geodesic: neighbours is not in 6..128", e);
+               "geodesic: stiffening is not between 0 and 1e100", e);
+    hdi_refuse(o->stiffening != 0 && (!in->ptr || in->flips),
+               "geodesic: stiffening is for polygons that are not split", e);
+    hdi_refuse(in->points && o->triangulation != HD_TRIANGULATION_TUFTED,
+               "geodesic: points need the triangulation tufted; exponential weights have no gradient", e);
     hdi_refuse(in->points && o->border != HD_GEODESIC_BORDER_NATURAL,
                "geodesic: points cannot tell their border", e);
     hdi_refuse(in->ptr && !in->flips && o->mass != HD_GEODESIC_MASS_BARYCENTRIC,
@@ -27606,39 +27498,41 @@ static hd_status hdi_geo_check(const hd_geodesic_opts *o, hdi_geo_input *in, hd_
     return e->status;
 }
 
-/* The plan of an input whose arguments are there. */
-static hd_status hdi_geo_create(hd_geodesic **out, int32_t n, hdi_geo_input *in, const hd_geodesic_opts *o,
+/* Makes the plan of a mesh whose shape and options are checked. */
+static hd_status hdi_geo_fill(hd_geodesic *g, const hd_mesh *mesh, hdi_geo_input *in,
+                              const hd_geodesic_opts *o, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(g->ctx, e);
+    hdi_view v;
+    if (hdi_view_open(&v, mesh, &s) < 0) return hdi_scope_end(&s);
+    in->xyz = v.xyz;
+    in->tri = in->idx = v.corner;
+    (void)hdi_geo_make(g, in, o, e);
+    return hdi_scope_end(&s);
+}
+
+/* The plan of a mesh. */
+static hd_status hdi_geo_create(hd_geodesic **out, const hd_mesh *mesh, const hd_geodesic_opts *o,
                                 hdi_call *c) {
+    hdi_geo_input in;
     hd_geodesic *g;
-    hdi_refuse(n < 0 || in->m < 0, "geodesic: a size is negative", c->e);
-    if (hdi_geo_check(o, in, c->e) < 0) return c->e->status;
-    if (o->ordering == HD_ORDERING_OWN && hdi_order_check(o->perm, n, c->ctx, c->e) < 0) return c->e->status;
-    if (in->ptr && hdi_mesh_check(in->xyz, n, in->ptr, in->idx, in->m, c->e) < 0) return c->e->status;
+    memset(&in, 0, sizeof in);
+    in.len = mesh->lengths;
+    in.ptr = mesh->face_ptr;
+    in.m = mesh->n_faces;
+    in.points = mesh->shape == HD_POINTS;
+    in.nbr_ptr = mesh->nbr_ptr;
+    in.nbr = mesh->nbr;
+    if (hdi_view_check(mesh, c->e) < 0 || hdi_geo_check(o, mesh, &in, c->e) < 0) return c->e->status;
+    if (o->ordering == HD_ORDERING_OWN && hdi_order_check(o->perm, mesh->n, c->ctx, c->e) < 0)
+        return c->e->status;
     g = (hd_geodesic *)hdi_alloc_zero(c->ctx, 1, sizeof *g, c->e);
     if (!g) return c->e->status;
     g->ctx = hdi_enter_keep(c, &g->context);
     hdi_hold(g->ctx);
-    g->n = n;
-    if (hdi_geo_make(g, in, o, c->e) >= 0) *out = g;
+    g->n = mesh->n;
+    if (hdi_geo_fill(g, mesh, &in, o, c->e) >= 0) *out = g;
     else hdi_geo_free(g);
     return c->e->status;
-}
-
-/* The plan of an input. there: no array is missing. */
-static hd_status hdi_geo_plan(hd_geodesic **out, int32_t n, hdi_geo_input *in, int there,
-                              const hd_geodesic_opts *opts, hd_error *err) {
-    hd_geodesic_opts o;
-    hdi_call c;
-    memset(&o, 0, sizeof o);
-    if (opts) o = *opts;
-    if (hdi_enter_with(&c, HDI_CLEARED(&o), o.context, "geodesic options: not cleared before use", err) < 0)
-        return c.e->status;
-    if (!HDI_HAS_GEODESIC) return HDI_LEFT_OUT(c.e, GEODESIC, "geodesic distances");
-    if (!out || !there) return hdi_missing(c.e);
-    if (!HDI_HAS_POLYGONS && in->ptr) return HDI_LEFT_OUT(c.e, POLYGONS, "polygons");
-    if (!HDI_HAS_POINTS && in->points) return HDI_LEFT_OUT(c.e, POINTS, "points");
-    if (!HDI_HAS_INTRINSIC && in->points) return HDI_LEFT_OUT(c.e, INTRINSIC, "intrinsic triangulations");
-    return hdi_geo_create(out, n, in, &o, &c);
 }
 
 static hd_status hdi_geo_end(hd_geodesic_report *rep, hd_error *e) {
@@ -27738,12 +27632,6 @@ HEATDIFF_API void hd_csr_free(hd_csr *a, hd_context *ctx) {
 
 /* ---- operators ---- */
 
-/* Points and matrices cannot tell their border. */
-static void hdi_no_border(const hd_laplacian_opts *o, hd_error *e) {
-    hdi_refuse(o && o->border == HD_BORDER_DIRICHLET,
-               "laplacian options: only meshes know their border; list the vertices in held", e);
-}
-
 /* A Laplacian without content. */
 static hd_laplacian *hdi_lap_new(const hd_laplacian_opts *opts, int32_t n, hd_laplacian_kind kind,
                                  hd_error *err, hdi_call *c) {
@@ -27770,7 +27658,9 @@ static hd_status hdi_lap_done(hd_laplacian **out, hd_laplacian *lap, hd_status s
 
 /* The same once the pair is there. */
 static hd_status hdi_lap_end(hd_laplacian **out, hd_laplacian *lap, hd_status status, hd_error *e) {
-    return hdi_lap_done(out, lap, status < 0 ? status : hdi_lap_hold(lap, e));
+    if (status >= 0) status = hdi_lap_hold(lap, e);
+    if (status >= 0) lap->lambda_max = hdi_lambda_known(lap);
+    return hdi_lap_done(out, lap, status);
 }
 
 /* Ends the checks: returns their first failure, else reports that the assembly begins. */
@@ -27778,89 +27668,109 @@ static hd_status hdi_lap_begin(const hdi_call *c) {
     return c->e->status < 0 ? c->e->status : hdi_progress(c->ctx, "assemble", 0, c->e);
 }
 
-static hd_laplacian_kind hdi_lap_kind(const hd_laplacian_opts *opts, hd_laplacian_kind otherwise) {
-    return opts && HDI_CLEARED(opts) && opts->kind != HD_LAPLACIAN_DEFAULT ? opts->kind : otherwise;
+HEATDIFF_API hd_mesh hd_triangles(const double *xyz, int32_t n, const int32_t *tri, int32_t n_tri) {
+    hd_mesh mesh;
+    memset(&mesh, 0, sizeof mesh);
+    mesh.n = n;
+    mesh.xyz = xyz;
+    mesh.n_faces = n_tri;
+    mesh.corner = tri;
+    return mesh;
 }
 
-/* Of a mesh by coordinates, or by lengths. missing: neither is there. */
-static hd_status hdi_triangles_make(hd_laplacian **out, const hdi_mesh *mesh, int missing,
-                                    const hd_laplacian_opts *opts, hd_error *err) {
-    hdi_intrinsic_task task;
-    hdi_call c;
-    hd_laplacian *lap = hdi_lap_new(opts, mesh->n, hdi_lap_kind(opts, HD_LAPLACIAN_FEM), err, &c);
-    int intrinsic;
-    if (!lap) return c.e->status;
-    if (!out || missing || (mesh->m > 0 && !mesh->tri)) hdi_missing(c.e);
-    hdi_refuse(mesh->m < 0, "laplacian: a size is negative", c.e);
-    hdi_refuse(mesh->len && opts && opts->updatable, "laplacian of lengths: it is not updatable", c.e);
-    hdi_refuse(hdi_kind_of(lap->kind)->of != HDI_OF_TRIANGLES,
-               "laplacian of triangles: the kind is fem, voronoi-cot or cot", c.e);
-    intrinsic = hdi_intrinsic_opts(opts, &task, c.e);
-    hdi_refuse(intrinsic && opts->updatable,
-               "laplacian of triangles: an intrinsic triangulation is not updatable", c.e);
-    if (hdi_lap_begin(&c) < 0) return hdi_lap_done(out, lap, c.e->status);
-    return hdi_lap_end(out, lap, hdi_lap_faces(lap, mesh, intrinsic ? &task : NULL, opts && opts->updatable,
-                                               c.e), c.e);
+static hd_laplacian_kind hdi_lap_kind(const hd_mesh *m, const hd_laplacian_opts *o) {
+    if (o->kind != HD_LAPLACIAN_DEFAULT) return o->kind;
+    if (m->shape == HD_TRIANGLES || o->triangulation != HD_TRIANGULATION_GIVEN) return HD_LAPLACIAN_FEM;
+    return m->shape == HD_POLYGONS ? HD_LAPLACIAN_POLYGON : HD_LAPLACIAN_VORONOI_EXP;
 }
 
-HEATDIFF_API hd_status hd_laplacian_triangles(hd_laplacian **out, const double *xyz, int32_t n,
-                                              const int32_t *tri, int32_t n_tri,
-                                              const hd_laplacian_opts *opts, hd_error *err) {
-    hdi_mesh mesh;
-    hdi_mesh_clear(&mesh, xyz, n, tri, n_tri);
-    return hdi_triangles_make(out, &mesh, n > 0 && !xyz, opts, err);
+/* Refuses options that do not go with the shape or the kind. */
+static void hdi_lap_opts_check(const hd_mesh *m, const hd_laplacian_opts *o, hd_laplacian_kind kind,
+                               hd_error *e) {
+    const int flips = o->triangulation != HD_TRIANGULATION_GIVEN, points = m->shape == HD_POINTS;
+    const int cotangents = hdi_kind_of(kind)->of == HDI_OF_TRIANGLES;
+    hdi_refuse(m->shape == HD_TRIANGLES && !cotangents,
+               "laplacian of triangles: the kind is fem, voronoi-cot or cot", e);
+    hdi_refuse(m->shape == HD_POLYGONS && !cotangents && kind != HD_LAPLACIAN_POLYGON,
+               "laplacian of polygons: the kind is polygon, fem, voronoi-cot or cot", e);
+    hdi_refuse(kind == HD_LAPLACIAN_POLYGON && flips,
+               "laplacian of polygons: intrinsic triangulations are for fem, voronoi-cot and cot", e);
+    hdi_refuse(points && flips && !cotangents,
+               "tufted laplacian of points: the kind is fem, voronoi-cot or cot", e);
+    hdi_refuse(points && !flips && kind != HD_LAPLACIAN_VORONOI_EXP && kind != HD_LAPLACIAN_EXP,
+               "laplacian of points: the kind is voronoi-exp or exp (fem, voronoi-cot and cot if tufted)", e);
+    hdi_refuse(points && !flips && m->nbr_ptr,
+               "laplacian of points: neighbours are for the triangulation tufted", e);
+    hdi_refuse(points && o->triangulation == HD_TRIANGULATION_DELAUNAY,
+               "laplacian of points: the triangulation is tufted", e);
+    hdi_refuse(points && o->border == HD_BORDER_DIRICHLET,
+               "laplacian options: only meshes know their border; list the vertices in held", e);
+    hdi_refuse(o->updatable && points,
+               "laplacian of points: not updatable, because new places make a new pattern of triangles", e);
+    hdi_refuse(o->updatable && m->lengths, "laplacian of lengths: it is not updatable", e);
+    hdi_refuse(o->updatable && flips, "laplacian: an intrinsic triangulation is not updatable", e);
+    hdi_refuse(o->stiffening != 0 && kind != HD_LAPLACIAN_POLYGON,
+               "laplacian options: stiffening is for the kind polygon", e);
+    hdi_refuse(!hdi_finite(o->stiffening) || !(o->stiffening >= 0 && o->stiffening <= 1e100),
+               "laplacian of polygons: stiffening is not between 0 and 1e100", e);
 }
 
-HEATDIFF_API hd_status hd_laplacian_lengths(hd_laplacian **out, const double *lengths, int32_t n,
-                                            const int32_t *tri, int32_t n_tri, const hd_laplacian_opts *opts,
-                                            hd_error *err) {
-    hdi_mesh mesh;
-    hdi_mesh_clear(&mesh, NULL, n, tri, n_tri);
-    mesh.len = lengths;
-    return hdi_triangles_make(out, &mesh, !lengths, opts, err);
-}
-
-/* ---- views of vertex and index buffers ---- */
-
-HEATDIFF_API hd_status hd_laplacian_view(hd_laplacian **out, const hd_mesh_view *view,
-                                         const hd_laplacian_opts *opts, hd_error *err) {
+/* Fills a Laplacian from a mesh whose shape and options are checked. */
+static hd_status hdi_lap_fill(hd_laplacian *lap, const hd_mesh *m, const hd_laplacian_opts *o,
+                              const hdi_intrinsic_task *task, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    const int poly = HDI_HAS_POLYGONS && m->shape == HD_POLYGONS;
     hdi_view v;
-    hdi_call c;
-    if (hdi_enter_with(&c, !opts || HDI_CLEARED(opts), opts ? opts->context : NULL,
-                       "laplacian options: not cleared before use", err) < 0) return c.e->status;
-    if (hdi_view_open(&v, view, 1, &c) >= 0)
-        (void)hd_laplacian_triangles(out, v.xyz, v.n, v.tri, v.n_tri, opts, c.e);
-    return hdi_scope_end(&v.s);
+    hdi_mesh mesh;
+    if (hdi_view_open(&v, m, &s) < 0) return hdi_scope_end(&s);
+    hdi_mesh_clear(&mesh, v.xyz, m->n, v.corner, m->n_faces);
+    mesh.len = m->lengths;
+    mesh.ptr = m->face_ptr;
+    mesh.lambda = o->stiffening != 0 ? o->stiffening : 1;
+    if (HDI_HAS_POINTS && m->shape == HD_POINTS && task)
+        (void)hdi_tufted_points(lap, v.xyz, m->nbr_ptr, m->nbr, task->delta, e);
+    else if (HDI_HAS_POINTS && m->shape == HD_POINTS) (void)hdi_lap_points(lap, v.xyz, e);
+    else if (poly && lap->kind == HD_LAPLACIAN_POLYGON) (void)hdi_lap_plain(lap, &mesh, o->updatable, e);
+    else if (poly) (void)hdi_lap_fans(lap, &mesh, task, o->updatable, e);
+    else (void)hdi_lap_faces(lap, &mesh, task, o->updatable, e);
+    return hdi_scope_end(&s);
 }
 
-HEATDIFF_API hd_status hd_laplacian_polygons(hd_laplacian **out, const double *xyz, int32_t n,
-                                             const int64_t *face_ptr, const int32_t *face_idx,
-                                             int32_t n_faces, const hd_laplacian_opts *opts, hd_error *err) {
-    const int flips = opts && (opts->intrinsic_delaunay || opts->tufted);
-    const hd_laplacian_kind kind = hdi_lap_kind(opts, flips ? HD_LAPLACIAN_FEM : HD_LAPLACIAN_POLYGON);
-    const int splits = hdi_kind_of(kind)->of == HDI_OF_TRIANGLES, updatable = opts && opts->updatable;
+HEATDIFF_API hd_status hd_laplacian_create(hd_laplacian **out, const hd_mesh *mesh,
+                                           const hd_laplacian_opts *opts, hd_error *err) {
+    hd_laplacian_opts o;
     hdi_intrinsic_task task;
-    hdi_mesh poly;
+    hd_laplacian *lap;
     hdi_call c;
-    hd_laplacian *lap = hdi_lap_new(opts, n, kind, err, &c);
+    int flips;
+    memset(&o, 0, sizeof o);
+    if (opts) o = *opts;
+    lap = hdi_lap_new(&o, mesh ? mesh->n : 0, mesh ? hdi_lap_kind(mesh, &o) : o.kind, err, &c);
     if (!lap) return c.e->status;
-    if (!HDI_HAS_POLYGONS) return hdi_lap_done(out, lap, HDI_LEFT_OUT(c.e, POLYGONS, "polygons"));
-    hdi_mesh_clear(&poly, xyz, n, face_idx, n_faces);
-    poly.ptr = face_ptr;
-    poly.lambda = opts && opts->lambda != 0 ? opts->lambda : 1;
-    if (!out || (n > 0 && !xyz) || (n_faces > 0 && !face_ptr)) hdi_missing(c.e);
-    hdi_refuse(n_faces < 0, "laplacian: a size is negative", c.e);
-    hdi_refuse(!splits && hdi_kind_of(kind)->of != HDI_OF_POLYGONS,
-               "laplacian of polygons: the kind is polygon, fem, voronoi-cot or cot", c.e);
-    hdi_refuse(!hdi_finite(poly.lambda) || !(poly.lambda > 0 && poly.lambda <= 1e100),
-               "laplacian of polygons: lambda is not between 0 and 1e100", c.e);
-    hdi_refuse(hdi_intrinsic_opts(opts, &task, c.e) && !splits,
-               "laplacian of polygons: intrinsic triangulations are for fem, voronoi-cot and cot", c.e);
-    hdi_refuse(flips && updatable, "laplacian of polygons: an intrinsic triangulation is not updatable", c.e);
-    if (hdi_lap_begin(&c) < 0 || hdi_mesh_check(xyz, n, face_ptr, face_idx, n_faces, c.e) < 0)
-        return hdi_lap_done(out, lap, c.e->status);
-    return hdi_lap_end(out, lap, splits ? hdi_lap_fans(lap, &poly, flips ? &task : NULL, updatable, c.e)
-                                        : hdi_lap_plain(lap, &poly, updatable, c.e), c.e);
+    if (!out || !mesh) return hdi_lap_done(out, lap, hdi_missing(c.e));
+    if (!HDI_HAS_POLYGONS && mesh->shape == HD_POLYGONS)
+        return hdi_lap_done(out, lap, HDI_LEFT_OUT(c.e, POLYGONS, "polygons"));
+    if (!HDI_HAS_POINTS && mesh->shape == HD_POINTS)
+        return hdi_lap_done(out, lap, HDI_LEFT_OUT(c.e, POINTS, "points"));
+    (void)hdi_view_check(mesh, c.e);
+    flips = hdi_intrinsic_opts(o.triangulation, o.mollify, &task, c.e);
+    hdi_lap_opts_check(mesh, &o, lap->kind, c.e);
+    hdi_point_opts(lap, &o, c.e);
+    lap->points.neighbours = hdi_point_neighbours(o.neighbours, mesh, c.e);
+    if (mesh->shape != HD_POINTS || mesh->nbr_ptr) lap->points.neighbours = 0;
+    if (hdi_lap_begin(&c) < 0) return hdi_lap_done(out, lap, c.e->status);
+    return hdi_lap_end(out, lap, hdi_lap_fill(lap, mesh, &o, flips ? &task : NULL, c.e), c.e);
+}
+
+/* Of the options only context, updatable and held are for matrices. */
+static void hdi_matrix_opts_check(const hd_laplacian_opts *o, hd_error *e) {
+    hdi_refuse(o->kind != HD_LAPLACIAN_DEFAULT && o->kind != HD_LAPLACIAN_MATRICES,
+               "laplacian of matrices: the kind is matrices", e);
+    hdi_refuse(o->border == HD_BORDER_DIRICHLET,
+               "laplacian options: only meshes know their border; list the vertices in held", e);
+    hdi_refuse(o->triangulation || o->mollify != 0 || o->neighbours || o->stiffening != 0 ||
+               o->bandwidth2 != 0 || o->weight_cut != 0,
+               "laplacian of matrices: of the options only context, updatable and held are for matrices", e);
 }
 
 HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L, const hd_csr *B, double h,
@@ -27870,7 +27780,7 @@ HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L
     if (!lap) return c.e->status;
     if (!out || !L || !B || !L->val || !B->val) return hdi_lap_done(out, lap, hdi_missing(c.e));
     hdi_refuse(!hdi_finite(h) || h < 0, "laplacian of matrices: h is negative or not finite", c.e);
-    hdi_no_border(opts, c.e);
+    if (opts) hdi_matrix_opts_check(opts, c.e);
     if (c.e->status < 0 || hdi_csr_check(L, 1, c.e) < 0 || hdi_csr_check(B, 1, c.e) < 0)
         return hdi_lap_done(out, lap, c.e->status);
     if (L->n_rows != B->n_rows)
@@ -27881,40 +27791,6 @@ HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L
     if (hdi_pair_pattern(lap, L, B, c.e) >= 0 && hdi_pair_replace(lap, L, B, h, c.e) >= 0 && opts &&
         opts->updatable) (void)hdi_moving_new(lap, c.e);
     return hdi_lap_end(out, lap, c.e->status, c.e);
-}
-
-HEATDIFF_API hd_status hd_laplacian_points(hd_laplacian **out, const double *xyz, int32_t n,
-                                           const hd_laplacian_opts *opts, hd_error *err) {
-    hdi_call c;
-    hd_laplacian *lap = hdi_lap_new(opts, n, hdi_lap_kind(opts, HD_LAPLACIAN_VORONOI_EXP), err, &c);
-    if (!lap) return c.e->status;
-    if (!HDI_HAS_POINTS) return hdi_lap_done(out, lap, HDI_LEFT_OUT(c.e, POINTS, "points"));
-    if (!out || (n > 0 && !xyz)) hdi_missing(c.e);
-    hdi_point_opts(lap, opts, c.e);
-    hdi_no_border(opts, c.e);
-    return hdi_lap_end(out, lap, hdi_lap_begin(&c) < 0 ? c.e->status : hdi_lap_points(lap, xyz, c.e), c.e);
-}
-
-HEATDIFF_API hd_status hd_laplacian_tufted_points(hd_laplacian **out, const double *xyz, int32_t n,
-                                                  const int64_t *nbr_ptr, const int32_t *nbr,
-                                                  const hd_laplacian_opts *opts, hd_error *err) {
-    hdi_intrinsic_task task;
-    hdi_call c;
-    hd_laplacian *lap = hdi_lap_new(opts, n, hdi_lap_kind(opts, HD_LAPLACIAN_FEM), err, &c);
-    if (!lap) return c.e->status;
-    if (!HDI_HAS_POINTS) return hdi_lap_done(out, lap, HDI_LEFT_OUT(c.e, POINTS, "points"));
-    if (!HDI_HAS_INTRINSIC)
-        return hdi_lap_done(out, lap, HDI_LEFT_OUT(c.e, INTRINSIC, "intrinsic triangulations"));
-    if (!out || (n > 0 && !xyz) || (nbr_ptr && nbr_ptr[n] > 0 && !nbr) || (nbr && !nbr_ptr)) hdi_missing(c.e);
-    hdi_refuse(hdi_kind_of(lap->kind)->of != HDI_OF_TRIANGLES,
-               "tufted laplacian of points: the kind is fem, voronoi-cot or cot", c.e);
-    (void)hdi_intrinsic_opts(opts, &task, c.e);
-    hdi_refuse(opts && opts->updatable,
-               "tufted laplacian of points: not updatable, because new places make new triangles", c.e);
-    if (!nbr_ptr) hdi_point_neighbours(&lap->points, opts, c.e);
-    hdi_no_border(opts, c.e);
-    if (hdi_lap_begin(&c) < 0) return hdi_lap_done(out, lap, c.e->status);
-    return hdi_lap_end(out, lap, hdi_tufted_points(lap, xyz, nbr_ptr, nbr, task.delta, c.e), c.e);
 }
 
 HEATDIFF_API hd_status hd_neighbours_nearest(const double *xyz, int32_t n, const double *query, int32_t m,
@@ -27957,14 +27833,19 @@ HEATDIFF_API hd_status hd_laplacian_apply(const hd_laplacian *lap, double alpha,
     return lap && x && y ? hdi_lap_apply(lap, alpha, beta, x, y, c.e) : hdi_missing(c.e);
 }
 
-HEATDIFF_API hd_status hd_laplacian_update(hd_laplacian *lap, const double *xyz, hd_error *err) {
+HEATDIFF_API hd_status hd_laplacian_update(hd_laplacian *lap, const hd_mesh *mesh, hd_error *err) {
+    const double *xyz;
     hdi_call c;
+    hdi_scope s;
     if (hdi_enter(&c, lap ? lap->context : NULL, err) < 0) return c.e->status;
-    if (!lap || !xyz) return hdi_missing(c.e);
+    if (!lap) return hdi_missing(c.e);
+    s = hdi_scope_begin(c.ctx, c.e);
     hdi_refuse(!lap->moving, "update: the Laplacian was not made with the option updatable", c.e);
     hdi_refuse(lap->moving && lap->kind == HD_LAPLACIAN_MATRICES,
                "update: matrices of your own take hd_laplacian_update_matrices", c.e);
-    return c.e->status < 0 ? c.e->status : hdi_lap_update(lap, xyz, c.e);
+    xyz = c.e->status < 0 ? NULL : hdi_view_moved(mesh, lap->n, &s);
+    if (c.e->status >= 0 && hdi_lap_update(lap, xyz, c.e) >= 0) lap->lambda_max = hdi_lambda_known(lap);
+    return hdi_scope_end(&s);
 }
 
 HEATDIFF_API hd_status hd_laplacian_update_matrices(hd_laplacian *lap, const hd_csr *L, const hd_csr *B,
@@ -27978,21 +27859,12 @@ HEATDIFF_API hd_status hd_laplacian_update_matrices(hd_laplacian *lap, const hd_
     hdi_refuse(L->n_rows != lap->n || B->n_rows != lap->n || L->n_cols != lap->n || B->n_cols != lap->n,
                "update of matrices: a matrix has another size", c.e);
     if (c.e->status >= 0 && hdi_csr_check(L, 1, c.e) >= 0 && hdi_csr_check(B, 1, c.e) >= 0 &&
-        hdi_pair_replace(lap, L, B, h, c.e) >= 0)
+        hdi_pair_replace(lap, L, B, h, c.e) >= 0) {
+        lap->lambda_max = hdi_lambda_known(lap);
         hdi_lap_renewed(lap);
+    }
     return c.e->status;
 }
-
-HEATDIFF_API hd_status hd_laplacian_update_view(hd_laplacian *lap, const hd_mesh_view *view, hd_error *err) {
-    hdi_view v;
-    hdi_call c;
-    if (hdi_enter(&c, lap ? lap->context : NULL, err) < 0) return c.e->status;
-    if (!lap) return hdi_missing(c.e);
-    if (hdi_view_positions(&v, view, lap->n, &c) >= 0) (void)hd_laplacian_update(lap, v.xyz, c.e);
-    return hdi_scope_end(&v.s);
-}
-
-HEATDIFF_API double hd_laplacian_lambda_max(const hd_laplacian *lap) { return hdi_lambda_known(lap); }
 
 HEATDIFF_API void hd_laplacian_free(hd_laplacian *lap) { if (lap) hdi_lap_drop(lap); }
 
@@ -28534,69 +28406,33 @@ HEATDIFF_API hd_status hd_heat_estimate(hd_heat *heat, hd_query query, int32_t n
 
 /* ---- geodesic distance ---- */
 
-HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const double *xyz, int32_t n, const int32_t *tri,
-                                          int32_t n_tri, const hd_geodesic_opts *opts, hd_error *err) {
-    hdi_geo_input in = hdi_geo_input_of(xyz, tri, n_tri);
-    return hdi_geo_plan(out, n, &in, !(n > 0 && !xyz) && !(n_tri > 0 && !tri), opts, err);
-}
-
-HEATDIFF_API hd_status hd_geodesic_create_polygons(hd_geodesic **out, const double *xyz, int32_t n,
-                                                   const int64_t *face_ptr, const int32_t *face_idx,
-                                                   int32_t n_faces, const hd_geodesic_opts *opts,
-                                                   hd_error *err) {
-    hdi_geo_input in = hdi_geo_input_of(xyz, NULL, n_faces);
-    in.ptr = face_ptr;
-    in.idx = face_idx;
-    return hdi_geo_plan(out, n, &in, !(n > 0 && !xyz) && face_ptr, opts, err);
-}
-
-HEATDIFF_API hd_status hd_geodesic_create_points(hd_geodesic **out, const double *xyz, int32_t n,
-                                                 const int64_t *nbr_ptr, const int32_t *nbr,
-                                                 const hd_geodesic_opts *opts, hd_error *err) {
-    const int lists = nbr_ptr ? n < 0 || nbr_ptr[n] == 0 || nbr : !nbr, there = (n <= 0 || xyz) && lists;
-    hdi_geo_input in = hdi_geo_input_of(xyz, NULL, 0);
-    in.points = 1;
-    in.nbr_ptr = nbr_ptr;
-    in.nbr = nbr;
-    return hdi_geo_plan(out, n, &in, there, opts, err);
-}
-
-HEATDIFF_API hd_status hd_geodesic_create_lengths(hd_geodesic **out, const double *lengths, int32_t n,
-                                                  const int32_t *tri, int32_t n_tri,
-                                                  const hd_geodesic_opts *opts, hd_error *err) {
-    hdi_geo_input in = hdi_geo_input_of(NULL, tri, n_tri);
-    in.len = lengths;
-    return hdi_geo_plan(out, n, &in, lengths && !(n_tri > 0 && !tri), opts, err);
-}
-
-HEATDIFF_API hd_status hd_geodesic_create_view(hd_geodesic **out, const hd_mesh_view *view,
-                                               const hd_geodesic_opts *opts, hd_error *err) {
-    hdi_view v;
+HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const hd_mesh *mesh,
+                                          const hd_geodesic_opts *opts, hd_error *err) {
+    hd_geodesic_opts o;
     hdi_call c;
-    if (hdi_enter_with(&c, !opts || HDI_CLEARED(opts), opts ? opts->context : NULL,
-                       "geodesic options: not cleared before use", err) < 0) return c.e->status;
-    if (hdi_view_open(&v, view, 1, &c) >= 0)
-        (void)hd_geodesic_create(out, v.xyz, v.n, v.tri, v.n_tri, opts, c.e);
-    return hdi_scope_end(&v.s);
+    memset(&o, 0, sizeof o);
+    if (opts) o = *opts;
+    if (hdi_enter_with(&c, HDI_CLEARED(&o), o.context, "geodesic options: not cleared before use", err) < 0)
+        return c.e->status;
+    if (!HDI_HAS_GEODESIC) return HDI_LEFT_OUT(c.e, GEODESIC, "geodesic distances");
+    if (!out || !mesh) return hdi_missing(c.e);
+    if (!HDI_HAS_POLYGONS && mesh->shape == HD_POLYGONS) return HDI_LEFT_OUT(c.e, POLYGONS, "polygons");
+    if (!HDI_HAS_POINTS && mesh->shape == HD_POINTS) return HDI_LEFT_OUT(c.e, POINTS, "points");
+    return hdi_geo_create(out, mesh, &o, &c);
 }
 
-HEATDIFF_API hd_status hd_geodesic_update_view(hd_geodesic *g, const hd_mesh_view *view, hd_error *err) {
-    hdi_view v;
+HEATDIFF_API hd_status hd_geodesic_update(hd_geodesic *g, const hd_mesh *mesh, hd_error *err) {
+    const double *xyz;
     hdi_call c;
-    if (hdi_enter(&c, g ? g->ctx : NULL, err) < 0) return c.e->status;
-    if (!g) return hdi_missing(c.e);
-    if (hdi_view_positions(&v, view, g->n, &c) >= 0) (void)hd_geodesic_update(g, v.xyz, c.e);
-    return hdi_scope_end(&v.s);
-}
-
-HEATDIFF_API hd_status hd_geodesic_update(hd_geodesic *g, const double *xyz, hd_error *err) {
-    hdi_call c;
+    hdi_scope s;
     if (hdi_enter(&c, g ? g->ctx : NULL, err) < 0) return c.e->status;
     if (!HDI_HAS_GEODESIC) return HDI_LEFT_OUT(c.e, GEODESIC, "geodesic distances");
-    if (!g || !xyz) return hdi_missing(c.e);
+    if (!g) return hdi_missing(c.e);
+    s = hdi_scope_begin(c.ctx, c.e);
     hdi_refuse(!g->lap, "geodesic: the plan was not made with the option updatable", c.e);
-    if (c.e->status < 0) return c.e->status;
-    return hdi_geo_update(g, xyz, c.e);
+    xyz = c.e->status < 0 ? NULL : hdi_view_moved(mesh, g->n, &s);
+    if (c.e->status >= 0) (void)hdi_geo_update(g, xyz, c.e);
+    return hdi_scope_end(&s);
 }
 
 HEATDIFF_API void hd_geodesic_free(hd_geodesic *g) { if (HDI_HAS_GEODESIC && g) hdi_geo_free(g); }

@@ -6,7 +6,7 @@
 
    Heat is never negative. But if the two angles opposite to an edge sum to more than 180 degrees, the
    cotangent weight of the edge is negative, and the computed heat may be negative too. This example makes a
-   torus whose vertices are joined askew, so that many edges are of that kind. The option intrinsic_delaunay
+   torus whose vertices are joined askew, so that many edges are of that kind. A Delaunay triangulation
    flips edges along the surface before the Laplacian is assembled. Then no weight is negative, on the same
    vertices and the same surface. The example prints the smallest value of K_t e_i relative to the largest,
    for three times and both Laplacians. */
@@ -68,6 +68,7 @@ int main(void) {
 
     make_torus(xyz, tri);
     for (intrinsic = 0; intrinsic < 2; intrinsic++) {
+        const hd_mesh mesh = hd_triangles(xyz, N, tri, 2 * N);
         hd_laplacian *lap = NULL;
         hd_heat *heat = NULL;
         hd_laplacian_opts opts;
@@ -78,8 +79,8 @@ int main(void) {
         memset(&opts, 0, sizeof opts);
         /* A diagonal B. With a full one, as in fem, heat can be negative at small times whatever L is. */
         opts.kind = HD_LAPLACIAN_VORONOI_COT;
-        opts.intrinsic_delaunay = intrinsic;
-        if (hd_laplacian_triangles(&lap, xyz, N, tri, 2 * N, &opts, &err) < 0) return fail(&err);
+        opts.triangulation = intrinsic ? HD_TRIANGULATION_DELAUNAY : HD_TRIANGULATION_GIVEN;
+        if (hd_laplacian_create(&lap, &mesh, &opts, &err) < 0) return fail(&err);
         printf("%s: %lld edges flipped, %lld of %lld weights negative, smallest angle %.2f degrees\n",
                intrinsic ? "intrinsic Delaunay" : "plain cotangents",
                (long long)lap->mesh.n_flips, (long long)lap->mesh.n_negative_weights,

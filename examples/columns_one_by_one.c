@@ -50,6 +50,7 @@ int main(void) {
     static const char *const names[4] = {"auto", "iterative", "direct", "krylov"};
     static double xyz[3 * N], u[PLANS][N];
     static int32_t tri[6 * N];
+    const hd_mesh mesh = hd_triangles(xyz, N, tri, 2 * N);
     hd_laplacian *lap = NULL;
     hd_heat *plan[PLANS] = {NULL, NULL, NULL};
     hd_report report[PLANS];
@@ -58,7 +59,7 @@ int main(void) {
     int click, k, i;
 
     make_torus(xyz, tri);
-    if (hd_laplacian_triangles(&lap, xyz, N, tri, 2 * N, NULL, &err) < 0) return fail(&err);
+    if (hd_laplacian_create(&lap, &mesh, NULL, &err) < 0) return fail(&err);
     t = 100 * lap->h * lap->h;
     for (k = 0; k < PLANS; k++) {
         hd_heat_opts opts = {0};

@@ -57,6 +57,7 @@ int main(void) {
     double *xyz = (double *)malloc(3 * N * sizeof *xyz), *u = (double *)malloc((ENERGIES + 1) * N * sizeof *u);
     int32_t *tri = (int32_t *)malloc(6 * N * sizeof *tri);
     double *pairs = u + ENERGIES * N, integral[ENERGIES];
+    const hd_mesh mesh = hd_triangles(xyz, N, tri, 2 * N);
     hd_laplacian *lap = NULL;
     hd_heat *heat = NULL;
     hd_spectrum *spectrum = NULL;
@@ -70,7 +71,7 @@ int main(void) {
     if (!xyz || !u || !tri) goto end;
     make_torus(xyz, tri);
     opts.count = PAIRS;
-    if (hd_laplacian_triangles(&lap, xyz, N, tri, 2 * N, NULL, &err) < 0) goto end;
+    if (hd_laplacian_create(&lap, &mesh, NULL, &err) < 0) goto end;
     if (hd_heat_create(&heat, lap, NULL, &err) < 0) goto end;
     if (hd_spectrum_create(&spectrum, lap, &opts, &err) < 0) goto end;
     for (q = 0; q < ENERGIES; q++) {
@@ -79,7 +80,7 @@ int main(void) {
         f[q].b = 0.3;
         f[q].tol = 1e-8;
     }
-    if (hd_rational_fit_shared(set, ENERGIES, f, hd_laplacian_lambda_max(lap), NULL, &err) < 0) goto end;
+    if (hd_rational_fit_shared(set, ENERGIES, f, lap->lambda_max, NULL, &err) < 0) goto end;
     if (hd_heat_set_rational(heat, set, &err) < 0) goto end;
     if (hd_heat_filter_diagonals(heat, ENERGIES, set, u, 0, integral, NULL, &report, &err) < 0) goto end;
     printf("%d vertices, %d poles for all energies, bound %.0e\nenergy  off by   thin     thick    "

@@ -46,13 +46,14 @@ int main(void) {
     static double xyz[3 * N], d[N], D[SAMPLES * N];
     static int32_t tri[6 * N];
     int32_t sample[SAMPLES] = {0}, i, k;
+    const hd_mesh mesh = hd_triangles(xyz, N, tri, 2 * N);
     hd_geodesic *g = NULL;
     hd_geodesic_report report;
     hd_error err;
     double nearest = HUGE_VAL;
 
     make_torus(xyz, tri);
-    if (hd_geodesic_create(&g, xyz, N, tri, 2 * N, NULL, &err) < 0) return fail(&err, NULL);
+    if (hd_geodesic_create(&g, &mesh, NULL, &err) < 0) return fail(&err, NULL);
 
     /* Around the tube, from its outermost point. The shortest way is a circle of radius 1. */
     if (hd_geodesic_distance(g, 1, sample, d, &report, NULL) < 0) return fail(&report.error, g);

@@ -46,6 +46,7 @@ int main(void) {
     static int32_t tri[6 * N];
     static const double times[] = {10, 100, 1000};
     const int32_t source = 0, opposite = NU / 2 * NV;   /* on the far side of the ring */
+    const hd_mesh mesh = hd_triangles(xyz, N, tri, 2 * N);
     hd_laplacian *lap = NULL;
     hd_heat *heat = NULL;
     hd_report report;
@@ -53,7 +54,7 @@ int main(void) {
     int k;
 
     make_torus(xyz, tri);
-    if (hd_laplacian_triangles(&lap, xyz, N, tri, 2 * N, NULL, &err) < 0) return fail(&err);
+    if (hd_laplacian_create(&lap, &mesh, NULL, &err) < 0) return fail(&err);
     printf("torus: %d vertices, area %.4f (smooth surface: %.4f), mean edge length h = %.4f\n", (int)lap->n,
            lap->area, 8 * 9.869604401089358, lap->h);
 

@@ -58,6 +58,7 @@ int main(void) {
     static double lengths[6 * N], u[N], d[N], far[N];
     const double t = 0.01, bary[3] = {1 / 3.0, 1 / 3.0, 1 / 3.0};
     hd_laplacian_opts opts = {0};
+    hd_mesh mesh = hd_triangles(NULL, N, tri, 2 * N);
     hd_laplacian *lap = NULL;
     hd_heat *heat = NULL;
     hd_geodesic *g = NULL;
@@ -67,9 +68,10 @@ int main(void) {
     int32_t v;
 
     make_torus(0, tri, lengths);
-    if (hd_laplacian_lengths(&lap, lengths, N, tri, 2 * N, NULL, &err) < 0) return fail("lengths", &err);
+    mesh.lengths = lengths;
+    if (hd_laplacian_create(&lap, &mesh, NULL, &err) < 0) return fail("lengths", &err);
     if (hd_heat_create(&heat, lap, NULL, &err) < 0) return fail("plan", &err);
-    if (hd_geodesic_create_lengths(&g, lengths, N, tri, 2 * N, NULL, &err) < 0) return fail("plan", &err);
+    if (hd_geodesic_create(&g, &mesh, NULL, &err) < 0) return fail("plan", &err);
     printf("a flat torus of %d vertices, area %.3f, border %d\n", (int)N, lap->area,
            (int)lap->mesh.n_boundary_edges);
 
@@ -96,9 +98,9 @@ int main(void) {
     hd_laplacian_free(lap);
 
     make_torus(5, tri, lengths);
-    opts.intrinsic_delaunay = 1;
+    opts.triangulation = HD_TRIANGULATION_DELAUNAY;
     lap = NULL;
-    if (hd_laplacian_lengths(&lap, lengths, N, tri, 2 * N, &opts, &err) < 0) return fail("flips", &err);
+    if (hd_laplacian_create(&lap, &mesh, &opts, &err) < 0) return fail("flips", &err);
     printf("cut into long triangles: smallest angle %.1f degrees, %.1f after %lld flips\n",
            57.29577951308232 * lap->mesh.smallest_angle,
            57.29577951308232 * lap->mesh.smallest_intrinsic_angle, (long long)lap->mesh.n_flips);

@@ -134,10 +134,11 @@ static double seconds(void) { return (double)clock() / CLOCKS_PER_SEC; }
 /* The signature of every vertex, with a context. Returns a status; what went wrong is in err. */
 static hd_status signature(hd_context *ctx, const double *xyz, const int32_t *tri, double *u, hd_error *err) {
     hd_laplacian_opts opts = {0};
+    const hd_mesh mesh = hd_triangles(xyz, N, tri, 2 * N);
     hd_laplacian *lap = NULL;
     hd_heat *heat = NULL;
     opts.context = ctx;                  /* the plan takes the context of its Laplacian */
-    if (hd_laplacian_triangles(&lap, xyz, N, tri, 2 * N, &opts, err) >= 0 && hd_heat_create(&heat, lap, NULL, err) >= 0) {
+    if (hd_laplacian_create(&lap, &mesh, &opts, err) >= 0 && hd_heat_create(&heat, lap, NULL, err) >= 0) {
         const double t = 50 * lap->h * lap->h;
         hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, 1, &t, u, 0, NULL, err);
     }

@@ -55,6 +55,7 @@ int main(void) {
     static double xyz[3 * N], u[N];
     static int32_t tri[6 * N];
     hd_laplacian_opts opts = {0};
+    const hd_mesh mesh = hd_triangles(xyz, N, tri, 2 * N);
     hd_laplacian *lap = NULL, *other = NULL;
     hd_heat *heat = NULL, *anew = NULL;
     hd_report report;
@@ -65,7 +66,7 @@ int main(void) {
     make_faces(tri);
     move(xyz, 0);
     opts.updatable = 1;
-    if (hd_laplacian_triangles(&lap, xyz, N, tri, 2 * N, &opts, &err) < 0) return fail(&err);
+    if (hd_laplacian_create(&lap, &mesh, &opts, &err) < 0) return fail(&err);
     if (hd_heat_create(&heat, lap, NULL, &err) < 0) return fail(&err);
     t = 30 * lap->h * lap->h;
     if (hd_heat_column(heat, HD_KERNEL_SYMMETRIC, t, 0, u, &report, &err) < 0) return fail(&err);
@@ -74,14 +75,14 @@ int main(void) {
         move(xyz, 0.3 * frame);
 
         since = seconds();
-        if (hd_laplacian_update(lap, xyz, &err) < 0) return fail(&err);
+        if (hd_laplacian_update(lap, &mesh, &err) < 0) return fail(&err);
         if (hd_heat_column(heat, HD_KERNEL_SYMMETRIC, t, 0, u, &report, &err) < 0) return fail(&err);
         moving += seconds() - since;
         printf("frame %2d: heat at the source %.6f, half way round %.6f, error at most %.0e of the largest\n",
                frame, u[0], u[N / 2], report.error_bound);
 
         since = seconds();
-        if (hd_laplacian_triangles(&other, xyz, N, tri, 2 * N, NULL, &err) < 0) return fail(&err);
+        if (hd_laplacian_create(&other, &mesh, NULL, &err) < 0) return fail(&err);
         if (hd_heat_create(&anew, other, NULL, &err) < 0) return fail(&err);
         if (hd_heat_column(anew, HD_KERNEL_SYMMETRIC, t, 0, u, NULL, &err) < 0) return fail(&err);
         making += seconds() - since;

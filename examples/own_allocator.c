@@ -45,12 +45,13 @@ enum { SIDE = 60, N = SIDE * SIDE };
 
 static hd_status work(hd_context *ctx, const double *xyz, const int32_t *tri, double *u) {
     hd_laplacian_opts lap_opts;
+    const hd_mesh mesh = hd_triangles(xyz, N, tri, 2 * (SIDE - 1) * (SIDE - 1));
     hd_laplacian *lap = NULL;
     hd_heat *heat = NULL;
     hd_status status;
     memset(&lap_opts, 0, sizeof lap_opts);
     lap_opts.context = ctx;
-    status = hd_laplacian_triangles(&lap, xyz, N, tri, 2 * (SIDE - 1) * (SIDE - 1), &lap_opts, NULL);
+    status = hd_laplacian_create(&lap, &mesh, &lap_opts, NULL);
     if (status >= 0) status = hd_heat_create(&heat, lap, NULL, NULL);
     if (status >= 0) status = hd_heat_column(heat, HD_KERNEL_OPERATOR, 50 * lap->h * lap->h, N / 2, u, NULL, NULL);
     hd_heat_free(heat);

@@ -19,7 +19,7 @@
    in three steps that each spread over machines by themselves:
 
      rows     A rank holds a range of rows. It takes the faces that touch its vertices, lets
-              hd_laplacian_triangles assemble L and B of this patch, and keeps the rows of its own vertices:
+              hd_laplacian_create assemble L and B of this patch, and keeps the rows of its own vertices:
               they are complete, because all their faces are there. Nobody holds the whole mesh, and assembly
               sends nothing. Here the mesh is a formula. With a mesh from a file, number the vertices so that
               near ones are near in number, and send every face to the owners of its corners.
@@ -176,6 +176,7 @@ static PetscErrorCode patch_vertices(patch *p, const settings *s, PetscInt lo, P
 
 static PetscErrorCode patch_make(patch *p, const settings *s, PetscInt lo, PetscInt hi) {
     hd_laplacian_opts opts;
+    hd_mesh mesh;
     PetscFunctionBeginUser;
     memset(p, 0, sizeof *p);
     memset(&opts, 0, sizeof opts);
@@ -183,7 +184,8 @@ static PetscErrorCode patch_make(patch *p, const settings *s, PetscInt lo, Petsc
     opts.kind = s->kind;
     opts.context = &p->ctx;
     p->ctx.n_threads = 1;               /* the processors belong to the ranks */
-    HD_CALL(hd_laplacian_triangles(&p->lap, p->xyz, (int32_t)p->n, p->tri, (int32_t)p->n_faces, &opts, NULL));
+    mesh = hd_triangles(p->xyz, (int32_t)p->n, p->tri, (int32_t)p->n_faces);
+    HD_CALL(hd_laplacian_create(&p->lap, &mesh, &opts, NULL));
     PetscFunctionReturn(0);
 }
 

@@ -57,15 +57,17 @@ static int show(const double *xyz, const char *what) {
     const int32_t source = 0;
     const double t = 0.1;
     double worst = 0;
+    hd_mesh cloud = hd_triangles(xyz, N, NULL, 0);
     hd_laplacian *lap = NULL;
     hd_heat *heat = NULL;
     hd_report report;
     hd_error err;
     int32_t i;
-    if (hd_laplacian_points(&lap, xyz, N, NULL, &err) < 0) return fail(&err);
+    cloud.shape = HD_POINTS;
+    if (hd_laplacian_create(&lap, &cloud, NULL, &err) < 0) return fail(&err);
     printf("%s: %d points, h = %.4f, area of the cells %.3f (sphere: 12.566)\n", what, N, lap->h, lap->area);
     printf("  bandwidth %.2e = %.2f h^2, weights up to a distance of %.3f, %.0f in a row\n",
-           lap->points.bandwidth, lap->points.bandwidth / (lap->h * lap->h), lap->points.cut_radius,
+           lap->points.bandwidth2, lap->points.bandwidth2 / (lap->h * lap->h), lap->points.cut_radius,
            (double)lap->L.nnz / lap->n_active);
     if (hd_heat_create(&heat, lap, NULL, &err) < 0 ||
         hd_heat_columns(heat, HD_KERNEL_SYMMETRIC, 1, &t, 1, &source, u, 0, &report, NULL) < 0) {

@@ -68,6 +68,7 @@ static double exact(double t, double z) {
 static double error_of(hd_laplacian_kind kind, double t) {
     const int32_t source = SOURCE;
     hd_laplacian_opts opts;
+    hd_mesh mesh = hd_triangles(xyz, N, face_idx, FACES);
     hd_laplacian *lap = NULL;
     hd_heat *heat = NULL;
     hd_report report;
@@ -76,7 +77,9 @@ static double error_of(hd_laplacian_kind kind, double t) {
     int32_t i;
     memset(&opts, 0, sizeof opts);
     opts.kind = kind;
-    if (hd_laplacian_polygons(&lap, xyz, N, face_ptr, face_idx, FACES, &opts, &err) < 0) {
+    mesh.shape = HD_POLYGONS;
+    mesh.face_ptr = face_ptr;
+    if (hd_laplacian_create(&lap, &mesh, &opts, &err) < 0) {
         fprintf(stderr, "polygon_mesh: %s (face %lld)\n", err.text, (long long)err.face);
         return -1;
     }

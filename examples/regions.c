@@ -61,9 +61,12 @@ int main(void) {
     opts.border = HD_GEODESIC_BORDER_MEAN;               /* the sheet has one: see hd_geodesic_border */
     opts.t_in_h2 = 8;
     for (way = 0; way < 2; way++) {
+        hd_mesh mesh = hd_triangles(xyz[way], N, idx, N_FACES);
         hd_geodesic *g = NULL;
         make_sheet(way, xyz[way], ptr, idx);
-        if (hd_geodesic_create_polygons(&g, xyz[way], N, ptr, idx, N_FACES, &opts, &err) < 0)
+        mesh.shape = HD_POLYGONS;
+        mesh.face_ptr = ptr;
+        if (hd_geodesic_create(&g, &mesh, &opts, &err) < 0)
             return fprintf(stderr, "regions: %s\n", err.text), 1;
         if (hd_geodesic_distance_each(g, MARKS, mark, D[way], 0, &report, &err) < 0)
             return fprintf(stderr, "regions: %s\n", err.text), 1;

@@ -58,13 +58,14 @@ int main(void) {
     const int32_t source = 0, opposite = NU / 2 * NV;       /* both on the outer rim, on opposite sides */
     int32_t point[POINTS], q;
     double t[TIMES], apart[POINTS];
+    const hd_mesh mesh = hd_triangles(xyz, N, tri, 2 * N);
     hd_laplacian *lap = NULL;
     hd_heat *heat = NULL;
     hd_report report;
     hd_error err;
 
     make_torus();
-    if (hd_laplacian_triangles(&lap, xyz, N, tri, 2 * N, NULL, &err) < 0) return fail(&err);
+    if (hd_laplacian_create(&lap, &mesh, NULL, &err) < 0) return fail(&err);
     if (hd_heat_create(&heat, lap, NULL, &err) < 0) return fail(&err);
     for (q = 0; q < TIMES; q++) t[q] = pow(10, q + 1) * lap->h * lap->h;
 

@@ -62,10 +62,11 @@ int main(void) {
     hd_report report;
     int which, k;
     for (which = 0; which < 2; which++) {
+        const hd_mesh mesh = hd_triangles(xyz, N, tri, FACES);
         hd_laplacian *lap = NULL;
         hd_heat *heat = NULL;
         make_sheet(which ? 3 : 1);
-        if (hd_laplacian_triangles(&lap, xyz, N, tri, FACES, NULL, &err) < 0) return fail(&err);
+        if (hd_laplacian_create(&lap, &mesh, NULL, &err) < 0) return fail(&err);
         if (hd_heat_create(&heat, lap, NULL, &err) < 0) return fail(&err);
 
         /* times that suit the area, the heat trace, and signatures whose integral is 1 */

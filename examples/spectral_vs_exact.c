@@ -51,6 +51,7 @@ int main(void) {
     int32_t *tri = (int32_t *)malloc(6 * N * sizeof *tri);
     const int32_t source = 17;
     double *exact = u, *some = u + N, *bound = u + 2 * N;
+    const hd_mesh mesh = hd_triangles(xyz, N, tri, 2 * N);
     hd_laplacian *lap = NULL;
     hd_heat *heat = NULL;
     hd_spectrum *spectrum[6] = {NULL, NULL, NULL, NULL, NULL, NULL};
@@ -59,7 +60,7 @@ int main(void) {
     int status = 1, k, q;
     if (!xyz || !u || !tri) goto end;
     make_torus(xyz, tri);
-    if (hd_laplacian_triangles(&lap, xyz, N, tri, 2 * N, NULL, &err) < 0) goto end;
+    if (hd_laplacian_create(&lap, &mesh, NULL, &err) < 0) goto end;
     if (hd_heat_create(&heat, lap, NULL, &err) < 0) goto end;
     printf("%d vertices; error of the kernel from k pairs (and its bound), relative to the largest value\n", N);
     printf("  t/h^2");

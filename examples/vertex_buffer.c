@@ -68,7 +68,7 @@ static int fail(const hd_error *e) {
 
 int main(void) {
     static double u[N];
-    hd_mesh_view view = {0};
+    hd_mesh mesh = {0};
     hd_laplacian_opts opts = {0};
     hd_laplacian *lap = NULL;
     hd_heat *heat = NULL;
@@ -79,20 +79,20 @@ int main(void) {
 
     make_faces();
     move(0);
-    view.xyz_float = vertices[0].position;
-    view.stride = sizeof(vertex);
-    view.n = N;
-    view.tri_u16 = indices;
-    view.n_indices = 6 * N;
+    mesh.xyz_float = vertices[0].position;
+    mesh.stride = sizeof(vertex);
+    mesh.n = N;
+    mesh.corner_u16 = indices;
+    mesh.n_faces = 2 * N;
     opts.updatable = 1;                          /* the mesh will move */
-    if (hd_laplacian_view(&lap, &view, &opts, &err) < 0) return fail(&err);
+    if (hd_laplacian_create(&lap, &mesh, &opts, &err) < 0) return fail(&err);
     if (hd_heat_create(&heat, lap, NULL, &err) < 0) return fail(&err);
     t = 100 * lap->h * lap->h;
 
     for (frame = 1; frame <= FRAMES; frame++) {
         const clock_t since = clock();
         move(0.3f * (float)frame);
-        if (hd_laplacian_update_view(lap, &view, &err) < 0) return fail(&err);
+        if (hd_laplacian_update(lap, &mesh, &err) < 0) return fail(&err);
         if (hd_heat_column(heat, HD_KERNEL_SYMMETRIC, t, 0, u, &report, &err) < 0) return fail(&err);
         printf("frame %d: %d vertices are warm, error at most %.0e, %.1f ms\n", frame, paint(u, 0), report.error_bound,
                1e3 * (double)(clock() - since) / CLOCKS_PER_SEC);

@@ -49,4 +49,22 @@ static hd_status heat_sample(hd_heat *heat, hd_distance_kind kind, double t, int
     return hd_heat_sample(heat, kind, t, count, n_given, vertex, distance, report, NULL);
 }
 
+/* Points whose stars are triangulated; o NULL: by default. */
+static hd_status at_tufted(hd_laplacian **out, const double *xyz, int32_t n, const int64_t *nbr_ptr, const int32_t *nbr,
+                           const hd_laplacian_opts *o, hd_error *e) {
+    hd_laplacian_opts own;
+    memset(&own, 0, sizeof own);
+    if (o) own = *o;
+    own.triangulation = HD_TRIANGULATION_TUFTED;
+    return hd_laplacian_create(out, MESH_STARS(xyz, n, nbr_ptr, nbr), &own, e);
+}
+
+static hd_status at_tufted_geodesic(hd_geodesic **out, const double *xyz, int32_t n, const hd_geodesic_opts *o, hd_error *e) {
+    hd_geodesic_opts own;
+    memset(&own, 0, sizeof own);
+    if (o) own = *o;
+    own.triangulation = HD_TRIANGULATION_TUFTED;
+    return hd_geodesic_create(out, MESH_POINTS(xyz, n), &own, e);
+}
+
 #endif

@@ -81,13 +81,16 @@ int main(void) {
     double xyz[18] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 2, 2, 2, 2, 2, 2}, v[4] = {1, 2, 3, 4}, u[6], t;
     const int32_t tri[18] = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3, 4, 5, 0, 4, 4, 1}, i[4] = {0, 1, 2, 3}, same[2] = {1, 1};
     hd_c64 b[6], x[6];
+    hd_mesh mesh = hd_triangles(xyz, 6, tri, 6);
+    hd_laplacian_opts tufted = {0};
     hd_laplacian *lap = NULL, *none = NULL;
     hd_geodesic *g = NULL;
     hd_heat *heat = NULL;
     hd_ldl *f = NULL;
     hd_csr a, c;
     int k;
-    IS(hd_laplacian_triangles(&lap, xyz, 6, tri, 6, NULL, NULL), HD_OK);
+    IS(hd_laplacian_create(&lap, &mesh, NULL, NULL), HD_OK);
+    tufted.triangulation = HD_TRIANGULATION_TUFTED;
     if (lap->mesh.n_zero_area != 1 || lap->n_active != 4) failed = printf("degenerate faces\n");
     IS(hd_heat_create(&heat, lap, NULL, NULL), HD_OK);
     IS(hd_csr_from_triplets(&a, 4, 4, 4, i, i, v, NULL, NULL), HD_OK);
@@ -96,10 +99,13 @@ int main(void) {
     memset(b, 0, sizeof b);
     for (k = 0; k < 3; k++) {
         memcpy(xyz + 4, bits + k, sizeof *bits);
-        IS(hd_laplacian_triangles(&none, xyz, 4, tri, 4, NULL, NULL), HD_ERR_NOT_FINITE);
-        IS(hd_laplacian_points(&none, xyz, 4, NULL, NULL), HD_ERR_NOT_FINITE);
-        IS(hd_laplacian_tufted_points(&none, xyz, 4, NULL, NULL, NULL, NULL), HD_ERR_NOT_FINITE);
-        IS(hd_geodesic_create(&g, xyz, 4, tri, 4, NULL, NULL), HD_ERR_NOT_FINITE);
+        mesh = hd_triangles(xyz, 4, tri, 4);
+        IS(hd_laplacian_create(&none, &mesh, NULL, NULL), HD_ERR_NOT_FINITE);
+        IS(hd_geodesic_create(&g, &mesh, NULL, NULL), HD_ERR_NOT_FINITE);
+        mesh = hd_triangles(xyz, 4, NULL, 0);
+        mesh.shape = HD_POINTS;
+        IS(hd_laplacian_create(&none, &mesh, NULL, NULL), HD_ERR_NOT_FINITE);
+        IS(hd_laplacian_create(&none, &mesh, &tufted, NULL), HD_ERR_NOT_FINITE);
         xyz[4] = 0;
         memcpy(v + 2, bits + k, sizeof *bits);
         IS(hd_csr_from_triplets(&c, 4, 4, 4, i, i, v, NULL, NULL), HD_ERR_NOT_FINITE);

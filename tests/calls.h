@@ -46,7 +46,7 @@ typedef struct call_args {
 
     hd_csr A, L, B, full;                    /* structs, and pointers to them */
     hd_csr *a, *l, *b, *whole;              /* whole: the full one, for b */
-    hd_mesh_view mesh, *view;
+    hd_mesh mesh, *view;
     hd_laplacian_opts lo, *lap_opts;
     hd_heat_opts ho, *heat_opts;
     hd_spectrum_opts so, *spectrum_opts;
@@ -70,19 +70,21 @@ typedef struct call_args {
       (a->out_csr, a->rows, a->cols, a->n_triplets, a->triplet_i, a->triplet_j, a->triplet_v, a->ctx, a->err))                 \
     X(check, hd_csr_check, "", (a->a, a->symmetric, a->ctx, a->err))                                                           \
     V(csr_apply, hd_csr_apply, "", hd_csr_apply(a->a, a->f, a->u, a->ctx))                                                     \
-    X(triangles, hd_laplacian_triangles, "", (a->out_lap, a->xyz, a->n, a->tri, a->n_tri, a->lap_opts, a->err))                \
-    X(view, hd_laplacian_view, "", (a->out_lap, a->view, a->lap_opts, a->err))                                                 \
-    X(lengths, hd_laplacian_lengths, "", (a->out_lap, a->lengths, a->n, a->tri, a->n_tri, a->lap_opts, a->err))                \
-    X(polygons, hd_laplacian_polygons, "",                                                                                     \
-      (a->out_lap, a->xyz, a->n, a->face_ptr, a->tri, a->n_tri, a->lap_opts, a->err))                                          \
-    X(points, hd_laplacian_points, "", (a->out_lap, a->xyz, a->n, a->lap_opts, a->err))                                        \
-    X(tufted_points, hd_laplacian_tufted_points, "", (a->out_lap, a->xyz, a->n, a->nbr_ptr, a->nbr, a->lap_opts, a->err))      \
+    X(triangles, hd_laplacian_create, "",                                                                                      \
+      (a->out_lap, MESH_TRIANGLES(a->xyz, a->n, a->tri, a->n_tri), a->lap_opts, a->err))                                       \
+    X(view, hd_laplacian_create, "", (a->out_lap, a->view, a->lap_opts, a->err))                                               \
+    X(lengths, hd_laplacian_create, "",                                                                                        \
+      (a->out_lap, MESH_LENGTHS(a->lengths, a->n, a->tri, a->n_tri), a->lap_opts, a->err))                                     \
+    X(polygons, hd_laplacian_create, "",                                                                                       \
+      (a->out_lap, MESH_POLYGONS(a->xyz, a->n, a->face_ptr, a->tri, a->n_tri), a->lap_opts, a->err))                           \
+    X(points, hd_laplacian_create, "", (a->out_lap, MESH_POINTS(a->xyz, a->n), a->lap_opts, a->err))                           \
+    X(tufted_points, at_tufted, "", (a->out_lap, a->xyz, a->n, a->nbr_ptr, a->nbr, a->lap_opts, a->err))                       \
     X(matrices, hd_laplacian_matrices, "", (a->out_lap, a->l, a->b, a->h, a->lap_opts, a->err))                                \
     X(lap_apply, hd_laplacian_apply, "", (a->lap, a->alpha, a->beta, a->f, a->u, a->err))                                      \
-    X(update, hd_laplacian_update, "updatable", (a->lap, a->moved, a->err))                                                    \
-    X(update_view, hd_laplacian_update_view, "updatable", (a->lap, a->view, a->err))                                           \
+    X(update, hd_laplacian_update, "updatable", (a->lap, MESH_POINTS(a->moved, a->n), a->err))                                 \
+    X(update_view, hd_laplacian_update, "updatable", (a->lap, a->view, a->err))                                                \
     X(update_matrices, hd_laplacian_update_matrices, "updatable matrices", (a->lap, a->l, a->b, a->h, a->err))                 \
-    V(lambda_max, hd_laplacian_lambda_max, "", a->u[0] = hd_laplacian_lambda_max(a->lap))                                      \
+    V(lambda_max, hd_laplacian, "", a->u[0] = (a->lap)->lambda_max)                                                            \
     X(nearest, hd_neighbours_nearest, "",                                                                                      \
       (a->xyz, a->n, a->queries, a->n_queries, a->k, a->vertex, a->u, a->ctx, a->err))                                         \
     X(radius, hd_neighbours_radius, "", (a->out_csr, a->xyz, a->n, a->queries, a->n_queries, a->radius, a->ctx, a->err))       \
@@ -145,16 +147,16 @@ typedef struct call_args {
     X(eigen_distance_from, hd_spectrum_distance_from, "",                                                                      \
       (a->spectrum, (hd_distance_kind)a->kind, a->n_times, a->t, a->k_from, a->sources, a->u, a->v, a->ld, a->err))            \
     X(estimate, hd_heat_estimate, "", (a->heat, (hd_query)a->query, a->n_times, a->t, a->k, a->estimate, a->err))              \
-    X(geodesic, hd_geodesic_create, "", (a->out_geodesic, a->xyz, a->n, a->tri, a->n_tri, a->geodesic_opts, a->err))           \
-    X(geodesic_lengths, hd_geodesic_create_lengths, "",                                                                        \
-      (a->out_geodesic, a->lengths, a->n, a->tri, a->n_tri, a->geodesic_opts, a->err))                                         \
-    X(geodesic_view, hd_geodesic_create_view, "", (a->out_geodesic, a->view, a->geodesic_opts, a->err))                        \
-    X(geodesic_polygons, hd_geodesic_create_polygons, "",                                                                      \
-      (a->out_geodesic, a->xyz, a->n, a->face_ptr, a->tri, a->n_tri, a->geodesic_opts, a->err))                                \
-    X(geodesic_points, hd_geodesic_create_points, "",                                                                          \
-      (a->out_geodesic, a->xyz, a->n, a->nbr_ptr, a->nbr, a->geodesic_opts, a->err))                                           \
-    X(geodesic_update, hd_geodesic_update, "updatable", (a->geodesic, a->moved, a->err))                                       \
-    X(geodesic_update_view, hd_geodesic_update_view, "updatable", (a->geodesic, a->view, a->err))                              \
+    X(geodesic, hd_geodesic_create, "",                                                                                        \
+      (a->out_geodesic, MESH_TRIANGLES(a->xyz, a->n, a->tri, a->n_tri), a->geodesic_opts, a->err))                             \
+    X(geodesic_lengths, hd_geodesic_create, "",                                                                                \
+      (a->out_geodesic, MESH_LENGTHS(a->lengths, a->n, a->tri, a->n_tri), a->geodesic_opts, a->err))                           \
+    X(geodesic_view, hd_geodesic_create, "", (a->out_geodesic, a->view, a->geodesic_opts, a->err))                             \
+    X(geodesic_polygons, hd_geodesic_create, "",                                                                               \
+      (a->out_geodesic, MESH_POLYGONS(a->xyz, a->n, a->face_ptr, a->tri, a->n_tri), a->geodesic_opts, a->err))                 \
+    X(geodesic_points, at_tufted_geodesic, "", (a->out_geodesic, a->xyz, a->n, a->geodesic_opts, a->err))                      \
+    X(geodesic_update, hd_geodesic_update, "updatable", (a->geodesic, MESH_POINTS(a->moved, a->n), a->err))                    \
+    X(geodesic_update_view, hd_geodesic_update, "updatable", (a->geodesic, a->view, a->err))                                   \
     X(geodesic_set, hd_geodesic_distance, "", (a->geodesic, a->k, a->ids, a->u, a->geodesic_rep, a->err))                      \
     X(geodesic_each, hd_geodesic_distance_each, "", (a->geodesic, a->k, a->ids, a->u, a->ld, a->geodesic_rep, a->err))         \
     X(geodesic_from, hd_geodesic_distance_from, "", (a->geodesic, a->sources, a->u, a->geodesic_rep, a->err))
@@ -209,13 +211,14 @@ static const call_field call_fields[] = {
     P(geodesic_rep), P(err), I(A.n_rows), I(A.n_cols), L(A.nnz), P(A.row_ptr), P(A.col), P(A.val),
     I(L.n_rows), I(L.n_cols), P(L.row_ptr), P(L.val), I(B.n_rows), I(B.n_cols), P(B.row_ptr), P(B.col), P(B.val), L(B.nnz),
     P(full.row_ptr), P(full.col), P(full.val), L(full.nnz), P(solve_rep), P(ldl_rep), I(mesh.begin_zero), I(mesh.end_zero),
-    P(mesh.xyz_float), P(mesh.xyz_double), P(mesh.tri_u16), P(mesh.tri_i32), L(mesh.n), L(mesh.n_indices), S(mesh.stride),
-    I(lo.begin_zero), I(lo.end_zero), I(lo.kind), I(lo.intrinsic_delaunay), I(lo.tufted), I(go.updatable), I(go.tufted),
-    I(lo.border), I(lo.n_held), I(lo.updatable), I(lo.neighbours), D(lo.lambda), D(lo.bandwidth), D(lo.weight_cut), D(lo.mollify),
+    I(mesh.shape), P(mesh.xyz_float), P(mesh.xyz), P(mesh.lengths), P(mesh.corner_u16), P(mesh.corner), P(mesh.face_ptr),
+    P(mesh.nbr_ptr), P(mesh.nbr), I(mesh.n), I(mesh.n_faces), S(mesh.stride),
+    I(lo.begin_zero), I(lo.end_zero), I(lo.kind), I(lo.triangulation), I(go.updatable), I(go.triangulation), I(lo.border),
+    I(lo.n_held), I(lo.updatable), I(lo.neighbours), D(lo.stiffening), D(lo.bandwidth2), D(lo.weight_cut), D(lo.mollify),
     I(ho.begin_zero), I(ho.end_zero), I(ho.method), I(ho.solver), I(ho.precond), I(ho.poles), I(ho.degree), P(ho.rational),
     D(ho.tol), I(ho.max_iterations), I(ho.ordering), P(ho.perm), I(so.begin_zero), I(so.end_zero), I(so.count), D(so.below),
     D(so.tol), I(so.ordering), P(so.perm), I(go.begin_zero), I(go.end_zero), D(go.t), D(go.t_in_h2), I(go.mass), I(go.border),
-    I(go.ordering), P(go.perm), D(go.lambda), I(go.neighbours), D(go.mollify), I(fo.begin_zero), I(fo.end_zero), I(fo.ordering),
+    I(go.ordering), P(go.perm), D(go.stiffening), I(go.neighbours), D(go.mollify), I(fo.begin_zero), I(fo.end_zero), I(fo.ordering),
     P(fo.perm), P(fo.xyz), I(vo.begin_zero), I(vo.end_zero), I(vo.solver), I(vo.precond), D(vo.tol), I(vo.max_iterations),
 };
 #undef I
@@ -232,8 +235,10 @@ static const struct { const char *name; size_t at; int32_t value; } call_choices
     {"held", CALL_AT(lo.n_held), 2}, {"border", CALL_AT(lo.border), HD_BORDER_DIRICHLET},
     {"mean", CALL_AT(go.border), HD_GEODESIC_BORDER_MEAN}, {"absorbing", CALL_AT(go.border), HD_GEODESIC_BORDER_DIRICHLET},
     {"updatable", CALL_AT(lo.updatable), 1}, {"updatable", CALL_AT(go.updatable), 1},
-    {"delaunay", CALL_AT(lo.intrinsic_delaunay), 1}, {"delaunay", CALL_AT(go.intrinsic_delaunay), 1},
-    {"tufted", CALL_AT(lo.tufted), 1}, {"tufted", CALL_AT(go.tufted), 1}, {"auto", CALL_AT(ho.method), HD_METHOD_AUTO},
+    {"delaunay", CALL_AT(lo.triangulation), HD_TRIANGULATION_DELAUNAY},
+    {"delaunay", CALL_AT(go.triangulation), HD_TRIANGULATION_DELAUNAY},
+    {"tufted", CALL_AT(lo.triangulation), HD_TRIANGULATION_TUFTED},
+    {"tufted", CALL_AT(go.triangulation), HD_TRIANGULATION_TUFTED}, {"auto", CALL_AT(ho.method), HD_METHOD_AUTO},
     {"iterative", CALL_AT(ho.method), HD_METHOD_ITERATIVE}, {"direct", CALL_AT(ho.method), HD_METHOD_DIRECT},
     {"krylov", CALL_AT(ho.method), HD_METHOD_KRYLOV}, {"cocg", CALL_AT(ho.solver), HD_SOLVER_COCG},
     {"cocg", CALL_AT(vo.solver), HD_SOLVER_COCG}, {"minres", CALL_AT(ho.solver), HD_SOLVER_MINRES},
@@ -511,9 +516,9 @@ static void call_data_make(call_data *d, shape s) {
     a->n = s.n;
     a->tri = s.tri;
     a->n_tri = s.n_tri;
-    a->mesh.tri_i32 = s.tri;
+    a->mesh.corner = s.tri;
     a->mesh.n = s.n;
-    a->mesh.n_indices = 3 * (int64_t)s.n_tri;
+    a->mesh.n_faces = s.n_tri;
     a->ids = ids;
     a->other = other;
     a->low_id = low;

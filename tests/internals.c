@@ -32,8 +32,8 @@ static int int_advise(void *at, size_t size, int advice) {
 #define HEATDIFF_IMPLEMENTATION
 #include "../heatdiff.h"
 #include "dense.h"
-#include "at.h"
 #include "../tools/shapes.h"
+#include "at.h"
 
 static int64_t int_passed, int_failed;
 

@@ -94,7 +94,7 @@ static hd_laplacian *kit_triangles(const shape *s, hd_laplacian_kind kind) {
     hd_error e;
     memset(&o, 0, sizeof o);
     o.kind = kind;
-    if (hd_laplacian_triangles(&lap, s->xyz, s->n, s->tri, s->n_tri, &o, &e) < 0) truth_stop(e.text);
+    if (hd_laplacian_create(&lap, MESH_TRIANGLES(s->xyz, s->n, s->tri, s->n_tri), &o, &e) < 0) truth_stop(e.text);
     return (hd_laplacian *)kit_keep(lap, kit_free_laplacian);
 }
 

@@ -154,8 +154,8 @@ static void test_tmp_remove(void) {
 /* ---- groups ---- */
 
 #include "dense.h"
-#include "at.h"
 #include "../tools/shapes.h"
+#include "at.h"
 #include "../tools/trials.h"
 #include "kit.h"
 #include "cases.h"

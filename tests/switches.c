@@ -3,6 +3,7 @@
    sensible sets of them. The numbers are closed forms: on the octahedron L = w (4 I - A), w = 1/sqrt(3), and A has the
    eigenvalues 4, 0 and -2 with 1, 3 and 2 eigenvectors. */
 #include "heatdiff.h"
+#include "../tools/mesh_args.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -77,7 +78,7 @@ static double rate_of(int i, int j, double t) {
 static hd_laplacian *octahedron(hd_laplacian_opts *o) {
     hd_laplacian *lap = NULL;
     o->kind = HD_LAPLACIAN_COT;
-    CHECK(hd_laplacian_triangles(&lap, xyz, 6, tri, 8, o, &err) == HD_OK && lap->n_active == 6);
+    CHECK(hd_laplacian_create(&lap, MESH_TRIANGLES(xyz, 6, tri, 8), o, &err) == HD_OK && lap->n_active == 6);
     return lap;
 }
 
@@ -194,10 +195,11 @@ static void check_geodesic_kinds(void) {
     hd_geodesic_opts o;
     hd_geodesic *g = NULL;
     memset(&o, 0, sizeof o);
-    o.intrinsic_delaunay = 1;
-    if (BUILT(hd_geodesic_create(&g, xyz, 6, tri, 8, &o, &err), no.intrinsic)) hd_geodesic_free(g);
-    if (BUILT(hd_geodesic_create_polygons(&g, xyz, 6, ptr, tri, 8, NULL, &err), no.polygons)) hd_geodesic_free(g);
-    if (BUILT(hd_geodesic_create_points(&g, xyz, 6, NULL, NULL, NULL, &err), either(no.points, no.intrinsic))) hd_geodesic_free(g);
+    o.triangulation = HD_TRIANGULATION_DELAUNAY;
+    if (BUILT(hd_geodesic_create(&g, MESH_TRIANGLES(xyz, 6, tri, 8), &o, &err), no.intrinsic)) hd_geodesic_free(g);
+    if (BUILT(hd_geodesic_create(&g, MESH_POLYGONS(xyz, 6, ptr, tri, 8), NULL, &err), no.polygons)) hd_geodesic_free(g);
+    o.triangulation = HD_TRIANGULATION_TUFTED;
+    if (BUILT(hd_geodesic_create(&g, MESH_POINTS(xyz, 6), &o, &err), either(no.points, no.intrinsic))) hd_geodesic_free(g);
 }
 
 /* The smallest eigenpairs, and distances at a time where few are left. */
@@ -241,13 +243,13 @@ static void check_geodesic(void) {
     const int32_t zero = 0;
     const hd_source source = middle();
     double d[6] = {0};
-    if (!BUILT(hd_geodesic_create(&g, xyz, 6, tri, 8, NULL, &err), no.geodesic)) {
+    if (!BUILT(hd_geodesic_create(&g, MESH_TRIANGLES(xyz, 6, tri, 8), NULL, &err), no.geodesic)) {
         (void)BUILT(hd_geodesic_distance(NULL, 1, &zero, d, &rep, &err), no.geodesic);
         CHECK(rep.status == HD_ERR_NOT_BUILT && strstr(rep.error.text, no.geodesic) != NULL);
         (void)BUILT(hd_geodesic_distance_each(NULL, 1, &zero, d, 0, NULL, &err), no.geodesic);
         (void)BUILT(hd_geodesic_distance_from(NULL, &source, d, NULL, &err), no.geodesic);
-        (void)BUILT(hd_geodesic_create_lengths(&g, d, 6, tri, 8, NULL, &err), no.geodesic);
-        (void)BUILT(hd_geodesic_update(NULL, xyz, &err), no.geodesic);
+        (void)BUILT(hd_geodesic_create(&g, MESH_LENGTHS(d, 6, tri, 8), NULL, &err), no.geodesic);
+        (void)BUILT(hd_geodesic_update(NULL, MESH_POINTS(xyz, 6), &err), no.geodesic);
         hd_geodesic_free(g);
         return;
     }
@@ -318,15 +320,15 @@ static void check_surfaces(void) {
     hd_heat *heat = NULL;
     memset(&o, 0, sizeof o);
     o.kind = HD_LAPLACIAN_COT;
-    o.intrinsic_delaunay = 1;
-    if (BUILT(hd_laplacian_triangles(&lap, xyz, 6, tri, 8, &o, &err), no.intrinsic)) {
+    o.triangulation = HD_TRIANGULATION_DELAUNAY;
+    if (BUILT(hd_laplacian_create(&lap, MESH_TRIANGLES(xyz, 6, tri, 8), &o, &err), no.intrinsic)) {
         check_plan(lap, HD_METHOD_AUTO, HD_SOLVER_AUTO, NULL);
         hd_laplacian_free(lap);
     }
     o.kind = HD_LAPLACIAN_DEFAULT;
-    (void)BUILT(hd_laplacian_polygons(&lap, xyz, 6, ptr, tri, 8, &o, &err), either(no.polygons, no.intrinsic));
+    (void)BUILT(hd_laplacian_create(&lap, MESH_POLYGONS(xyz, 6, ptr, tri, 8), &o, &err), either(no.polygons, no.intrinsic));
     if (err.status == HD_OK) hd_laplacian_free(lap);
-    if (!BUILT(hd_laplacian_polygons(&lap, xyz, 6, ptr, tri, 8, NULL, &err), no.polygons)) return;
+    if (!BUILT(hd_laplacian_create(&lap, MESH_POLYGONS(xyz, 6, ptr, tri, 8), NULL, &err), no.polygons)) return;
     CHECK(hd_heat_create(&heat, lap, NULL, &err) == HD_OK);
     CHECK(hd_heat_column(heat, HD_KERNEL_OPERATOR, t * b, 0, u, NULL, &err) == HD_OK);
     CHECK(near_to(u[0], heat_of(0, 0, t)) && near_to(u[1], heat_of(0, 1, t)) && near_to(u[2], heat_of(0, 2, t)));
@@ -340,6 +342,7 @@ static void check_points(void) {
     static double p[3 * N], ones[N], y[N];
     const double from[3] = {0.9, 0.1, 0};
     int32_t i, nearest = -1;
+    hd_laplacian_opts o;
     hd_laplacian *lap = NULL;
     hd_csr within;
     for (i = 0; i < N; i++) {
@@ -354,12 +357,13 @@ static void check_points(void) {
         CHECK(within.nnz == 2 && within.col[0] == 0 && within.col[1] == 2);
         hd_csr_free(&within, NULL);
     }
-    if (BUILT(hd_laplacian_points(&lap, p, N, NULL, &err), no.points)) {
+    if (BUILT(hd_laplacian_create(&lap, MESH_POINTS(p, N), NULL, &err), no.points)) {
         CHECK(lap->n_active == N && fabs(lap->area - 12.566370614359172) < 1);
         CHECK(hd_laplacian_apply(lap, 1, 0, ones, y, &err) == HD_OK && fabs(y[0]) < 1e-9);
         hd_laplacian_free(lap);
     }
-    if (BUILT(hd_laplacian_tufted_points(&lap, p, N, NULL, NULL, NULL, &err), either(no.points, no.intrinsic))) {
+    o.triangulation = HD_TRIANGULATION_TUFTED;
+    if (BUILT(hd_laplacian_create(&lap, MESH_POINTS(p, N), &o, &err), either(no.points, no.intrinsic))) {
         CHECK(lap->n_active == N && fabs(lap->area - 12.566370614359172) < 1);
         hd_laplacian_free(lap);
     }
@@ -379,7 +383,7 @@ static void check_filter(const hd_laplacian *lap) {
     memset(&o, 0, sizeof o);
     f.kind = HD_FILTER_RESOLVENT;
     f.a = 1;
-    CHECK(hd_rational_fit(&set, &f, hd_laplacian_lambda_max(lap), NULL, &err) == HD_OK && near_to(hd_rational_eval(&set, -2 * set.t), 1 / 3.0));
+    CHECK(hd_rational_fit(&set, &f, lap->lambda_max, NULL, &err) == HD_OK && near_to(hd_rational_eval(&set, -2 * set.t), 1 / 3.0));
     o.rational = &set;
     if (BUILT(hd_heat_create(&heat, lap, &o, &err), lacking)) {
         CHECK(hd_heat_column(heat, HD_KERNEL_OPERATOR, set.t, 0, u, NULL, &err) >= 0);
@@ -391,7 +395,7 @@ static void check_filter(const hd_laplacian *lap) {
     if (BUILT(hd_heat_set_rational(heat, &set, &err), lacking)) {
         if (BUILT(hd_heat_diagonal(heat, HD_KERNEL_OPERATOR, 1, &set.t, u, 0, NULL, &err), no.diagonal))
             for (i = 0; i < 6; i++) CHECK(near_to(u[i], between(i, i, 1, f4, f6)));
-        CHECK(hd_rational_fit_shared(&set, 1, &f, hd_laplacian_lambda_max(lap), NULL, &err) == HD_OK && hd_heat_set_rational(heat, &set, &err) == HD_OK);
+        CHECK(hd_rational_fit_shared(&set, 1, &f, lap->lambda_max, NULL, &err) == HD_OK && hd_heat_set_rational(heat, &set, &err) == HD_OK);
         if (BUILT(hd_heat_filter_diagonals(heat, 1, &set, u, 0, sum, NULL, NULL, &err), no.diagonal))
             CHECK(near_to(sum[0], 1 + 3 * f4 + 2 * f6));
     }

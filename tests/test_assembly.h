@@ -90,7 +90,7 @@ static void asm_orders(void) {
         hd_laplacian *lap = NULL;
         double worst[2] = {0, 0}, most[2] = {0, 0};
         int64_t p, entries = 0;
-        CHECK(hd_laplacian_triangles(&lap, s.xyz, n, s.tri, s.n_tri, NULL, NULL) == HD_OK);
+        CHECK(hd_laplacian_create(&lap, MESH_TRIANGLES(s.xyz, n, s.tri, s.n_tri), NULL, NULL) == HD_OK);
         if (!lap) break;
         for (i = 0; i < lap->n_active; i++) {
             for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
@@ -147,8 +147,8 @@ static void asm_points(void) {
         for (k = 0; k < 3; k++) xyz[3 * i + k] = xyz[3 * i + k] / sqrt(r) * (1 + i % 3) + (k == 0 ? 20 - 10 * (i % 3) : 0);
     }
     memcpy(xyz + 3 * 31, xyz + 3 * 1, 3 * sizeof *xyz);      /* both of the second sphere */
-    CHECK(hd_laplacian_tufted_points(&lap, xyz, N, NULL, NULL, NULL, NULL) == HD_OK);
-    CHECK(hd_laplacian_tufted_points(&turned, xyz, N, NULL, NULL, &o, NULL) == HD_OK);
+    CHECK(at_tufted(&lap, xyz, N, NULL, NULL, NULL, NULL) == HD_OK);
+    CHECK(at_tufted(&turned, xyz, N, NULL, NULL, &o, NULL) == HD_OK);
     if (lap && turned) {
         CHECK(lap->n_active == N - 1 && lap->row[31] == -1 && lap->n_components == 3 && lap->points.n_coincident == 1);
         for (i = 0; i < lap->n_active; i++) {
@@ -243,7 +243,7 @@ static void asm_blocks(void) {
             ctx[way].parallel_user = &calls;
             o.context = ctx + way;
             lap[way] = NULL;
-            CHECK(hd_laplacian_triangles(lap + way, s.xyz, s.n, s.tri, s.n_tri, &o, NULL) == HD_OK);
+            CHECK(hd_laplacian_create(lap + way, MESH_TRIANGLES(s.xyz, s.n, s.tri, s.n_tri), &o, NULL) == HD_OK);
             if (lap[0] && lap[way]) asm_compare(lap[way], lap[0]);
         }
         if (lap[0]) {
@@ -259,7 +259,7 @@ static void asm_blocks(void) {
             ctx[2].allocations = 0;
             ctx[2].allocation_limit = (uint64_t)limit;
             o.context = ctx + 2;
-            st = hd_laplacian_triangles(&none, s.xyz, s.n, s.tri, s.n_tri, &o, NULL);
+            st = hd_laplacian_create(&none, MESH_TRIANGLES(s.xyz, s.n, s.tri, s.n_tri), &o, NULL);
             CHECK(st == HD_OK || (st == HD_ERR_MEMORY_LIMIT && !none));
             hd_laplacian_free(none);
             CHECK(ctx[2].bytes_in_use == 0);
@@ -277,7 +277,7 @@ static void asm_blocks(void) {
         if (way) ctx.parallel_for = sparse_reverse_for;
         ctx.parallel_user = &calls;
         o.context = &ctx;
-        CHECK(hd_laplacian_triangles(&lap, s.xyz, s.n, s.tri, s.n_tri, &o, bad + way) == HD_ERR_ARGUMENT && !lap && ctx.bytes_in_use == 0);
+        CHECK(hd_laplacian_create(&lap, MESH_TRIANGLES(s.xyz, s.n, s.tri, s.n_tri), &o, bad + way) == HD_ERR_ARGUMENT && !lap && ctx.bytes_in_use == 0);
     }
     CHECK(bad[0].face >= 0 && bad[0].face == bad[2].face && bad[0].vertex == bad[2].vertex);
     CHECK(calls > 0);
@@ -295,15 +295,15 @@ static void asm_jumps(void) {
     memset(&o, 0, sizeof o);
     o.updatable = 1;
     asm_shuffle(r.tri, r.n_tri, 3);
-    CHECK(hd_laplacian_triangles(&b, r.xyz, r.n, r.tri, r.n_tri, &o, &e) == HD_OK && b->L.nnz == a->L.nnz);
+    CHECK(hd_laplacian_create(&b, MESH_TRIANGLES(r.xyz, r.n, r.tri, r.n_tri), &o, &e) == HD_OK && b->L.nnz == a->L.nnz);
     CHECK(memcmp(a->L.col, b->L.col, (size_t)a->L.nnz * sizeof *a->L.col) == 0);
     CHECK(asm_difference(a->L.val, b->L.val, a->L.nnz) < 1e-12 && asm_difference(a->mass, b->mass, a->n_active) < 1e-12);
     for (p = 0; p < a->L.nnz; p++) if (!CHECK(fabs(a->B[p] - b->B[p]) <= 1e-14 * a->b_diag[0])) break;
     r.xyz[3 * SPOILT] = 1e100;
     r.xyz[3 * SPOILT + 1] = 3e99;
     for (f = 0; r.tri[3 * f] != SPOILT && r.tri[3 * f + 2] != SPOILT; f++) {}  /* from corner 1 two equal edges: no area */
-    CHECK_MSG(hd_laplacian_triangles(&none, r.xyz, r.n, r.tri, r.n_tri, &o, &e) == HD_ERR_ARGUMENT && !none && e.face == f, "%s, face %d, not %d", e.text, (int)e.face, (int)f);
-    CHECK(hd_laplacian_update(b, r.xyz, &e2) == HD_ERR_ARGUMENT && e2.face == f && e2.vertex == e.vertex && e2.value == e.value);
+    CHECK_MSG(hd_laplacian_create(&none, MESH_TRIANGLES(r.xyz, r.n, r.tri, r.n_tri), &o, &e) == HD_ERR_ARGUMENT && !none && e.face == f, "%s, face %d, not %d", e.text, (int)e.face, (int)f);
+    CHECK(hd_laplacian_update(b, MESH_POINTS(r.xyz, b->n), &e2) == HD_ERR_ARGUMENT && e2.face == f && e2.vertex == e.vertex && e2.value == e.value);
     hd_laplacian_free(b);
 }
 

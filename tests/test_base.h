@@ -93,7 +93,7 @@ static hd_laplacian *test_laplacian_at(const shape *s, const double *xyz, hd_lap
     opts.updatable = updatable;
     opts.context = ctx;
     CHECK(xyz != NULL);
-    if (!CHECK(hd_laplacian_triangles(&lap, xyz, s->n, s->tri, s->n_tri, &opts, &e) == HD_OK)) printf("    %s\n", e.text);
+    if (!CHECK(hd_laplacian_create(&lap, MESH_TRIANGLES(xyz, s->n, s->tri, s->n_tri), &opts, &e) == HD_OK)) printf("    %s\n", e.text);
     return lap;
 }
 

@@ -80,7 +80,7 @@ static hd_laplacian_opts bord_opts(hd_laplacian_kind kind, hd_border border, int
 static hd_laplacian *bord_triangles(const shape *s, const hd_laplacian_opts *o) {
     hd_laplacian *lap = NULL;
     hd_error e;
-    CHECK_MSG(hd_laplacian_triangles(&lap, s->xyz, s->n, s->tri, s->n_tri, o, &e) == HD_OK, "%s", e.text);
+    CHECK_MSG(hd_laplacian_create(&lap, MESH_TRIANGLES(s->xyz, s->n, s->tri, s->n_tri), o, &e) == HD_OK, "%s", e.text);
     return lap;
 }
 
@@ -102,8 +102,7 @@ static void bord_pairs_triangles(void) {
             hd_laplacian_opts o = bord_opts(kinds[q / 3], HD_BORDER_NATURAL, 0, NULL);
             hd_laplacian *all;
             way = q % 3;
-            o.intrinsic_delaunay = way == 1;
-            o.tufted = way == 2;
+            o.triangulation = way == 1 ? HD_TRIANGULATION_DELAUNAY : way == 2 ? HD_TRIANGULATION_TUFTED : HD_TRIANGULATION_GIVEN;
             all = bord_kept(s, &o);
             for (which = 1; which < 4; which++) {
                 hd_laplacian *lap;
@@ -157,7 +156,7 @@ static void bord_masses(void) {
             for (q = 0; q < 2; q++)
                 CHECK_MSG(fabs(lap->component_mass[q] - mass[q]) < 1e-13 || lap->component_mass[q] == mass[q], "component %d: %g, not %g", (int)q,
                           lap->component_mass[q], mass[q]);
-            CHECK(hd_laplacian_update(lap, xyz, NULL) == HD_OK);
+            CHECK(hd_laplacian_update(lap, MESH_POINTS(xyz, lap->n), NULL) == HD_OK);
         }
     }
 }
@@ -177,9 +176,9 @@ static void bord_pairs_others(void) {
         for (which = 0; which < 2; which++) {
             const hd_border border = q == 0 && which ? HD_BORDER_DIRICHLET : HD_BORDER_NATURAL;
             const hd_laplacian_opts o = bord_opts(HD_LAPLACIAN_DEFAULT, border, q > 0 && which ? 3 : 0, held);
-            const hd_status st = q == 0   ? hd_laplacian_polygons(lap + which, p->xyz, p->n, p->face_ptr, p->face_idx, p->n_faces, &o, NULL)
-                                 : q == 1 ? hd_laplacian_points(lap + which, s->xyz, s->n, &o, NULL)
-                                 : q == 2 ? hd_laplacian_tufted_points(lap + which, s->xyz, s->n, NULL, NULL, &o, NULL)
+            const hd_status st = q == 0   ? hd_laplacian_create(lap + which, MESH_POLYGONS(p->xyz, p->n, p->face_ptr, p->face_idx, p->n_faces), &o, NULL)
+                                 : q == 1 ? hd_laplacian_create(lap + which, MESH_POINTS(s->xyz, s->n), &o, NULL)
+                                 : q == 2 ? at_tufted(lap + which, s->xyz, s->n, NULL, NULL, &o, NULL)
                                           : hd_laplacian_matrices(lap + which, &mesh->L, &B, mesh->h, &o, NULL);
             CHECK(st == HD_OK);
             kit_keep(lap[which], kit_free_laplacian);
@@ -446,7 +445,7 @@ static void bord_same(const hd_laplacian *lap, const hd_laplacian *fresh, double
 
 static hd_laplacian *bord_polygons(const shape_poly *p, const double *xyz, const hd_laplacian_opts *o) {
     hd_laplacian *lap = NULL;
-    CHECK(hd_laplacian_polygons(&lap, xyz, p->n, p->face_ptr, p->face_idx, p->n_faces, o, NULL) == HD_OK);
+    CHECK(hd_laplacian_create(&lap, MESH_POLYGONS(xyz, p->n, p->face_ptr, p->face_idx, p->n_faces), o, NULL) == HD_OK);
     return (hd_laplacian *)kit_keep(lap, kit_free_laplacian);
 }
 
@@ -470,7 +469,7 @@ static void bord_updates(void) {
         for (frame = 1; frame < 4; frame++) {
             const double t = 3 * lap->h * lap->h;
             for (v = 0; v < 3 * s->n; v++) xyz[v] = s->xyz[v] * (1 + 0.1 * frame * (v % 3)) + 0.04 * frame * sin(3 * s->xyz[v - v % 3] + v % 3);
-            CHECK(hd_laplacian_update(lap, xyz, &e) == HD_OK && lap->version == frame);
+            CHECK(hd_laplacian_update(lap, MESH_POINTS(xyz, lap->n), &e) == HD_OK && lap->version == frame);
             fresh = bord_polygons(&p, xyz, &o);
             bord_same(lap, fresh, q == 2 ? 0 : 1e-13, "moved");
             CHECK(heat_column(heat, t, lap->vertex[20], u, NULL) == HD_OK && heat_column(kit_heat(fresh, ""), t,
@@ -478,7 +477,7 @@ static void bord_updates(void) {
             CHECK(dense_max_diff(u, want, s->n) <= 1e-7 * dense_max_abs(want, s->n));
         }
         memset(xyz, 0, 3 * (size_t)s->n * sizeof *xyz);      /* no area: refused, and nothing has changed */
-        CHECK(hd_laplacian_update(lap, xyz, &e) == HD_ERR_EMPTY && lap->version == 3);
+        CHECK(hd_laplacian_update(lap, MESH_POINTS(xyz, lap->n), &e) == HD_ERR_EMPTY && lap->version == 3);
         CHECK(heat_column(heat, 3 * lap->h * lap->h, lap->vertex[20], want, NULL) >= 0);
     }
 }
@@ -518,8 +517,8 @@ static void bord_errors(void) {
     hd_laplacian *lap = NULL;
     hd_error e;
     int q;
-    CHECK(hd_laplacian_points(&lap, ball->xyz, ball->n, &o, &e) == HD_ERR_ARGUMENT && !lap);
-    CHECK(hd_laplacian_tufted_points(&lap, ball->xyz, ball->n, NULL, NULL, &o, &e) == HD_ERR_ARGUMENT && !lap);
+    CHECK(hd_laplacian_create(&lap, MESH_POINTS(ball->xyz, ball->n), &o, &e) == HD_ERR_ARGUMENT && !lap);
+    CHECK(at_tufted(&lap, ball->xyz, ball->n, NULL, NULL, &o, &e) == HD_ERR_ARGUMENT && !lap);
     CHECK(hd_laplacian_matrices(&lap, L, B, 0, &o, &e) == HD_ERR_ARGUMENT && !lap);
     lap = bord_kept(ball, &o);                   /* closed: there is nothing to hold */
     CHECK(lap->n_held == 0 && lap->conserves && lap->n_active == ball->n);
@@ -527,7 +526,7 @@ static void bord_errors(void) {
     for (q = 0; q < (int)(sizeof rows / sizeof *rows); q++) {
         o = bord_opts(HD_LAPLACIAN_FEM, (hd_border)rows[q].border, rows[q].n_held, rows[q].listed ? held : NULL);
         held[3] = rows[q].third;
-        CHECK_MSG(hd_laplacian_triangles(&lap, s->xyz, s->n, s->tri, s->n_tri, &o, &e) == rows[q].want && !lap, "%s: %s", rows[q].what, e.text);
+        CHECK_MSG(hd_laplacian_create(&lap, MESH_TRIANGLES(s->xyz, s->n, s->tri, s->n_tri), &o, &e) == rows[q].want && !lap, "%s: %s", rows[q].what, e.text);
         if (rows[q].third == 9) CHECK(e.row == 3 && e.value == 9);
     }
 }

@@ -771,7 +771,7 @@ static void diag_each_way(hd_laplacian_kind kind, int64_t count, diag_asks *ask)
         memset(&lo, 0, sizeof lo);
         lo.context = &w.ctx;
         lo.kind = kind;
-        CHECK(hd_laplacian_triangles(&lap, s->xyz, s->n, s->tri, s->n_tri, &lo, NULL) == HD_OK &&
+        CHECK(hd_laplacian_create(&lap, MESH_TRIANGLES(s->xyz, s->n, s->tri, s->n_tri), &lo, NULL) == HD_OK &&
               hd_heat_create(&heat, lap, NULL, NULL) == HD_OK);
         ask(heat, lap->h * lap->h, s->n, D);
         if (way == 0) memcpy(first, D, size * sizeof *D);
@@ -858,7 +858,7 @@ static void diag_limits_by_default(void) {
     int kind;
     memset(&lo, 0, sizeof lo);
     lo.context = &ctx;
-    CHECK(hd_laplacian_triangles(&lap, s->xyz, s->n, s->tri, s->n_tri, &lo, NULL) == HD_OK);
+    CHECK(hd_laplacian_create(&lap, MESH_TRIANGLES(s->xyz, s->n, s->tri, s->n_tri), &lo, NULL) == HD_OK);
     base = ctx.bytes_in_use;
     for (kind = -1; kind < 4; kind++) {
         const double t = 3 * lap->h * lap->h;

@@ -523,7 +523,7 @@ static int64_t eng_thread_run(const shape *s, hd_laplacian_kind kind, hd_heat_op
     memset(&lo, 0, sizeof lo);
     lo.kind = kind;
     lo.context = &w->ctx;
-    CHECK(hd_laplacian_triangles(&lap, s->xyz, n, s->tri, s->n_tri, &lo, NULL) == HD_OK);
+    CHECK(hd_laplacian_create(&lap, MESH_TRIANGLES(s->xyz, n, s->tri, s->n_tri), &lo, NULL) == HD_OK);
     heat = eng_create(lap, &o);
     for (i = 0; i < 15; i++) sources[i] = lap->vertex[i * 31 % lap->n_active];
     for (i = 0; i < 15 * n; i++) f[i] = sin(i % n) + i / n;
@@ -847,7 +847,7 @@ static void eng_habit(const shape *s, hd_laplacian_kind kind, double c, const ch
     for (round = 0; round < 3; round++) {        /* new; at another t; after an update of the Laplacian */
         const double now = round == 1 ? 1.5 * t : t;
         int switched = 0;
-        if (round == 2) CHECK(hd_laplacian_update(lap, s->xyz, NULL) == HD_OK);
+        if (round == 2) CHECK(hd_laplacian_update(lap, MESH_POINTS(s->xyz, lap->n), NULL) == HD_OK);
         for (k = 1; k < 40 && k <= (switched ? switched + 3 : 39); k++) {
             const int32_t source = lap->vertex[k * 37 % lap->n_active];
             CHECK(eng_ok(heat_column(heat, now, source, u, &rep), &rep, what));

@@ -272,10 +272,10 @@ static void est_rooms(void) {
             memset(&o, 0, sizeof o);
             o.kind = kinds[kind % 2];
             if (held) o.border = HD_BORDER_DIRICHLET;
-            CHECK(hd_laplacian_triangles(&lap, s->xyz, s->n, s->tri, s->n_tri, &o, NULL) == HD_OK);
+            CHECK(hd_laplacian_create(&lap, MESH_TRIANGLES(s->xyz, s->n, s->tri, s->n_tri), &o, NULL) == HD_OK);
             for (method = kind % 2; method < 2; method++) for (large = 0; large < 2; large++) for (n_times = 1; n_times <= 4; n_times += 3)
                 for (query = HD_QUERY_FIELDS; query <= HD_QUERY_DISTANCE_WEIGHTED; query++) {
-                    const double h2 = lap->h * lap->h, from = !large ? 5 : held ? 40 : 3e8 / hd_laplacian_lambda_max(lap) / h2;
+                    const double h2 = lap->h * lap->h, from = !large ? 5 : held ? 40 : 3e8 / lap->lambda_max / h2;
                     est_case c = {HD_QUERY_FIELDS, HD_METHOD_AUTO, n_times, query <= HD_QUERY_PAIRS || query >= HD_QUERY_DISTANCE ? 6 : 0, from, 8, 0};
                     c.query = (hd_query)query;
                     if (query == HD_QUERY_PAIRS && n_times > 1) continue;
@@ -343,14 +343,14 @@ static void est_model(void) {
     int i;
     for (k = 0; k < sizeof rows / sizeof *rows; k++)
         est_steps(kit_pair(rows[k].pair), rows[k].solver, rows[k].precond, rows[k].spread, rows[k].pair);
-    CHECK(hd_laplacian_points(&points, ball->xyz, ball->n, NULL, NULL) >= 0);
+    CHECK(hd_laplacian_create(&points, MESH_POINTS(ball->xyz, ball->n), NULL, NULL) >= 0);
     est_steps(points, HD_SOLVER_COCG, HD_PRECOND_AUTO, 4, "cocg, points");
     est_steps(points, HD_SOLVER_LANCZOS, HD_PRECOND_AUTO, 2.83, "lanczos, points");
     for (i = 0; i < sheet->n; i++) sheet->xyz[3 * i] *= 10;
     memset(&o, 0, sizeof o);
     o.kind = HD_LAPLACIAN_VORONOI_COT;
-    o.intrinsic_delaunay = 1;
-    CHECK(hd_laplacian_triangles(&thin, sheet->xyz, sheet->n, sheet->tri, sheet->n_tri, &o, NULL) >= 0);
+    o.triangulation = HD_TRIANGULATION_DELAUNAY;
+    CHECK(hd_laplacian_create(&thin, MESH_TRIANGLES(sheet->xyz, sheet->n, sheet->tri, sheet->n_tri), &o, NULL) >= 0);
     est_steps(thin, HD_SOLVER_COCG, HD_PRECOND_AUTO, 6.25, "cocg, thin triangles");
     hd_laplacian_free(points);
     hd_laplacian_free(thin);
@@ -544,7 +544,7 @@ static void est_queries(void) {
     const shape *cloud = kit_shape("bumpy/2/5");
     hd_laplacian *points = NULL;
     int q, c;
-    CHECK(hd_laplacian_points(&points, cloud->xyz, cloud->n, NULL, NULL) >= 0);
+    CHECK(hd_laplacian_create(&points, MESH_POINTS(cloud->xyz, cloud->n), NULL, NULL) >= 0);
     for (q = 0; q < 5; q++) {
         const hd_laplacian *lap = q == 4 ? points : kit_pair(pairs[q]);
         for (c = 0; c < EST_N_CASES; c++)

@@ -360,8 +360,8 @@ static void fail_far_points(void) {
     for (k = 0; k < 27; k++) xyz[k] = (k % 7 - 3) * 1e200 + (k % 4) * 1e199;
     for (k = 0; k < 2; k++) {
         hd_laplacian *lap = NULL;
-        const hd_status st = k ? hd_laplacian_points(&lap, xyz, 9, NULL, NULL)
-                               : hd_laplacian_tufted_points(&lap, xyz, 9, NULL, NULL, NULL, NULL);
+        const hd_status st = k ? hd_laplacian_create(&lap, MESH_POINTS(xyz, 9), NULL, NULL)
+                               : at_tufted(&lap, xyz, 9, NULL, NULL, NULL, NULL);
         CHECK(st < 0 ? !lap : lap != NULL);
         hd_laplacian_free(lap);
     }
@@ -373,7 +373,7 @@ static void fail_large_area(void) {
     static const int32_t tri[6] = {0, 1, 2, 2, 1, 3};
     hd_laplacian *lap = NULL;
     hd_error e;
-    CHECK(hd_laplacian_triangles(&lap, xyz, 4, tri, 2, NULL, &e) == HD_ERR_ARGUMENT && !lap);
+    CHECK(hd_laplacian_create(&lap, MESH_TRIANGLES(xyz, 4, tri, 2), NULL, &e) == HD_ERR_ARGUMENT && !lap);
     CHECK(strstr(e.text, "area") != NULL);
 }
 

@@ -314,7 +314,7 @@ static hd_rational filt_fit(const hd_filter *f, const hd_laplacian *lap) {
     hd_rational set;
     hd_error e;
     memset(&set, 0, sizeof set);
-    CHECK_MSG(hd_rational_fit(&set, f, hd_laplacian_lambda_max(lap), NULL, &e) == HD_OK, "%s", e.text);
+    CHECK_MSG(hd_rational_fit(&set, f, lap->lambda_max, NULL, &e) == HD_OK, "%s", e.text);
     return set;
 }
 
@@ -329,7 +329,7 @@ static hd_heat *filt_plan(const hd_laplacian *lap, const hd_rational *set, const
 static void filt_pairs(void) {
     enum { N = 20 };
     const hd_laplacian *lap = kit_pair("ico/2 fem");
-    const double top = hd_laplacian_lambda_max(lap);
+    const double top = lap->lambda_max;
     hd_filter f[FILT_LIST];
     double K[N], d[N], both[N], entry[N];
     int32_t from[N], to[N], i;
@@ -356,7 +356,7 @@ static void filt_pairs(void) {
 /* One plan, many filters, and heat in between: the answers of plans of their own. */
 static void filt_one_plan(void) {
     const hd_laplacian *lap = kit_pair("ico/1 fem");
-    const double top = hd_laplacian_lambda_max(lap), t = 4 * lap->h * lap->h;
+    const double top = lap->lambda_max, t = 4 * lap->h * lap->h;
     const int32_t n = lap->n;
     hd_heat *one = kit_heat(lap, ""), *krylov = kit_heat(lap, "method=krylov");
     double *room = KIT_NEW(double, 4 * n), *D = room, *want = room + n, *u = room + 2 * n, *heat = room + 3 * n;
@@ -451,8 +451,8 @@ static void filt_shared_diagonals(const char *pairs) {
     int q, round;
     int32_t v, l;
     filt_many(f, COUNT, 0.9 * T->edge, T->top);
-    CHECK(hd_rational_fit_shared(set, COUNT, f, hd_laplacian_lambda_max(lap), NULL, NULL) == HD_OK);
-    CHECK(hd_laplacian_lambda_max(lap) >= T->top && hd_laplacian_lambda_max(lap) < 6 * T->top);
+    CHECK(hd_rational_fit_shared(set, COUNT, f, lap->lambda_max, NULL, NULL) == HD_OK);
+    CHECK(lap->lambda_max >= T->top && lap->lambda_max < 6 * T->top);
     heat = filt_plan(lap, set + 3, "");
     for (round = 0; round < 2; round++) {
         for (v = 0; v < COUNT * (n + 1); v++) D[v] = 77;
@@ -502,7 +502,7 @@ static void filt_shared(void) {
 /* A filter of heat is heat, at its own time and at no other; d^2 is the sum of the filter itself. */
 static void filt_refused(void) {
     const hd_laplacian *lap = kit_pair("flat/9/7/0.3 fem");
-    const double time = 3 * lap->h * lap->h, top = hd_laplacian_lambda_max(lap);
+    const double time = 3 * lap->h * lap->h, top = lap->lambda_max;
     hd_filter f = filt_make(HD_FILTER_HEAT, time, 0);
     hd_rational set = filt_fit(&f, lap), bad;
     hd_heat *heat = filt_plan(lap, &set, ""), *plain = kit_heat(lap, ""), *none = NULL;

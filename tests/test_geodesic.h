@@ -199,7 +199,7 @@ static hd_geodesic *geo_plan(const shape *s, double t, hd_geodesic_mass mass, hd
     o.t = t;
     o.mass = mass;
     o.context = ctx;
-    CHECK_MSG(hd_geodesic_create(&g, s->xyz, s->n, s->tri, s->n_tri, &o, &e) == HD_OK, "%s", e.text);
+    CHECK_MSG(hd_geodesic_create(&g, MESH_TRIANGLES(s->xyz, s->n, s->tri, s->n_tri), &o, &e) == HD_OK, "%s", e.text);
     return g;
 }
 
@@ -361,7 +361,7 @@ static void geo_strip(hd_ordering ordering) {
     int32_t i;
     memset(&o, 0, sizeof o);
     o.ordering = ordering;
-    CHECK(hd_geodesic_create(&g, s.xyz, s.n, s.tri, s.n_tri, &o, NULL) == HD_OK);
+    CHECK(hd_geodesic_create(&g, MESH_TRIANGLES(s.xyz, s.n, s.tri, s.n_tri), &o, NULL) == HD_OK);
     CHECK(hd_geodesic_distance(g, 1, &source, d, &rep, NULL) == HD_OK && rep.n_stages >= 12);
     for (i = 0; i < 10001; i++) worst = fmax(worst, fabs(d[i] - fabs(s.xyz[3 * i] - s.xyz[3 * source])));
     CHECK_MSG(worst < 0.01, "off by %g", worst);
@@ -381,7 +381,7 @@ static void geo_stages_ordered(shape s, int32_t source, double t) {
     for (i = 0; i < s.n; i++) perm[i] = (source + i) % s.n;
     for (i = HD_ORDERING_MINIMUM_DEGREE; i <= HD_ORDERING_OWN; i++) {
         o.ordering = (hd_ordering)i;
-        CHECK(hd_geodesic_create(&g, s.xyz, s.n, s.tri, s.n_tri, &o, NULL) == HD_OK);
+        CHECK(hd_geodesic_create(&g, MESH_TRIANGLES(s.xyz, s.n, s.tri, s.n_tri), &o, NULL) == HD_OK);
         CHECK(hd_geodesic_distance(g, 1, &source, i == HD_ORDERING_MINIMUM_DEGREE ? want : d, &rep, NULL) == HD_OK);
         CHECK_MSG(rep.n_stages > 3, "%d stages", (int)rep.n_stages);
         if (i > HD_ORDERING_MINIMUM_DEGREE) {
@@ -575,14 +575,14 @@ static void geo_plans(void) {
         dense_shuffle(perm, s.n, &seed);
         o.ordering = (hd_ordering)k;
         o.perm = perm;
-        CHECK(hd_geodesic_create(&own, s.xyz, s.n, s.tri, s.n_tri, &o, &e) == HD_OK);
+        CHECK(hd_geodesic_create(&own, MESH_TRIANGLES(s.xyz, s.n, s.tri, s.n_tri), &o, &e) == HD_OK);
         CHECK(hd_geodesic_distance(own, 2, pair, b, &rep, NULL) == HD_OK && rep.ordering == (hd_ordering)k);
         CHECK_MSG(geo_difference(a, b, s.n) < 1e-9, "ordering %d: off by %g", k, geo_difference(a, b, s.n));
         hd_geodesic_free(own);
     }
     own = NULL;
     perm[3] = perm[4];
-    CHECK(hd_geodesic_create(&own, s.xyz, s.n, s.tri, s.n_tri, &o, &e) == HD_ERR_INDEX && !own);
+    CHECK(hd_geodesic_create(&own, MESH_TRIANGLES(s.xyz, s.n, s.tri, s.n_tri), &o, &e) == HD_ERR_INDEX && !own);
     hd_geodesic_free(g);
 }
 
@@ -599,7 +599,7 @@ static void geo_errors(void) {
 #define GEO_BAD_OPTION(field, bad)                                                                                     \
     o = good;                                                                                                          \
     o.field = bad;                                                                                                     \
-    CHECK(hd_geodesic_create(&g, s.xyz, s.n, s.tri, s.n_tri, &o, &e) == HD_ERR_ARGUMENT && e.status == HD_ERR_ARGUMENT && e.text[0] && !g)
+    CHECK(hd_geodesic_create(&g, MESH_TRIANGLES(s.xyz, s.n, s.tri, s.n_tri), &o, &e) == HD_ERR_ARGUMENT && e.status == HD_ERR_ARGUMENT && e.text[0] && !g)
     GEO_BAD_OPTION(begin_zero, 1);
     GEO_BAD_OPTION(end_zero, 1);
     GEO_BAD_OPTION(t, -1);
@@ -610,20 +610,20 @@ static void geo_errors(void) {
     GEO_BAD_OPTION(ordering, (hd_ordering)9);
     GEO_BAD_OPTION(ordering, HD_ORDERING_OWN);
 #undef GEO_BAD_OPTION
-    CHECK(hd_geodesic_create(NULL, s.xyz, s.n, s.tri, s.n_tri, NULL, &e) == HD_ERR_ARGUMENT);
-    CHECK(hd_geodesic_create(&g, NULL, s.n, s.tri, s.n_tri, NULL, NULL) == HD_ERR_ARGUMENT);
-    CHECK(hd_geodesic_create(&g, s.xyz, s.n, NULL, s.n_tri, NULL, &e) == HD_ERR_ARGUMENT);
-    CHECK(hd_geodesic_create(&g, s.xyz, -1, s.tri, s.n_tri, NULL, &e) == HD_ERR_ARGUMENT);
-    CHECK(hd_geodesic_create(&g, s.xyz, s.n, s.tri, -1, NULL, &e) == HD_ERR_ARGUMENT);
-    CHECK(hd_geodesic_create(&g, s.xyz, s.n, s.tri, 0, NULL, &e) == HD_ERR_EMPTY);
-    CHECK(hd_geodesic_create(&g, NULL, 0, NULL, 0, NULL, &e) == HD_ERR_EMPTY);
-    CHECK(hd_geodesic_create(&g, s.xyz, s.n, face, 1, NULL, &e) == HD_ERR_EMPTY);
-    CHECK(hd_geodesic_create(&g, s.xyz, 12, s.tri, s.n_tri, NULL, &e) == HD_ERR_INDEX && e.face >= 0 && e.value >= 12);
+    CHECK(hd_geodesic_create(NULL, MESH_TRIANGLES(s.xyz, s.n, s.tri, s.n_tri), NULL, &e) == HD_ERR_ARGUMENT);
+    CHECK(hd_geodesic_create(&g, MESH_TRIANGLES(NULL, s.n, s.tri, s.n_tri), NULL, NULL) == HD_ERR_ARGUMENT);
+    CHECK(hd_geodesic_create(&g, MESH_TRIANGLES(s.xyz, s.n, NULL, s.n_tri), NULL, &e) == HD_ERR_ARGUMENT);
+    CHECK(hd_geodesic_create(&g, MESH_TRIANGLES(s.xyz, -1, s.tri, s.n_tri), NULL, &e) == HD_ERR_ARGUMENT);
+    CHECK(hd_geodesic_create(&g, MESH_TRIANGLES(s.xyz, s.n, s.tri, -1), NULL, &e) == HD_ERR_ARGUMENT);
+    CHECK(hd_geodesic_create(&g, MESH_TRIANGLES(s.xyz, s.n, s.tri, 0), NULL, &e) == HD_ERR_EMPTY);
+    CHECK(hd_geodesic_create(&g, MESH_TRIANGLES(NULL, 0, NULL, 0), NULL, &e) == HD_ERR_EMPTY);
+    CHECK(hd_geodesic_create(&g, MESH_TRIANGLES(s.xyz, s.n, face, 1), NULL, &e) == HD_ERR_EMPTY);
+    CHECK(hd_geodesic_create(&g, MESH_TRIANGLES(s.xyz, 12, s.tri, s.n_tri), NULL, &e) == HD_ERR_INDEX && e.face >= 0 && e.value >= 12);
     keep = s.xyz[3 * 7 + 1];
     s.xyz[3 * 7 + 1] = (double)NAN;
-    CHECK(hd_geodesic_create(&g, s.xyz, s.n, s.tri, s.n_tri, NULL, &e) == HD_ERR_NOT_FINITE && e.vertex == 7 && !g);
+    CHECK(hd_geodesic_create(&g, MESH_TRIANGLES(s.xyz, s.n, s.tri, s.n_tri), NULL, &e) == HD_ERR_NOT_FINITE && e.vertex == 7 && !g);
     s.xyz[3 * 7 + 1] = keep;
-    CHECK(hd_geodesic_create(&g, s.xyz, s.n, s.tri, s.n_tri, NULL, &e) == HD_OK && e.status == HD_OK);
+    CHECK(hd_geodesic_create(&g, MESH_TRIANGLES(s.xyz, s.n, s.tri, s.n_tri), NULL, &e) == HD_OK && e.status == HD_OK);
     CHECK(hd_geodesic_distance(g, 3, beyond, d, &rep, NULL) == HD_ERR_INDEX && rep.status == HD_ERR_INDEX && rep.error.vertex == 42 && rep.error.value == 42 && rep.error.column == 2);
     CHECK(hd_geodesic_distance(g, 1, &below, d, &rep, NULL) == HD_ERR_INDEX && rep.error.vertex == -1 && rep.error.value == -1 && rep.error.column == 0);
     CHECK(hd_geodesic_distance_each(g, 3, beyond, d, 0, &rep, NULL) == HD_ERR_INDEX && rep.error.column == 2);
@@ -644,7 +644,7 @@ static void geo_triangle(void) {
     const int32_t tri[3] = {0, 1, 2}, source = 0;
     hd_geodesic *g = NULL;
     double d[3];
-    CHECK(hd_geodesic_create(&g, xyz, 3, tri, 1, NULL, NULL) == HD_OK);
+    CHECK(hd_geodesic_create(&g, MESH_TRIANGLES(xyz, 3, tri, 1), NULL, NULL) == HD_OK);
     CHECK(hd_geodesic_distance(g, 1, &source, d, NULL, NULL) == HD_OK);
     CHECK_MSG(d[0] == 0 && fabs(d[1] - xyz[7]) < 1e-14 && fabs(d[2] - xyz[7]) < 1e-14, "%.17g %.17g %.17g", d[0], d[1], d[2]);
     hd_geodesic_free(g);
@@ -666,7 +666,7 @@ static void geo_triangles(void) {
         tri[3 * i + 2] = 3 * i + 2;
         sources[i] = 3 * i;
     }
-    CHECK(hd_geodesic_create(&g, xyz, 3 * M, tri, M, NULL, NULL) == HD_OK);
+    CHECK(hd_geodesic_create(&g, MESH_TRIANGLES(xyz, 3 * M, tri, M), NULL, NULL) == HD_OK);
     CHECK(hd_geodesic_distance(g, M, sources, d, &rep, NULL) == HD_OK && rep.n_components == M);
     for (i = 0; i < M; i++) CHECK_MSG(d[3 * i] == 0 && fabs(d[3 * i + 1] - sqrt(0.5)) < 1e-14 && fabs(d[3 * i + 2] - sqrt(0.5)) < 1e-14, "%.17g %.17g", d[3 * i + 1], d[3 * i + 2]);
     hd_geodesic_free(g);

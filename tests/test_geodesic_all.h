@@ -13,21 +13,21 @@ static hd_geodesic_opts gall_options(void) {
 static hd_geodesic *gall_polygons(const shape_poly *s, const hd_geodesic_opts *o) {
     hd_geodesic *g = NULL;
     hd_error e;
-    CHECK_MSG(hd_geodesic_create_polygons(&g, s->xyz, s->n, s->face_ptr, s->face_idx, s->n_faces, o, &e) == HD_OK, "%s", e.text);
+    CHECK_MSG(hd_geodesic_create(&g, MESH_POLYGONS(s->xyz, s->n, s->face_ptr, s->face_idx, s->n_faces), o, &e) == HD_OK, "%s", e.text);
     return g;
 }
 
 static hd_geodesic *gall_triangles(const shape *s, const hd_geodesic_opts *o) {
     hd_geodesic *g = NULL;
     hd_error e;
-    CHECK_MSG(hd_geodesic_create(&g, s->xyz, s->n, s->tri, s->n_tri, o, &e) == HD_OK, "%s", e.text);
+    CHECK_MSG(hd_geodesic_create(&g, MESH_TRIANGLES(s->xyz, s->n, s->tri, s->n_tri), o, &e) == HD_OK, "%s", e.text);
     return g;
 }
 
 static hd_geodesic *gall_points(const double *xyz, int32_t n, const hd_geodesic_opts *o) {
     hd_geodesic *g = NULL;
     hd_error e;
-    CHECK_MSG(hd_geodesic_create_points(&g, xyz, n, NULL, NULL, o, &e) == HD_OK, "%s", e.text);
+    CHECK_MSG(at_tufted_geodesic(&g, xyz, n, o, &e) == HD_OK, "%s", e.text);
     return g;
 }
 
@@ -192,7 +192,7 @@ static void gall_against_dense(shape_poly s, int32_t inner, const char *what) {
             hd_geodesic_report rep;
             if (k % 2) o.t = times[k / 2] * h * h;
             else o.t_in_h2 = times[k / 2];
-            o.lambda = lambdas[k % 2];
+            o.stiffening = lambdas[k % 2];
             o.border = b;
             g = gall_polygons(&s, &o);
             if (b == HD_GEODESIC_BORDER_DIRICHLET) {
@@ -237,9 +237,8 @@ static void gall_equal(void) {
     CHECK(hd_geodesic_distance(g, 4, sources, want, NULL, NULL) == HD_OK && hd_geodesic_distance_each(g, 4, sources, want + s.n, 0, NULL, NULL) == HD_OK);
     hd_geodesic_free(g);
     for (way = 0; way < 5; way++) {
-        o.intrinsic_delaunay = way == 1 || way == 4;
-        o.tufted = way == 2;
-        o.mollify = -1;
+        o.triangulation = way == 1 || way == 4 ? HD_TRIANGULATION_DELAUNAY : way == 2 ? HD_TRIANGULATION_TUFTED : HD_TRIANGULATION_GIVEN;
+        o.mollify = way ? -1 : 0;
         o.border = way == 0 ? HD_GEODESIC_BORDER_MEAN : HD_GEODESIC_BORDER_NATURAL;
         if (way == 3) o.border = HD_GEODESIC_BORDER_NATURAL;
         g = way == 0 || way == 4 ? gall_polygons(&p, &o) : way == 3 ? gall_points(s.xyz, s.n, &o) : gall_triangles(&s, &o);
@@ -264,8 +263,7 @@ static void gall_slivers(void) {
             hd_geodesic_opts o = gall_options();
             hd_geodesic *g;
             hd_geodesic_report rep;
-            o.intrinsic_delaunay = way == 1;
-            o.tufted = way == 2;
+            o.triangulation = way == 1 ? HD_TRIANGULATION_DELAUNAY : way == 2 ? HD_TRIANGULATION_TUFTED : HD_TRIANGULATION_GIVEN;
             g = gall_triangles(&s, &o);
             CHECK(hd_geodesic_distance(g, 1, &source, d, &rep, NULL) == HD_OK);
             CHECK_MSG(rep.residual_heat < 1e-9 && rep.residual_distance < 1e-9, "residuals %g %g", rep.residual_heat, rep.residual_distance);
@@ -412,9 +410,8 @@ static void gall_rim(int32_t around, int32_t rows, double tau, int way) {
     hd_geodesic_report rep;
     hd_geodesic *g;
     o.t = tau * row * row;
-    o.tufted = way == 1;
-    o.intrinsic_delaunay = way == 2;
-    o.mollify = -1;
+    o.triangulation = way == 1 ? HD_TRIANGULATION_TUFTED : way == 2 ? HD_TRIANGULATION_DELAUNAY : HD_TRIANGULATION_GIVEN;
+    o.mollify = way ? -1 : 0;
     g = way ? gall_triangles(&s, &o) : gall_polygons(&p, &o);
     for (i = 0; i < around; i++) sources[i] = i * rows;
     CHECK(hd_geodesic_distance(g, around, sources, d, &rep, NULL) == HD_OK && rep.n_stages > 1);
@@ -466,10 +463,10 @@ static void gall_coincident(void) {
     CHECK_MSG(d[7] == 0 && d[twin] == 0 && d[100] == 0 && d[twin + 1] == 0 && d[200] == 0, "twins at %g, %g", d[7], d[twin + 1]);
     hd_geodesic_free(g);
     o.border = HD_GEODESIC_BORDER_MEAN;
-    CHECK(hd_geodesic_create_points(&g, s.xyz, s.n, NULL, NULL, &o, &e) == HD_ERR_ARGUMENT && strstr(e.text, "border"));
-    CHECK(hd_geodesic_create_points(&g, s.xyz, 2, NULL, NULL, NULL, &e) == HD_ERR_EMPTY);
-    CHECK(hd_geodesic_create_points(&g, s.xyz, -1, NULL, NULL, NULL, &e) == HD_ERR_ARGUMENT);
-    CHECK(hd_geodesic_create_points(&g, NULL, 3, NULL, NULL, NULL, &e) == HD_ERR_ARGUMENT);
+    CHECK(at_tufted_geodesic(&g, s.xyz, s.n, &o, &e) == HD_ERR_ARGUMENT && strstr(e.text, "border"));
+    CHECK(at_tufted_geodesic(&g, s.xyz, 2, NULL, &e) == HD_ERR_EMPTY);
+    CHECK(at_tufted_geodesic(&g, s.xyz, -1, NULL, &e) == HD_ERR_ARGUMENT);
+    CHECK(at_tufted_geodesic(&g, NULL, 3, NULL, &e) == HD_ERR_ARGUMENT);
 }
 
 /* ---- options, threads, failures ---- */
@@ -484,15 +481,15 @@ static void gall_errors(void) {
 #define GALL_BAD(field, value, kind)                                                                                                \
     o = gall_options();                                                                                                             \
     o.field = value;                                                                                                                \
-    CHECK(((kind) == 0 ? hd_geodesic_create(&g, s.xyz, s.n, s.tri, s.n_tri, &o, &e)                                                 \
-           : (kind) == 1 ? hd_geodesic_create_polygons(&g, p.xyz, p.n, p.face_ptr, p.face_idx, p.n_faces, &o, &e)                   \
-                         : hd_geodesic_create_points(&g, s.xyz, s.n, NULL, NULL, &o, &e)) == HD_ERR_ARGUMENT && e.text[0] && g == geo_mark)
+    CHECK(((kind) == 0 ? hd_geodesic_create(&g, MESH_TRIANGLES(s.xyz, s.n, s.tri, s.n_tri), &o, &e)                                                 \
+           : (kind) == 1 ? hd_geodesic_create(&g, MESH_POLYGONS(p.xyz, p.n, p.face_ptr, p.face_idx, p.n_faces), &o, &e)                   \
+                         : at_tufted_geodesic(&g, s.xyz, s.n, &o, &e)) == HD_ERR_ARGUMENT && e.text[0] && g == geo_mark)
     GALL_BAD(border, (hd_geodesic_border)3, 0);
     GALL_BAD(border, (hd_geodesic_border)-1, 1);
     GALL_BAD(mollify, 2, 0);
     GALL_BAD(mollify, NAN, 2);
-    GALL_BAD(lambda, -1, 1);
-    GALL_BAD(lambda, HUGE_VAL, 1);
+    GALL_BAD(stiffening, -1, 1);
+    GALL_BAD(stiffening, HUGE_VAL, 1);
     GALL_BAD(neighbours, 5, 2);
     GALL_BAD(neighbours, 129, 2);
     GALL_BAD(mass, HD_GEODESIC_MASS_VORONOI, 1);
@@ -503,12 +500,12 @@ static void gall_errors(void) {
     GALL_BAD(t_in_h2, -1, 0);
     GALL_BAD(t_in_h2, HUGE_VAL, 1);
     o = gall_options();
-    o.updatable = o.tufted = 1;
-    CHECK(hd_geodesic_create(&g, s.xyz, s.n, s.tri, s.n_tri, &o, &e) == HD_ERR_ARGUMENT && strstr(e.text, "updatable"));
-    CHECK(hd_geodesic_create_polygons(&g, p.xyz, p.n, NULL, p.face_idx, p.n_faces, NULL, &e) == HD_ERR_ARGUMENT);
-    CHECK(hd_geodesic_create_polygons(&g, p.xyz, p.n, ptr, p.face_idx, 2, NULL, &e) == HD_ERR_STRUCTURE && e.face == 1);
-    CHECK(hd_geodesic_create_polygons(&g, p.xyz, 5, p.face_ptr, p.face_idx, p.n_faces, NULL, &e) == HD_ERR_INDEX && e.face >= 0);
-    CHECK(hd_geodesic_create_polygons(&g, p.xyz, p.n, p.face_ptr, p.face_idx, 0, NULL, &e) == HD_ERR_EMPTY);
+    o.updatable = o.triangulation = HD_TRIANGULATION_TUFTED;
+    CHECK(hd_geodesic_create(&g, MESH_TRIANGLES(s.xyz, s.n, s.tri, s.n_tri), &o, &e) == HD_ERR_ARGUMENT && strstr(e.text, "updatable"));
+    CHECK(hd_geodesic_create(&g, MESH_POLYGONS(p.xyz, p.n, NULL, p.face_idx, p.n_faces), NULL, &e) == HD_ERR_ARGUMENT);
+    CHECK(hd_geodesic_create(&g, MESH_POLYGONS(p.xyz, p.n, ptr, p.face_idx, 2), NULL, &e) == HD_ERR_STRUCTURE && e.face == 1);
+    CHECK(hd_geodesic_create(&g, MESH_POLYGONS(p.xyz, 5, p.face_ptr, p.face_idx, p.n_faces), NULL, &e) == HD_ERR_INDEX && e.face >= 0);
+    CHECK(hd_geodesic_create(&g, MESH_POLYGONS(p.xyz, p.n, p.face_ptr, p.face_idx, 0), NULL, &e) == HD_ERR_EMPTY);
     CHECK(g == geo_mark);
 }
 
@@ -521,7 +518,7 @@ static void gall_thread_run(const shape_poly *s, hd_simd simd, int way, double *
     ldl_way_begin(w, way, simd);
     o.context = &w->ctx;
     for (k = 0; k < 3; k++) {
-        o.tufted = k == 1;
+        o.triangulation = k == 1 ? HD_TRIANGULATION_TUFTED : HD_TRIANGULATION_GIVEN;
         o.border = k == 1 ? HD_GEODESIC_BORDER_MEAN : HD_GEODESIC_BORDER_NATURAL;
         g = k < 2 ? gall_polygons(s, &o) : gall_points(s->xyz, s->n, &o);
         CHECK(hd_geodesic_distance(g, 3, sources, out, NULL, NULL) == HD_OK);

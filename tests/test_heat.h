@@ -570,7 +570,7 @@ static void heat_threads(void) {
         if (way == 5) ctx.parallel_for = heat_shuffled_for;
         if (way == 5) ctx.progress = heat_progress;
         lo.context = ho.context = &ctx;
-        CHECK(hd_laplacian_triangles(&lap, s->xyz, n, s->tri, s->n_tri, &lo, NULL) == HD_OK &&
+        CHECK(hd_laplacian_create(&lap, MESH_TRIANGLES(s->xyz, n, s->tri, s->n_tri), &lo, NULL) == HD_OK &&
               hd_heat_create(&heat, lap, &ho, NULL) == HD_OK);
         CHECK(heat_columns(heat, 8 * lap->h * lap->h, HD_KERNEL_OPERATOR, K, sources, way ? u : first, 0, &rep) >= 0);
         if (way == 0) rep0 = rep;

@@ -10,11 +10,10 @@ static hd_status tri_try(hd_laplacian **out, const shape *s, hd_laplacian_kind k
     hd_laplacian_opts o;
     memset(&o, 0, sizeof o);
     o.kind = kind;
-    o.intrinsic_delaunay = mode == TRI_DELAUNAY;
-    o.tufted = mode == TRI_TUFTED;
-    o.mollify = mollify;
+    o.triangulation = mode == TRI_DELAUNAY ? HD_TRIANGULATION_DELAUNAY : mode == TRI_TUFTED ? HD_TRIANGULATION_TUFTED : HD_TRIANGULATION_GIVEN;
+    o.mollify = o.triangulation ? mollify : 0;
     o.context = ctx;
-    return hd_laplacian_triangles(out, s->xyz, s->n, s->tri, s->n_tri, &o, e);
+    return hd_laplacian_create(out, MESH_TRIANGLES(s->xyz, s->n, s->tri, s->n_tri), &o, e);
 }
 
 static hd_laplacian *tri_make(const shape *s, hd_laplacian_kind kind, int mode) {
@@ -713,7 +712,7 @@ static hd_status tri_points_try(hd_laplacian **out, const double *xyz, int32_t n
     o.kind = kind;
     o.context = ctx;
     tri_neighbours(xyz, n, 30, ptr, nbr);
-    st = hd_laplacian_tufted_points(out, xyz, n, ptr, nbr, &o, e);
+    st = at_tufted(out, xyz, n, ptr, nbr, &o, e);
     return st;
 }
 
@@ -836,15 +835,15 @@ static void tri_points_bad_input(void) {
     hd_error e;
     memcpy(nan_xyz, xyz, sizeof xyz);
     nan_xyz[7] = (double)NAN;
-    CHECK(hd_laplacian_tufted_points(&lap, xyz, 4, shifted, nbr, NULL, &e) == HD_ERR_STRUCTURE && e.row == 0);
-    CHECK(hd_laplacian_tufted_points(&lap, xyz, 4, falling, nbr, NULL, &e) == HD_ERR_STRUCTURE && e.row == 1);
-    CHECK(hd_laplacian_tufted_points(&lap, xyz, 4, ptr, bad, NULL, &e) == HD_ERR_INDEX && e.row == 2 && e.value == 4);
-    CHECK(hd_laplacian_tufted_points(&lap, xyz, 4, many, lots, NULL, &e) == HD_ERR_TOO_LARGE && e.row == 0);
-    CHECK(hd_laplacian_tufted_points(&lap, nan_xyz, 4, ptr, nbr, NULL, &e) == HD_ERR_NOT_FINITE && e.vertex == 2);
-    CHECK(hd_laplacian_tufted_points(&lap, xyz, 4, NULL, nbr, NULL, &e) == HD_ERR_ARGUMENT);
-    CHECK(hd_laplacian_tufted_points(NULL, xyz, 4, ptr, nbr, NULL, &e) == HD_ERR_ARGUMENT);
-    CHECK(hd_laplacian_tufted_points(&lap, xyz, -1, ptr, nbr, NULL, &e) == HD_ERR_ARGUMENT && !lap);
-    CHECK(hd_laplacian_tufted_points(&lap, xyz, 4, ptr, nbr, NULL, &e) == HD_OK);
+    CHECK(at_tufted(&lap, xyz, 4, shifted, nbr, NULL, &e) == HD_ERR_STRUCTURE && e.row == 0);
+    CHECK(at_tufted(&lap, xyz, 4, falling, nbr, NULL, &e) == HD_ERR_STRUCTURE && e.row == 1);
+    CHECK(at_tufted(&lap, xyz, 4, ptr, bad, NULL, &e) == HD_ERR_INDEX && e.row == 2 && e.value == 4);
+    CHECK(at_tufted(&lap, xyz, 4, many, lots, NULL, &e) == HD_ERR_TOO_LARGE && e.row == 0);
+    CHECK(at_tufted(&lap, nan_xyz, 4, ptr, nbr, NULL, &e) == HD_ERR_NOT_FINITE && e.vertex == 2);
+    CHECK(at_tufted(&lap, xyz, 4, NULL, nbr, NULL, &e) == HD_ERR_ARGUMENT);
+    CHECK(at_tufted(NULL, xyz, 4, ptr, nbr, NULL, &e) == HD_ERR_ARGUMENT);
+    CHECK(at_tufted(&lap, xyz, -1, ptr, nbr, NULL, &e) == HD_ERR_ARGUMENT && !lap);
+    CHECK(at_tufted(&lap, xyz, 4, ptr, nbr, NULL, &e) == HD_OK);
     hd_laplacian_free(lap);
 }
 
@@ -932,7 +931,7 @@ static void tri_deterministic(void) {
         memset(ctx + k, 0, sizeof *ctx);
         if (k) ctx[k].parallel_for = tri_backwards;
         o.context = ctx + k;
-        CHECK(hd_laplacian_tufted_points(lap + k, xyz, N, ptr, nbr, &o, NULL) == HD_OK);
+        CHECK(at_tufted(lap + k, xyz, N, ptr, nbr, &o, NULL) == HD_OK);
     }
     if (CHECK(lap[0] && lap[1] && lap[0]->L.nnz == lap[1]->L.nnz)) {
         const size_t size = (size_t)lap[0]->L.nnz * sizeof(double);

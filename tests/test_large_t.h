@@ -72,7 +72,7 @@ static void large_square(void) {
     memset(&o, 0, sizeof o);
     o.kind = HD_LAPLACIAN_VORONOI_COT;
     o.border = HD_BORDER_DIRICHLET;
-    CHECK(hd_laplacian_triangles(&lap, s->xyz, s->n, s->tri, s->n_tri, &o, NULL) == HD_OK);
+    CHECK(hd_laplacian_create(&lap, MESH_TRIANGLES(s->xyz, s->n, s->tri, s->n_tri), &o, NULL) == HD_OK);
     kit_keep(lap, kit_free_laplacian);
     heat = kit_heat(lap, "");
     for (q = 0; q < 14; q++) {
@@ -152,7 +152,7 @@ static void large_kept(void) {
           memcmp(d, again, (size_t)n * sizeof *d) == 0);
     CHECK(hd_heat_estimate(heat, HD_QUERY_DISTANCE, 1, &t, 1, &e, NULL) == HD_OK && e.cost[0].seconds == 0);
     for (i = 0; i < 3 * n; i++) ball.xyz[i] *= i % 3 ? 1 : 1.5;
-    CHECK(hd_laplacian_update(lap, ball.xyz, NULL) >= 0);
+    CHECK(hd_laplacian_update(lap, MESH_POINTS(ball.xyz, lap->n), NULL) >= 0);
     CHECK(heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &source, again, 0, &r) == HD_OK);
     CHECK(heat_distance(kit_heat(kit_triangles(kit_own(ball), HD_LAPLACIAN_FEM), ""), HD_DISTANCE_CLASSICAL, 1, &t, 1, &source, moved,
                         0, &r) == HD_OK);

@@ -16,7 +16,7 @@ static double *len_of(const shape *s, double unit) {
 static hd_laplacian *len_make(const double *len, int32_t n, const int32_t *tri, int32_t m, const hd_laplacian_opts *o) {
     hd_laplacian *lap = NULL;
     hd_error e;
-    CHECK_MSG(hd_laplacian_lengths(&lap, len, n, tri, m, o, &e) == HD_OK, "%s", e.text);
+    CHECK_MSG(hd_laplacian_create(&lap, MESH_LENGTHS(len, n, tri, m), o, &e) == HD_OK, "%s", e.text);
     return kit_own_laplacian(lap);
 }
 
@@ -60,8 +60,7 @@ static void len_operators(void) {
                 double *len = len_of(&s, unit);
                 char what[60];
                 snprintf(what, sizeof what, "shape %d, kind %d, way %d", k, q, w);
-                o.intrinsic_delaunay = w == 1;
-                o.tufted = w == 2;
+                o.triangulation = w == 1 ? HD_TRIANGULATION_DELAUNAY : w == 2 ? HD_TRIANGULATION_TUFTED : HD_TRIANGULATION_GIVEN;
                 a = bord_triangles(&s, &o);
                 b = len_make(len, s.n, s.tri, s.n_tri, &o);
                 len_same(a, b, unit, what);
@@ -80,7 +79,7 @@ static void len_book(void) {
     hd_laplacian *lap;
     int32_t i;
     int64_t p;
-    o.tufted = 1;
+    o.triangulation = HD_TRIANGULATION_TUFTED;
     lap = len_make(len, 5, tri, 3, &o);
     CHECK_MSG(lap->mesh.n_nonmanifold_edges == 1 && lap->mesh.n_flips > 0 && lap->mesh.n_sheets == 2 && lap->mesh.n_negative_weights == 0 && lap->mesh.n_not_delaunay == 0, "%d %d %d %d",
               (int)lap->mesh.n_nonmanifold_edges, (int)lap->mesh.n_sheets, (int)lap->mesh.n_negative_weights, (int)lap->mesh.n_not_delaunay);
@@ -128,8 +127,8 @@ static void len_rings(void) {
         int32_t lost = 0;
         int64_t p;
         int method;
-        o.intrinsic_delaunay = shear > 0;
-        o.mollify = -1;
+        o.triangulation = shear > 0 ? HD_TRIANGULATION_DELAUNAY : HD_TRIANGULATION_GIVEN;
+        o.mollify = shear > 0 ? -1 : 0;
         len_torus(NX, NY, side, side, shear, tri, len);
         lap = len_make(len, NX * NY, tri, 2 * NX * NY, &o);
         CHECK(lap->n_components == 1 && lap->mesh.n_boundary_edges == 0 && lap->mesh.n_edges == 3 * NX * NY && lap->mesh.n_nonmanifold_edges == 0);
@@ -184,7 +183,7 @@ static void len_seven(void) {
     so.count = 7;
     CHECK(hd_spectrum_create(&spectrum, lap, &so, &e) == HD_OK && spectrum->count == 7);
     for (v = 1; v < 7 && spectrum; v++) CHECK_MSG(fabs(spectrum->value[v] - lambda) < 1e-9, "seven: %.15g for %.15g", spectrum->value[v], lambda);
-    CHECK(hd_geodesic_create_lengths(&g, len, 7, tri, 14, NULL, &e) == HD_OK && hd_geodesic_distance(g, 1, tri, d, NULL, NULL) == HD_OK);
+    CHECK(hd_geodesic_create(&g, MESH_LENGTHS(len, 7, tri, 14), NULL, &e) == HD_OK && hd_geodesic_distance(g, 1, tri, d, NULL, NULL) == HD_OK);
     for (v = 1; v < 7; v++) CHECK_MSG(fabs(d[v] - 1) < 0.2 && fabs(d[v] - d[1]) < 1e-12, "seven: geodesic %g", d[v]);
     hd_geodesic_free(g);
     hd_spectrum_free(spectrum);
@@ -221,7 +220,7 @@ static void len_smooth(void) {
         s.vertex = tri;
         s.bary = bary;
         CHECK(eng_ok(hd_heat_columns_from(heat, HD_KERNEL_SYMMETRIC, 1, &t, 1, &s, u, 0, &rep, NULL), &rep, "flat torus"));
-        CHECK(hd_geodesic_create_lengths(&g, len, n, tri, 2 * n, NULL, NULL) == HD_OK && hd_geodesic_distance_from(g, &s, d, NULL, NULL) == HD_OK);
+        CHECK(hd_geodesic_create(&g, MESH_LENGTHS(len, n, tri, 2 * n), NULL, NULL) == HD_OK && hd_geodesic_distance_from(g, &s, d, NULL, NULL) == HD_OK);
         for (v = 0; v < n; v++) {
             const double x = (v % nx - 2 / 3.0) * cell, y = (v / nx - 1 / 3.0) * cell;
             const double dx = fmin(fabs(x), 1 - fabs(x)), dy = fmin(fabs(y), 0.8 - fabs(y));
@@ -246,7 +245,7 @@ static void len_geodesic(void) {
     hd_geodesic *space = src_geodesic(&s, 0), *g = NULL;
     int32_t v;
     double off = 0;
-    CHECK(hd_geodesic_create_lengths(&g, len, s.n, s.tri, s.n_tri, NULL, NULL) == HD_OK);
+    CHECK(hd_geodesic_create(&g, MESH_LENGTHS(len, s.n, s.tri, s.n_tri), NULL, NULL) == HD_OK);
     CHECK(hd_geodesic_distance(space, 2, sources, a, NULL, NULL) == HD_OK && hd_geodesic_distance(g, 2, sources, b, NULL, NULL) == HD_OK);
     for (v = 0; v < s.n; v++) off = fmax(off, fabs(a[v] - b[v] / unit));
     CHECK_MSG(off < 1e-10, "geodesics by lengths are off by %g", off);
@@ -261,9 +260,9 @@ static void len_refused(const double *len, const shape *s, const hd_laplacian_op
     hd_laplacian *lap = NULL;
     hd_geodesic *g = NULL;
     hd_error e;
-    const hd_status st = hd_laplacian_lengths(&lap, len, s->n, s->tri, s->n_tri, o, &e);
+    const hd_status st = hd_laplacian_create(&lap, MESH_LENGTHS(len, s->n, s->tri, s->n_tri), o, &e);
     CHECK_MSG(st == want && !lap && e.face == face && strstr(e.text, text) != NULL, "%s: %s, %s, face %d", text, hd_status_name(st), e.text, (int)e.face);
-    if (!o) CHECK(hd_geodesic_create_lengths(&g, len, s->n, s->tri, s->n_tri, NULL, &e) == want && !g && e.face == face);
+    if (!o) CHECK(hd_geodesic_create(&g, MESH_LENGTHS(len, s->n, s->tri, s->n_tri), NULL, &e) == want && !g && e.face == face);
 }
 
 static void len_errors(void) {
@@ -280,10 +279,10 @@ static void len_errors(void) {
     len_refused(len, &s, &o, HD_ERR_ARGUMENT, -1, "updatable");
     memset(&go, 0, sizeof go);
     go.updatable = 1;
-    CHECK(hd_geodesic_create_lengths(&g, len, s.n, s.tri, s.n_tri, &go, &e) == HD_ERR_ARGUMENT && !g);
+    CHECK(hd_geodesic_create(&g, MESH_LENGTHS(len, s.n, s.tri, s.n_tri), &go, &e) == HD_ERR_ARGUMENT && !g);
     go.updatable = 0;
     go.ordering = HD_ORDERING_NESTED_DISSECTION;
-    CHECK(hd_geodesic_create_lengths(&g, len, s.n, s.tri, s.n_tri, &go, &e) == HD_ERR_ARGUMENT && !g && strstr(e.text, "coordinates"));
+    CHECK(hd_geodesic_create(&g, MESH_LENGTHS(len, s.n, s.tri, s.n_tri), &go, &e) == HD_ERR_ARGUMENT && !g && strstr(e.text, "coordinates"));
     len_refused(NULL, &s, NULL, HD_ERR_ARGUMENT, -1, "NULL");
     was = len[3 * 7 + 2];
     len[3 * 7 + 2] = NAN;
@@ -292,19 +291,19 @@ static void len_errors(void) {
     len_refused(len, &s, NULL, HD_ERR_ARGUMENT, 7, "negative");
     len[3 * 7 + 2] = (len[3 * 7] + len[3 * 7 + 1]) * (1 + 1e-12);
     len_refused(len, &s, NULL, HD_ERR_ARGUMENT, 7, "longer than");
-    CHECK(hd_laplacian_lengths(&lap, len, s.n, s.tri, s.n_tri, NULL, &e) == HD_ERR_ARGUMENT && e.value == len[3 * 7 + 2]);
+    CHECK(hd_laplacian_create(&lap, MESH_LENGTHS(len, s.n, s.tri, s.n_tri), NULL, &e) == HD_ERR_ARGUMENT && e.value == len[3 * 7 + 2]);
     len[3 * 7 + 2] = was * (1 + 1e-11);
-    CHECK(hd_laplacian_lengths(&lap, len, s.n, s.tri, s.n_tri, NULL, &e) == HD_ERR_ARGUMENT && strstr(e.text, "different lengths") && e.face >= 0 &&
+    CHECK(hd_laplacian_create(&lap, MESH_LENGTHS(len, s.n, s.tri, s.n_tri), NULL, &e) == HD_ERR_ARGUMENT && strstr(e.text, "different lengths") && e.face >= 0 &&
           (s.tri[3 * 7 + 2] == e.vertex || s.tri[3 * 7] == e.vertex) && (e.value == len[3 * 7 + 2] || e.value == was));
     len[3 * 7 + 2] = was * (1 + 1e-13);          /* that is rounding */
     lap = len_make(len, s.n, s.tri, s.n_tri, NULL);
-    CHECK(hd_laplacian_update(lap, s.xyz, &e) == HD_ERR_ARGUMENT);
+    CHECK(hd_laplacian_update(lap, MESH_POINTS(s.xyz, lap->n), &e) == HD_ERR_ARGUMENT);
     lap = NULL;
     len[3 * 7 + 2] = was;
     s.tri[4] = s.n;
     len_refused(len, &s, NULL, HD_ERR_INDEX, 1, "vertex");
     s.tri[4] = 0;
-    CHECK(hd_laplacian_lengths(&lap, len, s.n, s.tri, 0, NULL, &e) == HD_ERR_EMPTY && hd_laplacian_lengths(&lap, len, s.n, s.tri, -1, NULL, &e) == HD_ERR_ARGUMENT);
+    CHECK(hd_laplacian_create(&lap, MESH_LENGTHS(len, s.n, s.tri, 0), NULL, &e) == HD_ERR_EMPTY && hd_laplacian_create(&lap, MESH_LENGTHS(len, s.n, s.tri, -1), NULL, &e) == HD_ERR_ARGUMENT);
     free(len);
 }
 

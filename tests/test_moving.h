@@ -79,7 +79,7 @@ static void mov_frames(const shape *s, hd_laplacian_kind kind, const char *what)
         hd_error e;
         mov_bend(s, 0.3 * frame, xyz);
         calls = m.calls;
-        CHECK_MSG(hd_laplacian_update(lap, xyz, &e) == HD_OK, "%s: %s", what, e.text);
+        CHECK_MSG(hd_laplacian_update(lap, MESH_POINTS(xyz, lap->n), &e) == HD_OK, "%s: %s", what, e.text);
         CHECK_MSG(m.calls == calls && lap->version == frame + 1, "%s: the update allocates", what);
         fresh = test_laplacian_at(s, xyz, kind, 0, NULL);
         mov_same_bits(lap, fresh, what);
@@ -123,22 +123,22 @@ static void mov_errors(void) {
     memcpy(before, lap->L.val, (size_t)lap->L.nnz * sizeof *before);
     memcpy(xyz, s.xyz, 3 * (size_t)s.n * sizeof *xyz);
     xyz[7] = NAN;
-    CHECK(hd_laplacian_update(lap, xyz, &e) == HD_ERR_NOT_FINITE && e.vertex == 2);
+    CHECK(hd_laplacian_update(lap, MESH_POINTS(xyz, lap->n), &e) == HD_ERR_NOT_FINITE && e.vertex == 2);
     for (i = 0; i < 3 * s.n; i++) xyz[i] = 1;
-    CHECK(hd_laplacian_update(lap, xyz, &e) == HD_ERR_EMPTY && e.vertex == lap->vertex[0]);
+    CHECK(hd_laplacian_update(lap, MESH_POINTS(xyz, lap->n), &e) == HD_ERR_EMPTY && e.vertex == lap->vertex[0]);
     for (i = 0; i < 3 * s.n; i++) xyz[i] = 1e90 * s.xyz[i];
-    CHECK(hd_laplacian_update(lap, xyz, &e) == HD_ERR_ARGUMENT && e.face >= 0);
-    CHECK(hd_laplacian_update(plain, s.xyz, &e) == HD_ERR_ARGUMENT && hd_laplacian_update(NULL, s.xyz, &e) == HD_ERR_ARGUMENT);
-    CHECK(hd_laplacian_update(lap, NULL, &e) == HD_ERR_ARGUMENT);
+    CHECK(hd_laplacian_update(lap, MESH_POINTS(xyz, lap->n), &e) == HD_ERR_ARGUMENT && e.face >= 0);
+    CHECK(hd_laplacian_update(plain, MESH_POINTS(s.xyz, plain->n), &e) == HD_ERR_ARGUMENT && hd_laplacian_update(NULL, MESH_POINTS(s.xyz, 0), &e) == HD_ERR_ARGUMENT);
+    CHECK(hd_laplacian_update(lap, MESH_POINTS(NULL, lap->n), &e) == HD_ERR_ARGUMENT);
     CHECK(lap->version == 0 && memcmp(before, lap->L.val, (size_t)lap->L.nnz * sizeof *before) == 0);
     memset(&o, 0, sizeof o);
-    o.updatable = o.tufted = 1;
-    CHECK(hd_laplacian_triangles(&none, s.xyz, s.n, s.tri, s.n_tri, &o, &e) == HD_ERR_ARGUMENT && none == NULL);
+    o.updatable = o.triangulation = HD_TRIANGULATION_TUFTED;
+    CHECK(hd_laplacian_create(&none, MESH_TRIANGLES(s.xyz, s.n, s.tri, s.n_tri), &o, &e) == HD_ERR_ARGUMENT && none == NULL);
     /* one face of many loses its area */
     memcpy(xyz, s.xyz, 3 * (size_t)s.n * sizeof *xyz);
     memcpy(xyz + 3 * s.tri[0], s.xyz + 3 * s.tri[1], 3 * sizeof *xyz);
-    CHECK(hd_laplacian_update(lap, xyz, &e) == HD_OK && lap->mesh.n_zero_area >= 1 && lap->mesh.n_faces_used + lap->mesh.n_zero_area == s.n_tri);
-    CHECK(hd_laplacian_update(lap, s.xyz, &e) == HD_OK && memcmp(before, lap->L.val, (size_t)lap->L.nnz * sizeof *before) == 0 && lap->mesh.n_zero_area == 0);
+    CHECK(hd_laplacian_update(lap, MESH_POINTS(xyz, lap->n), &e) == HD_OK && lap->mesh.n_zero_area >= 1 && lap->mesh.n_faces_used + lap->mesh.n_zero_area == s.n_tri);
+    CHECK(hd_laplacian_update(lap, MESH_POINTS(s.xyz, lap->n), &e) == HD_OK && memcmp(before, lap->L.val, (size_t)lap->L.nnz * sizeof *before) == 0 && lap->mesh.n_zero_area == 0);
 }
 
 /* Geodesic distances of a plan that moves with the mesh. */
@@ -152,16 +152,16 @@ static void mov_geodesic(const shape *s, const char *what) {
     int32_t i;
     int frame;
     memset(&o, 0, sizeof o);
-    CHECK(hd_geodesic_create(&fresh, s->xyz, s->n, s->tri, s->n_tri, &o, &e) == HD_OK);
-    CHECK(hd_geodesic_update(fresh, s->xyz, &e) == HD_ERR_ARGUMENT && hd_geodesic_update(NULL, s->xyz, &e) == HD_ERR_ARGUMENT);
+    CHECK(hd_geodesic_create(&fresh, MESH_TRIANGLES(s->xyz, s->n, s->tri, s->n_tri), &o, &e) == HD_OK);
+    CHECK(hd_geodesic_update(fresh, MESH_POINTS(s->xyz, s->n), &e) == HD_ERR_ARGUMENT && hd_geodesic_update(NULL, MESH_POINTS(s->xyz, s->n), &e) == HD_ERR_ARGUMENT);
     hd_geodesic_free(fresh);
     o.updatable = 1;
-    CHECK(hd_geodesic_create(&plan, s->xyz, s->n, s->tri, s->n_tri, &o, &e) == HD_OK);
+    CHECK(hd_geodesic_create(&plan, MESH_TRIANGLES(s->xyz, s->n, s->tri, s->n_tri), &o, &e) == HD_OK);
     for (frame = 1; frame < 4; frame++) {
         mov_bend(s, 0.3 * frame, xyz);
-        CHECK_MSG(hd_geodesic_update(plan, xyz, &e) == HD_OK, "%s: %s", what, e.text);
+        CHECK_MSG(hd_geodesic_update(plan, MESH_POINTS(xyz, s->n), &e) == HD_OK, "%s: %s", what, e.text);
         o.updatable = 0;
-        CHECK(hd_geodesic_create(&fresh, xyz, s->n, s->tri, s->n_tri, &o, &e) == HD_OK);
+        CHECK(hd_geodesic_create(&fresh, MESH_TRIANGLES(xyz, s->n, s->tri, s->n_tri), &o, &e) == HD_OK);
         CHECK(hd_geodesic_distance(plan, 1, &source, d, &rep, NULL) == HD_OK && hd_geodesic_distance(fresh, 1, &source, want, &rep2, NULL) == HD_OK);
         CHECK(fabs(rep.h - rep2.h) <= 1e-13 * rep2.h && fabs(rep.t - rep2.t) <= 1e-13 * rep2.t && rep.residual_distance < 1e-9);
         for (i = 0; i < s->n; i++)
@@ -171,7 +171,7 @@ static void mov_geodesic(const shape *s, const char *what) {
     memcpy(want, d, (size_t)s->n * sizeof *d);
     memcpy(xyz, s->xyz, 3 * (size_t)s->n * sizeof *xyz);
     memcpy(xyz + 3 * s->tri[0], s->xyz + 3 * s->tri[1], 3 * sizeof *xyz);
-    CHECK(hd_geodesic_update(plan, xyz, &e) == HD_ERR_EMPTY && (e.face >= 0 || e.vertex >= 0));
+    CHECK(hd_geodesic_update(plan, MESH_POINTS(xyz, s->n), &e) == HD_ERR_EMPTY && (e.face >= 0 || e.vertex >= 0));
     CHECK(hd_geodesic_distance(plan, 1, &source, d, &rep, NULL) == HD_OK && memcmp(d, want, (size_t)s->n * sizeof *d) == 0);   /* as it was */
     hd_geodesic_free(plan);
 }
@@ -186,7 +186,7 @@ static hd_laplacian *mov_polygons(const shape_poly *s, const double *xyz, hd_lap
     o.kind = kind;
     o.updatable = updatable;
     o.context = ctx;
-    CHECK_MSG(hd_laplacian_polygons(&lap, xyz, s->n, s->face_ptr, s->face_idx, s->n_faces, &o, &e) == HD_OK, "%s", e.text);
+    CHECK_MSG(hd_laplacian_create(&lap, MESH_POLYGONS(xyz, s->n, s->face_ptr, s->face_idx, s->n_faces), &o, &e) == HD_OK, "%s", e.text);
     return lap;
 }
 
@@ -219,7 +219,7 @@ static void mov_polygon_frames(const shape_poly *s, hd_laplacian_kind kind, cons
         int64_t calls;
         mov_bend(&points, 0.3 * (3 - frame), xyz);   /* the last frame is the start again */
         calls = m.calls;
-        CHECK_MSG(hd_laplacian_update(lap, xyz, &e) == HD_OK, "%s: %s", what, e.text);
+        CHECK_MSG(hd_laplacian_update(lap, MESH_POINTS(xyz, lap->n), &e) == HD_OK, "%s: %s", what, e.text);
         CHECK_MSG(m.calls == calls && lap->version == frame + 1, "%s: the update allocates", what);
         fresh = mov_polygons(s, xyz, kind, 0, NULL);
         mov_same_bits(lap, fresh, what);
@@ -233,7 +233,7 @@ static void mov_polygon_frames(const shape_poly *s, hd_laplacian_kind kind, cons
         if (k == 0) xyz[7] = NAN;
         for (frame = 0; k == 1 && frame < 3 * s->n; frame++) xyz[frame] = 1;
         for (frame = 0; k == 2 && frame < 3 * s->n; frame++) xyz[frame] = 1e90 * s->xyz[frame];
-        CHECK(hd_laplacian_update(lap, xyz, &e) == (k == 0 ? HD_ERR_NOT_FINITE : k == 1 ? HD_ERR_EMPTY : HD_ERR_ARGUMENT));
+        CHECK(hd_laplacian_update(lap, MESH_POINTS(xyz, lap->n), &e) == (k == 0 ? HD_ERR_NOT_FINITE : k == 1 ? HD_ERR_EMPTY : HD_ERR_ARGUMENT));
         CHECK(k == 0 ? e.vertex == 2 : k == 1 ? e.vertex >= 0 : e.face >= 0 && e.face < s->n_faces);
         mov_same_bits(lap, fresh, what);
         CHECK(lap->version == 4);
@@ -241,8 +241,8 @@ static void mov_polygon_frames(const shape_poly *s, hd_laplacian_kind kind, cons
     /* one face loses its area, and gets it back */
     memcpy(xyz, s->xyz, 3 * (size_t)s->n * sizeof *xyz);
     for (k = 1; k < s->face_ptr[1]; k++) memcpy(xyz + 3 * s->face_idx[k], xyz + 3 * s->face_idx[0], 3 * sizeof *xyz);
-    if (hd_laplacian_update(lap, xyz, &e) == HD_OK) CHECK(lap->mesh.n_zero_area > fresh->mesh.n_zero_area && lap->mesh.n_faces_used < fresh->mesh.n_faces_used);
-    CHECK(hd_laplacian_update(lap, s->xyz, &e) == HD_OK && lap->mesh.n_faces_used == fresh->mesh.n_faces_used);
+    if (hd_laplacian_update(lap, MESH_POINTS(xyz, lap->n), &e) == HD_OK) CHECK(lap->mesh.n_zero_area > fresh->mesh.n_zero_area && lap->mesh.n_faces_used < fresh->mesh.n_faces_used);
+    CHECK(hd_laplacian_update(lap, MESH_POINTS(s->xyz, lap->n), &e) == HD_OK && lap->mesh.n_faces_used == fresh->mesh.n_faces_used);
     hd_laplacian_free(fresh);
     for (k = 0; k < 3; k++) hd_heat_free(plan[k]);
     hd_laplacian_free(lap);
@@ -258,20 +258,20 @@ static void mov_refused(const shape_poly *s, hd_laplacian_kind kind, hd_laplacia
     int32_t i, k, version = 1, refused = 0;
     o.kind = kind;
     o.updatable = 1;
-    CHECK_MSG(hd_laplacian_polygons(&lap, s->xyz, s->n, s->face_ptr, s->face_idx, s->n_faces, &o, &e) == HD_OK, "%s", e.text);
-    CHECK(hd_laplacian_polygons(&same, s->xyz, s->n, s->face_ptr, s->face_idx, s->n_faces, &o, &e) == HD_OK);
-    CHECK(hd_laplacian_update(lap, s->xyz, &e) == HD_OK && hd_laplacian_update(same, s->xyz, &e) == HD_OK);
+    CHECK_MSG(hd_laplacian_create(&lap, MESH_POLYGONS(s->xyz, s->n, s->face_ptr, s->face_idx, s->n_faces), &o, &e) == HD_OK, "%s", e.text);
+    CHECK(hd_laplacian_create(&same, MESH_POLYGONS(s->xyz, s->n, s->face_ptr, s->face_idx, s->n_faces), &o, &e) == HD_OK);
+    CHECK(hd_laplacian_update(lap, MESH_POINTS(s->xyz, lap->n), &e) == HD_OK && hd_laplacian_update(same, MESH_POINTS(s->xyz, same->n), &e) == HD_OK);
     o.updatable = 0;
     for (k = 0; k < 18; k++) {
         hd_status st, want;
         for (i = 0; i < 3 * s->n; i++) xyz[i] = s->xyz[i] * (1 + k / 6) * (k % 6 == 5 && i == 7 ? NAN : scales[k % 6 == 5 ? 0 : k % 6]);
         fresh = NULL;
-        st = hd_laplacian_update(lap, xyz, &e);
-        want = hd_laplacian_polygons(&fresh, xyz, s->n, s->face_ptr, s->face_idx, s->n_faces, &o, &e2);
+        st = hd_laplacian_update(lap, MESH_POINTS(xyz, lap->n), &e);
+        want = hd_laplacian_create(&fresh, MESH_POLYGONS(xyz, s->n, s->face_ptr, s->face_idx, s->n_faces), &o, &e2);
         CHECK_MSG(st == want && ((st != HD_ERR_NOT_FINITE && st != HD_ERR_ARGUMENT) || (e.face == e2.face && e.vertex == e2.vertex && strcmp(e.text, e2.text) == 0)),
                   "%s, %d: %s, face %d, new %s, face %d", what, (int)k, hd_status_name(st), (int)e.face, hd_status_name(want), (int)e2.face);
         hd_laplacian_free(fresh);
-        if (st == HD_OK) CHECK(lap->version == ++version && hd_laplacian_update(lap, s->xyz, &e) == HD_OK && lap->version == ++version);
+        if (st == HD_OK) CHECK(lap->version == ++version && hd_laplacian_update(lap, MESH_POINTS(s->xyz, lap->n), &e) == HD_OK && lap->version == ++version);
         else refused++;
         mov_same_bits(lap, same, what);
         CHECK(lap->version == version);
@@ -298,7 +298,7 @@ static void mov_geodesic_refused(const shape *s, hd_geodesic_border border) {
         o.updatable = 1;
         o.t = way == 1 ? 1e-250 : 0;
         o.t_in_h2 = way == 2 ? 1e-100 : 0;
-        CHECK(hd_geodesic_create(&g, s->xyz, s->n, s->tri, s->n_tri, &o, &e) == HD_OK);
+        CHECK(hd_geodesic_create(&g, MESH_TRIANGLES(s->xyz, s->n, s->tri, s->n_tri), &o, &e) == HD_OK);
         o.updatable = 0;
         CHECK(hd_geodesic_distance(g, 2, sources, want, &rep, &e) >= 0);
         for (k = 0; k < 9; k++) {
@@ -306,11 +306,11 @@ static void mov_geodesic_refused(const shape *s, hd_geodesic_border border) {
             for (i = 0; i < 3 * s->n; i++) xyz[i] = s->xyz[i] * (k < 8 ? scales[k] : i / 3 == s->tri[0] ? 0 : 1);
             for (i = 0; i < 3 && k == 8; i++) memcpy(xyz + 3 * s->tri[i], s->xyz + 3 * s->tri[0], 3 * sizeof *xyz);
             fresh = NULL;
-            st = hd_geodesic_update(g, xyz, &e);
-            like = hd_geodesic_create(&fresh, xyz, s->n, s->tri, s->n_tri, &o, &e2);
+            st = hd_geodesic_update(g, MESH_POINTS(xyz, s->n), &e);
+            like = hd_geodesic_create(&fresh, MESH_TRIANGLES(xyz, s->n, s->tri, s->n_tri), &o, &e2);
             CHECK_MSG(st == like || k == 8, "way %d, %d: %s, new %s", way, (int)k, hd_status_name(st), hd_status_name(like));
             hd_geodesic_free(fresh);
-            if (st == HD_OK) CHECK(hd_geodesic_update(g, s->xyz, &e) == HD_OK);
+            if (st == HD_OK) CHECK(hd_geodesic_update(g, MESH_POINTS(s->xyz, s->n), &e) == HD_OK);
             refused += st < 0;
             CHECK_MSG(hd_geodesic_distance(g, 2, sources, d, &rep2, &e) >= 0, "way %d, %d, after %s: %s", way, (int)k, hd_status_name(st), e.text);
             if (st < 0) CHECK_MSG(memcmp(d, want, (size_t)s->n * sizeof *d) == 0 && rep.t == rep2.t && rep.h == rep2.h && rep.residual_heat == rep2.residual_heat, "way %d, %d", way, (int)k);
@@ -346,7 +346,7 @@ static void mov_names(void) {
             memcpy(xyz, s.xyz, sizeof xyz);
             xyz[15 * place[f] + 3] *= 1e90;
             xyz[15 * place[f] + 7] *= 1e90;
-            CHECK_MSG(f == 2 || (hd_laplacian_update(lap, xyz, &e) == HD_ERR_ARGUMENT && e.face == f), "kind %d: face %d for %d", kind, (int)e.face, (int)f);
+            CHECK_MSG(f == 2 || (hd_laplacian_update(lap, MESH_POINTS(xyz, lap->n), &e) == HD_ERR_ARGUMENT && e.face == f), "kind %d: face %d for %d", kind, (int)e.face, (int)f);
         }
     }
 }
@@ -362,7 +362,7 @@ static void mov_lost(hd_laplacian_kind kind, int32_t lost) {
     memcpy(xyz, s.xyz, 3 * (size_t)s.n * sizeof *xyz);
     memcpy(xyz + 3 * lost, s.xyz + 3 * (lost + 1), 3 * sizeof *xyz);
     fresh = test_laplacian_at(&s, xyz, kind, 0, NULL);
-    CHECK(hd_laplacian_update(lap, xyz, &e) == HD_OK && lap->mesh.n_zero_area > 0);
+    CHECK(hd_laplacian_update(lap, MESH_POINTS(xyz, lap->n), &e) == HD_OK && lap->mesh.n_zero_area > 0);
     CHECK_MSG(lap->mesh.n_edges == fresh->mesh.n_edges && lap->mesh.n_boundary_edges == fresh->mesh.n_boundary_edges && lap->mesh.n_boundary_loops == fresh->mesh.n_boundary_loops,
               "vertex %d: %d edges, %d, %d loops for %d, %d, %d", (int)lost, (int)lap->mesh.n_edges, (int)lap->mesh.n_boundary_edges, (int)lap->mesh.n_boundary_loops,
               (int)fresh->mesh.n_edges, (int)fresh->mesh.n_boundary_edges, (int)fresh->mesh.n_boundary_loops);
@@ -424,7 +424,7 @@ static void mov_matrix_frames(const shape *s, hd_laplacian_kind kind, const char
     for (frame = 0; frame < 4; frame++) {
         uint64_t bytes;
         mov_bend(s, 0.3 * (3 - frame), xyz);
-        CHECK(hd_laplacian_update(mesh, xyz, NULL) == HD_OK);
+        CHECK(hd_laplacian_update(mesh, MESH_POINTS(xyz, mesh->n), NULL) == HD_OK);
         memcpy(L.val, mesh->L.val, (size_t)L.nnz * sizeof(double));
         memcpy(B.val, diagonal ? mesh->mass : mesh->B, (size_t)B.nnz * sizeof(double));
         if (frame == 2) L.val[0] += 0.5;         /* heat is lost there */
@@ -464,7 +464,7 @@ static void mov_matrix_frames(const shape *s, hd_laplacian_kind kind, const char
         mov_matrix_free(&Lx, 0);
         mov_matrix_free(&Bx, diagonal);
     }
-    CHECK(hd_laplacian_update(lap, s->xyz, &e) == HD_ERR_ARGUMENT && strstr(e.text, "matrices") != NULL);
+    CHECK(hd_laplacian_update(lap, MESH_POINTS(s->xyz, lap->n), &e) == HD_ERR_ARGUMENT && strstr(e.text, "matrices") != NULL);
     CHECK(hd_laplacian_update_matrices(fresh, &L, &B, 1, &e) == HD_ERR_ARGUMENT && hd_laplacian_update_matrices(mesh, &L, &B, 1, &e) == HD_ERR_ARGUMENT);
     CHECK(hd_laplacian_update_matrices(NULL, &L, &B, 1, &e) == HD_ERR_ARGUMENT && hd_laplacian_update_matrices(lap, NULL, &B, 1, &e) == HD_ERR_ARGUMENT);
     hd_laplacian_free(fresh);
@@ -572,14 +572,14 @@ static void mov_strip(hd_laplacian_kind kind, int held, const char *what) {
         }
         for (k = frame > 0; k < 2; k++) {        /* the one that moves, at first; and a new one */
             o.updatable = k == 0;
-            CHECK((kind == HD_LAPLACIAN_POLYGON ? hd_laplacian_polygons(lap + k, xyz, s.n, ptr, s.tri, s.n_tri, &o, &e)
-                                                : hd_laplacian_triangles(lap + k, xyz, s.n, s.tri, s.n_tri, &o, &e)) == HD_OK);
+            CHECK((kind == HD_LAPLACIAN_POLYGON ? hd_laplacian_create(lap + k, MESH_POLYGONS(xyz, s.n, ptr, s.tri, s.n_tri), &o, &e)
+                                                : hd_laplacian_create(lap + k, MESH_TRIANGLES(xyz, s.n, s.tri, s.n_tri), &o, &e)) == HD_OK);
         }
         for (k = 0; k < 3 && frame == 0; k++) {
             const hd_heat_opts ho = eng_opts(methods[k]);
             plan[k] = eng_create(lap[0], &ho);
         }
-        if (frame > 0) CHECK_MSG(hd_laplacian_update(lap[0], xyz, &e) == HD_OK, "%s: %s", what, e.text);
+        if (frame > 0) CHECK_MSG(hd_laplacian_update(lap[0], MESH_POINTS(xyz, lap[0]->n), &e) == HD_OK, "%s: %s", what, e.text);
         CHECK_MSG(lap[0]->n_components == 1 + closed && lap[0]->conserves == (!held ? 1 : closed ? 2 : 0), "%s: %d components", what, lap[0]->n_components);
         mov_same_report(lap[0], lap[1], what);
         L[0] = test_dense(&lap[0]->L, NULL);
@@ -659,8 +659,8 @@ static void mov_points(const shape *s) {
     hd_error e;
     memset(&o, 0, sizeof o);
     o.updatable = 1;
-    CHECK(hd_laplacian_points(&lap, s->xyz, s->n, &o, &e) == HD_ERR_ARGUMENT && !lap && strstr(e.text, "pattern") != NULL);
-    CHECK(hd_laplacian_tufted_points(&lap, s->xyz, s->n, NULL, NULL, &o, &e) == HD_ERR_ARGUMENT && !lap && strstr(e.text, "triangles") != NULL);
+    CHECK(hd_laplacian_create(&lap, MESH_POINTS(s->xyz, s->n), &o, &e) == HD_ERR_ARGUMENT && !lap && strstr(e.text, "pattern") != NULL);
+    CHECK(at_tufted(&lap, s->xyz, s->n, NULL, NULL, &o, &e) == HD_ERR_ARGUMENT && !lap && strstr(e.text, "triangles") != NULL);
 }
 
 /* Vertices held at zero, with the border or without it: an update fills what a new Laplacian has. kind polygon: its triangles
@@ -685,10 +685,10 @@ static void mov_held(hd_laplacian_kind kind, hd_border border) {
         mov_bend(&s, 0.4 * frame, xyz);
         for (k = frame > 0; k < 2; k++) {
             o.updatable = k == 0;
-            CHECK((kind == HD_LAPLACIAN_POLYGON ? hd_laplacian_polygons(lap + k, xyz, s.n, ptr, s.tri, s.n_tri, &o, &e)
-                                                : hd_laplacian_triangles(lap + k, xyz, s.n, s.tri, s.n_tri, &o, &e)) == HD_OK);
+            CHECK((kind == HD_LAPLACIAN_POLYGON ? hd_laplacian_create(lap + k, MESH_POLYGONS(xyz, s.n, ptr, s.tri, s.n_tri), &o, &e)
+                                                : hd_laplacian_create(lap + k, MESH_TRIANGLES(xyz, s.n, s.tri, s.n_tri), &o, &e)) == HD_OK);
         }
-        if (frame > 0) CHECK_MSG(hd_laplacian_update(lap[0], xyz, &e) == HD_OK, "held: %s", e.text);
+        if (frame > 0) CHECK_MSG(hd_laplacian_update(lap[0], MESH_POINTS(xyz, lap[0]->n), &e) == HD_OK, "held: %s", e.text);
         CHECK(lap[0]->n_held == lap[1]->n_held && lap[0]->conserves == 0 && lap[0]->n_components == lap[1]->n_components);
         mov_same_bits(lap[0], lap[1], "held");
         hd_laplacian_free(lap[1]);
@@ -715,12 +715,11 @@ static void mov_all_symmetric(const shape *s) {
             hd_status st;
             memset(&o, 0, sizeof o);
             o.kind = (hd_laplacian_kind)kind;
-            o.intrinsic_delaunay = way == 1;
-            o.tufted = way == 2;
+            o.triangulation = way == 1 ? HD_TRIANGULATION_DELAUNAY : way == 2 ? HD_TRIANGULATION_TUFTED : HD_TRIANGULATION_GIVEN;
             lap = NULL;
-            st = way < 3 ? hd_laplacian_triangles(&lap, s->xyz, s->n, s->tri, s->n_tri, &o, &e)
-               : way < 4 ? hd_laplacian_lengths(&lap, len, s->n, s->tri, s->n_tri, &o, &e)
-                         : hd_laplacian_tufted_points(&lap, s->xyz, s->n, NULL, NULL, &o, &e);
+            st = way < 3 ? hd_laplacian_create(&lap, MESH_TRIANGLES(s->xyz, s->n, s->tri, s->n_tri), &o, &e)
+               : way < 4 ? hd_laplacian_create(&lap, MESH_LENGTHS(len, s->n, s->tri, s->n_tri), &o, &e)
+                         : at_tufted(&lap, s->xyz, s->n, NULL, NULL, &o, &e);
             CHECK_MSG(st == HD_OK, "kind %d, way %d: %s", kind, way, e.text);
             if (lap) mov_symmetric(lap, "a mesh");
             hd_laplacian_free(lap);

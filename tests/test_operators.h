@@ -32,7 +32,7 @@ static hd_laplacian *op_make(const double *xyz, int32_t n, const int32_t *tri, i
     hd_error e;
     memset(&opts, 0, sizeof opts);
     opts.kind = kind;
-    CHECK_MSG(hd_laplacian_triangles(&lap, xyz, n, tri, m, &opts, &e) == HD_OK, "%s", e.text);
+    CHECK_MSG(hd_laplacian_create(&lap, MESH_TRIANGLES(xyz, n, tri, m), &opts, &e) == HD_OK, "%s", e.text);
     return kit_own_laplacian(lap);
 }
 
@@ -410,7 +410,7 @@ static void op_range(double *xyz, const int32_t *tri) {
         memset(xyz, 0, 12 * sizeof *xyz);
         xyz[3] = rows[k].x1;
         xyz[7] = rows[k].y2;
-        st = hd_laplacian_triangles(&lap, xyz, 4, tri, 2, NULL, &e);
+        st = hd_laplacian_create(&lap, MESH_TRIANGLES(xyz, 4, tri, 2), NULL, &e);
         if (rows[k].face > -2)
             CHECK_MSG(st == HD_ERR_ARGUMENT && e.vertex == rows[k].vertex && e.face == rows[k].face && fabs(e.value / rows[k].value - 1) < 1e-15 && !lap,
                       "range %d: %s, vertex %d, face %d, %g", (int)k, e.text, (int)e.vertex, (int)e.face, e.value);
@@ -426,25 +426,25 @@ static void op_errors(void) {
     hd_laplacian *lap = NULL;
     hd_error e;
     tri[4] = 4;
-    CHECK(hd_laplacian_triangles(&lap, xyz, 4, tri, 2, NULL, &e) == HD_ERR_INDEX && e.face == 1 && e.value == 4 && e.vertex == -1);
+    CHECK(hd_laplacian_create(&lap, MESH_TRIANGLES(xyz, 4, tri, 2), NULL, &e) == HD_ERR_INDEX && e.face == 1 && e.value == 4 && e.vertex == -1);
     tri[4] = -7;
-    CHECK(hd_laplacian_triangles(&lap, xyz, 4, tri, 2, NULL, &e) == HD_ERR_INDEX && e.face == 1 && e.value == -7);
+    CHECK(hd_laplacian_create(&lap, MESH_TRIANGLES(xyz, 4, tri, 2), NULL, &e) == HD_ERR_INDEX && e.face == 1 && e.value == -7);
     tri[4] = 1;
     xyz[10] = (double)NAN;
-    CHECK(hd_laplacian_triangles(&lap, xyz, 4, tri, 2, NULL, &e) == HD_ERR_NOT_FINITE && e.vertex == 3 && e.face == -1 && e.value != e.value);
+    CHECK(hd_laplacian_create(&lap, MESH_TRIANGLES(xyz, 4, tri, 2), NULL, &e) == HD_ERR_NOT_FINITE && e.vertex == 3 && e.face == -1 && e.value != e.value);
     xyz[10] = -(double)INFINITY;
-    CHECK(hd_laplacian_triangles(&lap, xyz, 4, tri, 2, NULL, &e) == HD_ERR_NOT_FINITE && e.vertex == 3 && e.value < 0);
+    CHECK(hd_laplacian_create(&lap, MESH_TRIANGLES(xyz, 4, tri, 2), NULL, &e) == HD_ERR_NOT_FINITE && e.vertex == 3 && e.value < 0);
     xyz[10] = 1;
-    CHECK(hd_laplacian_triangles(&lap, xyz, 4, tri, -1, NULL, &e) == HD_ERR_ARGUMENT);
-    CHECK(hd_laplacian_triangles(&lap, xyz, -1, tri, 2, NULL, &e) == HD_ERR_ARGUMENT);
-    CHECK(hd_laplacian_triangles(&lap, NULL, 0, NULL, 0, NULL, &e) == HD_ERR_EMPTY);
-    CHECK(hd_laplacian_triangles(&lap, xyz, 4, NULL, 0, NULL, &e) == HD_ERR_EMPTY);
+    CHECK(hd_laplacian_create(&lap, MESH_TRIANGLES(xyz, 4, tri, -1), NULL, &e) == HD_ERR_ARGUMENT);
+    CHECK(hd_laplacian_create(&lap, MESH_TRIANGLES(xyz, -1, tri, 2), NULL, &e) == HD_ERR_ARGUMENT);
+    CHECK(hd_laplacian_create(&lap, MESH_TRIANGLES(NULL, 0, NULL, 0), NULL, &e) == HD_ERR_EMPTY);
+    CHECK(hd_laplacian_create(&lap, MESH_TRIANGLES(xyz, 4, NULL, 0), NULL, &e) == HD_ERR_EMPTY);
     xyz[7] = 0;                                  /* only faces without area: 0 1 2 on a line, 2 1 3 with a corner less */
     xyz[6] = 2;
     tri[5] = 1;
-    CHECK(hd_laplacian_triangles(&lap, xyz, 4, tri, 2, NULL, &e) == HD_ERR_EMPTY);
+    CHECK(hd_laplacian_create(&lap, MESH_TRIANGLES(xyz, 4, tri, 2), NULL, &e) == HD_ERR_EMPTY);
     xyz[6] = xyz[7] = 1e99;
-    CHECK(hd_laplacian_triangles(&lap, xyz, 4, tri, 2, NULL, &e) == HD_OK);      /* long, but its area is in range */
+    CHECK(hd_laplacian_create(&lap, MESH_TRIANGLES(xyz, 4, tri, 2), NULL, &e) == HD_OK);      /* long, but its area is in range */
     hd_laplacian_free(lap);
     lap = NULL;
     op_range(xyz, tri);
@@ -484,7 +484,7 @@ static hd_status op_scaled_heat(double scale, hd_laplacian_kind kind, hd_solver 
     lo.kind = kind;
     ho.solver = solver;
     for (i = 0; i < 3 * s.n; i++) s.xyz[i] *= scale;
-    st = hd_laplacian_triangles(&lap, s.xyz, s.n, s.tri, s.n_tri, &lo, &rep->error);
+    st = hd_laplacian_create(&lap, MESH_TRIANGLES(s.xyz, s.n, s.tri, s.n_tri), &lo, &rep->error);
     if (st >= 0) st = hd_heat_create(&heat, lap, &ho, &rep->error);
     if (st >= 0) st = heat_column(heat, 0.1 * scale * scale, 3, u, rep);
     CHECK(st >= 0 || (rep->error.status == st && rep->error.text[0]));

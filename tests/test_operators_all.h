@@ -74,12 +74,12 @@ static void all_neighbours(void) {
     o.neighbours = K;
     CHECK(hd_neighbours_nearest(s->xyz, N, NULL, N, K + 1, nbr, NULL, NULL, &e) == HD_OK);
     for (i = 0; i <= N; i++) ptr[i] = (int64_t)i * (K + 1);
-    CHECK_MSG(hd_laplacian_tufted_points(&found, s->xyz, N, NULL, NULL, &o, &e) == HD_OK, "%s", e.text);
-    CHECK(hd_laplacian_tufted_points(&given, s->xyz, N, ptr, nbr, &o, &e) == HD_OK);
+    CHECK_MSG(at_tufted(&found, s->xyz, N, NULL, NULL, &o, &e) == HD_OK, "%s", e.text);
+    CHECK(at_tufted(&given, s->xyz, N, ptr, nbr, NULL, &e) == HD_OK);
     CHECK(all_same(found, given) && found->points.neighbours == K && found->points.n_coincident == 0 && found->n_active == N);
     memcpy(twice, s->xyz, 3 * 6 * sizeof(double));           /* the sixth once more behind itself */
     memcpy(twice + 3 * 6, s->xyz + 3 * 5, 3 * (N - 5) * sizeof(double));
-    CHECK(hd_laplacian_tufted_points(&more, twice, N + 1, NULL, NULL, &o, &e) == HD_OK);
+    CHECK(at_tufted(&more, twice, N + 1, NULL, NULL, &o, &e) == HD_OK);
     CHECK(more->points.n_coincident == 1 && more->mesh.n_inert == 1 && more->row[5] == 5 && more->row[6] == -1 && more->area == found->area);
     CHECK(memcmp(more->L.val, found->L.val, (size_t)found->L.nnz * sizeof(double)) == 0 && more->L.nnz == found->L.nnz);
     hd_laplacian_free(found);
@@ -104,27 +104,26 @@ static void all_fans(void) {
     }
     for (way = 0; way < 2; way++) {
         memset(&o, 0, sizeof o);
-        o.tufted = way;
-        o.intrinsic_delaunay = !way;
-        CHECK(hd_laplacian_polygons(&fans, s->xyz, s->n, s->face_ptr, s->face_idx, s->n_faces, &o, &e) == HD_OK &&
+        o.triangulation = way ? HD_TRIANGULATION_TUFTED : !way ? HD_TRIANGULATION_DELAUNAY : HD_TRIANGULATION_GIVEN;
+        CHECK(hd_laplacian_create(&fans, MESH_POLYGONS(s->xyz, s->n, s->face_ptr, s->face_idx, s->n_faces), &o, &e) == HD_OK &&
             fans->kind == HD_LAPLACIAN_FEM && fans->mesh.n_flips > 0);
-        CHECK(hd_laplacian_triangles(&triangles, s->xyz, s->n, tri, 2 * s->n_faces, &o, &e) == HD_OK && all_same(fans, triangles));
+        CHECK(hd_laplacian_create(&triangles, MESH_TRIANGLES(s->xyz, s->n, tri, 2 * s->n_faces), &o, &e) == HD_OK && all_same(fans, triangles));
         hd_laplacian_free(fans);
         hd_laplacian_free(triangles);
         o.kind = HD_LAPLACIAN_POLYGON;
-        CHECK(hd_laplacian_polygons(&fans, s->xyz, s->n, s->face_ptr, s->face_idx, s->n_faces, &o, &e) == HD_ERR_ARGUMENT);
+        CHECK(hd_laplacian_create(&fans, MESH_POLYGONS(s->xyz, s->n, s->face_ptr, s->face_idx, s->n_faces), &o, &e) == HD_ERR_ARGUMENT);
     }
     o.kind = HD_LAPLACIAN_DEFAULT;
     o.mollify = 2;
-    CHECK(hd_laplacian_polygons(&fans, s->xyz, s->n, s->face_ptr, s->face_idx, s->n_faces, &o, &e) == HD_ERR_ARGUMENT);
+    CHECK(hd_laplacian_create(&fans, MESH_POLYGONS(s->xyz, s->n, s->face_ptr, s->face_idx, s->n_faces), &o, &e) == HD_ERR_ARGUMENT);
 }
 
 /* 0 triangles, 1 points, 2 tufted points: the status, and the kind of what comes. */
 static hd_status all_door(int door, const shape *s, int32_t n, const hd_laplacian_opts *o, int *kind, hd_error *e) {
     hd_laplacian *lap = NULL;
-    const hd_status st = door == 0   ? hd_laplacian_triangles(&lap, s->xyz, n, s->tri, s->n_tri, o, e)
-                         : door == 1 ? hd_laplacian_points(&lap, s->xyz, n, o, e)
-                                     : hd_laplacian_tufted_points(&lap, s->xyz, n, NULL, NULL, o, e);
+    const hd_status st = door == 0   ? hd_laplacian_create(&lap, MESH_TRIANGLES(s->xyz, n, s->tri, s->n_tri), o, e)
+                         : door == 1 ? hd_laplacian_create(&lap, MESH_POINTS(s->xyz, n), o, e)
+                                     : at_tufted(&lap, s->xyz, n, NULL, NULL, o, e);
     CHECK((st < 0) == (lap == NULL));
     *kind = lap ? (int)lap->kind : -1;
     hd_laplacian_free(lap);
@@ -146,8 +145,8 @@ static void all_kinds(void) {
             o.kind = (hd_laplacian_kind)k;
             CHECK_MSG(all_door(door, s, s->n, &o, &kind, &e) == (taken ? HD_OK : HD_ERR_ARGUMENT), "door %d, kind %d: %s", door, k, e.text);
             CHECK(kind == (!taken ? -1 : k ? k : (int)usual[door]));
-            o.tufted = 1;
-            if (door == 1) CHECK(all_door(door, s, s->n, &o, &kind, &e) == HD_ERR_ARGUMENT);
+            o.triangulation = HD_TRIANGULATION_TUFTED;
+            if (door == 1) CHECK((all_door(door, s, s->n, &o, &kind, &e) == HD_OK) == (k <= HD_LAPLACIAN_COT));
         }
     memset(&o, 0, sizeof o);
     o.neighbours = 5;

@@ -48,7 +48,7 @@ static void test_platform(void) {
     hd_heat *heat = NULL;
     hd_geodesic *geo = NULL;
     memset(&o, 0, sizeof o);
-    CHECK(hd_laplacian_triangles(&lap, ball.xyz, ball.n, ball.tri, ball.n_tri, NULL, NULL) == HD_OK);
+    CHECK(hd_laplacian_create(&lap, MESH_TRIANGLES(ball.xyz, ball.n, ball.tri, ball.n_tri), NULL, NULL) == HD_OK);
     plat_heat(lap, "fem", fem);
     CHECK(hd_heat_create(&heat, lap, NULL, NULL) == HD_OK);
     CHECK(hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &source, d, 0, NULL, NULL) >= 0);
@@ -56,14 +56,14 @@ static void test_platform(void) {
     hd_heat_free(heat);
     hd_laplacian_free(lap);
     o.kind = HD_LAPLACIAN_VORONOI_COT;
-    o.intrinsic_delaunay = 1;
-    CHECK(hd_laplacian_triangles(&lap, ball.xyz, ball.n, ball.tri, ball.n_tri, &o, NULL) == HD_OK);
+    o.triangulation = HD_TRIANGULATION_DELAUNAY;
+    CHECK(hd_laplacian_create(&lap, MESH_TRIANGLES(ball.xyz, ball.n, ball.tri, ball.n_tri), &o, NULL) == HD_OK);
     plat_heat(lap, "intrinsic", flipped);
     hd_laplacian_free(lap);
-    CHECK(hd_laplacian_tufted_points(&lap, ball.xyz, ball.n, NULL, NULL, NULL, NULL) == HD_OK);
+    CHECK(at_tufted(&lap, ball.xyz, ball.n, NULL, NULL, NULL, NULL) == HD_OK);
     plat_heat(lap, "points", points);
     hd_laplacian_free(lap);
-    CHECK(hd_geodesic_create(&geo, ball.xyz, ball.n, ball.tri, ball.n_tri, NULL, NULL) == HD_OK);
+    CHECK(hd_geodesic_create(&geo, MESH_TRIANGLES(ball.xyz, ball.n, ball.tri, ball.n_tri), NULL, NULL) == HD_OK);
     CHECK(hd_geodesic_distance(geo, 1, &source, d, NULL, NULL) >= 0);
     plat_is("geodesic", d, ball.n, 1061.2440935015238, 1e-12);
     hd_geodesic_free(geo);

@@ -204,14 +204,14 @@ static hd_laplacian *pts_make(const double *xyz, int32_t n, hd_laplacian_kind ki
     hd_error e;
     memset(&o, 0, sizeof o);
     o.kind = kind;
-    o.bandwidth = bandwidth;
-    CHECK_MSG(hd_laplacian_points(&lap, xyz, n, &o, &e) == HD_OK, "%s", e.text);
+    o.bandwidth2 = bandwidth;
+    CHECK_MSG(hd_laplacian_create(&lap, MESH_POINTS(xyz, n), &o, &e) == HD_OK, "%s", e.text);
     return kit_own_laplacian(lap);
 }
 
 /* Every entry by the formulas of the operators, from coordinates and masses; zero rows; symmetric to the last bit. */
 static void pts_entries(const hd_laplacian *lap, const double *xyz, const char *what) {
-    const double s = lap->points.bandwidth, cut = lap->points.weight_cut;
+    const double s = lap->points.bandwidth2, cut = lap->points.weight_cut;
     const int voronoi = lap->kind == HD_LAPLACIAN_VORONOI_EXP;
     double worst = 0, worst_row = 0;
     int64_t wrong = 0, asymmetric = 0, p;
@@ -270,7 +270,7 @@ static void pts_operators(void) {
             hd_laplacian *lap = pts_make(s.xyz, s.n, kinds[k], 0), *narrow;
             double sum = 0, h = 0;
             int32_t i, j;
-            CHECK(lap->kind == kinds[k] && lap->n_active == s.n && lap->points.bandwidth > 0 && lap->points.neighbours == 30);
+            CHECK(lap->kind == kinds[k] && lap->n_active == s.n && lap->points.bandwidth2 > 0 && lap->points.neighbours == 30);
             pts_entries(lap, s.xyz, "torus");
             for (i = 0; i < s.n; i++) {
                 double least = HUGE_VAL;
@@ -280,8 +280,8 @@ static void pts_operators(void) {
             }
             CHECK(fabs(lap->h - h) <= 1e-13 * h);
             CHECK(fabs(sum - (k ? s.n : lap->area)) <= 1e-12 * sum);
-            narrow = pts_make(s.xyz, s.n, kinds[k], lap->points.bandwidth / 10);
-            CHECK(narrow->L.nnz < lap->L.nnz && narrow->points.bandwidth == lap->points.bandwidth / 10);
+            narrow = pts_make(s.xyz, s.n, kinds[k], lap->points.bandwidth2 / 10);
+            CHECK(narrow->L.nnz < lap->L.nnz && narrow->points.bandwidth2 == lap->points.bandwidth2 / 10);
             pts_entries(narrow, s.xyz, "torus, narrow");
             pts_spectrum(lap, "torus");
             pts_spectrum(narrow, "torus, narrow");
@@ -351,7 +351,7 @@ static void pts_sheets(void) {
         double each = 0;
         int32_t i;
         both = kit_own_shape(shape_disjoint(&s, &t, offset));
-        two = pts_make(both.xyz, both.n, HD_LAPLACIAN_VORONOI_EXP, one->points.bandwidth);
+        two = pts_make(both.xyz, both.n, HD_LAPLACIAN_VORONOI_EXP, one->points.bandwidth2);
         for (i = 0; i < N; i++) each += two->mass[i];
         CHECK_MSG(fabs(each / one->area - 1) < 0.04 && fabs(two->area / one->area / 2 - 1) < 0.04, "gap %g: areas %g and %g of one sheet", gaps[k],
                   each / one->area, two->area / one->area);
@@ -401,7 +401,7 @@ static void pts_invariance(void) {
         for (i = 0; i < N; i++) for (c = 0; c < 3; c++) t.xyz[3 * i + c] = 1e-6 * s.xyz[3 * i + c];
         b = pts_make(t.xyz, N, k, 0);            /* L of voronoi-exp has no unit, that of exp 1/length^4 */
         d = pts_difference(a, b, NULL, kind ? 1 : 1e12, kind ? 1e-24 : 1);
-        CHECK_MSG(d < 1e-11 && fabs(b->points.bandwidth * 1e12 / a->points.bandwidth - 1) < 1e-13, "scale: %g", d);
+        CHECK_MSG(d < 1e-11 && fabs(b->points.bandwidth2 * 1e12 / a->points.bandwidth2 - 1) < 1e-13, "scale: %g", d);
         for (i = 0; i < N; i++) memcpy(t.xyz + 3 * perm[i], s.xyz + 3 * i, 3 * sizeof(double));
         b = pts_make(t.xyz, N, k, 0);
         d = pts_difference(a, b, perm, 1, 1);
@@ -422,7 +422,7 @@ static void pts_coincident(void) {
     t.xyz[3 * (M - 1)] = -0.0;                   /* is 0 */
     b = pts_make(t.xyz, M, HD_LAPLACIAN_VORONOI_EXP, 0);
     CHECK(b->points.n_coincident == COPIES + 3 && b->n_active == M && b->points.n_isolated == 0 && b->n_components == 1);
-    CHECK(b->h == a->h && fabs(b->area - a->area) < 1e-13 && b->points.bandwidth == a->points.bandwidth);
+    CHECK(b->h == a->h && fabs(b->area - a->area) < 1e-13 && b->points.bandwidth2 == a->points.bandwidth2);
     CHECK(fabs(b->mass[5] * (COPIES + 1) - a->mass[5]) < 1e-15 && b->mass[5] == b->mass[N] && b->mass[5] == b->mass[N + COPIES - 1]);
     CHECK(fabs(b->mass[7] * 4 - a->mass[7]) < 1e-15 && b->mass[M - 1] == b->mass[7] && b->mass[9] == a->mass[9]);
     CHECK(fabs(op_l(a, 5, 7) - (COPIES + 1) * 4 * op_l(b, 5, M - 1)) < 1e-13 * fabs(op_l(a, 5, 5)) && op_l(a, 20, 21) == op_l(b, 20, 21));
@@ -451,7 +451,7 @@ static void pts_outliers(void) {
     for (i = 0; i < N; i++) largest = fmax(largest, fabs(lap->mass[i] / clean->mass[i] - 1));
     CHECK_MSG(largest < 1e-12, "cells changed by %g", largest);
     CHECK_MSG(lap->mass[N] + lap->mass[N + 1] < 30 * clean->area / N, "outliers' cells %g, %g", lap->mass[N], lap->mass[N + 1]);
-    CHECK_MSG(fabs(lap->points.bandwidth / clean->points.bandwidth - 1) < 0.15, "bandwidth %g times", lap->points.bandwidth / clean->points.bandwidth);
+    CHECK_MSG(fabs(lap->points.bandwidth2 / clean->points.bandwidth2 - 1) < 0.15, "bandwidth %g times", lap->points.bandwidth2 / clean->points.bandwidth2);
     CHECK(hd_heat_create(&heat, lap, NULL, NULL) == HD_OK && heat_column(heat, 0.1, 3, u, &rep) == HD_OK);
     CHECK(u[N] == 0 && u[N + 1] == 0 && u[3] > 0);
     CHECK(heat_column(heat, 0.1, N, u, &rep) == HD_OK && fabs(u[N] - 1) < 1e-12 && u[0] == 0);
@@ -464,10 +464,10 @@ static hd_status pts_status(const double *xyz, int32_t n, hd_laplacian_kind kind
     hd_status st;
     memset(&o, 0, sizeof o);
     o.kind = kind;
-    o.bandwidth = bandwidth;
+    o.bandwidth2 = bandwidth;
     o.weight_cut = cut;
     o.neighbours = neighbours;
-    st = hd_laplacian_points(&lap, xyz, n, &o, e);
+    st = hd_laplacian_create(&lap, MESH_POINTS(xyz, n), &o, e);
     CHECK((st >= 0) == (lap != NULL) && e->status == st);
     hd_laplacian_free(lap);
     return st;
@@ -497,7 +497,7 @@ static void pts_errors(void) {
     CHECK(pts_status(small, 50, HD_LAPLACIAN_VORONOI_EXP, 0, 0, 0, &e) == HD_ERR_ARGUMENT && e.vertex >= 0 && e.value > 0 && e.value < 1e-100);
     CHECK(pts_status(s.xyz, -1, HD_LAPLACIAN_EXP, 0, 0, 0, &e) == HD_ERR_ARGUMENT);
     CHECK(pts_status(NULL, 3, HD_LAPLACIAN_EXP, 0, 0, 0, &e) == HD_ERR_ARGUMENT);
-    CHECK(hd_laplacian_points(NULL, s.xyz, 50, NULL, &e) == HD_ERR_ARGUMENT);
+    CHECK(hd_laplacian_create(NULL, MESH_POINTS(s.xyz, 50), NULL, &e) == HD_ERR_ARGUMENT);
     CHECK(pts_status(NULL, 0, HD_LAPLACIAN_EXP, 0, 0, 0, &e) == HD_ERR_EMPTY);
     CHECK(pts_status(s.xyz, 1, HD_LAPLACIAN_EXP, 0, 0, 0, &e) == HD_ERR_EMPTY);
     CHECK(pts_status(s.xyz, 2, HD_LAPLACIAN_VORONOI_EXP, 0, 0, 0, &e) == HD_ERR_EMPTY);     /* on a line */
@@ -537,9 +537,9 @@ static void pts_threads(void) {
     for (way = 0; way < 3; way++) {
         memset(&o, 0, sizeof o);
         o.context = ctx + way;
-        if (!CHECK(hd_laplacian_points(&lap[way], s.xyz, s.n, &o, NULL) == HD_OK)) return;
+        if (!CHECK(hd_laplacian_create(&lap[way], MESH_POINTS(s.xyz, s.n), &o, NULL) == HD_OK)) return;
         if (way == 0) continue;
-        CHECK(lap[way]->L.nnz == lap[0]->L.nnz && lap[way]->area == lap[0]->area && lap[way]->points.bandwidth == lap[0]->points.bandwidth);
+        CHECK(lap[way]->L.nnz == lap[0]->L.nnz && lap[way]->area == lap[0]->area && lap[way]->points.bandwidth2 == lap[0]->points.bandwidth2);
         CHECK(memcmp(lap[way]->L.col, lap[0]->L.col, (size_t)lap[0]->L.nnz * sizeof(int32_t)) == 0);
         CHECK(memcmp(lap[way]->L.val, lap[0]->L.val, (size_t)lap[0]->L.nnz * sizeof(double)) == 0);
         CHECK(memcmp(lap[way]->mass, lap[0]->mass, (size_t)s.n * sizeof(double)) == 0);
@@ -602,7 +602,7 @@ static void pts_sphere(hd_laplacian_kind kind, int blue, double tol_value, doubl
 static hd_laplacian *pts_tufted(const double *xyz, int32_t n) {
     hd_laplacian *lap = NULL;
     hd_error e;
-    CHECK_MSG(hd_laplacian_tufted_points(&lap, xyz, n, NULL, NULL, NULL, &e) == HD_OK, "%s", e.text);
+    CHECK_MSG(at_tufted(&lap, xyz, n, NULL, NULL, NULL, &e) == HD_OK, "%s", e.text);
     CHECK_MSG(lap->mesh.n_faces > 3 * n && lap->mesh.n_faces < 9 * n && lap->mesh.n_faces_used <= lap->mesh.n_faces, "%d faces of %d points",
               (int)lap->mesh.n_faces, (int)n);
     return kit_own_laplacian(lap);
@@ -675,7 +675,7 @@ static void pts_ear(void) {
         s.xyz[3 * i + 1] /= len;
         s.xyz[3 * i + 2] *= 0.15 / len;
     }
-    CHECK(hd_laplacian_triangles(&mesh, s.xyz, s.n, s.tri, s.n_tri, NULL, NULL) == HD_OK);
+    CHECK(hd_laplacian_create(&mesh, MESH_TRIANGLES(s.xyz, s.n, s.tri, s.n_tri), NULL, NULL) == HD_OK);
     t = 0.02 * mesh->area;
     CHECK(hd_heat_create(&heat, mesh, NULL, NULL) == HD_OK);
     CHECK(heat_columns(heat, t, HD_KERNEL_SYMMETRIC, 1, &source, want, 0, &rep) >= 0);

@@ -8,8 +8,8 @@ static hd_status poly_try(hd_laplacian **lap, const shape_poly *s, hd_laplacian_
     hd_laplacian_opts o;
     memset(&o, 0, sizeof o);
     o.kind = kind;
-    o.lambda = lambda;
-    return hd_laplacian_polygons(lap, s->xyz, s->n, s->face_ptr, s->face_idx, s->n_faces, &o, e);
+    o.stiffening = lambda;
+    return hd_laplacian_create(lap, MESH_POLYGONS(s->xyz, s->n, s->face_ptr, s->face_idx, s->n_faces), &o, e);
 }
 
 static hd_laplacian *poly_make(const shape_poly *s, double lambda) {
@@ -500,10 +500,10 @@ static void poly_errors(void) {
     s.xyz[7] = (double)NAN;
     CHECK(poly_try(&lap, &s, HD_LAPLACIAN_POLYGON, 0, &e) == HD_ERR_NOT_FINITE && e.vertex == 2 && e.face == -1);
     s.xyz[7] = 0;
-    for (k = 0; k < 4; k++) CHECK(poly_try(&lap, &s, HD_LAPLACIAN_POLYGON, bad_lambda[k], &e) == HD_ERR_ARGUMENT && strstr(e.text, "lambda"));
+    for (k = 0; k < 4; k++) CHECK(poly_try(&lap, &s, HD_LAPLACIAN_POLYGON, bad_lambda[k], &e) == HD_ERR_ARGUMENT && strstr(e.text, "stiffening"));
     CHECK(poly_try(&lap, &s, HD_LAPLACIAN_MATRICES, 0, &e) == HD_ERR_ARGUMENT && poly_try(&lap, &s, (hd_laplacian_kind)99, 0, &e) == HD_ERR_ARGUMENT);
     o.kind = HD_LAPLACIAN_POLYGON;               /* is not for the other function */
-    CHECK(hd_laplacian_triangles(&lap, s.xyz, s.n, s.face_idx, 1, &o, &e) == HD_ERR_ARGUMENT && lap == NULL);
+    CHECK(hd_laplacian_create(&lap, MESH_TRIANGLES(s.xyz, s.n, s.face_idx, 1), &o, &e) == HD_ERR_ARGUMENT && lap == NULL);
     for (k = 0; k < 3 * s.n; k++) s.xyz[k] *= 1e90;     /* no area in range, in any face; the first is named */
     CHECK(poly_try(&lap, &s, HD_LAPLACIAN_POLYGON, 0, &e) == HD_ERR_ARGUMENT && e.face == 0 && e.vertex == s.face_idx[0] && e.value > 1e100);
     for (k = 0; k < 3 * s.n; k++) s.xyz[k] *= 1e-90;

@@ -439,7 +439,7 @@ WRONG = {
         ("hd.Heat(lap, ordering='HD_ORDERING_OWN', perm=np.zeros(n, int)).diagonal(t)", "permutation"),
         ("hd.triangles(xyz, tri, held=[25])", "not in the mesh"), ("hd.triangles(xyz, tri, held=[-1])", "not in the mesh"),
         ("hd.triangles(xyz, tri, border='HD_BORDER_NEUMANN')", "border is 'HD_BORDER_NEUMANN'"),
-        ("hd.points(xyz, bandwidth=np.nan)", "bandwidth"),
+        ("hd.points(xyz, bandwidth2=np.nan)", "bandwidth2"),
         ("hd.points(xyz, neighbours=2 ** 40)", "neighbours is 1099511627776"), ("hd.Geodesic(xyz, tri, t=-1)", "t is negative"),
         ("hd.Geodesic(xyz, tri, mass='HD_BORDER_NATURAL')", "mass is 'HD_BORDER_NATURAL'")],
     TypeError: [
@@ -474,7 +474,7 @@ WRONG = {
         ("hd.Heat(lap, tol=1j)", "tol has dtype complex128"), ("hd.triangles(xyz, tri, held=[1.5])", "held has dtype float64"),
         ("hd.triangles(xyz, tri, held=np.arange(n) == 3)", "held has dtype bool"),
         ("hd.triangles(xyz, tri, n_held=3)", "unknown option n_held"),
-        ("hd.polygons(xyz, squares, lambda_=1)", "unknown option lambda_: did you mean lambda?"),
+        ("hd.polygons(xyz, squares, stiffness=1)", "unknown option stiffness: did you mean stiffening?"),
         ("hd.Geodesic(xyz, tri, time=1)", "unknown option time"), ("copy.copy(lap)", "a Laplacian cannot be copied or pickled"),
         ("copy.deepcopy(heat)", "a Heat cannot be copied or pickled"),
         ("pickle.dumps(geo)", "a Geodesic cannot be copied or pickled")],
@@ -515,7 +515,7 @@ class Arguments(unittest.TestCase):
         self.assertTrue(np.array_equal(heat.columns(t, 3, np.bool_(True)), heat.columns(t, 3, 1)))
         self.assertEqual(heat.sample(None, 2, kind="HD_DISTANCE_COMMUTE")[0].shape, (2,))
         self.assertEqual(hd.polygons(xyz, [[]] + tri.tolist()).info.mesh.n_zero_area, 1)
-        self.assertEqual(hd.triangles(xyz, tri, held=3, tufted=np.bool_(True), kind=hd.C["HD_LAPLACIAN_COT"]).info.n_held, 1)
+        self.assertEqual(hd.triangles(xyz, tri, held=3, updatable=np.bool_(True), kind=hd.C["HD_LAPLACIAN_COT"]).info.n_held, 1)
         own = hd.Heat(lap, ordering="HD_ORDERING_OWN", perm=np.arange(n)[::-1], method="HD_METHOD_DIRECT", tol=np.float32(1e-9))
         self.assertLess(abs(own.apply(t, f) - heat.apply(t, f)).max(), 1e-7)
         twice = scipy.sparse.coo_matrix((np.repeat(lap.L.tocoo().data / 2, 2), [np.repeat(x, 2) for x in lap.L.nonzero()]))

@@ -146,7 +146,7 @@ static uint64_t rob_small_peak(hd_laplacian_kind kind, hd_method method, uint64_
     lap_opts.kind = kind;
     heat_opts.method = method;
     if (kind == HD_LAPLACIAN_VORONOI_COT) heat_opts.solver = HD_SOLVER_LANCZOS;
-    CHECK(s.n == 162 && hd_laplacian_triangles(&lap, s.xyz, s.n, s.tri, s.n_tri, &lap_opts, &e) == HD_OK);
+    CHECK(s.n == 162 && hd_laplacian_create(&lap, MESH_TRIANGLES(s.xyz, s.n, s.tri, s.n_tri), &lap_opts, &e) == HD_OK);
     CHECK(hd_heat_create(&heat, lap, &heat_opts, &e) == HD_OK);
     CHECK_MSG(hd_heat_column(heat, HD_KERNEL_OPERATOR, 10 * lap->h * lap->h, 0, u, NULL, &e) == HD_OK, "%s", e.text);
     hd_heat_free(heat);

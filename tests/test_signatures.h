@@ -293,7 +293,7 @@ static void sign_query(hd_context *ctx, const shape *s, int which, double *out) 
     l.context = ctx;
     o.method = methods[which];
     memset(out, 0, 8 * (size_t)s->n * sizeof *out);
-    CHECK(hd_laplacian_triangles(&lap, s->xyz, s->n, s->tri, s->n_tri, &l, NULL) == HD_OK &&
+    CHECK(hd_laplacian_create(&lap, MESH_TRIANGLES(s->xyz, s->n, s->tri, s->n_tri), &l, NULL) == HD_OK &&
           hd_heat_create(&heat, lap, &o, NULL) == HD_OK);
     CHECK((which < 3    ? hd_heat_derivative(heat, 3, t, 1, f, 0, out, 0, NULL, NULL)
            : which == 3 ? hd_heat_trace(heat, 3, t, out, out + 3, NULL, NULL)

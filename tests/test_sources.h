@@ -556,13 +556,12 @@ static hd_geodesic *src_plan(const shape *s, int kind, hd_geodesic_border border
     memset(&o, 0, sizeof o);
     o.t = t;
     o.border = border;
-    o.intrinsic_delaunay = kind == 2 || kind == 4;
-    o.tufted = kind == 3;
+    o.triangulation = kind == 2 || kind == 4 ? HD_TRIANGULATION_DELAUNAY : kind == 3 ? HD_TRIANGULATION_TUFTED : HD_TRIANGULATION_GIVEN;
     for (q = 0; q < 3 * s->n_tri; q++) length[q] = src_gap(s->xyz + 3 * s->tri[q], s->xyz + 3 * s->tri[q % 3 == 2 ? q - 2 : q + 1]);
-    if (kind == 1) (void)hd_geodesic_create_lengths(&g, length, s->n, s->tri, s->n_tri, &o, &e);
-    else if (kind == 4) (void)hd_geodesic_create_polygons(&g, p.xyz, p.n, p.face_ptr, p.face_idx, p.n_faces, &o, &e);
-    else if (kind == 5) (void)hd_geodesic_create_points(&g, s->xyz, s->n, NULL, NULL, &o, &e);
-    else (void)hd_geodesic_create(&g, s->xyz, s->n, s->tri, s->n_tri, &o, &e);
+    if (kind == 1) (void)hd_geodesic_create(&g, MESH_LENGTHS(length, s->n, s->tri, s->n_tri), &o, &e);
+    else if (kind == 4) (void)hd_geodesic_create(&g, MESH_POLYGONS(p.xyz, p.n, p.face_ptr, p.face_idx, p.n_faces), &o, &e);
+    else if (kind == 5) (void)at_tufted_geodesic(&g, s->xyz, s->n, &o, &e);
+    else (void)hd_geodesic_create(&g, MESH_TRIANGLES(s->xyz, s->n, s->tri, s->n_tri), &o, &e);
     CHECK_MSG(g != NULL, "plan %d: %s", kind, e.text);
     return g;
 }

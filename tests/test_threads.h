@@ -197,7 +197,7 @@ static void thr_lifetime(const shape *s, const double *want, double *u) {
     CHECK(hd_neighbours_nearest(s->xyz, s->n, NULL, 0, 7, index, NULL, &ctx, NULL) == HD_OK);   /* makes no object */
     CHECK(!ctx.threads && ctx.n_holders == 0 && thr_running() == before);
     lap = NULL;
-    CHECK(hd_laplacian_triangles(&lap, s->xyz, s->n, s->tri, -1, NULL, NULL) == HD_ERR_ARGUMENT && thr_running() == before);
+    CHECK(hd_laplacian_create(&lap, MESH_TRIANGLES(s->xyz, s->n, s->tri, -1), NULL, NULL) == HD_ERR_ARGUMENT && thr_running() == before);
 }
 
 /* A product makes no object; it has threads like any other call, and ends them. */
@@ -293,7 +293,7 @@ static int thr_ask(const hd_laplacian *lap, hd_context *ctx, double *out) {
     o.count = THR_ASKED - 4;
     good = hd_spectrum_create(&s, lap, &o, NULL) == HD_OK && hd_times_auto(lap, 3, out + o.count, NULL) == HD_OK;
     if (good) memcpy(out, s->value, (size_t)o.count * sizeof *out);
-    out[THR_ASKED - 1] = hd_laplacian_lambda_max(lap);
+    out[THR_ASKED - 1] = lap->lambda_max;
     hd_spectrum_free(s);
     return good;
 }

@@ -8,10 +8,10 @@
 typedef struct view_buffers {
     char *vertices, *indices;
     shape s;                             /* the same numbers as they come out of the buffer */
-    hd_mesh_view view;
+    hd_mesh view;
 } view_buffers;
 
-enum view_index { VIEW_U16, VIEW_U32, VIEW_I32, VIEW_TYPES };
+enum view_index { VIEW_U16, VIEW_I32, VIEW_TYPES };
 
 static void view_put_index(char *to, enum view_index type, int64_t value) {
     const uint16_t half = (uint16_t)value;
@@ -48,13 +48,12 @@ static view_buffers view_make(const shape *s, int floats, size_t stride, enum vi
     xyz = b.vertices + offset;
     tri = b.indices + offset * size;
     if (floats) b.view.xyz_float = (const float *)xyz;
-    else b.view.xyz_double = (const double *)xyz;
-    if (type == VIEW_U16) b.view.tri_u16 = (const uint16_t *)tri;
-    else if (type == VIEW_U32) b.view.tri_u32 = (const uint32_t *)tri;
-    else b.view.tri_i32 = (const int32_t *)tri;
+    else b.view.xyz = (const double *)xyz;
+    if (type == VIEW_U16) b.view.corner_u16 = (const uint16_t *)tri;
+    else b.view.corner = (const int32_t *)tri;
     b.view.stride = stride;
     b.view.n = s->n;
-    b.view.n_indices = 3 * (int64_t)s->n_tri;
+    b.view.n_faces = s->n_tri;
     return b;
 }
 
@@ -86,15 +85,15 @@ static void view_answers(const shape *s, const shape *moved, int floats, size_t 
     int frame;
     lo.updatable = go.updatable = 1;
     lo.context = go.context = &ctx;
-    CHECK(hd_laplacian_view(&lap, &b.view, &lo, &e) == HD_OK && hd_geodesic_create_view(&g, &b.view, &go, &e) == HD_OK);
-    CHECK(hd_laplacian_triangles(&other, b.s.xyz, s->n, b.s.tri, s->n_tri, &lo, &e) == HD_OK);
-    CHECK(hd_geodesic_create(&other_g, b.s.xyz, s->n, b.s.tri, s->n_tri, &go, &e) == HD_OK);
+    CHECK(hd_laplacian_create(&lap, &b.view, &lo, &e) == HD_OK && hd_geodesic_create(&g, &b.view, &go, &e) == HD_OK);
+    CHECK(hd_laplacian_create(&other, MESH_TRIANGLES(b.s.xyz, s->n, b.s.tri, s->n_tri), &lo, &e) == HD_OK);
+    CHECK(hd_geodesic_create(&other_g, MESH_TRIANGLES(b.s.xyz, s->n, b.s.tri, s->n_tri), &go, &e) == HD_OK);
     for (frame = 0; frame < 2; frame++) {
         CHECK_MSG(view_same_laplacian(lap, other), "%d %d %d %d, frame %d", floats, (int)stride, (int)type, (int)offset, frame);
         CHECK(hd_geodesic_distance(g, 1, &source, d, NULL, &e) >= 0 && hd_geodesic_distance(other_g, 1, &source, want, NULL, &e) >= 0);
         CHECK_MSG(memcmp(d, want, (size_t)s->n * sizeof *d) == 0, "%d %d %d %d, frame %d", floats, (int)stride, (int)type, (int)offset, frame);
-        CHECK(hd_laplacian_update_view(lap, &b2.view, &e) == HD_OK && hd_laplacian_update(other, b2.s.xyz, &e) == HD_OK);
-        CHECK(hd_geodesic_update_view(g, &b2.view, &e) == HD_OK && hd_geodesic_update(other_g, b2.s.xyz, &e) == HD_OK);
+        CHECK(hd_laplacian_update(lap, &b2.view, &e) == HD_OK && hd_laplacian_update(other, MESH_POINTS(b2.s.xyz, other->n), &e) == HD_OK);
+        CHECK(hd_geodesic_update(g, &b2.view, &e) == HD_OK && hd_geodesic_update(other_g, MESH_POINTS(b2.s.xyz, s->n), &e) == HD_OK);
     }
     hd_laplacian_free(lap);
     hd_laplacian_free(other);
@@ -116,21 +115,21 @@ static void view_forms(void) {
 }
 
 /* The two doors that make something refuse alike. Returns the error of the first. */
-static hd_error view_refused(const hd_mesh_view *v) {
+static hd_error view_refused(const hd_mesh *v) {
     hd_laplacian *lap = NULL;
     hd_geodesic *g = NULL;
     hd_error e, e2;
-    CHECK(hd_laplacian_view(&lap, v, NULL, &e) < 0 && lap == NULL);
-    CHECK(hd_geodesic_create_view(&g, v, NULL, &e2) < 0 && g == NULL);
+    CHECK(hd_laplacian_create(&lap, v, NULL, &e) < 0 && lap == NULL);
+    CHECK(hd_geodesic_create(&g, v, NULL, &e2) < 0 && g == NULL);
     CHECK_MSG(e.status == e2.status && e.face == e2.face && e.vertex == e2.vertex && memcmp(&e.value, &e2.value, sizeof e.value) == 0 && strcmp(e.text, e2.text) == 0,
               "%d %s %lld %lld %g, %d %s %lld %lld %g", (int)e.status, e.text, (long long)e.face, (long long)e.vertex, e.value, (int)e2.status, e2.text,
               (long long)e2.face, (long long)e2.vertex, e2.value);
     return e;
 }
 
-/* Data that cannot be: the error of hd_laplacian_triangles, and where the type cannot hold the value, the value itself. */
+/* Data that cannot be: the error of packed arrays, and the value as its type has it. */
 static void view_bad_data(void) {
-    static const double values[VIEW_TYPES] = {65535, 4294967295.0, -1};
+    static const double values[VIEW_TYPES] = {65535, -1};
     shape s = kit_own_shape(shape_grid(6, 5, 0));
     hd_laplacian *lap = NULL;
     hd_error e, want;
@@ -144,7 +143,7 @@ static void view_bad_data(void) {
         view_put_index(b.indices + 12 * size, type, -1);
         e = view_refused(&b.view);
         b.s.tri[11] = -1;
-        CHECK(hd_laplacian_triangles(&lap, b.s.xyz, s.n, b.s.tri, s.n_tri, NULL, &want) < 0);
+        CHECK(hd_laplacian_create(&lap, MESH_TRIANGLES(b.s.xyz, s.n, b.s.tri, s.n_tri), NULL, &want) < 0);
         CHECK_MSG(e.status == HD_ERR_INDEX && e.face == 3 && e.vertex == want.vertex && e.value == values[k] && strcmp(e.text, want.text) == 0,
                   "type %d: %s, face %lld, value %g", k, e.text, (long long)e.face, e.value);
         broken = DENSE_NEW(float, 1);                        /* a coordinate comes before an index */
@@ -156,9 +155,8 @@ static void view_bad_data(void) {
         e = view_refused(&b.view);
         CHECK(e.status == HD_ERR_NOT_FINITE && e.vertex == 7 && e.face == -1);
         free(broken);
-        b.view.tri_u16 = k ? NULL : (const uint16_t *)(const void *)(b.indices + 1);
-        b.view.tri_u32 = k == 1 ? (const uint32_t *)(const void *)(b.indices + 2) : NULL;
-        b.view.tri_i32 = k == 2 ? (const int32_t *)(const void *)(b.indices + 3) : NULL;
+        b.view.corner_u16 = k ? NULL : (const uint16_t *)(const void *)(b.indices + 1);
+        b.view.corner = k ? (const int32_t *)(const void *)(b.indices + 2) : NULL;
         e = view_refused(&b.view);
         CHECK(e.status == HD_ERR_ARGUMENT && strstr(e.text, "not aligned"));
         view_free(&b);

@@ -209,11 +209,12 @@ __attribute__((export_name("column"))) double column(double t, int32_t v) {
     static const double xyz[18] = {1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1};
     static const int32_t tri[24] = {0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
     hd_laplacian_opts o = {0};
+    const hd_mesh mesh = hd_triangles(xyz, 6, tri, 8);
     hd_laplacian *lap = NULL;
     hd_heat *heat = NULL;
     double u[6] = {-1};
     o.kind = HD_LAPLACIAN_COT;
-    if (hd_laplacian_triangles(&lap, xyz, 6, tri, 8, &o, NULL) < 0 || hd_heat_create(&heat, lap, NULL, NULL) < 0) return -1;
+    if (hd_laplacian_create(&lap, &mesh, &o, NULL) < 0 || hd_heat_create(&heat, lap, NULL, NULL) < 0) return -1;
     if (hd_heat_column(heat, HD_KERNEL_OPERATOR, t, 0, u, NULL, NULL) < 0) return -2;
     hd_heat_free(heat);
     hd_laplacian_free(lap);

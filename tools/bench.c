@@ -247,7 +247,7 @@ static void parts_mesh(const char *name, const double *xyz, int32_t n, const int
         double t0 = now(), t1;
         memset(&o, 0, sizeof o);
         o.kind = kinds[k];
-        if (hd_laplacian_triangles(&lap, xyz, n, tri, n_tri, &o, NULL) < 0) return;
+        if (hd_laplacian_create(&lap, MESH_TRIANGLES(xyz, n, tri, n_tri), &o, NULL) < 0) return;
         t1 = now();
         printf("%s, %s: %d vertices, %lld non-zeros, assembled in %.1f ms\n", name, k ? "fem" : "voronoi-cot",
                (int)n, (long long)lap->L.nnz, 1e3 * (t1 - t0));
@@ -1542,8 +1542,7 @@ static void geo_ours(const bench *b, const int32_t *sources, double *D, geo_run 
     ctx = bench_context(b);
     memset(r, 0, sizeof *r);
     o.context = &ctx;
-    r->fine = hd_geodesic_create(&g, b->surface->xyz, b->surface->n, b->surface->tri, b->surface->n_tri, &o,
-                                 NULL) >= 0 &&
+    r->fine = hd_geodesic_create(&g, MESH_TRIANGLES(b->surface->xyz, b->surface->n, b->surface->tri, b->surface->n_tri), &o, NULL) >= 0 &&
               hd_geodesic_distance(g, 1, sources, D, NULL, NULL) >= 0;
     r->total = now() - t0;
     for (q = 1; q < GEO_SOURCES && r->fine; q++) {
@@ -1652,8 +1651,7 @@ static void job_assembly(bench *b) {
         o.kind = voronoi ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM;
         rest();
         t = now();
-        if (hd_laplacian_triangles(&lap, b->surface->xyz, b->surface->n, b->surface->tri, b->surface->n_tri,
-                                   &o, NULL) < 0)
+        if (hd_laplacian_create(&lap, MESH_TRIANGLES(b->surface->xyz, b->surface->n, b->surface->tri, b->surface->n_tri), &o, NULL) < 0)
             return;
         t = now() - t;
         if (round < 2 || t < best) best = t;         /* the first run warms up */
@@ -1666,7 +1664,7 @@ static void job_assembly(bench *b) {
         there = 1;
     }
     row_clear(&row, b, "assembly", NULL, 0);
-    snprintf(row.ours, sizeof row.ours, "hd_laplacian_triangles");
+    snprintf(row.ours, sizeof row.ours, "hd_laplacian_create");
     snprintf(row.rival, sizeof row.rival, there ? "Eigen, setFromTriplets" : "Eigen: %.28s", r.note);
     if (!HAVE_RIVALS) row.rival[0] = 0;
     row.seconds = best;
@@ -1840,7 +1838,7 @@ static void bench_mesh(const settings *set, const char *name, const double *xyz,
         memset(&o, 0, sizeof o);
         o.kind = kinds[k];
         if (k == 1 && !(set->jobs & JOBS_OF_BOTH)) break;
-        if (hd_laplacian_triangles(&lap, xyz, n, tri, n_tri, &o, &e) < 0) {
+        if (hd_laplacian_create(&lap, MESH_TRIANGLES(xyz, n, tri, n_tri), &o, &e) < 0) {
             fprintf(stderr, "bench: %s: %s\n", name, e.text);
             return;
         }
@@ -1907,7 +1905,7 @@ static void busy_once(const bench *b, const busy_job *j, double *U, busy_run *r)
         p.ctx.n_threads = b->threads;
         o.context = &p.ctx;
         t0 = now();
-        (void)hd_laplacian_triangles(&lap, b->surface->xyz, b->surface->n, b->surface->tri, b->surface->n_tri, &o, NULL);
+        (void)hd_laplacian_create(&lap, MESH_TRIANGLES(b->surface->xyz, b->surface->n, b->surface->tri, b->surface->n_tri), &o, NULL);
         r->seconds = now() - t0;
         hd_laplacian_free(lap);
     } else if (plan_open(&p, b, &a) >= 0) {
@@ -1988,13 +1986,12 @@ static void busy_mesh(const settings *set, const char *name, const double *xyz, 
     surface.n_tri = n_tri;
     surface.xyz = xyz;
     surface.tri = tri;
-    if (!U || hd_laplacian_triangles(&lap, xyz, n, tri, n_tri, NULL, NULL) < 0) {
+    if (!U || hd_laplacian_create(&lap, MESH_TRIANGLES(xyz, n, tri, n_tri), NULL, NULL) < 0) {
         free(U);
         return;
     }
     bench_open(&b, set, name, &surface, lap, all, peak);
     printf("\n%s, %d rows\n", name, (int)lap->n_active);
-    sim_print(lap);
     for (state = 0; state < 3; state++) {
         const int others = state ? busy_start(pid, (int)hdi_least(hd_context_threads(NULL), BUSY_MOST), state == 1) : 0;
         printf("\n%s, %d rows, %s; ms on 1 and on %d threads, ratio; regions, tasks of others, waits, runs\n"
@@ -2093,7 +2090,7 @@ static void estimate_mesh(const char *name, const double *xyz, int32_t n, const 
     double *U = (double *)malloc((size_t)n * TRIAL_MOST * sizeof *U);
     trial_result r;
     int k;
-    if (!U || hd_laplacian_triangles(&lap, xyz, n, tri, n_tri, NULL, NULL) < 0) {
+    if (!U || hd_laplacian_create(&lap, MESH_TRIANGLES(xyz, n, tri, n_tri), NULL, NULL) < 0) {
         fprintf(stderr, "bench: %s: no Laplacian\n", name);
         free(U);
         return;
@@ -2126,8 +2123,8 @@ static void choices_mesh(const char *name, const double *xyz, int32_t n, const i
         hd_status status;
         memset(&o, 0, sizeof o);
         o.kind = kind == 0 ? HD_LAPLACIAN_FEM : HD_LAPLACIAN_VORONOI_COT;
-        status = kind < 2 ? hd_laplacian_triangles(&lap, xyz, n, tri, n_tri, &o, NULL)
-                          : hd_laplacian_points(&lap, xyz, n, NULL, NULL);
+        status = kind < 2 ? hd_laplacian_create(&lap, MESH_TRIANGLES(xyz, n, tri, n_tri), &o, NULL)
+                          : hd_laplacian_create(&lap, MESH_POINTS(xyz, n), NULL, NULL);
         for (i = 0; i < 12 && status >= 0; i++) {
             const double t = tau[i / 3] * lap->h * lap->h;
             double seconds[4], best = HUGE_VAL;

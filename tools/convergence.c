@@ -287,11 +287,10 @@ static hd_laplacian *laplacian(const shape_poly *s, const operator_def *op, doub
     hd_status status;
     memset(&lo, 0, sizeof lo);
     lo.kind = op->kind;
-    lo.bandwidth = bandwidth;
-    if (op->points && op->tufted)
-        status = hd_laplacian_tufted_points(&lap, s->xyz, s->n, NULL, NULL, &lo, &e);
-    else if (op->points) status = hd_laplacian_points(&lap, s->xyz, s->n, &lo, &e);
-    else status = hd_laplacian_polygons(&lap, s->xyz, s->n, s->face_ptr, s->face_idx, s->n_faces, &lo, &e);
+    lo.bandwidth2 = bandwidth;
+    if (op->tufted) lo.triangulation = HD_TRIANGULATION_TUFTED;
+    if (op->points) status = hd_laplacian_create(&lap, MESH_POINTS(s->xyz, s->n), &lo, &e);
+    else status = hd_laplacian_create(&lap, MESH_POLYGONS(s->xyz, s->n, s->face_ptr, s->face_idx, s->n_faces), &lo, &e);
     if (status < 0) stop("laplacian", &e);
     if (lap->n_active != lap->n) stop("vertices without mass", NULL);
     return lap;
@@ -379,7 +378,7 @@ static void point_row(const operator_def *op, int torus, int blue) {
         h[level] = sqrt(true_area(torus) / n);
         lap = laplacian(&s, op, op->bandwidth > 0 &&
                         level > 0 ? first * pow(h[level] / h[0], op->bandwidth) : 0);
-        if (level == 0) first = lap->points.bandwidth;
+        if (level == 0) first = lap->points.bandwidth2;
         errors(&s, torus, lap, e[level]);
         hd_laplacian_free(lap);
         shape_poly_free(&s);

@@ -1938,38 +1938,51 @@ static hd_status point_spacing(run *r, double *h, hd_error *err)
     return status;
 }
 
-static hd_status run_points(run *r, hd_laplacian_opts *opts, hd_error *err)
+/* The mesh as the library takes it: points, the faces of the file, or triangles by coordinates or lengths. */
+static hd_mesh run_mesh(const run *r, hd_shape shape)
 {
-    const time_spec s = r->o->bandwidth;
-    double h = 1;
-    if (opts->tufted)
-        return hd_laplacian_tufted_points(&r->lap, r->mesh.xyz, r->mesh.n, NULL, NULL, opts, err);
-    if (s.unit == TIME_H2 && point_spacing(r, &h, err) < 0) return err->status;
-    opts->bandwidth = s.value * h * h;
-    opts->weight_cut = r->o->weight_cut;
-    return hd_laplacian_points(&r->lap, r->mesh.xyz, r->mesh.n, opts, err);
+    const mesh_data *m = &r->mesh;
+    hd_mesh mesh = hd_triangles(m->xyz, m->n, m->tri, m->n_tri);
+    mesh.shape = shape;
+    if (shape != HD_TRIANGLES) {
+        mesh.corner = shape == HD_POLYGONS ? m->file.face_idx : NULL;
+        mesh.face_ptr = shape == HD_POLYGONS ? m->file.face_ptr : NULL;
+        mesh.n_faces = shape == HD_POLYGONS ? m->n_faces : 0;
+    } else if (r->lengths) {
+        mesh.xyz = NULL;
+        mesh.lengths = r->lengths;
+    }
+    return mesh;
+}
+
+static hd_triangulation run_triangulation(const run *r)
+{
+    if (is_tufted(r)) return HD_TRIANGULATION_TUFTED;
+    return r->o->intrinsic_delaunay ? HD_TRIANGULATION_DELAUNAY : HD_TRIANGULATION_GIVEN;
 }
 
 static hd_status run_laplacian(run *r, hd_error *err)
 {
-    const mesh_data *m = &r->mesh;
+    const time_spec s = r->o->bandwidth;
     hd_laplacian_opts opts;
     const double start = now();
-    hd_status status;
+    double h = 1;
+    hd_mesh mesh;
+    hd_status status = HD_OK;
     memset(&opts, 0, sizeof opts);
     opts.kind = laplacian_kind(r);
-    opts.lambda = r->o->lambda;
+    opts.stiffening = r->o->lambda;
     opts.context = &r->context;
-    opts.intrinsic_delaunay = r->o->intrinsic_delaunay;
-    opts.tufted = is_tufted(r);
+    opts.triangulation = run_triangulation(r);
     if (r->o->command != CMD_GEODESIC) opts.border = (hd_border)r->o->border;
+    mesh = run_mesh(r, is_points(r) ? HD_POINTS : opts.kind == HD_LAPLACIAN_POLYGON ? HD_POLYGONS : HD_TRIANGLES);
     interrupt.patient = 1;
-    if (is_points(r)) status = run_points(r, &opts, err);
-    else if (opts.kind == HD_LAPLACIAN_POLYGON)
-        status = hd_laplacian_polygons(&r->lap, m->xyz, m->n, m->file.face_ptr, m->file.face_idx, m->n_faces,
-                                       &opts, err);
-    else if (r->lengths) status = hd_laplacian_lengths(&r->lap, r->lengths, m->n, m->tri, m->n_tri, &opts, err);
-    else status = hd_laplacian_triangles(&r->lap, m->xyz, m->n, m->tri, m->n_tri, &opts, err);
+    if (is_points(r) && !is_tufted(r)) {
+        if (s.unit == TIME_H2) status = point_spacing(r, &h, err);
+        opts.bandwidth2 = s.value * h * h;
+        opts.weight_cut = r->o->weight_cut;
+    }
+    if (status >= 0) status = hd_laplacian_create(&r->lap, &mesh, &opts, err);
     interrupt.patient = 0;
     r->sec.assemble = now() - start;
     return status;
@@ -2123,7 +2136,7 @@ static int run_filter(run *r)
         if (hd_times_spectral(r->lap, 1, &one, &unit, &err) < 0) return fail_library(r->mesh_name, &err);
         f.lambda_min = 0.99 / unit;
     }
-    if (hd_rational_fit(&r->filter, &f, hd_laplacian_lambda_max(r->lap), &r->context, &err) < 0)
+    if (hd_rational_fit(&r->filter, &f, r->lap->lambda_max, &r->context, &err) < 0)
         return fail_library(r->mesh_name, &err);
     if (!(r->filter.max_error < USELESS * r->filter.largest))
         return fail(FAILED, "%s: --filter %s: the best poles found miss it by %.1e of its largest value",
@@ -2856,16 +2869,12 @@ static hd_status solve_geodesic_from(run *r)
     return status;
 }
 
-static hd_status geodesic_plan(run *r, const hd_geodesic_opts *opts, hd_error *err)
+static hd_status geodesic_plan(run *r, hd_geodesic_opts *opts, hd_error *err)
 {
-    const mesh_data *m = &r->mesh;
-    if (r->lengths)
-        return hd_geodesic_create_lengths(&r->geodesic, r->lengths, m->n, m->tri, m->n_tri, opts, err);
-    if (m->n_tri == 0) return hd_geodesic_create_points(&r->geodesic, m->xyz, m->n, NULL, NULL, opts, err);
-    if (laplacian_kind(r) == HD_LAPLACIAN_POLYGON && !r->from)   /* places lie in triangles */
-        return hd_geodesic_create_polygons(&r->geodesic, m->xyz, m->n, m->file.face_ptr, m->file.face_idx,
-                                           m->n_faces, opts, err);
-    return hd_geodesic_create(&r->geodesic, m->xyz, m->n, m->tri, m->n_tri, opts, err);
+    const int poly = !r->lengths && laplacian_kind(r) == HD_LAPLACIAN_POLYGON && !r->from;   /* places lie in triangles */
+    const hd_mesh mesh = run_mesh(r, r->mesh.n_tri == 0 ? HD_POINTS : poly ? HD_POLYGONS : HD_TRIANGLES);
+    if (!poly) opts->stiffening = 0;
+    return hd_geodesic_create(&r->geodesic, &mesh, opts, err);
 }
 
 /* Distances from all sources, a column each. */
@@ -2880,9 +2889,8 @@ static int solve_geodesic(run *r)
     else opts.t = r->times[0];
     if (laplacian_kind(r) == HD_LAPLACIAN_VORONOI_COT) opts.mass = HD_GEODESIC_MASS_VORONOI;
     opts.border = (hd_geodesic_border)o->border;
-    opts.intrinsic_delaunay = o->intrinsic_delaunay;
-    opts.tufted = o->tufted;
-    opts.lambda = o->lambda;
+    opts.triangulation = run_triangulation(r);
+    opts.stiffening = o->lambda;
     opts.ordering = (hd_ordering)o->ordering;
     opts.context = &r->context;
     if (geodesic_plan(r, &opts, &err) < 0) return fail_laplacian(r, &err);
@@ -3045,8 +3053,8 @@ static void json_points(json *j, const hd_point_report *p)
     json_integer(j, "neighbours", p->neighbours);
     json_integer(j, "coincident", p->n_coincident);
     json_integer(j, "not_flat", p->n_not_flat);
-    if (!(p->bandwidth > 0)) return;             /* the rest is of exponential weights */
-    json_number(j, "bandwidth", p->bandwidth);
+    if (!(p->bandwidth2 > 0)) return;             /* the rest is of exponential weights */
+    json_number(j, "bandwidth", p->bandwidth2);
     json_number(j, "weight_cut", p->weight_cut);
     json_number(j, "cut_radius", p->cut_radius);
     json_integer(j, "isolated", p->n_isolated);
@@ -3260,10 +3268,10 @@ static void print_laplacian(const run *r)
                 "%lld edges flipped on %ld sheet%s, all lengthened by %.2g, %lld negative weights left\n",
                 (long long)lap->mesh.n_flips, (long)lap->mesh.n_sheets, plural(lap->mesh.n_sheets),
                 lap->mesh.mollify_epsilon, (long long)lap->mesh.n_negative_weights);
-    if (lap->points.bandwidth > 0)
+    if (lap->points.bandwidth2 > 0)
         fprintf(stderr, "bandwidth %.4g (%.3gh2%s), weights up to a distance of %.4g, %.3g a row\n",
-                lap->points.bandwidth,
-                lap->points.bandwidth / (lap->h * lap->h), r->o->has_bandwidth ? "" : ", from the sampling",
+                lap->points.bandwidth2,
+                lap->points.bandwidth2 / (lap->h * lap->h), r->o->has_bandwidth ? "" : ", from the sampling",
                 lap->points.cut_radius, (double)lap->L.nnz / lap->n_active);
 }
 
@@ -3897,8 +3905,8 @@ static void info_points(const run *r, const hd_laplacian *lap, const double low[
            high[2] - low[2], low[0], low[1], low[2]);
     printf("%-22s %.9g\n%-22s %.9g  (mean distance to the nearest point)\n",
            r->o->tufted ? "area of the stars" : "area of the cells", lap->area, "spacing h", lap->h);
-    if (p->bandwidth > 0 && lap->n_active > 0) {
-        printf("%-22s %.9g  (%.4gh2%s)\n", "bandwidth", p->bandwidth, p->bandwidth / (lap->h * lap->h),
+    if (p->bandwidth2 > 0 && lap->n_active > 0) {
+        printf("%-22s %.9g  (%.4gh2%s)\n", "bandwidth", p->bandwidth2, p->bandwidth2 / (lap->h * lap->h),
                r->o->has_bandwidth ? "" : ", from the sampling");
         printf("%-22s %.4g, where weights fall below %.3g; %.4g a row, at most %ld (7 to 13 with --tufted)\n",
                "weights reach", p->cut_radius, p->weight_cut, (double)lap->L.nnz / lap->n_active,

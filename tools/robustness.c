@@ -570,8 +570,7 @@ static hd_status surface_pair(work *w, hd_laplacian_opts *o, hd_error *e) {
     int32_t held[3];
     int i;
     o->kind = polygon ? HD_LAPLACIAN_POLYGON : three[k];
-    o->intrinsic_delaunay = cover == 1 && !polygon;
-    o->tufted = cover == 2 && !polygon;
+    o->triangulation = polygon ? HD_TRIANGULATION_GIVEN : (hd_triangulation)cover;
     o->border = chance(&w->chance, 0.25) ? HD_BORDER_DIRICHLET : HD_BORDER_NATURAL;
     if (chance(&w->chance, 0.15)) {
         o->n_held = 3;
@@ -582,25 +581,25 @@ static hd_status surface_pair(work *w, hd_laplacian_opts *o, hd_error *e) {
              polygon || !cover ? "" : cover == 1 ? " delaunay" : " tufted", o->border ? " dirichlet" : "",
              o->n_held ? " held" : "");
     if (w->m.polygons)
-        return hd_laplacian_polygons(&w->lap, w->m.xyz, w->m.n, w->m.ptr, w->m.idx, w->m.n_faces, o, e);
-    return hd_laplacian_triangles(&w->lap, w->m.xyz, w->m.n, w->m.idx, w->m.n_faces, o, e);
+        return hd_laplacian_create(&w->lap, MESH_POLYGONS(w->m.xyz, w->m.n, w->m.ptr, w->m.idx, w->m.n_faces), o, e);
+    return hd_laplacian_create(&w->lap, MESH_TRIANGLES(w->m.xyz, w->m.n, w->m.idx, w->m.n_faces), o, e);
 }
 
 /* As its name says. */
 static hd_status kept_pair(work *w, hd_laplacian_opts *o, hd_error *e) {
     snprintf(w->op, sizeof w->op, "%s", w->kept->op);
     o->kind = strstr(w->op, "voronoi-cot") ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM;
-    o->intrinsic_delaunay = strstr(w->op, "delaunay") != NULL;
+    o->triangulation = strstr(w->op, "delaunay") != NULL ? HD_TRIANGULATION_DELAUNAY : HD_TRIANGULATION_GIVEN;
     o->border = strstr(w->op, "dirichlet") ? HD_BORDER_DIRICHLET : HD_BORDER_NATURAL;
-    return hd_laplacian_triangles(&w->lap, w->m.xyz, w->m.n, w->m.idx, w->m.n_faces, o, e);
+    return hd_laplacian_create(&w->lap, MESH_TRIANGLES(w->m.xyz, w->m.n, w->m.idx, w->m.n_faces), o, e);
 }
 
 static hd_status point_pair(work *w, hd_laplacian_opts *o, hd_error *e) {
     const int k = draw(&w->chance, 3);
     o->kind = k == 0 ? HD_LAPLACIAN_VORONOI_EXP : k == 1 ? HD_LAPLACIAN_EXP : HD_LAPLACIAN_DEFAULT;
     snprintf(w->op, sizeof w->op, "%s", k == 0 ? "voronoi-exp" : k == 1 ? "exp" : "tufted");
-    if (k == 2) return hd_laplacian_tufted_points(&w->lap, w->m.xyz, w->m.n, NULL, NULL, o, e);
-    return hd_laplacian_points(&w->lap, w->m.xyz, w->m.n, o, e);
+    if (k == 2) o->triangulation = HD_TRIANGULATION_TUFTED;
+    return hd_laplacian_create(&w->lap, MESH_POINTS(w->m.xyz, w->m.n), o, e);
 }
 
 /* Masses positive, L symmetric, zero on constants where it says so. Sets the unit of time: one over the mean
@@ -799,7 +798,7 @@ static void check_spectrum(work *w, const answer *a) {
     hd_error e;
     double *u = room(6 * (int64_t)w->n), *bound = u + 3 * (int64_t)w->n;
     /* L itself is rounded, and may have negative eigenvalues as small as this */
-    const double rounding = w->n * DBL_EPSILON * hd_laplacian_lambda_max(w->lap);
+    const double rounding = w->n * DBL_EPSILON * w->lap->lambda_max;
     int32_t i, q;
     memset(&o, 0, sizeof o);
     memset(&e, 0, sizeof e);
@@ -990,13 +989,13 @@ static hd_status geodesic_plan(work *w, hd_geodesic **g, hd_error *e) {
     o.border = (hd_geodesic_border)draw(&w->chance, 3);
     if (w->m.points) {
         o.border = HD_GEODESIC_BORDER_NATURAL;
-        return hd_geodesic_create_points(g, w->m.xyz, w->m.n, NULL, NULL, &o, e);
+        o.triangulation = HD_TRIANGULATION_TUFTED;
+        return hd_geodesic_create(g, MESH_POINTS(w->m.xyz, w->m.n), &o, e);
     }
-    o.intrinsic_delaunay = cover == 1;
-    o.tufted = cover == 2;
+    o.triangulation = (hd_triangulation)cover;
     if (w->m.polygons)
-        return hd_geodesic_create_polygons(g, w->m.xyz, w->m.n, w->m.ptr, w->m.idx, w->m.n_faces, &o, e);
-    return hd_geodesic_create(g, w->m.xyz, w->m.n, w->m.idx, w->m.n_faces, &o, e);
+        return hd_geodesic_create(g, MESH_POLYGONS(w->m.xyz, w->m.n, w->m.ptr, w->m.idx, w->m.n_faces), &o, e);
+    return hd_geodesic_create(g, MESH_TRIANGLES(w->m.xyz, w->m.n, w->m.idx, w->m.n_faces), &o, e);
 }
 
 static void check_geodesic(work *w) {

@@ -20,6 +20,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh_args.h"
+
 typedef struct shape {
     int32_t n;
     double *xyz;        /* [3n] */

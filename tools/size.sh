@@ -21,9 +21,10 @@ cat >"$work/column.c" <<'EOF'
 int main(void) {
     static double xyz[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}, u[4];
     static const int32_t tri[12] = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3};
+    const hd_mesh mesh = hd_triangles(xyz, 4, tri, 4);
     hd_laplacian *lap = NULL;
     hd_heat *heat = NULL;
-    if (hd_laplacian_triangles(&lap, xyz, 4, tri, 4, NULL, NULL) < 0 || hd_heat_create(&heat, lap, NULL, NULL) < 0) return 1;
+    if (hd_laplacian_create(&lap, &mesh, NULL, NULL) < 0 || hd_heat_create(&heat, lap, NULL, NULL) < 0) return 1;
     if (hd_heat_column(heat, HD_KERNEL_OPERATOR, 1, 0, u, NULL, NULL) < 0) return 1;
     printf("%g\n", u[0]);
     hd_heat_free(heat);

@@ -522,9 +522,10 @@ static hd_status trial_pair(hd_laplacian **out, const char *spec, const char *op
              : strncmp(op, "vexp", 4) == 0 ? HD_LAPLACIAN_VORONOI_EXP
              : strncmp(op, "exp", 3) == 0 ? HD_LAPLACIAN_EXP
                                           : HD_LAPLACIAN_DEFAULT;
-    o.intrinsic_delaunay = strstr(op, "+id") != NULL;
-    o.tufted = strstr(op, "+tuft") != NULL;
-    o.lambda = strstr(op, "+half") ? 0.5 : 0;
+    o.triangulation = strstr(op, "+id") ? HD_TRIANGULATION_DELAUNAY
+                      : strstr(op, "+tuft") || (b.points && strncmp(op, "tuft", 4) == 0) ? HD_TRIANGULATION_TUFTED
+                                                                                        : HD_TRIANGULATION_GIVEN;
+    o.stiffening = strstr(op, "+half") ? 0.5 : 0;
     if (strstr(op, "+held") || strstr(op, "+pin")) {         /* a vertex; held: and the border of a mesh */
         o.n_held = 1;
         o.held = &held;
@@ -533,14 +534,13 @@ static hd_status trial_pair(hd_laplacian **out, const char *spec, const char *op
     }
     for (i = 0; i < 3 * b.s.n; i++) b.s.xyz[i] *= scale;
     if (b.points) {
-        if (strncmp(op, "tuft", 4) == 0) st = hd_laplacian_tufted_points(out, b.s.xyz, b.s.n, NULL, NULL, &o, e);
-        else st = hd_laplacian_points(out, b.s.xyz, b.s.n, &o, e);
+        st = hd_laplacian_create(out, MESH_POINTS(b.s.xyz, b.s.n), &o, e);
     } else if (strncmp(op, "poly", 4) == 0 || (b.p.xyz && b.s.n_tri == 0)) {
         shape_poly q = b.p.xyz ? b.p : shape_poly_of(&b.s);
-        st = hd_laplacian_polygons(out, b.s.xyz, q.n, q.face_ptr, q.face_idx, q.n_faces, &o, e);
+        st = hd_laplacian_create(out, MESH_POLYGONS(b.s.xyz, q.n, q.face_ptr, q.face_idx, q.n_faces), &o, e);
         if (!b.p.xyz) shape_poly_free(&q);
     } else {
-        st = hd_laplacian_triangles(out, b.s.xyz, b.s.n, b.s.tri, b.s.n_tri, &o, e);
+        st = hd_laplacian_create(out, MESH_TRIANGLES(b.s.xyz, b.s.n, b.s.tri, b.s.n_tri), &o, e);
     }
     trial_body_free(&b);
     return st;
@@ -1446,7 +1446,7 @@ static int trial_make_filter(trial_work *w) {
     static struct { hd_filter f; hd_rational set; } kept[KEPT];
     static int oldest;
     const trial *c = w->c;
-    const double lambda_max = hd_laplacian_lambda_max(w->s->lap);
+    const double lambda_max = w->s->lap->lambda_max;
     hd_filter *f = &w->s->f.of;
     int q;
     memset(f, 0, sizeof *f);

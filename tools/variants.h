@@ -276,12 +276,10 @@ static hd_laplacian *laplacian(const method *m, const shape *s, hd_context *ctx)
     memset(&o, 0, sizeof o);
     o.kind = m->kind;
     o.context = ctx;
-    o.intrinsic_delaunay = m->delaunay;
-    o.tufted = m->tufted;
-    o.weight_cut = 1e-4;                /* voronoi-exp: half the non-zeros for a thousandth of change */
-    if (m->points && m->tufted) status = hd_laplacian_tufted_points(&lap, s->xyz, s->n, NULL, NULL, &o, &e);
-    else if (m->points) status = hd_laplacian_points(&lap, s->xyz, s->n, &o, &e);
-    else status = hd_laplacian_triangles(&lap, s->xyz, s->n, s->tri, s->n_tri, &o, &e);
+    o.triangulation = m->delaunay ? HD_TRIANGULATION_DELAUNAY : m->tufted ? HD_TRIANGULATION_TUFTED : HD_TRIANGULATION_GIVEN;
+    if (m->kind == HD_LAPLACIAN_VORONOI_EXP) o.weight_cut = 1e-4;    /* half the non-zeros for a thousandth of change */
+    if (m->points) status = hd_laplacian_create(&lap, MESH_POINTS(s->xyz, s->n), &o, &e);
+    else status = hd_laplacian_create(&lap, MESH_TRIANGLES(s->xyz, s->n, s->tri, s->n_tri), &o, &e);
     if (status < 0) stop(m->name, &e);
     return lap;
 }

@@ -225,6 +225,7 @@ static hd_status work(size_t size, hd_laplacian_kind kind, hd_method method, siz
     hd_context ctx;
     hd_laplacian_opts lap_opts;
     hd_heat_opts heat_opts;
+    const hd_mesh mesh = hd_triangles(xyz, n_vertices, tri, n_triangles);
     hd_laplacian *lap = NULL;
     hd_heat *heat = NULL;
     hd_status status;
@@ -240,7 +241,7 @@ static hd_status work(size_t size, hd_laplacian_kind kind, hd_method method, siz
     lap_opts.kind = kind;
     memset(&heat_opts, 0, sizeof heat_opts);
     heat_opts.method = method;
-    status = hd_laplacian_triangles(&lap, xyz, n_vertices, tri, n_triangles, &lap_opts, NULL);
+    status = hd_laplacian_create(&lap, &mesh, &lap_opts, NULL);
     if (status >= 0) status = hd_heat_create(&heat, lap, &heat_opts, NULL);
     if (status >= 0)
         status = hd_heat_column(heat, HD_KERNEL_OPERATOR, 10 * lap->h * lap->h, 0, heat_at, NULL, NULL);

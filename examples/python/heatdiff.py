@@ -229,6 +229,22 @@ def _faces(faces):
     return ptr, _ints("faces", np.concatenate([f for f in lists if len(f)] or [[]]), ("corners",)), len(lists)
 
 
+def _mesh(shape, xyz, faces=None):
+    """The struct of a mesh, whose arrays live as long as it does."""
+    mesh = S["hd_mesh"](shape=C[shape], n=len(xyz), xyz=xyz.ctypes.data)
+    mesh.lists = [xyz]
+    if shape == "HD_POLYGONS":
+        ptr, faces, mesh.n_faces = _faces(faces)
+        mesh.face_ptr = ptr.ctypes.data
+        mesh.lists.append(ptr)
+    elif faces is not None:
+        mesh.n_faces = len(faces)
+    if faces is not None:
+        mesh.corner = faces.ctypes.data
+        mesh.lists.append(faces)
+    return mesh
+
+
 class _Pointer:
     """A pointer to what the library made. Plans are freed before their Laplacian, in whatever order they are dropped. A with
     block borrows the address. A Laplacian and its plans share a lock, because one thread at a time may use them."""
@@ -371,23 +387,24 @@ class Laplacian(_Object):
         """New coordinates for the same faces; made with updatable=1."""
         xyz = _doubles("xyz", xyz, (self.n, 3))
         with self._pointer as lap:
-            _call("hd_laplacian_update", lap, xyz)
+            _call("hd_laplacian_update", lap, ctypes.byref(_mesh("HD_POINTS", xyz)))
 
 
 def triangles(xyz, tri, **options):
     xyz, tri = _doubles("xyz", xyz, ("n", 3)), _ints("tri", tri, ("n_tri", 3))
-    return Laplacian._of("hd_laplacian_triangles", len(xyz), options, xyz, len(xyz), tri, len(tri))
+    return Laplacian._of("hd_laplacian_create", len(xyz), options, ctypes.byref(_mesh("HD_TRIANGLES", xyz, tri)))
 
 
 def polygons(xyz, faces, **options):
     """faces: lists of vertices."""
     xyz = _doubles("xyz", xyz, ("n", 3))
-    return Laplacian._of("hd_laplacian_polygons", len(xyz), options, xyz, len(xyz), *_faces(faces))
+    return Laplacian._of("hd_laplacian_create", len(xyz), options, ctypes.byref(_mesh("HD_POLYGONS", xyz, faces)))
 
 
 def points(xyz, **options):
+    """triangulation="HD_TRIANGULATION_TUFTED": triangles from neighbours, in place of exponential weights."""
     xyz = _doubles("xyz", xyz, ("n", 3))
-    return Laplacian._of("hd_laplacian_points", len(xyz), options, xyz, len(xyz))
+    return Laplacian._of("hd_laplacian_create", len(xyz), options, ctypes.byref(_mesh("HD_POINTS", xyz)))
 
 
 def matrices(L, B, h=0, **options):
@@ -572,12 +589,12 @@ class Geodesic(_Object):
         xyz = _doubles("xyz", xyz, ("n", 3))
         n, options, pointer = len(xyz), _options("hd_geodesic_opts", options, len(xyz)), _Pointer("hd_geodesic_free")
         if faces is None:
-            function, args = "hd_geodesic_create_points", (None, None)
+            mesh, options.triangulation = _mesh("HD_POINTS", xyz), C["HD_TRIANGULATION_TUFTED"]
         elif isinstance(faces, np.ndarray) and faces.ndim == 2 and faces.shape[1] == 3:
-            function, args = "hd_geodesic_create", (_ints("faces", faces, ("n_tri", 3)), len(faces))
+            mesh = _mesh("HD_TRIANGLES", xyz, _ints("faces", faces, ("n_tri", 3)))
         else:
-            function, args = "hd_geodesic_create_polygons", _faces(faces)
-        self._make(pointer, function, xyz, n, *args, ctypes.byref(options))
+            mesh = _mesh("HD_POLYGONS", xyz, faces)
+        self._make(pointer, "hd_geodesic_create", ctypes.byref(mesh), ctypes.byref(options))
         self._n = n
 
     n = property(lambda self: self._n)

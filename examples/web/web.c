@@ -287,6 +287,7 @@ static int page_triangles_only(void) {
  * triangulation of the faces, split into triangles. */
 hd_status PAGE_EXPORT(page_begin)(int32_t mend) {
     const mio_mesh *m = &page.mesh;
+    hd_mesh mesh = hd_triangles(m->xyz, m->n, page.tri, page.n_tri);
     hd_laplacian_opts o;
     hd_error e;
     hd_status status;
@@ -296,13 +297,18 @@ hd_status PAGE_EXPORT(page_begin)(int32_t mend) {
     memset(&o, 0, sizeof o);
     page.ctx.progress = page_tick;
     o.context = &page.ctx;
-    o.intrinsic_delaunay = mend && m->n_faces;
-    if (m->n_faces == 0)
-        status = hd_laplacian_tufted_points(&page.lap, m->xyz, m->n, NULL, NULL, &o, &e);
-    else if (mend || page_triangles_only())
-        status = hd_laplacian_triangles(&page.lap, m->xyz, m->n, page.tri, page.n_tri, &o, &e);
-    else
-        status = hd_laplacian_polygons(&page.lap, m->xyz, m->n, m->face_ptr, m->face_idx, m->n_faces, &o, &e);
+    o.triangulation = mend && m->n_faces ? HD_TRIANGULATION_DELAUNAY : HD_TRIANGULATION_GIVEN;
+    if (m->n_faces == 0) {
+        mesh.shape = HD_POINTS;
+        mesh.corner = NULL;
+        o.triangulation = HD_TRIANGULATION_TUFTED;
+    } else if (!mend && !page_triangles_only()) {
+        mesh.shape = HD_POLYGONS;
+        mesh.face_ptr = m->face_ptr;
+        mesh.corner = m->face_idx;
+        mesh.n_faces = m->n_faces;
+    }
+    status = hd_laplacian_create(&page.lap, &mesh, &o, &e);
     if (status < 0) return page_fail_at(&e);
     r = &page.lap->mesh;
     page.facts[FACT_H] = page.lap->h;
@@ -379,6 +385,7 @@ hd_status PAGE_EXPORT(page_smooth)(int32_t n_times, const double *t) {
 
 /* Distances along the surface to a source: out [n]. HUGE_VAL where no path leads. */
 hd_status PAGE_EXPORT(page_geodesic)(int32_t source) {
+    const hd_mesh mesh = hd_triangles(page.mesh.xyz, page.mesh.n, page.tri, page.n_tri);
     hd_geodesic_opts o;
     hd_geodesic_report r;
     hd_error e;
@@ -387,7 +394,7 @@ hd_status PAGE_EXPORT(page_geodesic)(int32_t source) {
     o.context = &page.ctx;
     if (!page.n_tri) return page_fail(HD_ERR_ARGUMENT, "geodesic distances need faces; these are points");
     if (!page.geodesic)
-        status = hd_geodesic_create(&page.geodesic, page.mesh.xyz, page.mesh.n, page.tri, page.n_tri, &o, &e);
+        status = hd_geodesic_create(&page.geodesic, &mesh, &o, &e);
     if (status < 0) return page_fail_at(&e);
     if (page_make_room((size_t)page.mesh.n) < 0) return HD_ERR_MEMORY;
     status = hd_geodesic_distance(page.geodesic, 1, &source, page.out, &r, &e);

@@ -365,14 +365,13 @@ static hd_laplacian_opts fz_laplacian_opts(fz_in *in, hd_context *ctx, int32_t *
     memset(&o, 0, sizeof o);
     o.context = ctx;
     o.kind = (hd_laplacian_kind)fz_int(in, 8);
-    if (way & 1) o.intrinsic_delaunay = 1;
-    if (way & 2) o.tufted = 1;
+    o.triangulation = (hd_triangulation)(way & 3);
     if (way & 4) o.updatable = 1;
     if (way & 8) o.border = HD_BORDER_DIRICHLET;
     if (way & 16) o.mollify = fz_number(in);
-    if (way & 32) o.lambda = fz_number(in);
+    if (way & 32) o.stiffening = fz_number(in);
     if (way & 64) {
-        o.bandwidth = fz_number(in);
+        o.bandwidth2 = fz_number(in);
         o.weight_cut = fz_number(in);
         o.neighbours = fz_int(in, 130);
     }
@@ -423,29 +422,30 @@ static hd_status fz_polygons(fz_in *in, hd_laplacian **lap, const shape *s, cons
         if (in->p == in->end && next == ptr[f - 1]) break;
     }
     if (f && fz_byte(in) == 255) ptr[f / 2] = -1;
-    return hd_laplacian_polygons(lap, s->xyz, s->n, ptr, s->tri, f, o, e);
+    return hd_laplacian_create(lap, MESH_POLYGONS(s->xyz, s->n, ptr, s->tri, f), o, e);
 }
 
 static hd_status fz_tufted(fz_in *in, hd_laplacian **lap, const shape *s, const hd_laplacian_opts *o, hd_error *e) {
     int64_t ptr[2048];
     int32_t nbr[2048], v, most = 0;
-    if (fz_byte(in) & 1) return hd_laplacian_tufted_points(lap, s->xyz, s->n, NULL, NULL, o, e);
+    if (fz_byte(in) & 1) return hd_laplacian_create(lap, MESH_POINTS(s->xyz, s->n), o, e);
     ptr[0] = 0;
     for (v = 0; v < s->n; v++) {
         int32_t k, count = fz_below(in, 14);
         for (k = 0; k < count; k++) nbr[most++] = fz_int(in, s->n);
         ptr[v + 1] = most;
     }
-    return hd_laplacian_tufted_points(lap, s->xyz, s->n, ptr, nbr, o, e);
+    return hd_laplacian_create(lap, MESH_STARS(s->xyz, s->n, ptr, nbr), o, e);
 }
 
 static hd_status fz_laplacian_of(fz_in *in, hd_laplacian **lap, const shape *s, const hd_laplacian_opts *o, hd_error *e) {
-    hd_mesh_view view;
+    uint16_t corner[3 * FZ_FACES];
+    hd_mesh view;
     float xyz[3 * FZ_VERTICES];
     int32_t k;
     switch (fz_byte(in) % 6) {
     case 0: fz_what = "polygons"; return fz_polygons(in, lap, s, o, e);
-    case 1: fz_what = "points"; return hd_laplacian_points(lap, s->xyz, s->n, o, e);
+    case 1: fz_what = "points"; return hd_laplacian_create(lap, MESH_POINTS(s->xyz, s->n), o, e);
     case 2: fz_what = "tufted points"; return fz_tufted(in, lap, s, o, e);
     case 3:
         fz_what = "view";
@@ -453,10 +453,11 @@ static hd_status fz_laplacian_of(fz_in *in, hd_laplacian **lap, const shape *s, 
         for (k = 0; k < 3 * s->n; k++) xyz[k] = fabs(s->xyz[k]) <= (double)FLT_MAX ? (float)s->xyz[k] : 0;
         view.xyz_float = xyz;
         view.n = s->n;
-        view.tri_i32 = s->tri;
-        view.n_indices = 3 * (int64_t)s->n_tri;
-        return hd_laplacian_view(lap, &view, o, e);
-    default: fz_what = "triangles"; return hd_laplacian_triangles(lap, s->xyz, s->n, s->tri, s->n_tri, o, e);
+        view.n_faces = s->n_tri < FZ_FACES ? s->n_tri : FZ_FACES;
+        for (k = 0; k < 3 * view.n_faces; k++) corner[k] = (uint16_t)s->tri[k];
+        view.corner_u16 = corner;
+        return hd_laplacian_create(lap, &view, o, e);
+    default: fz_what = "triangles"; return hd_laplacian_create(lap, MESH_TRIANGLES(s->xyz, s->n, s->tri, s->n_tri), o, e);
     }
 }
 
@@ -761,7 +762,7 @@ static void fz_geodesic(fz_in *in, const shape *s, fz_context *c) {
     o.mass = (hd_geodesic_mass)fz_int(in, 2);
     o.updatable = fz_byte(in) & 1;
     if (fz_byte(in) & 1) o.t = fz_number(in);
-    if (fz_status(hd_geodesic_create(&g, s->xyz, s->n, s->tri, s->n_tri, &o, &e), &e, c) >= 0) {
+    if (fz_status(hd_geodesic_create(&g, MESH_TRIANGLES(s->xyz, s->n, s->tri, s->n_tri), &o, &e), &e, c) >= 0) {
         count = 1 + fz_below(in, 3);
         for (k = 0; k < 3; k++) id[k] = fz_int(in, s->n);
         st = fz_status(hd_geodesic_distance(g, count, id, d, &rep, &e), &e, c);
@@ -769,7 +770,7 @@ static void fz_geodesic(fz_in *in, const shape *s, fz_context *c) {
         if (st >= 0) for (k = 0; k < s->n; k++) FZ(d[k] >= 0);
         if (o.updatable && fz_byte(in) & 1) {
             s->xyz[fz_below(in, 3 * s->n)] = fz_number(in);
-            (void)fz_status(hd_geodesic_update(g, s->xyz, &e), &e, c);
+            (void)fz_status(hd_geodesic_update(g, MESH_POINTS(s->xyz, s->n), &e), &e, c);
         }
         st = fz_status(hd_geodesic_distance_each(g, count, id, d, 0, &rep, &e), &e, c);
         if (st >= 0) for (k = 0; k < s->n * count; k++) FZ(d[k] >= 0);
@@ -812,7 +813,7 @@ static void fz_operators(const uint8_t *data, size_t size) {
             if (lap->moving && fz_byte(&in) & 1) {
                 s.xyz[fz_below(&in, 3 * s.n)] = fz_number(&in);
                 fz_what = "update";
-                (void)fz_status(hd_laplacian_update(lap, s.xyz, &e), &e, &c);
+                (void)fz_status(hd_laplacian_update(lap, MESH_POINTS(s.xyz, lap->n), &e), &e, &c);
                 fz_check_laplacian(lap);
                 fz_ask(&in, lap, &c);
             }
@@ -845,8 +846,8 @@ static hd_laplacian *fz_open(const shape *s, int bits, int tufted, fz_context *c
     o.kind = (hd_laplacian_kind)(bits & 3);
     if (bits & 4) o.border = HD_BORDER_DIRICHLET;
     if (bits & 8) { o.n_held = 1; o.held = &held; }
-    o.tufted = tufted;
-    if (fz_status(hd_laplacian_triangles(&lap, s->xyz, s->n, s->tri, s->n_tri, &o, &e), &e, c) < 0) FZ(!lap);
+    o.triangulation = tufted ? HD_TRIANGULATION_TUFTED : HD_TRIANGULATION_GIVEN;
+    if (fz_status(hd_laplacian_create(&lap, MESH_TRIANGLES(s->xyz, s->n, s->tri, s->n_tri), &o, &e), &e, c) < 0) FZ(!lap);
     return lap;
 }
 
@@ -906,10 +907,10 @@ static void fz_lengths(const uint8_t *data, size_t size) {
     fz_sides(&in, &s, lengths);
     o = fz_laplacian_opts(&in, &c.ctx, held, s.n);
     fz_what = "lengths";
-    if (fz_status(hd_laplacian_lengths(&lap, lengths, s.n, s.tri, s.n_tri, &o, &e), &e, &c) >= 0) {
+    if (fz_status(hd_laplacian_create(&lap, MESH_LENGTHS(lengths, s.n, s.tri, s.n_tri), &o, &e), &e, &c) >= 0) {
         FZ(!lap->xyz);
         fz_check_laplacian(lap);
-        FZ(hd_laplacian_lambda_max(lap) >= 0);
+        FZ(lap->lambda_max >= 0);
         fz_ask(&in, lap, &c);
     } else {
         FZ(!lap);
@@ -1031,12 +1032,12 @@ static void fz_sources(const uint8_t *data, size_t size) {
     s = way < 200 ? fz_ball_and_grid(0, 3 + (way & 1)) : fz_soup(&in);
     memset(&o, 0, sizeof o);
     o.context = &c.ctx;
-    o.tufted = (way & 32) != 0;
+    o.triangulation = way & 32 ? HD_TRIANGULATION_TUFTED : HD_TRIANGULATION_GIVEN;
     o.border = (hd_geodesic_border)fz_below(&in, 3);
     fz_what = "sources";
-    lap = fz_open(&s, way >> 1, o.tufted, &c);
+    lap = fz_open(&s, way >> 1, way & 32, &c);
     if (lap) {
-        if (way & 64) (void)fz_status(hd_geodesic_create(&g, s.xyz, s.n, s.tri, s.n_tri, &o, &e), &e, &c);
+        if (way & 64) (void)fz_status(hd_geodesic_create(&g, MESH_TRIANGLES(s.xyz, s.n, s.tri, s.n_tri), &o, &e), &e, &c);
         fz_sources_ask(&in, &s, lap, g, &c);
     }
     hd_geodesic_free(g);
@@ -1058,11 +1059,10 @@ static hd_geodesic_opts fz_geodesic_opts(fz_in *in, fz_context *c, int32_t n, in
     if (way & 2) o.t_in_h2 = fz_number(in);
     if (way & 4) o.mass = (hd_geodesic_mass)fz_int(in, 2);
     if (way & 8) o.updatable = 1;
-    if (way & 16) o.intrinsic_delaunay = 1;
-    if (way & 32) o.tufted = 1;
+    o.triangulation = (hd_triangulation)(way / 16 & 3);
     if (way & 64) {
         o.mollify = fz_number(in);
-        o.lambda = fz_number(in);
+        o.stiffening = fz_number(in);
         o.neighbours = fz_int(in, 130);
     }
     if (way & 128) {
@@ -1077,28 +1077,25 @@ static hd_geodesic_opts fz_geodesic_opts(fz_in *in, fz_context *c, int32_t n, in
 static hd_status fz_geodesic_of(fz_in *in, hd_geodesic **g, const shape *s, const hd_geodesic_opts *o, hd_error *e) {
     double lengths[3 * FZ_FACES];
     int64_t ptr[FZ_FACES + 1];
-    hd_mesh_view view;
+    hd_mesh view;
     int32_t f = 0;
     switch (fz_byte(in) % 5) {
-    case 0: return hd_geodesic_create(g, s->xyz, s->n, s->tri, s->n_tri, o, e);
+    case 0: return hd_geodesic_create(g, MESH_TRIANGLES(s->xyz, s->n, s->tri, s->n_tri), o, e);
     case 1:
-        if (s->n_tri > FZ_FACES) return hd_geodesic_create_lengths(g, NULL, s->n, s->tri, s->n_tri, o, e);
+        if (s->n_tri > FZ_FACES) return hd_geodesic_create(g, MESH_LENGTHS(NULL, s->n, s->tri, s->n_tri), o, e);
         fz_sides(in, s, lengths);
-        return hd_geodesic_create_lengths(g, lengths, s->n, s->tri, s->n_tri, o, e);
+        return hd_geodesic_create(g, MESH_LENGTHS(lengths, s->n, s->tri, s->n_tri), o, e);
     case 2:
-        memset(&view, 0, sizeof view);
-        view.xyz_double = s->xyz;
-        view.n = s->n;
-        view.tri_u32 = (const uint32_t *)s->tri;
-        view.n_indices = 3 * (int64_t)s->n_tri;
-        return hd_geodesic_create_view(g, &view, o, e);
+        view = hd_triangles(s->xyz, s->n, s->tri, s->n_tri);
+        view.stride = 24;
+        return hd_geodesic_create(g, &view, o, e);
     case 3:
         for (ptr[0] = 0; f < FZ_FACES && ptr[f] < 3 * (int64_t)s->n_tri; f++) {
             const int64_t next = ptr[f] + fz_below(in, 9) + (in->p == in->end ? 3 : 0);
             ptr[f + 1] = next < 3 * (int64_t)s->n_tri ? next : 3 * (int64_t)s->n_tri;
         }
-        return hd_geodesic_create_polygons(g, s->xyz, s->n, ptr, s->tri, f, o, e);
-    default: return hd_geodesic_create_points(g, s->xyz, s->n, NULL, NULL, o, e);
+        return hd_geodesic_create(g, MESH_POLYGONS(s->xyz, s->n, ptr, s->tri, f), o, e);
+    default: return hd_geodesic_create(g, MESH_POINTS(s->xyz, s->n), o, e);
     }
 }
 
@@ -1130,7 +1127,7 @@ static void fz_geodesics(const uint8_t *data, size_t size) {
             fz_source_make(&from, &in, &s);
             if (fz_status(hd_geodesic_distance_from(g, &from.source, d, NULL, &e), &e, &c) >= 0) for (k = 0; k < s.n; k++) FZ(d[k] >= 0);
             s.xyz[fz_below(&in, 3 * s.n)] = fz_number(&in);
-            if (turn == 0) (void)fz_status(hd_geodesic_update(g, s.xyz, &e), &e, &c);
+            if (turn == 0) (void)fz_status(hd_geodesic_update(g, MESH_POINTS(s.xyz, s.n), &e), &e, &c);
         }
     } else {
         FZ(!g);
@@ -1420,7 +1417,7 @@ static void fz_options_rest(fz_in *in, const shape *s, const hd_laplacian *lap, 
     go.context = &c->ctx;
     go.perm = NULL;
     if (fz_byte(in) & 7) go.begin_zero = go.end_zero = 0;
-    if (fz_status(hd_geodesic_create(&g, s->xyz, s->n, s->tri, s->n_tri, &go, &e), &e, c) >= 0) {
+    if (fz_status(hd_geodesic_create(&g, MESH_TRIANGLES(s->xyz, s->n, s->tri, s->n_tri), &go, &e), &e, c) >= 0) {
         fz_status(hd_geodesic_distance(g, 1, &(int32_t){1}, d, NULL, &e), &e, c);
         hd_geodesic_free(g);
     }
@@ -1436,7 +1433,7 @@ static void fz_options(const uint8_t *data, size_t size) {
     fz_context c;
     hd_laplacian_opts o;
     hd_laplacian *lap = NULL;
-    hd_mesh_view view;
+    hd_mesh view;
     hd_error e;
     int32_t held[4] = {0, 3, 7, 11};
     shape s = shape_icosphere(0);
@@ -1455,17 +1452,19 @@ static void fz_options(const uint8_t *data, size_t size) {
         memset(&view, 0, sizeof view);
         fz_scribble(&in, &view, sizeof view);
         view.xyz_float = NULL;
-        view.tri_u16 = NULL;
-        view.xyz_double = s.xyz;
-        view.tri_i32 = fz_byte(&in) & 3 ? s.tri : NULL;
-        view.tri_u32 = fz_byte(&in) & 3 ? NULL : (const uint32_t *)s.tri;
-        if (view.n > 12) view.n = 12;
-        if (view.n_indices > 60 || view.n_indices == 0) view.n_indices = 60;
-        if (view.n == 0) view.n = 12;
+        view.xyz = fz_byte(&in) & 3 ? s.xyz : NULL;
+        view.lengths = NULL;
+        view.corner = fz_byte(&in) & 3 ? s.tri : NULL;
+        view.corner_u16 = fz_byte(&in) & 3 ? NULL : (const uint16_t *)(const void *)s.tri;
+        view.face_ptr = NULL;
+        view.nbr_ptr = NULL;
+        view.nbr = NULL;
+        if (view.n > 12 || view.n == 0) view.n = 12;
+        if (view.n_faces > 20 || view.n_faces == 0) view.n_faces = 20;
         if (view.stride > 24) view.stride = 0;
-        st = hd_laplacian_view(&lap, &view, &o, &e);
+        st = hd_laplacian_create(&lap, &view, &o, &e);
     } else {
-        st = hd_laplacian_triangles(&lap, s.xyz, s.n, s.tri, s.n_tri, &o, &e);
+        st = hd_laplacian_create(&lap, MESH_TRIANGLES(s.xyz, s.n, s.tri, s.n_tri), &o, &e);
     }
     if (fz_status(st, &e, &c) >= 0) {
         fz_check_laplacian(lap);
@@ -1547,13 +1546,13 @@ static void fz_filters(const uint8_t *data, size_t size) {
     lo.context = &c.ctx;
     lo.kind = (hd_laplacian_kind)fz_below(&in, 4);
     fz_what = "filters";
-    if (fz_status(hd_laplacian_triangles(&lap, s.xyz, s.n, s.tri, s.n_tri, &lo, &e), &e, &c) >= 0) {
+    if (fz_status(hd_laplacian_create(&lap, MESH_TRIANGLES(s.xyz, s.n, s.tri, s.n_tri), &lo, &e), &e, &c) >= 0) {
         o.method = (hd_method)fz_below(&in, 3);
         o.max_iterations = 400;
         (void)fz_status(hd_heat_create(&heat, lap, &o, &e), &e, &c);
         for (k = 0; k < 2 && heat; k++) {
             f = fz_filter(&in, own);
-            top = fz_byte(&in) < 224 ? hd_laplacian_lambda_max(lap) : fz_number(&in);
+            top = fz_byte(&in) < 224 ? lap->lambda_max : fz_number(&in);
             if (fz_status(hd_rational_fit(&set, &f, top, &c.ctx, &e), &e, &c) >= 0) fz_filter_check(&f, &set, top);
             else FZ(k || memcmp(&set, &before, sizeof set) == 0);
             if (e.status < 0) continue;
