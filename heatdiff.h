@@ -5150,9 +5150,6 @@ static void hdi_mesh_clear(hdi_mesh *mesh, const double *xyz, int32_t n, const i
 
 static int32_t hdi_face_name(const hdi_mesh *mesh, int32_t f) { return mesh->face ? mesh->face[f] : f; }
 
-/* Lengths of face f. */
-static const double *hdi_mesh_lengths(const hdi_mesh *mesh, int32_t f) { return mesh->len + hdi_triple(f); }
-
 static int hdi_is_poly(const hdi_mesh *mesh) { return HDI_HAS_POLYGONS && mesh->ptr; }
 
 /* The first corner of face f, or behind the last of all faces. */
@@ -16788,7 +16785,7 @@ static int hdi_resolvent_weights(const hd_rational *set, hd_c64 *weight, double 
     int32_t i, p;
     if (set->n_poles > HDI_RESOLVENT_POLES) return 0;
     for (i = 0; i < N; i++) {
-        const double s = (i + 0.5) / N;
+        const double s = (i + 0.5) / (double)N;
         u[i] = 1 + 2 * s / ((1 - s) * (1 - s));
         x[i] = 1 - u[i];
         f[i] = 1 / u[i];
