@@ -18904,7 +18904,7 @@ static hd_status hdi_spec_lanczos(hdi_spec *s, int32_t missing, int32_t beyond, 
             }
             if (left <= 0 && right <= 0) return HD_OK;
         }
-        look = s->cols + HDI_SPEC_STEPS * HDI_WIDE;
+        look = s->cols + (int32_t)HDI_SPEC_STEPS * HDI_WIDE;
     }
 }
 
