@@ -16799,8 +16799,8 @@ static int hdi_resolvent_weights(const hd_rational *set, hd_c64 *weight, double 
     hdi_residues_fit(&k, &fit);
     for (p = 0; p < set->n_poles; p++) weight[p] = hdi_cscale(-hdi_rat_count(set, p), fit.a[p]);
     for (i = 0; i <= 8 * N; i++) {               /* the end is as good as infinity */
-        const double s = i / (8 * (double)N), far = 2 * s / hdi_max((1 - s) * (1 - s), 1e-20);
-        worst = hdi_max(worst, fabs((1 + far) * hdi_rational_eval(&fit, -far) - 1));
+        const double s = i / (8 * (double)N), at = 2 * s / hdi_max((1 - s) * (1 - s), 1e-20);
+        worst = hdi_max(worst, fabs((1 + at) * hdi_rational_eval(&fit, -at) - 1));
     }
     *slack = 2 * worst;
     return worst < 0.2;

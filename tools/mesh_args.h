@@ -1,14 +1,57 @@
-/* mesh_args.h - meshes of heatdiff.h as arguments, in C: hd_laplacian_create(&lap, MESH_TRIANGLES(xyz, n, tri, m), NULL, NULL).
- * Positions alone, for updates: MESH_POINTS. */
+/* mesh_args.h - meshes of heatdiff.h as arguments: hd_laplacian_create(&lap, MESH_TRIANGLES(xyz, n, tri, m), NULL, NULL).
+ * They last until the end of the full expression. Positions alone, for updates: MESH_POINTS. In C and C++. */
 
 #ifndef MESH_ARGS_H
 #define MESH_ARGS_H
 
-#define MESH_TRIANGLES(xyz, n, tri, n_tri) ((const hd_mesh[]){hd_triangles(xyz, n, tri, n_tri)})
-#define MESH_LENGTHS(len, nv, tri, m) ((const hd_mesh[]){{.n = nv, .lengths = len, .corner = tri, .n_faces = m}})
-#define MESH_POLYGONS(p, nv, ptr, idx, m) \
-    ((const hd_mesh[]){{.shape = HD_POLYGONS, .n = nv, .xyz = p, .face_ptr = ptr, .corner = idx, .n_faces = m}})
-#define MESH_POINTS(p, nv) ((const hd_mesh[]){{.shape = HD_POINTS, .n = nv, .xyz = p}})
-#define MESH_STARS(p, nv, ptr, ids) ((const hd_mesh[]){{.shape = HD_POINTS, .n = nv, .xyz = p, .nbr_ptr = ptr, .nbr = ids}})
+#include <string.h>
+
+static inline hd_mesh mesh_of(hd_shape shape, const double *xyz, int32_t n) {
+    hd_mesh m;
+    memset(&m, 0, sizeof m);
+    m.shape = shape;
+    m.xyz = xyz;
+    m.n = n;
+    return m;
+}
+
+static inline hd_mesh mesh_of_lengths(const double *lengths, int32_t n, const int32_t *tri, int32_t n_tri) {
+    hd_mesh m = mesh_of(HD_TRIANGLES, NULL, n);
+    m.lengths = lengths;
+    m.corner = tri;
+    m.n_faces = n_tri;
+    return m;
+}
+
+static inline hd_mesh mesh_of_polygons(const double *xyz, int32_t n, const int64_t *ptr, const int32_t *corner, int32_t n_faces) {
+    hd_mesh m = mesh_of(HD_POLYGONS, xyz, n);
+    m.face_ptr = ptr;
+    m.corner = corner;
+    m.n_faces = n_faces;
+    return m;
+}
+
+static inline hd_mesh mesh_of_stars(const double *xyz, int32_t n, const int64_t *ptr, const int32_t *nbr) {
+    hd_mesh m = mesh_of(HD_POINTS, xyz, n);
+    m.nbr_ptr = ptr;
+    m.nbr = nbr;
+    return m;
+}
+
+#ifdef __cplusplus
+struct mesh_here {
+    hd_mesh mesh;
+    operator const hd_mesh *() const { return &mesh; }
+};
+#define MESH_HERE(m) (mesh_here{m})
+#else
+#define MESH_HERE(m) ((const hd_mesh[]){m})
+#endif
+
+#define MESH_TRIANGLES(xyz, n, tri, n_tri) MESH_HERE(hd_triangles(xyz, n, tri, n_tri))
+#define MESH_LENGTHS(lengths, n, tri, n_tri) MESH_HERE(mesh_of_lengths(lengths, n, tri, n_tri))
+#define MESH_POLYGONS(xyz, n, ptr, corner, n_faces) MESH_HERE(mesh_of_polygons(xyz, n, ptr, corner, n_faces))
+#define MESH_POINTS(xyz, n) MESH_HERE(mesh_of(HD_POINTS, xyz, n))
+#define MESH_STARS(xyz, n, ptr, nbr) MESH_HERE(mesh_of_stars(xyz, n, ptr, nbr))
 
 #endif
