@@ -4292,10 +4292,13 @@ HDI_KERNEL void HDI_OF(residual)(const hdi_residual *g) {
             if (g->u[r]) HDI_PREFETCH_AT(g->u[r], i + 64);
             if (g->f[r]) HDI_PREFETCH_AT(g->f[r], (i + 64) * g->f_step);
         }
-        for (r = 0; !g->real && r + HDI_RESIDUAL_BLOCKS <= g->n_blocks; r += HDI_RESIDUAL_BLOCKS)
-            HDI_OF(residual_row)(HDI_RESIDUAL_BLOCKS, 0, g, i, r);
-        for (; r < g->n_blocks && !g->real; r++) HDI_OF(residual_row)(1, 0, g, i, r);
-        if (g->real) HDI_OF(residual_row)(1, 1, g, i, 0);
+        r = 0;
+        if (HDI_RESIDUAL_BLOCKS > 1 && HDI_HAS_POLE_FACTORS && !g->real)
+            for (; r + HDI_RESIDUAL_BLOCKS <= g->n_blocks; r += HDI_RESIDUAL_BLOCKS)
+                HDI_OF(residual_row)(HDI_RESIDUAL_BLOCKS, 0, g, i, r);
+        if (HDI_HAS_POLE_FACTORS && !g->real)
+            for (; r < g->n_blocks; r++) HDI_OF(residual_row)(1, 0, g, i, r);
+        else HDI_OF(residual_row)(1, 1, g, i, 0);
     }
 }
 
@@ -25583,6 +25586,7 @@ static hd_status hdi_pairs_run(hdi_heat_call *h, hdi_pairs *to) {
 /* Kernel entries, if K is there, and distances, if to->d is. */
 static hd_status hdi_pairs_answer(hdi_heat_call *h, hdi_pairs *to, int32_t n_times, const double *t,
                                   double *K) {
+    const double spent = h->heat->habit_spent;
     hdi_heat_call c;
     hdi_entry_list list;
     hd_report one;
@@ -25594,6 +25598,7 @@ static hd_status hdi_pairs_answer(hdi_heat_call *h, hdi_pairs *to, int32_t n_tim
             (void)hdi_entry_list_make(&c, &list, to->n, to->i, to->j);
         }
         if (hdi_heat_run(&c) < 0) *h->e = one.error;
+        h->heat->habit_spent = spent;            /* one call, whose parts take the same method */
     }
     if (h->e->status >= 0 && to->d) (void)hdi_pairs_run(h, to);
     one.error_relative = one.smallest = 0;       /* these are of the distances */

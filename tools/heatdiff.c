@@ -2116,8 +2116,8 @@ static int spread_times(run *r)
     return DONE;
 }
 
-/* The function that is zero everywhere misses a filter by 1 of its largest value. */
-static const double USELESS = 0.9;
+/* Nobody asks for so poor a filter: the function that is zero everywhere misses it by 1 of its largest value. */
+static const double USELESS = 0.1;
 
 /* The pole set of --filter, whose time is its own. */
 static int run_filter(run *r)

@@ -24,6 +24,10 @@ x87="base sparse operators intrinsic ldl engines krylov heat robust assembly dia
 fast="base sparse heat platform"
 
 multilib=gcc-$(gcc -dumpversion 2>/dev/null | cut -d. -f1)-multilib
+# Not every kernel of x86-64 runs programs of 32 bits.
+run32= try32=$(mktemp)
+if printf 'int main(void) { return 0; }\n' | gcc -m32 -x c - -o "$try32" 2>/dev/null && ! "$try32" 2>/dev/null; then run32=qemu-i386; fi
+rm -f "$try32"
 # Debian's clang-cl has its version in its name.
 clang_cl=$(command -v clang-cl || compgen -c clang-cl- | sort -V | tail -1)
 
@@ -45,8 +49,8 @@ clang++-20  | clang++ -std=c++20 -x c++              |             | most | clan
 clang++-23  | clang++ -std=c++2b -x c++              |             | most | clang g++
 tcc         | tcc                                    |             | most | tcc
 musl        | musl-gcc -static                       |             | most | musl-tools
-x86-32      | gcc -m32 -msse2 -mfpmath=sse           |             | all  | $multilib
-x87         | gcc -m32                               |             | x87  | $multilib
+x86-32      | gcc -m32 -msse2 -mfpmath=sse           | $run32 | all  | $multilib
+x87         | gcc -m32                               | $run32 | x87  | $multilib
 mingw64     | x86_64-w64-mingw32-gcc -static         | wine        | most | gcc-mingw-w64-x86-64 wine wine64
 mingw32     | i686-w64-mingw32-gcc -static -msse2 -mfpmath=sse | wine32 | most | gcc-mingw-w64-i686 wine wine32
 armhf       | arm-linux-gnueabihf-gcc -static        | qemu-arm    | core | gcc-arm-linux-gnueabihf libc6-dev-armhf-cross qemu-user
