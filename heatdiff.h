@@ -25583,26 +25583,24 @@ static hd_status hdi_pairs_run(hdi_heat_call *h, hdi_pairs *to) {
     return hdi_heat_sparing(h, hdi_task_run, &to->task);
 }
 
-/* Kernel entries, if K is there, and distances, if to->d is. */
+/* Distances, if to->d is there, and kernel entries, if K is. */
 static hd_status hdi_pairs_answer(hdi_heat_call *h, hdi_pairs *to, int32_t n_times, const double *t,
                                   double *K) {
-    const double spent = h->heat->habit_spent;
     hdi_heat_call c;
     hdi_entry_list list;
     hd_report one;
-    memset(&one, 0, sizeof one);
-    if (K && !hdi_distance_timeless(to->kind)) {
-        if (hdi_kernel_begin(&c, h->heat, HD_KERNEL_OPERATOR, &one, NULL) >= 0 &&
-            hdi_times_check(&c, n_times, t, 0) >= 0) {
-            list.values = K;
-            (void)hdi_entry_list_make(&c, &list, to->n, to->i, to->j);
-        }
-        if (hdi_heat_run(&c) < 0) *h->e = one.error;
-        h->heat->habit_spent = spent;            /* one call, whose parts take the same method */
+    const double spent = h->heat->habit_spent;   /* before the call, whose parts take the same method */
+    if (to->d && hdi_pairs_run(h, to) < 0) return h->e->status;
+    if (!K || hdi_distance_timeless(to->kind)) return HD_OK;
+    h->heat->habit_spent = spent;
+    if (hdi_kernel_begin(&c, h->heat, HD_KERNEL_OPERATOR, &one, NULL) >= 0 &&
+        hdi_times_check(&c, n_times, t, 0) >= 0) {
+        list.values = K;
+        (void)hdi_entry_list_make(&c, &list, to->n, to->i, to->j);
     }
-    if (h->e->status >= 0 && to->d) (void)hdi_pairs_run(h, to);
+    if (hdi_heat_run(&c) < 0) *h->e = one.error;
+    if (h->e->status < 0) return h->e->status;
     one.error_relative = one.smallest = 0;       /* these are of the distances */
-    if (h->e->status < 0 || !one.reason) return h->e->status;
     if (to->d) hdi_report_merge(&one, h->rep);
     *h->rep = one;
     return HD_OK;
@@ -26054,21 +26052,20 @@ static hd_status hdi_estimate_direct(const hdi_estimate *x) {
     return h->e->status;
 }
 
-/* Traces by a set of poles for so many times: the inverses of each pole stand side by side. held: bytes that
- * stay from before. */
+/* Traces by a set of poles for so many times. held: bytes that stay from before. */
 static void hdi_estimate_trace_set(const hdi_estimate *x, const hd_rational *set, int32_t n_times,
                                    double held, hd_cost *c) {
     const hd_laplacian *lap = x->h->heat->source;
-    const double n = lap->n_active, poles = 2.0 * set->n_poles;
-    const double entries = (double)((lap->L.nnz - lap->n_active) / 2) + n;
-    const double values = poles * (lap->B ? entries + n : n) + n;
-    double bytes = held + n_times * (double)(sizeof *set) + 8 * values + 16 * poles * set->n_poles;
-    bytes = hdi_bytes_direct(x, set, HDI_AFTER_INVERSE, 2 * set->n_poles, HDI_PROBES, bytes);
+    const int32_t n_sets = 2 * hdi_low32(n_times, set->n_poles);
+    const double n = lap->n_active, entries = (double)((lap->L.nnz - lap->n_active) / 2) + n;
+    const double sums = n_sets < 2 * n_times ? n_sets + 2 : n_sets;
+    double bytes = held + n_times * (double)(sizeof *set) + 8 * (sums * (lap->B ? entries : n) + 6 * n);
+    bytes = hdi_bytes_direct(x, set, HDI_AFTER_INVERSE, n_sets, HDI_PROBES, bytes);
     hdi_cost_direct(x->h->heat, hdi_set_packs(set), hdi_set_lone(set), HDI_AFTER_INVERSE, HDI_PROBES, c);
     hdi_cost_add(c, 0, 0, bytes);
 }
 
-/* Traces at all times, as hdi_trace_poles takes them. held: bytes that stay from before. */
+/* Traces at all times, as hdi_diagonals_together takes them. held: bytes that stay from before. */
 static hd_status hdi_estimate_trace(const hdi_estimate *x, double held, hd_cost *c) {
     hdi_heat_call *h = x->h;
     const int settled = h->heat->poles_asked || h->heat->exacting;
@@ -26081,7 +26078,7 @@ static hd_status hdi_estimate_trace(const hdi_estimate *x, double held, hd_cost 
         memset(&set, 0, sizeof set);
         q1 = windows > 0 ? hdi_window_end(h->times, h->n_times, q0, w, windows) : q0 + 1;
         h->t = h->times[q0];
-        if (settled) (void)hdi_heat_set(h, &set);
+        if (settled || windows == 0) (void)hdi_heat_set(h, &set);
         else (void)hdi_shared_pick(&set, h->times[q1 - 1] / h->times[q0] * (1 + 1e-12), HDI_SHARED_TOL);
         hdi_estimate_trace_set(x, &set, q1 - q0, held, c);
     }
