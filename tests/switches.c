@@ -345,6 +345,7 @@ static void check_points(void) {
     hd_laplacian_opts o;
     hd_laplacian *lap = NULL;
     hd_csr within;
+    memset(&o, 0, sizeof o);
     for (i = 0; i < N; i++) {
         const double z = 1 - (2 * i + 1.0) / (double)N, r = sqrt(1 - z * z), phi = 2.399963229728653 * i;
         p[3 * i] = r * cos(phi);
