@@ -4022,9 +4022,8 @@ HDI_PART void HDI_OF(product_eight)(const int nc, const hdi_product *g, int64_t 
     t.off = off;
     HDI_OF(tile_sum)(pack, HDI_EIGHT, nc, 0, 0, &t, x);
     HDI_EACH(k, nc) {
-        HDI_EACH(v, HDI_EIGHT)
-            if (j + k < g->cols)
-                HDI_OF(store)(c + HDI_WIDTH * v, HDI_OF(load)(c + HDI_WIDTH * v) - x[k][v].re);
+        for (v = 0; v < HDI_EIGHT && j + k < g->cols; v++)
+            HDI_OF(store)(c + HDI_WIDTH * v, HDI_OF(load)(c + HDI_WIDTH * v) - x[k][v].re);
         c += g->c_col;
     }
 }
