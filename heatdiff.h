@@ -5927,7 +5927,6 @@ static hd_status hdi_places_make(hdi_places *out, const double *xyz, int32_t n, 
 /* Eigenvalues w, ascending, and eigenvectors (rows of v) of a symmetric 3 x 3 matrix a, which is
  * overwritten: Jacobi's rotations. */
 static void hdi_eigen3(double a[3][3], double w[3], double v[3][3]) {
-    static const signed char from[3] = {0, 0, 1}, to[3] = {1, 2, 2};
     int sweep, p, q, i, c;
     for (p = 0; p < 9; p++) v[p / 3][p % 3] = p / 3 == p % 3;
     for (sweep = 0; sweep < 30; sweep++) {
@@ -5935,8 +5934,8 @@ static void hdi_eigen3(double a[3][3], double w[3], double v[3][3]) {
         if (off <= DBL_MIN || off <= 1e-17 * (fabs(a[0][0]) + fabs(a[1][1]) + fabs(a[2][2]))) break;
         for (i = 0; i < 3; i++) {
             double theta, t, co;
-            p = from[i];
-            q = to[i];
+            p = i / 2;                           /* (0,1), (0,2), (1,2) */
+            q = 1 + (i + 1) / 2;
             if (a[p][q] == 0) continue;
             theta = (a[q][q] - a[p][p]) / (2 * a[p][q]);
             t = (theta >= 0 ? 1 : -1) / (fabs(theta) + sqrt(theta * theta + 1));
