@@ -5947,8 +5947,8 @@ static void hdi_eigen3(double a[3][3], double w[3], double v[3][3]) {
     }
     for (i = 0; i < 3; i++) w[i] = a[i][i];
     for (i = 0; i < 3; i++) {                    /* three values in order; a has served */
-        p = from[i];
-        q = to[i];
+        p = i / 2;
+        q = 1 + (i + 1) / 2;
         if (w[p] <= w[q]) continue;
         a[0][0] = w[p];
         w[p] = w[q];
