@@ -273,7 +273,7 @@ static void flat(mesh *m, uint64_t *seed) {
 /* Another part with a size of its own, one factor for all, or one along x. */
 static void scales(mesh *m, uint64_t *seed) {
     const int way = draw(seed, 4);
-    const double most = chance(seed, 0.2) ? 150 : 30, a = power10(seed, -most, most), b = power10(seed, -12, 0);
+    const double most = chance(seed, 0.2) ? 40 : 30, a = power10(seed, -most, most), b = power10(seed, -12, 0);
     const int32_t first = m->n;
     int32_t i;
     if (way < 2) put_good(m, seed);
