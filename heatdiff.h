@@ -18252,9 +18252,9 @@ static uint64_t hdi_ground_room(const hdi_elim *m) {
  * from new vectors that are orthogonal to all that was found. */
 
 enum {
-    HDI_SPEC_TILE = 64,              /* rows of a tile: some 300 columns of it stay in the second cache */
+    HDI_SPEC_TILE = 128,             /* rows that blocks go through together */
     HDI_SPEC_CHUNKS = 32,            /* parts of a sum over rows, whatever the number of threads */
-    HDI_SPEC_GROUP = 8,              /* blocks that go through a slab at a time */
+    HDI_SPEC_GROUP = 8,              /* blocks that a pass over others changes at a time */
     HDI_SPEC_MOST = 320,             /* columns of a basis */
     HDI_SPEC_SPARE = 112,            /* more than twice the pairs wanted, when these are few */
     HDI_SPEC_HALF = 64,              /* eigenvalues between the last one known and the next shift */
@@ -18326,81 +18326,16 @@ static int hdi_spec_eigen(double *A, double *d, double *z, int32_t m, int32_t r,
     return hdi_tridiag_eigen(d, e, z, m, r);
 }
 
-/* ---- slabs ---- */
-
-/* Columns of n entries by tiles of rows: entry (i,j) is at [(i/TILE) TILE room + TILE j + i%TILE]. So a tile
- * is read in one piece, and stays in cache for many blocks. */
-typedef struct hdi_slab {
-    double *v;
-    int32_t cols, room;
-    double low, high;            /* eigenvalues of the first and last column */
-} hdi_slab;
-
-/* A pass of columns [first, first + cols) of a slab over blocks of right-hand sides [n_blocks][n][8]. */
-typedef struct hdi_slab_pass {
-    const hdi_kernels *ops;
-    const hdi_slab *slab;
-    int32_t n, first, cols, n_blocks, n_chunks, copy;
-    double *w;                   /* [n_blocks][n][8] */
-    double *h;                   /* [n_blocks][cols][8] coefficients; of dots [n_chunks] of them */
-} hdi_slab_pass;
-
-static int32_t hdi_slab_tiles(int32_t n) { return (n + HDI_SPEC_TILE - 1) / HDI_SPEC_TILE; }
-
-static double *hdi_slab_at(const hdi_slab *s, int32_t tile, int32_t col) {
-    return s->v + HDI_SPEC_TILE * ((int64_t)tile * s->room + col);
-}
-
-static hd_status hdi_slab_make(hdi_slab *s, int32_t n, int32_t room, hd_context *ctx, hd_error *e) {
-    memset(s, 0, sizeof *s);
-    s->room = room;
-    s->v = HDI_NEW(ctx, double, (uint64_t)hdi_slab_tiles(n) * HDI_SPEC_TILE * (uint64_t)room, e);
-    return e->status;
-}
-
-/* h = - V' w over the tiles of a chunk. */
-static void hdi_slab_dots_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_slab_pass *p = (const hdi_slab_pass *)arg;
-    const int64_t tiles = hdi_slab_tiles(p->n), size = 8 * (int64_t)p->cols;
-    const int64_t end = (index + 1) * tiles / p->n_chunks;
-    double *h = p->h + index * p->n_blocks * size;
-    int64_t tile;
-    int32_t q;
-    (void)worker;
-    memset(h, 0, (size_t)(p->n_blocks * size) * sizeof *h);
-    for (tile = index * tiles / p->n_chunks; tile < end; tile++) {
-        const int64_t row = HDI_SPEC_TILE * tile, n = hdi_least(p->n - row, HDI_SPEC_TILE);
-        const double *v = hdi_slab_at(p->slab, (int32_t)tile, p->first);
-        for (q = 0; q < p->n_blocks; q++)
-            hdi_kernels_rows(p->ops, h + q * size, 8, p->cols, p->w + 8 * (row + (int64_t)q * p->n), n, v, 1,
-                             HDI_SPEC_TILE);
-    }
-}
-
-/* w -= V h over the tiles of a range. copy: w goes into the slab instead, one block. */
-static void hdi_slab_add_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_slab_pass *p = (const hdi_slab_pass *)arg;
-    int64_t tile, i;
-    int32_t q;
-    for (tile = begin; tile < end; tile++) {
-        const int64_t row = HDI_SPEC_TILE * tile, n = hdi_least(p->n - row, HDI_SPEC_TILE);
-        double *v = hdi_slab_at(p->slab, (int32_t)tile, p->first);
-        for (q = 0; q < p->n_blocks && !p->copy; q++)
-            hdi_kernels_rows(p->ops, p->w + 8 * (row + (int64_t)q * p->n), 8, n,
-                             p->h + 8 * (int64_t)q * p->cols, p->cols, v, HDI_SPEC_TILE, 1);
-        for (q = 0; q < p->cols && p->copy; q++)
-            for (i = 0; i < n; i++) v[HDI_SPEC_TILE * q + i] = p->w[8 * (row + i) + q];
-    }
-}
-
 /* ---- what a computation holds ---- */
 
-/* Eigenvalues are those of the plan's scaled pair, vectors by rows in elimination order. */
+/* Vectors stand eight side by side in blocks [n][8], by rows in elimination order. Eigenvalues are those of
+ * the plan's scaled pair. */
 typedef struct hdi_spec {
     hd_context *ctx;
     hdi_elim *m;
     const hd_laplacian *lap;
     const hdi_kernels *ops;
+    hdi_scope keep, runs;        /* what is there to the end, and what only runs need */
     int32_t n;
     hdi_factor factor;
     double sigma, off;           /* shift of the factor; how far from sigma its count may be wrong */
@@ -18411,27 +18346,27 @@ typedef struct hdi_spec {
     double edge;                 /* all below are found */
     double share;                /* how much of the work is done */
     int32_t idle;                /* shifts in a row with nothing new below them */
-    hdi_slab *slab;              /* [n_slabs] locked vectors */
-    char *beside;                /* [n_slabs] 1: the run under way is orthogonal to it */
-    int32_t n_slabs, room_slabs;
+    double **lock;               /* [room_lock] blocks of vectors found, n_lock are there */
+    double *high;                /* [room_lock] the largest value in each */
+    int32_t n_lock, room_lock;
     double *value, *residual;    /* [found] ascending, and what belongs to each */
-    int32_t *slab_of, *col_of;
+    int32_t *at;                 /* [found] vectors: eight times the block, and the column */
     int32_t found;
-    /* the run under way */
-    hdi_slab basis;              /* from column most + WIDE on: the Ritz vectors nearest to sigma */
-    int32_t most;                /* columns that the basis may have */
-    int32_t n_group;             /* blocks that go through a slab at a time */
-    int32_t cols, last, width;   /* columns of the basis; first column and width of its last block */
-    int32_t before;              /* first column of the block before that */
+    /* The run under way. Block n_blocks of the basis is the newest one, which T does not have yet. */
+    double **list;               /* [n_near] blocks found that it is orthogonal to, then those of the basis */
+    double *basis;               /* [room + 1][n][8] */
+    int32_t n_near, n_blocks, room;
+    int32_t *live;               /* [8 room + 8] columns that are not zero: of T, of the newest */
+    int32_t cols, width;         /* columns of T, and of its last block */
+    int32_t n_group;             /* blocks that a pass changes at a time */
     double lost;                 /* largest column of a block that was dropped */
     int32_t stuck;               /* Ritz pairs that cannot come nearer for rounding */
-    int32_t fresh;               /* columns after them: the newest block, which T does not have yet */
-    double couple[HDI_WIDE * HDI_WIDE];   /* the newest block times this lacks in the last one */
-    double *T, *A, *z;           /* [most][most] projected matrix, twice; eigenvectors */
-    double *d, *off_ritz;        /* [most] eigenvalues, residuals */
-    double *w, *bw, *tmp;        /* [n][8] a block, B times it, and another */
+    double *own, *couple;        /* [room + 1][8][8] of T: on its diagonal, and below it */
+    double *A, *z;               /* [cols][cols] T, eigenvectors */
+    double *d, *off_ritz;        /* [cols] eigenvalues, residuals */
+    double *bw, *tmp;            /* [n][8] B times a block, and another */
+    double *group;               /* [n_group][n][8] B times blocks */
     double *sweep, *h, *part, *work;
-    double *group, *group_b;     /* [n_group][n][8] */
     double *noise;               /* [n] weights of rounding in residuals; [n] work */
     int32_t n_poor;              /* residuals above the tolerance and rounding */
     uint64_t seed;
@@ -18442,133 +18377,168 @@ typedef struct hdi_spec {
 
 /* Frees what only runs need. */
 static void hdi_spec_runs_free(hdi_spec *s) {
-    hdi_free(s->ctx, s->basis.v);
-    hdi_free(s->ctx, s->T);
-    hdi_free(s->ctx, s->w);
-    hdi_free(s->ctx, s->sweep);
-    hdi_free(s->ctx, s->h);
-    hdi_free(s->ctx, s->group);
     hdi_factor_free(&s->factor);
-    s->basis.v = s->T = s->w = s->sweep = s->h = s->group = NULL;
+    (void)hdi_scope_end(&s->runs);
 }
 
 static void hdi_spec_free(hdi_spec *s) {
-    int32_t i;
     if (!s->ctx) return;
-    for (i = 0; i < s->n_slabs; i++) hdi_free(s->ctx, s->slab[i].v);
-    hdi_free(s->ctx, s->slab);
-    hdi_free(s->ctx, s->beside);
-    hdi_free(s->ctx, s->value);
-    hdi_free(s->ctx, s->slab_of);
+    while (s->n_lock > 0) hdi_free(s->ctx, s->lock[--s->n_lock]);
     hdi_spec_runs_free(s);
+    (void)hdi_scope_end(&s->keep);
     memset(s, 0, sizeof *s);
 }
 
-/* Columns of a basis, and blocks of Ritz vectors made at a time. */
-static int32_t hdi_spec_most(int32_t n, int32_t count) {
-    return hdi_low32(n, hdi_low32(2 * hdi_low32(count, HDI_SPEC_MOST) + HDI_SPEC_SPARE, HDI_SPEC_MOST));
-}
-
-static int32_t hdi_spec_group(int32_t count) { return hdi_low32(count / 8 + 2, HDI_SPEC_GROUP); }
-
 /* Parts of a sum over rows. */
 static int32_t hdi_spec_chunks(int32_t n) {
-    return hdi_low32(HDI_SPEC_CHUNKS, hdi_slab_tiles(n) / 8 + 1);
+    return hdi_low32(HDI_SPEC_CHUNKS, n / (8 * HDI_SPEC_TILE) + 1);
 }
 
-/* Doubles of the coefficients of a group in a slab. */
-static uint64_t hdi_spec_h(int32_t most, int32_t n_group) {
-    return (uint64_t)(most + HDI_WIDE) * HDI_WIDE * (uint64_t)n_group;
+/* All arrays but the blocks that are found. n_sweep: doubles of a sweep. */
+static void hdi_spec_take(hdi_spec *s, int32_t rows, int32_t count, uint64_t n_sweep) {
+    const int32_t most = hdi_low32(2 * hdi_low32(count, HDI_SPEC_MOST) + HDI_SPEC_SPARE, HDI_SPEC_MOST);
+    const uint64_t n = (uint64_t)rows, block = HDI_WIDE * n, square = (uint64_t)HDI_WIDE * HDI_WIDE;
+    uint64_t blocks, cols, h;
+    s->n = rows;
+    s->room = hdi_low32((rows + HDI_WIDE - 1) / HDI_WIDE, most / HDI_WIDE);
+    s->n_group = hdi_low32(count / HDI_WIDE + 2, HDI_SPEC_GROUP);
+    s->room_lock = rows / 4 + 64;
+    blocks = (uint64_t)s->room + 1;
+    cols = (uint64_t)HDI_WIDE * (uint64_t)s->room;
+    h = square * blocks * (uint64_t)s->n_group;
+    s->lock = HDI_TAKE(&s->keep, double *, s->room_lock);
+    s->high = HDI_TAKE(&s->keep, double, s->room_lock);
+    s->value = HDI_TAKE(&s->keep, double, n);
+    s->residual = HDI_TAKE(&s->keep, double, n);
+    s->at = HDI_TAKE(&s->keep, int32_t, n);
+    s->list = HDI_TAKE(&s->runs, double *, (uint64_t)s->room_lock + blocks);
+    s->basis = HDI_TAKE(&s->runs, double, blocks * block);
+    s->live = HDI_TAKE(&s->runs, int32_t, blocks * HDI_WIDE);
+    s->own = HDI_TAKE(&s->runs, double, blocks * square);
+    s->couple = HDI_TAKE(&s->runs, double, blocks * square);
+    s->A = HDI_TAKE(&s->runs, double, cols * cols);
+    s->z = HDI_TAKE(&s->runs, double, cols * cols);
+    s->d = HDI_TAKE(&s->runs, double, cols);
+    s->off_ritz = HDI_TAKE(&s->runs, double, cols);
+    s->work = HDI_TAKE(&s->runs, double, 3 * cols);
+    s->bw = HDI_TAKE(&s->runs, double, block);
+    s->tmp = HDI_TAKE(&s->runs, double, block);
+    s->group = HDI_TAKE(&s->runs, double, (uint64_t)s->n_group * block);
+    s->sweep = HDI_TAKE(&s->runs, double, n_sweep);
+    s->h = HDI_TAKE(&s->runs, double, h);
+    s->part = HDI_TAKE(&s->runs, double, h * (uint64_t)hdi_spec_chunks(rows));
+    s->noise = HDI_TAKE(&s->runs, double, 2 * n);
 }
 
-/* Doubles that hdi_spec_make takes, but for a sweep. */
-static double hdi_spec_doubles(int32_t n, int32_t count) {
-    const int32_t most = hdi_spec_most(n, count), group = hdi_spec_group(count);
-    const double tiles = (double)HDI_SPEC_TILE * hdi_slab_tiles(n), m = most;
-    return tiles * (m + 2 * HDI_WIDE) + 3 * m * (m + 2) +
-           (double)hdi_spec_h(most, group) * (hdi_spec_chunks(n) + 1) +
-           (double)n * (5 + 3 * HDI_WIDE + 2 * HDI_WIDE * group);
+/* Bytes that a computation takes: its arrays, and the vectors twice in the end. */
+static double hdi_spec_need(int32_t n, int32_t count, uint64_t n_sweep) {
+    uint64_t bytes;
+    hd_error e;
+    hdi_spec s;
+    memset(&s, 0, sizeof s);
+    s.keep = s.runs = hdi_scope_tally(&bytes, &e);
+    hdi_spec_take(&s, n, count, n_sweep);
+    return (double)bytes + 2.0 * sizeof(double) * n * ((double)count + HDI_SPEC_GAPS);
 }
 
-/* Room for runs. */
 static hd_status hdi_spec_make(hdi_spec *s, hdi_elim *m, int32_t count, double tol, hd_error *e) {
-    const int32_t columns = hdi_spec_most(m->lap->n_active, count), n_group = hdi_spec_group(count);
-    const uint64_t n = (uint64_t)m->lap->n_active, most = (uint64_t)columns;
-    const uint64_t wide = HDI_WIDE, h = hdi_spec_h(columns, n_group);
-    const uint64_t group = n * wide * (uint64_t)n_group;
     memset(s, 0, sizeof *s);
     s->ctx = m->ctx;
     s->m = m;
     s->lap = m->lap;
-    s->n = m->lap->n_active;
     s->tol = tol;
     s->ops = hdi_kernels_get(hdi_simd_level(m->ctx), 0);
-    s->most = columns;
-    s->n_group = n_group;
-    if (hdi_slab_make(&s->basis, s->n, s->most + 2 * HDI_WIDE, s->ctx, e) < 0) return e->status;
-    s->value = HDI_NEW(s->ctx, double, 2 * n, e);
-    if (s->value) s->slab_of = HDI_NEW(s->ctx, int32_t, 2 * n, e);
-    if (s->slab_of) s->T = HDI_NEW(s->ctx, double, 3 * most * most + 5 * most, e);
-    if (s->T) s->w = HDI_NEW(s->ctx, double, 3 * n * wide, e);
-    if (s->w) s->sweep = HDI_NEW(s->ctx, double, hdi_sweep_size(&m->sym, 1, HDI_WIDE), e);
-    if (s->sweep) s->h = HDI_NEW(s->ctx, double, h * (uint64_t)(hdi_spec_chunks(s->n) + 1), e);
-    if (s->h) s->group = HDI_NEW(s->ctx, double, 2 * group + 2 * n, e);
-    if (e->status < 0) return e->status;
-    s->residual = s->value + n;
-    s->col_of = s->slab_of + n;
-    s->A = s->T + most * most;
-    s->z = s->A + most * most;
-    s->d = s->z + most * most;
-    s->off_ritz = s->d + most;
-    s->work = s->off_ritz + most;
-    s->bw = s->w + n * wide;
-    s->tmp = s->bw + n * wide;
-    s->part = s->h + h;
-    s->group_b = s->group + group;
-    s->noise = s->group_b + group;
-    return HD_OK;
+    s->keep = s->runs = hdi_scope_begin(m->ctx, e);
+    hdi_spec_take(s, m->lap->n_active, count, hdi_sweep_size(&m->sym, 1, HDI_WIDE));
+    return e->status;
 }
 
-/* ---- blocks against slabs ---- */
+/* ---- blocks against blocks ---- */
 
-static hdi_slab_pass hdi_spec_pass(const hdi_spec *s, const hdi_slab *slab, int32_t first, int32_t cols,
-                                   double *w, int32_t n_blocks) {
-    hdi_slab_pass p;
-    memset(&p, 0, sizeof p);
+/* Blocks v against blocks w. Coefficients h [n_w][n_v][8][8]: that of column j of v and column q of w is
+ * number 8 j + q of its pair of blocks. */
+typedef struct hdi_spec_pass {
+    const hdi_kernels *ops;
+    double *const *v, *const *w;
+    double *h;                   /* [n_chunks] of them in dots */
+    int32_t n, n_v, n_w, n_chunks;
+} hdi_spec_pass;
+
+static hdi_spec_pass hdi_spec_open(const hdi_spec *s, double *const *v, int32_t n_v, double *const *w,
+                                   int32_t n_w, double *h) {
+    hdi_spec_pass p;
     p.ops = s->ops;
-    p.slab = slab;
-    p.n = s->n;
-    p.first = first;
-    p.cols = cols;
+    p.v = v;
     p.w = w;
-    p.n_blocks = n_blocks;
+    p.h = h;
+    p.n = s->n;
+    p.n_v = n_v;
+    p.n_w = n_w;
     p.n_chunks = hdi_spec_chunks(s->n);
     return p;
 }
 
+/* h = - V' w over the rows of a chunk. */
+static void hdi_spec_dots_task(void *arg, int64_t index, int32_t worker) {
+    const hdi_spec_pass *p = (const hdi_spec_pass *)arg;
+    const int64_t size = 64 * (int64_t)p->n_v * p->n_w, end = (index + 1) * p->n / p->n_chunks;
+    double *h = p->h + index * size;
+    int64_t row, rows;
+    int32_t i, q;
+    (void)worker;
+    memset(h, 0, (size_t)size * sizeof *h);
+    for (row = index * p->n / p->n_chunks; row < end; row += rows) {
+        rows = hdi_least(end - row, HDI_SPEC_TILE);
+        for (i = 0; i < p->n_v; i++)
+            for (q = 0; q < p->n_w; q++)
+                hdi_kernels_rows(p->ops, h + 64 * ((int64_t)q * p->n_v + i), 8, 8, p->w[q] + 8 * row, rows,
+                                 p->v[i] + 8 * row, 8, 1);
+    }
+}
+
+/* w -= V h over a range of rows. */
+static void hdi_spec_add_task(void *arg, int64_t begin, int64_t end) {
+    const hdi_spec_pass *p = (const hdi_spec_pass *)arg;
+    int32_t i, q;
+    for (i = 0; i < p->n_v; i++)
+        for (q = 0; q < p->n_w; q++)
+            hdi_kernels_rows(p->ops, p->w[q] + 8 * begin, 8, end - begin,
+                             p->h + 64 * ((int64_t)q * p->n_v + i), 8, p->v[i] + 8 * begin, 1, 8);
+}
+
 /* h = V' w. The chunks are summed in their order. */
-static void hdi_spec_dots(const hdi_spec *s, hdi_slab_pass p, double *h) {
-    const int64_t size = 8 * (int64_t)p.cols * p.n_blocks;
+static void hdi_spec_dots(const hdi_spec *s, double *const *v, int32_t n_v, double *const *w, int32_t n_w,
+                          double *h) {
+    const int64_t size = 64 * (int64_t)n_v * n_w;
+    hdi_spec_pass p = hdi_spec_open(s, v, n_v, w, n_w, s->part);
     int64_t i;
     int32_t c;
-    p.h = s->part;
-    hdi_parallel(s->ctx, p.n_chunks, hdi_slab_dots_task, &p);
+    hdi_parallel(s->ctx, p.n_chunks, hdi_spec_dots_task, &p);
     for (i = 0; i < size; i++) h[i] = -s->part[i];
     for (c = 1; c < p.n_chunks; c++) for (i = 0; i < size; i++) h[i] -= s->part[c * size + i];
 }
 
-static void hdi_spec_add(const hdi_spec *s, hdi_slab_pass p, double *h, int copy) {
-    p.h = h;
-    p.copy = copy;
-    hdi_parallel_ranges(s->ctx, hdi_slab_tiles(s->n), 16, hdi_slab_add_task, &p);
+static void hdi_spec_add(const hdi_spec *s, double *const *v, int32_t n_v, double *const *w, int32_t n_w,
+                         double *h) {
+    hdi_spec_pass p = hdi_spec_open(s, v, n_v, w, n_w, h);
+    hdi_parallel_ranges(s->ctx, s->n, HDI_SPEC_TILE, hdi_spec_add_task, &p);
 }
 
-/* w -= V V'(B w), with bw = B w, for columns [first, first + cols) of a slab: the coefficients into h. */
-static void hdi_spec_project(const hdi_spec *s, const hdi_slab *slab, int32_t first, int32_t cols, double *w,
-                             double *bw, int32_t n_blocks, double *h) {
-    if (cols == 0) return;
-    hdi_spec_dots(s, hdi_spec_pass(s, slab, first, cols, bw, n_blocks), h);
-    hdi_spec_add(s, hdi_spec_pass(s, slab, first, cols, w, n_blocks), h, 0);
+/* w -= V V'(B w), with bw = B w, for any number of blocks v, as many at a time as h has room for. removed [8
+ * n_w], or NULL: squares of norms of what was taken out. */
+static void hdi_spec_project(const hdi_spec *s, double *const *v, int32_t n_v, double *const *w,
+                             double *const *bw, int32_t n_w, double *removed) {
+    int32_t i, n, q, j;
+    for (q = 0; removed && q < 8 * n_w; q++) removed[q] = 0;
+    for (i = 0; i < n_v; i += n) {
+        n = hdi_low32(n_v - i, s->room + 1);
+        hdi_spec_dots(s, v + i, n, bw, n_w, s->h);
+        hdi_spec_add(s, v + i, n, w, n_w, s->h);
+        for (q = 0; removed && q < 8 * n_w; q++) {
+            const double *h = s->h + 64 * (int64_t)n * (q / 8) + q % 8;
+            for (j = 0; j < 8 * n; j++) removed[q] += h[8 * j] * h[8 * j];
+        }
+    }
 }
 
 /* ---- operators on blocks ---- */
@@ -18602,23 +18572,23 @@ static void hdi_spec_sweep(hdi_spec *s, double *w) {
 
 /* w = (L - sigma B)^-1 bw. Returns how large the residual bw - (L - sigma B) w is against w: the size of a
  * change of L that would explain it, a backward error. measure: look at it. */
-static double hdi_spec_inverse(hdi_spec *s, int measure) {
+static double hdi_spec_inverse(hdi_spec *s, double *w, int measure) {
     const int64_t size = 8 * (int64_t)s->n;
     double error[HDI_WIDE], norm[HDI_WIDE], worst = 0;
     int64_t i;
     int r, turn;
-    memcpy(s->w, s->bw, (size_t)size * sizeof *s->w);
-    hdi_spec_sweep(s, s->w);
+    memcpy(w, s->bw, (size_t)size * sizeof *w);
+    hdi_spec_sweep(s, w);
     for (turn = 0; turn < 1 + s->refine && (measure || s->refine); turn++) {
-        hdi_spec_residual(s, NULL, s->bw, s->w, s->group, s->tmp);
+        hdi_spec_residual(s, NULL, s->bw, w, s->group, s->tmp);
         if (turn < s->refine) {
             hdi_spec_sweep(s, s->tmp);
-            for (i = 0; i < size; i++) s->w[i] += s->tmp[i];
+            for (i = 0; i < size; i++) w[i] += s->tmp[i];
             if (measure) continue;
             break;
         }
         hdi_wide_norms(s->tmp, s->m->weight, s->n, HDI_WIDE, error);
-        hdi_wide_dots(s->w, s->group, s->n, HDI_WIDE, norm);
+        hdi_wide_dots(w, s->group, s->n, HDI_WIDE, norm);
         for (r = 0; r < HDI_WIDE; r++)
             if (norm[r] > 0) worst = hdi_max(worst, error[r] / sqrt(norm[r]));
     }
@@ -18694,6 +18664,20 @@ static double hdi_spec_cholesky(const double *G, double *R, double *scale, const
     return off;
 }
 
+/* Makes the columns of x orthonormal in B by their Gram matrix G = R' R, with bx = B x. */
+static double hdi_spec_orthonormal(const hdi_spec *s, double *x, double *bx, double *scale,
+                                   const double *norm, double *drop, double *G, double *R) {
+    hdi_spec_scale job;
+    double off;
+    hdi_spec_dots(s, &x, 1, &bx, 1, G);
+    off = hdi_spec_cholesky(G, R, scale, norm, drop);
+    job.w = x;
+    job.bw = bx;
+    job.R = R;
+    hdi_parallel_ranges(s->ctx, s->n, HDI_ROWS_PER_TASK, hdi_spec_scale_task, &job);
+    return off;
+}
+
 /* total = R total, both upper triangular */
 static void hdi_spec_compose(const double *R, double *total) {
     int i, j, k;
@@ -18706,92 +18690,51 @@ static void hdi_spec_compose(const double *R, double *total) {
     }
 }
 
-/* w -= V V' bw for the basis and the slabs nearby. removed [8]: norms of what was taken out. */
-static void hdi_spec_clean(hdi_spec *s, double *removed) {
-    int32_t i, j, q;
-    for (q = 0; q < HDI_WIDE; q++) removed[q] = 0;
-    for (i = 0; i <= s->n_slabs; i++) {
-        const hdi_slab *slab = i < s->n_slabs ? s->slab + i : &s->basis;
-        const int32_t cols = i < s->n_slabs ? slab->cols : s->cols;
-        if (i < s->n_slabs && !s->beside[i]) continue;
-        hdi_spec_project(s, slab, 0, cols, s->w, s->bw, 1, s->h);
-        for (j = 0; j < cols; j++)
-            for (q = 0; q < HDI_WIDE; q++) removed[q] += s->h[8 * j + q] * s->h[8 * j + q];
-    }
-    for (q = 0; q < HDI_WIDE; q++) removed[q] = sqrt(removed[q]);
-    hdi_spec_mass(s, s->w, s->bw);
-}
-
 /* w less its part in the last two blocks of the basis, from which alone it should have one. The coefficients
  * are the last block of T. */
-static void hdi_spec_local(hdi_spec *s) {
-    const int32_t at = s->last - s->before;
-    int32_t q, k;
-    hdi_spec_project(s, &s->basis, s->before, s->cols - s->before, s->w, s->bw, 1, s->h);
-    for (q = 0; q < s->width; q++)
-        for (k = 0; k <= q; k++)
-            s->T[(int64_t)(s->last + q) * s->most + s->last + k] =
-                0.5 * (s->h[8 * (at + q) + k] + s->h[8 * (at + k) + q]);
-    hdi_spec_mass(s, s->w, s->bw);
+static void hdi_spec_local(hdi_spec *s, double *w) {
+    const int32_t last = s->n_blocks - 1, first = hdi_high32(last - 1, 0);
+    const double *h = s->h + 64 * (last - first);
+    double *own = s->own + 64 * last;
+    int q, k;
+    hdi_spec_project(s, s->list + s->n_near + first, last - first + 1, &w, &s->bw, 1, NULL);
+    for (q = 0; q < HDI_WIDE; q++)
+        for (k = 0; k < HDI_WIDE; k++) own[8 * q + k] = 0.5 * (h[8 * q + k] + h[8 * k + q]);
+    hdi_spec_mass(s, w, s->bw);
 }
 
-/* Block w orthogonal to the basis and to the slabs nearby, with orthonormal columns, all in B; bw = B w.
- * couple receives the triangular factor. Parts in the last two blocks go first, then what rounding left in
- * all vectors; again for columns that become much smaller by it. */
-static void hdi_spec_append(hdi_spec *s) {
+/* The newest block of the basis, orthogonal to those before it and to the blocks nearby, with orthonormal
+ * columns, all in B. couple receives its triangular factor, bw B times it; a column with nothing new is zero.
+ * Parts in the last two blocks go first, then what rounding left in all vectors; again for columns that
+ * become much smaller by it. Returns how many columns are left. */
+static int32_t hdi_spec_append(hdi_spec *s) {
+    double *w = s->list[s->n_near + s->n_blocks], *couple = s->couple + 64 * s->n_blocks;
     double norm[HDI_WIDE], scale[HDI_WIDE], removed[HDI_WIDE], G[64], R[64], off = 1;
+    int32_t left = 0, pass, q;
     int again = 1;
-    hdi_spec_scale job;
-    int32_t q, pass;
-    memset(s->couple, 0, sizeof s->couple);
-    for (q = 0; q < HDI_WIDE; q++) s->couple[9 * q] = scale[q] = 1;
-    hdi_spec_mass(s, s->w, s->bw);
-    hdi_wide_dots(s->w, s->bw, s->n, HDI_WIDE, norm);
+    memset(couple, 0, 64 * sizeof *couple);
+    for (q = 0; q < HDI_WIDE; q++) couple[9 * q] = scale[q] = 1;
+    hdi_spec_mass(s, w, s->bw);
+    hdi_wide_dots(w, s->bw, s->n, HDI_WIDE, norm);
     for (q = 0; q < HDI_WIDE; q++) norm[q] = norm[q] > 0 ? sqrt(norm[q]) : 0;
-    if (s->cols > 0) hdi_spec_local(s);
+    if (s->n_blocks > 0) hdi_spec_local(s, w);
     for (pass = 0; pass < 2 || ((off > 0.1 || again) && pass < HDI_SPEC_PASSES); pass++) {
         const int clean = again;
-        if (clean) hdi_spec_clean(s, removed);
-        hdi_spec_add(s, hdi_spec_pass(s, &s->basis, s->cols, HDI_WIDE, s->w, 1), NULL, 1);
-        hdi_spec_dots(s, hdi_spec_pass(s, &s->basis, s->cols, HDI_WIDE, s->bw, 1), G);
-        off = hdi_spec_cholesky(G, R, scale, norm, pass > 0 ? &s->lost : NULL);
+        if (clean) {
+            hdi_spec_project(s, s->list, s->n_near + s->n_blocks, &w, &s->bw, 1, removed);
+            hdi_spec_mass(s, w, s->bw);
+        }
+        off = hdi_spec_orthonormal(s, w, s->bw, scale, norm, pass > 0 ? &s->lost : NULL, G, R);
         again = off == HUGE_VAL;
         for (q = 0; q < HDI_WIDE; q++) {
-            again |= clean && R[9 * q] > 0 && removed[q] > HDI_SPEC_SHRUNK * R[9 * q];
+            again |= clean && R[9 * q] > 0 && sqrt(removed[q]) > HDI_SPEC_SHRUNK * R[9 * q];
             again |= R[9 * q] > 0 && R[9 * q] < HDI_SPEC_SHRUNK * sqrt(hdi_max(G[9 * q], 0));
         }
-        hdi_spec_compose(R, s->couple);
-        job.w = s->w;
-        job.bw = s->bw;
-        job.R = R;
-        hdi_parallel_ranges(s->ctx, s->n, HDI_ROWS_PER_TASK, hdi_spec_scale_task, &job);
+        hdi_spec_compose(R, couple);
     }
-}
-
-/* The columns of w that are there become columns of the basis, and T their coupling with the last block. */
-static void hdi_spec_take(hdi_spec *s) {
-    int32_t from[HDI_WIDE], n = 0, i, k, q;
-    double C[HDI_WIDE * HDI_WIDE] = {0};
     for (q = 0; q < HDI_WIDE; q++)
-        if (s->couple[9 * q] > 0) from[n++] = q;
-    for (i = 0; i < n; i++) for (k = 0; k < s->width; k++) C[8 * i + k] = s->couple[8 * from[i] + k];
-    memcpy(s->couple, C, sizeof C);
-    for (i = 0; i < n; i++) {                    /* pack to the left */
-        double *w = s->w, *bw = s->bw;
-        int64_t r;
-        for (r = 0; r < s->n && from[i] != i; r++) {
-            w[8 * r + i] = w[8 * r + from[i]];
-            bw[8 * r + i] = bw[8 * r + from[i]];
-            w[8 * r + from[i]] = bw[8 * r + from[i]] = 0;
-        }
-    }
-    hdi_spec_add(s, hdi_spec_pass(s, &s->basis, s->cols, n, s->w, 1), NULL, 1);
-    for (i = 0; i < n && s->cols + i < s->most; i++) {
-        double *row = s->T + (int64_t)(s->cols + i) * s->most;
-        memset(row, 0, (size_t)(s->cols + i + 1) * sizeof *row);
-        for (k = 0; k < s->width; k++) row[s->last + k] = C[8 * i + k];
-    }
-    s->fresh = n;
+        if (couple[9 * q] > 0) s->live[s->cols + left++] = 8 * s->n_blocks + q;
+    return left;
 }
 
 /* ---- a run ---- */
@@ -18816,35 +18759,53 @@ static int hdi_spec_converged(const hdi_spec *s, int32_t i) {
            s->off_ritz[i] <= HDI_SPEC_STRICT * s->tol * hdi_max(fabs(hdi_spec_lambda(s, i)), s->unit);
 }
 
+/* T, of which the lower triangle counts, into A. */
+static void hdi_spec_projected(const hdi_spec *s) {
+    int32_t i, j;
+    for (i = 0; i < s->cols; i++) {
+        for (j = 0; j <= i; j++) {
+            const int32_t row = s->live[i], col = s->live[j], apart = row / 8 - col / 8;
+            const double *part = apart == 0 ? s->own : s->couple;
+            s->A[(int64_t)i * s->cols + j] = apart > 1 ? 0 : part[8 * row + col % 8];
+        }
+    }
+}
+
+/* How much of column a of the newest block the solve with the Ritz vector would bring, whose rows of the last
+ * block are y. */
+static double hdi_spec_beyond(const hdi_spec *s, int32_t a, const double *y) {
+    const int32_t *live = s->live + s->cols - s->width;
+    double sum = 0;
+    int32_t k;
+    for (k = 0; k < s->width; k++) sum += s->couple[8 * (8 * s->n_blocks + a) + live[k] % 8] * y[k];
+    return sum;
+}
+
 /* Eigenpairs of the projected matrix. full: all rows of the eigenvectors, else only those of the last block,
  * which tell the residuals. off_ritz becomes |L x - lambda B x| in the norm of B^-1 that the Ritz vector x
  * will have. Rounding is as large as the largest 1/(lambda - sigma) makes it. stuck: pairs for which it is
  * too large, so that further steps are no use: then the eigenvalue next to the shift is locked, and is not in
  * the way of the next run. */
 static hd_status hdi_spec_ritz(hdi_spec *s, int full, hd_error *e) {
-    const int32_t m = s->cols, r = full ? m : s->width, at = full ? s->last : 0;
+    const int32_t m = s->cols, last = m - s->width, r = full ? m : s->width;
     double largest = 0;
-    int32_t i, j, a, k;
-    for (i = 0; i < m; i++)
-        for (j = 0; j <= i; j++)
-            s->A[(int64_t)i * m + j] = s->T[(int64_t)i * s->most + j];
+    int32_t i, a;
+    hdi_spec_projected(s);
     memset(s->z, 0, (size_t)m * (size_t)r * sizeof *s->z);
-    for (i = 0; i < r; i++) s->z[(int64_t)(i + (full ? 0 : s->last)) * r + i] = 1;
+    for (i = 0; i < r; i++) s->z[(int64_t)(i + (full ? 0 : last)) * r + i] = 1;
     if (!hdi_spec_eigen(s->A, s->d, s->z, m, r, s->work)) return hdi_lanczos_failed(e);
     for (i = 0; i < m; i++) largest = hdi_max(largest, fabs(s->d[i]));
     for (i = s->stuck = 0; i < m; i++) {
-        const double *y = s->z + (int64_t)i * r + at, d2 = s->d[i] * s->d[i];
+        const double *y = s->z + (int64_t)i * r + r - s->width, d2 = s->d[i] * s->d[i];
         double sum = 0;
         int reached;
-        for (a = 0; a < s->fresh; a++) {
-            double c = 0;
-            for (k = 0; k < s->width; k++) c += s->couple[8 * a + k] * y[k];
+        for (a = 0; a < HDI_WIDE; a++) {
+            const double c = hdi_spec_beyond(s, a, y);
             sum += c * c;
         }
         s->off_ritz[i] = d2 > 0 ? sqrt(sum) / d2 : HUGE_VAL;
         reached = hdi_spec_converged(s, i);
-        if (d2 > 0)
-            s->off_ritz[i] += ((double)HDI_WIDE * DBL_EPSILON * largest + s->lost) / d2;
+        if (d2 > 0) s->off_ritz[i] += ((double)HDI_WIDE * DBL_EPSILON * largest + s->lost) / d2;
         s->stuck += reached && !hdi_spec_converged(s, i);
     }
     return HD_OK;
@@ -18864,132 +18825,102 @@ static int hdi_spec_taken(const hdi_spec *s, int32_t i, double reach) {
     return hdi_spec_converged(s, i) && x > s->edge && x < reach;
 }
 
+/* The blocks that a run at the shift could find again, those beyond the edge and those nearly as near; then
+ * those of the basis. */
+static void hdi_spec_nearby(hdi_spec *s) {
+    int32_t i;
+    s->n_near = 0;
+    for (i = 0; i < s->n_lock; i++)
+        if (s->high[i] > s->edge || s->sigma - s->high[i] < HDI_SPEC_NEARBY * (s->sigma - s->edge))
+            s->list[s->n_near++] = s->lock[i];
+    for (i = 0; i <= s->room; i++) s->list[s->n_near + i] = s->basis + 8 * (int64_t)i * s->n;
+}
+
+/* Would `missing` pairs below the shift and `beyond` above it be taken? */
+static int hdi_spec_enough(const hdi_spec *s, int32_t missing, int32_t beyond) {
+    const double reach = hdi_spec_frontier(s);
+    int32_t i;
+    for (i = 0; i < s->cols; i++) {
+        const int taken = hdi_spec_taken(s, i, reach);
+        missing -= taken && s->d[i] < 0;
+        beyond -= taken && s->d[i] > 0;
+    }
+    return missing <= 0 && beyond <= 0;
+}
+
 /* Blocks until all `missing` eigenvalues between the edge and the shift are there, and `beyond` above it, or
  * until the basis is full. */
 static hd_status hdi_spec_lanczos(hdi_spec *s, int32_t missing, int32_t beyond, hd_error *e) {
     const double limit = 0.1 * s->tol * hdi_max(fabs(s->sigma), s->unit);
-    int32_t look = missing + beyond + 4 * HDI_WIDE, i;
-    double error;
-    s->cols = s->last = s->before = s->width = s->fresh = 0;
+    int32_t look = missing + beyond + 4 * HDI_WIDE;
+    hdi_spec_nearby(s);
+    s->n_blocks = s->cols = 0;
     s->lost = 0;
-    hdi_spec_random(s, s->w);
-    hdi_spec_append(s);
-    hdi_spec_take(s);
+    hdi_spec_random(s, s->list[s->n_near]);
+    s->width = hdi_spec_append(s);
     s->n_runs++;
-    for (;;) {
-        const int32_t first = s->cols == 0;
-        s->before = s->last;
-        s->last = s->cols;
-        s->width = s->fresh;
-        s->cols += s->fresh;
-        s->fresh = 0;
-        if (s->cols == 0) return HD_OK;          /* nothing is left of the space */
-        error = hdi_spec_inverse(s, first);
+    while (s->width > 0) {                       /* else nothing is left of the space */
+        const int first = s->n_blocks == 0;
+        int32_t more;
+        double *w = s->list[s->n_near + ++s->n_blocks];
+        const double error = hdi_spec_inverse(s, w, first);
         if (first && error > limit) {            /* pivots were small: refine, if that helps */
             s->refine = 1;
-            if (hdi_spec_inverse(s, 1) > 0.5 * error) s->refine = 0;
+            if (hdi_spec_inverse(s, w, 1) > 0.5 * error) s->refine = 0;
         }
-        hdi_spec_append(s);
-        hdi_spec_take(s);
+        s->cols += s->width;
+        more = hdi_spec_append(s);
         if (hdi_progress(s->ctx, "solve", s->share, e) < 0) return e->status;
-        if (s->fresh > 0 && s->cols + s->fresh <= s->most && s->cols < look) continue;
-        if (hdi_spec_ritz(s, 0, e) < 0) return e->status;
-        if (s->fresh == 0 || s->cols + s->fresh > s->most || s->stuck) return HD_OK;
-        {
-            const double reach = hdi_spec_frontier(s);
-            int32_t left = missing, right = beyond;
-            for (i = 0; i < s->cols; i++) {
-                if (!hdi_spec_taken(s, i, reach)) continue;
-                if (s->d[i] < 0) left--;
-                else right--;
-            }
-            if (left <= 0 && right <= 0) return HD_OK;
+        if (s->cols >= look || s->n_blocks == s->room || more == 0) {
+            if (hdi_spec_ritz(s, 0, e) < 0) return e->status;
+            if (s->n_blocks == s->room || more == 0 || s->stuck) return HD_OK;
+            if (hdi_spec_enough(s, missing, beyond)) return HD_OK;
+            look = s->cols + (int32_t)HDI_SPEC_STEPS * HDI_WIDE;
         }
-        look = s->cols + (int32_t)HDI_SPEC_STEPS * HDI_WIDE;
+        s->width = more;
     }
+    return HD_OK;
 }
 
 /* ---- locking ---- */
 
-/* A slab with `cols` columns, at the end of the list. */
-static hdi_slab *hdi_spec_slab(hdi_spec *s, int32_t cols, hd_error *e) {
-    if (s->n_slabs == s->room_slabs) {
-        const int32_t room = 2 * s->room_slabs + 16;
-        hdi_slab *slab = HDI_NEW(s->ctx, hdi_slab, room, e);
-        char *beside = slab ? HDI_NEW(s->ctx, char, room, e) : NULL;
-        if (!beside) {
-            hdi_free(s->ctx, slab);
-            return NULL;
-        }
-        if (s->n_slabs) memcpy(slab, s->slab, (size_t)s->n_slabs * sizeof *slab);
-        hdi_free(s->ctx, s->slab);
-        hdi_free(s->ctx, s->beside);
-        s->slab = slab;
-        s->beside = beside;
-        s->room_slabs = room;
-    }
-    if (hdi_slab_make(s->slab + s->n_slabs, s->n, cols, s->ctx, e) < 0) return NULL;
-    s->beside[s->n_slabs] = 0;
-    s->slab[s->n_slabs].cols = cols;
-    s->slab[s->n_slabs].low = HUGE_VAL;
-    s->slab[s->n_slabs].high = -HUGE_VAL;
-    return s->slab + s->n_slabs++;
+/* Another block for vectors that are found. */
+static double *hdi_spec_block(hdi_spec *s, hd_error *e) {
+    double *x = HDI_NEW(s->ctx, double, HDI_WIDE * (uint64_t)s->n, e);
+    if (!x) return NULL;
+    memset(x, 0, HDI_WIDE * (size_t)s->n * sizeof *x);
+    s->high[s->n_lock] = -HUGE_VAL;
+    return s->lock[s->n_lock++] = x;
 }
 
-/* Enters a pair whose vector is column col of the last slab. */
-static void hdi_spec_enter(hdi_spec *s, double value, double residual, int32_t col) {
-    hdi_slab *slab = s->slab + s->n_slabs - 1;
+/* Enters a pair whose vector is at a place. */
+static void hdi_spec_enter(hdi_spec *s, double value, double residual, int32_t at) {
     int32_t i = s->found++;
     for (; i > 0 && s->value[i - 1] > value; i--) {
         s->value[i] = s->value[i - 1];
         s->residual[i] = s->residual[i - 1];
-        s->slab_of[i] = s->slab_of[i - 1];
-        s->col_of[i] = s->col_of[i - 1];
+        s->at[i] = s->at[i - 1];
     }
     s->value[i] = value;
     s->residual[i] = residual;
-    s->slab_of[i] = s->n_slabs - 1;
-    s->col_of[i] = col;
-    slab->low = hdi_min(slab->low, value);
-    slab->high = hdi_max(slab->high, value);
+    s->at[i] = at;
+    s->high[at / 8] = hdi_max(s->high[at / 8], value);
 }
 
-/* Coefficients of the Ritz vectors which[0..n) in the basis with its newest block, with the sign that slabs
- * are added with. The newest block comes in by one more solve that is not made: (L - sigma B)^-1 B x / theta
- * has the residual of x without its fast modes. */
-static void hdi_spec_coefficients(const hdi_spec *s, const int32_t *which, int32_t n) {
-    const int32_t m = s->cols, rows = m + s->fresh;
-    int32_t q, i, a, k;
-    memset(s->h, 0, 8 * (size_t)rows * (size_t)((n + 7) / 8) * sizeof *s->h);
+/* Adds the Ritz vectors which[0..n) to blocks x. The newest block of the basis comes in by one more solve
+ * that is not made: (L - sigma B)^-1 B x / theta has the residual of x without its fast modes. */
+static void hdi_spec_form(const hdi_spec *s, const int32_t *which, int32_t n, double *const *x) {
+    const int32_t m = s->cols, newest = 8 * s->n_blocks, n_w = (n + 7) / 8;
+    int32_t q, i, a;
+    memset(s->h, 0, 8 * (size_t)(newest + 8) * (size_t)n_w * sizeof *s->h);
     for (q = 0; q < n; q++) {
-        double *h = s->h + 8 * (int64_t)rows * (q / 8) + q % 8;
+        double *h = s->h + 8 * (int64_t)(newest + 8) * (q / 8) + q % 8;
         const double *y = s->z + (int64_t)which[q] * m;
-        for (i = 0; i < m; i++) h[8 * i] = -y[i];
-        for (a = 0; a < s->fresh; a++) {
-            double c = 0;
-            for (k = 0; k < s->width; k++) c += s->couple[8 * a + k] * y[s->last + k];
-            h[8 * (m + a)] = -c / s->d[which[q]];
-        }
+        for (i = 0; i < m; i++) h[8 * s->live[i]] = -y[i];
+        for (a = 0; a < HDI_WIDE; a++)
+            h[8 * (newest + a)] = -hdi_spec_beyond(s, a, y + m - s->width) / s->d[which[q]];
     }
-}
-
-/* The vectors in group, made orthogonal to all that are locked: those far away, against which the run did not
- * work, are so up to residuals. twin [n]: how much of a vector was in them already. */
-static void hdi_spec_unlock(hdi_spec *s, int32_t n, double *twin) {
-    const int32_t n_blocks = (n + 7) / 8;
-    const int64_t size = 8 * (int64_t)s->n;
-    int32_t i, q, j;
-    for (q = 0; q < n_blocks; q++) hdi_spec_mass(s, s->group + q * size, s->group_b + q * size);
-    for (q = 0; q < n; q++) twin[q] = 0;
-    for (i = 0; i < s->n_slabs - 1; i++) {
-        const int32_t cols = s->slab[i].cols;
-        hdi_spec_project(s, s->slab + i, 0, cols, s->group, s->group_b, n_blocks, s->h);
-        for (q = 0; q < n; q++)
-            for (j = 0; j < cols; j++) {
-                const double c = s->h[8 * ((int64_t)cols * (q / 8) + j) + q % 8];
-                twin[q] += c * c;
-            }
-    }
+    hdi_spec_add(s, s->list + s->n_near, s->n_blocks + 1, x, n_w, s->h);
 }
 
 /* Residuals of the block x with bx = B x, for eigenvalues of eight Ritz vectors. */
@@ -19002,113 +18933,89 @@ static double hdi_spec_measure(hdi_spec *s, const double *value, const double *x
     return worst;
 }
 
-/* Puts the Ritz vectors nearest to the shift, of which[0..n), after the basis. A step of inverse iteration
- * enlarges the rounding of a residual in their direction by the quotient of the distances to the shift. */
-static void hdi_spec_nearest(hdi_spec *s, const int32_t *which, int32_t n) {
-    int32_t closest[HDI_WIDE], m = 0, i, j;
-    for (i = 0; i < n; i++) {
-        for (j = m; j > 0 && fabs(s->d[closest[j - 1]]) < fabs(s->d[which[i]]); j--)
-            if (j < HDI_WIDE) closest[j] = closest[j - 1];
-        if (j < HDI_WIDE) closest[j] = which[i];
-        m = hdi_low32(m + 1, HDI_WIDE);
-    }
-    hdi_spec_coefficients(s, closest, m);
-    memset(s->w, 0, 8 * (size_t)s->n * sizeof *s->w);
-    hdi_spec_add(s, hdi_spec_pass(s, &s->basis, 0, s->cols + s->fresh, s->w, 1), s->h, 0);
-    hdi_spec_add(s, hdi_spec_pass(s, &s->basis, s->most + HDI_WIDE, HDI_WIDE, s->w, 1), NULL, 1);
+/* w = (L - sigma B)^-1 r for the residuals r in tmp: what a step of inverse iteration adds. It has no part in
+ * the blocks nearby, nor in those from `first` on: a step enlarges the rounding of a residual in the
+ * direction of the vectors next to the shift. */
+static void hdi_spec_polish(hdi_spec *s, int32_t first, double *w) {
+    memcpy(w, s->tmp, 8 * (size_t)s->n * sizeof *w);
+    hdi_spec_sweep(s, w);
+    hdi_spec_mass(s, w, s->bw);
+    hdi_spec_project(s, s->list, s->n_near, &w, &s->bw, 1, NULL);
+    hdi_spec_project(s, s->lock + first, s->n_lock - first, &w, &s->bw, 1, NULL);
 }
 
-/* x + (L - sigma B)^-1 r for the residuals r in tmp of the first n columns: a step of inverse iteration. The
- * change has no part in the slabs nearby, nor in the vectors next to the shift. */
-static void hdi_spec_polish(hdi_spec *s, double *x, int32_t n) {
-    const int64_t size = 8 * (int64_t)s->n;
-    const int32_t cols = s->cols;
-    double removed[HDI_WIDE];
-    int64_t i;
-    memcpy(s->w, s->tmp, (size_t)size * sizeof *s->w);
-    hdi_spec_sweep(s, s->w);
-    hdi_spec_mass(s, s->w, s->bw);
-    hdi_spec_project(s, &s->basis, s->most + HDI_WIDE, HDI_WIDE, s->w, s->bw, 1, s->h);
-    s->cols = 0;
-    hdi_spec_clean(s, removed);
-    s->cols = cols;
-    for (i = 0; i < size; i++) x[i] += i % 8 < n ? s->w[i] : 0;
-}
-
-/* The same while residuals are too large, for the eigenvalues of block x. Steps that worsen it are undone. */
-static void hdi_spec_polish_all(hdi_spec *s, const double *value, double *x, double *bx, int32_t n) {
-    double norm[HDI_WIDE], worst = hdi_spec_measure(s, value, x, bx, norm), now;
+/* Such steps while residuals are too large, for the eigenvalues of block x, of which n columns are there.
+ * Those that worsen it are undone. The basis is not needed any more. */
+static void hdi_spec_polish_all(hdi_spec *s, const double *value, int32_t first, double *x, int32_t n) {
+    double norm[HDI_WIDE], *w = s->basis, worst = hdi_spec_measure(s, value, x, s->group, norm), now;
     int32_t tries;
     int64_t i;
     for (tries = 0; tries < 2 && worst > HDI_SPEC_POLISH * s->tol; tries++, worst = now) {
-        hdi_spec_polish(s, x, n);
-        now = hdi_spec_measure(s, value, x, bx, norm);
+        hdi_spec_polish(s, first, w);
+        for (i = 0; i < 8 * (int64_t)s->n; i++) x[i] += i % 8 < n ? w[i] : 0;
+        now = hdi_spec_measure(s, value, x, s->group, norm);
         if (now <= worst) continue;
-        for (i = 0; i < 8 * (int64_t)s->n; i++) x[i] -= i % 8 < n ? s->w[i] : 0;
+        for (i = 0; i < 8 * (int64_t)s->n; i++) x[i] -= i % 8 < n ? w[i] : 0;
         return;
     }
 }
 
-/* Block x, n columns that are nearly orthonormal, goes to the last slab from column `at` on, orthonormal and
- * orthogonal to the columns before. bx: work. */
-static void hdi_spec_settle(hdi_spec *s, double *x, double *bx, int32_t at, int32_t n) {
-    const hdi_slab *slab = s->slab + s->n_slabs - 1;
-    double G[64] = {0}, R[64], h[8 * HDI_WIDE], scale[HDI_WIDE], norm[HDI_WIDE];
-    hdi_spec_scale job;
-    int32_t q, r;
+#define HDI_SPEC_LOST 0.1        /* a residual that is a larger part of its value leaves nothing of it */
+
+/* Makes block `at`, n columns that are nearly orthonormal, orthonormal and orthogonal to those from `first`
+ * on before it, and enters its pairs. twin [n]: how much of a vector was in blocks before already. */
+static void hdi_spec_settle(hdi_spec *s, const double *value, int32_t first, int32_t at, int32_t n,
+                            const double *twin) {
+    double G[64], R[64], scale[HDI_WIDE], norm[HDI_WIDE], noise[HDI_WIDE], *x = s->lock[at], *bx = s->group;
+    int32_t r;
     hdi_spec_mass(s, x, bx);
-    hdi_spec_project(s, slab, 0, at, x, bx, 1, s->h);
+    hdi_spec_project(s, s->lock + first, at - first, &x, &bx, 1, NULL);
     hdi_spec_mass(s, x, bx);
-    hdi_spec_add(s, hdi_spec_pass(s, slab, at, n, x, 1), NULL, 1);
-    hdi_spec_dots(s, hdi_spec_pass(s, slab, at, n, bx, 1), h);
-    for (q = 0; q < n; q++) for (r = 0; r < n; r++) G[8 * q + r] = h[8 * q + r];
-    for (q = 0; q < HDI_WIDE; q++) norm[q] = scale[q] = 1;
-    (void)hdi_spec_cholesky(G, R, scale, norm, NULL);
-    job.w = x;
-    job.bw = bx;
-    job.R = R;
-    hdi_parallel_ranges(s->ctx, s->n, HDI_ROWS_PER_TASK, hdi_spec_scale_task, &job);
-    hdi_spec_add(s, hdi_spec_pass(s, slab, at, n, x, 1), NULL, 1);
+    for (r = 0; r < HDI_WIDE; r++) scale[r] = 1;
+    (void)hdi_spec_orthonormal(s, x, bx, scale, scale, NULL, G, R);
+    (void)hdi_spec_measure(s, value, x, bx, norm);
+    hdi_wide_norms(x, s->noise, s->n, HDI_WIDE, noise);
+    for (r = 0; r < n; r++) {
+        if (twin[r] > 0.1 || s->found == s->n) continue;   /* found before */
+        s->n_poor += norm[r] > s->tol * hdi_max(fabs(value[r]), s->unit) + noise[r] ||
+                     norm[r] > HDI_SPEC_LOST * fabs(value[r]);
+        hdi_spec_enter(s, value[r], norm[r], 8 * at + r);
+    }
 }
 
-#define HDI_SPEC_LOST 0.1        /* a residual that is a larger part of its value leaves nothing of it */
-/* Locks the Ritz vectors which[0..n): one group of blocks. first: their first column in the last slab. Errors
- * of solves, which eigenvalues next to the shift make large, leave fast modes in the vectors. They are taken
- * out where they are seen. */
-static void hdi_spec_lock_group(hdi_spec *s, const int32_t *which, int32_t n, int32_t first) {
-    const int32_t n_blocks = (n + 7) / 8;
-    const int64_t size = 8 * (int64_t)s->n;
-    double twin[8 * HDI_SPEC_GROUP], norm[HDI_WIDE], noise[HDI_WIDE], value[HDI_WIDE];
-    int32_t q, r;
-    hdi_spec_coefficients(s, which, n);
-    memset(s->group, 0, (size_t)(n_blocks * size) * sizeof *s->group);
-    hdi_spec_add(s, hdi_spec_pass(s, &s->basis, 0, s->cols + s->fresh, s->group, n_blocks), s->h, 0);
-    for (q = 0; q < 2 * n_blocks; q++) {
-        double *x = s->group + q % n_blocks * size, *bx = s->group_b + q % n_blocks * size;
-        const int32_t at = 8 * (q % n_blocks), here = hdi_low32(8, n - at);
-        for (r = 0; r < HDI_WIDE; r++) value[r] = r < here ? hdi_spec_lambda(s, which[at + r]) : 0;
-        if (q < n_blocks) {
-            hdi_spec_polish_all(s, value, x, bx, here);
-            continue;
+/* Locks the Ritz vectors which[0..n), whose blocks stand from `first` on. Errors of solves, which eigenvalues
+ * next to the shift make large, leave fast modes in the vectors. They are taken out where they are seen. Then
+ * all become orthogonal to the blocks before them: those far away, against which the run did not work, are so
+ * up to residuals. */
+static void hdi_spec_lock_all(hdi_spec *s, const int32_t *which, int32_t n, int32_t first) {
+    double value[HDI_SPEC_MOST + HDI_WIDE] = {0}, twin[8 * HDI_SPEC_GROUP], *bx[HDI_SPEC_GROUP];
+    const int32_t most = 8 * s->n_group;
+    int32_t i, q;
+    for (i = 0; i < n; i++) value[i] = hdi_spec_lambda(s, which[i]);
+    for (i = 0; i < n; i += most)
+        hdi_spec_form(s, which + i, hdi_low32(n - i, most), s->lock + first + i / 8);
+    for (i = 0; i < n; i += 8)
+        hdi_spec_polish_all(s, value + i, first, s->lock[first + i / 8], hdi_low32(n - i, 8));
+    for (i = 0; i < n; i += 8) {
+        const int32_t at = first + i / 8;
+        if (i % most == 0) {
+            const int32_t n_w = hdi_low32(s->n_lock - at, s->n_group);
+            for (q = 0; q < n_w; q++) {
+                bx[q] = s->group + 8 * (int64_t)q * s->n;
+                hdi_spec_mass(s, s->lock[at + q], bx[q]);
+            }
+            hdi_spec_project(s, s->lock, first, s->lock + at, bx, n_w, twin);
         }
-        if (q == n_blocks) hdi_spec_unlock(s, n, twin);
-        hdi_spec_settle(s, x, bx, first + at, here);
-        (void)hdi_spec_measure(s, value, x, bx, norm);
-        hdi_wide_norms(x, s->noise, s->n, HDI_WIDE, noise);
-        for (r = 0; r < here; r++) {
-            if (twin[at + r] > 0.1 || s->found == s->n) continue;   /* found before */
-            s->n_poor += norm[r] > s->tol * hdi_max(fabs(value[r]), s->unit) + noise[r] ||
-                         norm[r] > HDI_SPEC_LOST * fabs(value[r]);
-            hdi_spec_enter(s, value[r], norm[r], first + at + r);
-        }
+        hdi_spec_settle(s, value + i, first, at, hdi_low32(n - i, 8), twin + i % most);
     }
 }
 
 /* Takes what a run has found into the list. */
 static hd_status hdi_spec_lock(hdi_spec *s, hd_error *e) {
+    const int32_t first = s->n_lock;
     int32_t which[HDI_SPEC_MOST], n = 0, i, j;
     double reach;
-    if (s->cols == 0) return HD_OK;
+    if (s->n_blocks == 0) return HD_OK;
     if (hdi_spec_ritz(s, 1, e) < 0) return e->status;
     reach = hdi_spec_frontier(s);
     hdi_noise_weights(s->lap, 1, 2 * fabs(s->sigma), s->noise, s->noise + s->n);
@@ -19118,10 +19025,9 @@ static hd_status hdi_spec_lock(hdi_spec *s, hd_error *e) {
             which[j] = which[j - 1];
         which[j] = i;
     }
-    if (n == 0 || !hdi_spec_slab(s, n, e)) return e->status;
-    hdi_spec_nearest(s, which, n);
-    for (i = 0; i < n; i += 8 * s->n_group)
-        hdi_spec_lock_group(s, which + i, hdi_low32(n - i, 8 * s->n_group), i);
+    n = hdi_low32(n, 8 * (s->room_lock - first));
+    for (i = 0; i < n; i += 8) if (!hdi_spec_block(s, e)) return e->status;
+    hdi_spec_lock_all(s, which, n, first);
     return HD_OK;
 }
 
@@ -19129,22 +19035,16 @@ static hd_status hdi_spec_lock(hdi_spec *s, hd_error *e) {
 static hd_status hdi_spec_constants(hdi_spec *s, int32_t most, hd_error *e) {
     hdi_scope work = hdi_scope_begin(s->ctx, e);
     char *loose = HDI_TAKE(&work, char, s->lap->n_components);
-    int32_t *col = HDI_TAKE(&work, int32_t, s->lap->n_components), i, k, n = 0;
+    int32_t *at = HDI_TAKE(&work, int32_t, s->lap->n_components), i, k, n = 0;
     if (e->status < 0) return hdi_scope_end(&work);
     hdi_ground_components(s->lap, loose);
-    for (k = 0; k < s->lap->n_components; k++) col[k] = loose[k] && n < most ? n++ : -1;
-    for (k = 0; k < n && e->status >= 0; k += HDI_SPEC_HALF) {
-        const int32_t cols = hdi_low32(n - k, HDI_SPEC_HALF);
-        hdi_slab *slab = hdi_spec_slab(s, cols, e);
-        if (!slab) break;
-        memset(slab->v, 0, (size_t)hdi_slab_tiles(s->n) * HDI_SPEC_TILE * (size_t)cols * sizeof *slab->v);
-        for (i = 0; i < s->n; i++) {
-            const int32_t c = s->lap->component[i], at = col[c] - k;
-            if (col[c] < 0 || at < 0 || at >= cols) continue;
-            hdi_slab_at(slab, i / HDI_SPEC_TILE, at)[i % HDI_SPEC_TILE] = 1 / sqrt(s->lap->component_mass[c]);
-        }
-        for (i = 0; i < cols; i++) hdi_spec_enter(s, 0, 0, i);
+    for (k = 0; k < s->lap->n_components; k++) at[k] = loose[k] && n < most ? n++ : -1;
+    for (k = 0; k < n; k += 8) if (!hdi_spec_block(s, e)) return hdi_scope_end(&work);
+    for (i = 0; i < s->n; i++) {
+        const int32_t c = s->lap->component[i];
+        if (at[c] >= 0) s->lock[at[c] / 8][8 * (int64_t)i + at[c] % 8] = 1 / sqrt(s->lap->component_mass[c]);
     }
+    for (i = 0; i < n; i++) hdi_spec_enter(s, 0, 0, i);
     s->n_null = n;
     return hdi_scope_end(&work);
 }
@@ -19157,7 +19057,7 @@ static hd_status hdi_spec_constants(hdi_spec *s, int32_t most, hd_error *e) {
  * than max_i sum_j |E_ij| / (b_ratio b_i). */
 static double hdi_spec_count_off(hdi_spec *s) {
     const hdi_symbolic *sym = &s->m->sym;
-    double *v = s->group, *sum = v + s->n, *terms = sum + s->n, worst = 0;
+    double *sum = s->group, *terms = sum + s->n, worst = 0;
     int32_t f, j, i;
     int64_t p;
     memset(sum, 0, 2 * (size_t)s->n * sizeof *sum);
@@ -19218,14 +19118,6 @@ static int hdi_spec_sure(const hdi_spec *s) {
     for (i = 0; i < s->found; i++)
         if (fabs(s->value[i] - s->sigma) <= s->off + root * s->residual[i]) return 0;
     return s->off < HUGE_VAL;
-}
-
-/* Slabs that a run at the shift could find again: those beyond the edge, and those nearly as near. */
-static void hdi_spec_nearby(hdi_spec *s) {
-    int32_t i;
-    for (i = 0; i < s->n_slabs; i++)
-        s->beside[i] = s->slab[i].high > s->edge ||
-                     s->sigma - s->slab[i].high < HDI_SPEC_NEARBY * (s->sigma - s->edge);
 }
 
 /* ---- a row of shifts ---- */
@@ -19339,14 +19231,12 @@ static hd_status hdi_spec_start(hdi_spec *s, const hdi_spec_goal *goal, hd_error
         return hdi_fail(e, HD_ERR_NOT_CONVERGED, "spectrum: the entries of L differ by so much that rounding "
                         "hides the smallest eigenvalues");
     if (goal->count <= s->n_null || s->found == s->n) return HD_OK;
-    hdi_spec_nearby(s);
     return hdi_spec_lanczos(s, 0, beyond, e) < 0 ? e->status : hdi_spec_lock(s, e);
 }
 
 /* Runs at the shift where `missing` values below it have not been found yet. */
 static hd_status hdi_spec_search(hdi_spec *s, const hdi_spec_goal *goal, int64_t missing, hd_error *e) {
     s->share = hdi_min(0.99, s->found / (1.0 + hdi_min(goal->count, s->n)));
-    hdi_spec_nearby(s);
     if (hdi_spec_lanczos(s, (int32_t)missing, 0, e) < 0 || hdi_spec_lock(s, e) < 0)
         return e->status;
     if (s->below == hdi_spec_rank(s, s->sigma)) s->edge = s->sigma;
@@ -19355,7 +19245,7 @@ static hd_status hdi_spec_search(hdi_spec *s, const hdi_spec_goal *goal, int64_t
 
 /* All that the goal asks for; how many these are into *count. */
 static hd_status hdi_spec_solve(hdi_spec *s, const hdi_spec_goal *goal, int32_t *count, hd_error *e) {
-    int32_t half = hdi_low32(HDI_SPEC_HALF, s->most / 4 + 1), failed = 0, stalls = 0;
+    int32_t half = hdi_low32(HDI_SPEC_HALF, 2 * s->room + 1), failed = 0, stalls = 0;
     int64_t missing = 0;
     int all = 0;
     if (hdi_spec_start(s, goal, e) < 0) return e->status;
@@ -19391,13 +19281,10 @@ static void hdi_spec_vectors(const hdi_spec *s, hd_spectrum *out) {
     const double root = sqrt(s->m->scale), first = s->n_null < s->found ? s->value[s->n_null] : 0;
     int32_t q, i;
     for (q = 0; q < out->count; q++) {
-        const hdi_slab *slab = s->slab + s->slab_of[q];
+        const double *from = s->lock[s->at[q] / 8] + s->at[q] % 8;
         double *x = out->vector + (int64_t)q * out->n, most = 0, sign;
         memset(x, 0, (size_t)out->n * sizeof *x);
-        for (i = 0; i < s->n; i++) {
-            const double v = hdi_slab_at(slab, i / HDI_SPEC_TILE, s->col_of[q])[i % HDI_SPEC_TILE];
-            x[s->lap->vertex[i]] = v;
-        }
+        for (i = 0; i < s->n; i++) x[s->lap->vertex[i]] = from[8 * (int64_t)i];
         for (i = 0; i < out->n; i++)
             if (fabs(x[i]) > fabs(most)) most = x[i];
         sign = most < 0 ? -root : root;
@@ -22135,10 +22022,9 @@ static int32_t hdi_modes_count(const hd_heat *heat, double more) {
 
 static double hdi_modes_need(const hd_heat *heat, int32_t count) {
     const int32_t n = heat->source->n_active;
-    const double tiles = (double)HDI_SPEC_TILE * hdi_slab_tiles(n), gaps = HDI_SPEC_GAPS;
-    const double doubles = hdi_spec_doubles(n, count) + 2 * tiles * (count + gaps) + 2.0 * heat->source->n;
-    if (!heat->elim.ctx) return 8 * doubles + 8 * hdi_heat_fill(heat).real_stored;
-    return 8 * (doubles + (double)hdi_sweep_size(&heat->elim.sym, 1, HDI_WIDE)) +
+    const double left = 2.0 * sizeof(double) * heat->source->n;
+    if (!heat->elim.ctx) return hdi_spec_need(n, count, 0) + left + 8 * hdi_heat_fill(heat).real_stored;
+    return hdi_spec_need(n, count, hdi_sweep_size(&heat->elim.sym, 1, HDI_WIDE)) + left +
            (double)hdi_factor_bytes(&heat->elim.sym, 1);
 }
 
