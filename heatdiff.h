@@ -1815,9 +1815,8 @@ HEATDIFF_API hd_status hd_geodesic_distance_from(hd_geodesic *g, const hd_source
 #define HDI_AUDIT 0
 #endif
 
-/* Counters that threads share have 32 bits. HDI_ATOMIC_GET sees all that was written before the matching
- * HDI_ATOMIC_SET; HDI_ATOMIC_ADD gives the sum. Compilers without them have no threads of the library's own,
- * and a user's threads share loops only whose tasks know nothing of each other. */
+/* Counters that threads share have 32 bits. HDI_ATOMIC_ADD gives the sum, and whoever adds sees all that was
+ * written before others added. Compilers without it share no work among threads. */
 #if defined(__GNUC__) || defined(__clang__)
 #define HDI_RESTRICT __restrict__
 #define HDI_INLINE inline __attribute__((always_inline))
@@ -1829,8 +1828,6 @@ HEATDIFF_API hd_status hd_geodesic_distance_from(hd_geodesic *g, const hd_source
 #define HDI_PREFETCH_AT(p, i)                                                                      \
     __builtin_prefetch((const void *)((uintptr_t)(p) + (uintptr_t)(i) * sizeof *(p)))
 #define HDI_ATOMICS 1
-#define HDI_ATOMIC_GET(p) __atomic_load_n(p, __ATOMIC_ACQUIRE)
-#define HDI_ATOMIC_SET(p, v) __atomic_store_n(p, v, __ATOMIC_RELEASE)
 #define HDI_ATOMIC_ADD(p, v) __atomic_add_fetch(p, v, __ATOMIC_ACQ_REL)
 #pragma GCC diagnostic push
 #ifndef __clang__
@@ -1850,14 +1847,10 @@ HEATDIFF_API hd_status hd_geodesic_distance_from(hd_geodesic *g, const hd_source
 #ifdef _MSC_VER
 #include <intrin.h>
 #define HDI_ATOMICS 1
-#define HDI_ATOMIC_GET(p) ((uint32_t)_InterlockedCompareExchange((volatile long *)(p), 0, 0))
-#define HDI_ATOMIC_SET(p, v) ((void)_InterlockedExchange((volatile long *)(p), (long)(v)))
 #define HDI_ATOMIC_ADD(p, v) \
     ((uint32_t)(_InterlockedExchangeAdd((volatile long *)(p), (long)(v)) + (v)))
 #else
 #define HDI_ATOMICS 0
-#define HDI_ATOMIC_GET HDI_LOAD
-#define HDI_ATOMIC_SET HDI_STORE
 #define HDI_ATOMIC_ADD(p, v) (*(p) += (v))
 #endif
 #endif
@@ -2391,19 +2384,27 @@ static hd_status hdi_progress(hd_context *ctx, const char *stage, double done, h
 typedef pthread_mutex_t hdi_mutex;
 typedef pthread_cond_t hdi_signal;
 typedef pthread_t hdi_thread;
-static void hdi_mutex_make(hdi_mutex *m) { pthread_mutex_init(m, NULL); }
-static void hdi_mutex_end(hdi_mutex *m) { pthread_mutex_destroy(m); }
-static void hdi_lock(hdi_mutex *m) { pthread_mutex_lock(m); }
-static void hdi_unlock(hdi_mutex *m) { pthread_mutex_unlock(m); }
-static void hdi_signal_make(hdi_signal *c) { pthread_cond_init(c, NULL); }
-static void hdi_signal_end(hdi_signal *c) { pthread_cond_destroy(c); }
-static void hdi_signal_wait(hdi_signal *c, hdi_mutex *m) { pthread_cond_wait(c, m); }
-static void hdi_signal_one(hdi_signal *c) { pthread_cond_signal(c); }
-static void hdi_signal_all(hdi_signal *c) { pthread_cond_broadcast(c); }
-static int64_t hdi_process(void) { return getpid(); }
 #define HDI_THREAD_BODY static void *
 #define HDI_THREAD_DONE NULL
 typedef void *(*hdi_thread_body)(void *);
+static void hdi_lock(hdi_mutex *m) { pthread_mutex_lock(m); }
+static void hdi_unlock(hdi_mutex *m) { pthread_mutex_unlock(m); }
+static void hdi_signal_wait(hdi_signal *c, hdi_mutex *m) { pthread_cond_wait(c, m); }
+static void hdi_signal_one(hdi_signal *c) { pthread_cond_signal(c); }
+static void hdi_thread_join(hdi_thread t) { pthread_join(t, NULL); }
+static int64_t hdi_process(void) { return getpid(); }
+
+static void hdi_locks_make(hdi_mutex *m, hdi_signal *c, hdi_signal *d) {
+    pthread_mutex_init(m, NULL);
+    pthread_cond_init(c, NULL);
+    pthread_cond_init(d, NULL);
+}
+
+static void hdi_locks_end(hdi_mutex *m, hdi_signal *c, hdi_signal *d) {
+    pthread_mutex_destroy(m);
+    pthread_cond_destroy(c);
+    pthread_cond_destroy(d);
+}
 
 /* Signals go to the threads of the program, where the compiler's mode shows how to say so. */
 #if defined(SIG_SETMASK) && (!defined(_POSIX_C_SOURCE) || _POSIX_C_SOURCE >= 199506L)
@@ -2453,8 +2454,6 @@ static int hdi_thread_start(hdi_thread *t, hdi_thread_body body, void *arg) {
     return !failed;
 }
 
-static void hdi_thread_join(hdi_thread t) { pthread_join(t, NULL); }
-
 /* Processors that this process may run on. */
 static int32_t hdi_processors(void) {
     long n = 0;
@@ -2469,23 +2468,19 @@ static int32_t hdi_processors(void) {
     return n < 1 ? 1 : (int32_t)hdi_least(n, 1 << 16);
 }
 #elif HDI_THREADS == HDI_THREADS_WINDOWS
-typedef SRWLOCK hdi_mutex;
+typedef SRWLOCK hdi_mutex;                       /* zeros are made ones, like those of the next */
 typedef CONDITION_VARIABLE hdi_signal;
 typedef HANDLE hdi_thread;
-static void hdi_mutex_make(hdi_mutex *m) { InitializeSRWLock(m); }
-static void hdi_mutex_end(hdi_mutex *m) { (void)m; }
-static void hdi_lock(hdi_mutex *m) { AcquireSRWLockExclusive(m); }
-static void hdi_unlock(hdi_mutex *m) { ReleaseSRWLockExclusive(m); }
-static void hdi_signal_make(hdi_signal *c) { InitializeConditionVariable(c); }
-static void hdi_signal_end(hdi_signal *c) { (void)c; }
-static void hdi_signal_wait(hdi_signal *c, hdi_mutex *m) { SleepConditionVariableSRW(c, m, INFINITE, 0); }
-static void hdi_signal_one(hdi_signal *c) { WakeConditionVariable(c); }
-static void hdi_signal_all(hdi_signal *c) { WakeAllConditionVariable(c); }
-static int64_t hdi_process(void) { return 0; }   /* no fork here */
 #define HDI_THREAD_BODY static DWORD WINAPI
 #define HDI_THREAD_DONE 0
 typedef DWORD (WINAPI *hdi_thread_body)(void *);
-
+static void hdi_locks_make(hdi_mutex *m, hdi_signal *c, hdi_signal *d) { (void)m, (void)c, (void)d; }
+static void hdi_locks_end(hdi_mutex *m, hdi_signal *c, hdi_signal *d) { (void)m, (void)c, (void)d; }
+static void hdi_lock(hdi_mutex *m) { AcquireSRWLockExclusive(m); }
+static void hdi_unlock(hdi_mutex *m) { ReleaseSRWLockExclusive(m); }
+static void hdi_signal_wait(hdi_signal *c, hdi_mutex *m) { SleepConditionVariableSRW(c, m, INFINITE, 0); }
+static void hdi_signal_one(hdi_signal *c) { WakeConditionVariable(c); }
+static int64_t hdi_process(void) { return 0; }   /* no fork here */
 static int hdi_threads_linked(void) { return 1; }
 
 static int hdi_thread_start(hdi_thread *t, hdi_thread_body body, void *arg) {
@@ -2507,26 +2502,22 @@ static int32_t hdi_processors(void) {
 }
 #else                                            /* none: nothing of this is called but hdi_threads_linked */
 typedef int hdi_mutex, hdi_signal, hdi_thread;
-static void hdi_mutex_make(hdi_mutex *m) { (void)m; }
-static void hdi_mutex_end(hdi_mutex *m) { (void)m; }
-static void hdi_lock(hdi_mutex *m) { (void)m; }
-static void hdi_unlock(hdi_mutex *m) { (void)m; }
-static void hdi_signal_make(hdi_signal *c) { (void)c; }
-static void hdi_signal_end(hdi_signal *c) { (void)c; }
-static void hdi_signal_wait(hdi_signal *c, hdi_mutex *m) { (void)c, (void)m; }
-static void hdi_signal_one(hdi_signal *c) { (void)c; }
-static void hdi_signal_all(hdi_signal *c) { (void)c; }
-static int64_t hdi_process(void) { return 0; }
 #define HDI_THREAD_BODY static void *
 #define HDI_THREAD_DONE NULL
 typedef void *(*hdi_thread_body)(void *);
+static void hdi_locks_make(hdi_mutex *m, hdi_signal *c, hdi_signal *d) { (void)m, (void)c, (void)d; }
+static void hdi_locks_end(hdi_mutex *m, hdi_signal *c, hdi_signal *d) { (void)m, (void)c, (void)d; }
+static void hdi_lock(hdi_mutex *m) { (void)m; }
+static void hdi_unlock(hdi_mutex *m) { (void)m; }
+static void hdi_signal_wait(hdi_signal *c, hdi_mutex *m) { (void)c, (void)m; }
+static void hdi_signal_one(hdi_signal *c) { (void)c; }
+static int64_t hdi_process(void) { return 0; }
+static int hdi_threads_linked(void) { return 0; }
 static int hdi_thread_start(hdi_thread *t, hdi_thread_body body, void *arg) {
-    (void)t, (void)body, (void)arg;
-    return 0;
+    return (void)t, (void)body, (void)arg, 0;
 }
 static void hdi_thread_join(hdi_thread t) { (void)t; }
 static int32_t hdi_processors(void) { return 1; }
-static int hdi_threads_linked(void) { return 0; }
 #endif
 
 /* Threads that work for the context, the calling one included. */
@@ -2538,92 +2529,47 @@ static int32_t hdi_context_width(const hd_context *ctx) {
 /* ---- walks ---- */
 /* A walk does nodes, each by a task, of which some wait for others. What a node waits for is counted by those
  * who know: a task releases the nodes that waited for it alone. Nodes stand in a list in the order in which
- * they are released, and are claimed in that order. One thread goes through the list by itself. Threads of
- * the user go through it in drains, tasks that claim nodes until they find none. The library's own threads
- * look around for a while and then sleep: waking one takes a call of the system, about 5 microseconds, and 50
- * pass until it works. The calling thread claims like the others and waits only for nodes that others have
- * claimed. Nothing blocks, in whatever order, on however few threads, drains are run. */
+ * they are released, and are claimed in that order, under a lock. One thread goes through the list by itself.
+ * Threads of the user go through it in drains, tasks that claim nodes until they find none. The library's own
+ * threads look around for a while and then sleep: waking one takes a call of the system, about 5
+ * microseconds, and 50 pass until it works. The calling thread claims like the others and waits only for
+ * nodes that others have claimed. Nothing blocks, in whatever order, on however few threads, drains are
+ * run. */
 
 /* Threads at most. How often a thread looks around before it sleeps: 20 to 50 microseconds in all. Walks of
  * fewer nodes than HDI_TASKS_START share them with threads that run, but start none: assembling 50K vertices,
  * 6 ms with 3 such loops, gained nothing alone and took 1.4 times as long on a busy machine. */
-enum { HDI_THREADS_MOST = 256, HDI_SPIN = 1000, HDI_TASKS_START = 9, HDI_TELLS = 64,
-      HDI_DRAINS = HDI_ATOMICS ? 64 : 1 };
+enum { HDI_THREADS_MOST = 256, HDI_SPIN = 1000, HDI_TASKS_START = 9, HDI_TELLS = 64, HDI_DRAINS = 64 };
 
-/* Places of the list before next are claimed, those before ready may be; done of them are done. */
-typedef struct hdi_claims { uint32_t next, ready, done; } hdi_claims;
-
+/* Threads read `done` and `stop` without the lock, too. */
 typedef struct hdi_walk {
     hd_context *ctx;
     hd_task task;
     void *arg;
-    int32_t *order;              /* [n] the list; NULL: all nodes are ready, by number */
-    uint32_t base, n;            /* its places are [base, base + n); there may be fewer nodes */
-    hdi_claims own, *at;         /* at: own, or the threads' */
+    int32_t *order;              /* [n] the list; NULL: nodes are ready by number */
+    int32_t n;                   /* its places; there may be fewer nodes */
+    int32_t next, ready, done;   /* places before next are claimed, those before ready may be; nodes done */
     hd_threads *threads;         /* NULL: one thread, or the user's */
     const char *stage;           /* of progress; NULL: none */
     double from, to;             /* done of the stage before and after it */
     hd_error *e;                 /* gets what progress answers */
-    uint32_t told, stop, busy;   /* parts told of; nothing more is begun; the lock of a user's threads */
+    int32_t told;                /* parts told of */
+    volatile int32_t stop;       /* nothing more is begun */
+    int32_t busy;                /* the lock of a user's threads */
     int32_t drains, most;        /* that are under way; the most that were */
     int32_t caller;              /* the calling thread has one of them */
 } hdi_walk;
-
-typedef struct hdi_seat {
-    struct hd_threads *threads;
-    int32_t worker;
-    hdi_thread thread;
-} hdi_seat;
 
 struct hd_threads {
     hdi_mutex lock;
     hdi_signal work, finished;   /* for the threads; for the calling one */
     int64_t process;
     int32_t asked, most;         /* n_threads of the context; threads besides the caller, at most */
-    int32_t n, n_asleep, caller_asleep, leave;
-    int32_t open;                /* a walk is under way; written by the calling thread only */
-    hdi_walk walk;               /* what threads know of it */
-    hdi_claims at;
-    uint32_t end, helped;        /* places from here on belong to walks to come; nodes that threads did */
-    hdi_seat seat[HDI_THREADS_MOST - 1];
+    int32_t n, n_begun, n_asleep, caller_asleep, leave;
+    volatile uint32_t news;               /* changes with everything that somebody may wait for */
+    hdi_walk *walk;              /* that is under way, or NULL */
+    hdi_thread thread[HDI_THREADS_MOST - 1];
 };
-
-/* Writes `to` if it finds `from`, and tells whether it did. */
-static int hdi_swap(uint32_t *p, uint32_t from, uint32_t to) {
-#if defined(__GNUC__) || defined(__clang__)
-    return __atomic_compare_exchange_n(p, &from, to, 0, __ATOMIC_ACQ_REL, __ATOMIC_RELAXED);
-#elif HDI_ATOMICS
-    return (uint32_t)_InterlockedCompareExchange((volatile long *)p, (long)to, (long)from) == from;
-#else
-    if (*p != from) return 0;
-    *p = to;
-    return 1;
-#endif
-}
-
-static int32_t hdi_claimable(const hdi_claims *c) {
-    const uint32_t next = HDI_ATOMIC_GET(&c->next);
-    return (int32_t)(HDI_ATOMIC_GET(&c->ready) - next);
-}
-
-/* A node that is the caller's from now on, or -1. Numbers of places never go back: a thread that comes late,
- * with a walk that has ended, finds nothing to claim and touches nothing. */
-static int64_t hdi_claim(const hdi_walk *w) {
-    for (;;) {
-        const uint32_t next = HDI_ATOMIC_GET(&w->at->next), i = next - w->base;
-        if (i >= w->n || (int32_t)(HDI_ATOMIC_GET(&w->at->ready) - next) <= 0) return -1;
-        if (hdi_swap(&w->at->next, next, next + 1)) return w->order ? w->order[i] : (int64_t)i;
-    }
-}
-
-/* Whether all that was released is done: then nothing more will be. */
-static int hdi_walk_done(const hdi_walk *w) {
-    const uint32_t done = HDI_ATOMIC_GET(&w->at->done);
-    return done == HDI_ATOMIC_GET(&w->at->ready) - w->base;
-}
-
-/* Whether it was stopped: a long task may end early. */
-static int hdi_walk_stopped(const hdi_walk *w) { return HDI_ATOMIC_GET(&w->stop) != 0; }
 
 /* Tells the processor that a loop only waits. */
 static void hdi_relax(void) {
@@ -2636,25 +2582,27 @@ static void hdi_relax(void) {
 #endif
 }
 
-/* What one thread of a walk does at a time. Threads of the user turn on the spot meanwhile: it is short. */
+/* Threads of the user turn on the spot: what is done under the lock is short. */
 static void hdi_walk_lock(hdi_walk *w) {
     if (w->threads) hdi_lock(&w->threads->lock);
     else
-        while (!hdi_swap(&w->busy, 0, 1)) hdi_relax();
+        for (; HDI_ATOMIC_ADD(&w->busy, 1) != 1; hdi_relax()) HDI_ATOMIC_ADD(&w->busy, -1);
 }
 
 static void hdi_walk_unlock(hdi_walk *w) {
     if (w->threads) hdi_unlock(&w->threads->lock);
-    else HDI_ATOMIC_SET(&w->busy, 0);
+    else HDI_ATOMIC_ADD(&w->busy, -1);
 }
 
-/* Wakes the calling thread and others for n nodes; the calling one also when all is done, n being 0. */
-static void hdi_threads_wake(hd_threads *t, int64_t n) {
+/* Wakes the calling thread and others for n nodes; the calling one also when all is done, n being 0. Under
+ * the lock. */
+static void hdi_threads_wake(hd_threads *t, int32_t n) {
+    HDI_STORE(&t->news, t->news + 1);
     if (t->caller_asleep) {
         hdi_signal_one(&t->finished);
         n--;
     }
-    for (n = hdi_least(n, t->n_asleep); n > 0; n--) hdi_signal_one(&t->work);
+    for (n = hdi_low32(n, t->n_asleep); n > 0; n--) hdi_signal_one(&t->work);
 }
 
 /* Nodes [id, id + n) may be claimed from now on. */
@@ -2662,92 +2610,103 @@ static void hdi_release(hdi_walk *w, int32_t id, int32_t n) {
     int32_t i;
     hdi_walk_lock(w);
     if (!w->stop) {
-        const uint32_t ready = w->at->ready;
-        for (i = 0; i < n; i++) w->order[ready - w->base + (uint32_t)i] = id + i;
-        HDI_ATOMIC_SET(&w->at->ready, ready + (uint32_t)n);
-        if (w->threads) hdi_threads_wake(w->threads, n);
+        for (i = 0; w->order && i < n; i++) w->order[w->ready + i] = id + i;
+        w->ready += n;
+        if (w->threads && w->threads->walk) hdi_threads_wake(w->threads, n);
     }
     hdi_walk_unlock(w);
 }
 
 /* Nothing more is begun. */
 static void hdi_walk_stop(hdi_walk *w) {
-    const uint32_t end = w->base + w->n;
-    uint32_t next;
     hdi_walk_lock(w);
-    if (!w->stop) {
-        HDI_ATOMIC_SET(&w->stop, 1);
-        do next = HDI_ATOMIC_GET(&w->at->next);
-        while (!hdi_swap(&w->at->next, next, end));
-        HDI_ATOMIC_SET(&w->at->ready, end);
-        HDI_ATOMIC_ADD(&w->at->done, end - next);
-    }
+    HDI_STORE(&w->stop, 1);
+    w->ready = w->next;
     hdi_walk_unlock(w);
 }
 
-/* How far it is, now and then. By the calling thread only. */
+/* A long task of a walk that was stopped may end early. */
+static int hdi_walk_stopped(const hdi_walk *w) { return HDI_LOAD(&w->stop); }
+
+/* How far it is, where that has not been told yet; else -1. */
+static int32_t hdi_walk_part(const hdi_walk *w) {
+    const int32_t part = (int32_t)((int64_t)HDI_TELLS * HDI_LOAD(&w->done) / (w->n + 1));
+    return w->stage && w->ctx->progress && part != w->told && !hdi_walk_stopped(w) ? part : -1;
+}
+
+/* By the calling thread only. */
 static void hdi_walk_tell(hdi_walk *w) {
-    const uint32_t part = (uint32_t)((uint64_t)HDI_TELLS * HDI_ATOMIC_GET(&w->at->done) / (w->n + 1));
-    if (!w->stage || part == w->told || hdi_walk_stopped(w)) return;
+    const int32_t part = hdi_walk_part(w);
+    if (part < 0) return;
     w->told = part;
-    if (hdi_progress(w->ctx, w->stage, w->from + (w->to - w->from) * part / (double)HDI_TELLS, w->e) < 0)
+    if (hdi_progress(w->ctx, w->stage, w->from + (w->to - w->from) * part / HDI_TELLS, w->e) < 0)
         hdi_walk_stop(w);
 }
 
-/* Claims a node and does it; 0: there is none. The last one of all wakes the calling thread. */
-static int hdi_walk_step(hdi_walk *w, int32_t worker) {
-    hd_threads *t = w->threads;
-    int64_t node;
-    uint32_t done;
-    if (worker == 0) hdi_walk_tell(w);
-    node = hdi_claim(w);
-    if (node < 0) return 0;
-    w->task(w->arg, node, worker);
-    if (t && worker) HDI_ATOMIC_ADD(&t->helped, 1);
-    done = HDI_ATOMIC_ADD(&w->at->done, 1);
-    if (t && worker && done == HDI_ATOMIC_GET(&w->at->ready) - w->base) {
-        hdi_lock(&t->lock);
-        hdi_threads_wake(t, 0);
-        hdi_unlock(&t->lock);
-    }
-    return 1;
+/* Whether a drain ends though there are nodes: when one that ended before can take one in the next round, or
+ * when the calling thread is not among those who drain, and should tell how far the walk is. */
+static int hdi_drain_leaves(const hdi_walk *w) {
+    if (w->drains == 0) return 0;
+    return w->caller ? w->drains < w->most && w->ready - w->next > 1 : hdi_walk_part(w) >= 0;
 }
 
-HDI_THREAD_BODY hdi_seat_run(void *arg) {
-    const hdi_seat *seat = (const hdi_seat *)arg;
-    hd_threads *t = seat->threads;
-    hdi_walk walk;
+/* Claims nodes and does them until there is none. Under the lock, which tasks are without. The last node of
+ * all wakes the calling thread. */
+static void hdi_walk_work(hdi_walk *w, int32_t worker) {
+    while (w->next < w->ready) {
+        const int64_t node = w->order ? w->order[w->next] : w->next;
+        w->next++;
+        hdi_walk_unlock(w);
+        w->task(w->arg, node, worker);
+        if (worker == 0) hdi_walk_tell(w);
+        hdi_walk_lock(w);
+        HDI_STORE(&w->done, w->done + 1);
+        if (w->threads && worker > 0) w->ctx->helped++;
+        if (w->threads && w->done == w->ready) hdi_threads_wake(w->threads, 0);
+        if (hdi_drain_leaves(w)) break;
+    }
+}
+
+/* ---- own threads ---- */
+
+static int hdi_claimable(const hd_threads *t) { return t->walk && t->walk->next < t->walk->ready; }
+
+/* Looks around for news. Under the lock, but meanwhile. */
+static void hdi_threads_spin(hd_threads *t) {
+    const uint32_t seen = t->news;
     int32_t k;
-    for (;;) {
-        for (k = 0; k < HDI_SPIN && hdi_claimable(&t->at) <= 0; k++) hdi_relax();
-        hdi_lock(&t->lock);
-        while (!t->leave && hdi_claimable(&t->at) <= 0) {
+    hdi_unlock(&t->lock);
+    for (k = 0; k < HDI_SPIN && HDI_LOAD(&t->news) == seen; k++) hdi_relax();
+    hdi_lock(&t->lock);
+}
+
+HDI_THREAD_BODY hdi_thread_run(void *arg) {
+    hd_threads *t = (hd_threads *)arg;
+    int32_t worker;
+    hdi_lock(&t->lock);
+    worker = ++t->n_begun;
+    while (!t->leave) {
+        if (!hdi_claimable(t)) hdi_threads_spin(t);
+        while (!t->leave && !hdi_claimable(t)) {
             t->n_asleep++;
             hdi_signal_wait(&t->work, &t->lock);
             t->n_asleep--;
         }
-        if (t->leave) break;
-        walk = t->walk;
-        hdi_unlock(&t->lock);
-        while (hdi_walk_step(&walk, seat->worker)) {}
+        if (!t->leave) hdi_walk_work(t->walk, worker);
     }
     hdi_unlock(&t->lock);
     return HDI_THREAD_DONE;
 }
 
 /* Neither counted nor limited, like stacks of threads: what is counted does not depend on their number. */
-static hd_threads *hdi_threads_new(hd_context *ctx) {
+static hd_threads *hdi_threads_new(const hd_context *ctx) {
     hd_threads *t = (hd_threads *)HEATDIFF_MALLOC(sizeof *t);
-    int32_t most;
     if (!t) return NULL;
     memset(t, 0, sizeof *t);
-    hdi_mutex_make(&t->lock);
-    hdi_signal_make(&t->work);
-    hdi_signal_make(&t->finished);
+    hdi_locks_make(&t->lock, &t->work, &t->finished);
     t->process = hdi_process();
     t->asked = ctx->n_threads;
-    most = hdi_context_width(ctx);
-    t->most = (int32_t)hdi_least(most, HDI_THREADS_MOST) - 1;
+    t->most = hdi_low32(hdi_context_width(ctx), HDI_THREADS_MOST) - 1;
     return t;
 }
 
@@ -2758,12 +2717,10 @@ static void hdi_threads_end(hd_context *ctx) {
     if (t->process == hdi_process()) {
         hdi_lock(&t->lock);
         t->leave = 1;
-        hdi_signal_all(&t->work);
+        hdi_threads_wake(t, t->n);
         hdi_unlock(&t->lock);
-        while (t->n > 0) hdi_thread_join(t->seat[--t->n].thread);
-        hdi_signal_end(&t->work);
-        hdi_signal_end(&t->finished);
-        hdi_mutex_end(&t->lock);
+        while (t->n > 0) hdi_thread_join(t->thread[--t->n]);
+        hdi_locks_end(&t->lock, &t->work, &t->finished);
     }
     HEATDIFF_FREE(t);
     ctx->threads = NULL;
@@ -2773,9 +2730,9 @@ static void hdi_threads_end(hd_context *ctx) {
  * they are the user's. */
 static hd_threads *hdi_threads_own(hd_context *ctx, int64_t n) {
     hd_threads *t = ctx->threads;
-    if (ctx->parallel_for || n < 2 || n > INT32_MAX) return NULL;
+    if (!HDI_THREADS || ctx->parallel_for || n < 2) return NULL;
     if (ctx->n_threads == 1 || ctx->n_holders == 0 || !hdi_threads_linked()) return NULL;
-    if (t && t->open) return NULL;               /* called by a task */
+    if (t && t->walk) return NULL;               /* called by a task */
     if (t && (t->process != hdi_process() || t->asked != ctx->n_threads)) {
         hdi_threads_end(ctx);
         t = NULL;
@@ -2783,98 +2740,30 @@ static hd_threads *hdi_threads_own(hd_context *ctx, int64_t n) {
     if (n < HDI_TASKS_START) return t && t->n > 0 ? t : NULL;
     if (!t) t = ctx->threads = hdi_threads_new(ctx);
     while (t && t->n < t->most && t->n + 1 < n) {
-        hdi_seat *seat = t->seat + t->n;
-        seat->threads = t;
-        seat->worker = t->n + 1;
-        if (!hdi_thread_start(&seat->thread, hdi_seat_run, seat)) t->most = t->n;
+        if (!hdi_thread_start(t->thread + t->n, hdi_thread_run, t)) t->most = t->n;
         else t->n++;
     }
     return t && t->n > 0 ? t : NULL;
 }
 
-/* Nothing is left to claim, but others are at work. */
-static int hdi_walk_waits(const hdi_walk *w) { return !hdi_walk_done(w) && hdi_claimable(w->at) <= 0; }
-
-/* By own threads, which claim from counters of theirs. */
-static void hdi_threads_run(hdi_walk *w) {
+static void hdi_threads_walk(hdi_walk *w) {
     hd_threads *t = w->threads;
-    int32_t k;
-    hdi_lock(&t->lock);
-    w->at = &t->at;
-    w->base = t->end;
-    t->end += w->n;
-    t->walk = *w;
-    t->open = 1;
-    HDI_ATOMIC_SET(&t->at.done, 0);
-    HDI_ATOMIC_SET(&t->at.next, w->base);
-    HDI_ATOMIC_SET(&t->at.ready, w->base + w->own.ready);
-    hdi_threads_wake(t, (int64_t)w->own.ready - 1);
-    hdi_unlock(&t->lock);
     w->ctx->regions++;
-    while (!hdi_walk_done(w)) {
-        while (hdi_walk_step(w, 0)) {}
-        for (k = 0; k < HDI_SPIN && hdi_walk_waits(w); k++) hdi_relax();
-        hdi_lock(&t->lock);
-        for (; hdi_walk_waits(w); t->caller_asleep = 0, w->ctx->waits++) {
+    hdi_lock(&t->lock);
+    t->walk = w;
+    hdi_threads_wake(t, w->ready - 1);
+    while (w->done < w->ready) {
+        hdi_walk_work(w, 0);
+        if (w->done < w->ready) hdi_threads_spin(t);
+        while (w->done < w->ready && w->next == w->ready) {
             t->caller_asleep = 1;
             hdi_signal_wait(&t->finished, &t->lock);
+            t->caller_asleep = 0;
+            w->ctx->waits++;
         }
-        hdi_unlock(&t->lock);
     }
-    t->open = 0;
-    w->ctx->helped += HDI_ATOMIC_GET(&t->helped);
-    HDI_ATOMIC_SET(&t->helped, 0);
-}
-
-/* Whether a drain ends though there are nodes: when one that ended before can take one in the next round, or
- * when the calling thread is not among those who drain, and should tell how far the walk is. */
-static int hdi_drain_leaves(const hdi_walk *w, int32_t done) {
-    if (!HDI_LOAD(&w->caller)) return (uint32_t)done > w->n / (8 * HDI_DRAINS);
-    return HDI_LOAD(&w->drains) < HDI_LOAD(&w->most) && hdi_claimable(w->at) > 1;
-}
-
-/* By a user's thread. */
-static void hdi_drain(void *arg, int64_t index, int32_t worker) {
-    hdi_walk *w = (hdi_walk *)arg;
-    const int32_t drains = (int32_t)HDI_ATOMIC_ADD(&w->drains, 1);
-    int32_t k, done = 0, leaves = 0;
-    (void)index;
-    if (worker == 0) HDI_STORE(&w->caller, 1);
-    if (drains > HDI_LOAD(&w->most)) HDI_STORE(&w->most, drains);
-    for (k = 0; k < HDI_SPIN / HDI_DRAINS && !leaves && !hdi_walk_done(w); k++) {
-        while (!leaves && hdi_walk_step(w, worker)) leaves = hdi_drain_leaves(w, ++done);
-        hdi_relax();
-    }
-    HDI_ATOMIC_ADD(&w->drains, -1);
-}
-
-/* Whether the calling thread will do it all. */
-static int hdi_walk_alone(const hdi_walk *w) {
-    return !w->threads && (!w->ctx || !w->ctx->parallel_for || w->n < 2);
-}
-
-/* A walk of at most n nodes. By the threads of ctx; NULL: by this one. Nothing is released yet. */
-static void hdi_walk_open(hdi_walk *w, hd_context *ctx, int64_t n, int32_t *order, hd_task task, void *arg) {
-    memset(w, 0, sizeof *w);
-    w->ctx = ctx;
-    w->n = (uint32_t)n;
-    w->order = order;
-    w->task = task;
-    w->arg = arg;
-    w->at = &w->own;
-    w->told = UINT32_MAX;
-    w->to = 1;
-    w->threads = ctx ? hdi_threads_own(ctx, n) : NULL;
-}
-
-static void hdi_walk_run(hdi_walk *w) {
-    hd_context *ctx = w->ctx;
-    if (w->threads) hdi_threads_run(w);
-    else if (hdi_walk_alone(w))
-        while (hdi_walk_step(w, 0)) {}
-    else
-        for (; !hdi_walk_done(w); hdi_walk_tell(w))
-            ctx->parallel_for(ctx->parallel_user, HDI_DRAINS, hdi_drain, w);
+    t->walk = NULL;
+    hdi_unlock(&t->lock);
 }
 
 /* An object that is made with the context holds it; its threads end with the last one. */
@@ -2886,6 +2775,48 @@ static void hdi_let_go(hd_context *ctx) {
 
 /* ---- loops ---- */
 
+/* By a user's thread. */
+static void hdi_drain(void *arg, int64_t index, int32_t worker) {
+    hdi_walk *w = (hdi_walk *)arg;
+    (void)index;
+    hdi_walk_lock(w);
+    w->caller |= worker == 0;
+    w->most = hdi_high32(w->most, ++w->drains);
+    hdi_walk_work(w, worker);
+    w->drains--;
+    hdi_walk_unlock(w);
+}
+
+/* Whether the calling thread will do it all. */
+static int hdi_walk_alone(const hdi_walk *w) {
+    return !w->threads && (!HDI_ATOMICS || !w->ctx || !w->ctx->parallel_for || w->n < 2);
+}
+
+/* A walk of at most n nodes. By the threads of ctx; NULL: by this one. Nothing is released yet. */
+static void hdi_walk_open(hdi_walk *w, hd_context *ctx, int64_t n, int32_t *order, hd_task task, void *arg) {
+    HEATDIFF_ASSERT(n <= INT32_MAX);
+    memset(w, 0, sizeof *w);
+    w->ctx = ctx;
+    w->n = (int32_t)n;
+    w->order = order;
+    w->task = task;
+    w->arg = arg;
+    w->told = -1;
+    w->to = 1;
+    w->threads = ctx ? hdi_threads_own(ctx, n) : NULL;
+}
+
+static void hdi_walk_run(hdi_walk *w) {
+    hd_context *ctx = w->ctx;
+    hdi_walk_tell(w);
+    if (w->threads) hdi_threads_walk(w);
+    else
+        for (; w->done < w->ready; hdi_walk_tell(w)) {
+            if (hdi_walk_alone(w)) hdi_drain(w, 0, 0);
+            else ctx->parallel_for(ctx->parallel_user, hdi_least(w->n, HDI_DRAINS), hdi_drain, w);
+        }
+}
+
 /* Whether tasks are done one after the other. Then some work is not worth its preparation. */
 static int hdi_is_serial(const hd_context *ctx) {
     return !ctx->parallel_for && (ctx->n_holders == 0 || hdi_context_width(ctx) == 1);
@@ -2893,13 +2824,10 @@ static int hdi_is_serial(const hd_context *ctx) {
 
 /* Tasks that know nothing of each other. */
 static void hdi_parallel(hd_context *ctx, int64_t n_tasks, hd_task task, void *arg) {
-    int64_t i;
     hdi_walk w;
     hdi_walk_open(&w, ctx, n_tasks, NULL, task, arg);
-    w.own.ready = w.n;
-    if (w.threads) hdi_walk_run(&w);
-    else if (ctx->parallel_for && n_tasks > 1) ctx->parallel_for(ctx->parallel_user, n_tasks, task, arg);
-    else for (i = 0; i < n_tasks; i++) task(arg, i, 0);
+    hdi_release(&w, 0, (int32_t)n_tasks);
+    hdi_walk_run(&w);
 }
 
 /* The same for [0, n) in ranges of per_task; the last one may be shorter. */
@@ -10898,7 +10826,7 @@ static void hdi_pass_node(void *arg, int64_t index, int32_t worker) {
 static void hdi_pass_run(hdi_pass *p, hd_context *ctx, int64_t n, int32_t *order, const char *stage,
                          hd_error *e) {
     hdi_walk_open(&p->walk, ctx, n, order, hdi_pass_node, p);
-    if (hdi_walk_alone(&p->walk)) p->walk.n = (uint32_t)(p->sym->n_tasks + p->sym->n_top);
+    if (hdi_walk_alone(&p->walk)) p->walk.n = p->sym->n_tasks + p->sym->n_top;
     p->walk.stage = stage;
     p->walk.e = e;
     hdi_pass_next(p);

@@ -1275,9 +1275,9 @@ static void int_nap_task(void *arg, int64_t index, int32_t worker) {
     (void)index;
     if (worker > 0 && HDI_ATOMIC_ADD(&w->begun, 1) == 1) {
         while (!int_caller_sleeps(w->threads) && time(NULL) < start + 30) {}
-        HDI_ATOMIC_SET(&w->slept, int_caller_sleeps(w->threads));
+        HDI_STORE(&w->slept, int_caller_sleeps(w->threads));
     }
-    while (worker == 0 && HDI_ATOMIC_GET(&w->begun) == 0 && time(NULL) < start + 60) {}
+    while (worker == 0 && HDI_LOAD(&w->begun) == 0 && time(NULL) < start + 60) {}
 }
 #endif
 
