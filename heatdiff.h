@@ -1790,11 +1790,8 @@ HEATDIFF_API hd_status hd_geodesic_distance_from(hd_geodesic *g, const hd_source
 
 #if defined(__linux__) && !defined(HEATDIFF_NO_LARGE_PAGES)
 #include <sys/mman.h>
-#ifdef MADV_HUGEPAGE
 #define HDI_LARGE_PAGES 1
-#endif
-#endif
-#ifndef HDI_LARGE_PAGES
+#else
 #define HDI_LARGE_PAGES 0
 #endif
 
@@ -1863,14 +1860,12 @@ HEATDIFF_API hd_status hd_geodesic_distance_from(hd_geodesic *g, const hd_source
 #define HDI_UNROLL
 #endif
 
-/* What this build has, and the switch that left it out, by itself or because it implies that: the text of a
- * macro that is not defined is its name. A room is entered through few functions. These ask first, and
- * compilers drop whatever nobody reaches any more: all code is checked in every build, and no function has a
- * condition inside. */
+/* What this build has: the text of a macro that is not defined is its name. A room is entered through few
+ * functions. These ask first, and compilers drop whatever nobody reaches any more: all code is checked in
+ * every build, and no function has a condition inside. */
 #define HDI_QUOTE(x) #x
 #define HDI_QUOTED(x) HDI_QUOTE(x)
 #define HDI_BUILT(without) (sizeof HDI_QUOTED(without) == sizeof #without)
-#define HDI_WHY(without, implied) (sizeof HDI_QUOTED(without) == sizeof #without ? implied : #without)
 #define HDI_HAS_DIRECT HDI_BUILT(HEATDIFF_NO_DIRECT)
 #define HDI_HAS_POLE_FACTORS (HDI_HAS_DIRECT && HDI_BUILT(HEATDIFF_NO_POLE_FACTORS))
 #define HDI_HAS_DIAGONAL (HDI_HAS_POLE_FACTORS && HDI_BUILT(HEATDIFF_NO_DIAGONAL))
@@ -1882,16 +1877,6 @@ HEATDIFF_API hd_status hd_geodesic_distance_from(hd_geodesic *g, const hd_source
 #define HDI_HAS_INTRINSIC HDI_BUILT(HEATDIFF_NO_INTRINSIC)
 #define HDI_HAS_POINTS HDI_BUILT(HEATDIFF_NO_POINTS)
 #define HDI_HAS_POLYGONS HDI_BUILT(HEATDIFF_NO_POLYGONS)
-#define HDI_WHY_DIRECT "HEATDIFF_NO_DIRECT"
-#define HDI_WHY_POLE_FACTORS HDI_WHY(HEATDIFF_NO_POLE_FACTORS, HDI_WHY_DIRECT)
-#define HDI_WHY_DIAGONAL HDI_WHY(HEATDIFF_NO_DIAGONAL, HDI_WHY_POLE_FACTORS)
-#define HDI_WHY_DIFFUSION HDI_WHY(HEATDIFF_NO_DIFFUSION, HDI_WHY_DIAGONAL)
-#define HDI_WHY_GEODESIC HDI_WHY(HEATDIFF_NO_GEODESIC, HDI_WHY_DIRECT)
-#define HDI_WHY_SPECTRUM HDI_WHY(HEATDIFF_NO_SPECTRUM, HDI_WHY_DIRECT)
-#define HDI_WHY_ITERATIVE "HEATDIFF_NO_ITERATIVE"
-#define HDI_WHY_INTRINSIC "HEATDIFF_NO_INTRINSIC"
-#define HDI_WHY_POINTS "HEATDIFF_NO_POINTS"
-#define HDI_WHY_POLYGONS "HEATDIFF_NO_POLYGONS"
 #if defined(HEATDIFF_NO_DIRECT) && defined(HEATDIFF_NO_ITERATIVE)
 #error "heatdiff.h: HEATDIFF_NO_DIRECT and HEATDIFF_NO_ITERATIVE leave no method"
 #endif
@@ -1965,6 +1950,19 @@ static HDI_INLINE uint64_t hdi_bits(double x) {
     return bits;
 }
 
+/* Words in the order of the numbers, and back. */
+static HDI_INLINE uint64_t hdi_rank(double x) {
+    const uint64_t bits = hdi_bits(x);
+    return bits >> 63 ? ~bits : bits | (uint64_t)1 << 63;
+}
+
+static HDI_INLINE double hdi_unrank(uint64_t rank) {
+    const uint64_t bits = rank >> 63 ? rank ^ (uint64_t)1 << 63 : ~rank;
+    double x;
+    memcpy(&x, &bits, sizeof x);
+    return x;
+}
+
 static HDI_INLINE int hdi_finite(double x) { return (hdi_bits(x) >> 52 & 0x7ff) != 0x7ff; }
 static HDI_INLINE int hdi_nan(double x) { return hdi_bits(x) << 1 > (uint64_t)0xffe << 52; }
 static int hdi_cfinite(hd_c64 a) { return hdi_finite(a.re) && hdi_finite(a.im); }
@@ -2017,9 +2015,6 @@ static HDI_INLINE double hdi_det2(double a, double b, double c, double d) {
     q = c * d;
     return p - q;
 }
-
-/* Products of differences of smaller numbers do not overflow, nor do sums of them. */
-#define HDI_FAR 1e150
 
 /* Coordinates reach to this, and sizes and areas down to its inverse: products of two of them neither
  * overflow nor vanish. */
@@ -2136,7 +2131,7 @@ static void hdi_text_add(hd_error *e, const char *text) {
 }
 
 /* For what this build has no code for: room is one of HDI_HAS_..., what says it in the field's words. */
-#define HDI_LEFT_OUT(e, room, what) hdi_left_out(e, what, HDI_WHY_##room)
+#define HDI_LEFT_OUT(e, room, what) hdi_left_out(e, what, "HEATDIFF_NO_" #room)
 
 static hd_status hdi_left_out(hd_error *e, const char *what, const char *why) {
     hdi_fail(e, HD_ERR_NOT_BUILT, "this build leaves out ");
@@ -2206,7 +2201,7 @@ static hd_status hdi_need(hd_context *ctx, uint64_t more, const char *what, hd_e
 /* Asks for large pages where the system has them to give: fresh memory costs a seventh of the time then, of
  * which a factor needs a lot. */
 static void hdi_large_pages(char *raw, size_t total) {
-#if HDI_LARGE_PAGES
+#if HDI_LARGE_PAGES && defined(MADV_HUGEPAGE)
     const size_t page = 1 << 16;                 /* the largest that Linux has; shorter ones divide it */
     const size_t skip = (page - (size_t)raw % page) % page;
     if (total >= (size_t)4 << 20)
@@ -2963,108 +2958,101 @@ static int64_t hdi_fullest(const int64_t *ptr, int64_t n) {
     return most;
 }
 
+/* ---- order ---- */
+/* What is sorted, or split at its k-th, are rows of `width` words, by word number `by` of each. Rows of two
+ * are pairs, of which the second words decide where the first are equal. */
+
 enum { HDI_SHORT_LIST = 24 };    /* lists up to here are sorted by insertion; meshes are full of them */
 
-/* A key with a payload; ordered by both, so that sorting is stable where payloads ascend. */
+/* A key with a payload: sorting is stable where payloads ascend. */
 typedef struct hdi_pair { uint64_t key; int64_t id; } hdi_pair;
 
-static int hdi_pair_less(const hdi_pair *a, const hdi_pair *b) {
-    return a->key != b->key ? a->key < b->key : a->id < b->id;
+static HDI_INLINE int hdi_row_less(const uint64_t *a, const uint64_t *b, int width) {
+    return width == 2 && a[0] == b[0] ? a[1] < b[1] : a[0] < b[0];
 }
 
-static void hdi_sift_down(hdi_pair *a, int64_t i, int64_t n) {
-    const hdi_pair x = a[i];
-    int64_t child;
-    while ((child = 2 * i + 1) < n) {
-        if (child + 1 < n && hdi_pair_less(a + child, a + child + 1)) child++;
-        if (!hdi_pair_less(&x, a + child)) break;
-        a[i] = a[child];
-        i = child;
+/* Moves rows of [lo, hi] until those up to the returned place are not above a pivot, and those from *from on
+ * not below it (Hoare 1961). The pivot is the median of three rows drawn by a fixed generator: linear in the
+ * end whatever the order, also for equal rows. */
+static HDI_INLINE int64_t hdi_rows_split(uint64_t *a, int width, int by, int64_t lo, int64_t hi,
+                                         uint64_t *seed, int64_t *from) {
+    uint64_t p[3][2], pivot[2];
+    int64_t i = lo, j = hi;
+    int q, most, least;
+    for (q = 0; q < 3; q++) {
+        *seed = *seed * 6364136223846793005u + 1442695040888963407u;
+        memcpy(p[q], a + (lo + (int64_t)((*seed >> 33) * (uint64_t)(hi - lo + 1) >> 31)) * width + by,
+               (width == 2 ? 2 : 1) * sizeof **p);
     }
-    a[i] = x;
+    most = hdi_row_less(p[0], p[1], width);
+    least = !most;
+    if (hdi_row_less(p[most], p[2], width)) most = 2;
+    if (hdi_row_less(p[2], p[least], width)) least = 2;
+    memcpy(pivot, p[3 - most - least], sizeof pivot);
+    for (; i <= j; i++, j--) {
+        while (hdi_row_less(a + i * width + by, pivot, width)) i++;
+        while (hdi_row_less(pivot, a + j * width + by, width)) j--;
+        if (i > j) break;
+        for (q = 0; q < width; q++) {
+            const uint64_t swap = a[i * width + q];
+            a[i * width + q] = a[j * width + q];
+            a[j * width + q] = swap;
+        }
+    }
+    *from = i;
+    return j;
 }
 
-/* Insertion sort for short lists, heapsort for the rest: never quadratic. */
-static void hdi_sort_pairs(hdi_pair *a, int64_t n) {
+static HDI_INLINE void hdi_rows_insert(uint64_t *a, int64_t n, int width) {
+    uint64_t x[2];
     int64_t i, j;
-    if (n <= HDI_SHORT_LIST) {
-        for (i = 1; i < n; i++) {
-            const hdi_pair x = a[i];
-            for (j = i; j > 0 && hdi_pair_less(&x, a + j - 1); j--) a[j] = a[j - 1];
-            a[j] = x;
-        }
-        return;
-    }
-    for (i = n / 2; i-- > 0;) hdi_sift_down(a, i, n);
-    for (i = n; i-- > 1;) {
-        const hdi_pair x = a[i];
-        a[i] = a[0];
-        a[0] = x;
-        hdi_sift_down(a, 0, i);
+    for (i = 1; i < n; i++) {
+        memcpy(x, a + i * width, (size_t)width * sizeof *x);
+        for (j = i; j > 0 && hdi_row_less(x, a + (j - 1) * width, width); j--)
+            memcpy(a + j * width, a + (j - 1) * width, (size_t)width * sizeof *x);
+        memcpy(a + j * width, x, (size_t)width * sizeof *x);
     }
 }
 
-/* Sorts keys by halves, which are merged; work [n / 2], which short lists do not need. */
-static void hdi_sort_keys(uint64_t *a, int64_t n, uint64_t *work) {
-    const int64_t half = n / 2;
-    int64_t i, j, k;
-    if (n <= HDI_SHORT_LIST) {
-        for (i = 1; i < n; i++) {
-            const uint64_t x = a[i];
-            for (j = i; j > 0 && x < a[j - 1]; j--) a[j] = a[j - 1];
-            a[j] = x;
+/* The longer part of a list waits: no more than 64 do. */
+static HDI_INLINE void hdi_rows_sort(uint64_t *a, int64_t n, int width) {
+    int64_t stack[64][2], lo = 0, hi = n - 1, i, j;
+    uint64_t seed = 12345;
+    int top = 0;
+    for (;;) {
+        for (; hi - lo >= HDI_SHORT_LIST; top++) {
+            const int left = (j = hdi_rows_split(a, width, 0, lo, hi, &seed, &i)) - lo > hi - i;
+            stack[top][0] = left ? lo : i;
+            stack[top][1] = left ? j : hi;
+            lo = left ? i : lo;
+            hi = left ? hi : j;
         }
-        return;
+        hdi_rows_insert(a + lo * width, hi - lo + 1, width);
+        if (top-- == 0) return;
+        lo = stack[top][0];
+        hi = stack[top][1];
     }
-    hdi_sort_keys(a, half, work);
-    hdi_sort_keys(a + half, n - half, work);
-    memcpy(work, a, (size_t)half * sizeof *a);
-    for (i = 0, j = half, k = 0; i < half && j < n; k++) {
-        const int second = a[j] < work[i];
-        a[k] = second ? a[j] : work[i];
-        j += second;
-        i += !second;
-    }
-    memcpy(a + k, work + i, (size_t)(half - i) * sizeof *a);
 }
 
-/* Puts the row of `width` numbers that is k-th by its number `by` in its place, smaller ones before it,
- * larger ones behind (Hoare 1961). Pivots are medians of three places drawn by a fixed generator: linear
- * whatever the order, also for equal rows. */
-static HDI_INLINE void hdi_select(double *a, int64_t n, int64_t k, int width, int by) {
-    int64_t lo = 0, hi = n - 1;
+static void hdi_sort_keys(uint64_t *a, int64_t n) { hdi_rows_sort(a, n, 1); }
+static void hdi_sort_pairs(hdi_pair *a, int64_t n) { hdi_rows_sort((uint64_t *)(void *)a, n, 2); }
+
+/* Puts the k-th row in its place, smaller ones before it, larger ones behind. */
+static HDI_INLINE void hdi_select(uint64_t *a, int64_t n, int64_t k, int width, int by) {
+    int64_t lo = 0, hi = n - 1, i, j;
     uint64_t seed = 12345;
     while (lo < hi) {
-        double p[3], pivot;
-        int64_t i = lo, j = hi;
-        int q;
-        for (q = 0; q < 3; q++) {
-            seed = seed * 6364136223846793005u + 1442695040888963407u;
-            p[q] = a[(lo + (int64_t)((seed >> 33) % (uint64_t)(hi - lo + 1))) * width + by];
-        }
-        pivot = hdi_max(hdi_min(p[0], p[1]), hdi_min(hdi_max(p[0], p[1]), p[2]));
-        while (i <= j) {
-            while (a[i * width + by] < pivot) i++;
-            while (a[j * width + by] > pivot) j--;
-            if (i > j) break;
-            for (q = 0; q < width; q++) {
-                const double swap = a[i * width + q];
-                a[i * width + q] = a[j * width + q];
-                a[j * width + q] = swap;
-            }
-            i++;
-            j--;
-        }
+        j = hdi_rows_split(a, width, by, lo, hi, &seed, &i);
         if (k <= j) hi = j;
         else if (k >= i) lo = i;
         else return;
     }
 }
 
-/* The number-k smallest of a, which is rearranged. */
-static double hdi_kth(double *a, int64_t n, int64_t k) {
+/* The number-k smallest of numbers by their ranks, which are rearranged. */
+static double hdi_kth(uint64_t *a, int64_t n, int64_t k) {
     hdi_select(a, n, k, 1, 0);
-    return a[k];
+    return hdi_unrank(a[k]);
 }
 
 /* Union-find with path halving; the smaller id is always the root, so roots do not depend on the order of
@@ -4456,52 +4444,9 @@ static hd_csr hdi_csr_keep(hdi_scope *s, hd_csr a) {
     return a;
 }
 
-/* t = a' into arrays of the right size; t->row_ptr zero. The columns of t ascend whatever the order in a. */
-static void hdi_csr_transpose_into(const hd_csr *a, hd_csr *t) {
-    int64_t p;
-    int32_t i;
-    for (p = 0; p < a->nnz; p++) t->row_ptr[a->col[p]]++;
-    hdi_prefix_sum(t->row_ptr, t->n_rows);
-    for (i = 0; i < a->n_rows; i++) {
-        for (p = a->row_ptr[i]; p < a->row_ptr[i + 1]; p++) {
-            const int64_t q = t->row_ptr[a->col[p]]++;
-            t->col[q] = i;
-            if (t->val) t->val[q] = a->val[p];
-        }
-    }
-    hdi_rewind(t->row_ptr, t->n_rows);
-}
-
-/* Sums entries with the same place, in their order. */
-static void hdi_csr_merge(hd_csr *a) {
-    int64_t p, q = 0, end = 0;
-    int32_t i;
-    for (i = 0; i < a->n_rows; i++) {
-        const int64_t begin = q;
-        p = end;
-        end = a->row_ptr[i + 1];
-        for (; p < end; p++) {
-            if (q > begin && a->col[q - 1] == a->col[p]) {
-                if (a->val) a->val[q - 1] += a->val[p];
-                continue;
-            }
-            a->col[q] = a->col[p];
-            if (a->val) a->val[q] = a->val[p];
-            q++;
-        }
-        a->row_ptr[i + 1] = q;
-    }
-    a->nnz = q;
-}
-
-/* Work arrays in s. */
-static hd_status hdi_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_cols, int64_t n,
-                                       const int32_t *ti, const int32_t *tj, const double *tv,
-                                       hdi_scope *s) {
-    hd_error *e = s->e;
-    hd_csr t, a;
+static hd_status hdi_triplets_check(int32_t n_rows, int32_t n_cols, int64_t n, const int32_t *ti,
+                                    const int32_t *tj, const double *tv, hd_error *e) {
     int64_t q;
-    int32_t i;
     for (q = 0; q < n; q++) {
         const int bad_row = ti[q] < 0 || ti[q] >= n_rows;
         if (bad_row || tj[q] < 0 || tj[q] >= n_cols)
@@ -4510,24 +4455,48 @@ static hd_status hdi_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_co
         if (tv && !hdi_finite(tv[q]))
             return hdi_fail_row(e, HD_ERR_NOT_FINITE, "triplet: value not finite", q, -1, tv[q]);
     }
-    /* by columns, in the order given; its transpose has sorted rows */
-    t = hdi_csr_take(s, n_cols, n_rows, n, tv != NULL);
+    return HD_OK;
+}
+
+/* The triplets by rows, each row by columns; those with the same place are summed in their order. Work arrays
+ * in s. */
+static hd_status hdi_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_cols, int64_t n,
+                                       const int32_t *ti, const int32_t *tj, const double *tv,
+                                       hdi_scope *s) {
+    hd_csr a;
+    hdi_pair *at;                                /* column and number of a triplet */
+    int64_t q, p, end = 0;
+    int32_t i;
+    if (hdi_triplets_check(n_rows, n_cols, n, ti, tj, tv, s->e) < 0) return s->e->status;
     a = hdi_csr_take(s, n_rows, n_cols, n, tv != NULL);
-    if (e->status < 0) return e->status;
-    for (q = 0; q < n; q++) t.row_ptr[tj[q]]++;
-    hdi_prefix_sum(t.row_ptr, n_cols);
+    at = HDI_TAKE(s, hdi_pair, n);
+    if (s->e->status < 0) return s->e->status;
+    for (q = 0; q < n; q++) a.row_ptr[ti[q]]++;
+    hdi_prefix_sum(a.row_ptr, n_rows);
     for (q = 0; q < n; q++) {
-        const int64_t p = t.row_ptr[tj[q]]++;
-        t.col[p] = ti[q];
-        if (tv) t.val[p] = tv[q];
+        hdi_pair *to = at + a.row_ptr[ti[q]]++;
+        to->key = (uint64_t)tj[q];
+        to->id = q;
     }
-    hdi_rewind(t.row_ptr, n_cols);
-    hdi_csr_transpose_into(&t, &a);
-    hdi_csr_merge(&a);
+    for (i = 0, a.nnz = 0; i < n_rows; i++) {    /* row_ptr has moved on: each row ends where it points */
+        p = end;
+        end = a.row_ptr[i];
+        a.row_ptr[i] = a.nnz;
+        hdi_sort_pairs(at + p, end - p);
+        for (; p < end; p++) {
+            const int32_t j = (int32_t)at[p].key;
+            const int same = a.nnz > a.row_ptr[i] && a.col[a.nnz - 1] == j;
+            const double before = same && tv ? a.val[a.nnz - 1] : 0;
+            a.nnz += !same;
+            a.col[a.nnz - 1] = j;
+            if (tv) a.val[a.nnz - 1] = before + tv[at[p].id];
+        }
+    }
+    a.row_ptr[n_rows] = a.nnz;
     for (i = 0; tv && i < n_rows; i++)
         for (q = a.row_ptr[i]; q < a.row_ptr[i + 1]; q++)
             if (!hdi_finite(a.val[q]))
-                return hdi_fail_row(e, HD_ERR_NOT_FINITE,
+                return hdi_fail_row(s->e, HD_ERR_NOT_FINITE,
                                     "triplets: the sum of those at one place is not finite", i, a.col[q],
                                     a.val[q]);
     *out = hdi_csr_keep(s, a);
@@ -4682,23 +4651,29 @@ typedef struct hdi_tree {
     int32_t *id;               /* [HDI_LEAF n_leaves] of the caller */
 } hdi_tree;
 
-/* Box of the node's points, in rows of three coordinates and a number; returns its longest axis. */
-static int hdi_cell_box(hdi_cell *node, const double *a, int64_t n) {
+/* Box of the node's points, in rows of three coordinates, by their ranks, and a number; returns its longest
+ * axis. */
+static int hdi_cell_box(hdi_cell *node, const uint64_t *a, int64_t n) {
+    uint64_t lo[3], hi[3];
     int64_t i;
     int c, axis = 0;
-    for (c = 0; c < 3; c++) node->lo[c] = node->hi[c] = n > 0 ? a[c] : 0;
+    for (c = 0; c < 3; c++) lo[c] = hi[c] = n > 0 ? a[c] : hdi_rank(0);
     for (i = 1; i < n; i++) {
         for (c = 0; c < 3; c++) {
-            node->lo[c] = hdi_min(node->lo[c], a[4 * i + c]);
-            node->hi[c] = hdi_max(node->hi[c], a[4 * i + c]);
+            lo[c] = a[4 * i + c] < lo[c] ? a[4 * i + c] : lo[c];
+            hi[c] = a[4 * i + c] > hi[c] ? a[4 * i + c] : hi[c];
         }
+    }
+    for (c = 0; c < 3; c++) {
+        node->lo[c] = hdi_unrank(lo[c]);
+        node->hi[c] = hdi_unrank(hi[c]);
     }
     for (c = 1; c < 3; c++)
         if (node->hi[c] - node->lo[c] > node->hi[axis] - node->lo[axis]) axis = c;
     return axis;
 }
 
-static void hdi_tree_split(hdi_tree *t, double *a) {
+static void hdi_tree_split(hdi_tree *t, uint64_t *a) {
     int32_t v;
     t->node[0].first = 0;
     t->node[0].count = t->n_leaves;
@@ -4755,7 +4730,7 @@ static hd_status hdi_tree_make(hdi_tree *t, const double *xyz, int32_t n, hdi_sc
     /* none: one leaf that is all padding */
     const int64_t n_leaves = n > 0 ? ((int64_t)n + HDI_LEAF - 1) / HDI_LEAF : 1;
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
-    double *a = HDI_TAKE(&own, double, 4 * (int64_t)n);
+    uint64_t *a = HDI_TAKE(&own, uint64_t, 4 * (int64_t)n);
     int64_t i;
     int c;
     t->xyz = xyz;
@@ -4766,14 +4741,14 @@ static hd_status hdi_tree_make(hdi_tree *t, const double *xyz, int32_t n, hdi_sc
     t->id = HDI_TAKE(s, int32_t, HDI_LEAF * n_leaves);
     if (s->e->status < 0) return hdi_scope_end(&own);
     for (i = 0; i < n; i++) {
-        hdi_copy3(a + 4 * i, hdi_at3(xyz, i));
-        a[4 * i + 3] = (double)i;
+        for (c = 0; c < 3; c++) a[4 * i + c] = hdi_rank(hdi_at3(xyz, i)[c]);
+        a[4 * i + 3] = (uint64_t)i;
     }
     hdi_tree_split(t, a);
     for (i = 0; i < HDI_LEAF * n_leaves; i++) {
         double *x = t->x + 3 * HDI_LEAF * (i / HDI_LEAF) + i % HDI_LEAF;
         /* infinitely far: in no result */
-        for (c = 0; c < 3; c++) x[c * HDI_LEAF] = i < n ? a[4 * i + c] : HUGE_VAL;
+        for (c = 0; c < 3; c++) x[c * HDI_LEAF] = i < n ? hdi_unrank(a[4 * i + c]) : HUGE_VAL;
         t->id[i] = i < n ? (int32_t)a[4 * i + 3] : -1;
     }
     return hdi_scope_end(&own);
@@ -4998,7 +4973,7 @@ static void hdi_within_task(void *arg, int64_t begin, int64_t end) {
             continue;
         }
         for (p = 0; p < f->m; p++) key[p] = (uint64_t)f->id[p] << 32 | (uint64_t)p;
-        hdi_sort_keys(key, f->m, key + f->m);
+        hdi_sort_keys(key, f->m);
         for (p = 0; p < f->m; p++) {
             job->out->col[row + p] = (int32_t)(key[p] >> 32);
             job->out->val[row + p] = f->d[key[p] & 0xffffffffu];
@@ -5645,7 +5620,6 @@ static HDI_INLINE int32_t hdi_sides_run(const hdi_sides *g, int32_t p, int32_t e
 
 /* Of a mesh whose corners are listed, in s. */
 static hd_status hdi_sides_make(hdi_sides *g, const hdi_mesh *mesh, hdi_scope *s) {
-    uint64_t *work;
     int32_t i, n = 0;
     int64_t p;
     g->ptr = HDI_TAKE_ZERO(s, int32_t, (int64_t)mesh->n + 1);
@@ -5662,9 +5636,8 @@ static hd_status hdi_sides_make(hdi_sides *g, const hdi_mesh *mesh, hdi_scope *s
         g->ptr[i + 1] = n;
         g->most = hdi_high32(g->most, n - g->ptr[i]);
     }
-    work = HDI_TAKE(s, uint64_t, g->most);
-    for (i = 0; i < mesh->n && work; i++)
-        hdi_sort_keys(g->key + g->ptr[i], g->ptr[i + 1] - g->ptr[i], work);
+    for (i = 0; i < mesh->n; i++)
+        hdi_sort_keys(g->key + g->ptr[i], g->ptr[i + 1] - g->ptr[i]);
     return s->e->status;
 }
 
@@ -6050,7 +6023,7 @@ static int32_t hdi_star_directions(hdi_star_point *p, int32_t n) {
 /* Sorts p by angle, equal ones as they come: the angle's bits, whose last eight make room for the place. */
 static void hdi_star_sort(hdi_star_point *p, int32_t n) {
     hdi_star_point from[HDI_STAR_MOST];
-    uint64_t key[HDI_STAR_MOST], work[HDI_STAR_MOST];
+    uint64_t key[HDI_STAR_MOST];
     int32_t i;
     for (i = 0; i < n; i++) {
         p[i].angle = hdi_star_angle(p[i].x, p[i].y) + 0.0;       /* no -0 */
@@ -6058,7 +6031,7 @@ static void hdi_star_sort(hdi_star_point *p, int32_t n) {
         key[i] = (key[i] & ~(uint64_t)255) | (uint64_t)i;
         from[i] = p[i];
     }
-    hdi_sort_keys(key, n, work);
+    hdi_sort_keys(key, n);
     for (i = 0; i < n; i++) p[i] = from[key[i] & 255];
 }
 
@@ -6144,21 +6117,20 @@ static int32_t hdi_soup_copies(const hdi_soup *soup, int32_t f) { return soup->c
 static hd_status hdi_soup_faces(hdi_soup *soup, const int32_t *tri, int64_t m, int32_t n, hdi_scope *s) {
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
     int64_t *ptr = HDI_TAKE_ZERO(&own, int64_t, (int64_t)n + 1), f, p, count = 0;
-    uint64_t *key = HDI_TAKE(&own, uint64_t, m), *work;
+    uint64_t *key = HDI_TAKE(&own, uint64_t, m);
     int32_t i;
     if (s->e->status < 0) return hdi_scope_end(&own);
     for (f = 0; f < m; f++) ptr[hdi_face_low(tri + 3 * f)]++;
     hdi_prefix_sum(ptr, n);
-    work = HDI_TAKE(&own, uint64_t, hdi_fullest(ptr, n));
-    for (f = 0; work && f < m; f++) {
+    for (f = 0; f < m; f++) {
         const int32_t a = tri[3 * f], b = tri[3 * f + 1], c = tri[3 * f + 2];
         const int32_t first = hdi_face_low(tri + 3 * f), last = hdi_high32(a, hdi_high32(b, c));
         const int64_t middle = (int64_t)a + b + c - first - last, odd = ((a > b) + (b > c) + (a > c)) & 1;
         key[ptr[first]++] = (uint64_t)(middle << 32 | (int64_t)last << 1 | odd);
     }
     hdi_rewind(ptr, n);
-    for (i = 0; work && i < n; i++) {
-        hdi_sort_keys(key + ptr[i], ptr[i + 1] - ptr[i], work);
+    for (i = 0; i < n; i++) {
+        hdi_sort_keys(key + ptr[i], ptr[i + 1] - ptr[i]);
         for (p = ptr[i]; p < ptr[i + 1]; p++) count += p == ptr[i] || key[p] >> 1 != key[p - 1] >> 1;
     }
     soup->tri = HDI_TAKE(s, int32_t, 3 * count);
@@ -8008,10 +7980,10 @@ typedef struct hdi_cloud {
 
 /* The middle one of the spacings around place i: an outlier has those of the surface. */
 static double hdi_cell_spacing2(const hdi_cloud *cloud, int32_t i) {
-    double s[HDI_MOST_NEIGHBOURS + 1];
+    uint64_t s[HDI_MOST_NEIGHBOURS + 1];
     const int32_t *nbr = cloud->nbr + (int64_t)i * cloud->k;
     int32_t k;
-    for (k = 0; k < cloud->k; k++) s[k] = cloud->spacing2[nbr[k]];
+    for (k = 0; k < cloud->k; k++) s[k] = hdi_rank(cloud->spacing2[nbr[k]]);
     return hdi_kth(s, cloud->k, cloud->k / 2);
 }
 
@@ -8111,10 +8083,10 @@ static hd_status hdi_cloud_measure(hdi_cloud *cloud, hd_laplacian *lap, hdi_scop
  * eigenvalue lambda, sampling about 0.02 (m/s)^2 of all of them with points independent of each other,
  * where m/h^2 is 4, and 0.0015 (m/s)^2 with blue noise, where it is 1.4. Hence s = m (m/h^2)/4, between
  * 0.3 and 1 m. */
-static double hdi_cloud_bandwidth(const hdi_cloud *cloud, double *work) {
+static double hdi_cloud_bandwidth(const hdi_cloud *cloud, uint64_t *work) {
     double median, mean = 0, h = 0;
     int32_t i;
-    memcpy(work, cloud->spacing2, (size_t)cloud->n * sizeof *work);
+    for (i = 0; i < cloud->n; i++) work[i] = hdi_rank(cloud->spacing2[i]);
     median = hdi_kth(work, cloud->n, cloud->n / 2);
     for (i = 0; i < cloud->n; i++) {
         mean += hdi_min(cloud->spacing2[i], 9 * median);
@@ -8219,7 +8191,7 @@ static hd_status hdi_lap_points(hd_laplacian *lap, const double *xyz, hd_error *
     cloud.first = places.first;
     cloud.k = (int32_t)hdi_least(cloud.n, 1 + (int64_t)rep->neighbours);
     if (hdi_cloud_measure(&cloud, lap, &s) < 0) return hdi_scope_end(&s);
-    if (rep->bandwidth2 == 0) rep->bandwidth2 = hdi_cloud_bandwidth(&cloud, work);
+    if (rep->bandwidth2 == 0) rep->bandwidth2 = hdi_cloud_bandwidth(&cloud, (uint64_t *)(void *)work);
     rep->cut_radius = sqrt(-4 * log(rep->weight_cut) * rep->bandwidth2);
     hdi_cloud_masses(&cloud, lap, places.place, places.first, work);
     if (hdi_lap_rows(lap, work, NULL, e) < 0 || hdi_progress(lap->context, "assemble", 0.4, e) < 0)
@@ -9131,8 +9103,8 @@ static double hdi_nd_place(const hdi_nd *nd, int32_t row, int32_t d) {
 
 /* Numbers the rows along the Morton curve in a grid of 1024^3 cells: vertex k of part 0 is row id[k]. Rows
  * with too many entries come last, and the return value is the number of the other ones. inv: the vertex of
- * a row, -1 for rows with too many entries. key [n], work [n / 2]. */
-static int32_t hdi_nd_number(hdi_nd *nd, const hd_csr *a, int32_t *inv, uint64_t *key, uint64_t *work) {
+ * a row, -1 for rows with too many entries. key [n]. */
+static int32_t hdi_nd_number(hdi_nd *nd, const hd_csr *a, int32_t *inv, uint64_t *key) {
     const double dense = 10 * sqrt((double)a->n_rows) + 16;
     const int32_t n = a->n_rows;
     int32_t i, d, m = 0;
@@ -9144,7 +9116,7 @@ static int32_t hdi_nd_number(hdi_nd *nd, const hd_csr *a, int32_t *inv, uint64_t
         key[i] = (uint64_t)(too_many ? UINT32_MAX : cell) << 32 | (uint32_t)i;
         m += !too_many;
     }
-    hdi_sort_keys(key, n, work);
+    hdi_sort_keys(key, n);
     for (i = 0; i < n; i++) {
         nd->buffer[0][0].id[i] = (int32_t)(uint32_t)key[i];
         inv[nd->buffer[0][0].id[i]] = i < m ? i : -1;
@@ -9963,7 +9935,7 @@ static hd_status hdi_nd_order(const hd_csr *a, const double *xyz, int32_t *perm,
         }
     }
     if (e->status < 0) return hdi_scope_end(&s);
-    nd.part[0] = hdi_nd_load(&nd, a, inv, hdi_nd_number(&nd, a, inv, work, work + n));
+    nd.part[0] = hdi_nd_load(&nd, a, inv, hdi_nd_number(&nd, a, inv, work));
     memcpy(perm, nd.buffer[0][0].id, (size_t)n * sizeof *perm);   /* rows with too many entries stay last */
     hdi_walk_open(&nd.walk, ctx, HDI_ND_NODES, nd.order, hdi_nd_task, &nd);
     nd.walk.stage = "order";
@@ -26928,8 +26900,7 @@ static hd_status hdi_geo_items_check(const hd_geodesic *g, const hdi_geo_items *
 
 /* Notes phi at a point of the source, as number q. */
 static void hdi_geo_note(hd_geodesic *g, int32_t q, double phi, int32_t component) {
-    const uint64_t bits = hdi_bits(phi);
-    g->sorted[q].key = bits >> 63 ? ~bits : bits | (uint64_t)1 << 63;    /* in the order of the doubles */
+    g->sorted[q].key = hdi_rank(phi);
     g->sorted[q].id = component;
 }
 
@@ -26940,10 +26911,7 @@ static void hdi_geo_values_sort(hd_geodesic *g, int32_t n) {
     for (q = 0; q < n; q++) g->value_ptr[g->sorted[q].id]++;
     hdi_sort_pairs(g->sorted, n);
     hdi_prefix_sum(g->value_ptr, g->n_components);
-    for (q = 0; q < n; q++) {
-        const uint64_t key = g->sorted[q].key, bits = key >> 63 ? key ^ (uint64_t)1 << 63 : ~key;
-        memcpy(g->value + g->value_ptr[g->sorted[q].id]++, &bits, sizeof bits);
-    }
+    for (q = 0; q < n; q++) g->value[g->value_ptr[g->sorted[q].id]++] = hdi_unrank(g->sorted[q].key);
     hdi_rewind(g->value_ptr, g->n_components);
 }
 

@@ -13,20 +13,22 @@
 #define SWITCH(name) is_on(#name, TEXT(name))
 static const char *is_on(const char *name, const char *value) { return strcmp(name, value) == 0 ? NULL : name; }
 
-/* The switch that takes a part away, by itself or because it implies that; NULL if the part is there. */
+/* The switch of a part that is taken away, by this one or by one that implies it; NULL if the part is there. */
 static struct {
     const char *direct, *pole_factors, *diagonal, *diffusion, *geodesic, *spectrum, *iterative, *intrinsic, *points, *polygons;
 } no;
+
+#define IMPLIED(name, by) ((by) || SWITCH(name) ? #name : NULL)
 
 static const char *either(const char *first, const char *second) { return first ? first : second; }
 
 static void find_switches(void) {
     no.direct = SWITCH(HEATDIFF_NO_DIRECT);
-    no.pole_factors = either(SWITCH(HEATDIFF_NO_POLE_FACTORS), no.direct);
-    no.diagonal = either(SWITCH(HEATDIFF_NO_DIAGONAL), no.pole_factors);
-    no.diffusion = either(SWITCH(HEATDIFF_NO_DIFFUSION), no.diagonal);
-    no.geodesic = either(SWITCH(HEATDIFF_NO_GEODESIC), no.direct);
-    no.spectrum = either(SWITCH(HEATDIFF_NO_SPECTRUM), no.direct);
+    no.pole_factors = IMPLIED(HEATDIFF_NO_POLE_FACTORS, no.direct);
+    no.diagonal = IMPLIED(HEATDIFF_NO_DIAGONAL, no.pole_factors);
+    no.diffusion = IMPLIED(HEATDIFF_NO_DIFFUSION, no.diagonal);
+    no.geodesic = IMPLIED(HEATDIFF_NO_GEODESIC, no.direct);
+    no.spectrum = IMPLIED(HEATDIFF_NO_SPECTRUM, no.direct);
     no.iterative = SWITCH(HEATDIFF_NO_ITERATIVE);
     no.intrinsic = SWITCH(HEATDIFF_NO_INTRINSIC);
     no.points = SWITCH(HEATDIFF_NO_POINTS);
