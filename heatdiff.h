@@ -10617,7 +10617,7 @@ static hd_status hdi_symbolic_make(hdi_symbolic *s, const hd_csr *a, int32_t *pe
 
 /* From so many rows on nested dissection pays for itself: it takes four to nine times as long to find as
  * minimum degree, and saves half of the flops. For the poles of a set that is soon. One real factor and some
- * solves gain nothing up to 150K rows: see hdi_heat_light. Wide rows, those of exponential weights, make
+ * solves gain nothing up to 150K rows: see hdi_krylov_few. Wide rows, those of exponential weights, make
  * factors so large that it pays at once where it has fewer flops: of minimum degree's, 1.07, 0.85, 0.68, 0.49
  * with 10, 20, 50, 150 thousand random points and 233 non-zeros a row. */
 enum { HDI_DISSECT_FROM = 40000, HDI_DISSECT_WIDE_FROM = 15000, HDI_DISSECT_WIDE = 40 };
@@ -19671,12 +19671,6 @@ typedef struct hdi_steps_scales {
     int32_t rows[HDI_STEPS_OCTAVES];
 } hdi_steps_scales;
 
-/* An elimination order of a plan, with all that is made in it. */
-typedef struct hdi_heat_order {
-    hdi_elim elim;
-    hdi_ground ground;
-} hdi_heat_order;
-
 /* How a call goes on that exceeded the byte limit: without what is optional, that is eigenpairs and poles
  * that times share; besides by the direct method with the fewest poles. */
 enum { HDI_SPARE_OPTIONS = 1, HDI_SPARE_POLES };
@@ -19698,11 +19692,8 @@ struct hd_heat {
     int32_t spare;               /* of a call that exceeded the byte limit: an hdi_spare */
     hd_rational own_set;
     hdi_elim elim;               /* to factorise */
+    hdi_elim few;                /* the same in an order that is found fast, see hdi_krylov_few */
     hdi_ground ground;           /* made when it is first needed; of elim */
-    /* elim and ground of the other order, where one real factor for few columns has its own, or NULL; light:
-     * that is the one in elim now. See hdi_heat_turn */
-    hdi_heat_order *other;
-    int32_t light;
     hdi_modes modes;             /* so too */
     hdi_krylov *silan;
     double *batch_room;          /* arrays of the batches */
@@ -19938,30 +19929,10 @@ static hd_status hdi_heat_iterative(hd_heat *heat, hd_error *e) {
     return e->status;
 }
 
-/* Takes up one of the two elimination orders of a plan: the light one, which is found fast, or the one for
- * all else. Each is analysed when it is first needed. Which one a query takes depends on the query alone, so
- * that no answer depends on what was asked before. Bases fit the order that they were made for. */
-static hd_status hdi_heat_turn(hd_heat *heat, int light, hd_error *e) {
-    hdi_heat_order now;
-    if (heat->light == light) return HD_OK;
-    if (!heat->other) {
-        heat->other = (hdi_heat_order *)hdi_alloc_zero(heat->ctx, 1, sizeof *heat->other, e);
-        if (!heat->other) return e->status;
-    }
-    now.elim = heat->elim;
-    now.ground = heat->ground;
-    heat->elim = heat->other->elim;
-    heat->ground = heat->other->ground;
-    *heat->other = now;
-    heat->light = light;
-    if (HDI_HAS_DIRECT && heat->silan) hdi_krylov_free(heat->silan, heat->ctx);
-    return HD_OK;
-}
-
-/* Frees all factors of both orders; the analyses stay. */
+/* Frees all factors; the analyses stay. */
 static void hdi_heat_drop(hd_heat *heat) {
     hdi_elim_drop(&heat->elim);
-    if (heat->other) hdi_elim_drop(&heat->other->elim);
+    hdi_elim_drop(&heat->few);
 }
 
 /* Frees what is made again when it is needed, but the analyses and the copy of the pair to iterate on. pairs:
@@ -19979,7 +19950,6 @@ static void hdi_heat_shed(hd_heat *heat, int pairs) {
     hdi_free(heat->ctx, heat->silan);
     heat->silan = NULL;
     if (HDI_HAS_DIAGONAL) hdi_ground_free(&heat->ground, heat->ctx);
-    if (HDI_HAS_DIAGONAL && heat->other) hdi_ground_free(&heat->other->ground, heat->ctx);
     if (HDI_HAS_MODES && pairs) hdi_modes_free(&heat->modes, heat->ctx);
     hdi_heat_drop(heat);
 }
@@ -19988,29 +19958,20 @@ static void hdi_heat_shed(hd_heat *heat, int pairs) {
 static void hdi_heat_free_factors(hd_heat *heat) {
     hdi_heat_shed(heat, 1);
     hdi_elim_free(&heat->elim);
-    if (heat->other) hdi_elim_free(&heat->other->elim);
-    hdi_free(heat->ctx, heat->other);
-    heat->other = NULL;
-    heat->light = 0;
+    hdi_elim_free(&heat->few);
 }
 
-/* The one for all else. */
-static const hdi_elim *hdi_heat_full(const hd_heat *heat) {
-    return heat->light ? &heat->other->elim : &heat->elim;
-}
-
-/* The copy of the pair in the elimination order taken up, analysed. */
-static hd_status hdi_heat_analysed_as(hd_heat *heat, int light, hd_error *e) {
+/* A copy of the pair in elimination order, analysed: m is elim or few. */
+static hd_status hdi_heat_analysed_in(hd_heat *heat, hdi_elim *m, hd_error *e) {
+    const hd_ordering kind = m == &heat->few ? HD_ORDERING_MINIMUM_DEGREE : heat->opts.ordering;
     if (!HDI_HAS_DIRECT) return HDI_LEFT_OUT(e, DIRECT, "factorisations");
-    if (hdi_heat_turn(heat, light, e) < 0) return e->status;
-    if (heat->elim.ctx) return HD_OK;
-    return hdi_elim_make(&heat->elim, heat->source,
-                         light ? HD_ORDERING_MINIMUM_DEGREE : heat->opts.ordering, heat->perm, heat->scale,
-                         heat->ctx, e);
+    if (m->ctx) return HD_OK;
+    return hdi_elim_make(m, heat->source, kind, heat->perm, heat->scale, heat->ctx, e);
 }
 
-/* The same in the order for all but few columns. */
-static hd_status hdi_heat_analysed(hd_heat *heat, hd_error *e) { return hdi_heat_analysed_as(heat, 0, e); }
+static hd_status hdi_heat_analysed(hd_heat *heat, hd_error *e) {
+    return hdi_heat_analysed_in(heat, &heat->elim, e);
+}
 
 /* Checks a right-hand side. Its largest part is between 2^(*exponent - 1) and 2^*exponent in size. */
 static hd_status hdi_solve_rhs(const hd_laplacian *lap, const hd_c64 *rhs, int *exponent, hd_error *e) {
@@ -20356,6 +20317,7 @@ typedef struct hdi_heat_call {
     hdi_extra rows;              /* direct: further sums of every item, one after the other */
     double *off_b, *off_m;       /* [k] by residuals, see hdi_column_off; NULL: not wanted */
     hdi_lane *lane;              /* the plan's */
+    hdi_elim *m;                 /* the analysis in use, of the methods that factorise */
     int32_t n_lanes, batch;      /* lanes for items; first item in lane 0 */
     int32_t stop;
 } hdi_heat_call;
@@ -20395,11 +20357,9 @@ static hd_status hdi_heat_renew(hd_heat *heat, hd_error *e) {
     if (!heat->fill) heat->fill = HDI_NEW(heat->ctx, int64_t, lap->n_active, e);
     if (!heat->fill || hdi_heat_sums(heat, e) < 0) return e->status;
     hdi_heat_measure_pair(heat);
-    for (i = heat->other != NULL; HDI_HAS_DIRECT && i >= 0; i--) {
-        if (heat->elim.ctx) hdi_elim_renew(&heat->elim, lap, heat->fill);
-        if (HDI_HAS_DIAGONAL) hdi_ground_free(&heat->ground, heat->ctx);
-        if (heat->other) (void)hdi_heat_turn(heat, !heat->light, e);   /* twice, or not at all */
-    }
+    if (HDI_HAS_DIRECT && heat->elim.ctx) hdi_elim_renew(&heat->elim, lap, heat->fill);
+    if (HDI_HAS_DIRECT && heat->few.ctx) hdi_elim_renew(&heat->few, lap, heat->fill);
+    if (HDI_HAS_DIAGONAL) hdi_ground_free(&heat->ground, heat->ctx);
     if (HDI_HAS_DIRECT && HDI_HAS_MODES) hdi_modes_free(&heat->modes, heat->ctx);
     if (heat->lap) {
         hdi_pair_refresh(heat->lap, lap, heat->fill);
@@ -20434,13 +20394,7 @@ static hd_status hdi_heat_begin(hdi_heat_call *h, hd_heat *heat, hdi_query query
     return h->e->status;
 }
 
-/* ---- choice of the method ---- */
-
-/* Seconds that the methods would take at rates one core has been seen to reach, and the bytes they would
- * hold. factors: the part of direct that makes factors, which later calls at the same t do without. */
-typedef struct hdi_cost {
-    double iterative, iterative_flops, direct, krylov, factors, direct_bytes, krylov_bytes;
-} hdi_cost;
+/* ---- what factors take ---- */
 
 /* Flops per second of packs, with the seconds per non-zero that small fronts cost besides, and of real
  * fronts; bytes per second of sweeps, and how many times faster they are where right-hand sides of Lanczos
@@ -20472,22 +20426,22 @@ static hdi_fill hdi_heat_guess(const hd_heat *heat) {
 }
 
 /* What minimum degree adds to the fill of nested dissection, in flops and in non-zeros by rows squared, and
- * the share of ordering with analysis that it saves. Meshes of 10K, 41K, 50K, 150K, 164K vertices: 0.26,
- * 0.14, 0.14, 0.13, 0.13 flops, 1.7, 1.8, 1.0, 0.9, 1.0 e-4 non-zeros; a fifth of the time where meshes are
- * numbered regularly, a third where they are not. */
+ * the share of ordering with analysis that it takes. Meshes of 10K, 41K, 50K, 150K, 164K vertices: 0.26,
+ * 0.14, 0.14, 0.13, 0.13 flops, 1.7, 1.8, 1.0, 0.9, 1.0 e-4 non-zeros; four fifths of the time where meshes
+ * are numbered regularly, two thirds where they are not. */
 #define HDI_DEGREE_FLOPS 0.13
 #define HDI_DEGREE_NNZ 1e-4
-#define HDI_DEGREE_SAVES 0.7
+#define HDI_DEGREE_ANALYSIS 0.3
 
-/* The same for an order of the plan, from its analysis where that is there. */
-static hdi_fill hdi_heat_fill_of(const hd_heat *heat, const hdi_elim *m, int light) {
+/* The same for elim or few of the plan, from its analysis where that is there. */
+static hdi_fill hdi_heat_fill(const hd_heat *heat, const hdi_elim *m) {
     const hdi_symbolic *s = &m->sym;
     const double n = heat->source->n_active;
     hdi_fill f = hdi_heat_guess(heat);
-    if (light) {
+    if (m == &heat->few) {
         f.flops += HDI_DEGREE_FLOPS * n * n;
         f.nnz += HDI_DEGREE_NNZ * n * n;
-        f.analysis *= 1 - HDI_DEGREE_SAVES;
+        f.analysis *= HDI_DEGREE_ANALYSIS;
     }
     if (!m->ctx) return f;
     f.nnz = (double)s->nnz;
@@ -20498,274 +20452,13 @@ static hdi_fill hdi_heat_fill_of(const hd_heat *heat, const hdi_elim *m, int lig
     return f;
 }
 
-/* For the order that is taken up. */
-static hdi_fill hdi_heat_fill(const hd_heat *heat) {
-    return hdi_heat_fill_of(heat, &heat->elim, heat->light);
-}
-
-/* For that of the poles. Where only the light one is analysed: what is known of that, less what it adds. */
-static hdi_fill hdi_heat_fill_poles(const hd_heat *heat) {
-    const double n = heat->source->n_active;
-    hdi_fill f = hdi_heat_fill_of(heat, hdi_heat_full(heat), 0), g = hdi_heat_fill(heat);
-    if (!heat->light || f.analysis == 0 || g.analysis > 0) return f;
-    f.nnz = hdi_max(g.nnz / 2, g.nnz - HDI_DEGREE_NNZ * n * n);
-    f.flops = hdi_max(g.flops / 4, g.flops - HDI_DEGREE_FLOPS * n * n);
-    f.stored = g.stored;
-    f.real_stored = g.real_stored;
-    return f;
-}
-
-/* The same for a call; derivatives by poles need them. */
-static hd_solver hdi_heat_solver(const hdi_heat_call *h, double t) {
-    const hd_solver solver = hdi_heat_choose(h->heat, t);
-    return h->rate && solver == HD_SOLVER_LANCZOS ? HD_SOLVER_COCG : solver;
-}
-
-/* Iterating, the times one by one. */
-static void hdi_cost_iterative(const hdi_heat_call *h, int32_t poles, hdi_cost *c) {
-    const hd_heat *heat = h->heat;
-    int32_t q;
-    c->iterative = heat->weight ? 0 : HDI_ROW_ITERATIVE * heat->source->n_active;
-    c->iterative_flops = 0;
-    for (q = 0; q < h->n_times; q++) {
-        const double t = h->times[q];
-        const hdi_work w = hdi_heat_solver(h, t) == HD_SOLVER_LANCZOS
-                           ? hdi_lanczos_work(heat, t, h->ask.k) : hdi_cocg_work(heat, t, poles, h->ask.k);
-        c->iterative += w.seconds;
-        c->iterative_flops += w.flops;
-    }
-    if (!HDI_HAS_ITERATIVE) c->iterative = HUGE_VAL;
-}
-
-/* A shift for the times [first, last] of a window that begins with fields, or with answers at `from`. A
- * single time takes about a tenth of it, and a power of four, so that times near each other share the factor,
- * whichever comes first. Several times depend on it more: half or twice the best shift costs up to a fourth
- * of the steps. The best ones were found on meshes of 10K to 50K vertices, for ratios of 2 to 300. It is
- * not so large that B is lost beside g L. */
-#define HDI_SHIFT_FIELD 0.07
-#define HDI_SHIFT_ANSWER 0.15
-
-static double hdi_krylov_shift(double from, double first, double last, double lambda_max) {
-    const double limit = lambda_max > 0 ? 1e12 / lambda_max : HUGE_VAL;   /* four digits of B are left */
-    int exponent;
-    if (from > 0) return hdi_min(HDI_SHIFT_ANSWER * sqrt(from) * sqrt(last - from), limit);
-    if (last > first) return hdi_min(HDI_SHIFT_FIELD * sqrt(first) * sqrt(last), limit);
-    frexp(hdi_min(last / 10, limit), &exponent);   /* in [1/2, 1) times 2^exponent */
-    return ldexp(1, exponent % 2 == 0 ? exponent : exponent - 1);
-}
-
-/* The kind of pole set that the call takes by its query and the options. */
-static hd_pole_kind hdi_heat_kind(const hdi_heat_call *h) {
-    const hd_pole_kind asked = h->heat->opts.poles;
-    /* see hdi_rational_rate: errors of uniform sets do not fall off */
-    if (h->rate) return asked == HD_POLES_DIAGONAL ? asked : HD_POLES_KERNEL;
-    return asked ? asked : hdi_query_fields(h->ask.query) ? HD_POLES_UNIFORM
-           : h->diagonal ? HD_POLES_DIAGONAL : HD_POLES_KERNEL;
-}
-
-/* Are the factors of the poles there? A field's default degree, not known yet, is taken as the last. */
-static int hdi_heat_at_hand(const hdi_heat_call *h) {
-    const hdi_elim *m = hdi_heat_full(h->heat);
-    if (!m->filled || m->t != h->t || h->n_times > 1) return 0;
-    return h->set || h->heat->opts.rational || m->set.kind == hdi_heat_kind(h);
-}
-
-/* Windows of times with a factor and a basis each: how many, their steps together, those of the longest. */
-typedef struct hdi_windows { int32_t n; double steps, longest; } hdi_windows;
-
-/* Steps of a basis for times in this ratio, beginning with fields or with answers. It takes some more where
- * other windows go on from its answers. Fitted to runs at ratios from 2 to 300 on meshes of 10K to 50K
- * vertices; fewer are enough at large times, where few eigenvalues matter. */
-#define HDI_STEPS_HANDED_ON 3
-
-static double hdi_krylov_steps(double ratio, int goes_on) {
-    const double most = 0.9 * (double)HDI_KRYLOV_MAX;
-    return hdi_min(goes_on ? 14 + 1.8 * sqrt(ratio) : 22 + 2.8 * sqrt(ratio), most);
-}
-
-/* The share of the steps that a single late time takes, of which few eigenvalues are left: 25 steps and 12
- * where t times the smallest eigenvalue is 1 and 14, measured at 2.5K and 10K vertices. */
-#define HDI_STEPS_LATE 0.08
-
-static double hdi_krylov_late(const hdi_heat_call *h) {
-    if (h->n_times > 1) return 1;
-    return hdi_max(0.4, 1 / (1 + HDI_STEPS_LATE * h->times[0] * h->heat->scales.lowest));
-}
-
-/* The number of windows of equal ratio that costs least. No basis serves beyond a ratio of 1e4; that of all
- * times might overflow. */
-static hdi_windows hdi_krylov_windows(const hdi_heat_call *h, hdi_fill f) {
-    const double factor = f.flops / HDI_RATE_REAL;
-    const double step = 16 * f.nnz / HDI_RATE_SWEEP + 1e-8 * h->heat->source->n_active;
-    const double span = log(h->times[h->n_times - 1]) - log(hdi_max(h->times[0], 1e-300));
-    const int32_t least = hdi_high32(1, (int32_t)ceil(span / log(1e4)));
-    double best = HUGE_VAL;
-    hdi_windows all = {1, 0, 0};
-    int32_t w;
-    for (w = least; w < 2 * least + 15; w++) {
-        const double ratio = exp(span / w);
-        const double longest = hdi_krylov_steps(ratio, 0) + (w > 1 ? HDI_STEPS_HANDED_ON : 0);
-        const double steps = longest + (w - 1) * hdi_krylov_steps(ratio, 1);
-        if (w * factor + steps * step >= best) continue;
-        best = w * factor + steps * step;
-        all.n = w;
-        all.steps = steps;
-        all.longest = longest;
-    }
-    return all;
-}
-
-/* Does shift-and-invert Lanczos take the light order? For few columns that is found and analysed in a third
- * of the time, and the steps lose less. It is left alone under a byte limit, where a second analysis might
- * not fit. Totals of one column with 20 steps, one thread, processor time, of the light order and the other:
- * 62 and 95 ms at 50K vertices, 54 and 75 at 41K, 274 and 347 at 150K, 356 and 395 at 164K. */
-#define HDI_RATE_FRONTS 73e9     /* flops per second of the large fronts that it adds: 73 to 128 e9 */
-
-enum { HDI_LIGHT_COLUMNS = 3 };  /* more are solved side by side, and gain less from a fast order */
-
-static int hdi_heat_light(const hdi_heat_call *h) {
-    const hd_heat *heat = h->heat;
-    const hd_laplacian *lap = heat->source;
-    const hdi_order order = {heat->opts.ordering, lap->xyz, NULL};
-    const hdi_fill f = hdi_heat_guess(heat);
-    const double n = lap->n_active, wide = hdi_max(1, (double)lap->L.nnz / (10 * n));
-    hdi_windows w;
-    double more;
-    if (order.kind != HD_ORDERING_AUTO || hdi_order_kind(&order, &lap->L) != HD_ORDERING_NESTED_DISSECTION ||
-        h->ask.k > HDI_LIGHT_COLUMNS || heat->ctx->byte_limit) return 0;
-    w = hdi_krylov_windows(h, f);
-    more = w.n * HDI_DEGREE_FLOPS * wide / HDI_RATE_FRONTS +
-           h->ask.k * w.steps * hdi_krylov_late(h) * 16 * HDI_DEGREE_NNZ / HDI_RATE_SWEEP;
-    return more * wide * n * n < HDI_DEGREE_SAVES * f.analysis;
-}
-
-/* The model of all methods. */
-static hdi_cost hdi_heat_cost(const hdi_heat_call *h) {
-    const hd_heat *heat = h->heat;
-    const hd_heat_opts *o = &heat->opts;
-    const hdi_fill f = hdi_heat_fill(heat), g = hdi_heat_fill_poles(heat);
-    const double n = heat->source->n_active, k = h->ask.k;
-    const int32_t poles = o->rational ? o->rational->n_poles : o->degree ? (o->degree + 1) / 2
-                          : HDI_POLES_EXPECTED;
-    const int32_t pairs = o->rational ? poles : o->degree ? o->degree / 2 : 4;
-    const int32_t packs = pairs > 4 ? (pairs + 3) / 4 : 1;
-    const hdi_windows w = hdi_krylov_windows(h, f);
-    const double steps = k * w.steps * hdi_krylov_late(h), shared = k > 3 ? HDI_KRYLOV_SHARED : 1;
-    const double real = f.flops / HDI_RATE_REAL, sweep = (k > 1 ? 1.6 : 0.6) * HDI_RATE_SWEEP;
-    const double factor =
-        packs * (16 * g.flops / HDI_RATE_PACK + HDI_ENTRY_PACK * g.nnz) +
-        (poles % 4 == 1 ? g.flops / HDI_RATE_REAL : 0);
-    hdi_cost c;
-    hdi_cost_iterative(h, poles, &c);
-    c.krylov = f.analysis + w.n * f.flops / HDI_RATE_REAL +
-               steps * (16 * f.nnz + 100 * n) / (HDI_RATE_SWEEP * shared) +
-               h->n_times * steps / w.n * 8 * n / HDI_RATE_SWEEP;
-    if (h->n_times == 1 && heat->elim.shifted.ready &&
-        heat->elim.shift == hdi_krylov_shift(0, h->t, h->t, heat->lambda_max)) c.krylov -= real;
-    c.factors = hdi_heat_at_hand(h) ? 0 : g.analysis + h->n_times * factor;
-    c.direct = c.factors + h->n_times * (k * packs * (64 * g.nnz + 400 * n) / sweep);
-    c.direct_bytes = 64 * packs * g.stored + 200 * n + 8 * g.real_stored;
-    c.krylov_bytes = 8 * f.real_stored + 8 * n * (k > 1 ? 8 * w.longest : w.longest) + 200 * n;
-    c.direct_bytes += hdi_min(k, HDI_LANES) * 140 * n;       /* lanes, and rows of a batch */
-    c.krylov_bytes += hdi_min(k, HDI_WIDE) * 80 * n;
-    if (k <= 3 && h->n_times > 1) c.krylov_bytes += HDI_WIDE * 8 * n;   /* sums at several times */
-    if (hdi_heat_full(heat)->n_packs >= packs) c.direct_bytes = 0;   /* there already */
-    if (heat->silan) c.krylov_bytes = 0;
-    c.krylov += HDI_FRESH_BYTE * c.krylov_bytes;
-    c.factors += HDI_FRESH_BYTE * c.direct_bytes;
-    c.direct += HDI_FRESH_BYTE * c.direct_bytes;
-    if (!HDI_HAS_POLE_FACTORS) c.direct = c.direct_bytes = HUGE_VAL;
-    return c;
-}
-
-/* The cheapest method that fits into so many bytes. */
-static void hdi_heat_cheapest(hdi_heat_call *h, const hdi_cost *c, double room) {
-    const int no_direct = !HDI_HAS_POLE_FACTORS || c->direct_bytes > room;
-    const int no_krylov = c->krylov_bytes > room || h->heat->poles_asked || h->rate == HDI_RATE_POLES;
-    h->method = HD_METHOD_ITERATIVE;
-    h->cost = c->iterative;
-    h->rep->reason = "iterations cost less than a factorisation";
-    if (no_direct && c->krylov_bytes > room) h->rep->reason = "factors would not fit the byte limit";
-    if (!no_krylov && c->krylov < c->iterative && (no_direct || c->krylov <= c->direct)) {
-        h->method = HD_METHOD_KRYLOV;
-        h->cost = c->krylov;
-        h->rep->reason = "few columns: one real factor costs less than those of the poles";
-        if (h->n_times > 1) h->rep->reason = "one real factor serves many times";
-    } else if (!no_direct && c->direct < c->iterative) {
-        h->method = HD_METHOD_DIRECT;
-        h->cost = c->direct;
-        h->rep->reason = "the factors of the poles cost least";
-        if (c->factors == 0) h->rep->reason = "the factors of the poles are there from calls before";
-        if (h->ask.k > 1) h->rep->reason = "many columns: solves with the factors of the poles cost least";
-    }
-}
-
-/* Have calls at this t cost as much as the factors of the poles, and would these be faster from now on?
- * Whoever buys when the rent paid amounts to the price never pays more than twice the least (ski rental;
- * Karlin, Manasse, Rudolph, Sleator 1988). The model counts, not a clock: methods are the same everywhere. */
-static int hdi_heat_habit(const hdi_heat_call *h, const hdi_cost *c, double room) {
-    if (!HDI_HAS_POLE_FACTORS || h->method == HD_METHOD_DIRECT || c->direct_bytes > room) return 0;
-    return h->n_times == 1 && h->t == h->heat->habit_t && h->heat->habit_spent >= c->factors &&
-           c->direct - c->factors < h->cost;
-}
-
-/* Notes what a call has cost. Factors that are made begin the count anew. */
-static void hdi_heat_spend(hdi_heat_call *h) {
-    hd_heat *heat = h->heat;
-    if (heat->opts.method != HD_METHOD_AUTO || h->t == 0 || h->equal) return;
-    if (h->method == HD_METHOD_DIRECT || heat->habit_t != h->t) heat->habit_spent = 0;
-    heat->habit_t = h->t;
-    if (h->method != HD_METHOD_DIRECT) heat->habit_spent += h->cost;
-}
-
-/* Picks the method by the model. The analysis is made only where a factorisation could cost least. */
-static hd_status hdi_heat_pick_by_cost(hdi_heat_call *h) {
-    hd_heat *heat = h->heat;
-    /* without iterations there is no retreat */
-    const double room = HDI_HAS_ITERATIVE ? hdi_bytes_left(heat->ctx) : HUGE_VAL;
-    hdi_cost c;
-    int light;
-    if (hdi_heat_turn(heat, hdi_heat_light(h), h->e) < 0) return h->e->status;
-    c = hdi_heat_cost(h);
-    hdi_heat_cheapest(h, &c, room);
-    light = heat->light && h->method != HD_METHOD_DIRECT;
-    if (!heat->elim.ctx && hdi_min(c.direct_bytes, c.krylov_bytes) < room &&
-        (c.iterative > hdi_min(c.direct, heat->poles_asked ? HUGE_VAL : c.krylov) ||
-         hdi_heat_habit(h, &c, room))) {
-        if (hdi_heat_analysed_as(heat, light, h->e) < 0) return h->e->status;
-        c = hdi_heat_cost(h);
-        hdi_heat_cheapest(h, &c, room);
-    }
-    h->forced |= room < HUGE_VAL && h->method == HD_METHOD_ITERATIVE &&
-        c.iterative > hdi_min(c.direct, c.krylov);
-    h->by_habit = hdi_heat_habit(h, &c, room);
-    if (h->by_habit) {
-        h->method = HD_METHOD_DIRECT;
-        h->rep->reason = "calls at this t have cost as much as the factors of the poles, which serve more";
-    }
-    return HD_OK;
-}
-
-/* Picks the method by the model, or as asked for. */
-static hd_status hdi_heat_pick(hdi_heat_call *h) {
-    const hd_heat *heat = h->heat;
-    h->method = heat->opts.method;
-    h->cost = 0;
-    h->by_habit = 0;
-    h->rep->reason = "asked for";
-    if (h->method != HD_METHOD_AUTO) return HD_OK;
-    h->method = HD_METHOD_DIRECT;
-    h->rep->reason = "iterations, which would take less, fail";
-    if (heat->spare == HDI_SPARE_POLES) return HD_OK;
-    h->method = HD_METHOD_ITERATIVE;
-    h->rep->reason = "a solver or preconditioner is asked for";
-    if (heat->iterations_asked) return HD_OK;
-    h->rep->reason = "factors did not fit the byte limit";
-    h->forced = heat->no_factors && heat->ctx->byte_limit == heat->no_factors_limit;
-    if (h->forced) return HD_OK;
-    h->rep->reason = "this build has iterations only";
-    return HDI_HAS_DIRECT ? hdi_heat_pick_by_cost(h) : HD_OK;
-}
+/* What minimum degree adds to the fill of nested dissection, in flops and in non-zeros by rows squared, and
+ * the share of ordering with analysis that it saves. Meshes of 10K, 41K, 50K, 150K, 164K vertices: 0.26,
+ * 0.14, 0.14, 0.13, 0.13 flops, 1.7, 1.8, 1.0, 0.9, 1.0 e-4 non-zeros; a fifth of the time where meshes are
+ * numbered regularly, a third where they are not. */
+#define HDI_DEGREE_FLOPS 0.13
+#define HDI_DEGREE_NNZ 1e-4
+#define HDI_DEGREE_SAVES 0.7
 
 /* Below this t lambda is nothing beside one, in doubles. */
 #define HDI_STILL 1e-18
@@ -20781,23 +20474,31 @@ static int hdi_heat_equal_asks(const hd_heat *heat, double t) {
            t * heat->lambda_max >= HDI_EQUAL_FROM;
 }
 
-/* Is t (scaled) so large that only the means of the components are left? 1 or 0; errors are in e. What tells
- * is one number; its factor is not kept, so that there is room for those of poles. Where there is no such
- * factor, or no room for it, all goes on as ever. */
-static int hdi_heat_equal(hd_heat *heat, double t, hd_error *e) {
-    hdi_ground *g = &heat->ground;
-    if (!HDI_HAS_DIAGONAL || !hdi_heat_equal_asks(heat, t) || !heat->elim.ctx) return 0;
+/* Is t (scaled) so large that only the means of the components are left? 1 or 0; errors are in e. m: an
+ * analysis of the plan. What tells is one number; its factor is not kept, so that there is room for those
+ * of poles. Where there is no such factor, or no room for it, all goes on as ever. */
+static int hdi_heat_equal(hd_heat *heat, hdi_elim *m, double t, hd_error *e) {
+    hdi_ground *g = &heat->ground, one;
+    if (!HDI_HAS_DIAGONAL || !hdi_heat_equal_asks(heat, t) || !m->ctx) return 0;
     if (!g->traced) {
-        double trace = HUGE_VAL;
-        if (hdi_ground_make(&heat->elim, g, e) >= 0) trace = g->largest_trace;
-        else if (hdi_over_limit(heat->ctx, e)) trace = -1;
-        else if (e->status != HD_ERR_BREAKDOWN) return 0;
+        memset(&one, 0, sizeof one);
+        if (hdi_ground_make(m, &one, e) >= 0) g->largest_trace = one.largest_trace;
+        else if (e->status == HD_ERR_BREAKDOWN) g->largest_trace = HUGE_VAL;
+        else if (!hdi_over_limit(heat->ctx, e)) return 0;
+        g->traced = e->status >= 0 || e->status == HD_ERR_BREAKDOWN;
         hdi_error_clear(e);
-        hdi_ground_free(g, heat->ctx);
-        g->largest_trace = trace;
-        g->traced = trace >= 0;
+        hdi_ground_free(&one, heat->ctx);
     }
     return g->traced && t > 2 * HDI_EQUAL_BEYOND * g->largest_trace;
+}
+
+/* The kind of pole set that the call takes by its query and the options. */
+static hd_pole_kind hdi_heat_kind(const hdi_heat_call *h) {
+    const hd_pole_kind asked = h->heat->opts.poles;
+    /* see hdi_rational_rate: errors of uniform sets do not fall off */
+    if (h->rate) return asked == HD_POLES_DIAGONAL ? asked : HD_POLES_KERNEL;
+    return asked ? asked : hdi_query_fields(h->ask.query) ? HD_POLES_UNIFORM
+           : h->diagonal ? HD_POLES_DIAGONAL : HD_POLES_KERNEL;
 }
 
 /* Lanes for n items, without their arrays. */
@@ -20805,48 +20506,6 @@ static hd_status hdi_heat_sit(hdi_heat_call *h, int32_t n) {
     (void)hdi_heat_seats(h->heat, n, h->e);
     h->lane = h->heat->lane;
     return h->e->status;
-}
-
-/* The copy of the pair for the method picked. */
-static hd_status hdi_heat_analysed_for(const hdi_heat_call *h) {
-    return hdi_heat_analysed_as(h->heat, h->method == HD_METHOD_KRYLOV && hdi_heat_light(h), h->e);
-}
-
-/* Picks the method and its copy of the pair, and reports them. */
-static hd_status hdi_heat_engine(hdi_heat_call *h) {
-    hd_heat *heat = h->heat;
-    if (hdi_heat_sit(h, 1) < 0) return h->e->status;
-    /* |exp(-t lambda) - 1| <= t lambda */
-    if (h->n_times == 1 && !heat->opts.rational && h->t * heat->lambda_max < HDI_STILL) {
-        h->still = h->t * heat->lambda_max;
-        h->t = 0;
-    }
-    if (h->t == 0) {                             /* nothing to solve */
-        h->method = heat->opts.method;
-        if (h->method == HD_METHOD_AUTO)
-            h->method = HDI_HAS_ITERATIVE ? HD_METHOD_ITERATIVE : HD_METHOD_KRYLOV;
-        h->rep->reason = "t = 0";
-    } else if (hdi_heat_pick(h) < 0) {
-        return h->e->status;
-    } else if (HDI_HAS_ITERATIVE && h->method == HD_METHOD_ITERATIVE) {
-        if (hdi_heat_iterative(heat, h->e) < 0) return h->e->status;
-        h->lap = heat->lap;
-    } else if (HDI_HAS_DIRECT) {
-        if (hdi_heat_analysed_for(h) < 0) return h->e->status;
-        h->lap = heat->elim.lap;
-        h->rep->ordering = heat->elim.sym.ordering;
-        h->rep->factor_nnz = heat->elim.sym.nnz;
-        if (h->n_times == 1) h->equal = hdi_heat_equal(heat, h->t, h->e);
-        if (h->e->status < 0) return h->e->status;
-    }
-    h->rep->method = h->method;
-    h->solver = h->method == HD_METHOD_ITERATIVE ? hdi_heat_solver(h, h->t)
-                : h->method == HD_METHOD_KRYLOV ? HD_SOLVER_LANCZOS : HD_SOLVER_AUTO;
-    h->rep->solver = h->solver;
-    h->rep->precond = HD_PRECOND_NONE;
-    if (h->method == HD_METHOD_ITERATIVE && h->solver != HD_SOLVER_LANCZOS)
-        h->rep->precond = heat->opts.precond;
-    return HD_OK;
 }
 
 static hd_status hdi_heat_end(hdi_heat_call *h) {
@@ -21170,12 +20829,16 @@ static hd_status hdi_heat_degree(const hdi_heat_call *h, int32_t *degree) {
     return HD_OK;
 }
 
-/* The pole set of this call. */
-static hd_status hdi_heat_set(const hdi_heat_call *h, hd_rational *set) {
+/* Does the degree depend on the fields? */
+static int hdi_heat_open(const hdi_heat_call *h) {
+    const hd_heat *heat = h->heat;
+    return !h->set && !heat->opts.rational && !heat->opts.degree && !heat->exacting &&
+           hdi_heat_kind(h) == HD_POLES_UNIFORM && heat->spare != HDI_SPARE_POLES;
+}
+
+/* The pole set of this call. degree: where nothing else says which. */
+static hd_status hdi_heat_set_of(const hdi_heat_call *h, int32_t degree, hd_rational *set) {
     const hd_heat_opts *o = &h->heat->opts;
-    const hd_pole_kind kind = hdi_heat_kind(h);
-    /* four pairs fill a pack, a real pole costs little */
-    int32_t degree = h->method == HD_METHOD_DIRECT ? 9 : 10;
     if (h->heat->exacting || h->rate) degree = HDI_RAT_KERNEL_MAX;
     if (h->degree) degree = h->degree;
     if (o->degree) degree = h->rate ? hdi_high32(o->degree, HDI_RAT_KERNEL_MIN) : o->degree;
@@ -21183,10 +20846,16 @@ static hd_status hdi_heat_set(const hdi_heat_call *h, hd_rational *set) {
         *set = h->set ? *h->set : *o->rational;
         return HD_OK;
     }
-    if (!o->degree && !h->heat->exacting && kind == HD_POLES_UNIFORM &&
-        h->heat->spare != HDI_SPARE_POLES && hdi_heat_degree(h, &degree) < 0) return h->e->status;
-    if (hdi_rational_get(set, kind, degree, h->e) >= 0 && h->rate) hdi_rational_rate(set);
+    if (hdi_rational_get(set, hdi_heat_kind(h), degree, h->e) >= 0 && h->rate) hdi_rational_rate(set);
     return h->e->status;
+}
+
+enum { HDI_DEGREE_DIRECT = 9 };  /* four pairs fill a pack, a real pole costs little */
+
+static hd_status hdi_heat_set(const hdi_heat_call *h, hd_rational *set) {
+    int32_t degree = h->method == HD_METHOD_DIRECT ? HDI_DEGREE_DIRECT : 10;
+    if (hdi_heat_open(h) && hdi_heat_degree(h, &degree) < 0) return h->e->status;
+    return hdi_heat_set_of(h, degree, set);
 }
 
 /* t times the largest eigenvalue is at most this in Lanczos: it is squared. By then all that moves is gone,
@@ -21344,6 +21013,46 @@ static hd_status hdi_heat_store_some(hdi_heat_call *h, int32_t n) {
 
 /* ---- iterative ---- */
 
+/* The solver of a call; derivatives by poles need them. */
+static hd_solver hdi_heat_solver(const hdi_heat_call *h, double t) {
+    const hd_solver solver = hdi_heat_choose(h->heat, t);
+    return h->rate && solver == HD_SOLVER_LANCZOS ? HD_SOLVER_COCG : solver;
+}
+
+/* Bytes of iterations: the copy of the pair, its upper triangle, lanes and preconditioners, or bases. */
+static double hdi_iterative_bytes(const hdi_heat_call *h, int32_t poles) {
+    const hd_heat *heat = h->heat;
+    const double n = heat->source->n_active, nnz = (double)heat->source->L.nnz;
+    const double lanes = hdi_low32(h->ask.k, HDI_LANES_ITERATIVE);
+    const hdi_precond_row *row = hdi_preconds + heat->opts.precond;
+    double bytes = 0;
+    if (!heat->lap) bytes += nnz * (heat->source->B ? 20 : 12) + 36 * n + 4.0 * heat->source->n;
+    if (!heat->weight) bytes += 8 * n + 4 * (nnz - n) / 2 + 32 * n;
+    if (hdi_heat_solver(h, h->t) == HD_SOLVER_LANCZOS)
+        return bytes + lanes * (80 * n + 88.0 * hdi_lanczos_most(h->t, heat->lambda_max));
+    bytes += lanes * (24 + 16.0 * (1 + hdi_iteration_vectors(heat->opts.solver) + poles)) * n;
+    return bytes + 16.0 * poles * (row->rows * n + row->entries * (nnz - n) / 2);
+}
+
+/* The times one by one. */
+static void hdi_iterative_cost(const hdi_heat_call *h, hd_cost *c) {
+    const hd_heat *heat = h->heat;
+    const hd_heat_opts *o = &heat->opts;
+    const int32_t poles = o->rational ? o->rational->n_poles : o->degree ? (o->degree + 1) / 2
+                          : HDI_POLES_EXPECTED;
+    int32_t q;
+    c->possible = 1;
+    if (!heat->weight) c->seconds += HDI_ROW_ITERATIVE * heat->source->n_active;
+    for (q = 0; q < h->n_times; q++) {
+        const double t = h->times[q];
+        const hdi_work w = hdi_heat_solver(h, t) == HD_SOLVER_LANCZOS
+                           ? hdi_lanczos_work(heat, t, h->ask.k) : hdi_cocg_work(heat, t, poles, h->ask.k);
+        c->seconds += w.seconds;
+        c->flops += w.flops;
+    }
+    c->bytes = hdi_iterative_bytes(h, poles);
+}
+
 /* Lanes, the pole set and its preconditioners. */
 static hd_status hdi_iterative_prepare(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
@@ -21450,6 +21159,71 @@ static uint64_t hdi_direct_need(const hd_heat *heat, const hd_rational *set, hdi
     const uint64_t inverse = hdi_elim_inverse_need(m, set, after, n_sets, e);
     const uint64_t solves = hdi_batches_need(heat, hdi_set_packs(set), k);
     return hdi_elim_factor_need(m, set, after) + (inverse > solves ? inverse : solves);
+}
+
+enum { HDI_PROBES = 3 };         /* rows at which rounding of an inversion is measured, see [27] */
+
+/* Flops and seconds of inverting factors, relative to making them. By counting, with and without full B; by
+ * time, on meshes of 10K to 150K vertices. */
+#define HDI_INVERT_FLOPS 2.0
+#define HDI_INVERT_SECONDS 2.0
+#define HDI_FORMS_SECONDS 4.0
+
+/* Adds what a set takes at one time: its factors, what comes after them, and solves of k items, beside
+ * arrays of so many bytes. Of bytes the largest count. Returns the seconds of the factors. */
+static double hdi_direct_set(const hdi_heat_call *h, const hd_rational *set, hdi_after after, int32_t n_sets,
+                             int32_t k, double held, hd_cost *c) {
+    hd_heat *heat = h->heat;
+    const hdi_fill f = hdi_heat_fill(heat, &heat->elim);
+    const int inverse = after >= HDI_AFTER_INVERSE, bound = after == HDI_AFTER_BOUND;
+    const double n = heat->source->n_active, lone = hdi_set_lone(set);
+    /* a real pole alone counts as a pack: where all is so cheap iterations have better bounds */
+    const double packs = hdi_high32(1, hdi_set_packs(set));
+    const double solves = inverse ? (double)k + (double)HDI_PROBES : k;
+    const double pack = 16 * f.flops / HDI_RATE_PACK + HDI_ENTRY_PACK * f.nnz, real = f.flops / HDI_RATE_REAL;
+    const double factors = packs * pack + lone * real;
+    const double longer = after == HDI_AFTER_FORMS ? HDI_FORMS_SECONDS : inverse ? HDI_INVERT_SECONDS : 0;
+    double bytes = 8 * (8 * packs + 1) * f.stored + 200 * n + hdi_min(k, HDI_LANES) * 140 * n;
+    k = hdi_high32(k, inverse ? HDI_PROBES : 0);
+    if (heat->elim.ctx) {
+        bytes = (double)hdi_direct_need(heat, set, after, n_sets, k, h->e);
+        if (hdi_heat_equal_asks(heat, h->t) && !heat->ground.traced)
+            bytes = hdi_max(bytes, (double)hdi_ground_need(&heat->elim, &heat->ground, 0));
+        /* the solves' arrays of one time stay while the next one is factorised */
+        if (h->n_times > 1) bytes += (double)hdi_batches_need(heat, hdi_set_packs(set), k);
+    } else if (inverse) {
+        bytes += 16 * n * n_sets;
+    }
+    c->possible = 1;
+    c->flops += (16 * packs + lone) * f.flops * (inverse ? 1 + HDI_INVERT_FLOPS : 1) +
+                (bound ? (1 + HDI_INVERT_FLOPS - lone) * f.flops : 0) + solves * (64 * packs + 4) * f.nnz;
+    /* without the bound, which a choice of the method has no need to look at */
+    c->seconds += factors * (1 + longer) +
+                  solves * packs * (64 * f.nnz + 400 * n) / ((k > 1 ? 1.6 : 0.6) * HDI_RATE_SWEEP);
+    c->bytes = hdi_max(c->bytes, bytes + held);
+    return factors;
+}
+
+/* Are the factors of the poles there? A field's default degree, not known yet, is taken as the last. */
+static int hdi_heat_at_hand(const hdi_heat_call *h) {
+    const hdi_elim *m = &h->heat->elim;
+    if (!m->filled || m->t != h->t || h->n_times > 1) return 0;
+    return h->set || h->heat->opts.rational || m->set.kind == hdi_heat_kind(h);
+}
+
+/* Fields and columns at the times of the call. *factors: the seconds of what later calls at the same t do
+ * without. */
+static void hdi_direct_cost(const hdi_heat_call *h, hd_cost *c, double *factors) {
+    const hdi_fill f = hdi_heat_fill(h->heat, &h->heat->elim);
+    hd_rational set;
+    if (hdi_heat_set_of(h, HDI_DEGREE_DIRECT, &set) < 0) return;
+    *factors = h->n_times * hdi_direct_set(h, &set, HDI_AFTER_BOUND, 0, h->ask.k, 0, c);
+    c->flops *= h->n_times;
+    c->seconds = c->seconds * h->n_times + HDI_FRESH_BYTE * c->bytes + f.analysis;
+    *factors += HDI_FRESH_BYTE * c->bytes + f.analysis;
+    if (!hdi_heat_at_hand(h)) return;
+    c->seconds -= *factors;
+    *factors = 0;
 }
 
 /* The pole set and its factors. What follows them is asked for too, so that nothing is begun that the byte
@@ -21591,6 +21365,88 @@ static int32_t hdi_window_end(const double *times, int32_t n_times, int32_t q0, 
     return q1;
 }
 
+/* A shift for the times [first, last] of a window that begins with fields, or with answers at `from`. A
+ * single time takes about a tenth of it, and a power of four, so that times near each other share the factor,
+ * whichever comes first. Several times depend on it more: half or twice the best shift costs up to a fourth
+ * of the steps. The best ones were found on meshes of 10K to 50K vertices, for ratios of 2 to 300. It is
+ * not so large that B is lost beside g L. */
+#define HDI_SHIFT_FIELD 0.07
+#define HDI_SHIFT_ANSWER 0.15
+
+static double hdi_krylov_shift(double from, double first, double last, double lambda_max) {
+    const double limit = lambda_max > 0 ? 1e12 / lambda_max : HUGE_VAL;   /* four digits of B are left */
+    int exponent;
+    if (from > 0) return hdi_min(HDI_SHIFT_ANSWER * sqrt(from) * sqrt(last - from), limit);
+    if (last > first) return hdi_min(HDI_SHIFT_FIELD * sqrt(first) * sqrt(last), limit);
+    frexp(hdi_min(last / 10, limit), &exponent);   /* in [1/2, 1) times 2^exponent */
+    return ldexp(1, exponent % 2 == 0 ? exponent : exponent - 1);
+}
+
+/* Windows of times with a factor and a basis each: how many, their steps together, those of the longest. */
+typedef struct hdi_windows { int32_t n; double steps, longest; } hdi_windows;
+
+/* Steps of a basis for times in this ratio, beginning with fields or with answers. It takes some more where
+ * other windows go on from its answers. Fitted to runs at ratios from 2 to 300 on meshes of 10K to 50K
+ * vertices; fewer are enough at large times, where few eigenvalues matter. */
+#define HDI_STEPS_HANDED_ON 3
+
+static double hdi_krylov_steps(double ratio, int goes_on) {
+    const double most = 0.9 * (double)HDI_KRYLOV_MAX;
+    return hdi_min(goes_on ? 14 + 1.8 * sqrt(ratio) : 22 + 2.8 * sqrt(ratio), most);
+}
+
+/* The share of the steps that a single late time takes, of which few eigenvalues are left: 25 steps and 12
+ * where t times the smallest eigenvalue is 1 and 14, measured at 2.5K and 10K vertices. */
+#define HDI_STEPS_LATE 0.08
+
+static double hdi_krylov_late(const hdi_heat_call *h) {
+    if (h->n_times > 1) return 1;
+    return hdi_max(0.4, 1 / (1 + HDI_STEPS_LATE * h->times[0] * h->heat->scales.lowest));
+}
+
+/* The number of windows of equal ratio that costs least. No basis serves beyond a ratio of 1e4; that of all
+ * times might overflow. */
+static hdi_windows hdi_krylov_windows(const hdi_heat_call *h, hdi_fill f) {
+    const double factor = f.flops / HDI_RATE_REAL;
+    const double step = 16 * f.nnz / HDI_RATE_SWEEP + 1e-8 * h->heat->source->n_active;
+    const double span = log(h->times[h->n_times - 1]) - log(hdi_max(h->times[0], 1e-300));
+    const int32_t least = hdi_high32(1, (int32_t)ceil(span / log(1e4)));
+    double best = HUGE_VAL;
+    hdi_windows all = {1, 0, 0};
+    int32_t w;
+    for (w = least; w < 2 * least + 15; w++) {
+        const double ratio = exp(span / w);
+        const double longest = hdi_krylov_steps(ratio, 0) + (w > 1 ? HDI_STEPS_HANDED_ON : 0);
+        const double steps = longest + (w - 1) * hdi_krylov_steps(ratio, 1);
+        if (w * factor + steps * step >= best) continue;
+        best = w * factor + steps * step;
+        all.n = w;
+        all.steps = steps;
+        all.longest = longest;
+    }
+    return all;
+}
+
+/* Does this method take an order of its own? For few columns one of minimum degree is found and analysed in a
+ * third of the time, and the steps lose less. Not under a byte limit, where a second analysis might not fit.
+ * Totals of one column with 20 steps, one thread, processor time, in that order and the other: 62 and 95 ms
+ * at 50K vertices, 54 and 75 at 41K, 274 and 347 at 150K, 356 and 395 at 164K. */
+enum { HDI_FEW_COLUMNS = 3, HDI_FEW_ENTRIES = 900000 };
+
+static int hdi_krylov_few(const hdi_heat_call *h) {
+    const hd_heat *heat = h->heat;
+    const hd_csr *L = &heat->source->L;
+    const hdi_order order = {heat->opts.ordering, heat->source->xyz, NULL};
+    if (order.kind != HD_ORDERING_AUTO || hdi_order_kind(&order, L) != HD_ORDERING_NESTED_DISSECTION ||
+        h->ask.k > HDI_FEW_COLUMNS || heat->ctx->byte_limit) return 0;
+    return (double)h->ask.k * hdi_krylov_windows(h, hdi_heat_guess(heat)).n * (double)L->nnz <=
+           HDI_FEW_ENTRIES;
+}
+
+static hdi_elim *hdi_krylov_elim(const hdi_heat_call *h) {
+    return hdi_krylov_few(h) ? &h->heat->few : &h->heat->elim;
+}
+
 /* Bytes that a basis of so many steps takes, with the real factor before it where there is none. */
 static uint64_t hdi_krylov_need(const hdi_elim *m, int32_t wide, int32_t steps) {
     const uint64_t n = (uint64_t)m->sym.n, count = n * (uint64_t)wide;
@@ -21602,6 +21458,30 @@ static uint64_t hdi_krylov_need(const hdi_elim *m, int32_t wide, int32_t steps) 
     return bytes;
 }
 
+static void hdi_krylov_cost(const hdi_heat_call *h, hd_cost *c) {
+    const hd_heat *heat = h->heat;
+    const hdi_elim *m = hdi_krylov_elim(h);
+    const hdi_fill f = hdi_heat_fill(heat, m);
+    const hdi_windows w = hdi_krylov_windows(h, f);
+    const int ready = h->n_times == 1 && m->shifted.ready &&
+        m->shift == hdi_krylov_shift(0, h->t, h->t, heat->lambda_max);
+    const int32_t wide = h->ask.k > 3 ? HDI_WIDE : 1;
+    const double n = heat->source->n_active, rate = HDI_RATE_SWEEP * (wide > 1 ? HDI_KRYLOV_SHARED : 1);
+    const double steps = h->ask.k * w.steps * hdi_krylov_late(h);
+    /* more than expected, to be safe */
+    const double longest = hdi_min(HDI_KRYLOV_MAX, (h->n_times > 1 ? 1.3 : 1.15) * w.longest);
+    c->possible = 1;
+    c->flops = (w.n - ready) * f.flops + steps * 4 * f.nnz;
+    c->seconds = f.analysis + (w.n - ready) * f.flops / HDI_RATE_REAL +
+                 steps * (16 * f.nnz + 100 * n) / rate + h->n_times * steps / w.n * 8 * n / HDI_RATE_SWEEP;
+    if (heat->silan && heat->silan->m == m && heat->silan->wide == wide) return;
+    if (m->ctx) c->bytes = (double)hdi_krylov_need(m, wide, (int32_t)longest);
+    else c->bytes = 8 * f.real_stored + 8 * n * wide * (longest + 4) + 200 * n;
+    c->bytes += (double)sizeof(hdi_krylov) + wide * 56 * n;
+    if (h->n_times > 1 && wide == 1) c->bytes += HDI_WIDE * 8 * n;   /* sums at several times */
+    c->seconds += HDI_FRESH_BYTE * c->bytes;
+}
+
 /* The steps of a basis for n items and the times [q0, q1). */
 static hd_status hdi_krylov_basis(hdi_heat_call *h, int32_t n, int32_t q0, int32_t q1) {
     hd_heat *heat = h->heat;
@@ -21610,11 +21490,11 @@ static hd_status hdi_krylov_basis(hdi_heat_call *h, int32_t n, int32_t q0, int32
     int32_t i;
     const double g = hdi_krylov_shift(z->from, h->times[q0], h->times[q1 - 1], heat->lambda_max);
     /* a step is the least */
-    if (!heat->elim.shifted.ctx && !z->v[0] &&
-        hdi_need(heat->ctx, hdi_krylov_need(&heat->elim, z->wide, 1), "a real factor and a basis", h->e) < 0)
+    if (!h->m->shifted.ctx && !z->v[0] &&
+        hdi_need(heat->ctx, hdi_krylov_need(h->m, z->wide, 1), "a real factor and a basis", h->e) < 0)
         return h->e->status;
-    if (hdi_elim_shift(&heat->elim, g, h->e) < 0) return h->e->status;
-    z->g = heat->elim.shift;
+    if (hdi_elim_shift(h->m, g, h->e) < 0) return h->e->status;
+    z->g = h->m->shift;
     z->k = n;
     z->last = q1 < h->n_times ? h->times[h->n_times - 1] : 0;
     if (hdi_krylov_start(z, h->lane, heat->ctx, h->e) < 0) return h->e->status;
@@ -21738,24 +21618,177 @@ static hd_status hdi_krylov_items(hdi_heat_call *h, int32_t n, int32_t n_windows
 static hd_status hdi_heat_by_krylov(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     const int32_t wide = h->ask.k > 3 ? HDI_WIDE : 1;
-    const int32_t n_windows = hdi_krylov_windows(h, hdi_heat_fill(heat)).n;
+    const int32_t n_windows = hdi_krylov_windows(h, hdi_heat_fill(heat, h->m)).n;
     int32_t n;
-    if (heat->silan && heat->silan->wide != wide) hdi_krylov_free(heat->silan, heat->ctx);
+    if (heat->silan && (heat->silan->wide != wide || heat->silan->m != h->m))
+        hdi_krylov_free(heat->silan, heat->ctx);
     if (!heat->silan) {
         heat->silan = (hdi_krylov *)hdi_alloc_zero(heat->ctx, 1, sizeof *heat->silan, h->e);
         if (!heat->silan) return h->e->status;
     }
     heat->silan->wide = wide;
-    heat->silan->m = &heat->elim;
+    heat->silan->m = h->m;
     if (hdi_heat_lanes(h, wide) < 0) return h->e->status;
     for (h->batch = 0; h->batch < h->ask.k; h->batch += n) {
         n = hdi_low32(h->ask.k - h->batch, h->n_lanes);
         if (hdi_krylov_items(h, n, n_windows) < 0) return h->e->status;
     }
-    h->rep->factor_flops = heat->elim.sym.flops;
-    h->rep->growth = heat->elim.shifted.largest_entry > 0
-                     ? heat->elim.shifted.all.largest / heat->elim.shifted.largest_entry : 0;
+    h->rep->factor_flops = h->m->sym.flops;
+    h->rep->growth = h->m->shifted.largest_entry > 0
+                     ? h->m->shifted.all.largest / h->m->shifted.largest_entry : 0;
     return h->e->status;
+}
+
+/* ---- choice of the method ---- */
+
+/* What each method would take, by hd_method, and the part of direct that later calls at the same t do
+ * without. */
+typedef struct hdi_costs { hd_cost by[HD_METHOD_KRYLOV + 1]; double factors; } hdi_costs;
+
+/* Those of the methods that the call may take. h->t is the last of its times. */
+static hdi_costs hdi_heat_costs(const hdi_heat_call *h) {
+    const hd_heat *heat = h->heat;
+    const int factors = !heat->iterations_asked || heat->opts.method > HD_METHOD_ITERATIVE;
+    hdi_costs all;
+    memset(&all, 0, sizeof all);
+    if (HDI_HAS_ITERATIVE) hdi_iterative_cost(h, all.by + HD_METHOD_ITERATIVE);
+    if (HDI_HAS_POLE_FACTORS && factors) hdi_direct_cost(h, all.by + HD_METHOD_DIRECT, &all.factors);
+    if (HDI_HAS_DIRECT && factors && !heat->poles_asked && h->rate != HDI_RATE_POLES)
+        hdi_krylov_cost(h, all.by + HD_METHOD_KRYLOV);
+    return all;
+}
+
+/* The analysis that the method picked works with. */
+static hdi_elim *hdi_heat_analysis(const hdi_heat_call *h) {
+    return h->method == HD_METHOD_KRYLOV ? hdi_krylov_elim(h) : &h->heat->elim;
+}
+
+/* Have calls at this t cost as much as the factors of the poles, and would these be faster from now on?
+ * Whoever buys when the rent paid amounts to the price never pays more than twice the least (ski rental;
+ * Karlin, Manasse, Rudolph, Sleator 1988). The model counts, not a clock: methods are the same everywhere. */
+static int hdi_heat_habit(const hdi_heat_call *h, const hdi_costs *c, double room) {
+    const hd_cost *direct = c->by + HD_METHOD_DIRECT;
+    return h->method != HD_METHOD_DIRECT && direct->possible && direct->bytes <= room && h->n_times == 1 &&
+           h->t == h->heat->habit_t && h->heat->habit_spent >= c->factors &&
+           direct->seconds - c->factors < h->cost;
+}
+
+/* Notes what a call has cost. Factors that are made begin the count anew. */
+static void hdi_heat_spend(hdi_heat_call *h) {
+    hd_heat *heat = h->heat;
+    if (heat->opts.method != HD_METHOD_AUTO || h->t == 0 || h->equal) return;
+    if (h->method == HD_METHOD_DIRECT || heat->habit_t != h->t) heat->habit_spent = 0;
+    heat->habit_t = h->t;
+    if (h->method != HD_METHOD_DIRECT) heat->habit_spent += h->cost;
+}
+
+/* Takes the cheapest method that fits into so many bytes, or iterations. */
+static void hdi_heat_cheapest(hdi_heat_call *h, const hdi_costs *c, double room) {
+    const hd_cost *by = c->by;
+    int32_t q, fits = 0;
+    double least = HUGE_VAL;
+    h->method = HD_METHOD_ITERATIVE;
+    h->cost = by[HD_METHOD_ITERATIVE].possible ? by[HD_METHOD_ITERATIVE].seconds : HUGE_VAL;
+    for (q = HD_METHOD_KRYLOV; q >= HD_METHOD_DIRECT; q--) {
+        if (!by[q].possible) continue;
+        least = hdi_min(least, by[q].seconds);
+        if (by[q].bytes > room) continue;
+        fits = 1;
+        if (by[q].seconds >= h->cost) continue;
+        h->method = (hd_method)q;
+        h->cost = by[q].seconds;
+    }
+    h->forced |= room < HUGE_VAL && h->method == HD_METHOD_ITERATIVE && h->cost > least;
+    h->by_habit = hdi_heat_habit(h, c, room);
+    if (h->by_habit) h->method = HD_METHOD_DIRECT;
+    h->rep->reason =
+        h->by_habit ? "calls at this t have cost as much as the factors of the poles, which serve more"
+        : h->method == HD_METHOD_KRYLOV
+          ? (h->n_times > 1 ? "one real factor serves many times"
+                            : "few columns: one real factor costs less than those of the poles")
+        : h->method == HD_METHOD_DIRECT
+          ? (h->ask.k > 1 ? "many columns: solves with the factors of the poles cost least"
+             : c->factors == 0 ? "the factors of the poles are there from calls before"
+                               : "the factors of the poles cost least")
+        : fits ? "iterations cost less than a factorisation" : "factors would not fit the byte limit";
+}
+
+/* Picks the method by the model. Analyses are made only where a factorisation could cost least. */
+static hd_status hdi_heat_pick_by_cost(hdi_heat_call *h) {
+    hd_heat *heat = h->heat;
+    /* without iterations there is no retreat */
+    const double room = HDI_HAS_ITERATIVE ? hdi_bytes_left(heat->ctx) : HUGE_VAL;
+    hdi_elim *m;
+    hdi_costs c;
+    for (;;) {
+        c = hdi_heat_costs(h);
+        if (h->e->status < 0) return h->e->status;
+        hdi_heat_cheapest(h, &c, room);
+        m = hdi_heat_analysis(h);
+        if (h->method == HD_METHOD_ITERATIVE || m->ctx) return HD_OK;
+        if (hdi_heat_analysed_in(heat, m, h->e) < 0) return h->e->status;
+    }
+}
+
+/* Picks the method by the model, or as asked for. */
+static hd_status hdi_heat_pick(hdi_heat_call *h) {
+    const hd_heat *heat = h->heat;
+    h->method = heat->opts.method;
+    h->cost = 0;
+    h->by_habit = 0;
+    h->rep->reason = "asked for";
+    if (h->method != HD_METHOD_AUTO) return HD_OK;
+    h->method = HD_METHOD_DIRECT;
+    h->rep->reason = "iterations, which would take less, fail";
+    if (heat->spare == HDI_SPARE_POLES) return HD_OK;
+    h->rep->reason = "the bound of fewer poles is too large";
+    if (h->degree) return HD_OK;
+    h->method = HD_METHOD_ITERATIVE;
+    h->rep->reason = "a solver or preconditioner is asked for";
+    if (heat->iterations_asked) return HD_OK;
+    h->rep->reason = "factors did not fit the byte limit";
+    h->forced = heat->no_factors && heat->ctx->byte_limit == heat->no_factors_limit;
+    if (h->forced) return HD_OK;
+    h->rep->reason = "this build has iterations only";
+    return HDI_HAS_DIRECT ? hdi_heat_pick_by_cost(h) : HD_OK;
+}
+
+/* Picks the method and its copy of the pair, and reports them. */
+static hd_status hdi_heat_engine(hdi_heat_call *h) {
+    hd_heat *heat = h->heat;
+    if (hdi_heat_sit(h, 1) < 0) return h->e->status;
+    /* |exp(-t lambda) - 1| <= t lambda */
+    if (h->n_times == 1 && !heat->opts.rational && h->t * heat->lambda_max < HDI_STILL) {
+        h->still = h->t * heat->lambda_max;
+        h->t = 0;
+    }
+    if (h->t == 0) {                             /* nothing to solve */
+        h->method = heat->opts.method;
+        if (h->method == HD_METHOD_AUTO)
+            h->method = HDI_HAS_ITERATIVE ? HD_METHOD_ITERATIVE : HD_METHOD_KRYLOV;
+        h->rep->reason = "t = 0";
+    } else if (hdi_heat_pick(h) < 0) {
+        return h->e->status;
+    } else if (HDI_HAS_ITERATIVE && h->method == HD_METHOD_ITERATIVE) {
+        if (hdi_heat_iterative(heat, h->e) < 0) return h->e->status;
+        h->lap = heat->lap;
+    } else if (HDI_HAS_DIRECT) {
+        h->m = hdi_heat_analysis(h);
+        if (hdi_heat_analysed_in(heat, h->m, h->e) < 0) return h->e->status;
+        h->lap = h->m->lap;
+        h->rep->ordering = h->m->sym.ordering;
+        h->rep->factor_nnz = h->m->sym.nnz;
+        if (h->n_times == 1) h->equal = hdi_heat_equal(heat, h->m, h->t, h->e);
+        if (h->e->status < 0) return h->e->status;
+    }
+    h->rep->method = h->method;
+    h->solver = h->method == HD_METHOD_ITERATIVE ? hdi_heat_solver(h, h->t)
+                : h->method == HD_METHOD_KRYLOV ? HD_SOLVER_LANCZOS : HD_SOLVER_AUTO;
+    h->rep->solver = h->solver;
+    h->rep->precond = HD_PRECOND_NONE;
+    if (h->method == HD_METHOD_ITERATIVE && h->solver != HD_SOLVER_LANCZOS)
+        h->rep->precond = heat->opts.precond;
+    return HD_OK;
 }
 
 /* ---- the smallest eigenpairs ---- */
@@ -21923,7 +21956,7 @@ static int32_t hdi_modes_count(const hd_heat *heat, double more) {
 static double hdi_modes_need(const hd_heat *heat, int32_t count) {
     const int32_t n = heat->source->n_active;
     const double left = 2.0 * sizeof(double) * heat->source->n;
-    if (!heat->elim.ctx) return hdi_spec_need(n, count, 0) + left + 8 * hdi_heat_fill(heat).real_stored;
+    if (!heat->elim.ctx) return hdi_spec_need(n, count, 0) + left + 8 * hdi_heat_guess(heat).real_stored;
     return hdi_spec_need(n, count, hdi_sweep_size(&heat->elim.sym, 1, HDI_WIDE)) + left +
            (double)hdi_factor_bytes(&heat->elim.sym, 1);
 }
@@ -22015,8 +22048,8 @@ static void hdi_modes_tell(const hd_heat *heat, hd_report *rep) {
     rep->method = HD_METHOD_DIRECT;
     rep->reason = HDI_MODES_REASON;
     rep->precond = HD_PRECOND_NONE;
-    rep->ordering = hdi_heat_full(heat)->sym.ordering;
-    rep->factor_nnz = hdi_heat_full(heat)->sym.nnz;
+    rep->ordering = heat->elim.sym.ordering;
+    rep->factor_nnz = heat->elim.sym.nnz;
     rep->factor_flops = heat->modes.s.factor_flops;
 }
 
@@ -22430,7 +22463,8 @@ static int hdi_heat_retreat(hdi_heat_call *h) {
     if (!HDI_HAS_DIRECT || heat->spare == HDI_SPARE_POLES) return 0;
     /* fields may have been overwritten by their answers */
     if (h->batch > 0 && hdi_query_fields(h->ask.query)) return 0;
-    if (HDI_HAS_ITERATIVE && automatic && over && heat->elim.ctx && !h->forced) {
+    if (HDI_HAS_ITERATIVE && automatic && over && (heat->elim.ctx || heat->few.ctx) && !h->forced &&
+        !h->degree) {
         hdi_heat_free_factors(heat);
         if (h->by_habit) {                       /* the methods before have fitted, and do again */
             heat->habit_spent = -DBL_MAX;
@@ -22579,11 +22613,11 @@ static int hdi_direct_barred(const hd_heat *heat) {
     return heat->opts.method == HD_METHOD_ITERATIVE || heat->opts.method == HD_METHOD_KRYLOV;
 }
 
+#define HDI_DIRECT_REASON "diagonals and distances to all vertices need the direct method"
+
 /* Checks that the direct method is allowed, for queries that have no other. */
 static hd_status hdi_direct_only(hdi_heat_call *h) {
-    if (hdi_direct_barred(h->heat))
-        return hdi_fail(h->e, HD_ERR_ARGUMENT,
-                        "heat: diagonals and distances to all vertices need the direct method");
+    if (hdi_direct_barred(h->heat)) return hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: " HDI_DIRECT_REASON);
     return HD_OK;
 }
 
@@ -22641,7 +22675,7 @@ static hd_status hdi_columns_together(hdi_task *task, char *done, hd_report *one
     first = h->time_column[0];
     if (h->times[0] * heat->lambda_max < HDI_STILL) return HD_OK;
     if (hdi_heat_engine(h) >= 0) {
-        if (h->method != HD_METHOD_KRYLOV || hdi_heat_equal(heat, h->t, h->e) || h->e->status < 0)
+        if (h->method != HD_METHOD_KRYLOV || hdi_heat_equal(heat, h->m, h->t, h->e) || h->e->status < 0)
             return h->e->status;
         (void)hdi_heat_by_krylov(h);
     }
@@ -23318,7 +23352,6 @@ static void hdi_operator_diagonal(const hdi_elim *m, double a0, const double *k,
 /* No theorem bounds well what rounding does to entries found by inversion. It is measured at a few rows where
  * it is largest: the entry is compared with a solve with the same poles, whose own error its residual
  * bounds. */
-enum { HDI_PROBES = 3 };
 
 /* Differences seen at the probes stand for those of all rows, times the first; for functions of the caller's,
  * whose poles may lie beside the spectrum, times the second too. */
@@ -23724,7 +23757,7 @@ static hd_status hdi_diagonals_by_poles(hdi_task *task) {
     if (hdi_heat_analysed(heat, h->e) < 0) return h->e->status;
     hdi_inverse_tell(h);
     before = *h->rep;
-    if (hdi_heat_equal(heat, h->t, h->e)) return hdi_diagonals_equal(to, h->now, h->rep);
+    if (hdi_heat_equal(heat, &heat->elim, h->t, h->e)) return hdi_diagonals_equal(to, h->now, h->rep);
     if (h->e->status < 0 || hdi_diagonals_once(to, &relative) < 0) return h->e->status;
     if (heat->poles_asked || heat->exacting || relative <= hdi_diagonal_limit(heat->source, kernel))
         return HD_OK;
@@ -23792,7 +23825,7 @@ static hd_status hdi_diagonals_together(hdi_task *task, char *done, hd_report *o
     int32_t n, w, q, q1, packs = 0, windows = 0;
     if (hdi_heat_analysed(heat, h->e) < 0 || hdi_heat_sort_times(h, 1, done) < 0) return h->e->status;
     hdi_inverse_tell(h);
-    for (n = h->n_times; n > 0 && hdi_heat_equal(heat, h->times[n - 1], h->e); n--) {
+    for (n = h->n_times; n > 0 && hdi_heat_equal(heat, &heat->elim, h->times[n - 1], h->e); n--) {
         const int32_t at = h->time_column[n - 1];
         one[at] = *h->rep;
         done[at] = HDI_DONE_FOR_GOOD;
@@ -24368,7 +24401,7 @@ static hd_status hdi_metric_make(hdi_heat_call *h, hd_distance_kind kind, int32_
     if (!x->timeless) h->t = x->t = hdi_distance_time(heat, h->ask.t[h->now]);
     h->degree = degree;
     h->lap = heat->elim.lap;
-    x->equal = !x->timeless && hdi_heat_equal(heat, x->t, h->e);
+    x->equal = !x->timeless && hdi_heat_equal(heat, &heat->elim, x->t, h->e);
     if (x->timeless) (void)hdi_metric_ground(h, x, &scope);
     else if (x->equal) hdi_metric_equal(heat->source, x);
     else if (h->e->status >= 0) (void)hdi_metric_invert(h, x, &scope);
@@ -24926,8 +24959,8 @@ static hd_status hdi_distances_together(hdi_task *task, char *done, hd_report *o
     n = h->n_times;
     if (n < 2) return HD_OK;
     windows = hdi_shared_windows(h->times, n, HDI_SHARED_DISTANCE_TOL, &packs);
-    if (windows == 0 || packs > n || hdi_heat_equal(heat, h->times[n - 1], h->e) || h->e->status < 0)
-        return h->e->status;
+    if (windows == 0 || packs > n || hdi_heat_equal(heat, &heat->elim, h->times[n - 1], h->e) ||
+        h->e->status < 0) return h->e->status;
     hdi_inverse_tell(h);
     for (w = 0, q0 = 0; q0 < n; w++, q0 = q1) {
         q1 = hdi_window_end(h->times, n, q0, w, windows);
@@ -25426,8 +25459,8 @@ static hd_status hdi_sample_answer(hd_heat *heat, hdi_samples *a, const hd_sourc
 }
 
 /* ---- estimates ---- */
-/* What a query would take. Bytes follow the allocations of the runs above, in their order. A change there is
- * a change here; tests compare the two. */
+/* What a query would take: the costs of the ways that its run goes, beside the arrays of its own. Tests
+ * compare bytes with what is allocated. */
 
 /* A query under estimation. */
 typedef struct hdi_estimate {
@@ -25435,555 +25468,351 @@ typedef struct hdi_estimate {
     hd_query query;
     hd_estimate *to;
     int32_t k;
+    double unit;                 /* of the call's times: the caller's times this */
+    double held;                 /* bytes of arrays that the query takes first */
     hdi_task task;               /* for eigenpairs */
 } hdi_estimate;
 
-/* Flops and seconds of inverting factors, relative to making them. By counting, with and without full B; by
- * time, on meshes of 10K to 150K vertices. */
-#define HDI_INVERT_FLOPS 2.0
-#define HDI_INVERT_SECONDS 2.0
-#define HDI_FORMS_SECONDS 4.0
-
 /* Bytes of small arrays that are not listed one by one. */
 #define HDI_ESTIMATE_SMALL 4096
-
-/* Adds work that comes after what is there; bytes are those of the larger one. */
-static void hdi_cost_add(hd_cost *c, double flops, double seconds, double bytes) {
-    c->possible = 1;
-    c->flops += flops;
-    c->seconds += seconds;
-    c->bytes = hdi_max(c->bytes, bytes);
-    c->bytes_most = hdi_max(c->bytes_most, c->bytes);
-}
-
-/* Factors of so many packs, of a real matrix or none, what comes after them, and solves of k items. */
-static void hdi_cost_direct(const hd_heat *heat, int32_t packs, int real, hdi_after after, double k,
-                            hd_cost *c) {
-    const hdi_fill f = hdi_heat_fill_poles(heat);
-    const int inverse = after >= HDI_AFTER_INVERSE;
-    const double n = heat->source->n_active, invert = inverse ? 1 + HDI_INVERT_FLOPS : 1;
-    const double sweep = (k > 1 ? 1.6 : 0.6) * HDI_RATE_SWEEP;
-    const double longer = after == HDI_AFTER_FORMS ? 1 + HDI_FORMS_SECONDS
-                        : inverse ? 1 + HDI_INVERT_SECONDS : 1;
-    const double pack = 16 * f.flops / HDI_RATE_PACK + HDI_ENTRY_PACK * f.nnz;
-    c->possible = 1;
-    c->flops += (16 * packs + (real ? 1 : 0)) * f.flops * invert + k * (64 * packs + 4) * f.nnz;
-    c->seconds += (packs * pack + (real ? f.flops / HDI_RATE_REAL : 0)) * longer +
-                  k * packs * (64 * f.nnz + 400 * n) / sweep;
-    /* hdi_elim_bound: a real factor and its inverse's diagonal */
-    if (after == HDI_AFTER_BOUND) {
-        c->flops += (1 + HDI_INVERT_FLOPS - (real ? 1 : 0)) * f.flops;
-        c->seconds += (1 + HDI_INVERT_SECONDS - (real ? 1 : 0)) * f.flops / HDI_RATE_REAL;
-    }
-}
-
-/* Bytes of the direct method, guessed before the analysis. held: of arrays taken before the factors. */
-static double hdi_bytes_direct(const hdi_estimate *x, const hd_rational *set, hdi_after after,
-                               int32_t n_sets, int32_t k, double held) {
-    hd_heat *heat = x->h->heat;
-    const hdi_fill f = hdi_heat_fill(heat);
-    const double packs = hdi_set_packs(set), n = heat->source->n_active;
-    held += HDI_ESTIMATE_SMALL;
-    /* the solves' arrays of one time stay while the next one is factorised */
-    if (heat->elim.ctx && x->h->n_times > 1)
-        held += (double)hdi_batches_need(heat, hdi_set_packs(set), k);
-    if (heat->elim.ctx) {
-        const uint64_t need = hdi_direct_need(heat, set, after, n_sets, k, x->h->e);
-        const int asks = hdi_heat_equal_asks(heat, x->h->t) && !heat->ground.traced;
-        return held + hdi_max((double)need,
-                              asks ? (double)hdi_ground_need(&heat->elim, &heat->ground, 0) : 0);
-    }
-    held += 8 * (8 * packs + 1) * f.stored + 200 * n + hdi_min(k, HDI_LANES) * 140 * n;
-    return after >= HDI_AFTER_INVERSE ? held + 16 * n * n_sets : held;
-}
-
-/* Analyses the pattern for a query that needs a factorisation. If there is no memory for that within the byte
- * limit, figures are guesses. */
-static hd_status hdi_estimate_analyse(hdi_heat_call *h) {
-    if (hdi_heat_analysed_for(h) < 0 && hdi_over_limit(h->heat->ctx, h->e)) hdi_error_clear(h->e);
-    if (h->heat->elim.ctx) h->lap = h->heat->elim.lap;
-    return h->e->status;
-}
-
-/* Is the degree open until fields are seen? */
-static int hdi_estimate_open(const hdi_estimate *x) {
-    const hd_heat_opts *o = &x->h->heat->opts;
-    return x->query == HD_QUERY_FIELDS && !o->rational && !o->degree && !x->h->heat->exacting &&
-           (!o->poles || o->poles == HD_POLES_UNIFORM);
-}
-
-/* Bytes of iterations: the copy of the pair, its upper triangle, lanes and preconditioners, or bases. */
-static double hdi_bytes_iterative(const hd_heat *heat, double t, int32_t k, int32_t poles) {
-    const double n = heat->source->n_active, nnz = (double)heat->source->L.nnz;
-    const double lanes = hdi_low32(k, HDI_LANES_ITERATIVE);
-    const hdi_precond_row *row = hdi_preconds + heat->opts.precond;
-    double bytes = HDI_ESTIMATE_SMALL;
-    if (!heat->lap) bytes += nnz * (heat->source->B ? 20 : 12) + 36 * n + 4.0 * heat->source->n;
-    if (!heat->weight) bytes += 8 * n + 4 * (nnz - n) / 2 + 32 * n;
-    if (hdi_heat_choose(heat, t) == HD_SOLVER_LANCZOS)
-        return bytes + lanes * (80 * n + 88.0 * hdi_lanczos_most(t, heat->lambda_max));
-    bytes += lanes * (24 + 16.0 * (1 + hdi_iteration_vectors(heat->opts.solver) + poles)) * n;
-    return bytes + 16.0 * poles * (row->rows * n + row->entries * (nnz - n) / 2);
-}
-
-/* Bytes and flops of shift-and-invert Lanczos. Bases that exist are grown. */
-static void hdi_estimate_krylov(const hdi_estimate *x, double seconds, double held, hd_cost *c) {
-    const hd_heat *heat = x->h->heat;
-    const hdi_fill f = hdi_heat_fill(heat);
-    const int several = x->h->n_times > 1;
-    const double n = heat->source->n_active;
-    const hdi_windows w = hdi_krylov_windows(x->h, f);
-    const double longer = several ? 1.3 : 1.15;  /* more than expected, to be safe */
-    const double steps = hdi_min(HDI_KRYLOV_MAX, longer * w.longest);
-    const int32_t wide = x->k > 3 ? HDI_WIDE : 1;
-    double bytes = HDI_ESTIMATE_SMALL + (double)sizeof(hdi_krylov) + wide * 56 * n + held;
-    if (heat->elim.ctx)
-        bytes += (double)hdi_krylov_need(&heat->elim, wide, (int32_t)steps);
-    else bytes += 8 * f.real_stored + 8 * n * wide * (steps + 4) + 200 * n;
-    if (several && wide == 1) bytes += HDI_WIDE * 8 * n;   /* sums at several times */
-    hdi_cost_add(c, w.n * f.flops + x->k * w.steps * 4 * f.nnz, seconds, bytes);
-}
-
-/* Fields, columns and entries: what room [26] chooses. held: bytes of the query's own arrays. */
-static hd_status hdi_estimate_solves(const hdi_estimate *x, double held) {
-    hdi_heat_call *h = x->h;
-    hd_heat *heat = h->heat;
-    hd_cost *c = x->to->cost;
-    const int32_t n_times = h->n_times;
-    hd_rational set;
-    hdi_cost model;
-    hd_method method;
-    int32_t poles;
-    if (hdi_heat_pick(h) >= 0 && n_times > 1 && h->method != HD_METHOD_KRYLOV) {   /* the times one by one */
-        h->times += n_times - 1;
-        h->n_times = 1;
-        (void)hdi_heat_pick(h);
-        h->times -= n_times - 1;
-        h->n_times = n_times;
-    }
-    if (hdi_over_limit(heat->ctx, h->e)) hdi_error_clear(h->e);
-    if (h->e->status < 0) return h->e->status;
-    if (h->method != HD_METHOD_ITERATIVE && hdi_estimate_analyse(h) < 0) return h->e->status;
-    model = hdi_heat_cost(h);
-    x->to->method = method = h->method;
-    x->to->reason = h->rep->reason;
-    h->method = HD_METHOD_DIRECT;
-    if ((hdi_estimate_open(x) ? hdi_rational_get(&set, HD_POLES_UNIFORM, 9, h->e)
-                              : hdi_heat_set(h, &set)) < 0) return h->e->status;
-    poles = heat->opts.rational || heat->opts.degree ? set.n_poles : HDI_POLES_EXPECTED;
-    hdi_cost_add(c + HD_METHOD_ITERATIVE, model.iterative_flops, model.iterative,
-                 held + hdi_bytes_iterative(heat, h->t, x->k, poles));
-    if (!heat->iterations_asked || method != HD_METHOD_ITERATIVE) {
-        hd_cost *direct = c + HD_METHOD_DIRECT;
-        hdi_cost_direct(heat, hdi_set_packs(&set), hdi_set_lone(&set), HDI_AFTER_BOUND, x->k, direct);
-        direct->flops *= n_times;
-        direct->bytes = hdi_bytes_direct(x, &set, HDI_AFTER_BOUND, 0, x->k, held);
-        direct->seconds = hdi_max(direct->seconds * n_times + HDI_FRESH_BYTE * direct->bytes, model.direct);
-        if (hdi_estimate_open(x) && hdi_rational_get(&set, HD_POLES_UNIFORM, HDI_RAT_UNIFORM_MAX, h->e) < 0)
-            return h->e->status;
-        if (x->query == HD_QUERY_PAIRS && !heat->poles_asked && !heat->exacting &&
-            hdi_rational_get(&set, HD_POLES_KERNEL, HDI_RAT_KERNEL_MAX, h->e) < 0) return h->e->status;
-        direct->bytes_most = hdi_max(direct->bytes,
-                                     hdi_bytes_direct(x, &set, HDI_AFTER_BOUND, 0, x->k, held));
-        if (x->query == HD_QUERY_PAIRS && heat->elim.ctx)   /* the solves' arrays of the first try stay */
-            direct->bytes_most += (double)hdi_batches_need(heat, hdi_set_packs(&set), x->k);
-        if (!heat->poles_asked || method == HD_METHOD_KRYLOV)
-            hdi_estimate_krylov(x, model.krylov, held, c + HD_METHOD_KRYLOV);
-    }
-    return h->e->status;
-}
-
-/* A diagonal or a metric at one time, by poles of a degree (0: the default), then k columns. */
-static hd_status hdi_estimate_inverse(const hdi_estimate *x, int32_t degree, hd_cost *c) {
-    hdi_heat_call *h = x->h;
-    const hd_laplacian *lap = h->heat->source;
-    const double n = lap->n_active, entries = (double)((lap->L.nnz - lap->n_active) / 2) + n;
-    const int distance = x->query >= HD_QUERY_DISTANCE;
-    const int pattern = x->query == HD_QUERY_DIAGONAL_OPERATOR && lap->B;
-    const hdi_after after = x->query == HD_QUERY_DISTANCE_WEIGHTED && lap->B ? HDI_AFTER_FORMS
-                                                                             : HDI_AFTER_INVERSE;
-    /* of the runs: the two sums, then the arrays of a diagonal or of a metric */
-    double held = 16 * (pattern ? entries : n) + (distance ? 40 : 32) * n;
-    /* a distance is kept in the caller's array, and columns of the resolvent are held beside its metric */
-    const double later = distance ? 32 * n + 8 * hdi_min(x->k, HDI_LANES) * n + 24.0 * lap->n : 0;
-    const int32_t solves = hdi_high32(distance ? x->k : 0, HDI_PROBES);
-    hd_rational set;
-    double bytes;
-    h->diagonal = 1;
-    h->method = HD_METHOD_DIRECT;
-    h->degree = degree;
-    if (hdi_heat_set(h, &set) < 0) return h->e->status;
-    h->degree = 0;
-    if (distance) held += 16.0 * lap->n + 48.0 * x->k;
-    bytes = hdi_bytes_direct(x, &set, after, 2, h->n_times > 1 ? solves : HDI_PROBES, held);
-    bytes = hdi_max(bytes, hdi_bytes_direct(x, &set, HDI_AFTER_SOLVES, 0, solves, held - 16 * n + later));
-    hdi_cost_direct(h->heat, hdi_set_packs(&set), hdi_set_lone(&set), after,
-                    (double)HDI_PROBES + (distance ? 2.0 * x->k : 0), c);
-    hdi_cost_add(c, 0, 0, bytes);
-    return h->e->status;
-}
-
-/* The times of the call with shared poles, in so many windows. */
-static hd_status hdi_estimate_windows(const hdi_estimate *x, int32_t windows, double tol, hd_cost *c) {
-    hdi_heat_call *h = x->h;
-    const hd_laplacian *lap = h->heat->source;
-    const int distance = x->query >= HD_QUERY_DISTANCE;
-    const int full = x->query == HD_QUERY_DISTANCE_WEIGHTED && lap->B;
-    const double n = lap->n_active;
-    int32_t w, q0, q1;
-    for (w = 0, q0 = 0; q0 < h->n_times; w++, q0 = q1) {
-        hd_rational set;
-        double held, bytes, q;
-        q1 = hdi_window_end(h->times, h->n_times, q0, w, windows);
-        q = q1 - q0;
-        memset(&set, 0, sizeof set);
-        if (!hdi_shared_pick(&set, h->times[q1 - 1] / h->times[q0] * (1 + 1e-12), tol)) return h->e->status;
-        /* sets, weights and values; then a vector of a diagonal, or the columns of distances */
-        held = q * ((double)(sizeof set) + 32.0 * (double)HD_MAX_POLES + 16 * n) + 8 * n;
-        if (distance) held += (16 * q + 128 + (full ? 16 : 0)) * n + 8.0 * lap->n;
-        if (distance && h->heat->elim.ctx)
-            held += 8 * (double)hdi_sweep_size(&h->heat->elim.sym, HDI_PACK, 1);
-        bytes = hdi_bytes_direct(x, &set, full ? HDI_AFTER_FORMS : HDI_AFTER_INVERSE, 2 * (q1 - q0),
-                                 HDI_PROBES, held);
-        hdi_cost_direct(h->heat, hdi_set_packs(&set), 0, full ? HDI_AFTER_FORMS : HDI_AFTER_INVERSE,
-                        HDI_PROBES + (distance ? x->k : 0), c);
-        hdi_cost_add(c, 0, 0, bytes);
-    }
-    return h->e->status;
-}
-
-/* Are the times of a diagonal or of distances taken with shared poles? Returns the number of windows. */
-static int32_t hdi_estimate_shared(const hdi_estimate *x, double tol) {
-    const hdi_heat_call *h = x->h;
-    const int distance = x->query == HD_QUERY_DISTANCE || x->query == HD_QUERY_DISTANCE_WEIGHTED;
-    int32_t packs = 0, windows;
-    if (h->n_times < 2 || !hdi_shared_may(h->heat)) return 0;
-    if (x->query != HD_QUERY_DIAGONAL && !distance) return 0;
-    windows = hdi_shared_windows(h->times, h->n_times, tol, &packs);
-    if (windows < 1) return 0;
-    return (distance ? packs <= h->n_times : hdi_shared_pays(packs, h->n_times)) ? windows : 0;
-}
-
-/* Seconds that an eigenpair costs for each vertex, and all of them together as much as so many, without
- * factors. Measured on meshes of 2.5K to 41K vertices with 13 to 80 pairs; a rough guess for others. */
-#define HDI_MODES_SECONDS 7e-7
-#define HDI_MODES_BEGIN 5
 
 static int hdi_estimate_distance(const hdi_estimate *x) {
     return x->query == HD_QUERY_DISTANCE || x->query == HD_QUERY_DISTANCE_WEIGHTED;
 }
 
-/* Distances to all vertices, or of pairs. */
-static int hdi_estimate_apart(const hdi_estimate *x) {
-    return x->query == HD_QUERY_PAIRS || hdi_estimate_distance(x);
+/* Adds work that comes after what is there; bytes are those of the larger one. */
+static void hdi_cost_add(hd_cost *c, const hd_cost *one) {
+    c->possible = 1;
+    c->flops += one->flops;
+    c->seconds += one->seconds;
+    c->bytes = hdi_max(c->bytes, one->bytes);
+    c->bytes_most = hdi_max(hdi_max(c->bytes_most, one->bytes_most), c->bytes);
 }
 
-/* Eigenpairs for time t. */
-static int32_t hdi_estimate_pairs(const hdi_estimate *x, double t) {
-    const hd_heat *heat = x->h->heat;
-    return hdi_modes_count(heat, hdi_modes_expected(heat, x->task.depth / t));
+/* Analyses the pattern for a query that needs a factorisation. If there is no memory for that within the byte
+ * limit, figures are guesses. */
+static hd_status hdi_estimate_analyse(hdi_heat_call *h) {
+    const hd_context *ctx = h->heat->ctx;
+    if (hdi_heat_analysed_in(h->heat, hdi_heat_analysis(h), h->e) < 0 && hdi_over_limit(ctx, h->e))
+        hdi_error_clear(h->e);
+    if (h->heat->elim.ctx) h->lap = h->heat->elim.lap;
+    return h->e->status;
 }
 
-/* Bytes that eigenpairs may need where more are looked for than expected: 1.14 times those for the number
- * expected were seen on small meshes. */
-#define HDI_MODES_OVER 1.25
-
-static double hdi_modes_need_most(const hd_heat *heat, int32_t count) {
-    return HDI_MODES_OVER * hdi_modes_need(heat, count) + HDI_ESTIMATE_SMALL;
-}
-
-/* Finding so many eigenpairs. */
-static void hdi_estimate_pairs_cost(const hd_heat *heat, int32_t count, hd_cost *c) {
-    const hdi_fill f = hdi_heat_fill(heat);
-    const double n = heat->source->n_active, runs = 2 + ceil(count / (double)HDI_SPEC_HALF);
-    const double solves = 2.5 * count + (double)HDI_SPEC_HALF, pairs = count + HDI_MODES_BEGIN;
-    const double seconds = runs * f.flops / HDI_RATE_REAL + HDI_MODES_SECONDS * n * pairs;
-    const double flops = runs * f.flops + solves * (4 * f.nnz + 8 * n * count);
-    hdi_cost_add(c, flops, seconds, hdi_modes_need(heat, count) + HDI_ESTIMATE_SMALL);
-    c->bytes_most = hdi_max(c->bytes_most, hdi_modes_need_most(heat, count));
-}
-
-/* Finding so many eigenpairs, and distances from k sources, or k columns, by them. */
-static void hdi_estimate_modes(const hdi_estimate *x, int32_t count, hd_cost *c) {
-    const hd_heat *heat = x->h->heat;
-    const double n = heat->source->n_active;
-    if (!heat->modes.s.value || heat->modes.s.count < count) hdi_estimate_pairs_cost(heat, count, c);
-    else hdi_cost_add(c, 0, 0, 16 * (n + count));
-    c->flops += 6 * n * count * x->k;
-}
-
-/* Bytes that so many eigenpairs hold when they are found. */
-static double hdi_estimate_held(const hdi_estimate *x, int32_t count) {
-    const int twice = x->query == HD_QUERY_DISTANCE_WEIGHTED && x->h->heat->source->B;
-    return 8.0 * x->h->heat->source->n * ((twice ? 2.0 : 1.0) * count + 5);
-}
-
-/* Late times, where eigenpairs come first: how many are left before them. *held: bytes of pairs found. */
-static int32_t hdi_estimate_late(const hdi_estimate *x, hd_cost *c, double *held) {
-    const hd_heat *heat = x->h->heat;
-    const double unit = (hdi_estimate_distance(x) ? 2 : 1) * heat->scale;
-    int32_t early = x->h->n_times, count;
-    for (; early > 0; early--) {
-        const double t = x->h->times[early - 1] / unit;
-        if (!hdi_task_first(&x->task, t)) break;
+/* Fields, columns and entries: all methods, of which the run picks one. */
+static hd_status hdi_estimate_solves(const hdi_estimate *x) {
+    hdi_heat_call *h = x->h;
+    hd_heat *heat = h->heat;
+    hd_cost *by = x->to->cost, *direct = by + HD_METHOD_DIRECT, most;
+    hdi_costs all;
+    hd_rational set;
+    int32_t q;
+    if (hdi_heat_pick(h) >= 0 && h->n_times > 1 && h->method != HD_METHOD_KRYLOV) {   /* one by one */
+        hdi_heat_call last = *h;
+        last.times = &h->t;
+        last.n_times = 1;
+        (void)hdi_heat_pick(&last);
+        h->method = last.method;
     }
-    *held = 0;
-    if (early == x->h->n_times) return early;
-    count = hdi_estimate_pairs(x, x->h->times[early] / unit);
-    if (hdi_modes_need(heat, count) > hdi_bytes_left(heat->ctx)) return x->h->n_times;
-    hdi_estimate_modes(x, count, c);
-    if (!heat->modes.s.value || heat->modes.s.count < count) *held = hdi_estimate_held(x, count);
-    return early;
+    if (hdi_over_limit(heat->ctx, h->e)) hdi_error_clear(h->e);
+    if (h->e->status < 0 || (h->method != HD_METHOD_ITERATIVE && hdi_estimate_analyse(h) < 0))
+        return h->e->status;
+    x->to->method = h->method;
+    x->to->reason = h->rep->reason;
+    all = hdi_heat_costs(h);
+    for (q = HD_METHOD_ITERATIVE; q <= HD_METHOD_KRYLOV; q++) {
+        by[q] = all.by[q];
+        if (by[q].possible) by[q].bytes += x->held + HDI_ESTIMATE_SMALL;
+        by[q].bytes_most = by[q].bytes;
+    }
+    if (!direct->possible) return h->e->status;
+    h->degree = x->query == HD_QUERY_PAIRS && !heat->poles_asked ? HDI_RAT_KERNEL_MAX : 0;
+    if (hdi_heat_set_of(h, HDI_RAT_UNIFORM_MAX, &set) < 0) return h->e->status;
+    memset(&most, 0, sizeof most);
+    (void)hdi_direct_set(h, &set, HDI_AFTER_BOUND, 0, x->k, x->held + HDI_ESTIMATE_SMALL, &most);
+    if (h->degree && heat->elim.ctx)             /* the solves' arrays of the first try stay */
+        most.bytes += (double)hdi_batches_need(heat, hdi_set_packs(&set), x->k);
+    direct->bytes_most = hdi_max(direct->bytes, most.bytes);
+    h->degree = 0;
+    return h->e->status;
 }
 
-/* Eigenpairs that may come after poles at time t, or 0. */
-static int32_t hdi_estimate_help(const hdi_estimate *x, double t) {
-    return hdi_task_near(&x->task, t, HDI_MODES_MOST) ? hdi_estimate_pairs(x, t) : 0;
+/* An inversion for so many times of a query that share a set, with what is made of it. */
+static void hdi_estimate_inversion(const hdi_estimate *x, const hd_rational *set, int32_t count,
+                                   hd_cost *c) {
+    const hd_laplacian *lap = x->h->heat->source;
+    const int distance = hdi_estimate_distance(x), pattern = !distance && x->query != HD_QUERY_DIAGONAL;
+    const int forms = x->query == HD_QUERY_DISTANCE_WEIGHTED && lap->B;
+    const double n = lap->n_active, entries = (double)((lap->L.nnz - lap->n_active) / 2) + n;
+    const int32_t sums = 2 * hdi_low32(count, set->n_poles);
+    /* the values, and a diagonal */
+    double doubles = (sums + (sums < 2.0 * count ? 2 : 0)) * (pattern && lap->B ? entries : n) + 6 * n;
+    if (distance)                                /* a metric, and columns of its bound or at all times */
+        doubles += 12 * n + 3.0 * lap->n + 6.0 * x->k +
+                   (count > 1 ? 2.0 * count : hdi_min(x->k, HDI_LANES)) * n;
+    doubles += count * ((double)sizeof *set / 8 + 4.0 * set->n_poles);
+    (void)hdi_direct_set(x->h, set, forms ? HDI_AFTER_FORMS : HDI_AFTER_INVERSE, sums, distance ? x->k : 0,
+                         x->held + 8 * doubles + HDI_ESTIMATE_SMALL, c);
+}
+
+/* The times of the call by poles that they share, in windows. Returns 0 where they do not. */
+static int hdi_estimate_shared(const hdi_estimate *x, hd_cost *c) {
+    hdi_heat_call *h = x->h;
+    const int distance = hdi_estimate_distance(x);
+    const double tol = distance ? HDI_SHARED_DISTANCE_TOL : HDI_SHARED_TOL;
+    int32_t packs = 0, windows = 0, w, q0, q1;
+    if (h->n_times > 1 && hdi_shared_may(h->heat) &&
+        !(x->query == HD_QUERY_DIAGONAL_OPERATOR && h->heat->source->B))
+        windows = hdi_shared_windows(h->times, h->n_times, tol, &packs);
+    if (!(distance ? packs <= h->n_times : hdi_shared_pays(packs, h->n_times))) windows = 0;
+    for (w = 0, q0 = 0; windows > 0 && q0 < h->n_times; w++, q0 = q1) {
+        hd_rational set;
+        memset(&set, 0, sizeof set);
+        q1 = hdi_window_end(h->times, h->n_times, q0, w, windows);
+        (void)hdi_shared_pick(&set, h->times[q1 - 1] / h->times[q0] * (1 + 1e-12), tol);
+        hdi_estimate_inversion(x, &set, q1 - q0, c);
+    }
+    return windows > 0 && c->bytes <= hdi_bytes_left(h->heat->ctx);
+}
+
+/* Diagonals, traces and distances by poles: all times together if the run takes them so, else one by one,
+ * as at the last time. Bytes are enough for either, to which the run comes back. In bytes_most the highest
+ * degree takes over. */
+static hd_status hdi_estimate_inverses(const hdi_estimate *x, hd_cost *c) {
+    hdi_heat_call *h = x->h;
+    hd_heat *heat = h->heat;
+    const double h0 = heat->source->h, t = h->t / x->unit;
+    const double expected = h0 > 0 ? HDI_DISTANCE_EXPECTED * sqrt(t) / h0 : 0;
+    hd_cost one, most;
+    hd_rational set;
+    memset(c, 0, sizeof *c);
+    memset(&one, 0, sizeof one);
+    memset(&most, 0, sizeof most);
+    h->diagonal = 1;
+    h->method = HD_METHOD_DIRECT;
+    if (hdi_heat_set(h, &set) >= 0) hdi_estimate_inversion(x, &set, 1, &one);
+    h->degree = heat->poles_asked ? 0 : HDI_RAT_KERNEL_MAX;
+    if (hdi_heat_set(h, &set) >= 0) hdi_estimate_inversion(x, &set, 1, &most);
+    h->degree = 0;
+    if (h->e->status < 0) return h->e->status;
+    if (x->query == HD_QUERY_DISTANCE && hdi_shared_may(heat) && expected > HDI_DISTANCE_SURE &&
+        most.bytes <= hdi_bytes_left(heat->ctx)) one = most;
+    if (heat->elim.ctx)                          /* after a first try, whose lanes and real factor stay */
+        most.bytes += (double)(hdi_batches_need(heat, 1, hdi_high32(x->k, HDI_PROBES)) +
+                               (heat->elim.real.ctx ? 0 : hdi_factor_bytes(&heat->elim.sym, 1)));
+    if (!hdi_estimate_shared(x, c)) {
+        memset(c, 0, sizeof *c);
+        c->flops = h->n_times * one.flops;
+        c->seconds = h->n_times * one.seconds;
+    }
+    one.flops = one.seconds = 0;
+    one.bytes_most = most.bytes;
+    hdi_cost_add(c, &one);
+    c->seconds += HDI_FRESH_BYTE * c->bytes;
+    return h->e->status;
 }
 
 /* Commute and biharmonic distances. */
 static void hdi_estimate_ground(const hdi_estimate *x, hd_cost *c) {
     hd_heat *heat = x->h->heat;
     const int forms = x->query == HD_QUERY_DISTANCE_BIHARMONIC;
-    const hdi_fill f = hdi_heat_fill(heat);
-    const double n = heat->source->n_active, held = 40 * n + 16.0 * heat->source->n + 48.0 * x->k;
-    const double real = f.flops / HDI_RATE_REAL * (1 + HDI_INVERT_SECONDS);
-    const double solve = (16 * f.nnz + 100 * n) / HDI_RATE_SWEEP * (forms ? 4 : 2);
-    const double columns = (double)x->k + (double)HDI_PROBES;
-    double bytes = 8 * f.real_stored * (forms ? 9 : 1);
-    hdi_cost_direct(heat, forms ? 1 : 0, 1, HDI_AFTER_INVERSE, 0, c);
-    c->flops += columns * 4 * f.nnz * (forms ? 4 : 2);
-    c->seconds = hdi_max(c->seconds, real) + columns * solve;
-    if (heat->elim.ctx) {
-        bytes = (double)hdi_ground_need(&heat->elim, &heat->ground, forms);
-        bytes += 16 * (double)hdi_ground_room(&heat->elim);
-    }
-    hdi_cost_add(c, 0, 0, bytes + held + HDI_ESTIMATE_SMALL);
+    const hdi_fill f = hdi_heat_fill(heat, &heat->elim);
+    const double n = heat->source->n_active, columns = (double)x->k + (double)HDI_PROBES;
+    const double factor = (forms ? 17 : 1) * f.flops, solves = columns * (forms ? 4 : 2);
+    c->possible = 1;
+    c->flops = factor * (1 + HDI_INVERT_FLOPS) + solves * 4 * f.nnz;
+    c->seconds = factor / HDI_RATE_REAL * (1 + HDI_INVERT_SECONDS) +
+                 solves * (16 * f.nnz + 100 * n) / HDI_RATE_SWEEP;
+    c->bytes = 8 * f.real_stored * (forms ? 9 : 1);
+    if (heat->elim.ctx)
+        c->bytes = (double)hdi_ground_need(&heat->elim, &heat->ground, forms) +
+                   16 * (double)hdi_ground_room(&heat->elim);
+    c->bytes += 40 * n + 16.0 * heat->source->n + 48.0 * x->k + HDI_ESTIMATE_SMALL;
+    c->bytes_most = c->bytes;
 }
 
-/* Adds the cost of late times, after which so many bytes are held. */
-static void hdi_estimate_join(hd_cost *c, const hd_cost *late, double held) {
-    c->bytes += held;
-    c->bytes_most += held;
-    if (late->possible) hdi_cost_add(c, late->flops, late->seconds, late->bytes);
-    c->bytes_most = hdi_max(c->bytes_most, late->bytes_most);
+/* ---- estimates of eigenpairs ---- */
+
+/* Seconds that an eigenpair costs for each vertex, and all of them together as much as so many, without
+ * factors. Measured on meshes of 2.5K to 41K vertices with 13 to 80 pairs; a rough guess for others. */
+#define HDI_MODES_SECONDS 7e-7
+#define HDI_MODES_BEGIN 5
+
+/* Bytes that eigenpairs may need where more are looked for than expected: 1.14 times those for the number
+ * expected were seen on small meshes. */
+#define HDI_MODES_OVER 1.25
+
+/* Finding so many of them. */
+static hd_cost hdi_estimate_pairs(const hd_heat *heat, int32_t count) {
+    const hdi_fill f = hdi_heat_fill(heat, &heat->elim);
+    const double n = heat->source->n_active, runs = 2 + ceil(count / (double)HDI_SPEC_HALF);
+    const double solves = 2.5 * count + (double)HDI_SPEC_HALF;
+    hd_cost c;
+    memset(&c, 0, sizeof c);
+    c.possible = 1;
+    c.flops = runs * f.flops + solves * (4 * f.nnz + 8 * n * count);
+    c.seconds = runs * f.flops / HDI_RATE_REAL + HDI_MODES_SECONDS * n * (count + HDI_MODES_BEGIN);
+    c.bytes = hdi_modes_need(heat, count) + HDI_ESTIMATE_SMALL;
+    c.bytes_most = HDI_MODES_OVER * hdi_modes_need(heat, count) + HDI_ESTIMATE_SMALL;
+    return c;
 }
 
-/* Poles for time q of the call alone: by default, and by the highest degree, which distances may need.
- * held: bytes of eigenpairs that stay. most: with pairs that may come after, and poles once more. */
-static hd_status hdi_estimate_alone(const hdi_estimate *x, int32_t q, double held, hd_cost *one,
-                                    hd_cost *most) {
-    hd_heat *heat = x->h->heat;
-    const double t = x->h->times[q] / (hdi_estimate_distance(x) ? 2 * heat->scale : heat->scale);
-    const double h0 = heat->source->h, expected = h0 > 0 ? HDI_DISTANCE_EXPECTED * sqrt(t) / h0 : 0;
-    const int sure = x->query == HD_QUERY_DISTANCE && hdi_shared_may(heat) && expected > HDI_DISTANCE_SURE;
-    const int32_t help = hdi_estimate_help(x, t);
-    memset(one, 0, sizeof *one);
-    memset(most, 0, sizeof *most);
-    x->h->t = x->h->times[q];
-    if (hdi_estimate_inverse(x, heat->poles_asked ? 0 : HDI_RAT_KERNEL_MAX, most) < 0) return x->h->e->status;
-    if (sure && most->bytes + held <= hdi_bytes_left(heat->ctx)) *one = *most;
-    else if (hdi_estimate_inverse(x, 0, one) < 0) return x->h->e->status;
-    if (heat->elim.ctx)                          /* after a first try, whose lanes and real factor stay */
-        most->bytes += (double)(hdi_batches_need(heat, 1, hdi_high32(x->k, HDI_PROBES)) +
-                                (heat->elim.real.ctx ? 0 : hdi_factor_bytes(&heat->elim.sym, 1)));
-    most->bytes += hdi_max(held, help > 0 ? hdi_estimate_held(x, help) : 0);
-    if (help > 0) most->bytes = hdi_max(most->bytes, hdi_modes_need_most(heat, help));
-    return HD_OK;
-}
-
-/* Queries that need the direct method. They take what the run would take: eigenpairs at late times; shared
- * poles, else the times one by one. Bytes are enough for poles one by one at all times, to which the run
- * comes back where the others do not serve. */
-static hd_status hdi_estimate_direct(const hdi_estimate *x) {
-    hdi_heat_call *h = x->h;
-    hd_heat *heat = h->heat;
-    hd_cost *c = x->to->cost + HD_METHOD_DIRECT, late, shared, one, most;
-    const int32_t n_times = h->n_times;
-    const double tol = x->query >= HD_QUERY_DISTANCE ? HDI_SHARED_DISTANCE_TOL : HDI_SHARED_TOL;
-    double held = 0;
-    int32_t q, windows, early;
-    memset(&late, 0, sizeof late);
-    memset(&shared, 0, sizeof shared);
-    x->to->method = HD_METHOD_DIRECT;
-    x->to->reason = "diagonals and distances to all vertices need the direct method";
-    if (hdi_estimate_analyse(h) < 0) return h->e->status;
-    if (x->query >= HD_QUERY_DISTANCE_COMMUTE) {
-        hdi_estimate_ground(x, c);
-        return HD_OK;
-    }
-    h->n_times = early = hdi_estimate_late(x, &late, &held);
-    if (early == 0) x->to->reason = HDI_MODES_REASON;
-    windows = hdi_estimate_shared(x, tol);
-    if (windows > 0 && hdi_estimate_windows(x, windows, tol, &shared) < 0) return h->e->status;
-    if (shared.bytes + held > hdi_bytes_left(heat->ctx)) windows = 0;
-    if (windows > 0) hdi_cost_add(c, shared.flops, shared.seconds, shared.bytes + held);
-    h->n_times = n_times;
-    for (q = 0; q < n_times; q++) {
-        const int alone = windows == 0 && q < early;
-        if (q >= early && held == 0) break;      /* by pairs that are there */
-        if (hdi_estimate_alone(x, q, held, &one, &most) < 0) return h->e->status;
-        if (alone) hdi_cost_add(c, one.flops, one.seconds, one.bytes + held);
-        else hdi_cost_add(c, 0, 0, one.bytes);
-        c->bytes_most = hdi_max(c->bytes_most, most.bytes);
-    }
-    if (early > 0) c->seconds += HDI_FRESH_BYTE * c->bytes;
-    hdi_estimate_join(c, &late, 0);
-    memset(&shared, 0, sizeof shared);           /* if pairs are found, and say little at late times */
-    windows = held > 0 ? hdi_estimate_shared(x, tol) : 0;
-    if (windows > 0 && hdi_estimate_windows(x, windows, tol, &shared) >= 0)
-        c->bytes_most = hdi_max(c->bytes_most, shared.bytes + held);
-    return h->e->status;
-}
-
-/* Traces by a set of poles for so many times. held: bytes that stay from before. */
-static void hdi_estimate_trace_set(const hdi_estimate *x, const hd_rational *set, int32_t n_times,
-                                   double held, hd_cost *c) {
-    const hd_laplacian *lap = x->h->heat->source;
-    const int32_t n_sets = 2 * hdi_low32(n_times, set->n_poles);
-    const double n = lap->n_active, entries = (double)((lap->L.nnz - lap->n_active) / 2) + n;
-    const double sums = n_sets < 2 * n_times ? n_sets + 2 : n_sets;
-    double bytes = held + n_times * (double)(sizeof *set) + 8 * (sums * (lap->B ? entries : n) + 6 * n);
-    bytes = hdi_bytes_direct(x, set, HDI_AFTER_INVERSE, n_sets, HDI_PROBES, bytes);
-    hdi_cost_direct(x->h->heat, hdi_set_packs(set), hdi_set_lone(set), HDI_AFTER_INVERSE, HDI_PROBES, c);
-    hdi_cost_add(c, 0, 0, bytes);
-}
-
-/* Traces at all times, as hdi_diagonals_together takes them. held: bytes that stay from before. */
-static hd_status hdi_estimate_trace(const hdi_estimate *x, double held, hd_cost *c) {
-    hdi_heat_call *h = x->h;
-    const int settled = h->heat->poles_asked || h->heat->exacting;
-    int32_t w, q0, q1, packs = 0, windows = 0;
-    if (h->n_times > 1 && !settled)
-        windows = hdi_shared_windows(h->times, h->n_times, HDI_SHARED_TOL, &packs);
-    if (windows > 0 && !hdi_shared_pays(packs, h->n_times)) windows = 0;
-    for (w = 0, q0 = 0; q0 < h->n_times && h->e->status >= 0; w++, q0 = q1) {
-        hd_rational set;
-        memset(&set, 0, sizeof set);
-        q1 = windows > 0 ? hdi_window_end(h->times, h->n_times, q0, w, windows) : q0 + 1;
-        h->t = h->times[q0];
-        if (settled || windows == 0) (void)hdi_heat_set(h, &set);
-        else (void)hdi_shared_pick(&set, h->times[q1 - 1] / h->times[q0] * (1 + 1e-12), HDI_SHARED_TOL);
-        hdi_estimate_trace_set(x, &set, q1 - q0, held, c);
-    }
-    return h->e->status;
-}
-
-/* Where heat fades: eigenpairs that may come after poles at any time, with poles once more. */
-static void hdi_estimate_fading(const hdi_estimate *x, hd_cost *c) {
+/* How many are asked for at time q of the call. */
+static int32_t hdi_estimate_count(const hdi_estimate *x, int32_t q) {
     const hd_heat *heat = x->h->heat;
+    return hdi_modes_count(heat, hdi_modes_expected(heat, x->task.depth * x->unit / x->h->times[q]));
+}
+
+/* Bytes that so many hold when they are found. */
+static double hdi_estimate_kept(const hdi_estimate *x, int32_t count) {
+    const int twice = x->query == HD_QUERY_DISTANCE_WEIGHTED && x->h->heat->source->B;
+    return 8.0 * x->h->heat->source->n * ((twice ? 2.0 : 1.0) * count + 5);
+}
+
+/* Late times, where eigenpairs come first: how many are left before them, and the cost of the others. *kept:
+ * bytes of pairs that are found. */
+static int32_t hdi_estimate_late(const hdi_estimate *x, hd_cost *c, double *kept) {
+    const hdi_heat_call *h = x->h;
+    const hd_heat *heat = h->heat;
+    const double n = heat->source->n_active;
+    int32_t early = h->n_times, count;
+    memset(c, 0, sizeof *c);
+    *kept = 0;
+    while (early > 0 && hdi_task_first(&x->task, h->times[early - 1] / x->unit)) early--;
+    if (early == h->n_times) return early;
+    count = hdi_estimate_count(x, early);
+    if (hdi_modes_need(heat, count) > hdi_bytes_left(heat->ctx)) return h->n_times;
+    c->possible = 1;
+    c->bytes = c->bytes_most = 16 * (n + count);
+    if (!heat->modes.s.value || heat->modes.s.count < count) {
+        *c = hdi_estimate_pairs(heat, count);
+        *kept = hdi_estimate_kept(x, count);
+    }
+    c->flops += 6 * n * count * x->k;
+    return early;
+}
+
+/* Eigenpairs that may come after poles at any time, with poles once more. */
+static void hdi_estimate_help(const hdi_estimate *x, double kept, hd_cost *c) {
     const double most = c->bytes_most;
     int32_t q;
     for (q = 0; q < x->h->n_times; q++) {
-        const int32_t help = HDI_HAS_MODES ? hdi_estimate_help(x, x->h->times[q] / heat->scale) : 0;
-        if (help == 0) continue;
-        c->bytes_most = hdi_max(c->bytes_most, most + hdi_estimate_held(x, help));
-        c->bytes_most = hdi_max(c->bytes_most, hdi_modes_need_most(heat, help));
+        const int near_by = hdi_task_near(&x->task, x->h->times[q] / x->unit, HDI_MODES_MOST);
+        const int32_t count = HDI_HAS_MODES && near_by ? hdi_estimate_count(x, q) : 0;
+        if (count == 0) continue;
+        c->bytes_most = hdi_max(c->bytes_most, most + hdi_max(0, hdi_estimate_kept(x, count) - kept));
+        c->bytes_most = hdi_max(c->bytes_most, hdi_estimate_pairs(x->h->heat, count).bytes_most);
     }
 }
 
-/* Traces, and signatures made of diagonals: what the run takes beside them. */
-static hd_status hdi_estimate_signature(const hdi_estimate *x) {
-    const hd_heat *heat = x->h->heat;
-    hd_cost *c = x->to->cost + HD_METHOD_DIRECT;
-    const int normalised = x->query == HD_QUERY_NORMALISED;
-    const double n_times = x->h->n_times;
-    double held = normalised ? 8 * n_times : (8.0 * heat->source->n + 24) * n_times;
-    hdi_estimate diagonal = *x;
-    hd_cost trace;
-    memset(&trace, 0, sizeof trace);
-    diagonal.query = HD_QUERY_DIAGONAL;
-    x->to->method = x->h->method = HD_METHOD_DIRECT;
-    x->to->reason = "diagonals and distances to all vertices need the direct method";
-    x->h->diagonal = 1;
-    if (hdi_estimate_analyse(x->h) < 0) return x->h->e->status;
-    if (x->query == HD_QUERY_TRACE) {
-        if (hdi_estimate_trace(x, 0, c) >= 0) hdi_estimate_fading(x, c);
-        return x->h->e->status;
-    }
-    if (hdi_estimate_direct(&diagonal) < 0) return x->h->e->status;
-    hdi_estimate_join(c, &trace, held);
-    if (!normalised) return HD_OK;
-    /* lanes and the real factor of the diagonal stay */
-    if (heat->elim.ctx)
-        held += (double)(hdi_batches_need(heat, 1, HDI_PROBES) +
-                         (heat->elim.real.ctx ? 0 : hdi_factor_bytes(&heat->elim.sym, 1)));
-    if (hdi_estimate_trace(x, held, &trace) >= 0) hdi_cost_add(c, trace.flops, trace.seconds, trace.bytes);
-    return x->h->e->status;
+/* ---- estimates of queries ---- */
+
+/* By poles, or by what the run picks. Returns the cost. */
+static hd_cost hdi_estimate_poles(const hdi_estimate *x) {
+    hd_cost c, zero;
+    memset(&zero, 0, sizeof zero);
+    x->h->t = x->h->times[x->h->n_times - 1];
+    if (x->query > HD_QUERY_PAIRS) return hdi_estimate_inverses(x, &c) < 0 ? zero : c;
+    return hdi_estimate_solves(x) < 0 ? zero : x->to->cost[x->to->method];
 }
 
-/* Fields, columns and entries; pairs take columns. Late times come from eigenpairs where heat fades; bytes
- * are enough for the others' way at all times. */
-static hd_status hdi_estimate_columns(const hdi_estimate *x, double held) {
+/* A query at times: eigenpairs at late ones, as the run takes them, else poles. Bytes are enough for poles at
+ * all times. */
+static hd_status hdi_estimate_times(const hdi_estimate *x) {
     hdi_heat_call *h = x->h;
     hd_estimate *to = x->to;
     const int32_t n_times = h->n_times;
-    hd_cost late, *c;
-    double stay = 0;
-    int32_t early = n_times;
-    memset(&late, 0, sizeof late);
-    if (x->query < HD_QUERY_PAIRS && x->task.serves) {
-        if (hdi_task_first(&x->task, h->times[early - 1] / h->heat->scale) && hdi_estimate_analyse(h) < 0)
-            return h->e->status;
-        early = hdi_estimate_late(x, &late, &stay);
+    hd_cost late, poles, early_poles;
+    double kept;
+    int32_t early;
+    if ((x->query > HD_QUERY_PAIRS || hdi_task_first(&x->task, h->times[n_times - 1] / x->unit)) &&
+        hdi_estimate_analyse(h) < 0) return h->e->status;
+    early = x->query == HD_QUERY_PAIRS ? n_times : hdi_estimate_late(x, &late, &kept);
+    poles = hdi_estimate_poles(x);
+    if (early < n_times && h->e->status >= 0) {
+        if (early > 0) {
+            h->n_times = early;
+            early_poles = hdi_estimate_poles(x);
+            h->n_times = n_times;
+        } else {
+            memset(&early_poles, 0, sizeof early_poles);
+            memset(to->cost, 0, sizeof to->cost);
+            to->method = HD_METHOD_DIRECT;
+            to->reason = HDI_MODES_REASON;
+        }
+        if (kept > 0 || early > 0) {
+            early_poles.bytes = hdi_max(early_poles.bytes, poles.bytes) + (early > 0 ? kept : 0);
+            early_poles.bytes_most = hdi_max(early_poles.bytes_most, poles.bytes_most) + kept;
+        }
+        poles = early_poles;
+        hdi_cost_add(&poles, &late);
     }
-    h->n_times = early > 0 ? early : n_times;
-    h->t = h->times[h->n_times - 1];
-    if (hdi_estimate_solves(x, held) < 0) return h->e->status;
-    c = to->cost + to->method;
-    h->n_times = n_times;
-    if (early == 0) {
-        late.bytes = hdi_max(late.bytes, stay > 0 ? c->bytes : 0);
-        late.bytes_most = hdi_max(late.bytes_most, c->bytes_most + stay);
-        memset(to->cost, 0, sizeof to->cost);
-        to->method = HD_METHOD_DIRECT;
-        to->reason = HDI_MODES_REASON;
-        c = to->cost + HD_METHOD_DIRECT;
-        *c = late;
-    } else {
-        hdi_estimate_join(c, &late, stay);
-    }
-    hdi_estimate_fading(x, c);
-    return HD_OK;
+    hdi_estimate_help(x, early < n_times ? kept : 0, &poles);
+    to->cost[to->method] = poles;
+    return h->e->status;
+}
+
+/* Traces after diagonals, which they norm. */
+static hd_status hdi_estimate_normalised(hdi_estimate *x) {
+    const hd_heat *heat = x->h->heat;
+    hd_cost diagonal, *c = x->to->cost + HD_METHOD_DIRECT;
+    x->query = HD_QUERY_DIAGONAL;
+    if (hdi_estimate_times(x) < 0) return x->h->e->status;
+    diagonal = *c;
+    if (heat->elim.ctx)                          /* lanes and the real factor of the diagonal stay */
+        x->held += (double)(hdi_batches_need(heat, 1, HDI_PROBES) +
+                            (heat->elim.real.ctx ? 0 : hdi_factor_bytes(&heat->elim.sym, 1)));
+    x->query = HD_QUERY_TRACE;
+    if (hdi_estimate_times(x) >= 0) hdi_cost_add(c, &diagonal);
+    return x->h->e->status;
 }
 
 /* The estimate of a query whose arguments are checked. */
-static hd_status hdi_estimate_run(hdi_estimate *x) {
-    hdi_heat_call *h = x->h;
+static hd_status hdi_estimate_run(hdi_heat_call *h, hd_query query, int32_t k, hd_estimate *to) {
     const hd_heat *heat = h->heat;
-    const int timeless = x->query >= HD_QUERY_DISTANCE_COMMUTE;
-    const int32_t pairs = hdi_low32(x->k, heat->source->n_active);
-    const int distance = x->query == HD_QUERY_DISTANCE || x->query == HD_QUERY_DISTANCE_WEIGHTED;
-    const double columns = (double)heat->source->n * x->k;
-    hd_estimate *to = x->to;
-    if (hdi_estimate_apart(x)) hdi_distance_task(&x->task, h, HD_DISTANCE_CLASSICAL);
-    else hdi_fading_task(&x->task, h);
-    if (!timeless && hdi_heat_sort_times(h, distance ? 2 : 1, NULL) < 0) return h->e->status;
-    for (; h->n_times > 1 && h->times[0] * heat->lambda_max < HDI_STILL; h->n_times--) h->times++;
-    if (!timeless) h->t = h->times[h->n_times - 1];
-    if (x->query == HD_QUERY_SPECTRUM) {
-        to->method = HD_METHOD_DIRECT;
-        to->reason = "eigenpairs take real factors";
-        if (hdi_estimate_analyse(h) >= 0) hdi_estimate_pairs_cost(heat, pairs, to->cost + to->method);
-    } else if (!timeless && h->t * heat->lambda_max < HDI_STILL && x->query <= HD_QUERY_PAIRS) {
-        to->method = heat->opts.method == HD_METHOD_AUTO ? HD_METHOD_ITERATIVE : heat->opts.method;
-        to->reason = "t = 0";
-        hdi_cost_add(to->cost + to->method, 0, 0, 64.0 * heat->source->n + HDI_ESTIMATE_SMALL);
-    } else if (x->query <= HD_QUERY_PAIRS) {
-        const double held = 8 * hdi_min(columns, (double)HDI_PAIRS_DOUBLES) + 8.0 * x->k;
-        (void)hdi_estimate_columns(x, x->query == HD_QUERY_PAIRS ? held + 16.0 * heat->source->n : 0);
-    } else if (x->query >= HD_QUERY_TRACE && x->query <= HD_QUERY_SCALE_INVARIANT) {
-        (void)hdi_estimate_signature(x);
-    } else {
-        (void)hdi_estimate_direct(x);
+    const double n = heat->source->n;
+    hd_cost *direct = to->cost + HD_METHOD_DIRECT;
+    hdi_estimate x;
+    memset(&x, 0, sizeof x);
+    x.h = h;
+    x.query = query;
+    x.to = to;
+    x.k = h->ask.k = query <= HD_QUERY_PAIRS || query >= HD_QUERY_DISTANCE ? hdi_high32(k, 1) : 0;
+    to->method = h->method = HD_METHOD_DIRECT;
+    to->reason = query == HD_QUERY_SPECTRUM ? "eigenpairs take real factors" : HDI_DIRECT_REASON;
+    if (query >= HD_QUERY_DISTANCE_COMMUTE) {
+        if (hdi_estimate_analyse(h) < 0) return h->e->status;
+        if (query != HD_QUERY_SPECTRUM) hdi_estimate_ground(&x, direct);
+        else *direct = hdi_estimate_pairs(heat, hdi_low32(x.k, heat->source->n_active));
+        return HD_OK;
     }
-    return h->e->status;
+    x.unit = (hdi_estimate_distance(&x) ? 2 : 1) * heat->scale;
+    if (query == HD_QUERY_PAIRS || hdi_estimate_distance(&x))
+        hdi_distance_task(&x.task, h, HD_DISTANCE_CLASSICAL);
+    else hdi_fading_task(&x.task, h);
+    if (hdi_heat_sort_times(h, x.unit / heat->scale, NULL) < 0) return h->e->status;
+    for (; h->n_times > 1 && h->times[0] * heat->lambda_max < HDI_STILL; h->n_times--) h->times++;
+    h->t = h->times[h->n_times - 1];
+    if (h->t * heat->lambda_max < HDI_STILL && query <= HD_QUERY_PAIRS) {
+        to->method = heat->opts.method ? heat->opts.method : HD_METHOD_ITERATIVE;
+        to->reason = "t = 0";
+        to->cost[to->method].possible = 1;
+        to->cost[to->method].bytes = to->cost[to->method].bytes_most = 64 * n + HDI_ESTIMATE_SMALL;
+        return HD_OK;
+    }
+    if (query == HD_QUERY_PAIRS)
+        x.held = 8 * hdi_min(n * x.k, (double)HDI_PAIRS_DOUBLES) + 8.0 * x.k + 16 * n;
+    if (query == HD_QUERY_NORMALISED) x.held = 8.0 * h->n_times;
+    if (query == HD_QUERY_SCALE_INVARIANT) x.held = (8 * n + 24) * h->n_times;
+    if (query == HD_QUERY_NORMALISED) return hdi_estimate_normalised(&x);
+    if (query == HD_QUERY_SCALE_INVARIANT) x.query = HD_QUERY_DIAGONAL;
+    return hdi_estimate_times(&x);
 }
 
 /* What is known when the call's own arrays are gone. */
 static void hdi_estimate_close(const hd_heat *heat, hd_estimate *to) {
     int32_t q;
-    to->analysed = heat->elim.ctx != NULL || (heat->other && heat->other->elim.ctx);
+    to->analysed = heat->elim.ctx || heat->few.ctx;
     to->bytes_in_use = (double)heat->ctx->bytes_in_use;
     to->bytes_left = hdi_bytes_left(heat->ctx);
     to->cost[HD_METHOD_AUTO] = to->cost[to->method];
@@ -28163,19 +27992,13 @@ HEATDIFF_API hd_status hd_heat_estimate(hd_heat *heat, hd_query query, int32_t n
     const hdi_query as = query == HD_QUERY_FIELDS ? HDI_QUERY_FIELD : HDI_QUERY_SYMMETRIC;
     hdi_heat_call h;
     hd_estimate found;
-    hdi_estimate x;
     hd_status status;
     memset(&found, 0, sizeof found);
-    x.h = &h;
-    x.query = query;
-    x.to = &found;
-    x.k = query <= HD_QUERY_PAIRS || query >= HD_QUERY_DISTANCE ? hdi_high32(k, 1) : 0;
     if (hdi_heat_begin(&h, heat, as, NULL, err) < 0) return hdi_heat_end(&h);
     if (!estimate) hdi_missing(h.e);
     else if (hdi_estimate_check(&h, query, k) >= 0 && query < HD_QUERY_DISTANCE_COMMUTE)
         (void)hdi_times_check(&h, n_times, t, query > HD_QUERY_PAIRS);
-    h.ask.k = x.k;
-    if (h.e->status >= 0) (void)hdi_estimate_run(&x);
+    if (h.e->status >= 0) (void)hdi_estimate_run(&h, query, k, &found);
     status = hdi_heat_end(&h);
     if (status < 0) return status;
     hdi_estimate_close(heat, &found);
