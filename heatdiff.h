@@ -5033,6 +5033,8 @@ typedef struct hdi_mesh {
     const int64_t *ptr; /* [m + 1] of polygons: the first corner of each; NULL: triangles */
     const int32_t *tri; /* [corners] vertices */
     const int32_t *face;/* [m] the caller's number of each face; NULL: their own */
+    int32_t *copies;    /* [m] of triangles: how often a face comes; NULL: once */
+    int32_t *odd;       /* [m] how many of its copies have their corners in odd order */
     int32_t n, m;
     double lambda;      /* of polygons */
     double *area;       /* [m] of polygons: length of the vector area; 0: the face is left out */
@@ -5083,12 +5085,13 @@ static int64_t hdi_corner_after(const hdi_mesh *mesh, int64_t c) {
 
 /* ---- what is refused ---- */
 
-/* Coordinates, and the corners of m faces: triangles if ptr is NULL. xyz NULL: there are none. */
-static hd_status hdi_mesh_check(const double *xyz, int32_t n, const int64_t *ptr, const int32_t *tri,
-                                int32_t m, hd_error *e) {
+/* Coordinates, and the corners of the faces. */
+static hd_status hdi_mesh_check(const hdi_mesh *mesh, hd_error *e) {
+    const int64_t *ptr = mesh->ptr;
+    const int32_t *tri = mesh->tri, m = mesh->m;
     int64_t c, end = hdi_triple(m);
     int32_t f;
-    if (xyz && hdi_points_check(xyz, n, e) < 0) return e->status;
+    if (mesh->xyz && hdi_points_check(mesh->xyz, mesh->n, e) < 0) return e->status;
     if (ptr && m > 0 && ptr[0] != 0)
         return hdi_fail_face(e, HD_ERR_STRUCTURE, "face_ptr does not begin with 0", 0, -1, (double)ptr[0]);
     for (f = 0; ptr && f < m; f++, end = ptr[f])
@@ -5098,7 +5101,7 @@ static hd_status hdi_mesh_check(const double *xyz, int32_t n, const int64_t *ptr
     if (end > 0 && !tri) return hdi_missing(e);
     for (f = 0, c = 0; f < m; f++)
         for (end = ptr ? ptr[f + 1] : c + 3; c < end; c++)
-            if (tri[c] < 0 || tri[c] >= n)
+            if (tri[c] < 0 || tri[c] >= mesh->n)
                 return hdi_fail_face(e, HD_ERR_INDEX, "a face names a vertex that does not exist", f, -1,
                                      tri[c]);
     return HD_OK;
@@ -5206,19 +5209,6 @@ static const int32_t *hdi_view_corners(const hd_mesh *m, hdi_scope *s) {
     to = HDI_TAKE(s, int32_t, count);
     for (i = 0; i < count && to; i++) to[i] = m->corner_u16[i];
     return to;
-}
-
-/* The arrays of a mesh that was checked: the caller's where they are as we want them, else copies in s. */
-typedef struct hdi_view {
-    const double *xyz;
-    const int32_t *corner;
-} hdi_view;
-
-static hd_status hdi_view_open(hdi_view *to, const hd_mesh *m, hdi_scope *s) {
-    to->xyz = hdi_view_places(m, s);
-    to->corner = s->e->status < 0 ? NULL : hdi_view_corners(m, s);
-    if (s->e->status < 0 || !HDI_HAS_POLYGONS || m->shape != HD_POLYGONS) return s->e->status;
-    return hdi_mesh_check(to->xyz, m->n, m->face_ptr, to->corner, m->n_faces, s->e);
 }
 
 /* New positions for n vertices. NULL: an error. */
@@ -5592,56 +5582,30 @@ static int32_t hdi_mesh_repeats(const hdi_mesh *mesh, hdi_pair *face, int32_t n)
     return count;
 }
 
-/* ---- sides ----
- * The sides of all faces with area, listed by the smaller of their two vertices and sorted by the larger one,
- * then by face: an edge is a run of sides. */
-
-typedef struct hdi_sides {
-    int32_t *ptr;               /* [n + 1] where those of a vertex begin */
-    int32_t most;               /* sides of the busiest vertex, at least 1 */
-    uint64_t *key;              /* [3 m] larger vertex << 32 | 4 face + corner where the side begins */
-} hdi_sides;
-
-static int32_t hdi_key_face(uint64_t key) { return (int32_t)((key & 0xffffffffu) >> 2); }
-static int hdi_key_corner(uint64_t key) { return (int)(key & 3); }
-static int32_t hdi_key_vertex(uint64_t key) { return (int32_t)(key >> 32); }
-/* Where the side begins, and the corner opposite to it. */
-static int64_t hdi_key_side(uint64_t key) { return hdi_triple(hdi_key_face(key)) + hdi_key_corner(key); }
-static int64_t hdi_key_opposite(uint64_t key) {
-    return hdi_triple(hdi_key_face(key)) + hdi_prev3[hdi_key_corner(key)];
-}
-
-/* The end of the run of side p, which is before end. */
-static HDI_INLINE int32_t hdi_sides_run(const hdi_sides *g, int32_t p, int32_t end) {
-    const int32_t j = hdi_key_vertex(g->key[p]);
-    while (++p < end && hdi_key_vertex(g->key[p]) == j) {}
-    return p;
-}
-
-/* Of a mesh whose corners are listed, in s. */
-static hd_status hdi_sides_make(hdi_sides *g, const hdi_mesh *mesh, hdi_scope *s) {
-    int32_t i, n = 0;
-    int64_t p;
-    g->ptr = HDI_TAKE_ZERO(s, int32_t, (int64_t)mesh->n + 1);
-    g->key = HDI_TAKE(s, uint64_t, hdi_triple(mesh->m));
-    if (s->e->status < 0) return s->e->status;
-    for (i = 0, g->most = 1; i < mesh->n; i++) {
-        for (p = mesh->at[i]; p < mesh->at[i + 1]; p++) {
-            const int32_t f = mesh->corner[p] / 3, q = mesh->corner[p] % 3, *v = mesh->tri + hdi_triple(f);
-            const uint64_t after = (uint64_t)v[hdi_next3[q]], before = (uint64_t)v[hdi_prev3[q]];
-            if (!(mesh->area[f] > 0)) continue;
-            if (after > (uint64_t)i) g->key[n++] = after << 32 | (uint64_t)f << 2 | (uint64_t)q;
-            if (before > (uint64_t)i) g->key[n++] = before << 32 | (uint64_t)f << 2 | (uint64_t)hdi_prev3[q];
-        }
-        g->ptr[i + 1] = n;
-        g->most = hdi_high32(g->most, n - g->ptr[i]);
-    }
-    for (i = 0; i < mesh->n; i++)
-        hdi_sort_keys(g->key + g->ptr[i], g->ptr[i + 1] - g->ptr[i]);
-    return s->e->status;
-}
-
 /* ---- edges ---- */
+
+/* A side of a triangle has the number of the corner where it begins. */
+static int32_t hdi_side_next(int32_t s) { return s % 3 == 2 ? s - 2 : s + 1; }
+static int32_t hdi_side_prev(int32_t s) { return s % 3 == 0 ? s + 2 : s - 1; }
+
+/* The sides between vertices v and w, by faces with an area. Returns how many. */
+static int32_t hdi_edge_sides(const hdi_mesh *mesh, int32_t v, int32_t w, hdi_pair *list) {
+    int32_t n = 0;
+    int64_t p;
+    for (p = mesh->at[v]; p < mesh->at[v + 1]; p++) {
+        const int32_t c = mesh->corner[p], before = hdi_side_prev(c), after = hdi_side_next(c);
+        if (mesh->area[c / 3] > 0 && (mesh->tri[after] == w || mesh->tri[before] == w))
+            list[n++].id = mesh->tri[after] == w ? c : before;
+    }
+    return n;
+}
+
+/* The edge of side s, if that is of a face with an area: all its sides, its smaller vertex into v. */
+static int32_t hdi_side_edge(const hdi_mesh *mesh, int32_t s, int32_t *v, hdi_pair *list) {
+    const int32_t i = mesh->tri[s], j = mesh->tri[hdi_side_next(s)];
+    *v = hdi_low32(i, j);
+    return mesh->area[s / 3] > 0 ? hdi_edge_sides(mesh, *v, hdi_high32(i, j), list) : 0;
+}
 
 /* What is counted of edges, and the sum of their lengths. */
 typedef struct hdi_edge_tally {
@@ -5686,17 +5650,12 @@ static HDI_INLINE double hdi_side_length(const hdi_mesh *mesh, int64_t c) {
 /* Do the faces at each edge agree on its length? */
 static hd_status hdi_lengths_agree(const hdi_mesh *mesh, hdi_scope *s) {
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
-    hdi_sides g;
-    int32_t i, p;
-    if (hdi_sides_make(&g, mesh, &own) < 0) return hdi_scope_end(&own);
-    for (i = 0; i < mesh->n && s->e->status >= 0; i++) {
-        for (p = g.ptr[i] + 1; p < g.ptr[i + 1] && s->e->status >= 0; p++) {
-            const double a = mesh->len[hdi_key_side(g.key[p - 1])], b = mesh->len[hdi_key_side(g.key[p])];
-            if (hdi_key_vertex(g.key[p]) == hdi_key_vertex(g.key[p - 1]) &&
-                fabs(a - b) > HDI_LENGTH_AGREE * hdi_max(a, b))
-                hdi_fail_face(s->e, HD_ERR_ARGUMENT, "two faces give their edge different lengths",
-                              hdi_key_face(g.key[p]), i, b);
-        }
+    hdi_pair *list = HDI_TAKE(&own, hdi_pair, hdi_fullest(mesh->at, mesh->n));
+    int32_t c, v;
+    for (c = 0; c < 3 * mesh->m && s->e->status >= 0; c++) {
+        const double b = mesh->len[c], a = hdi_side_edge(mesh, c, &v, list) > 0 ? mesh->len[list->id] : b;
+        if (fabs(a - b) > HDI_LENGTH_AGREE * hdi_max(a, b))
+            hdi_fail_face(s->e, HD_ERR_ARGUMENT, "two faces give their edge different lengths", c / 3, v, b);
     }
     return hdi_scope_end(&own);
 }
@@ -5731,21 +5690,18 @@ static hd_status hdi_mesh_sort(hdi_mesh *mesh, hdi_scope *s) {
     return hdi_scope_end(&own);
 }
 
-/* Checks the mesh, measures its faces and lists the corners at each vertex, in s. */
+/* Measures the faces of a mesh that is checked and lists the corners at each vertex, in s. */
 static hd_status hdi_mesh_make(hdi_mesh *mesh, hd_mesh_report *rep, hdi_scope *s) {
     rep->n_faces = mesh->m;
-    if (hdi_mesh_check(mesh->xyz, mesh->n, mesh->ptr, mesh->tri, mesh->m, s->e) < 0 ||
-        (mesh->len && hdi_lengths_check(mesh->len, mesh->m, s->e) < 0) || hdi_mesh_sort(mesh, s) < 0 ||
-        hdi_mesh_take(mesh, s) < 0)
-        return s->e->status;
+    if (hdi_mesh_sort(mesh, s) < 0 || hdi_mesh_take(mesh, s) < 0) return s->e->status;
     hdi_mesh_of(mesh);
     if (hdi_faces_measure(mesh, rep, s) < 0) return s->e->status;
     hdi_mesh_corners(mesh);
     return mesh->len ? hdi_lengths_agree(mesh, s) : HD_OK;
 }
 
-/* Triangles as fans from the first corner of each face, in s. Errors name the polygons. */
-static hd_status hdi_poly_fans(hdi_mesh *to, const hdi_mesh *poly, hdi_scope *s) {
+/* Makes triangles of polygons, in s: fans from the first corner of each face. Errors name the polygons. */
+static hd_status hdi_poly_fans(hdi_mesh *poly, hdi_scope *s) {
     const int64_t *ptr = poly->ptr;
     int64_t m = 0, t = 0, c;
     int32_t f, *tri, *face;
@@ -5761,8 +5717,8 @@ static hd_status hdi_poly_fans(hdi_mesh *to, const hdi_mesh *poly, hdi_scope *s)
             face[t] = f;
         }
     }
-    hdi_mesh_clear(to, poly->xyz, poly->n, tri, (int32_t)m);
-    to->face = face;
+    hdi_mesh_clear(poly, poly->xyz, poly->n, tri, (int32_t)m);
+    poly->face = face;
     return HD_OK;
 }
 
@@ -6090,19 +6046,12 @@ static int32_t hdi_star_hull(hdi_star_point *p, int32_t n, int *closed) {
  * are left out before. Lengths are in units of the mean edge length: nothing overflows, and results do not
  * depend on the unit of the coordinates. Only what a flip needs is unfolded. */
 
-static int32_t hdi_side_next(int32_t s) { return s % 3 == 2 ? s - 2 : s + 1; }
-static int32_t hdi_side_prev(int32_t s) { return s % 3 == 0 ? s + 2 : s - 1; }
-
 /* ---- soups ----
  * Different faces, each of which comes once, as in meshes, or several times, as in the stars of points,
  * where a triangle comes from all its three corners if these agree. */
 
 typedef struct hdi_soup {
     hdi_mesh mesh;      /* each face once; area is that in space, cot comes from the lengths */
-    hdi_sides sides;
-    int32_t *tri;       /* [3 m] of stars, corners ascending; NULL: the triangles of a mesh */
-    int32_t *copies;    /* [m] how often a face comes; NULL: once */
-    int32_t *odd;       /* [m] how many of its copies had their corners in odd order */
     double *len;        /* [3 m] in units of the mean edge length */
     double *area;       /* [m] of the triangle with these sides; 0: there is none */
     double unit;        /* mean edge length */
@@ -6110,74 +6059,51 @@ typedef struct hdi_soup {
     double share;       /* a copy counts 1 / share */
 } hdi_soup;
 
-static int32_t hdi_soup_copies(const hdi_soup *soup, int32_t f) { return soup->copies ? soup->copies[f] : 1; }
+static int32_t hdi_copies(const hdi_mesh *mesh, int32_t f) { return mesh->copies ? mesh->copies[f] : 1; }
 
-/* Different triangles of the m in tri, corners ascending, into soup in s: by their smallest corners, then by
+/* Different triangles of the m in tri as a mesh in s, corners ascending: by their smallest corners, then by
  * keys, second corner << 32 | third corner << 1 | odd. */
-static hd_status hdi_soup_faces(hdi_soup *soup, const int32_t *tri, int64_t m, int32_t n, hdi_scope *s) {
+static hd_status hdi_soup_faces(hdi_mesh *mesh, const int32_t *tri, int64_t m, int32_t n, hdi_scope *s) {
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
     int64_t *ptr = HDI_TAKE_ZERO(&own, int64_t, (int64_t)n + 1), f, p, count = 0;
     uint64_t *key = HDI_TAKE(&own, uint64_t, m);
-    int32_t i;
+    int32_t i, *corner, *copies, *odd;
     if (s->e->status < 0) return hdi_scope_end(&own);
     for (f = 0; f < m; f++) ptr[hdi_face_low(tri + 3 * f)]++;
     hdi_prefix_sum(ptr, n);
     for (f = 0; f < m; f++) {
         const int32_t a = tri[3 * f], b = tri[3 * f + 1], c = tri[3 * f + 2];
         const int32_t first = hdi_face_low(tri + 3 * f), last = hdi_high32(a, hdi_high32(b, c));
-        const int64_t middle = (int64_t)a + b + c - first - last, odd = ((a > b) + (b > c) + (a > c)) & 1;
-        key[ptr[first]++] = (uint64_t)(middle << 32 | (int64_t)last << 1 | odd);
+        const int64_t middle = (int64_t)a + b + c - first - last, turned = ((a > b) + (b > c) + (a > c)) & 1;
+        key[ptr[first]++] = (uint64_t)(middle << 32 | (int64_t)last << 1 | turned);
     }
     hdi_rewind(ptr, n);
     for (i = 0; i < n; i++) {
         hdi_sort_keys(key + ptr[i], ptr[i + 1] - ptr[i]);
         for (p = ptr[i]; p < ptr[i + 1]; p++) count += p == ptr[i] || key[p] >> 1 != key[p - 1] >> 1;
     }
-    soup->tri = HDI_TAKE(s, int32_t, 3 * count);
-    soup->copies = HDI_TAKE_ZERO(s, int32_t, count);
-    soup->odd = HDI_TAKE_ZERO(s, int32_t, count);
-    for (i = 0, f = -1; soup->odd && i < n; i++) {
+    corner = HDI_TAKE(s, int32_t, 3 * count);
+    copies = HDI_TAKE_ZERO(s, int32_t, count);
+    odd = HDI_TAKE_ZERO(s, int32_t, count);
+    for (i = 0, f = -1; odd && i < n; i++) {
         for (p = ptr[i]; p < ptr[i + 1]; p++) {
             if (p == ptr[i] || key[p] >> 1 != key[p - 1] >> 1) f++;
-            soup->tri[3 * f] = i;
-            soup->tri[3 * f + 1] = hdi_key_vertex(key[p]);
-            soup->tri[3 * f + 2] = (int32_t)((key[p] & 0xffffffffu) >> 1);
-            soup->copies[f]++;
-            soup->odd[f] += (int32_t)(key[p] & 1);
+            corner[3 * f] = i;
+            corner[3 * f + 1] = (int32_t)(key[p] >> 32);
+            corner[3 * f + 2] = (int32_t)((key[p] & 0xffffffffu) >> 1);
+            copies[f]++;
+            odd[f] += (int32_t)(key[p] & 1);
         }
     }
-    hdi_mesh_clear(&soup->mesh, NULL, n, soup->tri, (int32_t)count);
+    hdi_mesh_clear(mesh, NULL, n, corner, (int32_t)count);
+    mesh->copies = copies;
+    mesh->odd = odd;
     return hdi_scope_end(&own);
 }
 
-/* Sorts the sides at all vertices and counts the edges; all copies count. border [n] unites the vertices
- * of boundary edges. */
-static hdi_edge_tally hdi_soup_edges(hdi_soup *soup, int32_t *border) {
-    const hdi_mesh *mesh = &soup->mesh;
-    hdi_sides *g = &soup->sides;
-    hdi_edge_tally tally = {0, 0, 0, 0, 0};
-    int32_t i, p, q;
-    hdi_fill_own(border, mesh->n);
-    for (i = 0; i < mesh->n; i++) {
-        for (p = g->ptr[i]; p < g->ptr[i + 1]; p = q) {
-            const int32_t j = hdi_key_vertex(g->key[p]), end = hdi_sides_run(g, p, g->ptr[i + 1]);
-            int64_t copies = 0, forward = 0;
-            for (q = p; q < end; q++) {
-                const int32_t f = hdi_key_face(g->key[q]), odd = soup->odd ? soup->odd[f] : 0,
-                              all = hdi_soup_copies(soup, f);
-                copies += all;
-                forward += hdi_key_corner(g->key[q]) < 2 ? all - odd : odd;
-            }
-            hdi_edge_count(&tally, copies, forward, hdi_side_length(mesh, hdi_key_side(g->key[p])));
-            if (copies == 1) hdi_unite(border, i, j);
-        }
-    }
-    return tally;
-}
-
-/* Lengths, mollified, with their areas and cotangents. Mollification (Sharp, Crane 2020, section 4.5)
- * adds to all sides the smallest length that makes every triangle satisfy the triangle inequality with
- * delta to spare; delta < 0: none. */
+/* The area in space, and mollified lengths with their areas and cotangents. Mollification (Sharp, Crane 2020,
+ * section 4.5) adds to all sides the smallest length that makes every triangle satisfy the triangle
+ * inequality with delta to spare; delta < 0: none. */
 static hd_status hdi_soup_lengths(hdi_soup *soup, double delta, hd_mesh_report *rep, hdi_scope *s) {
     hdi_mesh *mesh = &soup->mesh;
     double add = 0;
@@ -6189,10 +6115,11 @@ static hd_status hdi_soup_lengths(hdi_soup *soup, double delta, hd_mesh_report *
     for (f = 0; f < mesh->m; f++) {
         double *len = soup->len + hdi_triple(f), spare;
         if (!(mesh->area[f] > 0)) continue;
+        soup->total += mesh->area[f] * hdi_copies(mesh, f);
         for (q = 0; q < 3; q++) len[q] = hdi_side_length(mesh, hdi_triple(f) + q) / soup->unit;
         spare = hdi_min(hdi_min(len[0] + len[1] - len[2], len[2] + len[0] - len[1]),
                         len[2] + len[1] - len[0]);
-        if (delta >= 0 && spare < delta) rep->n_mollified += hdi_soup_copies(soup, f);
+        if (delta >= 0 && spare < delta) rep->n_mollified += hdi_copies(mesh, f);
         if (delta >= 0) add = hdi_max(add, delta - spare);
     }
     rep->mollify_epsilon = add * soup->unit;
@@ -6207,48 +6134,24 @@ static hd_status hdi_soup_lengths(hdi_soup *soup, double delta, hd_mesh_report *
     return HD_OK;
 }
 
-/* Edges and lengths of a soup whose faces have their area. */
-static hd_status hdi_soup_finish(hdi_soup *soup, double delta, hd_mesh_report *rep, hdi_scope *s) {
-    const hdi_mesh *mesh = &soup->mesh;
-    int32_t *border = HDI_TAKE(s, int32_t, mesh->n), f;
-    hdi_edge_tally tally;
-    for (f = 0; f < mesh->m; f++) soup->total += mesh->area[f] * hdi_soup_copies(soup, f);
-    if (!border || hdi_sides_make(&soup->sides, mesh, s) < 0) return s->e->status;
-    tally = hdi_soup_edges(soup, border);
-    if (soup->copies) hdi_edge_report(&tally, border, mesh->n, rep);   /* of a mesh it is known */
-    soup->unit = tally.length / (double)(tally.n_edges > 0 ? tally.n_edges : 1);
-    return hdi_soup_lengths(soup, delta, rep, s);
-}
-
-/* The soup of the m triangles tri among n points, lengths mollified by delta, in s. Each triangle counts
- * a third. */
-static hd_status hdi_soup_make(hdi_soup *soup, const double *xyz, int32_t n, const int32_t *tri,
-                               int64_t m, double delta, hd_mesh_report *rep, hdi_scope *s) {
+/* The m triangles tri among n points, measured, in s. Each triangle counts a third. */
+static hd_status hdi_soup_of_stars(hdi_soup *soup, const double *xyz, int32_t n, const int32_t *tri,
+                                   int64_t m, hd_mesh_report *rep, hdi_scope *s) {
+    hdi_mesh *mesh = &soup->mesh;
     hd_mesh_report faces;
     int32_t f;
-    memset(soup, 0, sizeof *soup);
     memset(&faces, 0, sizeof faces);
     soup->share = 3;
-    if (hdi_soup_faces(soup, tri, m, n, s) < 0) return s->e->status;
-    soup->mesh.xyz = xyz;
-    if (hdi_mesh_take(&soup->mesh, s) < 0 || hdi_faces_measure(&soup->mesh, &faces, s) < 0)
-        return s->e->status;
-    hdi_mesh_corners(&soup->mesh);
+    if (hdi_soup_faces(mesh, tri, m, n, s) < 0) return s->e->status;
+    mesh->xyz = xyz;
+    if (hdi_mesh_take(mesh, s) < 0 || hdi_faces_measure(mesh, &faces, s) < 0) return s->e->status;
+    hdi_mesh_corners(mesh);
     rep->smallest_angle = faces.smallest_angle;
-    for (f = 0; f < soup->mesh.m; f++) {
-        rep->n_faces += soup->copies[f];
-        *(soup->mesh.area[f] > 0 ? &rep->n_faces_used : &rep->n_zero_area) += soup->copies[f];
+    for (f = 0; f < mesh->m; f++) {
+        rep->n_faces += mesh->copies[f];
+        *(mesh->area[f] > 0 ? &rep->n_faces_used : &rep->n_zero_area) += mesh->copies[f];
     }
-    return hdi_soup_finish(soup, delta, rep, s);
-}
-
-/* The soup of a mesh, which hdi_mesh_make has measured, in s. */
-static hd_status hdi_soup_of_mesh(hdi_soup *soup, const hdi_mesh *mesh, double delta,
-                                  hd_mesh_report *rep, hdi_scope *s) {
-    memset(soup, 0, sizeof *soup);
-    soup->mesh = *mesh;
-    soup->share = 1;
-    return hdi_soup_finish(soup, delta, rep, s);
+    return HD_OK;
 }
 
 /* ---- covers ----
@@ -6282,7 +6185,7 @@ typedef struct hdi_cover {
     double *area;       /* [n] 0: these lengths make no triangle, the face contributes nothing */
     int32_t *first;     /* [m] the first copy of a face; -1: none yet */
     int32_t stack;      /* the side to look at next; -1: none */
-    signed char *glued; /* [3 m] at the first side of an edge */
+    signed char *glued; /* [3 m] of an edge its first side */
     hdi_pair *list;     /* [most faces at an edge] */
     int64_t most_flips, work;
 } hdi_cover;
@@ -6312,20 +6215,16 @@ static hd_status hdi_cover_room(hdi_cover *c, int64_t more) {
  * surface has two sides: the other sheet is a mirror image, and one is enough. */
 static int hdi_cover_orientable(const hdi_cover *c) {
     const hdi_mesh *mesh = &c->soup->mesh;
-    const hdi_sides *g = &c->soup->sides;
-    int32_t v, p, q;
+    const hdi_pair *list = c->list;
+    int32_t s, v;
     hdi_fill_own(c->sheet, 2 * mesh->m);
-    for (v = 0; v < mesh->n; v++) {
-        for (p = g->ptr[v]; p < g->ptr[v + 1]; p = q) {
-            const int32_t a = 2 * hdi_key_face(g->key[p]);
-            int32_t b;
-            q = hdi_sides_run(g, p, g->ptr[v + 1]);
-            if (q - p != 2) continue;
-            b = 2 * hdi_key_face(g->key[p + 1]);
+    for (s = 0; s < 3 * mesh->m; s++) {
+        if (hdi_side_edge(mesh, s, &v, c->list) == 2 && list[0].id == s) {
+            const int32_t a = 2 * (s / 3), b = 2 * (int32_t)(list[1].id / 3);
             /* sides that run the same way: front meets back */
-            if (mesh->tri[hdi_key_side(g->key[p])] == mesh->tri[hdi_key_side(g->key[p + 1])]) b ^= 1;
-            hdi_unite(c->sheet, a, b);
-            hdi_unite(c->sheet, a ^ 1, b ^ 1);
+            const int32_t turned = mesh->tri[s] == mesh->tri[list[1].id];
+            hdi_unite(c->sheet, a, b ^ turned);
+            hdi_unite(c->sheet, a ^ 1, b ^ 1 ^ turned);
         }
     }
     for (v = 0; v < mesh->m; v++)
@@ -6336,24 +6235,25 @@ static int hdi_cover_orientable(const hdi_cover *c) {
 /* Nothing is unfolded yet. rep knows the edges of the soup. */
 static hd_status hdi_cover_begin(hdi_cover *c, const hdi_soup *soup, int close, const hd_mesh_report *rep,
                                  hdi_scope *s) {
-    const int32_t m = soup->mesh.m;
+    const hdi_mesh *mesh = &soup->mesh;
+    const int32_t m = mesh->m;
     int32_t f;
     memset(c, 0, sizeof *c);
     c->soup = soup;
     c->ctx = s->ctx;
     c->e = s->e;
-    c->close = close || soup->copies;
+    c->close = close || mesh->copies;
     c->stack = -1;
     c->first = HDI_TAKE(s, int32_t, m);
     c->glued = HDI_TAKE_ZERO(s, signed char, hdi_triple(m));
-    c->list = HDI_TAKE(s, hdi_pair, soup->sides.most);
-    if (!soup->copies) c->sheet = HDI_TAKE(s, int32_t, 2 * (int64_t)m);
+    c->list = HDI_TAKE(s, hdi_pair, hdi_fullest(mesh->at, mesh->n));
+    if (!mesh->copies) c->sheet = HDI_TAKE(s, int32_t, 2 * (int64_t)m);
     if (s->e->status < 0) return s->e->status;
     hdi_fill_i32(c->first, m, -1);
-    c->n_sheets = soup->copies || rep->n_nonmanifold_edges || (close && rep->n_boundary_edges) ||
+    c->n_sheets = mesh->copies || rep->n_nonmanifold_edges || (close && rep->n_boundary_edges) ||
                   !hdi_cover_orientable(c) ? 2 : 1;
     for (f = 0; f < m; f++)
-        c->most_flips += 3 * HDI_FLIPS_PER_SIDE * c->n_sheets * (int64_t)hdi_soup_copies(soup, f);
+        c->most_flips += 3 * HDI_FLIPS_PER_SIDE * c->n_sheets * (int64_t)hdi_copies(mesh, f);
     return HD_OK;
 }
 
@@ -6368,7 +6268,7 @@ static int32_t hdi_cover_side(const hdi_cover *c, int32_t s, int32_t k, int back
 /* Unfolds face f: all its copies. */
 static hd_status hdi_cover_face(hdi_cover *c, int32_t f) {
     const hdi_soup *soup = c->soup;
-    const int32_t copies = hdi_soup_copies(soup, f);
+    const int32_t copies = hdi_copies(&soup->mesh, f);
     int32_t k, q, at;
     if (c->first[f] >= 0) return HD_OK;
     if (hdi_cover_room(c, c->n_sheets * (int64_t)copies) < 0) return c->e->status;
@@ -6426,30 +6326,27 @@ static void hdi_sort_around(const hdi_mesh *mesh, int32_t lo, int32_t hi, hdi_pa
     hdi_sort_pairs(list, n);
 }
 
-/* Glues the edge whose sides are keys [p, q) at vertex v, and puts it on the stack: in layers of copies, in
- * each by angle, around the edge the side of a face that looks counterclockwise to the side of the next one
- * that looks back at it. A single face at the boundary is glued front to back, or left open. */
-static hd_status hdi_cover_glue(hdi_cover *c, int32_t v, int32_t p, int32_t q) {
+/* Glues the edge from v to w, v < w, if it is not yet, and puts it on the stack: in layers of copies, in each
+ * by angle, around the edge the side of a face that looks counterclockwise to the side of the next one that
+ * looks back at it. A single face at the boundary is glued front to back, or left open. */
+static hd_status hdi_cover_glue(hdi_cover *c, int32_t v, int32_t w) {
     const hdi_mesh *mesh = &c->soup->mesh;
-    const uint64_t *key = c->soup->sides.key;
-    const int32_t n = q - p;
+    const int32_t n = hdi_edge_sides(mesh, v, w, c->list);
     int32_t i, layer, most = 0, first = HDI_SIDE_LOOSE, last = HDI_SIDE_LOOSE;
-    if (c->glued[p]) return HD_OK;
-    c->glued[p] = 1;
+    if (c->glued[c->list[0].id]) return HD_OK;
+    c->glued[c->list[0].id] = 1;
     for (i = 0; i < n; i++) {
-        const int32_t f = hdi_key_face(key[p + i]);
+        const int32_t f = (int32_t)(c->list[i].id / 3);
         if (hdi_cover_face(c, f) < 0) return c->e->status;
-        c->list[i].key = (uint64_t)i;
-        c->list[i].id = hdi_triple(f) + hdi_key_corner(key[p + i]);
-        most = hdi_high32(most, hdi_soup_copies(c->soup, f));
+        most = hdi_high32(most, hdi_copies(mesh, f));
     }
-    if (n > 2 && mesh->xyz) hdi_sort_around(mesh, v, hdi_key_vertex(key[p]), c->list, n);
+    if (n > 2 && mesh->xyz) hdi_sort_around(mesh, v, w, c->list, n);
     for (layer = 0; layer < most; layer++) {
         /* a front looks counterclockwise if its side runs from v, a back if it runs to v */
         for (i = 0; i < n; i++) {
             const int32_t side = (int32_t)c->list[i].id, back = mesh->tri[side] != v;
             int32_t clock;
-            if (layer >= hdi_soup_copies(c->soup, side / 3)) continue;
+            if (layer >= hdi_copies(mesh, side / 3)) continue;
             clock = hdi_cover_side(c, side, layer, !back);
             if (last == HDI_SIDE_LOOSE) first = clock;
             else hdi_glue(c, last, clock);
@@ -6469,17 +6366,9 @@ static hd_status hdi_cover_glue(hdi_cover *c, int32_t v, int32_t p, int32_t q) {
 
 /* Glues the edge of side s of the cover, if it is not yet: then s is still a side of its own face. */
 static hd_status hdi_cover_need(hdi_cover *c, int32_t s) {
-    const hdi_sides *g = &c->soup->sides;
     const int32_t i = c->side[s].vert, j = c->side[hdi_side_next(s)].vert;
-    const int32_t lo = hdi_low32(i, j), hi = hdi_high32(i, j), end = g->ptr[lo + 1];
-    int32_t p = g->ptr[lo], q = end;
     if (c->side[s].twin != HDI_SIDE_LOOSE) return HD_OK;
-    while (p < q) {                              /* the first key of hi */
-        const int32_t middle = p + (q - p) / 2;
-        if (hdi_key_vertex(g->key[middle]) < hi) p = middle + 1;
-        else q = middle;
-    }
-    return hdi_cover_glue(c, lo, p, hdi_sides_run(g, p, end));
+    return hdi_cover_glue(c, hdi_low32(i, j), hdi_high32(i, j));
 }
 
 /* ---- flips ---- */
@@ -6579,34 +6468,29 @@ static hd_status hdi_cover_flip(hdi_cover *c, double done, hd_mesh_report *rep) 
     return HD_OK;
 }
 
-/* Whether the edge of keys [p, q) may have to be flipped: two faces that come equally often always follow
- * each other, else any two cotangents opposite to the edge may meet. */
-static int hdi_soup_suspect(const hdi_soup *soup, int32_t p, int32_t q) {
-    const uint64_t *key = soup->sides.key;
-    const int32_t copies = hdi_soup_copies(soup, hdi_key_face(key[p]));
-    const double first = soup->mesh.cot[hdi_key_opposite(key[p])];
+/* Whether the edge of the n sides in list may have to be flipped: two faces that come equally often always
+ * follow each other, else any two cotangents opposite to the edge may meet. */
+static int hdi_soup_suspect(const hdi_mesh *mesh, const hdi_pair *list, int32_t n) {
+    const double *cot = mesh->cot, first = cot[hdi_side_prev((int32_t)list[0].id)];
     double least = first;
     int32_t i;
-    if (q - p == 2 && hdi_soup_copies(soup, hdi_key_face(key[p + 1])) == copies)
-        return !(first + soup->mesh.cot[hdi_key_opposite(key[p + 1])] >= 0);
-    for (i = p + 1; i < q; i++) least = hdi_min(least, soup->mesh.cot[hdi_key_opposite(key[i])]);
+    if (n == 2 && hdi_copies(mesh, (int32_t)list[0].id / 3) == hdi_copies(mesh, (int32_t)list[1].id / 3))
+        return !(first + cot[hdi_side_prev((int32_t)list[1].id)] >= 0);
+    for (i = 1; i < n; i++) least = hdi_min(least, cot[hdi_side_prev((int32_t)list[i].id)]);
     return !(least >= 0);
 }
 
-/* Edges by their vertices, of those that may have to be flipped: the order depends on nothing but the
- * mesh. */
+/* Edges by their sides, of those that may have to be flipped: the order depends on nothing but the mesh. */
 static hd_status hdi_cover_flip_all(hdi_cover *c, hd_mesh_report *rep) {
-    const hdi_soup *soup = c->soup;
-    const hdi_sides *g = &soup->sides;
-    int32_t v, p, q;
-    for (v = 0; v < soup->mesh.n; v++) {
-        const double done = (double)v / soup->mesh.n;
-        if (!(v & 0xffff) && hdi_progress(c->ctx, "flip edges", done, c->e) < 0) return c->e->status;
-        for (p = g->ptr[v]; p < g->ptr[v + 1]; p = q) {
-            q = hdi_sides_run(g, p, g->ptr[v + 1]);
-            if (c->glued[p] || !hdi_soup_suspect(soup, p, q)) continue;
-            if (hdi_cover_glue(c, v, p, q) < 0 || hdi_cover_flip(c, done, rep) < 0) return c->e->status;
-        }
+    const hdi_mesh *mesh = &c->soup->mesh;
+    int32_t s, v, n;
+    for (s = 0; s < 3 * mesh->m; s++) {
+        const double done = s / (3.0 * mesh->m);
+        if (!(s & 0x3ffff) && hdi_progress(c->ctx, "flip edges", done, c->e) < 0) return c->e->status;
+        n = hdi_side_edge(mesh, s, &v, c->list);
+        if (n == 0 || c->list[0].id != s || c->glued[s] || !hdi_soup_suspect(mesh, c->list, n)) continue;
+        if (hdi_cover_glue(c, v, mesh->tri[s] + mesh->tri[hdi_side_next(s)] - v) < 0 ||
+            hdi_cover_flip(c, done, rep) < 0) return c->e->status;
     }
     return HD_OK;
 }
@@ -6672,7 +6556,7 @@ static hd_status hdi_cover_flat(hdi_flat *flat, const hdi_cover *c, hd_mesh_repo
     for (f = 0; f < soup->mesh.m; f++)
         if (c->first[f] < 0 && soup->area[f] > 0)
             hdi_flat_add(flat, soup->mesh.tri + hdi_triple(f), soup->len + hdi_triple(f), soup->area[f],
-                         c->n_sheets * hdi_soup_copies(soup, f), &steepest);
+                         c->n_sheets * hdi_copies(&soup->mesh, f), &steepest);
     for (f = 0; f < c->n; f++) {
         const hdi_side *side = c->side + hdi_triple(f);
         const int32_t v[3] = {side[0].vert, side[1].vert, side[2].vert};
@@ -7052,6 +6936,8 @@ static HDI_INLINE void hdi_ring_corner(hdi_ring *r, const hdi_mesh *mesh, hdi_lu
                                        double area, int64_t begin, int64_t k, int poly) {
     const int64_t end = begin + k, before = c > begin ? c - 1 : end - 1, after = c + 1 < end ? c + 1 : begin;
     const double *cot = poly ? NULL : mesh->cot + begin;
+    const int32_t copies = poly || !mesh->copies ? 1 : mesh->copies[begin / 3],
+                  odd = poly || !mesh->copies ? 0 : mesh->odd[begin / 3];
     int64_t d;
     if (area > 0) r->mass += lump == HDI_LUMP_MIXED ? hdi_mixed_mass(cot, c - begin, area) : area / (double)k;
     for (d = begin; d < end; d++) {
@@ -7064,8 +6950,8 @@ static HDI_INLINE void hdi_ring_corner(hdi_ring *r, const hdi_mesh *mesh, hdi_lu
         if (!poly && mesh->len) e->size = mesh->len[d == after ? c : d];
         else if (!mesh->xyz) e->size += fabs(cot[0]) + fabs(cot[1]) + fabs(cot[2]);
         e->B += area;
-        e->faces += d == before || d == after;
-        e->forward += d == after;
+        e->faces += d == before || d == after ? copies : 0;
+        e->forward += d == after ? copies - odd : odd;
     }
 }
 
@@ -7419,100 +7305,96 @@ static hd_status hdi_lap_mesh(hd_laplacian *lap, const hdi_mesh *mesh, const dou
     return hdi_scope_end(&own);
 }
 
-/* Triangles or polygons as they are. */
-static hd_status hdi_lap_plain(hd_laplacian *lap, const hdi_mesh *given, int updatable, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
-    hdi_mesh mesh = *given;
-    if (hdi_mesh_make(&mesh, &lap->mesh, &s) >= 0) (void)hdi_lap_mesh(lap, &mesh, mesh.xyz, 1, updatable, &s);
-    return hdi_scope_end(&s);
-}
-
 /* ---- intrinsic triangulations: Delaunay and tufted ---- */
 
-/* What the intrinsic Laplacians are asked for. */
-typedef struct hdi_intrinsic_task {
+/* What an operator is made of, and how. */
+typedef struct hdi_input {
+    hdi_mesh mesh;      /* not measured */
+    const int64_t *nbr_ptr;     /* of points that come with their neighbours */
+    const int32_t *nbr;
+    int points, updatable;
+    int full;           /* B is, if its kind is */
+    int split;          /* polygons become triangles */
+    int flips;          /* intrinsic triangles are asked for */
     int close;          /* tufted: the boundary is glued to the other sheet */
     double delta;       /* of mollification, relative to the mean edge length; negative: none */
-} hdi_intrinsic_task;
+} hdi_input;
 
-/* Reports the edges of a mesh. */
-static hd_status hdi_lap_edges(hd_laplacian *lap, const hdi_mesh *mesh, hd_error *e) {
+/* Its faces, as long as a scope lives. */
+typedef struct hdi_surface {
+    hdi_mesh mesh;
+    hdi_flat flat;      /* intrinsic triangles */
+} hdi_surface;
+
+/* What the arrays of m say, checked. They are the caller's where these are as we want them, else copies in s.
+ * stiffening: of polygons. */
+static hd_status hdi_input_open(hdi_input *in, const hd_mesh *m, double stiffening, hdi_scope *s) {
+    const double *xyz = hdi_view_places(m, s);
+    const int32_t *corner = s->e->status < 0 ? NULL : hdi_view_corners(m, s);
+    if (s->e->status < 0) return s->e->status;
+    hdi_mesh_clear(&in->mesh, xyz, m->n, corner, m->n_faces);
+    in->mesh.len = m->lengths;
+    in->mesh.ptr = m->face_ptr;
+    in->mesh.lambda = stiffening;
+    in->points = HDI_HAS_POINTS && m->shape == HD_POINTS;
+    in->nbr_ptr = m->nbr_ptr;
+    in->nbr = m->nbr;
+    if (hdi_mesh_check(&in->mesh, s->e) < 0 ||
+        (m->lengths && hdi_lengths_check(m->lengths, m->n_faces, s->e) < 0))
+        return s->e->status;
+    return HDI_HAS_POLYGONS && in->split ? hdi_poly_fans(&in->mesh, s) : HD_OK;
+}
+
+/* Reports the edges of a mesh, whose mean length is put into h. */
+static hd_status hdi_lap_edges(hd_laplacian *lap, const hdi_mesh *mesh, double *h, hd_error *e) {
     hdi_scope own = hdi_scope_begin(lap->context, e);
     hdi_rows x;
     if (hdi_rows_begin(&x, mesh, &lap->mesh, &own) < 0) return hdi_scope_end(&own);
     hdi_parallel(lap->context, x.strands, hdi_rows_task, &x);
-    (void)hdi_rows_report(&x, &lap->mesh);
+    *h = hdi_rows_report(&x, &lap->mesh);
     hdi_rows_border(&x, lap);
     return hdi_scope_end(&own);
 }
 
-/* (L, B) of the intrinsic Delaunay triangulation of the soup of flat, in s. name: the caller's numbers of its
- * vertices, which its triangles come to have, too; NULL: their own. */
-static hd_status hdi_lap_flat(hd_laplacian *lap, hdi_flat *flat, int close, const int32_t *name,
-                              const double *xyz, hdi_scope *s) {
+/* (L, B) of the intrinsic Delaunay triangulation of the soup of flat, whose faces are measured, in s. name:
+ * the caller's numbers of its vertices, which its triangles come to have, too; NULL: their own. */
+static hd_status hdi_lap_flat(hd_laplacian *lap, hdi_flat *flat, const hdi_input *in, const int32_t *name,
+                              hdi_scope *s) {
+    hdi_soup *soup = &flat->soup;
     hdi_mesh *mesh = &flat->mesh;
     int64_t c;
-    if (hdi_soup_delaunay(flat, close, &lap->mesh, s) < 0) return s->e->status;
+    if (hdi_lap_edges(lap, &soup->mesh, &soup->unit, s->e) < 0) return s->e->status;
+    if (lap->mesh.n_faces_used == 0)
+        return hdi_fail(s->e, HD_ERR_EMPTY, name ? "the points' neighbourhoods make no triangle"
+                                                 : "no vertex has mass");
+    if (hdi_soup_lengths(soup, in->delta, &lap->mesh, s) < 0 ||
+        hdi_soup_delaunay(flat, in->close, &lap->mesh, s) < 0)
+        return s->e->status;
     for (c = 0; c < hdi_triple(mesh->m) && name; c++) flat->tri[c] = name[flat->tri[c]];
     mesh->n = lap->n;
     mesh->at = HDI_TAKE(s, int64_t, (int64_t)mesh->n + 1);
     mesh->corner = HDI_TAKE(s, int32_t, hdi_triple(mesh->m));
     if (s->e->status < 0) return s->e->status;
     hdi_mesh_corners(mesh);
-    return hdi_lap_mesh(lap, mesh, xyz, 1, 0, s);
-}
-
-/* (L, B) of the intrinsic Delaunay triangulation of a mesh, or of its cover: each sheet counts half. mesh,
- * with xyz, tri, n and m set, and flat live in s. */
-static hd_status hdi_lap_unfold(hd_laplacian *lap, hdi_flat *flat, hdi_mesh *mesh,
-                                const hdi_intrinsic_task *task, hdi_scope *s) {
-    hd_mesh_report *rep = &lap->mesh;
-    hd_error *e = s->e;
-    memset(flat, 0, sizeof *flat);
-    if (hdi_mesh_make(mesh, rep, s) < 0 || hdi_lap_edges(lap, mesh, e) < 0) return e->status;
-    if (rep->n_faces_used == 0) return hdi_fail(e, HD_ERR_EMPTY, "no vertex has mass");
-    if (hdi_soup_of_mesh(&flat->soup, mesh, task->delta, rep, s) < 0) return e->status;
-    lap->area = flat->soup.total;
-    lap->h = flat->soup.unit;
-    return hdi_lap_flat(lap, flat, task->close, NULL, mesh->xyz, s);
-}
-
-/* The triangles as they are, or with a task their intrinsic Delaunay triangulation. */
-static hd_status hdi_lap_faces(hd_laplacian *lap, const hdi_mesh *given, const hdi_intrinsic_task *task,
-                               int updatable, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
-    hdi_mesh mesh = *given;
-    hdi_flat flat;
-    if (HDI_HAS_INTRINSIC && task) (void)hdi_lap_unfold(lap, &flat, &mesh, task, &s);
-    else (void)hdi_lap_plain(lap, given, updatable, e);
-    return hdi_scope_end(&s);
+    lap->area = soup->total / soup->share;
+    if (!(lap->h > 0)) lap->h = soup->unit;
+    return hdi_lap_mesh(lap, mesh, in->mesh.xyz, in->full, 0, s);
 }
 
 /* The default of the option, as its declaration states. */
 #define HDI_MOLLIFY_DELTA 1e-5
 
-/* Checks the options of intrinsic triangulations and resolves them into task. Returns whether one is asked
- * for. */
-static int hdi_intrinsic_opts(hd_triangulation which, double mollify, hdi_intrinsic_task *task, hd_error *e) {
-    const int flips = which != HD_TRIANGULATION_GIVEN;
-    task->close = which == HD_TRIANGULATION_TUFTED;
-    task->delta = mollify != 0 ? mollify : HDI_MOLLIFY_DELTA;
+/* Checks the options of intrinsic triangulations and resolves them into in. */
+static void hdi_intrinsic_opts(hd_triangulation which, double mollify, hdi_input *in, hd_error *e) {
+    in->flips = which != HD_TRIANGULATION_GIVEN;
+    in->close = which == HD_TRIANGULATION_TUFTED;
+    in->delta = mollify != 0 ? mollify : HDI_MOLLIFY_DELTA;
     hdi_refuse(which < HD_TRIANGULATION_GIVEN || which > HD_TRIANGULATION_TUFTED,
                "options: unknown triangulation", e);
-    hdi_refuse(hdi_nan(task->delta) || task->delta > 1, "options: mollify is above 1 or not a number", e);
-    hdi_refuse(mollify != 0 && !flips, "options: mollify is for Delaunay and tufted triangulations", e);
-    if (!HDI_HAS_INTRINSIC && flips && e->status >= 0)
+    hdi_refuse(hdi_nan(in->delta) || in->delta > 1, "options: mollify is above 1 or not a number", e);
+    hdi_refuse(mollify != 0 && !in->flips, "options: mollify is for Delaunay and tufted triangulations", e);
+    if (!HDI_HAS_INTRINSIC && in->flips && e->status >= 0)
         (void)HDI_LEFT_OUT(e, INTRINSIC, "intrinsic triangulations");
-    return flips;
-}
-
-/* The faces split as fans, for the operators of triangles. */
-static hd_status hdi_lap_fans(hd_laplacian *lap, const hdi_mesh *poly,
-                              const hdi_intrinsic_task *task, int updatable, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
-    hdi_mesh mesh;
-    if (hdi_poly_fans(&mesh, poly, &s) >= 0) (void)hdi_lap_faces(lap, &mesh, task, updatable, e);
-    return hdi_scope_end(&s);
 }
 
 /* y = (alpha L + beta B) x on rows. */
@@ -8181,7 +8063,6 @@ static hd_status hdi_lap_points(hd_laplacian *lap, const double *xyz, hd_error *
     hdi_cloud cloud;
     double *work;
     memset(&cloud, 0, sizeof cloud);
-    if (hdi_points_check(xyz, lap->n, e) < 0) return hdi_scope_end(&s);
     if (hdi_places_make(&places, xyz, lap->n, &s) < 0) return hdi_scope_end(&s);
     if (places.n < 2) hdi_fail(e, HD_ERR_EMPTY, "points: fewer than two different ones");
     work = HDI_TAKE(&s, double, lap->n);
@@ -8360,7 +8241,6 @@ static hd_status hdi_star_search(hdi_star_job *job, const double *xyz, int32_t n
     int64_t *ptr;
     hdi_places places;
     hdi_tree tree;
-    if (hdi_points_check(xyz, n_points, s->e) < 0) return hdi_scope_end(&own);
     if (hdi_places_make(&places, xyz, n_points, &own) < 0) return hdi_scope_end(&own);
     if (hdi_star_order(job, &tree, places.xyz, places.n, places.first, &own, keep) < 0)
         return hdi_scope_end(&own);
@@ -8378,18 +8258,17 @@ static hd_status hdi_star_search(hdi_star_job *job, const double *xyz, int32_t n
 }
 
 /* The caller's neighbours, points and lists renumbered. */
-static hd_status hdi_star_given(hdi_star_job *job, const double *xyz, int32_t n,
-                                const int64_t *nbr_ptr, const int32_t *nbr, hdi_scope *s,
-                                hdi_scope *keep) {
+static hd_status hdi_star_given(hdi_star_job *job, const hdi_input *in, hdi_scope *s, hdi_scope *keep) {
+    const int64_t *nbr_ptr = in->nbr_ptr;
+    const int32_t *nbr = in->nbr, n = in->mesh.n;
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
     int32_t *inverse = HDI_TAKE(&own, int32_t, n), v;
     int64_t *ptr = HDI_TAKE(s, int64_t, (int64_t)n + 1), p, q = 0;
     hdi_tree tree;
-    if (s->e->status < 0 || hdi_points_check(xyz, n, s->e) < 0) return hdi_scope_end(&own);
-    if (hdi_star_check(nbr_ptr, nbr, n, s->e) < 0) return hdi_scope_end(&own);
+    if (s->e->status < 0 || hdi_star_check(nbr_ptr, nbr, n, s->e) < 0) return hdi_scope_end(&own);
     job->ptr = ptr;
     job->nbr = HDI_TAKE(s, int32_t, nbr_ptr[n]);
-    if (hdi_star_order(job, &tree, xyz, n, NULL, &own, keep) < 0) return hdi_scope_end(&own);
+    if (hdi_star_order(job, &tree, in->mesh.xyz, n, NULL, &own, keep) < 0) return hdi_scope_end(&own);
     for (v = 0; v < n; v++) inverse[job->name[v]] = v;
     for (v = 0; v < n; v++) {
         ptr[v] = q;
@@ -8437,20 +8316,19 @@ static int32_t *hdi_stars(hdi_star_job *job, int32_t *m, hd_laplacian *lap, hdi_
 
 /* The soup of the stars of all points. xyz and name live in s, nothing else is left of neighbours and
  * stars. */
-static hd_status hdi_star_soup(hdi_soup *soup, hdi_star_job *job, hd_laplacian *lap,
-                               const double *xyz, const int64_t *nbr_ptr, const int32_t *nbr,
-                               double delta, hdi_scope *s) {
+static hd_status hdi_star_soup(hdi_soup *soup, hdi_star_job *job, hd_laplacian *lap, const hdi_input *in,
+                               hdi_scope *s) {
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
     int32_t *tri, m = 0;
     memset(job, 0, sizeof *job);
-    if ((nbr_ptr ? hdi_star_given(job, xyz, lap->n, nbr_ptr, nbr, &own, s)
-                 : hdi_star_search(job, xyz, lap->n, &lap->points, &own, s)) < 0)
+    if ((in->nbr_ptr ? hdi_star_given(job, in, &own, s)
+                     : hdi_star_search(job, in->mesh.xyz, lap->n, &lap->points, &own, s)) < 0)
         return hdi_scope_end(&own);
     tri = hdi_stars(job, &m, lap, &own);
     if (!tri || hdi_progress(s->ctx, "assemble", 0.2, s->e) < 0) return hdi_scope_end(&own);
-    if (hdi_soup_make(soup, job->xyz, job->n, tri, m, delta, &lap->mesh, s) < 0) {
+    if (hdi_soup_of_stars(soup, job->xyz, job->n, tri, m, &lap->mesh, s) < 0) {
         /* the caller knows no faces */
-        if (s->e->face >= 0) s->e->vertex = job->name[soup->tri[3 * s->e->face]];
+        if (s->e->face >= 0) s->e->vertex = job->name[soup->mesh.tri[3 * s->e->face]];
         s->e->face = -1;
     }
     return hdi_scope_end(&own);
@@ -8473,25 +8351,24 @@ static hd_status hdi_star_soup(hdi_soup *soup, hdi_star_job *job, hd_laplacian *
  *    1, or heights from the point, are worse on undersampled tori or in noise. Known loss: voronoi-cot,
  *    500 to 1250 random points on a torus, 12 to 36 % more error.)
  * flat lives in s. */
-static hd_status hdi_lap_unfold_points(hd_laplacian *lap, hdi_flat *flat, const double *xyz,
-                                       const int64_t *nbr_ptr, const int32_t *nbr, double delta,
-                                       hdi_scope *s) {
-    hd_error *e = s->e;
+static hd_status hdi_lap_stars(hd_laplacian *lap, hdi_flat *flat, const hdi_input *in, hdi_scope *s) {
     hdi_star_job job;
-    memset(flat, 0, sizeof *flat);
-    if (hdi_star_soup(&flat->soup, &job, lap, xyz, nbr_ptr, nbr, delta, s) < 0) return e->status;
-    if (lap->mesh.n_faces_used == 0)
-        return hdi_fail(e, HD_ERR_EMPTY, "the points' neighbourhoods make no triangle");
-    lap->area = flat->soup.total / flat->soup.share;
-    return hdi_lap_flat(lap, flat, 0, job.name, xyz, s);
+    if (hdi_star_soup(&flat->soup, &job, lap, in, s) < 0) return s->e->status;
+    return hdi_lap_flat(lap, flat, in, job.name, s);
 }
 
-static hd_status hdi_tufted_points(hd_laplacian *lap, const double *xyz, const int64_t *nbr_ptr,
-                                   const int32_t *nbr, double delta, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
-    hdi_flat flat;
-    (void)hdi_lap_unfold_points(lap, &flat, xyz, nbr_ptr, nbr, delta, &s);
-    return hdi_scope_end(&s);
+/* (L, B) of faces, of intrinsic triangles or of the stars of points; what they are made of, in s. Of a cover
+ * each sheet counts half. */
+static hd_status hdi_lap_surface(hd_laplacian *lap, hdi_surface *z, const hdi_input *in, hdi_scope *s) {
+    memset(z, 0, sizeof *z);
+    if (HDI_HAS_POINTS && HDI_HAS_INTRINSIC && in->points) return hdi_lap_stars(lap, &z->flat, in, s);
+    z->mesh = in->mesh;
+    if (hdi_mesh_make(&z->mesh, &lap->mesh, s) < 0) return s->e->status;
+    if (!HDI_HAS_INTRINSIC || !in->flips)
+        return hdi_lap_mesh(lap, &z->mesh, z->mesh.xyz, in->full, in->updatable, s);
+    z->flat.soup.mesh = z->mesh;
+    z->flat.soup.share = 1;
+    return hdi_lap_flat(lap, &z->flat, in, NULL, s);
 }
 
 /* By Weyl's law the k-th eigenvalue of a surface is about 4 pi k/area. At the longest time the 2nd of them
@@ -25872,29 +25749,6 @@ typedef struct hdi_geo_polygons {
     hd_csr L;                    /* rows and columns in elimination order; columns do not ascend */
 } hdi_geo_polygons;
 
-/* What a plan is made of. */
-typedef struct hdi_geo_input {
-    const double *xyz;
-    const double *len;           /* [3 m] lengths of the sides of triangles, in place of xyz */
-    const int32_t *tri;          /* [3 m] triangles; or */
-    const int64_t *ptr;          /* [m + 1] polygons with their corners in idx; or neither: points, */
-    const int32_t *idx;
-    int32_t m;
-    int points, updatable;
-    const int64_t *nbr_ptr;      /* with or without their neighbours */
-    const int32_t *nbr;
-    int flips;                   /* intrinsic triangles, as task says */
-    hdi_intrinsic_task task;
-    double lambda;
-    int32_t neighbours;
-} hdi_geo_input;
-
-/* What is known of its faces while the plan is made. */
-typedef struct hdi_geo_surface {
-    hdi_mesh mesh;
-    hdi_flat flat;               /* intrinsic triangles */
-} hdi_geo_surface;
-
 /* Columns of a batch, and the fewest that are worth one. A batch always costs as much as a full one. */
 enum { HDI_GEO_WIDE = 8, HDI_GEO_WIDE_FROM = 3, HDI_GEO_BLOCKS = 24 };
 
@@ -25916,6 +25770,7 @@ struct hd_geodesic {
     char *held;                  /* [n_active] rows of the border; NULL: the border is natural */
     double copies;               /* in which L and B count */
     hdi_geo_face *face;          /* [n_faces] ordered by the corner that is eliminated first */
+    int32_t *face_ptr;           /* [n_super + 1] the first face of each front, by that corner */
     hdi_geo_polygons poly;       /* in the same order */
     double *mass;                /* [n_active] diagonal of B/t. This and all below is in elimination order */
     int32_t *row;                /* [n] vertex -> row, -1 without mass */
@@ -26005,10 +25860,12 @@ static void hdi_geo_frames(hd_geodesic *g, const hdi_mesh *mesh, const int32_t *
 
 /* Sorts the faces that have an area by the corner that is eliminated first. Passes over them then run through
  * the vectors once. */
-static hd_status hdi_geo_order(hd_geodesic *g, const hdi_mesh *mesh, hd_error *e) {
+static hd_status hdi_geo_order(hd_geodesic *g, const hdi_mesh *mesh, hdi_scope *own) {
+    hd_error *e = own->e;
     hdi_scope s = hdi_scope_begin(g->ctx, e);
     int64_t *at = HDI_TAKE_ZERO(&s, int64_t, (int64_t)g->n_active + 1), c;
-    int32_t *first = HDI_TAKE(&s, int32_t, mesh->m), f;
+    int32_t *first = HDI_TAKE(&s, int32_t, mesh->m), f, v;
+    g->face_ptr = HDI_TAKE(own, int32_t, (int64_t)g->sym.n_super + 1);
     for (f = 0; f < mesh->m && e->status >= 0; f++) {
         first[f] = g->n_active;
         if (!(mesh->area[f] > 0)) continue;
@@ -26020,6 +25877,7 @@ static hd_status hdi_geo_order(hd_geodesic *g, const hdi_mesh *mesh, hd_error *e
     if (e->status >= 0) g->from = HDI_NEW(g->ctx, int32_t, g->n_faces, e);
     if (!g->from) return hdi_scope_end(&s);
     hdi_prefix_sum(at, g->n_active);
+    for (v = 0; v <= g->sym.n_super; v++) g->face_ptr[v] = (int32_t)at[g->sym.super[v]];
     for (f = 0; f < mesh->m; f++)
         if (first[f] < g->n_active) g->from[at[first[f]]++] = f;
     return hdi_scope_end(&s);
@@ -26196,35 +26054,6 @@ static hd_status hdi_geo_analyse(hd_geodesic *g, const hd_laplacian *lap, const 
     return hdi_scope_end(&s);
 }
 
-/* L, B and the faces of intrinsic triangles, of a mesh or of points. */
-static hd_status hdi_geo_unfold(hd_laplacian *lap, hdi_geo_surface *z, const hdi_geo_input *in,
-                                hdi_scope *s) {
-    if (!in->points) return hdi_lap_unfold(lap, &z->flat, &z->mesh, &in->task, s);
-    lap->points.neighbours = in->neighbours;
-    if (HDI_HAS_POINTS && hdi_lap_unfold_points(lap, &z->flat, in->xyz, in->nbr_ptr, in->nbr, in->task.delta,
-                                                s) >= 0)
-        lap->h = z->flat.soup.unit;              /* the mean edge, as on meshes */
-    return s->e->status;
-}
-
-/* L, B and the faces. */
-static hd_status hdi_geo_surface_make(hd_laplacian *lap, hdi_geo_surface *z, const hdi_geo_input *in,
-                                      hdi_scope *s) {
-    hdi_mesh poly;
-    memset(z, 0, sizeof *z);
-    hdi_mesh_clear(&z->mesh, in->xyz, lap->n, in->ptr ? in->idx : in->tri, in->m);
-    z->mesh.len = in->len;
-    z->mesh.ptr = in->ptr;
-    z->mesh.lambda = in->lambda;
-    poly = z->mesh;
-    if (in->ptr && in->flips && hdi_poly_fans(&z->mesh, &poly, s) < 0) return s->e->status;
-    if (hdi_progress(lap->context, "assemble", 0, s->e) < 0) return s->e->status;
-    if (HDI_HAS_INTRINSIC && in->flips) return hdi_geo_unfold(lap, z, in, s);
-    return hdi_mesh_make(&z->mesh, &lap->mesh, s) < 0
-               ? s->e->status
-               : hdi_lap_mesh(lap, &z->mesh, in->xyz, 0, in->updatable, s);
-}
-
 /* Points in the place of an earlier one, which the triangles leave out, share its row. */
 static hd_status hdi_geo_coincident(hd_geodesic *g, const double *xyz, hd_error *e) {
     hdi_scope s = hdi_scope_begin(g->ctx, e);
@@ -26236,12 +26065,12 @@ static hd_status hdi_geo_coincident(hd_geodesic *g, const double *xyz, hd_error 
 }
 
 /* The faces as the passes over them want them. */
-static hd_status hdi_geo_store(hd_geodesic *g, const hd_laplacian *lap, const hdi_geo_surface *z,
-                               const hdi_geo_input *in, hdi_scope *own) {
+static hd_status hdi_geo_store(hd_geodesic *g, const hd_laplacian *lap, const hdi_surface *z,
+                               const hdi_input *in, hdi_scope *own) {
     hd_error *e = own->e;
     const hdi_flat *flat = HDI_HAS_INTRINSIC && in->flips ? &z->flat : NULL;
     const hdi_mesh *mesh = flat ? &flat->mesh : &z->mesh;
-    if (hdi_geo_order(g, mesh, e) < 0) return e->status;
+    if (hdi_geo_order(g, mesh, own) < 0) return e->status;
     if (hdi_is_poly(mesh)) {
         if (hdi_geo_poly_faces(g, mesh, own) >= 0) (void)hdi_geo_poly_rows(g, lap, own);
     } else {
@@ -26253,23 +26082,25 @@ static hd_status hdi_geo_store(hd_geodesic *g, const hd_laplacian *lap, const hd
         g->from = NULL;
     }
     if (e->status < 0 || !HDI_HAS_POINTS || !in->points || in->nbr_ptr) return e->status;
-    return hdi_geo_coincident(g, in->xyz, e);
+    return hdi_geo_coincident(g, in->mesh.xyz, e);
 }
 
-static hd_status hdi_geo_make(hd_geodesic *g, const hdi_geo_input *in, const hd_geodesic_opts *o,
-                              hd_error *e) {
+static hd_status hdi_geo_make(hd_geodesic *g, const hdi_input *in, int32_t neighbours,
+                              const hd_geodesic_opts *o, hd_error *e) {
     hdi_scope s = hdi_scope_begin(g->ctx, e), own = hdi_scope_begin(g->ctx, e);
     hd_laplacian *lap = (hd_laplacian *)hdi_alloc_zero(g->ctx, 1, sizeof *lap, e);
-    hdi_geo_surface z;
+    hdi_surface z;
     if (!lap) return hdi_scope_end(&s);
     lap->n = g->n;
     lap->context = g->ctx;                       /* the row sums of fem are the lumped mass */
     lap->kind = o->mass == HD_GEODESIC_MASS_VORONOI ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM;
+    lap->points.neighbours = neighbours;
     g->border = o->border;
     g->t_asked = o->t;
     g->t_in_h2 = o->t_in_h2 > 0 ? o->t_in_h2 : 1;
     if ((o->border == HD_GEODESIC_BORDER_NATURAL || hdi_holding_make(lap, 2, NULL, 0, e) >= 0) &&
-        hdi_geo_surface_make(lap, &z, in, &s) >= 0) {
+        hdi_progress(g->ctx, "assemble", 0, e) >= 0 && hdi_lap_surface(lap, &z, in, &s) >= 0) {
+        if (in->points) lap->h = z.flat.soup.unit;       /* the mean edge, as on meshes */
         g->n_active = lap->n_active;
         g->copies = z.flat.unit > 0 ? z.flat.unit : 1;
         if (o->updatable) g->lap = lap;
@@ -26337,6 +26168,11 @@ static HDI_INLINE double hdi_geo_inverse_root(double x) {
 }
 
 typedef struct hdi_geo_range { int32_t begin, end; } hdi_geo_range;
+
+static hdi_geo_range hdi_geo_part(const int32_t *ptr, int32_t k) {
+    const hdi_geo_range part = {ptr[k], ptr[k + 1]};
+    return part;
+}
 
 /* Adds div X of X = -grad |u| / |grad |u|| to b, integrated against the hat functions. A face adds nothing
  * where no |u| reaches least, or where the slope is within rounding: where fronts of symmetric meshes meet,
@@ -26417,14 +26253,14 @@ static void hdi_geo_poly_flow(const hdi_geo_polygons *z, int32_t f, int k, const
     for (p = begin; p < end; p++) b[k * (int64_t)z->row[p]] += norm2 * hdi_dot3(z->side + 3 * p, W);
 }
 
-/* The same of all polygons. */
-static void hdi_geo_poly_flows(const hd_geodesic *g, int k, const double *u, const double *least,
-                               const char *done, double *b, double *dim) {
+/* The same of polygons. */
+static void hdi_geo_poly_flows(const hd_geodesic *g, hdi_geo_range faces, int k, const double *u,
+                               const double *least, const char *done, double *b, double *dim) {
     const hdi_geo_polygons *z = &g->poly;
     int32_t f;
     int64_t p;
     int c;
-    for (f = 0; f < g->n_faces; f++) {
+    for (f = faces.begin; f < faces.end; f++) {
         int away = 0;
         for (p = z->ptr[f]; done && p < z->ptr[f + 1]; p++) away |= done[z->row[p]];
         for (c = 0; c < k && !away; c++) hdi_geo_poly_flow(z, f, k, u + c, least[c], b + c, dim + c);
@@ -26441,14 +26277,14 @@ static HDI_INLINE void hdi_geo_stiff(const hdi_geo_face *a, double sign, const d
     r[a->v[2]] += g2;
 }
 
-/* Adds div X to b: the right-hand side of L phi = b. In the faces of items, which one column has, X is the
- * gradient of the known distances. Returns the columns as bits in which some faces have heat, but all of it
- * below least. */
-static int hdi_geo_divergence(const hd_geodesic *g, int k, const double *u, const double *least,
-                              const char *done, const hdi_geo_items *items, double *b) {
+/* Adds div X of some faces to b: the right-hand side of L phi = b. In the faces of items, which one column
+ * has, X is the gradient of the known distances. Returns the columns as bits in which some faces have heat,
+ * but all of it below least. */
+static int hdi_geo_divergence(const hd_geodesic *g, hdi_geo_range part, int k, const double *u,
+                              const double *least, const char *done, const hdi_geo_items *items, double *b) {
     const int level = k > 1 ? hdi_simd_level(g->ctx) : 0;
     double dim[HDI_GEO_WIDE] = {0};
-    hdi_geo_range part = {0, g->n_faces};
+    const int32_t end = part.end;
     int32_t q;
     int c, faint = 0;
     for (q = 0; items && q < items->n_home; q++) {
@@ -26456,9 +26292,9 @@ static int hdi_geo_divergence(const hd_geodesic *g, int k, const double *u, cons
         hdi_geo_flow(g, part, 1, u, least, NULL, b, dim);
         hdi_geo_stiff(g->face + part.end, 1, items->near_by, b);
         part.begin = part.end + 1;
-        part.end = g->n_faces;
+        part.end = end;
     }
-    if (g->poly.ptr) hdi_geo_poly_flows(g, k, u, least, done, b, dim);
+    if (g->poly.ptr) hdi_geo_poly_flows(g, part, k, u, least, done, b, dim);
     else if (k == 1) hdi_geo_flow(g, part, 1, u, least, done, b, dim);
 #if HDI_X86
     else if (level >= 2) hdi_geo_flow_avx512(g, part, u, least, b, dim);
@@ -26470,14 +26306,15 @@ static int hdi_geo_divergence(const hd_geodesic *g, int k, const double *u, cons
     return faint;
 }
 
-/* r -= L x */
-static void hdi_geo_subtract(const hd_geodesic *g, const double *HDI_RESTRICT x, double *HDI_RESTRICT r) {
+/* r -= L x: of polygons some rows of L, else the part of some faces. */
+static void hdi_geo_subtract(const hd_geodesic *g, hdi_geo_range rows, hdi_geo_range faces,
+                             const double *HDI_RESTRICT x, double *HDI_RESTRICT r) {
     const hd_csr *L = &g->poly.L;
     int32_t f, i;
     int64_t p;
-    for (i = 0; i < L->n_rows; i++)              /* of polygons */
+    for (i = rows.begin; i < rows.end && g->poly.ptr; i++)
         for (p = L->row_ptr[i]; p < L->row_ptr[i + 1]; p++) r[i] -= L->val[p] * x[L->col[p]];
-    for (f = 0; f < g->n_faces && g->face; f++) hdi_geo_stiff(g->face + f, -1, x, r);
+    for (f = faces.begin; f < faces.end && g->face; f++) hdi_geo_stiff(g->face + f, -1, x, r);
 }
 
 /* x = the inverse times x in k columns. */
@@ -26502,13 +26339,14 @@ static int hdi_geo_is_held(const hd_geodesic *g, int32_t row) {
 
 /* |r - A x| / |r|, where A is L, or with heat L + B/t. r is overwritten. */
 static double hdi_geo_residual(const hd_geodesic *g, int heat, const double *x, double *r) {
+    const hdi_geo_range rows = {0, g->n_active}, faces = {0, g->n_faces};
     double b2 = 0, r2 = 0;
     int32_t i;
     for (i = 0; i < g->n_active; i++) {
         b2 += r[i] * r[i];
         if (heat) r[i] -= g->mass[i] * x[i];
     }
-    hdi_geo_subtract(g, x, r);
+    hdi_geo_subtract(g, rows, faces, x, r);
     for (i = 0; i < g->n_active; i++) r2 += heat && hdi_geo_is_held(g, i) ? 0 : r[i] * r[i];
     return b2 > 0 ? sqrt(r2 / b2) : 0;
 }
@@ -26519,51 +26357,125 @@ static double hdi_geo_residual(const hd_geodesic *g, int heat, const double *x, 
  * is zero except in the rows along the border of S. There it is known:
  *     f_i = sum over j beyond of L_ij u_j for i in S,   f_j = -sum over i in S of L_ij u_i for j beyond.
  * f is scaled to one. Solving for u' continues u as far again as before. The scale does not matter, because
- * only directions are used. A face belongs to the first stage that reaches one of its corners. */
+ * only directions are used. A face belongs to the first stage that reaches one of its corners.
+ * A stage costs what it reaches: fronts, their rows, and the faces whose first corner is one of these. */
 
-/* Marks the rows where u, in g->x, is known now. Then g->x = f, scaled, and g->active are the fronts that it
- * touches. y [n_active] is overwritten. Returns 0 if there is no usable number along the border. */
-static int hdi_geo_border(hd_geodesic *g, double least, double *y) {
-    const size_t size = (size_t)g->n_active * sizeof *y;
-    double *x = g->x, most = 0;
-    int32_t i;
-    for (i = 0; i < g->n_active; i++) {
-        const int beyond = !g->mark[i] && !(fabs(x[i]) >= least);
-        y[i] = beyond ? x[i] : 0;
-        if (beyond || g->mark[i]) x[i] = 0;
-        g->mark[i] = (char)!beyond;
-    }
-    memset(g->r, 0, size);
-    hdi_geo_subtract(g, y, g->r);
-    memset(y, 0, size);
-    hdi_geo_subtract(g, x, y);
-    for (i = 0; i < g->n_active; i++) {
-        x[i] = hdi_geo_is_held(g, i) ? 0 : g->mark[i] ? -g->r[i] : y[i];
-        most = hdi_max(most, fabs(x[i]));
-    }
-    if (!(most > DBL_MIN)) return 0;
+typedef struct hdi_geo_far {
+    hd_geodesic *g;              /* x and r are zero in rows that the last stage has not reached */
+    double *y, *z;               /* [n_active] */
+    int32_t *front, n_fronts;    /* [n_super] fronts that it has reached, parents first */
+    uint64_t *up;                /* [n_super] fronts that the next one touches, which g->active marks */
+    int32_t n_up;
+} hdi_geo_far;
+
+static hd_status hdi_geo_far_begin(hdi_geo_far *w, hd_geodesic *g, hdi_scope *s) {
+    w->g = g;
+    w->y = HDI_TAKE(s, double, g->n_active);
+    w->z = HDI_TAKE(s, double, g->n_active);
+    w->front = HDI_TAKE(s, int32_t, g->sym.n_super);
+    w->up = HDI_TAKE(s, uint64_t, g->sym.n_super);
+    if (s->e->status < 0) return s->e->status;
+    for (w->n_fronts = 0; w->n_fronts < g->sym.n_super; w->n_fronts++) w->front[w->n_fronts] = w->n_fronts;
+    w->n_up = 0;
+    memset(g->r, 0, (size_t)g->n_active * sizeof *g->r);
+    memset(g->mark, 0, (size_t)g->n_active);
     memset(g->active, 0, (size_t)g->sym.n_super);
-    for (i = 0; i < g->n_active; i++) {
-        x[i] /= most;
-        if (x[i] != 0) hdi_sweep_touch(&g->sym, i, g->active);
+    return HD_OK;
+}
+
+/* Marks the rows where u, in g->x, is known now. Of it only what has become known is left there, and -L times
+ * that in y; z becomes -L times u beyond. */
+static void hdi_geo_tell(hdi_geo_far *w, double least) {
+    const hd_geodesic *g = w->g;
+    double *x = g->x;
+    int32_t k, i;
+    for (k = 0; k < w->n_fronts; k++) {
+        const hdi_geo_range rows = hdi_geo_part(g->sym.super, w->front[k]);
+        for (i = rows.begin; i < rows.end; i++) {
+            const int beyond = !g->mark[i] && !(fabs(x[i]) >= least);
+            g->r[i] = beyond ? x[i] : 0;
+            if (beyond || g->mark[i]) x[i] = 0;
+            g->mark[i] = (char)!beyond;
+            w->y[i] = w->z[i] = 0;
+        }
     }
-    return 1;
+    for (k = 0; k < w->n_fronts; k++) {
+        const hdi_geo_range rows = hdi_geo_part(g->sym.super, w->front[k]),
+                            faces = hdi_geo_part(g->face_ptr, w->front[k]);
+        hdi_geo_subtract(g, rows, faces, x, w->y);
+        hdi_geo_subtract(g, rows, faces, g->r, w->z);
+    }
+}
+
+/* g->x = f, where u was, and up the fronts that f touches. Returns 0 if there is no usable number along
+ * the border. */
+static int hdi_geo_border(hdi_geo_far *w, double least) {
+    const hd_geodesic *g = w->g;
+    double *x = g->x, most = 0;
+    int32_t k, i, v;
+    hdi_geo_tell(w, least);
+    for (k = 0; k < w->n_fronts; k++) {
+        const hdi_geo_range rows = hdi_geo_part(g->sym.super, w->front[k]);
+        for (i = rows.begin; i < rows.end; i++) {
+            x[i] = hdi_geo_is_held(g, i) ? 0 : g->mark[i] ? -w->z[i] : w->y[i];
+            g->r[i] = 0;
+            most = hdi_max(most, fabs(x[i]));
+            for (v = x[i] != 0 ? g->sym.super_of[i] : -1; v >= 0 && !g->active[v]; v = g->sym.parent[v]) {
+                g->active[v] = 1;
+                w->up[w->n_up++] = (uint64_t)v;
+            }
+        }
+    }
+    for (k = 0; k < w->n_up && most > DBL_MIN; k++)
+        for (i = g->sym.super[w->up[k]]; i < g->sym.super[w->up[k] + 1]; i++) x[i] /= most;
+    return most > DBL_MIN;
+}
+
+/* Whether rows beyond S that are eliminated later bring heat to front v. */
+static int hdi_geo_warm(const hd_geodesic *g, int32_t v) {
+    int64_t p;
+    for (p = g->sym.row_ptr[v]; p < g->sym.row_ptr[v + 1]; p++)
+        if (!g->mark[g->sym.row[p]] && fabs(g->x[g->sym.row[p]]) >= DBL_MIN) return 1;
+    return 0;
+}
+
+/* g->x = A^-1 g->x: up from the fronts of the border, and down from the roots where heat comes. Returns the
+ * largest |u| beyond. */
+static double hdi_geo_stage(hdi_geo_far *w) {
+    const hdi_symbolic *s = &w->g->sym;
+    hdi_sweep z = hdi_sweep_open(&w->g->heat, 1, w->g->x, w->g->work);
+    double most = 0;
+    int32_t k, q, v, i;
+    z.active = w->g->active;
+    hdi_sort_keys(w->up, w->n_up);
+    for (k = 0; k < w->n_up; k++) hdi_sweep_front(&z, (int32_t)w->up[k]);
+    for (w->n_fronts = 0; k-- > 0;) w->front[w->n_fronts++] = (int32_t)w->up[k];
+    z.backward = 1;
+    for (k = 0; k < w->n_fronts; k++) {
+        v = w->front[k];
+        hdi_sweep_front(&z, v);
+        for (i = s->super[v]; i < s->super[v + 1]; i++)
+            if (!w->g->mark[i]) most = hdi_max(most, fabs(w->g->x[i]));
+        for (q = s->kid_ptr[v]; q < s->kid_ptr[v + 1]; q++)
+            if (!w->g->active[s->kid[q]] && hdi_geo_warm(w->g, s->kid[q]))
+                w->front[w->n_fronts++] = s->kid[q];
+    }
+    while (w->n_up > 0) w->g->active[w->up[--w->n_up]] = 0;
+    return most;
 }
 
 /* Adds to g->b what lies beyond |u| >= least, stage by stage, with u in g->x. Where heat ends for good (the
  * component ends, or weights are zero), the rest has no direction. */
 static hd_status hdi_geo_further(hd_geodesic *g, double least, int32_t *n_stages, hd_error *e) {
     hdi_scope s = hdi_scope_begin(g->ctx, e);
-    double *y = HDI_TAKE(&s, double, g->n_active);
-    int32_t i;
-    memset(g->mark, 0, (size_t)g->n_active);
-    while (y && hdi_geo_border(g, least, y) && hdi_progress(g->ctx, "solve", 0.5, e) >= 0) {
-        hdi_geo_sweep(g, &g->heat, 1, g->x, g->active);
+    hdi_geo_far w;
+    int32_t k, faint = hdi_geo_far_begin(&w, g, &s) >= 0;
+    while (faint && hdi_geo_border(&w, least) && hdi_progress(g->ctx, "solve", 0.5, e) >= 0) {
+        least = hdi_geo_stage(&w) * HDI_GEO_FAINT;
         ++*n_stages;
-        for (i = 0, least = 0; i < g->n_active; i++)
-            if (!g->mark[i]) least = hdi_max(least, fabs(g->x[i]));
-        least *= HDI_GEO_FAINT;
-        if (!(least > DBL_MIN) || !hdi_geo_divergence(g, 1, g->x, &least, g->mark, NULL, g->b)) break;
+        for (k = 0, faint = 0; k < w.n_fronts && least > DBL_MIN; k++)
+            faint |= hdi_geo_divergence(g, hdi_geo_part(g->face_ptr, w.front[k]), 1, g->x, &least, g->mark,
+                                        NULL, g->b);
     }
     return hdi_scope_end(&s);
 }
@@ -26940,12 +26852,13 @@ static hd_status hdi_geo_solve(hd_geodesic *g, const hdi_geo_source *s, int32_t 
     const size_t size = (size_t)k * (size_t)g->n_active * sizeof(double);
     double *x = n > 1 ? g->wide_x : g->x, *b = n > 1 ? g->wide_b : g->b;
     double least[HDI_GEO_WIDE], heat[HDI_GEO_WIDE];
+    const hdi_geo_range faces = {0, g->n_faces};
     int32_t c, n_stages = 1;
     hdi_geo_heat(g, s, n, k, x, b, rep ? heat : NULL);
     for (c = 0; c < k; c++) least[c] = c < n ? hdi_geo_least(g, s + c, k, x + c) : DBL_MIN;
     if (s->n > 1) memcpy(g->first, x, size);
     memset(b, 0, size);
-    *faint = hdi_geo_divergence(g, k, x, least, NULL, s->items, b);
+    *faint = hdi_geo_divergence(g, faces, k, x, least, NULL, s->items, b);
     if (n == 1 && *faint && hdi_geo_further(g, least[0], &n_stages, e) < 0) return e->status;
     if (rep) memcpy(x, b, size);
     for (c = 0; c < g->n_components; c++)
@@ -27076,8 +26989,9 @@ static void hdi_geo_tell_plan(const hd_geodesic *g, hd_geodesic_report *rep) {
 #define HDI_LAMBDA_GEODESIC (1.0 / 6)    /* measured from 0.05 to 1 on spheres, planes and tubes */
 
 /* Checks the options, and resolves into in what they say about the faces. */
-static hd_status hdi_geo_check(const hd_geodesic_opts *o, const hd_mesh *m, hdi_geo_input *in,
-                               hd_error *e) {
+static hd_status hdi_geo_check(const hd_geodesic_opts *o, const hd_mesh *m, hdi_input *in,
+                               int32_t *neighbours, hd_error *e) {
+    const int points = m->shape == HD_POINTS, poly = m->face_ptr != NULL;
     hdi_refuse_value(!hdi_finite(o->t) || o->t < 0, "geodesic: t is negative or not finite", o->t, e);
     hdi_refuse_value(!hdi_finite(o->t_in_h2) || o->t_in_h2 < 0, "geodesic: t_in_h2 is negative or not finite",
                      o->t_in_h2, e);
@@ -27086,51 +27000,36 @@ static hd_status hdi_geo_check(const hd_geodesic_opts *o, const hd_mesh *m, hdi_
     hdi_refuse_ordering(o->ordering, o->perm, "geodesic: unknown ordering", e);
     hdi_refuse(o->border < HD_GEODESIC_BORDER_NATURAL || o->border > HD_GEODESIC_BORDER_DIRICHLET,
                "geodesic: unknown border", e);
-    in->flips = hdi_intrinsic_opts(o->triangulation, o->mollify, &in->task, e);
+    hdi_intrinsic_opts(o->triangulation, o->mollify, in, e);
     in->updatable = o->updatable;
-    in->lambda = o->stiffening != 0 ? o->stiffening : HDI_LAMBDA_GEODESIC;
-    in->neighbours = hdi_point_neighbours(o->neighbours, m, e);
-    hdi_refuse(!hdi_finite(in->lambda) || !(in->lambda > 0 && in->lambda <= 1e100),
+    in->split = poly && in->flips;
+    *neighbours = hdi_point_neighbours(o->neighbours, m, e);
+    hdi_refuse(!hdi_finite(o->stiffening) || !(o->stiffening >= 0 && o->stiffening <= 1e100),
                "geodesic: stiffening is not between 0 and 1e100", e);
-    hdi_refuse(o->stiffening != 0 && (!in->ptr || in->flips),
+    hdi_refuse(o->stiffening != 0 && (!poly || in->flips),
                "geodesic: stiffening is for polygons that are not split", e);
-    hdi_refuse(in->points && o->triangulation != HD_TRIANGULATION_TUFTED,
+    hdi_refuse(points && o->triangulation != HD_TRIANGULATION_TUFTED,
                "geodesic: points need the triangulation tufted; exponential weights have no gradient", e);
-    hdi_refuse(in->points && o->border != HD_GEODESIC_BORDER_NATURAL,
+    hdi_refuse(points && o->border != HD_GEODESIC_BORDER_NATURAL,
                "geodesic: points cannot tell their border", e);
-    hdi_refuse(in->ptr && !in->flips && o->mass != HD_GEODESIC_MASS_BARYCENTRIC,
+    hdi_refuse(poly && !in->flips && o->mass != HD_GEODESIC_MASS_BARYCENTRIC,
                "geodesic: Voronoi areas are of triangles, not of polygons", e);
-    hdi_refuse(in->len && o->updatable, "geodesic: a plan of lengths is not updatable", e);
-    hdi_refuse(o->updatable && (in->flips || in->ptr),
+    hdi_refuse(m->lengths && o->updatable, "geodesic: a plan of lengths is not updatable", e);
+    hdi_refuse(o->updatable && (in->flips || poly),
                "geodesic: only plans of triangles in space are updatable", e);
     return e->status;
-}
-
-/* Makes the plan of a mesh whose shape and options are checked. */
-static hd_status hdi_geo_fill(hd_geodesic *g, const hd_mesh *mesh, hdi_geo_input *in,
-                              const hd_geodesic_opts *o, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(g->ctx, e);
-    hdi_view v;
-    if (hdi_view_open(&v, mesh, &s) < 0) return hdi_scope_end(&s);
-    in->xyz = v.xyz;
-    in->tri = in->idx = v.corner;
-    (void)hdi_geo_make(g, in, o, e);
-    return hdi_scope_end(&s);
 }
 
 /* The plan of a mesh. */
 static hd_status hdi_geo_create(hd_geodesic **out, const hd_mesh *mesh, const hd_geodesic_opts *o,
                                 hdi_call *c) {
-    hdi_geo_input in;
+    hdi_scope s;
+    hdi_input in;
     hd_geodesic *g;
+    int32_t neighbours;
     memset(&in, 0, sizeof in);
-    in.len = mesh->lengths;
-    in.ptr = mesh->face_ptr;
-    in.m = mesh->n_faces;
-    in.points = mesh->shape == HD_POINTS;
-    in.nbr_ptr = mesh->nbr_ptr;
-    in.nbr = mesh->nbr;
-    if (hdi_view_check(mesh, c->e) < 0 || hdi_geo_check(o, mesh, &in, c->e) < 0) return c->e->status;
+    if (hdi_view_check(mesh, c->e) < 0 || hdi_geo_check(o, mesh, &in, &neighbours, c->e) < 0)
+        return c->e->status;
     if (o->ordering == HD_ORDERING_OWN && hdi_order_check(o->perm, mesh->n, c->ctx, c->e) < 0)
         return c->e->status;
     g = (hd_geodesic *)hdi_alloc_zero(c->ctx, 1, sizeof *g, c->e);
@@ -27138,7 +27037,10 @@ static hd_status hdi_geo_create(hd_geodesic **out, const hd_mesh *mesh, const hd
     g->ctx = hdi_enter_keep(c, &g->context);
     hdi_hold(g->ctx);
     g->n = mesh->n;
-    if (hdi_geo_fill(g, mesh, &in, o, c->e) >= 0) *out = g;
+    s = hdi_scope_begin(g->ctx, c->e);
+    if (hdi_input_open(&in, mesh, o->stiffening != 0 ? o->stiffening : HDI_LAMBDA_GEODESIC, &s) >= 0)
+        (void)hdi_geo_make(g, &in, neighbours, o, c->e);
+    if (hdi_scope_end(&s) >= 0) *out = g;
     else hdi_geo_free(g);
     return c->e->status;
 }
@@ -27324,34 +27226,26 @@ static void hdi_lap_opts_check(const hd_mesh *m, const hd_laplacian_opts *o, hd_
 }
 
 /* Fills a Laplacian from a mesh whose shape and options are checked. */
-static hd_status hdi_lap_fill(hd_laplacian *lap, const hd_mesh *m, const hd_laplacian_opts *o,
-                              const hdi_intrinsic_task *task, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
-    const int poly = HDI_HAS_POLYGONS && m->shape == HD_POLYGONS;
-    hdi_view v;
-    hdi_mesh mesh;
-    if (hdi_view_open(&v, m, &s) < 0) return hdi_scope_end(&s);
-    hdi_mesh_clear(&mesh, v.xyz, m->n, v.corner, m->n_faces);
-    mesh.len = m->lengths;
-    mesh.ptr = m->face_ptr;
-    mesh.lambda = o->stiffening != 0 ? o->stiffening : 1;
-    if (HDI_HAS_POINTS && m->shape == HD_POINTS && task)
-        (void)hdi_tufted_points(lap, v.xyz, m->nbr_ptr, m->nbr, task->delta, e);
-    else if (HDI_HAS_POINTS && m->shape == HD_POINTS) (void)hdi_lap_points(lap, v.xyz, e);
-    else if (poly && lap->kind == HD_LAPLACIAN_POLYGON) (void)hdi_lap_plain(lap, &mesh, o->updatable, e);
-    else if (poly) (void)hdi_lap_fans(lap, &mesh, task, o->updatable, e);
-    else (void)hdi_lap_faces(lap, &mesh, task, o->updatable, e);
+static hd_status hdi_lap_fill(hd_laplacian *lap, const hd_mesh *m, hdi_input *in, double stiffening,
+                              hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e), own = hdi_scope_begin(lap->context, e);
+    hdi_surface z;
+    if (hdi_input_open(in, m, stiffening != 0 ? stiffening : 1, &s) >= 0) {
+        if (HDI_HAS_POINTS && in->points && !in->flips) (void)hdi_lap_points(lap, in->mesh.xyz, e);
+        else (void)hdi_lap_surface(lap, &z, in, &own);
+    }
+    (void)hdi_scope_end(&own);
     return hdi_scope_end(&s);
 }
 
 HEATDIFF_API hd_status hd_laplacian_create(hd_laplacian **out, const hd_mesh *mesh,
                                            const hd_laplacian_opts *opts, hd_error *err) {
     hd_laplacian_opts o;
-    hdi_intrinsic_task task;
+    hdi_input in;
     hd_laplacian *lap;
     hdi_call c;
-    int flips;
     memset(&o, 0, sizeof o);
+    memset(&in, 0, sizeof in);
     if (opts) o = *opts;
     lap = hdi_lap_new(&o, mesh ? mesh->n : 0, mesh ? hdi_lap_kind(mesh, &o) : o.kind, err, &c);
     if (!lap) return c.e->status;
@@ -27361,13 +27255,16 @@ HEATDIFF_API hd_status hd_laplacian_create(hd_laplacian **out, const hd_mesh *me
     if (!HDI_HAS_POINTS && mesh->shape == HD_POINTS)
         return hdi_lap_done(out, lap, HDI_LEFT_OUT(c.e, POINTS, "points"));
     (void)hdi_view_check(mesh, c.e);
-    flips = hdi_intrinsic_opts(o.triangulation, o.mollify, &task, c.e);
+    hdi_intrinsic_opts(o.triangulation, o.mollify, &in, c.e);
+    in.full = 1;
+    in.updatable = o.updatable;
+    in.split = mesh->shape == HD_POLYGONS && lap->kind != HD_LAPLACIAN_POLYGON;
     hdi_lap_opts_check(mesh, &o, lap->kind, c.e);
     hdi_point_opts(lap, &o, c.e);
     lap->points.neighbours = hdi_point_neighbours(o.neighbours, mesh, c.e);
     if (mesh->shape != HD_POINTS || mesh->nbr_ptr) lap->points.neighbours = 0;
     if (hdi_lap_begin(&c) < 0) return hdi_lap_done(out, lap, c.e->status);
-    return hdi_lap_end(out, lap, hdi_lap_fill(lap, mesh, &o, flips ? &task : NULL, c.e), c.e);
+    return hdi_lap_end(out, lap, hdi_lap_fill(lap, mesh, &in, o.stiffening, c.e), c.e);
 }
 
 /* Of the options only context, updatable and held are for matrices. */
