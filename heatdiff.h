@@ -1950,17 +1950,20 @@ static HDI_INLINE uint64_t hdi_bits(double x) {
     return bits;
 }
 
-/* Words in the order of the numbers, and back. */
+static HDI_INLINE double hdi_of_bits(uint64_t bits) {
+    double x;
+    memcpy(&x, &bits, sizeof x);
+    return x;
+}
+
+/* Words in the order of the numbers, and back; bits of numbers that are not negative are such words, too. */
 static HDI_INLINE uint64_t hdi_rank(double x) {
     const uint64_t bits = hdi_bits(x);
     return bits >> 63 ? ~bits : bits | (uint64_t)1 << 63;
 }
 
 static HDI_INLINE double hdi_unrank(uint64_t rank) {
-    const uint64_t bits = rank >> 63 ? rank ^ (uint64_t)1 << 63 : ~rank;
-    double x;
-    memcpy(&x, &bits, sizeof x);
-    return x;
+    return hdi_of_bits(rank >> 63 ? rank ^ (uint64_t)1 << 63 : ~rank);
 }
 
 static HDI_INLINE int hdi_finite(double x) { return (hdi_bits(x) >> 52 & 0x7ff) != 0x7ff; }
@@ -2634,7 +2637,7 @@ static void hdi_walk_tell(hdi_walk *w) {
     const int32_t part = hdi_walk_part(w);
     if (part < 0) return;
     w->told = part;
-    if (hdi_progress(w->ctx, w->stage, w->from + (w->to - w->from) * part / HDI_TELLS, w->e) < 0)
+    if (hdi_progress(w->ctx, w->stage, w->from + (w->to - w->from) * part / (double)HDI_TELLS, w->e) < 0)
         hdi_walk_stop(w);
 }
 
@@ -2838,11 +2841,7 @@ static void hdi_range_run(void *arg, int64_t index, int32_t worker) {
 
 static void hdi_parallel_ranges(hd_context *ctx, int64_t n, int64_t per_task, hdi_range_task task,
                                 void *arg) {
-    hdi_range_job job;
-    job.n = n;
-    job.per_task = per_task;
-    job.task = task;
-    job.arg = arg;
+    hdi_range_job job = {n, per_task, task, arg};
     if (n > 0) hdi_parallel(ctx, (n + per_task - 1) / per_task, hdi_range_run, &job);
 }
 
@@ -4608,10 +4607,7 @@ static void hdi_apply_task(void *arg, int64_t begin, int64_t end) {
 }
 
 static void hdi_csr_apply(const hd_csr *a, const double *x, double *y, hd_context *ctx) {
-    hdi_apply_job job;
-    job.a = a;
-    job.x = x;
-    job.y = y;
+    hdi_apply_job job = {a, x, y};
     hdi_parallel_ranges(ctx, a->n_rows, HDI_ROWS_PER_TASK, hdi_apply_task, &job);
 }
 
@@ -4693,36 +4689,37 @@ static void hdi_tree_split(hdi_tree *t, uint64_t *a) {
     }
 }
 
-/* Coordinates are finite and at most 1e100. Points are all in one place, or spread over 1e-100 at least. */
+/* Coordinates of n points, or of n queries, are finite and at most 1e100. */
+static hd_status hdi_coordinates_check(const double *xyz, int32_t n, int queries, hd_error *e) {
+    int64_t i;
+    for (i = 0; i < hdi_triple(n); i++) {
+        const int lost = !hdi_finite(xyz[i]);
+        if (!lost && fabs(xyz[i]) <= HDI_RANGE) continue;
+        hdi_fail_face(e, lost ? HD_ERR_NOT_FINITE : HD_ERR_ARGUMENT, "a coordinate ", -1, i / 3, xyz[i]);
+        if (queries) {
+            e->row = e->vertex;
+            e->column = i % 3;
+            e->vertex = -1;
+        }
+        hdi_text_add(e, queries ? "of a query " : "");
+        hdi_text_add(e, lost ? "is not finite" : "is beyond 1e100");
+        return e->status;
+    }
+    return HD_OK;
+}
+
+/* Besides, points are all in one place, or spread over 1e-100 at least. */
 static hd_status hdi_points_check(const double *xyz, int32_t n, hd_error *e) {
     double size = 0;
     int64_t i, at = 0;
+    if (hdi_coordinates_check(xyz, n, 0, e) < 0) return e->status;
     for (i = 0; i < hdi_triple(n); i++) {
-        const double x = xyz[i];
-        double away;
-        if (!hdi_finite(x))
-            return hdi_fail_face(e, HD_ERR_NOT_FINITE, "a coordinate is not finite", -1, i / 3, x);
-        if (fabs(x) > HDI_RANGE)
-            return hdi_fail_face(e, HD_ERR_ARGUMENT, "a coordinate is beyond 1e100", -1, i / 3, x);
-        away = fabs(x - xyz[i % 3]);
+        const double away = fabs(xyz[i] - xyz[i % 3]);
         if (away > size) at = i / 3;
         size = hdi_max(size, away);
     }
     if (size == 0 || hdi_in_range(size)) return HD_OK;
     return hdi_fail_face(e, HD_ERR_ARGUMENT, "all points are within 1e-100 of each other", -1, at, size);
-}
-
-static hd_status hdi_queries_check(const double *query, int32_t m, hd_error *e) {
-    int64_t i;
-    for (i = 0; i < hdi_triple(m); i++) {
-        if (!hdi_finite(query[i]))
-            return hdi_fail_row(e, HD_ERR_NOT_FINITE, "a coordinate of a query is not finite", i / 3, i % 3,
-                                query[i]);
-        if (fabs(query[i]) > HDI_RANGE)
-            return hdi_fail_row(e, HD_ERR_ARGUMENT, "a coordinate of a query is beyond 1e100", i / 3, i % 3,
-                                query[i]);
-    }
-    return HD_OK;
 }
 
 /* The tree of finite points, in s. id of point i: i. Cost O(n log n). */
@@ -4758,26 +4755,17 @@ static hd_status hdi_tree_make(hdi_tree *t, const double *xyz, int32_t n, hdi_sc
 typedef struct hdi_found {
     /* squared; boxes farther than prune are left out. It is a little larger, whatever a compiler fuses */
     double bound, prune;
-    int32_t k;                 /* > 0: the k nearest are wanted; 0: all, and HDI_COUNT: only how many */
+    int32_t k;                 /* the k nearest are wanted; 0: all */
     int64_t m, room;           /* candidates; when there are more than room, something is done about it */
-    int64_t counted;
-    double *d;                 /* [room + HDI_LEAF] squared distances */
-    int32_t *id;               /* [room + HDI_LEAF] */
-    hdi_pair *sorted;          /* [room + HDI_LEAF] */
+    int64_t counted;           /* those that left for others; all are wanted, but there is no room */
+    hdi_pair *at, *sorted;     /* [room + HDI_LEAF] bits of squared distances, and points */
 } hdi_found;
 
-enum { HDI_COUNT = -1 };
-
-static void hdi_found_bound(hdi_found *f, double bound) {
+static void hdi_found_begin(hdi_found *f, int32_t k, double bound) {
+    f->k = k;
+    f->m = f->counted = 0;
     f->bound = hdi_min(bound, HDI_NO_BOUND);
     f->prune = f->bound * (1 + 8 * DBL_EPSILON);
-}
-
-/* The bits of doubles that are not negative are in order: they serve as keys. */
-static double hdi_key_square(const hdi_pair *a) {
-    double d;
-    memcpy(&d, &a->key, sizeof d);
-    return d;
 }
 
 /* The min(k, m) smallest pairs (distance, id) into f->sorted, ascending; returns how many. */
@@ -4785,16 +4773,12 @@ static int64_t hdi_found_sort(hdi_found *f) {
     const int64_t want = hdi_least(f->k, f->m);
     int64_t end[HDI_BUCKETS + 1], i, from = 0, b;
     double most = 0, scale;
-    for (i = 0; i < f->m; i++) most = hdi_max(most, f->d[i]);
+    for (i = 0; i < f->m; i++) most = hdi_max(most, hdi_of_bits(f->at[i].key));
     scale = most > 1e-290 ? (double)HDI_BUCKETS * 0.9999 / most : 0;
     memset(end, 0, sizeof end);
-    for (i = 0; i < f->m; i++) end[(int32_t)(f->d[i] * scale)]++;
+    for (i = 0; i < f->m; i++) end[(int32_t)(hdi_of_bits(f->at[i].key) * scale)]++;
     hdi_prefix_sum(end, HDI_BUCKETS);
-    for (i = 0; i < f->m; i++) {
-        hdi_pair *to = f->sorted + end[(int32_t)(f->d[i] * scale)]++;
-        to->key = hdi_bits(f->d[i]);
-        to->id = f->id[i];
-    }
+    for (i = 0; i < f->m; i++) f->sorted[end[(int32_t)(hdi_of_bits(f->at[i].key) * scale)]++] = f->at[i];
     for (b = 0; b < HDI_BUCKETS && from < want; b++) {
         hdi_sort_pairs(f->sorted + from, end[b] - from);
         from = end[b];
@@ -4802,28 +4786,25 @@ static int64_t hdi_found_sort(hdi_found *f) {
     return want;
 }
 
-/* Too many candidates: keeps the k nearest, whose last is the new bound. */
+/* Too many candidates: keeps the k nearest, whose last is the new bound; or counts them. */
 static void hdi_found_shrink(hdi_found *f) {
-    int64_t i;
-    if (f->k == HDI_COUNT) {
-        f->counted += f->m;
-        f->m = 0;
-        return;
+    hdi_pair *const unsorted = f->at;
+    const int64_t counted = f->counted + f->m, m = f->k ? hdi_found_sort(f) : 0;
+    if (m) {
+        f->at = f->sorted;
+        f->sorted = unsorted;
+        hdi_found_begin(f, f->k, hdi_of_bits(f->at[m - 1].key));
     }
-    f->m = hdi_found_sort(f);
-    for (i = 0; i < f->m; i++) {
-        f->d[i] = hdi_key_square(f->sorted + i);
-        f->id[i] = (int32_t)f->sorted[i].id;
-    }
-    hdi_found_bound(f, f->d[f->m - 1]);
+    f->counted = counted;
+    f->m = m;
 }
 
 static void hdi_scan_leaf(const hdi_tree *t, int32_t leaf, const double *q, hdi_found *f) {
     const double *HDI_RESTRICT x = t->x + 3 * HDI_LEAF * (int64_t)leaf, q0 = q[0], q1 = q[1],
                                q2 = q[2], bound = f->bound;
     const int32_t *HDI_RESTRICT id = t->id + HDI_LEAF * (int64_t)leaf;
-    double *HDI_RESTRICT d = f->d + f->m, r[HDI_LEAF];
-    int32_t *HDI_RESTRICT found = f->id + f->m;
+    hdi_pair *HDI_RESTRICT found = f->at + f->m;
+    double r[HDI_LEAF];
     int64_t m = 0;
     int i;
     for (i = 0; i < HDI_LEAF; i++) {
@@ -4831,8 +4812,8 @@ static void hdi_scan_leaf(const hdi_tree *t, int32_t leaf, const double *q, hdi_
         r[i] = a * a + b * b + c * c;
     }
     for (i = 0; i < HDI_LEAF; i++) {   /* without a branch: half of them would be guessed wrong */
-        d[m] = r[i];
-        found[m] = id[i];
+        found[m].key = hdi_bits(r[i]);
+        found[m].id = id[i];
         m += r[i] <= bound;
     }
     f->m += m;
@@ -4852,7 +4833,6 @@ static HDI_NOINLINE void hdi_search(const hdi_tree *t, const double *q, hdi_foun
     struct { int32_t node; double d; } stack[HDI_TREE_STACK];
     int32_t v = 0;
     int top = 0;
-    f->m = 0;
     for (;;) {
         const hdi_cell *node = t->node + v;
         while (node->count > 1) {
@@ -4876,11 +4856,6 @@ static HDI_NOINLINE void hdi_search(const hdi_tree *t, const double *q, hdi_foun
     }
 }
 
-static double hdi_distance2(const double *a, const double *b) {
-    const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
-    return x * x + y * y + z * z;
-}
-
 /* Many queries, in blocks that do not depend on the threads; a task has work arrays of its own. */
 typedef struct hdi_search_job {
     const hdi_tree *t;
@@ -4896,23 +4871,20 @@ typedef struct hdi_search_job {
 } hdi_search_job;
 
 /* Runs the tasks with room for so many candidates each, in s. The work arrays of all together stay below 64
- * MiB (28 bytes a candidate). */
+ * MiB. */
 static hd_status hdi_search_run(hdi_search_job *job, int64_t room, hdi_range_task task, hdi_scope *s) {
     const int64_t size = room + HDI_LEAF, blocks = (job->n_queries + 255) / 256,
-                  fit = 1 + ((int64_t)64 << 20) / (28 * size);
+                  fit = 1 + ((int64_t)64 << 20) / (2 * (int64_t)sizeof(hdi_pair) * size);
     const int64_t tasks = hdi_least(hdi_least(blocks, HDI_SEARCH_TASKS), fit);
-    double *d = HDI_TAKE(s, double, tasks * size);
-    hdi_pair *sorted = HDI_TAKE(s, hdi_pair, tasks * size);
-    int32_t *id = HDI_TAKE(s, int32_t, tasks * size);
+    hdi_pair *pairs = HDI_TAKE(s, hdi_pair, 2 * tasks * size);
     int64_t i;
     job->found = HDI_TAKE_ZERO(s, hdi_found, tasks);
     if (s->e->status < 0) return s->e->status;
     job->per_task = tasks ? (job->n_queries + tasks - 1) / tasks : 1;
     for (i = 0; i < tasks; i++) {
         job->found[i].room = room;
-        job->found[i].d = d + i * size;
-        job->found[i].id = id + i * size;
-        job->found[i].sorted = sorted + i * size;
+        job->found[i].at = pairs + 2 * i * size;
+        job->found[i].sorted = job->found[i].at + size;
     }
     hdi_parallel_ranges(s->ctx, job->n_queries, job->per_task, task, job);
     return HD_OK;
@@ -4924,24 +4896,24 @@ static double hdi_raise(double x) { return x * (1 + 16 * DBL_EPSILON); }
 static void hdi_nearest_task(void *arg, int64_t begin, int64_t end) {
     const hdi_search_job *job = (const hdi_search_job *)arg;
     hdi_found *f = job->found + begin / job->per_task;
-    const double *before = NULL;
     const int64_t k = job->k;
-    double reach = 0;                            /* distance of its k-th neighbour */
-    int64_t i, p;
-    f->k = job->k;
+    double reach = -1;                           /* distance of the k-th neighbour of the one before */
+    int64_t i, p, v = 0, before;
     for (i = begin; i < end; i++) {
-        const int64_t v = job->order ? job->order[i] : i;
-        const double *q = hdi_at3(job->query, v), limit = before ? reach + sqrt(hdi_distance2(q, before)) : 0;
         int64_t m;
-        hdi_found_bound(f, before ? hdi_raise(limit * limit) : HDI_NO_BOUND);
-        hdi_search(job->t, q, f);
+        double limit;
+        before = v;
+        v = job->order ? job->order[i] : i;
+        limit = reach + hdi_edge_length(job->query, (int32_t)before, (int32_t)v);
+        hdi_found_begin(f, job->k, reach >= 0 ? hdi_raise(limit * limit) : HDI_NO_BOUND);
+        hdi_search(job->t, hdi_at3(job->query, v), f);
         m = hdi_found_sort(f);
         for (p = 0; p < k; p++) {
             job->index[v * k + p] = p < m ? (int32_t)f->sorted[p].id : -1;
-            if (job->distance2) job->distance2[v * k + p] = p < m ? hdi_key_square(f->sorted + p) : HUGE_VAL;
+            if (job->distance2)
+                job->distance2[v * k + p] = p < m ? hdi_of_bits(f->sorted[p].key) : HUGE_VAL;
         }
-        before = m == k ? q : NULL;
-        if (before) reach = sqrt(hdi_key_square(f->sorted + k - 1));
+        reach = m == k ? sqrt(hdi_of_bits(f->sorted[k - 1].key)) : -1;
     }
 }
 
@@ -4960,23 +4932,22 @@ static hd_status hdi_nearest(const hdi_tree *t, const double *query, int64_t n_q
 static void hdi_within_task(void *arg, int64_t begin, int64_t end) {
     const hdi_search_job *job = (const hdi_search_job *)arg;
     hdi_found *f = job->found + begin / job->per_task;
-    uint64_t *key = (uint64_t *)(void *)f->sorted;   /* room for twice as many */
+    uint64_t *key = (uint64_t *)(void *)f->sorted;
+    const hd_csr *out = job->out;
     int64_t i, p;
     for (i = begin; i < end; i++) {
-        const int64_t v = job->order ? job->order[i] : i, row = job->out->row_ptr[v];
-        f->k = job->out->val ? 0 : HDI_COUNT;
-        f->counted = 0;
-        hdi_found_bound(f, job->radius2);
+        const int64_t v = job->order ? job->order[i] : i, row = out->row_ptr[v];
+        hdi_found_begin(f, 0, job->radius2);
         hdi_search(job->t, hdi_at3(job->query, v), f);
-        if (!job->out->val) {
-            job->out->row_ptr[v] = f->counted + f->m;
+        if (!out->val) {
+            out->row_ptr[v] = f->counted + f->m;
             continue;
         }
-        for (p = 0; p < f->m; p++) key[p] = (uint64_t)f->id[p] << 32 | (uint64_t)p;
+        for (p = 0; p < f->m; p++) key[p] = (uint64_t)f->at[p].id << 32 | (uint64_t)p;
         hdi_sort_keys(key, f->m);
         for (p = 0; p < f->m; p++) {
-            job->out->col[row + p] = (int32_t)(key[p] >> 32);
-            job->out->val[row + p] = f->d[key[p] & 0xffffffffu];
+            out->col[row + p] = (int32_t)(key[p] >> 32);
+            out->val[row + p] = hdi_of_bits(f->at[key[p] & 0xffffffffu].key);
         }
     }
 }
@@ -5009,7 +4980,7 @@ static hd_status hdi_neighbours_check(const double *xyz, int32_t n, const double
     if (n < 0 || (query && *m < 0)) return hdi_fail(e, HD_ERR_ARGUMENT, "neighbours: a size is negative");
     if (!query) *m = n;
     if (n > 0 && !xyz) return hdi_missing(e);
-    return hdi_points_check(xyz, n, e) < 0 || !query ? e->status : hdi_queries_check(query, *m, e);
+    return hdi_points_check(xyz, n, e) < 0 || !query ? e->status : hdi_coordinates_check(query, *m, 1, e);
 }
 
 static hd_status hdi_neighbours_tree(hdi_tree *tree, const double *xyz, int32_t n, const hdi_call *c,
