@@ -18186,7 +18186,7 @@ static double hdi_spec_need(int32_t n, int32_t count, uint64_t n_sweep) {
     memset(&s, 0, sizeof s);
     s.keep = s.runs = hdi_scope_tally(&bytes, &e);
     hdi_spec_take(&s, n, count, n_sweep);
-    return (double)bytes + 2.0 * sizeof(double) * n * ((double)count + HDI_SPEC_GAPS);
+    return (double)bytes + 2.0 * sizeof(double) * n * ((double)count + (double)HDI_SPEC_GAPS);
 }
 
 static hd_status hdi_spec_make(hdi_spec *s, hdi_elim *m, int32_t count, double tol, hd_error *e) {

@@ -18,7 +18,7 @@ static struct {
     const char *direct, *pole_factors, *diagonal, *diffusion, *geodesic, *spectrum, *iterative, *intrinsic, *points, *polygons;
 } no;
 
-#define IMPLIED(name, by) ((by) || SWITCH(name) ? #name : NULL)
+#define IMPLIED(name, by) ((by) || is_on(#name, TEXT(name)) ? #name : NULL)
 
 static const char *either(const char *first, const char *second) { return first ? first : second; }
 
@@ -149,7 +149,7 @@ static void check_plans(const hd_laplacian *lap) {
     check_plan(lap, HD_METHOD_ITERATIVE, HD_SOLVER_AUTO, no.iterative);
     check_plan(lap, HD_METHOD_ITERATIVE, HD_SOLVER_COCG, no.iterative);
     check_plan(lap, HD_METHOD_AUTO, HD_SOLVER_LANCZOS, no.iterative);
-    check_plan(lap, HD_METHOD_DIRECT, HD_SOLVER_AUTO, no.pole_factors);
+    check_plan(lap, HD_METHOD_DIRECT, HD_SOLVER_AUTO, either(no.direct, no.pole_factors));
     check_plan(lap, HD_METHOD_KRYLOV, HD_SOLVER_AUTO, no.direct);
     memset(&o, 0, sizeof o);
     o.degree = 10;
