@@ -5873,38 +5873,6 @@ static double hdi_polygon_area(const hdi_polygon *g) {
     return sum / 2;
 }
 
-static double hdi_turn(const double *a, const double *b, const double *c) {
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-}
-
-/* Clips g to the convex hull of the n points x, which are sorted here (Andrew 1979); says whether that
- * cut anything. */
-static int hdi_polygon_clip_hull(hdi_polygon *g, double (*x)[2], int32_t n) {
-    double hull[2 * HDI_MOST_NEIGHBOURS + 4][2];
-    int32_t i, j, m = 0, base = 0;
-    int pass, cut = 0;
-    for (i = 1; i < n; i++) {
-        const double a = x[i][0], b = x[i][1];
-        for (j = i; j > 0 && (a < x[j - 1][0] || (a == x[j - 1][0] && b < x[j - 1][1])); j--)
-            memcpy(x[j], x[j - 1], sizeof *x);
-        x[j][0] = a;
-        x[j][1] = b;
-    }
-    for (pass = 0; pass < 2; pass++) {           /* the lower half from left to right, the upper one back */
-        for (i = 0; i < n; i++) {
-            const double *p = x[pass ? n - 1 - i : i];
-            while (m >= base + 2 && hdi_turn(hull[m - 2], hull[m - 1], p) <= 0) m--;
-            memcpy(hull[m++], p, sizeof *hull);
-        }
-        base = --m;                              /* the last one begins the other half */
-    }
-    for (i = 0; i < m && g->n; i++) {
-        const double *a = hull[i], *b = hull[i + 1 < m ? i + 1 : 0], e0 = b[0] - a[0], e1 = b[1] - a[1];
-        cut |= hdi_polygon_clip(g, e1, -e0, e1 * a[0] - e0 * a[1]);
-    }
-    return cut;
-}
-
 typedef struct hdi_star_point { double x, y, angle; int32_t id; } hdi_star_point;
 
 /* An angle that needs no arc tangent: 0 along x, 1 along y, a turn is 4, half a turn 2 between any two
@@ -5923,7 +5891,7 @@ static int hdi_star_left(const hdi_star_point *a, const hdi_star_point *b,
 /* directions within this hdi_star_angle are the same one; opposite ones likewise */
 #define HDI_STAR_SAME 1e-6
 
-/* p, n by angle: of those in the same direction only the nearest, which has the longest dual, stays.
+/* p, n by angle: of those in the same direction only the longest stays, the dual of the nearest.
  * Returns how many are left. */
 static int32_t hdi_star_directions(hdi_star_point *p, int32_t n) {
     const double turn = 4;
@@ -5962,11 +5930,12 @@ static void hdi_star_sort(hdi_star_point *p, int32_t n) {
     for (i = 0; i < n; i++) p[i] = from[key[i] & 255];
 }
 
-/* The star of the origin in the Delaunay triangulation of it and p[0..n), which are duals: the neighbour
- * q stands at 2 q / |q|^2, so that the line between the nearer and the farther half plane is its polar.
- * The neighbours that bound the Voronoi cell are then the corners of the convex hull, found by walking
- * around it (Graham 1972). Where neighbours are a half turn apart the cell is open. Leaves them in p by
- * angle; returns their number. */
+/* The corners of the convex hull of the origin and p[0..n), found by walking around it (Graham 1972). Where
+ * points are a half turn apart, the hull is open: the origin is one of its corners. Leaves the others in p by
+ * angle; returns their number.
+ * This gives the star of the origin in the Delaunay triangulation of it and of neighbours if p are their
+ * duals: the neighbour q stands at 2 q / |q|^2, so that the line between the nearer and the farther half
+ * plane is its polar. The neighbours that bound the Voronoi cell are then the corners. */
 static int32_t hdi_star_hull(hdi_star_point *p, int32_t n, int *closed) {
     const double half = 2, open_gap = half - HDI_STAR_SAME;
     hdi_star_point hull[HDI_STAR_MOST + 2], origin;
@@ -5975,7 +5944,7 @@ static int32_t hdi_star_hull(hdi_star_point *p, int32_t n, int *closed) {
     hdi_star_sort(p, n);
     n = hdi_star_directions(p, n);
     *closed = 1;
-    /* begin behind a gap of a half turn, else at the nearest neighbour, which is a corner */
+    /* begin behind a gap of a half turn, else at the longest one, which is a corner */
     for (i = 0; i < n; i++) {
         const double r = p[i].x * p[i].x + p[i].y * p[i].y,
                      gap = i ? p[i].angle - p[i - 1].angle : p[0].angle - p[n - 1].angle + 2 * half;
@@ -5997,6 +5966,29 @@ static int32_t hdi_star_hull(hdi_star_point *p, int32_t n, int *closed) {
     top -= !*closed;
     for (i = 0; i < top; i++) p[i] = hull[i + !*closed];
     return top;
+}
+
+/* Clips g to the convex hull of the origin and the n points x; says whether that cut anything. */
+static int hdi_polygon_clip_hull(hdi_polygon *g, double (*x)[2], int32_t n) {
+    hdi_star_point p[HDI_MOST_NEIGHBOURS + 1];
+    int32_t i, m = 0;
+    int closed, cut;
+    memset(p, 0, sizeof p);
+    for (i = 0; i < n; i++) {
+        p[m].x = x[i][0];
+        p[m].y = x[i][1];
+        m += x[i][0] != 0 || x[i][1] != 0;
+    }
+    m = hdi_star_hull(p, m, &closed);
+    if (!closed) memset(p + m++, 0, sizeof *p);
+    cut = m < 3;                                 /* all are on a line */
+    if (cut) g->n = 0;
+    for (i = 0; i < m && g->n > 0; i++) {
+        const hdi_star_point *a = p + i, *b = p + (i + 1 < m ? i + 1 : 0);
+        const double e0 = b->x - a->x, e1 = b->y - a->y;
+        cut |= hdi_polygon_clip(g, e1, -e0, e1 * a->x - e0 * a->y);
+    }
+    return cut;
 }
 
 /* ==== [11] intrinsic ====
@@ -7750,37 +7742,32 @@ static hd_laplacian *hdi_pair_renumber(const hd_laplacian *lap, const int32_t *p
     hdi_scope s = hdi_scope_begin(ctx, e), keep = hdi_scope_begin(ctx, e);
     const int32_t n = lap->n_active;
     int64_t *fill = HDI_TAKE(&s, int64_t, n);
-    hd_laplacian *out = HDI_TAKE(&keep, hd_laplacian, 1);
-    const hd_csr L = hdi_csr_take(&keep, n, n, lap->L.nnz, 1);
-    double *B = lap->B ? HDI_TAKE(&keep, double, lap->L.nnz) : NULL, *mass = HDI_TAKE(&keep, double, n);
-    double *b_diag = lap->B ? HDI_TAKE(&keep, double, n) : mass;
-    double *component_mass = HDI_TAKE(&keep, double, hdi_lap_components_most(lap));
-    int32_t *vertex = HDI_TAKE(&keep, int32_t, n), *row = HDI_TAKE(&keep, int32_t, lap->n);
-    int32_t *component = HDI_TAKE(&keep, int32_t, n), i;
+    hd_laplacian *out = HDI_TAKE(&keep, hd_laplacian, 1), next = *lap;
+    int32_t *vertex, *row, i;
+    next.L = hdi_csr_take(&keep, n, n, lap->L.nnz, 1);
+    next.B = lap->B ? HDI_TAKE(&keep, double, lap->L.nnz) : NULL;
+    next.mass = HDI_TAKE(&keep, double, n);
+    next.b_diag = lap->B ? HDI_TAKE(&keep, double, n) : next.mass;
+    next.component_mass = HDI_TAKE(&keep, double, hdi_lap_components_most(lap));
+    next.component = HDI_TAKE(&keep, int32_t, n);
+    next.vertex = vertex = HDI_TAKE(&keep, int32_t, n);
+    next.row = row = HDI_TAKE(&keep, int32_t, lap->n);
+    next.context = ctx;
+    next.xyz = NULL;                             /* an order has been found */
+    next.moving = NULL;
+    next.holding = NULL;
     if (e->status < 0) {
         (void)hdi_scope_end(&s);
         (void)hdi_scope_end(&keep);
         return NULL;
     }
     keep.n = 0;                                  /* all of it is the caller's now */
-    *out = *lap;
-    out->L = L;
-    out->B = B;
-    out->mass = mass;
-    out->b_diag = b_diag;
-    out->component_mass = component_mass;
-    out->vertex = vertex;
-    out->row = row;
-    out->component = component;
-    out->context = ctx;
-    out->xyz = NULL;                             /* an order has been found */
-    out->moving = NULL;
-    out->holding = NULL;
+    *out = next;
     memcpy(row, lap->row, (size_t)lap->n * sizeof *row);
     for (i = 0; i < n; i++) {
         vertex[i] = lap->vertex[perm[i]];
         row[vertex[i]] = i;
-        L.row_ptr[i + 1] = L.row_ptr[i] + lap->L.row_ptr[perm[i] + 1] - lap->L.row_ptr[perm[i]];
+        out->L.row_ptr[i + 1] = out->L.row_ptr[i] + lap->L.row_ptr[perm[i] + 1] - lap->L.row_ptr[perm[i]];
     }
     hdi_pair_refresh(out, lap, fill);
     (void)hdi_scope_end(&s);
@@ -7815,55 +7802,121 @@ static double hdi_pair_scale(hd_laplacian *lap) {
  * cells end at the convex hull of the neighbours. The papers leave coincident points, borders and the
  * bandwidth to the reader. */
 
-enum { HDI_CELLS_PER_TASK = 256 };     /* some ms of work */
+enum { HDI_POINTS_PER_TASK = 256 };    /* some ms of work */
 
-/* A set of different places, with the k nearest of each (the first is the place itself). */
+/* Points with their neighbours, in the order of the leaves of a tree: neighbours are near in memory then. */
 typedef struct hdi_cloud {
-    int32_t n, k;
     const double *xyz;
-    const int32_t *first;      /* [n] the point that a place is named by */
-    int32_t *nbr;             /* [k n] */
-    double *d2;                /* [k n] */
-    double *spacing2;          /* [n] area for each point nearby, by the disc to the last neighbour */
+    const int32_t *name;       /* [n] the caller's number of a point */
+    int32_t n;
+    const int64_t *ptr;
+    /* [ptr[n]] neighbours of point i from ptr[i] on; then its star, counterclockwise in its plane */
+    int32_t *nbr;
+    double *nearest;           /* [n] distance to the nearest one in another place; 0: none */
+    double *reach;             /* [n] distance to the last one */
+    int8_t *not_flat;          /* [n] see hdi_plane */
+    int32_t *size;             /* [n] corners of the star; negative: open between the last and the first */
     double *area;              /* [n] of the cells */
     int8_t *border;            /* [n] 1: the cell ends where the neighbours do */
-    int8_t *not_flat;          /* [n] see hdi_plane */
     double start[HDI_CELL_SIDES][2];   /* a regular polygon around the unit circle */
 } hdi_cloud;
 
-/* The middle one of the spacings around place i: an outlier has those of the surface. */
-static double hdi_cell_spacing2(const hdi_cloud *cloud, int32_t i) {
-    uint64_t s[HDI_MOST_NEIGHBOURS + 1];
-    const int32_t *nbr = cloud->nbr + (int64_t)i * cloud->k;
-    int32_t k;
-    for (k = 0; k < cloud->k; k++) s[k] = hdi_rank(cloud->spacing2[nbr[k]]);
-    return hdi_kth(s, cloud->k, cloud->k / 2);
+/* The tree of n points, and those of the cloud in its order. first [n]: the caller's numbers of the points;
+ * NULL: their own. xyz and name of the cloud live in keep. */
+static hd_status hdi_cloud_order(hdi_cloud *cloud, hdi_tree *tree, const double *xyz, int32_t n,
+                                 const int32_t *first, hdi_scope *own, hdi_scope *keep) {
+    double *points = HDI_TAKE(keep, double, hdi_triple(n));
+    int32_t *name = HDI_TAKE(keep, int32_t, n), v;
+    if (own->e->status < 0 || hdi_tree_make(tree, xyz, n, own) < 0) return own->e->status;
+    for (v = 0; v < n; v++) {
+        name[v] = first ? first[tree->id[v]] : tree->id[v];
+        hdi_copy3(points + hdi_triple(v), hdi_at3(xyz, tree->id[v]));
+        tree->id[v] = v;
+    }
+    cloud->n = n;
+    cloud->name = name;
+    cloud->xyz = tree->xyz = points;
+    return HD_OK;
 }
+
+/* The nearest other places, the place itself before them. xyz and name live in keep. */
+static hd_status hdi_cloud_search(hdi_cloud *cloud, const hdi_places *places, int32_t neighbours,
+                                  hdi_scope *s, hdi_scope *keep) {
+    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
+    const int32_t n = places->n, k = (int32_t)hdi_least(n, 1 + (int64_t)neighbours);
+    int64_t *ptr = HDI_TAKE(s, int64_t, (int64_t)n + 1);
+    int32_t v;
+    hdi_tree tree;
+    cloud->ptr = ptr;
+    cloud->nbr = HDI_TAKE(s, int32_t, (int64_t)k * n);
+    if (hdi_cloud_order(cloud, &tree, places->xyz, n, places->first, &own, keep) < 0)
+        return hdi_scope_end(&own);
+    for (v = 0; v <= n; v++) ptr[v] = (int64_t)v * k;
+    (void)hdi_nearest(&tree, NULL, n, k, cloud->nbr, NULL, s->ctx, s->e);
+    return hdi_scope_end(&own);
+}
+
+static void hdi_cloud_reach_task(void *arg, int64_t begin, int64_t end) {
+    const hdi_cloud *cloud = (const hdi_cloud *)arg;
+    int64_t i, p;
+    for (i = begin; i < end; i++) {
+        double least = 0, r = 0;
+        for (p = cloud->ptr[i]; p < cloud->ptr[i + 1]; p++) {
+            r = hdi_edge_length(cloud->xyz, (int32_t)i, cloud->nbr[p]);
+            if (r > 0 && (least == 0 || r < least)) least = r;
+        }
+        cloud->nearest[i] = least;
+        cloud->reach[i] = r;
+    }
+}
+
+/* Distances to neighbours; h becomes the mean one to the nearest. */
+static hd_status hdi_cloud_measure(hdi_cloud *cloud, double *h, hdi_scope *s) {
+    int32_t i, n_near = 0;
+    cloud->nearest = HDI_TAKE(s, double, cloud->n);
+    cloud->reach = HDI_TAKE(s, double, cloud->n);
+    cloud->not_flat = HDI_TAKE(s, int8_t, cloud->n);
+    if (s->e->status < 0) return s->e->status;
+    hdi_parallel_ranges(s->ctx, cloud->n, HDI_POINTS_PER_TASK, hdi_cloud_reach_task, cloud);
+    for (i = 0; i < cloud->n; i++) {
+        n_near += cloud->nearest[i] > 0;
+        *h += cloud->nearest[i];
+    }
+    *h /= n_near > 0 ? n_near : 1;
+    return HD_OK;
+}
+
+/* Area for each point where the last of k - 1 neighbours is so far away. */
+static double hdi_cloud_spacing2(int64_t k, double reach) { return HDI_PI * reach * reach / (double)(k - 1); }
 
 /* Area of the cell of place i in its tangent plane; 0 where neighbours lie on a line. Lengths are in
  * units of the distance of the last neighbour. */
 static void hdi_cell_area(hdi_cloud *cloud, int32_t i) {
-    const int64_t at = (int64_t)i * cloud->k;
-    const double reach = sqrt(cloud->d2[at + cloud->k - 1]), unit = 1 / reach, *p = hdi_at3(cloud->xyz, i);
-    double x[HDI_MOST_NEIGHBOURS + 1][2], rel[3 * (HDI_MOST_NEIGHBOURS + 1)], radius, outer2, area;
+    const int32_t *nbr = cloud->nbr + cloud->ptr[i], n = (int32_t)(cloud->ptr[i + 1] - cloud->ptr[i]);
+    const double reach = cloud->reach[i], unit = 1 / reach, *p = hdi_at3(cloud->xyz, i);
+    double x[HDI_MOST_NEIGHBOURS + 1][2], rel[3 * (HDI_MOST_NEIGHBOURS + 1)];
+    double radius, outer2, area;
+    uint64_t reaches[HDI_MOST_NEIGHBOURS + 1];
     hdi_plane plane;
     hdi_polygon g;
     int32_t k, v;
-    for (k = 0; k < cloud->k; k++) {
-        hdi_sub3(hdi_at3(cloud->xyz, cloud->nbr[at + k]), p, rel + 3 * k);
+    for (k = 0; k < n; k++) {
+        hdi_sub3(hdi_at3(cloud->xyz, nbr[k]), p, rel + 3 * k);
         for (v = 0; v < 3; v++) rel[3 * k + v] *= unit;
+        reaches[k] = hdi_rank(cloud->reach[nbr[k]]);
     }
-    plane = hdi_tangent_plane(rel + 3, cloud->k - 1);   /* the first one is the place itself */
-    /* random points leave a circle so large empty once in 3e5 times */
-    radius = 2 * sqrt(hdi_cell_spacing2(cloud, i)) * unit;
+    plane = hdi_tangent_plane(rel + 3, n - 1);   /* the first one is the place itself */
+    /* By the middle one of the spacings nearby: an outlier has those of the surface. Random points leave a
+     * circle so large empty once in 3e5 times. */
+    radius = 2 * sqrt(hdi_cloud_spacing2(n, hdi_kth(reaches, n, n / 2))) * unit;
     g.n = HDI_CELL_SIDES;
     for (v = 0; v < g.n; v++) {
         g.x[v][0] = radius * cloud->start[v][0];
         g.x[v][1] = radius * cloud->start[v][1];
     }
     outer2 = 1.2 * radius * radius;
-    for (k = 0; k < cloud->k; k++) {
-        const double l2 = cloud->d2[at + k] * unit * unit;   /* and q2 the square in the plane */
+    for (k = 0; k < n; k++) {
+        const double l2 = hdi_dot3(rel + 3 * k, rel + 3 * k);    /* and q2 the square in the plane */
         double q2;
         x[k][0] = hdi_dot3(plane.axis[0], rel + 3 * k);
         x[k][1] = hdi_dot3(plane.axis[1], rel + 3 * k);
@@ -7875,7 +7928,7 @@ static void hdi_cell_area(hdi_cloud *cloud, int32_t i) {
             outer2 = hdi_max(outer2, g.x[v][0] * g.x[v][0] + g.x[v][1] * g.x[v][1]);
     }
     cloud->not_flat[i] = plane.not_flat;
-    cloud->border[i] = (int8_t)(hdi_polygon_clip_hull(&g, x, cloud->k) || outer2 >= radius * radius);
+    cloud->border[i] = (int8_t)(hdi_polygon_clip_hull(&g, x + 1, n - 1) || outer2 >= radius * radius);
     area = hdi_polygon_area(&g);
     cloud->area[i] = area > 1e-12 * radius * radius ? area * reach * reach : 0;
 }
@@ -7886,47 +7939,31 @@ static void hdi_cell_task(void *arg, int64_t begin, int64_t end) {
     for (i = begin; i < end; i++) hdi_cell_area(cloud, (int32_t)i);
 }
 
-/* Neighbours, spacings, h and cells of the places. */
-static hd_status hdi_cloud_measure(hdi_cloud *cloud, hd_laplacian *lap, hdi_scope *s) {
-    hdi_tree tree;
-    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
-    double sum = 0;
+/* The cells of places. */
+static hd_status hdi_cloud_cells(hdi_cloud *cloud, hdi_scope *s) {
+    const double step = HDI_TURN / (double)HDI_CELL_SIDES, r = 1 / cos(step / 2);
     int32_t i;
-    const int64_t n = cloud->n, k = cloud->k;
-    cloud->spacing2 = HDI_TAKE(s, double, n);
-    cloud->area = HDI_TAKE(s, double, n);
-    cloud->border = HDI_TAKE(s, int8_t, n);
-    cloud->not_flat = HDI_TAKE(s, int8_t, n);
-    cloud->nbr = HDI_TAKE(s, int32_t, k * n);
-    cloud->d2 = HDI_TAKE(s, double, k * n);
-    if (s->e->status < 0 || hdi_tree_make(&tree, cloud->xyz, cloud->n, &own) < 0) return hdi_scope_end(&own);
-    if (hdi_nearest(&tree, NULL, n, cloud->k, cloud->nbr, cloud->d2, s->ctx, s->e) < 0)
-        return hdi_scope_end(&own);
-    for (i = 0; i < n; i++) {
-        const double *d2 = cloud->d2 + i * k;
-        if (!(d2[1] > DBL_MIN / DBL_EPSILON)) {
+    cloud->area = HDI_TAKE(s, double, cloud->n);
+    cloud->border = HDI_TAKE(s, int8_t, cloud->n);
+    for (i = 0; i < cloud->n && s->e->status >= 0; i++) {
+        const double d2 = cloud->nearest[i] * cloud->nearest[i];
+        if (!(d2 > DBL_MIN / DBL_EPSILON))
             hdi_fail_face(
                 s->e, HD_ERR_ARGUMENT,
                 "two points are too close together: the square of their distance is too small", -1,
-                cloud->first[i], d2[1]);
-            return hdi_scope_end(&own);
-        }
-        sum += sqrt(d2[1]);
-        cloud->spacing2[i] = HDI_PI * d2[k - 1] / (double)(k - 1);
+                cloud->name[i], d2);
     }
-    lap->h = sum / (double)n;
     for (i = 0; i < HDI_CELL_SIDES; i++) {
-        const double step = HDI_TURN / (double)HDI_CELL_SIDES, r = 1 / cos(step / 2);
         cloud->start[i][0] = r * cos(step * i);
         cloud->start[i][1] = r * sin(step * i);
     }
-    if (hdi_progress(s->ctx, "assemble", 0.2, s->e) < 0) return hdi_scope_end(&own);
-    hdi_parallel_ranges(s->ctx, n, HDI_CELLS_PER_TASK, hdi_cell_task, cloud);
-    for (i = 0; i < n && s->e->status >= 0; i++)
+    if (s->e->status < 0 || hdi_progress(s->ctx, "assemble", 0.2, s->e) < 0) return s->e->status;
+    hdi_parallel_ranges(s->ctx, cloud->n, HDI_POINTS_PER_TASK, hdi_cell_task, cloud);
+    for (i = 0; i < cloud->n && s->e->status >= 0; i++)
         if (cloud->area[i] != 0 && !hdi_in_range(cloud->area[i]))
             hdi_fail_face(s->e, HD_ERR_ARGUMENT, "points: the area of a cell is outside 1e-100 .. 1e100", -1,
-                          cloud->first[i], cloud->area[i]);
-    return hdi_scope_end(&own);
+                          cloud->name[i], cloud->area[i]);
+    return s->e->status;
 }
 
 /* Bandwidth from the sampling: a multiple of m, the area that a point has, which is the mean of pi r_k^2
@@ -7939,11 +7976,11 @@ static hd_status hdi_cloud_measure(hdi_cloud *cloud, hd_laplacian *lap, hdi_scop
 static double hdi_cloud_bandwidth(const hdi_cloud *cloud, uint64_t *work) {
     double median, mean = 0, h = 0;
     int32_t i;
-    for (i = 0; i < cloud->n; i++) work[i] = hdi_rank(cloud->spacing2[i]);
+    for (i = 0; i < cloud->n; i++) work[i] = hdi_rank(hdi_cloud_spacing2(cloud->ptr[1], cloud->reach[i]));
     median = hdi_kth(work, cloud->n, cloud->n / 2);
     for (i = 0; i < cloud->n; i++) {
-        mean += hdi_min(cloud->spacing2[i], 9 * median);
-        h += sqrt(hdi_min(cloud->d2[(int64_t)i * cloud->k + 1], 9 * median));
+        mean += hdi_min(hdi_cloud_spacing2(cloud->ptr[1], cloud->reach[i]), 9 * median);
+        h += hdi_min(cloud->nearest[i], 3 * sqrt(median));
     }
     mean /= cloud->n;
     h /= cloud->n;
@@ -7993,7 +8030,7 @@ static hd_status hdi_cloud_assemble(hd_laplacian *lap, double cut2, hd_error *e)
     job.lap = lap;
     job.bandwidth = rep->bandwidth2;
     job.scale = hdi_divide(hdi_divide(HDI_QUARTER_INV_PI, job.bandwidth), job.bandwidth) / lap->n_active;
-    hdi_parallel_ranges(lap->context, lap->n_active, HDI_CELLS_PER_TASK, hdi_weights_task, &job);
+    hdi_parallel_ranges(lap->context, lap->n_active, HDI_POINTS_PER_TASK, hdi_weights_task, &job);
     for (i = 0; i < lap->n_active; i++) {
         const int64_t count = lap->L.row_ptr[i + 1] - lap->L.row_ptr[i];
         rep->n_isolated += count == 1;
@@ -8009,47 +8046,43 @@ static hd_status hdi_cloud_assemble(hd_laplacian *lap, double cut2, hd_error *e)
 }
 
 /* Masses of the points: equal shares of their place's cell, or 1; and what there is to report about them. */
-static void hdi_cloud_masses(const hdi_cloud *cloud, hd_laplacian *lap, const int32_t *place,
+static void hdi_cloud_masses(const hdi_cloud *cloud, hd_laplacian *lap, const hdi_places *places,
                              int32_t *copies, double *mass) {
+    const int ones = hdi_kind_of(lap->kind)->lump == HDI_LUMP_ONES;
     hd_point_report *rep = &lap->points;
     int32_t i;
-    for (i = 0; i < cloud->n; i++) copies[i] = 0;
-    for (i = 0; i < lap->n; i++) copies[place[i]]++;
-    for (i = 0; i < lap->n; i++)
-        mass[i] = hdi_kind_of(lap->kind)->lump == HDI_LUMP_ONES ? 1
-                                                                : cloud->area[place[i]] / copies[place[i]];
+    for (i = 0; i < lap->n; i++) copies[places->place[i]]++;
     for (i = 0; i < cloud->n; i++) {
+        const int32_t v = cloud->name[i], n = copies[places->place[v]];
+        mass[v] = ones ? 1 : cloud->area[i] / n;
         lap->area += cloud->area[i];
         rep->n_border += cloud->border[i];
         rep->n_not_flat += cloud->not_flat[i];
-        rep->n_no_area += cloud->area[i] > 0 ? 0 : copies[i];
+        rep->n_no_area += cloud->area[i] > 0 ? 0 : n;
     }
+    for (i = 0; i < lap->n; i++) mass[i] = mass[places->first[places->place[i]]];
     rep->n_coincident = lap->n - cloud->n;
 }
 
 static hd_status hdi_lap_points(hd_laplacian *lap, const double *xyz, hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
     hd_point_report *rep = &lap->points;
+    double *work = HDI_TAKE(&s, double, lap->n);
+    int32_t *copies = HDI_TAKE_ZERO(&s, int32_t, lap->n);
     hdi_places places;
     hdi_cloud cloud;
-    double *work;
     memset(&cloud, 0, sizeof cloud);
-    if (hdi_places_make(&places, xyz, lap->n, &s) < 0) return hdi_scope_end(&s);
+    if (!copies || hdi_places_make(&places, xyz, lap->n, &s) < 0) return hdi_scope_end(&s);
     if (places.n < 2) hdi_fail(e, HD_ERR_EMPTY, "points: fewer than two different ones");
-    work = HDI_TAKE(&s, double, lap->n);
-    if (!work) return hdi_scope_end(&s);
-    cloud.n = places.n;
-    cloud.xyz = places.xyz;
-    cloud.first = places.first;
-    cloud.k = (int32_t)hdi_least(cloud.n, 1 + (int64_t)rep->neighbours);
-    if (hdi_cloud_measure(&cloud, lap, &s) < 0) return hdi_scope_end(&s);
+    if (e->status < 0 || hdi_cloud_search(&cloud, &places, rep->neighbours, &s, &s) < 0 ||
+        hdi_cloud_measure(&cloud, &lap->h, &s) < 0 || hdi_cloud_cells(&cloud, &s) < 0)
+        return hdi_scope_end(&s);
     if (rep->bandwidth2 == 0) rep->bandwidth2 = hdi_cloud_bandwidth(&cloud, (uint64_t *)(void *)work);
     rep->cut_radius = sqrt(-4 * log(rep->weight_cut) * rep->bandwidth2);
-    hdi_cloud_masses(&cloud, lap, places.place, places.first, work);
-    if (hdi_lap_rows(lap, work, NULL, e) < 0 || hdi_progress(lap->context, "assemble", 0.4, e) < 0)
-        return hdi_scope_end(&s);
-    if (hdi_lap_places(lap, xyz, e) < 0) return hdi_scope_end(&s);
-    if (hdi_cloud_assemble(lap, -4 * log(rep->weight_cut) * rep->bandwidth2, e) < 0) return hdi_scope_end(&s);
+    hdi_cloud_masses(&cloud, lap, &places, copies, work);
+    if (hdi_lap_rows(lap, work, NULL, e) >= 0 && hdi_progress(lap->context, "assemble", 0.4, e) >= 0 &&
+        hdi_lap_places(lap, xyz, e) >= 0)
+        (void)hdi_cloud_assemble(lap, -4 * log(rep->weight_cut) * rep->bandwidth2, e);
     lap->b_ratio = 1;
     lap->conserves = 1;
     return hdi_scope_end(&s);
@@ -8084,8 +8117,6 @@ static void hdi_point_opts(hd_laplacian *lap, const hd_laplacian_opts *o, hd_err
 
 /* ---- point sets: the tufted Laplacian of the points' stars ---- */
 
-enum { HDI_STAR_POINTS = 1024 };        /* points per task */
-
 /* A number in [0, 1) for each point: which of four cocircular points are joined must be the same in the
  * stars of all four, on a grid for instance. */
 static double hdi_point_chance(int32_t i) {
@@ -8095,73 +8126,48 @@ static double hdi_point_chance(int32_t i) {
     return (double)(x >> 11) / 9007199254740992.0;
 }
 
-typedef struct hdi_star_job {
-    const double *xyz;
-    const int32_t *name;/* [n] the caller's number of a point */
-    int32_t n;
-    const int64_t *ptr;
-    /* [ptr[n]] neighbours of point i from ptr[i] on; then its star, counterclockwise in its plane */
-    int32_t *nbr;
-    double *nearest;    /* [n] distance to the nearest neighbour in another place; 0: none */
-    int32_t *size;      /* [n] corners of the star; negative: it is open between the last and the first */
-    int8_t *not_flat;   /* [n] see hdi_plane */
-} hdi_star_job;
-
-static void hdi_star_unit_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_star_job *job = (const hdi_star_job *)arg;
-    int64_t i, p;
-    for (i = begin; i < end; i++) {
-        double least = 0;
-        for (p = job->ptr[i]; p < job->ptr[i + 1]; p++) {
-            const double r = hdi_edge_length(job->xyz, (int32_t)i, job->nbr[p]);
-            if (r > 0 && (least == 0 || r < least)) least = r;
-        }
-        job->nearest[i] = least;
-    }
-}
-
 /* The star of point i. Lengths are in units of its nearest neighbour's distance. */
-static void hdi_point_star(const hdi_star_job *job, int32_t i) {
-    const double unit = job->nearest[i];
+static void hdi_point_star(const hdi_cloud *cloud, int32_t i) {
+    const double unit = cloud->nearest[i];
     double rel[3 * HDI_STAR_MOST];
     hdi_plane plane;
     hdi_star_point p[HDI_STAR_MOST];
     int32_t n = 0, m = 0, k, id[HDI_STAR_MOST];
     int closed;
     int64_t q;
-    job->size[i] = 0;
-    job->not_flat[i] = 0;
-    for (q = job->ptr[i]; q < job->ptr[i + 1] && unit > 0; q++) {
+    cloud->size[i] = 0;
+    cloud->not_flat[i] = 0;
+    for (q = cloud->ptr[i]; q < cloud->ptr[i + 1] && unit > 0; q++) {
         double *d = rel + 3 * n;
-        hdi_sub3(hdi_at3(job->xyz, job->nbr[q]), hdi_at3(job->xyz, i), d);
+        hdi_sub3(hdi_at3(cloud->xyz, cloud->nbr[q]), hdi_at3(cloud->xyz, i), d);
         for (k = 0; k < 3; k++) d[k] /= unit;
-        id[n] = job->nbr[q];
+        id[n] = cloud->nbr[q];
         n += hdi_dot3(d, d) > 0;                 /* the point itself and others in its place do not count */
     }
     if (n < 2) return;
     plane = hdi_tangent_plane(rel, n);
-    job->not_flat[i] = plane.not_flat;
+    cloud->not_flat[i] = plane.not_flat;
     for (k = 0; k < n; k++) {
-        const double *d = rel + 3 * k, h = hdi_dot3(plane.axis[2], d), w = job->nearest[id[k]] / unit;
+        const double *d = rel + 3 * k, h = hdi_dot3(plane.axis[2], d), w = cloud->nearest[id[k]] / unit;
         const double x = hdi_dot3(plane.axis[0], d), y = hdi_dot3(plane.axis[1], d), r2 = x * x + y * y;
         double power = hdi_max(r2 + 2 * h * (h - 2 * plane.height) / 3, r2 / 4);
         if (!(r2 > 1e-12 * hdi_dot3(d, d))) continue;      /* straight above */
-        power += 1e-9 * hdi_min(1, r2) * hdi_point_chance(job->name[i]);
-        power -= 1e-9 * hdi_min(w * w, r2) * hdi_point_chance(job->name[id[k]]);
+        power += 1e-9 * hdi_min(1, r2) * hdi_point_chance(cloud->name[i]);
+        power -= 1e-9 * hdi_min(w * w, r2) * hdi_point_chance(cloud->name[id[k]]);
         p[m].x = 2 * x / power;
         p[m].y = 2 * y / power;
         p[m++].id = id[k];
     }
     if (m < 2) return;
     m = hdi_star_hull(p, m, &closed);
-    for (k = 0; k < m; k++) job->nbr[job->ptr[i] + k] = p[k].id;
-    job->size[i] = closed ? m : -m;
+    for (k = 0; k < m; k++) cloud->nbr[cloud->ptr[i] + k] = p[k].id;
+    cloud->size[i] = closed ? m : -m;
 }
 
 static void hdi_star_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_star_job *job = (const hdi_star_job *)arg;
+    const hdi_cloud *cloud = (const hdi_cloud *)arg;
     int64_t i;
-    for (i = begin; i < end; i++) hdi_point_star(job, (int32_t)i);
+    for (i = begin; i < end; i++) hdi_point_star(cloud, (int32_t)i);
 }
 
 static hd_status hdi_star_check(const int64_t *ptr, const int32_t *nbr, int32_t n, hd_error *e) {
@@ -8184,98 +8190,48 @@ static hd_status hdi_star_check(const int64_t *ptr, const int32_t *nbr, int32_t 
     return HD_OK;
 }
 
-/* The tree of n points, and the job's points in the order of its leaves: neighbours are near in memory
- * then. first [n]: the caller's numbers of the points; NULL: their own. xyz and name of the job live in
- * keep. */
-static hd_status hdi_star_order(hdi_star_job *job, hdi_tree *tree, const double *xyz, int32_t n,
-                                const int32_t *first, hdi_scope *own, hdi_scope *keep) {
-    double *points = HDI_TAKE(keep, double, hdi_triple(n));
-    int32_t *name = HDI_TAKE(keep, int32_t, n), v;
-    if (own->e->status < 0 || hdi_tree_make(tree, xyz, n, own) < 0) return own->e->status;
-    for (v = 0; v < n; v++) {
-        name[v] = first ? first[tree->id[v]] : tree->id[v];
-        hdi_copy3(points + hdi_triple(v), hdi_at3(xyz, tree->id[v]));
-        tree->id[v] = v;
-    }
-    job->n = n;
-    job->name = name;
-    job->xyz = tree->xyz = points;
-    return HD_OK;
-}
-
-/* Neighbours for points that come without: the nearest other places. Of several points in one place only
- * the first takes part. xyz and name live in keep. */
-static hd_status hdi_star_search(hdi_star_job *job, const double *xyz, int32_t n_points,
-                                 hd_point_report *rep, hdi_scope *s, hdi_scope *keep) {
-    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
-    int32_t k, v, j;
-    int64_t *ptr;
-    hdi_places places;
-    hdi_tree tree;
-    if (hdi_places_make(&places, xyz, n_points, &own) < 0) return hdi_scope_end(&own);
-    if (hdi_star_order(job, &tree, places.xyz, places.n, places.first, &own, keep) < 0)
-        return hdi_scope_end(&own);
-    k = (int32_t)hdi_least(places.n, 1 + (int64_t)rep->neighbours);
-    rep->n_coincident = n_points - places.n;
-    job->ptr = ptr = HDI_TAKE(s, int64_t, (int64_t)places.n + 1);
-    job->nbr = HDI_TAKE(s, int32_t, (int64_t)k * places.n);
-    if (s->e->status < 0) return hdi_scope_end(&own);
-    for (v = 0; v <= places.n; v++) ptr[v] = (int64_t)v * k;
-    (void)hdi_nearest(&tree, NULL, places.n, k, job->nbr, NULL, s->ctx, s->e);
-    for (v = 0; v < places.n && s->e->status >= 0; v++)   /* too far: its square overflows */
-        for (j = 0; j < k; j++)
-            if (job->nbr[ptr[v] + j] < 0) job->nbr[ptr[v] + j] = v;
-    return hdi_scope_end(&own);
-}
-
 /* The caller's neighbours, points and lists renumbered. */
-static hd_status hdi_star_given(hdi_star_job *job, const hdi_input *in, hdi_scope *s, hdi_scope *keep) {
-    const int64_t *nbr_ptr = in->nbr_ptr;
-    const int32_t *nbr = in->nbr, n = in->mesh.n;
+static hd_status hdi_cloud_given(hdi_cloud *cloud, const hdi_input *in, hdi_scope *s, hdi_scope *keep) {
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
+    const int64_t *nbr_ptr = in->nbr_ptr;
+    const int32_t n = in->mesh.n;
     int32_t *inverse = HDI_TAKE(&own, int32_t, n), v;
     int64_t *ptr = HDI_TAKE(s, int64_t, (int64_t)n + 1), p, q = 0;
     hdi_tree tree;
-    if (s->e->status < 0 || hdi_star_check(nbr_ptr, nbr, n, s->e) < 0) return hdi_scope_end(&own);
-    job->ptr = ptr;
-    job->nbr = HDI_TAKE(s, int32_t, nbr_ptr[n]);
-    if (hdi_star_order(job, &tree, in->mesh.xyz, n, NULL, &own, keep) < 0) return hdi_scope_end(&own);
-    for (v = 0; v < n; v++) inverse[job->name[v]] = v;
+    if (s->e->status < 0 || hdi_star_check(nbr_ptr, in->nbr, n, s->e) < 0) return hdi_scope_end(&own);
+    cloud->ptr = ptr;
+    cloud->nbr = HDI_TAKE(s, int32_t, nbr_ptr[n]);
+    if (hdi_cloud_order(cloud, &tree, in->mesh.xyz, n, NULL, &own, keep) < 0) return hdi_scope_end(&own);
+    for (v = 0; v < n; v++) inverse[cloud->name[v]] = v;
     for (v = 0; v < n; v++) {
         ptr[v] = q;
-        for (p = nbr_ptr[job->name[v]]; p < nbr_ptr[job->name[v] + 1]; p++) job->nbr[q++] = inverse[nbr[p]];
+        for (p = nbr_ptr[cloud->name[v]]; p < nbr_ptr[cloud->name[v] + 1]; p++)
+            cloud->nbr[q++] = inverse[in->nbr[p]];
     }
     ptr[n] = q;
     return hdi_scope_end(&own);
 }
 
-/* All triangles of all stars, a third each in the end: tri in s, counted in *m. Fills lap->h, the mean
- * distance to the nearest, and lap->points.n_not_flat. */
-static int32_t *hdi_stars(hdi_star_job *job, int32_t *m, hd_laplacian *lap, hdi_scope *s) {
-    int32_t *tri, i, k, n_near = 0;
+/* All triangles of all stars, a third each in the end: tri in s, counted in *m. */
+static int32_t *hdi_stars(hdi_cloud *cloud, int32_t *m, hd_laplacian *lap, hdi_scope *s) {
+    int32_t *tri, i, k;
     int64_t count = 0;
-    job->nearest = HDI_TAKE(s, double, job->n);
-    job->size = HDI_TAKE(s, int32_t, job->n);
-    job->not_flat = HDI_TAKE(s, int8_t, job->n);
-    if (s->e->status < 0) return NULL;
-    hdi_parallel_ranges(s->ctx, job->n, HDI_STAR_POINTS, hdi_star_unit_task, job);
-    hdi_parallel_ranges(s->ctx, job->n, HDI_STAR_POINTS, hdi_star_task, job);
-    for (i = 0; i < job->n; i++) {
-        count += job->size[i] < 0 ? -job->size[i] - 1 : job->size[i];
-        n_near += job->nearest[i] > 0;
-        lap->h += job->nearest[i];
-        lap->points.n_not_flat += job->not_flat[i];
+    cloud->size = HDI_TAKE(s, int32_t, cloud->n);
+    if (!cloud->size || hdi_cloud_measure(cloud, &lap->h, s) < 0) return NULL;
+    hdi_parallel_ranges(s->ctx, cloud->n, HDI_POINTS_PER_TASK, hdi_star_task, cloud);
+    for (i = 0; i < cloud->n; i++) {
+        count += cloud->size[i] < 0 ? -cloud->size[i] - 1 : cloud->size[i];
+        lap->points.n_not_flat += cloud->not_flat[i];
     }
-    lap->h /= n_near > 0 ? n_near : 1;
     if (3 * count > INT32_MAX)
         hdi_fail(s->e, HD_ERR_TOO_LARGE, "more than 2^31 corners of triangles in the points' stars");
     tri = HDI_TAKE(s, int32_t, 3 * count);
     if (!tri) return NULL;
     *m = (int32_t)count;
     count = 0;
-    for (i = 0; i < job->n; i++) {
-        const int32_t *star = job->nbr + job->ptr[i], size = job->size[i] < 0 ? -job->size[i] : job->size[i],
-                      last = size - (job->size[i] < 0);
+    for (i = 0; i < cloud->n; i++) {
+        const int32_t *star = cloud->nbr + cloud->ptr[i], open = cloud->size[i] < 0,
+                      size = open ? -cloud->size[i] : cloud->size[i], last = size - open;
         for (k = 0; k < last; k++) {
             tri[count++] = i;
             tri[count++] = star[k];
@@ -8285,21 +8241,25 @@ static int32_t *hdi_stars(hdi_star_job *job, int32_t *m, hd_laplacian *lap, hdi_
     return tri;
 }
 
-/* The soup of the stars of all points. xyz and name live in s, nothing else is left of neighbours and
- * stars. */
-static hd_status hdi_star_soup(hdi_soup *soup, hdi_star_job *job, hd_laplacian *lap, const hdi_input *in,
+/* The soup of the stars of all points; of several points in one place only the first takes part. xyz and name
+ * live in s, nothing else is left of neighbours and stars. */
+static hd_status hdi_star_soup(hdi_soup *soup, hdi_cloud *cloud, hd_laplacian *lap, const hdi_input *in,
                                hdi_scope *s) {
-    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
+    hdi_scope own = hdi_scope_begin(s->ctx, s->e), apart = hdi_scope_begin(s->ctx, s->e);
     int32_t *tri, m = 0;
-    memset(job, 0, sizeof *job);
-    if ((in->nbr_ptr ? hdi_star_given(job, in, &own, s)
-                     : hdi_star_search(job, in->mesh.xyz, lap->n, &lap->points, &own, s)) < 0)
-        return hdi_scope_end(&own);
-    tri = hdi_stars(job, &m, lap, &own);
+    hdi_places places;
+    memset(cloud, 0, sizeof *cloud);
+    if (in->nbr_ptr) (void)hdi_cloud_given(cloud, in, &own, s);
+    else if (hdi_places_make(&places, in->mesh.xyz, lap->n, &apart) >= 0) {
+        lap->points.n_coincident = lap->n - places.n;
+        (void)hdi_cloud_search(cloud, &places, lap->points.neighbours, &own, s);
+    }
+    if (hdi_scope_end(&apart) < 0) return hdi_scope_end(&own);
+    tri = hdi_stars(cloud, &m, lap, &own);
     if (!tri || hdi_progress(s->ctx, "assemble", 0.2, s->e) < 0) return hdi_scope_end(&own);
-    if (hdi_soup_of_stars(soup, job->xyz, job->n, tri, m, &lap->mesh, s) < 0) {
+    if (hdi_soup_of_stars(soup, cloud->xyz, cloud->n, tri, m, &lap->mesh, s) < 0) {
         /* the caller knows no faces */
-        if (s->e->face >= 0) s->e->vertex = job->name[soup->mesh.tri[3 * s->e->face]];
+        if (s->e->face >= 0) s->e->vertex = cloud->name[soup->mesh.tri[3 * s->e->face]];
         s->e->face = -1;
     }
     return hdi_scope_end(&own);
@@ -8323,9 +8283,9 @@ static hd_status hdi_star_soup(hdi_soup *soup, hdi_star_job *job, hd_laplacian *
  *    500 to 1250 random points on a torus, 12 to 36 % more error.)
  * flat lives in s. */
 static hd_status hdi_lap_stars(hd_laplacian *lap, hdi_flat *flat, const hdi_input *in, hdi_scope *s) {
-    hdi_star_job job;
-    if (hdi_star_soup(&flat->soup, &job, lap, in, s) < 0) return s->e->status;
-    return hdi_lap_flat(lap, flat, in, job.name, s);
+    hdi_cloud cloud;
+    if (hdi_star_soup(&flat->soup, &cloud, lap, in, s) < 0) return s->e->status;
+    return hdi_lap_flat(lap, flat, in, cloud.name, s);
 }
 
 /* (L, B) of faces, of intrinsic triangles or of the stars of points; what they are made of, in s. Of a cover
