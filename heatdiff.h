@@ -1348,8 +1348,7 @@ HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const doubl
  * With poles, t dK_t/dt takes other weights on the same poles,
  *     x c(x) = sum a_i + sum a_i theta_i/(x - theta_i),
  * whose error is at most max (1 + |x|)|exp(x) - c(x)|. Kernel sets (or diagonal ones, if asked for) keep that
- * small; the default is degree 14. Krylov, Lanczos and t = 0 take -K_(t-s) B^-1 L K_s F, with s half of the
- * smallest time.
+ * small; the default is degree 14. Krylov and Lanczos take x exp(x) of the same small matrix.
  * HINT: to train t, make the plan with poles = HD_POLES_KERNEL and a degree. Then hd_heat_apply,
  * hd_heat_derivative and hd_heat_adjoint at one t share the factors of the direct method, and the adjoint is
  * that of the very matrix applied, up to rounding. Let G be the gradient of a loss with respect to U = K_t F.
@@ -1357,7 +1356,7 @@ HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const doubl
  * G_ij (dK_t/dt F)_ij. For rough fields at large t the derivative is small beside F, and low degrees lose it
  * first.
  * Errors as above; HD_ERR_ARGUMENT with a pole set of your own
- * Cost   as above; krylov and Lanczos take two runs */
+ * Cost   as above */
 HEATDIFF_API hd_status hd_heat_derivative(hd_heat *heat, int32_t n_times, const double *t,
                                           int32_t k, const double *F, size_t ldf, double *U,
                                           size_t ldu, hd_report *report, hd_error *err);
@@ -16628,11 +16627,57 @@ static hd_status hdi_lanczos_failed(hd_error *e) {
     return hdi_fail(e, HD_ERR_BREAKDOWN, "Lanczos: the projected eigenproblem did not converge");
 }
 
+/* The time at part x of the way from t0 to t1, in equal ratios. Their own ratio might overflow. */
+static double hdi_time_between(double t0, double t1, double x) { return pow(t0, 1 - x) * pow(t1, x); }
+
+/* e_m' exp(-s T) e_1 from the ends of T's eigenvectors. */
+static double hdi_lanczos_last(const hdi_lanczos *z, double s) {
+    double sum = 0;
+    int32_t i;
+    for (i = 0; i < z->m; i++) sum += z->ends[2 * i] * z->ends[2 * i + 1] * exp(-s * hdi_max(0, z->d[i]));
+    return fabs(sum);
+}
+
+/* The total variation of that for s in [0, t]. But for a factor it is the density of a sum of exponential
+ * variables with the rates d_i, and so its logarithm is concave: it rises, then falls. The mode is no smaller
+ * than (m - 1)/max d_i, and no larger than the mean. */
+static double hdi_lanczos_variation(const hdi_lanczos *z, double t) {
+    enum { HDI_MODE_POINTS = 64 };
+    const double last = hdi_lanczos_last(z, t);
+    double most = last, mean = 0, rate = 0, from, to;
+    int32_t k, best = HDI_MODE_POINTS;
+    if (z->m == 1) return 2 - last;
+    for (k = 0; k < z->m; k++) {
+        mean += 1 / hdi_max(z->d[k], DBL_MIN);
+        rate = hdi_max(rate, z->d[k]);
+    }
+    from = (z->m - 1) / hdi_max(rate, DBL_MIN);
+    to = hdi_min(t, mean);
+    if (!(from < to)) return last;
+    for (k = 0; k <= HDI_MODE_POINTS; k++) {
+        const double f = hdi_lanczos_last(z, hdi_time_between(from, to, k / (double)HDI_MODE_POINTS));
+        if (f > most) best = k;
+        most = hdi_max(most, f);
+    }
+    mean = to;                                   /* now between the neighbours of the largest */
+    to = hdi_time_between(from, mean, hdi_low32(best + 1, HDI_MODE_POINTS) / (double)HDI_MODE_POINTS);
+    from = hdi_time_between(from, mean, hdi_high32(best - 1, 0) / (double)HDI_MODE_POINTS);
+    for (k = 0; k < 16; k++) {
+        const double a = from + (to - from) / 3, b = to - (to - from) / 3;
+        const double fa = hdi_lanczos_last(z, a), fb = hdi_lanczos_last(z, b);
+        most = hdi_max(most, hdi_max(fa, fb));
+        if (fa > fb) to = b;
+        else from = a;
+    }
+    return 1.01 * (2 * most - last);
+}
+
 /* Bounds the error of m steps from a vector of norm one by
  *   t beta_(m+1) |e_m' phi_1(-t T) e_1|,   phi_1(z) = (e^z - 1)/z.
  * The error is beta int_0^t exp(-(t-s) B^-1 L) v_(m+1) e_m' exp(-s T) e_1 ds. The last factor has one sign
- * for all s, and the first one shrinks. */
-static hd_status hdi_lanczos_bound(hdi_lanczos *z, double t, double *bound, hd_error *e) {
+ * for all s, and the first one shrinks. With rate it is that of t times the derivative: by parts the integral
+ * has the derivative of the last factor in its place. */
+static hd_status hdi_lanczos_bound(hdi_lanczos *z, double t, int rate, double *bound, hd_error *e) {
     const int32_t m = z->m;
     double sum = 0, least = 0, most = 0;
     int32_t i;
@@ -16648,6 +16693,10 @@ static hd_status hdi_lanczos_bound(hdi_lanczos *z, double t, double *bound, hd_e
         most = hdi_max(most, fabs(z->d[i]));
     }
     if (least < -1e-8 * most - 2 * sqrt((double)m) * z->noise) return hdi_not_semidefinite(e);
+    if (rate) {
+        *bound = t * z->beta[m] * hdi_lanczos_variation(z, t);
+        return HD_OK;
+    }
     for (i = 0; i < m; i++) {
         const double x = t * z->d[i];
         sum += z->ends[2 * i] * z->ends[2 * i + 1] * (fabs(x) > 1e-8 ? -expm1(-x) / x : 1 - x / 2);
@@ -16656,8 +16705,8 @@ static hd_status hdi_lanczos_bound(hdi_lanczos *z, double t, double *bound, hd_e
     return HD_OK;
 }
 
-/* y = exp(-t T) e_1 by the best uniform set of degree 14. It takes O(m) operations a pole, and its error is
- * that of rounding in an eigensolution. */
+/* y = exp(-t T) e_1, or what else the set stands for, by one of degree 14. It takes O(m) operations a pole,
+ * and its error is that of rounding in an eigensolution. */
 static void hdi_lanczos_coefficients(hdi_lanczos *z, double t, const hd_rational *set) {
     const int32_t m = z->m;
     hd_c64 *d = z->work, *g = z->work + m;
@@ -16688,6 +16737,7 @@ typedef struct hdi_lanczos_task {
     double drift;                        /* change of a constant in unit time */
     int32_t max_iterations;
     int cut;                             /* t stands for a longer time */
+    int rate;                            /* t times the derivative is asked for */
 } hdi_lanczos_task;
 
 /* A start: v of B norm one, c = B v. */
@@ -16751,19 +16801,23 @@ static hd_status hdi_lanczos_step(const hdi_lanczos_task *task, hdi_lanczos *z, 
 /* A bound on what rounding does to m steps from a vector of norm one. With L v_j = B (sum of v_i T_ij) +
  * errors of size noise in the norm of B^-1, the answer is off by sum_j int_0^t exp(-(t-s) B^-1 L) (error j)
  * e_j' exp(-s T) e_1 ds. This is at most noise sqrt(m) times the integral of |exp(-s T) e_1|, which falls
- * with s, so that left Riemann sums are above it. Rounding of the answer's own sum comes on top. */
-static double hdi_lanczos_rounding(const hdi_lanczos *z, double t) {
+ * with s, so that left Riemann sums are above it. Rounding of the answer's own sum comes on top. With rate
+ * the integral is t (1 + that of |T exp(-s T) e_1|), by parts. */
+static double hdi_lanczos_rounding(const hdi_lanczos *z, double t, int rate) {
     const int32_t m = z->m;
-    double integral = 0, from = 0, to, size = 0;
+    double integral = rate, from = 0, to, size = 0;
     int32_t i, k;
     for (k = 24; k >= 0; k--) {
         to = ldexp(t, -2 * k);
-        for (size = 0, i = 0; i < m; i++)
-            size += z->ends[2 * i] * z->ends[2 * i] * exp(-2 * from * hdi_max(0, z->d[i]));
+        for (size = 0, i = 0; i < m; i++) {
+            const double part = z->ends[2 * i] * (rate ? z->d[i] : 1);
+            size += part * part * exp(-2 * from * hdi_max(0, z->d[i]));
+        }
         integral += sqrt(size) * (to - from);
         from = to;
     }
     for (size = 0, i = 0; i < m; i++) size += z->y[i] * z->y[i];
+    if (rate) integral *= t;
     return sqrt((double)m) * (hdi_residual_seen(0, z->noise) * integral + m * DBL_EPSILON * sqrt(size));
 }
 
@@ -16790,19 +16844,21 @@ static hd_status hdi_lanczos_first(const hdi_lanczos_task *task, double f0_norm,
     double bound = 0, bound_before = 0, best = DBL_MAX, start = 0;
     int32_t look = 1, looked = 0, best_m = 0;
     hd_rational set;
-    if (hdi_rational_get(&set, HD_POLES_UNIFORM, 14, e) < 0) return e->status;
+    if (hdi_rational_get(&set, task->rate ? HD_POLES_KERNEL : HD_POLES_UNIFORM, 14, e) < 0) return e->status;
+    if (task->rate) hdi_rational_rate(&set);
     hdi_lanczos_start(lane, lap->n_active, f0_norm);
     for (;;) {
         if (hdi_lanczos_step(task, z, lane->tmp, lane->tmp + lap->n_active, e) < 0) return e->status;
         if (z->m < look && z->beta[z->m] > 0 && z->m < most) continue;
-        if (hdi_lanczos_bound(z, t, &bound, e) < 0) return e->status;
+        if (hdi_lanczos_bound(z, t, task->rate, &bound, e) < 0) return e->status;
         hdi_lanczos_coefficients(z, t, &set);
         lane->u_norm = sqrt(fixed_norm2 + f0_norm * f0_norm * hdi_dot(z->y, z->y, z->m));
         lane->off.solver = f0_norm * bound;
         /* the coefficients are by poles */
-        lane->off.rounding = f0_norm * (hdi_lanczos_rounding(z, t) + set.max_error);
-        if (task->cut)                           /* what is left may fade, and never grows */
-            lane->off.rounding += f0_norm * sqrt(hdi_dot(z->y, z->y, z->m));
+        lane->off.rounding = f0_norm * (hdi_lanczos_rounding(z, t, task->rate) + set.max_error);
+        /* what is left may fade, and never grows; x exp(-x) is below 0.4 */
+        if (task->cut)
+            lane->off.rounding += f0_norm * (sqrt(hdi_dot(z->y, z->y, z->m)) + (task->rate ? 0.4 : 0));
         if (lane->off.solver <= tol * lane->u_norm || z->beta[z->m] == 0) return HD_OK;
         if (bound < best / 2) {
             best = bound;
@@ -16900,13 +16956,15 @@ typedef struct hdi_krylov {
     double from;                 /* the time that the fields are answers of, with bounds on their errors */
     hdi_parts before[HDI_WIDE];
     double last;                 /* the last time of the windows that will go on from this one, or 0 */
+    int32_t rate;                /* t times the derivative is asked for */
 } hdi_krylov;
 
 /* ---- shift-and-invert Lanczos ---- */
 /* Lanczos in the B inner product for S = (B + g L)^-1 B, whose large eigenvalues are those of the smooth
  * modes. With S V = V T + beta v e_m',
  *   exp(-t B^-1 L) f ~ |f|_B V exp(-t (T^-1 - 1)/g) e_1
- * for every t around 10 g. One real factor and one basis serve all these times. */
+ * for every t around 10 g. One real factor and one basis serve all these times. The same holds for other
+ * functions of T: t times the derivative has x exp(-x) in place of exp(-x), but for the sign. */
 static void hdi_krylov_free(hdi_krylov *z, hd_context *ctx) {
     int32_t i;
     for (i = 0; i <= HDI_KRYLOV_MAX; i++) hdi_free(ctx, z->v[i]);
@@ -17085,6 +17143,12 @@ static double hdi_krylov_decay(double mu, double s_over_g) {
     return s_over_g > 0 ? 0 : 1;
 }
 
+/* The same, or the function of the derivative. */
+static double hdi_krylov_value(double mu, double s_over_g, int rate) {
+    const double f = hdi_krylov_decay(mu, s_over_g);
+    return rate ? (mu > 1e-15 ? -s_over_g * hdi_max(0, 1 / mu - 1) * f : 0) : f;
+}
+
 /* Point k of HDI_KRYLOV_POINTS in (0, 1], which are dense at both ends: the square of the sine of a part of
  * the right angle. What lies between them is below the maximum on them times the first number, and below that
  * on every other one times the second. Tuned on meshes of 1K to 1M vertices. The sine is its Taylor series up
@@ -17110,9 +17174,20 @@ static double hdi_krylov_slope(double a, double fa, double b, double fb, double 
     return x > 0 ? fb * expm1(-x) / d : -fa * expm1(x) / d;   /* from the larger one */
 }
 
+/* The same of hdi_krylov_value, ga and gb. The second function is x F, x = -tau (1/mu - 1). */
+static double hdi_krylov_difference(double a, double ga, double b, double gb, double tau, int rate) {
+    double fa, fb;
+    if (!rate) return hdi_krylov_slope(a, ga, b, gb, tau);
+    if (fabs(a - b) > 0.1 * a) return (ga - gb) / (a - b);
+    if (!(b > 1e-15) || !(a > 1e-15)) return 0;
+    fa = hdi_krylov_decay(a, tau);
+    fb = hdi_krylov_decay(b, tau);
+    return tau / (a * b) * fb - tau * (1 / a - 1) * hdi_krylov_slope(a, fa, b, fb, tau);
+}
+
 /* What error bounds need of T_m: its eigenvalues, and their weights in e_1 and between e_1 and e_m. */
 typedef struct hdi_ritz {
-    int32_t m;
+    int32_t m, rate;
     double beta, mu[HDI_KRYLOV_MAX], first[HDI_KRYLOV_MAX], both[HDI_KRYLOV_MAX];
 } hdi_ritz;
 
@@ -17123,6 +17198,7 @@ static hd_status hdi_krylov_ritz(const hdi_krylov *z, int32_t r, int32_t m, hdi_
     const double *v = known ? z->eigen[r] + m : ends;
     int32_t i;
     s->m = m;
+    s->rate = z->rate;
     s->beta = z->beta[m][r];
     if (known) memcpy(s->mu, z->eigen[r], (size_t)m * sizeof *s->mu);
     else if (!hdi_krylov_eigen(z, r, m, 2, s->mu, ends)) return hdi_lanczos_failed(e);
@@ -17141,7 +17217,7 @@ static double hdi_ritz_size(const hdi_ritz *s, double tau) {
     double sum = 0;
     int32_t i;
     for (i = 0; i < s->m; i++) {
-        const double part = s->first[i] * hdi_krylov_decay(s->mu[i], tau);
+        const double part = s->first[i] * hdi_krylov_value(s->mu[i], tau, s->rate);
         sum += part * part;
     }
     return sqrt(sum);
@@ -17154,11 +17230,12 @@ static double hdi_ritz_size(const hdi_ritz *s, double tau) {
 static double hdi_ritz_bound(const hdi_ritz *s, double tau) {
     double f[HDI_KRYLOV_MAX], most = 0;
     int32_t i, k;
-    for (i = 0; i < s->m; i++) f[i] = hdi_krylov_decay(s->mu[i], tau);
+    for (i = 0; i < s->m; i++) f[i] = hdi_krylov_value(s->mu[i], tau, s->rate);
     for (k = 1; k <= HDI_KRYLOV_POINTS; k++) {
-        const double at = hdi_krylov_point(k), fa = hdi_krylov_decay(at, tau);
+        const double at = hdi_krylov_point(k), fa = hdi_krylov_value(at, tau, s->rate);
         double sum = 0;
-        for (i = 0; i < s->m; i++) sum += s->both[i] * hdi_krylov_slope(s->mu[i], f[i], at, fa, tau);
+        for (i = 0; i < s->m; i++)
+            sum += s->both[i] * hdi_krylov_difference(s->mu[i], f[i], at, fa, tau, s->rate);
         most = hdi_max(most, fabs(sum));
     }
     return HDI_KRYLOV_BETWEEN * s->beta * most;
@@ -17193,7 +17270,7 @@ static hd_status hdi_krylov_coefficients(hdi_krylov *z, int32_t r, double t, dou
     mu = z->eigen[r];
     for (i = 0; i < m; i++) {
         const double *v = mu + (int64_t)(i + 1) * m;
-        hdi_axpy(z->f_norm[r] * v[0] * hdi_krylov_decay(mu[i], t / z->g), v, y, m);
+        hdi_axpy(z->f_norm[r] * v[0] * hdi_krylov_value(mu[i], t / z->g, z->rate), v, y, m);
     }
     return HD_OK;
 }
@@ -17367,16 +17444,16 @@ static double hdi_krylov_rounding(const hdi_krylov *z, int32_t r, int32_t m, dou
     const double *mu = z->eigen[r], *vectors = mu + m, tau = t / z->g, root = hdi_ratio_root(z->m->lap);
     int32_t i, j, k;
     for (i = 0; i < m; i++) {
-        f[i] = hdi_krylov_decay(mu[i], tau);
+        f[i] = hdi_krylov_value(mu[i], tau, z->rate);
         most[i] = 0;
         size += fabs(y[i]);
     }
     for (k = 2; k <= HDI_KRYLOV_POINTS; k += 2) {
-        const double at = hdi_krylov_point(k), fa = hdi_krylov_decay(at, tau);
+        const double at = hdi_krylov_point(k), fa = hdi_krylov_value(at, tau, z->rate);
         memset(at_j, 0, (size_t)m * sizeof *at_j);
         for (i = 0; i < m; i++) {
             const double *v = vectors + (int64_t)i * m;
-            hdi_axpy(v[0] * hdi_krylov_slope(mu[i], f[i], at, fa, tau), v, at_j, m);
+            hdi_axpy(v[0] * hdi_krylov_difference(mu[i], f[i], at, fa, tau, z->rate), v, at_j, m);
         }
         for (j = 0; j < m; j++) most[j] = hdi_max(most[j], fabs(at_j[j]));
     }
@@ -19574,33 +19651,21 @@ static double hdi_unit_of(double size) {
     return ldexp(1, hdi_low32(-exponent, 1023)); /* which is the largest */
 }
 
-/* The largest mass of a component that is finite. */
-static double hdi_heat_largest_mass(const hd_laplacian *lap) {
-    double most = 0;
-    int32_t i;
-    for (i = 0; i < lap->n_components; i++)
-        if (hdi_finite(lap->component_mass[i])) most = hdi_max(most, lap->component_mass[i]);
-    return most;
-}
-
 /* Adds the numbers of one field to the report, which keeps the worst. ledger: a new one, or NULL where single
  * values are noted elsewhere. */
 static void hdi_heat_judge(const hd_laplacian *lap, const hdi_lane *lane, hdi_ledger *ledger,
                            const double *reach, int own, int by_value, hd_report *rep) {
     const double *out = hdi_lane_answer(lane);
-    const double unit = hdi_unit_of(hdi_heat_largest_mass(lap));
-    double largest = 0, heat = 0, heat_in = 0, heat_abs = 0, scale;
+    double largest = 0, heat = 0, heat_in = 0, heat_abs = 0;
     int32_t i;
-    for (i = 0; i < lap->n_active; i++) largest = hdi_max(largest, fabs(lane->u[i]));
-    scale = hdi_unit_of(largest);
-    for (i = 0, largest = 0; i < lap->n_active; i++) {
+    for (i = 0; i < lap->n_active; i++) {
         largest = hdi_max(largest, fabs(out[i]));
         if (!hdi_finite(lap->component_mass[lap->component[i]])) continue;
-        heat += unit * lap->mass[i] * (scale * lane->u[i]);
-        heat_abs += fabs(unit * lap->mass[i] * (scale * lane->u[i]));
+        heat += lap->mass[i] * lane->u[i];
+        heat_abs += fabs(lap->mass[i] * lane->u[i]);
     }
     for (i = 0; i < lap->n_components; i++)
-        if (hdi_finite(lap->component_mass[i])) heat_in += unit * lane->target[i] * scale;
+        if (hdi_finite(lap->component_mass[i])) heat_in += lane->target[i];
     if (ledger) {
         double total = hdi_parts_sum(&lane->off);
         hdi_parts off = by_value && !lane->dual ? lane->off_value : hdi_lane_bound(lap, lane, reach);
@@ -19689,7 +19754,7 @@ static hd_status hdi_heat_sums(hd_heat *heat, hd_error *e) {
 }
 
 /* Makes the plan have n lanes, without their arrays. */
-static hd_status hdi_heat_seats(hd_heat *heat, int32_t n, hd_error *e) {
+static hd_status hdi_heat_make_lanes(hd_heat *heat, int32_t n, hd_error *e) {
     hdi_lane *lane;
     if (n <= heat->n_lanes) return HD_OK;
     lane = (hdi_lane *)hdi_alloc_zero(heat->ctx, (uint64_t)n, sizeof *lane, e);
@@ -19821,7 +19886,7 @@ static hd_status hdi_shifted_prepare(hd_heat *heat, double t, hd_c64 theta, hd_e
     memset(&set, 0, sizeof set);
     set.n_poles = 1;
     set.theta[0] = theta;
-    if (hdi_heat_iterative(heat, e) < 0 || hdi_heat_seats(heat, 1, e) < 0) return e->status;
+    if (hdi_heat_iterative(heat, e) < 0 || hdi_heat_make_lanes(heat, 1, e) < 0) return e->status;
     hdi_family_set(fam, &set, t * heat->scale);
     if (hdi_lane_make(heat->lane, heat->lap, heat->ctx, e) < 0) return e->status;
     if (hdi_lane_systems(heat->lane, fam, e) < 0) return e->status;
@@ -20062,13 +20127,6 @@ static int hdi_query_fields(hdi_query query) {
     return query == HDI_QUERY_FIELD || query == HDI_QUERY_ADJOINT;
 }
 
-/* Which function of t a request asks for. */
-typedef enum hdi_rate {
-    HDI_RATE_NONE = 0,           /* K_t */
-    HDI_RATE_POLES,              /* its derivative, by weights on the poles */
-    HDI_RATE_OPEN                /* its derivative, how is to be found */
-} hdi_rate;
-
 /* Single entries of the kernel, sorted by their column: item q is order[begin[q]] to order[begin[q + 1] -
  * 1]. */
 typedef struct hdi_entry_list {
@@ -20110,7 +20168,7 @@ typedef struct hdi_heat_call {
     double cost;                 /* of this method by the model, where auto picks by it; else 0 */
     int32_t by_habit;            /* auto picks direct because of the calls before */
     int32_t forced;              /* auto takes iterations because of the byte limit */
-    hdi_rate rate;
+    int32_t rate;                /* the derivative in t is asked for: methods give t times that */
     hd_solver solver;
     const hd_laplacian *lap;     /* the copy of the pair that the method works on; the caller's for t = 0 */
     const hd_rational *set;      /* instead of what the plan would take */
@@ -20124,7 +20182,6 @@ typedef struct hdi_heat_call {
     int32_t by_pairs;            /* answers are sums over eigenpairs */
     hdi_extra rows;              /* direct: further sums of every item, one after the other */
     double *off_b, *off_m;       /* [k] by residuals, see hdi_column_off; NULL: not wanted */
-    hdi_lane *lane;              /* the plan's */
     hdi_elim *m;                 /* the analysis in use, of the methods that factorise */
     int32_t n_lanes, batch;      /* lanes for items; first item in lane 0 */
     int32_t stop;
@@ -20198,7 +20255,6 @@ static hd_status hdi_heat_begin(hdi_heat_call *h, hd_heat *heat, hdi_query query
     h->rep->reason = "nothing was asked for";
     h->lap = heat->source;
     if (hdi_context_check(heat->ctx, h->e) >= 0) (void)hdi_heat_renew(heat, h->e);
-    h->lane = heat->lane;
     return h->e->status;
 }
 
@@ -20309,13 +20365,6 @@ static hd_pole_kind hdi_heat_kind(const hdi_heat_call *h) {
            : h->diagonal ? HD_POLES_DIAGONAL : HD_POLES_KERNEL;
 }
 
-/* Lanes for n items, without their arrays. */
-static hd_status hdi_heat_sit(hdi_heat_call *h, int32_t n) {
-    (void)hdi_heat_seats(h->heat, n, h->e);
-    h->lane = h->heat->lane;
-    return h->e->status;
-}
-
 static hd_status hdi_heat_end(hdi_heat_call *h) {
     const hd_error kept = *h->e;
     if (h->s.e) hdi_scope_end(&h->s);
@@ -20371,15 +20420,14 @@ static hdi_terms hdi_heat_source(const hdi_heat_call *h, int32_t q) {
                             : (int32_t)h->ask.list->order[h->ask.list->begin[q]].key);
 }
 
-/* Brings fields near one, by a power of two, where their squares could leave the range of doubles. Sums over
- * eigenpairs are made with the caller's masses, which may be near that range themselves. */
-static void hdi_lane_unit(const hd_laplacian *lap, int by_pairs, hdi_lane *lane) {
+/* Brings fields near one, by a power of two, where their squares could leave the range of doubles. */
+static void hdi_lane_unit(const hd_laplacian *lap, hdi_lane *lane) {
     double most = 0;
     int32_t i;
     int exponent = 0;
     for (i = 0; i < lap->n_active; i++) most = hdi_max(most, fabs(lane->f[i]));
     if (most > 0) frexp(most, &exponent);
-    if (!by_pairs && exponent > -256 && exponent < 256) return;
+    if (exponent > -256 && exponent < 256) return;
     lane->exponent = exponent;
     for (i = 0; i < lap->n_active; i++) lane->f[i] = ldexp(lane->f[i], -exponent);
 }
@@ -20401,9 +20449,9 @@ static double hdi_lane_rhs_off(const hd_laplacian *lap, const double *f) {
 }
 
 /* Takes the constants out of a field for good: they do not change in time. Where they are nearly all of it,
- * rounding leaves some of them, and the second time takes those. */
+ * rounding leaves some of them, and the second time takes those. What rounding does to a difference is small
+ * beside that. */
 static void hdi_lane_moving(const hd_laplacian *lap, hdi_lane *lane) {
-    const double whole = lane->f_norm;
     int32_t i, pass;
     if (!lap->conserves) return;
     for (pass = 0; pass < 2; pass++) {
@@ -20412,7 +20460,7 @@ static void hdi_lane_moving(const hd_laplacian *lap, hdi_lane *lane) {
         hdi_pair_apply(lap, 0, 1, lane->f, lane->rhs);
         hdi_heat_measure(lap, lane);
     }
-    lane->rhs_off = hdi_lane_rhs_off(lap, lane->f) + DBL_EPSILON * whole;
+    lane->rhs_off = hdi_lane_rhs_off(lap, lane->f) + 2 * DBL_EPSILON * lane->f_norm;
     for (i = 0; i < lap->n_components; i++)
         if (hdi_finite(lap->component_mass[i])) lane->target[i] = 0;
 }
@@ -20423,47 +20471,43 @@ static int hdi_lane_bounded(const hdi_heat_call *h) {
     return h->method == HD_METHOD_DIRECT && h->t > 0 && h->heat->elim.set.a0 == 0 && h->lap->b_ratio > 0;
 }
 
-/* A source of several vertices into x by rows, for those that have one. Returns |diag(B)^-1/2 x|. */
+/* A source into x by rows, where its vertices have one. Returns |diag(B)^-1/2 x|. */
 static double hdi_lane_terms(const hd_laplacian *lap, const hdi_terms *c, double *x) {
     double norm = 0;
     int32_t q;
     memset(x, 0, (size_t)lap->n_active * sizeof *x);
     for (q = 0; q < c->n; q++) {
-        const int32_t row = lap->row[c->vertex[q]];
+        const int32_t row = lap->row[hdi_terms_at(c, q)];
         if (row < 0) continue;
-        x[row] = c->weight[q];
-        norm = hdi_pythag(norm, c->weight[q] / sqrt(lap->b_diag[row]));
+        x[row] = hdi_terms_weight(c, q);
+        norm = hdi_pythag(norm, x[row] / sqrt(lap->b_diag[row]));
     }
     return norm;
 }
 
-/* Brings a column near one in the norm of B, by a power of two. A small mass beside large ones has a column
- * whose squares could leave the range of doubles. */
-static void hdi_lane_even(const hd_laplacian *lap, hdi_lane *lane) {
-    const double least = ldexp(1, -64);          /* no bits change; columns nearer to one stay as they are */
-    int32_t i;
-    int exponent = 0;
-    if (lane->f_norm >= least && lane->f_norm <= 1 / least) return;
-    frexp(lane->f_norm, &exponent);
-    lane->exponent = exponent;
-    for (i = 0; i < lap->n_active; i++) {
-        lane->f[i] = ldexp(lane->f[i], -exponent);
-        lane->rhs[i] = ldexp(lane->rhs[i], -exponent);
+/* rhs = B f for the f of a source. */
+static void hdi_lane_terms_mass(const hd_laplacian *lap, const hdi_terms *c, hdi_lane *lane) {
+    int32_t q;
+    int64_t p;
+    memset(lane->rhs, 0, (size_t)lap->n_active * sizeof *lane->rhs);
+    for (q = 0; q < c->n; q++) {
+        const int32_t row = lap->row[hdi_terms_at(c, q)];
+        if (row < 0) continue;
+        if (!lap->B) lane->rhs[row] = lap->mass[row] * lane->f[row];
+        for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1] && lap->B; p++)
+            lane->rhs[lap->L.col[p]] += lap->B[p] * lane->f[row];
     }
-    for (i = 0; i < lap->n_components; i++) lane->target[i] = ldexp(lane->target[i], -exponent);
-    lane->f_norm = ldexp(lane->f_norm, -exponent);
-    lane->rhs_off = ldexp(lane->rhs_off, -exponent);
-    lane->f_off = ldexp(lane->f_off, -exponent);
 }
 
-/* The same as hdi_heat_load of a source of several vertices. */
-static hd_status hdi_heat_load_terms(const hdi_heat_call *h, const hdi_terms *c, hdi_lane *lane) {
+/* The column of a source. One without rows needs no solve, and is skipped. */
+static hd_status hdi_heat_load_column(const hdi_heat_call *h, const hdi_terms *c, hdi_lane *lane) {
     const hd_laplacian *lap = h->lap;
     const int plain = h->ask.query == HDI_QUERY_OPERATOR;
     const double norm = hdi_lane_terms(lap, c, plain ? lane->f : lane->rhs);
-    double sums = (double)c->n * DBL_EPSILON;
+    double sums = c->weight ? (double)c->n * DBL_EPSILON : 0;
     lane->skip = norm == 0;
     if (lane->skip) return HD_OK;
+    if (h->watching && !c->weight) lane->watch = lap->row[c->one];
     if (!plain && hdi_lane_bounded(h)) {
         memset(lane->f, 0, (size_t)lap->n_active * sizeof *lane->f);   /* a0 = 0 times it is 0 */
         hdi_component_sums(lap, NULL, lane->rhs, lane->target);
@@ -20472,25 +20516,23 @@ static hd_status hdi_heat_load_terms(const hdi_heat_call *h, const hdi_terms *c,
         return HD_OK;
     }
     if (plain) {
-        hdi_pair_apply(lap, 0, 1, lane->f, lane->rhs);
-        lane->rhs_off = hdi_lane_rhs_off(lap, lane->f);
-        sums = ((double)lap->n_active / 2 + 4) * DBL_EPSILON;
+        hdi_lane_terms_mass(lap, c, lane);
+        if (c->weight) {
+            lane->rhs_off = hdi_lane_rhs_off(lap, lane->f);
+            sums = ((double)lap->n_active / 2 + 4) * DBL_EPSILON;
+        }
     } else if (hdi_mass_solve(lap, lane->rhs, lane->f, lane->tmp, h->e) < 0) {
         return h->e->status;
     }
     hdi_heat_measure(lap, lane);
     lane->rhs_off += sums * lane->f_norm;
-    if (!plain && lap->B) lane->f_off = HDI_MASS_TOL * hdi_ratio_root(lap) * lane->f_norm;
-    if (h->method == HD_METHOD_ITERATIVE && !h->ask.list) hdi_lane_even(lap, lane);
     return HD_OK;
 }
 
-/* Field and right-hand side of item q. A vertex without mass needs no solve, and is skipped. */
+/* Field and right-hand side of item q. */
 static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane) {
     const hd_laplacian *lap = h->lap;
-    const size_t bytes = (size_t)lap->n_active * sizeof(double);
-    hdi_terms source;
-    int32_t row;
+    const hdi_query query = h->ask.query;
     lane->skip = 0;
     lane->status = HD_OK;
     hdi_lane_clear_off(lane);
@@ -20498,56 +20540,32 @@ static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane
     lane->exponent = 0;
     lane->f_off = lane->rhs_off = 0;
     lane->watch = -1;
-    lane->dual = h->ask.query == HDI_QUERY_ADJOINT;
-    if (hdi_query_fields(h->ask.query)) {
+    lane->dual = query == HDI_QUERY_ADJOINT;
+    if (!hdi_query_fields(query)) {
+        const hdi_terms source = hdi_heat_source(h, q);
+        if (hdi_heat_load_column(h, &source, lane) < 0) return h->e->status;
+        if (lane->skip || (query == HDI_QUERY_SYMMETRIC && hdi_lane_bounded(h))) return HD_OK;
+    } else {
         hdi_gather(lap, h->ask.F + (size_t)q * h->ask.ldf, lane->f);
-        hdi_lane_unit(lap, h->by_pairs, lane);
+        hdi_lane_unit(lap, lane);
         if (lane->dual) {
-            memcpy(lane->rhs, lane->f, bytes);
+            memcpy(lane->rhs, lane->f, (size_t)lap->n_active * sizeof *lane->f);
             if (hdi_mass_solve(lap, lane->rhs, lane->f, lane->tmp, h->e) < 0) return h->e->status;
         } else {
             hdi_pair_apply(lap, 0, 1, lane->f, lane->rhs);
             lane->rhs_off = hdi_lane_rhs_off(lap, lane->f);
         }
-    } else if ((source = hdi_heat_source(h, q)).weight) {
-        return hdi_heat_load_terms(h, &source, lane);
-    } else {
-        row = lap->row[source.one];
-        lane->skip = row < 0;
-        if (lane->skip) return HD_OK;
-        lane->watch = h->watching ? row : -1;
-        memset(lane->f, 0, bytes);
-        memset(lane->rhs, 0, bytes);
-        if (h->ask.query == HDI_QUERY_OPERATOR) {
-            int64_t p;
-            lane->f[row] = 1;
-            /* B e_row */
-            for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1] && lap->B; p++)
-                lane->rhs[lap->L.col[p]] = lap->B[p];
-            if (!lap->B) lane->rhs[row] = lap->mass[row];
-        } else {
-            lane->rhs[row] = 1;
-            /* B^-1 e is not needed, only a bound on its norm */
-            if (hdi_lane_bounded(h)) {
-                hdi_component_sums(lap, NULL, lane->rhs, lane->target);
-                lane->f_norm = 1 / sqrt(lap->b_ratio * lap->b_diag[row]);
-                return HD_OK;
-            }
-            if (hdi_mass_solve(lap, lane->rhs, lane->f, lane->tmp, h->e) < 0) return h->e->status;
-        }
+        hdi_heat_measure(lap, lane);
     }
-    hdi_heat_measure(lap, lane);
-    if ((lane->dual || h->ask.query == HDI_QUERY_SYMMETRIC) && lap->B)
+    if ((lane->dual || query == HDI_QUERY_SYMMETRIC) && lap->B)
         lane->f_off = HDI_MASS_TOL * hdi_ratio_root(lap) * lane->f_norm;
-    if (h->method == HD_METHOD_ITERATIVE && !h->ask.list && !hdi_query_fields(h->ask.query))
-        hdi_lane_even(lap, lane);
     if (h->rate) hdi_lane_moving(lap, lane);
     return HD_OK;
 }
 
 /* The unit of answers in terms of the method's copy of the pair: k_t has that of B^-1. */
 static double hdi_heat_unit(const hdi_heat_call *h) {
-    if (h->rate) return 1 / h->ask.t[h->now];    /* sets are for t dK_t/dt */
+    if (h->rate) return h->t > 0 ? 1 / h->ask.t[h->now] : h->heat->scale;
     return h->ask.query == HDI_QUERY_SYMMETRIC && h->lap != h->heat->source ? h->heat->scale : 1;
 }
 
@@ -20555,7 +20573,7 @@ static double hdi_heat_unit(const hdi_heat_call *h) {
 static double hdi_heat_step(const hdi_heat_call *h, const hdi_lane *lane) {
     const int given = h->ask.query == HDI_QUERY_FIELD || h->ask.query == HDI_QUERY_OPERATOR;
     const double least = DBL_MIN * DBL_EPSILON;
-    if (lane->f_norm == 0 || (h->t == 0 && h->still == 0 && given)) return 0;
+    if (lane->f_norm == 0 || (h->t == 0 && h->still == 0 && given && !h->rate)) return 0;
     return ldexp(least, hdi_high32(-lane->exponent, 0)) / hdi_heat_unit(h);
 }
 
@@ -20628,10 +20646,10 @@ static hd_status hdi_heat_degree(const hdi_heat_call *h, int32_t *degree) {
     const int fields = hdi_query_fields(h->ask.query);
     int32_t q, r;
     *degree = fields ? 8 : HDI_RAT_UNIFORM_MAX;
-    if (fields && hdi_lane_make(h->lane, h->lap, h->heat->ctx, h->e) < 0) return h->e->status;
+    if (fields && hdi_lane_make(h->heat->lane, h->lap, h->heat->ctx, h->e) < 0) return h->e->status;
     for (q = 0; q < h->ask.k && fields; q++) {
-        if (hdi_heat_load(h, q, h->lane) < 0) return h->e->status;
-        r = hdi_uniform_degree(h->lap, h->lane, h->method == HD_METHOD_DIRECT);
+        if (hdi_heat_load(h, q, h->heat->lane) < 0) return h->e->status;
+        r = hdi_uniform_degree(h->lap, h->heat->lane, h->method == HD_METHOD_DIRECT);
         if (r > *degree) *degree = r;
     }
     return HD_OK;
@@ -20680,15 +20698,17 @@ static hdi_lanczos_task hdi_heat_lanczos_task(const hd_heat *heat, double t) {
     task.cut = t > most;
     task.tol = heat->opts.tol;
     task.drift = heat->drift;
+    task.rate = 0;
     task.max_iterations = heat->opts.max_iterations;
     return task;
 }
 
 static void hdi_heat_task(void *arg, int64_t index, int32_t worker) {
     hdi_heat_call *h = (hdi_heat_call *)arg;
-    hdi_lane *lane = h->lane + index;
-    const hdi_lanczos_task task = hdi_heat_lanczos_task(h->heat, h->t);
+    hdi_lane *lane = h->heat->lane + index;
+    hdi_lanczos_task task = hdi_heat_lanczos_task(h->heat, h->t);
     hdi_watch watch;
+    task.rate = h->rate;
     hdi_error_clear(&lane->error);
     if (lane->skip) return;
     watch.ctx = worker == 0 ? h->heat->ctx : NULL;
@@ -20735,7 +20755,7 @@ static void hdi_column_off(const hd_laplacian *lap, const hdi_lane *lane, const 
 
 /* Judges lane i of the batch. */
 static void hdi_heat_note(hdi_heat_call *h, hdi_ledger ledger, int32_t i, int own) {
-    hdi_lane *lane = h->lane + i;
+    hdi_lane *lane = h->heat->lane + i;
     const hdi_elim *m = &h->heat->elim;
     const int solved = h->method == HD_METHOD_DIRECT && h->t > 0 && !h->equal && !h->by_pairs;
     const double *reach = solved && m->resolvent && m->resolvent_t == m->t ? m->resolvent : NULL;
@@ -20756,7 +20776,7 @@ static hd_status hdi_heat_collect(hdi_heat_call *h, int32_t n) {
     const hdi_ledger blank = hdi_heat_ledger(h);
     int32_t i, p;
     for (i = 0; i < n; i++) {
-        const hdi_lane *lane = h->lane + i;
+        const hdi_lane *lane = h->heat->lane + i;
         if (lane->status >= 0 || (h->e->status < 0 && h->e->status != HD_ERR_CANCELLED)) continue;
         *h->e = lane->error;
         h->e->column = h->batch + i;
@@ -20764,7 +20784,7 @@ static hd_status hdi_heat_collect(hdi_heat_call *h, int32_t n) {
     if (h->e->status == HD_ERR_NOT_CONVERGED) h->rep->residual = h->e->value;   /* what was achieved */
     if (h->e->status < 0) return h->e->status;
     for (i = 0; i < n; i++) {
-        const hdi_lane *lane = h->lane + i;
+        const hdi_lane *lane = h->heat->lane + i;
         if (lane->skip) {                        /* exact */
             if (!h->ask.list) hdi_evidence_worst(&h->rep->evidence_b, HD_EVIDENCE_PROVEN);
             continue;
@@ -20790,9 +20810,9 @@ static void hdi_report_set(hd_report *rep, const hd_rational *set) {
 static hd_status hdi_heat_lanes(hdi_heat_call *h, int32_t most) {
     int32_t i;
     h->n_lanes = hdi_low32(h->ask.k, most);
-    if (hdi_heat_sit(h, h->n_lanes) < 0) return h->e->status;
+    if (hdi_heat_make_lanes(h->heat, h->n_lanes, h->e) < 0) return h->e->status;
     for (i = 0; i < h->n_lanes; i++)
-        if (hdi_lane_make(h->lane + i, h->lap, h->heat->ctx, h->e) < 0) break;
+        if (hdi_lane_make(h->heat->lane + i, h->lap, h->heat->ctx, h->e) < 0) break;
     return h->e->status;
 }
 
@@ -20802,11 +20822,11 @@ static int32_t hdi_heat_load_some(hdi_heat_call *h) {
     int32_t i;
     for (i = 0; i < n; i++) {
         const size_t before = (size_t)(h->batch + i) * (size_t)h->rows.n * (size_t)h->lap->n_active;
-        if (hdi_heat_load(h, h->batch + i, h->lane + i) < 0) break;
-        h->lane[i].rows = h->rows;
+        if (hdi_heat_load(h, h->batch + i, h->heat->lane + i) < 0) break;
+        h->heat->lane[i].rows = h->rows;
         if (!h->rows.n) continue;
-        h->lane[i].rows.sum += before;
-        memset(h->lane[i].rows.sum, 0, (size_t)h->rows.n * (size_t)h->lap->n_active * sizeof(double));
+        h->heat->lane[i].rows.sum += before;
+        memset(h->heat->lane[i].rows.sum, 0, (size_t)h->rows.n * (size_t)h->lap->n_active * sizeof(double));
     }
     return n;
 }
@@ -20815,16 +20835,15 @@ static int32_t hdi_heat_load_some(hdi_heat_call *h) {
 static hd_status hdi_heat_store_some(hdi_heat_call *h, int32_t n) {
     int32_t i;
     if (h->e->status < 0 || hdi_heat_collect(h, n) < 0) return h->e->status;
-    for (i = 0; i < n; i++) hdi_heat_store(h, h->batch + i, h->lane + i);
+    for (i = 0; i < n; i++) hdi_heat_store(h, h->batch + i, h->heat->lane + i);
     return HD_OK;
 }
 
 /* ---- iterative ---- */
 
-/* The solver of a call; derivatives by poles need them. */
+/* The same for a call: of derivatives Lanczos must be asked for. */
 static hd_solver hdi_heat_solver(const hdi_heat_call *h, double t) {
-    const hd_solver solver = hdi_heat_choose(h->heat, t);
-    return h->rate && solver == HD_SOLVER_LANCZOS ? HD_SOLVER_COCG : solver;
+    return h->rate && !h->heat->opts.solver ? HD_SOLVER_COCG : hdi_heat_choose(h->heat, t);
 }
 
 /* Bytes of iterations: the copy of the pair, its upper triangle, lanes and preconditioners, or bases. */
@@ -20871,14 +20890,14 @@ static hd_status hdi_iterative_prepare(hdi_heat_call *h) {
     int32_t i;
     if (hdi_heat_lanes(h, HDI_LANES_ITERATIVE) < 0) return h->e->status;
     for (i = 0; i < h->n_lanes && h->solver == HD_SOLVER_LANCZOS; i++)
-        if (hdi_lane_lanczos(h->lane + i, h->lap, steps, heat->ctx, h->e) < 0) return h->e->status;
+        if (hdi_lane_lanczos(h->heat->lane + i, h->lap, steps, heat->ctx, h->e) < 0) return h->e->status;
     if (h->solver == HD_SOLVER_LANCZOS) return HD_OK;
     if (hdi_heat_set(h, &set) < 0) return h->e->status;
     hdi_family_set(&heat->fam, &set, h->t);
     hdi_report_set(h->rep, &set);
     for (i = 0; i < h->n_lanes; i++)
-        if (hdi_lane_systems(h->lane + i, &heat->fam, h->e) < 0) return h->e->status;
-    if (hdi_family_fill(&heat->fam, h->lane->b, h->e) < 0) return h->e->status;
+        if (hdi_lane_systems(h->heat->lane + i, &heat->fam, h->e) < 0) return h->e->status;
+    if (hdi_family_fill(&heat->fam, h->heat->lane->b, h->e) < 0) return h->e->status;
     if (hdi_family_shares(&heat->fam)) h->n_lanes = 1;
     return HD_OK;
 }
@@ -21110,7 +21129,7 @@ static void hdi_batches_task(void *arg, int64_t index, int32_t worker) {
     const hdi_heat_call *h = b->h;
     const hd_heat *heat = h->heat;
     const hdi_batch batch = hdi_batches_get(b, index);
-    hdi_lane *lane = h->lane + index * b->width;
+    hdi_lane *lane = h->heat->lane + index * b->width;
     const int32_t n = hdi_low32(b->n_here - (int32_t)index * b->width, b->width);
     int32_t r;
     (void)worker;
@@ -21150,7 +21169,7 @@ static hd_status hdi_heat_by_direct(hdi_heat_call *h) {
             return h->e->status;
         b.n_here = hdi_heat_load_some(h);
         for (i = 0; i < b.n_here && h->deflated; i++)
-            if (!h->lane[i].skip) hdi_lane_deflate(h->lane + i, h->lap);
+            if (!h->heat->lane[i].skip) hdi_lane_deflate(h->heat->lane + i, h->lap);
         if (h->e->status >= 0)
             hdi_parallel(heat->ctx, (b.n_here + b.width - 1) / b.width, hdi_batches_task, &b);
         if (hdi_heat_store_some(h, b.n_here) < 0) return h->e->status;
@@ -21159,9 +21178,6 @@ static hd_status hdi_heat_by_direct(hdi_heat_call *h) {
 }
 
 /* ---- krylov ---- */
-
-/* The time at part x of the way from t0 to t1, in equal ratios. Their own ratio might overflow. */
-static double hdi_time_between(double t0, double t1, double x) { return pow(t0, 1 - x) * pow(t1, x); }
 
 /* The end of window w of n_windows of equal ratio, from time q0 on; times ascend. */
 static int32_t hdi_window_end(const double *times, int32_t n_times, int32_t q0, int32_t w,
@@ -21180,6 +21196,7 @@ static int32_t hdi_window_end(const double *times, int32_t n_times, int32_t q0, 
  * not so large that B is lost beside g L. */
 #define HDI_SHIFT_FIELD 0.07
 #define HDI_SHIFT_ANSWER 0.15
+#define HDI_SHIFT_RATE 4         /* the least for derivatives, times the largest eigenvalue */
 
 static double hdi_krylov_shift(double from, double first, double last, double lambda_max) {
     const double limit = lambda_max > 0 ? 1e12 / lambda_max : HUGE_VAL;   /* four digits of B are left */
@@ -21296,7 +21313,9 @@ static hd_status hdi_krylov_basis(hdi_heat_call *h, int32_t n, int32_t q0, int32
     hdi_krylov *z = heat->silan;
     double fixed[HDI_WIDE];
     int32_t i;
-    const double g = hdi_krylov_shift(z->from, h->times[q0], h->times[q1 - 1], heat->lambda_max);
+    double g = hdi_krylov_shift(z->from, h->times[q0], h->times[q1 - 1], heat->lambda_max);
+    /* derivatives of smooth fields at short times are small beside the fields, and digits of T are lost */
+    if (h->rate && heat->lambda_max > 0) g = hdi_max(g, HDI_SHIFT_RATE / heat->lambda_max);
     /* a step is the least */
     if (!h->m->shifted.ctx && !z->v[0] &&
         hdi_need(heat->ctx, hdi_krylov_need(h->m, z->wide, 1), "a real factor and a basis", h->e) < 0)
@@ -21304,9 +21323,10 @@ static hd_status hdi_krylov_basis(hdi_heat_call *h, int32_t n, int32_t q0, int32
     if (hdi_elim_shift(h->m, g, h->e) < 0) return h->e->status;
     z->g = h->m->shift;
     z->k = n;
-    z->last = q1 < h->n_times ? h->times[h->n_times - 1] : 0;
-    if (hdi_krylov_start(z, h->lane, heat->ctx, h->e) < 0) return h->e->status;
-    for (i = 0; i < n; i++) fixed[i] = h->lane[i].skip ? 0 : hdi_lane_means_norm2(h->lane + i, h->lap);
+    z->last = q1 < h->n_times && !h->rate ? h->times[h->n_times - 1] : 0;
+    if (hdi_krylov_start(z, h->heat->lane, heat->ctx, h->e) < 0) return h->e->status;
+    for (i = 0; i < n; i++)
+        fixed[i] = heat->lane[i].skip ? 0 : hdi_lane_means_norm2(heat->lane + i, h->lap);
     return hdi_krylov_run(z, h->times + q0, q1 - q0, heat->opts.tol, fixed, heat->ctx, h->e);
 }
 
@@ -21314,10 +21334,10 @@ static hd_status hdi_krylov_basis(hdi_heat_call *h, int32_t n, int32_t q0, int32
 static hd_status hdi_krylov_store(hdi_heat_call *h, int32_t n, int32_t q, const hdi_krylov_sum *a, int32_t p,
                                   int counted, hd_status status) {
     const hd_heat *heat = h->heat;
-    const size_t bytes = (size_t)h->lap->n_active * sizeof *h->lane->u;
+    const size_t bytes = (size_t)h->lap->n_active * sizeof *h->heat->lane->u;
     int32_t i;
     for (i = 0; i < n; i++) {
-        hdi_lane *lane = h->lane + i;
+        hdi_lane *lane = h->heat->lane + i;
         lane->status = status;
         if (lane->skip) continue;
         if (a->u[p + i] != lane->u) memcpy(lane->u, a->u[p + i], bytes);
@@ -21348,7 +21368,7 @@ static hd_status hdi_krylov_answers(hdi_heat_call *h, int32_t n, int32_t q0, int
         n_here = abreast ? 1 : hdi_low32(q1 - q, HDI_WIDE);
         a.count = n * n_here;
         for (p = 0; p < a.count; p++) {
-            const hdi_lane *lane = h->lane + (abreast ? p : 0);
+            const hdi_lane *lane = h->heat->lane + (abreast ? p : 0);
             const double t = h->times[abreast ? q : q + p] - z->from;
             a.u[p] = lane->skip ? NULL : n_here > 1 ? z->ahead + rows * p : lane->u;
             a.means[p] = lane->sums;
@@ -21372,7 +21392,7 @@ static void hdi_krylov_begin(hdi_heat_call *h, int32_t n, double from) {
     memset(z->before, 0, sizeof z->before);
     if (!(from > 0)) (void)hdi_heat_load_some(h);
     for (i = 0; i < n && from > 0; i++) {
-        hdi_lane *lane = h->lane + i;
+        hdi_lane *lane = h->heat->lane + i;
         if (lane->skip) continue;
         z->before[i] = lane->off;
         memcpy(lane->f, lane->u, (size_t)lap->n_active * sizeof *lane->f);
@@ -21389,7 +21409,7 @@ static int hdi_krylov_goes_on(const hdi_heat_call *h, int32_t n, double to) {
     const hdi_krylov *z = heat->silan;
     int32_t i;
     for (i = 0; i < n; i++) {
-        const hdi_lane *lane = h->lane + i;
+        const hdi_lane *lane = h->heat->lane + i;
         double size, fixed;
         hdi_ritz s;
         if (lane->skip) continue;
@@ -21408,13 +21428,13 @@ static int hdi_krylov_goes_on(const hdi_heat_call *h, int32_t n, double to) {
 /* n items at all times. Windows after the first begin with the last answers of the one before,
  *   exp(-t B^-1 L) f = exp(-(t - s) B^-1 L) exp(-s B^-1 L) f,
  * which are smooth: the basis needs half as many steps. Where answers die away and what is handed on is not
- * exact enough, a window begins with the fields. */
+ * exact enough, or answers are derivatives, a window begins with the fields. */
 static hd_status hdi_krylov_items(hdi_heat_call *h, int32_t n, int32_t n_windows) {
     int32_t q0, q1, w, goes_on;
     for (w = 0, q0 = 0; q0 < h->n_times; w++, q0 = q1) {
         hd_status status;
         q1 = hdi_window_end(h->times, h->n_times, q0, w, n_windows);
-        goes_on = w > 0 && hdi_krylov_goes_on(h, n, h->times[q1 - 1]);
+        goes_on = w > 0 && !h->rate && hdi_krylov_goes_on(h, n, h->times[q1 - 1]);
         if (h->e->status >= 0) hdi_krylov_begin(h, n, goes_on ? h->times[q0 - 1] : 0);
         if (h->e->status < 0) return h->e->status;
         status = hdi_krylov_basis(h, n, q0, q1);
@@ -21436,6 +21456,7 @@ static hd_status hdi_heat_by_krylov(hdi_heat_call *h) {
     }
     heat->silan->wide = wide;
     heat->silan->m = h->m;
+    heat->silan->rate = h->rate;
     if (hdi_heat_lanes(h, wide) < 0) return h->e->status;
     for (h->batch = 0; h->batch < h->ask.k; h->batch += n) {
         n = hdi_low32(h->ask.k - h->batch, h->n_lanes);
@@ -21461,7 +21482,7 @@ static hdi_costs hdi_heat_costs(const hdi_heat_call *h) {
     memset(&all, 0, sizeof all);
     if (HDI_HAS_ITERATIVE) hdi_iterative_cost(h, all.by + HD_METHOD_ITERATIVE);
     if (HDI_HAS_POLE_FACTORS && factors) hdi_direct_cost(h, all.by + HD_METHOD_DIRECT, &all.factors);
-    if (HDI_HAS_DIRECT && factors && !heat->poles_asked && h->rate != HDI_RATE_POLES)
+    if (HDI_HAS_DIRECT && factors && !heat->poles_asked)
         hdi_krylov_cost(h, all.by + HD_METHOD_KRYLOV);
     return all;
 }
@@ -21564,7 +21585,7 @@ static hd_status hdi_heat_pick(hdi_heat_call *h) {
 /* Picks the method and its copy of the pair, and reports them. */
 static hd_status hdi_heat_engine(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
-    if (hdi_heat_sit(h, 1) < 0) return h->e->status;
+    if (hdi_heat_make_lanes(heat, 1, h->e) < 0) return h->e->status;
     /* |exp(-t lambda) - 1| <= t lambda */
     if (h->n_times == 1 && !heat->opts.rational && h->t * heat->lambda_max < HDI_STILL) {
         h->still = h->t * heat->lambda_max;
@@ -22096,6 +22117,12 @@ static void hdi_fading_task(hdi_task *task, hdi_heat_call *h) {
     if (HDI_HAS_MODES && task->serves) task->depth = hdi_fading_depth(h->heat);
 }
 
+/* Vector q at a vertex, with mass B times it. */
+static double hdi_modes_entry(const hdi_modes *of, int mass, int32_t q, int32_t v) {
+    const int64_t at = (int64_t)q * of->s.n + v;
+    return !mass ? of->s.vector[at] : of->bx ? of->bx[at] : of->by[v] * of->s.vector[at];
+}
+
 /* The factor of |c_q| in s(c), and what s(c) and the last sum have besides for each |c|. */
 static double hdi_decay_side(const hdi_modes *of, const hdi_decay *x, int32_t q) {
     const double gap = x->next - of->s.value[q];
@@ -22107,31 +22134,43 @@ static double hdi_decay_twice(const hdi_modes *of, const hdi_decay *x) {
     return x->mixed * of->off_norm * x->t;
 }
 
+/* Sums of a field's coefficients: |c|^2, |w c|^2, of |r_i| min(t, ...) |c_i|, and s(c) but its last term. */
+typedef struct hdi_fading_size { double found, kept, inner, side; } hdi_fading_size;
+
+static void hdi_fading_size_add(hdi_fading_size *c, const hdi_decay *x, int32_t q, double side, double y) {
+    c->found += y * y;
+    c->inner += x->off[q] * fabs(y);
+    c->side += side * fabs(y);
+}
+
+/* Those of B^-1 e_v, or with mass of e_v, at the vertices of rows [begin, end). */
+static void hdi_fading_sizes(const hdi_modes *of, const hdi_decay *x, int mass, int64_t begin, int64_t end,
+                             hdi_fading_size *c) {
+    int64_t i;
+    int32_t q;
+    memset(c + begin, 0, (size_t)(end - begin) * sizeof *c);
+    for (q = 0; q < of->s.count; q++) {
+        const double side = hdi_decay_side(of, x, q);
+        for (i = begin; i < end; i++)
+            hdi_fading_size_add(c + i, x, q, side, hdi_modes_entry(of, mass, q, of->s.lap->vertex[i]));
+    }
+}
+
 /* The largest |Q g|, s(c_g), |c_g| and last sum of all vertices. */
 typedef struct hdi_fading_far { double left, side, found, inner; } hdi_fading_far;
 
-/* work [3 n] */
-static hdi_fading_far hdi_fading_reach(const hdi_modes *of, const hdi_decay *x, double *work) {
-    const hd_spectrum *s = &of->s;
-    const hd_laplacian *lap = s->lap;
-    double *side = work, *found = work + s->n, *inner = found + s->n;
+/* work [n_active] */
+static hdi_fading_far hdi_fading_reach(const hdi_modes *of, const hdi_decay *x, hdi_fading_size *work) {
+    const hd_laplacian *lap = of->s.lap;
     hdi_fading_far most = {0, 0, 0, 0};
-    int32_t q, v;
-    for (v = 0; v < s->n; v++) side[v] = found[v] = inner[v] = 0;
-    for (q = 0; q < s->count; q++) {
-        const double *y = s->vector + (int64_t)q * s->n, w = hdi_decay_side(of, x, q);
-        for (v = 0; v < s->n; v++) {
-            side[v] += w * fabs(y[v]);
-            inner[v] += x->off[q] * fabs(y[v]);
-            found[v] += y[v] * y[v];
-        }
-    }
-    for (v = 0; v < s->n; v++) {
-        const double all = lap->row[v] < 0 ? 0 : hdi_inverse_mass(lap, lap->row[v]), c = sqrt(found[v]);
-        const double twice = hdi_decay_twice(of, x) * c;
-        most.left = hdi_max(most.left, sqrt(s->left[v] + of->off_gram * all));
-        most.side = hdi_max(most.side, side[v] + twice);
-        most.inner = hdi_max(most.inner, inner[v] + twice);
+    int32_t i;
+    hdi_fading_sizes(of, x, 0, 0, lap->n_active, work);
+    for (i = 0; i < lap->n_active; i++) {
+        const double c = sqrt(work[i].found), twice = hdi_decay_twice(of, x) * c;
+        const double left2 = of->s.left[lap->vertex[i]] + of->off_gram * hdi_inverse_mass(lap, i);
+        most.left = hdi_max(most.left, sqrt(left2));
+        most.side = hdi_max(most.side, work[i].side + twice);
+        most.inner = hdi_max(most.inner, work[i].inner + twice);
         most.found = hdi_max(most.found, c);
     }
     return most;
@@ -22158,9 +22197,6 @@ static void hdi_fading_rows(void *arg, int64_t begin, int64_t end) {
     }
     for (i = begin; i < end; i++) a->u[i] = hdi_decayed(a->decay, a->u[i]);
 }
-
-/* Sums of a field's coefficients: |c|^2, |w c|^2, of |r_i| min(t, ...) |c_i|, and s(c) but its last term. */
-typedef struct hdi_fading_size { double found, kept, inner, side; } hdi_fading_size;
 
 /* The bounds of a lane's answer. */
 static void hdi_fading_bound(const hdi_heat_call *h, const hdi_decay *x, const hdi_fading_far *most,
@@ -22200,10 +22236,8 @@ static void hdi_fading_lane(const hdi_heat_call *h, const hdi_decay *x, const hd
         double c = 0;
         for (i = 0; i < lap->n_active; i++) c += lane->rhs[i] * v[lap->vertex[i]];
         work[q] = x->weight[q] * c;
-        size.found += c * c;
         size.kept += work[q] * work[q];
-        size.inner += x->off[q] * fabs(c);
-        size.side += hdi_decay_side(of, x, q) * fabs(c);
+        hdi_fading_size_add(&size, x, q, hdi_decay_side(of, x, q), c);
     }
     a.of = of;
     a.c = work;
@@ -22217,7 +22251,9 @@ static void hdi_fading_lane(const hdi_heat_call *h, const hdi_decay *x, const hd
 static hd_status hdi_fading_answer(hdi_heat_call *h, double t) {
     hd_heat *heat = h->heat;
     const int32_t count = heat->modes.s.count;
-    double *work = HDI_NEW(heat->ctx, double, 3 * ((uint64_t)count + (uint64_t)heat->source->n), h->e);
+    hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
+    double *work = HDI_TAKE(&s, double, 3 * (uint64_t)count);
+    hdi_fading_size *sizes = HDI_TAKE(&s, hdi_fading_size, heat->source->n_active);
     hdi_fading_far most;
     hdi_decay x;
     h->lap = heat->source;
@@ -22225,20 +22261,19 @@ static hd_status hdi_fading_answer(hdi_heat_call *h, double t) {
     h->method = HD_METHOD_DIRECT;
     h->solver = HD_SOLVER_AUTO;
     hdi_modes_tell(heat, h->rep);
-    if (work && hdi_heat_lanes(h, 1) >= 0) {
+    if (h->e->status >= 0 && hdi_heat_lanes(h, 1) >= 0) {
         x = hdi_decay_at(&heat->modes, t, work + count);
-        most = hdi_fading_reach(&heat->modes, &x, work + 3 * (int64_t)count);
+        most = hdi_fading_reach(&heat->modes, &x, sizes);
         for (h->batch = 0; h->batch < h->ask.k; h->batch++) {
             if (hdi_progress(heat->ctx, "solve", (double)h->batch / h->ask.k, h->e) < 0 ||
-                hdi_heat_load(h, h->batch, h->lane) < 0) break;
-            if (!h->lane->skip) hdi_fading_lane(h, &x, &most, h->lane, work);
+                hdi_heat_load(h, h->batch, h->heat->lane) < 0) break;
+            if (!h->heat->lane->skip) hdi_fading_lane(h, &x, &most, h->heat->lane, work);
             if (hdi_heat_store_some(h, 1) < 0) break;
         }
         if (h->e->status >= 0 && h->ask.list) hdi_ledger_close(h->ask.list->ledger + h->now, h->rep);
     }
-    hdi_free(heat->ctx, work);
     h->by_pairs = 0;
-    return h->e->status;
+    return hdi_scope_end(&s);
 }
 
 /* Copies fields that their answers would overwrite, to ask for them again. Returns 0 if there is no room. */
@@ -22307,38 +22342,61 @@ static hd_status hdi_heat_sparing(hdi_heat_call *h, hdi_way way, void *what) {
     *h = before;
     *h->rep = rep;                               /* with its error, which is none */
     hdi_heat_shed(heat, 1);
-    h->lane = NULL;
     heat->spare = HDI_SPARE_OPTIONS;
     (void)way(h, what);
     heat->spare = 0;
     return h->e->status;
 }
 
-/* Answers that need no solve: the field itself for t = 0, the means for very large t. */
-static hd_status hdi_heat_plain(hdi_heat_call *h) {
+/* The means of the components. */
+static void hdi_plain_means(const hdi_heat_call *h, hdi_lane *lane) {
     const hd_laplacian *lap = h->lap;
-    hdi_lane *lane;
     int32_t i;
+    for (i = 0; i < lap->n_active; i++)
+        lane->u[i] = lane->target[lap->component[i]] / lap->component_mass[lap->component[i]];
+    lane->u_norm = sqrt(hdi_max(0, hdi_b_norm2(lap, lane->u, lane->tmp)));
+    hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, 0, hdi_query_fields(h->ask.query)));
+}
+
+/* The field itself. */
+static void hdi_plain_field(const hdi_heat_call *h, hdi_lane *lane) {
+    memcpy(lane->u, lane->f, (size_t)h->lap->n_active * sizeof *lane->u);
+    lane->u_norm = lane->f_norm;
+    hdi_lane_rounding(lane, h->still * lane->f_norm);
+    if (h->ask.query == HDI_QUERY_SYMMETRIC) hdi_lane_rounding(lane, 2 * DBL_EPSILON * lane->f_norm);
+    if (lane->f_off > 0) {
+        hdi_lane_rounding(lane, lane->f_off);
+        lane->rounding = HD_EVIDENCE_ESTIMATED;
+    }
+}
+
+/* The derivative -A f, A = B^-1 L of the scaled pair. Rounding of f counts as much as A can make of it. */
+static hd_status hdi_plain_rate(const hdi_heat_call *h, hdi_lane *lane) {
+    const hd_laplacian *lap = h->lap;
+    const double unit = 1 / h->heat->scale;
+    double *w = lane->tmp, *noise = w + lap->n_active, sum = 0;
+    int32_t i;
+    hdi_noise_weights(lap, unit, 0, noise, noise + lap->n_active);
+    for (i = 0; i < lap->n_active; i++) sum += noise[i] * lane->f[i] * lane->f[i];
+    hdi_pair_apply(lap, -unit, 0, lane->f, w);
+    if (hdi_mass_solve(lap, w, lane->u, noise, h->e) < 0) return h->e->status;
+    lane->u_norm = sqrt(hdi_max(0, hdi_b_norm2(lap, lane->u, lane->tmp)));
+    hdi_lane_rounding(lane, hdi_ratio_root(lap) *
+                            (sqrt(sum) + (lap->B ? HDI_MASS_TOL : 4 * DBL_EPSILON) * lane->u_norm) +
+                            h->still * lane->u_norm + h->heat->lambda_max * lane->rhs_off);
+    return HD_OK;
+}
+
+/* Answers that need no solve: those for t = 0, or the means for very large t. */
+static hd_status hdi_heat_plain(hdi_heat_call *h) {
+    hdi_lane *lane;
     if (hdi_heat_lanes(h, 1) < 0) return h->e->status;
-    lane = h->lane;
+    lane = h->heat->lane;
     for (h->batch = 0; h->batch < h->ask.k; h->batch++) {
         if (hdi_heat_load(h, h->batch, lane) < 0) return h->e->status;
-        if (!lane->skip) {
-            for (i = 0; i < lap->n_active; i++)
-                lane->u[i] = h->equal
-                             ? lane->target[lap->component[i]] / lap->component_mass[lap->component[i]]
-                             : lane->f[i];
-            lane->u_norm = h->equal ? sqrt(hdi_max(0, hdi_b_norm2(lap, lane->u, lane->tmp))) : lane->f_norm;
-            if (h->equal)
-                hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, 0, hdi_query_fields(h->ask.query)));
-            else hdi_lane_rounding(lane, h->still * lane->f_norm);
-            if (!h->equal && h->ask.query == HDI_QUERY_SYMMETRIC)
-                hdi_lane_rounding(lane, 2 * DBL_EPSILON * lane->f_norm);
-            if (!h->equal && lane->f_off > 0) {
-                hdi_lane_rounding(lane, lane->f_off);
-                lane->rounding = HD_EVIDENCE_ESTIMATED;
-            }
-        }
+        if (!lane->skip && h->equal) hdi_plain_means(h, lane);
+        else if (!lane->skip && !h->rate) hdi_plain_field(h, lane);
+        else if (!lane->skip && hdi_plain_rate(h, lane) < 0) return h->e->status;
         if (hdi_heat_store_some(h, 1) < 0) return h->e->status;
     }
     return HD_OK;
@@ -22514,240 +22572,6 @@ static hd_status hdi_heat_run(hdi_heat_call *h) {
     return hdi_heat_end(h);
 }
 
-/* ---- derivatives in time ---- */
-
-/* Where there are poles, t dK_t/dt comes by other weights on them, see hdi_rational_rate. Lanczos has none.
- * There the derivative is that of a product of two kernels, with one s below all times:
- *   dK_t/dt f = -K_(t-s) A K_s f,   A = B^-1 L.
- * An error d of the first answer becomes at most |A K_(t-s) d|_B <= |d|_B/(exp(1) (t - s)); an error of the
- * product with A grows no more. A is that of the scaled pair. */
-typedef struct hdi_halves {
-    hdi_heat_call *h;
-    double s, *later;            /* [n_times] t - s */
-    double *W;                   /* [n k] fields on vertices */
-    double *x, *work, *noise;    /* [n_active], [4 n_active], [2 n_active] */
-    double noise_unit;           /* what products with A are off by, in terms of noise */
-    double *sums;                /* [n_components] */
-    double *size, *slip;         /* [k] |W|_B of the first answers; bounds of what A W is off by */
-    int32_t *exponent;           /* [k] fields are the caller's times 2^-exponent */
-    hd_report first, second;
-} hdi_halves;
-
-/* Weights of rounding of products with A, in a unit that keeps them within the range of doubles. */
-static void hdi_halves_weigh(hdi_halves *z) {
-    const hd_laplacian *lap = z->h->heat->source;
-    const double scale = z->h->heat->scale;
-    double most = 0, t;
-    int64_t p;
-    for (p = 0; p < lap->L.nnz; p++) most = hdi_max(most, fabs(lap->L.val[p]));
-    if (!(most > 0)) most = 1;
-    t = hdi_max(1e-130, hdi_min(sqrt(most) / sqrt(scale), 1e130)) / most;
-    z->noise_unit = 1 / scale / t;
-    hdi_noise_weights(lap, t, 0, z->noise, z->noise + lap->n_active);
-}
-
-static hd_status hdi_halves_make(hdi_halves *z, hdi_heat_call *h) {
-    const hd_laplacian *lap = h->heat->source;
-    const uint64_t n = (uint64_t)lap->n_active;
-    int32_t q;
-    memset(z, 0, sizeof *z);
-    z->h = h;
-    z->W = HDI_TAKE(&h->s, double, (uint64_t)lap->n * (uint64_t)h->ask.k);
-    z->x = HDI_TAKE(&h->s, double, n);
-    z->work = HDI_TAKE(&h->s, double, 4 * n);
-    z->noise = HDI_TAKE(&h->s, double, 2 * n);
-    z->sums = HDI_TAKE(&h->s, double, lap->n_components);
-    z->size = HDI_TAKE(&h->s, double, 2 * (uint64_t)h->ask.k);
-    z->exponent = HDI_TAKE(&h->s, int32_t, h->ask.k);
-    z->later = HDI_TAKE(&h->s, double, h->ask.n_times);
-    if (h->e->status < 0) return h->e->status;
-    z->slip = z->size + h->ask.k;
-    z->s = h->ask.t[0];
-    for (q = 1; q < h->ask.n_times; q++) z->s = hdi_min(z->s, h->ask.t[q]);
-    z->s /= 2;
-    if (hdi_heat_scaled(h->heat, z->s) * h->heat->lambda_max < HDI_STILL) z->s = 0;
-    for (q = 0; q < h->ask.n_times; q++) z->later[q] = h->ask.t[q] - z->s;
-    hdi_halves_weigh(z);
-    return HD_OK;
-}
-
-/* x goes to field q of W; other vertices have 0. */
-static void hdi_halves_put(hdi_halves *z, int32_t q) {
-    const hd_laplacian *lap = z->h->heat->source;
-    double *w = z->W + (size_t)q * (size_t)lap->n;
-    int32_t i;
-    memset(w, 0, (size_t)lap->n * sizeof *w);
-    for (i = 0; i < lap->n_active; i++) w[lap->vertex[i]] = z->x[i];
-}
-
-/* Field q near one and without its constants. */
-static void hdi_halves_load(hdi_halves *z, int32_t q) {
-    const hd_laplacian *lap = z->h->heat->source;
-    double most = 0;
-    int32_t i;
-    int exponent = 0;
-    hdi_gather(lap, z->h->ask.F + (size_t)q * z->h->ask.ldf, z->x);
-    for (i = 0; i < lap->n_active; i++) most = hdi_max(most, fabs(z->x[i]));
-    if (most > 0) frexp(most, &exponent);
-    z->exponent[q] = exponent;
-    for (i = 0; i < lap->n_active; i++) z->x[i] = ldexp(z->x[i], -exponent);
-    if (lap->conserves) {
-        hdi_component_sums(lap, lap->mass, z->x, z->sums);
-        for (i = 0; i < lap->n_components; i++) z->sums[i] /= -lap->component_mass[i];
-        hdi_component_add(lap, z->sums, z->x);
-    }
-    hdi_halves_put(z, q);
-}
-
-/* One of the two runs: K_t F on vertices. */
-static hd_status hdi_halves_run(hdi_halves *z, int32_t n_times, const double *t, double *U, size_t ldu,
-                                hd_report *rep) {
-    hdi_heat_call *h = z->h, c;
-    (void)hdi_heat_begin(&c, h->heat, HDI_QUERY_FIELD, rep, NULL);
-    c.ask.n_times = n_times;
-    c.ask.t = t;
-    c.ask.k = h->ask.k;
-    c.ask.F = z->W;
-    c.ask.ldf = (size_t)h->heat->source->n;
-    c.ask.U = U;
-    c.ask.ldu = ldu;
-    c.t = hdi_heat_scaled(h->heat, t[0]);
-    if (hdi_heat_run(&c) < 0) *h->e = rep->error;
-    return h->e->status;
-}
-
-/* W = -A W for field q. */
-static hd_status hdi_halves_product(hdi_halves *z, int32_t q) {
-    const hd_laplacian *lap = z->h->heat->source;
-    const int64_t n = lap->n_active;
-    double sum = 0, size;
-    int64_t i;
-    hdi_gather(lap, z->W + (size_t)q * (size_t)lap->n, z->x);
-    z->size[q] = sqrt(hdi_max(0, hdi_b_norm2(lap, z->x, z->work)));
-    for (i = 0; i < n; i++) sum += z->noise[i] * z->x[i] * z->x[i];
-    hdi_pair_apply(lap, -1 / z->h->heat->scale, 0, z->x, z->work);
-    if (hdi_mass_solve(lap, z->work, z->x, z->work + n, z->h->e) < 0) return z->h->e->status;
-    size = sqrt(hdi_max(0, hdi_b_norm2(lap, z->x, z->work)));
-    z->slip[q] = hdi_ratio_root(lap) *
-                 (z->noise_unit * sqrt(sum) + (lap->B ? HDI_MASS_TOL : DBL_EPSILON) * size);
-    hdi_halves_put(z, q);
-    return HD_OK;
-}
-
-/* The bound of an answer of this size by a run's report, in the B norm, in the report's parts. */
-static hdi_parts hdi_halves_parts(const hd_report *rep, double size) {
-    const double b = rep->error_bound_b, all = b < 0.5 ? size * b / (1 - b) : HUGE_VAL;
-    const double sum = rep->error_bound;
-    hdi_parts part;
-    memset(&part, 0, sizeof part);
-    if (!(sum > 0) || !hdi_finite(sum)) {
-        part.rounding = b > 0 ? all : 0;
-        return part;
-    }
-    part.rational = rep->error_rational / sum;
-    part.solver = rep->error_solver / sum;
-    part.rounding = rep->error_rounding / sum;
-    return hdi_parts_scale(all, part);
-}
-
-/* Brings an answer into the caller's units, and notes it with the bound on its error. rep: both runs'. */
-static void hdi_halves_finish(hdi_halves *z, int32_t q, int32_t m, double to_values, hdi_ledger *ledger,
-                              hd_report *rep) {
-    hdi_heat_call *h = z->h;
-    const hd_laplacian *lap = h->heat->source;
-    const size_t column = (size_t)q * (size_t)h->ask.n_times + (size_t)m;
-    const double grow = z->s > 0 ? 1 / (exp(1) * z->later[m] * h->heat->scale) : 0;
-    const double step = ldexp(DBL_MIN * DBL_EPSILON, hdi_high32(-z->exponent[q], 0)) / h->heat->scale;
-    double *u = h->ask.U + column * h->ask.ldu, size, all, largest = 0;
-    hdi_parts off, one;
-    int32_t i;
-    hdi_gather(lap, u, z->x);
-    size = sqrt(hdi_max(0, hdi_b_norm2(lap, z->x, z->work)));
-    off = hdi_halves_parts(&z->second, size);
-    one = hdi_parts_scale(grow, hdi_halves_parts(&z->first, z->size[q]));
-    off.rational += one.rational;
-    off.solver += one.solver;
-    off.rounding += one.rounding + z->slip[q] + 4 * DBL_EPSILON * size;
-    for (i = 0; i < lap->n_active; i++) {
-        const double value = ldexp(h->heat->scale * z->x[i], z->exponent[q]);
-        largest = hdi_max(largest, fabs(z->x[i]));
-        u[lap->vertex[i]] = value;
-        if (hdi_fail_range(h->e, lap->vertex[i], value) < 0) return;
-    }
-    one = hdi_parts_scale(to_values, off);
-    all = hdi_parts_sum(&off);
-    if (z->size[q] > 0) {                        /* where values are among the smallest doubles */
-        one.rounding += step;
-        if (step > DBL_EPSILON * DBL_EPSILON * largest) all += step * hdi_lane_spread(lap, 0);
-    }
-    hdi_ledger_note(ledger, largest, one);
-    rep->error_bound_b = hdi_max(rep->error_bound_b, hdi_quotient(all, size - all));
-    hdi_bound_judge(rep->error_bound_b, rep);
-}
-
-/* The report of both runs, and the answers with their bounds. */
-static void hdi_halves_close(hdi_halves *z) {
-    hdi_heat_call *h = z->h;
-    const hd_laplacian *lap = h->heat->source;
-    hd_report *rep = h->rep;
-    double smallest = HUGE_VAL;
-    int32_t i, q, m;
-    for (i = 0; i < lap->n_active; i++) smallest = hdi_min(smallest, lap->b_diag[i]);
-    *rep = z->second;
-    if (z->s > 0) hdi_report_merge(rep, &z->first);
-    rep->error_bound = rep->error_rational = rep->error_solver = rep->error_rounding = 0;
-    rep->error_bound_b = 0;
-    for (q = 0; q < h->ask.k; q++)
-        for (m = 0; m < h->ask.n_times && h->e->status >= 0; m++) {
-            hdi_ledger ledger = hdi_ledger_begin(rep->evidence_rational, rep->evidence_solver,
-                                                 HD_EVIDENCE_PROVEN, 0);
-            hdi_halves_finish(z, q, m, hdi_ratio_root(lap) / sqrt(smallest), &ledger, rep);
-            hdi_ledger_close(&ledger, rep);
-        }
-}
-
-static hd_status hdi_heat_by_halves(hdi_heat_call *h) {
-    const size_t n = (size_t)h->heat->source->n;
-    hdi_halves z;
-    int32_t q;
-    if (hdi_halves_make(&z, h) < 0) return h->e->status;
-    for (q = 0; q < h->ask.k; q++) hdi_halves_load(&z, q);
-    if (z.s > 0 && hdi_halves_run(&z, 1, &z.s, z.W, n, &z.first) < 0) return h->e->status;
-    for (q = 0; q < h->ask.k; q++)
-        if (hdi_halves_product(&z, q) < 0) return h->e->status;
-    if (hdi_halves_run(&z, h->ask.n_times, z.later, h->ask.U, h->ask.ldu, &z.second) >= 0)
-        hdi_halves_close(&z);
-    return h->e->status;
-}
-
-/* Is the method one with poles, for all times? Where t = 0 the derivative is a product with A. */
-static int hdi_rate_by_poles(hdi_heat_call *h) {
-    const hd_heat *heat = h->heat;
-    int32_t q;
-    for (q = 0; q < h->ask.n_times; q++)
-        if (hdi_heat_scaled(heat, h->ask.t[q]) * heat->lambda_max < HDI_STILL) return 0;
-    if (heat->opts.solver == HD_SOLVER_LANCZOS) return 0;
-    if (heat->opts.method != HD_METHOD_AUTO) return heat->opts.method != HD_METHOD_KRYLOV;
-    if (hdi_heat_sort_times(h, 1, NULL) < 0 || hdi_heat_pick(h) < 0) return 0;
-    h->times = &h->t;
-    h->n_times = 1;
-    h->time_column = NULL;
-    h->t = hdi_heat_scaled(heat, h->ask.t[0]);
-    return h->method != HD_METHOD_KRYLOV;
-}
-
-/* Runs a request for derivatives whose arguments are checked. */
-static hd_status hdi_rate_run(hdi_heat_call *h) {
-    if (h->e->status < 0 || h->ask.k == 0) return hdi_heat_end(h);
-    h->rate = HDI_RATE_OPEN;
-    if (hdi_rate_by_poles(h)) {
-        h->rate = HDI_RATE_POLES;
-        return hdi_heat_run(h);
-    }
-    if (h->e->status >= 0) (void)hdi_heat_by_halves(h);
-    return hdi_heat_end(h);
-}
-
 /* Makes a request of entries (i[q], j[q]), sorted by column, with a ledger for each time, in h. list: what
  * the request points to. */
 static hd_status hdi_entry_list_make(hdi_heat_call *h, hdi_entry_list *list, int64_t n, const int32_t *i,
@@ -22818,7 +22642,8 @@ static hd_status hdi_fields_run(hd_heat *heat, hdi_query query, const hdi_reques
     if (ask->U == ask->F && ask->n_times > 1)
         hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: U may be F for one time only");
     else if (ask->U == ask->F) hdi_fields_spread(&h.ask, (size_t)heat->source->n, ask->U);
-    return derivative ? hdi_rate_run(&h) : hdi_heat_run(&h);
+    h.rate = derivative;
+    return hdi_heat_run(&h);
 }
 
 /* What queries of columns ask for, but for the sources. given: they are not NULL. */
@@ -23664,36 +23489,20 @@ typedef struct hdi_fading_diagonal {
     hdi_fading_size *g;          /* [n] of B^-1 e_v; the same for k_t */
 } hdi_fading_diagonal;
 
-/* Vector q at a vertex, times B where the other side of K_t is meant. */
-static double hdi_fading_other(const hdi_fading_diagonal *a, int32_t q, int32_t v) {
-    const int64_t at = (int64_t)q * a->of->s.n + v;
-    return !a->mass ? a->of->s.vector[at] : a->of->bx ? a->of->bx[at] : a->of->by[v] * a->of->s.vector[at];
-}
-
-static void hdi_fading_size_add(hdi_fading_size *c, const hdi_decay *x, int32_t q, double side, double y) {
-    c->found += y * y;
-    c->inner += x->off[q] * fabs(y);
-    c->side += side * fabs(y);
-}
-
 static void hdi_fading_diagonal_task(void *arg, int64_t begin, int64_t end) {
     const hdi_fading_diagonal *a = (const hdi_fading_diagonal *)arg;
     const hd_spectrum *s = &a->of->s;
     int64_t i;
     int32_t q;
     memset(a->value + begin, 0, (size_t)(end - begin) * sizeof *a->value);
-    memset(a->c + begin, 0, (size_t)(end - begin) * sizeof *a->c);
-    if (a->mass) memset(a->g + begin, 0, (size_t)(end - begin) * sizeof *a->g);
-    for (q = 0; q < s->count; q++) {
-        const double side = hdi_decay_side(a->of, &a->decay, q);
+    for (q = 0; q < s->count; q++)
         for (i = begin; i < end; i++) {
             const int32_t v = a->lap->vertex[i];
-            const double x = s->vector[(int64_t)q * s->n + v], y = hdi_fading_other(a, q, v);
-            a->value[i] += a->decay.weight[q] * x * y;
-            hdi_fading_size_add(a->c + i, &a->decay, q, side, y);
-            if (a->mass) hdi_fading_size_add(a->g + i, &a->decay, q, side, x);
+            a->value[i] += a->decay.weight[q] * s->vector[(int64_t)q * s->n + v] *
+                hdi_modes_entry(a->of, a->mass, q, v);
         }
-    }
+    hdi_fading_sizes(a->of, &a->decay, a->mass, begin, end, a->c);
+    if (a->mass) hdi_fading_sizes(a->of, &a->decay, 0, begin, end, a->g);
 }
 
 /* Gives row i to its vertex, and its errors to the report. */
