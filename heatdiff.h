@@ -16627,9 +16627,6 @@ static hd_status hdi_lanczos_failed(hd_error *e) {
     return hdi_fail(e, HD_ERR_BREAKDOWN, "Lanczos: the projected eigenproblem did not converge");
 }
 
-/* The time at part x of the way from t0 to t1, in equal ratios. Their own ratio might overflow. */
-static double hdi_time_between(double t0, double t1, double x) { return pow(t0, 1 - x) * pow(t1, x); }
-
 /* e_m' exp(-s T) e_1 from the ends of T's eigenvectors. */
 static double hdi_lanczos_last(const hdi_lanczos *z, double s) {
     double sum = 0;
@@ -16638,48 +16635,38 @@ static double hdi_lanczos_last(const hdi_lanczos *z, double s) {
     return fabs(sum);
 }
 
-/* The total variation of that for s in [0, t]. But for a factor it is the density of a sum of exponential
- * variables with the rates d_i, and so its logarithm is concave: it rises, then falls. The mode is no smaller
- * than (m - 1)/max d_i, and no larger than the mean. */
-static double hdi_lanczos_variation(const hdi_lanczos *z, double t) {
-    enum { HDI_MODE_POINTS = 64 };
-    const double last = hdi_lanczos_last(z, t);
-    double most = last, mean = 0, rate = 0, from, to;
-    int32_t k, best = HDI_MODE_POINTS;
-    if (z->m == 1) return 2 - last;
-    for (k = 0; k < z->m; k++) {
-        mean += 1 / hdi_max(z->d[k], DBL_MIN);
-        rate = hdi_max(rate, z->d[k]);
+/* Its integral from 0 to t. It has one sign. */
+static double hdi_lanczos_integral(const hdi_lanczos *z, double t) {
+    double sum = 0;
+    int32_t i;
+    for (i = 0; i < z->m; i++) {
+        const double x = t * z->d[i];
+        sum += z->ends[2 * i] * z->ends[2 * i + 1] * (fabs(x) > 1e-8 ? -expm1(-x) / x : 1 - x / 2);
     }
-    from = (z->m - 1) / hdi_max(rate, DBL_MIN);
-    to = hdi_min(t, mean);
-    if (!(from < to)) return last;
-    for (k = 0; k <= HDI_MODE_POINTS; k++) {
-        const double f = hdi_lanczos_last(z, hdi_time_between(from, to, k / (double)HDI_MODE_POINTS));
-        if (f > most) best = k;
-        most = hdi_max(most, f);
-    }
-    mean = to;                                   /* now between the neighbours of the largest */
-    to = hdi_time_between(from, mean, hdi_low32(best + 1, HDI_MODE_POINTS) / (double)HDI_MODE_POINTS);
-    from = hdi_time_between(from, mean, hdi_high32(best - 1, 0) / (double)HDI_MODE_POINTS);
-    for (k = 0; k < 16; k++) {
-        const double a = from + (to - from) / 3, b = to - (to - from) / 3;
-        const double fa = hdi_lanczos_last(z, a), fb = hdi_lanczos_last(z, b);
-        most = hdi_max(most, hdi_max(fa, fb));
-        if (fa > fb) to = b;
-        else from = a;
-    }
-    return 1.01 * (2 * most - last);
+    return t * fabs(sum);
 }
+
+/* A bound of it for s in [t/2, t]. But for a factor it is the density of a sum of exponential variables, and
+ * its logarithm is concave: below the lines through that at t/4 and t/2, and at t and 2 t. */
+static double hdi_lanczos_peak(const hdi_lanczos *z, double t) {
+    const double half = hdi_lanczos_last(z, t / 2), last = hdi_lanczos_last(z, t);
+    const double rise = hdi_max(1, hdi_quotient(half, hdi_lanczos_last(z, t / 4)));
+    const double fall = hdi_max(1, hdi_quotient(last, hdi_lanczos_last(z, 2 * t)));
+    const double lines = hdi_min(hdi_bound_times(half, rise * rise), hdi_bound_times(last, sqrt(fall)));
+    return hdi_max(lines, hdi_max(half, last));
+}
+
+#define HDI_TWO_OVER_E 0.7357588823428847
 
 /* Bounds the error of m steps from a vector of norm one by
  *   t beta_(m+1) |e_m' phi_1(-t T) e_1|,   phi_1(z) = (e^z - 1)/z.
- * The error is beta int_0^t exp(-(t-s) B^-1 L) v_(m+1) e_m' exp(-s T) e_1 ds. The last factor has one sign
- * for all s, and the first one shrinks. With rate it is that of t times the derivative: by parts the integral
- * has the derivative of the last factor in its place. */
+ * The error is beta int_0^t exp(-(t-s) A) v_(m+1) f(s) ds, with A = B^-1 L and f(s) = e_m' exp(-s T) e_1. The
+ * last factor has one sign for all s, and the first one shrinks. With rate it is that of t times the
+ * derivative, for which the integral up to t/2 has |A exp(-(t-s) A)| <= 2/(e t), and the rest, by parts,
+ * comes to no more than f(t/2) and the variation of f from there on. */
 static hd_status hdi_lanczos_bound(hdi_lanczos *z, double t, int rate, double *bound, hd_error *e) {
     const int32_t m = z->m;
-    double sum = 0, least = 0, most = 0;
+    double least = 0, most = 0;
     int32_t i;
     for (i = 0; i < m; i++) {
         z->d[i] = z->alpha[i];
@@ -16693,15 +16680,9 @@ static hd_status hdi_lanczos_bound(hdi_lanczos *z, double t, int rate, double *b
         most = hdi_max(most, fabs(z->d[i]));
     }
     if (least < -1e-8 * most - 2 * sqrt((double)m) * z->noise) return hdi_not_semidefinite(e);
-    if (rate) {
-        *bound = t * z->beta[m] * hdi_lanczos_variation(z, t);
-        return HD_OK;
-    }
-    for (i = 0; i < m; i++) {
-        const double x = t * z->d[i];
-        sum += z->ends[2 * i] * z->ends[2 * i + 1] * (fabs(x) > 1e-8 ? -expm1(-x) / x : 1 - x / 2);
-    }
-    *bound = t * z->beta[m] * fabs(sum);
+    *bound = z->beta[m] * (!rate ? hdi_lanczos_integral(z, t)
+                           : HDI_TWO_OVER_E * hdi_lanczos_integral(z, t / 2) +
+                             t * (2 * hdi_lanczos_peak(z, t) - hdi_lanczos_last(z, t)));
     return HD_OK;
 }
 
@@ -16798,26 +16779,36 @@ static hd_status hdi_lanczos_step(const hdi_lanczos_task *task, hdi_lanczos *z, 
     return HD_OK;
 }
 
+/* |exp(-s T) e_1|, or with product |T exp(-s T) e_1|. */
+static double hdi_lanczos_size(const hdi_lanczos *z, double s, int product) {
+    double sum = 0;
+    int32_t i;
+    for (i = 0; i < z->m; i++) {
+        const double part = z->ends[2 * i] * (product ? z->d[i] : 1);
+        sum += part * part * exp(-2 * s * hdi_max(0, z->d[i]));
+    }
+    return sqrt(sum);
+}
+
 /* A bound on what rounding does to m steps from a vector of norm one. With L v_j = B (sum of v_i T_ij) +
  * errors of size noise in the norm of B^-1, the answer is off by sum_j int_0^t exp(-(t-s) B^-1 L) (error j)
  * e_j' exp(-s T) e_1 ds. This is at most noise sqrt(m) times the integral of |exp(-s T) e_1|, which falls
- * with s, so that left Riemann sums are above it. Rounding of the answer's own sum comes on top. With rate
- * the integral is t (1 + that of |T exp(-s T) e_1|), by parts. */
+ * with s, so that left Riemann sums are above it. With rate as in the bound above. Rounding of the answer's
+ * own sum comes on top. */
 static double hdi_lanczos_rounding(const hdi_lanczos *z, double t, int rate) {
     const int32_t m = z->m;
-    double integral = rate, from = 0, to, size = 0;
+    const double end = rate ? t / 2 : t;
+    double integral = 0, from = 0, to, size = 0;
     int32_t i, k;
     for (k = 24; k >= 0; k--) {
-        to = ldexp(t, -2 * k);
-        for (size = 0, i = 0; i < m; i++) {
-            const double part = z->ends[2 * i] * (rate ? z->d[i] : 1);
-            size += part * part * exp(-2 * from * hdi_max(0, z->d[i]));
-        }
-        integral += sqrt(size) * (to - from);
+        to = ldexp(end, -2 * k);
+        integral += hdi_lanczos_size(z, from, 0) * (to - from);
         from = to;
     }
-    for (size = 0, i = 0; i < m; i++) size += z->y[i] * z->y[i];
-    if (rate) integral *= t;
+    if (rate)
+        integral = HDI_TWO_OVER_E * integral + t * hdi_lanczos_size(z, end, 0) +
+                   t * (end * hdi_lanczos_size(z, end, 1));
+    for (i = 0; i < m; i++) size += z->y[i] * z->y[i];
     return sqrt((double)m) * (hdi_residual_seen(0, z->noise) * integral + m * DBL_EPSILON * sqrt(size));
 }
 
@@ -21179,6 +21170,9 @@ static hd_status hdi_heat_by_direct(hdi_heat_call *h) {
 
 /* ---- krylov ---- */
 
+/* The time at part x of the way from t0 to t1, in equal ratios. Their own ratio might overflow. */
+static double hdi_time_between(double t0, double t1, double x) { return pow(t0, 1 - x) * pow(t1, x); }
+
 /* The end of window w of n_windows of equal ratio, from time q0 on; times ascend. */
 static int32_t hdi_window_end(const double *times, int32_t n_times, int32_t q0, int32_t w,
                               int32_t n_windows) {
@@ -22370,7 +22364,8 @@ static void hdi_plain_field(const hdi_heat_call *h, hdi_lane *lane) {
     }
 }
 
-/* The derivative -A f, A = B^-1 L of the scaled pair. Rounding of f counts as much as A can make of it. */
+/* The derivative -A f, A = B^-1 L of the scaled pair. Rounding of f counts as much as that of
+ * the product. */
 static hd_status hdi_plain_rate(const hdi_heat_call *h, hdi_lane *lane) {
     const hd_laplacian *lap = h->lap;
     const double unit = 1 / h->heat->scale;
@@ -22382,8 +22377,8 @@ static hd_status hdi_plain_rate(const hdi_heat_call *h, hdi_lane *lane) {
     if (hdi_mass_solve(lap, w, lane->u, noise, h->e) < 0) return h->e->status;
     lane->u_norm = sqrt(hdi_max(0, hdi_b_norm2(lap, lane->u, lane->tmp)));
     hdi_lane_rounding(lane, hdi_ratio_root(lap) *
-                            (sqrt(sum) + (lap->B ? HDI_MASS_TOL : 4 * DBL_EPSILON) * lane->u_norm) +
-                            h->still * lane->u_norm + h->heat->lambda_max * lane->rhs_off);
+                            (2 * sqrt(sum) + (lap->B ? HDI_MASS_TOL : 4 * DBL_EPSILON) * lane->u_norm) +
+                            h->still * lane->u_norm);
     return HD_OK;
 }
 

@@ -703,6 +703,14 @@ static void int_no_numbers(void) {
 
 /* ---- [23] Lanczos ---- */
 
+/* exp(-t A) rhs, or t times its derivative. */
+static void int_lanczos_truth(const dense_pair *p, double t, int rate, const double *rhs, double *u) {
+    double *g = KIT_NEW(double, p->n);
+    int32_t i;
+    for (i = 0; i < p->n; i++) g[i] = (rate ? -t * p->lambda[i] : 1) * exp(-t * p->lambda[i]);
+    dense_pair_filter(p, g, rhs, u);
+}
+
 /* Lanczos from e_1 on a tridiagonal T gives T back: m steps leave exp(-t T_m) e_1, and the bound must hold against exp(-t
  * T) e_1. */
 static void int_lanczos_bound(void) {
@@ -712,7 +720,7 @@ static void int_lanczos_bound(void) {
         *got = room + 7 * N + 2, *want = got + N;
     double start[N] = {1}, loosest = 0;
     hd_c64 work[2 * N];
-    hd_rational set;
+    hd_rational set[2];
     const dense_pair *whole, *part;
     hdi_lanczos z;
     hd_error e = int_no_error();
@@ -732,7 +740,8 @@ static void int_lanczos_bound(void) {
         if (i + 1 < N) T[i * N + i + 1] = T[(i + 1) * N + i] = z.beta[i + 1];
         one[i * N + i] = 1;
     }
-    CHECK(hdi_rational_get(&set, HD_POLES_UNIFORM, 14, &e) == HD_OK);
+    CHECK(hdi_rational_get(set, HD_POLES_UNIFORM, 14, &e) == HD_OK && hdi_rational_get(set + 1, HD_POLES_KERNEL, 14, &e) == HD_OK);
+    hdi_rational_rate(set + 1);
     whole = int_solved(T, one, N);
     for (m = 1; m < N; m += 3) {
         double *Tm = KIT_NEW(double, m * m), *Im = KIT_NEW(double, m * m);
@@ -742,17 +751,19 @@ static void int_lanczos_bound(void) {
         }
         part = int_solved(Tm, Im, m);
         z.m = m;
-        for (k = 0; k < 4; k++) {
+        for (k = 0; k < 8; k++) {
+            const int rate = k / 4;
+            const double t = times[k % 4];
             double bound = -1, error = 0;
-            CHECK(hdi_lanczos_bound(&z, times[k], &bound, &e) == HD_OK);
-            dense_pair_heat(whole, times[k], start, want);
+            CHECK(hdi_lanczos_bound(&z, t, rate, &bound, &e) == HD_OK);
+            int_lanczos_truth(whole, t, rate, start, want);
             memset(got, 0, N * sizeof *got);
-            dense_pair_heat(part, times[k], start, got);
+            int_lanczos_truth(part, t, rate, start, got);
             for (i = 0; i < N; i++) error = hypot(error, want[i] - got[i]);
-            CHECK_MSG(error <= bound * (1 + 1e-9) + 1e-14, "m %d, t %g: error %g, bound %g", (int)m, times[k], error, bound);
-            if (error > 1e-10 && times[k] <= 1) loosest = fmax(loosest, bound / error);
-            hdi_lanczos_coefficients(&z, times[k], &set);
-            CHECK_MSG(dense_max_diff(z.y, got, m) < 2e-13, "m %d, t %g: coefficients off by %g", (int)m, times[k],
+            CHECK_MSG(error <= bound * (1 + 1e-9) + 1e-14, "m %d, t %g, rate %d: error %g, bound %g", (int)m, t, rate, error, bound);
+            if (error > 1e-10 && t <= 1) loosest = fmax(loosest, bound / error);
+            hdi_lanczos_coefficients(&z, t, set + rate);
+            CHECK_MSG(dense_max_diff(z.y, got, m) < (rate ? 2e-12 : 2e-13), "m %d, t %g, rate %d: coefficients off by %g", (int)m, t, rate,
                       dense_max_diff(z.y, got, m));
         }
     }
@@ -776,6 +787,11 @@ static void int_krylov_slopes(void) {
         long double want = expl(-tau * (1 / high - 1));
         if (d > 0) want *= -expm1l(-tau * d / (high * low)) / d;
         else want *= (long double)tau / (high * high);
+        const double ga = hdi_krylov_value(a, tau, 1), gb = hdi_krylov_value(b, tau, 1);
+        const double rate = hdi_krylov_difference(a, ga, b, gb, tau, 1), x = tau * (1 / a - 1);
+        const double rate_lost = 1e-14 * (fabs(ga) + fabs(gb)) / fmax(fabs(a - b), 0.05 * a) + 1e-7 * (1 + x) * (double)want;
+        const double rate_want = (double)(tau / (a * b) * expl(-tau * (1 / (long double)b - 1)) - x * want);
+        CHECK_MSG(fabs(rate - rate_want) <= rate_lost + 1e-290 || tau / (a * b) * fb > 1e200, "a %.17g, b %.17g, tau %g: %g, not %g", a, b, tau, rate, rate_want);
         CHECK_MSG(fabs(got - (double)want) <= lost + 1e-290 + 1e-8 * (double)want, "a %.17g, b %.17g, tau %g: %g, not %g", a,
                   b, tau, got, (double)want);
     }
