@@ -687,29 +687,32 @@ typedef enum hd_kernel {
     HD_KERNEL_SYMMETRIC         /* k_t = K_t B^-1 */
 } hd_kernel;
 
-/* A source that need not be a vertex: points inside faces, on edges or at vertices, each with a weight, or a
- * curve through points. With the hat functions of the vertices it is a functional c of fields: c_v is what it
- * takes of vertex v. Values between vertices are those of fields that are linear on each face. Clear the
- * struct, then set count and vertex. */
-typedef struct hd_source {
+/* Sources, a column of the answer for each. A source is a vertex, or points inside faces, on edges or at
+ * vertices, each with a weight, or a curve through points. With the hat functions of the vertices it is a
+ * functional c of fields: c_v is what it takes of vertex v. Values between vertices are those of fields that
+ * are linear on each face. Clear the struct, then set count and vertex, or see hd_vertices. */
+typedef struct hd_sources {
     int32_t begin_zero;
-    int32_t count;              /* points */
+    int32_t count;
+    /* [count + 1] source q has the points first[q] .. first[q + 1] - 1, at least one. NULL: one each */
+    const int64_t *first;
     /* Vertices that each point lies between: 1 for a vertex, 2 for an edge, 3 for a triangle, more for
      * polygons. 0: 1. Points at vertices and on edges may stand among points of triangles, with weights 0. */
     int32_t corners;
-    const int32_t *vertex;      /* [corners count] */
-    /* [corners count] barycentric coordinates: not negative, and of sum 1 for each point up to 1e-6. NULL:
-     * the mean of the corners. */
-    const double *bary;
-    const double *weight;       /* [count] of the points; NULL: 1 each. A curve has none */
-    /* 1: a curve of straight pieces from each point to the next, at least two points. Two in turn must lie in
-     * one face, edges and corners included. The curve has weight 1 for each unit of its length, and integrals
-     * along it are exact for fields that are linear on faces. To close it, repeat the first point. */
+    /* 1: curves of straight pieces from each point of a source to its next, at least two points. Two in turn
+     * must lie in one face, edges and corners included. A curve has weight 1 for each unit of its length, and
+     * integrals along it are exact for fields that are linear on faces. To close it, repeat the first point. */
     int32_t curve;
-    /* [count - 1] lengths of the pieces. NULL: from the coordinates of their corners. */
+    const int32_t *vertex;      /* [corners] of each point */
+    /* [corners] of each point, barycentric coordinates: not negative, and of sum 1 up to 1e-6. NULL: the mean
+     * of the corners. */
+    const double *bary;
+    const double *weight;       /* of each point; NULL: 1 each. Curves have none */
+    /* Curves: from each point to the next; that of a last point is not read. NULL: from the coordinates of
+     * their corners. */
     const double *length;
     int32_t end_zero;
-} hd_source;
+} hd_sources;
 
 typedef enum hd_distance_kind {
     /* d^2 = k_2t(i,i) - 2 k_2t(i,j) + k_2t(j,j) (Coifman, Lafon 2006). Intrinsic; the usual definition. */
@@ -972,6 +975,9 @@ HEATDIFF_API void hd_csr_free(hd_csr *a, hd_context *ctx);
 /* A mesh of triangles. Other fields may be set before it is used. */
 HEATDIFF_API hd_mesh hd_triangles(const double *xyz, int32_t n, const int32_t *tri, int32_t n_tri);
 
+/* Vertices as sources. */
+HEATDIFF_API hd_sources hd_vertices(int32_t count, const int32_t *vertex);
+
 /* The Laplacian of a mesh.
  * Triangles have the kinds fem (default), voronoi-cot and cot. Polygons, which may be non-planar or
  * non-convex, also have polygon, which is their default. For the others every face is split into a fan from
@@ -984,7 +990,7 @@ HEATDIFF_API hd_mesh hd_triangles(const double *xyz, int32_t n, const int32_t *t
  *          of L that only rounding made positive, below 1e-13 of the cotangents at the edge, are set to zero.
  *          With voronoi-cot or cot heat then obeys the maximum principle
  * lengths  intrinsic geometry, such as a flat torus. lap->xyz is NULL: no nested dissection, and curves
- *          (hd_source) need their lengths. At an edge of three faces or more a Delaunay or tufted
+ *          (hd_sources) need their lengths. At an edge of three faces or more a Delaunay or tufted
  *          triangulation takes the sheets in the order of the faces
  * polygons the pattern of L contains the diagonals of the faces; triangles have the cotangent L for any
  *          stiffening
@@ -1370,33 +1376,25 @@ HEATDIFF_API hd_status hd_heat_adjoint(hd_heat *heat, int32_t n_times, const dou
                                        const double *G, size_t ldg, double *U, size_t ldu,
                                        hd_report *report, hd_error *err);
 
-/* Columns of the kernel. That of K_t for a source s is K_t e_s: the field at time t that starts as 1 at s and
- * 0 elsewhere; its total heat 1'B u is the mass of s.
+/* Columns of the kernel: K_t c or k_t c, with the functional c of each source, which is the sum of the columns
+ * of its vertices with the weights c_v. The column of K_t for a vertex s is K_t e_s: the field at time t that
+ * starts as 1 at s and 0 elsewhere; its total heat 1'B u is the mass of s. That of k_t is the field at time t
+ * of heat placed where the source is, as much as its weight.
  * U      as above, with sources in place of fields. The column of a vertex without mass is its unit vector
- *        for K_t, and zero for k_t. That of a held vertex is zero
- * Errors and cost as hd_heat_apply; HD_ERR_INDEX (vertex, column: which source) */
+ *        for K_t, and zero for k_t. That of a held vertex is zero. A source of one vertex with weight 1 gives
+ *        that vertex' column to the last bit
+ * Errors and cost as hd_heat_apply; HD_ERR_INDEX, HD_ERR_NOT_FINITE, HD_ERR_ARGUMENT (column: which source,
+ *        row: which of its points, vertex): coordinates of a point are negative or do not sum to 1, a curve
+ *        has one point or no length, it needs coordinates that the Laplacian does not have (of held vertices,
+ *        or of your own matrices), or all weights are 0. The absolute values of the weights, or the length of
+ *        a curve, must sum to between 1e-100 and 1e100 */
 HEATDIFF_API hd_status hd_heat_columns(hd_heat *heat, hd_kernel kernel, int32_t n_times,
-                                       const double *t, int32_t k, const int32_t *sources,
-                                       double *U, size_t ldu, hd_report *report, hd_error *err);
+                                       const double *t, const hd_sources *sources, double *U,
+                                       size_t ldu, hd_report *report, hd_error *err);
 
-/* One column at one time. u [n]. Errors and cost as hd_heat_columns. */
+/* The column of one vertex at one time. u [n]. Errors and cost as hd_heat_columns. */
 HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, hd_kernel kernel, double t, int32_t source,
                                       double *u, hd_report *report, hd_error *err);
-
-/* Columns from sources that need not be vertices: K_t c or k_t c, with the functional c of each source. This
- * is the sum of the columns of its vertices with the weights c_v. For k_t it is the field at time t of heat
- * placed where the source is, as much as its weight: the value at v is the mean of k_t(v,.) over the source.
- * sources [k]
- * U      as above. A source that is one vertex with weight 1 gives that vertex' column to the last bit
- * Errors and cost as hd_heat_columns; HD_ERR_INDEX, HD_ERR_NOT_FINITE, HD_ERR_ARGUMENT (column: which
- *        source, row: which of its points, vertex): a source was not cleared, coordinates of a point are
- *        negative or do not sum to 1, a curve has one point or no length, it needs coordinates that the
- *        Laplacian does not have (of held vertices, or of your own matrices), or all weights are 0
- * The absolute values of the weights, or the length of a curve, must sum to between 1e-100 and 1e100. */
-HEATDIFF_API hd_status hd_heat_columns_from(hd_heat *heat, hd_kernel kernel, int32_t n_times,
-                                            const double *t, int32_t k, const hd_source *sources,
-                                            double *U, size_t ldu, hd_report *report,
-                                            hd_error *err);
 
 /* The diagonal of k_t or K_t at every vertex. That of k_t is the heat kernel signature (Sun et al. 2009),
  * also called auto-diffusion function (Gebal et al. 2009). It comes from selected inversion, without
@@ -1495,11 +1493,16 @@ HEATDIFF_API hd_status hd_times_auto(const hd_laplacian *lap, int32_t n_times, d
 HEATDIFF_API hd_status hd_times_spectral(const hd_laplacian *lap, int32_t n_times,
                                          const double *c, double *t, hd_error *err);
 
-/* Diffusion distances from each of k sources to every vertex.
+/* Diffusion distances from each source to every vertex. With the functional c of a source, divided by the sum
+ * of its weights, d^2 = (e_v - c)' F (e_v - c), where F is the matrix of the kind: k_2t, B K_2t and so on.
+ * This is the distance between what diffuses from v and what diffuses from the source. It is zero only at a
+ * vertex that is the source itself.
  * t      > 0. Commute and biharmonic have no time: t is ignored, n_times is 0 or 1. With a filter d^2 is the
  *        sum of the filter itself, see hd_rational_fit
  * D      n x (k n_times), column q n_times + m for source q and time m, columns ldd apart (0: n). Unit:
  *        classical 1/length, weighted length, commute none, biharmonic length
+ * sources of positive weight. One that reaches into several components, or contains vertices without mass or
+ *        held ones, has infinite commute and biharmonic distances
  * report error_bound and error_relative are for the distance d itself. n_lost counts distances with at most
  *        about one sure digit: next to the source, or so small that they underflow. Nothing is ever NaN
  * Vertices without mass are treated as having a zero kernel row, and so are held ones. Between components,
@@ -1514,28 +1517,15 @@ HEATDIFF_API hd_status hd_times_spectral(const hd_laplacian *lap, int32_t n_time
  * eigenpairs are in error_solver, and reason says so. The plan keeps the eigenpairs, and uses them for any t
  * they reach. If they do not fit the byte limit, poles are used. On meshes of more than about 170K vertices
  * (weighted) or 240K (classical) the bound may be above 1e-6 at times between the two.
- * Errors as hd_heat_diagonal; HD_ERR_INDEX (vertex, column: which source)
+ * Errors as hd_heat_diagonal and hd_heat_columns
  * Cost   one diagonal at 2t, shared by all sources, and one column for each source. HD_DISTANCE_WEIGHTED with
  *        a full B: the diagonal is that of B K_2t and takes about twice as long. Eigenpairs: as
  *        hd_spectrum_create the first time, later 4 n flops for each. Commute: one real
  *        factorisation and its inversion; biharmonic: the same, and those of one pole
  * Source see hd_distance_kind */
 HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, int32_t n_times,
-                                        const double *t, int32_t k, const int32_t *sources,
-                                        double *D, size_t ldd, hd_report *report, hd_error *err);
-
-/* Distances from sources that need not be vertices: with the functional c of a source, divided by the sum of
- * its weights, d^2 = (e_v - c)' F (e_v - c), where F is the matrix of the kind: k_2t, B K_2t and so on. This
- * is the distance between what diffuses from v and what diffuses from the source. It is zero only at a vertex
- * that is the source itself.
- * sources [k], of positive weight. One that reaches into several components, or contains vertices without
- *        mass or held ones, has infinite commute and biharmonic distances
- * D      as above. A source that is one vertex gives that vertex' distances to the last bit
- * Errors as hd_heat_diagonal and hd_heat_columns_from. Bounds and cost as above */
-HEATDIFF_API hd_status hd_heat_distance_from(hd_heat *heat, hd_distance_kind kind, int32_t n_times,
-                                             const double *t, int32_t k, const hd_source *sources,
-                                             double *D, size_t ldd, hd_report *report,
-                                             hd_error *err);
+                                        const double *t, const hd_sources *sources, double *D,
+                                        size_t ldd, hd_report *report, hd_error *err);
 
 /* K_t(i[q],j[q]) and diffusion distances of listed pairs.
  * t      >= 0; ignored by commute and biharmonic, with n_times 0 or 1
@@ -1554,30 +1544,20 @@ HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, int32
                                      const int32_t *j, double *K, double *d, hd_report *report,
                                      hd_error *err);
 
-/* Farthest points: each is the vertex farthest from all points before it, under the given distance.
+/* Farthest points: each is the vertex farthest from all sources and all points before it, under the given
+ * distance.
  * t        > 0; ignored by commute and biharmonic
- * vertex   [count] the first n_given are given. With n_given = 0 the first vertex with mass comes first
- * distance [count] or NULL: distance of each point to those before it (0 for the first)
- * Errors   as hd_heat_distance (column: which given vertex); HD_ERR_ARGUMENT (value: count is more than there
- *          are vertices with mass)
- * Cost     a diagonal, and one column for each point
+ * sources  that come before all points, as in hd_heat_distance. NULL: none; the first vertex with mass is then
+ *          the first point
+ * vertex   [count]
+ * distance [count] or NULL: distance of each point to the sources and the points before it (0 for the first
+ *          without sources)
+ * Errors   as hd_heat_distance; HD_ERR_ARGUMENT (value: count is more than there are vertices with mass)
+ * Cost     a diagonal, and one column for each source and point
  * Source   Gonzalez 1985 */
-HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, double t, int32_t count,
-                                      int32_t n_given, int32_t *vertex, double *distance,
-                                      hd_report *report, hd_error *err);
-
-/* The same with k sources before the first point, which need not be vertices: every point, the first one too,
- * is the vertex farthest from all sources and from all points before it. Distances from sources are those of
- * hd_heat_distance_from.
- * sources  [k]. With k = 0 this is hd_heat_sample without given points
- * vertex   [count] all are found
- * distance [count] or NULL: distance of each point to the sources and the points before it
- * Errors   also those of hd_heat_columns_from
- * Cost     a diagonal, and one column for each source and point */
-HEATDIFF_API hd_status hd_heat_sample_from(hd_heat *heat, hd_distance_kind kind, double t,
-                                           int32_t k, const hd_source *sources, int32_t count,
-                                           int32_t *vertex, double *distance,
-                                           hd_report *report, hd_error *err);
+HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, double t,
+                                      const hd_sources *sources, int32_t count, int32_t *vertex,
+                                      double *distance, hd_report *report, hd_error *err);
 
 /* Single entries of K_t or k_t.
  * t      >= 0
@@ -1616,29 +1596,19 @@ HEATDIFF_API void hd_spectrum_free(hd_spectrum *s);  /* NULL is fine */
  *        part of the pairs left out is proven if s->proven: at most exp(-t next) sqrt(left(x) left(y)). That
  *        of residuals follows from their sizes, and rounding is estimated. The bound is small for large t;
  *        for small t it shows how much the missing pairs count
- * Errors HD_ERR_ARGUMENT, HD_ERR_INDEX (vertex, column), HD_ERR_MEMORY
+ * Errors HD_ERR_MEMORY, and those of hd_heat_columns for sources
  * Cost   2 n count flops for each column; with the weighted distance or the diagonal of K_t and a full B some
  *        ten times as many */
 HEATDIFF_API hd_status hd_spectrum_columns(const hd_spectrum *s, hd_kernel kernel, int32_t n_times,
-                                           const double *t, int32_t k, const int32_t *sources,
-                                           double *U, double *bound, size_t ldu, hd_error *err);
+                                           const double *t, const hd_sources *sources, double *U,
+                                           double *bound, size_t ldu, hd_error *err);
 HEATDIFF_API hd_status hd_spectrum_diagonal(const hd_spectrum *s, hd_kernel kernel,
                                             int32_t n_times, const double *t, double *D,
                                             double *bound, size_t ldd, hd_error *err);
 HEATDIFF_API hd_status hd_spectrum_distance(const hd_spectrum *s, hd_distance_kind kind,
-                                            int32_t n_times, const double *t, int32_t k,
-                                            const int32_t *sources, double *D, double *bound,
+                                            int32_t n_times, const double *t,
+                                            const hd_sources *sources, double *D, double *bound,
                                             size_t ldd, hd_error *err);
-/* The same from sources that need not be vertices, as in hd_heat_columns_from and hd_heat_distance_from, with
- * their errors. A source that is one vertex gives that vertex' values to the last bit. */
-HEATDIFF_API hd_status hd_spectrum_columns_from(const hd_spectrum *s, hd_kernel kernel,
-                                                int32_t n_times, const double *t, int32_t k,
-                                                const hd_source *sources, double *U,
-                                                double *bound, size_t ldu, hd_error *err);
-HEATDIFF_API hd_status hd_spectrum_distance_from(const hd_spectrum *s, hd_distance_kind kind,
-                                                 int32_t n_times, const double *t, int32_t k,
-                                                 const hd_source *sources, double *D,
-                                                 double *bound, size_t ldd, hd_error *err);
 
 /* What a query would take, without running it: the method, floating-point operations, bytes and seconds, by
  * that method and by the others.
@@ -1683,51 +1653,34 @@ HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const hd_mesh *mesh
 HEATDIFF_API hd_status hd_geodesic_update(hd_geodesic *g, const hd_mesh *mesh, hd_error *err);
 HEATDIFF_API void hd_geodesic_free(hd_geodesic *g);  /* NULL is fine */
 
-/* The distance of every vertex to the nearest source.
- * d        [n] in the unit of xyz: |phi - phi_s|. For several sources phi_s is a mean weighted by their heat,
- *          which is almost the value of the nearest source; beyond the first stage of heat it is that value.
- *          d is zero at the sources, and HUGE_VAL where no source can be reached: in components without one,
- *          and at vertices without mass
- * sources  [n_sources] at least one; repeated sources count once
+/* The distance of every vertex to each source: to the nearest of its points, or to its curve.
+ * sources  weights, and lengths of curves, are ignored. A vertex named twice in a source counts once. For
+ *          the distance to the nearest of several vertices, make them one source. All other points, and every
+ *          piece of a curve, must lie in a face that is used, its edges and corners included. Coordinates
+ *          below 1e-9 count as zero. Plans of polygons take vertices only
+ * D        n x count, columns ldd apart (0: n), in the unit of xyz: |phi - phi_s|. For several points phi_s is
+ *          a mean weighted by their heat, which is almost the value of the nearest one; beyond the first stage
+ *          of heat it is that value. D is zero at vertices that are sources, and HUGE_VAL where no source can
+ *          be reached: in components without one, and at vertices without mass
  * The method itself has an error of the order of h: a few percent on coarse meshes, about one percent on fine
  * ones, and most where fronts meet. Near a source the relative error can be much larger. The result is not a
  * metric: d from i to j and d from j to i differ by about that error.
- * Errors   HD_ERR_ARGUMENT, HD_ERR_INDEX (vertex, column: which source), HD_ERR_MEMORY, HD_ERR_CANCELLED,
- *          HD_ERR_BREAKDOWN (rounding left no number). HD_WARN_ACCURACY, only if a report is given
- * Cost     two solves and two passes over the faces; a third solve with several sources in a component; with
- *          a report two more passes. Where heat fades below 1e-200 of the source's, which is about 450 edges
- *          away at t = h^2, another solve and three passes follow for each such distance
- *          (report->n_stages), with 8 bytes for each vertex for the time of the call. The first call with
- *          several sources, or with more than any before, allocates too; other calls do not
+ * At the corners of the faces of a source that is no vertex, D is exact, along straight lines within the faces,
+ * and inside them the gradient of these distances takes the place of that of heat. phi_s follows from them
+ * too: for a point the mean of phi_v - d_v at its corners, by its barycentric coordinates; for a curve one
+ * mean along its length.
+ * Errors   those of hd_heat_columns for sources; HD_ERR_ARGUMENT (column, row): a point or a piece is in no
+ *          face, or has a corner where heat is held at zero; HD_ERR_BREAKDOWN (rounding left no number).
+ *          HD_WARN_ACCURACY, only if a report is given
+ * Cost     two solves and two passes over the faces for each source; a third solve with several points in a
+ *          component; with a report two more passes. Sources of one vertex are solved eight side by side, in a
+ *          third of the time. Where heat fades below 1e-200 of the source's, which is about 450 edges away at
+ *          t = h^2, another solve and three passes follow for each such distance (report->n_stages). The first
+ *          call with several points, with more than any before, or with three sources or more allocates about
+ *          150 bytes for each vertex; other calls of vertices do not
  * Only one thread at a time may use a plan. */
-HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, int32_t n_sources,
-                                            const int32_t *sources, double *d,
-                                            hd_geodesic_report *report, hd_error *err);
-
-/* The same for k sources, each by itself.
- * sources [k]
- * D       n x k, columns ldd apart (0: n): column q holds the distances to sources[q]
- * Errors  as above
- * Cost    eight sources are solved side by side, in a third of the time of eight calls. The first call with
- *         three sources or more allocates about 150 bytes for each vertex */
-HEATDIFF_API hd_status hd_geodesic_distance_each(hd_geodesic *g, int32_t k, const int32_t *sources,
-                                                 double *D, size_t ldd, hd_geodesic_report *report,
-                                                 hd_error *err);
-
-/* The distance of every vertex to a source that need not be a vertex: to the nearest of its points, or to its
- * curve. Weights are ignored.
- * source every point of it, and every piece of a curve, must lie in a face that is used, its edges and
- *        corners included. Coordinates below 1e-9 count as zero. Lengths of curves are ignored
- * d      [n] as above. At the corners of these faces it is exact, along straight lines within the faces, and
- *        inside them the gradient of these distances takes the place of that of heat. The constant in phi
- *        follows from them too: for a point the mean of phi_v - d_v at its corners, by its barycentric
- *        coordinates; for a curve one mean along its length
- * Heat starts with the functional of the source, see hd_source. A source of vertices only gives the distances
- * of hd_geodesic_distance to the last bit.
- * Errors and cost as above, and those of hd_heat_columns_from; HD_ERR_ARGUMENT (row): a point or a piece is
- *        in no face, or has a corner where heat is held at zero. Plans of polygons take vertices only */
-HEATDIFF_API hd_status hd_geodesic_distance_from(hd_geodesic *g, const hd_source *source, double *d,
-                                                 hd_geodesic_report *report, hd_error *err);
+HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, const hd_sources *sources, double *D,
+                                            size_t ldd, hd_geodesic_report *report, hd_error *err);
 
 #ifdef __cplusplus
 }
@@ -17527,19 +17480,29 @@ static int32_t hdi_terms_component(const hd_laplacian *lap, const hdi_terms *c) 
 }
 
 /* An error at a point of a source. */
-static hd_status hdi_source_fail(hd_error *e, hd_status status, const char *text, int32_t point,
+static hd_status hdi_source_fail(hd_error *e, hd_status status, const char *text, int64_t point,
                                  int32_t vertex, double value) {
     hdi_fail_face(e, status, text, -1, vertex, value);
     e->row = point;
     return status;
 }
 
-static int32_t hdi_source_corners(const hd_source *s) { return s->corners ? s->corners : 1; }
+static int32_t hdi_source_corners(const hd_sources *s) { return s->corners ? s->corners : 1; }
 
-/* What point q has of its corner c. */
-static double hdi_source_part(const hd_source *s, int32_t q, int32_t c) {
+/* What point q of all has of its corner c. */
+static double hdi_source_part(const hd_sources *s, int64_t q, int32_t c) {
     const int32_t n = hdi_source_corners(s);
-    return s->bary ? s->bary[(int64_t)q * n + c] : 1.0 / n;
+    return s->bary ? s->bary[q * n + c] : 1.0 / n;
+}
+
+/* The first point of source k, or the end of all of them. */
+static int64_t hdi_source_first(const hd_sources *s, int32_t k) { return s->first ? s->first[k] : k; }
+
+/* An error of source k, whose place is a point of all. */
+static hd_status hdi_source_place(const hd_sources *s, int32_t k, hd_error *e) {
+    e->column = k;
+    if (e->row >= 0) e->row -= hdi_source_first(s, k);
+    return e->status;
 }
 
 /* Barycentric coordinates sum to 1 up to the first. Sums of weights in size, and lengths, are between the
@@ -17548,12 +17511,13 @@ static double hdi_source_part(const hd_source *s, int32_t q, int32_t c) {
 #define HDI_SOURCE_LEAST 1e-100
 #define HDI_SOURCE_MOST 1e100
 
-static hd_status hdi_source_check_point(const hd_source *s, int32_t q, int32_t n, hd_error *e) {
+/* Checks point q; last: it ends a source. n: vertices. */
+static hd_status hdi_source_check_point(const hd_sources *s, int64_t q, int last, int32_t n, hd_error *e) {
     const int32_t corners = hdi_source_corners(s);
     double sum = 0;
     int32_t c;
     for (c = 0; c < corners; c++) {
-        const int32_t v = s->vertex[(int64_t)q * corners + c];
+        const int32_t v = s->vertex[q * corners + c];
         const double b = hdi_source_part(s, q, c);
         if (v < 0 || v >= n)
             return hdi_source_fail(e, HD_ERR_INDEX, "source: a vertex is not in the mesh", q, v, v);
@@ -17568,57 +17532,61 @@ static hd_status hdi_source_check_point(const hd_source *s, int32_t q, int32_t n
     if (!s->curve && s->weight && !hdi_finite(s->weight[q]))
         return hdi_source_fail(e, HD_ERR_NOT_FINITE, "source: the weight of a point is not finite", q, -1,
                                s->weight[q]);
-    if (s->curve && s->length && q + 1 < s->count && !(hdi_finite(s->length[q]) && s->length[q] >= 0))
+    if (s->curve && s->length && !last && !(hdi_finite(s->length[q]) && s->length[q] >= 0))
         return hdi_source_fail(e, hdi_finite(s->length[q]) ? HD_ERR_ARGUMENT : HD_ERR_NOT_FINITE,
                                "source: the length of a piece is negative or not finite", q, -1,
                                s->length[q]);
     return HD_OK;
 }
 
-/* Checks everything but whether points lie in faces, which matrices do not tell. n: vertices. */
-static hd_status hdi_source_check(const hd_source *s, int32_t n, hd_error *e) {
-    int32_t q;
-    if (s->begin_zero || s->end_zero)
-        return hdi_fail(e, HD_ERR_ARGUMENT, "source: not cleared before use");
-    if (s->count < 1 || s->corners < 0)
-        return hdi_fail(e, HD_ERR_ARGUMENT, "source: there is no point, or a number of corners is negative");
-    if (!s->vertex) return hdi_missing(e);
-    if (s->curve && s->count < 2)
+/* Checks the points from one to before another, a source. */
+static hd_status hdi_source_check(const hd_sources *s, int64_t begin, int64_t end, int32_t n, hd_error *e) {
+    if (begin < 0 || end <= begin) return hdi_fail(e, HD_ERR_ARGUMENT, "source: it has no point");
+    if (s->curve && end - begin < 2)
         return hdi_fail(e, HD_ERR_ARGUMENT, "source: a curve has at least two points");
-    if (s->curve && s->weight)
-        return hdi_fail(e, HD_ERR_ARGUMENT, "source: points of a curve have no weights");
-    if ((int64_t)s->count * hdi_source_corners(s) > INT32_MAX)
+    if (end - begin > INT32_MAX / hdi_source_corners(s))
         return hdi_fail(e, HD_ERR_TOO_LARGE, "source: there are too many points");
-    for (q = 0; q < s->count; q++)
-        if (hdi_source_check_point(s, q, n, e) < 0) return e->status;
+    for (; begin < end; begin++)
+        if (hdi_source_check_point(s, begin, begin + 1 == end, n, e) < 0) return e->status;
     return HD_OK;
 }
 
-/* The place of point q, by coordinates of rows. */
-static hd_status hdi_source_place(const hd_source *s, int32_t q, const double *xyz, const int32_t *row,
-                                  double *to, hd_error *e) {
+/* Checks everything but whether points lie in faces, which matrices do not tell. n: vertices. */
+static hd_status hdi_sources_check(const hd_sources *s, int32_t n, hd_error *e) {
+    int32_t k;
+    hdi_refuse(s->begin_zero || s->end_zero, "sources: not cleared before use", e);
+    hdi_refuse(s->count < 0 || s->corners < 0, "sources: a number is negative", e);
+    hdi_refuse(s->curve && s->weight, "source: points of a curve have no weights", e);
+    if (e->status < 0) return e->status;
+    if (s->count > 0 && !s->vertex) return hdi_missing(e);
+    for (k = 0; k < s->count; k++)
+        if (hdi_source_check(s, hdi_source_first(s, k), hdi_source_first(s, k + 1), n, e) < 0)
+            return hdi_source_place(s, k, e);
+    return HD_OK;
+}
+
+/* The coordinates of point q, by those of rows. */
+static hd_status hdi_source_at(const hd_sources *s, int64_t q, const hd_laplacian *lap, double *to,
+                               hd_error *e) {
     int32_t c, i;
     to[0] = to[1] = to[2] = 0;
     for (c = 0; c < hdi_source_corners(s); c++) {
-        const int32_t v = s->vertex[(int64_t)q * hdi_source_corners(s) + c];
+        const int32_t v = s->vertex[q * hdi_source_corners(s) + c], row = lap->row[v];
         const double b = hdi_source_part(s, q, c);
-        if (b > 0 && (!xyz || row[v] < 0))
+        if (b > 0 && (!lap->xyz || row < 0))
             return hdi_source_fail(e, HD_ERR_ARGUMENT,
                                    "source: a curve needs coordinates that are not there; give its lengths",
                                    q, v, 0);
-        for (i = 0; i < 3 && b > 0; i++) to[i] += b * xyz[3 * (int64_t)row[v] + i];
+        for (i = 0; i < 3 && b > 0; i++) to[i] += b * lap->xyz[hdi_triple(row) + i];
     }
     return HD_OK;
 }
 
 /* The length of the piece of a curve from point q to the next. */
-static double hdi_source_piece(const hd_source *s, int32_t q, const double *xyz, const int32_t *row,
-                               hd_error *e) {
+static double hdi_source_piece(const hd_sources *s, int64_t q, const hd_laplacian *lap, hd_error *e) {
     double a[3], b[3];
-    if (q < 0 || q + 1 >= s->count) return 0;
     if (s->length) return s->length[q];
-    if (hdi_source_place(s, q, xyz, row, a, e) < 0 || hdi_source_place(s, q + 1, xyz, row, b, e) < 0)
-        return 0;
+    if (hdi_source_at(s, q, lap, a, e) < 0 || hdi_source_at(s, q + 1, lap, b, e) < 0) return 0;
     hdi_sub3(a, b, a);
     return hdi_norm3(a);
 }
@@ -17635,95 +17603,81 @@ static hd_status hdi_terms_normalise(double *weight, int32_t n, double size, hd_
     return HD_OK;
 }
 
-/* Sums weights [n] of the same vertex, and leaves out zeros. */
-static int32_t hdi_terms_sum(const hd_source *s, hdi_pair *order, int32_t n, const double *part,
+/* Sums parts [n] of the same vertex of v, and leaves out zeros. */
+static int32_t hdi_terms_sum(const int32_t *v, hdi_pair *order, int32_t n, const double *part,
                              int32_t *vertex, double *weight) {
     int32_t q, m = 0;
     for (q = 0; q < n; q++) {
-        order[q].key = (uint64_t)s->vertex[q];
+        order[q].key = (uint64_t)v[q];
         order[q].id = q;
     }
     hdi_sort_pairs(order, n);
     for (q = 0; q < n; q++) {
-        const int32_t v = (int32_t)order[q].key;
+        const int32_t at = (int32_t)order[q].key;
         if (part[order[q].id] == 0) continue;
-        if (m > 0 && vertex[m - 1] == v) {
+        if (m > 0 && vertex[m - 1] == at) {
             weight[m - 1] += part[order[q].id];
         } else {
-            vertex[m] = v;
+            vertex[m] = at;
             weight[m++] = part[order[q].id];
         }
     }
     return m;
 }
 
-/* Room for sources: the first two for one after another, the others for all of them. */
-typedef struct hdi_terms_room {
-    hdi_pair *order;
-    double *part;
-    int32_t *vertex;
-    double *weight;
-} hdi_terms_room;
-
-static hdi_terms_room hdi_terms_take(hdi_scope *work, hdi_scope *keep, int64_t most, int64_t all) {
-    hdi_terms_room room;
-    room.order = HDI_TAKE(work, hdi_pair, most);
-    room.part = HDI_TAKE(work, double, most);
-    room.vertex = HDI_TAKE(keep, int32_t, all);
-    room.weight = HDI_TAKE(keep, double, all);
-    return room;
-}
-
-/* A source that is checked as weights of vertices. xyz by rows, or NULL; row [n]. normal: of sum 1. What it
- * takes of room is gone from there. */
-static hd_status hdi_terms_make(hdi_terms *to, const hd_source *s, const double *xyz, const int32_t *row,
-                                int normal, hdi_terms_room *room, hd_error *e) {
+/* The parts of the corners of points [n], from one on, in part. Returns the sum of the sizes of their
+ * weights. */
+static double hdi_source_parts(const hd_sources *s, int64_t begin, int64_t n, const hd_laplacian *lap,
+                               double *part, hd_error *e) {
     const int32_t corners = hdi_source_corners(s);
-    int32_t q, c;
     double size = 0, before = 0;
-    for (q = 0; q < s->count; q++) {
-        const double piece = s->curve ? hdi_source_piece(s, q, xyz, row, e) : 0;
-        const double w = s->curve ? (before + piece) / 2 : s->weight ? s->weight[q] : 1;
+    int64_t q;
+    int32_t c;
+    for (q = 0; q < n && e->status >= 0; q++) {
+        const double piece = s->curve && q + 1 < n ? hdi_source_piece(s, begin + q, lap, e) : 0;
+        const double w = s->curve ? (before + piece) / 2 : s->weight ? s->weight[begin + q] : 1;
         double sum = 0;
         before = piece;
-        if (e->status < 0) return e->status;
-        for (c = 0; c < corners; c++) sum += hdi_source_part(s, q, c);
-        for (c = 0; c < corners; c++) room->part[q * corners + c] = w * (hdi_source_part(s, q, c) / sum);
+        for (c = 0; c < corners; c++) sum += hdi_source_part(s, begin + q, c);
+        for (c = 0; c < corners; c++) part[q * corners + c] = w * (hdi_source_part(s, begin + q, c) / sum);
         size += fabs(w);
     }
-    if (!(size >= HDI_SOURCE_LEAST && size <= HDI_SOURCE_MOST))
-        return hdi_fail_row(e, HD_ERR_ARGUMENT,
-                            "source: its weight, or the length of its curve, is zero or out of range", -1, -1,
-                            size);
-    to->n = hdi_terms_sum(s, room->order, s->count * corners, room->part, room->vertex, room->weight);
-    if (normal && hdi_terms_normalise(room->weight, to->n, size, e) < 0) return e->status;
-    to->vertex = room->vertex;
-    to->weight = room->weight;
-    if (to->n == 1 && to->weight[0] == 1) *to = hdi_terms_vertex(to->vertex[0]);
-    room->vertex += to->n;
-    room->weight += to->n;
-    return HD_OK;
+    return size;
 }
 
-/* All sources of a call. */
-static hdi_terms *hdi_terms_all(int32_t k, const hd_source *sources, const hd_laplacian *lap, int normal,
-                                hdi_scope *keep) {
+/* A source that is checked as weights of vertices. normal: of sum 1. They live in keep. */
+static hd_status hdi_terms_make(hdi_terms *to, const hd_sources *s, int32_t k, const hd_laplacian *lap,
+                                int normal, hdi_scope *keep) {
+    const int64_t begin = hdi_source_first(s, k), n = hdi_source_first(s, k + 1) - begin;
+    const int32_t corners = hdi_source_corners(s), all = (int32_t)n * corners;
     hdi_scope work = hdi_scope_begin(keep->ctx, keep->e);
-    hdi_terms *all = HDI_TAKE(keep, hdi_terms, (int64_t)k + 1);
+    hdi_pair *order = HDI_TAKE(&work, hdi_pair, all);
+    double *part = HDI_TAKE(&work, double, all), *weight = HDI_TAKE(keep, double, all), size;
+    int32_t *vertex = HDI_TAKE(keep, int32_t, all);
     hd_error *e = keep->e;
-    hdi_terms_room room;
-    int64_t most = 1, total = 1;
-    int32_t q;
-    for (q = 0; q < k && e->status >= 0; q++) {
-        const int64_t size = (int64_t)sources[q].count * hdi_source_corners(sources + q);
-        if (hdi_source_check(sources + q, lap->n, e) < 0) e->column = q;
-        else most = most > size ? most : size;
-        total += size;
-    }
-    room = hdi_terms_take(&work, keep, most, total);
-    for (q = 0; q < k && e->status >= 0; q++)
-        if (hdi_terms_make(all + q, sources + q, lap->xyz, lap->row, normal, &room, e) < 0) e->column = q;
-    (void)hdi_scope_end(&work);
+    if (e->status < 0) return hdi_scope_end(&work);
+    size = hdi_source_parts(s, begin, n, lap, part, e);
+    if (e->status >= 0 && !(size >= HDI_SOURCE_LEAST && size <= HDI_SOURCE_MOST))
+        hdi_fail_row(e, HD_ERR_ARGUMENT, "source: its weight, or the length of its curve, is zero or out of range",
+                     -1, -1, size);
+    to->n = hdi_terms_sum(s->vertex + begin * corners, order, all, part, vertex, weight);
+    to->vertex = vertex;
+    to->weight = weight;
+    if (normal && e->status >= 0) (void)hdi_terms_normalise(weight, to->n, size, e);
+    if (to->n == 1 && to->weight[0] == 1) *to = hdi_terms_vertex(to->vertex[0]);
+    return hdi_scope_end(&work);
+}
+
+/* The sources of a call. normal: weights of sum 1. */
+static hdi_terms *hdi_terms_all(const hd_sources *s, const hd_laplacian *lap, int normal, hdi_scope *keep) {
+    const int plain = !s->first && hdi_source_corners(s) == 1 && !s->weight && !s->curve;
+    hdi_terms *all = HDI_TAKE(keep, hdi_terms, s->count > 0 ? s->count : 0);
+    hd_error *e = keep->e;
+    int32_t k;
+    if (!all || hdi_sources_check(s, lap->n, e) < 0) return all;
+    for (k = 0; k < s->count && e->status >= 0; k++)
+        if (plain) all[k] = hdi_terms_vertex(s->vertex[k]);
+        else if (hdi_terms_make(all + k, s, k, lap, normal, keep) < 0) (void)hdi_source_place(s, k, e);
     return all;
 }
 
@@ -19245,8 +19199,7 @@ typedef struct hdi_spec_sums {
     int power;                   /* 0: of exp(-t lambda); 1, 2: of 1/lambda, without a time */
     int32_t n_times, k;
     const double *t;
-    const int32_t *sources;      /* [k], or NULL: the diagonal, or terms */
-    const hd_source *from;       /* [k] sources that need not be vertices, instead; they become terms */
+    const hd_sources *sources;   /* [k], not for the diagonal; they become terms */
     const hdi_terms *terms;
     hdi_scope scope;
     double *out, *bound;         /* column q n_times + m for source q and time m, ld apart; bound or NULL */
@@ -19431,7 +19384,7 @@ static void hdi_spec_sums_run(hdi_spec_sums *a, hd_context *ctx) {
     int32_t q, m;
     memset(&from, 0, sizeof from);
     for (q = 0; q < a->k; q++) {
-        if (!a->diagonal) from = a->terms ? a->terms[q] : hdi_terms_vertex(a->sources[q]);
+        if (!a->diagonal) from = a->terms[q];
         for (m = 0; m < a->n_times; m++) {
             const size_t at = ((size_t)q * (size_t)a->n_times + (size_t)m) * a->ld;
             a->column = a->out + at;
@@ -19450,7 +19403,7 @@ static hd_status hdi_sum_begin(hdi_call *c, hdi_spec_sums *x, const hd_spectrum 
     if (hdi_enter(c, s ? s->context : NULL, err) < 0) return c->e->status;
     if (!HDI_HAS_SPECTRUM) return HDI_LEFT_OUT(c->e, SPECTRUM, "eigenpairs");
     if (!s || (x->n_times > 0 && !x->t) || (x->k > 0 && !x->out)) return hdi_missing(c->e);
-    if (!x->diagonal && x->k > 0 && !x->sources && !x->from) return hdi_missing(c->e);
+    if (!x->diagonal && !x->sources) return hdi_missing(c->e);
     hdi_refuse(x->n_times < 1, "spectrum: there is no time", c->e);
     hdi_refuse(x->k < 0, "spectrum: a number of columns is negative", c->e);
     hdi_refuse(x->ld != 0 && x->ld < (size_t)s->n, "spectrum: columns would overlap", c->e);
@@ -19458,14 +19411,12 @@ static hd_status hdi_sum_begin(hdi_call *c, hdi_spec_sums *x, const hd_spectrum 
         hdi_refuse_value(!hdi_finite(x->t[q]) || x->t[q] < 0, "spectrum: t is negative or not finite",
                          x->t[q], c->e);
     if (c->e->status < 0) return c->e->status;
-    if (x->sources && hdi_vertices_check(s->lap, x->k, x->sources, &c->e->column, c->e) < 0)
-        return c->e->status;
     x->of = s;
     x->ld = x->ld ? x->ld : (size_t)s->n;
     x->scope = hdi_scope_begin(c->ctx, c->e);
     x->x = HDI_TAKE(&x->scope, double, 2 * (uint64_t)s->count + 1);
     x->weight = x->x ? x->x + s->count : NULL;
-    if (x->from && x->x) x->terms = hdi_terms_all(x->k, x->from, s->lap, x->distance, &x->scope);
+    if (x->sources && x->x) x->terms = hdi_terms_all(x->sources, s->lap, x->distance, &x->scope);
     return c->e->status < 0 ? hdi_scope_end(&x->scope) : HD_OK;
 }
 
@@ -20135,8 +20086,7 @@ typedef struct hdi_request {
     int32_t k, n_times;
     const double *t;             /* [n_times] in the caller's unit and order */
     const double *F;             /* fields, columns ldf apart */
-    const int32_t *sources;      /* columns */
-    const hdi_terms *terms;      /* columns of sources that need not be vertices, instead */
+    const hdi_terms *terms;      /* columns: their sources */
     const hdi_entry_list *list;  /* entries */
     double *U;                   /* item q at time m goes to column q n_times + m, ldu apart; NULL: nowhere */
     size_t ldf, ldu;
@@ -20407,8 +20357,7 @@ static hd_status hdi_fields_check(const hdi_heat_call *h) {
 
 static hdi_terms hdi_heat_source(const hdi_heat_call *h, int32_t q) {
     if (h->ask.terms) return h->ask.terms[q];
-    return hdi_terms_vertex(h->ask.sources ? h->ask.sources[q]
-                            : (int32_t)h->ask.list->order[h->ask.list->begin[q]].key);
+    return hdi_terms_vertex((int32_t)h->ask.list->order[h->ask.list->begin[q]].key);
 }
 
 /* Brings fields near one, by a power of two, where their squares could leave the range of doubles. */
@@ -22415,10 +22364,6 @@ static hd_status hdi_heat_chosen(hdi_heat_call *h) {
     return h->e->status;
 }
 
-static hd_status hdi_sources_check(hdi_heat_call *h, int32_t k, const int32_t *sources) {
-    return hdi_vertices_check(h->heat->source, k, sources, &h->e->column, h->e);
-}
-
 /* A filter has one time, that of its set, and is known up to an eigenvalue. */
 static hd_status hdi_filter_times(const hd_heat *heat, int32_t n_times, const double *t, hd_error *e) {
     const hd_rational *set = heat->opts.rational;
@@ -22641,15 +22586,15 @@ static hd_status hdi_fields_run(hd_heat *heat, hdi_query query, const hdi_reques
     return hdi_heat_run(&h);
 }
 
-/* What queries of columns ask for, but for the sources. given: they are not NULL. */
-static hd_status hdi_columns_ask(hdi_heat_call *h, int32_t n_times, const double *t, int32_t k, int given,
-                                 double *U, size_t ldu) {
+/* What queries of columns ask for. */
+static hd_status hdi_columns_ask(hdi_heat_call *h, int32_t n_times, const double *t,
+                                 const hd_sources *sources, double *U, size_t ldu) {
     if (hdi_times_check(h, n_times, t, 0) < 0) return h->e->status;
-    if (k < 0) hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: a number of fields or columns is negative");
-    else if (k > 0 && (!given || !U)) hdi_missing(h->e);
-    h->ask.k = k;
+    if (!sources || (sources->count > 0 && !U)) return hdi_missing(h->e);
+    h->ask.k = sources->count;
     h->ask.U = U;
     h->ask.ldu = hdi_leading(h, ldu);
+    if (h->e->status >= 0) h->ask.terms = hdi_terms_all(sources, h->heat->source, 0, &h->s);
     return h->e->status;
 }
 
@@ -22782,8 +22727,7 @@ typedef struct hdi_columns {
     hd_kernel kernel;
     const hd_rational *set;
     int32_t k, equal, watching;
-    const int32_t *sources;
-    const hdi_terms *terms;      /* instead of sources */
+    const hdi_terms *terms;      /* [k] sources */
     double *U;                   /* NULL: only the lanes' accounts are wanted */
     size_t ldu;
     hdi_extra rows;              /* of every column; n = 0: none */
@@ -22799,7 +22743,6 @@ static hd_status hdi_direct_columns(hd_heat *heat, const hdi_columns *c, hd_repo
         h.ask.k = c->k;
         h.method = HD_METHOD_DIRECT;
         h.diagonal = 1;
-        h.ask.sources = c->sources;
         h.ask.terms = c->terms;
         h.set = c->set;
         h.ask.U = c->U;
@@ -23061,15 +23004,16 @@ static hdi_probe hdi_probe_rows(const hd_laplacian *lap, const double *k, int32_
 static hd_status hdi_probe_run(hdi_heat_call *h, const hdi_probe *x, hd_kernel kernel, const hd_rational *set,
                                const hdi_extra *rows) {
     const hd_rational own = *set;                /* it may be the plan's, which the call sets anew */
-    int32_t vertex[HDI_PROBES], i;
+    hdi_terms source[HDI_PROBES];
     hdi_columns c;
-    for (i = 0; i < x->k; i++) vertex[i] = h->heat->elim.lap->vertex[x->row[i]];
+    int32_t i;
+    for (i = 0; i < x->k; i++) source[i] = hdi_terms_vertex(h->heat->elim.lap->vertex[x->row[i]]);
     memset(&c, 0, sizeof c);
     c.t = h->t;
     c.kernel = kernel;
     c.set = &own;
     c.k = x->k;
-    c.sources = vertex;
+    c.terms = source;
     c.watching = 1;
     if (rows) c.rows = *rows;
     return x->k > 0 ? hdi_direct_columns(h->heat, &c, h->rep, h->e) : h->e->status;
@@ -24715,16 +24659,19 @@ static hd_status hdi_pairs_some(hdi_heat_call *h, const hdi_pairs *to, hdi_pairs
     const uint64_t n = (uint64_t)heat->source->n;
     hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
     hdi_heat_call c;
+    hdi_terms *terms;
     int32_t q;
     if (hdi_pairs_vertices(x, &s) < 0) return hdi_scope_end(&s);
     x->work = HDI_TAKE(&s, double, 2 * n + 1);
     x->U = HDI_TAKE(&s, double, n * (uint64_t)x->n_vertex);
     x->size = HDI_TAKE(&s, double, x->n_vertex);
+    terms = HDI_TAKE(&s, hdi_terms, x->n_vertex);
     if (h->e->status < 0) return hdi_scope_end(&s);
+    for (q = 0; q < x->n_vertex; q++) terms[q] = hdi_terms_vertex(x->vertex[q]);
     if (hdi_kernel_begin(&c, h->heat, kernel, rep, NULL) >= 0 &&
         hdi_times_check(&c, 1, h->ask.t + h->now, 0) >= 0) {
         c.ask.k = x->n_vertex;
-        c.ask.sources = x->vertex;
+        c.ask.terms = terms;
         c.ask.U = x->U;
         c.ask.ldu = (size_t)n;
         c.degree = degree;
@@ -24863,8 +24810,8 @@ typedef struct hdi_samples {
     hdi_task task;
     hd_distance_kind kind;
     double t;
-    int32_t count, n_given, *vertex;
-    int32_t n_from;              /* sources that come before all vertices */
+    int32_t count, *vertex;
+    int32_t n_from;              /* sources that come before all points */
     const hdi_terms *terms;      /* [n_from] */
     double *distance, *nearest, *u, *work;
     const hdi_metric *x;
@@ -24899,7 +24846,7 @@ static hd_status hdi_sample_points(const hdi_samples *a) {
         const int first = q == -a->n_from;
         hdi_terms from;
         if (q >= 0) {
-            if (q >= a->n_given) vertex[q] = first ? lap->vertex[0] : hdi_sample_next(lap, a->nearest);
+            vertex[q] = first ? lap->vertex[0] : hdi_sample_next(lap, a->nearest);
             if (a->distance) a->distance[q] = first ? 0 : hdi_max(0, a->nearest[vertex[q]]);
         }
         if (q + 1 == a->count || hdi_progress(h->heat->ctx, "sample", hdi_max(0, q) / a->count, h->e) < 0)
@@ -24907,7 +24854,7 @@ static hd_status hdi_sample_points(const hdi_samples *a) {
         from = q < 0 ? a->terms[a->n_from + q] : hdi_terms_vertex(vertex[q]);
         if (hdi_sample_distances(a, &from) < 0) break;
         for (v = 0; v < lap->n; v++) a->nearest[v] = hdi_min(a->nearest[v], a->u[v]);
-        if (q >= 0) a->nearest[vertex[q]] = -1;  /* not again, even when no distance is left */
+        if (!from.weight) a->nearest[from.one] = -1;     /* not again, even when no distance is left */
     }
     return h->e->status;
 }
@@ -24967,34 +24914,16 @@ static hd_status hdi_distance_begin(hdi_heat_call *h, hd_heat *heat, hd_distance
     return hdi_direct_only(h);
 }
 
-static hdi_distances hdi_distances_to(hd_distance_kind kind, int32_t k, double *D, size_t ld) {
-    hdi_distances to;
-    memset(&to, 0, sizeof to);
-    to.kind = kind;
-    to.k = k;
-    to.D = D;
-    to.ld = ld;
-    return to;
-}
-
-/* Distances to all vertices from the vertices in ids, or from sources where that is NULL. */
-static hd_status hdi_distance_answer(hd_heat *heat, hdi_distances *to, const int32_t *ids,
-                                     const hd_source *sources, int32_t n_times, const double *t,
-                                     hd_report *report, hd_error *err) {
+/* Distances to all vertices from sources. */
+static hd_status hdi_distance_answer(hd_heat *heat, hdi_distances *to, const hd_sources *sources,
+                                     int32_t n_times, const double *t, hd_report *report, hd_error *err) {
     hdi_heat_call h;
-    hdi_terms *terms;
-    int32_t r;
     if (hdi_distance_begin(&h, heat, to->kind, n_times, t, 1, report, err) < 0 || hdi_direct_only(&h) < 0 ||
         !HDI_HAS_DIFFUSION) return hdi_heat_end(&h);
-    if (to->k < 0) hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: a number of fields or columns is negative");
-    else if (to->k > 0 && ((!ids && !sources) || !to->D)) hdi_missing(h.e);
+    if (!sources || (sources->count > 0 && !to->D)) hdi_missing(h.e);
     to->ld = hdi_leading(&h, to->ld);
-    if (h.e->status >= 0 && sources) {
-        to->source = hdi_terms_all(to->k, sources, heat->source, 1, &h.s);
-    } else if (h.e->status >= 0 && hdi_sources_check(&h, to->k, ids) >= 0) {
-        to->source = terms = HDI_TAKE(&h.s, hdi_terms, to->k);
-        for (r = 0; terms && r < to->k; r++) terms[r] = hdi_terms_vertex(ids[r]);
-    }
+    if (h.e->status >= 0) to->source = hdi_terms_all(sources, heat->source, 1, &h.s);
+    to->k = h.e->status >= 0 ? sources->count : 0;
     if (h.e->status < 0 || to->k == 0) return hdi_heat_end(&h);
     hdi_distance_task(&to->task, &h, to->kind);
     to->task.pairs = HDI_HAS_MODES ? hdi_distances_by_pairs : NULL;
@@ -25035,30 +24964,16 @@ static hd_status hdi_pairs_answer(hdi_heat_call *h, hdi_pairs *to, int32_t n_tim
     return HD_OK;
 }
 
-/* What is asked for; sources and given vertices have to be set. */
-static hdi_samples hdi_samples_of(hd_distance_kind kind, double t, int32_t count, int32_t *vertex,
-                                  double *distance) {
-    hdi_samples a;
-    memset(&a, 0, sizeof a);
-    a.kind = kind;
-    a.t = t;
-    a.count = count;
-    a.vertex = vertex;
-    a.distance = distance;
-    return a;
-}
-
-static hd_status hdi_sample_answer(hd_heat *heat, hdi_samples *a, const hd_source *sources, hd_report *report,
-                                   hd_error *err) {
+static hd_status hdi_sample_answer(hd_heat *heat, hdi_samples *a, const hd_sources *sources,
+                                   hd_report *report, hd_error *err) {
     hdi_heat_call h;
     if (hdi_distance_begin(&h, heat, a->kind, 1, &a->t, 1, report, err) < 0 || hdi_direct_only(&h) < 0 ||
         !HDI_HAS_DIFFUSION) return hdi_heat_end(&h);
-    if (a->count < 1 || a->n_given < 0 || a->n_given > a->count || a->count > heat->source->n_active)
+    if (a->count < 1 || a->count > heat->source->n_active)
         hdi_fail_row(h.e, HD_ERR_ARGUMENT, "sample: more points than vertices, or none", -1, -1, a->count);
-    else if (a->n_from < 0) hdi_fail(h.e, HD_ERR_ARGUMENT, "sample: a number of sources is negative");
-    else if (!a->vertex || (a->n_from > 0 && !sources)) hdi_missing(h.e);
-    if (h.e->status >= 0 && hdi_sources_check(&h, a->n_given, a->vertex) >= 0 && a->n_from > 0)
-        a->terms = hdi_terms_all(a->n_from, sources, heat->source, 1, &h.s);
+    else if (!a->vertex) hdi_missing(h.e);
+    if (h.e->status >= 0 && sources) a->terms = hdi_terms_all(sources, heat->source, 1, &h.s);
+    a->n_from = sources ? sources->count : 0;
     a->nearest = HDI_TAKE(&h.s, double, heat->source->n);
     a->u = HDI_TAKE(&h.s, double, heat->source->n);
     a->work = HDI_TAKE(&h.s, double, 2 * (uint64_t)heat->source->n);
@@ -25880,7 +25795,7 @@ typedef struct hdi_geo_item {
 } hdi_geo_item;
 
 typedef struct hdi_geo_items {
-    const hd_source *s;
+    const hd_sources *s;
     hdi_geo_item *item;
     int32_t n;
     int32_t *first;              /* [n_active] items by their first row, -1: none */
@@ -26228,14 +26143,14 @@ static hd_status hdi_geo_further(hd_geodesic *g, double least, int32_t *n_stages
 
 /* Adds point q of the source to an item; end: 0 for a, 1 for b. Returns 0 if the item gets more than three
  * rows, or one that has no mass. */
-static int hdi_geo_item_add(const hd_geodesic *g, const hd_source *s, hdi_geo_item *x, int32_t q, int end) {
+static int hdi_geo_item_add(const hd_geodesic *g, const hd_sources *s, hdi_geo_item *x, int64_t q, int end) {
     const int32_t corners = hdi_source_corners(s);
     int32_t c, k;
     double sum = 0;
     for (c = 0; c < corners; c++) sum += hdi_source_part(s, q, c);
     for (c = 0; c < corners; c++) {
         const double w = hdi_source_part(s, q, c) / sum;
-        const int32_t row = g->row[s->vertex[(int64_t)q * corners + c]];
+        const int32_t row = g->row[s->vertex[q * corners + c]];
         if (w < HDI_GEO_ASIDE) continue;
         for (k = 0; k < x->n && x->row[k] != row; k++) {}
         if (row < 0 || k == 3) return 0;
@@ -26283,13 +26198,13 @@ static hd_status hdi_geo_lost(int32_t q, hd_error *e) {
                            -1, 0);
 }
 
-/* The items of a source, and the faces that they lie in. */
-static hd_status hdi_geo_items_make(hdi_geo_items *z, const hd_geodesic *g, const hd_source *s,
-                                    hdi_scope *in) {
+/* The items of n points of sources, from one on, and the faces that they lie in. */
+static hd_status hdi_geo_items_make(hdi_geo_items *z, const hd_geodesic *g, const hd_sources *s,
+                                    int64_t begin, int32_t n, hdi_scope *in) {
     int32_t f, i;
     int q;
     z->s = s;
-    z->n = s->curve ? s->count - 1 : s->count;
+    z->n = s->curve ? n - 1 : n;
     z->item = HDI_TAKE_ZERO(in, hdi_geo_item, z->n);
     z->first = HDI_TAKE(in, int32_t, g->n_active);
     z->home = HDI_TAKE(in, int32_t, g->n_faces);
@@ -26300,7 +26215,8 @@ static hd_status hdi_geo_items_make(hdi_geo_items *z, const hd_geodesic *g, cons
     for (i = 0; i < g->n_active; i++) z->near_by[i] = HUGE_VAL;
     for (i = 0; i < z->n; i++) {
         hdi_geo_item *x = z->item + i;
-        if (!hdi_geo_item_add(g, s, x, i, 0) || !hdi_geo_item_add(g, s, x, s->curve ? i + 1 : i, 1))
+        const int64_t at = begin + i;
+        if (!hdi_geo_item_add(g, s, x, at, 0) || !hdi_geo_item_add(g, s, x, s->curve ? at + 1 : at, 1))
             return hdi_geo_lost(i, in->e);
         x->length = -1;
         x->next = z->first[x->row[0]];
@@ -26354,9 +26270,7 @@ static hd_status hdi_geo_off_border(const hd_geodesic *g, const int32_t *sources
     int32_t q;
     for (q = 0; q < k; q++) {
         if (g->row[sources[q]] < 0 || !hdi_geo_is_held(g, g->row[sources[q]])) continue;
-        hdi_fail_face(e, HD_ERR_ARGUMENT, HDI_GEO_ON_BORDER, -1, sources[q], sources[q]);
-        e->column = q;
-        break;
+        return hdi_source_fail(e, HD_ERR_ARGUMENT, HDI_GEO_ON_BORDER, q, sources[q], sources[q]);
     }
     return e->status;
 }
@@ -26635,15 +26549,15 @@ static hd_status hdi_geo_batch(hd_geodesic *g, const hdi_geo_source *s, int32_t 
     return e->status;
 }
 
-/* The vertices of a source of nothing else into list; 0 where it has other points. */
-static int hdi_geo_vertices(const hd_source *s, int32_t *list) {
+/* The vertices of n points from one on into list, where these are nothing else; else 0. */
+static int hdi_geo_vertices(const hd_sources *s, int64_t begin, int32_t n, int32_t *list) {
     const int32_t corners = hdi_source_corners(s);
     int32_t q, c;
-    for (q = 0; q < s->count && !s->curve; q++) {
+    for (q = 0; q < n && !s->curve; q++) {
         int32_t parts = 0;
         for (c = 0; c < corners; c++) {
-            if (hdi_source_part(s, q, c) == 0) continue;
-            list[q] = s->vertex[(int64_t)q * corners + c];
+            if (hdi_source_part(s, begin + q, c) == 0) continue;
+            list[q] = s->vertex[(begin + q) * corners + c];
             parts++;
         }
         if (parts > 1) return 0;
@@ -26651,30 +26565,20 @@ static int hdi_geo_vertices(const hd_source *s, int32_t *list) {
     return !s->curve;
 }
 
-/* n points of a source from one on. */
-static hd_source hdi_geo_points(const hd_source *all, int32_t begin, int32_t n) {
-    const int64_t at = (int64_t)begin * hdi_source_corners(all);
-    hd_source s = *all;
-    s.count = n;
-    s.vertex += at;
-    if (s.bary) s.bary += at;
-    return s;
-}
-
-/* Distances to a column that is more than a list of vertices: s->d is set. */
-static hd_status hdi_geo_from(hd_geodesic *g, const hd_source *from, hdi_geo_source *s,
-                              hd_geodesic_report *rep, hd_error *e) {
+/* Distances to a column that is more than a list of vertices: n points from one on; s->d is set. */
+static hd_status hdi_geo_from(hd_geodesic *g, const hd_sources *from, int64_t begin, int32_t n,
+                              hdi_geo_source *s, hd_geodesic_report *rep, hd_error *e) {
     hdi_scope scope = hdi_scope_begin(g->ctx, e);
-    int32_t *list = HDI_TAKE(&scope, int32_t, from->count);
+    int32_t *list = HDI_TAKE(&scope, int32_t, n);
     hdi_geo_items items;
     s->vertex = list;
     s->n = 0;
-    if (list && hdi_geo_vertices(from, list)) {
-        s->n = from->count;
-        if (hdi_geo_off_border(g, list, s->n, e) < 0) e->row = e->column;
+    if (list && hdi_geo_vertices(from, begin, n, list)) {
+        s->n = n;
+        (void)hdi_geo_off_border(g, list, n, e);
     } else if (list && g->poly.ptr) {
         (void)hdi_fail(e, HD_ERR_ARGUMENT, "geodesic: on polygons sources are vertices only");
-    } else if (list && hdi_geo_items_make(&items, g, from, &scope) >= 0) {
+    } else if (list && hdi_geo_items_make(&items, g, from, begin, n, &scope) >= 0) {
         s->items = &items;
         (void)hdi_geo_items_check(g, &items, e);
     }
@@ -26682,29 +26586,38 @@ static hd_status hdi_geo_from(hd_geodesic *g, const hd_source *from, hdi_geo_sou
     return hdi_scope_end(&scope);
 }
 
-/* n columns of distances, ldd apart. Points first[m] .. first[m + 1] - 1 of all are the source of column m;
- * first NULL: one each. They are checked. */
-static hd_status hdi_geo_distances(hd_geodesic *g, const hd_source *all, const int32_t *first, int32_t n,
-                                   double *D, size_t ldd, hd_geodesic_report *rep, hd_error *e) {
-    const int vertices = hdi_source_corners(all) == 1 && !all->curve;
-    const int batches = vertices && !first;
+/* Refuses vertices among the sources where heat is held at zero, before anything is written. */
+static hd_status hdi_geo_check_border(const hd_geodesic *g, const hd_sources *s, hd_error *e) {
+    int32_t k;
+    for (k = 0; k < s->count && e->status >= 0; k++) {
+        const int64_t begin = hdi_source_first(s, k);
+        if (hdi_geo_off_border(g, s->vertex + begin, (int32_t)(hdi_source_first(s, k + 1) - begin), e) < 0)
+            e->column = k;
+    }
+    return e->status;
+}
+
+/* Columns of distances, ldd apart, from sources that are checked. */
+static hd_status hdi_geo_distances(hd_geodesic *g, const hd_sources *from, double *D, size_t ldd,
+                                   hd_geodesic_report *rep, hd_error *e) {
+    const int vertices = hdi_source_corners(from) == 1 && !from->curve;
+    const int32_t most = vertices && !from->first ? HDI_GEO_WIDE : 1, n = from->count;
     hdi_geo_source s[HDI_GEO_WIDE];
     int32_t m, c, k;
+    if (vertices && hdi_geo_check_border(g, from, e) < 0) return e->status;
     memset(s, 0, sizeof s);
     for (m = 0; m < n && e->status >= 0; m += k) {
-        k = batches && n - m >= HDI_GEO_WIDE_FROM ? hdi_low32(n - m, HDI_GEO_WIDE) : 1;
+        k = n - m >= HDI_GEO_WIDE_FROM ? hdi_low32(n - m, most) : 1;
         if (hdi_progress(g->ctx, "solve", (double)m / n, e) < 0) break;
         for (c = 0; c < k; c++) {
-            s[c].vertex = all->vertex + (first ? first[m + c] : m + c);
-            s[c].n = first ? first[m + c + 1] - first[m + c] : 1;
+            const int64_t begin = hdi_source_first(from, m + c);
+            s[c].vertex = from->vertex + begin;
+            s[c].n = (int32_t)(hdi_source_first(from, m + c + 1) - begin);
             s[c].d = D + (size_t)(m + c) * ldd;
         }
         if (k > 1) (void)hdi_geo_batch(g, s, k, rep, e);
         else if (vertices) (void)hdi_geo_alone(g, s, rep, e);
-        else {
-            const hd_source part = hdi_geo_points(all, first ? first[m] : m, s->n);
-            (void)hdi_geo_from(g, &part, s, rep, e);
-        }
+        else if (hdi_geo_from(g, from, hdi_source_first(from, m), s->n, s, rep, e) < 0) e->column = m;
     }
     return e->status;
 }
@@ -26789,26 +26702,20 @@ static hd_status hdi_geo_end(hd_geodesic_report *rep, hd_error *e) {
 }
 
 /* Checks the arguments of a query, and fills the report with what the plan says. */
-static hd_status hdi_geo_begin(hd_geodesic *g, const int32_t *sources, int32_t k, const double *d,
+static hd_status hdi_geo_begin(hd_geodesic *g, const hd_sources *sources, const double *D, size_t *ldd,
                                hd_geodesic_report *rep, hd_error *err, hdi_call *c) {
-    int32_t q;
     if (rep) {
         memset(rep, 0, sizeof *rep);
         hdi_error_clear(&rep->error);
     }
     if (hdi_enter(c, g ? g->ctx : NULL, err) < 0) return c->e->status;
     if (!HDI_HAS_GEODESIC) return HDI_LEFT_OUT(c->e, GEODESIC, "geodesic distances");
-    if (!g || (k > 0 && (!sources || !d))) return hdi_missing(c->e);
+    if (!g || !sources || (sources->count > 0 && !D)) return hdi_missing(c->e);
     if (!g->ready) return hdi_fail(c->e, HD_ERR_ARGUMENT, "geodesic: the last update failed");
     if (rep) hdi_geo_tell_plan(g, rep);
-    for (q = 0; q < k; q++) {
-        if (sources[q] >= 0 && sources[q] < g->n) continue;
-        hdi_fail_face(c->e, HD_ERR_INDEX, "geodesic: a source is not in the mesh", -1, sources[q],
-                      sources[q]);
-        c->e->column = q;
-        return c->e->status;
-    }
-    return hdi_geo_off_border(g, sources, k, c->e);
+    *ldd = *ldd ? *ldd : (size_t)g->n;
+    hdi_refuse(*ldd < (size_t)g->n, "geodesic: the leading dimension is smaller than n", c->e);
+    return c->e->status < 0 ? c->e->status : hdi_sources_check(sources, g->n, c->e);
 }
 
 /* ==== [30] api ====
@@ -26921,6 +26828,14 @@ HEATDIFF_API hd_mesh hd_triangles(const double *xyz, int32_t n, const int32_t *t
     mesh.n_faces = n_tri;
     mesh.corner = tri;
     return mesh;
+}
+
+HEATDIFF_API hd_sources hd_vertices(int32_t count, const int32_t *vertex) {
+    hd_sources sources;
+    memset(&sources, 0, sizeof sources);
+    sources.count = count;
+    sources.vertex = vertex;
+    return sources;
 }
 
 static hd_laplacian_kind hdi_lap_kind(const hd_mesh *m, const hd_laplacian_opts *o) {
@@ -27397,18 +27312,10 @@ HEATDIFF_API hd_status hd_times_spectral(const hd_laplacian *lap, int32_t n_time
 HEATDIFF_API void hd_spectrum_free(hd_spectrum *s) { hdi_spectrum_free(s); }
 
 HEATDIFF_API hd_status hd_spectrum_columns(const hd_spectrum *s, hd_kernel kernel, int32_t n_times,
-                                           const double *t, int32_t k, const int32_t *sources, double *U,
+                                           const double *t, const hd_sources *sources, double *U,
                                            double *bound, size_t ldu, hd_error *err) {
-    hdi_spec_sums x = hdi_spec_sums_of(n_times, t, k, U, bound, ldu);
+    hdi_spec_sums x = hdi_spec_sums_of(n_times, t, sources ? sources->count : 0, U, bound, ldu);
     x.sources = sources;
-    return hdi_sum_columns(&x, s, kernel, err);
-}
-
-HEATDIFF_API hd_status hd_spectrum_columns_from(const hd_spectrum *s, hd_kernel kernel, int32_t n_times,
-                                                const double *t, int32_t k, const hd_source *sources,
-                                                double *U, double *bound, size_t ldu, hd_error *err) {
-    hdi_spec_sums x = hdi_spec_sums_of(n_times, t, k, U, bound, ldu);
-    x.from = sources;
     return hdi_sum_columns(&x, s, kernel, err);
 }
 
@@ -27421,19 +27328,10 @@ HEATDIFF_API hd_status hd_spectrum_diagonal(const hd_spectrum *s, hd_kernel kern
 }
 
 HEATDIFF_API hd_status hd_spectrum_distance(const hd_spectrum *s, hd_distance_kind kind, int32_t n_times,
-                                            const double *t, int32_t k, const int32_t *sources, double *D,
+                                            const double *t, const hd_sources *sources, double *D,
                                             double *bound, size_t ldd, hd_error *err) {
-    hdi_spec_sums x = hdi_spec_sums_of(n_times, t, k, D, bound, ldd);
+    hdi_spec_sums x = hdi_spec_sums_of(n_times, t, sources ? sources->count : 0, D, bound, ldd);
     x.sources = sources;
-    return hdi_sum_distance(&x, s, kind, err);
-}
-
-HEATDIFF_API hd_status hd_spectrum_distance_from(const hd_spectrum *s, hd_distance_kind kind,
-                                                 int32_t n_times, const double *t, int32_t k,
-                                                 const hd_source *sources, double *D, double *bound,
-                                                 size_t ldd, hd_error *err) {
-    hdi_spec_sums x = hdi_spec_sums_of(n_times, t, k, D, bound, ldd);
-    x.from = sources;
     return hdi_sum_distance(&x, s, kind, err);
 }
 
@@ -27459,29 +27357,18 @@ HEATDIFF_API hd_status hd_heat_adjoint(hd_heat *heat, int32_t n_times, const dou
 }
 
 HEATDIFF_API hd_status hd_heat_columns(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t,
-                                       int32_t k, const int32_t *sources, double *U, size_t ldu,
-                                       hd_report *report, hd_error *err) {
+                                       const hd_sources *sources, double *U, size_t ldu, hd_report *report,
+                                       hd_error *err) {
     hdi_heat_call h;
     if (hdi_kernel_begin(&h, heat, kernel, report, err) < 0) return hdi_heat_end(&h);
-    h.ask.sources = sources;
-    if (hdi_columns_ask(&h, n_times, t, k, sources != NULL, U, ldu) >= 0)
-        (void)hdi_sources_check(&h, k, sources);
-    return hdi_heat_run(&h);
-}
-
-HEATDIFF_API hd_status hd_heat_columns_from(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t,
-                                            int32_t k, const hd_source *sources, double *U, size_t ldu,
-                                            hd_report *report, hd_error *err) {
-    hdi_heat_call h;
-    if (hdi_kernel_begin(&h, heat, kernel, report, err) < 0) return hdi_heat_end(&h);
-    if (hdi_columns_ask(&h, n_times, t, k, sources != NULL, U, ldu) >= 0)
-        h.ask.terms = hdi_terms_all(k, sources, heat->source, 0, &h.s);
+    (void)hdi_columns_ask(&h, n_times, t, sources, U, ldu);
     return hdi_heat_run(&h);
 }
 
 HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, hd_kernel kernel, double t, int32_t source, double *u,
                                       hd_report *report, hd_error *err) {
-    return hd_heat_columns(heat, kernel, 1, &t, 1, &source, u, 0, report, err);
+    const hd_sources one = hd_vertices(1, &source);
+    return hd_heat_columns(heat, kernel, 1, &t, &one, u, 0, report, err);
 }
 
 HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t,
@@ -27571,17 +27458,14 @@ HEATDIFF_API hd_status hd_heat_scale_invariant(hd_heat *heat, double t0, double 
 }
 
 HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, int32_t n_times,
-                                        const double *t, int32_t k, const int32_t *sources, double *D,
-                                        size_t ldd, hd_report *report, hd_error *err) {
-    hdi_distances to = hdi_distances_to(kind, k, D, ldd);
-    return hdi_distance_answer(heat, &to, sources, NULL, n_times, t, report, err);
-}
-
-HEATDIFF_API hd_status hd_heat_distance_from(hd_heat *heat, hd_distance_kind kind, int32_t n_times,
-                                             const double *t, int32_t k, const hd_source *sources, double *D,
-                                             size_t ldd, hd_report *report, hd_error *err) {
-    hdi_distances to = hdi_distances_to(kind, k, D, ldd);
-    return hdi_distance_answer(heat, &to, NULL, sources, n_times, t, report, err);
+                                        const double *t, const hd_sources *sources, double *D, size_t ldd,
+                                        hd_report *report, hd_error *err) {
+    hdi_distances to;
+    memset(&to, 0, sizeof to);
+    to.kind = kind;
+    to.D = D;
+    to.ld = ldd;
+    return hdi_distance_answer(heat, &to, sources, n_times, t, report, err);
 }
 
 HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, int32_t n_times, const double *t,
@@ -27603,19 +27487,16 @@ HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, int32
     return hdi_heat_end(&h);
 }
 
-HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, double t, int32_t count,
-                                      int32_t n_given, int32_t *vertex, double *distance, hd_report *report,
-                                      hd_error *err) {
-    hdi_samples a = hdi_samples_of(kind, t, count, vertex, distance);
-    a.n_given = n_given;
-    return hdi_sample_answer(heat, &a, NULL, report, err);
-}
-
-HEATDIFF_API hd_status hd_heat_sample_from(hd_heat *heat, hd_distance_kind kind, double t, int32_t k,
-                                           const hd_source *sources, int32_t count, int32_t *vertex,
-                                           double *distance, hd_report *report, hd_error *err) {
-    hdi_samples a = hdi_samples_of(kind, t, count, vertex, distance);
-    a.n_from = k;
+HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, double t,
+                                      const hd_sources *sources, int32_t count, int32_t *vertex,
+                                      double *distance, hd_report *report, hd_error *err) {
+    hdi_samples a;
+    memset(&a, 0, sizeof a);
+    a.kind = kind;
+    a.t = t;
+    a.count = count;
+    a.vertex = vertex;
+    a.distance = distance;
     return hdi_sample_answer(heat, &a, sources, report, err);
 }
 
@@ -27671,44 +27552,11 @@ HEATDIFF_API hd_status hd_geodesic_update(hd_geodesic *g, const hd_mesh *mesh, h
 
 HEATDIFF_API void hd_geodesic_free(hd_geodesic *g) { if (HDI_HAS_GEODESIC && g) hdi_geo_free(g); }
 
-HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, int32_t n_sources, const int32_t *sources,
-                                            double *d, hd_geodesic_report *report, hd_error *err) {
-    hd_source all = {0, 0, 1, NULL, NULL, NULL, 0, NULL, 0};
-    int32_t first[2] = {0, 0};
+HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, const hd_sources *sources, double *D,
+                                            size_t ldd, hd_geodesic_report *report, hd_error *err) {
     hdi_call c;
-    if (hdi_geo_begin(g, sources, n_sources, d, report, err, &c) < 0 || !HDI_HAS_GEODESIC)
-        return hdi_geo_end(report, c.e);
-    all.vertex = sources;
-    first[1] = n_sources;
-    if (n_sources < 1) hdi_fail(c.e, HD_ERR_ARGUMENT, "geodesic: there is no source");
-    else (void)hdi_geo_distances(g, &all, first, 1, d, 0, report, c.e);
-    return hdi_geo_end(report, c.e);
-}
-
-HEATDIFF_API hd_status hd_geodesic_distance_from(hd_geodesic *g, const hd_source *source, double *d,
-                                                 hd_geodesic_report *report, hd_error *err) {
-    hdi_call c;
-    if (hdi_geo_begin(g, NULL, 0, d, report, err, &c) < 0 || !HDI_HAS_GEODESIC)
-        return hdi_geo_end(report, c.e);
-    if (!source || !d) hdi_missing(c.e);
-    else if (hdi_source_check(source, g->n, c.e) >= 0) {
-        const int32_t first[2] = {0, source->count};
-        (void)hdi_geo_distances(g, source, first, 1, d, 0, report, c.e);
-    }
-    return hdi_geo_end(report, c.e);
-}
-
-HEATDIFF_API hd_status hd_geodesic_distance_each(hd_geodesic *g, int32_t k, const int32_t *sources, double *D,
-                                                 size_t ldd, hd_geodesic_report *report, hd_error *err) {
-    hd_source all = {0, 0, 1, NULL, NULL, NULL, 0, NULL, 0};
-    hdi_call c;
-    if (hdi_geo_begin(g, sources, k, D, report, err, &c) < 0 || !HDI_HAS_GEODESIC)
-        return hdi_geo_end(report, c.e);
-    ldd = ldd ? ldd : (size_t)g->n;
-    hdi_refuse(k < 0, "geodesic: the number of sources is negative", c.e);
-    hdi_refuse(ldd < (size_t)g->n, "geodesic: the leading dimension is smaller than n", c.e);
-    all.vertex = sources;
-    (void)hdi_geo_distances(g, &all, NULL, c.e->status < 0 ? 0 : k, D, ldd, report, c.e);
+    if (hdi_geo_begin(g, sources, D, &ldd, report, err, &c) >= 0 && HDI_HAS_GEODESIC)
+        (void)hdi_geo_distances(g, sources, D, ldd, report, c.e);
     return hdi_geo_end(report, c.e);
 }
 

@@ -1,5 +1,6 @@
-/* mesh_args.h - meshes of heatdiff.h as arguments: hd_laplacian_create(&lap, MESH_TRIANGLES(xyz, n, tri, m), NULL, NULL).
- * They last until the end of the full expression. Positions alone, for updates: MESH_POINTS. In C and C++. */
+/* mesh_args.h - meshes and sources of heatdiff.h as arguments: hd_laplacian_create(&lap, MESH_TRIANGLES(xyz, n, tri, m), NULL, NULL).
+ * They last until the end of the full expression. Positions alone, for updates: MESH_POINTS. Vertices, a source each: VERTICES; one
+ * source of several: TOGETHER. In C and C++. */
 
 #ifndef MESH_ARGS_H
 #define MESH_ARGS_H
@@ -44,8 +45,30 @@ struct mesh_here {
     operator const hd_mesh *() const { return &mesh; }
 };
 #define MESH_HERE(m) (mesh_here{m})
+
+struct sources_here {
+    hd_sources sources;
+    int64_t first[2];
+    sources_here(int32_t count, const int32_t *ids) : sources(hd_vertices(count, ids)) {}
+    sources_here(int32_t n, const int32_t *ids, int64_t begin) : sources(hd_vertices(1, ids)) {
+        first[0] = begin;
+        first[1] = n;
+        sources.first = first;
+    }
+    operator const hd_sources *() const { return &sources; }
+};
+#define VERTICES(count, ids) (sources_here(count, ids))
+#define TOGETHER(n, ids) (sources_here(n, ids, 0))
 #else
 #define MESH_HERE(m) ((const hd_mesh[]){m})
+
+static inline hd_sources sources_together(const int32_t *ids, const int64_t *first) {
+    hd_sources s = hd_vertices(1, ids);
+    s.first = first;
+    return s;
+}
+#define VERTICES(count, ids) ((const hd_sources[]){hd_vertices(count, ids)})
+#define TOGETHER(n, ids) ((const hd_sources[]){sources_together(ids, (const int64_t[]){0, n})})
 #endif
 
 #define MESH_TRIANGLES(xyz, n, tri, n_tri) MESH_HERE(hd_triangles(xyz, n, tri, n_tri))
