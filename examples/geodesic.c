@@ -46,6 +46,8 @@ int main(void) {
     static double xyz[3 * N], d[N], D[SAMPLES * N];
     static int32_t tri[6 * N];
     int32_t sample[SAMPLES] = {0}, i, k;
+    int64_t first[2] = {0, 1};
+    hd_sources sources;
     const hd_mesh mesh = hd_triangles(xyz, N, tri, 2 * N);
     hd_geodesic *g = NULL;
     hd_geodesic_report report;
@@ -56,23 +58,27 @@ int main(void) {
     if (hd_geodesic_create(&g, &mesh, NULL, &err) < 0) return fail(&err, NULL);
 
     /* Around the tube, from its outermost point. The shortest way is a circle of radius 1. */
-    if (hd_geodesic_distance(g, 1, sample, d, &report, NULL) < 0) return fail(&report.error, g);
+    sources = hd_vertices(1, sample);
+    if (hd_geodesic_distance(g, &sources, d, 0, &report, NULL) < 0) return fail(&report.error, g);
     printf("torus: %d vertices, mean edge length h = %.4f, heat flows for t = %.3g\n", (int)N, report.h,
            report.t);
     for (i = NV / 8; i <= NV / 2; i += NV / 8)
         printf("around the tube by %3d degrees: %.4f, exact %.4f\n", 360 * (int)i / NV, d[i],
                6.283185307179586 * i / NV);
 
-    /* Each new sample is the vertex farthest from the k samples before it. */
+    /* Each new sample is the vertex farthest from the k samples before it, which are one source. */
+    sources.first = first;
     for (k = 1; k < SAMPLES; k++) {
-        if (hd_geodesic_distance(g, k, sample, d, &report, NULL) < 0) return fail(&report.error, g);
+        first[1] = k;
+        if (hd_geodesic_distance(g, &sources, d, 0, &report, NULL) < 0) return fail(&report.error, g);
         for (i = 0; i < N; i++)
             if (d[i] > d[sample[k]]) sample[k] = i;
         printf("sample %d: vertex %5d, %.3f from those before\n", (int)k, (int)sample[k], d[sample[k]]);
     }
 
     /* Distances from each sample by itself. Eight columns take little longer than two. */
-    if (hd_geodesic_distance_each(g, SAMPLES, sample, D, 0, &report, NULL) < 0) return fail(&report.error, g);
+    sources = hd_vertices(SAMPLES, sample);
+    if (hd_geodesic_distance(g, &sources, D, 0, &report, NULL) < 0) return fail(&report.error, g);
     for (k = 0; k < SAMPLES; k++)
         for (i = 0; i < SAMPLES; i++)
             if (i != k && D[k * N + sample[i]] < nearest) nearest = D[k * N + sample[i]];

@@ -62,7 +62,7 @@ int main(void) {
     hd_laplacian *lap = NULL;
     hd_heat *heat = NULL;
     hd_geodesic *g = NULL;
-    hd_source source;
+    hd_sources source = hd_vertices(1, tri);
     hd_report report;
     hd_error err;
     int32_t v;
@@ -75,14 +75,11 @@ int main(void) {
     printf("a flat torus of %d vertices, area %.3f, border %d\n", (int)N, lap->area,
            (int)lap->mesh.n_boundary_edges);
 
-    memset(&source, 0, sizeof source);           /* the middle of the first face */
-    source.count = 1;
-    source.corners = 3;
-    source.vertex = tri;
+    source.corners = 3;                          /* the middle of the first face */
     source.bary = bary;
-    if (hd_heat_columns_from(heat, HD_KERNEL_SYMMETRIC, 1, &t, 1, &source, u, 0, &report, &err) < 0 ||
-        hd_heat_distance_from(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &source, d, 0, &report, &err) < 0 ||
-        hd_geodesic_distance_from(g, &source, far, NULL, &err) < 0)
+    if (hd_heat_columns(heat, HD_KERNEL_SYMMETRIC, 1, &t, &source, u, 0, &report, &err) < 0 ||
+        hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, &source, d, 0, &report, &err) < 0 ||
+        hd_geodesic_distance(g, &source, far, 0, NULL, &err) < 0)
         return fail("source", &err);
     printf("  x      y      heat   exact     diffusion distance, exact     geodesic, exact\n");
     for (v = 0; v < N; v += N / 8 + 5) {

@@ -478,6 +478,7 @@ static PetscErrorCode whole(const settings *s, double t, double *U, double *boun
     hd_heat_opts opts;
     hd_report report;
     int32_t *sources;
+    hd_sources from;
     PetscInt q;
     PetscFunctionBeginUser;
     PetscCall(patch_make(&p, s, 0, s->n));
@@ -486,9 +487,9 @@ static PetscErrorCode whole(const settings *s, double t, double *U, double *boun
     memset(&opts, 0, sizeof opts);
     opts.method = HD_METHOD_KRYLOV;     /* no poles: an error in the poles would show */
     opts.tol = 1e-12;
+    from = hd_vertices((int32_t)s->sources, sources);
     HD_CALL(hd_heat_create(&plan, p.lap, &opts, NULL));
-    HD_CALL(hd_heat_columns(plan, HD_KERNEL_OPERATOR, 1, &t, (int32_t)s->sources, sources, U, 0, &report,
-                            NULL));
+    HD_CALL(hd_heat_columns(plan, HD_KERNEL_OPERATOR, 1, &t, &from, U, 0, &report, NULL));
     *bound = report.error_bound;
     hd_heat_free(plan);
     PetscCall(PetscFree(sources));

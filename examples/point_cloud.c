@@ -70,7 +70,7 @@ static int show(const double *xyz, const char *what) {
            lap->points.bandwidth2, lap->points.bandwidth2 / (lap->h * lap->h), lap->points.cut_radius,
            (double)lap->L.nnz / lap->n_active);
     if (hd_heat_create(&heat, lap, NULL, &err) < 0 ||
-        hd_heat_columns(heat, HD_KERNEL_SYMMETRIC, 1, &t, 1, &source, u, 0, &report, NULL) < 0) {
+        hd_heat_column(heat, HD_KERNEL_SYMMETRIC, t, source, u, &report, NULL) < 0) {
         const hd_error *why = heat ? &report.error : &err;
         hd_heat_free(heat);
         hd_laplacian_free(lap);

@@ -66,7 +66,6 @@ static double exact(double t, double z) {
 /* Largest difference of the symmetric kernel's column from the sphere's, relative to the largest value.
  * Negative after an error. */
 static double error_of(hd_laplacian_kind kind, double t) {
-    const int32_t source = SOURCE;
     hd_laplacian_opts opts;
     hd_mesh mesh = hd_triangles(xyz, N, face_idx, FACES);
     hd_laplacian *lap = NULL;
@@ -84,7 +83,7 @@ static double error_of(hd_laplacian_kind kind, double t) {
         return -1;
     }
     if (hd_heat_create(&heat, lap, NULL, &err) < 0 ||
-        hd_heat_columns(heat, HD_KERNEL_SYMMETRIC, 1, &t, 1, &source, u, 0, &report, NULL) < 0) worst = -1;
+        hd_heat_column(heat, HD_KERNEL_SYMMETRIC, t, SOURCE, u, &report, NULL) < 0) worst = -1;
     for (i = 0; i < N && worst >= 0; i++) {
         const double *p = xyz + 3 * i, *q = xyz + 3 * SOURCE;
         const double cosine = p[0] * q[0] + p[1] * q[1] + p[2] * q[2];

@@ -62,13 +62,14 @@ int main(void) {
     opts.t_in_h2 = 8;
     for (way = 0; way < 2; way++) {
         hd_mesh mesh = hd_triangles(xyz[way], N, idx, N_FACES);
+        const hd_sources marks = hd_vertices(MARKS, mark);
         hd_geodesic *g = NULL;
         make_sheet(way, xyz[way], ptr, idx);
         mesh.shape = HD_POLYGONS;
         mesh.face_ptr = ptr;
         if (hd_geodesic_create(&g, &mesh, &opts, &err) < 0)
             return fprintf(stderr, "regions: %s\n", err.text), 1;
-        if (hd_geodesic_distance_each(g, MARKS, mark, D[way], 0, &report, &err) < 0)
+        if (hd_geodesic_distance(g, &marks, D[way], 0, &report, &err) < 0)
             return fprintf(stderr, "regions: %s\n", err.text), 1;
         hd_geodesic_free(g);
     }

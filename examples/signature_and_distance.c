@@ -56,6 +56,7 @@ static double unevenness(const double *d) {
 
 int main(void) {
     const int32_t source = 0, opposite = NU / 2 * NV;       /* both on the outer rim, on opposite sides */
+    const hd_sources from = hd_vertices(1, &source);
     int32_t point[POINTS], q;
     double t[TIMES], apart[POINTS];
     const hd_mesh mesh = hd_triangles(xyz, N, tri, 2 * N);
@@ -77,17 +78,17 @@ int main(void) {
                unevenness(signature + q * N));
     printf("    error at most %.1e of each value\n", report.error_relative);
 
-    if (hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, TIMES, t, 1, &source, distance, 0, &report, NULL) < 0)
+    if (hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, TIMES, t, &from, distance, 0, &report, NULL) < 0)
         return fail(&report.error);
     for (q = 0; q < TIMES; q++)
         printf("distance at t = %4.0f h^2: %.6f to the next vertex, %.6f to the far side\n",
                t[q] / (lap->h * lap->h), distance[q * N + 1], distance[q * N + opposite]);
-    if (hd_heat_distance(heat, HD_DISTANCE_BIHARMONIC, 1, NULL, 1, &source, distance, 0, &report, NULL) < 0)
+    if (hd_heat_distance(heat, HD_DISTANCE_BIHARMONIC, 1, NULL, &from, distance, 0, &report, NULL) < 0)
         return fail(&report.error);
     printf("biharmonic distance: %.6f to the next vertex, %.6f to the far side\n", distance[1],
            distance[opposite]);
 
-    if (hd_heat_sample(heat, HD_DISTANCE_BIHARMONIC, 0, POINTS, 0, point, apart, &report, NULL) < 0)
+    if (hd_heat_sample(heat, HD_DISTANCE_BIHARMONIC, 0, NULL, POINTS, point, apart, &report, NULL) < 0)
         return fail(&report.error);
     for (q = 0; q < POINTS; q++)
         printf("point %d: vertex %4d, at distance %.4f from the points before it\n", (int)q + 1,

@@ -50,6 +50,7 @@ int main(void) {
     double *xyz = (double *)malloc(3 * N * sizeof *xyz), *u = (double *)malloc(3 * N * sizeof *u);
     int32_t *tri = (int32_t *)malloc(6 * N * sizeof *tri);
     const int32_t source = 17;
+    const hd_sources from = hd_vertices(1, &source);
     double *exact = u, *some = u + N, *bound = u + 2 * N;
     const hd_mesh mesh = hd_triangles(xyz, N, tri, 2 * N);
     hd_laplacian *lap = NULL;
@@ -72,12 +73,11 @@ int main(void) {
     for (q = 0; q < 6; q++) {
         const double t = times[q] * lap->h * lap->h;
         double size;
-        if (hd_heat_columns(heat, HD_KERNEL_SYMMETRIC, 1, &t, 1, &source, exact, 0, NULL, &err) < 0) goto end;
+        if (hd_heat_column(heat, HD_KERNEL_SYMMETRIC, t, source, exact, NULL, &err) < 0) goto end;
         size = largest(exact, NULL);
         printf("\n%7g", times[q]);
         for (k = 0; k < 6; k++) {
-            if (hd_spectrum_columns(spectrum[k], HD_KERNEL_SYMMETRIC, 1, &t, 1, &source, some, bound, 0,
-                                    &err) < 0) goto end;
+            if (hd_spectrum_columns(spectrum[k], HD_KERNEL_SYMMETRIC, 1, &t, &from, some, bound, 0, &err) < 0) goto end;
             printf("  %8.1e (%7.1e)", largest(exact, some) / size, largest(bound, NULL) / size);
         }
     }

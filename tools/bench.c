@@ -441,8 +441,8 @@ static hd_status plan_call(hd_heat *heat, const ask *a, double *U, hd_report *r)
     if (a->what == DIAGONAL)
         return hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, a->n_times, a->times, U, 0, r, NULL);
     if (a->what == DISTANCES)
-        return hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, a->times, 1, a->vertices, U, 0, r, NULL);
-    return hd_heat_columns(heat, HD_KERNEL_OPERATOR, a->n_times, a->times, a->n_columns, a->vertices, U, 0, r, NULL);
+        return hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, a->times, VERTICES(1, a->vertices), U, 0, r, NULL);
+    return hd_heat_columns(heat, HD_KERNEL_OPERATOR, a->n_times, a->times, VERTICES(a->n_columns, a->vertices), U, 0, r, NULL);
 }
 
 /* Runs what is asked for on the plan; times since watch_start. */
@@ -1543,19 +1543,19 @@ static void geo_ours(const bench *b, const int32_t *sources, double *D, geo_run 
     memset(r, 0, sizeof *r);
     o.context = &ctx;
     r->fine = hd_geodesic_create(&g, MESH_TRIANGLES(b->surface->xyz, b->surface->n, b->surface->tri, b->surface->n_tri), &o, NULL) >= 0 &&
-              hd_geodesic_distance(g, 1, sources, D, NULL, NULL) >= 0;
+              hd_geodesic_distance(g, VERTICES(1, sources), D, 0, NULL, NULL) >= 0;
     r->total = now() - t0;
     for (q = 1; q < GEO_SOURCES && r->fine; q++) {
         t0 = now();
-        r->fine = hd_geodesic_distance(g, 1, sources + q, D + (size_t)q * n, NULL, NULL) >= 0;
+        r->fine = hd_geodesic_distance(g, VERTICES(1, sources + q), D + (size_t)q * n, 0, NULL, NULL) >= 0;
         if (q == 1 || now() - t0 < r->further) r->further = now() - t0;
     }
     for (q = 0; q < 2 && r->fine; q++) {
         t0 = now();
-        r->fine = hd_geodesic_distance_each(g, GEO_SOURCES - 1, sources + 1, D + n, 0, NULL, NULL) >= 0;
+        r->fine = hd_geodesic_distance(g, VERTICES(GEO_SOURCES - 1, sources + 1), D + n, 0, NULL, NULL) >= 0;
         r->batch = (now() - t0) / (GEO_SOURCES - 1);
     }
-    if (r->fine) r->fine = hd_geodesic_distance(g, 1, sources, D, &rep, NULL) >= 0;
+    if (r->fine) r->fine = hd_geodesic_distance(g, VERTICES(1, sources), D, 0, &rep, NULL) >= 0;
     r->nnz = r->fine ? (double)rep.factor_nnz : 0;
     r->bytes = (double)ctx.bytes_peak;
     hd_geodesic_free(g);
@@ -2065,10 +2065,10 @@ static hd_status trial_once(const hd_laplacian *lap, const trial *x, double t, d
             r->expected.cost[0].seconds += HDI_ROW_ANALYSIS * lap->n_active;
         ctx.bytes_peak = ctx.bytes_in_use;
         if (x->query == HD_QUERY_COLUMNS)
-            status = hd_heat_columns(heat, HD_KERNEL_OPERATOR, 1, &t, x->k, source, U, 0, &r->report, NULL);
+            status = hd_heat_columns(heat, HD_KERNEL_OPERATOR, 1, &t, VERTICES(x->k, source), U, 0, &r->report, NULL);
         else if (x->query == HD_QUERY_DIAGONAL)
             status = hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, 1, &t, U, 0, &r->report, NULL);
-        else status = hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, x->k, source, U, 0, &r->report, NULL);
+        else status = hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, VERTICES(x->k, source), U, 0, &r->report, NULL);
     }
     r->seconds = (double)(clock() - start) / CLOCKS_PER_SEC;
     r->bytes = (double)ctx.bytes_peak - (double)before;

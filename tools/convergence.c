@@ -315,7 +315,7 @@ static void errors(const shape_poly *s, int torus, const hd_laplacian *lap, doub
     sources_on(s, torus, source);
     if (hd_heat_create(&heat, lap, &ho, &e) < 0) stop("heat", &e);
     t_of_heat = t * slower;
-    if (hd_heat_columns(heat, HD_KERNEL_SYMMETRIC, 1, &t_of_heat, SOURCES, source, u, 0, &report, NULL) < 0)
+    if (hd_heat_columns(heat, HD_KERNEL_SYMMETRIC, 1, &t_of_heat, VERTICES(SOURCES, source), u, 0, &report, NULL) < 0)
         stop("heat", &report.error);
     if (torus) torus_kernel(s, t, source, k);
     else sphere_kernel(s, t, source, k);

@@ -1750,8 +1750,10 @@ typedef struct run {
     hd_rational filter;              /* with --filter */
     int32_t *sources;                /* the nearest vertex of each, if they need not be vertices */
     int n_inputs;                    /* sources, or fields given */
-    hd_source *from;                 /* sources that need not be vertices, or NULL */
-    source_point *points;            /* of these */
+    hd_sources from;
+    int places;                      /* sources need not be vertices */
+    int64_t *first;                  /* [n_inputs + 1] of their points */
+    source_point *points;            /* [n_points] */
     int n_points;
     int32_t *corner;                 /* [3 n_points] */
     double *bary, *point_weight;     /* [3 n_points], [n_points] */
@@ -1804,7 +1806,7 @@ static void run_end(run *r)
     free(r->times);
     free(r->time_names);
     free(r->sources);
-    free(r->from);
+    free(r->first);
     free(r->points);
     free(r->corner);
     free(r->bary);
@@ -2273,26 +2275,40 @@ static int run_places(run *r)
     if (code) return code;
     r->n_inputs = o->n_sources + (o->source_file != NULL);
     r->sources = (int32_t *)malloc(((size_t)r->n_inputs + (size_t)o->count) * sizeof *r->sources);
-    r->from = (hd_source *)calloc((size_t)r->n_inputs, sizeof *r->from);
+    r->first = (int64_t *)calloc((size_t)r->n_inputs + 1, sizeof *r->first);
     r->corner = (int32_t *)malloc((size_t)r->n_points * 3 * sizeof *r->corner);
     r->bary = (double *)malloc((size_t)r->n_points * 3 * sizeof *r->bary);
     r->point_weight = (double *)malloc((size_t)r->n_points * sizeof *r->point_weight);
-    if (!r->sources || !r->from || !r->corner || !r->bary || !r->point_weight) return fail_memory("the sources");
+    if (!r->sources || !r->first || !r->corner || !r->bary || !r->point_weight) return fail_memory("the sources");
     for (i = 0; i < r->n_points; i++) {
-        hd_source *s = &r->from[r->points[i].source];
+        const int32_t *v = r->corner + 3 * (size_t)i;
         const double *b = r->bary + 3 * (size_t)i;
+        const int q = r->points[i].source;
         if ((code = take_point(r, i)) != DONE) return code;
-        if (s->count++ > 0) continue;
-        s->corners = 3;
-        s->vertex = r->corner + 3 * (size_t)i;
-        s->bary = b;
-        s->weight = o->curve ? NULL : r->point_weight + i;
-        s->curve = o->curve;
-        r->sources[r->points[i].source] = s->vertex[b[0] >= b[1] && b[0] >= b[2] ? 0 : b[1] >= b[2] ? 1 : 2];
+        if (r->first[q + 1]++ == 0) r->sources[q] = v[b[0] >= b[1] && b[0] >= b[2] ? 0 : b[1] >= b[2] ? 1 : 2];
     }
-    for (i = 0; i < r->n_inputs && o->curve; i++)
-        if (r->from[i].count < 2) return fail(FAILED, "--curve: source %d has one point; join several with +", i);
+    for (i = 0; i < r->n_inputs; i++) {
+        if (o->curve && r->first[i + 1] < 2) return fail(FAILED, "--curve: source %d has one point; join several with +", i);
+        r->first[i + 1] += r->first[i];
+    }
+    r->places = 1;
+    r->from = hd_vertices(r->n_inputs, r->corner);
+    r->from.first = r->first;
+    r->from.corners = 3;
+    r->from.bary = r->bary;
+    r->from.weight = o->curve ? NULL : r->point_weight;
+    r->from.curve = o->curve;
     return DONE;
+}
+
+/* Some of the sources, from one on. */
+static hd_sources run_some(const run *r, int q, int count)
+{
+    hd_sources s = r->from;
+    s.count = count;
+    if (s.first) s.first += q;
+    else s.vertex += q;
+    return s;
 }
 
 static int run_sources(run *r)
@@ -2311,6 +2327,7 @@ static int run_sources(run *r)
                         r->mesh_name, (long long)o->sources[i], (long)r->mesh.n);
         r->sources[i] = (int32_t)o->sources[i];
     }
+    r->from = hd_vertices(r->n_inputs, r->sources);
     return DONE;
 }
 
@@ -2388,7 +2405,7 @@ static hd_query query_of(const run *r, int32_t *k)
     if (o->frequencies) return HD_QUERY_SCALE_INVARIANT;
     if (o->command == CMD_HKS)
         return o->kernel == HD_KERNEL_OPERATOR ? HD_QUERY_DIAGONAL_OPERATOR : HD_QUERY_DIAGONAL;
-    if (o->command == CMD_SAMPLE) *k = (int32_t)o->count + (r->from ? (int32_t)r->n_inputs : 0);
+    if (o->command == CMD_SAMPLE) *k = (int32_t)o->count + (r->places ? (int32_t)r->n_inputs : 0);
     if (o->command == CMD_PAIRS) *k = pairs_vertices(r);
     if (o->command == CMD_PAIRS && !is_timeless(o)) return HD_QUERY_PAIRS;
     return (hd_query)(HD_QUERY_DISTANCE + o->definition);
@@ -2584,7 +2601,7 @@ static double *column_of(const run *r, int q, int k)
 /* An error at a point of source q, which the library found; point -1: at none. */
 static int fail_source(const run *r, int q, int64_t point, const char *text)
 {
-    const source_point *p = point < 0 ? NULL : &r->points[(r->from[q].vertex - r->corner) / 3 + point];
+    const source_point *p = point < 0 ? NULL : &r->points[r->first[q] + point];
     mio_error e;
     if (!p) return fail(FAILED, "%s: source %d: %s", r->mesh_name, q, text);
     if (!p->line) return fail(FAILED, "%s: source %d, point %lld: %s", r->mesh_name, q, (long long)point, text);
@@ -2595,7 +2612,7 @@ static int fail_source(const run *r, int q, int64_t point, const char *text)
 static int fail_solve(run *r, hd_report *report, int q)
 {
     if (report->status == HD_ERR_MEMORY_LIMIT) return fail_limit(r, &report->error);
-    if (r->from && report->status == HD_ERR_ARGUMENT && report->error.column >= 0)
+    if (r->places && report->status == HD_ERR_ARGUMENT && report->error.column >= 0)
         return fail_source(r, q + (int)report->error.column, report->error.row, report->error.text);
     if (report->error.row >= 0 && report->error.column >= 0) report->error.column += q;
     return fail_library(report->status == HD_ERR_NOT_FINITE && r->fields ? r->field_name : r->mesh_name,
@@ -2607,14 +2624,13 @@ static int solve_time(run *r, int k, int q)
 {
     const size_t n = (size_t)r->mesh.n, stride = n * (size_t)r->n_times;
     const int count = r->n_inputs - q;
+    const hd_sources from = run_some(r, q, count);
     hd_report report;
     hd_status status;
     bar_part("time", k, r->n_times);
     if (r->fields)
         status = hd_heat_apply(r->heat, 1, &r->times[k], count, r->fields + (size_t)q * n, n, column_of(r, q, k), stride, &report, NULL);
-    else if (r->from)
-        status = hd_heat_columns_from(r->heat, (hd_kernel)r->o->kernel, 1, &r->times[k], count, r->from + q, column_of(r, q, k), stride, &report, NULL);
-    else status = hd_heat_columns(r->heat, (hd_kernel)r->o->kernel, 1, &r->times[k], count, r->sources + q, column_of(r, q, k), stride, &report, NULL);
+    else status = hd_heat_columns(r->heat, (hd_kernel)r->o->kernel, 1, &r->times[k], &from, column_of(r, q, k), stride, &report, NULL);
     if (status < 0) return fail_solve(r, &report, q);
     summary_add(&r->sum, &report, &k, 1);
     return DONE;
@@ -2635,12 +2651,12 @@ static int solve_input(run *r, const time_group *g, int q, hd_report *report)
     const size_t n = (size_t)r->mesh.n;
     double *out = g->room ? g->room : column_of(r, q, g->index[0]);
     const double *f = r->fields ? r->fields + (size_t)q * n : NULL;
+    const hd_sources from = run_some(r, q, 1);
     hd_status status;
     int i;
     bar_part(r->fields ? "field" : "source", q, r->n_inputs);
     if (f) status = hd_heat_apply(r->heat, g->n, g->t, 1, f, n, out, n, report, NULL);
-    else if (r->from) status = hd_heat_columns_from(r->heat, (hd_kernel)r->o->kernel, g->n, g->t, 1, r->from + q, out, n, report, NULL);
-    else status = hd_heat_columns(r->heat, (hd_kernel)r->o->kernel, g->n, g->t, 1, r->sources + q, out, n, report, NULL);
+    else status = hd_heat_columns(r->heat, (hd_kernel)r->o->kernel, g->n, g->t, &from, out, n, report, NULL);
     if (status < 0) return fail_solve(r, report, q);
     for (i = 0; g->room && i < g->n; i++)
         memcpy(column_of(r, q, g->index[i]), g->room + (size_t)i * n, n * sizeof *out);
@@ -2770,9 +2786,7 @@ static int solve_inverse(run *r)
         status = hd_heat_normalised(r->heat, r->n_times, r->times, r->values, 0, &report, NULL);
     else if (o->command == CMD_HKS)
         status = hd_heat_diagonal(r->heat, (hd_kernel)o->kernel, r->n_times, r->times, r->values, 0, &report, NULL);
-    else if (r->from)
-        status = hd_heat_distance_from(r->heat, (hd_distance_kind)o->definition, r->n_times, r->times, r->n_inputs, r->from, r->values, 0, &report, NULL);
-    else status = hd_heat_distance(r->heat, (hd_distance_kind)o->definition, r->n_times, r->times, r->n_inputs, r->sources, r->values, 0, &report, NULL);
+    else status = hd_heat_distance(r->heat, (hd_distance_kind)o->definition, r->n_times, r->times, &r->from, r->values, 0, &report, NULL);
     if (status < 0) return fail_solve(r, &report, 0);
     for (k = 0; k < r->n_times; k++) r->sum.per_time[k] = report;
     summary_add(&r->sum, &report, NULL, 0);
@@ -2793,16 +2807,37 @@ static int solve_pairs(run *r, int k)
     return solved_time(r, k, hd_heat_entries(r->heat, HD_KERNEL_SYMMETRIC, 1, &r->times[k], r->rows, i, j, K, &report, NULL), &report);
 }
 
+/* The given vertices are the first points: distances of each to those before. */
+static hd_status solve_given(run *r, int32_t k, hd_report *report)
+{
+    int32_t *pair = (int32_t *)malloc(2 * (size_t)k * sizeof *pair), p, q;
+    double *d = (double *)malloc((size_t)k * sizeof *d);
+    hd_status status = pair && d ? HD_OK : HD_ERR_MEMORY;
+    for (q = 0; q < k && status >= 0; q++) {
+        r->values[q] = q ? HUGE_VAL : 0;
+        for (p = 0; p < q; p++) {
+            pair[p] = r->sources[p];
+            pair[k + p] = r->sources[q];
+        }
+        if (q) status = hd_heat_pairs(r->heat, (hd_distance_kind)r->o->definition, 1, r->times, q, pair, pair + k, NULL, d, report, NULL);
+        for (p = 0; p < q && status >= 0; p++) if (d[p] < r->values[q]) r->values[q] = d[p];
+    }
+    free(pair);
+    free(d);
+    return status;
+}
+
 static int solve_sample(run *r)
 {
-    const options *o = r->o;
+    const int32_t given = r->places ? 0 : r->n_inputs, count = (int32_t)r->o->count - given;
     hd_report report;
-    const hd_distance_kind kind = (hd_distance_kind)o->definition;
-    const int32_t count = (int32_t)o->count, k = (int32_t)r->n_inputs;
-    const double t = r->times[0];
-    const hd_status status = r->from
-        ? hd_heat_sample_from(r->heat, kind, t, k, r->from, count, r->sources, r->values, &report, NULL)
-        : hd_heat_sample(r->heat, kind, t, count, k, r->sources, r->values, &report, NULL);
+    hd_status status;
+    memset(&report, 0, sizeof report);
+    report.status = status = solve_given(r, given, &report);
+    if (status == HD_ERR_MEMORY && report.error.status >= 0) return fail_memory("the points");
+    if (status >= 0 && count > 0)
+        status = hd_heat_sample(r->heat, (hd_distance_kind)r->o->definition, r->times[0], r->n_inputs ? &r->from : NULL, count,
+                                r->sources + given, r->values + given, &report, NULL);
     return solved_time(r, 0, status, &report);
 }
 
@@ -2848,30 +2883,9 @@ static int run_columns(run *r)
     return r->values ? DONE : fail_memory("the result");
 }
 
-/* Distances from sources that need not be vertices; the report is that of the worst. */
-static hd_status solve_geodesic_from(run *r)
-{
-    hd_geodesic_report *all = &r->geodesic_report, one;
-    hd_status status = HD_OK;
-    int q;
-    for (q = 0; q < r->n_inputs && status >= 0; q++) {
-        bar_part("source", q, r->n_inputs);
-        status = hd_geodesic_distance_from(r->geodesic, r->from + q, r->values + (size_t)q * (size_t)r->mesh.n, &one, NULL);
-        if (q > 0 && status >= 0) {
-            if (all->residual_heat > one.residual_heat) one.residual_heat = all->residual_heat;
-            if (all->residual_distance > one.residual_distance) one.residual_distance = all->residual_distance;
-            if (all->n_stages > one.n_stages) one.n_stages = all->n_stages;
-            if (all->status > one.status) one.status = all->status;
-        }
-        *all = one;
-        if (status < 0) all->error.column = q;
-    }
-    return status;
-}
-
 static hd_status geodesic_plan(run *r, hd_geodesic_opts *opts, hd_error *err)
 {
-    const int poly = !r->lengths && laplacian_kind(r) == HD_LAPLACIAN_POLYGON && !r->from;   /* places lie in triangles */
+    const int poly = !r->lengths && laplacian_kind(r) == HD_LAPLACIAN_POLYGON && !r->places;   /* places lie in triangles */
     const hd_mesh mesh = run_mesh(r, r->mesh.n_tri == 0 ? HD_POINTS : poly ? HD_POLYGONS : HD_TRIANGLES);
     if (!poly) opts->stiffening = 0;
     return hd_geodesic_create(&r->geodesic, &mesh, opts, err);
@@ -2894,11 +2908,10 @@ static int solve_geodesic(run *r)
     opts.ordering = (hd_ordering)o->ordering;
     opts.context = &r->context;
     if (geodesic_plan(r, &opts, &err) < 0) return fail_laplacian(r, &err);
-    if (r->from && solve_geodesic_from(r) < 0 && r->geodesic_report.status == HD_ERR_ARGUMENT)
+    (void)hd_geodesic_distance(r->geodesic, &r->from, r->values, 0, &r->geodesic_report, NULL);
+    if (r->places && r->geodesic_report.status == HD_ERR_ARGUMENT)
         return fail_source(r, (int)r->geodesic_report.error.column, r->geodesic_report.error.row,
                            r->geodesic_report.error.text);
-    if (!r->from)
-        (void)hd_geodesic_distance_each(r->geodesic, r->n_inputs, r->sources, r->values, 0, &r->geodesic_report, NULL);
     if (r->geodesic_report.status < 0) return fail_library(r->mesh_name, &r->geodesic_report.error);
     r->times[0] = r->geodesic_report.t;          /* h of points is that of their triangles */
     return DONE;
@@ -3151,10 +3164,10 @@ static void json_time(FILE *out, double t, const hd_report *p)
 /* Vertices by their ids, other sources as they were written. */
 static void json_sources(json *j, const run *r)
 {
-    if (!r->from) json_integers(j, "sources", r->o->sources, r->o->n_sources);
-    if (r->from && r->o->source_text) json_text(j, "source", r->o->source_text);
-    if (r->from && r->o->source_file) json_text(j, "source_file", r->o->source_file);
-    if (r->from) json_integer(j, "curve", r->o->curve);
+    if (!r->places) json_integers(j, "sources", r->o->sources, r->o->n_sources);
+    if (r->places && r->o->source_text) json_text(j, "source", r->o->source_text);
+    if (r->places && r->o->source_file) json_text(j, "source_file", r->o->source_file);
+    if (r->places) json_integer(j, "curve", r->o->curve);
 }
 
 /* What the command asked for. */
@@ -3638,7 +3651,7 @@ static int has_twice(const run *r)
     int i, k;
     for (i = 0; i < r->n_times; i++)
         for (k = 0; k < i; k++) if (strcmp(r->time_names[i], r->time_names[k]) == 0) return 1;
-    for (i = 0; r->sources && !r->from && i < r->n_inputs; i++)
+    for (i = 0; r->sources && !r->places && i < r->n_inputs; i++)
         for (k = 0; k < i; k++) if (r->sources[i] == r->sources[k]) return 1;
     return 0;
 }
@@ -3670,8 +3683,8 @@ static int heat_names(run *r)
         else if (pairs)
             snprintf(r->names[c], NAME_SIZE, "%c_%.14s%s", c % step < step - 1 ? 'K' : 'd',
                      r->time_names[c / step], number);
-        else snprintf(r->names[c], NAME_SIZE, "%c%ld_%.14s%s", r->from ? 's' : r->sources ? 'v' : 'f',
-                      r->sources && !r->from ? (long)r->sources[q] : (long)q, r->time_names[c % r->n_times], number);
+        else snprintf(r->names[c], NAME_SIZE, "%c%ld_%.14s%s", r->places ? 's' : r->sources ? 'v' : 'f',
+                      r->sources && !r->places ? (long)r->sources[q] : (long)q, r->time_names[c % r->n_times], number);
         r->name_list[c] = r->names[c];
     }
     return DONE;
@@ -3681,7 +3694,7 @@ static void heat_title(const run *r, int64_t c, char *title, size_t size)
 {
     const int q = (int)(c / r->n_times);
     char when[64], where[40] = "";
-    if (r->from) snprintf(where, sizeof where, "source %d", q);
+    if (r->places) snprintf(where, sizeof where, "source %d", q);
     else if (r->sources) snprintf(where, sizeof where, "vertex %ld", (long)r->sources[q]);
     time_text(r->time_names[r->o->nearest ? c / 2 : c % r->n_times], when, sizeof when);
     if (is_timeless(r->o)) snprintf(when, sizeof when, "%s", r->time_names[0]);
@@ -4562,9 +4575,10 @@ static const char *const DEMO_FIELD_TITLES[DEMO_FIELDS] = {
 static int demo_inverse(const run *r, double *fields)
 {
     const double *t = &r->times[r->n_times / 2];
+    const hd_sources trunk = run_some(r, 0, 1);
     hd_report report;
     interrupt.patient = 1;
-    if (hd_heat_distance(r->heat, HD_DISTANCE_CLASSICAL, 1, t, 1, r->sources, fields, 0, &report, NULL) < 0 ||
+    if (hd_heat_distance(r->heat, HD_DISTANCE_CLASSICAL, 1, t, &trunk, fields, 0, &report, NULL) < 0 ||
         hd_heat_diagonal(r->heat, HD_KERNEL_SYMMETRIC, 1, t, fields + r->mesh.n, 0, &report, NULL) < 0)
         return leave_computation(fail_library("demo", &report.error));
     return leave_computation(DONE);

@@ -225,7 +225,7 @@ static void measure_several(subject *q, const hd_laplacian *lap, const hd_spectr
 static void check_pairs(const hd_spectrum *pairs, double t, int32_t source, double *U, double *V) {
     hd_error e;
     pairs_columns(pairs, 1, &t, 1, &source, U);
-    if (hd_spectrum_columns(pairs, HD_KERNEL_OPERATOR, 1, &t, 1, &source, V, NULL, 0, &e) < 0)
+    if (hd_spectrum_columns(pairs, HD_KERNEL_OPERATOR, 1, &t, VERTICES(1, &source), V, NULL, 0, &e) < 0)
         stop("columns from eigenpairs", &e);
     if (!(off(U, V, pairs->n) < 1e-10)) stop("two sums over eigenpairs differ", NULL);
 }

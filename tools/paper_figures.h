@@ -55,7 +55,7 @@ static double columns(const hd_laplacian *lap, hd_heat_opts o, int n_times, cons
     hd_error e;
     double from = cpu();
     if (hd_heat_create(&heat, lap, &o, &e) < 0) stop("heat", &e);
-    if (hd_heat_columns(heat, HD_KERNEL_OPERATOR, n_times, t, k, sources, U, 0, report, &e) < 0)
+    if (hd_heat_columns(heat, HD_KERNEL_OPERATOR, n_times, t, VERTICES(k, sources), U, 0, report, &e) < 0)
         stop("columns", &e);
     from = cpu() - from;
     hd_heat_free(heat);

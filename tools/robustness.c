@@ -740,7 +740,7 @@ static answer columns(work *w, int query, hd_method method, hd_solver solver) {
     if (!heat) return a;
     a.k = room(4 * (int64_t)w->n);
     a.K = a.k + 3 * (int64_t)w->n;
-    st = hd_heat_columns(heat, HD_KERNEL_SYMMETRIC, 1, &w->t, 3, w->source, a.k, 0, &r, NULL);
+    st = hd_heat_columns(heat, HD_KERNEL_SYMMETRIC, 1, &w->t, VERTICES(3, w->source), a.k, 0, &r, NULL);
     a.bound_k = r.error_bound;
     if (!answered(w, query, st, &r) || !all_finite(w, a.k, 3 * (int64_t)w->n)) {
         free(a.k);
@@ -810,7 +810,7 @@ static void check_spectrum(work *w, const answer *a) {
         for (i = 0; i < s->count; i++)
             if ((s->value[i] < -rounding && s->n_poor == 0) || (i > 0 && s->value[i] < s->value[i - 1]))
                 contradiction(w, "eigenvalue", s->value[i], i > 0 ? s->value[i - 1] : 0);
-        if (ended(w, QUERY_SPECTRUM, hd_spectrum_columns(s, HD_KERNEL_SYMMETRIC, 1, &w->t, 3, w->source, u, bound, 0, &e),
+        if (ended(w, QUERY_SPECTRUM, hd_spectrum_columns(s, HD_KERNEL_SYMMETRIC, 1, &w->t, VERTICES(3, w->source), u, bound, 0, &e),
                   &e)) {
             tallies[w->kind][QUERY_SPECTRUM].bounds += finite_bounds(bound, 3 * (int64_t)w->n);
             for (q = 0; q < 3 && a->k && s->proven; q++)
@@ -881,7 +881,7 @@ static void check_distance(work *w, hd_heat *heat, hd_distance_kind kind) {
         i[q] = w->source[of[q][0]];
         j[q] = w->source[of[q][1]];
     }
-    if (!answered(w, QUERY_DISTANCE, hd_heat_distance(heat, kind, 1, &w->t, 3, w->source, D, 0, &r, NULL), &r)) {
+    if (!answered(w, QUERY_DISTANCE, hd_heat_distance(heat, kind, 1, &w->t, VERTICES(3, w->source), D, 0, &r, NULL), &r)) {
         free(D);
         return;
     }
@@ -1007,7 +1007,7 @@ static void check_geodesic(work *w) {
     int32_t i;
     memset(&e, 0, sizeof e);
     if (ended(w, QUERY_GEODESIC, geodesic_plan(w, &g, &e), &e) &&
-        ended(w, QUERY_GEODESIC, hd_geodesic_distance(g, 1, &s, d, &r, &e), &e)) {
+        ended(w, QUERY_GEODESIC, hd_geodesic_distance(g, VERTICES(1, &s), d, 0, &r, &e), &e)) {
         if (d[s] != 0) contradiction(w, "not zero at the source", d[s], 0);
         for (i = 0; i < w->m.n; i++)
             if (!(d[i] >= 0)) contradiction(w, "geodesic distance", d[i], 0);

@@ -107,9 +107,9 @@ static answer solve(const method *m, const surface *f, double unit) {
     a.n = f->s.n;
     a.value = (double *)room(FIELDS * (int64_t)a.n, sizeof *a.value);
     if (hd_heat_create(&heat, lap, NULL, &e) < 0) stop(m->name, &e);
-    if (hd_heat_columns(heat, HD_KERNEL_SYMMETRIC, TIMES, t, 1, &here, a.value, 0, &report, NULL) < 0)
+    if (hd_heat_columns(heat, HD_KERNEL_SYMMETRIC, TIMES, t, VERTICES(1, &here), a.value, 0, &report, NULL) < 0)
         stop(m->name, &report.error);
-    if (hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, TIMES, t, 1, &here, a.value + TIMES * (size_t)a.n, 0, &report, NULL) < 0)
+    if (hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, TIMES, t, VERTICES(1, &here), a.value + TIMES * (size_t)a.n, 0, &report, NULL) < 0)
         stop(m->name, &report.error);
     for (i = 0; i < TIMES * a.n; i++) a.value[i] *= scale;              /* k_t is 1/area, d_t is 1/length */
     for (; i < FIELDS * a.n; i++) a.value[i] *= sqrt(scale);

@@ -1100,7 +1100,7 @@ static void trial_run_columns(trial_work *w, hd_heat *heat) {
     } else {
         for (q = 0; q < k; q++) source[q] = trial_below(&seed, n);
         trial_row_name(w, symmetric ? "columns of k_t" : "columns of K_t");
-        hd_heat_columns(heat, (hd_kernel)c->kernel, 1, &c->t, k, source, U, 0, &w->rep, NULL);
+        hd_heat_columns(heat, (hd_kernel)c->kernel, 1, &c->t, VERTICES(k, source), U, 0, &w->rep, NULL);
     }
     if (!trial_failed(w)) {
         trial_filter_for(w, c->t, 0);
@@ -1149,40 +1149,51 @@ static void trial_run_training(trial_work *w, hd_heat *heat) {
     free(t);
 }
 
-/* One to four points between `corners` vertices, with weights, or a curve through them with the lengths of its pieces: c as a field.
- * All in one component, or anywhere. Between vertices all numbers are sixteenths, so that c is exact. */
-typedef struct trial_points { int32_t vertex[12]; double bary[12], weight[4]; } trial_points;
+/* Up to eight sources. */
+typedef struct trial_points { int64_t first[9]; int32_t vertex[96]; double bary[96], weight[32]; } trial_points;
 
-static hd_source trial_source(const trial_work *w, uint64_t *seed, trial_points *p, double *c) {
+/* One to four points between `corners` vertices, with weights, or a curve through them with the lengths of its pieces: c as a field.
+ * All in one component, or anywhere. Between vertices all numbers are sixteenths, so that c is exact. Returns how many. */
+static int32_t trial_source(const trial_work *w, uint64_t *seed, int32_t *vertex, double *bary, double *weight, double *c) {
     const hd_laplacian *lap = w->s->lap;
     const int32_t first = trial_below(seed, lap->n_active), corners = w->c->corners;
     const int curve = w->c->curve;
-    hd_source s;
-    int32_t i;
-    memset(&s, 0, sizeof s);
-    s.count = 1 + trial_below(seed, 4);
-    if (curve && s.count < 2) s.count = 2;
-    s.corners = corners;
-    s.vertex = p->vertex;
-    s.bary = corners > 1 ? p->bary : NULL;
-    s.curve = curve;
-    if (curve) s.length = p->weight;
-    else s.weight = p->weight;
-    for (i = 0; i < corners * s.count; i++) {
+    int32_t i, count = 1 + trial_below(seed, 4);
+    if (curve && count < 2) count = 2;
+    for (i = 0; i < corners * count; i++) {
         const int32_t point = i / corners, corner = i % corners;
         int32_t row = trial_below(seed, lap->n_active);
         if (!w->c->apart && lap->component[row] != lap->component[first]) row = first;
-        p->vertex[i] = lap->vertex[row];
-        if (corners == 1) p->weight[point] = 0.1 + shape_uniform(seed);
-        else if (corner == 0) p->weight[point] = (1 + trial_below(seed, 16)) / 16.0;
-        p->bary[i] = corners == 1 ? 1 : corner == 2 ? 1 - p->bary[i - 1] - p->bary[i - 2] : trial_below(seed, 9) / 16.0;
-        if (corners == 2 && corner == 1) p->bary[i] = 1 - p->bary[i - 1];
+        vertex[i] = lap->vertex[row];
+        if (corners == 1) weight[point] = 0.1 + shape_uniform(seed);
+        else if (corner == 0) weight[point] = (1 + trial_below(seed, 16)) / 16.0;
+        bary[i] = corners == 1 ? 1 : corner == 2 ? 1 - bary[i - 1] - bary[i - 2] : trial_below(seed, 9) / 16.0;
+        if (corners == 2 && corner == 1) bary[i] = 1 - bary[i - 1];
     }
-    for (i = 0; i < corners * s.count; i++) {
+    for (i = 0; i < corners * count; i++) {
         const int32_t point = i / corners;
-        const double before = point > 0 ? p->weight[point - 1] : 0, after = point + 1 < s.count ? p->weight[point] : 0;
-        c[p->vertex[i]] += p->bary[i] * (curve ? (before + after) / 2 : p->weight[point]);
+        const double before = point > 0 ? weight[point - 1] : 0, after = point + 1 < count ? weight[point] : 0;
+        c[vertex[i]] += bary[i] * (curve ? (before + after) / 2 : weight[point]);
     }
+    return count;
+}
+
+/* k sources, and as fields [k][n]. */
+static hd_sources trial_sources(const trial_work *w, uint64_t *seed, int32_t k, trial_points *p, double *field) {
+    const int32_t corners = w->c->corners;
+    hd_sources s = hd_vertices(k, p->vertex);
+    int32_t q;
+    for (p->first[0] = 0, q = 0; q < k; q++) {
+        const int64_t at = p->first[q];
+        p->first[q + 1] = at + trial_source(w, seed, p->vertex + corners * at, p->bary + corners * at, p->weight + at,
+                                            field + (size_t)q * (size_t)w->s->lap->n);
+    }
+    s.first = p->first;
+    s.corners = corners;
+    s.bary = corners > 1 ? p->bary : NULL;
+    s.curve = w->c->curve;
+    if (s.curve) s.length = p->weight;
+    else s.weight = p->weight;
     return s;
 }
 
@@ -1214,13 +1225,13 @@ static void trial_run_from(trial_work *w, hd_heat *heat) {
     const int32_t m = by_filter ? 1 : c->n_times;
     uint64_t seed = (uint64_t)c->seed + 1;
     double *u = TRUTH_NEW(double, n * k * m), *field = TRUTH_NEW(double, n * k), *t = trial_times(c);
-    trial_points at[8];
-    hd_source s[8];
+    trial_points at;
+    hd_sources s;
     int32_t q;
     if (by_filter) t[0] = w->set.t;
-    for (q = 0; q < k; q++) s[q] = trial_source(w, &seed, at + q, field + q * n);
+    s = trial_sources(w, &seed, k, &at, field);
     trial_row_name(w, by_filter ? symmetric ? "filter, k_t" : "filter, K_t" : symmetric ? "k_t from" : "K_t from");
-    hd_heat_columns_from(heat, (hd_kernel)c->kernel, m, t, k, s, u, 0, &w->rep, NULL);
+    hd_heat_columns(heat, (hd_kernel)c->kernel, m, t, &s, u, 0, &w->rep, NULL);
     for (q = 0; q < k * m && !trial_failed(w); q++) {
         if (by_filter) truth_filter_fill(&w->s->f, w->T, FORM_FILTER, c->t, NULL, 0);
         else trial_filter_for(w, t[q % m], 0);
@@ -1249,7 +1260,7 @@ static void trial_run_times(trial_work *w, hd_heat *heat) {
         t[other] = keep;
     }
     trial_row_name(w, by_column ? "times, column" : "times, field");
-    if (by_column) hd_heat_columns(heat, (hd_kernel)c->kernel, m, t, 1, &source, U, 0, &w->rep, NULL);
+    if (by_column) hd_heat_columns(heat, (hd_kernel)c->kernel, m, t, VERTICES(1, &source), U, 0, &w->rep, NULL);
     else hd_heat_apply(heat, m, t, 1, f, 0, U, 0, &w->rep, NULL);
     for (q = 0; q < m && !trial_failed(w); q++) {
         trial_filter_for(w, t[q], 0);
@@ -1348,7 +1359,7 @@ static void trial_run_distance(trial_work *w, hd_heat *heat) {
              m > 1 ? ", many" : "");
     name[18] = 0;
     trial_row_name(w, name);
-    hd_heat_distance(heat, (hd_distance_kind)c->kind, m, t, k, source, D, 0, &w->rep, NULL);
+    hd_heat_distance(heat, (hd_distance_kind)c->kind, m, t, VERTICES(k, source), D, 0, &w->rep, NULL);
     for (r = 0; r < k && !trial_failed(w); r++)
         for (q = 0; q < m; q++) {
             double *d = D + (r * m + q) * n;
@@ -1408,13 +1419,13 @@ static void trial_run_distance_from(trial_work *w, hd_heat *heat) {
     double *D = TRUTH_NEW(double, n * k * m), *field = TRUTH_NEW(double, n * k), *t = trial_times(c);
     quad *share = TRUTH_NEW(quad, n);
     int32_t v, q;
-    trial_points at[8];
-    hd_source s[8];
+    trial_points at;
+    hd_sources s;
     char name[32];
-    for (q = 0; q < k; q++) s[q] = trial_source(w, &seed, at + q, field + q * n);
+    s = trial_sources(w, &seed, k, &at, field);
     snprintf(name, sizeof name, "from, %s", trial_kinds[c->kind]);
     trial_row_name(w, name);
-    hd_heat_distance_from(heat, (hd_distance_kind)c->kind, m, t, k, s, D, 0, &w->rep, NULL);
+    hd_heat_distance(heat, (hd_distance_kind)c->kind, m, t, &s, D, 0, &w->rep, NULL);
     for (q = 0; q < k * m && !trial_failed(w); q++) {
         const double *f = field + q / m * n;
         double *d = D + q * n;
@@ -1428,7 +1439,7 @@ static void trial_run_distance_from(trial_work *w, hd_heat *heat) {
         for (v = 0; v < n; v++) {
             const int32_t r = lap->row[v];
             if (share[v] == 1) continue;         /* the source is this vertex */
-            if (timeless && (r < 0 || w->T->comp[r] != w->T->comp[lap->row[at[q / m].vertex[0]]])) continue;
+            if (timeless && (r < 0 || w->T->comp[r] != w->T->comp[lap->row[at.vertex[c->corners * at.first[q / m]]]])) continue;
             w->want[count] = trial_want_distance_from(w, share, v, c->kind == HD_DISTANCE_WEIGHTED, w->off + count);
             d[count++] = d[v];
         }

@@ -245,6 +245,14 @@ def _mesh(shape, xyz, faces=None):
     return mesh
 
 
+def _sources(name, sources, together=False):
+    """Vertices as sources, or as one: their number, a reference to the struct, and what it needs to live."""
+    ids = _list(name, sources)
+    first = np.array([0, len(ids)], dtype=np.int64)
+    made = S["hd_sources"](count=1 if together else len(ids), vertex=ids.ctypes.data, first=first.ctypes.data if together else None)
+    return made.count, ctypes.byref(made), (ids, first, made)
+
+
 class _Pointer:
     """A pointer to what the library made. Plans are freed before their Laplacian, in whatever order they are dropped. A with
     block borrows the address. A Laplacian and its plans share a lock, because one thread at a time may use them."""
@@ -505,9 +513,9 @@ class Heat(_Object):
 
     def columns(self, t, sources, symmetric=False):
         """Columns of K_t, or of k_t = K_t B^-1."""
-        sources, times = _list("sources", sources), self._times(t)
-        out, to = self._room(len(sources) * times[0])
-        self._query("hd_heat_columns", self._kernel(symmetric), *times, len(sources), sources, *to)
+        (k, sources, _keep), times = _sources("sources", sources), self._times(t)
+        out, to = self._room(k * times[0])
+        self._query("hd_heat_columns", self._kernel(symmetric), *times, sources, *to)
         return out
 
     def diagonal(self, t, symmetric=True):
@@ -541,9 +549,9 @@ class Heat(_Object):
 
     def distance(self, t, sources, kind="HD_DISTANCE_CLASSICAL"):
         """Diffusion distances from each source to every vertex. Commute and biharmonic distances have no time: t is None."""
-        sources, (kind, *times) = _list("sources", sources), self._distance(t, kind)
-        out, to = self._room(len(sources) * times[0])
-        self._query("hd_heat_distance", kind, *times, len(sources), sources, *to)
+        (k, sources, _keep), (kind, *times) = _sources("sources", sources), self._distance(t, kind)
+        out, to = self._room(k * times[0])
+        self._query("hd_heat_distance", kind, *times, sources, *to)
         return out
 
     def entries(self, t, i, j, symmetric=False):
@@ -570,14 +578,13 @@ class Heat(_Object):
         return ctypes.c_int64(len(i)), i, j
 
     def sample(self, t, count, given=(), kind="HD_DISTANCE_CLASSICAL"):
-        """Farthest points: count vertices, those given first, and the distance of each to the ones before it."""
-        given, (kind, n_times, t) = _list("given", given), self._distance(t, kind)
+        """Farthest points: count vertices beside those given, and the distance of each to all before it."""
+        (k, given, _keep), (kind, n_times, t) = _sources("given", given), self._distance(t, kind)
         if n_times != 1:
             raise ValueError(f"t has shape {t.shape}, wanted is ()")
-        count = _int("count", count, max(1, len(given)), self.lap.n)
+        count = _int("count", count, 1, self.lap.n)
         vertex, distance = np.zeros(count, dtype=np.int32), np.zeros(count)
-        vertex[:len(given)] = given
-        self._query("hd_heat_sample", kind, t[0].item(), count, len(given), vertex, distance)
+        self._query("hd_heat_sample", kind, t[0].item(), given if k else None, count, vertex, distance)
         return vertex, distance
 
 
@@ -601,7 +608,7 @@ class Geodesic(_Object):
 
     def distance(self, sources):
         """To the nearest of the sources."""
-        sources, d = _list("sources", sources), np.zeros(self.n)
+        (_, sources, _keep), d = _sources("sources", sources, together=True), np.zeros(self.n)
         with self._pointer as geodesic:
-            _call("hd_geodesic_distance", geodesic, len(sources), sources, d, None)
+            _call("hd_geodesic_distance", geodesic, sources, d, ctypes.c_size_t(0), None)
         return d

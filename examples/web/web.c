@@ -350,10 +350,11 @@ static hd_status page_end(const hd_report *r) {
 /* The column of k_t at a source: out [n n_times]. method: direct for many sources at one time, krylov for many
  * times. */
 hd_status PAGE_EXPORT(page_columns)(int32_t method, int32_t n_times, const double *t, int32_t source) {
+    const hd_sources from = hd_vertices(1, &source);
     hd_report r;
     hd_heat *plan = page_plan((hd_method)method);
     if (!plan || page_make_room((size_t)page.mesh.n * (size_t)n_times) < 0) return HD_ERR_MEMORY;
-    hd_heat_columns(plan, HD_KERNEL_SYMMETRIC, n_times, t, 1, &source, page.out, 0, &r, NULL);
+    hd_heat_columns(plan, HD_KERNEL_SYMMETRIC, n_times, t, &from, page.out, 0, &r, NULL);
     return page_end(&r);
 }
 
@@ -386,6 +387,7 @@ hd_status PAGE_EXPORT(page_smooth)(int32_t n_times, const double *t) {
 /* Distances along the surface to a source: out [n]. HUGE_VAL where no path leads. */
 hd_status PAGE_EXPORT(page_geodesic)(int32_t source) {
     const hd_mesh mesh = hd_triangles(page.mesh.xyz, page.mesh.n, page.tri, page.n_tri);
+    const hd_sources from = hd_vertices(1, &source);
     hd_geodesic_opts o;
     hd_geodesic_report r;
     hd_error e;
@@ -397,7 +399,7 @@ hd_status PAGE_EXPORT(page_geodesic)(int32_t source) {
         status = hd_geodesic_create(&page.geodesic, &mesh, &o, &e);
     if (status < 0) return page_fail_at(&e);
     if (page_make_room((size_t)page.mesh.n) < 0) return HD_ERR_MEMORY;
-    status = hd_geodesic_distance(page.geodesic, 1, &source, page.out, &r, &e);
+    status = hd_geodesic_distance(page.geodesic, &from, page.out, 0, &r, &e);
     if (status < 0) return page_fail_at(&e);
     memset(page.facts, 0, sizeof page.facts);
     page.facts[FACT_RESIDUAL] = r.residual_heat > r.residual_distance ? r.residual_heat : r.residual_distance;
