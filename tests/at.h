@@ -10,7 +10,7 @@ static hd_status heat_apply(hd_heat *heat, double t, int32_t k, const double *F,
 
 static hd_status heat_columns(hd_heat *heat, double t, hd_kernel kernel, int32_t k, const int32_t *sources, double *U, size_t ldu,
                               hd_report *report) {
-    return hd_heat_columns(heat, kernel, 1, &t, k, sources, U, ldu, report, NULL);
+    return hd_heat_columns(heat, kernel, 1, &t, VERTICES(k, sources), U, ldu, report, NULL);
 }
 
 static hd_status heat_column(hd_heat *heat, double t, int32_t source, double *u, hd_report *report) {
@@ -21,7 +21,7 @@ static hd_status heat_column(hd_heat *heat, double t, int32_t source, double *u,
 static hd_status heat_times(hd_heat *heat, int32_t n_times, const double *t, hd_kernel kernel, int32_t source, const double *f,
                             double *U, size_t ldu, hd_report *report) {
     if (f) return hd_heat_apply(heat, n_times, t, 1, f, 0, U, ldu, report, NULL);
-    return hd_heat_columns(heat, kernel, n_times, t, 1, &source, U, ldu, report, NULL);
+    return hd_heat_columns(heat, kernel, n_times, t, VERTICES(1, &source), U, ldu, report, NULL);
 }
 
 static hd_status heat_diagonal(hd_heat *heat, int32_t n_times, const double *t, hd_kernel kernel, double *D, size_t ldd,
@@ -36,7 +36,7 @@ static hd_status heat_entries(hd_heat *heat, double t, hd_kernel kernel, int64_t
 
 static hd_status heat_distance(hd_heat *heat, hd_distance_kind kind, int32_t n_times, const double *t, int32_t k,
                                const int32_t *sources, double *D, size_t ldd, hd_report *report) {
-    return hd_heat_distance(heat, kind, n_times, t, k, sources, D, ldd, report, NULL);
+    return hd_heat_distance(heat, kind, n_times, t, VERTICES(k, sources), D, ldd, report, NULL);
 }
 
 static hd_status heat_pairs(hd_heat *heat, hd_distance_kind kind, double t, int64_t n_pairs, const int32_t *i, const int32_t *j,
@@ -44,9 +44,10 @@ static hd_status heat_pairs(hd_heat *heat, hd_distance_kind kind, double t, int6
     return hd_heat_pairs(heat, kind, 1, &t, n_pairs, i, j, K, d, report, NULL);
 }
 
-static hd_status heat_sample(hd_heat *heat, hd_distance_kind kind, double t, int32_t count, int32_t n_given, int32_t *vertex,
-                             double *distance, hd_report *report) {
-    return hd_heat_sample(heat, kind, t, count, n_given, vertex, distance, report, NULL);
+/* Vertices after none. */
+static hd_status heat_sample(hd_heat *heat, hd_distance_kind kind, double t, int32_t count, int32_t *vertex, double *distance,
+                             hd_report *report) {
+    return hd_heat_sample(heat, kind, t, NULL, count, vertex, distance, report, NULL);
 }
 
 /* Points whose stars are triangulated; o NULL: by default. */

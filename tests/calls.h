@@ -23,7 +23,7 @@ typedef struct call_args {
     hd_rational *out_set;
     hd_context *ctx;
 
-    int32_t n, n_tri, n_times, k, k_from, n_given, count, n_freq, n_scale, n_filters, n_sets, n_matrices, n_queries;
+    int32_t n, n_tri, n_times, k, count, n_freq, n_scale, n_filters, n_sets, n_matrices, n_queries;
     int32_t rows, cols, symmetric, source, degree, kernel, kind, poles, query;
     int64_t n_pairs, n_triplets;
     size_t ldf, ld;                          /* of what is given, and of answers */
@@ -35,8 +35,9 @@ typedef struct call_args {
     double set_time, set2_time;
     const int32_t *tri, *nbr, *own_nbr, *perm, *ids, *other, *far_id, *low_id, *triplet_i, *triplet_j;
     const int64_t *face_ptr, *nbr_ptr, *own_ptr;
+    const int64_t *back;                     /* first points of sources, the second of which has none */
     int64_t *bent;
-    const hd_source *sources, *curve;
+    const hd_sources *sources, *curve;
     const hd_c64 *zval, *zb;
     const hd_rational *set, *set2;           /* of filters */
     const hd_filter *filter, *filter2;
@@ -47,6 +48,7 @@ typedef struct call_args {
     hd_csr A, L, B, full;                    /* structs, and pointers to them */
     hd_csr *a, *l, *b, *whole;              /* whole: the full one, for b */
     hd_mesh mesh, *view;
+    hd_sources from;                         /* for sources */
     hd_laplacian_opts lo, *lap_opts;
     hd_heat_opts ho, *heat_opts;
     hd_spectrum_opts so, *spectrum_opts;
@@ -110,10 +112,10 @@ typedef struct call_args {
     X(derivative, hd_heat_derivative, "", (a->heat, a->n_times, a->t, a->k, a->f, a->ldf, a->u, a->ld, a->rep, a->err))        \
     X(adjoint, hd_heat_adjoint, "", (a->heat, a->n_times, a->t, a->k, a->f, a->ldf, a->u, a->ld, a->rep, a->err))              \
     X(columns, hd_heat_columns, "",                                                                                            \
-      (a->heat, (hd_kernel)a->kernel, a->n_times, a->t, a->k, a->ids, a->u, a->ld, a->rep, a->err))                            \
+      (a->heat, (hd_kernel)a->kernel, a->n_times, a->t, VERTICES(a->k, a->ids), a->u, a->ld, a->rep, a->err))                  \
     X(column, hd_heat_column, "", (a->heat, (hd_kernel)a->kernel, a->time, a->source, a->u, a->rep, a->err))                   \
-    X(columns_from, hd_heat_columns_from, "",                                                                                  \
-      (a->heat, (hd_kernel)a->kernel, a->n_times, a->t, a->k_from, a->sources, a->u, a->ld, a->rep, a->err))                   \
+    X(columns_from, hd_heat_columns, "",                                                                                       \
+      (a->heat, (hd_kernel)a->kernel, a->n_times, a->t, a->sources, a->u, a->ld, a->rep, a->err))                              \
     X(diagonal, hd_heat_diagonal, "", (a->heat, (hd_kernel)a->kernel, a->n_times, a->t, a->u, a->ld, a->rep, a->err))          \
     X(trace, hd_heat_trace, "", (a->heat, a->n_times, a->t, a->u, a->v, a->rep, a->err))                                       \
     X(normalised, hd_heat_normalised, "", (a->heat, a->n_times, a->t, a->u, a->ld, a->rep, a->err))                            \
@@ -124,28 +126,28 @@ typedef struct call_args {
     X(times_auto, hd_times_auto, "", (a->lap, a->n_times, a->u, a->err))                                                       \
     X(times_spectral, hd_times_spectral, "", (a->lap, a->n_times, a->c, a->u, a->err))                                         \
     X(distance, hd_heat_distance, "",                                                                                          \
-      (a->heat, (hd_distance_kind)a->kind, a->n_times, a->t, a->k, a->ids, a->u, a->ld, a->rep, a->err))                       \
-    X(distance_from, hd_heat_distance_from, "",                                                                                \
-      (a->heat, (hd_distance_kind)a->kind, a->n_times, a->t, a->k_from, a->sources, a->u, a->ld, a->rep, a->err))              \
+      (a->heat, (hd_distance_kind)a->kind, a->n_times, a->t, VERTICES(a->k, a->ids), a->u, a->ld, a->rep, a->err))             \
+    X(distance_from, hd_heat_distance, "",                                                                                     \
+      (a->heat, (hd_distance_kind)a->kind, a->n_times, a->t, a->sources, a->u, a->ld, a->rep, a->err))                         \
     X(pairs, hd_heat_pairs, "",                                                                                                \
       (a->heat, (hd_distance_kind)a->kind, a->n_times, a->t, a->n_pairs, a->ids, a->other, a->u, a->v, a->rep, a->err))        \
     X(sample, hd_heat_sample, "",                                                                                              \
-      (a->heat, (hd_distance_kind)a->kind, a->time, a->count, a->n_given, a->vertex, a->u, a->rep, a->err))                    \
-    X(sample_from, hd_heat_sample_from, "",                                                                                    \
-      (a->heat, (hd_distance_kind)a->kind, a->time, a->k_from, a->sources, a->count, a->vertex, a->u, a->rep, a->err))         \
+      (a->heat, (hd_distance_kind)a->kind, a->time, VERTICES(a->k, a->ids), a->count, a->vertex, a->u, a->rep, a->err))        \
+    X(sample_from, hd_heat_sample, "",                                                                                         \
+      (a->heat, (hd_distance_kind)a->kind, a->time, a->sources, a->count, a->vertex, a->u, a->rep, a->err))                    \
     X(entries, hd_heat_entries, "",                                                                                            \
       (a->heat, (hd_kernel)a->kernel, a->n_times, a->t, a->n_pairs, a->ids, a->other, a->u, a->rep, a->err))                   \
     X(eigenpairs, hd_spectrum_create, "", (a->out_spectrum, a->lap, a->spectrum_opts, a->err))                                 \
     X(eigen_columns, hd_spectrum_columns, "",                                                                                  \
-      (a->spectrum, (hd_kernel)a->kernel, a->n_times, a->t, a->k, a->ids, a->u, a->v, a->ld, a->err))                          \
+      (a->spectrum, (hd_kernel)a->kernel, a->n_times, a->t, VERTICES(a->k, a->ids), a->u, a->v, a->ld, a->err))                \
     X(eigen_diagonal, hd_spectrum_diagonal, "",                                                                                \
       (a->spectrum, (hd_kernel)a->kernel, a->n_times, a->t, a->u, a->v, a->ld, a->err))                                        \
     X(eigen_distance, hd_spectrum_distance, "",                                                                                \
-      (a->spectrum, (hd_distance_kind)a->kind, a->n_times, a->t, a->k, a->ids, a->u, a->v, a->ld, a->err))                     \
-    X(eigen_columns_from, hd_spectrum_columns_from, "",                                                                        \
-      (a->spectrum, (hd_kernel)a->kernel, a->n_times, a->t, a->k_from, a->sources, a->u, a->v, a->ld, a->err))                 \
-    X(eigen_distance_from, hd_spectrum_distance_from, "",                                                                      \
-      (a->spectrum, (hd_distance_kind)a->kind, a->n_times, a->t, a->k_from, a->sources, a->u, a->v, a->ld, a->err))            \
+      (a->spectrum, (hd_distance_kind)a->kind, a->n_times, a->t, VERTICES(a->k, a->ids), a->u, a->v, a->ld, a->err))           \
+    X(eigen_columns_from, hd_spectrum_columns, "",                                                                             \
+      (a->spectrum, (hd_kernel)a->kernel, a->n_times, a->t, a->sources, a->u, a->v, a->ld, a->err))                            \
+    X(eigen_distance_from, hd_spectrum_distance, "",                                                                           \
+      (a->spectrum, (hd_distance_kind)a->kind, a->n_times, a->t, a->sources, a->u, a->v, a->ld, a->err))                       \
     X(estimate, hd_heat_estimate, "", (a->heat, (hd_query)a->query, a->n_times, a->t, a->k, a->estimate, a->err))              \
     X(geodesic, hd_geodesic_create, "",                                                                                        \
       (a->out_geodesic, MESH_TRIANGLES(a->xyz, a->n, a->tri, a->n_tri), a->geodesic_opts, a->err))                             \
@@ -157,9 +159,11 @@ typedef struct call_args {
     X(geodesic_points, at_tufted_geodesic, "", (a->out_geodesic, a->xyz, a->n, a->geodesic_opts, a->err))                      \
     X(geodesic_update, hd_geodesic_update, "updatable", (a->geodesic, MESH_POINTS(a->moved, a->n), a->err))                    \
     X(geodesic_update_view, hd_geodesic_update, "updatable", (a->geodesic, a->view, a->err))                                   \
-    X(geodesic_set, hd_geodesic_distance, "", (a->geodesic, a->k, a->ids, a->u, a->geodesic_rep, a->err))                      \
-    X(geodesic_each, hd_geodesic_distance_each, "", (a->geodesic, a->k, a->ids, a->u, a->ld, a->geodesic_rep, a->err))         \
-    X(geodesic_from, hd_geodesic_distance_from, "", (a->geodesic, a->sources, a->u, a->geodesic_rep, a->err))
+    X(geodesic_set, hd_geodesic_distance, "",                                                                                  \
+      (a->geodesic, TOGETHER(a->k, a->ids), a->u, a->ld, a->geodesic_rep, a->err))                                             \
+    X(geodesic_each, hd_geodesic_distance, "",                                                                                 \
+      (a->geodesic, VERTICES(a->k, a->ids), a->u, a->ld, a->geodesic_rep, a->err))                                             \
+    X(geodesic_from, hd_geodesic_distance, "", (a->geodesic, a->sources, a->u, a->ld, a->geodesic_rep, a->err))
 
 typedef struct call_row { const char *name, *function, *before, *args; hd_status (*run)(const call_args *a); } call_row;
 
@@ -198,7 +202,7 @@ typedef struct call_field { const char *name; size_t at; call_type type; } call_
 static const call_field call_fields[] = {
     P(lap), P(lap2), P(lap3), P(out_lap), P(heat), P(heat2), P(heat3), P(out_heat), P(ldl), P(ldl2), P(ldl3), P(out_ldl),
     P(spectrum), P(out_spectrum), P(geodesic), P(out_geodesic), P(out_csr), P(out_set), P(ctx), I(n), I(n_tri), I(n_times), I(k),
-    I(k_from), I(n_given), I(count), I(n_freq), I(n_scale), I(n_filters), I(n_sets), I(n_matrices), I(n_queries), I(rows),
+    I(count), I(n_freq), I(n_scale), I(n_filters), I(n_sets), I(n_matrices), I(n_queries), I(rows),
     I(cols), I(symmetric), I(source), I(degree), I(kernel), I(kind), I(poles), I(query), L(n_pairs), L(n_triplets), S(ldf), S(ld),
     D(h), D(time), D(time1), D(alpha), D(beta), D(radius), D(tol), D(lambda_max), D(x), D(theta.re), D(theta.im),
     D(set_time), D(set2_time),
@@ -211,7 +215,9 @@ static const call_field call_fields[] = {
     P(geodesic_rep), P(err), I(A.n_rows), I(A.n_cols), L(A.nnz), P(A.row_ptr), P(A.col), P(A.val),
     I(L.n_rows), I(L.n_cols), P(L.row_ptr), P(L.val), I(B.n_rows), I(B.n_cols), P(B.row_ptr), P(B.col), P(B.val), L(B.nnz),
     P(full.row_ptr), P(full.col), P(full.val), L(full.nnz), P(solve_rep), P(ldl_rep), I(mesh.begin_zero), I(mesh.end_zero),
-    I(mesh.shape), P(mesh.xyz_float), P(mesh.xyz), P(mesh.lengths), P(mesh.corner_u16), P(mesh.corner), P(mesh.face_ptr),
+    I(from.begin_zero), I(from.end_zero), I(from.count), P(from.first), I(from.corners), I(from.curve), P(from.vertex),
+    P(from.bary), P(from.weight), P(from.length), P(back), I(mesh.shape), P(mesh.xyz_float), P(mesh.xyz), P(mesh.lengths),
+        P(mesh.corner_u16), P(mesh.corner), P(mesh.face_ptr),
     P(mesh.nbr_ptr), P(mesh.nbr), I(mesh.n), I(mesh.n_faces), S(mesh.stride),
     I(lo.begin_zero), I(lo.end_zero), I(lo.kind), I(lo.triangulation), I(go.updatable), I(go.triangulation), I(lo.border),
     I(lo.n_held), I(lo.updatable), I(lo.neighbours), D(lo.stiffening), D(lo.bandwidth2), D(lo.weight_cut), D(lo.mollify),
@@ -328,8 +334,8 @@ typedef struct call_data {
     double h;
     int64_t bent[CALL_SMALL + 1];
     double t[3], late[3], endless[3], fading[3], bad[2], minus[2];
-    int32_t held[2], far_id[2], point[6], curve[6];
-    hd_source sources[2];
+    int32_t held[2], far_id[2], point[9], curve[14];
+    hd_sources curves;
     hd_rational sets[2];
     void *block[CALL_BLOCKS];
     int n_blocks;
@@ -421,11 +427,14 @@ static void call_arrays(call_data *d) {
     a->mesh.xyz_float = small;
 }
 
-/* Points in and at a face with weights, and a curve over an edge of it into the face behind. */
+/* Two sources: two points in and at a face with weights, and one; two curves: over an edge of it into the face behind, and within it and
+ * back. */
 static void call_sources(call_data *d) {
-    static const double bary[6] = {0.25, 0.5, 0.25, 1, 0, 0}, weight[2] = {2, 0.5};
+    static const double bary[9] = {0.25, 0.5, 0.25, 1, 0, 0, 0.5, 0.125, 0.375}, weight[3] = {2, 0.5, 3};
+    static const int64_t first[3] = {0, 2, 3}, curve_first[3] = {0, 3, 7}, back[3] = {0, 2, 2};
     const int32_t *t = d->s.tri, *other = t;
     int32_t f, q, behind = t[0];
+    hd_sources *const from = &d->good.from;
     for (f = 1; f < d->s.n_tri; f++) {
         const int32_t *g = t + 3 * f;
         int has = 0, third = 0;
@@ -439,22 +448,25 @@ static void call_sources(call_data *d) {
         }
     }
     CHECK(other != t);
-    for (q = 0; q < 6; q++) d->point[q] = t[q % 3];
+    for (q = 0; q < 9; q++) d->point[q] = t[q % 3];
     d->curve[0] = t[0];
     d->curve[1] = d->curve[2] = t[1];
     d->curve[3] = d->curve[4] = t[2];
     d->curve[5] = behind;
-    d->sources[0].count = 2;
-    d->sources[0].corners = 3;
-    d->sources[0].vertex = d->point;
-    d->sources[0].bary = bary;
-    d->sources[0].weight = weight;
-    d->sources[1].count = 3;
-    d->sources[1].corners = 2;
-    d->sources[1].vertex = d->curve;
-    d->sources[1].curve = 1;
-    d->good.sources = d->sources;
-    d->good.curve = d->sources + 1;
+    for (q = 0; q < 8; q++) d->curve[6 + q] = t[(q + 1) / 2 % 3];
+    from->count = 2;
+    from->first = first;
+    from->corners = 3;
+    from->vertex = d->point;
+    from->bary = bary;
+    from->weight = weight;
+    d->curves.count = 2;
+    d->curves.first = curve_first;
+    d->curves.corners = 2;
+    d->curves.vertex = d->curve;
+    d->curves.curve = 1;
+    d->good.curve = &d->curves;
+    d->good.back = back;
 }
 
 static void call_times(call_data *d) {
@@ -542,7 +554,7 @@ static void call_data_make(call_data *d, shape s) {
     a->set2 = d->sets + 1;
     a->set_time = d->sets[0].t;
     a->set2_time = d->sets[1].t;
-    call_assign(a, "n_times=1 n_sets=1 n_given=1 symmetric=1 k_from=2 n_filters=2 n_freq=2 k=3 n_matrices=3 source=3 count=5");
+    call_assign(a, "n_times=1 n_sets=1 symmetric=1 n_filters=2 n_freq=2 k=3 n_matrices=3 source=3 count=5");
     call_assign(a, "n_scale=5 n_pairs=6 degree=7 h=0.5 alpha=1 beta=2 radius=1.2 tol=1e-6 lambda_max=100 x=-2");
     call_assign(a, "theta.re=-1 theta.im=3");
     call_assign(a, "ho.perm=perm so.perm=perm go.perm=perm fo.perm=perm fo.xyz=xyz");
@@ -619,6 +631,7 @@ static void call_open(call_world *w, const call_data *d, hd_context *ctx) {
     a->b = &a->B;
     a->whole = &a->full;
     a->view = &a->mesh;
+    a->sources = &a->from;
     a->filter = a->filters;
     a->filter2 = a->filters + 1;
     a->lap_opts = &a->lo;
@@ -707,7 +720,6 @@ static void call_clear(call_world *w, const call_row *c, int keep) {
     if (!keep) memset(w->out, 0, w->out_size);
     if (CALL_TAKES(c, "f") && a->f == a->u) memcpy(a->u, w->data->good.f, 3 * n * sizeof *a->u);      /* in place */
     if (CALL_TAKES(c, "zb") && a->zb == a->z) memcpy(a->z, w->data->good.zb, 3 * n * sizeof *a->z);
-    if (CALL_TAKES(c, "n_given") && a->vertex) a->vertex[0] = 4;
     w->lap = (hd_laplacian *)(void *)&call_mark;
     w->heat = (hd_heat *)(void *)&call_mark;
     w->spectrum = (hd_spectrum *)(void *)&call_mark;

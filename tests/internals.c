@@ -938,7 +938,7 @@ static int32_t int_ask(hd_heat *heat, const int_damaged *x, const double *t, dou
     for (k = 0; k < n; k++) f[k] = sin(k);
     switch (x->query) {
         case INT_APPLY: st = hd_heat_apply(heat, x->n_times, t, 1, f, 0, out, 0, rep, NULL); break;
-        case INT_COLUMN: st = hd_heat_columns(heat, HD_KERNEL_OPERATOR, x->n_times, t, 1, i, out, 0, rep, NULL); break;
+        case INT_COLUMN: st = hd_heat_columns(heat, HD_KERNEL_OPERATOR, x->n_times, t, VERTICES(1, i), out, 0, rep, NULL); break;
         case INT_OF_DIAGONAL: st = hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, x->n_times, t, out, 0, rep, NULL); break;
         case INT_OF_ENTRIES: st = hd_heat_entries(heat, HD_KERNEL_SYMMETRIC, x->n_times, t, 3, i, j, out, rep, NULL); break;
         case INT_TRACE: st = hd_heat_trace(heat, x->n_times, t, out, NULL, rep, NULL); break;

@@ -85,24 +85,21 @@ static hd_laplacian *octahedron(hd_laplacian_opts *o) {
 }
 
 /* The middle of the first face. */
-static hd_source middle(void) {
-    hd_source s;
-    memset(&s, 0, sizeof s);
-    s.count = 1;
+static hd_sources middle(void) {
+    hd_sources s = hd_vertices(1, tri);
     s.corners = 3;
-    s.vertex = tri;
     return s;
 }
 
 /* Columns and fields of a plan are right, at one time, at several, and at t = 0. */
 static void check_columns(hd_heat *heat) {
     const double t[3] = {T, 0.2 * T, 3 * T}, zero = 0, f[6] = {1, 2, 3, 4, 5, 6};
-    const hd_source source = middle();
+    const hd_sources source = middle();
     double u[18];
     int q, i, j;
-    CHECK(hd_heat_columns_from(heat, HD_KERNEL_OPERATOR, 1, t, 1, &source, u, 0, NULL, &err) == HD_OK);
+    CHECK(hd_heat_columns(heat, HD_KERNEL_OPERATOR, 1, t, &source, u, 0, NULL, &err) == HD_OK);
     for (i = 0; i < 6; i++) CHECK(near_to(u[i], (heat_of(i, tri[0], T) + heat_of(i, tri[1], T) + heat_of(i, tri[2], T)) / 3));
-    CHECK(hd_heat_columns(heat, HD_KERNEL_OPERATOR, 3, t, 1, tri, u, 0, NULL, &err) == HD_OK);
+    CHECK(hd_heat_columns(heat, HD_KERNEL_OPERATOR, 3, t, VERTICES(1, tri), u, 0, NULL, &err) == HD_OK);
     for (q = 0; q < 3; q++)
         for (i = 0; i < 6; i++) CHECK(near_to(u[6 * q + i], heat_of(i, 0, t[q])));
     CHECK(hd_heat_column(heat, HD_KERNEL_SYMMETRIC, T, 1, u, NULL, &err) == HD_OK);
@@ -161,7 +158,7 @@ static void check_plans(const hd_laplacian *lap) {
 /* What comes from selected inversion, and distances. */
 static void check_signatures(const hd_laplacian *lap) {
     const int32_t zero = 0, one = 1, two = 2;
-    const hd_source source = middle();
+    const hd_sources source = middle();
     const double t = T, off = heat_of(0, 0, 2 * T) - heat_of(0, 2, 2 * T);
     hd_heat *heat = NULL;
     hd_report rep;
@@ -178,15 +175,17 @@ static void check_signatures(const hd_laplacian *lap) {
         CHECK(near_to(values[0], log(heat_of(0, 0, T) / heat_of(0, 0, 2 * T))));
     if (BUILT(hd_times_spectral(lap, 1, &t, values, &err), no.spectrum)) CHECK(near_to(values[0], T / (4 / sqrt(3.0))));
     CHECK(hd_times_auto(lap, 2, values, &err) == HD_OK && near_to(values[0], 6 * 0.0024) && near_to(values[1], 6 * 0.37));
-    if (BUILT(hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &zero, d, 0, NULL, &err), no.diffusion))
+    if (BUILT(hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, VERTICES(1, &zero), d, 0, NULL, &err), no.diffusion))
         CHECK(d[0] == 0 && near_to(d[2], sqrt(2 * off)) && near_to(d[5], d[2]) && d[1] > d[2]);
     if (BUILT(hd_heat_pairs(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &zero, &two, values, d, NULL, &err), no.diffusion))
         CHECK(near_to(d[0], sqrt(2 * off)));
-    if (BUILT(hd_heat_distance_from(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &source, d, 0, NULL, &err), no.diffusion))
+    if (BUILT(hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, &source, d, 0, NULL, &err), no.diffusion))
         CHECK(near_to(d[0], sqrt(off * 2 / 3)) && near_to(d[0], d[tri[1]]) && d[1] > d[0]);
-    if (BUILT(hd_heat_sample(heat, HD_DISTANCE_CLASSICAL, t, 2, 1, vertex, d, NULL, &err), no.diffusion))
-        CHECK(vertex[1] == one);
-    if (BUILT(hd_heat_sample_from(heat, HD_DISTANCE_CLASSICAL, t, 1, &source, 2, vertex, d, NULL, &err), no.diffusion))
+    if (BUILT(hd_heat_sample(heat, HD_DISTANCE_CLASSICAL, t, NULL, 2, vertex, d, NULL, &err), no.diffusion))
+        CHECK(vertex[0] == 0 && vertex[1] == one && d[0] == 0);
+    if (BUILT(hd_heat_sample(heat, HD_DISTANCE_CLASSICAL, t, VERTICES(1, &zero), 1, vertex, d, NULL, &err), no.diffusion))
+        CHECK(vertex[0] == one && d[0] > 0);
+    if (BUILT(hd_heat_sample(heat, HD_DISTANCE_CLASSICAL, t, &source, 2, vertex, d, NULL, &err), no.diffusion))
         CHECK(d[0] > d[1] && d[1] > 0);
     hd_heat_free(heat);
 }
@@ -219,12 +218,12 @@ static void check_spectrum(const hd_laplacian *lap) {
     o.count = 6;
     if (BUILT(hd_spectrum_create(&s, lap, &o, &err), no.spectrum)) {
         CHECK(s->proven && s->n_constant == 1 && near_to(s->value[1], 4 * w) && near_to(s->value[4], 6 * w));
-        CHECK(hd_spectrum_columns(s, HD_KERNEL_OPERATOR, 1, &t, 1, &zero, u, NULL, 0, &err) == HD_OK);
+        CHECK(hd_spectrum_columns(s, HD_KERNEL_OPERATOR, 1, &t, VERTICES(1, &zero), u, NULL, 0, &err) == HD_OK);
         for (i = 0; i < 6; i++) CHECK(near_to(u[i], heat_of(i, 0, t)));
     } else {
-        (void)BUILT(hd_spectrum_columns(s, HD_KERNEL_OPERATOR, 1, &t, 1, &zero, u, NULL, 0, &err), no.spectrum);
+        (void)BUILT(hd_spectrum_columns(s, HD_KERNEL_OPERATOR, 1, &t, VERTICES(1, &zero), u, NULL, 0, &err), no.spectrum);
         (void)BUILT(hd_spectrum_diagonal(s, HD_KERNEL_OPERATOR, 1, &t, u, NULL, 0, &err), no.spectrum);
-        (void)BUILT(hd_spectrum_distance(s, HD_DISTANCE_CLASSICAL, 1, &t, 1, &zero, u, NULL, 0, &err), no.spectrum);
+        (void)BUILT(hd_spectrum_distance(s, HD_DISTANCE_CLASSICAL, 1, &t, VERTICES(1, &zero), u, NULL, 0, &err), no.spectrum);
     }
     hd_spectrum_free(s);
     CHECK(hd_heat_create(&heat, lap, NULL, &err) == HD_OK);
@@ -233,7 +232,7 @@ static void check_spectrum(const hd_laplacian *lap) {
         hd_heat_free(heat);
         return;
     }
-    CHECK(hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &zero, d, 0, &rep, &err) >= 0);
+    CHECK(hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, VERTICES(1, &zero), d, 0, &rep, &err) >= 0);
     CHECK((strstr(rep.reason, "eigenpairs") != NULL) == !no.spectrum && fabs(d[1] - opposite) <= rep.error_bound * opposite);
     CHECK(no.spectrum || fabs(d[1] - opposite) <= 1e-12 * opposite);
     hd_heat_free(heat);
@@ -243,21 +242,22 @@ static void check_geodesic(void) {
     hd_geodesic *g = NULL;
     hd_geodesic_report rep;
     const int32_t zero = 0;
-    const hd_source source = middle();
+    const hd_sources source = middle();
     double d[6] = {0};
     if (!BUILT(hd_geodesic_create(&g, MESH_TRIANGLES(xyz, 6, tri, 8), NULL, &err), no.geodesic)) {
-        (void)BUILT(hd_geodesic_distance(NULL, 1, &zero, d, &rep, &err), no.geodesic);
+        (void)BUILT(hd_geodesic_distance(NULL, VERTICES(1, &zero), d, 0, &rep, &err), no.geodesic);
         CHECK(rep.status == HD_ERR_NOT_BUILT && strstr(rep.error.text, no.geodesic) != NULL);
-        (void)BUILT(hd_geodesic_distance_each(NULL, 1, &zero, d, 0, NULL, &err), no.geodesic);
-        (void)BUILT(hd_geodesic_distance_from(NULL, &source, d, NULL, &err), no.geodesic);
+        (void)BUILT(hd_geodesic_distance(NULL, VERTICES(1, &zero), d, 0, NULL, &err), no.geodesic);
+        (void)BUILT(hd_geodesic_distance(NULL, &source, d, 0, NULL, &err), no.geodesic);
         (void)BUILT(hd_geodesic_create(&g, MESH_LENGTHS(d, 6, tri, 8), NULL, &err), no.geodesic);
         (void)BUILT(hd_geodesic_update(NULL, MESH_POINTS(xyz, 6), &err), no.geodesic);
         hd_geodesic_free(g);
         return;
     }
-    CHECK(hd_geodesic_distance(g, 1, &zero, d, &rep, &err) == HD_OK);
+    CHECK(hd_geodesic_distance(g, VERTICES(1, &zero), d, 0, &rep, &err) == HD_OK);
     CHECK(d[0] == 0 && d[2] > 1 && d[2] < 2 && near_to(d[2], d[5]) && d[1] > d[2] && d[1] < 3);
-    CHECK(hd_geodesic_distance_from(g, &source, d, &rep, &err) == HD_OK && near_to(d[0], sqrt(2 / 3.0)) && near_to(d[0], d[tri[1]]) && d[1] > d[0]);
+    CHECK(hd_geodesic_distance(g, &source, d, 0, &rep, &err) == HD_OK && near_to(d[0], sqrt(2 / 3.0)) && near_to(d[0], d[tri[1]]) &&
+        d[1] > d[0]);
     hd_geodesic_free(g);
     check_geodesic_kinds();
 }

@@ -229,7 +229,8 @@ static void bord_exact(const char *spec, const char *method) {
     int k;
     CHECK(lap->row[held] == HD_ROW_HELD && lap->mesh.n_inert > 0);
     for (k = 0; k < 2; k++) {
-        CHECK_MSG(hd_heat_columns(heat, (hd_kernel)k, 2, times, 3, sources, u, 0, &rep, NULL) >= 0, "%s: %s", spec, rep.error.text);
+        CHECK_MSG(hd_heat_columns(heat, (hd_kernel)k, 2, times, VERTICES(3, sources), u, 0, &rep, NULL) >= 0, "%s: %s", spec,
+            rep.error.text);
         bord_held_zero(lap, u, 6, "columns");
         for (v = 0; v < n; v++) CHECK(u[2 * n + v] == 0 && u[3 * n + v] == 0 && (k == HD_KERNEL_SYMMETRIC || u[v] == (v == sources[0])));
         CHECK(heat_diagonal(plain, 1, &t, (hd_kernel)k, u, 0, &rep) >= 0);
@@ -247,7 +248,7 @@ static void bord_exact(const char *spec, const char *method) {
         CHECK(heat_pairs(plain, (hd_distance_kind)k, t, 3, i, j, K, d, &rep) >= 0 && d[2] == 0);
         CHECK(k > 1 ? d[1] == HUGE_VAL : d[1] > 0 && K[1] == 0 && K[2] == 0);
     }
-    CHECK(heat_sample(plain, HD_DISTANCE_CLASSICAL, t, 5, 0, pick, f, &rep) >= 0);
+    CHECK(heat_sample(plain, HD_DISTANCE_CLASSICAL, t, 5, pick, f, &rep) >= 0);
     for (v = 0; v < 5; v++) CHECK(lap->row[pick[v]] >= 0);
 }
 
@@ -280,7 +281,7 @@ static void bord_spectrum(trial_work *w) {
     o.count = lap->n_active;
     if (!CHECK(hd_spectrum_create(&s, lap, &o, NULL) == HD_OK && s->proven && s->n_constant == 0)) return;
     for (v = 0; v < s->count; v++) bord_held_zero(lap, s->vector + (size_t)v * (size_t)n, 1, "an eigenvector");
-    CHECK(hd_spectrum_columns(s, HD_KERNEL_OPERATOR, 1, &t, 2, sources, u, bound, 0, NULL) == HD_OK);
+    CHECK(hd_spectrum_columns(s, HD_KERNEL_OPERATOR, 1, &t, VERTICES(2, sources), u, bound, 0, NULL) == HD_OK);
     bord_held_zero(lap, u, 2, "truncated column");
     for (v = 0; v < n; v++) CHECK(u[n + v] == 0 && bound[n + v] == 0);
     CHECK(hd_spectrum_diagonal(s, HD_KERNEL_OPERATOR, 1, &t, u, NULL, 0, NULL) == HD_OK);
@@ -289,7 +290,7 @@ static void bord_spectrum(trial_work *w) {
     trial_filter_for(w, t, 0);
     for (v = 0; v < n; v++) off = fmax(off, fabs(u[v] - (double)trial_want_entry(w, v, v, 0, 0, 0, w->off)));
     CHECK_MSG(off <= 1e-9 * dense_max_abs(u, n), "truncated diagonal off by %g", off);
-    CHECK(hd_spectrum_distance(s, HD_DISTANCE_CLASSICAL, 1, &t, 1, sources + 1, u, NULL, 0, NULL) == HD_OK);
+    CHECK(hd_spectrum_distance(s, HD_DISTANCE_CLASSICAL, 1, &t, VERTICES(1, sources + 1), u, NULL, 0, NULL) == HD_OK);
     trial_filter_for(w, 2 * t, 0);
     for (off = 0, v = 0; v < n; v++) off = fmax(off, fabs(u[v] - (double)trial_want_distance(w, sources[1], v, 0, w->off)));
     CHECK_MSG(off <= 1e-8 * dense_max_abs(u, n), "truncated distance from a held vertex off by %g", off);
@@ -336,7 +337,7 @@ static void bord_mixed(void) {
     for (k = 0; k < 2; k++) {
         double off = 0;
         if (k) CHECK(hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, 1, &late, u + n, 0, &rep, NULL) >= 0);
-        else CHECK(hd_heat_columns(heat, HD_KERNEL_SYMMETRIC, 1, &late, 2, sources, u, 0, &rep, NULL) >= 0);
+        else CHECK(hd_heat_columns(heat, HD_KERNEL_SYMMETRIC, 1, &late, VERTICES(2, sources), u, 0, &rep, NULL) >= 0);
         for (v = 0; v < n; v++) off = fmax(off, fmax(k ? 0 : fabs(u[v]), fabs(u[n + v] - (v < disk->n ? 0 : mean))));
         CHECK_MSG(off <= 1e-10 * mean && off <= (rep.error_bound + 1e-13) * mean, "late %s: off by %g of %g, bound %g",
             k ? "diagonal" : "columns", off, mean, rep.error_bound);

@@ -143,7 +143,7 @@ static void bnd_nothing_left(void) {
     for (t = 5e4; t < 1e300; t *= 1e33) {
         CHECK(heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &source, d, 0, &r) == HD_WARN_ACCURACY);
         CHECK(r.n_lost == 39 && !(r.error_bound <= 1e-2) && r.error_bound == r.error_bound);
-        CHECK(heat_sample(heat, HD_DISTANCE_CLASSICAL, t, 4, 0, vertex, far, &r) == HD_WARN_ACCURACY && !(r.error_bound <= 1e-2));
+        CHECK(heat_sample(heat, HD_DISTANCE_CLASSICAL, t, 4, vertex, far, &r) == HD_WARN_ACCURACY && !(r.error_bound <= 1e-2));
     }
 }
 

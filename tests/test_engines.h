@@ -464,7 +464,7 @@ static void eng_times_columns_of(const hd_laplacian *lap, double unit, const cha
     hd_report rep, one;
     for (c = 0; c < COLUMNS; c++) sources[c] = (3 + 7 * c) % n;
     for (q = 0; q < TIMES; q++) times[q] = unit * 0.1 * pow(1e5, q / (TIMES - 1.0));
-    if (eng_ok(hd_heat_columns(heat, HD_KERNEL_OPERATOR, TIMES, times, COLUMNS, sources, U, 0, &rep, NULL), &rep, what)) {
+    if (eng_ok(hd_heat_columns(heat, HD_KERNEL_OPERATOR, TIMES, times, VERTICES(COLUMNS, sources), U, 0, &rep, NULL), &rep, what)) {
         for (c = 0; c < COLUMNS; c++) {
             for (q = 0; q < TIMES; q += 3) {
                 const double *column = U + (c * TIMES + q) * n;

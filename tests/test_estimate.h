@@ -53,7 +53,7 @@ static hd_status est_run(hd_heat *heat, const hd_laplacian *lap, const est_case 
     for (i = 0; c->query == HD_QUERY_FIELDS && i < lap->n * c->k; i++) U[lap->n * c->k * c->n_times + i] = sin(1.3 * i) + 0.1;
     switch (c->query) {
         case HD_QUERY_FIELDS: return hd_heat_apply(heat, c->n_times, t, c->k, U + lap->n * c->k * c->n_times, 0, U, 0, rep, NULL);
-        case HD_QUERY_COLUMNS: return hd_heat_columns(heat, HD_KERNEL_OPERATOR, c->n_times, t, c->k, source, U, 0, rep, NULL);
+        case HD_QUERY_COLUMNS: return hd_heat_columns(heat, HD_KERNEL_OPERATOR, c->n_times, t, VERTICES(c->k, source), U, 0, rep, NULL);
         case HD_QUERY_PAIRS:
             return hd_heat_pairs(heat, HD_DISTANCE_CLASSICAL, c->n_times, t, c->k / 2, source, source + c->k / 2, NULL, U, rep, NULL);
         case HD_QUERY_DIAGONAL: return hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, c->n_times, t, U, 0, rep, NULL);
@@ -61,7 +61,8 @@ static hd_status est_run(hd_heat *heat, const hd_laplacian *lap, const est_case 
         case HD_QUERY_TRACE: return hd_heat_trace(heat, c->n_times, t, U, NULL, rep, NULL);
         case HD_QUERY_NORMALISED: return hd_heat_normalised(heat, c->n_times, t, U, 0, rep, NULL);
         case HD_QUERY_SCALE_INVARIANT: return hd_heat_scale_invariant(heat, t[0], t[c->n_times - 1], c->n_times, c->n_times < 7 ? 2 : 4, U, 0, rep, NULL);
-        default: return hd_heat_distance(heat, (hd_distance_kind)(c->query - HD_QUERY_DISTANCE), c->n_times, t, c->k, source, U, 0, rep, NULL);
+        default: return hd_heat_distance(heat, (hd_distance_kind)(c->query - HD_QUERY_DISTANCE), c->n_times, t, VERTICES(c->k, source), U,
+            0, rep, NULL);
     }
 }
 

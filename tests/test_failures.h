@@ -33,6 +33,7 @@ static const fail_case fail_cases[] = {
     {"n_times=2 eigen_columns", 0}, {"n_times=2 eigen_diagonal", 0}, {"operator n_times=2 eigen_diagonal", 0},
     {"held n_times=2 eigen_distance", 0}, {"weighted n_times=2 eigen_distance", 0}, {"commute eigen_distance", 0},
     {"voronoi biharmonic eigen_distance", 0}, {"n_times=2 eigen_columns_from", 0}, {"n_times=2 eigen_distance_from", 0},
+    {"sources=curve eigen_columns_from", 0}, {"sources=curve eigen_distance_from", 0},
     {"geodesic", 0}, {"updatable voronoi geodesic", 0}, {"geodesic_view", 0}, {"mean geodesic_lengths", 0},
     {"geodesic_polygons", 0}, {"delaunay geodesic_polygons", 0}, {"geodesic_points", 0}, {"geodesic_from", 0},
     {"mean sources=curve geodesic_from", 0}, {"delaunay geodesic_lengths | sources=curve geodesic_from", 0},
@@ -227,14 +228,17 @@ enum { FAIL_ANY, FAIL_ONCE, FAIL_DIRECT };
  * come from eigenpairs or from poles, by what the plan has. */
 static const struct { const char *words; int who, depends; } fail_asked[] = {
     {"k=1 apply", FAIL_ANY, 0}, {"k=6 columns", FAIL_ANY, 0}, {"operator column", FAIL_ANY, 0}, {"operator entries", FAIL_ANY, 0},
-    {"k=1 derivative", FAIL_ONCE, 0}, {"k=1 adjoint", FAIL_ONCE, 0}, {"columns_from", FAIL_ONCE, 0}, {"diagonal", FAIL_DIRECT, 0},
+    {"k=1 derivative", FAIL_ONCE, 0}, {"k=1 adjoint", FAIL_ONCE, 0}, {"columns_from", FAIL_ONCE, 0},
+    {"sources=curve columns_from", FAIL_ONCE, 0}, {"diagonal", FAIL_DIRECT, 0},
     {"operator diagonal", FAIL_DIRECT, 0}, {"distance", FAIL_DIRECT, 1},
     {"k=1 weighted distance", FAIL_DIRECT, 1}, {"commute k=2 distance", FAIL_DIRECT, 0},
     {"biharmonic k=2 distance", FAIL_DIRECT, 0}, {"pairs", FAIL_ANY, 1}, {"weighted pairs", FAIL_DIRECT, 1},
     {"commute u=NULL pairs", FAIL_DIRECT, 0}, {"biharmonic pairs", FAIL_DIRECT, 0}, {"sample", FAIL_DIRECT, 1},
-    {"commute sample", FAIL_DIRECT, 0}, {"sample_from", FAIL_DIRECT, 1}, {"t=late distance", FAIL_DIRECT, 1},
+    {"commute sample", FAIL_DIRECT, 0}, {"sample_from", FAIL_DIRECT, 1},
+    {"sources=NULL sample_from", FAIL_DIRECT, 1}, {"t=late distance", FAIL_DIRECT, 1},
     {"t=late pairs", FAIL_DIRECT, 1}, {"trace", FAIL_DIRECT, 0}, {"normalised", FAIL_DIRECT, 0},
-    {"scale_invariant", FAIL_DIRECT, 1}, {"distance_from", FAIL_DIRECT, 1}, {"k=100 estimate", FAIL_ANY, 1},
+    {"scale_invariant", FAIL_DIRECT, 1}, {"distance_from", FAIL_DIRECT, 1},
+    {"sources=curve distance_from", FAIL_DIRECT, 1}, {"k=100 estimate", FAIL_ANY, 1},
 };
 
 enum { FAIL_QUERIES = sizeof fail_asked / sizeof *fail_asked };
@@ -335,7 +339,7 @@ static void fail_spectrum_ends(void) {
     CHECK(call_prepare(&w, "voronoi so.count=21 eigen_diagonal") == HD_OK);
     s = w.a.spectrum;
     CHECK(s->count == s->lap->n_active && s->next >= HUGE_VAL);
-    CHECK(hd_spectrum_columns(s, HD_KERNEL_OPERATOR, 4, times, 2, id, u, b, 0, NULL) == HD_OK);
+    CHECK(hd_spectrum_columns(s, HD_KERNEL_OPERATOR, 4, times, VERTICES(2, id), u, b, 0, NULL) == HD_OK);
     for (k = 0; k < 21 * 8; k++)
         CHECK_MSG(fabs(u[k]) <= 1.0001 && b[k] >= 0 && b[k] < 1e-6, "%d: %g, bound %g", (int)k, u[k], b[k]);
     for (k = 0; k < 21; k++)
@@ -344,10 +348,10 @@ static void fail_spectrum_ends(void) {
     CHECK(hd_spectrum_diagonal(s, HD_KERNEL_OPERATOR, 4, times, u, b, 0, NULL) == HD_OK);
     for (k = 0; k < 21 * 4; k++)
         CHECK_MSG(u[k] >= 0 && u[k] <= 1.0001 && b[k] >= 0 && b[k] < 1e-6, "%d: %g, bound %g", (int)k, u[k], b[k]);
-    CHECK(hd_spectrum_distance(s, HD_DISTANCE_CLASSICAL, 3, times + 1, 2, id, u, b, 0, NULL) == HD_OK);
+    CHECK(hd_spectrum_distance(s, HD_DISTANCE_CLASSICAL, 3, times + 1, VERTICES(2, id), u, b, 0, NULL) == HD_OK);
     for (k = 0; k < 21 * 6; k++) CHECK_MSG(u[k] >= 0 && u[k] < 100 && b[k] >= 0, "%d: %g, bound %g", (int)k, u[k], b[k]);
     for (k = 0; k < 12; k++) CHECK_MSG(u[42 + k] < 1e-9, "one value on the component, at vertex %d: %g", (int)k, u[42 + k]);
-    CHECK(hd_spectrum_distance(s, HD_DISTANCE_BIHARMONIC, 0, NULL, 2, id, u, b, 0, NULL) == HD_OK);
+    CHECK(hd_spectrum_distance(s, HD_DISTANCE_BIHARMONIC, 0, NULL, VERTICES(2, id), u, b, 0, NULL) == HD_OK);
     for (k = 0; k < 21 * 2; k++) CHECK_MSG(u[k] >= 0 && b[k] >= 0, "%d: %g, bound %g", (int)k, u[k], b[k]);
     call_close(&w);
     call_world_free(&w);

@@ -527,8 +527,8 @@ static void filt_refused(void) {
         rep.error.value == t[1]);
     CHECK(heat_diagonal(heat, 1, t + 1, HD_KERNEL_SYMMETRIC, u, 0, &rep) == HD_ERR_ARGUMENT);
     CHECK(heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, t + 1, 1, &source, u, 0, &rep) == HD_ERR_ARGUMENT);
-    CHECK(heat_sample(heat, HD_DISTANCE_CLASSICAL, set.t, 4, 0, vertex, w, &rep) >= 0 &&
-        heat_sample(heat, HD_DISTANCE_CLASSICAL, 1.5 * set.t, 4, 0, vertex, w, &rep) == HD_ERR_ARGUMENT);
+    CHECK(heat_sample(heat, HD_DISTANCE_CLASSICAL, set.t, 4, vertex, w, &rep) >= 0 &&
+        heat_sample(heat, HD_DISTANCE_CLASSICAL, 1.5 * set.t, 4, vertex, w, &rep) == HD_ERR_ARGUMENT);
     t[1] = set.t;                                /* twice the same is fine */
     CHECK(heat_times(heat, 2, t, HD_KERNEL_OPERATOR, source, NULL, u, 0, &rep) >= 0 && dense_max_diff(u, u + lap->n, lap->n) == 0);
     CHECK(heat_distance(heat, HD_DISTANCE_COMMUTE, 0, NULL, 1, &source, u, 0, &rep) >= 0);

@@ -206,7 +206,7 @@ static hd_geodesic *geo_plan(const shape *s, double t, hd_geodesic_mass mass, hd
 static double *geo_of(const shape *s, double t, const int32_t *sources, int32_t k) {
     hd_geodesic *g = geo_plan(s, t, HD_GEODESIC_MASS_BARYCENTRIC, NULL);
     double *d = DENSE_NEW(double, s->n);
-    CHECK(hd_geodesic_distance(g, k, sources, d, NULL, NULL) == HD_OK);
+    CHECK(hd_geodesic_distance(g, TOGETHER(k, sources), d, 0, NULL, NULL) == HD_OK);
     hd_geodesic_free(g);
     return d;
 }
@@ -269,7 +269,7 @@ static void geo_against_dense(shape s, const char *what) {
             int32_t q, n_sources;
             for (n_sources = 1; n_sources <= 8; n_sources += 7) {
                 geo_dense_distance(&oracle, sources, n_sources, want);
-                CHECK(hd_geodesic_distance(g, n_sources, sources, d, &rep, NULL) == HD_OK);
+                CHECK(hd_geodesic_distance(g, TOGETHER(n_sources, sources), d, 0, &rep, NULL) == HD_OK);
                 CHECK_MSG(geo_difference(d, want, s.n) <= tol * geo_largest(want, s.n), "%s, t %g h2, mass %d, %d sources: off by %g", what, times[k], mass,
                           (int)n_sources, geo_difference(d, want, s.n) / geo_largest(want, s.n));
                 CHECK_MSG(rep.residual_heat < (times[k] > 100 ? 1e-7 : 1e-13) && rep.residual_distance < 1e-11, "%s: residuals %g %g", what, rep.residual_heat, rep.residual_distance);
@@ -277,7 +277,8 @@ static void geo_against_dense(shape s, const char *what) {
             CHECK_MSG(fabs(rep.h - oracle.h) <= 1e-13 * oracle.h && fabs(rep.t - oracle.t) <= 1e-12 * oracle.t && rep.n_stages == 1 && rep.factor_nnz >= s.n / 2,
                       "%s: report", what);
             for (q = 0; q < 8; q++) geo_dense_distance(&oracle, sources + q, 1, want + q * s.n);
-            CHECK(hd_geodesic_distance_each(g, 8, sources, d, 0, &rep, NULL) == HD_OK && rep.n_stages == 1 && rep.residual_distance > 0 && rep.residual_distance < 1e-11);
+            CHECK(hd_geodesic_distance(g, VERTICES(8, sources), d, 0, &rep, NULL) == HD_OK && rep.n_stages == 1 &&
+                rep.residual_distance > 0 && rep.residual_distance < 1e-11);
             CHECK_MSG(geo_difference(d, want, 8 * s.n) <= tol * geo_largest(want, 8 * s.n), "%s, t %g h2, mass %d: eight columns off by %g", what, times[k], mass,
                       geo_difference(d, want, 8 * s.n) / geo_largest(want, 8 * s.n));
             hd_geodesic_free(g);
@@ -299,7 +300,7 @@ static void geo_tube(int32_t around, int32_t rows, double tau, int32_t n_stages)
     int32_t *sources = KIT_NEW(int32_t, around), i;
     hd_geodesic_report rep;
     for (i = 0; i < around; i++) sources[i] = i * rows;
-    CHECK(hd_geodesic_distance(g, around, sources, d, &rep, NULL) == HD_OK);
+    CHECK(hd_geodesic_distance(g, TOGETHER(around, sources), d, 0, &rep, NULL) == HD_OK);
     for (i = 0; i < s.n; i++) worst = fmax(worst, fabs(d[i] - s.xyz[3 * i + 1] - 0.5));
     CHECK_MSG(worst <= 1e-9, "tube of %d x %d, t %g rows: off by %g, %d stages", (int)around, (int)rows, tau, worst, (int)rep.n_stages);
     CHECK_MSG(rep.n_stages == n_stages, "tube of %d rows: %d stages", (int)rows, (int)rep.n_stages);
@@ -336,15 +337,15 @@ static void geo_long(void) {
     const int32_t four[4] = {source, source + 3999, source + 1700, 5};
     hd_geodesic_report rep;
     int32_t i;
-    CHECK(hd_geodesic_distance(g, 1, &source, d, &rep, NULL) == HD_OK);
+    CHECK(hd_geodesic_distance(g, VERTICES(1, &source), d, 0, &rep, NULL) == HD_OK);
     CHECK_MSG(rep.n_stages >= 6 && rep.n_stages < 14, "%d stages", (int)rep.n_stages);
     for (i = 1; i < 4000; i++) worst = fmax(worst, fabs((d[source + i] - d[source + i - 1]) / (s.xyz[3 * (source + i)] - s.xyz[3 * (source + i) - 3]) - 1));
     CHECK_MSG(worst < 0.3, "a step is off by %g", worst);
     CHECK_MSG(fabs(d[source + 3999] - 1) < 0.01, "the other end is at %g", d[source + 3999]);
-    for (i = 0; i < 4; i++) CHECK(hd_geodesic_distance(g, 1, four + i, d + i * s.n, NULL, NULL) == HD_OK);
+    for (i = 0; i < 4; i++) CHECK(hd_geodesic_distance(g, VERTICES(1, four + i), d + i * s.n, 0, NULL, NULL) == HD_OK);
     {
         double *wide = KIT_NEW(double, 4 * s.n);
-        CHECK(hd_geodesic_distance_each(g, 4, four, wide, 0, &rep, NULL) == HD_OK && rep.n_stages >= 6);
+        CHECK(hd_geodesic_distance(g, VERTICES(4, four), wide, 0, &rep, NULL) == HD_OK && rep.n_stages >= 6);
         CHECK(memcmp(wide, d, 4 * (size_t)s.n * sizeof *d) == 0);      /* all are done again alone */
     }
     hd_geodesic_free(g);
@@ -362,7 +363,7 @@ static void geo_strip(hd_ordering ordering) {
     memset(&o, 0, sizeof o);
     o.ordering = ordering;
     CHECK(hd_geodesic_create(&g, MESH_TRIANGLES(s.xyz, s.n, s.tri, s.n_tri), &o, NULL) == HD_OK);
-    CHECK(hd_geodesic_distance(g, 1, &source, d, &rep, NULL) == HD_OK && rep.n_stages >= 12);
+    CHECK(hd_geodesic_distance(g, VERTICES(1, &source), d, 0, &rep, NULL) == HD_OK && rep.n_stages >= 12);
     for (i = 0; i < 10001; i++) worst = fmax(worst, fabs(d[i] - fabs(s.xyz[3 * i] - s.xyz[3 * source])));
     CHECK_MSG(worst < 0.01, "off by %g", worst);
     hd_geodesic_free(g);
@@ -382,7 +383,7 @@ static void geo_stages_ordered(shape s, int32_t source, double t) {
     for (i = HD_ORDERING_MINIMUM_DEGREE; i <= HD_ORDERING_OWN; i++) {
         o.ordering = (hd_ordering)i;
         CHECK(hd_geodesic_create(&g, MESH_TRIANGLES(s.xyz, s.n, s.tri, s.n_tri), &o, NULL) == HD_OK);
-        CHECK(hd_geodesic_distance(g, 1, &source, i == HD_ORDERING_MINIMUM_DEGREE ? want : d, &rep, NULL) == HD_OK);
+        CHECK(hd_geodesic_distance(g, VERTICES(1, &source), i == HD_ORDERING_MINIMUM_DEGREE ? want : d, 0, &rep, NULL) == HD_OK);
         CHECK_MSG(rep.n_stages > 3, "%d stages", (int)rep.n_stages);
         if (i > HD_ORDERING_MINIMUM_DEGREE) {
             const double off = geo_difference(d, want, s.n) / geo_largest(want, s.n);
@@ -495,9 +496,9 @@ static void geo_parts(void) {
         int32_t k, q;
         for (k = 0; k <= 11; k++) {
             for (i = 0; i < (int32_t)(11 * ld); i++) all[i] = -7;
-            CHECK(hd_geodesic_distance_each(g, k, columns, all, ld, &rep, NULL) == HD_OK && (k == 0 || rep.residual_distance > 0));
+            CHECK(hd_geodesic_distance(g, VERTICES(k, columns), all, ld, &rep, NULL) == HD_OK && (k == 0 || rep.residual_distance > 0));
             for (q = 0; q < k; q++) {
-                CHECK(hd_geodesic_distance(g, 1, columns + q, one, NULL, NULL) == HD_OK);
+                CHECK(hd_geodesic_distance(g, VERTICES(1, columns + q), one, 0, NULL, NULL) == HD_OK);
                 CHECK_MSG(geo_difference(one, all + (size_t)q * ld, r.n) < 1e-12, "column %d of %d: off by %g", (int)q, (int)k, geo_difference(one, all + (size_t)q * ld, r.n));
                 for (i = r.n; i < (int32_t)ld; i++) CHECK(all[(size_t)q * ld + (size_t)i] == -7);
             }
@@ -519,7 +520,7 @@ static void geo_ugly_of(shape s, const char *what, int finite) {
     for (k = 0; k < 4; k++) {
         hd_geodesic *g = geo_plan(&s, times[k] * hh, HD_GEODESIC_MASS_BARYCENTRIC, NULL);
         hd_geodesic_report rep;
-        hd_status st = hd_geodesic_distance_each(g, 4, sources, d, 0, &rep, NULL);
+        hd_status st = hd_geodesic_distance(g, VERTICES(4, sources), d, 0, &rep, NULL);
         CHECK_MSG(st >= 0 || st == HD_ERR_BREAKDOWN, "%s: %s", what, rep.error.text);
         for (i = 0; st >= 0 && i < 4 * s.n; i++)
             if (!CHECK_MSG(d[i] >= 0 && (d[i] <= DBL_MAX || !finite), "%s, t %g h2: %g at %d", what, times[k], d[i], (int)i)) break;
@@ -562,13 +563,13 @@ static void geo_plans(void) {
     hd_geodesic_report rep;
     hd_error e;
     int k;
-    CHECK(hd_geodesic_distance(g, 5, sources, a, NULL, NULL) == HD_OK);              /* twice is once */
-    CHECK(hd_geodesic_distance(g, 2, pair, b, &rep, NULL) == HD_OK && memcmp(a, b, (size_t)s.n * sizeof *a) == 0);
+    CHECK(hd_geodesic_distance(g, TOGETHER(5, sources), a, 0, NULL, NULL) == HD_OK);              /* twice is once */
+    CHECK(hd_geodesic_distance(g, TOGETHER(2, pair), b, 0, &rep, NULL) == HD_OK && memcmp(a, b, (size_t)s.n * sizeof *a) == 0);
     CHECK(rep.status == HD_OK && rep.error.status == HD_OK && rep.n_components == 1 && rep.ordering == HD_ORDERING_MINIMUM_DEGREE && rep.factor_flops > 0);
-    CHECK(hd_geodesic_distance(g, 1, pair, b, NULL, NULL) == HD_OK);                 /* a query leaves nothing behind */
-    CHECK(hd_geodesic_distance(g, 2, pair, b, NULL, NULL) == HD_OK && memcmp(a, b, (size_t)s.n * sizeof *a) == 0);
+    CHECK(hd_geodesic_distance(g, VERTICES(1, pair), b, 0, NULL, NULL) == HD_OK);                 /* a query leaves nothing behind */
+    CHECK(hd_geodesic_distance(g, TOGETHER(2, pair), b, 0, NULL, NULL) == HD_OK && memcmp(a, b, (size_t)s.n * sizeof *a) == 0);
     for (i = 0; i < s.n; i++) perm[i] = i;
-    CHECK(hd_geodesic_distance(g, s.n, perm, b, NULL, NULL) == HD_OK);               /* everywhere is a source */
+    CHECK(hd_geodesic_distance(g, TOGETHER(s.n, perm), b, 0, NULL, NULL) == HD_OK);               /* everywhere is a source */
     for (i = 0; i < s.n; i++) CHECK(b[i] == 0);
     memset(&o, 0, sizeof o);
     for (k = HD_ORDERING_MINIMUM_DEGREE; k <= HD_ORDERING_OWN; k++) {
@@ -576,7 +577,7 @@ static void geo_plans(void) {
         o.ordering = (hd_ordering)k;
         o.perm = perm;
         CHECK(hd_geodesic_create(&own, MESH_TRIANGLES(s.xyz, s.n, s.tri, s.n_tri), &o, &e) == HD_OK);
-        CHECK(hd_geodesic_distance(own, 2, pair, b, &rep, NULL) == HD_OK && rep.ordering == (hd_ordering)k);
+        CHECK(hd_geodesic_distance(own, TOGETHER(2, pair), b, 0, &rep, NULL) == HD_OK && rep.ordering == (hd_ordering)k);
         CHECK_MSG(geo_difference(a, b, s.n) < 1e-9, "ordering %d: off by %g", k, geo_difference(a, b, s.n));
         hd_geodesic_free(own);
     }
@@ -624,16 +625,22 @@ static void geo_errors(void) {
     CHECK(hd_geodesic_create(&g, MESH_TRIANGLES(s.xyz, s.n, s.tri, s.n_tri), NULL, &e) == HD_ERR_NOT_FINITE && e.vertex == 7 && !g);
     s.xyz[3 * 7 + 1] = keep;
     CHECK(hd_geodesic_create(&g, MESH_TRIANGLES(s.xyz, s.n, s.tri, s.n_tri), NULL, &e) == HD_OK && e.status == HD_OK);
-    CHECK(hd_geodesic_distance(g, 3, beyond, d, &rep, NULL) == HD_ERR_INDEX && rep.status == HD_ERR_INDEX && rep.error.vertex == 42 && rep.error.value == 42 && rep.error.column == 2);
-    CHECK(hd_geodesic_distance(g, 1, &below, d, &rep, NULL) == HD_ERR_INDEX && rep.error.vertex == -1 && rep.error.value == -1 && rep.error.column == 0);
-    CHECK(hd_geodesic_distance_each(g, 3, beyond, d, 0, &rep, NULL) == HD_ERR_INDEX && rep.error.column == 2);
-    CHECK(hd_geodesic_distance(g, 0, beyond, d, &rep, NULL) == HD_ERR_ARGUMENT && hd_geodesic_distance(g, -1, beyond, d, NULL, NULL) == HD_ERR_ARGUMENT);
-    CHECK(hd_geodesic_distance(g, 1, NULL, d, &rep, NULL) == HD_ERR_ARGUMENT && hd_geodesic_distance(g, 1, beyond, NULL, &rep, NULL) == HD_ERR_ARGUMENT);
-    CHECK(hd_geodesic_distance(NULL, 1, beyond, d, &rep, NULL) == HD_ERR_ARGUMENT && rep.error.text[0]);
-    CHECK(hd_geodesic_distance_each(g, -1, beyond, d, 0, NULL, NULL) == HD_ERR_ARGUMENT && hd_geodesic_distance_each(g, 1, beyond, d, 41, NULL, NULL) == HD_ERR_ARGUMENT);
-    CHECK(hd_geodesic_distance_each(NULL, 1, beyond, d, 0, NULL, NULL) == HD_ERR_ARGUMENT && hd_geodesic_distance_each(g, 1, NULL, d, 0, NULL, NULL) == HD_ERR_ARGUMENT);
-    CHECK(hd_geodesic_distance_each(g, 0, NULL, NULL, 0, &rep, NULL) == HD_OK && rep.h > 0);
-    CHECK(hd_geodesic_distance(g, 1, &zero, d, &rep, NULL) == HD_OK && d[0] == 0 && d[1] > 0);     /* and is as good as before */
+    CHECK(hd_geodesic_distance(g, TOGETHER(3, beyond), d, 0, &rep, NULL) == HD_ERR_INDEX && rep.status == HD_ERR_INDEX);
+    CHECK(rep.error.vertex == 42 && rep.error.value == 42 && rep.error.column == 0 && rep.error.row == 2);
+    CHECK(hd_geodesic_distance(g, VERTICES(1, &below), d, 0, &rep, NULL) == HD_ERR_INDEX);
+    CHECK(rep.error.vertex == -1 && rep.error.value == -1 && rep.error.column == 0 && rep.error.row == 0);
+    CHECK(hd_geodesic_distance(g, VERTICES(3, beyond), d, 0, &rep, NULL) == HD_ERR_INDEX && rep.error.column == 2 && rep.error.row == 0);
+    CHECK(hd_geodesic_distance(g, TOGETHER(0, beyond), d, 0, &rep, NULL) == HD_ERR_ARGUMENT && rep.error.column == 0);
+    CHECK(hd_geodesic_distance(g, TOGETHER(-1, beyond), d, 0, NULL, NULL) == HD_ERR_ARGUMENT);
+    CHECK(hd_geodesic_distance(g, NULL, d, 0, &rep, NULL) == HD_ERR_ARGUMENT && rep.error.text[0]);
+    CHECK(hd_geodesic_distance(g, VERTICES(1, NULL), d, 0, &rep, NULL) == HD_ERR_ARGUMENT);
+    CHECK(hd_geodesic_distance(g, VERTICES(1, beyond), NULL, 0, &rep, NULL) == HD_ERR_ARGUMENT);
+    CHECK(hd_geodesic_distance(NULL, TOGETHER(1, beyond), d, 0, &rep, NULL) == HD_ERR_ARGUMENT && rep.error.text[0]);
+    CHECK(hd_geodesic_distance(NULL, VERTICES(1, beyond), d, 0, NULL, NULL) == HD_ERR_ARGUMENT);
+    CHECK(hd_geodesic_distance(g, VERTICES(-1, beyond), d, 0, NULL, NULL) == HD_ERR_ARGUMENT);
+    CHECK(hd_geodesic_distance(g, VERTICES(1, beyond), d, 41, NULL, NULL) == HD_ERR_ARGUMENT);
+    CHECK(hd_geodesic_distance(g, VERTICES(0, NULL), NULL, 0, &rep, NULL) == HD_OK && rep.h > 0);
+    CHECK(hd_geodesic_distance(g, VERTICES(1, &zero), d, 0, &rep, NULL) == HD_OK && d[0] == 0 && d[1] > 0);  /* as good as before */
     hd_geodesic_free(g);
     hd_geodesic_free(NULL);
 }
@@ -645,7 +652,7 @@ static void geo_triangle(void) {
     hd_geodesic *g = NULL;
     double d[3];
     CHECK(hd_geodesic_create(&g, MESH_TRIANGLES(xyz, 3, tri, 1), NULL, NULL) == HD_OK);
-    CHECK(hd_geodesic_distance(g, 1, &source, d, NULL, NULL) == HD_OK);
+    CHECK(hd_geodesic_distance(g, VERTICES(1, &source), d, 0, NULL, NULL) == HD_OK);
     CHECK_MSG(d[0] == 0 && fabs(d[1] - xyz[7]) < 1e-14 && fabs(d[2] - xyz[7]) < 1e-14, "%.17g %.17g %.17g", d[0], d[1], d[2]);
     hd_geodesic_free(g);
 }
@@ -667,7 +674,7 @@ static void geo_triangles(void) {
         sources[i] = 3 * i;
     }
     CHECK(hd_geodesic_create(&g, MESH_TRIANGLES(xyz, 3 * M, tri, M), NULL, NULL) == HD_OK);
-    CHECK(hd_geodesic_distance(g, M, sources, d, &rep, NULL) == HD_OK && rep.n_components == M);
+    CHECK(hd_geodesic_distance(g, TOGETHER(M, sources), d, 0, &rep, NULL) == HD_OK && rep.n_components == M);
     for (i = 0; i < M; i++) CHECK_MSG(d[3 * i] == 0 && fabs(d[3 * i + 1] - sqrt(0.5)) < 1e-14 && fabs(d[3 * i + 2] - sqrt(0.5)) < 1e-14, "%.17g %.17g", d[3 * i + 1], d[3 * i + 2]);
     hd_geodesic_free(g);
 }
@@ -681,8 +688,8 @@ static int64_t geo_thread_run(const shape *s, hd_simd simd, int way, double *out
     int64_t calls;
     ldl_way_begin(w, way, simd);
     g = geo_plan(s, 0, HD_GEODESIC_MASS_BARYCENTRIC, &w->ctx);
-    CHECK(hd_geodesic_distance(g, 3, sources, out, NULL, NULL) == HD_OK);
-    CHECK(hd_geodesic_distance_each(g, 11, sources, out + s->n, 0, NULL, NULL) == HD_OK);
+    CHECK(hd_geodesic_distance(g, TOGETHER(3, sources), out, 0, NULL, NULL) == HD_OK);
+    CHECK(hd_geodesic_distance(g, VERTICES(11, sources), out + s->n, 0, NULL, NULL) == HD_OK);
     hd_geodesic_free(g);
     ldl_way_end(w, way);
     calls = w->calls;

@@ -198,21 +198,25 @@ static void gall_against_dense(shape_poly s, int32_t inner, const char *what) {
             if (b == HD_GEODESIC_BORDER_DIRICHLET) {
                 const int32_t one[3] = {inner, inner, inner};
                 gall_dense_distance(&s, lambda, t, b, held, one, 1, want);
-                CHECK(hd_geodesic_distance(g, 1, one, d, &rep, NULL) == HD_OK && rep.residual_heat < 1e-12 && rep.residual_distance < 1e-10);
+                CHECK(hd_geodesic_distance(g, VERTICES(1, one), d, 0, &rep, NULL) == HD_OK && rep.residual_heat < 1e-12 &&
+                    rep.residual_distance < 1e-10);
                 CHECK(geo_difference(d, want, s.n) <= tol * geo_largest(want, s.n));
-                CHECK(hd_geodesic_distance_each(g, 3, one, d, 0, &rep, NULL) == HD_OK && rep.residual_heat < 1e-12 && rep.residual_distance < 1e-10);
+                CHECK(hd_geodesic_distance(g, VERTICES(3, one), d, 0, &rep, NULL) == HD_OK && rep.residual_heat < 1e-12 &&
+                    rep.residual_distance < 1e-10);
                 CHECK(geo_difference(d + 2 * s.n, want, s.n) <= tol * geo_largest(want, s.n));
                 for (q = 0; q < s.n && !held[q]; q++) {}
-                if (q < s.n) CHECK(hd_geodesic_distance(g, 1, &q, d, &rep, NULL) == HD_ERR_ARGUMENT && rep.error.vertex == q && strstr(rep.error.text, "border"));
+                if (q < s.n) CHECK(hd_geodesic_distance(g, VERTICES(1, &q), d, 0, &rep, NULL) == HD_ERR_ARGUMENT && rep.error.vertex == q &&
+                    strstr(rep.error.text, "border"));
             } else {
                 gall_dense_distance(&s, lambda, t, b, held, several, 8, want);
-                CHECK(hd_geodesic_distance(g, 8, several, d, &rep, NULL) == HD_OK && rep.n_stages == 1);
+                CHECK(hd_geodesic_distance(g, TOGETHER(8, several), d, 0, &rep, NULL) == HD_OK && rep.n_stages == 1);
                 CHECK_MSG(geo_difference(d, want, s.n) <= tol * geo_largest(want, s.n), "%s, t %g, border %d: off by %g", what, times[k / 2], border,
                           geo_difference(d, want, s.n) / geo_largest(want, s.n));
                 CHECK_MSG(rep.residual_heat < (times[k / 2] > 100 ? 1e-7 : 1e-12) && rep.residual_distance < 1e-10 && fabs(rep.h - h) < 1e-13 * h, "%s: residuals %g %g", what,
                           rep.residual_heat, rep.residual_distance);
                 for (q = 0; q < 8; q++) gall_dense_distance(&s, lambda, t, b, held, several + q, 1, want + q * s.n);
-                CHECK(hd_geodesic_distance_each(g, 8, several, d, 0, &rep, NULL) == HD_OK && rep.residual_heat < (times[k / 2] > 100 ? 1e-7 : 1e-12));
+                CHECK(hd_geodesic_distance(g, VERTICES(8, several), d, 0, &rep, NULL) == HD_OK &&
+                    rep.residual_heat < (times[k / 2] > 100 ? 1e-7 : 1e-12));
                 CHECK_MSG(geo_difference(d, want, 8 * s.n) <= tol * geo_largest(want, 8 * s.n), "%s, t %g, border %d: eight columns off by %g", what, times[k / 2], border,
                           geo_difference(d, want, 8 * s.n) / geo_largest(want, 8 * s.n));
             }
@@ -234,7 +238,8 @@ static void gall_equal(void) {
     hd_geodesic *g = gall_triangles(&s, NULL);
     hd_geodesic_report rep;
     int way;
-    CHECK(hd_geodesic_distance(g, 4, sources, want, NULL, NULL) == HD_OK && hd_geodesic_distance_each(g, 4, sources, want + s.n, 0, NULL, NULL) == HD_OK);
+    CHECK(hd_geodesic_distance(g, TOGETHER(4, sources), want, 0, NULL, NULL) == HD_OK &&
+        hd_geodesic_distance(g, VERTICES(4, sources), want + s.n, 0, NULL, NULL) == HD_OK);
     hd_geodesic_free(g);
     for (way = 0; way < 5; way++) {
         o.triangulation = way == 1 || way == 4 ? HD_TRIANGULATION_DELAUNAY : way == 2 ? HD_TRIANGULATION_TUFTED : HD_TRIANGULATION_GIVEN;
@@ -242,8 +247,10 @@ static void gall_equal(void) {
         o.border = way == 0 ? HD_GEODESIC_BORDER_MEAN : HD_GEODESIC_BORDER_NATURAL;
         if (way == 3) o.border = HD_GEODESIC_BORDER_NATURAL;
         g = way == 0 || way == 4 ? gall_polygons(&p, &o) : way == 3 ? gall_points(s.xyz, s.n, &o) : gall_triangles(&s, &o);
-        CHECK(hd_geodesic_distance(g, 4, sources, d, &rep, NULL) == HD_OK && rep.residual_heat < 1e-13 && rep.residual_distance < 1e-11);
-        CHECK(hd_geodesic_distance_each(g, 4, sources, d + s.n, 0, &rep, NULL) == HD_OK && rep.residual_heat < 1e-13 && rep.residual_distance < 1e-11);
+        CHECK(hd_geodesic_distance(g, TOGETHER(4, sources), d, 0, &rep, NULL) == HD_OK && rep.residual_heat < 1e-13 &&
+            rep.residual_distance < 1e-11);
+        CHECK(hd_geodesic_distance(g, VERTICES(4, sources), d + s.n, 0, &rep, NULL) == HD_OK && rep.residual_heat < 1e-13 &&
+            rep.residual_distance < 1e-11);
         CHECK_MSG(geo_difference(d, want, 5 * s.n) < 1e-10, "way %d is off by %g", way, geo_difference(d, want, 5 * s.n));
         hd_geodesic_free(g);
     }
@@ -265,7 +272,7 @@ static void gall_slivers(void) {
             hd_geodesic_report rep;
             o.triangulation = way == 1 ? HD_TRIANGULATION_DELAUNAY : way == 2 ? HD_TRIANGULATION_TUFTED : HD_TRIANGULATION_GIVEN;
             g = gall_triangles(&s, &o);
-            CHECK(hd_geodesic_distance(g, 1, &source, d, &rep, NULL) == HD_OK);
+            CHECK(hd_geodesic_distance(g, VERTICES(1, &source), d, 0, &rep, NULL) == HD_OK);
             CHECK_MSG(rep.residual_heat < 1e-9 && rep.residual_distance < 1e-9, "residuals %g %g", rep.residual_heat, rep.residual_distance);
             hd_geodesic_free(g);
             for (i = 0, error[way] = 0; i < s.n; i++) error[way] += fabs(d[i] - shape_distance(s.xyz + 3 * i, s.xyz + 3 * source)) / s.n;
@@ -282,7 +289,7 @@ static double gall_sphere(hd_geodesic *g, const double *xyz, int32_t n, double *
     int32_t sources[8], i, q;
     hd_geodesic_report rep;
     for (q = 0; q < 8; q++) sources[q] = (int32_t)((int64_t)q * (n - 1) / 7);
-    CHECK(hd_geodesic_distance_each(g, 8, sources, d, 0, &rep, NULL) == HD_OK && rep.residual_distance < 1e-10);
+    CHECK(hd_geodesic_distance(g, VERTICES(8, sources), d, 0, &rep, NULL) == HD_OK && rep.residual_distance < 1e-10);
     for (q = 0; q < 8; q++)
         for (i = 0; i < n; i++) sum += fabs(d[q * n + i] - 2 * asin(fmin(1, shape_distance(xyz + 3 * i, xyz + 3 * sources[q]) / 2)));
     *h = rep.h;
@@ -342,7 +349,7 @@ static void gall_many(void) {
         uint64_t seed = 11;
         double mean = 0, least = 1;
         for (k = 0; k < 40; k++) sources[k] = (int32_t)(dense_random(&seed) % (uint64_t)n);
-        CHECK(hd_geodesic_distance(g, 40, sources, d, &rep, NULL) == HD_OK);
+        CHECK(hd_geodesic_distance(g, TOGETHER(40, sources), d, 0, &rep, NULL) == HD_OK);
         for (i = 0; i < n; i++) {
             double want = HUGE_VAL;
             for (k = 0; k < 40; k++) want = fmin(want, shape_distance(xyz + 3 * i, xyz + 3 * sources[k]));
@@ -368,7 +375,7 @@ static void gall_borders(void) {
         o.t = 8 / 900.0;
         o.border = (hd_geodesic_border)b;
         g = gall_triangles(&s, &o);
-        CHECK(hd_geodesic_distance(g, 1, &source, d, NULL, NULL) == HD_OK);
+        CHECK(hd_geodesic_distance(g, VERTICES(1, &source), d, 0, NULL, NULL) == HD_OK);
         hd_geodesic_free(g);
         for (i = 0, error[b] = 0; i < s.n; i++) error[b] += fabs(d[i] - shape_distance(s.xyz + 3 * i, s.xyz + 3 * source)) / s.n;
     }
@@ -378,7 +385,8 @@ static void gall_borders(void) {
         hd_geodesic *g;
         o.border = (hd_geodesic_border)b;
         g = gall_triangles(&ball, &o);
-        CHECK(hd_geodesic_distance(g, 1, &source, b ? e : d, NULL, NULL) == HD_ERR_INDEX || b == 0 || geo_difference(d, e, ball.n) == 0);
+        CHECK(hd_geodesic_distance(g, VERTICES(1, &source), b ? e : d, 0, NULL, NULL) == HD_ERR_INDEX || b == 0 ||
+            geo_difference(d, e, ball.n) == 0);
         hd_geodesic_free(g);
     }
 }
@@ -414,7 +422,7 @@ static void gall_rim(int32_t around, int32_t rows, double tau, int way) {
     o.mollify = way ? -1 : 0;
     g = way ? gall_triangles(&s, &o) : gall_polygons(&p, &o);
     for (i = 0; i < around; i++) sources[i] = i * rows;
-    CHECK(hd_geodesic_distance(g, around, sources, d, &rep, NULL) == HD_OK && rep.n_stages > 1);
+    CHECK(hd_geodesic_distance(g, TOGETHER(around, sources), d, 0, &rep, NULL) == HD_OK && rep.n_stages > 1);
     for (i = 0; i < s.n; i++) worst = fmax(worst, fabs(d[i] - s.xyz[3 * i + 1] - 0.5));
     CHECK_MSG(worst <= 1e-9, "rim of %d x %d, way %d: off by %g, %d stages", (int)around, (int)rows, way, worst, (int)rep.n_stages);
     hd_geodesic_free(g);
@@ -434,7 +442,7 @@ static void gall_strip(void) {
         const int32_t from = source + (b == 2 ? 700 : 0);    /* not on the border that is held */
         o.border = (hd_geodesic_border)b;
         g = gall_triangles(&s, &o);
-        CHECK(hd_geodesic_distance(g, 1, &from, d, &rep, NULL) == HD_OK && rep.n_stages > 1);
+        CHECK(hd_geodesic_distance(g, VERTICES(1, &from), d, 0, &rep, NULL) == HD_OK && rep.n_stages > 1);
         for (i = 1, least = 1; i < 800; i++) least = fmin(least, (d[from + i] - d[from + i - 1]) * 1499);
         /* between borders at zero heat flows to the sides rather than along */
         CHECK_MSG(least > (b < 2 ? 0.7 : 0.3) && d[from + 799] < 800 / 1499.0, "border %d: a step of %g, %g after 799", b, least, d[from + 799]);
@@ -451,15 +459,15 @@ static void gall_coincident(void) {
     hd_geodesic *g = gall_points(s.xyz, s.n, NULL);
     hd_geodesic_opts o = gall_options();
     hd_error e;
-    CHECK(hd_geodesic_distance(g, 1, &source, want, NULL, NULL) == HD_OK && want[7] == 0);
+    CHECK(hd_geodesic_distance(g, VERTICES(1, &source), want, 0, NULL, NULL) == HD_OK && want[7] == 0);
     hd_geodesic_free(g);
     memcpy(xyz, s.xyz, 3 * (size_t)s.n * sizeof *xyz);
     memcpy(xyz + 3 * s.n, s.xyz + 3 * 7, 3 * sizeof *xyz);
     memcpy(xyz + 3 * s.n + 3, s.xyz + 3 * 100, 3 * sizeof *xyz);
     g = gall_points(xyz, s.n + 2, NULL);
-    CHECK(hd_geodesic_distance(g, 1, &twin, d, NULL, NULL) == HD_OK && d[7] == 0 && d[twin] == 0 && d[twin + 1] == d[100]);
+    CHECK(hd_geodesic_distance(g, VERTICES(1, &twin), d, 0, NULL, NULL) == HD_OK && d[7] == 0 && d[twin] == 0 && d[twin + 1] == d[100]);
     CHECK(geo_difference(d, want, s.n) < 1e-10);
-    CHECK(hd_geodesic_distance(g, 3, three, d, NULL, NULL) == HD_OK);    /* several: neither twin need be named first, or both */
+    CHECK(hd_geodesic_distance(g, TOGETHER(3, three), d, 0, NULL, NULL) == HD_OK);    /* neither twin need be named first, or both */
     CHECK_MSG(d[7] == 0 && d[twin] == 0 && d[100] == 0 && d[twin + 1] == 0 && d[200] == 0, "twins at %g, %g", d[7], d[twin + 1]);
     hd_geodesic_free(g);
     o.border = HD_GEODESIC_BORDER_MEAN;
@@ -521,8 +529,8 @@ static void gall_thread_run(const shape_poly *s, hd_simd simd, int way, double *
         o.triangulation = k == 1 ? HD_TRIANGULATION_TUFTED : HD_TRIANGULATION_GIVEN;
         o.border = k == 1 ? HD_GEODESIC_BORDER_MEAN : HD_GEODESIC_BORDER_NATURAL;
         g = k < 2 ? gall_polygons(s, &o) : gall_points(s->xyz, s->n, &o);
-        CHECK(hd_geodesic_distance(g, 3, sources, out, NULL, NULL) == HD_OK);
-        CHECK(hd_geodesic_distance_each(g, 11, sources, out + s->n, 0, NULL, NULL) == HD_OK);
+        CHECK(hd_geodesic_distance(g, TOGETHER(3, sources), out, 0, NULL, NULL) == HD_OK);
+        CHECK(hd_geodesic_distance(g, VERTICES(11, sources), out + s->n, 0, NULL, NULL) == HD_OK);
         out += 12 * s->n;
         hd_geodesic_free(g);
     }
@@ -571,11 +579,11 @@ static void gall_cold(void) {
     }
     g = gall_polygons(&p, &o);
     CHECK(ctx.n_holders == 1);
-    CHECK(hd_geodesic_distance(g, 1, &source, d, &rep, NULL) == HD_OK);
+    CHECK(hd_geodesic_distance(g, VERTICES(1, &source), d, 0, &rep, NULL) == HD_OK);
     CHECK_MSG(rep.n_stages == 1 && d[4] == 0 && d[0] > 1 && d[0] < 2 && d[13] == HUGE_VAL, "%d stages, %g, %g", (int)rep.n_stages, d[0], d[13]);
     for (i = 0; i < 4; i++) {                    /* warm in both components or one: as many allocations, after the first */
         const uint64_t before = ctx.allocations;
-        CHECK(hd_geodesic_distance(g, 2 - i % 2, both, d, NULL, NULL) == HD_OK);
+        CHECK(hd_geodesic_distance(g, TOGETHER(2 - i % 2, both), d, 0, NULL, NULL) == HD_OK);
         made[i % 2] = ctx.allocations - before;
     }
     CHECK_MSG(made[0] == made[1], "%d allocations with two sources, %d with one", (int)made[0], (int)made[1]);
@@ -612,7 +620,7 @@ static void gall_face_orders(void) {
         }
         CHECK(p.n_faces == RINGS * AROUND);
         g = gall_polygons(&p, NULL);
-        CHECK(hd_geodesic_distance(g, 1, &source, d[way], NULL, NULL) == HD_OK);
+        CHECK(hd_geodesic_distance(g, VERTICES(1, &source), d[way], 0, NULL, NULL) == HD_OK);
         hd_geodesic_free(g);
     }
     for (i = 0; i < (RINGS + 1) * AROUND; i++) CHECK_MSG(fabs(d[0][i] - d[1][i]) <= 1e-3 * d[0][i], "vertex %d: %g, %g", (int)i, d[0][i], d[1][i]);

@@ -110,7 +110,7 @@ static void large_samples(void) {
         const hd_distance_kind kind = q % 2 ? HD_DISTANCE_WEIGHTED : HD_DISTANCE_CLASSICAL;
         const double t = 0.3 * pow(10, q / 2 % 14 * 0.5) * trial_unit(lap);
         hd_heat *heat = kit_heat(lap, "");
-        CHECK(heat_sample(heat, kind, t, COUNT, 0, vertex, far, &rep) >= 0);
+        CHECK(heat_sample(heat, kind, t, COUNT, vertex, far, &rep) >= 0);
         for (v = 1, m = 0; v < COUNT; v++)
             for (r = 0; r < v; r++, m++) {
                 i[m] = vertex[r];

@@ -177,13 +177,14 @@ static void len_seven(void) {
     /* eigenvectors: constants, of mass 14 A, and six of them with x'Bx = 5/6 A |x|^2 */
     for (v = 0; v < 7; v++)
         CHECK_MSG(fabs(u[v] - 1 / (14 * A) - fade * ((v == 2) - 1 / 7.0) / (5 * A / 6)) <= rep.error_bound * u[2] + 1e-14, "seven: %g", u[v]);
-    CHECK(eng_ok(hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, tri, d, 0, &rep, NULL), &rep, "seven"));
+    CHECK(eng_ok(hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, VERTICES(1, tri), d, 0, &rep, NULL), &rep, "seven"));
     for (v = 1; v < 7; v++) CHECK_MSG(fabs(d[v] - sqrt(2 * fade2 / (5 * A / 6))) <= rep.error_bound * d[v] + 1e-13, "seven: distance %g", d[v]);
     memset(&so, 0, sizeof so);
     so.count = 7;
     CHECK(hd_spectrum_create(&spectrum, lap, &so, &e) == HD_OK && spectrum->count == 7);
     for (v = 1; v < 7 && spectrum; v++) CHECK_MSG(fabs(spectrum->value[v] - lambda) < 1e-9, "seven: %.15g for %.15g", spectrum->value[v], lambda);
-    CHECK(hd_geodesic_create(&g, MESH_LENGTHS(len, 7, tri, 14), NULL, &e) == HD_OK && hd_geodesic_distance(g, 1, tri, d, NULL, NULL) == HD_OK);
+    CHECK(hd_geodesic_create(&g, MESH_LENGTHS(len, 7, tri, 14), NULL, &e) == HD_OK &&
+        hd_geodesic_distance(g, VERTICES(1, tri), d, 0, NULL, NULL) == HD_OK);
     for (v = 1; v < 7; v++) CHECK_MSG(fabs(d[v] - 1) < 0.2 && fabs(d[v] - d[1]) < 1e-12, "seven: geodesic %g", d[v]);
     hd_geodesic_free(g);
     hd_spectrum_free(spectrum);
@@ -209,18 +210,17 @@ static void len_smooth(void) {
         hd_geodesic *g = NULL;
         hd_laplacian *lap;
         hd_heat *heat;
-        hd_source s;
+        hd_sources s;
         hd_report rep;
         len_torus(nx, ny, cell, cell, 0, tri, len);
         lap = len_make(len, n, tri, 2 * n, NULL);
         heat = kit_plan(lap, NULL);
-        memset(&s, 0, sizeof s);
-        s.count = 1;
+        s = hd_vertices(1, tri);
         s.corners = 3;
-        s.vertex = tri;
         s.bary = bary;
-        CHECK(eng_ok(hd_heat_columns_from(heat, HD_KERNEL_SYMMETRIC, 1, &t, 1, &s, u, 0, &rep, NULL), &rep, "flat torus"));
-        CHECK(hd_geodesic_create(&g, MESH_LENGTHS(len, n, tri, 2 * n), NULL, NULL) == HD_OK && hd_geodesic_distance_from(g, &s, d, NULL, NULL) == HD_OK);
+        CHECK(eng_ok(hd_heat_columns(heat, HD_KERNEL_SYMMETRIC, 1, &t, &s, u, 0, &rep, NULL), &rep, "flat torus"));
+        CHECK(hd_geodesic_create(&g, MESH_LENGTHS(len, n, tri, 2 * n), NULL, NULL) == HD_OK);
+        CHECK(hd_geodesic_distance(g, &s, d, 0, NULL, NULL) == HD_OK);
         for (v = 0; v < n; v++) {
             const double x = (v % nx - 2 / 3.0) * cell, y = (v / nx - 1 / 3.0) * cell;
             const double dx = fmin(fabs(x), 1 - fabs(x)), dy = fmin(fabs(y), 0.8 - fabs(y));
@@ -246,7 +246,8 @@ static void len_geodesic(void) {
     int32_t v;
     double off = 0;
     CHECK(hd_geodesic_create(&g, MESH_LENGTHS(len, s.n, s.tri, s.n_tri), NULL, NULL) == HD_OK);
-    CHECK(hd_geodesic_distance(space, 2, sources, a, NULL, NULL) == HD_OK && hd_geodesic_distance(g, 2, sources, b, NULL, NULL) == HD_OK);
+    CHECK(hd_geodesic_distance(space, TOGETHER(2, sources), a, 0, NULL, NULL) == HD_OK &&
+        hd_geodesic_distance(g, TOGETHER(2, sources), b, 0, NULL, NULL) == HD_OK);
     for (v = 0; v < s.n; v++) off = fmax(off, fabs(a[v] - b[v] / unit));
     CHECK_MSG(off < 1e-10, "geodesics by lengths are off by %g", off);
     hd_geodesic_free(space);

@@ -162,7 +162,8 @@ static void mov_geodesic(const shape *s, const char *what) {
         CHECK_MSG(hd_geodesic_update(plan, MESH_POINTS(xyz, s->n), &e) == HD_OK, "%s: %s", what, e.text);
         o.updatable = 0;
         CHECK(hd_geodesic_create(&fresh, MESH_TRIANGLES(xyz, s->n, s->tri, s->n_tri), &o, &e) == HD_OK);
-        CHECK(hd_geodesic_distance(plan, 1, &source, d, &rep, NULL) == HD_OK && hd_geodesic_distance(fresh, 1, &source, want, &rep2, NULL) == HD_OK);
+        CHECK(hd_geodesic_distance(plan, VERTICES(1, &source), d, 0, &rep, NULL) == HD_OK &&
+            hd_geodesic_distance(fresh, VERTICES(1, &source), want, 0, &rep2, NULL) == HD_OK);
         CHECK(fabs(rep.h - rep2.h) <= 1e-13 * rep2.h && fabs(rep.t - rep2.t) <= 1e-13 * rep2.t && rep.residual_distance < 1e-9);
         for (i = 0; i < s->n; i++)
             CHECK_MSG(d[i] == want[i] || fabs(d[i] - want[i]) <= 1e-9 * dense_max_abs(xyz, 3 * s->n), "%s: frame %d: %g for %g", what, frame, d[i], want[i]);
@@ -172,7 +173,8 @@ static void mov_geodesic(const shape *s, const char *what) {
     memcpy(xyz, s->xyz, 3 * (size_t)s->n * sizeof *xyz);
     memcpy(xyz + 3 * s->tri[0], s->xyz + 3 * s->tri[1], 3 * sizeof *xyz);
     CHECK(hd_geodesic_update(plan, MESH_POINTS(xyz, s->n), &e) == HD_ERR_EMPTY && (e.face >= 0 || e.vertex >= 0));
-    CHECK(hd_geodesic_distance(plan, 1, &source, d, &rep, NULL) == HD_OK && memcmp(d, want, (size_t)s->n * sizeof *d) == 0);   /* as it was */
+    CHECK(hd_geodesic_distance(plan, VERTICES(1, &source), d, 0, &rep, NULL) == HD_OK &&
+        memcmp(d, want, (size_t)s->n * sizeof *d) == 0);   /* as it was */
     hd_geodesic_free(plan);
 }
 
@@ -300,7 +302,7 @@ static void mov_geodesic_refused(const shape *s, hd_geodesic_border border) {
         o.t_in_h2 = way == 2 ? 1e-100 : 0;
         CHECK(hd_geodesic_create(&g, MESH_TRIANGLES(s->xyz, s->n, s->tri, s->n_tri), &o, &e) == HD_OK);
         o.updatable = 0;
-        CHECK(hd_geodesic_distance(g, 2, sources, want, &rep, &e) >= 0);
+        CHECK(hd_geodesic_distance(g, TOGETHER(2, sources), want, 0, &rep, &e) >= 0);
         for (k = 0; k < 9; k++) {
             hd_status st, like;
             for (i = 0; i < 3 * s->n; i++) xyz[i] = s->xyz[i] * (k < 8 ? scales[k] : i / 3 == s->tri[0] ? 0 : 1);
@@ -312,7 +314,8 @@ static void mov_geodesic_refused(const shape *s, hd_geodesic_border border) {
             hd_geodesic_free(fresh);
             if (st == HD_OK) CHECK(hd_geodesic_update(g, MESH_POINTS(s->xyz, s->n), &e) == HD_OK);
             refused += st < 0;
-            CHECK_MSG(hd_geodesic_distance(g, 2, sources, d, &rep2, &e) >= 0, "way %d, %d, after %s: %s", way, (int)k, hd_status_name(st), e.text);
+            CHECK_MSG(hd_geodesic_distance(g, TOGETHER(2, sources), d, 0, &rep2, &e) >= 0, "way %d, %d, after %s: %s", way, (int)k,
+                hd_status_name(st), e.text);
             if (st < 0) CHECK_MSG(memcmp(d, want, (size_t)s->n * sizeof *d) == 0 && rep.t == rep2.t && rep.h == rep2.h && rep.residual_heat == rep2.residual_heat, "way %d, %d", way, (int)k);
             memcpy(want, d, (size_t)s->n * sizeof *d);       /* after an update sums were taken in another order */
             rep = rep2;

@@ -51,7 +51,7 @@ static void test_platform(void) {
     CHECK(hd_laplacian_create(&lap, MESH_TRIANGLES(ball.xyz, ball.n, ball.tri, ball.n_tri), NULL, NULL) == HD_OK);
     plat_heat(lap, "fem", fem);
     CHECK(hd_heat_create(&heat, lap, NULL, NULL) == HD_OK);
-    CHECK(hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &source, d, 0, NULL, NULL) >= 0);
+    CHECK(hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, VERTICES(1, &source), d, 0, NULL, NULL) >= 0);
     plat_is("distance", d, ball.n, 541.5334107861197, 1e-12);
     hd_heat_free(heat);
     hd_laplacian_free(lap);
@@ -64,7 +64,7 @@ static void test_platform(void) {
     plat_heat(lap, "points", points);
     hd_laplacian_free(lap);
     CHECK(hd_geodesic_create(&geo, MESH_TRIANGLES(ball.xyz, ball.n, ball.tri, ball.n_tri), NULL, NULL) == HD_OK);
-    CHECK(hd_geodesic_distance(geo, 1, &source, d, NULL, NULL) >= 0);
+    CHECK(hd_geodesic_distance(geo, VERTICES(1, &source), d, 0, NULL, NULL) >= 0);
     plat_is("geodesic", d, ball.n, 1061.2440935015238, 1e-12);
     hd_geodesic_free(geo);
 }

@@ -296,7 +296,7 @@ static void spec_kernels_of(const char *text, int good) {
     for (k = 0; k < 4; k++) {                    /* columns and diagonals of both kernels */
         const int operator_ = k % 2 == 0;
         const hd_kernel kernel = operator_ ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
-        if (k < 2) CHECK(hd_spectrum_columns(z, kernel, 5, times, 1, &source, U, bound, 0, NULL) == HD_OK);
+        if (k < 2) CHECK(hd_spectrum_columns(z, kernel, 5, times, VERTICES(1, &source), U, bound, 0, NULL) == HD_OK);
         else CHECK(hd_spectrum_diagonal(z, kernel, 5, times, U, bound, 0, NULL) == HD_OK);
         for (q = 0; q < 5; q++) {
             trial_filter_for(w, times[q], 0);
@@ -306,7 +306,7 @@ static void spec_kernels_of(const char *text, int good) {
     }
     for (k = HD_DISTANCE_CLASSICAL; k <= HD_DISTANCE_BIHARMONIC; k++) {
         const int timed = k <= HD_DISTANCE_WEIGHTED;
-        CHECK(hd_spectrum_distance(z, (hd_distance_kind)k, timed ? 5 : 1, times, 1, &source, U, bound, 0, NULL) == HD_OK);
+        CHECK(hd_spectrum_distance(z, (hd_distance_kind)k, timed ? 5 : 1, times, VERTICES(1, &source), U, bound, 0, NULL) == HD_OK);
         for (q = 0; q < (timed ? 5 : 1); q++) {
             if (timed) trial_filter_for(w, 2 * times[q], 0);
             else truth_filter_fill(&w->s->f, w->T, k == HD_DISTANCE_COMMUTE ? FORM_COMMUTE : FORM_BIHARMONIC, 0, NULL, 0);
@@ -336,8 +336,8 @@ static void spec_against_heat(void) {
     CHECK(lap->row[5] >= 0 && lap->row[240] == HD_ROW_INERT && lap->n_components == 2);
     for (k = 0; k < 2; k++) {
         const hd_kernel kernel = k ? HD_KERNEL_SYMMETRIC : HD_KERNEL_OPERATOR;
-        CHECK(hd_heat_columns(heat, kernel, 1, &t, 2, sources, u, 0, NULL, NULL) >= 0 &&
-              hd_spectrum_columns(z, kernel, 1, &t, 2, sources, w, b, 0, NULL) == HD_OK);
+        CHECK(hd_heat_columns(heat, kernel, 1, &t, VERTICES(2, sources), u, 0, NULL, NULL) >= 0 &&
+              hd_spectrum_columns(z, kernel, 1, &t, VERTICES(2, sources), w, b, 0, NULL) == HD_OK);
         CHECK_MSG(dense_max_diff(u, w, 2 * n) <= 1e-6 * dense_max_abs(u, n), "columns off by %g", dense_max_diff(u, w, 2 * n));
         CHECK(w[n + 240] == (k ? 0 : 1));
         CHECK(hd_heat_diagonal(heat, kernel, 1, &t, u, 0, NULL, NULL) >= 0 && hd_spectrum_diagonal(z, kernel, 1, &t, w, b, 0,
@@ -345,8 +345,8 @@ static void spec_against_heat(void) {
         CHECK_MSG(dense_max_diff(u, w, n) <= 1e-6 * dense_max_abs(u, n), "diagonal off by %g", dense_max_diff(u, w, n));
     }
     for (k = HD_DISTANCE_CLASSICAL; k <= HD_DISTANCE_BIHARMONIC; k++) {
-        CHECK(hd_heat_distance(heat, (hd_distance_kind)k, k < 2, &t, 1, sources, u, 0, NULL, NULL) >= 0);
-        CHECK(hd_spectrum_distance(z, (hd_distance_kind)k, k < 2, &t, 1, sources, w, b, 0, NULL) == HD_OK);
+        CHECK(hd_heat_distance(heat, (hd_distance_kind)k, k < 2, &t, VERTICES(1, sources), u, 0, NULL, NULL) >= 0);
+        CHECK(hd_spectrum_distance(z, (hd_distance_kind)k, k < 2, &t, VERTICES(1, sources), w, b, 0, NULL) == HD_OK);
         for (v = 0; v < n; v++)
             CHECK_MSG(u[v] == HUGE_VAL || w[v] == HUGE_VAL ? u[v] == w[v] : fabs(u[v] - w[v]) <= b[v] + 1e-5 * fabs(u[v]),
                       "distance %d at %d: %g and %g, bound %g", k, v, u[v], w[v], b[v]);
@@ -396,7 +396,8 @@ static void spec_units(void) {
         for (a = HD_DISTANCE_CLASSICAL; a <= HD_DISTANCE_BIHARMONIC; a++) {
             const int power = a == HD_DISTANCE_CLASSICAL ? k / 2 : a == HD_DISTANCE_COMMUTE ? 0 : -k / 2;
             double d[12], off[12];
-            CHECK(hd_spectrum_distance(s, (hd_distance_kind)a, a < HD_DISTANCE_COMMUTE, &t, 1, &source, d, off, 0, NULL) == HD_OK);
+            CHECK(hd_spectrum_distance(s, (hd_distance_kind)a, a < HD_DISTANCE_COMMUTE, &t, VERTICES(1, &source), d, off, 0,
+                NULL) == HD_OK);
             for (i = 0; i < 12; i++) {
                 d[i] = ldexp(d[i], power);
                 off[i] = ldexp(off[i], power);

@@ -319,7 +319,7 @@ static void *thr_user_run(void *arg) {
     for (k = 0; w->good && k < 3; k++) {
         w->good = hd_heat_column(heat, HD_KERNEL_SYMMETRIC, t, source, u, NULL, NULL) >= 0;
         if (w->good && k == 0 && w->method == HD_METHOD_DIRECT)
-            w->good = hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &source, u + n, 0, NULL, NULL) >= 0 &&
+            w->good = hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, VERTICES(1, &source), u + n, 0, NULL, NULL) >= 0 &&
                       thr_ask(w->lap, &ctx, u + 2 * n);
         if (k == 0 && w->good) memcpy(w->u, u, size * sizeof *u);
         w->good = w->good && memcmp(u, w->u, size * sizeof *u) == 0;

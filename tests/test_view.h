@@ -90,7 +90,8 @@ static void view_answers(const shape *s, const shape *moved, int floats, size_t 
     CHECK(hd_geodesic_create(&other_g, MESH_TRIANGLES(b.s.xyz, s->n, b.s.tri, s->n_tri), &go, &e) == HD_OK);
     for (frame = 0; frame < 2; frame++) {
         CHECK_MSG(view_same_laplacian(lap, other), "%d %d %d %d, frame %d", floats, (int)stride, (int)type, (int)offset, frame);
-        CHECK(hd_geodesic_distance(g, 1, &source, d, NULL, &e) >= 0 && hd_geodesic_distance(other_g, 1, &source, want, NULL, &e) >= 0);
+        CHECK(hd_geodesic_distance(g, VERTICES(1, &source), d, 0, NULL, &e) >= 0 &&
+            hd_geodesic_distance(other_g, VERTICES(1, &source), want, 0, NULL, &e) >= 0);
         CHECK_MSG(memcmp(d, want, (size_t)s->n * sizeof *d) == 0, "%d %d %d %d, frame %d", floats, (int)stride, (int)type, (int)offset, frame);
         CHECK(hd_laplacian_update(lap, &b2.view, &e) == HD_OK && hd_laplacian_update(other, MESH_POINTS(b2.s.xyz, other->n), &e) == HD_OK);
         CHECK(hd_geodesic_update(g, &b2.view, &e) == HD_OK && hd_geodesic_update(other_g, MESH_POINTS(b2.s.xyz, s->n), &e) == HD_OK);

@@ -558,7 +558,7 @@ static void fz_field(hd_heat *heat, const hd_laplacian *lap, fz_query *q, fz_in 
 static void fz_columns(hd_heat *heat, const hd_laplacian *lap, fz_query *q, const fz_context *c) {
     hd_report rep;
     hd_error e;
-    const hd_status st = fz_status(hd_heat_columns(heat, q->kernel, q->n_times, q->t, q->k, q->id, q->u, 0, &rep, &e), &e, c);
+    const hd_status st = fz_status(hd_heat_columns(heat, q->kernel, q->n_times, q->t, VERTICES(q->k, q->id), q->u, 0, &rep, &e), &e, c);
     int32_t k, m;
     fz_check_report(st, &rep);
     if (st != HD_OK) return;
@@ -611,7 +611,8 @@ static void fz_one(hd_heat *heat, const hd_laplacian *lap, fz_query *q, fz_in *i
     hd_status st = HD_OK;
     hd_estimate estimate;
     int64_t values = 0;
-    int32_t points[8];
+    const hd_sources given = hd_vertices(1, q->id);
+    int32_t points[8], k;
     if (way >= 216) { fz_one_more(heat, lap, q, in, c); return; }
     fz_what = names[which];
     if (which == 0) { fz_field(heat, lap, q, in, c); return; }
@@ -624,16 +625,16 @@ static void fz_one(hd_heat *heat, const hd_laplacian *lap, fz_query *q, fz_in *i
     if (which == 3) st = hd_heat_trace(heat, q->n_times, q->t, q->u, NULL, &rep, &e), values = q->n_times;
     if (which == 4) {
         if (q->kind >= HD_DISTANCE_COMMUTE) q->n_times = 1;
-        st = hd_heat_distance(heat, q->kind, q->n_times, q->t, q->k, q->id, q->u, 0, &rep, &e), values = n * q->n_times * q->k;
+        st = hd_heat_distance(heat, q->kind, q->n_times, q->t, VERTICES(q->k, q->id), q->u, 0, &rep, &e), values = n * q->n_times * q->k;
     }
     if (which == 5) {
         if (q->kind >= HD_DISTANCE_COMMUTE) q->n_times = 1;
         st = hd_heat_pairs(heat, q->kind, q->n_times, q->t, q->n_pairs, q->i, q->j, q->v, q->u, &rep, &e), values = q->n_pairs * q->n_times;
     }
     if (which == 6) {
-        points[0] = q->id[0];
-        st = hd_heat_sample(heat, q->kind, q->t[0], 1 + fz_below(in, 8), fz_below(in, 2), points, q->u, &rep, &e), values = 1;
-        if (st >= 0) FZ(points[0] >= 0 && points[0] < lap->n);
+        const int32_t count = 1 + fz_below(in, 8);
+        st = hd_heat_sample(heat, q->kind, q->t[0], fz_below(in, 2) ? &given : NULL, count, points, q->u, &rep, &e), values = count;
+        for (k = 0; k < count && st >= 0; k++) FZ(points[k] >= 0 && points[k] < lap->n);
     }
     if (which == 7) st = hd_heat_entries(heat, q->kernel, q->n_times, q->t, q->n_pairs, q->i, q->j, q->u, &rep, &e), values = q->n_pairs * q->n_times;
     fz_status(st, &e, c);
@@ -707,12 +708,12 @@ static void fz_spectrum(fz_in *in, const hd_laplacian *lap, const fz_context *c)
         for (k = 1; k < s->count; k++) FZ(s->value[k] >= s->value[k - 1]);
         if (st == HD_OK) FZ(s->proven && s->n_poor == 0);
         fz_query_make(&q, in, lap);
-        if (fz_status(hd_spectrum_columns(s, q.kernel, q.n_times, q.t, q.k, q.id, q.u, q.v, 0, &e), &e, c) >= 0)
+        if (fz_status(hd_spectrum_columns(s, q.kernel, q.n_times, q.t, VERTICES(q.k, q.id), q.u, q.v, 0, &e), &e, c) >= 0)
             FZ(fz_no_nan(q.u, (int64_t)lap->n * q.k * q.n_times) && fz_no_nan(q.v, (int64_t)lap->n * q.k * q.n_times));
         if (fz_status(hd_spectrum_diagonal(s, q.kernel, q.n_times, q.t, q.u, q.v, 0, &e), &e, c) >= 0)
             FZ(fz_no_nan(q.u, (int64_t)lap->n * q.n_times) && fz_no_nan(q.v, (int64_t)lap->n * q.n_times));
         if (q.kind >= HD_DISTANCE_COMMUTE) q.n_times = 1;
-        if (fz_status(hd_spectrum_distance(s, q.kind, q.n_times, q.t, q.k, q.id, q.u, q.v, 0, &e), &e, c) >= 0)
+        if (fz_status(hd_spectrum_distance(s, q.kind, q.n_times, q.t, VERTICES(q.k, q.id), q.u, q.v, 0, &e), &e, c) >= 0)
             FZ(fz_no_nan(q.u, (int64_t)lap->n * q.k * q.n_times) && fz_no_nan(q.v, (int64_t)lap->n * q.k * q.n_times));
         fz_query_free(&q);
     } else {
@@ -765,14 +766,14 @@ static void fz_geodesic(fz_in *in, const shape *s, fz_context *c) {
     if (fz_status(hd_geodesic_create(&g, MESH_TRIANGLES(s->xyz, s->n, s->tri, s->n_tri), &o, &e), &e, c) >= 0) {
         count = 1 + fz_below(in, 3);
         for (k = 0; k < 3; k++) id[k] = fz_int(in, s->n);
-        st = fz_status(hd_geodesic_distance(g, count, id, d, &rep, &e), &e, c);
+        st = fz_status(hd_geodesic_distance(g, TOGETHER(count, id), d, 0, &rep, &e), &e, c);
         FZ(rep.status == st);
         if (st >= 0) for (k = 0; k < s->n; k++) FZ(d[k] >= 0);
         if (o.updatable && fz_byte(in) & 1) {
             s->xyz[fz_below(in, 3 * s->n)] = fz_number(in);
             (void)fz_status(hd_geodesic_update(g, MESH_POINTS(s->xyz, s->n), &e), &e, c);
         }
-        st = fz_status(hd_geodesic_distance_each(g, count, id, d, 0, &rep, &e), &e, c);
+        st = fz_status(hd_geodesic_distance(g, VERTICES(count, id), d, 0, &rep, &e), &e, c);
         if (st >= 0) for (k = 0; k < s->n * count; k++) FZ(d[k] >= 0);
     } else {
         FZ(!g);
@@ -926,19 +927,20 @@ static void fz_lengths(const uint8_t *data, size_t size) {
 enum { FZ_SOURCE_POINTS = 8, FZ_SOURCE_CORNERS = 5 };
 
 typedef struct fz_source {
-    hd_source source;
+    hd_sources all;
+    int64_t first[FZ_FIELDS + 1];
     int32_t vertex[FZ_SOURCE_POINTS * FZ_SOURCE_CORNERS];
     double bary[FZ_SOURCE_POINTS * FZ_SOURCE_CORNERS], weight[FZ_SOURCE_POINTS], length[FZ_SOURCE_POINTS];
 } fz_source;
 
-/* Points between the corners of faces, or between any; with coordinates that sum to one, or any. */
-static void fz_source_make(fz_source *p, fz_in *in, const shape *s) {
+/* Points between the corners of faces, or between any; with coordinates that sum to one, or any; as several sources. */
+static void fz_source_make(fz_source *p, fz_in *in, const shape *s, int32_t count) {
     const uint8_t way = fz_byte(in);
-    hd_source *const o = &p->source;
-    int32_t k, q, corners;
+    hd_sources *const o = &p->all;
+    int32_t k, q, corners, points;
     memset(p, 0, sizeof *p);
-    o->count = way > 250 ? fz_int(in, 4) : 1 + fz_below(in, FZ_SOURCE_POINTS);
-    if (o->count > FZ_SOURCE_POINTS) o->count = FZ_SOURCE_POINTS;
+    points = way > 250 ? fz_int(in, 4) : 1 + fz_below(in, FZ_SOURCE_POINTS);
+    if (points > FZ_SOURCE_POINTS) points = FZ_SOURCE_POINTS;
     o->corners = way > 246 ? fz_int(in, 5) : fz_below(in, 4);
     if (o->corners > FZ_SOURCE_CORNERS) o->corners = FZ_SOURCE_CORNERS;
     corners = o->corners > 0 ? o->corners : 1;
@@ -954,6 +956,10 @@ static void fz_source_make(fz_source *p, fz_in *in, const shape *s) {
         p->weight[k] = fz_number(in);
         p->length[k] = fz_number(in);
     }
+    for (k = 0; k + 1 < count; k++) p->first[k + 1] = p->first[k] + 1 + fz_below(in, 3);
+    p->first[count] = way > 250 || points > p->first[count - 1] ? points : p->first[count - 1] + 1;
+    o->count = count;
+    o->first = (way & 192) == 192 ? NULL : p->first;
     o->vertex = way == 4 ? NULL : p->vertex;
     o->bary = way & 4 ? p->bary : NULL;
     o->weight = way & 8 && !(way & 16) ? p->weight : NULL;
@@ -963,11 +969,13 @@ static void fz_source_make(fz_source *p, fz_in *in, const shape *s) {
 }
 
 /* Columns of k_t hold as much heat as their sources weigh. */
-static void fz_source_heat(const hd_laplacian *lap, const hd_source *o, const double *u, const hd_report *rep) {
+static void fz_source_heat(const hd_laplacian *lap, const hd_sources *o, int32_t q, const double *u, const hd_report *rep) {
+    const int64_t end = o->first ? o->first[q + 1] : q + 1;
     double heat = 0, weight = 0, size = 0, total = 0, most = 0;
-    int32_t k, r;
+    int64_t k;
+    int32_t r;
     if (lap->conserves != 1 || lap->n_active < lap->n || o->curve) return;
-    for (k = 0; k < o->count; k++) {
+    for (k = o->first ? o->first[q] : q; k < end; k++) {
         weight += o->weight ? o->weight[k] : 1;
         size += o->weight ? fabs(o->weight[k]) : 1;
     }
@@ -980,8 +988,7 @@ static void fz_source_heat(const hd_laplacian *lap, const hd_source *o, const do
 }
 
 static void fz_sources_ask(fz_in *in, const shape *s, const hd_laplacian *lap, hd_geodesic *g, const fz_context *c) {
-    fz_source from[FZ_FIELDS];
-    hd_source list[FZ_FIELDS];
+    fz_source from;
     hd_heat *heat = NULL;
     hd_heat_opts o;
     hd_report rep;
@@ -994,24 +1001,21 @@ static void fz_sources_ask(fz_in *in, const shape *s, const hd_laplacian *lap, h
     o.max_iterations = 400;
     if (fz_status(hd_heat_create(&heat, lap, &o, &e), &e, c) < 0) return;
     fz_query_make(&q, in, lap);
-    for (k = 0; k < q.k; k++) {
-        fz_source_make(from + k, in, s);
-        list[k] = from[k].source;
-    }
+    fz_source_make(&from, in, s, q.k);
     fz_what = "columns from sources";
-    st = fz_status(hd_heat_columns_from(heat, q.kernel, q.n_times, q.t, q.k, list, q.u, 0, &rep, &e), &e, c);
+    st = fz_status(hd_heat_columns(heat, q.kernel, q.n_times, q.t, &from.all, q.u, 0, &rep, &e), &e, c);
     fz_check_report(st, &rep);
     if (st == HD_OK) FZ(fz_finite(q.u, (int64_t)lap->n * q.k * q.n_times));
     for (k = 0; k < q.k && st == HD_OK && q.kernel == HD_KERNEL_SYMMETRIC; k++)
-        for (m = 0; m < q.n_times; m++) fz_source_heat(lap, list + k, q.u + (size_t)(k * q.n_times + m) * (size_t)lap->n, &rep);
+        for (m = 0; m < q.n_times; m++) fz_source_heat(lap, &from.all, k, q.u + (size_t)(k * q.n_times + m) * (size_t)lap->n, &rep);
     fz_what = "distance from sources";
     if (q.kind >= HD_DISTANCE_COMMUTE) q.n_times = 1;
-    st = fz_status(hd_heat_distance_from(heat, q.kind, q.n_times, q.t, q.k, list, q.u, 0, &rep, &e), &e, c);
+    st = fz_status(hd_heat_distance(heat, q.kind, q.n_times, q.t, &from.all, q.u, 0, &rep, &e), &e, c);
     fz_check_report(st, &rep);
     if (st >= 0) for (k = 0; k < lap->n * q.k * q.n_times; k++) FZ(q.u[k] >= 0);
     fz_what = "geodesic distance from sources";
-    for (k = 0; k < q.k && g; k++)
-        if (fz_status(hd_geodesic_distance_from(g, list + k, q.u, NULL, &e), &e, c) >= 0) for (m = 0; m < s->n; m++) FZ(q.u[m] >= 0);
+    if (g && fz_status(hd_geodesic_distance(g, &from.all, q.u, 0, NULL, &e), &e, c) >= 0)
+        for (m = 0; m < s->n * q.k; m++) FZ(q.u[m] >= 0);
     fz_query_free(&q);
     hd_heat_free(heat);
 }
@@ -1122,10 +1126,13 @@ static void fz_geodesics(const uint8_t *data, size_t size) {
     if (fz_status(fz_geodesic_of(&in, &g, &s, &o, &e), &e, &c) >= 0) {
         for (turn = 0; turn < 2; turn++) {
             for (k = 0; k < 3; k++) id[k] = fz_int(&in, s.n);
-            if (fz_status(hd_geodesic_distance(g, 1 + fz_below(&in, 3), id, d, NULL, &e), &e, &c) >= 0) for (k = 0; k < s.n; k++) FZ(d[k] >= 0);
-            if (fz_status(hd_geodesic_distance_each(g, 3, id, d, 0, NULL, &e), &e, &c) >= 0) for (k = 0; k < 3 * s.n; k++) FZ(d[k] >= 0);
-            fz_source_make(&from, &in, &s);
-            if (fz_status(hd_geodesic_distance_from(g, &from.source, d, NULL, &e), &e, &c) >= 0) for (k = 0; k < s.n; k++) FZ(d[k] >= 0);
+            if (fz_status(hd_geodesic_distance(g, TOGETHER(1 + fz_below(&in, 3), id), d, 0, NULL, &e), &e, &c) >= 0)
+                for (k = 0; k < s.n; k++) FZ(d[k] >= 0);
+            if (fz_status(hd_geodesic_distance(g, VERTICES(3, id), d, 0, NULL, &e), &e, &c) >= 0)
+                for (k = 0; k < 3 * s.n; k++) FZ(d[k] >= 0);
+            fz_source_make(&from, &in, &s, 1 + turn);
+            if (fz_status(hd_geodesic_distance(g, &from.all, d, 0, NULL, &e), &e, &c) >= 0)
+                for (k = 0; k < (1 + turn) * s.n; k++) FZ(d[k] >= 0);
             s.xyz[fz_below(&in, 3 * s.n)] = fz_number(&in);
             if (turn == 0) (void)fz_status(hd_geodesic_update(g, MESH_POINTS(s.xyz, s.n), &e), &e, &c);
         }
@@ -1384,10 +1391,10 @@ static void fz_option_queries(fz_in *in, const hd_laplacian *lap, const fz_conte
         return;
     }
     for (k = 0; k < 24 * 16; k++) u[k] = d[k] = 0.5;
-    fz_status(hd_heat_columns(heat, (hd_kernel)fz_int(in, 2), n_times, t, sources, id, u, ld, NULL, &e), &e, c);
+    fz_status(hd_heat_columns(heat, (hd_kernel)fz_int(in, 2), n_times, t, VERTICES(sources, id), u, ld, NULL, &e), &e, c);
     fz_status(hd_heat_apply(heat, n_times, t, sources, d, ld, u, ld, NULL, &e), &e, c);
     fz_status(hd_heat_diagonal(heat, (hd_kernel)fz_int(in, 2), n_times, t, u, ld, NULL, &e), &e, c);
-    fz_status(hd_heat_distance(heat, (hd_distance_kind)fz_int(in, 4), n_times, t, sources, id, d, ld, NULL, &e), &e, c);
+    fz_status(hd_heat_distance(heat, (hd_distance_kind)fz_int(in, 4), n_times, t, VERTICES(sources, id), d, ld, NULL, &e), &e, c);
     fz_status(hd_heat_pairs(heat, (hd_distance_kind)fz_int(in, 4), n_times, t, sources, id, id, u, d, NULL, &e), &e, c);
     fz_status(hd_heat_entries(heat, (hd_kernel)fz_int(in, 2), n_times, t, sources, id, id, u, NULL, &e), &e, c);
     fz_status(hd_rational_shared(sets, n_times, t, fz_number(in), NULL, &e), &e, c);
@@ -1418,7 +1425,7 @@ static void fz_options_rest(fz_in *in, const shape *s, const hd_laplacian *lap, 
     go.perm = NULL;
     if (fz_byte(in) & 7) go.begin_zero = go.end_zero = 0;
     if (fz_status(hd_geodesic_create(&g, MESH_TRIANGLES(s->xyz, s->n, s->tri, s->n_tri), &go, &e), &e, c) >= 0) {
-        fz_status(hd_geodesic_distance(g, 1, &(int32_t){1}, d, NULL, &e), &e, c);
+        fz_status(hd_geodesic_distance(g, VERTICES(1, &(int32_t){1}), d, 0, NULL, &e), &e, c);
         hd_geodesic_free(g);
     }
     fz_what = "neighbours";
