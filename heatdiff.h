@@ -122,12 +122,10 @@
                                from Gershgorin's circles alone
      HEATDIFF_NO_POLE_FACTORS  factors of complex matrices: method direct, hd_ldl_*_complex; implies
                                NO_DIAGONAL
-     HEATDIFF_NO_DIAGONAL      selected inversion: hd_heat_diagonal, hd_heat_normalised, hd_heat_trace,
-                               hd_heat_scale_invariant, hd_heat_filter_diagonals,
-                               hd_ldl_inverse*, diagonal pole sets; implies NO_DIFFUSION. The error bounds of
-                               method direct are larger then, and times so large that only the means are
-                               left take longer
-     HEATDIFF_NO_DIFFUSION     hd_heat_distance, hd_heat_pairs, hd_heat_sample, and their _from versions
+     HEATDIFF_NO_DIAGONAL      selected inversion: hd_heat_diagonal, hd_ldl_inverse*, diagonal pole sets;
+                               implies NO_DIFFUSION. The error bounds of method direct are larger then, and
+                               times so large that only the means are left take longer
+     HEATDIFF_NO_DIFFUSION     hd_heat_distance, hd_heat_distance_pairs, hd_heat_sample
      HEATDIFF_NO_SPECTRUM      eigenpairs: hd_spectrum_*. Without them, distances at large t and all answers
                                where heat flows out need factors of their poles and are less accurate; their
                                bounds say so
@@ -828,13 +826,12 @@ typedef struct hd_spectrum {
 typedef enum hd_query {
     HD_QUERY_FIELDS = 0,          /* hd_heat_apply: fields. The default degree is taken as 9 */
     HD_QUERY_COLUMNS,             /* hd_heat_columns: sources. hd_heat_entries: distinct j */
-    HD_QUERY_PAIRS,               /* hd_heat_pairs, classical or weighted: distinct vertices in the pairs */
+    HD_QUERY_PAIRS,               /* hd_heat_distance_pairs, classical or weighted: distinct vertices */
     HD_QUERY_DIAGONAL,            /* hd_heat_diagonal of k_t; no k */
     HD_QUERY_DIAGONAL_OPERATOR,   /* hd_heat_diagonal of K_t; no k */
-    HD_QUERY_TRACE,               /* hd_heat_trace; no k */
-    HD_QUERY_NORMALISED,          /* hd_heat_normalised; no k */
-    HD_QUERY_SCALE_INVARIANT,     /* hd_heat_scale_invariant: t are all its times; no k */
-    /* hd_heat_distance: sources, hd_heat_sample: points; commute and biharmonic also hd_heat_pairs */
+    HD_QUERY_TRACE,               /* hd_heat_diagonal with Z; no k */
+    /* hd_heat_distance: sources, hd_heat_sample: points; commute and biharmonic also
+     * hd_heat_distance_pairs */
     HD_QUERY_DISTANCE,            /* classical */
     HD_QUERY_DISTANCE_WEIGHTED,
     HD_QUERY_DISTANCE_COMMUTE,
@@ -956,17 +953,6 @@ HEATDIFF_API hd_status hd_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t
                                             const int32_t *j, const double *v,
                                             hd_context *ctx, hd_error *err);
 
-/* Checks offsets, indices, their order, and that values are finite. symmetric = 1: also checks A = A' up to
- * 1e-12 of the larger entry of each pair.
- * Errors HD_ERR_STRUCTURE, HD_ERR_INDEX, HD_ERR_NOT_FINITE, HD_ERR_NOT_SYMMETRIC, with row and column
- * Cost   O(nnz) */
-HEATDIFF_API hd_status hd_csr_check(const hd_csr *a, int32_t symmetric, hd_context *ctx,
-                                    hd_error *err);
-
-/* y = A x. x [n_cols] and y [n_rows] must not overlap. ctx is for threads. A is not checked: see
- * hd_csr_check. Cost: 2 nnz flops. */
-HEATDIFF_API void hd_csr_apply(const hd_csr *a, const double *x, double *y, hd_context *ctx);
-
 /* Frees what the library allocated with the same ctx, and clears the struct. */
 HEATDIFF_API void hd_csr_free(hd_csr *a, hd_context *ctx);
 
@@ -1028,7 +1014,7 @@ HEATDIFF_API hd_status hd_laplacian_create(hd_laplacian **out, const hd_mesh *me
  *        diagonal, and later by solvers
  * h      unit length of the caller's mesh, for lap->h; 0 if there is none
  * The pair has the union of both patterns. Explicit zeros stay if their mirror entry is stored too.
- * Errors as hd_csr_check; HD_ERR_NOT_FINITE (row, value: the sizes of its entries in L or in B add up to
+ * Errors those of a matrix that is not well formed; HD_ERR_NOT_FINITE (row, value: the sizes of its entries in L or in B add up to
  *        more than 1e100), HD_ERR_NOT_POSITIVE (row, column, value; so are entries B_ii below 1e-100),
  *        HD_ERR_EMPTY, HD_ERR_MEMORY, HD_ERR_CANCELLED
  * Cost   linear, except for a factorisation of B */
@@ -1084,13 +1070,6 @@ HEATDIFF_API hd_status hd_neighbours_nearest(const double *xyz, int32_t n, const
                                              int32_t m, int32_t k, int32_t *index,
                                              double *distance2, hd_context *ctx, hd_error *err);
 
-/* All points within a radius of each query point. Row i of out, m x n, lists by id the points at distance d
- * from query i with d^2 <= radius^2; its values are d^2. Arguments and errors as above; radius >= 0, HUGE_VAL
- * for all. Free out with hd_csr_free and the same ctx. Cost: O((n + m) log n + nnz), and sorting the rows. */
-HEATDIFF_API hd_status hd_neighbours_radius(hd_csr *out, const double *xyz, int32_t n,
-                                            const double *query, int32_t m, double radius,
-                                            hd_context *ctx, hd_error *err);
-
 /* ---- rational approximations ---- */
 
 /* A built-in set: HD_POLES_UNIFORM of degree 1..14, HD_POLES_KERNEL of degree 2..14, or HD_POLES_DIAGONAL of
@@ -1098,7 +1077,7 @@ HEATDIFF_API hd_status hd_neighbours_radius(hd_csr *out, const double *xyz, int3
  * Errors HD_ERR_ARGUMENT for any other kind or degree (value: a wrong degree)
  * Cost   O(1): a table
  * Source Cody, Meinardus, Varga 1969; Carpenter, Ruttan, Varga 1984 */
-HEATDIFF_API hd_status hd_rational_get(hd_rational *out, hd_pole_kind kind, int32_t degree,
+HEATDIFF_API hd_status hd_rational_exp(hd_rational *out, hd_pole_kind kind, int32_t degree,
                                        hd_error *err);
 
 /* Kernel sets for many times that share their poles.
@@ -1119,36 +1098,28 @@ HEATDIFF_API hd_status hd_rational_shared(hd_rational *out, int32_t n_times, con
 /* c(x) for real x <= 0; for a filter's set x = -t lambda. Cost: one division for each pole. */
 HEATDIFF_API double hd_rational_eval(const hd_rational *set, double x);
 
-/* A set for any filter f of the spectrum: K_t becomes f(B^-1 L), and k_t becomes f(B^-1 L) B^-1.
- * out        c(-t lambda) ~ f(lambda) on [0, lambda_max] with t = out->t. Give it to hd_heat_opts.rational,
- *            and out->t to queries as their time
+/* Sets for filters f of the spectrum: K_t becomes f(B^-1 L), and k_t becomes f(B^-1 L) B^-1. Several filters
+ * share their poles, so that one set of factors serves them all: see hd_heat_set_rational.
+ * out        [count] c(-t lambda) ~ f(lambda) on [0, lambda_max] with t = out->t, the same for all: only the
+ *            weights a of several sets differ
+ * filters    [count] count >= 1. Degrees rise until tol is reached, or max_degree; of several filters, which
+ *            may have up to HD_MAX_POLES pairs, max_degree is ignored
  * lambda_max that of the Laplacian, or more; 1/area
- * max_error is the largest |f - c| on 42,000 points, and reports call what follows from it measured. Degrees
- * rise until tol is reached. No pole lies on the spectrum.
+ * max_error is the largest |f - c| on 42,000 points, and reports call what follows from it measured. No pole
+ * lies on the spectrum. Poles are found for at most 20 of the filters, and weights for all. Wave filters over
+ * three decades of eigenvalues, as wide as is usual for a hundred of them, take 24 to 28 pairs, whether they
+ * are 16 or 100; one of them alone takes 8 to 10.
  * Classical distances become d^2 = (e_i - e_j)' f(B^-1 L) B^-1 (e_i - e_j), and weighted ones the same with
  * B f(B^-1 L). So f is what is summed in d^2, for example exp(-2 t lambda), and should not be negative.
  * Errors     HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (value: the eigenvalue), HD_ERR_BREAKDOWN (f is so large that
- *            a weight overflows), HD_ERR_MEMORY. HD_WARN_ACCURACY: out is the best set found, and its error
- *            is above tol
- * Cost       some 2 to 50 milliseconds, and 50 to 200 thousand values of f
- * Source     Nakatsukasa, Sete, Trefethen 2018, with weights refitted to the poles */
-HEATDIFF_API hd_status hd_rational_fit(hd_rational *out, const hd_filter *filter, double lambda_max,
-                                       hd_context *ctx, hd_error *err);
-
-/* Sets for several filters that share their poles, so that one set of factors serves them all: see
- * hd_heat_set_rational.
- * out     [count] of one t and the same theta; only the weights a differ
- * filters [count] count >= 1. max_degree is ignored: up to HD_MAX_POLES pairs are taken
- * Poles are found for at most 20 of the filters, and weights for all. Wave filters over three decades of
- * eigenvalues, as wide as is usual for a hundred of them, take 24 to 28 pairs, whether they are 16 or 100.
- * One of them alone takes 8 to 10.
- * Errors  as hd_rational_fit (column: which filter). HD_WARN_ACCURACY: an error is above its tol; max_error
- *         of each set says how large it is
- * Cost    a second for 16 filters, three to seven for 100
- * Source  as hd_rational_fit; Lietaert, Meerbergen, Perez, Vandereycken 2022 for several functions at once */
-HEATDIFF_API hd_status hd_rational_fit_shared(hd_rational *out, int32_t count,
-                                              const hd_filter *filters, double lambda_max,
-                                              hd_context *ctx, hd_error *err);
+ *            a weight overflows), all with column: which filter; HD_ERR_MEMORY. HD_WARN_ACCURACY: these are
+ *            the best sets found, and an error is above its tol
+ * Cost       some 2 to 50 milliseconds, and 50 to 200 thousand values of f; a second for 16 filters, three to
+ *            seven for 100
+ * Source     Nakatsukasa, Sete, Trefethen 2018, with weights refitted to the poles; Lietaert, Meerbergen,
+ *            Perez, Vandereycken 2022 for several functions at once */
+HEATDIFF_API hd_status hd_rational_fit(hd_rational *out, int32_t count, const hd_filter *filters,
+                                       double lambda_max, hd_context *ctx, hd_error *err);
 
 /* f(lambda) itself, lambda >= 0 in 1/area. Cost: one value of f. */
 HEATDIFF_API double hd_filter_eval(const hd_filter *filter, double lambda);
@@ -1222,7 +1193,7 @@ typedef struct hd_ldl_report {
 
 /* Computes the ordering, the elimination tree and the supernodes.
  * a      n x n with a symmetric pattern. Its values are ignored, and diagonal entries may be missing
- * Errors as hd_csr_check; HD_ERR_NOT_FINITE (row; column: 0 to 2) if a coordinate is not finite; HD_ERR_INDEX
+ * Errors those of a matrix that is not well formed; HD_ERR_NOT_FINITE (row; column: 0 to 2) if a coordinate is not finite; HD_ERR_INDEX
  *        (row) if perm is not a permutation; HD_ERR_ARGUMENT, HD_ERR_TOO_LARGE, HD_ERR_MEMORY,
  *        HD_ERR_CANCELLED
  * Cost   nearly linear in the non-zeros of A, plus the ordering
@@ -1276,18 +1247,6 @@ HEATDIFF_API hd_status hd_ldl_inverse(hd_ldl *f, double *values, double *diag, h
 HEATDIFF_API hd_status hd_ldl_inverse_complex(hd_ldl *f, hd_c64 *values, hd_c64 *diag,
                                               hd_error *err);
 
-/* Single entries of A^-1: values[q] is the entry (i[q], j[q]).
- * values [n_entries] for the last real factorisation, [k n_entries] for all matrices of the last complex one
- * Errors HD_ERR_ARGUMENT, HD_ERR_INDEX (row: which entry), HD_ERR_MEMORY
- * Cost   for each distinct j a forward sweep from j up the elimination tree and a backward sweep down to the
- *        rows i. Fronts off these paths are not touched. For entries on the pattern, hd_ldl_inverse is faster
- *        from some hundred columns on */
-HEATDIFF_API hd_status hd_ldl_inverse_entries(hd_ldl *f, int64_t n_entries, const int32_t *i,
-                                              const int32_t *j, double *values, hd_error *err);
-HEATDIFF_API hd_status hd_ldl_inverse_entries_complex(hd_ldl *f, int64_t n_entries,
-                                                      const int32_t *i, const int32_t *j,
-                                                      hd_c64 *values, hd_error *err);
-
 HEATDIFF_API void hd_ldl_free(hd_ldl *f);  /* NULL is fine */
 
 /* ---- heat ---- */
@@ -1305,19 +1264,22 @@ HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap,
                                       const hd_heat_opts *opts, hd_error *err);
 HEATDIFF_API void hd_heat_free(hd_heat *heat);  /* NULL is fine */
 
-/* Another pole set for a plan, as if it stood in hd_heat_opts.rational. Ordering, analysis and memory stay,
- * so that one plan serves many filters one after the other. Factors stay too if the set has the t and the
- * poles of the one before, see hd_rational_fit_shared.
- * set    copied; NULL: from now on exp, with poles and degree by default
- * Errors HD_ERR_ARGUMENT (also if the plan is of method krylov or of Lanczos), HD_ERR_NOT_FINITE; then
- *        nothing has changed
- * Cost   O(1) */
-HEATDIFF_API hd_status hd_heat_set_rational(hd_heat *heat, const hd_rational *set, hd_error *err);
+/* Other pole sets for a plan, in place of hd_heat_opts.rational. Ordering, analysis and memory stay, so that
+ * one plan serves many filters one after the other. Factors stay too if the sets have the t and the poles of
+ * those before.
+ * sets   [count] copied. Several must have one t, one lambda_max and the same theta, as from hd_rational_fit:
+ *        hd_heat_diagonal answers for all of them at once, other queries for the first. count = 0: from now on
+ *        exp, with poles and degree by default
+ * Errors HD_ERR_ARGUMENT (column: which set; also if the plan is of method krylov or of Lanczos),
+ *        HD_ERR_NOT_FINITE; then nothing has changed
+ * Cost   O(count) */
+HEATDIFF_API hd_status hd_heat_set_rational(hd_heat *heat, int32_t count, const hd_rational *sets,
+                                            hd_error *err);
 
 /* Common to all queries of a plan:
  * kernel HD_KERNEL_OPERATOR for K_t, HD_KERNEL_SYMMETRIC for k_t = K_t B^-1
  * t      [n_times], n_times >= 1, in any order; unit length^2. One time: n_times = 1 and the address of t.
- *        With a filter: the t of its set
+ *        With a filter: n_times = 0, or 1 and the t of its set; answers count as those of one time
  * report NULL, or what happened; with several columns or times the worst of them
  * err    NULL, or the error, which report->error has as well */
 
@@ -1396,102 +1358,46 @@ HEATDIFF_API hd_status hd_heat_columns(hd_heat *heat, hd_kernel kernel, int32_t 
 HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, hd_kernel kernel, double t, int32_t source,
                                       double *u, hd_report *report, hd_error *err);
 
-/* The diagonal of k_t or K_t at every vertex. That of k_t is the heat kernel signature (Sun et al. 2009),
- * also called auto-diffusion function (Gebal et al. 2009). It comes from selected inversion, without
- * eigenvectors and without columns.
+/* The diagonal of k_t or K_t at every vertex, and the heat trace. That of k_t is the heat kernel signature
+ * (Sun et al. 2009), also called auto-diffusion function (Gebal et al. 2009). They come from selected
+ * inversion, without eigenvectors and without columns. Divided by the trace, signatures have the integral 1 at
+ * each time, so that no time outweighs the others (Sun et al. 2009, section 4).
  * t      > 0
  * D      n x n_times, column q for t[q], columns ldd apart (0: n); k_t: unit 1/area. A vertex without mass
- *        has 0 (K_t: 1), a held one 0
+ *        has 0 (K_t: 1), a held one 0. NULL: not wanted
+ * Z      [n_times] tr K_t = sum_i exp(-t lambda_i) over all eigenvalues; no unit. It is the integral of
+ *        k_t(x,x). Vertices without mass and held ones do not count. NULL: not wanted
+ * bound  [n_times] or NULL: bounds on the absolute error of each Z
+ * With several filters (hd_heat_set_rational) there is a column, a Z and a bound for each, and n_times is 0.
+ * For wave filters D/Z are the wave kernel signatures at all energies. One t serves all sets then, so that
+ * bounds are looser than those of a filter by itself: with waves over three decades 1e-5 to 1e-3 where errors
+ * are below 1e-7.
  * report the rational part is proven at every vertex. Rounding is measured by solves whose residuals are
- *        known, at the vertices where it is largest; with many times, at each time
+ *        known, at the vertices where it is largest; with many times, at each time, with several filters, for
+ *        the first
  * If B is not diagonal, k_t leaves out the term a0 diag(B^-1) of a uniform set. It is as large as the set's
  * error, and the bound includes it.
- * Errors HD_ERR_ARGUMENT (also if n_times < 1, or if the method is iterative or krylov), HD_ERR_BREAKDOWN,
- *        HD_ERR_MEMORY, HD_ERR_CANCELLED; HD_WARN_ACCURACY
+ * Errors HD_ERR_ARGUMENT (also if the method is iterative or krylov), HD_ERR_BREAKDOWN, HD_ERR_MEMORY,
+ *        HD_ERR_CANCELLED; HD_WARN_ACCURACY
  * Cost   for each t the factors of all poles, and about twice as much again. Many times share one set of
  *        poles if neither poles nor a degree are chosen: 16 or 100 times over three decades cost four or five
- *        times as much as one
+ *        times as much as one. Filters: once, and 2 n flops for each set and pole. Memory for the inverses of
+ *        each pole: up to 48 n doubles, with a full B and traces 250 n
  * Source Takahashi, Fagan, Chin 1973; Erisman, Tinney 1975 for the inversion */
 HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t n_times,
-                                        const double *t, double *D, size_t ldd, hd_report *report,
-                                        hd_error *err);
-
-/* The heat trace tr K_t = sum_i exp(-t lambda_i) over all eigenvalues, as the sum of K_t's diagonal. It is
- * the integral of k_t(x,x). Vertices without mass and held ones do not count.
- * t      > 0
- * Z      [n_times]; no unit
- * bound  [n_times] or NULL: bounds on the absolute error of each
- * report as hd_heat_diagonal; error_relative is that of the least accurate time
- * Errors as hd_heat_diagonal
- * Cost   as hd_heat_diagonal; many times share poles whatever B is. Memory for the inverses of each pole: up
- *        to 48 n doubles, with a full B 250 n */
-HEATDIFF_API hd_status hd_heat_trace(hd_heat *heat, int32_t n_times, const double *t, double *Z,
-                                     double *bound, hd_report *report, hd_error *err);
-
-/* Heat kernel signatures normalised by the trace, k_t(x,x)/tr K_t. Their integral is 1 at each time, so that
- * no time outweighs the others.
- * D      n x n_times as in hd_heat_diagonal; unit 1/area
- * report bounds are those of the quotients
- * Errors as hd_heat_diagonal
- * Cost   that of hd_heat_diagonal and of hd_heat_trace
- * Source Sun, Ovsjanikov, Guibas 2009, section 4 */
-HEATDIFF_API hd_status hd_heat_normalised(hd_heat *heat, int32_t n_times, const double *t,
-                                          double *D, size_t ldd, hd_report *report,
-                                          hd_error *err);
-
-/* Diagonals of many filters whose sets share their poles, by one factorisation and inversion: a column for
- * each set, k = f(B^-1 L) B^-1 at every vertex. For wave filters D/Z are the wave kernel signatures at all
- * energies.
- * heat   a plan whose set is one of them, or has their poles: hd_heat_opts.rational or hd_heat_set_rational
- * sets   [count] of one t and the same theta, as from hd_rational_fit_shared; each with its lambda_max
- * D      n x count as in hd_heat_diagonal, the symmetric kernel
- * Z      [count] or NULL: sum of f over all eigenvalues
- * bound  [count] or NULL: bounds on the absolute errors of Z
- * report bounds of D. Rounding is measured at the rows where it may be largest in the first column. One t
- *        serves all sets, so that bounds are looser than those of a filter by itself: with waves over three
- *        decades 1e-5 to 1e-3 where errors are below 1e-7
- * Errors as hd_heat_diagonal; HD_ERR_ARGUMENT (column: which set has other poles or another time)
- * Cost   as hd_heat_diagonal for one set of as many poles, and 2 n flops for each set and pole. Memory for
- *        the inverses of each pole: 16 n bytes, with a full B about 80 n. On 50,000 vertices 16 or 100
- *        wave filters take 2.6 to 3.8 times as long as one alone */
-HEATDIFF_API hd_status hd_heat_filter_diagonals(hd_heat *heat, int32_t count,
-                                                const hd_rational *sets, double *D, size_t ldd,
-                                                double *Z, double *bound, hd_report *report,
-                                                hd_error *err);
-
-/* Signatures that change little if the surface is scaled. Scaling shifts log k_t(x,x) along log t and adds a
- * constant. A derivative in log t removes the constant, and the modulus of a Fourier transform the shift:
- *   D(x,k) = |sum_j (log k_(j+1)(x,x) - log k_j(x,x)) exp(-2 pi i jk/m)|,  j = 0 .. m - 1,  m = n_times - 1,
- * with times t_j = t0 (t1/t0)^(j/m). What is shifted in at one end and out at the other is not the same, so
- * t0 and t1 should reach far beyond the details to be told apart.
- * n_times at least 3. Bronstein and Kokkinos take 385 times from 2 to 2^25 in their units, 16 to an octave
- * D       n x n_freq, frequency k = 0 .. n_freq - 1 in column k, columns ldd apart (0: n); n_freq at most
- *         (n_times + 1)/2; they take 6. 0 at vertices without mass and at held ones
- * report  error_bound from error_relative of the signatures, relative to the largest value
- * Errors  as hd_heat_diagonal; HD_ERR_ARGUMENT
- * Cost    hd_heat_diagonal, n n_times doubles, and n n_times n_freq multiply-adds
- * Source  Bronstein, Kokkinos 2010, eqs. (10) to (13) */
-HEATDIFF_API hd_status hd_heat_scale_invariant(hd_heat *heat, double t0, double t1,
-                                               int32_t n_times, int32_t n_freq, double *D,
-                                               size_t ldd, hd_report *report, hd_error *err);
+                                        const double *t, double *D, size_t ldd, double *Z,
+                                        double *bound, hd_report *report, hd_error *err);
 
 /* Times that suit the area A of the surface, 1'B1: evenly spaced in log t from 0.0024 A to 0.37 A. At the
  * first about 300 eigenvalues matter, at the last two. With one time it is their geometric mean.
  * t      [n_times] length^2, or the unit that t has for this Laplacian (kind exp: A is the squared area)
  * Errors HD_ERR_ARGUMENT
  * Cost   one pass over the masses
- * Source Weyl's law: the k-th eigenvalue is about 4 pi k/A */
+ * Source Weyl's law: the k-th eigenvalue is about 4 pi k/A. Times that suit the first eigenvalue are c/value[
+ *        n_constant] of hd_spectrum: at c = 1 signatures show tips and branches, at 0.1 details (Gebal et al.
+ *        2009) */
 HEATDIFF_API hd_status hd_times_auto(const hd_laplacian *lap, int32_t n_times, double *t,
                                      hd_error *err);
-
-/* t = c/lambda_1, with lambda_1 the smallest eigenvalue except those of constants. The diagonal of k_t at
- * such times is the auto-diffusion function of Gebal, Baerentzen, Aanaes, Larsen 2009, where c is called t.
- * Small c (0.1) shows details, c = 1 tips and branches.
- * c, t   [n_times] c > 0 without unit, t in length^2; both may be the same array
- * Errors and cost as hd_spectrum_create for one pair more than components; HD_ERR_BREAKDOWN if lambda_1 is
- * not above zero, which rounding can do */
-HEATDIFF_API hd_status hd_times_spectral(const hd_laplacian *lap, int32_t n_times,
-                                         const double *c, double *t, hd_error *err);
 
 /* Diffusion distances from each source to every vertex. With the functional c of a source, divided by the sum
  * of its weights, d^2 = (e_v - c)' F (e_v - c), where F is the matrix of the kind: k_2t, B K_2t and so on.
@@ -1527,9 +1433,9 @@ HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, in
                                         const double *t, const hd_sources *sources, double *D,
                                         size_t ldd, hd_report *report, hd_error *err);
 
-/* K_t(i[q],j[q]) and diffusion distances of listed pairs.
+/* Diffusion distances of listed pairs.
  * t      >= 0; ignored by commute and biharmonic, with n_times 0 or 1
- * K, d   [n_pairs n_times], time by time; each may be NULL. K is not written for commute and biharmonic
+ * d      [n_pairs n_times], time by time
  * The distance is |K_t B^-1 (e_i - e_j)|_B, from the columns at t of all vertices that occur, without
  * cancellation, or from eigenpairs as above. Where its bound is above 1e-6, degree 14 takes over. If these
  * columns would take more than half a GiB, it comes from entries and the diagonal at 2t, one column at a
@@ -1539,10 +1445,10 @@ HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, in
  *        distances of a filter need the direct method
  * Cost   one column for each distinct vertex, or for each of those taken at a time; from entries one for each
  *        distinct i, and a diagonal */
-HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, int32_t n_times,
-                                     const double *t, int64_t n_pairs, const int32_t *i,
-                                     const int32_t *j, double *K, double *d, hd_report *report,
-                                     hd_error *err);
+HEATDIFF_API hd_status hd_heat_distance_pairs(hd_heat *heat, hd_distance_kind kind, int32_t n_times,
+                                              const double *t, int64_t n_pairs, const int32_t *i,
+                                              const int32_t *j, double *d, hd_report *report,
+                                              hd_error *err);
 
 /* Farthest points: each is the vertex farthest from all sources and all points before it, under the given
  * distance.
@@ -12692,107 +12598,9 @@ static hd_status hdi_ldl_invert(hd_ldl *f, hdi_factor *of, int32_t n_matrices, d
     return hdi_scope_end(&s);
 }
 
-/* Entries of inverses that are asked for one by one. */
-typedef struct hdi_ldl_entries {
-    const hdi_pair *order;       /* [n] columns j with the entries' numbers, ascending */
-    const int32_t *i;            /* [n] rows by number */
-    int64_t n;
-    char *active, *wanted;       /* [n_super] */
-} hdi_ldl_entries;
-
-/* Entries [begin,end) of t->order, all of one column j: solves for e_j on the fronts that matter. x [n] is
- * zero, and is so again afterwards. */
-static void hdi_ldl_column(const hd_ldl *f, const hdi_factor *of, const hdi_ldl_entries *t, int64_t begin,
-                           int64_t end, int32_t n_matrices, double *values) {
-    const hdi_symbolic *s = &f->sym;
-    const int32_t width = of->width, stride = width == 1 ? 1 : 2, source = f->inv[t->order[begin].key];
-    double *x = f->x[width > 1];
-    hdi_sweep z = hdi_sweep_open(of, 1, x, f->work[width > 1]);
-    int64_t p;
-    int32_t v, q;
-    memset(t->active, 0, (size_t)s->n_super);
-    memset(t->wanted, 0, (size_t)s->n_super);
-    hdi_sweep_touch(s, source, t->active);
-    for (p = begin; p < end; p++) hdi_sweep_touch(s, f->inv[t->i[t->order[p].id]], t->wanted);
-    for (q = 0; q < (width == 1 ? 1 : HDI_PACK_LANES); q++) x[(int64_t)width * source + q] = 1;
-    z.active = t->active;
-    z.wanted = t->wanted;
-    hdi_sweep_run(&z, NULL);
-    for (p = begin; p < end; p++) {
-        const int64_t to = t->order[p].id;
-        const double *at = x + (int64_t)width * f->inv[t->i[to]];
-        for (q = 0; q < n_matrices * stride; q++)
-            values[stride * (q / stride * t->n + to) + q % stride] = at[hdi_pack_part(q, stride)];
-    }
-    for (v = 0; v < s->n_super; v++)
-        if (t->active[v] || t->wanted[v])
-            memset(x + (int64_t)width * s->super[v], 0, (size_t)(width * hdi_front_pivots(s, v)) * sizeof *x);
-}
-
-/* Entries of one factor's inverses: part c of matrix q goes to values + stride (q n + entry) + c. */
-static void hdi_ldl_some(const hd_ldl *f, const hdi_factor *of, const hdi_ldl_entries *t, int32_t n_matrices,
-                         double *values) {
-    int64_t begin, end;
-    memset(f->x[of->width > 1], 0, (size_t)f->n * (size_t)of->width * sizeof *values);
-    for (begin = 0; begin < t->n; begin = end) {
-        for (end = begin; end < t->n && t->order[end].key == t->order[begin].key; end++) {}
-        hdi_ldl_column(f, of, t, begin, end, n_matrices, values);
-    }
-}
-
-/* Entries (i,j) of the inverses of the real factor, or of those of all packs. */
-static hd_status hdi_ldl_inverse_entries(hd_ldl *f, int packs, int64_t n, const int32_t *i, const int32_t *j,
-                                         double *values, hd_error *e) {
-    hdi_scope s;
-    hdi_pair *order;
-    hdi_ldl_entries t;
-    int64_t q;
-    int32_t p;
-    if (hdi_ldl_room(f, packs, e) < 0) return e->status;
-    s = hdi_scope_begin(f->ctx, e);
-    order = HDI_TAKE(&s, hdi_pair, n);
-    t.order = order;
-    t.i = i;
-    t.n = n;
-    t.active = HDI_TAKE(&s, char, f->sym.n_super);
-    t.wanted = HDI_TAKE(&s, char, f->sym.n_super);
-    if (e->status < 0) return hdi_scope_end(&s);
-    for (q = 0; q < n; q++) {
-        order[q].key = (uint64_t)j[q];
-        order[q].id = q;
-    }
-    hdi_sort_pairs(order, n);
-    if (!packs) hdi_ldl_some(f, &f->real, &t, 1, values);
-    for (p = 0; packs && HDI_PACK_LANES * p < f->n_matrices; p++)
-        hdi_ldl_some(f, f->pack + p, &t, hdi_ldl_lanes(f, p), values + HDI_PACK * p * n);
-    return hdi_scope_end(&s);
-}
-
 static hd_status hdi_ldl_enter_inverse(hdi_call *c, const hd_ldl *f, int packs, hd_error *err) {
     if (hdi_ldl_enter_factored(c, f, packs, 1, err) < 0 || HDI_HAS_DIAGONAL) return c->e->status;
     return HDI_LEFT_OUT(c->e, DIAGONAL, "selected inversion");
-}
-
-static hd_status hdi_ldl_entries_check(const hd_ldl *f, int64_t n, const int32_t *i, const int32_t *j,
-                                       const void *values, hd_error *e) {
-    int64_t q;
-    if (n < 0) return hdi_fail(e, HD_ERR_ARGUMENT, "ldl: the number of entries is negative");
-    if (n > 0 && (!i || !j || !values)) return hdi_missing(e);
-    for (q = 0; q < n; q++) {
-        const int32_t worst = i[q] < 0 || i[q] >= f->n ? i[q] : j[q];
-        if (worst < 0 || worst >= f->n)
-            return hdi_fail_row(e, HD_ERR_INDEX, "ldl: an entry is not in the matrix", q, -1, worst);
-    }
-    return HD_OK;
-}
-
-/* The same for a public call. */
-static hd_status hdi_ldl_some_entries(hd_ldl *f, int packs, int64_t n, const int32_t *i, const int32_t *j,
-                                      double *values, hd_error *err) {
-    hdi_call c;
-    if (hdi_ldl_enter_inverse(&c, f, packs, err) < 0 || !HDI_HAS_DIAGONAL) return c.e->status;
-    if (hdi_ldl_entries_check(f, n, i, j, values, c.e) < 0) return c.e->status;
-    return n > 0 ? hdi_ldl_inverse_entries(f, packs, n, i, j, values, c.e) : HD_OK;
 }
 
 /* ==== [19] precond ====
@@ -19518,6 +19326,8 @@ struct hd_heat {
     double habit_t, habit_spent;
     int32_t spare;               /* of a call that exceeded the byte limit: an hdi_spare */
     hd_rational own_set;
+    hd_rational *sets;           /* [n_sets] where these are several; own_set is the first */
+    int32_t n_sets;
     hdi_elim elim;               /* to factorise */
     hdi_elim few;                /* the same in an order that is found fast, see hdi_krylov_few */
     hdi_ground ground;           /* made when it is first needed; of elim */
@@ -22382,7 +22192,12 @@ static hd_status hdi_filter_times(const hd_heat *heat, int32_t n_times, const do
 
 /* Checks the times of a call and takes them up. positive: zero is an error. */
 static hd_status hdi_times_check(hdi_heat_call *h, int32_t n_times, const double *t, int positive) {
+    const hd_rational *set = h->heat->opts.rational;
     int32_t q;
+    if (n_times == 0 && set && set->t > 0) {     /* a filter has one of its own */
+        n_times = 1;
+        t = &set->t;
+    }
     if (n_times < 1) return hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: there is no time");
     if (!t) return hdi_missing(h->e);
     for (q = 0; q < n_times; q++) {
@@ -22686,6 +22501,7 @@ static void hdi_heat_free(hd_heat *heat) {
     hdi_free(ctx, heat->perm);
     hdi_free(ctx, heat->fill);
     hdi_free(ctx, heat->sums);
+    hdi_free(ctx, heat->sets);
     hdi_free(ctx, heat);
     hdi_let_go(ctx);
 }
@@ -22698,10 +22514,6 @@ static void hdi_heat_take_set(hd_heat *heat, const hd_rational *set) {
         heat->own_set.kind = HD_POLES_OWN;
     }
     o->rational = set ? &heat->own_set : NULL;
-    o->poles = HD_POLES_DEFAULT;
-    o->degree = 0;
-    heat->poles_asked = set != NULL;
-    heat->habit_spent = 0;
 }
 
 /* ==== [27] kernel ====
@@ -23542,10 +23354,10 @@ static hd_status hdi_diagonals_run(hdi_heat_call *h, hd_kernel kernel, double *D
 
 /* ---- filters that share their poles ---- */
 
-/* Diagonals of k, n values ldd apart, and traces of K with bounds, or NULL, for sets that share the poles and
- * the time of the call. */
-static hd_status hdi_filters_run(hdi_heat_call *h, const hd_rational *sets, int32_t count, double *D,
-                                 size_t ldd, double *Z, double *bound) {
+/* Diagonals in D, ldd apart, and traces in Z with bounds, or NULL, for all sets of the plan. */
+static hd_status hdi_filters_run(hdi_heat_call *h, hd_kernel kernel, double *D, size_t ldd, double *Z,
+                                 double *bound) {
+    const int32_t count = h->heat->n_sets;
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
     hdi_diagonals to;
     hdi_inverses x;
@@ -23553,7 +23365,7 @@ static hd_status hdi_filters_run(hdi_heat_call *h, const hd_rational *sets, int3
     int32_t *column, q;
     memset(&to, 0, sizeof to);
     to.task.h = h;
-    to.kernel = HD_KERNEL_SYMMETRIC;
+    to.kernel = kernel;
     to.D = D;
     to.ldd = ldd;
     to.Z = Z;
@@ -23564,116 +23376,11 @@ static hd_status hdi_filters_run(hdi_heat_call *h, const hd_rational *sets, int3
     if (hdi_inverses_take(&x, h, count, hdi_diagonals_wanted(&to), &s) < 0) return hdi_scope_end(&s);
     for (q = 0; q < count; q++) {
         column[q] = q;
-        x.set[q] = sets[q];
+        x.set[q] = h->heat->sets[q];
         x.set[q].kind = HD_POLES_OWN;
     }
     (void)hdi_diagonals_of(&to, &x, column, NULL, &relative, &s);
     return hdi_scope_end(&s);
-}
-
-/* ---- signatures ---- */
-
-/* D [n n_times], ldd apart, by the traces Z: quotients. rep: of D; trace: of Z. */
-static void hdi_signature_normalise(const hd_laplacian *lap, int32_t n_times, double *D, size_t ldd,
-                                    const double *Z, hd_report *rep, const hd_report *trace) {
-    const double r = trace->error_relative, grow = r < 0.5 ? 1 / (1 - r) : HUGE_VAL;
-    int32_t q, v;
-    rep->smallest = HUGE_VAL;
-    for (q = 0; q < n_times; q++) {
-        double *d = D + (size_t)q * ldd;
-        for (v = 0; v < lap->n; v++) {
-            if (d[v] == 0) continue;
-            d[v] /= Z[q];
-            rep->smallest = hdi_min(rep->smallest, fabs(d[v]));
-        }
-    }
-    if (!hdi_finite(rep->smallest)) rep->smallest = 0;
-    rep->error_rational = hdi_bound_times(grow, rep->error_rational + trace->error_rational);
-    rep->error_rounding = hdi_bound_times(grow, rep->error_rounding + trace->error_rounding);
-    rep->error_bound = hdi_bound_times(grow, rep->error_bound + r);
-    rep->error_relative = hdi_bound_times(grow, rep->error_relative + r);
-    hdi_evidence_worst(&rep->evidence_rational, trace->evidence_rational);
-    hdi_evidence_worst(&rep->evidence_rounding, trace->evidence_rounding);
-    hdi_bound_judge(rep->error_bound, rep);
-}
-
-/* |sum_j (log h_(j+1) - log h_j) exp(-2 pi i jk/m)| over j < m, h_j at x + stride j, for k < n_freq, into out
- * + ldd k. Returns 0, and zeros, where a value has no logarithm. at [2 m]: cosines and sines of the circle;
- * step [m]: work. */
-typedef struct hdi_circle { int32_t m; double *at, *step; } hdi_circle;
-
-static int hdi_signature_spectrum(const hdi_circle *c, const double *x, size_t stride, int32_t n_freq,
-                                  double *out, size_t ldd) {
-    double before = 0;
-    int32_t j, k, ok = 1;
-    for (j = 0; j <= c->m; j++) {
-        const double h = x[(size_t)j * stride], now = h > 0 ? log(h) : 0;
-        ok = ok && h > 0;
-        if (j > 0) c->step[j - 1] = now - before;
-        before = now;
-    }
-    for (k = 0; k < n_freq; k++) {
-        double re = 0, im = 0;
-        int32_t at = 0;
-        for (j = 0; j < c->m && ok; j++) {
-            re += c->step[j] * c->at[2 * at];
-            im -= c->step[j] * c->at[2 * at + 1];
-            at += k;
-            if (at >= c->m) at -= c->m;
-        }
-        out[(size_t)k * ldd] = hypot(re, im);
-    }
-    return ok;
-}
-
-/* The bound of the report of diagonals becomes that of their spectra. An error of at most r in each logarithm
- * counts |w^(j-1) - w^j| = 2 sin(pi k/m) for those inside, and 1 for the two at the ends. */
-static void hdi_signature_tell(hd_report *rep, int32_t m, int32_t n_freq, double largest) {
-    const double pi = 3.141592653589793238;
-    const double r = rep->error_relative < 1 ? -log1p(-rep->error_relative) : HUGE_VAL;
-    const double sum = rep->error_rational + rep->error_rounding;
-    const double terms = 2 + (m - 1) * 2 * sin(pi * hdi_min(n_freq - 1, m / 2) / m);
-    rep->error_bound = hdi_quotient(hdi_bound_times(terms, r), largest) + 8 * m * DBL_EPSILON;
-    if (hdi_finite(rep->error_bound)) {
-        rep->error_rational = sum > 0 ? rep->error_bound * (rep->error_rational / sum) : 0;
-        rep->error_rounding = hdi_max(0, rep->error_bound - rep->error_rational);
-    } else {
-        rep->error_rational = rep->error_rounding = HUGE_VAL;
-    }
-    rep->error_relative = HUGE_VAL;
-    rep->smallest = 0;
-    rep->status = rep->status > 0 ? HD_OK : rep->status;   /* judged anew */
-    hdi_bound_judge(rep->error_bound, rep);
-}
-
-/* The spectra of k_t(v,v) at n_times times t, evenly spaced in log t. */
-static hd_status hdi_signature_run(hdi_heat_call *h, int32_t n_freq, double *D, size_t ldd) {
-    const hd_laplacian *lap = h->heat->source;
-    const double two_pi = 6.283185307179586477;
-    const int32_t n_times = h->ask.n_times, m = n_times - 1;
-    const size_t n = (size_t)lap->n;
-    double *x = HDI_TAKE(&h->s, double, (uint64_t)n * (uint64_t)n_times);
-    double *circle = HDI_TAKE(&h->s, double, 3 * (uint64_t)m), largest = 0;
-    hdi_circle c;
-    size_t v;
-    int32_t j, sure = 1;
-    if (h->e->status < 0 || hdi_diagonals_run(h, HD_KERNEL_SYMMETRIC, x, n, NULL, NULL) < 0)
-        return h->e->status;
-    for (j = 0; j < m; j++) {
-        circle[2 * j] = cos(two_pi * j / m);
-        circle[2 * j + 1] = sin(two_pi * j / m);
-    }
-    c.m = m;
-    c.at = circle;
-    c.step = circle + 2 * (size_t)m;
-    for (v = 0; v < n; v++) {
-        const int ok = hdi_signature_spectrum(&c, x + v, n, n_freq, D + v, ldd);
-        sure = sure && (ok || lap->row[v] < 0);
-        for (j = 0; j < n_freq; j++) largest = hdi_max(largest, D[(size_t)j * ldd + v]);
-    }
-    if (!sure) h->rep->error_relative = HUGE_VAL;
-    hdi_signature_tell(h->rep, m, n_freq, largest);
-    return h->e->status;
 }
 
 /* Checks that there is selected inversion, and that the direct method is allowed. */
@@ -23681,26 +23388,15 @@ static hd_status hdi_diagonal_check(hdi_heat_call *h) {
     return HDI_HAS_DIAGONAL ? hdi_direct_only(h) : HDI_LEFT_OUT(h->e, DIAGONAL, "selected inversion");
 }
 
-/* The start of a query that only selected inversion answers, at positive times. given: its array is there. */
-static hd_status hdi_diagonal_begin(hdi_heat_call *h, hd_heat *heat, hd_kernel kernel, int32_t n_times,
-                                    const double *t, int given, hd_report *report, hd_error *err) {
-    if (hdi_kernel_begin(h, heat, kernel, report, err) < 0 || hdi_times_check(h, n_times, t, 1) < 0 ||
-        hdi_diagonal_check(h) < 0) return h->e->status;
-    return given ? HD_OK : hdi_missing(h->e);
-}
-
-/* Has the plan a set, and have all sets its poles and time? */
-static hd_status hdi_filters_check(const hd_heat *heat, int32_t count, const hd_rational *sets, hd_error *e) {
-    const hd_rational *own = heat->opts.rational;
+/* Checks sets that one plan is to have. */
+static hd_status hdi_sets_check(const hd_rational *sets, int32_t count, hd_error *e) {
     int32_t q;
-    hdi_refuse(!own || !(own->t > 0), "filters: the plan has no set of a filter", e);
-    hdi_refuse(count < 1, "filters: there is none", e);
     for (q = 0; q < count && e->status >= 0; q++) {
-        if (hdi_rational_check(sets + q, e) >= 0)
-            hdi_refuse(sets[q].t != own->t || sets[q].lambda_max != own->lambda_max ||
-                       !hdi_set_same_poles(sets + q, own),
-                       "filters: a set differs from the plan's in poles, t or lambda_max", e);
-        if (e->status < 0) e->column = q;
+        if (hdi_rational_check(sets + q, e) >= 0 && count > 1)
+            hdi_refuse(!(sets[q].t > 0) || sets[q].t != sets->t || sets[q].lambda_max != sets->lambda_max ||
+                       !hdi_set_same_poles(sets + q, sets),
+                       "filters: a set differs from the first in poles, t or lambda_max", e);
+        if (e->status < 0 && count > 1) e->column = q;
     }
     return e->status;
 }
@@ -24941,29 +24637,6 @@ static hd_status hdi_pairs_run(hdi_heat_call *h, hdi_pairs *to) {
     return hdi_heat_sparing(h, hdi_task_run, &to->task);
 }
 
-/* Distances, if to->d is there, and kernel entries, if K is. */
-static hd_status hdi_pairs_answer(hdi_heat_call *h, hdi_pairs *to, int32_t n_times, const double *t,
-                                  double *K) {
-    hdi_heat_call c;
-    hdi_entry_list list;
-    hd_report one;
-    const double spent = h->heat->habit_spent;   /* before the call, whose parts take the same method */
-    if (to->d && hdi_pairs_run(h, to) < 0) return h->e->status;
-    if (!K || hdi_distance_timeless(to->kind)) return HD_OK;
-    h->heat->habit_spent = spent;
-    if (hdi_kernel_begin(&c, h->heat, HD_KERNEL_OPERATOR, &one, NULL) >= 0 &&
-        hdi_times_check(&c, n_times, t, 0) >= 0) {
-        list.values = K;
-        (void)hdi_entry_list_make(&c, &list, to->n, to->i, to->j);
-    }
-    if (hdi_heat_run(&c) < 0) *h->e = one.error;
-    if (h->e->status < 0) return h->e->status;
-    one.error_relative = one.smallest = 0;       /* these are of the distances */
-    if (to->d) hdi_report_merge(&one, h->rep);
-    *h->rep = one;
-    return HD_OK;
-}
-
 static hd_status hdi_sample_answer(hd_heat *heat, hdi_samples *a, const hd_sources *sources,
                                    hd_report *report, hd_error *err) {
     hdi_heat_call h;
@@ -25279,21 +24952,6 @@ static hd_status hdi_estimate_times(const hdi_estimate *x) {
     return h->e->status;
 }
 
-/* Traces after diagonals, which they norm. */
-static hd_status hdi_estimate_normalised(hdi_estimate *x) {
-    const hd_heat *heat = x->h->heat;
-    hd_cost diagonal, *c = x->to->cost + HD_METHOD_DIRECT;
-    x->query = HD_QUERY_DIAGONAL;
-    if (hdi_estimate_times(x) < 0) return x->h->e->status;
-    diagonal = *c;
-    if (heat->elim.ctx)                          /* lanes and the real factor of the diagonal stay */
-        x->held += (double)(hdi_batches_need(heat, 1, HDI_PROBES) +
-                            (heat->elim.real.ctx ? 0 : hdi_factor_bytes(&heat->elim.sym, 1)));
-    x->query = HD_QUERY_TRACE;
-    if (hdi_estimate_times(x) >= 0) hdi_cost_add(c, &diagonal);
-    return x->h->e->status;
-}
-
 /* The estimate of a query whose arguments are checked. */
 static hd_status hdi_estimate_run(hdi_heat_call *h, hd_query query, int32_t k, hd_estimate *to) {
     const hd_heat *heat = h->heat;
@@ -25329,10 +24987,6 @@ static hd_status hdi_estimate_run(hdi_heat_call *h, hd_query query, int32_t k, h
     }
     if (query == HD_QUERY_PAIRS)
         x.held = 8 * hdi_min(n * x.k, (double)HDI_PAIRS_DOUBLES) + 8.0 * x.k + 16 * n;
-    if (query == HD_QUERY_NORMALISED) x.held = 8.0 * h->n_times;
-    if (query == HD_QUERY_SCALE_INVARIANT) x.held = (8 * n + 24) * h->n_times;
-    if (query == HD_QUERY_NORMALISED) return hdi_estimate_normalised(&x);
-    if (query == HD_QUERY_SCALE_INVARIANT) x.query = HD_QUERY_DIAGONAL;
     return hdi_estimate_times(&x);
 }
 
@@ -26762,20 +26416,6 @@ HEATDIFF_API hd_status hd_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t
     return hdi_scope_end(&s);
 }
 
-HEATDIFF_API hd_status hd_csr_check(const hd_csr *a, int32_t symmetric, hd_context *ctx, hd_error *err) {
-    hdi_call c;
-    if (hdi_enter(&c, ctx, err) < 0) return c.e->status;
-    return a ? hdi_csr_check(a, symmetric, c.e) : hdi_missing(c.e);
-}
-
-HEATDIFF_API void hd_csr_apply(const hd_csr *a, const double *x, double *y, hd_context *ctx) {
-    hdi_call c;
-    if (hdi_enter(&c, ctx, NULL) < 0) c.ctx = &c.context;
-    hdi_hold(c.ctx);
-    hdi_csr_apply(a, x, y, c.ctx);
-    hdi_let_go(c.ctx);
-}
-
 HEATDIFF_API void hd_csr_free(hd_csr *a, hd_context *ctx) {
     hdi_call c;
     (void)hdi_enter(&c, ctx, NULL);
@@ -26964,23 +26604,6 @@ HEATDIFF_API hd_status hd_neighbours_nearest(const double *xyz, int32_t n, const
     return hdi_scope_end(&s);
 }
 
-HEATDIFF_API hd_status hd_neighbours_radius(hd_csr *out, const double *xyz, int32_t n, const double *query,
-                                            int32_t m, double radius, hd_context *ctx, hd_error *err) {
-    hdi_call c;
-    hdi_scope s;
-    hdi_tree tree;
-    if (hdi_enter(&c, ctx, err) < 0 || hdi_neighbours_check(xyz, n, query, &m, c.e) < 0 || !HDI_HAS_POINTS)
-        return c.e->status;
-    if (!out) return hdi_missing(c.e);
-    if (hdi_nan(radius) || radius < 0)
-        return hdi_fail(c.e, HD_ERR_ARGUMENT, "neighbours: the radius is negative or not a number");
-    radius = hdi_min(radius, 1e152);             /* its square does not overflow */
-    if (hdi_neighbours_tree(&tree, xyz, n, &c, &s) >= 0)
-        (void)hdi_within(out, &tree, query, m, radius * radius, c.ctx, c.e);
-    hdi_let_go(c.ctx);
-    return hdi_scope_end(&s);
-}
-
 HEATDIFF_API hd_status hd_laplacian_apply(const hd_laplacian *lap, double alpha, double beta, const double *x,
                                           double *y, hd_error *err) {
     hdi_call c;
@@ -27025,7 +26648,7 @@ HEATDIFF_API void hd_laplacian_free(hd_laplacian *lap) { if (lap) hdi_lap_drop(l
 
 /* ---- rational approximations ---- */
 
-HEATDIFF_API hd_status hd_rational_get(hd_rational *out, hd_pole_kind kind, int32_t degree, hd_error *err) {
+HEATDIFF_API hd_status hd_rational_exp(hd_rational *out, hd_pole_kind kind, int32_t degree, hd_error *err) {
     hdi_call c;
     (void)hdi_enter(&c, NULL, err);
     return out ? hdi_rational_get(out, kind, degree, c.e) : hdi_missing(c.e);
@@ -27040,21 +26663,13 @@ HEATDIFF_API hd_status hd_rational_shared(hd_rational *out, int32_t n_times, con
 
 HEATDIFF_API double hd_rational_eval(const hd_rational *set, double x) { return hdi_rational_eval(set, x); }
 
-HEATDIFF_API hd_status hd_rational_fit(hd_rational *out, const hd_filter *filter, double lambda_max,
-                                       hd_context *ctx, hd_error *err) {
+HEATDIFF_API hd_status hd_rational_fit(hd_rational *out, int32_t count, const hd_filter *filters,
+                                       double lambda_max, hd_context *ctx, hd_error *err) {
     hdi_call c;
     if (hdi_enter(&c, ctx, err) < 0) return c.e->status;
-    return out && filter ? hdi_rational_fit(out, 1, filter, lambda_max, c.ctx, c.e) : hdi_missing(c.e);
-}
-
-HEATDIFF_API hd_status hd_rational_fit_shared(hd_rational *out, int32_t count, const hd_filter *filters,
-                                              double lambda_max, hd_context *ctx, hd_error *err) {
-    hdi_call c;
-    if (hdi_enter(&c, ctx, err) < 0) return c.e->status;
-    if (!out || !filters) return hdi_missing(c.e);
-    hdi_refuse(count < 1, "filter: there is none", c.e);
-    return c.e->status < 0 ? c.e->status
-                           : hdi_rational_fit(out, count, filters, lambda_max, c.ctx, c.e);
+    hdi_refuse(count < 1, "filters: there is none", c.e);
+    if (c.e->status < 0) return c.e->status;
+    return out && filters ? hdi_rational_fit(out, count, filters, lambda_max, c.ctx, c.e) : hdi_missing(c.e);
 }
 
 HEATDIFF_API double hd_filter_eval(const hd_filter *filter, double lambda) {
@@ -27169,16 +26784,6 @@ HEATDIFF_API hd_status hd_ldl_inverse_complex(hd_ldl *f, hd_c64 *values, hd_c64 
     return HD_OK;
 }
 
-HEATDIFF_API hd_status hd_ldl_inverse_entries(hd_ldl *f, int64_t n_entries, const int32_t *i,
-                                              const int32_t *j, double *values, hd_error *err) {
-    return hdi_ldl_some_entries(f, 0, n_entries, i, j, values, err);
-}
-
-HEATDIFF_API hd_status hd_ldl_inverse_entries_complex(hd_ldl *f, int64_t n_entries, const int32_t *i,
-                                                      const int32_t *j, hd_c64 *values, hd_error *err) {
-    return hdi_ldl_some_entries(f, 1, n_entries, i, j, values ? &values->re : NULL, err);
-}
-
 /* ---- heat ---- */
 
 HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap, const hd_heat_opts *opts,
@@ -27200,22 +26805,31 @@ HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap, co
     return c.e->status;
 }
 
-HEATDIFF_API hd_status hd_heat_set_rational(hd_heat *heat, const hd_rational *set, hd_error *err) {
+HEATDIFF_API hd_status hd_heat_set_rational(hd_heat *heat, int32_t count, const hd_rational *sets,
+                                            hd_error *err) {
     hd_heat_opts *o = heat ? &heat->opts : NULL;
+    hd_rational *copy = NULL;
     hdi_call c;
     if (hdi_enter(&c, heat ? heat->ctx : NULL, err) < 0) return c.e->status;
-    if (!heat) return hdi_missing(c.e);
-    hdi_refuse(set && (o->method == HD_METHOD_KRYLOV || o->solver == HD_SOLVER_LANCZOS),
+    if (!heat || (count > 0 && !sets)) return hdi_missing(c.e);
+    hdi_refuse(count < 0, "heat: the number of sets is negative", c.e);
+    hdi_refuse(count > 0 && (o->method == HD_METHOD_KRYLOV || o->solver == HD_SOLVER_LANCZOS),
                "heat: krylov and Lanczos have no use for a pole set", c.e);
-    if (c.e->status >= 0 && set) {
+    if (c.e->status >= 0 && count > 0) {
         hd_heat_opts asked = *o;
-        asked.rational = set;
+        asked.rational = sets;
         asked.precond = HD_PRECOND_AUTO;         /* by now it has its default */
         hdi_heat_built(&asked, c.e);
     }
-    if (c.e->status >= 0 && set) (void)hdi_rational_check(set, c.e);
-    if (c.e->status >= 0) hdi_heat_take_set(heat, set);
-    return c.e->status;
+    if (c.e->status < 0 || hdi_sets_check(sets, count, c.e) < 0) return c.e->status;
+    if (count > 1) copy = HDI_NEW(heat->ctx, hd_rational, count, c.e);
+    if (c.e->status < 0) return c.e->status;
+    if (copy) memcpy(copy, sets, (size_t)count * sizeof *copy);
+    hdi_heat_take_set(heat, count > 0 ? sets : NULL);
+    hdi_free(heat->ctx, heat->sets);
+    heat->sets = copy;
+    heat->n_sets = count;
+    return HD_OK;
 }
 
 HEATDIFF_API void hd_heat_free(hd_heat *heat) { hdi_heat_free(heat); }
@@ -27276,37 +26890,6 @@ HEATDIFF_API hd_status hd_times_auto(const hd_laplacian *lap, int32_t n_times, d
     hdi_refuse(n_times < 1, "times: there is no time", c.e);
     if (c.e->status >= 0) hdi_lap_times(lap, n_times, t);
     return c.e->status;
-}
-
-HEATDIFF_API hd_status hd_times_spectral(const hd_laplacian *lap, int32_t n_times, const double *c,
-                                         double *t, hd_error *err) {
-    hd_spectrum_opts o;
-    hd_spectrum *s = NULL;
-    hd_status status;
-    double first;
-    hdi_call call;
-    int32_t q, constants = 0;
-    (void)hdi_enter(&call, lap ? lap->context : NULL, err);
-    hdi_refuse(!lap || !c || !t, "an argument is missing", call.e);
-    hdi_refuse(n_times < 1, "times: there is no time", call.e);
-    for (q = 0; q < n_times && call.e->status >= 0; q++)
-        if (!hdi_finite(c[q]) || c[q] <= 0)
-            hdi_fail_row(call.e, HD_ERR_ARGUMENT, "times: c is not positive and finite", -1, q, c[q]);
-    if (call.e->status < 0) return call.e->status;
-    for (q = 0; q < lap->n_components && lap->conserves; q++)
-        constants += hdi_finite(lap->component_mass[q]) ? 1 : 0;
-    hdi_refuse(constants >= lap->n_active, "times: the only eigenvalues are those of constants", call.e);
-    if (call.e->status < 0) return call.e->status;
-    memset(&o, 0, sizeof o);
-    o.count = constants + 1;
-    status = hd_spectrum_create(&s, lap, &o, err);
-    if (status < 0) return status;
-    first = s->value[s->n_constant];
-    hd_spectrum_free(s);
-    if (!(first > 0))
-        return hdi_fail(call.e, HD_ERR_BREAKDOWN, "times: the first eigenvalue is lost in rounding");
-    for (q = 0; q < n_times; q++) t[q] = c[q] / first;
-    return status;
 }
 
 HEATDIFF_API void hd_spectrum_free(hd_spectrum *s) { hdi_spectrum_free(s); }
@@ -27385,75 +26968,15 @@ HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t 
 }
 
 HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t,
-                                        double *D, size_t ldd, hd_report *report, hd_error *err) {
+                                        double *D, size_t ldd, double *Z, double *bound, hd_report *report,
+                                        hd_error *err) {
     hdi_heat_call h;
-    if (hdi_diagonal_begin(&h, heat, kernel, n_times, t, D != NULL, report, err) < 0 ||
-        !HDI_HAS_DIAGONAL) return hdi_heat_end(&h);
+    if (hdi_kernel_begin(&h, heat, kernel, report, err) < 0 || hdi_times_check(&h, n_times, t, 1) < 0 ||
+        hdi_diagonal_check(&h) < 0 || !HDI_HAS_DIAGONAL) return hdi_heat_end(&h);
+    if (!D && !Z) hdi_missing(h.e);
     ldd = hdi_leading(&h, ldd);
-    if (h.e->status >= 0) (void)hdi_diagonals_run(&h, kernel, D, ldd, NULL, NULL);
-    return hdi_heat_end(&h);
-}
-
-HEATDIFF_API hd_status hd_heat_trace(hd_heat *heat, int32_t n_times, const double *t, double *Z,
-                                     double *bound, hd_report *report, hd_error *err) {
-    hdi_heat_call h;
-    if (hdi_diagonal_begin(&h, heat, HD_KERNEL_OPERATOR, n_times, t, Z != NULL, report, err) < 0 ||
-        !HDI_HAS_DIAGONAL) return hdi_heat_end(&h);
-    if (h.e->status >= 0) (void)hdi_diagonals_run(&h, HD_KERNEL_OPERATOR, NULL, 0, Z, bound);
-    return hdi_heat_end(&h);
-}
-
-HEATDIFF_API hd_status hd_heat_filter_diagonals(hd_heat *heat, int32_t count, const hd_rational *sets,
-                                                double *D, size_t ldd, double *Z, double *bound,
-                                                hd_report *report, hd_error *err) {
-    hdi_heat_call h;
-    if (hdi_kernel_begin(&h, heat, HD_KERNEL_SYMMETRIC, report, err) < 0) return hdi_heat_end(&h);
-    if (!sets || !D) hdi_missing(h.e);
-    else (void)hdi_filters_check(heat, count, sets, h.e);
-    if (h.e->status < 0 || hdi_times_check(&h, 1, &heat->opts.rational->t, 1) < 0 ||
-        hdi_diagonal_check(&h) < 0 || !HDI_HAS_DIAGONAL)
-        return hdi_heat_end(&h);
-    ldd = hdi_leading(&h, ldd);
-    if (h.e->status >= 0) (void)hdi_filters_run(&h, sets, count, D, ldd, Z, bound);
-    return hdi_heat_end(&h);
-}
-
-HEATDIFF_API hd_status hd_heat_normalised(hd_heat *heat, int32_t n_times, const double *t, double *D,
-                                          size_t ldd, hd_report *report, hd_error *err) {
-    hdi_heat_call h;
-    hd_report trace;
-    double *Z;
-    if (hdi_diagonal_begin(&h, heat, HD_KERNEL_SYMMETRIC, n_times, t, D != NULL, report, err) < 0 ||
-        !HDI_HAS_DIAGONAL) return hdi_heat_end(&h);
-    ldd = hdi_leading(&h, ldd);
-    Z = HDI_TAKE(&h.s, double, n_times);
-    if (h.e->status >= 0 && hdi_diagonals_run(&h, HD_KERNEL_SYMMETRIC, D, ldd, NULL, NULL) >= 0) {
-        if (hd_heat_trace(heat, n_times, t, Z, NULL, &trace, NULL) >= 0)
-            hdi_signature_normalise(heat->source, n_times, D, ldd, Z, h.rep, &trace);
-        else *h.e = trace.error;
-    }
-    return hdi_heat_end(&h);
-}
-
-HEATDIFF_API hd_status hd_heat_scale_invariant(hd_heat *heat, double t0, double t1, int32_t n_times,
-                                               int32_t n_freq, double *D, size_t ldd, hd_report *report,
-                                               hd_error *err) {
-    hdi_heat_call h;
-    double *t;
-    int32_t q;
-    if (hdi_kernel_begin(&h, heat, HD_KERNEL_SYMMETRIC, report, err) < 0) return hdi_heat_end(&h);
-    if (!hdi_finite(t0) || !hdi_finite(t1) || !(t0 > 0) || !(t1 > t0))
-        hdi_fail_row(h.e, HD_ERR_ARGUMENT, "signature: times need 0 < t0 < t1", -1, -1,
-                     hdi_finite(t0) && t0 > 0 ? t1 : t0);
-    else if (n_times < 3 || n_freq < 1 || n_freq > (n_times + 1) / 2)
-        hdi_fail(h.e, HD_ERR_ARGUMENT, "signature: n_times is 3 or more, n_freq in 1..(n_times + 1)/2");
-    t = h.e->status >= 0 ? HDI_TAKE(&h.s, double, n_times) : NULL;
-    for (q = 0; t && q < n_times; q++) t[q] = hdi_time_between(t0, t1, q / (double)(n_times - 1));
-    if (!t || hdi_times_check(&h, n_times, t, 1) < 0 || hdi_diagonal_check(&h) < 0 || !HDI_HAS_DIAGONAL)
-        return hdi_heat_end(&h);
-    if (!D) hdi_missing(h.e);
-    ldd = hdi_leading(&h, ldd);
-    if (h.e->status >= 0) (void)hdi_signature_run(&h, n_freq, D, ldd);
+    if (h.e->status >= 0 && heat->n_sets > 1) (void)hdi_filters_run(&h, kernel, D, ldd, Z, bound);
+    else if (h.e->status >= 0) (void)hdi_diagonals_run(&h, kernel, D, ldd, Z, bound);
     return hdi_heat_end(&h);
 }
 
@@ -27468,22 +26991,23 @@ HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, in
     return hdi_distance_answer(heat, &to, sources, n_times, t, report, err);
 }
 
-HEATDIFF_API hd_status hd_heat_pairs(hd_heat *heat, hd_distance_kind kind, int32_t n_times, const double *t,
-                                     int64_t n_pairs, const int32_t *i, const int32_t *j, double *K,
-                                     double *d, hd_report *report, hd_error *err) {
+HEATDIFF_API hd_status hd_heat_distance_pairs(hd_heat *heat, hd_distance_kind kind, int32_t n_times,
+                                              const double *t, int64_t n_pairs, const int32_t *i,
+                                              const int32_t *j, double *d, hd_report *report,
+                                              hd_error *err) {
     hdi_heat_call h;
     hdi_pairs to;
     if (hdi_distance_begin(&h, heat, kind, n_times, t, 0, report, err) < 0 || !HDI_HAS_DIFFUSION)
         return hdi_heat_end(&h);
-    h.relative = d != NULL;
-    if (d && hdi_heat_filtered(heat)) (void)hdi_direct_only(&h);
+    if (hdi_heat_filtered(heat)) (void)hdi_direct_only(&h);
+    if (n_pairs > 0 && !d) hdi_missing(h.e);
     to.kind = kind;
     to.n = n_pairs;
     to.i = i;
     to.j = j;
     to.d = d;
     if (h.e->status >= 0 && hdi_pairs_check(&h, n_pairs, i, j) >= 0 && n_pairs > 0)
-        (void)hdi_pairs_answer(&h, &to, n_times, t, K);
+        (void)hdi_pairs_run(&h, &to);
     return hdi_heat_end(&h);
 }
 
