@@ -2,8 +2,8 @@
 
    The wave kernel signature at an energy e is the diagonal of exp(-(e - log L)^2 / (2 sigma^2)), divided by
    its integral (Aubry, Schlickewei, Cremers 2011). hd_rational_fit makes poles for one such filter, and from
-   there every query works as it does for heat. Here hd_rational_fit_shared makes poles that all energies share,
-   so that one factorisation serves them all, and hd_heat_filter_diagonals gives the diagonals and their
+   there every query works as it does for heat. Here it makes poles that all energies share,
+   so that one factorisation serves them all, and hd_heat_diagonal gives the diagonals and their
    integrals. The same sums over the first 100 eigenpairs show what they miss at high energies.
 
        cc -O2 examples/filters.c -o filters -lm && ./filters
@@ -80,9 +80,9 @@ int main(void) {
         f[q].b = 0.3;
         f[q].tol = 1e-8;
     }
-    if (hd_rational_fit_shared(set, ENERGIES, f, lap->lambda_max, NULL, &err) < 0) goto end;
-    if (hd_heat_set_rational(heat, set, &err) < 0) goto end;
-    if (hd_heat_filter_diagonals(heat, ENERGIES, set, u, 0, integral, NULL, &report, &err) < 0) goto end;
+    if (hd_rational_fit(set, ENERGIES, f, lap->lambda_max, NULL, &err) < 0) goto end;
+    if (hd_heat_set_rational(heat, ENERGIES, set, &err) < 0) goto end;
+    if (hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, 0, NULL, u, 0, integral, NULL, &report, &err) < 0) goto end;
     printf("%d vertices, %d poles for all energies, bound %.0e\nenergy  off by   thin     thick    "
            "%d pairs are off by\n", N, (int)set[0].degree, report.error_bound, PAIRS);
     for (q = 0; q < ENERGIES; q++) {

@@ -140,7 +140,7 @@ static hd_status signature(hd_context *ctx, const double *xyz, const int32_t *tr
     opts.context = ctx;                  /* the plan takes the context of its Laplacian */
     if (hd_laplacian_create(&lap, &mesh, &opts, err) >= 0 && hd_heat_create(&heat, lap, NULL, err) >= 0) {
         const double t = 50 * lap->h * lap->h;
-        hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, 1, &t, u, 0, NULL, err);
+        hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, 1, &t, u, 0, NULL, NULL, NULL, err);
     }
     hd_heat_free(heat);
     hd_laplacian_free(lap);

@@ -23,7 +23,7 @@
               they are complete, because all their faces are there. Nobody holds the whole mesh, and assembly
               sends nothing. Here the mesh is a formula. With a mesh from a file, number the vertices so that
               near ones are near in number, and send every face to the owners of its corners.
-     poles    hd_rational_get gives pairs of conjugate poles. Ranks are divided into groups, every group holds
+     poles    hd_rational_exp gives pairs of conjugate poles. Ranks are divided into groups, every group holds
               all rows, and takes some of the poles (-pole_groups) for some of the sources (-source_groups).
               Poles do not wait for each other; the answers are summed once, at the end.
      systems  Each t L + theta_i B is solved within a group, by MUMPS as a complex-symmetric L D L' without
@@ -664,7 +664,7 @@ static PetscErrorCode run(const settings *s, double *worst, double *allowed) {
     double *u, t, start, rows;
     PetscFunctionBeginUser;
     memset(&c, 0, sizeof c);
-    HD_CALL(hd_rational_get(&set, HD_POLES_KERNEL, (int32_t)s->degree, NULL));
+    HD_CALL(hd_rational_exp(&set, HD_POLES_KERNEL, (int32_t)s->degree, NULL));
     PetscCall(group_make(&g, s));
     start = MPI_Wtime();
     PetscCall(pair_make(&m, s, &g));

@@ -70,7 +70,7 @@ int main(void) {
     if (hd_heat_create(&heat, lap, NULL, &err) < 0) return fail(&err);
     for (q = 0; q < TIMES; q++) t[q] = pow(10, q + 1) * lap->h * lap->h;
 
-    if (hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, TIMES, t, signature, 0, &report, NULL) < 0)
+    if (hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, TIMES, t, signature, 0, NULL, NULL, &report, NULL) < 0)
         return fail(&report.error);
     for (q = 0; q < TIMES; q++)
         printf("k_t(x,x) at t = %4.0f h^2: %.6f on the outer rim, %.6f on the inner rim; unevenness %.1e\n",

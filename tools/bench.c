@@ -439,7 +439,7 @@ static void plan_close(plan *p) { hd_heat_free(p->heat); }
 
 static hd_status plan_call(hd_heat *heat, const ask *a, double *U, hd_report *r) {
     if (a->what == DIAGONAL)
-        return hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, a->n_times, a->times, U, 0, r, NULL);
+        return hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, a->n_times, a->times, U, 0, NULL, NULL, r, NULL);
     if (a->what == DISTANCES)
         return hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, a->times, VERTICES(1, a->vertices), U, 0, r, NULL);
     return hd_heat_columns(heat, HD_KERNEL_OPERATOR, a->n_times, a->times, VERTICES(a->n_columns, a->vertices), U, 0, r, NULL);
@@ -694,7 +694,7 @@ typedef struct opponent {
 static int rival_run(const opponent *o, rival_result *r) {
     hd_rational set;
     rival_poles poles;
-    (void)hd_rational_get(&set, HD_POLES_UNIFORM, 7, NULL);
+    (void)hd_rational_exp(&set, HD_POLES_UNIFORM, 7, NULL);
     poles.n = set.n_poles;
     poles.a0 = set.a0;
     poles.theta = &set.theta[0].re;
@@ -2067,7 +2067,7 @@ static hd_status trial_once(const hd_laplacian *lap, const trial *x, double t, d
         if (x->query == HD_QUERY_COLUMNS)
             status = hd_heat_columns(heat, HD_KERNEL_OPERATOR, 1, &t, VERTICES(x->k, source), U, 0, &r->report, NULL);
         else if (x->query == HD_QUERY_DIAGONAL)
-            status = hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, 1, &t, U, 0, &r->report, NULL);
+            status = hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, 1, &t, U, 0, NULL, NULL, &r->report, NULL);
         else status = hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, VERTICES(x->k, source), U, 0, &r->report, NULL);
     }
     r->seconds = (double)(clock() - start) / CLOCKS_PER_SEC;

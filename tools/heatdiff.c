@@ -2056,16 +2056,30 @@ static int run_assemble(run *r)
 
 /* ---- times ---- */
 
-/* 1/lambda_1, or 1 if no time needs it. */
+/* 1/lambda_1, of the smallest eigenvalue that does not belong to constants. */
+static int first_eigenvalue(run *r, double *unit)
+{
+    hd_spectrum *s = NULL;
+    hd_spectrum_opts opts;
+    hd_error err;
+    double first;
+    memset(&opts, 0, sizeof opts);
+    opts.count = r->lap->n_components + (r->lap->n_components < r->lap->n_active);
+    if (hd_spectrum_create(&s, r->lap, &opts, &err) < 0) return fail_library(r->mesh_name, &err);
+    first = s->n_constant < s->count ? s->value[s->n_constant] : 0;
+    hd_spectrum_free(s);
+    *unit = 1 / first;
+    if (!(first > 0)) return fail(FAILED, "%s: there is no eigenvalue above zero but for rounding", r->mesh_name);
+    return DONE;
+}
+
+/* The same, or 1 if no time needs it. */
 static int spectral_unit(run *r, double *unit)
 {
-    const double one = 1;
-    hd_error err;
     int i;
     *unit = 1;
     for (i = 0; i < r->o->n_times && r->o->times[i].unit != TIME_SPECTRAL; i++) {}
-    if (i == r->o->n_times || hd_times_spectral(r->lap, 1, &one, unit, &err) >= 0) return DONE;
-    return fail_library(r->mesh_name, &err);
+    return i == r->o->n_times ? DONE : first_eigenvalue(r, unit);
 }
 
 /* The times of one item of --t, and their names. */
@@ -2133,12 +2147,12 @@ static int run_filter(run *r)
     f.a = o->filter_a.value * (o->filter_a.unit == TIME_H2 ? h2 : 1);
     f.b = o->filter_b;
     if (f.kind == HD_FILTER_FRACTIONAL) {
-        const double one = 1;
         double unit;                             /* 1/lambda_1: all other eigenvalues are above */
-        if (hd_times_spectral(r->lap, 1, &one, &unit, &err) < 0) return fail_library(r->mesh_name, &err);
+        const int code = first_eigenvalue(r, &unit);
+        if (code) return code;
         f.lambda_min = 0.99 / unit;
     }
-    if (hd_rational_fit(&r->filter, &f, r->lap->lambda_max, &r->context, &err) < 0)
+    if (hd_rational_fit(&r->filter, 1, &f, r->lap->lambda_max, &r->context, &err) < 0)
         return fail_library(r->mesh_name, &err);
     if (!(r->filter.max_error < USELESS * r->filter.largest))
         return fail(FAILED, "%s: --filter %s: the best poles found miss it by %.1e of its largest value",
@@ -2392,6 +2406,12 @@ static int32_t spectrum_pairs(const run *r)
 }
 
 /* The library's name of the command's query, and how many items it has. */
+/* Are signatures divided by the trace? Those of waves always are. */
+static int by_trace(const options *o)
+{
+    return o->normalise || (o->command == CMD_HKS && o->filter_kind == HD_FILTER_WAVE);
+}
+
 static hd_query query_of(const run *r, int32_t *k)
 {
     const options *o = r->o;
@@ -2401,8 +2421,7 @@ static hd_query query_of(const run *r, int32_t *k)
     if (o->command == CMD_SPECTRUM) return HD_QUERY_SPECTRUM;
     if (o->command == CMD_DIFFUSE) return HD_QUERY_FIELDS;
     if (o->command == CMD_TRACE) return HD_QUERY_TRACE;
-    if (o->normalise) return HD_QUERY_NORMALISED;
-    if (o->frequencies) return HD_QUERY_SCALE_INVARIANT;
+    if (by_trace(o)) return HD_QUERY_TRACE;
     if (o->command == CMD_HKS)
         return o->kernel == HD_KERNEL_OPERATOR ? HD_QUERY_DIAGONAL_OPERATOR : HD_QUERY_DIAGONAL;
     if (o->command == CMD_SAMPLE) *k = (int32_t)o->count + (r->places ? (int32_t)r->n_inputs : 0);
@@ -2746,24 +2765,87 @@ static int solved_time(run *r, int k, hd_status status, hd_report *report)
     return DONE;
 }
 
-/* Makes the diagonal of a wave filter the wave kernel signature: divides by the sum of the filter over all
- * eigenvalues, which is the sum of the diagonal of K. */
-static int normalise_waves(run *r)
+/* Parts of a bound that has changed: rounding and what the set is off by, in their shares. */
+static void share_bound(hd_report *rep, double bound)
 {
-    double *diagonal = new_columns(r->mesh.n, 1), sum = 0;
-    hd_report report;
+    const double before = rep->error_bound, grow = before > 0 && before < HUGE_VAL ? bound / before : 0;
+    rep->error_bound = bound;
+    rep->error_rational *= grow;
+    rep->error_rounding = grow > 0 ? bound - rep->error_rational : bound;
+    if (rep->status >= 0) rep->status = bound <= 1e-2 ? HD_OK : HD_WARN_ACCURACY;
+}
+
+/* Signatures divided by their traces Z, whose errors are bound: each has the integral 1. */
+static void divide_by_traces(run *r, const double *Z, const double *bound, hd_report *rep)
+{
+    double worst = 0, grow;
     int64_t i;
-    if (!diagonal) return fail_memory("the result");
-    if (hd_heat_diagonal(r->heat, HD_KERNEL_OPERATOR, 1, r->times, diagonal, 0, &report, NULL) < 0) {
-        free(diagonal);
-        return fail_solve(r, &report, 0);
+    int k;
+    rep->smallest = HUGE_VAL;
+    for (k = 0; k < r->n_times; k++) {
+        double *d = r->values + (size_t)k * (size_t)r->mesh.n;
+        if (!(bound[k] <= worst * Z[k])) worst = bound[k] < HUGE_VAL ? bound[k] / Z[k] : HUGE_VAL;
+        for (i = 0; i < r->mesh.n; i++) {
+            d[i] /= Z[k];
+            if (d[i] != 0 && fabs(d[i]) < rep->smallest) rep->smallest = fabs(d[i]);
+        }
     }
-    for (i = 0; i < r->mesh.n; i++)
-        if (r->lap->row[i] >= 0) sum += diagonal[i];
-    free(diagonal);
-    for (i = 0; i < r->mesh.n; i++) r->values[i] /= sum;
-    r->sum.worst.smallest /= sum;
-    r->sum.per_time[0].smallest /= sum;
+    if (rep->smallest == HUGE_VAL) rep->smallest = 0;
+    grow = worst < 0.5 ? 1 / (1 - worst) : HUGE_VAL;
+    if (rep->error_relative < HUGE_VAL) rep->error_relative = grow * (rep->error_relative + worst);
+    share_bound(rep, grow * (rep->error_bound + worst));
+}
+
+/* Signatures that change little if the surface is scaled. Scaling shifts log k_t(v,v) along log t and adds a
+ * constant. A derivative in log t removes the constant, and the modulus of a Fourier transform the shift:
+ *   |sum_j (log k_(j+1) - log k_j) exp(-2 pi i j q/m)|,  j = 0 .. m - 1,  m = n_times - 1, for each frequency q
+ * (Bronstein, Kokkinos 2010, eqs. (10) to (13)). Of one vertex: k [n_times], n apart, into out, n apart. Returns
+ * 0, and zeros, if a value has no logarithm. */
+static int scale_invariant(const run *r, const double *k, double *step, double *out)
+{
+    const size_t n = (size_t)r->mesh.n;
+    const int m = r->n_times - 1;
+    int j, ok = k[0] > 0;
+    long q;
+    for (j = 0; j < m; j++) {
+        const double a = k[(size_t)j * n], b = k[(size_t)(j + 1) * n];
+        ok = ok && b > 0;
+        step[j] = ok ? log(b) - log(a) : 0;
+    }
+    for (q = 0; q < r->o->frequencies; q++) {
+        double re = 0, im = 0;
+        for (j = 0; j < m && ok; j++) {
+            const double angle = 6.283185307179586 * (double)((int64_t)j * q % m) / m;
+            re += step[j] * cos(angle);
+            im -= step[j] * sin(angle);
+        }
+        out[(size_t)q * n] = hypot(re, im);
+    }
+    return ok;
+}
+
+/* These of all vertices. An error of at most e in each logarithm counts |w^(j-1) - w^j| = 2 sin(pi q/m) for those
+ * inside, and 1 for the two at the ends. */
+static int solve_invariant(run *r, hd_report *rep)
+{
+    const int m = r->n_times - 1;
+    const double top = (double)(r->o->frequencies - 1) / m;
+    double *k = new_columns(r->mesh.n, r->n_times), *step = (double *)malloc((size_t)m * sizeof *step), largest = 0, e;
+    int64_t i;
+    int code = k && step ? DONE : fail_memory("the signatures"), sure = 1;
+    if (!code && hd_heat_diagonal(r->heat, HD_KERNEL_SYMMETRIC, r->n_times, r->times, k, 0, NULL, NULL, rep, NULL) < 0)
+        code = fail_solve(r, rep, 0);
+    for (i = 0; i < r->mesh.n && !code; i++)
+        if (!scale_invariant(r, k + i, step, r->values + i) && r->lap->row[i] >= 0) sure = 0;
+    for (i = 0; i < r->mesh.n * r->o->frequencies && !code; i++) if (r->values[i] > largest) largest = r->values[i];
+    free(k);
+    free(step);
+    if (code) return code;
+    e = sure && rep->error_relative < 1 ? -log1p(-rep->error_relative) : HUGE_VAL;
+    e *= 2 + (m - 1) * 2 * sin(3.141592653589793 * (top < 0.5 ? top : 0.5));
+    share_bound(rep, e < HUGE_VAL && largest > 0 ? e / largest + 8 * m * DBL_EPSILON : HUGE_VAL);
+    rep->error_relative = HUGE_VAL;
+    rep->smallest = 0;
     return DONE;
 }
 
@@ -2772,25 +2854,25 @@ static int normalise_waves(run *r)
 static int solve_inverse(run *r)
 {
     const options *o = r->o;
+    const int trace = o->command == CMD_TRACE, divided = by_trace(o);
+    const size_t n_times = (size_t)r->n_times;
+    double *Z = trace ? r->values + n_times : divided ? (double *)malloc(2 * n_times * sizeof *Z) : NULL;
     hd_report report;
-    hd_status status;
-    int k;
-    if (o->command == CMD_TRACE) {
-        memcpy(r->values, r->times, (size_t)r->n_times * sizeof *r->values);
-        status = hd_heat_trace(r->heat, r->n_times, r->times, r->values + r->n_times,
-                               r->values + 2 * (size_t)r->n_times, &report, NULL);
-    } else if (o->frequencies) {
-        status = hd_heat_scale_invariant(r->heat, r->times[0], r->times[r->n_times - 1], r->n_times,
-                                         (int32_t)o->frequencies, r->values, 0, &report, NULL);
-    } else if (o->normalise)
-        status = hd_heat_normalised(r->heat, r->n_times, r->times, r->values, 0, &report, NULL);
-    else if (o->command == CMD_HKS)
-        status = hd_heat_diagonal(r->heat, (hd_kernel)o->kernel, r->n_times, r->times, r->values, 0, &report, NULL);
+    hd_status status = HD_OK;
+    int code = DONE, k;
+    if (divided && !Z) return fail_memory("the traces");
+    if (trace) memcpy(r->values, r->times, n_times * sizeof *r->values);
+    if (o->frequencies) code = solve_invariant(r, &report);
+    else if (trace || o->command == CMD_HKS)
+        status = hd_heat_diagonal(r->heat, (hd_kernel)o->kernel, r->n_times, r->times, trace ? NULL : r->values, 0, Z, Z ? Z + n_times : NULL, &report, NULL);
     else status = hd_heat_distance(r->heat, (hd_distance_kind)o->definition, r->n_times, r->times, &r->from, r->values, 0, &report, NULL);
-    if (status < 0) return fail_solve(r, &report, 0);
+    if (status < 0) code = fail_solve(r, &report, 0);
+    else if (!code && divided) divide_by_traces(r, Z, Z + n_times, &report);
+    if (!trace) free(Z);
+    if (code) return code;
     for (k = 0; k < r->n_times; k++) r->sum.per_time[k] = report;
     summary_add(&r->sum, &report, NULL, 0);
-    return o->command == CMD_HKS && o->filter_kind == HD_FILTER_WAVE ? normalise_waves(r) : DONE;
+    return DONE;
 }
 
 /* Kernel and distance of the pairs at time k, in two columns. Distances without a time have one column. */
@@ -2799,12 +2881,12 @@ static int solve_pairs(run *r, int k)
     const options *o = r->o;
     const hd_distance_kind kind = (hd_distance_kind)o->definition;
     const int32_t *i = r->pairs, *j = i + r->rows;
-    const int timeless = is_timeless(o), symmetric = o->kernel == HD_KERNEL_SYMMETRIC;
+    const int timeless = is_timeless(o);
     double *K = timeless ? NULL : column_of(r, 0, 2 * k), *d = timeless ? r->values : K + r->rows;
     hd_report report;
-    int code = solved_time(r, k, hd_heat_pairs(r->heat, kind, 1, &r->times[k], r->rows, i, j, symmetric ? NULL : K, d, &report, NULL), &report);
-    if (code || timeless || !symmetric) return code;
-    return solved_time(r, k, hd_heat_entries(r->heat, HD_KERNEL_SYMMETRIC, 1, &r->times[k], r->rows, i, j, K, &report, NULL), &report);
+    int code = solved_time(r, k, hd_heat_distance_pairs(r->heat, kind, 1, &r->times[k], r->rows, i, j, d, &report, NULL), &report);
+    if (code || timeless) return code;
+    return solved_time(r, k, hd_heat_entries(r->heat, (hd_kernel)o->kernel, 1, &r->times[k], r->rows, i, j, K, &report, NULL), &report);
 }
 
 /* The given vertices are the first points: distances of each to those before. */
@@ -2819,7 +2901,7 @@ static hd_status solve_given(run *r, int32_t k, hd_report *report)
             pair[p] = r->sources[p];
             pair[k + p] = r->sources[q];
         }
-        if (q) status = hd_heat_pairs(r->heat, (hd_distance_kind)r->o->definition, 1, r->times, q, pair, pair + k, NULL, d, report, NULL);
+        if (q) status = hd_heat_distance_pairs(r->heat, (hd_distance_kind)r->o->definition, 1, r->times, q, pair, pair + k, d, report, NULL);
         for (p = 0; p < q && status >= 0; p++) if (d[p] < r->values[q]) r->values[q] = d[p];
     }
     free(pair);
@@ -4579,7 +4661,7 @@ static int demo_inverse(const run *r, double *fields)
     hd_report report;
     interrupt.patient = 1;
     if (hd_heat_distance(r->heat, HD_DISTANCE_CLASSICAL, 1, t, &trunk, fields, 0, &report, NULL) < 0 ||
-        hd_heat_diagonal(r->heat, HD_KERNEL_SYMMETRIC, 1, t, fields + r->mesh.n, 0, &report, NULL) < 0)
+        hd_heat_diagonal(r->heat, HD_KERNEL_SYMMETRIC, 1, t, fields + r->mesh.n, 0, NULL, NULL, &report, NULL) < 0)
         return leave_computation(fail_library("demo", &report.error));
     return leave_computation(DONE);
 }

@@ -406,7 +406,7 @@ static double conditions(page *p, const hd_laplacian *lap, const dense_pair *den
     char name[CHART_NAME];
     int32_t q;
     chart_begin(&c, "fig-7", title, "t / h&#178;", "condition number");
-    if (hd_rational_get(&set, HD_POLES_UNIFORM, 7, NULL) < 0) stop("poles", NULL);
+    if (hd_rational_exp(&set, HD_POLES_UNIFORM, 7, NULL) < 0) stop("poles", NULL);
     for (q = 0; q < set.n_poles; q++) {
         snprintf(name, sizeof name, "&#952; = %.2f%+.2fi", set.theta[q].re, set.theta[q].im);
         if (set.theta[q].im == 0) snprintf(name, sizeof name, "&#952; = %.2f", set.theta[q].re);

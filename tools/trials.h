@@ -1294,7 +1294,7 @@ static void trial_run_entries(trial_work *w, hd_heat *heat) {
         hd_heat_entries(heat, (hd_kernel)c->kernel, 1, &c->t, k, i, j, K, &w->rep, NULL);
     } else {
         trial_row_name(w, c->kind >= HD_DISTANCE_COMMUTE ? "pairs, no time" : "pairs, d");
-        hd_heat_pairs(heat, (hd_distance_kind)c->kind, 1, &c->t, k, i, j, K, d, &w->rep, NULL);
+        hd_heat_distance_pairs(heat, (hd_distance_kind)c->kind, 1, &c->t, k, i, j, d, &w->rep, NULL);
     }
     if (trial_failed(w)) return;
     if (c->query == QUERY_PAIRS) {
@@ -1312,8 +1312,7 @@ static void trial_run_entries(trial_work *w, hd_heat *heat) {
             d[m++] = d[q];
         }
         if (m > 0) trial_compare(w, d, m, 0, 1, -1);
-        if (c->kind >= HD_DISTANCE_COMMUTE) return;
-        trial_row_name(w, "pairs, K_t");
+        return;
     }
     trial_filter_for(w, c->t, 0);
     for (q = 0; q < k; q++) w->want[q] = trial_want_entry(w, i[q], j[q], 0, !symmetric, !symmetric, w->off + q);
@@ -1329,7 +1328,7 @@ static void trial_run_diagonal(trial_work *w, hd_heat *heat) {
     trial_row_name(w, symmetric        ? c->n_times > 1 ? "diagonal k_t, many" : "diagonal of k_t"
                 : c->n_times > 1 ? "diagonal K_t, many"
                                  : "diagonal of K_t");
-    hd_heat_diagonal(heat, (hd_kernel)c->kernel, c->n_times, t, D, 0, &w->rep, NULL);
+    hd_heat_diagonal(heat, (hd_kernel)c->kernel, c->n_times, t, D, 0, NULL, NULL, &w->rep, NULL);
     for (q = 0; q < c->n_times && !trial_failed(w); q++) {
         trial_filter_for(w, t[q], 0);
         for (v = 0; v < lap->n; v++) w->want[v] = trial_want_entry(w, v, v, 0, !symmetric, !symmetric, w->off + v);
@@ -1482,7 +1481,7 @@ static int trial_make_filter(trial_work *w) {
         q = oldest;
         oldest = (oldest + 1) % KEPT;
         memset(&kept[q].f, 0, sizeof *f);
-        if (hd_rational_fit(&kept[q].set, f, lambda_max, &trial_serial, NULL) < 0) return 0;
+        if (hd_rational_fit(&kept[q].set, 1, f, lambda_max, &trial_serial, NULL) < 0) return 0;
         kept[q].f = *f;
     }
     w->set = kept[q].set;
@@ -1523,7 +1522,7 @@ static int trial_make_own(trial_work *w) {
     if (c->query == QUERY_FILTER || c->own == OWN_FITTED) return trial_make_filter(w);
     if (c->own == OWN_NONE) return 1;
     if (c->own == OWN_COPY || c->own == OWN_COPY0 || c->own == OWN_LOOSE || c->own == OWN_A0) {
-        if (hd_rational_get(s, HD_POLES_KERNEL, degree, NULL) < 0) return 0;
+        if (hd_rational_exp(s, HD_POLES_KERNEL, degree, NULL) < 0) return 0;
         s->kind = HD_POLES_OWN;
         if (c->own == OWN_LOOSE) s->max_weighted_error = 1;
         if (c->own == OWN_COPY0 || c->own == OWN_A0) {

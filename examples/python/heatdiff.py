@@ -385,11 +385,18 @@ class Laplacian(_Object):
 
     def spectral_times(self, c):
         """c divided by the first eigenvalue that does not belong to constants."""
-        c = _doubles("c", c, (), ("n_times",)).reshape(-1)
-        t = np.zeros(len(c))
+        c, info, made = _doubles("c", c, (), ("n_times",)).reshape(-1), self.info, ctypes.c_void_p()
+        if not (np.isfinite(c) & (c > 0)).all():
+            raise ValueError("c is not positive and finite")
+        options = S["hd_spectrum_opts"](count=min(info.n_components + 1, info.n_active))
         with self._pointer as lap:
-            _call("hd_times_spectral", lap, len(c), c, t)
-        return t
+            _call("hd_spectrum_create", ctypes.byref(made), lap, ctypes.byref(options))
+        pairs = S["hd_spectrum"].from_address(made.value)
+        value = ctypes.cast(pairs.value, ctypes.POINTER(ctypes.c_double))[:pairs.count][pairs.n_constant:]
+        _lib.hd_spectrum_free(made)
+        if not value:
+            raise ValueError("the only eigenvalues are those of constants")
+        return c / value[0]
 
     def update(self, xyz):
         """New coordinates for the same faces; made with updatable=1."""
@@ -522,30 +529,35 @@ class Heat(_Object):
         """k_t(v,v), the heat kernel signature: a column for each time."""
         times = self._times(t)
         out, to = self._room(times[0])
-        self._query("hd_heat_diagonal", self._kernel(symmetric), *times, *to)
+        self._query("hd_heat_diagonal", self._kernel(symmetric), *times, *to, None, None)
         return out
 
     def trace(self, t):
         """The sum of exp(-t lambda) over all eigenvalues for each time, and bounds on its error."""
         times = self._times(t)
         trace, bound = np.zeros((2, times[0]))
-        self._query("hd_heat_trace", *times, trace, bound)
+        self._query("hd_heat_diagonal", self._kernel(False), *times, None, ctypes.c_size_t(0), trace, bound)
         return trace, bound
 
     def normalised(self, t):
         """k_t(v,v)/trace: a column for each time."""
         times = self._times(t)
-        out, to = self._room(times[0])
-        self._query("hd_heat_normalised", *times, *to)
-        return out
+        (out, to), trace = self._room(times[0]), np.zeros(times[0])
+        self._query("hd_heat_diagonal", self._kernel(True), *times, *to, trace, None)
+        return out / trace
 
     def scale_invariant(self, t0, t1, n_times=257, n_freq=6):
         """Moduli of Fourier coefficients of the steps of log k_t(v,v) over log t: a column for each frequency."""
         n_times = _int("n_times", n_times, 3)
         n_freq = _int("n_freq", n_freq, 1, (n_times + 1) // 2)
-        out, to = self._room(n_freq)
-        self._query("hd_heat_scale_invariant", _double("t0", t0), _double("t1", t1), n_times, n_freq, *to)
-        return out
+        t0, t1 = _double("t0", t0), _double("t1", t1)
+        if not 0 < t0 < t1 < np.inf:
+            raise ValueError(f"times need 0 < t0 < t1, and are {t0} and {t1}")
+        k = self.diagonal(t0 * (t1 / t0) ** np.linspace(0, 1, n_times))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            steps = np.diff(np.log(k))
+        steps[~np.isfinite(steps).all(axis=1)] = 0          # vertices without mass, or whose value is lost
+        return np.abs(np.fft.fft(steps))[:, :n_freq]
 
     def distance(self, t, sources, kind="HD_DISTANCE_CLASSICAL"):
         """Diffusion distances from each source to every vertex. Commute and biharmonic distances have no time: t is None."""
@@ -565,7 +577,7 @@ class Heat(_Object):
         """Diffusion distances of listed pairs, without cancellation: a row for each pair, a column for each time."""
         (kind, *times), (n, i, j) = self._distance(t, kind), self._pairs(i, j)
         out = np.zeros((len(i), times[0]), order="F")
-        self._query("hd_heat_pairs", kind, *times, n, i, j, None, out)
+        self._query("hd_heat_distance_pairs", kind, *times, n, i, j, out)
         return out
 
     @staticmethod

@@ -363,7 +363,7 @@ hd_status PAGE_EXPORT(page_signature)(int32_t n_times, const double *t) {
     hd_report r;
     hd_heat *plan = page_plan(HD_METHOD_DIRECT);
     if (!plan || page_make_room((size_t)page.mesh.n * (size_t)n_times) < 0) return HD_ERR_MEMORY;
-    hd_heat_diagonal(plan, HD_KERNEL_SYMMETRIC, n_times, t, page.out, 0, &r, NULL);
+    hd_heat_diagonal(plan, HD_KERNEL_SYMMETRIC, n_times, t, page.out, 0, NULL, NULL, &r, NULL);
     return page_end(&r);
 }
 
