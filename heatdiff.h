@@ -4436,6 +4436,24 @@ static hd_status hdi_csr_check(const hd_csr *a, int symmetric, hd_error *e) {
  * the machine it was tuned on (7 entries a row, 130 MB). */
 enum { HDI_AHEAD = 512 };
 
+/* y = A x for rows [begin, end). */
+static void hdi_csr_apply_rows(const hd_csr *a, const double *HDI_RESTRICT x,
+                               double *HDI_RESTRICT y, int32_t begin, int32_t end) {
+    const int64_t *HDI_RESTRICT Ap = a->row_ptr;
+    const int32_t *HDI_RESTRICT Aj = a->col;
+    const double *HDI_RESTRICT Ax = a->val;
+    int64_t p = Ap[begin];
+    int32_t i;
+    for (i = begin; i < end; i++) {
+        const int64_t row_end = Ap[i + 1];
+        double sum = 0;
+        HDI_PREFETCH_AT(Ax, p + HDI_AHEAD);
+        HDI_PREFETCH_AT(Aj, p + HDI_AHEAD);
+        for (; p < row_end; p++) sum += Ax[p] * x[Aj[p]];
+        y[i] = sum;
+    }
+}
+
 /* Rows in blocks of about the same number of non-zeros would be fairer, but surface rows are all alike. */
 enum { HDI_ROWS_PER_TASK = 16384 };
 
