@@ -26,7 +26,7 @@ static hd_status heat_times(hd_heat *heat, int32_t n_times, const double *t, hd_
 
 static hd_status heat_diagonal(hd_heat *heat, int32_t n_times, const double *t, hd_kernel kernel, double *D, size_t ldd,
                                hd_report *report) {
-    return hd_heat_diagonal(heat, kernel, n_times, t, D, ldd, report, NULL);
+    return hd_heat_diagonal(heat, kernel, n_times, t, D, ldd, NULL, NULL, report, NULL);
 }
 
 static hd_status heat_entries(hd_heat *heat, double t, hd_kernel kernel, int64_t n_pairs, const int32_t *i, const int32_t *j,

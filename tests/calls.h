@@ -549,7 +549,7 @@ static void call_data_make(call_data *d, shape s) {
     a->poles = HD_POLES_UNIFORM;
     a->query = HD_QUERY_COLUMNS;
     a->so.count = 8;
-    for (k = 0; k < 2; k++) CHECK(hd_rational_fit(d->sets + k, a->filters + k, 1000 / (d->h * d->h), NULL, NULL) == HD_OK);
+    for (k = 0; k < 2; k++) CHECK(hd_rational_fit(d->sets + k, 1, a->filters + k, 1000 / (d->h * d->h), NULL, NULL) == HD_OK);
     a->set = d->sets;
     a->set2 = d->sets + 1;
     a->set_time = d->sets[0].t;

@@ -939,9 +939,9 @@ static int32_t int_ask(hd_heat *heat, const int_damaged *x, const double *t, dou
     switch (x->query) {
         case INT_APPLY: st = hd_heat_apply(heat, x->n_times, t, 1, f, 0, out, 0, rep, NULL); break;
         case INT_COLUMN: st = hd_heat_columns(heat, HD_KERNEL_OPERATOR, x->n_times, t, VERTICES(1, i), out, 0, rep, NULL); break;
-        case INT_OF_DIAGONAL: st = hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, x->n_times, t, out, 0, rep, NULL); break;
+        case INT_OF_DIAGONAL: st = hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, x->n_times, t, out, 0, NULL, NULL, rep, NULL); break;
         case INT_OF_ENTRIES: st = hd_heat_entries(heat, HD_KERNEL_SYMMETRIC, x->n_times, t, 3, i, j, out, rep, NULL); break;
-        case INT_TRACE: st = hd_heat_trace(heat, x->n_times, t, out, NULL, rep, NULL); break;
+        case INT_TRACE: st = hd_heat_diagonal(heat, HD_KERNEL_OPERATOR, x->n_times, t, NULL, 0, out, NULL, rep, NULL); break;
         default: st = heat_distance(heat, (hd_distance_kind)(x->query - INT_CLASSICAL), x->n_times, t, 1, i + 1, out, 0, rep);
     }
     CHECK_MSG(st >= 0, "query %d: %s", (int)x->query, rep->error.text);

@@ -166,10 +166,10 @@ static void check_signatures(const hd_laplacian *lap) {
     int32_t vertex[3] = {0, 0, 0};
     int i;
     CHECK(hd_heat_create(&heat, lap, NULL, &err) == HD_OK);
-    if (BUILT(hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, 1, &t, d, 0, &rep, &err), no.diagonal))
+    if (BUILT(hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, 1, &t, d, 0, NULL, NULL, &rep, &err), no.diagonal))
         for (i = 0; i < 6; i++) CHECK(near_to(d[i], heat_of(0, 0, T)));
     else CHECK(rep.status == HD_ERR_NOT_BUILT);
-    if (BUILT(hd_heat_trace(heat, 1, &t, values, NULL, NULL, &err), no.diagonal)) CHECK(near_to(values[0], 6 * heat_of(0, 0, T)));
+    if (BUILT(hd_heat_diagonal(heat, HD_KERNEL_OPERATOR, 1, &t, NULL, 0, values, NULL, NULL, &err), no.diagonal)) CHECK(near_to(values[0], 6 * heat_of(0, 0, T)));
     if (BUILT(hd_heat_normalised(heat, 1, &t, d, 0, NULL, &err), no.diagonal)) CHECK(near_to(d[3], 1 / 6.0));
     if (BUILT(hd_heat_scale_invariant(heat, T, 2 * T, 3, 2, values, 0, NULL, &err), no.diagonal))
         CHECK(near_to(values[0], log(heat_of(0, 0, T) / heat_of(0, 0, 2 * T))));
@@ -386,7 +386,7 @@ static void check_filter(const hd_laplacian *lap) {
     memset(&o, 0, sizeof o);
     f.kind = HD_FILTER_RESOLVENT;
     f.a = 1;
-    CHECK(hd_rational_fit(&set, &f, lap->lambda_max, NULL, &err) == HD_OK && near_to(hd_rational_eval(&set, -2 * set.t), 1 / 3.0));
+    CHECK(hd_rational_fit(&set, 1, &f, lap->lambda_max, NULL, &err) == HD_OK && near_to(hd_rational_eval(&set, -2 * set.t), 1 / 3.0));
     o.rational = &set;
     if (BUILT(hd_heat_create(&heat, lap, &o, &err), lacking)) {
         CHECK(hd_heat_column(heat, HD_KERNEL_OPERATOR, set.t, 0, u, NULL, &err) >= 0);
@@ -395,11 +395,11 @@ static void check_filter(const hd_laplacian *lap) {
     }
     heat = NULL;
     CHECK(hd_heat_create(&heat, lap, NULL, &err) == HD_OK);
-    if (BUILT(hd_heat_set_rational(heat, &set, &err), lacking)) {
-        if (BUILT(hd_heat_diagonal(heat, HD_KERNEL_OPERATOR, 1, &set.t, u, 0, NULL, &err), no.diagonal))
+    if (BUILT(hd_heat_set_rational(heat, 1, &set, &err), lacking)) {
+        if (BUILT(hd_heat_diagonal(heat, HD_KERNEL_OPERATOR, 1, &set.t, u, 0, NULL, NULL, NULL, &err), no.diagonal))
             for (i = 0; i < 6; i++) CHECK(near_to(u[i], between(i, i, 1, f4, f6)));
-        CHECK(hd_rational_fit_shared(&set, 1, &f, lap->lambda_max, NULL, &err) == HD_OK && hd_heat_set_rational(heat, &set, &err) == HD_OK);
-        if (BUILT(hd_heat_filter_diagonals(heat, 1, &set, u, 0, sum, NULL, NULL, &err), no.diagonal))
+        CHECK(hd_rational_fit(&set, 1, &f, lap->lambda_max, NULL, &err) == HD_OK && hd_heat_set_rational(heat, 1, &set, &err) == HD_OK);
+        if (BUILT(heat_filters(heat, 1, &set, u, 0, sum, NULL, NULL, &err), no.diagonal))
             CHECK(near_to(sum[0], 1 + 3 * f4 + 2 * f6));
     }
     hd_heat_free(heat);
@@ -407,9 +407,9 @@ static void check_filter(const hd_laplacian *lap) {
 
 static void check_poles(const hd_laplacian *lap) {
     hd_rational set;
-    CHECK(hd_rational_get(&set, HD_POLES_UNIFORM, 7, &err) == HD_OK && near_to(hd_rational_eval(&set, -1), exp(-1.0)));
-    CHECK(hd_rational_get(&set, HD_POLES_KERNEL, 10, &err) == HD_OK && near_to(hd_rational_eval(&set, -2), exp(-2.0)));
-    if (BUILT(hd_rational_get(&set, HD_POLES_DIAGONAL, 10, &err), no.diagonal))
+    CHECK(hd_rational_exp(&set, HD_POLES_UNIFORM, 7, &err) == HD_OK && near_to(hd_rational_eval(&set, -1), exp(-1.0)));
+    CHECK(hd_rational_exp(&set, HD_POLES_KERNEL, 10, &err) == HD_OK && near_to(hd_rational_eval(&set, -2), exp(-2.0)));
+    if (BUILT(hd_rational_exp(&set, HD_POLES_DIAGONAL, 10, &err), no.diagonal))
         CHECK(near_to(hd_rational_eval(&set, -2), exp(-2.0)));
     check_filter(lap);
 }

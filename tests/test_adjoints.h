@@ -231,7 +231,7 @@ static void adj_errors(void) {
     CHECK(hd_heat_derivative(heat, 1, &t, 1, f, 0, f, 0, NULL, &e) == HD_ERR_NOT_FINITE && e.row == 5 && e.column == 0);
     CHECK(hd_heat_adjoint(heat, 1, &t, 1, f, 0, f, 0, NULL, &e) == HD_ERR_NOT_FINITE);
     f[5] = 1;
-    CHECK(hd_rational_get(&set, HD_POLES_KERNEL, 8, NULL) == HD_OK && hd_heat_set_rational(own, &set, NULL) == HD_OK);
+    CHECK(hd_rational_exp(&set, HD_POLES_KERNEL, 8, NULL) == HD_OK && hd_heat_set_rational(own, 1, &set, NULL) == HD_OK);
     CHECK(hd_heat_derivative(own, 1, &t, 1, f, 0, f, 0, NULL, &e) == HD_ERR_ARGUMENT && strstr(e.text, "your own"));
     CHECK(hd_heat_adjoint(own, 1, &t, 1, f, 0, f, 0, NULL, &e) == HD_OK);
 }

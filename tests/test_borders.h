@@ -336,7 +336,7 @@ static void bord_mixed(void) {
     }
     for (k = 0; k < 2; k++) {
         double off = 0;
-        if (k) CHECK(hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, 1, &late, u + n, 0, &rep, NULL) >= 0);
+        if (k) CHECK(hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, 1, &late, u + n, 0, NULL, NULL, &rep, NULL) >= 0);
         else CHECK(hd_heat_columns(heat, HD_KERNEL_SYMMETRIC, 1, &late, VERTICES(2, sources), u, 0, &rep, NULL) >= 0);
         for (v = 0; v < n; v++) off = fmax(off, fmax(k ? 0 : fabs(u[v]), fabs(u[n + v] - (v < disk->n ? 0 : mean))));
         CHECK_MSG(off <= 1e-10 * mean && off <= (rep.error_bound + 1e-13) * mean, "late %s: off by %g of %g, bound %g",

@@ -710,7 +710,7 @@ static void diag_sets(void) {
     int32_t r, k;
     for (r = 2; r <= 14; r++) {
         double weighted = 0, plain = 0;
-        CHECK(hd_rational_get(&set, HD_POLES_DIAGONAL, r, &e) == HD_OK && set.kind == HD_POLES_DIAGONAL && set.degree == r &&
+        CHECK(hd_rational_exp(&set, HD_POLES_DIAGONAL, r, &e) == HD_OK && set.kind == HD_POLES_DIAGONAL && set.degree == r &&
               set.n_poles == (r + 1) / 2 && set.a0 == 0);
         CHECK_MSG(fabs(hd_rational_eval(&set, 0) - 1) < 2e-15 * pow(1.5, r), "degree %d: c(0) - 1 = %g", (int)r,
                   hd_rational_eval(&set, 0) - 1);
@@ -725,7 +725,7 @@ static void diag_sets(void) {
                   "degree %d: weighted error %g, promised %g", (int)r,
                   weighted, set.max_weighted_error);
     }
-    CHECK(hd_rational_get(&set, HD_POLES_DIAGONAL, 1, &e) == HD_ERR_ARGUMENT && hd_rational_get(&set, HD_POLES_DIAGONAL, 15,
+    CHECK(hd_rational_exp(&set, HD_POLES_DIAGONAL, 1, &e) == HD_ERR_ARGUMENT && hd_rational_exp(&set, HD_POLES_DIAGONAL, 15,
         &e) == HD_ERR_ARGUMENT);
 }
 

@@ -55,10 +55,10 @@ static hd_status est_run(hd_heat *heat, const hd_laplacian *lap, const est_case 
         case HD_QUERY_FIELDS: return hd_heat_apply(heat, c->n_times, t, c->k, U + lap->n * c->k * c->n_times, 0, U, 0, rep, NULL);
         case HD_QUERY_COLUMNS: return hd_heat_columns(heat, HD_KERNEL_OPERATOR, c->n_times, t, VERTICES(c->k, source), U, 0, rep, NULL);
         case HD_QUERY_PAIRS:
-            return hd_heat_pairs(heat, HD_DISTANCE_CLASSICAL, c->n_times, t, c->k / 2, source, source + c->k / 2, NULL, U, rep, NULL);
-        case HD_QUERY_DIAGONAL: return hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, c->n_times, t, U, 0, rep, NULL);
-        case HD_QUERY_DIAGONAL_OPERATOR: return hd_heat_diagonal(heat, HD_KERNEL_OPERATOR, c->n_times, t, U, 0, rep, NULL);
-        case HD_QUERY_TRACE: return hd_heat_trace(heat, c->n_times, t, U, NULL, rep, NULL);
+            return hd_heat_distance_pairs(heat, HD_DISTANCE_CLASSICAL, c->n_times, t, c->k / 2, source, source + c->k / 2, U, rep, NULL);
+        case HD_QUERY_DIAGONAL: return hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, c->n_times, t, U, 0, NULL, NULL, rep, NULL);
+        case HD_QUERY_DIAGONAL_OPERATOR: return hd_heat_diagonal(heat, HD_KERNEL_OPERATOR, c->n_times, t, U, 0, NULL, NULL, rep, NULL);
+        case HD_QUERY_TRACE: return hd_heat_diagonal(heat, HD_KERNEL_OPERATOR, c->n_times, t, NULL, 0, U, NULL, rep, NULL);
         case HD_QUERY_NORMALISED: return hd_heat_normalised(heat, c->n_times, t, U, 0, rep, NULL);
         case HD_QUERY_SCALE_INVARIANT: return hd_heat_scale_invariant(heat, t[0], t[c->n_times - 1], c->n_times, c->n_times < 7 ? 2 : 4, U, 0, rep, NULL);
         default: return hd_heat_distance(heat, (hd_distance_kind)(c->query - HD_QUERY_DISTANCE), c->n_times, t, VERTICES(c->k, source), U,
@@ -205,7 +205,7 @@ static void est_limits(const hd_laplacian *lap) {
         heat = eng_create(lap, &o);
         CHECK(hd_heat_estimate(heat, HD_QUERY_DIAGONAL, 1, &t, 0, &e, NULL) == HD_OK && e.method == HD_METHOD_DIRECT);
         CHECK(e.bytes_left == (double)limit - e.bytes_in_use && e.cost[0].fits == (e.cost[0].bytes <= e.bytes_left));
-        st = hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, 1, &t, U, 0, &rep, NULL);
+        st = hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, 1, &t, U, 0, NULL, NULL, &rep, NULL);
         if (e.cost[0].fits) CHECK_MSG(st >= 0, "%llu: %s", (unsigned long long)limit, rep.error.text);
         else if (e.analysed && e.cost[0].bytes > 1.1 * e.bytes_left) CHECK_MSG(st == HD_ERR_MEMORY_LIMIT, "%llu", (unsigned long long)limit);
         if (st < 0 && strstr(rep.error.text, " would bring ")) {      /* told before it begins, with both numbers */
@@ -457,7 +457,7 @@ static void est_sweep(const hd_laplacian *lap, uint64_t limit, const char *name)
     static const int32_t n_times[4] = {1, 3, EST_MOST_TIMES, 1};
     hd_rational set;
     int which, w, pass, query, q;
-    CHECK(hd_rational_get(&set, HD_POLES_UNIFORM, 5, NULL) == HD_OK);
+    CHECK(hd_rational_exp(&set, HD_POLES_UNIFORM, 5, NULL) == HD_OK);
     for (q = 0; q < EST_MOST_TIMES; q++) t[2][q] = pow(10, 0.3 * q);
     for (w = 0; w < 4; w++) for (q = 0; q < n_times[w]; q++) t[w][q] *= lap->h * lap->h;
     for (which = 0; which < EST_PLANS; which++) {

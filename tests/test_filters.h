@@ -88,7 +88,7 @@ static void filt_sets(void) {
         for (q = 0; q < FILT_LIST; q++) {
             char what[60];
             snprintf(what, sizeof what, "filter %d, eigenvalues to %g", q, top[k]);
-            CHECK_MSG(hd_rational_fit(&set, f + q, top[k], NULL, &e) == HD_OK, "%s: %s", what, e.text);
+            CHECK_MSG(hd_rational_fit(&set, 1, f + q, top[k], NULL, &e) == HD_OK, "%s: %s", what, e.text);
             filt_check_set(f + q, &set, top[k], what);
             CHECK(fabs(hd_filter_eval(f + q, 3 * low[k]) - filt_want(f + q, 3 * low[k])) <= 1e-12 * set.largest &&
                 fabs(hd_filter_eval(f + q, 0) - filt_want(f + q, 0)) <= 1e-12 * set.largest);
@@ -100,13 +100,13 @@ static void filt_sets(void) {
 static void filt_known(void) {
     hd_filter f = filt_make(HD_FILTER_RESOLVENT, 0.25, 0);
     hd_rational set;
-    CHECK(hd_rational_fit(&set, &f, 1e4, NULL, NULL) == HD_OK && set.degree == 1 && set.n_poles == 1);
+    CHECK(hd_rational_fit(&set, 1, &f, 1e4, NULL, NULL) == HD_OK && set.degree == 1 && set.n_poles == 1);
     CHECK(fabs(set.theta[0].re / set.t - 4) < 1e-7 && set.theta[0].im == 0);
     f = filt_make(HD_FILTER_BIHARMONIC, 3, 0);
-    CHECK(hd_rational_fit(&set, &f, 1e4, NULL, NULL) == HD_OK && set.degree == 2 && set.n_poles == 1);
+    CHECK(hd_rational_fit(&set, 1, &f, 1e4, NULL, NULL) == HD_OK && set.degree == 2 && set.n_poles == 1);
     CHECK(hypot(set.theta[0].re, set.theta[0].im - 3 * set.t) < 1e-6 * set.t);
     f = filt_make(HD_FILTER_BAND, 2, 8);
-    CHECK(hd_rational_fit(&set, &f, 1e4, NULL, NULL) == HD_OK && set.degree == 8 && set.n_poles == 4);
+    CHECK(hd_rational_fit(&set, 1, &f, 1e4, NULL, NULL) == HD_OK && set.degree == 8 && set.n_poles == 4);
 }
 
 /* What cannot be had is told: root singularities at 0 without a gap, few poles. A larger error is never hidden. */
@@ -114,17 +114,17 @@ static void filt_honest(void) {
     hd_filter f = filt_make(HD_FILTER_FRACTIONAL, 1, 0.5);
     hd_rational set;
     double off;
-    CHECK(hd_rational_fit(&set, &f, 1e5, NULL, NULL) == HD_WARN_ACCURACY);
+    CHECK(hd_rational_fit(&set, 1, &f, 1e5, NULL, NULL) == HD_WARN_ACCURACY);
     off = filt_error(&f, &set, 1e5);
     CHECK_MSG(off > 1e-8 && off <= set.max_error && set.max_error < 1e-3, "error %g, reported %g", off, set.max_error);
     f = filt_make(HD_FILTER_WAVE, 3, 0.4);
     f.max_degree = 8;
-    CHECK(hd_rational_fit(&set, &f, 1e5, NULL, NULL) == HD_WARN_ACCURACY && set.degree <= 8);
+    CHECK(hd_rational_fit(&set, 1, &f, 1e5, NULL, NULL) == HD_WARN_ACCURACY && set.degree <= 8);
     off = filt_error(&f, &set, 1e5);
     CHECK_MSG(off > 1e-6 && off <= set.max_error && set.max_error < 1e-2, "error %g, reported %g", off, set.max_error);
     f.max_degree = 0;
     f.tol = 1e-4;
-    CHECK(hd_rational_fit(&set, &f, 1e5, NULL, NULL) == HD_OK && set.degree < 16 && set.max_error < 1.06e-4);
+    CHECK(hd_rational_fit(&set, 1, &f, 1e5, NULL, NULL) == HD_OK && set.degree < 16 && set.max_error < 1.06e-4);
 }
 
 static double filt_near_largest(double lambda, void *user) {
@@ -142,9 +142,9 @@ static void filt_overflow(void) {
     f.max_degree = 8;
     memset(&set, 0x6b, sizeof set);
     before = set;
-    CHECK(hd_rational_fit(&set, &f, 28.9, NULL, &e) == HD_ERR_BREAKDOWN && strstr(e.text, "range of doubles"));
+    CHECK(hd_rational_fit(&set, 1, &f, 28.9, NULL, &e) == HD_ERR_BREAKDOWN && strstr(e.text, "range of doubles"));
     CHECK(memcmp(&set, &before, sizeof set) == 0);
-    CHECK(hd_rational_fit_shared(&set, 1, &f, 28.9, NULL, &e) == HD_ERR_BREAKDOWN && e.column == 0);
+    CHECK(hd_rational_fit(&set, 1, &f, 28.9, NULL, &e) == HD_ERR_BREAKDOWN && e.column == 0);
 }
 
 /* A weight makes the error small where it is large, and says so. */
@@ -154,9 +154,9 @@ static void filt_weight(void) {
     double off = 0;
     int k;
     f.tol = 1e-7;
-    CHECK(hd_rational_fit(&plain, &f, 1e5, NULL, NULL) == HD_OK);
+    CHECK(hd_rational_fit(&plain, 1, &f, 1e5, NULL, NULL) == HD_OK);
     f.weight = exp(-3);
-    CHECK(hd_rational_fit(&set, &f, 1e5, NULL, NULL) == HD_OK && set.degree <= 17);
+    CHECK(hd_rational_fit(&set, 1, &f, 1e5, NULL, NULL) == HD_OK && set.degree <= 17);
     for (k = 0; k <= 20000; k++) {
         const double l = 1e5 * pow(10, -k / 2e3), e = fabs(filt_want(&f, l) - hd_rational_eval(&set, -set.t * l));
         off = fmax(off, (1 + f.weight * l) * e);
@@ -180,19 +180,19 @@ static void filt_own(void) {
     f.f = filt_high_pass;
     f.user = &t;
     f.constant = 1;
-    CHECK(hd_rational_fit(&set, &f, 1e5, NULL, NULL) == HD_OK && fabs(set.a0 - 1) < 1e-8 && set.degree <= 12);
+    CHECK(hd_rational_fit(&set, 1, &f, 1e5, NULL, NULL) == HD_OK && fabs(set.a0 - 1) < 1e-8 && set.degree <= 12);
     for (k = 0; k <= 1000; k++) off = fmax(off, fabs(filt_high_pass(100.0 * k, &t) - hd_rational_eval(&set, -set.t * 100.0 * k)));
     CHECK_MSG(off <= set.max_error && off < 1e-9, "error %g, reported %g", off, set.max_error);
     f.f = filt_bad;
-    CHECK(hd_rational_fit(&set, &f, 1e5, NULL, &e) == HD_ERR_NOT_FINITE && e.value > 0.5 && e.value <= 1e5);
+    CHECK(hd_rational_fit(&set, 1, &f, 1e5, NULL, &e) == HD_ERR_NOT_FINITE && e.value > 0.5 && e.value <= 1e5);
     f.constant = 0;
     f.f = filt_spike;                            /* its pole is too near to be taken, and that is told */
     f.user = &top;
-    CHECK(hd_rational_fit(&set, &f, top, NULL, &e) == HD_WARN_ACCURACY && set.max_error > 0.1);
+    CHECK(hd_rational_fit(&set, 1, &f, top, NULL, &e) == HD_WARN_ACCURACY && set.max_error > 0.1);
     for (k = 0; k < set.n_poles; k++) CHECK(set.theta[k].re > 0 || set.theta[k].im > 1e-5 * fabs(set.theta[k].re));
     f.f = filt_zero;
     f.user = &zero;
-    CHECK(hd_rational_fit(&set, &f, 1e5, NULL, &e) == HD_ERR_ARGUMENT);
+    CHECK(hd_rational_fit(&set, 1, &f, 1e5, NULL, &e) == HD_ERR_ARGUMENT);
 }
 
 /* exp(-lambda), but something else on a narrow band. */
@@ -221,7 +221,7 @@ static void filt_holes(void) {
         hole.hits = 0;
         hole.from = pow(10, -4 + 7 * k / 29.0);
         hole.to = k == 28 ? hole.from : hole.from * (1 + pow(10, -4 + 3 * (k * 7 % 30) / 30.0));
-        st = hd_rational_fit(&set, &f, 1000, NULL, &e);
+        st = hd_rational_fit(&set, 1, &f, 1000, NULL, &e);
         seen += hole.hits > 0;
         CHECK_MSG(hole.hits == 0 ? st == HD_OK : st == HD_ERR_NOT_FINITE && hole.hits == 1 && e.value >= hole.from && e.value <= hole.to,
                   "%g at %g: %s, value %g", hole.value, hole.from, hd_status_name(st), e.value);
@@ -234,7 +234,7 @@ static void filt_holes(void) {
         hole.to = k < 3 ? 1 : 2.49362e-4;
         for (q = 0; q < 3; q++) several[q] = filt_make(HD_FILTER_HEAT, 1 + q, 0);
         several[k % 3] = f;
-        st = hd_rational_fit_shared(sets, 3, several, 1000, NULL, &e);
+        st = hd_rational_fit(sets, 3, several, 1000, NULL, &e);
         CHECK_MSG(hole.hits == 1 && st == HD_ERR_NOT_FINITE && e.column == k % 3, "of three, hole %d: %d hits, %s, column %d",
             k, hole.hits, hd_status_name(st), (int)e.column);
     }
@@ -249,11 +249,11 @@ static void filt_arguments(void) {
     uint64_t limit;
     memset(&set, 0x11, sizeof set);
     kept = set;
-    CHECK(hd_rational_fit(NULL, &good, 10, NULL, &e) == HD_ERR_ARGUMENT && hd_rational_fit(&set, NULL, 10, NULL, NULL) == HD_ERR_ARGUMENT);
+    CHECK(hd_rational_fit(NULL, 1, &good, 10, NULL, &e) == HD_ERR_ARGUMENT && hd_rational_fit(&set, 1, NULL, 10, NULL, NULL) == HD_ERR_ARGUMENT);
 #define FILT_BAD(change)                                                                                                              \
     f = good;                                                                                                                         \
     change;                                                                                                                           \
-    CHECK_MSG(hd_rational_fit(&set, &f, 10, NULL, &e) == HD_ERR_ARGUMENT && strncmp(e.text, "filter: ", 8) == 0, "%s: %s", #change, e.text)
+    CHECK_MSG(hd_rational_fit(&set, 1, &f, 10, NULL, &e) == HD_ERR_ARGUMENT && strncmp(e.text, "filter: ", 8) == 0, "%s: %s", #change, e.text)
     FILT_BAD(f.begin_zero = 1);
     FILT_BAD(f.end_zero = 1);
     FILT_BAD(f.kind = HD_FILTER_OWN);
@@ -276,20 +276,20 @@ static void filt_arguments(void) {
     FILT_BAD((f.kind = HD_FILTER_WAVE, f.b = 0));
     FILT_BAD((f.kind = HD_FILTER_FRACTIONAL, f.b = -1));
 #undef FILT_BAD
-    CHECK(hd_rational_fit(&set, &good, 0, NULL, &e) == HD_ERR_ARGUMENT && hd_rational_fit(&set, &good, HUGE_VAL, NULL, &e) == HD_ERR_ARGUMENT);
+    CHECK(hd_rational_fit(&set, 1, &good, 0, NULL, &e) == HD_ERR_ARGUMENT && hd_rational_fit(&set, 1, &good, HUGE_VAL, NULL, &e) == HD_ERR_ARGUMENT);
     CHECK(memcmp(&set, &kept, sizeof set) == 0);
     for (limit = 1;; limit++) {                  /* the limit-th allocation fails */
         hd_status st;
         memset(&ctx, 0, sizeof ctx);
         ctx.allocation_limit = limit;
-        st = hd_rational_fit(&set, &good, 10, &ctx, &e);
+        st = hd_rational_fit(&set, 1, &good, 10, &ctx, &e);
         CHECK(ctx.bytes_in_use == 0);
         if (st == HD_OK || !CHECK(st == HD_ERR_MEMORY_LIMIT && limit < 30)) break;
     }
     f = good;
     f.max_degree = HD_MAX_POLES;
     f.tol = 1e-15;
-    CHECK(hd_rational_fit(&set, &f, 10, NULL, &e) >= 0 && set.n_poles <= HD_MAX_POLES);
+    CHECK(hd_rational_fit(&set, 1, &f, 10, NULL, &e) >= 0 && set.n_poles <= HD_MAX_POLES);
 }
 
 /* ---- queries ---- */
@@ -314,14 +314,14 @@ static hd_rational filt_fit(const hd_filter *f, const hd_laplacian *lap) {
     hd_rational set;
     hd_error e;
     memset(&set, 0, sizeof set);
-    CHECK_MSG(hd_rational_fit(&set, f, lap->lambda_max, NULL, &e) == HD_OK, "%s", e.text);
+    CHECK_MSG(hd_rational_fit(&set, 1, f, lap->lambda_max, NULL, &e) == HD_OK, "%s", e.text);
     return set;
 }
 
 static hd_heat *filt_plan(const hd_laplacian *lap, const hd_rational *set, const char *options) {
     hd_heat *heat = kit_heat(lap, options);
     hd_error e;
-    CHECK_MSG(hd_heat_set_rational(heat, set, &e) == HD_OK, "%s", e.text);
+    CHECK_MSG(hd_heat_set_rational(heat, 1, set, &e) == HD_OK, "%s", e.text);
     return heat;
 }
 
@@ -370,7 +370,7 @@ static void filt_one_plan(void) {
     for (q = 0; q < FILT_LIST; q++) {
         hd_heat *own;
         set = filt_fit(f + q, lap);
-        CHECK(hd_heat_set_rational(one, &set, &e) == HD_OK);
+        CHECK(hd_heat_set_rational(one, 1, &set, &e) == HD_OK);
         own = filt_plan(lap, &set, "");
         CHECK(heat_diagonal(own, 1, &set.t, HD_KERNEL_SYMMETRIC, want, 0, NULL) >= 0 &&
             heat_diagonal(one, 1, &set.t, HD_KERNEL_SYMMETRIC, D, 0, &rep) >= 0);
@@ -379,14 +379,14 @@ static void filt_one_plan(void) {
         CHECK(dense_max_diff(u, want, n) <= 1e-8 * dense_max_abs(want, n));
         CHECK(heat_column(one, t, 5, u, NULL) == HD_ERR_ARGUMENT);
         if (q % 3) continue;
-        CHECK(hd_heat_set_rational(one, NULL, &e) == HD_OK && heat_diagonal(one, 1, &t, HD_KERNEL_SYMMETRIC, D, 0, &rep) == HD_OK);
+        CHECK(hd_heat_set_rational(one, 0, NULL, &e) == HD_OK && heat_diagonal(one, 1, &t, HD_KERNEL_SYMMETRIC, D, 0, &rep) == HD_OK);
         CHECK(dense_max_diff(D, heat, n) == 0 && rep.poles != HD_POLES_OWN);
     }
-    CHECK(hd_heat_set_rational(NULL, &set, &e) == HD_ERR_ARGUMENT);
+    CHECK(hd_heat_set_rational(NULL, 1, &set, &e) == HD_ERR_ARGUMENT);
     set.theta[0].im = -1;
-    CHECK(hd_heat_set_rational(one, &set, &e) == HD_ERR_ARGUMENT && e.pole == 0);
+    CHECK(hd_heat_set_rational(one, 1, &set, &e) == HD_ERR_ARGUMENT && e.pole == 0);
     set.theta[0].im = 1;
-    CHECK(hd_heat_set_rational(krylov, &set, &e) == HD_ERR_ARGUMENT && strstr(e.text, "krylov") && hd_heat_set_rational(krylov, NULL, &e) == HD_OK);
+    CHECK(hd_heat_set_rational(krylov, 1, &set, &e) == HD_ERR_ARGUMENT && strstr(e.text, "krylov") && hd_heat_set_rational(krylov, 0, NULL, &e) == HD_OK);
 }
 
 /* ---- filters that share their poles ---- */
@@ -412,7 +412,7 @@ static void filt_shared_sets(void) {
     int k, q;
     for (k = 0; k < 3; k++) {
         filt_many(f, counts[k], 3, 1e3);
-        CHECK_MSG(hd_rational_fit_shared(set, counts[k], f, top, NULL, &e) == HD_OK, "%d filters: %s", counts[k], e.text);
+        CHECK_MSG(hd_rational_fit(set, counts[k], f, top, NULL, &e) == HD_OK, "%d filters: %s", counts[k], e.text);
         for (q = 0; q < counts[k]; q++) {
             const double off = filt_error(f + q, set + q, top);
             CHECK_MSG(off <= set[q].max_error && off <= 1.1 * f[q].tol * set[q].largest,
@@ -424,16 +424,16 @@ static void filt_shared_sets(void) {
         }
     }
     CHECK_MSG(set[0].n_poles <= 24, "%d filters take %d pairs", FILT_SHARED, (int)set[0].n_poles);   /* one takes 9 */
-    CHECK(hd_rational_fit(&one, f + FILT_SHARED / 2 + 1, top, NULL, NULL) == HD_OK && one.n_poles >= 8);
+    CHECK(hd_rational_fit(&one, 1, f + FILT_SHARED / 2 + 1, top, NULL, NULL) == HD_OK && one.n_poles >= 8);
     f[0] = filt_make(HD_FILTER_WAVE, 3, 0.4);
     f[1] = filt_make(HD_FILTER_WAVE, 4, 0.05);   /* too narrow for so small a tolerance: told, and not hidden */
     f[0].tol = f[1].tol = 1e-7;
-    CHECK(hd_rational_fit_shared(set, 2, f, top, NULL, NULL) == HD_WARN_ACCURACY && set[1].max_error > 1e-7);
+    CHECK(hd_rational_fit(set, 2, f, top, NULL, NULL) == HD_WARN_ACCURACY && set[1].max_error > 1e-7);
     for (q = 0; q < 2; q++) CHECK(filt_error(f + q, set + q, top) <= set[q].max_error);
     f[1].b = 0;
-    CHECK(hd_rational_fit_shared(set, 2, f, top, NULL, &e) == HD_ERR_ARGUMENT && e.column == 1);
-    CHECK(hd_rational_fit_shared(set, 0, f, top, NULL, NULL) == HD_ERR_ARGUMENT &&
-        hd_rational_fit_shared(NULL, 1, f, top, NULL, NULL) == HD_ERR_ARGUMENT);
+    CHECK(hd_rational_fit(set, 2, f, top, NULL, &e) == HD_ERR_ARGUMENT && e.column == 1);
+    CHECK(hd_rational_fit(set, 0, f, top, NULL, NULL) == HD_ERR_ARGUMENT &&
+        hd_rational_fit(NULL, 1, f, top, NULL, NULL) == HD_ERR_ARGUMENT);
 }
 
 /* Diagonals and traces of all filters at once against the truth. */
@@ -451,12 +451,12 @@ static void filt_shared_diagonals(const char *pairs) {
     int q, round;
     int32_t v, l;
     filt_many(f, COUNT, 0.9 * T->edge, T->top);
-    CHECK(hd_rational_fit_shared(set, COUNT, f, lap->lambda_max, NULL, NULL) == HD_OK);
+    CHECK(hd_rational_fit(set, COUNT, f, lap->lambda_max, NULL, NULL) == HD_OK);
     CHECK(lap->lambda_max >= T->top && lap->lambda_max < 6 * T->top);
     heat = filt_plan(lap, set + 3, "");
     for (round = 0; round < 2; round++) {
         for (v = 0; v < COUNT * (n + 1); v++) D[v] = 77;
-        CHECK_MSG(hd_heat_filter_diagonals(heat, COUNT, set, D, (size_t)n + 1, round ? NULL : Z, round ? NULL : bound, &rep, NULL) == HD_OK,
+        CHECK_MSG(heat_filters(heat, COUNT, set, D, (size_t)n + 1, round ? NULL : Z, round ? NULL : bound, &rep, NULL) == HD_OK,
             "%s: %s", pairs, rep.error.text);
         CHECK_MSG(rep.error_bound < 2e-5 && rep.method == HD_METHOD_DIRECT && rep.degree == set[0].degree, "%s: bound %g", pairs, rep.error_bound);
         for (q = 0; q < COUNT; q++) {
@@ -481,14 +481,14 @@ static void filt_shared_diagonals(const char *pairs) {
     }
     /* columns of another filter by the same plan */
     v = lap->vertex[2];
-    CHECK(hd_heat_set_rational(heat, set + 4, NULL) == HD_OK);
+    CHECK(hd_heat_set_rational(heat, 1, set + 4, NULL) == HD_OK);
     CHECK(hd_heat_column(heat, HD_KERNEL_SYMMETRIC, set[4].t, v, D, &rep, NULL) == HD_OK && rep.method == HD_METHOD_DIRECT);
     CHECK_MSG(fabs(D[v] - D[(size_t)4 * ((size_t)n + 1) + (size_t)v]) <= 1e-7 * dense_max_abs(D, n), "%s: column and diagonal", pairs);
     set[2].theta[1].re *= 1.0001;
-    CHECK(hd_heat_filter_diagonals(heat, COUNT, set, D, 0, NULL, NULL, &rep, NULL) == HD_ERR_ARGUMENT && rep.error.column == 2);
-    CHECK(hd_heat_filter_diagonals(heat, 0, set, D, 0, NULL, NULL, NULL, NULL) == HD_ERR_ARGUMENT &&
-        hd_heat_filter_diagonals(heat, 1, NULL, D, 0, NULL, NULL, NULL, NULL) == HD_ERR_ARGUMENT);
-    CHECK(hd_heat_set_rational(heat, NULL, NULL) == HD_OK && hd_heat_filter_diagonals(heat, 1, set, D, 0, NULL, NULL, &rep, NULL) == HD_ERR_ARGUMENT);
+    CHECK(heat_filters(heat, COUNT, set, D, 0, NULL, NULL, &rep, NULL) == HD_ERR_ARGUMENT && rep.error.column == 2);
+    CHECK(heat_filters(heat, 0, set, D, 0, NULL, NULL, NULL, NULL) == HD_ERR_ARGUMENT &&
+        heat_filters(heat, 1, NULL, D, 0, NULL, NULL, NULL, NULL) == HD_ERR_ARGUMENT);
+    CHECK(hd_heat_set_rational(heat, 0, NULL, NULL) == HD_OK && heat_filters(heat, 1, set, D, 0, NULL, NULL, &rep, NULL) == HD_ERR_ARGUMENT);
 }
 
 static void filt_shared(void) {

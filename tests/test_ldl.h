@@ -176,7 +176,7 @@ static hd_c64 ldl_theta(uint64_t *seed) {
     const hd_pole_kind kind = dense_random(seed) % 2 ? HD_POLES_UNIFORM : HD_POLES_KERNEL;
     const int32_t degree = 2 + ldl_below(seed, 13);
     hd_c64 z;
-    CHECK(hd_rational_get(&set, kind, degree, NULL) == HD_OK);
+    CHECK(hd_rational_exp(&set, kind, degree, NULL) == HD_OK);
     z = set.theta[ldl_below(seed, set.n_poles)];
     if (dense_random(seed) % 2) z.im = -z.im;
     return z;
@@ -191,7 +191,7 @@ static void ldl_growth_of_tables(void) {
     int32_t degree, i, k;
     for (k = 0; k < 2; k++)
         for (degree = 2; degree <= 14; degree++) {
-            CHECK(hd_rational_get(&set, k ? HD_POLES_KERNEL : HD_POLES_UNIFORM, degree, NULL) == HD_OK);
+            CHECK(hd_rational_exp(&set, k ? HD_POLES_KERNEL : HD_POLES_UNIFORM, degree, NULL) == HD_OK);
             for (i = 0; i < set.n_poles; i++)
                 CHECK_MSG(ldl_growth_bound(set.theta[i]) < most[k], "kind %d, degree %d, pole %d: %g", (int)k, (int)degree, (int)i,
                           ldl_growth_bound(set.theta[i]));
@@ -1435,7 +1435,7 @@ static void ldl_mesh_of(const shape *s, const hd_laplacian *lap, int flat, const
     int way;
     copy = test_csr_ordered(&lap->L, NULL);
     p = ldl_problem_of(copy, K, 1);
-    CHECK(hd_rational_get(&set, HD_POLES_KERNEL, 2 * K, NULL) == HD_OK && set.n_poles == K);
+    CHECK(hd_rational_exp(&set, HD_POLES_KERNEL, 2 * K, NULL) == HD_OK && set.n_poles == K);
     for (k = 0, p.growth = 0; k < K; k++) p.growth = fmax(p.growth, ldl_growth_bound(set.theta[k]));
     memset(p.xyz, 0, 3 * (size_t)n * sizeof *p.xyz);
     for (i = 0; i < n; i++) {

@@ -29,7 +29,7 @@ static void plat_heat(const hd_laplacian *lap, const char *what, const double wa
         CHECK(hd_heat_column(heat, HD_KERNEL_OPERATOR, t[0], 5, u, NULL, NULL) >= 0);
         plat_is(what, u, lap->n, want[0], k ? 1e-9 : 1e-12);
         if (k == 0) {
-            CHECK(hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, 1, t, u, 0, NULL, NULL) >= 0);
+            CHECK(hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, 1, t, u, 0, NULL, NULL, NULL, NULL) >= 0);
             plat_is(what, u, lap->n, want[1], 1e-12);
         }
         hd_heat_free(heat);

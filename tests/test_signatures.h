@@ -40,7 +40,7 @@ static void sign_traces(const trial_work *w, double most) {
     int k;
     int32_t v;
     sign_times(w, t);
-    CHECK_MSG(hd_heat_trace(heat, SIGN_TIMES, t, Z, bound, &rep, &e) == HD_OK, "%s: %s", w->text, e.text);
+    CHECK_MSG(hd_heat_diagonal(heat, HD_KERNEL_OPERATOR, SIGN_TIMES, t, NULL, 0, Z, bound, &rep, &e) == HD_OK, "%s: %s", w->text, e.text);
     for (k = 0; k < SIGN_TIMES; k++) {
         const double want = sign_trace(w, t[k]), off = fabs(Z[k] - want);
         double sum = 0;
@@ -50,8 +50,8 @@ static void sign_traces(const trial_work *w, double most) {
         CHECK_MSG(bound[k] <= 1.0001 * rep.error_relative * Z[k] && rep.error_relative < most &&
                   rep.error_bound <= 1.0001 * rep.error_relative,
                   "%s: %g, %g", w->text, rep.error_relative, rep.error_bound);
-        CHECK(hd_heat_trace(heat, 1, t + k, &one, &relative, NULL, NULL) == HD_OK && fabs(one - want) <= relative + 1e-15 * want);
-        CHECK(hd_heat_diagonal(heat, HD_KERNEL_OPERATOR, 1, t + k, diag, 0, NULL, NULL) >= 0);
+        CHECK(hd_heat_diagonal(heat, HD_KERNEL_OPERATOR, 1, t + k, NULL, 0, &one, &relative, NULL, NULL) == HD_OK && fabs(one - want) <= relative + 1e-15 * want);
+        CHECK(hd_heat_diagonal(heat, HD_KERNEL_OPERATOR, 1, t + k, diag, 0, NULL, NULL, NULL, NULL) >= 0);
         for (v = 0; v < lap->n; v++) sum += lap->row[v] >= 0 ? diag[v] : 0;
         CHECK_MSG(fabs(one - sum) <= 1e-7 * want, "%s, t %g: the diagonal's sum differs by %g", w->text, t[k], (one - sum) / want);
     }
@@ -67,7 +67,7 @@ static void sign_sets(const trial_work *w) {
     int set, k;
     sign_times(w, t);
     for (set = 0; set < 3; set++) {
-        CHECK(hd_heat_trace(kit_heat(sign_pair(w), plans[set]), 3, t, Z, bound, &rep, NULL) >= 0 && rep.poles == kinds[set]);
+        CHECK(hd_heat_diagonal(kit_heat(sign_pair(w), plans[set]), HD_KERNEL_OPERATOR, 3, t, NULL, 0, Z, bound, &rep, NULL) >= 0 && rep.poles == kinds[set]);
         for (k = 0; k < 3; k++) {
             const double want = sign_trace(w, t[k]);
             CHECK_MSG(fabs(Z[k] - want) <= bound[k] + 1e-15 * want && fabs(Z[k] - want) <= 1e-9 * want,
@@ -82,7 +82,7 @@ static void sign_late(const trial_work *w, int components) {
     const double t[3] = {1 / w->T->top, 1e25 / w->T->top, 100 / w->T->top};
     double Z[3], bound[3];
     int k;
-    CHECK(hd_heat_trace(kit_heat(sign_pair(w), ""), 3, t, Z, bound, NULL, NULL) == (components ? HD_OK : HD_WARN_ACCURACY));
+    CHECK(hd_heat_diagonal(kit_heat(sign_pair(w), ""), HD_KERNEL_OPERATOR, 3, t, NULL, 0, Z, bound, NULL, NULL) == (components ? HD_OK : HD_WARN_ACCURACY));
     CHECK_MSG(Z[1] == components, "%s: %g", w->text, Z[1]);
     for (k = 0; k < 3; k++) CHECK(fabs(Z[k] - sign_trace(w, t[k])) <= bound[k] + 1e-15 * Z[k]);
 }
@@ -179,7 +179,7 @@ static void sign_sphere(void) {
     double Z[3], before[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL};
     int level, k, l;
     for (level = 0; level < 3 - CASES_FEW; level++) {
-        CHECK(hd_heat_trace(kit_heat(kit_pair(pairs[level]), ""), 3, t, Z, NULL, NULL, NULL) == HD_OK);
+        CHECK(hd_heat_diagonal(kit_heat(kit_pair(pairs[level]), ""), HD_KERNEL_OPERATOR, 3, t, NULL, 0, Z, NULL, NULL, NULL) == HD_OK);
         for (k = 0; k < 3; k++) {
             double want = 0, off;
             for (l = 0; l < 60; l++) want += (2 * l + 1) * exp(-l * (l + 1) * t[k]);
@@ -197,7 +197,7 @@ static void sign_torus(void) {
     static const double t[4] = {0.1, 1, 10, 60};
     double Z[4], bound[4];
     int k, p, q;
-    CHECK(hd_heat_trace(kit_heat(kit_lattice(A, C, 1, 1, 1), ""), 4, t, Z, bound, NULL, NULL) == HD_OK);
+    CHECK(hd_heat_diagonal(kit_heat(kit_lattice(A, C, 1, 1, 1), ""), HD_KERNEL_OPERATOR, 4, t, NULL, 0, Z, bound, NULL, NULL) == HD_OK);
     for (k = 0; k < 4; k++) {
         double want = 0;
         for (p = 0; p < A; p++)
@@ -264,14 +264,14 @@ static void sign_report(void) {
     double Z[2], *D = KIT_NEW(double, 3 * lap->n);
     hd_report rep;
     hd_error e;
-    CHECK(hd_heat_trace(heat, 1, &t, Z, NULL, &rep, NULL) == HD_OK);
+    CHECK(hd_heat_diagonal(heat, HD_KERNEL_OPERATOR, 1, &t, NULL, 0, Z, NULL, &rep, NULL) == HD_OK);
     CHECK(rep.evidence_rational == HD_EVIDENCE_PROVEN && rep.evidence_rounding == HD_EVIDENCE_MEASURED);
     CHECK_MSG(rep.method == HD_METHOD_DIRECT && rep.factor_nnz >= lap->n && strstr(rep.reason, "selected inversion") != NULL, "%s",
               rep.reason);
-    CHECK(hd_heat_trace(heat, 2, ending, Z, NULL, NULL, &e) == HD_ERR_ARGUMENT && e.column == 1);
+    CHECK(hd_heat_diagonal(heat, HD_KERNEL_OPERATOR, 2, ending, NULL, 0, Z, NULL, NULL, &e) == HD_ERR_ARGUMENT && e.column == 1);
     CHECK(hd_heat_normalised(heat, 2, ending, D, 0, NULL, &e) == HD_ERR_ARGUMENT &&
           hd_heat_normalised(heat, 1, &t, D, 1, NULL, &e) == HD_ERR_ARGUMENT);
-    CHECK(hd_heat_trace(krylov, 1, &t, Z, NULL, NULL, &e) == HD_ERR_ARGUMENT && hd_heat_normalised(krylov, 1, &t, D, 0, NULL,
+    CHECK(hd_heat_diagonal(krylov, HD_KERNEL_OPERATOR, 1, &t, NULL, 0, Z, NULL, NULL, &e) == HD_ERR_ARGUMENT && hd_heat_normalised(krylov, 1, &t, D, 0, NULL,
         &e) == HD_ERR_ARGUMENT);
     CHECK(hd_heat_scale_invariant(heat, 1, 1, 9, 3, D, 0, NULL, &e) == HD_ERR_ARGUMENT &&
           hd_heat_scale_invariant(heat, 1, 2, 4, 3, D, 0, NULL, &e) == HD_ERR_ARGUMENT);
@@ -296,7 +296,7 @@ static void sign_query(hd_context *ctx, const shape *s, int which, double *out) 
     CHECK(hd_laplacian_create(&lap, MESH_TRIANGLES(s->xyz, s->n, s->tri, s->n_tri), &l, NULL) == HD_OK &&
           hd_heat_create(&heat, lap, &o, NULL) == HD_OK);
     CHECK((which < 3    ? hd_heat_derivative(heat, 3, t, 1, f, 0, out, 0, NULL, NULL)
-           : which == 3 ? hd_heat_trace(heat, 3, t, out, out + 3, NULL, NULL)
+           : which == 3 ? hd_heat_diagonal(heat, HD_KERNEL_OPERATOR, 3, t, NULL, 0, out, out + 3, NULL, NULL)
            : which == 4 ? hd_heat_normalised(heat, 3, t, out, 0, NULL, NULL)
            : which == 5 ? hd_heat_scale_invariant(heat, 0.01, 10, 9, 3, out, 0, NULL, NULL)
                         : hd_heat_adjoint(heat, 3, t, 1, f, 0, out, 0, NULL, NULL)) >= 0);

@@ -340,7 +340,7 @@ static void spec_against_heat(void) {
               hd_spectrum_columns(z, kernel, 1, &t, VERTICES(2, sources), w, b, 0, NULL) == HD_OK);
         CHECK_MSG(dense_max_diff(u, w, 2 * n) <= 1e-6 * dense_max_abs(u, n), "columns off by %g", dense_max_diff(u, w, 2 * n));
         CHECK(w[n + 240] == (k ? 0 : 1));
-        CHECK(hd_heat_diagonal(heat, kernel, 1, &t, u, 0, NULL, NULL) >= 0 && hd_spectrum_diagonal(z, kernel, 1, &t, w, b, 0,
+        CHECK(hd_heat_diagonal(heat, kernel, 1, &t, u, 0, NULL, NULL, NULL, NULL) >= 0 && hd_spectrum_diagonal(z, kernel, 1, &t, w, b, 0,
             NULL) == HD_OK);
         CHECK_MSG(dense_max_diff(u, w, n) <= 1e-6 * dense_max_abs(u, n), "diagonal off by %g", dense_max_diff(u, w, n));
     }

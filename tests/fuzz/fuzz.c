@@ -586,7 +586,7 @@ static void fz_one_more(hd_heat *heat, const hd_laplacian *lap, fz_query *q, fz_
     switch (which) {
     case 0: st = hd_heat_derivative(heat, q->n_times, q->t, q->k, q->f, 0, q->u, 0, &rep, &e); break;
     case 1: st = hd_heat_adjoint(heat, q->n_times, q->t, q->k, q->f, 0, q->u, 0, &rep, &e); break;
-    case 2: st = hd_heat_trace(heat, q->n_times, q->t, q->u, q->v, &rep, &e), values = q->n_times; break;
+    case 2: st = hd_heat_diagonal(heat, HD_KERNEL_OPERATOR, q->n_times, q->t, NULL, 0, q->u, q->v, &rep, &e), values = q->n_times; break;
     case 3: st = hd_heat_normalised(heat, q->n_times, q->t, q->u, 0, &rep, &e), values = n * q->n_times; break;
     case 4: st = hd_heat_scale_invariant(heat, q->t[0], q->t[1], fz_int(in, 9), fz_below(in, 4), q->u, 0, &rep, &e), values = n; break;
     default:
@@ -621,8 +621,8 @@ static void fz_one(hd_heat *heat, const hd_laplacian *lap, fz_query *q, fz_in *i
         (void)fz_status(hd_heat_estimate(heat, (hd_query)fz_int(in, 10), q->n_times, q->t, q->k, &estimate, &e), &e, c);
         return;
     }
-    if (which == 2) st = hd_heat_diagonal(heat, q->kernel, q->n_times, q->t, q->u, 0, &rep, &e), values = n * q->n_times;
-    if (which == 3) st = hd_heat_trace(heat, q->n_times, q->t, q->u, NULL, &rep, &e), values = q->n_times;
+    if (which == 2) st = hd_heat_diagonal(heat, q->kernel, q->n_times, q->t, q->u, 0, NULL, NULL, &rep, &e), values = n * q->n_times;
+    if (which == 3) st = hd_heat_diagonal(heat, HD_KERNEL_OPERATOR, q->n_times, q->t, NULL, 0, q->u, NULL, &rep, &e), values = q->n_times;
     if (which == 4) {
         if (q->kind >= HD_DISTANCE_COMMUTE) q->n_times = 1;
         st = hd_heat_distance(heat, q->kind, q->n_times, q->t, VERTICES(q->k, q->id), q->u, 0, &rep, &e), values = n * q->n_times * q->k;
@@ -1339,7 +1339,7 @@ static void fz_scribble(fz_in *in, void *to, size_t size) {
 static void fz_rational(fz_in *in, hd_rational *set) {
     int32_t k;
     if (fz_byte(in) & 1) {
-        (void)hd_rational_get(set, (hd_pole_kind)fz_int(in, 5), fz_int(in, 16), NULL);
+        (void)hd_rational_exp(set, (hd_pole_kind)fz_int(in, 5), fz_int(in, 16), NULL);
         fz_scribble(in, set, sizeof *set);
         return;
     }
@@ -1393,7 +1393,7 @@ static void fz_option_queries(fz_in *in, const hd_laplacian *lap, const fz_conte
     for (k = 0; k < 24 * 16; k++) u[k] = d[k] = 0.5;
     fz_status(hd_heat_columns(heat, (hd_kernel)fz_int(in, 2), n_times, t, VERTICES(sources, id), u, ld, NULL, &e), &e, c);
     fz_status(hd_heat_apply(heat, n_times, t, sources, d, ld, u, ld, NULL, &e), &e, c);
-    fz_status(hd_heat_diagonal(heat, (hd_kernel)fz_int(in, 2), n_times, t, u, ld, NULL, &e), &e, c);
+    fz_status(hd_heat_diagonal(heat, (hd_kernel)fz_int(in, 2), n_times, t, u, ld, NULL, NULL, NULL, &e), &e, c);
     fz_status(hd_heat_distance(heat, (hd_distance_kind)fz_int(in, 4), n_times, t, VERTICES(sources, id), d, ld, NULL, &e), &e, c);
     fz_status(hd_heat_pairs(heat, (hd_distance_kind)fz_int(in, 4), n_times, t, sources, id, id, u, d, NULL, &e), &e, c);
     fz_status(hd_heat_entries(heat, (hd_kernel)fz_int(in, 2), n_times, t, sources, id, id, u, NULL, &e), &e, c);
@@ -1560,11 +1560,11 @@ static void fz_filters(const uint8_t *data, size_t size) {
         for (k = 0; k < 2 && heat; k++) {
             f = fz_filter(&in, own);
             top = fz_byte(&in) < 224 ? lap->lambda_max : fz_number(&in);
-            if (fz_status(hd_rational_fit(&set, &f, top, &c.ctx, &e), &e, &c) >= 0) fz_filter_check(&f, &set, top);
+            if (fz_status(hd_rational_fit(&set, 1, &f, top, &c.ctx, &e), &e, &c) >= 0) fz_filter_check(&f, &set, top);
             else FZ(k || memcmp(&set, &before, sizeof set) == 0);
             if (e.status < 0) continue;
             if (fz_byte(&in) > 240) set.theta[fz_below(&in, HD_MAX_POLES)].re = fz_number(&in);
-            if (fz_status(hd_heat_set_rational(heat, fz_byte(&in) > 250 ? NULL : &set, &e), &e, &c) >= 0) {
+            if (fz_status(hd_heat_set_rational(heat, 1, fz_byte(&in) > 250 ? NULL : &set, &e), &e, &c) >= 0) {
                 fz_query q;
                 fz_query_make(&q, &in, lap);
                 if (fz_byte(&in) < 240) q.t[0] = set.t, q.n_times = 1;
