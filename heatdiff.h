@@ -139,30 +139,24 @@
    Limits
      Vertices and faces are counted in 32 bits, non-zeros and offsets in 64. The library prints nothing, opens
      no file and never exits.
-     Arithmetic must be that of doubles (FLT_EVAL_METHOD 0). x87 registers keep more digits now and then:
-     results are as accurate, but neither bits nor bounds on the error near rounding are promised. On 32-bit
-     x86 compile with -msse2 -mfpmath=sse. -ffast-math takes away the same promises. Even then coordinates,
-     matrices, fields and times that are not finite are refused, but options are not.
+     Arithmetic must be that of doubles (FLT_EVAL_METHOD 0). With x87 registers (32-bit x86 without -msse2
+     -mfpmath=sse) or -ffast-math results are as accurate, but neither bits nor bounds near rounding are
+     promised.
 
    Threads
      There is no global or thread-local state. One object serves one thread at a time, and so does one
-     context, because it counts memory. Two threads may work at once if they share no object and no context.
-     One exception: plans and hd_spectrum_create read their Laplacian and never write to it. So several
-     threads may share one Laplacian if every plan and every spectrum has a context of its own, by its
-     options. Without one they use the Laplacian's. If you set allocators, they must allow calls from several
-     threads.
+     context. One exception: plans and hd_spectrum_create only read their Laplacian. So several threads may
+     share one if every plan and spectrum has a context of its own, by its options.
 
      The library's own threads belong to a context. They start when the first long work needs them (20 to 50
-     microseconds each), sleep between calls, and end with the last object made with the context. Functions
-     that make no object end them before they return. So nothing is left running when all objects are freed.
-     Threads claim small tasks. The calling thread works too, and never waits for a thread that has not begun.
-     Results are the same to the last bit for any number of threads.
-     Nested use: if your own threads each have a plan with a context, set hd_context.n_threads = 1 there, or
-     share the processors out. Any other number gives the same results, only more slowly.
-     fork: the child process may use and free the objects of its parent. The parent's threads do not exist in
-     it; new ones start when work needs them. Do not fork while another thread is inside the library.
-     With glibc older than 2.34 link with -lpthread; without it programs link, but they run on one thread.
-     On Windows the implementation includes windows.h for its threads, and so the macros near and far.
+     microseconds each), sleep between calls, and end with the last object made with the context; functions
+     that make no object end them before they return. The calling thread works too, and never waits for a
+     thread that has not begun. Results are the same to the last bit for any number of threads.
+     Nested use: if your own threads each have a plan, set hd_context.n_threads = 1 there.
+     fork: the child process may use and free the objects of its parent. Do not fork while another thread is
+     inside the library.
+     With glibc older than 2.34 link with -lpthread; without it programs run on one thread. On Windows the
+     implementation includes windows.h.
 
    Licence: MIT or public domain, at your choice; see the end of the file. */
 
@@ -294,11 +288,9 @@ typedef struct hd_context {
     hd_progress (*progress)(void *user, const char *stage, double done);
     void *progress_user;
 
-    /* Runs task(arg, i, worker) for every i in [0, n_tasks), in any order, and returns when all tasks are
-     * done. The calling thread is worker 0; other threads have numbers of their own. NULL: the library's own
-     * threads. Results depend neither on this function nor on the number of threads. Some tasks, those of a
-     * factorisation among them, work for as long as they find something to do: as many threads as there are
-     * should run them side by side. None waits for another. */
+    /* Runs task(arg, i, worker) for every i in [0, n_tasks), in any order, and returns when all are done. The
+     * calling thread is worker 0. NULL: the library's own threads. Some tasks work for as long as they find
+     * something to do: as many threads as there are should run them side by side. None waits for another. */
     void (*parallel_for)(void *user, int64_t n_tasks, hd_task task, void *arg);
     void *parallel_user;
     /* Threads that work at the same time, the calling one included. 0: as many as the process may use
@@ -458,9 +450,8 @@ typedef struct hd_mesh_report {
     int64_t n_misoriented_edges;     /* with two faces that run along the edge in the same direction */
     int32_t n_boundary_loops;        /* connected sets of boundary edges */
     int32_t n_inert;                 /* vertices without mass, held or not */
-    /* Edges whose cotangent weight is negative. They are legitimate, but the maximum principle does not hold
-     * then. Polygons: pairs of vertices, joined by edges or diagonals, whose entry of L is positive. Nearly
-     * every face with more than three corners has some. */
+    /* Edges of negative cotangent weight: legitimate, but the maximum principle does not hold then. Polygons:
+     * pairs of vertices whose entry of L is positive; most faces of more than three corners have some. */
     int64_t n_negative_weights;
     double smallest_angle;           /* in radians, of the faces used; polygons: of convex corners */
 
@@ -486,9 +477,9 @@ typedef struct hd_point_report {
     int32_t n_no_area;               /* points whose neighbours lie on a line: inert for voronoi-exp */
     int32_t n_border;                /* places whose cell ends at the hull of their neighbours */
     int32_t most_in_row;             /* most non-zeros in a row of L, diagonal included */
-    /* Places whose nearest neighbours spread across their plane more than 0.45 times as far as along it. This
-     * happens at sharp creases, rims and tips, in strong noise, and where two sheets of the surface are
-     * closer than about 1.5 spacings. Planes are uncertain there, and heat may cross to the other sheet. */
+    /* Places whose nearest neighbours spread across their plane more than 0.45 times as far as along it: at
+     * creases, rims and tips, in strong noise, and where two sheets of the surface are closer than about 1.5
+     * spacings. Planes are uncertain there, and heat may cross to the other sheet. */
     int32_t n_not_flat;
 } hd_point_report;
 
@@ -523,12 +514,10 @@ typedef struct hd_laplacian {
      * Matrices: proven by Gershgorin's circles or by factorisations. 0: unknown. */
     double b_ratio;
     /* 1: L 1 = 0, so that heat is conserved. Always so for meshes and points of which no vertex is held.
-     * Matrices: if it holds up to 4 DBL_EPSILON sum_j |L_ij| in each row. Such row sums are treated as zero,
-     * and t may be large.
-     * 2: only on some components. The others lose heat to vertices held at zero, so that the mean they tend
-     * to is 0; their component_mass is infinite.
-     * 0: on none, or unknown. Then K_t f may fade like exp(-lambda_1 t), while the errors of poles do not:
-     * from about t = 15/lambda_1 on their bounds say little. hd_heat_apply says how auto and direct go on. */
+     * Matrices: if it holds up to 4 DBL_EPSILON sum_j |L_ij| in each row.
+     * 2: only on some components. The others lose heat to vertices held at zero: they tend to 0, and their
+     * component_mass is infinite.
+     * 0: on none, or unknown. From about t = 15/lambda_1 on bounds of poles say little, see hd_heat_apply. */
     int32_t conserves;
     /* Matrices and points: only n_inert. Tufted points: the triangles of their stars. */
     hd_mesh_report mesh;
@@ -602,8 +591,7 @@ typedef struct hd_filter {
     void *user;
     double tol;                 /* max (1 + weight lambda) |f - c| / max |f|; default 1e-10 */
     /* >= 0, by default 0. With 1/weight near the eigenvalues that f lets pass, the error is small where most
-     * eigenvalues are, which helps columns and diagonals. For a wave, weight = exp(-a) and tol = 1e-7 give
-     * bounds near 1e-6 with 16 poles; without a weight that takes tol = 1e-10 and 20 poles. */
+     * eigenvalues are. For a wave, weight = exp(-a) and tol = 1e-7 give bounds near 1e-6 with 16 poles. */
     double weight;
     int32_t max_degree;         /* of the set, at most HD_MAX_POLES; default 24 */
     /* > 0: there is no eigenvalue between 0 and this, and c may take any value there. Filters that are not
@@ -616,11 +604,10 @@ typedef struct hd_filter {
 } hd_filter;
 
 typedef enum hd_method {
-    /* The cheapest by a model of flops and bytes, within the byte limit. It counts what calls for a few
-     * fields or columns, one after another at one t, have cost by the model. When that exceeds the cost of
-     * factorising all poles, the plan changes to direct, and report.reason says so; another t, or an update
-     * of the Laplacian, begins the count anew. The model uses no clock, so the same calls take the same
-     * methods. The answers of two methods differ within their bounds. */
+    /* The cheapest by a model of flops and bytes, within the byte limit. When a few columns or fields, one
+     * after another at one t, have cost more than factors of all poles, the plan changes to direct; another t
+     * begins the count anew. No clock: the same calls take the same methods. Answers of two methods differ
+     * within their bounds. */
     HD_METHOD_AUTO = 0,
     HD_METHOD_ITERATIVE,        /* a Krylov method for each pole, or Lanczos for the exponential */
     HD_METHOD_DIRECT,           /* all poles factorised in one sweep: for many fields or columns */
@@ -639,9 +626,8 @@ typedef enum hd_solver {
     HD_SOLVER_AUTO = 0,         /* Lanczos for small t if it costs less, else cocg */
     /* Conjugate orthogonal CG (van der Vorst, Melissen 1990); CG for real poles. */
     HD_SOLVER_COCG,
-    /* CS-MINRES (Choi 2013), which is MINRES on the Saunders process. Plain MINRES needs a Hermitian matrix.
-     * For complex theta, t L + theta B is not Hermitian, and plain MINRES converges to a wrong result.
-     * CS-MINRES needs a real positive definite preconditioner: here that of t L + |theta| B. */
+    /* CS-MINRES (Choi 2013). Plain MINRES is for Hermitian matrices and converges to a wrong result here. It
+     * needs a real positive definite preconditioner: that of t L + |theta| B. */
     HD_SOLVER_MINRES = 3,       /* there is no 2 */
     HD_SOLVER_LANCZOS           /* for the exponential, no poles: about 1.1 sqrt(t lambda_max) steps */
 } hd_solver;
@@ -669,9 +655,8 @@ typedef struct hd_heat_opts {
     const hd_rational *rational;
     double tol;                 /* the solver's part of |error|_B / |answer|_B; default 1e-9 */
     int32_t max_iterations;     /* per system; default 20000 */
-    /* Of the methods that factorise. Auto: on meshes of 40K to about 120K vertices, one to three columns by
-     * one real factor take a minimum degree order, because that is faster altogether. A plan that is also
-     * asked for other answers keeps both orders and their analyses. */
+    /* Of the methods that factorise. Auto: one to three columns by one real factor take a minimum degree
+     * order on meshes of 40K to 120K vertices. A plan that is also asked for other answers keeps both. */
     hd_ordering ordering;
     /* [n] with HD_ORDERING_OWN: perm[k] is the vertex eliminated k-th. Vertices without mass may stand
      * anywhere. It is copied. */
@@ -697,9 +682,10 @@ typedef struct hd_sources {
     /* Vertices that each point lies between: 1 for a vertex, 2 for an edge, 3 for a triangle, more for
      * polygons. 0: 1. Points at vertices and on edges may stand among points of triangles, with weights 0. */
     int32_t corners;
-    /* 1: curves of straight pieces from each point of a source to its next, at least two points. Two in turn
-     * must lie in one face, edges and corners included. A curve has weight 1 for each unit of its length, and
-     * integrals along it are exact for fields that are linear on faces. To close it, repeat the first point. */
+    /* 1: curves of straight pieces from each point of a source to its next, at least two points. Two in
+     * turn must lie in one face, edges and corners included. A curve has weight 1 for each unit of its
+     * length, and integrals along it are exact for fields that are linear on faces. To close it, repeat
+     * the first point. */
     int32_t curve;
     const int32_t *vertex;      /* [corners] of each point */
     /* [corners] of each point, barycentric coordinates: not negative, and of sum 1 up to 1e-6. NULL: the mean
@@ -740,9 +726,8 @@ typedef enum hd_evidence {
  * The error bound has three parts: the rational approximation of exp or of a filter, the iterative solver,
  * and rounding.
  * error_bound is their sum. It bounds the largest error of any value returned, relative to the largest
- * |value| returned: of each field, column and time, or of the whole list for entries and pairs. Each part has
- * its evidence. HD_EVIDENCE_NONE means that the part does not apply, and that the other parts are complete
- * without it. If the bound is above 1e-2 it says little, and the status is HD_WARN_ACCURACY. */
+ * |value| returned: of each field, column and time, or of the whole list for entries and pairs. Where a part
+ * has HD_EVIDENCE_NONE it does not apply. Above 1e-2 the status is HD_WARN_ACCURACY. */
 typedef struct hd_report {
     hd_status status;
     hd_error error;             /* filled if status < 0 */
@@ -844,13 +829,12 @@ typedef struct hd_cost {
     int32_t possible;           /* 0: the query or the plan's options rule the method out; the rest is 0 */
     int32_t fits;               /* 1: bytes are not above what the byte limit leaves */
     double flops;               /* real floating-point operations, of factorisations, inversions and solves */
-    /* By a model of one otherwise idle core, within a factor of about two. Iterations may take three times as
-     * long, and those with poles far longer on thin triangles with obtuse angles. */
+    /* By a model of one idle core, within a factor of about two; iterations with poles may take far longer on
+     * thin triangles with obtuse angles. */
     double seconds;
     double bytes;               /* at the peak, beyond what the context has in use now */
-    /* The same if poles of degree 14 or eigenpairs take over: for demanding fields, and where slivers or the
-     * time make a bound too large. By the direct method so much room gives the same answers as no limit; with
-     * bytes alone the bound may be looser. */
+    /* The same if poles of degree 14 or eigenpairs take over, where slivers or the time make a bound too
+     * large. By the direct method so much room gives the same answers as no limit. */
     double bytes_most;
 } hd_cost;
 
@@ -965,39 +949,35 @@ HEATDIFF_API hd_mesh hd_triangles(const double *xyz, int32_t n, const int32_t *t
 HEATDIFF_API hd_sources hd_vertices(int32_t count, const int32_t *vertex);
 
 /* The Laplacian of a mesh.
- * Triangles have the kinds fem (default), voronoi-cot and cot. Polygons, which may be non-planar or
- * non-convex, also have polygon, which is their default. For the others every face is split into a fan from
- * its first corner; out->mesh then counts triangles, but errors name the polygon. Points have voronoi-exp
- * (default) and exp, or if they are tufted, the kinds of triangles. Delaunay and tufted triangulations have
- * those too. Faces of zero area, faces with a repeated corner, and faces with the corners of an earlier face
- * are left out and counted in out->mesh. Vertices without mass become inert. Non-manifold edges and several
- * components are allowed.
- * Delaunay, tufted: L and B of an intrinsic triangulation of the same surface on the same vertices. Entries
- *          of L that only rounding made positive, below 1e-13 of the cotangents at the edge, are set to zero.
- *          With voronoi-cot or cot heat then obeys the maximum principle
+ * Triangles have the kinds fem (default), voronoi-cot and cot. Polygons, planar and convex or not, also have
+ * polygon, their default; for the others every face is split into a fan from its first corner, and out->mesh
+ * counts triangles, while errors name the polygon. Points have voronoi-exp (default) and exp, or tufted the
+ * kinds of triangles, as have Delaunay and tufted triangulations of meshes. Faces of zero area, with a
+ * repeated corner, or with the corners of an earlier face are left out and counted in out->mesh. Vertices
+ * without mass become inert. Non-manifold edges and several components are allowed.
+ * Delaunay, tufted: L and B of an intrinsic triangulation of the same surface on the same vertices. With
+ *          voronoi-cot or cot heat then obeys the maximum principle
  * lengths  intrinsic geometry, such as a flat torus. lap->xyz is NULL: no nested dissection, and curves
  *          (hd_sources) need their lengths. At an edge of three faces or more a Delaunay or tufted
  *          triangulation takes the sheets in the order of the faces
  * polygons the pattern of L contains the diagonals of the faces; triangles have the cotangent L for any
  *          stiffening
  * points   Let r_k be the distance of the k-th neighbour, and m the mean of pi r_k^2/k, the area of a point.
- *          The default bandwidth2 is s = m (m/h^2)/4, within 0.3 m and 1 m: 0.36 m for blue noise, 1 m for
- *          random points. Weights reach as far as 8.6 sqrt(s), and a row has about 230 s/m non-zeros;
- *          weight_cut = 1e-4 halves that and changes the operator by 0.1 %. With s a fixed multiple of m the
- *          error levels off at 1 to 3 %; to go below, let s/m grow as points become denser. Points at the
- *          same place share its cell; out->points counts all special cases
+ *          The default bandwidth2 is s = m (m/h^2)/4, within 0.3 m and 1 m. Weights reach as far as 8.6
+ *          sqrt(s), and a row has about 230 s/m non-zeros; weight_cut = 1e-4 halves that and changes the
+ *          operator by 0.1 %. To go below an error of 1 to 3 %, let s/m grow as points become denser. Points
+ *          at the same place share its cell; out->points counts all special cases
  * tufted points have 7 to 13 non-zeros in a row. Each point's Delaunay star among its neighbours is computed
  *          in their tangent plane. All stars form a triangle soup, which out->mesh describes, in which each
  *          triangle counts a third. Points in no star are inert, as are searched points at the place of an
- *          earlier one. Two sheets of a surface are kept separate if they are about two spacings apart (three
- *          for random points). HINT: if you know normals, leave neighbours whose normals point the other way
- *          out of nbr
+ *          earlier one. Sheets of a surface two spacings apart are kept separate (three for random points).
+ *          HINT: if you know normals, leave neighbours whose normals point the other way out of nbr
  * Errors HD_ERR_INDEX (face, value: the id), HD_ERR_NOT_FINITE (vertex, or face of a length),
- *        HD_ERR_STRUCTURE (face: face_ptr descends there), HD_ERR_EMPTY; HD_ERR_ARGUMENT, also by vertex and
- *        value: a coordinate beyond 1e100, or all vertices within 1e-100 of each other, but not in one place;
- *        by face, vertex and value: an area that is not zero and outside 1e-100 .. 1e100, a weight above
- *        1e100, a length that cannot be; vertex: where the edge begins on which two faces disagree.
- *        Neighbours: HD_ERR_STRUCTURE, HD_ERR_INDEX, HD_ERR_TOO_LARGE (row: the point)
+ *        HD_ERR_STRUCTURE (face: face_ptr descends there), HD_ERR_EMPTY; HD_ERR_ARGUMENT (vertex, value: a
+ *        coordinate beyond 1e100, or all within 1e-100 of each other; face, vertex, value: an area that is
+ *        not zero and outside 1e-100 .. 1e100, a weight above 1e100, a length that cannot be; vertex: two
+ *        faces disagree on an edge from there). Neighbours: HD_ERR_STRUCTURE, HD_ERR_INDEX, HD_ERR_TOO_LARGE
+ *        (row)
  * Cost   O(n + faces + flips); a polygon with k corners k^2; points O(n log n + nnz)
  * Source Pinkall, Polthier 1993; Meyer et al. 2003; Alexa, Wardetzky 2011, with one weight for all faces;
  *        Bobenko, Springborn 2007; Sharp, Crane 2020, for points section 5.7. Liu, Prabhakaran, Guo 2012;
@@ -1014,7 +994,8 @@ HEATDIFF_API hd_status hd_laplacian_create(hd_laplacian **out, const hd_mesh *me
  *        diagonal, and later by solvers
  * h      unit length of the caller's mesh, for lap->h; 0 if there is none
  * The pair has the union of both patterns. Explicit zeros stay if their mirror entry is stored too.
- * Errors those of a matrix that is not well formed; HD_ERR_NOT_FINITE (row, value: the sizes of its entries in L or in B add up to
+ * Errors HD_ERR_STRUCTURE, HD_ERR_INDEX, HD_ERR_NOT_FINITE, HD_ERR_NOT_SYMMETRIC (row, column; value);
+ *        HD_ERR_NOT_FINITE (row, value: the sizes of its entries in L or in B add up to
  *        more than 1e100), HD_ERR_NOT_POSITIVE (row, column, value; so are entries B_ii below 1e-100),
  *        HD_ERR_EMPTY, HD_ERR_MEMORY, HD_ERR_CANCELLED
  * Cost   linear, except for a factorisation of B */
@@ -1193,9 +1174,9 @@ typedef struct hd_ldl_report {
 
 /* Computes the ordering, the elimination tree and the supernodes.
  * a      n x n with a symmetric pattern. Its values are ignored, and diagonal entries may be missing
- * Errors those of a matrix that is not well formed; HD_ERR_NOT_FINITE (row; column: 0 to 2) if a coordinate is not finite; HD_ERR_INDEX
- *        (row) if perm is not a permutation; HD_ERR_ARGUMENT, HD_ERR_TOO_LARGE, HD_ERR_MEMORY,
- *        HD_ERR_CANCELLED
+ * Errors HD_ERR_STRUCTURE, HD_ERR_INDEX, HD_ERR_NOT_SYMMETRIC (row, column); HD_ERR_NOT_FINITE (row; column:
+ *        0 to 2) if a coordinate is not finite; HD_ERR_INDEX (row) if perm is not a permutation;
+ *        HD_ERR_ARGUMENT, HD_ERR_TOO_LARGE, HD_ERR_MEMORY, HD_ERR_CANCELLED
  * Cost   nearly linear in the non-zeros of A, plus the ordering
  * Source Amestoy, Davis, Duff 1996; George 1973; Gilbert, Ng, Peyton 1994 */
 HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ldl_opts *opts,
@@ -1268,8 +1249,8 @@ HEATDIFF_API void hd_heat_free(hd_heat *heat);  /* NULL is fine */
  * one plan serves many filters one after the other. Factors stay too if the sets have the t and the poles of
  * those before.
  * sets   [count] copied. Several must have one t, one lambda_max and the same theta, as from hd_rational_fit:
- *        hd_heat_diagonal answers for all of them at once, other queries for the first. count = 0: from now on
- *        exp, with poles and degree by default
+ *        hd_heat_diagonal answers for all of them at once, other queries for the first. count = 0: from now
+ *        on exp, with poles and degree by default
  * Errors HD_ERR_ARGUMENT (column: which set; also if the plan is of method krylov or of Lanczos),
  *        HD_ERR_NOT_FINITE; then nothing has changed
  * Cost   O(count) */
@@ -1287,11 +1268,9 @@ HEATDIFF_API hd_status hd_heat_set_rational(hd_heat *heat, int32_t count, const 
  * t      >= 0. t = 0 copies F. For large t the answer tends to the mean over each component; t may be
  *        arbitrarily large.
  *        Where all heat flows out (every component has held vertices, or an L of your own does not conserve
- *        it) the answer falls like exp(-t lambda_1) instead, while the error of poles does not. With the
- *        method auto or direct it then comes from the few eigenpairs left, as in hd_heat_distance. The same
- *        holds for columns, entries, diagonals and the trace, but not for derivatives. Answers among
- *        the smallest doubles have fewer digits, which the bound includes. Where all values underflow to 0 it
- *        is above 1 or infinite, with HD_WARN_ACCURACY
+ *        it) the answer falls like exp(-t lambda_1), while the error of poles does not. Methods auto and
+ *        direct then take the few eigenpairs left, for columns, entries, diagonals and traces as well. Where
+ *        all values underflow the bound is above 1 or infinite, with HD_WARN_ACCURACY
  * F      n x k doubles, column-major, columns ldf apart (0: n)
  * U      n x (k n_times), column q n_times + m for field q and time m, columns ldu apart (0: n). With one
  *        time U may be F. With the default degree, all fields of a call use the largest degree that one of
@@ -1313,16 +1292,12 @@ HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const doubl
  * F, U   as above. The derivative is 0 at vertices without mass and at held ones
  * report bounds are relative to the derivative, which fades faster than K_t F: where t is so large that only
  *        means are left it is 0, and the bound is infinite
- * With poles, t dK_t/dt takes other weights on the same poles,
- *     x c(x) = sum a_i + sum a_i theta_i/(x - theta_i),
- * whose error is at most max (1 + |x|)|exp(x) - c(x)|. Kernel sets (or diagonal ones, if asked for) keep that
- * small; the default is degree 14. Krylov and Lanczos take x exp(x) of the same small matrix.
+ * With poles, t dK_t/dt takes other weights on the same poles; kernel sets keep the error small, and the
+ * default is degree 14. Krylov and Lanczos take x exp(x) of the same small matrix.
  * HINT: to train t, make the plan with poles = HD_POLES_KERNEL and a degree. Then hd_heat_apply,
  * hd_heat_derivative and hd_heat_adjoint at one t share the factors of the direct method, and the adjoint is
- * that of the very matrix applied, up to rounding. Let G be the gradient of a loss with respect to U = K_t F.
- * Then its gradient with respect to F is K_t' G, and its derivative in t is the sum of all
- * G_ij (dK_t/dt F)_ij. For rough fields at large t the derivative is small beside F, and low degrees lose it
- * first.
+ * that of the very matrix applied, up to rounding. With G the gradient of a loss with respect to U = K_t F,
+ * K_t' G is that with respect to F, and the sum of all G_ij (dK_t/dt F)_ij its derivative in t.
  * Errors as above; HD_ERR_ARGUMENT with a pole set of your own
  * Cost   as above */
 HEATDIFF_API hd_status hd_heat_derivative(hd_heat *heat, int32_t n_times, const double *t,
@@ -1338,10 +1313,10 @@ HEATDIFF_API hd_status hd_heat_adjoint(hd_heat *heat, int32_t n_times, const dou
                                        const double *G, size_t ldg, double *U, size_t ldu,
                                        hd_report *report, hd_error *err);
 
-/* Columns of the kernel: K_t c or k_t c, with the functional c of each source, which is the sum of the columns
- * of its vertices with the weights c_v. The column of K_t for a vertex s is K_t e_s: the field at time t that
- * starts as 1 at s and 0 elsewhere; its total heat 1'B u is the mass of s. That of k_t is the field at time t
- * of heat placed where the source is, as much as its weight.
+/* Columns of the kernel: K_t c or k_t c, with the functional c of each source, which is the sum of the
+ * columns of its vertices with the weights c_v. The column of K_t for a vertex s is K_t e_s: the field at
+ * time t that starts as 1 at s and 0 elsewhere; its total heat 1'B u is the mass of s. That of k_t is the
+ * field at time t of heat placed where the source is, as much as its weight.
  * U      as above, with sources in place of fields. The column of a vertex without mass is its unit vector
  *        for K_t, and zero for k_t. That of a held vertex is zero. A source of one vertex with weight 1 gives
  *        that vertex' column to the last bit
@@ -1360,8 +1335,8 @@ HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, hd_kernel kernel, double t,
 
 /* The diagonal of k_t or K_t at every vertex, and the heat trace. That of k_t is the heat kernel signature
  * (Sun et al. 2009), also called auto-diffusion function (Gebal et al. 2009). They come from selected
- * inversion, without eigenvectors and without columns. Divided by the trace, signatures have the integral 1 at
- * each time, so that no time outweighs the others (Sun et al. 2009, section 4).
+ * inversion, without eigenvectors and without columns. Divided by the trace, signatures have the integral 1
+ * at each time, so that no time outweighs the others (Sun et al. 2009, section 4).
  * t      > 0
  * D      n x n_times, column q for t[q], columns ldd apart (0: n); k_t: unit 1/area. A vertex without mass
  *        has 0 (K_t: 1), a held one 0. NULL: not wanted
@@ -1369,12 +1344,10 @@ HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, hd_kernel kernel, double t,
  *        k_t(x,x). Vertices without mass and held ones do not count. NULL: not wanted
  * bound  [n_times] or NULL: bounds on the absolute error of each Z
  * With several filters (hd_heat_set_rational) there is a column, a Z and a bound for each, and n_times is 0.
- * For wave filters D/Z are the wave kernel signatures at all energies. One t serves all sets then, so that
- * bounds are looser than those of a filter by itself: with waves over three decades 1e-5 to 1e-3 where errors
- * are below 1e-7.
+ * For wave filters D/Z are the wave kernel signatures at all energies. Bounds are looser than those of a
+ * filter by itself: with waves over three decades 1e-5 to 1e-3 where errors are below 1e-7.
  * report the rational part is proven at every vertex. Rounding is measured by solves whose residuals are
- *        known, at the vertices where it is largest; with many times, at each time, with several filters, for
- *        the first
+ *        known, at the vertices where it is largest
  * If B is not diagonal, k_t leaves out the term a0 diag(B^-1) of a uniform set. It is as large as the set's
  * error, and the bound includes it.
  * Errors HD_ERR_ARGUMENT (also if the method is iterative or krylov), HD_ERR_BREAKDOWN, HD_ERR_MEMORY,
@@ -1411,23 +1384,19 @@ HEATDIFF_API hd_status hd_times_auto(const hd_laplacian *lap, int32_t n_times, d
  *        held ones, has infinite commute and biharmonic distances
  * report error_bound and error_relative are for the distance d itself. n_lost counts distances with at most
  *        about one sure digit: next to the source, or so small that they underflow. Nothing is ever NaN
- * Vertices without mass are treated as having a zero kernel row, and so are held ones. Between components,
- * and to vertices without a row, commute and biharmonic are infinite (HUGE_VAL). On components that lose heat
- * they are those of the inverse of L. With default poles and degree, degree 14 takes over if the error
- * bound relative to the largest distance is, or will be, above 3.5e-7. Many times then share one set of
- * poles.
- * At large t few eigenpairs are left, and classical and weighted distances are sums over them: without
- * cancellation, to a part in 1e7 of the largest one, even if that is 1e-300. This is done where few
- * eigenpairs are expected to suffice, and also where the bound by poles is above 1e-6 and at most 360
- * suffice. What is left out is proven small by counting eigenvalues (error_rational), residuals of the
- * eigenpairs are in error_solver, and reason says so. The plan keeps the eigenpairs, and uses them for any t
- * they reach. If they do not fit the byte limit, poles are used. On meshes of more than about 170K vertices
+ * Vertices without mass, and held ones, are treated as having a zero kernel row. Between components, and to
+ * vertices without a row, commute and biharmonic are infinite (HUGE_VAL). On components that lose heat they
+ * are those of the inverse of L. With default poles and degree, degree 14 takes over if the error bound
+ * relative to the largest distance is, or will be, above 3.5e-7. Many times then share one set of poles.
+ * At large t classical and weighted distances are sums over the few eigenpairs left, which the plan keeps: no
+ * cancellation, to a part in 1e7 of the largest one, what is left out proven small. Poles serve otherwise,
+ * and if pairs exceed the byte limit. `reason` says which. On meshes of more than about 170K vertices
  * (weighted) or 240K (classical) the bound may be above 1e-6 at times between the two.
  * Errors as hd_heat_diagonal and hd_heat_columns
  * Cost   one diagonal at 2t, shared by all sources, and one column for each source. HD_DISTANCE_WEIGHTED with
- *        a full B: the diagonal is that of B K_2t and takes about twice as long. Eigenpairs: as
- *        hd_spectrum_create the first time, later 4 n flops for each. Commute: one real
- *        factorisation and its inversion; biharmonic: the same, and those of one pole
+ *        a full B: the diagonal takes about twice as long. Eigenpairs: as hd_spectrum_create the first time,
+ *        later 4 n flops for each. Commute: one real factorisation and its inversion; biharmonic: the same,
+ *        and those of one pole
  * Source see hd_distance_kind */
 HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, int32_t n_times,
                                         const double *t, const hd_sources *sources, double *D,
@@ -1437,10 +1406,9 @@ HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, in
  * t      >= 0; ignored by commute and biharmonic, with n_times 0 or 1
  * d      [n_pairs n_times], time by time
  * The distance is |K_t B^-1 (e_i - e_j)|_B, from the columns at t of all vertices that occur, without
- * cancellation, or from eigenpairs as above. Where its bound is above 1e-6, degree 14 takes over. If these
- * columns would take more than half a GiB, it comes from entries and the diagonal at 2t, one column at a
- * time; sort the pairs by i in that case. Commute and biharmonic always work that way. Plans of method
- * iterative or krylov keep to columns: of as many pairs at a time as fit, in the order of the list.
+ * cancellation, or from eigenpairs as above. If these columns would take more than half a GiB, it comes from
+ * entries and the diagonal at 2t, one column at a time; sort the pairs by i in that case. Commute and
+ * biharmonic always work that way. Plans of method iterative or krylov take columns of as many pairs as fit.
  * Errors as hd_heat_columns; HD_ERR_INDEX (vertex, row: which pair). HD_ERR_ARGUMENT: commute, biharmonic and
  *        distances of a filter need the direct method
  * Cost   one column for each distinct vertex, or for each of those taken at a time; from entries one for each
@@ -1453,8 +1421,8 @@ HEATDIFF_API hd_status hd_heat_distance_pairs(hd_heat *heat, hd_distance_kind ki
 /* Farthest points: each is the vertex farthest from all sources and all points before it, under the given
  * distance.
  * t        > 0; ignored by commute and biharmonic
- * sources  that come before all points, as in hd_heat_distance. NULL: none; the first vertex with mass is then
- *          the first point
+ * sources  that come before all points, as in hd_heat_distance. NULL: none; the first vertex with mass is
+ *          then the first point
  * vertex   [count]
  * distance [count] or NULL: distance of each point to the sources and the points before it (0 for the first
  *          without sources)
@@ -1560,30 +1528,25 @@ HEATDIFF_API hd_status hd_geodesic_update(hd_geodesic *g, const hd_mesh *mesh, h
 HEATDIFF_API void hd_geodesic_free(hd_geodesic *g);  /* NULL is fine */
 
 /* The distance of every vertex to each source: to the nearest of its points, or to its curve.
- * sources  weights, and lengths of curves, are ignored. A vertex named twice in a source counts once. For
- *          the distance to the nearest of several vertices, make them one source. All other points, and every
- *          piece of a curve, must lie in a face that is used, its edges and corners included. Coordinates
- *          below 1e-9 count as zero. Plans of polygons take vertices only
- * D        n x count, columns ldd apart (0: n), in the unit of xyz: |phi - phi_s|. For several points phi_s is
- *          a mean weighted by their heat, which is almost the value of the nearest one; beyond the first stage
- *          of heat it is that value. D is zero at vertices that are sources, and HUGE_VAL where no source can
- *          be reached: in components without one, and at vertices without mass
+ * sources  weights, and lengths of curves, are ignored. For the distance to the nearest of several vertices,
+ *          make them one source. Other points, and every piece of a curve, must lie in a face that is used,
+ *          its edges and corners included. Plans of polygons take vertices only
+ * D        n x count, columns ldd apart (0: n), in the unit of xyz: |phi - phi_s|, zero at vertices that are
+ *          sources, HUGE_VAL in components without one and at vertices without mass. For several points phi_s
+ *          is a mean weighted by their heat, which is almost the value of the nearest one
  * The method itself has an error of the order of h: a few percent on coarse meshes, about one percent on fine
- * ones, and most where fronts meet. Near a source the relative error can be much larger. The result is not a
- * metric: d from i to j and d from j to i differ by about that error.
- * At the corners of the faces of a source that is no vertex, D is exact, along straight lines within the faces,
- * and inside them the gradient of these distances takes the place of that of heat. phi_s follows from them
- * too: for a point the mean of phi_v - d_v at its corners, by its barycentric coordinates; for a curve one
- * mean along its length.
+ * ones, and most where fronts meet. Near a source the relative error can be much larger. d from i to j and d
+ * from j to i differ by about that error.
+ * Where a source is no vertex, D is exact at the corners of its faces, along straight lines within them, and
+ * inside them the gradient of these distances takes the place of that of heat.
  * Errors   those of hd_heat_columns for sources; HD_ERR_ARGUMENT (column, row): a point or a piece is in no
  *          face, or has a corner where heat is held at zero; HD_ERR_BREAKDOWN (rounding left no number).
  *          HD_WARN_ACCURACY, only if a report is given
  * Cost     two solves and two passes over the faces for each source; a third solve with several points in a
- *          component; with a report two more passes. Sources of one vertex are solved eight side by side, in a
- *          third of the time. Where heat fades below 1e-200 of the source's, which is about 450 edges away at
- *          t = h^2, another solve and three passes follow for each such distance (report->n_stages). The first
- *          call with several points, with more than any before, or with three sources or more allocates about
- *          150 bytes for each vertex; other calls of vertices do not
+ *          component; with a report two more passes. Vertices are solved eight side by side, in a third of
+ *          the time. Where heat fades below 1e-200 of the source's, about 450 edges away at t = h^2, another
+ *          solve and three passes follow for each such distance (report->n_stages). Of calls with vertices
+ *          alone, only those with more sources or points than any before allocate
  * Only one thread at a time may use a plan. */
 HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, const hd_sources *sources, double *D,
                                             size_t ldd, hd_geodesic_report *report, hd_error *err);
@@ -17454,8 +17417,8 @@ static hd_status hdi_terms_make(hdi_terms *to, const hd_sources *s, int32_t k, c
     if (e->status < 0) return hdi_scope_end(&work);
     size = hdi_source_parts(s, begin, n, lap, part, e);
     if (e->status >= 0 && !(size >= HDI_SOURCE_LEAST && size <= HDI_SOURCE_MOST))
-        hdi_fail_row(e, HD_ERR_ARGUMENT, "source: its weight, or the length of its curve, is zero or out of range",
-                     -1, -1, size);
+        hdi_fail_row(e, HD_ERR_ARGUMENT,
+                     "source: its weight, or the length of its curve, is zero or out of range", -1, -1, size);
     to->n = hdi_terms_sum(s->vertex + begin * corners, order, all, part, vertex, weight);
     to->vertex = vertex;
     to->weight = weight;
