@@ -40,8 +40,8 @@ static hd_status heat_distance(hd_heat *heat, hd_distance_kind kind, int32_t n_t
 }
 
 static hd_status heat_pairs(hd_heat *heat, hd_distance_kind kind, double t, int64_t n_pairs, const int32_t *i, const int32_t *j,
-                            double *K, double *d, hd_report *report) {
-    return hd_heat_pairs(heat, kind, 1, &t, n_pairs, i, j, K, d, report, NULL);
+                            double *d, hd_report *report) {
+    return hd_heat_distance_pairs(heat, kind, 1, &t, n_pairs, i, j, d, report, NULL);
 }
 
 /* Vertices after none. */

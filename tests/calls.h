@@ -23,15 +23,15 @@ typedef struct call_args {
     hd_rational *out_set;
     hd_context *ctx;
 
-    int32_t n, n_tri, n_times, k, count, n_freq, n_scale, n_filters, n_sets, n_matrices, n_queries;
-    int32_t rows, cols, symmetric, source, degree, kernel, kind, poles, query;
+    int32_t n, n_tri, n_times, k, count, n_filters, n_sets, n_matrices, n_queries;
+    int32_t rows, cols, source, degree, kernel, kind, poles, query;
     int64_t n_pairs, n_triplets;
     size_t ldf, ld;                          /* of what is given, and of answers */
-    double h, time, time1, alpha, beta, radius, tol, lambda_max, x;
+    double h, time, alpha, beta, tol, lambda_max, x;
     hd_c64 theta;
 
     const double *xyz, *moved, *lengths, *queries, *triplet_v, *f, *val, *val2, *with_nan, *with_inf;
-    const double *t, *late, *endless, *fading, *low, *bad, *zero, *c, *set_t;      /* times; c: without unit; set_t: of a set */
+    const double *t, *late, *endless, *fading, *low, *bad, *zero, *set_t;          /* times; set_t: of a set */
     double set_time, set2_time;
     const int32_t *tri, *nbr, *own_nbr, *perm, *ids, *other, *far_id, *low_id, *triplet_i, *triplet_j;
     const int64_t *face_ptr, *nbr_ptr, *own_ptr;
@@ -39,7 +39,7 @@ typedef struct call_args {
     int64_t *bent;
     const hd_sources *sources, *curve;
     const hd_c64 *zval, *zb;
-    const hd_rational *set, *set2;           /* of filters */
+    const hd_rational *set, *set2, *both;    /* of filters; both: two that share their poles */
     const hd_filter *filter, *filter2;
     double *u, *v, *bound;                   /* answers */
     hd_c64 *z, *zd;
@@ -70,8 +70,6 @@ typedef struct call_args {
 #define CALLS(X, V)                                                                                                            \
     X(triplets, hd_csr_from_triplets, "",                                                                                      \
       (a->out_csr, a->rows, a->cols, a->n_triplets, a->triplet_i, a->triplet_j, a->triplet_v, a->ctx, a->err))                 \
-    X(check, hd_csr_check, "", (a->a, a->symmetric, a->ctx, a->err))                                                           \
-    V(csr_apply, hd_csr_apply, "", hd_csr_apply(a->a, a->f, a->u, a->ctx))                                                     \
     X(triangles, hd_laplacian_create, "",                                                                                      \
       (a->out_lap, MESH_TRIANGLES(a->xyz, a->n, a->tri, a->n_tri), a->lap_opts, a->err))                                       \
     X(view, hd_laplacian_create, "", (a->out_lap, a->view, a->lap_opts, a->err))                                               \
@@ -89,12 +87,10 @@ typedef struct call_args {
     V(lambda_max, hd_laplacian, "", a->u[0] = (a->lap)->lambda_max)                                                            \
     X(nearest, hd_neighbours_nearest, "",                                                                                      \
       (a->xyz, a->n, a->queries, a->n_queries, a->k, a->vertex, a->u, a->ctx, a->err))                                         \
-    X(radius, hd_neighbours_radius, "", (a->out_csr, a->xyz, a->n, a->queries, a->n_queries, a->radius, a->ctx, a->err))       \
-    X(poles, hd_rational_get, "", (a->out_set, (hd_pole_kind)a->poles, a->degree, a->err))                                     \
+    X(poles, hd_rational_exp, "", (a->out_set, (hd_pole_kind)a->poles, a->degree, a->err))                                     \
     X(shared_poles, hd_rational_shared, "", (a->out_set, a->n_times, a->t, a->tol, a->ctx, a->err))                            \
     V(poles_at, hd_rational_eval, "poles", a->u[0] = hd_rational_eval(a->set, a->x))                                           \
-    X(fit, hd_rational_fit, "", (a->out_set, a->filter, a->lambda_max, a->ctx, a->err))                                        \
-    X(fit_shared, hd_rational_fit_shared, "", (a->out_set, a->n_filters, a->filter, a->lambda_max, a->ctx, a->err))            \
+    X(fit, hd_rational_fit, "", (a->out_set, a->n_filters, a->filter, a->lambda_max, a->ctx, a->err))                          \
     V(filter_at, hd_filter_eval, "", a->u[0] = hd_filter_eval(a->filter, a->x))                                                \
     X(shifted, hd_shifted_solve, "", (a->lap, a->time, a->theta, a->zb, a->z, a->solve_opts, a->solve_rep, a->err))            \
     X(analyse, hd_ldl_analyse, "", (a->out_ldl, a->a, a->ldl_opts, a->ldl_rep, a->err))                                        \
@@ -104,10 +100,8 @@ typedef struct call_args {
     X(solve_c, hd_ldl_solve_complex, "factor_c", (a->ldl, a->zb, a->ldf, a->z, a->ld, a->err))                                 \
     X(inverse, hd_ldl_inverse, "factor", (a->ldl, a->u, a->v, a->err))                                                         \
     X(inverse_c, hd_ldl_inverse_complex, "factor_c", (a->ldl, a->z, a->zd, a->err))                                            \
-    X(inverse_at, hd_ldl_inverse_entries, "factor", (a->ldl, a->n_pairs, a->ids, a->other, a->u, a->err))                      \
-    X(inverse_at_c, hd_ldl_inverse_entries_complex, "factor_c", (a->ldl, a->n_pairs, a->ids, a->other, a->z, a->err))          \
     X(plan, hd_heat_create, "", (a->out_heat, a->lap, a->heat_opts, a->err))                                                   \
-    X(set_rational, hd_heat_set_rational, "", (a->heat, a->set, a->err))                                         \
+    X(set_rational, hd_heat_set_rational, "", (a->heat, a->n_sets, a->set, a->err))                                            \
     X(apply, hd_heat_apply, "", (a->heat, a->n_times, a->t, a->k, a->f, a->ldf, a->u, a->ld, a->rep, a->err))                  \
     X(derivative, hd_heat_derivative, "", (a->heat, a->n_times, a->t, a->k, a->f, a->ldf, a->u, a->ld, a->rep, a->err))        \
     X(adjoint, hd_heat_adjoint, "", (a->heat, a->n_times, a->t, a->k, a->f, a->ldf, a->u, a->ld, a->rep, a->err))              \
@@ -116,21 +110,15 @@ typedef struct call_args {
     X(column, hd_heat_column, "", (a->heat, (hd_kernel)a->kernel, a->time, a->source, a->u, a->rep, a->err))                   \
     X(columns_from, hd_heat_columns, "",                                                                                       \
       (a->heat, (hd_kernel)a->kernel, a->n_times, a->t, a->sources, a->u, a->ld, a->rep, a->err))                              \
-    X(diagonal, hd_heat_diagonal, "", (a->heat, (hd_kernel)a->kernel, a->n_times, a->t, a->u, a->ld, a->rep, a->err))          \
-    X(trace, hd_heat_trace, "", (a->heat, a->n_times, a->t, a->u, a->v, a->rep, a->err))                                       \
-    X(normalised, hd_heat_normalised, "", (a->heat, a->n_times, a->t, a->u, a->ld, a->rep, a->err))                            \
-    X(filter_diagonals, hd_heat_filter_diagonals, "set_rational",                                               \
-      (a->heat, a->n_sets, a->set, a->u, a->ld, a->v, a->bound, a->rep, a->err))                                               \
-    X(scale_invariant, hd_heat_scale_invariant, "",                                                                            \
-      (a->heat, a->time, a->time1, a->n_scale, a->n_freq, a->u, a->ld, a->rep, a->err))                                        \
+    X(diagonal, hd_heat_diagonal, "",                                                                                          \
+      (a->heat, (hd_kernel)a->kernel, a->n_times, a->t, a->u, a->ld, a->v, a->bound, a->rep, a->err))                          \
     X(times_auto, hd_times_auto, "", (a->lap, a->n_times, a->u, a->err))                                                       \
-    X(times_spectral, hd_times_spectral, "", (a->lap, a->n_times, a->c, a->u, a->err))                                         \
     X(distance, hd_heat_distance, "",                                                                                          \
       (a->heat, (hd_distance_kind)a->kind, a->n_times, a->t, VERTICES(a->k, a->ids), a->u, a->ld, a->rep, a->err))             \
     X(distance_from, hd_heat_distance, "",                                                                                     \
       (a->heat, (hd_distance_kind)a->kind, a->n_times, a->t, a->sources, a->u, a->ld, a->rep, a->err))                         \
-    X(pairs, hd_heat_pairs, "",                                                                                                \
-      (a->heat, (hd_distance_kind)a->kind, a->n_times, a->t, a->n_pairs, a->ids, a->other, a->u, a->v, a->rep, a->err))        \
+    X(pairs, hd_heat_distance_pairs, "",                                                                                       \
+      (a->heat, (hd_distance_kind)a->kind, a->n_times, a->t, a->n_pairs, a->ids, a->other, a->u, a->rep, a->err))              \
     X(sample, hd_heat_sample, "",                                                                                              \
       (a->heat, (hd_distance_kind)a->kind, a->time, VERTICES(a->k, a->ids), a->count, a->vertex, a->u, a->rep, a->err))        \
     X(sample_from, hd_heat_sample, "",                                                                                         \
@@ -202,14 +190,14 @@ typedef struct call_field { const char *name; size_t at; call_type type; } call_
 static const call_field call_fields[] = {
     P(lap), P(lap2), P(lap3), P(out_lap), P(heat), P(heat2), P(heat3), P(out_heat), P(ldl), P(ldl2), P(ldl3), P(out_ldl),
     P(spectrum), P(out_spectrum), P(geodesic), P(out_geodesic), P(out_csr), P(out_set), P(ctx), I(n), I(n_tri), I(n_times), I(k),
-    I(count), I(n_freq), I(n_scale), I(n_filters), I(n_sets), I(n_matrices), I(n_queries), I(rows),
-    I(cols), I(symmetric), I(source), I(degree), I(kernel), I(kind), I(poles), I(query), L(n_pairs), L(n_triplets), S(ldf), S(ld),
-    D(h), D(time), D(time1), D(alpha), D(beta), D(radius), D(tol), D(lambda_max), D(x), D(theta.re), D(theta.im),
+    I(count), I(n_filters), I(n_sets), I(n_matrices), I(n_queries), I(rows),
+    I(cols), I(source), I(degree), I(kernel), I(kind), I(poles), I(query), L(n_pairs), L(n_triplets), S(ldf), S(ld),
+    D(h), D(time), D(alpha), D(beta), D(tol), D(lambda_max), D(x), D(theta.re), D(theta.im),
     D(set_time), D(set2_time),
     P(xyz), P(moved), P(lengths), P(queries), P(triplet_v), P(f), P(val), P(val2), P(with_nan), P(with_inf), P(t), P(late),
-    P(endless), P(fading), P(low), P(bad), P(zero), P(c), P(set_t), P(tri), P(nbr), P(own_nbr), P(perm), P(ids), P(other),
+    P(endless), P(fading), P(low), P(bad), P(zero), P(set_t), P(tri), P(nbr), P(own_nbr), P(perm), P(ids), P(other),
     P(far_id), P(low_id), P(triplet_i), P(triplet_j), P(face_ptr), P(nbr_ptr), P(own_ptr), P(bent), P(sources), P(curve), P(zval),
-    P(zb), P(set), P(set2), P(filter), P(filter2), P(u), P(v), P(bound), P(z), P(zd), P(vertex), P(a), P(l), P(b),
+    P(zb), P(set), P(set2), P(both), P(filter), P(filter2), P(u), P(v), P(bound), P(z), P(zd), P(vertex), P(a), P(l), P(b),
     P(whole),
     P(view), P(lap_opts), P(heat_opts), P(spectrum_opts), P(geodesic_opts), P(ldl_opts), P(solve_opts), P(estimate), P(rep),
     P(geodesic_rep), P(err), I(A.n_rows), I(A.n_cols), L(A.nnz), P(A.row_ptr), P(A.col), P(A.val),
@@ -336,7 +324,7 @@ typedef struct call_data {
     double t[3], late[3], endless[3], fading[3], bad[2], minus[2];
     int32_t held[2], far_id[2], point[9], curve[14];
     hd_sources curves;
-    hd_rational sets[2];
+    hd_rational sets[2], both[2];
     void *block[CALL_BLOCKS];
     int n_blocks;
 } call_data;
@@ -470,7 +458,7 @@ static void call_sources(call_data *d) {
 }
 
 static void call_times(call_data *d) {
-    static const double low[2] = {1, -1}, zero[1] = {0}, c[3] = {0.1, 1, 3}, t[3] = {1, 7, 40}, fading[3] = {40, 1, 10};
+    static const double low[2] = {1, -1}, zero[1] = {0}, t[3] = {1, 7, 40}, fading[3] = {40, 1, 10};
     const double unit = d->h * d->h;
     int k;
     for (k = 0; k < 3; k++) {
@@ -488,9 +476,7 @@ static void call_times(call_data *d) {
     d->good.low = low;
     d->good.bad = d->bad;
     d->good.zero = zero;
-    d->good.c = c;
     d->good.time = d->t[0];
-    d->good.time1 = d->t[2];
 }
 
 static void call_small_matrices(call_data *d) {
@@ -550,12 +536,14 @@ static void call_data_make(call_data *d, shape s) {
     a->query = HD_QUERY_COLUMNS;
     a->so.count = 8;
     for (k = 0; k < 2; k++) CHECK(hd_rational_fit(d->sets + k, 1, a->filters + k, 1000 / (d->h * d->h), NULL, NULL) == HD_OK);
+    CHECK(hd_rational_fit(d->both, 2, a->filters, 1000 / (d->h * d->h), NULL, NULL) == HD_OK);
     a->set = d->sets;
+    a->both = d->both;
     a->set2 = d->sets + 1;
     a->set_time = d->sets[0].t;
     a->set2_time = d->sets[1].t;
-    call_assign(a, "n_times=1 n_sets=1 symmetric=1 n_filters=2 n_freq=2 k=3 n_matrices=3 source=3 count=5");
-    call_assign(a, "n_scale=5 n_pairs=6 degree=7 h=0.5 alpha=1 beta=2 radius=1.2 tol=1e-6 lambda_max=100 x=-2");
+    call_assign(a, "n_times=1 n_sets=1 n_filters=1 k=3 n_matrices=3 source=3 count=5");
+    call_assign(a, "n_pairs=6 degree=7 h=0.5 alpha=1 beta=2 tol=1e-6 lambda_max=100 x=-2");
     call_assign(a, "theta.re=-1 theta.im=3");
     call_assign(a, "ho.perm=perm so.perm=perm go.perm=perm fo.perm=perm fo.xyz=xyz");
 }

@@ -1024,7 +1024,7 @@ static void int_pairs_degree(void) {
     hd_report rep;
     double d[3];
     heat->modes.barred = 1;
-    CHECK(heat_pairs(heat, HD_DISTANCE_CLASSICAL, 150 * lap->h * lap->h, 3, i, j, NULL, d, &rep) == HD_OK);
+    CHECK(heat_pairs(heat, HD_DISTANCE_CLASSICAL, 150 * lap->h * lap->h, 3, i, j, d, &rep) == HD_OK);
     CHECK_MSG(rep.error_bound <= 1e-6 && rep.degree == 14, "degree %d, bound %g: %s", (int)rep.degree, rep.error_bound, rep.reason);
 }
 

@@ -107,6 +107,33 @@ static double *test_dense(const hd_csr *a, const double *val) {
     return d;
 }
 
+/* What is wrong with a matrix: rows in order, columns within them, ascending, numbers; if asked also symmetric, up to rounding. NULL: nothing. */
+static const char *test_csr_fault(const hd_csr *a, int symmetric) {
+    int64_t p, q;
+    int32_t i;
+    if (a->n_rows < 0 || a->n_cols < 0 || !a->row_ptr || a->row_ptr[0] != 0 || a->row_ptr[a->n_rows] != a->nnz) return "rows";
+    for (i = 0; i < a->n_rows; i++) {
+        if (a->row_ptr[i + 1] < a->row_ptr[i] || a->row_ptr[i + 1] > a->nnz) return "a row's end";
+        for (p = a->row_ptr[i]; p < a->row_ptr[i + 1]; p++) {
+            if (a->col[p] < 0 || a->col[p] >= a->n_cols) return "a column";
+            if (p > a->row_ptr[i] && a->col[p] <= a->col[p - 1]) return "columns do not ascend";
+            if (a->val && !(fabs(a->val[p]) <= DBL_MAX)) return "a value";
+        }
+    }
+    if (symmetric && a->n_rows != a->n_cols) return "not square";
+    for (i = 0; symmetric && i < a->n_rows; i++) {
+        for (p = a->row_ptr[i]; p < a->row_ptr[i + 1]; p++) {
+            const int32_t j = a->col[p];
+            const double x = a->val ? a->val[p] : 1;
+            double y = 0;
+            for (q = a->row_ptr[j]; q < a->row_ptr[j + 1] && a->col[q] < i; q++) continue;
+            if (q < a->row_ptr[j + 1] && a->col[q] == i) y = a->val ? a->val[q] : 1;
+            if (fabs(x - y) > 1e-12 * fmax(fabs(x), fabs(y))) return "not symmetric";
+        }
+    }
+    return NULL;
+}
+
 /* A copy of a square matrix; with perm [n_rows] its row i and column i are those number perm[i] of a. */
 static hd_csr test_csr_ordered(const hd_csr *a, const int32_t *perm) {
     int32_t *row = DENSE_NEW(int32_t, a->nnz), *col = DENSE_NEW(int32_t, a->nnz), *inverse = DENSE_NEW(int32_t, a->n_rows), i;

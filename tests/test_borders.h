@@ -245,7 +245,8 @@ static void bord_exact(const char *spec, const char *method) {
     for (k = 0; k < 4; k++) {                    /* held vertices are in no component */
         CHECK(heat_distance(plain, (hd_distance_kind)k, k < 2, &t, 2, sources, u, 0, &rep) >= 0 && u[free_one] == 0);
         CHECK((u[held] == HUGE_VAL) == (k > 1) && (u[n + free_one] == HUGE_VAL) == (k > 1));
-        CHECK(heat_pairs(plain, (hd_distance_kind)k, t, 3, i, j, K, d, &rep) >= 0 && d[2] == 0);
+        CHECK(heat_entries(plain, t, HD_KERNEL_OPERATOR, 3, i, j, K, &rep) >= 0);
+        CHECK(heat_pairs(plain, (hd_distance_kind)k, t, 3, i, j, d, &rep) >= 0 && d[2] == 0);
         CHECK(k > 1 ? d[1] == HUGE_VAL : d[1] > 0 && K[1] == 0 && K[2] == 0);
     }
     CHECK(heat_sample(plain, HD_DISTANCE_CLASSICAL, t, 5, pick, f, &rep) >= 0);
@@ -261,10 +262,11 @@ static void bord_faded_pairs(const trial_work *w) {
     double K[2], d[2];
     hd_report rep;
     int kind;
+    CHECK(heat_entries(heat, t, HD_KERNEL_OPERATOR, 1, i, j, K, &rep) >= 0 && K[0] == 0 && rep.error_bound == 0);
     for (kind = 0; kind < 2; kind++) {
-        CHECK(lap->row[held] == HD_ROW_HELD && heat_pairs(heat, (hd_distance_kind)kind, t, 1, i, j, K, d, &rep) >= 0 &&
-            K[0] == 0 && d[0] == 0 && rep.error_bound == 0);
-        CHECK(heat_pairs(heat, (hd_distance_kind)kind, t, 2, i, j, K, d, &rep) >= 0 && rep.error_bound >= 0);
+        CHECK(lap->row[held] == HD_ROW_HELD && heat_pairs(heat, (hd_distance_kind)kind, t, 1, i, j, d, &rep) >= 0 &&
+            d[0] == 0 && rep.error_bound == 0);
+        CHECK(heat_pairs(heat, (hd_distance_kind)kind, t, 2, i, j, d, &rep) >= 0 && rep.error_bound >= 0);
     }
 }
 

@@ -325,31 +325,52 @@ static hd_heat *filt_plan(const hd_laplacian *lap, const hd_rational *set, const
     return heat;
 }
 
-/* Entries and distances of pairs at once: the distances as they come alone, to the bit. What reports say of a filter. */
+/* Without times, with that of the set: the same answers to the bit. Distances are those of entries. What reports say of a filter. */
 static void filt_pairs(void) {
     enum { N = 20 };
     const hd_laplacian *lap = kit_pair("ico/2 fem");
-    const double top = lap->lambda_max;
+    const double top = lap->lambda_max, *g = kit_random(lap->n, 7);
+    const int32_t n = lap->n;
+    double *u = KIT_NEW(double, 2 * n), *v = KIT_NEW(double, 2 * n);
     hd_filter f[FILT_LIST];
-    double K[N], d[N], both[N], entry[N];
-    int32_t from[N], to[N], i;
+    double k[5 * N], again[N], d[N], both[N];
+    int32_t from[5 * N], to[5 * N], i;
+    hd_estimate estimate;
     int q, kind;
     filt_list(f, 1e-3 * top, top);
     for (i = 0; i < N; i++) {
-        from[i] = i % 2 ? 50 : 80;
-        to[i] = 8 * i;
+        from[i] = from[N + i] = to[N + i] = from[2 * N + i] = i % 2 ? 50 : 80;
+        to[i] = to[2 * N + i] = from[3 * N + i] = to[3 * N + i] = 8 * i;
     }
     for (q = 0; q < FILT_LIST; q += 3) {
         const hd_rational set = filt_fit(f + q, lap);
+        const double *t = &set.t;
         hd_heat *heat = filt_plan(lap, &set, "method=direct");
         hd_report rep;
-        CHECK(heat_pairs(heat, HD_DISTANCE_CLASSICAL, set.t, N, from, to, entry, NULL, &rep) >= 0);
+        CHECK(heat_entries(heat, set.t, HD_KERNEL_OPERATOR, N, from, to, k, &rep) >= 0);
         CHECK(rep.evidence_rational == HD_EVIDENCE_MEASURED && rep.error_rational > 0 && rep.poles == HD_POLES_OWN && rep.n_poles == set.n_poles);
+        CHECK(hd_heat_entries(heat, HD_KERNEL_OPERATOR, 0, NULL, N, from, to, again, NULL, NULL) >= 0 && memcmp(again, k, sizeof again) == 0);
+        CHECK(heat_entries(heat, set.t, HD_KERNEL_SYMMETRIC, 4 * N, from, to, k, NULL) >= 0);
         for (kind = 0; kind < 2; kind++) {
-            CHECK(heat_pairs(heat, (hd_distance_kind)kind, set.t, N, from, to, NULL, d, &rep) >= 0);
-            CHECK(heat_pairs(heat, (hd_distance_kind)kind, set.t, N, from, to, K, both, &rep) >= 0 && memcmp(both, d, sizeof d) == 0);
-            CHECK(dense_max_diff(K, entry, N) <= 1e-7 * dense_max_abs(entry, N));
+            CHECK(heat_pairs(heat, (hd_distance_kind)kind, set.t, N, from, to, d, &rep) >= 0);
+            CHECK(hd_heat_distance_pairs(heat, (hd_distance_kind)kind, 0, NULL, N, from, to, both, NULL, NULL) >= 0 && memcmp(both, d, sizeof d) == 0);
+            for (i = 0; i < N && kind == 0; i++)
+                CHECK(fabs(d[i] * d[i] - (k[N + i] + k[3 * N + i] - 2 * k[i])) <= 1e-7 * dense_max_abs(k, 4 * N));
+            CHECK(hd_heat_distance(heat, (hd_distance_kind)kind, 1, t, VERTICES(1, from), u, 0, NULL, NULL) >= 0 &&
+                  hd_heat_distance(heat, (hd_distance_kind)kind, 0, NULL, VERTICES(1, from), v, 0, NULL, NULL) >= 0 && dense_max_diff(u, v, n) == 0);
+            CHECK(hd_heat_columns(heat, (hd_kernel)kind, 1, t, VERTICES(2, from), u, 0, NULL, NULL) >= 0 &&
+                  hd_heat_columns(heat, (hd_kernel)kind, 0, NULL, VERTICES(2, from), v, 0, NULL, NULL) >= 0 && dense_max_diff(u, v, 2 * n) == 0);
+            CHECK(hd_heat_diagonal(heat, (hd_kernel)kind, 1, t, u, 0, u + n, u + n + 1, NULL, NULL) >= 0 &&
+                  hd_heat_diagonal(heat, (hd_kernel)kind, 0, NULL, v, 0, v + n, v + n + 1, NULL, NULL) >= 0 && dense_max_diff(u, v, n + 2) == 0);
         }
+        CHECK(hd_heat_apply(heat, 1, t, 1, g, 0, u, 0, NULL, NULL) >= 0 && hd_heat_apply(heat, 0, NULL, 1, g, 0, v, 0, NULL, NULL) >= 0 &&
+              dense_max_diff(u, v, n) == 0);
+        CHECK(hd_heat_adjoint(heat, 1, t, 1, g, 0, u, 0, NULL, NULL) >= 0 && hd_heat_adjoint(heat, 0, NULL, 1, g, 0, v, 0, NULL, NULL) >= 0 &&
+              dense_max_diff(u, v, n) == 0);
+        CHECK(hd_heat_estimate(heat, HD_QUERY_DIAGONAL, 0, NULL, 0, &estimate, NULL) == HD_OK && estimate.cost[0].possible);
+        CHECK(hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, -1, t, u, 0, NULL, NULL, NULL, NULL) == HD_ERR_ARGUMENT &&
+              hd_heat_set_rational(heat, 0, NULL, NULL) == HD_OK &&
+              hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, 0, NULL, u, 0, NULL, NULL, NULL, NULL) == HD_ERR_ARGUMENT);
     }
 }
 
@@ -436,63 +457,93 @@ static void filt_shared_sets(void) {
         hd_rational_fit(NULL, 1, f, top, NULL, NULL) == HD_ERR_ARGUMENT);
 }
 
-/* Diagonals and traces of all filters at once against the truth. */
+/* Diagonals and traces of all filters at once against the truth, by both kernels: together, and each alone. */
 static void filt_shared_diagonals(const char *pairs) {
     enum { COUNT = 5 };
     trial_work *w = case_truth_of(pairs);
     const truth_pairs *T = &w->s->exact;
     const hd_laplacian *lap = w->s->lap;
     const int32_t n = lap->n;
-    double *D = KIT_NEW(double, COUNT * (n + 1)), Z[COUNT], bound[COUNT];
+    double *D = KIT_NEW(double, COUNT * (n + 1)), *alone = KIT_NEW(double, COUNT * n), Z[COUNT], bound[COUNT], one[COUNT], loose[COUNT];
     hd_filter f[COUNT];
     hd_rational set[COUNT];
     hd_heat *heat;
     hd_report rep;
-    int q, round;
+    int q, operator_;
     int32_t v, l;
     filt_many(f, COUNT, 0.9 * T->edge, T->top);
     CHECK(hd_rational_fit(set, COUNT, f, lap->lambda_max, NULL, NULL) == HD_OK);
     CHECK(lap->lambda_max >= T->top && lap->lambda_max < 6 * T->top);
     heat = filt_plan(lap, set + 3, "");
-    for (round = 0; round < 2; round++) {
+    CHECK(hd_heat_set_rational(heat, COUNT, set, NULL) == HD_OK);
+    for (operator_ = 1; operator_ >= 0; operator_--) {
+        const hd_kernel kernel = operator_ ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
         for (v = 0; v < COUNT * (n + 1); v++) D[v] = 77;
-        CHECK_MSG(heat_filters(heat, COUNT, set, D, (size_t)n + 1, round ? NULL : Z, round ? NULL : bound, &rep, NULL) == HD_OK,
-            "%s: %s", pairs, rep.error.text);
+        CHECK_MSG(hd_heat_diagonal(heat, kernel, 0, NULL, D, (size_t)n + 1, Z, bound, &rep, NULL) == HD_OK, "%s: %s", pairs, rep.error.text);
         CHECK_MSG(rep.error_bound < 2e-5 && rep.method == HD_METHOD_DIRECT && rep.degree == set[0].degree, "%s: bound %g", pairs, rep.error_bound);
         for (q = 0; q < COUNT; q++) {
             const double *d = D + (size_t)q * ((size_t)n + 1);
-            double sum = 0, most = 0, off = 0;
+            double sum = 0, most = 0, off = 0, mass = 0;
             w->s->f.of = f[q];
             truth_filter_fill(&w->s->f, T, FORM_FILTER, 0, NULL, 0);
             for (v = 0; v < n; v++) {
-                const double want = (double)trial_want_entry(w, v, v, 0, 0, 0, w->off);
-                most = fmax(most, fabs(want));
-                off = fmax(off, fabs(want - d[v]));
-                CHECK(lap->row[v] >= 0 || d[v] == 0);
+                const double want = (double)trial_want_entry(w, v, v, operator_, 0, 0, w->off);
+                most = fmax(most, lap->row[v] >= 0 ? fabs(want) : 0);
+                off = fmax(off, lap->row[v] >= 0 ? fabs(want - d[v]) : 0);
+                mass += lap->row[v] >= 0 ? d[v] : 0;
+                CHECK(lap->row[v] >= 0 || d[v] == (operator_ && lap->row[v] == HD_ROW_INERT));
             }
             for (l = 0; l < T->n; l++) sum += filt_want(f + q, fmax(0, (double)T->lambda[l]));
             CHECK(d[n] == 77);
-            CHECK_MSG(off <= rep.error_bound * most && off <= 2e-7 * most, "%s, filter %d: diagonal off by %g of %g, bound %g",
-                pairs, q, off, most, rep.error_bound);
-            if (round == 0) CHECK_MSG(fabs(Z[q] - sum) <= bound[q] && fabs(Z[q] - sum) <= 1e-6 * sum && bound[q] < 1e-3 * sum,
-                    "%s, filter %d: trace %.12g, not %.12g, bound %g",
-                                      pairs, q, Z[q], sum, bound[q]);
+            CHECK_MSG(off <= rep.error_bound * most && off <= 2e-7 * most, "%s, kernel %d, filter %d: diagonal off by %g of %g, bound %g",
+                pairs, (int)kernel, q, off, most, rep.error_bound);
+            CHECK_MSG(fabs(Z[q] - sum) <= bound[q] && fabs(Z[q] - sum) <= 1e-6 * sum && bound[q] < 1e-3 * sum,
+                    "%s, kernel %d, filter %d: trace %.12g, not %.12g, bound %g", pairs, (int)kernel, q, Z[q], sum, bound[q]);
+            if (operator_) CHECK_MSG(fabs(mass - sum) <= 1e-6 * sum, "%s, filter %d: the diagonal sums to %.12g, not %.12g", pairs, q, mass, sum);
         }
+        CHECK(hd_heat_diagonal(heat, kernel, 0, NULL, alone, 0, NULL, NULL, NULL, NULL) == HD_OK);
+        for (q = 0; q < COUNT; q++) CHECK(dense_max_diff(alone + (size_t)q * (size_t)n, D + (size_t)q * ((size_t)n + 1), n) <= rep.error_bound * dense_max_abs(alone + (size_t)q * (size_t)n, n));
+        CHECK(hd_heat_diagonal(heat, kernel, 0, NULL, NULL, 0, one, loose, NULL, NULL) == HD_OK);
+        for (q = 0; q < COUNT; q++) CHECK(fabs(one[q] - Z[q]) <= bound[q] && loose[q] > 0 && loose[q] <= 1.1 * bound[q] && bound[q] <= 1.1 * loose[q]);
+        CHECK(hd_heat_diagonal(heat, kernel, 1, &set->t, alone, 0, NULL, NULL, NULL, NULL) == HD_OK && dense_max_diff(alone, D, n) <= rep.error_bound * dense_max_abs(D, n));
     }
-    /* columns of another filter by the same plan */
+    CHECK(hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, 0, NULL, D, (size_t)n - 1, Z, NULL, NULL, NULL) == HD_ERR_ARGUMENT);
+    /* other queries take the first set; columns of another filter by the same plan */
     v = lap->vertex[2];
+    CHECK(hd_heat_column(heat, HD_KERNEL_SYMMETRIC, set->t, v, alone, &rep, NULL) == HD_OK && rep.method == HD_METHOD_DIRECT);
+    CHECK_MSG(fabs(alone[v] - D[v]) <= 1e-7 * dense_max_abs(alone, n), "%s: column and diagonal", pairs);
     CHECK(hd_heat_set_rational(heat, 1, set + 4, NULL) == HD_OK);
-    CHECK(hd_heat_column(heat, HD_KERNEL_SYMMETRIC, set[4].t, v, D, &rep, NULL) == HD_OK && rep.method == HD_METHOD_DIRECT);
-    CHECK_MSG(fabs(D[v] - D[(size_t)4 * ((size_t)n + 1) + (size_t)v]) <= 1e-7 * dense_max_abs(D, n), "%s: column and diagonal", pairs);
+    CHECK(hd_heat_column(heat, HD_KERNEL_SYMMETRIC, set[4].t, v, alone, &rep, NULL) == HD_OK && rep.method == HD_METHOD_DIRECT);
+    CHECK_MSG(fabs(alone[v] - D[(size_t)4 * ((size_t)n + 1) + (size_t)v]) <= 1e-7 * dense_max_abs(alone, n), "%s: column and diagonal", pairs);
+    CHECK(hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, 0, NULL, alone, 0, one, loose, NULL, NULL) == HD_OK && fabs(one[0] - Z[4]) <= bound[4] &&
+          dense_max_diff(alone, D + (size_t)4 * ((size_t)n + 1), n) <= 4e-7 * dense_max_abs(alone, n));
+}
+
+/* Sets that differ are refused, by the number of the first that does; then the plan keeps those that it has. */
+static void filt_shared_refused(void) {
+    const hd_laplacian *lap = kit_pair("ico/1 fem");
+    hd_heat *heat = kit_heat(lap, "");
+    hd_filter f[3];
+    hd_rational set[3];
+    double before[3], Z[3];
+    hd_error e;
+    filt_many(f, 3, 1e-2 * lap->lambda_max, lap->lambda_max);
+    CHECK(hd_rational_fit(set, 3, f, lap->lambda_max, NULL, NULL) == HD_OK && hd_heat_set_rational(heat, 3, set, NULL) == HD_OK);
+    CHECK(hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, 0, NULL, NULL, 0, before, NULL, NULL, NULL) >= 0);
     set[2].theta[1].re *= 1.0001;
-    CHECK(heat_filters(heat, COUNT, set, D, 0, NULL, NULL, &rep, NULL) == HD_ERR_ARGUMENT && rep.error.column == 2);
-    CHECK(heat_filters(heat, 0, set, D, 0, NULL, NULL, NULL, NULL) == HD_ERR_ARGUMENT &&
-        heat_filters(heat, 1, NULL, D, 0, NULL, NULL, NULL, NULL) == HD_ERR_ARGUMENT);
-    CHECK(hd_heat_set_rational(heat, 0, NULL, NULL) == HD_OK && heat_filters(heat, 1, set, D, 0, NULL, NULL, &rep, NULL) == HD_ERR_ARGUMENT);
+    CHECK(hd_heat_set_rational(heat, 3, set, &e) == HD_ERR_ARGUMENT && e.column == 2);
+    CHECK(hd_heat_set_rational(heat, -1, set, NULL) == HD_ERR_ARGUMENT && hd_heat_set_rational(heat, 1, NULL, NULL) == HD_ERR_ARGUMENT);
+    set[1].a[0].re = (double)NAN;
+    CHECK(hd_heat_set_rational(heat, 3, set, &e) == HD_ERR_NOT_FINITE && e.column == 1);
+    memset(set, 0x6b, sizeof set);               /* they are copied */
+    CHECK(hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, 0, NULL, NULL, 0, Z, NULL, NULL, NULL) >= 0 && memcmp(Z, before, sizeof Z) == 0);
+    CHECK(hd_heat_set_rational(heat, 0, NULL, NULL) == HD_OK);
+    CHECK(hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, 0, NULL, NULL, 0, Z, NULL, NULL, NULL) == HD_ERR_ARGUMENT);
 }
 
 static void filt_shared(void) {
     filt_shared_sets();
+    filt_shared_refused();
     filt_shared_diagonals("shape=torus/9/6 op=fem");
     filt_shared_diagonals("shape=flat/8/6/0.3 op=vor");
     filt_shared_diagonals("shape=ico/1 op=cot");
@@ -532,9 +583,9 @@ static void filt_refused(void) {
     t[1] = set.t;                                /* twice the same is fine */
     CHECK(heat_times(heat, 2, t, HD_KERNEL_OPERATOR, source, NULL, u, 0, &rep) >= 0 && dense_max_diff(u, u + lap->n, lap->n) == 0);
     CHECK(heat_distance(heat, HD_DISTANCE_COMMUTE, 0, NULL, 1, &source, u, 0, &rep) >= 0);
-    heat = filt_plan(lap, &set, "method=iterative");         /* entries of pairs by iterations, distances not */
-    CHECK(heat_pairs(heat, HD_DISTANCE_CLASSICAL, set.t, 1, &source, &other, u, NULL, &rep) >= 0);
-    CHECK(heat_pairs(heat, HD_DISTANCE_CLASSICAL, set.t, 1, &source, &other, u, w, &rep) == HD_ERR_ARGUMENT);
+    heat = filt_plan(lap, &set, "method=iterative");         /* entries by iterations, distances not */
+    CHECK(heat_entries(heat, set.t, HD_KERNEL_OPERATOR, 1, &source, &other, u, &rep) >= 0);
+    CHECK(heat_pairs(heat, HD_DISTANCE_CLASSICAL, set.t, 1, &source, &other, w, &rep) == HD_ERR_ARGUMENT);
     CHECK(heat_diagonal(heat, 1, &set.t, HD_KERNEL_SYMMETRIC, u, 0, &rep) == HD_ERR_ARGUMENT);
     memset(&o, 0, sizeof o);
     o.rational = &set;

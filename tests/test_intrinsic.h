@@ -90,8 +90,7 @@ static void tri_properties(const hd_laplacian *lap, int signs, double area_tol, 
     double worst = 0;
     int64_t p, asymmetric = 0;
     int32_t i;
-    hd_error e;
-    CHECK_MSG(hd_csr_check(&lap->L, 1, NULL, &e) == HD_OK, "%s: %s", what, e.text);
+    CHECK_MSG(!test_csr_fault(&lap->L, 1), "%s: %s", what, test_csr_fault(&lap->L, 1));
     for (i = 0; i < lap->n_active; i++) {
         double sum = 0, size = 0, b = 0;
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {

@@ -251,9 +251,8 @@ static void poly_spectrum(const shape_poly *s, double lambda, int32_t components
     double *L = test_dense(&lap->L, NULL), *B = test_dense_mass(lap), *keep = KIT_NEW(double, (int64_t)n * n), worst = 0, top;
     int32_t i, j, zeros = 0, negative = 0, asymmetric = 0;
     dense_pair p;
-    hd_error e;
     memcpy(keep, L, (size_t)n * (size_t)n * sizeof *L);
-    CHECK_MSG(hd_csr_check(&lap->L, 1, NULL, &e) == HD_OK, "%s: %s", what, e.text);
+    CHECK_MSG(!test_csr_fault(&lap->L, 1), "%s: %s", what, test_csr_fault(&lap->L, 1));
     for (i = 0; i < n; i++) {
         double sum = 0, size = 0;
         for (j = 0; j < n; j++) {

@@ -1,4 +1,4 @@
-/* test_sparse.h - compressed rows: build, check, apply, against dense matrices */
+/* test_sparse.h - compressed rows: built, against dense matrices, and refused */
 
 #ifndef TEST_SPARSE_H
 #define TEST_SPARSE_H
@@ -21,6 +21,7 @@ static hd_csr sparse_random(int32_t rows, int32_t cols, int32_t count, uint64_t 
     double *v = KIT_NEW(double, count);
     hd_csr a;
     hd_error e;
+    const char *fault;
     memset(&a, 0, sizeof a);
     memset(d, 0, (size_t)rows * (size_t)cols * sizeof *d);
     for (k = 0; k < count; k++) {
@@ -32,15 +33,16 @@ static hd_csr sparse_random(int32_t rows, int32_t cols, int32_t count, uint64_t 
         d[(size_t)i[k] * (size_t)cols + (size_t)j[k]] += v[k];
     }
     CHECK(hd_csr_from_triplets(&a, rows, cols, count, i, j, v, NULL, &e) == HD_OK);
-    CHECK(hd_csr_check(&a, 0, NULL, &e) == HD_OK);
+    fault = test_csr_fault(&a, 0);
+    CHECK_MSG(!fault, "%s", fault);
     return a;
 }
 
 static void sparse_equals(const hd_csr *a, const double *d, double tol, const char *what) {
     double *own = test_dense(a, NULL);
-    hd_error e;
+    const char *fault = test_csr_fault(a, 0);
     const double diff = dense_max_diff(own, d, (int64_t)a->n_rows * a->n_cols);
-    CHECK_MSG(hd_csr_check(a, 0, NULL, &e) == HD_OK, "%s: %s", what, e.text);
+    CHECK_MSG(!fault, "%s: %s", what, fault);
     CHECK_MSG(diff <= tol, "%s: off by %g", what, diff);
     free(own);
 }
@@ -64,7 +66,7 @@ static void sparse_triplets(void) {
     hd_csr_free(&a, NULL);
     CHECK(hd_csr_from_triplets(&a, 0, 0, 0, NULL, NULL, NULL, NULL, &e) == HD_OK);
     CHECK(a.row_ptr && a.row_ptr[0] == 0 && a.nnz == 0);
-    CHECK(hd_csr_check(&a, 1, NULL, &e) == HD_OK);
+    CHECK(!test_csr_fault(&a, 1));
     hd_csr_free(&a, NULL);
     CHECK(hd_csr_from_triplets(&a, 5, 2, 0, NULL, NULL, NULL, NULL, &e) == HD_OK);
     CHECK(a.row_ptr[5] == 0);
@@ -77,7 +79,27 @@ static void sparse_triplets(void) {
     hd_csr_free(&a, NULL);
 }
 
-/* Every way in which check can refuse, with its place. */
+/* What hd_laplacian_matrices says of L, which it checks before B; HD_OK: L is well formed, and symmetric up to rounding. */
+static hd_status sparse_matrix(const hd_csr *a, hd_error *e) {
+    const int32_t mark = kit_mark();
+    hd_csr B = kit_own_csr(test_diagonal_csr(3, NULL));
+    hd_laplacian *lap = NULL;
+    const hd_status st = hd_laplacian_matrices(&lap, a, &B, 1, NULL, e);
+    hd_laplacian_free(lap);
+    kit_release(mark);
+    return st == HD_ERR_STRUCTURE || st == HD_ERR_INDEX || st == HD_ERR_NOT_FINITE || st == HD_ERR_NOT_SYMMETRIC ? st : HD_OK;
+}
+
+/* The same of the pattern alone, by hd_ldl_analyse. */
+static hd_status sparse_pattern(const hd_csr *a, hd_error *e) {
+    hd_ldl *f = NULL;
+    const hd_status st = hd_ldl_analyse(&f, a, NULL, NULL, e);
+    CHECK((st >= 0) == (f != NULL));
+    hd_ldl_free(f);
+    return st;
+}
+
+/* Every way in which a matrix can be refused, with its place. */
 static void sparse_check(void) {
     /* ptr[at] or col[at] or val[at] becomes `to`; row, column and value of the error, 77: none told */
     static const struct { char what; int at, to, col3; hd_status want; int32_t row, column; double value; } rows[] = {
@@ -86,28 +108,35 @@ static void sparse_check(void) {
         {'c', 4, 0, 0, HD_ERR_STRUCTURE, 2, 0, 77},        /* twice */
         {'c', 4, 1, 2, HD_ERR_STRUCTURE, 2, 1, 77},        /* descending */
         {'v', 2, 0, 0, HD_ERR_NOT_FINITE, 1, 1, 77}, {'v', 2, 1, 0, HD_ERR_NOT_FINITE, 1, 1, 77},
-        {'s', 0, 0, 0, HD_ERR_NOT_SYMMETRIC, 0, 1, 2},     /* (0, 1) has no partner */
-        {' ', 0, 0, 0, HD_OK, -1, -1, 77},
+        {' ', 0, 0, 0, HD_ERR_NOT_SYMMETRIC, 0, 1, 2},     /* (0, 1) has no partner */
     };
     int64_t none[2] = {0, 0};
+    double one = 1;
     hd_csr wide = sparse_view(1, 2, 0, none, NULL, NULL);
     hd_error e;
     size_t k;
-    for (k = 0; k < sizeof rows / sizeof *rows; k++) {
-        const int at = rows[k].at, to = rows[k].to;
+    for (k = 0; k < 2 * sizeof rows / sizeof *rows; k++) {
+        const int r = (int)k / 2, alone = (int)k % 2, at = rows[r].at, to = rows[r].to;
+        const hd_status want = alone && rows[r].what == 'v' ? HD_ERR_NOT_SYMMETRIC : rows[r].want;    /* values are not read */
+        const int told = want == rows[r].want;
         int64_t ptr[4] = {0, 2, 3, 5};
         int32_t col[5] = {0, 1, 1, 0, 2};
         double val[5] = {1, 2, 3, 4, 5};
         hd_csr a = sparse_view(3, 3, 5, ptr, col, val);
-        col[3] = rows[k].col3;
-        if (rows[k].what == 'p') ptr[at] = to;
-        if (rows[k].what == 'c') col[at] = to;
-        if (rows[k].what == 'v') val[at] = to ? -(double)INFINITY : (double)NAN;
-        CHECK_MSG(hd_csr_check(&a, rows[k].what == 's', NULL, &e) == rows[k].want && (rows[k].row == 77 || e.row == rows[k].row) &&
-                  (rows[k].column == 77 || e.column == rows[k].column) && (rows[k].value == 77 || e.value == rows[k].value),
-                  "row %d: %s, (%d, %d), %g", (int)k, hd_status_name(e.status), (int)e.row, (int)e.column, e.value);
+        hd_status st;
+        col[3] = rows[r].col3;
+        if (rows[r].what == 'p') ptr[at] = to;
+        if (rows[r].what == 'c') col[at] = to;
+        if (rows[r].what == 'v') val[at] = to ? -(double)INFINITY : (double)NAN;
+        st = alone ? sparse_pattern(&a, &e) : sparse_matrix(&a, &e);
+        CHECK_MSG(st == want && (!told || rows[r].row == 77 || e.row == rows[r].row) &&
+                  (!told || rows[r].column == 77 || e.column == rows[r].column) &&
+                  (!told || rows[r].value == 77 || e.value == (alone && rows[r].what == ' ' ? 1 : rows[r].value)),
+                  "row %d, pattern %d: %s, (%d, %d), %g", r, alone, hd_status_name(e.status), (int)e.row, (int)e.column, e.value);
     }
-    CHECK(hd_csr_check(&wide, 1, NULL, &e) == HD_ERR_NOT_SYMMETRIC && e.row == 1 && e.column == 2);    /* not square */
+    wide.val = &one;
+    CHECK(sparse_matrix(&wide, &e) == HD_ERR_NOT_SYMMETRIC && e.row == 1 && e.column == 2);    /* not square */
+    CHECK(sparse_pattern(&wide, &e) == HD_ERR_NOT_SYMMETRIC && e.row == 1 && e.column == 2);
 }
 
 static void sparse_check_symmetric(void) {
@@ -116,24 +145,25 @@ static void sparse_check_symmetric(void) {
     double val[7] = {1, 2, 3, 2, 5, 3, 7}, lone_val[3] = {1, 0, 3};
     hd_csr a = sparse_view(3, 3, 7, ptr, col, val), b = sparse_view(3, 3, 3, lone, lone_col, lone_val);
     hd_error e;
-    CHECK(hd_csr_check(&a, 1, NULL, &e) == HD_OK);
+    CHECK(sparse_matrix(&a, &e) == HD_OK);
     val[5] = 3 * (1 + 1e-13);
-    CHECK(hd_csr_check(&a, 1, NULL, &e) == HD_OK);
+    CHECK(sparse_matrix(&a, &e) == HD_OK);
     val[5] = 3 * (1 + 1e-10);
-    CHECK(hd_csr_check(&a, 1, NULL, &e) == HD_ERR_NOT_SYMMETRIC && e.row == 0 && e.column == 2);
+    CHECK(sparse_matrix(&a, &e) == HD_ERR_NOT_SYMMETRIC && e.row == 0 && e.column == 2);
     val[5] = -3;
-    CHECK(hd_csr_check(&a, 1, NULL, &e) == HD_ERR_NOT_SYMMETRIC && e.row == 0 && e.column == 2 && fabs(e.value) == 6);
-    CHECK(hd_csr_check(&b, 1, NULL, &e) == HD_OK);               /* an explicit zero needs no partner */
+    CHECK(sparse_matrix(&a, &e) == HD_ERR_NOT_SYMMETRIC && e.row == 0 && e.column == 2 && fabs(e.value) == 6);
+    CHECK(sparse_matrix(&b, &e) == HD_OK);                       /* an explicit zero needs no partner */
     lone_val[1] = 1e-300;
-    CHECK(hd_csr_check(&b, 1, NULL, &e) == HD_ERR_NOT_SYMMETRIC && e.row == 0 && e.column == 2);
+    CHECK(sparse_matrix(&b, &e) == HD_ERR_NOT_SYMMETRIC && e.row == 0 && e.column == 2);
+    CHECK(sparse_pattern(&b, &e) == HD_ERR_NOT_SYMMETRIC && e.row == 0 && e.column == 2 && fabs(e.value) == 1);
     lone[1] = 1;                                                 /* below the diagonal only: (1, 0) */
     lone_col[1] = 0;
     lone_val[1] = 4;
-    CHECK(hd_csr_check(&b, 1, NULL, &e) == HD_ERR_NOT_SYMMETRIC && e.row + e.column == 1 && fabs(e.value) == 4);
-    a.val = NULL;                                                /* patterns */
-    CHECK(hd_csr_check(&a, 1, NULL, &e) == HD_OK);
-    b.val = NULL;
-    CHECK(hd_csr_check(&b, 1, NULL, &e) == HD_ERR_NOT_SYMMETRIC);
+    CHECK(sparse_matrix(&b, &e) == HD_ERR_NOT_SYMMETRIC && e.row + e.column == 1 && fabs(e.value) == 4);
+    CHECK(sparse_pattern(&b, &e) == HD_ERR_NOT_SYMMETRIC && e.row + e.column == 1);
+    CHECK(sparse_pattern(&a, &e) == HD_OK);
+    a.val = b.val = NULL;                                        /* patterns */
+    CHECK(sparse_pattern(&a, &e) == HD_OK && sparse_pattern(&b, &e) == HD_ERR_NOT_SYMMETRIC);
 }
 
 /* Finite numbers whose sum is not. */
@@ -157,38 +187,11 @@ static void sparse_reverse_for(void *user, int64_t n_tasks, hd_task task, void *
     ++*(int64_t *)user;
 }
 
-static void sparse_apply(void) {
-    enum { N = 40000 };                          /* more than one block of rows */
-    double *d = KIT_NEW(double, 20 * 13), *x = KIT_NEW(double, N), *y = KIT_NEW(double, N), *z = KIT_NEW(double, N);
-    hd_csr a = sparse_random(20, 13, 90, 31, d);
-    hd_context ctx;
-    uint64_t seed = 1;
-    int64_t calls = 0;
-    int32_t i;
-    for (i = 0; i < N; i++) x[i] = dense_signed(&seed);
-    hd_csr_apply(&a, x, y, NULL);
-    for (i = 0; i < 20; i++) z[i] = dense_dot(d + i * 13, x, 13);
-    CHECK(dense_max_diff(y, z, 20) < 1e-14);
-    hd_csr_free(&a, NULL);
-    a = test_path_csr(N, 1);
-    memset(&ctx, 0, sizeof ctx);
-    ctx.parallel_for = sparse_reverse_for;
-    ctx.parallel_user = &calls;
-    hd_csr_apply(&a, x, y, NULL);
-    hd_csr_apply(&a, x, z, &ctx);
-    CHECK(calls == 1);
-    CHECK(memcmp(y, z, N * sizeof *y) == 0);
-    for (i = 0; i < N; i++) z[i] = 2 * x[i] - x[(i + 1) % N] - x[(i + N - 1) % N];
-    CHECK(dense_max_diff(y, z, N) < 1e-14);
-    hd_csr_free(&a, NULL);
-}
-
 static void test_sparse(void) {
     sparse_triplets();
     sparse_check();
     sparse_check_symmetric();
     sparse_overflow();
-    sparse_apply();
 }
 
 #endif

@@ -200,24 +200,6 @@ static void thr_lifetime(const shape *s, const double *want, double *u) {
     CHECK(hd_laplacian_create(&lap, MESH_TRIANGLES(s->xyz, s->n, s->tri, -1), NULL, NULL) == HD_ERR_ARGUMENT && thr_running() == before);
 }
 
-/* A product makes no object; it has threads like any other call, and ends them. */
-static void thr_product(void) {
-    enum { N = 200000 };
-    hd_csr a = kit_own_csr(test_path_csr(N, 1));
-    double *x = KIT_NEW(double, N), *y = KIT_NEW(double, N);
-    const int before = thr_running();
-    hd_context ctx;
-    uint64_t seed = 1;
-    int32_t i;
-    memset(&ctx, 0, sizeof ctx);
-    ctx.n_threads = 2;
-    for (i = 0; i < N; i++) x[i] = dense_signed(&seed);
-    hd_csr_apply(&a, x, y, &ctx);
-    CHECK(ctx.regions == (thr_own() ? 1 : 0) && !ctx.threads && ctx.n_holders == 0 && thr_running() == before);
-    for (i = 0; i < N; i++) y[i] -= 2 * x[i] - x[(i + 1) % N] - x[(i + N - 1) % N];
-    CHECK(dense_max_abs(y, N) < 1e-14);
-}
-
 /* What is asked of other threads: a solve of a large mesh is one loop; a small one is no loop, and starts nobody. */
 static void thr_counts(void) {
     int k;
@@ -422,7 +404,6 @@ static void thr_lives(void) {
     hd_heat_free(heat);
     hd_laplacian_free(lap);
     thr_lifetime(&s, want, u);
-    thr_product();
     thr_counts();
     thr_fork(&s, want, u);
 #ifdef LDL_THREADS
