@@ -204,17 +204,16 @@ static hd_status src_ask(hd_heat *heat, int query, int32_t m, const double *t, c
     return hd_heat_distance(heat, (hd_distance_kind)(query - 2), m, t, s, U, 0, rep, NULL);
 }
 
-/* The same but for rounding, of squares for distances, and infinite in the same places. */
-static void src_alike(const double *u, const double *v, int32_t n, int squares, const char *what) {
-    double most = 0, off = 0, gap;
+/* The same but for so much of the largest, and infinite in the same places. */
+static void src_alike(const double *u, const double *v, int32_t n, double tol, const char *what) {
+    double most = 0, off = 0;
     int32_t i;
     for (i = 0; i < n; i++) {
+        const double gap = u[i] == v[i] ? 0 : fabs(u[i] - v[i]);
         if (u[i] < HUGE_VAL) most = fmax(most, fabs(u[i]));
-        if (u[i] == v[i]) continue;
-        gap = fabs(u[i] - v[i]) * (squares ? u[i] + v[i] : 1);
         off = gap >= 0 ? fmax(off, gap) : HUGE_VAL;
     }
-    CHECK_MSG(off <= 1e-12 * most * (squares ? most : 1), "%s: off by %g, the largest is %g", what, off, most);
+    CHECK_MSG(off <= tol * most, "%s: off by %g, the largest is %g", what, off, most);
 }
 
 /* Pairs of the same kind: points of triangles, vertices, curves by their lengths and by coordinates. Is there such a pair? */
@@ -230,30 +229,30 @@ static int src_pair_of(src_room *both, src_room one[2], const hd_laplacian *lap,
     return 1;
 }
 
-/* Two sources of a call have the answers of each alone but for rounding, which depends on how many columns there are: columns of a call
- * with the same source twice are the same to the last bit. */
+/* Two sources of a call have the columns of each alone but for rounding, which depends on how many there are: those of a call with the same
+ * source twice are the same to the last bit. Distances agree within their bounds. */
 static void src_together(const hd_laplacian *lap, const char *method, const char *what) {
     const double times[2] = {trial_unit(lap), 20 * trial_unit(lap)};
     const int32_t n = lap->n;
     const int kinds = strcmp(method, "method=direct") == 0 ? 6 : 2;
     double *U = KIT_NEW(double, 4 * n), *V = KIT_NEW(double, 4 * n);
     src_room both, one[2], twice;
-    hd_report rep;
+    hd_report rep, alone;
     int w, k, q, c;
     for (w = 0; w < 4; w++)
         for (k = 0; k < kinds && src_pair_of(&both, one, lap, w); k++) {        /* two kernels, four kinds of distances */
             const int32_t m = k < 4 ? 2 : 1, size = m * n;
             CHECK_MSG(src_ask(kit_heat(lap, method), k, m, times, &both.s, U, &rep) >= 0, "%s: %s", what, rep.error.text);
             for (q = 0; q < 2; q++) {
-                CHECK(src_ask(kit_heat(lap, method), k, m, times, &one[q].s, V, NULL) >= 0);
-                src_alike(U + q * size, V, size, k >= 2, what);
+                const double *u = U + q * size;
+                CHECK(src_ask(kit_heat(lap, method), k, m, times, &one[q].s, V, &alone) >= 0);
+                src_alike(u, V, size, k < 2 ? 1e-12 : rep.error_bound + alone.error_bound, what);
                 src_join(&twice, one + q, one + q);
-                CHECK(src_ask(kit_heat(lap, method), k, m, times, &twice.s, V, NULL) >= 0);
+                CHECK(src_ask(kit_heat(lap, method), k, m, times, &twice.s, V, &alone) >= 0);
                 for (c = 0; c < 2; c++)
-                    if (k >= 2) src_alike(U + q * size, V + c * size, size, 1, what);
-                    else CHECK_MSG(memcmp(U + q * size, V + c * size, (size_t)size * sizeof *U) == 0, "%s, %s, pair %d, kernel %d: %g",
-                        what,
-                                   method, w, k, dense_max_diff(U + q * size, V + c * size, size));
+                    if (k >= 2) src_alike(u, V + c * size, size, rep.error_bound + alone.error_bound, what);
+                    else CHECK_MSG(memcmp(u, V + c * size, (size_t)size * sizeof *u) == 0 || !TEST_EXACT, "%s, %s, pair %d, kernel %d: %g",
+                                   what, method, w, k, dense_max_diff(u, V + c * size, size));
             }
         }
 }
