@@ -135,7 +135,8 @@ static void sign_together(trial_work *w, double most) {
             }
             CHECK_MSG(apart <= (rep.error_bound + own.error_bound + 1e-15) * largest, "%s, kernel %d, t %g: %g from those alone, of %g", w->text, kernel, t[q],
                       apart, largest);
-            CHECK_MSG(worst <= most / 5, "%s, kernel %d, t %g: off by %g", w->text, kernel, t[q], worst);
+            CHECK_MSG(worst <= rep.error_relative + bound[q] / Z[q] + 1e-13 && (worst <= most / 5 || kernel == HD_KERNEL_OPERATOR), "%s, kernel %d, t %g: off by %g, bounds %g, %g",
+                      w->text, kernel, t[q], worst, rep.error_relative, bound[q] / Z[q]);
         }
         for (q = 0; q < SIGN_TIMES; q += 5) {    /* one time, by poles of its own */
             CHECK(hd_heat_diagonal(heat, (hd_kernel)kernel, 1, t + q, alone, 0, one, loose, &own, NULL) == HD_OK);

@@ -52,6 +52,30 @@ static void fz_fail(const char *text, int line) {
 
 #define FZ(cond) do { if (!(cond)) fz_fail(#cond, __LINE__); } while (0)
 
+/* Rows in order, columns that ascend within them, numbers; if asked also symmetric, up to rounding. */
+static void fz_csr_check(const hd_csr *a, int symmetric) {
+    int64_t p, q;
+    int32_t i;
+    FZ(a->n_rows >= 0 && a->n_cols >= 0 && a->row_ptr && a->row_ptr[0] == 0 && a->row_ptr[a->n_rows] == a->nnz);
+    for (i = 0; i < a->n_rows; i++) {
+        FZ(a->row_ptr[i + 1] >= a->row_ptr[i] && a->row_ptr[i + 1] <= a->nnz);
+        for (p = a->row_ptr[i]; p < a->row_ptr[i + 1]; p++) {
+            FZ(a->col[p] >= 0 && a->col[p] < a->n_cols && (p == a->row_ptr[i] || a->col[p] > a->col[p - 1]));
+            FZ(!a->val || isfinite(a->val[p]));
+        }
+    }
+    FZ(!symmetric || a->n_rows == a->n_cols);
+    for (i = 0; symmetric && i < a->n_rows; i++) {
+        for (p = a->row_ptr[i]; p < a->row_ptr[i + 1]; p++) {
+            const int32_t j = a->col[p];
+            double y = 0;
+            for (q = a->row_ptr[j]; q < a->row_ptr[j + 1] && a->col[q] < i; q++) continue;
+            if (q < a->row_ptr[j + 1] && a->col[q] == i) y = a->val[q];
+            FZ(fabs(a->val[p] - y) <= 1e-12 * fmax(fabs(a->val[p]), fabs(y)));
+        }
+    }
+}
+
 static uint8_t fz_byte(fz_in *in) { return in->p < in->end ? *in->p++ : 0; }
 
 static int32_t fz_below(fz_in *in, int32_t n) { return n > 0 ? fz_byte(in) % n : 0; }
@@ -325,10 +349,9 @@ static void fz_check_laplacian(const hd_laplacian *lap) {
     double mass = 0;
     int32_t r, v, active = 0, held = 0;
     int64_t p;
-    hd_error e;
     FZ(lap->n_active > 0 || lap->n_held > 0);
     FZ(lap->L.n_rows == lap->n_active && lap->L.n_cols == lap->n_active);
-    if (hd_csr_check(&lap->L, 1, NULL, &e) < 0) fz_fail(e.text, __LINE__);
+    fz_csr_check(&lap->L, 1);
     FZ(!lap->B || fz_finite(lap->B, lap->L.nnz));
     FZ(mio_is_finite(lap->h) && lap->h >= 0 && lap->area == lap->area);
     FZ(lap->kind == HD_LAPLACIAN_MATRICES || mio_is_finite(lap->area));   /* sums of one's own masses may overflow */
@@ -572,7 +595,7 @@ static void fz_columns(hd_heat *heat, const hd_laplacian *lap, fz_query *q, cons
 
 /* Signatures, times, derivatives and adjoints. */
 static void fz_one_more(hd_heat *heat, const hd_laplacian *lap, fz_query *q, fz_in *in, const fz_context *c) {
-    static const char *const names[] = {"derivative", "adjoint", "trace", "normalised", "scale invariant", "times"};
+    static const char *const names[] = {"derivative", "adjoint", "trace", "diagonal and trace", "diagonal", "times"};
     const int64_t n = lap->n;
     const int which = fz_byte(in) % 6;
     hd_report rep;
@@ -587,11 +610,10 @@ static void fz_one_more(hd_heat *heat, const hd_laplacian *lap, fz_query *q, fz_
     case 0: st = hd_heat_derivative(heat, q->n_times, q->t, q->k, q->f, 0, q->u, 0, &rep, &e); break;
     case 1: st = hd_heat_adjoint(heat, q->n_times, q->t, q->k, q->f, 0, q->u, 0, &rep, &e); break;
     case 2: st = hd_heat_diagonal(heat, HD_KERNEL_OPERATOR, q->n_times, q->t, NULL, 0, q->u, q->v, &rep, &e), values = q->n_times; break;
-    case 3: st = hd_heat_normalised(heat, q->n_times, q->t, q->u, 0, &rep, &e), values = n * q->n_times; break;
-    case 4: st = hd_heat_scale_invariant(heat, q->t[0], q->t[1], fz_int(in, 9), fz_below(in, 4), q->u, 0, &rep, &e), values = n; break;
+    case 3: st = hd_heat_diagonal(heat, q->kernel, q->n_times, q->t, q->u, 0, t, q->v, &rep, &e), values = n * q->n_times; break;
+    case 4: st = hd_heat_diagonal(heat, q->kernel, q->n_times, q->t, q->u, 0, t, NULL, &rep, &e), values = n * q->n_times; break;
     default:
         if (fz_status(hd_times_auto(lap, q->n_times, t, &e), &e, c) >= 0) FZ(fz_no_nan(t, q->n_times));
-        if (fz_status(hd_times_spectral(lap, q->n_times, q->t, t, &e), &e, c) >= 0) FZ(fz_no_nan(t, q->n_times));
         return;
     }
     fz_status(st, &e, c);
@@ -599,7 +621,8 @@ static void fz_one_more(hd_heat *heat, const hd_laplacian *lap, fz_query *q, fz_
     if (st < 0) return;
     FZ(fz_no_nan(q->u, values));
     if (st == HD_OK) FZ(fz_finite(q->u, values));
-    if (which == 2) for (k = 0; k < values; k++) FZ(q->v[k] >= 0);
+    if (which == 2 || which == 3) for (k = 0; k < q->n_times; k++) FZ(q->v[k] >= 0);
+    if (which == 3 || which == 4) FZ(fz_no_nan(t, q->n_times));
 }
 
 static void fz_one(hd_heat *heat, const hd_laplacian *lap, fz_query *q, fz_in *in, const fz_context *c) {
@@ -629,7 +652,7 @@ static void fz_one(hd_heat *heat, const hd_laplacian *lap, fz_query *q, fz_in *i
     }
     if (which == 5) {
         if (q->kind >= HD_DISTANCE_COMMUTE) q->n_times = 1;
-        st = hd_heat_pairs(heat, q->kind, q->n_times, q->t, q->n_pairs, q->i, q->j, q->v, q->u, &rep, &e), values = q->n_pairs * q->n_times;
+        st = hd_heat_distance_pairs(heat, q->kind, q->n_times, q->t, q->n_pairs, q->i, q->j, q->u, &rep, &e), values = q->n_pairs * q->n_times;
     }
     if (which == 6) {
         const int32_t count = 1 + fz_below(in, 8);
@@ -642,7 +665,6 @@ static void fz_one(hd_heat *heat, const hd_laplacian *lap, fz_query *q, fz_in *i
     if (st < 0) return;
     FZ(fz_no_nan(q->u, values));
     if (st == HD_OK && (which < 4 || which == 7 || q->kind < HD_DISTANCE_COMMUTE)) FZ(fz_finite(q->u, values));
-    if (which == 5 && q->kind < HD_DISTANCE_COMMUTE) FZ(fz_no_nan(q->v, values));
     if (which >= 4 && which < 6) for (; values > 0; values--) FZ(q->u[values - 1] >= 0);
 }
 
@@ -1211,22 +1233,17 @@ static void fz_matrix_symmetric(fz_matrix *m, fz_in *in, int32_t n, double diago
 
 static void fz_csr_out(hd_status st, hd_csr *out, const hd_error *e, fz_context *c) {
     if (fz_status(st, e, c) < 0) return;
-    FZ(hd_csr_check(out, 0, NULL, NULL) == HD_OK);
+    fz_csr_check(out, 0);
     hd_csr_free(out, &c->ctx);
 }
 
-static void fz_csr(fz_in *in, const fz_matrix *m, fz_context *c) {
-    const hd_csr *const a = &m->a;
+static void fz_csr(fz_in *in, fz_context *c) {
     hd_csr out;
     hd_error e;
     int32_t i[24], j[24], k, n = fz_below(in, 24);
-    double v[24], x[20], y[20];
+    double v[24];
     fz_what = "csr";
-    if (fz_status(hd_csr_check(a, fz_byte(in) & 1, &c->ctx, &e), &e, c) == HD_OK && a->n_cols < 20) {
-        for (k = 0; k < 20; k++) x[k] = 1;
-        hd_csr_apply(a, x, y, &c->ctx);
-        FZ(fz_no_nan(y, 0));
-    }
+    (void)fz_byte(in);                           /* kept inputs have it */
     for (k = 0; k < n; k++) {
         i[k] = fz_int(in, 9);
         j[k] = fz_int(in, 7);
@@ -1243,7 +1260,7 @@ static void fz_ldl(fz_in *in, const fz_matrix *m, fz_context *c) {
     hd_error e;
     double b[28], x[28], inverse[256], diag[14];
     hd_c64 z[512], zx[28], zi[512], zd[28];
-    int32_t i[5], j[5], k;
+    int32_t k;
     fz_what = "ldl";
     memset(&o, 0, sizeof o);
     o.context = &c->ctx;
@@ -1253,10 +1270,7 @@ static void fz_ldl(fz_in *in, const fz_matrix *m, fz_context *c) {
         return;
     }
     FZ(n <= 14 && m->a.nnz <= 256);
-    for (k = 0; k < 5; k++) {
-        i[k] = fz_int(in, n);
-        j[k] = fz_int(in, n);
-    }
+    for (k = 0; k < 10; k++) (void)fz_int(in, n);        /* kept inputs have them */
     for (k = 0; k < 2 * n; k++) b[k] = fz_number(in);
     for (k = 0; k < 2 * m->a.nnz; k++) {
         z[k].re = m->val[k % m->a.nnz];
@@ -1266,12 +1280,10 @@ static void fz_ldl(fz_in *in, const fz_matrix *m, fz_context *c) {
         FZ(rep.growth >= 0 && rep.smallest_pivot >= 0 && rep.n_negative >= 0 && rep.n_negative <= n);
         (void)fz_status(hd_ldl_solve(f, 2, b, 0, x, 0, &e), &e, c);
         (void)fz_status(hd_ldl_inverse(f, inverse, diag, &e), &e, c);
-        (void)fz_status(hd_ldl_inverse_entries(f, 5, i, j, inverse, &e), &e, c);
     }
     if (fz_status(hd_ldl_factor_complex(f, 2, z, &rep, &e), &e, c) >= 0) {
         (void)fz_status(hd_ldl_solve_complex(f, z, 0, zx, 0, &e), &e, c);
         (void)fz_status(hd_ldl_inverse_complex(f, zi, zd, &e), &e, c);
-        (void)fz_status(hd_ldl_inverse_entries_complex(f, 5, i, j, zi, &e), &e, c);
     }
     hd_ldl_free(f);
 }
@@ -1301,7 +1313,7 @@ static void fz_matrices(const uint8_t *data, size_t size) {
     n = 1 + fz_below(&in, 13);
     if (way & 1) fz_matrix_any(&L, &in);
     else fz_matrix_symmetric(&L, &in, n, way & 2 ? 0.25 : 0);
-    if (way & 4) fz_csr(&in, &L, &c);
+    if (way & 4) fz_csr(&in, &c);
     if (way & 8) fz_ldl(&in, &L, &c);
     if (way & 16) fz_matrix_any(&B, &in);
     else fz_matrix_symmetric(&B, &in, n, 1);
@@ -1395,7 +1407,7 @@ static void fz_option_queries(fz_in *in, const hd_laplacian *lap, const fz_conte
     fz_status(hd_heat_apply(heat, n_times, t, sources, d, ld, u, ld, NULL, &e), &e, c);
     fz_status(hd_heat_diagonal(heat, (hd_kernel)fz_int(in, 2), n_times, t, u, ld, NULL, NULL, NULL, &e), &e, c);
     fz_status(hd_heat_distance(heat, (hd_distance_kind)fz_int(in, 4), n_times, t, VERTICES(sources, id), d, ld, NULL, &e), &e, c);
-    fz_status(hd_heat_pairs(heat, (hd_distance_kind)fz_int(in, 4), n_times, t, sources, id, id, u, d, NULL, &e), &e, c);
+    fz_status(hd_heat_distance_pairs(heat, (hd_distance_kind)fz_int(in, 4), n_times, t, sources, id, id, d, NULL, &e), &e, c);
     fz_status(hd_heat_entries(heat, (hd_kernel)fz_int(in, 2), n_times, t, sources, id, id, u, NULL, &e), &e, c);
     fz_status(hd_rational_shared(sets, n_times, t, fz_number(in), NULL, &e), &e, c);
     if (e.status >= 0) for (k = 0; k < n_times; k++) FZ(mio_is_finite(hd_rational_eval(sets + k, -fabs(t[k]))));
@@ -1409,7 +1421,6 @@ static void fz_options_rest(fz_in *in, const shape *s, const hd_laplacian *lap, 
     hd_geodesic *g = NULL;
     hd_spectrum_opts so;
     hd_spectrum *p = NULL;
-    hd_csr a;
     hd_error e;
     fz_what = "options of eigenpairs";
     memset(&so, 0, sizeof so);
@@ -1432,7 +1443,7 @@ static void fz_options_rest(fz_in *in, const shape *s, const hd_laplacian *lap, 
     if (n > 8) n = 8;
     if (m > 8) m = 8;
     fz_status(hd_neighbours_nearest(s->xyz, n, fz_byte(in) & 1 ? s->xyz : NULL, m, fz_below(in, 9), index, d, &c->ctx, &e), &e, c);
-    if (fz_status(hd_neighbours_radius(&a, s->xyz, n, s->xyz, m, fz_number(in), &c->ctx, &e), &e, c) >= 0) hd_csr_free(&a, &c->ctx);
+    (void)fz_number(in);
 }
 
 static void fz_options(const uint8_t *data, size_t size) {
@@ -1540,7 +1551,10 @@ static void fz_filters(const uint8_t *data, size_t size) {
     hd_heat_opts o;
     hd_heat *heat = NULL;
     hd_error e;
+    hd_rational sets[2];
     double own[5], top;
+    int32_t n_sets;
+    uint8_t way;
     int k;
     shape s = shape_icosphere(0);
     in.p = data;
@@ -1564,7 +1578,12 @@ static void fz_filters(const uint8_t *data, size_t size) {
             else FZ(k || memcmp(&set, &before, sizeof set) == 0);
             if (e.status < 0) continue;
             if (fz_byte(&in) > 240) set.theta[fz_below(&in, HD_MAX_POLES)].re = fz_number(&in);
-            if (fz_status(hd_heat_set_rational(heat, 1, fz_byte(&in) > 250 ? NULL : &set, &e), &e, &c) >= 0) {
+            way = fz_byte(&in);
+            n_sets = way > 250 ? 0 : way & 1 ? 1 : 2;
+            sets[0] = sets[1] = set;
+            if (way & 2) sets[1].a[0].re *= 0.5;
+            if (way > 220) sets[1].t *= 2;
+            if (fz_status(hd_heat_set_rational(heat, n_sets, n_sets ? sets : NULL, &e), &e, &c) >= 0) {
                 fz_query q;
                 fz_query_make(&q, &in, lap);
                 if (fz_byte(&in) < 240) q.t[0] = set.t, q.n_times = 1;
