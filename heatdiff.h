@@ -22465,6 +22465,10 @@ static void hdi_heat_take_set(hd_heat *heat, const hd_rational *set) {
         heat->own_set.kind = HD_POLES_OWN;
     }
     o->rational = set ? &heat->own_set : NULL;
+    o->poles = HD_POLES_DEFAULT;
+    o->degree = 0;
+    heat->poles_asked = set != NULL;
+    heat->habit_spent = 0;
 }
 
 /* ==== [27] kernel ====
