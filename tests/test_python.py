@@ -250,13 +250,11 @@ class Dense(unittest.TestCase):
         t = 20 * lap.h ** 2
         k2 = kernel(lap, 2 * t)
         d = np.sqrt(np.maximum(np.diag(k2)[:, None] - 2 * k2 + np.diag(k2), 0))
-        vertex, distance = hd.Heat(lap).sample(t, 6, [40])
-        self.assertEqual(vertex[0], 40)
-        for q in range(1, 6):
-            far = d[vertex[:q]].min(axis=0)
+        vertex, distance = hd.Heat(lap).sample(t, 5, [40])
+        for q in range(5):
+            far = d[[40, *vertex[:q]]].min(axis=0)
             self.assertAlmostEqual(far[vertex[q]], far.max(), delta=1e-6 * d.max())
             self.assertAlmostEqual(distance[q], far.max(), delta=1e-6 * d.max())
-
 
     def test_own_matrices(self):
         """Those of polygons and points, as they are; and a path with a B that is not diagonal."""
@@ -401,7 +399,7 @@ WRONG = {
         ("heat.entries(t, [0], [25])", "not in the mesh"), ("heat.entries([], 0, 1)", "at least one time"),
         ("heat.pairs(t, [0], [[1]])", "j has shape (1, 1)"), ("heat.pairs(t, [-1], [0])", "not in the mesh"),
         ("heat.pairs([], 0, 1, 'HD_DISTANCE_COMMUTE')", "at least one time"),
-        ("heat.sample(0.1, 3, [0, 1, 2, 3])", "count is 3, wanted is an integer from 4 to 25"),
+        ("heat.sample(0.1, 0, [0, 1, 2, 3])", "count is 0, wanted is an integer from 1 to 25"),
         ("heat.sample(0.1, 3, [2 ** 32])", "given is 4294967296"), ("heat.sample(0.1, 3, [25])", "not in the mesh"),
         ("heat.sample(0.1, 2 ** 32 + 3)", "count is 4294967299"), ("heat.sample(0.1, -1)", "count is -1"),
         ("heat.sample(t, 3)", "t has shape (2,), wanted is ()"),
@@ -426,7 +424,7 @@ WRONG = {
         ("hd.Geodesic(xyz, tri + 1)", "does not exist"), ("geo.distance([])", "no source"),
         ("geo.distance(25)", "not in the mesh"), ("geo.distance([[1]])", "sources has shape (1, 1)"),
         ("lap.times(0)", "n is 0, wanted is an integer from 1"), ("lap.times(2 ** 32 + 1)", "n is 4294967297"),
-        ("lap.spectral_times(-1)", "not positive"), ("lap.spectral_times([])", "no time"),
+        ("lap.spectral_times(-1)", "not positive"), ("lap.spectral_times([])", "at least one time"),
         ("lap.spectral_times([[1]])", "c has shape (1, 1)"),
         ("moving.update(xyz[:24])", "xyz has shape (24, 3), wanted is (25, 3)"), ("moving.update(xyz * np.nan)", "not finite"),
         ("lap.update(xyz)", "updatable"),
