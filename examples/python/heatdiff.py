@@ -386,6 +386,8 @@ class Laplacian(_Object):
     def spectral_times(self, c):
         """c divided by the first eigenvalue that does not belong to constants."""
         c, info, made = _doubles("c", c, (), ("n_times",)).reshape(-1), self.info, ctypes.c_void_p()
+        if not len(c):
+            raise ValueError("c has shape (0,), wanted is at least one time")
         if not (np.isfinite(c) & (c > 0)).all():
             raise ValueError("c is not positive and finite")
         options = S["hd_spectrum_opts"](count=min(info.n_components + 1, info.n_active))
