@@ -25622,20 +25622,21 @@ static double hdi_geo_residual(const hd_geodesic *g, int heat, const double *x, 
 typedef struct hdi_geo_far {
     hd_geodesic *g;              /* x and r are zero in rows that the last stage has not reached */
     double *y, *z;               /* [n_active] */
+    int32_t *open, n_open;       /* [n_super] fronts to go to on the way up, descending */
+    int32_t *live;               /* [n_super] fronts where it has been; g->active marks both */
     int32_t *front, n_fronts;    /* [n_super] fronts that it has reached, parents first */
-    uint64_t *up;                /* [n_super] fronts that the next one touches, which g->active marks */
-    int32_t n_up;
 } hdi_geo_far;
 
 static hd_status hdi_geo_far_begin(hdi_geo_far *w, hd_geodesic *g, hdi_scope *s) {
     w->g = g;
-    w->y = HDI_TAKE(s, double, g->n_active);
-    w->z = HDI_TAKE(s, double, g->n_active);
+    w->y = HDI_TAKE_ZERO(s, double, g->n_active);
+    w->z = HDI_TAKE_ZERO(s, double, g->n_active);
     w->front = HDI_TAKE(s, int32_t, g->sym.n_super);
-    w->up = HDI_TAKE(s, uint64_t, g->sym.n_super);
+    w->open = HDI_TAKE(s, int32_t, g->sym.n_super);
+    w->live = HDI_TAKE(s, int32_t, g->sym.n_super);
     if (s->e->status < 0) return s->e->status;
     for (w->n_fronts = 0; w->n_fronts < g->sym.n_super; w->n_fronts++) w->front[w->n_fronts] = w->n_fronts;
-    w->n_up = 0;
+    w->n_open = 0;
     memset(g->r, 0, (size_t)g->n_active * sizeof *g->r);
     memset(g->mark, 0, (size_t)g->n_active);
     memset(g->active, 0, (size_t)g->sym.n_super);
@@ -25666,12 +25667,20 @@ static void hdi_geo_tell(hdi_geo_far *w, double least) {
     }
 }
 
-/* g->x = f, where u was, and up the fronts that f touches. Returns 0 if there is no usable number along
+static void hdi_geo_open(hdi_geo_far *w, int32_t v) {
+    int32_t i = w->n_open;
+    if (w->g->active[v]) return;
+    w->g->active[v] = 1;
+    for (w->n_open++; i > 0 && w->open[i - 1] < v; i--) w->open[i] = w->open[i - 1];
+    w->open[i] = v;
+}
+
+/* g->x = f, where u was; opens the fronts where it is. Returns 0 if there is no usable number along
  * the border. */
 static int hdi_geo_border(hdi_geo_far *w, double least) {
     const hd_geodesic *g = w->g;
     double *x = g->x, most = 0;
-    int32_t k, i, v;
+    int32_t k, i;
     hdi_geo_tell(w, least);
     for (k = 0; k < w->n_fronts; k++) {
         const hdi_geo_range rows = hdi_geo_part(g->sym.super, w->front[k]);
@@ -25679,14 +25688,11 @@ static int hdi_geo_border(hdi_geo_far *w, double least) {
             x[i] = hdi_geo_is_held(g, i) ? 0 : g->mark[i] ? -w->z[i] : w->y[i];
             g->r[i] = 0;
             most = hdi_max(most, fabs(x[i]));
-            for (v = x[i] != 0 ? g->sym.super_of[i] : -1; v >= 0 && !g->active[v]; v = g->sym.parent[v]) {
-                g->active[v] = 1;
-                w->up[w->n_up++] = (uint64_t)v;
-            }
+            if (x[i] != 0) hdi_geo_open(w, g->sym.super_of[i]);
         }
     }
-    for (k = 0; k < w->n_up && most > DBL_MIN; k++)
-        for (i = g->sym.super[w->up[k]]; i < g->sym.super[w->up[k] + 1]; i++) x[i] /= most;
+    for (k = 0; k < w->n_open && most > DBL_MIN; k++)
+        for (i = g->sym.super[w->open[k]]; i < g->sym.super[w->open[k] + 1]; i++) x[i] /= most;
     return most > DBL_MIN;
 }
 
@@ -25698,28 +25704,48 @@ static int hdi_geo_warm(const hd_geodesic *g, int32_t v) {
     return 0;
 }
 
-/* g->x = A^-1 g->x: up from the fronts of the border, and down from the roots where heat comes. Returns the
- * largest |u| beyond. */
+/* From the open fronts upwards, as long as a front has something to hand on. Returns how many are live. */
+static int32_t hdi_geo_up(hdi_geo_far *w, const hdi_sweep *z) {
+    const hdi_symbolic *s = &w->g->sym;
+    int32_t n = 0;
+    while (w->n_open > 0) {
+        const int32_t v = w->open[--w->n_open];
+        const double *from = z->vec + s->vector[v];
+        const int64_t below = hdi_front_below(s, v);
+        int64_t i = 0;
+        hdi_sweep_front(z, v);
+        w->live[n++] = v;
+        while (i < below && !(fabs(from[i]) >= DBL_MIN)) i++;
+        if (i < below) hdi_geo_open(w, s->parent[v]);
+    }
+    return n;
+}
+
+/* g->x = A^-1 g->x: up, and down again from where that ends, the highest first, wherever heat comes. Returns
+ * the largest |u| beyond. */
 static double hdi_geo_stage(hdi_geo_far *w) {
     const hdi_symbolic *s = &w->g->sym;
+    char *active = w->g->active;
     hdi_sweep z = hdi_sweep_open(&w->g->heat, 1, w->g->x, w->g->work);
     double most = 0;
-    int32_t k, q, v, i;
-    z.active = w->g->active;
-    hdi_sort_keys(w->up, w->n_up);
-    for (k = 0; k < w->n_up; k++) hdi_sweep_front(&z, (int32_t)w->up[k]);
-    for (w->n_fronts = 0; k-- > 0;) w->front[w->n_fronts++] = (int32_t)w->up[k];
+    int32_t n_live, k = 0, q, v, i;
+    z.active = active;
+    n_live = hdi_geo_up(w, &z);
     z.backward = 1;
-    for (k = 0; k < w->n_fronts; k++) {
-        v = w->front[k];
-        hdi_sweep_front(&z, v);
-        for (i = s->super[v]; i < s->super[v + 1]; i++)
-            if (!w->g->mark[i]) most = hdi_max(most, fabs(w->g->x[i]));
-        for (q = s->kid_ptr[v]; q < s->kid_ptr[v + 1]; q++)
-            if (!w->g->active[s->kid[q]] && hdi_geo_warm(w->g, s->kid[q]))
-                w->front[w->n_fronts++] = s->kid[q];
+    for (w->n_fronts = 0; n_live > 0;) {
+        v = w->live[--n_live];
+        if (s->parent[v] >= 0 && active[s->parent[v]]) continue;     /* it came with its parent */
+        for (w->front[w->n_fronts++] = v; k < w->n_fronts; k++) {
+            v = w->front[k];
+            hdi_sweep_front(&z, v);
+            active[v] = 1;
+            for (i = s->super[v]; i < s->super[v + 1]; i++)
+                if (!w->g->mark[i]) most = hdi_max(most, fabs(w->g->x[i]));
+            for (q = s->kid_ptr[v]; q < s->kid_ptr[v + 1]; q++)
+                if (active[s->kid[q]] || hdi_geo_warm(w->g, s->kid[q])) w->front[w->n_fronts++] = s->kid[q];
+        }
     }
-    while (w->n_up > 0) w->g->active[w->up[--w->n_up]] = 0;
+    while (k > 0) active[w->front[--k]] = 0;
     return most;
 }
 
