@@ -497,8 +497,8 @@ def table_text(sets):
     for one in sets:
         if one.problem.name == 'diagonal' and GUARD[0] not in lines:   # the last sets, which smaller builds leave out
             lines.append(GUARD[0])
-        lines.append('    /* %s r = %d */' % (one.problem.name, one.degree))
-        lines += ['    ' + ', '.join('%.17g' % v for v in row) + ',' for row in set_rows(one)]
+        rows = ['    ' + ', '.join('%.17g' % v for v in row) + ',' for row in set_rows(one)]
+        lines += ['%s   /* %s r = %d */' % (rows[0], one.problem.name, one.degree)] + rows[1:]
     return '\n'.join(lines + ([GUARD[1]] if GUARD[0] in lines else []) + ['};', END])
 
 
