@@ -63,7 +63,7 @@ RANGE = {8: (1.8, 32), 12: (3.2, 560), 16: (10, 5600), 20: (32, 32000), 24: (180
 PRINTED = {8: (1.8, 3.2, 10, 32), 12: (3.2, 5.6, 18, 32, 100, 320, 560), 16: (18, 32, 100, 180, 560, 1800, 5600),
            20: (32, 100, 180, 1000, 1800, 5600, 18000, 32000), 24: (560, 1000, 3200, 10000, 32000)}
 LARGEST_ERROR = 1.2e-5                 # sets beyond are of no use
-DIGITS = 9                             # of the poles; the weights adapt to what is printed
+DIGITS = 9                             # of the poles, at most; the weights adapt to what is printed
 LAWSON_STEPS = 3                       # HDI_SHARED_LAWSON in heatdiff.h
 EPS = 2.0**-52
 BEGIN, END = '/* shared_poles.py: begin */', '/* shared_poles.py: end */'
@@ -362,17 +362,21 @@ def compute_pairs(pairs, lams, hops, say):
     return best
 
 
-def rounded(theta):
-    text = '%%.%dg' % DIGITS
+def rounded(theta, digits):
+    text = '%%.%dg' % digits
     return np.array([float(text % z.real) + 1j*float(text % z.imag) for z in theta])
 
 
 def finished(theta, lam):
-    """A set as it will be printed, measured at many times."""
-    theta = rounded(theta)
+    """A set as it will be printed, measured at many times: with as few digits as do not show in its error."""
     t = times_of(lam, 401)
-    error = measure(theta, t)[0]
-    return SharedSet(lam, len(theta), error + rounding(theta, t), theta)
+    least = measure(rounded(theta, DIGITS), t)[0]
+    for digits in range(4, DIGITS + 1):
+        short = rounded(theta, digits)
+        error = measure(short, t)[0]
+        if error <= 1.003*least:
+            break
+    return SharedSet(lam, len(theta), error + rounding(short, t), short)
 
 
 def worth_it(one):

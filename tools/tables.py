@@ -10,8 +10,8 @@ import subprocess
 import sys
 
 CHECKED = {     # sha256 of script and table
-    "poles.py": "7f49fe8cdc676bb52dbae32bb0a432be1aec899996702b2ded93805f593e5886",
-    "shared_poles.py": "f468919995d6e22d2f65ebd36d3f3ad66d5b6538f5500ab7af981192ea3a661f",
+    "poles.py": "2696b65c16d77367f88a173bb6c48bf52dfab9e1846a8f66d8184461588a3216",
+    "shared_poles.py": "4275da660aa0dbe65ff70402036d4fc721423fedac5c2da65ed54c4e566ffcdf",
 }
 TOOLS = os.path.dirname(os.path.abspath(__file__))
 
