@@ -20842,7 +20842,7 @@ static int hdi_krylov_few(const hdi_heat_call *h) {
     if (order.kind != HD_ORDERING_AUTO || hdi_order_kind(&order, L) != HD_ORDERING_NESTED_DISSECTION ||
         h->ask.k > HDI_FEW_COLUMNS || heat->ctx->byte_limit) return 0;
     return (double)h->ask.k * hdi_krylov_windows(h, hdi_heat_guess(heat)).n * (double)L->nnz <=
-           HDI_FEW_ENTRIES;
+           (double)HDI_FEW_ENTRIES;
 }
 
 static hdi_elim *hdi_krylov_elim(const hdi_heat_call *h) {
