@@ -8622,7 +8622,6 @@ enum {
     HDI_ND_LAYERS = 5,      /* of the band, on each side of a cut: 3 cost a tenth more flops, 8 gain little */
     HDI_ND_WORDS = 20,      /* work space: words for a vertex; 5/2 more for an entry */
     HDI_ND_LEVELS = 24,     /* most copies of a part, itself included */
-    HDI_ND_BUCKETS = 128,   /* gains that are told apart, for each side */
     HDI_ND_TASKS = 64,      /* parts that are ordered in parallel, */
     HDI_ND_NODES = 2 * HDI_ND_TASKS - 1,   /* with all that were halved to make them */
     HDI_ND_LARGE = 20000,   /* parts of more vertices are swept in 11 ways, */
@@ -8891,15 +8890,12 @@ static int hdi_nd_coarser(hdi_nd_graph *g, int32_t total, hdi_nd_space *s) {
 
 /* ---- cutting edges ---- */
 
-/* Moves vertices from side to side. Those that may move next are in a list for each side and gain. prev of
- * the first vertex of a list is -1 - its number; of a vertex in no list it is NONE, or LOCKED if it has
- * moved. */
+/* Moves vertices from side to side. Those that may move are in a list, the latest last: v stands at list[at[v]],
+ * and other entries are out of date. at[v] is NONE if it is not in the list, LOCKED if it has moved. */
 typedef struct hdi_nd_mover {
     const hdi_nd_graph *g;
-    int32_t head[2 * HDI_ND_BUCKETS], top[2];
-    int32_t *next, *prev;
+    int32_t *list, n_list, *at;
     int32_t *gain, *moved;    /* gain[v]: weight of the edges to the other side less of those to its own */
-    int32_t shift;            /* gains of 2^shift are told apart */
     double weight[2], cut, most;   /* of the sides, of the edges between them; most of a side */
 } hdi_nd_mover;
 
@@ -8908,9 +8904,9 @@ static hdi_nd_mover hdi_nd_mover_make(int32_t n, int32_t total, hdi_nd_space *s)
     hdi_nd_mover m;
     m.most = HDI_ND_HEAVIER * total;
     m.gain = hdi_nd_take(s, n);
-    m.next = hdi_nd_take(s, n);
-    m.prev = hdi_nd_take(s, n);
+    m.at = hdi_nd_take(s, n);
     m.moved = hdi_nd_take(s, n);
+    m.list = hdi_nd_take(s, 2 * (int64_t)n);     /* a move adds its neighbours to those that are there */
     return m;
 }
 
@@ -8927,32 +8923,16 @@ static double hdi_nd_mover_cost(const hdi_nd_mover *m) {
 }
 
 static void hdi_nd_mover_add(hdi_nd_mover *m, int32_t v) {
-    const int32_t half = HDI_ND_BUCKETS / 2, side = m->g->side[v], gain = m->gain[v];
-    const int32_t k = half + (gain < 0 ? -(-gain >> m->shift) : gain >> m->shift);
-    const int32_t at = hdi_high32(0, hdi_low32(k, HDI_ND_BUCKETS - 1)), b = side * HDI_ND_BUCKETS + at;
-    m->next[v] = m->head[b];
-    m->prev[v] = -1 - b;
-    if (m->head[b] >= 0) m->prev[m->head[b]] = v;
-    m->head[b] = v;
-    m->top[side] = hdi_high32(m->top[side], at);
+    m->at[v] = m->n_list;
+    m->list[m->n_list++] = v;
 }
 
-static void hdi_nd_mover_remove(hdi_nd_mover *m, int32_t v) {
-    const int32_t next = m->next[v], prev = m->prev[v];
-    if (prev == HDI_ND_NONE) return;
-    if (prev >= 0) m->next[prev] = next;
-    else m->head[-1 - prev] = next;
-    if (next >= 0) m->prev[next] = prev;
-}
-
-/* Computes the gains of all vertices and the cut's weights. Vertices on the cut enter the lists. */
+/* Computes the gains of all vertices and the cut's weights. Vertices on the cut enter the list. */
 static void hdi_nd_mover_start(hdi_nd_mover *m) {
     const hdi_nd_graph *g = m->g;
-    int32_t v, p, n = 0, largest = 1;
+    int32_t v, p;
     m->cut = m->weight[0] = m->weight[1] = 0;
-    m->top[0] = m->top[1] = -1;
-    m->shift = 0;
-    hdi_fill_i32(m->head, 2 * HDI_ND_BUCKETS, -1);
+    m->n_list = 0;
     for (v = 0; v < g->n; v++) {
         int32_t in = 0, out = 0;
         for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
@@ -8961,17 +8941,12 @@ static void hdi_nd_mover_start(hdi_nd_mover *m) {
             out += e & -(g->side[u] ^ g->side[v]);
             in += e;
         }
-        in -= out;
-        m->gain[v] = out - in;
-        m->prev[v] = HDI_ND_NONE;
+        m->gain[v] = 2 * out - in;
+        m->at[v] = HDI_ND_NONE;
         m->weight[g->side[v]] += hdi_nd_weight(g, v);
-        if (!out) continue;
-        m->moved[n++] = v;
         m->cut += 0.5 * out;
-        largest = hdi_high32(largest, hdi_high32(in, out));
+        if (out) hdi_nd_mover_add(m, v);
     }
-    while (largest >> m->shift >= HDI_ND_BUCKETS / 2) m->shift++;
-    for (v = 0; v < n; v++) hdi_nd_mover_add(m, m->moved[v]);
 }
 
 /* Moves v to the other side and updates the gains of its neighbours. */
@@ -8980,6 +8955,7 @@ static void hdi_nd_mover_move(hdi_nd_mover *m, int32_t v) {
     const int8_t to = (int8_t)(1 - g->side[v]);
     int32_t p;
     g->side[v] = to;
+    m->at[v] = HDI_ND_LOCKED;
     m->weight[to] += hdi_nd_weight(g, v);
     m->weight[1 - to] -= hdi_nd_weight(g, v);
     m->cut -= m->gain[v];
@@ -8988,30 +8964,32 @@ static void hdi_nd_mover_move(hdi_nd_mover *m, int32_t v) {
         const int32_t u = g->adj[p], e = hdi_nd_edge(g, p);
         if (u >= g->n) continue;
         m->gain[u] += g->side[u] == to ? -2 * e : 2 * e;
-        if (m->prev[u] == HDI_ND_LOCKED) continue;
-        hdi_nd_mover_remove(m, u);
-        hdi_nd_mover_add(m, u);
+        if (m->at[u] != HDI_ND_LOCKED) hdi_nd_mover_add(m, u);
     }
 }
 
 /* The vertex to move next is the one of largest gain, provided that the side it goes to stays below `most` or
- * below the side it leaves. Returns -1 if there is none. */
+ * below the side it leaves; of several the latest. Returns -1 if there is none. Takes out of the list what is
+ * out of date. */
 static int32_t hdi_nd_mover_next(hdi_nd_mover *m) {
-    int32_t s, best = -1;
-    for (s = 0; s < 2; s++) {
-        const int32_t *head = m->head + s * HDI_ND_BUCKETS;
-        int32_t v;
-        double after;
-        while (m->top[s] >= 0 && head[m->top[s]] < 0) m->top[s]--;
-        if (m->top[s] < 0) continue;
-        v = head[m->top[s]];
-        after = m->weight[1 - s] + hdi_nd_weight(m->g, v);
-        if (after > m->most && after >= m->weight[s]) continue;
-        if (best >= 0 && (m->gain[v] < m->gain[best] ||
-                          (m->gain[v] == m->gain[best] && m->weight[1] <= m->weight[0]))) continue;
-        best = v;
+    int32_t s, k, n = 0, found = -1, best[2] = {-1, -1};
+    for (k = 0; k < m->n_list; k++) {
+        const int32_t v = m->list[k];
+        if (m->at[v] != k) continue;
+        s = m->g->side[v];
+        m->list[n] = v;
+        m->at[v] = n++;
+        if (best[s] < 0 || m->gain[v] >= m->gain[best[s]]) best[s] = v;
     }
-    return best;
+    m->n_list = n;
+    for (s = 0; s < 2; s++) {
+        const int32_t v = best[s];
+        const double after = v < 0 ? 0 : m->weight[1 - s] + hdi_nd_weight(m->g, v);
+        if (v < 0 || (after > m->most && after >= m->weight[s])) continue;
+        if (found < 0 || m->gain[v] > m->gain[found] ||
+            (m->gain[v] == m->gain[found] && m->weight[1] > m->weight[0])) found = v;
+    }
+    return found;
 }
 
 /* Passes of Fiduccia and Mattheyses. A pass moves the best vertex again and again, even at a loss, but no
@@ -9026,15 +9004,13 @@ static void hdi_nd_refine(hdi_nd_mover *m, const hdi_nd_graph *g) {
         hdi_nd_mover_start(m);
         first = best = hdi_nd_mover_cost(m);
         while (n - keep < patience && (v = hdi_nd_mover_next(m)) >= 0) {
-            hdi_nd_mover_remove(m, v);
-            m->prev[v] = HDI_ND_LOCKED;
             hdi_nd_mover_move(m, v);
             m->moved[n++] = v;
             if (hdi_nd_mover_cost(m) >= best) continue;
             best = hdi_nd_mover_cost(m);
             keep = n;
         }
-        while (n > keep) hdi_nd_mover_move(m, m->moved[--n]);
+        for (m->n_list = 0; n > keep; m->n_list = 0) hdi_nd_mover_move(m, m->moved[--n]);
         if (HDI_AUDIT) hdi_nd_mover_start(m);    /* anew: this costs what the moves have led to */
         HEATDIFF_ASSERT(best >= DBL_MAX || fabs(hdi_nd_mover_cost(m) - best) <= 1e-9 * best);
         if (!(best < first)) break;
