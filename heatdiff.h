@@ -8618,7 +8618,7 @@ static hd_status hdi_amd_order(const hd_csr *a, int32_t *perm, hd_context *ctx, 
 enum {
     HDI_ND_LEAF = 1500,     /* vertices of a part that minimum degree orders: fewer cost time, not fill */
     HDI_ND_FRESH = 50,      /* clusters of a part that are too few to cut */
-    HDI_ND_COARSE = 100,    /* vertices of a coarsest copy, about */
+    HDI_ND_COARSE = 80,     /* vertices of a coarsest copy, about */
     HDI_ND_LAYERS = 5,      /* of the band, on each side of a cut: 3 cost a tenth more flops, 8 gain little */
     HDI_ND_WORDS = 20,      /* work space: words for a vertex; 5/2 more for an entry */
     HDI_ND_LEVELS = 24,     /* most copies of a part, itself included */
@@ -8704,9 +8704,12 @@ static void hdi_nd_frame(hdi_nd *nd, int32_t n) {
     double hi[3] = {-DBL_MAX, -DBL_MAX, -DBL_MAX};
     int32_t i, d;
     for (d = 0; d < 3; d++) nd->lo[d] = DBL_MAX;
-    for (i = 0; i < 3 * n; i++) {
-        nd->lo[i % 3] = hdi_min(nd->lo[i % 3], 0.5 * nd->xyz[i]);
-        hi[i % 3] = hdi_max(hi[i % 3], 0.5 * nd->xyz[i]);
+    for (i = 0; i < n; i++) {
+        for (d = 0; d < 3; d++) {
+            const double x = 0.5 * nd->xyz[3 * (size_t)i + (size_t)d];
+            nd->lo[d] = hdi_min(nd->lo[d], x);
+            hi[d] = hdi_max(hi[d], x);
+        }
     }
     for (nd->width = d = 0; d < 3; d++) nd->width = hdi_max(nd->width, hi[d] - nd->lo[d]);
     if (!(nd->width > 0)) nd->width = 1;
@@ -8734,8 +8737,8 @@ static int32_t hdi_nd_number(hdi_nd *nd, const hd_csr *a, int32_t *inv, uint64_t
     }
     hdi_sort_keys(key, n);
     for (i = 0; i < n; i++) {
-        nd->buffer[0][0].id[i] = (int32_t)(uint32_t)key[i];
-        inv[nd->buffer[0][0].id[i]] = i < m ? i : -1;
+        nd->buffer[0]->id[i] = (int32_t)(uint32_t)key[i];
+        inv[nd->buffer[0]->id[i]] = i < m ? i : -1;
     }
     return m;
 }
@@ -8972,14 +8975,16 @@ static void hdi_nd_mover_move(hdi_nd_mover *m, int32_t v) {
  * below the side it leaves; of several the latest. Returns -1 if there is none. Takes out of the list what is
  * out of date. */
 static int32_t hdi_nd_mover_next(hdi_nd_mover *m) {
-    int32_t s, k, n = 0, found = -1, best[2] = {-1, -1};
+    int32_t s, k, n = 0, found = -1, best[2] = {-1, -1}, most[2] = {INT32_MIN, INT32_MIN}, *list = m->list;
     for (k = 0; k < m->n_list; k++) {
-        const int32_t v = m->list[k];
+        const int32_t v = list[k];
         if (m->at[v] != k) continue;
         s = m->g->side[v];
-        m->list[n] = v;
+        list[n] = v;
         m->at[v] = n++;
-        if (best[s] < 0 || m->gain[v] >= m->gain[best[s]]) best[s] = v;
+        if (m->gain[v] < most[s]) continue;
+        most[s] = m->gain[v];
+        best[s] = v;
     }
     m->n_list = n;
     for (s = 0; s < 2; s++) {
@@ -9075,12 +9080,6 @@ static void hdi_nd_sweep(const hdi_nd_graph *g, const hdi_pair *key, double tota
     for (i = keep; i < g->n; i++) g->side[key[i].id] = 1;
 }
 
-/* A monotone map of doubles to integers. */
-static uint64_t hdi_nd_key(double x) {
-    const uint64_t u = hdi_bits(x);
-    return u >> 63 ? ~u : u | 0x8000000000000000u;
-}
-
 /* The values along which the vertices are swept, as keys to sort by. kind 0: places along a line between two
  * vertices far apart; 1: differences of graph distances from two such vertices; others: places along a fixed
  * direction. work [3 g->n] */
@@ -9102,9 +9101,9 @@ static void hdi_nd_sweep_keys(const hdi_nd *nd, const hdi_nd_graph *g, int32_t k
                               : hdi_nd_place(nd, g->id[b], d) - hdi_nd_place(nd, g->id[a], d);
     }
     for (v = 0; v < g->n; v++) {
-        double x = kind == 1 ? da[v] - db[v] : 0;
-        for (d = 0; d < 3; d++) x += way[d] * (double)(float)hdi_nd_place(nd, g->id[v], d);
-        key[v].key = hdi_nd_key(x);
+        double x = kind == 1 ? (da[v] - db[v]) / (double)g->n : 0;
+        for (d = 0; d < 3; d++) x += way[d] * hdi_nd_place(nd, g->id[v], d);
+        key[v].key = (uint64_t)((x + 4) * 1e12);     /* x is between -3 and 3 */
         key[v].id = v;
     }
 }
@@ -9288,15 +9287,15 @@ static void hdi_nd_flow_run(const hdi_nd_graph *g, int32_t *list, int32_t n, int
 static int32_t hdi_nd_cut(const hdi_nd *nd, hdi_nd_graph *g, int32_t l, int32_t *list, hdi_nd_mover *m,
                           hdi_nd_space s) {
     int32_t v, p, n = 0, kept = 0, touch[2] = {0, 0};
-    int32_t *near_cut = l > 0 ? m->gain : NULL;
+    int32_t *near_cut = m->gain;
     hdi_nd_first_cut(nd, g + l, g->n, m, s);
     while (l-- > 0) {
         for (v = 0; v < g[l].n; v++) g[l].side[v] = g[l + 1].side[g[l].map[v]];
         if (l > 0) hdi_nd_refine(m, g + l);
     }
-    for (v = 0; near_cut && v < g[1].n; v++) near_cut[v] = hdi_nd_meets(g + 1, v, 1 - g[1].side[v]);
+    for (v = 0; v < g[1].n; v++) near_cut[v] = hdi_nd_meets(g + 1, v, 1 - g[1].side[v]);
     for (v = 0; v < g->n; v++) {
-        if ((near_cut && !near_cut[g->map[v]]) || !hdi_nd_meets(g, v, 1 - g->side[v])) continue;
+        if (!near_cut[g->map[v]] || !hdi_nd_meets(g, v, 1 - g->side[v])) continue;
         touch[g->side[v]]++;
         list[n++] = v;
     }
@@ -9314,42 +9313,39 @@ static int hdi_nd_measure(const hdi_nd_graph *g, int32_t *size) {
     return size[0] <= g->n - g->n / 5 && size[1] <= g->n - g->n / 5 && size[2] <= g->n / 2;
 }
 
-/* Makes the clusters level[1] of the part level[0]: clusters of clusters, of about a dozen vertices each.
- * Returns 0 if there are none. */
+/* Makes the clusters level[1] of the part level[0]: clusters of clusters, of about a dozen vertices each, where
+ * too few are known. Returns 0 if there are none. */
 static int hdi_nd_clusters(hdi_nd_graph *level, hdi_nd_space *s) {
+    hdi_nd_graph *g = level, *c = level + 1;
     int32_t v;
-    if (!hdi_nd_coarser(level, level->n, s)) return 0;
-    if (level[1].n <= 2 * HDI_ND_COARSE || !hdi_nd_coarser(level + 1, level->n, s)) return 1;
-    for (v = 0; v < level->n; v++) level->map[v] = level[1].map[level->map[v]];
-    level[1] = level[2];
+    if (c->n < HDI_ND_FRESH) {
+        if (!hdi_nd_coarser(g, g->n, s)) return 0;
+        if (c->n <= 2 * HDI_ND_COARSE || !hdi_nd_coarser(c, g->n, s)) return 1;
+        for (v = 0; v < g->n; v++) g->map[v] = c->map[g->map[v]];
+        *c = level[2];
+        return 1;
+    }
+    c->side = hdi_nd_take_bytes(s, c->n);
+    c->w = hdi_nd_take(s, c->n);
+    hdi_fill_i32(c->w, c->n, 0);
+    for (v = 0; v < g->n; v++) c->w[g->map[v]]++;
     return 1;
 }
 
-/* Sets the sides of the part level[0] to 0, 1, or 2 in the separator, and size [3]. Its clusters level[1] are
- * made if there are too few. Returns 0 if no separator is good. */
+/* Sets the sides of the part level[0] to 0, 1, or 2 in the separator, and size [3]. Its clusters level[1] stay
+ * in s. Returns 0 if no separator is good. */
 static int hdi_nd_dissect(const hdi_nd *nd, hdi_nd_graph *level, int32_t halo, hdi_nd_space *s,
                           int32_t *size) {
     hdi_nd_graph *g = level;
+    int32_t *list = hdi_nd_take(s, 2 * (int64_t)g->n), n, l = 1;
     hdi_nd_space rest = *s;
     hdi_nd_mover m;
-    int32_t *list = hdi_nd_take(s, 2 * (int64_t)g->n), n, v, l = 1;
-    if (level[1].n < HDI_ND_FRESH) {
-        rest.at = s->at;
-        rest.end -= 10 * (int64_t)g->n + halo;   /* for paths, exchanges, and the numbers of the children */
-        l = hdi_nd_clusters(level, &rest);
-        s->at = l ? rest.at : s->at;
-        level[1].n = l ? level[1].n : 0;
-    } else {
-        level[1].side = hdi_nd_take_bytes(s, level[1].n);
-        level[1].w = hdi_nd_take(s, level[1].n);
-        hdi_fill_i32(level[1].w, level[1].n, 0);
-        for (v = 0; v < g->n; v++) level[1].w[g->map[v]]++;
-    }
-    rest = *s;
-    m = hdi_nd_mover_make(level[l].n, g->n, &rest);
-    while (l > 0 && l + 1 < HDI_ND_LEVELS && level[l].n > HDI_ND_COARSE &&
-           hdi_nd_coarser(level + l, g->n, &rest))
-        l++;
+    rest.end -= 10 * (int64_t)g->n + halo;       /* for paths, exchanges, and the numbers of the children */
+    if (!hdi_nd_clusters(level, &rest)) return 0;
+    s->at = rest.at;
+    rest.end = s->end;
+    m = hdi_nd_mover_make(level[1].n, g->n, &rest);
+    while (l + 1 < HDI_ND_LEVELS && level[l].n > HDI_ND_COARSE && hdi_nd_coarser(level + l, g->n, &rest)) l++;
     n = hdi_nd_cut(nd, level, l, list, &m, rest);
     hdi_nd_measure(g, size);
     hdi_nd_flow_run(g, list, n, size[1] > size[0], *s);
@@ -9371,56 +9367,49 @@ static void hdi_nd_graphs_of(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_g
     g[1].id += part->first;
 }
 
-/* Makes a child of the vertices of one side of g, in the child's slices. Neighbours that are not on this side
- * are numbered as its halo when they are first met. number: work space for the part's vertices and its
- * halo. */
-static void hdi_nd_extract(const hdi_nd_graph *g, int32_t halo, int8_t side, hdi_nd_part *child,
-                           const hdi_nd_graph *half, int32_t *number) {
-    int32_t v, p, i = 0, z = 0;
-    for (v = 0; v < g->n; v++) number[v] = g->side[v] == side ? child->n++ : -1;
-    hdi_fill_i32(number + g->n, halo, -1);
+/* Copies the vertices of g that have a number from 0 to n - 1 to `to`, with that number and their edges. Edges
+ * that lead to others are left out; or with a halo, the others are numbered from n on as they are met. Returns
+ * the number of entries, or -1 if there are more than `room`. */
+static int32_t hdi_nd_extract(const hdi_nd_graph *g, int32_t *number, int32_t n, int32_t *halo,
+                              const hdi_nd_graph *to, int32_t room) {
+    int32_t v, p, i = 0, z = 0, *adj = to->adj;
     for (v = 0; v < g->n; v++) {
-        if (g->side[v] != side) continue;
-        half->ptr[i] = z;
-        half->id[i++] = g->id[v];
+        if (number[v] != i || i == n) continue;
+        to->ptr[i] = z;
+        to->id[i++] = g->id[v];
+        if (g->ptr[v + 1] - g->ptr[v] > room - z) return -1;
         for (p = g->ptr[v]; p < g->ptr[v + 1]; p++) {
-            const int32_t u = g->adj[p];
-            if (number[u] < 0) number[u] = child->n + child->halo++;
-            half->adj[z++] = number[u];
+            int32_t u = number[g->adj[p]];
+            if (u < 0 && halo) number[g->adj[p]] = u = n + (*halo)++;
+            if (g->ew) to->ew[z] = g->ew[p];
+            adj[z] = u;
+            z += u >= 0;
         }
     }
-    half->ptr[i] = child->n_edges = z;
+    to->ptr[i] = z;
+    return z;
 }
 
-/* Copies the clusters c that have vertices on one side of g to the child's slices half, which have room for
- * space entries. Returns their number, or 0 if there is no room. number [2 c->n] */
-static int32_t hdi_nd_extract_clusters(const hdi_nd_graph *g, const hdi_nd_graph *c, int8_t side,
-                                       const hdi_nd_graph *half, int32_t space, int32_t *number) {
-    int32_t v, p, i = 0, n = 0, z = 0, *list = number + c->n;
-    hdi_fill_i32(number, c->n, -1);
-    for (v = 0; v < g->n; v++) {
-        const int32_t q = g->map[v];
-        if (g->side[v] != side) continue;
-        if (number[q] < 0) {
-            list[n] = q;
-            number[q] = n++;
-        }
-        half[0].map[i++] = number[q];
-    }
-    if (n >= i) return 0;
-    for (i = 0; i < n; i++) {
-        v = list[i];
-        half[1].ptr[i] = z;
-        half[1].id[i] = c->id[v];
-        if (c->ptr[v + 1] - c->ptr[v] > space - z) return 0;
-        for (p = c->ptr[v]; p < c->ptr[v + 1]; p++) {
-            half[1].adj[z] = number[c->adj[p]];
-            half[1].ew[z] = c->ew[p];
-            z += half[1].adj[z] >= 0;
-        }
-    }
-    half[1].ptr[n] = z;
-    return n;
+/* Makes a child of the vertices on one side of the part g[0], and of the clusters g[1] that have such vertices,
+ * in the child's slices. number: work space for the part's vertices and its halo. */
+static void hdi_nd_child(const hdi_nd *nd, const hdi_nd_part *part, const hdi_nd_graph *g, int8_t side,
+                         hdi_nd_part *child, int32_t *number) {
+    hdi_nd_graph half[2];
+    int32_t v, i = 0, n = 0;
+    hdi_nd_graphs_of(nd, child, half);
+    for (v = 0; v < g->n; v++) number[v] = g->side[v] == side ? child->n++ : -1;
+    hdi_fill_i32(number + g->n, part->halo, -1);
+    child->n_edges = hdi_nd_extract(g, number, child->n, &child->halo, half, part->n_edges);
+    if (child->n <= HDI_ND_LEAF) return;
+    hdi_fill_i32(number, g[1].n, -1);
+    for (v = 0; v < g->n; v++)
+        if (g->side[v] == side) number[g->map[v]] = 0;
+    for (v = 0; v < g[1].n; v++)
+        if (number[v] == 0) number[v] = n++;
+    for (v = 0; v < g->n; v++)
+        if (g->side[v] == side) half->map[i++] = number[g->map[v]];
+    if (n < child->n && hdi_nd_extract(g + 1, number, n, NULL, half + 1, child->n_edges / 4 - 1) >= 0)
+        child->clusters = n;
 }
 
 /* Orders a part by minimum degree. The separators around it count as its halo if there is space for it. */
@@ -9444,7 +9433,7 @@ static size_t hdi_nd_words(int32_t n, int32_t n_edges) {
 static void hdi_nd_split(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_part *child, hdi_nd_space s) {
     const int small = part->n <= HDI_ND_LEAF || part->n_edges == 0;
     hdi_nd_space rest = s;
-    hdi_nd_graph level[HDI_ND_LEVELS], half[2];
+    hdi_nd_graph level[HDI_ND_LEVELS];
     int32_t v, size[3], last, *number;
     memset(child, 0, 2 * sizeof *child);
     memset(level, 0, sizeof level);
@@ -9460,16 +9449,12 @@ static void hdi_nd_split(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_part 
     last = part->first + part->n - size[2];
     for (v = 0; v < part->n; v++)
         if (level->side[v] == 2) nd->perm[last++] = level->id[v];
-    number = hdi_nd_take(&rest, 2 * (int64_t)part->n + part->halo);
+    number = hdi_nd_take(&rest, (int64_t)part->n + part->halo);
     for (v = 0; v < 2; v++) {
         child[v].first = part->first + child[0].n;
         child[v].edge = part->edge + child[0].n_edges;
         child[v].buffer = 1 - part->buffer;
-        hdi_nd_graphs_of(nd, child + v, half);
-        hdi_nd_extract(level, part->halo, (int8_t)v, child + v, half, number);
-        if (child[v].n > HDI_ND_LEAF && level[1].n > 0)
-            child[v].clusters = hdi_nd_extract_clusters(level, level + 1, (int8_t)v, half,
-                                                        child[v].n_edges / 4 - 1, number);
+        hdi_nd_child(nd, part, level, (int8_t)v, child + v, number);
     }
 }
 
@@ -9506,7 +9491,7 @@ static hd_status hdi_nd_order(const hd_csr *a, const double *xyz, int32_t *perm,
                               hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
     const uint64_t n = (uint64_t)a->n_rows, nnz = (uint64_t)a->nnz;
-    int32_t k, q, *inv = HDI_TAKE(&s, int32_t, n + 1);
+    int32_t k, *inv = HDI_TAKE(&s, int32_t, n + 1);
     uint64_t *work;
     hdi_nd nd;
     if (a->nnz > INT32_MAX / 2 || n > INT32_MAX / 4)
@@ -9518,18 +9503,18 @@ static hd_status hdi_nd_order(const hd_csr *a, const double *xyz, int32_t *perm,
     nd.work = (int32_t *)(void *)work;
     for (k = 0; k < 2; k++) {
         hdi_nd_graph *g = nd.buffer[k];
-        for (q = 0; q < 2; q++) {
-            const uint64_t room = q ? nnz / 4 + 1 : nnz;
-            g[q].ptr = HDI_TAKE(&s, int32_t, q ? n : 2 * n + 1);
-            g[q].id = HDI_TAKE(&s, int32_t, n);
-            g[q].adj = HDI_TAKE(&s, int32_t, room);
-            if (q) g[q].ew = HDI_TAKE(&s, int32_t, room);
-            else g[q].map = HDI_TAKE(&s, int32_t, n);
-        }
+        g[0].ptr = HDI_TAKE(&s, int32_t, 2 * n + 1);
+        g[0].id = HDI_TAKE(&s, int32_t, n);
+        g[0].map = HDI_TAKE(&s, int32_t, n);
+        g[0].adj = HDI_TAKE(&s, int32_t, nnz);
+        g[1].ptr = HDI_TAKE(&s, int32_t, n);
+        g[1].id = HDI_TAKE(&s, int32_t, n);
+        g[1].adj = HDI_TAKE(&s, int32_t, nnz / 4 + 1);
+        g[1].ew = HDI_TAKE(&s, int32_t, nnz / 4 + 1);
     }
     if (e->status < 0) return hdi_scope_end(&s);
     nd.part[0] = hdi_nd_load(&nd, a, inv, hdi_nd_number(&nd, a, inv, work));
-    memcpy(perm, nd.buffer[0][0].id, (size_t)n * sizeof *perm);   /* rows with too many entries stay last */
+    memcpy(perm, nd.buffer[0]->id, (size_t)n * sizeof *perm);   /* rows with too many entries stay last */
     hdi_walk_open(&nd.walk, ctx, HDI_ND_NODES, nd.order, hdi_nd_task, &nd);
     nd.walk.stage = "order";
     nd.walk.from = 0.1;
