@@ -10338,13 +10338,15 @@ typedef struct hdi_pass {
     hdi_walk walk;
     const hdi_symbolic *sym;
     void *arg;
-    void (*subtree)(void *arg, int32_t i);
-    void (*front)(void *arg, int32_t v);     /* does front v of the top, or begins it: threads share it */
+    /* Front v by one thread, in the room of a subtree, or of the top after them all. 0: it failed. */
+    int (*alone)(void *arg, int32_t v, int32_t room);
+    int (*begin)(void *arg, int32_t v);      /* begins front v of the top. 0: threads do not share it */
     /* The next stage of what was begun: its parts, of which *ready wait for none. 0: it is done. */
     int32_t (*stage)(void *arg, int32_t *ready);
     void (*part)(void *arg, int32_t i);
     int32_t down, step, left;    /* the subtrees or fronts of the top that come next; nodes under way that
                                     are not done */
+    int32_t until;               /* a subtree that failed: those before it go on, and may fail earlier */
 } hdi_pass;
 
 /* What is under way is done: what comes next. */
@@ -10361,14 +10363,30 @@ static void hdi_pass_next(hdi_pass *p) {
     if (p->left > 0) hdi_release(&p->walk, first, ready);
 }
 
+/* Downwards the last subtree comes first. */
+static void hdi_pass_subtree(hdi_pass *p, int32_t i) {
+    const hdi_symbolic *s = p->sym;
+    const int32_t task = p->down ? s->n_tasks - 1 - i : i, begin = s->task_begin[task], end = s->task_end[task];
+    int32_t k;
+    for (k = 0; k < end - begin; k++) {
+        if (hdi_walk_stopped(&p->walk) && task >= HDI_LOAD(&p->until)) return;
+        if (p->alone(p->arg, p->down ? end - 1 - k : begin + k, task)) continue;
+        /* should two threads come at once, and the larger number stay, then more is done than need be */
+        if (HDI_LOAD(&p->until) == 0 || task < HDI_LOAD(&p->until)) HDI_STORE(&p->until, task);
+        hdi_walk_stop(&p->walk);
+        return;
+    }
+}
+
 static void hdi_pass_node(void *arg, int64_t index, int32_t worker) {
     hdi_pass *p = (hdi_pass *)arg;
     const hdi_symbolic *s = p->sym;
     const int32_t i = (int32_t)index - s->n_tasks;
     (void)worker;
-    if (i < 0) p->subtree(p->arg, (int32_t)index);
-    else if (i < s->n_top) p->front(p->arg, s->top[i]);
-    else p->part(p->arg, i - s->n_top);
+    if (i < 0) hdi_pass_subtree(p, (int32_t)index);
+    else if (i >= s->n_top) p->part(p->arg, i - s->n_top);
+    else if ((hdi_walk_alone(&p->walk) || !p->begin(p->arg, s->top[i])) &&
+             !p->alone(p->arg, s->top[i], s->n_tasks)) hdi_walk_stop(&p->walk);
     if (HDI_ATOMIC_ADD(&p->left, -1) == 0) hdi_pass_next(p);
 }
 
@@ -10390,10 +10408,11 @@ typedef struct hdi_front {
     const hdi_factor *f;
     int32_t v;                       /* supernode */
     double *panel, *update, *dinv;   /* dinv: of the first pivot */
-    double *S;                       /* slices of D L' of the block of pivots */
+    double *S;                       /* slices of D L' of the block of pivots; in an inversion, see [18], */
+    double *z, *T, *M, *D, *buffer;  /* also these */
     double *work;                    /* of a stage */
-    int64_t m, p, u, k0;
-    int32_t nb;                      /* block of pivots [k0,k0+nb) under way */
+    int64_t m, p, u, k0, k1;         /* block of pivots [k0,k1) under way, or */
+    int32_t nb;                      /* [k0,k0+nb) */
 } hdi_front;
 
 /* How much of a front is taken at a time: pivots, columns of L, columns of U. */
@@ -10842,7 +10861,6 @@ typedef struct hdi_factor_pass {
     int32_t stage;               /* of it: hdi_front_stage, or before the first one */
     int32_t nb, n_blocks, n_chunks;
     int32_t *missing, *come;     /* [n_blocks] what P(k) waits for; [n_chunks] what has come to C(c,k) */
-    int32_t until;               /* a subtree that failed: those before it go on, and may fail earlier */
 } hdi_factor_pass;
 
 /* The shape of front v in blocks and chunks. */
@@ -10888,35 +10906,29 @@ static int64_t hdi_factor_nodes(hdi_factor *f) {
     return n;
 }
 
-/* The sizes of a factor of the given width that has no room yet. */
-static hdi_factor hdi_factor_of(const hdi_symbolic *sym, int32_t width) {
-    hdi_factor f;
-    memset(&f, 0, sizeof f);
-    f.sym = sym;
-    f.width = width;
-    f.scratch_size = hdi_front_scratch(sym->task_pivots, sym->task_update, width);
-    f.top_size = hdi_front_scratch(sym->largest_pivots, sym->largest_update, width);
-    f.chunk_size = hdi_front_chunk_scratch(sym->largest_pivots, sym->largest_update, width);
-    return f;
-}
-
-/* The numbers of a factor. */
-static void hdi_factor_take_numbers(hdi_factor *f, hdi_scope *s) {
-    const uint64_t w = (uint64_t)f->width;
-    f->panel = HDI_TAKE(s, double, ((uint64_t)f->sym->panel[f->sym->n_super] + HDI_TILE_COLS) * w);
-    f->dinv = HDI_TAKE(s, double, (uint64_t)f->sym->n * w);
-    /* kernels read a few entries more than they use */
-    if (f->panel) hdi_clear(f->panel + f->width * f->sym->panel[f->sym->n_super], f->width * HDI_TILE_COLS);
-}
-
-/* A factor of the given width with the arrays that factoring and refactoring need. */
-static void hdi_factor_take(hdi_factor *f, const hdi_symbolic *sym, int32_t width, hdi_scope *s) {
+/* A factor of the given width with the arrays that factoring and refactoring need. With a host it is another one
+ * like that, with its own numbers but the host's room to work in: neither is factorised or inverted while the
+ * other one is, and the host lives longer. */
+static void hdi_factor_take(hdi_factor *f, const hdi_factor *host, const hdi_symbolic *sym, int32_t width,
+                            hdi_scope *s) {
     const uint64_t n_chunks = (uint64_t)(sym->n_top ? sym->largest_front / HDI_FRONT_CHUNK + 1 : 0);
-    const uint64_t n_parts = (uint64_t)(sym->n_tasks > 0 ? sym->n_tasks : 1);
+    const uint64_t n_parts = (uint64_t)(sym->n_tasks > 0 ? sym->n_tasks : 1), w = (uint64_t)width;
     const uint64_t tops = sym->n_top > 0 ? n_chunks > 0 ? 2 : 1 : 0;
-    *f = hdi_factor_of(sym, width);
-    hdi_factor_take_numbers(f, s);
-    f->work = HDI_TAKE(s, double, (uint64_t)sym->work * (uint64_t)width);
+    const int64_t entries = sym->panel[sym->n_super];
+    if (host) *f = *host;
+    else memset(f, 0, sizeof *f);
+    f->ready = 0;
+    f->panel = HDI_TAKE(s, double, ((uint64_t)entries + HDI_TILE_COLS) * w);
+    f->dinv = HDI_TAKE(s, double, (uint64_t)sym->n * w);
+    /* kernels read a few entries more than they use */
+    if (f->panel) hdi_clear(f->panel + width * entries, width * HDI_TILE_COLS);
+    if (host) return;
+    f->sym = sym;
+    f->width = width;
+    f->scratch_size = hdi_front_scratch(sym->task_pivots, sym->task_update, width);
+    f->top_size = hdi_front_scratch(sym->largest_pivots, sym->largest_update, width);
+    f->chunk_size = hdi_front_chunk_scratch(sym->largest_pivots, sym->largest_update, width);
+    f->work = HDI_TAKE(s, double, (uint64_t)sym->work * w);
     f->scratch = HDI_TAKE(s, double, f->scratch_size * n_parts + tops * f->top_size);
     f->chunk_scratch = HDI_TAKE(s, double, f->chunk_size * n_chunks + 1);
     f->counts = HDI_TAKE(s, int32_t, sym->largest_pivots / hdi_front_pivot_block(width) + (int64_t)n_chunks +
@@ -10930,18 +10942,11 @@ static void hdi_factor_take(hdi_factor *f, const hdi_symbolic *sym, int32_t widt
     f->ctx = s->ctx;
 }
 
-/* Room for a factor. With a host f becomes another one like it, with its own numbers but the host's room to
- * work in: neither is factorised or inverted while the other one is, and the host lives longer. */
+/* The same, to keep. */
 static hd_status hdi_factor_room(hdi_factor *f, const hdi_factor *host, const hdi_symbolic *sym,
                                  int32_t width, hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
-    if (host) {
-        *f = *host;
-        f->ready = 0;
-        hdi_factor_take_numbers(f, &s);
-    } else {
-        hdi_factor_take(f, sym, width, &s);
-    }
+    hdi_factor_take(f, host, sym, width, &s);
     f->n_blocks = s.n;
     memcpy(f->block, s.block, sizeof f->block);
     if (e->status < 0) hdi_factor_free(f);
@@ -10959,23 +10964,19 @@ static hd_status hdi_factor_make_pack(hdi_factor *pack, int32_t i, const hdi_sym
     return hdi_factor_room(pack + i, i > 0 ? pack : NULL, sym, HDI_PACK, ctx, e);
 }
 
-/* The bytes of a factor, or of a guest. */
+/* The bytes of a factor, or of a guest of another one. */
 static uint64_t hdi_factor_tally(const hdi_symbolic *sym, int32_t width, int guest) {
     hd_error none;
     uint64_t bytes;
     hdi_scope s = hdi_scope_tally(&bytes, &none);
-    hdi_factor f = hdi_factor_of(sym, width);
-    if (guest) hdi_factor_take_numbers(&f, &s);
-    else hdi_factor_take(&f, sym, width, &s);
+    hdi_factor host, f;
+    memset(&host, 0, sizeof host);
+    hdi_factor_take(&f, guest ? &host : NULL, sym, width, &s);
     return bytes;
 }
 
 static uint64_t hdi_factor_bytes(const hdi_symbolic *sym, int32_t width) {
     return hdi_factor_tally(sym, width, 0);
-}
-
-static uint64_t hdi_factor_guest_bytes(const hdi_symbolic *sym, int32_t width) {
-    return hdi_factor_tally(sym, width, 1);
 }
 
 /* Collects what the parts saw. Of several failures that of the lowest pivot is reported: no thread stops a
@@ -11000,18 +11001,17 @@ static hd_status hdi_factor_collect(hdi_factor *f, int32_t n_parts, hd_error *e)
     return e->status;
 }
 
-/* Front v of the top. */
-static void hdi_factor_top(void *arg, int32_t v) {
+static int hdi_factor_alone(void *arg, int32_t v, int32_t room) {
+    const hdi_factor *f = ((const hdi_factor_pass *)arg)->f;
+    return hdi_front_factor(f, v, hdi_factor_scratch(f, room), f->pivots + room);
+}
+
+static int hdi_factor_begin(void *arg, int32_t v) {
     hdi_factor_pass *t = (hdi_factor_pass *)arg;
     hdi_factor *f = t->f;
-    const hdi_symbolic *s = f->sym;
-    double *scratch = hdi_factor_scratch(f, s->n_tasks);
     int32_t k;
-    if (hdi_walk_alone(&t->pass.walk) || !hdi_front_shared(s, v)) {
-        if (!hdi_front_factor(f, v, scratch, f->pivots + s->n_tasks)) hdi_walk_stop(&t->pass.walk);
-        return;
-    }
-    t->w = hdi_front_open(f, v, scratch);
+    if (!hdi_front_shared(f->sym, v)) return 0;
+    t->w = hdi_front_open(f, v, hdi_factor_scratch(f, f->sym->n_tasks));
     hdi_factor_shape(t, v);
     t->stage = -1;
     t->S[0] = t->w.S;
@@ -11025,6 +11025,7 @@ static void hdi_factor_top(void *arg, int32_t v) {
         if (k > 1) t->missing[k] += t->n_chunks - hdi_factor_first(t, k - 2);
     }
     memset(t->come, 0, (size_t)t->n_chunks * sizeof *t->come);
+    return 1;
 }
 
 static int32_t hdi_factor_next(void *arg, int32_t *ready) {
@@ -11066,20 +11067,6 @@ static void hdi_factor_panel(hdi_factor_pass *t, int32_t k, int32_t c) {
     for (c = hdi_factor_first(t, k); c < t->n_chunks; c++) hdi_factor_come(t, c);
 }
 
-static void hdi_factor_subtree(void *arg, int32_t i) {
-    hdi_factor_pass *t = (hdi_factor_pass *)arg;
-    hdi_factor *f = t->f;
-    int32_t v;
-    for (v = f->sym->task_begin[i]; v < f->sym->task_end[i]; v++) {
-        if (hdi_walk_stopped(&t->pass.walk) && i >= HDI_LOAD(&t->until)) return;
-        if (hdi_front_factor(f, v, hdi_factor_scratch(f, i), f->pivots + i)) continue;
-        /* should two threads come at once, and the larger number stay, then more is done than need be */
-        if (HDI_LOAD(&t->until) == 0 || i < HDI_LOAD(&t->until)) HDI_STORE(&t->until, i);
-        hdi_walk_stop(&t->pass.walk);
-        return;
-    }
-}
-
 static void hdi_factor_part(void *arg, int32_t i) {
     hdi_factor_pass *t = (hdi_factor_pass *)arg;
     if (t->stage == HDI_FRONT_COLUMNS) {
@@ -11101,8 +11088,8 @@ static hd_status hdi_factor_run(hdi_factor *f, const hdi_values *values, hd_erro
     t.f = f;
     t.pass.sym = f->sym;
     t.pass.arg = &t;
-    t.pass.subtree = hdi_factor_subtree;
-    t.pass.front = hdi_factor_top;
+    t.pass.alone = hdi_factor_alone;
+    t.pass.begin = hdi_factor_begin;
     t.pass.stage = hdi_factor_next;
     t.pass.part = hdi_factor_part;
     t.stage = HDI_FRONT_UPDATE;                  /* nothing is begun */
@@ -11704,15 +11691,6 @@ typedef struct hdi_inverse {
     uint64_t scratch_size, top_size, chunk_size;
 } hdi_inverse;
 
-/* The parts of one front; a block of pivots [k0,k1) under way. */
-typedef struct hdi_inverse_front {
-    hdi_factor *f;
-    double *panel, *z, *update;  /* L; Z of the pivots' columns in the same layout; Z22, a packed triangle */
-    double *T, *S, *M, *D, *buffer;   /* T: -L11^-T; S, M: slices, of T' and of M; D: -1/d */
-    int64_t m, p, u, k0, k1;
-    int32_t v;
-} hdi_inverse_front;
-
 /* How much is taken at a time: rows that are gathered, and their entries. */
 static int64_t hdi_inverse_height(int32_t width) {
     return width == 1 ? (int)HDI_TILE_ROWS : (int)HDI_INV_ROWS;
@@ -11730,32 +11708,13 @@ static uint64_t hdi_inverse_scratch(int64_t m, int64_t p, int64_t stored, int32_
     return (uint64_t)(width * (stored + n * n + n * wide + m * wide + n)) + hdi_inverse_buffer(width) + 64;
 }
 
-static hdi_inverse_front hdi_inverse_open(hdi_factor *f, int32_t v, double *scratch) {
-    const hdi_symbolic *s = f->sym;
-    hdi_inverse_front w;
-    int64_t n;
-    memset(&w, 0, sizeof w);
-    w.f = f;
-    w.v = v;
-    hdi_front_shape(s, v, &w.p, &w.u, &w.m);
-    w.panel = f->panel + f->width * s->panel[v];
-    w.update = f->work + f->width * s->update[v];
-    n = hdi_least(w.p, HDI_PANEL);
-    w.z = scratch;
-    w.T = w.z + f->width * (s->panel[v + 1] - s->panel[v]);
-    w.S = w.T + f->width * n * n;
-    w.M = w.S + f->width * n * (n + HDI_TILE_COLS);
-    w.D = w.M + f->width * w.m * (n + HDI_TILE_COLS);
-    w.buffer = w.D + f->width * n;
-    return w;
-}
-
-static hdi_block hdi_inverse_block(const hdi_inverse_front *w, double *panel) {
+/* The block of pivots under way, of L or of Z. */
+static hdi_block hdi_inverse_block(const hdi_front *w, double *panel) {
     return hdi_block_of(panel, w->f->width, w->m, w->p, w->k0 / HDI_PANEL);
 }
 
 /* Entry (j,j) of Z; those below it in its column follow. */
-static const double *hdi_inverse_column(const hdi_inverse_front *w, int64_t j) {
+static const double *hdi_inverse_column(const hdi_front *w, int64_t j) {
     hdi_block b;
     if (j >= w->p) return w->update + w->f->width * hdi_triangle_column(w->u, j - w->p);
     b = hdi_block_of(w->z, w->f->width, w->m, w->p, j / HDI_PANEL);
@@ -11763,7 +11722,7 @@ static const double *hdi_inverse_column(const hdi_inverse_front *w, int64_t j) {
 }
 
 /* Entry (i,j) of Z, j <= i. */
-static const double *hdi_inverse_at(const hdi_inverse_front *w, int64_t i, int64_t j) {
+static const double *hdi_inverse_at(const hdi_front *w, int64_t i, int64_t j) {
     return hdi_inverse_column(w, j) + w->f->width * (i - j);
 }
 
@@ -11777,7 +11736,7 @@ static void hdi_entries_copy(int32_t width, double *to, int64_t to_step, const d
 }
 
 /* Rows [i0,i1), columns [j0,j1) of the symmetric Z, by columns of ld. */
-static void hdi_inverse_gather(const hdi_inverse_front *w, int64_t i0, int64_t i1, int64_t j0, int64_t j1,
+static void hdi_inverse_gather(const hdi_front *w, int64_t i0, int64_t i1, int64_t j0, int64_t j1,
                                int64_t ld, double *to) {
     const int32_t width = w->f->width;
     int64_t i, j;
@@ -11795,7 +11754,7 @@ static void hdi_inverse_gather(const hdi_inverse_front *w, int64_t i0, int64_t i
 }
 
 /* A product of which B stands in slices. */
-static hdi_product hdi_inverse_product(const hdi_inverse_front *w, const double *slices, int64_t b_next,
+static hdi_product hdi_inverse_product(const hdi_front *w, const double *slices, int64_t b_next,
                                        int64_t depth) {
     const hdi_kernels *o = w->f->ops;
     hdi_product g;
@@ -11810,7 +11769,7 @@ static hdi_product hdi_inverse_product(const hdi_inverse_front *w, const double 
 }
 
 /* T = -L11^-T, from T L11' = -I, and Z11 = T D^-1 T' of the block; S: slices of T'. */
-static void hdi_inverse_pivots(const hdi_inverse_front *w) {
+static void hdi_inverse_pivots(const hdi_front *w) {
     const hdi_kernels *o = w->f->ops;
     const hdi_block l = hdi_inverse_block(w, w->panel), z = hdi_inverse_block(w, w->z);
     const int64_t n = w->k1 - w->k0, width = w->f->width;
@@ -11847,7 +11806,7 @@ static void hdi_inverse_pivots(const hdi_inverse_front *w) {
 }
 
 /* Rows [r0,r1) of M = L21 L11^-1 = -L21 T', rows counted in the front, into slices. */
-static void hdi_inverse_m(const hdi_inverse_front *w, int64_t r0, int64_t r1, double *buffer) {
+static void hdi_inverse_m(const hdi_front *w, int64_t r0, int64_t r1, double *buffer) {
     const hdi_kernels *o = w->f->ops;
     const hdi_block l = hdi_inverse_block(w, w->panel);
     const int64_t n = w->k1 - w->k0, width = w->f->width, u = w->m - w->k1;
@@ -11870,7 +11829,7 @@ static void hdi_inverse_m(const hdi_inverse_front *w, int64_t r0, int64_t r1, do
 }
 
 /* Rows [r0,r1) of Z21 = -Z22 M. */
-static void hdi_inverse_below(const hdi_inverse_front *w, int64_t r0, int64_t r1, double *buffer) {
+static void hdi_inverse_below(const hdi_front *w, int64_t r0, int64_t r1, double *buffer) {
     const hdi_kernels *o = w->f->ops;
     const hdi_block z = hdi_inverse_block(w, w->z);
     const int64_t rows = hdi_inverse_height(w->f->width), depth = hdi_inverse_depth(w->f->width);
@@ -11893,7 +11852,7 @@ static void hdi_inverse_below(const hdi_inverse_front *w, int64_t r0, int64_t r1
 }
 
 /* Rows [r0,r1) of Z11 -= Z21' M, counted from the block's first pivot. */
-static void hdi_inverse_corner(const hdi_inverse_front *w, int64_t r0, int64_t r1, double *buffer) {
+static void hdi_inverse_corner(const hdi_front *w, int64_t r0, int64_t r1, double *buffer) {
     const hdi_kernels *o = w->f->ops;
     const hdi_block z = hdi_inverse_block(w, w->z);
     const int64_t rows = hdi_inverse_height(w->f->width), depth = hdi_inverse_depth(w->f->width);
@@ -11920,7 +11879,7 @@ static void hdi_inverse_corner(const hdi_inverse_front *w, int64_t r0, int64_t r
 }
 
 /* Columns [r0,r1) of child c's Z22, out of the finished front. */
-static void hdi_inverse_child(const hdi_inverse_front *w, int32_t c, int64_t r0, int64_t r1) {
+static void hdi_inverse_child(const hdi_front *w, int32_t c, int64_t r0, int64_t r1) {
     const hdi_symbolic *s = w->f->sym;
     const int32_t *rel = s->rel + s->row_ptr[c], width = w->f->width;
     const int64_t u = hdi_front_below(s, c);
@@ -12009,14 +11968,14 @@ static int64_t hdi_form_touch(const hdi_forms *q, const hdi_symbolic *s, int32_t
 
 /* A block of columns of front J under way: the rows of its seats, and r, a row for each row of J. */
 typedef struct hdi_form_block {
-    const hdi_inverse_front *w;  /* J */
+    const hdi_front *w;  /* J */
     const hdi_form_seat *seat;
     double *room, *r;
     int32_t cols;                /* of r */
 } hdi_form_block;
 
 /* Where pivot i of the matrix stands in the front. */
-static int64_t hdi_form_place(const hdi_inverse_front *w, int32_t i) {
+static int64_t hdi_form_place(const hdi_front *w, int32_t i) {
     const hdi_symbolic *s = w->f->sym;
     if (i < s->super[w->v + 1]) return i - s->super[w->v];
     return w->p + hdi_lower_bound(s->row + s->row_ptr[w->v], w->u, i);
@@ -12049,7 +12008,7 @@ static void hdi_form_add(int32_t width, int32_t k, const double *a, const double
 
 /* sum += y_k^2/d_k for the pivots of front v below J, and what is left goes to the rows after. t: work */
 static void hdi_form_front(const hdi_form_block *b, int32_t v, double *t, double *sum) {
-    hdi_factor *f = b->w->f;
+    const hdi_factor *f = b->w->f;
     const hdi_symbolic *s = f->sym;
     const int64_t first = s->super[v], p = hdi_front_pivots(s, v), u = hdi_front_below(s, v);
     const int32_t lo = b->seat[v].lo, k = b->seat[v].hi - lo, row = f->width * k;
@@ -12070,7 +12029,7 @@ static void hdi_form_front(const hdi_form_block *b, int32_t v, double *t, double
  * column's row of r, z0 x x + 2 (z' r) x. */
 static void hdi_form_square(const hdi_form_block *b, double *sum) {
     static const double hdi_minus_two[HDI_PACK] = {-2, -2, -2, -2, 0, 0, 0, 0};
-    const hdi_inverse_front *w = b->w;
+    const hdi_front *w = b->w;
     const int32_t width = w->f->width, row = width * b->cols;
     double t[(int)HDI_FORM_COLS * (int)HDI_PACK];
     int64_t j;
@@ -12084,7 +12043,7 @@ static void hdi_form_square(const hdi_form_block *b, double *sum) {
 }
 
 /* The forms of a block of columns. */
-static void hdi_form_run(const hdi_inverse *z, const hdi_inverse_front *w, int64_t block) {
+static void hdi_form_run(const hdi_inverse *z, const hdi_front *w, int64_t block) {
     const hdi_forms *q = z->forms;
     const hdi_symbolic *s = z->f->sym;
     const int32_t width = z->f->width, lanes = width == 1 ? 1 : HDI_PACK_LANES;
@@ -12119,7 +12078,7 @@ static void hdi_form_run(const hdi_inverse *z, const hdi_inverse_front *w, int64
 
 /* The forms of a front's columns that have few non-zeros and all of them in the rows of the front, which half
  * of a mesh's columns have. */
-static void hdi_form_near(const hdi_inverse *z, const hdi_inverse_front *w) {
+static void hdi_form_near(const hdi_inverse *z, const hdi_front *w) {
     const hdi_forms *q = z->forms;
     const hdi_symbolic *s = w->f->sym;
     const int32_t width = w->f->width;
@@ -12230,7 +12189,7 @@ static uint64_t hdi_forms_bytes(const hdi_symbolic *s, int32_t width, const hd_c
 /* ---- the run ---- */
 
 /* Entries or the diagonal of the front's columns. */
-static void hdi_inverse_emit(const hdi_inverse *z, const hdi_inverse_front *w) {
+static void hdi_inverse_emit(const hdi_inverse *z, const hdi_front *w) {
     const hdi_symbolic *s = w->f->sym;
     const int64_t first = s->super[w->v] + (z->wanted == HDI_WANT_BOTH ? s->a_ptr[s->n_super] : 0);
     int64_t n;
@@ -12245,17 +12204,29 @@ static void hdi_inverse_emit(const hdi_inverse *z, const hdi_inverse_front *w) {
  * rows of one child after the other. */
 typedef struct hdi_inverse_step {
     const hdi_inverse *z;
-    hdi_inverse_front w;
+    hdi_front w;
     int32_t stage;
     int64_t begin, end;
 } hdi_inverse_step;
 
-static void hdi_inverse_begin(hdi_inverse_step *c, const hdi_inverse *z, int32_t v, double *scratch) {
-    c->z = z;
-    c->w = hdi_inverse_open(z->f, v, scratch);
-    c->w.k0 = c->w.p;
+/* Front v, in the scratch of a subtree or of the top. Z of the pivots' columns is laid out as L; T: -L11^-T;
+ * S, M: slices, of T' and of M; D: -1/d. */
+static void hdi_inverse_open(hdi_inverse_step *c, int32_t v, int32_t room) {
+    const hdi_factor *f = c->z->f;
+    const hdi_symbolic *s = f->sym;
+    hdi_front *w = &c->w;
+    int64_t n;
+    *w = hdi_front_open(f, v, c->z->scratch + c->z->scratch_size * (size_t)room);
+    n = hdi_least(w->p, HDI_PANEL);
+    w->z = w->work;
+    w->T = w->z + f->width * (s->panel[v + 1] - s->panel[v]);
+    w->S = w->T + f->width * n * n;
+    w->M = w->S + f->width * n * (n + HDI_TILE_COLS);
+    w->D = w->M + f->width * w->m * (n + HDI_TILE_COLS);
+    w->buffer = w->D + f->width * n;
+    w->k0 = w->p;
     c->stage = HDI_INVERSE_CORNER;               /* of no block: the last one comes next */
-    hdi_factor_fetch(z->f, v, 1);
+    hdi_factor_fetch(f, v, 1);
 }
 
 static int64_t hdi_inverse_children(const hdi_symbolic *s, int32_t v) {
@@ -12273,7 +12244,7 @@ static void hdi_inverse_set(hdi_inverse_step *c, int stage, int64_t begin, int64
 
 /* Goes on to the next stage, after what one thread must do before it. 0: there is none. */
 static int hdi_inverse_next(hdi_inverse_step *c) {
-    hdi_inverse_front *w = &c->w;
+    hdi_front *w = &c->w;
     const int64_t u = w->m - w->k1, n = w->k1 - w->k0;
     const int64_t blocks = c->z->wanted == HDI_WANT_FORMS ? hdi_form_blocks(c->z->forms, w->v) : 0;
     if (c->stage == HDI_INVERSE_M) {
@@ -12301,7 +12272,7 @@ static int hdi_inverse_next(hdi_inverse_step *c) {
 
 /* [r0,r1) of the stage. */
 static void hdi_inverse_do(const hdi_inverse_step *c, int64_t r0, int64_t r1, double *buffer) {
-    const hdi_inverse_front *w = &c->w;
+    const hdi_front *w = &c->w;
     const hdi_symbolic *s = w->f->sym;
     int32_t k = s->kid_ptr[w->v];
     if (c->stage == HDI_INVERSE_M) hdi_inverse_m(w, r0, r1, buffer);
@@ -12316,21 +12287,15 @@ static void hdi_inverse_do(const hdi_inverse_step *c, int64_t r0, int64_t r1, do
     }
 }
 
-/* Front v, by this thread. */
-static void hdi_inverse_front_run(const hdi_inverse *z, int32_t v, double *scratch) {
-    hdi_inverse_step c;
-    hdi_inverse_begin(&c, z, v, scratch);
+static int hdi_inverse_alone(void *arg, int32_t v, int32_t room) {
+    hdi_inverse_step c = *(const hdi_inverse_step *)arg;
+    hdi_inverse_open(&c, v, room);
     while (hdi_inverse_next(&c))
         if (c.begin < c.end) hdi_inverse_do(&c, c.begin, c.end, c.w.buffer);
+    return 1;
 }
 
 /* ---- the pass ---- */
-
-typedef struct hdi_inverse_pass {
-    hdi_pass pass;
-    hdi_inverse_step at;         /* the front that is shared */
-    double *scratch;             /* of the top */
-} hdi_inverse_pass;
 
 /* Whether threads share front v. */
 static int hdi_inverse_shared(const hdi_symbolic *s, int32_t v) {
@@ -12365,18 +12330,16 @@ static int64_t hdi_inverse_nodes(const hdi_inverse *z, const hdi_symbolic *s) {
     return n;
 }
 
-/* Front v of the top. */
-static void hdi_inverse_top(void *arg, int32_t v) {
-    hdi_inverse_pass *t = (hdi_inverse_pass *)arg;
-    const hdi_inverse *z = t->at.z;
-    if (hdi_walk_alone(&t->pass.walk) || !hdi_inverse_shared(z->f->sym, v))
-        hdi_inverse_front_run(z, v, t->scratch);
-    else
-        hdi_inverse_begin(&t->at, z, v, t->scratch);
+static int hdi_inverse_begin(void *arg, int32_t v) {
+    hdi_inverse_step *c = (hdi_inverse_step *)arg;
+    const hdi_symbolic *s = c->z->f->sym;
+    if (!hdi_inverse_shared(s, v)) return 0;
+    hdi_inverse_open(c, v, s->n_tasks);
+    return 1;
 }
 
 static int32_t hdi_inverse_stage_next(void *arg, int32_t *ready) {
-    hdi_inverse_step *c = &((hdi_inverse_pass *)arg)->at;
+    hdi_inverse_step *c = (hdi_inverse_step *)arg;
     *ready = 0;
     while (*ready == 0 && hdi_inverse_next(c))
         *ready = (int32_t)hdi_inverse_chunks(c->stage, c->end - c->begin);
@@ -12384,24 +12347,13 @@ static int32_t hdi_inverse_stage_next(void *arg, int32_t *ready) {
 }
 
 static void hdi_inverse_part(void *arg, int32_t i) {
-    const hdi_inverse_step *c = &((const hdi_inverse_pass *)arg)->at;
+    const hdi_inverse_step *c = (const hdi_inverse_step *)arg;
     /* the last rows of a triangle are longest */
     const int64_t rows = hdi_inverse_rows(c->stage);
     const int64_t chunk = hdi_inverse_chunks(c->stage, c->end - c->begin) - 1 - i;
     const int64_t r0 = c->begin + chunk * rows;
     double *buffer = c->stage > HDI_INVERSE_CORNER ? NULL : c->z->chunk + c->z->chunk_size * (size_t)chunk;
     hdi_inverse_do(c, r0, hdi_least(r0 + rows, c->end), buffer);
-}
-
-/* The last subtree first. */
-static void hdi_inverse_subtree(void *arg, int32_t i) {
-    const hdi_inverse_pass *t = (const hdi_inverse_pass *)arg;
-    const hdi_inverse *z = t->at.z;
-    const hdi_symbolic *s = z->f->sym;
-    const int32_t task = s->n_tasks - 1 - i;
-    int32_t v;
-    for (v = s->task_end[task]; v-- > s->task_begin[task] && !hdi_walk_stopped(&t->pass.walk);)
-        hdi_inverse_front_run(z, v, z->scratch + z->scratch_size * (size_t)task);
 }
 
 /* The arrays that inverting factors of the given width takes. */
@@ -12431,7 +12383,7 @@ static uint64_t hdi_inverse_bytes(const hdi_symbolic *s, int32_t width, int fact
     hdi_factor f;
     hdi_inverse z;
     keep.left = room;
-    if (factor) hdi_factor_take(&f, s, width, &keep);
+    if (factor) hdi_factor_take(&f, NULL, s, width, &keep);
     hdi_inverse_take(&z, s, width, &keep);
     hdi_scope_count(&bytes, (uint64_t)hdi_inverse_nodes(&z, s), sizeof(int32_t));
     return bytes;
@@ -12444,21 +12396,22 @@ static hd_status hdi_inverse_run(hdi_inverse *z, hdi_factor *f, hd_error *e) {
     hdi_scope scope = hdi_scope_begin(f->ctx, e);
     const int64_t n = hdi_inverse_nodes(z, s);
     int32_t *order = HDI_TAKE(&scope, int32_t, n);
-    hdi_inverse_pass t;
+    hdi_inverse_step at;
+    hdi_pass pass;
     if (!order) return hdi_scope_end(&scope);
-    memset(&t, 0, sizeof t);
+    memset(&at, 0, sizeof at);
+    memset(&pass, 0, sizeof pass);
     z->f = f;
-    t.at.z = z;
-    t.at.stage = HDI_INVERSE_CHILD;              /* nothing is begun */
-    t.scratch = z->scratch + z->scratch_size * (size_t)s->n_tasks;
-    t.pass.sym = s;
-    t.pass.arg = &t;
-    t.pass.down = 1;
-    t.pass.subtree = hdi_inverse_subtree;
-    t.pass.front = hdi_inverse_top;
-    t.pass.stage = hdi_inverse_stage_next;
-    t.pass.part = hdi_inverse_part;
-    hdi_pass_run(&t.pass, f->ctx, n, order, "invert", e);
+    at.z = z;
+    at.stage = HDI_INVERSE_CHILD;                /* nothing is begun */
+    pass.sym = s;
+    pass.arg = &at;
+    pass.down = 1;
+    pass.alone = hdi_inverse_alone;
+    pass.begin = hdi_inverse_begin;
+    pass.stage = hdi_inverse_stage_next;
+    pass.part = hdi_inverse_part;
+    hdi_pass_run(&pass, f->ctx, n, order, "invert", e);
     return hdi_scope_end(&scope);
 }
 
@@ -16083,7 +16036,7 @@ static hd_status hdi_elim_bound(hdi_elim *m, hd_error *e) {
     if (!m->resolvent) m->resolvent = HDI_NEW(m->ctx, double, m->sym.n, e);
     s.left = hdi_elim_room(m, m->n_used);
     if (s.left > 0) s.room = (char *)(void *)m->pack->work;
-    if (m->lone < 0) hdi_factor_take(&own, &m->sym, 1, &s);
+    if (m->lone < 0) hdi_factor_take(&own, NULL, &m->sym, 1, &s);
     if (e->status >= 0 && (m->lone >= 0 || hdi_elim_real(m, real, m->t, theta, e) >= 0) &&
         hdi_elim_inverse_diagonal(m, real, &factor, m->resolvent, &s) >= 0) {
         for (i = 0; i < m->sym.n; i++) {
@@ -16108,7 +16061,7 @@ static uint64_t hdi_elim_factor_need(const hdi_elim *m, const hd_rational *set, 
     const int32_t packs = hdi_set_packs(set), guests = packs - hdi_high32(m->n_packs, 1);
     uint64_t bytes = 0;
     if (packs > 0 && m->n_packs == 0) bytes += hdi_factor_bytes(&m->sym, HDI_PACK);
-    if (guests > 0) bytes += (uint64_t)guests * hdi_factor_guest_bytes(&m->sym, HDI_PACK);
+    if (guests > 0) bytes += (uint64_t)guests * hdi_factor_tally(&m->sym, HDI_PACK, 1);
     if (hdi_set_lone(set) && !m->real.ctx) bytes += hdi_factor_bytes(&m->sym, 1);
     if (after == HDI_AFTER_BOUND && !m->resolvent)
         hdi_scope_count(&bytes, (uint64_t)m->sym.n, sizeof *m->resolvent);
