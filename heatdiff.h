@@ -10017,19 +10017,14 @@ static hd_status hdi_sym_fronts(hdi_symbolic *s, const hdi_sym_work *w, hdi_scop
  * least work, in multiply-adds, it takes longer to hand out a task than to do it. */
 enum { HDI_TASK_SHARES = 48, HDI_TASK_LEAST = 100000 };
 
-/* Work of a front, in multiply-adds or so: the sum of its squared column lengths, and a little for its being
- * there. */
-static double hdi_sym_front_work(double m, double p) {
-    const double u = m - p;
-    return p * u * u + u * p * p + p * p * p / 3 + 40 * m;
-}
-
-/* work [n_super]: that of each supernode and all below it. Returns the most work of a task. */
+/* work [n_super]: of each supernode and all below it, in multiply-adds or so: the sum of squared column lengths,
+ * and a little for a front's being there. Returns the most work of a task. */
 static double hdi_sym_work_below(const hdi_symbolic *s, double *work) {
     double total = 0;
     int32_t v, k;
     for (v = 0; v < s->n_super; v++) {
-        work[v] = hdi_sym_front_work((double)hdi_front_rows(s, v), hdi_front_pivots(s, v));
+        const double p = hdi_front_pivots(s, v), u = (double)hdi_front_below(s, v);
+        work[v] = p * u * u + u * p * p + p * p * p / 3 + 40 * (p + u);
         total += work[v];
         for (k = s->kid_ptr[v]; k < s->kid_ptr[v + 1]; k++) work[v] += work[s->kid[k]];
     }
@@ -10149,45 +10144,36 @@ static int64_t hdi_stacks_place(const hdi_symbolic *s, int matrices, int64_t *at
     return end;
 }
 
-/* The steps of an analysis. */
-static hd_status hdi_symbolic_steps(hdi_symbolic *s, hdi_sym_work *w, hdi_scope *keep) {
-    const int32_t n = s->n;
-    hd_error *e = keep->e;
-    double *work = HDI_TAKE(w->temp, double, n);
-    char *side = HDI_TAKE(w->temp, char, n);
-    w->place = HDI_TAKE(w->temp, int32_t, n);
-    w->parent = HDI_TAKE(w->temp, int32_t, n);
-    w->count = HDI_TAKE(w->temp, int32_t, n);
-    if (e->status < 0 || hdi_sym_postorder(w) < 0 || hdi_sym_counts(w) < 0 ||
-        hdi_progress(keep->ctx, "analyse", 0.4, e) < 0 || hdi_sym_supernodes(s, w, keep) < 0 ||
-        hdi_sym_fronts(s, w, keep) < 0)
-        return e->status;
-    hdi_sym_tasks(s, work);
-    s->work = hdi_stacks_place(s, 1, s->update, side);
-    s->vector_size = hdi_stacks_place(s, 0, s->vector, side);
-    return HD_OK;
-}
-
 /* Analysis of a symmetric pattern under the order perm, which is used up. */
 static hd_status hdi_symbolic_make(hdi_symbolic *s, const hd_csr *a, int32_t *perm, hd_context *ctx,
                                    hd_error *e) {
     hdi_scope keep = hdi_scope_begin(ctx, e), temp = hdi_scope_begin(ctx, e);
+    const int32_t n = a->n_rows;
+    double *work = HDI_TAKE(&temp, double, n);
+    char *side = HDI_TAKE(&temp, char, n);
     hdi_sym_work w;
     memset(s, 0, sizeof *s);
     memset(&w, 0, sizeof w);
-    s->n = a->n_rows;
+    s->n = n;
     w.a = a;
     w.temp = &temp;
     w.perm = perm;
-    hdi_symbolic_steps(s, &w, &keep);
-    hdi_scope_end(&temp);
-    if (e->status < 0) {
-        memset(s, 0, sizeof *s);
-        return hdi_scope_end(&keep);
+    w.place = HDI_TAKE(&temp, int32_t, n);
+    w.parent = HDI_TAKE(&temp, int32_t, n);
+    w.count = HDI_TAKE(&temp, int32_t, n);
+    if (e->status >= 0 && hdi_sym_postorder(&w) >= 0 && hdi_sym_counts(&w) >= 0 &&
+        hdi_progress(ctx, "analyse", 0.4, e) >= 0 && hdi_sym_supernodes(s, &w, &keep) >= 0 &&
+        hdi_sym_fronts(s, &w, &keep) >= 0) {
+        hdi_sym_tasks(s, work);
+        s->work = hdi_stacks_place(s, 1, s->update, side);
+        s->vector_size = hdi_stacks_place(s, 0, s->vector, side);
+        s->n_blocks = keep.n;
+        memcpy(s->block, keep.block, (size_t)keep.n * sizeof *keep.block);
+        return hdi_scope_end(&temp);
     }
-    s->n_blocks = keep.n;
-    memcpy(s->block, keep.block, (size_t)keep.n * sizeof *keep.block);
-    return HD_OK;
+    hdi_scope_end(&temp);
+    memset(s, 0, sizeof *s);
+    return hdi_scope_end(&keep);
 }
 
 /* ==== [16] order ====
