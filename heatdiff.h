@@ -8893,8 +8893,9 @@ static int hdi_nd_coarser(hdi_nd_graph *g, int32_t total, hdi_nd_space *s) {
 
 /* ---- cutting edges ---- */
 
-/* Moves vertices from side to side. Those that may move are in a list, the latest last: v stands at list[at[v]],
- * and other entries are out of date. at[v] is NONE if it is not in the list, LOCKED if it has moved. */
+/* Moves vertices from side to side. Those that may move are in a list, the latest last: v stands at
+ * list[at[v]], and other entries are out of date. at[v] is NONE if it is not in the list, LOCKED if it has
+ * moved. */
 typedef struct hdi_nd_mover {
     const hdi_nd_graph *g;
     int32_t *list, n_list, *at;
@@ -9313,8 +9314,8 @@ static int hdi_nd_measure(const hdi_nd_graph *g, int32_t *size) {
     return size[0] <= g->n - g->n / 5 && size[1] <= g->n - g->n / 5 && size[2] <= g->n / 2;
 }
 
-/* Makes the clusters level[1] of the part level[0]: clusters of clusters, of about a dozen vertices each, where
- * too few are known. Returns 0 if there are none. */
+/* Makes the clusters level[1] of the part level[0]: clusters of clusters, of about a dozen vertices each,
+ * where too few are known. Returns 0 if there are none. */
 static int hdi_nd_clusters(hdi_nd_graph *level, hdi_nd_space *s) {
     hdi_nd_graph *g = level, *c = level + 1;
     int32_t v;
@@ -9332,8 +9333,8 @@ static int hdi_nd_clusters(hdi_nd_graph *level, hdi_nd_space *s) {
     return 1;
 }
 
-/* Sets the sides of the part level[0] to 0, 1, or 2 in the separator, and size [3]. Its clusters level[1] stay
- * in s. Returns 0 if no separator is good. */
+/* Sets the sides of the part level[0] to 0, 1, or 2 in the separator, and size [3]. Its clusters level[1]
+ * stay in s. Returns 0 if no separator is good. */
 static int hdi_nd_dissect(const hdi_nd *nd, hdi_nd_graph *level, int32_t halo, hdi_nd_space *s,
                           int32_t *size) {
     hdi_nd_graph *g = level;
@@ -9367,9 +9368,9 @@ static void hdi_nd_graphs_of(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_g
     g[1].id += part->first;
 }
 
-/* Copies the vertices of g that have a number from 0 to n - 1 to `to`, with that number and their edges. Edges
- * that lead to others are left out; or with a halo, the others are numbered from n on as they are met. Returns
- * the number of entries, or -1 if there are more than `room`. */
+/* Copies the vertices of g that have a number from 0 to n - 1 to `to`, with that number and their edges.
+ * Edges that lead to others are left out; or with a halo, the others are numbered from n on as they are
+ * met. Returns the number of entries, or -1 if there are more than `room`. */
 static int32_t hdi_nd_extract(const hdi_nd_graph *g, int32_t *number, int32_t n, int32_t *halo,
                               const hdi_nd_graph *to, int32_t room) {
     int32_t v, p, i = 0, z = 0, *adj = to->adj;
@@ -9390,8 +9391,8 @@ static int32_t hdi_nd_extract(const hdi_nd_graph *g, int32_t *number, int32_t n,
     return z;
 }
 
-/* Makes a child of the vertices on one side of the part g[0], and of the clusters g[1] that have such vertices,
- * in the child's slices. number: work space for the part's vertices and its halo. */
+/* Makes a child of the vertices on one side of the part g[0], and of the clusters g[1] that have such
+ * vertices, in the child's slices. number: work space for the part's vertices and its halo. */
 static void hdi_nd_child(const hdi_nd *nd, const hdi_nd_part *part, const hdi_nd_graph *g, int8_t side,
                          hdi_nd_part *child, int32_t *number) {
     hdi_nd_graph half[2];
@@ -10017,8 +10018,8 @@ static hd_status hdi_sym_fronts(hdi_symbolic *s, const hdi_sym_work *w, hdi_scop
  * least work, in multiply-adds, it takes longer to hand out a task than to do it. */
 enum { HDI_TASK_SHARES = 48, HDI_TASK_LEAST = 100000 };
 
-/* work [n_super]: of each supernode and all below it, in multiply-adds or so: the sum of squared column lengths,
- * and a little for a front's being there. Returns the most work of a task. */
+/* work [n_super]: of each supernode and all below it, in multiply-adds or so: the sum of squared column
+ * lengths, and a little for a front's being there. Returns the most work of a task. */
 static double hdi_sym_work_below(const hdi_symbolic *s, double *work) {
     double total = 0;
     int32_t v, k;
@@ -10352,7 +10353,8 @@ static void hdi_pass_next(hdi_pass *p) {
 /* Downwards the last subtree comes first. */
 static void hdi_pass_subtree(hdi_pass *p, int32_t i) {
     const hdi_symbolic *s = p->sym;
-    const int32_t task = p->down ? s->n_tasks - 1 - i : i, begin = s->task_begin[task], end = s->task_end[task];
+    const int32_t task = p->down ? s->n_tasks - 1 - i : i, begin = s->task_begin[task];
+    const int32_t end = s->task_end[task];
     int32_t k;
     for (k = 0; k < end - begin; k++) {
         if (hdi_walk_stopped(&p->walk) && task >= HDI_LOAD(&p->until)) return;
@@ -10892,9 +10894,9 @@ static int64_t hdi_factor_nodes(hdi_factor *f) {
     return n;
 }
 
-/* A factor of the given width with the arrays that factoring and refactoring need. With a host it is another one
- * like that, with its own numbers but the host's room to work in: neither is factorised or inverted while the
- * other one is, and the host lives longer. */
+/* A factor of the given width with the arrays that factoring and refactoring need. With a host it is
+ * another one like that, with its own numbers but the host's room to work in: neither is factorised or
+ * inverted while the other one is, and the host lives longer. */
 static void hdi_factor_take(hdi_factor *f, const hdi_factor *host, const hdi_symbolic *sym, int32_t width,
                             hdi_scope *s) {
     const uint64_t n_chunks = (uint64_t)(sym->n_top ? sym->largest_front / HDI_FRONT_CHUNK + 1 : 0);

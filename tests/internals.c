@@ -515,6 +515,48 @@ static void int_noise(double *x, int64_t n, uint64_t *seed) {
     for (i = 0; i < n; i++) x[i] = dense_signed(seed);
 }
 
+/* ---- [07] kernels ---- */
+
+/* C -= A B in eight rows, as right-hand sides stand, is what it is in those of sixteen; other rows stay as they are. */
+static void int_product_rows(const hdi_kernels *o, int slices) {
+    enum { DEPTH = 21, COLS = 13, ROWS = 16 };
+    const int64_t w = o->width, size = w * ROWS * COLS;
+    double *a = KIT_NEW(double, w * ROWS * DEPTH), *b = KIT_NEW(double, w * (COLS + 16) * DEPTH), *c = KIT_NEW(double, 3 * size);
+    uint64_t seed = 5;
+    int64_t i;
+    int k, wrong = 0;
+    hdi_product g;
+    int_noise(a, w * ROWS * DEPTH, &seed);
+    int_noise(b, w * (COLS + 16) * DEPTH, &seed);
+    int_noise(c, size, &seed);
+    memset(&g, 0, sizeof g);
+    g.a = a;
+    g.b = b;
+    g.c_col = g.a_col = ROWS;
+    g.b_row = slices ? o->nr : 1;
+    g.b_col = slices ? 1 : DEPTH;
+    g.b_next = (int64_t)o->nr * DEPTH;
+    g.cols = COLS;
+    g.depth = DEPTH;
+    for (k = 1; k < 3; k++) {
+        memcpy(c + k * size, c, (size_t)size * sizeof *c);
+        g.c = c + k * size;
+        g.n = 8 * k;
+        o->multiply(&g);
+    }
+    for (i = 0; i < size; i++) {
+        const double want = i / w % ROWS < 8 ? c[2 * size + i] : c[i];
+        wrong += !(fabs(c[size + i] - want) <= 1e-13) || c[2 * size + i] == c[i];
+    }
+    CHECK_MSG(wrong == 0, "entries of %d, slices %d: %d are wrong", (int)w, slices, wrong);
+}
+
+static void int_products(void) {
+    int level, k;
+    for (level = 0; level <= hdi_simd_best(); level++)
+        for (k = 0; k < 4; k++) int_product_rows(hdi_kernels_get(level, k / 2), k % 2);
+}
+
 /* ---- [22] poles: what checks and bounds rest on ---- */
 
 static hd_laplacian *int_mesh(int voronoi) { return kit_pair(voronoi ? "flat/14/9/0.3 vor" : "flat/14/9/0.3 fem"); }
@@ -1373,7 +1415,7 @@ static void int_few_tasks(void) {
 static void (*const int_tests[])(void) = {
     int_few_tasks, int_division, int_not_finite, int_complex, int_sizes, int_texts, int_sums, int_arrays, int_memory,
     int_large_pages, int_sorting, int_union_find, int_tridiagonal, int_tridiagonal_odd, int_collinear, int_krylov_done,
-    int_ildl, int_residuals, int_noise_weights, int_pole_bounds, int_resolvent_pole, int_no_numbers, int_lanczos_bound,
+    int_ildl, int_products, int_residuals, int_noise_weights, int_pole_bounds, int_resolvent_pole, int_no_numbers, int_lanczos_bound,
     int_krylov_slopes, int_ritz_above, int_probe_rows, int_pairs_degree, int_spectrum_proof,
     int_spectrum_twice, int_least_squares, int_exp_rest, int_shared_bounds, int_length_area, int_around, int_selection,
     int_eigen3, int_polygon, int_krylov_bounds, int_damages_1, int_damages_2, int_damages_3,
