@@ -9025,23 +9025,6 @@ static void hdi_nd_refine(hdi_nd_mover *m, const hdi_nd_graph *g) {
 
 /* ---- the first cut ---- */
 
-/* The vertex whose place is farthest from that of a vertex. */
-static int32_t hdi_nd_farthest(const hdi_nd *nd, const hdi_nd_graph *g, int32_t from) {
-    int32_t v, d, found = 0;
-    double most = -1;
-    for (v = 0; v < g->n; v++) {
-        double x, sum = 0;
-        for (d = 0; d < 3; d++) {
-            x = hdi_nd_place(nd, g->id[v], d) - hdi_nd_place(nd, g->id[from], d);
-            sum += x * x;
-        }
-        if (sum <= most) continue;
-        most = sum;
-        found = v;
-    }
-    return found;
-}
-
 /* dist = number of edges from start; g->n where none leads. Returns the vertex reached last. */
 static int32_t hdi_nd_steps(const hdi_nd_graph *g, int32_t start, int32_t *dist, int32_t *queue) {
     int32_t v, p, head = 0, tail = 1;
@@ -9081,28 +9064,25 @@ static void hdi_nd_sweep(const hdi_nd_graph *g, const hdi_pair *key, double tota
     for (i = keep; i < g->n; i++) g->side[key[i].id] = 1;
 }
 
-/* The values along which the vertices are swept, as keys to sort by. kind 0: places along a line between two
- * vertices far apart; 1: differences of graph distances from two such vertices; others: places along a fixed
- * direction. work [3 g->n] */
+/* The values along which the vertices are swept, as keys to sort by. kind 0: differences of graph distances
+ * from two vertices far apart; 1: places along the line between these; others: places along a fixed direction.
+ * work [3 g->n] */
 static void hdi_nd_sweep_keys(const hdi_nd *nd, const hdi_nd_graph *g, int32_t kind, hdi_pair *key,
                               int32_t *work) {
     static const signed char hdi_directions[9][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {1, -1, 0},
                                                  {1, 0, 1}, {1, 0, -1}, {0, 1, 1}, {0, 1, -1}};
-    int32_t v, d, a, b, *da = work, *db = work + g->n, *queue = work + 2 * g->n;
+    int32_t v, d, a = 0, b = 0, *da = work, *db = work + g->n, *queue = work + 2 * g->n;
     double way[3] = {0, 0, 0};
-    if (kind == 1) {
+    if (kind < 2) {
         a = hdi_nd_steps(g, hdi_nd_steps(g, 0, da, queue), da, queue);
         b = hdi_nd_steps(g, a, db, queue);
         hdi_nd_steps(g, b, da, queue);
-    } else {
-        a = hdi_nd_farthest(nd, g, 0);
-        b = hdi_nd_farthest(nd, g, a);
-        for (d = 0; d < 3; d++)
-            way[d] = kind > 1 ? hdi_directions[kind - 2][d]
-                              : hdi_nd_place(nd, g->id[b], d) - hdi_nd_place(nd, g->id[a], d);
     }
+    for (d = 0; d < 3 && kind > 0; d++)
+        way[d] = kind > 1 ? hdi_directions[kind - 2][d]
+                          : hdi_nd_place(nd, g->id[b], d) - hdi_nd_place(nd, g->id[a], d);
     for (v = 0; v < g->n; v++) {
-        double x = kind == 1 ? (da[v] - db[v]) / (double)g->n : 0;
+        double x = kind == 0 ? (da[v] - db[v]) / (double)g->n : 0;
         for (d = 0; d < 3; d++) x += way[d] * hdi_nd_place(nd, g->id[v], d);
         key[v].key = (uint64_t)((x + 4) * 1e12);     /* x is between -3 and 3 */
         key[v].id = v;
