@@ -9064,9 +9064,9 @@ static void hdi_nd_sweep(const hdi_nd_graph *g, const hdi_pair *key, double tota
     for (i = keep; i < g->n; i++) g->side[key[i].id] = 1;
 }
 
-/* The values along which the vertices are swept, as keys to sort by. kind 0: differences of graph distances
- * from two vertices far apart; 1: places along the line between these; others: places along a fixed direction.
- * work [3 g->n] */
+/* The values along which the vertices are swept, as keys to sort by. kind 0: differences of graph
+ * distances from two vertices far apart; 1: places along the line between these; others: places along a
+ * fixed direction. work [3 g->n] */
 static void hdi_nd_sweep_keys(const hdi_nd *nd, const hdi_nd_graph *g, int32_t kind, hdi_pair *key,
                               int32_t *work) {
     static const signed char hdi_directions[9][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {1, -1, 0},
