@@ -38,18 +38,18 @@ FOREIGN = ("dgemm_", "WIN32_LEAN_AND_MEAN", "NOMINMAX", "syscall", "DWORD")   # 
 
 # What holds today. Whenever --check says that a limit can come down, --tighten brings it down.
 LIMITS = {
-    "lines": 28516,           # goal 16000; raised from 23000 by eigenpairs, estimates, filters, sources and more
-    "api": 912,               # lines of room [api]; goal 1100
-    "median": 10,             # lines of a function; goal 13
-    "longest": 58,            # lines of the longest function; goal 60
+    "lines": 26900,           # goal 16000; raised from 23000 by eigenpairs, estimates, filters, sources and more
+    "api": 712,               # lines of room [api]; goal 1100
+    "median": 9,             # lines of a function; goal 13
+    "longest": 54,            # lines of the longest function; goal 60
     "long": 0,                # functions longer than 60 lines; goal 0
     "widest": 110,            # characters of the widest line; goal 110
     "wide": 0,                # lines wider than that; goal 0
     "wide-declarations": 0,   # code in the public part wider than 100; goal 0
     "arguments": 2,           # private functions with more than eight arguments, kernels all; goal 0
-    "macros": 36,             # function-like macros in the whole file; no goal of its own
+    "macros": 31,             # function-like macros in the whole file; no goal of its own
     "kernel-macros": 6,       # function-like macros in room [kernels]; goal below 40
-    "twins": 1,               # pairs of places that share six or more lines; goal 0
+    "twins": 0,               # pairs of places that share six or more lines; goal 0
     "public-calls": 0,        # statics that call a public function; goal 0
     "forward": 0,             # forward declarations of statics; goal 0
     "private-names": 0,       # without hdi_ or HDI_; goal 0
