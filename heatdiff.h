@@ -16226,7 +16226,8 @@ static hd_status hdi_lanczos_step(const hdi_lanczos_task *task, hdi_lanczos *z, 
             norm += w[i] * v[i];
         }
     }
-    if (!hdi_finite(alpha) || !hdi_finite(norm))
+    /* where squares of eigenvalues underflow the end of the process cannot be told */
+    if (!hdi_finite(alpha) || !hdi_finite(norm) || (alpha != 0 && fabs(alpha) < 1e-145))
         return hdi_fail(e, HD_ERR_BREAKDOWN,
                         "Lanczos: numbers leave the range of doubles, because masses differ by so much");
     z->alpha[j] = alpha;

@@ -18,6 +18,8 @@ static const case_row bnd_rows[] = {
     /* sizes at the ends of doubles */
     {"shape=sphere/1 scale=1|1e40|1e-40 query=pairs|distance kind=classical|weighted th=0.3 k=3", 1e-5, 0, 0},
     {"shape=sphere/2 query=apply t=0.1 field=tiny|huge seed=1|2|3" BND_METHODS, 1e-6, 0, 0},
+    /* eigenvalues near 1e-161, whose squares underflow */
+    {"shape=points/40/0/1 op=exp scale=1e40 query=apply method=iterative solver=lanczos t=3e159 field=smooth", 0, 1, 0},
     /* single entries, tiny at small times: the bound is relative to what is returned */
     {"shape=sphere/3 query=entries kernel=operator|symmetric th=0.05|0.2|1|4|16|64 k=1 seed=3|4|5", 0, 0, 0},
     {"shape=cycle/60 op=I query=entries|pairs th=0.5|1 k=1 seed=1|2|3", 0, 0, 4},
