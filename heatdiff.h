@@ -1611,8 +1611,11 @@ HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, const hd_sources *so
 
 #if defined(__linux__) && !defined(HEATDIFF_NO_LARGE_PAGES)
 #include <sys/mman.h>
+#ifdef MADV_HUGEPAGE
 #define HDI_LARGE_PAGES 1
-#else
+#endif
+#endif
+#ifndef HDI_LARGE_PAGES
 #define HDI_LARGE_PAGES 0
 #endif
 
@@ -2025,7 +2028,7 @@ static hd_status hdi_need(hd_context *ctx, uint64_t more, const char *what, hd_e
 /* Asks for large pages where the system has them to give: fresh memory costs a seventh of the time then, of
  * which a factor needs a lot. */
 static void hdi_large_pages(char *raw, size_t total) {
-#if HDI_LARGE_PAGES && defined(MADV_HUGEPAGE)
+#if HDI_LARGE_PAGES
     const size_t page = 1 << 16;                 /* the largest that Linux has; shorter ones divide it */
     const size_t skip = (page - (size_t)raw % page) % page;
     if (total >= (size_t)4 << 20)
