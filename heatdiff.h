@@ -18237,7 +18237,7 @@ static void hdi_spec_settle(hdi_spec *s, const double *value, int32_t first, int
  * all become orthogonal to the blocks before them: those far away, against which the run did not work, are so
  * up to residuals. */
 static void hdi_spec_lock_all(hdi_spec *s, const int32_t *which, int32_t n, int32_t first) {
-    double value[HDI_SPEC_MOST + HDI_WIDE] = {0}, twin[8 * HDI_SPEC_GROUP], *bx[HDI_SPEC_GROUP];
+    double value[(int)HDI_SPEC_MOST + (int)HDI_WIDE] = {0}, twin[8 * HDI_SPEC_GROUP], *bx[HDI_SPEC_GROUP];
     const int32_t most = 8 * s->n_group;
     int32_t i, q;
     for (i = 0; i < n; i++) value[i] = hdi_spec_lambda(s, which[i]);
