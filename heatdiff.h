@@ -6446,7 +6446,7 @@ typedef struct hdi_rows {
     hdi_pair *order;            /* [strands most] */
     int32_t *count;             /* [n] how many others have faces with a vertex; then work */
     char *border;               /* [n] 1: at an edge with one face */
-    hdi_rows_tally tally[HDI_BLOCKS_MOST];
+    hdi_rows_tally *tally;      /* of each block */
 } hdi_rows;
 
 enum { HDI_MOVING_BLOCKS = 20 };
@@ -6887,6 +6887,7 @@ static hd_status hdi_rows_begin(hdi_rows *x, const hdi_mesh *mesh, hd_mesh_repor
     x->most = hdi_fullest(mesh->at, n) / 32 * 32 + 32;   /* so strands share no line of a cache */
     x->count = HDI_TAKE(s, int32_t, n);
     x->border = HDI_TAKE(s, char, n);
+    x->tally = HDI_TAKE_ZERO(s, hdi_rows_tally, blocks);
     x->place = HDI_TAKE(&own, int32_t, x->strands * n);
     x->order = HDI_TAKE(&own, hdi_pair, x->strands * x->most);
     if (s->e->status < 0) return hdi_scope_end(&own);
@@ -20762,7 +20763,8 @@ static void hdi_krylov_cost(const hdi_heat_call *h, hd_cost *c) {
     c->flops = (w.n - ready) * f.flops + steps * 4 * f.nnz;
     c->seconds = f.analysis + (w.n - ready) * f.flops / HDI_RATE_REAL +
                  steps * (16 * f.nnz + 100 * n) / rate + h->n_times * steps / w.n * 8 * n / HDI_RATE_SWEEP;
-    if (heat->silan && heat->silan->m == m && heat->silan->wide == wide) return;
+    if (heat->silan && heat->silan->m == m && heat->silan->wide == wide && heat->silan->v[0] &&
+        m->shifted.ctx) return;
     if (m->ctx) c->bytes = (double)hdi_krylov_need(m, wide, (int32_t)longest);
     else c->bytes = 8 * f.real_stored + 8 * n * wide * (longest + 4) + 200 * n;
     c->bytes += (double)sizeof(hdi_krylov) + wide * 56 * n;
@@ -25967,6 +25969,7 @@ static hd_status hdi_geo_from(hd_geodesic *g, const hd_sources *from, int64_t be
     hdi_geo_items items;
     s->vertex = list;
     s->n = 0;
+    s->items = NULL;
     if (list && hdi_geo_vertices(from, begin, n, list)) {
         s->n = n;
         (void)hdi_geo_off_border(g, list, n, e);
