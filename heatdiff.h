@@ -64,7 +64,7 @@
      [05] arrays     prefix sums, sorting, union-find
      [06] vectors    dot products and norms, small dense eigenproblems and least squares
      [07] kernels    dense fronts, real and in lanes of four complex matrices, for each instruction set
-     [08] sparse     compressed rows: build, check, multiply
+     [08] sparse     compressed rows: build and check
      [09] spatial    k-d tree: nearest neighbours and radius search
      [10] geometry   triangles: checks, areas, cotangents, edges, defects
      [11] intrinsic  intrinsic Delaunay triangulations and the tufted cover

@@ -6,6 +6,7 @@ Needs nothing but Python 3. All runs are in one temporary folder. Meshes and fie
 names them: torus-40-24.obj, or waves-960-2.npy (MAKERS, FIELDS). Numbers are checked against eigenpairs computed here,
 in plain Python on small meshes or in closed form, and against what must hold on any mesh.
 """
+import cmath
 import functools
 import itertools
 import json
@@ -1585,6 +1586,20 @@ class Numbers(Case):
                 d = self.rows("distance %s --source 0 --definition %s" % (mesh, definition),
                               *(("--t", t) if definition == "weighted" else ()))
                 self.assertTrue(d[0] == [0] and (definition == "weighted" or min(d[1:]) > [0]))
+
+    def test_signatures_of_signatures(self):
+        """Normalised and scale-invariant signatures from plain ones and traces, computed here."""
+        plain = list(zip(*self.rows("hks patch-4.obj --t 0.01,1")))
+        traces = [row[1] for row in self.rows("trace patch-4.obj --t 0.01,1")]
+        self.close(self.rows("hks patch-4.obj --t 0.01,1 --normalise"),
+                   [[x / z for x, z in zip(row, traces)] for row in zip(*plain)], 1e-6)
+        n = 1 + 16 * 6                                               # 16 times an octave
+        times = ",".join(repr(0.01 * 64 ** (k / (n - 1))) for k in range(n))
+        want = []
+        for row in self.rows("hks patch-4.obj --t " + times):
+            steps = [math.log(b / a) for a, b in zip(row, row[1:])]
+            want.append([abs(sum(x * cmath.exp(-2j * math.pi * q * j / len(steps)) for j, x in enumerate(steps))) for q in range(4)])
+        self.close(self.rows("hks patch-4.obj --t 0.01,0.64 --scale-invariant 4"), want, 1e-5)
 
     def test_sources_anywhere(self):
         """Places on faces, sums of places with weights, curves."""

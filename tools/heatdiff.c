@@ -2894,7 +2894,7 @@ static hd_status solve_given(run *r, int32_t k, hd_report *report)
 {
     int32_t *pair = (int32_t *)malloc(2 * (size_t)k * sizeof *pair), p, q;
     double *d = (double *)malloc((size_t)k * sizeof *d);
-    hd_status status = pair && d ? HD_OK : HD_ERR_MEMORY;
+    hd_status status = k == 0 || (pair && d) ? HD_OK : HD_ERR_MEMORY;
     for (q = 0; q < k && status >= 0; q++) {
         r->values[q] = q ? HUGE_VAL : 0;
         for (p = 0; p < q; p++) {
