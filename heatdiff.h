@@ -13309,17 +13309,14 @@ static const double hdi_rat_table[] = {
 /* Kernel and diagonal sets have the same degrees. */
 enum { HDI_RAT_UNIFORM_MAX = 14, HDI_RAT_KERNEL_MIN = 2, HDI_RAT_KERNEL_MAX = 14 };   /* diagonal sets too */
 
-/* Doubles that the table spends on a set. */
-static int32_t hdi_rat_size(int32_t degree) { return 3 + 4 * ((degree + 1) / 2); }
-
 /* Where the set begins in the table: uniform sets come first, then kernel, then diagonal ones. */
 static const double *hdi_rat_row(hd_pole_kind kind, int32_t degree) {
-    const int32_t n_whole = kind == HD_POLES_UNIFORM ? 0 : kind == HD_POLES_KERNEL ? 1 : 2;
+    const int32_t n_each = HDI_RAT_KERNEL_MAX - HDI_RAT_KERNEL_MIN + 1;
     const double *row = hdi_rat_table;
-    int32_t r, q;
-    for (q = 0; q < n_whole; q++)
-        for (r = q == 0 ? 1 : HDI_RAT_KERNEL_MIN; r <= HDI_RAT_UNIFORM_MAX; r++) row += hdi_rat_size(r);
-    for (r = n_whole == 0 ? 1 : HDI_RAT_KERNEL_MIN; r < degree; r++) row += hdi_rat_size(r);
+    int32_t k = degree - 1, r = 1;
+    if (kind != HD_POLES_UNIFORM)
+        k = HDI_RAT_UNIFORM_MAX + degree - HDI_RAT_KERNEL_MIN + (kind == HD_POLES_DIAGONAL ? n_each : 0);
+    for (; k > 0; k--, r = r < HDI_RAT_KERNEL_MAX ? r + 1 : HDI_RAT_KERNEL_MIN) row += 3 + 4 * ((r + 1) / 2);
     return row;
 }
 
@@ -13443,13 +13440,7 @@ static void hdi_least_squares(double *A, int64_t rows, int64_t cols, double *b) 
 
 /* The error of a set is made small in the sense of least squares:
  *   sum over points k of u_k^2 (f_k - c(x_k))^2 -> min,   c(x) = a0 + sum a_i/(x - theta_i).
- * Poles that are not real count twice, by their real part. */
-typedef struct hdi_residues {
-    int64_t n;                   /* points */
-    int32_t exact, constant;     /* c is f at the first point; is there an a0? else it becomes 0 */
-    const double *x, *u, *f;     /* [n] points, weights, values */
-    double *work;                /* hdi_residues_room */
-} hdi_residues;
+ * Poles that are not real count twice, by their real part. A weight of HUGE_VAL: there c is f. */
 
 /* The weight of a point where c is f, beside those of a column, which are near one. What errors elsewhere
  * could move is the square of its inverse. */
@@ -13460,46 +13451,49 @@ static uint64_t hdi_residues_room(int32_t points, int32_t n_poles) {
     return ((uint64_t)points + cols) * (cols + 1) + cols;
 }
 
-/* A column [n]: of a0 where p is NULL, else of the real or the imaginary part of a pole's weight. */
-static void hdi_residues_column(const hdi_residues *k, const hd_c64 *p, int im, double *c) {
+/* A column [n]: of a0 where p is NULL, else of the real or the imaginary part of a pole's weight. Returns its
+ * norm, without the points where c is f. */
+static double hdi_residues_column(const double *x, const double *u, int64_t n, const hd_c64 *p, int im,
+                                  double *c) {
+    double sum = 0;
     int64_t i;
-    for (i = 0; i < k->n; i++) {
-        const double d = p ? k->x[i] - p->re : 0, v = p ? p->im : 0, unit = v != 0 ? 2 : 1;
-        const double part = !p ? 1 : unit * (im ? -v : d) / (d * d + v * v);
-        c[i] = (i < k->exact ? 1 : k->u[i]) * part;
+    for (i = 0; i < n; i++) {
+        const double d = p ? x[i] - p->re : 0, v = p ? p->im : 0, unit = v != 0 ? 2 : 1;
+        c[i] = (hdi_finite(u[i]) ? u[i] : 1) * (!p ? 1 : unit * (im ? -v : d) / (d * d + v * v));
+        if (hdi_finite(u[i])) sum += c[i] * c[i];
     }
+    return sqrt(sum);
 }
 
-/* Weights of the set's poles. A little damping, of the size of rounding, keeps them small in directions that
- * the error does not feel. */
-static void hdi_residues_fit(const hdi_residues *k, hd_rational *set) {
-    const int64_t constant = k->constant ? 1 : 0;
-    int64_t cols = constant, rows, c = 0, r;
-    double *A = k->work, *b, *scale;
+/* Weights of the set's poles for n points x, weights u and values f; a0 too if there is to be one, else it
+ * becomes 0. A little damping, of the size of rounding, keeps them small in directions that the error does
+ * not feel. work: hdi_residues_room. */
+static void hdi_residues_fit(hd_rational *set, int64_t n, const double *x, const double *u, const double *f,
+                             int constant, double *work) {
+    int64_t cols = constant ? 1 : 0, rows, c = 0, r;
+    double *A = work, *b, *scale;
     int32_t i, im;
     for (i = 0; i < set->n_poles; i++) cols += set->theta[i].im != 0 ? 2 : 1;
-    rows = k->n + cols;
+    rows = n + cols;
     b = A + rows * cols;
     scale = b + rows;
     memset(A, 0, (size_t)(rows * (cols + 1)) * sizeof *A);
     for (i = 0; i < set->n_poles; i++)
         for (im = 0; im < (set->theta[i].im != 0 ? 2 : 1); im++, c++)
-            hdi_residues_column(k, set->theta + i, im, A + c * rows);
-    if (constant) hdi_residues_column(k, NULL, 0, A + c * rows);
+            scale[c] = hdi_residues_column(x, u, n, set->theta + i, im, A + c * rows);
+    if (constant) scale[c] = hdi_residues_column(x, u, n, NULL, 0, A + c * rows);
     for (c = 0; c < cols; c++) {
         double *column = A + c * rows;
-        scale[c] = sqrt(hdi_dot(column + k->exact, column + k->exact, k->n - k->exact));
-        for (r = 0; r < k->n; r++) column[r] *= (r < k->exact ? HDI_RESIDUES_EXACT : 1) / scale[c];
-        column[k->n + c] = 2 * DBL_EPSILON;
+        for (r = 0; r < n; r++) column[r] *= (hdi_finite(u[r]) ? 1 : HDI_RESIDUES_EXACT) / scale[c];
+        column[n + c] = 2 * DBL_EPSILON;
     }
-    for (r = 0; r < k->n; r++) b[r] = (r < k->exact ? HDI_RESIDUES_EXACT : k->u[r]) * k->f[r];
+    for (r = 0; r < n; r++) b[r] = (hdi_finite(u[r]) ? u[r] : HDI_RESIDUES_EXACT) * f[r];
     hdi_least_squares(A, rows, cols, b);
-    set->a0 = constant ? b[cols - 1] / scale[cols - 1] : 0;
-    for (c = 0, i = 0; i < set->n_poles; i++, c++) {
-        set->a[i] = hdi_c(b[c] / scale[c], 0);
-        if (set->theta[i].im == 0) continue;
-        c++;
-        set->a[i].im = b[c] / scale[c];
+    for (c = 0; c < cols; c++) b[c] /= scale[c];
+    set->a0 = constant ? b[cols - 1] : 0;
+    for (c = 0, i = 0; i < set->n_poles; i++) {
+        set->a[i] = hdi_c(b[c++], 0);
+        if (set->theta[i].im != 0) set->a[i].im = b[c++];
     }
 }
 
@@ -13724,17 +13718,6 @@ static double hdi_shared_error(const hd_rational *set, double tau, double p, dou
     return sum;
 }
 
-/* The smallest and the largest modulus of the poles. */
-static void hdi_shared_range(const hd_rational *set, double *least, double *most) {
-    int32_t i;
-    *least = HUGE_VAL;
-    *most = 0;
-    for (i = 0; i < set->n_poles; i++) {
-        *least = hdi_min(*least, hdi_cabs(set->theta[i]));
-        *most = hdi_max(*most, hdi_cabs(set->theta[i]));
-    }
-}
-
 static int32_t hdi_shared_points(int32_t n_poles) { return 8 * n_poles + 98; }
 
 /* Doubles that hdi_shared_fit works in. */
@@ -13788,10 +13771,11 @@ static double hdi_shared_panel(const hd_rational *set, double tau, double lo, do
 }
 
 /* max_weighted_error and max_error: bounds that hold for all y >= 0. Panels double in length away from the
- * poles, until tau y reaches 45, where the exponential part is near 1e-18. The last is [lo, inf). */
+ * poles, which ascend by |theta|, until tau y reaches 45, where the exponential part is near 1e-18. The last
+ * is [lo, inf). */
 static void hdi_shared_bound(hd_rational *set, double tau, double goal) {
-    double least, most, lo = 0, hi;
-    hdi_shared_range(set, &least, &most);
+    const double least = hdi_cabs(set->theta[0]), most = hdi_cabs(set->theta[set->n_poles - 1]);
+    double lo = 0, hi;
     set->max_error = set->max_weighted_error = 0;
     for (hi = least / 8;; lo = hi, hi = lo < 2 * most || tau * lo < 45 ? 2 * lo : 0) {
         const double e = hdi_shared_panel(set, tau, lo, hi, goal);
@@ -13808,28 +13792,21 @@ static void hdi_shared_bound(hd_rational *set, double tau, double goal) {
  * far out that it stands for infinity. room: hdi_shared_room doubles. */
 static void hdi_shared_fit(hd_rational *set, double tau, double *room) {
     const int32_t n = hdi_shared_points(set->n_poles);
-    double *x = room, *u = x + n, *f = u + n, *w = f + n, least, most, lowest = HUGE_VAL;
+    const double least = hdi_cabs(set->theta[0]), most = hdi_cabs(set->theta[set->n_poles - 1]);
+    double *x = room, *u = x + n, *f = u + n, *w = f + n, lowest = HUGE_VAL;
     hd_rational best = *set;
-    hdi_residues k;
     int32_t step, r;
-    memset(&k, 0, sizeof k);
-    k.n = n;
-    k.exact = 1;
-    k.x = x;
-    k.u = u;
-    k.f = f;
-    k.work = w + n;
-    hdi_shared_range(set, &least, &most);
     for (r = 0; r < n; r++) {
         x[r] = r == 0 ? 0 : -0.02 * least * exp((r - 1.0) / (n - 3) * log(750 * most / least));
         if (r == n - 1) x[r] = -1e20 * most;
         f[r] = exp(tau * x[r]);
         w[r] = 1;
     }
+    w[0] = HUGE_VAL;
     for (step = 0; step <= HDI_SHARED_LAWSON; step++) {
         double worst = 0, top = 0;
         for (r = 0; r < n; r++) u[r] = w[r] * (1 - tau * x[r]);
-        hdi_residues_fit(&k, set);
+        hdi_residues_fit(set, n, x, u, f, 0, w + n);
         for (r = 1; r < n; r++) {
             u[r] = (1 - tau * x[r]) * fabs(f[r] - hdi_rational_eval(set, x[r]));
             worst = hdi_max(worst, u[r]);
@@ -14057,9 +14034,6 @@ static hd_status hdi_fit_load(hdi_fit *k, int32_t j, const hd_filter *filter, hd
 
 /* ---- the AAA step ---- */
 
-/* Number of unknown weights: those of the support points and, without a0, of infinity. */
-static int32_t hdi_fit_columns(const hdi_fit *k) { return k->m + (k->constant ? 0 : 1); }
-
 /* The point with the largest error becomes a support point, of all filters. */
 static void hdi_fit_choose(hdi_fit *k) {
     double most = -1;
@@ -14105,7 +14079,7 @@ static void hdi_fit_null(double *R, int64_t ld, int32_t c, double *w) {
 /* The weights: those that make f times the denominator nearest to the numerator, over all other points, for
  * all filters at once. */
 static void hdi_fit_weights(hdi_fit *k) {
-    const int32_t c = hdi_fit_columns(k);
+    const int32_t c = k->m + (k->constant ? 0 : 1);   /* without a0 infinity has a weight, too */
     const int64_t rows = (int64_t)(k->n - k->m) * k->count;
     double *A = k->work, *b = A + c * rows;
     int64_t row = 0;
@@ -14151,25 +14125,23 @@ static double hdi_fit_values(hdi_fit *k) {
 
 /* ---- poles ---- */
 
-/* a / b; *fine becomes 0 where b is zero or so small that the square of the quotient could overflow. */
-static hd_c64 hdi_fit_quotient(hd_c64 a, hd_c64 b, int *fine) {
-    if (fabs(b.re) + fabs(b.im) > (fabs(a.re) + fabs(a.im)) / 1e150) return hdi_cdiv(a, b);
-    *fine = 0;
-    return hdi_c(0, 0);
+/* 1/b, and a large number where b is zero. */
+static hd_c64 hdi_fit_inverse(hd_c64 b) {
+    return hdi_cabs(b) > 1e-150 ? hdi_cdiv(hdi_c(1, 0), b) : hdi_c(1e150, 0);
 }
 
-/* p'/p of the denominator's polynomial p(x) = prod (x - z_j) (w_m + sum w_j/(x - z_j)). *fine: as above. */
-static hd_c64 hdi_fit_slope(const hdi_fit *k, hd_c64 x, int *fine) {
+/* p'/p of the denominator's polynomial p(x) = prod (x - z_j) (w_m + sum w_j/(x - z_j)). */
+static hd_c64 hdi_fit_slope(const hdi_fit *k, hd_c64 x) {
     hd_c64 d = hdi_c(k->w[k->m], 0), d1 = hdi_c(0, 0), sum = d1;
     int32_t j;
     for (j = 0; j < k->m; j++) {
-        const hd_c64 inv = hdi_fit_quotient(hdi_c(1, 0), hdi_csub(x, hdi_c(k->z[j], 0)), fine);
+        const hd_c64 inv = hdi_fit_inverse(hdi_csub(x, hdi_c(k->z[j], 0)));
         const hd_c64 s = hdi_cscale(k->w[j], inv);
         d = hdi_cadd(d, s);
         d1 = hdi_csub(d1, hdi_cmul(s, inv));
         sum = hdi_cadd(sum, inv);
     }
-    return hdi_cadd(hdi_fit_quotient(d1, d, fine), sum);
+    return hdi_cadd(hdi_cmul(d1, hdi_fit_inverse(d)), sum);
 }
 
 /* Zeros of that polynomial, p [k->m]. They start beside the support points. A zero that has not settled makes
@@ -14185,15 +14157,12 @@ static void hdi_fit_zeros(const hdi_fit *k, hd_c64 *p) {
     for (step = 0; step < HDI_FIT_ABERTH && moving; step++) {
         moving = 0;
         for (i = 0; i < k->m; i++) {
-            int fine = 1;
-            hd_c64 rest = hdi_fit_slope(k, p[i], &fine), move;
+            hd_c64 rest = hdi_fit_slope(k, p[i]);
             for (j = 0; j < k->m; j++)
-                if (j != i)
-                    rest = hdi_csub(rest, hdi_fit_quotient(hdi_c(1, 0), hdi_csub(p[i], p[j]), &fine));
-            move = hdi_fit_quotient(hdi_c(1, 0), rest, &fine);
-            if (!fine) continue;
-            p[i] = hdi_csub(p[i], move);
-            if (hdi_cabs(move) > 4 * DBL_EPSILON * hdi_cabs(p[i])) moving = 1;
+                if (j != i) rest = hdi_csub(rest, hdi_fit_inverse(hdi_csub(p[i], p[j])));
+            rest = hdi_fit_inverse(rest);
+            p[i] = hdi_csub(p[i], rest);
+            if (hdi_cabs(rest) > 4 * DBL_EPSILON * hdi_cabs(p[i])) moving = 1;
         }
     }
 }
@@ -14232,16 +14201,8 @@ static void hdi_fit_poles(const hdi_fit *k, hd_rational *set) {
 static double hdi_fit_residues(hdi_fit *k, int32_t q, hd_rational *set) {
     const double *f = k->f + q * HDI_FIT_ROOM, *u = k->u + q * HDI_FIT_ROOM;
     double most = 0;
-    hdi_residues r;
     int32_t i;
-    memset(&r, 0, sizeof r);
-    r.n = k->n;
-    r.constant = k->constant;
-    r.x = k->x;
-    r.u = u;
-    r.f = f;
-    r.work = k->work;
-    hdi_residues_fit(&r, set);
+    hdi_residues_fit(set, k->n, k->x, u, f, k->constant, k->work);
     for (i = 0; i < k->n; i++) most = hdi_worst(most, u[i] * fabs(hdi_rational_eval(set, k->x[i]) - f[i]));
     return most;
 }
@@ -14349,24 +14310,20 @@ static double hdi_fit_unit(const hd_rational *set) {
     return 1 / least;
 }
 
-/* Moves a pole forward. */
-static void hdi_fit_move(hd_rational *set, int32_t from, int32_t to) {
-    const hd_c64 theta = set->theta[from], a = set->a[from];
-    memmove(set->theta + to + 1, set->theta + to, (size_t)(from - to) * sizeof theta);
-    memmove(set->a + to + 1, set->a + to, (size_t)(from - to) * sizeof a);
-    set->theta[to] = theta;
-    set->a[to] = a;
-}
-
 /* Small |theta| first, as iterations like it; the first is real where that saves a pack of factors. */
 static void hdi_fit_sort(hd_rational *set) {
-    int32_t i, j;
-    for (i = 1; i < set->n_poles; i++) {
-        for (j = i; j > 0 && hdi_cabs(set->theta[j - 1]) > hdi_cabs(set->theta[i]); j--) {}
-        hdi_fit_move(set, i, j);
+    int32_t i, j, least;
+    for (i = 0; i < set->n_poles; i++) {
+        const hd_c64 theta = set->theta[i], a = set->a[i];
+        for (least = j = i; j < set->n_poles; j++) {
+            const int real = set->theta[j].im == 0, by_size = i > 0 || real == (set->theta[least].im == 0);
+            if (by_size ? hdi_cabs(set->theta[j]) < hdi_cabs(set->theta[least]) : real) least = j;
+        }
+        set->theta[i] = set->theta[least];
+        set->a[i] = set->a[least];
+        set->theta[least] = theta;
+        set->a[least] = a;
     }
-    for (i = 0; i < set->n_poles && set->theta[i].im != 0; i++) {}
-    if (i < set->n_poles) hdi_fit_move(set, i, 0);
 }
 
 /* The set of filter q for x = -t lambda, by one in terms of scaled points. unit: t lambda_max. */
@@ -14781,10 +14738,7 @@ static hd_status hdi_family_room(hdi_family *fam, hd_error *e) {
 
 /* Makes the preconditioner of pole p. work [n] */
 static void hdi_family_make(const hdi_family *fam, int32_t p, hd_c64 *work) {
-    hdi_system a;
-    a.lap = fam->lap;
-    a.t = fam->t;
-    a.theta = fam->set.theta[p];
+    hdi_system a = {fam->lap, fam->t, fam->set.theta[p]};
     /* real, positive definite */
     if (fam->solver == HD_SOLVER_MINRES) a.theta = hdi_c(hdi_cabs(a.theta), 0);
     hdi_precond_make(fam->m + p, &a, work);
@@ -14803,12 +14757,9 @@ static void hdi_fill_task(void *arg, int64_t index, int32_t worker) {
 
 /* Makes the preconditioners, one parallel task each. work [n] for each of them. */
 static hd_status hdi_family_fill(hdi_family *fam, hd_c64 *work, hd_error *e) {
-    hdi_fill_job job;
+    hdi_fill_job job = {fam, work};
     if (fam->filled) return HD_OK;
-    if (hdi_family_room(fam, e) < 0) return e->status;
-    if (hdi_progress(fam->ctx, "precondition", 0, e) < 0) return e->status;
-    job.fam = fam;
-    job.work = work;
+    if (hdi_family_room(fam, e) < 0 || hdi_progress(fam->ctx, "precondition", 0, e) < 0) return e->status;
     if (!hdi_family_shares(fam)) hdi_parallel(fam->ctx, fam->set.n_poles, hdi_fill_task, &job);
     fam->filled = 1;
     return HD_OK;
@@ -15428,9 +15379,7 @@ static void hdi_residual_task(void *arg, int64_t begin, int64_t end) {
 
 /* Threads share the rows where nothing is summed over them. */
 static void hdi_residual_run(const hdi_residual *g, hd_context *ctx) {
-    hdi_residual_job job;
-    job.g = g;
-    job.ops = hdi_kernels_get(hdi_simd_level(ctx), 0);
+    hdi_residual_job job = {g, hdi_kernels_get(hdi_simd_level(ctx), 0)};
     if (g->sum) job.ops->residual(g);
     else hdi_parallel_ranges(ctx, g->end, HDI_ROWS_PER_TASK, hdi_residual_task, &job);
 }
@@ -15696,12 +15645,13 @@ static double hdi_lane_means_norm2(const hdi_lane *lane, const hd_laplacian *lap
 /* Sets the heat of each component to c0 times that of the right-hand side. This is the exact part of c(-t
  * B^-1 L) f in the constants. */
 static void hdi_conserve(const hd_laplacian *lap, hdi_lane *lane, double c0) {
+    double *sums = lane->spare_sums;
     int32_t c;
     if (!lap->conserves) return;
-    hdi_component_sums(lap, lap->mass, lane->u, lane->sums);
+    hdi_component_sums(lap, lap->mass, lane->u, sums);
     for (c = 0; c < lap->n_components; c++)
-        lane->sums[c] = (c0 * lane->target[c] - lane->sums[c]) / lap->component_mass[c];
-    hdi_component_add(lap, lane->sums, lane->u);
+        sums[c] = (c0 * lane->target[c] - sums[c]) / lap->component_mass[c];
+    hdi_component_add(lap, sums, lane->u);
 }
 
 /* Bound on what rounding does to the heat of components, which are n sums of masses times values; to that of
@@ -15716,14 +15666,6 @@ static double hdi_conserve_off(const hd_laplacian *lap, const hdi_lane *lane, do
 static void hdi_lane_rounding(hdi_lane *lane, double off) {
     lane->off.rounding += off;
     lane->off_m.rounding += off;
-}
-
-/* The same for c0 = 1, with the means in lane->sums kept. */
-static void hdi_conserve_sums(const hd_laplacian *lap, hdi_lane *lane) {
-    double *sums = lane->sums;
-    lane->sums = lane->spare_sums;
-    hdi_conserve(lap, lane, 1);
-    lane->sums = sums;
 }
 
 /* ---- through the poles ---- */
@@ -15957,7 +15899,6 @@ static int hdi_resolvent_weights(const hd_rational *set, hd_c64 *weight, double 
     enum { COLS = 2 * HDI_RESOLVENT_POLES + 1, N = HDI_RESOLVENT_POINTS };
     double x[N], u[N], f[N], work[(N + COLS) * (COLS + 1) + COLS], worst = 0;
     hd_rational fit = *set;
-    hdi_residues k;
     int32_t i, p;
     if (set->n_poles > HDI_RESOLVENT_POLES) return 0;
     for (i = 0; i < N; i++) {
@@ -15966,13 +15907,7 @@ static int hdi_resolvent_weights(const hd_rational *set, hd_c64 *weight, double 
         x[i] = 1 - u[i];
         f[i] = 1 / u[i];
     }
-    memset(&k, 0, sizeof k);
-    k.n = N;
-    k.x = x;
-    k.u = u;
-    k.f = f;
-    k.work = work;
-    hdi_residues_fit(&k, &fit);
+    hdi_residues_fit(&fit, N, x, u, f, 0, work);
     for (p = 0; p < set->n_poles; p++) weight[p] = hdi_cscale(-hdi_rat_count(set, p), fit.a[p]);
     for (i = 0; i <= 8 * N; i++) {               /* the end is as good as infinity */
         const double s = i / (8 * (double)N), at = 2 * s / hdi_max((1 - s) * (1 - s), 1e-20);
@@ -16597,16 +16532,15 @@ static int hdi_krylov_eigen(const hdi_krylov *z, int32_t r, int32_t m, int32_t r
     return hdi_tridiag_eigen(d, off, v, m, rows);
 }
 
-/* exp(-s (1/mu - 1)/g) for an eigenvalue mu of T in (0, 1]. Tiny ones are rounding of modes that are gone. */
-static double hdi_krylov_decay(double mu, double s_over_g) {
-    if (mu > 1e-15) return exp(-s_over_g * hdi_max(0, 1 / mu - 1));
-    return s_over_g > 0 ? 0 : 1;
-}
+/* F(mu) = exp(-x) for an eigenvalue mu of T in (0, 1], x = tau (1/mu - 1), tau = t/g; with rate -x exp(-x),
+ * the function of the derivative. Tiny ones are rounding of modes that are gone. */
+#define HDI_KRYLOV_TINY 1e-15
 
-/* The same, or the function of the derivative. */
-static double hdi_krylov_value(double mu, double s_over_g, int rate) {
-    const double f = hdi_krylov_decay(mu, s_over_g);
-    return rate ? (mu > 1e-15 ? -s_over_g * hdi_max(0, 1 / mu - 1) * f : 0) : f;
+static double hdi_krylov_value(double mu, double tau, int rate) {
+    double x;
+    if (!(mu > HDI_KRYLOV_TINY)) return tau > 0 || rate ? 0 : 1;
+    x = tau * hdi_max(0, 1 / mu - 1);
+    return (rate ? -x : 1) * exp(-x);
 }
 
 /* Point k of HDI_KRYLOV_POINTS in (0, 1], which are dense at both ends: the square of the sine of a part of
@@ -16623,26 +16557,16 @@ static double hdi_krylov_point(int32_t k) {
     return low == k ? s * s : 1 - s * s;
 }
 
-/* (F(a) - F(b))/(a - b) for F(x) = exp(-tau (1/x - 1)), a and b in (0, 1]; fa, fb: F there. */
-static double hdi_krylov_slope(double a, double fa, double b, double fb, double tau) {
-    const double d = a - b;
-    double x;
-    if (fabs(d) > 0.1 * a) return (fa - fb) / d;
-    if (!(b > 1e-15) || !(a > 1e-15)) return 0;
-    x = -tau * d / (a * b);                      /* log(F(b)/F(a)) */
-    if (fabs(x) < 1e-8) return fa * tau / (a * b);
-    return x > 0 ? fb * expm1(-x) / d : -fa * expm1(x) / d;   /* from the larger one */
-}
-
-/* The same of hdi_krylov_value, ga and gb. The second function is x F, x = -tau (1/mu - 1). */
-static double hdi_krylov_difference(double a, double ga, double b, double gb, double tau, int rate) {
-    double fa, fb;
-    if (!rate) return hdi_krylov_slope(a, ga, b, gb, tau);
-    if (fabs(a - b) > 0.1 * a) return (ga - gb) / (a - b);
-    if (!(b > 1e-15) || !(a > 1e-15)) return 0;
-    fa = hdi_krylov_decay(a, tau);
-    fb = hdi_krylov_decay(b, tau);
-    return tau / (a * b) * fb - tau * (1 / a - 1) * hdi_krylov_slope(a, fa, b, fb, tau);
+/* (F(a) - F(b))/(a - b), F = hdi_krylov_value, a and b in (0, 1]; fa, fb: F there. Where they are close it is
+ * tau/(ab) times minus the quotient in x, low and low + d, by expm1. */
+static double hdi_krylov_difference(double a, double fa, double b, double fb, double tau, int rate) {
+    double low, d, q;
+    if (fabs(a - b) > 0.1 * a) return (fa - fb) / (a - b);
+    if (!(a > HDI_KRYLOV_TINY && b > HDI_KRYLOV_TINY)) return 0;
+    low = tau * hdi_max(0, 1 / hdi_max(a, b) - 1);
+    d = tau / (a * b) * fabs(a - b);
+    q = d > 1e-8 ? -expm1(-d) / d : 1 - d / 2;
+    return tau / (a * b) * (rate ? exp(-low - d) - low * exp(-low) * q : q * hdi_max(fa, fb));
 }
 
 /* What error bounds need of T_m: its eigenvalues, and their weights in e_1 and between e_1 and e_m. */
@@ -16799,9 +16723,7 @@ static void hdi_krylov_sum_task(void *arg, int64_t first, int64_t last) {
 
 /* u = the constants and the part of the basis, for each answer. */
 static void hdi_krylov_sum_run(const hdi_krylov *z, const hdi_krylov_sum *a, hd_context *ctx) {
-    hdi_krylov_sum_job job;
-    job.z = z;
-    job.a = a;
+    hdi_krylov_sum_job job = {z, a};
     hdi_parallel_ranges(ctx, z->m->lap->n_active, HDI_ROWS_PER_TASK, hdi_krylov_sum_task, &job);
 }
 
@@ -16943,7 +16865,7 @@ static hd_status hdi_krylov_answer(hdi_krylov *z, int32_t r, double t, const dou
     }
     lane->off.solver += z->before[r].solver;     /* K_t makes no error larger */
     lane->off.rounding += z->before[r].rounding;
-    hdi_conserve_sums(lap, lane);
+    hdi_conserve(lap, lane, 1);
     lane->u_norm = sqrt(hdi_max(0, hdi_b_norm2(lap, lane->u, lane->tmp)));
     hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, t * drift, 1));
     return HD_OK;
@@ -16965,11 +16887,7 @@ typedef struct hdi_terms {
 } hdi_terms;
 
 static hdi_terms hdi_terms_vertex(int32_t v) {
-    hdi_terms c;
-    c.n = 1;
-    c.one = v;
-    c.vertex = NULL;
-    c.weight = NULL;
+    const hdi_terms c = {1, v, NULL, NULL};
     return c;
 }
 
