@@ -17628,20 +17628,6 @@ typedef struct hdi_spec_pass {
     int32_t n, n_v, n_w, n_chunks;
 } hdi_spec_pass;
 
-static hdi_spec_pass hdi_spec_open(const hdi_spec *s, double *const *v, int32_t n_v, double *const *w,
-                                   int32_t n_w, double *h) {
-    hdi_spec_pass p;
-    p.ops = s->ops;
-    p.v = v;
-    p.w = w;
-    p.h = h;
-    p.n = s->n;
-    p.n_v = n_v;
-    p.n_w = n_w;
-    p.n_chunks = hdi_spec_chunks(s->n);
-    return p;
-}
-
 /* h = - V' w over the rows of a chunk. */
 static void hdi_spec_dots_task(void *arg, int64_t index, int32_t worker) {
     const hdi_spec_pass *p = (const hdi_spec_pass *)arg;
@@ -17678,7 +17664,7 @@ static void hdi_spec_add_task(void *arg, int64_t begin, int64_t end) {
 static void hdi_spec_dots(const hdi_spec *s, double *const *v, int32_t n_v, double *const *w, int32_t n_w,
                           double *h) {
     const int64_t size = 64 * (int64_t)n_v * n_w;
-    hdi_spec_pass p = hdi_spec_open(s, v, n_v, w, n_w, s->part);
+    hdi_spec_pass p = {s->ops, v, w, s->part, s->n, n_v, n_w, hdi_spec_chunks(s->n)};
     int64_t i;
     int32_t c;
     hdi_parallel(s->ctx, p.n_chunks, hdi_spec_dots_task, &p);
@@ -17688,7 +17674,7 @@ static void hdi_spec_dots(const hdi_spec *s, double *const *v, int32_t n_v, doub
 
 static void hdi_spec_add(const hdi_spec *s, double *const *v, int32_t n_v, double *const *w, int32_t n_w,
                          double *h) {
-    hdi_spec_pass p = hdi_spec_open(s, v, n_v, w, n_w, h);
+    hdi_spec_pass p = {s->ops, v, w, h, s->n, n_v, n_w, 0};
     hdi_parallel_ranges(s->ctx, s->n, 8 * (int64_t)HDI_SPEC_TILE, hdi_spec_add_task, &p);
 }
 
@@ -17835,13 +17821,10 @@ static double hdi_spec_cholesky(const double *G, double *R, double *scale, const
 /* Makes the columns of x orthonormal in B by their Gram matrix G = R' R, with bx = B x. */
 static double hdi_spec_orthonormal(const hdi_spec *s, double *x, double *bx, double *scale,
                                    const double *norm, double *drop, double *G, double *R) {
-    hdi_spec_scale job;
+    hdi_spec_scale job = {x, bx, R};
     double off;
     hdi_spec_dots(s, &x, 1, &bx, 1, G);
     off = hdi_spec_cholesky(G, R, scale, norm, drop);
-    job.w = x;
-    job.bw = bx;
-    job.R = R;
     hdi_parallel_ranges(s->ctx, s->n, HDI_ROWS_PER_TASK, hdi_spec_scale_task, &job);
     return off;
 }
@@ -18498,9 +18481,7 @@ static void hdi_spec_left_task(void *arg, int64_t begin, int64_t end) {
 }
 
 static void hdi_spec_left_out(const hd_laplacian *lap, hd_spectrum *out, hd_context *ctx) {
-    hdi_spec_left a;
-    a.lap = lap;
-    a.out = out;
+    hdi_spec_left a = {lap, out};
     memset(out->left, 0, (size_t)out->n * sizeof *out->left);
     memset(out->left_mass, 0, (size_t)out->n * sizeof *out->left_mass);
     hdi_parallel_ranges(ctx, lap->n_active, 1024, hdi_spec_left_task, &a);
@@ -18645,24 +18626,9 @@ typedef struct hdi_spec_sums {
     /* for one source and time */
     double *x, *weight;          /* [count] the source in the vectors; the function of eigenvalues */
     double rest, error;          /* see hdi_spec_filter */
-    double left, whole;          /* of the source: what is left out of the diagonal, and all of it */
-    /* eigenvalues count times unit, so that squares stay in the range of doubles, and distances times root */
-    double unit, root;
+    double left, whole;          /* of the source, see hdi_spec_size */
     double *column, *off;
 } hdi_spec_sums;
-
-static hdi_spec_sums hdi_spec_sums_of(int32_t n_times, const double *t, int32_t k, double *out, double *bound,
-                                      size_t ld) {
-    hdi_spec_sums a;
-    memset(&a, 0, sizeof a);
-    a.k = k;
-    a.n_times = n_times;
-    a.t = t;
-    a.out = out;
-    a.bound = bound;
-    a.ld = ld;
-    return a;
-}
 
 /* weight: exp(-t lambda), 1/lambda or 1/lambda^2, the last two for values that are not of constants. rest: it
  * is no larger for those left out. error: what the residuals and rounding can do to a sum over the pairs with
@@ -18672,31 +18638,35 @@ static hdi_spec_sums hdi_spec_sums_of(int32_t n_times, const double *t, int32_t 
 static void hdi_spec_filter(hdi_spec_sums *a, double t) {
     const hd_spectrum *s = a->of;
     const int32_t first = hdi_low32(s->n_constant, s->count);
-    const double lowest = first < s->count ? s->value[first] : s->next;
-    const double unit = a->power && lowest > 0 && hdi_finite(lowest) ? hdi_even_unit(lowest) : 1;
-    const double low = unit * lowest, next = unit * hdi_max(s->next, 0), root = hdi_ratio_root(s->lap);
+    const double low = first < s->count ? s->value[first] : s->next, next = hdi_max(s->next, 0);
     double sum = 0, most = 0;
     int32_t i;
-    a->unit = unit;
-    a->root = a->power == 2 ? unit : sqrt(unit);
     a->rest = a->power == 0 ? exp(-hdi_bound_times(t, next))
               : next > 0 ? 1 / (a->power == 1 ? next : next * next) : HUGE_VAL;
     for (i = 0; i < s->count; i++) {
-        const double x = unit * s->value[i], y = hdi_max(x, 0);
-        double by = 0, r = hdi_bound_times(root, hdi_bound_times(s->residual[i], hdi_max(x, low)));
+        const double x = s->value[i], inverse = a->power && i >= first && x > 0 ? 1 / x : 0;
+        double by;
         if (a->power == 0) {
-            a->weight[i] = exp(-hdi_bound_times(t, y));
+            a->weight[i] = exp(-hdi_bound_times(t, hdi_max(x, 0)));
             by = x > 0 ? hdi_min(t, 1 / x) : t;
-        } else if (i < first) a->weight[i] = 0;
-        else {
-            a->weight[i] = y == 0 ? 0 : hdi_min(a->power == 1 ? 1 / y : 1 / (y * y), DBL_MAX);
-            by = a->power == 1 ? 1 / (low * x) : (1 / x + 1 / low) / (low * x);
+        } else {
+            a->weight[i] = a->power == 1 ? inverse : inverse * inverse;
+            by = inverse == 0 ? 0 : (a->power == 1 ? 1 : 1 / x + 1 / low) / low / x;
         }
-        r = hdi_bound_times(fabs(r), fabs(by));
-        sum += a->power && i >= first && x <= 0 ? HUGE_VAL : r * r;   /* 1/x is not known at all */
+        by = hdi_bound_times(by, hdi_bound_times(s->residual[i], hdi_max(x, low)));
+        sum = hypot(sum, a->power && i >= first && x <= 0 ? HUGE_VAL : by);   /* 1/x is not known at all */
         most = hdi_max(most, a->weight[i]);
     }
-    a->error = 2 * sqrt(sum) + 4 * (HDI_NOISE_TERMS + s->count) * DBL_EPSILON * most;
+    a->error = hdi_bound_times(2 * hdi_ratio_root(s->lap), sum) +
+               4 * (HDI_NOISE_TERMS + s->count) * DBL_EPSILON * most;
+}
+
+/* Square roots of what the pairs leave out of the diagonal of B^-1 at a row, or with mass of B, and of all of
+ * it. */
+static void hdi_spec_size(const hd_spectrum *s, int32_t row, int mass, double *left, double *whole) {
+    const int32_t v = s->lap->vertex[row];
+    *left = sqrt(mass ? s->left_mass[v] : s->left[v]);
+    *whole = sqrt(mass ? s->lap->b_diag[row] : hdi_inverse_mass(s->lap, row));
 }
 
 /* Entry of vector q, or of B times it. */
@@ -18733,27 +18703,17 @@ static void hdi_spec_sum_rows(const hdi_spec_sums *a, int32_t row, int32_t n, do
 
 /* The value of a row and its bound, from its sum. */
 static void hdi_spec_sum_store(const hdi_spec_sums *a, int32_t row, double sum) {
-    const hd_spectrum *s = a->of;
-    const int32_t v = s->lap->vertex[row];
-    const double inverse = hdi_inverse_mass(s->lap, row), mass = s->lap->b_diag[row];
-    const double left = a->distance && a->mass ? s->left_mass[v] : s->left[v];
-    const double whole = a->distance && a->mass ? mass : inverse;
-    double left2 = a->left, whole2 = a->whole, off;
-    if (a->diagonal) {
-        left2 = a->mass ? s->left_mass[v] : left;
-        whole2 = a->mass ? mass : whole;
+    const int32_t v = a->of->lap->vertex[row];
+    double left, whole, left2 = a->left, whole2 = a->whole, off;
+    hdi_spec_size(a->of, row, a->distance && a->mass, &left, &whole);
+    if (a->diagonal) hdi_spec_size(a->of, row, a->mass, &left2, &whole2);
+    if (a->distance) {                           /* of the difference of two vertices */
+        left = left2 = left + left2;
+        whole = whole2 = whole + whole2;
     }
-    if (a->distance) {
-        const double far_left = sqrt(left) + sqrt(left2), far_all = sqrt(whole) + sqrt(whole2);
-        off = hdi_bound_times(a->rest, far_left * far_left) + hdi_bound_times(a->error, far_all * far_all);
-        off = a->root * hdi_spec_root_off(sum, off);
-        sum = a->root * sqrt(sum);
-    } else {                                     /* roots first: products may leave the range of doubles */
-        off = hdi_bound_times(a->rest, sqrt(left) * sqrt(left2)) +
-              hdi_bound_times(a->error, sqrt(whole) * sqrt(whole2));
-    }
-    a->column[v] = sum;
-    if (a->off) a->off[v] = off;
+    off = hdi_bound_times(a->rest, left * left2) + hdi_bound_times(a->error, whole * whole2);
+    a->column[v] = a->distance ? sqrt(sum) : sum;
+    if (a->off) a->off[v] = a->distance ? hdi_spec_root_off(sum, off) : off;
 }
 
 static void hdi_spec_sum_task(void *arg, int64_t begin, int64_t end) {
@@ -18772,25 +18732,21 @@ static void hdi_spec_sum_task(void *arg, int64_t begin, int64_t end) {
  * inequality. Those without a row count nothing. */
 static void hdi_spec_sum_from(hdi_spec_sums *a, const hdi_terms *from) {
     const hd_spectrum *s = a->of;
-    double left = 0, whole = 0, most = 0;
+    double most = 0, left, whole;
     int32_t q, i;
     a->left = a->whole = 0;
     memset(a->x, 0, (size_t)s->count * sizeof *a->x);
     for (i = 0; i < from->n; i++) {
-        const int32_t v = hdi_terms_at(from, i), row = s->lap->row[v];
+        const int32_t row = s->lap->row[hdi_terms_at(from, i)];
         const double w = hdi_terms_weight(from, i);
         if (row < 0) continue;
         for (q = 0; q < s->count; q++) a->x[q] += w * hdi_spec_entry(s, q, row, a->mass);
-        a->left = a->mass ? s->left_mass[v] : s->left[v];
-        a->whole = a->mass ? s->lap->b_diag[row] : hdi_inverse_mass(s->lap, row);
-        left += fabs(w) * sqrt(a->left);
-        whole += fabs(w) * sqrt(a->whole);
+        hdi_spec_size(s, row, a->mass, &left, &whole);
+        a->left += fabs(w) * left;
+        a->whole += fabs(w) * whole;
     }
-    if (!from->weight) return;
-    a->left = left * left;
-    a->whole = whole * whole;
     for (q = 0; q < s->count; q++) most = hdi_max(most, a->weight[q]);
-    a->error += 4 * from->n * DBL_EPSILON * most;   /* rounding of the sums */
+    a->error += 4 * hdi_high32(from->n - 1, 0) * DBL_EPSILON * most;   /* rounding of the sums */
 }
 
 /* Vertices without a row: those without mass have a zero kernel row, so that distances to them are those from
@@ -18798,7 +18754,8 @@ static void hdi_spec_sum_from(hdi_spec_sums *a, const hdi_terms *from) {
 static void hdi_spec_sum_others(const hdi_spec_sums *a, const hdi_terms *from) {
     const hd_laplacian *lap = a->of->lap;
     const int32_t own = a->power ? hdi_terms_component(lap, from) : -1;
-    const double off = hdi_bound_times(a->rest, a->left) + hdi_bound_times(a->error, a->whole);
+    const double off = hdi_bound_times(a->rest, a->left * a->left) +
+                       hdi_bound_times(a->error, a->whole * a->whole);
     double sum = 0;
     int32_t q, v;
     for (q = 0; q < a->of->count && a->distance; q++) sum += a->weight[q] * a->x[q] * a->x[q];
@@ -18835,60 +18792,57 @@ static void hdi_spec_sums_run(hdi_spec_sums *a, hd_context *ctx) {
     }
 }
 
-/* Checks the arguments of sums over the pairs, and makes room for them. */
-static hd_status hdi_sum_begin(hdi_call *c, hdi_spec_sums *x, const hd_spectrum *s, hd_error *err) {
-    int32_t q;
-    if (hdi_enter(c, s ? s->context : NULL, err) < 0) return c->e->status;
-    if (!HDI_HAS_SPECTRUM) return HDI_LEFT_OUT(c->e, SPECTRUM, "eigenpairs");
-    if (!s || (x->n_times > 0 && !x->t) || (x->k > 0 && !x->out)) return hdi_missing(c->e);
-    if (!x->diagonal && !x->sources) return hdi_missing(c->e);
-    hdi_refuse(x->n_times < 1, "spectrum: there is no time", c->e);
-    hdi_refuse(x->k < 0, "spectrum: a number of columns is negative", c->e);
-    hdi_refuse(x->ld != 0 && x->ld < (size_t)s->n, "spectrum: columns would overlap", c->e);
-    for (q = 0; q < x->n_times; q++)
-        hdi_refuse_value(!hdi_finite(x->t[q]) || x->t[q] < 0, "spectrum: t is negative or not finite",
-                         x->t[q], c->e);
-    if (c->e->status < 0) return c->e->status;
-    x->of = s;
-    x->ld = x->ld ? x->ld : (size_t)s->n;
-    x->scope = hdi_scope_begin(c->ctx, c->e);
-    x->x = HDI_TAKE(&x->scope, double, 2 * (uint64_t)s->count + 1);
-    x->weight = x->x ? x->x + s->count : NULL;
-    if (x->sources && x->x) x->terms = hdi_terms_all(x->sources, s->lap, x->distance, &x->scope);
-    return c->e->status < 0 ? hdi_scope_end(&x->scope) : HD_OK;
-}
-
-static hd_status hdi_sum_end(hdi_call *c, hdi_spec_sums *x) {
-    if (HDI_HAS_SPECTRUM && c->e->status >= 0) hdi_spec_sums_run(x, c->ctx);
-    return hdi_scope_end(&x->scope);
-}
-
-static hd_status hdi_sum_columns(hdi_spec_sums *x, const hd_spectrum *s, hd_kernel kernel, hd_error *err) {
-    hdi_call c;
-    if (hdi_sum_begin(&c, x, s, err) < 0) return c.e->status;
-    hdi_refuse(kernel != HD_KERNEL_OPERATOR && kernel != HD_KERNEL_SYMMETRIC, "spectrum: unknown kernel",
-               c.e);
-    x->mass = kernel == HD_KERNEL_OPERATOR;
-    return hdi_sum_end(&c, x);
-}
-
-static hd_status hdi_sum_distance(hdi_spec_sums *x, const hd_spectrum *s, hd_distance_kind kind,
-                                  hd_error *err) {
-    const int power = kind == HD_DISTANCE_COMMUTE ? 1 : kind == HD_DISTANCE_BIHARMONIC ? 2 : 0;
+/* Checks the arguments of sums over the pairs, makes room for them, and runs them. refused: of their kind, or
+ * NULL. */
+static hd_status hdi_spec_sums_ask(hdi_spec_sums *x, const char *refused, hd_error *err) {
+    const hd_spectrum *s = x->of;
     const double zero = 0;
     hdi_call c;
-    x->power = power;
-    x->distance = 1;
-    if (power && x->n_times <= 1) {              /* no time */
+    int32_t q;
+    if (hdi_enter(&c, s ? s->context : NULL, err) < 0) return c.e->status;
+    if (!HDI_HAS_SPECTRUM) return HDI_LEFT_OUT(c.e, SPECTRUM, "eigenpairs");
+    if (x->power && x->n_times <= 1) {           /* no time */
         x->n_times = 1;
         x->t = &zero;
     }
-    if (hdi_sum_begin(&c, x, s, err) < 0) return c.e->status;
-    hdi_refuse(kind < HD_DISTANCE_CLASSICAL || kind > HD_DISTANCE_BIHARMONIC, "spectrum: unknown distance",
-               c.e);
-    hdi_refuse(power && x->n_times > 1, "spectrum: this distance has no time", c.e);
-    x->mass = kind == HD_DISTANCE_WEIGHTED;
-    return hdi_sum_end(&c, x);
+    x->k = x->diagonal ? 1 : x->sources ? x->sources->count : 0;
+    if (!s || (x->n_times > 0 && !x->t) || (x->k > 0 && !x->out)) return hdi_missing(c.e);
+    if (!x->diagonal && !x->sources) return hdi_missing(c.e);
+    hdi_refuse(x->n_times < 1, "spectrum: there is no time", c.e);
+    hdi_refuse(x->k < 0, "spectrum: a number of columns is negative", c.e);
+    hdi_refuse(x->ld != 0 && x->ld < (size_t)s->n, "spectrum: columns would overlap", c.e);
+    for (q = 0; q < x->n_times; q++)
+        hdi_refuse_value(!hdi_finite(x->t[q]) || x->t[q] < 0, "spectrum: t is negative or not finite",
+                         x->t[q], c.e);
+    hdi_refuse(refused != NULL, refused, c.e);
+    hdi_refuse(x->power && x->n_times > 1, "spectrum: this distance has no time", c.e);
+    if (c.e->status < 0) return c.e->status;
+    x->ld = x->ld ? x->ld : (size_t)s->n;
+    x->scope = hdi_scope_begin(c.ctx, c.e);
+    x->x = HDI_TAKE(&x->scope, double, 2 * (uint64_t)s->count + 1);
+    x->weight = x->x ? x->x + s->count : NULL;
+    if (x->sources && x->x) x->terms = hdi_terms_all(x->sources, s->lap, x->distance, &x->scope);
+    if (c.e->status >= 0) hdi_spec_sums_run(x, c.ctx);
+    return hdi_scope_end(&x->scope);
+}
+
+static hd_status hdi_spec_sums_kernel(hdi_spec_sums *x, hd_kernel kernel, hd_error *err) {
+    x->mass = kernel == HD_KERNEL_OPERATOR;
+    return hdi_spec_sums_ask(x, x->mass || kernel == HD_KERNEL_SYMMETRIC ? NULL : "spectrum: unknown kernel",
+                             err);
+}
+
+static hdi_spec_sums hdi_spec_sums_of(const hd_spectrum *s, int32_t n_times, const double *t, double *out,
+                                      double *bound, size_t ld) {
+    hdi_spec_sums a;
+    memset(&a, 0, sizeof a);
+    a.of = s;
+    a.n_times = n_times;
+    a.t = t;
+    a.out = out;
+    a.bound = bound;
+    a.ld = ld;
+    return a;
 }
 
 /* ==== [26] plan ====
@@ -26558,25 +26512,29 @@ HEATDIFF_API void hd_spectrum_free(hd_spectrum *s) { hdi_spectrum_free(s); }
 HEATDIFF_API hd_status hd_spectrum_columns(const hd_spectrum *s, hd_kernel kernel, int32_t n_times,
                                            const double *t, const hd_sources *sources, double *U,
                                            double *bound, size_t ldu, hd_error *err) {
-    hdi_spec_sums x = hdi_spec_sums_of(n_times, t, sources ? sources->count : 0, U, bound, ldu);
+    hdi_spec_sums x = hdi_spec_sums_of(s, n_times, t, U, bound, ldu);
     x.sources = sources;
-    return hdi_sum_columns(&x, s, kernel, err);
+    return hdi_spec_sums_kernel(&x, kernel, err);
 }
 
 HEATDIFF_API hd_status hd_spectrum_diagonal(const hd_spectrum *s, hd_kernel kernel, int32_t n_times,
                                             const double *t, double *D, double *bound, size_t ldd,
                                             hd_error *err) {
-    hdi_spec_sums x = hdi_spec_sums_of(n_times, t, 1, D, bound, ldd);
+    hdi_spec_sums x = hdi_spec_sums_of(s, n_times, t, D, bound, ldd);
     x.diagonal = 1;
-    return hdi_sum_columns(&x, s, kernel, err);
+    return hdi_spec_sums_kernel(&x, kernel, err);
 }
 
 HEATDIFF_API hd_status hd_spectrum_distance(const hd_spectrum *s, hd_distance_kind kind, int32_t n_times,
                                             const double *t, const hd_sources *sources, double *D,
                                             double *bound, size_t ldd, hd_error *err) {
-    hdi_spec_sums x = hdi_spec_sums_of(n_times, t, sources ? sources->count : 0, D, bound, ldd);
+    hdi_spec_sums x = hdi_spec_sums_of(s, n_times, t, D, bound, ldd);
     x.sources = sources;
-    return hdi_sum_distance(&x, s, kind, err);
+    x.distance = 1;
+    x.power = kind == HD_DISTANCE_COMMUTE ? 1 : kind == HD_DISTANCE_BIHARMONIC ? 2 : 0;
+    x.mass = kind == HD_DISTANCE_WEIGHTED;
+    return hdi_spec_sums_ask(&x, kind < HD_DISTANCE_CLASSICAL || kind > HD_DISTANCE_BIHARMONIC
+                                 ? "spectrum: unknown distance" : NULL, err);
 }
 
 HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const double *t, int32_t k,
