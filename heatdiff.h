@@ -17665,8 +17665,7 @@ static void hdi_spec_dots(const hdi_spec *s, double *const *v, int32_t n_v, doub
                           double *h) {
     const int64_t size = 64 * (int64_t)n_v * n_w;
     hdi_spec_pass p = {s->ops, v, w, s->part, s->n, n_v, n_w, hdi_spec_chunks(s->n)};
-    int64_t i;
-    int32_t c;
+    int64_t i, c;
     hdi_parallel(s->ctx, p.n_chunks, hdi_spec_dots_task, &p);
     for (i = 0; i < size; i++) h[i] = -s->part[i];
     for (c = 1; c < p.n_chunks; c++) for (i = 0; i < size; i++) h[i] -= s->part[c * size + i];
@@ -18830,6 +18829,14 @@ static hd_status hdi_spec_sums_kernel(hdi_spec_sums *x, hd_kernel kernel, hd_err
     x->mass = kernel == HD_KERNEL_OPERATOR;
     return hdi_spec_sums_ask(x, x->mass || kernel == HD_KERNEL_SYMMETRIC ? NULL : "spectrum: unknown kernel",
                              err);
+}
+
+static hd_status hdi_spec_sums_distance(hdi_spec_sums *x, hd_distance_kind kind, hd_error *err) {
+    const int known = kind >= HD_DISTANCE_CLASSICAL && kind <= HD_DISTANCE_BIHARMONIC;
+    x->distance = 1;
+    x->power = kind == HD_DISTANCE_COMMUTE ? 1 : kind == HD_DISTANCE_BIHARMONIC ? 2 : 0;
+    x->mass = kind == HD_DISTANCE_WEIGHTED;
+    return hdi_spec_sums_ask(x, known ? NULL : "spectrum: unknown distance", err);
 }
 
 static hdi_spec_sums hdi_spec_sums_of(const hd_spectrum *s, int32_t n_times, const double *t, double *out,
@@ -26530,11 +26537,7 @@ HEATDIFF_API hd_status hd_spectrum_distance(const hd_spectrum *s, hd_distance_ki
                                             double *bound, size_t ldd, hd_error *err) {
     hdi_spec_sums x = hdi_spec_sums_of(s, n_times, t, D, bound, ldd);
     x.sources = sources;
-    x.distance = 1;
-    x.power = kind == HD_DISTANCE_COMMUTE ? 1 : kind == HD_DISTANCE_BIHARMONIC ? 2 : 0;
-    x.mass = kind == HD_DISTANCE_WEIGHTED;
-    return hdi_spec_sums_ask(&x, kind < HD_DISTANCE_CLASSICAL || kind > HD_DISTANCE_BIHARMONIC
-                                 ? "spectrum: unknown distance" : NULL, err);
+    return hdi_spec_sums_distance(&x, kind, err);
 }
 
 HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const double *t, int32_t k,
