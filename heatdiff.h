@@ -2164,6 +2164,12 @@ static void *hdi_keep(hdi_scope *s, void *block) {
     return block;
 }
 
+/* All blocks of s. */
+static void hdi_scope_move(hdi_scope *to, hdi_scope *s) {
+    HEATDIFF_ASSERT(to->n + s->n <= HDI_SCOPE_MOST);
+    while (s->n > 0) to->block[to->n++] = s->block[--s->n];
+}
+
 static hd_status hdi_scope_end(hdi_scope *s) {
     while (s->n > 0) hdi_free(s->ctx, s->block[--s->n]);
     return s->e->status;
@@ -4767,22 +4773,22 @@ static void hdi_within_task(void *arg, int64_t begin, int64_t end) {
 /* out: row i lists the points of the tree whose squared distance from query i is at most radius2, values
  * are these. Counted in a first pass, written in a second one. */
 static hd_status hdi_within(hd_csr *out, const hdi_tree *t, const double *query, int32_t n_queries,
-                            double radius2, hd_context *ctx, hd_error *e) {
+                            double radius2, hdi_scope *s) {
     enum { ROOM = 256 };       /* of the first pass, which keeps no candidates */
-    hdi_scope s = hdi_scope_begin(ctx, e), passes = hdi_scope_begin(ctx, e);
-    hd_csr a = hdi_csr_take(&s, n_queries, t->n, 0, 0);
+    hdi_scope passes = hdi_scope_begin(s->ctx, s->e);
+    hd_csr a = hdi_csr_take(s, n_queries, t->n, 0, 0);
     hdi_search_job job = {t, query ? query : t->xyz, query ? NULL : t->id, n_queries, 0, 0, NULL, NULL,
                           radius2, &a, NULL};
     int64_t widest;
-    if (e->status >= 0) (void)hdi_search_run(&job, ROOM, hdi_within_task, &passes);
-    if (hdi_scope_end(&passes) < 0) return hdi_scope_end(&s);
+    if (s->e->status >= 0) (void)hdi_search_run(&job, ROOM, hdi_within_task, &passes);
+    if (hdi_scope_end(&passes) < 0) return s->e->status;
     a.nnz = hdi_prefix_sum(a.row_ptr, n_queries);
     widest = hdi_fullest(a.row_ptr, n_queries);
-    a.col = HDI_TAKE(&s, int32_t, a.nnz);
-    a.val = HDI_TAKE(&s, double, a.nnz);
-    if (e->status >= 0) (void)hdi_search_run(&job, widest, hdi_within_task, &passes);
-    if (hdi_scope_end(&passes) >= 0) *out = hdi_csr_keep(&s, a);
-    return hdi_scope_end(&s);
+    a.col = HDI_TAKE(s, int32_t, a.nnz);
+    a.val = HDI_TAKE(s, double, a.nnz);
+    if (s->e->status >= 0) (void)hdi_search_run(&job, widest, hdi_within_task, &passes);
+    *out = a;
+    return hdi_scope_end(&passes);
 }
 
 /* Checks points, queries and sizes. *m becomes the number of queries. */
@@ -4827,6 +4833,7 @@ typedef struct hdi_mesh {
     int32_t *of;        /* [corners] of polygons: the face of a corner */
     int64_t *at;        /* [n + 1] corners at each vertex, faces ascending, where there was an area */
     int32_t *corner;    /* [corners] */
+    struct hdi_tally *tally;    /* [HDI_BLOCKS_MOST] work */
 } hdi_mesh;
 
 static void hdi_mesh_clear(hdi_mesh *mesh, const double *xyz, int32_t n, const int32_t *tri,
@@ -5183,20 +5190,48 @@ static int64_t hdi_block_size(int64_t n) {
     return hdi_most(size, (int64_t)HDI_BLOCK_LEAST);
 }
 
-/* What a block of faces adds to the report. */
-typedef struct hdi_face_tally {
-    int32_t n_repeated_corner, n_zero_area, refused;   /* refused: the one that is named first, or -1 */
-    double steepest;                                   /* the largest cotangent, of the smallest angle */
-} hdi_face_tally;
+/* What a block of faces or of vertices adds to the report. */
+typedef struct hdi_tally {
+    int32_t n_repeated_corner, n_zero_area, n_repeated_face;
+    int32_t refused;                    /* the face that is named first, or -1 */
+    int64_t n_edges, n_boundary, n_nonmanifold, n_misoriented, n_negative;
+    double steepest;                    /* the largest cotangent, of the smallest angle */
+    double length;                      /* of all edges */
+} hdi_tally;
 
-static void hdi_face_refuse(const hdi_mesh *mesh, int32_t f, hdi_face_tally *t) {
+static hdi_tally hdi_tally_none(void) {
+    hdi_tally t;
+    memset(&t, 0, sizeof t);
+    t.refused = -1;
+    t.steepest = -HUGE_VAL;
+    return t;
+}
+
+static void hdi_face_refuse(const hdi_mesh *mesh, int32_t f, hdi_tally *t) {
     if (t->refused < 0 || hdi_face_name(mesh, f) < hdi_face_name(mesh, t->refused)) t->refused = f;
 }
 
-typedef struct hdi_measure_job {
-    const hdi_mesh *mesh;
-    hdi_face_tally tally[HDI_BLOCKS_MOST];
-} hdi_measure_job;
+/* All blocks of n faces or vertices. */
+static hdi_tally hdi_tally_all(const hdi_mesh *mesh, int64_t n) {
+    const int64_t size = hdi_block_size(n);
+    hdi_tally all = hdi_tally_none();
+    int64_t i;
+    for (i = 0; i * size < n; i++) {
+        const hdi_tally *t = mesh->tally + i;
+        all.n_repeated_corner += t->n_repeated_corner;
+        all.n_zero_area += t->n_zero_area;
+        all.n_repeated_face += t->n_repeated_face;
+        all.n_edges += t->n_edges;
+        all.n_boundary += t->n_boundary;
+        all.n_nonmanifold += t->n_nonmanifold;
+        all.n_misoriented += t->n_misoriented;
+        all.n_negative += t->n_negative;
+        all.steepest = hdi_max(all.steepest, t->steepest);
+        all.length += t->length;
+        if (t->refused >= 0) hdi_face_refuse(mesh, t->refused, &all);
+    }
+    return all;
+}
 
 static HDI_INLINE int hdi_corners_repeat(const int32_t *v, int64_t k) {
     int64_t c, d;
@@ -5207,7 +5242,7 @@ static HDI_INLINE int hdi_corners_repeat(const int32_t *v, int64_t k) {
 }
 
 /* Area of face f, and what is kept of its corners. 0: it is left out. */
-static HDI_INLINE double hdi_face_measure(const hdi_mesh *mesh, int32_t f, hdi_face_tally *t) {
+static HDI_INLINE double hdi_face_measure(const hdi_mesh *mesh, int32_t f, hdi_tally *t) {
     const int64_t begin = hdi_face_begin(mesh, f), k = hdi_is_poly(mesh) ? mesh->ptr[f + 1] - begin : 3;
     const int32_t *v = mesh->tri + begin;
     double *cot = mesh->cot + begin, area, steepest = 0, weight = 0;
@@ -5237,33 +5272,23 @@ static HDI_INLINE void hdi_face_ahead(const hdi_mesh *mesh, int64_t f) {
 }
 
 static void hdi_measure_task(void *arg, int64_t begin, int64_t end) {
-    hdi_measure_job *job = (hdi_measure_job *)arg;
-    const hdi_mesh *mesh = job->mesh;
-    hdi_face_tally tally = {0, 0, -1, -HUGE_VAL};
+    const hdi_mesh *mesh = (const hdi_mesh *)arg;
+    hdi_tally tally = hdi_tally_none();
     int32_t f;
     for (f = (int32_t)begin; f < end; f++) {
         hdi_face_ahead(mesh, hdi_least((int64_t)f + HDI_FACES_AHEAD, end - 1));
         mesh->area[f] = hdi_face_measure(mesh, f, &tally);
     }
-    job->tally[begin / hdi_block_size(mesh->m)] = tally;
+    mesh->tally[begin / hdi_block_size(mesh->m)] = tally;
 }
 
-/* All faces of a mesh whose indices are fine. Allocates nothing. */
-static hd_status hdi_faces_measure(const hdi_mesh *mesh, hd_mesh_report *rep, hdi_scope *s) {
-    const int64_t size = hdi_block_size(mesh->m);
-    hdi_face_tally all = {0, 0, -1, -HUGE_VAL};
-    hdi_measure_job job;
-    int64_t i;
-    job.mesh = mesh;
-    hdi_parallel_ranges(s->ctx, mesh->m, size, hdi_measure_task, &job);
-    for (i = 0; i * size < mesh->m; i++) {
-        all.n_repeated_corner += job.tally[i].n_repeated_corner;
-        all.n_zero_area += job.tally[i].n_zero_area;
-        all.steepest = hdi_max(all.steepest, job.tally[i].steepest);
-        if (job.tally[i].refused >= 0) hdi_face_refuse(mesh, job.tally[i].refused, &all);
-    }
+/* All faces of a mesh whose indices are fine. */
+static hd_status hdi_faces_measure(hdi_mesh *mesh, hd_mesh_report *rep, hd_context *ctx, hd_error *e) {
+    hdi_tally all;
+    hdi_parallel_ranges(ctx, mesh->m, hdi_block_size(mesh->m), hdi_measure_task, mesh);
+    all = hdi_tally_all(mesh, mesh->m);
     if (all.refused >= 0)
-        return hdi_fail_face(s->e, HD_ERR_ARGUMENT,
+        return hdi_fail_face(e, HD_ERR_ARGUMENT,
                              "the area of a face is outside 1e-100 .. 1e100, or a weight of it above 1e100",
                              hdi_face_name(mesh, all.refused), mesh->tri[hdi_face_begin(mesh, all.refused)],
                              mesh->area[all.refused]);
@@ -5281,6 +5306,7 @@ static hd_status hdi_mesh_take(hdi_mesh *mesh, hdi_scope *s) {
     mesh->area = HDI_TAKE(s, double, mesh->m);
     mesh->at = HDI_TAKE(s, int64_t, (int64_t)mesh->n + 1);
     mesh->corner = HDI_TAKE(s, int32_t, n);
+    mesh->tally = HDI_TAKE(s, hdi_tally, HDI_BLOCKS_MOST);
     if (!hdi_is_poly(mesh)) mesh->cot = HDI_TAKE(s, double, n);
     if (!hdi_is_poly(mesh)) return s->e->status;
     mesh->g = HDI_TAKE(s, double, 3 * n);
@@ -5311,56 +5337,36 @@ static void hdi_mesh_corners(hdi_mesh *mesh) {
     hdi_rewind(at, mesh->n);
 }
 
-/* A face is read from its smallest corner towards the smaller of its neighbours: faces with the same corners
- * in the same cyclic order are all read alike. One step of that from c, and whether it goes forward. */
-static HDI_INLINE int64_t hdi_corner_step(const hdi_mesh *mesh, int64_t c, int forward) {
-    return forward ? hdi_corner_after(mesh, c) : hdi_corner_before(mesh, c);
-}
-
-static HDI_INLINE int hdi_corner_way(const hdi_mesh *mesh, int64_t c) {
-    return mesh->tri[hdi_corner_after(mesh, c)] < mesh->tri[hdi_corner_before(mesh, c)];
-}
-
-/* A number for the corners of the face in the order from its smallest corner c: of a triangle the two others,
- * of a polygon the hash of Fowler, Noll and Vo, a vertex at a time. */
+/* Of a face with smallest corner c the two corners beside that, which tell triangles apart. */
 static HDI_INLINE uint64_t hdi_corner_key(const hdi_mesh *mesh, int64_t c) {
-    const int forward = hdi_corner_way(mesh, c);
-    uint64_t key = 14695981039346656037u;
-    int64_t at = c;
-    if (!hdi_is_poly(mesh)) {
-        const int32_t q = (int32_t)c % 3, *v = mesh->tri + c - q, a = v[hdi_next3[q]], b = v[hdi_prev3[q]];
-        return (uint64_t)hdi_low32(a, b) << 32 | (uint64_t)hdi_high32(a, b);
-    }
-    do {
-        key = (key ^ (uint64_t)mesh->tri[at]) * 1099511628211u;
-        at = hdi_corner_step(mesh, at, forward);
-    } while (at != c);
-    return key;
+    const int32_t a = mesh->tri[hdi_corner_before(mesh, c)], b = mesh->tri[hdi_corner_after(mesh, c)];
+    return (uint64_t)hdi_low32(a, b) << 32 | (uint64_t)hdi_high32(a, b);
 }
 
+/* Have the faces of c and d, whose keys are the same, their corners in the same cyclic order? */
 static int hdi_corner_same(const hdi_mesh *mesh, int64_t c, int64_t d) {
-    const int forward_c = hdi_corner_way(mesh, c), forward_d = hdi_corner_way(mesh, d);
+    const int forward = mesh->tri[hdi_corner_after(mesh, c)] == mesh->tri[hdi_corner_after(mesh, d)];
     int64_t a = c, b = d;
     do {
         if (mesh->tri[a] != mesh->tri[b]) return 0;
-        a = hdi_corner_step(mesh, a, forward_c);
-        b = hdi_corner_step(mesh, b, forward_d);
+        a = hdi_corner_after(mesh, a);
+        b = forward ? hdi_corner_after(mesh, b) : hdi_corner_before(mesh, b);
     } while (a != c && b != d);
     return a == c && b == d;
 }
 
 /* Of n faces with the same smallest vertex, known by their corners there, those get area 0 that have the
- * corners of an earlier one in the same cyclic order. Returns their number. */
+ * corners of an earlier one in the same cyclic order, in either direction. Returns their number. */
 static int32_t hdi_mesh_repeats(const hdi_mesh *mesh, hdi_pair *face, int32_t n) {
-    int32_t p, first = 0, count = 0;
+    int32_t p, q, count = 0;
     for (p = 0; p < n; p++) face[p].key = hdi_corner_key(mesh, face[p].id);
     hdi_sort_pairs(face, n);
     for (p = 1; p < n; p++) {
-        if (face[p].key != face[first].key) first = p;
-        else if (hdi_corner_same(mesh, face[p].id, face[first].id)) {
-            mesh->area[hdi_corner_face(mesh, face[p].id)] = 0;
-            count++;
-        }
+        for (q = p - 1; q >= 0 && face[q].key == face[p].key; q--)
+            if (hdi_corner_same(mesh, face[p].id, face[q].id)) break;
+        if (q < 0 || face[q].key != face[p].key) continue;
+        mesh->area[hdi_corner_face(mesh, face[p].id)] = 0;
+        count++;
     }
     return count;
 }
@@ -5388,40 +5394,6 @@ static int32_t hdi_side_edge(const hdi_mesh *mesh, int32_t s, int32_t *v, hdi_pa
     const int32_t i = mesh->tri[s], j = mesh->tri[hdi_side_next(s)];
     *v = hdi_low32(i, j);
     return mesh->area[s / 3] > 0 ? hdi_edge_sides(mesh, *v, hdi_high32(i, j), list) : 0;
-}
-
-/* What is counted of edges, and the sum of their lengths. */
-typedef struct hdi_edge_tally {
-    int32_t n_edges, n_boundary, n_nonmanifold, n_misoriented;
-    double length;
-} hdi_edge_tally;
-
-/* An edge of so many faces, of which forward run from its smaller vertex to the larger one. */
-static HDI_INLINE void hdi_edge_count(hdi_edge_tally *t, int64_t faces, int64_t forward,
-                                      double length) {
-    t->n_edges++;
-    t->n_boundary += faces == 1;
-    t->n_nonmanifold += faces > 2;
-    t->n_misoriented += (faces == 2) & (forward != 1);
-    t->length += length;
-}
-
-static void hdi_edge_tally_add(hdi_edge_tally *all, const hdi_edge_tally *t) {
-    all->n_edges += t->n_edges;
-    all->n_boundary += t->n_boundary;
-    all->n_nonmanifold += t->n_nonmanifold;
-    all->n_misoriented += t->n_misoriented;
-    all->length += t->length;
-}
-
-/* border [n] unites boundary edges; it is overwritten. */
-static void hdi_edge_report(const hdi_edge_tally *t, int32_t *border, int32_t n,
-                            hd_mesh_report *rep) {
-    rep->n_edges = t->n_edges;
-    rep->n_boundary_edges = t->n_boundary;
-    rep->n_nonmanifold_edges = t->n_nonmanifold;
-    rep->n_misoriented_edges = t->n_misoriented;
-    rep->n_boundary_loops = t->n_boundary ? hdi_count_sets(border, n) : 0;
 }
 
 /* The length of the side of a triangle that begins at corner c. */
@@ -5478,7 +5450,7 @@ static hd_status hdi_mesh_make(hdi_mesh *mesh, hd_mesh_report *rep, hdi_scope *s
     rep->n_faces = mesh->m;
     if (hdi_mesh_sort(mesh, s) < 0 || hdi_mesh_take(mesh, s) < 0) return s->e->status;
     hdi_mesh_of(mesh);
-    if (hdi_faces_measure(mesh, rep, s) < 0) return s->e->status;
+    if (hdi_faces_measure(mesh, rep, s->ctx, s->e) < 0) return s->e->status;
     hdi_mesh_corners(mesh);
     return mesh->len ? hdi_lengths_agree(mesh, s) : HD_OK;
 }
@@ -5919,7 +5891,7 @@ static hd_status hdi_soup_of_stars(hdi_soup *soup, const double *xyz, int32_t n,
     soup->share = 3;
     if (hdi_soup_faces(mesh, tri, m, n, s) < 0) return s->e->status;
     mesh->xyz = xyz;
-    if (hdi_mesh_take(mesh, s) < 0 || hdi_faces_measure(mesh, &faces, s) < 0) return s->e->status;
+    if (hdi_mesh_take(mesh, s) < 0 || hdi_faces_measure(mesh, &faces, s->ctx, s->e) < 0) return s->e->status;
     hdi_mesh_corners(mesh);
     rep->smallest_angle = faces.smallest_angle;
     for (f = 0; f < mesh->m; f++) {
@@ -6425,13 +6397,6 @@ typedef struct hdi_ring {
     double mass;
 } hdi_ring;
 
-/* What a block of vertices adds to the report. */
-typedef struct hdi_rows_tally {
-    hdi_edge_tally edges;
-    int32_t n_repeated_face;
-    int64_t n_negative;
-} hdi_rows_tally;
-
 /* Blocks of vertices are worked on by so many tasks, each with its own work arrays. */
 enum { HDI_STRANDS = 8 };
 
@@ -6446,22 +6411,12 @@ typedef struct hdi_rows {
     hdi_pair *order;            /* [strands most] */
     int32_t *count;             /* [n] how many others have faces with a vertex; then work */
     char *border;               /* [n] 1: at an edge with one face */
-    hdi_rows_tally *tally;      /* of each block */
 } hdi_rows;
-
-enum { HDI_MOVING_BLOCKS = 20 };
 
 /* What an update needs: of meshes the faces that had an area, and work; of the caller's matrices nothing. */
 typedef struct hd_moving {
-    void *block[HDI_MOVING_BLOCKS];  /* all that is allocated */
-    int32_t n_blocks;
     hdi_rows fill;
 } hdi_moving;
-
-static void hdi_moving_free(hdi_moving *x, hd_context *ctx) {
-    while (x && x->n_blocks > 0) hdi_free(ctx, x->block[--x->n_blocks]);
-    hdi_free(ctx, x);
-}
 
 /* Vertices held at zero. */
 typedef struct hd_holding {
@@ -6470,38 +6425,53 @@ typedef struct hd_holding {
     char *leak;                 /* [n] 1: heat flows from here to a vertex that is held */
 } hdi_holding;
 
-/* [n] where a mesh marks the vertices of its boundary; NULL: they are not asked for. */
-static char *hdi_lap_border(const hd_laplacian *lap) {
-    return lap->holding && lap->holding->border ? lap->holding->mark : NULL;
+/* A Laplacian, and the scope of all that it has: the first block of it may be its context. */
+typedef struct hdi_laplacian {
+    hd_laplacian lap;
+    hdi_scope keep;
+} hdi_laplacian;
+
+static hd_laplacian *hdi_lap_shell(hd_context *ctx, hd_error *e) {
+    hdi_laplacian *x = (hdi_laplacian *)hdi_alloc_zero(ctx, 1, sizeof *x, e);
+    if (!x) return NULL;
+    x->lap.context = ctx;
+    return &x->lap;
 }
 
-/* Frees the values of a pair. */
-static void hdi_pair_free(hd_laplacian *lap, hd_context *ctx) {
-    if (lap->b_diag != lap->mass) hdi_free(ctx, lap->b_diag);
-    hdi_free(ctx, lap->L.val);
-    hdi_free(ctx, lap->B);
-    hdi_free(ctx, lap->mass);
+static hdi_scope *hdi_lap_keep(hd_laplacian *lap, hd_error *e) {
+    hdi_scope *keep = &((hdi_laplacian *)(void *)lap)->keep;
+    keep->ctx = lap->context;
+    keep->e = e;
+    return keep;
 }
 
-static void hdi_holding_free(hdi_holding *x, hd_context *ctx) {
-    if (!x) return;
-    hdi_free(ctx, x->mark);
-    hdi_free(ctx, x->leak);
-    hdi_free(ctx, x);
+static void hdi_laplacian_free(hd_laplacian *lap, hd_context *ctx) {
+    hdi_scope *keep = lap ? &((hdi_laplacian *)(void *)lap)->keep : NULL;
+    while (keep && keep->n > 0) hdi_free(ctx, keep->block[--keep->n]);
+    hdi_free(ctx, lap);
+}
+
+static void hdi_lap_drop(hd_laplacian *lap) {
+    const hd_context *own = (const hd_context *)((hdi_laplacian *)(void *)lap)->keep.block[0];
+    hd_context copy, *ctx = hdi_outlive(lap->context, own, &copy);
+    hdi_laplacian_free(lap, ctx);
+    hdi_let_go(ctx);
 }
 
 /* Marks the vertices that are to be held; border: those at the border too, once it is known. */
 static hd_status hdi_holding_make(hd_laplacian *lap, int border, const int32_t *held, int32_t n_held,
                                   hd_error *e) {
-    hdi_holding *x = (hdi_holding *)hdi_alloc_zero(lap->context, 1, sizeof *x, e);
+    hdi_scope *keep = hdi_lap_keep(lap, e);
+    hdi_holding *x = HDI_TAKE(keep, hdi_holding, 1);
+    char *mark = HDI_TAKE_ZERO(keep, char, lap->n), *leak = HDI_TAKE_ZERO(keep, char, lap->n);
     int32_t q;
+    if (e->status < 0) return e->status;
     lap->holding = x;
-    if (!x) return e->status;
     x->border = border;
-    x->mark = (char *)hdi_alloc_zero(lap->context, (uint64_t)lap->n, 1, e);
-    if (x->mark) x->leak = (char *)hdi_alloc_zero(lap->context, (uint64_t)lap->n, 1, e);
-    for (q = 0; q < n_held && x->mark; q++) x->mark[held[q]] = 1;
-    return e->status;
+    x->mark = mark;
+    x->leak = leak;
+    for (q = 0; q < n_held; q++) mark[held[q]] = 1;
+    return HD_OK;
 }
 
 /* Checks and marks the vertices that the options hold at zero. */
@@ -6519,63 +6489,48 @@ static hd_status hdi_lap_held(hd_laplacian *lap, const hd_laplacian_opts *o, hd_
     return hdi_holding_make(lap, o->border == HD_BORDER_DIRICHLET, o->held, o->n_held, e);
 }
 
-static void hdi_laplacian_free(hd_laplacian *lap, hd_context *ctx) {
-    if (!lap) return;
-    hdi_holding_free(lap->holding, ctx);
-    hdi_moving_free(lap->moving, ctx);
-    hdi_pair_free(lap, ctx);
-    hdi_free(ctx, lap->L.row_ptr);
-    hdi_free(ctx, lap->L.col);
-    hdi_free(ctx, lap->vertex);
-    hdi_free(ctx, lap->row);
-    hdi_free(ctx, lap->component);
-    hdi_free(ctx, lap->xyz);
-    hdi_free(ctx, lap->component_mass);
-    hdi_free(ctx, lap);
-}
-
-/* A Laplacian with a context that lives as long. */
-typedef struct hdi_laplacian {
-    hd_laplacian lap;
-    hd_context context;
-} hdi_laplacian;
-
-static void hdi_lap_drop(hd_laplacian *lap) {
-    hd_context own, *own_in = &((hdi_laplacian *)(void *)lap)->context;
-    hd_context *ctx = hdi_outlive(lap->context, own_in, &own);
-    hdi_laplacian_free(lap, ctx);
-    hdi_let_go(ctx);
-}
-
-static hd_status hdi_held_all(hd_error *e) {
-    return hdi_fail(e, HD_ERR_EMPTY, "laplacian: all vertices with mass are held at zero");
-}
-
-/* Numbers the rows: vertices with mass, and of meshes not held, in their order. Fills row, vertex, mass,
- * b_diag, n_active. */
-static hd_status hdi_lap_rows(hd_laplacian *lap, const double *vertex_mass, const char *held, hd_error *e) {
-    int32_t v, k = 0, n_inert = 0;
-    hd_context *ctx = lap->context;
-    lap->row = HDI_NEW(ctx, int32_t, lap->n, e);
+/* Numbers the rows: vertices with mass that are not held, in their order. Fills row, vertex, mass, b_diag,
+ * n_active and what is counted of the others. */
+static hd_status hdi_lap_rows(hd_laplacian *lap, const double *vertex_mass, hd_error *e) {
+    const char *held = lap->holding && lap->holding->border != 2 ? lap->holding->mark : NULL;
+    hdi_scope *keep = hdi_lap_keep(lap, e);
+    int32_t v, k = 0;
+    lap->row = HDI_TAKE(keep, int32_t, lap->n);
     if (!lap->row) return e->status;
     for (v = 0; v < lap->n; v++) {
-        n_inert += !(vertex_mass[v] > 0);
+        lap->mesh.n_inert += !(vertex_mass[v] > 0);
+        lap->n_held += held && held[v];
         lap->row[v] = held && held[v] ? HD_ROW_HELD : vertex_mass[v] > 0 ? k++ : HD_ROW_INERT;
     }
     lap->n_active = k;
-    lap->mesh.n_inert = n_inert;
-    if (n_inert == lap->n) return hdi_fail(e, HD_ERR_EMPTY, "no vertex has mass");
-    if (k == 0) return hdi_held_all(e);
-    lap->vertex = HDI_NEW(ctx, int32_t, k, e);
-    if (lap->vertex) lap->mass = HDI_NEW(ctx, double, k, e);
-    if (e->status < 0) return e->status;
-    lap->b_diag = lap->mass;
-    for (v = 0; v < lap->n; v++) {
+    if (lap->mesh.n_inert == lap->n) return hdi_fail(e, HD_ERR_EMPTY, "no vertex has mass");
+    if (k == 0) return hdi_fail(e, HD_ERR_EMPTY, "laplacian: all vertices with mass are held at zero");
+    lap->vertex = HDI_TAKE(keep, int32_t, k);
+    lap->b_diag = lap->mass = HDI_TAKE(keep, double, k);
+    for (v = 0; v < lap->n && e->status >= 0; v++) {
         if (lap->row[v] < 0) continue;
         lap->vertex[lap->row[v]] = v;
         lap->mass[lap->row[v]] = vertex_mass[v];
     }
-    return HD_OK;
+    return e->status;
+}
+
+/* Closes the gaps in rows of L with diagonal or full B: entries without a column. */
+static void hdi_lap_pack(hd_laplacian *lap) {
+    int64_t p = 0, q = 0;
+    int32_t i;
+    for (i = 0; i < lap->n_active; i++) {
+        const int64_t end = lap->L.row_ptr[i + 1];
+        for (; p < end; p++) {
+            if (lap->L.col[p] < 0) continue;
+            lap->L.col[q] = lap->L.col[p];
+            lap->L.val[q] = lap->L.val[p];
+            if (lap->B) lap->B[q] = lap->B[p];
+            q++;
+        }
+        lap->L.row_ptr[i + 1] = q;
+    }
+    lap->L.nnz = q;
 }
 
 /* Masses of the components. */
@@ -6601,22 +6556,6 @@ static void hdi_lap_connect(hd_laplacian *lap) {
     for (i = 0; i < lap->n_active; i++) c[i] = c[i] == i ? lap->n_components++ : c[c[i]];
 }
 
-/* How many components there can be: updates may part what is joined now. */
-static int32_t hdi_lap_components_most(const hd_laplacian *lap) {
-    return lap->moving || lap->holding ? lap->n_active : lap->n_components;
-}
-
-/* Components and their masses, of a Laplacian that has its values and, if it is to be updated, what that
- * needs. */
-static hd_status hdi_lap_components(hd_laplacian *lap, hd_error *e) {
-    lap->component = HDI_NEW(lap->context, int32_t, lap->n_active, e);
-    if (!lap->component) return e->status;
-    hdi_lap_connect(lap);
-    lap->component_mass = HDI_NEW(lap->context, double, hdi_lap_components_most(lap), e);
-    if (lap->component_mass) hdi_lap_component_masses(lap);
-    return e->status;
-}
-
 /* Which components conserve their heat, of a Laplacian with its masses. An infinite one takes the constants
  * out of all formulas: their part of K_t f is the heat divided by the mass. */
 static void hdi_held_components(hd_laplacian *lap) {
@@ -6634,30 +6573,28 @@ static void hdi_held_components(hd_laplacian *lap) {
     if (!lap->conserves) hdi_lap_component_masses(lap);
 }
 
-/* Ends an update, once L, B and mass have their new values. */
-static void hdi_lap_renewed(hd_laplacian *lap) {
-    lap->version++;
+/* Components and their masses, once L, B and mass have values, new or for the first time. */
+static hd_status hdi_lap_components(hd_laplacian *lap, hd_error *e) {
+    hdi_scope *keep = hdi_lap_keep(lap, e);
+    lap->version += lap->component != NULL;
+    if (!lap->component) lap->component = HDI_TAKE(keep, int32_t, lap->n_active);
+    if (!lap->component) return e->status;
     hdi_lap_connect(lap);
+    if (!lap->component_mass)                    /* updates may part what is joined now */
+        lap->component_mass = HDI_TAKE(keep, double, lap->moving ? lap->n_active : lap->n_components);
+    if (!lap->component_mass) return e->status;
     hdi_lap_component_masses(lap);
     hdi_held_components(lap);
-}
-
-/* The area of m faces. */
-static double hdi_sum_areas(const double *area, int32_t m) {
-    double sum = 0;
-    int32_t f;
-    for (f = 0; f < m; f++) sum += area[f];
-    return sum;
+    return HD_OK;
 }
 
 /* Copies the places of the rows, where there are any. */
 static hd_status hdi_lap_places(hd_laplacian *lap, const double *xyz, hd_error *e) {
     int32_t i;
-    if (!xyz) return HD_OK;
-    lap->xyz = HDI_NEW(lap->context, double, hdi_triple(lap->n_active), e);
-    if (!lap->xyz) return e->status;
-    for (i = 0; i < lap->n_active; i++) hdi_copy3(lap->xyz + hdi_triple(i), hdi_at3(xyz, lap->vertex[i]));
-    return HD_OK;
+    if (xyz && !lap->xyz) lap->xyz = HDI_TAKE(hdi_lap_keep(lap, e), double, hdi_triple(lap->n_active));
+    for (i = 0; lap->xyz && i < lap->n_active; i++)
+        hdi_copy3(lap->xyz + hdi_triple(i), hdi_at3(xyz, lap->vertex[i]));
+    return e->status;
 }
 
 /* ---- polygons ----
@@ -6766,7 +6703,7 @@ static hdi_ring hdi_rows_ring(const hdi_rows *x, int64_t strand) {
 }
 
 /* Sorts the entries and counts the edges to later vertices. */
-static void hdi_rows_edges(const hdi_rows *x, hdi_ring *r, hdi_rows_tally *tally) {
+static void hdi_rows_edges(const hdi_rows *x, hdi_ring *r, hdi_tally *t) {
     const hdi_mesh *mesh = &x->mesh;
     const int32_t v = r->entry[0].to;
     int32_t q;
@@ -6779,23 +6716,27 @@ static void hdi_rows_edges(const hdi_rows *x, hdi_ring *r, hdi_rows_tally *tally
         const hdi_entry *e = r->entry + r->order[q].id;
         if (e->faces == 1) x->border[v] = 1;
         if (e->to <= v) continue;
-        tally->n_negative += e->L > 0;
-        if (e->faces > 0 && (mesh->xyz || mesh->len))
-            hdi_edge_count(&tally->edges, e->faces, e->forward,
-                           mesh->len ? e->size : hdi_edge_length(mesh->xyz, v, e->to));
+        t->n_negative += e->L > 0;
+        if (e->faces == 0 || (!mesh->xyz && !mesh->len)) continue;
+        t->n_edges++;
+        t->n_boundary += e->faces == 1;
+        t->n_nonmanifold += e->faces > 2;
+        t->n_misoriented += (e->faces == 2) & (e->forward != 1);
+        t->length += mesh->len ? e->size : hdi_edge_length(mesh->xyz, v, e->to);
     }
 }
 
 /* The row of vertex v in L and B, if it has one. A column without a row adds to the diagonal and is not
- * written. An edge from the vertex to itself has no weight, and is twice in its B. */
+ * written; its room, which updates do not have any more, is marked. An edge from the vertex to itself has no
+ * weight, and is twice in its B. */
 static void hdi_rows_write(const hdi_rows *x, const hdi_ring *r, int32_t v) {
     hd_laplacian *lap = x->lap;
     const int32_t i = lap->row[v];
     double *L = lap->L.val, *B = lap->B, sum = 0, b_sum = 0;
-    int64_t at = lap->L.row_ptr[i], diagonal = at;
-    int32_t q, n_held = 0, leaks = 0;
+    int64_t at, diagonal = 0;
+    int32_t q, held = 0, leaks = 0;
     if (i < 0) return;
-    for (q = 0; q < r->n; q++) {
+    for (q = 0, at = lap->L.row_ptr[i]; q < r->n; q++) {
         const hdi_entry *e = r->entry + r->order[q].id;
         const int32_t j = lap->row[r->order[q].key];
         if (j == i) {
@@ -6804,7 +6745,7 @@ static void hdi_rows_write(const hdi_rows *x, const hdi_ring *r, int32_t v) {
         }
         sum += e->L;
         if (j < 0) {
-            n_held++;
+            held = 1;
             leaks |= e->L != 0;
             continue;
         }
@@ -6813,13 +6754,14 @@ static void hdi_rows_write(const hdi_rows *x, const hdi_ring *r, int32_t v) {
         if (B) b_sum += B[at] = e->B / 12;
         at++;
     }
+    for (; at < lap->L.row_ptr[i + 1]; at++) lap->L.col[at] = -1;
     lap->L.col[diagonal] = i;
     L[diagonal] = -sum;
     lap->mass[i] = r->mass;
     /* a sixth of the areas that the mass has thirds of */
     if (B) B[diagonal] = lap->b_diag[i] = r->mass / 2 + r->entry[0].B / 12;
-    if (B && n_held) lap->mass[i] = b_sum + B[diagonal];
-    if (lap->holding) lap->holding->leak[lap->vertex[i]] = (char)leaks;
+    if (B && held) lap->mass[i] = b_sum + B[diagonal];
+    if (lap->holding) lap->holding->leak[v] = (char)leaks;
 }
 
 /* Counts the vertices that v has faces with. Those faces of which it is the smallest come to be first in
@@ -6848,18 +6790,18 @@ static int32_t hdi_rows_count(hdi_rows *x, const hdi_ring *r, int32_t v) {
 
 /* The block of vertices [begin, end): counts rows while there are no entries, then fills them. In covers
  * faces repeat others by right. */
-static void hdi_rows_block(hdi_rows *x, hdi_ring *r, int32_t begin, int32_t end, hdi_rows_tally *tally) {
+static void hdi_rows_block(hdi_rows *x, hdi_ring *r, int32_t begin, int32_t end, hdi_tally *t) {
     const hdi_mesh *mesh = &x->mesh;
     int32_t v;
-    memset(tally, 0, sizeof *tally);
+    memset(t, 0, sizeof *t);
     for (v = begin; v < end; v++) {
         x->border[v] = 0;
         if (!x->entry) {
             const int32_t n = hdi_rows_count(x, r, v);
-            if (mesh->xyz || mesh->len) tally->n_repeated_face += hdi_mesh_repeats(mesh, r->order, n);
+            if (mesh->xyz || mesh->len) t->n_repeated_face += hdi_mesh_repeats(mesh, r->order, n);
         } else if (mesh->at[v] < mesh->at[v + 1]) {
             hdi_ring_make(r, mesh, x->lump, v);
-            hdi_rows_edges(x, r, tally);
+            hdi_rows_edges(x, r, t);
             if (x->lap) hdi_rows_write(x, r, v);
         }
     }
@@ -6872,47 +6814,50 @@ static void hdi_rows_task(void *arg, int64_t strand, int32_t worker) {
     int64_t b;
     (void)worker;
     for (b = strand; b * size < n; b += x->strands)
-        hdi_rows_block(x, &r, (int32_t)(b * size), (int32_t)hdi_least(n, (b + 1) * size), x->tally + b);
+        hdi_rows_block(x, &r, (int32_t)(b * size), (int32_t)hdi_least(n, (b + 1) * size), x->mesh.tally + b);
 }
+
+/* All rows of lap; NULL: of none. Returns what was counted. */
+static hdi_tally hdi_rows_run(hdi_rows *x, hd_laplacian *lap, hd_context *ctx) {
+    x->lap = lap;
+    hdi_parallel(ctx, x->strands, hdi_rows_task, x);
+    return hdi_tally_all(&x->mesh, x->mesh.n);
+}
+
+/* So that strands share no line of a cache. */
+static int64_t hdi_rows_room(int64_t n) { return n / 32 * 32 + 32; }
 
 /* Finds faces that repeat others, counts the entries of rows and takes the work arrays for them, in s. The
  * corners of the mesh are listed. */
 static hd_status hdi_rows_begin(hdi_rows *x, const hdi_mesh *mesh, hd_mesh_report *rep, hdi_scope *s) {
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
-    const int64_t n = mesh->n, size = hdi_block_size(n), blocks = (n + size - 1) / size;
-    int64_t i;
+    const int32_t n = mesh->n;
+    int32_t v, repeated;
     memset(x, 0, sizeof *x);
     x->mesh = *mesh;
-    x->strands = hdi_is_serial(s->ctx) ? 1 : (int32_t)hdi_least(HDI_STRANDS, blocks);
-    x->most = hdi_fullest(mesh->at, n) / 32 * 32 + 32;   /* so strands share no line of a cache */
+    x->strands = hdi_is_serial(s->ctx) ? 1 : (int32_t)hdi_least(HDI_STRANDS, n / hdi_block_size(n) + 1);
+    x->most = hdi_rows_room(hdi_fullest(mesh->at, n));
     x->count = HDI_TAKE(s, int32_t, n);
     x->border = HDI_TAKE(s, char, n);
-    x->tally = HDI_TAKE_ZERO(s, hdi_rows_tally, blocks);
-    x->place = HDI_TAKE(&own, int32_t, x->strands * n);
+    x->place = HDI_TAKE(s, int32_t, x->strands * (int64_t)n);
     x->order = HDI_TAKE(&own, hdi_pair, x->strands * x->most);
     if (s->e->status < 0) return hdi_scope_end(&own);
-    hdi_fill_i32(x->place, x->strands * n, -1);
-    hdi_parallel(s->ctx, x->strands, hdi_rows_task, x);
-    for (i = 0; i < blocks; i++) {
-        rep->n_repeated_face += x->tally[i].n_repeated_face;
-        rep->n_faces_used -= x->tally[i].n_repeated_face;
-    }
-    for (i = 0, x->most = 32; i < n; i++) x->most = hdi_most(x->most, x->count[i] / 32 * 32 + 32);
+    hdi_fill_i32(x->place, x->strands * (int64_t)n, -1);
+    repeated = hdi_rows_run(x, NULL, s->ctx).n_repeated_face;
+    rep->n_repeated_face += repeated;
+    rep->n_faces_used -= repeated;
     (void)hdi_scope_end(&own);
-    x->place = HDI_TAKE_ZERO(s, int32_t, x->strands * n);
+    hdi_fill_i32(x->place, x->strands * (int64_t)n, 0);
+    for (v = 0, x->most = 0; v < n; v++) x->most = hdi_most(x->most, hdi_rows_room(x->count[v]));
     x->entry = HDI_TAKE(s, hdi_entry, x->strands * x->most);
     x->order = HDI_TAKE(s, hdi_pair, x->strands * x->most);
     return s->e->status;
 }
 
-/* What is known of the edges of a mesh in space, once its rows are filled. Returns their mean length. */
-static double hdi_rows_report(hdi_rows *x, hd_mesh_report *rep) {
-    const int64_t size = hdi_block_size(x->mesh.n);
-    hdi_edge_tally all = {0, 0, 0, 0, 0};
+/* What is known of the edges of a mesh in space, and their mean length. */
+static void hdi_rows_report(hdi_rows *x, const hdi_tally *all, hd_mesh_report *rep, double *h) {
     hdi_ring r = hdi_rows_ring(x, 0);
-    int64_t b;
     int32_t v, q;
-    for (b = 0; b * size < x->mesh.n; b++) hdi_edge_tally_add(&all, &x->tally[b].edges);
     hdi_fill_own(x->count, x->mesh.n);
     for (v = 0; v < x->mesh.n; v++) {
         if (!x->border[v]) continue;
@@ -6920,66 +6865,51 @@ static double hdi_rows_report(hdi_rows *x, hd_mesh_report *rep) {
         for (q = 1; q < r.n; q++)
             if (r.entry[q].faces == 1) hdi_unite(x->count, v, r.entry[q].to);
     }
-    hdi_edge_report(&all, x->count, x->mesh.n, rep);
-    return all.length / (double)all.n_edges;
+    rep->n_edges = all->n_edges;
+    rep->n_boundary_edges = all->n_boundary;
+    rep->n_nonmanifold_edges = all->n_nonmanifold;
+    rep->n_misoriented_edges = all->n_misoriented;
+    rep->n_boundary_loops = all->n_boundary ? hdi_count_sets(x->count, x->mesh.n) : 0;
+    *h = all->length / (double)all->n_edges;
 }
 
 /* Marks the vertices of the border where that is asked for. */
 static void hdi_rows_border(hdi_rows *x, const hd_laplacian *lap) {
-    char *mark = hdi_lap_border(lap);
+    char *mark = lap->holding && lap->holding->border ? lap->holding->mark : NULL;
     int32_t v;
     if (!mark || (!x->mesh.xyz && !x->mesh.len)) return;
-    hdi_parallel(lap->context, x->strands, hdi_rows_task, x);
+    (void)hdi_rows_run(x, NULL, lap->context);
     for (v = 0; v < lap->n; v++) mark[v] |= x->border[v];
-}
-
-/* Takes the columns of vertices without a row out of the counts. */
-static void hdi_rows_held(const hdi_rows *x, const hd_laplacian *lap) {
-    hdi_ring r = hdi_rows_ring(x, 0);
-    int32_t v, q;
-    for (v = 0; v < x->mesh.n && lap->holding; v++) {
-        if (x->mesh.at[v] == x->mesh.at[v + 1] || lap->row[v] >= 0) continue;
-        hdi_ring_make(&r, &x->mesh, x->lump, v);
-        for (q = 1; q < r.n; q++) x->count[r.entry[q].to]--;
-    }
 }
 
 /* Rows for the vertices that have faces, and room for their values. */
 static hd_status hdi_lap_pattern(hd_laplacian *lap, const hdi_rows *x, int full, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
-    const hdi_mesh *mesh = &x->mesh;
-    const int holds = lap->holding && lap->holding->border != 2;
-    double *mass = HDI_TAKE_ZERO(&s, double, lap->n), *B = NULL, *b_diag = NULL;
+    hdi_scope s = hdi_scope_begin(lap->context, e), *keep = hdi_lap_keep(lap, e);
+    double *mass = HDI_TAKE_ZERO(&s, double, lap->n);
     int64_t nnz = 0;
-    hd_csr L;
     int32_t v;
-    for (v = 0; v < mesh->n && mass; v++)
-        if (mesh->at[v] < mesh->at[v + 1]) mass[v] = 1;
-    if (!mass || hdi_lap_rows(lap, mass, holds ? lap->holding->mark : NULL, e) < 0) return hdi_scope_end(&s);
-    hdi_rows_held(x, lap);
-    for (v = 0; v < mesh->n; v++) nnz += lap->row[v] >= 0 ? x->count[v] + 1 : 0;
-    L = hdi_csr_take(&s, lap->n_active, lap->n_active, nnz, 1);
-    if (full) B = HDI_TAKE(&s, double, nnz);
-    if (full) b_diag = HDI_TAKE(&s, double, lap->n_active);
-    if (e->status < 0) return hdi_scope_end(&s);
-    lap->L = hdi_csr_keep(&s, L);
-    lap->B = (double *)hdi_keep(&s, B);
-    if (full) lap->b_diag = (double *)hdi_keep(&s, b_diag);
-    for (v = 0; v < mesh->n; v++)
+    for (v = 0; v < lap->n && mass; v++) mass[v] = x->mesh.at[v] < x->mesh.at[v + 1];
+    if (!mass || hdi_lap_rows(lap, mass, e) < 0) return hdi_scope_end(&s);
+    for (v = 0; v < lap->n; v++) nnz += lap->row[v] >= 0 ? x->count[v] + 1 : 0;
+    lap->L = hdi_csr_take(keep, lap->n_active, lap->n_active, nnz, 1);
+    if (full) lap->B = HDI_TAKE(keep, double, nnz);
+    if (full) lap->b_diag = HDI_TAKE(keep, double, lap->n_active);
+    for (v = 0; v < lap->n && e->status >= 0; v++)
         if (lap->row[v] >= 0) lap->L.row_ptr[lap->row[v]] = x->count[v] + 1;
-    hdi_prefix_sum(lap->L.row_ptr, lap->n_active);
+    if (e->status >= 0) hdi_prefix_sum(lap->L.row_ptr, lap->n_active);
     return hdi_scope_end(&s);
 }
 
-/* Values of the rows, and what the report says of weights. */
+/* Values of the rows and what is known of them. area and h of intrinsic triangles are known. */
 static void hdi_lap_values(hd_laplacian *lap, hdi_rows *x) {
-    const int64_t size = hdi_block_size(x->mesh.n);
-    int64_t b;
-    x->lap = lap;
-    hdi_parallel(lap->context, x->strands, hdi_rows_task, x);
+    const hdi_tally all = hdi_rows_run(x, lap, lap->context);
+    const hdi_mesh *mesh = &x->mesh;
+    int32_t f;
     lap->conserves = 1;
-    lap->mesh.n_negative_weights = 0;
-    for (b = 0; b * size < x->mesh.n; b++) lap->mesh.n_negative_weights += x->tally[b].n_negative;
+    lap->mesh.n_negative_weights = all.n_negative;
+    if (!mesh->xyz && !mesh->len) return;
+    hdi_rows_report(x, &all, &lap->mesh, &lap->h);
+    for (f = 0, lap->area = 0; f < mesh->m; f++) lap->area += mesh->area[f];
 }
 
 /* Rows, L and B of a mesh that x knows. full: B is, if its kind is. */
@@ -6990,15 +6920,17 @@ static hd_status hdi_lap_assemble(hd_laplacian *lap, hdi_rows *x, const double *
         hdi_progress(lap->context, "assemble", 0.4, e) < 0 || hdi_lap_places(lap, xyz, e) < 0)
         return e->status;
     hdi_lap_values(lap, x);
+    if (lap->n_held > 0) hdi_lap_pack(lap);
+    /* The element matrix area/12 (1 1' + I) is at least 1/2 of its diagonal, area/12 I; that of a triangle
+     * with corners v, v, w at least 1 - sqrt(1/3), and that of corners v, v, v is its diagonal. */
+    lap->b_ratio = !lap->B ? 1 : lap->mesh.n_self_edges ? 1 - sqrt(1.0 / 3) : 0.5;
     return hdi_progress(lap->context, "assemble", 0.8, e);
 }
 
 /* ---- meshes that move ---- */
 
-/* Freed with the Laplacian, whatever comes. */
 static hdi_moving *hdi_moving_new(hd_laplacian *lap, hd_error *e) {
-    hdi_moving *x = (hdi_moving *)hdi_alloc_zero(lap->context, 1, sizeof *x, e);
-    return lap->moving = x;
+    return lap->moving = HDI_TAKE_ZERO(hdi_lap_keep(lap, e), hdi_moving, 1);
 }
 
 /* Keeps a mesh and its rows, all that lives in s, with a copy of the faces. The corners of those that were
@@ -7021,7 +6953,7 @@ static hd_status hdi_moving_make(hd_laplacian *lap, const hdi_rows *from, hdi_sc
     x->fill.mesh.tri = tri;
     x->fill.mesh.face = face;
     x->fill.mesh.ptr = ptr;
-    for (; s->n > 0; s->n--) x->block[x->n_blocks++] = s->block[s->n - 1];
+    hdi_scope_move(hdi_lap_keep(lap, s->e), s);
     return HD_OK;
 }
 
@@ -7041,24 +6973,20 @@ static hd_status hdi_moving_masses(const hdi_mesh *mesh, hd_error *e) {
 
 /* Measures the faces anew and fills the rows again. Nothing of the Laplacian changes before all is fine. */
 static hd_status hdi_lap_update(hd_laplacian *lap, const double *xyz, hd_error *e) {
-    hdi_scope none = hdi_scope_begin(lap->context, e);
     hdi_rows *x = &lap->moving->fill;
     hd_mesh_report *to = &lap->mesh, rep;
-    int32_t i;
     if (hdi_points_check(xyz, lap->n, e) < 0) return e->status;
     x->mesh.xyz = xyz;
     memset(&rep, 0, sizeof rep);
-    if (hdi_faces_measure(&x->mesh, &rep, &none) < 0 || hdi_moving_masses(&x->mesh, e) < 0) return e->status;
+    if (hdi_faces_measure(&x->mesh, &rep, lap->context, e) < 0 || hdi_moving_masses(&x->mesh, e) < 0)
+        return e->status;
     hdi_lap_values(lap, x);
-    lap->area = hdi_sum_areas(x->mesh.area, x->mesh.m);
-    lap->h = hdi_rows_report(x, to);
-    for (i = 0; i < lap->n_active; i++) hdi_copy3(lap->xyz + hdi_triple(i), hdi_at3(xyz, lap->vertex[i]));
     to->n_faces_used = rep.n_faces_used;
     to->n_zero_area = to->n_faces - rep.n_faces_used - to->n_repeated_corner - to->n_repeated_face;
     to->smallest_angle = rep.smallest_angle;
+    (void)hdi_lap_places(lap, xyz, e);
     x->mesh.xyz = NULL;
-    hdi_lap_renewed(lap);
-    return HD_OK;
+    return hdi_lap_components(lap, e);
 }
 
 /* (L, B), places and h of faces that are measured and live in s. xyz: of their vertices. full: B is, if its
@@ -7067,17 +6995,9 @@ static hd_status hdi_lap_mesh(hd_laplacian *lap, const hdi_mesh *mesh, const dou
                               int updatable, hdi_scope *s) {
     hdi_scope own = hdi_scope_begin(lap->context, s->e);
     hdi_rows x;
-    if (hdi_rows_begin(&x, mesh, &lap->mesh, updatable ? s : &own) < 0 ||
-        hdi_lap_assemble(lap, &x, xyz, full, s->e) < 0)
-        return hdi_scope_end(&own);
-    if (mesh->xyz || mesh->len) {                /* of intrinsic triangles it is known */
-        lap->h = hdi_rows_report(&x, &lap->mesh);
-        lap->area = hdi_sum_areas(mesh->area, mesh->m);
-    }
-    /* The element matrix area/12 (1 1' + I) is at least 1/2 of its diagonal, area/12 I; that of a triangle
-     * with corners v, v, w at least 1 - sqrt(1/3), and that of corners v, v, v is its diagonal. */
-    lap->b_ratio = !lap->B ? 1 : lap->mesh.n_self_edges ? 1 - sqrt(1.0 / 3) : 0.5;
-    if (updatable) (void)hdi_moving_make(lap, &x, s);
+    if (hdi_rows_begin(&x, mesh, &lap->mesh, updatable ? s : &own) >= 0 &&
+        hdi_lap_assemble(lap, &x, xyz, full, s->e) >= 0 && updatable)
+        (void)hdi_moving_make(lap, &x, s);
     return hdi_scope_end(&own);
 }
 
@@ -7125,10 +7045,11 @@ static hd_status hdi_input_open(hdi_input *in, const hd_mesh *m, double stiffeni
 static hd_status hdi_lap_edges(hd_laplacian *lap, const hdi_mesh *mesh, double *h, hd_error *e) {
     hdi_scope own = hdi_scope_begin(lap->context, e);
     hdi_rows x;
-    if (hdi_rows_begin(&x, mesh, &lap->mesh, &own) < 0) return hdi_scope_end(&own);
-    hdi_parallel(lap->context, x.strands, hdi_rows_task, &x);
-    *h = hdi_rows_report(&x, &lap->mesh);
-    hdi_rows_border(&x, lap);
+    if (hdi_rows_begin(&x, mesh, &lap->mesh, &own) >= 0) {
+        const hdi_tally all = hdi_rows_run(&x, NULL, lap->context);
+        hdi_rows_report(&x, &all, &lap->mesh, h);
+        hdi_rows_border(&x, lap);
+    }
     return hdi_scope_end(&own);
 }
 
@@ -7150,6 +7071,7 @@ static hd_status hdi_lap_flat(hd_laplacian *lap, hdi_flat *flat, const hdi_input
     mesh->n = lap->n;
     mesh->at = HDI_TAKE(s, int64_t, (int64_t)mesh->n + 1);
     mesh->corner = HDI_TAKE(s, int32_t, hdi_triple(mesh->m));
+    mesh->tally = soup->mesh.tally;
     if (s->e->status < 0) return s->e->status;
     hdi_mesh_corners(mesh);
     lap->area = soup->total / soup->share;
@@ -7271,22 +7193,24 @@ static int64_t hdi_pair_shape(const hd_laplacian *lap, const hd_csr *L, const hd
 
 /* Rows of the vertices that have entries in B, and the pattern of the pair. */
 static hd_status hdi_pair_pattern(hd_laplacian *lap, const hd_csr *L, const hd_csr *B, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
+    hdi_scope s = hdi_scope_begin(lap->context, e), *keep = hdi_lap_keep(lap, e);
     double *present = HDI_TAKE_ZERO(&s, double, lap->n);
     int64_t nnz = 0, p;
-    int32_t i;
-    hd_csr a;
-    if (!present) return hdi_scope_end(&s);
-    for (i = 0; i < lap->n; i++)
-        for (p = B->row_ptr[i]; p < B->row_ptr[i + 1]; p++)
-            if (B->val[p] != 0) present[i] = 1;
-    if (hdi_lap_rows(lap, present, lap->holding ? lap->holding->mark : NULL, e) < 0) return hdi_scope_end(&s);
+    int32_t i, full = 0;
+    for (i = 0; present && i < lap->n; i++) {
+        for (p = B->row_ptr[i]; p < B->row_ptr[i + 1]; p++) {
+            if (B->val[p] == 0) continue;
+            present[i] = 1;
+            full |= B->col[p] != i;
+        }
+    }
+    if (!present || hdi_lap_rows(lap, present, e) < 0) return hdi_scope_end(&s);
     for (i = 0; i < lap->n_active; i++) nnz += hdi_pair_shape(lap, L, B, lap->vertex[i], NULL);
-    a = hdi_csr_take(&s, lap->n_active, lap->n_active, nnz, 0);
-    if (e->status < 0) return hdi_scope_end(&s);
-    for (i = 0, nnz = 0; i < lap->n_active; i++)
-        a.row_ptr[i + 1] = nnz += hdi_pair_shape(lap, L, B, lap->vertex[i], a.col + nnz);
-    lap->L = hdi_csr_keep(&s, a);
+    lap->L = hdi_csr_take(keep, lap->n_active, lap->n_active, nnz, 1);
+    if (full) lap->B = HDI_TAKE(keep, double, nnz);
+    if (full) lap->b_diag = HDI_TAKE(keep, double, lap->n_active);
+    for (i = 0, nnz = 0; i < lap->n_active && e->status >= 0; i++)
+        lap->L.row_ptr[i + 1] = nnz += hdi_pair_shape(lap, L, B, lap->vertex[i], lap->L.col + nnz);
     return hdi_scope_end(&s);
 }
 
@@ -7296,26 +7220,49 @@ typedef struct hdi_pair_row {
     hdi_sum l_sum, b_off;                        /* b_off: sizes of the entries beside the diagonal */
 } hdi_pair_row;
 
-static hd_status hdi_pair_sums(const hd_laplacian *lap, const hd_csr *L, const hd_csr *B, int32_t v,
-                               hdi_pair_row *r, hd_error *e) {
-    int64_t p;
+static hd_status hdi_pair_strange(const char *text, int32_t v, int32_t c, double value, hd_error *e) {
+    return hdi_fail_row(e, HD_ERR_STRUCTURE, text, v, c, value);
+}
+
+static void hdi_pair_put(hd_laplacian *lap, int64_t at, double l, double b) {
+    lap->L.val[at] = l;
+    if (lap->B) lap->B[at] = b;
+}
+
+/* Row v of the caller's matrices: its sums, and its values in the pair. */
+static hd_status hdi_pair_fill_row(hd_laplacian *lap, const hd_csr *L, const hd_csr *B, int32_t v,
+                                   hdi_pair_row *r, hd_error *e) {
+    const int32_t i = lap->row[v];
+    const int64_t p_end = L->row_ptr[v + 1], q_end = B->row_ptr[v + 1];
+    int64_t p = L->row_ptr[v], q = B->row_ptr[v], at = i < 0 ? 0 : lap->L.row_ptr[i];
     memset(r, 0, sizeof *r);
-    for (p = L->row_ptr[v]; p < L->row_ptr[v + 1]; p++) {
-        if (lap->row[L->col[p]] == HD_ROW_INERT) continue;
-        hdi_sum_add(&r->l_sum, L->val[p]);
-        r->l_abs += fabs(L->val[p]);
-        if (L->col[p] == v) r->l_diag = L->val[p];
+    while (p < p_end || q < q_end) {
+        const int32_t cp = p < p_end ? L->col[p] : INT32_MAX, cq = q < q_end ? B->col[q] : INT32_MAX;
+        const int32_t c = hdi_low32(cp, cq), j = lap->row[c];
+        const double l = cp == c ? L->val[p++] : 0, b = cq == c ? B->val[q++] : 0;
+        if (b != 0 && (i == HD_ROW_INERT || j == HD_ROW_INERT))
+            return hdi_pair_strange("update of matrices: a vertex without mass stays so", v, c, b, e);
+        if (i == HD_ROW_INERT || j == HD_ROW_INERT) continue;
+        hdi_sum_add(&r->l_sum, l);
+        r->l_abs += fabs(l);
+        r->b_all += b;
+        r->b_mass += j >= 0 ? b : 0;
+        if (c == v) r->l_diag = l;
+        if (c == v) r->b_diag = b;
+        else hdi_sum_add(&r->b_off, fabs(b));
+        if (lap->holding) lap->holding->leak[v] |= j == HD_ROW_HELD && l != 0;
+        if (i >= 0 && j >= 0) {
+            const int64_t end = lap->L.row_ptr[i + 1];
+            for (; at < end && lap->L.col[at] < j; at++) hdi_pair_put(lap, at, 0, 0);
+            if (at < end && lap->L.col[at] == j) hdi_pair_put(lap, at++, l, b);
+            else if (l != 0 || b != 0)
+                return hdi_pair_strange("update of matrices: an entry is not in the pattern", v, c,
+                                        l != 0 ? l : b, e);
+        }
+        if (!lap->B && c != v && b != 0)
+            return hdi_pair_strange("update of matrices: B was diagonal, and is not any more", v, c, b, e);
     }
-    for (p = B->row_ptr[v]; p < B->row_ptr[v + 1]; p++) {
-        const int32_t j = lap->row[B->col[p]];
-        if (B->val[p] != 0 && (j == HD_ROW_INERT || lap->row[v] == HD_ROW_INERT))
-            return hdi_fail_row(e, HD_ERR_STRUCTURE, "update of matrices: a vertex without mass stays so", v,
-                                B->col[p], B->val[p]);
-        r->b_all += B->val[p];
-        if (j >= 0) r->b_mass += B->val[p];
-        if (B->col[p] == v) r->b_diag = B->val[p];
-        else hdi_sum_add(&r->b_off, fabs(B->val[p]));
-    }
+    for (; i >= 0 && at < lap->L.row_ptr[i + 1]; at++) hdi_pair_put(lap, at, 0, 0);
     return HD_OK;
 }
 
@@ -7338,27 +7285,27 @@ static hd_status hdi_pair_check(const hdi_pair_row *r, int32_t v, hd_error *e) {
     return HD_OK;
 }
 
-/* b = B 1, diag(B) and their signs; is B diagonal, how dominant is its diagonal; is L 1 = 0, up to the
- * rounding of its entries. Rows of vertices held are looked at, too. root [n]: sqrt(diag(L)), raised by what
- * the tolerance of the check for symmetry leaves open; vertices without mass have no limit. */
-static hd_status hdi_pair_measure(hd_laplacian *lap, const hd_csr *L, const hd_csr *B, double *root,
-                                  int *diagonal, hd_error *e) {
+/* L, B, b = B 1 and diag(B); how dominant is B's diagonal; is L 1 = 0, up to the rounding of its entries. Rows
+ * of vertices held are looked at, too. root [n]: sqrt(diag(L)), raised by what the tolerance of the check for
+ * symmetry leaves open; vertices without mass have no limit. */
+static hd_status hdi_pair_fill(hd_laplacian *lap, const hd_csr *L, const hd_csr *B, double *root,
+                               hd_error *e) {
     int32_t v;
-    *diagonal = lap->conserves = 1;
+    lap->conserves = 1;
     lap->b_ratio = 1;
     lap->area = 0;
     for (v = 0; v < lap->n; v++) {
         const int32_t i = lap->row[v];
         hdi_pair_row r;
         root[v] = HUGE_VAL;
-        if (hdi_pair_sums(lap, L, B, v, &r, e) < 0) return e->status;
+        if (lap->holding) lap->holding->leak[v] = 0;
+        if (hdi_pair_fill_row(lap, L, B, v, &r, e) < 0) return e->status;
         if (i == HD_ROW_INERT || (i == HD_ROW_HELD && r.b_diag == 0 && r.b_off.high == 0)) continue;
         if (hdi_pair_check(&r, v, e) < 0) return e->status;
         root[v] = sqrt(r.l_diag + 1e-12 * r.l_abs);
         if (fabs(r.l_sum.high + r.l_sum.low) > 4 * DBL_EPSILON * r.l_abs) lap->conserves = 0;
         if (r.b_off.high > 0) {                  /* Gershgorin */
             const double rest = (r.b_diag - r.b_off.high) - r.b_off.low;
-            *diagonal = 0;
             lap->b_ratio = hdi_min(lap->b_ratio, (1 - 4 * DBL_EPSILON) * rest / r.b_diag);
         }
         lap->area += r.b_all;
@@ -7386,122 +7333,35 @@ static hd_status hdi_pair_semidefinite(const hd_csr *L, const double *root, hd_e
     return HD_OK;
 }
 
-/* The values of a matrix over vertices into val, on the pattern of lap. */
-static hd_status hdi_pair_values(const hd_laplacian *lap, const hd_csr *a, double *val, hd_error *e) {
-    int32_t i;
-    int64_t p, q;
-    for (i = 0; i < lap->n_active; i++) {
-        const int32_t v = lap->vertex[i];
-        const int64_t end = lap->L.row_ptr[i + 1];
-        q = lap->L.row_ptr[i];
-        for (p = q; p < end; p++) val[p] = 0;
-        for (p = a->row_ptr[v]; p < a->row_ptr[v + 1]; p++) {
-            const int32_t j = lap->row[a->col[p]];
-            if (j < 0) continue;
-            while (q < end && lap->L.col[q] < j) q++;
-            if (q < end && lap->L.col[q] == j) val[q] = a->val[p];
-            else if (a->val[p] != 0)
-                return hdi_fail_row(e, HD_ERR_STRUCTURE, "update of matrices: an entry is not in the pattern",
-                                    v, a->col[p], a->val[p]);
-        }
-    }
-    return HD_OK;
-}
-
-/* next becomes lap with new values, which live in s, all but components and a proof about B. The matrices are
- * checked by rows. */
+/* next becomes lap with the values of L and B; of an update they live in s. */
 static hd_status hdi_pair_next(hd_laplacian *next, const hd_laplacian *lap, const hd_csr *L, const hd_csr *B,
                                hdi_scope *s) {
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
     double *root = HDI_TAKE(&own, double, lap->n);
-    int diagonal = 1;
     *next = *lap;
-    next->L.val = HDI_TAKE(s, double, lap->L.nnz);
-    next->B = HDI_TAKE(s, double, lap->L.nnz);
-    next->mass = HDI_TAKE(s, double, lap->n_active);
-    next->b_diag = HDI_TAKE(s, double, lap->n_active);
-    if (s->e->status < 0 || hdi_pair_values(lap, L, next->L.val, s->e) < 0 ||
-        hdi_pair_values(lap, B, next->B, s->e) < 0 ||
-        hdi_pair_measure(next, L, B, root, &diagonal, s->e) < 0 || hdi_pair_semidefinite(L, root, s->e) < 0)
-        return hdi_scope_end(&own);
-    if (lap->component && !lap->B && !diagonal)
-        hdi_fail(s->e, HD_ERR_STRUCTURE, "update of matrices: B was diagonal, and is not any more");
-    if (lap->component ? !lap->B : diagonal) {
-        next->B = NULL;
-        next->b_diag = next->mass;
+    if (lap->component) {
+        next->L.val = HDI_TAKE(s, double, lap->L.nnz);
+        next->B = lap->B ? HDI_TAKE(s, double, lap->L.nnz) : NULL;
+        next->mass = HDI_TAKE(s, double, lap->n_active);
+        next->b_diag = lap->B ? HDI_TAKE(s, double, lap->n_active) : next->mass;
     }
+    if (s->e->status >= 0 && hdi_pair_fill(next, L, B, root, s->e) >= 0)
+        (void)hdi_pair_semidefinite(L, root, s->e);
     return hdi_scope_end(&own);
 }
 
-/* Takes the values of next, which live in s and come from L, in the place of its own. */
-static void hdi_pair_take(hd_laplacian *lap, const hd_laplacian *next, const hd_csr *L, hdi_scope *s) {
-    int64_t p;
-    int32_t v;
-    hdi_pair_free(lap, lap->context);
-    *lap = *next;
-    hdi_keep(s, lap->L.val);
-    hdi_keep(s, lap->B);
-    hdi_keep(s, lap->mass);
-    if (lap->B) hdi_keep(s, lap->b_diag);
-    for (v = 0; v < lap->n && lap->holding; v++) {
-        lap->holding->leak[v] = 0;
-        for (p = L->row_ptr[v]; p < L->row_ptr[v + 1]; p++)
-            lap->holding->leak[v] |= lap->row[L->col[p]] == HD_ROW_HELD && L->val[p] != 0;
-    }
-}
-
-/* ---- vertices held at zero ----
- * Dirichlet conditions: what is held has no row and no column, in L nor in B. What is left is again a pair, L
- * positive semi-definite and B >= b_ratio diag(B), as parts of the whole that are cut out by rows and
- * columns. Meshes and matrices leave them out while their rows are filled, points are cut here. */
-
-/* Cuts them out of a pair with diagonal B. */
-static void hdi_held_cut(hd_laplacian *lap) {
-    char *leak = lap->holding->leak;
-    const int32_t n = lap->n_active;
-    int64_t p = 0, q = 0;
-    int32_t i, k = 0;
-    for (i = 0; i < n; i++)
-        lap->row[lap->vertex[i]] = lap->holding->mark[lap->vertex[i]] ? HD_ROW_HELD : k++;
-    for (i = 0; i < n; i++) {
-        const int32_t v = lap->vertex[i], j = lap->row[v];
-        const int64_t end = lap->L.row_ptr[i + 1];
-        for (; p < end; p++) {
-            const int32_t c = lap->row[lap->vertex[lap->L.col[p]]];
-            if (c < 0) leak[v] |= lap->L.val[p] != 0;
-            if (c < 0 || j < 0) continue;
-            lap->L.col[q] = c;
-            lap->L.val[q++] = lap->L.val[p];
-        }
-        if (j < 0) continue;
-        lap->L.row_ptr[j + 1] = q;
-        lap->mass[j] = lap->mass[i];
-        hdi_copy3(lap->xyz + hdi_triple(j), hdi_at3(lap->xyz, i));
-    }
-    for (i = 0; i < n; i++)
-        if (lap->row[lap->vertex[i]] >= 0) lap->vertex[lap->row[lap->vertex[i]]] = lap->vertex[i];
-    lap->L.n_rows = lap->L.n_cols = lap->n_active = k;
-    lap->L.nnz = q;
-}
-
-/* Ends the making of a Laplacian: takes out the vertices to hold that still have rows, and finds the
- * components of what is left. */
-static hd_status hdi_lap_hold(hd_laplacian *lap, hd_error *e) {
-    hdi_holding *x = lap->holding;
-    int32_t v, rows = 0;
-    for (v = 0; v < lap->n && x; v++) {
-        lap->n_held += x->mark[v];
-        rows += x->mark[v] && lap->row[v] >= 0;
-        if (x->mark[v] && lap->row[v] < 0) lap->row[v] = HD_ROW_HELD;
-    }
-    if (rows == lap->n_active) return hdi_held_all(e);
-    if (rows > 0) hdi_held_cut(lap);
-    if (hdi_lap_components(lap, e) < 0) return e->status;
-    hdi_held_components(lap);
-    if (lap->moving) return HD_OK;
-    hdi_holding_free(x, lap->context);
-    lap->holding = NULL;
-    return HD_OK;
+/* Takes the values of next. */
+static void hdi_pair_take(hd_laplacian *lap, const hd_laplacian *next) {
+    const size_t rows = (size_t)lap->n_active * sizeof(double), entries = (size_t)lap->L.nnz * sizeof(double);
+    lap->h = next->h;
+    lap->area = next->area;
+    lap->b_ratio = next->b_ratio;
+    lap->conserves = next->conserves;
+    if (!lap->component) return;
+    memcpy(lap->L.val, next->L.val, entries);
+    if (lap->B) memcpy(lap->B, next->B, entries);
+    memcpy(lap->mass, next->mass, rows);
+    if (lap->B) memcpy(lap->b_diag, next->b_diag, rows);
 }
 
 /* ---- pairs renumbered ---- */
@@ -7552,39 +7412,38 @@ static void hdi_pair_refresh(hd_laplacian *out, const hd_laplacian *lap, int64_t
 /* A Laplacian with rows renumbered: row i of out is row perm[i] of lap. out lives in ctx. */
 static hd_laplacian *hdi_pair_renumber(const hd_laplacian *lap, const int32_t *perm,
                                        hd_context *ctx, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(ctx, e), keep = hdi_scope_begin(ctx, e);
+    hdi_scope s = hdi_scope_begin(ctx, e), *keep;
     const int32_t n = lap->n_active;
     int64_t *fill = HDI_TAKE(&s, int64_t, n);
-    hd_laplacian *out = HDI_TAKE(&keep, hd_laplacian, 1), next = *lap;
-    int32_t *vertex, *row, i;
-    next.L = hdi_csr_take(&keep, n, n, lap->L.nnz, 1);
-    next.B = lap->B ? HDI_TAKE(&keep, double, lap->L.nnz) : NULL;
-    next.mass = HDI_TAKE(&keep, double, n);
-    next.b_diag = lap->B ? HDI_TAKE(&keep, double, n) : next.mass;
-    next.component_mass = HDI_TAKE(&keep, double, hdi_lap_components_most(lap));
-    next.component = HDI_TAKE(&keep, int32_t, n);
-    next.vertex = vertex = HDI_TAKE(&keep, int32_t, n);
-    next.row = row = HDI_TAKE(&keep, int32_t, lap->n);
-    next.context = ctx;
-    next.xyz = NULL;                             /* an order has been found */
-    next.moving = NULL;
-    next.holding = NULL;
-    if (e->status < 0) {
-        (void)hdi_scope_end(&s);
-        (void)hdi_scope_end(&keep);
-        return NULL;
+    hd_laplacian *out = fill ? hdi_lap_shell(ctx, e) : NULL;
+    int32_t i;
+    if (!out) return (void)hdi_scope_end(&s), out;
+    keep = hdi_lap_keep(out, e);
+    *out = *lap;
+    out->context = ctx;
+    out->xyz = NULL;                             /* an order has been found */
+    out->moving = NULL;
+    out->holding = NULL;
+    out->L = hdi_csr_take(keep, n, n, lap->L.nnz, 1);
+    out->B = lap->B ? HDI_TAKE(keep, double, lap->L.nnz) : NULL;
+    out->mass = HDI_TAKE(keep, double, n);
+    out->b_diag = lap->B ? HDI_TAKE(keep, double, n) : out->mass;
+    out->component_mass = HDI_TAKE(keep, double, lap->moving ? n : lap->n_components);
+    out->row = HDI_TAKE(keep, int32_t, lap->n + 2 * (int64_t)n);
+    if (e->status >= 0) {
+        out->vertex = out->row + lap->n;
+        out->component = out->vertex + n;
+        memcpy(out->row, lap->row, (size_t)lap->n * sizeof *lap->row);
+        for (i = 0; i < n; i++) {
+            out->vertex[i] = lap->vertex[perm[i]];
+            out->row[out->vertex[i]] = i;
+            out->L.row_ptr[i + 1] = out->L.row_ptr[i] + lap->L.row_ptr[perm[i] + 1] - lap->L.row_ptr[perm[i]];
+        }
+        hdi_pair_refresh(out, lap, fill);
     }
-    keep.n = 0;                                  /* all of it is the caller's now */
-    *out = next;
-    memcpy(row, lap->row, (size_t)lap->n * sizeof *row);
-    for (i = 0; i < n; i++) {
-        vertex[i] = lap->vertex[perm[i]];
-        row[vertex[i]] = i;
-        out->L.row_ptr[i + 1] = out->L.row_ptr[i] + lap->L.row_ptr[perm[i] + 1] - lap->L.row_ptr[perm[i]];
-    }
-    hdi_pair_refresh(out, lap, fill);
-    (void)hdi_scope_end(&s);
-    return out;
+    if (hdi_scope_end(&s) >= 0) return out;
+    hdi_laplacian_free(out, ctx);
+    return NULL;
 }
 
 /* Multiplies B by a power of four that brings its largest diagonal entry near one, and returns it: exp(-t
@@ -7803,46 +7662,56 @@ static double hdi_cloud_bandwidth(const hdi_cloud *cloud, uint64_t *work) {
 typedef struct hdi_weights {
     hd_laplacian *lap;
     double bandwidth, scale;   /* exp: of all weights */
+    const int32_t *point;      /* [points with mass] their vertices */
+    const double *mass;        /* [n] of the vertices; NULL: ones */
 } hdi_weights;
 
-/* Squared distances of some rows become entries of L. Products commute, so that L is symmetric to the
- * last bit. */
+/* Squared distances of some rows, by the numbers of points, become entries of L. Products commute, so that L
+ * is symmetric to the last bit. Columns without a row are marked. */
 static void hdi_weights_task(void *arg, int64_t begin, int64_t end) {
     const hdi_weights *job = (const hdi_weights *)arg;
     hd_laplacian *lap = job->lap;
-    const double quarter = -0.25 / job->bandwidth,
-                 *mass = hdi_kind_of(lap->kind)->lump == HDI_LUMP_ONES ? NULL : lap->mass;
+    const double quarter = -0.25 / job->bandwidth, *mass = job->mass;
     int64_t i, p;
     for (i = begin; i < end; i++) {
+        const int32_t v = lap->vertex[i];
         double sum = 0, *diagonal = NULL;
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
-            const int32_t j = lap->L.col[p];
+            const int32_t w = job->point[lap->L.col[p]];
             double *value = lap->L.val + p, scale = job->scale;
-            if (j == i) {
+            lap->L.col[p] = lap->row[w] < 0 ? -1 : lap->row[w];
+            if (w == v) {
                 diagonal = value;
                 continue;
             }
-            if (mass) scale = (mass[i] / job->bandwidth) * (mass[j] / job->bandwidth) * HDI_QUARTER_INV_PI;
+            if (mass) scale = (mass[v] / job->bandwidth) * (mass[w] / job->bandwidth) * HDI_QUARTER_INV_PI;
             *value = -exp(*value * quarter) * scale;
             sum += *value;
+            if (lap->row[w] < 0) lap->holding->leak[v] |= *value != 0;
         }
         *diagonal = -sum;
     }
 }
 
-/* The pattern by a radius search over the rows, then the values in its place. */
-static hd_status hdi_cloud_assemble(hd_laplacian *lap, double cut2, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
+/* The pattern by a radius search from the rows over all points with mass, then the values in its place. */
+static hd_status hdi_cloud_assemble(hd_laplacian *lap, const double *xyz, const double *mass, double cut2,
+                                    hd_error *e) {
+    hdi_scope s = hdi_scope_begin(lap->context, e), *keep = hdi_lap_keep(lap, e);
     hd_point_report *rep = &lap->points;
-    hdi_weights job;
+    int32_t *point = HDI_TAKE(&s, int32_t, lap->n), n = 0, i;
+    double *places = HDI_TAKE(&s, double, hdi_triple(lap->n));
+    hdi_weights job = {lap, rep->bandwidth2, 0, point, mass};
     hdi_tree tree;
-    int32_t i;
-    if (hdi_tree_make(&tree, lap->xyz, lap->n_active, &s) < 0) return hdi_scope_end(&s);
-    if (hdi_within(&lap->L, &tree, NULL, lap->n_active, cut2, lap->context, e) < 0) return hdi_scope_end(&s);
-    if (hdi_progress(lap->context, "assemble", 0.7, e) < 0) return hdi_scope_end(&s);
-    job.lap = lap;
-    job.bandwidth = rep->bandwidth2;
-    job.scale = hdi_divide(hdi_divide(HDI_QUARTER_INV_PI, job.bandwidth), job.bandwidth) / lap->n_active;
+    for (i = 0; i < lap->n && e->status >= 0; i++) {
+        if (!(mass[i] > 0)) continue;
+        hdi_copy3(places + hdi_triple(n), hdi_at3(xyz, i));
+        point[n++] = i;
+    }
+    if (e->status < 0 || hdi_tree_make(&tree, places, n, &s) < 0 ||
+        hdi_within(&lap->L, &tree, n > lap->n_active ? lap->xyz : NULL, lap->n_active, cut2, keep) < 0 ||
+        hdi_progress(lap->context, "assemble", 0.7, e) < 0) return hdi_scope_end(&s);
+    job.scale = hdi_divide(hdi_divide(HDI_QUARTER_INV_PI, job.bandwidth), job.bandwidth) / n;
+    if (hdi_kind_of(lap->kind)->lump == HDI_LUMP_ONES) job.mass = NULL;
     hdi_parallel_ranges(lap->context, lap->n_active, HDI_POINTS_PER_TASK, hdi_weights_task, &job);
     for (i = 0; i < lap->n_active; i++) {
         const int64_t count = lap->L.row_ptr[i + 1] - lap->L.row_ptr[i];
@@ -7855,6 +7724,8 @@ static hd_status hdi_cloud_assemble(hd_laplacian *lap, double cut2, hd_error *e)
         }
         rep->most_in_row = count > rep->most_in_row ? (int32_t)count : rep->most_in_row;
     }
+    lap->L.n_cols = lap->n_active;
+    if (n > lap->n_active) hdi_lap_pack(lap);
     return hdi_scope_end(&s);
 }
 
@@ -7893,9 +7764,9 @@ static hd_status hdi_lap_points(hd_laplacian *lap, const double *xyz, hd_error *
     if (rep->bandwidth2 == 0) rep->bandwidth2 = hdi_cloud_bandwidth(&cloud, (uint64_t *)(void *)work);
     rep->cut_radius = sqrt(-4 * log(rep->weight_cut) * rep->bandwidth2);
     hdi_cloud_masses(&cloud, lap, &places, copies, work);
-    if (hdi_lap_rows(lap, work, NULL, e) >= 0 && hdi_progress(lap->context, "assemble", 0.4, e) >= 0 &&
+    if (hdi_lap_rows(lap, work, e) >= 0 && hdi_progress(lap->context, "assemble", 0.4, e) >= 0 &&
         hdi_lap_places(lap, xyz, e) >= 0)
-        (void)hdi_cloud_assemble(lap, -4 * log(rep->weight_cut) * rep->bandwidth2, e);
+        (void)hdi_cloud_assemble(lap, xyz, work, -4 * log(rep->weight_cut) * rep->bandwidth2, e);
     lap->b_ratio = 1;
     lap->conserves = 1;
     return hdi_scope_end(&s);
@@ -15621,7 +15492,7 @@ static hd_status hdi_pair_replace(hd_laplacian *lap, const hd_csr *L, const hd_c
     hd_laplacian next;
     if (hdi_pair_next(&next, lap, L, B, &s) >= 0 && hdi_lap_ratio_known(&next, e) >= 0) {
         next.h = h;
-        hdi_pair_take(lap, &next, L, &s);
+        hdi_pair_take(lap, &next);
     }
     return hdi_scope_end(&s);
 }
@@ -24987,11 +24858,11 @@ static hd_status hdi_geo_store(hd_geodesic *g, const hd_laplacian *lap, const hd
 static hd_status hdi_geo_make(hd_geodesic *g, const hdi_input *in, int32_t neighbours,
                               const hd_geodesic_opts *o, hd_error *e) {
     hdi_scope s = hdi_scope_begin(g->ctx, e), own = hdi_scope_begin(g->ctx, e);
-    hd_laplacian *lap = (hd_laplacian *)hdi_alloc_zero(g->ctx, 1, sizeof *lap, e);
+    hd_laplacian *lap = hdi_lap_shell(g->ctx, e);
     hdi_surface z;
     if (!lap) return hdi_scope_end(&s);
     lap->n = g->n;
-    lap->context = g->ctx;                       /* the row sums of fem are the lumped mass */
+    /* the row sums of fem are the lumped mass */
     lap->kind = o->mass == HD_GEODESIC_MASS_VORONOI ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM;
     lap->points.neighbours = neighbours;
     g->border = o->border;
@@ -26049,19 +25920,25 @@ HEATDIFF_API void hd_csr_free(hd_csr *a, hd_context *ctx) {
 /* A Laplacian without content. */
 static hd_laplacian *hdi_lap_new(const hd_laplacian_opts *opts, int32_t n, hd_laplacian_kind kind,
                                  hd_error *err, hdi_call *c) {
-    hdi_laplacian *shell;
+    hd_laplacian *lap;
+    hd_context *own = NULL;
     if (hdi_enter_with(c, !opts || HDI_CLEARED(opts), opts ? opts->context : NULL,
                        "laplacian options: not cleared before use", err) < 0) return NULL;
     hdi_refuse(n < 0, "laplacian: a size is negative", c->e);
     if (c->e->status < 0) return NULL;
-    shell = (hdi_laplacian *)hdi_alloc_zero(c->ctx, 1, sizeof *shell, c->e);
-    if (!shell) return NULL;
-    shell->lap.n = n;
-    shell->lap.kind = kind;
-    shell->lap.context = hdi_enter_keep(c, &shell->context);
+    lap = hdi_lap_shell(c->ctx, c->e);
+    if (!lap) return NULL;
+    lap->n = n;
+    lap->kind = kind;
+    if (c->ctx == &c->context) own = HDI_TAKE(hdi_lap_keep(lap, c->e), hd_context, 1);
+    if (c->e->status < 0) {
+        hdi_laplacian_free(lap, c->ctx);
+        return NULL;
+    }
+    lap->context = hdi_enter_keep(c, own);
     hdi_hold(c->ctx);
-    (void)hdi_lap_held(&shell->lap, opts, c->e);
-    return &shell->lap;
+    (void)hdi_lap_held(lap, opts, c->e);
+    return lap;
 }
 
 static hd_status hdi_lap_done(hd_laplacian **out, hd_laplacian *lap, hd_status status) {
@@ -26072,7 +25949,7 @@ static hd_status hdi_lap_done(hd_laplacian **out, hd_laplacian *lap, hd_status s
 
 /* The same once the pair is there. */
 static hd_status hdi_lap_end(hd_laplacian **out, hd_laplacian *lap, hd_status status, hd_error *e) {
-    if (status >= 0) status = hdi_lap_hold(lap, e);
+    if (status >= 0) status = hdi_lap_components(lap, e);
     if (status >= 0) lap->lambda_max = hdi_lambda_known(lap);
     return hdi_lap_done(out, lap, status);
 }
@@ -26261,7 +26138,7 @@ HEATDIFF_API hd_status hd_laplacian_update_matrices(hd_laplacian *lap, const hd_
     if (c.e->status >= 0 && hdi_csr_check(L, 1, c.e) >= 0 && hdi_csr_check(B, 1, c.e) >= 0 &&
         hdi_pair_replace(lap, L, B, h, c.e) >= 0) {
         lap->lambda_max = hdi_lambda_known(lap);
-        hdi_lap_renewed(lap);
+        (void)hdi_lap_components(lap, c.e);
     }
     return c.e->status;
 }
