@@ -4903,24 +4903,20 @@ static hd_status hdi_mesh_check(const hdi_mesh *mesh, hd_error *e) {
 #define HDI_LENGTH_AGREE 1e-12
 
 static hd_status hdi_lengths_check(const double *len, int32_t m, hd_error *e) {
-    int32_t f;
-    int q;
-    for (f = 0; f < m; f++, len += 3) {
-        const double half = (len[0] + len[1] + len[2]) / 2;
-        for (q = 0; q < 3; q++) {
-            if (!hdi_finite(len[q]))
-                return hdi_fail_face(e, HD_ERR_NOT_FINITE, "a length is not finite", f, -1, len[q]);
-            if (len[q] < 0)
-                return hdi_fail_face(e, HD_ERR_ARGUMENT, "a length is negative", f, -1, len[q]);
-            if (len[q] != 0 && !hdi_in_range(len[q]))
-                return hdi_fail_face(e, HD_ERR_ARGUMENT, "a length is not 0 and outside 1e-100 .. 1e100", f,
-                                     -1, len[q]);
+    int64_t c;
+    for (c = 0; c < 2 * hdi_triple(m); c++) {    /* the sides of a face, then against each other */
+        const double *side = len + 3 * (c / 6), x = side[c % 3];
+        const char *bad = NULL;
+        if (c % 6 >= 3) {
+            if (x > (side[0] + side[1] + side[2]) / 2 * (1 + HDI_LENGTH_ROUNDING))
+                bad = "a side of a face is longer than the two others together";
+        } else if (!hdi_finite(x)) {
+            bad = "a length is not finite";
+        } else if (x != 0 && !hdi_in_range(x)) {
+            bad = x < 0 ? "a length is negative" : "a length is not 0 and outside 1e-100 .. 1e100";
         }
-        for (q = 0; q < 3; q++)
-            if (len[q] > half * (1 + HDI_LENGTH_ROUNDING))
-                return hdi_fail_face(e, HD_ERR_ARGUMENT,
-                                     "a side of a face is longer than the two others together", f, -1,
-                                     len[q]);
+        if (bad)
+            return hdi_fail_face(e, hdi_finite(x) ? HD_ERR_ARGUMENT : HD_ERR_NOT_FINITE, bad, c / 6, -1, x);
     }
     return HD_OK;
 }
@@ -5246,6 +5242,8 @@ static HDI_INLINE double hdi_face_measure(const hdi_mesh *mesh, int32_t f, hdi_t
     const int64_t begin = hdi_face_begin(mesh, f), k = hdi_is_poly(mesh) ? mesh->ptr[f + 1] - begin : 3;
     const int32_t *v = mesh->tri + begin;
     double *cot = mesh->cot + begin, area, steepest = 0, weight = 0;
+    int64_t c;
+    for (c = begin; hdi_is_poly(mesh) && c < begin + k; c++) mesh->of[c] = f;
     if (hdi_corners_repeat(v, k)) {
         t->n_repeated_corner++;
         return 0;
@@ -5313,13 +5311,6 @@ static hd_status hdi_mesh_take(hdi_mesh *mesh, hdi_scope *s) {
     mesh->w = HDI_TAKE(s, double, 2 * n);
     mesh->of = HDI_TAKE(s, int32_t, n);
     return s->e->status;
-}
-
-static void hdi_mesh_of(hdi_mesh *mesh) {
-    int64_t c;
-    int32_t f;
-    for (f = 0; f < mesh->m && hdi_is_poly(mesh); f++)
-        for (c = mesh->ptr[f]; c < mesh->ptr[f + 1]; c++) mesh->of[c] = f;
 }
 
 /* Lists the corners at all vertices, of the faces that have an area. */
@@ -5449,7 +5440,6 @@ static hd_status hdi_mesh_sort(hdi_mesh *mesh, hdi_scope *s) {
 static hd_status hdi_mesh_make(hdi_mesh *mesh, hd_mesh_report *rep, hdi_scope *s) {
     rep->n_faces = mesh->m;
     if (hdi_mesh_sort(mesh, s) < 0 || hdi_mesh_take(mesh, s) < 0) return s->e->status;
-    hdi_mesh_of(mesh);
     if (hdi_faces_measure(mesh, rep, s->ctx, s->e) < 0) return s->e->status;
     hdi_mesh_corners(mesh);
     return mesh->len ? hdi_lengths_agree(mesh, s) : HD_OK;
@@ -5797,14 +5787,18 @@ static int hdi_polygon_clip_hull(hdi_polygon *g, double (*x)[2], int32_t n) {
  * Different faces, each of which comes once, as in meshes, or several times, as in the stars of points,
  * where a triangle comes from all its three corners if these agree. */
 
-typedef struct hdi_soup {
+/* Faces, as long as a scope lives. */
+typedef struct hdi_surface {
     hdi_mesh mesh;      /* each face once; area is that in space, cot comes from the lengths */
     double *len;        /* [3 m] in units of the mean edge length */
     double *area;       /* [m] of the triangle with these sides; 0: there is none */
     double unit;        /* mean edge length */
     double total;       /* area of all copies, in space */
     double share;       /* a copy counts 1 / share */
-} hdi_soup;
+    hdi_mesh flat;      /* intrinsic triangles: no coordinates; areas and cotangents times their weights */
+    int32_t *tri;       /* their corners */
+    double parts;       /* of a triangle that counts once, 0: there is none; flat.copies counts them */
+} hdi_surface;
 
 static int32_t hdi_copies(const hdi_mesh *mesh, int32_t f) { return mesh->copies ? mesh->copies[f] : 1; }
 
@@ -5851,44 +5845,44 @@ static hd_status hdi_soup_faces(hdi_mesh *mesh, const int32_t *tri, int64_t m, i
 /* The area in space, and mollified lengths with their areas and cotangents. Mollification (Sharp, Crane 2020,
  * section 4.5) adds to all sides the smallest length that makes every triangle satisfy the triangle
  * inequality with delta to spare; delta < 0: none. */
-static hd_status hdi_soup_lengths(hdi_soup *soup, double delta, hd_mesh_report *rep, hdi_scope *s) {
-    hdi_mesh *mesh = &soup->mesh;
+static hd_status hdi_soup_lengths(hdi_surface *z, double delta, hd_mesh_report *rep, hdi_scope *s) {
+    hdi_mesh *mesh = &z->mesh;
     double add = 0;
     int32_t f;
     int q;
-    soup->area = HDI_TAKE_ZERO(s, double, mesh->m);
-    soup->len = HDI_TAKE(s, double, hdi_triple(mesh->m));
+    z->area = HDI_TAKE_ZERO(s, double, mesh->m);
+    z->len = HDI_TAKE(s, double, hdi_triple(mesh->m));
     if (s->e->status < 0) return s->e->status;
     for (f = 0; f < mesh->m; f++) {
-        double *len = soup->len + hdi_triple(f), spare;
+        double *len = z->len + hdi_triple(f), spare;
         if (!(mesh->area[f] > 0)) continue;
-        soup->total += mesh->area[f] * hdi_copies(mesh, f);
-        for (q = 0; q < 3; q++) len[q] = hdi_side_length(mesh, hdi_triple(f) + q) / soup->unit;
+        z->total += mesh->area[f] * hdi_copies(mesh, f);
+        for (q = 0; q < 3; q++) len[q] = hdi_side_length(mesh, hdi_triple(f) + q) / z->unit;
         spare = hdi_min(hdi_min(len[0] + len[1] - len[2], len[2] + len[0] - len[1]),
                         len[2] + len[1] - len[0]);
         if (delta >= 0 && spare < delta) rep->n_mollified += hdi_copies(mesh, f);
         if (delta >= 0) add = hdi_max(add, delta - spare);
     }
-    rep->mollify_epsilon = add * soup->unit;
+    rep->mollify_epsilon = add * z->unit;
     for (f = 0; f < mesh->m; f++) {
-        double *len = soup->len + hdi_triple(f), *cot = mesh->cot + hdi_triple(f);
+        double *len = z->len + hdi_triple(f), *cot = mesh->cot + hdi_triple(f);
         cot[0] = cot[1] = cot[2] = 0;
         if (!(mesh->area[f] > 0)) continue;
         for (q = 0; q < 3; q++) len[q] += add;
-        soup->area[f] = hdi_length_area(len[0], len[1], len[2]);
-        if (soup->area[f] > 0) hdi_length_cots(len, soup->area[f], cot);
+        z->area[f] = hdi_length_area(len[0], len[1], len[2]);
+        if (z->area[f] > 0) hdi_length_cots(len, z->area[f], cot);
     }
     return HD_OK;
 }
 
 /* The m triangles tri among n points, measured, in s. Each triangle counts a third. */
-static hd_status hdi_soup_of_stars(hdi_soup *soup, const double *xyz, int32_t n, const int32_t *tri,
+static hd_status hdi_soup_of_stars(hdi_surface *z, const double *xyz, int32_t n, const int32_t *tri,
                                    int64_t m, hd_mesh_report *rep, hdi_scope *s) {
-    hdi_mesh *mesh = &soup->mesh;
+    hdi_mesh *mesh = &z->mesh;
     hd_mesh_report faces;
     int32_t f;
     memset(&faces, 0, sizeof faces);
-    soup->share = 3;
+    z->share = 3;
     if (hdi_soup_faces(mesh, tri, m, n, s) < 0) return s->e->status;
     mesh->xyz = xyz;
     if (hdi_mesh_take(mesh, s) < 0 || hdi_faces_measure(mesh, &faces, s->ctx, s->e) < 0) return s->e->status;
@@ -5921,7 +5915,7 @@ typedef struct hdi_side {
 } hdi_side;
 
 typedef struct hdi_cover {
-    const hdi_soup *soup;
+    const hdi_surface *z;
     hd_context *ctx;
     hd_error *e;
     int32_t n_sheets;
@@ -5961,7 +5955,7 @@ static hd_status hdi_cover_room(hdi_cover *c, int64_t more) {
 /* Unites the sheets of faces that share an edge of two faces. If no front is united with its own back, the
  * surface has two sides: the other sheet is a mirror image, and one is enough. */
 static int hdi_cover_orientable(const hdi_cover *c) {
-    const hdi_mesh *mesh = &c->soup->mesh;
+    const hdi_mesh *mesh = &c->z->mesh;
     const hdi_pair *list = c->list;
     int32_t s, v;
     hdi_fill_own(c->sheet, 2 * mesh->m);
@@ -5980,13 +5974,13 @@ static int hdi_cover_orientable(const hdi_cover *c) {
 }
 
 /* Nothing is unfolded yet. rep knows the edges of the soup. */
-static hd_status hdi_cover_begin(hdi_cover *c, const hdi_soup *soup, int close, const hd_mesh_report *rep,
+static hd_status hdi_cover_begin(hdi_cover *c, const hdi_surface *z, int close, const hd_mesh_report *rep,
                                  hdi_scope *s) {
-    const hdi_mesh *mesh = &soup->mesh;
+    const hdi_mesh *mesh = &z->mesh;
     const int32_t m = mesh->m;
     int32_t f;
     memset(c, 0, sizeof *c);
-    c->soup = soup;
+    c->z = z;
     c->ctx = s->ctx;
     c->e = s->e;
     c->close = close || mesh->copies;
@@ -6014,19 +6008,19 @@ static int32_t hdi_cover_side(const hdi_cover *c, int32_t s, int32_t k, int back
 
 /* Unfolds face f: all its copies. */
 static hd_status hdi_cover_face(hdi_cover *c, int32_t f) {
-    const hdi_soup *soup = c->soup;
-    const int32_t copies = hdi_copies(&soup->mesh, f);
+    const hdi_surface *z = c->z;
+    const int32_t copies = hdi_copies(&z->mesh, f);
     int32_t k, q, at;
     if (c->first[f] >= 0) return HD_OK;
     if (hdi_cover_room(c, c->n_sheets * (int64_t)copies) < 0) return c->e->status;
     c->first[f] = c->n;
-    for (k = 0; k < c->n_sheets * copies; k++) c->area[c->n++] = soup->area[f];
+    for (k = 0; k < c->n_sheets * copies; k++) c->area[c->n++] = z->area[f];
     for (k = 0; k < 6 * copies; k++) {
         const int32_t s = 3 * f + k % 3, back = k / 3 % 2;
         if ((at = hdi_cover_side(c, s, k / 6, back)) < 0) continue;
         q = back ? hdi_side_next(s) : s;
-        c->side[at].vert = soup->mesh.tri[q];
-        c->side[at].len = soup->len[s];
+        c->side[at].vert = z->mesh.tri[q];
+        c->side[at].len = z->len[s];
         c->side[at].twin = c->side[at].next = HDI_SIDE_LOOSE;
     }
     return HD_OK;
@@ -6077,7 +6071,7 @@ static void hdi_sort_around(const hdi_mesh *mesh, int32_t lo, int32_t hi, hdi_pa
  * by angle, around the edge the side of a face that looks counterclockwise to the side of the next one that
  * looks back at it. A single face at the boundary is glued front to back, or left open. */
 static hd_status hdi_cover_glue(hdi_cover *c, int32_t v, int32_t w) {
-    const hdi_mesh *mesh = &c->soup->mesh;
+    const hdi_mesh *mesh = &c->z->mesh;
     const int32_t n = hdi_edge_sides(mesh, v, w, c->list);
     int32_t i, layer, most = 0, first = HDI_SIDE_LOOSE, last = HDI_SIDE_LOOSE;
     if (c->glued[c->list[0].id]) return HD_OK;
@@ -6229,7 +6223,7 @@ static int hdi_soup_suspect(const hdi_mesh *mesh, const hdi_pair *list, int32_t 
 
 /* Edges by their sides, of those that may have to be flipped: the order depends on nothing but the mesh. */
 static hd_status hdi_cover_flip_all(hdi_cover *c, hd_mesh_report *rep) {
-    const hdi_mesh *mesh = &c->soup->mesh;
+    const hdi_mesh *mesh = &c->z->mesh;
     int32_t s, v, n;
     for (s = 0; s < 3 * mesh->m; s++) {
         const double done = s / (3.0 * mesh->m);
@@ -6254,74 +6248,62 @@ static void hdi_cover_count(const hdi_cover *c, hd_mesh_report *rep) {
 
 /* ---- the result as a mesh ---- */
 
-/* An intrinsic triangulation, as long as its scope lives. */
-typedef struct hdi_flat {
-    hdi_mesh mesh;              /* areas and cotangents of its triangles, times their weights */
-    hdi_soup soup;              /* what it was made of */
-    int32_t *tri;               /* [3 mesh.m] */
-    int32_t *copies;            /* [mesh.m] parts that a triangle counts */
-    double unit;                /* parts of a triangle that counts once; 0: there are no triangles */
-} hdi_flat;
-
 /* Adds a triangle: area and cotangents from its lengths, times its weight. */
-static void hdi_flat_add(hdi_flat *flat, const int32_t *v, const double *len, double area, int32_t copies,
+static void hdi_flat_add(hdi_surface *z, const int32_t *v, const double *len, double area, int32_t copies,
                          double *steepest) {
-    const double weight = copies / flat->unit, unit = flat->soup.unit;
-    const int32_t at = flat->mesh.m++;
-    double *cot = flat->mesh.cot + hdi_triple(at);
+    const double weight = copies / z->parts, unit = z->unit;
+    const int32_t at = z->flat.m++;
+    double *cot = z->flat.cot + hdi_triple(at);
     int q;
-    memcpy(flat->tri + hdi_triple(at), v, 3 * sizeof *v);
-    flat->copies[at] = copies;
-    flat->mesh.area[at] = 0;
+    memcpy(z->tri + hdi_triple(at), v, 3 * sizeof *v);
+    z->flat.copies[at] = copies;
+    z->flat.area[at] = 0;
     if (!(area > 0)) return;
     hdi_length_cots(len, area, cot);
     if (!hdi_finite(fabs(cot[0]) + fabs(cot[1]) + fabs(cot[2]))) return;
     *steepest = hdi_max(*steepest, hdi_max(cot[0], hdi_max(cot[1], cot[2])));
     for (q = 0; q < 3; q++) cot[q] *= weight;
     area *= weight * unit * unit;
-    flat->mesh.area[at] = area / 12 < DBL_MIN ? 0 : area;
+    z->flat.area[at] = area / 12 < DBL_MIN ? 0 : area;
 }
 
-/* The triangles of a cover as a mesh for the operators (no coordinates), in s: first the faces that were not
- * unfolded, as often as they come, then the others one by one. A copy weighs its share, divided among the
- * sheets. */
-static hd_status hdi_cover_flat(hdi_flat *flat, const hdi_cover *c, hd_mesh_report *rep, hdi_scope *s) {
-    const hdi_soup *soup = c->soup;
+/* The triangles of a cover as a mesh for the operators, in s: first the faces that were not unfolded, as
+ * often as they come, then the others one by one. A copy weighs its share, divided among the sheets. */
+static hd_status hdi_cover_flat(hdi_surface *z, const hdi_cover *c, hd_mesh_report *rep, hdi_scope *s) {
     double steepest = -HUGE_VAL;
     int64_t m = c->n;
     int32_t f;
-    for (f = 0; f < soup->mesh.m; f++) m += c->first[f] < 0 && soup->area[f] > 0;
+    for (f = 0; f < z->mesh.m; f++) m += c->first[f] < 0 && z->area[f] > 0;
     if (3 * m > INT32_MAX)
         return hdi_fail(s->e, HD_ERR_TOO_LARGE, "more than 2^31 face corners in an intrinsic triangulation");
-    flat->tri = HDI_TAKE(s, int32_t, 3 * m);
-    flat->copies = HDI_TAKE(s, int32_t, m);
-    flat->unit = soup->share * c->n_sheets;
-    hdi_mesh_clear(&flat->mesh, NULL, soup->mesh.n, flat->tri, 0);
-    flat->mesh.cot = HDI_TAKE(s, double, 3 * m);
-    flat->mesh.area = HDI_TAKE(s, double, m);
-    if (s->e->status < 0) return s->e->status;
-    for (f = 0; f < soup->mesh.m; f++)
-        if (c->first[f] < 0 && soup->area[f] > 0)
-            hdi_flat_add(flat, soup->mesh.tri + hdi_triple(f), soup->len + hdi_triple(f), soup->area[f],
-                         c->n_sheets * hdi_copies(&soup->mesh, f), &steepest);
+    z->tri = HDI_TAKE(s, int32_t, 3 * m);
+    hdi_mesh_clear(&z->flat, NULL, z->flat.n, z->tri, (int32_t)m);
+    z->flat.copies = HDI_TAKE(s, int32_t, m);
+    z->parts = z->share * c->n_sheets;
+    if (hdi_mesh_take(&z->flat, s) < 0) return s->e->status;
+    z->flat.m = 0;
+    for (f = 0; f < z->mesh.m; f++)
+        if (c->first[f] < 0 && z->area[f] > 0)
+            hdi_flat_add(z, z->mesh.tri + hdi_triple(f), z->len + hdi_triple(f), z->area[f],
+                         c->n_sheets * hdi_copies(&z->mesh, f), &steepest);
     for (f = 0; f < c->n; f++) {
         const hdi_side *side = c->side + hdi_triple(f);
         const int32_t v[3] = {side[0].vert, side[1].vert, side[2].vert};
         const double len[3] = {side[0].len, side[1].len, side[2].len};
-        hdi_flat_add(flat, v, len, c->area[f], 1, &steepest);
+        hdi_flat_add(z, v, len, c->area[f], 1, &steepest);
     }
     rep->smallest_intrinsic_angle = hdi_finite(steepest) ? atan2(1, steepest) : 0;
     return HD_OK;
 }
 
-/* The intrinsic Delaunay triangulation of the soup of flat as a mesh for the operators: of a mesh, with close
- * without boundary; or of the tufted cover of stars. */
-static hd_status hdi_soup_delaunay(hdi_flat *flat, int close, hd_mesh_report *rep, hdi_scope *s) {
+/* The intrinsic Delaunay triangulation of a soup as a mesh for the operators: of a mesh, with close without
+ * boundary; or of the tufted cover of stars. */
+static hd_status hdi_soup_delaunay(hdi_surface *z, int close, hd_mesh_report *rep, hdi_scope *s) {
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
     hdi_cover c;
-    if (hdi_cover_begin(&c, &flat->soup, close, rep, &own) >= 0 && hdi_cover_flip_all(&c, rep) >= 0) {
+    if (hdi_cover_begin(&c, z, close, rep, &own) >= 0 && hdi_cover_flip_all(&c, rep) >= 0) {
         hdi_cover_count(&c, rep);
-        (void)hdi_cover_flat(flat, &c, rep, s);
+        (void)hdi_cover_flat(z, &c, rep, s);
     }
     hdi_free(c.ctx, c.side);
     hdi_free(c.ctx, c.area);
@@ -6649,7 +6631,7 @@ static HDI_INLINE void hdi_ring_corner(hdi_ring *r, const hdi_mesh *mesh, hdi_lu
     const int64_t end = begin + k, before = c > begin ? c - 1 : end - 1, after = c + 1 < end ? c + 1 : begin;
     const double *cot = poly ? NULL : mesh->cot + begin;
     const int32_t copies = poly || !mesh->copies ? 1 : mesh->copies[begin / 3],
-                  odd = poly || !mesh->copies ? 0 : mesh->odd[begin / 3];
+                  odd = poly || !mesh->odd ? 0 : mesh->odd[begin / 3];
     int64_t d;
     if (area > 0) r->mass += lump == HDI_LUMP_MIXED ? hdi_mixed_mass(cot, c - begin, area) : area / (double)k;
     for (d = begin; d < end; d++) {
@@ -6912,21 +6894,6 @@ static void hdi_lap_values(hd_laplacian *lap, hdi_rows *x) {
     for (f = 0, lap->area = 0; f < mesh->m; f++) lap->area += mesh->area[f];
 }
 
-/* Rows, L and B of a mesh that x knows. full: B is, if its kind is. */
-static hd_status hdi_lap_assemble(hd_laplacian *lap, hdi_rows *x, const double *xyz, int full, hd_error *e) {
-    x->lump = hdi_kind_of(lap->kind)->lump;
-    hdi_rows_border(x, lap);
-    if (hdi_lap_pattern(lap, x, full && hdi_kind_of(lap->kind)->full, e) < 0 ||
-        hdi_progress(lap->context, "assemble", 0.4, e) < 0 || hdi_lap_places(lap, xyz, e) < 0)
-        return e->status;
-    hdi_lap_values(lap, x);
-    if (lap->n_held > 0) hdi_lap_pack(lap);
-    /* The element matrix area/12 (1 1' + I) is at least 1/2 of its diagonal, area/12 I; that of a triangle
-     * with corners v, v, w at least 1 - sqrt(1/3), and that of corners v, v, v is its diagonal. */
-    lap->b_ratio = !lap->B ? 1 : lap->mesh.n_self_edges ? 1 - sqrt(1.0 / 3) : 0.5;
-    return hdi_progress(lap->context, "assemble", 0.8, e);
-}
-
 /* ---- meshes that move ---- */
 
 static hdi_moving *hdi_moving_new(hd_laplacian *lap, hd_error *e) {
@@ -6989,18 +6956,6 @@ static hd_status hdi_lap_update(hd_laplacian *lap, const double *xyz, hd_error *
     return hdi_lap_components(lap, e);
 }
 
-/* (L, B), places and h of faces that are measured and live in s. xyz: of their vertices. full: B is, if its
- * kind is. updatable: the faces move from s to the Laplacian. */
-static hd_status hdi_lap_mesh(hd_laplacian *lap, const hdi_mesh *mesh, const double *xyz, int full,
-                              int updatable, hdi_scope *s) {
-    hdi_scope own = hdi_scope_begin(lap->context, s->e);
-    hdi_rows x;
-    if (hdi_rows_begin(&x, mesh, &lap->mesh, updatable ? s : &own) >= 0 &&
-        hdi_lap_assemble(lap, &x, xyz, full, s->e) >= 0 && updatable)
-        (void)hdi_moving_make(lap, &x, s);
-    return hdi_scope_end(&own);
-}
-
 /* ---- intrinsic triangulations: Delaunay and tufted ---- */
 
 /* What an operator is made of, and how. */
@@ -7015,12 +6970,6 @@ typedef struct hdi_input {
     int close;          /* tufted: the boundary is glued to the other sheet */
     double delta;       /* of mollification, relative to the mean edge length; negative: none */
 } hdi_input;
-
-/* Its faces, as long as a scope lives. */
-typedef struct hdi_surface {
-    hdi_mesh mesh;
-    hdi_flat flat;      /* intrinsic triangles */
-} hdi_surface;
 
 /* What the arrays of m say, checked. They are the caller's where these are as we want them, else copies in s.
  * stiffening: of polygons. */
@@ -7041,6 +6990,27 @@ static hd_status hdi_input_open(hdi_input *in, const hd_mesh *m, double stiffeni
     return HDI_HAS_POLYGONS && in->split ? hdi_poly_fans(&in->mesh, s) : HD_OK;
 }
 
+/* (L, B) and places of faces that are measured and live in s. Those of an updatable Laplacian move to it. */
+static hd_status hdi_lap_mesh(hd_laplacian *lap, const hdi_mesh *mesh, const hdi_input *in, hdi_scope *s) {
+    hdi_scope own = hdi_scope_begin(lap->context, s->e);
+    const hdi_kind *kind = hdi_kind_of(lap->kind);
+    hdi_rows x;
+    if (hdi_rows_begin(&x, mesh, &lap->mesh, in->updatable ? s : &own) < 0) return hdi_scope_end(&own);
+    x.lump = kind->lump;
+    hdi_rows_border(&x, lap);
+    if (hdi_lap_pattern(lap, &x, in->full && kind->full, s->e) < 0 ||
+        hdi_progress(lap->context, "assemble", 0.4, s->e) < 0 || hdi_lap_places(lap, in->mesh.xyz, s->e) < 0)
+        return hdi_scope_end(&own);
+    hdi_lap_values(lap, &x);
+    if (lap->n_held > 0) hdi_lap_pack(lap);
+    /* The element matrix area/12 (1 1' + I) is at least 1/2 of its diagonal, area/12 I; that of a triangle
+     * with corners v, v, w at least 1 - sqrt(1/3), and that of corners v, v, v is its diagonal. */
+    lap->b_ratio = !lap->B ? 1 : lap->mesh.n_self_edges ? 1 - sqrt(1.0 / 3) : 0.5;
+    if (hdi_progress(lap->context, "assemble", 0.8, s->e) >= 0 && in->updatable)
+        (void)hdi_moving_make(lap, &x, s);
+    return hdi_scope_end(&own);
+}
+
 /* Reports the edges of a mesh, whose mean length is put into h. */
 static hd_status hdi_lap_edges(hd_laplacian *lap, const hdi_mesh *mesh, double *h, hd_error *e) {
     hdi_scope own = hdi_scope_begin(lap->context, e);
@@ -7053,30 +7023,24 @@ static hd_status hdi_lap_edges(hd_laplacian *lap, const hdi_mesh *mesh, double *
     return hdi_scope_end(&own);
 }
 
-/* (L, B) of the intrinsic Delaunay triangulation of the soup of flat, whose faces are measured, in s. name:
- * the caller's numbers of its vertices, which its triangles come to have, too; NULL: their own. */
-static hd_status hdi_lap_flat(hd_laplacian *lap, hdi_flat *flat, const hdi_input *in, const int32_t *name,
+/* (L, B) of the intrinsic Delaunay triangulation of a soup whose faces are measured, in s. name: the caller's
+ * numbers of its vertices, which its triangles come to have, too; NULL: their own. */
+static hd_status hdi_lap_flat(hd_laplacian *lap, hdi_surface *z, const hdi_input *in, const int32_t *name,
                               hdi_scope *s) {
-    hdi_soup *soup = &flat->soup;
-    hdi_mesh *mesh = &flat->mesh;
     int64_t c;
-    if (hdi_lap_edges(lap, &soup->mesh, &soup->unit, s->e) < 0) return s->e->status;
+    if (hdi_lap_edges(lap, &z->mesh, &z->unit, s->e) < 0) return s->e->status;
     if (lap->mesh.n_faces_used == 0)
         return hdi_fail(s->e, HD_ERR_EMPTY, name ? "the points' neighbourhoods make no triangle"
                                                  : "no vertex has mass");
-    if (hdi_soup_lengths(soup, in->delta, &lap->mesh, s) < 0 ||
-        hdi_soup_delaunay(flat, in->close, &lap->mesh, s) < 0)
+    z->flat.n = lap->n;
+    if (hdi_soup_lengths(z, in->delta, &lap->mesh, s) < 0 ||
+        hdi_soup_delaunay(z, in->close, &lap->mesh, s) < 0)
         return s->e->status;
-    for (c = 0; c < hdi_triple(mesh->m) && name; c++) flat->tri[c] = name[flat->tri[c]];
-    mesh->n = lap->n;
-    mesh->at = HDI_TAKE(s, int64_t, (int64_t)mesh->n + 1);
-    mesh->corner = HDI_TAKE(s, int32_t, hdi_triple(mesh->m));
-    mesh->tally = soup->mesh.tally;
-    if (s->e->status < 0) return s->e->status;
-    hdi_mesh_corners(mesh);
-    lap->area = soup->total / soup->share;
-    if (!(lap->h > 0)) lap->h = soup->unit;
-    return hdi_lap_mesh(lap, mesh, in->mesh.xyz, in->full, 0, s);
+    for (c = 0; c < hdi_triple(z->flat.m) && name; c++) z->tri[c] = name[z->tri[c]];
+    hdi_mesh_corners(&z->flat);
+    lap->area = z->total / z->share;
+    if (!(lap->h > 0)) lap->h = z->unit;
+    return hdi_lap_mesh(lap, &z->flat, in, s);
 }
 
 /* The default of the option, as its declaration states. */
@@ -7220,10 +7184,6 @@ typedef struct hdi_pair_row {
     hdi_sum l_sum, b_off;                        /* b_off: sizes of the entries beside the diagonal */
 } hdi_pair_row;
 
-static hd_status hdi_pair_strange(const char *text, int32_t v, int32_t c, double value, hd_error *e) {
-    return hdi_fail_row(e, HD_ERR_STRUCTURE, text, v, c, value);
-}
-
 static void hdi_pair_put(hd_laplacian *lap, int64_t at, double l, double b) {
     lap->L.val[at] = l;
     if (lap->B) lap->B[at] = b;
@@ -7241,7 +7201,8 @@ static hd_status hdi_pair_fill_row(hd_laplacian *lap, const hd_csr *L, const hd_
         const int32_t c = hdi_low32(cp, cq), j = lap->row[c];
         const double l = cp == c ? L->val[p++] : 0, b = cq == c ? B->val[q++] : 0;
         if (b != 0 && (i == HD_ROW_INERT || j == HD_ROW_INERT))
-            return hdi_pair_strange("update of matrices: a vertex without mass stays so", v, c, b, e);
+            return hdi_fail_row(e, HD_ERR_STRUCTURE, "update of matrices: a vertex without mass stays so", v,
+                                c, b);
         if (i == HD_ROW_INERT || j == HD_ROW_INERT) continue;
         hdi_sum_add(&r->l_sum, l);
         r->l_abs += fabs(l);
@@ -7256,11 +7217,12 @@ static hd_status hdi_pair_fill_row(hd_laplacian *lap, const hd_csr *L, const hd_
             for (; at < end && lap->L.col[at] < j; at++) hdi_pair_put(lap, at, 0, 0);
             if (at < end && lap->L.col[at] == j) hdi_pair_put(lap, at++, l, b);
             else if (l != 0 || b != 0)
-                return hdi_pair_strange("update of matrices: an entry is not in the pattern", v, c,
-                                        l != 0 ? l : b, e);
+                return hdi_fail_row(e, HD_ERR_STRUCTURE, "update of matrices: an entry is not in the pattern",
+                                    v, c, l != 0 ? l : b);
         }
         if (!lap->B && c != v && b != 0)
-            return hdi_pair_strange("update of matrices: B was diagonal, and is not any more", v, c, b, e);
+            return hdi_fail_row(e, HD_ERR_STRUCTURE,
+                                "update of matrices: B was diagonal, and is not any more", v, c, b);
     }
     for (; i >= 0 && at < lap->L.row_ptr[i + 1]; at++) hdi_pair_put(lap, at, 0, 0);
     return HD_OK;
@@ -7285,9 +7247,9 @@ static hd_status hdi_pair_check(const hdi_pair_row *r, int32_t v, hd_error *e) {
     return HD_OK;
 }
 
-/* L, B, b = B 1 and diag(B); how dominant is B's diagonal; is L 1 = 0, up to the rounding of its entries. Rows
- * of vertices held are looked at, too. root [n]: sqrt(diag(L)), raised by what the tolerance of the check for
- * symmetry leaves open; vertices without mass have no limit. */
+/* L, B, b = B 1 and diag(B); how dominant is B's diagonal; is L 1 = 0, up to the rounding of its entries.
+ * Rows of vertices held are looked at, too. root [n]: sqrt(diag(L)), raised by what the tolerance of the
+ * check for symmetry leaves open; vertices without mass have no limit. */
 static hd_status hdi_pair_fill(hd_laplacian *lap, const hd_csr *L, const hd_csr *B, double *root,
                                hd_error *e) {
     int32_t v;
@@ -7927,7 +7889,7 @@ static int32_t *hdi_stars(hdi_cloud *cloud, int32_t *m, hd_laplacian *lap, hdi_s
 
 /* The soup of the stars of all points; of several points in one place only the first takes part. xyz and name
  * live in s, nothing else is left of neighbours and stars. */
-static hd_status hdi_star_soup(hdi_soup *soup, hdi_cloud *cloud, hd_laplacian *lap, const hdi_input *in,
+static hd_status hdi_star_soup(hdi_surface *z, hdi_cloud *cloud, hd_laplacian *lap, const hdi_input *in,
                                hdi_scope *s) {
     hdi_scope own = hdi_scope_begin(s->ctx, s->e), apart = hdi_scope_begin(s->ctx, s->e);
     int32_t *tri, m = 0;
@@ -7941,9 +7903,9 @@ static hd_status hdi_star_soup(hdi_soup *soup, hdi_cloud *cloud, hd_laplacian *l
     if (hdi_scope_end(&apart) < 0) return hdi_scope_end(&own);
     tri = hdi_stars(cloud, &m, lap, &own);
     if (!tri || hdi_progress(s->ctx, "assemble", 0.2, s->e) < 0) return hdi_scope_end(&own);
-    if (hdi_soup_of_stars(soup, cloud->xyz, cloud->n, tri, m, &lap->mesh, s) < 0) {
+    if (hdi_soup_of_stars(z, cloud->xyz, cloud->n, tri, m, &lap->mesh, s) < 0) {
         /* the caller knows no faces */
-        if (s->e->face >= 0) s->e->vertex = cloud->name[soup->mesh.tri[3 * s->e->face]];
+        if (s->e->face >= 0) s->e->vertex = cloud->name[z->mesh.tri[3 * s->e->face]];
         s->e->face = -1;
     }
     return hdi_scope_end(&own);
@@ -7965,25 +7927,22 @@ static hd_status hdi_star_soup(hdi_soup *soup, hdi_cloud *cloud, hd_laplacian *l
  *    spheres, tori, noise and shells 2/3 from the plane is better than projections alone or within 5 %;
  *    1, or heights from the point, are worse on undersampled tori or in noise. Known loss: voronoi-cot,
  *    500 to 1250 random points on a torus, 12 to 36 % more error.)
- * flat lives in s. */
-static hd_status hdi_lap_stars(hd_laplacian *lap, hdi_flat *flat, const hdi_input *in, hdi_scope *s) {
+ * z lives in s. */
+static hd_status hdi_lap_stars(hd_laplacian *lap, hdi_surface *z, const hdi_input *in, hdi_scope *s) {
     hdi_cloud cloud;
-    if (hdi_star_soup(&flat->soup, &cloud, lap, in, s) < 0) return s->e->status;
-    return hdi_lap_flat(lap, flat, in, cloud.name, s);
+    return hdi_star_soup(z, &cloud, lap, in, s) < 0 ? s->e->status : hdi_lap_flat(lap, z, in, cloud.name, s);
 }
 
 /* (L, B) of faces, of intrinsic triangles or of the stars of points; what they are made of, in s. Of a cover
  * each sheet counts half. */
 static hd_status hdi_lap_surface(hd_laplacian *lap, hdi_surface *z, const hdi_input *in, hdi_scope *s) {
     memset(z, 0, sizeof *z);
-    if (HDI_HAS_POINTS && HDI_HAS_INTRINSIC && in->points) return hdi_lap_stars(lap, &z->flat, in, s);
+    if (HDI_HAS_POINTS && HDI_HAS_INTRINSIC && in->points) return hdi_lap_stars(lap, z, in, s);
     z->mesh = in->mesh;
+    z->share = 1;
     if (hdi_mesh_make(&z->mesh, &lap->mesh, s) < 0) return s->e->status;
-    if (!HDI_HAS_INTRINSIC || !in->flips)
-        return hdi_lap_mesh(lap, &z->mesh, z->mesh.xyz, in->full, in->updatable, s);
-    z->flat.soup.mesh = z->mesh;
-    z->flat.soup.share = 1;
-    return hdi_lap_flat(lap, &z->flat, in, NULL, s);
+    return HDI_HAS_INTRINSIC && in->flips ? hdi_lap_flat(lap, z, in, NULL, s)
+                                          : hdi_lap_mesh(lap, &z->mesh, in, s);
 }
 
 /* By Weyl's law the k-th eigenvalue of a surface is about 4 pi k/area. At the longest time the 2nd of them
@@ -24838,14 +24797,13 @@ static hd_status hdi_geo_coincident(hd_geodesic *g, const double *xyz, hd_error 
 static hd_status hdi_geo_store(hd_geodesic *g, const hd_laplacian *lap, const hdi_surface *z,
                                const hdi_input *in, hdi_scope *own) {
     hd_error *e = own->e;
-    const hdi_flat *flat = HDI_HAS_INTRINSIC && in->flips ? &z->flat : NULL;
-    const hdi_mesh *mesh = flat ? &flat->mesh : &z->mesh;
+    const hdi_mesh *mesh = HDI_HAS_INTRINSIC && in->flips ? &z->flat : &z->mesh;
     if (hdi_geo_order(g, mesh, own) < 0) return e->status;
     if (hdi_is_poly(mesh)) {
         if (hdi_geo_poly_faces(g, mesh, own) >= 0) (void)hdi_geo_poly_rows(g, lap, own);
     } else {
         g->face = HDI_TAKE(own, hdi_geo_face, g->n_faces);
-        if (g->face) hdi_geo_frames(g, mesh, flat ? flat->copies : NULL);
+        if (g->face) hdi_geo_frames(g, mesh, mesh->copies);
     }
     if (!g->lap) {
         hdi_free(g->ctx, g->from);
@@ -24870,9 +24828,9 @@ static hd_status hdi_geo_make(hd_geodesic *g, const hdi_input *in, int32_t neigh
     g->t_in_h2 = o->t_in_h2 > 0 ? o->t_in_h2 : 1;
     if ((o->border == HD_GEODESIC_BORDER_NATURAL || hdi_holding_make(lap, 2, NULL, 0, e) >= 0) &&
         hdi_progress(g->ctx, "assemble", 0, e) >= 0 && hdi_lap_surface(lap, &z, in, &s) >= 0) {
-        if (in->points) lap->h = z.flat.soup.unit;       /* the mean edge, as on meshes */
+        if (in->points) lap->h = z.unit;       /* the mean edge, as on meshes */
         g->n_active = lap->n_active;
-        g->copies = z.flat.unit > 0 ? z.flat.unit : 1;
+        g->copies = z.parts > 0 ? z.parts : 1;
         if (o->updatable) g->lap = lap;
         if (e->status >= 0) (void)hdi_lap_components(lap, e);
         g->n_components = lap->n_components;
