@@ -2753,9 +2753,8 @@ static void hdi_fill_own(int32_t *a, int32_t n) {
 static int64_t hdi_prefix_sum(int64_t *count, int64_t n) {
     int64_t i, sum = 0;
     for (i = 0; i < n; i++) {
-        const int64_t c = count[i];
-        count[i] = sum;
-        sum += c;
+        sum += count[i];
+        count[i] = sum - count[i];
     }
     count[n] = sum;
     return sum;
@@ -4256,10 +4255,7 @@ static void hdi_csr_free(hd_context *ctx, hd_csr *a) {
 
 /* An empty shell with room for nnz entries in s. */
 static hd_csr hdi_csr_take(hdi_scope *s, int32_t n_rows, int32_t n_cols, int64_t nnz, int values) {
-    hd_csr a;
-    a.n_rows = n_rows;
-    a.n_cols = n_cols;
-    a.nnz = nnz;
+    hd_csr a = {n_rows, n_cols, nnz, NULL, NULL, NULL};
     a.row_ptr = HDI_TAKE_ZERO(s, int64_t, (int64_t)n_rows + 1);
     a.col = HDI_TAKE(s, int32_t, nnz);
     a.val = values ? HDI_TAKE(s, double, nnz) : NULL;
@@ -6433,6 +6429,20 @@ static void hdi_laplacian_free(hd_laplacian *lap, hd_context *ctx) {
     hdi_free(ctx, lap);
 }
 
+/* A Laplacian for the caller, which holds its context: theirs, or a new one. */
+static hd_laplacian *hdi_lap_open(hdi_call *c) {
+    hd_laplacian *lap = hdi_lap_shell(c->ctx, c->e);
+    hd_context *own = NULL;
+    if (lap && c->ctx == &c->context) own = HDI_TAKE(hdi_lap_keep(lap, c->e), hd_context, 1);
+    if (c->e->status < 0) {
+        hdi_laplacian_free(lap, c->ctx);
+        return NULL;
+    }
+    lap->context = hdi_enter_keep(c, own);
+    hdi_hold(c->ctx);
+    return lap;
+}
+
 static void hdi_lap_drop(hd_laplacian *lap) {
     const hd_context *own = (const hd_context *)((hdi_laplacian *)(void *)lap)->keep.block[0];
     hd_context copy, *ctx = hdi_outlive(lap->context, own, &copy);
@@ -6837,7 +6847,7 @@ static hd_status hdi_rows_begin(hdi_rows *x, const hdi_mesh *mesh, hd_mesh_repor
 }
 
 /* What is known of the edges of a mesh in space, and their mean length. */
-static void hdi_rows_report(hdi_rows *x, const hdi_tally *all, hd_mesh_report *rep, double *h) {
+static void hdi_rows_report(hdi_rows *x, hdi_tally all, hd_mesh_report *rep, double *h) {
     hdi_ring r = hdi_rows_ring(x, 0);
     int32_t v, q;
     hdi_fill_own(x->count, x->mesh.n);
@@ -6847,12 +6857,12 @@ static void hdi_rows_report(hdi_rows *x, const hdi_tally *all, hd_mesh_report *r
         for (q = 1; q < r.n; q++)
             if (r.entry[q].faces == 1) hdi_unite(x->count, v, r.entry[q].to);
     }
-    rep->n_edges = all->n_edges;
-    rep->n_boundary_edges = all->n_boundary;
-    rep->n_nonmanifold_edges = all->n_nonmanifold;
-    rep->n_misoriented_edges = all->n_misoriented;
-    rep->n_boundary_loops = all->n_boundary ? hdi_count_sets(x->count, x->mesh.n) : 0;
-    *h = all->length / (double)all->n_edges;
+    rep->n_edges = all.n_edges;
+    rep->n_boundary_edges = all.n_boundary;
+    rep->n_nonmanifold_edges = all.n_nonmanifold;
+    rep->n_misoriented_edges = all.n_misoriented;
+    rep->n_boundary_loops = all.n_boundary ? hdi_count_sets(x->count, x->mesh.n) : 0;
+    *h = all.length / (double)all.n_edges;
 }
 
 /* Marks the vertices of the border where that is asked for. */
@@ -6890,7 +6900,7 @@ static void hdi_lap_values(hd_laplacian *lap, hdi_rows *x) {
     lap->conserves = 1;
     lap->mesh.n_negative_weights = all.n_negative;
     if (!mesh->xyz && !mesh->len) return;
-    hdi_rows_report(x, &all, &lap->mesh, &lap->h);
+    hdi_rows_report(x, all, &lap->mesh, &lap->h);
     for (f = 0, lap->area = 0; f < mesh->m; f++) lap->area += mesh->area[f];
 }
 
@@ -7015,11 +7025,9 @@ static hd_status hdi_lap_mesh(hd_laplacian *lap, const hdi_mesh *mesh, const hdi
 static hd_status hdi_lap_edges(hd_laplacian *lap, const hdi_mesh *mesh, double *h, hd_error *e) {
     hdi_scope own = hdi_scope_begin(lap->context, e);
     hdi_rows x;
-    if (hdi_rows_begin(&x, mesh, &lap->mesh, &own) >= 0) {
-        const hdi_tally all = hdi_rows_run(&x, NULL, lap->context);
-        hdi_rows_report(&x, &all, &lap->mesh, h);
-        hdi_rows_border(&x, lap);
-    }
+    if (hdi_rows_begin(&x, mesh, &lap->mesh, &own) < 0) return hdi_scope_end(&own);
+    hdi_rows_report(&x, hdi_rows_run(&x, NULL, lap->context), &lap->mesh, h);
+    hdi_rows_border(&x, lap);
     return hdi_scope_end(&own);
 }
 
@@ -25879,22 +25887,14 @@ HEATDIFF_API void hd_csr_free(hd_csr *a, hd_context *ctx) {
 static hd_laplacian *hdi_lap_new(const hd_laplacian_opts *opts, int32_t n, hd_laplacian_kind kind,
                                  hd_error *err, hdi_call *c) {
     hd_laplacian *lap;
-    hd_context *own = NULL;
     if (hdi_enter_with(c, !opts || HDI_CLEARED(opts), opts ? opts->context : NULL,
                        "laplacian options: not cleared before use", err) < 0) return NULL;
     hdi_refuse(n < 0, "laplacian: a size is negative", c->e);
     if (c->e->status < 0) return NULL;
-    lap = hdi_lap_shell(c->ctx, c->e);
+    lap = hdi_lap_open(c);
     if (!lap) return NULL;
     lap->n = n;
     lap->kind = kind;
-    if (c->ctx == &c->context) own = HDI_TAKE(hdi_lap_keep(lap, c->e), hd_context, 1);
-    if (c->e->status < 0) {
-        hdi_laplacian_free(lap, c->ctx);
-        return NULL;
-    }
-    lap->context = hdi_enter_keep(c, own);
-    hdi_hold(c->ctx);
     (void)hdi_lap_held(lap, opts, c->e);
     return lap;
 }
