@@ -19331,6 +19331,9 @@ typedef struct hdi_request {
     size_t ldf, ldu;
 } hdi_request;
 
+/* What residuals make of a column, in the norms of B and of B + tL. */
+typedef struct hdi_column_parts { double by_b, by_m; } hdi_column_parts;
+
 /* A call. It takes a few items at a time, each in a lane. */
 typedef struct hdi_heat_call {
     hd_heat *heat;
@@ -19361,7 +19364,8 @@ typedef struct hdi_heat_call {
     int32_t equal;               /* t is so large that each component has its mean */
     int32_t by_pairs;            /* answers are sums over eigenpairs */
     hdi_extra rows;              /* direct: further sums of every item, one after the other */
-    double *off_b, *off_m;       /* [k] by residuals, see hdi_column_off; NULL: not wanted */
+    hdi_column_parts *off;       /* [k][n_off] by residuals and the sets that begin with set */
+    int32_t n_off;
     hdi_elim *m;                 /* the analysis in use, of the methods that factorise */
     int32_t n_lanes, batch;      /* lanes for items; first item in lane 0 */
     int32_t stop;
@@ -19495,14 +19499,6 @@ static hdi_fill hdi_heat_fill(const hd_heat *heat, const hdi_elim *m) {
     f.analysis = 0;
     return f;
 }
-
-/* What minimum degree adds to the fill of nested dissection, in flops and in non-zeros by rows squared, and
- * the share of ordering with analysis that it saves. Meshes of 10K, 41K, 50K, 150K, 164K vertices: 0.26,
- * 0.14, 0.14, 0.13, 0.13 flops, 1.7, 1.8, 1.0, 0.9, 1.0 e-4 non-zeros; a fifth of the time where meshes are
- * numbered regularly, a third where they are not. */
-#define HDI_DEGREE_FLOPS 0.13
-#define HDI_DEGREE_NNZ 1e-4
-#define HDI_DEGREE_SAVES 0.7
 
 /* Below this t lambda is nothing beside one, in doubles. */
 #define HDI_STILL 1e-18
@@ -19918,18 +19914,18 @@ static hdi_ledger hdi_heat_ledger(const hdi_heat_call *h) {
     return hdi_ledger_begin(rational, solver, HD_EVIDENCE_PROVEN, 0);
 }
 
-/* What the residuals of a column's systems make of its sum by the weights of set, in the norms of B and of
- * B + tL. Poles of times that share them differ by a factor, and so do the solutions; residuals are the
- * same. */
-static void hdi_column_off(const hd_laplacian *lap, const hdi_lane *lane, const hd_rational *set,
-                           double *by_b, double *by_m) {
+/* What the residuals of a column's systems make of its sum by the weights of set. Poles of times that share
+ * them differ by a factor, and so do the solutions; residuals are the same. */
+static hdi_column_parts hdi_column_off(const hd_laplacian *lap, const hdi_lane *lane,
+                                       const hd_rational *set) {
+    hdi_column_parts off = {0, 0};
     int32_t p;
-    *by_b = *by_m = 0;
     for (p = 0; p < set->n_poles && !lane->skip; p++) {
         const double weight = hdi_pole_size(set, p) * hdi_ratio_root(lap) * lane->pole_off[p];
-        *by_b += weight / hdi_pole_distance(set->theta[p]);
-        *by_m += weight * hdi_pole_gain(set->theta[p]);
+        off.by_b += weight / hdi_pole_distance(set->theta[p]);
+        off.by_m += weight * hdi_pole_gain(set->theta[p]);
     }
+    return off;
 }
 
 /* Judges lane i of the batch. */
@@ -19938,12 +19934,14 @@ static void hdi_heat_note(hdi_heat_call *h, hdi_ledger ledger, int32_t i, int ow
     const hdi_elim *m = &h->heat->elim;
     const int solved = h->method == HD_METHOD_DIRECT && h->t > 0 && !h->equal && !h->by_pairs;
     const double *reach = solved && m->resolvent && m->resolvent_t == m->t ? m->resolvent : NULL;
+    int32_t q;
     ledger.known.rounding = lane->rounding;
     lane->step = hdi_heat_step(h, lane);
     if (lane->dual) hdi_pair_apply(h->lap, 0, 1, lane->u, lane->tmp);
     hdi_heat_judge(h->lap, lane, h->ask.list ? NULL : &ledger, reach, own, h->by_pairs, h->rep);
     if (h->ask.list) h->ask.list->ledger[h->now].known = ledger.known;
-    if (h->off_b) hdi_column_off(h->lap, lane, &m->set, h->off_b + h->batch + i, h->off_m + h->batch + i);
+    for (q = 0; q < h->n_off; q++)
+        h->off[(h->batch + i) * h->n_off + q] = hdi_column_off(h->lap, lane, h->set + q);
 }
 
 /* Report and errors of the lanes, in their order. The first failure is reported, unless it only says that
@@ -21966,44 +21964,39 @@ static void hdi_inverse_tell(hdi_heat_call *h) {
     h->rep->factor_nnz = h->heat->elim.sym.nnz;
 }
 
-/* Columns within another call: k of them at the (scaled) time t, with factors the plan holds or makes. */
+/* Columns within another call, at its time, with factors the plan holds or makes. Only the lanes' accounts
+ * and sums are wanted. */
 typedef struct hdi_columns {
-    double t;
     hd_kernel kernel;
     const hd_rational *set;
-    int32_t k, equal, watching;
+    int32_t k, watching;
     const hdi_terms *terms;      /* [k] sources */
-    double *U;                   /* NULL: only the lanes' accounts are wanted */
-    size_t ldu;
     hdi_extra rows;              /* of every column; n = 0: none */
-    double *off_b, *off_m;       /* [k] NULL: not wanted */
+    int32_t n_off;               /* functions, whose sets follow set */
+    hdi_column_parts *off;       /* [k][n_off] what residuals make of their columns */
 } hdi_columns;
 
-/* The columns. The larger residual stays in to (NULL: not wanted). */
-static hd_status hdi_direct_columns(hd_heat *heat, const hdi_columns *c, hd_report *to, hd_error *e) {
-    hdi_heat_call h;
+/* The columns. The larger residual stays in the report. */
+static hd_status hdi_direct_columns(hdi_heat_call *h, const hdi_columns *c) {
+    hdi_heat_call own;
     hd_report rep;
-    if (hdi_kernel_begin(&h, heat, c->kernel, &rep, NULL) >= 0 && hdi_heat_analysed(heat, h.e) >= 0) {
-        h.t = c->t;
-        h.ask.k = c->k;
-        h.method = HD_METHOD_DIRECT;
-        h.diagonal = 1;
-        h.ask.terms = c->terms;
-        h.set = c->set;
-        h.ask.U = c->U;
-        h.ask.ldu = c->ldu;
-        h.equal = c->equal;
-        h.watching = c->watching;
-        h.rows = c->rows;
-        h.off_b = c->off_b;
-        h.off_m = c->off_m;
-        h.lap = heat->elim.lap;
-        if (h.equal) (void)hdi_heat_plain(&h);
-        else (void)hdi_heat_by_direct(&h);
+    if (hdi_kernel_begin(&own, h->heat, c->kernel, &rep, NULL) >= 0) {
+        own.t = h->t;
+        own.ask.k = c->k;
+        own.ask.terms = c->terms;
+        own.method = HD_METHOD_DIRECT;
+        own.diagonal = 1;
+        own.set = c->set;
+        own.watching = c->watching;
+        own.rows = c->rows;
+        own.n_off = c->n_off;
+        own.off = c->off;
+        own.lap = h->heat->elim.lap;
+        (void)hdi_heat_by_direct(&own);
     }
-    if (hdi_heat_end(&h) < 0) *e = rep.error;
-    else if (to) to->residual = hdi_max(to->residual, rep.residual);
-    return e->status;
+    if (hdi_heat_end(&own) < 0) *h->e = rep.error;
+    h->rep->residual = hdi_max(h->rep->residual, rep.residual);
+    return h->e->status;
 }
 
 /* ---- inverses ---- */
@@ -22123,11 +22116,6 @@ static double hdi_inverses_bound(const hdi_inverses *x, int32_t q, double g, dou
     return hdi_max(g, constants) * (hdi_finite(x->slack[q]) ? x->slack[q] : 1);
 }
 
-/* 1, or infinite where that is no bound. */
-static double hdi_inverses_sure(const hdi_inverses *x, int32_t q) {
-    return hdi_finite(x->slack[q]) ? 1 : HUGE_VAL;
-}
-
 /* Errors of a set relative to two forms: that of (B + tL)^-1 and that of B^-1; 0 where bounds hold for the
  * set's own function. */
 static double hdi_set_off_weighted(const hd_rational *set) {
@@ -22164,6 +22152,78 @@ static void hdi_operator_diagonal(const hdi_elim *m, double a0, const double *k,
     }
 }
 
+/* ---- a diagonal ---- */
+
+/* The diagonal of k_t, of K_t = k_t B or of B k_t B, in elimination order and in the unit of the scaled pair,
+ * and bounds of the same diagonals of (B + tL)^-1 and B^-1, to which errors of a set are relative. */
+typedef struct hdi_diagonal {
+    int32_t mass;                /* how often B is a factor */
+    int32_t full;                /* K_t with a full B: g and spread are square roots of a product of two */
+    const hd_rational *set;      /* NULL: exact */
+    double *value, *g, *spread;  /* [n] */
+    double sure;                 /* 1, or infinite where g is no bound */
+    double left_out;             /* times spread, an error besides: a0 B^-1 of a full B, not at hand */
+} hdi_diagonal;
+
+static hdi_diagonal hdi_diagonal_take(int32_t n, int32_t mass, hdi_scope *s) {
+    hdi_diagonal d;
+    memset(&d, 0, sizeof d);
+    d.mass = mass;
+    d.value = HDI_TAKE(s, double, 3 * (uint64_t)n + 1);
+    d.g = d.value ? d.value + n : NULL;
+    d.spread = d.value ? d.g + n : NULL;
+    return d;
+}
+
+static double hdi_by_mass(double x, double b, int32_t mass) {
+    return mass == 0 ? x : mass == 1 ? b * x : b * (b * x);      /* b^2 may leave the range of doubles */
+}
+
+/* A set's error of a form that is g and spread of (B + tL)^-1 and of B^-1. */
+static double hdi_diagonal_off(const hdi_diagonal *d, double g, double spread) {
+    if (!d->set) return 0;
+    return hdi_set_off(d->set, hdi_bound_times(d->sure, g), spread) + hdi_bound_times(d->left_out, spread);
+}
+
+/* What rounding is relative to: the value, or for functions of the caller's, which may vanish, the
+ * resolvent. */
+static double hdi_diagonal_size(const hdi_diagonal *d, int32_t i) {
+    if (!d->set || d->set->kind != HD_POLES_OWN) return fabs(d->value[i]);
+    return d->g[i] > 0 && d->g[i] < d->spread[i] ? d->g[i] : d->spread[i];
+}
+
+/* The diagonal of function q. */
+static void hdi_diagonal_read(const hd_heat *heat, const hdi_inverses *x, int32_t q, hdi_diagonal *d) {
+    const hdi_elim *m = &heat->elim;
+    const hd_laplacian *lap = m->lap;
+    const int forms = x->wanted == HDI_WANT_FORMS;
+    const double a0 = x->set[q].a0, *k = hdi_inverses_get(x, q, 0), *g = hdi_inverses_get(x, q, 1);
+    int32_t i;
+    d->set = x->set + q;
+    d->full = lap->B && d->mass == 1;
+    d->left_out = lap->B && d->mass == 0 ? fabs(a0) : 0;
+    d->sure = hdi_finite(x->slack[q]) ? 1 : HUGE_VAL;
+    if (d->full) hdi_operator_diagonal(m, a0, k, d->value);
+    for (i = 0; i < m->sym.n; i++) {
+        const int64_t at = x->place ? x->place[i] : i;
+        const double b = lap->b_diag[i], mass = forms ? lap->mass[i] * lap->mass[i] : 1;
+        const double bound = hdi_inverses_bound(x, q, g[at], mass * hdi_constant_part(lap, i));
+        d->spread[i] = d->mass == 0 ? hdi_inverse_mass(lap, i) : d->mass == 1 ? hdi_ratio_root(lap) : b;
+        d->g[i] = d->full ? sqrt(bound * b) : forms ? bound : hdi_by_mass(bound, b, d->mass);
+        if (forms) d->value[i] = k[at] + a0 * b;
+        else if (!d->full) d->value[i] = hdi_by_mass(k[at] + (lap->B ? 0 : a0 / b), b, d->mass);
+    }
+}
+
+/* Where t is so large that kernels are the means of the components. */
+static void hdi_diagonal_means(const hd_laplacian *lap, hdi_diagonal *d) {
+    int32_t i;
+    for (i = 0; i < lap->n_active; i++) {
+        d->value[i] = hdi_by_mass(1 / lap->component_mass[lap->component[i]], lap->mass[i], d->mass);
+        d->g[i] = d->spread[i] = 0;
+    }
+}
+
 /* ---- rounding of inversions ---- */
 /* No theorem bounds well what rounding does to entries found by inversion. It is measured at a few rows where
  * it is largest: the entry is compared with a solve with the same poles, whose own error its residual
@@ -22175,16 +22235,15 @@ static void hdi_operator_diagonal(const hdi_elim *m, double a0, const double *k,
 #define HDI_PROBE_OWN 100
 
 /* Does rounding show in the values alone? k_t(i,i) is at least what the constants are of it, and no set that
- * approximates exp gives less. values [n]: that times mass^power. Returns the largest relative error that a
- * smaller value proves. */
-static double hdi_below_constants(const hd_laplacian *lap, const hd_rational *set, const double *values,
-                                  int power) {
+ * approximates exp gives less. Of K_t with a full B the parts of other eigenvectors, x(v) (B x)(v), may be
+ * negative. Returns the largest relative error that a smaller value proves. */
+static double hdi_below_constants(const hd_laplacian *lap, const hdi_diagonal *d) {
     double most = 0;
     int32_t i;
-    for (i = 0; i < lap->n_active; i++) {
-        const double b = lap->mass[i], unit = power == 0 ? 1 : power == 1 ? b : b * b;
-        const double least = set->kind == HD_POLES_OWN ? 0 : unit * hdi_constant_part(lap, i);
-        if (values[i] < 0.999 * least) most = hdi_max(most, hdi_quotient(least - values[i], fabs(values[i])));
+    for (i = 0; i < lap->n_active && !d->full && !(d->left_out > 0); i++) {
+        const double part = d->set->kind == HD_POLES_OWN ? 0 : hdi_constant_part(lap, i);
+        const double least = hdi_by_mass(part, lap->mass[i], d->mass), value = d->value[i];
+        if (value < 0.999 * least) most = hdi_max(most, hdi_quotient(least - value, fabs(value)));
     }
     return most;
 }
@@ -22203,22 +22262,22 @@ static double hdi_own_near(const hd_heat *heat, const hd_rational *set, double t
     return sum;
 }
 
-/* Rounding relative to size [n] of a diagonal by poles of the caller's own. seen: by the probes. mass: the
- * diagonal is that of a kernel times B. */
-static double hdi_own_rounding(const hd_heat *heat, const hd_rational *set, double t, double seen,
-                               const double *size, int mass) {
+/* Rounding of a diagonal by poles of the caller's own, relative to its size. seen: by the probes. */
+static double hdi_own_rounding(const hd_heat *heat, const hdi_diagonal *d, double t, double seen) {
     const hd_laplacian *lap = heat->elim.lap;
-    const double closeness = hdi_own_near(heat, set, t);
+    const double closeness = hdi_own_near(heat, d->set, t) * (d->full ? hdi_ratio_root(lap) : 1);
     double most = 0;
     int32_t i;
-    for (i = 0; i < lap->n_active && closeness > 0; i++) {
-        const double spread = hdi_quotient(mass ? 1 : 1 / lap->b_diag[i], lap->b_ratio);
-        most = hdi_max(most, hdi_quotient(spread, size[i]));
-    }
+    for (i = 0; i < lap->n_active && closeness > 0; i++)
+        most = hdi_max(most, hdi_quotient(d->spread[i], hdi_diagonal_size(d, i)));
     return HDI_PROBE_OWN * seen + closeness * most;
 }
 
-typedef struct hdi_probe { int32_t k, row[HDI_PROBES]; } hdi_probe;
+/* Rows that were solved for, and where forms are wanted their columns of K by all functions. */
+typedef struct hdi_probe {
+    int32_t k, row[HDI_PROBES];
+    hdi_extra columns;
+} hdi_probe;
 
 /* The rows where t L_ii/b_ii and where t L_ii k_ii is largest, and `also` (-1: none). */
 static hdi_probe hdi_probe_rows(const hd_laplacian *lap, const double *k, int32_t also) {
@@ -22237,31 +22296,47 @@ static hdi_probe hdi_probe_rows(const hd_laplacian *lap, const double *k, int32_
         }
     }
     at[2] = also;
-    for (x.k = 0, i = 0; i < HDI_PROBES; i++) {
+    memset(&x, 0, sizeof x);
+    for (i = 0; i < HDI_PROBES; i++) {
         for (q = 0; q < x.k && x.row[q] != at[i]; q++) {}
         if (at[i] >= 0 && q == x.k) x.row[x.k++] = at[i];
     }
     return x;
 }
 
-/* Solves for the columns of these rows by the poles of set at the call's time, into the plan's lanes.
- * rows: sums by other weights, or NULL. */
-static hd_status hdi_probe_run(hdi_heat_call *h, const hdi_probe *x, hd_kernel kernel, const hd_rational *set,
-                               const hdi_extra *rows) {
-    const hd_rational own = *set;                /* it may be the plan's, which the call sets anew */
+/* Solves for the rows where rounding in the diagonals may be largest, which it is in that of the last
+ * function, and leaves that in d. */
+static hd_status hdi_probe_run(hdi_heat_call *h, const hdi_inverses *x, hdi_diagonal *d, hdi_probe *probe,
+                               hdi_scope *s) {
+    const hd_laplacian *lap = h->heat->elim.lap;
     hdi_terms source[HDI_PROBES];
     hdi_columns c;
-    int32_t i;
-    for (i = 0; i < x->k; i++) source[i] = hdi_terms_vertex(h->heat->elim.lap->vertex[x->row[i]]);
+    int32_t i, worst = 0;
+    double off, worst_off = 0;
+    hdi_diagonal_read(h->heat, x, x->count - 1, d);
+    for (i = 0; i < lap->n_active; i++) {
+        off = hdi_diagonal_off(d, d->g[i], d->spread[i]);
+        if (i > 0 && !(off * d->value[worst] > worst_off * d->value[i])) continue;
+        worst = i;
+        worst_off = off;
+    }
+    *probe = hdi_probe_rows(lap, d->value, lap->n_active > 0 ? worst : -1);
     memset(&c, 0, sizeof c);
-    c.t = h->t;
-    c.kernel = kernel;
-    c.set = &own;
-    c.k = x->k;
+    if (x->wanted == HDI_WANT_FORMS) {
+        c.rows.n = x->count;
+        c.rows.weight = x->weight;
+        c.rows.stride = 2 * x->set->n_poles;
+        c.rows.sum = HDI_TAKE(s, double, (uint64_t)HDI_PROBES * (uint64_t)x->count * (uint64_t)lap->n_active);
+        if (!c.rows.sum) return h->e->status;
+    }
+    probe->columns = c.rows;
+    for (i = 0; i < probe->k; i++) source[i] = hdi_terms_vertex(lap->vertex[probe->row[i]]);
+    c.kernel = lap->B && d->mass > 0 ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
+    c.set = x->set;
+    c.k = probe->k;
     c.terms = source;
     c.watching = 1;
-    if (rows) c.rows = *rows;
-    return x->k > 0 ? hdi_direct_columns(h->heat, &c, h->rep, h->e) : h->e->status;
+    return probe->k > 0 ? hdi_direct_columns(h, &c) : h->e->status;
 }
 
 /* Rounding of a value, relative to size, by a probe whose own error is at most off. Of a probe that is not a
@@ -22271,21 +22346,49 @@ static double hdi_probe_seen(double probe, double off, double value, double size
     return hdi_nan(seen) ? HUGE_VAL : seen;
 }
 
-/* Probe r's own entry by the weights of `set`, a set in terms of a time that is tau times that of the
- * factors, and a bound on its error. g: of diag((B + tL)^-1) there. f: what a0 multiplies. */
-static double hdi_probe_value(const hd_heat *heat, const hdi_probe *x, int32_t r, const hd_rational *set,
-                              double tau, double f, double g, double *off) {
+/* Entry i of diagonal d, which is that of function q, by probe r; in *off a bound on its error. */
+static double hdi_probe_value(const hd_heat *heat, const hdi_probe *probe, int32_t r, const hdi_inverses *x,
+                              int32_t q, const hdi_diagonal *d, double *off) {
     const hd_laplacian *lap = heat->elim.lap;
     const hdi_lane *lane = heat->lane + r;
-    double value = set->a0 * f, by_b, by_m;
-    int32_t p;
-    for (p = 0; p < set->n_poles; p++)
-        value -= hdi_rat_count(set, p) / tau * hdi_cmul(set->a[p], lane->pole_value[p]).re;
-    hdi_column_off(lap, lane, set, &by_b, &by_m);
-    by_m = g > 0 && hdi_finite(g) ? sqrt(g) * by_m : HUGE_VAL;
-    *off = hdi_min(by_m, by_b * hdi_ratio_root(lap) / sqrt(lap->b_diag[x->row[r]])) +
-           4 * DBL_EPSILON * fabs(value);
-    return value;
+    const hdi_extra *columns = &probe->columns;
+    const hd_rational *set = d->set;
+    const int32_t i = probe->row[r], times = lap->B ? 0 : d->mass;   /* of masses that the probe lacks */
+    const double b = lap->b_diag[i], plain = d->mass == 0 || !lap->B ? 1 / b : 1;
+    const double g = d->full ? d->g[i] * (d->g[i] / b) : hdi_by_mass(d->g[i], 1 / b, times);
+    const double spread = columns->n > 0 ? b : hdi_inverse_mass(lap, i);
+    const hdi_column_parts column = hdi_column_off(lap, lane, set);
+    double value, by_m;
+    int64_t p;
+    if (columns->n > 0) {
+        const double *u = columns->sum + ((int64_t)r * columns->n + q) * lap->n_active;
+        value = set->a0 * b;
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) value += lap->B[p] * u[lap->L.col[p]];
+    } else {
+        value = lap->B && d->mass == 0 ? 0 : set->a0 * plain;
+        for (p = 0; p < set->n_poles; p++)
+            value -= hdi_rat_count(set, (int32_t)p) / hdi_inverses_tau(x, q) *
+                hdi_cmul(set->a[p], lane->pole_value[p]).re;
+    }
+    /* |e_i| is at most sqrt(g) times the norm of B + tL, and sqrt(spread) times that of B */
+    by_m = g > 0 && hdi_finite(g) ? sqrt(g) * column.by_m : HUGE_VAL;
+    *off = hdi_min(by_m, sqrt(spread) * column.by_b) + 4 * DBL_EPSILON * fabs(value);
+    *off = hdi_by_mass(*off, b, times);
+    return hdi_by_mass(value, b, times);
+}
+
+/* What rounding does to diagonal d, which is that of function q, relative to its size. */
+static double hdi_diagonal_seen(const hdi_heat_call *h, const hdi_inverses *x, int32_t q,
+                                const hdi_diagonal *d, const hdi_probe *probe) {
+    double rounding = 0, off, there;
+    int32_t r;
+    for (r = 0; r < probe->k; r++) {
+        const int32_t i = probe->row[r];
+        there = hdi_probe_value(h->heat, probe, r, x, q, d, &off);
+        rounding = hdi_max(rounding, hdi_probe_seen(there, off, d->value[i], hdi_diagonal_size(d, i)));
+    }
+    rounding = hdi_max(rounding, hdi_below_constants(h->heat->elim.lap, d));
+    return d->set->kind == HD_POLES_OWN ? hdi_own_rounding(h->heat, d, h->t, rounding) : rounding;
 }
 
 /* ---- diagonals and traces ---- */
@@ -22332,71 +22435,24 @@ static hdi_ledger hdi_inverse_ledger(const hdi_heat_call *h, const hd_rational *
     return hdi_ledger_begin(rational, HD_EVIDENCE_NONE, HD_EVIDENCE_MEASURED, relative);
 }
 
-/* A diagonal that is computed, by rows in elimination order and in the unit of the scaled pair. */
-typedef struct hdi_diagonal {
-    hd_kernel kernel;
-    double *value, *off;         /* [n] and bounds on the rational errors */
-    double *g;                   /* [n] at least diag((B + tL)^-1) */
-    double *size;                /* [n] what rounding is relative to: value, or own */
-    double *own;                 /* [n] work */
-} hdi_diagonal;
-
-static hdi_diagonal hdi_diagonal_take(int32_t n, hdi_scope *s) {
-    hdi_diagonal d;
-    memset(&d, 0, sizeof d);
-    d.value = HDI_TAKE(s, double, 4 * (uint64_t)n);
-    if (!d.value) return d;
-    d.off = d.value + n;
-    d.g = d.off + n;
-    d.own = d.g + n;
-    return d;
-}
-
-/* That of function q. Rounding is relative to the value; for a function of the caller's, which may vanish,
- * to the resolvent. Where B is full its inverse is not at hand, and a0 B^-1 is of the size of the set's
- * error. */
-static void hdi_diagonal_read(const hdi_heat_call *h, const hdi_inverses *x, int32_t q, hdi_diagonal *d) {
-    const hdi_elim *m = &h->heat->elim;
-    const hd_laplacian *lap = m->lap;
-    const hd_rational *set = x->set + q;
-    const double *k = hdi_inverses_get(x, q, 0), *g = hdi_inverses_get(x, q, 1);
-    const int mass = d->kernel == HD_KERNEL_OPERATOR, full = mass && lap->B;
-    const double left_out = lap->B && !full ? fabs(set->a0) : 0, sure = hdi_inverses_sure(x, q);
-    int32_t i;
-    d->size = set->kind == HD_POLES_OWN ? d->own : d->value;
-    if (full) hdi_operator_diagonal(m, set->a0, k, d->value);
-    for (i = 0; i < m->sym.n; i++) {
-        const int64_t at = x->place ? x->place[i] : i;
-        const double spread = hdi_inverse_mass(lap, i), b = mass ? lap->mass[i] : 1;
-        d->g[i] = hdi_inverses_bound(x, q, g[at], hdi_constant_part(lap, i));
-        d->own[i] = (d->g[i] > 0 && d->g[i] < spread ? d->g[i] : spread) * (mass ? lap->b_diag[i] : 1);
-        if (full) {
-            d->off[i] = hdi_set_off(set, sure * sqrt(d->g[i] * lap->b_diag[i]), hdi_ratio_root(lap));
-            continue;
-        }
-        d->value[i] = b * (k[at] + (lap->B ? 0 : set->a0 / lap->mass[i]));
-        d->off[i] = b * (hdi_set_off(set, sure * d->g[i], spread) + hdi_bound_times(left_out, spread));
-    }
-}
-
-/* Gives a diagonal to vertices, in the caller's unit, and its errors to the report: off, and rounding
- * relative to size. Returns the largest off relative to its value. */
+/* Gives a diagonal to vertices, in the caller's unit, and its errors to the report: those of the set, and
+ * rounding relative to its size. Returns the largest of the former relative to its value. */
 static double hdi_diagonal_tell(hdi_heat_call *h, const hdi_diagonal *d, hdi_ledger ledger, double rounding,
                                 double *out, hd_report *rep) {
     const hd_laplacian *lap = h->heat->elim.lap;
-    const double unit = d->kernel == HD_KERNEL_SYMMETRIC ? h->heat->scale : 1;
+    const double unit = d->mass == 0 ? h->heat->scale : 1;
     double most = 0;
     int32_t i, v;
-    for (v = 0; v < lap->n; v++) out[v] = d->kernel == HD_KERNEL_OPERATOR && lap->row[v] == HD_ROW_INERT;
+    for (v = 0; v < lap->n; v++) out[v] = d->mass > 0 && lap->row[v] == HD_ROW_INERT;
     for (i = 0; i < lap->n_active; i++) {
-        const double value = d->value[i], seen = rounding > 0 ? unit * rounding * fabs(d->size[i]) : 0;
-        hdi_parts part;
-        memset(&part, 0, sizeof part);
-        part.rational = unit * d->off[i];
-        part.rounding = 4 * DBL_EPSILON * unit * fabs(value) + seen;
+        const double value = d->value[i], off = hdi_diagonal_off(d, d->g[i], d->spread[i]);
+        hdi_parts part = {0, 0, 0};
+        part.rational = unit * off;
+        part.rounding = unit * (4 * DBL_EPSILON * fabs(value) +
+                                (rounding > 0 ? rounding * hdi_diagonal_size(d, i) : 0));
         out[lap->vertex[i]] = unit * value;
         hdi_ledger_note(&ledger, unit * value, part);
-        most = hdi_max(most, hdi_quotient(d->off[i], fabs(value)));
+        most = hdi_max(most, hdi_quotient(off, fabs(value)));
     }
     hdi_ledger_close(&ledger, rep);
     return most;
@@ -22417,54 +22473,21 @@ static void hdi_trace_tell(const hdi_diagonals *to, hdi_ledger ledger, int32_t q
 static double hdi_trace_read(const hdi_heat_call *h, const hdi_inverses *x, int32_t q, const hdi_diagonal *d,
                              double rounding, double *work, hdi_parts *off) {
     const hd_laplacian *lap = h->heat->elim.lap;
-    const hd_rational *set = x->set + q;
     double value = 0, size = 0, form = 0, components = 0;
     int32_t i;
     if (lap->B) hdi_operator_diagonal(&h->heat->elim, 0, hdi_inverses_get(x, q, 1), work);
     for (i = 0; i < lap->n_active; i++) {
         value += d->value[i];
-        size += fabs(d->size[i]);
-        form += lap->B ? work[i] * x->slack[q] : d->g[i] * lap->mass[i];
+        size += hdi_diagonal_size(d, i);
+        form += lap->B ? work[i] * x->slack[q] : d->g[i];
     }
     for (i = 0; i < lap->n_components && lap->conserves; i++)
         components += hdi_finite(lap->component_mass[i]);
     form = hdi_finite(x->slack[q]) ? hdi_max(form, components) : HUGE_VAL;
     memset(off, 0, sizeof *off);
-    off->rational = hdi_set_off(set, form, lap->n_active);
+    off->rational = hdi_set_off(d->set, form, lap->n_active);
     off->rounding = rounding * size + 4 * DBL_EPSILON * fabs(value);
     return value;
-}
-
-/* What rounding does to the diagonal of function q, relative to size, from probes that were run. */
-static double hdi_diagonal_seen(const hdi_heat_call *h, const hdi_inverses *x, int32_t q,
-                                const hdi_diagonal *d, const hdi_probe *probe) {
-    const hd_laplacian *lap = h->heat->elim.lap;
-    const hd_rational *set = x->set + q;
-    const int mass = d->kernel == HD_KERNEL_OPERATOR;
-    double rounding = 0;
-    int32_t r;
-    for (r = 0; r < probe->k; r++) {
-        const int32_t row = probe->row[r];
-        const double f = mass ? 1 : lap->B ? 0 : 1 / lap->mass[row];
-        double by, there = hdi_probe_value(h->heat, probe, r, set, hdi_inverses_tau(x, q), f, d->g[row], &by);
-        rounding = hdi_max(rounding, hdi_probe_seen(there, by, d->value[row], d->size[row]));
-    }
-    /* of K_t with a full B the parts of other eigenvectors, x(v) (B x)(v), may be negative */
-    if (!mass || !lap->B) rounding = hdi_max(rounding, hdi_below_constants(lap, set, d->value, mass));
-    if (set->kind == HD_POLES_OWN) rounding = hdi_own_rounding(h->heat, set, h->t, rounding, d->size, mass);
-    return rounding;
-}
-
-/* Runs probes at the rows where rounding in the diagonals may be largest, which it is in that of the last. */
-static hd_status hdi_diagonal_probe(hdi_heat_call *h, const hdi_inverses *x, hdi_diagonal *d,
-                                    hdi_probe *probe) {
-    const hd_laplacian *lap = h->heat->elim.lap;
-    int32_t i, worst = 0;
-    hdi_diagonal_read(h, x, x->count - 1, d);
-    for (i = 1; i < lap->n_active; i++)
-        if (d->off[i] * d->value[worst] > d->off[worst] * d->value[i]) worst = i;
-    *probe = hdi_probe_rows(lap, d->value, lap->n_active > 0 ? worst : -1);
-    return hdi_probe_run(h, probe, d->kernel, x->set, NULL);
 }
 
 /* Diagonals, or with `trace` traces, of all functions of x. Function q belongs to time column[q] of the
@@ -22475,19 +22498,18 @@ static hd_status hdi_diagonals_read(const hdi_diagonals *to, const hdi_inverses 
     hdi_heat_call *h = to->task.h;
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
     const int32_t n = h->heat->elim.sym.n;
-    hdi_diagonal d = hdi_diagonal_take(n, &s);
+    hdi_diagonal d = hdi_diagonal_take(n, trace || to->kernel == HD_KERNEL_OPERATOR, &s);
     double *work = trace && h->heat->source->B ? HDI_TAKE(&s, double, n) : NULL;
     hdi_probe probe;
     int32_t q;
-    d.kernel = trace ? HD_KERNEL_OPERATOR : to->kernel;
-    if (h->e->status < 0 || hdi_diagonal_probe(h, x, &d, &probe) < 0) return hdi_scope_end(&s);
+    if (h->e->status < 0 || hdi_probe_run(h, x, &d, &probe, &s) < 0) return hdi_scope_end(&s);
     for (q = 0; q < x->count; q++) {
         hd_report *rep = one ? one + column[q] : h->rep;
-        hdi_ledger ledger = hdi_inverse_ledger(h, x->set + q, 1);
+        const hdi_ledger ledger = hdi_inverse_ledger(h, x->set + q, 1);
         double seen;
         hdi_parts off;
         if (rep != h->rep && !rep->reason) *rep = *h->rep;
-        hdi_diagonal_read(h, x, q, &d);
+        hdi_diagonal_read(h->heat, x, q, &d);
         seen = hdi_diagonal_seen(h, x, q, &d, &probe);
         if (trace) {
             const double value = hdi_trace_read(h, x, q, &d, seen, work, &off);
@@ -22517,21 +22539,15 @@ static hd_status hdi_diagonals_equal(const hdi_diagonals *to, int32_t q, hd_repo
     hdi_heat_call *h = to->task.h;
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
     const hd_laplacian *lap = h->heat->elim.lap;
-    hdi_diagonal d = hdi_diagonal_take(lap->n_active, &s);
+    hdi_diagonal d = hdi_diagonal_take(lap->n_active, to->kernel == HD_KERNEL_OPERATOR, &s);
     const hdi_parts off = {0, 0, 0};
     double count = 0;
     int32_t i;
     h->equal = h->relative = 1;
-    d.kernel = to->kernel;
-    d.size = d.value;
-    for (i = 0; i < lap->n_active && d.value; i++) {
-        const double unit = d.kernel == HD_KERNEL_OPERATOR ? lap->mass[i] : 1;
-        d.value[i] = unit / lap->component_mass[lap->component[i]];
-        d.off[i] = 0;
-    }
     for (i = 0; i < lap->n_components; i++) count += hdi_finite(lap->component_mass[i]);
     if (h->e->status >= 0) {
         const hdi_ledger ledger = hdi_inverse_ledger(h, &h->heat->elim.set, 1);
+        hdi_diagonal_means(lap, &d);
         if (to->D)
             (void)hdi_diagonal_tell(h, &d, ledger, (double)lap->n_active * DBL_EPSILON,
                                     to->D + (size_t)q * to->ldd, rep);
@@ -22851,223 +22867,123 @@ static int hdi_heat_filtered(const hd_heat *heat) {
 
 static int hdi_distance_timeless(hd_distance_kind kind) { return kind >= HD_DISTANCE_COMMUTE; }
 
-/* The parts of distances of one kind at one time: d^2 = f_ss - 2 f_sv + f_vv, f(v,v) by rows of the
- * source, and bounds on their errors. The rational error of f is at most that of the set for forms with
- * the diagonals g and spread. Rounding of a column is at most sqrt(g_v) times a number that comes with
- * each column. */
+/* Distances of one kind, at one time or at several that share their poles: d^2 = f_ss - 2 f_sv + f_vv with f
+ * of k_t, or of B k_t B, in elimination order and in the unit of the scaled pair. The rational error of f is
+ * at most that of the set for forms with the diagonals g and spread. Rounding of a column is at most sqrt(g_v)
+ * times a number that comes with each column, and sqrt(spread_v) times another. */
 typedef struct hdi_metric {
     hdi_heat_call *h;
     hd_distance_kind kind;
     int timeless, equal;         /* equal: t is as good as infinite */
-    double t;                    /* of columns, scaled */
     double root;                 /* of distances to roots of d^2: squares in their unit may leave the range */
-    hd_rational set;             /* of f; the factors have its poles, or those of a time that shares them */
-    hd_c64 bound[HD_MAX_POLES];  /* weights of the poles for g */
-    double *diag, *g, *spread;
-    double sure;                 /* 1, or infinite where g is no bound */
-    double left_out;             /* times the form of spread, besides: a0 B^-1 of a full B */
-    /* of diag, relative to it, or with own to g: of any function of the caller's, which may vanish */
-    double rounding;
-    int own;
+    hdi_inverses in;             /* the functions, one for each time */
+    hdi_diagonal f;              /* of function q */
+    int32_t q;
+    double *rounding;            /* [in.count] of their diagonals, relative to the size of these */
+    int32_t group;               /* so many sources are solved for at the same time */
+    hdi_extra rows;              /* their columns of f and, where it is of use, of the bound g, by function */
+    int bounded;                 /* it is */
+    hdi_column_parts *off;       /* [group][in.count] */
+    double *work;                /* [n], or of grounded solves */
 } hdi_metric;
-
-/* A column of f by vertices. Rounding is at most sqrt(g_v) off_m, and at most sqrt(spread_v) off_b. */
-typedef struct hdi_metric_column { double *u, off_m, off_b; } hdi_metric_column;
-
-/* What rounding of a function of the caller's is relative to: the resolvent, or where that is no bound the
- * mass. */
-static double hdi_own_size(double g, double spread) { return g > 0 && hdi_finite(g) ? g : spread; }
 
 /* Are distances weighted by a full B? */
 static int hdi_metric_full(const hd_heat *heat, hd_distance_kind kind) {
     return kind == HD_DISTANCE_WEIGHTED && heat->source->B != NULL;
 }
 
+static hdi_wanted hdi_metric_wanted(const hd_heat *heat, hd_distance_kind kind) {
+    return hdi_metric_full(heat, kind) ? HDI_WANT_FORMS : HDI_WANT_DIAGONAL;
+}
+
 /* Commute and biharmonic, from L grounded. */
-static hd_status hdi_metric_ground(hdi_heat_call *h, hdi_metric *x, hdi_scope *scope) {
+static hd_status hdi_metric_ground(hdi_metric *x, hdi_scope *s) {
     const int forms = x->kind == HD_DISTANCE_BIHARMONIC;
+    hdi_heat_call *h = x->h;
     hdi_elim *m = &h->heat->elim;
     hdi_ground *g = &h->heat->ground;
-    const double *value;
-    double *work, *u;
+    const int32_t n = m->sym.n;
+    double *u = HDI_TAKE(s, double, n + 1), *value = x->f.value;
     hdi_probe probe;
     int32_t i, farthest = 0, nearest = 0;
     h->rep->reason = "one real factor of L, one vertex of each component held";
     h->rep->factor_flops = m->sym.flops;
-    if (hdi_need(h->heat->ctx, hdi_ground_need(m, g, forms), "factors of L and their inversion", h->e) < 0)
-        return h->e->status;
+    if (!u || hdi_need(h->heat->ctx, hdi_ground_need(m, g, forms), "factors of L and their inversion",
+                       h->e) < 0) return h->e->status;
     if (hdi_ground_make(m, g, h->e) < 0 || (forms && hdi_ground_forms(m, g, h->e) < 0)) return h->e->status;
-    value = forms ? g->form : g->diag;
-    work = HDI_TAKE(scope, double, hdi_ground_room(m));
-    u = HDI_TAKE(scope, double, m->sym.n);
-    if (!work || !u) return scope->e->status;
     x->root = forms ? 1 / sqrt(h->heat->scale) : 1;
-    for (i = 0; i < m->sym.n; i++) {
-        const int32_t r = m->sym.perm[i];
-        x->diag[r] = value[i];
-        x->g[r] = hdi_max(0, g->diag[i]);
-        x->spread[r] = HUGE_VAL;
-    }
-    for (i = 1; i < m->sym.n; i++) {
+    for (i = 0; i < n; i++) {
+        value[i] = forms ? g->form[i] : g->diag[i];
+        x->f.g[i] = hdi_max(0, g->diag[i]);
+        x->f.spread[i] = HUGE_VAL;
         if (g->diag[i] > g->diag[farthest]) farthest = i;
         if (g->diag[i] > 0 && !(g->diag[nearest] > 0 && g->diag[nearest] <= g->diag[i])) nearest = i;
     }
-    probe = hdi_probe_rows(m->lap, g->diag, m->sym.n > 0 ? farthest : -1);
+    probe = hdi_probe_rows(m->lap, g->diag, n > 0 ? farthest : -1);
     /* and the nearest, where the relative error is largest */
-    for (i = 0; i <= probe.k && m->sym.n > 0; i++) {
+    for (i = 0; i <= probe.k && n > 0; i++) {
         const int32_t row = i < probe.k ? probe.row[i] : nearest;
         const hdi_terms at = hdi_terms_vertex(m->lap->vertex[row]);
-        const double off = hdi_ground_column(m, g, &at, forms, u, work) * sqrt(hdi_max(0, g->diag[row]));
+        const double off = hdi_ground_column(m, g, &at, forms, u, x->work) * sqrt(x->f.g[row]);
         const double seen = 4 * HDI_PROBE_SAFETY * fabs(u[row] - value[row]) + off;
-        x->rounding = hdi_max(x->rounding, hdi_quotient(seen, value[row]));
+        *x->rounding = hdi_max(*x->rounding, hdi_quotient(seen, value[row]));
     }
-    for (i = 0; i < m->sym.n; i++)               /* rounding has left nothing of what is positive */
-        if (!g->held[i] && !(value[i] > 0)) x->rounding = HUGE_VAL;
+    for (i = 0; i < n; i++)                      /* rounding has left nothing of what is positive */
+        if (!g->held[i] && !(value[i] > 0)) *x->rounding = HUGE_VAL;
     return HD_OK;
 }
 
-/* The diagonal where t is so large that kernels are the means of the components. */
-static void hdi_metric_equal(const hd_laplacian *lap, hdi_metric *x) {
-    int32_t r;
-    for (r = 0; r < lap->n_active; r++) {
-        const double b = lap->mass[r], k = 1 / lap->component_mass[lap->component[r]];
-        x->diag[r] = x->kind == HD_DISTANCE_WEIGHTED ? b * (b * k) : k;
-        x->g[r] = x->spread[r] = 0;
+/* Takes up function q. */
+static void hdi_metric_at(hdi_metric *x, int32_t q) {
+    if (x->f.set && x->q != q) hdi_diagonal_read(x->h->heat, &x->in, q, &x->f);
+    x->q = q;
+}
+
+/* Inverts for the functions, whose sets are there, and measures rounding. */
+static hd_status hdi_metric_invert(hdi_metric *x, hdi_scope *s) {
+    hdi_heat_call *h = x->h;
+    hdi_probe probe;
+    double weighted;
+    if (hdi_inverses_run(h, &x->in, s) < 0 || hdi_probe_run(h, &x->in, &x->f, &probe, s) < 0)
+        return h->e->status;
+    for (x->q = x->in.count - 1; ; hdi_metric_at(x, x->q - 1)) {
+        x->rounding[x->q] = hdi_diagonal_seen(h, &x->in, x->q, &x->f, &probe);
+        if (x->q == 0) break;
     }
-    x->rounding = (double)lap->n_active * DBL_EPSILON;
+    weighted = hdi_set_off_weighted(x->in.set);
+    x->bounded = weighted > 0 && hdi_finite(weighted) && hdi_finite(x->f.sure);
+    return HD_OK;
 }
 
-/* What residuals make of a column of the kernel becomes what they make of one of f. */
-static void hdi_metric_off(const hd_heat *heat, const hdi_metric *x, hdi_metric_column *c) {
-    const int weighted = x->kind == HD_DISTANCE_WEIGHTED;
-    const double unit = weighted ? 1 / sqrt(heat->scale) : sqrt(heat->scale);
-    c->off_m *= unit;
-    c->off_b *= unit * (weighted ? sqrt(heat->scale) : 1);
-}
-
-/* The diagonals of function q of an inversion. */
-static void hdi_metric_read(const hd_heat *heat, const hdi_inverses *in, int32_t q, hdi_metric *x) {
-    const hdi_elim *m = &heat->elim;
-    const hd_laplacian *lap = heat->source;
-    const int weighted = x->kind == HD_DISTANCE_WEIGHTED, full = hdi_metric_full(heat, x->kind);
-    const double *k = hdi_inverses_get(in, q, 0), *g = hdi_inverses_get(in, q, 1);
-    const size_t n_poles = (size_t)in->set[q].n_poles;
-    int32_t i;
-    x->set = in->set[q];
-    x->own = x->set.kind == HD_POLES_OWN;
-    x->sure = hdi_inverses_sure(in, q);
-    x->left_out = lap->B && !full ? fabs(x->set.a0) : 0;
-    memcpy(x->bound, in->weight + (2 * (size_t)q + 1) * n_poles, n_poles * sizeof *x->bound);
-    for (i = 0; i < m->sym.n; i++) {
-        const int32_t r = m->sym.perm[i];
-        /* no square of b */
-        const double b = lap->b_diag[r], plain = weighted ? b * m->lap->mass[i] : heat->scale;
-        const double unit = full ? 1 / heat->scale : plain, mass = full ? m->lap->mass[i] : 1;
-        const double constants = hdi_constant_part(m->lap, i) * mass * mass;
-        x->diag[r] = unit * (k[i] + (lap->B ? 0 : x->set.a0 / m->lap->mass[i])) + (full ? x->set.a0 * b : 0);
-        x->g[r] = unit * hdi_inverses_bound(in, q, g[i], constants);
-        x->spread[r] = weighted ? b : hdi_inverse_mass(lap, r);
-    }
-}
-
-/* The value (B K)(v,v) of probe r, whose column of K is u, and a bound on its error. g: of B (B + tL)^-1
- * B. */
-static double hdi_metric_probe_full(const hd_heat *heat, const hdi_metric *x, int32_t r, int32_t row,
-                                    const double *u, double g, double *off) {
-    const hd_laplacian *lap = heat->elim.lap;
-    double value = 0, by_b, by_m;
-    int64_t p;
-    for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1]; p++) value += lap->B[p] * u[lap->L.col[p]];
-    hdi_column_off(lap, heat->lane + r, &x->set, &by_b, &by_m);
-    /* |(B e)_v| is at most sqrt(B_vv) |e|_B, and sqrt(g) times the norm of B + tL */
-    *off = hdi_min(sqrt(lap->b_diag[row]) * by_b, hdi_finite(g) ? sqrt(g) * by_m : HUGE_VAL) +
-           4 * DBL_EPSILON * fabs(value);
-    return value;
-}
-
-/* What rounding does to the diagonal, which is function q of an inversion, by probes that were run. rows:
- * of their columns of K where f is weighted by a full B. */
-static void hdi_metric_seen(const hdi_heat_call *h, const hdi_inverses *in, int32_t q, const hdi_probe *probe,
-                            const hdi_extra *rows, hdi_metric *x) {
-    const hd_heat *heat = h->heat;
-    const hdi_elim *m = &heat->elim;
-    const hd_laplacian *lap = m->lap;
-    const double *k = hdi_inverses_get(in, q, 0), *g = hdi_inverses_get(in, q, 1);
-    const int full = hdi_metric_full(heat, x->kind);
-    double by, there;
-    int32_t r, i;
-    x->rounding = 0;
-    for (r = 0; r < probe->k; r++) {
-        const int32_t row = probe->row[r];
-        const double bound = hdi_inverses_bound(in, q, g[row], full ? 0 : hdi_constant_part(lap, row));
-        const double size = x->own ? hdi_own_size(bound, hdi_inverse_mass(lap, row)) : 0;
-        double value = k[row];
-        if (full) {
-            const double *u = rows->sum + ((size_t)r * (size_t)rows->n + (size_t)q) * (size_t)m->sym.n;
-            there = hdi_metric_probe_full(heat, x, r, row, u, bound, &by);
-        } else {
-            there = hdi_probe_value(heat, probe, r, &x->set, hdi_inverses_tau(in, q), 0, bound, &by);
-        }
-        x->rounding = hdi_max(x->rounding, hdi_probe_seen(there, by, value, x->own ? size : value));
-    }
-    if (x->own) {                                /* from here on g is what rounding is relative to */
-        const double closeness = hdi_own_near(heat, &x->set, h->t);
-        double most = 0;
-        for (i = 0; i < m->sym.n && closeness > 0; i++) {
-            const double spread = hdi_quotient(1 / lap->b_diag[i], lap->b_ratio);
-            const double own = hdi_own_size(hdi_inverses_bound(in, q, g[i], 0), spread);
-            most = hdi_max(most, hdi_quotient(spread, own));
-        }
-        x->rounding = HDI_PROBE_OWN * x->rounding + closeness * most;
-    }
-    if (x->set.a0 == 0)
-        x->rounding = hdi_max(x->rounding, hdi_below_constants(lap, &x->set, k, full ? 2 : 0));
-}
-
-/* Runs the probes of an inversion whose last function has the values k. */
-static hd_status hdi_metric_probe(hdi_heat_call *h, const hdi_inverses *in, hd_distance_kind kind,
-                                  hdi_probe *probe, hdi_extra *rows, hdi_scope *s) {
+/* A metric of so many functions without its values. group: so many sources are solved for at the same time;
+ * bounded: with columns of g, where they are of use. */
+static hd_status hdi_metric_take(hdi_metric *x, hdi_heat_call *h, hd_distance_kind kind, int32_t count,
+                                 hdi_scope *s) {
     const hdi_elim *m = &h->heat->elim;
-    const int full = hdi_metric_full(h->heat, kind);
-    *probe = hdi_probe_rows(m->lap, hdi_inverses_get(in, in->count - 1, 0), -1);
-    memset(rows, 0, sizeof *rows);
-    if (full) {
-        rows->n = in->count;
-        rows->weight = in->weight;
-        rows->stride = 2 * in->set->n_poles;
-        rows->sum = HDI_TAKE(s, double, (uint64_t)HDI_PROBES * (uint64_t)in->count * (uint64_t)m->sym.n);
-        if (!rows->sum) return h->e->status;
-    }
-    return hdi_probe_run(h, probe, full ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC, in->set, rows);
-}
-
-/* Room for the diagonals in keep. */
-static hd_status hdi_metric_take(hdi_heat_call *h, hd_distance_kind kind, hdi_metric *x, hdi_scope *keep) {
-    const size_t n = (size_t)h->heat->source->n_active;
     memset(x, 0, sizeof *x);
     x->h = h;
     x->kind = kind;
     x->timeless = hdi_distance_timeless(kind);
-    x->root = 1;
-    x->diag = HDI_TAKE(keep, double, 3 * n + 1);
-    if (!x->diag) return keep->e->status;
-    x->g = x->diag + n;
-    x->spread = x->g + n;
-    return HD_OK;
+    x->root = kind == HD_DISTANCE_WEIGHTED ? 1 / sqrt(h->heat->scale) : sqrt(h->heat->scale);
+    x->f = hdi_diagonal_take(m->sym.n, kind == HD_DISTANCE_WEIGHTED ? 2 : 0, s);
+    x->rounding = HDI_TAKE_ZERO(s, double, count);
+    x->work = HDI_TAKE(s, double, x->timeless ? hdi_ground_room(m) : (uint64_t)m->sym.n + 1);
+    h->lap = m->lap;
+    hdi_inverse_tell(h);
+    return h->e->status;
 }
 
-/* The metric of one time by poles. */
-static hd_status hdi_metric_invert(hdi_heat_call *h, hdi_metric *x, hdi_scope *s) {
-    const hdi_wanted wanted = hdi_metric_full(h->heat, x->kind) ? HDI_WANT_FORMS : HDI_WANT_DIAGONAL;
-    hdi_inverses in;
-    hdi_probe probe;
-    hdi_extra rows;
-    if (hdi_inverses_take(&in, h, 1, wanted, s) < 0 || hdi_heat_set(h, in.set) < 0 ||
-        hdi_inverses_run(h, &in, s) < 0 || hdi_metric_probe(h, &in, x->kind, &probe, &rows, s) < 0)
-        return h->e->status;
-    hdi_metric_read(h->heat, &in, 0, x);
-    hdi_metric_seen(h, &in, 0, &probe, &rows, x);
-    return HD_OK;
+/* Room for the columns of so many sources at the same time, with those of g where they are of use. */
+static hd_status hdi_metric_room(hdi_metric *x, int32_t group, int bounded, hdi_scope *s) {
+    const int32_t count = hdi_high32(x->in.count, 1), n_poles = x->in.count > 0 ? x->in.set->n_poles : 0;
+    x->bounded = x->bounded && bounded;
+    x->group = group;
+    x->rows.n = (x->bounded ? 2 : 1) * count;
+    x->rows.stride = (x->bounded ? 1 : 2) * n_poles;
+    x->rows.weight = x->in.weight;
+    x->rows.sum = HDI_TAKE(s, double, (uint64_t)group * (uint64_t)x->rows.n * (uint64_t)x->h->lap->n_active);
+    x->off = HDI_TAKE(s, hdi_column_parts, (uint64_t)group * (uint64_t)count);
+    return x->h->e->status;
 }
 
 /* The time of columns, scaled: d^2 of a filter is the sum of the filter itself. */
@@ -23075,47 +22991,212 @@ static double hdi_distance_time(const hd_heat *heat, double t) {
     return hdi_min((hdi_heat_filtered(heat) ? 1 : 2) * hdi_heat_scaled(heat, t), 1e300);
 }
 
-/* The metric of a kind at the time under way, by poles of a degree (0: by default). keep holds its arrays. */
-static hd_status hdi_metric_make(hdi_heat_call *h, hd_distance_kind kind, int32_t degree, hdi_metric *x,
-                                 hdi_scope *keep) {
+/* The metric of one time, the one under way, by poles of a degree (0: by default), for so many sources at the
+ * same time. */
+static hd_status hdi_metric_make(hdi_heat_call *h, hd_distance_kind kind, int32_t degree, int32_t group,
+                                 int bounded, hdi_metric *x, hdi_scope *s) {
     hd_heat *heat = h->heat;
-    hdi_scope scope;
-    if (hdi_metric_take(h, kind, x, keep) < 0 || hdi_heat_analysed(heat, h->e) < 0) return h->e->status;
-    scope = hdi_scope_begin(heat->ctx, h->e);
-    hdi_inverse_tell(h);
-    if (!x->timeless) h->t = x->t = hdi_distance_time(heat, h->ask.t[h->now]);
-    h->degree = degree;
-    h->lap = heat->elim.lap;
-    x->equal = !x->timeless && hdi_heat_equal(heat, &heat->elim, x->t, h->e);
-    if (x->timeless) (void)hdi_metric_ground(h, x, &scope);
-    else if (x->equal) hdi_metric_equal(heat->source, x);
-    else if (h->e->status >= 0) (void)hdi_metric_invert(h, x, &scope);
-    h->degree = 0;
-    if (h->e->status < 0) hdi_free(heat->ctx, hdi_keep(keep, x->diag));   /* another try may follow */
-    return hdi_scope_end(&scope);
-}
-
-/* Makes a column of k_t, or of K_t e_s, one of f by vertices, in place. work [2 n_active]. */
-static void hdi_metric_of_column(const hd_laplacian *lap, const hdi_metric *x, double *u, double *work) {
-    int32_t i;
-    if (x->kind != HD_DISTANCE_WEIGHTED) {
-        for (i = 0; i < lap->n; i++) u[i] = lap->row[i] < 0 ? 0 : u[i];
-        return;
+    if (hdi_heat_analysed(heat, h->e) < 0 || hdi_metric_take(x, h, kind, 1, s) < 0) return h->e->status;
+    if (!x->timeless) {
+        h->t = hdi_distance_time(heat, h->ask.t[h->now]);
+        x->equal = hdi_heat_equal(heat, &heat->elim, h->t, h->e);
     }
-    hdi_gather(lap, u, work);
-    hdi_pair_apply(lap, 0, 1, work, work + lap->n_active);
-    for (i = 0; i < lap->n; i++) u[i] = lap->row[i] < 0 ? 0 : work[lap->n_active + lap->row[i]];
+    if (x->timeless) {
+        (void)hdi_metric_ground(x, s);
+    } else if (x->equal) {
+        hdi_diagonal_means(h->lap, &x->f);
+        *x->rounding = (double)h->lap->n_active * DBL_EPSILON;
+    } else if (h->e->status >= 0) {
+        h->degree = degree;
+        if (hdi_inverses_take(&x->in, h, 1, hdi_metric_wanted(heat, kind), s) >= 0 &&
+            hdi_heat_set(h, x->in.set) >= 0) (void)hdi_metric_invert(x, s);
+        h->degree = 0;
+    }
+    return h->e->status < 0 ? h->e->status : hdi_metric_room(x, group, bounded, s);
 }
 
-/* The same of a sum by rows in elimination order, in the unit of the scaled pair. */
-static void hdi_metric_of_rows(const hd_heat *heat, const hdi_metric *x, const double *sum, double *u,
-                               double *work) {
-    const hd_laplacian *lap = heat->elim.lap;
-    const double unit = x->kind == HD_DISTANCE_WEIGHTED ? 1 : heat->scale;
+/* ---- columns of a metric ---- */
+
+/* Column q of source i of those solved for, or with g that of g. */
+static double *hdi_metric_sum(const hdi_metric *x, int32_t i, int32_t q, int g) {
+    const int32_t row = x->bounded ? 2 * q + g : q;
+    return x->rows.sum + ((int64_t)i * x->rows.n + row) * x->h->lap->n_active;
+}
+
+/* The column of a source where only means are left. */
+static void hdi_metric_means(const hdi_metric *x, const hdi_terms *source, double *u) {
+    const hd_laplacian *lap = x->h->lap;
+    double *share = x->h->heat->sums;
+    int32_t i, q;
+    memset(share, 0, (size_t)lap->n_components * sizeof *share);
+    for (q = 0; q < source->n; q++) {
+        const int32_t row = lap->row[hdi_terms_at(source, q)];
+        if (row < 0) continue;
+        share[lap->component[row]] += hdi_terms_weight(source, q) *
+            hdi_by_mass(1 / lap->component_mass[lap->component[row]], lap->mass[row], x->f.mass / 2);
+    }
+    for (i = 0; i < lap->n_active; i++)
+        u[i] = hdi_by_mass(share[lap->component[i]], lap->mass[i], x->f.mass / 2);
+}
+
+/* Makes a sum of K_t e_s, or of k_t, one of f or, with a0 = 0, of the bound g. */
+static void hdi_metric_finish(const hdi_metric *x, const hdi_terms *source, double a0, double *u) {
+    const hd_laplacian *lap = x->h->lap;
+    const int weighted = x->f.mass > 0;
+    int32_t q;
+    for (q = 0; q < source->n && a0 != 0 && (weighted || !lap->B); q++) {
+        const int32_t row = lap->row[hdi_terms_at(source, q)];
+        if (row >= 0) u[row] += a0 * hdi_terms_weight(source, q) / (weighted ? 1 : lap->mass[row]);
+    }
+    if (!weighted) return;
+    hdi_pair_apply(lap, 0, 1, u, x->work);
+    memcpy(u, x->work, (size_t)lap->n_active * sizeof *u);
+}
+
+/* The columns of one source after the other from L grounded, or of means. */
+static hd_status hdi_metric_solve_plain(const hdi_metric *x, const hdi_terms *source, int32_t k) {
+    const hd_heat *heat = x->h->heat;
     int32_t i;
-    memset(u, 0, (size_t)lap->n * sizeof *u);
-    for (i = 0; i < lap->n_active; i++) u[lap->vertex[i]] = unit * sum[i];
-    hdi_metric_of_column(heat->source, x, u, work);
+    for (i = 0; i < k; i++) {
+        double *u = hdi_metric_sum(x, i, 0, 0);
+        if (x->equal) hdi_metric_means(x, source + i, u);
+        if (x->equal) continue;
+        if (hdi_progress(heat->ctx, "solve", (double)i / k, x->h->e) < 0) break;
+        x->off[i].by_b = HUGE_VAL;
+        if (hdi_terms_component(x->h->lap, source + i) >= 0)
+            x->off[i].by_m = hdi_ground_column(&heat->elim, &heat->ground, source + i,
+                                               x->kind == HD_DISTANCE_BIHARMONIC, u, x->work);
+        else memset(u, 0, (size_t)x->h->lap->n_active * sizeof *u);
+    }
+    return x->h->e->status;
+}
+
+/* The columns of k sources, x->group at most. */
+static hd_status hdi_metric_solve(const hdi_metric *x, const hdi_terms *source, int32_t k) {
+    hdi_columns c;
+    int32_t i, q;
+    memset(x->off, 0, (size_t)k * (size_t)hdi_high32(x->in.count, 1) * sizeof *x->off);
+    if (x->timeless || x->equal) return hdi_metric_solve_plain(x, source, k);
+    memset(&c, 0, sizeof c);
+    c.kernel = x->f.mass > 0 ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
+    c.set = x->in.set;
+    c.k = k;
+    c.terms = source;
+    c.rows = x->rows;
+    c.n_off = x->in.count;
+    c.off = x->off;
+    if (hdi_direct_columns(x->h, &c) < 0) return x->h->e->status;
+    for (i = 0; i < k; i++)
+        for (q = 0; q < x->in.count; q++) {
+            hdi_metric_finish(x, source + i, x->in.set[q].a0, hdi_metric_sum(x, i, q, 0));
+            if (x->bounded) hdi_metric_finish(x, source + i, 0, hdi_metric_sum(x, i, q, 1));
+        }
+    return HD_OK;
+}
+
+/* f, g and spread of a source itself, and what rounding of its diagonal is relative to. Of a vertex they are
+ * those of the diagonals. Of several f and g are taken from their columns u and g, and off bounds the error of
+ * f by rounding; spread is a bound, and so is g where its column is NULL. */
+typedef struct hdi_metric_self { double f, g, spread, size, off; } hdi_metric_self;
+
+/* What an error of these sizes in the norms of B + tL and B makes of a value: 0 times infinity is 0. */
+static double hdi_metric_off(double by_m, double by_b, const hdi_column_parts *off) {
+    return hdi_min(hdi_bound_times(hdi_finite(by_m) ? by_m : HUGE_VAL, off->by_m),
+                   hdi_bound_times(hdi_finite(by_b) ? by_b : HUGE_VAL, off->by_b));
+}
+
+static hdi_metric_self hdi_metric_source(const hdi_metric *x, const hdi_terms *s, const hdi_column_parts *off,
+                                         const double *u, const double *g) {
+    hdi_metric_self self = {0, 0, 0, 0, 0};
+    /* sums of |c_v| sqrt(g_v), |c_v| sqrt(spread_v), |c_v u_v| */
+    double by_m = 0, by_b = 0, size = 0;
+    int32_t q;
+    for (q = 0; q < s->n; q++) {
+        const int32_t r = x->h->lap->row[hdi_terms_at(s, q)];
+        const double w = hdi_terms_weight(s, q);
+        if (r < 0) continue;
+        by_m += fabs(w) * sqrt(hdi_max(0, x->f.g[r]));
+        by_b += fabs(w) * sqrt(x->f.spread[r]);
+        size += fabs(w * u[r]);
+        self.f = s->weight ? self.f + w * u[r] : x->f.value[r];
+        self.g = s->weight ? self.g + (g ? w * g[r] : 0) : x->f.g[r];
+        self.spread = x->f.spread[r];
+        self.size = s->weight ? 0 : hdi_diagonal_size(&x->f, r);
+    }
+    if (!s->weight) return self;
+    if (!g) self.g = by_m * by_m;
+    self.spread = by_b * by_b;
+    self.off = hdi_metric_off(by_m, by_b, off) + (double)s->n * DBL_EPSILON * size;
+    return self;
+}
+
+/* Bound on the rational error of d^2 between the source and row r (negative: none): by the form of g, whose
+ * entry g_sr may be known, and by that of spread. Each bounds it alone. */
+static double hdi_metric_rational(const hdi_metric *x, const hdi_metric_self *self, int32_t r,
+                                  const double *g_sr) {
+    const double gs = self->g, g = r < 0 ? 0 : x->f.g[r], spread = r < 0 ? 0 : x->f.spread[r];
+    const double root = sqrt(hdi_max(0, gs)) + sqrt(hdi_max(0, g)), wide = sqrt(self->spread) + sqrt(spread);
+    double form = root * root;
+    if (!x->f.set) return 0;
+    if (g_sr)
+        form = hdi_min(form, hdi_max(0, gs + g - 2 * *g_sr) +
+                             (x->rounding[x->q] + 8 * DBL_EPSILON) * (fabs(gs) + fabs(g)));
+    return hdi_diagonal_off(&x->f, form, wide * wide);
+}
+
+/* What rounding of the diagonals and of the column makes of d^2. given: there is a column. */
+static double hdi_metric_rounding(const hdi_metric *x, const hdi_metric_self *self, int given, int32_t r,
+                                  const hdi_column_parts *off) {
+    const double relative = x->rounding[x->q], f = r < 0 ? 0 : x->f.value[r];
+    double sum = self->off + 4 * DBL_EPSILON * (fabs(self->f) + fabs(f));
+    if (!hdi_finite(relative)) return HUGE_VAL;
+    if (r >= 0 && given) sum += 2 * hdi_metric_off(sqrt(hdi_max(0, x->f.g[r])), sqrt(x->f.spread[r]), off);
+    return relative > 0 ? sum + relative * (self->size + (r < 0 ? 0 : hdi_diagonal_size(&x->f, r))) : sum;
+}
+
+/* Notes the distance whose d^2 is given, with its errors. Returns it. */
+static double hdi_metric_note(const hdi_metric *x, double d2, double rational, double rounding,
+                              hd_report *rep, hdi_ledger *ledger) {
+    const double delta = rational + rounding, d = d2 > 0 ? sqrt(d2) : 0;
+    const double error = x->root * (d2 > delta ? delta / d : sqrt(2 * delta));
+    hdi_parts part = {0, 0, 0};
+    if (delta > 0) {
+        part.rational = hdi_finite(delta) ? error * (rational / delta) : rational;
+        part.rounding = hdi_finite(delta) ? error * (rounding / delta) : rounding;
+    }
+    rep->n_lost += delta > 0 && d2 < 10 * delta;
+    hdi_ledger_note(ledger, x->root * d, part);
+    return x->root * d;
+}
+
+/* Distances from source i of those solved for, by vertices. Where there is a column of g its own d^2 bounds
+ * the rational error, else the diagonals do, which is less sharp near the source. Between components distances
+ * without a time are infinite. */
+static void hdi_metric_distance(const hdi_metric *x, const hdi_terms *s, int32_t i, double *out,
+                                hd_report *rep, hdi_ledger *ledger) {
+    const hd_laplacian *lap = x->h->lap;
+    const double *u = hdi_metric_sum(x, i, x->q, 0), *g = x->bounded ? hdi_metric_sum(x, i, x->q, 1) : NULL;
+    const hdi_column_parts *off = x->off + i * hdi_high32(x->in.count, 1) + x->q;
+    const hdi_metric_self self = hdi_metric_source(x, s, off, u, g);
+    const int32_t own = hdi_terms_component(lap, s);
+    int32_t v;
+    for (v = 0; v < lap->n; v++) {
+        const int32_t r = lap->row[v];
+        const int apart = x->timeless && (r < 0 || own < 0 || lap->component[r] != own);
+        const double d2 = self.f - (r < 0 ? 0 : 2 * u[r] - x->f.value[r]);
+        const int same = !s->weight && v == s->one;
+        out[v] = same || !apart ? 0 : HUGE_VAL;
+        if (same || apart) continue;
+        out[v] = hdi_metric_note(x, d2, hdi_metric_rational(x, &self, r, g && r >= 0 ? g + r : NULL),
+                                 hdi_metric_rounding(x, &self, s->weight || own >= 0, r, off), rep, ledger);
+    }
+}
+
+static hdi_ledger hdi_metric_ledger(const hdi_metric *x) {
+    const hd_rational *set = x->f.set;
+    const int none = !set || (hdi_set_uniform(set) == 0 && x->f.left_out == 0);
+    return hdi_ledger_begin(none ? HD_EVIDENCE_NONE : hdi_set_evidence(set), HD_EVIDENCE_NONE,
+                            HD_EVIDENCE_MEASURED, 1);
 }
 
 /* A query for distances of a kind from k sources to all vertices. */
@@ -23133,181 +23214,6 @@ static double *hdi_distances_at(const hdi_distances *to, int32_t r, int32_t q) {
     return to->D + ((size_t)r * n_times + (size_t)q) * to->ld;
 }
 
-/* Columns of f from L grounded. */
-static hd_status hdi_metric_columns_ground(const hdi_metric *x, const hdi_terms *source, int32_t k,
-                                           hdi_metric_column *c) {
-    hdi_heat_call *h = x->h;
-    const hd_heat *heat = h->heat;
-    const hdi_elim *m = &heat->elim;
-    const int forms = x->kind == HD_DISTANCE_BIHARMONIC;
-    hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
-    double *work = HDI_TAKE(&s, double, hdi_ground_room(m)), *u = HDI_TAKE(&s, double, m->sym.n);
-    int32_t r, i;
-    for (r = 0; r < k && h->e->status >= 0; r++) {
-        if (hdi_progress(heat->ctx, "solve", (double)r / k, h->e) < 0) break;
-        c[r].off_m = 0;
-        c[r].off_b = HUGE_VAL;
-        memset(c[r].u, 0, (size_t)heat->source->n * sizeof(double));
-        if (hdi_terms_component(m->lap, source + r) < 0) continue;
-        c[r].off_m = hdi_ground_column(m, &heat->ground, source + r, forms, u, work);
-        for (i = 0; i < m->sym.n; i++) c[r].u[m->lap->vertex[i]] = u[i];
-    }
-    return hdi_scope_end(&s);
-}
-
-/* Solves for k sources. set: that of the factors; U: columns of the kernel, ldu apart, or NULL; rows: of
- * every source; off [2 k]: what residuals make of the columns, or NULL. */
-static hd_status hdi_metric_solve(const hdi_metric *x, const hd_rational *set, const hdi_terms *source,
-                                  int32_t k, double *U, size_t ldu, const hdi_extra *rows, double *off) {
-    hdi_heat_call *h = x->h;
-    hdi_columns c;
-    memset(&c, 0, sizeof c);
-    c.t = h->t;
-    c.kernel = x->kind == HD_DISTANCE_WEIGHTED ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
-    c.set = set;
-    c.k = k;
-    c.terms = source;
-    c.equal = x->equal;
-    c.U = U;
-    c.ldu = ldu;
-    c.rows = *rows;
-    c.off_b = off;
-    c.off_m = off ? off + k : NULL;
-    return hdi_direct_columns(h->heat, &c, h->rep, h->e);
-}
-
-/* Columns of f for k sources, HDI_LANES at most, into c [k], whose u is set here: ld apart. sum [k][n]:
- * those of the bound g by rows, or NULL. work [2 n] */
-static hd_status hdi_metric_columns(const hdi_metric *x, const hdi_terms *source, int32_t k, double *u,
-                                    size_t ld, double *sum, double *work, hdi_metric_column *c) {
-    hdi_heat_call *h = x->h;
-    double off[2 * HDI_LANES] = {0};
-    hdi_extra rows;
-    int32_t r;
-    for (r = 0; r < k; r++) c[r].u = u + (size_t)r * ld;
-    if (x->timeless) return hdi_metric_columns_ground(x, source, k, c);
-    rows.n = sum != NULL;
-    rows.stride = 0;
-    rows.weight = x->bound;
-    rows.sum = sum;
-    if (hdi_metric_solve(x, &x->set, source, k, u, ld, &rows, x->equal ? NULL : off) < 0) return h->e->status;
-    for (r = 0; r < k; r++) {
-        hdi_metric_of_column(h->heat->source, x, c[r].u, work);
-        c[r].off_b = off[r];
-        c[r].off_m = off[k + r];
-        hdi_metric_off(h->heat, x, c + r);
-    }
-    return HD_OK;
-}
-
-/* Bound on the rational error of d^2 between s and v: by the form of g, whose column g_sv may be known, and
- * by that of spread. Each bounds it alone. */
-static double hdi_metric_rational(const hdi_metric *x, double gs, double gv, const double *gsv, double ss,
-                                  double sv) {
-    const double root = sqrt(hdi_max(0, gs)) + sqrt(hdi_max(0, gv)), wide = sqrt(ss) + sqrt(sv);
-    double form = root * root;
-    if (x->timeless || x->equal) return 0;
-    if (gsv)
-        form = hdi_min(form,
-                       hdi_max(0, gs + gv - 2 * *gsv) +
-                       (x->rounding + 8 * DBL_EPSILON) * (fabs(gs) + fabs(gv)));
-    return hdi_set_off(&x->set, x->sure * form, wide * wide) + hdi_bound_times(x->left_out, wide * wide);
-}
-
-/* f, g and spread of a source itself. Of a vertex they are those of the diagonals. Of several f and g are
- * taken from their columns u and g, and off bounds the error of f by rounding; spread is a bound, and so is g
- * where its column is NULL. */
-typedef struct hdi_metric_self { double f, g, spread, off; } hdi_metric_self;
-
-static hdi_metric_self hdi_metric_source(const hd_laplacian *lap, const hdi_metric *x, const hdi_terms *s,
-                                         const hdi_metric_column *c, const double *g) {
-    hdi_metric_self self = {0, 0, 0, 0};
-    /* sums of |c_v| sqrt(g_v), |c_v| sqrt(spread_v), |c_v u_v| */
-    double by_m = 0, by_b = 0, size = 0;
-    int32_t q;
-    for (q = 0; q < s->n; q++) {
-        const int32_t v = hdi_terms_at(s, q), r = lap->row[v];
-        const double w = hdi_terms_weight(s, q);
-        if (r < 0) continue;
-        by_m += fabs(w) * sqrt(hdi_max(0, x->g[r]));
-        by_b += fabs(w) * sqrt(x->spread[r]);
-        size += fabs(w * c->u[v]);
-        self.f = s->weight ? self.f + w * c->u[v] : x->diag[r];
-        self.g = s->weight ? self.g + (g ? w * g[v] : 0) : x->g[r];
-        self.spread = x->spread[r];
-    }
-    if (!s->weight) return self;
-    if (!g) self.g = by_m * by_m;
-    self.spread = by_b * by_b;
-    self.off = hdi_min(hdi_bound_times(hdi_finite(by_m) ? by_m : HUGE_VAL, c->off_m),
-                       hdi_bound_times(hdi_finite(by_b) ? by_b : HUGE_VAL, c->off_b));
-    self.off += (double)s->n * DBL_EPSILON * size;
-    return self;
-}
-
-/* d from column s of f, in place. g: the same column of the resolvent, whose own d^2 bounds the rational
- * error. Where it is NULL the diagonals bound it, which is less sharp near s. Between components distances of
- * the last two kinds are infinite. */
-static void hdi_metric_distance(const hd_laplacian *lap, const hdi_metric *x, const hdi_terms *s,
-                                const hdi_metric_column *c, const double *g, hd_report *rep,
-                                hdi_ledger *ledger) {
-    const hdi_metric_self self = hdi_metric_source(lap, x, s, c, g);
-    const double fs = self.f, gs = self.g, ss = self.spread;
-    const int32_t own = hdi_terms_component(lap, s);
-    const int given = s->weight || own >= 0;     /* there is a column */
-    double *u = c->u;
-    int32_t v;
-    for (v = 0; v < lap->n; v++) {
-        const int32_t r = lap->row[v];
-        const double f = r < 0 ? 0 : x->diag[r], gv = r < 0 ? 0 : x->g[r], sv = r < 0 ? 0 : x->spread[r];
-        const double d2 = fs - 2 * u[v] + f;
-        double rational, rounding = 0, delta, error, d;
-        hdi_parts part;
-        if (!s->weight && v == s->one) {
-            u[v] = 0;
-            continue;
-        }
-        if (x->timeless && (r < 0 || own < 0 || lap->component[r] != own)) {
-            u[v] = HUGE_VAL;
-            continue;
-        }
-        rational = hdi_metric_rational(x, gs, gv, g ? g + v : NULL, ss, sv);
-        if (r >= 0 && given) {
-            const double by_m = hdi_bound_times(hdi_finite(gv) ? sqrt(hdi_max(0, gv)) : HUGE_VAL, c->off_m);
-            rounding = 2 * hdi_min(by_m, hdi_bound_times(hdi_finite(sv) ? sqrt(sv) : HUGE_VAL, c->off_b));
-        }
-        if (!hdi_finite(x->rounding)) rounding = HUGE_VAL;
-        else if (x->rounding > 0)
-            rounding += x->rounding *
-                ((s->weight ? 0 : x->own ? hdi_own_size(gs, ss) : fabs(fs)) +
-                 (x->own ? hdi_own_size(gv, sv) : fabs(f)));
-        rounding += self.off + 4 * DBL_EPSILON * (fabs(fs) + fabs(f));
-        delta = rational + rounding;
-        d = d2 > 0 ? sqrt(d2) : 0;
-        error = x->root * (d2 > delta ? delta / d : sqrt(2 * delta));
-        u[v] = d = x->root * d;
-        rep->n_lost += delta > 0 && d2 < 10 * delta;
-        memset(&part, 0, sizeof part);
-        if (delta > 0) {
-            part.rational = hdi_finite(delta) ? error * (rational / delta) : rational;
-            part.rounding = hdi_finite(delta) ? error * (rounding / delta) : rounding;
-        }
-        hdi_ledger_note(ledger, d, part);
-    }
-}
-
-static hdi_ledger hdi_metric_ledger(const hdi_metric *x) {
-    const int none = x->timeless || x->equal || (hdi_set_uniform(&x->set) == 0 && x->left_out == 0);
-    return hdi_ledger_begin(none ? HD_EVIDENCE_NONE : hdi_set_evidence(&x->set), HD_EVIDENCE_NONE,
-                            HD_EVIDENCE_MEASURED, 1);
-}
-
-/* Is a column of the bound g of use? */
-static int hdi_metric_bounded(const hdi_metric *x) {
-    const double weighted = hdi_set_off_weighted(&x->set);
-    return !x->timeless && !x->equal && weighted > 0 && hdi_finite(weighted) && hdi_finite(x->sure);
-}
-
 /* The default goes to the highest degree where the bound on the error relative to the largest distance is
  * above the first number. The bound of degree 9 is expected at the second one times sqrt(t)/h, as seen on
  * meshes of 1K to 50K vertices. */
@@ -23319,33 +23225,36 @@ static int hdi_metric_settled(const hd_heat *heat, hd_distance_kind kind) {
     return hdi_distance_timeless(kind) || heat->poles_asked || heat->exacting;
 }
 
+/* All sources by a metric: the times of its functions are columns of the query, whose reports are in one, or
+ * NULL for the time under way. */
+static hd_status hdi_distances_of(const hdi_distances *to, hdi_metric *x, const int32_t *column,
+                                  hd_report *one) {
+    hdi_heat_call *h = to->task.h;
+    int32_t r, k, i, q;
+    for (r = 0; r < to->k && h->e->status >= 0; r += k) {
+        k = hdi_low32(to->k - r, x->group);
+        if (hdi_metric_solve(x, to->source + r, k) < 0) break;
+        for (q = 0; q < hdi_high32(x->in.count, 1); q++) {
+            const int32_t at = column ? column[q] : h->now;
+            hd_report *rep = one ? one + at : h->rep;
+            hdi_metric_at(x, q);
+            for (i = 0; i < k; i++) {
+                hdi_ledger ledger = hdi_metric_ledger(x);
+                hdi_metric_distance(x, to->source + r + i, i, hdi_distances_at(to, r + i, at), rep, &ledger);
+                hdi_ledger_close(&ledger, rep);
+            }
+        }
+    }
+    return h->e->status;
+}
+
 /* All sources at the time under way. degree 0: by default. */
 static hd_status hdi_distances_once(const hdi_distances *to, int32_t degree) {
     hdi_heat_call *h = to->task.h;
-    const hd_laplacian *lap = h->heat->source;
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
-    const size_t n = (size_t)lap->n, ld = to->ld * (size_t)hdi_high32(h->ask.n_times, 1);
-    const int32_t most = hdi_low32(to->k, HDI_LANES);
-    double *work = HDI_TAKE(&s, double, 2 * n + 1), *g = NULL, *sum = NULL;
-    hdi_metric_column c[HDI_LANES];
     hdi_metric x;
-    int32_t r, k, i;
-    if (h->e->status < 0 || hdi_metric_make(h, to->kind, degree, &x, &s) < 0) return hdi_scope_end(&s);
-    if (hdi_metric_bounded(&x)) {
-        g = HDI_TAKE(&s, double, n);
-        sum = HDI_TAKE(&s, double, (uint64_t)most * (uint64_t)lap->n_active);
-    }
-    for (r = 0; r < to->k && h->e->status >= 0; r += k) {
-        double *u = hdi_distances_at(to, r, h->now);
-        k = hdi_low32(to->k - r, most);
-        if (hdi_metric_columns(&x, to->source + r, k, u, ld, sum, work, c) < 0) break;
-        for (i = 0; i < k; i++) {
-            hdi_ledger ledger = hdi_metric_ledger(&x);
-            if (g) hdi_metric_of_rows(h->heat, &x, sum + (size_t)i * (size_t)lap->n_active, g, work);
-            hdi_metric_distance(lap, &x, to->source + r + i, c + i, g, h->rep, &ledger);
-            hdi_ledger_close(&ledger, h->rep);
-        }
-    }
+    if (hdi_metric_make(h, to->kind, degree, hdi_low32(to->k, HDI_LANES), 1, &x, &s) >= 0)
+        (void)hdi_distances_of(to, &x, NULL, NULL);
     return hdi_scope_end(&s);
 }
 
@@ -23581,54 +23490,20 @@ static hd_status hdi_distances_by_pairs(hdi_task *task) {
     return hdi_scope_end(&s);
 }
 
-/* Distances at times q0 to q1 - 1 of the call, sorted, by one set of poles: one source after the other. */
+/* Distances at times q0 to q1 - 1 of the call, sorted, by one set of poles. */
 static hd_status hdi_distances_window(const hdi_distances *to, int32_t q0, int32_t q1, hd_report *one) {
     hdi_heat_call *h = to->task.h;
-    const hd_heat *heat = h->heat;
-    const hd_laplacian *lap = heat->source;
-    const hdi_wanted wanted = hdi_metric_full(heat, to->kind) ? HDI_WANT_FORMS : HDI_WANT_DIAGONAL;
-    const size_t n = (size_t)lap->n_active;
-    const int32_t *column = h->time_column + q0;
-    hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
-    hdi_extra rows, probes;
-    hdi_inverses in;
+    const int32_t *column = h->time_column + q0, count = q1 - q0;
+    const int32_t group = hdi_low32(to->k, hdi_high32(1, HDI_LANES / count));
+    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
     hdi_metric x;
-    hdi_probe probe;
-    double *g = HDI_TAKE(&s, double, lap->n), *work = HDI_TAKE(&s, double, 2 * n + 1);
-    double *rounding = HDI_TAKE(&s, double, q1 - q0);
-    int32_t q, r;
-    if (hdi_metric_take(h, to->kind, &x, &s) < 0 ||
-        hdi_window_take(&in, h, q0, q1, wanted, HDI_SHARED_DISTANCE_TOL, &s) < 0 ||
-        hdi_inverses_run(h, &in, &s) < 0 || hdi_metric_probe(h, &in, to->kind, &probe, &probes, &s) < 0)
-        return hdi_scope_end(&s);
-    rows.n = 2 * in.count;
-    rows.weight = in.weight;
-    rows.stride = in.set->n_poles;
-    rows.sum = HDI_TAKE(&s, double, (uint64_t)rows.n * n);
-    for (q = 0; q < in.count && h->e->status >= 0; q++) {
-        one[column[q]] = *h->rep;
-        hdi_metric_read(heat, &in, q, &x);
-        hdi_metric_seen(h, &in, q, &probe, &probes, &x);
-        rounding[q] = x.rounding;
-    }
-    for (r = 0; r < to->k && h->e->status >= 0; r++) {
-        if (hdi_metric_solve(&x, in.set, to->source + r, 1, NULL, 0, &rows, NULL) < 0) break;
-        for (q = 0; q < in.count; q++) {
-            double *u = hdi_distances_at(to, r, column[q]);
-            const double *sum = rows.sum + 2 * (size_t)q * n;
-            hdi_metric_column c;
-            hdi_ledger ledger;
-            hdi_metric_read(heat, &in, q, &x);
-            x.rounding = rounding[q];
-            c.u = u;
-            hdi_metric_of_rows(heat, &x, sum, u, work);
-            hdi_metric_of_rows(heat, &x, sum + n, g, work);
-            hdi_column_off(heat->elim.lap, heat->lane, &x.set, &c.off_b, &c.off_m);
-            hdi_metric_off(heat, &x, &c);
-            ledger = hdi_metric_ledger(&x);
-            hdi_metric_distance(lap, &x, to->source + r, &c, g, one + column[q], &ledger);
-            hdi_ledger_close(&ledger, one + column[q]);
-        }
+    int32_t q;
+    if (hdi_metric_take(&x, h, to->kind, count, &s) >= 0 &&
+        hdi_window_take(&x.in, h, q0, q1, hdi_metric_wanted(h->heat, to->kind), HDI_SHARED_DISTANCE_TOL,
+                        &s) >= 0 &&
+        hdi_metric_invert(&x, &s) >= 0 && hdi_metric_room(&x, group, 1, &s) >= 0) {
+        for (q = 0; q < count; q++) one[column[q]] = *h->rep;
+        (void)hdi_distances_of(to, &x, column, one);
     }
     return hdi_scope_end(&s);
 }
@@ -23838,37 +23713,31 @@ static hd_status hdi_pairs_columns(const hdi_pairs *to, int32_t degree, int64_t 
     return h->e->status;
 }
 
-/* Distances from columns and the diagonal, for more vertices than columns fit; each is judged by itself. */
+/* Distances from columns and the diagonal, for more vertices than columns fit. Errors are those of all
+ * vertices from the same ones. */
 static hd_status hdi_pairs_one_by_one(const hdi_pairs *to) {
     hdi_heat_call *h = to->task.h;
-    const hd_laplacian *lap = h->heat->source;
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
-    double *f = HDI_TAKE(&s, double, lap->n), *work = HDI_TAKE(&s, double, 2 * (uint64_t)lap->n + 1);
-    double *out = to->d + to->n * h->now;
+    double *d = HDI_TAKE(&s, double, h->heat->source->n), *out = to->d + to->n * h->now;
     hdi_ledger ledger, all;
-    hdi_metric_column c;
     hdi_metric x;
     int64_t q;
-    if (h->e->status < 0 || hdi_metric_make(h, to->kind, 0, &x, &s) < 0) return hdi_scope_end(&s);
-    ledger = hdi_metric_ledger(&x);
-    for (q = 0; q < to->n && h->e->status >= 0; q++) {   /* a column for each run of the same first vertex */
+    if (h->e->status < 0 || hdi_metric_make(h, to->kind, 0, 1, 0, &x, &s) < 0) return hdi_scope_end(&s);
+    ledger = all = hdi_metric_ledger(&x);
+    for (q = 0; q < to->n; q++) {                /* a column for each run of the same first vertex */
         const hdi_terms from = hdi_terms_vertex(to->i[q]);
-        const double *d = f + to->j[q];
         if (q == 0 || to->i[q] != to->i[q - 1]) {
-            if (hdi_metric_columns(&x, &from, 1, f, (size_t)lap->n, NULL, work, &c) < 0) break;
-            all = hdi_metric_ledger(&x);
-            hdi_metric_distance(lap, &x, &from, &c, NULL, h->rep, &all);
-            /* of the pairs, as of all vertices */
-            ledger.off.rational = hdi_max(ledger.off.rational, all.off.rational);
-            ledger.off.rounding = hdi_max(ledger.off.rounding, all.off.rounding);
-            ledger.relative = hdi_max(ledger.relative, all.relative);
+            if (hdi_metric_solve(&x, &from, 1) < 0) break;
+            hdi_metric_distance(&x, &from, 0, d, h->rep, &all);
         }
-        out[q] = *d;
-        if (!hdi_finite(*d)) continue;
-        ledger.largest = hdi_max(ledger.largest, *d);
-        if (*d > 0) ledger.smallest = hdi_min(ledger.smallest, *d);
+        out[q] = d[to->j[q]];
+        if (!hdi_finite(out[q])) continue;
+        ledger.largest = hdi_max(ledger.largest, out[q]);
+        if (out[q] > 0) ledger.smallest = hdi_min(ledger.smallest, out[q]);
         ledger.n_values += to->i[q] != to->j[q];
     }
+    ledger.off = all.off;
+    ledger.relative = all.relative;
     if (h->e->status >= 0) hdi_ledger_close(&ledger, h->rep);
     return hdi_scope_end(&s);
 }
@@ -23942,7 +23811,7 @@ typedef struct hdi_samples {
     int32_t count, *vertex;
     int32_t n_from;              /* sources that come before all points */
     const hdi_terms *terms;      /* [n_from] */
-    double *distance, *nearest, *u, *work;
+    double *distance, *nearest, *u;
     const hdi_metric *x;
     hdi_mode_sum *sum;
 } hdi_samples;
@@ -23950,17 +23819,11 @@ typedef struct hdi_samples {
 /* Distances from a source into u. */
 static hd_status hdi_sample_distances(const hdi_samples *a, const hdi_terms *from) {
     hdi_heat_call *h = a->task.h;
-    const hd_laplacian *lap = h->heat->source;
     hdi_ledger ledger = a->sum ? hdi_modes_ledger() : hdi_metric_ledger(a->x);
-    hdi_metric_column c;
-    if (a->sum) {
-        hdi_mode_sum_run(a->sum, *from, a->u, &ledger, h->rep, h->heat->ctx);
-    } else {
-        if (hdi_metric_columns(a->x, from, 1, a->u, (size_t)lap->n, NULL, a->work, &c) < 0)
-            return h->e->status;
-        hdi_metric_distance(lap, a->x, from, &c, NULL, h->rep, &ledger);
-    }
-    hdi_ledger_close(&ledger, h->rep);
+    if (a->sum) hdi_mode_sum_run(a->sum, *from, a->u, &ledger, h->rep, h->heat->ctx);
+    else if (hdi_metric_solve(a->x, from, 1) >= 0)
+        hdi_metric_distance(a->x, from, 0, a->u, h->rep, &ledger);
+    if (h->e->status >= 0) hdi_ledger_close(&ledger, h->rep);
     return h->e->status;
 }
 
@@ -23992,15 +23855,16 @@ static hd_status hdi_sample_points(const hdi_samples *a) {
 static hd_status hdi_sample_by_poles(hdi_task *task) {
     hdi_samples *a = (hdi_samples *)task;
     hdi_heat_call *h = task->h;
-    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
     int32_t degree = hdi_metric_settled(h->heat, a->kind) ? 0 : HDI_RAT_KERNEL_MAX;
-    hdi_metric x;
-    do (void)hdi_metric_make(h, a->kind, degree, &x, &s);
-    while (hdi_degree_retreat(h->heat, &degree, h->e));
-    a->x = &x;
     a->sum = NULL;
-    if (h->e->status >= 0) (void)hdi_sample_points(a);
-    return hdi_scope_end(&s);
+    do {
+        hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
+        hdi_metric x;
+        a->x = &x;
+        if (hdi_metric_make(h, a->kind, degree, 1, 0, &x, &s) >= 0) (void)hdi_sample_points(a);
+        (void)hdi_scope_end(&s);
+    } while (hdi_degree_retreat(h->heat, &degree, h->e));
+    return h->e->status;
 }
 
 /* The points by distances from the eigenpairs that are there. */
@@ -24082,7 +23946,6 @@ static hd_status hdi_sample_answer(hd_heat *heat, hdi_samples *a, const hd_sourc
     a->n_from = sources ? sources->count : 0;
     a->nearest = HDI_TAKE(&h.s, double, heat->source->n);
     a->u = HDI_TAKE(&h.s, double, heat->source->n);
-    a->work = HDI_TAKE(&h.s, double, 2 * (uint64_t)heat->source->n);
     if (h.e->status < 0) return hdi_heat_end(&h);
     hdi_distance_task(&a->task, &h, a->kind);
     a->task.pairs = HDI_HAS_MODES ? hdi_sample_by_pairs : NULL;
