@@ -22240,7 +22240,7 @@ static void hdi_diagonal_means(const hd_laplacian *lap, hdi_diagonal *d) {
 static double hdi_below_constants(const hd_laplacian *lap, const hdi_diagonal *d) {
     double most = 0;
     int32_t i;
-    for (i = 0; i < lap->n_active && !d->full && !(d->left_out > 0); i++) {
+    for (i = 0; i < lap->n_active && !d->full && d->set->a0 == 0; i++) {
         const double part = d->set->kind == HD_POLES_OWN ? 0 : hdi_constant_part(lap, i);
         const double least = hdi_by_mass(part, lap->mass[i], d->mass), value = d->value[i];
         if (value < 0.999 * least) most = hdi_max(most, hdi_quotient(least - value, fabs(value)));
@@ -22305,22 +22305,22 @@ static hdi_probe hdi_probe_rows(const hd_laplacian *lap, const double *k, int32_
 }
 
 /* Solves for the rows where rounding in the diagonals may be largest, which it is in that of the last
- * function, and leaves that in d. */
-static hd_status hdi_probe_run(hdi_heat_call *h, const hdi_inverses *x, hdi_diagonal *d, hdi_probe *probe,
-                               hdi_scope *s) {
+ * function, and leaves that in d. worst: for the row with the largest error of the set, too. */
+static hd_status hdi_probe_run(hdi_heat_call *h, const hdi_inverses *x, int worst, hdi_diagonal *d,
+                               hdi_probe *probe, hdi_scope *s) {
     const hd_laplacian *lap = h->heat->elim.lap;
     hdi_terms source[HDI_PROBES];
     hdi_columns c;
-    int32_t i, worst = 0;
-    double off, worst_off = 0;
+    int32_t i, at = -1;
+    double most = 0;
     hdi_diagonal_read(h->heat, x, x->count - 1, d);
-    for (i = 0; i < lap->n_active; i++) {
-        off = hdi_diagonal_off(d, d->g[i], d->spread[i]);
-        if (i > 0 && !(off * d->value[worst] > worst_off * d->value[i])) continue;
-        worst = i;
-        worst_off = off;
+    for (i = 0; i < lap->n_active && worst; i++) {
+        const double off = hdi_diagonal_off(d, d->g[i], d->spread[i]);
+        if (at >= 0 && !(off * d->value[at] > most * d->value[i])) continue;
+        at = i;
+        most = off;
     }
-    *probe = hdi_probe_rows(lap, d->value, lap->n_active > 0 ? worst : -1);
+    *probe = hdi_probe_rows(lap, d->value, at);
     memset(&c, 0, sizeof c);
     if (x->wanted == HDI_WANT_FORMS) {
         c.rows.n = x->count;
@@ -22502,7 +22502,7 @@ static hd_status hdi_diagonals_read(const hdi_diagonals *to, const hdi_inverses 
     double *work = trace && h->heat->source->B ? HDI_TAKE(&s, double, n) : NULL;
     hdi_probe probe;
     int32_t q;
-    if (h->e->status < 0 || hdi_probe_run(h, x, &d, &probe, &s) < 0) return hdi_scope_end(&s);
+    if (h->e->status < 0 || hdi_probe_run(h, x, 1, &d, &probe, &s) < 0) return hdi_scope_end(&s);
     for (q = 0; q < x->count; q++) {
         hd_report *rep = one ? one + column[q] : h->rep;
         const hdi_ledger ledger = hdi_inverse_ledger(h, x->set + q, 1);
@@ -22867,10 +22867,10 @@ static int hdi_heat_filtered(const hd_heat *heat) {
 
 static int hdi_distance_timeless(hd_distance_kind kind) { return kind >= HD_DISTANCE_COMMUTE; }
 
-/* Distances of one kind, at one time or at several that share their poles: d^2 = f_ss - 2 f_sv + f_vv with f
- * of k_t, or of B k_t B, in elimination order and in the unit of the scaled pair. The rational error of f is
- * at most that of the set for forms with the diagonals g and spread. Rounding of a column is at most sqrt(g_v)
- * times a number that comes with each column, and sqrt(spread_v) times another. */
+/* Distances of one kind, at one time or at several that share their poles: d^2 = f_ss - 2 f_sv + f_vv with
+ * f of k_t, or of B k_t B, in elimination order and in the unit of the scaled pair. The rational error of
+ * f is at most that of the set for forms with the diagonals g and spread. Rounding of a column is at most
+ * sqrt(g_v) times a number that comes with each column, and sqrt(spread_v) times another. */
 typedef struct hdi_metric {
     hdi_heat_call *h;
     hd_distance_kind kind;
@@ -22944,7 +22944,7 @@ static hd_status hdi_metric_invert(hdi_metric *x, hdi_scope *s) {
     hdi_heat_call *h = x->h;
     hdi_probe probe;
     double weighted;
-    if (hdi_inverses_run(h, &x->in, s) < 0 || hdi_probe_run(h, &x->in, &x->f, &probe, s) < 0)
+    if (hdi_inverses_run(h, &x->in, s) < 0 || hdi_probe_run(h, &x->in, 0, &x->f, &probe, s) < 0)
         return h->e->status;
     for (x->q = x->in.count - 1; ; hdi_metric_at(x, x->q - 1)) {
         x->rounding[x->q] = hdi_diagonal_seen(h, &x->in, x->q, &x->f, &probe);
@@ -23094,9 +23094,9 @@ static hd_status hdi_metric_solve(const hdi_metric *x, const hdi_terms *source, 
     return HD_OK;
 }
 
-/* f, g and spread of a source itself, and what rounding of its diagonal is relative to. Of a vertex they are
- * those of the diagonals. Of several f and g are taken from their columns u and g, and off bounds the error of
- * f by rounding; spread is a bound, and so is g where its column is NULL. */
+/* f, g and spread of a source itself, and what rounding of its diagonal is relative to. Of a vertex they
+ * are those of the diagonals. Of several f and g are taken from their columns u and g, and off bounds the
+ * error of f by rounding; spread is a bound, and so is g where its column is NULL. */
 typedef struct hdi_metric_self { double f, g, spread, size, off; } hdi_metric_self;
 
 /* What an error of these sizes in the norms of B + tL and B makes of a value: 0 times infinity is 0. */
@@ -23169,9 +23169,9 @@ static double hdi_metric_note(const hdi_metric *x, double d2, double rational, d
     return x->root * d;
 }
 
-/* Distances from source i of those solved for, by vertices. Where there is a column of g its own d^2 bounds
- * the rational error, else the diagonals do, which is less sharp near the source. Between components distances
- * without a time are infinite. */
+/* Distances from source i of those solved for, by vertices. Where there is a column of g its own d^2
+ * bounds the rational error, else the diagonals do, which is less sharp near the source. Between
+ * components distances without a time are infinite. */
 static void hdi_metric_distance(const hdi_metric *x, const hdi_terms *s, int32_t i, double *out,
                                 hd_report *rep, hdi_ledger *ledger) {
     const hd_laplacian *lap = x->h->lap;
