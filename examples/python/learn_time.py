@@ -1,6 +1,6 @@
 """learn_time.py - finds diffusion times by gradient descent, through the factors of heatdiff.h
 
-    HEATDIFF_LIBRARY=build/libheatdiff.so python3 examples/python/learn_time.py
+    pip install ./examples/python && python3 examples/python/learn_time.py
 
 Learned diffusion (Sharp, Attaiki, Crane, Ovsjanikov, DiffusionNet, 2022) gives each channel of a network a time of its
 own, which is trained. Here two channels are diffused for times that are kept secret, and are to be found from the
@@ -31,13 +31,13 @@ def surface(n=24):
 
 def diffuse(plans, t, f):
     """K_t f, each channel (column) by its own time."""
-    return np.concatenate([plan.apply(s, f[:, [c]]) for c, (plan, s) in enumerate(zip(plans, t))], axis=1)
+    return np.stack([plan.apply(f[:, c], s) for c, (plan, s) in enumerate(zip(plans, t))], axis=1)
 
 
 def gradients(plans, t, f, g):
     """By t and by f, from the gradient g by the result."""
-    parts = [plan.vjp(s, f[:, [c]], g[:, [c]]) for c, (plan, s) in enumerate(zip(plans, t))]
-    return np.concatenate([p[0] for p in parts]), np.concatenate([p[1] for p in parts], axis=1)
+    parts = [plan.vjp(f[:, c], s, g[:, c]) for c, (plan, s) in enumerate(zip(plans, t))]
+    return np.array([p[0] for p in parts]), np.stack([p[1] for p in parts], axis=1)
 
 
 if torch:
@@ -89,11 +89,11 @@ def by_numpy(plans, f, target, start, steps):
 
 def main():
     xyz, tri = surface()
-    lap = hd.triangles(xyz, tri)
+    lap = hd.Laplacian.from_mesh(xyz, tri)
     secret = np.array([30, 4]) * lap.h ** 2
     f = np.random.default_rng(0).standard_normal((lap.n, 2))
     # a plan for each channel keeps the factors of its own time
-    plans = [hd.Heat(lap, method="HD_METHOD_DIRECT", poles="HD_POLES_KERNEL", degree=10) for _ in secret]
+    plans = [hd.Heat(lap, method="direct", poles="kernel", degree=10) for _ in secret]
     target = diffuse(plans, secret, f)
     use_torch = torch is not None and "--numpy" not in sys.argv[1:]
     t = (by_torch if use_torch else by_numpy)(plans, f, target, np.full(2, 12.0) * lap.h ** 2, 40)

@@ -1,7 +1,6 @@
 """tour.py - a first walk through heatdiff.h from Python: kernel, signature, distances, accuracy, each with a picture
 
-    cmake -S . -B build -DHEATDIFF_BUILD_SHARED=ON && cmake --build build --target heatdiff_shared
-    HEATDIFF_LIBRARY=build/libheatdiff.so python3 examples/python/tour.py [FOLDER]
+    pip install ./examples/python && python3 examples/python/tour.py [FOLDER [LEVELS]]
 
 Editors that know cells (# %%) run it piece by piece and show the pictures. As a script it writes them to FOLDER, by
 default heatdiff-tour. It needs NumPy, SciPy and matplotlib.
@@ -9,6 +8,7 @@ default heatdiff-tour. It needs NumPy, SciPy and matplotlib.
 # %% The surface: a sphere drawn out into five arms, as arrays of vertices and triangles. Any mesh will do.
 import os
 import sys
+import warnings
 
 import matplotlib
 interactive = "ipykernel" in sys.modules
@@ -62,8 +62,8 @@ def star(levels):
     return xyz * reach[:, None] * [1, 1, 0.7], tri
 
 
-xyz, tri = star(5)
-lap = hd.triangles(xyz, tri)            # the matrices L and B
+xyz, tri = star(int(sys.argv[2]) if len(sys.argv) > 2 and not interactive else 5)
+lap = hd.Laplacian.from_mesh(xyz, tri)  # the matrices L and B
 print(f"{lap.n} vertices, mean edge {lap.h:.4f}, area {lap.area:.3f}")
 
 tip = int(np.argmax(xyz[:, 0]))
@@ -87,21 +87,21 @@ def draw(axes, values, title, most=None, colours="YlOrRd"):
 
 # %% The heat kernel: one unit of heat starts at the tip of an arm. Times are areas, and h^2 is the finest sensible one.
 heat = hd.Heat(lap)
-times = np.array([10, 100, 300, 1000]) * lap.h ** 2
-kernel = heat.columns(times, [tip], symmetric=True)     # a column for each time
-print(f"kernel: error at most {heat.report['error_bound']:.0e} of the largest value ({heat.report['reason']})")
+times = [10, 100, 300, 1000]
+kernel = heat.column(tip, [f"{t}h2" for t in times], symmetric=True)    # a column for each time
+print(f"kernel: error at most {kernel.report.error_bound:.0e} of the largest value ({kernel.report.reason})")
 
 figure = plt.figure(figsize=(11, 3.2))
 for k, t in enumerate(times):
     axes = figure.add_subplot(1, 4, k + 1, projection="3d")
-    draw(axes, kernel[:, k], f"t = {t / lap.h ** 2:g} h²\nlargest {kernel[:, k].max():.3g}")
+    draw(axes, kernel[:, k], f"t = {t} h²\nlargest {kernel[:, k].max():.3g}")
 figure.suptitle("Heat kernel of the tip of one arm, each relative to its largest value")
 figure.subplots_adjust(left=0, right=1, bottom=0, top=0.76, wspace=0)
 save("kernel.png")
 
 # %% The heat kernel signature k_t(x, x): the heat that stays. Small t sees the place, large t the whole.
 times = np.geomspace(1, 1500, 40) * lap.h ** 2
-signature = heat.diagonal(times)                        # of all vertices; the times share their factors
+signature = heat.hks(times)                             # of all vertices; the times share their factors
 lower, vectors = scipy.sparse.linalg.eigsh(lap.L, 100, lap.B, sigma=-1e-3)
 flat = 4 * np.pi * times                                # a plane keeps 1/(4 pi t)
 places = {"tip of an arm": tip, "between two arms": between, "middle": top}
@@ -120,9 +120,9 @@ axes.legend(loc="upper left")
 save("signature.png")
 
 # %% Distances from the tip: diffusion distance knows all ways from x to y, geodesic distance the shortest.
-geodesic = hd.Geodesic(xyz, tri).distance([tip])
-times = np.array([30, 300, 3000]) * lap.h ** 2
-diffusion = heat.distance(times, [tip])
+geodesic = hd.geodesic_distance(xyz, tri, tip)
+times = [30, 300, 3000]
+diffusion = heat.distance(tip, [f"{t}h2" for t in times])
 
 figure = plt.figure(figsize=(11, 3.9))
 for k, (field, title) in enumerate(((geodesic, "geodesic distance"), (diffusion[:, 1], "diffusion distance, t = 300 h²"))):
@@ -130,26 +130,26 @@ for k, (field, title) in enumerate(((geodesic, "geodesic distance"), (diffusion[
 axes = figure.add_axes((0.64, 0.14, 0.34, 0.74))
 for k, t in enumerate(times):
     axes.plot(geodesic, diffusion[:, k] / diffusion[:, k].max(), ".", markersize=1.2, color=f"C{k}")
-    axes.plot([], [], "o", color=f"C{k}", label=f"t = {t / lap.h ** 2:g} h²")
+    axes.plot([], [], "o", color=f"C{k}", label=f"t = {t} h²")
 axes.set(xlabel="geodesic distance", ylabel="diffusion distance / its largest value", title="Every vertex, at three times")
 axes.legend(loc="lower right")
 save("distance.png")
 
 # %% Accuracy: the error of a column against the degree of the rational function, with all eigenvectors as the truth.
-small = hd.triangles(*star(3))
-t = 20 * small.h ** 2
+small = hd.Laplacian.from_mesh(*star(3))
+t = "20h2"
 values, vectors = scipy.linalg.eigh(small.L.toarray(), small.B.toarray())
-truth = vectors @ (np.exp(-t * np.maximum(values, 0)) * vectors[0])
+truth = vectors @ (np.exp(-small.times(t) * np.maximum(values, 0)) * vectors[0])
 degrees = np.arange(2, 15)
+warnings.simplefilter("ignore", hd.AccuracyWarning)     # of the lowest degrees, which is what the picture shows
 
 figure, axes = plt.subplots(figsize=(7, 4.6), constrained_layout=True)
 for poles, colour in (("uniform", "C0"), ("kernel", "C1")):
     error, bound = [], []
     for degree in degrees:
-        plan = hd.Heat(small, method="HD_METHOD_DIRECT", poles="HD_POLES_" + poles.upper(), degree=int(degree))
-        column = plan.columns(t, [0], symmetric=True)[:, 0]
+        column = hd.Heat(small, method="direct", poles=poles, degree=degree).column(0, t, symmetric=True)
         error.append(abs(column - truth).max() / truth.max())
-        bound.append(plan.report["error_bound"])
+        bound.append(column.report.error_bound)
     axes.semilogy(degrees, error, "o-", color=colour, label=f"{poles} poles: true error")
     axes.semilogy(degrees, bound, "--", color=colour, label=f"{poles} poles: reported bound")
 axes.set(xlabel="degree of the rational function", ylabel="largest error / largest value", xticks=degrees,
