@@ -10081,10 +10081,11 @@ static hd_status hdi_symbolic_order(hdi_symbolic *s, const hd_csr *a, const hdi_
  * its update matrix starts as -L21 D L21' and the children's are added afterwards, so that it is neither
  * cleared nor read before. */
 
-/* Rows of a chunk of a front that threads share, as many as the kernels take at once. By the critical path
- * the parallel efficiency for 150K rows is 0.80, 0.68, 0.43 on 4, 8, 16 threads, with chunks of 96 rows 0.73,
- * 0.46, 0.25. Fronts of fewer rows than HDI_FRONT_SHARED are not shared. */
-enum { HDI_FRONT_CHUNK = 48, HDI_FRONT_SHARED = 192 };
+/* Rows of a chunk of a front that threads share, as many as the kernels take at once; real columns have 64
+ * pivots in the first. By the critical path the parallel efficiency for 150K rows is 0.94, 0.84, 0.57 on 4,
+ * 8, 16 threads with packs, and 0.89, 0.70, 0.42 with real numbers. Fronts of fewer rows than
+ * HDI_FRONT_SHARED are not shared. */
+enum { HDI_FRONT_CHUNK = 48, HDI_FRONT_TALL = 72, HDI_FRONT_SHARED = 192 };
 
 /* Where values of A come from: real numbers, up to four complex matrices, or t L + theta B, by entries of the
  * pattern that was analysed. */
@@ -10125,9 +10126,6 @@ typedef struct hdi_factor {
     double *scratch;                 /* [n_tasks][scratch_size], and [chunk_size] where there is a top */
     double *chunk_scratch;           /* [chunks of the largest front][chunk_size] */
     double *second;                  /* [top_size] a second place for S, of fronts that threads share */
-    int32_t *counts;                 /* [count_size] of blocks and chunks of the front under way */
-    int32_t *order;                  /* [n_order] nodes of the walk over the tree, as they become ready */
-    int64_t n_order;
     uint64_t scratch_size, top_size, chunk_size;   /* doubles */
     hdi_pivots *pivots;              /* [n_tasks + 1] */
     hdi_pivots all;                  /* of the last factorisation */
@@ -10140,36 +10138,78 @@ typedef struct hdi_factor {
 
 /* ---- passes ---- */
 /* A pass works on every front once: upwards the subtrees at the same time, then the fronts of the top one
- * after the other; downwards the other way round. It is a walk. Its nodes are the subtrees, the fronts of the
- * top, and the parts of a front that threads share, stage after stage. */
+ * after the other; downwards the other way round. A front goes through stages, each for a range of rows or of
+ * other things. Threads share the ranges of large fronts of the top: nodes of the walk are the subtrees, the
+ * small fronts of the top, and the chunks of a stage. All of a stage is done before the next one begins. */
+
+/* One front under way: where its parts stand, and room to work in. */
+typedef struct hdi_front {
+    const hdi_factor *f;
+    int32_t v, room;                 /* supernode; the subtree, or the number of subtrees: the top */
+    double *panel, *update, *dinv;   /* dinv: of the first pivot */
+    double *S, *other;               /* slices of D L' of the block of pivots, of the next one; in an */
+    double *z, *T, *M, *D, *buffer;  /* inversion, see [18], also these */
+    double *work;                    /* of a stage */
+    int64_t m, p, u, k0, k1;         /* block of pivots [k0,k1) under way */
+    int32_t stage;                   /* 0: none yet */
+    int64_t begin, end, rows;        /* its range, and how much of it a chunk has */
+} hdi_front;
+
+static void hdi_front_set(hdi_front *w, int32_t stage, int64_t begin, int64_t end, int64_t rows) {
+    w->stage = stage;
+    w->begin = begin;
+    w->end = end;
+    w->rows = rows;
+}
+
+static int64_t hdi_front_chunks(const hdi_front *w) { return (w->end - w->begin + w->rows - 1) / w->rows; }
 
 typedef struct hdi_pass {
     hdi_walk walk;
     const hdi_symbolic *sym;
-    void *arg;
-    /* Front v by one thread, in the room of a subtree, or of the top after them all. 0: it failed. */
-    int (*alone)(void *arg, int32_t v, int32_t room);
-    int (*begin)(void *arg, int32_t v);      /* begins front v of the top. 0: threads do not share it */
-    /* The next stage of what was begun: its parts, of which *ready wait for none. 0: it is done. */
-    int32_t (*stage)(void *arg, int32_t *ready);
-    void (*part)(void *arg, int32_t i);
-    int32_t down, step, left;    /* the subtrees or fronts of the top that come next; nodes under way that
-                                    are not done */
+    const void *arg;
+    hdi_front (*open)(const void *arg, int32_t v, int32_t room);
+    int (*next)(hdi_front *w, const void *arg);      /* sets the next stage. 0: there is none */
+    /* [r0,r1) of the stage: a chunk, or with -1 all of it. 0: it failed. */
+    int (*run)(const void *arg, const hdi_front *w, int64_t r0, int64_t r1, int64_t chunk);
+    int64_t least;               /* fronts of the top with so many rows are shared */
+    int32_t down, step;          /* the subtrees or front of the top that come next */
+    int32_t top;                 /* what is under way: this front of the top; below 0: the subtrees */
+    int32_t shared;              /* the front, by chunks of a stage, */
+    hdi_front front;             /* which is this one */
+    int32_t first, n, left;      /* nodes under way; those that are not done */
     int32_t until;               /* a subtree that failed: those before it go on, and may fail earlier */
 } hdi_pass;
+
+/* Whether threads share front v of the top. */
+static int hdi_pass_shares(const hdi_pass *p, int32_t v) { return hdi_front_rows(p->sym, v) >= p->least; }
 
 /* What is under way is done: what comes next. */
 static void hdi_pass_next(hdi_pass *p) {
     const hdi_symbolic *s = p->sym;
-    int32_t first = s->n_tasks + s->n_top, ready;
-    p->left = p->stage(p->arg, &ready);
-    while (p->left == 0 && p->step <= s->n_top) {
-        const int32_t i = p->down ? s->n_top - p->step : p->step;    /* 0: the subtrees */
-        first = i > 0 ? s->n_tasks + i - 1 : 0;
-        p->left = ready = i > 0 ? 1 : s->n_tasks;
+    p->first += p->n;
+    for (p->n = 0; p->n == 0;) {
+        if (p->shared && p->next(&p->front, p->arg)) {
+            p->n = (int32_t)hdi_front_chunks(&p->front);
+            continue;
+        }
+        if (p->step > s->n_top) return;
+        p->top = (p->down ? s->n_top - p->step : p->step) - 1;
         p->step++;
+        p->shared = p->top >= 0 && !hdi_walk_alone(&p->walk) && hdi_pass_shares(p, s->top[p->top]);
+        if (p->shared) p->front = p->open(p->arg, s->top[p->top], s->n_tasks);
+        else p->n = p->top < 0 ? s->n_tasks : 1;
     }
-    if (p->left > 0) hdi_release(&p->walk, first, ready);
+    p->left = p->n;
+    hdi_release(&p->walk, p->first, p->n);
+}
+
+/* Front v, by this thread. 0: it failed. */
+static int hdi_pass_alone(const hdi_pass *p, int32_t v, int32_t room) {
+    hdi_front w = p->open(p->arg, v, room);
+    while (p->next(&w, p->arg))
+        if (w.begin < w.end && !p->run(p->arg, &w, w.begin, w.end, -1)) return 0;
+    return 1;
 }
 
 /* Downwards the last subtree comes first. */
@@ -10180,7 +10220,7 @@ static void hdi_pass_subtree(hdi_pass *p, int32_t i) {
     int32_t k;
     for (k = 0; k < end - begin; k++) {
         if (hdi_walk_stopped(&p->walk) && task >= HDI_LOAD(&p->until)) return;
-        if (p->alone(p->arg, p->down ? end - 1 - k : begin + k, task)) continue;
+        if (hdi_pass_alone(p, p->down ? end - 1 - k : begin + k, task)) continue;
         /* should two threads come at once, and the larger number stay, then more is done than need be */
         if (HDI_LOAD(&p->until) == 0 || task < HDI_LOAD(&p->until)) HDI_STORE(&p->until, task);
         hdi_walk_stop(&p->walk);
@@ -10190,21 +10230,32 @@ static void hdi_pass_subtree(hdi_pass *p, int32_t i) {
 
 static void hdi_pass_node(void *arg, int64_t index, int32_t worker) {
     hdi_pass *p = (hdi_pass *)arg;
-    const hdi_symbolic *s = p->sym;
-    const int32_t i = (int32_t)index - s->n_tasks;
+    const hdi_front *w = &p->front;
+    const int32_t i = (int32_t)index - p->first;
+    int good = 1;
     (void)worker;
-    if (i < 0) hdi_pass_subtree(p, (int32_t)index);
-    else if (i >= s->n_top) p->part(p->arg, i - s->n_top);
-    else if ((hdi_walk_alone(&p->walk) || !p->begin(p->arg, s->top[i])) &&
-             !p->alone(p->arg, s->top[i], s->n_tasks)) hdi_walk_stop(&p->walk);
+    if (p->shared) {     /* the first chunk may have more to do; the last rows of a triangle are longest */
+        const int64_t chunk = i > 0 ? p->n - i : 0, r0 = w->begin + chunk * w->rows;
+        good = p->run(p->arg, w, r0, hdi_least(r0 + w->rows, w->end), chunk);
+    } else if (p->top >= 0) {
+        good = hdi_pass_alone(p, p->sym->top[p->top], p->sym->n_tasks);
+    } else {
+        hdi_pass_subtree(p, i);
+    }
+    if (!good) hdi_walk_stop(&p->walk);
     if (HDI_ATOMIC_ADD(&p->left, -1) == 0) hdi_pass_next(p);
 }
 
-/* order [n]: room for the nodes, as they become ready. stage: of progress */
-static void hdi_pass_run(hdi_pass *p, hd_context *ctx, int64_t n, int32_t *order, const char *stage,
-                         hd_error *e) {
-    hdi_walk_open(&p->walk, ctx, n, order, hdi_pass_node, p);
-    if (hdi_walk_alone(&p->walk)) p->walk.n = p->sym->n_tasks + p->sym->n_top;
+/* stage: of progress */
+static void hdi_pass_run(hdi_pass *p, hd_context *ctx, const char *stage, hd_error *e) {
+    const hdi_symbolic *s = p->sym;
+    int64_t n = (int64_t)s->n_tasks + s->n_top;
+    int32_t i;
+    for (i = 0; i < s->n_top && !hdi_is_serial(ctx); i++) {
+        hdi_front w = p->open(p->arg, s->top[i], s->n_tasks);
+        while (hdi_pass_shares(p, s->top[i]) && p->next(&w, p->arg)) n += hdi_front_chunks(&w);
+    }
+    hdi_walk_open(&p->walk, ctx, n, NULL, hdi_pass_node, p);
     p->walk.stage = stage;
     p->walk.e = e;
     hdi_pass_next(p);
@@ -10212,18 +10263,6 @@ static void hdi_pass_run(hdi_pass *p, hd_context *ctx, int64_t n, int32_t *order
 }
 
 /* ---- parts of a front ---- */
-
-/* One front under way: where its parts stand, and room to work in. */
-typedef struct hdi_front {
-    const hdi_factor *f;
-    int32_t v;                       /* supernode */
-    double *panel, *update, *dinv;   /* dinv: of the first pivot */
-    double *S;                       /* slices of D L' of the block of pivots; in an inversion, see [18], */
-    double *z, *T, *M, *D, *buffer;  /* also these */
-    double *work;                    /* of a stage */
-    int64_t m, p, u, k0, k1;         /* block of pivots [k0,k1) under way, or */
-    int32_t nb;                      /* [k0,k0+nb) */
-} hdi_front;
 
 /* How much of a front is taken at a time: pivots, columns of L, columns of U. */
 static int64_t hdi_front_pivot_block(int32_t width) { return width == 1 ? 64 : 16; }
@@ -10249,18 +10288,18 @@ static uint64_t hdi_front_scratch(int32_t pivots, int32_t below, int32_t width) 
     return with_s > update ? with_s : update;
 }
 
-static hdi_front hdi_front_open(const hdi_factor *f, int32_t v, double *scratch) {
+static hdi_front hdi_front_open(const hdi_factor *f, int32_t v, int32_t room, double *work) {
     const hdi_symbolic *s = f->sym;
     hdi_front w;
     memset(&w, 0, sizeof w);
     w.f = f;
     w.v = v;
+    w.room = room;
     hdi_front_shape(s, v, &w.p, &w.u, &w.m);
     w.panel = f->panel + f->width * s->panel[v];
     w.update = f->work + f->width * s->update[v];
     w.dinv = f->dinv + (int64_t)f->width * s->super[v];
-    w.work = scratch;
-    w.S = scratch + hdi_front_d_size(w.p, f->width);
+    w.work = work;
     return w;
 }
 
@@ -10421,7 +10460,7 @@ static void hdi_front_before(const hdi_front *w, int64_t r0, int64_t r1, int64_t
     g.c_col = to.ld;
     g.b_row = o->nr;
     g.b_col = 1;
-    g.b_next = o->nr * (w->k0 + w->nb);
+    g.b_next = o->nr * w->k1;
     g.n = r1 - r0;
     g.cols = n;
     for (q = 0; q * HDI_PANEL < to.begin; q++) {
@@ -10445,7 +10484,7 @@ static void hdi_front_solve(const hdi_front *w, int64_t r0, int64_t r1, int64_t 
     g.b = s + w->f->width * o->nr * b.begin;
     g.b_row = o->nr;
     g.b_col = 1;
-    g.b_next = o->nr * (w->k0 + w->nb);
+    g.b_next = o->nr * w->k1;
     g.dinv = w->dinv + w->f->width * k;
     g.n = r1 - r0;
     g.before = k - b.begin;
@@ -10490,17 +10529,31 @@ static int hdi_front_note(const hdi_front *w, int64_t k, int64_t n, hdi_pivots *
     return 1;
 }
 
-/* The block of pivots in rows [k0,end): end is k0 + nb, or further down. S gets its D L'. 0: a pivot cannot
- * be divided by. */
-static int hdi_front_eliminate(const hdi_front *w, int64_t end, hdi_pivots *note) {
+/* Rows that are done together with the block of pivots: down to here. All of a small front. */
+static int64_t hdi_front_reach(const hdi_front *w) {
+    const int small = w->p <= hdi_front_pivot_block(w->f->width) && w->m < HDI_FRONT_SHARED;
+    return small ? w->m : w->k1;
+}
+
+/* Goes on to the next block of pivots. */
+static void hdi_front_advance(hdi_front *w) {
+    double *s = w->S;
+    w->S = w->other;
+    w->other = s;
+    w->k0 = w->k1;
+    w->k1 = hdi_least(w->p, w->k1 + hdi_front_pivot_block(w->f->width));
+}
+
+/* The block of pivots, and rows with them. S gets its D L'. 0: a pivot cannot be divided by. */
+static int hdi_front_eliminate(const hdi_front *w, hdi_pivots *note) {
     const hdi_kernels *o = w->f->ops;
-    const int64_t kb = w->k0 + w->nb, width = w->f->width;
+    const int64_t end = hdi_front_reach(w), width = w->f->width;
     const hdi_block own = hdi_front_block(w, w->k0 / HDI_PANEL);
     double *s = w->S;
     int64_t k;
-    for (k = w->k0; k < kb; k += o->nr, s += width * o->nr * kb) {
+    for (k = w->k0; k < w->k1; k += o->nr, s += width * o->nr * w->k1) {
         hdi_eliminate g;
-        g.nc = (int32_t)hdi_least(kb - k, o->nr);
+        g.nc = (int32_t)hdi_least(w->k1 - k, o->nr);
         g.n = (int32_t)hdi_least(end - k - g.nc, o->mr - o->nr);
         hdi_front_slice(w, k, g.nc, s);
         hdi_front_before(w, k, end, k, g.nc, s);
@@ -10595,55 +10648,69 @@ static void hdi_front_update(const hdi_front *w, int64_t r0, int64_t r1, double 
     hdi_front_children(w, w->p + r0, w->p + r1, 1);
 }
 
-/* ---- fronts ---- */
+/* ---- a factorisation as a pass ---- */
+/* The panel is assembled; then come its blocks of columns, one after the other; then the update matrix. With
+ * the columns of a block in the rows right below it come the pivots of the next one, which stand there. So
+ * no thread waits while pivots are eliminated, and S has two places. */
 
-typedef enum hdi_front_stage { HDI_FRONT_ASSEMBLE, HDI_FRONT_COLUMNS, HDI_FRONT_UPDATE } hdi_front_stage;
+typedef enum hdi_front_stage { HDI_FRONT_ASSEMBLE = 1, HDI_FRONT_COLUMNS, HDI_FRONT_UPDATE } hdi_front_stage;
 
-/* Rows [r0,r1) of the front's panel, or of its update matrix. */
-static void hdi_front_part(const hdi_front *w, hdi_front_stage stage, int64_t r0, int64_t r1, double *work) {
-    if (stage == HDI_FRONT_ASSEMBLE) {
+static hdi_front hdi_factor_open(const void *arg, int32_t v, int32_t room) {
+    const hdi_factor *f = (const hdi_factor *)arg;
+    hdi_front w = hdi_front_open(f, v, room, f->scratch + f->scratch_size * (size_t)room);
+    w.S = w.other = w.work + hdi_front_d_size(w.p, f->width);
+    if (room == f->sym->n_tasks && f->second) w.other = f->second;
+    return w;
+}
+
+static int hdi_factor_next(hdi_front *w, const void *arg) {
+    const int64_t tall = w->f->width == 1 ? (int64_t)HDI_FRONT_TALL : (int64_t)HDI_FRONT_CHUNK;
+    (void)arg;
+    if (w->stage == 0) {
+        hdi_front_set(w, HDI_FRONT_ASSEMBLE, 0, w->m, HDI_FRONT_CHUNK);
+    } else if (w->stage == HDI_FRONT_ASSEMBLE) {
+        hdi_front_set(w, HDI_FRONT_COLUMNS, 0, 1, 1);            /* none yet: the first pivots */
+    } else if (w->stage == HDI_FRONT_COLUMNS && w->k1 < w->p) {
+        hdi_front_advance(w);
+        hdi_front_set(w, HDI_FRONT_COLUMNS, hdi_front_reach(w), w->m, tall);
+    } else if (w->stage == HDI_FRONT_COLUMNS) {
+        hdi_front_set(w, HDI_FRONT_UPDATE, 0, w->u, HDI_FRONT_CHUNK);
+    } else {
+        return 0;
+    }
+    return 1;
+}
+
+/* Rows [r0,r1) of the columns of a block, and the next pivots. */
+static int hdi_front_columns(const hdi_front *w, int64_t r0, int64_t r1, hdi_pivots *note) {
+    hdi_front next = *w;
+    if (w->k1 > w->k0) {
+        hdi_front_before(w, r0, r1, w->k0, w->k1 - w->k0, w->S);
+        hdi_front_solve(w, r0, r1, w->k0, w->k1 - w->k0, w->S);
+    }
+    if (r0 != w->k1 || w->k1 == w->p) return 1;
+    hdi_front_advance(&next);
+    return hdi_front_eliminate(&next, note);
+}
+
+static int hdi_factor_part(const void *arg, const hdi_front *w, int64_t r0, int64_t r1, int64_t chunk) {
+    const hdi_factor *f = (const hdi_factor *)arg;
+    double *work = chunk < 0 ? w->work : f->chunk_scratch + f->chunk_size * (size_t)chunk;
+    if (w->stage == HDI_FRONT_COLUMNS) return hdi_front_columns(w, r0, r1, f->pivots + w->room);
+    if (w->stage == HDI_FRONT_ASSEMBLE) {
         hdi_front_assemble(w, r0, r1);
-    } else if (stage == HDI_FRONT_COLUMNS) {
-        hdi_front_before(w, r0, r1, w->k0, w->nb, w->S);
-        hdi_front_solve(w, r0, r1, w->k0, w->nb, w->S);
 #ifdef HEATDIFF_USE_BLAS
-    } else if (hdi_blas_serves((int32_t)w->p, (int32_t)w->u, w->f->width) &&
-               w->f->ops == hdi_kernels_get(0, 0)) {
+    } else if (hdi_blas_serves((int32_t)w->p, (int32_t)w->u, f->width) && f->ops == hdi_kernels_get(0, 0)) {
         hdi_blas_update(w, work, r0, r1);
         hdi_front_children(w, w->p + r0, w->p + r1, 1);
 #endif
     } else {
         hdi_front_update(w, r0, r1, work);
     }
-}
-
-/* Whether threads share front v. */
-static int hdi_front_shared(const hdi_symbolic *s, int32_t v) {
-    return s->task_of[v] < 0 && hdi_front_rows(s, v) >= HDI_FRONT_SHARED;
-}
-
-/* Front v, by this thread. 0 when a pivot cannot be divided by. */
-static int hdi_front_factor(const hdi_factor *f, int32_t v, double *scratch, hdi_pivots *note) {
-    const int64_t most = hdi_front_pivot_block(f->width);
-    hdi_front w = hdi_front_open(f, v, scratch);
-    hdi_front_part(&w, HDI_FRONT_ASSEMBLE, 0, w.m, w.work);
-    for (; w.k0 < w.p; w.k0 += w.nb) {
-        int64_t end;
-        w.nb = (int32_t)hdi_least(w.p - w.k0, most);
-        /* a small front: its columns at once */
-        end = w.p <= most && !hdi_front_shared(f->sym, v) ? w.m : w.k0 + w.nb;
-        if (!hdi_front_eliminate(&w, end, note)) return 0;
-        if (end < w.m) hdi_front_part(&w, HDI_FRONT_COLUMNS, end, w.m, w.work);
-    }
-    if (w.u > 0) hdi_front_part(&w, HDI_FRONT_UPDATE, 0, w.u, w.work);
     return 1;
 }
 
-/* ---- the tree ---- */
-
-static double *hdi_factor_scratch(const hdi_factor *f, int64_t i) {
-    return f->scratch + f->scratch_size * (size_t)i;
-}
+/* ---- factors ---- */
 
 /* Frees what only factoring needs, which is all but the numbers. */
 static void hdi_factor_settle(hdi_factor *f) {
@@ -10653,67 +10720,6 @@ static void hdi_factor_settle(hdi_factor *f) {
 static void hdi_factor_free(hdi_factor *f) {
     while (f->n_blocks > 0) hdi_free(f->ctx, f->block[--f->n_blocks]);
     memset(f, 0, sizeof *f);
-}
-
-/* ---- fronts that threads share ---- */
-/* Three stages: chunks of rows are assembled; then the panel; then chunks of the update matrix. In the panel
- * P(k) eliminates the pivots of a block, and C(c,k) computes their columns in chunk c of the rows below.
- *   P(k)    waits for all C(c,k-1) that hold its rows, and for all C(c,k-2), because S has two places
- *   C(c,k)  waits for P(k) and for C(c,k-1)
- * So the next pivots are eliminated while the columns of the last ones are still computed. P(k) and C(c,k)
- * never come to chunk c before C(c,k-1) and P(k-1), so that C(c,k) begins when 2 k + 1 of them have come. */
-
-typedef struct hdi_factor_pass {
-    hdi_pass pass;
-    hdi_factor *f;
-    hdi_front w;                 /* the front that is shared */
-    double *S[2];
-    int32_t stage;               /* of it: hdi_front_stage, or before the first one */
-    int32_t nb, n_blocks, n_chunks;
-    int32_t *missing, *come;     /* [n_blocks] what P(k) waits for; [n_chunks] what has come to C(c,k) */
-} hdi_factor_pass;
-
-/* The shape of front v in blocks and chunks. */
-static void hdi_factor_shape(hdi_factor_pass *t, int32_t v) {
-    hdi_front_shape(t->f->sym, v, &t->w.p, &t->w.u, &t->w.m);
-    t->nb = (int32_t)hdi_front_pivot_block(t->f->width);
-    t->n_blocks = (int32_t)((t->w.p + t->nb - 1) / t->nb);
-    t->n_chunks = (int32_t)((t->w.m + HDI_FRONT_CHUNK - 1) / HDI_FRONT_CHUNK);
-}
-
-/* The first row below the pivots of block k, and the first chunk with such rows. */
-static int64_t hdi_factor_end(const hdi_factor_pass *t, int32_t k) {
-    return hdi_least((int64_t)(k + 1) * t->nb, t->w.p);
-}
-
-static int32_t hdi_factor_first(const hdi_factor_pass *t, int32_t k) {
-    const int64_t end = hdi_factor_end(t, k);
-    return end < t->w.m ? (int32_t)(end / HDI_FRONT_CHUNK) : t->n_chunks;
-}
-
-/* Nodes of a stage. */
-static int32_t hdi_factor_stage(const hdi_factor_pass *t, int32_t stage) {
-    int32_t k, n = t->n_blocks;
-    if (stage == HDI_FRONT_ASSEMBLE) return t->n_chunks;
-    if (stage == HDI_FRONT_UPDATE) return (int32_t)((t->w.u + HDI_FRONT_CHUNK - 1) / HDI_FRONT_CHUNK);
-    for (k = 0; k < t->n_blocks; k++) n += t->n_chunks - hdi_factor_first(t, k);
-    return n;
-}
-
-/* Nodes of the walk. */
-static int64_t hdi_factor_nodes(hdi_factor *f) {
-    const hdi_symbolic *s = f->sym;
-    int64_t n = (int64_t)s->n_tasks + s->n_top;
-    int32_t i, stage;
-    hdi_factor_pass t;
-    memset(&t, 0, sizeof t);
-    t.f = f;
-    for (i = 0; i < s->n_top; i++) {
-        hdi_factor_shape(&t, s->top[i]);
-        for (stage = HDI_FRONT_ASSEMBLE; stage <= HDI_FRONT_UPDATE && hdi_front_shared(s, s->top[i]); stage++)
-            n += hdi_factor_stage(&t, stage);
-    }
-    return n;
 }
 
 /* A factor of the given width with the arrays that factoring and refactoring need. With a host it is
@@ -10741,11 +10747,7 @@ static void hdi_factor_take(hdi_factor *f, const hdi_factor *host, const hdi_sym
     f->work = HDI_TAKE(s, double, (uint64_t)sym->work * w);
     f->scratch = HDI_TAKE(s, double, f->scratch_size * n_parts + tops * f->top_size);
     f->chunk_scratch = HDI_TAKE(s, double, f->chunk_size * n_chunks + 1);
-    f->counts = HDI_TAKE(s, int32_t, sym->largest_pivots / hdi_front_pivot_block(width) + (int64_t)n_chunks +
-                         2);
     f->pivots = HDI_TAKE(s, hdi_pivots, n_parts + 1);
-    f->n_order = hdi_factor_nodes(f);
-    f->order = HDI_TAKE(s, int32_t, f->n_order + 1);
     if (f->scratch && n_chunks > 0) f->second = f->scratch + f->scratch_size * n_parts + f->top_size;
     if (s->tally) return;
     f->ops = HDI_HAS_DIRECT ? hdi_kernels_get(hdi_simd_level(s->ctx), width > 1) : NULL;
@@ -10811,106 +10813,24 @@ static hd_status hdi_factor_collect(hdi_factor *f, int32_t n_parts, hd_error *e)
     return e->status;
 }
 
-static int hdi_factor_alone(void *arg, int32_t v, int32_t room) {
-    const hdi_factor *f = ((const hdi_factor_pass *)arg)->f;
-    return hdi_front_factor(f, v, hdi_factor_scratch(f, room), f->pivots + room);
-}
-
-static int hdi_factor_begin(void *arg, int32_t v) {
-    hdi_factor_pass *t = (hdi_factor_pass *)arg;
-    hdi_factor *f = t->f;
-    int32_t k;
-    if (!hdi_front_shared(f->sym, v)) return 0;
-    t->w = hdi_front_open(f, v, hdi_factor_scratch(f, f->sym->n_tasks));
-    hdi_factor_shape(t, v);
-    t->stage = -1;
-    t->S[0] = t->w.S;
-    t->S[1] = f->second;
-    t->missing = f->counts;
-    t->come = t->missing + t->n_blocks;
-    for (k = 0; k < t->n_blocks; k++) {
-        /* from the chunk of its first row to that of its last one */
-        t->missing[k] = (int32_t)((hdi_factor_end(t, k) - 1) / HDI_FRONT_CHUNK) + 1;
-        t->missing[k] -= k * t->nb / HDI_FRONT_CHUNK;
-        if (k > 1) t->missing[k] += t->n_chunks - hdi_factor_first(t, k - 2);
-    }
-    memset(t->come, 0, (size_t)t->n_chunks * sizeof *t->come);
-    return 1;
-}
-
-static int32_t hdi_factor_next(void *arg, int32_t *ready) {
-    hdi_factor_pass *t = (hdi_factor_pass *)arg;
-    const int32_t n = t->stage < HDI_FRONT_UPDATE ? hdi_factor_stage(t, ++t->stage) : 0;
-    *ready = t->stage == HDI_FRONT_COLUMNS ? 1 : n;
-    return n;
-}
-
-/* One more thing that P(k), or C(c,k), waits for. Parts of the panel: P(0), C(0,0), C(1,0), ..., P(1), ... */
-static void hdi_factor_arrive(hdi_factor_pass *t, int32_t k) {
-    const int32_t first = t->f->sym->n_tasks + t->f->sym->n_top;
-    if (k < t->n_blocks && HDI_ATOMIC_ADD(t->missing + k, -1) == 0)
-        hdi_release(&t->pass.walk, first + k * (t->n_chunks + 1), 1);
-}
-
-static void hdi_factor_come(hdi_factor_pass *t, int32_t c) {
-    const int32_t first = t->f->sym->n_tasks + t->f->sym->n_top;
-    const int32_t come = (int32_t)HDI_ATOMIC_ADD(t->come + c, 1);
-    if (come % 2) hdi_release(&t->pass.walk, first + come / 2 * (t->n_chunks + 1) + 1 + c, 1);
-}
-
-/* Node P(k), or with a chunk c >= 0 C(c,k). */
-static void hdi_factor_panel(hdi_factor_pass *t, int32_t k, int32_t c) {
-    const int64_t end = hdi_factor_end(t, k), r0 = (int64_t)c * HDI_FRONT_CHUNK, r1 = r0 + HDI_FRONT_CHUNK;
-    hdi_front w = t->w;
-    w.S = t->S[k % 2];
-    w.k0 = (int64_t)k * t->nb;
-    w.nb = (int32_t)(end - w.k0);
-    if (c >= 0) {
-        hdi_front_part(&w, HDI_FRONT_COLUMNS, r0 > end ? r0 : end, hdi_least(r1, w.m),
-                       w.f->chunk_scratch + w.f->chunk_size * (size_t)c);
-        hdi_factor_come(t, c);
-        if (r0 < hdi_factor_end(t, k + 1) && r1 > end) hdi_factor_arrive(t, k + 1);
-        hdi_factor_arrive(t, k + 2);
-        return;
-    }
-    if (!hdi_front_eliminate(&w, end, t->f->pivots + t->f->sym->n_tasks)) hdi_walk_stop(&t->pass.walk);
-    for (c = hdi_factor_first(t, k); c < t->n_chunks; c++) hdi_factor_come(t, c);
-}
-
-static void hdi_factor_part(void *arg, int32_t i) {
-    hdi_factor_pass *t = (hdi_factor_pass *)arg;
-    if (t->stage == HDI_FRONT_COLUMNS) {
-        hdi_factor_panel(t, i / (t->n_chunks + 1), i % (t->n_chunks + 1) - 1);
-    } else {
-        /* the last rows of a triangle are longest */
-        const int64_t c = hdi_factor_stage(t, t->stage) - 1 - i, r0 = c * HDI_FRONT_CHUNK;
-        const int64_t rows = t->stage == HDI_FRONT_UPDATE ? t->w.u : t->w.m;
-        hdi_front_part(&t->w, (hdi_front_stage)t->stage, r0, hdi_least(r0 + HDI_FRONT_CHUNK, rows),
-                       t->f->chunk_scratch + t->f->chunk_size * (size_t)c);
-    }
-}
-
 static hd_status hdi_factor_run(hdi_factor *f, const hdi_values *values, hd_error *e) {
-    const int32_t n_tasks = f->sym->n_tasks;
-    hdi_factor_pass t;
+    const int32_t n_parts = f->sym->n_tasks + 1;
+    hdi_pass p;
     int32_t i;
-    memset(&t, 0, sizeof t);
-    t.f = f;
-    t.pass.sym = f->sym;
-    t.pass.arg = &t;
-    t.pass.alone = hdi_factor_alone;
-    t.pass.begin = hdi_factor_begin;
-    t.pass.stage = hdi_factor_next;
-    t.pass.part = hdi_factor_part;
-    t.stage = HDI_FRONT_UPDATE;                  /* nothing is begun */
+    memset(&p, 0, sizeof p);
+    p.sym = f->sym;
+    p.arg = f;
+    p.open = hdi_factor_open;
+    p.next = hdi_factor_next;
+    p.run = hdi_factor_part;
+    p.least = HDI_FRONT_SHARED;
     f->ready = 0;
     f->values = values;
-    for (i = 0; i <= n_tasks; i++) hdi_pivots_clear(f->pivots + i);
-    hdi_pass_run(&t.pass, f->ctx, f->n_order, f->order, "factor", e);
+    for (i = 0; i < n_parts; i++) hdi_pivots_clear(f->pivots + i);
+    hdi_pass_run(&p, f->ctx, "factor", e);
     f->values = NULL;
-    if (hdi_factor_collect(f, n_tasks + 1, e) < 0) return e->status;
-    f->ready = 1;
-    return HD_OK;
+    f->ready = hdi_factor_collect(f, n_parts, e) >= 0;
+    return e->status;
 }
 
 /* ---- solves ---- */
@@ -11706,7 +11626,8 @@ static void hdi_inverse_child(const hdi_front *w, int32_t c, int64_t r0, int64_t
 /* ---- fronts ---- */
 
 typedef enum hdi_inverse_stage {
-    HDI_INVERSE_M, HDI_INVERSE_BELOW, HDI_INVERSE_CORNER, HDI_INVERSE_FORMS, HDI_INVERSE_CHILD
+    HDI_INVERSE_PIVOTS = 1, HDI_INVERSE_M, HDI_INVERSE_BELOW, HDI_INVERSE_CORNER, HDI_INVERSE_EMIT,
+    HDI_INVERSE_FORMS, HDI_INVERSE_CHILD
 } hdi_inverse_stage;
 
 /* sum_c coef[c] z_c for every set, to place `at`. */
@@ -11996,7 +11917,9 @@ static uint64_t hdi_forms_bytes(const hdi_symbolic *s, int32_t width, const hd_c
     return bytes;
 }
 
-/* ---- the run ---- */
+/* ---- an inversion as a pass ---- */
+/* Blocks of pivots come from the last one on, each in four stages; then what is wanted; then the children's
+ * Z22, whose rows are counted one child after the other. */
 
 /* Entries or the diagonal of the front's columns. */
 static void hdi_inverse_emit(const hdi_inverse *z, const hdi_front *w) {
@@ -12010,160 +11933,70 @@ static void hdi_inverse_emit(const hdi_inverse *z, const hdi_front *w) {
             hdi_inverse_put(z, hdi_inverse_at(w, s->a_row[n], s->a_col[n]), n);
 }
 
-/* A front whose Z22 is there, and the stage that it is in: [begin,end) of rows, of blocks of forms, or of the
- * rows of one child after the other. */
-typedef struct hdi_inverse_step {
-    const hdi_inverse *z;
-    hdi_front w;
-    int32_t stage;
-    int64_t begin, end;
-} hdi_inverse_step;
-
-/* Front v, in the scratch of a subtree or of the top. Z of the pivots' columns is laid out as L; T: -L11^-T;
- * S, M: slices, of T' and of M; D: -1/d. */
-static void hdi_inverse_open(hdi_inverse_step *c, int32_t v, int32_t room) {
-    const hdi_factor *f = c->z->f;
-    const hdi_symbolic *s = f->sym;
-    hdi_front *w = &c->w;
-    int64_t n;
-    *w = hdi_front_open(f, v, c->z->scratch + c->z->scratch_size * (size_t)room);
-    n = hdi_least(w->p, HDI_PANEL);
-    w->z = w->work;
-    w->T = w->z + f->width * (s->panel[v + 1] - s->panel[v]);
-    w->S = w->T + f->width * n * n;
-    w->M = w->S + f->width * n * (n + HDI_TILE_COLS);
-    w->D = w->M + f->width * w->m * (n + HDI_TILE_COLS);
-    w->buffer = w->D + f->width * n;
-    w->k0 = w->p;
-    c->stage = HDI_INVERSE_CORNER;               /* of no block: the last one comes next */
+/* Z of the pivots' columns is laid out as L; T: -L11^-T; S, M: slices, of T' and of M; D: -1/d. */
+static hdi_front hdi_inverse_open(const void *arg, int32_t v, int32_t room) {
+    const hdi_inverse *z = (const hdi_inverse *)arg;
+    const hdi_factor *f = z->f;
+    hdi_front w = hdi_front_open(f, v, room, z->scratch + z->scratch_size * (size_t)room);
+    const int64_t n = hdi_least(w.p, HDI_PANEL);
+    w.z = w.work;
+    w.T = w.z + f->width * (f->sym->panel[v + 1] - f->sym->panel[v]);
+    w.S = w.T + f->width * n * n;
+    w.M = w.S + f->width * n * (n + HDI_TILE_COLS);
+    w.D = w.M + f->width * w.m * (n + HDI_TILE_COLS);
+    w.buffer = w.D + f->width * n;
+    w.k0 = w.p;
     hdi_factor_fetch(f, v, 1);
+    return w;
 }
 
-static int64_t hdi_inverse_children(const hdi_symbolic *s, int32_t v) {
-    int64_t n = 0;
+static int hdi_inverse_next(hdi_front *w, const void *arg) {
+    const hdi_inverse *z = (const hdi_inverse *)arg;
+    const hdi_symbolic *s = w->f->sym;
+    const int64_t blocks = z->wanted == HDI_WANT_FORMS ? hdi_form_blocks(z->forms, w->v) : 0;
+    const int64_t from = w->stage == HDI_INVERSE_FORMS ? w->end : 0;
+    int64_t rows = 0;
     int32_t k;
-    for (k = s->kid_ptr[v]; k < s->kid_ptr[v + 1]; k++) n += hdi_front_below(s, s->kid[k]);
-    return n;
-}
-
-static void hdi_inverse_set(hdi_inverse_step *c, int stage, int64_t begin, int64_t end) {
-    c->stage = (int32_t)stage;
-    c->begin = begin;
-    c->end = end;
-}
-
-/* Goes on to the next stage, after what one thread must do before it. 0: there is none. */
-static int hdi_inverse_next(hdi_inverse_step *c) {
-    hdi_front *w = &c->w;
-    const int64_t u = w->m - w->k1, n = w->k1 - w->k0;
-    const int64_t blocks = c->z->wanted == HDI_WANT_FORMS ? hdi_form_blocks(c->z->forms, w->v) : 0;
-    if (c->stage == HDI_INVERSE_M) {
-        hdi_inverse_set(c, HDI_INVERSE_BELOW, w->k1, w->m);
-    } else if (c->stage == HDI_INVERSE_BELOW) {
-        hdi_inverse_set(c, HDI_INVERSE_CORNER, 0, u > 0 ? n : 0);
-    } else if (c->stage == HDI_INVERSE_CORNER && w->k0 > 0) {
+    if (w->stage == HDI_INVERSE_CHILD) return 0;
+    if (w->stage == 0 || (w->stage == HDI_INVERSE_CORNER && w->k0 > 0)) {
         w->k1 = w->k0;
         w->k0 = (w->k1 - 1) / HDI_PANEL * HDI_PANEL;
-        hdi_inverse_pivots(w);
-        hdi_inverse_set(c, HDI_INVERSE_M, w->k1, w->m);
-    } else if (c->stage == HDI_INVERSE_CORNER) {     /* the columns are there */
-        if (c->z->wanted != HDI_WANT_FORMS) hdi_inverse_emit(c->z, w);
-        else hdi_form_near(c->z, w);
-        hdi_inverse_set(c, HDI_INVERSE_FORMS, 0, hdi_least(blocks, HDI_FORM_SLOTS));
-    } else if (c->stage == HDI_INVERSE_FORMS && c->end < blocks) {
-        hdi_inverse_set(c, HDI_INVERSE_FORMS, c->end, hdi_least(blocks, c->end + HDI_FORM_SLOTS));
-    } else if (c->stage == HDI_INVERSE_FORMS) {
-        hdi_inverse_set(c, HDI_INVERSE_CHILD, 0, hdi_inverse_children(w->f->sym, w->v));
+        hdi_front_set(w, HDI_INVERSE_PIVOTS, 0, 1, 1);
+    } else if (w->stage <= HDI_INVERSE_M) {
+        hdi_front_set(w, w->stage + 1, w->k1, w->m, HDI_INV_CHUNK);
+    } else if (w->stage == HDI_INVERSE_BELOW) {
+        hdi_front_set(w, HDI_INVERSE_CORNER, 0, w->m > w->k1 ? w->k1 - w->k0 : 0, HDI_TILE_ROWS);
+    } else if (w->stage == HDI_INVERSE_CORNER) {
+        hdi_front_set(w, HDI_INVERSE_EMIT, 0, 1, 1);
+    } else if (from < blocks) {
+        hdi_front_set(w, HDI_INVERSE_FORMS, from, hdi_least(blocks, from + HDI_FORM_SLOTS), 1);
     } else {
-        return 0;
+        for (k = s->kid_ptr[w->v]; k < s->kid_ptr[w->v + 1]; k++) rows += hdi_front_below(s, s->kid[k]);
+        hdi_front_set(w, HDI_INVERSE_CHILD, 0, rows, HDI_INV_CHUNK);
     }
     return 1;
 }
 
-/* [r0,r1) of the stage. */
-static void hdi_inverse_do(const hdi_inverse_step *c, int64_t r0, int64_t r1, double *buffer) {
-    const hdi_front *w = &c->w;
+static int hdi_inverse_part(const void *arg, const hdi_front *w, int64_t r0, int64_t r1, int64_t chunk) {
+    const hdi_inverse *z = (const hdi_inverse *)arg;
+    const int own = chunk < 0 || w->stage > HDI_INVERSE_CORNER;
+    double *buffer = own ? w->buffer : z->chunk + z->chunk_size * (size_t)chunk;
     const hdi_symbolic *s = w->f->sym;
     int32_t k = s->kid_ptr[w->v];
-    if (c->stage == HDI_INVERSE_M) hdi_inverse_m(w, r0, r1, buffer);
-    else if (c->stage == HDI_INVERSE_BELOW) hdi_inverse_below(w, r0, r1, buffer);
-    else if (c->stage == HDI_INVERSE_CORNER) hdi_inverse_corner(w, r0, r1, buffer);
-    else if (c->stage == HDI_INVERSE_FORMS) for (; r0 < r1; r0++) hdi_form_run(c->z, w, r0);
+    if (w->stage == HDI_INVERSE_PIVOTS) hdi_inverse_pivots(w);
+    else if (w->stage == HDI_INVERSE_M) hdi_inverse_m(w, r0, r1, buffer);
+    else if (w->stage == HDI_INVERSE_BELOW) hdi_inverse_below(w, r0, r1, buffer);
+    else if (w->stage == HDI_INVERSE_CORNER) hdi_inverse_corner(w, r0, r1, buffer);
+    else if (w->stage == HDI_INVERSE_FORMS) for (; r0 < r1; r0++) hdi_form_run(z, w, r0);
+    else if (w->stage == HDI_INVERSE_EMIT && z->wanted == HDI_WANT_FORMS) hdi_form_near(z, w);
+    else if (w->stage == HDI_INVERSE_EMIT) hdi_inverse_emit(z, w);
     else for (; r1 > 0; k++) {
         const int64_t u = hdi_front_below(s, s->kid[k]);
         if (r0 < u) hdi_inverse_child(w, s->kid[k], hdi_most(r0, 0), hdi_least(r1, u));
         r0 -= u;
         r1 -= u;
     }
-}
-
-static int hdi_inverse_alone(void *arg, int32_t v, int32_t room) {
-    hdi_inverse_step c = *(const hdi_inverse_step *)arg;
-    hdi_inverse_open(&c, v, room);
-    while (hdi_inverse_next(&c))
-        if (c.begin < c.end) hdi_inverse_do(&c, c.begin, c.end, c.w.buffer);
     return 1;
-}
-
-/* ---- the pass ---- */
-
-/* Whether threads share front v. */
-static int hdi_inverse_shared(const hdi_symbolic *s, int32_t v) {
-    return hdi_front_rows(s, v) >= 2 * (int64_t)HDI_INV_CHUNK;
-}
-
-/* Rows of a node. */
-static int64_t hdi_inverse_rows(int32_t stage) {
-    if (stage == HDI_INVERSE_FORMS) return 1;
-    return stage == HDI_INVERSE_CORNER ? (int64_t)HDI_TILE_ROWS : (int64_t)HDI_INV_CHUNK;
-}
-
-static int64_t hdi_inverse_chunks(int32_t stage, int64_t rows) {
-    return (rows + hdi_inverse_rows(stage) - 1) / hdi_inverse_rows(stage);
-}
-
-/* Nodes of the walk, at most. */
-static int64_t hdi_inverse_nodes(const hdi_inverse *z, const hdi_symbolic *s) {
-    int64_t n = (int64_t)s->n_tasks + s->n_top, k0, k1;
-    int32_t i;
-    for (i = 0; i < s->n_top; i++) {
-        const int64_t m = hdi_front_rows(s, s->top[i]), p = hdi_front_pivots(s, s->top[i]);
-        if (!hdi_inverse_shared(s, s->top[i])) continue;
-        n += hdi_inverse_chunks(HDI_INVERSE_CHILD, hdi_inverse_children(s, s->top[i]));
-        if (z->wanted == HDI_WANT_FORMS) n += hdi_form_blocks(z->forms, s->top[i]);
-        for (k1 = p; k1 > 0; k1 = k0) {
-            k0 = (k1 - 1) / HDI_PANEL * HDI_PANEL;
-            n += 2 * hdi_inverse_chunks(HDI_INVERSE_M, m - k1);
-            n += hdi_inverse_chunks(HDI_INVERSE_CORNER, k1 - k0);
-        }
-    }
-    return n;
-}
-
-static int hdi_inverse_begin(void *arg, int32_t v) {
-    hdi_inverse_step *c = (hdi_inverse_step *)arg;
-    const hdi_symbolic *s = c->z->f->sym;
-    if (!hdi_inverse_shared(s, v)) return 0;
-    hdi_inverse_open(c, v, s->n_tasks);
-    return 1;
-}
-
-static int32_t hdi_inverse_stage_next(void *arg, int32_t *ready) {
-    hdi_inverse_step *c = (hdi_inverse_step *)arg;
-    *ready = 0;
-    while (*ready == 0 && hdi_inverse_next(c))
-        *ready = (int32_t)hdi_inverse_chunks(c->stage, c->end - c->begin);
-    return *ready;
-}
-
-static void hdi_inverse_part(void *arg, int32_t i) {
-    const hdi_inverse_step *c = (const hdi_inverse_step *)arg;
-    /* the last rows of a triangle are longest */
-    const int64_t rows = hdi_inverse_rows(c->stage);
-    const int64_t chunk = hdi_inverse_chunks(c->stage, c->end - c->begin) - 1 - i;
-    const int64_t r0 = c->begin + chunk * rows;
-    double *buffer = c->stage > HDI_INVERSE_CORNER ? NULL : c->z->chunk + c->z->chunk_size * (size_t)chunk;
-    hdi_inverse_do(c, r0, hdi_least(r0 + rows, c->end), buffer);
 }
 
 /* The arrays that inverting factors of the given width takes. */
@@ -12184,8 +12017,7 @@ static void hdi_inverse_take(hdi_inverse *z, const hdi_symbolic *s, int32_t widt
     z->chunk = HDI_TAKE(keep, double, s->n_top ? z->chunk_size * (uint64_t)chunks : 1);
 }
 
-/* The bytes of that, and of the order that hdi_inverse_run takes without forms. Also those of the factor, if
- * asked for; less the room that is there. */
+/* The bytes of that. Also those of the factor, if asked for; less the room that is there. */
 static uint64_t hdi_inverse_bytes(const hdi_symbolic *s, int32_t width, int factor, uint64_t room) {
     hd_error none;
     uint64_t bytes;
@@ -12195,34 +12027,24 @@ static uint64_t hdi_inverse_bytes(const hdi_symbolic *s, int32_t width, int fact
     keep.left = room;
     if (factor) hdi_factor_take(&f, NULL, s, width, &keep);
     hdi_inverse_take(&z, s, width, &keep);
-    hdi_scope_count(&bytes, (uint64_t)hdi_inverse_nodes(&z, s), sizeof(int32_t));
     return bytes;
 }
 
 /* Inverts the factor; coef, n_sets, wanted (with forms, its x), values and stride are set. Uses the space of
  * the factor's update matrices. */
 static hd_status hdi_inverse_run(hdi_inverse *z, hdi_factor *f, hd_error *e) {
-    const hdi_symbolic *s = f->sym;
-    hdi_scope scope = hdi_scope_begin(f->ctx, e);
-    const int64_t n = hdi_inverse_nodes(z, s);
-    int32_t *order = HDI_TAKE(&scope, int32_t, n);
-    hdi_inverse_step at;
-    hdi_pass pass;
-    if (!order) return hdi_scope_end(&scope);
-    memset(&at, 0, sizeof at);
-    memset(&pass, 0, sizeof pass);
+    hdi_pass p;
+    memset(&p, 0, sizeof p);
     z->f = f;
-    at.z = z;
-    at.stage = HDI_INVERSE_CHILD;                /* nothing is begun */
-    pass.sym = s;
-    pass.arg = &at;
-    pass.down = 1;
-    pass.alone = hdi_inverse_alone;
-    pass.begin = hdi_inverse_begin;
-    pass.stage = hdi_inverse_stage_next;
-    pass.part = hdi_inverse_part;
-    hdi_pass_run(&pass, f->ctx, n, order, "invert", e);
-    return hdi_scope_end(&scope);
+    p.sym = f->sym;
+    p.arg = z;
+    p.open = hdi_inverse_open;
+    p.next = hdi_inverse_next;
+    p.run = hdi_inverse_part;
+    p.least = 2 * (int64_t)HDI_INV_CHUNK;
+    p.down = 1;
+    hdi_pass_run(&p, f->ctx, "invert", e);
+    return e->status;
 }
 
 /* ---- what hd_ldl asks for ---- */

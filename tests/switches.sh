@@ -14,7 +14,7 @@ cp "$work/static.c" "$work/static.cpp"
 # A function of each room that must not be there.
 gone() {
   case $1 in
-    DIRECT) echo "hdi_front_factor hdi_nd_split hdi_amd_run hdi_symbolic_order hdi_sweep_run hdi_elim_make hdi_krylov_run hdi_real_product_plain" \
+    DIRECT) echo "hdi_factor_part hdi_nd_split hdi_amd_run hdi_symbolic_order hdi_sweep_run hdi_elim_make hdi_krylov_run hdi_real_product_plain" \
                  "$(gone POLE_FACTORS) $(gone GEODESIC) $(gone SPECTRUM)" ;;
     POLE_FACTORS) echo "hdi_pack_product_plain hdi_batch_run hdi_elim_poles $(gone DIAGONAL)" ;;
     DIAGONAL) echo "hdi_inverse_run hdi_form_run hdi_ground_make hdi_diagonal_once hdi_trace_window hdi_filters_run hdi_fading_poles $(gone DIFFUSION)" ;;
