@@ -3479,11 +3479,8 @@ HDI_PART hdi_num HDI_OF(factor_row)(const int pack, hdi_num x, const int k) {
 /* sum += a f */
 HDI_PART void HDI_OF(sum_add)(const int pack, hdi_num *s, hdi_num a, hdi_num f) {
     s->re = HDI_OF(fma)(a.re, f.re, s->re);
-    if (!pack) return;
-    if (HDI_WIDTH == 8) {
-        s->im = HDI_OF(fma)(a.re, f.im, s->im);
-        return;
-    }
+    if (pack && HDI_WIDTH == 8) s->im = HDI_OF(fma)(a.re, f.im, s->im);
+    if (!pack || HDI_WIDTH == 8) return;
     s->re = HDI_OF(fnma)(a.im, f.im, s->re);
     s->im = HDI_OF(fma)(a.re, f.im, HDI_OF(fma)(a.im, f.re, s->im));
 }
@@ -3784,11 +3781,8 @@ HDI_PART void HDI_OF(product_eights)(const hdi_product *g) {
 HDI_PART void HDI_OF(product)(const int pack, const hdi_product *g) {
     int64_t i;
     int h;
-    if (HDI_UNITS && (g->b_col != 1 || (g->n == 8 && !g->lower && !g->store))) {
-        HDI_OF(product_eights)(g);
-        return;
-    }
-    for (h = 0; h < HDI_NUMBERS; h += HDI_ABREAST)
+    if (HDI_UNITS && (g->b_col != 1 || (g->n == 8 && !g->lower && !g->store))) HDI_OF(product_eights)(g);
+    else for (h = 0; h < HDI_NUMBERS; h += HDI_ABREAST)
         for (i = 0; i < g->n; i += HDI_BLOCK) HDI_OF(product_rows)(pack, HDI_UNITS, g, i, h);
 }
 
@@ -9350,13 +9344,10 @@ static hd_status hdi_nd_order(const hd_csr *a, const double *xyz, int32_t *perm,
 
 /* ==== [15] analysis ====
  * From an elimination order to supernodes and the rows of their fronts, subtrees that can go on at the same
- * time, and the places of all that lives for a while. Nearly linear in the non-zeros of A and the lengths of
- * the row lists. May call [14].
+ * time, and the places of all that lives for a while. As many steps as L has entries. May call [14].
  * This work is based on
  *   J. Liu, The role of elimination trees in sparse factorization, 1990 (trees, postorders, the stack)
  *   J. Liu, On the storage requirement in the out-of-core multifrontal method for sparse factorization, 1986
- *   J. Gilbert, E. Ng, B. Peyton, An efficient algorithm to compute row and column counts for sparse Cholesky
- *   factorization, 1994
  *   C. Ashcraft, R. Grimes, The influence of relaxed supernode partitions on the multifrontal method, 1989
  * A front is a dense lower triangle over the rows of a supernode: its p pivots, then u rows below. Its first
  * p columns become columns of L (the panel, m = p + u rows), the rest is the update matrix for its parent. */
@@ -9418,72 +9409,44 @@ static void hdi_front_shape(const hdi_symbolic *s, int32_t v, int64_t *p, int64_
     *m = *p + *u;
 }
 
-/* ---- trees and counts ---- */
+/* ---- supernodes ---- */
 
-/* A forest on the numbers from 0 to n - 1, in which every parent has a larger number than its children. */
-typedef struct hdi_forest {
-    int32_t n;
-    int32_t *parent;             /* [n] -1: a root; -2: not part of the forest */
-    int32_t *kid, *next;         /* [n] first child, and next child of the same parent; -1: none */
-} hdi_forest;
-
-/* A supernode while supernodes are merged. Its own columns are those from begin up to that of the next node.
- * Nodes that are merged into one front form a list, the lowest first. The last one has the numbers of the
- * front. */
+/* A column of L, and later a supernode: columns that are merged into one front form a list, the lowest first,
+ * and the last one has the numbers of the front. Every parent in the tree comes after its children. */
 typedef struct hdi_node {
-    int32_t begin;
+    int32_t parent;              /* -1: a root; -2: merged into its parent */
+    int32_t kid, next;           /* first child, and next child of the same parent; -1: none */
     int32_t pivots, rows;        /* of the front: columns, and rows with the pivots included */
-    int32_t first, then;         /* first node of its list; the node after it in a list, -1: none */
-    int32_t merged;              /* into its parent */
+    int32_t first, then;         /* first column of its list; the column after it in a list, -1: none */
+    int32_t mark;                /* the last row of L with an entry in it; later: merged */
     int64_t zeros;               /* let in by merging */
 } hdi_node;
 
-/* What the steps of an analysis hand on. Columns are columns of L. They are numbered by a postorder of their
- * tree, which leaves their non-zeros as they are. */
-typedef struct hdi_sym_work {
-    const hd_csr *a;
-    hdi_scope *temp;
-    int32_t *perm, *place;       /* [n] the row of A of a column, and the column of a row of A */
-    int32_t *parent;             /* [n] elimination tree: the row of the first non-zero below the diagonal */
-    int32_t *count;              /* [n] non-zeros of a column, diagonal included */
-    hdi_node *node;              /* [n + 1] */
-    hdi_forest tree;             /* of the nodes; merged ones do not belong to it */
-} hdi_sym_work;
-
-static hdi_forest hdi_forest_take(int32_t n, hdi_scope *s) {
-    hdi_forest f;
-    f.n = n;
-    f.parent = HDI_TAKE(s, int32_t, n);
-    f.kid = HDI_TAKE(s, int32_t, n);
-    f.next = HDI_TAKE(s, int32_t, n);
-    return f;
-}
-
 /* Makes the lists of children, ascending, from the parents. */
-static void hdi_forest_link(const hdi_forest *f) {
-    int32_t i;
-    hdi_fill_i32(f->kid, f->n, -1);
-    for (i = f->n; i-- > 0;) {
-        if (f->parent[i] < 0) continue;
-        f->next[i] = f->kid[f->parent[i]];
-        f->kid[f->parent[i]] = i;
+static void hdi_nodes_link(hdi_node *node, int32_t n) {
+    int32_t i, up;
+    for (i = 0; i < n; i++) node[i].kid = -1;
+    for (i = n; i-- > 0;) {
+        if ((up = node[i].parent) < 0) continue;
+        node[i].next = node[up].kid;
+        node[up].kid = i;
     }
 }
 
 /* The first of v and all below it in postorder. */
-static int32_t hdi_forest_leaf(const hdi_forest *f, int32_t v) {
-    while (f->kid[v] >= 0) v = f->kid[v];
+static int32_t hdi_node_leaf(const hdi_node *node, int32_t v) {
+    while (node[v].kid >= 0) v = node[v].kid;
     return v;
 }
 
 /* order[k] = number k of the postorder that takes children as their lists do. Returns how many there are. */
-static int32_t hdi_forest_postorder(const hdi_forest *f, int32_t *order) {
+static int32_t hdi_nodes_postorder(const hdi_node *node, int32_t n, int32_t *order) {
     int32_t root, v, k = 0;
-    for (root = 0; root < f->n; root++) {
-        if (f->parent[root] != -1) continue;
-        for (v = hdi_forest_leaf(f, root); v != root;) {
+    for (root = 0; root < n; root++) {
+        if (node[root].parent != -1) continue;
+        for (v = hdi_node_leaf(node, root); v != root;) {
             order[k++] = v;
-            v = f->next[v] < 0 ? f->parent[v] : hdi_forest_leaf(f, f->next[v]);
+            v = node[v].next < 0 ? node[v].parent : hdi_node_leaf(node, node[v].next);
         }
         order[k++] = root;
     }
@@ -9495,109 +9458,26 @@ static HDI_INLINE void hdi_sym_fetch(const hd_csr *a, const int32_t *perm, int32
     if (j + HDI_ROWS_AHEAD < a->n_rows) HDI_PREFETCH(a->col + a->row_ptr[perm[j + HDI_ROWS_AHEAD]]);
 }
 
-/* The elimination tree of an order. ancestor [n]: shortcuts from a column to the root of its tree so far. */
-static void hdi_sym_etree(const hdi_sym_work *w, int32_t *parent, int32_t *ancestor) {
-    const hd_csr *a = w->a;
-    int32_t i, k, next;
+/* The columns of L under an order, their tree and their non-zeros. Row i of L is a subtree of the tree,
+ * walked up from the entries of row i of A; a column's parent is the row of its first entry below the
+ * diagonal. */
+static void hdi_sym_columns(const hd_csr *a, const int32_t *perm, const int32_t *place, hdi_node *node) {
+    int32_t i, k;
     int64_t p;
     for (i = 0; i < a->n_rows; i++) {
-        hdi_sym_fetch(a, w->perm, i);
-        parent[i] = ancestor[i] = -1;
-        for (p = a->row_ptr[w->perm[i]]; p < a->row_ptr[w->perm[i] + 1]; p++) {
-            for (k = w->place[a->col[p]]; k != -1 && k < i; k = next) {
-                next = ancestor[k];
-                ancestor[k] = i;
-                if (next == -1) parent[k] = i;
+        hdi_node *v = node + i;
+        hdi_sym_fetch(a, perm, i);
+        memset(v, 0, sizeof *v);
+        v->parent = v->then = -1;
+        v->first = v->mark = i;
+        v->pivots = v->rows = 1;
+        for (p = a->row_ptr[perm[i]]; p < a->row_ptr[perm[i] + 1]; p++) {
+            for (k = place[a->col[p]]; k < i && node[k].mark != i; k = node[k].parent) {
+                node[k].mark = i;
+                node[k].rows++;
+                if (node[k].parent < 0) node[k].parent = i;
             }
         }
-    }
-}
-
-/* Brings the columns from the order given to a postorder of their tree. */
-static hd_status hdi_sym_postorder(const hdi_sym_work *w) {
-    const hdi_forest f = hdi_forest_take(w->a->n_rows, w->temp);
-    int32_t k, *order = HDI_TAKE(w->temp, int32_t, f.n), *ancestor = HDI_TAKE(w->temp, int32_t, f.n);
-    if (w->temp->e->status < 0) return w->temp->e->status;
-    for (k = 0; k < f.n; k++) w->place[w->perm[k]] = k;
-    for (k = 0; HDI_AUDIT && k < f.n; k++) HEATDIFF_ASSERT(w->place[w->perm[k]] == k);
-    hdi_sym_etree(w, f.parent, ancestor);
-    hdi_forest_link(&f);
-    hdi_forest_postorder(&f, order);
-    for (k = 0; k < f.n; k++) w->place[w->perm[order[k]]] = k;
-    for (k = 0; k < f.n; k++) {
-        const int32_t up = f.parent[order[k]];
-        w->parent[k] = up < 0 ? -1 : w->place[w->perm[up]];
-    }
-    for (k = 0; k < f.n; k++) w->perm[w->place[k]] = k;
-    return HD_OK;
-}
-
-/* What is known of a row of L while columns are counted: the last column of A with an entry in it, and the
- * last of those that is a leaf of the row's subtree. -1: none. */
-typedef struct hdi_row_seen { int32_t column, leaf; } hdi_row_seen;
-
-/* Column counts of L. Row i of L is a subtree of the tree, its leaves are entries of A. A column's count is
- * what the leaves add to it, less what the least common ancestors of neighbouring leaves take back. first:
- * the first column of a column's subtree. set: union-find; a counted column joins its parent. */
-static hd_status hdi_sym_counts(const hdi_sym_work *w) {
-    const hd_csr *a = w->a;
-    const int32_t n = a->n_rows, *parent = w->parent;
-    int32_t *count = w->count, *first = HDI_TAKE(w->temp, int32_t, n), *set = HDI_TAKE(w->temp, int32_t, n);
-    int32_t j, q;
-    hdi_row_seen *seen = HDI_TAKE(w->temp, hdi_row_seen, n);
-    int64_t p;
-    if (w->temp->e->status < 0) return w->temp->e->status;
-    hdi_fill_own(set, n);
-    hdi_fill_i32(first, n, -1);
-    for (j = 0; j < n; j++) {
-        seen[j].column = seen[j].leaf = -1;
-        count[j] = first[j] == -1;               /* a leaf of the tree */
-        for (q = j; q != -1 && first[q] == -1; q = parent[q]) first[q] = j;
-    }
-    for (j = 0; j < n; j++) {
-        hdi_sym_fetch(a, w->perm, j);
-        if (parent[j] >= 0) count[parent[j]]--;
-        for (p = a->row_ptr[w->perm[j]]; p < a->row_ptr[w->perm[j] + 1]; p++) {
-            const int32_t i = w->place[a->col[p]];
-            hdi_row_seen *row = seen + i;
-            if (i <= j) continue;
-            if (first[j] > row->column) {        /* j is a leaf of row subtree i */
-                count[j]++;
-                if (row->leaf >= 0) count[hdi_find(set, row->leaf)]--;
-                row->leaf = j;
-            }
-            row->column = j;
-        }
-        if (parent[j] >= 0) set[j] = parent[j];
-    }
-    for (j = 0; j < n; j++)
-        if (parent[j] >= 0) count[parent[j]] += count[j];
-    return HD_OK;
-}
-
-/* ---- supernodes ---- */
-
-/* Neighbouring columns with the same structure, in postorder. node_of [n]: the node of a column. */
-static void hdi_sym_nodes(hdi_sym_work *w, int32_t *node_of) {
-    const int32_t n = w->a->n_rows;
-    int32_t j, k = -1;
-    for (j = 0; j < n; j++) {
-        if (j == 0 || w->parent[j - 1] != j || w->count[j - 1] != w->count[j] + 1) {
-            hdi_node *v = w->node + ++k;
-            memset(v, 0, sizeof *v);
-            v->begin = j;
-            v->rows = w->count[j];
-            v->first = k;
-            v->then = -1;
-        }
-        w->node[k].pivots++;
-        node_of[j] = k;
-    }
-    w->tree.n = k + 1;
-    w->node[k + 1].begin = n;
-    for (k = 0; k < w->tree.n; k++) {
-        const int32_t up = w->parent[w->node[k + 1].begin - 1];
-        w->tree.parent[k] = up < 0 ? -1 : node_of[up];
     }
 }
 
@@ -9605,65 +9485,64 @@ static int64_t hdi_node_update(const hdi_node *v) { return hdi_triangle((int64_t
 
 /* Merges node c into its parent v, with its columns first, when the zeros that this lets in are few, or the
  * front is so small that its own overhead costs more. Tuned on meshes of 36K to 1M vertices for pole lanes
- * and real factors alike. */
-static void hdi_sym_merge(hdi_node *node, int32_t c, int32_t v) {
+ * and real factors alike. exact: only where it lets in none. */
+static void hdi_node_merge(hdi_node *node, int32_t c, int32_t v, int exact) {
     hdi_node *child = node + c, *parent = node + v;
     const int64_t m = (int64_t)child->pivots + parent->rows, p = (int64_t)child->pivots + parent->pivots;
     const int64_t fresh = child->pivots * (m - child->rows), zeros = child->zeros + parent->zeros + fresh;
     const double share = (double)zeros / (double)(m * p - p * (p - 1) / 2);
+    if (fresh > 0 && exact) return;
     if (fresh > 0 && p > 6 && (p > 12 || share >= 0.3) && (p > 24 || share >= 0.1) && share >= 0.03) return;
     parent->rows += child->pivots;
     parent->pivots += child->pivots;
     parent->zeros = zeros;
     child->then = parent->first;
     parent->first = child->first;
-    child->merged = 1;
+    child->mark = 1;
 }
 
 /* Merges children into parents from the leaves up: into each node first the child with most rows below, which
- * lets in fewest zeros, then the others. */
-static void hdi_sym_relax(const hdi_sym_work *w) {
-    hdi_node *node = w->node;
-    const hdi_forest *f = &w->tree;
+ * lets in fewest zeros, of several the last one; then the others. */
+static void hdi_sym_merge(hdi_node *node, int32_t n, int exact) {
     int32_t v, c;
-    hdi_forest_link(f);
-    for (v = 0; v < f->n; v++) {                 /* children have gone through their own merges */
-        int32_t best = f->kid[v];
-        for (c = best; c >= 0; c = f->next[c])
-            if (node[c].rows - node[c].pivots > node[best].rows - node[best].pivots) best = c;
-        if (best >= 0) hdi_sym_merge(node, best, v);
-        for (c = f->kid[v]; c >= 0; c = f->next[c])
-            if (c != best) hdi_sym_merge(node, c, v);
+    hdi_nodes_link(node, n);
+    for (v = 0; v < n; v++) {                    /* children have gone through their own merges */
+        int32_t best = node[v].kid;
+        node[v].mark = 0;
+        for (c = best; c >= 0; c = node[c].next)
+            if (node[c].rows - node[c].pivots >= node[best].rows - node[best].pivots) best = c;
+        if (best >= 0) hdi_node_merge(node, best, v, exact);
+        for (c = node[v].kid; c >= 0; c = node[c].next)
+            if (c != best) hdi_node_merge(node, c, v, exact);
     }
-    for (v = f->n; v-- > 0;) {                   /* parents are decided before their children */
-        const int32_t up = f->parent[v];
-        if (up >= 0 && node[up].merged) f->parent[v] = f->parent[up];
+    for (v = n; v-- > 0;) {                      /* parents are decided before their children */
+        const int32_t up = node[v].parent;
+        if (up >= 0 && node[up].mark) node[v].parent = node[up].parent;
     }
-    for (v = 0; v < f->n; v++)
-        if (node[v].merged) f->parent[v] = -2;
+    for (v = 0; v < n; v++)
+        if (node[v].mark) node[v].parent = -2;
 }
 
 /* Sorts the children of node v: those come first whose subtrees need much more room while under way than they
  * leave behind (Liu 1986). peak [n]: the most room that a node and all below it need for update matrices.
  * pair [n]: work space. */
-static void hdi_sym_sort_kids(const hdi_sym_work *w, int32_t v, int64_t *peak, hdi_pair *pair) {
-    const hdi_forest *f = &w->tree;
-    int32_t c, *link = f->kid + v;
+static void hdi_sym_sort_kids(hdi_node *node, int32_t v, int64_t *peak, hdi_pair *pair) {
+    int32_t c, *link = &node[v].kid;
     int64_t held = 0, n = 0;
-    for (c = *link; c >= 0; c = f->next[c]) {
-        pair[n].key = (uint64_t)(peak[c] - hdi_node_update(w->node + c));
+    for (c = *link; c >= 0; c = node[c].next) {
+        pair[n].key = (uint64_t)(peak[c] - hdi_node_update(node + c));
         pair[n++].id = c;
     }
     hdi_sort_pairs(pair, n);
     peak[v] = 0;
     while (n-- > 0) {
         c = *link = (int32_t)pair[n].id;
-        link = f->next + c;
+        link = &node[c].next;
         peak[v] = hdi_most(peak[v], held + peak[c]);
-        held += hdi_node_update(w->node + c);
+        held += hdi_node_update(node + c);
     }
     *link = -1;
-    peak[v] = hdi_most(peak[v], held + hdi_node_update(w->node + v));
+    peak[v] = hdi_most(peak[v], held + hdi_node_update(node + v));
 }
 
 /* Panels come in blocks of at most HDI_PANEL columns, each from its first pivot's row on: what stands above
@@ -9701,48 +9580,53 @@ static void hdi_sym_measure(hdi_symbolic *s, int32_t k, const hdi_node *v) {
     for (c = 0; c < p; c++) s->flops_done += (double)(m - c) * (double)(m - c);
 }
 
-/* Numbers the supernodes by the order of their nodes, and the columns by their supernodes. number [n]: the
- * supernode of a node. */
-static void hdi_sym_number(hdi_symbolic *s, const hdi_sym_work *w, const int32_t *order, int32_t *number) {
-    int32_t k, q, j, i = 0;
+/* Numbers the supernodes by the order of their nodes, and the columns by their supernodes. perm: the row of A
+ * of a column. number [n]: the supernode of a node. */
+static void hdi_sym_number(hdi_symbolic *s, const hdi_node *node, const int32_t *perm, int32_t *place,
+                           const int32_t *order, int32_t *number) {
+    int32_t k, q, i = 0;
     s->super[0] = 0;
     s->row_ptr[0] = s->panel[0] = 0;
     for (k = 0; k < s->n_super; k++) number[order[k]] = k;
     for (k = 0; k < s->n_super; k++) {
-        const int32_t v = order[k], up = w->tree.parent[v];
+        const int32_t v = order[k], up = node[v].parent;
         s->parent[k] = up < 0 ? -1 : number[up];
-        hdi_sym_measure(s, k, w->node + v);
-        for (q = w->node[v].first; q >= 0; q = w->node[q].then) {
-            for (j = w->node[q].begin; j < w->node[q + 1].begin; j++) {
-                s->perm[i] = w->perm[j];
-                w->place[w->perm[j]] = i;
-                s->super_of[i++] = k;
-            }
+        hdi_sym_measure(s, k, node + v);
+        for (q = node[v].first; q >= 0; q = node[q].then) {
+            s->perm[i] = perm[q];
+            place[perm[q]] = i;
+            s->super_of[i++] = k;
         }
     }
     s->stored = s->panel[s->n_super];
     hdi_group(s->parent, s->n_super, s->n_super, s->kid_ptr, s->kid);
 }
 
-/* Supernodes, merged, in an order that needs little room, and the elimination order. */
-static hd_status hdi_sym_supernodes(hdi_symbolic *s, hdi_sym_work *w, hdi_scope *keep) {
-    int32_t v, *node_of = HDI_TAKE(w->temp, int32_t, s->n), *order = HDI_TAKE(w->temp, int32_t, s->n);
-    int64_t *peak = HDI_TAKE(w->temp, int64_t, s->n);
-    hdi_pair *pair = HDI_TAKE(w->temp, hdi_pair, s->n);
-    w->tree = hdi_forest_take(s->n, w->temp);
-    w->node = HDI_TAKE(w->temp, hdi_node, (int64_t)s->n + 1);
-    if (keep->e->status < 0) return keep->e->status;
-    for (v = 0; v < s->n; v++) {
-        s->nnz += w->count[v];
-        s->flops += (double)w->count[v] * w->count[v];
+/* Supernodes, in an order that needs little room, and the elimination order. place [n]: the column of a row
+ * of A. */
+static hd_status hdi_sym_supernodes(hdi_symbolic *s, const hd_csr *a, const int32_t *perm, int32_t *place,
+                                    hdi_scope *keep) {
+    hdi_scope temp = hdi_scope_begin(keep->ctx, keep->e);
+    const int32_t n = s->n;
+    int32_t v, *number = HDI_TAKE(&temp, int32_t, n), *order = HDI_TAKE(&temp, int32_t, n);
+    hdi_node *node = HDI_TAKE(&temp, hdi_node, n);
+    hdi_pair *pair = HDI_TAKE(&temp, hdi_pair, n);
+    int64_t *peak = HDI_TAKE(&temp, int64_t, n);
+    if (keep->e->status < 0) return hdi_scope_end(&temp);
+    for (v = 0; v < n; v++) place[perm[v]] = v;
+    for (v = 0; HDI_AUDIT && v < n; v++) HEATDIFF_ASSERT(place[perm[v]] == v);
+    hdi_sym_columns(a, perm, place, node);
+    for (v = 0; v < n; v++) {
+        s->nnz += node[v].rows;
+        s->flops += (double)node[v].rows * node[v].rows;
     }
-    hdi_sym_nodes(w, node_of);
-    hdi_sym_relax(w);
-    hdi_forest_link(&w->tree);
-    for (v = 0; v < w->tree.n; v++) hdi_sym_sort_kids(w, v, peak, pair);
-    s->n_super = hdi_forest_postorder(&w->tree, order);
-    if (hdi_sym_take_supernodes(s, keep) >= 0) hdi_sym_number(s, w, order, node_of);
-    return keep->e->status;
+    hdi_sym_merge(node, n, 1);
+    hdi_sym_merge(node, n, 0);
+    hdi_nodes_link(node, n);
+    for (v = 0; v < n; v++) hdi_sym_sort_kids(node, v, peak, pair);
+    s->n_super = hdi_nodes_postorder(node, n, order);
+    if (hdi_sym_take_supernodes(s, keep) >= 0) hdi_sym_number(s, node, perm, place, order, number);
+    return hdi_scope_end(&temp);
 }
 
 /* ---- fronts ---- */
@@ -9766,8 +9650,8 @@ static void hdi_sym_climb(hdi_sym_walk *walk, int32_t *row, int32_t i, int32_t v
  * are still those of the whole matrix. A processor cannot predict whether an entry of A stands before the
  * pivot of its row or after it. So each entry is written to both lists, and only the list where it belongs
  * gets longer. before [n]: columns in a row of A before its pivot. */
-static void hdi_sym_rows(hdi_symbolic *s, const hdi_sym_work *w, hdi_sym_walk *walk, int32_t *before) {
-    const hd_csr *a = w->a;
+static void hdi_sym_rows(hdi_symbolic *s, const hd_csr *a, const int32_t *place, hdi_sym_walk *walk,
+                         int32_t *before) {
     int64_t p, r = 0;
     int32_t j, v, q;
     s->a_ptr[0] = 0;
@@ -9780,7 +9664,7 @@ static void hdi_sym_rows(hdi_symbolic *s, const hdi_sym_work *w, hdi_sym_walk *w
         const int32_t first = s->super[v = s->super_of[j]];
         hdi_sym_fetch(a, s->perm, j);
         for (p = a->row_ptr[s->perm[j]], q = 0; p < a->row_ptr[s->perm[j] + 1]; p++) {
-            const int32_t i = w->place[a->col[p]];
+            const int32_t i = place[a->col[p]];
             s->a_row[r] = i;
             s->a_col[r] = j - first;
             s->a_from[r] = p;
@@ -9818,20 +9702,22 @@ static void hdi_sym_places(hdi_symbolic *s, int32_t *at) {
 }
 
 /* Makes the rows and the entries of all fronts. */
-static hd_status hdi_sym_fronts(hdi_symbolic *s, const hdi_sym_work *w, hdi_scope *keep) {
+static hd_status hdi_sym_fronts(hdi_symbolic *s, const hd_csr *a, const int32_t *place, hdi_scope *keep) {
+    hdi_scope temp = hdi_scope_begin(keep->ctx, keep->e);
     /* one entry more than the triangle has: the last one written may turn out to belong to the other list */
-    const int64_t rows = s->row_ptr[s->n_super], entries = (w->a->nnz + s->n) / 2 + 1;
-    hdi_sym_walk *walk = HDI_TAKE(w->temp, hdi_sym_walk, s->n_super);
-    int32_t *before = HDI_TAKE(w->temp, int32_t, s->n), *at = HDI_TAKE(w->temp, int32_t, s->n);
+    const int64_t rows = s->row_ptr[s->n_super], entries = (a->nnz + s->n) / 2 + 1;
+    hdi_sym_walk *walk = HDI_TAKE(&temp, hdi_sym_walk, s->n_super);
+    int32_t *before = HDI_TAKE(&temp, int32_t, s->n), *at = HDI_TAKE(&temp, int32_t, s->n);
     s->row = HDI_TAKE(keep, int32_t, rows);
     s->rel = HDI_TAKE(keep, int32_t, rows);
     s->a_from = HDI_TAKE(keep, int64_t, entries);
     s->a_row = HDI_TAKE(keep, int32_t, entries);
     s->a_col = HDI_TAKE(keep, int32_t, entries);
-    if (keep->e->status < 0 || hdi_progress(keep->ctx, "analyse", 0.6, keep->e) < 0) return keep->e->status;
-    hdi_sym_rows(s, w, walk, before);
-    hdi_sym_places(s, at);
-    return HD_OK;
+    if (keep->e->status >= 0 && hdi_progress(keep->ctx, "analyse", 0.6, keep->e) >= 0) {
+        hdi_sym_rows(s, a, place, walk, before);
+        hdi_sym_places(s, at);
+    }
+    return hdi_scope_end(&temp);
 }
 
 /* ---- tasks ---- */
@@ -9967,26 +9853,17 @@ static int64_t hdi_stacks_place(const hdi_symbolic *s, int matrices, int64_t *at
     return end;
 }
 
-/* Analysis of a symmetric pattern under the order perm, which is used up. */
-static hd_status hdi_symbolic_make(hdi_symbolic *s, const hd_csr *a, int32_t *perm, hd_context *ctx,
+/* Analysis of a symmetric pattern under the order perm. */
+static hd_status hdi_symbolic_make(hdi_symbolic *s, const hd_csr *a, const int32_t *perm, hd_context *ctx,
                                    hd_error *e) {
     hdi_scope keep = hdi_scope_begin(ctx, e), temp = hdi_scope_begin(ctx, e);
-    const int32_t n = a->n_rows;
-    double *work = HDI_TAKE(&temp, double, n);
-    char *side = HDI_TAKE(&temp, char, n);
-    hdi_sym_work w;
+    int32_t *place = HDI_TAKE(&temp, int32_t, a->n_rows);
+    double *work = HDI_TAKE(&temp, double, a->n_rows);
+    char *side = HDI_TAKE(&temp, char, a->n_rows);
     memset(s, 0, sizeof *s);
-    memset(&w, 0, sizeof w);
-    s->n = n;
-    w.a = a;
-    w.temp = &temp;
-    w.perm = perm;
-    w.place = HDI_TAKE(&temp, int32_t, n);
-    w.parent = HDI_TAKE(&temp, int32_t, n);
-    w.count = HDI_TAKE(&temp, int32_t, n);
-    if (e->status >= 0 && hdi_sym_postorder(&w) >= 0 && hdi_sym_counts(&w) >= 0 &&
-        hdi_progress(ctx, "analyse", 0.4, e) >= 0 && hdi_sym_supernodes(s, &w, &keep) >= 0 &&
-        hdi_sym_fronts(s, &w, &keep) >= 0) {
+    s->n = a->n_rows;
+    if (e->status >= 0 && hdi_sym_supernodes(s, a, perm, place, &keep) >= 0 &&
+        hdi_progress(ctx, "analyse", 0.4, e) >= 0 && hdi_sym_fronts(s, a, place, &keep) >= 0) {
         hdi_sym_tasks(s, work);
         s->work = hdi_stacks_place(s, 1, s->update, side);
         s->vector_size = hdi_stacks_place(s, 0, s->vector, side);
@@ -10362,12 +10239,11 @@ static void hdi_clear(double *to, int64_t doubles) {
  * n, or 0: there are too many, or they are too short for real numbers. */
 enum { HDI_FRONT_RUNS = 64 };
 static int32_t hdi_front_runs(const int32_t *rel, int64_t from, int64_t end, int32_t width, int32_t *run) {
-    int32_t n = 0;
-    int64_t i;
-    for (i = from; i < end; i++) {
+    int32_t i, n = 0;
+    for (i = (int32_t)from; i < end; i++) {
         if (i > from && rel[i] == rel[i - 1] + 1) continue;
         if (n == HDI_FRONT_RUNS) return 0;
-        run[n++] = (int32_t)i;
+        run[n++] = i;
     }
     run[n] = (int32_t)end;
     return width == 1 && end - from < 4 * n ? 0 : n;
@@ -10418,7 +10294,7 @@ static void hdi_front_children(const hdi_front *w, int64_t r0, int64_t r1, int b
 static void hdi_front_assemble(const hdi_front *w, int64_t r0, int64_t r1) {
     const hdi_symbolic *s = w->f->sym;
     const int32_t width = w->f->width;
-    hdi_block own;
+    hdi_block own = hdi_front_block(w, 0);
     int64_t q, k;
     for (q = 0; q * HDI_PANEL < w->p; q++) {
         const hdi_block b = hdi_front_block(w, q);
@@ -10427,7 +10303,6 @@ static void hdi_front_assemble(const hdi_front *w, int64_t r0, int64_t r1) {
         else for (k = 0; k < b.width; k++)
             hdi_clear(hdi_block_at(&b, first, b.begin + k), width * (r1 - first));
     }
-    own = hdi_front_block(w, 0);
     for (q = s->a_ptr[w->v]; q < s->a_ptr[w->v + 1]; q++) {
         const int64_t i = s->a_row[q], j = s->a_col[q];
         if (i < r0 || i >= r1) continue;
@@ -10489,7 +10364,7 @@ static void hdi_front_solve(const hdi_front *w, int64_t r0, int64_t r1, int64_t 
     g.n = r1 - r0;
     g.before = k - b.begin;
     g.nb = n;
-    if (g.n > 0) o->solve(&g);
+    if (g.n > 0 && n > 0) o->solve(&g);
 }
 
 /* D L' of pivots [k,k+n) over all columns before them, as a slice. */
@@ -10684,10 +10559,8 @@ static int hdi_factor_next(hdi_front *w, const void *arg) {
 /* Rows [r0,r1) of the columns of a block, and the next pivots. */
 static int hdi_front_columns(const hdi_front *w, int64_t r0, int64_t r1, hdi_pivots *note) {
     hdi_front next = *w;
-    if (w->k1 > w->k0) {
-        hdi_front_before(w, r0, r1, w->k0, w->k1 - w->k0, w->S);
-        hdi_front_solve(w, r0, r1, w->k0, w->k1 - w->k0, w->S);
-    }
+    hdi_front_before(w, r0, r1, w->k0, w->k1 - w->k0, w->S);
+    hdi_front_solve(w, r0, r1, w->k0, w->k1 - w->k0, w->S);
     if (r0 != w->k1 || w->k1 == w->p) return 1;
     hdi_front_advance(&next);
     return hdi_front_eliminate(&next, note);
@@ -11926,8 +11799,8 @@ static void hdi_inverse_emit(const hdi_inverse *z, const hdi_front *w) {
     const hdi_symbolic *s = w->f->sym;
     const int64_t first = s->super[w->v] + (z->wanted == HDI_WANT_BOTH ? s->a_ptr[s->n_super] : 0);
     int64_t n;
-    if (z->wanted != HDI_WANT_ENTRIES)
-        for (n = 0; n < w->p; n++) hdi_inverse_put(z, hdi_inverse_at(w, n, n), first + n);
+    for (n = 0; n < w->p && z->wanted != HDI_WANT_ENTRIES; n++)
+        hdi_inverse_put(z, hdi_inverse_at(w, n, n), first + n);
     if (z->wanted != HDI_WANT_DIAGONAL)
         for (n = s->a_ptr[w->v]; n < s->a_ptr[w->v + 1]; n++)
             hdi_inverse_put(z, hdi_inverse_at(w, s->a_row[n], s->a_col[n]), n);
