@@ -15754,10 +15754,9 @@ static double hdi_lanczos_rounding(const hdi_lanczos *z, double t, int rate) {
 static int32_t hdi_lanczos_pace(int32_t m, int32_t m_before, double bound, double bound_before,
                                 double target) {
     const int32_t most = m < 64 ? 1 : m / 32;
-    double rate, want;
+    double want;
     if (!(bound < bound_before) || !(target > 0) || m == m_before) return most;
-    rate = log(bound_before / bound) / (m - m_before);
-    want = 0.5 * log(bound / target) / rate;
+    want = 0.5 * log(bound / target) / log(bound_before / bound) * (m - m_before);
     return want < 1 ? 1 : want > most ? most : (int32_t)want;
 }
 
@@ -15869,8 +15868,7 @@ typedef struct hdi_krylov {
     double *c, *w, *work;        /* [n][wide] B v and S B v; sweeps */
     double *probe;               /* [2 n] a solution and its residual */
     double *ahead;               /* [8][n] answers at several times, wide == 1 */
-    double *y;                   /* [y_size] coefficients of answers */
-    int32_t y_size;
+    double y[HDI_WIDE][HDI_KRYLOV_MAX];   /* coefficients of answers */
     double alpha[HDI_KRYLOV_MAX][HDI_WIDE], beta[HDI_KRYLOV_MAX + 1][HDI_WIDE];
     double noise[HDI_KRYLOV_MAX][HDI_WIDE];   /* what rounding can do to a solve, in the norm of D^-1 */
     double solved;               /* largest residual found of a solve over that */
@@ -15900,7 +15898,6 @@ static void hdi_krylov_free(hdi_krylov *z, hd_context *ctx) {
     hdi_free(ctx, z->c);
     hdi_free(ctx, z->work);
     hdi_free(ctx, z->ahead);
-    hdi_free(ctx, z->y);
     memset(z, 0, sizeof *z);
 }
 
@@ -16192,17 +16189,6 @@ static hd_status hdi_krylov_coefficients(hdi_krylov *z, int32_t r, double t, dou
     return HD_OK;
 }
 
-/* Room for the coefficients of so many answers. */
-static hd_status hdi_krylov_places(hdi_krylov *z, int32_t count, hd_context *ctx, hd_error *e) {
-    const int32_t size = count * z->steps + 1;
-    if (z->y_size >= size) return HD_OK;
-    hdi_free(ctx, z->y);
-    z->y_size = 0;
-    z->y = HDI_NEW(ctx, double, size, e);
-    if (z->y) z->y_size = size;
-    return e->status;
-}
-
 /* Answers summed up in one pass over the basis: of one right-hand side at several times, or the reverse. */
 typedef struct hdi_krylov_sum {
     int32_t count;
@@ -16299,12 +16285,10 @@ static hd_status hdi_krylov_miss(const hdi_krylov *z, int32_t r, const double *t
 #define HDI_KRYLOV_FAILED 1e-6
 
 /* Steps to the next look, 1 to 8: each gains about a factor of two, and is taken to gain 2^(1/0.6). */
-#define HDI_KRYLOV_GAIN 3.1748021039363992
+#define HDI_KRYLOV_GAIN 1.1552453009332422   /* log 2/0.6 */
 static int32_t hdi_krylov_pace(double miss) {
-    double gain = HDI_KRYLOV_GAIN * HDI_KRYLOV_GAIN;
-    int32_t steps = 1;
-    for (; steps < 8 && miss >= gain; gain *= HDI_KRYLOV_GAIN) steps++;
-    return steps;
+    const double steps = 1 + log(hdi_max(miss, 1)) / HDI_KRYLOV_GAIN;
+    return steps < 8 ? (int32_t)steps : 8;
 }
 
 /* Steps until the bounds of all right-hand sides at all times are below tol times their answers. fixed[r] is
@@ -20232,13 +20216,12 @@ static hd_status hdi_krylov_answers(hdi_heat_call *h, int32_t n, int32_t q0, int
     hdi_krylov *z = h->heat->silan;
     const int64_t rows = h->lap->n_active;
     const int abreast = z->wide > 1;             /* else one item, at several times */
-    const int32_t places = abreast ? n : hdi_low32(q1 - q0, HDI_WIDE);
     hdi_krylov_sum a;
     int32_t p, q, n_here;
     memset(&a, 0, sizeof a);
     if (!abreast && q1 - q0 > 1 && !z->ahead)
         z->ahead = HDI_NEW(ctx, double, HDI_WIDE * (uint64_t)rows, h->e);
-    if (h->e->status < 0 || hdi_krylov_places(z, places, ctx, h->e) < 0) return h->e->status;
+    if (h->e->status < 0) return h->e->status;
     for (q = q0; q < q1; q += n_here) {
         n_here = abreast ? 1 : hdi_low32(q1 - q, HDI_WIDE);
         a.count = n * n_here;
@@ -20247,9 +20230,8 @@ static hd_status hdi_krylov_answers(hdi_heat_call *h, int32_t n, int32_t q0, int
             const double t = h->times[abreast ? q : q + p] - z->from;
             a.u[p] = lane->skip ? NULL : n_here > 1 ? z->ahead + rows * p : lane->u;
             a.means[p] = lane->sums;
-            a.y[p] = z->y + z->steps * p;
-            if (hdi_krylov_coefficients(z, abreast ? p : 0, t, z->y + z->steps * p, h->e) < 0)
-                return h->e->status;
+            a.y[p] = z->y[p];
+            if (hdi_krylov_coefficients(z, abreast ? p : 0, t, z->y[p], h->e) < 0) return h->e->status;
         }
         hdi_krylov_sum_run(z, &a, ctx);
         for (p = 0; p < n_here; p++)
