@@ -17021,7 +17021,6 @@ typedef struct hdi_spec {
     hdi_factor factor;
     double sigma, off;           /* shift of the factor; how far from sigma its count may be wrong */
     int64_t below;               /* its negative pivots */
-    int32_t refine;              /* 1: solves with this factor take a step of refinement */
     double unit;                 /* about the smallest eigenvalue that is not zero */
     double tol;
     double edge;                 /* all below are found */
@@ -17039,14 +17038,13 @@ typedef struct hdi_spec {
     int32_t n_near, n_blocks, room;
     int32_t *live;               /* [8 room + 8] columns that are not zero: of T, of the newest */
     int32_t cols, width;         /* columns of T, and of its last block */
-    int32_t n_group;             /* blocks that a pass changes at a time */
+    int32_t n_group;             /* blocks of vectors that are formed at a time */
     double lost;                 /* largest column of a block that was dropped */
     int32_t stuck;               /* Ritz pairs that cannot come nearer for rounding */
     double *own, *couple;        /* [room + 1][8][8] of T: on its diagonal, and below it */
     double *A, *z;               /* [cols][cols] T, eigenvectors */
     double *d, *off_ritz;        /* [cols] eigenvalues, residuals */
-    double *bw, *tmp;            /* [n][8] B times a block, and another */
-    double *group;               /* [n_group][n][8] B times blocks */
+    double *bw, *bx, *tmp;       /* [n][8] B times blocks, and another */
     double *sweep, *h, *part, *work;
     double *noise;               /* [n] weights of rounding in residuals; [n] work */
     int32_t n_poor;              /* residuals above the tolerance and rounding */
@@ -17079,14 +17077,13 @@ static int32_t hdi_spec_chunks(int32_t n) {
 static void hdi_spec_take(hdi_spec *s, int32_t rows, int32_t count, uint64_t n_sweep) {
     const int32_t most = hdi_low32(2 * hdi_low32(count, HDI_SPEC_MOST) + HDI_SPEC_SPARE, HDI_SPEC_MOST);
     const uint64_t n = (uint64_t)rows, block = HDI_WIDE * n, square = (uint64_t)HDI_WIDE * HDI_WIDE;
-    uint64_t blocks, cols, h;
+    uint64_t blocks, cols;
     s->n = rows;
     s->room = hdi_low32((rows + HDI_WIDE - 1) / HDI_WIDE, most / HDI_WIDE);
     s->n_group = hdi_low32(count / HDI_WIDE + 2, HDI_SPEC_GROUP);
     s->room_lock = rows / 4 + 64;
     blocks = (uint64_t)s->room + 1;
     cols = (uint64_t)HDI_WIDE * (uint64_t)s->room;
-    h = square * blocks * (uint64_t)s->n_group;
     s->lock = HDI_TAKE(&s->keep, double *, s->room_lock);
     s->high = HDI_TAKE(&s->keep, double, s->room_lock);
     s->value = HDI_TAKE(&s->keep, double, n);
@@ -17104,10 +17101,10 @@ static void hdi_spec_take(hdi_spec *s, int32_t rows, int32_t count, uint64_t n_s
     s->work = HDI_TAKE(&s->runs, double, 3 * cols);
     s->bw = HDI_TAKE(&s->runs, double, block);
     s->tmp = HDI_TAKE(&s->runs, double, block);
-    s->group = HDI_TAKE(&s->runs, double, (uint64_t)s->n_group * block);
+    s->bx = HDI_TAKE(&s->runs, double, block);
     s->sweep = HDI_TAKE(&s->runs, double, n_sweep);
-    s->h = HDI_TAKE(&s->runs, double, h);
-    s->part = HDI_TAKE(&s->runs, double, h * (uint64_t)hdi_spec_chunks(rows));
+    s->h = HDI_TAKE(&s->runs, double, square * blocks * (uint64_t)s->n_group);
+    s->part = HDI_TAKE(&s->runs, double, square * blocks * (uint64_t)hdi_spec_chunks(rows));
     s->noise = HDI_TAKE(&s->runs, double, 2 * n);
 }
 
@@ -17136,8 +17133,8 @@ static hd_status hdi_spec_make(hdi_spec *s, hdi_elim *m, int32_t count, double t
 
 /* ---- blocks against blocks ---- */
 
-/* Blocks v against blocks w. Coefficients h [n_w][n_v][8][8]: that of column j of v and column q of w is
- * number 8 j + q of its pair of blocks. */
+/* Blocks v against blocks w, in dots one. Coefficients h [n_w][n_v][8][8]: that of column j of v and column q
+ * of w is number 8 j + q of its pair of blocks. */
 typedef struct hdi_spec_pass {
     const hdi_kernels *ops;
     double *const *v, *const *w;
@@ -17148,18 +17145,17 @@ typedef struct hdi_spec_pass {
 /* h = - V' w over the rows of a chunk. */
 static void hdi_spec_dots_task(void *arg, int64_t index, int32_t worker) {
     const hdi_spec_pass *p = (const hdi_spec_pass *)arg;
-    const int64_t size = 64 * (int64_t)p->n_v * p->n_w, end = (index + 1) * p->n / p->n_chunks;
+    const int64_t size = 64 * (int64_t)p->n_v, end = (index + 1) * p->n / p->n_chunks;
     double *h = p->h + index * size;
     int64_t row, rows;
-    int32_t i, q;
+    int32_t i;
     (void)worker;
     memset(h, 0, (size_t)size * sizeof *h);
     for (row = index * p->n / p->n_chunks; row < end; row += rows) {
         rows = hdi_least(end - row, HDI_SPEC_TILE);
         for (i = 0; i < p->n_v; i++)
-            for (q = 0; q < p->n_w; q++)
-                hdi_kernels_rows(p->ops, h + 64 * ((int64_t)q * p->n_v + i), 8, 8, p->w[q] + 8 * row, rows,
-                                 p->v[i] + 8 * row, 8, 1);
+            hdi_kernels_rows(p->ops, h + 64 * (int64_t)i, 8, 8, p->w[0] + 8 * row, rows, p->v[i] + 8 * row, 8,
+                             1);
     }
 }
 
@@ -17178,10 +17174,9 @@ static void hdi_spec_add_task(void *arg, int64_t begin, int64_t end) {
 }
 
 /* h = V' w. The chunks are summed in their order. */
-static void hdi_spec_dots(const hdi_spec *s, double *const *v, int32_t n_v, double *const *w, int32_t n_w,
-                          double *h) {
-    const int64_t size = 64 * (int64_t)n_v * n_w;
-    hdi_spec_pass p = {s->ops, v, w, s->part, s->n, n_v, n_w, hdi_spec_chunks(s->n)};
+static void hdi_spec_dots(const hdi_spec *s, double *const *v, int32_t n_v, double *w, double *h) {
+    const int64_t size = 64 * (int64_t)n_v;
+    hdi_spec_pass p = {s->ops, v, &w, s->part, s->n, n_v, 1, hdi_spec_chunks(s->n)};
     int64_t i, c;
     hdi_parallel(s->ctx, p.n_chunks, hdi_spec_dots_task, &p);
     for (i = 0; i < size; i++) h[i] = -s->part[i];
@@ -17194,38 +17189,31 @@ static void hdi_spec_add(const hdi_spec *s, double *const *v, int32_t n_v, doubl
     hdi_parallel_ranges(s->ctx, s->n, 8 * (int64_t)HDI_SPEC_TILE, hdi_spec_add_task, &p);
 }
 
-/* w -= V V'(B w), with bw = B w, for any number of blocks v, as many at a time as h has room for. removed [8
- * n_w], or NULL: squares of norms of what was taken out. */
-static void hdi_spec_project(const hdi_spec *s, double *const *v, int32_t n_v, double *const *w,
-                             double *const *bw, int32_t n_w, double *removed) {
-    int32_t i, n, q, j;
-    for (q = 0; removed && q < 8 * n_w; q++) removed[q] = 0;
+/* w -= V V'(B w), with bw = B w, for any number of blocks v, as many at a time as h has room for. removed
+ * [8], or NULL: squares of norms of what was taken out. */
+static void hdi_spec_project(const hdi_spec *s, double *const *v, int32_t n_v, double *w, double *bw,
+                             double *removed) {
+    int32_t i, n, j;
+    if (removed) memset(removed, 0, HDI_WIDE * sizeof *removed);
     for (i = 0; i < n_v; i += n) {
         n = hdi_low32(n_v - i, s->room + 1);
-        hdi_spec_dots(s, v + i, n, bw, n_w, s->h);
-        hdi_spec_add(s, v + i, n, w, n_w, s->h);
-        for (q = 0; removed && q < 8 * n_w; q++) {
-            const double *h = s->h + 64 * (int64_t)n * (q / 8) + q % 8;
-            for (j = 0; j < 8 * n; j++) removed[q] += h[8 * j] * h[8 * j];
-        }
+        hdi_spec_dots(s, v + i, n, bw, s->h);
+        hdi_spec_add(s, v + i, n, &w, 1, s->h);
+        for (j = 0; removed && j < 64 * n; j++) removed[j % 8] += s->h[j] * s->h[j];
     }
 }
 
 /* ---- operators on blocks ---- */
 
-/* r = f - (L - shift B) x by numbers, f or zero, and bx = B x. */
-static void hdi_spec_residual(const hdi_spec *s, const double *shift, const double *f, const double *x,
-                              double *bx, double *r) {
+/* r = -(L - value B) x by numbers, and bx = B x. */
+static void hdi_spec_residual(const hdi_spec *s, const double *value, const double *x, double *bx,
+                              double *r) {
     hdi_residual g = hdi_residual_open(s->lap, 1, x, 1, NULL);
     int q;
     g.real = 1;
-    g.f_step = HDI_WIDE;
     g.r = r;
     g.bx = bx;
-    for (q = 0; q < HDI_WIDE; q++) {
-        g.f[q] = f ? f + q : NULL;
-        g.re[q] = shift ? -shift[q] : -s->sigma;
-    }
+    for (q = 0; q < HDI_WIDE; q++) g.re[q] = -value[q];
     hdi_residual_run(&g, s->ctx);
 }
 
@@ -17233,36 +17221,12 @@ static void hdi_spec_mass(const hdi_spec *s, const double *x, double *y) {
     hdi_mass_apply(s->lap, HDI_WIDE, x, y, s->ctx);
 }
 
-/* w = (L - sigma B)^-1 w in place */
-static void hdi_spec_sweep(hdi_spec *s, double *w) {
+/* w = (L - sigma B)^-1 b */
+static void hdi_spec_inverse(hdi_spec *s, const double *b, double *w) {
     hdi_sweep z = hdi_sweep_open(&s->factor, HDI_WIDE, w, s->sweep);
+    memcpy(w, b, 8 * (size_t)s->n * sizeof *w);
     hdi_sweep_run(&z, s->ctx);
     s->n_solves += HDI_WIDE;
-}
-
-/* w = (L - sigma B)^-1 bw. Returns how large the residual bw - (L - sigma B) w is against w: the size of a
- * change of L that would explain it, a backward error. measure: look at it. */
-static double hdi_spec_inverse(hdi_spec *s, double *w, int measure) {
-    const int64_t size = 8 * (int64_t)s->n;
-    double error[HDI_WIDE], norm[HDI_WIDE], worst = 0;
-    int64_t i;
-    int r, turn;
-    memcpy(w, s->bw, (size_t)size * sizeof *w);
-    hdi_spec_sweep(s, w);
-    for (turn = 0; turn < 1 + s->refine && (measure || s->refine); turn++) {
-        hdi_spec_residual(s, NULL, s->bw, w, s->group, s->tmp);
-        if (turn < s->refine) {
-            hdi_spec_sweep(s, s->tmp);
-            for (i = 0; i < size; i++) w[i] += s->tmp[i];
-            if (measure) continue;
-            break;
-        }
-        hdi_wide_norms(s->tmp, s->m->weight, s->n, HDI_WIDE, error);
-        hdi_wide_dots(w, s->group, s->n, HDI_WIDE, norm);
-        for (r = 0; r < HDI_WIDE; r++)
-            if (norm[r] > 0) worst = hdi_max(worst, error[r] / sqrt(norm[r]));
-    }
-    return worst;
 }
 
 /* ---- orthogonal blocks ---- */
@@ -17339,7 +17303,7 @@ static double hdi_spec_orthonormal(const hdi_spec *s, double *x, double *bx, dou
                                    const double *norm, double *drop, double *G, double *R) {
     hdi_spec_scale job = {x, bx, R};
     double off;
-    hdi_spec_dots(s, &x, 1, &bx, 1, G);
+    hdi_spec_dots(s, &x, 1, bx, G);
     off = hdi_spec_cholesky(G, R, scale, norm, drop);
     hdi_parallel_ranges(s->ctx, s->n, HDI_ROWS_PER_TASK, hdi_spec_scale_task, &job);
     return off;
@@ -17364,7 +17328,7 @@ static void hdi_spec_local(hdi_spec *s, double *w) {
     const double *h = s->h + 64 * (last - first);
     double *own = s->own + 64 * last;
     int q, k;
-    hdi_spec_project(s, s->list + s->n_near + first, last - first + 1, &w, &s->bw, 1, NULL);
+    hdi_spec_project(s, s->list + s->n_near + first, last - first + 1, w, s->bw, NULL);
     for (q = 0; q < HDI_WIDE; q++)
         for (k = 0; k < HDI_WIDE; k++) own[8 * q + k] = 0.5 * (h[8 * q + k] + h[8 * k + q]);
     hdi_spec_mass(s, w, s->bw);
@@ -17388,7 +17352,7 @@ static int32_t hdi_spec_append(hdi_spec *s) {
     for (pass = 0; pass < 2 || ((off > 0.1 || again) && pass < HDI_SPEC_PASSES); pass++) {
         const int clean = again;
         if (clean) {
-            hdi_spec_project(s, s->list, s->n_near + s->n_blocks, &w, &s->bw, 1, removed);
+            hdi_spec_project(s, s->list, s->n_near + s->n_blocks, w, s->bw, removed);
             hdi_spec_mass(s, w, s->bw);
         }
         off = hdi_spec_orthonormal(s, w, s->bw, scale, norm, pass > 0 ? &s->lost : NULL, G, R);
@@ -17518,7 +17482,6 @@ static int hdi_spec_enough(const hdi_spec *s, int32_t missing, int32_t beyond) {
 /* Blocks until all `missing` eigenvalues between the edge and the shift are there, and `beyond` above it, or
  * until the basis is full. */
 static hd_status hdi_spec_lanczos(hdi_spec *s, int32_t missing, int32_t beyond, hd_error *e) {
-    const double limit = 0.1 * s->tol * hdi_max(fabs(s->sigma), s->unit);
     int32_t look = missing + beyond + 4 * HDI_WIDE;
     hdi_spec_nearby(s);
     s->n_blocks = s->cols = 0;
@@ -17527,14 +17490,8 @@ static hd_status hdi_spec_lanczos(hdi_spec *s, int32_t missing, int32_t beyond, 
     s->width = hdi_spec_append(s);
     s->n_runs++;
     while (s->width > 0) {                       /* else nothing is left of the space */
-        const int first = s->n_blocks == 0;
         int32_t more;
-        double *w = s->list[s->n_near + ++s->n_blocks];
-        const double error = hdi_spec_inverse(s, w, first);
-        if (first && error > limit) {            /* pivots were small: refine, if that helps */
-            s->refine = 1;
-            if (hdi_spec_inverse(s, w, 1) > 0.5 * error) s->refine = 0;
-        }
+        hdi_spec_inverse(s, s->bw, s->list[s->n_near + ++s->n_blocks]);
         s->cols += s->width;
         more = hdi_spec_append(s);
         if (hdi_progress(s->ctx, "solve", s->share, e) < 0) return e->status;
@@ -17590,11 +17547,11 @@ static void hdi_spec_form(const hdi_spec *s, const int32_t *which, int32_t n, do
     hdi_spec_add(s, s->list + s->n_near, s->n_blocks + 1, x, n_w, s->h);
 }
 
-/* Residuals of the block x with bx = B x, for eigenvalues of eight Ritz vectors. */
-static double hdi_spec_measure(hdi_spec *s, const double *value, const double *x, double *bx, double *norm) {
+/* Residuals of the block x for eigenvalues of eight Ritz vectors; the largest, relative to its value. */
+static double hdi_spec_measure(hdi_spec *s, const double *value, const double *x, double *norm) {
     double worst = 0;
     int r;
-    hdi_spec_residual(s, value, NULL, x, bx, s->tmp);
+    hdi_spec_residual(s, value, x, s->bx, s->tmp);
     hdi_wide_norms(s->tmp, s->m->weight, s->n, HDI_WIDE, norm);
     for (r = 0; r < HDI_WIDE; r++) worst = hdi_max(worst, norm[r] / hdi_max(fabs(value[r]), s->unit));
     return worst;
@@ -17604,23 +17561,22 @@ static double hdi_spec_measure(hdi_spec *s, const double *value, const double *x
  * the blocks nearby, nor in those from `first` on: a step enlarges the rounding of a residual in the
  * direction of the vectors next to the shift. */
 static void hdi_spec_polish(hdi_spec *s, int32_t first, double *w) {
-    memcpy(w, s->tmp, 8 * (size_t)s->n * sizeof *w);
-    hdi_spec_sweep(s, w);
+    hdi_spec_inverse(s, s->tmp, w);
     hdi_spec_mass(s, w, s->bw);
-    hdi_spec_project(s, s->list, s->n_near, &w, &s->bw, 1, NULL);
-    hdi_spec_project(s, s->lock + first, s->n_lock - first, &w, &s->bw, 1, NULL);
+    hdi_spec_project(s, s->list, s->n_near, w, s->bw, NULL);
+    hdi_spec_project(s, s->lock + first, s->n_lock - first, w, s->bw, NULL);
 }
 
 /* Such steps while residuals are too large, for the eigenvalues of block x, of which n columns are there.
  * Those that worsen it are undone. The basis is not needed any more. */
 static void hdi_spec_polish_all(hdi_spec *s, const double *value, int32_t first, double *x, int32_t n) {
-    double norm[HDI_WIDE], *w = s->basis, worst = hdi_spec_measure(s, value, x, s->group, norm), now;
+    double norm[HDI_WIDE], *w = s->basis, worst = hdi_spec_measure(s, value, x, norm), now;
     int32_t tries;
     int64_t i;
     for (tries = 0; tries < 2 && worst > HDI_SPEC_POLISH * s->tol; tries++, worst = now) {
         hdi_spec_polish(s, first, w);
         for (i = 0; i < 8 * (int64_t)s->n; i++) x[i] += i % 8 < n ? w[i] : 0;
-        now = hdi_spec_measure(s, value, x, s->group, norm);
+        now = hdi_spec_measure(s, value, x, norm);
         if (now <= worst) continue;
         for (i = 0; i < 8 * (int64_t)s->n; i++) x[i] -= i % 8 < n ? w[i] : 0;
         return;
@@ -17629,18 +17585,17 @@ static void hdi_spec_polish_all(hdi_spec *s, const double *value, int32_t first,
 
 #define HDI_SPEC_LOST 0.1        /* a residual that is a larger part of its value leaves nothing of it */
 
-/* Makes block `at`, n columns that are nearly orthonormal, orthonormal and orthogonal to those from `first`
- * on before it, and enters its pairs. twin [n]: how much of a vector was in blocks before already. */
-static void hdi_spec_settle(hdi_spec *s, const double *value, int32_t first, int32_t at, int32_t n,
-                            const double *twin) {
-    double G[64], R[64], scale[HDI_WIDE], norm[HDI_WIDE], noise[HDI_WIDE], *x = s->lock[at], *bx = s->group;
+/* Makes block `at`, n columns that are nearly orthonormal, orthonormal and orthogonal to all before it, and
+ * enters its pairs, but for those of which much was in blocks before already. */
+static void hdi_spec_settle(hdi_spec *s, const double *value, int32_t at, int32_t n) {
+    double G[64], R[64], scale[HDI_WIDE], norm[HDI_WIDE], noise[HDI_WIDE], twin[HDI_WIDE], *x = s->lock[at];
     int32_t r;
-    hdi_spec_mass(s, x, bx);
-    hdi_spec_project(s, s->lock + first, at - first, &x, &bx, 1, NULL);
-    hdi_spec_mass(s, x, bx);
+    hdi_spec_mass(s, x, s->bx);
+    hdi_spec_project(s, s->lock, at, x, s->bx, twin);
+    hdi_spec_mass(s, x, s->bx);
     for (r = 0; r < HDI_WIDE; r++) scale[r] = 1;
-    (void)hdi_spec_orthonormal(s, x, bx, scale, scale, NULL, G, R);
-    (void)hdi_spec_measure(s, value, x, bx, norm);
+    (void)hdi_spec_orthonormal(s, x, s->bx, scale, scale, NULL, G, R);
+    (void)hdi_spec_measure(s, value, x, norm);
     hdi_wide_norms(x, s->noise, s->n, HDI_WIDE, noise);
     for (r = 0; r < n; r++) {
         if (twin[r] > 0.1 || s->found == s->n) continue;   /* found before */
@@ -17655,26 +17610,15 @@ static void hdi_spec_settle(hdi_spec *s, const double *value, int32_t first, int
  * all become orthogonal to the blocks before them: those far away, against which the run did not work, are so
  * up to residuals. */
 static void hdi_spec_lock_all(hdi_spec *s, const int32_t *which, int32_t n, int32_t first) {
-    double value[(int)HDI_SPEC_MOST + (int)HDI_WIDE] = {0}, twin[8 * HDI_SPEC_GROUP], *bx[HDI_SPEC_GROUP];
+    double value[(int)HDI_SPEC_MOST + (int)HDI_WIDE] = {0};
     const int32_t most = 8 * s->n_group;
-    int32_t i, q;
+    int32_t i;
     for (i = 0; i < n; i++) value[i] = hdi_spec_lambda(s, which[i]);
     for (i = 0; i < n; i += most)
         hdi_spec_form(s, which + i, hdi_low32(n - i, most), s->lock + first + i / 8);
     for (i = 0; i < n; i += 8)
         hdi_spec_polish_all(s, value + i, first, s->lock[first + i / 8], hdi_low32(n - i, 8));
-    for (i = 0; i < n; i += 8) {
-        const int32_t at = first + i / 8;
-        if (i % most == 0) {
-            const int32_t n_w = hdi_low32(s->n_lock - at, s->n_group);
-            for (q = 0; q < n_w; q++) {
-                bx[q] = s->group + 8 * (int64_t)q * s->n;
-                hdi_spec_mass(s, s->lock[at + q], bx[q]);
-            }
-            hdi_spec_project(s, s->lock, first, s->lock + at, bx, n_w, twin);
-        }
-        hdi_spec_settle(s, value + i, first, at, hdi_low32(n - i, 8), twin + i % most);
-    }
+    for (i = 0; i < n; i += 8) hdi_spec_settle(s, value + i, first + i / 8, hdi_low32(n - i, 8));
 }
 
 /* Takes what a run has found into the list. */
@@ -17724,7 +17668,7 @@ static hd_status hdi_spec_constants(hdi_spec *s, int32_t most, hd_error *e) {
  * than max_i sum_j |E_ij| / (b_ratio b_i). */
 static double hdi_spec_count_off(hdi_spec *s) {
     const hdi_symbolic *sym = &s->m->sym;
-    double *sum = s->group, *terms = sum + s->n, worst = 0;
+    double *sum = s->bx, *terms = sum + s->n, worst = 0;
     int32_t f, j, i;
     int64_t p;
     memset(sum, 0, 2 * (size_t)s->n * sizeof *sum);
@@ -17758,7 +17702,6 @@ static hd_status hdi_spec_shift(hdi_spec *s, double sigma, double step, hd_error
     int32_t tries;
     for (tries = 0;; tries++) {
         s->n_factors++;
-        s->refine = 0;
         s->sigma = sigma;
         if (hdi_elim_real(s->m, &s->factor, 1, -sigma, e) >= 0) break;
         if (e->status != HD_ERR_BREAKDOWN || tries == 4) return e->status;
