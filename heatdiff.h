@@ -16393,6 +16393,28 @@ static hd_status hdi_krylov_answer(hdi_krylov *z, int32_t r, double t, const dou
  * held at zero: its inverse, for distances without a time, and a bound on the smallest eigenvalue that is
  * not zero. May call [22]. */
 
+/* ---- kinds of distances ---- */
+
+/* d^2 of a kind is made of a kernel, and its sum over eigenpairs has exp(-2 t lambda) or, where there is no
+ * time, 1/lambda^power. In hd_distance_kind's order; a kind without a row is unknown. */
+typedef struct hdi_distance_row {
+    int32_t power;               /* 0: of k_2t */
+    int32_t mass;                /* how often B is a factor: 2 of B k B */
+} hdi_distance_row;
+
+static const hdi_distance_row hdi_distance_rows[] = {
+    {0, 0},                      /* classical */
+    {0, 2},                      /* weighted */
+    {1, 0},                      /* commute */
+    {2, 0}                       /* biharmonic */
+};
+
+/* NULL: there is no such kind. */
+static const hdi_distance_row *hdi_distance_of(hd_distance_kind kind) {
+    const size_t n = sizeof hdi_distance_rows / sizeof *hdi_distance_rows;
+    return (size_t)kind < n ? hdi_distance_rows + kind : NULL;
+}
+
 /* ---- sources ---- */
 
 /* A source as weights of vertices, which ascend: a functional of fields. One vertex with weight 1 has weight
@@ -18292,11 +18314,11 @@ static hd_status hdi_spec_sums_kernel(hdi_spec_sums *x, hd_kernel kernel, hd_err
 }
 
 static hd_status hdi_spec_sums_distance(hdi_spec_sums *x, hd_distance_kind kind, hd_error *err) {
-    const int known = kind >= HD_DISTANCE_CLASSICAL && kind <= HD_DISTANCE_BIHARMONIC;
+    const hdi_distance_row *row = hdi_distance_of(kind);
     x->distance = 1;
-    x->power = kind == HD_DISTANCE_COMMUTE ? 1 : kind == HD_DISTANCE_BIHARMONIC ? 2 : 0;
-    x->mass = kind == HD_DISTANCE_WEIGHTED;
-    return hdi_spec_sums_ask(x, known ? NULL : "spectrum: unknown distance", err);
+    x->power = row ? row->power : 0;
+    x->mass = row && row->mass > 0;
+    return hdi_spec_sums_ask(x, row ? NULL : "spectrum: unknown distance", err);
 }
 
 static hdi_spec_sums hdi_spec_sums_of(const hd_spectrum *s, int32_t n_times, const double *t, double *out,
@@ -22485,16 +22507,14 @@ static int hdi_heat_filtered(const hd_heat *heat) {
     return heat->opts.rational && heat->opts.rational->t > 0;
 }
 
-static int hdi_distance_timeless(hd_distance_kind kind) { return kind >= HD_DISTANCE_COMMUTE; }
-
 /* Distances of one kind, at one time or at several that share their poles: d^2 = f_ss - 2 f_sv + f_vv with
  * f of k_t, or of B k_t B, in elimination order and in the unit of the scaled pair. The rational error of
  * f is at most that of the set for forms with the diagonals g and spread. Rounding of a column is at most
  * sqrt(g_v) times a number that comes with each column, and sqrt(spread_v) times another. */
 typedef struct hdi_metric {
     hdi_heat_call *h;
-    hd_distance_kind kind;
-    int timeless, equal;         /* equal: t is as good as infinite */
+    const hdi_distance_row *kind;
+    int equal;                   /* t is as good as infinite */
     double root;                 /* of distances to roots of d^2: squares in their unit may leave the range */
     hdi_inverses in;             /* the functions, one for each time */
     hdi_diagonal f;              /* of function q */
@@ -22507,18 +22527,13 @@ typedef struct hdi_metric {
     double *work;                /* [n], or of grounded solves */
 } hdi_metric;
 
-/* Are distances weighted by a full B? */
-static int hdi_metric_full(const hd_heat *heat, hd_distance_kind kind) {
-    return kind == HD_DISTANCE_WEIGHTED && heat->source->B != NULL;
-}
-
-static hdi_wanted hdi_metric_wanted(const hd_heat *heat, hd_distance_kind kind) {
-    return hdi_metric_full(heat, kind) ? HDI_WANT_FORMS : HDI_WANT_DIAGONAL;
+static hdi_wanted hdi_metric_wanted(const hd_heat *heat, const hdi_distance_row *kind) {
+    return kind->mass > 0 && heat->source->B ? HDI_WANT_FORMS : HDI_WANT_DIAGONAL;
 }
 
 /* Commute and biharmonic, from L grounded. */
 static hd_status hdi_metric_ground(hdi_metric *x, hdi_scope *s) {
-    const int forms = x->kind == HD_DISTANCE_BIHARMONIC;
+    const int forms = x->kind->power > 1;
     hdi_heat_call *h = x->h;
     hdi_elim *m = &h->heat->elim;
     hdi_ground *g = &h->heat->ground;
@@ -22577,17 +22592,16 @@ static hd_status hdi_metric_invert(hdi_metric *x, hdi_scope *s) {
 
 /* A metric of so many functions without its values. group: so many sources are solved for at the same time;
  * bounded: with columns of g, where they are of use. */
-static hd_status hdi_metric_take(hdi_metric *x, hdi_heat_call *h, hd_distance_kind kind, int32_t count,
-                                 hdi_scope *s) {
+static hd_status hdi_metric_take(hdi_metric *x, hdi_heat_call *h, const hdi_distance_row *kind,
+                                 int32_t count, hdi_scope *s) {
     const hdi_elim *m = &h->heat->elim;
     memset(x, 0, sizeof *x);
     x->h = h;
     x->kind = kind;
-    x->timeless = hdi_distance_timeless(kind);
-    x->root = kind == HD_DISTANCE_WEIGHTED ? 1 / sqrt(h->heat->scale) : sqrt(h->heat->scale);
-    x->f = hdi_diagonal_take(m->sym.n, kind == HD_DISTANCE_WEIGHTED ? 2 : 0, s);
+    x->root = kind->mass > 0 ? 1 / sqrt(h->heat->scale) : sqrt(h->heat->scale);
+    x->f = hdi_diagonal_take(m->sym.n, kind->mass, s);
     x->rounding = HDI_TAKE_ZERO(s, double, count);
-    x->work = HDI_TAKE(s, double, x->timeless ? hdi_ground_room(m) : (uint64_t)m->sym.n + 1);
+    x->work = HDI_TAKE(s, double, kind->power > 0 ? hdi_ground_room(m) : (uint64_t)m->sym.n + 1);
     h->lap = m->lap;
     hdi_inverse_tell(h);
     return h->e->status;
@@ -22613,15 +22627,15 @@ static double hdi_distance_time(const hd_heat *heat, double t) {
 
 /* The metric of one time, the one under way, by poles of a degree (0: by default), for so many sources at the
  * same time. */
-static hd_status hdi_metric_make(hdi_heat_call *h, hd_distance_kind kind, int32_t degree, int32_t group,
-                                 int bounded, hdi_metric *x, hdi_scope *s) {
+static hd_status hdi_metric_make(hdi_heat_call *h, const hdi_distance_row *kind, int32_t degree,
+                                 int32_t group, int bounded, hdi_metric *x, hdi_scope *s) {
     hd_heat *heat = h->heat;
     if (hdi_heat_analysed(heat, h->e) < 0 || hdi_metric_take(x, h, kind, 1, s) < 0) return h->e->status;
-    if (!x->timeless) {
+    if (kind->power == 0) {
         h->t = hdi_distance_time(heat, h->ask.t[h->now]);
         x->equal = hdi_heat_equal(heat, &heat->elim, h->t, h->e);
     }
-    if (x->timeless) {
+    if (kind->power > 0) {
         (void)hdi_metric_ground(x, s);
     } else if (x->equal) {
         hdi_diagonal_means(h->lap, &x->f);
@@ -22685,7 +22699,7 @@ static hd_status hdi_metric_solve_plain(const hdi_metric *x, const hdi_terms *so
         x->off[i].by_b = HUGE_VAL;
         if (hdi_terms_component(x->h->lap, source + i) >= 0)
             x->off[i].by_m = hdi_ground_column(&heat->elim, &heat->ground, source + i,
-                                               x->kind == HD_DISTANCE_BIHARMONIC, u, x->work);
+                                               x->kind->power > 1, u, x->work);
         else memset(u, 0, (size_t)x->h->lap->n_active * sizeof *u);
     }
     return x->h->e->status;
@@ -22696,7 +22710,7 @@ static hd_status hdi_metric_solve(const hdi_metric *x, const hdi_terms *source, 
     hdi_columns c;
     int32_t i, q;
     memset(x->off, 0, (size_t)k * (size_t)hdi_high32(x->in.count, 1) * sizeof *x->off);
-    if (x->timeless || x->equal) return hdi_metric_solve_plain(x, source, k);
+    if (x->kind->power > 0 || x->equal) return hdi_metric_solve_plain(x, source, k);
     memset(&c, 0, sizeof c);
     c.kernel = x->f.mass > 0 ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
     c.set = x->in.set;
@@ -22802,7 +22816,7 @@ static void hdi_metric_distance(const hdi_metric *x, const hdi_terms *s, int32_t
     int32_t v;
     for (v = 0; v < lap->n; v++) {
         const int32_t r = lap->row[v];
-        const int apart = x->timeless && (r < 0 || own < 0 || lap->component[r] != own);
+        const int apart = x->kind->power > 0 && (r < 0 || own < 0 || lap->component[r] != own);
         const double d2 = self.f - (r < 0 ? 0 : 2 * u[r] - x->f.value[r]);
         const int same = !s->weight && v == s->one;
         out[v] = same || !apart ? 0 : HUGE_VAL;
@@ -22822,7 +22836,7 @@ static hdi_ledger hdi_metric_ledger(const hdi_metric *x) {
 /* A query for distances of a kind from k sources to all vertices. */
 typedef struct hdi_distances {
     hdi_task task;
-    hd_distance_kind kind;
+    const hdi_distance_row *kind;
     int32_t k;
     const hdi_terms *source;     /* [k] */
     double *D;                   /* source r at time q: column r n_times + q */
@@ -22841,8 +22855,8 @@ static double *hdi_distances_at(const hdi_distances *to, int32_t r, int32_t q) {
 #define HDI_DISTANCE_EXPECTED 4.4e-7
 
 /* Are the poles the caller's choice, or of the highest degree in any case? */
-static int hdi_metric_settled(const hd_heat *heat, hd_distance_kind kind) {
-    return hdi_distance_timeless(kind) || heat->poles_asked || heat->exacting;
+static int hdi_metric_settled(const hd_heat *heat, const hdi_distance_row *kind) {
+    return kind->power > 0 || heat->poles_asked || heat->exacting;
 }
 
 /* All sources by a metric: the times of its functions are columns of the query, whose reports are in one, or
@@ -23050,7 +23064,8 @@ static void hdi_mode_sum_run(hdi_mode_sum *a, hdi_terms source, double *d, hdi_l
 }
 
 /* Makes the sum for the time under way; arrays are in s. */
-static hd_status hdi_mode_sum_make(hdi_mode_sum *a, hdi_heat_call *h, hd_distance_kind kind, hdi_scope *s) {
+static hd_status hdi_mode_sum_make(hdi_mode_sum *a, hdi_heat_call *h, const hdi_distance_row *kind,
+                                   hdi_scope *s) {
     hd_heat *heat = h->heat;
     const hdi_modes *of = &heat->modes;
     const uint64_t count = (uint64_t)of->s.count;
@@ -23059,7 +23074,7 @@ static hd_status hdi_mode_sum_make(hdi_mode_sum *a, hdi_heat_call *h, hd_distanc
     memset(a, 0, sizeof *a);
     a->of = of;
     a->lap = heat->source;
-    a->weighted = kind == HD_DISTANCE_WEIGHTED;
+    a->weighted = kind->mass > 0;
     if (a->weighted && hdi_modes_mass(heat, h->e) < 0) return h->e->status;
     work = HDI_TAKE(s, double, 2 * ((uint64_t)heat->source->n + count) + 1);
     if (!work) return h->e->status;
@@ -23081,7 +23096,7 @@ static hd_status hdi_distances_by_poles(hdi_task *task) {
     const int settled = hdi_metric_settled(heat, to->kind);
     const double t = settled ? 0 : h->ask.t[h->now];
     const double expected = heat->source->h > 0 ? HDI_DISTANCE_EXPECTED * sqrt(t) / heat->source->h : 0;
-    const int sure = !settled && to->kind == HD_DISTANCE_CLASSICAL && expected > HDI_DISTANCE_SURE;
+    const int sure = !settled && to->kind->mass == 0 && expected > HDI_DISTANCE_SURE;
     int32_t degree = HDI_RAT_KERNEL_MAX;
     if (!sure && hdi_distances_once(to, 0) < 0) return h->e->status;
     if (settled || (!sure && h->rep->error_rational <= HDI_DISTANCE_SURE)) return h->e->status;
@@ -23155,7 +23170,7 @@ static hd_status hdi_distances_together(hdi_task *task, char *done, hd_report *o
 /* A query for distances of pairs of vertices. */
 typedef struct hdi_pairs {
     hdi_task task;
-    hd_distance_kind kind;
+    const hdi_distance_row *kind;
     int64_t n;
     const int32_t *i, *j;
     double *d;                   /* [n] for each time */
@@ -23278,7 +23293,7 @@ static void hdi_pairs_note(const hd_heat *heat, const hdi_pairs_part *x, hd_repo
 /* Some pairs at the time under way from columns by poles of a degree (0: by default). */
 static hd_status hdi_pairs_some(hdi_heat_call *h, const hdi_pairs *to, hdi_pairs_part *x, int32_t degree,
                                 hd_report *rep, hdi_ledger *all) {
-    const hd_kernel kernel = to->kind == HD_DISTANCE_WEIGHTED ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
+    const hd_kernel kernel = to->kind->mass > 0 ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
     const hd_heat *heat = h->heat;
     const uint64_t n = (uint64_t)heat->source->n;
     hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
@@ -23372,7 +23387,7 @@ static hd_status hdi_pairs_by_poles(hdi_task *task) {
     hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
     int64_t *mark = NULL;
     int32_t degree = HDI_RAT_KERNEL_MAX;
-    int fits = !hdi_distance_timeless(to->kind) && !hdi_heat_filtered(heat);
+    int fits = to->kind->power == 0 && !hdi_heat_filtered(heat);
     if (fits && 2 * to->n > HDI_PAIRS_DOUBLES / n) {
         mark = HDI_TAKE_ZERO(&s, int64_t, n);
         if (!mark) return hdi_scope_end(&s);
@@ -23426,7 +23441,7 @@ static int32_t hdi_sample_next(const hd_laplacian *lap, const double *nearest) {
  * eigenpairs. */
 typedef struct hdi_samples {
     hdi_task task;
-    hd_distance_kind kind;
+    const hdi_distance_row *kind;
     double t;
     int32_t count, *vertex;
     int32_t n_from;              /* sources that come before all points */
@@ -23503,24 +23518,24 @@ static hd_status hdi_sample_by_pairs(hdi_task *task) {
 /* Sets up a query that eigenpairs may serve: how far these have to reach is given by
  * exp(depth) = |y| over the part that may be left out. The largest distance is at least about
  * 1/sqrt(mass) times exp(-t low). */
-static void hdi_distance_task(hdi_task *task, hdi_heat_call *h, hd_distance_kind kind) {
+static void hdi_distance_task(hdi_task *task, hdi_heat_call *h, const hdi_distance_row *kind) {
     memset(task, 0, sizeof *task);
     task->h = h;
-    task->serves = HDI_HAS_MODES && !hdi_distance_timeless(kind) && hdi_modes_allowed(h->heat);
+    task->serves = HDI_HAS_MODES && kind->power == 0 && hdi_modes_allowed(h->heat);
     if (HDI_HAS_MODES && task->serves)           /* 0: tol is all there is */
         task->depth = hdi_max(0, log(2 * hdi_modes_span(h->heat) / hdi_modes_tol(h->heat)));
 }
 
 /* The start of a query of a distance. Commute and biharmonic distances have no time: n_times is 0 or 1,
  * and t is not read. */
-static hd_status hdi_distance_begin(hdi_heat_call *h, hd_heat *heat, hd_distance_kind kind, int32_t n_times,
-                                    const double *t, int positive, hd_report *report, hd_error *err) {
+static hd_status hdi_distance_begin(hdi_heat_call *h, hd_heat *heat, const hdi_distance_row *kind,
+                                    int32_t n_times, const double *t, int positive, hd_report *report,
+                                    hd_error *err) {
     if (hdi_heat_begin(h, heat, HDI_QUERY_SYMMETRIC, report, err) < 0) return h->e->status;
     h->relative = 1;
     if (!HDI_HAS_DIFFUSION) return HDI_LEFT_OUT(h->e, DIFFUSION, "diffusion distances");
-    if (kind < HD_DISTANCE_CLASSICAL || kind > HD_DISTANCE_BIHARMONIC)
-        return hdi_fail(h->e, HD_ERR_ARGUMENT, "distance: unknown kind");
-    if (!hdi_distance_timeless(kind)) return hdi_times_check(h, n_times, t, positive);
+    if (!kind) return hdi_fail(h->e, HD_ERR_ARGUMENT, "distance: unknown kind");
+    if (kind->power == 0) return hdi_times_check(h, n_times, t, positive);
     if (n_times > 1 || n_times < 0)
         return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "distance: n_times is 0 or 1 for commute and biharmonic",
                             -1, -1, n_times);
@@ -23578,10 +23593,41 @@ static hd_status hdi_sample_answer(hd_heat *heat, hdi_samples *a, const hd_sourc
 /* What a query would take: the costs of the ways that its run goes, beside the arrays of its own. Tests
  * compare bytes with what is allocated. */
 
+/* How a query is answered: by solves, by an inversion, from L grounded, or from eigenpairs. */
+typedef enum hdi_by { HDI_BY_SOLVES, HDI_BY_INVERSION, HDI_BY_GROUND, HDI_BY_SPECTRUM } hdi_by;
+
+/* What queries are, in hd_query's order; one without a row is unknown. */
+typedef struct hdi_query_row {
+    hdi_by by;
+    const hdi_distance_row *distance;   /* its kind, or NULL */
+    int32_t columns;             /* k counts columns that are solved for */
+    int32_t mass;                /* K_t is asked for, not k_t */
+} hdi_query_row;
+
+static const hdi_query_row hdi_query_rows[] = {
+    {HDI_BY_SOLVES, NULL, 1, 0},                        /* fields */
+    {HDI_BY_SOLVES, NULL, 1, 0},                        /* columns */
+    {HDI_BY_SOLVES, hdi_distance_rows, 1, 0},           /* pairs */
+    {HDI_BY_INVERSION, NULL, 0, 0},                     /* diagonal of k_t */
+    {HDI_BY_INVERSION, NULL, 0, 1},                     /* diagonal of K_t */
+    {HDI_BY_INVERSION, NULL, 0, 2},                     /* trace, perhaps with either */
+    {HDI_BY_INVERSION, hdi_distance_rows, 1, 0},        /* distances by kind */
+    {HDI_BY_INVERSION, hdi_distance_rows + 1, 1, 0},
+    {HDI_BY_GROUND, hdi_distance_rows + 2, 1, 0},
+    {HDI_BY_GROUND, hdi_distance_rows + 3, 1, 0},
+    {HDI_BY_SPECTRUM, NULL, 1, 0}
+};
+
+/* NULL: there is no such query. */
+static const hdi_query_row *hdi_query_of(hd_query query) {
+    const size_t n = sizeof hdi_query_rows / sizeof *hdi_query_rows;
+    return (size_t)query < n ? hdi_query_rows + query : NULL;
+}
+
 /* A query under estimation. */
 typedef struct hdi_estimate {
     hdi_heat_call *h;
-    hd_query query;
+    const hdi_query_row *query;
     hd_estimate *to;
     int32_t k;
     double unit;                 /* of the call's times: the caller's times this */
@@ -23592,8 +23638,9 @@ typedef struct hdi_estimate {
 /* Bytes of small arrays that are not listed one by one. */
 #define HDI_ESTIMATE_SMALL 4096
 
-static int hdi_estimate_distance(const hdi_estimate *x) {
-    return x->query == HD_QUERY_DISTANCE || x->query == HD_QUERY_DISTANCE_WEIGHTED;
+/* Pairs by solves? */
+static int hdi_estimate_pairwise(const hdi_estimate *x) {
+    return x->query->distance && x->query->by == HDI_BY_SOLVES;
 }
 
 /* Adds work that comes after what is there; bytes are those of the larger one. */
@@ -23642,7 +23689,7 @@ static hd_status hdi_estimate_solves(const hdi_estimate *x) {
         by[q].bytes_most = by[q].bytes;
     }
     if (!direct->possible) return h->e->status;
-    h->degree = x->query == HD_QUERY_PAIRS && !heat->poles_asked ? HDI_RAT_KERNEL_MAX : 0;
+    h->degree = x->query->distance && !heat->poles_asked ? HDI_RAT_KERNEL_MAX : 0;
     if (hdi_heat_set_of(h, HDI_RAT_UNIFORM_MAX, &set) < 0) return h->e->status;
     memset(&most, 0, sizeof most);
     (void)hdi_direct_set(h, &set, HDI_AFTER_BOUND, 0, x->k, x->held + HDI_ESTIMATE_SMALL, &most);
@@ -23657,12 +23704,12 @@ static hd_status hdi_estimate_solves(const hdi_estimate *x) {
 static void hdi_estimate_inversion(const hdi_estimate *x, const hd_rational *set, int32_t count,
                                    hd_cost *c) {
     const hd_laplacian *lap = x->h->heat->source;
-    const int distance = hdi_estimate_distance(x), pattern = !distance && x->query != HD_QUERY_DIAGONAL;
-    const int forms = x->query == HD_QUERY_DISTANCE_WEIGHTED && lap->B;
+    const int distance = x->query->distance != NULL;
+    const int forms = distance && x->query->distance->mass > 0 && lap->B;
     const double n = lap->n_active, entries = (double)((lap->L.nnz - lap->n_active) / 2) + n;
     const int32_t sums = 2 * hdi_low32(count, set->n_poles);
     /* the values, and a diagonal */
-    double doubles = (sums + (sums < 2.0 * count ? 2 : 0)) * (pattern && lap->B ? entries : n) + 6 * n;
+    double doubles = (sums + (sums < 2.0 * count ? 2 : 0)) * (x->query->mass && lap->B ? entries : n) + 6 * n;
     if (distance)                                /* a metric, and columns of its bound or at all times */
         doubles += 12 * n + 3.0 * lap->n + 6.0 * x->k +
                    (count > 1 ? 2.0 * count : hdi_min(x->k, HDI_LANES)) * n;
@@ -23674,11 +23721,11 @@ static void hdi_estimate_inversion(const hdi_estimate *x, const hd_rational *set
 /* The times of the call by poles that they share, in windows. Returns 0 where they do not. */
 static int hdi_estimate_shared(const hdi_estimate *x, hd_cost *c) {
     hdi_heat_call *h = x->h;
-    const int distance = hdi_estimate_distance(x);
+    const int distance = x->query->distance != NULL;
     const double tol = distance ? HDI_SHARED_DISTANCE_TOL : HDI_SHARED_TOL;
     int32_t packs = 0, windows = 0, w, q0, q1;
     if (h->n_times > 1 && hdi_shared_may(h->heat) &&
-        !(x->query == HD_QUERY_DIAGONAL_OPERATOR && h->heat->source->B))
+        !(x->query->mass == 1 && h->heat->source->B))
         windows = hdi_shared_windows(h->times, h->n_times, tol, &packs);
     if (!(distance ? packs <= h->n_times : hdi_shared_pays(packs, h->n_times))) windows = 0;
     for (w = 0, q0 = 0; windows > 0 && q0 < h->n_times; w++, q0 = q1) {
@@ -23711,8 +23758,8 @@ static hd_status hdi_estimate_inverses(const hdi_estimate *x, hd_cost *c) {
     if (hdi_heat_set(h, &set) >= 0) hdi_estimate_inversion(x, &set, 1, &most);
     h->degree = 0;
     if (h->e->status < 0) return h->e->status;
-    if (x->query == HD_QUERY_DISTANCE && hdi_shared_may(heat) && expected > HDI_DISTANCE_SURE &&
-        most.bytes <= hdi_bytes_left(heat->ctx)) one = most;
+    if (x->query->distance && x->query->distance->mass == 0 && hdi_shared_may(heat) &&
+        expected > HDI_DISTANCE_SURE && most.bytes <= hdi_bytes_left(heat->ctx)) one = most;
     if (heat->elim.ctx)                          /* after a first try, whose lanes and real factor stay */
         most.bytes += (double)(hdi_batches_need(heat, 1, hdi_high32(x->k, HDI_PROBES)) +
                                (heat->elim.real.ctx ? 0 : hdi_factor_bytes(&heat->elim.sym, 1)));
@@ -23731,7 +23778,7 @@ static hd_status hdi_estimate_inverses(const hdi_estimate *x, hd_cost *c) {
 /* Commute and biharmonic distances. */
 static void hdi_estimate_ground(const hdi_estimate *x, hd_cost *c) {
     hd_heat *heat = x->h->heat;
-    const int forms = x->query == HD_QUERY_DISTANCE_BIHARMONIC;
+    const int forms = x->query->distance->power > 1;
     const hdi_fill f = hdi_heat_fill(heat, &heat->elim);
     const double n = heat->source->n_active, columns = (double)x->k + (double)HDI_PROBES;
     const double factor = (forms ? 17 : 1) * f.flops, solves = columns * (forms ? 4 : 2);
@@ -23781,7 +23828,8 @@ static int32_t hdi_estimate_count(const hdi_estimate *x, int32_t q) {
 
 /* Bytes that so many hold when they are found. */
 static double hdi_estimate_kept(const hdi_estimate *x, int32_t count) {
-    const int twice = x->query == HD_QUERY_DISTANCE_WEIGHTED && x->h->heat->source->B;
+    const hdi_distance_row *kind = x->query->distance;
+    const int twice = kind && kind->mass > 0 && x->h->heat->source->B;
     return 8.0 * x->h->heat->source->n * ((twice ? 2.0 : 1.0) * count + 5);
 }
 
@@ -23828,7 +23876,7 @@ static hd_cost hdi_estimate_poles(const hdi_estimate *x) {
     hd_cost c, zero;
     memset(&zero, 0, sizeof zero);
     x->h->t = x->h->times[x->h->n_times - 1];
-    if (x->query > HD_QUERY_PAIRS) return hdi_estimate_inverses(x, &c) < 0 ? zero : c;
+    if (x->query->by == HDI_BY_INVERSION) return hdi_estimate_inverses(x, &c) < 0 ? zero : c;
     return hdi_estimate_solves(x) < 0 ? zero : x->to->cost[x->to->method];
 }
 
@@ -23841,9 +23889,9 @@ static hd_status hdi_estimate_times(const hdi_estimate *x) {
     hd_cost late, poles, early_poles;
     double kept;
     int32_t early;
-    if ((x->query > HD_QUERY_PAIRS || hdi_task_first(&x->task, h->times[n_times - 1] / x->unit)) &&
+    if ((x->query->by == HDI_BY_INVERSION || hdi_task_first(&x->task, h->times[n_times - 1] / x->unit)) &&
         hdi_estimate_analyse(h) < 0) return h->e->status;
-    early = x->query == HD_QUERY_PAIRS ? n_times : hdi_estimate_late(x, &late, &kept);
+    early = hdi_estimate_pairwise(x) ? n_times : hdi_estimate_late(x, &late, &kept);
     poles = hdi_estimate_poles(x);
     if (early < n_times && h->e->status >= 0) {
         if (early > 0) {
@@ -23869,8 +23917,10 @@ static hd_status hdi_estimate_times(const hdi_estimate *x) {
 }
 
 /* The estimate of a query whose arguments are checked. */
-static hd_status hdi_estimate_run(hdi_heat_call *h, hd_query query, int32_t k, hd_estimate *to) {
+static hd_status hdi_estimate_run(hdi_heat_call *h, const hdi_query_row *query, int32_t k,
+                                  hd_estimate *to) {
     const hd_heat *heat = h->heat;
+    const int doubled = query->by == HDI_BY_INVERSION && query->distance;
     const double n = heat->source->n;
     hd_cost *direct = to->cost + HD_METHOD_DIRECT;
     hdi_estimate x;
@@ -23878,30 +23928,29 @@ static hd_status hdi_estimate_run(hdi_heat_call *h, hd_query query, int32_t k, h
     x.h = h;
     x.query = query;
     x.to = to;
-    x.k = h->ask.k = query <= HD_QUERY_PAIRS || query >= HD_QUERY_DISTANCE ? hdi_high32(k, 1) : 0;
+    x.k = h->ask.k = query->columns ? hdi_high32(k, 1) : 0;
     to->method = h->method = HD_METHOD_DIRECT;
-    to->reason = query == HD_QUERY_SPECTRUM ? "eigenpairs take real factors" : HDI_DIRECT_REASON;
-    if (query >= HD_QUERY_DISTANCE_COMMUTE) {
+    to->reason = query->by == HDI_BY_SPECTRUM ? "eigenpairs take real factors" : HDI_DIRECT_REASON;
+    if (query->by > HDI_BY_INVERSION) {
         if (hdi_estimate_analyse(h) < 0) return h->e->status;
-        if (query != HD_QUERY_SPECTRUM) hdi_estimate_ground(&x, direct);
+        if (query->by == HDI_BY_GROUND) hdi_estimate_ground(&x, direct);
         else *direct = hdi_estimate_pairs(heat, hdi_low32(x.k, heat->source->n_active));
         return HD_OK;
     }
-    x.unit = (hdi_estimate_distance(&x) ? 2 : 1) * heat->scale;
-    if (query == HD_QUERY_PAIRS || hdi_estimate_distance(&x))
-        hdi_distance_task(&x.task, h, HD_DISTANCE_CLASSICAL);
+    x.unit = (doubled ? 2 : 1) * heat->scale;
+    if (query->distance) hdi_distance_task(&x.task, h, query->distance);
     else hdi_fading_task(&x.task, h);
     if (hdi_heat_sort_times(h, x.unit / heat->scale, NULL) < 0) return h->e->status;
     for (; h->n_times > 1 && h->times[0] * heat->lambda_max < HDI_STILL; h->n_times--) h->times++;
     h->t = h->times[h->n_times - 1];
-    if (h->t * heat->lambda_max < HDI_STILL && query <= HD_QUERY_PAIRS) {
+    if (h->t * heat->lambda_max < HDI_STILL && query->by == HDI_BY_SOLVES) {
         to->method = heat->opts.method ? heat->opts.method : HD_METHOD_ITERATIVE;
         to->reason = "t = 0";
         to->cost[to->method].possible = 1;
         to->cost[to->method].bytes = to->cost[to->method].bytes_most = 64 * n + HDI_ESTIMATE_SMALL;
         return HD_OK;
     }
-    if (query == HD_QUERY_PAIRS)
+    if (hdi_estimate_pairwise(&x))
         x.held = 8 * hdi_min(n * x.k, (double)HDI_PAIRS_DOUBLES) + 8.0 * x.k + 16 * n;
     return hdi_estimate_times(&x);
 }
@@ -23917,13 +23966,13 @@ static void hdi_estimate_close(const hd_heat *heat, hd_estimate *to) {
         to->cost[q].fits = to->cost[q].possible && to->cost[q].bytes <= to->bytes_left;
 }
 
-static hd_status hdi_estimate_check(hdi_heat_call *h, hd_query query, int32_t k) {
-    if (query < HD_QUERY_FIELDS || query > HD_QUERY_SPECTRUM)
-        return hdi_fail(h->e, HD_ERR_ARGUMENT, "estimate: unknown query");
+static hd_status hdi_estimate_check(hdi_heat_call *h, const hdi_query_row *query, int32_t k) {
+    if (!query) return hdi_fail(h->e, HD_ERR_ARGUMENT, "estimate: unknown query");
     if (k < 0)
         return hdi_fail(h->e, HD_ERR_ARGUMENT, "estimate: a number of fields or columns is negative");
-    if (query == HD_QUERY_SPECTRUM && !HDI_HAS_SPECTRUM) return HDI_LEFT_OUT(h->e, SPECTRUM, "eigenpairs");
-    return query > HD_QUERY_PAIRS && query < HD_QUERY_SPECTRUM ? hdi_direct_only(h) : HD_OK;
+    if (query->by == HDI_BY_SPECTRUM)
+        return HDI_HAS_SPECTRUM ? HD_OK : HDI_LEFT_OUT(h->e, SPECTRUM, "eigenpairs");
+    return query->by == HDI_BY_SOLVES ? HD_OK : hdi_direct_only(h);
 }
 
 /* ==== [29] geodesic ====
@@ -25925,7 +25974,7 @@ HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, in
                                         hd_report *report, hd_error *err) {
     hdi_distances to;
     memset(&to, 0, sizeof to);
-    to.kind = kind;
+    to.kind = hdi_distance_of(kind);
     to.D = D;
     to.ld = ldd;
     return hdi_distance_answer(heat, &to, sources, n_times, t, report, err);
@@ -25937,11 +25986,11 @@ HEATDIFF_API hd_status hd_heat_distance_pairs(hd_heat *heat, hd_distance_kind ki
                                               hd_error *err) {
     hdi_heat_call h;
     hdi_pairs to;
-    if (hdi_distance_begin(&h, heat, kind, n_times, t, 0, report, err) < 0 || !HDI_HAS_DIFFUSION)
+    to.kind = hdi_distance_of(kind);
+    if (hdi_distance_begin(&h, heat, to.kind, n_times, t, 0, report, err) < 0 || !HDI_HAS_DIFFUSION)
         return hdi_heat_end(&h);
     if (hdi_heat_filtered(heat)) (void)hdi_direct_only(&h);
     if (n_pairs > 0 && !d) hdi_missing(h.e);
-    to.kind = kind;
     to.n = n_pairs;
     to.i = i;
     to.j = j;
@@ -25956,7 +26005,7 @@ HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, doub
                                       double *distance, hd_report *report, hd_error *err) {
     hdi_samples a;
     memset(&a, 0, sizeof a);
-    a.kind = kind;
+    a.kind = hdi_distance_of(kind);
     a.t = t;
     a.count = count;
     a.vertex = vertex;
@@ -25967,15 +26016,16 @@ HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, doub
 HEATDIFF_API hd_status hd_heat_estimate(hd_heat *heat, hd_query query, int32_t n_times, const double *t,
                                         int32_t k, hd_estimate *estimate, hd_error *err) {
     const hdi_query as = query == HD_QUERY_FIELDS ? HDI_QUERY_FIELD : HDI_QUERY_SYMMETRIC;
+    const hdi_query_row *row = hdi_query_of(query);
     hdi_heat_call h;
     hd_estimate found;
     hd_status status;
     memset(&found, 0, sizeof found);
     if (hdi_heat_begin(&h, heat, as, NULL, err) < 0) return hdi_heat_end(&h);
     if (!estimate) hdi_missing(h.e);
-    else if (hdi_estimate_check(&h, query, k) >= 0 && query < HD_QUERY_DISTANCE_COMMUTE)
-        (void)hdi_times_check(&h, n_times, t, query > HD_QUERY_PAIRS);
-    if (h.e->status >= 0) (void)hdi_estimate_run(&h, query, k, &found);
+    else if (hdi_estimate_check(&h, row, k) >= 0 && row->by <= HDI_BY_INVERSION)
+        (void)hdi_times_check(&h, n_times, t, row->by == HDI_BY_INVERSION);
+    if (h.e->status >= 0) (void)hdi_estimate_run(&h, row, k, &found);
     status = hdi_heat_end(&h);
     if (status < 0) return status;
     hdi_estimate_close(heat, &found);

@@ -2412,6 +2412,17 @@ static int by_trace(const options *o)
     return o->normalise || (o->command == CMD_HKS && o->filter_kind == HD_FILTER_WAVE);
 }
 
+static hd_query query_of_distance(hd_distance_kind kind)
+{
+    switch (kind) {
+    case HD_DISTANCE_CLASSICAL: return HD_QUERY_DISTANCE;
+    case HD_DISTANCE_WEIGHTED: return HD_QUERY_DISTANCE_WEIGHTED;
+    case HD_DISTANCE_COMMUTE: return HD_QUERY_DISTANCE_COMMUTE;
+    case HD_DISTANCE_BIHARMONIC: return HD_QUERY_DISTANCE_BIHARMONIC;
+    }
+    return HD_QUERY_DISTANCE;
+}
+
 static hd_query query_of(const run *r, int32_t *k)
 {
     const options *o = r->o;
@@ -2427,7 +2438,7 @@ static hd_query query_of(const run *r, int32_t *k)
     if (o->command == CMD_SAMPLE) *k = (int32_t)o->count + (r->places ? (int32_t)r->n_inputs : 0);
     if (o->command == CMD_PAIRS) *k = pairs_vertices(r);
     if (o->command == CMD_PAIRS && !is_timeless(o)) return HD_QUERY_PAIRS;
-    return (hd_query)(HD_QUERY_DISTANCE + o->definition);
+    return query_of_distance((hd_distance_kind)o->definition);
 }
 
 /* The estimate of the run's first so many times by a plan. */
