@@ -235,6 +235,20 @@ class Dense(unittest.TestCase):
         self.assertRegex(out, "found by NumPy")
         self.assertLess(float(out.split("off by ")[1].split()[0]), 1e-5)
 
+    def test_torch(self):
+        """The layer of learn_time.py, by PyTorch's own differences. Its formulas are those of the two tests above."""
+        if not importlib.util.find_spec("torch"):
+            self.skipTest("PyTorch is missing")
+        import torch
+        sys.path.append(os.path.join(TOP, "examples", "python"))
+        import learn_time
+        xyz, tri = learn_time.surface(8)
+        lap = mesh(xyz, tri)
+        plans = [hd.Heat(lap, method="direct", poles="kernel", degree=10) for _ in range(2)]
+        t = torch.tensor(lap.times(["3h2", "8h2"]), requires_grad=True)
+        f = torch.randn(lap.n, 2, dtype=torch.float64, requires_grad=True)
+        self.assertTrue(torch.autograd.gradcheck(lambda t, f: learn_time.Diffuse.apply(plans, t, f), (t, f), 1e-7, 1e-5, 1e-4))
+
     def test_meshes(self):
         xyz, tri, _ = bumpy(11)
         xyz = xyz + 0.02 * np.random.default_rng(1).standard_normal(xyz.shape)

@@ -48,5 +48,5 @@ with open(os.path.join(TOP, "heatdiff.h"), encoding="utf-8") as f:
 unix = os.name != "nt"
 setup(version=version, cmdclass={"build_ext": Build, "bdist_wheel": Wheel, "sdist": Source}, ext_modules=[Extension(
     "heatdiff.libheatdiff", ["heatdiff.c"], include_dirs=[TOP], depends=[os.path.join(TOP, "heatdiff.h")],
-    extra_compile_args=["-O2", "-std=gnu99"] + os.environ.get("CFLAGS", "").split() if unix else [],
+    extra_compile_args=["-O2", "-g0", "-std=gnu99"] + os.environ.get("CFLAGS", "").split() if unix else [],
     libraries=["m"] if unix else [])])

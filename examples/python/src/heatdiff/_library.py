@@ -9,7 +9,7 @@ import signal
 import sys
 import threading
 import warnings
-from typing import Any, Callable, Optional, Union
+from typing import Any, Callable, Dict, Iterator, Optional, Tuple, Union
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from . import arrays
 Progress = Union[None, bool, Callable[[str, float], Optional[bool]]]
 CONTINUE, CANCEL = c.CHOICES["hd_progress"]["continue"], c.CHOICES["hd_progress"]["cancel"]
 NAMES = {kind: {number: name for name, number in names.items()} for kind, names in c.CHOICES.items()}
-TYPES = {np.dtype(t): p for t, p in ((np.float64, ctypes.c_double), (np.int32, ctypes.c_int32), (np.int64, ctypes.c_int64))}
+TYPES: Dict[Any, Any] = {np.dtype(t): p for t, p in ((np.float64, ctypes.c_double), (np.int32, ctypes.c_int32), (np.int64, ctypes.c_int64))}
 
 
 def _load() -> ctypes.CDLL:
@@ -93,12 +93,13 @@ class Context:
     """Threads, memory limit and progress of one object. It lives as long as the object."""
 
     def __init__(self, threads: Optional[int], memory_limit: Optional[int], progress: Progress, other: Optional["Context"] = None):
-        given = other.given if other else (0, 0, None)
-        self.given = (given[0] if threads is None else arrays.integer("threads", threads, 0, 1024),
+        given: Tuple[int, int, Progress] = other.given if other else (0, 0, None)
+        self.given: Tuple[int, int, Progress] = (given[0] if threads is None else arrays.integer("threads", threads, 0, 1024),
                       given[1] if memory_limit is None else arrays.integer("memory_limit", memory_limit, 0, 2 ** 62),
                       given[2] if progress is None else progress)
         self.struct = c.hd_context(n_threads=self.given[0], byte_limit=self.given[1])
-        self.progress, self.bar = self.given[2], None
+        self.progress: Any = self.given[2]
+        self.bar: Any = None
         if self.progress is True:
             self.progress = self._tqdm
             try:
@@ -110,7 +111,7 @@ class Context:
             raise TypeError(f"progress is {self.progress!r}, wanted is True, False or a function")
         self.failed: Optional[BaseException] = None
         self.interrupted = False
-        kind = dict(c.hd_context._fields_)["progress"]
+        kind = type(self.struct.progress)
         self._callback, self._nothing = kind(self._step), kind()
 
     def _tqdm(self, stage: str, done: float) -> None:
@@ -140,10 +141,10 @@ class Context:
         self.interrupted = True
 
     @contextlib.contextmanager
-    def running(self) -> Any:
+    def running(self) -> Iterator[None]:
         """Around a call. Ctrl-C, which Python would only look at when the call is over, cancels it. Only the main thread
         can be interrupted; other threads need no callback, and then never wait for the GIL."""
-        before = signal.getsignal(signal.SIGINT) if threading.current_thread() is threading.main_thread() else None
+        before: Any = signal.getsignal(signal.SIGINT) if threading.current_thread() is threading.main_thread() else None
         self.failed, self.interrupted = None, False
         self.struct.progress = self._callback if self.progress or callable(before) else self._nothing
         if callable(before):
@@ -186,11 +187,12 @@ def attach(struct: Any, **given: np.ndarray) -> None:
 
 def plain(struct: ctypes.Structure) -> dict:
     """The numbers and texts of a struct: enumerations by their names, no pointers."""
-    found = {}
-    for key, kind in struct._fields_:
+    found: Dict[str, Any] = {}
+    for key, *_ in struct._fields_:
         value = getattr(struct, key)
-        if key in struct.choices and struct.choices[key] in NAMES:
-            found[key] = NAMES[struct.choices[key]].get(value, value)
+        kind = struct.choices.get(key)                          # type: ignore[attr-defined]
+        if kind in NAMES:
+            found[key] = NAMES[kind].get(value, value)
         elif isinstance(value, bytes):
             found[key] = value.decode()
         elif isinstance(value, (int, float)):
@@ -204,7 +206,8 @@ class Handle:
 
     def __init__(self, kind: Any, free: str, context: Context, owner: Optional["Handle"] = None):
         self.pointer, self.freed_by, self.context, self.owner = ctypes.POINTER(kind)(), getattr(lib, free), context, owner
-        self.lock, self.plans, self.worker = threading.Lock(), {}, None
+        self.lock, self.worker = threading.Lock(), 0
+        self.plans: Dict[int, tuple] = {}
 
     def make(self, name: str, *args: Any) -> None:
         if self.owner:                                          # before the call, which Ctrl-C may end although it succeeds
@@ -216,7 +219,7 @@ class Handle:
         return bool(self.pointer) and (self.owner is None or id(self) in self.owner.plans)
 
     @contextlib.contextmanager
-    def use(self, exclusive: bool = False) -> Any:
+    def use(self, exclusive: bool = False) -> Iterator[Any]:
         """The address, while no other thread uses it; exclusive: nor any of its plans."""
         if self.worker == threading.get_ident():
             raise RuntimeError("this object is at work: its progress function cannot use it")
@@ -230,7 +233,7 @@ class Handle:
                     raise ValueError("this object is closed, or the Laplacian under it")
                 yield self.pointer
             finally:
-                self.worker = None
+                self.worker = 0
 
     def free(self) -> None:
         """Frees it once. The lists are dictionaries, from which only one thread can take an entry."""
@@ -253,12 +256,11 @@ class Handle:
 
 class Object:
     """Something that the library made. close() or a with block frees it at once; afterwards its methods raise."""
-    _handle: Optional[Handle] = None
+    _handle: Handle
 
     def close(self) -> None:
         """Frees the memory now, and that of what was made from it. Later calls raise ValueError."""
-        if self._handle:
-            self._handle.close()
+        self._handle.close()
 
     def __enter__(self) -> Any:
         return self

@@ -57,7 +57,8 @@ class Geodesic(Object):
             attach(opts, perm=arrays.ints("perm", perm, (n,)))
         self._handle = Handle(c.hd_geodesic, "hd_geodesic_free", context)
         self._handle.make("hd_geodesic_create", ctypes.byref(mesh), ctypes.byref(opts))
-        self._n, self.report = n, None
+        self._n = n
+        self.report: Optional[GeodesicReport] = None            # of the last answer
 
     n = property(lambda self: self._n, doc="Number of vertices.")
 

@@ -101,7 +101,8 @@ class Heat(Object):
         handle = Handle(c.hd_heat, "hd_heat_free", context, lap._handle)
         with lap._handle.use() as address:
             handle.make("hd_heat_create", address, ctypes.byref(opts))
-        self._handle, self._lap, self.report = handle, lap, None
+        self._handle, self._lap = handle, lap
+        self.report: Optional[Report] = None                    # of the last answer
 
     lap = property(lambda self: self._lap, doc="The Laplacian.")
 
@@ -109,8 +110,9 @@ class Heat(Object):
         struct = c.hd_report()
         with self._handle.use() as heat:
             status = call(self._handle.context, name, heat, *args, ctypes.byref(struct))
-        self.report = report(Report, struct, c.STATUS[status][0])
-        return self.report
+        made: Report = report(Report, struct, c.STATUS[status][0])
+        self.report = made
+        return made
 
     def _times(self, t: Times) -> Tuple[int, np.ndarray, bool]:
         t = self._lap.times(t)

@@ -5,7 +5,7 @@ import collections
 import ctypes
 import re
 from types import SimpleNamespace
-from typing import Any, Optional, Sequence, Tuple, Union
+from typing import Any, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
@@ -77,6 +77,9 @@ class Laplacian(Object):
       memory_limit  bytes at most for this object, and for each plan made from it; None or 0: no limit
       progress      True: a bar by tqdm. Or a function of (stage, done), with done from 0 to 1, that returns False to cancel
     """
+
+    _n: int
+    _first: Tuple[int, float]                                   # version, and what _longest found
 
     def __init__(self) -> None:
         raise TypeError("a Laplacian comes from from_mesh, from_polygons, from_points, from_lengths or from_matrices")
@@ -345,7 +348,7 @@ def _copy(address: Any, n: int) -> np.ndarray:
 
 def _matrices(L: Any, B: Any) -> Tuple[list, int, list]:
     """References to two structs, the size, and what must live as long as they are used."""
-    made = []
+    made: List[Any] = []
     for name, a in (("L", L), ("B", B)):
         n, ptr, col, val = arrays.csr(name, a)
         if made and n != made[0].n_rows:

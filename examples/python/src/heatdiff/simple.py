@@ -19,8 +19,11 @@ def laplacian(vertices: Any, faces: Any = None, **options: Any) -> Laplacian:
     """The Laplacian of triangles, polygons or points, as faces are."""
     shape = surface(vertices, faces)[1]
     if shape == "points":
-        return Laplacian.from_points(vertices, **{"triangulation": "tufted", **options})
-    return (Laplacian.from_mesh if shape == "triangles" else Laplacian.from_polygons)(vertices, faces, **options)
+        options.setdefault("triangulation", "tufted")
+        return Laplacian.from_points(vertices, **options)
+    if shape == "triangles":
+        return Laplacian.from_mesh(vertices, faces, **options)
+    return Laplacian.from_polygons(vertices, faces, **options)
 
 
 @arrays.options
