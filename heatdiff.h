@@ -18461,14 +18461,6 @@ static double hdi_lane_spread(const hd_laplacian *lap, int dual) {
     return sqrt(sum);
 }
 
-/* The most terms in a row of products with B. */
-static double hdi_lane_terms_most(const hd_laplacian *lap) {
-    double most = 1;
-    int32_t i;
-    for (i = 0; i < lap->n_active && lap->B; i++) most = hdi_max(most, hdi_row_terms(lap, i));
-    return most;
-}
-
 /* The power of two that brings a number near one. */
 static double hdi_unit_of(double size) {
     int exponent = 0;
@@ -18499,7 +18491,7 @@ static void hdi_heat_judge(const hd_laplacian *lap, const hdi_lane *lane, hdi_le
         else if (total > 0) off.rounding += DBL_EPSILON * largest;
         off.rounding += lane->step;              /* where answers are among the smallest doubles */
         if (lane->step > DBL_EPSILON * DBL_EPSILON * largest) {
-            const double terms = lane->dual ? hdi_lane_terms_most(lap) : 1;   /* B u is a sum */
+            const double terms = lane->dual && lap->B ? lap->n_active : 1;   /* B u is a sum */
             off.rounding += terms * lane->step;
             total += terms * lane->step * hdi_lane_spread(lap, lane->dual);
         }
@@ -22209,14 +22201,10 @@ static hd_status hdi_diagonals_once(const hdi_diagonals *to, double *relative) {
     return hdi_scope_end(&s);
 }
 
-/* Goes on from the highest degree of poles, whose factors did not fit the byte limit, to the default. Returns
- * 0 where there is no reason to. */
-static int hdi_degree_retreat(hd_heat *heat, int32_t *degree, hd_error *e) {
-    if (*degree == 0 || !hdi_over_limit(heat->ctx, e)) return 0;
-    *degree = 0;
-    hdi_heat_shed(heat, 0);
-    hdi_error_clear(e);
-    return 1;
+/* May poles of the highest degree take over where the default's bound is too large? Not where the caller
+ * chose, and not after the byte limit. */
+static int hdi_degree_open(const hd_heat *heat) {
+    return !heat->poles_asked && !heat->exacting && !heat->spare;
 }
 
 /* The time under way by poles, with the set's degree by default. Tiny cells among large ones and slivers have
@@ -22234,13 +22222,10 @@ static hd_status hdi_diagonals_by_poles(hdi_task *task) {
     before = *h->rep;
     if (hdi_heat_equal(heat, &heat->elim, h->t, h->e)) return hdi_diagonals_equal(to, h->now, h->rep);
     if (h->e->status < 0 || hdi_diagonals_once(to, &relative) < 0) return h->e->status;
-    if (heat->poles_asked || heat->exacting || relative <= hdi_diagonal_limit(heat->source, kernel))
-        return HD_OK;
+    if (!hdi_degree_open(heat) || relative <= hdi_diagonal_limit(heat->source, kernel)) return HD_OK;
     h->degree = HDI_RAT_KERNEL_MAX;
-    do {
-        *h->rep = before;
-        (void)hdi_diagonals_once(to, &relative);
-    } while (hdi_degree_retreat(heat, &h->degree, h->e));
+    *h->rep = before;
+    (void)hdi_diagonals_once(to, &relative);
     h->degree = 0;
     return h->e->status;
 }
@@ -22252,24 +22237,38 @@ static int hdi_shared_may(const hd_heat *heat) {
     return !heat->poles_asked && !heat->exacting && !heat->spare;
 }
 
-/* How many windows of equal ratio take the fewest packs in all for times that ascend. *packs: how many those
- * are. */
-static int32_t hdi_shared_windows(const double *times, int32_t n_times, double tol, int32_t *packs) {
+/* How many windows of equal ratio take the fewest packs in all for times that ascend. 0: these are more than
+ * for so many times one by one, each with a set of degree 9, that is a pack and a real factor, which costs an
+ * eighth of a pack. */
+static int32_t hdi_shared_windows(const double *times, int32_t n_times, double tol) {
     const double ratio = times[n_times - 1] / times[0];
     hd_rational set;
-    int32_t w, best = 0;
+    int32_t w, best = 0, packs = 0;
     for (w = 1; w <= n_times && w <= 64; w++) {
         if (!hdi_shared_pick(&set, pow(ratio, 1.0 / w) * (1 + 1e-12), tol)) continue;
-        if (best > 0 && w * ((set.n_poles + 3) / 4) >= *packs) continue;
+        if (best > 0 && w * ((set.n_poles + 3) / 4) >= packs) continue;
         best = w;
-        *packs = w * ((set.n_poles + 3) / 4);
+        packs = w * ((set.n_poles + 3) / 4);
     }
-    return best;
+    return 8 * packs < 9 * n_times ? best : 0;
 }
 
-/* Do so many packs cost less than so many times one by one? Each of these takes a set of degree 9, that is a
- * pack and a real factor, which costs an eighth of a pack. */
-static int hdi_shared_pays(int32_t packs, int32_t n_times) { return 8 * packs < 9 * n_times; }
+/* Answers times [q0, q1) of the call, sorted, by one set of poles. */
+typedef hd_status (*hdi_window)(const hdi_task *task, int32_t q0, int32_t q1, hd_report *one);
+
+/* The first n times of the call, sorted, with shared poles where that takes fewer packs. */
+static hd_status hdi_shared_run(const hdi_task *task, int32_t n, double tol, hdi_window window, char *done,
+                                hd_report *one) {
+    const hdi_heat_call *h = task->h;
+    const int32_t windows = n > 1 ? hdi_shared_windows(h->times, n, tol) : 0;
+    int32_t w, q0, q1;
+    for (w = 0, q0 = 0; windows > 0 && q0 < n; w++) {
+        q1 = hdi_window_end(h->times, n, q0, w, windows);
+        if (window(task, q0, q1, one) < 0) break;
+        for (; q0 < q1; q0++) done[h->time_column[q0]] = HDI_DONE_BY_POLES;
+    }
+    return h->e->status;
+}
 
 /* Room for times q0 to q1 - 1 of the call, sorted, and the sets that they share. */
 static hd_status hdi_window_take(hdi_inverses *x, hdi_heat_call *h, int32_t q0, int32_t q1, hdi_wanted wanted,
@@ -22280,8 +22279,9 @@ static hd_status hdi_window_take(hdi_inverses *x, hdi_heat_call *h, int32_t q0, 
 }
 
 /* Times q0 to q1 - 1 of the call, sorted, by one set of poles. */
-static hd_status hdi_diagonals_window(const hdi_diagonals *to, int32_t q0, int32_t q1, hd_report *one) {
-    hdi_heat_call *h = to->task.h;
+static hd_status hdi_diagonals_window(const hdi_task *task, int32_t q0, int32_t q1, hd_report *one) {
+    const hdi_diagonals *to = (const hdi_diagonals *)task;
+    hdi_heat_call *h = task->h;
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
     hdi_inverses x;
     double relative;
@@ -22297,7 +22297,7 @@ static hd_status hdi_diagonals_together(hdi_task *task, char *done, hd_report *o
     hdi_heat_call *h = task->h;
     hd_heat *heat = h->heat;
     const int alone = to->D && to->kernel == HD_KERNEL_OPERATOR && heat->source->B;
-    int32_t n, w, q, q1, packs = 0, windows = 0;
+    int32_t n;
     if (hdi_heat_analysed(heat, h->e) < 0 || hdi_heat_sort_times(h, 1, done) < 0) return h->e->status;
     hdi_inverse_tell(h);
     for (n = h->n_times; n > 0 && hdi_heat_equal(heat, &heat->elim, h->times[n - 1], h->e); n--) {
@@ -22306,15 +22306,8 @@ static hd_status hdi_diagonals_together(hdi_task *task, char *done, hd_report *o
         done[at] = HDI_DONE_FOR_GOOD;
         if (hdi_diagonals_equal(to, at, one + at) < 0) return h->e->status;
     }
-    if (n > 1 && hdi_shared_may(heat) && !alone)
-        windows = hdi_shared_windows(h->times, n, HDI_SHARED_TOL, &packs);
-    if (h->e->status < 0 || windows == 0 || !hdi_shared_pays(packs, n)) return h->e->status;
-    for (w = 0, q = 0; q < n && h->e->status >= 0; w++, q = q1) {
-        q1 = hdi_window_end(h->times, n, q, w, windows);
-        if (hdi_diagonals_window(to, q, q1, one) < 0) return h->e->status;
-        for (; q < q1; q++) done[h->time_column[q]] = HDI_DONE_BY_POLES;
-    }
-    return h->e->status;
+    if (h->e->status < 0 || !hdi_shared_may(heat) || alone) return h->e->status;
+    return hdi_shared_run(task, n, HDI_SHARED_TOL, hdi_diagonals_window, done, one);
 }
 
 /* ---- heat that fades ---- */
@@ -22427,6 +22420,26 @@ static hd_status hdi_diagonals_by_pairs(hdi_task *task) {
     return h->e->status;
 }
 
+/* All sets of the plan, which share their poles. */
+static hd_status hdi_diagonals_filters(const hdi_diagonals *to) {
+    hdi_heat_call *h = to->task.h;
+    const int32_t count = h->heat->n_sets;
+    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
+    int32_t *column = HDI_TAKE(&s, int32_t, count), q;
+    hdi_inverses x;
+    double relative;
+    if (!column || hdi_heat_analysed(h->heat, h->e) < 0) return hdi_scope_end(&s);
+    hdi_inverse_tell(h);
+    if (hdi_inverses_take(&x, h, count, hdi_diagonals_wanted(to), &s) < 0) return hdi_scope_end(&s);
+    for (q = 0; q < count; q++) {
+        column[q] = q;
+        x.set[q] = h->heat->sets[q];
+        x.set[q].kind = HD_POLES_OWN;
+    }
+    (void)hdi_diagonals_of(to, &x, column, NULL, &relative, &s);
+    return hdi_scope_end(&s);
+}
+
 /* A query for diagonals in D, ldd apart, for traces in Z with bounds, or for both. */
 static hd_status hdi_diagonals_run(hdi_heat_call *h, hd_kernel kernel, double *D, size_t ldd, double *Z,
                                    double *bound) {
@@ -22440,38 +22453,7 @@ static hd_status hdi_diagonals_run(hdi_heat_call *h, hd_kernel kernel, double *D
     to.ldd = ldd;
     to.Z = Z;
     to.bound = bound;
-    return hdi_heat_sparing(h, hdi_task_run, &to.task);
-}
-
-/* ---- filters that share their poles ---- */
-
-/* Diagonals in D, ldd apart, and traces in Z with bounds, or NULL, for all sets of the plan. */
-static hd_status hdi_filters_run(hdi_heat_call *h, hd_kernel kernel, double *D, size_t ldd, double *Z,
-                                 double *bound) {
-    const int32_t count = h->heat->n_sets;
-    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
-    hdi_diagonals to;
-    hdi_inverses x;
-    double relative;
-    int32_t *column, q;
-    memset(&to, 0, sizeof to);
-    to.task.h = h;
-    to.kernel = kernel;
-    to.D = D;
-    to.ldd = ldd;
-    to.Z = Z;
-    to.bound = bound;
-    if (hdi_heat_analysed(h->heat, h->e) < 0) return hdi_scope_end(&s);
-    hdi_inverse_tell(h);
-    column = HDI_TAKE(&s, int32_t, count);
-    if (hdi_inverses_take(&x, h, count, hdi_diagonals_wanted(&to), &s) < 0) return hdi_scope_end(&s);
-    for (q = 0; q < count; q++) {
-        column[q] = q;
-        x.set[q] = h->heat->sets[q];
-        x.set[q].kind = HD_POLES_OWN;
-    }
-    (void)hdi_diagonals_of(&to, &x, column, NULL, &relative, &s);
-    return hdi_scope_end(&s);
+    return h->heat->n_sets > 1 ? hdi_diagonals_filters(&to) : hdi_heat_sparing(h, hdi_task_run, &to.task);
 }
 
 /* Checks that there is selected inversion, and that the direct method is allowed. */
@@ -22854,11 +22836,6 @@ static double *hdi_distances_at(const hdi_distances *to, int32_t r, int32_t q) {
 #define HDI_DISTANCE_SURE 3.5e-7
 #define HDI_DISTANCE_EXPECTED 4.4e-7
 
-/* Are the poles the caller's choice, or of the highest degree in any case? */
-static int hdi_metric_settled(const hd_heat *heat, const hdi_distance_row *kind) {
-    return kind->power > 0 || heat->poles_asked || heat->exacting;
-}
-
 /* All sources by a metric: the times of its functions are columns of the query, whose reports are in one, or
  * NULL for the time under way. */
 static hd_status hdi_distances_of(const hdi_distances *to, hdi_metric *x, const int32_t *column,
@@ -23093,18 +23070,14 @@ static hd_status hdi_distances_by_poles(hdi_task *task) {
     const hdi_distances *to = (const hdi_distances *)task;
     hdi_heat_call *h = task->h;
     hd_heat *heat = h->heat;
-    const int settled = hdi_metric_settled(heat, to->kind);
-    const double t = settled ? 0 : h->ask.t[h->now];
+    const int open = to->kind->power == 0 && hdi_degree_open(heat);
+    const double t = open ? h->ask.t[h->now] : 0;
     const double expected = heat->source->h > 0 ? HDI_DISTANCE_EXPECTED * sqrt(t) / heat->source->h : 0;
-    const int sure = !settled && to->kind->mass == 0 && expected > HDI_DISTANCE_SURE;
-    int32_t degree = HDI_RAT_KERNEL_MAX;
+    const int sure = open && to->kind->mass == 0 && expected > HDI_DISTANCE_SURE;
     if (!sure && hdi_distances_once(to, 0) < 0) return h->e->status;
-    if (settled || (!sure && h->rep->error_rational <= HDI_DISTANCE_SURE)) return h->e->status;
-    do {
-        hdi_task_at(h, h->now);
-        (void)hdi_distances_once(to, degree);
-    } while (hdi_degree_retreat(heat, &degree, h->e));
-    return h->e->status;
+    if (!open || (!sure && h->rep->error_rational <= HDI_DISTANCE_SURE)) return h->e->status;
+    hdi_task_at(h, h->now);
+    return hdi_distances_once(to, HDI_RAT_KERNEL_MAX);
 }
 
 /* Distances of all sources at the time under way from the eigenpairs that are there. */
@@ -23126,8 +23099,9 @@ static hd_status hdi_distances_by_pairs(hdi_task *task) {
 }
 
 /* Distances at times q0 to q1 - 1 of the call, sorted, by one set of poles. */
-static hd_status hdi_distances_window(const hdi_distances *to, int32_t q0, int32_t q1, hd_report *one) {
-    hdi_heat_call *h = to->task.h;
+static hd_status hdi_distances_window(const hdi_task *task, int32_t q0, int32_t q1, hd_report *one) {
+    const hdi_distances *to = (const hdi_distances *)task;
+    hdi_heat_call *h = task->h;
     const int32_t *column = h->time_column + q0, count = q1 - q0;
     const int32_t group = hdi_low32(to->k, hdi_high32(1, HDI_LANES / count));
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
@@ -23145,24 +23119,13 @@ static hd_status hdi_distances_window(const hdi_distances *to, int32_t q0, int32
 
 /* With shared poles, where that is cheaper than one by one. */
 static hd_status hdi_distances_together(hdi_task *task, char *done, hd_report *one) {
-    const hdi_distances *to = (const hdi_distances *)task;
     hdi_heat_call *h = task->h;
     hd_heat *heat = h->heat;
-    int32_t packs = 0, windows, w, q0, q1, n;
-    if (!hdi_shared_may(heat) || hdi_heat_analysed(heat, h->e) < 0 || hdi_heat_sort_times(h, 2, done) < 0)
-        return h->e->status;
-    n = h->n_times;
-    if (n < 2) return HD_OK;
-    windows = hdi_shared_windows(h->times, n, HDI_SHARED_DISTANCE_TOL, &packs);
-    if (windows == 0 || packs > n || hdi_heat_equal(heat, &heat->elim, h->times[n - 1], h->e) ||
+    if (!hdi_shared_may(heat) || hdi_heat_analysed(heat, h->e) < 0 || hdi_heat_sort_times(h, 2, done) < 0 ||
+        h->n_times < 2 || hdi_heat_equal(heat, &heat->elim, h->times[h->n_times - 1], h->e) ||
         h->e->status < 0) return h->e->status;
     hdi_inverse_tell(h);
-    for (w = 0, q0 = 0; q0 < n; w++, q0 = q1) {
-        q1 = hdi_window_end(h->times, n, q0, w, windows);
-        if (hdi_distances_window(to, q0, q1, one) < 0) return h->e->status;
-        for (; q0 < q1; q0++) done[h->time_column[q0]] = HDI_DONE_BY_POLES;
-    }
-    return HD_OK;
+    return hdi_shared_run(task, h->n_times, HDI_SHARED_DISTANCE_TOL, hdi_distances_window, done, one);
 }
 
 /* ---- pairs ---- */
@@ -23386,7 +23349,6 @@ static hd_status hdi_pairs_by_poles(hdi_task *task) {
     const int32_t n = heat->source->n;
     hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
     int64_t *mark = NULL;
-    int32_t degree = HDI_RAT_KERNEL_MAX;
     int fits = to->kind->power == 0 && !hdi_heat_filtered(heat);
     if (fits && 2 * to->n > HDI_PAIRS_DOUBLES / n) {
         mark = HDI_TAKE_ZERO(&s, int64_t, n);
@@ -23395,11 +23357,10 @@ static hd_status hdi_pairs_by_poles(hdi_task *task) {
                hdi_pairs_few(to->i, to->j, to->n, HDI_PAIRS_DOUBLES / n, INT64_MAX, mark) == to->n;
     }
     if (fits && hdi_pairs_columns(to, 0, mark) >= 0 && h->rep->error_bound > HDI_MODES_HELP &&
-        !hdi_metric_settled(heat, to->kind) && h->rep->method == HD_METHOD_DIRECT)
-        do {
-            hdi_task_at(h, h->now);
-            (void)hdi_pairs_columns(to, degree, mark);
-        } while (hdi_degree_retreat(heat, &degree, h->e));
+        hdi_degree_open(heat) && h->rep->method == HD_METHOD_DIRECT) {
+        hdi_task_at(h, h->now);
+        (void)hdi_pairs_columns(to, HDI_RAT_KERNEL_MAX, mark);
+    }
     if (!fits) (void)hdi_pairs_one_by_one(to);
     return hdi_scope_end(&s);
 }
@@ -23490,16 +23451,14 @@ static hd_status hdi_sample_points(const hdi_samples *a) {
 static hd_status hdi_sample_by_poles(hdi_task *task) {
     hdi_samples *a = (hdi_samples *)task;
     hdi_heat_call *h = task->h;
-    int32_t degree = hdi_metric_settled(h->heat, a->kind) ? 0 : HDI_RAT_KERNEL_MAX;
+    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
+    const int open = a->kind->power == 0 && hdi_degree_open(h->heat);
+    hdi_metric x;
+    a->x = &x;
     a->sum = NULL;
-    do {
-        hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
-        hdi_metric x;
-        a->x = &x;
-        if (hdi_metric_make(h, a->kind, degree, 1, 0, &x, &s) >= 0) (void)hdi_sample_points(a);
-        (void)hdi_scope_end(&s);
-    } while (hdi_degree_retreat(h->heat, &degree, h->e));
-    return h->e->status;
+    if (hdi_metric_make(h, a->kind, open ? HDI_RAT_KERNEL_MAX : 0, 1, 0, &x, &s) >= 0)
+        (void)hdi_sample_points(a);
+    return hdi_scope_end(&s);
 }
 
 /* The points by distances from the eigenpairs that are there. */
@@ -23723,11 +23682,10 @@ static int hdi_estimate_shared(const hdi_estimate *x, hd_cost *c) {
     hdi_heat_call *h = x->h;
     const int distance = x->query->distance != NULL;
     const double tol = distance ? HDI_SHARED_DISTANCE_TOL : HDI_SHARED_TOL;
-    int32_t packs = 0, windows = 0, w, q0, q1;
+    int32_t windows = 0, w, q0, q1;
     if (h->n_times > 1 && hdi_shared_may(h->heat) &&
         !(x->query->mass == 1 && h->heat->source->B))
-        windows = hdi_shared_windows(h->times, h->n_times, tol, &packs);
-    if (!(distance ? packs <= h->n_times : hdi_shared_pays(packs, h->n_times))) windows = 0;
+        windows = hdi_shared_windows(h->times, h->n_times, tol);
     for (w = 0, q0 = 0; windows > 0 && q0 < h->n_times; w++, q0 = q1) {
         hd_rational set;
         memset(&set, 0, sizeof set);
@@ -25964,8 +25922,7 @@ HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t
         hdi_diagonal_check(&h) < 0 || !HDI_HAS_DIAGONAL) return hdi_heat_end(&h);
     if (!D && !Z) hdi_missing(h.e);
     ldd = hdi_leading(&h, ldd);
-    if (h.e->status >= 0 && heat->n_sets > 1) (void)hdi_filters_run(&h, kernel, D, ldd, Z, bound);
-    else if (h.e->status >= 0) (void)hdi_diagonals_run(&h, kernel, D, ldd, Z, bound);
+    if (h.e->status >= 0) (void)hdi_diagonals_run(&h, kernel, D, ldd, Z, bound);
     return hdi_heat_end(&h);
 }
 
