@@ -247,7 +247,7 @@ class Dense(unittest.TestCase):
         plans = [hd.Heat(lap, method="direct", poles="kernel", degree=10) for _ in range(2)]
         t = torch.tensor(lap.times(["3h2", "8h2"]), requires_grad=True)
         f = torch.randn(lap.n, 2, dtype=torch.float64, requires_grad=True)
-        self.assertTrue(torch.autograd.gradcheck(lambda t, f: learn_time.Diffuse.apply(plans, t, f), (t, f), 1e-7, 1e-5, 1e-4))
+        self.assertTrue(torch.autograd.gradcheck(lambda t, f: learn_time.Diffuse.apply(plans, t, f), (t, f), eps=1e-7, atol=1e-5, rtol=1e-4))
 
     def test_meshes(self):
         xyz, tri, _ = bumpy(11)
@@ -568,7 +568,7 @@ class Face(unittest.TestCase):
 
         class Bar:
             def __init__(self, total, desc, **_):
-                self.desc, self.n, self.closed = desc + ": ", 0.0, False
+                self.desc, self.n, self.closed = desc, 0.0, False
                 bars.append(self)
 
             def update(self, by):
@@ -592,8 +592,9 @@ class Face(unittest.TestCase):
                 sys.modules.pop(name)
                 if module:
                     sys.modules[name] = module
-        self.assertIn("factor: ", [b.desc for b in bars])
-        self.assertTrue(all(b.closed and 0 <= b.n <= 1 for b in bars))
+        self.assertIn("factor", [b.desc for b in bars])
+        self.assertTrue(all(b.closed and 0 <= b.n <= 1 for b in bars) and max(b.n for b in bars) > 0)
+        self.assertTrue(all(a.desc != b.desc for a, b in zip(bars, bars[1:])))
 
     def test_interrupt(self):
         """Ctrl-C ends a long call; the same plan then answers."""

@@ -100,6 +100,7 @@ class Context:
         self.struct = c.hd_context(n_threads=self.given[0], byte_limit=self.given[1])
         self.progress: Any = self.given[2]
         self.bar: Any = None
+        self.stage = ""
         if self.progress is True:
             self.progress = self._tqdm
             try:
@@ -116,9 +117,9 @@ class Context:
 
     def _tqdm(self, stage: str, done: float) -> None:
         import tqdm.auto
-        if self.bar is None or self.bar.desc[:-2] != stage:
+        if self.bar is None or self.stage != stage:
             self._end_bar()
-            self.bar = tqdm.auto.tqdm(total=1, desc=stage, leave=False, bar_format="{desc}: {percentage:3.0f}%|{bar}|")
+            self.stage, self.bar = stage, tqdm.auto.tqdm(total=1, desc=stage, leave=False, bar_format="{desc}: {percentage:3.0f}%|{bar}|")
         self.bar.update(max(0.0, done - self.bar.n))
 
     def _end_bar(self) -> None:
