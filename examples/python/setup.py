@@ -1,5 +1,5 @@
 """Compiles heatdiff.h into a shared library beside the Python files. ctypes loads it, so one wheel serves every Python:
-py3-none-PLATFORM. CC and CFLAGS are obeyed; compiling takes some 15 seconds."""
+py3-none-PLATFORM. CC and CFLAGS are obeyed; compiling takes some 20 seconds."""
 import os
 import re
 import shutil
