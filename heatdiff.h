@@ -5168,9 +5168,6 @@ static double hdi_poly_measure(const hdi_mesh *mesh, int32_t f, double *steepest
 /* Loops over faces or vertices are cut into so many blocks at most, of so many at least. */
 enum { HDI_BLOCKS_MOST = 64, HDI_BLOCK_LEAST = 4096 };
 
-enum { HDI_FACES_PER_TASK = 8192 };                         /* some 0.2 ms of work */
-enum { HDI_FACES_AHEAD = 16 };                              /* what will be needed is asked for so early */
-
 static int64_t hdi_block_size(int64_t n) {
     const int64_t size = (n + HDI_BLOCKS_MOST - 1) / HDI_BLOCKS_MOST;
     return hdi_most(size, (int64_t)HDI_BLOCK_LEAST);
@@ -5249,22 +5246,11 @@ static HDI_INLINE double hdi_face_measure(const hdi_mesh *mesh, int32_t f, hdi_t
     return area;
 }
 
-/* Asks for the corners of face f. */
-static HDI_INLINE void hdi_face_ahead(const hdi_mesh *mesh, int64_t f) {
-    const int32_t *ahead = mesh->tri + 3 * f;
-    if (!mesh->xyz || hdi_is_poly(mesh)) return;
-    HDI_PREFETCH(hdi_at3(mesh->xyz, ahead[0]));
-    HDI_PREFETCH(hdi_at3(mesh->xyz, ahead[1]));
-    HDI_PREFETCH(hdi_at3(mesh->xyz, ahead[2]));
-    (void)ahead;
-}
-
 static void hdi_measure_task(void *arg, int64_t begin, int64_t end) {
     const hdi_mesh *mesh = (const hdi_mesh *)arg;
     hdi_tally tally = hdi_tally_none();
     int32_t f;
     for (f = (int32_t)begin; f < end; f++) {
-        hdi_face_ahead(mesh, hdi_least((int64_t)f + HDI_FACES_AHEAD, end - 1));
         mesh->area[f] = hdi_face_measure(mesh, f, &tally);
     }
     mesh->tally[begin / hdi_block_size(mesh->m)] = tally;
@@ -5516,38 +5502,27 @@ static hd_status hdi_places_make(hdi_places *out, const double *xyz, int32_t n, 
     return hdi_scope_end(&own);
 }
 
-/* Eigenvalues w, ascending, and eigenvectors (rows of v) of a symmetric 3 x 3 matrix a, which is
- * overwritten: Jacobi's rotations. */
+/* Eigenvalues w, ascending, and eigenvectors (rows of v) of a symmetric 3 x 3 matrix: a rotation makes it
+ * tridiagonal. */
 static void hdi_eigen3(double a[3][3], double w[3], double v[3][3]) {
-    int sweep, p, q, i, c;
-    for (p = 0; p < 9; p++) v[p / 3][p % 3] = p / 3 == p % 3;
-    for (sweep = 0; sweep < 30; sweep++) {
-        const double off = fabs(a[0][1]) + fabs(a[0][2]) + fabs(a[1][2]);
-        if (off <= DBL_MIN || off <= 1e-17 * (fabs(a[0][0]) + fabs(a[1][1]) + fabs(a[2][2]))) break;
-        for (i = 0; i < 3; i++) {
-            double theta, t, co;
-            p = i / 2;                           /* (0,1), (0,2), (1,2) */
-            q = 1 + (i + 1) / 2;
-            if (a[p][q] == 0) continue;
-            theta = (a[q][q] - a[p][p]) / (2 * a[p][q]);
-            t = (theta >= 0 ? 1 : -1) / (fabs(theta) + sqrt(theta * theta + 1));
-            co = 1 / sqrt(t * t + 1);
-            hdi_rotate(a[p], a[q], co, t * co, 3);
-            for (c = 0; c < 3; c++) hdi_rotate(&a[c][p], &a[c][q], co, t * co, 1);
-            hdi_rotate(v[p], v[q], co, t * co, 3);
-        }
-    }
-    for (i = 0; i < 3; i++) w[i] = a[i][i];
-    for (i = 0; i < 3; i++) {                    /* three values in order; a has served */
-        p = i / 2;
-        q = 1 + (i + 1) / 2;
-        if (w[p] <= w[q]) continue;
-        a[0][0] = w[p];
-        w[p] = w[q];
-        w[q] = a[0][0];
-        memcpy(a[0], v[p], sizeof *v);
-        memcpy(v[p], v[q], sizeof *v);
-        memcpy(v[q], a[0], sizeof *v);
+    const double r = hdi_pythag(a[0][1], a[0][2]), c = r > 0 ? a[0][1] / r : 1, s = r > 0 ? a[0][2] / r : 0;
+    const double turned[3][3] = {{1, 0, 0}, {0, c, s}, {0, -s, c}}, both = 2 * c * s * a[1][2];
+    double off[3] = {r, c * s * (a[2][2] - a[1][1]) + (c * c - s * s) * a[1][2], 0}, swap[3];
+    int i, p;
+    w[0] = a[0][0];
+    w[1] = c * c * a[1][1] + s * s * a[2][2] + both;
+    w[2] = s * s * a[1][1] + c * c * a[2][2] - both;
+    memcpy(v, turned, sizeof turned);
+    (void)hdi_tridiag_eigen(w, off, v[0], 3, 3);
+    for (i = 0; i < 3; i++) {
+        p = i % 2;
+        if (w[p] <= w[p + 1]) continue;
+        hdi_copy3(swap, v[p]);
+        hdi_copy3(v[p], v[p + 1]);
+        hdi_copy3(v[p + 1], swap);
+        swap[0] = w[p];
+        w[p] = w[p + 1];
+        w[p + 1] = swap[0];
     }
 }
 
@@ -7445,11 +7420,12 @@ typedef struct hdi_cloud {
     const double *xyz;
     const int32_t *name;       /* [n] the caller's number of a point */
     int32_t n;
-    const int64_t *ptr;
+    int64_t *ptr;
     /* [ptr[n]] neighbours of point i from ptr[i] on; then its star, counterclockwise in its plane */
     int32_t *nbr;
     double *nearest;           /* [n] distance to the nearest one in another place; 0: none */
     double *reach;             /* [n] distance to the last one */
+    double h;                  /* mean distance to the nearest one */
     int8_t *not_flat;          /* [n] see hdi_plane */
     int32_t *size;             /* [n] corners of the star; negative: open between the last and the first */
     double *area;              /* [n] of the cells */
@@ -7457,39 +7433,24 @@ typedef struct hdi_cloud {
     double start[HDI_CELL_SIDES][2];   /* a regular polygon around the unit circle */
 } hdi_cloud;
 
-/* The tree of n points, and those of the cloud in its order. first [n]: the caller's numbers of the points;
- * NULL: their own. xyz and name of the cloud live in keep. */
-static hd_status hdi_cloud_order(hdi_cloud *cloud, hdi_tree *tree, const double *xyz, int32_t n,
-                                 const int32_t *first, hdi_scope *own, hdi_scope *keep) {
-    double *points = HDI_TAKE(keep, double, hdi_triple(n));
-    int32_t *name = HDI_TAKE(keep, int32_t, n), v;
-    if (own->e->status < 0 || hdi_tree_make(tree, xyz, n, own) < 0) return own->e->status;
-    for (v = 0; v < n; v++) {
-        name[v] = first ? first[tree->id[v]] : tree->id[v];
-        hdi_copy3(points + hdi_triple(v), hdi_at3(xyz, tree->id[v]));
-        tree->id[v] = v;
+static hd_status hdi_star_check(const int64_t *ptr, const int32_t *nbr, int32_t n, hd_error *e) {
+    int32_t i;
+    int64_t p;
+    if (ptr[0] != 0)
+        return hdi_fail_row(e, HD_ERR_STRUCTURE, "neighbours: offsets do not begin with 0", 0, -1,
+                            (double)ptr[0]);
+    for (i = 0; i < n; i++) {
+        if (ptr[i + 1] < ptr[i])
+            return hdi_fail_row(e, HD_ERR_STRUCTURE, "neighbours: offsets descend", i, -1,
+                                (double)ptr[i + 1]);
+        if (ptr[i + 1] - ptr[i] > HDI_STAR_MOST)
+            return hdi_fail_row(e, HD_ERR_TOO_LARGE, "neighbours: a point has more than 256", i, -1,
+                                (double)(ptr[i + 1] - ptr[i]));
+        for (p = ptr[i]; p < ptr[i + 1]; p++)
+            if (nbr[p] < 0 || nbr[p] >= n)
+                return hdi_fail_row(e, HD_ERR_INDEX, "neighbours: an id is out of range", i, -1, nbr[p]);
     }
-    cloud->n = n;
-    cloud->name = name;
-    cloud->xyz = tree->xyz = points;
     return HD_OK;
-}
-
-/* The nearest other places, the place itself before them. xyz and name live in keep. */
-static hd_status hdi_cloud_search(hdi_cloud *cloud, const hdi_places *places, int32_t neighbours,
-                                  hdi_scope *s, hdi_scope *keep) {
-    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
-    const int32_t n = places->n, k = (int32_t)hdi_least(n, 1 + (int64_t)neighbours);
-    int64_t *ptr = HDI_TAKE(s, int64_t, (int64_t)n + 1);
-    int32_t v;
-    hdi_tree tree;
-    cloud->ptr = ptr;
-    cloud->nbr = HDI_TAKE(s, int32_t, (int64_t)k * n);
-    if (hdi_cloud_order(cloud, &tree, places->xyz, n, places->first, &own, keep) < 0)
-        return hdi_scope_end(&own);
-    for (v = 0; v <= n; v++) ptr[v] = (int64_t)v * k;
-    (void)hdi_nearest(&tree, NULL, n, k, cloud->nbr, NULL, s->ctx, s->e);
-    return hdi_scope_end(&own);
 }
 
 static void hdi_cloud_reach_task(void *arg, int64_t begin, int64_t end) {
@@ -7506,20 +7467,56 @@ static void hdi_cloud_reach_task(void *arg, int64_t begin, int64_t end) {
     }
 }
 
-/* Distances to neighbours; h becomes the mean one to the nearest. */
-static hd_status hdi_cloud_measure(hdi_cloud *cloud, double *h, hdi_scope *s) {
-    int32_t i, n_near = 0;
-    cloud->nearest = HDI_TAKE(s, double, cloud->n);
-    cloud->reach = HDI_TAKE(s, double, cloud->n);
-    cloud->not_flat = HDI_TAKE(s, int8_t, cloud->n);
-    if (s->e->status < 0) return s->e->status;
-    hdi_parallel_ranges(s->ctx, cloud->n, HDI_POINTS_PER_TASK, hdi_cloud_reach_task, cloud);
-    for (i = 0; i < cloud->n; i++) {
-        n_near += cloud->nearest[i] > 0;
-        *h += cloud->nearest[i];
+/* The neighbours that the caller gives, renumbered. */
+static void hdi_cloud_given(const hdi_cloud *cloud, const hdi_input *in, int32_t *inverse) {
+    int64_t p, q = 0;
+    int32_t v;
+    for (v = 0; v < cloud->n; v++) inverse[cloud->name[v]] = v;
+    for (v = 0; v < cloud->n; v++) {
+        for (p = in->nbr_ptr[cloud->name[v]]; p < in->nbr_ptr[cloud->name[v] + 1]; p++)
+            cloud->nbr[q++] = inverse[in->nbr[p]];
+        cloud->ptr[v + 1] = q;
     }
-    *h /= n_near > 0 ? n_near : 1;
-    return HD_OK;
+}
+
+/* Points with their neighbours, in s; xyz and name live in keep. places: the k nearest of each, and before
+ * them it itself; NULL: all points, with those that the caller gives. */
+static hd_status hdi_cloud_make(hdi_cloud *cloud, const hdi_input *in, const hdi_places *places, int64_t k,
+                                hdi_scope *s, hdi_scope *keep) {
+    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
+    const double *xyz = places ? places->xyz : in->mesh.xyz;
+    const int32_t n = cloud->n = places ? places->n : in->mesh.n;
+    double *points = HDI_TAKE(keep, double, hdi_triple(n));
+    int32_t *name = HDI_TAKE(keep, int32_t, n), *inverse = HDI_TAKE(&own, int32_t, n), v, n_near = 0;
+    hdi_tree tree;
+    cloud->xyz = points;
+    cloud->name = name;
+    cloud->ptr = HDI_TAKE_ZERO(s, int64_t, (int64_t)n + 1);
+    cloud->nearest = HDI_TAKE(s, double, n);
+    cloud->reach = HDI_TAKE(s, double, n);
+    cloud->not_flat = HDI_TAKE(s, int8_t, n);
+    if (s->e->status < 0 || (!places && hdi_star_check(in->nbr_ptr, in->nbr, n, s->e) < 0))
+        return hdi_scope_end(&own);
+    k = hdi_least(k + 1, n);
+    cloud->nbr = HDI_TAKE(s, int32_t, places ? k * n : in->nbr_ptr[n]);
+    if (s->e->status < 0 || hdi_tree_make(&tree, xyz, n, &own) < 0) return hdi_scope_end(&own);
+    for (v = 0; v < n; v++) {
+        name[v] = places ? places->first[tree.id[v]] : tree.id[v];
+        hdi_copy3(points + hdi_triple(v), hdi_at3(xyz, tree.id[v]));
+        tree.id[v] = v;
+        cloud->ptr[v + 1] = (v + 1) * k;
+    }
+    tree.xyz = points;
+    if (!places) hdi_cloud_given(cloud, in, inverse);
+    else if (hdi_nearest(&tree, NULL, n, (int32_t)k, cloud->nbr, NULL, s->ctx, s->e) < 0)
+        return hdi_scope_end(&own);
+    hdi_parallel_ranges(s->ctx, n, HDI_POINTS_PER_TASK, hdi_cloud_reach_task, cloud);
+    for (v = 0, cloud->h = 0; v < n; v++) {
+        n_near += cloud->nearest[v] > 0;
+        cloud->h += cloud->nearest[v];
+    }
+    cloud->h /= n_near > 0 ? n_near : 1;
+    return hdi_scope_end(&own);
 }
 
 /* Area for each point where the last of k - 1 neighbours is so far away. */
@@ -7712,25 +7709,26 @@ static void hdi_cloud_masses(const hdi_cloud *cloud, hd_laplacian *lap, const hd
     rep->n_coincident = lap->n - cloud->n;
 }
 
-static hd_status hdi_lap_points(hd_laplacian *lap, const double *xyz, hd_error *e) {
+static hd_status hdi_lap_points(hd_laplacian *lap, const hdi_input *in, hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
     hd_point_report *rep = &lap->points;
-    double *work = HDI_TAKE(&s, double, lap->n);
+    const double *xyz = in->mesh.xyz;
+    double *work = HDI_TAKE(&s, double, lap->n), cut2;
     int32_t *copies = HDI_TAKE_ZERO(&s, int32_t, lap->n);
     hdi_places places;
     hdi_cloud cloud;
-    memset(&cloud, 0, sizeof cloud);
     if (!copies || hdi_places_make(&places, xyz, lap->n, &s) < 0) return hdi_scope_end(&s);
     if (places.n < 2) hdi_fail(e, HD_ERR_EMPTY, "points: fewer than two different ones");
-    if (e->status < 0 || hdi_cloud_search(&cloud, &places, rep->neighbours, &s, &s) < 0 ||
-        hdi_cloud_measure(&cloud, &lap->h, &s) < 0 || hdi_cloud_cells(&cloud, &s) < 0)
-        return hdi_scope_end(&s);
+    if (e->status < 0 || hdi_cloud_make(&cloud, in, &places, rep->neighbours, &s, &s) < 0 ||
+        hdi_cloud_cells(&cloud, &s) < 0) return hdi_scope_end(&s);
+    lap->h = cloud.h;
     if (rep->bandwidth2 == 0) rep->bandwidth2 = hdi_cloud_bandwidth(&cloud, (uint64_t *)(void *)work);
-    rep->cut_radius = sqrt(-4 * log(rep->weight_cut) * rep->bandwidth2);
+    cut2 = -4 * log(rep->weight_cut) * rep->bandwidth2;
+    rep->cut_radius = sqrt(cut2);
     hdi_cloud_masses(&cloud, lap, &places, copies, work);
     if (hdi_lap_rows(lap, work, e) >= 0 && hdi_progress(lap->context, "assemble", 0.4, e) >= 0 &&
         hdi_lap_places(lap, xyz, e) >= 0)
-        (void)hdi_cloud_assemble(lap, xyz, work, -4 * log(rep->weight_cut) * rep->bandwidth2, e);
+        (void)hdi_cloud_assemble(lap, xyz, work, cut2, e);
     lap->b_ratio = 1;
     lap->conserves = 1;
     return hdi_scope_end(&s);
@@ -7818,54 +7816,12 @@ static void hdi_star_task(void *arg, int64_t begin, int64_t end) {
     for (i = begin; i < end; i++) hdi_point_star(cloud, (int32_t)i);
 }
 
-static hd_status hdi_star_check(const int64_t *ptr, const int32_t *nbr, int32_t n, hd_error *e) {
-    int32_t i;
-    int64_t p;
-    if (ptr[0] != 0)
-        return hdi_fail_row(e, HD_ERR_STRUCTURE, "neighbours: offsets do not begin with 0", 0, -1,
-                            (double)ptr[0]);
-    for (i = 0; i < n; i++) {
-        if (ptr[i + 1] < ptr[i])
-            return hdi_fail_row(e, HD_ERR_STRUCTURE, "neighbours: offsets descend", i, -1,
-                                (double)ptr[i + 1]);
-        if (ptr[i + 1] - ptr[i] > HDI_STAR_MOST)
-            return hdi_fail_row(e, HD_ERR_TOO_LARGE, "neighbours: a point has more than 256", i, -1,
-                                (double)(ptr[i + 1] - ptr[i]));
-        for (p = ptr[i]; p < ptr[i + 1]; p++)
-            if (nbr[p] < 0 || nbr[p] >= n)
-                return hdi_fail_row(e, HD_ERR_INDEX, "neighbours: an id is out of range", i, -1, nbr[p]);
-    }
-    return HD_OK;
-}
-
-/* The caller's neighbours, points and lists renumbered. */
-static hd_status hdi_cloud_given(hdi_cloud *cloud, const hdi_input *in, hdi_scope *s, hdi_scope *keep) {
-    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
-    const int64_t *nbr_ptr = in->nbr_ptr;
-    const int32_t n = in->mesh.n;
-    int32_t *inverse = HDI_TAKE(&own, int32_t, n), v;
-    int64_t *ptr = HDI_TAKE(s, int64_t, (int64_t)n + 1), p, q = 0;
-    hdi_tree tree;
-    if (s->e->status < 0 || hdi_star_check(nbr_ptr, in->nbr, n, s->e) < 0) return hdi_scope_end(&own);
-    cloud->ptr = ptr;
-    cloud->nbr = HDI_TAKE(s, int32_t, nbr_ptr[n]);
-    if (hdi_cloud_order(cloud, &tree, in->mesh.xyz, n, NULL, &own, keep) < 0) return hdi_scope_end(&own);
-    for (v = 0; v < n; v++) inverse[cloud->name[v]] = v;
-    for (v = 0; v < n; v++) {
-        ptr[v] = q;
-        for (p = nbr_ptr[cloud->name[v]]; p < nbr_ptr[cloud->name[v] + 1]; p++)
-            cloud->nbr[q++] = inverse[in->nbr[p]];
-    }
-    ptr[n] = q;
-    return hdi_scope_end(&own);
-}
-
 /* All triangles of all stars, a third each in the end: tri in s, counted in *m. */
 static int32_t *hdi_stars(hdi_cloud *cloud, int32_t *m, hd_laplacian *lap, hdi_scope *s) {
     int32_t *tri, i, k;
     int64_t count = 0;
     cloud->size = HDI_TAKE(s, int32_t, cloud->n);
-    if (!cloud->size || hdi_cloud_measure(cloud, &lap->h, s) < 0) return NULL;
+    if (!cloud->size) return NULL;
     hdi_parallel_ranges(s->ctx, cloud->n, HDI_POINTS_PER_TASK, hdi_star_task, cloud);
     for (i = 0; i < cloud->n; i++) {
         count += cloud->size[i] < 0 ? -cloud->size[i] - 1 : cloud->size[i];
@@ -7894,17 +7850,14 @@ static int32_t *hdi_stars(hdi_cloud *cloud, int32_t *m, hd_laplacian *lap, hdi_s
 static hd_status hdi_star_soup(hdi_surface *z, hdi_cloud *cloud, hd_laplacian *lap, const hdi_input *in,
                                hdi_scope *s) {
     hdi_scope own = hdi_scope_begin(s->ctx, s->e), apart = hdi_scope_begin(s->ctx, s->e);
-    int32_t *tri, m = 0;
+    int32_t *tri = NULL, m = 0;
     hdi_places places;
-    memset(cloud, 0, sizeof *cloud);
-    if (in->nbr_ptr) (void)hdi_cloud_given(cloud, in, &own, s);
-    else if (hdi_places_make(&places, in->mesh.xyz, lap->n, &apart) >= 0) {
-        lap->points.n_coincident = lap->n - places.n;
-        (void)hdi_cloud_search(cloud, &places, lap->points.neighbours, &own, s);
-    }
-    if (hdi_scope_end(&apart) < 0) return hdi_scope_end(&own);
-    tri = hdi_stars(cloud, &m, lap, &own);
+    if (in->nbr_ptr || hdi_places_make(&places, in->mesh.xyz, lap->n, &apart) >= 0)
+        (void)hdi_cloud_make(cloud, in, in->nbr_ptr ? NULL : &places, lap->points.neighbours, &own, s);
+    if (hdi_scope_end(&apart) >= 0) tri = hdi_stars(cloud, &m, lap, &own);
     if (!tri || hdi_progress(s->ctx, "assemble", 0.2, s->e) < 0) return hdi_scope_end(&own);
+    lap->h = cloud->h;
+    lap->points.n_coincident = lap->n - cloud->n;
     if (hdi_soup_of_stars(z, cloud->xyz, cloud->n, tri, m, &lap->mesh, s) < 0) {
         /* the caller knows no faces */
         if (s->e->face >= 0) s->e->vertex = cloud->name[z->mesh.tri[3 * s->e->face]];
@@ -25468,7 +25421,7 @@ static hd_status hdi_lap_fill(hd_laplacian *lap, const hd_mesh *m, hdi_input *in
     hdi_scope s = hdi_scope_begin(lap->context, e), own = hdi_scope_begin(lap->context, e);
     hdi_surface z;
     if (hdi_input_open(in, m, stiffening != 0 ? stiffening : 1, &s) >= 0) {
-        if (HDI_HAS_POINTS && in->points && !in->flips) (void)hdi_lap_points(lap, in->mesh.xyz, e);
+        if (HDI_HAS_POINTS && in->points && !in->flips) (void)hdi_lap_points(lap, in, e);
         else (void)hdi_lap_surface(lap, &z, in, &own);
     }
     (void)hdi_scope_end(&own);
