@@ -4256,13 +4256,6 @@ static hd_csr hdi_csr_take(hdi_scope *s, int32_t n_rows, int32_t n_cols, int64_t
     return a;
 }
 
-static hd_csr hdi_csr_keep(hdi_scope *s, hd_csr a) {
-    hdi_keep(s, a.row_ptr);
-    hdi_keep(s, a.col);
-    hdi_keep(s, a.val);
-    return a;
-}
-
 static hd_status hdi_triplets_check(int32_t n_rows, int32_t n_cols, int64_t n, const int32_t *ti,
                                     const int32_t *tj, const double *tv, hd_error *e) {
     int64_t q;
@@ -4318,7 +4311,10 @@ static hd_status hdi_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_co
                 return hdi_fail_row(s->e, HD_ERR_NOT_FINITE,
                                     "triplets: the sum of those at one place is not finite", i, a.col[q],
                                     a.val[q]);
-    *out = hdi_csr_keep(s, a);
+    hdi_keep(s, a.row_ptr);
+    hdi_keep(s, a.col);
+    hdi_keep(s, a.val);
+    *out = a;
     return HD_OK;
 }
 
@@ -5126,40 +5122,30 @@ static void hdi_poly_frame(const hdi_mesh *mesh, int32_t f, const double *normal
     }
 }
 
-/* The cotangent of the smallest angle at the corners of f that bend inwards. */
-static double hdi_poly_steepest(const hdi_mesh *mesh, int32_t f, const double *normal) {
-    double most = -HUGE_VAL, in[3], out[3], cross[3];
-    int64_t c;
-    for (c = mesh->ptr[f]; c < mesh->ptr[f + 1]; c++) {
-        double across, along;
-        hdi_poly_edge(mesh, hdi_corner_before(mesh, c), in);
-        hdi_poly_edge(mesh, c, out);
-        hdi_cross3(in, out, cross);
-        if (hdi_dot3(cross, normal) < 0) continue;
-        across = hdi_norm3(cross);
-        along = hdi_dot3(in, out);
-        most = hdi_max(most, across > 0 ? -along / across : along < 0 ? HUGE_VAL : -HUGE_VAL);
-    }
-    return most;
-}
-
-/* The area of face f, and all that is kept of its corners. 0: it has none. weight: the largest square of a
- * gradient. */
+/* The area of face f, and all that is kept of its corners. 0: it has none. steepest: the cotangent of the
+ * smallest angle at corners that do not bend inwards; weight: the largest square of a gradient. */
 static double hdi_poly_measure(const hdi_mesh *mesh, int32_t f, double *steepest, double *weight) {
-    double normal[3], twice = hdi_poly_area(mesh, f, normal);
+    double normal[3], in[3], out[3], cross[3], twice = hdi_poly_area(mesh, f, normal);
     int64_t c;
     int q;
     if (!(twice > 0)) return 0;
+    *steepest = -HUGE_VAL;
     for (q = 0; q < 3; q++) normal[q] /= twice;
     for (c = mesh->ptr[f]; c < mesh->ptr[f + 1]; c++) {
-        double *g = mesh->g + 3 * c;
+        double *g = mesh->g + 3 * c, across, along;
+        hdi_poly_edge(mesh, hdi_corner_before(mesh, c), in);
+        hdi_poly_edge(mesh, c, out);
         hdi_sub3(hdi_corner_at(mesh, hdi_corner_before(mesh, c)),
                  hdi_corner_at(mesh, hdi_corner_after(mesh, c)), g);
         for (q = 0; q < 3; q++) g[q] /= sqrt(2 * twice);
         *weight = hdi_max(*weight, hdi_dot3(g, g));
+        hdi_cross3(in, out, cross);
+        across = hdi_norm3(cross);
+        along = hdi_dot3(in, out);
+        if (hdi_dot3(cross, normal) < 0) continue;
+        *steepest = hdi_max(*steepest, across > 0 ? -along / across : along < 0 ? HUGE_VAL : -HUGE_VAL);
     }
     if (mesh->ptr[f + 1] - mesh->ptr[f] > 3) hdi_poly_frame(mesh, f, normal);
-    *steepest = hdi_poly_steepest(mesh, f, normal);
     return twice / 2;
 }
 
@@ -5767,41 +5753,35 @@ typedef struct hdi_surface {
 
 static int32_t hdi_copies(const hdi_mesh *mesh, int32_t f) { return mesh->copies ? mesh->copies[f] : 1; }
 
-/* Different triangles of the m in tri as a mesh in s, corners ascending: by their smallest corners, then by
- * keys, second corner << 32 | third corner << 1 | odd. */
+static int hdi_face_differs(const hdi_pair *f) { return f[0].key != f[-1].key || f[0].id >> 1 != f[-1].id >> 1; }
+
+/* Different triangles of the m in tri as a mesh in s, corners ascending: by their first and second corner, and
+ * by third corner << 1 | odd. */
 static hd_status hdi_soup_faces(hdi_mesh *mesh, const int32_t *tri, int64_t m, int32_t n, hdi_scope *s) {
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
-    int64_t *ptr = HDI_TAKE_ZERO(&own, int64_t, (int64_t)n + 1), f, p, count = 0;
-    uint64_t *key = HDI_TAKE(&own, uint64_t, m);
-    int32_t i, *corner, *copies, *odd;
-    if (s->e->status < 0) return hdi_scope_end(&own);
-    for (f = 0; f < m; f++) ptr[hdi_face_low(tri + 3 * f)]++;
-    hdi_prefix_sum(ptr, n);
-    for (f = 0; f < m; f++) {
+    hdi_pair *face = HDI_TAKE(&own, hdi_pair, m);
+    int64_t f, count = 0;
+    int32_t *corner, *copies, *odd;
+    for (f = 0; f < m && face; f++) {
         const int32_t a = tri[3 * f], b = tri[3 * f + 1], c = tri[3 * f + 2];
-        const int32_t first = hdi_face_low(tri + 3 * f), last = hdi_high32(a, hdi_high32(b, c));
-        const int64_t middle = (int64_t)a + b + c - first - last, turned = ((a > b) + (b > c) + (a > c)) & 1;
-        key[ptr[first]++] = (uint64_t)(middle << 32 | (int64_t)last << 1 | turned);
+        const int64_t first = hdi_face_low(tri + 3 * f), last = hdi_high32(a, hdi_high32(b, c));
+        face[f].key = (uint64_t)(first << 32 | (a - first + b - last + c));
+        face[f].id = last << 1 | (((a > b) + (b > c) + (a > c)) & 1);
     }
-    hdi_rewind(ptr, n);
-    for (i = 0; i < n; i++) {
-        hdi_sort_keys(key + ptr[i], ptr[i + 1] - ptr[i]);
-        for (p = ptr[i]; p < ptr[i + 1]; p++) count += p == ptr[i] || key[p] >> 1 != key[p - 1] >> 1;
-    }
+    if (face) hdi_sort_pairs(face, m);
+    for (f = 0; f < m && face; f++) count += f == 0 || hdi_face_differs(face + f);
     corner = HDI_TAKE(s, int32_t, 3 * count);
     copies = HDI_TAKE_ZERO(s, int32_t, count);
     odd = HDI_TAKE_ZERO(s, int32_t, count);
-    for (i = 0, f = -1; odd && i < n; i++) {
-        for (p = ptr[i]; p < ptr[i + 1]; p++) {
-            if (p == ptr[i] || key[p] >> 1 != key[p - 1] >> 1) f++;
-            corner[3 * f] = i;
-            corner[3 * f + 1] = (int32_t)(key[p] >> 32);
-            corner[3 * f + 2] = (int32_t)((key[p] & 0xffffffffu) >> 1);
-            copies[f]++;
-            odd[f] += (int32_t)(key[p] & 1);
-        }
+    for (f = 0, count = -1; f < m && odd; f++) {
+        count += f == 0 || hdi_face_differs(face + f);
+        corner[3 * count] = (int32_t)(face[f].key >> 32);
+        corner[3 * count + 1] = (int32_t)(face[f].key & INT32_MAX);
+        corner[3 * count + 2] = (int32_t)(face[f].id >> 1);
+        copies[count]++;
+        odd[count] += (int32_t)(face[f].id & 1);
     }
-    hdi_mesh_clear(mesh, NULL, n, corner, (int32_t)count);
+    hdi_mesh_clear(mesh, NULL, n, corner, (int32_t)count + 1);
     mesh->copies = copies;
     mesh->odd = odd;
     return hdi_scope_end(&own);
