@@ -4777,23 +4777,25 @@ static hd_status hdi_within(hd_csr *out, const hdi_tree *t, const double *query,
     return hdi_scope_end(&passes);
 }
 
-/* Checks points, queries and sizes. *m becomes the number of queries. */
-static hd_status hdi_neighbours_check(const double *xyz, int32_t n, const double *query, int32_t *m,
-                                      hd_error *e) {
-    if (!HDI_HAS_POINTS) return HDI_LEFT_OUT(e, POINTS, "the search of neighbours");
-    if (n < 0 || (query && *m < 0)) return hdi_fail(e, HD_ERR_ARGUMENT, "neighbours: a size is negative");
-    if (!query) *m = n;
-    if (n > 0 && !xyz) return hdi_missing(e);
-    return hdi_points_check(xyz, n, e) < 0 || !query ? e->status : hdi_coordinates_check(query, *m, 1, e);
-}
-
-static hd_status hdi_neighbours_tree(hdi_tree *tree, const double *xyz, int32_t n, const hdi_call *c,
-                                     hdi_scope *s) {
-    *s = hdi_scope_begin(c->ctx, c->e);
+/* See hd_neighbours_nearest. */
+static hd_status hdi_neighbours(const double *xyz, int32_t n, const double *query, int32_t m, int32_t k,
+                                int32_t *index, double *distance2, hdi_call *c) {
+    hdi_scope s;
+    hdi_tree tree;
+    if (!HDI_HAS_POINTS) return HDI_LEFT_OUT(c->e, POINTS, "the search of neighbours");
+    if (!query) m = n;
+    hdi_refuse(n < 0 || m < 0, "neighbours: a size is negative", c->e);
+    if (c->e->status >= 0 && ((n > 0 && !xyz) || (m > 0 && !index))) return hdi_missing(c->e);
+    hdi_refuse(k < 1, "neighbours: k is not positive", c->e);
+    if (c->e->status < 0 || hdi_points_check(xyz, n, c->e) < 0 ||
+        (query && hdi_coordinates_check(query, m, 1, c->e) < 0) ||
+        hdi_progress(c->ctx, "neighbours", 0, c->e) < 0) return c->e->status;
     hdi_hold(c->ctx);
-    if (hdi_progress(c->ctx, "neighbours", 0, c->e) < 0 || hdi_tree_make(tree, xyz, n, s) < 0)
-        return c->e->status;
-    return hdi_progress(c->ctx, "neighbours", 0.1, c->e);
+    s = hdi_scope_begin(c->ctx, c->e);
+    if (hdi_tree_make(&tree, xyz, n, &s) >= 0 && hdi_progress(c->ctx, "neighbours", 0.1, c->e) >= 0)
+        (void)hdi_nearest(&tree, query, m, k, index, distance2, c->ctx, c->e);
+    hdi_let_go(c->ctx);
+    return hdi_scope_end(&s);
 }
 
 /* ==== [10] geometry ====
@@ -5753,10 +5755,13 @@ typedef struct hdi_surface {
 
 static int32_t hdi_copies(const hdi_mesh *mesh, int32_t f) { return mesh->copies ? mesh->copies[f] : 1; }
 
-static int hdi_face_differs(const hdi_pair *f) { return f[0].key != f[-1].key || f[0].id >> 1 != f[-1].id >> 1; }
+/* From the one before. */
+static int hdi_face_differs(const hdi_pair *f) {
+    return f[0].key != f[-1].key || f[0].id >> 1 != f[-1].id >> 1;
+}
 
-/* Different triangles of the m in tri as a mesh in s, corners ascending: by their first and second corner, and
- * by third corner << 1 | odd. */
+/* Different triangles of the m in tri as a mesh in s, corners ascending: by their first and second corner,
+ * and by third corner << 1 | odd. */
 static hd_status hdi_soup_faces(hdi_mesh *mesh, const int32_t *tri, int64_t m, int32_t n, hdi_scope *s) {
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
     hdi_pair *face = HDI_TAKE(&own, hdi_pair, m);
@@ -6327,7 +6332,8 @@ typedef struct hdi_ring {
 /* Blocks of vertices are worked on by so many tasks, each with its own work arrays. */
 enum { HDI_STRANDS = 8 };
 
-typedef struct hdi_rows {
+/* Rows of a mesh, and work. Updates of a mesh keep one; those of the caller's matrices need nothing. */
+typedef struct hd_moving {
     hdi_mesh mesh;
     hd_laplacian *lap;          /* whose rows are filled; NULL: edges are counted */
     hdi_lump lump;
@@ -6339,11 +6345,6 @@ typedef struct hdi_rows {
     int32_t *count;             /* [n] how many others have faces with a vertex; then work */
     char *border;               /* [n] 1: at an edge with one face */
 } hdi_rows;
-
-/* What an update needs: of meshes the faces that had an area, and work; of the caller's matrices nothing. */
-typedef struct hd_moving {
-    hdi_rows fill;
-} hdi_moving;
 
 /* Vertices held at zero. */
 typedef struct hd_holding {
@@ -6855,8 +6856,8 @@ static void hdi_lap_values(hd_laplacian *lap, hdi_rows *x) {
 
 /* ---- meshes that move ---- */
 
-static hdi_moving *hdi_moving_new(hd_laplacian *lap, hd_error *e) {
-    return lap->moving = HDI_TAKE_ZERO(hdi_lap_keep(lap, e), hdi_moving, 1);
+static hdi_rows *hdi_moving_new(hd_laplacian *lap, hd_error *e) {
+    return lap->moving = HDI_TAKE_ZERO(hdi_lap_keep(lap, e), hdi_rows, 1);
 }
 
 /* Keeps a mesh and its rows, all that lives in s, with a copy of the faces. The corners of those that were
@@ -6864,7 +6865,7 @@ static hdi_moving *hdi_moving_new(hd_laplacian *lap, hd_error *e) {
 static hd_status hdi_moving_make(hd_laplacian *lap, const hdi_rows *from, hdi_scope *s) {
     const hdi_mesh *mesh = &from->mesh;
     const int64_t n = hdi_face_begin(mesh, mesh->m), m = mesh->m;
-    hdi_moving *x = hdi_moving_new(lap, s->e);
+    hdi_rows *x = hdi_moving_new(lap, s->e);
     int32_t *tri = HDI_TAKE(s, int32_t, n), *face = mesh->face ? HDI_TAKE(s, int32_t, m) : NULL, f;
     int64_t *ptr = hdi_is_poly(mesh) ? HDI_TAKE(s, int64_t, m + 1) : NULL, c = 0;
     if (s->e->status < 0) return s->e->status;
@@ -6874,11 +6875,11 @@ static hd_status hdi_moving_make(hd_laplacian *lap, const hdi_rows *from, hdi_sc
     }
     if (face) memcpy(face, mesh->face, (size_t)m * sizeof *face);
     if (ptr) memcpy(ptr, mesh->ptr, ((size_t)m + 1) * sizeof *ptr);
-    x->fill = *from;
-    x->fill.mesh.xyz = NULL;
-    x->fill.mesh.tri = tri;
-    x->fill.mesh.face = face;
-    x->fill.mesh.ptr = ptr;
+    *x = *from;
+    x->mesh.xyz = NULL;
+    x->mesh.tri = tri;
+    x->mesh.face = face;
+    x->mesh.ptr = ptr;
     hdi_scope_move(hdi_lap_keep(lap, s->e), s);
     return HD_OK;
 }
@@ -6899,7 +6900,7 @@ static hd_status hdi_moving_masses(const hdi_mesh *mesh, hd_error *e) {
 
 /* Measures the faces anew and fills the rows again. Nothing of the Laplacian changes before all is fine. */
 static hd_status hdi_lap_update(hd_laplacian *lap, const double *xyz, hd_error *e) {
-    hdi_rows *x = &lap->moving->fill;
+    hdi_rows *x = lap->moving;
     hd_mesh_report *to = &lap->mesh, rep;
     if (hdi_points_check(xyz, lap->n, e) < 0) return e->status;
     x->mesh.xyz = xyz;
@@ -7204,12 +7205,14 @@ static hd_status hdi_pair_check(const hdi_pair_row *r, int32_t v, hd_error *e) {
     return HD_OK;
 }
 
-/* L, B, b = B 1 and diag(B); how dominant is B's diagonal; is L 1 = 0, up to the rounding of its entries.
- * Rows of vertices held are looked at, too. root [n]: sqrt(diag(L)), raised by what the tolerance of the
- * check for symmetry leaves open; vertices without mass have no limit. */
+/* L, B, b = B 1 and diag(B); how dominant is B's diagonal; is L 1 = 0, up to the rounding of its entries;
+ * and L_ij^2 <= L_ii L_jj, as in every positive semi-definite L. Rows of vertices held are looked at, too.
+ * root [n]: sqrt(diag(L)), raised by what the tolerance of the check for symmetry leaves open; vertices
+ * without mass have no limit. */
 static hd_status hdi_pair_fill(hd_laplacian *lap, const hd_csr *L, const hd_csr *B, double *root,
                                hd_error *e) {
     int32_t v;
+    int64_t p;
     lap->conserves = 1;
     lap->b_ratio = 1;
     lap->area = 0;
@@ -7222,6 +7225,11 @@ static hd_status hdi_pair_fill(hd_laplacian *lap, const hd_csr *L, const hd_csr 
         if (i == HD_ROW_INERT || (i == HD_ROW_HELD && r.b_diag == 0 && r.b_off.high == 0)) continue;
         if (hdi_pair_check(&r, v, e) < 0) return e->status;
         root[v] = sqrt(r.l_diag + 1e-12 * r.l_abs);
+        for (p = L->row_ptr[v]; p < L->row_ptr[v + 1] && L->col[p] < v; p++)
+            if (fabs(L->val[p]) > (1 + 1e-10) * root[v] * root[L->col[p]])
+                return hdi_fail_row(e, HD_ERR_NOT_POSITIVE,
+                                    "L is not positive semi-definite: an entry is larger than the diagonal "
+                                    "entries of its row and column allow", L->col[p], v, L->val[p]);
         if (fabs(r.l_sum.high + r.l_sum.low) > 4 * DBL_EPSILON * r.l_abs) lap->conserves = 0;
         if (r.b_off.high > 0) {                  /* Gershgorin */
             const double rest = (r.b_diag - r.b_off.high) - r.b_off.low;
@@ -7231,23 +7239,6 @@ static hd_status hdi_pair_fill(hd_laplacian *lap, const hd_csr *L, const hd_csr 
         if (i < 0) continue;
         lap->mass[i] = r.b_mass;
         lap->b_diag[i] = r.b_diag;
-    }
-    return HD_OK;
-}
-
-/* What every positive semi-definite L satisfies: L_ij^2 <= L_ii L_jj. root as above. */
-static hd_status hdi_pair_semidefinite(const hd_csr *L, const double *root, hd_error *e) {
-    int32_t v;
-    int64_t p;
-    for (v = 0; v < L->n_rows; v++) {
-        for (p = L->row_ptr[v]; p < L->row_ptr[v + 1]; p++) {
-            const int32_t c = L->col[p];
-            if (c <= v || !(fabs(L->val[p]) > (1 + 1e-10) * root[v] * root[c])) continue;
-            return hdi_fail_row(e, HD_ERR_NOT_POSITIVE,
-                                "L is not positive semi-definite: an entry is larger than the "
-                                "diagonal entries of its row and column allow",
-                                v, c, L->val[p]);
-        }
     }
     return HD_OK;
 }
@@ -7264,8 +7255,7 @@ static hd_status hdi_pair_next(hd_laplacian *next, const hd_laplacian *lap, cons
         next->mass = HDI_TAKE(s, double, lap->n_active);
         next->b_diag = lap->B ? HDI_TAKE(s, double, lap->n_active) : next->mass;
     }
-    if (s->e->status >= 0 && hdi_pair_fill(next, L, B, root, s->e) >= 0)
-        (void)hdi_pair_semidefinite(L, root, s->e);
+    if (s->e->status >= 0) (void)hdi_pair_fill(next, L, B, root, s->e);
     return hdi_scope_end(&own);
 }
 
@@ -24278,7 +24268,7 @@ static hd_status hdi_geo_make(hd_geodesic *g, const hdi_input *in, int32_t neigh
 
 /* The plan for new coordinates. Queries do not read g->lap: until g->ready is 0 nothing has changed. */
 static hd_status hdi_geo_update(hd_geodesic *g, const double *xyz, hd_error *e) {
-    const hdi_mesh *moving = &g->lap->moving->fill.mesh;
+    const hdi_mesh *moving = &g->lap->moving->mesh;
     double *mass = g->x;
     int32_t f;
     if (hdi_lap_update(g->lap, xyz, e) < 0) return e->status;
@@ -25472,16 +25462,8 @@ HEATDIFF_API hd_status hd_neighbours_nearest(const double *xyz, int32_t n, const
                                              int32_t k, int32_t *index, double *distance2, hd_context *ctx,
                                              hd_error *err) {
     hdi_call c;
-    hdi_scope s;
-    hdi_tree tree;
-    if (hdi_enter(&c, ctx, err) < 0 || hdi_neighbours_check(xyz, n, query, &m, c.e) < 0 || !HDI_HAS_POINTS)
-        return c.e->status;
-    if (k < 1) return hdi_fail(c.e, HD_ERR_ARGUMENT, "neighbours: k is not positive");
-    if (m > 0 && !index) return hdi_missing(c.e);
-    if (hdi_neighbours_tree(&tree, xyz, n, &c, &s) >= 0)
-        (void)hdi_nearest(&tree, query, m, k, index, distance2, c.ctx, c.e);
-    hdi_let_go(c.ctx);
-    return hdi_scope_end(&s);
+    if (hdi_enter(&c, ctx, err) < 0) return c.e->status;
+    return hdi_neighbours(xyz, n, query, m, k, index, distance2, &c);
 }
 
 HEATDIFF_API hd_status hd_laplacian_apply(const hd_laplacian *lap, double alpha, double beta, const double *x,
