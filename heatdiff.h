@@ -13418,11 +13418,11 @@ typedef struct hdi_fit {
     double top, floor, tol;      /* lambda_max; floor/top and tol relative to it and to the largest value */
     int32_t n, m, most;          /* points; support points, at most so many */
     double *x;                   /* [HDI_FIT_ROOM] points, scaled */
-    double *f, *r, *u;           /* [count + 1][HDI_FIT_ROOM] values, approximation; weights of the error */
+    double *f, *u;               /* [count + 1][HDI_FIT_ROOM] values; weights of the error */
     char *support;               /* [HDI_FIT_ROOM] */
     double *work;                /* [rows (most + 3)], rows = count HDI_FIT_ROOM + most + 2 */
-    double *z, *w;               /* [most + 2] support points, weights; w[m] is that of infinity */
-    double *fz;                  /* [count][most + 2] values at the support points */
+    int32_t at[2 * HD_MAX_POLES + 2];   /* support points */
+    double w[2 * HD_MAX_POLES + 2];     /* their weights; w[m] is that of infinity */
 } hdi_fit;
 
 /* A set in terms of scaled points, and its error at the points, weighted. */
@@ -13490,25 +13490,6 @@ static hd_status hdi_fit_load(hdi_fit *k, int32_t j, const hd_filter *filter, hd
 
 /* ---- the AAA step ---- */
 
-/* The point with the largest error becomes a support point, of all filters. */
-static void hdi_fit_choose(hdi_fit *k) {
-    double most = -1;
-    int32_t i, j, at = 0;
-    for (j = 0; j < k->count; j++) {
-        const int32_t from = j * HDI_FIT_ROOM;
-        for (i = 0; i < k->n; i++) {
-            const double off = k->u[from + i] * fabs(k->f[from + i] - k->r[from + i]);
-            if (k->support[i] || !(off > most)) continue;
-            most = off;
-            at = i;
-        }
-    }
-    k->support[at] = 1;
-    k->z[k->m] = k->x[at];
-    for (j = 0; j < k->count; j++) k->fz[j * (k->most + 2) + k->m] = k->f[j * HDI_FIT_ROOM + at];
-    k->m++;
-}
-
 /* The right singular vector w of the smallest singular value of the triangle R [c c], in columns of ld, by
  * inverse iteration. Among values that are close any vector serves. */
 static void hdi_fit_null(double *R, int64_t ld, int32_t c, double *w) {
@@ -13542,10 +13523,10 @@ static void hdi_fit_weights(hdi_fit *k) {
     int32_t i, j, q;
     for (q = 0; q < k->count; q++) {
         const double *f = k->f + q * HDI_FIT_ROOM, *u = k->u + q * HDI_FIT_ROOM;
-        const double *fz = k->fz + q * (k->most + 2);
         for (i = 0; i < k->n; i++) {
             if (k->support[i]) continue;
-            for (j = 0; j < k->m; j++) A[j * rows + row] = u[i] * (f[i] - fz[j]) / (k->x[i] - k->z[j]);
+            for (j = 0; j < k->m; j++)
+                A[j * rows + row] = u[i] * (f[i] - f[k->at[j]]) / (k->x[i] - k->x[k->at[j]]);
             if (c > k->m) A[k->m * rows + row] = u[i] * f[i];
             b[row++] = 0;
         }
@@ -13555,25 +13536,24 @@ static void hdi_fit_weights(hdi_fit *k) {
     hdi_fit_null(A, rows, c, k->w);
 }
 
-/* The approximations at all points. Returns their largest error. */
-static double hdi_fit_values(hdi_fit *k) {
+/* The largest error of the approximations, of all filters, and the point where it is. */
+static double hdi_fit_values(const hdi_fit *k, int32_t *at) {
     double most = 0;
     int32_t i, j, q;
     for (q = 0; q < k->count; q++) {
         const double *f = k->f + q * HDI_FIT_ROOM, *u = k->u + q * HDI_FIT_ROOM;
-        const double *fz = k->fz + q * (k->most + 2);
-        double *r = k->r + q * HDI_FIT_ROOM;
         for (i = 0; i < k->n; i++) {
-            double top = 0, bottom = k->w[k->m];
-            r[i] = f[i];
+            double top = 0, bottom = k->w[k->m], off;
             if (k->support[i]) continue;
             for (j = 0; j < k->m; j++) {
-                const double s = k->w[j] / (k->x[i] - k->z[j]);
-                top += s * fz[j];
+                const double s = k->w[j] / (k->x[i] - k->x[k->at[j]]);
+                top += s * f[k->at[j]];
                 bottom += s;
             }
-            r[i] = bottom != 0 ? top / bottom : 0;
-            most = hdi_max(most, u[i] * fabs(f[i] - r[i]));
+            off = u[i] * fabs(f[i] - (bottom != 0 ? top / bottom : 0));
+            if (most > 0 && !(off > most)) continue;
+            most = off;
+            *at = i;
         }
     }
     return most;
@@ -13586,12 +13566,13 @@ static hd_c64 hdi_fit_inverse(hd_c64 b) {
     return hdi_cabs(b) > 1e-150 ? hdi_cdiv(hdi_c(1, 0), b) : hdi_c(1e150, 0);
 }
 
-/* p'/p of the denominator's polynomial p(x) = prod (x - z_j) (w_m + sum w_j/(x - z_j)). */
+/* p'/p of the denominator's polynomial p(x) = prod (x - z_j) (w_m + sum w_j/(x - z_j)) for support
+ * points z_j. */
 static hd_c64 hdi_fit_slope(const hdi_fit *k, hd_c64 x) {
     hd_c64 d = hdi_c(k->w[k->m], 0), d1 = hdi_c(0, 0), sum = d1;
     int32_t j;
     for (j = 0; j < k->m; j++) {
-        const hd_c64 inv = hdi_fit_inverse(hdi_csub(x, hdi_c(k->z[j], 0)));
+        const hd_c64 inv = hdi_fit_inverse(hdi_csub(x, hdi_c(k->x[k->at[j]], 0)));
         const hd_c64 s = hdi_cscale(k->w[j], inv);
         d = hdi_cadd(d, s);
         d1 = hdi_csub(d1, hdi_cmul(s, inv));
@@ -13605,10 +13586,11 @@ static hd_c64 hdi_fit_slope(const hdi_fit *k, hd_c64 x) {
 static void hdi_fit_zeros(const hdi_fit *k, hd_c64 *p) {
     int32_t i, j, step, moving = 1;
     for (i = 0; i < k->m; i++) {
+        const double z = k->x[k->at[i]];
         double gap = 1;
         for (j = 0; j < k->m; j++)
-            if (j != i) gap = hdi_min(gap, fabs(k->z[j] - k->z[i]));
-        p[i] = hdi_c(k->z[i] - 0.3 * gap, (i % 2 ? 0.6 : -0.5) * gap);
+            if (j != i) gap = hdi_min(gap, fabs(k->x[k->at[j]] - z));
+        p[i] = hdi_c(z - 0.3 * gap, (i % 2 ? 0.6 : -0.5) * gap);
     }
     for (step = 0; step < HDI_FIT_ABERTH && moving; step++) {
         moving = 0;
@@ -13681,27 +13663,24 @@ static int32_t hdi_fit_idle(const hdi_fit *k, hd_rational *set) {
     return n - kept;
 }
 
-/* The best set that up to `most` support points give at these points. Its weights are those of the last
- * filter, its error is the largest of all. */
+/* The best set that up to `most` support points give at these points: each is the point with the largest
+ * error so far. Its weights are those of the last filter, its error is the largest of all. */
 static void hdi_fit_run(hdi_fit *k, hdi_fitted *best) {
     const double goal = k->count > 1 ? HDI_FIT_MARGIN * k->tol : k->tol;
-    const int32_t known = k->constant ? 1 : 0;
+    const int32_t most = k->most + (k->constant ? 1 : 0);
+    int32_t q, at = 0;
     hdi_fitted s;
-    int32_t i, q;
     memset(best, 0, sizeof *best);
     memset(k->support, 0, (size_t)k->n);
-    for (q = 0; q < k->count; q++) {
-        const double *f = k->f + q * HDI_FIT_ROOM, *u = k->u + q * HDI_FIT_ROOM;
-        for (i = 0; i < k->n; i++) {             /* without poles */
-            k->r[q * HDI_FIT_ROOM + i] = known ? f[k->n - 1] : 0;
-            best->error = hdi_max(best->error, u[i] * fabs(f[i]));
-        }
-    }
-    for (k->m = 0; k->m < k->most + known && best->error > goal;) {
+    k->m = 0;
+    k->w[0] = 0;
+    best->error = hdi_fit_values(k, &at);        /* without poles */
+    while (k->m < most && best->error > goal) {
         double off;
-        hdi_fit_choose(k);
+        k->support[at] = 1;
+        k->at[k->m++] = at;
         hdi_fit_weights(k);
-        off = hdi_fit_values(k);
+        off = hdi_fit_values(k, &at);
         if (k->count > 1 && off > HDI_FIT_CLOSE * k->tol && k->m < k->most) continue;
         hdi_fit_poles(k, &s.set);
         for (s.error = 0, q = 0; q < k->count; q++) {
@@ -13827,7 +13806,6 @@ static double hdi_fit_floor(const hdi_fit *k, const hd_filter *filter, hd_error 
 static hd_status hdi_fit_begin(hdi_fit *k, int32_t count, const hd_filter *filters, double lambda_max,
                                hdi_scope *s) {
     const uint64_t sets = count > 1 ? HDI_FIT_MOST : 1, room = HDI_FIT_ROOM;
-    uint64_t cols;
     int32_t q, i;
     memset(k, 0, sizeof *k);
     k->list = filters;
@@ -13841,17 +13819,12 @@ static hd_status hdi_fit_begin(hdi_fit *k, int32_t count, const hd_filter *filte
         k->floor = hdi_min(k->floor, hdi_fit_floor(k, filters + q, s->e));
     }
     if (s->e->status < 0) return s->e->status;
-    cols = (uint64_t)k->most + 2;
     k->x = HDI_TAKE(s, double, room);
     k->f = HDI_TAKE(s, double, (sets + 1) * room);
-    k->r = HDI_TAKE(s, double, sets * room);
     k->u = HDI_TAKE(s, double, (sets + 1) * room);
     k->support = HDI_TAKE(s, char, room);
-    k->work = HDI_TAKE(s, double, (sets * room + cols) * (cols + 1));
-    k->z = HDI_TAKE(s, double, 2 * cols);
-    k->fz = HDI_TAKE(s, double, sets * cols);
+    k->work = HDI_TAKE(s, double, (sets * room + (uint64_t)k->most + 2) * ((uint64_t)k->most + 3));
     if (s->e->status < 0) return s->e->status;
-    k->w = k->z + cols;
     hdi_fit_add(k, 0, s->e);
     for (i = 0; i < HDI_FIT_LOG + HDI_FIT_LINEAR; i++)
         hdi_fit_add(k, hdi_fit_point(i, HDI_FIT_LOG, HDI_FIT_LINEAR, k->floor), s->e);
