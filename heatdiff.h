@@ -3109,14 +3109,14 @@ typedef struct hdi_single {
 /* R = F - (t L + theta B) X in rows [begin, end) of blocks X [n][8]: four complex numbers side by side, as in
  * packs, or eight real ones. Row i of block r is at x + i stride + 8 r. l NULL: without L. b NULL: B is the
  * diagonal mass. Number q has its own theta: re, and im twice the same four, or zeros with real numbers.
- * Complex block r has one real F, f[r], for all four; number q of a real block has f[q], with entries f_step
- * apart. NULL is zero. So u[r] += Re(coef' x), with - Im(coef) in coef[4..7]; real u[q] += coef[q] x. */
+ * Complex block r has one real F, f[r], for all four; number q of a real block has f[q]. NULL is
+ * zero. So u[r] += Re(coef' x), with - Im(coef) in coef[4..7]; real u[q] += coef[q] x. */
 typedef struct hdi_residual {
     const int64_t *row_ptr;
     const int32_t *col;
     const double *l, *b, *mass;
     const double *x;
-    int64_t stride, f_step;
+    int64_t stride;
     int32_t begin, end, n_blocks;
     int real;
     double t, re[HDI_PACK], im[HDI_PACK], coef[HDI_PACK];
@@ -3968,7 +3968,7 @@ HDI_PART void HDI_OF(residual_end)(const int real, const hdi_residual *g, int64_
     hdi_vec sum = HDI_OF(all)(0);
     int q, k;
     for (q = 0; real && q < 8; q++)
-        if (g->f[q]) f[q] = g->f[q][i * g->f_step];
+        if (g->f[q]) f[q] = g->f[q][i];
     HDI_EACH(k, HDI_VECS) {
         const int at = k * HDI_WIDTH, other = (k + HDI_VECS / 2) % HDI_VECS;
         const hdi_vec v = HDI_OF(load)(x + at), im = HDI_OF(load)(g->im + at);
@@ -4027,7 +4027,7 @@ HDI_KERNEL void HDI_OF(residual)(const hdi_residual *g) {
     for (i = g->begin; i < g->end; i++) {
         for (r = 0; i % 8 == 0 && r < HDI_PACK; r++) {   /* more arrays than the processor looks ahead for */
             if (g->u[r]) HDI_PREFETCH_AT(g->u[r], i + 64);
-            if (g->f[r]) HDI_PREFETCH_AT(g->f[r], (i + 64) * g->f_step);
+            if (g->f[r]) HDI_PREFETCH_AT(g->f[r], i + 64);
         }
         r = 0;
         if (HDI_RESIDUAL_BLOCKS > 1 && HDI_HAS_POLE_FACTORS && !g->real)
@@ -14444,44 +14444,21 @@ static void hdi_warm_products(const hdi_lane *lane, const double *d, int32_t p, 
     }
 }
 
-/* Solves the Hermitian system h c = 1 (m x m, rows of HDI_WARM_MAX) by L D L^*, in place. Where rounding has
- * eaten a pivot the direction is of no use, and its coefficient is zero. */
-static void hdi_warm_solve(hd_c64 h[][HDI_WARM_MAX], hd_c64 *c, int32_t m) {
-    int32_t i, j, k;
-    for (i = 0; i < m; i++) {
-        const double full = h[i][i].re;
-        c[i] = hdi_c(1, 0);
-        for (j = 0; j < i; j++) {
-            hd_c64 s = h[i][j];
-            for (k = 0; k < j; k++)
-                s = hdi_csub(s, hdi_cscale(h[k][k].re, hdi_cmul(h[i][k], hdi_cconj(h[j][k]))));
-            h[i][j] = h[j][j].re > 0 ? hdi_cscale(1 / h[j][j].re, s) : hdi_c(0, 0);
-            h[i][i].re -= h[j][j].re * hdi_cabs2(h[i][j]);
-            c[i] = hdi_csub(c[i], hdi_cmul(h[i][j], c[j]));
-        }
-        if (h[i][i].re <= 1e-13 * full) h[i][i].re = 0;
-    }
-    for (i = m; i-- > 0;) {
-        c[i] = h[i][i].re > 0 ? hdi_cscale(1 / h[i][i].re, c[i]) : hdi_c(0, 0);
-        for (j = i + 1; j < m; j++) {
-            if (h[i][i].re > 0) c[i] = hdi_csub(c[i], hdi_cmul(hdi_cconj(h[j][i]), c[j]));
-        }
-    }
-}
-
-/* The start of system p from the solutions of poles p + 1 to last, whose inner products are in gram. A point
- * is a pole or its conjugate. */
+/* The start of system p from the solutions of poles p + 1 to last, whose inner products are in gram: the
+ * combination with the smallest residual, H c = 1 (Hermitian, as a real system), less by a part of the
+ * diagonal that rounding has eaten. A point is a pole or its conjugate. */
 static void hdi_warm_start(hdi_lane *lane, const hdi_family *fam, int32_t p, int32_t last,
                            hdi_gram *gram) {
     const int32_t n = fam->lap->n_active;
-    hd_c64 h[HDI_WARM_MAX][HDI_WARM_MAX], c[HDI_WARM_MAX], shift[HDI_WARM_MAX], sum = hdi_c(0, 0);
-    hd_c64 *HDI_RESTRICT x = lane->k[p].x;
+    hd_c64 shift[HDI_WARM_MAX], sum = hdi_c(0, 0), *HDI_RESTRICT x = lane->k[p].x;
+    double A[4 * HDI_WARM_MAX * HDI_WARM_MAX], c[2 * HDI_WARM_MAX] = {0};
     int32_t m = 0, i, j, pole[HDI_WARM_MAX], conj[HDI_WARM_MAX];
     for (i = p + 1; i <= last; i++) {
         for (j = 0; j < (fam->set.theta[i].im == 0 ? 1 : 2); j++, m++) {
             pole[m] = i;
             conj[m] = j;
             shift[m] = hdi_csub(fam->set.theta[p], j ? hdi_cconj(fam->set.theta[i]) : fam->set.theta[i]);
+            c[m] = 1;
         }
     }
     for (i = 0; i < m; i++) {
@@ -14489,15 +14466,19 @@ static void hdi_warm_start(hdi_lane *lane, const hdi_family *fam, int32_t p, int
             /* x_i^* D x_j and x_i' D x_j for the poles behind the points */
             const hd_c64 *g = gram[pole[j]][pole[i] - pole[j]];
             hd_c64 v = conj[i] == conj[j] ? g[0] : g[1];
-            if (conj[j]) v = hdi_cconj(v);
-            h[i][j] = hdi_cmul(hdi_cmul(hdi_cconj(shift[i]), shift[j]), v);
+            v = hdi_cmul(hdi_cmul(hdi_cconj(shift[i]), shift[j]), conj[j] ? hdi_cconj(v) : v);
+            if (i == j) v = hdi_c(v.re * (1 + 1e-13), 0);
+            A[2 * m * j + i] = A[2 * m * i + j] = v.re;
+            A[2 * m * (m + j) + m + i] = A[2 * m * (m + i) + m + j] = v.re;
+            A[2 * m * j + m + i] = A[2 * m * (m + i) + j] = v.im;
+            A[2 * m * (m + j) + i] = A[2 * m * i + m + j] = -v.im;
         }
     }
-    hdi_warm_solve(h, c, m);
-    for (i = 0; i < m; i++) sum = hdi_cadd(sum, c[i]);
+    hdi_least_squares(A, 2 * m, 2 * m, c);
+    for (i = 0; i < m; i++) sum = hdi_cadd(sum, hdi_c(c[i], c[m + i]));
     if (sum.re == 0 && sum.im == 0) return;
     for (i = 0; i < m; i++) {
-        const hd_c64 w = hdi_cdiv(c[i], sum), *HDI_RESTRICT y = lane->k[pole[i]].x;
+        const hd_c64 w = hdi_cdiv(hdi_c(c[i], c[m + i]), sum), *HDI_RESTRICT y = lane->k[pole[i]].x;
         const double sign = conj[i] ? -1 : 1;
         if (!hdi_cfinite(w)) continue;
         for (j = 0; j < n; j++) x[j] = hdi_cadd(x[j], hdi_cmul(w, hdi_c(y[j].re, sign * y[j].im)));
@@ -14786,7 +14767,6 @@ static hdi_residual hdi_residual_open(const hd_laplacian *lap, double t, const d
     g.t = t;
     g.x = x;
     g.stride = HDI_PACK * (int64_t)n_blocks;
-    g.f_step = 1;
     g.end = lap->n_active;
     g.n_blocks = n_blocks;
     g.sum = sum;
