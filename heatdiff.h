@@ -10,10 +10,9 @@
        K_t f = a0 f - sum_i a_i (t L + theta_i B)^-1 B f,
 
    which takes a handful of sparse complex-symmetric systems. It needs no eigenvectors and cuts no part of the
-   spectrum off. Eigenpairs serve only where t is so large that few of them are left. Every answer comes with
-   a bound on its error. The method is that of G. Patane and M. Spagnuolo, "Heat
-   diffusion kernel and distance on surface meshes and point sets", Computers & Graphics 37, 2013, called the
-   paper below.
+   spectrum off; eigenpairs serve only where t is so large that few are left. Every answer comes with a bound
+   on its error. The method is that of G. Patane and M. Spagnuolo, "Heat diffusion kernel and distance on
+   surface meshes and point sets", Computers & Graphics 37, 2013, called the paper below.
 
    In one C or C++ file:                             Everywhere else:
 
@@ -43,8 +42,7 @@
      border   natural (Neumann): no heat leaves through a border. On request the border, or any vertices, are
               held at zero (Dirichlet), and heat leaves there. Separate components exchange no heat at all.
      mass     Vertices without mass (in no face, or only in faces of zero area) are inert: K_t leaves their
-              values as they are. What is said of them below holds for vertices held at zero as well, except
-              that K_t f is zero there.
+              values as they are. The same holds for vertices held at zero, but K_t f is zero there.
      norm     |f|_B = sqrt(f' B f). Errors are relative in this norm or relative to the largest value; each
               report field says which.
 
@@ -102,9 +100,8 @@
      HEATDIFF_FILENAME         "name" of this file, which includes itself for AVX2 and AVX-512. Define it only
                                if you renamed the file and the compiler has no __FILE_NAME__
      HEATDIFF_NO_SIMD          plain C only, no kernels for AVX2 and AVX-512, no NEON
-     HEATDIFF_USE_BLAS         dgemm of a BLAS (32-bit integers) for large fronts of real factors, where only
-                               plain C kernels exist. It is twice as fast as those. The kernels for AVX2 and
-                               AVX-512 are faster than OpenBLAS and stay in use
+     HEATDIFF_USE_BLAS         dgemm of a BLAS (32-bit integers) for large fronts of real factors, twice as
+                               fast as plain C. Kernels for AVX2 and AVX-512 are faster still, and stay
      HEATDIFF_NO_LARGE_PAGES   no madvise for large pages on Linux
      HEATDIFF_NO_...           leaves out what a program does not use, see the table below
      Wherever the file is included, the same everywhere:
@@ -114,9 +111,8 @@
 
    Smaller builds (macros beside the implementation)
      The linker drops functions that nobody calls (gcc -ffunction-sections -Wl,--gc-sections). These switches
-     also drop code that an option could still ask for. All functions stay declared and defined. What is left
-     out returns HD_ERR_NOT_BUILT, and the text of the error names the switch. HD_METHOD_AUTO chooses among
-     the methods that are there.
+     also drop code that an option could ask for. What is left out returns HD_ERR_NOT_BUILT, and the text of
+     the error names the switch. HD_METHOD_AUTO chooses among the methods that are there.
      HEATDIFF_NO_DIRECT        all factorisations: hd_ldl_*, method krylov; implies NO_POLE_FACTORS,
                                NO_GEODESIC, NO_SPECTRUM. For hd_laplacian_matrices b_ratio then comes
                                from Gershgorin's circles alone
@@ -126,9 +122,8 @@
                                implies NO_DIFFUSION. The error bounds of method direct are larger then, and
                                times so large that only the means are left take longer
      HEATDIFF_NO_DIFFUSION     hd_heat_distance, hd_heat_distance_pairs, hd_heat_sample
-     HEATDIFF_NO_SPECTRUM      eigenpairs: hd_spectrum_*. Without them, distances at large t and all answers
-                               where heat flows out need factors of their poles and are less accurate; their
-                               bounds say so
+     HEATDIFF_NO_SPECTRUM      eigenpairs: hd_spectrum_*. Distances at large t, and all answers where heat
+                               flows out, are less accurate then; their bounds say so
      HEATDIFF_NO_ITERATIVE     iterations: method iterative, hd_shifted_solve. Your choice of poles then needs
                                method direct, and factors that do not fit byte_limit are an error
      HEATDIFF_NO_GEODESIC      hd_geodesic_*
@@ -140,23 +135,19 @@
      Vertices and faces are counted in 32 bits, non-zeros and offsets in 64. The library prints nothing, opens
      no file and never exits.
      Arithmetic must be that of doubles (FLT_EVAL_METHOD 0). With x87 registers (32-bit x86 without -msse2
-     -mfpmath=sse) or -ffast-math results are as accurate, but neither bits nor bounds near rounding are
-     promised.
+     -mfpmath=sse) or -ffast-math neither bits nor bounds near rounding are promised.
 
    Threads
      There is no global or thread-local state. One object serves one thread at a time, and so does one
-     context. One exception: plans and hd_spectrum_create only read their Laplacian. So several threads may
-     share one if every plan and spectrum has a context of its own, by its options.
-
+     context. But plans and hd_spectrum_create only read their Laplacian: several threads may share one if
+     every plan and spectrum has a context of its own, by its options.
      The library's own threads belong to a context. They start when the first long work needs them (20 to 50
-     microseconds each), sleep between calls, and end with the last object made with the context; functions
-     that make no object end them before they return. The calling thread works too, and never waits for a
-     thread that has not begun. Results are the same to the last bit for any number of threads.
-     Nested use: if your own threads each have a plan, set hd_context.n_threads = 1 there.
-     fork: the child process may use and free the objects of its parent. Do not fork while another thread is
-     inside the library.
-     With glibc older than 2.34 link with -lpthread; without it programs run on one thread. On Windows the
-     implementation includes windows.h.
+     microseconds each), sleep between calls, and end with the last object made with the context. The calling
+     thread works too, and never waits for a thread that has not begun. Results are the same to the last bit
+     for any number of threads. If your own threads each have a plan, set hd_context.n_threads = 1 there.
+     A forked child may use and free the objects of its parent. Do not fork while another thread is inside
+     the library. With glibc older than 2.34 link with -lpthread; without it programs run on one thread. On
+     Windows the implementation includes windows.h.
 
    Licence: MIT or public domain, at your choice; see the end of the file. */
 
@@ -237,9 +228,9 @@ typedef struct hd_error {
  * callback of the wrong type is noticed. */
 typedef enum hd_progress { HD_PROGRESS_CONTINUE = 0x100, HD_PROGRESS_CANCEL = 0x200 } hd_progress;
 
-/* Memory functions. alloc returns NULL if there is no memory; its blocks must be aligned to 8 bytes. free
- * receives the size that the block was allocated with. Blocks are never resized, so there is no realloc. The
- * library calls both functions from the calling thread only. The stacks of threads do not come from them. */
+/* Memory functions, called from the calling thread only. alloc returns NULL if there is no memory; its blocks
+ * must be aligned to 8 bytes. free receives the size that the block was allocated with. There is no realloc.
+ * The stacks of threads do not come from them. */
 typedef struct hd_allocator {
     void *(*alloc)(void *user, size_t size);
     void (*free)(void *user, void *block, size_t size);
@@ -251,8 +242,7 @@ typedef void (*hd_task)(void *arg, int64_t index, int32_t worker);
 
 /* Instruction sets of the dense kernels. GCC and Clang on x86-64 compile several versions; other compilers
  * and processors use plain C, with the multiply-adds of NEON on AArch64. Results of two instruction sets
- * agree up to rounding. Within one instruction set results are the same to the last bit for any number of
- * threads. */
+ * agree up to rounding. */
 typedef enum hd_simd {
     HD_SIMD_AUTO = 0,           /* the best set that the processor has */
     HD_SIMD_NONE,               /* plain C */
@@ -273,24 +263,17 @@ typedef struct hd_context {
     uint64_t byte_limit;
     uint64_t allocation_limit;  /* most calls of alloc; 0: no limit */
 
-    /* Called now and then during long work, by the calling thread only. done runs from 0 to 1 within a stage.
-     * If it cancels, the running function frees everything and returns HD_ERR_CANCELLED. The stages:
-     *   "neighbours"    search of neighbours among points
-     *   "assemble"      building L and B
-     *   "flip edges"    intrinsic Delaunay triangulation
-     *   "order"         elimination order
-     *   "analyse"       symbolic analysis
-     *   "factor"        numerical factorisation
-     *   "invert"        selected inversion
-     *   "precondition"  preconditioners
-     *   "solve"         solves and iterations
-     *   "sample"        farthest points */
+    /* Called now and then during long work, by the calling thread only. done runs from 0 to 1 within a stage:
+     * "neighbours" (search among points), "assemble" (L and B), "flip edges" (Delaunay), "order" and
+     * "analyse" (of an elimination), "factor", "invert" (selected inversion), "precondition", "solve" (also
+     * iterations), "sample" (farthest points). If it cancels, the running function frees everything and
+     * returns HD_ERR_CANCELLED. */
     hd_progress (*progress)(void *user, const char *stage, double done);
     void *progress_user;
 
     /* Runs task(arg, i, worker) for every i in [0, n_tasks), in any order, and returns when all are done. The
-     * calling thread is worker 0. NULL: the library's own threads. Some tasks work for as long as they find
-     * something to do: as many threads as there are should run them side by side. None waits for another. */
+     * calling thread is worker 0. Some tasks work for as long as they find something to do, so they should
+     * run side by side; none waits for another. NULL: the library's own threads. */
     void (*parallel_for)(void *user, int64_t n_tasks, hd_task task, void *arg);
     void *parallel_user;
     /* Threads that work at the same time, the calling one included. 0: as many as the process may use
@@ -307,8 +290,7 @@ typedef struct hd_context {
     int32_t n_holders;          /* objects made with this context: its threads end with the last one */
 } hd_context;
 
-/* How many threads work for this context: n_threads, or by default the processors that the process may use.
- * 1 if this build has no threads. For NULL: that of a context with all defaults. Cost: O(1). */
+/* How many threads work for this context (NULL: one with all defaults). 1 if this build has no threads. */
 HEATDIFF_API int32_t hd_context_threads(const hd_context *ctx);
 
 /* A sparse matrix by compressed rows. In every row the columns ascend and occur once. val may be NULL in a
@@ -376,15 +358,14 @@ typedef struct hd_laplacian_opts {
     hd_laplacian_kind kind;
     hd_context *context;
     hd_triangulation triangulation;
-    /* Kind polygon: weight of the stabilising term for face functions that the gradient cannot see. It has no
-     * effect on triangles; larger values stiffen faces with more corners. Default 1, at most 1e100. */
+    /* Kind polygon: weight of the stabilising term for face functions that the gradient cannot see; larger
+     * values stiffen faces of more than three corners. Default 1, at most 1e100. */
     double stiffening;
     /* Exponential weights: s, a squared length. Default: from the sampling, see hd_laplacian_create. */
     double bandwidth2;
     double weight_cut;          /* exponentials below this are left out, in (0, 1); default 1e-8 */
-    /* Delaunay and tufted: all edges are lengthened by one small number, so that every triangle satisfies the
-     * triangle inequality with a margin of mollify times the mean edge length. Default 1e-5; at most 1;
-     * negative: lengths stay as they are. */
+    /* Delaunay and tufted: all edges are lengthened by one number, so that every triangle inequality has a
+     * margin of mollify times the mean edge length. Default 1e-5; at most 1; negative: not at all. */
     double mollify;
     /* Points: nearest neighbours that determine the tangent plane and the cell or star of a point, 6..128;
      * default 30. */
@@ -392,12 +373,12 @@ typedef struct hd_laplacian_opts {
     /* 1: hd_laplacian_update (triangles and polygons in space, as given) or hd_laplacian_update_matrices may
      * be called. Takes 90 bytes more for each triangle, or 65 for each corner of polygons. */
     int32_t updatable;
-    /* Meshes: natural, or Dirichlet: every vertex at the border of the faces used is held at zero. On a mesh
-     * without border that holds nothing. Points and matrices do not know their border: use held. */
+    /* Meshes: natural, or Dirichlet: every vertex at the border of the faces used is held at zero. Points and
+     * matrices do not know their border: use held. */
     hd_border border;
-    /* Further vertices that are held at zero, with any Laplacian: [n_held] ids, repeated ones do no harm. L
-     * and B lose the rows and columns of all held vertices, so that K_t is the exponential of what is left
-     * and heat flows out there. With updatable the pair of all vertices is kept as well: twice the memory. */
+    /* Further vertices that are held at zero: [n_held] ids, repeated ones do no harm. L and B lose their rows
+     * and columns, so that heat flows out there. With updatable the pair of all vertices is kept as well:
+     * twice the memory. */
     int32_t n_held;
     const int32_t *held;
     int32_t end_zero;
@@ -407,8 +388,8 @@ typedef enum hd_shape { HD_TRIANGLES = 0, HD_POLYGONS, HD_POINTS } hd_shape;
 
 /* A surface as the caller has it: for Laplacians and geodesic plans. Clear the struct, then set what there
  * is. Positions need not be aligned. No array is used after the call.
- * NOTE: vertex buffers often repeat vertices along seams of texture coordinates or normals. Repeated vertices
- * are different vertices, and no heat crosses such a seam. Weld them first. */
+ * NOTE: vertex buffers often repeat vertices along seams of texture coordinates or normals, and no heat
+ * crosses such a seam. Weld them first. */
 typedef struct hd_mesh {
     int32_t begin_zero;
     hd_shape shape;
@@ -439,8 +420,8 @@ typedef struct hd_mesh_report {
     int32_t n_faces;                 /* given */
     int32_t n_faces_used;            /* assembled */
     int32_t n_repeated_corner;       /* left out: two corners are the same vertex */
-    /* Left out: the cross product of two edges is exactly zero. Polygons:
-     * fewer than three corners, or a zero vector area (for more than three corners, up to rounding). */
+    /* Left out: the cross product of two edges is exactly zero. Polygons: fewer than three corners, or a zero
+     * vector area (for more than three corners, up to rounding). */
     int32_t n_zero_area;
     /* Left out: same corners as an earlier face. Polygons: in the same cyclic order, in either direction. */
     int32_t n_repeated_face;
@@ -478,8 +459,8 @@ typedef struct hd_point_report {
     int32_t n_border;                /* places whose cell ends at the hull of their neighbours */
     int32_t most_in_row;             /* most non-zeros in a row of L, diagonal included */
     /* Places whose nearest neighbours spread across their plane more than 0.45 times as far as along it: at
-     * creases, rims and tips, in strong noise, and where two sheets of the surface are closer than about 1.5
-     * spacings. Planes are uncertain there, and heat may cross to the other sheet. */
+     * creases, rims and tips, in noise, and where two sheets are closer than about 1.5 spacings. Planes are
+     * uncertain there, and heat may cross to the other sheet. */
     int32_t n_not_flat;
 } hd_point_report;
 
@@ -501,8 +482,8 @@ typedef struct hd_laplacian {
     double area;
     hd_csr L;                   /* n_active x n_active, every diagonal entry present */
     double *B;                  /* [L.nnz] values of B on the pattern of L, or NULL: B = diag(mass) */
-    /* [n_active] b = B 1, the masses of the vertices. A full B without the columns of held vertices leaves
-     * less next to them; the heat that is there is b'u with the b of the Laplacian that holds none. */
+    /* [n_active] b = B 1, the masses of the vertices. Next to held vertices a full B leaves less; the heat
+     * that is there is b'u with the b of the Laplacian that holds none. */
     double *mass;
     double *b_diag;             /* [n_active] diagonal of B; the same array as mass if B is diagonal */
     int32_t *vertex;            /* [n_active] row -> vertex */
@@ -559,8 +540,8 @@ typedef struct hd_rational {
      * rather than for exp. */
     double max_error;           /* max |exp(x) - c(x)| on (-inf, 0] */
     double max_weighted_error;  /* max (1 + |x|) |exp(x) - c(x)|; 0: unbounded or unknown */
-    /* 0, or a filter f: queries pass this t, and only this. Then c(-t lambda) stands for f(lambda), and
-     * errors are those of f on [0, lambda_max], measured on a grid. See hd_rational_fit. */
+    /* 0, or the t of a filter f, see hd_rational_fit: c(-t lambda) stands for f(lambda), and errors are those
+     * of f on [0, lambda_max], measured on a grid. */
     double t;
     double lambda_max;          /* filters: queries refuse a Laplacian with larger eigenvalues */
     double largest;             /* filters: max |f| */
@@ -571,8 +552,7 @@ typedef enum hd_filter_kind {
     HD_FILTER_OWN = 0,          /* f(lambda, user) */
     HD_FILTER_HEAT,             /* exp(-a lambda) */
     /* exp(-(a - log lambda)^2 / (2 b^2)), 0 at 0. a is the energy, b the width sigma. The diagonal divided by
-     * its integral is the wave kernel signature (Aubry, Schlickewei, Cremers 2011, eq. (4)). That integral is
-     * the sum of the filter over all eigenvalues, and the sum of the diagonal of HD_KERNEL_OPERATOR. */
+     * the trace is the wave kernel signature (Aubry, Schlickewei, Cremers 2011, eq. (4)). */
     HD_FILTER_WAVE,
     HD_FILTER_MEXICAN_HAT,      /* lambda exp(-a lambda): the wavelet -d/dt K_t at t = a (Hou, Qin 2012) */
     HD_FILTER_RESOLVENT,        /* 1 / (1 + a lambda) */
@@ -604,10 +584,9 @@ typedef struct hd_filter {
 } hd_filter;
 
 typedef enum hd_method {
-    /* The cheapest by a model of flops and bytes, within the byte limit. When a few columns or fields, one
-     * after another at one t, have cost more than factors of all poles, the plan changes to direct; another t
-     * begins the count anew. No clock: the same calls take the same methods. Answers of two methods differ
-     * within their bounds. */
+    /* The cheapest by a model of flops and bytes, within the byte limit. When columns or fields, one after
+     * another at one t, have cost more than factors of all poles, the plan changes to direct. No clock: the
+     * same calls take the same methods. Answers of two methods differ within their bounds. */
     HD_METHOD_AUTO = 0,
     HD_METHOD_ITERATIVE,        /* a Krylov method for each pole, or Lanczos for the exponential */
     HD_METHOD_DIRECT,           /* all poles factorised in one sweep: for many fields or columns */
@@ -624,8 +603,7 @@ typedef enum hd_ordering {
 
 typedef enum hd_solver {
     HD_SOLVER_AUTO = 0,         /* Lanczos for small t if it costs less, else cocg */
-    /* Conjugate orthogonal CG (van der Vorst, Melissen 1990); CG for real poles. */
-    HD_SOLVER_COCG,
+    HD_SOLVER_COCG,             /* conjugate orthogonal CG (van der Vorst, Melissen 1990); real poles: CG */
     /* CS-MINRES (Choi 2013). Plain MINRES is for Hermitian matrices and converges to a wrong result here. It
      * needs a real positive definite preconditioner: that of t L + |theta| B. */
     HD_SOLVER_MINRES = 3,       /* there is no 2 */
@@ -655,11 +633,10 @@ typedef struct hd_heat_opts {
     const hd_rational *rational;
     double tol;                 /* the solver's part of |error|_B / |answer|_B; default 1e-9 */
     int32_t max_iterations;     /* per system; default 20000 */
-    /* Of the methods that factorise. Auto: one to three columns by one real factor take a minimum degree
-     * order on meshes of 40K to 120K vertices. A plan that is also asked for other answers keeps both. */
+    /* Of the methods that factorise. Auto: few columns by one real factor may take a minimum degree order; a
+     * plan that is also asked for other answers keeps both. */
     hd_ordering ordering;
-    /* [n] with HD_ORDERING_OWN: perm[k] is the vertex eliminated k-th. Vertices without mass may stand
-     * anywhere. It is copied. */
+    /* [n] with HD_ORDERING_OWN: perm[k] is the vertex eliminated k-th, those without mass anywhere */
     const int32_t *perm;
     hd_context *context;        /* default: the Laplacian's */
     int32_t end_zero;
@@ -671,9 +648,9 @@ typedef enum hd_kernel {
 } hd_kernel;
 
 /* Sources, a column of the answer for each. A source is a vertex, or points inside faces, on edges or at
- * vertices, each with a weight, or a curve through points. With the hat functions of the vertices it is a
- * functional c of fields: c_v is what it takes of vertex v. Values between vertices are those of fields that
- * are linear on each face. Clear the struct, then set count and vertex, or see hd_vertices. */
+ * vertices, each with a weight, or a curve through points. It is a functional c of fields that are linear on
+ * each face: c_v is what it takes of vertex v. Clear the struct, then set count and vertex, or see
+ * hd_vertices. */
 typedef struct hd_sources {
     int32_t begin_zero;
     int32_t count;
@@ -684,8 +661,7 @@ typedef struct hd_sources {
     int32_t corners;
     /* 1: curves of straight pieces from each point of a source to its next, at least two points. Two in
      * turn must lie in one face, edges and corners included. A curve has weight 1 for each unit of its
-     * length, and integrals along it are exact for fields that are linear on faces. To close it, repeat
-     * the first point. */
+     * length. To close it, repeat the first point. */
     int32_t curve;
     const int32_t *vertex;      /* [corners] of each point */
     /* [corners] of each point, barycentric coordinates: not negative, and of sum 1 up to 1e-6. NULL: the mean
@@ -722,12 +698,10 @@ typedef enum hd_evidence {
 } hd_evidence;
 
 /* What happened, and how large the error can be. For several fields, columns or times: the worst of them.
- *
- * The error bound has three parts: the rational approximation of exp or of a filter, the iterative solver,
- * and rounding.
- * error_bound is their sum. It bounds the largest error of any value returned, relative to the largest
- * |value| returned: of each field, column and time, or of the whole list for entries and pairs. Where a part
- * has HD_EVIDENCE_NONE it does not apply. Above 1e-2 the status is HD_WARN_ACCURACY. */
+ * error_bound is the sum of three parts: of the rational approximation of exp or of a filter, the iterative
+ * solver, and rounding. It bounds the largest error of any value returned, relative to the largest |value|
+ * returned: of each field, column and time, or of the whole list for entries and pairs. Above 1e-2 the status
+ * is HD_WARN_ACCURACY. */
 typedef struct hd_report {
     hd_status status;
     hd_error error;             /* filled if status < 0 */
@@ -791,9 +765,9 @@ typedef struct hd_spectrum {
     /* residuals above tol and above what rounding of L x alone makes, or above a tenth of lambda itself */
     int32_t n_poor;
     int32_t n_constant;         /* the first pairs are the constants of components; their residual is 0 */
-    /* 1: proven complete. No pair is missing: L - shift B has as many negative pivots as there are
-     * eigenvalues found below the shift, and rounding cannot change the count, because no eigenvalue found is
-     * within shift_margin of the shift. 0: the count was not reliable; the status is HD_WARN_ACCURACY. */
+    /* 1: proven complete. L - shift B has as many negative pivots as there are eigenvalues found below the
+     * shift, and none found is so near (shift_margin) that rounding could change the count. 0: the count was
+     * not reliable; the status is HD_WARN_ACCURACY. */
     int32_t proven;
     double shift, shift_margin;
     double next;                /* all other eigenvalues are at least this; HUGE_VAL: there are none */
@@ -841,8 +815,8 @@ typedef struct hd_cost {
 typedef struct hd_estimate {
     hd_method method;           /* that would be taken */
     const char *reason;         /* why, in a few words */
-    /* 1: figures of factorisations come from the analysis of the pattern. 0: they are guesses before it,
-     * within a factor of about three, because iterations cost less or the analysis itself does not fit. */
+    /* 1: figures of factorisations come from the analysis of the pattern. 0: they are guesses, within a
+     * factor of about three, because iterations cost less or the analysis itself does not fit. */
     int32_t analysed;
     hd_cost cost[HD_METHOD_KRYLOV + 1];   /* by hd_method. cost[HD_METHOD_AUTO] is that of method */
     double bytes_in_use;        /* by the context, now */
@@ -856,14 +830,12 @@ typedef enum hd_geodesic_mass {
 
 /* How heat meets the border while it flows. Distances themselves always have a natural border. */
 typedef enum hd_geodesic_border {
-    HD_GEODESIC_BORDER_NATURAL = 0, /* Neumann: no heat leaves; fronts bend to meet the border at a right
-                                       angle */
+    HD_GEODESIC_BORDER_NATURAL = 0, /* Neumann: no heat leaves; fronts meet the border at a right angle */
     HD_GEODESIC_BORDER_MEAN,        /* the mean of the two others (Crane et al. 2013, section 3.4). Takes a
                                        third factor. Fronts hardly bend, and t may be larger, such as 8 h^2 */
-    HD_GEODESIC_BORDER_DIRICHLET    /* zero at the border: fronts bend to follow it. No source may lie there,
-                                       nor in a face with a corner there. From places near it distances are
-                                       too short: in a square of 40 x 40 cells by 0.05 on average, against
-                                       0.007 with the natural border */
+    HD_GEODESIC_BORDER_DIRICHLET    /* zero at the border: fronts bend to follow it, and distances from places
+                                       near it are too short. No source may lie there, nor in a face with a
+                                       corner there */
 } hd_geodesic_border;
 
 typedef struct hd_geodesic_opts {
@@ -910,9 +882,8 @@ typedef struct hd_geodesic_report {
 /* ==== [D] functions ==== */
 /* Common to all functions. Arguments come in this order: the object that is made, or that the function works
  * on; what is asked for; the input; the output; report; err. A count stands before its array, except for
- * meshes and points, which are xyz, n. Functions return hd_status. After an error nothing
- * is left allocated, *out is unchanged, and output arrays hold unspecified numbers.
- * opts, ctx, report and err may be NULL.
+ * meshes and points, which are xyz, n. opts, ctx, report and err may be NULL. After an error nothing is left
+ * allocated, *out is unchanged, and output arrays hold unspecified numbers.
  * Errors lists what says where in the input the fault lies, or has a special cause. Besides, any function may
  * return HD_ERR_ARGUMENT (a pointer is missing, a size is negative, an option is out of its range or was not
  * cleared), HD_ERR_TOO_LARGE, HD_ERR_MEMORY, HD_ERR_MEMORY_LIMIT, HD_ERR_CANCELLED and HD_ERR_NOT_BUILT. */
@@ -995,29 +966,27 @@ HEATDIFF_API hd_status hd_laplacian_create(hd_laplacian **out, const hd_mesh *me
  * h      unit length of the caller's mesh, for lap->h; 0 if there is none
  * The pair has the union of both patterns. Explicit zeros stay if their mirror entry is stored too.
  * Errors HD_ERR_STRUCTURE, HD_ERR_INDEX, HD_ERR_NOT_FINITE, HD_ERR_NOT_SYMMETRIC (row, column; value);
- *        HD_ERR_NOT_FINITE (row, value: the sizes of its entries in L or in B add up to
- *        more than 1e100), HD_ERR_NOT_POSITIVE (row, column, value; so are entries B_ii below 1e-100),
- *        HD_ERR_EMPTY, HD_ERR_MEMORY, HD_ERR_CANCELLED
+ *        HD_ERR_NOT_FINITE (row, value: the sizes of its entries in L or in B add up to more than 1e100),
+ *        HD_ERR_NOT_POSITIVE (row, column, value; also B_ii below 1e-100), HD_ERR_EMPTY
  * Cost   linear, except for a factorisation of B */
 HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L, const hd_csr *B,
                                              double h, const hd_laplacian_opts *opts,
                                              hd_error *err);
 
-/* y = (alpha L + beta B) x for a field on the vertices. y is 0 at vertices without mass. Uses the Laplacian's
- * context.
+/* y = (alpha L + beta B) x for a field on the vertices. y is 0 at vertices without mass.
  * x, y   [n]; they must not overlap
- * Cost   one pass over L and B; allocates 16 bytes for each row, for the time of the call */
+ * Cost   one pass over L and B, and 16 bytes for each row */
 HEATDIFF_API hd_status hd_laplacian_apply(const hd_laplacian *lap, double alpha, double beta,
                                           const double *x, double *y, hd_error *err);
 
 /* New positions for the same faces, of a Laplacian with the option updatable. Plans notice: their next query
  * computes with the new values, on the ordering and analysis that they have.
  * mesh   n as before, and positions; its faces are not read
- * Rows, pattern, held vertices and faces that were left out stay as they are. Faces that lose their area are
- * counted and add nothing. All values, components and reports are those of a new Laplacian, to the last bit.
- * All arrays keep their places.
- * Errors HD_ERR_ARGUMENT (sizes: as of hd_laplacian_create), HD_ERR_NOT_FINITE (vertex);
- *        HD_ERR_EMPTY (vertex: none of its faces has an area any more). After an error nothing has changed
+ * Rows, pattern, held vertices and faces that were left out stay as they are; faces that lose their area are
+ * counted and add nothing. All values, components and reports are those of a new Laplacian, to the last bit,
+ * in the same arrays.
+ * Errors as of hd_laplacian_create; HD_ERR_EMPTY (vertex: none of its faces has an area any more). After an
+ *        error nothing has changed
  * Cost   one pass over faces and entries. Not while a plan on lap is at work */
 HEATDIFF_API hd_status hd_laplacian_update(hd_laplacian *lap, const hd_mesh *mesh, hd_error *err);
 
@@ -1029,7 +998,7 @@ HEATDIFF_API hd_status hd_laplacian_update(hd_laplacian *lap, const hd_mesh *mes
  * The pair is that of a new Laplacian of these matrices, to the last bit, if that has the same pattern.
  * Errors as hd_laplacian_matrices; HD_ERR_STRUCTURE (row, column, value: an entry that was not there). After
  *        an error nothing has changed
- * Cost   linear, with room for new values, unless B has to be factorised as in hd_laplacian_matrices */
+ * Cost   as hd_laplacian_matrices */
 HEATDIFF_API hd_status hd_laplacian_update_matrices(hd_laplacian *lap, const hd_csr *L,
                                                     const hd_csr *B, double h, hd_error *err);
 
@@ -1044,7 +1013,7 @@ HEATDIFF_API void hd_laplacian_free(hd_laplacian *lap);  /* NULL is fine */
  * xyz        [3 n] the points, as of hd_laplacian_points
  * query      [3 m] the query points, at most 1e100; NULL: all n points, m = n
  * The result is exact.
- * Errors     HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (vertex, or row for a query), HD_ERR_MEMORY, HD_ERR_CANCELLED
+ * Errors     HD_ERR_NOT_FINITE (vertex, or row for a query)
  * Cost       O((n + k m) log n)
  * Source     Friedman, Bentley, Finkel 1977 */
 HEATDIFF_API hd_status hd_neighbours_nearest(const double *xyz, int32_t n, const double *query,
@@ -1056,7 +1025,6 @@ HEATDIFF_API hd_status hd_neighbours_nearest(const double *xyz, int32_t n, const
 /* A built-in set: HD_POLES_UNIFORM of degree 1..14, HD_POLES_KERNEL of degree 2..14, or HD_POLES_DIAGONAL of
  * degree 2..14. tools/poles.py computes and checks the constants.
  * Errors HD_ERR_ARGUMENT for any other kind or degree (value: a wrong degree)
- * Cost   O(1): a table
  * Source Cody, Meinardus, Varga 1969; Carpenter, Ruttan, Varga 1984 */
 HEATDIFF_API hd_status hd_rational_exp(hd_rational *out, hd_pole_kind kind, int32_t degree,
                                        hd_error *err);
@@ -1065,12 +1033,11 @@ HEATDIFF_API hd_status hd_rational_exp(hd_rational *out, hd_pole_kind kind, int3
  * out    [n_times] out[q] is the set for t[q]
  * t      [n_times] > 0, in any order
  * tol    bound of max_weighted_error of every set
- * ctx    for scratch memory
- * theta_i/t[q] is the same for all q. So the factors of L + (theta_i/t[q]) B serve every time, and only the
+ * theta_i/t[q] is the same for all q, so the factors of L + (theta_i/t[q]) B serve every time, and only the
  * weights differ. The number of pole pairs is the smallest multiple of four that reaches tol for all times.
  * At tol = 1e-6 it is 8 for times that differ by a factor of 10, 12 for a factor of 100, and 16 for 1000.
- * Errors HD_ERR_ARGUMENT: a time is not positive and finite (row), or there is no such set
- *        (value: the ratio of the times); HD_ERR_MEMORY
+ * Errors HD_ERR_ARGUMENT: a time is not positive and finite (row), or there is no such set (value: the ratio
+ *        of the times)
  * Cost   under a millisecond for each time
  * Source Lopez-Fernandez, Palencia, Schaedle 2006, with free poles instead of poles on a hyperbola */
 HEATDIFF_API hd_status hd_rational_shared(hd_rational *out, int32_t n_times, const double *t,
@@ -1092,9 +1059,9 @@ HEATDIFF_API double hd_rational_eval(const hd_rational *set, double x);
  * are 16 or 100; one of them alone takes 8 to 10.
  * Classical distances become d^2 = (e_i - e_j)' f(B^-1 L) B^-1 (e_i - e_j), and weighted ones the same with
  * B f(B^-1 L). So f is what is summed in d^2, for example exp(-2 t lambda), and should not be negative.
- * Errors     HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (value: the eigenvalue), HD_ERR_BREAKDOWN (f is so large that
- *            a weight overflows), all with column: which filter; HD_ERR_MEMORY. HD_WARN_ACCURACY: these are
- *            the best sets found, and an error is above its tol
+ * Errors     HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (value: the eigenvalue), HD_ERR_BREAKDOWN (a weight
+ *            overflows), all with column: which filter. HD_WARN_ACCURACY: these are the best sets found, and
+ *            an error is above its tol
  * Cost       some 2 to 50 milliseconds, and 50 to 200 thousand values of f; a second for 16 filters, three to
  *            seven for 100
  * Source     Nakatsukasa, Sete, Trefethen 2018, with weights refitted to the poles; Lietaert, Meerbergen,
@@ -1128,8 +1095,8 @@ typedef struct hd_solve_report {
  * theta  not on (-inf, 0]; no unit
  * rhs, x [n] on the vertices; they may be the same array. x is 0 at vertices without mass
  * report filled also if the status is HD_ERR_NOT_CONVERGED
- * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (row: of rhs, or of x if it overflows), HD_ERR_NOT_CONVERGED,
- *        HD_ERR_BREAKDOWN, HD_ERR_MEMORY, HD_ERR_CANCELLED; HD_WARN_ACCURACY
+ * Errors HD_ERR_NOT_FINITE (row: of rhs, or of x if it overflows), HD_ERR_NOT_CONVERGED, HD_ERR_BREAKDOWN;
+ *        HD_WARN_ACCURACY
  * Cost   an ordering and a preconditioner, which every call makes anew; one product with t L + theta B and
  *        one preconditioner solve for each iteration
  * Source see hd_solver */
@@ -1139,11 +1106,10 @@ HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c6
 
 /* ---- direct solver ---- */
 
-/* The factorisation P A P' = L D L' of a symmetric matrix without pivoting. L is unit lower triangular, D is
- * diagonal. It suits two classes of matrices: real matrices that are definite or quasi-definite, and
- * complex-symmetric matrices (A = A', never conjugated) whose real part is definite after a rotation, such as
- * t L + theta B. One analysis of a pattern serves any number of factorisations, and these allocate nothing
- * after the first of their kind. One thread at a time. */
+/* The factorisation P A P' = L D L' without pivoting, L unit lower triangular, D diagonal. It suits real
+ * matrices that are definite or quasi-definite, and complex-symmetric matrices (A = A', never conjugated)
+ * whose real part is definite after a rotation, such as t L + theta B. One analysis of a pattern serves any
+ * number of factorisations, and these allocate nothing after the first of their kind. */
 typedef struct hd_ldl hd_ldl;
 
 typedef struct hd_ldl_opts {
@@ -1175,8 +1141,7 @@ typedef struct hd_ldl_report {
 /* Computes the ordering, the elimination tree and the supernodes.
  * a      n x n with a symmetric pattern. Its values are ignored, and diagonal entries may be missing
  * Errors HD_ERR_STRUCTURE, HD_ERR_INDEX, HD_ERR_NOT_SYMMETRIC (row, column); HD_ERR_NOT_FINITE (row; column:
- *        0 to 2) if a coordinate is not finite; HD_ERR_INDEX (row) if perm is not a permutation;
- *        HD_ERR_ARGUMENT, HD_ERR_TOO_LARGE, HD_ERR_MEMORY, HD_ERR_CANCELLED
+ *        0 to 2) if a coordinate is not finite; HD_ERR_INDEX (row) if perm is not a permutation
  * Cost   nearly linear in the non-zeros of A, plus the ordering
  * Source Amestoy, Davis, Duff 1996; George 1973; Gilbert, Ng, Peyton 1994 */
 HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ldl_opts *opts,
@@ -1184,8 +1149,8 @@ HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ld
 
 /* Factorises a real matrix.
  * val    [nnz] in the order of the analysed pattern. Of each pair (i,j), (j,i) one entry is read
- * Errors HD_ERR_NOT_FINITE (row, column), HD_ERR_BREAKDOWN (row, value: a pivot too small to divide by),
- *        HD_ERR_MEMORY, HD_ERR_CANCELLED. The pivot does not depend on the number of threads
+ * Errors HD_ERR_NOT_FINITE (row, column), HD_ERR_BREAKDOWN (row, value: a pivot too small to divide by, the
+ *        same one with any number of threads)
  * Cost   hd_ldl_report.factor_flops; 8 bytes for each stored entry
  * Source Duff, Reid 1983; Liu 1992: multifrontal */
 HEATDIFF_API hd_status hd_ldl_factor(hd_ldl *f, const double *val, hd_ldl_report *report,
@@ -1202,24 +1167,22 @@ HEATDIFF_API hd_status hd_ldl_factor_complex(hd_ldl *f, int32_t k, const hd_c64 
 
 /* Solves A x = b for k real right-hand sides, with the last real factorisation. Columns are ldb and ldx apart
  * (0: n). x may be b.
- * Errors HD_ERR_ARGUMENT (the last factorisation was not real, or failed), HD_ERR_MEMORY
- * Cost   4 factor_nnz flops for each right-hand side; the factor is read once for eight of them. The first
- *        call allocates work arrays */
+ * Errors HD_ERR_ARGUMENT (the last factorisation was not real, or failed)
+ * Cost   4 factor_nnz flops for each right-hand side; the factor is read once for eight of them */
 HEATDIFF_API hd_status hd_ldl_solve(hd_ldl *f, int32_t k, const double *b, size_t ldb, double *x,
                                     size_t ldx, hd_error *err);
 
-/* Solves A_q x_q = b_q for all matrices of the last complex factorisation. The arrays are
- * b_q = b + q ldb and x_q = x + q ldx. ldx = 0 means n. ldb = 0 means the same b for all. x may be b if
- * ldb is ldx or 0. Errors as above; cost: as above for each matrix, four times the flops. */
+/* Solves A_q x_q = b_q for all matrices of the last complex factorisation: b_q = b + q ldb, x_q = x + q ldx.
+ * ldx = 0 means n. ldb = 0 means the same b for all. x may be b if ldb is ldx or 0. Errors as above; cost: as
+ * above for each matrix, four times the flops. */
 HEATDIFF_API hd_status hd_ldl_solve_complex(hd_ldl *f, const hd_c64 *b, size_t ldb, hd_c64 *x,
                                             size_t ldx, hd_error *err);
 
 /* Entries of A^-1 by selected inversion. A is the matrix of the last real factorisation, which is kept.
  * values [nnz] on the analysed pattern and in its order, both of each pair; NULL: not wanted
  * diag   [n] also where the pattern has no diagonal entry; NULL: not wanted
- * Errors HD_ERR_ARGUMENT (the last factorisation was not real, or failed), HD_ERR_MEMORY, HD_ERR_CANCELLED
- * Cost   about twice the flops of the factorisation (four times if both are wanted and diagonal entries are
- *        missing); work arrays live for the call
+ * Errors HD_ERR_ARGUMENT (the last factorisation was not real, or failed)
+ * Cost   about twice the flops of the factorisation
  * Source Takahashi, Fagan, Chin 1973; Erisman, Tinney 1975 */
 HEATDIFF_API hd_status hd_ldl_inverse(hd_ldl *f, double *values, double *diag, hd_error *err);
 
@@ -1234,26 +1197,22 @@ HEATDIFF_API void hd_ldl_free(hd_ldl *f);  /* NULL is fine */
 
 typedef struct hd_heat hd_heat;
 
-/* A plan for heat on lap, which must outlive the plan. Creating it is cheap: whatever a method needs is made
- * at its first use. So the first column, field or diagonal at a time t pays for the factorisation, and
- * further ones at the same t are much faster. The plan keeps the renumbered pair, the analysis, work arrays,
- * and the factors or preconditioners of the last pole set and time.
- * Only one thread at a time may use a plan. Plans with contexts of their own may share lap, see Threads at
- * the top of the file.
- * Errors HD_ERR_ARGUMENT, HD_ERR_INDEX (row: perm is not a permutation), HD_ERR_MEMORY */
+/* A plan for heat on lap, which must outlive it. Creating it is cheap: whatever a method needs is made at its
+ * first use. So the first column, field or diagonal at a time t pays for the factorisation, and further ones
+ * at the same t are much faster. The plan keeps the renumbered pair, the analysis, work arrays, and the
+ * factors or preconditioners of the last pole set and time. One thread at a time, see Threads above.
+ * Errors HD_ERR_INDEX (row: perm is not a permutation) */
 HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap,
                                       const hd_heat_opts *opts, hd_error *err);
 HEATDIFF_API void hd_heat_free(hd_heat *heat);  /* NULL is fine */
 
-/* Other pole sets for a plan, in place of hd_heat_opts.rational. Ordering, analysis and memory stay, so that
- * one plan serves many filters one after the other. Factors stay too if the sets have the t and the poles of
- * those before.
+/* Other pole sets for a plan, in place of hd_heat_opts.rational. Ordering, analysis and memory stay, and
+ * factors too if the sets have the t and the poles of those before.
  * sets   [count] copied. Several must have one t, one lambda_max and the same theta, as from hd_rational_fit:
  *        hd_heat_diagonal answers for all of them at once, other queries for the first. count = 0: from now
  *        on exp, with poles and degree by default
  * Errors HD_ERR_ARGUMENT (column: which set; also if the plan is of method krylov or of Lanczos),
- *        HD_ERR_NOT_FINITE; then nothing has changed
- * Cost   O(count) */
+ *        HD_ERR_NOT_FINITE; then nothing has changed */
 HEATDIFF_API hd_status hd_heat_set_rational(hd_heat *heat, int32_t count, const hd_rational *sets,
                                             hd_error *err);
 
@@ -1275,13 +1234,12 @@ HEATDIFF_API hd_status hd_heat_set_rational(hd_heat *heat, int32_t count, const 
  * U      n x (k n_times), column q n_times + m for field q and time m, columns ldu apart (0: n). With one
  *        time U may be F. With the default degree, all fields of a call use the largest degree that one of
  *        them needs
- * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (row, column), HD_ERR_NOT_CONVERGED, HD_ERR_BREAKDOWN (vertex:
- *        where the answer overflows), HD_ERR_NOT_POSITIVE, HD_ERR_MEMORY, HD_ERR_CANCELLED; HD_WARN_ACCURACY
+ * Errors HD_ERR_NOT_FINITE (row, column), HD_ERR_NOT_CONVERGED, HD_ERR_BREAKDOWN (vertex: where the answer
+ *        overflows), HD_ERR_NOT_POSITIVE; HD_WARN_ACCURACY
  * Cost   direct: one factorisation of all poles for each new t, then one sweep through the factors for eight
- *        fields at a time. krylov: one real factorisation, then 15 to 30 real solves for each field.
- *        iterative: one solve for each pole, started from the solutions before it, up to four fields in
- *        parallel. Many times: with krylov one factor and one basis serve all times within one or two
- *        decades, so that they cost little more than one; other methods take the times one by one
+ *        fields at a time. krylov: one real factorisation, then 15 to 30 real solves for each field; one
+ *        factor and one basis serve all times within one or two decades. iterative: one solve for each pole,
+ *        started from the solutions before it, up to four fields in parallel
  * Source the paper, eqs. (8) and (9), with the signs given at the top of the file */
 HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const double *t, int32_t k,
                                      const double *F, size_t ldf, double *U, size_t ldu,
@@ -1290,10 +1248,9 @@ HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const doubl
 /* U = dK_t/dt F = -B^-1 L K_t F at each time; unit 1/area.
  * t      >= 0
  * F, U   as above. The derivative is 0 at vertices without mass and at held ones
- * report bounds are relative to the derivative, which fades faster than K_t F: where t is so large that only
- *        means are left it is 0, and the bound is infinite
- * With poles, t dK_t/dt takes other weights on the same poles; kernel sets keep the error small, and the
- * default is degree 14. Krylov and Lanczos take x exp(x) of the same small matrix.
+ * report bounds are relative to the derivative, which fades faster than K_t F: where only means are left it
+ *        is 0, and the bound is infinite
+ * With poles, t dK_t/dt takes other weights on the same poles, by default of degree 14.
  * HINT: to train t, make the plan with poles = HD_POLES_KERNEL and a degree. Then hd_heat_apply,
  * hd_heat_derivative and hd_heat_adjoint at one t share the factors of the direct method, and the adjoint is
  * that of the very matrix applied, up to rounding. With G the gradient of a loss with respect to U = K_t F,
@@ -1322,9 +1279,8 @@ HEATDIFF_API hd_status hd_heat_adjoint(hd_heat *heat, int32_t n_times, const dou
  *        that vertex' column to the last bit
  * Errors and cost as hd_heat_apply; HD_ERR_INDEX, HD_ERR_NOT_FINITE, HD_ERR_ARGUMENT (column: which source,
  *        row: which of its points, vertex): coordinates of a point are negative or do not sum to 1, a curve
- *        has one point or no length, it needs coordinates that the Laplacian does not have (of held vertices,
- *        or of your own matrices), or all weights are 0. The absolute values of the weights, or the length of
- *        a curve, must sum to between 1e-100 and 1e100 */
+ *        has one point or no length, or needs coordinates that the Laplacian does not have, or the sizes of
+ *        the weights, or a curve's length, do not sum to between 1e-100 and 1e100 */
 HEATDIFF_API hd_status hd_heat_columns(hd_heat *heat, hd_kernel kernel, int32_t n_times,
                                        const double *t, const hd_sources *sources, double *U,
                                        size_t ldu, hd_report *report, hd_error *err);
@@ -1350,8 +1306,7 @@ HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, hd_kernel kernel, double t,
  *        known, at the vertices where it is largest
  * If B is not diagonal, k_t leaves out the term a0 diag(B^-1) of a uniform set. It is as large as the set's
  * error, and the bound includes it.
- * Errors HD_ERR_ARGUMENT (also if the method is iterative or krylov), HD_ERR_BREAKDOWN, HD_ERR_MEMORY,
- *        HD_ERR_CANCELLED; HD_WARN_ACCURACY
+ * Errors HD_ERR_ARGUMENT (also if the method is iterative or krylov), HD_ERR_BREAKDOWN; HD_WARN_ACCURACY
  * Cost   for each t the factors of all poles, and about twice as much again. Many times share one set of
  *        poles if neither poles nor a degree are chosen: 16 or 100 times over three decades cost four or five
  *        times as much as one. Filters: once, and 2 n flops for each set and pole. Memory for the inverses of
@@ -1364,8 +1319,6 @@ HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t
 /* Times that suit the area A of the surface, 1'B1: evenly spaced in log t from 0.0024 A to 0.37 A. At the
  * first about 300 eigenvalues matter, at the last two. With one time it is their geometric mean.
  * t      [n_times] length^2, or the unit that t has for this Laplacian (kind exp: A is the squared area)
- * Errors HD_ERR_ARGUMENT
- * Cost   one pass over the masses
  * Source Weyl's law: the k-th eigenvalue is about 4 pi k/A. Times that suit the first eigenvalue are c/value[
  *        n_constant] of hd_spectrum: at c = 1 signatures show tips and branches, at 0.1 details (Gebal et al.
  *        2009) */
@@ -1452,8 +1405,8 @@ HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t 
  * opts   count, below, or both: then whichever ends first. count may be as large as n_active. opts must not
  *        be NULL
  * Errors HD_ERR_ARGUMENT (also: more pairs than rows), HD_ERR_NOT_POSITIVE, HD_ERR_NOT_CONVERGED,
- *        HD_ERR_INDEX (row: perm is not a permutation), HD_ERR_MEMORY, HD_ERR_CANCELLED; HD_WARN_ACCURACY
- *        with a result: n_poor is not 0, or completeness is not proven
+ *        HD_ERR_INDEX (row: perm is not a permutation); HD_WARN_ACCURACY with a result: n_poor is not 0, or
+ *        completeness is not proven
  * Cost   for about 100 pairs at a time one real factorisation of an indefinite matrix, some 250 solves, and
  *        the orthogonalisation of as many vectors; at the end 4 n count^2 flops. Memory: the vectors twice,
  *        some 400 more vectors, and a factor
@@ -1470,7 +1423,7 @@ HEATDIFF_API void hd_spectrum_free(hd_spectrum *s);  /* NULL is fine */
  *        part of the pairs left out is proven if s->proven: at most exp(-t next) sqrt(left(x) left(y)). That
  *        of residuals follows from their sizes, and rounding is estimated. The bound is small for large t;
  *        for small t it shows how much the missing pairs count
- * Errors HD_ERR_MEMORY, and those of hd_heat_columns for sources
+ * Errors those of hd_heat_columns for sources
  * Cost   2 n count flops for each column; with the weighted distance or the diagonal of K_t and a full B some
  *        ten times as many */
 HEATDIFF_API hd_status hd_spectrum_columns(const hd_spectrum *s, hd_kernel kernel, int32_t n_times,
@@ -1492,7 +1445,6 @@ HEATDIFF_API hd_status hd_spectrum_distance(const hd_spectrum *s, hd_distance_ki
  * Bytes of the direct method are sums of the arrays that the query will allocate: an upper bound, by a few
  * percent; where eigenpairs come first it allows for poles instead. Those of the other two methods depend on
  * their steps and are estimates. Output arrays are the caller's and not counted.
- * Errors   HD_ERR_ARGUMENT, HD_ERR_MEMORY, HD_ERR_CANCELLED
  * Cost     one ordering and analysis, if the query needs them; the plan keeps them for the query. Otherwise
  *          one pass over L */
 HEATDIFF_API hd_status hd_heat_estimate(hd_heat *heat, hd_query query, int32_t n_times,
@@ -1520,9 +1472,8 @@ HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const hd_mesh *mesh
                                           const hd_geodesic_opts *opts, hd_error *err);
 /* New positions for the same triangles, of a plan made with the option updatable. Ordering and analysis stay.
  * mesh   as in hd_laplacian_update
- * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE; HD_ERR_EMPTY (face: it has no area any more, or vertex). Then
- *        nothing has changed. After HD_ERR_BREAKDOWN, HD_ERR_MEMORY or HD_ERR_CANCELLED the plan answers no
- *        query until an update succeeds
+ * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE; HD_ERR_EMPTY (face or vertex: it has no area any more). Then
+ *        nothing has changed. After any other error the plan answers no query until an update succeeds
  * Cost   one pass over faces and entries, and the two factorisations */
 HEATDIFF_API hd_status hd_geodesic_update(hd_geodesic *g, const hd_mesh *mesh, hd_error *err);
 HEATDIFF_API void hd_geodesic_free(hd_geodesic *g);  /* NULL is fine */
