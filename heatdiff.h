@@ -13127,12 +13127,6 @@ static double hdi_shared_error(const hd_rational *set, double tau, double p, dou
 
 static int32_t hdi_shared_points(int32_t n_poles) { return 8 * n_poles + 98; }
 
-/* Doubles that hdi_shared_fit works in. */
-static uint64_t hdi_shared_room(int32_t n_poles) {
-    const int32_t points = hdi_shared_points(n_poles);
-    return 4 * (uint64_t)points + hdi_residues_room(points, n_poles);
-}
-
 /* How far the exponential part of the weighted error is from a polynomial of degree m on y in [c - w, c +
  * w]: the smaller of Bernstein's bound 2 M rho^-m/(rho - 1) on an ellipse and the largest value of the
  * part itself. */
@@ -13196,7 +13190,7 @@ static void hdi_shared_bound(hd_rational *set, double tau, double goal) {
  * steps bring the largest (1 + tau y)|e| near its minimum. Both errors are bounds for all y >= 0 and for
  * any tau; they are small for tau in [1, lambda] of the pick. Points are y = 0, where c is 1, a grid even in
  * log y from 0.02 times the smallest |theta| to 15 times the largest, as in tools/shared_poles.py, and one so
- * far out that it stands for infinity. room: hdi_shared_room doubles. */
+ * far out that it stands for infinity. room: 4 doubles a point, and hdi_residues_room. */
 static void hdi_shared_fit(hd_rational *set, double tau, double *room) {
     const int32_t n = hdi_shared_points(set->n_poles);
     const double least = hdi_cabs(set->theta[0]), most = hdi_cabs(set->theta[set->n_poles - 1]);
@@ -13253,7 +13247,8 @@ static hd_status hdi_rational_shared(hd_rational *out, int32_t n_times, const do
         return hdi_fail_row(e, HD_ERR_ARGUMENT,
                             "shared poles: no set is that accurate over so wide a range of times", -1, -1,
                                 hdi_divide(most, least));
-    room = HDI_TAKE(&s, double, hdi_shared_room(set.n_poles));
+    i = hdi_shared_points(set.n_poles);
+    room = HDI_TAKE(&s, double, 4 * (uint64_t)i + hdi_residues_room(i, set.n_poles));
     for (q = 0; room && q < n_times; q++) {
         const double tau = t[q] / least;
         if (least < most) hdi_shared_fit(&set, tau, room);    /* the set for a single time has its weights */
@@ -13880,7 +13875,7 @@ static hdi_parts hdi_parts_least(hdi_parts a, hdi_parts b) {
 /* The account of a query's errors, which becomes part of its report: absolute, over all values noted. */
 typedef struct hdi_ledger {
     hdi_parts off;               /* the largest of each part */
-    hdi_parts known;             /* evidence of each part, as hd_evidence; hdi_ledger_begin sets it */
+    hdi_parts evidence;          /* of each part, as hd_evidence; hdi_ledger_begin sets it */
     double largest, smallest;    /* |value|; smallest: not zero, HUGE_VAL when there is none */
     double relative;             /* largest error over its value; negative: not asked */
     int64_t n_values;
@@ -13889,13 +13884,8 @@ typedef struct hdi_ledger {
 
 static hdi_ledger hdi_ledger_begin(hd_evidence rational, hd_evidence solver, hd_evidence rounding,
                                    int relative) {
-    hdi_ledger l;
-    memset(&l, 0, sizeof l);
-    l.known.rational = rational;
-    l.known.solver = solver;
-    l.known.rounding = rounding;
-    l.smallest = HUGE_VAL;
-    l.relative = relative ? 0 : -1;
+    const hdi_ledger l = {{0, 0, 0}, {(double)rational, (double)solver, (double)rounding}, 0, HUGE_VAL,
+                          relative ? 0.0 : -1.0, 0, 0};
     return l;
 }
 
@@ -13918,18 +13908,12 @@ static void hdi_ledger_join(hdi_ledger *l, const hdi_ledger *other) {
 
 /* Notes a value and the bound on its error. */
 static void hdi_ledger_note(hdi_ledger *l, double value, hdi_parts off) {
-    hdi_ledger one;
-    one.off.rational = hdi_bound_of(off.rational);
-    one.off.solver = hdi_bound_of(off.solver);
-    one.off.rounding = hdi_bound_of(off.rounding);
-    one.largest = fabs(value);
-    one.smallest = one.largest > 0 ? one.largest : HUGE_VAL;
-    one.relative = -1;
-    one.n_values = 1;
-    one.lost = !hdi_finite(value);
+    const double size = fabs(value);
+    hdi_ledger one = {{hdi_bound_of(off.rational), hdi_bound_of(off.solver), hdi_bound_of(off.rounding)},
+                      {0, 0, 0}, size, size > 0 ? size : HUGE_VAL, -1, 1, !hdi_finite(value)};
     if (l->relative >= 0) {                      /* to the exact value, which is at least |value| - all */
         const double all = hdi_parts_sum(&one.off);
-        one.relative = all == 0 ? 0 : hdi_quotient(all, one.largest - all);
+        one.relative = all == 0 ? 0 : hdi_quotient(all, size - all);
     }
     hdi_ledger_join(l, &one);
 }
@@ -13962,9 +13946,9 @@ static void hdi_ledger_close(const hdi_ledger *l, hd_report *rep) {
     rep->error_solver = hdi_max(rep->error_solver, part.solver);
     rep->error_rounding = hdi_max(rep->error_rounding, part.rounding);
     rep->error_bound = hdi_max(rep->error_bound, total);
-    hdi_evidence_worst(&rep->evidence_rational, l->known.rational);
-    hdi_evidence_worst(&rep->evidence_solver, l->known.solver);
-    hdi_evidence_worst(&rep->evidence_rounding, l->known.rounding);
+    hdi_evidence_worst(&rep->evidence_rational, l->evidence.rational);
+    hdi_evidence_worst(&rep->evidence_solver, l->evidence.solver);
+    hdi_evidence_worst(&rep->evidence_rounding, l->evidence.rounding);
     if (hdi_finite(l->smallest))
         rep->smallest = rep->smallest > 0 ? hdi_min(rep->smallest, l->smallest) : l->smallest;
     if (l->relative >= 0 && rep->error_relative < l->relative) rep->error_relative = l->relative;
@@ -14969,7 +14953,7 @@ static hd_status hdi_lap_ratio(hd_laplacian *lap, hd_error *e) {
 /* A smaller b_ratio by Gershgorin's circles is worth a proof by factorisations. */
 #define HDI_RATIO_POOR 0.01
 
-static hd_status hdi_lap_ratio_known(hd_laplacian *lap, hd_error *e) {
+static hd_status hdi_lap_ratio_prove(hd_laplacian *lap, hd_error *e) {
     if (HDI_HAS_DIRECT && e->status >= 0 && lap->b_ratio < HDI_RATIO_POOR) (void)hdi_lap_ratio(lap, e);
     return e->status;
 }
@@ -14979,7 +14963,7 @@ static hd_status hdi_pair_replace(hd_laplacian *lap, const hd_csr *L, const hd_c
                                   hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
     hd_laplacian next;
-    if (hdi_pair_next(&next, lap, L, B, &s) >= 0 && hdi_lap_ratio_known(&next, e) >= 0) {
+    if (hdi_pair_next(&next, lap, L, B, &s) >= 0 && hdi_lap_ratio_prove(&next, e) >= 0) {
         next.h = h;
         hdi_pair_take(lap, &next);
     }
@@ -15323,37 +15307,28 @@ static hd_status hdi_elim_bound(hdi_elim *m, hd_error *e) {
 /* What follows the factors of a set: solves, with hdi_elim_bound before them or without, or an inversion. */
 typedef enum hdi_after { HDI_AFTER_SOLVES, HDI_AFTER_BOUND, HDI_AFTER_INVERSE, HDI_AFTER_FORMS } hdi_after;
 
-/* Bytes that the factors of a set take beyond those that are there, with what hdi_elim_bound keeps. */
-static uint64_t hdi_elim_factor_need(const hdi_elim *m, const hd_rational *set, hdi_after after) {
-    const int32_t packs = hdi_set_packs(set), guests = packs - hdi_high32(m->n_packs, 1);
-    uint64_t bytes = 0;
-    if (packs > 0 && m->n_packs == 0) bytes += hdi_factor_bytes(&m->sym, HDI_PACK);
-    if (guests > 0) bytes += (uint64_t)guests * hdi_factor_tally(&m->sym, HDI_PACK, 1);
-    if (hdi_set_lone(set) && !m->real.ctx) bytes += hdi_factor_bytes(&m->sym, 1);
-    if (after == HDI_AFTER_BOUND && !m->resolvent)
-        hdi_scope_count(&bytes, (uint64_t)m->sym.n, sizeof *m->resolvent);
-    return bytes;
-}
-
-/* Bytes that hdi_elim_bound, or hdi_elim_invert for so many sums, needs for a while on top of that. */
-static uint64_t hdi_elim_inverse_need(const hdi_elim *m, const hd_rational *set, hdi_after after,
-                                      int32_t n_sets, hd_error *e) {
-    const int forms = after == HDI_AFTER_FORMS;
-    const int32_t widths[2] = {hdi_set_lone(set) ? 1 : 0, hdi_set_packs(set) > 0 ? HDI_PACK : 0};
-    uint64_t most = 0, bytes = 0;
-    int q;
-    if (after == HDI_AFTER_SOLVES) return 0;
-    if (after == HDI_AFTER_BOUND)
-        return hdi_inverse_bytes(&m->sym, 1, !hdi_set_lone(set), hdi_elim_room(m, hdi_set_packs(set)));
-    for (q = 0; q < 2 && e->status >= 0; q++) {
-        uint64_t need;
-        if (!widths[q]) continue;
-        need = hdi_inverse_bytes(&m->sym, widths[q], 0, 0);
-        if (forms) need += hdi_forms_bytes(&m->sym, widths[q], &m->source->L, m->ctx, e);
+/* Bytes that the factors of a set take at their peak beyond those that are there: what they and
+ * hdi_elim_bound keep, and the most that hdi_elim_bound, an inversion for so many sums, or solves take for
+ * a while. solves: the bytes of these. */
+static uint64_t hdi_elim_need(const hdi_elim *m, const hd_rational *set, hdi_after after, int32_t n_sets,
+                              uint64_t solves, hd_error *e) {
+    const int32_t lone = hdi_set_lone(set), packs = hdi_set_packs(set);
+    const int forms = after == HDI_AFTER_FORMS, bound = after == HDI_AFTER_BOUND;
+    uint64_t bytes = 0, most = solves, need;
+    int32_t i;
+    for (i = m->n_packs; i < packs; i++) bytes += hdi_factor_tally(&m->sym, HDI_PACK, i > 0);
+    if (lone && !m->real.ctx) bytes += hdi_factor_bytes(&m->sym, 1);
+    if (bound && !m->resolvent) hdi_scope_count(&bytes, (uint64_t)m->sym.n, sizeof *m->resolvent);
+    for (i = 0; i < 2 && after != HDI_AFTER_SOLVES && e->status >= 0; i++) {
+        const int32_t width = i == 0 ? 1 : HDI_PACK;
+        if (!(bound ? i == 0 : i == 0 ? lone : packs)) continue;
+        need = bound ? hdi_inverse_bytes(&m->sym, 1, !lone, hdi_elim_room(m, packs))
+               : hdi_inverse_bytes(&m->sym, width, 0, 0);
+        if (!bound) hdi_scope_count(&need, HDI_PACK * (uint64_t)n_sets, sizeof(double));
+        if (forms) hdi_scope_count(&need, (uint64_t)m->source->L.nnz, sizeof(double));
+        if (forms) need += hdi_forms_bytes(&m->sym, width, &m->source->L, m->ctx, e);
         if (most < need) most = need;
     }
-    hdi_scope_count(&bytes, HDI_PACK * (uint64_t)n_sets, sizeof(double));
-    if (forms) hdi_scope_count(&bytes, (uint64_t)m->source->L.nnz, sizeof(double));
     return bytes + most;
 }
 
@@ -15933,15 +15908,15 @@ typedef struct hdi_ritz {
 } hdi_ritz;
 
 static hd_status hdi_krylov_ritz(const hdi_krylov *z, int32_t r, int32_t m, hdi_ritz *s, hd_error *e) {
-    const int known = z->eigen_m[r] == m;
-    const int32_t rows = known ? m : 2;
+    const int whole = z->eigen_m[r] == m;
+    const int32_t rows = whole ? m : 2;
     double ends[2 * HDI_KRYLOV_MAX];
-    const double *v = known ? z->eigen[r] + m : ends;
+    const double *v = whole ? z->eigen[r] + m : ends;
     int32_t i;
     s->m = m;
     s->rate = z->rate;
     s->beta = z->beta[m][r];
-    if (known) memcpy(s->mu, z->eigen[r], (size_t)m * sizeof *s->mu);
+    if (whole) memcpy(s->mu, z->eigen[r], (size_t)m * sizeof *s->mu);
     else if (!hdi_krylov_eigen(z, r, m, 2, s->mu, ends)) return hdi_lanczos_failed(e);
     for (i = 0; i < m; i++) {
         /* 1/(1 + g lambda); but what is left of a constant is only rounding */
@@ -16481,17 +16456,16 @@ static hdi_terms *hdi_terms_all(const hd_sources *s, const hd_laplacian *lap, in
     return all;
 }
 
-static hd_status hdi_vertex_check(const hd_laplacian *lap, int32_t v, hd_error *e) {
-    if (v >= 0 && v < lap->n) return HD_OK;
-    return hdi_fail_face(e, HD_ERR_INDEX, "heat: a source or vertex is not in the mesh", -1, v, v);
-}
-
-/* Checks sources, or vertices of pairs. *which becomes the index of one that is not in the mesh. */
+/* Checks vertices. *which becomes the index of one that is not in the mesh. */
 static hd_status hdi_vertices_check(const hd_laplacian *lap, int64_t k, const int32_t *vertex, int64_t *which,
                                     hd_error *e) {
     int64_t q;
-    for (q = 0; q < k && e->status >= 0; q++)
-        if (hdi_vertex_check(lap, vertex[q], e) < 0) *which = q;
+    for (q = 0; q < k && e->status >= 0; q++) {
+        const int32_t v = vertex[q];
+        if (v >= 0 && v < lap->n) continue;
+        hdi_fail_face(e, HD_ERR_INDEX, "heat: a source or vertex is not in the mesh", -1, v, v);
+        *which = q;
+    }
     return e->status;
 }
 
@@ -16848,14 +16822,6 @@ static void hdi_spec_reduce(double *A, double *d, double *e, double *z, int32_t 
     }
 }
 
-/* Eigenvalues d [m] of the symmetric A [m][m], which is overwritten. z [m][r]: r rows of the identity become
- * those rows of the eigenvectors, column by column. work [3 m]. 0 when it does not converge. */
-static int hdi_spec_eigen(double *A, double *d, double *z, int32_t m, int32_t r, double *work) {
-    double *e = work + 2 * (int64_t)m;
-    hdi_spec_reduce(A, d, e, z, m, r, work);
-    return hdi_tridiag_eigen(d, e, z, m, r);
-}
-
 /* ---- what a computation holds ---- */
 
 /* Vectors stand eight side by side in blocks [n][8], by rows in elimination order. Eigenvalues are those of
@@ -17191,24 +17157,24 @@ static int32_t hdi_spec_append(hdi_spec *s) {
     double *w = s->list[s->n_near + s->n_blocks], *couple = s->couple + 64 * s->n_blocks;
     double norm[HDI_WIDE], scale[HDI_WIDE], removed[HDI_WIDE], G[64], R[64], off = 1;
     int32_t left = 0, pass, q;
-    int again = 1;
+    int dirty = 1;
     memset(couple, 0, 64 * sizeof *couple);
     for (q = 0; q < HDI_WIDE; q++) couple[9 * q] = scale[q] = 1;
     hdi_spec_mass(s, w, s->bw);
     hdi_wide_dots(w, s->bw, s->n, HDI_WIDE, norm);
     for (q = 0; q < HDI_WIDE; q++) norm[q] = norm[q] > 0 ? sqrt(norm[q]) : 0;
     if (s->n_blocks > 0) hdi_spec_local(s, w);
-    for (pass = 0; pass < 2 || ((off > 0.1 || again) && pass < HDI_SPEC_PASSES); pass++) {
-        const int clean = again;
+    for (pass = 0; pass < 2 || ((off > 0.1 || dirty) && pass < HDI_SPEC_PASSES); pass++) {
+        const int clean = dirty;
         if (clean) {
             hdi_spec_project(s, s->list, s->n_near + s->n_blocks, w, s->bw, removed);
             hdi_spec_mass(s, w, s->bw);
         }
         off = hdi_spec_orthonormal(s, w, s->bw, scale, norm, pass > 0 ? &s->lost : NULL, G, R);
-        again = off == HUGE_VAL;
+        dirty = off == HUGE_VAL;
         for (q = 0; q < HDI_WIDE; q++) {
-            again |= clean && R[9 * q] > 0 && sqrt(removed[q]) > HDI_SPEC_SHRUNK * R[9 * q];
-            again |= R[9 * q] > 0 && R[9 * q] < HDI_SPEC_SHRUNK * sqrt(hdi_max(G[9 * q], 0));
+            dirty |= clean && R[9 * q] > 0 && sqrt(removed[q]) > HDI_SPEC_SHRUNK * R[9 * q];
+            dirty |= R[9 * q] > 0 && R[9 * q] < HDI_SPEC_SHRUNK * sqrt(hdi_max(G[9 * q], 0));
         }
         hdi_spec_compose(R, couple);
     }
@@ -17268,12 +17234,13 @@ static double hdi_spec_beyond(const hdi_spec *s, int32_t a, const double *y) {
  * the way of the next run. */
 static hd_status hdi_spec_ritz(hdi_spec *s, int full, hd_error *e) {
     const int32_t m = s->cols, last = m - s->width, r = full ? m : s->width;
-    double largest = 0;
+    double largest = 0, *off = s->work + 2 * (int64_t)m;
     int32_t i, a;
     hdi_spec_projected(s);
     memset(s->z, 0, (size_t)m * (size_t)r * sizeof *s->z);
     for (i = 0; i < r; i++) s->z[(int64_t)(i + (full ? 0 : last)) * r + i] = 1;
-    if (!hdi_spec_eigen(s->A, s->d, s->z, m, r, s->work)) return hdi_lanczos_failed(e);
+    hdi_spec_reduce(s->A, s->d, off, s->z, m, r, s->work);
+    if (!hdi_tridiag_eigen(s->d, off, s->z, m, r)) return hdi_lanczos_failed(e);
     for (i = 0; i < m; i++) largest = hdi_max(largest, fabs(s->d[i]));
     for (i = s->stuck = 0; i < m; i++) {
         const double *y = s->z + (int64_t)i * r + r - s->width, d2 = s->d[i] * s->d[i];
@@ -17293,16 +17260,16 @@ static hd_status hdi_spec_ritz(hdi_spec *s, int full, hd_error *e) {
 
 /* The smallest Ritz value above the shift that has not converged: those below it are taken. */
 static double hdi_spec_frontier(const hdi_spec *s) {
-    double reach = HUGE_VAL;
+    double least = HUGE_VAL;
     int32_t i;
     for (i = 0; i < s->cols; i++)
-        if (s->d[i] > 0 && !hdi_spec_converged(s, i)) reach = hdi_min(reach, hdi_spec_lambda(s, i));
-    return reach;
+        if (s->d[i] > 0 && !hdi_spec_converged(s, i)) least = hdi_min(least, hdi_spec_lambda(s, i));
+    return least;
 }
 
-static int hdi_spec_taken(const hdi_spec *s, int32_t i, double reach) {
+static int hdi_spec_taken(const hdi_spec *s, int32_t i, double frontier) {
     const double x = s->d[i] != 0 ? hdi_spec_lambda(s, i) : HUGE_VAL;
-    return hdi_spec_converged(s, i) && x > s->edge && x < reach;
+    return hdi_spec_converged(s, i) && x > s->edge && x < frontier;
 }
 
 /* The blocks that a run at the shift could find again, those beyond the edge and those nearly as near; then
@@ -17318,10 +17285,10 @@ static void hdi_spec_nearby(hdi_spec *s) {
 
 /* Would `missing` pairs below the shift and `beyond` above it be taken? */
 static int hdi_spec_enough(const hdi_spec *s, int32_t missing, int32_t beyond) {
-    const double reach = hdi_spec_frontier(s);
+    const double frontier = hdi_spec_frontier(s);
     int32_t i;
     for (i = 0; i < s->cols; i++) {
-        const int taken = hdi_spec_taken(s, i, reach);
+        const int taken = hdi_spec_taken(s, i, frontier);
         missing -= taken && s->d[i] < 0;
         beyond -= taken && s->d[i] > 0;
     }
@@ -17406,24 +17373,19 @@ static double hdi_spec_measure(hdi_spec *s, const double *value, const double *x
     return worst;
 }
 
-/* w = (L - sigma B)^-1 r for the residuals r in tmp: what a step of inverse iteration adds. It has no part in
- * the blocks nearby, nor in those from `first` on: a step enlarges the rounding of a residual in the
- * direction of the vectors next to the shift. */
-static void hdi_spec_polish(hdi_spec *s, int32_t first, double *w) {
-    hdi_spec_inverse(s, s->tmp, w);
-    hdi_spec_mass(s, w, s->bw);
-    hdi_spec_project(s, s->list, s->n_near, w, s->bw, NULL);
-    hdi_spec_project(s, s->lock + first, s->n_lock - first, w, s->bw, NULL);
-}
-
-/* Such steps while residuals are too large, for the eigenvalues of block x, of which n columns are there.
- * Those that worsen it are undone. The basis is not needed any more. */
-static void hdi_spec_polish_all(hdi_spec *s, const double *value, int32_t first, double *x, int32_t n) {
+/* Steps of inverse iteration while residuals are too large, for the eigenvalues of block x, of which n
+ * columns are there: w = (L - sigma B)^-1 r is added. It has no part in the blocks nearby, nor in those
+ * from `first` on: a step enlarges the rounding of a residual in the direction of the vectors next to the
+ * shift. Steps that worsen the block are undone. The basis is not needed any more. */
+static void hdi_spec_polish(hdi_spec *s, const double *value, int32_t first, double *x, int32_t n) {
     double norm[HDI_WIDE], *w = s->basis, worst = hdi_spec_measure(s, value, x, norm), now;
     int32_t tries;
     int64_t i;
     for (tries = 0; tries < 2 && worst > HDI_SPEC_POLISH * s->tol; tries++, worst = now) {
-        hdi_spec_polish(s, first, w);
+        hdi_spec_inverse(s, s->tmp, w);
+        hdi_spec_mass(s, w, s->bw);
+        hdi_spec_project(s, s->list, s->n_near, w, s->bw, NULL);
+        hdi_spec_project(s, s->lock + first, s->n_lock - first, w, s->bw, NULL);
         for (i = 0; i < 8 * (int64_t)s->n; i++) x[i] += i % 8 < n ? w[i] : 0;
         now = hdi_spec_measure(s, value, x, norm);
         if (now <= worst) continue;
@@ -17466,7 +17428,7 @@ static void hdi_spec_lock_all(hdi_spec *s, const int32_t *which, int32_t n, int3
     for (i = 0; i < n; i += most)
         hdi_spec_form(s, which + i, hdi_low32(n - i, most), s->lock + first + i / 8);
     for (i = 0; i < n; i += 8)
-        hdi_spec_polish_all(s, value + i, first, s->lock[first + i / 8], hdi_low32(n - i, 8));
+        hdi_spec_polish(s, value + i, first, s->lock[first + i / 8], hdi_low32(n - i, 8));
     for (i = 0; i < n; i += 8) hdi_spec_settle(s, value + i, first + i / 8, hdi_low32(n - i, 8));
 }
 
@@ -17474,13 +17436,13 @@ static void hdi_spec_lock_all(hdi_spec *s, const int32_t *which, int32_t n, int3
 static hd_status hdi_spec_lock(hdi_spec *s, hd_error *e) {
     const int32_t first = s->n_lock;
     int32_t which[HDI_SPEC_MOST], n = 0, i, j;
-    double reach;
+    double frontier;
     if (s->n_blocks == 0) return HD_OK;
     if (hdi_spec_ritz(s, 1, e) < 0) return e->status;
-    reach = hdi_spec_frontier(s);
+    frontier = hdi_spec_frontier(s);
     hdi_noise_weights(s->lap, 1, 2 * fabs(s->sigma), s->noise, s->noise + s->n);
     for (i = 0; i < s->cols; i++) {
-        if (!hdi_spec_taken(s, i, reach)) continue;
+        if (!hdi_spec_taken(s, i, frontier)) continue;
         for (j = n++; j > 0 && hdi_spec_lambda(s, which[j - 1]) > hdi_spec_lambda(s, i); j--)
             which[j] = which[j - 1];
         which[j] = i;
@@ -17693,15 +17655,6 @@ static hd_status hdi_spec_start(hdi_spec *s, const hdi_spec_goal *goal, hd_error
     return hdi_spec_lanczos(s, 0, beyond, e) < 0 ? e->status : hdi_spec_lock(s, e);
 }
 
-/* Runs at the shift where `missing` values below it have not been found yet. */
-static hd_status hdi_spec_search(hdi_spec *s, const hdi_spec_goal *goal, int64_t missing, hd_error *e) {
-    s->share = hdi_min(0.99, s->found / (1.0 + hdi_min(goal->count, s->n)));
-    if (hdi_spec_lanczos(s, (int32_t)missing, 0, e) < 0 || hdi_spec_lock(s, e) < 0)
-        return e->status;
-    if (s->below == hdi_spec_rank(s, s->sigma)) s->edge = s->sigma;
-    return HD_OK;
-}
-
 /* All that the goal asks for; how many these are into *count. */
 static hd_status hdi_spec_solve(hdi_spec *s, const hdi_spec_goal *goal, int32_t *count, hd_error *e) {
     int32_t half = hdi_low32(HDI_SPEC_HALF, 2 * s->room + 1), failed = 0, stalls = 0;
@@ -17712,8 +17665,10 @@ static hd_status hdi_spec_solve(hdi_spec *s, const hdi_spec_goal *goal, int32_t 
     while (!s->proven && failed < HDI_SPEC_PROOFS && stalls < HDI_SPEC_TRIES && s->idle < HDI_SPEC_IDLE) {
         const int32_t before = s->found;
         if (hdi_spec_move(s, goal, failed, half, &missing, e) < 0) return e->status;
-        if (missing > 0) {
-            if (hdi_spec_search(s, goal, missing, e) < 0) return e->status;
+        if (missing > 0) {                       /* a run at the shift */
+            s->share = hdi_min(0.99, s->found / (1.0 + hdi_min(goal->count, s->n)));
+            if (hdi_spec_lanczos(s, (int32_t)missing, 0, e) < 0 || hdi_spec_lock(s, e) < 0) return e->status;
+            if (s->below == hdi_spec_rank(s, s->sigma)) s->edge = s->sigma;
             stalls = s->found > before ? 0 : stalls + 1;
             half = stalls ? half / 2 + 1 : half;
         }
@@ -17889,11 +17844,10 @@ static hd_status hdi_spectrum_check(const hd_laplacian *lap, const hd_spectrum_o
 }
 
 static hd_status hdi_spectrum_make(hd_spectrum *s, const hd_spectrum_opts *o, hd_error *e) {
-    hdi_spec_goal goal;
-    hdi_elim m;
     const double scale = hdi_heat_scale(s->lap), tol = o->tol > 0 ? o->tol : HDI_TOL_SPECTRUM;
-    goal.count = o->count > 0 ? o->count : INT32_MAX;
-    goal.below = o->below > 0 ? o->below / scale : HUGE_VAL;
+    const hdi_spec_goal goal = {o->count > 0 ? o->count : INT32_MAX,
+                                o->below > 0 ? o->below / scale : HUGE_VAL};
+    hdi_elim m;
     if (o->ordering == HD_ORDERING_OWN && hdi_order_check(o->perm, s->lap->n, s->context, e) < 0)
         return e->status;
     memset(&m, 0, sizeof m);
@@ -18327,8 +18281,8 @@ static void hdi_heat_judge(const hd_laplacian *lap, const hdi_lane *lane, hdi_le
         rep->error_bound_b = hdi_max(rep->error_bound_b, hdi_quotient(total, lane->u_norm - total));
         hdi_bound_judge(rep->error_bound_b, rep);
         hdi_evidence_worst(&rep->evidence_b,
-                           hdi_max(ledger->known.rational,
-                                   hdi_max(ledger->known.solver, ledger->known.rounding)));
+                           hdi_max(ledger->evidence.rational,
+                                   hdi_max(ledger->evidence.solver, ledger->evidence.rounding)));
     }
     rep->residual = hdi_max(rep->residual, lane->residual);
     if (lap->conserves && !own && heat_abs > 0)
@@ -19398,11 +19352,11 @@ static void hdi_heat_note(hdi_heat_call *h, hdi_ledger ledger, int32_t i, int ow
     const int solved = h->method == HD_METHOD_DIRECT && h->t > 0 && !h->equal && !h->by_pairs;
     const double *reach = solved && m->resolvent && m->resolvent_t == m->t ? m->resolvent : NULL;
     int32_t q;
-    ledger.known.rounding = lane->rounding;
+    ledger.evidence.rounding = lane->rounding;
     lane->step = hdi_heat_step(h, lane);
     if (lane->dual) hdi_pair_apply(h->lap, 0, 1, lane->u, lane->tmp);
     hdi_heat_judge(h->lap, lane, h->ask.list ? NULL : &ledger, reach, own, h->by_pairs, h->rep);
-    if (h->ask.list) h->ask.list->ledger[h->now].known = ledger.known;
+    if (h->ask.list) h->ask.list->ledger[h->now].evidence = ledger.evidence;
     for (q = 0; q < h->n_off; q++)
         h->off[(h->batch + i) * h->n_off + q] = hdi_column_off(h->lap, lane, h->set + q);
 }
@@ -19622,10 +19576,7 @@ static uint64_t hdi_batches_need(const hd_heat *heat, int32_t packs, int32_t k) 
  * hdi_elim_bound, and solves of k items. */
 static uint64_t hdi_direct_need(const hd_heat *heat, const hd_rational *set, hdi_after after, int32_t n_sets,
                                 int32_t k, hd_error *e) {
-    const hdi_elim *m = &heat->elim;
-    const uint64_t inverse = hdi_elim_inverse_need(m, set, after, n_sets, e);
-    const uint64_t solves = hdi_batches_need(heat, hdi_set_packs(set), k);
-    return hdi_elim_factor_need(m, set, after) + (inverse > solves ? inverse : solves);
+    return hdi_elim_need(&heat->elim, set, after, n_sets, hdi_batches_need(heat, hdi_set_packs(set), k), e);
 }
 
 enum { HDI_PROBES = 3 };         /* rows at which rounding of an inversion is measured, see [27] */
