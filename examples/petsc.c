@@ -9,7 +9,8 @@
        mpicc -O2 -DUSE_SLEPC examples/petsc.c -o petsc $(pkg-config --cflags --libs slepc petsc) -lm
        OMP_NUM_THREADS=1 mpirun -np 4 ./petsc -size 100 -pole_groups 2
 
-   Without the first line pkg-config may find PETSc with real scalars, and this file refuses to compile.
+   Open MPI refuses more ranks than there are processors unless mpirun has --oversubscribe. Without the
+   first line pkg-config may find PETSc with real scalars, and this file refuses to compile.
    Vertices need the number of bits that PetscInt has: beyond 2^31 take a PETSc with 64-bit indices.
 
    The answer is the library's,
@@ -21,8 +22,10 @@
      rows     A rank holds a range of rows. It takes the faces that touch its vertices, lets
               hd_laplacian_create assemble L and B of this patch, and keeps the rows of its own vertices:
               they are complete, because all their faces are there. Nobody holds the whole mesh, and assembly
-              sends nothing. Here the mesh is a formula. With a mesh from a file, number the vertices so that
-              near ones are near in number, and send every face to the owners of its corners.
+              sends nothing. The mesh is a formula, or a file (-mesh), whose vertices are numbered along its
+              longest side, so that near ones are near in number. Every rank reads the whole file here, and
+              keeps the faces that touch its vertices. If it is too large for that, let one rank read it and
+              send every face to the owners of its corners.
      poles    hd_rational_exp gives pairs of conjugate poles. Ranks are divided into groups, every group holds
               all rows, and takes some of the poles (-pole_groups) for some of the sources (-source_groups).
               Poles do not wait for each other; the answers are summed once, at the end.
@@ -35,7 +38,8 @@
               COCG, but it gives up when the real part of p'Ap changes its sign, as it may here.)
 
    Options:
-     -size N              a torus of 2N x N vertices (40)
+     -mesh FILE           OBJ, OFF, PLY or STL; vertices in no face are left out
+     -size N              else a torus of 2N x N vertices (40)
      -t C                 the time in h^2 (100)
      -sources K           columns of K_t (2)
      -degree R            of the kernel set (14). Large sets have large weights a_i, which multiply what the
@@ -62,6 +66,10 @@
 
 #define HEATDIFF_IMPLEMENTATION
 #include "../heatdiff.h"
+#if defined(__GNUC__)
+#pragma GCC diagnostic ignored "-Wunused-function"     /* meshio.h writes files too */
+#endif
+#include "../tools/meshio.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -85,6 +93,8 @@ typedef struct settings {
     PetscReal c;                        /* t = c h^2 */
     PetscBool iterative, check, predict;
     hd_laplacian_kind kind;
+    double *xyz;                        /* [3 n] of a mesh from a file; NULL: the torus */
+    PetscInt *tri, n_tri;               /* [3 n_tri] */
 } settings;
 
 /* Ranks that hold the rows of one copy of the matrices, and ranks that hold the same rows in all groups. */
@@ -99,26 +109,77 @@ typedef struct pair { Mat L, B; double h; } pair;
 /* Summed over the systems of this rank's group. */
 typedef struct costs { double bytes, largest, flops, iterations, seconds; PetscInt systems; } costs;
 
-/* ---- the mesh: a torus with bumps, by a formula ---- */
+/* ---- the mesh: a file, or a torus with bumps by a formula ---- */
+
+/* Numbers of the vertices that occur in tri, along the longest side of their box; -1: in no face. */
+static PetscErrorCode number_vertices(const mio_mesh *m, const int32_t *tri, PetscInt n_tri, PetscInt *number,
+                                      PetscInt *n) {
+    double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+    PetscReal *along;
+    PetscInt *order, k;
+    int axis, longest = 0;
+    PetscFunctionBeginUser;
+    for (k = 0; k < m->n; k++) number[k] = -1;
+    for (k = 0; k < 3 * n_tri; k++) number[tri[k]] = 0;
+    PetscCall(PetscMalloc2(m->n, &along, m->n, &order));
+    for (*n = 0, k = 0; k < m->n; k++) {
+        if (number[k] < 0) continue;
+        order[(*n)++] = k;
+        for (axis = 0; axis < 3; axis++) {
+            low[axis] = PetscMin(low[axis], m->xyz[3 * k + axis]);
+            high[axis] = PetscMax(high[axis], m->xyz[3 * k + axis]);
+        }
+    }
+    for (axis = 1; axis < 3; axis++)
+        if (high[axis] - low[axis] > high[longest] - low[longest]) longest = axis;
+    for (k = 0; k < m->n; k++) along[k] = m->xyz[3 * k + longest];
+    PetscCall(PetscSortRealWithPermutation(*n, along, order));
+    for (k = 0; k < *n; k++) number[order[k]] = k;
+    PetscCall(PetscFree2(along, order));
+    PetscFunctionReturn(0);
+}
+
+static PetscErrorCode read_mesh(settings *s, const char *path) {
+    mio_mesh m;
+    mio_error e;
+    int32_t *tri, n_tri;
+    PetscInt *number, k;
+    PetscFunctionBeginUser;
+    PetscCheck(mio_load(&m, path, NULL, &e) == MIO_OK && mio_triangulate(&m, &tri, &n_tri, NULL, &e) == MIO_OK,
+               PETSC_COMM_SELF, PETSC_ERR_FILE_READ, "%s", e.text);
+    PetscCheck(n_tri > 0, PETSC_COMM_SELF, PETSC_ERR_FILE_READ, "%s has no faces", path);
+    PetscCall(PetscMalloc1(m.n, &number));
+    PetscCall(number_vertices(&m, tri, n_tri, number, &s->n));
+    PetscCall(PetscMalloc2(3 * s->n, &s->xyz, 3 * n_tri, &s->tri));
+    for (k = 0; k < m.n; k++)
+        if (number[k] >= 0) PetscCall(PetscArraycpy(s->xyz + 3 * number[k], m.xyz + 3 * k, 3));
+    for (k = 0; k < 3 * n_tri; k++) s->tri[k] = number[tri[k]];
+    s->n_tri = n_tri;
+    PetscCall(PetscFree(number));
+    free(tri);
+    mio_free(&m);
+    PetscFunctionReturn(0);
+}
 
 static void position(const settings *s, PetscInt id, double *xyz) {
     const double pi = 3.14159265358979323846;
     const double u = 2 * pi * (double)(id / s->nv) / (double)s->nu;
     const double v = 2 * pi * (double)(id % s->nv) / (double)s->nv;
     const double r = 1 + 0.2 * sin(3 * u) * cos(2 * v);
+    if (s->xyz) {
+        memcpy(xyz, s->xyz + 3 * id, 3 * sizeof *xyz);
+        return;
+    }
     xyz[0] = (3 + r * cos(v)) * cos(u);
     xyz[1] = (3 + r * cos(v)) * sin(u);
     xyz[2] = r * sin(v);
 }
 
-/* Appends the triangles of one square that touch a vertex in [lo, hi). */
-static PetscInt square(const settings *s, PetscInt i, PetscInt j, const PetscInt range[2], PetscInt *faces,
-                       PetscInt n_faces) {
-    const PetscInt i1 = (i + 1) % s->nu, j1 = (j + 1) % s->nv;
-    const PetscInt a = i * s->nv + j, b = i1 * s->nv + j, c = i1 * s->nv + j1, d = i * s->nv + j1;
-    const PetscInt corner[6] = {a, b, c, a, c, d};
-    int f, k;
-    for (f = 0; f < 2; f++) {
+/* Appends those of n triangles that touch a vertex in [lo, hi). */
+static PetscInt touching(const PetscInt *corner, PetscInt n, const PetscInt range[2], PetscInt *faces,
+                         PetscInt n_faces) {
+    PetscInt f, k;
+    for (f = 0; f < n; f++) {
         int touches = 0;
         for (k = 0; k < 3; k++) touches |= corner[3 * f + k] >= range[0] && corner[3 * f + k] < range[1];
         if (!touches) continue;
@@ -128,16 +189,25 @@ static PetscInt square(const settings *s, PetscInt i, PetscInt j, const PetscInt
     return n_faces;
 }
 
+/* The same of the two triangles of one square. */
+static PetscInt square(const settings *s, PetscInt i, PetscInt j, const PetscInt range[2], PetscInt *faces,
+                       PetscInt n_faces) {
+    const PetscInt i1 = (i + 1) % s->nu, j1 = (j + 1) % s->nv;
+    const PetscInt a = i * s->nv + j, b = i1 * s->nv + j, c = i1 * s->nv + j1, d = i * s->nv + j1;
+    const PetscInt corner[6] = {a, b, c, a, c, d};
+    return touching(corner, 2, range, faces, n_faces);
+}
+
 /* All triangles that touch a vertex in [lo, hi), in numbers of the whole mesh. */
 static PetscErrorCode faces_of(const settings *s, PetscInt lo, PetscInt hi, PetscInt **faces,
                                PetscInt *count) {
     const PetscInt range[2] = {lo, hi};
     const PetscInt first = lo / s->nv, last = (hi - 1) / s->nv;
-    const PetscInt strips = PetscMin(s->nu, hi > lo ? last - first + 2 : 0);
+    const PetscInt strips = s->tri ? 0 : PetscMin(s->nu, hi > lo ? last - first + 2 : 0);
     PetscInt i, j;
     PetscFunctionBeginUser;
-    PetscCall(PetscMalloc1(6 * strips * s->nv, faces));
-    *count = 0;
+    PetscCall(PetscMalloc1(s->tri ? 3 * s->n_tri : 6 * strips * s->nv, faces));
+    *count = s->tri ? touching(s->tri, s->n_tri, range, *faces, 0) : 0;
     for (i = 0; i < strips; i++)
         for (j = 0; j < s->nv; j++)
             *count = square(s, (first - 1 + i + s->nu) % s->nu, j, range, *faces, *count);
@@ -603,8 +673,8 @@ static PetscErrorCode predict(const settings *s) {
 
 static PetscErrorCode options(settings *s) {
     PetscInt size = 40;
-    char kind[32] = "voronoi-cot";
-    PetscBool fem;
+    char kind[32] = "voronoi-cot", path[PETSC_MAX_PATH_LEN];
+    PetscBool fem, from_file;
     PetscFunctionBeginUser;
     memset(s, 0, sizeof *s);
     s->sources = 2;
@@ -627,6 +697,8 @@ static PetscErrorCode options(settings *s) {
     s->nu = 2 * size;
     s->nv = size;
     s->n = s->nu * s->nv;
+    PetscCall(PetscOptionsGetString(NULL, NULL, "-mesh", path, sizeof path, &from_file));
+    if (from_file) PetscCall(read_mesh(s, path));
     PetscCheck(size >= 4 && s->sources >= 1 && s->c > 0, PETSC_COMM_WORLD, PETSC_ERR_ARG_OUTOFRANGE,
                "-size from 4, -sources from 1, -t above 0");
     PetscFunctionReturn(0);
@@ -706,6 +778,7 @@ int main(int argc, char **argv) {
     PetscCall(options(&s));
     if (s.predict) PetscCall(predict(&s));
     else PetscCall(run(&s, &worst, &allowed));
+    PetscCall(PetscFree2(s.xyz, s.tri));
 #ifdef USE_SLEPC
     PetscCall(SlepcFinalize());
 #else
