@@ -28,7 +28,7 @@ fi
 # shellcheck disable=SC2086
 mpicc -std=c99 -O1 -Wall -Wextra -Wshadow -Werror -DUSE_SLEPC $program -o "$work/petsc" $flags -lm
 
-# Ranks that wait leave the processor to the others: there may be fewer processors than ranks.
+# Ranks that wait leave the processor to the others: there may be fewer processors than ranks (mpirun --oversubscribe).
 export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_mpi_yield_when_idle=1
 export OMPI_MCA_rmaps_base_oversubscribe=1
