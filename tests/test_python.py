@@ -512,8 +512,10 @@ class Face(unittest.TestCase):
         with self.assertRaises(hd.InputError) as e:
             hd.Laplacian.from_matrices(scipy.sparse.csr_matrix([[1.0, -1], [0, 1]]), np.ones(2))
         self.assertEqual((e.exception.status, e.exception.row, e.exception.column), ("HD_ERR_NOT_SYMMETRIC", 0, 1))
+        same = pickle.loads(pickle.dumps(e.exception))          # as other processes send it
+        self.assertEqual((type(same), str(same), same.row), (hd.InputError, str(e.exception), 0))
         with self.assertRaises(MemoryError) as e:
-            hd.Heat(heat.lap, method="direct", memory_limit=100000).diagonal("5h2")
+            hd.Heat(heat.lap, method="direct", memory_limit=1e5).diagonal("5h2")
         self.assertEqual(e.exception.status, "HD_ERR_MEMORY_LIMIT")
         self.assertGreater(e.exception.value, 100000)
         with self.assertRaises(hd.OutOfMemoryError):            # the Laplacian's limit holds for its plans
@@ -527,6 +529,7 @@ class Face(unittest.TestCase):
             warnings.simplefilter("always")
             u = heat.column(0, 0.1)
         self.assertEqual([(w.category, w.filename) for w in got], [(hd.AccuracyWarning, __file__)])
+        self.assertIn("errors may be as large as", str(got[0].message))
         self.assertEqual(u.report.status, "HD_WARN_ACCURACY")
         with warnings.catch_warnings(), self.assertRaises(hd.AccuracyWarning):
             warnings.simplefilter("error")
@@ -555,10 +558,11 @@ class Face(unittest.TestCase):
             hd.Heat(lap, progress=lambda stage, done: False).diagonal("5h2")
         with self.assertRaises(ZeroDivisionError):
             hd.Heat(lap, progress=lambda stage, done: 1 / 0).diagonal("5h2")
-        made = []
-        made.append(hd.Heat(lap, progress=lambda stage, done: made[0].column(0, 1)))
-        with self.assertRaisesRegex(RuntimeError, "at work"):
-            made[0].diagonal("5h2")
+        for use in (lambda stage, done: made[0].column(0, 1), lambda stage, done: moving.update(xyz), lambda stage, done: moving.close()):
+            made, moving = [], mesh(xyz, tri, updatable=True)
+            made.append(hd.Heat(moving, progress=use))
+            with self.assertRaisesRegex(RuntimeError, "at work"):
+                made[0].diagonal("5h2")
         self.assertRaises(TypeError, mesh, xyz, tri, progress=5)
 
     def test_bar(self):
@@ -881,7 +885,7 @@ WRONG = {
         ("mesh(xyz, tri, kind='fm')", "kind is 'fm': did you mean fem? There are fem, voronoi-cot, cot"),
         ("mesh(xyz, tri, kind='polygon')", "kind is 'polygon'"), ("mesh(xyz, tri, triangulation='delauney')", "did you mean delaunay?"),
         ("mesh(xyz, tri, threads=-1)", "threads is -1, wanted is an integer from 0 to 1024"),
-        ("mesh(xyz, tri, memory_limit=-1)", "memory_limit is -1"), ("mesh(xyz, tri, updatable=2)", "updatable is 2"),
+        ("mesh(xyz, tri, memory_limit=-1)", "memory_limit is -1"), ("mesh(xyz, tri, memory_limit=1e30)", "memory_limit is 1000"), ("mesh(xyz, tri, updatable=2)", "updatable is 2"),
         ("Lap.from_polygons(xyz, squares.ravel())", "faces[0] has shape ()"),
         ("Lap.from_polygons(xyz, squares[None])", "faces[0] has shape (16, 4)"),
         ("Lap.from_polygons(xyz, squares + 2 ** 32)", "faces is 4294967296"), ("Lap.from_polygons(xyz, squares + 1)", "does not exist"),

@@ -53,6 +53,16 @@ class Error(Exception):
         places = ", ".join(f"{k} {where[k]}" for k in where if where[k] >= 0)
         super().__init__(text + (f" ({places})" if places else ""))
 
+    def __reduce__(self) -> Any:                                # so that it arrives from other processes
+        return _same_error, (type(self), self.args, self.__dict__)
+
+
+def _same_error(kind: type, args: tuple, fields: dict) -> Error:
+    made = kind.__new__(kind, *args)
+    made.args, made.__dict__ = args, fields
+    return made
+
+
 
 class InputError(Error, ValueError):
     """An argument that the library refused: an index out of range, a number that is not finite, a time below zero."""
@@ -81,12 +91,17 @@ def _raise(status: int, error: c.hd_error) -> None:
         row=error.row, column=error.column, pole=error.pole)
 
 
-def _warn(text: str) -> None:
+def doubt(text: str) -> None:
     """A warning that names the line of the user's own code."""
     level, frame = 2, sys._getframe(1)
     while frame.f_back and os.path.dirname(frame.f_code.co_filename) == os.path.dirname(__file__):
         level, frame = level + 1, frame.f_back
     warnings.warn(text, AccuracyWarning, stacklevel=level)
+
+
+def _bytes(x: Any) -> int:
+    """2e9 is a number of bytes too."""
+    return arrays.integer("memory_limit", int(x) if isinstance(x, float) and x.is_integer() else x, 0, 2 ** 62)
 
 
 class Context:
@@ -95,7 +110,7 @@ class Context:
     def __init__(self, threads: Optional[int], memory_limit: Optional[int], progress: Progress, other: Optional["Context"] = None):
         given: Tuple[int, int, Progress] = other.given if other else (0, 0, None)
         self.given: Tuple[int, int, Progress] = (given[0] if threads is None else arrays.integer("threads", threads, 0, 1024),
-                      given[1] if memory_limit is None else arrays.integer("memory_limit", memory_limit, 0, 2 ** 62),
+                      given[1] if memory_limit is None else _bytes(memory_limit),
                       given[2] if progress is None else progress)
         self.struct = c.hd_context(n_threads=self.given[0], byte_limit=self.given[1])
         self.progress: Any = self.given[2]
@@ -163,15 +178,15 @@ class Context:
             raise failed
 
 
-def call(context: Context, name: str, *args: Any) -> int:
+def call(context: Context, name: str, *args: Any, warn: bool = True) -> int:
     """Calls a function whose last argument is the error. Arrays go as pointers of their own type."""
     function, error = getattr(lib, name), c.hd_error()
     with context.running():
         status = function(*map(pointer, args), ctypes.byref(error))
     if status < 0:
         _raise(status, error)
-    if status > 0:
-        _warn(error.text.decode() or c.STATUS.get(status, ("", "see the report"))[1])
+    if status > 0 and warn:
+        doubt(error.text.decode() or c.STATUS.get(status, ("", "see the report"))[1])
     return status
 
 
@@ -201,18 +216,35 @@ def plain(struct: ctypes.Structure) -> dict:
     return found
 
 
+class Turn:
+    """A lock that says so where a thread would wait for itself."""
+
+    def __init__(self) -> None:
+        self.lock, self.worker = threading.Lock(), 0
+
+    def __enter__(self) -> None:
+        if self.worker == threading.get_ident():
+            raise RuntimeError("this object is at work: its progress function cannot use it")
+        self.lock.acquire()
+        self.worker = threading.get_ident()
+
+    def __exit__(self, *_: Any) -> None:
+        self.worker = 0
+        self.lock.release()
+
+
 class Handle:
     """The address of what the library made. What was made from it is freed before it, in whatever order Python drops them:
     a Laplacian lists its plans. One thread at a time works on it, and nobody while close() runs."""
 
     def __init__(self, kind: Any, free: str, context: Context, owner: Optional["Handle"] = None):
         self.pointer, self.freed_by, self.context, self.owner = ctypes.POINTER(kind)(), getattr(lib, free), context, owner
-        self.lock, self.worker = threading.Lock(), 0
+        self.turn = Turn()
         self.plans: Dict[int, tuple] = {}
 
     def make(self, name: str, *args: Any) -> None:
         if self.owner:                                          # before the call, which Ctrl-C may end although it succeeds
-            self.owner.plans[id(self)] = (self.pointer, self.freed_by, self.context, self.lock)
+            self.owner.plans[id(self)] = (self.pointer, self.freed_by, self.context, self.turn)
         call(self.context, name, ctypes.byref(self.pointer), *args)
 
     @property
@@ -222,26 +254,20 @@ class Handle:
     @contextlib.contextmanager
     def use(self, exclusive: bool = False) -> Iterator[Any]:
         """The address, while no other thread uses it; exclusive: nor any of its plans."""
-        if self.worker == threading.get_ident():
-            raise RuntimeError("this object is at work: its progress function cannot use it")
-        with contextlib.ExitStack() as locks:
-            locks.enter_context(self.lock)
-            self.worker = threading.get_ident()
-            try:
-                for _, _, _, lock in list(self.plans.values()) if exclusive else ():
-                    locks.enter_context(lock)
-                if not self.open:
-                    raise ValueError("this object is closed, or the Laplacian under it")
-                yield self.pointer
-            finally:
-                self.worker = 0
+        with contextlib.ExitStack() as turns:
+            turns.enter_context(self.turn)
+            for _, _, _, turn in list(self.plans.values()) if exclusive else ():
+                turns.enter_context(turn)
+            if not self.open:
+                raise ValueError("this object is closed, or the Laplacian under it")
+            yield self.pointer
 
     def free(self) -> None:
         """Frees it once. The lists are dictionaries, from which only one thread can take an entry."""
         mine = self.pointer if self.owner is None else (self.owner.plans.pop(id(self), None) or (None,))[0]
         if mine:
             while self.plans:
-                made, freed_by, _context, _lock = self.plans.popitem()[1]
+                made, freed_by, _context, _turn = self.plans.popitem()[1]
                 freed_by(made)
             self.freed_by(mine)
         self.pointer = type(self.pointer)()

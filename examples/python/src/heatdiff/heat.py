@@ -8,7 +8,7 @@ import numpy as np
 
 from . import _bindings as c
 from . import arrays
-from ._library import NAMES, Context, Handle, Object, Progress, attach, call, plain
+from ._library import NAMES, Context, Handle, Object, Progress, attach, call, doubt, plain
 from .answers import Answer, Estimate, Report, report
 from .laplacian import Laplacian, Times, _copy
 
@@ -109,8 +109,13 @@ class Heat(Object):
     def _query(self, name: str, *args: Any) -> Report:
         struct = c.hd_report()
         with self._handle.use() as heat:
-            status = call(self._handle.context, name, heat, *args, ctypes.byref(struct))
+            status = call(self._handle.context, name, heat, *args, ctypes.byref(struct), warn=False)
+        return self._reported(struct, status)
+
+    def _reported(self, struct: Any, status: int) -> Report:
         made: Report = report(Report, struct, c.STATUS[status][0])
+        if status > 0:
+            doubt(f"errors may be as large as {made.error_bound:.0e} of the largest value: see the answer's report")
         self.report = made
         return made
 
@@ -233,11 +238,11 @@ class Heat(Object):
             call(context, "hd_rational_fit", sets, len(e), filters, limit, ctypes.byref(context.struct))
             call(context, "hd_heat_set_rational", heat, len(e), sets)
             try:
-                status = call(context, "hd_heat_diagonal", heat, _kernel(True), 0, None, out, 0, trace, None, ctypes.byref(struct))
+                status = call(context, "hd_heat_diagonal", heat, _kernel(True), 0, None, out, 0, trace, None, ctypes.byref(struct),
+                              warn=False)
             finally:
                 call(context, "hd_heat_set_rational", heat, 0, None)
-        self.report = report(Report, struct, c.STATUS[status][0])
-        return Answer(shaped(out / trace[:, None] if normalise else out, True, False), self.report)
+        return Answer(shaped(out / trace[:, None] if normalise else out, True, False), self._reported(struct, status))
 
     def distance(self, sources: Any, t: Optional[Times] = None, kind: str = "classical") -> Answer:
         """Diffusion distances from each source to every vertex.
