@@ -5503,41 +5503,71 @@ static hdi_plane hdi_tangent_plane(const double *rel, int32_t n) {
 
 enum { HDI_POLYGON_MOST = HDI_CELL_SIDES + 2 * HDI_MOST_NEIGHBOURS + 4 };
 
+/* Convex; corner i is where its side begins. */
+typedef struct hdi_corner {
+    double x[2], line[3];                /* line[0] x + line[1] y = line[2] along the side */
+    int32_t id;                          /* of the side; -1: of the first polygon, its line is not set */
+} hdi_corner;
+
 typedef struct hdi_polygon {
     int32_t n;
-    double x[HDI_POLYGON_MOST][2];
+    hdi_corner c[HDI_POLYGON_MOST];      /* counterclockwise */
 } hdi_polygon;
 
-/* Keeps what lies in a x <= b; says whether anything was cut off. A cut adds one corner to a convex polygon:
- * there is room for one by each neighbour and one by each side of their hull. Rounding can leave corners that
- * are not convex, and a line through those may add more: where there is no room for that, nothing is cut off.
- * */
-static int hdi_polygon_clip(hdi_polygon *g, double a0, double a1, double b) {
+/* A regular polygon around a circle. */
+static void hdi_polygon_begin(hdi_polygon *g, int32_t sides, double radius) {
+    const double step = HDI_TURN / sides, r = radius / cos(step / 2);
+    for (g->n = 0; g->n < sides; g->n++) {
+        g->c[g->n].id = -1;
+        g->c[g->n].x[0] = r * cos(step * g->n);
+        g->c[g->n].x[1] = r * sin(step * g->n);
+    }
+}
+
+/* Where the side from p to q meets a line that they are so far off: by both lines, as p and q may be far
+ * away. */
+static void hdi_side_meet(const hdi_corner *p, const hdi_corner *q, double off_p, double off_q,
+                          const double *line, double *x) {
+    const double *side = p->line, det = p->id < 0 ? 0 : hdi_det2(side[0], line[1], side[1], line[0]);
+    const double s = off_p / (off_p - off_q);
+    if (p->id >= 0 && fabs(det) > 1e-9 * (fabs(side[0]) + fabs(side[1])) * (fabs(line[0]) + fabs(line[1]))) {
+        x[0] = hdi_det2(side[2], line[1], side[1], line[2]) / det;
+        x[1] = hdi_det2(side[0], line[2], side[2], line[0]) / det;
+    } else {
+        x[0] = p->x[0] + s * (q->x[0] - p->x[0]);
+        x[1] = p->x[1] + s * (q->x[1] - p->x[1]);
+    }
+}
+
+/* Above 0: c is cut off by a line. Those through a corner, of which grids have many, leave it up to rounding:
+ * else sides would come in any order there. */
+static double hdi_corner_off(const hdi_corner *c, const double *line) {
+    const double x = line[0] * c->x[0], y = line[1] * c->x[1];
+    return x + y - line[2] - 1e-13 * (fabs(x) + fabs(y));
+}
+
+/* Keeps what lies in a0 x + a1 y <= b; says whether anything was cut off. A cut adds one corner to a convex
+ * polygon: there is room for one by each neighbour and one by each side of their hull. Rounding can leave
+ * corners that are not convex, and a line through those may add more: where there is no room for that,
+ * nothing is cut off. */
+static int hdi_polygon_clip(hdi_polygon *g, double a0, double a1, double b, int32_t id) {
+    const hdi_corner cutting = {{0, 0}, {a0, a1, b}, id};
     hdi_polygon cut;
-    double last, here;
     int32_t i;
     int any = 0;
-    for (i = 0; i < g->n && !any; i++) any = a0 * g->x[i][0] + a1 * g->x[i][1] > b;
+    for (i = 0; i < g->n && !any; i++) any = hdi_corner_off(g->c + i, cutting.line) > 0;
     if (!any) return 0;
-    cut.n = 0;
-    last = a0 * g->x[g->n - 1][0] + a1 * g->x[g->n - 1][1] - b;
-    for (i = 0; i < g->n; i++) {
-        const double *from = g->x[i ? i - 1 : g->n - 1], *to = g->x[i];
+    for (i = 0, cut.n = 0; i < g->n; i++) {
+        const hdi_corner *p = g->c + i, *q = g->c + (i + 1 < g->n ? i + 1 : 0);
+        const double off_p = hdi_corner_off(p, cutting.line), off_q = hdi_corner_off(q, cutting.line);
         if (cut.n + 2 > HDI_POLYGON_MOST) return 0;
-        here = a0 * to[0] + a1 * to[1] - b;
-        if ((last <= 0) != (here <= 0)) {        /* one of both is not zero */
-            const double s = last / (last - here);
-            cut.x[cut.n][0] = from[0] + s * (to[0] - from[0]);
-            cut.x[cut.n++][1] = from[1] + s * (to[1] - from[1]);
-        }
-        if (here <= 0) {
-            cut.x[cut.n][0] = to[0];
-            cut.x[cut.n++][1] = to[1];
-        }
-        last = here;
+        if (off_p <= 0) cut.c[cut.n++] = *p;
+        if ((off_p <= 0) == (off_q <= 0)) continue;
+        cut.c[cut.n] = off_p <= 0 ? cutting : *p;      /* one of both is not zero */
+        hdi_side_meet(p, q, off_p, off_q, cutting.line, cut.c[cut.n++].x);
     }
     g->n = cut.n;
-    memcpy(g->x, cut.x, (size_t)cut.n * sizeof *g->x);
+    memcpy(g->c, cut.c, (size_t)cut.n * sizeof *g->c);
     return 1;
 }
 
@@ -5545,126 +5575,50 @@ static double hdi_polygon_area(const hdi_polygon *g) {
     double sum = 0;
     int32_t i;
     for (i = 0; i < g->n; i++) {
-        const double *a = g->x[i], *b = g->x[i + 1 < g->n ? i + 1 : 0];
+        const double *a = g->c[i].x, *b = g->c[i + 1 < g->n ? i + 1 : 0].x;
         sum += a[0] * b[1] - a[1] * b[0];
     }
     return sum / 2;
 }
 
-typedef struct hdi_star_point { double x, y, angle; int32_t id; } hdi_star_point;
+/* Where sides of the first polygon are left in one with this radius, the plane is open: the lines beside them
+ * are opposite to each other, up to a millionth. */
+#define HDI_POLYGON_FAR 1e6
 
-/* An angle that needs no arc tangent: 0 along x, 1 along y, a turn is 4, half a turn 2 between any two
- * opposite directions. */
-static double hdi_star_angle(double x, double y) {
-    const double sum = fabs(x) + fabs(y), q = sum > 0 ? y / sum : 0;
-    return x < 0 ? 2 - q : y < 0 ? 4 + q : q;
-}
-
-/* c is to the left of the line from a to b. */
-static int hdi_star_left(const hdi_star_point *a, const hdi_star_point *b,
-                         const hdi_star_point *c) {
-    return hdi_det2(b->x - a->x, c->y - b->y, b->y - a->y, c->x - b->x) > 0;
-}
-
-/* directions within this hdi_star_angle are the same one; opposite ones likewise */
-#define HDI_STAR_SAME 1e-6
-
-/* p, n by angle: of those in the same direction only the longest stays, the dual of the nearest.
- * Returns how many are left. */
-static int32_t hdi_star_directions(hdi_star_point *p, int32_t n) {
-    const double turn = 4;
-    int32_t i, m = 0;
-    for (i = 0; i < n; i++) {
-        const hdi_star_point x = p[i];
-        if (m > 0 && x.angle - p[m - 1].angle < HDI_STAR_SAME) {
-            if (x.x * x.x + x.y * x.y > p[m - 1].x * p[m - 1].x + p[m - 1].y * p[m - 1].y) p[m - 1] = x;
-        } else {
-            p[m++] = x;
-        }
-    }
-    /* the last is in the direction of the first */
-    if (m > 1 && p[0].angle + turn - p[m - 1].angle < HDI_STAR_SAME) {
-        if (p[m - 1].x * p[m - 1].x + p[m - 1].y * p[m - 1].y > p[0].x * p[0].x + p[0].y * p[0].y) {
-            p[0] = p[m - 1];
-            p[0].angle -= turn;
-        }
-        m--;
-    }
-    return m;
-}
-
-/* Sorts p by angle, equal ones as they come: the angle's bits, whose last eight make room for the place. */
-static void hdi_star_sort(hdi_star_point *p, int32_t n) {
-    hdi_star_point from[HDI_STAR_MOST];
-    uint64_t key[HDI_STAR_MOST];
-    int32_t i;
-    for (i = 0; i < n; i++) {
-        p[i].angle = hdi_star_angle(p[i].x, p[i].y) + 0.0;       /* no -0 */
-        memcpy(key + i, &p[i].angle, sizeof *key);
-        key[i] = (key[i] & ~(uint64_t)255) | (uint64_t)i;
-        from[i] = p[i];
-    }
-    hdi_sort_keys(key, n);
-    for (i = 0; i < n; i++) p[i] = from[key[i] & 255];
-}
-
-/* The corners of the convex hull of the origin and p[0..n), found by walking around it (Graham 1972). Where
- * points are a half turn apart, the hull is open: the origin is one of its corners. Leaves the others in p by
- * angle; returns their number.
- * This gives the star of the origin in the Delaunay triangulation of it and of neighbours if p are their
- * duals: the neighbour q stands at 2 q / |q|^2, so that the line between the nearer and the farther half
- * plane is its polar. The neighbours that bound the Voronoi cell are then the corners. */
-static int32_t hdi_star_hull(hdi_star_point *p, int32_t n, int *closed) {
-    const double half = 2, open_gap = half - HDI_STAR_SAME;
-    hdi_star_point hull[HDI_STAR_MOST + 2], origin;
-    int32_t i, at, first = 0, top = 0;
-    double far_away = -1;
-    hdi_star_sort(p, n);
-    n = hdi_star_directions(p, n);
+/* The other sides in their order, from behind such a gap on. Returns how many they are. */
+static int32_t hdi_polygon_sides(const hdi_polygon *g, int32_t *id, int *closed) {
+    int32_t i, first = 0, n = 0;
     *closed = 1;
-    /* begin behind a gap of a half turn, else at the longest one, which is a corner */
-    for (i = 0; i < n; i++) {
-        const double r = p[i].x * p[i].x + p[i].y * p[i].y,
-                     gap = i ? p[i].angle - p[i - 1].angle : p[0].angle - p[n - 1].angle + 2 * half;
-        if (gap >= open_gap) *closed = 0;
-        if (gap >= open_gap || (*closed && r > far_away)) first = i;
-        far_away = hdi_max(far_away, r);
+    for (i = 0; i < g->n; i++) {
+        if (g->c[i].id >= 0) continue;
+        *closed = 0;
+        first = i + 1;
     }
-    memset(&origin, 0, sizeof origin);
-    if (!*closed) hull[top++] = origin;
-    for (i = 0, at = first; i < n; i++, at = at + 1 < n ? at + 1 : 0) {
-        while (top > 1 && !hdi_star_left(hull + top - 2, hull + top - 1, p + at)) top--;
-        hull[top++] = p[at];
+    for (i = 0; i < g->n; i++) {
+        const int32_t side = g->c[(first + i) % g->n].id;
+        if (side >= 0) id[n++] = side;
     }
-    /* once around: from the nearest to itself, or from the origin, a corner now, to itself */
-    {
-        const hdi_star_point last = *closed ? p[first] : origin;
-        while (top > 1 && !hdi_star_left(hull + top - 2, hull + top - 1, &last)) top--;
-    }
-    top -= !*closed;
-    for (i = 0; i < top; i++) p[i] = hull[i + !*closed];
-    return top;
+    return n;
 }
 
-/* Clips g to the convex hull of the origin and the n points x; says whether that cut anything. */
+/* Clips g to the convex hull of the origin and the n points x; says whether that cut anything. The hull's
+ * corners are the sides of { y : x y <= 1 for all x }, its polar; where that is open, the origin is one. */
 static int hdi_polygon_clip_hull(hdi_polygon *g, double (*x)[2], int32_t n) {
-    hdi_star_point p[HDI_MOST_NEIGHBOURS + 1];
-    int32_t i, m = 0;
+    hdi_polygon polar;
+    double corner[HDI_POLYGON_MOST + 1][2];
+    int32_t i, m, id[HDI_POLYGON_MOST];
     int closed, cut;
-    memset(p, 0, sizeof p);
-    for (i = 0; i < n; i++) {
-        p[m].x = x[i][0];
-        p[m].y = x[i][1];
-        m += x[i][0] != 0 || x[i][1] != 0;
-    }
-    m = hdi_star_hull(p, m, &closed);
-    if (!closed) memset(p + m++, 0, sizeof *p);
+    hdi_polygon_begin(&polar, 4, HDI_POLYGON_FAR);
+    for (i = 0; i < n; i++)
+        if (x[i][0] != 0 || x[i][1] != 0) (void)hdi_polygon_clip(&polar, x[i][0], x[i][1], 1, i);
+    m = hdi_polygon_sides(&polar, id, &closed);
+    for (i = 0; i < m; i++) memcpy(corner[i], x[id[i]], sizeof *corner);
+    if (!closed) memset(corner[m++], 0, sizeof *corner);
     cut = m < 3;                                 /* all are on a line */
     if (cut) g->n = 0;
     for (i = 0; i < m && g->n > 0; i++) {
-        const hdi_star_point *a = p + i, *b = p + (i + 1 < m ? i + 1 : 0);
-        const double e0 = b->x - a->x, e1 = b->y - a->y;
-        cut |= hdi_polygon_clip(g, e1, -e0, e1 * a->x - e0 * a->y);
+        const double *a = corner[i], *b = corner[i + 1 < m ? i + 1 : 0], e0 = b[0] - a[0], e1 = b[1] - a[1];
+        cut |= hdi_polygon_clip(g, e1, -e0, e1 * a[0] - e0 * a[1], 0);
     }
     return cut;
 }
@@ -7351,7 +7305,6 @@ typedef struct hdi_cloud {
     int32_t *size;             /* [n] corners of the star; negative: open between the last and the first */
     double *area;              /* [n] of the cells */
     int8_t *border;            /* [n] 1: the cell ends where the neighbours do */
-    double start[HDI_CELL_SIDES][2];   /* a regular polygon around the unit circle */
 } hdi_cloud;
 
 static hd_status hdi_star_check(const int64_t *ptr, const int32_t *nbr, int32_t n, hd_error *e) {
@@ -7463,11 +7416,7 @@ static void hdi_cell_area(hdi_cloud *cloud, int32_t i) {
     /* By the middle one of the spacings nearby: an outlier has those of the surface. Random points leave a
      * circle so large empty once in 3e5 times. */
     radius = 2 * sqrt(hdi_cloud_spacing2(n, hdi_kth(reaches, n, n / 2))) * unit;
-    g.n = HDI_CELL_SIDES;
-    for (v = 0; v < g.n; v++) {
-        g.x[v][0] = radius * cloud->start[v][0];
-        g.x[v][1] = radius * cloud->start[v][1];
-    }
+    hdi_polygon_begin(&g, HDI_CELL_SIDES, radius);
     outer2 = 1.2 * radius * radius;
     for (k = 0; k < n; k++) {
         const double l2 = hdi_dot3(rel + 3 * k, rel + 3 * k);    /* and q2 the square in the plane */
@@ -7477,9 +7426,9 @@ static void hdi_cell_area(hdi_cloud *cloud, int32_t i) {
         q2 = x[k][0] * x[k][0] + x[k][1] * x[k][1];
         /* max(q2, l2 - q2) is at least l2/2: the bisector is beyond all corners */
         if (k == 0 || l2 > 8 * outer2) continue;
-        if (!hdi_polygon_clip(&g, x[k][0], x[k][1], hdi_max(q2, l2 - q2) / 2)) continue;
+        if (!hdi_polygon_clip(&g, x[k][0], x[k][1], hdi_max(q2, l2 - q2) / 2, k)) continue;
         for (v = 0, outer2 = 0; v < g.n; v++)
-            outer2 = hdi_max(outer2, g.x[v][0] * g.x[v][0] + g.x[v][1] * g.x[v][1]);
+            outer2 = hdi_max(outer2, g.c[v].x[0] * g.c[v].x[0] + g.c[v].x[1] * g.c[v].x[1]);
     }
     cloud->not_flat[i] = plane.not_flat;
     cloud->border[i] = (int8_t)(hdi_polygon_clip_hull(&g, x + 1, n - 1) || outer2 >= radius * radius);
@@ -7495,7 +7444,6 @@ static void hdi_cell_task(void *arg, int64_t begin, int64_t end) {
 
 /* The cells of places. */
 static hd_status hdi_cloud_cells(hdi_cloud *cloud, hdi_scope *s) {
-    const double step = HDI_TURN / (double)HDI_CELL_SIDES, r = 1 / cos(step / 2);
     int32_t i;
     cloud->area = HDI_TAKE(s, double, cloud->n);
     cloud->border = HDI_TAKE(s, int8_t, cloud->n);
@@ -7506,10 +7454,6 @@ static hd_status hdi_cloud_cells(hdi_cloud *cloud, hdi_scope *s) {
                 s->e, HD_ERR_ARGUMENT,
                 "two points are too close together: the square of their distance is too small", -1,
                 cloud->name[i], d2);
-    }
-    for (i = 0; i < HDI_CELL_SIDES; i++) {
-        cloud->start[i][0] = r * cos(step * i);
-        cloud->start[i][1] = r * sin(step * i);
     }
     if (s->e->status < 0 || hdi_progress(s->ctx, "assemble", 0.2, s->e) < 0) return s->e->status;
     hdi_parallel_ranges(s->ctx, cloud->n, HDI_POINTS_PER_TASK, hdi_cell_task, cloud);
@@ -7698,8 +7642,8 @@ static void hdi_point_star(const hdi_cloud *cloud, int32_t i) {
     const double unit = cloud->nearest[i];
     double rel[3 * HDI_STAR_MOST];
     hdi_plane plane;
-    hdi_star_point p[HDI_STAR_MOST];
-    int32_t n = 0, m = 0, k, id[HDI_STAR_MOST];
+    hdi_polygon g;
+    int32_t n = 0, m, k, id[HDI_STAR_MOST], side[HDI_POLYGON_MOST];
     int closed;
     int64_t q;
     cloud->size[i] = 0;
@@ -7714,6 +7658,7 @@ static void hdi_point_star(const hdi_cloud *cloud, int32_t i) {
     if (n < 2) return;
     plane = hdi_tangent_plane(rel, n);
     cloud->not_flat[i] = plane.not_flat;
+    hdi_polygon_begin(&g, 4, HDI_POLYGON_FAR);
     for (k = 0; k < n; k++) {
         const double *d = rel + 3 * k, h = hdi_dot3(plane.axis[2], d), w = cloud->nearest[id[k]] / unit;
         const double x = hdi_dot3(plane.axis[0], d), y = hdi_dot3(plane.axis[1], d), r2 = x * x + y * y;
@@ -7721,13 +7666,10 @@ static void hdi_point_star(const hdi_cloud *cloud, int32_t i) {
         if (!(r2 > 1e-12 * hdi_dot3(d, d))) continue;      /* straight above */
         power += 1e-9 * hdi_min(1, r2) * hdi_point_chance(cloud->name[i]);
         power -= 1e-9 * hdi_min(w * w, r2) * hdi_point_chance(cloud->name[id[k]]);
-        p[m].x = 2 * x / power;
-        p[m].y = 2 * y / power;
-        p[m++].id = id[k];
+        (void)hdi_polygon_clip(&g, x, y, power / 2, id[k]);
     }
-    if (m < 2) return;
-    m = hdi_star_hull(p, m, &closed);
-    for (k = 0; k < m; k++) cloud->nbr[cloud->ptr[i] + k] = p[k].id;
+    m = hdi_low32(hdi_polygon_sides(&g, side, &closed), n);
+    for (k = 0; k < m; k++) cloud->nbr[cloud->ptr[i] + k] = side[k];
     cloud->size[i] = closed ? m : -m;
 }
 

@@ -1293,24 +1293,20 @@ static void int_eigen3(void) {
 
 /* A square cut by half-planes and by a hull; and a circle by as many cuts as there can be. */
 static void int_polygon(void) {
-    static const double square[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
     double x[6][2] = {{0, 0}, {0.5, 0}, {0, 0.5}, {0.1, 0.1}, {0.25, 0.25}, {0, 0}}, line[3][2] = {{0, 0}, {1, 1}, {0.5, 0.5}};
     hdi_polygon g;
     int32_t k;
-    g.n = 4;
-    memcpy(g.x, square, sizeof square);
-    CHECK(!hdi_polygon_clip(&g, 1, 1, 2) && g.n == 4 && hdi_polygon_area(&g) == 4);
-    CHECK(hdi_polygon_clip(&g, 1, 1, 1) && g.n == 5 && fabs(hdi_polygon_area(&g) - 3.5) < 1e-15);
-    CHECK(hdi_polygon_clip(&g, -1, 0, 0) && fabs(hdi_polygon_area(&g) - 1.5) < 1e-15);
+    hdi_polygon_begin(&g, 4, 9);
+    for (k = 0; k < 4; k++) CHECK(hdi_polygon_clip(&g, (k == 0) - (k == 2), (k == 1) - (k == 3), 1, k));
+    CHECK(!hdi_polygon_clip(&g, 1, 1, 2, 0) && g.n == 4 && hdi_polygon_area(&g) == 4);
+    CHECK(hdi_polygon_clip(&g, 1, 1, 1, 0) && g.n == 5 && fabs(hdi_polygon_area(&g) - 3.5) < 1e-15);
+    CHECK(hdi_polygon_clip(&g, -1, 0, 0, 0) && fabs(hdi_polygon_area(&g) - 1.5) < 1e-15);
     CHECK(hdi_polygon_clip_hull(&g, x, 6) && fabs(hdi_polygon_area(&g) - 0.125) < 1e-15);
     CHECK(hdi_polygon_clip_hull(&g, line, 3) && fabs(hdi_polygon_area(&g)) < 1e-15);
-    CHECK(!hdi_polygon_clip(&g, 1, 0, 5));
-    for (g.n = 0; g.n < HDI_CELL_SIDES; g.n++) {
-        g.x[g.n][0] = 2 * cos(2 * acos(-1.0) * g.n / HDI_CELL_SIDES);
-        g.x[g.n][1] = 2 * sin(2 * acos(-1.0) * g.n / HDI_CELL_SIDES);
-    }
+    CHECK(!hdi_polygon_clip(&g, 1, 0, 5, 0));
+    hdi_polygon_begin(&g, HDI_CELL_SIDES, 1.9);
     for (k = 0; k < 2 * HDI_MOST_NEIGHBOURS; k++) CHECK(hdi_polygon_clip(&g, cos(acos(-1.0) * (k * 101 % 256) / 128),
-        sin(acos(-1.0) * (k * 101 % 256) / 128), 1));
+        sin(acos(-1.0) * (k * 101 % 256) / 128), 1, k));
     CHECK(g.n == 2 * HDI_MOST_NEIGHBOURS && g.n <= HDI_POLYGON_MOST);
 }
 
