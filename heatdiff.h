@@ -5552,19 +5552,21 @@ static double hdi_corner_off(const hdi_corner *c, const double *line) {
  * nothing is cut off. */
 static int hdi_polygon_clip(hdi_polygon *g, double a0, double a1, double b, int32_t id) {
     const hdi_corner cutting = {{0, 0}, {a0, a1, b}, id};
+    double off[HDI_POLYGON_MOST];
     hdi_polygon cut;
-    int32_t i;
+    int32_t i, k;
     int any = 0;
-    for (i = 0; i < g->n && !any; i++) any = hdi_corner_off(g->c + i, cutting.line) > 0;
+    for (i = 0; i < g->n && !any; i++) any = a0 * g->c[i].x[0] + a1 * g->c[i].x[1] > b;
+    if (!any) return 0;                          /* most often */
+    for (i = any = 0; i < g->n; i++) any |= (off[i] = hdi_corner_off(g->c + i, cutting.line)) > 0;
     if (!any) return 0;
     for (i = 0, cut.n = 0; i < g->n; i++) {
-        const hdi_corner *p = g->c + i, *q = g->c + (i + 1 < g->n ? i + 1 : 0);
-        const double off_p = hdi_corner_off(p, cutting.line), off_q = hdi_corner_off(q, cutting.line);
         if (cut.n + 2 > HDI_POLYGON_MOST) return 0;
-        if (off_p <= 0) cut.c[cut.n++] = *p;
-        if ((off_p <= 0) == (off_q <= 0)) continue;
-        cut.c[cut.n] = off_p <= 0 ? cutting : *p;      /* one of both is not zero */
-        hdi_side_meet(p, q, off_p, off_q, cutting.line, cut.c[cut.n++].x);
+        if (off[i] <= 0) cut.c[cut.n++] = g->c[i];
+        k = i + 1 < g->n ? i + 1 : 0;
+        if ((off[i] <= 0) == (off[k] <= 0)) continue;
+        cut.c[cut.n] = off[i] <= 0 ? cutting : g->c[i];      /* one of both is not zero */
+        hdi_side_meet(g->c + i, g->c + k, off[i], off[k], cutting.line, cut.c[cut.n++].x);
     }
     g->n = cut.n;
     memcpy(g->c, cut.c, (size_t)cut.n * sizeof *g->c);
@@ -5609,7 +5611,7 @@ static int hdi_polygon_clip_hull(hdi_polygon *g, double (*x)[2], int32_t n) {
     int32_t i, m, id[HDI_POLYGON_MOST];
     int closed, cut;
     hdi_polygon_begin(&polar, 4, HDI_POLYGON_FAR);
-    for (i = 0; i < n; i++)
+    for (i = n; i-- > 0;)                        /* those that are far away make the hull */
         if (x[i][0] != 0 || x[i][1] != 0) (void)hdi_polygon_clip(&polar, x[i][0], x[i][1], 1, i);
     m = hdi_polygon_sides(&polar, id, &closed);
     for (i = 0; i < m; i++) memcpy(corner[i], x[id[i]], sizeof *corner);
