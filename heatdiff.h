@@ -13789,7 +13789,12 @@ static hd_status hdi_rational_fit(hd_rational *out, int32_t count, const hd_filt
  *   |A^-1 r|_B <= |r|_(B^-1) / min |t lambda + theta|
  *   |A^-1 r|_M <= |r|_(B^-1) max (1 + t lambda)/|t lambda + theta|,   M = B + t L,
  * and |r|_(B^-1)^2 <= |r|_(D^-1)^2 / b_ratio, D = diag(B). At vertex v, |e_v| <= |e|_B / sqrt(b_ratio D_v),
- * and |e_v| <= sqrt(g_v) |e|_M for g = diag(M^-1). The second is much smaller where heat has spread far. */
+ * and |e_v| <= sqrt(g_v) |e|_M for g = diag(M^-1). The second is much smaller where heat has spread far.
+ * How an error_bound comes about, from the end: hdi_ledger_close divides the parts by the largest value;
+ * hdi_heat_judge makes those of values from those of a lane, by hdi_lane_bound; and a lane has them in the
+ * norm of B from its engine. With poles these are hdi_lane_residual and hdi_rational_bound; of krylov
+ * hdi_ritz_bound (solver) and hdi_krylov_rounding, see hdi_krylov_answer; of Lanczos the like in
+ * hdi_lanczos_run. hdi_conserve_off adds what the means are off by. */
 
 /* Parts of an error bound, in one of the norms or of values. */
 typedef struct hdi_parts { double rational, solver, rounding; } hdi_parts;
@@ -14324,20 +14329,22 @@ static void hdi_warm_products(const hdi_lane *lane, const double *d, int32_t p, 
 }
 
 /* The start of system p from the solutions of poles p + 1 to last, whose inner products are in gram: the
- * combination with the smallest residual, H c = 1 (Hermitian, as a real system), less by a part of the
- * diagonal that rounding has eaten. A point is a pole or its conjugate. */
+ * combination with the smallest residual, H c = 1 (Hermitian, as a real system with a unit diagonal, to
+ * which what rounding eats of it is added). A point is a pole or its conjugate. */
 static void hdi_warm_start(hdi_lane *lane, const hdi_family *fam, int32_t p, int32_t last,
                            hdi_gram *gram) {
     const int32_t n = fam->lap->n_active;
     hd_c64 shift[HDI_WARM_MAX], sum = hdi_c(0, 0), *HDI_RESTRICT x = lane->k[p].x;
-    double A[4 * HDI_WARM_MAX * HDI_WARM_MAX], c[2 * HDI_WARM_MAX] = {0};
+    double A[4 * HDI_WARM_MAX * HDI_WARM_MAX], c[2 * HDI_WARM_MAX] = {0}, unit[HDI_WARM_MAX];
     int32_t m = 0, i, j, pole[HDI_WARM_MAX], conj[HDI_WARM_MAX];
     for (i = p + 1; i <= last; i++) {
         for (j = 0; j < (fam->set.theta[i].im == 0 ? 1 : 2); j++, m++) {
             pole[m] = i;
             conj[m] = j;
             shift[m] = hdi_csub(fam->set.theta[p], j ? hdi_cconj(fam->set.theta[i]) : fam->set.theta[i]);
-            c[m] = 1;
+            unit[m] = hdi_cabs(shift[m]) * sqrt(gram[i][0][0].re);
+            c[m] = unit[m] = unit[m] > 0 ? 1 / unit[m] : 0;
+            shift[m] = hdi_cscale(unit[m], shift[m]);
         }
     }
     for (i = 0; i < m; i++) {
@@ -14346,7 +14353,7 @@ static void hdi_warm_start(hdi_lane *lane, const hdi_family *fam, int32_t p, int
             const hd_c64 *g = gram[pole[j]][pole[i] - pole[j]];
             hd_c64 v = conj[i] == conj[j] ? g[0] : g[1];
             v = hdi_cmul(hdi_cmul(hdi_cconj(shift[i]), shift[j]), conj[j] ? hdi_cconj(v) : v);
-            if (i == j) v = hdi_c(v.re * (1 + 1e-13), 0);
+            if (i == j) v = hdi_c(1 + 1e-14, 0);
             A[2 * m * j + i] = A[2 * m * i + j] = v.re;
             A[2 * m * (m + j) + m + i] = A[2 * m * (m + i) + m + j] = v.re;
             A[2 * m * j + m + i] = A[2 * m * (m + i) + j] = v.im;
@@ -14354,7 +14361,11 @@ static void hdi_warm_start(hdi_lane *lane, const hdi_family *fam, int32_t p, int
         }
     }
     hdi_least_squares(A, 2 * m, 2 * m, c);
-    for (i = 0; i < m; i++) sum = hdi_cadd(sum, hdi_c(c[i], c[m + i]));
+    for (i = 0; i < m; i++) {
+        c[i] *= unit[i];
+        c[m + i] *= unit[i];
+        sum = hdi_cadd(sum, hdi_c(c[i], c[m + i]));
+    }
     if (sum.re == 0 && sum.im == 0) return;
     for (i = 0; i < m; i++) {
         const hd_c64 w = hdi_cdiv(hdi_c(c[i], c[m + i]), sum), *HDI_RESTRICT y = lane->k[pole[i]].x;
@@ -15600,7 +15611,7 @@ static hd_status hdi_lanczos_run(const hdi_lanczos_task *task, hdi_lane *lane, c
         lane->steps = lane->lanczos.m;
     }
     if (status >= 0) hdi_conserve(lap, lane, 1);
-    hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, task->t * task->drift, 1));
+    hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, task->t * task->drift, 1) + lane->f_off);
     return status;
 }
 
@@ -16078,7 +16089,7 @@ static hd_status hdi_krylov_run(hdi_krylov *z, const double *t, int32_t n_times,
     return worst;
 }
 
-/* Bound on what rounding does to the answer of right-hand side r after m steps, relative to |f|_B. With S V =
+/* Bound on what rounding does to the answer of right-hand side r after m steps, in the norm of B. With S V =
  * V T + ... + errors Phi_j of the steps, the answer is off by sum_j (sum_k x_k V_jk F[mu_k, S]) Phi_j, with
  * divided differences as in hdi_ritz_bound. The residual of a solve is an error that is no larger in the B
  * norm. y: the answer's coefficients. given: the error of the right-hand side, which is an error of the first
@@ -16130,7 +16141,7 @@ static hd_status hdi_krylov_answer(hdi_krylov *z, int32_t r, double t, const dou
     lane->off.rounding += z->before[r].rounding;
     hdi_conserve(lap, lane, 1);
     lane->u_norm = sqrt(hdi_max(0, hdi_b_norm2(lap, lane->u, lane->tmp)));
-    hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, t * drift, 1));
+    hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, t * drift, 1) + lane->f_off);
     return HD_OK;
 }
 
@@ -18130,7 +18141,7 @@ struct hd_heat {
     hdi_elim few;                /* the same in an order that is found fast, see hdi_krylov_few */
     hdi_ground ground;           /* made when it is first needed; of elim */
     hdi_modes modes;             /* so too */
-    hdi_krylov *silan;
+    hdi_krylov *krylov;
     double *batch_room;          /* arrays of the batches */
     uint64_t batch_doubles;
     hd_laplacian *lap;           /* to iterate on: renumbered and scaled */
@@ -18361,9 +18372,9 @@ static void hdi_heat_shed(hd_heat *heat, int pairs) {
     hdi_free(heat->ctx, heat->batch_room);
     heat->batch_room = NULL;
     heat->batch_doubles = 0;
-    if (HDI_HAS_DIRECT && heat->silan) hdi_krylov_free(heat->silan, heat->ctx);
-    hdi_free(heat->ctx, heat->silan);
-    heat->silan = NULL;
+    if (HDI_HAS_DIRECT && heat->krylov) hdi_krylov_free(heat->krylov, heat->ctx);
+    hdi_free(heat->ctx, heat->krylov);
+    heat->krylov = NULL;
     if (HDI_HAS_DIAGONAL) hdi_ground_free(&heat->ground, heat->ctx);
     if (HDI_HAS_MODES && pairs) hdi_modes_free(&heat->modes, heat->ctx);
     hdi_heat_drop(heat);
@@ -18984,6 +18995,19 @@ static double hdi_lane_rhs_off(const hd_laplacian *lap, const double *f) {
     return DBL_EPSILON / 2 * sqrt(sum) * hdi_ratio_root(lap);
 }
 
+/* What f, which comes from rhs by a solve with a full B, is off by: its residual, with the rounding of
+ * that. */
+static double hdi_lane_f_off(const hd_laplacian *lap, hdi_lane *lane) {
+    double sum = 0;
+    int32_t i;
+    hdi_pair_apply(lap, 0, 1, lane->f, lane->tmp);
+    for (i = 0; i < lap->n_active; i++) {
+        const double r = lane->rhs[i] - lane->tmp[i];
+        sum += r * (r / lap->b_diag[i]);
+    }
+    return sqrt(sum) * hdi_ratio_root(lap) + hdi_lane_rhs_off(lap, lane->f);
+}
+
 /* Takes the constants out of a field for good: they do not change in time. Where they are nearly all of it,
  * rounding leaves some of them, and the second time takes those. What rounding does to a difference is small
  * beside that. */
@@ -19093,8 +19117,7 @@ static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane
         }
         hdi_heat_measure(lap, lane);
     }
-    if ((lane->dual || query == HDI_QUERY_SYMMETRIC) && lap->B)
-        lane->f_off = HDI_MASS_TOL * hdi_ratio_root(lap) * lane->f_norm;
+    if ((lane->dual || query == HDI_QUERY_SYMMETRIC) && lap->B) lane->f_off = hdi_lane_f_off(lap, lane);
     if (h->rate) hdi_lane_moving(lap, lane);
     return HD_OK;
 }
@@ -19836,7 +19859,7 @@ static void hdi_krylov_cost(const hdi_heat_call *h, hd_cost *c) {
     c->flops = (w.n - ready) * f.flops + steps * 4 * f.nnz;
     c->seconds = f.analysis + (w.n - ready) * f.flops / HDI_RATE_REAL +
                  steps * (16 * f.nnz + 100 * n) / rate + h->n_times * steps / w.n * 8 * n / HDI_RATE_SWEEP;
-    if (heat->silan && heat->silan->m == m && heat->silan->wide == wide && heat->silan->v[0] &&
+    if (heat->krylov && heat->krylov->m == m && heat->krylov->wide == wide && heat->krylov->v[0] &&
         m->shifted.ctx) return;
     if (m->ctx) c->bytes = (double)hdi_krylov_need(m, wide, (int32_t)longest);
     else c->bytes = 8 * f.real_stored + 8 * n * wide * (longest + 4) + 200 * n;
@@ -19848,7 +19871,7 @@ static void hdi_krylov_cost(const hdi_heat_call *h, hd_cost *c) {
 /* The steps of a basis for n items and the times [q0, q1). */
 static hd_status hdi_krylov_basis(hdi_heat_call *h, int32_t n, int32_t q0, int32_t q1) {
     hd_heat *heat = h->heat;
-    hdi_krylov *z = heat->silan;
+    hdi_krylov *z = heat->krylov;
     double fixed[HDI_WIDE];
     int32_t i;
     double g = hdi_krylov_shift(z->from, h->times[q0], h->times[q1 - 1], heat->lambda_max);
@@ -19873,14 +19896,15 @@ static hd_status hdi_krylov_store(hdi_heat_call *h, int32_t n, int32_t q, const 
                                   int counted, hd_status status) {
     const hd_heat *heat = h->heat;
     const size_t bytes = (size_t)h->lap->n_active * sizeof *h->heat->lane->u;
+    hdi_krylov *z = heat->krylov;
     int32_t i;
     for (i = 0; i < n; i++) {
         hdi_lane *lane = h->heat->lane + i;
         lane->status = status;
         if (lane->skip) continue;
         if (a->u[p + i] != lane->u) memcpy(lane->u, a->u[p + i], bytes);
-        if (hdi_krylov_answer(heat->silan, i, h->times[q] - heat->silan->from, a->y[p + i], heat->drift, lane,
-                             h->e) < 0) return h->e->status;
+        if (hdi_krylov_answer(z, i, h->times[q] - z->from, a->y[p + i], heat->drift, lane, h->e) < 0)
+            return h->e->status;
         if (counted) lane->steps = 0;
         if (lane->off.solver > heat->opts.tol * lane->u_norm ||
             lane->off.rounding > heat->limit * lane->u_norm) lane->status = HD_WARN_ACCURACY;
@@ -19892,7 +19916,7 @@ static hd_status hdi_krylov_store(hdi_heat_call *h, int32_t n, int32_t q, const 
 /* The answers of n items at the times [q0, q1), from their basis: each pass as many as a sum has places. */
 static hd_status hdi_krylov_answers(hdi_heat_call *h, int32_t n, int32_t q0, int32_t q1, hd_status status) {
     hd_context *ctx = h->heat->ctx;
-    hdi_krylov *z = h->heat->silan;
+    hdi_krylov *z = h->heat->krylov;
     const int64_t rows = h->lap->n_active;
     const int abreast = z->wide > 1;             /* else one item, at several times */
     hdi_krylov_sum a;
@@ -19922,7 +19946,7 @@ static hd_status hdi_krylov_answers(hdi_heat_call *h, int32_t n, int32_t q0, int
 /* The next window begins with the answers at time `from`, or (0) with the fields themselves. */
 static void hdi_krylov_begin(hdi_heat_call *h, int32_t n, double from) {
     const hd_laplacian *lap = h->lap;
-    hdi_krylov *z = h->heat->silan;
+    hdi_krylov *z = h->heat->krylov;
     int32_t i;
     z->from = from;
     memset(z->before, 0, sizeof z->before);
@@ -19934,6 +19958,7 @@ static void hdi_krylov_begin(hdi_heat_call *h, int32_t n, double from) {
         memcpy(lane->f, lane->u, (size_t)lap->n_active * sizeof *lane->f);
         hdi_pair_apply(lap, 0, 1, lane->f, lane->rhs);
         lane->rhs_off = hdi_lane_rhs_off(lap, lane->f);
+        lane->f_off = 0;                         /* it is in z->before */
         lane->f_norm = lane->u_norm;
     }
 }
@@ -19942,7 +19967,7 @@ static void hdi_krylov_begin(hdi_heat_call *h, int32_t n, double from) {
  * there is estimated by their basis. */
 static int hdi_krylov_goes_on(const hdi_heat_call *h, int32_t n, double to) {
     const hd_heat *heat = h->heat;
-    const hdi_krylov *z = heat->silan;
+    const hdi_krylov *z = heat->krylov;
     int32_t i;
     for (i = 0; i < n; i++) {
         const hdi_lane *lane = h->heat->lane + i;
@@ -19984,15 +20009,15 @@ static hd_status hdi_heat_by_krylov(hdi_heat_call *h) {
     const int32_t wide = h->ask.k > 3 ? HDI_WIDE : 1;
     const int32_t n_windows = hdi_krylov_windows(h, hdi_heat_fill(heat, h->m)).n;
     int32_t n;
-    if (heat->silan && (heat->silan->wide != wide || heat->silan->m != h->m))
-        hdi_krylov_free(heat->silan, heat->ctx);
-    if (!heat->silan) {
-        heat->silan = (hdi_krylov *)hdi_alloc_zero(heat->ctx, 1, sizeof *heat->silan, h->e);
-        if (!heat->silan) return h->e->status;
+    if (heat->krylov && (heat->krylov->wide != wide || heat->krylov->m != h->m))
+        hdi_krylov_free(heat->krylov, heat->ctx);
+    if (!heat->krylov) {
+        heat->krylov = (hdi_krylov *)hdi_alloc_zero(heat->ctx, 1, sizeof *heat->krylov, h->e);
+        if (!heat->krylov) return h->e->status;
     }
-    heat->silan->wide = wide;
-    heat->silan->m = h->m;
-    heat->silan->rate = h->rate;
+    heat->krylov->wide = wide;
+    heat->krylov->m = h->m;
+    heat->krylov->rate = h->rate;
     if (hdi_heat_lanes(h, wide) < 0) return h->e->status;
     for (h->batch = 0; h->batch < h->ask.k; h->batch += n) {
         n = hdi_low32(h->ask.k - h->batch, h->n_lanes);
