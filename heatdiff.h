@@ -12022,8 +12022,9 @@ static const hdi_precond_row hdi_preconds[] = {              /* by hd_precond */
     {1, 1, 1, hdi_ildl, HDI_MILDL_KEPT, hdi_upper_apply}
 };
 
-/* Does not compile where a kind has no row. */
-typedef char hdi_preconds_all[sizeof hdi_preconds / sizeof *hdi_preconds == HD_PRECOND_MILDL + 1 ? 1 : -1];
+static int hdi_precond_known(hd_precond kind) {
+    return (size_t)kind < sizeof hdi_preconds / sizeof *hdi_preconds;
+}
 
 static void hdi_precond_apply(const hdi_precond *m, const hd_c64 *r, hd_c64 *z) {
     hdi_preconds[m->kind].apply(m, r, z);
@@ -16152,18 +16153,19 @@ static hd_status hdi_krylov_answer(hdi_krylov *z, int32_t r, double t, const dou
 
 /* ---- kinds of distances ---- */
 
-/* d^2 of a kind is made of a kernel, and its sum over eigenpairs has exp(-2 t lambda) or, where there is no
- * time, 1/lambda^power. In hd_distance_kind's order; a kind without a row is unknown. */
+/* d^2 of a kind is made of a kernel at a time, or of sums over eigenpairs of 1/lambda^power. In the order of
+ * hd_distance_kind; a kind without a row is unknown. All who answer for distances read these rows. */
 typedef struct hdi_distance_row {
-    int32_t power;               /* 0: of k_2t */
+    int32_t time;                /* the kernel is of t times this; 0: there is no time */
+    int32_t power;               /* without a time */
     int32_t mass;                /* how often B is a factor: 2 of B k B */
 } hdi_distance_row;
 
 static const hdi_distance_row hdi_distance_rows[] = {
-    {0, 0},                      /* classical */
-    {0, 2},                      /* weighted */
-    {1, 0},                      /* commute */
-    {2, 0}                       /* biharmonic */
+    {2, 0, 0},                   /* classical */
+    {2, 0, 2},                   /* weighted */
+    {0, 1, 0},                   /* commute */
+    {0, 2, 0}                    /* biharmonic */
 };
 
 /* NULL: there is no such kind. */
@@ -17832,7 +17834,7 @@ typedef struct hdi_spec_sums {
     const hd_spectrum *of;
     int distance, diagonal;      /* squares of differences, or of entries, instead of products */
     int mass;                    /* of B x instead of x */
-    int power;                   /* 0: of exp(-t lambda); 1, 2: of 1/lambda, without a time */
+    int times, power;            /* of exp(-times t lambda); or without a time of 1/lambda^power */
     int32_t n_times, k;
     const double *t;
     const hd_sources *sources;   /* [k], not for the diagonal; they become terms */
@@ -18001,7 +18003,7 @@ static void hdi_spec_sums_run(hdi_spec_sums *a, hd_context *ctx) {
             const size_t at = ((size_t)q * (size_t)a->n_times + (size_t)m) * a->ld;
             a->column = a->out + at;
             a->off = a->bound ? a->bound + at : NULL;
-            hdi_spec_filter(a, a->distance ? 2 * hdi_min(a->t[m], DBL_MAX / 2) : a->t[m]);
+            hdi_spec_filter(a, a->times * hdi_min(a->t[m], DBL_MAX / 2));
             hdi_spec_sum_from(a, &from);
             hdi_parallel_ranges(ctx, a->of->lap->n_active, 1024, hdi_spec_sum_task, a);
             hdi_spec_sum_others(a, &from);
@@ -18052,6 +18054,7 @@ static hd_status hdi_spec_sums_kernel(hdi_spec_sums *x, hd_kernel kernel, hd_err
 static hd_status hdi_spec_sums_distance(hdi_spec_sums *x, hd_distance_kind kind, hd_error *err) {
     const hdi_distance_row *row = hdi_distance_of(kind);
     x->distance = 1;
+    x->times = row ? row->time : 0;
     x->power = row ? row->power : 0;
     x->mass = row && row->mass > 0;
     return hdi_spec_sums_ask(x, row ? NULL : "spectrum: unknown distance", err);
@@ -18062,6 +18065,7 @@ static hdi_spec_sums hdi_spec_sums_of(const hd_spectrum *s, int32_t n_times, con
     hdi_spec_sums a;
     memset(&a, 0, sizeof a);
     a.of = s;
+    a.times = 1;
     a.n_times = n_times;
     a.t = t;
     a.out = out;
@@ -18458,8 +18462,7 @@ static hd_status hdi_solve_check(double t, hd_c64 theta, const hd_solve_opts *o,
                "solve: theta lies on (-inf, 0] or is not finite", e);
     hdi_refuse(!hdi_solver_known(o->solver) || o->solver == HD_SOLVER_LANCZOS,
                "solve: the solver is cocg or minres", e);
-    hdi_refuse(o->precond < HD_PRECOND_AUTO || o->precond > HD_PRECOND_MILDL, "solve: unknown preconditioner",
-               e);
+    hdi_refuse(!hdi_precond_known(o->precond), "solve: unknown preconditioner", e);
     hdi_refuse(!hdi_finite(o->tol) || o->tol < 0 || o->tol >= 1, "solve: tol is not in [0, 1)", e);
     hdi_refuse(o->max_iterations < 0, "solve: max_iterations is negative", e);
     return e->status;
@@ -21250,8 +21253,7 @@ static hd_status hdi_heat_check(const hd_heat_opts *o, hd_error *e) {
     const int from_two = o->poles == HD_POLES_KERNEL || o->poles == HD_POLES_DIAGONAL;
     hdi_refuse(o->method < HD_METHOD_AUTO || o->method > HD_METHOD_KRYLOV, "heat: unknown method", e);
     hdi_refuse(!hdi_solver_known(o->solver), "heat: unknown solver", e);
-    hdi_refuse(o->precond < HD_PRECOND_AUTO || o->precond > HD_PRECOND_MILDL, "heat: unknown preconditioner",
-               e);
+    hdi_refuse(!hdi_precond_known(o->precond), "heat: unknown preconditioner", e);
     hdi_refuse(o->poles != HD_POLES_DIAGONAL && (o->poles < HD_POLES_DEFAULT || o->poles > HD_POLES_KERNEL),
                "heat: poles are uniform, kernel or diagonal; own sets go into rational", e);
     hdi_refuse_value(o->degree < 0 || o->degree > HDI_RAT_UNIFORM_MAX, "heat: the degree is not in 1..14",
@@ -22349,19 +22351,15 @@ static hd_status hdi_metric_room(hdi_metric *x, int32_t group, int bounded, hdi_
     return x->h->e->status;
 }
 
-/* The time of columns, scaled: d^2 of a filter is the sum of the filter itself. */
-static double hdi_distance_time(const hd_heat *heat, double t) {
-    return hdi_min((hdi_heat_filtered(heat) ? 1 : 2) * hdi_heat_scaled(heat, t), 1e300);
-}
-
 /* The metric of one time, the one under way, by poles of a degree (0: by default), for so many sources at the
  * same time. */
 static hd_status hdi_metric_make(hdi_heat_call *h, const hdi_distance_row *kind, int32_t degree,
                                  int32_t group, int bounded, hdi_metric *x, hdi_scope *s) {
     hd_heat *heat = h->heat;
     if (hdi_heat_analysed(heat, h->e) < 0 || hdi_metric_take(x, h, kind, 1, s) < 0) return h->e->status;
-    if (kind->power == 0) {
-        h->t = hdi_distance_time(heat, h->ask.t[h->now]);
+    if (kind->time > 0) {                        /* d^2 of a filter is the sum of the filter itself */
+        h->t = hdi_heat_filtered(heat) ? 1 : kind->time;
+        h->t = hdi_min(h->t * hdi_heat_scaled(heat, h->ask.t[h->now]), 1e300);
         x->equal = hdi_heat_equal(heat, &heat->elim, h->t, h->e);
     }
     if (kind->power > 0) {
@@ -22534,7 +22532,7 @@ static double hdi_metric_note(const hdi_metric *x, double d2, double rational, d
 
 /* Distances from source i of those solved for, by vertices. Where there is a column of g its own d^2
  * bounds the rational error, else the diagonals do, which is less sharp near the source. Between
- * components distances without a time are infinite. */
+ * components distances without a time are infinite; a ledger would take these for answers that overflow. */
 static void hdi_metric_distance(const hdi_metric *x, const hdi_terms *s, int32_t i, double *out,
                                 hd_report *rep, hdi_ledger *ledger) {
     const hd_laplacian *lap = x->h->lap;
@@ -22817,7 +22815,7 @@ static hd_status hdi_distances_by_poles(hdi_task *task) {
     const hdi_distances *to = (const hdi_distances *)task;
     hdi_heat_call *h = task->h;
     hd_heat *heat = h->heat;
-    const int open = to->kind->power == 0 && hdi_degree_open(heat);
+    const int open = to->kind->time > 0 && hdi_degree_open(heat);
     const double t = open ? h->ask.t[h->now] : 0;
     const double expected = heat->source->h > 0 ? HDI_DISTANCE_EXPECTED * sqrt(t) / heat->source->h : 0;
     const int sure = open && to->kind->mass == 0 && expected > HDI_DISTANCE_SURE;
@@ -22866,10 +22864,11 @@ static hd_status hdi_distances_window(const hdi_task *task, int32_t q0, int32_t 
 
 /* With shared poles, where that is cheaper than one by one. */
 static hd_status hdi_distances_together(hdi_task *task, char *done, hd_report *one) {
+    const int32_t times = ((const hdi_distances *)task)->kind->time;
     hdi_heat_call *h = task->h;
     hd_heat *heat = h->heat;
-    if (!hdi_shared_may(heat) || hdi_heat_analysed(heat, h->e) < 0 || hdi_heat_sort_times(h, 2, done) < 0 ||
-        h->n_times < 2 || hdi_heat_equal(heat, &heat->elim, h->times[h->n_times - 1], h->e) ||
+    if (!hdi_shared_may(heat) || hdi_heat_analysed(heat, h->e) < 0 ||
+        hdi_heat_sort_times(h, times, done) < 0 || h->n_times < 2 || hdi_heat_equal(heat, &heat->elim, h->times[h->n_times - 1], h->e) ||
         h->e->status < 0) return h->e->status;
     hdi_inverse_tell(h);
     return hdi_shared_run(task, h->n_times, HDI_SHARED_DISTANCE_TOL, hdi_distances_window, done, one);
@@ -23096,7 +23095,7 @@ static hd_status hdi_pairs_by_poles(hdi_task *task) {
     const int32_t n = heat->source->n;
     hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
     int64_t *mark = NULL;
-    int fits = to->kind->power == 0 && !hdi_heat_filtered(heat);
+    int fits = to->kind->time > 0 && !hdi_heat_filtered(heat);
     if (fits && 2 * to->n > HDI_PAIRS_DOUBLES / n) {
         mark = HDI_TAKE_ZERO(&s, int64_t, n);
         if (!mark) return hdi_scope_end(&s);
@@ -23199,7 +23198,7 @@ static hd_status hdi_sample_by_poles(hdi_task *task) {
     hdi_samples *a = (hdi_samples *)task;
     hdi_heat_call *h = task->h;
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
-    const int open = a->kind->power == 0 && hdi_degree_open(h->heat);
+    const int open = a->kind->time > 0 && hdi_degree_open(h->heat);
     hdi_metric x;
     a->x = &x;
     a->sum = NULL;
@@ -23227,7 +23226,7 @@ static hd_status hdi_sample_by_pairs(hdi_task *task) {
 static void hdi_distance_task(hdi_task *task, hdi_heat_call *h, const hdi_distance_row *kind) {
     memset(task, 0, sizeof *task);
     task->h = h;
-    task->serves = HDI_HAS_MODES && kind->power == 0 && hdi_modes_allowed(h->heat);
+    task->serves = HDI_HAS_MODES && kind->time > 0 && hdi_modes_allowed(h->heat);
     if (HDI_HAS_MODES && task->serves)           /* 0: tol is all there is */
         task->depth = hdi_max(0, log(2 * hdi_modes_span(h->heat) / hdi_modes_tol(h->heat)));
 }
@@ -23241,7 +23240,7 @@ static hd_status hdi_distance_begin(hdi_heat_call *h, hd_heat *heat, const hdi_d
     h->relative = 1;
     if (!HDI_HAS_DIFFUSION) return HDI_LEFT_OUT(h->e, DIFFUSION, "diffusion distances");
     if (!kind) return hdi_fail(h->e, HD_ERR_ARGUMENT, "distance: unknown kind");
-    if (kind->power == 0) return hdi_times_check(h, n_times, t, positive);
+    if (kind->time > 0) return hdi_times_check(h, n_times, t, positive);
     if (n_times > 1 || n_times < 0)
         return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "distance: n_times is 0 or 1 for commute and biharmonic",
                             -1, -1, n_times);
@@ -23313,14 +23312,14 @@ typedef struct hdi_query_row {
 static const hdi_query_row hdi_query_rows[] = {
     {HDI_BY_SOLVES, NULL, 1, 0},                        /* fields */
     {HDI_BY_SOLVES, NULL, 1, 0},                        /* columns */
-    {HDI_BY_SOLVES, hdi_distance_rows, 1, 0},           /* pairs */
+    {HDI_BY_SOLVES, hdi_distance_rows + HD_DISTANCE_CLASSICAL, 1, 0},   /* pairs */
     {HDI_BY_INVERSION, NULL, 0, 0},                     /* diagonal of k_t */
     {HDI_BY_INVERSION, NULL, 0, 1},                     /* diagonal of K_t */
     {HDI_BY_INVERSION, NULL, 0, 2},                     /* trace, perhaps with either */
-    {HDI_BY_INVERSION, hdi_distance_rows, 1, 0},        /* distances by kind */
-    {HDI_BY_INVERSION, hdi_distance_rows + 1, 1, 0},
-    {HDI_BY_GROUND, hdi_distance_rows + 2, 1, 0},
-    {HDI_BY_GROUND, hdi_distance_rows + 3, 1, 0},
+    {HDI_BY_INVERSION, hdi_distance_rows + HD_DISTANCE_CLASSICAL, 1, 0},
+    {HDI_BY_INVERSION, hdi_distance_rows + HD_DISTANCE_WEIGHTED, 1, 0},
+    {HDI_BY_GROUND, hdi_distance_rows + HD_DISTANCE_COMMUTE, 1, 0},
+    {HDI_BY_GROUND, hdi_distance_rows + HD_DISTANCE_BIHARMONIC, 1, 0},
     {HDI_BY_SPECTRUM, NULL, 1, 0}
 };
 
@@ -23625,7 +23624,7 @@ static hd_status hdi_estimate_times(const hdi_estimate *x) {
 static hd_status hdi_estimate_run(hdi_heat_call *h, const hdi_query_row *query, int32_t k,
                                   hd_estimate *to) {
     const hd_heat *heat = h->heat;
-    const int doubled = query->by == HDI_BY_INVERSION && query->distance;
+    const int32_t times = query->by == HDI_BY_INVERSION && query->distance ? query->distance->time : 1;
     const double n = heat->source->n;
     hd_cost *direct = to->cost + HD_METHOD_DIRECT;
     hdi_estimate x;
@@ -23642,7 +23641,7 @@ static hd_status hdi_estimate_run(hdi_heat_call *h, const hdi_query_row *query, 
         else *direct = hdi_estimate_pairs(heat, hdi_low32(x.k, heat->source->n_active));
         return HD_OK;
     }
-    x.unit = (doubled ? 2 : 1) * heat->scale;
+    x.unit = times * heat->scale;
     if (query->distance) hdi_distance_task(&x.task, h, query->distance);
     else hdi_fading_task(&x.task, h);
     if (hdi_heat_sort_times(h, x.unit / heat->scale, NULL) < 0) return h->e->status;
