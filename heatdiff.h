@@ -22868,8 +22868,9 @@ static hd_status hdi_distances_together(hdi_task *task, char *done, hd_report *o
     hdi_heat_call *h = task->h;
     hd_heat *heat = h->heat;
     if (!hdi_shared_may(heat) || hdi_heat_analysed(heat, h->e) < 0 ||
-        hdi_heat_sort_times(h, times, done) < 0 || h->n_times < 2 || hdi_heat_equal(heat, &heat->elim, h->times[h->n_times - 1], h->e) ||
-        h->e->status < 0) return h->e->status;
+        hdi_heat_sort_times(h, times, done) < 0 || h->n_times < 2 ||
+        hdi_heat_equal(heat, &heat->elim, h->times[h->n_times - 1], h->e) || h->e->status < 0)
+        return h->e->status;
     hdi_inverse_tell(h);
     return hdi_shared_run(task, h->n_times, HDI_SHARED_DISTANCE_TOL, hdi_distances_window, done, one);
 }
