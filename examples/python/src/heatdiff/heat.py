@@ -245,7 +245,7 @@ class Heat(Object):
         return Answer(shaped(out / trace[:, None] if normalise else out, True, False), self._reported(struct, status))
 
     def distance(self, sources: Any, t: Optional[Times] = None, kind: str = "classical") -> Answer:
-        """Diffusion distances from each source to every vertex.
+        """Diffusion distances from each source to every vertex. Several sources in one call share most of the work.
 
         sources  a vertex id, ids, or Sources
         t        > 0; 'commute' and 'biharmonic' have no time
