@@ -14202,42 +14202,35 @@ static hd_status hdi_lane_lanczos(hdi_lane *lane, const hd_laplacian *lap, int32
     return HD_OK;
 }
 
-/* Room for the systems of a set: b, the vectors that all systems share, as they run one after the other, x of
- * each, means, and inner products. The whole of it serves to make preconditioners before. Two of those shared
- * are the lane's work between solves. What the lane held is lost. */
-static hd_status hdi_lane_systems_make(hdi_lane *lane, const hdi_family *fam, hd_error *e) {
-    const uint64_t n = (uint64_t)fam->lap->n_active, count = (uint64_t)fam->set.n_poles;
-    const uint64_t shared = (uint64_t)hdi_iteration_vectors(fam->solver);
-    const uint64_t vectors = (1 + shared + count) * n + (uint64_t)fam->lap->n_components;
-    const uint64_t size = vectors + count * (sizeof(hdi_gram) / sizeof(hd_c64));
-    hdi_free(fam->ctx, lane->f);
-    hdi_free(fam->ctx, lane->b);
-    hdi_free(fam->ctx, lane->k);
-    lane->b = NULL;
-    lane->k = NULL;
-    lane->f = HDI_NEW(fam->ctx, double, 3 * n, e);
-    if (lane->f) lane->b = HDI_NEW(fam->ctx, hd_c64, size, e);
-    if (lane->b) lane->k = HDI_NEW(fam->ctx, hdi_iteration, count + 1, e);
-    if (!lane->k) {
-        hdi_lane_free(lane, fam->ctx);
-        return e->status;
-    }
-    lane->rhs = lane->f + n;
-    lane->u = lane->rhs + n;
-    lane->tmp = &lane->b[3 * n].re;
-    lane->gram = (hdi_gram *)(void *)(lane->b + vectors);
-    lane->n_systems = fam->set.n_poles;
-    return HD_OK;
-}
-
-/* The systems of a set, and their constants. */
+/* The systems of a set, and their constants. Room: b, the vectors that all systems share, as they run one
+ * after the other, x of each, means, and inner products. The whole of it serves to make preconditioners
+ * before. Two of those shared are the lane's work between solves. Where the room grows, what the lane held is
+ * lost. */
 static hd_status hdi_lane_systems(hdi_lane *lane, const hdi_family *fam, hd_error *e) {
-    const int64_t n = fam->lap->n_active;
-    const int32_t shared = hdi_iteration_vectors(fam->solver);
+    const int32_t shared = hdi_iteration_vectors(fam->solver), count = fam->set.n_poles;
+    const int64_t n = fam->lap->n_active, vectors = (1 + shared + count) * n + fam->lap->n_components;
+    const uint64_t grams = (uint64_t)count * (sizeof(hdi_gram) / sizeof(hd_c64));
     int32_t i, j;
-    if ((!lane->k || lane->n_systems < fam->set.n_poles) && hdi_lane_systems_make(lane, fam, e) < 0)
-        return e->status;
-    for (i = 0; i < fam->set.n_poles; i++) {
+    if (!lane->k || lane->n_systems < count) {
+        hdi_free(fam->ctx, lane->f);
+        hdi_free(fam->ctx, lane->b);
+        hdi_free(fam->ctx, lane->k);
+        lane->b = NULL;
+        lane->k = NULL;
+        lane->f = HDI_NEW(fam->ctx, double, (3 * n), e);
+        if (lane->f) lane->b = HDI_NEW(fam->ctx, hd_c64, (uint64_t)vectors + grams, e);
+        if (lane->b) lane->k = HDI_NEW(fam->ctx, hdi_iteration, count + 1, e);
+        if (!lane->k) {
+            hdi_lane_free(lane, fam->ctx);
+            return e->status;
+        }
+        lane->rhs = lane->f + n;
+        lane->u = lane->rhs + n;
+        lane->tmp = &lane->b[3 * n].re;
+        lane->gram = (hdi_gram *)(void *)(lane->b + vectors);
+        lane->n_systems = count;
+    }
+    for (i = 0; i < count; i++) {
         hdi_iteration *k = lane->k + i;
         memset(k, 0, sizeof *k);
         k->r = lane->b + n;
@@ -14699,6 +14692,16 @@ static void hdi_mass_apply(const hd_laplacian *lap, int32_t wide, const double *
     hdi_residual_run(&g, ctx);
 }
 
+/* The coefficients [8] by which real and imaginary parts of the four systems of pack i add up to the sum of
+ * Re(w_p x_p) over its poles p. i < 0: of eight solutions for the lone real pole. */
+static void hdi_elim_coef(const hdi_elim *m, int32_t i, const hd_c64 *w, double *coef) {
+    int32_t q;
+    for (q = 0; q < HDI_PACK; q++) {
+        const int32_t p = i < 0 ? m->lone : m->lone + 1 + 4 * i + q % 4;
+        coef[q] = p >= m->set.n_poles ? 0 : q < 4 || i < 0 ? w[p].re : -w[p].im;
+    }
+}
+
 /* The same of the poles of pack i, or for i < 0 of the lone real pole. w [n_poles]: weights of an answer. */
 static hdi_residual hdi_elim_residual(const hdi_elim *m, int32_t i, const hd_c64 *w, const double *x,
                                       int32_t n_blocks, double (*sum)[3][HDI_PACK]) {
@@ -14707,12 +14710,11 @@ static hdi_residual hdi_elim_residual(const hdi_elim *m, int32_t i, const hd_c64
     g.real = i < 0;
     g.weight = m->weight;
     g.noise = m->noise;
+    hdi_elim_coef(m, i, w, g.coef);
     for (q = 0; q < HDI_PACK; q++) {
-        const int32_t p = i < 0 ? m->lone : hdi_elim_pole(m, i, q % 4);
-        const int repeated = i >= 0 && m->lone + 1 + 4 * i + q % 4 > p;
-        g.re[q] = m->set.theta[p].re;
-        g.im[q] = m->set.theta[p].im;
-        g.coef[q] = repeated ? 0 : q < 4 || i < 0 ? w[p].re : -w[p].im;
+        const hd_c64 theta = m->set.theta[i < 0 ? m->lone : hdi_elim_pole(m, i, q % 4)];
+        g.re[q] = theta.re;
+        g.im[q] = theta.im;
     }
     return g;
 }
@@ -14753,22 +14755,11 @@ static void hdi_batch_check(const hdi_elim *m, int32_t i, const double *x, hdi_l
                            x + (i < 0 ? r : HDI_PACK * r + p), g.stride, lane + r);
 }
 
-/* The coefficients [8] by which real and imaginary parts of the four systems of pack i add up to the sum of
- * Re(w_p x_p) over its poles p. */
-static void hdi_elim_coef(const hdi_elim *m, int32_t i, const hd_c64 *w, double *coef) {
-    int32_t q;
-    for (q = 0; q < 4; q++) {
-        const int32_t p = m->lone + 1 + 4 * i + q;
-        coef[q] = p < m->set.n_poles ? w[p].re : 0;
-        coef[q + 4] = p < m->set.n_poles ? -w[p].im : 0;
-    }
-}
-
 /* Adds what the solutions x of pack i, or with i = -1 of the lone real pole, give to the further sums of k
  * lanes. */
 static void hdi_batch_extra(const hdi_elim *m, int32_t i, const double *x, const hdi_lane *lane, int32_t k) {
     const int64_t n = m->sym.n, pack = HDI_PACK, apart = i < 0 ? 1 : pack, stride = i < 0 ? pack : pack * k;
-    double coef[HDI_PACK] = {0};
+    double coef[HDI_PACK];
     int64_t j, q;
     int32_t r, row;
     for (r = 0; r < k; r++) {
@@ -14776,8 +14767,7 @@ static void hdi_batch_extra(const hdi_elim *m, int32_t i, const double *x, const
         for (row = 0; row < lane[r].rows.n && !lane[r].skip; row++) {
             const hd_c64 *w = lane[r].rows.weight + (int64_t)row * lane[r].rows.stride;
             double *HDI_RESTRICT to = lane[r].rows.sum + row * n;
-            if (i < 0) coef[0] = w[0].re;
-            else hdi_elim_coef(m, i, w, coef);
+            hdi_elim_coef(m, i, w, coef);
             for (j = 0; j < n; j++)
                 for (q = 0; q < apart; q++) to[j] += coef[q] * from[stride * j + q];
         }
