@@ -508,7 +508,7 @@ typedef struct hd_laplacian {
     hd_context *context;
     int64_t version;            /* number of updates */
     struct hd_moving *moving;   /* private: what hd_laplacian_update needs, or NULL */
-    struct hd_holding *holding; /* private: what is held, while it is made, or for updates; or NULL */
+    struct hd_holding *holding; /* private: what is held, or NULL */
 } hd_laplacian;
 
 typedef enum hd_pole_kind {
@@ -4276,8 +4276,6 @@ static int64_t hdi_csr_find(const hd_csr *a, int32_t i, int32_t j) {
     return p < end && a->col[p] == j ? p : -1;
 }
 
-static int hdi_csr_stores(const hd_csr *a, int32_t i, int32_t j) { return hdi_csr_find(a, i, j) >= 0; }
-
 static hd_status hdi_csr_check_rows(const hd_csr *a, hd_error *e) {
     const int64_t *ptr = a->row_ptr;
     int32_t i;
@@ -6364,7 +6362,7 @@ static hd_status hdi_lap_rows(hd_laplacian *lap, const double *vertex_mass, hd_e
     return e->status;
 }
 
-/* Closes the gaps in rows of L with diagonal or full B: entries without a column. */
+/* Closes the gaps in the rows: entries without a column. */
 static void hdi_lap_pack(hd_laplacian *lap) {
     int64_t p = 0, q = 0;
     int32_t i;
@@ -7008,8 +7006,9 @@ static int64_t hdi_pair_shape(const hd_laplacian *lap, const hd_csr *L, const hd
     while (p < p_end || q < q_end || !diagonal) {
         const int32_t cp = p < p_end ? L->col[p] : INT32_MAX, cq = q < q_end ? B->col[q] : INT32_MAX;
         const int32_t c = hdi_low32(hdi_low32(cp, cq), diagonal ? INT32_MAX : v);
-        const int zero = !(cp == c && L->val[p] != 0) && !(cq == c && B->val[q] != 0);
-        if (lap->row[c] >= 0 && (!zero || c == v || hdi_csr_stores(L, c, v) || hdi_csr_stores(B, c, v))) {
+        const int stays = c == v || (cp == c && L->val[p] != 0) || (cq == c && B->val[q] != 0) ||
+                          hdi_csr_find(L, c, v) >= 0 || hdi_csr_find(B, c, v) >= 0;
+        if (stays && lap->row[c] >= 0) {
             if (col) col[n] = lap->row[c];
             n++;
         }
@@ -7710,8 +7709,24 @@ static int32_t *hdi_stars(hdi_cloud *cloud, int32_t *m, hd_laplacian *lap, hdi_s
     return tri;
 }
 
-/* The soup of the stars of all points; of several points in one place only the first takes part. xyz and name
- * live in s, nothing else is left of neighbours and stars. */
+/* The tufted Laplacian of a point set (Sharp, Crane 2020, section 5.7): every point's star in the
+ * Delaunay triangulation of its neighbourhood, in the tangent plane by principal components, goes into
+ * one soup with the weight 1/3, since where neighbours agree each triangle comes three times. Deviations:
+ * 1. Cocircular points, which every grid is full of, are told apart by heights of at most 1e-9, else the
+ *    stars would not agree.
+ * 2. Neighbours off the plane count as farther away than their projections, so that the other sheet of a
+ *    thin part does not cut the star. An arc of a circle that leaves the point along the plane and ends r
+ *    away at height h is s = r + 2/3 h^2/r long, to this order: the bisector stands at s/2 instead of
+ *    r/2. In noise the point itself is off the plane of its neighbourhood; so h^2 is the square of the
+ *    neighbour's height above that plane less the square of the point's own, as where the plane cuts the
+ *    Voronoi diagram of space. Bisectors keep at least a quarter of their distance, as a point may be
+ *    farther off than its neighbours are away. (Boissonnat, Ghosh 2014 take the tangent plane and 1 for
+ *    2/3. Measured against the smooth kernel, the largest error as a mean of 6 to 10 sets, fem: on
+ *    spheres, tori, noise and shells 2/3 from the plane is better than projections alone or within 5 %;
+ *    1, or heights from the point, are worse on undersampled tori or in noise. Known loss: voronoi-cot,
+ *    500 to 1250 random points on a torus, 12 to 36 % more error.)
+ * Of several points in one place only the first takes part. xyz and name live in s, nothing else is left of
+ * neighbours and stars. */
 static hd_status hdi_star_soup(hdi_surface *z, hdi_cloud *cloud, hd_laplacian *lap, const hdi_input *in,
                                hdi_scope *s) {
     hdi_scope own = hdi_scope_begin(s->ctx, s->e), apart = hdi_scope_begin(s->ctx, s->e);
@@ -7731,33 +7746,14 @@ static hd_status hdi_star_soup(hdi_surface *z, hdi_cloud *cloud, hd_laplacian *l
     return hdi_scope_end(&own);
 }
 
-/* The tufted Laplacian of a point set (Sharp, Crane 2020, section 5.7): every point's star in the
- * Delaunay triangulation of its neighbourhood, in the tangent plane by principal components, goes into
- * one soup with the weight 1/3, since where neighbours agree each triangle comes three times. Deviations:
- * 1. Cocircular points, which every grid is full of, are told apart by heights of at most 1e-9, else the
- *    stars would not agree.
- * 2. Neighbours off the plane count as farther away than their projections, so that the other sheet of a
- *    thin part does not cut the star. An arc of a circle that leaves the point along the plane and ends r
- *    away at height h is s = r + 2/3 h^2/r long, to this order: the bisector stands at s/2 instead of
- *    r/2. In noise the point itself is off the plane of its neighbourhood; so h^2 is the square of the
- *    neighbour's height above that plane less the square of the point's own, as where the plane cuts the
- *    Voronoi diagram of space. Bisectors keep at least a quarter of their distance, as a point may be
- *    farther off than its neighbours are away. (Boissonnat, Ghosh 2014 take the tangent plane and 1 for
- *    2/3. Measured against the smooth kernel, the largest error as a mean of 6 to 10 sets, fem: on
- *    spheres, tori, noise and shells 2/3 from the plane is better than projections alone or within 5 %;
- *    1, or heights from the point, are worse on undersampled tori or in noise. Known loss: voronoi-cot,
- *    500 to 1250 random points on a torus, 12 to 36 % more error.)
- * z lives in s. */
-static hd_status hdi_lap_stars(hd_laplacian *lap, hdi_surface *z, const hdi_input *in, hdi_scope *s) {
-    hdi_cloud cloud;
-    return hdi_star_soup(z, &cloud, lap, in, s) < 0 ? s->e->status : hdi_lap_flat(lap, z, in, cloud.name, s);
-}
-
 /* (L, B) of faces, of intrinsic triangles or of the stars of points; what they are made of, in s. Of a cover
  * each sheet counts half. */
 static hd_status hdi_lap_surface(hd_laplacian *lap, hdi_surface *z, const hdi_input *in, hdi_scope *s) {
+    hdi_cloud cloud;
     memset(z, 0, sizeof *z);
-    if (HDI_HAS_POINTS && HDI_HAS_INTRINSIC && in->points) return hdi_lap_stars(lap, z, in, s);
+    if (HDI_HAS_POINTS && HDI_HAS_INTRINSIC && in->points)
+        return hdi_star_soup(z, &cloud, lap, in, s) < 0 ? s->e->status
+                                                        : hdi_lap_flat(lap, z, in, cloud.name, s);
     z->mesh = in->mesh;
     z->share = 1;
     if (hdi_mesh_make(&z->mesh, &lap->mesh, s) < 0) return s->e->status;
