@@ -807,8 +807,8 @@ class Package(unittest.TestCase):
         out = subprocess.run([sys.executable, "-c", code], env={**environment, "PYTHONPATH": target}, check=True, cwd=work,
                              stdout=subprocess.PIPE, universal_newlines=True).stdout
         self.assertTrue(out.startswith(target) and out.endswith(" direct\n"), out)
-        missing = subprocess.run([sys.executable, "-c", "import heatdiff"], env=environment, stdout=subprocess.PIPE,
-                                 stderr=subprocess.STDOUT, universal_newlines=True)
+        missing = subprocess.run([sys.executable, "-c", "import heatdiff"], env={**environment, "PYTHONPATH": os.path.join(there, "src")},
+                                 stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
         self.assertIn("install it with pip, or name a shared library in HEATDIFF_LIBRARY", missing.stdout)
 
 
@@ -960,10 +960,10 @@ WRONG = {
         ("Lap.from_matrices(L, B, 'a')", "h has dtype <U1"), ("hd.Geodesic(xyz, tri.astype(float))", "faces has dtype float64"),
         ("geo.distance(1.5)", "sources has dtype float64"), ("lap.times(None)", "t has dtype object"),
         ("hd.Heat(5)", "lap is a int, wanted is a Laplacian"), ("hd.Heat(heat)", "lap is a Heat"), ("hd.Spectrum(None, 3)", "lap is a NoneType"),
-        ("hd.Heat(None)", "lap is a NoneType"), ("hd.Laplacian(L, B)", ""), ("hd.Laplacian()", "comes from from_mesh"),
+        ("hd.Heat(None)", "lap is a NoneType"), ("hd.Laplacian(xyz, tri)", "a Laplacian comes from from_mesh"), ("hd.Laplacian(vertices=xyz)", "comes from from_mesh"), ("hd.Heat(xyz, tri)", "Heat takes lap by place and all else by name, given are 2 values"), ("mesh(xyz, tri, 'fem')", "from_mesh takes vertices, faces by place and all else by name, given are 3 values"), ("hd.Laplacian()", "comes from from_mesh"),
         ("hd.Heat(lap, metod='direct')", "Heat has no option metod: did you mean method? There are lap, method"),
         ("hd.Heat(lap, context=5)", "Heat has no option context"), ("hd.Heat(lap, begin_zero=1)", "no option begin_zero"),
-        ("hd.Heat(lap, held=[1])", "no option held"), ("hd.Heat(lap, 'direct')", "positional"),
+        ("hd.Heat(lap, held=[1])", "no option held"), ("hd.Heat(lap, 'direct')", "all else by name"),
         ("hd.Heat(lap, method=2)", "method is 2, wanted is one of auto, iterative"), ("hd.Heat(lap, degree=9.5)", "degree is 9.5"),
         ("hd.Heat(lap, degree='9')", "degree is '9'"), ("hd.Heat(lap, tol='small')", "tol has dtype <U5"),
         ("hd.Heat(lap, tol=1j)", "tol has dtype complex128"), ("hd.Heat(lap, progress=5)", "progress is 5, wanted is True, False or a function"),
@@ -1023,6 +1023,7 @@ class Arguments(unittest.TestCase):
         self.assertTrue(np.array_equal(heat.entries(3, range(n), t), heat.entries(np.full(n, 3), np.arange(n), t)))
         self.assertTrue(np.array_equal(heat.columns(3, t, np.bool_(True)), heat.columns(3, t, 1)))
         self.assertTrue(np.array_equal(heat.column(3, " 0.5 "), heat.column(3, 0.5)))
+        self.assertEqual(lap.times("10 h2"), lap.times("10h2"))
         self.assertEqual(heat.sample(2, kind="commute")[0].shape, (2,))
         self.assertEqual(hd.Laplacian.from_polygons(xyz, [[]] + tri.tolist()).mesh.n_zero_area, 1)
         self.assertEqual(mesh(xyz, tri, held=3, updatable=np.bool_(True), kind="Voronoi_Cot").n_held, 1)

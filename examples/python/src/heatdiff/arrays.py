@@ -19,18 +19,22 @@ INT_MIN, INT_MAX = -2 ** 31, 2 ** 31 - 1
 def near(word: Any, words: Iterable[str]) -> str:
     """The word most like this one, and all of them."""
     words = list(words)
-    like = difflib.get_close_matches(str(word), words, 1, 0.4)
+    like = difflib.get_close_matches(str(word), words, 1, 0.6)
     return (f"did you mean {like[0]}? " if like else "") + f"There are {', '.join(words)}"
 
 
 def options(function: F) -> F:
-    """Refuses names that the function does not have, and says which it has."""
-    known = [p.name for p in inspect.signature(function).parameters.values()
-             if p.kind is not p.POSITIONAL_ONLY and p.name not in ("self", "cls")]
+    """Refuses names that the function does not have, and values beyond those that go by place; says which there are."""
+    parameters = [p for p in inspect.signature(function).parameters.values()]
+    known = [p.name for p in parameters if p.name not in ("self", "cls")]
+    placed = [p.name for p in parameters if p.kind is p.POSITIONAL_OR_KEYWORD]
     what = function.__qualname__.replace(".__init__", "")
 
     @functools.wraps(function)
     def checked(*args: Any, **given: Any) -> Any:
+        if len(args) > len(placed):
+            extra = len(placed) - len([x for x in placed if x in known])
+            raise TypeError(f"{what} takes {', '.join(placed[extra:])} by place and all else by name, given are {len(args) - extra} values")
         for key in given:
             if key not in known:
                 raise TypeError(f"{what} has no option {key}: {near(key, known)}")

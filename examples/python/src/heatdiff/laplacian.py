@@ -16,7 +16,7 @@ from ._library import NAMES, Context, Handle, Object, Progress, attach, call, pl
 Times = Union[float, str, Sequence[Union[float, str]], np.ndarray]
 CSR = collections.namedtuple("CSR", "data indices indptr")
 CSR.__doc__ = "A square matrix by rows, where SciPy is missing."
-_NUMBER = re.compile(r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)(h2|/l1)?$")
+_NUMBER = re.compile(r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(h2|/l1)?$")
 
 
 def mesh_struct(shape: str, vertices: Optional[np.ndarray], n: int, faces: Any = None, ptr: Any = None, lengths: Any = None) -> Any:
@@ -81,7 +81,7 @@ class Laplacian(Object):
     _n: int
     _first: Tuple[int, float]                                   # version, and what _longest found
 
-    def __init__(self) -> None:
+    def __init__(self, *_: Any, **__: Any) -> None:
         raise TypeError("a Laplacian comes from from_mesh, from_polygons, from_points, from_lengths or from_matrices")
 
     @classmethod
