@@ -637,6 +637,23 @@ class Face(unittest.TestCase):
         for threads in (2, 5):
             self.assertTrue(np.array_equal(hd.Heat(lap, threads=threads).diagonal("5h2"), want))
 
+    def test_pages(self):
+        """The lines of the gallery and of help(heatdiff) run, and the shapes that they promise are those."""
+        with open(os.path.join(TOP, "examples", "README.md"), encoding="utf-8") as f:
+            lines = re.search(r"```python\n(.*?)```", f.read(), re.S).group(1).splitlines()
+        lines += [line.strip() for line in hd.__doc__.splitlines() if line.startswith("    ")]
+        V, F, _ = bumpy(15)
+        names, promised = dict(V=V, F=F, fields=V[:, :2]), 0
+        sizes = {"n": 225, "k": 2}
+        for line in lines:
+            exec(line, names)
+            said = re.search(r"# \((.*?)\)", line)
+            if said and "=" in line:
+                shape = tuple(sizes.get(x.strip()) or int(x) for x in said.group(1).split(",") if x.strip())
+                self.assertEqual(names[line.split("=")[0].strip()].shape, shape, line)
+                promised += 1
+        self.assertGreater(promised, 8)
+
     def test_tour(self):
         """Every cell of tour.py runs, and writes a picture that is not blank."""
         try:
