@@ -3038,15 +3038,6 @@ typedef struct hdi_solve {
     int64_t n, before, nb;
 } hdi_solve;
 
-/* nc <= nr pivots in their own rows and the n <= mr - nr rows that follow: X - X0 S0 over the columns before,
- * then LDL'. x is the first pivot's row, the first column before. d goes to the diagonal, 1/d to dinv, and
- * from row `before` on the slice s becomes D L' of the pivots. */
-typedef struct hdi_eliminate {
-    double *x, *s, *dinv;
-    int64_t x_col, before;
-    int32_t nc, n;
-} hdi_eliminate;
-
 /* One real right-hand side in nc <= 8 columns of L, whose triangle is at l. Up: x = L^-1 x for the nc rows,
  * then x -= L x in the n rows that follow them, and t -= L x in u rows below. Down:
  * x = L^-T (x - L' (x, t)). */
@@ -3080,14 +3071,12 @@ typedef struct hdi_residual {
     const double *weight, *noise;
 } hdi_residual;
 
-/* The kernels of one instruction set and width. A tile has mr x nr entries. Slices: groups of nr columns of a
+/* The kernels of one instruction set and width. A tile has nr columns. Slices: groups of nr columns of a
  * matrix B, row by row, which is the form in which multiply reads fastest: b_row = nr, b_col = 1. */
 typedef struct hdi_kernels {
-    int32_t width, mr, nr;
+    int32_t width, nr;
     void (*multiply)(const hdi_product *g);
     void (*solve)(const hdi_solve *g);
-    /* Stops before a pivot that cannot be divided by: it is on the diagonal. */
-    void (*eliminate)(const hdi_eliminate *g);
     /* Slices b, b_next apart, of B(k,j) = x(j,k) d(k): n columns, depth rows; x(j,k) is at x + j row + k col.
      * d NULL: ones. Columns past n are zero. */
     void (*slices)(double *b, int64_t b_next, const double *x, int64_t row, int64_t col, const double *d,
@@ -3099,17 +3088,16 @@ typedef struct hdi_kernels {
     void (*residual)(const hdi_residual *g);
 } hdi_kernels;
 
-/* The inverses of n of a pack's numbers; infinite where there is none. 0: there is such a number. By
- * R. Smith, "Algorithm 116: Complex division", 1962; inline, so that kernels keep their registers. */
-static HDI_INLINE int hdi_pack_invert(const double *d, double *inverse, int n) {
-    int q, good = 1;
-    for (q = 0; q < n; q++) {
+/* The inverses of a pack's numbers; infinite where there is none. By R. Smith, "Algorithm 116: Complex
+ * division", 1962. */
+static void hdi_pack_invert(const double *d, double *inverse) {
+    int q;
+    for (q = 0; q < HDI_PACK_LANES; q++) {
         const double a = fabs(d[q]), b = fabs(d[q + HDI_PACK_LANES]), size = a < b ? b : a;
         const double unit = size > 1 ? 0.25 : 1;     /* the sum below stays in the range of doubles */
         const double re = unit * d[q], im = unit * d[q + HDI_PACK_LANES];
         if (!(a <= DBL_MAX) || !(b <= DBL_MAX) || size <= HDI_PIVOT_LEAST) {
             inverse[q] = HUGE_VAL;
-            good = 0;
         } else if (a >= b) {
             inverse[q] = unit / (re + im * (im / re));
             inverse[q + HDI_PACK_LANES] = -inverse[q] * (im / re);
@@ -3118,7 +3106,6 @@ static HDI_INLINE int hdi_pack_invert(const double *d, double *inverse, int n) {
             inverse[q] = -inverse[q + HDI_PACK_LANES] * (re / im);
         }
     }
-    return good;
 }
 
 /* s = l d for a pack entry */
@@ -3139,7 +3126,7 @@ static HDI_INLINE void hdi_pack_times(const double *HDI_RESTRICT l, const double
  *   load_rows(p, g, q), store_rows(p, v, g, q)   lanes for rows q.. of it; others are neither read nor
  *                        written, and are zero in a vector that is loaded
  *   fma, fnma            a b + c, c - a b
- *   lane(v, k), pick(v, k), total(v)  lane k everywhere; as a number; the sum of all
+ *   total(v)             the sum of all
  * and as constants the tiles that fit its registers: rows and columns of vectors of real numbers, and of
  * entries of packs; of packs with fewer than four lanes, parts of entries. */
 #define HDI_IN2 static HDI_INLINE
@@ -3197,7 +3184,7 @@ HDI_IN2 hdi_vec_plain hdi_two(double a, double b) { const hdi_vec_plain v = {a, 
 HDI_IN2 hdi_vec_plain hdi_all_plain(double a) { return hdi_two(a, a); }
 HDI_IN2 hdi_vec_plain hdi_load_plain(const double *p) { return *(const hdi_v2_anywhere *)(const void *)p; }
 HDI_IN2 void hdi_store_plain(double *p, hdi_vec_plain v) { *(hdi_v2_anywhere *)(void *)p = v; }
-HDI_IN2 double hdi_pick_plain(hdi_vec_plain v, int k) { return k ? v[1] : v[0]; }
+HDI_IN2 double hdi_total_plain(hdi_vec_plain v) { return v[0] + v[1]; }
 HDI_IN2 hdi_vec_plain hdi_load_rows_plain(const double *p, hdi_span g, int32_t q) {
     const int first = hdi_has_plain(g, q), second = hdi_has_plain(g, q + 1);
     return first && second ? hdi_load_plain(p) : hdi_two(first ? p[0] : 0.0, second ? p[1] : 0.0);
@@ -3214,7 +3201,7 @@ typedef double hdi_vec_plain;
 HDI_IN2 double hdi_all_plain(double a) { return a; }
 HDI_IN2 double hdi_load_plain(const double *p) { return *p; }
 HDI_IN2 void hdi_store_plain(double *p, double v) { *p = v; }
-HDI_IN2 double hdi_pick_plain(double v, int k) { (void)k; return v; }
+HDI_IN2 double hdi_total_plain(double v) { return v; }
 HDI_IN2 double hdi_load_rows_plain(const double *p, hdi_span g, int32_t q) {
     return hdi_has_plain(g, q) ? *p : 0.0;
 }
@@ -3222,10 +3209,6 @@ HDI_IN2 void hdi_store_rows_plain(double *p, double v, hdi_span g, int32_t q) {
     if (hdi_has_plain(g, q)) *p = v;
 }
 #endif
-HDI_IN2 double hdi_total_plain(hdi_vec_plain v) {
-    return HDI_PLAIN_WIDTH == 1 ? hdi_pick_plain(v, 0) : hdi_pick_plain(v, 0) + hdi_pick_plain(v, 1);
-}
-HDI_IN2 hdi_vec_plain hdi_lane_plain(hdi_vec_plain v, int k) { return hdi_all_plain(hdi_pick_plain(v, k)); }
 #if HDI_NEON
 HDI_IN2 hdi_vec_plain hdi_fma_plain(hdi_vec_plain a, hdi_vec_plain b, hdi_vec_plain c) {
     return vfmaq_f64(c, a, b);
@@ -3239,7 +3222,6 @@ HDI_IN2 hdi_vec_plain hdi_fnma_plain(hdi_vec_plain a, hdi_vec_plain b, hdi_vec_p
 #endif
 /* For packs in vectors of eight lanes, which only AVX-512 has. */
 HDI_IN2 hdi_vec_plain hdi_twice_plain(const double *x) { return hdi_load_plain(x); }
-HDI_IN2 hdi_vec_plain hdi_half_plain(hdi_vec_plain v, int k) { (void)k; return v; }
 HDI_IN2 hdi_vec_plain hdi_join_plain(hdi_vec_plain p, hdi_vec_plain q) { (void)q; return p; }
 
 #if HDI_X86
@@ -3256,15 +3238,6 @@ HDI_IN4 __m256d hdi_load_avx2(const double *p) { return _mm256_loadu_pd(p); }
 HDI_IN4 void hdi_store_avx2(double *p, __m256d v) { _mm256_storeu_pd(p, v); }
 HDI_IN4 __m256d hdi_fma_avx2(__m256d a, __m256d b, __m256d c) { return _mm256_fmadd_pd(a, b, c); }
 HDI_IN4 __m256d hdi_fnma_avx2(__m256d a, __m256d b, __m256d c) { return _mm256_fnmadd_pd(a, b, c); }
-HDI_IN4 __m256d hdi_lane_avx2(__m256d v, int k) {
-    switch (k) {
-        case 0: return _mm256_permute4x64_pd(v, 0x00);
-        case 1: return _mm256_permute4x64_pd(v, 0x55);
-        case 2: return _mm256_permute4x64_pd(v, 0xaa);
-        default: return _mm256_permute4x64_pd(v, 0xff);
-    }
-}
-HDI_IN4 double hdi_pick_avx2(__m256d v, int k) { return _mm256_cvtsd_f64(hdi_lane_avx2(v, k)); }
 HDI_IN4 double hdi_total_avx2(__m256d v) {
     const __m128d two = _mm_add_pd(_mm256_castpd256_pd128(v), _mm256_extractf128_pd(v, 1));
     return _mm_cvtsd_f64(_mm_add_sd(two, _mm_unpackhi_pd(two, two)));
@@ -3290,7 +3263,6 @@ HDI_IN4 void hdi_store_rows_avx2(double *p, __m256d v, hdi_span g, int32_t q) {
     else if (lo <= 3 && hi >= 4) _mm_storeh_pd(p + 3, b);
 }
 HDI_IN4 __m256d hdi_twice_avx2(const double *x) { return _mm256_loadu_pd(x); }
-HDI_IN4 __m256d hdi_half_avx2(__m256d v, int k) { (void)k; return v; }
 HDI_IN4 __m256d hdi_join_avx2(__m256d p, __m256d q) { (void)q; return p; }
 
 enum {
@@ -3303,10 +3275,6 @@ HDI_IN8 __m512d hdi_load_avx512(const double *p) { return _mm512_loadu_pd(p); }
 HDI_IN8 void hdi_store_avx512(double *p, __m512d v) { _mm512_storeu_pd(p, v); }
 HDI_IN8 __m512d hdi_fma_avx512(__m512d a, __m512d b, __m512d c) { return _mm512_fmadd_pd(a, b, c); }
 HDI_IN8 __m512d hdi_fnma_avx512(__m512d a, __m512d b, __m512d c) { return _mm512_fnmadd_pd(a, b, c); }
-HDI_IN8 __m512d hdi_lane_avx512(__m512d v, int k) {
-    return _mm512_permutexvar_pd(_mm512_set1_epi64(k), v);
-}
-HDI_IN8 double hdi_pick_avx512(__m512d v, int k) { return _mm512_cvtsd_f64(hdi_lane_avx512(v, k)); }
 HDI_IN8 double hdi_total_avx512(__m512d v) {
     return hdi_total_avx2(_mm256_add_pd(_mm512_castpd512_pd256(v), _mm512_extractf64x4_pd(v, 1)));
 }
@@ -3321,11 +3289,8 @@ HDI_IN8 __m512d hdi_load_rows_avx512(const double *p, uint32_t g, int32_t q) {
 HDI_IN8 void hdi_store_rows_avx512(double *p, __m512d v, uint32_t g, int32_t q) {
     _mm512_mask_storeu_pd(p, (__mmask8)(g >> q & 0xffu), v);
 }
-/* (x, x) of four doubles; (h, h) of half k of v */
+/* (x, x) of four doubles */
 HDI_IN8 __m512d hdi_twice_avx512(const double *x) { return _mm512_broadcast_f64x4(_mm256_loadu_pd(x)); }
-HDI_IN8 __m512d hdi_half_avx512(__m512d v, int k) {
-    return k ? _mm512_shuffle_f64x2(v, v, 0xee) : _mm512_shuffle_f64x2(v, v, 0x44);
-}
 /* The sum of products of a pack entry (re, im) from its two parts: p - swap(q) below, p + swap(q) above. */
 HDI_IN8 __m512d hdi_join_avx512(__m512d p, __m512d q) {
     const __m512d t = _mm512_shuffle_f64x2(q, q, 0x4e);
@@ -3375,9 +3340,6 @@ HDI_IN8 __m512d hdi_join_avx512(__m512d p, __m512d q) {
 #define HDI_RESIDUAL_BLOCKS (HDI_WIDTH == 8 ? 8 : HDI_WIDTH == 4 ? 2 : 1)   /* whose sums registers hold */
 #endif
 
-/* A tile holds the rows of its own columns' pivots; else this does not compile. */
-enum { HDI_OF(tile_fits) = 1 / ((int)HDI_OF(regs) * HDI_WIDTH >= (int)HDI_OF(cols)) };
-
 /* What registers hold: a num, some rows of a column; a factor, by which all rows of a num are multiplied; or
  * a sum of such products. Of real numbers re is a vector of rows, or the factor in every lane. Of packs, re
  * and im are the parts of one entry, or of some of its numbers; but with eight lanes a num is re alone, a
@@ -3417,14 +3379,6 @@ HDI_PART hdi_num HDI_OF(factor_load)(const int pack, const double *p) {
     if (pack && HDI_WIDTH == 8) return HDI_OF(num_of)(HDI_OF(twice)(p), HDI_OF(twice)(p + 4));
     if (pack) return HDI_OF(num_load)(1, p);
     re = HDI_OF(all)(*p);
-    return HDI_OF(num_of)(re, re);
-}
-/* Row k of a num as a factor. */
-HDI_PART hdi_num HDI_OF(factor_row)(const int pack, hdi_num x, const int k) {
-    hdi_vec re;
-    if (pack && HDI_WIDTH == 8) return HDI_OF(num_of)(HDI_OF(half)(x.re, 0), HDI_OF(half)(x.re, 1));
-    if (pack) return x;
-    re = HDI_OF(lane)(x.re, k);
     return HDI_OF(num_of)(re, re);
 }
 /* sum += a f */
@@ -3768,96 +3722,6 @@ HDI_PART void HDI_OF(solve)(const int pack, const hdi_solve *g) {
     else HDI_OF(solve_rows)(pack, 0, g);
 }
 
-/* Nums of a block of pivots: the first hold the nc pivots' own rows, the others n rows that follow. The first
- * row of num v, and which of its rows there are, from `first` on. */
-HDI_PART int32_t HDI_OF(pivot_first)(const int pack, const int v, int32_t nc) {
-    const int top = HDI_COLS / HDI_ROWS;
-    return v < top ? HDI_ROWS * v : nc + HDI_ROWS * (v - top);
-}
-HDI_PART HDI_OF(rows) HDI_OF(pivot_rows)(const int pack, const int v, int32_t first, const hdi_eliminate *g) {
-    const int top = HDI_COLS / HDI_ROWS;
-    const int32_t n = v < top ? g->nc - HDI_ROWS * v : g->n - HDI_ROWS * (v - top);
-    return HDI_OF(rows_of)(first, n < HDI_ROWS ? n : HDI_ROWS);
-}
-
-/* 1/d as a factor, also to `to`. 0: it is none. */
-HDI_PART int HDI_OF(pivot_invert)(const int pack, hdi_num d, const int row, double *to, hdi_num *f) {
-    double size[HDI_PACK];
-    if (pack) {
-        HDI_OF(num_store)(1, size, d);
-        if (!hdi_pack_invert(size, to, HDI_ABREAST)) return 0;
-    } else {
-        size[0] = HDI_OF(pick)(d.re, row);
-        if (fabs(size[0]) <= HDI_PIVOT_LEAST) return 0;
-        *to = 1 / size[0];
-    }
-    *f = HDI_OF(factor_load)(pack, to);
-    return 1;
-}
-
-/* For the rows below the pivots the same operations as in a solve. */
-HDI_PART void HDI_OF(pivots)(const int pack, const int nv, const hdi_eliminate *g, int h) {
-    const int cols = HDI_COLS, top = cols / HDI_ROWS, late = pack && HDI_WIDTH == 8;
-    const double *row = g->x + h, *slice = g->s + h;
-    double *c = g->x + HDI_ENTRY * g->before * g->x_col + h;
-    double *s = g->s + HDI_ENTRY * g->before * cols + h, *dinv = g->dinv + h;
-    hdi_num sum[HDI_OF(most_cols)][HDI_OF(most_regs)], x[HDI_OF(most_regs)], l[HDI_OF(most_regs)], f;
-    int64_t k;
-    int i, j, v;
-    HDI_EACH(j, cols)
-        HDI_EACH(v, nv) sum[j][v] = HDI_OF(num_zero)();
-    for (k = 0; k < g->before; k++, row += HDI_ENTRY * g->x_col, slice += HDI_ENTRY * cols) {
-        HDI_EACH(v, nv)
-            l[v] = HDI_OF(num_load_rows)(pack, row + HDI_ENTRY * HDI_OF(pivot_first)(pack, v, g->nc),
-                                         HDI_OF(pivot_rows)(pack, v, 0, g), 0);
-        HDI_EACH(j, cols) {
-            f = HDI_OF(factor_load)(pack, slice + HDI_ENTRY * (j < g->nc ? j : 0));
-            HDI_EACH(v, nv) HDI_OF(sum_add)(pack, &sum[j][v], l[v], f);
-        }
-    }
-    HDI_EACH(j, cols) {
-        if (j >= g->nc || late) continue;
-        HDI_EACH(v, nv) {
-            const double *from = c + HDI_ENTRY * (j * g->x_col + HDI_OF(pivot_first)(pack, v, g->nc));
-            x[v] = HDI_OF(num_load_rows)(pack, from, HDI_OF(pivot_rows)(pack, v, 0, g), 0);
-            sum[j][v] = HDI_OF(left_begin)(pack, x[v], sum[j][v]);
-        }
-    }
-    HDI_EACH(j, cols) {
-        if (j >= g->nc) continue;
-        HDI_EACH(v, nv) {
-            x[v] = sum[j][v];
-            if (late) x[v] = HDI_OF(num_load_rows)(pack, c + HDI_ENTRY * HDI_OF(pivot_first)(pack, v, g->nc),
-                                                   HDI_OF(pivot_rows)(pack, v, 0, g), 0);
-            x[v] = HDI_OF(left_end)(pack, x[v], sum[j][v]);
-        }
-        if (pack) HDI_OF(num_store)(1, c + HDI_PACK * j, x[j / HDI_ROWS]);
-        else c[j] = HDI_OF(pick)(x[j / HDI_ROWS].re, j % HDI_ROWS);
-        if (!HDI_OF(pivot_invert)(pack, x[j / HDI_ROWS], j % HDI_ROWS, dinv + HDI_ENTRY * j, &f)) return;
-        HDI_EACH(v, nv) {
-            const int first = v < top ? j + 1 - HDI_ROWS * v : 0;
-            l[v] = HDI_OF(num_times)(pack, x[v], f);
-            if (v < top) HDI_OF(num_store)(pack, s + HDI_ENTRY * HDI_ROWS * v, x[v]);
-            HDI_OF(num_store_rows)(pack, c + HDI_ENTRY * HDI_OF(pivot_first)(pack, v, g->nc), l[v],
-                                   HDI_OF(pivot_rows)(pack, v, first, g), 0);
-        }
-        HDI_EACH(i, cols) {
-            if (i <= j) continue;
-            f = HDI_OF(factor_row)(pack, x[i / HDI_ROWS], i % HDI_ROWS);
-            HDI_EACH(v, nv) HDI_OF(left_take)(pack, &sum[i][v], l[v], f);
-        }
-        c += HDI_ENTRY * g->x_col;
-        s += HDI_ENTRY * cols;
-    }
-}
-
-HDI_PART void HDI_OF(eliminate)(const int pack, const hdi_eliminate *g) {
-    const int top = HDI_COLS / HDI_ROWS;
-    int h;
-    for (h = 0; h < HDI_NUMBERS; h += HDI_ABREAST)
-        HDI_OF(pivots)(pack, top < HDI_REGS ? HDI_REGS : top, g, h);
-}
-
 /* ---- copies ---- */
 
 HDI_PART void HDI_OF(slice)(const int pack, double *b, const double *x, int64_t row, int64_t col,
@@ -4073,10 +3937,7 @@ HDI_KERNEL void HDI_OF(single_down)(const hdi_single *g) {
         HDI_EACH(j, 8) l[j] += g->n;
     }
     HDI_EACH(j, 8) {
-        x[j] = 0;
-        if (j >= g->nc) continue;
-        HDI_EACH(k, HDI_WIDTH) x[j] += HDI_OF(pick)(s[j], k);
-        x[j] = g->x[j] - x[j];
+        x[j] = j < g->nc ? g->x[j] - HDI_OF(total)(s[j]) : 0;
     }
     HDI_SPREAD for (i = 0; i < 7; i++) {
         k = 7 - i;
@@ -4094,8 +3955,6 @@ HDI_KERNEL void HDI_OF(real_product)(const hdi_product *g) { HDI_OF(product)(0, 
 HDI_KERNEL void HDI_OF(pack_product)(const hdi_product *g) { HDI_OF(product)(1, g); }
 HDI_KERNEL void HDI_OF(real_solve)(const hdi_solve *g) { HDI_OF(solve)(0, g); }
 HDI_KERNEL void HDI_OF(pack_solve)(const hdi_solve *g) { HDI_OF(solve)(1, g); }
-HDI_KERNEL void HDI_OF(real_eliminate)(const hdi_eliminate *g) { HDI_OF(eliminate)(0, g); }
-HDI_KERNEL void HDI_OF(pack_eliminate)(const hdi_eliminate *g) { HDI_OF(eliminate)(1, g); }
 HDI_KERNEL void HDI_OF(real_slices)(double *b, int64_t b_next, const double *x, int64_t row, int64_t col,
                                     const double *d, int64_t n, int64_t depth) {
     HDI_OF(slices)(0, b, b_next, x, row, col, d, n, depth);
@@ -4107,17 +3966,16 @@ HDI_KERNEL void HDI_OF(pack_slices)(double *b, int64_t b_next, const double *x, 
 
 static const hdi_kernels *HDI_OF(real_kernels)(void) {
     static const hdi_kernels hdi_table = {
-        1, HDI_OF(regs) * HDI_WIDTH, HDI_OF(cols), HDI_OF(real_product), HDI_OF(real_solve),
-        HDI_OF(real_eliminate), HDI_OF(real_slices), HDI_OF(add), HDI_PASTE(single_up, HDI_SOLO),
-        HDI_PASTE(single_down, HDI_SOLO), HDI_OF(residual)
+        1, HDI_OF(cols), HDI_OF(real_product), HDI_OF(real_solve), HDI_OF(real_slices), HDI_OF(add),
+        HDI_PASTE(single_up, HDI_SOLO), HDI_PASTE(single_down, HDI_SOLO), HDI_OF(residual)
     };
     return &hdi_table;
 }
 
 static const hdi_kernels *HDI_OF(pack_kernels)(void) {
     static const hdi_kernels hdi_table = {
-        HDI_PACK, HDI_OF(pack_regs), HDI_OF(pack_cols), HDI_OF(pack_product), HDI_OF(pack_solve),
-        HDI_OF(pack_eliminate), HDI_OF(pack_slices), HDI_OF(add), NULL, NULL, HDI_OF(residual)
+        HDI_PACK, HDI_OF(pack_cols), HDI_OF(pack_product), HDI_OF(pack_solve), HDI_OF(pack_slices),
+        HDI_OF(add), NULL, NULL, HDI_OF(residual)
     };
     return &hdi_table;
 }
@@ -8272,8 +8130,7 @@ enum {
     HDI_ND_LAYERS = 5,      /* of the band, on each side of a cut: 3 cost a tenth more flops, 8 gain little */
     HDI_ND_WORDS = 20,      /* work space: words for a vertex; 5/2 more for an entry */
     HDI_ND_LEVELS = 24,     /* most copies of a part, itself included */
-    HDI_ND_TASKS = 64,      /* parts that are ordered in parallel, */
-    HDI_ND_NODES = 2 * HDI_ND_TASKS - 1,   /* with all that were halved to make them */
+    HDI_ND_FIFTH = HDI_ND_LEAF / 5,   /* a part that is halved has so many vertices more than each half */
     HDI_ND_LARGE = 20000,   /* parts of more vertices are swept in 11 ways, */
     HDI_ND_MIDDLING = 3000, /* those of more than this in 5, others in 2 */
     HDI_ND_PASSES = 3,      /* of exchanges on each copy */
@@ -8308,8 +8165,7 @@ static int32_t hdi_nd_edge(const hdi_nd_graph *g, int32_t p) { return g->ew ? g-
  * clusters is 0, none are known. */
 typedef struct hdi_nd_part { int32_t first, n, halo, edge, n_edges, clusters, buffer; } hdi_nd_part;
 
-/* Everything that the tasks share. Parts form a heap: part i is halved into parts 2 i + 1 and 2 i + 2, but
- * the last HDI_ND_TASKS of them are ordered with all below them. */
+/* Everything that the parts share. */
 typedef struct hdi_nd {
     const double *xyz;
     double lo[3], width;             /* of the box around all rows, halved */
@@ -8318,9 +8174,9 @@ typedef struct hdi_nd {
                                         own: one of two buffers is for odd depths. ptr [2 n] has n + 1 words
                                         for every part. There are fewer clusters than vertices, and
                                         nnz / 4 entries between them */
-    hdi_nd_part part[HDI_ND_NODES];
+    hdi_nd_part *part;
+    int32_t n_parts, *order;         /* the parts as they become ready */
     hdi_walk walk;
-    int32_t order[HDI_ND_NODES];     /* the parts as they become ready */
 } hdi_nd;
 
 /* Work space left to a part, taken from its front: what a copy of this struct took is free after it. */
@@ -9089,30 +8945,19 @@ static void hdi_nd_split(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_part 
     }
 }
 
-/* Orders a part and all parts below it. A child has at most 4/5 of the vertices of its part, so calls are
- * less than 100 deep. */
-static void hdi_nd_subtree(const hdi_nd *nd, const hdi_nd_part *part, hdi_nd_space s) {
-    hdi_nd_part child[2];
-    if (!part->n) return;
-    hdi_nd_split(nd, part, child, s);
-    hdi_nd_subtree(nd, child, s);
-    hdi_nd_subtree(nd, child + 1, s);
-}
-
-/* Treats one part of the heap. After that its halves may be claimed. The space of a part lies within that of
- * the part it comes from, apart from all others. */
+/* Treats one part. After that its halves may be claimed. The space of a part lies within that of the part it
+ * comes from, apart from all others. */
 static void hdi_nd_task(void *arg, int64_t index, int32_t worker) {
     hdi_nd *nd = (hdi_nd *)arg;
-    hdi_nd_part *part = nd->part + index;
-    int32_t *work = nd->work + hdi_nd_words(part->first, part->edge);
+    hdi_nd_part *part = nd->part + index, child[2];
+    int32_t first, *work = nd->work + hdi_nd_words(part->first, part->edge);
     const hdi_nd_space s = {work, work + hdi_nd_words(part->n, part->n_edges)};
     (void)worker;
-    if (index >= HDI_ND_TASKS - 1) {
-        hdi_nd_subtree(nd, part, s);
-        return;
-    }
-    hdi_nd_split(nd, part, nd->part + 2 * index + 1, s);
-    hdi_release(&nd->walk, (int32_t)(2 * index + 1), 2);
+    hdi_nd_split(nd, part, child, s);
+    if (child[0].n + child[1].n == 0) return;
+    first = (int32_t)HDI_ATOMIC_ADD(&nd->n_parts, 2) - 2;
+    memcpy(nd->part + first, child, sizeof child);
+    hdi_release(&nd->walk, first, 2);
 }
 
 /* perm[k] = row of the symmetric pattern a (both triangles, the diagonal may be there) that is eliminated
@@ -9122,6 +8967,8 @@ static hd_status hdi_nd_order(const hd_csr *a, const double *xyz, int32_t *perm,
                               hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
     const uint64_t n = (uint64_t)a->n_rows, nnz = (uint64_t)a->nnz;
+    /* A part of n vertices leads to less than n / FIFTH parts that are halved. */
+    const int64_t parts = 2 * (int64_t)(n / HDI_ND_FIFTH) + 3;
     int32_t k, *inv = HDI_TAKE(&s, int32_t, n + 1);
     uint64_t *work;
     hdi_nd nd;
@@ -9132,6 +8979,9 @@ static hd_status hdi_nd_order(const hd_csr *a, const double *xyz, int32_t *perm,
     nd.perm = perm;
     nd.xyz = xyz;
     nd.work = (int32_t *)(void *)work;
+    nd.part = HDI_TAKE(&s, hdi_nd_part, parts);
+    nd.order = HDI_TAKE(&s, int32_t, parts);
+    nd.n_parts = 1;
     for (k = 0; k < 2; k++) {
         hdi_nd_graph *g = nd.buffer[k];
         g[0].ptr = HDI_TAKE(&s, int32_t, 2 * n + 1);
@@ -9146,7 +8996,7 @@ static hd_status hdi_nd_order(const hd_csr *a, const double *xyz, int32_t *perm,
     if (e->status < 0) return hdi_scope_end(&s);
     nd.part[0] = hdi_nd_load(&nd, a, inv, hdi_nd_number(&nd, a, inv, work));
     memcpy(perm, nd.buffer[0]->id, (size_t)n * sizeof *perm);   /* rows with too many entries stay last */
-    hdi_walk_open(&nd.walk, ctx, HDI_ND_NODES, nd.order, hdi_nd_task, &nd);
+    hdi_walk_open(&nd.walk, ctx, parts, nd.order, hdi_nd_task, &nd);
     nd.walk.stage = "order";
     nd.walk.from = 0.1;
     nd.walk.to = 0.9;
@@ -9158,10 +9008,13 @@ static hd_status hdi_nd_order(const hd_csr *a, const double *xyz, int32_t *perm,
 
 /* ==== [15] analysis ====
  * From an elimination order to supernodes and the rows of their fronts, subtrees that can go on at the same
- * time, and the places of all that lives for a while. As many steps as L has entries. May call [14].
+ * time, and the places of all that lives for a while. Nearly linear in the non-zeros of A and the lengths of
+ * the row lists. May call [14].
  * This work is based on
  *   J. Liu, The role of elimination trees in sparse factorization, 1990 (trees, postorders, the stack)
  *   J. Liu, On the storage requirement in the out-of-core multifrontal method for sparse factorization, 1986
+ *   J. Gilbert, E. Ng, B. Peyton, An efficient algorithm to compute row and column counts for sparse Cholesky
+ *   factorization, 1994
  *   C. Ashcraft, R. Grimes, The influence of relaxed supernode partitions on the multifrontal method, 1989
  * A front is a dense lower triangle over the rows of a supernode: its p pivots, then u rows below. Its first
  * p columns become columns of L (the panel, m = p + u rows), the rest is the update matrix for its parent. */
@@ -9232,7 +9085,7 @@ typedef struct hdi_node {
     int32_t kid, next;           /* first child, and next child of the same parent; -1: none */
     int32_t pivots, rows;        /* of the front: columns, and rows with the pivots included */
     int32_t first, then;         /* first column of its list; the column after it in a list, -1: none */
-    int32_t mark;                /* the last row of L with an entry in it; later: merged */
+    int32_t mark;                /* see hdi_sym_count; later: merged */
     int64_t zeros;               /* let in by merging */
 } hdi_node;
 
@@ -9272,26 +9125,60 @@ static HDI_INLINE void hdi_sym_fetch(const hd_csr *a, const int32_t *perm, int32
     if (j + HDI_ROWS_AHEAD < a->n_rows) HDI_PREFETCH(a->col + a->row_ptr[perm[j + HDI_ROWS_AHEAD]]);
 }
 
-/* The columns of L under an order, their tree and their non-zeros. Row i of L is a subtree of the tree,
- * walked up from the entries of row i of A; a column's parent is the row of its first entry below the
- * diagonal. */
-static void hdi_sym_columns(const hd_csr *a, const int32_t *perm, const int32_t *place, hdi_node *node) {
-    int32_t i, k;
+/* The columns of L under an order, and their tree: a column's parent is the row of its first entry below the
+ * diagonal. ancestor [n]: shortcuts from a column to the root of its tree so far. */
+static void hdi_sym_columns(const hd_csr *a, const int32_t *perm, const int32_t *place, hdi_node *node,
+                            int32_t *ancestor) {
+    int32_t i, k, next;
     int64_t p;
     for (i = 0; i < a->n_rows; i++) {
-        hdi_node *v = node + i;
         hdi_sym_fetch(a, perm, i);
-        memset(v, 0, sizeof *v);
-        v->parent = v->then = -1;
-        v->first = v->mark = i;
-        v->pivots = v->rows = 1;
+        memset(node + i, 0, sizeof *node);
+        node[i].parent = node[i].then = node[i].mark = ancestor[i] = -1;
+        node[i].pivots = 1;
         for (p = a->row_ptr[perm[i]]; p < a->row_ptr[perm[i] + 1]; p++) {
-            for (k = place[a->col[p]]; k < i && node[k].mark != i; k = node[k].parent) {
-                node[k].mark = i;
-                node[k].rows++;
-                if (node[k].parent < 0) node[k].parent = i;
+            for (k = place[a->col[p]]; k != -1 && k < i; k = next) {
+                next = ancestor[k];
+                ancestor[k] = i;
+                if (next == -1) node[k].parent = i;
             }
         }
+    }
+}
+
+/* Counts the non-zeros of the columns, which are taken in postorder. Row i of L is a subtree of the tree,
+ * its leaves are entries of A. A column's count is what the leaves add to it, less what the least common
+ * ancestors of neighbouring leaves take back. Of a column, `first` is the first one of its subtree; of a
+ * row, `mark` is the last column with an entry of A in it, and `then` the last leaf. set [n]: union-find;
+ * a counted column joins its parent. */
+static void hdi_sym_count(const hd_csr *a, const int32_t *perm, const int32_t *place, hdi_node *node,
+                          const int32_t *order, int32_t *set) {
+    int32_t i, j, k;
+    int64_t p;
+    hdi_fill_own(set, a->n_rows);
+    for (k = 0; k < a->n_rows; k++) {
+        hdi_node *v = node + (j = order[k]);
+        if (k + HDI_ROWS_AHEAD < a->n_rows)
+            HDI_PREFETCH(a->col + a->row_ptr[perm[order[k + HDI_ROWS_AHEAD]]]);
+        v->first = v->kid < 0 ? k : node[v->kid].first;
+        v->rows += v->kid < 0;
+        if (v->parent >= 0) node[v->parent].rows--;
+        for (p = a->row_ptr[perm[j]]; p < a->row_ptr[perm[j] + 1]; p++) {
+            if ((i = place[a->col[p]]) <= j) continue;
+            if (v->first > node[i].mark) {       /* j is a leaf of row i */
+                v->rows++;
+                if (node[i].then >= 0) node[hdi_find(set, node[i].then)].rows--;
+                node[i].then = j;
+            }
+            node[i].mark = k;
+        }
+        if (v->parent >= 0) set[j] = v->parent;
+    }
+    for (k = 0; k < a->n_rows; k++) {
+        hdi_node *v = node + (j = order[k]);
+        if (v->parent >= 0) node[v->parent].rows += v->rows;
+        v->first = j;
+        v->then = -1;
     }
 }
 
@@ -9429,7 +9316,10 @@ static hd_status hdi_sym_supernodes(hdi_symbolic *s, const hd_csr *a, const int3
     if (keep->e->status < 0) return hdi_scope_end(&temp);
     for (v = 0; v < n; v++) place[perm[v]] = v;
     for (v = 0; HDI_AUDIT && v < n; v++) HEATDIFF_ASSERT(place[perm[v]] == v);
-    hdi_sym_columns(a, perm, place, node);
+    hdi_sym_columns(a, perm, place, node, number);
+    hdi_nodes_link(node, n);
+    hdi_nodes_postorder(node, n, order);
+    hdi_sym_count(a, perm, place, node, order, number);
     for (v = 0; v < n; v++) {
         s->nnz += node[v].rows;
         s->flops += (double)node[v].rows * node[v].rows;
@@ -9437,7 +9327,8 @@ static hd_status hdi_sym_supernodes(hdi_symbolic *s, const hd_csr *a, const int3
     hdi_sym_merge(node, n, 1);
     hdi_sym_merge(node, n, 0);
     hdi_nodes_link(node, n);
-    for (v = 0; v < n; v++) hdi_sym_sort_kids(node, v, peak, pair);
+    for (v = 0; v < n; v++)
+        if (node[v].parent != -2) hdi_sym_sort_kids(node, v, peak, pair);
     s->n_super = hdi_nodes_postorder(node, n, order);
     if (hdi_sym_take_supernodes(s, keep) >= 0) hdi_sym_number(s, node, perm, place, order, number);
     return hdi_scope_end(&temp);
@@ -9855,16 +9746,23 @@ static void hdi_front_set(hdi_front *w, int32_t stage, int64_t begin, int64_t en
 
 static int64_t hdi_front_chunks(const hdi_front *w) { return (w->end - w->begin + w->rows - 1) / w->rows; }
 
-typedef struct hdi_pass {
-    hdi_walk walk;
-    const hdi_symbolic *sym;
-    const void *arg;
+/* What a pass does. arg: that of the pass. */
+typedef struct hdi_pass_kind {
+    const char *name;            /* the stage of progress */
     hdi_front (*open)(const void *arg, int32_t v, int32_t room);
     int (*next)(hdi_front *w, const void *arg);      /* sets the next stage. 0: there is none */
     /* [r0,r1) of the stage: a chunk, or with -1 all of it. 0: it failed. */
     int (*run)(const void *arg, const hdi_front *w, int64_t r0, int64_t r1, int64_t chunk);
     int64_t least;               /* fronts of the top with so many rows are shared */
-    int32_t down, step;          /* the subtrees or front of the top that come next */
+    int32_t down;
+} hdi_pass_kind;
+
+typedef struct hdi_pass {
+    hdi_walk walk;
+    const hdi_pass_kind *kind;
+    const hdi_symbolic *sym;
+    const void *arg;
+    int32_t step;                /* the subtrees or front of the top that come next */
     int32_t top;                 /* what is under way: this front of the top; below 0: the subtrees */
     int32_t shared;              /* the front, by chunks of a stage, */
     hdi_front front;             /* which is this one */
@@ -9873,22 +9771,24 @@ typedef struct hdi_pass {
 } hdi_pass;
 
 /* Whether threads share front v of the top. */
-static int hdi_pass_shares(const hdi_pass *p, int32_t v) { return hdi_front_rows(p->sym, v) >= p->least; }
+static int hdi_pass_shares(const hdi_pass *p, int32_t v) {
+    return hdi_front_rows(p->sym, v) >= p->kind->least;
+}
 
 /* What is under way is done: what comes next. */
 static void hdi_pass_next(hdi_pass *p) {
     const hdi_symbolic *s = p->sym;
     p->first += p->n;
     for (p->n = 0; p->n == 0;) {
-        if (p->shared && p->next(&p->front, p->arg)) {
+        if (p->shared && p->kind->next(&p->front, p->arg)) {
             p->n = (int32_t)hdi_front_chunks(&p->front);
             continue;
         }
         if (p->step > s->n_top) return;
-        p->top = (p->down ? s->n_top - p->step : p->step) - 1;
+        p->top = (p->kind->down ? s->n_top - p->step : p->step) - 1;
         p->step++;
         p->shared = p->top >= 0 && !hdi_walk_alone(&p->walk) && hdi_pass_shares(p, s->top[p->top]);
-        if (p->shared) p->front = p->open(p->arg, s->top[p->top], s->n_tasks);
+        if (p->shared) p->front = p->kind->open(p->arg, s->top[p->top], s->n_tasks);
         else p->n = p->top < 0 ? s->n_tasks : 1;
     }
     p->left = p->n;
@@ -9897,21 +9797,21 @@ static void hdi_pass_next(hdi_pass *p) {
 
 /* Front v, by this thread. 0: it failed. */
 static int hdi_pass_alone(const hdi_pass *p, int32_t v, int32_t room) {
-    hdi_front w = p->open(p->arg, v, room);
-    while (p->next(&w, p->arg))
-        if (w.begin < w.end && !p->run(p->arg, &w, w.begin, w.end, -1)) return 0;
+    hdi_front w = p->kind->open(p->arg, v, room);
+    while (p->kind->next(&w, p->arg))
+        if (w.begin < w.end && !p->kind->run(p->arg, &w, w.begin, w.end, -1)) return 0;
     return 1;
 }
 
 /* Downwards the last subtree comes first. */
 static void hdi_pass_subtree(hdi_pass *p, int32_t i) {
     const hdi_symbolic *s = p->sym;
-    const int32_t task = p->down ? s->n_tasks - 1 - i : i, begin = s->task_begin[task];
+    const int32_t task = p->kind->down ? s->n_tasks - 1 - i : i, begin = s->task_begin[task];
     const int32_t end = s->task_end[task];
     int32_t k;
     for (k = 0; k < end - begin; k++) {
         if (hdi_walk_stopped(&p->walk) && task >= HDI_LOAD(&p->until)) return;
-        if (hdi_pass_alone(p, p->down ? end - 1 - k : begin + k, task)) continue;
+        if (hdi_pass_alone(p, p->kind->down ? end - 1 - k : begin + k, task)) continue;
         /* should two threads come at once, and the larger number stay, then more is done than need be */
         if (HDI_LOAD(&p->until) == 0 || task < HDI_LOAD(&p->until)) HDI_STORE(&p->until, task);
         hdi_walk_stop(&p->walk);
@@ -9927,7 +9827,7 @@ static void hdi_pass_node(void *arg, int64_t index, int32_t worker) {
     (void)worker;
     if (p->shared) {     /* the first chunk may have more to do; the last rows of a triangle are longest */
         const int64_t chunk = i > 0 ? p->n - i : 0, r0 = w->begin + chunk * w->rows;
-        good = p->run(p->arg, w, r0, hdi_least(r0 + w->rows, w->end), chunk);
+        good = p->kind->run(p->arg, w, r0, hdi_least(r0 + w->rows, w->end), chunk);
     } else if (p->top >= 0) {
         good = hdi_pass_alone(p, p->sym->top[p->top], p->sym->n_tasks);
     } else {
@@ -9937,20 +9837,24 @@ static void hdi_pass_node(void *arg, int64_t index, int32_t worker) {
     if (HDI_ATOMIC_ADD(&p->left, -1) == 0) hdi_pass_next(p);
 }
 
-/* stage: of progress */
-static void hdi_pass_run(hdi_pass *p, hd_context *ctx, const char *stage, hd_error *e) {
-    const hdi_symbolic *s = p->sym;
+static void hdi_pass_run(const hdi_pass_kind *kind, const hdi_symbolic *s, const void *arg, hd_context *ctx,
+                         hd_error *e) {
     int64_t n = (int64_t)s->n_tasks + s->n_top;
     int32_t i;
+    hdi_pass p;
+    memset(&p, 0, sizeof p);
+    p.kind = kind;
+    p.sym = s;
+    p.arg = arg;
     for (i = 0; i < s->n_top && !hdi_is_serial(ctx); i++) {
-        hdi_front w = p->open(p->arg, s->top[i], s->n_tasks);
-        while (hdi_pass_shares(p, s->top[i]) && p->next(&w, p->arg)) n += hdi_front_chunks(&w);
+        hdi_front w = kind->open(arg, s->top[i], s->n_tasks);
+        while (hdi_pass_shares(&p, s->top[i]) && kind->next(&w, arg)) n += hdi_front_chunks(&w);
     }
-    hdi_walk_open(&p->walk, ctx, n, NULL, hdi_pass_node, p);
-    p->walk.stage = stage;
-    p->walk.e = e;
-    hdi_pass_next(p);
-    hdi_walk_run(&p->walk);
+    hdi_walk_open(&p.walk, ctx, n, NULL, hdi_pass_node, &p);
+    p.walk.stage = kind->name;
+    p.walk.e = e;
+    hdi_pass_next(&p);
+    hdi_walk_run(&p.walk);
 }
 
 /* ---- parts of a front ---- */
@@ -10041,6 +9945,12 @@ static HDI_INLINE int64_t hdi_triangle_column(int64_t u, int64_t j) { return j *
 static HDI_INLINE void hdi_entry_copy(int32_t width, double *to, const double *from) {
     if (width == 1) *to = *from;
     else memcpy(to, from, HDI_PACK * sizeof *to);
+}
+
+/* s = l d */
+static HDI_INLINE void hdi_entry_times(int32_t width, const double *l, const double *d, double *s) {
+    if (width == 1) *s = *l * *d;
+    else hdi_pack_times(l, d, s);
 }
 
 static void hdi_clear(double *to, int64_t doubles) {
@@ -10135,15 +10045,15 @@ static void hdi_front_diagonal(const hdi_block *b, int64_t k, int64_t n, double 
     for (i = k; i < k + n; i++) hdi_entry_copy(b->entry, d + b->entry * (i - k), hdi_block_at(b, i, i));
 }
 
-/* Rows [r0,r1) of columns [k,k+n) of the block under way: minus L D L' over the blocks of columns before.
- * s: slices of D L' for these columns, of rows as many as S has. */
+/* Rows [r0,r1) of columns [k,k+n): minus L D L' over the blocks of columns before. s: slices of D L' for
+ * these columns, of rows as many as S has. own: also over the columns before k in the same block. */
 static void hdi_front_before(const hdi_front *w, int64_t r0, int64_t r1, int64_t k, int64_t n,
-                             const double *s) {
+                             const double *s, int own) {
     const hdi_kernels *o = w->f->ops;
     const hdi_block to = hdi_front_block(w, k / HDI_PANEL);
+    const int64_t end = own ? k : to.begin;
     hdi_product g;
     int64_t q;
-    if (to.begin == 0) return;
     memset(&g, 0, sizeof g);
     g.c = hdi_block_at(&to, r0, k);
     g.c_col = to.ld;
@@ -10152,12 +10062,12 @@ static void hdi_front_before(const hdi_front *w, int64_t r0, int64_t r1, int64_t
     g.b_next = o->nr * w->k1;
     g.n = r1 - r0;
     g.cols = n;
-    for (q = 0; q * HDI_PANEL < to.begin; q++) {
+    for (q = 0; q * HDI_PANEL < end; q++) {
         const hdi_block b = hdi_front_block(w, q);
         g.a = hdi_block_at(&b, r0, b.begin);
         g.a_col = b.ld;
         g.b = s + w->f->width * o->nr * b.begin;
-        g.depth = b.width;
+        g.depth = hdi_least(end - b.begin, b.width);
         o->multiply(&g);
     }
 }
@@ -10194,26 +10104,46 @@ static void hdi_front_slice(const hdi_front *w, int64_t k, int64_t n, double *s)
     }
 }
 
-/* Notes pivots [k,k+n). 0: one cannot be divided by. */
-static int hdi_front_note(const hdi_front *w, int64_t k, int64_t n, hdi_pivots *note) {
-    const hdi_block b = hdi_front_block(w, k / HDI_PANEL);
-    int64_t i;
-    int q;
-    for (i = k; i < k + n; i++) {
-        const double *d = hdi_block_at(&b, i, i), *dinv = w->dinv + b.entry * i;
-        for (q = 0; q < (b.entry == 1 ? 1 : (int)HDI_PACK_LANES); q++) {
-            const double size = b.entry == 1 ? fabs(*d) : hdi_pythag(d[q], d[q + HDI_PACK_LANES]);
-            const int good = hdi_finite(size) && (b.entry == 1 ? size > HDI_PIVOT_LEAST
-                                                               : size > 0 && hdi_finite(dinv[q]));
-            if (!good) {
-                note->failed = w->f->sym->super[w->v] + (int32_t)i;
-                note->lane = q;
-                note->value = b.entry == 1 ? *d : size;
-                return 0;
-            }
-            hdi_pivots_add(note, size, size);
+/* Notes pivot k, which is d, and inverts it. 0: it cannot be divided by. */
+static int hdi_front_note(const hdi_front *w, int64_t k, const double *d, hdi_pivots *note) {
+    const int32_t width = w->f->width, lanes = width == 1 ? 1 : HDI_PACK_LANES;
+    double *dinv = w->dinv + width * k;
+    int32_t q;
+    if (width > 1) hdi_pack_invert(d, dinv);
+    for (q = 0; q < lanes; q++) {
+        const double size = width == 1 ? fabs(*d) : hdi_pythag(d[q], d[q + HDI_PACK_LANES]);
+        if (!hdi_finite(size) || (width == 1 ? size <= HDI_PIVOT_LEAST : size <= 0 || !hdi_finite(dinv[q]))) {
+            note->failed = w->f->sym->super[w->v] + (int32_t)k;
+            note->lane = q;
+            note->value = width == 1 ? *d : size;
+            return 0;
         }
-        note->negative += b.entry == 1 && *d < 0;
+        hdi_pivots_add(note, size, size);
+    }
+    if (width == 1) *dinv = 1 / *d;
+    note->negative += width == 1 && *d < 0;
+    return 1;
+}
+
+/* LDL' of pivots [k,k+n), n <= nr, in their own rows. The slice s gets their D L'. */
+static int hdi_front_triangle(const hdi_front *w, int64_t k, int64_t n, double *s, hdi_pivots *note) {
+    const int32_t width = w->f->width;
+    const hdi_block b = hdi_front_block(w, k / HDI_PANEL);
+    double t[HDI_PACK];
+    int64_t i, j, q;
+    int e;
+    for (j = k, s += width * w->f->ops->nr * k; j < k + n; j++, s += width * w->f->ops->nr) {
+        if (!hdi_front_note(w, j, hdi_block_at(&b, j, j), note)) return 0;
+        for (i = j + 1; i < k + n; i++) {
+            double *l = hdi_block_at(&b, i, j);
+            hdi_entry_copy(width, s + width * (i - k), l);
+            hdi_entry_times(width, s + width * (i - k), w->dinv + width * j, l);
+            for (q = j + 1; q <= i; q++) {
+                double *x = hdi_block_at(&b, i, q);
+                hdi_entry_times(width, l, s + width * (q - k), t);
+                for (e = 0; e < width; e++) x[e] -= t[e];
+            }
+        }
     }
     return 1;
 }
@@ -10235,25 +10165,16 @@ static void hdi_front_advance(hdi_front *w) {
 
 /* The block of pivots, and rows with them. S gets its D L'. 0: a pivot cannot be divided by. */
 static int hdi_front_eliminate(const hdi_front *w, hdi_pivots *note) {
-    const hdi_kernels *o = w->f->ops;
-    const int64_t end = hdi_front_reach(w), width = w->f->width;
-    const hdi_block own = hdi_front_block(w, w->k0 / HDI_PANEL);
+    const int64_t end = hdi_front_reach(w), nr = w->f->ops->nr;
     double *s = w->S;
-    int64_t k;
-    for (k = w->k0; k < w->k1; k += o->nr, s += width * o->nr * w->k1) {
-        hdi_eliminate g;
-        g.nc = (int32_t)hdi_least(w->k1 - k, o->nr);
-        g.n = (int32_t)hdi_least(end - k - g.nc, o->mr - o->nr);
-        hdi_front_slice(w, k, g.nc, s);
-        hdi_front_before(w, k, end, k, g.nc, s);
-        g.x = hdi_block_at(&own, k, own.begin);
-        g.x_col = own.ld;
-        g.before = k - own.begin;
-        g.s = s + width * o->nr * own.begin;
-        g.dinv = w->dinv + width * k;
-        o->eliminate(&g);
-        if (!hdi_front_note(w, k, g.nc, note)) return 0;
-        hdi_front_solve(w, k + g.nc + g.n, end, k, g.nc, s);
+    int64_t k, n;
+    for (k = w->k0; k < w->k1; k += nr, s += w->f->width * nr * w->k1) {
+        n = hdi_least(w->k1 - k, nr);
+        hdi_front_slice(w, k, n, s);
+        hdi_front_before(w, k, k + n, k, n, s, 1);
+        if (!hdi_front_triangle(w, k, n, s, note)) return 0;
+        hdi_front_before(w, k + n, end, k, n, s, 0);
+        hdi_front_solve(w, k + n, end, k, n, s);
     }
     return 1;
 }
@@ -10373,7 +10294,7 @@ static int hdi_factor_next(hdi_front *w, const void *arg) {
 /* Rows [r0,r1) of the columns of a block, and the next pivots. */
 static int hdi_front_columns(const hdi_front *w, int64_t r0, int64_t r1, hdi_pivots *note) {
     hdi_front next = *w;
-    hdi_front_before(w, r0, r1, w->k0, w->k1 - w->k0, w->S);
+    hdi_front_before(w, r0, r1, w->k0, w->k1 - w->k0, w->S, 0);
     hdi_front_solve(w, r0, r1, w->k0, w->k1 - w->k0, w->S);
     if (r0 != w->k1 || w->k1 == w->p) return 1;
     hdi_front_advance(&next);
@@ -10411,21 +10332,22 @@ static void hdi_factor_free(hdi_factor *f) {
 
 /* A factor of the given width with the arrays that factoring and refactoring need. With a host it is
  * another one like that, with its own numbers but the host's room to work in: neither is factorised or
- * inverted while the other one is, and the host lives longer. */
+ * inverted while the other one is, and the host lives longer. The first one is its own host. */
 static void hdi_factor_take(hdi_factor *f, const hdi_factor *host, const hdi_symbolic *sym, int32_t width,
                             hdi_scope *s) {
     const uint64_t n_chunks = (uint64_t)(sym->n_top ? sym->largest_front / HDI_FRONT_CHUNK + 1 : 0);
     const uint64_t n_parts = (uint64_t)(sym->n_tasks > 0 ? sym->n_tasks : 1), w = (uint64_t)width;
     const uint64_t tops = sym->n_top > 0 ? n_chunks > 0 ? 2 : 1 : 0;
     const int64_t entries = sym->panel[sym->n_super];
-    if (host) *f = *host;
+    const int guest = host && host != f;
+    if (guest) *f = *host;
     else memset(f, 0, sizeof *f);
     f->ready = 0;
     f->panel = HDI_TAKE(s, double, ((uint64_t)entries + HDI_TILE_COLS) * w);
     f->dinv = HDI_TAKE(s, double, (uint64_t)sym->n * w);
     /* kernels read a few entries more than they use */
     if (f->panel) hdi_clear(f->panel + width * entries, width * HDI_TILE_COLS);
-    if (host) return;
+    if (guest) return;
     f->sym = sym;
     f->width = width;
     f->scratch_size = hdi_front_scratch(sym->task_pivots, sym->task_update, width);
@@ -10442,7 +10364,7 @@ static void hdi_factor_take(hdi_factor *f, const hdi_factor *host, const hdi_sym
 }
 
 /* The same, to keep. */
-static hd_status hdi_factor_room(hdi_factor *f, const hdi_factor *host, const hdi_symbolic *sym,
+static hd_status hdi_factor_make(hdi_factor *f, const hdi_factor *host, const hdi_symbolic *sym,
                                  int32_t width, hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
     hdi_factor_take(f, host, sym, width, &s);
@@ -10450,17 +10372,6 @@ static hd_status hdi_factor_room(hdi_factor *f, const hdi_factor *host, const hd
     memcpy(f->block, s.block, sizeof f->block);
     if (e->status < 0) hdi_factor_free(f);
     return e->status;
-}
-
-static hd_status hdi_factor_make(hdi_factor *f, const hdi_symbolic *sym, int32_t width, hd_context *ctx,
-                                 hd_error *e) {
-    return hdi_factor_room(f, NULL, sym, width, ctx, e);
-}
-
-/* Pack i of several that are factorised in turn: those after the first are its guests. */
-static hd_status hdi_factor_make_pack(hdi_factor *pack, int32_t i, const hdi_symbolic *sym, hd_context *ctx,
-                                      hd_error *e) {
-    return hdi_factor_room(pack + i, i > 0 ? pack : NULL, sym, HDI_PACK, ctx, e);
 }
 
 /* The bytes of a factor, or of a guest of another one. */
@@ -10501,20 +10412,14 @@ static hd_status hdi_factor_collect(hdi_factor *f, int32_t n_parts, hd_error *e)
 }
 
 static hd_status hdi_factor_run(hdi_factor *f, const hdi_values *values, hd_error *e) {
+    static const hdi_pass_kind hdi_factoring = {"factor", hdi_factor_open, hdi_factor_next, hdi_factor_part,
+                                                HDI_FRONT_SHARED, 0};
     const int32_t n_parts = f->sym->n_tasks + 1;
-    hdi_pass p;
     int32_t i;
-    memset(&p, 0, sizeof p);
-    p.sym = f->sym;
-    p.arg = f;
-    p.open = hdi_factor_open;
-    p.next = hdi_factor_next;
-    p.run = hdi_factor_part;
-    p.least = HDI_FRONT_SHARED;
     f->ready = 0;
     f->values = values;
     for (i = 0; i < n_parts; i++) hdi_pivots_clear(f->pivots + i);
-    hdi_pass_run(&p, f->ctx, "factor", e);
+    hdi_pass_run(&hdi_factoring, f->sym, f, f->ctx, e);
     f->values = NULL;
     f->ready = hdi_factor_collect(f, n_parts, e) >= 0;
     return e->status;
@@ -10938,7 +10843,7 @@ static hd_status hdi_ldl_factor_one(hd_ldl *f, hdi_factor *of, int32_t i, int32_
 static hd_status hdi_ldl_make(hd_ldl *f, int32_t k, hd_error *e) {
     const int32_t want = k / HDI_PACK_LANES + (k % HDI_PACK_LANES > 0);
     hdi_factor *pack;
-    if (k == 0 && !f->real.ctx) return hdi_factor_make(&f->real, &f->sym, 1, f->ctx, e);
+    if (k == 0 && !f->real.ctx) return hdi_factor_make(&f->real, NULL, &f->sym, 1, f->ctx, e);
     if (f->n_packs >= want) return HD_OK;
     pack = (hdi_factor *)hdi_alloc_zero(f->ctx, (uint64_t)want, sizeof *pack, e);
     if (!pack) return e->status;
@@ -10946,7 +10851,8 @@ static hd_status hdi_ldl_make(hd_ldl *f, int32_t k, hd_error *e) {
     hdi_free(f->ctx, f->pack);
     f->pack = pack;
     for (; f->n_packs < want; f->n_packs++)
-        if (hdi_factor_make_pack(f->pack, f->n_packs, &f->sym, f->ctx, e) < 0) return e->status;
+        if (hdi_factor_make(f->pack + f->n_packs, f->pack, &f->sym, HDI_PACK, f->ctx, e) < 0)
+            return e->status;
     return HD_OK;
 }
 
@@ -11245,8 +11151,9 @@ static void hdi_inverse_m(const hdi_front *w, int64_t r0, int64_t r1, double *bu
     }
 }
 
-/* Rows [r0,r1) of Z21 = -Z22 M. */
-static void hdi_inverse_below(const hdi_front *w, int64_t r0, int64_t r1, double *buffer) {
+/* Rows [r0,r1) of the block's columns of Z, less the product of these rows, in the columns after the block,
+ * and M. Below the block this is Z21 = -Z22 M; then, in it, Z11 -= Z21' M. */
+static void hdi_inverse_rows(const hdi_front *w, int64_t r0, int64_t r1, double *buffer) {
     const hdi_kernels *o = w->f->ops;
     const hdi_block z = hdi_inverse_block(w, w->z);
     const int64_t rows = hdi_inverse_height(w->f->width), depth = hdi_inverse_depth(w->f->width);
@@ -11257,39 +11164,14 @@ static void hdi_inverse_below(const hdi_front *w, int64_t r0, int64_t r1, double
         g.c = hdi_block_at(&z, r, w->k0);
         g.c_col = z.ld;
         g.a = buffer;
-        g.cols = w->k1 - w->k0;
+        g.lower = r < w->k1;
+        g.first = r - w->k0;
+        g.cols = g.lower ? g.first + g.n : w->k1 - w->k0;
         for (j = w->k1; j < w->m; j += g.depth) {
             g.depth = hdi_least(w->m - j, depth);
-            g.store = j == w->k1;
+            g.store = !g.lower && j == w->k1;
             g.b = w->M + w->f->width * o->nr * (j - w->k1);
             hdi_inverse_gather(w, r, r + g.n, j, j + g.depth, g.n, buffer);
-            o->multiply(&g);
-        }
-    }
-}
-
-/* Rows [r0,r1) of Z11 -= Z21' M, counted from the block's first pivot. */
-static void hdi_inverse_corner(const hdi_front *w, int64_t r0, int64_t r1, double *buffer) {
-    const hdi_kernels *o = w->f->ops;
-    const hdi_block z = hdi_inverse_block(w, w->z);
-    const int64_t rows = hdi_inverse_height(w->f->width), depth = hdi_inverse_depth(w->f->width);
-    int64_t r, i, j;
-    for (r = r0; r < r1; r += rows) {
-        hdi_product g = hdi_inverse_product(w, NULL, o->nr * (w->m - w->k1), 0);
-        g.n = g.a_col = hdi_least(rows, r1 - r);
-        g.c = hdi_block_at(&z, w->k0 + r, w->k0);
-        g.c_col = z.ld;
-        g.a = buffer;
-        g.cols = r + g.n;
-        g.first = r;
-        g.lower = 1;
-        g.store = 0;
-        for (j = w->k1; j < w->m; j += g.depth) {
-            g.depth = hdi_least(w->m - j, depth);
-            g.b = w->M + w->f->width * o->nr * (j - w->k1);
-            for (i = 0; i < g.n; i++)
-                hdi_entries_copy(w->f->width, buffer + w->f->width * i, g.n,
-                                 hdi_block_at(&z, j, w->k0 + r + i), 1, g.depth);
             o->multiply(&g);
         }
     }
@@ -11652,7 +11534,7 @@ static int hdi_inverse_next(hdi_front *w, const void *arg) {
     } else if (w->stage <= HDI_INVERSE_M) {
         hdi_front_set(w, w->stage + 1, w->k1, w->m, HDI_INV_CHUNK);
     } else if (w->stage == HDI_INVERSE_BELOW) {
-        hdi_front_set(w, HDI_INVERSE_CORNER, 0, w->m > w->k1 ? w->k1 - w->k0 : 0, HDI_TILE_ROWS);
+        hdi_front_set(w, HDI_INVERSE_CORNER, w->k0, w->m > w->k1 ? w->k1 : w->k0, HDI_TILE_ROWS);
     } else if (w->stage == HDI_INVERSE_CORNER) {
         hdi_front_set(w, HDI_INVERSE_EMIT, 0, 1, 1);
     } else if (from < blocks) {
@@ -11672,8 +11554,7 @@ static int hdi_inverse_part(const void *arg, const hdi_front *w, int64_t r0, int
     int32_t k = s->kid_ptr[w->v];
     if (w->stage == HDI_INVERSE_PIVOTS) hdi_inverse_pivots(w);
     else if (w->stage == HDI_INVERSE_M) hdi_inverse_m(w, r0, r1, buffer);
-    else if (w->stage == HDI_INVERSE_BELOW) hdi_inverse_below(w, r0, r1, buffer);
-    else if (w->stage == HDI_INVERSE_CORNER) hdi_inverse_corner(w, r0, r1, buffer);
+    else if (w->stage <= HDI_INVERSE_CORNER) hdi_inverse_rows(w, r0, r1, buffer);
     else if (w->stage == HDI_INVERSE_FORMS) for (; r0 < r1; r0++) hdi_form_run(z, w, r0);
     else if (w->stage == HDI_INVERSE_EMIT && z->wanted == HDI_WANT_FORMS) hdi_form_near(z, w);
     else if (w->stage == HDI_INVERSE_EMIT) hdi_inverse_emit(z, w);
@@ -11720,17 +11601,10 @@ static uint64_t hdi_inverse_bytes(const hdi_symbolic *s, int32_t width, int fact
 /* Inverts the factor; coef, n_sets, wanted (with forms, its x), values and stride are set. Uses the space of
  * the factor's update matrices. */
 static hd_status hdi_inverse_run(hdi_inverse *z, hdi_factor *f, hd_error *e) {
-    hdi_pass p;
-    memset(&p, 0, sizeof p);
+    static const hdi_pass_kind hdi_inverting = {"invert", hdi_inverse_open, hdi_inverse_next,
+                                                hdi_inverse_part, 2 * (int)HDI_INV_CHUNK, 1};
     z->f = f;
-    p.sym = f->sym;
-    p.arg = z;
-    p.open = hdi_inverse_open;
-    p.next = hdi_inverse_next;
-    p.run = hdi_inverse_part;
-    p.least = 2 * (int64_t)HDI_INV_CHUNK;
-    p.down = 1;
-    hdi_pass_run(&p, f->ctx, "invert", e);
+    hdi_pass_run(&hdi_inverting, f->sym, z, f->ctx, e);
     return e->status;
 }
 
@@ -14527,7 +14401,7 @@ static hd_status hdi_elim_real(hdi_elim *m, hdi_factor *f, double t, double thet
     const hd_c64 real = hdi_c(theta, 0);
     hdi_values v = hdi_elim_values(m, t);
     v.theta[0] = hdi_cscale(m->scale, real);
-    if (!f->ctx && hdi_factor_make(f, &m->sym, 1, m->ctx, e) < 0) return e->status;
+    if (!f->ctx && hdi_factor_make(f, NULL, &m->sym, 1, m->ctx, e) < 0) return e->status;
     f->largest_entry = hdi_elim_diagonal(m->lap, t, &real, 1);
     return hdi_factor_run(f, &v, e);
 }
@@ -14572,7 +14446,8 @@ static hd_status hdi_elim_poles(hdi_elim *m, const hd_rational *set, double t, h
     m->lone = hdi_set_lone(set) ? 0 : -1;
     m->n_used = hdi_set_packs(set);
     for (; m->n_packs < m->n_used; m->n_packs++)
-        if (hdi_factor_make_pack(m->pack, m->n_packs, &m->sym, m->ctx, e) < 0) return e->status;
+        if (hdi_factor_make(m->pack + m->n_packs, m->pack, &m->sym, HDI_PACK, m->ctx, e) < 0)
+            return e->status;
     if (m->lone >= 0 && hdi_elim_real(m, &m->real, t, set->theta[0].re, e) < 0) return e->status;
     for (i = 0; i < m->n_used; i++) {
         hd_c64 theta[4];
@@ -14875,7 +14750,7 @@ static hd_status hdi_lap_ratio(hd_laplacian *lap, hd_error *e) {
     memset(&f, 0, sizeof f);
     lap->b_ratio = dominant;
     if (e->status >= 0 && hdi_symbolic_order(&sym, &lap->L, &order, lap->context, e) >= 0 &&
-        hdi_factor_make(&f, &sym, 1, lap->context, e) >= 0) {
+        hdi_factor_make(&f, NULL, &sym, 1, lap->context, e) >= 0) {
         slack = DBL_EPSILON * ((double)sym.nnz + 2.0 * lap->n_active);
         for (; e->status >= 0 && sigma >= hdi_max(dominant, HDI_RATIO_LEAST); sigma /= 2) {
             if (hdi_lap_exceeds(lap, sigma + slack, value, &f, e)) {
@@ -16546,7 +16421,7 @@ static hd_status hdi_ground_make(hdi_elim *m, hdi_ground *g, hd_error *e) {
     if (e->status >= 0) g->held = HDI_NEW(m->ctx, char, n, e);
     if (g->held) g->diag = HDI_NEW(m->ctx, double, 3 * n, e);
     if (g->diag) g->trace = HDI_NEW(m->ctx, double, 2 * n_comp, e);
-    if (g->trace && hdi_factor_make(&g->factor, &m->sym, 1, m->ctx, e) >= 0) {
+    if (g->trace && hdi_factor_make(&g->factor, NULL, &m->sym, 1, m->ctx, e) >= 0) {
         memset(g->trace, 0, n_comp * sizeof *g->trace);
         g->mean_off = g->trace + n_comp;
         g->mean = g->diag + n;
@@ -16595,7 +16470,7 @@ static hd_status hdi_ground_forms(hdi_elim *m, hdi_ground *g, hd_error *e) {
     val = HDI_TAKE(&s, hd_c64, lap->L.nnz);
     work = HDI_TAKE(&s, double, hdi_sweep_size(&m->sym, 1, 1));
     b = HDI_TAKE(&s, double, 2 * (uint64_t)lap->n_active);
-    if (e->status >= 0 && hdi_factor_make(&pack, &m->sym, HDI_PACK, m->ctx, e) >= 0) {
+    if (e->status >= 0 && hdi_factor_make(&pack, NULL, &m->sym, HDI_PACK, m->ctx, e) >= 0) {
         hdi_ground_values(m, g, step, NULL, val);
         memset(&v, 0, sizeof v);
         v.z[0] = v.z[1] = v.z[2] = v.z[3] = val;
@@ -23940,7 +23815,7 @@ static hd_status hdi_geo_factor(hd_geodesic *g, hdi_factor *f, const hd_laplacia
     hdi_values v;
     memset(&v, 0, sizeof v);
     v.real = val;
-    if (hdi_factor_make(f, &g->sym, 1, g->ctx, e) < 0) return e->status;
+    if (hdi_factor_make(f, NULL, &g->sym, 1, g->ctx, e) < 0) return e->status;
     if (hdi_factor_run(f, &v, e) < 0) {
         if (e->row >= 0) e->vertex = lap->vertex[e->row];
         e->row = -1;
