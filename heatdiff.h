@@ -2985,9 +2985,9 @@ static int hdi_tridiag_eigen(double *d, double *e, double *z, int32_t m, int32_t
 static int64_t hdi_triangle(int64_t u) { return u * (u + 1) / 2; }
 
 /* ==== [07] kernels ====
- * The dense arithmetic of a sparse factorisation, written once: C -= A B, a triangular solve, the elimination
- * of a few pivots, and two ways to copy. A matrix has entries of `width` doubles: a real number, or a pack
- * of four complex ones. May call [06]. The room has three parts:
+ * The dense arithmetic of a sparse factorisation, written once: C -= A B, a triangular solve, and two ways to
+ * copy. A matrix has entries of `width` doubles: a real number, or a pack of four complex ones. May call
+ * [06]. The room has three parts:
  *   what kernels are given, and the table through which the rest of the file calls them
  *   the vectors of each instruction set, a dozen short functions each
  *   the kernels themselves, which are read once for each set, and at last the choice of the set
@@ -3399,12 +3399,9 @@ HDI_PART hdi_num HDI_OF(left_begin)(const int pack, hdi_num c, hdi_num s) {
     return pack && HDI_WIDTH == 8 ? s : HDI_OF(num_minus)(c, s);
 }
 HDI_PART void HDI_OF(left_take)(const int pack, hdi_num *s, hdi_num a, hdi_num f) {
-    if (pack && HDI_WIDTH == 8) {
-        HDI_OF(sum_add)(1, s, a, f);
-        return;
-    }
-    s->re = HDI_OF(fnma)(a.re, f.re, s->re);
-    if (!pack) return;
+    if (pack && HDI_WIDTH == 8) HDI_OF(sum_add)(1, s, a, f);
+    else s->re = HDI_OF(fnma)(a.re, f.re, s->re);
+    if (!pack || HDI_WIDTH == 8) return;
     s->re = HDI_OF(fma)(a.im, f.im, s->re);
     s->im = HDI_OF(fnma)(a.re, f.im, HDI_OF(fnma)(a.im, f.re, s->im));
 }
@@ -7898,14 +7895,11 @@ static void hdi_amd_restore(hdi_amd *g, hdi_amd_node *me) {
 
 /* The marks of the next step must be above all old ones. Before the numbers run out, all marks begin anew. */
 static void hdi_amd_next_flag(hdi_amd *g, int32_t step) {
+    const int anew = g->flag >= INT32_MAX - 2 * step - g->n;
     int32_t i;
-    if (g->flag < INT32_MAX - 2 * step - g->n) {
-        g->flag += step;
-        return;
-    }
-    for (i = 0; i < g->n; i++)
+    for (i = 0; anew && i < g->n; i++)
         if (g->v[i].mark) g->v[i].mark = 1;
-    g->flag = 2;
+    g->flag = anew ? 2 : g->flag + step;
 }
 
 /* For audits. The variables that are left have all the weight and are in the lists of degrees, elements weigh
@@ -8678,9 +8672,8 @@ static void hdi_nd_flow_augment(hdi_nd_flow *f, int32_t state) {
     int32_t up;
     for (; (up = f->up[state]) >= 0; state = up) {
         const int32_t a = up >> 1, b = state >> 1;
-        if (!(up & 1)) continue;
-        if (a == b) f->prev[a] = HDI_ND_NONE;
-        else f->prev[b] = a;
+        if (up & 1 && a == b) f->prev[a] = HDI_ND_NONE;
+        else if (up & 1) f->prev[b] = a;
     }
     f->prev[state >> 1] = -1;
 }
@@ -10125,7 +10118,8 @@ static int hdi_front_note(const hdi_front *w, int64_t k, const double *d, hdi_pi
     return 1;
 }
 
-/* LDL' of pivots [k,k+n), n <= nr, in their own rows. The slice s gets their D L'. */
+/* LDL' of pivots [k,k+n), n <= nr, in their own rows. The slice s gets their D L'. One pivot waits for the
+ * other: instruction sets gain nothing here. */
 static int hdi_front_triangle(const hdi_front *w, int64_t k, int64_t n, double *s, hdi_pivots *note) {
     const int32_t width = w->f->width;
     const hdi_block b = hdi_front_block(w, k / HDI_PANEL);
@@ -10568,19 +10562,15 @@ static int hdi_sweep_clear(const hdi_sweep *z, int32_t v, double *y) {
 
 /* y = D^-1 y */
 static void hdi_sweep_divide(const hdi_sweep *z, int32_t v, double *y) {
-    const int64_t p = hdi_front_pivots(z->f->sym, v), width = z->f->width;
-    const double *d = z->f->dinv + width * z->f->sym->super[v];
+    const int32_t p = hdi_front_pivots(z->f->sym, v), width = z->f->width;
+    const double *d = z->f->dinv + (int64_t)width * z->f->sym->super[v];
     double t[HDI_PACK];
-    int64_t i;
-    int32_t r;
-    for (i = 0; i < p && width == 1; i++) {
-        const double inverse = d[i];
-        if (z->k == 1) *y++ *= inverse;
-        else for (r = 0; r < 8; r++) *y++ *= inverse;
-    }
-    for (i = 0; i < p * z->k && width > 1; i++, y += HDI_PACK) {
-        memcpy(t, y, sizeof t);
-        hdi_pack_times(t, d + HDI_PACK * (i / z->k), y);
+    int32_t i, r;
+    for (i = 0; i < p; i++, d += width) {
+        for (r = 0; r < z->k; r++, y += width) {
+            hdi_entry_copy(width, t, y);
+            hdi_entry_times(width, t, d, y);
+        }
     }
 }
 
@@ -11049,30 +11039,20 @@ static const double *hdi_inverse_at(const hdi_front *w, int64_t i, int64_t j) {
     return hdi_inverse_column(w, j) + w->f->width * (i - j);
 }
 
-/* to = from, n entries; from_step and to_step from entry to entry. */
-static void hdi_entries_copy(int32_t width, double *to, int64_t to_step, const double *from,
-                             int64_t from_step, int64_t n) {
-    int64_t i;
-    if (width == 1) for (i = 0; i < n; i++) to[i * to_step] = from[i * from_step];
-    else for (i = 0; i < n; i++)
-        hdi_entry_copy(HDI_PACK, to + HDI_PACK * i * to_step, from + HDI_PACK * i * from_step);
-}
-
 /* Rows [i0,i1), columns [j0,j1) of the symmetric Z, by columns of ld. */
 static void hdi_inverse_gather(const hdi_front *w, int64_t i0, int64_t i1, int64_t j0, int64_t j1,
                                int64_t ld, double *to) {
     const int32_t width = w->f->width;
-    int64_t i, j;
+    int64_t i, j, first;
     for (j = j0; j < j1 && j < i1; j++) {
-        const int64_t first = hdi_most(i0, j);
+        first = hdi_most(i0, j);
         memcpy(to + width * ((j - j0) * ld + first - i0), hdi_inverse_at(w, first, j),
                (size_t)(width * (i1 - first)) * sizeof *to);
     }
     for (i = i0; i < i1; i++) {                  /* above the diagonal: entry (j,i) */
-        const int64_t first = hdi_most(j0, i + 1);
-        if (first < j1)
-            hdi_entries_copy(width, to + width * ((first - j0) * ld + i - i0), ld,
-                             hdi_inverse_at(w, first, i), 1, j1 - first);
+        const double *from = hdi_inverse_column(w, i) - width * i;
+        for (j = hdi_most(j0, i + 1); j < j1; j++)
+            hdi_entry_copy(width, to + width * ((j - j0) * ld + i - i0), from + width * j);
     }
 }
 
@@ -11186,9 +11166,7 @@ static void hdi_inverse_child(const hdi_front *w, int32_t c, int64_t r0, int64_t
     int64_t a, b;
     for (b = r0; b < r1; b++) {
         const double *from = hdi_inverse_column(w, rel[b]) - width * rel[b];
-        if (width == 1) for (a = b; a < u; a++) *to++ = from[rel[a]];
-        else for (a = b; a < u; a++, to += HDI_PACK)
-            memcpy(to, from + HDI_PACK * (int64_t)rel[a], HDI_PACK * sizeof *to);
+        for (a = b; a < u; a++, to += width) hdi_entry_copy(width, to, from + width * (int64_t)rel[a]);
     }
 }
 
@@ -11201,12 +11179,11 @@ typedef enum hdi_inverse_stage {
 
 /* sum_c coef[c] z_c for every set, to place `at`. */
 static void hdi_inverse_put(const hdi_inverse *z, const double *from, int64_t at) {
-    const int32_t width = z->f->width;
     int32_t q, c;
     for (q = 0; q < z->n_sets; q++) {
-        const double *coef = z->coef + q * width;
+        const double *coef = z->coef + q * z->f->width;
         double sum = 0;
-        for (c = 0; c < width; c++) sum += coef[c] * from[c];
+        for (c = 0; c < z->f->width; c++) sum += coef[c] * from[c];
         z->values[q * z->stride + at] += sum;
     }
 }
@@ -11295,14 +11272,10 @@ static void hdi_form_add(int32_t width, int32_t k, const double *a, const double
                          double *sum) {
     double ab[HDI_PACK], abf[HDI_PACK];
     int32_t c, q;
-    if (width == 1) {
-        for (c = 0; c < k; c++) sum[c] += a[c] * b[c] * *f;
-        return;
-    }
-    for (c = 0; c < k; c++, a += HDI_PACK, b += HDI_PACK, sum += HDI_PACK) {
-        hdi_pack_times(a, b, ab);
-        hdi_pack_times(ab, f, abf);
-        for (q = 0; q < HDI_PACK; q++) sum[q] += abf[q];
+    for (c = 0; c < k; c++, a += width, b += width, sum += width) {
+        hdi_entry_times(width, a, b, ab);
+        hdi_entry_times(width, ab, f, abf);
+        for (q = 0; q < width; q++) sum[q] += abf[q];
     }
 }
 
