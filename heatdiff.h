@@ -18199,14 +18199,9 @@ static void hdi_heat_drop(hd_heat *heat) {
     hdi_elim_drop(&heat->few);
 }
 
-/* Frees what is made again when it is needed, but the analyses and the copy of the pair to iterate on. pairs:
- * eigenpairs, too. */
-static void hdi_heat_shed(hd_heat *heat, int pairs) {
-    int32_t i;
-    for (i = 0; i < heat->n_lanes; i++) hdi_lane_free(heat->lane + i, heat->ctx);
-    hdi_free(heat->ctx, heat->lane);
-    heat->lane = NULL;
-    heat->n_lanes = 0;
+/* Frees what is made again when it is needed, but the analyses and the copy of the pair to iterate on. */
+static void hdi_heat_shed(hd_heat *heat) {
+    hdi_heat_free_lanes(heat);
     hdi_free(heat->ctx, heat->batch_room);
     heat->batch_room = NULL;
     heat->batch_doubles = 0;
@@ -18214,13 +18209,13 @@ static void hdi_heat_shed(hd_heat *heat, int pairs) {
     hdi_free(heat->ctx, heat->krylov);
     heat->krylov = NULL;
     if (HDI_HAS_DIAGONAL) hdi_ground_free(&heat->ground, heat->ctx);
-    if (HDI_HAS_MODES && pairs) hdi_modes_free(&heat->modes, heat->ctx);
+    if (HDI_HAS_MODES) hdi_modes_free(&heat->modes, heat->ctx);
     hdi_heat_drop(heat);
 }
 
 /* The same with the analyses. */
 static void hdi_heat_free_factors(hd_heat *heat) {
-    hdi_heat_shed(heat, 1);
+    hdi_heat_shed(heat);
     hdi_elim_free(&heat->elim);
     hdi_elim_free(&heat->few);
 }
@@ -20716,7 +20711,7 @@ static int hdi_heat_retreat(hdi_heat_call *h) {
     } else if (HDI_HAS_POLE_FACTORS &&
                (automatic ? failed && h->method == HD_METHOD_ITERATIVE && !heat->iterations_asked
                           : over && h->method == HD_METHOD_DIRECT)) {
-        hdi_heat_shed(heat, 1);
+        hdi_heat_shed(heat);
         hdi_heat_free_iterative(heat);
         heat->spare = HDI_SPARE_POLES;
     } else {
@@ -20739,7 +20734,7 @@ static hd_status hdi_heat_sparing(hdi_heat_call *h, hdi_way way, void *what) {
     while (h->s.n > before.s.n) hdi_free(heat->ctx, h->s.block[--h->s.n]);
     *h = before;
     *h->rep = rep;                               /* with its error, which is none */
-    hdi_heat_shed(heat, 1);
+    hdi_heat_shed(heat);
     heat->spare = HDI_SPARE_OPTIONS;
     (void)way(h, what);
     heat->spare = 0;
