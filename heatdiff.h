@@ -13635,10 +13635,11 @@ static hd_status hdi_rational_fit(hd_rational *out, int32_t count, const hd_filt
  * and |r|_(B^-1)^2 <= |r|_(D^-1)^2 / b_ratio, D = diag(B). At vertex v, |e_v| <= |e|_B / sqrt(b_ratio D_v),
  * and |e_v| <= sqrt(g_v) |e|_M for g = diag(M^-1). The second is much smaller where heat has spread far.
  * How an error_bound comes about, from the end: hdi_ledger_close divides the parts by the largest value;
- * hdi_heat_judge makes those of values from those of a lane, by hdi_lane_bound; and a lane has them in the
- * norm of B from its engine. With poles these are hdi_lane_residual and hdi_rational_bound; of krylov
- * hdi_ritz_bound (solver) and hdi_krylov_rounding, see hdi_krylov_answer; of Lanczos the like in
- * hdi_lanczos_run. hdi_conserve_off adds what the means are off by. */
+ * hdi_heat_judge makes those of values from those of a lane, by hdi_lane_bound; hdi_heat_ledger and
+ * hdi_heat_note say how each is known; and a lane has them in the norm of B from its engine. With poles
+ * these are hdi_lane_residual and hdi_rational_bound; of krylov hdi_ritz_bound (solver) and
+ * hdi_krylov_rounding, see hdi_krylov_answer; of Lanczos the like in hdi_lanczos_run. hdi_conserve_off adds
+ * what the means are off by. */
 
 /* Parts of an error bound, in one of the norms or of values. */
 typedef struct hdi_parts { double rational, solver, rounding; } hdi_parts;
@@ -15731,8 +15732,8 @@ static double hdi_ritz_size(const hdi_ritz *s, double tau) {
 
 /* The error bound at tau = t/g, relative to |f|_B. The error is beta times sum_j x_j y_j F[mu_j, S] v_(m+1),
  * with mu_j the eigenvalues of T, x and y the first and last rows of its eigenvectors, and F[.,.] the divided
- * difference. S has its eigenvalues in (0, 1], where the sum is a smooth function of them, so that its
- * maximum on enough points is the bound. */
+ * difference. S has its eigenvalues in (0, 1], where the sum is a smooth function of them: its maximum on
+ * enough points, times HDI_KRYLOV_BETWEEN, is taken for the bound, which is estimated therefore. */
 static double hdi_ritz_bound(const hdi_ritz *s, double tau) {
     double f[HDI_KRYLOV_MAX], most = 0;
     int32_t i, k;
@@ -19117,17 +19118,17 @@ static void hdi_heat_task(void *arg, int64_t index, int32_t worker) {
     if (lane->status < 0) HDI_STORE(&h->stop, 1);
 }
 
-/* A new ledger for what the method computes. */
+/* A new ledger for what the method computes. Each lane says how its rounding is known. */
 static hdi_ledger hdi_heat_ledger(const hdi_heat_call *h) {
-    const int lanczos = h->solver == HD_SOLVER_LANCZOS, still = h->t == 0 || h->equal;
+    const int poles = h->solver != HD_SOLVER_LANCZOS;   /* which krylov is, too */
+    const int still = h->t == 0 || h->equal;
     const hd_rational *set = h->method == HD_METHOD_DIRECT ? &h->heat->elim.set : &h->heat->fam.set;
     const int itself = set->kind == HD_POLES_OWN && hdi_set_uniform(set) == 0;   /* bounds are for c itself */
-    const hd_evidence rational = still || lanczos || itself ? HD_EVIDENCE_NONE : hdi_set_evidence(set);
+    const hd_evidence rational = still || !poles || itself ? HD_EVIDENCE_NONE : hdi_set_evidence(set);
     const hd_evidence solver = still || h->method == HD_METHOD_DIRECT ? HD_EVIDENCE_NONE
                              : h->method == HD_METHOD_KRYLOV ? HD_EVIDENCE_ESTIMATED : HD_EVIDENCE_PROVEN;
-    if (h->by_pairs)
-        return hdi_ledger_begin(HD_EVIDENCE_PROVEN, HD_EVIDENCE_PROVEN, HD_EVIDENCE_ESTIMATED, 0);
-    return hdi_ledger_begin(rational, solver, HD_EVIDENCE_PROVEN, 0);
+    if (h->by_pairs) return hdi_ledger_begin(HD_EVIDENCE_PROVEN, HD_EVIDENCE_PROVEN, HD_EVIDENCE_NONE, 0);
+    return hdi_ledger_begin(rational, solver, HD_EVIDENCE_NONE, 0);
 }
 
 /* What the residuals of a column's systems make of its sum by the weights of set. Poles of times that share
