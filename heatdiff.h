@@ -12516,18 +12516,16 @@ static const double *hdi_rat_row(hd_pole_kind kind, int32_t degree) {
 }
 
 static hd_status hdi_rational_get(hd_rational *out, hd_pole_kind kind, int32_t degree, hd_error *e) {
+    const int uniform = kind == HD_POLES_UNIFORM;
     const double *row;
     int32_t i;
-    if (kind != HD_POLES_UNIFORM && kind != HD_POLES_KERNEL && kind != HD_POLES_DIAGONAL)
+    if (!uniform && kind != HD_POLES_KERNEL && kind != HD_POLES_DIAGONAL)
         return hdi_fail(e, HD_ERR_ARGUMENT, "pole set: the kind is uniform, kernel or diagonal");
-    if (kind == HD_POLES_UNIFORM && (degree < 1 || degree > HDI_RAT_UNIFORM_MAX))
-        return hdi_fail_row(e, HD_ERR_ARGUMENT, "pole set: uniform sets have degrees 1 to 14", -1, -1,
-                            degree);
     if (kind == HD_POLES_DIAGONAL && !HDI_HAS_DIAGONAL)
         return HDI_LEFT_OUT(e, DIAGONAL, "pole sets for diagonals");
-    if (kind != HD_POLES_UNIFORM && (degree < HDI_RAT_KERNEL_MIN || degree > HDI_RAT_KERNEL_MAX))
-        return hdi_fail_row(e, HD_ERR_ARGUMENT, "pole set: kernel and diagonal sets have degrees 2 to 14", -1,
-                            -1, degree);
+    if (degree < (uniform ? 1 : HDI_RAT_KERNEL_MIN) || degree > HDI_RAT_KERNEL_MAX)
+        return hdi_fail_row(e, HD_ERR_ARGUMENT, uniform ? "pole set: uniform sets have degrees 1 to 14"
+                            : "pole set: kernel and diagonal sets have degrees 2 to 14", -1, -1, degree);
     row = hdi_rat_row(kind, degree);
     memset(out, 0, sizeof *out);
     out->kind = kind;
@@ -13702,13 +13700,12 @@ static void hdi_ledger_join(hdi_ledger *l, const hdi_ledger *other) {
 
 /* Notes a value and the bound on its error. */
 static void hdi_ledger_note(hdi_ledger *l, double value, hdi_parts off) {
-    const double size = fabs(value);
     hdi_ledger one = {{hdi_bound_of(off.rational), hdi_bound_of(off.solver), hdi_bound_of(off.rounding)},
-                      {0, 0, 0}, size, size > 0 ? size : HUGE_VAL, -1, 1, !hdi_finite(value)};
-    if (l->relative >= 0) {                      /* to the exact value, which is at least |value| - all */
-        const double all = hdi_parts_sum(&one.off);
-        one.relative = all == 0 ? 0 : hdi_quotient(all, size - all);
-    }
+                      {0, 0, 0}, fabs(value), fabs(value) > 0 ? fabs(value) : HUGE_VAL, -1, 1,
+                      !hdi_finite(value)};
+    const double all = hdi_parts_sum(&one.off);
+    /* to the exact value, which is at least |value| - all */
+    if (l->relative >= 0) one.relative = all == 0 ? 0 : hdi_quotient(all, one.largest - all);
     hdi_ledger_join(l, &one);
 }
 
@@ -16550,7 +16547,7 @@ static uint64_t hdi_ground_room(const hdi_elim *m) {
 enum {
     HDI_SPEC_TILE = 128,             /* rows that blocks go through together */
     HDI_SPEC_CHUNKS = 32,            /* parts of a sum over rows, whatever the number of threads */
-    HDI_SPEC_GROUP = 8,              /* blocks that a pass over others changes at a time */
+    HDI_SPEC_GROUP = 8,              /* blocks of vectors that are formed at a time */
     HDI_SPEC_MOST = 320,             /* columns of a basis */
     HDI_SPEC_SPARE = 112,            /* more than twice the pairs wanted, when these are few */
     HDI_SPEC_HALF = 64,              /* eigenvalues between the last one known and the next shift */
@@ -16811,18 +16808,6 @@ static void hdi_spec_project(const hdi_spec *s, double *const *v, int32_t n_v, d
 }
 
 /* ---- operators on blocks ---- */
-
-/* r = -(L - value B) x by numbers, and bx = B x. */
-static void hdi_spec_residual(const hdi_spec *s, const double *value, const double *x, double *bx,
-                              double *r) {
-    hdi_residual g = hdi_residual_open(s->lap, 1, x, 1, NULL);
-    int q;
-    g.real = 1;
-    g.r = r;
-    g.bx = bx;
-    for (q = 0; q < HDI_WIDE; q++) g.re[q] = -value[q];
-    hdi_residual_run(&g, s->ctx);
-}
 
 static void hdi_spec_mass(const hdi_spec *s, const double *x, double *y) {
     hdi_mass_apply(s->lap, HDI_WIDE, x, y, s->ctx);
@@ -17155,11 +17140,16 @@ static void hdi_spec_form(const hdi_spec *s, const int32_t *which, int32_t n, do
     hdi_spec_add(s, s->list + s->n_near, s->n_blocks + 1, x, n_w, s->h);
 }
 
-/* Residuals of the block x for eigenvalues of eight Ritz vectors; the largest, relative to its value. */
+/* Residuals -(L - value B) x of the block x for eigenvalues of eight Ritz vectors, into tmp, and their norms.
+ * Returns the largest, relative to its value. */
 static double hdi_spec_measure(hdi_spec *s, const double *value, const double *x, double *norm) {
+    hdi_residual g = hdi_residual_open(s->lap, 1, x, 1, NULL);
     double worst = 0;
     int r;
-    hdi_spec_residual(s, value, x, s->bx, s->tmp);
+    g.real = 1;
+    g.r = s->tmp;
+    for (r = 0; r < HDI_WIDE; r++) g.re[r] = -value[r];
+    hdi_residual_run(&g, s->ctx);
     hdi_wide_norms(s->tmp, s->m->weight, s->n, HDI_WIDE, norm);
     for (r = 0; r < HDI_WIDE; r++) worst = hdi_max(worst, norm[r] / hdi_max(fabs(value[r]), s->unit));
     return worst;
