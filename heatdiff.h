@@ -5748,28 +5748,22 @@ static void hdi_cover_push(hdi_cover *c, int32_t side) {
     c->stack = side;
 }
 
-static void hdi_unit3(const double *from, const double *to, double *out) {
-    double norm;
-    int k;
-    hdi_sub3(to, from, out);
-    norm = hdi_norm3(out);
-    for (k = 0; k < 3; k++) out[k] /= norm;
-}
-
 /* Sorts the n sides of an edge in list by the angles of their faces in space, from the first side's face on,
  * counterclockwise as seen against the direction from the smaller vertex to the larger one. */
 static void hdi_sort_around(const hdi_mesh *mesh, int32_t lo, int32_t hi, hdi_pair *list,
                             int64_t n) {
     const double *p = hdi_at3(mesh->xyz, lo), steps = 8796093022208.0;    /* 2^43 angles are told apart */
+    const double length = hdi_edge_length(mesh->xyz, lo, hi);
     double axis[3], first[3], up[3], u[3];
     int64_t k;
-    hdi_unit3(p, hdi_at3(mesh->xyz, hi), axis);
-    hdi_unit3(p, hdi_at3(mesh->xyz, mesh->tri[hdi_side_prev((int32_t)list[0].id)]), first);
+    hdi_sub3(hdi_at3(mesh->xyz, hi), p, axis);
+    hdi_sub3(hdi_at3(mesh->xyz, mesh->tri[hdi_side_prev((int32_t)list[0].id)]), p, first);
+    for (k = 0; k < 3; k++) axis[k] /= length;
     hdi_cross3(axis, first, up);
     hdi_cross3(up, axis, first);                 /* its part across the axis, as long as up */
     for (k = 0; k < n; k++) {
         double angle;
-        hdi_unit3(p, hdi_at3(mesh->xyz, mesh->tri[hdi_side_prev((int32_t)list[k].id)]), u);
+        hdi_sub3(hdi_at3(mesh->xyz, mesh->tri[hdi_side_prev((int32_t)list[k].id)]), p, u);
         angle = atan2(hdi_dot3(up, u), hdi_dot3(first, u));
         if (angle < 0) angle += HDI_TURN;
         list[k].key = (uint64_t)(hdi_min(angle / HDI_TURN, 1) * steps);
