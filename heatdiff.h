@@ -5106,12 +5106,12 @@ static HDI_INLINE uint64_t hdi_corner_key(const hdi_mesh *mesh, int64_t c) {
 static int hdi_corner_same(const hdi_mesh *mesh, int64_t c, int64_t d) {
     const int forward = mesh->tri[hdi_corner_after(mesh, c)] == mesh->tri[hdi_corner_after(mesh, d)];
     int64_t a = c, b = d;
-    do {
-        if (mesh->tri[a] != mesh->tri[b]) return 0;
+    while (mesh->tri[a] == mesh->tri[b]) {
         a = hdi_corner_after(mesh, a);
         b = forward ? hdi_corner_after(mesh, b) : hdi_corner_before(mesh, b);
-    } while (a != c && b != d);
-    return a == c && b == d;
+        if (a == c || b == d) return a == c && b == d;
+    }
+    return 0;
 }
 
 /* Of n faces with the same smallest vertex, known by their corners there, those get area 0 that have the
@@ -6599,13 +6599,12 @@ static hd_status hdi_lap_pattern(hd_laplacian *lap, const hdi_rows *x, int full,
 /* Values of the rows and what is known of them. area and h of intrinsic triangles are known. */
 static void hdi_lap_values(hd_laplacian *lap, hdi_rows *x) {
     const hdi_tally all = hdi_rows_run(x, lap, lap->context);
-    const hdi_mesh *mesh = &x->mesh;
     int32_t f;
     lap->conserves = 1;
     lap->mesh.n_negative_weights = all.n_negative;
-    if (!mesh->xyz && !mesh->len) return;
+    if (!x->mesh.xyz && !x->mesh.len) return;
     hdi_rows_report(x, all, &lap->mesh, &lap->h);
-    for (f = 0, lap->area = 0; f < mesh->m; f++) lap->area += mesh->area[f];
+    for (f = 0, lap->area = 0; f < x->mesh.m; f++) lap->area += x->mesh.area[f];
 }
 
 /* ---- meshes that move ---- */
@@ -6827,9 +6826,8 @@ static double hdi_b_norm2(const hd_laplacian *lap, const double *x, double *work
 static void hdi_component_sums(const hd_laplacian *lap, const double *weight, const double *x,
                                double *out) {
     int32_t i;
-    if (lap->n_components == 1) {
-        out[0] = weight ? hdi_dot(weight, x, lap->n_active) : 0;
-        for (i = 0; !weight && i < lap->n_active; i++) out[0] += x[i];
+    if (lap->n_components == 1 && weight) {
+        out[0] = hdi_dot(weight, x, lap->n_active);
         return;
     }
     memset(out, 0, (size_t)lap->n_components * sizeof *out);
@@ -7620,8 +7618,7 @@ static void hdi_lap_times(const hd_laplacian *lap, int32_t n_times, double *t) {
     double area = 0;
     int32_t q;
     for (q = 0; q < lap->n_active; q++) area += lap->mass[q];
-    /* B^-1 L tends to Laplacian/area */
-    if (lap->kind == HD_LAPLACIAN_EXP) area = lap->area * lap->area;
+    if (lap->kind == HD_LAPLACIAN_EXP) area = lap->area * lap->area;     /* B^-1 L tends to Laplacian/area */
     for (q = 0; q < n_times; q++)
         t[q] = area * HDI_TIMES_SHORTEST * pow(HDI_TIMES_LONGEST / HDI_TIMES_SHORTEST,
                                                n_times > 1 ? q / (double)(n_times - 1) : 0.5);
