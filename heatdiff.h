@@ -16200,16 +16200,15 @@ static double hdi_source_parts(const hd_sources *s, int64_t begin, int64_t n, co
     return size;
 }
 
-/* A source that is checked as weights of vertices. normal: of sum 1. They live in keep. */
+/* A source that is checked as weights of vertices, which have room in vertex and weight. normal: of sum 1. */
 static hd_status hdi_terms_make(hdi_terms *to, const hd_sources *s, int32_t k, const hd_laplacian *lap,
-                                int normal, hdi_scope *keep) {
+                                int normal, int32_t *vertex, double *weight, hdi_scope *in) {
     const int64_t begin = hdi_source_first(s, k), n = hdi_source_first(s, k + 1) - begin;
     const int32_t corners = hdi_source_corners(s), all = (int32_t)n * corners;
-    hdi_scope work = hdi_scope_begin(keep->ctx, keep->e);
+    hd_error *e = in->e;
+    hdi_scope work = hdi_scope_begin(in->ctx, e);
     hdi_pair *order = HDI_TAKE(&work, hdi_pair, all);
-    double *part = HDI_TAKE(&work, double, all), *weight = HDI_TAKE(keep, double, all), size;
-    int32_t *vertex = HDI_TAKE(keep, int32_t, all);
-    hd_error *e = keep->e;
+    double *part = HDI_TAKE(&work, double, all), size;
     if (e->status < 0) return hdi_scope_end(&work);
     size = hdi_source_parts(s, begin, n, lap, part, e);
     if (e->status >= 0 && !(size >= HDI_SOURCE_LEAST && size <= HDI_SOURCE_MOST))
@@ -16228,11 +16227,20 @@ static hdi_terms *hdi_terms_all(const hd_sources *s, const hd_laplacian *lap, in
     const int plain = !s->first && hdi_source_corners(s) == 1 && !s->weight && !s->curve;
     hdi_terms *all = HDI_TAKE(keep, hdi_terms, s->count > 0 ? s->count : 0);
     hd_error *e = keep->e;
-    int32_t k;
+    int32_t k, *vertex = NULL;
+    double *weight = NULL;
     if (!all || hdi_sources_check(s, lap->n, e) < 0) return all;
-    for (k = 0; k < s->count && e->status >= 0; k++)
+    if (!plain) {
+        const int64_t size = hdi_source_first(s, s->count) * hdi_source_corners(s);
+        vertex = HDI_TAKE(keep, int32_t, size);
+        weight = HDI_TAKE(keep, double, size);
+    }
+    for (k = 0; k < s->count && e->status >= 0; k++) {
+        const int64_t at = hdi_source_first(s, k) * hdi_source_corners(s);
         if (plain) all[k] = hdi_terms_vertex(s->vertex[k]);
-        else if (hdi_terms_make(all + k, s, k, lap, normal, keep) < 0) (void)hdi_source_place(s, k, e);
+        else if (hdi_terms_make(all + k, s, k, lap, normal, vertex + at, weight + at, keep) < 0)
+            (void)hdi_source_place(s, k, e);
+    }
     return all;
 }
 

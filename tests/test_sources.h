@@ -1118,7 +1118,27 @@ static void src_errors(void) {
     hd_spectrum_free(z);
 }
 
+/* As many weighted sources as there are vertices: twice their columns. */
+static void src_many(void) {
+    const hd_laplacian *lap = kit_pair("ico/1 fem");
+    const double t = 3 * lap->h * lap->h;
+    const int32_t n = lap->n;
+    int32_t *id = KIT_NEW(int32_t, n), i;
+    double *weight = KIT_NEW(double, n), *u = KIT_NEW(double, n * n), *one = KIT_NEW(double, n * n);
+    hd_heat *heat = kit_heat(lap, "method=direct");
+    hd_sources s = hd_vertices(n, id);
+    for (i = 0; i < n; i++) {
+        id[i] = i;
+        weight[i] = 2;
+    }
+    s.weight = weight;
+    CHECK(hd_heat_columns(heat, HD_KERNEL_OPERATOR, 1, &t, &s, u, 0, NULL, NULL) == HD_OK);
+    CHECK(hd_heat_columns(heat, HD_KERNEL_OPERATOR, 1, &t, VERTICES(n, id), one, 0, NULL, NULL) == HD_OK);
+    for (i = 0; i < n * n; i++) CHECK(fabs(u[i] - 2 * one[i]) <= 1e-9);
+}
+
 static void test_sources(void) {
+    src_many();
     src_cases();
     src_exact();
     src_means();
