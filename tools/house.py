@@ -38,10 +38,10 @@ FOREIGN = ("dgemm_", "WIN32_LEAN_AND_MEAN", "NOMINMAX", "syscall", "DWORD")   # 
 
 # What holds today. Whenever --check says that a limit can come down, --tighten brings it down.
 LIMITS = {
-    "lines": 26865,           # goal 16000; raised from 23000 by eigenpairs, estimates, filters, sources and more
-    "api": 712,               # lines of room [api]; goal 1100
+    "lines": 25627,           # goal 16000; raised from 23000 by eigenpairs, estimates, filters, sources and more
+    "api": 702,               # lines of room [api]; goal 1100
     "median": 9,             # lines of a function; goal 13
-    "longest": 54,            # lines of the longest function; goal 60
+    "longest": 46,            # lines of the longest function; goal 60
     "long": 0,                # functions longer than 60 lines; goal 0
     "widest": 110,            # characters of the widest line; goal 110
     "wide": 0,                # lines wider than that; goal 0
