@@ -38,7 +38,7 @@ gcc "$work/use.o" "$work/impl.o" -o "$work/two" -lm
 mkdir -p "$work/far/own"
 cp "$top/heatdiff.h" "$work/far/own/renamed.hpp"
 static='#define HEATDIFF_STATIC\n#define HEATDIFF_IMPLEMENTATION\n#include'
-whole='int other(void);\nint main(void) { return hd_status_name(HD_OK)[0] != other() || hdi_kernels_get(2, 0)->mr < 4; }\n'
+whole='int other(void);\nint main(void) { return hd_status_name(HD_OK)[0] != other() || hdi_kernels_get(2, 0)->nr < 4; }\n'
 small='int other(void);\nint other(void) { return hd_status_name(HD_OK)[0]; }\n'
 printf "$static \"far/own/renamed.hpp\"\n$whole" >"$work/whole.c"
 printf "$static <own/renamed.hpp>\n$whole" >"$work/whole.cpp"
