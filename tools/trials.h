@@ -845,6 +845,7 @@ static void trial_compare(trial_work *w, const double *value, int64_t n, int has
         /* entries of B are not all positive, but dominated by the diagonal */
         /* (a value of the transpose is divided by B and multiplied by it, which error_bound_b does not count) */
         off = has_b == 2 ? trial_norm_dual(w->T, lap, e, 1) + (quad)(2 * DBL_EPSILON) * size : 2 * trial_norm_b(lap, e);
+        off += (quad)1e-32 * size;               /* the truth has 113 bits: bounds of 1e-289 say less about it */
         below_b = finite_b && error - off > b * size * (1 + (quad)1e-12);
         ratio_b = finite_b && error > off ? trial_ratio(error - off, b * size) : 0;
         free(e);
