@@ -22140,8 +22140,7 @@ static hd_status hdi_metric_invert(hdi_metric *x, hdi_scope *s) {
     return HD_OK;
 }
 
-/* A metric of so many functions without its values. group: so many sources are solved for at the same time;
- * bounded: with columns of g, where they are of use. */
+/* A metric of so many functions; an inversion, L grounded or means fill it. */
 static hd_status hdi_metric_take(hdi_metric *x, hdi_heat_call *h, const hdi_distance_row *kind,
                                  int32_t count, hdi_scope *s) {
     const hdi_elim *m = &h->heat->elim;
@@ -22157,7 +22156,8 @@ static hd_status hdi_metric_take(hdi_metric *x, hdi_heat_call *h, const hdi_dist
     return h->e->status;
 }
 
-/* Room for the columns of so many sources at the same time, with those of g where they are of use. */
+/* Room for the columns of so many sources at the same time; with `bounded` those of g, too, where they are of
+ * use. */
 static hd_status hdi_metric_room(hdi_metric *x, int32_t group, int bounded, hdi_scope *s) {
     const int32_t count = hdi_high32(x->in.count, 1), n_poles = x->in.count > 0 ? x->in.set->n_poles : 0;
     x->bounded = x->bounded && bounded;
