@@ -14164,20 +14164,22 @@ static void hdi_warm_start(hdi_lane *lane, const hdi_family *fam, int32_t p, int
     double A[4 * HDI_WARM_MAX * HDI_WARM_MAX], c[2 * HDI_WARM_MAX] = {0}, unit[HDI_WARM_MAX];
     int32_t m = 0, i, j, pole[HDI_WARM_MAX], conj[HDI_WARM_MAX];
     for (i = p + 1; i <= last; i++) {
-        for (j = 0; j < (fam->set.theta[i].im == 0 ? 1 : 2); j++, m++) {
+        for (j = 0; j < (fam->set.theta[i].im == 0 ? 1 : 2); j++) {
             pole[m] = i;
-            conj[m] = j;
-            shift[m] = hdi_csub(fam->set.theta[p], j ? hdi_cconj(fam->set.theta[i]) : fam->set.theta[i]);
-            unit[m] = hdi_cabs(shift[m]) * sqrt(gram[i][0][0].re);
-            c[m] = unit[m] = unit[m] > 0 ? 1 / unit[m] : 0;
-            shift[m] = hdi_cscale(unit[m], shift[m]);
+            conj[m++] = j;
         }
+    }
+    for (i = 0; i < m; i++) {
+        const hd_c64 theta = fam->set.theta[pole[i]];
+        shift[i] = hdi_csub(fam->set.theta[p], conj[i] ? hdi_cconj(theta) : theta);
+        unit[i] = hdi_cabs(shift[i]) * sqrt(gram[pole[i]][0][0].re);
+        c[i] = unit[i] = unit[i] > 0 ? 1 / unit[i] : 0;
+        shift[i] = hdi_cscale(unit[i], shift[i]);
     }
     for (i = 0; i < m; i++) {
         for (j = 0; j <= i; j++) {
             /* x_i^* D x_j and x_i' D x_j for the poles behind the points */
-            const hd_c64 *g = gram[pole[j]][pole[i] - pole[j]];
-            hd_c64 v = conj[i] == conj[j] ? g[0] : g[1];
+            hd_c64 v = gram[pole[j]][pole[i] - pole[j]][conj[i] != conj[j]];
             v = hdi_cmul(hdi_cmul(hdi_cconj(shift[i]), shift[j]), conj[j] ? hdi_cconj(v) : v);
             if (i == j) v = hdi_c(1 + 1e-14, 0);
             A[2 * m * j + i] = A[2 * m * i + j] = v.re;
