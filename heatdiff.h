@@ -14154,9 +14154,8 @@ static void hdi_warm_products(const hdi_lane *lane, const double *d, int32_t p, 
     }
 }
 
-/* The start of system p from the solutions of poles p + 1 to last, whose inner products are in gram: the
- * combination with the smallest residual, H c = 1 (Hermitian, as a real system with a unit diagonal, to
- * which what rounding eats of it is added). A point is a pole or its conjugate. */
+/* The start of system p, of smallest residual, from solutions of poles p + 1 to last and inner products:
+ * H c = 1 (a unit diagonal, plus what rounding eats of it). A point is a pole or its conjugate. */
 static void hdi_warm_start(hdi_lane *lane, const hdi_family *fam, int32_t p, int32_t last,
                            hdi_gram *gram) {
     const int32_t n = fam->lap->n_active;
@@ -14164,16 +14163,16 @@ static void hdi_warm_start(hdi_lane *lane, const hdi_family *fam, int32_t p, int
     double A[4 * HDI_WARM_MAX * HDI_WARM_MAX], c[2 * HDI_WARM_MAX] = {0}, unit[HDI_WARM_MAX];
     int32_t m = 0, i, j, pole[HDI_WARM_MAX], conj[HDI_WARM_MAX];
     for (i = p + 1; i <= last; i++) {
-        for (j = 0; j < (fam->set.theta[i].im == 0 ? 1 : 2); j++) {
+        for (j = 0; j < (fam->set.theta[i].im == 0 ? 1 : 2); j++, m++) {
             pole[m] = i;
-            conj[m++] = j;
+            conj[m] = j;
         }
     }
     for (i = 0; i < m; i++) {
         const hd_c64 theta = fam->set.theta[pole[i]];
         shift[i] = hdi_csub(fam->set.theta[p], conj[i] ? hdi_cconj(theta) : theta);
-        unit[i] = hdi_cabs(shift[i]) * sqrt(gram[pole[i]][0][0].re);
-        c[i] = unit[i] = unit[i] > 0 ? 1 / unit[i] : 0;
+        c[i] = hdi_cabs(shift[i]) * sqrt(gram[pole[i]][0][0].re);
+        c[i] = unit[i] = c[i] > 0 ? 1 / c[i] : 0;
         shift[i] = hdi_cscale(unit[i], shift[i]);
     }
     for (i = 0; i < m; i++) {
@@ -14194,11 +14193,10 @@ static void hdi_warm_start(hdi_lane *lane, const hdi_family *fam, int32_t p, int
         c[m + i] *= unit[i];
         sum = hdi_cadd(sum, hdi_c(c[i], c[m + i]));
     }
-    if (sum.re == 0 && sum.im == 0) return;
     for (i = 0; i < m; i++) {
         const hd_c64 w = hdi_cdiv(hdi_c(c[i], c[m + i]), sum), *HDI_RESTRICT y = lane->k[pole[i]].x;
         const double sign = conj[i] ? -1 : 1;
-        if (!hdi_cfinite(w)) continue;
+        if (!hdi_cfinite(w)) return;
         for (j = 0; j < n; j++) x[j] = hdi_cadd(x[j], hdi_cmul(w, hdi_c(y[j].re, sign * y[j].im)));
     }
 }
