@@ -20012,7 +20012,8 @@ static hd_status hdi_heat_engine(hdi_heat_call *h) {
 /* Eigenpairs are tried before poles when so many are expected to do, and after them up to the second number.
  * The bound by poles goes above 1e-6 where 13 to 80 are expected on meshes of 642 to 41K vertices, and at
  * 164K where 240 are (classical, t = 1000 h^2) or 340 (weighted, 700 h^2). 20 take one to two times as long
- * as poles do, once, and the second number about ten times. */
+ * as poles do, once, and the second number about ten times. The worst bound of many sources is above 1e-6
+ * where 60 are expected on a regular torus of 36K vertices and 200 on a scan: the root of n decides there. */
 #define HDI_MODES_FIRST 20
 #define HDI_MODES_MOST 360
 /* With a larger bound by poles, relative to the largest value, eigenpairs are asked for help. */
@@ -20315,7 +20316,7 @@ static double hdi_modes_lowest(const hd_heat *heat, double t) {
 typedef struct hdi_task hdi_task;
 struct hdi_task {
     hdi_heat_call *h;
-    int serves;                  /* may eigenpairs answer? */
+    int32_t serves;              /* eigenpairs first where so few are expected; 0: they may not answer */
     double from;                 /* they come first where t times the smallest eigenvalue is this or more */
     double depth;                /* how far they have to reach above the smallest eigenvalue, times t */
     hd_status (*pairs)(hdi_task *task);
@@ -20336,7 +20337,7 @@ static HDI_INLINE int hdi_task_near(const hdi_task *task, double t, int32_t most
 
 /* Are eigenpairs tried before poles at time t? */
 static HDI_INLINE int hdi_task_first(const hdi_task *task, double t) {
-    return hdi_task_near(task, t, HDI_MODES_FIRST) && hdi_modes_lowest(task->h->heat, t) >= task->from;
+    return hdi_task_near(task, t, task->serves) && hdi_modes_lowest(task->h->heat, t) >= task->from;
 }
 
 /* Takes up time q of the call, as if nothing had been tried. */
@@ -20380,7 +20381,7 @@ static int hdi_task_pairs(hdi_task *task, int32_t q, int32_t most) {
 static hd_status hdi_task_help(hdi_task *task, int32_t q, double bound) {
     hdi_heat_call *h = task->h;
     const double by_poles = h->rep->error_bound;
-    const int32_t most = bound < 0 ? HDI_MODES_MOST : HDI_MODES_FIRST;
+    const int32_t most = bound < 0 ? HDI_MODES_MOST : task->serves;
     if (by_poles <= HDI_MODES_HELP || (bound >= 0 && by_poles <= bound) || !task->serves ||
         !hdi_task_near(task, h->ask.t[q], most)) return h->e->status;
     hdi_heat_drop(h->heat);
@@ -20396,7 +20397,7 @@ static hd_status hdi_task_time(hdi_task *task, int32_t q) {
     hdi_heat_call *h = task->h;
     double bound = -1;
     hdi_task_at(h, q);
-    if (task->serves && hdi_task_first(task, h->ask.t[q]) && hdi_task_pairs(task, q, HDI_MODES_FIRST)) {
+    if (task->serves && hdi_task_first(task, h->ask.t[q]) && hdi_task_pairs(task, q, 2 * task->serves)) {
         if (h->e->status < 0 || hdi_modes_good(h->heat, h->ask.t[q], h->rep)) return h->e->status;
         bound = h->rep->error_bound;
     }
@@ -20406,7 +20407,7 @@ static hd_status hdi_task_time(hdi_task *task, int32_t q) {
     if (bound < 0 || !hdi_over_limit(h->heat->ctx, h->e)) return h->e->status;
     hdi_heat_drop(h->heat);                      /* an answer is better than none */
     hdi_error_clear(h->e);
-    (void)hdi_task_pairs(task, q, HDI_MODES_FIRST);
+    (void)hdi_task_pairs(task, q, task->serves);
     return h->e->status;
 }
 
@@ -20417,7 +20418,6 @@ static hd_status hdi_task_run(hdi_heat_call *h, void *what) {
     hd_report *one, all;
     char *done;
     int32_t q;
-    int begun = 0;
     if (n == 1) return hdi_task_time(task, 0);
     one = HDI_TAKE_ZERO(&h->s, hd_report, n);
     done = HDI_TAKE_ZERO(&h->s, char, n);
@@ -20444,9 +20444,8 @@ static hd_status hdi_task_run(hdi_heat_call *h, void *what) {
     hdi_error_clear(&all.error);
     for (q = 0; q < n; q++) {
         if (!one[q].reason) continue;            /* it is in the report of another */
-        if (begun) hdi_report_merge(&all, one + q);
+        if (all.reason) hdi_report_merge(&all, one + q);
         else all = one[q];
-        begun = 1;
     }
     *h->rep = all;
     return HD_OK;
@@ -20486,18 +20485,16 @@ static HDI_INLINE int hdi_fading(const hdi_heat_call *h) {
  * lowest eigenvector is small. */
 #define HDI_FADING_LOW 0.1
 
-static double hdi_fading_depth(const hd_heat *heat) {
-    const double span = hdi_modes_span(heat);
-    return hdi_max(0, log(span * span / (HDI_FADING_LOW * hdi_modes_tol(heat))));
-}
-
 /* Sets up a query whose answers fade. */
 static void hdi_fading_task(hdi_task *task, hdi_heat_call *h) {
+    double span;
     memset(task, 0, sizeof *task);
     task->h = h;
     task->from = HDI_FADING_FROM;
-    task->serves = HDI_HAS_MODES && hdi_fading(h);
-    if (HDI_HAS_MODES && task->serves) task->depth = hdi_fading_depth(h->heat);
+    if (!HDI_HAS_MODES || !hdi_fading(h)) return;
+    task->serves = HDI_MODES_FIRST;
+    span = hdi_modes_span(h->heat);
+    task->depth = hdi_max(0, log(span * span / (HDI_FADING_LOW * hdi_modes_tol(h->heat))));
 }
 
 /* Vector q at a vertex, with mass B times it. */
@@ -20948,8 +20945,8 @@ static hd_status hdi_heat_run(hdi_heat_call *h) {
     task.pairs = HDI_HAS_MODES ? hdi_columns_by_pairs : NULL;
     task.poles = hdi_columns_by_poles;
     task.together = hdi_columns_together;
-    if (task.serves && h->ask.n_times == 1)
-        task.serves = hdi_task_near(&task, h->ask.t[0], HDI_MODES_MOST) && hdi_fields_keep(h);
+    if (task.serves && h->ask.n_times == 1 &&
+        !(hdi_task_near(&task, h->ask.t[0], HDI_MODES_MOST) && hdi_fields_keep(h))) task.serves = 0;
     if (h->e->status < 0) return hdi_heat_end(h);
     if (task.serves) (void)hdi_heat_sparing(h, hdi_task_run, &task);
     else (void)hdi_task_run(h, &task);
@@ -23040,15 +23037,16 @@ static hd_status hdi_sample_by_pairs(hdi_task *task) {
 
 /* ---- queries of distances ---- */
 
-/* Sets up a query that eigenpairs may serve: how far these have to reach is given by
+/* Sets up a query from k sources that eigenpairs may serve: how far these have to reach is given by
  * exp(depth) = |y| over the part that may be left out. The largest distance is at least about
  * 1/sqrt(mass) times exp(-t low). */
-static void hdi_distance_task(hdi_task *task, hdi_heat_call *h, const hdi_distance_row *kind) {
+static void hdi_distance_task(hdi_task *task, hdi_heat_call *h, const hdi_distance_row *kind, int32_t k) {
+    const int32_t many = k < HDI_LANES_BATCH ? 0 : (int32_t)(0.3 * sqrt(h->heat->source->n_active));
     memset(task, 0, sizeof *task);
     task->h = h;
-    task->serves = HDI_HAS_MODES && kind->time > 0 && hdi_modes_allowed(h->heat);
-    if (HDI_HAS_MODES && task->serves)           /* 0: tol is all there is */
-        task->depth = hdi_max(0, log(2 * hdi_modes_span(h->heat) / hdi_modes_tol(h->heat)));
+    if (!HDI_HAS_MODES || !(kind->time > 0) || !hdi_modes_allowed(h->heat)) return;
+    task->serves = hdi_high32(HDI_MODES_FIRST, hdi_low32(many, HDI_MODES_MOST));
+    task->depth = hdi_max(0, log(2 * hdi_modes_span(h->heat) / hdi_modes_tol(h->heat)));   /* 0: tol is all */
 }
 
 /* The start of a query of a distance. Commute and biharmonic distances have no time: n_times is 0 or 1,
@@ -23078,7 +23076,7 @@ static hd_status hdi_distance_answer(hd_heat *heat, hdi_distances *to, const hd_
     if (h.e->status >= 0) to->source = hdi_terms_all(sources, heat->source, 1, &h.s);
     to->k = h.e->status >= 0 ? sources->count : 0;
     if (h.e->status < 0 || to->k == 0) return hdi_heat_end(&h);
-    hdi_distance_task(&to->task, &h, to->kind);
+    hdi_distance_task(&to->task, &h, to->kind, to->k);
     to->task.pairs = HDI_HAS_MODES ? hdi_distances_by_pairs : NULL;
     to->task.poles = hdi_distances_by_poles;
     to->task.together = hdi_distances_together;
@@ -23088,7 +23086,7 @@ static hd_status hdi_distance_answer(hd_heat *heat, hdi_distances *to, const hd_
 
 /* Runs a query for pairs whose arguments are checked. */
 static hd_status hdi_pairs_run(hdi_heat_call *h, hdi_pairs *to) {
-    hdi_distance_task(&to->task, h, to->kind);
+    hdi_distance_task(&to->task, h, to->kind, 1);
     to->task.pairs = HDI_HAS_MODES ? hdi_pairs_by_pairs : NULL;
     to->task.poles = hdi_pairs_by_poles;
     return hdi_heat_sparing(h, hdi_task_run, &to->task);
@@ -23107,7 +23105,7 @@ static hd_status hdi_sample_answer(hd_heat *heat, hdi_samples *a, const hd_sourc
     a->nearest = HDI_TAKE(&h.s, double, heat->source->n);
     a->u = HDI_TAKE(&h.s, double, heat->source->n);
     if (h.e->status < 0) return hdi_heat_end(&h);
-    hdi_distance_task(&a->task, &h, a->kind);
+    hdi_distance_task(&a->task, &h, a->kind, a->count + a->n_from);
     a->task.pairs = HDI_HAS_MODES ? hdi_sample_by_pairs : NULL;
     a->task.poles = hdi_sample_by_poles;
     (void)hdi_heat_sparing(&h, hdi_task_run, &a->task);
@@ -23320,10 +23318,11 @@ static void hdi_estimate_ground(const hdi_estimate *x, hd_cost *c) {
 
 /* ---- estimates of eigenpairs ---- */
 
-/* Seconds that an eigenpair costs for each vertex, and all of them together as much as so many, without
- * factors. Measured on meshes of 2.5K to 41K vertices with 13 to 80 pairs; a rough guess for others. */
+/* Seconds that an eigenpair costs for each vertex, without factors, all of them together as much as so many
+ * more, and each twice that where they are half of the most; of a sum. Measured on 2.5K to 43K vertices. */
 #define HDI_MODES_SECONDS 7e-7
 #define HDI_MODES_BEGIN 5
+#define HDI_MODES_SUM 9e-9
 
 /* Bytes that eigenpairs may need where more are looked for than expected: 1.14 times those for the number
  * expected were seen on small meshes. */
@@ -23338,7 +23337,8 @@ static hd_cost hdi_estimate_pairs(const hd_heat *heat, int32_t count) {
     memset(&c, 0, sizeof c);
     c.possible = 1;
     c.flops = runs * f.flops + solves * (4 * f.nnz + 8 * n * count);
-    c.seconds = runs * f.flops / HDI_RATE_REAL + HDI_MODES_SECONDS * n * (count + HDI_MODES_BEGIN);
+    c.seconds = runs * f.flops / HDI_RATE_REAL +
+                HDI_MODES_SECONDS * n * (count + HDI_MODES_BEGIN) * (1 + 2.0 * count / HDI_MODES_MOST);
     c.bytes = hdi_modes_need(heat, count) + HDI_ESTIMATE_SMALL;
     c.bytes_most = HDI_MODES_OVER * hdi_modes_need(heat, count) + HDI_ESTIMATE_SMALL;
     return c;
@@ -23377,17 +23377,17 @@ static int32_t hdi_estimate_late(const hdi_estimate *x, hd_cost *c, double *kept
         *kept = hdi_estimate_kept(x, count);
     }
     c->flops += 6 * n * count * x->k;
+    c->seconds += HDI_MODES_SUM * n * count * x->k;
     return early;
 }
 
 /* Eigenpairs that may come after poles at any time, with poles once more. */
 static void hdi_estimate_help(const hdi_estimate *x, double kept, hd_cost *c) {
     const double most = c->bytes_most;
-    int32_t q;
+    int32_t q, count;
     for (q = 0; q < x->h->n_times; q++) {
-        const int near_by = hdi_task_near(&x->task, x->h->times[q] / x->unit, HDI_MODES_MOST);
-        const int32_t count = HDI_HAS_MODES && near_by ? hdi_estimate_count(x, q) : 0;
-        if (count == 0) continue;
+        if (!hdi_task_near(&x->task, x->h->times[q] / x->unit, HDI_MODES_MOST)) continue;
+        count = hdi_estimate_count(x, q);
         c->bytes_most = hdi_max(c->bytes_most, most + hdi_max(0, hdi_estimate_kept(x, count) - kept));
         c->bytes_most = hdi_max(c->bytes_most, hdi_estimate_pairs(x->h->heat, count).bytes_most);
     }
@@ -23462,7 +23462,7 @@ static hd_status hdi_estimate_run(hdi_heat_call *h, const hdi_query_row *query, 
         return HD_OK;
     }
     x.unit = times * heat->scale;
-    if (query->distance) hdi_distance_task(&x.task, h, query->distance);
+    if (query->distance) hdi_distance_task(&x.task, h, query->distance, hdi_estimate_pairwise(&x) ? 1 : x.k);
     else hdi_fading_task(&x.task, h);
     if (hdi_heat_sort_times(h, x.unit / heat->scale, NULL) < 0) return h->e->status;
     for (; h->n_times > 1 && h->times[0] * heat->lambda_max < HDI_STILL; h->n_times--) h->times++;

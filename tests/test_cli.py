@@ -582,9 +582,10 @@ class Case(unittest.TestCase):
                             and 0 < (r["error_bound"] or math.inf) <= (r["error_relative"] or math.inf), r)
 
     def text(self, line, *more):
-        """What a run tells people: info by its output, all others on standard error."""
-        p = self.good(line, *more)
-        return (p.stdout if line.startswith("info") else p.stderr).decode()
+        """What a run tells people, in full: info and --dry-run by their output, all others on standard error."""
+        brief = line.startswith(("info", "render")) or "--dry-run" in (line.split() + list(more)) or "--quiet" in line
+        p = self.good(line, *more, *(() if brief else ("--verbose",)))
+        return (p.stdout if line.startswith("info") or "--dry-run" in (line.split() + list(more)) else p.stderr).decode()
 
     def close(self, got, want, tol, each=False):
         """Column by column, relative to the largest value of each, or to each value."""
@@ -702,6 +703,8 @@ up to twelve times :: render a.obj --input=1 --input=2 --input=3 --input=4 --inp
 not '' :: info ''
 one mesh :: info {a.obj b.obj|ico.obj ico.obj}
 mesh :: {demo ico.obj|info|kernel --t 1 --source 0}
+takes no --quiet :: kernel ico.obj --source 0 --t 1 --quiet --verbose
+--verbose is not an option :: info ico.obj --verbose
 {--nosuch|-x|--input|--quiet} :: kernel ico.obj --source 0 --t 1 {1}=yes
 {--t|--source|-o|--laplacian} :: kernel ico.obj {1}
 --t :: {kernel ico.obj --source 0|spectrum ico.obj -k 3 --t 1}
@@ -737,6 +740,10 @@ natural or dirichlet :: info ico.obj --border neumann
 {--poles|--degree|--method} takes :: {distance ico.obj --source 0|pairs ico.obj --input p.txt|sample ico.obj --count 2} \
     --definition {commute|biharmonic} {1} {kernel|8|krylov}
 """)
+# Names that are misspelled, and what is meant; ?: nothing.
+MEANT = """--sorce source --tt t --thraeds threads --laplace laplacian --iso isolines --outptu output --precnod precond -source source
+-t t --Source=0 source --xyzzy ? -y ? --input-file-of-mine ? --no ? kernle kernel difuse diffuse dist distance geodesics geodesic
+Spectrum spectrum rendr render nosuch ? x ? """.split()
 # What is right, although it looks much like the above.
 TAKEN = table("""
 kernel ico.obj --source 0 --t 1 --degree 1 --poles uniform
@@ -786,6 +793,11 @@ class Usage(Case):
             text = self.bad(2, "", line)
             for name in COMMANDS:
                 self.assertIn(name, text)
+
+    def test_what_is_meant(self):
+        for word, meant in zip(MEANT[::2], MEANT[1::2]):
+            text = self.bad(2, "is not a", *((KERNEL + word + " 0",) if word[0] == "-" else (word + " ico.obj",)))
+            self.assertEqual(re.findall(r"did you mean -?-?(\w+)\?", text), [meant] * (meant != "?"), word)
 
     def test_help_and_version(self):
         for line in ("--help", "-h"):
@@ -1838,7 +1850,7 @@ info twice.xyz --tufted {:: laplacian=fem|--laplacian voronoi-cot :: laplacian=v
     intrinsic=tufted coincident=20 inert=20 sheets=2 negative_weights=0 bandwidth! area~12.566
 info patch-9.off --laplacian voronoi-exp :: n=100 laplacian=voronoi-exp triangles_used=0
 kernel torus-80-50.obj --source 7 --t 50h2 --ordering {amd :: ordering=amd|dissection :: ordering=dissection} factor_nnz>4000
-levels sphere-3.obj --input latitude-642.txt --levels -0.6,0.8,2 :: lines=2 closed=2 levels=[-0.6,0.8,2]
+levels sphere-3.obj --input latitude-642.txt --levels -0.6,0.8,2 :: lines=2 closed=2 levels=[-0.6,0.8,2] range=[-1.0,1.0]
 """)
 # Lines, and what they tell people. What begins with ! is not there.
 TEXTS = table(r"""
@@ -1911,6 +1923,39 @@ class Reports(Case):
                 with self.subTest(line=line, pattern=pattern):
                     (self.assertNotRegex if pattern[:1] == "!" else self.assertRegex)(text, pattern.lstrip("!"))
 
+    def test_two_lines(self):
+        """What a run tells without --verbose, and what it warns of besides."""
+        for line, patterns in (
+                ("kernel ico.obj --source 0 --t 1", (r"kernel of ico\.obj: 1 source, 1 time, fem Laplacian, method \w+$",
+                                                     r"error at most \S+ of the largest value; \S+ s, \S+ MB$")),
+                ("pairs patch-9.off --input p.txt --t 3h2", (r"pairs of .*: 2 pairs, 1 time, classical, fem Laplacian, method \w+$",
+                 r"error of K at most \S+ of its largest value, of d at most \S+ of its largest; \S+ s, \S+ MB$")),
+                ("geodesic twins.obj --source 3", (r"geodesic of .*: 1 source, t = .* h\^2\)$", r"residuals .* and .*; \S+ s, \S+ MB$",
+                                                   r"note: 25 distances are infinite: nothing leads there$")),
+                ("spectrum patch-9.off -k 3", (r"spectrum of .*: 3 eigenvalues from 0 to .*, largest residual \S+$",
+                                               r"proven complete: all others are at least \S+; \S+ s, \S+ MB$")),
+                ("levels ico.obj --input count-12.txt --levels 2.5,11,12", (r"levels of count-12.txt: 2 lines at 3 values, \d+ points, \S+ s$",
+                 r"note: 1 of 3 levels is outside the range of column 0 of count-12.txt, from 0 to 11$")),
+                ("levels ico.obj --input inf.txt --levels 2", (r"levels of inf.txt: 0 lines at 1 value, 0 points, .*$",
+                                                               "note: column 0 of inf.txt has no finite value$")),
+                ("distance patch-9.off --source 1 --t 100000h2", ("distance of ", "error at most ", "note: .*pairs finds them$"))):
+            file("inf.txt", "inf\n" * 12)
+            got = self.good(line, "-o", "x.npy").stderr.decode().splitlines()
+            self.assertLessEqual(len(patterns), len(got), got)
+            for pattern, row in zip(patterns, got):
+                self.assertRegex(row, r"\A" + pattern)
+            self.assertFalse(any(not row.startswith("note: ") for row in got[2:]), got)
+            self.assertGreater(len(self.text(line, "-o", "x.npy").splitlines()), len(got))
+
+    def test_bounds_of_pairs(self):
+        """Kernel and distance each have their own."""
+        for method in ("direct", "iterative"):
+            r = self.report("pairs patch-9.off --input p.txt --t 3h2,30h2 --method " + method)
+            bounds = r["kernel_bound"], r["distance_bound"]
+            self.assertTrue(bounds[0] != bounds[1] and min(bounds) > 0 and max(bounds) == r["error_bound"], r)
+        r = self.report("pairs patch-9.off --input p.txt --definition commute")
+        self.assertEqual((r["distance_bound"], "kernel_bound" in r), (r["error_bound"], False))
+
     def test_numbers_of_info(self):
         plain, r = self.report("info askew.obj"), self.report("info askew.obj --intrinsic-delaunay")
         self.assertAlmostEqual(r["h"], plain["h"], 12)
@@ -1951,7 +1996,7 @@ class Limits(Case):
     def dry(self, line, *more):
         words(line)
         before = everything()
-        r = json.loads(self.good(line, *more, "--dry-run", "--json", "-o", "never.npy").stderr)
+        r = json.loads(self.good(line, *more, "--dry-run", "--json", "-o", "never.npy").stdout)
         self.assertEqual((everything(), r["dry_run"]), (before, True))
         return r
 
@@ -1996,8 +2041,8 @@ class Limits(Case):
                     if r["degree"] == 9:
                         self.assertTrue(0.999 * r["peak_bytes"] <= e["bytes"] <= 1.3 * r["peak_bytes"], (run, e, r["peak_bytes"]))
                 text = self.good(run, "--dry-run")
-                self.assertEqual(text.stdout, b"")
-                self.assertRegex(text.stderr.decode(), r"dry run: method \w+ \(.+\)\n(.|\n)*flops(.|\n)*MB")
+                self.assertEqual(text.stderr, b"")
+                self.assertRegex(text.stdout.decode(), r"dry run: method \w+ \(.+\)\n(.|\n)*flops(.|\n)*MB")
         for run, least, most in (("trace --t auto:16", 0.999, 1.3), ("hks --normalise --t 5h2", 0.999, 1.3),
                                  ("hks --scale-invariant 3 --t 1h2,100h2", 0.999, 1.3),
                                  ("geodesic --source 0", 0, 9), ("spectrum -k 20", 0.9, 1.6),
@@ -2008,6 +2053,19 @@ class Limits(Case):
             self.assertTrue(run[0] == "g" or list(d["methods"]) == ["direct"] == [d["method"]]
                             and r["method"] in ("direct", "lanczos"), (run, d["methods"]))
             self.assertTrue(least * r["peak_bytes"] <= e["bytes"] <= most * r["peak_bytes"], (run, e, r["peak_bytes"]))
+
+    def test_samples(self):
+        """Of many samples at a late time eigenpairs answer, and poles are not tried before them. At others each waits for those before."""
+        run = " torus-120-80.obj --t 260h2"
+        self.assertEqual([r["reason"] for r in (self.dry("sample --count 10" + run), self.dry("distance --source 0" + run))],
+                         ["at such a t few eigenpairs are left: answers are sums over them",
+                          "diagonals and distances to all vertices need the direct method"])
+        r = self.report("sample --count 10" + run)
+        self.assertEqual((r["poles"], r["seconds"]["invert"]), ("none", 0))
+        self.assertLess(r["error_bound"], 1e-6)
+        one, many = (self.dry(line + " torus-80-50.obj --t 3h2")["estimate"]["seconds"]
+                     for line in ("distance --source " + ",".join(map(str, range(100))), "sample --count 100"))
+        self.assertGreater(many, 1.5 * one)
 
     def test_what_would_fit(self):
         """A run that does not fit says what it needs, what is allowed, and what else would do."""

@@ -421,7 +421,7 @@ typedef struct options {
     int nearest, matrix;             /* instead of columns of distances */
     double *levels;                  /* values, or NULL: n_levels of them between the extremes */
     int n_levels;
-    int json, quiet, help, version, no_header, dry_run, normalise;
+    int json, quiet, verbose, help, version, no_header, dry_run, normalise;
     int colormap;                    /* pictures */
     int log_scale, has_range, has_view, has_isolines;
     long isolines, column, width, height;
@@ -900,7 +900,7 @@ static const option_def OPTIONS[] = {
       "bytes, also with K, M or G, such as 500M",
       "most memory for the computation, also with K, M or G\n(default: nine tenths of the machine's)" },
     { "dry-run", 0, CMD_SOLVES, 0, parse_flag, AT(dry_run), NULL, 0, 0, NULL, "no value",
-      "only say what the run would take: method, work, memory, time.\nNothing is computed and no output is written" },
+      "only say what the run would take: method, work, memory, time,\non standard output. Nothing is computed, and no file is written" },
     { "output", 'o', CMD_TABLES, 0, parse_text, AT(output), NULL, 0, 0, "FILE", "a file name",
       "where the result goes: .txt .csv or .npy; - or nothing:\nstandard output, as text" },
     { "output", 'o', CMD_FIELDS, 0, parse_text, AT(output), NULL, 0, 0, "FILE", "a file name",
@@ -917,6 +917,8 @@ static const option_def OPTIONS[] = {
       "where the files go (heatdiff-demo)" },
     { "json", 0, CMD_ALL, 0, parse_flag, AT(json), NULL, 0, 0, NULL, "no value",
       "the report as one JSON object" },
+    { "verbose", 0, CMD_SOLVES | CMD_LEVELS, 0, parse_flag, AT(verbose), NULL, 0, 0, NULL, "no value",
+      "the report in full instead of two lines" },
     { "quiet", 0, CMD_ALL, 0, parse_flag, AT(quiet), NULL, 0, 0, NULL, "no value",
       "no report, no progress bar" },
     { "column", 0, CMD_PICTURE, 0, parse_integer, AT(column), NULL, 0, 2000000000, "K",
@@ -1033,6 +1035,44 @@ static void list_commands(unsigned mask, char *text, size_t size)
             snprintf(text + strlen(text), size - strlen(text), "%s%s", text[0] ? ", " : "", COMMANDS[i].name);
 }
 
+/* ---- misspelled names ---- */
+
+enum { NAME_LETTERS = 24 };          /* no name of a command or an option is longer */
+
+static int least_of(int a, int b) { return a < b ? a : b; }
+
+/* How many slips of the hand lead from one name to another: a letter too many, too few or wrong, or two exchanged
+ * (F. J. Damerau, 1964). n: letters of the first. */
+static int count_slips(const char *name, size_t n, const char *other)
+{
+    int d[NAME_LETTERS + 1][NAME_LETTERS + 1];
+    const size_t m = strlen(other);
+    size_t i, k;
+    if (n > NAME_LETTERS || m > NAME_LETTERS) return NAME_LETTERS;
+    for (i = 0; i <= n; i++)
+        for (k = 0; k <= m; k++) {
+            d[i][k] = (int)(i + k);
+            if (!i || !k) continue;
+            d[i][k] = least_of(least_of(d[i - 1][k], d[i][k - 1]) + 1, d[i - 1][k - 1] + (name[i - 1] != other[k - 1]));
+            if (i > 1 && k > 1 && name[i - 1] == other[k - 2] && name[i - 2] == other[k - 1])
+                d[i][k] = least_of(d[i][k], d[i - 2][k - 2] + 1);
+        }
+    return d[n][m];
+}
+
+/* Takes a name that is nearer to the one written than the best so far. A beginning is one slip away. */
+static void suggest(const char *name, size_t n, const char *other, int *slips, const char **best)
+{
+    int here = count_slips(name, n, other);
+    if (n > 2 && strncmp(name, other, n) == 0) here = least_of(here, 1);
+    if (here >= *slips) return;
+    *slips = here;
+    *best = other;
+}
+
+/* Slips from which on nothing is meant. */
+static int most_slips(size_t n) { return n > 6 ? 4 : n > 4 ? 3 : n > 1 ? 2 : 1; }
+
 /* ---- reading the command line ---- */
 
 /* The definition of an option argument, and where its value begins behind '=' (NULL: there is none). The
@@ -1055,6 +1095,17 @@ static const option_def *find_option(const char *arg, unsigned command, const ch
     return other;
 }
 
+/* The option of this command that is meant by a name that is none, or NULL. */
+static const char *meant_option(const char *arg, unsigned command)
+{
+    const char *name = arg + strspn(arg, "-"), *best = NULL;
+    const size_t n = strcspn(name, "=");
+    int i, slips = most_slips(n);
+    for (i = 0; i < N_OPTIONS; i++)
+        if (OPTIONS[i].commands & command) suggest(name, n, OPTIONS[i].name, &slips, &best);
+    return best;
+}
+
 /* The option as users write it. */
 static const char *option_text(const option_def *def, char *text, size_t size)
 {
@@ -1067,8 +1118,11 @@ static int take_option(options *o, char *seen, int argc, char **argv, int *i)
 {
     const char *value, *arg = argv[*i];
     const option_def *def = find_option(arg, o->command, &value);
-    char name[32], commands[120];
+    char name[32], commands[160];
     int parsed;
+    if (!def && (value = meant_option(arg, o->command)) != NULL)
+        return fail(USAGE, "%.80s is not an option; did you mean --%s? See heatdiff %s --help", arg, value,
+                    command_name(o->command));
     if (!def)
         return fail(USAGE, "%.80s is not an option; see heatdiff %s --help", arg, command_name(o->command));
     option_text(def, name, sizeof name);
@@ -1302,6 +1356,7 @@ static int check_options(const options *o)
         return fail(USAGE, "%s needs a mesh: a file name or - (standard input)", name);
     if ((o->command & (CMD_KERNEL | CMD_DISTANCE)) && !o->sources && !o->source_file)
         return fail(USAGE, "%s needs --source, which takes vertex ids from 0, such as 0,17", name);
+    if (o->verbose && o->quiet) return fail(USAGE, "--verbose takes no --quiet beside it");
     if (o->nearest && o->matrix)
         return fail(USAGE, "--nearest takes no --matrix beside it: one table at a time");
     if (o->matrix && (o->anywhere || o->curve || o->source_file))
@@ -1776,6 +1831,7 @@ typedef struct run {
     char (*names)[NAME_SIZE];        /* of the columns, and pointers to them */
     const char **name_list;
     summary sum;
+    double bound[2];                 /* pairs: of the kernel and of the distance, at all times */
     seconds sec;
     double started;
 } run;
@@ -2441,6 +2497,24 @@ static hd_query query_of(const run *r, int32_t *k)
     return query_of_distance((hd_distance_kind)o->definition);
 }
 
+/* Each sample waits for those before it. Columns that are solved one by one take this many times as long as those of the
+ * batches that estimates are of (measured on meshes of 3K to 43K vertices: 3 to 5). */
+static const double ONE_BY_ONE = 4;
+
+/* What the samples of a run take besides. Sums over eigenpairs are one by one in any case. */
+static hd_status estimate_samples(const run *r, hd_heat *heat, hd_estimate *e, hd_error *err)
+{
+    hd_cost *c = &e->cost[HD_METHOD_DIRECT];
+    hd_estimate twice;
+    int32_t k;
+    const hd_query query = query_of(r, &k);
+    if (k > INT32_MAX / 2 || strstr(e->reason, "eigenpairs")) return HD_OK;
+    if (hd_heat_estimate(heat, query, 1, r->times, 2 * k, &twice, err) < 0) return err->status;
+    c->seconds += (ONE_BY_ONE - 1) * (twice.cost[HD_METHOD_DIRECT].seconds - c->seconds);
+    e->cost[0] = *c;
+    return HD_OK;
+}
+
 /* The estimate of the run's first so many times by a plan. */
 static hd_status estimate_query(const run *r, hd_heat *heat, int n_times, hd_estimate *e, hd_error *err)
 {
@@ -2453,7 +2527,9 @@ static hd_status estimate_query(const run *r, hd_heat *heat, int n_times, hd_est
     double twice[2];
     hd_estimate two;
     int m;
-    if (hd_heat_estimate(heat, query, single ? 1 : n_times, t, k, e, err) < 0 || !again) return err->status;
+    if (hd_heat_estimate(heat, query, single ? 1 : n_times, t, k, e, err) < 0) return err->status;
+    if (r->o->command == CMD_SAMPLE) return estimate_samples(r, heat, e, err);
+    if (!again) return err->status;
     /* while a second time is factorised, work arrays of the first are still there */
     twice[0] = twice[1] = *t;
     if (hd_heat_estimate(heat, query, 2, twice, k, &two, err) < 0) return err->status;
@@ -2896,8 +2972,11 @@ static int solve_pairs(run *r, int k)
     double *K = timeless ? NULL : column_of(r, 0, 2 * k), *d = timeless ? r->values : K + r->rows;
     hd_report report;
     int code = solved_time(r, k, hd_heat_distance_pairs(r->heat, kind, 1, &r->times[k], r->rows, i, j, d, &report, NULL), &report);
+    keep_larger(&r->bound[1], report.error_bound);
     if (code || timeless) return code;
-    return solved_time(r, k, hd_heat_entries(r->heat, (hd_kernel)o->kernel, 1, &r->times[k], r->rows, i, j, K, &report, NULL), &report);
+    code = solved_time(r, k, hd_heat_entries(r->heat, (hd_kernel)o->kernel, 1, &r->times[k], r->rows, i, j, K, &report, NULL), &report);
+    keep_larger(&r->bound[0], report.error_bound);
+    return code;
 }
 
 /* The given vertices are the first points: distances of each to those before. */
@@ -3273,6 +3352,10 @@ static void json_query(json *j, const run *r)
     if (r->sources) json_sources(j, r);
     else if (o->input) json_text(j, "input", o->input);
     if (o->command == CMD_PAIRS) json_integer(j, "pairs", r->rows);
+    if (o->command == CMD_PAIRS && !o->dry_run) {
+        if (!is_timeless(o)) json_number(j, "kernel_bound", r->bound[0]);
+        json_number(j, "distance_bound", r->bound[1]);
+    }
     if (o->command == CMD_SAMPLE) json_integer(j, "count", r->rows);
     if (o->filter) {
         json_text(j, "filter", o->filter);
@@ -3345,11 +3428,10 @@ static void print_surface(const run *r)
     fprintf(stderr, "\n");
 }
 
-/* "distance: 1 source, 2 times, classical, fem Laplacian" */
+/* "1 source, 2 times, classical, fem Laplacian" */
 static void print_query(const run *r)
 {
     const options *o = r->o;
-    fprintf(stderr, "%s: ", command_name(o->command));
     if (o->command & (CMD_PAIRS | CMD_SAMPLE))
         fprintf(stderr, "%lld %s%s, ", (long long)r->rows, o->command == CMD_PAIRS ? "pair" : "point",
                 plural(r->rows));
@@ -3360,7 +3442,7 @@ static void print_query(const run *r)
                 r->filter.max_error / r->filter.largest);
     else if (!is_timeless(o)) fprintf(stderr, "%d time%s, ", r->n_times, plural(r->n_times));
     if (o->command & CMD_METRIC) fprintf(stderr, "%s, ", word_of(DEFINITIONS, o->definition));
-    fprintf(stderr, "%s Laplacian%s%s\n", word_of(LAPLACIANS, (int)r->lap->kind),
+    fprintf(stderr, "%s Laplacian%s%s", word_of(LAPLACIANS, (int)r->lap->kind),
             o->tufted ? ", tufted" : o->intrinsic_delaunay ? ", intrinsic Delaunay" : "",
             r->lengths ? ", from lengths of edges" : "");
 }
@@ -3381,43 +3463,81 @@ static void print_laplacian(const run *r)
                 lap->points.cut_radius, (double)lap->L.nnz / lap->n_active);
 }
 
+/* The bound. Kernel and distance of pairs have one each. */
+static void print_bound(const run *r)
+{
+    if (r->o->command == CMD_PAIRS && !is_timeless(r->o))
+        fprintf(stderr, "error of K at most %.1e of its largest value, of d at most %.1e of its largest", r->bound[0],
+                r->bound[1]);
+    else fprintf(stderr, "error at most %.1e of the largest value", r->sum.worst.error_bound);
+}
+
 /* Distances get their relative error and smallest value; columns get the conservation of heat. */
 static void print_errors(const run *r)
 {
     const hd_report *w = &r->sum.worst;
-    if (w->evidence_b == HD_EVIDENCE_NONE) {
-        fprintf(stderr, "error at most %.1e of the largest value, %.1e of each; the smallest is %.4g\n",
-                w->error_bound, w->error_relative, w->smallest);
-        if (w->n_lost)
-            fprintf(stderr, "note: %lld distances are error for the most part, "
-                    "far smaller than what they are the difference of; pairs finds them\n",
-                    (long long)w->n_lost);
-    } else {
-        fprintf(stderr, "error at most %.1e of the largest value (%.1e in the B norm)", w->error_bound,
-                w->error_bound_b);
+    print_bound(r);
+    if (w->evidence_b == HD_EVIDENCE_NONE)
+        fprintf(stderr, ", %.1e of each; the smallest is %.4g\n", w->error_relative, w->smallest);
+    else {
+        if (r->o->command != CMD_PAIRS) fprintf(stderr, " (%.1e in the B norm)", w->error_bound_b);
         if (r->o->filter) fprintf(stderr, "\n");
         else if (r->lap->conserves == 1) fprintf(stderr, ", heat conserved to %.1e\n", w->mass_drift);
         else fprintf(stderr, ", heat leaves at the border\n");
     }
+}
+
+/* What is wrong with the answers. */
+static void print_notes(const run *r)
+{
+    const hd_report *w = &r->sum.worst;
+    if (w->evidence_b == HD_EVIDENCE_NONE && w->n_lost)
+        fprintf(stderr, "note: %lld distances are error for the most part, "
+                "far smaller than what they are the difference of; pairs finds them\n",
+                (long long)w->n_lost);
     if (w->status == HD_WARN_ACCURACY) fprintf(stderr, "note: %s\n", hd_status_text(w->status));
+}
+
+/* "; 0.31 s, 45.1 MB", the end of the second line. */
+static void print_total(const run *r)
+{
+    fprintf(stderr, "; %.3g s, %.1f MB\n", now() - r->started, (double)r->context.bytes_peak / 1048576.0);
+}
+
+/* "kernel of bunny.obj: ", the beginning of the first line. */
+static void print_subject(const run *r)
+{
+    fprintf(stderr, "%s of %s: ", command_name(r->o->command), r->mesh_name);
 }
 
 static void print_heat(const run *r)
 {
-    print_surface(r);
+    if (r->o->verbose) {
+        print_surface(r);
+        fprintf(stderr, "%s: ", command_name(r->o->command));
+        print_query(r);
+        fprintf(stderr, "\n");
+        print_laplacian(r);
+        print_method(r);
+        print_errors(r);
+        print_notes(r);
+        print_seconds(r);
+        return;
+    }
+    print_subject(r);
     print_query(r);
-    print_laplacian(r);
-    print_method(r);
-    print_errors(r);
-    print_seconds(r);
+    fprintf(stderr, ", method %s\n", method_text(&r->sum));
+    print_bound(r);
+    print_total(r);
+    print_notes(r);
 }
 
-/* As JSON or for people; more: what comes after the Laplacian. */
+/* As JSON or for people; more: what comes after the Laplacian. An estimate is all that its run makes. */
 static void report(const run *r, void (*more)(json *, const run *), void (*print)(const run *))
 {
     json j;
     if (r->o->json) {
-        json_begin(&j, r, stderr);
+        json_begin(&j, r, r->o->dry_run ? stdout : stderr);
         json_laplacian(&j, r->lap);
         more(&j, r);
         json_end(&j, r);
@@ -3470,7 +3590,7 @@ static void json_estimate(json *j, const run *r)
 
 static void print_cost(const run *r, const char *name, const hd_cost *c)
 {
-    fprintf(stderr, "%-10s %9.3g flops, %8.3g s, %9.1f MB%s\n", name, c->flops, c->seconds,
+    printf("%-10s %9.3g flops, %8.3g s, %9.1f MB%s\n", name, c->flops, c->seconds,
             1e-6 * (r->estimate.bytes_in_use + c->bytes), c->fits ? "" : ", too much");
 }
 
@@ -3479,21 +3599,21 @@ static void print_estimate(const run *r)
     const hd_estimate *e = &r->estimate;
     const hd_cost *c = &e->cost[0];
     int m;
-    fprintf(stderr, "dry run: method %s (%s)\n", word_of(METHODS, (int)e->method), e->reason);
-    fprintf(stderr, "%s: %.3g flops, about %.3g s on one core\n",
+    printf("dry run: method %s (%s)\n", word_of(METHODS, (int)e->method), e->reason);
+    printf("%s: %.3g flops, about %.3g s on one core\n",
             e->analysed ? "by the analysis of the pattern" : "guessed before the analysis of the pattern",
             c->flops, c->seconds);
-    fprintf(stderr, "memory at the peak %.1f MB, of which %.1f MB are in use now", 1e-6 * bytes_needed(r),
+    printf("memory at the peak %.1f MB, of which %.1f MB are in use now", 1e-6 * bytes_needed(r),
             1e-6 * e->bytes_in_use);
-    if (r->context.byte_limit) fprintf(stderr, "; allowed %.1f MB", 1e-6 * (double)r->context.byte_limit);
-    fprintf(stderr, c->fits ? "\n" : ": too much\n");
+    if (r->context.byte_limit) printf("; allowed %.1f MB", 1e-6 * (double)r->context.byte_limit);
+    printf(c->fits ? "\n" : ": too much\n");
     if (c->bytes_most > c->bytes)
-        fprintf(stderr, "with poles of degree 14, if they are needed, %.1f MB\n",
+        printf("with poles of degree 14, if they are needed, %.1f MB\n",
                 1e-6 * (e->bytes_in_use + c->bytes_most));
     for (m = HD_METHOD_AUTO + 1; m <= HD_METHOD_KRYLOV; m++)
         if (e->cost[m].possible && r->o->command != CMD_GEODESIC) print_cost(r, word_of(METHODS, m), &e->cost[m]);
     for (m = 0; m < r->n_ways; m++)
-        fprintf(stderr, "%s needs %.1f MB and about %.3g s\n", r->ways[m].option, 1e-6 * r->ways[m].bytes,
+        printf("%s needs %.1f MB and about %.3g s\n", r->ways[m].option, 1e-6 * r->ways[m].bytes,
                 r->ways[m].seconds);
 }
 
@@ -3533,18 +3653,23 @@ static void print_geodesic(const run *r)
 {
     const hd_geodesic_report *g = &r->geodesic_report;
     const int64_t unreached = count_unreached(r);
-    print_surface(r);
-    fprintf(stderr, "geodesic: %d source%s, t = %.4g (%.4g h^2)\n", r->n_inputs, plural(r->n_inputs), g->t,
-            g->t / (g->h * g->h));
-    fprintf(stderr, "%s factors: %.3g non-zeros each; %.3g flops, ordering %s\n",
-            r->o->border == HD_GEODESIC_BORDER_MEAN ? "three" : "two", (double)g->factor_nnz, g->factor_flops, word_of(ORDERINGS, (int)g->ordering));
-    fprintf(stderr, "residuals %.1e and %.1e, heat followed in %ld stage%s\n", g->residual_heat,
-            g->residual_distance, (long)g->n_stages, plural(g->n_stages));
+    const int full = r->o->verbose;
+    if (full) print_surface(r);
+    if (full) fprintf(stderr, "geodesic: ");
+    else print_subject(r);
+    fprintf(stderr, "%d source%s, t = %.4g (%.4g h^2)\n", r->n_inputs, plural(r->n_inputs), g->t, g->t / (g->h * g->h));
+    if (full)
+        fprintf(stderr, "%s factors: %.3g non-zeros each; %.3g flops, ordering %s\n",
+                r->o->border == HD_GEODESIC_BORDER_MEAN ? "three" : "two", (double)g->factor_nnz, g->factor_flops,
+                word_of(ORDERINGS, (int)g->ordering));
+    fprintf(stderr, "residuals %.1e and %.1e", g->residual_heat, g->residual_distance);
+    if (full) fprintf(stderr, ", heat followed in %ld stage%s\n", (long)g->n_stages, plural(g->n_stages));
+    else print_total(r);
     if (unreached)
         fprintf(stderr, "note: %lld distance%s infinite: nothing leads there\n", (long long)unreached,
                 unreached == 1 ? " is" : "s are");
     if (g->status == HD_WARN_ACCURACY) fprintf(stderr, "note: %s\n", hd_status_text(g->status));
-    print_seconds(r);
+    if (full) print_seconds(r);
 }
 
 static void report_geodesic(const run *r) { report(r, json_geodesic, print_geodesic); }
@@ -3576,17 +3701,21 @@ static void json_spectrum(json *j, const run *r)
 static void print_spectrum(const run *r)
 {
     const hd_spectrum *s = r->spectrum;
-    print_surface(r);
+    const char *proven = s->proven ? "proven complete" : "NOT proven complete";
+    const int full = r->o->verbose;
+    if (full) print_surface(r);
+    else print_subject(r);
     fprintf(stderr, "%ld eigenvalue%s from %.6g to %.6g, largest residual %.1e\n", (long)s->count,
             plural(s->count), s->value[0], s->value[s->count - 1], s->largest_residual);
-    fprintf(stderr, "%s: all others are at least %.6g\n", s->proven ? "proven complete" : "NOT proven complete",
-            s->next);
-    fprintf(stderr, "%ld factorisations, %ld runs, %lld solves; factor: %.3g non-zeros, ordering %s\n",
-            (long)s->n_factors, (long)s->n_runs, (long long)s->n_solves, (double)s->factor_nnz,
-            word_of(ORDERINGS, (int)s->ordering));
+    fprintf(stderr, "%s: all others are at least %.6g", proven, s->next);
+    if (full)
+        fprintf(stderr, "\n%ld factorisations, %ld runs, %lld solves; factor: %.3g non-zeros, ordering %s\n",
+                (long)s->n_factors, (long)s->n_runs, (long long)s->n_solves, (double)s->factor_nnz,
+                word_of(ORDERINGS, (int)s->ordering));
+    else print_total(r);
     if (s->proven && r->spectrum_status == HD_WARN_ACCURACY)
         fprintf(stderr, "note: residuals are above the tolerance\n");
-    print_seconds(r);
+    if (full) print_seconds(r);
 }
 
 static void report_spectrum(const run *r) { report(r, json_spectrum, print_spectrum); }
@@ -4095,7 +4224,7 @@ static int command_finish(run *r, int (*write)(run *), void (*report)(const run 
     if (code) return code;
     if (r->o->dry_run) {
         report_estimate(r);
-        return DONE;
+        return close_stdout();
     }
     code = write(r);
     if (!code) report(r);
@@ -4220,24 +4349,25 @@ static int command_diffuse(run *r)
 
 /* ---- levels ---- */
 
-/* auto:K becomes K values between the least and the largest finite one. */
-static int levels_resolve(const run *r, const double *f, double *level)
+/* auto:K becomes K values between the least and the largest finite one, which range gets. */
+static int levels_resolve(const run *r, const double *f, double *level, double range[2])
 {
     const options *o = r->o;
-    double least = HUGE_VAL, most = -HUGE_VAL;
     int32_t i;
     int k;
+    range[0] = HUGE_VAL;
+    range[1] = -HUGE_VAL;
     for (i = 0; i < r->mesh.n; i++)
         if (isfinite(f[i])) {
-            least = f[i] < least ? f[i] : least;
-            most = f[i] > most ? f[i] : most;
+            range[0] = f[i] < range[0] ? f[i] : range[0];
+            range[1] = f[i] > range[1] ? f[i] : range[1];
         }
-    if (!o->levels && !(least < most))
+    if (!o->levels && !(range[0] < range[1]))
         return fail(FAILED, "%s: column %ld has one value only: there is nothing between",
                     display_name(o->input), o->column);
     for (k = 0; k < o->n_levels; k++) {
         const double u = (k + 1.0) / (o->n_levels + 1.0);
-        level[k] = o->levels ? o->levels[k] : least * (1 - u) + most * u;
+        level[k] = o->levels ? o->levels[k] : range[0] * (1 - u) + range[1] * u;
     }
     return DONE;
 }
@@ -4336,33 +4466,48 @@ static void levels_count(const lev_set *s, double level, int64_t *lines, int64_t
     }
 }
 
-static void levels_report(const run *r, const lev_set *s, const double *level)
+static void levels_json(const run *r, const lev_set *s, const double *level, const double range[2])
 {
     int64_t lines, closed, all_closed = 0;
     double length;
     json j;
     int k;
-    if (r->o->json) {
-        json_begin(&j, r, stderr);
-        json_numbers(&j, "levels", level, r->o->n_levels);
-        for (lines = 0; lines < s->n_lines; lines++) all_closed += s->line[lines].closed;
-        json_integer(&j, "lines", s->n_lines);
-        json_integer(&j, "closed", all_closed);
-        json_integer(&j, "points", s->n_points);
-        json_key(&j, "lengths");
-        for (k = 0; k < r->o->n_levels; k++) {
-            levels_count(s, level[k], &lines, &closed, &length);
-            fprintf(j.out, k ? ", " : "[");
-            json_value(j.out, length);
-        }
-        fprintf(j.out, "]");
-        json_end(&j, r);
-    } else if (!r->o->quiet)
-        for (k = 0; k < r->o->n_levels; k++) {
-            levels_count(s, level[k], &lines, &closed, &length);
+    json_begin(&j, r, stderr);
+    json_numbers(&j, "levels", level, r->o->n_levels);
+    json_numbers(&j, "range", range, 2);
+    for (lines = 0; lines < s->n_lines; lines++) all_closed += s->line[lines].closed;
+    json_integer(&j, "lines", s->n_lines);
+    json_integer(&j, "closed", all_closed);
+    json_integer(&j, "points", s->n_points);
+    json_key(&j, "lengths");
+    for (k = 0; k < r->o->n_levels; k++) {
+        levels_count(s, level[k], &lines, &closed, &length);
+        fprintf(j.out, k ? ", " : "[");
+        json_value(j.out, length);
+    }
+    fprintf(j.out, "]");
+    json_end(&j, r);
+}
+
+static void levels_print(const run *r, const lev_set *s, const double *level, const double range[2])
+{
+    const char *field = display_name(r->o->input);
+    int64_t lines, closed;
+    double length;
+    int k, outside = 0;
+    fprintf(stderr, "levels of %s: %lld line%s at %d value%s, %lld points, %.3g s\n", field, (long long)s->n_lines,
+            plural(s->n_lines), r->o->n_levels, plural(r->o->n_levels), (long long)s->n_points, now() - r->started);
+    for (k = 0; k < r->o->n_levels; k++) {
+        outside += !(level[k] >= range[0] && level[k] <= range[1]);
+        levels_count(s, level[k], &lines, &closed, &length);
+        if (r->o->verbose)
             fprintf(stderr, "level %.9g: %lld line%s, %lld closed, length %.9g\n", level[k], (long long)lines,
                     plural(lines), (long long)closed, length);
-        }
+    }
+    if (outside && range[0] > range[1]) fprintf(stderr, "note: column %ld of %s has no finite value\n", r->o->column, field);
+    else if (outside)
+        fprintf(stderr, "note: %d of %d level%s %s outside the range of column %ld of %s, from %.9g to %.9g\n", outside,
+                r->o->n_levels, outside == 1 ? plural(r->o->n_levels) : "s", outside == 1 ? "is" : "are", r->o->column, field, range[0], range[1]);
 }
 
 /* Is x among the first n levels? Its lines are there already then. */
@@ -4377,6 +4522,7 @@ static int levels_of(run *r, const field_data *field)
 {
     const double *f = field->values + (size_t)r->o->column * (size_t)r->mesh.n;
     double *level = (double *)malloc((size_t)r->o->n_levels * sizeof *level);
+    double range[2];
     lev_mesh mesh;
     lev_set s;
     int code, k;
@@ -4386,13 +4532,14 @@ static int levels_of(run *r, const field_data *field)
     mesh.face_idx = r->mesh.file.face_idx;
     mesh.n_faces = r->mesh.n_faces;
     memset(&s, 0, sizeof s);
-    code = levels_resolve(r, f, level);
+    code = levels_resolve(r, f, level, range);
     for (k = 0; k < r->o->n_levels && !code && !interrupt.asked; k++)
         if (!has_level(level, k, level[k]) && !lev_trace(&s, &mesh, f, level[k]))
             code = fail_memory("the lines");
     if (!code && interrupt.asked) code = INTERRUPTED;
     if (!code) code = levels_write(r, &s);
-    if (!code) levels_report(r, &s, level);
+    if (!code && r->o->json) levels_json(r, &s, level, range);
+    else if (!code && !r->o->quiet) levels_print(r, &s, level, range);
     lev_free(&s);
     free(level);
     return code;
@@ -4836,9 +4983,13 @@ static int run_command(const options *o)
 
 static int fail_command(const char *name)
 {
-    char commands[120];
+    char commands[160];
+    const char *best = NULL;
+    int i, slips = most_slips(name ? strlen(name) : 0);
     list_commands(CMD_ALL, commands, sizeof commands);
+    for (i = 0; name && i < N_COMMANDS; i++) suggest(name, strlen(name), COMMANDS[i].name, &slips, &best);
     if (!name) return fail(USAGE, "a command is missing; there are %s (see heatdiff --help)", commands);
+    if (best) return fail(USAGE, "'%.80s' is not a command; did you mean %s? There are %s", name, best, commands);
     return fail(USAGE, "'%.80s' is not a command; there are %s", name, commands);
 }
 
