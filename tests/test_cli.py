@@ -29,7 +29,7 @@ TOOL = None
 FOLDER = None
 HERE = os.path.dirname(os.path.abspath(__file__))
 POSIX = os.name == "posix"
-COMMANDS = ("info", "kernel", "diffuse", "distance", "pairs", "hks", "trace", "sample", "geodesic", "spectrum", "levels",
+COMMANDS = ("info", "kernel", "diffuse", "smooth", "distance", "pairs", "hks", "trace", "sample", "geodesic", "spectrum", "levels",
             "render", "demo")
 METHODS = ("direct", "krylov", "auto", "iterative")
 KINDS = ("fem", "voronoi-cot")
@@ -703,6 +703,11 @@ up to twelve times :: render a.obj --input=1 --input=2 --input=3 --input=4 --inp
 not '' :: info ''
 one mesh :: info {a.obj b.obj|ico.obj ico.obj}
 mesh :: {demo ico.obj|info|kernel --t 1 --source 0}
+one time :: smooth ico.obj --t {1,2|auto:2}
+--t takes one time >= 0 :: smooth ico.obj --t -1
+.xyz here :: smooth ico.obj -o {x.txt|x.npy|x.png|x}
+{--filter|--column|--no-header} is not an option of smooth :: smooth ico.obj {1}
+natural or dirichlet :: smooth ico.obj --border mean
 takes no --quiet :: kernel ico.obj --source 0 --t 1 --quiet --verbose
 --verbose is not an option :: info ico.obj --verbose
 {--nosuch|-x|--input|--quiet} :: kernel ico.obj --source 0 --t 1 {1}=yes
@@ -743,7 +748,7 @@ natural or dirichlet :: info ico.obj --border neumann
 # Names that are misspelled, and what is meant; ?: nothing.
 MEANT = """--sorce source --tt t --thraeds threads --laplace laplacian --iso isolines --outptu output --precnod precond -source source
 -t t --Source=0 source --xyzzy ? -y ? --input-file-of-mine ? --no ? kernle kernel difuse diffuse dist distance geodesics geodesic
-Spectrum spectrum rendr render nosuch ? x ? """.split()
+Spectrum spectrum smoth smooth rendr render nosuch ? x ? """.split()
 # What is right, although it looks much like the above.
 TAKEN = table("""
 kernel ico.obj --source 0 --t 1 --degree 1 --poles uniform
@@ -753,7 +758,8 @@ kernel ico.obj --source 0 --t 1 {--ordering amd|--method auto --solver minres|--
 kernel {patch-9.off|ico.obj} --source 0 --t {auto:1,2h2|auto:17}
 diffuse ico.obj --t 1 --input ones-12.txt --degree 1 --method direct
 pairs ico.obj --input p.txt --t 1 --method krylov
-{sample ico.obj --count 2|geodesic ico.obj --source 0} --t {1|auto:1}
+{sample ico.obj --count 2|geodesic ico.obj --source 0|smooth ico.obj} --t {1|auto:1}
+smooth ico.obj {|--degree 1|-o -|--t 0.1/l1 --method krylov|--t 0|--tufted --laplacian voronoi-cot|--dry-run}
 {hks ico.obj|distance ico.obj --source 0|pairs ico.obj --input p.txt|sample ico.obj --count 2} --t 1 --poles uniform --degree 1
 info {book.obj --lambda 2 --laplacian polygon|quad.obj --lambda 2}
 sample ico.obj --count 2 --t 1 --source {0:0.2,0.3,1,2|0+1,2+3,4+5 --curve|0,1,2 --source-file one.txt}
@@ -809,7 +815,7 @@ class Usage(Case):
             self.assertIn("\nOutput\n" if command else "OBJ", text)
             for name in (command,) + (("OBJ", "OFF", "PLY", "STL", "XYZ") if command in ("", "kernel", "info", "render")
                                       else ()) + \
-                    (("--no-header",) if command not in ("", "info", "render", "demo") else ()):
+                    (("--no-header",) if command not in ("", "info", "render", "demo", "smooth") else ()):
                 self.assertIn(name, text)
             if command:
                 self.assertEqual(self.good(command + " -h").stdout.decode(), text)
@@ -897,6 +903,9 @@ rows :: render patch-9.off ico.obj --input count-100.txt --input count-100.txt -
 count-12.txt :: render ico.obj --input waves-12-2.txt --input count-12.txt --column 1 -o x.png
 count-12.txt :: levels quads-2-2.obj --input count-12.txt --levels 1
 one value :: levels ico.obj --input ones-12.txt --levels auto:2
+.stl needs faces :: smooth cloud-300.xyz -o x.stl
+.xyz is for points :: smooth ico.obj -o x.xyz
+--border dirichlet needs faces :: smooth cloud-300.xyz --border dirichlet
 faces :: levels ico.xyz --input count-12.txt --levels 1
 the time 1e+308h2 is too large for h :: kernel ico.obj --source 0 --t 1e308h2
 is too far above the first :: hks ico.obj --scale-invariant 2 --t 1e-300,1e300
@@ -1039,7 +1048,7 @@ class Failures(Case):
     def test_meshes_of_every_command(self):
         """A mesh that is not there, and one that no heat can be on."""
         file("p.txt", "0 1\n")
-        for line in ("kernel --source 0 --t 1", "diffuse --input count-3.txt --t 1", "distance --source 0 --t 1", "hks --t 1",
+        for line in ("kernel --source 0 --t 1", "diffuse --input count-3.txt --t 1", "smooth -o x.obj", "distance --source 0 --t 1", "hks --t 1",
                      "pairs --input p.txt --t 1",
                      "trace --t 1", "sample --count 1 --t 1", "geodesic --source 0", "spectrum -k 1",
                      "levels --input count-3.txt --levels 1",
@@ -1156,7 +1165,7 @@ class Hostile(Case):
                             ("hks ico.obj --t 1", fields), ("trace ico.obj --t 1", "txt csv npy"),
                             ("sample ico.obj --t 1 --count 3", "txt csv npy"),
                             ("geodesic ico.obj --source 0", fields), ("spectrum ico.obj --count 3", fields),
-                            ("render ico.obj --input count-12.txt", "png"),
+                            ("render ico.obj --input count-12.txt", "png"), ("smooth ico.obj", "obj off ply stl vtu"),
                             ("levels ico.obj --input count-12.txt --levels auto:3", "txt csv npy obj")):
             for kind in kinds.split():
                 self.hostile("over.%s: cannot write: " % kind, line, "--quiet", *small(kind), "-o", "over." + kind,
@@ -1257,7 +1266,8 @@ class Memory(Case):
     RUNS = (
         "info ico.obj", "kernel ico.obj --source 0 --t 1h2,auto:2 -o x.png --size 64x64",
         "kernel ico.off --source 0,1:0.2,0.3 --t 1h2 -o x.vtu",
-        "diffuse ico.ply --input count-12.npy --t 1h2,3h2 -o x.ply",
+        "diffuse ico.ply --input count-12.npy --t 1h2,3h2 -o x.ply", "smooth patch-4.off --border dirichlet -o x.off",
+        "smooth cloud-300.xyz -o x.xyz",
         "kernel ico.stl --source 0,3 --t 4,1,3 --method krylov -o x.csv",
         "distance ico.stl --source 0,3 --t 1 --matrix -o x.csv",
         "distance ico.obj --source-file spots.txt --t 1 --nearest -o x.obj",
@@ -2315,6 +2325,104 @@ class Geodesic(Case):
         one = self.rows("geodesic patch-9.off --source 3,40")
         self.assertAlmostEqual(r["asymmetry"], abs(one[3][1] - one[40][0]))
         self.assertEqual(r["unreached"], 0)
+
+
+def read_off(data):
+    """Places and faces."""
+    rows = [row.split() for row in data.decode().splitlines()]
+    n, m = int(rows[1][0]), int(rows[1][1])
+    assert rows[0] == ["OFF"] and len(rows) == n + m + 2 and all(int(row[0]) == len(row) - 1 for row in rows[n + 2:])
+    return [[float(x) for x in row] for row in rows[2:n + 2]], [tuple(map(int, row[1:])) for row in rows[n + 2:]]
+
+
+class Smooth(Case):
+    """Vertices move as their coordinates diffuse."""
+
+    def smooth(self, line, *more):
+        """Places and faces, and the report, which tells how far they went."""
+        r = self.report("smooth -o s.off " + line, *more)
+        return *read_off(taken("s.off")), r
+
+    def test_coordinates_diffuse(self):
+        for mesh, more in (("patch-9.off", "--t 2h2"), ("ico.obj", ""), ("mixed.obj", "--t 0.3"), ("parts.obj", "--t 1h2 --laplacian cot"),
+                           ("cloud-300.xyz", "--tufted --t 3h2"), ("patch-9.off", "--t 2/l1 --method krylov")):
+            v, f = spec(mesh)[2]
+            got, faces, r = self.smooth(mesh + " " + more)
+            t = more if "--t " in more else more + " --t 1h2"
+            want = self.rows("diffuse %s --input" % mesh, file("v.txt", [[float(x) for x in p] for p in v]), *t.split())
+            self.close(got, want, 1e-6)
+            self.assertEqual(faces, [tuple(c) for c in f if len(c) > 2])
+            away = [math.dist(p, q) for p, q in zip(v, got)]
+            self.assertAlmostEqual(r["moved_most"], max(away), 12)
+            self.assertAlmostEqual(r["moved_mean"], sum(away) / len(away), 12)
+            self.assertTrue(0 < r["coordinate_error"] < 1e-6 and max(away) > 1e-3, r)
+        v = spec("loose.obj")[2][0]
+        self.assertEqual(self.smooth("loose.obj --t 3h2")[0][12], list(v[12]))           # in no face
+        self.assertEqual(self.smooth("ico.obj --t 0")[0], [list(p) for p in icosahedron()[0]])
+
+    def test_bound(self):
+        """Against the truth, also far from the origin, where coordinates are large and moves small."""
+        v, f = spec("patch-4.obj")[2]
+        m = dense_modes("patch-4.obj", "fem")
+        for away in (0.0, 2.0 ** 20):
+            file("away.obj", obj_text([(x + away, y, z) for x, y, z in v], f))
+            got, _, r = self.smooth("away.obj --t 0.5")
+            want = transposed([m.applied(heat(0.5), [p[c] for p in v]) for c in range(3)])
+            off = max(abs(a - b - away * (c == 0)) for p, q in zip(got, want) for c, (a, b) in enumerate(zip(p, q)))
+            self.assertTrue(off <= r["coordinate_error"] + 1e-12 and r["coordinate_error"] < 1e-6, (off, r["coordinate_error"]))
+
+    def test_borders(self):
+        """Held, they stay where they are, and what is inside tends to a shape with L x = 0. Without a border nothing is held."""
+        v, f = spec("patch-4.obj")[2]
+        L, B = cotan_and_fem(v, f)
+        inside = [6, 7, 8, 11, 12, 13, 16, 17, 18]
+        A, M = ([[X[i][j] for j in inside] for i in inside] for X in (L, B))
+        C = cholesky(M)
+        values, q = jacobi(solve(C, transposed(solve(C, A))))
+        m = Modes(values, solve(transposed(C), transposed(q)), matmul(C, transposed(q)))
+        y = solve(A, [[sum(L[i][j] * v[j][c] for j in range(25)) for c in range(3)] for i in inside])
+        for t in (0.3, 3.0, 1000.0):
+            got, _, r = self.smooth("patch-4.obj --border dirichlet --t %r" % t)
+            want = [list(p) for p in v]
+            for c in range(3):
+                for i, a, b in zip(inside, m.applied(heat(t), [row[c] for row in y]), y):
+                    want[i][c] += a - b[c]
+            self.assertEqual([p for i, p in enumerate(got) if i not in inside], [list(p) for i, p in enumerate(v) if i not in inside])
+            self.close(got, want, 1e-8)
+            self.assertLess(max(abs(a - b) for p, q in zip(got, want) for a, b in zip(p, q)), (r["coordinate_error"] or 1) + 1e-12)
+            self.assertTrue(t > 100 or r["coordinate_error"] < 1e-6)     # what has faded has no relative bound
+        self.close(self.smooth("ico.obj --border dirichlet --t 2h2")[0], self.smooth("ico.obj --t 2h2")[0], 1e-9)
+        mixed = file("mixed.off", off_text(*apart(patch(4), icosahedron())))     # one piece with a border, one without
+        h2 = self.report("info " + mixed)["h"] ** 2
+        got = self.smooth(mixed + " --border dirichlet --t 1h2")[0]
+        ball = self.smooth("ico.obj --t", repr(h2))[0]
+        self.close(got[25:], [[x + 10, y, z] for x, y, z in ball], 1e-9)
+        self.close(got[:25], self.smooth("patch-4.obj --border dirichlet --t", repr(h2))[0], 1e-9)
+
+    def test_formats(self):
+        """The same shape in each, and without -o in the one that was read."""
+        want, faces, _ = self.smooth("roof.obj --t 0.2")
+        for e in ("obj", "off", "ply", "stl", "OBJ"):
+            self.good("smooth roof.obj --t 0.2 -o r." + e)
+            got, same, _ = self.smooth("r.%s --t 0" % e)
+            if e == "stl":                       # corners of triangles, in 32 bits
+                self.assertEqual((len(got), len(same)), (6, 4))
+                got, same = sorted(got), faces
+                self.close(got, sorted(want), 1e-6)
+            else:
+                self.close(got, want, 1e-15)
+            self.assertEqual(same, faces)
+        self.assertEqual(counted(self.data("r.vtu", "smooth roof.obj --t 0.2")), (6, 3))
+        for name, head in (("ico.obj", b"v "), ("ico.off", b"OFF\n12 20 0\n"), ("ico.ply", b"ply\n"), ("ico.stl", b"binary STL"),
+                           ("cloud-300.xyz", b"")):
+            for more in ((), ("-o", "-")):
+                out = self.good("smooth", name, *more).stdout
+                self.assertTrue(out.startswith(head) and len(out) > 300)
+                self.assertEqual(self.report("info " + file("out." + name[-3:], out))["n"], 300 if name[-3:] == "xyz" else 12)
+        self.bad(1, "too large for the 32 bits of STL", "smooth --t 0 -o x.stl", file("big.obj", obj_text(*of_corners((0, 0, 0), (1e39, 0, 0), (0, 1e39, 0)))))
+        self.assertRegex(self.good("smooth patch-9.off -o x.obj").stderr.decode(),
+                         r"\Asmooth of patch-9.off: vertices moved by \S+ on average, \S+ at most, t = 1h2, fem Laplacian, method \w+\n"
+                         r"each coordinate is off by at most \S+; \S+ s, \S+ MB\n\Z")
 
 
 class Levels(Case):

@@ -363,11 +363,11 @@ static int output_format(const char *path)
 
 enum { CMD_INFO = 1, CMD_KERNEL = 2, CMD_DIFFUSE = 4, CMD_RENDER = 8, CMD_DEMO = 16, CMD_GEODESIC = 32,
        CMD_HKS = 64, CMD_DISTANCE = 128, CMD_PAIRS = 256, CMD_SAMPLE = 512, CMD_SPECTRUM = 1024,
-       CMD_TRACE = 2048, CMD_LEVELS = 4096, CMD_ALL = 8191,
+       CMD_TRACE = 2048, CMD_LEVELS = 4096, CMD_SMOOTH = 8192, CMD_ALL = 16383,
        CMD_TABLES = CMD_PAIRS | CMD_SAMPLE | CMD_TRACE,
-       CMD_HEAT = CMD_KERNEL | CMD_DIFFUSE | CMD_HKS | CMD_DISTANCE | CMD_TABLES,
+       CMD_HEAT = CMD_KERNEL | CMD_DIFFUSE | CMD_SMOOTH | CMD_HKS | CMD_DISTANCE | CMD_TABLES,
        /* results have a row per vertex */
-       CMD_SOLVES = CMD_HEAT | CMD_GEODESIC | CMD_SPECTRUM, CMD_FIELDS = CMD_SOLVES & ~CMD_TABLES,
+       CMD_SOLVES = CMD_HEAT | CMD_GEODESIC | CMD_SPECTRUM, CMD_FIELDS = CMD_SOLVES & ~(CMD_TABLES | CMD_SMOOTH),
        /* by selected inversion, which only the direct method has */
        CMD_METRIC = CMD_DISTANCE | CMD_PAIRS | CMD_SAMPLE,
        CMD_INVERTS = CMD_HKS | CMD_DISTANCE | CMD_SAMPLE | CMD_TRACE,
@@ -736,12 +736,17 @@ static int parse_sources(options *o, const option_def *def, const char *text)
     "0.5*12:0.2,0.3+7"
 
 static const option_def OPTIONS[] = {
-    { "t", 0, CMD_HEAT, 1, parse_times, 0, NULL, 0, 0, "T[,T..]",
+    { "t", 0, CMD_HEAT & ~CMD_SMOOTH, 1, parse_times, 0, NULL, 0, 0, "T[,T..]",
       "times >= 0: numbers such as 0.01, multiples of h^2 such as 10h2, or auto:K for K of them",
       "diffusion times: absolute (0.01), multiples of the squared\n"
       "mean edge length (10h2), or auto:K, K times that suit the area;\n"
       "0.1/l1 is 0.1 divided by the first eigenvalue" },
-    { "filter", 0, CMD_HEAT & ~CMD_TRACE, 1, parse_filter, 0, FILTERS, 0, 0, "NAME:A[,B]",
+    { "t", 0, CMD_SMOOTH, 1, parse_times, 0, NULL, 0, 0, "T",
+      "one time >= 0: a number such as 0.01, or a multiple of h^2 such as 2h2",
+      "how long coordinates diffuse: absolute (0.01), in multiples of the\n"
+      "squared mean edge length (default: 1h2) or of one over the first\n"
+      "eigenvalue (0.1/l1). 1h2 takes noise away, 10h2 small details" },
+    { "filter", 0, CMD_HEAT & ~(CMD_TRACE | CMD_SMOOTH), 1, parse_filter, 0, FILTERS, 0, 0, "NAME:A[,B]",
       "heat:T, wave:E,SIGMA, mexican-hat:T, resolvent:T, fractional:T,S, band:LOW,HIGH or "
       "biharmonic:FLOOR",
       "instead of --t: f(lambda) of the eigenvalues instead of exp. heat:T\n"
@@ -827,7 +832,10 @@ static const option_def OPTIONS[] = {
       "edges, from its first corner to the second, from there to the\n"
       "third, and back, as text or .npy. The coordinates of the\n"
       "vertices then serve only pictures and files" },
-    { "border", 0, CMD_LAPLACIAN, 0, parse_words, AT(border), BORDERS, 0, 0, "NAME", "natural or dirichlet",
+    { "border", 0, CMD_SMOOTH, 0, parse_words, AT(border), BORDERS, 0, 0, "NAME", "natural or dirichlet",
+      "of meshes: natural (default): borders move as all else does, and\n"
+      "holes widen; dirichlet: the vertices of borders stay where they are" },
+    { "border", 0, CMD_LAPLACIAN & ~CMD_SMOOTH, 0, parse_words, AT(border), BORDERS, 0, 0, "NAME", "natural or dirichlet",
       "of meshes: natural (default): no heat leaves through a border;\n"
       "dirichlet: the vertices of borders are held at zero" },
     { "border", 0, CMD_GEODESIC, 0, parse_words, AT(border), GEODESIC_BORDERS, 0, 0, "NAME",
@@ -860,7 +868,7 @@ static const option_def OPTIONS[] = {
       "degree of the rational approximation, 1..14 (default: by the\n"
       "error); not for krylov, which has none" },
     { "poles", 0, CMD_HEAT, 0, parse_words, AT(poles), POLES, 0, 0, "NAME", "uniform, kernel or diagonal",
-      "uniform (default of diffuse), kernel (of kernel and pairs) or\n"
+      "uniform (default of diffuse, smooth), kernel (of kernel, pairs) or\n"
       "diagonal (of hks, distance and sample)" },
     { "tol", 0, CMD_SPECTRUM, 0, parse_tol, 0, NULL, 0, 0, "E", "a number between 0 and 1, such as 1e-10",
       "residuals relative to eigenvalues (1e-10)" },
@@ -909,7 +917,10 @@ static const option_def OPTIONS[] = {
       "quality, quality_1, ..; .obj has only the colours" },
     { "output", 'o', CMD_LEVELS, 0, parse_text, AT(output), NULL, 0, 0, "FILE", "a file name",
       "where the lines go: .obj, or .txt, .csv or .npy as a table;\n- or nothing: standard output, as text" },
-    { "no-header", 0, CMD_SOLVES | CMD_LEVELS, 0, parse_flag, AT(no_header), NULL, 0, 0, NULL, "no value",
+    { "output", 'o', CMD_SMOOTH, 0, parse_text, AT(output), NULL, 0, 0, "FILE", "a file name",
+      "where the mesh goes: .obj .off .ply .stl .vtu, or .xyz for points;\n"
+      "- or nothing: standard output, in the format that was read" },
+    { "no-header", 0, (CMD_SOLVES & ~CMD_SMOOTH) | CMD_LEVELS, 0, parse_flag, AT(no_header), NULL, 0, 0, NULL, "no value",
       "of .csv: no first line with the names of the columns" },
     { "output", 'o', CMD_RENDER, 0, parse_text, AT(output), NULL, 0, 0, "FILE", "the file name of a .png",
       "the .png, or - for standard output" },
@@ -969,6 +980,10 @@ static const command_def COMMANDS[] = {
       VERTEX_ROWS "A column for each field (column of F) and time, fields outermost: two fields with\n"
       "--t 1,2 give f0_1, f0_2, f1_1, f1_2, as .csv and .vtu name them. Row i of fC_T is K_T f at\n"
       "vertex i, f column C of F, counted from 0." },
+    { "smooth", CMD_SMOOTH, "smooths the shape: moves its vertices", "[--t T] [OPTIONS] MESH",
+      "The mesh with the same vertices and faces, in the same order, each coordinate x replaced by\n"
+      "K_T x. Vertices in no face stay. Nothing else of the file is kept. The report says how far\n"
+      "vertices moved, and bounds the error of their coordinates." },
     { "geodesic", CMD_GEODESIC, "distances along the surface, by the heat method",
       "--source S[,S..] [--t T] [OPTIONS] MESH",
       VERTEX_ROWS "A column for each source, in the order of --source: v3_1h2, v8_1h2, as .csv and .vtu\n"
@@ -1172,6 +1187,9 @@ static int check_output(const options *o)
         return fail(USAGE, "-o takes a name that ends in %s.txt, .csv or .npy here, not '%.200s'",
                     lines ? ".obj, " : "", o->output);
     }
+    if (o->command == CMD_SMOOTH)
+        return strcmp(o->output, "-") == 0 || mio_mesh_format_of(o->output) != MIO_UNKNOWN ? DONE
+               : fail(USAGE, "-o takes a name that ends in .obj, .off, .ply, .stl, .vtu or .xyz here, not '%.200s'", o->output);
     if (output_format(o->output) != MIO_UNKNOWN) return DONE;
     return fail(USAGE,
                 "-o takes a name that ends in .txt, .csv, .npy, .ply, .obj, .vtu or .png, not '%.200s'",
@@ -1228,6 +1246,9 @@ static int check_times(const options *o)
                         word_of(DEFINITIONS, o->definition));
         return DONE;
     }
+    if (o->command == CMD_SMOOTH)
+        return o->n_times > 1 || (o->times && o->times[0].unit == TIME_AUTO && o->times[0].value > 1)
+               ? fail(USAGE, "--t takes one time for smooth, such as 2h2") : DONE;
     if ((o->command & CMD_HEAT) && !o->times)
         return fail(USAGE, "%s needs --t, which takes times such as 0.01,10h2 or auto:4", name);
     for (i = 0; i < o->n_times && (o->command & (CMD_HKS | CMD_METRIC | CMD_TRACE)); i++)
@@ -1377,7 +1398,7 @@ static int check_options(const options *o)
     if ((code = check_times(o)) != DONE || (code = check_definition(o)) != DONE ||
         (code = check_signature(o)) != DONE || (code = check_method(o)) != DONE)
         return code;
-    if (o->degree == 1 && o->poles != HD_POLES_UNIFORM && (o->poles || o->command != CMD_DIFFUSE))
+    if (o->degree == 1 && o->poles != HD_POLES_UNIFORM && (o->poles || !(o->command & (CMD_DIFFUSE | CMD_SMOOTH))))
         return fail(USAGE,
                     "--degree takes 2..14 with --poles kernel or diagonal, and 1..14 with --poles uniform");
     if (o->n_meshes > 1 && o->n_meshes != o->n_inputs)
@@ -1441,6 +1462,7 @@ static void print_help(void)
            "  heatdiff geodesic --source 0 bunny.obj -o geodesic.png\n"
            "  heatdiff spectrum -k 100 bunny.obj -o modes.npy\n"
            "  heatdiff diffuse --input noisy.npy --t 2h2 bunny.obj -o smooth.npy\n"
+           "  heatdiff smooth --t 2h2 bunny.obj -o smooth.obj\n"
            "  heatdiff render --input smooth.npy --isolines 12 bunny.obj -o smooth.png\n"
            "  heatdiff render --input a.npy --input b.npy a.obj b.obj -o pair.png\n"
            "\n%sVertices are counted from 0.\n"
@@ -1832,6 +1854,8 @@ typedef struct run {
     const char **name_list;
     summary sum;
     double bound[2];                 /* pairs: of the kernel and of the distance, at all times */
+    double moved[2], held_error;     /* smooth: means and most of the vertices' ways; error of what is held */
+    double off;                      /* and a bound on the error of coordinates */
     seconds sec;
     double started;
 } run;
@@ -2220,7 +2244,7 @@ static int run_filter(run *r)
 
 static int run_times(run *r)
 {
-    static const time_spec usual = { TIME_H2, 1 };       /* of geodesic, when --t is not given */
+    static const time_spec usual = { TIME_H2, 1 };       /* of geodesic and smooth, when --t is not given */
     const options *o = r->o;
     const int n_given = o->times ? o->n_times : 1;
     const time_spec *given = o->times ? o->times : &usual;
@@ -2486,7 +2510,7 @@ static hd_query query_of(const run *r, int32_t *k)
     if (o->command == CMD_KERNEL) return HD_QUERY_COLUMNS;
     if (o->command == CMD_SPECTRUM) *k = spectrum_pairs(r);
     if (o->command == CMD_SPECTRUM) return HD_QUERY_SPECTRUM;
-    if (o->command == CMD_DIFFUSE) return HD_QUERY_FIELDS;
+    if (o->command & (CMD_DIFFUSE | CMD_SMOOTH)) return HD_QUERY_FIELDS;
     if (o->command == CMD_TRACE) return HD_QUERY_TRACE;
     if (by_trace(o)) return HD_QUERY_TRACE;
     if (o->command == CMD_HKS)
@@ -3361,6 +3385,11 @@ static void json_query(json *j, const run *r)
         json_text(j, "filter", o->filter);
         json_number(j, "filter_error", r->filter.max_error / r->filter.largest);
     }
+    if (o->command == CMD_SMOOTH && !o->dry_run) {
+        json_number(j, "moved_mean", r->moved[0]);
+        json_number(j, "moved_most", r->moved[1]);
+        json_number(j, "coordinate_error", r->off);
+    }
     json_numbers(j, "times", r->times, o->filter || is_timeless(o) ? 0 : r->n_times);
 }
 
@@ -3435,11 +3464,13 @@ static void print_query(const run *r)
     if (o->command & (CMD_PAIRS | CMD_SAMPLE))
         fprintf(stderr, "%lld %s%s, ", (long long)r->rows, o->command == CMD_PAIRS ? "pair" : "point",
                 plural(r->rows));
-    else if (!(o->command & (CMD_HKS | CMD_TRACE)))
+    else if (!(o->command & (CMD_HKS | CMD_TRACE | CMD_SMOOTH)))
         fprintf(stderr, "%d %s%s, ", r->n_inputs, r->sources ? "source" : "field", plural(r->n_inputs));
     if (o->filter)
         fprintf(stderr, "filter %s to %.1e of its largest value, ", o->filter,
                 r->filter.max_error / r->filter.largest);
+    else if (o->command == CMD_SMOOTH)
+        fprintf(stderr, "vertices moved by %.3g on average, %.3g at most, t = %s, ", r->moved[0], r->moved[1], r->time_names[0]);
     else if (!is_timeless(o)) fprintf(stderr, "%d time%s, ", r->n_times, plural(r->n_times));
     if (o->command & CMD_METRIC) fprintf(stderr, "%s, ", word_of(DEFINITIONS, o->definition));
     fprintf(stderr, "%s Laplacian%s%s", word_of(LAPLACIANS, (int)r->lap->kind),
@@ -3469,6 +3500,7 @@ static void print_bound(const run *r)
     if (r->o->command == CMD_PAIRS && !is_timeless(r->o))
         fprintf(stderr, "error of K at most %.1e of its largest value, of d at most %.1e of its largest", r->bound[0],
                 r->bound[1]);
+    else if (r->o->command == CMD_SMOOTH) fprintf(stderr, "each coordinate is off by at most %.1e", r->off);
     else fprintf(stderr, "error at most %.1e of the largest value", r->sum.worst.error_bound);
 }
 
@@ -4347,6 +4379,211 @@ static int command_diffuse(run *r)
     return code;
 }
 
+/* ---- smooth ---- */
+/* Vertices move by K_t f - f, f their coordinates from the middle of the shape, as K_t keeps constants. Where borders
+ * are held, f is instead how far vertices are from the shape w that heat tends to: L w = 0 inside, w = x on borders.
+ * It is zero on borders and L f = L x inside, so that K_t with borders held at zero makes x of w + K_t f. */
+
+/* L of all vertices times the three columns of f, at the rows that are not held: the right-hand sides. On components
+ * without a border f stays, and their rows of val become those of the identity. */
+static void held_sides(const hd_laplacian *lap, const hd_laplacian *whole, const double *f, double *val, double *side)
+{
+    const size_t n = (size_t)lap->n, rows = (size_t)lap->n_active;
+    int64_t p;
+    size_t c;
+    int32_t i;
+    memcpy(val, lap->L.val, (size_t)lap->L.nnz * sizeof *val);
+    for (i = 0; i < lap->n_active; i++) {
+        const int32_t v = lap->vertex[i], row = whole->row[v];
+        const int closed = lap->conserves && isfinite(lap->component_mass[lap->component[i]]);
+        for (c = 0; c < 3; c++) side[c * rows + (size_t)i] = closed ? f[c * n + (size_t)v] : 0;
+        for (p = lap->L.row_ptr[i]; closed && p < lap->L.row_ptr[i + 1]; p++) val[p] = lap->L.col[p] == i;
+        for (p = whole->L.row_ptr[row]; !closed && p < whole->L.row_ptr[row + 1]; p++)
+            for (c = 0; c < 3; c++)
+                side[c * rows + (size_t)i] += whole->L.val[p] * f[c * n + (size_t)whole->vertex[whole->L.col[p]]];
+    }
+}
+
+/* side -= A y */
+static void held_residual(const hd_csr *a, const double *val, const double *y, double *side)
+{
+    const size_t rows = (size_t)a->n_rows;
+    int64_t p;
+    int32_t i;
+    size_t c;
+    for (i = 0; i < a->n_rows; i++)
+        for (p = a->row_ptr[i]; p < a->row_ptr[i + 1]; p++)
+            for (c = 0; c < 3; c++) side[c * rows + (size_t)i] -= val[p] * y[c * rows + (size_t)a->col[p]];
+}
+
+/* Solves with one refinement, whose largest entry tells how far off the solution was. work: [9 n_active] */
+static hd_status held_solve(run *r, const double *val, double *work, hd_error *err)
+{
+    const size_t size = 3 * (size_t)r->lap->n_active;
+    double *side = work, *y = work + size, *d = y + size;
+    hd_ldl_opts opts;
+    hd_ldl *f = NULL;
+    size_t i;
+    memset(&opts, 0, sizeof opts);
+    opts.ordering = (hd_ordering)r->o->ordering;
+    opts.xyz = r->lap->xyz;
+    opts.context = &r->context;
+    if (hd_ldl_analyse(&f, &r->lap->L, &opts, NULL, err) >= 0 && hd_ldl_factor(f, val, NULL, err) >= 0 &&
+        hd_ldl_solve(f, 3, side, 0, y, 0, err) >= 0) {
+        held_residual(&r->lap->L, val, y, side);
+        (void)hd_ldl_solve(f, 3, side, 0, d, 0, err);
+        for (i = 0; i < size; i++) {
+            keep_larger(&r->held_error, fabs(d[i]));
+            y[i] += d[i];
+        }
+    }
+    hd_ldl_free(f);
+    return err->status;
+}
+
+/* The Laplacian that holds nothing. */
+static hd_status held_whole(run *r, hd_laplacian **whole, hd_error *err)
+{
+    const options *o = r->o;
+    hd_laplacian *held = r->lap;
+    const double seconds_before = r->sec.assemble;
+    options natural = *o;
+    hd_status status;
+    natural.border = HD_BORDER_NATURAL;
+    r->o = &natural;
+    r->lap = NULL;
+    status = run_laplacian(r, err);
+    *whole = r->lap;
+    r->lap = held;
+    r->o = o;
+    r->sec.assemble += seconds_before;
+    return status;
+}
+
+/* From coordinates to f, see above. */
+static int hold_borders(run *r, double *f)
+{
+    const size_t n = (size_t)r->mesh.n, rows = (size_t)r->lap->n_active;
+    double *val = new_columns(r->lap->L.nnz, 1), *work = new_columns(r->lap->n_active, 9);
+    hd_laplacian *whole = NULL;
+    hd_error err;
+    size_t i, c;
+    int code = val && work ? DONE : fail_memory("the borders");
+    memset(&err, 0, sizeof err);
+    if (!code && held_whole(r, &whole, &err) < 0) code = fail_laplacian(r, &err);
+    if (!code) {
+        held_sides(r->lap, whole, f, val, work);
+        interrupt.patient = 1;
+        if (held_solve(r, val, work, &err) < 0) code = fail_library(r->mesh_name, &err);
+        code = leave_computation(code);
+    }
+    for (i = 0; i < n && !code; i++)
+        for (c = 0; c < 3; c++) f[c * n + i] = r->lap->row[i] < 0 ? 0 : work[(3 + c) * rows + (size_t)r->lap->row[i]];
+    hd_laplacian_free(whole);
+    free(val);
+    free(work);
+    return code;
+}
+
+/* The new coordinates, how far vertices moved, and how far off they can be: the bound of K_t f, twice the error of f
+ * and the rounding of the sum. */
+static double *smooth_places(run *r)
+{
+    const size_t n = (size_t)r->mesh.n;
+    double *xyz = new_columns(r->mesh.n, 3), largest = 0, farthest = 0;
+    size_t i, c;
+    for (i = 0; i < n && xyz; i++) {
+        double way2 = 0;
+        for (c = 0; c < 3; c++) {
+            const double x = r->mesh.xyz[3 * i + c], by = r->values[c * n + i] - r->fields[c * n + i];
+            xyz[3 * i + c] = x + by;
+            way2 += by * by;
+            keep_larger(&largest, fabs(r->values[c * n + i]));
+            keep_larger(&farthest, fabs(x));
+        }
+        r->moved[0] += sqrt(way2) / (double)n;
+        keep_larger(&r->moved[1], sqrt(way2));
+    }
+    r->off = r->sum.worst.error_bound * largest + 2 * r->held_error + DBL_EPSILON * farthest;
+    return xyz;
+}
+
+/* The format of the output; to standard output that of the input. */
+static int smooth_format(const run *r)
+{
+    static const word formats[] = { { "OBJ", MIO_OBJ }, { "OFF", MIO_OFF }, { "PLY", MIO_PLY }, { "STL", MIO_STL }, { "XYZ", MIO_TXT } };
+    size_t i;
+    if (r->o->output && !is_stream(r->o->output)) return mio_mesh_format_of(r->o->output);
+    for (i = 0; i + 1 < sizeof formats / sizeof *formats && strncmp(formats[i].name, r->mesh.file.format, 3) != 0; i++) {}
+    return formats[i].value;
+}
+
+static int write_smooth(run *r)
+{
+    const double start = now();
+    const int kind = smooth_format(r);
+    double *xyz = smooth_places(r);
+    mio_mesh mesh = r->mesh.file;
+    mio_output out;
+    mio_error e;
+    int status, c;
+    if (!xyz) return fail_memory("the result");
+    memset(&out, 0, sizeof out);
+    mesh.xyz = xyz;
+    if (kind == MIO_TXT) {               /* points as three columns */
+        for (c = 0; c < 3; c++)
+            for (out.rows = 0; out.rows < mesh.n; out.rows++) r->values[c * (int64_t)mesh.n + out.rows] = xyz[3 * out.rows + c];
+        out.ld = mesh.n;
+        out.cols = 3;
+        out.values = r->values;
+    }
+    bar_show("writing", 0);
+    status = mio_write(r->o->output, kind, &mesh, &out, &e);
+    bar_hide();
+    free(xyz);
+    r->sec.write = now() - start;
+    return status < 0 ? fail_file(&e) : DONE;
+}
+
+/* Coordinates from the middle of the shape, as three fields. */
+static int smooth_fields(run *r, double *f)
+{
+    const size_t n = (size_t)r->mesh.n;
+    double low[3], high[3];
+    size_t i, c;
+    bounding_box(&r->mesh, low, high);
+    for (c = 0; c < 3; c++)
+        for (i = 0; i < n; i++) f[c * n + i] = r->mesh.xyz[3 * i + c] - (low[c] / 2 + high[c] / 2);
+    return r->lap->n_held && !r->o->dry_run ? hold_borders(r, f) : DONE;
+}
+
+/* Can the shape be written in the format that is asked for? */
+static int check_smooth(const run *r)
+{
+    const int kind = smooth_format(r), points = r->mesh.n_tri == 0;
+    if (points && kind == MIO_STL) return fail(FAILED, "%s: .stl needs faces, and there are none", r->mesh_name);
+    if (!points && kind == MIO_TXT) return fail(FAILED, "%s: .xyz is for points, and this file has faces", r->mesh_name);
+    return DONE;
+}
+
+static int command_smooth(run *r)
+{
+    double *f = NULL;
+    int code = run_load(r);
+    if (!code) code = check_smooth(r);
+    if (!code) code = run_assemble(r);
+    if (!code) code = run_times(r);
+    if (!code && (f = new_columns(r->mesh.n, 3)) == NULL) code = fail_memory("the coordinates");
+    if (!code) code = smooth_fields(r, f);
+    r->n_inputs = 3;
+    r->fields = f;
+    r->field_name = r->mesh_name;
+    if (!code) code = command_finish(r, write_smooth, report_heat);
+    r->fields = NULL;
+    free(f);
+    return code;
+}
+
 /* ---- levels ---- */
 
 /* auto:K becomes K values between the least and the largest finite one, which range gets. */
@@ -4969,6 +5206,7 @@ static int run_command(const options *o)
     case CMD_SAMPLE: code = command_sample(&r); break;
     case CMD_TRACE: code = command_trace(&r); break;
     case CMD_DIFFUSE: code = command_diffuse(&r); break;
+    case CMD_SMOOTH: code = command_smooth(&r); break;
     case CMD_GEODESIC: code = command_geodesic(&r); break;
     case CMD_SPECTRUM: code = command_spectrum(&r); break;
     case CMD_LEVELS: code = command_levels(&r); break;

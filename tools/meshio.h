@@ -1,7 +1,7 @@
 /* meshio.h - meshes, point sets and tables of numbers: read from and written to files; for tools and tests, only the C library
 
    Reads  OBJ, OFF, PLY, STL, XYZ (meshes and point sets), and fields as text, CSV or .npy.
-   Writes text, CSV, .npy, PLY, OBJ, VTU. All functions are static.
+   Writes text, CSV, .npy, PLY, OBJ, VTU, and meshes alone as OFF and STL. All functions are static.
 
        mio_mesh mesh;  mio_error e;  mio_output out = {0};
        if (mio_load(&mesh, "bunny.obj", NULL, &e) < 0) { fprintf(stderr, "%s\n", e.text); return 1; }
@@ -81,7 +81,7 @@ typedef struct mio_output {
     int (*stop)(void);
 } mio_output;
 
-enum { MIO_UNKNOWN = 0, MIO_TXT, MIO_CSV, MIO_NPY, MIO_PLY, MIO_OBJ, MIO_VTU };
+enum { MIO_UNKNOWN = 0, MIO_TXT, MIO_CSV, MIO_NPY, MIO_PLY, MIO_OBJ, MIO_VTU, MIO_OFF, MIO_STL };
 
 /* A file being written, or standard output. Written beside its target under another name and renamed when complete, so that
    the target is either as it was or whole. Devices (and what lies in /dev) are written as they are; a symbolic link is replaced
@@ -118,7 +118,8 @@ typedef struct mio_file {
               Writes `PATH:LINE: ...` (line < 1: `PATH: ...`) and returns MIO_FAILED: for the caller's own complaints.
 
    Writing: all return 0, MIO_FAILED or MIO_STOPPED; path NULL or "-" is standard output (which is flushed, not closed).
-     int  mio_format_of(const char *path);               by extension, any case: MIO_TXT.. or MIO_UNKNOWN
+     int  mio_format_of(const char *path);               by extension, any case: MIO_TXT.. MIO_VTU, which take fields, or MIO_UNKNOWN
+     int  mio_mesh_format_of(const char *path);          the same of a mesh without fields: MIO_PLY.. or, for .xyz, MIO_TXT
      int  mio_has_extension(const char *path, const char *extension);       extension without the dot, any case
      int  mio_write(const char *path, int format, const mio_mesh *m, const mio_output *o, mio_error *e);
               m may be NULL for MIO_TXT, MIO_CSV, MIO_NPY. Meshes with a field: o->rows must be m->n.
@@ -128,6 +129,8 @@ typedef struct mio_file {
      int  mio_write_ply(const char *path, const mio_mesh *m, const mio_output *o, mio_error *e);   binary; field: quality, quality_1..
      int  mio_write_obj(const char *path, const mio_mesh *m, const mio_output *o, mio_error *e);   v x y z r g b
      int  mio_write_vtu(const char *path, const mio_mesh *m, const mio_output *o, mio_error *e);   field as point data, raw
+     int  mio_write_off(const char *path, const mio_mesh *m, const mio_output *o, mio_error *e);   the mesh alone
+     int  mio_write_stl(const char *path, const mio_mesh *m, const mio_output *o, mio_error *e);   binary; polygons as fans; 32 bits a coordinate
 
    Files of your own (pictures): open, put, close. After a failure the rest is ignored; close reports the first one.
      int  mio_file_open(mio_file *f, const char *path, int (*stop)(void), mio_error *e);
@@ -2080,6 +2083,14 @@ static int mio_format_of(const char *path)
     return MIO_UNKNOWN;
 }
 
+static int mio_mesh_format_of(const char *path)
+{
+    static const char *const names[] = {"ply", "obj", "vtu", "off", "stl"};
+    int i;
+    for (i = 0; i < 5; i++) if (mio_has_extension(path, names[i])) return MIO_PLY + i;
+    return mio_has_extension(path, "xyz") ? MIO_TXT : MIO_UNKNOWN;
+}
+
 static void mio_put_text(mio_file *f, const char *text) { mio_file_put(f, text, strlen(text)); }
 
 /* A line of text of the user's in a place where a line end would do harm. */
@@ -2423,6 +2434,84 @@ static int mio_write_vtu(const char *path, const mio_mesh *m, const mio_output *
     return mio_file_close(&f);
 }
 
+static int mio_write_off(const char *path, const mio_mesh *m, const mio_output *o, mio_error *e)
+{
+    mio_file f;
+    int32_t i, c;
+    int64_t k;
+    if (mio_check_rows(path, m, o, e) < 0) return MIO_FAILED;
+    if (mio_file_open(&f, path, o->stop, e) < 0) return mio_file_close(&f);
+    mio_put_text(&f, "OFF\n");
+    mio_put_integer(&f, m->n);
+    mio_put_text(&f, " ");
+    mio_put_integer(&f, m->n_faces);
+    mio_put_text(&f, " 0\n");
+    for (i = 0; i < m->n && f.status == MIO_OK; i++)
+        for (c = 0; c < 3; c++) {
+            mio_put_double(&f, m->xyz[3 * (size_t)i + (size_t)c]);
+            mio_put_text(&f, c < 2 ? " " : "\n");
+        }
+    for (i = 0; i < m->n_faces && f.status == MIO_OK; i++) {
+        mio_put_integer(&f, m->face_ptr[i + 1] - m->face_ptr[i]);
+        for (k = m->face_ptr[i]; k < m->face_ptr[i + 1]; k++) {
+            mio_put_text(&f, " ");
+            mio_put_integer(&f, m->face_idx[k]);
+        }
+        mio_put_text(&f, "\n");
+    }
+    return mio_file_close(&f);
+}
+
+/* A vector in 32 bits a coordinate, times a factor. */
+static void mio_put_f32(mio_file *f, const double v[3], double factor)
+{
+    int c;
+    for (c = 0; c < 3; c++) {
+        const float x = (float)(v[c] * factor);
+        uint32_t u;
+        memcpy(&u, &x, sizeof u);
+        mio_put_u32(f, u);
+    }
+}
+
+static void mio_put_facet(mio_file *f, const double *a, const double *b, const double *c)
+{
+    double n[3], size;
+    int k;
+    for (k = 0; k < 3; k++) {
+        const int i = (k + 1) % 3, j = (k + 2) % 3;
+        n[k] = (b[i] - a[i]) * (c[j] - a[j]) - (b[j] - a[j]) * (c[i] - a[i]);
+    }
+    size = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    if (!(size > 0 && size <= DBL_MAX)) n[0] = n[1] = n[2] = 0;
+    mio_put_f32(f, n, size > 0 ? 1 / size : 1);
+    mio_put_f32(f, a, 1);
+    mio_put_f32(f, b, 1);
+    mio_put_f32(f, c, 1);
+    mio_file_put(f, "\0\0", 2);
+}
+
+static int mio_write_stl(const char *path, const mio_mesh *m, const mio_output *o, mio_error *e)
+{
+    static const char head[80] = "binary STL by heatdiff";
+    mio_file f;
+    int32_t i;
+    int64_t k;
+    if (mio_check_rows(path, m, o, e) < 0) return MIO_FAILED;
+    for (k = 0; k < 3 * (int64_t)m->n; k++)
+        if (fabs(m->xyz[k]) > (double)FLT_MAX)
+            return mio_fail_at(e, path, 0, "vertex %lld: %g is too large for the 32 bits of STL", (long long)(k / 3), m->xyz[k]);
+    if (mio_file_open(&f, path, o->stop, e) < 0) return mio_file_close(&f);
+    mio_file_put(&f, head, sizeof head);
+    mio_put_u32(&f, (uint32_t)(m->face_ptr[m->n_faces] - 2 * (int64_t)m->n_faces));
+    for (i = 0; i < m->n_faces && f.status == MIO_OK; i++) {
+        const int32_t *v = m->face_idx + m->face_ptr[i];
+        for (k = 1; k + 1 < m->face_ptr[i + 1] - m->face_ptr[i]; k++)
+            mio_put_facet(&f, m->xyz + 3 * (size_t)v[0], m->xyz + 3 * (size_t)v[k], m->xyz + 3 * (size_t)v[k + 1]);
+    }
+    return mio_file_close(&f);
+}
+
 static int mio_write(const char *path, int format, const mio_mesh *m, const mio_output *o, mio_error *e)
 {
     switch (format) {
@@ -2432,7 +2521,9 @@ static int mio_write(const char *path, int format, const mio_mesh *m, const mio_
     case MIO_PLY: return mio_write_ply(path, m, o, e);
     case MIO_OBJ: return mio_write_obj(path, m, o, e);
     case MIO_VTU: return mio_write_vtu(path, m, o, e);
-    default:      return mio_fail_at(e, path, 0, "not a format this writes (txt, csv, npy, ply, obj, vtu)");
+    case MIO_OFF: return mio_write_off(path, m, o, e);
+    case MIO_STL: return mio_write_stl(path, m, o, e);
+    default:      return mio_fail_at(e, path, 0, "not a format this writes (txt, csv, npy, ply, obj, vtu, off, stl)");
     }
 }
 
