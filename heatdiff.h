@@ -11724,13 +11724,27 @@ typedef struct hdi_system {
     hd_c64 theta;
 } hdi_system;
 
-/* Values of a preconditioner: U and D^-1; while it is made, those of A. */
+typedef struct hdi_precond_row hdi_precond_row;
+
+/* A preconditioner of the system a: U and D^-1; while it is made, the values of A. */
 typedef struct hdi_precond {
-    hd_precond kind;
+    const hdi_precond_row *row;
     const hdi_upper *up;
+    hdi_system a;
     hd_c64 *u;       /* [nnz of up] or NULL */
     hd_c64 *d;       /* [n]; jacobi and more */
 } hdi_precond;
+
+/* All there is to know of a kind: a new one is a row of the table below, and its functions. */
+struct hdi_precond_row {
+    int32_t rows, entries;   /* values for each row and for each entry above the diagonal */
+    int32_t vectors;         /* [n] each: work of apply */
+    double steps;            /* of cocg, about, relative to those with mildl */
+    void (*make)(const hdi_precond *m, hd_c64 *work);   /* A to D and U; NULL: U is 0. work [n] */
+    double keep;             /* share of the dropped fill that goes to the diagonal */
+    /* z = M^-1 r, z not r */
+    void (*apply)(const hdi_precond *m, const hd_c64 *r, hd_c64 *z, hd_c64 *work);
+};
 
 #define HDI_ILDL_LEAST 1e-3   /* share of its diagonal entry that a pivot must keep */
 #define HDI_MILDL_KEPT 0.97   /* share of the dropped fill that goes to the diagonal; 1: pivots may vanish */
@@ -11755,7 +11769,8 @@ static int64_t hdi_ildl_seek(const int32_t *col, int64_t p, int64_t end, int32_t
 /* Right-looking incomplete LDL' of the complex-symmetric A, plain transpose. Row k updates the entries (i, j)
  * between its own columns; where the pattern has none, `keep` of the update goes to the diagonal entries of i
  * and j. A vertex with very many neighbours costs no square of their number. diag [n] is work. */
-static void hdi_ildl(const hdi_precond *m, hd_c64 *diag, double keep) {
+static void hdi_ildl(const hdi_precond *m, hd_c64 *diag) {
+    const double keep = m->row->keep;
     const int32_t *col = m->up->col;
     const int64_t *ptr = m->up->ptr;
     hd_c64 *u = m->u, *d = m->d;
@@ -11794,34 +11809,38 @@ static void hdi_ildl(const hdi_precond *m, hd_c64 *diag, double keep) {
 }
 
 /* ---- the kinds ---- */
-/* Each applies z = M^-1 r, z not r. */
 
-static void hdi_ssor(const hdi_precond *m, hd_c64 *diag, double keep) {
+static void hdi_ssor(const hdi_precond *m, hd_c64 *work) {
     int32_t i;
     int64_t p = 0;
-    (void)diag;
-    (void)keep;
+    (void)work;
     for (i = 0; i < m->up->n; i++)
         for (; p < m->up->ptr[i + 1]; p++) m->u[p] = hdi_cdiv(m->u[p], m->d[i]);
 }
 
-static void hdi_none_apply(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z) {
+static void hdi_none_apply(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z,
+                           hd_c64 *work) {
+    (void)work;
     memcpy(z, r, (size_t)m->up->n * sizeof *z);
 }
 
-static void hdi_jacobi_apply(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z) {
+static void hdi_jacobi_apply(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z,
+                             hd_c64 *work) {
     int32_t i;
+    (void)work;
     for (i = 0; i < m->up->n; i++) z[i] = hdi_cmul(r[i], m->d[i]);
 }
 
 /* (I + U') w = r, z = (I + U)^-1 D^-1 w. */
-static void hdi_upper_apply(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z) {
+static void hdi_upper_apply(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z,
+                            hd_c64 *work) {
     const int64_t *HDI_RESTRICT ptr = m->up->ptr;
     const int32_t *HDI_RESTRICT col = m->up->col;
     const hd_c64 *HDI_RESTRICT u = m->u;
     const int32_t n = m->up->n;
     int32_t i;
     int64_t p;
+    (void)work;
     memcpy(z, r, (size_t)n * sizeof *z);
     for (i = 0; i < n; i++) {
         const hd_c64 w = z[i];
@@ -11838,35 +11857,28 @@ static void hdi_upper_apply(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, 
     }
 }
 
-/* All there is to know of a kind: a new one is a row of the table, and its functions. */
-typedef struct hdi_precond_row {
-    int32_t rows, entries;   /* values for each row and for each entry above the diagonal */
-    double steps;            /* of cocg, about, relative to those with mildl */
-    void (*make)(const hdi_precond *m, hd_c64 *work, double keep);   /* A to D and U; NULL: U is 0 */
-    double keep;             /* share of the dropped fill that goes to the diagonal */
-    void (*apply)(const hdi_precond *m, const hd_c64 *r, hd_c64 *z);
-} hdi_precond_row;
-
-static const hdi_precond_row hdi_preconds[] = {              /* by hd_precond */
-    {1, 1, 1, hdi_ildl, HDI_MILDL_KEPT, hdi_upper_apply},    /* auto */
-    {0, 0, 5.5, NULL, 0, hdi_none_apply},
-    {1, 0, 5, NULL, 0, hdi_jacobi_apply},
-    {1, 1, 2, hdi_ssor, 0, hdi_upper_apply},
-    {1, 1, 1.4, hdi_ildl, 0, hdi_upper_apply},
-    {1, 1, 1, hdi_ildl, HDI_MILDL_KEPT, hdi_upper_apply}
+static const hdi_precond_row hdi_preconds[] = {                /* by hd_precond */
+    {1, 1, 0, 1, hdi_ildl, HDI_MILDL_KEPT, hdi_upper_apply},   /* auto */
+    {0, 0, 0, 5.5, NULL, 0, hdi_none_apply},
+    {1, 0, 0, 5, NULL, 0, hdi_jacobi_apply},
+    {1, 1, 0, 2, hdi_ssor, 0, hdi_upper_apply},
+    {1, 1, 0, 1.4, hdi_ildl, 0, hdi_upper_apply},
+    {1, 1, 0, 1, hdi_ildl, HDI_MILDL_KEPT, hdi_upper_apply}
 };
 
 static int hdi_precond_known(hd_precond kind) {
     return (size_t)kind < sizeof hdi_preconds / sizeof *hdi_preconds;
 }
 
-static void hdi_precond_apply(const hdi_precond *m, const hd_c64 *r, hd_c64 *z) {
-    hdi_preconds[m->kind].apply(m, r, z);
+/* Values of one, and one more, so that there is something to allocate. upper: entries above the diagonal. */
+static uint64_t hdi_precond_size(const hdi_precond_row *row, int64_t n, int64_t upper) {
+    return (uint64_t)(row->rows * n + row->entries * upper + 1);
 }
 
 /* Fills m, whose arrays are there. work [n] */
-static void hdi_precond_make(const hdi_precond *m, const hdi_system *a, hd_c64 *work) {
-    const hdi_precond_row *row = hdi_preconds + m->kind;
+static void hdi_precond_make(const hdi_precond *m, hd_c64 *work) {
+    const hdi_precond_row *row = m->row;
+    const hdi_system *a = &m->a;
     const hd_csr *L = &a->lap->L;
     int32_t i;
     int64_t p = 0, q = 0;
@@ -11879,7 +11891,7 @@ static void hdi_precond_make(const hdi_precond *m, const hdi_system *a, hd_c64 *
             else if (m->u && j > i) m->u[q++] = v;
         }
     }
-    if (row->make) row->make(m, work, row->keep);
+    if (row->make) row->make(m, work);
     for (i = 0; row->rows && i < L->n_rows; i++) m->d[i] = hdi_cdiv(hdi_c(1, 0), m->d[i]);
 }
 
@@ -11952,13 +11964,14 @@ enum {
 /* One system under solution. It can be stopped and taken up again. */
 typedef struct hdi_iteration {
     hdi_system a;
-    const hdi_precond *m;
+    hdi_precond m;
     hd_solver solver;                    /* cocg or minres */
     const double *weight, *noise;        /* [n] 1/diag(B): the residual's norm; weights of its rounding */
     hd_c64 *mean;                        /* [n_components] */
     hd_c64 *x, *r;                       /* [n] solution and residual */
     hd_c64 *best;                        /* [n] the best x so far, kept while a round may spoil it */
     hd_c64 *v[6];                        /* [n] each, as many as the solver needs */
+    hd_c64 *work;                        /* of the preconditioner */
     double r_norm, b_norm;               /* in the norm of diag(B)^-1 */
     int64_t iterations;
     int32_t broken, ready;
@@ -11966,7 +11979,7 @@ typedef struct hdi_iteration {
     double beta, beta_old, c1, c2;
 } hdi_iteration;
 
-/* Vectors besides x. A system that waits needs x alone. */
+/* Vectors besides x, without those of the preconditioner. A system that waits needs x alone. */
 static int hdi_iteration_vectors(hd_solver solver) { return solver == HD_SOLVER_MINRES ? 8 : 4; }
 
 /* Begins at x = 0; b_norm: what residuals are reported against. */
@@ -11997,7 +12010,7 @@ static hd_c64 hdi_iteration_precond(hdi_iteration *k, const hd_c64 *HDI_RESTRICT
     const int32_t *comp = lap->component;
     hd_c64 dot = hdi_c(0, 0);
     int32_t i = 0;
-    hdi_precond_apply(k->m, r, z);
+    k->m.row->apply(&k->m, r, z, k->work);
     memset(k->mean, 0, (size_t)lap->n_components * sizeof *k->mean);
     while (i < lap->n_active) {
         const int32_t c = comp[i];
@@ -13827,7 +13840,6 @@ typedef struct hdi_family {
     /* Preconditioners that values has room for: of all poles, or, where there is no memory for them, of one.
      * Then each is made when its pole has its turn. */
     int32_t n_values;
-    hdi_precond m[HD_MAX_POLES];
     hd_c64 *values;
 } hdi_family;
 
@@ -13856,59 +13868,25 @@ static void hdi_family_set(hdi_family *fam, const hd_rational *set, double t) {
 /* Do poles make their preconditioners in turns? */
 static int hdi_family_shares(const hdi_family *fam) { return fam->n_values < fam->set.n_poles; }
 
+/* Values of a preconditioner. */
+static uint64_t hdi_family_size(const hdi_family *fam) {
+    return hdi_precond_size(hdi_preconds + fam->precond, fam->up->n, fam->up->ptr[fam->up->n]);
+}
+
 /* Room for the preconditioners of the set. */
 static hd_status hdi_family_room(hdi_family *fam, hd_error *e) {
-    const hdi_precond_row *row = hdi_preconds + fam->precond;
-    const uint64_t n = (uint64_t)(row->rows * fam->up->n);
-    const uint64_t upper = (uint64_t)(row->entries * fam->up->ptr[fam->up->n]), size = n + upper + 1;
-    int32_t i, room = fam->set.n_poles;
-    if (fam->n_values < room) {
-        hdi_family_free(fam);
-        fam->values = HDI_NEW(fam->ctx, hd_c64, (uint64_t)room * size, e);
-        if (room > 1 && hdi_over_limit(fam->ctx, e)) {
-            hdi_error_clear(e);
-            fam->values = HDI_NEW(fam->ctx, hd_c64, size, e);
-            room = 1;
-        }
-        if (!fam->values) return e->status;
-        fam->n_values = room;
+    const uint64_t size = hdi_family_size(fam);
+    int32_t room = fam->set.n_poles;
+    if (fam->n_values >= room) return HD_OK;
+    hdi_family_free(fam);
+    fam->values = HDI_NEW(fam->ctx, hd_c64, (uint64_t)room * size, e);
+    if (room > 1 && hdi_over_limit(fam->ctx, e)) {
+        hdi_error_clear(e);
+        fam->values = HDI_NEW(fam->ctx, hd_c64, size, e);
+        room = 1;
     }
-    for (i = 0; i < fam->set.n_poles; i++) {
-        fam->m[i].kind = fam->precond;
-        fam->m[i].up = fam->up;
-        fam->m[i].d = fam->values + (hdi_family_shares(fam) ? 0 : (size_t)i * size);
-        fam->m[i].u = upper ? fam->m[i].d + n : NULL;
-    }
-    return HD_OK;
-}
-
-/* Makes the preconditioner of pole p. work [n] */
-static void hdi_family_make(const hdi_family *fam, int32_t p, hd_c64 *work) {
-    hdi_system a = {fam->lap, fam->t, fam->set.theta[p]};
-    /* real, positive definite */
-    if (fam->solver == HD_SOLVER_MINRES) a.theta = hdi_c(hdi_cabs(a.theta), 0);
-    hdi_precond_make(fam->m + p, &a, work);
-}
-
-typedef struct hdi_fill_job {
-    hdi_family *fam;
-    hd_c64 *work;
-} hdi_fill_job;
-
-static void hdi_fill_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_fill_job *job = (const hdi_fill_job *)arg;
-    (void)worker;
-    hdi_family_make(job->fam, (int32_t)index, job->work + index * job->fam->lap->n_active);
-}
-
-/* Makes the preconditioners, one parallel task each. work [n] for each of them. */
-static hd_status hdi_family_fill(hdi_family *fam, hd_c64 *work, hd_error *e) {
-    hdi_fill_job job = {fam, work};
-    if (fam->filled) return HD_OK;
-    if (hdi_family_room(fam, e) < 0 || hdi_progress(fam->ctx, "precondition", 0, e) < 0) return e->status;
-    if (!hdi_family_shares(fam)) hdi_parallel(fam->ctx, fam->set.n_poles, hdi_fill_task, &job);
-    fam->filled = 1;
-    return HD_OK;
+    if (fam->values) fam->n_values = room;
+    return e->status;
 }
 
 /* Most right-hand sides at a time: in all, by iterations, and in a batch with the factors of the poles.
@@ -13938,9 +13916,6 @@ typedef struct hdi_lanczos {
 
 enum { HDI_WARM_POLES = 6, HDI_WARM_MAX = 2 * HDI_WARM_POLES };
 
-/* Inner products of a solution with itself and those of the next poles, see hdi_warm_products. */
-typedef hd_c64 hdi_gram[HDI_WARM_POLES + 1][2];
-
 /* Further sums of the poles' solutions beside an answer: sum p of Re(weight_p x_p) for n rows of weights,
  * which are stride apart, into [n] arrays one after the other. */
 typedef struct hdi_extra {
@@ -13949,16 +13924,20 @@ typedef struct hdi_extra {
     double *sum;
 } hdi_extra;
 
+/* What a lane has room for, beside a field and an answer: steps of Lanczos; systems, which run one after the
+ * other, and the vectors that they share. */
+typedef struct hdi_lane_room { int64_t n, n_components; int32_t steps, systems, vectors; } hdi_lane_room;
+
 /* One right-hand side. Arrays are [n] by rows unless said otherwise. */
 typedef struct hdi_lane {
-    double *f, *rhs, *u;         /* the field, B f, the answer */
-    double *tmp;                 /* [4 n] after u, or work of the systems */
+    hdi_lane_room room;
+    double *f, *rhs, *u;         /* the field, B f, the answer; f begins all arrays */
+    double *tmp;                 /* [4 n], between solves in the vectors of the systems */
     double *target, *sums, *spare_sums;  /* [n_components] heat per component, work */
     hd_c64 *b;                   /* begins the systems' arrays */
-    hdi_iteration *k;               /* [n_systems] */
-    hdi_gram *gram;              /* [n_systems] */
+    hdi_iteration *k;            /* [systems] */
     hdi_lanczos lanczos;
-    int32_t n_systems, skip;
+    int32_t skip;
     int32_t exponent;            /* the field is the caller's times 2^-exponent */
     double step;                 /* how far apart the smallest doubles are, in the unit of u */
     int32_t dual;                /* what is asked for is B u, which goes to tmp in the end */
@@ -13985,99 +13964,112 @@ typedef struct hdi_lane {
 
 static void hdi_lane_free(hdi_lane *lane, hd_context *ctx) {
     hdi_free(ctx, lane->f);
-    hdi_free(ctx, lane->target);
-    hdi_free(ctx, lane->b);
     hdi_free(ctx, lane->k);
-    hdi_free(ctx, lane->lanczos.v);
-    hdi_free(ctx, lane->lanczos.alpha);
     memset(lane, 0, sizeof *lane);
 }
 
-static hd_status hdi_lane_make(hdi_lane *lane, const hd_laplacian *lap, hd_context *ctx, hd_error *e) {
-    const uint64_t n = (uint64_t)lap->n_active, n_comp = (uint64_t)lap->n_components;
-    if (lane->f) return HD_OK;
-    lane->f = HDI_NEW(ctx, double, 7 * n, e);
-    if (lane->f) lane->target = HDI_NEW(ctx, double, 3 * n_comp, e);
-    if (!lane->target) {
-        hdi_lane_free(lane, ctx);
-        return e->status;
-    }
-    lane->rhs = lane->f + n;
-    lane->u = lane->rhs + n;
-    lane->tmp = lane->u + n;
-    lane->sums = lane->target + n_comp;
-    lane->spare_sums = lane->sums + n_comp;
-    return HD_OK;
+static hdi_lane_room hdi_lane_room_of(const hd_laplacian *lap, const hdi_family *fam, int32_t steps,
+                                      int32_t systems) {
+    const hdi_lane_room room = {lap->n_active, lap->n_components, steps, systems,
+                                hdi_iteration_vectors(fam->solver) + hdi_preconds[fam->precond].vectors};
+    return room;
 }
 
-/* Room for so many steps of Lanczos. */
-static hd_status hdi_lane_lanczos(hdi_lane *lane, const hd_laplacian *lap, int32_t steps, hd_context *ctx,
-                                  hd_error *e) {
-    const uint64_t n = (uint64_t)lap->n_active, most = (uint64_t)steps + 1;
-    hdi_lanczos *z = &lane->lanczos;
-    if (z->alpha && z->room >= steps) return HD_OK;
-    hdi_free(ctx, z->alpha);
-    z->alpha = NULL;
-    z->room = 0;
-    if (!z->v) z->v = HDI_NEW(ctx, double, 3 * n, e);
-    if (z->v) z->alpha = HDI_NEW(ctx, double, 11 * most, e);
-    if (!z->alpha) return e->status;             /* the lane frees what it has */
-    z->room = steps;
+/* Doubles of the work between solves, which is part of the systems' arrays if there are systems: a
+ * right-hand side, vectors, a solution of each, means. The whole of it serves to make preconditioners. */
+static uint64_t hdi_lane_systems_size(const hdi_lane_room *r) {
+    return (uint64_t)(r->systems ? 2 * ((1 + r->vectors + r->systems) * r->n + r->n_components) : 4 * r->n);
+}
+
+/* Doubles of a lane's arrays. */
+static uint64_t hdi_lane_size(const hdi_lane_room *r) {
+    const int64_t basis = r->steps > 0 ? 3 * r->n + 11 * ((int64_t)r->steps + 1) : 0;
+    return (uint64_t)(3 * (r->n + r->n_components) + basis) + hdi_lane_systems_size(r);
+}
+
+/* Arrays of Lanczos in x, see hdi_lane_size. */
+static void hdi_lane_lanczos(hdi_lanczos *z, const hdi_lane_room *room, double *x) {
+    const int64_t n = room->n, most = (int64_t)room->steps + 1;
+    z->room = room->steps;
+    z->v = x;
     z->c = z->v + n;
     z->c_old = z->c + n;
+    z->alpha = z->c_old + n;
     z->beta = z->alpha + most;
     z->d = z->beta + most;
     z->e = z->d + most;
     z->ends = z->e + most;
     z->y = z->ends + 2 * most;
     z->work = (hd_c64 *)(void *)(z->y + most);
+}
+
+/* Room as asked for, or more. Where it grows, what the lane held is lost. */
+static hd_status hdi_lane_make(hdi_lane *lane, hdi_lane_room room, hd_context *ctx, hd_error *e) {
+    room.steps = hdi_high32(room.steps, lane->room.steps);
+    room.systems = hdi_high32(room.systems, lane->room.systems);
+    if (lane->f && room.steps == lane->room.steps && room.systems == lane->room.systems) return HD_OK;
+    hdi_lane_free(lane, ctx);
+    lane->f = HDI_NEW(ctx, double, hdi_lane_size(&room), e);
+    if (lane->f && room.systems) lane->k = HDI_NEW(ctx, hdi_iteration, room.systems, e);
+    if (e->status < 0) {
+        hdi_lane_free(lane, ctx);
+        return e->status;
+    }
+    lane->room = room;
+    lane->rhs = lane->f + room.n;
+    lane->u = lane->rhs + room.n;
+    lane->target = lane->u + room.n;
+    lane->sums = lane->target + room.n_components;
+    lane->spare_sums = lane->sums + room.n_components;
+    lane->tmp = lane->spare_sums + room.n_components;
+    lane->b = (hd_c64 *)(void *)lane->tmp;
+    hdi_lane_lanczos(&lane->lanczos, &room, lane->tmp + hdi_lane_systems_size(&room));
+    if (room.systems) lane->tmp += 6 * room.n;   /* after b and the first two vectors */
     return HD_OK;
 }
 
-/* The systems of a set, and their constants. Room: b, the vectors that all systems share, as they run one
- * after the other, x of each, means, and inner products. The whole of it serves to make preconditioners
- * before. Two of those shared are the lane's work between solves. Where the room grows, what the lane held is
- * lost. */
-static hd_status hdi_lane_systems(hdi_lane *lane, const hdi_family *fam, hd_error *e) {
-    const int32_t shared = hdi_iteration_vectors(fam->solver), count = fam->set.n_poles;
-    const int64_t n = fam->lap->n_active, vectors = (1 + shared + count) * n + fam->lap->n_components;
-    const uint64_t grams = (uint64_t)count * (sizeof(hdi_gram) / sizeof(hd_c64));
+/* The systems of a set, and their constants. The preconditioners have their room. */
+static void hdi_lane_systems(hdi_lane *lane, const hdi_family *fam) {
+    const int32_t own = hdi_iteration_vectors(fam->solver);
+    const int64_t n = lane->room.n;
     int32_t i, j;
-    if (!lane->k || lane->n_systems < count) {
-        hdi_free(fam->ctx, lane->f);
-        hdi_free(fam->ctx, lane->b);
-        hdi_free(fam->ctx, lane->k);
-        lane->b = NULL;
-        lane->k = NULL;
-        lane->f = HDI_NEW(fam->ctx, double, (3 * n), e);
-        if (lane->f) lane->b = HDI_NEW(fam->ctx, hd_c64, (uint64_t)vectors + grams, e);
-        if (lane->b) lane->k = HDI_NEW(fam->ctx, hdi_iteration, count + 1, e);
-        if (!lane->k) {
-            hdi_lane_free(lane, fam->ctx);
-            return e->status;
-        }
-        lane->rhs = lane->f + n;
-        lane->u = lane->rhs + n;
-        lane->tmp = &lane->b[3 * n].re;
-        lane->gram = (hdi_gram *)(void *)(lane->b + vectors);
-        lane->n_systems = count;
-    }
-    for (i = 0; i < count; i++) {
+    for (i = 0; i < fam->set.n_poles; i++) {
         hdi_iteration *k = lane->k + i;
         memset(k, 0, sizeof *k);
         k->r = lane->b + n;
         k->best = k->r + n;
-        for (j = 0; j + 2 < shared; j++) k->v[j] = k->best + n * (j + 1);
-        k->x = k->r + n * (shared + i);
-        k->mean = k->r + n * (shared + lane->n_systems);
+        for (j = 0; j + 2 < own; j++) k->v[j] = k->best + n * (j + 1);
+        k->work = k->r + n * own;
+        k->x = k->r + n * (lane->room.vectors + i);
+        k->mean = k->r + n * (lane->room.vectors + lane->room.systems);
         k->a.lap = fam->lap;
         k->a.t = fam->t;
         k->a.theta = fam->set.theta[i];
         k->solver = fam->solver;
         k->weight = fam->weight;
         k->noise = fam->noise;
-        k->m = fam->m + i;
+        k->m.row = hdi_preconds + fam->precond;
+        k->m.up = fam->up;
+        k->m.a = k->a;
+        if (fam->solver == HD_SOLVER_MINRES)     /* real, positive definite */
+            k->m.a.theta = hdi_c(hdi_cabs(k->a.theta), 0);
+        k->m.d = fam->values + (hdi_family_shares(fam) ? 0 : (size_t)i * hdi_family_size(fam));
+        k->m.u = k->m.row->entries ? k->m.d + n : NULL;
     }
+}
+
+static void hdi_fill_task(void *arg, int64_t index, int32_t worker) {
+    const hdi_lane *lane = (const hdi_lane *)arg;
+    (void)worker;
+    hdi_precond_make(&lane->k[index].m, lane->b + index * lane->room.n);
+}
+
+/* Makes the preconditioners, one parallel task each, with the systems of a lane. */
+static hd_status hdi_family_fill(hdi_family *fam, hdi_lane *lane, hd_error *e) {
+    if (fam->filled) return HD_OK;
+    if (hdi_progress(fam->ctx, "precondition", 0, e) < 0) return e->status;
+    if (!hdi_family_shares(fam)) hdi_parallel(fam->ctx, fam->set.n_poles, hdi_fill_task, lane);
+    fam->filled = 1;
     return HD_OK;
 }
 
@@ -14114,71 +14106,106 @@ static void hdi_lane_clear_off(hdi_lane *lane) {
     memset(&lane->off, 0, sizeof lane->off);
     memset(&lane->off_m, 0, sizeof lane->off_m);
     lane->rounding = HD_EVIDENCE_PROVEN;
-    lane->residual = 0;
-    lane->negative = 0;
+    lane->residual = lane->first_norm = 0;
+    lane->negative = lane->first_pole = 0;
+    lane->energy = lane->f_norm * lane->f_norm;
+}
+
+/* Notes what the solution x of pole p tells of the resolvent: |x|_B, and a bound of f'B (B + tL)^-1 B f,
+ * which is at most a factor times Re of rhs'x. Real parts of x are stride apart. norm2: |x|_B^2 as computed.
+ * off: bound on its residual. */
+static void hdi_lane_first(hdi_lane *lane, const hd_laplacian *lap, const hd_rational *set, int32_t p,
+                           double norm2, double off, const double *x, int64_t stride) {
+    const hd_c64 theta = set->theta[p];
+    const double error = off * hdi_ratio_root(lap) / hdi_pole_distance(theta);
+    const double factor = hdi_resolvent_factor(theta);
+    double sum = 0;
+    int32_t i;
+    for (i = 0; i < lap->n_active; i++)
+        if (lane->rhs[i] != 0) sum += lane->rhs[i] * x[stride * i];
+    lane->first_pole = p;
+    lane->first_norm = sqrt(norm2) + error;
+    /* t x^*Lx = Re x^*b - Re theta |x|_B^2, which rounding alone does not make negative */
+    if (sum - theta.re * norm2 < -1e-6 * (fabs(sum) + fabs(theta.re) * norm2) - lane->b_norm * error)
+        lane->negative = 1;
+    if (hdi_finite(factor)) lane->energy = hdi_min(lane->energy, factor * (fabs(sum) + lane->f_norm * error));
+}
+
+/* |x|_B^2 of a complex vector; tmp [3 n]. */
+static double hdi_b_norm2_complex(const hd_laplacian *lap, const hd_c64 *x, double *tmp) {
+    const int32_t n = lap->n_active;
+    double *work = tmp + 2 * (int64_t)n;
+    int32_t i;
+    if (!lap->B) return hdi_cnorm2w(x, lap->mass, n);
+    for (i = 0; i < n; i++) {
+        tmp[i] = x[i].re;
+        tmp[n + i] = x[i].im;
+    }
+    return hdi_max(0, hdi_b_norm2(lap, tmp, work) + hdi_b_norm2(lap, tmp + n, work));
 }
 
 /* u = a0 f - sum a_i x_i, in the order of the poles, and the bounds on its error but for the rational one. */
 static void hdi_lane_sum(hdi_lane *lane, const hdi_family *fam) {
     const int32_t n = fam->lap->n_active;
+    const hdi_iteration *k = lane->k;
     double *HDI_RESTRICT u = lane->u;
     int32_t i, j;
+    hdi_lane_clear_off(lane);
+    lane->b_norm = fam->set.n_poles > 0 ? k->b_norm : 0;
     for (j = 0; j < n; j++) u[j] = fam->set.a0 * lane->f[j];
     for (i = 0; i < fam->set.n_poles; i++) {
-        const hd_c64 *HDI_RESTRICT x = lane->k[i].x;
+        const hd_c64 *HDI_RESTRICT x = k[i].x;
         const double c = hdi_rat_count(&fam->set, i), are = c * fam->set.a[i].re, aim = c * fam->set.a[i].im;
         for (j = 0; j < n; j++) u[j] -= are * x[j].re - aim * x[j].im;
-        hdi_lane_residual(lane, fam->lap, &fam->set, i, lane->k[i].r_norm,
-                          sqrt(hdi_cnorm2w(x, fam->noise, n)), 1);
+        hdi_lane_residual(lane, fam->lap, &fam->set, i, k[i].r_norm, sqrt(hdi_cnorm2w(x, fam->noise, n)), 1);
     }
+    if (fam->set.n_poles > 0)
+        hdi_lane_first(lane, fam->lap, &fam->set, 0, hdi_b_norm2_complex(fam->lap, k->x, lane->tmp), k->r_norm,
+                       &k->x->re, 2);
 }
 
-/* Inner products of solution p with those of poles p to last, D = diag(B):
- *   gram[q - p][0] = x_q^* D x_p,   gram[q - p][1] = x_q' D x_p. */
-static void hdi_warm_products(const hdi_lane *lane, const double *d, int32_t p, int32_t last, int32_t n,
-                              hd_c64 gram[][2]) {
-    const hd_c64 *HDI_RESTRICT y = lane->k[p].x;
-    int32_t q, i;
-    for (q = p; q <= last; q++) {
-        const hd_c64 *HDI_RESTRICT x = lane->k[q].x;
-        double rr = 0, ii = 0, ri = 0, ir = 0;
-        for (i = 0; i < n; i++) {
-            const double yr = d[i] * y[i].re, yi = d[i] * y[i].im;
-            rr += x[i].re * yr;
-            ii += x[i].im * yi;
-            ri += x[i].re * yi;
-            ir += x[i].im * yr;
-        }
-        gram[q - p][0] = hdi_c(rr + ii, ri - ir);
-        gram[q - p][1] = hdi_c(rr - ii, ri + ir);
+/* x^* D y and x' D y for D = diag(B). */
+static void hdi_warm_products(const hd_c64 *HDI_RESTRICT x, const hd_c64 *HDI_RESTRICT y, const double *d,
+                              int32_t n, hd_c64 *out) {
+    double rr = 0, ii = 0, ri = 0, ir = 0;
+    int32_t i;
+    for (i = 0; i < n; i++) {
+        const double yr = d[i] * y[i].re, yi = d[i] * y[i].im;
+        rr += x[i].re * yr;
+        ii += x[i].im * yi;
+        ri += x[i].re * yi;
+        ir += x[i].im * yr;
     }
+    out[0] = hdi_c(rr + ii, ri - ir);
+    out[1] = hdi_c(rr - ii, ri + ir);
 }
 
-/* The start of system p, of smallest residual, from solutions of poles p + 1 to last and inner products:
- * H c = 1 (a unit diagonal, plus what rounding eats of it). A point is a pole or its conjugate. */
-static void hdi_warm_start(hdi_lane *lane, const hdi_family *fam, int32_t p, int32_t last,
-                           hdi_gram *gram) {
+/* The start of system p, of smallest residual, from the solutions of poles p + 1 to last: H c = 1 (a unit
+ * diagonal, plus what rounding eats of it). A point is a pole or its conjugate. */
+static void hdi_warm_start(hdi_lane *lane, const hdi_family *fam, int32_t p, int32_t last) {
     const int32_t n = fam->lap->n_active;
-    hd_c64 shift[HDI_WARM_MAX], sum = hdi_c(0, 0), *HDI_RESTRICT x = lane->k[p].x;
+    const hdi_iteration *next = lane->k + p + 1;
+    hd_c64 gram[HDI_WARM_POLES][HDI_WARM_POLES][2], shift[HDI_WARM_MAX], sum = hdi_c(0, 0);
+    hd_c64 *HDI_RESTRICT x = lane->k[p].x;
     double A[4 * HDI_WARM_MAX * HDI_WARM_MAX], c[2 * HDI_WARM_MAX] = {0}, unit[HDI_WARM_MAX];
     int32_t m = 0, i, j, pole[HDI_WARM_MAX], conj[HDI_WARM_MAX];
-    for (i = p + 1; i <= last; i++) {
-        for (j = 0; j < (fam->set.theta[i].im == 0 ? 1 : 2); j++, m++) {
+    for (i = 0; i < last - p; i++) {
+        for (j = 0; j <= i; j++) hdi_warm_products(next[i].x, next[j].x, fam->lap->b_diag, n, gram[i][j]);
+        for (j = 0; j < (next[i].a.theta.im == 0 ? 1 : 2); j++, m++) {
             pole[m] = i;
             conj[m] = j;
         }
     }
     for (i = 0; i < m; i++) {
-        const hd_c64 theta = fam->set.theta[pole[i]];
+        const hd_c64 theta = next[pole[i]].a.theta;
         shift[i] = hdi_csub(fam->set.theta[p], conj[i] ? hdi_cconj(theta) : theta);
-        c[i] = hdi_cabs(shift[i]) * sqrt(gram[pole[i]][0][0].re);
+        c[i] = hdi_cabs(shift[i]) * sqrt(gram[pole[i]][pole[i]][0].re);
         c[i] = unit[i] = c[i] > 0 ? 1 / c[i] : 0;
         shift[i] = hdi_cscale(unit[i], shift[i]);
     }
     for (i = 0; i < m; i++) {
         for (j = 0; j <= i; j++) {
-            /* x_i^* D x_j and x_i' D x_j for the poles behind the points */
-            hd_c64 v = gram[pole[j]][pole[i] - pole[j]][conj[i] != conj[j]];
+            hd_c64 v = gram[pole[i]][pole[j]][conj[i] != conj[j]];
             v = hdi_cmul(hdi_cmul(hdi_cconj(shift[i]), shift[j]), conj[j] ? hdi_cconj(v) : v);
             if (i == j) v = hdi_c(1 + 1e-14, 0);
             A[2 * m * j + i] = A[2 * m * i + j] = v.re;
@@ -14194,7 +14221,7 @@ static void hdi_warm_start(hdi_lane *lane, const hdi_family *fam, int32_t p, int
         sum = hdi_cadd(sum, hdi_c(c[i], c[m + i]));
     }
     for (i = 0; i < m; i++) {
-        const hd_c64 w = hdi_cdiv(hdi_c(c[i], c[m + i]), sum), *HDI_RESTRICT y = lane->k[pole[i]].x;
+        const hd_c64 w = hdi_cdiv(hdi_c(c[i], c[m + i]), sum), *HDI_RESTRICT y = next[pole[i]].x;
         const double sign = conj[i] ? -1 : 1;
         if (!hdi_cfinite(w)) return;
         for (j = 0; j < n; j++) x[j] = hdi_cadd(x[j], hdi_cmul(w, hdi_c(y[j].re, sign * y[j].im)));
@@ -14208,7 +14235,6 @@ static hd_status hdi_lane_run(hdi_lane *lane, const hdi_family *fam, int fresh, 
                               const hdi_watch *watch, hd_error *e) {
     const int32_t n_poles = fam->set.n_poles;
     const double b_norm = sqrt(hdi_cnorm2w(lane->b, fam->weight, fam->lap->n_active));
-    hdi_gram *gram = lane->gram;
     hdi_watch part = *watch;
     hd_status worst = HD_OK, status;
     double left = aim;
@@ -14222,9 +14248,9 @@ static hd_status hdi_lane_run(hdi_lane *lane, const hdi_family *fam, int fresh, 
         const double share = weight > 0 ? fair / weight : DBL_MAX;
         const double target = share * sqrt(fam->lap->b_ratio) * hdi_pole_distance(fam->set.theta[p]);
         const int runs = fresh || k->r_norm > target, warm = fresh && p < last && b_norm > 0;
-        if (runs && hdi_family_shares(fam)) hdi_family_make(fam, p, k->r);
+        if (runs && hdi_family_shares(fam)) hdi_precond_make(&k->m, k->r);
         if (fresh) hdi_iteration_start(k, b_norm);
-        if (warm) hdi_warm_start(lane, fam, p, last, gram);
+        if (warm) hdi_warm_start(lane, fam, p, last);
         if (runs) hdi_iteration_residual(k, lane->b);
         if (warm && !(k->r_norm < b_norm)) {
             hdi_iteration_start(k, b_norm);
@@ -14239,7 +14265,6 @@ static hd_status hdi_lane_run(hdi_lane *lane, const hdi_family *fam, int fresh, 
         }
         if (status > worst) worst = status;
         left -= weight * hdi_pole_error(k);
-        if (fresh && p > 0) hdi_warm_products(lane, fam->lap->b_diag, p, last, fam->lap->n_active, gram[p]);
     }
     return worst;
 }
@@ -14448,26 +14473,6 @@ static hd_status hdi_not_semidefinite(hd_error *e) {
                     "(is it minus the matrix meant?)");
 }
 
-/* Notes what the solution x of pole p tells of the resolvent: |x|_B, and a bound of f'B (B + tL)^-1 B f,
- * which is at most a factor times Re of rhs'x. Real parts of x are stride apart. norm2: |x|_B^2 as computed.
- * off: bound on its residual. */
-static void hdi_lane_first(hdi_lane *lane, const hd_laplacian *lap, const hd_rational *set, int32_t p,
-                           double norm2, double off, const double *x, int64_t stride) {
-    const hd_c64 theta = set->theta[p];
-    const double error = off * hdi_ratio_root(lap) / hdi_pole_distance(theta);
-    const double factor = hdi_resolvent_factor(theta);
-    double sum = 0;
-    int32_t i;
-    for (i = 0; i < lap->n_active; i++)
-        if (lane->rhs[i] != 0) sum += lane->rhs[i] * x[stride * i];
-    lane->first_pole = p;
-    lane->first_norm = sqrt(norm2) + error;
-    /* t x^*Lx = Re x^*b - Re theta |x|_B^2, which rounding alone does not make negative */
-    if (sum - theta.re * norm2 < -1e-6 * (fabs(sum) + fabs(theta.re) * norm2) - lane->b_norm * error)
-        lane->negative = 1;
-    if (hdi_finite(factor)) lane->energy = hdi_min(lane->energy, factor * (fabs(sum) + lane->f_norm * error));
-}
-
 /* The rows of t L + theta B for solutions x, see hdi_residual; sum, or NULL, is zero. */
 static hdi_residual hdi_residual_open(const hd_laplacian *lap, double t, const double *x, int32_t n_blocks,
                                       double (*sum)[3][HDI_PACK]) {
@@ -14661,7 +14666,6 @@ static void hdi_batch_run(const hdi_elim *m, const hdi_batch *b, hdi_lane *lane,
         }
         lane[r].b_norm = sqrt(norm2);
         hdi_lane_clear_off(lane + r);
-        lane[r].energy = lane[r].f_norm * lane[r].f_norm;
     }
     active = touched < 64 * (int64_t)k ? b->active : NULL;
     if (m->lone >= 0) {
@@ -14793,19 +14797,6 @@ static void hdi_lane_rounding(hdi_lane *lane, double off) {
 
 /* ---- through the poles ---- */
 
-/* |x|_B^2 of a complex vector; tmp [3 n]. */
-static double hdi_b_norm2_complex(const hd_laplacian *lap, const hd_c64 *x, double *tmp) {
-    const int32_t n = lap->n_active;
-    double *work = tmp + 2 * (int64_t)n;
-    int32_t i;
-    if (!lap->B) return hdi_cnorm2w(x, lap->mass, n);
-    for (i = 0; i < n; i++) {
-        tmp[i] = x[i].re;
-        tmp[n + i] = x[i].im;
-    }
-    return hdi_max(0, hdi_b_norm2(lap, tmp, work) + hdi_b_norm2(lap, tmp + n, work));
-}
-
 /* Errors of a set, for |exp(x) - c(x)| and for (1 + |x|) times that. Of the caller's own sets either may be
  * unknown, 0. A weighted error bounds the other one. Without both, bounds hold for c itself. */
 static double hdi_set_uniform(const hd_rational *set) {
@@ -14880,6 +14871,16 @@ static int hdi_lane_vanishes(const hdi_lane *lane, int32_t n) {
     return most > 0 && most < HDI_LANE_LEAST;
 }
 
+/* Ends an answer by poles: constants, norms, bounds. dense: see hdi_conserve_off. */
+static void hdi_lane_finish(const hd_laplacian *lap, const hd_rational *set, double drift_t, int dense,
+                            hdi_lane *lane) {
+    hdi_conserve(lap, lane, set->kind == HD_POLES_OWN ? hdi_rational_eval(set, 0) : 1);
+    lane->u_norm = sqrt(hdi_max(0, hdi_b_norm2(lap, lane->u, lane->tmp)));
+    if (hdi_lane_negative(lap, lane)) lane->negative = 1;
+    hdi_rational_bound(lap, set, lane);
+    hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, drift_t, dense));
+}
+
 /* K_t f through a pole set. The tolerance is relative to the answer, which is not known yet. A first round
  * aims at the tolerance relative to f, which is never too strict because |K_t f|_B <= |f|_B (times the
  * largest value of a filter). The next rounds
@@ -14887,8 +14888,7 @@ static int hdi_lane_vanishes(const hdi_lane *lane, int32_t n) {
 static hd_status hdi_family_run(const hdi_family *fam, double tol, double drift_t, hdi_lane *lane,
                                 const hdi_watch *watch, hd_error *e) {
     const hd_laplacian *lap = fam->lap;
-    const double c0 = fam->set.kind == HD_POLES_OWN ? hdi_rational_eval(&fam->set, 0) : 1;
-    double aim = tol * hdi_set_largest(&fam->set) * lane->f_norm, room;
+    double aim = tol * hdi_set_largest(&fam->set) * lane->f_norm, room = 0;
     hdi_watch part = *watch;
     hd_status status = HD_OK;
     int32_t round;
@@ -14901,39 +14901,14 @@ static hd_status hdi_family_run(const hdi_family *fam, double tol, double drift_
         part.share = watch->share * (round ? 0.3 : 0.7);
         status = hdi_lane_run(lane, fam, round == 0, aim, &part, e);
         if (status < 0) return status;
-        hdi_lane_clear_off(lane);
-        lane->b_norm = fam->set.n_poles > 0 ? lane->k[0].b_norm : 0;
         hdi_lane_sum(lane, fam);
-        hdi_conserve(lap, lane, c0);
-        lane->u_norm = sqrt(hdi_max(0, hdi_b_norm2(lap, lane->u, lane->tmp)));
+        hdi_lane_finish(lap, &fam->set, drift_t, 1, lane);
         room = tol * (lane->u_norm - lane->off.solver);
         if (lane->off.solver <= room || status == HD_WARN_ACCURACY) break;
         aim = room > 0.01 * aim ? (1 - tol) * room : 0.01 * aim;
     }
-    lane->first_pole = 0;
-    lane->first_norm = 0;
-    lane->energy = lane->f_norm * lane->f_norm;
-    if (fam->set.n_poles > 0) {
-        const hd_c64 *x = lane->k[0].x;
-        hdi_lane_first(lane, lap, &fam->set, 0, hdi_b_norm2_complex(lap, x, lane->tmp), lane->k[0].r_norm,
-                       &x->re, 2);
-        if (lane->negative || hdi_lane_negative(lap, lane)) return hdi_not_semidefinite(e);
-    }
-    hdi_rational_bound(lap, &fam->set, lane);
-    hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, drift_t, 1));
-    return lane->off.solver <= tol * (lane->u_norm - lane->off.solver) ? HD_OK : HD_WARN_ACCURACY;
-}
-
-/* Finishes an answer by the poles' factors: constants, norms, bounds. The status warns where rounding
- * relative to the answer is above limit. */
-static hd_status hdi_elim_finish(const hdi_elim *m, double limit, double drift_t, int dense, hdi_lane *lane) {
-    const hd_laplacian *lap = m->lap;
-    hdi_conserve(lap, lane, m->set.kind == HD_POLES_OWN ? hdi_rational_eval(&m->set, 0) : 1);
-    lane->u_norm = sqrt(hdi_max(0, hdi_b_norm2(lap, lane->u, lane->tmp)));
-    if (hdi_lane_negative(lap, lane)) lane->negative = 1;
-    hdi_rational_bound(lap, &m->set, lane);
-    hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, drift_t, dense));
-    return lane->off.rounding <= limit * (lane->u_norm - lane->off.rounding) ? HD_OK : HD_WARN_ACCURACY;
+    if (lane->negative) return hdi_not_semidefinite(e);
+    return lane->off.solver <= room ? HD_OK : HD_WARN_ACCURACY;
 }
 
 /* ---- entries of the kernel without columns ---- */
@@ -18177,9 +18152,6 @@ static hd_status hdi_heat_iterative(hd_heat *heat, hd_error *e) {
     heat->fam.lap = heat->lap;
     heat->fam.up = &heat->up;
     heat->fam.weight = heat->weight;
-    heat->fam.solver = heat->opts.solver == HD_SOLVER_MINRES ? HD_SOLVER_MINRES : HD_SOLVER_COCG;
-    heat->fam.precond = heat->opts.precond;
-    heat->fam.max_iterations = heat->opts.max_iterations;
     return e->status;
 }
 
@@ -18264,9 +18236,10 @@ static hd_status hdi_shifted_prepare(hd_heat *heat, double t, hd_c64 theta, hd_e
     set.theta[0] = theta;
     if (hdi_heat_iterative(heat, e) < 0 || hdi_heat_make_lanes(heat, 1, e) < 0) return e->status;
     hdi_family_set(fam, &set, t * heat->scale);
-    if (hdi_lane_make(heat->lane, heat->lap, heat->ctx, e) < 0) return e->status;
-    if (hdi_lane_systems(heat->lane, fam, e) < 0) return e->status;
-    return hdi_family_fill(fam, heat->lane->b, e);
+    if (hdi_family_room(fam, e) < 0 ||
+        hdi_lane_make(heat->lane, hdi_lane_room_of(heat->lap, fam, 0, 1), heat->ctx, e) < 0) return e->status;
+    hdi_lane_systems(heat->lane, fam);
+    return hdi_family_fill(fam, heat->lane, e);
 }
 
 #define HDI_TOL_SOLVE 1e-10
@@ -19022,12 +18995,23 @@ static void hdi_heat_store(const hdi_heat_call *h, int32_t q, const hdi_lane *la
     }
 }
 
+/* Lanes for the items of the call, at most so many at a time, with room for steps of Lanczos or systems. */
+static hd_status hdi_heat_lanes(hdi_heat_call *h, int32_t most, int32_t steps, int32_t systems) {
+    const hdi_lane_room room = hdi_lane_room_of(h->lap, &h->heat->fam, steps, systems);
+    int32_t i;
+    h->n_lanes = hdi_low32(h->ask.k, most);
+    if (hdi_heat_make_lanes(h->heat, h->n_lanes, h->e) < 0) return h->e->status;
+    for (i = 0; i < h->n_lanes; i++)
+        if (hdi_lane_make(h->heat->lane + i, room, h->heat->ctx, h->e) < 0) break;
+    return h->e->status;
+}
+
 /* The degree of a uniform set for all fields. Columns, whose constants are small, get the highest one. */
-static hd_status hdi_heat_degree(const hdi_heat_call *h, int32_t *degree) {
+static hd_status hdi_heat_degree(hdi_heat_call *h, int32_t *degree) {
     const int fields = hdi_query_fields(h->ask.query);
     int32_t q, r;
     *degree = fields ? 8 : HDI_RAT_UNIFORM_MAX;
-    if (fields && hdi_lane_make(h->heat->lane, h->lap, h->heat->ctx, h->e) < 0) return h->e->status;
+    if (fields && hdi_heat_lanes(h, 1, 0, 0) < 0) return h->e->status;
     for (q = 0; q < h->ask.k && fields; q++) {
         if (hdi_heat_load(h, q, h->heat->lane) < 0) return h->e->status;
         r = hdi_uniform_degree(h->lap, h->heat->lane, h->method == HD_METHOD_DIRECT);
@@ -19059,7 +19043,7 @@ static hd_status hdi_heat_set_of(const hdi_heat_call *h, int32_t degree, hd_rati
 
 enum { HDI_DEGREE_DIRECT = 9 };  /* four pairs fill a pack, a real pole costs little */
 
-static hd_status hdi_heat_set(const hdi_heat_call *h, hd_rational *set) {
+static hd_status hdi_heat_set(hdi_heat_call *h, hd_rational *set) {
     int32_t degree = h->method == HD_METHOD_DIRECT ? HDI_DEGREE_DIRECT : 10;
     if (hdi_heat_open(h) && hdi_heat_degree(h, &degree) < 0) return h->e->status;
     return hdi_heat_set_of(h, degree, set);
@@ -19189,16 +19173,6 @@ static void hdi_report_set(hd_report *rep, const hd_rational *set) {
     rep->n_poles = set->n_poles;
 }
 
-/* Lanes for the items of the call, at most so many at a time. */
-static hd_status hdi_heat_lanes(hdi_heat_call *h, int32_t most) {
-    int32_t i;
-    h->n_lanes = hdi_low32(h->ask.k, most);
-    if (hdi_heat_make_lanes(h->heat, h->n_lanes, h->e) < 0) return h->e->status;
-    for (i = 0; i < h->n_lanes; i++)
-        if (hdi_lane_make(h->heat->lane + i, h->lap, h->heat->ctx, h->e) < 0) break;
-    return h->e->status;
-}
-
 /* Loads the next items into the lanes. Returns their number. */
 static int32_t hdi_heat_load_some(hdi_heat_call *h) {
     const int32_t n = hdi_low32(h->ask.k - h->batch, h->n_lanes);
@@ -19233,15 +19207,16 @@ static hd_solver hdi_heat_solver(const hdi_heat_call *h, double t) {
 static double hdi_iterative_bytes(const hdi_heat_call *h, int32_t poles) {
     const hd_heat *heat = h->heat;
     const double n = heat->source->n_active, nnz = (double)heat->source->L.nnz;
-    const double lanes = hdi_low32(h->ask.k, HDI_LANES_ITERATIVE);
-    const hdi_precond_row *row = hdi_preconds + heat->opts.precond;
-    double bytes = 0;
+    const int lanczos = hdi_heat_solver(h, h->t) == HD_SOLVER_LANCZOS;
+    const hdi_lane_room room = hdi_lane_room_of(heat->source, &heat->fam,
+                                                lanczos ? hdi_lanczos_most(h->t, heat->lambda_max) : 0,
+                                                lanczos ? 0 : poles);
+    double bytes = 8.0 * hdi_low32(h->ask.k, HDI_LANES_ITERATIVE) * (double)hdi_lane_size(&room);
     if (!heat->lap) bytes += nnz * (heat->source->B ? 20 : 12) + 36 * n + 4.0 * heat->source->n;
     if (!heat->weight) bytes += 8 * n + 4 * (nnz - n) / 2 + 32 * n;
-    if (hdi_heat_solver(h, h->t) == HD_SOLVER_LANCZOS)
-        return bytes + lanes * (80 * n + 88.0 * hdi_lanczos_most(h->t, heat->lambda_max));
-    bytes += lanes * (24 + 16.0 * (1 + hdi_iteration_vectors(heat->opts.solver) + poles)) * n;
-    return bytes + 16.0 * poles * (row->rows * n + row->entries * (nnz - n) / 2);
+    return bytes + 16.0 * room.systems * (double)hdi_precond_size(hdi_preconds + heat->opts.precond,
+                                                                  heat->source->n_active,
+                                                                  (int64_t)(nnz - n) / 2);
 }
 
 /* The times one by one. */
@@ -19271,16 +19246,14 @@ static hd_status hdi_iterative_prepare(hdi_heat_call *h) {
     const int32_t steps = known ? hdi_lanczos_most(h->t, heat->lambda_max) : HDI_LANCZOS_MAX;
     hd_rational set;
     int32_t i;
-    if (hdi_heat_lanes(h, HDI_LANES_ITERATIVE) < 0) return h->e->status;
-    for (i = 0; i < h->n_lanes && h->solver == HD_SOLVER_LANCZOS; i++)
-        if (hdi_lane_lanczos(h->heat->lane + i, h->lap, steps, heat->ctx, h->e) < 0) return h->e->status;
-    if (h->solver == HD_SOLVER_LANCZOS) return HD_OK;
+    if (h->solver == HD_SOLVER_LANCZOS) return hdi_heat_lanes(h, HDI_LANES_ITERATIVE, steps, 0);
     if (hdi_heat_set(h, &set) < 0) return h->e->status;
     hdi_family_set(&heat->fam, &set, h->t);
     hdi_report_set(h->rep, &set);
-    for (i = 0; i < h->n_lanes; i++)
-        if (hdi_lane_systems(h->heat->lane + i, &heat->fam, h->e) < 0) return h->e->status;
-    if (hdi_family_fill(&heat->fam, h->heat->lane->b, h->e) < 0) return h->e->status;
+    if (hdi_heat_lanes(h, HDI_LANES_ITERATIVE, 0, set.n_poles) < 0 ||
+        hdi_family_room(&heat->fam, h->e) < 0) return h->e->status;
+    for (i = 0; i < h->n_lanes; i++) hdi_lane_systems(heat->lane + i, &heat->fam);
+    if (hdi_family_fill(&heat->fam, heat->lane, h->e) < 0) return h->e->status;
     if (hdi_family_shares(&heat->fam)) h->n_lanes = 1;
     return HD_OK;
 }
@@ -19337,8 +19310,7 @@ static int32_t hdi_batches_inside(const hdi_elim *m, int32_t packs, uint64_t dou
 
 /* Bytes that solves of k items with so many packs take beyond what the plan has. */
 static uint64_t hdi_batches_need(const hd_heat *heat, int32_t packs, int32_t k) {
-    const uint64_t n = (uint64_t)heat->elim.sym.n;
-    const uint64_t n_comp = (uint64_t)heat->source->n_components;
+    const hdi_lane_room room = hdi_lane_room_of(heat->source, &heat->fam, 0, 0);
     int32_t width, count, lanes, i;
     uint64_t doubles, bytes = 0, old = 0;
     if (k < 1) return 0;
@@ -19348,11 +19320,8 @@ static uint64_t hdi_batches_need(const hd_heat *heat, int32_t packs, int32_t k) 
         hdi_scope_count(&bytes, (uint64_t)lanes, sizeof(hdi_lane));
         if (heat->lane) hdi_scope_count(&old, (uint64_t)heat->n_lanes, sizeof(hdi_lane));
     }
-    for (i = 0; i < lanes; i++) {
-        if (i < heat->n_lanes && heat->lane[i].f) continue;
-        hdi_scope_count(&bytes, 7 * n, sizeof(double));
-        hdi_scope_count(&bytes, 3 * n_comp, sizeof(double));
-    }
+    for (i = 0; i < lanes; i++)
+        if (i >= heat->n_lanes || !heat->lane[i].f) hdi_scope_count(&bytes, hdi_lane_size(&room), sizeof(double));
     doubles *= (uint64_t)(count - hdi_batches_inside(&heat->elim, packs, doubles, count));
     if (heat->batch_doubles < doubles) {
         hdi_scope_count(&bytes, doubles, sizeof(double));
@@ -19479,7 +19448,7 @@ static hd_status hdi_batches_make(hdi_batches *b, hdi_heat_call *h) {
     b->h = h;
     b->n_here = 0;
     b->count = hdi_batches_shape(&heat->elim, h->ask.k, &b->width, &b->doubles);
-    if (hdi_heat_lanes(h, b->count * b->width) < 0) return h->e->status;
+    if (hdi_heat_lanes(h, b->count * b->width, 0, 0) < 0) return h->e->status;
     b->inside = hdi_batches_inside(&heat->elim, heat->elim.n_used, b->doubles, b->count);
     fresh = b->doubles * (uint64_t)(b->count - b->inside);
     if (heat->batch_doubles >= fresh) return HD_OK;
@@ -19516,8 +19485,10 @@ static void hdi_batches_task(void *arg, int64_t index, int32_t worker) {
     for (r = 0; r < n; r++) {
         if (lane[r].skip) continue;
         if (h->deflated) hdi_batch_extra_means(&heat->elim, lane + r);
-        lane[r].status = hdi_elim_finish(&heat->elim, heat->limit, h->t * heat->drift, h->deflated, lane + r);
-        if (lane[r].negative) lane[r].status = hdi_not_semidefinite(&lane[r].error);
+        hdi_lane_finish(heat->elim.lap, &heat->elim.set, h->t * heat->drift, h->deflated, lane + r);
+        lane[r].status = lane[r].negative ? hdi_not_semidefinite(&lane[r].error)
+            : lane[r].off.rounding <= heat->limit * (lane[r].u_norm - lane[r].off.rounding)
+            ? HD_OK : HD_WARN_ACCURACY;
     }
 }
 
@@ -19840,7 +19811,7 @@ static hd_status hdi_heat_by_krylov(hdi_heat_call *h) {
     heat->krylov->wide = wide;
     heat->krylov->m = h->m;
     heat->krylov->rate = h->rate;
-    if (hdi_heat_lanes(h, wide) < 0) return h->e->status;
+    if (hdi_heat_lanes(h, wide, 0, 0) < 0) return h->e->status;
     for (h->batch = 0; h->batch < h->ask.k; h->batch += n) {
         n = hdi_low32(h->ask.k - h->batch, h->n_lanes);
         if (hdi_krylov_items(h, n, n_windows) < 0) return h->e->status;
@@ -20641,7 +20612,7 @@ static hd_status hdi_fading_answer(hdi_heat_call *h, double t) {
     h->method = HD_METHOD_DIRECT;
     h->solver = HD_SOLVER_AUTO;
     hdi_modes_tell(heat, h->rep);
-    if (h->e->status >= 0 && hdi_heat_lanes(h, 1) >= 0) {
+    if (h->e->status >= 0 && hdi_heat_lanes(h, 1, 0, 0) >= 0) {
         x = hdi_decay_at(&heat->modes, t, work + count);
         most = hdi_fading_reach(&heat->modes, &x, sizes);
         for (h->batch = 0; h->batch < h->ask.k; h->batch++) {
@@ -20771,7 +20742,7 @@ static hd_status hdi_plain_rate(const hdi_heat_call *h, hdi_lane *lane) {
 /* Answers that need no solve: those for t = 0, or the means for very large t. */
 static hd_status hdi_heat_plain(hdi_heat_call *h) {
     hdi_lane *lane;
-    if (hdi_heat_lanes(h, 1) < 0) return h->e->status;
+    if (hdi_heat_lanes(h, 1, 0, 0) < 0) return h->e->status;
     lane = h->heat->lane;
     for (h->batch = 0; h->batch < h->ask.k; h->batch++) {
         if (hdi_heat_load(h, h->batch, lane) < 0) return h->e->status;
@@ -21104,6 +21075,9 @@ static void hdi_heat_defaults(hd_heat *heat, const hd_heat_opts *opts) {
     o->precond = o->precond ? o->precond : HD_PRECOND_MILDL;
     o->tol = o->tol > 0 ? o->tol : HDI_TOL_HEAT;
     o->max_iterations = o->max_iterations ? o->max_iterations : HDI_MAX_ITERATIONS;
+    heat->fam.solver = o->solver == HD_SOLVER_MINRES ? HD_SOLVER_MINRES : HD_SOLVER_COCG;
+    heat->fam.precond = o->precond;
+    heat->fam.max_iterations = o->max_iterations;
 }
 
 /* Computes what every query needs: scale, spectrum, drift. Copies the caller's permutation. */
