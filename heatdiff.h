@@ -515,20 +515,18 @@ typedef enum hd_pole_kind {
     HD_POLES_DEFAULT = 0,
     /* Best uniform (r,r) approximations, r = 1..14: smallest max |exp - c| on (-inf, 0]. */
     HD_POLES_UNIFORM,
-    /* a0 = 0, c(0) = 1, smallest max (1 + |x|) |exp - c|, r = 2..14. The error is relative to the kernel's
-     * own size, and heat is conserved up to rounding. */
+    /* a0 = 0, c(0) = 1, smallest max (1 + |x|) |exp - c|, r = 2..14: an error relative to the kernel's size */
     HD_POLES_KERNEL,
     HD_POLES_OWN,               /* the caller's */
-    /* r = 2..14, as kernel sets but with a weight that rises to five times (1 + |x|) at large |x|. Made for
-     * diagonals and distances. */
+    /* r = 2..14, for diagonals and distances: the weight rises to five times (1 + |x|) at large |x| */
     HD_POLES_DIAGONAL
 } hd_pole_kind;
 
 enum { HD_MAX_POLES = 32 };
 
 /* c(x) = a0 + sum_real a/(x - theta) + 2 Re sum_pairs a/(x - theta) for x = -t lambda <= 0. Of each conjugate
- * pair only the pole with Im theta > 0 is listed. A pole with Im theta = 0 is real and counts once. No pole
- * may lie on (-inf, 0]. Clear the struct before you fill in a set of your own. */
+ * pair only the pole with Im theta > 0 is listed. No pole may lie on (-inf, 0]. Clear the struct before you
+ * fill in a set of your own. */
 typedef struct hd_rational {
     hd_pole_kind kind;
     int32_t degree;             /* real poles + 2 pairs */
@@ -536,12 +534,11 @@ typedef struct hd_rational {
     double a0;
     hd_c64 theta[HD_MAX_POLES];
     hd_c64 a[HD_MAX_POLES];
-    /* In a set of your own, either error may be 0: unknown. If both are 0, bounds in reports are for c itself
-     * rather than for exp. */
-    double max_error;           /* max |exp(x) - c(x)| on (-inf, 0] */
-    double max_weighted_error;  /* max (1 + |x|) |exp(x) - c(x)|; 0: unbounded or unknown */
-    /* 0, or the t of a filter f, see hd_rational_fit: c(-t lambda) stands for f(lambda), and errors are those
-     * of f on [0, lambda_max], measured on a grid. */
+    /* max |exp - c| on (-inf, 0], and max (1 + |x|) |exp - c|, where 0 is unbounded. 0: unknown, in sets of
+     * your own; if both are, bounds in reports are for c itself. */
+    double max_error, max_weighted_error;
+    /* 0, or the t of a filter f: c(-t lambda) stands for f(lambda), and errors are those of f on
+     * [0, lambda_max], measured on a grid */
     double t;
     double lambda_max;          /* filters: queries refuse a Laplacian with larger eigenvalues */
     double largest;             /* filters: max |f| */
@@ -570,15 +567,15 @@ typedef struct hd_filter {
     double (*f)(double lambda, void *user);   /* HD_FILTER_OWN: finite on [0, lambda_max] */
     void *user;
     double tol;                 /* max (1 + weight lambda) |f - c| / max |f|; default 1e-10 */
-    /* >= 0, by default 0. With 1/weight near the eigenvalues that f lets pass, the error is small where most
-     * eigenvalues are. For a wave, weight = exp(-a) and tol = 1e-7 give bounds near 1e-6 with 16 poles. */
+    /* >= 0. With 1/weight near the eigenvalues that f lets pass, the error is small where most eigenvalues
+     * are. For a wave, weight = exp(-a) and tol = 1e-7 give bounds near 1e-6 with 16 poles. */
     double weight;
     int32_t max_degree;         /* of the set, at most HD_MAX_POLES; default 24 */
     /* > 0: there is no eigenvalue between 0 and this, and c may take any value there. Filters that are not
      * smooth at 0 then need half of the poles. The second value of hd_spectrum is such a number. */
     double lambda_min;
-    /* 1: c may have a constant a0, for filters that do not fade where lambda is large. If B is not diagonal,
-     * diagonals leave a0 B^-1 out, and the bound includes it. */
+    /* 1: c may have an a0, for filters that do not fade where lambda is large. If B is not diagonal, diagonals
+     * leave a0 B^-1 out, and the bound includes it. */
     int32_t constant;
     int32_t end_zero;
 } hd_filter;
@@ -739,35 +736,32 @@ typedef struct hd_report {
 typedef struct hd_spectrum_opts {
     int32_t begin_zero;
     int32_t count;              /* pairs wanted; 0: all below `below` */
-    double below;               /* > 0: only eigenvalues below this; 0: no such bound */
-    /* Of residuals, see hd_spectrum.residual; default 1e-10. Rounding of L x may be larger where the smallest
-     * eigenvalues are below 1e-6 of the largest. */
-    double tol;
+    double below;               /* > 0: only eigenvalues below this */
+    double tol;                 /* of hd_spectrum.residual; default 1e-10 */
     hd_ordering ordering;
     const int32_t *perm;        /* [n] with HD_ORDERING_OWN: perm[k] is the vertex eliminated k-th */
     hd_context *context;        /* default: the Laplacian's */
     int32_t end_zero;
 } hd_spectrum_opts;
 
-/* The smallest eigenpairs of L x = lambda B x. The library makes and frees it. Read all fields, change none.
- * The Laplacian must outlive it, and must not be updated in between. */
+/* The smallest eigenpairs of L x = lambda B x, to be read. The Laplacian must outlive it, and must not be
+ * updated in between. */
 typedef struct hd_spectrum {
     int32_t n;                  /* vertices */
     int32_t count;              /* pairs */
     double *value;              /* [count] eigenvalues, ascending, 1/area */
-    /* [n count] column-major, B-orthonormal, 0 at vertices without mass. The entry with the largest absolute
-     * value is positive. */
+    /* [n count] column-major, B-orthonormal, 0 at vertices without mass; the largest |entry| is positive */
     double *vector;
     /* [count] |L x - lambda B x| / lambda in the norm of diag(B)^-1, measured; for lambda near 0 relative to
      * the first eigenvalue that does not belong to constants */
     double *residual;
     double largest_residual;
-    /* residuals above tol and above what rounding of L x alone makes, or above a tenth of lambda itself */
+    /* residuals above tol and what rounding of L x makes, or above a tenth of lambda. That rounding counts
+     * where the smallest eigenvalues are below 1e-6 of the largest. */
     int32_t n_poor;
     int32_t n_constant;         /* the first pairs are the constants of components; their residual is 0 */
-    /* 1: proven complete. L - shift B has as many negative pivots as there are eigenvalues found below the
-     * shift, and none found is so near (shift_margin) that rounding could change the count. 0: the count was
-     * not reliable; the status is HD_WARN_ACCURACY. */
+    /* 1: complete, as L - shift B has as many negative pivots as eigenvalues were found below the shift, and
+     * none found is so near (shift_margin) that rounding could change the count. 0: not proven. */
     int32_t proven;
     double shift, shift_margin;
     double next;                /* all other eigenvalues are at least this; HUGE_VAL: there are none */
@@ -830,12 +824,13 @@ typedef enum hd_geodesic_mass {
 
 /* How heat meets the border while it flows. Distances themselves always have a natural border. */
 typedef enum hd_geodesic_border {
-    HD_GEODESIC_BORDER_NATURAL = 0, /* Neumann: no heat leaves; fronts meet the border at a right angle */
-    HD_GEODESIC_BORDER_MEAN,        /* the mean of the two others (Crane et al. 2013, section 3.4). Takes a
-                                       third factor. Fronts hardly bend, and t may be larger, such as 8 h^2 */
-    HD_GEODESIC_BORDER_DIRICHLET    /* zero at the border: fronts bend to follow it, and distances from places
-                                       near it are too short. No source may lie there, nor in a face with a
-                                       corner there */
+    HD_GEODESIC_BORDER_NATURAL = 0, /* no heat leaves; fronts meet the border at a right angle */
+    /* The mean of the two others (Crane et al. 2013, section 3.4), by a third factor. Fronts hardly bend, and
+     * t may be larger, such as 8 h^2. */
+    HD_GEODESIC_BORDER_MEAN,
+    /* Zero at the border: fronts follow it, and distances from places near it are too short. No source may
+     * lie there, nor in a face with a corner there. */
+    HD_GEODESIC_BORDER_DIRICHLET
 } hd_geodesic_border;
 
 typedef struct hd_geodesic_opts {
@@ -843,20 +838,17 @@ typedef struct hd_geodesic_opts {
     /* How long heat flows, unit length^2. Larger values give smoother and less accurate distances. Default
      * h^2, with h the mean edge length. On irregular triangles and points 2 h^2 is often better. */
     double t;
-    /* The diagonal of B. It determines how fast heat fades, and has little influence on the distance. */
-    hd_geodesic_mass mass;
+    hd_geodesic_mass mass;      /* the diagonal of B, which has little influence on the distance */
     hd_ordering ordering;       /* of both factorisations */
-    /* [n] with HD_ORDERING_OWN: perm[k] is the vertex eliminated k-th, those without mass anywhere. */
-    const int32_t *perm;
+    const int32_t *perm;        /* as in hd_heat_opts */
     hd_context *context;
-    /* 1: hd_geodesic_update may be called. The plan keeps L then, and 100 bytes for each face. Triangles in
-     * space only. */
+    /* 1: hd_geodesic_update may be called, for triangles in space. The plan keeps L, and 100 bytes a face. */
     int32_t updatable;
     hd_geodesic_border border;  /* of meshes */
     hd_triangulation triangulation; /* points need tufted; faces with more corners are split */
     double mollify;             /* as in hd_laplacian_opts */
-    /* Polygons: as in hd_laplacian_opts, but by default 1/6. On squares L is then that of bilinear finite
-     * elements. With 1, errors of distances are two to four times as large. */
+    /* Polygons: as in hd_laplacian_opts, but by default 1/6: on squares, bilinear finite elements. With 1,
+     * errors of distances are two to four times as large. */
     double stiffening;
     int32_t neighbours;         /* of points; as in hd_laplacian_opts */
     double t_in_h2;             /* t as a multiple of h^2, where t is 0; default 1 */
@@ -873,10 +865,8 @@ typedef struct hd_geodesic_report {
     hd_ordering ordering;
     int64_t factor_nnz;         /* of each factor, diagonal included */
     double factor_flops;        /* of both, or of the three of the mean border */
-    /* |b - A x| / |b| of (L + B/t) u and of L phi. They tell how well the systems are solved, and nothing
-     * about the error of the method itself. */
-    double residual_heat;
-    double residual_distance;
+    /* |b - A x| / |b| of (L + B/t) u and of L phi; they say nothing of the error of the method itself */
+    double residual_heat, residual_distance;
 } hd_geodesic_report;
 
 /* ==== [D] functions ==== */
@@ -1022,8 +1012,7 @@ HEATDIFF_API hd_status hd_neighbours_nearest(const double *xyz, int32_t n, const
 
 /* ---- rational approximations ---- */
 
-/* A built-in set: HD_POLES_UNIFORM of degree 1..14, HD_POLES_KERNEL of degree 2..14, or HD_POLES_DIAGONAL of
- * degree 2..14. tools/poles.py computes and checks the constants.
+/* A built-in set: uniform, kernel or diagonal. tools/poles.py computes and checks the constants.
  * Errors HD_ERR_ARGUMENT for any other kind or degree (value: a wrong degree)
  * Source Cody, Meinardus, Varga 1969; Carpenter, Ruttan, Varga 1984 */
 HEATDIFF_API hd_status hd_rational_exp(hd_rational *out, hd_pole_kind kind, int32_t degree,
@@ -1033,9 +1022,8 @@ HEATDIFF_API hd_status hd_rational_exp(hd_rational *out, hd_pole_kind kind, int3
  * out    [n_times] out[q] is the set for t[q]
  * t      [n_times] > 0, in any order
  * tol    bound of max_weighted_error of every set
- * theta_i/t[q] is the same for all q, so the factors of L + (theta_i/t[q]) B serve every time, and only the
- * weights differ. The number of pole pairs is the smallest multiple of four that reaches tol for all times.
- * At tol = 1e-6 it is 8 for times that differ by a factor of 10, 12 for a factor of 100, and 16 for 1000.
+ * theta_i/t[q] is the same for all q, so that one set of factors serves every time. The number of pole pairs
+ * is a multiple of four: at tol = 1e-6 it is 8, 12 and 16 for times that differ by 10, 100 and 1000.
  * Errors HD_ERR_ARGUMENT: a time is not positive and finite (row), or there is no such set (value: the ratio
  *        of the times)
  * Cost   under a millisecond for each time
@@ -1047,21 +1035,18 @@ HEATDIFF_API hd_status hd_rational_shared(hd_rational *out, int32_t n_times, con
 HEATDIFF_API double hd_rational_eval(const hd_rational *set, double x);
 
 /* Sets for filters f of the spectrum: K_t becomes f(B^-1 L), and k_t becomes f(B^-1 L) B^-1. Several filters
- * share their poles, so that one set of factors serves them all: see hd_heat_set_rational.
- * out        [count] c(-t lambda) ~ f(lambda) on [0, lambda_max] with t = out->t, the same for all: only the
- *            weights a of several sets differ
- * filters    [count] count >= 1. Degrees rise until tol is reached, or max_degree; of several filters, which
- *            may have up to HD_MAX_POLES pairs, max_degree is ignored
+ * share their poles and factors, see hd_heat_set_rational.
+ * out        [count] c(-t lambda) ~ f(lambda) on [0, lambda_max] with t = out->t; only weights a differ
+ * filters    [count] count >= 1. Degrees rise until tol is reached, or max_degree, which several filters
+ *            ignore: these may have HD_MAX_POLES pairs
  * lambda_max that of the Laplacian, or more; 1/area
- * max_error is the largest |f - c| on 42,000 points, and reports call what follows from it measured. No pole
- * lies on the spectrum. Poles are found for at most 20 of the filters, and weights for all. Wave filters over
- * three decades of eigenvalues, as wide as is usual for a hundred of them, take 24 to 28 pairs, whether they
- * are 16 or 100; one of them alone takes 8 to 10.
- * Classical distances become d^2 = (e_i - e_j)' f(B^-1 L) B^-1 (e_i - e_j), and weighted ones the same with
- * B f(B^-1 L). So f is what is summed in d^2, for example exp(-2 t lambda), and should not be negative.
+ * max_error is the largest |f - c| on 42,000 points, and reports call what follows from it measured. Poles are
+ * found for at most 20 of the filters. A hundred wave filters of usual width over three decades of eigenvalues
+ * take 24 to 28 pairs, one of them alone 8 to 10.
+ * Distances become d^2 = (e_i - e_j)' f(B^-1 L) B^-1 (e_i - e_j), or with B f(B^-1 L). So f is what is summed
+ * in d^2, for example exp(-2 t lambda), and should not be negative.
  * Errors     HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (value: the eigenvalue), HD_ERR_BREAKDOWN (a weight
- *            overflows), all with column: which filter. HD_WARN_ACCURACY: these are the best sets found, and
- *            an error is above its tol
+ *            overflows), all with column: which filter. HD_WARN_ACCURACY: an error is above its tol
  * Cost       some 2 to 50 milliseconds, and 50 to 200 thousand values of f; a second for 16 filters, three to
  *            seven for 100
  * Source     Nakatsukasa, Sete, Trefethen 2018, with weights refitted to the poles; Lietaert, Meerbergen,
@@ -1097,8 +1082,8 @@ typedef struct hd_solve_report {
  * report filled also if the status is HD_ERR_NOT_CONVERGED
  * Errors HD_ERR_NOT_FINITE (row: of rhs, or of x if it overflows), HD_ERR_NOT_CONVERGED, HD_ERR_BREAKDOWN;
  *        HD_WARN_ACCURACY
- * Cost   an ordering and a preconditioner, which every call makes anew; one product with t L + theta B and
- *        one preconditioner solve for each iteration
+ * Cost   an ordering and a preconditioner; one product with the matrix and one preconditioner solve for each
+ *        iteration
  * Source see hd_solver */
 HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c64 theta,
                                         const hd_c64 *rhs, hd_c64 *x, const hd_solve_opts *opts,
@@ -1400,29 +1385,23 @@ HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t 
 
 /* ---- eigenpairs ---- */
 
-/* The smallest eigenpairs of L x = lambda B x: all copies of multiple eigenvalues, and those of all
- * components.
- * opts   count, below, or both: then whichever ends first. count may be as large as n_active. opts must not
- *        be NULL
- * Errors HD_ERR_ARGUMENT (also: more pairs than rows), HD_ERR_NOT_POSITIVE, HD_ERR_NOT_CONVERGED,
- *        HD_ERR_INDEX (row: perm is not a permutation); HD_WARN_ACCURACY with a result: n_poor is not 0, or
- *        completeness is not proven
- * Cost   for about 100 pairs at a time one real factorisation of an indefinite matrix, some 250 solves, and
- *        the orthogonalisation of as many vectors; at the end 4 n count^2 flops. Memory: the vectors twice,
- *        some 400 more vectors, and a factor
+/* The smallest eigenpairs, with all copies of multiple eigenvalues.
+ * opts   not NULL: count, at most n_active, or below, or both: then whichever ends first
+ * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_POSITIVE, HD_ERR_NOT_CONVERGED, HD_ERR_INDEX (row: perm is not a
+ *        permutation); HD_WARN_ACCURACY with a result: n_poor is not 0, or proven is 0
+ * Cost   for about 100 pairs one real factorisation, some 250 solves, and the orthogonalisation of as many
+ *        vectors; at the end 4 n count^2 flops. Memory: the vectors twice, some 400 more, and a factor
  * Source Grimes, Lewis, Simon 1994: block Lanczos with shifts, eigenvalues counted by Sylvester's law */
 HEATDIFF_API hd_status hd_spectrum_create(hd_spectrum **out, const hd_laplacian *lap,
                                           const hd_spectrum_opts *opts, hd_error *err);
 HEATDIFF_API void hd_spectrum_free(hd_spectrum *s);  /* NULL is fine */
 
 /* Kernels and distances from the pairs of s, as in eq. (1) of the paper: sums of exp(-t lambda_i) x_i(x)
- * x_i(y) and the like. Definitions, kinds, shapes and vertices without mass are those of hd_heat_columns,
- * hd_heat_diagonal and hd_heat_distance. What is left out is bounded.
+ * x_i(y) and the like. All else is as in hd_heat_columns, hd_heat_diagonal and hd_heat_distance.
  * t      >= 0, unit length^2; commute and biharmonic ignore it
  * bound  NULL, or as large as the output, with the same ldu or ldd: bounds on the error of each value. The
- *        part of the pairs left out is proven if s->proven: at most exp(-t next) sqrt(left(x) left(y)). That
- *        of residuals follows from their sizes, and rounding is estimated. The bound is small for large t;
- *        for small t it shows how much the missing pairs count
+ *        part of the pairs left out is at most exp(-t next) sqrt(left(x) left(y)), proven if s->proven; that
+ *        of residuals follows from their sizes, and rounding is estimated
  * Errors those of hd_heat_columns for sources
  * Cost   2 n count flops for each column; with the weighted distance or the diagonal of K_t and a full B some
  *        ten times as many */
@@ -1456,21 +1435,20 @@ HEATDIFF_API hd_status hd_heat_estimate(hd_heat *heat, hd_query query, int32_t n
 typedef struct hd_geodesic hd_geodesic;
 
 /* A plan for distances along a surface, by the heat method.
- * mesh   as in hd_laplacian_create, whose errors it has. Paths lead around holes
+ * mesh   as in hd_laplacian_create, whose errors it has
  * opts   NULL: t = h^2, barycentric masses, natural border. Use a Delaunay triangulation if there are
  *        slivers: on a plane of cells squeezed 1:20 it lowers mean errors from 0.19 to 0.003 of the width
- * Gradients on polygons are those of Alexa and Wardetzky 2011, whose divergence is L without its stabilising
- * part; masses are equal parts of the areas. Points in the same place have the same distance; they must be
- * tufted, because exponential weights have no gradient. On quadrangles, hexagons and evenly spread points,
- * distances are as accurate as on triangles with edges of the same length.
+ * Gradients on polygons are those of Alexa and Wardetzky 2011. Points must be tufted, because exponential
+ * weights have no gradient; those in the same place have the same distance. On quadrangles, hexagons and
+ * evenly spread points, distances are as accurate as on triangles with edges of the same length.
  * Errors HD_ERR_BREAKDOWN (vertex: a pivot too small to divide by)
- * Cost   assembly, one analysis, two real factorisations on one pattern. The plan keeps both: 16 bytes for
- *        each non-zero of the factor, and about 430 bytes for each vertex; polygons 28 bytes more for each
- *        corner, and 12 for each non-zero of L
+ * Cost   assembly, one analysis, two real factorisations. The plan keeps both: 16 bytes for each non-zero of
+ *        the factor, and about 430 bytes for each vertex; polygons 28 bytes more for each corner, and 12 for
+ *        each non-zero of L
  * Source Crane, Weischedel, Wardetzky 2013, algorithm 1 and section 3.2.1 */
 HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const hd_mesh *mesh,
                                           const hd_geodesic_opts *opts, hd_error *err);
-/* New positions for the same triangles, of a plan made with the option updatable. Ordering and analysis stay.
+/* New positions for the same triangles, of a plan made with the option updatable.
  * mesh   as in hd_laplacian_update
  * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE; HD_ERR_EMPTY (face or vertex: it has no area any more). Then
  *        nothing has changed. After any other error the plan answers no query until an update succeeds
@@ -1479,25 +1457,24 @@ HEATDIFF_API hd_status hd_geodesic_update(hd_geodesic *g, const hd_mesh *mesh, h
 HEATDIFF_API void hd_geodesic_free(hd_geodesic *g);  /* NULL is fine */
 
 /* The distance of every vertex to each source: to the nearest of its points, or to its curve.
- * sources  weights, and lengths of curves, are ignored. For the distance to the nearest of several vertices,
- *          make them one source. Other points, and every piece of a curve, must lie in a face that is used,
- *          its edges and corners included. Plans of polygons take vertices only
+ * sources  weights, and lengths of curves, are ignored. Points that are no vertices, and every piece of a
+ *          curve, must lie in a face that is used, its edges and corners included. Plans of polygons take
+ *          vertices only
  * D        n x count, columns ldd apart (0: n), in the unit of xyz: |phi - phi_s|, zero at vertices that are
  *          sources, HUGE_VAL in components without one and at vertices without mass. For several points phi_s
  *          is a mean weighted by their heat, which is almost the value of the nearest one
- * The method itself has an error of the order of h: a few percent on coarse meshes, about one percent on fine
- * ones, and most where fronts meet. Near a source the relative error can be much larger. d from i to j and d
- * from j to i differ by about that error.
- * Where a source is no vertex, D is exact at the corners of its faces, along straight lines within them, and
- * inside them the gradient of these distances takes the place of that of heat.
+ * The method has an error of the order of h: a few percent on coarse meshes, about one percent on fine ones,
+ * most where fronts meet, and relative to the distance more near a source. d from i to j and d from j to i
+ * differ by about that error. Where a source is no vertex, D is exact at the corners of its faces, along
+ * straight lines within them.
  * Errors   those of hd_heat_columns for sources; HD_ERR_ARGUMENT (column, row): a point or a piece is in no
  *          face, or has a corner where heat is held at zero; HD_ERR_BREAKDOWN (rounding left no number).
  *          HD_WARN_ACCURACY, only if a report is given
  * Cost     two solves and two passes over the faces for each source; a third solve with several points in a
  *          component; with a report two more passes. Vertices are solved eight side by side, in a third of
  *          the time. Where heat fades below 1e-200 of the source's, about 450 edges away at t = h^2, another
- *          solve and three passes follow for each such distance (report->n_stages). Of calls with vertices
- *          alone, only those with more sources or points than any before allocate
+ *          solve and three passes follow (report->n_stages). Of calls with vertices alone, only those with
+ *          more sources or points than any before allocate
  * Only one thread at a time may use a plan. */
 HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, const hd_sources *sources, double *D,
                                             size_t ldd, hd_geodesic_report *report, hd_error *err);
