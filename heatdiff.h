@@ -14313,20 +14313,26 @@ static double *hdi_make_weight(const hd_laplacian *lap, hd_context *ctx, hd_erro
     return w;
 }
 
-/* Ordering, analysis, and the pair renumbered by it. */
-static hd_status hdi_elim_make(hdi_elim *m, const hd_laplacian *lap, hd_ordering ordering, const int32_t *own,
-                               double scale, hd_context *ctx, hd_error *e) {
+/* Ordering and analysis. own: a permutation of the vertices, or NULL. */
+static hd_status hdi_pair_analyse(hdi_symbolic *sym, const hd_laplacian *lap, hd_ordering ordering,
+                                  const int32_t *own, hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
     int32_t *rows = HDI_TAKE(&s, int32_t, lap->n_active);
     const hdi_order order = {ordering, lap->xyz, own ? rows : NULL};
-    if (e->status < 0) return hdi_scope_end(&s);
+    if (rows && own) hdi_elim_own(lap, own, rows);
+    if (rows) (void)hdi_symbolic_order(sym, &lap->L, &order, ctx, e);
+    return hdi_scope_end(&s);
+}
+
+/* The same, and the pair renumbered by it. */
+static hd_status hdi_elim_make(hdi_elim *m, const hd_laplacian *lap, hd_ordering ordering, const int32_t *own,
+                               double scale, hd_context *ctx, hd_error *e) {
     memset(m, 0, sizeof *m);
     m->ctx = ctx;
     m->source = lap;
     m->scale = scale;
-    if (own) hdi_elim_own(lap, own, rows);
     m->pack = HDI_NEW(ctx, hdi_factor, HD_MAX_POLES / 4, e);
-    if (e->status >= 0 && hdi_symbolic_order(&m->sym, &lap->L, &order, ctx, e) >= 0)
+    if (e->status >= 0 && hdi_pair_analyse(&m->sym, lap, ordering, own, ctx, e) >= 0)
         m->lap = hdi_pair_renumber(lap, m->sym.perm, ctx, e);
     if (m->lap) {
         (void)hdi_pair_scale(m->lap);
@@ -14335,7 +14341,7 @@ static hd_status hdi_elim_make(hdi_elim *m, const hd_laplacian *lap, hd_ordering
         m->noise_shift = m->weight ? m->noise + lap->n_active : NULL;
     }
     if (e->status < 0) hdi_elim_free(m);
-    return hdi_scope_end(&s);
+    return e->status;
 }
 
 /* t L + theta B in terms of the source's entries; t comes scaled, as B does in lap. */
@@ -23524,10 +23530,10 @@ struct hd_geodesic {
     char *mark;                  /* [n_active] 1: u is known; or a source */
     double *x, *b, *r, *work;    /* [n_active] each; sweeps */
     double *first;               /* [n_active] u of the first stage, made with the first set of sources */
-    double *wide_x, *wide_b, *wide_work;   /* the same for a batch, made when first needed */
+    double *wide_x, *wide_b, *wide_work;   /* the same for a batch, one array made when first needed */
     int64_t *value_ptr;          /* [n_components + 1] */
-    double *value;               /* [value_size] phi at the sources, by component, ascending */
     hdi_pair *sorted;            /* [value_size] */
+    double *value;               /* [value_size] phi at the sources, by component, ascending; after sorted */
     int32_t value_size;
     hd_laplacian *lap;           /* of updatable plans, else NULL */
     int32_t *from;               /* [n_faces] which of the mesh's faces each is; of updatable plans kept */
@@ -23554,15 +23560,16 @@ static void hdi_geo_free(hd_geodesic *g) {
     hdi_symbolic_free(ctx, &g->sym);
     hdi_laplacian_free(g->lap, ctx);
     while (g->n_blocks > 0) hdi_free(ctx, g->block[--g->n_blocks]);
-    hdi_free(ctx, g->from);
-    hdi_free(ctx, g->first);
-    hdi_free(ctx, g->wide_x);
-    hdi_free(ctx, g->wide_b);
-    hdi_free(ctx, g->wide_work);
-    hdi_free(ctx, g->value);
     hdi_free(ctx, g->sorted);
     hdi_free(ctx, g);
     hdi_let_go(ctx);
+}
+
+/* An array for good, made when it is first needed. */
+static double *hdi_geo_array(hd_geodesic *g, uint64_t size, hd_error *e) {
+    double *x = HDI_NEW(g->ctx, double, size, e);
+    if (x) g->block[g->n_blocks++] = x;
+    return x;
 }
 
 /* Ends the scope; its blocks become those of the plan, if all are there. */
@@ -23604,27 +23611,27 @@ static void hdi_geo_frames(hd_geodesic *g, const hdi_mesh *mesh, const int32_t *
 
 /* Sorts the faces that have an area by the corner that is eliminated first. Passes over them then run through
  * the vectors once. */
-static hd_status hdi_geo_order(hd_geodesic *g, const hdi_mesh *mesh, hdi_scope *own) {
-    hd_error *e = own->e;
-    hdi_scope s = hdi_scope_begin(g->ctx, e);
-    int64_t *at = HDI_TAKE_ZERO(&s, int64_t, (int64_t)g->n_active + 1), c;
-    int32_t *first = HDI_TAKE(&s, int32_t, mesh->m), f, v;
+static hd_status hdi_geo_order(hd_geodesic *g, const hdi_mesh *mesh, hdi_scope *own, hdi_scope *s) {
+    uint64_t *key = HDI_TAKE(s, uint64_t, mesh->m);
+    int32_t f, v, k = 0;
+    int64_t c;
     g->face_ptr = HDI_TAKE(own, int32_t, (int64_t)g->sym.n_super + 1);
-    for (f = 0; f < mesh->m && e->status >= 0; f++) {
-        first[f] = g->n_active;
+    g->from = HDI_TAKE(g->lap ? own : s, int32_t, mesh->m);
+    for (f = 0; f < mesh->m && own->e->status >= 0; f++) {
+        int32_t first = g->n_active;
         if (!(mesh->area[f] > 0)) continue;
         for (c = hdi_face_begin(mesh, f); c < hdi_face_begin(mesh, f + 1); c++)
-            first[f] = hdi_low32(first[f], g->row[mesh->tri[c]]);
-        at[first[f]]++;
-        g->n_faces++;
+            first = hdi_low32(first, g->row[mesh->tri[c]]);
+        key[g->n_faces++] = (uint64_t)first << 32 | (uint64_t)f;
     }
-    if (e->status >= 0) g->from = HDI_NEW(g->ctx, int32_t, g->n_faces, e);
-    if (!g->from) return hdi_scope_end(&s);
-    hdi_prefix_sum(at, g->n_active);
-    for (v = 0; v <= g->sym.n_super; v++) g->face_ptr[v] = (int32_t)at[g->sym.super[v]];
-    for (f = 0; f < mesh->m; f++)
-        if (first[f] < g->n_active) g->from[at[first[f]]++] = f;
-    return hdi_scope_end(&s);
+    if (own->e->status < 0) return own->e->status;
+    hdi_sort_keys(key, g->n_faces);
+    for (v = 0; v <= g->sym.n_super; v++) {
+        for (; k < g->n_faces && (int64_t)(key[k] >> 32) < g->sym.super[v]; k++)
+            g->from[k] = (int32_t)(key[k] & INT32_MAX);
+        g->face_ptr[v] = k;
+    }
+    return HD_OK;
 }
 
 /* All polygons, in their order. */
@@ -23786,18 +23793,6 @@ static hd_status hdi_geo_room(hd_geodesic *g, hdi_scope *own) {
     return own->e->status;
 }
 
-/* Ordering and analysis. */
-static hd_status hdi_geo_analyse(hd_geodesic *g, const hd_laplacian *lap, const hd_geodesic_opts *o,
-                                 hd_error *e) {
-    hdi_scope s = hdi_scope_begin(g->ctx, e);
-    int32_t *own = HDI_TAKE(&s, int32_t, lap->n_active);
-    const hdi_order order = {o->ordering, lap->xyz, own};
-    if (e->status < 0) return hdi_scope_end(&s);
-    if (o->ordering == HD_ORDERING_OWN) hdi_elim_own(lap, o->perm, own);
-    (void)hdi_symbolic_order(&g->sym, &lap->L, &order, g->ctx, e);
-    return hdi_scope_end(&s);
-}
-
 /* Points in the place of an earlier one, which the triangles leave out, share its row. */
 static hd_status hdi_geo_coincident(hd_geodesic *g, const double *xyz, hd_error *e) {
     hdi_scope s = hdi_scope_begin(g->ctx, e);
@@ -23811,27 +23806,25 @@ static hd_status hdi_geo_coincident(hd_geodesic *g, const double *xyz, hd_error 
 /* The faces as the passes over them want them. */
 static hd_status hdi_geo_store(hd_geodesic *g, const hd_laplacian *lap, const hdi_surface *z,
                                const hdi_input *in, hdi_scope *own) {
-    hd_error *e = own->e;
+    hdi_scope s = hdi_scope_begin(g->ctx, own->e);
     const hdi_mesh *mesh = HDI_HAS_INTRINSIC && in->flips ? &z->flat : &z->mesh;
-    if (hdi_geo_order(g, mesh, own) < 0) return e->status;
+    if (hdi_geo_order(g, mesh, own, &s) < 0) return hdi_scope_end(&s);
     if (hdi_is_poly(mesh)) {
         if (hdi_geo_poly_faces(g, mesh, own) >= 0) (void)hdi_geo_poly_rows(g, lap, own);
     } else {
         g->face = HDI_TAKE(own, hdi_geo_face, g->n_faces);
         if (g->face) hdi_geo_frames(g, mesh, mesh->copies);
     }
-    if (!g->lap) {
-        hdi_free(g->ctx, g->from);
-        g->from = NULL;
-    }
-    if (e->status < 0 || !HDI_HAS_POINTS || !in->points || in->nbr_ptr) return e->status;
-    return hdi_geo_coincident(g, in->mesh.xyz, e);
+    if (!g->lap) g->from = NULL;
+    if (hdi_scope_end(&s) < 0 || !HDI_HAS_POINTS || !in->points || in->nbr_ptr) return own->e->status;
+    return hdi_geo_coincident(g, in->mesh.xyz, own->e);
 }
 
 static hd_status hdi_geo_make(hd_geodesic *g, const hdi_input *in, int32_t neighbours,
                               const hd_geodesic_opts *o, hd_error *e) {
     hdi_scope s = hdi_scope_begin(g->ctx, e), own = hdi_scope_begin(g->ctx, e);
     hd_laplacian *lap = hdi_lap_shell(g->ctx, e);
+    const int32_t *perm = o->ordering == HD_ORDERING_OWN ? o->perm : NULL;
     hdi_surface z;
     if (!lap) return hdi_scope_end(&s);
     lap->n = g->n;
@@ -23850,7 +23843,8 @@ static hd_status hdi_geo_make(hd_geodesic *g, const hdi_input *in, int32_t neigh
         if (e->status >= 0) (void)hdi_lap_components(lap, e);
         g->n_components = lap->n_components;
     }
-    if (e->status >= 0 && hdi_geo_analyse(g, lap, o, e) >= 0 && hdi_geo_rows(g, lap, &own) >= 0 &&
+    if (e->status >= 0 && hdi_pair_analyse(&g->sym, lap, o->ordering, perm, g->ctx, e) >= 0 &&
+        hdi_geo_rows(g, lap, &own) >= 0 &&
         hdi_geo_store(g, lap, &z, in, &own) >= 0) {
         hdi_scope_end(&s);                       /* the mesh is not needed any more */
         if (hdi_geo_factors(g, lap, e) >= 0) g->ready = hdi_geo_room(g, &own) >= 0;
@@ -23974,11 +23968,14 @@ static HDI_AVX512 void hdi_geo_flow_avx512(const hd_geodesic *g, hdi_geo_range a
 
 /* The same of polygon f in one column of k. */
 static void hdi_geo_poly_flow(const hdi_geo_polygons *z, int32_t f, int k, const double *u, double least,
-                              double *b, double *dim) {
+                              const char *done, double *b, double *dim) {
     const int64_t begin = z->ptr[f], end = z->ptr[f + 1];
     double W[3] = {0, 0, 0}, most = 0, norm2;
     int64_t p;
-    for (p = begin; p < end; p++) most = hdi_max(most, fabs(u[k * (int64_t)z->row[p]]));
+    for (p = begin; p < end; p++) {
+        if (done && done[z->row[p]]) return;
+        most = hdi_max(most, fabs(u[k * (int64_t)z->row[p]]));
+    }
     if (!(most >= least)) {
         *dim = hdi_max(*dim, most);
         return;
@@ -23994,20 +23991,6 @@ static void hdi_geo_poly_flow(const hdi_geo_polygons *z, int32_t f, int k, const
     if (!(norm2 > z->flat[f])) return;
     norm2 = -1 / sqrt(norm2);
     for (p = begin; p < end; p++) b[k * (int64_t)z->row[p]] += norm2 * hdi_dot3(z->side + 3 * p, W);
-}
-
-/* The same of polygons. */
-static void hdi_geo_poly_flows(const hd_geodesic *g, hdi_geo_range faces, int k, const double *u,
-                               const double *least, const char *done, double *b, double *dim) {
-    const hdi_geo_polygons *z = &g->poly;
-    int32_t f;
-    int64_t p;
-    int c;
-    for (f = faces.begin; f < faces.end; f++) {
-        int away = 0;
-        for (p = z->ptr[f]; done && p < z->ptr[f + 1]; p++) away |= done[z->row[p]];
-        for (c = 0; c < k && !away; c++) hdi_geo_poly_flow(z, f, k, u + c, least[c], b + c, dim + c);
-    }
 }
 
 /* r += sign L x of a triangle. */
@@ -24037,7 +24020,9 @@ static int hdi_geo_divergence(const hd_geodesic *g, hdi_geo_range part, int k, c
         part.begin = part.end + 1;
         part.end = end;
     }
-    if (g->poly.ptr) hdi_geo_poly_flows(g, part, k, u, least, done, b, dim);
+    for (q = part.begin; q < end && g->poly.ptr; q++)
+        for (c = 0; c < k; c++) hdi_geo_poly_flow(&g->poly, q, k, u + c, least[c], done, b + c, dim + c);
+    if (g->poly.ptr) {}
     else if (k == 1) hdi_geo_flow(g, part, 1, u, least, done, b, dim);
 #if HDI_X86
     else if (level >= 2) hdi_geo_flow_avx512(g, part, u, least, b, dim);
@@ -24449,14 +24434,13 @@ static void hdi_geo_values(hd_geodesic *g, const hdi_geo_source *s, const double
 /* Memory for phi at so many points. */
 static hd_status hdi_geo_values_room(hd_geodesic *g, int32_t most, hd_error *e) {
     if (g->value_size >= most) return HD_OK;
-    hdi_free(g->ctx, g->value);
     hdi_free(g->ctx, g->sorted);
     g->value_size = 0;
-    g->sorted = NULL;
-    g->value = HDI_NEW(g->ctx, double, most, e);
-    if (g->value) g->sorted = HDI_NEW(g->ctx, hdi_pair, most, e);
-    if (g->sorted) g->value_size = most;
-    return e->status;
+    g->sorted = HDI_NEW(g->ctx, hdi_pair, (most + (int64_t)most / 2 + 1), e);
+    if (!g->sorted) return e->status;
+    g->value = (double *)(void *)(g->sorted + most);
+    g->value_size = most;
+    return HD_OK;
 }
 
 /* ---- distances ---- */
@@ -24473,36 +24457,28 @@ static double hdi_geo_nearest(const double *value, int64_t n, double phi) {
     return lo < n ? hdi_min(value[lo] - phi, phi - value[lo - 1]) : phi - value[n - 1];
 }
 
-/* From phi to distances: zero at the sources, infinite on components without one. Returns whether all
- * distances that should be finite are. */
-static int hdi_geo_measure(const hd_geodesic *g, const double *phi, double *d) {
-    int fine = 1;
-    int32_t v;
-    for (v = 0; v < g->n; v++) {
-        const int32_t i = g->row[v], c = i < 0 ? 0 : g->component[i];
-        const int64_t at = g->value_ptr[c], n = i < 0 ? 0 : g->value_ptr[c + 1] - at;
-        d[v] = n > 0 ? g->h * hdi_geo_nearest(g->value + at, n, phi[i]) : HUGE_VAL;
-        fine &= n == 0 || hdi_finite(d[v]);
-    }
-    return fine;
-}
-
-/* The same of a batch of n single vertices. Columns with a bit in skip need not be finite. */
-static int hdi_geo_batch_measure(const hd_geodesic *g, const hdi_geo_source *s, int32_t n, int skip) {
+/* From phi, of n columns of k, to distances: zero at the sources, infinite on components without one. Columns
+ * of a batch are from single vertices. Returns whether all distances that should be finite are, but for
+ * columns with a bit in skip. */
+static int hdi_geo_measure(const hd_geodesic *g, const hdi_geo_source *s, int32_t n, int k, const double *phi,
+                           int skip) {
     double at[HDI_GEO_WIDE];
     int32_t own[HDI_GEO_WIDE], v, c, fine = 1;
-    for (c = 0; c < n; c++) {
+    for (c = 0; c < n && k > 1; c++) {
         const int32_t i = g->row[s[c].vertex[0]];
         own[c] = i < 0 ? -1 : g->component[i];
-        at[c] = i < 0 ? 0 : g->wide_b[HDI_GEO_WIDE * (int64_t)i + c];
+        at[c] = i < 0 ? 0 : phi[k * (int64_t)i + c];
     }
     for (v = 0; v < g->n; v++) {
-        const int32_t i = g->row[v];
+        const int32_t i = g->row[v], part = i < 0 ? 0 : g->component[i];
+        const int64_t begin = i < 0 || k > 1 ? 0 : g->value_ptr[part];
+        const int64_t end = i < 0 || k > 1 ? 0 : g->value_ptr[part + 1];
         for (c = 0; c < n; c++) {
             double *d = s[c].d + v;
             *d = HUGE_VAL;
-            if (i < 0 || g->component[i] != own[c]) continue;
-            *d = g->h * fabs(g->wide_b[HDI_GEO_WIDE * (int64_t)i + c] - at[c]);
+            if (i < 0 || (k > 1 ? part != own[c] : begin == end)) continue;
+            *d = g->h * (k > 1 ? fabs(phi[k * (int64_t)i + c] - at[c])
+                               : hdi_geo_nearest(g->value + begin, end - begin, phi[i]));
             fine &= skip >> c & 1 || hdi_finite(*d);
         }
     }
@@ -24574,14 +24550,13 @@ static void hdi_geo_own_source(hd_geodesic *g, const hdi_geo_source *s, double l
     }
 }
 
-/* Distances from phi in b, of n columns side by side. least: see hdi_geo_own_source; skip: see
- * hdi_geo_batch_measure. */
+/* Distances from phi, of n columns side by side. least: see hdi_geo_own_source; skip: see hdi_geo_measure. */
 static hd_status hdi_geo_answer(hd_geodesic *g, const hdi_geo_source *s, int32_t n, double least, int skip,
                                 hd_error *e) {
-    int32_t i, c, fine;
+    const int k = n > 1 ? HDI_GEO_WIDE : 1;
+    int32_t i, c;
     if (n == 1) hdi_geo_values(g, s, g->b);
-    fine = n > 1 ? hdi_geo_batch_measure(g, s, n, skip) : hdi_geo_measure(g, g->b, s->d);
-    if (!fine)
+    if (!hdi_geo_measure(g, s, n, k, n > 1 ? g->wide_b : g->b, skip))
         return hdi_fail(e, HD_ERR_BREAKDOWN, "geodesic: rounding leaves nothing of the answer: the mesh has "
                                              "faces that are too thin");
     if (s->n > 1) hdi_geo_own_source(g, s, least);
@@ -24646,7 +24621,7 @@ static hd_status hdi_geo_alone(hd_geodesic *g, const hdi_geo_source *s, hd_geode
                                hd_error *e) {
     int faint;
     if (hdi_geo_values_room(g, s->items ? s->items->n : s->n, e) < 0) return e->status;
-    if (s->n > 1 && !g->first) g->first = HDI_NEW(g->ctx, double, g->n_active, e);
+    if (s->n > 1 && !g->first) g->first = hdi_geo_array(g, (uint64_t)g->n_active, e);
     if (e->status >= 0) (void)hdi_geo_solve(g, s, 1, &faint, rep, e);
     return e->status;
 }
@@ -24655,14 +24630,14 @@ static hd_status hdi_geo_alone(hd_geodesic *g, const hdi_geo_source *s, hd_geode
  * alone. */
 static hd_status hdi_geo_batch(hd_geodesic *g, const hdi_geo_source *s, int32_t n, hd_geodesic_report *rep,
                                hd_error *e) {
-    const int64_t size = HDI_GEO_WIDE * (int64_t)g->n_active;
+    const uint64_t size = HDI_GEO_WIDE * (uint64_t)g->n_active;
     int faint = 0;
     int32_t c;
-    if (!g->wide_x) g->wide_x = HDI_NEW(g->ctx, double, size, e);
-    if (g->wide_x && !g->wide_b) g->wide_b = HDI_NEW(g->ctx, double, size, e);
-    if (g->wide_b && !g->wide_work)
-        g->wide_work = HDI_NEW(g->ctx, double, hdi_sweep_size(&g->sym, 1, HDI_GEO_WIDE), e);
-    if (e->status < 0 || hdi_geo_solve(g, s, n, &faint, rep, e) < 0) return e->status;
+    if (!g->wide_x) g->wide_x = hdi_geo_array(g, 2 * size + hdi_sweep_size(&g->sym, 1, HDI_GEO_WIDE), e);
+    if (!g->wide_x) return e->status;
+    g->wide_b = g->wide_x + size;
+    g->wide_work = g->wide_b + size;
+    if (hdi_geo_solve(g, s, n, &faint, rep, e) < 0) return e->status;
     for (c = 0; c < n; c++)
         if (faint >> c & 1 && hdi_geo_alone(g, s + c, rep, e) < 0) break;
     return e->status;
@@ -24706,17 +24681,6 @@ static hd_status hdi_geo_from(hd_geodesic *g, const hd_sources *from, int64_t be
     return hdi_scope_end(&scope);
 }
 
-/* Refuses vertices among the sources where heat is held at zero, before anything is written. */
-static hd_status hdi_geo_check_border(const hd_geodesic *g, const hd_sources *s, hd_error *e) {
-    int32_t k;
-    for (k = 0; k < s->count && e->status >= 0; k++) {
-        const int64_t begin = hdi_source_first(s, k);
-        if (hdi_geo_off_border(g, s->vertex + begin, (int32_t)(hdi_source_first(s, k + 1) - begin), e) < 0)
-            e->column = k;
-    }
-    return e->status;
-}
-
 /* Columns of distances, ldd apart, from sources that are checked. */
 static hd_status hdi_geo_distances(hd_geodesic *g, const hd_sources *from, double *D, size_t ldd,
                                    hd_geodesic_report *rep, hd_error *e) {
@@ -24724,7 +24688,6 @@ static hd_status hdi_geo_distances(hd_geodesic *g, const hd_sources *from, doubl
     const int32_t most = vertices && !from->first ? HDI_GEO_WIDE : 1, n = from->count;
     hdi_geo_source s[HDI_GEO_WIDE];
     int32_t m, c, k;
-    if (vertices && hdi_geo_check_border(g, from, e) < 0) return e->status;
     memset(s, 0, sizeof s);
     for (m = 0; m < n && e->status >= 0; m += k) {
         k = n - m >= HDI_GEO_WIDE_FROM ? hdi_low32(n - m, most) : 1;
@@ -24734,6 +24697,9 @@ static hd_status hdi_geo_distances(hd_geodesic *g, const hd_sources *from, doubl
             s[c].vertex = from->vertex + begin;
             s[c].n = (int32_t)(hdi_source_first(from, m + c + 1) - begin);
             s[c].d = D + (size_t)(m + c) * ldd;
+            if (!vertices || hdi_geo_off_border(g, s[c].vertex, s[c].n, e) >= 0) continue;
+            e->column = m + c;
+            return e->status;
         }
         if (k > 1) (void)hdi_geo_batch(g, s, k, rep, e);
         else if (vertices) (void)hdi_geo_alone(g, s, rep, e);
