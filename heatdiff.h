@@ -515,7 +515,7 @@ typedef enum hd_pole_kind {
     HD_POLES_DEFAULT = 0,
     /* Best uniform (r,r) approximations, r = 1..14: smallest max |exp - c| on (-inf, 0]. */
     HD_POLES_UNIFORM,
-    /* a0 = 0, c(0) = 1, smallest max (1 + |x|) |exp - c|, r = 2..14: an error relative to the kernel's size */
+    /* a0 = 0, c(0) = 1, smallest max (1 + |x|) |exp - c|, r = 2..14: relative to the kernel's own size */
     HD_POLES_KERNEL,
     HD_POLES_OWN,               /* the caller's */
     /* r = 2..14, for diagonals and distances: the weight rises to five times (1 + |x|) at large |x| */
@@ -574,8 +574,8 @@ typedef struct hd_filter {
     /* > 0: there is no eigenvalue between 0 and this, and c may take any value there. Filters that are not
      * smooth at 0 then need half of the poles. The second value of hd_spectrum is such a number. */
     double lambda_min;
-    /* 1: c may have an a0, for filters that do not fade where lambda is large. If B is not diagonal, diagonals
-     * leave a0 B^-1 out, and the bound includes it. */
+    /* 1: c may have an a0, for filters that do not fade where lambda is large. With a full B diagonals leave
+     * a0 B^-1 out, and the bound includes it. */
     int32_t constant;
     int32_t end_zero;
 } hd_filter;
@@ -1040,9 +1040,9 @@ HEATDIFF_API double hd_rational_eval(const hd_rational *set, double x);
  * filters    [count] count >= 1. Degrees rise until tol is reached, or max_degree, which several filters
  *            ignore: these may have HD_MAX_POLES pairs
  * lambda_max that of the Laplacian, or more; 1/area
- * max_error is the largest |f - c| on 42,000 points, and reports call what follows from it measured. Poles are
- * found for at most 20 of the filters. A hundred wave filters of usual width over three decades of eigenvalues
- * take 24 to 28 pairs, one of them alone 8 to 10.
+ * max_error is the largest |f - c| on 42,000 points, and reports call what follows from it measured. Poles
+ * are found for at most 20 of the filters. A hundred wave filters of usual width over three decades of
+ * eigenvalues take 24 to 28 pairs, one of them alone 8 to 10.
  * Distances become d^2 = (e_i - e_j)' f(B^-1 L) B^-1 (e_i - e_j), or with B f(B^-1 L). So f is what is summed
  * in d^2, for example exp(-2 t lambda), and should not be negative.
  * Errors     HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (value: the eigenvalue), HD_ERR_BREAKDOWN (a weight
@@ -14137,8 +14137,8 @@ static void hdi_lane_sum(hdi_lane *lane, const hdi_family *fam) {
         hdi_lane_residual(lane, fam->lap, &fam->set, i, k[i].r_norm, sqrt(hdi_cnorm2w(x, fam->noise, n)), 1);
     }
     if (fam->set.n_poles > 0)
-        hdi_lane_first(lane, fam->lap, &fam->set, 0, hdi_b_norm2_complex(fam->lap, k->x, lane->tmp), k->r_norm,
-                       &k->x->re, 2);
+        hdi_lane_first(lane, fam->lap, &fam->set, 0, hdi_b_norm2_complex(fam->lap, k->x, lane->tmp),
+                       k->r_norm, &k->x->re, 2);
 }
 
 /* x^* D y and x' D y for D = diag(B). */
@@ -19304,7 +19304,8 @@ static uint64_t hdi_batches_need(const hd_heat *heat, int32_t packs, int32_t k) 
         if (heat->lane) hdi_scope_count(&old, (uint64_t)heat->n_lanes, sizeof(hdi_lane));
     }
     for (i = 0; i < lanes; i++)
-        if (i >= heat->n_lanes || !heat->lane[i].f) hdi_scope_count(&bytes, hdi_lane_size(&room), sizeof(double));
+        if (i >= heat->n_lanes || !heat->lane[i].f)
+            hdi_scope_count(&bytes, hdi_lane_size(&room), sizeof(double));
     doubles *= (uint64_t)(count - hdi_batches_inside(&heat->elim, packs, doubles, count));
     if (heat->batch_doubles < doubles) {
         hdi_scope_count(&bytes, doubles, sizeof(double));
