@@ -283,7 +283,8 @@ def check_sections(page, text):
 def sources():
     """The text of all programs, scripts and CMake files."""
     found = []
-    for folder in ("tools", "tests", "tests/fuzz", "tests/consumer", "examples/web", "examples/embedded", "examples/python"):
+    for folder in ("tools", "tests", "tests/fuzz", "tests/consumer", "examples/web", "examples/embedded", "examples/python",
+                   "examples/blender"):
         for name in sorted(os.listdir(os.path.join(TOP, folder))):
             if name.endswith((".c", ".cpp", ".h", ".py", ".sh")):
                 found.append(read(folder + "/" + name))

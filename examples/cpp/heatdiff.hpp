@@ -16,6 +16,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace hd {
@@ -60,6 +61,24 @@ template <auto free> struct freed {
     template <class T> void operator()(T *p) const noexcept { free(p); }
 };
 
+#ifdef EIGEN_CORE_H
+// Triangles of Eigen, n x 3 and m x 3 in any order and type, as the library reads them.
+struct by_rows {
+    template <class V, class F> by_rows(const Eigen::MatrixBase<V> &xyz, const Eigen::MatrixBase<F> &tri) {
+        require(xyz.cols() == 3 && tri.cols() == 3, "wanted are n x 3 coordinates and m x 3 ids");
+        v = xyz.template cast<double>();
+        f = tri.template cast<int32_t>();
+    }
+
+    hd_mesh mesh() const {
+        return hd_triangles(v.data(), count(static_cast<size_t>(v.rows())), f.data(), count(static_cast<size_t>(f.rows())));
+    }
+
+    Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> v;
+    Eigen::Matrix<int32_t, Eigen::Dynamic, 3, Eigen::RowMajor> f;
+};
+#endif
+
 // The pair (L, B) of a surface. lap->h, lap->area and all the others are fields of hd_laplacian.
 class laplacian {
 public:
@@ -86,10 +105,7 @@ public:
 #ifdef EIGEN_CORE_H
     template <class V, class F>
     laplacian(const Eigen::MatrixBase<V> &xyz, const Eigen::MatrixBase<F> &tri, const hd_laplacian_opts &opts = {}) {
-        require(xyz.cols() == 3 && tri.cols() == 3, "wanted are n x 3 coordinates and m x 3 ids");
-        const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> v = xyz;
-        const Eigen::Matrix<int32_t, Eigen::Dynamic, 3, Eigen::RowMajor> f = tri.template cast<int32_t>();
-        make(hd_triangles(v.data(), count(static_cast<size_t>(v.rows())), f.data(), count(static_cast<size_t>(f.rows()))), opts);
+        make(by_rows(xyz, tri).mesh(), opts);
     }
 
     // b = B 1 of the rows, in the Laplacian's own memory
@@ -207,18 +223,26 @@ private:
 // Distances along a surface.
 class geodesic {
 public:
-    geodesic(doubles xyz, ids tri, const hd_geodesic_opts &opts = {}) : n(xyz.size() / 3) {
+    geodesic(doubles xyz, ids tri, const hd_geodesic_opts &opts = {}) {
         require(xyz.size() % 3 == 0 && tri.size() % 3 == 0, "three coordinates for each vertex, three ids for each triangle");
-        const hd_mesh mesh = hd_triangles(xyz.data(), count(n), tri.data(), count(tri.size() / 3));
-        hd_geodesic *p = nullptr;
-        call([&](hd_error *e) { return hd_geodesic_create(&p, &mesh, &opts, e); });
-        made.reset(p);
+        make(hd_triangles(xyz.data(), count(xyz.size() / 3), tri.data(), count(tri.size() / 3)), opts);
     }
+
+    // Polygons, points, lengths: see hd_mesh
+    explicit geodesic(const hd_mesh &mesh, const hd_geodesic_opts &opts = {}) { make(mesh, opts); }
+
+#ifdef EIGEN_CORE_H
+    template <class V, class F>
+    geodesic(const Eigen::MatrixBase<V> &xyz, const Eigen::MatrixBase<F> &tri, const hd_geodesic_opts &opts = {}) {
+        make(by_rows(xyz, tri).mesh(), opts);
+    }
+#endif
 
     hd_geodesic *get() const { return made.get(); }
 
     // To the nearest of the sources
     std::vector<double> distance(ids sources) {
+        require(!sources.empty(), "a distance needs a source");
         const int64_t first[2] = { 0, static_cast<int64_t>(sources.size()) };
         hd_sources s = hd_vertices(1, sources.data());
         s.first = first;
@@ -228,7 +252,14 @@ public:
     }
 
 private:
-    size_t n;
+    void make(const hd_mesh &mesh, const hd_geodesic_opts &opts) {
+        hd_geodesic *p = nullptr;
+        call([&](hd_error *e) { return hd_geodesic_create(&p, &mesh, &opts, e); });
+        made.reset(p);
+        n = static_cast<size_t>(mesh.n);
+    }
+
+    size_t n = 0;
     std::unique_ptr<hd_geodesic, freed<hd_geodesic_free>> made;
 };
 
