@@ -515,20 +515,18 @@ typedef enum hd_pole_kind {
     HD_POLES_DEFAULT = 0,
     /* Best uniform (r,r) approximations, r = 1..14: smallest max |exp - c| on (-inf, 0]. */
     HD_POLES_UNIFORM,
-    /* a0 = 0, c(0) = 1, smallest max (1 + |x|) |exp - c|, r = 2..14. The error is relative to the kernel's
-     * own size, and heat is conserved up to rounding. */
+    /* a0 = 0, c(0) = 1, smallest max (1 + |x|) |exp - c|, r = 2..14: relative to the kernel's own size */
     HD_POLES_KERNEL,
     HD_POLES_OWN,               /* the caller's */
-    /* r = 2..14, as kernel sets but with a weight that rises to five times (1 + |x|) at large |x|. Made for
-     * diagonals and distances. */
+    /* r = 2..14, for diagonals and distances: the weight rises to five times (1 + |x|) at large |x| */
     HD_POLES_DIAGONAL
 } hd_pole_kind;
 
 enum { HD_MAX_POLES = 32 };
 
 /* c(x) = a0 + sum_real a/(x - theta) + 2 Re sum_pairs a/(x - theta) for x = -t lambda <= 0. Of each conjugate
- * pair only the pole with Im theta > 0 is listed. A pole with Im theta = 0 is real and counts once. No pole
- * may lie on (-inf, 0]. Clear the struct before you fill in a set of your own. */
+ * pair only the pole with Im theta > 0 is listed. No pole may lie on (-inf, 0]. Clear the struct before you
+ * fill in a set of your own. */
 typedef struct hd_rational {
     hd_pole_kind kind;
     int32_t degree;             /* real poles + 2 pairs */
@@ -536,12 +534,11 @@ typedef struct hd_rational {
     double a0;
     hd_c64 theta[HD_MAX_POLES];
     hd_c64 a[HD_MAX_POLES];
-    /* In a set of your own, either error may be 0: unknown. If both are 0, bounds in reports are for c itself
-     * rather than for exp. */
-    double max_error;           /* max |exp(x) - c(x)| on (-inf, 0] */
-    double max_weighted_error;  /* max (1 + |x|) |exp(x) - c(x)|; 0: unbounded or unknown */
-    /* 0, or the t of a filter f, see hd_rational_fit: c(-t lambda) stands for f(lambda), and errors are those
-     * of f on [0, lambda_max], measured on a grid. */
+    /* max |exp - c| on (-inf, 0], and max (1 + |x|) |exp - c|, where 0 is unbounded. 0: unknown, in sets of
+     * your own; if both are, bounds in reports are for c itself. */
+    double max_error, max_weighted_error;
+    /* 0, or the t of a filter f: c(-t lambda) stands for f(lambda), and errors are those of f on
+     * [0, lambda_max], measured on a grid */
     double t;
     double lambda_max;          /* filters: queries refuse a Laplacian with larger eigenvalues */
     double largest;             /* filters: max |f| */
@@ -570,15 +567,15 @@ typedef struct hd_filter {
     double (*f)(double lambda, void *user);   /* HD_FILTER_OWN: finite on [0, lambda_max] */
     void *user;
     double tol;                 /* max (1 + weight lambda) |f - c| / max |f|; default 1e-10 */
-    /* >= 0, by default 0. With 1/weight near the eigenvalues that f lets pass, the error is small where most
-     * eigenvalues are. For a wave, weight = exp(-a) and tol = 1e-7 give bounds near 1e-6 with 16 poles. */
+    /* >= 0. With 1/weight near the eigenvalues that f lets pass, the error is small where most eigenvalues
+     * are. For a wave, weight = exp(-a) and tol = 1e-7 give bounds near 1e-6 with 16 poles. */
     double weight;
     int32_t max_degree;         /* of the set, at most HD_MAX_POLES; default 24 */
     /* > 0: there is no eigenvalue between 0 and this, and c may take any value there. Filters that are not
      * smooth at 0 then need half of the poles. The second value of hd_spectrum is such a number. */
     double lambda_min;
-    /* 1: c may have a constant a0, for filters that do not fade where lambda is large. If B is not diagonal,
-     * diagonals leave a0 B^-1 out, and the bound includes it. */
+    /* 1: c may have an a0, for filters that do not fade where lambda is large. With a full B diagonals leave
+     * a0 B^-1 out, and the bound includes it. */
     int32_t constant;
     int32_t end_zero;
 } hd_filter;
@@ -739,35 +736,32 @@ typedef struct hd_report {
 typedef struct hd_spectrum_opts {
     int32_t begin_zero;
     int32_t count;              /* pairs wanted; 0: all below `below` */
-    double below;               /* > 0: only eigenvalues below this; 0: no such bound */
-    /* Of residuals, see hd_spectrum.residual; default 1e-10. Rounding of L x may be larger where the smallest
-     * eigenvalues are below 1e-6 of the largest. */
-    double tol;
+    double below;               /* > 0: only eigenvalues below this */
+    double tol;                 /* of hd_spectrum.residual; default 1e-10 */
     hd_ordering ordering;
     const int32_t *perm;        /* [n] with HD_ORDERING_OWN: perm[k] is the vertex eliminated k-th */
     hd_context *context;        /* default: the Laplacian's */
     int32_t end_zero;
 } hd_spectrum_opts;
 
-/* The smallest eigenpairs of L x = lambda B x. The library makes and frees it. Read all fields, change none.
- * The Laplacian must outlive it, and must not be updated in between. */
+/* The smallest eigenpairs of L x = lambda B x, to be read. The Laplacian must outlive it, and must not be
+ * updated in between. */
 typedef struct hd_spectrum {
     int32_t n;                  /* vertices */
     int32_t count;              /* pairs */
     double *value;              /* [count] eigenvalues, ascending, 1/area */
-    /* [n count] column-major, B-orthonormal, 0 at vertices without mass. The entry with the largest absolute
-     * value is positive. */
+    /* [n count] column-major, B-orthonormal, 0 at vertices without mass; the largest |entry| is positive */
     double *vector;
     /* [count] |L x - lambda B x| / lambda in the norm of diag(B)^-1, measured; for lambda near 0 relative to
      * the first eigenvalue that does not belong to constants */
     double *residual;
     double largest_residual;
-    /* residuals above tol and above what rounding of L x alone makes, or above a tenth of lambda itself */
+    /* residuals above tol and what rounding of L x makes, or above a tenth of lambda. That rounding counts
+     * where the smallest eigenvalues are below 1e-6 of the largest. */
     int32_t n_poor;
     int32_t n_constant;         /* the first pairs are the constants of components; their residual is 0 */
-    /* 1: proven complete. L - shift B has as many negative pivots as there are eigenvalues found below the
-     * shift, and none found is so near (shift_margin) that rounding could change the count. 0: the count was
-     * not reliable; the status is HD_WARN_ACCURACY. */
+    /* 1: complete, as L - shift B has as many negative pivots as eigenvalues were found below the shift, and
+     * none found is so near (shift_margin) that rounding could change the count. 0: not proven. */
     int32_t proven;
     double shift, shift_margin;
     double next;                /* all other eigenvalues are at least this; HUGE_VAL: there are none */
@@ -830,12 +824,13 @@ typedef enum hd_geodesic_mass {
 
 /* How heat meets the border while it flows. Distances themselves always have a natural border. */
 typedef enum hd_geodesic_border {
-    HD_GEODESIC_BORDER_NATURAL = 0, /* Neumann: no heat leaves; fronts meet the border at a right angle */
-    HD_GEODESIC_BORDER_MEAN,        /* the mean of the two others (Crane et al. 2013, section 3.4). Takes a
-                                       third factor. Fronts hardly bend, and t may be larger, such as 8 h^2 */
-    HD_GEODESIC_BORDER_DIRICHLET    /* zero at the border: fronts bend to follow it, and distances from places
-                                       near it are too short. No source may lie there, nor in a face with a
-                                       corner there */
+    HD_GEODESIC_BORDER_NATURAL = 0, /* no heat leaves; fronts meet the border at a right angle */
+    /* The mean of the two others (Crane et al. 2013, section 3.4), by a third factor. Fronts hardly bend, and
+     * t may be larger, such as 8 h^2. */
+    HD_GEODESIC_BORDER_MEAN,
+    /* Zero at the border: fronts follow it, and distances from places near it are too short. No source may
+     * lie there, nor in a face with a corner there. */
+    HD_GEODESIC_BORDER_DIRICHLET
 } hd_geodesic_border;
 
 typedef struct hd_geodesic_opts {
@@ -843,20 +838,17 @@ typedef struct hd_geodesic_opts {
     /* How long heat flows, unit length^2. Larger values give smoother and less accurate distances. Default
      * h^2, with h the mean edge length. On irregular triangles and points 2 h^2 is often better. */
     double t;
-    /* The diagonal of B. It determines how fast heat fades, and has little influence on the distance. */
-    hd_geodesic_mass mass;
+    hd_geodesic_mass mass;      /* the diagonal of B, which has little influence on the distance */
     hd_ordering ordering;       /* of both factorisations */
-    /* [n] with HD_ORDERING_OWN: perm[k] is the vertex eliminated k-th, those without mass anywhere. */
-    const int32_t *perm;
+    const int32_t *perm;        /* as in hd_heat_opts */
     hd_context *context;
-    /* 1: hd_geodesic_update may be called. The plan keeps L then, and 100 bytes for each face. Triangles in
-     * space only. */
+    /* 1: hd_geodesic_update may be called, for triangles in space. The plan keeps L, and 100 bytes a face. */
     int32_t updatable;
     hd_geodesic_border border;  /* of meshes */
     hd_triangulation triangulation; /* points need tufted; faces with more corners are split */
     double mollify;             /* as in hd_laplacian_opts */
-    /* Polygons: as in hd_laplacian_opts, but by default 1/6. On squares L is then that of bilinear finite
-     * elements. With 1, errors of distances are two to four times as large. */
+    /* Polygons: as in hd_laplacian_opts, but by default 1/6: on squares, bilinear finite elements. With 1,
+     * errors of distances are two to four times as large. */
     double stiffening;
     int32_t neighbours;         /* of points; as in hd_laplacian_opts */
     double t_in_h2;             /* t as a multiple of h^2, where t is 0; default 1 */
@@ -873,10 +865,8 @@ typedef struct hd_geodesic_report {
     hd_ordering ordering;
     int64_t factor_nnz;         /* of each factor, diagonal included */
     double factor_flops;        /* of both, or of the three of the mean border */
-    /* |b - A x| / |b| of (L + B/t) u and of L phi. They tell how well the systems are solved, and nothing
-     * about the error of the method itself. */
-    double residual_heat;
-    double residual_distance;
+    /* |b - A x| / |b| of (L + B/t) u and of L phi; they say nothing of the error of the method itself */
+    double residual_heat, residual_distance;
 } hd_geodesic_report;
 
 /* ==== [D] functions ==== */
@@ -1022,8 +1012,7 @@ HEATDIFF_API hd_status hd_neighbours_nearest(const double *xyz, int32_t n, const
 
 /* ---- rational approximations ---- */
 
-/* A built-in set: HD_POLES_UNIFORM of degree 1..14, HD_POLES_KERNEL of degree 2..14, or HD_POLES_DIAGONAL of
- * degree 2..14. tools/poles.py computes and checks the constants.
+/* A built-in set: uniform, kernel or diagonal. tools/poles.py computes and checks the constants.
  * Errors HD_ERR_ARGUMENT for any other kind or degree (value: a wrong degree)
  * Source Cody, Meinardus, Varga 1969; Carpenter, Ruttan, Varga 1984 */
 HEATDIFF_API hd_status hd_rational_exp(hd_rational *out, hd_pole_kind kind, int32_t degree,
@@ -1033,9 +1022,8 @@ HEATDIFF_API hd_status hd_rational_exp(hd_rational *out, hd_pole_kind kind, int3
  * out    [n_times] out[q] is the set for t[q]
  * t      [n_times] > 0, in any order
  * tol    bound of max_weighted_error of every set
- * theta_i/t[q] is the same for all q, so the factors of L + (theta_i/t[q]) B serve every time, and only the
- * weights differ. The number of pole pairs is the smallest multiple of four that reaches tol for all times.
- * At tol = 1e-6 it is 8 for times that differ by a factor of 10, 12 for a factor of 100, and 16 for 1000.
+ * theta_i/t[q] is the same for all q, so that one set of factors serves every time. The number of pole pairs
+ * is a multiple of four: at tol = 1e-6 it is 8, 12 and 16 for times that differ by 10, 100 and 1000.
  * Errors HD_ERR_ARGUMENT: a time is not positive and finite (row), or there is no such set (value: the ratio
  *        of the times)
  * Cost   under a millisecond for each time
@@ -1047,21 +1035,18 @@ HEATDIFF_API hd_status hd_rational_shared(hd_rational *out, int32_t n_times, con
 HEATDIFF_API double hd_rational_eval(const hd_rational *set, double x);
 
 /* Sets for filters f of the spectrum: K_t becomes f(B^-1 L), and k_t becomes f(B^-1 L) B^-1. Several filters
- * share their poles, so that one set of factors serves them all: see hd_heat_set_rational.
- * out        [count] c(-t lambda) ~ f(lambda) on [0, lambda_max] with t = out->t, the same for all: only the
- *            weights a of several sets differ
- * filters    [count] count >= 1. Degrees rise until tol is reached, or max_degree; of several filters, which
- *            may have up to HD_MAX_POLES pairs, max_degree is ignored
+ * share their poles and factors, see hd_heat_set_rational.
+ * out        [count] c(-t lambda) ~ f(lambda) on [0, lambda_max] with t = out->t; only weights a differ
+ * filters    [count] count >= 1. Degrees rise until tol is reached, or max_degree, which several filters
+ *            ignore: these may have HD_MAX_POLES pairs
  * lambda_max that of the Laplacian, or more; 1/area
- * max_error is the largest |f - c| on 42,000 points, and reports call what follows from it measured. No pole
- * lies on the spectrum. Poles are found for at most 20 of the filters, and weights for all. Wave filters over
- * three decades of eigenvalues, as wide as is usual for a hundred of them, take 24 to 28 pairs, whether they
- * are 16 or 100; one of them alone takes 8 to 10.
- * Classical distances become d^2 = (e_i - e_j)' f(B^-1 L) B^-1 (e_i - e_j), and weighted ones the same with
- * B f(B^-1 L). So f is what is summed in d^2, for example exp(-2 t lambda), and should not be negative.
+ * max_error is the largest |f - c| on 42,000 points, and reports call what follows from it measured. Poles
+ * are found for at most 20 of the filters. A hundred wave filters of usual width over three decades of
+ * eigenvalues take 24 to 28 pairs, one of them alone 8 to 10.
+ * Distances become d^2 = (e_i - e_j)' f(B^-1 L) B^-1 (e_i - e_j), or with B f(B^-1 L). So f is what is summed
+ * in d^2, for example exp(-2 t lambda), and should not be negative.
  * Errors     HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (value: the eigenvalue), HD_ERR_BREAKDOWN (a weight
- *            overflows), all with column: which filter. HD_WARN_ACCURACY: these are the best sets found, and
- *            an error is above its tol
+ *            overflows), all with column: which filter. HD_WARN_ACCURACY: an error is above its tol
  * Cost       some 2 to 50 milliseconds, and 50 to 200 thousand values of f; a second for 16 filters, three to
  *            seven for 100
  * Source     Nakatsukasa, Sete, Trefethen 2018, with weights refitted to the poles; Lietaert, Meerbergen,
@@ -1097,8 +1082,8 @@ typedef struct hd_solve_report {
  * report filled also if the status is HD_ERR_NOT_CONVERGED
  * Errors HD_ERR_NOT_FINITE (row: of rhs, or of x if it overflows), HD_ERR_NOT_CONVERGED, HD_ERR_BREAKDOWN;
  *        HD_WARN_ACCURACY
- * Cost   an ordering and a preconditioner, which every call makes anew; one product with t L + theta B and
- *        one preconditioner solve for each iteration
+ * Cost   an ordering and a preconditioner; one product with the matrix and one preconditioner solve for each
+ *        iteration
  * Source see hd_solver */
 HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c64 theta,
                                         const hd_c64 *rhs, hd_c64 *x, const hd_solve_opts *opts,
@@ -1400,29 +1385,23 @@ HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t 
 
 /* ---- eigenpairs ---- */
 
-/* The smallest eigenpairs of L x = lambda B x: all copies of multiple eigenvalues, and those of all
- * components.
- * opts   count, below, or both: then whichever ends first. count may be as large as n_active. opts must not
- *        be NULL
- * Errors HD_ERR_ARGUMENT (also: more pairs than rows), HD_ERR_NOT_POSITIVE, HD_ERR_NOT_CONVERGED,
- *        HD_ERR_INDEX (row: perm is not a permutation); HD_WARN_ACCURACY with a result: n_poor is not 0, or
- *        completeness is not proven
- * Cost   for about 100 pairs at a time one real factorisation of an indefinite matrix, some 250 solves, and
- *        the orthogonalisation of as many vectors; at the end 4 n count^2 flops. Memory: the vectors twice,
- *        some 400 more vectors, and a factor
+/* The smallest eigenpairs, with all copies of multiple eigenvalues.
+ * opts   not NULL: count, at most n_active, or below, or both: then whichever ends first
+ * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_POSITIVE, HD_ERR_NOT_CONVERGED, HD_ERR_INDEX (row: perm is not a
+ *        permutation); HD_WARN_ACCURACY with a result: n_poor is not 0, or proven is 0
+ * Cost   for about 100 pairs one real factorisation, some 250 solves, and the orthogonalisation of as many
+ *        vectors; at the end 4 n count^2 flops. Memory: the vectors twice, some 400 more, and a factor
  * Source Grimes, Lewis, Simon 1994: block Lanczos with shifts, eigenvalues counted by Sylvester's law */
 HEATDIFF_API hd_status hd_spectrum_create(hd_spectrum **out, const hd_laplacian *lap,
                                           const hd_spectrum_opts *opts, hd_error *err);
 HEATDIFF_API void hd_spectrum_free(hd_spectrum *s);  /* NULL is fine */
 
 /* Kernels and distances from the pairs of s, as in eq. (1) of the paper: sums of exp(-t lambda_i) x_i(x)
- * x_i(y) and the like. Definitions, kinds, shapes and vertices without mass are those of hd_heat_columns,
- * hd_heat_diagonal and hd_heat_distance. What is left out is bounded.
+ * x_i(y) and the like. All else is as in hd_heat_columns, hd_heat_diagonal and hd_heat_distance.
  * t      >= 0, unit length^2; commute and biharmonic ignore it
  * bound  NULL, or as large as the output, with the same ldu or ldd: bounds on the error of each value. The
- *        part of the pairs left out is proven if s->proven: at most exp(-t next) sqrt(left(x) left(y)). That
- *        of residuals follows from their sizes, and rounding is estimated. The bound is small for large t;
- *        for small t it shows how much the missing pairs count
+ *        part of the pairs left out is at most exp(-t next) sqrt(left(x) left(y)), proven if s->proven; that
+ *        of residuals follows from their sizes, and rounding is estimated
  * Errors those of hd_heat_columns for sources
  * Cost   2 n count flops for each column; with the weighted distance or the diagonal of K_t and a full B some
  *        ten times as many */
@@ -1456,21 +1435,20 @@ HEATDIFF_API hd_status hd_heat_estimate(hd_heat *heat, hd_query query, int32_t n
 typedef struct hd_geodesic hd_geodesic;
 
 /* A plan for distances along a surface, by the heat method.
- * mesh   as in hd_laplacian_create, whose errors it has. Paths lead around holes
+ * mesh   as in hd_laplacian_create, whose errors it has
  * opts   NULL: t = h^2, barycentric masses, natural border. Use a Delaunay triangulation if there are
  *        slivers: on a plane of cells squeezed 1:20 it lowers mean errors from 0.19 to 0.003 of the width
- * Gradients on polygons are those of Alexa and Wardetzky 2011, whose divergence is L without its stabilising
- * part; masses are equal parts of the areas. Points in the same place have the same distance; they must be
- * tufted, because exponential weights have no gradient. On quadrangles, hexagons and evenly spread points,
- * distances are as accurate as on triangles with edges of the same length.
+ * Gradients on polygons are those of Alexa and Wardetzky 2011. Points must be tufted, because exponential
+ * weights have no gradient; those in the same place have the same distance. On quadrangles, hexagons and
+ * evenly spread points, distances are as accurate as on triangles with edges of the same length.
  * Errors HD_ERR_BREAKDOWN (vertex: a pivot too small to divide by)
- * Cost   assembly, one analysis, two real factorisations on one pattern. The plan keeps both: 16 bytes for
- *        each non-zero of the factor, and about 430 bytes for each vertex; polygons 28 bytes more for each
- *        corner, and 12 for each non-zero of L
+ * Cost   assembly, one analysis, two real factorisations. The plan keeps both: 16 bytes for each non-zero of
+ *        the factor, and about 430 bytes for each vertex; polygons 28 bytes more for each corner, and 12 for
+ *        each non-zero of L
  * Source Crane, Weischedel, Wardetzky 2013, algorithm 1 and section 3.2.1 */
 HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const hd_mesh *mesh,
                                           const hd_geodesic_opts *opts, hd_error *err);
-/* New positions for the same triangles, of a plan made with the option updatable. Ordering and analysis stay.
+/* New positions for the same triangles, of a plan made with the option updatable.
  * mesh   as in hd_laplacian_update
  * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE; HD_ERR_EMPTY (face or vertex: it has no area any more). Then
  *        nothing has changed. After any other error the plan answers no query until an update succeeds
@@ -1479,25 +1457,24 @@ HEATDIFF_API hd_status hd_geodesic_update(hd_geodesic *g, const hd_mesh *mesh, h
 HEATDIFF_API void hd_geodesic_free(hd_geodesic *g);  /* NULL is fine */
 
 /* The distance of every vertex to each source: to the nearest of its points, or to its curve.
- * sources  weights, and lengths of curves, are ignored. For the distance to the nearest of several vertices,
- *          make them one source. Other points, and every piece of a curve, must lie in a face that is used,
- *          its edges and corners included. Plans of polygons take vertices only
+ * sources  weights, and lengths of curves, are ignored. Points that are no vertices, and every piece of a
+ *          curve, must lie in a face that is used, its edges and corners included. Plans of polygons take
+ *          vertices only
  * D        n x count, columns ldd apart (0: n), in the unit of xyz: |phi - phi_s|, zero at vertices that are
  *          sources, HUGE_VAL in components without one and at vertices without mass. For several points phi_s
  *          is a mean weighted by their heat, which is almost the value of the nearest one
- * The method itself has an error of the order of h: a few percent on coarse meshes, about one percent on fine
- * ones, and most where fronts meet. Near a source the relative error can be much larger. d from i to j and d
- * from j to i differ by about that error.
- * Where a source is no vertex, D is exact at the corners of its faces, along straight lines within them, and
- * inside them the gradient of these distances takes the place of that of heat.
+ * The method has an error of the order of h: a few percent on coarse meshes, about one percent on fine ones,
+ * most where fronts meet, and relative to the distance more near a source. d from i to j and d from j to i
+ * differ by about that error. Where a source is no vertex, D is exact at the corners of its faces, along
+ * straight lines within them.
  * Errors   those of hd_heat_columns for sources; HD_ERR_ARGUMENT (column, row): a point or a piece is in no
  *          face, or has a corner where heat is held at zero; HD_ERR_BREAKDOWN (rounding left no number).
  *          HD_WARN_ACCURACY, only if a report is given
  * Cost     two solves and two passes over the faces for each source; a third solve with several points in a
  *          component; with a report two more passes. Vertices are solved eight side by side, in a third of
  *          the time. Where heat fades below 1e-200 of the source's, about 450 edges away at t = h^2, another
- *          solve and three passes follow for each such distance (report->n_stages). Of calls with vertices
- *          alone, only those with more sources or points than any before allocate
+ *          solve and three passes follow (report->n_stages). Of calls with vertices alone, only those with
+ *          more sources or points than any before allocate
  * Only one thread at a time may use a plan. */
 HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, const hd_sources *sources, double *D,
                                             size_t ldd, hd_geodesic_report *report, hd_error *err);
@@ -11724,13 +11701,27 @@ typedef struct hdi_system {
     hd_c64 theta;
 } hdi_system;
 
-/* Values of a preconditioner: U and D^-1; while it is made, those of A. */
+typedef struct hdi_precond_row hdi_precond_row;
+
+/* A preconditioner of the system a: U and D^-1; while it is made, the values of A. */
 typedef struct hdi_precond {
-    hd_precond kind;
+    const hdi_precond_row *row;
     const hdi_upper *up;
+    hdi_system a;
     hd_c64 *u;       /* [nnz of up] or NULL */
     hd_c64 *d;       /* [n]; jacobi and more */
 } hdi_precond;
+
+/* All there is to know of a kind: a new one is a row of the table below, and its functions. */
+struct hdi_precond_row {
+    int32_t rows, entries;   /* values for each row and for each entry above the diagonal */
+    int32_t vectors;         /* [n] each: work of apply */
+    double steps;            /* of cocg, about, relative to those with mildl */
+    void (*make)(const hdi_precond *m, hd_c64 *work);   /* A to D and U; NULL: U is 0. work [n] */
+    double keep;             /* share of the dropped fill that goes to the diagonal */
+    /* z = M^-1 r, z not r */
+    void (*apply)(const hdi_precond *m, const hd_c64 *r, hd_c64 *z, hd_c64 *work);
+};
 
 #define HDI_ILDL_LEAST 1e-3   /* share of its diagonal entry that a pivot must keep */
 #define HDI_MILDL_KEPT 0.97   /* share of the dropped fill that goes to the diagonal; 1: pivots may vanish */
@@ -11755,7 +11746,8 @@ static int64_t hdi_ildl_seek(const int32_t *col, int64_t p, int64_t end, int32_t
 /* Right-looking incomplete LDL' of the complex-symmetric A, plain transpose. Row k updates the entries (i, j)
  * between its own columns; where the pattern has none, `keep` of the update goes to the diagonal entries of i
  * and j. A vertex with very many neighbours costs no square of their number. diag [n] is work. */
-static void hdi_ildl(const hdi_precond *m, hd_c64 *diag, double keep) {
+static void hdi_ildl(const hdi_precond *m, hd_c64 *diag) {
+    const double keep = m->row->keep;
     const int32_t *col = m->up->col;
     const int64_t *ptr = m->up->ptr;
     hd_c64 *u = m->u, *d = m->d;
@@ -11794,34 +11786,38 @@ static void hdi_ildl(const hdi_precond *m, hd_c64 *diag, double keep) {
 }
 
 /* ---- the kinds ---- */
-/* Each applies z = M^-1 r, z not r. */
 
-static void hdi_ssor(const hdi_precond *m, hd_c64 *diag, double keep) {
+static void hdi_ssor(const hdi_precond *m, hd_c64 *work) {
     int32_t i;
     int64_t p = 0;
-    (void)diag;
-    (void)keep;
+    (void)work;
     for (i = 0; i < m->up->n; i++)
         for (; p < m->up->ptr[i + 1]; p++) m->u[p] = hdi_cdiv(m->u[p], m->d[i]);
 }
 
-static void hdi_none_apply(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z) {
+static void hdi_none_apply(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z,
+                           hd_c64 *work) {
+    (void)work;
     memcpy(z, r, (size_t)m->up->n * sizeof *z);
 }
 
-static void hdi_jacobi_apply(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z) {
+static void hdi_jacobi_apply(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z,
+                             hd_c64 *work) {
     int32_t i;
+    (void)work;
     for (i = 0; i < m->up->n; i++) z[i] = hdi_cmul(r[i], m->d[i]);
 }
 
 /* (I + U') w = r, z = (I + U)^-1 D^-1 w. */
-static void hdi_upper_apply(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z) {
+static void hdi_upper_apply(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, hd_c64 *HDI_RESTRICT z,
+                            hd_c64 *work) {
     const int64_t *HDI_RESTRICT ptr = m->up->ptr;
     const int32_t *HDI_RESTRICT col = m->up->col;
     const hd_c64 *HDI_RESTRICT u = m->u;
     const int32_t n = m->up->n;
     int32_t i;
     int64_t p;
+    (void)work;
     memcpy(z, r, (size_t)n * sizeof *z);
     for (i = 0; i < n; i++) {
         const hd_c64 w = z[i];
@@ -11838,35 +11834,28 @@ static void hdi_upper_apply(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, 
     }
 }
 
-/* All there is to know of a kind: a new one is a row of the table, and its functions. */
-typedef struct hdi_precond_row {
-    int32_t rows, entries;   /* values for each row and for each entry above the diagonal */
-    double steps;            /* of cocg, about, relative to those with mildl */
-    void (*make)(const hdi_precond *m, hd_c64 *work, double keep);   /* A to D and U; NULL: U is 0 */
-    double keep;             /* share of the dropped fill that goes to the diagonal */
-    void (*apply)(const hdi_precond *m, const hd_c64 *r, hd_c64 *z);
-} hdi_precond_row;
-
-static const hdi_precond_row hdi_preconds[] = {              /* by hd_precond */
-    {1, 1, 1, hdi_ildl, HDI_MILDL_KEPT, hdi_upper_apply},    /* auto */
-    {0, 0, 5.5, NULL, 0, hdi_none_apply},
-    {1, 0, 5, NULL, 0, hdi_jacobi_apply},
-    {1, 1, 2, hdi_ssor, 0, hdi_upper_apply},
-    {1, 1, 1.4, hdi_ildl, 0, hdi_upper_apply},
-    {1, 1, 1, hdi_ildl, HDI_MILDL_KEPT, hdi_upper_apply}
+static const hdi_precond_row hdi_preconds[] = {                /* by hd_precond */
+    {1, 1, 0, 1, hdi_ildl, HDI_MILDL_KEPT, hdi_upper_apply},   /* auto */
+    {0, 0, 0, 5.5, NULL, 0, hdi_none_apply},
+    {1, 0, 0, 5, NULL, 0, hdi_jacobi_apply},
+    {1, 1, 0, 2, hdi_ssor, 0, hdi_upper_apply},
+    {1, 1, 0, 1.4, hdi_ildl, 0, hdi_upper_apply},
+    {1, 1, 0, 1, hdi_ildl, HDI_MILDL_KEPT, hdi_upper_apply}
 };
 
 static int hdi_precond_known(hd_precond kind) {
     return (size_t)kind < sizeof hdi_preconds / sizeof *hdi_preconds;
 }
 
-static void hdi_precond_apply(const hdi_precond *m, const hd_c64 *r, hd_c64 *z) {
-    hdi_preconds[m->kind].apply(m, r, z);
+/* Values of one, and one more, so that there is something to allocate. upper: entries above the diagonal. */
+static uint64_t hdi_precond_size(const hdi_precond_row *row, int64_t n, int64_t upper) {
+    return (uint64_t)(row->rows * n + row->entries * upper + 1);
 }
 
 /* Fills m, whose arrays are there. work [n] */
-static void hdi_precond_make(const hdi_precond *m, const hdi_system *a, hd_c64 *work) {
-    const hdi_precond_row *row = hdi_preconds + m->kind;
+static void hdi_precond_make(const hdi_precond *m, hd_c64 *work) {
+    const hdi_precond_row *row = m->row;
+    const hdi_system *a = &m->a;
     const hd_csr *L = &a->lap->L;
     int32_t i;
     int64_t p = 0, q = 0;
@@ -11879,7 +11868,7 @@ static void hdi_precond_make(const hdi_precond *m, const hdi_system *a, hd_c64 *
             else if (m->u && j > i) m->u[q++] = v;
         }
     }
-    if (row->make) row->make(m, work, row->keep);
+    if (row->make) row->make(m, work);
     for (i = 0; row->rows && i < L->n_rows; i++) m->d[i] = hdi_cdiv(hdi_c(1, 0), m->d[i]);
 }
 
@@ -11952,13 +11941,14 @@ enum {
 /* One system under solution. It can be stopped and taken up again. */
 typedef struct hdi_iteration {
     hdi_system a;
-    const hdi_precond *m;
+    hdi_precond m;
     hd_solver solver;                    /* cocg or minres */
     const double *weight, *noise;        /* [n] 1/diag(B): the residual's norm; weights of its rounding */
     hd_c64 *mean;                        /* [n_components] */
     hd_c64 *x, *r;                       /* [n] solution and residual */
     hd_c64 *best;                        /* [n] the best x so far, kept while a round may spoil it */
     hd_c64 *v[6];                        /* [n] each, as many as the solver needs */
+    hd_c64 *work;                        /* of the preconditioner */
     double r_norm, b_norm;               /* in the norm of diag(B)^-1 */
     int64_t iterations;
     int32_t broken, ready;
@@ -11966,7 +11956,7 @@ typedef struct hdi_iteration {
     double beta, beta_old, c1, c2;
 } hdi_iteration;
 
-/* Vectors besides x. A system that waits needs x alone. */
+/* Vectors besides x, without those of the preconditioner. A system that waits needs x alone. */
 static int hdi_iteration_vectors(hd_solver solver) { return solver == HD_SOLVER_MINRES ? 8 : 4; }
 
 /* Begins at x = 0; b_norm: what residuals are reported against. */
@@ -11997,7 +11987,7 @@ static hd_c64 hdi_iteration_precond(hdi_iteration *k, const hd_c64 *HDI_RESTRICT
     const int32_t *comp = lap->component;
     hd_c64 dot = hdi_c(0, 0);
     int32_t i = 0;
-    hdi_precond_apply(k->m, r, z);
+    k->m.row->apply(&k->m, r, z, k->work);
     memset(k->mean, 0, (size_t)lap->n_components * sizeof *k->mean);
     while (i < lap->n_active) {
         const int32_t c = comp[i];
@@ -13827,7 +13817,6 @@ typedef struct hdi_family {
     /* Preconditioners that values has room for: of all poles, or, where there is no memory for them, of one.
      * Then each is made when its pole has its turn. */
     int32_t n_values;
-    hdi_precond m[HD_MAX_POLES];
     hd_c64 *values;
 } hdi_family;
 
@@ -13856,59 +13845,25 @@ static void hdi_family_set(hdi_family *fam, const hd_rational *set, double t) {
 /* Do poles make their preconditioners in turns? */
 static int hdi_family_shares(const hdi_family *fam) { return fam->n_values < fam->set.n_poles; }
 
+/* Values of a preconditioner. */
+static uint64_t hdi_family_size(const hdi_family *fam) {
+    return hdi_precond_size(hdi_preconds + fam->precond, fam->up->n, fam->up->ptr[fam->up->n]);
+}
+
 /* Room for the preconditioners of the set. */
 static hd_status hdi_family_room(hdi_family *fam, hd_error *e) {
-    const hdi_precond_row *row = hdi_preconds + fam->precond;
-    const uint64_t n = (uint64_t)(row->rows * fam->up->n);
-    const uint64_t upper = (uint64_t)(row->entries * fam->up->ptr[fam->up->n]), size = n + upper + 1;
-    int32_t i, room = fam->set.n_poles;
-    if (fam->n_values < room) {
-        hdi_family_free(fam);
-        fam->values = HDI_NEW(fam->ctx, hd_c64, (uint64_t)room * size, e);
-        if (room > 1 && hdi_over_limit(fam->ctx, e)) {
-            hdi_error_clear(e);
-            fam->values = HDI_NEW(fam->ctx, hd_c64, size, e);
-            room = 1;
-        }
-        if (!fam->values) return e->status;
-        fam->n_values = room;
+    const uint64_t size = hdi_family_size(fam);
+    int32_t room = fam->set.n_poles;
+    if (fam->n_values >= room) return HD_OK;
+    hdi_family_free(fam);
+    fam->values = HDI_NEW(fam->ctx, hd_c64, (uint64_t)room * size, e);
+    if (room > 1 && hdi_over_limit(fam->ctx, e)) {
+        hdi_error_clear(e);
+        fam->values = HDI_NEW(fam->ctx, hd_c64, size, e);
+        room = 1;
     }
-    for (i = 0; i < fam->set.n_poles; i++) {
-        fam->m[i].kind = fam->precond;
-        fam->m[i].up = fam->up;
-        fam->m[i].d = fam->values + (hdi_family_shares(fam) ? 0 : (size_t)i * size);
-        fam->m[i].u = upper ? fam->m[i].d + n : NULL;
-    }
-    return HD_OK;
-}
-
-/* Makes the preconditioner of pole p. work [n] */
-static void hdi_family_make(const hdi_family *fam, int32_t p, hd_c64 *work) {
-    hdi_system a = {fam->lap, fam->t, fam->set.theta[p]};
-    /* real, positive definite */
-    if (fam->solver == HD_SOLVER_MINRES) a.theta = hdi_c(hdi_cabs(a.theta), 0);
-    hdi_precond_make(fam->m + p, &a, work);
-}
-
-typedef struct hdi_fill_job {
-    hdi_family *fam;
-    hd_c64 *work;
-} hdi_fill_job;
-
-static void hdi_fill_task(void *arg, int64_t index, int32_t worker) {
-    const hdi_fill_job *job = (const hdi_fill_job *)arg;
-    (void)worker;
-    hdi_family_make(job->fam, (int32_t)index, job->work + index * job->fam->lap->n_active);
-}
-
-/* Makes the preconditioners, one parallel task each. work [n] for each of them. */
-static hd_status hdi_family_fill(hdi_family *fam, hd_c64 *work, hd_error *e) {
-    hdi_fill_job job = {fam, work};
-    if (fam->filled) return HD_OK;
-    if (hdi_family_room(fam, e) < 0 || hdi_progress(fam->ctx, "precondition", 0, e) < 0) return e->status;
-    if (!hdi_family_shares(fam)) hdi_parallel(fam->ctx, fam->set.n_poles, hdi_fill_task, &job);
-    fam->filled = 1;
-    return HD_OK;
+    if (fam->values) fam->n_values = room;
+    return e->status;
 }
 
 /* Most right-hand sides at a time: in all, by iterations, and in a batch with the factors of the poles.
@@ -13938,9 +13893,6 @@ typedef struct hdi_lanczos {
 
 enum { HDI_WARM_POLES = 6, HDI_WARM_MAX = 2 * HDI_WARM_POLES };
 
-/* Inner products of a solution with itself and those of the next poles, see hdi_warm_products. */
-typedef hd_c64 hdi_gram[HDI_WARM_POLES + 1][2];
-
 /* Further sums of the poles' solutions beside an answer: sum p of Re(weight_p x_p) for n rows of weights,
  * which are stride apart, into [n] arrays one after the other. */
 typedef struct hdi_extra {
@@ -13949,16 +13901,20 @@ typedef struct hdi_extra {
     double *sum;
 } hdi_extra;
 
+/* What a lane has room for, beside a field and an answer: steps of Lanczos; systems, which run one after the
+ * other, and the vectors that they share. */
+typedef struct hdi_lane_room { int64_t n, n_components; int32_t steps, systems, vectors; } hdi_lane_room;
+
 /* One right-hand side. Arrays are [n] by rows unless said otherwise. */
 typedef struct hdi_lane {
-    double *f, *rhs, *u;         /* the field, B f, the answer */
-    double *tmp;                 /* [4 n] after u, or work of the systems */
+    hdi_lane_room room;
+    double *f, *rhs, *u;         /* the field, B f, the answer; f begins all arrays */
+    double *tmp;                 /* [4 n], between solves in the vectors of the systems */
     double *target, *sums, *spare_sums;  /* [n_components] heat per component, work */
     hd_c64 *b;                   /* begins the systems' arrays */
-    hdi_iteration *k;               /* [n_systems] */
-    hdi_gram *gram;              /* [n_systems] */
+    hdi_iteration *k;            /* [systems] */
     hdi_lanczos lanczos;
-    int32_t n_systems, skip;
+    int32_t skip;
     int32_t exponent;            /* the field is the caller's times 2^-exponent */
     double step;                 /* how far apart the smallest doubles are, in the unit of u */
     int32_t dual;                /* what is asked for is B u, which goes to tmp in the end */
@@ -13985,99 +13941,112 @@ typedef struct hdi_lane {
 
 static void hdi_lane_free(hdi_lane *lane, hd_context *ctx) {
     hdi_free(ctx, lane->f);
-    hdi_free(ctx, lane->target);
-    hdi_free(ctx, lane->b);
     hdi_free(ctx, lane->k);
-    hdi_free(ctx, lane->lanczos.v);
-    hdi_free(ctx, lane->lanczos.alpha);
     memset(lane, 0, sizeof *lane);
 }
 
-static hd_status hdi_lane_make(hdi_lane *lane, const hd_laplacian *lap, hd_context *ctx, hd_error *e) {
-    const uint64_t n = (uint64_t)lap->n_active, n_comp = (uint64_t)lap->n_components;
-    if (lane->f) return HD_OK;
-    lane->f = HDI_NEW(ctx, double, 7 * n, e);
-    if (lane->f) lane->target = HDI_NEW(ctx, double, 3 * n_comp, e);
-    if (!lane->target) {
-        hdi_lane_free(lane, ctx);
-        return e->status;
-    }
-    lane->rhs = lane->f + n;
-    lane->u = lane->rhs + n;
-    lane->tmp = lane->u + n;
-    lane->sums = lane->target + n_comp;
-    lane->spare_sums = lane->sums + n_comp;
-    return HD_OK;
+static hdi_lane_room hdi_lane_room_of(const hd_laplacian *lap, const hdi_family *fam, int32_t steps,
+                                      int32_t systems) {
+    const hdi_lane_room room = {lap->n_active, lap->n_components, steps, systems,
+                                hdi_iteration_vectors(fam->solver) + hdi_preconds[fam->precond].vectors};
+    return room;
 }
 
-/* Room for so many steps of Lanczos. */
-static hd_status hdi_lane_lanczos(hdi_lane *lane, const hd_laplacian *lap, int32_t steps, hd_context *ctx,
-                                  hd_error *e) {
-    const uint64_t n = (uint64_t)lap->n_active, most = (uint64_t)steps + 1;
-    hdi_lanczos *z = &lane->lanczos;
-    if (z->alpha && z->room >= steps) return HD_OK;
-    hdi_free(ctx, z->alpha);
-    z->alpha = NULL;
-    z->room = 0;
-    if (!z->v) z->v = HDI_NEW(ctx, double, 3 * n, e);
-    if (z->v) z->alpha = HDI_NEW(ctx, double, 11 * most, e);
-    if (!z->alpha) return e->status;             /* the lane frees what it has */
-    z->room = steps;
+/* Doubles of the work between solves, which is part of the systems' arrays if there are systems: a
+ * right-hand side, vectors, a solution of each, means. The whole of it serves to make preconditioners. */
+static uint64_t hdi_lane_systems_size(const hdi_lane_room *r) {
+    return (uint64_t)(r->systems ? 2 * ((1 + r->vectors + r->systems) * r->n + r->n_components) : 4 * r->n);
+}
+
+/* Doubles of a lane's arrays. */
+static uint64_t hdi_lane_size(const hdi_lane_room *r) {
+    const int64_t basis = r->steps > 0 ? 3 * r->n + 11 * ((int64_t)r->steps + 1) : 0;
+    return (uint64_t)(3 * (r->n + r->n_components) + basis) + hdi_lane_systems_size(r);
+}
+
+/* Arrays of Lanczos in x, see hdi_lane_size. */
+static void hdi_lane_lanczos(hdi_lanczos *z, const hdi_lane_room *room, double *x) {
+    const int64_t n = room->n, most = (int64_t)room->steps + 1;
+    z->room = room->steps;
+    z->v = x;
     z->c = z->v + n;
     z->c_old = z->c + n;
+    z->alpha = z->c_old + n;
     z->beta = z->alpha + most;
     z->d = z->beta + most;
     z->e = z->d + most;
     z->ends = z->e + most;
     z->y = z->ends + 2 * most;
     z->work = (hd_c64 *)(void *)(z->y + most);
+}
+
+/* Room as asked for, or more. Where it grows, what the lane held is lost. */
+static hd_status hdi_lane_make(hdi_lane *lane, hdi_lane_room room, hd_context *ctx, hd_error *e) {
+    room.steps = hdi_high32(room.steps, lane->room.steps);
+    room.systems = hdi_high32(room.systems, lane->room.systems);
+    if (lane->f && room.steps == lane->room.steps && room.systems == lane->room.systems) return HD_OK;
+    hdi_lane_free(lane, ctx);
+    lane->f = HDI_NEW(ctx, double, hdi_lane_size(&room), e);
+    if (lane->f && room.systems) lane->k = HDI_NEW(ctx, hdi_iteration, room.systems, e);
+    if (e->status < 0) {
+        hdi_lane_free(lane, ctx);
+        return e->status;
+    }
+    lane->room = room;
+    lane->rhs = lane->f + room.n;
+    lane->u = lane->rhs + room.n;
+    lane->target = lane->u + room.n;
+    lane->sums = lane->target + room.n_components;
+    lane->spare_sums = lane->sums + room.n_components;
+    lane->tmp = lane->spare_sums + room.n_components;
+    lane->b = (hd_c64 *)(void *)lane->tmp;
+    hdi_lane_lanczos(&lane->lanczos, &room, lane->tmp + hdi_lane_systems_size(&room));
+    if (room.systems) lane->tmp += 6 * room.n;   /* after b and the first two vectors */
     return HD_OK;
 }
 
-/* The systems of a set, and their constants. Room: b, the vectors that all systems share, as they run one
- * after the other, x of each, means, and inner products. The whole of it serves to make preconditioners
- * before. Two of those shared are the lane's work between solves. Where the room grows, what the lane held is
- * lost. */
-static hd_status hdi_lane_systems(hdi_lane *lane, const hdi_family *fam, hd_error *e) {
-    const int32_t shared = hdi_iteration_vectors(fam->solver), count = fam->set.n_poles;
-    const int64_t n = fam->lap->n_active, vectors = (1 + shared + count) * n + fam->lap->n_components;
-    const uint64_t grams = (uint64_t)count * (sizeof(hdi_gram) / sizeof(hd_c64));
+/* The systems of a set, and their constants. The preconditioners have their room. */
+static void hdi_lane_systems(hdi_lane *lane, const hdi_family *fam) {
+    const int32_t own = hdi_iteration_vectors(fam->solver);
+    const int64_t n = lane->room.n;
     int32_t i, j;
-    if (!lane->k || lane->n_systems < count) {
-        hdi_free(fam->ctx, lane->f);
-        hdi_free(fam->ctx, lane->b);
-        hdi_free(fam->ctx, lane->k);
-        lane->b = NULL;
-        lane->k = NULL;
-        lane->f = HDI_NEW(fam->ctx, double, (3 * n), e);
-        if (lane->f) lane->b = HDI_NEW(fam->ctx, hd_c64, (uint64_t)vectors + grams, e);
-        if (lane->b) lane->k = HDI_NEW(fam->ctx, hdi_iteration, count + 1, e);
-        if (!lane->k) {
-            hdi_lane_free(lane, fam->ctx);
-            return e->status;
-        }
-        lane->rhs = lane->f + n;
-        lane->u = lane->rhs + n;
-        lane->tmp = &lane->b[3 * n].re;
-        lane->gram = (hdi_gram *)(void *)(lane->b + vectors);
-        lane->n_systems = count;
-    }
-    for (i = 0; i < count; i++) {
+    for (i = 0; i < fam->set.n_poles; i++) {
         hdi_iteration *k = lane->k + i;
         memset(k, 0, sizeof *k);
         k->r = lane->b + n;
         k->best = k->r + n;
-        for (j = 0; j + 2 < shared; j++) k->v[j] = k->best + n * (j + 1);
-        k->x = k->r + n * (shared + i);
-        k->mean = k->r + n * (shared + lane->n_systems);
+        for (j = 0; j + 2 < own; j++) k->v[j] = k->best + n * (j + 1);
+        k->work = k->r + n * own;
+        k->x = k->r + n * (lane->room.vectors + i);
+        k->mean = k->r + n * (lane->room.vectors + lane->room.systems);
         k->a.lap = fam->lap;
         k->a.t = fam->t;
         k->a.theta = fam->set.theta[i];
         k->solver = fam->solver;
         k->weight = fam->weight;
         k->noise = fam->noise;
-        k->m = fam->m + i;
+        k->m.row = hdi_preconds + fam->precond;
+        k->m.up = fam->up;
+        k->m.a = k->a;
+        if (fam->solver == HD_SOLVER_MINRES)     /* real, positive definite */
+            k->m.a.theta = hdi_c(hdi_cabs(k->a.theta), 0);
+        k->m.d = fam->values + (hdi_family_shares(fam) ? 0 : (size_t)i * hdi_family_size(fam));
+        k->m.u = k->m.row->entries ? k->m.d + n : NULL;
     }
+}
+
+static void hdi_fill_task(void *arg, int64_t index, int32_t worker) {
+    const hdi_lane *lane = (const hdi_lane *)arg;
+    (void)worker;
+    hdi_precond_make(&lane->k[index].m, lane->b + index * lane->room.n);
+}
+
+/* Makes the preconditioners, one parallel task each, with the systems of a lane. */
+static hd_status hdi_family_fill(hdi_family *fam, hdi_lane *lane, hd_error *e) {
+    if (fam->filled) return HD_OK;
+    if (hdi_progress(fam->ctx, "precondition", 0, e) < 0) return e->status;
+    if (!hdi_family_shares(fam)) hdi_parallel(fam->ctx, fam->set.n_poles, hdi_fill_task, lane);
+    fam->filled = 1;
     return HD_OK;
 }
 
@@ -14114,71 +14083,106 @@ static void hdi_lane_clear_off(hdi_lane *lane) {
     memset(&lane->off, 0, sizeof lane->off);
     memset(&lane->off_m, 0, sizeof lane->off_m);
     lane->rounding = HD_EVIDENCE_PROVEN;
-    lane->residual = 0;
-    lane->negative = 0;
+    lane->residual = lane->first_norm = 0;
+    lane->negative = lane->first_pole = 0;
+    lane->energy = lane->f_norm * lane->f_norm;
+}
+
+/* Notes what the solution x of pole p tells of the resolvent: |x|_B, and a bound of f'B (B + tL)^-1 B f,
+ * which is at most a factor times Re of rhs'x. Real parts of x are stride apart. norm2: |x|_B^2 as computed.
+ * off: bound on its residual. */
+static void hdi_lane_first(hdi_lane *lane, const hd_laplacian *lap, const hd_rational *set, int32_t p,
+                           double norm2, double off, const double *x, int64_t stride) {
+    const hd_c64 theta = set->theta[p];
+    const double error = off * hdi_ratio_root(lap) / hdi_pole_distance(theta);
+    const double factor = hdi_resolvent_factor(theta);
+    double sum = 0;
+    int32_t i;
+    for (i = 0; i < lap->n_active; i++)
+        if (lane->rhs[i] != 0) sum += lane->rhs[i] * x[stride * i];
+    lane->first_pole = p;
+    lane->first_norm = sqrt(norm2) + error;
+    /* t x^*Lx = Re x^*b - Re theta |x|_B^2, which rounding alone does not make negative */
+    if (sum - theta.re * norm2 < -1e-6 * (fabs(sum) + fabs(theta.re) * norm2) - lane->b_norm * error)
+        lane->negative = 1;
+    if (hdi_finite(factor)) lane->energy = hdi_min(lane->energy, factor * (fabs(sum) + lane->f_norm * error));
+}
+
+/* |x|_B^2 of a complex vector; tmp [3 n]. */
+static double hdi_b_norm2_complex(const hd_laplacian *lap, const hd_c64 *x, double *tmp) {
+    const int32_t n = lap->n_active;
+    double *work = tmp + 2 * (int64_t)n;
+    int32_t i;
+    if (!lap->B) return hdi_cnorm2w(x, lap->mass, n);
+    for (i = 0; i < n; i++) {
+        tmp[i] = x[i].re;
+        tmp[n + i] = x[i].im;
+    }
+    return hdi_max(0, hdi_b_norm2(lap, tmp, work) + hdi_b_norm2(lap, tmp + n, work));
 }
 
 /* u = a0 f - sum a_i x_i, in the order of the poles, and the bounds on its error but for the rational one. */
 static void hdi_lane_sum(hdi_lane *lane, const hdi_family *fam) {
     const int32_t n = fam->lap->n_active;
+    const hdi_iteration *k = lane->k;
     double *HDI_RESTRICT u = lane->u;
     int32_t i, j;
+    hdi_lane_clear_off(lane);
+    lane->b_norm = fam->set.n_poles > 0 ? k->b_norm : 0;
     for (j = 0; j < n; j++) u[j] = fam->set.a0 * lane->f[j];
     for (i = 0; i < fam->set.n_poles; i++) {
-        const hd_c64 *HDI_RESTRICT x = lane->k[i].x;
+        const hd_c64 *HDI_RESTRICT x = k[i].x;
         const double c = hdi_rat_count(&fam->set, i), are = c * fam->set.a[i].re, aim = c * fam->set.a[i].im;
         for (j = 0; j < n; j++) u[j] -= are * x[j].re - aim * x[j].im;
-        hdi_lane_residual(lane, fam->lap, &fam->set, i, lane->k[i].r_norm,
-                          sqrt(hdi_cnorm2w(x, fam->noise, n)), 1);
+        hdi_lane_residual(lane, fam->lap, &fam->set, i, k[i].r_norm, sqrt(hdi_cnorm2w(x, fam->noise, n)), 1);
     }
+    if (fam->set.n_poles > 0)
+        hdi_lane_first(lane, fam->lap, &fam->set, 0, hdi_b_norm2_complex(fam->lap, k->x, lane->tmp),
+                       k->r_norm, &k->x->re, 2);
 }
 
-/* Inner products of solution p with those of poles p to last, D = diag(B):
- *   gram[q - p][0] = x_q^* D x_p,   gram[q - p][1] = x_q' D x_p. */
-static void hdi_warm_products(const hdi_lane *lane, const double *d, int32_t p, int32_t last, int32_t n,
-                              hd_c64 gram[][2]) {
-    const hd_c64 *HDI_RESTRICT y = lane->k[p].x;
-    int32_t q, i;
-    for (q = p; q <= last; q++) {
-        const hd_c64 *HDI_RESTRICT x = lane->k[q].x;
-        double rr = 0, ii = 0, ri = 0, ir = 0;
-        for (i = 0; i < n; i++) {
-            const double yr = d[i] * y[i].re, yi = d[i] * y[i].im;
-            rr += x[i].re * yr;
-            ii += x[i].im * yi;
-            ri += x[i].re * yi;
-            ir += x[i].im * yr;
-        }
-        gram[q - p][0] = hdi_c(rr + ii, ri - ir);
-        gram[q - p][1] = hdi_c(rr - ii, ri + ir);
+/* x^* D y and x' D y for D = diag(B). */
+static void hdi_warm_products(const hd_c64 *HDI_RESTRICT x, const hd_c64 *HDI_RESTRICT y, const double *d,
+                              int32_t n, hd_c64 *out) {
+    double rr = 0, ii = 0, ri = 0, ir = 0;
+    int32_t i;
+    for (i = 0; i < n; i++) {
+        const double yr = d[i] * y[i].re, yi = d[i] * y[i].im;
+        rr += x[i].re * yr;
+        ii += x[i].im * yi;
+        ri += x[i].re * yi;
+        ir += x[i].im * yr;
     }
+    out[0] = hdi_c(rr + ii, ri - ir);
+    out[1] = hdi_c(rr - ii, ri + ir);
 }
 
-/* The start of system p, of smallest residual, from solutions of poles p + 1 to last and inner products:
- * H c = 1 (a unit diagonal, plus what rounding eats of it). A point is a pole or its conjugate. */
-static void hdi_warm_start(hdi_lane *lane, const hdi_family *fam, int32_t p, int32_t last,
-                           hdi_gram *gram) {
+/* The start of system p, of smallest residual, from the solutions of poles p + 1 to last: H c = 1 (a unit
+ * diagonal, plus what rounding eats of it). A point is a pole or its conjugate. */
+static void hdi_warm_start(hdi_lane *lane, const hdi_family *fam, int32_t p, int32_t last) {
     const int32_t n = fam->lap->n_active;
-    hd_c64 shift[HDI_WARM_MAX], sum = hdi_c(0, 0), *HDI_RESTRICT x = lane->k[p].x;
+    const hdi_iteration *next = lane->k + p + 1;
+    hd_c64 gram[HDI_WARM_POLES][HDI_WARM_POLES][2], shift[HDI_WARM_MAX], sum = hdi_c(0, 0);
+    hd_c64 *HDI_RESTRICT x = lane->k[p].x;
     double A[4 * HDI_WARM_MAX * HDI_WARM_MAX], c[2 * HDI_WARM_MAX] = {0}, unit[HDI_WARM_MAX];
     int32_t m = 0, i, j, pole[HDI_WARM_MAX], conj[HDI_WARM_MAX];
-    for (i = p + 1; i <= last; i++) {
-        for (j = 0; j < (fam->set.theta[i].im == 0 ? 1 : 2); j++, m++) {
+    for (i = 0; i < last - p; i++) {
+        for (j = 0; j <= i; j++) hdi_warm_products(next[i].x, next[j].x, fam->lap->b_diag, n, gram[i][j]);
+        for (j = 0; j < (next[i].a.theta.im == 0 ? 1 : 2); j++, m++) {
             pole[m] = i;
             conj[m] = j;
         }
     }
     for (i = 0; i < m; i++) {
-        const hd_c64 theta = fam->set.theta[pole[i]];
+        const hd_c64 theta = next[pole[i]].a.theta;
         shift[i] = hdi_csub(fam->set.theta[p], conj[i] ? hdi_cconj(theta) : theta);
-        c[i] = hdi_cabs(shift[i]) * sqrt(gram[pole[i]][0][0].re);
+        c[i] = hdi_cabs(shift[i]) * sqrt(gram[pole[i]][pole[i]][0].re);
         c[i] = unit[i] = c[i] > 0 ? 1 / c[i] : 0;
         shift[i] = hdi_cscale(unit[i], shift[i]);
     }
     for (i = 0; i < m; i++) {
         for (j = 0; j <= i; j++) {
-            /* x_i^* D x_j and x_i' D x_j for the poles behind the points */
-            hd_c64 v = gram[pole[j]][pole[i] - pole[j]][conj[i] != conj[j]];
+            hd_c64 v = gram[pole[i]][pole[j]][conj[i] != conj[j]];
             v = hdi_cmul(hdi_cmul(hdi_cconj(shift[i]), shift[j]), conj[j] ? hdi_cconj(v) : v);
             if (i == j) v = hdi_c(1 + 1e-14, 0);
             A[2 * m * j + i] = A[2 * m * i + j] = v.re;
@@ -14194,7 +14198,7 @@ static void hdi_warm_start(hdi_lane *lane, const hdi_family *fam, int32_t p, int
         sum = hdi_cadd(sum, hdi_c(c[i], c[m + i]));
     }
     for (i = 0; i < m; i++) {
-        const hd_c64 w = hdi_cdiv(hdi_c(c[i], c[m + i]), sum), *HDI_RESTRICT y = lane->k[pole[i]].x;
+        const hd_c64 w = hdi_cdiv(hdi_c(c[i], c[m + i]), sum), *HDI_RESTRICT y = next[pole[i]].x;
         const double sign = conj[i] ? -1 : 1;
         if (!hdi_cfinite(w)) return;
         for (j = 0; j < n; j++) x[j] = hdi_cadd(x[j], hdi_cmul(w, hdi_c(y[j].re, sign * y[j].im)));
@@ -14208,7 +14212,6 @@ static hd_status hdi_lane_run(hdi_lane *lane, const hdi_family *fam, int fresh, 
                               const hdi_watch *watch, hd_error *e) {
     const int32_t n_poles = fam->set.n_poles;
     const double b_norm = sqrt(hdi_cnorm2w(lane->b, fam->weight, fam->lap->n_active));
-    hdi_gram *gram = lane->gram;
     hdi_watch part = *watch;
     hd_status worst = HD_OK, status;
     double left = aim;
@@ -14222,9 +14225,9 @@ static hd_status hdi_lane_run(hdi_lane *lane, const hdi_family *fam, int fresh, 
         const double share = weight > 0 ? fair / weight : DBL_MAX;
         const double target = share * sqrt(fam->lap->b_ratio) * hdi_pole_distance(fam->set.theta[p]);
         const int runs = fresh || k->r_norm > target, warm = fresh && p < last && b_norm > 0;
-        if (runs && hdi_family_shares(fam)) hdi_family_make(fam, p, k->r);
+        if (runs && hdi_family_shares(fam)) hdi_precond_make(&k->m, k->r);
         if (fresh) hdi_iteration_start(k, b_norm);
-        if (warm) hdi_warm_start(lane, fam, p, last, gram);
+        if (warm) hdi_warm_start(lane, fam, p, last);
         if (runs) hdi_iteration_residual(k, lane->b);
         if (warm && !(k->r_norm < b_norm)) {
             hdi_iteration_start(k, b_norm);
@@ -14239,7 +14242,6 @@ static hd_status hdi_lane_run(hdi_lane *lane, const hdi_family *fam, int fresh, 
         }
         if (status > worst) worst = status;
         left -= weight * hdi_pole_error(k);
-        if (fresh && p > 0) hdi_warm_products(lane, fam->lap->b_diag, p, last, fam->lap->n_active, gram[p]);
     }
     return worst;
 }
@@ -14311,20 +14313,26 @@ static double *hdi_make_weight(const hd_laplacian *lap, hd_context *ctx, hd_erro
     return w;
 }
 
-/* Ordering, analysis, and the pair renumbered by it. */
-static hd_status hdi_elim_make(hdi_elim *m, const hd_laplacian *lap, hd_ordering ordering, const int32_t *own,
-                               double scale, hd_context *ctx, hd_error *e) {
+/* Ordering and analysis. own: a permutation of the vertices, or NULL. */
+static hd_status hdi_pair_analyse(hdi_symbolic *sym, const hd_laplacian *lap, hd_ordering ordering,
+                                  const int32_t *own, hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
     int32_t *rows = HDI_TAKE(&s, int32_t, lap->n_active);
     const hdi_order order = {ordering, lap->xyz, own ? rows : NULL};
-    if (e->status < 0) return hdi_scope_end(&s);
+    if (rows && own) hdi_elim_own(lap, own, rows);
+    if (rows) (void)hdi_symbolic_order(sym, &lap->L, &order, ctx, e);
+    return hdi_scope_end(&s);
+}
+
+/* The same, and the pair renumbered by it. */
+static hd_status hdi_elim_make(hdi_elim *m, const hd_laplacian *lap, hd_ordering ordering, const int32_t *own,
+                               double scale, hd_context *ctx, hd_error *e) {
     memset(m, 0, sizeof *m);
     m->ctx = ctx;
     m->source = lap;
     m->scale = scale;
-    if (own) hdi_elim_own(lap, own, rows);
     m->pack = HDI_NEW(ctx, hdi_factor, HD_MAX_POLES / 4, e);
-    if (e->status >= 0 && hdi_symbolic_order(&m->sym, &lap->L, &order, ctx, e) >= 0)
+    if (e->status >= 0 && hdi_pair_analyse(&m->sym, lap, ordering, own, ctx, e) >= 0)
         m->lap = hdi_pair_renumber(lap, m->sym.perm, ctx, e);
     if (m->lap) {
         (void)hdi_pair_scale(m->lap);
@@ -14333,7 +14341,7 @@ static hd_status hdi_elim_make(hdi_elim *m, const hd_laplacian *lap, hd_ordering
         m->noise_shift = m->weight ? m->noise + lap->n_active : NULL;
     }
     if (e->status < 0) hdi_elim_free(m);
-    return hdi_scope_end(&s);
+    return e->status;
 }
 
 /* t L + theta B in terms of the source's entries; t comes scaled, as B does in lap. */
@@ -14446,26 +14454,6 @@ static hd_status hdi_not_semidefinite(hd_error *e) {
     return hdi_fail(e, HD_ERR_NOT_POSITIVE,
                     "L is not positive semi-definite: a vector with x'Lx < 0 was met "
                     "(is it minus the matrix meant?)");
-}
-
-/* Notes what the solution x of pole p tells of the resolvent: |x|_B, and a bound of f'B (B + tL)^-1 B f,
- * which is at most a factor times Re of rhs'x. Real parts of x are stride apart. norm2: |x|_B^2 as computed.
- * off: bound on its residual. */
-static void hdi_lane_first(hdi_lane *lane, const hd_laplacian *lap, const hd_rational *set, int32_t p,
-                           double norm2, double off, const double *x, int64_t stride) {
-    const hd_c64 theta = set->theta[p];
-    const double error = off * hdi_ratio_root(lap) / hdi_pole_distance(theta);
-    const double factor = hdi_resolvent_factor(theta);
-    double sum = 0;
-    int32_t i;
-    for (i = 0; i < lap->n_active; i++)
-        if (lane->rhs[i] != 0) sum += lane->rhs[i] * x[stride * i];
-    lane->first_pole = p;
-    lane->first_norm = sqrt(norm2) + error;
-    /* t x^*Lx = Re x^*b - Re theta |x|_B^2, which rounding alone does not make negative */
-    if (sum - theta.re * norm2 < -1e-6 * (fabs(sum) + fabs(theta.re) * norm2) - lane->b_norm * error)
-        lane->negative = 1;
-    if (hdi_finite(factor)) lane->energy = hdi_min(lane->energy, factor * (fabs(sum) + lane->f_norm * error));
 }
 
 /* The rows of t L + theta B for solutions x, see hdi_residual; sum, or NULL, is zero. */
@@ -14661,7 +14649,6 @@ static void hdi_batch_run(const hdi_elim *m, const hdi_batch *b, hdi_lane *lane,
         }
         lane[r].b_norm = sqrt(norm2);
         hdi_lane_clear_off(lane + r);
-        lane[r].energy = lane[r].f_norm * lane[r].f_norm;
     }
     active = touched < 64 * (int64_t)k ? b->active : NULL;
     if (m->lone >= 0) {
@@ -14793,19 +14780,6 @@ static void hdi_lane_rounding(hdi_lane *lane, double off) {
 
 /* ---- through the poles ---- */
 
-/* |x|_B^2 of a complex vector; tmp [3 n]. */
-static double hdi_b_norm2_complex(const hd_laplacian *lap, const hd_c64 *x, double *tmp) {
-    const int32_t n = lap->n_active;
-    double *work = tmp + 2 * (int64_t)n;
-    int32_t i;
-    if (!lap->B) return hdi_cnorm2w(x, lap->mass, n);
-    for (i = 0; i < n; i++) {
-        tmp[i] = x[i].re;
-        tmp[n + i] = x[i].im;
-    }
-    return hdi_max(0, hdi_b_norm2(lap, tmp, work) + hdi_b_norm2(lap, tmp + n, work));
-}
-
 /* Errors of a set, for |exp(x) - c(x)| and for (1 + |x|) times that. Of the caller's own sets either may be
  * unknown, 0. A weighted error bounds the other one. Without both, bounds hold for c itself. */
 static double hdi_set_uniform(const hd_rational *set) {
@@ -14880,6 +14854,16 @@ static int hdi_lane_vanishes(const hdi_lane *lane, int32_t n) {
     return most > 0 && most < HDI_LANE_LEAST;
 }
 
+/* Ends an answer by poles: constants, norms, bounds. dense: see hdi_conserve_off. */
+static void hdi_lane_finish(const hd_laplacian *lap, const hd_rational *set, double drift_t, int dense,
+                            hdi_lane *lane) {
+    hdi_conserve(lap, lane, set->kind == HD_POLES_OWN ? hdi_rational_eval(set, 0) : 1);
+    lane->u_norm = sqrt(hdi_max(0, hdi_b_norm2(lap, lane->u, lane->tmp)));
+    if (hdi_lane_negative(lap, lane)) lane->negative = 1;
+    hdi_rational_bound(lap, set, lane);
+    hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, drift_t, dense));
+}
+
 /* K_t f through a pole set. The tolerance is relative to the answer, which is not known yet. A first round
  * aims at the tolerance relative to f, which is never too strict because |K_t f|_B <= |f|_B (times the
  * largest value of a filter). The next rounds
@@ -14887,8 +14871,7 @@ static int hdi_lane_vanishes(const hdi_lane *lane, int32_t n) {
 static hd_status hdi_family_run(const hdi_family *fam, double tol, double drift_t, hdi_lane *lane,
                                 const hdi_watch *watch, hd_error *e) {
     const hd_laplacian *lap = fam->lap;
-    const double c0 = fam->set.kind == HD_POLES_OWN ? hdi_rational_eval(&fam->set, 0) : 1;
-    double aim = tol * hdi_set_largest(&fam->set) * lane->f_norm, room;
+    double aim = tol * hdi_set_largest(&fam->set) * lane->f_norm, room = 0;
     hdi_watch part = *watch;
     hd_status status = HD_OK;
     int32_t round;
@@ -14901,39 +14884,14 @@ static hd_status hdi_family_run(const hdi_family *fam, double tol, double drift_
         part.share = watch->share * (round ? 0.3 : 0.7);
         status = hdi_lane_run(lane, fam, round == 0, aim, &part, e);
         if (status < 0) return status;
-        hdi_lane_clear_off(lane);
-        lane->b_norm = fam->set.n_poles > 0 ? lane->k[0].b_norm : 0;
         hdi_lane_sum(lane, fam);
-        hdi_conserve(lap, lane, c0);
-        lane->u_norm = sqrt(hdi_max(0, hdi_b_norm2(lap, lane->u, lane->tmp)));
+        hdi_lane_finish(lap, &fam->set, drift_t, 1, lane);
         room = tol * (lane->u_norm - lane->off.solver);
         if (lane->off.solver <= room || status == HD_WARN_ACCURACY) break;
         aim = room > 0.01 * aim ? (1 - tol) * room : 0.01 * aim;
     }
-    lane->first_pole = 0;
-    lane->first_norm = 0;
-    lane->energy = lane->f_norm * lane->f_norm;
-    if (fam->set.n_poles > 0) {
-        const hd_c64 *x = lane->k[0].x;
-        hdi_lane_first(lane, lap, &fam->set, 0, hdi_b_norm2_complex(lap, x, lane->tmp), lane->k[0].r_norm,
-                       &x->re, 2);
-        if (lane->negative || hdi_lane_negative(lap, lane)) return hdi_not_semidefinite(e);
-    }
-    hdi_rational_bound(lap, &fam->set, lane);
-    hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, drift_t, 1));
-    return lane->off.solver <= tol * (lane->u_norm - lane->off.solver) ? HD_OK : HD_WARN_ACCURACY;
-}
-
-/* Finishes an answer by the poles' factors: constants, norms, bounds. The status warns where rounding
- * relative to the answer is above limit. */
-static hd_status hdi_elim_finish(const hdi_elim *m, double limit, double drift_t, int dense, hdi_lane *lane) {
-    const hd_laplacian *lap = m->lap;
-    hdi_conserve(lap, lane, m->set.kind == HD_POLES_OWN ? hdi_rational_eval(&m->set, 0) : 1);
-    lane->u_norm = sqrt(hdi_max(0, hdi_b_norm2(lap, lane->u, lane->tmp)));
-    if (hdi_lane_negative(lap, lane)) lane->negative = 1;
-    hdi_rational_bound(lap, &m->set, lane);
-    hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, drift_t, dense));
-    return lane->off.rounding <= limit * (lane->u_norm - lane->off.rounding) ? HD_OK : HD_WARN_ACCURACY;
+    if (lane->negative) return hdi_not_semidefinite(e);
+    return lane->off.solver <= room ? HD_OK : HD_WARN_ACCURACY;
 }
 
 /* ---- entries of the kernel without columns ---- */
@@ -18177,9 +18135,6 @@ static hd_status hdi_heat_iterative(hd_heat *heat, hd_error *e) {
     heat->fam.lap = heat->lap;
     heat->fam.up = &heat->up;
     heat->fam.weight = heat->weight;
-    heat->fam.solver = heat->opts.solver == HD_SOLVER_MINRES ? HD_SOLVER_MINRES : HD_SOLVER_COCG;
-    heat->fam.precond = heat->opts.precond;
-    heat->fam.max_iterations = heat->opts.max_iterations;
     return e->status;
 }
 
@@ -18264,9 +18219,10 @@ static hd_status hdi_shifted_prepare(hd_heat *heat, double t, hd_c64 theta, hd_e
     set.theta[0] = theta;
     if (hdi_heat_iterative(heat, e) < 0 || hdi_heat_make_lanes(heat, 1, e) < 0) return e->status;
     hdi_family_set(fam, &set, t * heat->scale);
-    if (hdi_lane_make(heat->lane, heat->lap, heat->ctx, e) < 0) return e->status;
-    if (hdi_lane_systems(heat->lane, fam, e) < 0) return e->status;
-    return hdi_family_fill(fam, heat->lane->b, e);
+    if (hdi_family_room(fam, e) < 0 ||
+        hdi_lane_make(heat->lane, hdi_lane_room_of(heat->lap, fam, 0, 1), heat->ctx, e) < 0) return e->status;
+    hdi_lane_systems(heat->lane, fam);
+    return hdi_family_fill(fam, heat->lane, e);
 }
 
 #define HDI_TOL_SOLVE 1e-10
@@ -19022,12 +18978,23 @@ static void hdi_heat_store(const hdi_heat_call *h, int32_t q, const hdi_lane *la
     }
 }
 
+/* Lanes for the items of the call, at most so many at a time, with room for steps of Lanczos or systems. */
+static hd_status hdi_heat_lanes(hdi_heat_call *h, int32_t most, int32_t steps, int32_t systems) {
+    const hdi_lane_room room = hdi_lane_room_of(h->lap, &h->heat->fam, steps, systems);
+    int32_t i;
+    h->n_lanes = hdi_low32(h->ask.k, most);
+    if (hdi_heat_make_lanes(h->heat, h->n_lanes, h->e) < 0) return h->e->status;
+    for (i = 0; i < h->n_lanes; i++)
+        if (hdi_lane_make(h->heat->lane + i, room, h->heat->ctx, h->e) < 0) break;
+    return h->e->status;
+}
+
 /* The degree of a uniform set for all fields. Columns, whose constants are small, get the highest one. */
-static hd_status hdi_heat_degree(const hdi_heat_call *h, int32_t *degree) {
+static hd_status hdi_heat_degree(hdi_heat_call *h, int32_t *degree) {
     const int fields = hdi_query_fields(h->ask.query);
     int32_t q, r;
     *degree = fields ? 8 : HDI_RAT_UNIFORM_MAX;
-    if (fields && hdi_lane_make(h->heat->lane, h->lap, h->heat->ctx, h->e) < 0) return h->e->status;
+    if (fields && hdi_heat_lanes(h, 1, 0, 0) < 0) return h->e->status;
     for (q = 0; q < h->ask.k && fields; q++) {
         if (hdi_heat_load(h, q, h->heat->lane) < 0) return h->e->status;
         r = hdi_uniform_degree(h->lap, h->heat->lane, h->method == HD_METHOD_DIRECT);
@@ -19059,7 +19026,7 @@ static hd_status hdi_heat_set_of(const hdi_heat_call *h, int32_t degree, hd_rati
 
 enum { HDI_DEGREE_DIRECT = 9 };  /* four pairs fill a pack, a real pole costs little */
 
-static hd_status hdi_heat_set(const hdi_heat_call *h, hd_rational *set) {
+static hd_status hdi_heat_set(hdi_heat_call *h, hd_rational *set) {
     int32_t degree = h->method == HD_METHOD_DIRECT ? HDI_DEGREE_DIRECT : 10;
     if (hdi_heat_open(h) && hdi_heat_degree(h, &degree) < 0) return h->e->status;
     return hdi_heat_set_of(h, degree, set);
@@ -19189,16 +19156,6 @@ static void hdi_report_set(hd_report *rep, const hd_rational *set) {
     rep->n_poles = set->n_poles;
 }
 
-/* Lanes for the items of the call, at most so many at a time. */
-static hd_status hdi_heat_lanes(hdi_heat_call *h, int32_t most) {
-    int32_t i;
-    h->n_lanes = hdi_low32(h->ask.k, most);
-    if (hdi_heat_make_lanes(h->heat, h->n_lanes, h->e) < 0) return h->e->status;
-    for (i = 0; i < h->n_lanes; i++)
-        if (hdi_lane_make(h->heat->lane + i, h->lap, h->heat->ctx, h->e) < 0) break;
-    return h->e->status;
-}
-
 /* Loads the next items into the lanes. Returns their number. */
 static int32_t hdi_heat_load_some(hdi_heat_call *h) {
     const int32_t n = hdi_low32(h->ask.k - h->batch, h->n_lanes);
@@ -19233,15 +19190,16 @@ static hd_solver hdi_heat_solver(const hdi_heat_call *h, double t) {
 static double hdi_iterative_bytes(const hdi_heat_call *h, int32_t poles) {
     const hd_heat *heat = h->heat;
     const double n = heat->source->n_active, nnz = (double)heat->source->L.nnz;
-    const double lanes = hdi_low32(h->ask.k, HDI_LANES_ITERATIVE);
-    const hdi_precond_row *row = hdi_preconds + heat->opts.precond;
-    double bytes = 0;
+    const int lanczos = hdi_heat_solver(h, h->t) == HD_SOLVER_LANCZOS;
+    const hdi_lane_room room = hdi_lane_room_of(heat->source, &heat->fam,
+                                                lanczos ? hdi_lanczos_most(h->t, heat->lambda_max) : 0,
+                                                lanczos ? 0 : poles);
+    double bytes = 8.0 * hdi_low32(h->ask.k, HDI_LANES_ITERATIVE) * (double)hdi_lane_size(&room);
     if (!heat->lap) bytes += nnz * (heat->source->B ? 20 : 12) + 36 * n + 4.0 * heat->source->n;
     if (!heat->weight) bytes += 8 * n + 4 * (nnz - n) / 2 + 32 * n;
-    if (hdi_heat_solver(h, h->t) == HD_SOLVER_LANCZOS)
-        return bytes + lanes * (80 * n + 88.0 * hdi_lanczos_most(h->t, heat->lambda_max));
-    bytes += lanes * (24 + 16.0 * (1 + hdi_iteration_vectors(heat->opts.solver) + poles)) * n;
-    return bytes + 16.0 * poles * (row->rows * n + row->entries * (nnz - n) / 2);
+    return bytes + 16.0 * room.systems * (double)hdi_precond_size(hdi_preconds + heat->opts.precond,
+                                                                  heat->source->n_active,
+                                                                  (int64_t)(nnz - n) / 2);
 }
 
 /* The times one by one. */
@@ -19271,16 +19229,14 @@ static hd_status hdi_iterative_prepare(hdi_heat_call *h) {
     const int32_t steps = known ? hdi_lanczos_most(h->t, heat->lambda_max) : HDI_LANCZOS_MAX;
     hd_rational set;
     int32_t i;
-    if (hdi_heat_lanes(h, HDI_LANES_ITERATIVE) < 0) return h->e->status;
-    for (i = 0; i < h->n_lanes && h->solver == HD_SOLVER_LANCZOS; i++)
-        if (hdi_lane_lanczos(h->heat->lane + i, h->lap, steps, heat->ctx, h->e) < 0) return h->e->status;
-    if (h->solver == HD_SOLVER_LANCZOS) return HD_OK;
+    if (h->solver == HD_SOLVER_LANCZOS) return hdi_heat_lanes(h, HDI_LANES_ITERATIVE, steps, 0);
     if (hdi_heat_set(h, &set) < 0) return h->e->status;
     hdi_family_set(&heat->fam, &set, h->t);
     hdi_report_set(h->rep, &set);
-    for (i = 0; i < h->n_lanes; i++)
-        if (hdi_lane_systems(h->heat->lane + i, &heat->fam, h->e) < 0) return h->e->status;
-    if (hdi_family_fill(&heat->fam, h->heat->lane->b, h->e) < 0) return h->e->status;
+    if (hdi_heat_lanes(h, HDI_LANES_ITERATIVE, 0, set.n_poles) < 0 ||
+        hdi_family_room(&heat->fam, h->e) < 0) return h->e->status;
+    for (i = 0; i < h->n_lanes; i++) hdi_lane_systems(heat->lane + i, &heat->fam);
+    if (hdi_family_fill(&heat->fam, heat->lane, h->e) < 0) return h->e->status;
     if (hdi_family_shares(&heat->fam)) h->n_lanes = 1;
     return HD_OK;
 }
@@ -19337,8 +19293,7 @@ static int32_t hdi_batches_inside(const hdi_elim *m, int32_t packs, uint64_t dou
 
 /* Bytes that solves of k items with so many packs take beyond what the plan has. */
 static uint64_t hdi_batches_need(const hd_heat *heat, int32_t packs, int32_t k) {
-    const uint64_t n = (uint64_t)heat->elim.sym.n;
-    const uint64_t n_comp = (uint64_t)heat->source->n_components;
+    const hdi_lane_room room = hdi_lane_room_of(heat->source, &heat->fam, 0, 0);
     int32_t width, count, lanes, i;
     uint64_t doubles, bytes = 0, old = 0;
     if (k < 1) return 0;
@@ -19348,11 +19303,9 @@ static uint64_t hdi_batches_need(const hd_heat *heat, int32_t packs, int32_t k) 
         hdi_scope_count(&bytes, (uint64_t)lanes, sizeof(hdi_lane));
         if (heat->lane) hdi_scope_count(&old, (uint64_t)heat->n_lanes, sizeof(hdi_lane));
     }
-    for (i = 0; i < lanes; i++) {
-        if (i < heat->n_lanes && heat->lane[i].f) continue;
-        hdi_scope_count(&bytes, 7 * n, sizeof(double));
-        hdi_scope_count(&bytes, 3 * n_comp, sizeof(double));
-    }
+    for (i = 0; i < lanes; i++)
+        if (i >= heat->n_lanes || !heat->lane[i].f)
+            hdi_scope_count(&bytes, hdi_lane_size(&room), sizeof(double));
     doubles *= (uint64_t)(count - hdi_batches_inside(&heat->elim, packs, doubles, count));
     if (heat->batch_doubles < doubles) {
         hdi_scope_count(&bytes, doubles, sizeof(double));
@@ -19479,7 +19432,7 @@ static hd_status hdi_batches_make(hdi_batches *b, hdi_heat_call *h) {
     b->h = h;
     b->n_here = 0;
     b->count = hdi_batches_shape(&heat->elim, h->ask.k, &b->width, &b->doubles);
-    if (hdi_heat_lanes(h, b->count * b->width) < 0) return h->e->status;
+    if (hdi_heat_lanes(h, b->count * b->width, 0, 0) < 0) return h->e->status;
     b->inside = hdi_batches_inside(&heat->elim, heat->elim.n_used, b->doubles, b->count);
     fresh = b->doubles * (uint64_t)(b->count - b->inside);
     if (heat->batch_doubles >= fresh) return HD_OK;
@@ -19516,8 +19469,10 @@ static void hdi_batches_task(void *arg, int64_t index, int32_t worker) {
     for (r = 0; r < n; r++) {
         if (lane[r].skip) continue;
         if (h->deflated) hdi_batch_extra_means(&heat->elim, lane + r);
-        lane[r].status = hdi_elim_finish(&heat->elim, heat->limit, h->t * heat->drift, h->deflated, lane + r);
-        if (lane[r].negative) lane[r].status = hdi_not_semidefinite(&lane[r].error);
+        hdi_lane_finish(heat->elim.lap, &heat->elim.set, h->t * heat->drift, h->deflated, lane + r);
+        lane[r].status = lane[r].negative ? hdi_not_semidefinite(&lane[r].error)
+            : lane[r].off.rounding <= heat->limit * (lane[r].u_norm - lane[r].off.rounding)
+            ? HD_OK : HD_WARN_ACCURACY;
     }
 }
 
@@ -19840,7 +19795,7 @@ static hd_status hdi_heat_by_krylov(hdi_heat_call *h) {
     heat->krylov->wide = wide;
     heat->krylov->m = h->m;
     heat->krylov->rate = h->rate;
-    if (hdi_heat_lanes(h, wide) < 0) return h->e->status;
+    if (hdi_heat_lanes(h, wide, 0, 0) < 0) return h->e->status;
     for (h->batch = 0; h->batch < h->ask.k; h->batch += n) {
         n = hdi_low32(h->ask.k - h->batch, h->n_lanes);
         if (hdi_krylov_items(h, n, n_windows) < 0) return h->e->status;
@@ -20641,7 +20596,7 @@ static hd_status hdi_fading_answer(hdi_heat_call *h, double t) {
     h->method = HD_METHOD_DIRECT;
     h->solver = HD_SOLVER_AUTO;
     hdi_modes_tell(heat, h->rep);
-    if (h->e->status >= 0 && hdi_heat_lanes(h, 1) >= 0) {
+    if (h->e->status >= 0 && hdi_heat_lanes(h, 1, 0, 0) >= 0) {
         x = hdi_decay_at(&heat->modes, t, work + count);
         most = hdi_fading_reach(&heat->modes, &x, sizes);
         for (h->batch = 0; h->batch < h->ask.k; h->batch++) {
@@ -20771,7 +20726,7 @@ static hd_status hdi_plain_rate(const hdi_heat_call *h, hdi_lane *lane) {
 /* Answers that need no solve: those for t = 0, or the means for very large t. */
 static hd_status hdi_heat_plain(hdi_heat_call *h) {
     hdi_lane *lane;
-    if (hdi_heat_lanes(h, 1) < 0) return h->e->status;
+    if (hdi_heat_lanes(h, 1, 0, 0) < 0) return h->e->status;
     lane = h->heat->lane;
     for (h->batch = 0; h->batch < h->ask.k; h->batch++) {
         if (hdi_heat_load(h, h->batch, lane) < 0) return h->e->status;
@@ -21104,6 +21059,9 @@ static void hdi_heat_defaults(hd_heat *heat, const hd_heat_opts *opts) {
     o->precond = o->precond ? o->precond : HD_PRECOND_MILDL;
     o->tol = o->tol > 0 ? o->tol : HDI_TOL_HEAT;
     o->max_iterations = o->max_iterations ? o->max_iterations : HDI_MAX_ITERATIONS;
+    heat->fam.solver = o->solver == HD_SOLVER_MINRES ? HD_SOLVER_MINRES : HD_SOLVER_COCG;
+    heat->fam.precond = o->precond;
+    heat->fam.max_iterations = o->max_iterations;
 }
 
 /* Computes what every query needs: scale, spectrum, drift. Copies the caller's permutation. */
@@ -23573,10 +23531,10 @@ struct hd_geodesic {
     char *mark;                  /* [n_active] 1: u is known; or a source */
     double *x, *b, *r, *work;    /* [n_active] each; sweeps */
     double *first;               /* [n_active] u of the first stage, made with the first set of sources */
-    double *wide_x, *wide_b, *wide_work;   /* the same for a batch, made when first needed */
+    double *wide_x, *wide_b, *wide_work;   /* the same for a batch, one array made when first needed */
     int64_t *value_ptr;          /* [n_components + 1] */
-    double *value;               /* [value_size] phi at the sources, by component, ascending */
     hdi_pair *sorted;            /* [value_size] */
+    double *value;               /* [value_size] phi at the sources, by component, ascending; after sorted */
     int32_t value_size;
     hd_laplacian *lap;           /* of updatable plans, else NULL */
     int32_t *from;               /* [n_faces] which of the mesh's faces each is; of updatable plans kept */
@@ -23603,15 +23561,16 @@ static void hdi_geo_free(hd_geodesic *g) {
     hdi_symbolic_free(ctx, &g->sym);
     hdi_laplacian_free(g->lap, ctx);
     while (g->n_blocks > 0) hdi_free(ctx, g->block[--g->n_blocks]);
-    hdi_free(ctx, g->from);
-    hdi_free(ctx, g->first);
-    hdi_free(ctx, g->wide_x);
-    hdi_free(ctx, g->wide_b);
-    hdi_free(ctx, g->wide_work);
-    hdi_free(ctx, g->value);
     hdi_free(ctx, g->sorted);
     hdi_free(ctx, g);
     hdi_let_go(ctx);
+}
+
+/* An array for good, made when it is first needed. */
+static double *hdi_geo_array(hd_geodesic *g, uint64_t size, hd_error *e) {
+    double *x = HDI_NEW(g->ctx, double, size, e);
+    if (x) g->block[g->n_blocks++] = x;
+    return x;
 }
 
 /* Ends the scope; its blocks become those of the plan, if all are there. */
@@ -23653,27 +23612,27 @@ static void hdi_geo_frames(hd_geodesic *g, const hdi_mesh *mesh, const int32_t *
 
 /* Sorts the faces that have an area by the corner that is eliminated first. Passes over them then run through
  * the vectors once. */
-static hd_status hdi_geo_order(hd_geodesic *g, const hdi_mesh *mesh, hdi_scope *own) {
-    hd_error *e = own->e;
-    hdi_scope s = hdi_scope_begin(g->ctx, e);
-    int64_t *at = HDI_TAKE_ZERO(&s, int64_t, (int64_t)g->n_active + 1), c;
-    int32_t *first = HDI_TAKE(&s, int32_t, mesh->m), f, v;
+static hd_status hdi_geo_order(hd_geodesic *g, const hdi_mesh *mesh, hdi_scope *own, hdi_scope *s) {
+    uint64_t *key = HDI_TAKE(s, uint64_t, mesh->m);
+    int32_t f, v, k = 0;
+    int64_t c;
     g->face_ptr = HDI_TAKE(own, int32_t, (int64_t)g->sym.n_super + 1);
-    for (f = 0; f < mesh->m && e->status >= 0; f++) {
-        first[f] = g->n_active;
+    g->from = HDI_TAKE(g->lap ? own : s, int32_t, mesh->m);
+    for (f = 0; f < mesh->m && own->e->status >= 0; f++) {
+        int32_t first = g->n_active;
         if (!(mesh->area[f] > 0)) continue;
         for (c = hdi_face_begin(mesh, f); c < hdi_face_begin(mesh, f + 1); c++)
-            first[f] = hdi_low32(first[f], g->row[mesh->tri[c]]);
-        at[first[f]]++;
-        g->n_faces++;
+            first = hdi_low32(first, g->row[mesh->tri[c]]);
+        key[g->n_faces++] = (uint64_t)first << 32 | (uint64_t)f;
     }
-    if (e->status >= 0) g->from = HDI_NEW(g->ctx, int32_t, g->n_faces, e);
-    if (!g->from) return hdi_scope_end(&s);
-    hdi_prefix_sum(at, g->n_active);
-    for (v = 0; v <= g->sym.n_super; v++) g->face_ptr[v] = (int32_t)at[g->sym.super[v]];
-    for (f = 0; f < mesh->m; f++)
-        if (first[f] < g->n_active) g->from[at[first[f]]++] = f;
-    return hdi_scope_end(&s);
+    if (own->e->status < 0) return own->e->status;
+    hdi_sort_keys(key, g->n_faces);
+    for (v = 0; v <= g->sym.n_super; v++) {
+        for (; k < g->n_faces && (int64_t)(key[k] >> 32) < g->sym.super[v]; k++)
+            g->from[k] = (int32_t)(key[k] & INT32_MAX);
+        g->face_ptr[v] = k;
+    }
+    return HD_OK;
 }
 
 /* All polygons, in their order. */
@@ -23835,18 +23794,6 @@ static hd_status hdi_geo_room(hd_geodesic *g, hdi_scope *own) {
     return own->e->status;
 }
 
-/* Ordering and analysis. */
-static hd_status hdi_geo_analyse(hd_geodesic *g, const hd_laplacian *lap, const hd_geodesic_opts *o,
-                                 hd_error *e) {
-    hdi_scope s = hdi_scope_begin(g->ctx, e);
-    int32_t *own = HDI_TAKE(&s, int32_t, lap->n_active);
-    const hdi_order order = {o->ordering, lap->xyz, own};
-    if (e->status < 0) return hdi_scope_end(&s);
-    if (o->ordering == HD_ORDERING_OWN) hdi_elim_own(lap, o->perm, own);
-    (void)hdi_symbolic_order(&g->sym, &lap->L, &order, g->ctx, e);
-    return hdi_scope_end(&s);
-}
-
 /* Points in the place of an earlier one, which the triangles leave out, share its row. */
 static hd_status hdi_geo_coincident(hd_geodesic *g, const double *xyz, hd_error *e) {
     hdi_scope s = hdi_scope_begin(g->ctx, e);
@@ -23860,27 +23807,25 @@ static hd_status hdi_geo_coincident(hd_geodesic *g, const double *xyz, hd_error 
 /* The faces as the passes over them want them. */
 static hd_status hdi_geo_store(hd_geodesic *g, const hd_laplacian *lap, const hdi_surface *z,
                                const hdi_input *in, hdi_scope *own) {
-    hd_error *e = own->e;
+    hdi_scope s = hdi_scope_begin(g->ctx, own->e);
     const hdi_mesh *mesh = HDI_HAS_INTRINSIC && in->flips ? &z->flat : &z->mesh;
-    if (hdi_geo_order(g, mesh, own) < 0) return e->status;
+    if (hdi_geo_order(g, mesh, own, &s) < 0) return hdi_scope_end(&s);
     if (hdi_is_poly(mesh)) {
         if (hdi_geo_poly_faces(g, mesh, own) >= 0) (void)hdi_geo_poly_rows(g, lap, own);
     } else {
         g->face = HDI_TAKE(own, hdi_geo_face, g->n_faces);
         if (g->face) hdi_geo_frames(g, mesh, mesh->copies);
     }
-    if (!g->lap) {
-        hdi_free(g->ctx, g->from);
-        g->from = NULL;
-    }
-    if (e->status < 0 || !HDI_HAS_POINTS || !in->points || in->nbr_ptr) return e->status;
-    return hdi_geo_coincident(g, in->mesh.xyz, e);
+    if (!g->lap) g->from = NULL;
+    if (hdi_scope_end(&s) < 0 || !HDI_HAS_POINTS || !in->points || in->nbr_ptr) return own->e->status;
+    return hdi_geo_coincident(g, in->mesh.xyz, own->e);
 }
 
 static hd_status hdi_geo_make(hd_geodesic *g, const hdi_input *in, int32_t neighbours,
                               const hd_geodesic_opts *o, hd_error *e) {
     hdi_scope s = hdi_scope_begin(g->ctx, e), own = hdi_scope_begin(g->ctx, e);
     hd_laplacian *lap = hdi_lap_shell(g->ctx, e);
+    const int32_t *perm = o->ordering == HD_ORDERING_OWN ? o->perm : NULL;
     hdi_surface z;
     if (!lap) return hdi_scope_end(&s);
     lap->n = g->n;
@@ -23899,7 +23844,8 @@ static hd_status hdi_geo_make(hd_geodesic *g, const hdi_input *in, int32_t neigh
         if (e->status >= 0) (void)hdi_lap_components(lap, e);
         g->n_components = lap->n_components;
     }
-    if (e->status >= 0 && hdi_geo_analyse(g, lap, o, e) >= 0 && hdi_geo_rows(g, lap, &own) >= 0 &&
+    if (e->status >= 0 && hdi_pair_analyse(&g->sym, lap, o->ordering, perm, g->ctx, e) >= 0 &&
+        hdi_geo_rows(g, lap, &own) >= 0 &&
         hdi_geo_store(g, lap, &z, in, &own) >= 0) {
         hdi_scope_end(&s);                       /* the mesh is not needed any more */
         if (hdi_geo_factors(g, lap, e) >= 0) g->ready = hdi_geo_room(g, &own) >= 0;
@@ -24023,11 +23969,14 @@ static HDI_AVX512 void hdi_geo_flow_avx512(const hd_geodesic *g, hdi_geo_range a
 
 /* The same of polygon f in one column of k. */
 static void hdi_geo_poly_flow(const hdi_geo_polygons *z, int32_t f, int k, const double *u, double least,
-                              double *b, double *dim) {
+                              const char *done, double *b, double *dim) {
     const int64_t begin = z->ptr[f], end = z->ptr[f + 1];
     double W[3] = {0, 0, 0}, most = 0, norm2;
     int64_t p;
-    for (p = begin; p < end; p++) most = hdi_max(most, fabs(u[k * (int64_t)z->row[p]]));
+    for (p = begin; p < end; p++) {
+        if (done && done[z->row[p]]) return;
+        most = hdi_max(most, fabs(u[k * (int64_t)z->row[p]]));
+    }
     if (!(most >= least)) {
         *dim = hdi_max(*dim, most);
         return;
@@ -24043,20 +23992,6 @@ static void hdi_geo_poly_flow(const hdi_geo_polygons *z, int32_t f, int k, const
     if (!(norm2 > z->flat[f])) return;
     norm2 = -1 / sqrt(norm2);
     for (p = begin; p < end; p++) b[k * (int64_t)z->row[p]] += norm2 * hdi_dot3(z->side + 3 * p, W);
-}
-
-/* The same of polygons. */
-static void hdi_geo_poly_flows(const hd_geodesic *g, hdi_geo_range faces, int k, const double *u,
-                               const double *least, const char *done, double *b, double *dim) {
-    const hdi_geo_polygons *z = &g->poly;
-    int32_t f;
-    int64_t p;
-    int c;
-    for (f = faces.begin; f < faces.end; f++) {
-        int away = 0;
-        for (p = z->ptr[f]; done && p < z->ptr[f + 1]; p++) away |= done[z->row[p]];
-        for (c = 0; c < k && !away; c++) hdi_geo_poly_flow(z, f, k, u + c, least[c], b + c, dim + c);
-    }
 }
 
 /* r += sign L x of a triangle. */
@@ -24086,7 +24021,9 @@ static int hdi_geo_divergence(const hd_geodesic *g, hdi_geo_range part, int k, c
         part.begin = part.end + 1;
         part.end = end;
     }
-    if (g->poly.ptr) hdi_geo_poly_flows(g, part, k, u, least, done, b, dim);
+    for (q = part.begin; q < end && g->poly.ptr; q++)
+        for (c = 0; c < k; c++) hdi_geo_poly_flow(&g->poly, q, k, u + c, least[c], done, b + c, dim + c);
+    if (g->poly.ptr) {}
     else if (k == 1) hdi_geo_flow(g, part, 1, u, least, done, b, dim);
 #if HDI_X86
     else if (level >= 2) hdi_geo_flow_avx512(g, part, u, least, b, dim);
@@ -24498,14 +24435,13 @@ static void hdi_geo_values(hd_geodesic *g, const hdi_geo_source *s, const double
 /* Memory for phi at so many points. */
 static hd_status hdi_geo_values_room(hd_geodesic *g, int32_t most, hd_error *e) {
     if (g->value_size >= most) return HD_OK;
-    hdi_free(g->ctx, g->value);
     hdi_free(g->ctx, g->sorted);
     g->value_size = 0;
-    g->sorted = NULL;
-    g->value = HDI_NEW(g->ctx, double, most, e);
-    if (g->value) g->sorted = HDI_NEW(g->ctx, hdi_pair, most, e);
-    if (g->sorted) g->value_size = most;
-    return e->status;
+    g->sorted = HDI_NEW(g->ctx, hdi_pair, (most + (int64_t)most / 2 + 1), e);
+    if (!g->sorted) return e->status;
+    g->value = (double *)(void *)(g->sorted + most);
+    g->value_size = most;
+    return HD_OK;
 }
 
 /* ---- distances ---- */
@@ -24522,36 +24458,28 @@ static double hdi_geo_nearest(const double *value, int64_t n, double phi) {
     return lo < n ? hdi_min(value[lo] - phi, phi - value[lo - 1]) : phi - value[n - 1];
 }
 
-/* From phi to distances: zero at the sources, infinite on components without one. Returns whether all
- * distances that should be finite are. */
-static int hdi_geo_measure(const hd_geodesic *g, const double *phi, double *d) {
-    int fine = 1;
-    int32_t v;
-    for (v = 0; v < g->n; v++) {
-        const int32_t i = g->row[v], c = i < 0 ? 0 : g->component[i];
-        const int64_t at = g->value_ptr[c], n = i < 0 ? 0 : g->value_ptr[c + 1] - at;
-        d[v] = n > 0 ? g->h * hdi_geo_nearest(g->value + at, n, phi[i]) : HUGE_VAL;
-        fine &= n == 0 || hdi_finite(d[v]);
-    }
-    return fine;
-}
-
-/* The same of a batch of n single vertices. Columns with a bit in skip need not be finite. */
-static int hdi_geo_batch_measure(const hd_geodesic *g, const hdi_geo_source *s, int32_t n, int skip) {
+/* From phi, of n columns of k, to distances: zero at the sources, infinite on components without one. Columns
+ * of a batch are from single vertices. Returns whether all distances that should be finite are, but for
+ * columns with a bit in skip. */
+static int hdi_geo_measure(const hd_geodesic *g, const hdi_geo_source *s, int32_t n, int k, const double *phi,
+                           int skip) {
     double at[HDI_GEO_WIDE];
     int32_t own[HDI_GEO_WIDE], v, c, fine = 1;
-    for (c = 0; c < n; c++) {
+    for (c = 0; c < n && k > 1; c++) {
         const int32_t i = g->row[s[c].vertex[0]];
         own[c] = i < 0 ? -1 : g->component[i];
-        at[c] = i < 0 ? 0 : g->wide_b[HDI_GEO_WIDE * (int64_t)i + c];
+        at[c] = i < 0 ? 0 : phi[k * (int64_t)i + c];
     }
     for (v = 0; v < g->n; v++) {
-        const int32_t i = g->row[v];
+        const int32_t i = g->row[v], part = i < 0 ? 0 : g->component[i];
+        const int64_t begin = i < 0 || k > 1 ? 0 : g->value_ptr[part];
+        const int64_t end = i < 0 || k > 1 ? 0 : g->value_ptr[part + 1];
         for (c = 0; c < n; c++) {
             double *d = s[c].d + v;
             *d = HUGE_VAL;
-            if (i < 0 || g->component[i] != own[c]) continue;
-            *d = g->h * fabs(g->wide_b[HDI_GEO_WIDE * (int64_t)i + c] - at[c]);
+            if (i < 0 || (k > 1 ? part != own[c] : begin == end)) continue;
+            *d = g->h * (k > 1 ? fabs(phi[k * (int64_t)i + c] - at[c])
+                               : hdi_geo_nearest(g->value + begin, end - begin, phi[i]));
             fine &= skip >> c & 1 || hdi_finite(*d);
         }
     }
@@ -24623,14 +24551,13 @@ static void hdi_geo_own_source(hd_geodesic *g, const hdi_geo_source *s, double l
     }
 }
 
-/* Distances from phi in b, of n columns side by side. least: see hdi_geo_own_source; skip: see
- * hdi_geo_batch_measure. */
+/* Distances from phi, of n columns side by side. least: see hdi_geo_own_source; skip: see hdi_geo_measure. */
 static hd_status hdi_geo_answer(hd_geodesic *g, const hdi_geo_source *s, int32_t n, double least, int skip,
                                 hd_error *e) {
-    int32_t i, c, fine;
+    const int k = n > 1 ? HDI_GEO_WIDE : 1;
+    int32_t i, c;
     if (n == 1) hdi_geo_values(g, s, g->b);
-    fine = n > 1 ? hdi_geo_batch_measure(g, s, n, skip) : hdi_geo_measure(g, g->b, s->d);
-    if (!fine)
+    if (!hdi_geo_measure(g, s, n, k, n > 1 ? g->wide_b : g->b, skip))
         return hdi_fail(e, HD_ERR_BREAKDOWN, "geodesic: rounding leaves nothing of the answer: the mesh has "
                                              "faces that are too thin");
     if (s->n > 1) hdi_geo_own_source(g, s, least);
@@ -24695,7 +24622,7 @@ static hd_status hdi_geo_alone(hd_geodesic *g, const hdi_geo_source *s, hd_geode
                                hd_error *e) {
     int faint;
     if (hdi_geo_values_room(g, s->items ? s->items->n : s->n, e) < 0) return e->status;
-    if (s->n > 1 && !g->first) g->first = HDI_NEW(g->ctx, double, g->n_active, e);
+    if (s->n > 1 && !g->first) g->first = hdi_geo_array(g, (uint64_t)g->n_active, e);
     if (e->status >= 0) (void)hdi_geo_solve(g, s, 1, &faint, rep, e);
     return e->status;
 }
@@ -24704,14 +24631,14 @@ static hd_status hdi_geo_alone(hd_geodesic *g, const hdi_geo_source *s, hd_geode
  * alone. */
 static hd_status hdi_geo_batch(hd_geodesic *g, const hdi_geo_source *s, int32_t n, hd_geodesic_report *rep,
                                hd_error *e) {
-    const int64_t size = HDI_GEO_WIDE * (int64_t)g->n_active;
+    const uint64_t size = HDI_GEO_WIDE * (uint64_t)g->n_active;
     int faint = 0;
     int32_t c;
-    if (!g->wide_x) g->wide_x = HDI_NEW(g->ctx, double, size, e);
-    if (g->wide_x && !g->wide_b) g->wide_b = HDI_NEW(g->ctx, double, size, e);
-    if (g->wide_b && !g->wide_work)
-        g->wide_work = HDI_NEW(g->ctx, double, hdi_sweep_size(&g->sym, 1, HDI_GEO_WIDE), e);
-    if (e->status < 0 || hdi_geo_solve(g, s, n, &faint, rep, e) < 0) return e->status;
+    if (!g->wide_x) g->wide_x = hdi_geo_array(g, 2 * size + hdi_sweep_size(&g->sym, 1, HDI_GEO_WIDE), e);
+    if (!g->wide_x) return e->status;
+    g->wide_b = g->wide_x + size;
+    g->wide_work = g->wide_b + size;
+    if (hdi_geo_solve(g, s, n, &faint, rep, e) < 0) return e->status;
     for (c = 0; c < n; c++)
         if (faint >> c & 1 && hdi_geo_alone(g, s + c, rep, e) < 0) break;
     return e->status;
@@ -24755,17 +24682,6 @@ static hd_status hdi_geo_from(hd_geodesic *g, const hd_sources *from, int64_t be
     return hdi_scope_end(&scope);
 }
 
-/* Refuses vertices among the sources where heat is held at zero, before anything is written. */
-static hd_status hdi_geo_check_border(const hd_geodesic *g, const hd_sources *s, hd_error *e) {
-    int32_t k;
-    for (k = 0; k < s->count && e->status >= 0; k++) {
-        const int64_t begin = hdi_source_first(s, k);
-        if (hdi_geo_off_border(g, s->vertex + begin, (int32_t)(hdi_source_first(s, k + 1) - begin), e) < 0)
-            e->column = k;
-    }
-    return e->status;
-}
-
 /* Columns of distances, ldd apart, from sources that are checked. */
 static hd_status hdi_geo_distances(hd_geodesic *g, const hd_sources *from, double *D, size_t ldd,
                                    hd_geodesic_report *rep, hd_error *e) {
@@ -24773,7 +24689,6 @@ static hd_status hdi_geo_distances(hd_geodesic *g, const hd_sources *from, doubl
     const int32_t most = vertices && !from->first ? HDI_GEO_WIDE : 1, n = from->count;
     hdi_geo_source s[HDI_GEO_WIDE];
     int32_t m, c, k;
-    if (vertices && hdi_geo_check_border(g, from, e) < 0) return e->status;
     memset(s, 0, sizeof s);
     for (m = 0; m < n && e->status >= 0; m += k) {
         k = n - m >= HDI_GEO_WIDE_FROM ? hdi_low32(n - m, most) : 1;
@@ -24783,6 +24698,9 @@ static hd_status hdi_geo_distances(hd_geodesic *g, const hd_sources *from, doubl
             s[c].vertex = from->vertex + begin;
             s[c].n = (int32_t)(hdi_source_first(from, m + c + 1) - begin);
             s[c].d = D + (size_t)(m + c) * ldd;
+            if (!vertices || hdi_geo_off_border(g, s[c].vertex, s[c].n, e) >= 0) continue;
+            e->column = m + c;
+            return e->status;
         }
         if (k > 1) (void)hdi_geo_batch(g, s, k, rep, e);
         else if (vertices) (void)hdi_geo_alone(g, s, rep, e);

@@ -406,6 +406,7 @@ static void int_ildl_of(const hdi_upper *up, double keep, double off[INT_OFF]) {
     int64_t p;
     dense_c64 *a, *f, *m = KIT_NEW(dense_c64, n * n);
     hdi_precond of;
+    hdi_precond_row row = hdi_preconds[HD_PRECOND_MILDL];
     uint64_t seed = 5;
     int32_t i, j, k;
     for (i = 0; i < n; i++) {                    /* the diagonal strong, and turned well off the real axis */
@@ -418,11 +419,12 @@ static void int_ildl_of(const hdi_upper *up, double keep, double off[INT_OFF]) {
         }
     }
     a = int_dense_of(up, u, d);
-    of.kind = HD_PRECOND_MILDL;
+    row.keep = keep;
+    of.row = &row;
     of.up = up;
     of.u = u;
     of.d = d;
-    hdi_ildl(&of, diag, keep);
+    hdi_ildl(&of, diag);
     f = int_dense_of(up, u, d);
     for (k = 0; k < n; k++) {
         const dense_c64 dk = f[k * n + k];
@@ -433,7 +435,7 @@ static void int_ildl_of(const hdi_upper *up, double keep, double off[INT_OFF]) {
         }
     }
     for (i = 0; i < n; i++) d[i] = hdi_cdiv(hdi_c(1, 0), d[i]);
-    hdi_precond_apply(&of, b, x);
+    row.apply(&of, b, x, NULL);
     for (k = 0; k < INT_OFF; k++) off[k] = 0;
     for (i = 0; i < n; i++) {
         dense_c64 sum = dense_c(0, 0), left = dense_c(b[i].re, b[i].im);
@@ -869,10 +871,11 @@ static hd_status int_elim(hdi_elim *m, const hd_laplacian *lap, hd_context *ctx,
 }
 
 static void int_lane(hdi_lane *lane, const hd_laplacian *lap, int32_t r, hd_context *ctx, hd_error *e) {
+    const hdi_lane_room room = {lap->n_active, lap->n_components, 0, 0, 0};
     uint64_t seed = 21;
     int32_t i;
     memset(lane, 0, sizeof *lane);
-    CHECK(hdi_lane_make(lane, lap, ctx, e) == HD_OK);
+    CHECK(hdi_lane_make(lane, room, ctx, e) == HD_OK);
     for (i = 0; i < lap->n_active; i++) lane->f[i] = r == 0 ? i == 11 : r == 1 ? 1 + sin(0.2 * i) : dense_signed(&seed);
     hdi_pair_apply(lap, 0, 1, lane->f, lane->rhs);
     hdi_heat_measure(lap, lane);

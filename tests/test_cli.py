@@ -708,6 +708,12 @@ one time :: smooth ico.obj --t {1,2|auto:2}
 .xyz here :: smooth ico.obj -o {x.txt|x.npy|x.png|x}
 {--filter|--column|--no-header} is not an option of smooth :: smooth ico.obj {1}
 natural or dirichlet :: smooth ico.obj --border mean
+--log takes no --labels :: render ico.obj --input f.txt -o x.png --labels --log
+takes no --labels :: render ico.obj --input f.txt -o x.png --labels {--range=0,1|--colormap=grey|--isolines=4}
+--log takes --column 1 beside --nearest :: geodesic ico.obj --source 0,3 --nearest --log
+--colormap takes --column 3 beside --nearest :: distance ico.obj --source 0,3 --t 1,2 --nearest --column 2 --colormap grey
+--up takes x, y or z :: {kernel ico.obj --source 0 --t 1|render ico.obj} --up w
+--labels is not an option of kernel :: kernel ico.obj --source 0 --t 1 --labels
 takes no --quiet :: kernel ico.obj --source 0 --t 1 --quiet --verbose
 --verbose is not an option :: info ico.obj --verbose
 {--nosuch|-x|--input|--quiet} :: kernel ico.obj --source 0 --t 1 {1}=yes
@@ -1767,6 +1773,36 @@ class Formats(Case):
         draw("patch-9.off other.ply --input low.txt --input count-100.txt")
         r = self.report("render patch-9.off other.ply --input low.txt --input count-100.txt --size 64x64 -o pair.png")
         self.assertEqual(r["panels"], 2)
+
+    def test_up(self):
+        """Another axis up is the shape turned."""
+        v, f = patch(9)
+        file("k.txt", [[x] for x in range(100)])
+
+        def draw(places, *more):
+            return self.data("up.png", "render --input k.txt --size 120x90 --title x", file("up.off", off_text(places, f)), *more)
+        for up, turned in (("z", [(x, z, -y) for x, y, z in v]), ("x", [(-y, x, z) for x, y, z in v]), ("y", v)):
+            self.assertEqual(draw(v, "--up", up), draw(turned))
+        self.assertNotEqual(draw(v), draw(v, "--up", "z"))
+        self.data("up.png", "kernel patch-9.off --source 8 --t 5h2 --size 64x64 --up z")
+
+    def test_labels(self):
+        """Regions have a colour each."""
+        line = "distance patch-9.off --source 0,44,99 --t 20h2 --nearest --size 120x90 --title x"
+        labels = [int(row[0]) for row in self.rows(line)]
+        places, _ = read_obj(self.data("n.obj", line))
+        colours = {(label, tuple(p[3:])) for label, p in zip(labels, places)}
+        self.assertEqual([len(set(part)) for part in zip(*colours)], [3, 3])
+        file("n.txt", [[x] for x in labels])
+        drawn = self.data("n.png", line)
+        self.assertNotEqual(drawn, self.data("n.png", "render --input n.txt patch-9.off --size 120x90 --title x"))
+        a, b = (self.data("n.png", "render --labels --size 120x90 --title x patch-9.off " + more)
+                for more in ("--input n.txt", "--input n.txt --isolines 0"))
+        self.assertEqual(a, b)
+        self.good("render --labels --input n.txt --input n.txt patch-9.off --size 120x90 -o n.png")
+        self.bad(1, like("n.txt: row 3, column 0: --labels takes whole numbers from 0, or -1 for none, not 0.5"),
+                 "render --labels patch-9.off -o n2.png --input", file("n.txt", [[-1]] * 3 + [[0.5]] + [[2]] * 96))
+        self.data("n.png", "geodesic twins.obj --source 3 --nearest --size 64x64")          # -1 is grey
 
     def test_outputs_are_inputs(self):
         want = self.rows("kernel patch-9.off --source 8 --t 5h2")

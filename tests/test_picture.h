@@ -404,6 +404,97 @@ static void tpic_test_isolines(void) {
     free(f);
 }
 
+/* The label whose colour a pixel has, lit in any way, among the first n; -1: none, as it is grey. */
+static int tpic_label_of(const uint8_t *p, int n) {
+    double best = 0.99;
+    int k, c, found = -1;
+    for (k = 0; k < n; k++) {
+        uint8_t want[3];
+        double ab = 0, aa = 0, bb = 0, mean = (p[0] + p[1] + p[2]) / 3.0, middle;
+        pic_label_colour(k, want);
+        middle = (want[0] + want[1] + want[2]) / 3.0;
+        for (c = 0; c < 3; c++) {
+            ab += (p[c] - mean) * (want[c] - middle);
+            aa += (p[c] - mean) * (p[c] - mean);
+            bb += (want[c] - middle) * (want[c] - middle);
+        }
+        if (aa < 400 || !(ab / sqrt(aa * bb) > best)) continue;
+        best = ab / sqrt(aa * bb);
+        found = k;
+    }
+    return found;
+}
+
+/* Labels 0 and 3 side by side, and none: between 0 and 3 there is no 1 and no 2. */
+static void tpic_test_labels(void) {
+    shape s = kit_own_shape(shape_grid(21, 16, 0.2));
+    double *f = (double *)malloc((size_t)s.n * sizeof *f);
+    pic_opts o = tpic_small(320, 240);
+    tpic_images all = {{{0, 0, NULL, 0}}, 0};
+    uint8_t a[3], b[3];
+    pic_scale sc;
+    pic_ticks t;
+    int32_t i, k, seen[5] = {0, 0, 0, 0, 0};
+    for (i = 0; i < 12; i++) for (k = 0; k < i; k++) {
+        pic_label_colour(i, a);
+        pic_label_colour(k, b);
+        CHECK_MSG(abs(a[0] - b[0]) + abs(a[1] - b[1]) + abs(a[2] - b[2]) > 50, "labels %d and %d look alike", (int)k, (int)i);
+    }
+    if (CHECK(s.xyz && f)) {
+        const pic_panel p = tpic_panel(&s, f);
+        const pic_image *plain, *lines;
+        for (i = 0; i < s.n; i++) f[i] = s.xyz[3 * i] < 0.3 ? 0 : s.xyz[3 * i] < 0.7 ? 3 : i % 2 ? -1 : 0.5;
+        o.view_given = 1;
+        o.no_legend = 1;
+        o.labels = 4;
+        plain = tpic_draw(&all, &p, 1, &o, "labels");
+        o.isolines = 7;
+        lines = tpic_draw(&all, &p, 1, &o, "labels without lines");
+        CHECK(tpic_equal(plain, lines));
+        for (i = 0; plain->rgb && i < plain->width; i++)
+            seen[1 + tpic_label_of(plain->rgb + 3 * ((size_t)(plain->height * 11 / 20) * (size_t)plain->width + (size_t)i), 4)]++;
+        CHECK_MSG(seen[1] > 30 && seen[4] > 30 && seen[0] > 30 && seen[2] + seen[3] <= 1, "none %d, 0: %d, 1: %d, 2: %d, 3: %d", (int)seen[0],
+                  (int)seen[1], (int)seen[2], (int)seen[3], (int)seen[4]);
+        for (o.labels = 1; o.labels <= 3000; o.labels = o.labels * 3 + 5) {
+            pic_scale_make(&sc, &p, 0, 1, &o);
+            pic_ticks_make(&t, &sc);
+            CHECK(t.n > 0 && t.n <= 24 && strcmp(t.text[0], "0") == 0 && (o.labels > 24 || t.n == o.labels));
+            tpic_fine(&p, 1, &o, "many labels");
+        }
+    }
+    tpic_free(&all);
+    free(f);
+}
+
+/* With another axis up a shape is seen as its copy is that is turned. */
+static void tpic_test_up(void) {
+    shape s = kit_own_shape(shape_bumpy(3, 4)), copy = kit_own_shape(shape_bumpy(3, 4));
+    double *f = (double *)malloc((size_t)s.n * sizeof *f);
+    pic_opts o = tpic_small(160, 120);
+    tpic_images all = {{{0, 0, NULL, 0}}, 0};
+    int32_t i;
+    int up;
+    for (up = PIC_UP_X; CHECK(s.xyz && copy.xyz && f) && up <= PIC_UP_Z; up++) {
+        const pic_panel p = tpic_panel(&s, f), turned = tpic_panel(&copy, f);
+        for (i = 0; i < s.n; i++) {
+            const double *x = s.xyz + 3 * i;
+            f[i] = exp(-4 * shape_distance(x, s.xyz));
+            copy.xyz[3 * i] = up == PIC_UP_X ? -x[1] : x[0];
+            copy.xyz[3 * i + 1] = up == PIC_UP_X ? x[0] : x[2];
+            copy.xyz[3 * i + 2] = up == PIC_UP_X ? x[2] : -x[1];
+        }
+        o.up = up;
+        (void)tpic_draw(&all, &p, 1, &o, "up");
+        o.up = PIC_UP_Y;
+        (void)tpic_draw(&all, &turned, 1, &o, "turned");
+        CHECK_MSG(tpic_equal(&all.image[0], &all.image[1]), "axis %d up", up);
+        (void)tpic_draw(&all, &p, 1, &o, "not turned");
+        CHECK(!tpic_equal(&all.image[0], &all.image[2]));
+        tpic_free(&all);
+    }
+    free(f);
+}
+
 /* A panel of another mesh is seen from where it is warm, or with one_view from where the first is: as if it were the same mesh. */
 static void tpic_test_one_view(void) {
     shape s = kit_own_shape(shape_bumpy(3, 4)), copy = kit_own_shape(shape_bumpy(3, 4));
@@ -830,6 +921,8 @@ static void test_picture(void) {
     tpic_test_scale();
     tpic_test_isolines();
     tpic_test_one_view();
+    tpic_test_labels();
+    tpic_test_up();
     tpic_test_degenerate();
     tpic_test_refused();
     tpic_test_rare();

@@ -176,7 +176,7 @@ static double time_precond(const hdi_precond *m, const hd_c64 *x, hd_c64 *y) {
     int r, k, reps = (int)(5000000 / (m->up->ptr[m->up->n] + 1)) + 1;
     for (r = 0; r < 7; r++) {
         const double t0 = now();
-        for (k = 0; k < reps; k++) hdi_precond_apply(m, x, y);
+        for (k = 0; k < reps; k++) m->row->apply(m, x, y, NULL);
         if ((now() - t0) / reps < best) best = (now() - t0) / reps;
     }
     return best;
@@ -201,7 +201,7 @@ static void parts_products(hd_heat *heat, double t) {
          copy_speed((size_t)bytes));
     bytes = 20 * (double)heat->up.ptr[n] + 8 * dn + 16 * dn + 32 * dn;
     if (heat->fam.filled) {
-        const double seconds = time_precond(heat->fam.m, (hd_c64 *)(void *)x, (hd_c64 *)(void *)y);
+        const double seconds = time_precond(&heat->lane->k->m, (hd_c64 *)(void *)x, (hd_c64 *)(void *)y);
         line("modified ILDL(0) solve, complex", seconds, 2 * bytes, copy_speed((size_t)bytes));
     }
     free(x);

@@ -334,6 +334,8 @@ static const word COLORMAPS[] = {
     { "ember", PIC_MAP_EMBER }, { "lagoon", PIC_MAP_LAGOON }, { "diverging", PIC_MAP_DIVERGING },
     { "grey", PIC_MAP_GREY }, { NULL, 0 } };
 
+static const word AXES[] = { { "x", PIC_UP_X }, { "y", PIC_UP_Y }, { "z", PIC_UP_Z }, { NULL, 0 } };
+
 static const word *find_word(const word *words, const char *name)
 {
     for (; words->name; words++)
@@ -422,7 +424,7 @@ typedef struct options {
     double *levels;                  /* values, or NULL: n_levels of them between the extremes */
     int n_levels;
     int json, quiet, verbose, help, version, no_header, dry_run, normalise;
-    int colormap;                    /* pictures */
+    int colormap, up, labels;        /* pictures */
     int log_scale, has_range, has_view, has_isolines;
     long isolines, column, width, height;
     double low, high, azimuth, elevation;
@@ -944,6 +946,10 @@ static const option_def OPTIONS[] = {
       "degrees AZ,EL, elevation within -90..90",
       "direction of view in degrees: 0,0 looks at the front, 90,0 at\n"
       "the right side (default: one that shows the warmest place)" },
+    { "up", 0, CMD_PICTURE, 0, parse_words, AT(up), AXES, 0, 0, "AXIS", "x, y or z",
+      "the axis that points up in pictures: x, y (default) or z" },
+    { "labels", 0, CMD_RENDER, 0, parse_flag, AT(labels), NULL, 0, 0, NULL, "no value",
+      "fields of whole numbers from 0, as --nearest of distance writes:\na colour for each, without isolines; -1 is none" },
     { "colormap", 0, CMD_PICTURE | CMD_DEMO, 0, parse_words, AT(colormap), COLORMAPS, 0, 0, "NAME",
       "ember, lagoon, diverging or grey", "ember (default), lagoon, diverging or grey" },
     { "size", 0, CMD_PICTURE, 0, parse_size, 0, NULL, 64, 8192, "WxH", "WxH in pixels, each 64..8192",
@@ -1355,6 +1361,19 @@ static int check_lengths(const options *o)
     return DONE;
 }
 
+/* Does the column that is shown hold labels? Of --nearest every other one does. */
+static int shows_labels(const options *o) { return o->labels || (o->nearest && o->column % 2 == 0); }
+
+/* Labels have a colour each. */
+static int check_labels(const options *o)
+{
+    const char *name = o->log_scale ? "log" : o->has_range ? "range" : o->colormap ? "colormap" : o->isolines > 0 ? "isolines" : NULL;
+    if (!name || !shows_labels(o)) return DONE;
+    if (o->labels) return fail(USAGE, "--%s takes no --labels beside it: labels have a colour each", name);
+    return fail(USAGE, "--%s takes --column %ld beside --nearest, which has distances: column %ld has the numbers of sources", name,
+                o->column + 1, o->column);
+}
+
 static int is_stream(const char *name) { return name && strcmp(name, "-") == 0; }
 
 /* Standard input can be read only once. */
@@ -1404,7 +1423,7 @@ static int check_options(const options *o)
     if (o->n_meshes > 1 && o->n_meshes != o->n_inputs)
         return fail(USAGE, "--input takes a field for each mesh here: %d are given for %d meshes",
                     o->n_inputs, o->n_meshes);
-    if ((code = check_lengths(o)) != DONE || (code = check_streams(o)) != DONE) return code;
+    if ((code = check_lengths(o)) != DONE || (code = check_labels(o)) != DONE || (code = check_streams(o)) != DONE) return code;
     return check_output(o);
 }
 
@@ -3767,6 +3786,7 @@ static pic_opts picture_opts(const options *o)
     if (o->has_range) { p.lo = o->low; p.hi = o->high; }
     p.isolines = o->has_isolines ? (o->isolines > 0 ? (int32_t)o->isolines : -1) : 0;
     p.colormap = o->colormap;
+    p.up = o->up;
     p.view_given = o->has_view;
     p.azimuth = o->azimuth;
     p.elevation = o->elevation;
@@ -3785,6 +3805,17 @@ static pic_panel picture_panel(const mesh_data *mesh, const double *field)
     return p;
 }
 
+/* One more than the largest label. */
+static int32_t count_labels(const pic_panel *panels, int n_panels)
+{
+    double most = 0;
+    int32_t i;
+    int k;
+    for (k = 0; k < n_panels; k++)
+        for (i = 0; i < panels[k].n; i++) if (isfinite(panels[k].field[i]) && panels[k].field[i] > most) most = panels[k].field[i];
+    return (int32_t)most + 1;
+}
+
 /* Heat is never negative, but computed heat can be slightly negative because of rounding. Colours then begin
  * at 0, because otherwise the isoline of 0 would run through noise. */
 static void picture_from_zero(pic_opts *opts, const pic_panel *panels, int n_panels)
@@ -3792,7 +3823,7 @@ static void picture_from_zero(pic_opts *opts, const pic_panel *panels, int n_pan
     double low = HUGE_VAL, high = -HUGE_VAL;
     int32_t i;
     int k;
-    if (opts->lo < opts->hi || opts->log_decades > 0) return;
+    if (opts->lo < opts->hi || opts->log_decades > 0 || opts->labels) return;
     for (k = 0; k < n_panels; k++)
         for (i = 0; i < panels[k].n; i++) {
             const double x = panels[k].field[i];
@@ -3844,18 +3875,31 @@ static const double *result_column(const run *r, const result *res, int64_t c)
     return res->values + (size_t)c * (size_t)r->mesh.n;
 }
 
+/* The renderer's options for a column of the run's result. */
+static pic_opts result_opts(const run *r)
+{
+    pic_opts opts = picture_opts(r->o);
+    if (!r->o->nearest || !shows_labels(r->o)) return opts;
+    opts.labels = r->n_inputs;
+    opts.label = "source";
+    return opts;
+}
+
 /* Colours by the same scale as pictures. rgb: three bytes per vertex. */
 static uint8_t *result_colours(const run *r, const result *res)
 {
     pic_panel panel = picture_panel(&r->mesh, result_column(r, res, res->colour));
-    const pic_opts opts = picture_opts(r->o);
+    const pic_opts opts = result_opts(r);
     pic_scale scale;
     uint8_t *rgb = (uint8_t *)malloc((size_t)r->mesh.n * 3 + 1);
     int32_t i;
     if (!rgb) return NULL;
     pic_scale_make(&scale, &panel, 0, 1, &opts);
-    for (i = 0; i < r->mesh.n; i++)
-        pic_colormap(pic_scale_at(&scale, panel.field[i]), rgb + 3 * (size_t)i, opts.colormap);
+    for (i = 0; i < r->mesh.n; i++) {
+        const double s = pic_scale_at(&scale, panel.field[i]);
+        if (opts.labels && isfinite(s)) pic_label_colour((int32_t)panel.field[i], rgb + 3 * (size_t)i);
+        else pic_colormap(s, rgb + 3 * (size_t)i, opts.colormap);
+    }
     return rgb;
 }
 
@@ -3886,12 +3930,13 @@ static int write_png(const char *path, const run *r, const result *res, const ch
                      const int32_t *marker)
 {
     pic_panel panel = picture_panel(&r->mesh, result_column(r, res, res->colour));
-    pic_opts opts = picture_opts(r->o);
+    pic_opts opts = result_opts(r);
     char subtitle[300];
     snprintf(subtitle, sizeof subtitle, "%.200s, %ld %s", base_name(r->mesh_name), (long)r->mesh.n,
              r->mesh.n_tri ? "vertices" : "points");
     opts.title = r->o->title ? r->o->title : title;
     opts.subtitle = subtitle;
+    if (r->o->labels) opts.labels = count_labels(&panel, 1);
     picture_from_zero(&opts, &panel, 1);
     panel.markers = marker;
     panel.n_markers = marker != NULL;
@@ -4822,6 +4867,17 @@ static void report_render(const run *r, const view_data *views)
                 now() - r->started);
 }
 
+/* Are all numbers of the column labels, or -1 for none? */
+static int check_label_values(const options *o, const char *file, const double *values, int32_t n)
+{
+    int32_t i;
+    for (i = 0; i < n; i++)
+        if (isfinite(values[i]) && !(values[i] >= -1 && values[i] < INT32_MAX && values[i] == floor(values[i])))
+            return fail(FAILED, "%s: row %ld, column %ld: --labels takes whole numbers from 0, or -1 for none, not %.9g",
+                        display_name(file), (long)i, o->column, values[i]);
+    return DONE;
+}
+
 /* Field k, and its mesh unless that of the run serves all. */
 static int view_load(const run *r, int k, view_data *v)
 {
@@ -4834,6 +4890,8 @@ static int view_load(const run *r, int k, view_data *v)
     if (!code && o->column >= v->field.columns)
         code = fail(FAILED, "%s: --column %ld is beyond its %ld columns, numbered from 0",
                     display_name(o->inputs[k]), o->column, (long)v->field.columns);
+    if (!code && o->labels)
+        code = check_label_values(o, o->inputs[k], v->field.values + (size_t)o->column * (size_t)v->mesh->n, v->mesh->n);
     return code;
 }
 
@@ -4856,6 +4914,7 @@ static int render_panels(const run *r, const view_data *views)
     opts.title = o->title ? o->title : title;
     opts.one_view = 1;
     if (!o->height) opts.height = n == 2 ? 640 : n == 3 ? 460 : PICTURE_HEIGHT;
+    if (o->labels) opts.labels = count_labels(panels, n);
     picture_from_zero(&opts, panels, n);
     return write_picture(o->output, panels, n, &opts);
 }

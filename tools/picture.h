@@ -28,6 +28,7 @@
 
 enum { PIC_OK = 0, PIC_ERR_ARGUMENT = 1, PIC_ERR_MEMORY = 2, PIC_ERR_FILE = 3 };
 enum { PIC_MAP_EMBER = 0, PIC_MAP_LAGOON = 1, PIC_MAP_DIVERGING = 2, PIC_MAP_GREY = 3, PIC_MAP_COUNT = 4 };
+enum { PIC_UP_Y = 0, PIC_UP_X = 1, PIC_UP_Z = 2 };
 enum { PIC_MAX_SIDE = 16384 };
 
 /* An image: width*height pixels, rows from the top, three bytes (sRGB) each. */
@@ -59,6 +60,8 @@ typedef struct pic_opts {
     double lo, hi;              /* range of the colours, when lo < hi; else that of the field */
     int32_t isolines;           /* 0: at about 12 round values; > 0: so many, equally spaced; < 0: none */
     int32_t colormap;           /* PIC_MAP_... */
+    int32_t labels;             /* > 0: fields are labels 0..labels-1, a colour each without isolines; others are grey */
+    int32_t up;                 /* PIC_UP_...: the axis that points up. The front is +z, or with z up -y */
     int32_t own_scale;          /* nonzero: every panel has its own range and legend, not one for all */
     int32_t no_legend;
     int32_t view_given;         /* nonzero: the two angles hold; else a view that shows the shape and its warmest place */
@@ -638,6 +641,31 @@ static void pic_map_linear(double s, double rgb[3], int which)
     for (k = 0; k < 3; k++) rgb[k] = pic_clamp(rgb[k], 0, 1);
 }
 
+enum { PIC_LUT = 1024 };                                /* steps of a tabulated map */
+
+/* The colour of a label in linear light: hues a golden angle apart, so that those of labels near each other are far apart,
+ * in three lightnesses. */
+static void pic_label_linear(int32_t label, double rgb[3])
+{
+    static const double lightness[3] = {0.60, 0.80, 0.70};
+    const double hue = 0.017453292519943295 * fmod(262 + 137.50776405 * label, 360), chroma = 0.135;
+    double keep;
+    int k;
+    for (keep = 1; keep > 0; keep -= 1.0 / 64) {
+        pic_oklab_to_linear(lightness[label % 3], keep * chroma * cos(hue), keep * chroma * sin(hue), rgb);
+        if (pic_min(rgb[0], pic_min(rgb[1], rgb[2])) >= 0 && pic_max(rgb[0], pic_max(rgb[1], rgb[2])) <= 1) break;
+    }
+    for (k = 0; k < 3; k++) rgb[k] = pic_clamp(rgb[k], 0, 1);
+}
+
+static void pic_label_colour(int32_t label, uint8_t rgb[3])
+{
+    double lin[3];
+    int k;
+    pic_label_linear(label % (PIC_LUT + 1), lin);
+    for (k = 0; k < 3; k++) rgb[k] = pic_byte(pic_to_srgb(lin[k]));
+}
+
 /* Colour of s in [0,1] (clamped; not finite: the grey of missing values), sRGB bytes. */
 static void pic_colormap(double s, uint8_t rgb[3], int which)
 {
@@ -648,15 +676,15 @@ static void pic_colormap(double s, uint8_t rgb[3], int which)
     for (k = 0; k < 3; k++) rgb[k] = pic_byte(pic_to_srgb(lin[k]));
 }
 
-enum { PIC_LUT = 1024 };
+/* A map tabulated for per-pixel use, linear light; with labels the colour of each. Of more labels than entries some share one. */
+typedef struct pic_lut { double rgb[PIC_LUT + 1][3]; int32_t labels; } pic_lut;
 
-/* A map tabulated for per-pixel use, linear light. */
-typedef struct pic_lut { double rgb[PIC_LUT + 1][3]; } pic_lut;
-
-static void pic_lut_fill(pic_lut *lut, int which)
+static void pic_lut_fill(pic_lut *lut, int which, int32_t labels)
 {
     int i;
-    for (i = 0; i <= PIC_LUT; i++) pic_map_linear(i / (double)PIC_LUT, lut->rgb[i], which);
+    lut->labels = labels;
+    for (i = 0; i <= PIC_LUT && labels > 0; i++) pic_label_linear(i, lut->rgb[i]);
+    for (i = 0; i <= PIC_LUT && labels <= 0; i++) pic_map_linear(i / (double)PIC_LUT, lut->rgb[i], which);
 }
 
 static void pic_lut_at(const pic_lut *lut, double s, double rgb[3])
@@ -664,6 +692,11 @@ static void pic_lut_at(const pic_lut *lut, double s, double rgb[3])
     const double u = pic_clamp(s, 0, 1) * PIC_LUT;
     const int i = u >= PIC_LUT ? PIC_LUT - 1 : (int)u;
     int k;
+    if (lut->labels > 0) {
+        const int32_t label = (int32_t)pic_clamp(s * lut->labels, 0, lut->labels - 1);
+        memcpy(rgb, lut->rgb[label % (PIC_LUT + 1)], 3 * sizeof *rgb);
+        return;
+    }
     for (k = 0; k < 3; k++) rgb[k] = lut->rgb[i][k] + (u - i) * (lut->rgb[i + 1][k] - lut->rgb[i][k]);
 }
 
@@ -921,6 +954,7 @@ enum { PIC_MAX_LEVELS = 400 };
 typedef struct pic_scale {
     double lo, hi;              /* values at the ends */
     int is_log, constant;       /* constant: lo = hi, everything sits in the middle */
+    int32_t labels;             /* > 0: a band for each */
     double first, step;         /* isolines at first + k step, k = 0..n_levels-1, as positions in (0,1) */
     int32_t n_levels;
 } pic_scale;
@@ -929,6 +963,7 @@ typedef struct pic_scale {
 static double pic_scale_at(const pic_scale *sc, double v)
 {
     if (!pic_finite(v)) return v;
+    if (sc->labels > 0) return v >= 0 && v < sc->labels && v == floor(v) ? (v + 0.5) / sc->labels : HUGE_VAL;
     if (sc->constant) return 0.5;
     if (!sc->is_log) return pic_clamp((v / 2 - sc->lo / 2) / (sc->hi / 2 - sc->lo / 2), -1e6, 1e6);
     if (v <= 0) return -0.25;
@@ -980,6 +1015,14 @@ static void pic_scale_make(pic_scale *sc, const pic_panel *panels, int32_t first
         if (v > 0) positive = pic_min(positive, v);
     }
     if (lo > hi) lo = hi = 0;
+    sc->labels = o->labels;
+    if (o->labels > 0) {
+        sc->lo = -0.5;
+        sc->hi = o->labels - 0.5;
+        sc->is_log = sc->constant = 0;
+        pic_scale_levels(sc, -1);
+        return;
+    }
     sc->is_log = o->log_decades > 0;
     if (o->lo < o->hi) { lo = o->lo; hi = o->hi; positive = lo > 0 ? lo : hi * 1e-300; }
     if (sc->is_log) {
@@ -1015,6 +1058,7 @@ typedef struct pic_scene {
     uint8_t *used;              /* [n] vertex appears in the picture */
     pic_vertex *v;              /* [n] */
     pic_camera cam;
+    int labels;                 /* colours do not run into each other */
     double scale, radius;       /* unit of q per unit of xyz; radius of the discs of a point set, in q */
     int32_t n_drawn;            /* triangles or points that can be drawn */
 } pic_scene;
@@ -1069,9 +1113,11 @@ static void pic_scene_mark_used(pic_scene *sc)
     }
 }
 
-/* Fills q. Halves before subtracting, so that even the largest doubles do not overflow. */
-static void pic_scene_normalise(pic_scene *sc)
+/* Fills q, with axis up of PIC_UP_... second. Halves before subtracting, so that even the largest doubles do not overflow. */
+static void pic_scene_normalise(pic_scene *sc, int32_t up)
 {
+    static const int axis[3][3] = {{0, 1, 2}, {1, 0, 2}, {0, 2, 1}}, sign[3][3] = {{1, 1, 1}, {-1, 1, 1}, {1, 1, -1}};
+    const int turn = up == PIC_UP_X || up == PIC_UP_Z ? up : PIC_UP_Y;
     const pic_panel *p = sc->panel;
     double lo[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, hi[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, mid[3], ext = 0, len = 0;
     int32_t i;
@@ -1090,8 +1136,10 @@ static void pic_scene_normalise(pic_scene *sc)
     sc->scale = 1 / ext / len;
     for (i = 0; i < p->n; i++) {
         double *q = sc->q + 3 * (size_t)i;
-        for (c = 0; c < 3; c++)
-            q[c] = sc->used[i] ? (p->xyz[3 * (size_t)i + (size_t)c] / 2 - mid[c]) / ext * 2 / len : 0;
+        for (c = 0; c < 3; c++) {
+            const int from = axis[turn][c];
+            q[c] = sc->used[i] ? sign[turn][c] * ((p->xyz[3 * (size_t)i + (size_t)from] / 2 - mid[from]) / ext * 2 / len) : 0;
+        }
     }
 }
 
@@ -1179,6 +1227,7 @@ static int pic_scene_make(pic_scene *sc, const pic_panel *p, const pic_scale *sc
     size_t i;
     memset(sc, 0, sizeof *sc);
     sc->panel = p;
+    sc->labels = scale->labels > 0;
     sc->q = (double *)pic_zalloc(n, 3 * sizeof(double));
     sc->normal = (double *)pic_zalloc(n, 3 * sizeof(double));
     sc->s = (double *)pic_zalloc(n, sizeof(double));
@@ -1186,7 +1235,7 @@ static int pic_scene_make(pic_scene *sc, const pic_panel *p, const pic_scale *sc
     sc->v = (pic_vertex *)pic_zalloc(n, sizeof(pic_vertex));
     if (!sc->q || !sc->normal || !sc->s || !sc->used || !sc->v) { pic_scene_free(sc); return PIC_ERR_MEMORY; }
     pic_scene_mark_used(sc);
-    pic_scene_normalise(sc);
+    pic_scene_normalise(sc, o->up);
     pic_scene_normals(sc);
     for (i = 0; i < n; i++) sc->s[i] = p->field ? pic_scale_at(scale, p->field[i]) : 0.5;
     if (p->n_tri <= 0) sc->radius = o->point_radius > 0 ? pic_min(o->point_radius * sc->scale, 1) : pic_point_spacing(sc);
@@ -1472,9 +1521,10 @@ static void pic_hit_triangle(const pic_scene *sc, int32_t t, double x, double y,
     if (pic_dot(face, hit->toward) < 0) for (c = 0; c < 3; c++) face[c] = -face[c];
     hit->s = 0;
     hit->normal[0] = hit->normal[1] = hit->normal[2] = 0;
+    if (sc->labels) hit->s = v[w[0] >= w[1] && w[0] >= w[2] ? 0 : w[1] >= w[2] ? 1 : 2]->s;      /* of the nearest corner */
     for (k = 0; k < 3; k++) {
         pic_corner_normal(v[k], face, corner);
-        hit->s += w[k] / sum * v[k]->s;
+        if (!sc->labels) hit->s += w[k] / sum * v[k]->s;
         for (c = 0; c < 3; c++) hit->normal[c] += w[k] * corner[c];
     }
 }
@@ -1997,11 +2047,24 @@ static void pic_ticks_linear(pic_ticks *t, const pic_scale *sc)
     }
 }
 
+/* The number of each label in the middle of its band, or of every other, fifth or tenth. */
+static void pic_ticks_labels(pic_ticks *t, const pic_scale *sc)
+{
+    const int32_t every = sc->labels <= 24 ? 1 : (int32_t)pic_nice_step(sc->labels / 20.0);
+    int32_t k;
+    char text[32];
+    for (k = 0; k < sc->labels; k += every) {
+        snprintf(text, sizeof text, "%ld", (long)k);
+        pic_tick_add(t, (k + 0.5) / sc->labels, text);
+    }
+}
+
 static void pic_ticks_make(pic_ticks *t, const pic_scale *sc)
 {
     char text[32];
     memset(t, 0, sizeof *t);
-    if (sc->constant) {
+    if (sc->labels > 0) pic_ticks_labels(t, sc);
+    else if (sc->constant) {
         snprintf(text, sizeof text, "%.4g", sc->hi);
         pic_tick_add(t, 0.5, text);
     } else if (sc->is_log) pic_ticks_log(t, sc);
@@ -2164,7 +2227,7 @@ static int pic_figure_draw(pic_image *img, const pic_panel *panels, int32_t n, c
         widest = pic_max(widest, pic_ticks_width(&t, l.tick_cap));
         legend |= panels[i].field != NULL && !o->no_legend;
     }
-    pic_lut_fill(lut, o->colormap);
+    pic_lut_fill(lut, o->colormap, o->labels);
     pic_layout_make(&l, img, panels, n, o, widest + l.tick_cap, legend);
     pic_figure_paper(img);
     for (i = 0; i < n; i++) {
