@@ -4616,6 +4616,8 @@ static void hdi_mesh_clear(hdi_mesh *mesh, const double *xyz, int32_t n, const i
 
 static int32_t hdi_face_name(const hdi_mesh *mesh, int32_t f) { return mesh->face ? mesh->face[f] : f; }
 
+static int32_t hdi_copies(const hdi_mesh *mesh, int32_t f) { return mesh->copies ? mesh->copies[f] : 1; }
+
 static int hdi_is_poly(const hdi_mesh *mesh) { return HDI_HAS_POLYGONS && mesh->ptr; }
 
 /* The first corner of face f, or behind the last of all faces. */
@@ -4944,7 +4946,7 @@ static int64_t hdi_block_size(int64_t n) {
 
 /* What a block of faces or of vertices adds to the report. */
 typedef struct hdi_tally {
-    int32_t n_repeated_corner, n_zero_area, n_repeated_face;
+    int32_t n_faces_used, n_repeated_corner, n_zero_area, n_repeated_face;
     int32_t refused;                    /* the face that is named first, or -1 */
     int64_t n_edges, n_boundary, n_nonmanifold, n_misoriented, n_negative;
     double steepest;                    /* the largest cotangent, of the smallest angle */
@@ -4970,6 +4972,7 @@ static hdi_tally hdi_tally_all(const hdi_mesh *mesh, int64_t n) {
     int64_t i;
     for (i = 0; i * size < n; i++) {
         const hdi_tally *t = mesh->tally + i;
+        all.n_faces_used += t->n_faces_used;
         all.n_repeated_corner += t->n_repeated_corner;
         all.n_zero_area += t->n_zero_area;
         all.n_repeated_face += t->n_repeated_face;
@@ -5001,13 +5004,13 @@ static HDI_INLINE double hdi_face_measure(const hdi_mesh *mesh, int32_t f, hdi_t
     int64_t c;
     for (c = begin; hdi_is_poly(mesh) && c < begin + k; c++) mesh->of[c] = f;
     if (hdi_corners_repeat(v, k)) {
-        t->n_repeated_corner++;
+        t->n_repeated_corner += hdi_copies(mesh, f);
         return 0;
     }
     if (hdi_is_poly(mesh)) area = hdi_poly_measure(mesh, f, &steepest, &weight);
     else area = mesh->len ? hdi_sides_measure(mesh->len + begin, cot)
                           : hdi_triangle_measure(mesh->xyz, v, cot);
-    t->n_zero_area += area == 0;
+    *(area > 0 ? &t->n_faces_used : &t->n_zero_area) += hdi_copies(mesh, f);
     if (area == 0) return 0;
     if (!hdi_is_poly(mesh)) steepest = weight = hdi_max(cot[0], hdi_max(cot[1], cot[2]));
     if (!(hdi_in_range(area) && weight <= HDI_RANGE)) hdi_face_refuse(mesh, f, t);
@@ -5035,10 +5038,10 @@ static hd_status hdi_faces_measure(hdi_mesh *mesh, hd_mesh_report *rep, hd_conte
                              "the area of a face is outside 1e-100 .. 1e100, or a weight of it above 1e100",
                              hdi_face_name(mesh, all.refused), mesh->tri[hdi_face_begin(mesh, all.refused)],
                              mesh->area[all.refused]);
-    rep->n_faces = mesh->m;
     rep->n_repeated_corner = all.n_repeated_corner;
     rep->n_zero_area = all.n_zero_area;
-    rep->n_faces_used = mesh->m - all.n_repeated_corner - all.n_zero_area;
+    rep->n_faces_used = all.n_faces_used;
+    rep->n_faces = all.n_faces_used + all.n_repeated_corner + all.n_zero_area;
     rep->smallest_angle = rep->n_faces_used > 0 ? atan2(1, all.steepest) : 0;
     return HD_OK;
 }
@@ -5158,7 +5161,7 @@ static hd_status hdi_mesh_sort(hdi_mesh *mesh, hdi_scope *s) {
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
     int32_t *tri, *face, f, last = 0, jumps = 0;
     int64_t *at;
-    for (f = 0; f < mesh->m && mesh->xyz && !hdi_is_poly(mesh); f++) {
+    for (f = 0; f < mesh->m && mesh->xyz && !mesh->copies && !hdi_is_poly(mesh); f++) {
         const int32_t low = hdi_face_low(mesh->tri + hdi_triple(f));
         jumps += (low > last ? low - last : last - low) > NEARBY;
         last = low;
@@ -5490,45 +5493,6 @@ typedef struct hdi_surface {
     double parts;       /* of a triangle that counts once, 0: there is none; flat.copies counts them */
 } hdi_surface;
 
-static int32_t hdi_copies(const hdi_mesh *mesh, int32_t f) { return mesh->copies ? mesh->copies[f] : 1; }
-
-/* From the one before. */
-static int hdi_face_differs(const hdi_pair *f) {
-    return f[0].key != f[-1].key || f[0].id >> 1 != f[-1].id >> 1;
-}
-
-/* Different triangles of the m in tri as a mesh in s, corners ascending: by their first and second corner,
- * and by third corner << 1 | odd. */
-static hd_status hdi_soup_faces(hdi_mesh *mesh, const int32_t *tri, int64_t m, int32_t n, hdi_scope *s) {
-    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
-    hdi_pair *face = HDI_TAKE(&own, hdi_pair, m);
-    int64_t f, count = 0;
-    int32_t *corner, *copies, *odd;
-    for (f = 0; f < m && face; f++) {
-        const int32_t a = tri[3 * f], b = tri[3 * f + 1], c = tri[3 * f + 2];
-        const int64_t first = hdi_face_low(tri + 3 * f), last = hdi_high32(a, hdi_high32(b, c));
-        face[f].key = (uint64_t)(first << 32 | (a - first + b - last + c));
-        face[f].id = last << 1 | (((a > b) + (b > c) + (a > c)) & 1);
-    }
-    if (face) hdi_sort_pairs(face, m);
-    for (f = 0; f < m && face; f++) count += f == 0 || hdi_face_differs(face + f);
-    corner = HDI_TAKE(s, int32_t, 3 * count);
-    copies = HDI_TAKE_ZERO(s, int32_t, count);
-    odd = HDI_TAKE_ZERO(s, int32_t, count);
-    for (f = 0, count = -1; f < m && odd; f++) {
-        count += f == 0 || hdi_face_differs(face + f);
-        corner[3 * count] = (int32_t)(face[f].key >> 32);
-        corner[3 * count + 1] = (int32_t)(face[f].key & INT32_MAX);
-        corner[3 * count + 2] = (int32_t)(face[f].id >> 1);
-        copies[count]++;
-        odd[count] += (int32_t)(face[f].id & 1);
-    }
-    hdi_mesh_clear(mesh, NULL, n, corner, (int32_t)count + 1);
-    mesh->copies = copies;
-    mesh->odd = odd;
-    return hdi_scope_end(&own);
-}
-
 /* The area in space, and mollified lengths with their areas and cotangents. Mollification (Sharp, Crane 2020,
  * section 4.5) adds to all sides the smallest length that makes every triangle satisfy the triangle
  * inequality with delta to spare; delta < 0: none. */
@@ -5558,26 +5522,6 @@ static hd_status hdi_soup_lengths(hdi_surface *z, double delta, hd_mesh_report *
         for (q = 0; q < 3; q++) len[q] += add;
         z->area[f] = hdi_length_area(len[0], len[1], len[2]);
         if (z->area[f] > 0) hdi_length_cots(len, z->area[f], cot);
-    }
-    return HD_OK;
-}
-
-/* The m triangles tri among n points, measured, in s. Each triangle counts a third. */
-static hd_status hdi_soup_of_stars(hdi_surface *z, const double *xyz, int32_t n, const int32_t *tri,
-                                   int64_t m, hd_mesh_report *rep, hdi_scope *s) {
-    hdi_mesh *mesh = &z->mesh;
-    hd_mesh_report faces;
-    int32_t f;
-    memset(&faces, 0, sizeof faces);
-    z->share = 3;
-    if (hdi_soup_faces(mesh, tri, m, n, s) < 0) return s->e->status;
-    mesh->xyz = xyz;
-    if (hdi_mesh_take(mesh, s) < 0 || hdi_faces_measure(mesh, &faces, s->ctx, s->e) < 0) return s->e->status;
-    hdi_mesh_corners(mesh);
-    rep->smallest_angle = faces.smallest_angle;
-    for (f = 0; f < mesh->m; f++) {
-        rep->n_faces += mesh->copies[f];
-        *(mesh->area[f] > 0 ? &rep->n_faces_used : &rep->n_zero_area) += mesh->copies[f];
     }
     return HD_OK;
 }
@@ -7121,13 +7065,12 @@ typedef struct hdi_cloud {
     const int32_t *name;       /* [n] the caller's number of a point */
     int32_t n;
     int64_t *ptr;
-    /* [ptr[n]] neighbours of point i from ptr[i] on; then its star, counterclockwise in its plane */
-    int32_t *nbr;
+    int32_t *nbr;              /* [ptr[n]] point i itself from ptr[i] on, and its neighbours; then its star */
     double *nearest;           /* [n] distance to the nearest one in another place; 0: none */
     double *reach;             /* [n] distance to the last one */
     double h;                  /* mean distance to the nearest one */
     int8_t *not_flat;          /* [n] see hdi_plane */
-    int32_t *size;             /* [n] corners of the star; negative: open between the last and the first */
+    int32_t *size;             /* [n] triangles of the star; its corners, counterclockwise, are one more */
     double *area;              /* [n] of the cells */
     int8_t *border;            /* [n] 1: the cell ends where the neighbours do */
 } hdi_cloud;
@@ -7172,6 +7115,7 @@ static void hdi_cloud_given(const hdi_cloud *cloud, const hdi_input *in, int32_t
     int32_t v;
     for (v = 0; v < cloud->n; v++) inverse[cloud->name[v]] = v;
     for (v = 0; v < cloud->n; v++) {
+        cloud->nbr[q++] = v;
         for (p = in->nbr_ptr[cloud->name[v]]; p < in->nbr_ptr[cloud->name[v] + 1]; p++)
             cloud->nbr[q++] = inverse[in->nbr[p]];
         cloud->ptr[v + 1] = q;
@@ -7197,7 +7141,7 @@ static hd_status hdi_cloud_make(hdi_cloud *cloud, const hdi_input *in, const hdi
     if (s->e->status < 0 || (!places && hdi_star_check(in->nbr_ptr, in->nbr, n, s->e) < 0))
         return hdi_scope_end(&own);
     k = hdi_least(k + 1, n);
-    cloud->nbr = HDI_TAKE(s, int32_t, places ? k * n : in->nbr_ptr[n]);
+    cloud->nbr = HDI_TAKE(s, int32_t, places ? k * n : n + in->nbr_ptr[n]);
     if (s->e->status < 0 || hdi_tree_make(&tree, xyz, n, &own) < 0) return hdi_scope_end(&own);
     for (v = 0; v < n; v++) {
         name[v] = places ? places->first[tree.id[v]] : tree.id[v];
@@ -7468,7 +7412,7 @@ static void hdi_point_star(const hdi_cloud *cloud, int32_t i) {
     double rel[3 * HDI_STAR_MOST];
     hdi_plane plane;
     hdi_polygon g;
-    int32_t n = 0, m, k, id[HDI_STAR_MOST], side[HDI_POLYGON_MOST];
+    int32_t *star = cloud->nbr + cloud->ptr[i], n = 0, m, k, id[HDI_STAR_MOST], side[HDI_POLYGON_MOST];
     int closed;
     int64_t q;
     cloud->size[i] = 0;
@@ -7494,8 +7438,9 @@ static void hdi_point_star(const hdi_cloud *cloud, int32_t i) {
         (void)hdi_polygon_clip(&g, x, y, power / 2, id[k]);
     }
     m = hdi_low32(hdi_polygon_sides(&g, side, &closed), n);
-    for (k = 0; k < m; k++) cloud->nbr[cloud->ptr[i] + k] = side[k];
-    cloud->size[i] = closed ? m : -m;
+    for (k = 0; k < m; k++) star[k] = side[k];   /* there is room for one more, as the point does not count */
+    if (closed) star[m++] = side[0];
+    cloud->size[i] = hdi_high32(m - 1, 0);
 }
 
 static void hdi_star_task(void *arg, int64_t begin, int64_t end) {
@@ -7504,33 +7449,58 @@ static void hdi_star_task(void *arg, int64_t begin, int64_t end) {
     for (i = begin; i < end; i++) hdi_point_star(cloud, (int32_t)i);
 }
 
-/* All triangles of all stars, a third each in the end: tri in s, counted in *m. */
-static int32_t *hdi_stars(hdi_cloud *cloud, int32_t *m, hd_laplacian *lap, hdi_scope *s) {
-    int32_t *tri, i, k;
+/* Has the star of a the triangle with b and c? 1: in this order, -1: in the other one. */
+static int hdi_star_has(const hdi_cloud *cloud, int32_t a, int32_t b, int32_t c) {
+    const int32_t *star = cloud->nbr + cloud->ptr[a];
+    int32_t k;
+    for (k = 0; k < cloud->size[a]; k++) {
+        if (star[k] == b && star[k + 1] == c) return 1;
+        if (star[k] == c && star[k + 1] == b) return -1;
+    }
+    return 0;
+}
+
+/* The different triangles of all stars, each by the first star that has it. tri NULL: they are counted. */
+static int32_t hdi_star_faces(const hdi_cloud *cloud, int32_t *tri, int32_t *copies, int32_t *odd) {
+    int32_t i, k, m = 0;
+    for (i = 0; i < cloud->n; i++) {
+        const int32_t *star = cloud->nbr + cloud->ptr[i];
+        for (k = 0; k < cloud->size[i]; k++) {
+            const int32_t v[3] = {i, star[k], star[k + 1]};
+            const int second = hdi_star_has(cloud, v[1], v[2], i), third = hdi_star_has(cloud, v[2], i, v[1]);
+            if ((second && v[1] < i) || (third && v[2] < i)) continue;
+            if (tri) {
+                memcpy(tri + hdi_triple(m), v, sizeof v);
+                copies[m] = 1 + (second != 0) + (third != 0);
+                odd[m] = (second < 0) + (third < 0);
+            }
+            m++;
+        }
+    }
+    return m;
+}
+
+/* The stars' triangles as a mesh in s, which is not measured. */
+static hd_status hdi_stars(hdi_mesh *mesh, hdi_cloud *cloud, hd_laplacian *lap, hdi_scope *s) {
+    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
+    int32_t *tri, i, m;
     int64_t count = 0;
-    cloud->size = HDI_TAKE(s, int32_t, cloud->n);
-    if (!cloud->size) return NULL;
+    cloud->size = HDI_TAKE(&own, int32_t, cloud->n);
+    if (!cloud->size) return hdi_scope_end(&own);
     hdi_parallel_ranges(s->ctx, cloud->n, HDI_POINTS_PER_TASK, hdi_star_task, cloud);
     for (i = 0; i < cloud->n; i++) {
-        count += cloud->size[i] < 0 ? -cloud->size[i] - 1 : cloud->size[i];
+        count += cloud->size[i];
         lap->points.n_not_flat += cloud->not_flat[i];
     }
     if (3 * count > INT32_MAX)
         hdi_fail(s->e, HD_ERR_TOO_LARGE, "more than 2^31 corners of triangles in the points' stars");
-    tri = HDI_TAKE(s, int32_t, 3 * count);
-    if (!tri) return NULL;
-    *m = (int32_t)count;
-    count = 0;
-    for (i = 0; i < cloud->n; i++) {
-        const int32_t *star = cloud->nbr + cloud->ptr[i], open = cloud->size[i] < 0,
-                      size = open ? -cloud->size[i] : cloud->size[i], last = size - open;
-        for (k = 0; k < last; k++) {
-            tri[count++] = i;
-            tri[count++] = star[k];
-            tri[count++] = star[k + 1 < size ? k + 1 : 0];
-        }
-    }
-    return tri;
+    m = hdi_star_faces(cloud, NULL, NULL, NULL);
+    tri = HDI_TAKE(s, int32_t, hdi_triple(m));
+    hdi_mesh_clear(mesh, cloud->xyz, cloud->n, tri, m);
+    mesh->copies = HDI_TAKE(s, int32_t, m);
+    mesh->odd = HDI_TAKE(s, int32_t, m);
+    if (s->e->status >= 0) (void)hdi_star_faces(cloud, tri, mesh->copies, mesh->odd);
+    return hdi_scope_end(&own);
 }
 
 /* The tufted Laplacian of a point set (Sharp, Crane 2020, section 5.7): every point's star in the
@@ -7554,15 +7524,15 @@ static int32_t *hdi_stars(hdi_cloud *cloud, int32_t *m, hd_laplacian *lap, hdi_s
 static hd_status hdi_star_soup(hdi_surface *z, hdi_cloud *cloud, hd_laplacian *lap, const hdi_input *in,
                                hdi_scope *s) {
     hdi_scope own = hdi_scope_begin(s->ctx, s->e), apart = hdi_scope_begin(s->ctx, s->e);
-    int32_t *tri = NULL, m = 0;
     hdi_places places;
+    z->share = 3;
     if (in->nbr_ptr || hdi_places_make(&places, in->mesh.xyz, lap->n, &apart) >= 0)
         (void)hdi_cloud_make(cloud, in, in->nbr_ptr ? NULL : &places, lap->points.neighbours, &own, s);
-    if (hdi_scope_end(&apart) >= 0) tri = hdi_stars(cloud, &m, lap, &own);
-    if (!tri || hdi_progress(s->ctx, "assemble", 0.2, s->e) < 0) return hdi_scope_end(&own);
+    if (hdi_scope_end(&apart) < 0 || hdi_stars(&z->mesh, cloud, lap, s) < 0 ||
+        hdi_progress(s->ctx, "assemble", 0.2, s->e) < 0) return hdi_scope_end(&own);
     lap->h = cloud->h;
     lap->points.n_coincident = lap->n - cloud->n;
-    if (hdi_soup_of_stars(z, cloud->xyz, cloud->n, tri, m, &lap->mesh, s) < 0) {
+    if (hdi_mesh_make(&z->mesh, &lap->mesh, s) < 0) {
         /* the caller knows no faces */
         if (s->e->face >= 0) s->e->vertex = cloud->name[z->mesh.tri[3 * s->e->face]];
         s->e->face = -1;
