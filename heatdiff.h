@@ -2084,6 +2084,13 @@ static void *hdi_take_zero(hdi_scope *s, uint64_t count, size_t size) {
     return p;
 }
 
+/* Of NULL it is NULL. */
+static void *hdi_take_copy(hdi_scope *s, const void *from, int64_t count, size_t size) {
+    void *p = from ? hdi_take(s, (uint64_t)count, size) : NULL;
+    if (p && count > 0) memcpy(p, from, (size_t)count * size);
+    return p;
+}
+
 /* Takes a block out of the scope: it becomes the caller's. */
 static void *hdi_keep(hdi_scope *s, void *block) {
     int32_t i;
@@ -4595,7 +4602,7 @@ typedef struct hdi_mesh {
     int32_t *odd;       /* [m] how many of its copies have their corners in odd order */
     int32_t n, m;
     double lambda;      /* of polygons */
-    double *area;       /* [m] of polygons: length of the vector area; 0: the face is left out */
+    double *area;       /* [m] of polygons: length of the vector area; 0, or negative for good: left out */
     double *cot;        /* [corners] of triangles: cotangents */
     double *g;          /* [3 corners] of polygons: (corner before - corner after) / (2 sqrt(area)) */
     double *w;          /* [2 corners] of polygons: see hdi_poly_frame; of those with three corners not set */
@@ -4996,12 +5003,13 @@ static HDI_INLINE int hdi_corners_repeat(const int32_t *v, int64_t k) {
     return 0;
 }
 
-/* Area of face f, and what is kept of its corners. 0: it is left out. */
+/* Area of face f, and what is kept of its corners. 0: it is left out; negative: as it was before. */
 static HDI_INLINE double hdi_face_measure(const hdi_mesh *mesh, int32_t f, hdi_tally *t) {
     const int64_t begin = hdi_face_begin(mesh, f), k = hdi_is_poly(mesh) ? mesh->ptr[f + 1] - begin : 3;
     const int32_t *v = mesh->tri + begin;
     double *cot = mesh->cot + begin, area, steepest = 0, weight = 0;
     int64_t c;
+    if (mesh->area[f] < 0) return mesh->area[f];
     for (c = begin; hdi_is_poly(mesh) && c < begin + k; c++) mesh->of[c] = f;
     if (hdi_corners_repeat(v, k)) {
         t->n_repeated_corner += hdi_copies(mesh, f);
@@ -5049,7 +5057,7 @@ static hd_status hdi_faces_measure(hdi_mesh *mesh, hd_mesh_report *rep, hd_conte
 /* Arrays for what is measured of the faces, in s, and the corners at each vertex. */
 static hd_status hdi_mesh_take(hdi_mesh *mesh, hdi_scope *s) {
     const int64_t n = hdi_face_begin(mesh, mesh->m);
-    mesh->area = HDI_TAKE(s, double, mesh->m);
+    mesh->area = HDI_TAKE_ZERO(s, double, mesh->m);
     mesh->at = HDI_TAKE(s, int64_t, (int64_t)mesh->n + 1);
     mesh->corner = HDI_TAKE(s, int32_t, n);
     mesh->tally = HDI_TAKE(s, hdi_tally, HDI_BLOCKS_MOST);
@@ -6525,7 +6533,7 @@ static void hdi_lap_values(hd_laplacian *lap, hdi_rows *x) {
     lap->mesh.n_negative_weights = all.n_negative;
     if (!x->mesh.xyz && !x->mesh.len) return;
     hdi_rows_report(x, all, &lap->mesh, &lap->h);
-    for (f = 0, lap->area = 0; f < x->mesh.m; f++) lap->area += x->mesh.area[f];
+    for (f = 0, lap->area = 0; f < x->mesh.m; f++) lap->area += hdi_max(x->mesh.area[f], 0);
 }
 
 /* ---- meshes that move ---- */
@@ -6534,28 +6542,18 @@ static hdi_rows *hdi_moving_new(hd_laplacian *lap, hd_error *e) {
     return lap->moving = HDI_TAKE_ZERO(hdi_lap_keep(lap, e), hdi_rows, 1);
 }
 
-/* Keeps a mesh and its rows, all that lives in s, with a copy of the faces. The corners of those that were
- * left out become one vertex, so that they stay out whatever they would measure. */
-static hd_status hdi_moving_make(hd_laplacian *lap, const hdi_rows *from, hdi_scope *s) {
-    const hdi_mesh *mesh = &from->mesh;
-    const int64_t n = hdi_face_begin(mesh, mesh->m), m = mesh->m;
-    hdi_rows *x = hdi_moving_new(lap, s->e);
-    int32_t *tri = HDI_TAKE(s, int32_t, n), *face = mesh->face ? HDI_TAKE(s, int32_t, m) : NULL, f;
-    int64_t *ptr = hdi_is_poly(mesh) ? HDI_TAKE(s, int64_t, m + 1) : NULL, c = 0;
-    if (s->e->status < 0) return s->e->status;
-    for (f = 0; f < m; f++) {
-        const int64_t begin = hdi_face_begin(mesh, f), end = hdi_face_begin(mesh, f + 1);
-        for (; c < end; c++) tri[c] = mesh->tri[mesh->area[f] > 0 ? c : begin];
-    }
-    if (face) memcpy(face, mesh->face, (size_t)m * sizeof *face);
-    if (ptr) memcpy(ptr, mesh->ptr, ((size_t)m + 1) * sizeof *ptr);
-    *x = *from;
-    x->mesh.xyz = NULL;
-    x->mesh.tri = tri;
-    x->mesh.face = face;
-    x->mesh.ptr = ptr;
-    hdi_scope_move(hdi_lap_keep(lap, s->e), s);
-    return HD_OK;
+/* Copies the faces, which may be the caller's, into s, where all else is. Those that are left out stay out,
+ * whatever they would measure: their areas become negative. */
+static void hdi_moving_make(hdi_rows *x, hdi_scope *s) {
+    hdi_mesh *mesh = &x->mesh;
+    const int64_t n = hdi_face_begin(mesh, mesh->m);
+    int32_t f;
+    mesh->xyz = NULL;
+    mesh->tri = (const int32_t *)hdi_take_copy(s, mesh->tri, n, sizeof *mesh->tri);
+    mesh->face = (const int32_t *)hdi_take_copy(s, mesh->face, mesh->m, sizeof *mesh->face);
+    mesh->ptr = (const int64_t *)hdi_take_copy(s, mesh->ptr, mesh->m + 1, sizeof *mesh->ptr);
+    for (f = 0; f < mesh->m; f++)
+        if (!(mesh->area[f] > 0)) mesh->area[f] = -1;
 }
 
 /* Has each vertex that had a face still one with an area? */
@@ -6628,20 +6626,22 @@ static hd_status hdi_input_open(hdi_input *in, const hd_mesh *m, double stiffeni
 static hd_status hdi_lap_mesh(hd_laplacian *lap, const hdi_mesh *mesh, const hdi_input *in, hdi_scope *s) {
     hdi_scope own = hdi_scope_begin(lap->context, s->e);
     const hdi_kind *kind = hdi_kind_of(lap->kind);
-    hdi_rows x;
-    if (hdi_rows_begin(&x, mesh, &lap->mesh, in->updatable ? s : &own) < 0) return hdi_scope_end(&own);
-    x.lump = kind->lump;
-    hdi_rows_border(&x, lap);
-    if (hdi_lap_pattern(lap, &x, in->full && kind->full, s->e) < 0 ||
+    hdi_rows once, *x = in->updatable ? hdi_moving_new(lap, s->e) : &once;
+    if (!x || hdi_rows_begin(x, mesh, &lap->mesh, in->updatable ? s : &own) < 0) return hdi_scope_end(&own);
+    x->lump = kind->lump;
+    hdi_rows_border(x, lap);
+    if (hdi_lap_pattern(lap, x, in->full && kind->full, s->e) < 0 ||
         hdi_progress(lap->context, "assemble", 0.4, s->e) < 0 || hdi_lap_places(lap, in->mesh.xyz, s->e) < 0)
         return hdi_scope_end(&own);
-    hdi_lap_values(lap, &x);
+    hdi_lap_values(lap, x);
     if (lap->n_held > 0) hdi_lap_pack(lap);
     /* The element matrix area/12 (1 1' + I) is at least 1/2 of its diagonal, area/12 I; that of a triangle
      * with corners v, v, w at least 1 - sqrt(1/3), and that of corners v, v, v is its diagonal. */
     lap->b_ratio = !lap->B ? 1 : lap->mesh.n_self_edges ? 1 - sqrt(1.0 / 3) : 0.5;
-    if (hdi_progress(lap->context, "assemble", 0.8, s->e) >= 0 && in->updatable)
-        (void)hdi_moving_make(lap, &x, s);
+    if (hdi_progress(lap->context, "assemble", 0.8, s->e) >= 0 && in->updatable) {
+        hdi_moving_make(x, s);
+        hdi_scope_move(hdi_lap_keep(lap, s->e), s);
+    }
     return hdi_scope_end(&own);
 }
 
@@ -6810,72 +6810,62 @@ static hd_status hdi_pair_pattern(hd_laplacian *lap, const hd_csr *L, const hd_c
     return hdi_scope_end(&s);
 }
 
-/* What is summed up over a row of the caller's matrices; inert vertices do not count. */
+/* Sums over a row of one of the caller's matrices; inert vertices do not count. */
 typedef struct hdi_pair_row {
-    double l_diag, l_abs, b_diag, b_all, b_mass; /* b_mass: without vertices held */
-    hdi_sum l_sum, b_off;                        /* b_off: sizes of the entries beside the diagonal */
+    double diag, mass;          /* mass: without vertices held */
+    hdi_sum all, off;           /* off: sizes of the entries beside the diagonal */
 } hdi_pair_row;
 
-static void hdi_pair_put(hd_laplacian *lap, int64_t at, double l, double b) {
-    lap->L.val[at] = l;
-    if (lap->B) lap->B[at] = b;
-}
-
-/* Row v of the caller's matrices: its sums, and its values in the pair. */
-static hd_status hdi_pair_fill_row(hd_laplacian *lap, const hd_csr *L, const hd_csr *B, int32_t v,
+/* Row v of L or B: its sums, and its values in the pair. */
+static hd_status hdi_pair_fill_row(hd_laplacian *lap, const hd_csr *from, int is_b, int32_t v,
                                    hdi_pair_row *r, hd_error *e) {
     const int32_t i = lap->row[v];
-    const int64_t p_end = L->row_ptr[v + 1], q_end = B->row_ptr[v + 1];
-    int64_t p = L->row_ptr[v], q = B->row_ptr[v], at = i < 0 ? 0 : lap->L.row_ptr[i];
+    double *to = is_b ? lap->B : lap->L.val;
+    int64_t p, at;
     memset(r, 0, sizeof *r);
-    while (p < p_end || q < q_end) {
-        const int32_t cp = p < p_end ? L->col[p] : INT32_MAX, cq = q < q_end ? B->col[q] : INT32_MAX;
-        const int32_t c = hdi_low32(cp, cq), j = lap->row[c];
-        const double l = cp == c ? L->val[p++] : 0, b = cq == c ? B->val[q++] : 0;
-        if (b != 0 && (i == HD_ROW_INERT || j == HD_ROW_INERT))
+    for (p = i < 0 ? 0 : lap->L.row_ptr[i]; to && i >= 0 && p < lap->L.row_ptr[i + 1]; p++) to[p] = 0;
+    for (p = from->row_ptr[v]; p < from->row_ptr[v + 1]; p++) {
+        const int32_t c = from->col[p], j = lap->row[c], inert = i == HD_ROW_INERT || j == HD_ROW_INERT;
+        const double x = from->val[p];
+        if (is_b && inert && x != 0)
             return hdi_fail_row(e, HD_ERR_STRUCTURE, "update of matrices: a vertex without mass stays so", v,
-                                c, b);
-        if (i == HD_ROW_INERT || j == HD_ROW_INERT) continue;
-        hdi_sum_add(&r->l_sum, l);
-        r->l_abs += fabs(l);
-        r->b_all += b;
-        r->b_mass += j >= 0 ? b : 0;
-        if (c == v) r->l_diag = l;
-        if (c == v) r->b_diag = b;
-        else hdi_sum_add(&r->b_off, fabs(b));
-        if (lap->holding) lap->holding->leak[v] |= j == HD_ROW_HELD && l != 0;
-        if (i >= 0 && j >= 0) {
-            const int64_t end = lap->L.row_ptr[i + 1];
-            for (; at < end && lap->L.col[at] < j; at++) hdi_pair_put(lap, at, 0, 0);
-            if (at < end && lap->L.col[at] == j) hdi_pair_put(lap, at++, l, b);
-            else if (l != 0 || b != 0)
-                return hdi_fail_row(e, HD_ERR_STRUCTURE, "update of matrices: an entry is not in the pattern",
-                                    v, c, l != 0 ? l : b);
-        }
-        if (!lap->B && c != v && b != 0)
+                                c, x);
+        if (!to && c != v && x != 0)
             return hdi_fail_row(e, HD_ERR_STRUCTURE,
-                                "update of matrices: B was diagonal, and is not any more", v, c, b);
+                                "update of matrices: B was diagonal, and is not any more", v, c, x);
+        if (inert) continue;
+        hdi_sum_add(&r->all, x);
+        r->mass += j >= 0 ? x : 0;
+        if (c == v) r->diag = x;
+        else hdi_sum_add(&r->off, fabs(x));
+        if (lap->holding && !is_b) lap->holding->leak[v] |= j == HD_ROW_HELD && x != 0;
+        if (!to || i < 0 || j < 0) continue;
+        at = hdi_csr_find(&lap->L, i, j);
+        if (at >= 0) to[at] = x;
+        else if (x != 0)
+            return hdi_fail_row(e, HD_ERR_STRUCTURE, "update of matrices: an entry is not in the pattern", v,
+                                c, x);
     }
-    for (; i >= 0 && at < lap->L.row_ptr[i + 1]; at++) hdi_pair_put(lap, at, 0, 0);
     return HD_OK;
 }
 
-static hd_status hdi_pair_check(const hdi_pair_row *r, int32_t v, hd_error *e) {
-    if (!(r->b_diag > 0))
-        return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "B: a diagonal entry is not positive", v, v, r->b_diag);
-    if (r->b_diag < 1 / HDI_RANGE)
-        return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "B: a diagonal entry is below 1e-100", v, v, r->b_diag);
-    if (!(r->b_diag + r->b_off.high <= HDI_RANGE))
+static hd_status hdi_pair_check(const hdi_pair_row *l, const hdi_pair_row *b, int32_t v, hd_error *e) {
+    const double l_all = fabs(l->diag) + l->off.high, b_all = b->diag + b->off.high;
+    if (!(b->diag > 0))
+        return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "B: a diagonal entry is not positive", v, v, b->diag);
+    if (b->diag < 1 / HDI_RANGE)
+        return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "B: a diagonal entry is below 1e-100", v, v, b->diag);
+    if (!(b_all <= HDI_RANGE))
         return hdi_fail_row(e, HD_ERR_NOT_FINITE, "B: the sizes of a row's entries exceed 1e100 together", v,
-                            -1, r->b_diag + r->b_off.high);
-    if (!(r->l_abs <= HDI_RANGE))
+                            -1, b_all);
+    if (!(l_all <= HDI_RANGE))
         return hdi_fail_row(e, HD_ERR_NOT_FINITE, "L: the sizes of a row's entries exceed 1e100 together", v,
-                            -1, r->l_abs);
-    if (r->l_diag + 1e-12 * r->l_abs < 0)
+                            -1, l_all);
+    if (l->diag + 1e-12 * l_all < 0)
         return hdi_fail_row(e, HD_ERR_NOT_POSITIVE,
                             "L has a negative diagonal entry: L is positive semi-definite "
                             "here, minus the cotangent matrix of libigl",
-                            v, v, r->l_diag);
+                            v, v, l->diag);
     return HD_OK;
 }
 
@@ -6892,27 +6882,29 @@ static hd_status hdi_pair_fill(hd_laplacian *lap, const hd_csr *L, const hd_csr 
     lap->area = 0;
     for (v = 0; v < lap->n; v++) {
         const int32_t i = lap->row[v];
-        hdi_pair_row r;
+        hdi_pair_row l, b;
+        double l_all;
         root[v] = HUGE_VAL;
         if (lap->holding) lap->holding->leak[v] = 0;
-        if (hdi_pair_fill_row(lap, L, B, v, &r, e) < 0) return e->status;
-        if (i == HD_ROW_INERT || (i == HD_ROW_HELD && r.b_diag == 0 && r.b_off.high == 0)) continue;
-        if (hdi_pair_check(&r, v, e) < 0) return e->status;
-        root[v] = sqrt(r.l_diag + 1e-12 * r.l_abs);
+        if (hdi_pair_fill_row(lap, L, 0, v, &l, e) < 0 || hdi_pair_fill_row(lap, B, 1, v, &b, e) < 0)
+            return e->status;
+        if (i == HD_ROW_INERT || (i == HD_ROW_HELD && b.diag == 0 && b.off.high == 0)) continue;
+        if (hdi_pair_check(&l, &b, v, e) < 0) return e->status;
+        l_all = fabs(l.diag) + l.off.high;
+        root[v] = sqrt(l.diag + 1e-12 * l_all);
         for (p = L->row_ptr[v]; p < L->row_ptr[v + 1] && L->col[p] < v; p++)
             if (fabs(L->val[p]) > (1 + 1e-10) * root[v] * root[L->col[p]])
                 return hdi_fail_row(e, HD_ERR_NOT_POSITIVE,
                                     "L is not positive semi-definite: an entry is larger than the diagonal "
                                     "entries of its row and column allow", L->col[p], v, L->val[p]);
-        if (fabs(r.l_sum.high + r.l_sum.low) > 4 * DBL_EPSILON * r.l_abs) lap->conserves = 0;
-        if (r.b_off.high > 0) {                  /* Gershgorin */
-            const double rest = (r.b_diag - r.b_off.high) - r.b_off.low;
-            lap->b_ratio = hdi_min(lap->b_ratio, (1 - 4 * DBL_EPSILON) * rest / r.b_diag);
-        }
-        lap->area += r.b_all;
+        if (fabs(l.all.high + l.all.low) > 4 * DBL_EPSILON * l_all) lap->conserves = 0;
+        if (b.off.high > 0)                      /* Gershgorin */
+            lap->b_ratio = hdi_min(lap->b_ratio,
+                                   (1 - 4 * DBL_EPSILON) * (b.diag - b.off.high - b.off.low) / b.diag);
+        lap->area += b.all.high;
         if (i < 0) continue;
-        lap->mass[i] = r.b_mass;
-        lap->b_diag[i] = r.b_diag;
+        lap->mass[i] = b.mass;
+        lap->b_diag[i] = b.diag;
     }
     return HD_OK;
 }
@@ -6957,18 +6949,30 @@ static void *hdi_copy(const void *from, uint64_t count, size_t size, hd_context 
 
 enum { HDI_ROWS_AHEAD = 8 };     /* rows of a matrix taken in any order are asked for so many rows early */
 
-/* The values of lap, which may have changed, into its copy in another order. Entry (i, k) is put where (k, i)
- * belongs, which is the same and leaves the columns of every row ascending. fill [n_active]. */
+/* The power of four that brings B's largest diagonal entry near one: exp(-t B^-1 L) is the same with B and t
+ * multiplied by it, to the last bit, and squares of areas neither underflow nor overflow whatever the unit of
+ * length. */
+static double hdi_pair_scale(const hd_laplacian *lap) {
+    double largest = 0;
+    int32_t i;
+    for (i = 0; i < lap->n_active; i++) largest = hdi_max(largest, lap->b_diag[i]);
+    return hdi_even_unit(largest);
+}
+
+/* The values of lap, which may have changed, into its copy in another order, where B is scaled as above. Entry
+ * (i, k) is put where (k, i) belongs, which is the same and leaves the columns of every row ascending.
+ * fill [n_active]. */
 static void hdi_pair_refresh(hd_laplacian *out, const hd_laplacian *lap, int64_t *fill) {
     const int32_t n = out->n_active, *vertex = out->vertex;
     const int64_t *ptr = lap->L.row_ptr;
+    const double scale = hdi_pair_scale(lap);
     int32_t i;
     int64_t p;
     for (i = 0; i < n; i++) {
         const int32_t from = lap->row[vertex[i]];
         fill[from] = out->L.row_ptr[i];
-        out->mass[i] = lap->mass[from];
-        out->b_diag[i] = lap->b_diag[from];
+        out->mass[i] = scale * lap->mass[from];
+        out->b_diag[i] = scale * lap->b_diag[from];
         out->component[i] = lap->component[from];
     }
     for (i = 0; i < n; i++) {
@@ -6981,11 +6985,11 @@ static void hdi_pair_refresh(hd_laplacian *out, const hd_laplacian *lap, int64_t
             const int64_t q = fill[lap->L.col[p]]++;
             out->L.col[q] = i;
             out->L.val[q] = lap->L.val[p];
-            if (lap->B) out->B[q] = lap->B[p];
+            if (lap->B) out->B[q] = scale * lap->B[p];
         }
     }
     out->n_components = lap->n_components;
-    memcpy(out->component_mass, lap->component_mass, (size_t)lap->n_components * sizeof(double));
+    for (i = 0; i < lap->n_components; i++) out->component_mass[i] = scale * lap->component_mass[i];
     out->h = lap->h;
     out->area = lap->area;
     out->b_ratio = lap->b_ratio;
@@ -7027,22 +7031,6 @@ static hd_laplacian *hdi_pair_renumber(const hd_laplacian *lap, const int32_t *p
     if (hdi_scope_end(&s) >= 0) return out;
     hdi_laplacian_free(out, ctx);
     return NULL;
-}
-
-/* Multiplies B by a power of four that brings its largest diagonal entry near one, and returns it: exp(-t
- * B^-1 L) is the same with t multiplied alike, to the last bit, and squares of areas neither underflow
- * nor overflow whatever the unit of length. */
-static double hdi_pair_scale(hd_laplacian *lap) {
-    double largest = 0, scale;
-    int32_t i;
-    int64_t p;
-    for (i = 0; i < lap->n_active; i++) largest = hdi_max(largest, lap->b_diag[i]);
-    scale = hdi_even_unit(largest);              /* norms scale exactly too */
-    for (i = 0; i < lap->n_active; i++) lap->mass[i] *= scale;
-    for (i = 0; i < lap->n_active && lap->B; i++) lap->b_diag[i] *= scale;
-    for (p = 0; p < lap->L.nnz && lap->B; p++) lap->B[p] *= scale;
-    for (i = 0; i < lap->n_components; i++) lap->component_mass[i] *= scale;
-    return scale;
 }
 
 /* ---- point sets ---- */
@@ -14305,7 +14293,6 @@ static hd_status hdi_elim_make(hdi_elim *m, const hd_laplacian *lap, hd_ordering
     if (e->status >= 0 && hdi_pair_analyse(&m->sym, lap, ordering, own, ctx, e) >= 0)
         m->lap = hdi_pair_renumber(lap, m->sym.perm, ctx, e);
     if (m->lap) {
-        (void)hdi_pair_scale(m->lap);
         m->weight = hdi_make_weight(m->lap, ctx, e);
         m->noise = m->weight ? m->weight + lap->n_active : NULL;
         m->noise_shift = m->weight ? m->noise + lap->n_active : NULL;
@@ -17532,14 +17519,6 @@ static hd_status hdi_spec_run(hdi_elim *m, const hdi_spec_goal *goal, double tol
     return e->status;
 }
 
-/* The power of four that brings the largest diagonal entry of B near one, see hdi_sym_scale. */
-static double hdi_heat_scale(const hd_laplacian *lap) {
-    double largest = 0;
-    int32_t i;
-    for (i = 0; i < lap->n_active; i++) largest = hdi_max(largest, lap->b_diag[i]);
-    return hdi_even_unit(largest);
-}
-
 #define HDI_TOL_SPECTRUM 1e-10
 
 static hd_status hdi_spectrum_check(const hd_laplacian *lap, const hd_spectrum_opts *o, hd_error *e) {
@@ -17553,7 +17532,7 @@ static hd_status hdi_spectrum_check(const hd_laplacian *lap, const hd_spectrum_o
 }
 
 static hd_status hdi_spectrum_make(hd_spectrum *s, const hd_spectrum_opts *o, hd_error *e) {
-    const double scale = hdi_heat_scale(s->lap), tol = o->tol > 0 ? o->tol : HDI_TOL_SPECTRUM;
+    const double scale = hdi_pair_scale(s->lap), tol = o->tol > 0 ? o->tol : HDI_TOL_SPECTRUM;
     const hdi_spec_goal goal = {o->count > 0 ? o->count : INT32_MAX,
                                 o->below > 0 ? o->below / scale : HUGE_VAL};
     hdi_elim m;
@@ -18092,7 +18071,6 @@ static hd_status hdi_heat_iterative(hd_heat *heat, hd_error *e) {
         if (hdi_progress(heat->ctx, "order", 0, e) < 0) return e->status;
         heat->lap = hdi_precond_ordered(heat->source, heat->ctx, e);
         if (!heat->lap) return e->status;
-        (void)hdi_pair_scale(heat->lap);
     }
     if (!heat->up.ptr && hdi_upper_make(&heat->up, &heat->lap->L, heat->ctx, e) < 0) return e->status;
     heat->weight = hdi_make_weight(heat->lap, heat->ctx, e);
@@ -18500,7 +18478,7 @@ static double hdi_heat_scaled(const hd_heat *heat, double t) {
 static void hdi_heat_measure_pair(hd_heat *heat) {
     const hd_laplacian *lap = heat->source;
     heat->version = lap->version;
-    heat->scale = hdi_heat_scale(lap);
+    heat->scale = hdi_pair_scale(lap);
     heat->lambda_max = hdi_lambda_bound(lap) / heat->scale;
     hdi_steps_measure(heat);
     heat->drift = hdi_heat_drift(lap, heat->sums) / heat->scale;
@@ -18510,7 +18488,7 @@ static void hdi_heat_measure_pair(hd_heat *heat) {
 static void hdi_elim_renew(hdi_elim *m, const hd_laplacian *lap, int64_t *fill) {
     int32_t i;
     hdi_pair_refresh(m->lap, lap, fill);
-    m->scale = hdi_pair_scale(m->lap);
+    m->scale = hdi_pair_scale(lap);
     for (i = 0; i < lap->n_active; i++) m->weight[i] = 1 / m->lap->b_diag[i];
     m->filled = m->shifted.ready = 0;
     m->resolvent_t = -1;
@@ -18530,10 +18508,7 @@ static hd_status hdi_heat_renew(hd_heat *heat, hd_error *e) {
     if (HDI_HAS_DIRECT && heat->few.ctx) hdi_elim_renew(&heat->few, lap, heat->fill);
     if (HDI_HAS_DIAGONAL) hdi_ground_free(&heat->ground, heat->ctx);
     if (HDI_HAS_DIRECT && HDI_HAS_MODES) hdi_modes_free(&heat->modes, heat->ctx);
-    if (heat->lap) {
-        hdi_pair_refresh(heat->lap, lap, heat->fill);
-        (void)hdi_pair_scale(heat->lap);
-    }
+    if (heat->lap) hdi_pair_refresh(heat->lap, lap, heat->fill);
     if (heat->weight) {
         for (i = 0; i < lap->n_active; i++) heat->weight[i] = 1 / heat->lap->b_diag[i];
         hdi_noise_weights(heat->lap, 1, 0, heat->noise, heat->fam.noise_work);
@@ -23831,8 +23806,8 @@ static hd_status hdi_geo_update(hd_geodesic *g, const double *xyz, hd_error *e) 
     double *mass = g->x;
     int32_t f;
     if (hdi_lap_update(g->lap, xyz, e) < 0) return e->status;
-    for (f = 0; f < moving->m; f++)              /* of those left out all corners are one */
-        if (!(moving->area[f] > 0) && moving->tri[hdi_triple(f)] != moving->tri[hdi_triple(f) + 1])
+    for (f = 0; f < moving->m; f++)              /* areas of those left out are negative */
+        if (moving->area[f] == 0)
             return hdi_fail_face(e, HD_ERR_EMPTY, "geodesic: a face has no area any more",
                                  hdi_face_name(moving, f), -1, 0);
     if (hdi_geo_masses(g, g->lap, mass, e) < 0) return e->status;
