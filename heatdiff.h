@@ -146,8 +146,8 @@
      thread works too, and never waits for a thread that has not begun. Results are the same to the last bit
      for any number of threads. If your own threads each have a plan, set hd_context.n_threads = 1 there.
      A forked child may use and free the objects of its parent. Do not fork while another thread is inside
-     the library. With glibc older than 2.34 link with -lpthread; without it programs run on one thread. On
-     Windows the implementation includes windows.h.
+     the library. With glibc older than 2.34 link with -lpthread. On Windows the implementation includes
+     windows.h.
 
    Licence: MIT or public domain, at your choice; see the end of the file. */
 
@@ -1539,12 +1539,6 @@ HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, const hd_sources *so
 
 #if defined(__linux__) && !defined(HEATDIFF_NO_LARGE_PAGES)
 #include <sys/mman.h>
-#ifdef MADV_HUGEPAGE
-#define HDI_LARGE_PAGES 1
-#endif
-#endif
-#ifndef HDI_LARGE_PAGES
-#define HDI_LARGE_PAGES 0
 #endif
 
 #ifndef HEATDIFF_ASSERT
@@ -1956,7 +1950,7 @@ static hd_status hdi_need(hd_context *ctx, uint64_t more, const char *what, hd_e
 /* Asks for large pages where the system has them to give: fresh memory costs a seventh of the time then, of
  * which a factor needs a lot. */
 static void hdi_large_pages(char *raw, size_t total) {
-#if HDI_LARGE_PAGES
+#if defined(MADV_HUGEPAGE) && !defined(HEATDIFF_NO_LARGE_PAGES)
     const size_t page = 1 << 16;                 /* the largest that Linux has; shorter ones divide it */
     const size_t skip = (page - (size_t)raw % page) % page;
     if (total >= (size_t)4 << 20)
@@ -2176,26 +2170,6 @@ static void hdi_locks_end(hdi_mutex *m, hdi_signal *c, hdi_signal *d) {
 #define HDI_SIGNALS 0
 #endif
 
-/* Before glibc 2.34 these functions are in a library of their own. A program that was linked without it has
- * no threads. */
-#if !defined(HDI_THREADS_WEAK) && defined(__GLIBC__) && __GLIBC__ == 2 && __GLIBC_MINOR__ < 34
-#define HDI_THREADS_WEAK 1
-#endif
-#ifdef HDI_THREADS_WEAK
-#pragma weak pthread_create
-#pragma weak pthread_join
-#pragma weak pthread_attr_setstacksize
-#pragma weak pthread_sigmask
-static int hdi_threads_linked(void) {
-#if HDI_SIGNALS
-    if (!pthread_sigmask) return 0;
-#endif
-    return pthread_create && pthread_join && pthread_attr_setstacksize;
-}
-#else
-static int hdi_threads_linked(void) { return 1; }
-#endif
-
 /* The stack of a thread: some systems give as little as 128 KB, musl among them. */
 enum { HDI_STACK = 1 << 20 };
 
@@ -2244,7 +2218,6 @@ static void hdi_unlock(hdi_mutex *m) { ReleaseSRWLockExclusive(m); }
 static void hdi_signal_wait(hdi_signal *c, hdi_mutex *m) { SleepConditionVariableSRW(c, m, INFINITE, 0); }
 static void hdi_signal_one(hdi_signal *c) { WakeConditionVariable(c); }
 static int64_t hdi_process(void) { return 0; }   /* no fork here */
-static int hdi_threads_linked(void) { return 1; }
 
 static int hdi_thread_start(hdi_thread *t, hdi_thread_body body, void *arg) {
     *t = CreateThread(NULL, 0, body, arg, 0, NULL);
@@ -2263,7 +2236,7 @@ static int32_t hdi_processors(void) {
         for (; mine; mine &= mine - 1) n++;
     return n > 0 ? n : 1;
 }
-#else                                            /* none: nothing of this is called but hdi_threads_linked */
+#else                                            /* none: nothing of this is called */
 typedef int hdi_mutex, hdi_signal, hdi_thread;
 #define HDI_THREAD_BODY static void *
 #define HDI_THREAD_DONE NULL
@@ -2275,7 +2248,6 @@ static void hdi_unlock(hdi_mutex *m) { (void)m; }
 static void hdi_signal_wait(hdi_signal *c, hdi_mutex *m) { (void)c, (void)m; }
 static void hdi_signal_one(hdi_signal *c) { (void)c; }
 static int64_t hdi_process(void) { return 0; }
-static int hdi_threads_linked(void) { return 0; }
 static int hdi_thread_start(hdi_thread *t, hdi_thread_body body, void *arg) {
     return (void)t, (void)body, (void)arg, 0;
 }
@@ -2285,7 +2257,7 @@ static int32_t hdi_processors(void) { return 1; }
 
 /* Threads that work for the context, the calling one included. */
 static int32_t hdi_context_width(const hd_context *ctx) {
-    if (!hdi_threads_linked()) return 1;
+    if (!HDI_THREADS) return 1;
     return ctx->n_threads > 0 ? ctx->n_threads : hdi_processors();
 }
 
@@ -2493,8 +2465,8 @@ static void hdi_threads_end(hd_context *ctx) {
  * they are the user's. */
 static hd_threads *hdi_threads_own(hd_context *ctx, int64_t n) {
     hd_threads *t = ctx->threads;
-    if (!HDI_THREADS || ctx->parallel_for || n < 2) return NULL;
-    if (ctx->n_threads == 1 || ctx->n_holders == 0 || !hdi_threads_linked()) return NULL;
+    if (!HDI_THREADS || ctx->parallel_for || n < 2 || ctx->n_threads == 1 || ctx->n_holders == 0)
+        return NULL;
     if (t && t->walk) return NULL;               /* called by a task */
     if (t && (t->process != hdi_process() || t->asked != ctx->n_threads)) {
         hdi_threads_end(ctx);
@@ -4182,24 +4154,6 @@ static hd_status hdi_csr_check(const hd_csr *a, int symmetric, hd_error *e) {
  * the machine it was tuned on (7 entries a row, 130 MB). */
 enum { HDI_AHEAD = 512 };
 
-/* y = A x for rows [begin, end). */
-static void hdi_csr_apply_rows(const hd_csr *a, const double *HDI_RESTRICT x,
-                               double *HDI_RESTRICT y, int32_t begin, int32_t end) {
-    const int64_t *HDI_RESTRICT Ap = a->row_ptr;
-    const int32_t *HDI_RESTRICT Aj = a->col;
-    const double *HDI_RESTRICT Ax = a->val;
-    int64_t p = Ap[begin];
-    int32_t i;
-    for (i = begin; i < end; i++) {
-        const int64_t row_end = Ap[i + 1];
-        double sum = 0;
-        HDI_PREFETCH_AT(Ax, p + HDI_AHEAD);
-        HDI_PREFETCH_AT(Aj, p + HDI_AHEAD);
-        for (; p < row_end; p++) sum += Ax[p] * x[Aj[p]];
-        y[i] = sum;
-    }
-}
-
 /* Rows in blocks of about the same number of non-zeros would be fairer, but surface rows are all alike. */
 enum { HDI_ROWS_PER_TASK = 16384 };
 
@@ -4862,50 +4816,63 @@ static double hdi_poly_area(const hdi_mesh *mesh, int32_t f, double *twice) {
     return length > 4 * DBL_EPSILON * (double)(end - begin - 2) * sum ? length : 0;
 }
 
-/* Fills frame with two orthonormal vectors in the plane across the unit normal, the first along the
- * longest edge as projected into it. Returns its length. */
-static double hdi_poly_axes(const hdi_mesh *mesh, int32_t f, const double *normal,
-                            double frame[2][3]) {
-    double longest = 0, edge[3], length, along;
-    int64_t c;
-    int q;
-    for (c = mesh->ptr[f]; c < mesh->ptr[f + 1]; c++) {
-        hdi_poly_edge(mesh, c, edge);
-        along = hdi_dot3(edge, normal);
-        for (q = 0; q < 3; q++) edge[q] -= along * normal[q];
-        length = hdi_norm3(edge);
-        if (!(length > longest)) continue;
-        longest = length;
-        for (q = 0; q < 3; q++) frame[0][q] = edge[q] / length;
+/* Eigenvalues w, ascending, and eigenvectors (rows of v) of a symmetric 3 x 3 matrix: a rotation makes it
+ * tridiagonal. */
+static void hdi_eigen3(double a[3][3], double w[3], double v[3][3]) {
+    const double r = hdi_pythag(a[0][1], a[0][2]), c = r > 0 ? a[0][1] / r : 1, s = r > 0 ? a[0][2] / r : 0;
+    const double turned[3][3] = {{1, 0, 0}, {0, c, s}, {0, -s, c}}, both = 2 * c * s * a[1][2];
+    double off[3] = {r, c * s * (a[2][2] - a[1][1]) + (c * c - s * s) * a[1][2], 0}, swap[3];
+    int i, p;
+    w[0] = a[0][0];
+    w[1] = c * c * a[1][1] + s * s * a[2][2] + both;
+    w[2] = s * s * a[1][1] + c * c * a[2][2] - both;
+    memcpy(v, turned, sizeof turned);
+    (void)hdi_tridiag_eigen(w, off, v[0], 3, 3);
+    for (i = 0; i < 3; i++) {
+        p = i % 2;
+        if (w[p] <= w[p + 1]) continue;
+        hdi_copy3(swap, v[p]);
+        hdi_copy3(v[p], v[p + 1]);
+        hdi_copy3(v[p + 1], swap);
+        swap[0] = w[p];
+        w[p] = w[p + 1];
+        w[p + 1] = swap[0];
     }
-    hdi_cross3(normal, frame[0], frame[1]);
-    return longest;
 }
 
 /* The projector on the kernel of the transposed projected edges is I - Q Q', Q [k x 2] an orthonormal
- * basis of their range: Gram and Schmidt, orthogonalised twice. What is kept are the rows of w = D'Q, D
- * the difference along the edges. */
+ * basis of their range: the edges along their first principal axis in the plane, and across it. What is kept
+ * are the rows of w = D'Q, D the difference along the edges. */
 static void hdi_poly_frame(const hdi_mesh *mesh, int32_t f, const double *normal) {
     const int64_t begin = mesh->ptr[f], k = mesh->ptr[f + 1] - begin;
-    double *q = mesh->w + 2 * begin, frame[2][3] = {{0, 0, 0}, {0, 0, 0}}, edge[3], dot, norm, last[2];
-    const double longest = hdi_poly_axes(mesh, f, normal, frame);
+    double *q = mesh->w + 2 * begin, edge[3], cov[3][3], w[3], v[3][3], across[3], last[2];
+    double along, both = 0, along2 = 0, across2 = 0;
     int64_t p;
-    int turn;
-    for (p = 0, norm = 0; p < k; p++) {
+    int r, c;
+    memset(cov, 0, sizeof cov);
+    for (p = 0; p < k; p++) {
         hdi_poly_edge(mesh, begin + p, edge);
-        q[2 * p] = hdi_dot3(edge, frame[0]) / longest;
-        q[2 * p + 1] = hdi_dot3(edge, frame[1]) / longest;
-        norm += q[2 * p] * q[2 * p];
+        along = hdi_dot3(edge, normal);
+        for (r = 0; r < 3; r++) edge[r] -= along * normal[r];
+        for (r = 0; r < 3; r++)
+            for (c = 0; c < 3; c++) cov[r][c] += edge[r] * edge[c];
     }
-    for (p = 0, norm = sqrt(norm); p < k; p++) q[2 * p] /= norm;
-    for (turn = 0; turn < 2; turn++) {
-        for (p = 0, dot = 0; p < k; p++) dot += q[2 * p] * q[2 * p + 1];
-        for (p = 0; p < k; p++) q[2 * p + 1] -= dot * q[2 * p];
+    hdi_eigen3(cov, w, v);
+    hdi_cross3(normal, v[2], across);
+    for (p = 0; p < k; p++) {
+        hdi_poly_edge(mesh, begin + p, edge);
+        q[2 * p] = hdi_dot3(edge, v[2]);
+        q[2 * p + 1] = hdi_dot3(edge, across);
+        along2 += q[2 * p] * q[2 * p];
+        both += q[2 * p] * q[2 * p + 1];
     }
-    for (p = 0, norm = 0; p < k; p++) norm += q[2 * p + 1] * q[2 * p + 1];
-    norm = sqrt(norm);
+    for (p = 0; p < k; p++) {
+        q[2 * p + 1] -= both / along2 * q[2 * p];          /* Gram and Schmidt: what rounding left */
+        q[2 * p] /= sqrt(along2);
+        across2 += q[2 * p + 1] * q[2 * p + 1];
+    }
     /* narrower than that: its direction is rounding */
-    for (p = 0; p < k; p++) q[2 * p + 1] = norm > 1e-12 ? q[2 * p + 1] / norm : 0;
+    for (p = 0; p < k; p++) q[2 * p + 1] *= across2 > 1e-24 * along2 ? 1 / sqrt(across2) : 0;
     last[0] = q[2 * k - 2];
     last[1] = q[2 * k - 1];
     for (p = k - 1; p >= 0; p--) {
@@ -4951,11 +4918,16 @@ static int64_t hdi_block_size(int64_t n) {
     return hdi_most(size, (int64_t)HDI_BLOCK_LEAST);
 }
 
+/* What is counted of faces and edges. */
+enum hdi_counted {
+    HDI_USED, HDI_REPEATED_CORNER, HDI_ZERO_AREA, HDI_REPEATED_FACE,
+    HDI_EDGES, HDI_BOUNDARY, HDI_NONMANIFOLD, HDI_MISORIENTED, HDI_NEGATIVE, HDI_COUNTED
+};
+
 /* What a block of faces or of vertices adds to the report. */
 typedef struct hdi_tally {
-    int32_t n_faces_used, n_repeated_corner, n_zero_area, n_repeated_face;
+    int64_t n[HDI_COUNTED];
     int32_t refused;                    /* the face that is named first, or -1 */
-    int64_t n_edges, n_boundary, n_nonmanifold, n_misoriented, n_negative;
     double steepest;                    /* the largest cotangent, of the smallest angle */
     double length;                      /* of all edges */
 } hdi_tally;
@@ -4977,17 +4949,10 @@ static hdi_tally hdi_tally_all(const hdi_mesh *mesh, int64_t n) {
     const int64_t size = hdi_block_size(n);
     hdi_tally all = hdi_tally_none();
     int64_t i;
+    int k;
     for (i = 0; i * size < n; i++) {
         const hdi_tally *t = mesh->tally + i;
-        all.n_faces_used += t->n_faces_used;
-        all.n_repeated_corner += t->n_repeated_corner;
-        all.n_zero_area += t->n_zero_area;
-        all.n_repeated_face += t->n_repeated_face;
-        all.n_edges += t->n_edges;
-        all.n_boundary += t->n_boundary;
-        all.n_nonmanifold += t->n_nonmanifold;
-        all.n_misoriented += t->n_misoriented;
-        all.n_negative += t->n_negative;
+        for (k = 0; k < HDI_COUNTED; k++) all.n[k] += t->n[k];
         all.steepest = hdi_max(all.steepest, t->steepest);
         all.length += t->length;
         if (t->refused >= 0) hdi_face_refuse(mesh, t->refused, &all);
@@ -5012,13 +4977,13 @@ static HDI_INLINE double hdi_face_measure(const hdi_mesh *mesh, int32_t f, hdi_t
     if (mesh->area[f] < 0) return mesh->area[f];
     for (c = begin; hdi_is_poly(mesh) && c < begin + k; c++) mesh->of[c] = f;
     if (hdi_corners_repeat(v, k)) {
-        t->n_repeated_corner += hdi_copies(mesh, f);
+        t->n[HDI_REPEATED_CORNER] += hdi_copies(mesh, f);
         return 0;
     }
     if (hdi_is_poly(mesh)) area = hdi_poly_measure(mesh, f, &steepest, &weight);
     else area = mesh->len ? hdi_sides_measure(mesh->len + begin, cot)
                           : hdi_triangle_measure(mesh->xyz, v, cot);
-    *(area > 0 ? &t->n_faces_used : &t->n_zero_area) += hdi_copies(mesh, f);
+    t->n[area > 0 ? HDI_USED : HDI_ZERO_AREA] += hdi_copies(mesh, f);
     if (area == 0) return 0;
     if (!hdi_is_poly(mesh)) steepest = weight = hdi_max(cot[0], hdi_max(cot[1], cot[2]));
     if (!(hdi_in_range(area) && weight <= HDI_RANGE)) hdi_face_refuse(mesh, f, t);
@@ -5046,10 +5011,10 @@ static hd_status hdi_faces_measure(hdi_mesh *mesh, hd_mesh_report *rep, hd_conte
                              "the area of a face is outside 1e-100 .. 1e100, or a weight of it above 1e100",
                              hdi_face_name(mesh, all.refused), mesh->tri[hdi_face_begin(mesh, all.refused)],
                              mesh->area[all.refused]);
-    rep->n_repeated_corner = all.n_repeated_corner;
-    rep->n_zero_area = all.n_zero_area;
-    rep->n_faces_used = all.n_faces_used;
-    rep->n_faces = all.n_faces_used + all.n_repeated_corner + all.n_zero_area;
+    rep->n_repeated_corner = (int32_t)all.n[HDI_REPEATED_CORNER];
+    rep->n_zero_area = (int32_t)all.n[HDI_ZERO_AREA];
+    rep->n_faces_used = (int32_t)all.n[HDI_USED];
+    rep->n_faces = rep->n_faces_used + rep->n_repeated_corner + rep->n_zero_area;
     rep->smallest_angle = rep->n_faces_used > 0 ? atan2(1, all.steepest) : 0;
     return HD_OK;
 }
@@ -5282,30 +5247,6 @@ static hd_status hdi_places_make(hdi_places *out, const double *xyz, int32_t n, 
     return hdi_scope_end(&own);
 }
 
-/* Eigenvalues w, ascending, and eigenvectors (rows of v) of a symmetric 3 x 3 matrix: a rotation makes it
- * tridiagonal. */
-static void hdi_eigen3(double a[3][3], double w[3], double v[3][3]) {
-    const double r = hdi_pythag(a[0][1], a[0][2]), c = r > 0 ? a[0][1] / r : 1, s = r > 0 ? a[0][2] / r : 0;
-    const double turned[3][3] = {{1, 0, 0}, {0, c, s}, {0, -s, c}}, both = 2 * c * s * a[1][2];
-    double off[3] = {r, c * s * (a[2][2] - a[1][1]) + (c * c - s * s) * a[1][2], 0}, swap[3];
-    int i, p;
-    w[0] = a[0][0];
-    w[1] = c * c * a[1][1] + s * s * a[2][2] + both;
-    w[2] = s * s * a[1][1] + c * c * a[2][2] - both;
-    memcpy(v, turned, sizeof turned);
-    (void)hdi_tridiag_eigen(w, off, v[0], 3, 3);
-    for (i = 0; i < 3; i++) {
-        p = i % 2;
-        if (w[p] <= w[p + 1]) continue;
-        hdi_copy3(swap, v[p]);
-        hdi_copy3(v[p], v[p + 1]);
-        hdi_copy3(v[p + 1], swap);
-        swap[0] = w[p];
-        w[p] = w[p + 1];
-        w[p + 1] = swap[0];
-    }
-}
-
 typedef struct hdi_plane {
     double axis[3][3];   /* two along it, then the normal: orthonormal */
     double height;       /* of the plane above the point, along the normal */
@@ -5478,8 +5419,8 @@ static int hdi_polygon_clip_hull(hdi_polygon *g, double (*x)[2], int32_t n) {
  *   N. Sharp, K. Crane, A Laplacian for nonmanifold triangle meshes, 2020 (mollification, the tufted cover)
  *   W. Kahan, Miscalculating area and angles of a needle-like triangle, 2014 (areas from lengths)
  * Deviations: the sheets around an edge of three faces or more follow each other by their angle in space, and
- * copies of a face lie in layers (the paper takes any order). An orientable manifold without boundary is its
- * own cover: half of it is not stored. A flip must also lower the sum of the six cotangents. In exact
+ * copies of a face lie in layers (the paper takes any order). A manifold without boundary whose faces are
+ * oriented alike is its own cover: half of it is not stored. A flip must also lower the sum of the six cotangents. In exact
  * arithmetic it always does (Rippa 1990), and so rounding cannot make flips run in circles. Zero-area faces
  * are left out before. Lengths are in units of the mean edge length: nothing overflows, and results do not
  * depend on the unit of the coordinates. Only what a flip needs is unfolded. */
@@ -5535,8 +5476,8 @@ static hd_status hdi_soup_lengths(hdi_surface *z, double delta, hd_mesh_report *
 }
 
 /* ---- covers ----
- * The intrinsic triangulation of a soup: of itself where all its faces can be turned to one side, else of
- * its two-sheeted cover. A face has copies on it, front and back in turn. Only a part is unfolded: what
+ * The intrinsic triangulation of a soup: of itself where it has two sides and all faces show the same one,
+ * else of its two-sheeted cover. A face has copies on it, front and back in turn. Only a part is unfolded: what
  * matters are the lengths of all faces, which are those in space unless they are flipped, and the gluing of
  * those few edges that may not be Delaunay and of what comes to lie beside them. Faces get sides of their
  * own (all copies and sheets) when one of their edges is glued, and an edge is glued, all its sides at once,
@@ -5559,7 +5500,6 @@ typedef struct hdi_cover {
     hd_error *e;
     int32_t n_sheets;
     int close;          /* 1: the boundary is glued to the other sheet; 0: it stays open */
-    int32_t *sheet;     /* [2 m] the connected sheets, united: the front of face f is 2 f, its back 2 f + 1 */
     int32_t n, room;    /* faces that are unfolded, and those that there is room for */
     hdi_side *side;     /* [3 n] */
     double *area;       /* [n] 0: these lengths make no triangle, the face contributes nothing */
@@ -5591,27 +5531,6 @@ static hd_status hdi_cover_room(hdi_cover *c, int64_t more) {
     return c->e->status;
 }
 
-/* Unites the sheets of faces that share an edge of two faces. If no front is united with its own back, the
- * surface has two sides: the other sheet is a mirror image, and one is enough. */
-static int hdi_cover_orientable(const hdi_cover *c) {
-    const hdi_mesh *mesh = &c->z->mesh;
-    const hdi_pair *list = c->list;
-    int32_t s, v;
-    hdi_fill_own(c->sheet, 2 * mesh->m);
-    for (s = 0; s < 3 * mesh->m; s++) {
-        if (hdi_side_edge(mesh, s, &v, c->list) == 2 && list[0].id == s) {
-            const int32_t a = 2 * (s / 3), b = 2 * (int32_t)(list[1].id / 3);
-            /* sides that run the same way: front meets back */
-            const int32_t turned = mesh->tri[s] == mesh->tri[list[1].id];
-            hdi_unite(c->sheet, a, b ^ turned);
-            hdi_unite(c->sheet, a ^ 1, b ^ 1 ^ turned);
-        }
-    }
-    for (v = 0; v < mesh->m; v++)
-        if (hdi_find(c->sheet, 2 * v) == hdi_find(c->sheet, 2 * v + 1)) return 0;
-    return 1;
-}
-
 /* Nothing is unfolded yet. rep knows the edges of the soup. */
 static hd_status hdi_cover_begin(hdi_cover *c, const hdi_surface *z, int close, const hd_mesh_report *rep,
                                  hdi_scope *s) {
@@ -5627,22 +5546,20 @@ static hd_status hdi_cover_begin(hdi_cover *c, const hdi_surface *z, int close, 
     c->first = HDI_TAKE(s, int32_t, m);
     c->glued = HDI_TAKE_ZERO(s, signed char, hdi_triple(m));
     c->list = HDI_TAKE(s, hdi_pair, hdi_fullest(mesh->at, mesh->n));
-    if (!mesh->copies) c->sheet = HDI_TAKE(s, int32_t, 2 * (int64_t)m);
     if (s->e->status < 0) return s->e->status;
     hdi_fill_i32(c->first, m, -1);
-    c->n_sheets = mesh->copies || rep->n_nonmanifold_edges || (close && rep->n_boundary_edges) ||
-                  !hdi_cover_orientable(c) ? 2 : 1;
+    c->n_sheets = mesh->copies || rep->n_nonmanifold_edges || rep->n_misoriented_edges ||
+                  (close && rep->n_boundary_edges) ? 2 : 1;
     for (f = 0; f < m; f++)
         c->most_flips += 3 * HDI_FLIPS_PER_SIDE * c->n_sheets * (int64_t)hdi_copies(mesh, f);
     return HD_OK;
 }
 
-/* Side s of the soup on copy k of its face, front or back, which runs the other way round;
- * HDI_SIDE_OPEN: this sheet is not stored. Of two connected sheets the one whose root is a front is. */
+/* Side s of the soup on copy k of its face, front or back, which runs the other way round; HDI_SIDE_OPEN: no
+ * back is stored. */
 static int32_t hdi_cover_side(const hdi_cover *c, int32_t s, int32_t k, int back) {
-    const int32_t at = c->first[s / 3] + c->n_sheets * k, q = back ? 2 - s % 3 : s % 3;
-    if (c->n_sheets == 2) return 3 * (at + back) + q;
-    return hdi_find(c->sheet, 2 * (s / 3) + back) & 1 ? HDI_SIDE_OPEN : 3 * at + q;
+    const int32_t at = c->first[s / 3] + c->n_sheets * k;
+    return back >= c->n_sheets ? HDI_SIDE_OPEN : 3 * (at + back) + (back ? 2 - s % 3 : s % 3);
 }
 
 /* Unfolds face f: all its copies. */
@@ -6087,30 +6004,28 @@ static void hdi_lap_drop(hd_laplacian *lap) {
 static hd_status hdi_holding_make(hd_laplacian *lap, int border, const int32_t *held, int32_t n_held,
                                   hd_error *e) {
     hdi_scope *keep = hdi_lap_keep(lap, e);
-    hdi_holding *x = HDI_TAKE(keep, hdi_holding, 1);
-    char *mark = HDI_TAKE_ZERO(keep, char, lap->n), *leak = HDI_TAKE_ZERO(keep, char, lap->n);
+    hdi_holding *x = lap->holding = HDI_TAKE(keep, hdi_holding, 1);
     int32_t q;
-    if (e->status < 0) return e->status;
-    lap->holding = x;
+    if (!x) return e->status;
     x->border = border;
-    x->mark = mark;
-    x->leak = leak;
-    for (q = 0; q < n_held; q++) mark[held[q]] = 1;
-    return HD_OK;
+    x->mark = HDI_TAKE_ZERO(keep, char, lap->n);
+    x->leak = HDI_TAKE_ZERO(keep, char, lap->n);
+    for (q = 0; q < n_held && e->status >= 0; q++) {
+        if (held[q] < 0 || held[q] >= lap->n)
+            return hdi_fail_row(e, HD_ERR_INDEX, "laplacian options: a vertex to hold is not in the mesh", q,
+                                -1, held[q]);
+        x->mark[held[q]] = 1;
+    }
+    return e->status;
 }
 
 /* Checks and marks the vertices that the options hold at zero. */
 static hd_status hdi_lap_held(hd_laplacian *lap, const hd_laplacian_opts *o, hd_error *e) {
-    int32_t q;
     hdi_refuse(o && (o->border < HD_BORDER_NATURAL || o->border > HD_BORDER_DIRICHLET),
                "laplacian options: border is natural or Dirichlet", e);
     hdi_refuse(o && (o->n_held < 0 || (o->n_held > 0 && !o->held)),
                "laplacian options: n_held is negative, or held is missing", e);
     if (e->status < 0 || !o || (o->border == HD_BORDER_NATURAL && o->n_held == 0)) return e->status;
-    for (q = 0; q < o->n_held; q++)
-        if (o->held[q] < 0 || o->held[q] >= lap->n)
-            return hdi_fail_row(e, HD_ERR_INDEX, "laplacian options: a vertex to hold is not in the mesh", q,
-                                -1, o->held[q]);
     return hdi_holding_make(lap, o->border == HD_BORDER_DIRICHLET, o->held, o->n_held, e);
 }
 
@@ -6341,12 +6256,12 @@ static void hdi_rows_edges(const hdi_rows *x, hdi_ring *r, hdi_tally *t) {
         const hdi_entry *e = r->entry + r->order[q].id;
         if (e->faces == 1) x->border[v] = 1;
         if (e->to <= v) continue;
-        t->n_negative += e->L > 0;
+        t->n[HDI_NEGATIVE] += e->L > 0;
         if (e->faces == 0 || (!mesh->xyz && !mesh->len)) continue;
-        t->n_edges++;
-        t->n_boundary += e->faces == 1;
-        t->n_nonmanifold += e->faces > 2;
-        t->n_misoriented += (e->faces == 2) & (e->forward != 1);
+        t->n[HDI_EDGES]++;
+        t->n[HDI_BOUNDARY] += e->faces == 1;
+        t->n[HDI_NONMANIFOLD] += e->faces > 2;
+        t->n[HDI_MISORIENTED] += (e->faces == 2) & (e->forward != 1);
         t->length += mesh->len ? e->size : hdi_edge_length(mesh->xyz, v, e->to);
     }
 }
@@ -6418,12 +6333,12 @@ static int32_t hdi_rows_count(hdi_rows *x, const hdi_ring *r, int32_t v) {
 static void hdi_rows_block(hdi_rows *x, hdi_ring *r, int32_t begin, int32_t end, hdi_tally *t) {
     const hdi_mesh *mesh = &x->mesh;
     int32_t v;
-    memset(t, 0, sizeof *t);
+    *t = hdi_tally_none();
     for (v = begin; v < end; v++) {
         x->border[v] = 0;
         if (!x->entry) {
             const int32_t n = hdi_rows_count(x, r, v);
-            if (mesh->xyz || mesh->len) t->n_repeated_face += hdi_mesh_repeats(mesh, r->order, n);
+            if (mesh->xyz || mesh->len) t->n[HDI_REPEATED_FACE] += hdi_mesh_repeats(mesh, r->order, n);
         } else if (mesh->at[v] < mesh->at[v + 1]) {
             hdi_ring_make(r, mesh, x->lump, v);
             hdi_rows_edges(x, r, t);
@@ -6468,7 +6383,7 @@ static hd_status hdi_rows_begin(hdi_rows *x, const hdi_mesh *mesh, hd_mesh_repor
     x->order = HDI_TAKE(&own, hdi_pair, x->strands * x->most);
     if (s->e->status < 0) return hdi_scope_end(&own);
     hdi_fill_i32(x->place, x->strands * (int64_t)n, -1);
-    repeated = hdi_rows_run(x, NULL, s->ctx).n_repeated_face;
+    repeated = (int32_t)hdi_rows_run(x, NULL, s->ctx).n[HDI_REPEATED_FACE];
     rep->n_repeated_face += repeated;
     rep->n_faces_used -= repeated;
     (void)hdi_scope_end(&own);
@@ -6490,12 +6405,12 @@ static void hdi_rows_report(hdi_rows *x, hdi_tally all, hd_mesh_report *rep, dou
         for (q = 1; q < r.n; q++)
             if (r.entry[q].faces == 1) hdi_unite(x->count, v, r.entry[q].to);
     }
-    rep->n_edges = all.n_edges;
-    rep->n_boundary_edges = all.n_boundary;
-    rep->n_nonmanifold_edges = all.n_nonmanifold;
-    rep->n_misoriented_edges = all.n_misoriented;
-    rep->n_boundary_loops = all.n_boundary ? hdi_count_sets(x->count, x->mesh.n) : 0;
-    *h = all.length / (double)all.n_edges;
+    rep->n_edges = all.n[HDI_EDGES];
+    rep->n_boundary_edges = all.n[HDI_BOUNDARY];
+    rep->n_nonmanifold_edges = all.n[HDI_NONMANIFOLD];
+    rep->n_misoriented_edges = all.n[HDI_MISORIENTED];
+    rep->n_boundary_loops = all.n[HDI_BOUNDARY] ? hdi_count_sets(x->count, x->mesh.n) : 0;
+    *h = all.length / (double)all.n[HDI_EDGES];
 }
 
 /* Marks the vertices of the border where that is asked for. */
@@ -6530,7 +6445,7 @@ static void hdi_lap_values(hd_laplacian *lap, hdi_rows *x) {
     const hdi_tally all = hdi_rows_run(x, lap, lap->context);
     int32_t f;
     lap->conserves = 1;
-    lap->mesh.n_negative_weights = all.n_negative;
+    lap->mesh.n_negative_weights = all.n[HDI_NEGATIVE];
     if (!x->mesh.xyz && !x->mesh.len) return;
     hdi_rows_report(x, all, &lap->mesh, &lap->h);
     for (f = 0, lap->area = 0; f < x->mesh.m; f++) lap->area += hdi_max(x->mesh.area[f], 0);
@@ -6696,7 +6611,7 @@ static void hdi_pair_apply(const hd_laplacian *lap, double alpha, double beta,
                            const double *HDI_RESTRICT x, double *HDI_RESTRICT y) {
     const int64_t *HDI_RESTRICT Ap = lap->L.row_ptr;
     const int32_t *HDI_RESTRICT Aj = lap->L.col;
-    const double *HDI_RESTRICT Lx = lap->L.val, *HDI_RESTRICT Bx = lap->B;
+    const double *HDI_RESTRICT Lx = lap->L.val, *HDI_RESTRICT Bx = beta != 0 ? lap->B : NULL;
     int32_t i;
     int64_t p = 0;
     for (i = 0; i < lap->n_active; i++) {
@@ -15175,7 +15090,7 @@ static hd_status hdi_lanczos_step(const hdi_lanczos_task *task, hdi_lanczos *z, 
     double *HDI_RESTRICT v = z->v, *HDI_RESTRICT c = z->c, *HDI_RESTRICT c_old = z->c_old, alpha = 0;
     double norm = 0, scale, off = 0;
     int32_t i;
-    hdi_csr_apply_rows(&lap->L, v, w, 0, n);
+    hdi_pair_apply(lap, 1, 0, v, w);
     for (i = 0; i < n; i++) {
         w[i] -= z->beta[j] * c_old[i];
         alpha += v[i] * w[i];

@@ -867,7 +867,7 @@ static hd_status int_elim(hdi_elim *m, const hd_laplacian *lap, hd_context *ctx,
     memset(m, 0, sizeof *m);
     memset(ctx, 0, sizeof *ctx);
     *e = int_no_error();
-    return hdi_elim_make(m, lap, HD_ORDERING_AUTO, NULL, hdi_heat_scale(lap), ctx, e);
+    return hdi_elim_make(m, lap, HD_ORDERING_AUTO, NULL, hdi_pair_scale(lap), ctx, e);
 }
 
 static void int_lane(hdi_lane *lane, const hd_laplacian *lap, int32_t r, hd_context *ctx, hd_error *e) {
@@ -1405,7 +1405,7 @@ static void int_few_tasks(void) {
         CHECK(w.begun > 0 && w.slept && ctx.waits > 0 && ctx.helped == (uint64_t)w.begun && ctx.regions == 1);
         CHECK(hdi_threads_own(&ctx, TASKS - 1) == w.threads);    /* those that run take part in loops of few tasks, too */
     }
-    CHECK(w.threads || !hdi_threads_linked());
+    CHECK(w.threads || !HDI_THREADS);
     hdi_let_go(&ctx);
     CHECK(!ctx.threads);
 #endif
