@@ -6874,9 +6874,9 @@ static double hdi_pair_scale(const hd_laplacian *lap) {
     return hdi_even_unit(largest);
 }
 
-/* The values of lap, which may have changed, into its copy in another order, where B is scaled as above. Entry
- * (i, k) is put where (k, i) belongs, which is the same and leaves the columns of every row ascending.
- * fill [n_active]. */
+/* The values of lap, which may have changed, into its copy in another order, where B is scaled as above.
+ * Entry (i, k) is put where (k, i) belongs, which is the same and leaves the columns of every row
+ * ascending. fill [n_active]. */
 static void hdi_pair_refresh(hd_laplacian *out, const hd_laplacian *lap, int64_t *fill) {
     const int32_t n = out->n_active, *vertex = out->vertex;
     const int64_t *ptr = lap->L.row_ptr;
