@@ -5420,10 +5420,11 @@ static int hdi_polygon_clip_hull(hdi_polygon *g, double (*x)[2], int32_t n) {
  *   W. Kahan, Miscalculating area and angles of a needle-like triangle, 2014 (areas from lengths)
  * Deviations: the sheets around an edge of three faces or more follow each other by their angle in space, and
  * copies of a face lie in layers (the paper takes any order). A manifold without boundary whose faces are
- * oriented alike is its own cover: half of it is not stored. A flip must also lower the sum of the six cotangents. In exact
- * arithmetic it always does (Rippa 1990), and so rounding cannot make flips run in circles. Zero-area faces
- * are left out before. Lengths are in units of the mean edge length: nothing overflows, and results do not
- * depend on the unit of the coordinates. Only what a flip needs is unfolded. */
+ * oriented alike is its own cover: half of it is not stored. A flip must also lower the sum of the six
+ * cotangents. In exact arithmetic it always does (Rippa 1990), and so rounding cannot make flips run in
+ * circles. Zero-area faces are left out before. Lengths are in units of the mean edge length: nothing
+ * overflows, and results do not depend on the unit of the coordinates. Only what a flip needs is unfolded.
+ * */
 
 /* ---- soups ----
  * Different faces, each of which comes once, as in meshes, or several times, as in the stars of points,
@@ -5477,11 +5478,11 @@ static hd_status hdi_soup_lengths(hdi_surface *z, double delta, hd_mesh_report *
 
 /* ---- covers ----
  * The intrinsic triangulation of a soup: of itself where it has two sides and all faces show the same one,
- * else of its two-sheeted cover. A face has copies on it, front and back in turn. Only a part is unfolded: what
- * matters are the lengths of all faces, which are those in space unless they are flipped, and the gluing of
- * those few edges that may not be Delaunay and of what comes to lie beside them. Faces get sides of their
- * own (all copies and sheets) when one of their edges is glued, and an edge is glued, all its sides at once,
- * when it is looked at. */
+ * else of its two-sheeted cover. A face has copies on it, front and back in turn. Only a part is unfolded:
+ * what matters are the lengths of all faces, which are those in space unless they are flipped, and the
+ * gluing of those few edges that may not be Delaunay and of what comes to lie beside them. Faces get sides
+ * of their own (all copies and sheets) when one of their edges is glued, and an edge is glued, all its sides
+ * at once, when it is looked at. */
 
 enum { HDI_SIDE_OPEN = -1, HDI_SIDE_LOOSE = -2 };    /* instead of a twin: boundary; not glued yet */
 /* flips stop after so many, which no mesh has ever come near to; what is left is counted */
