@@ -6,7 +6,7 @@ closed forms on planes, cylinders and spheres. Then the zip is installed into a 
 PATH), which runs the other half of this file: modes, scale, modifiers, locked groups, mirrors, undo, messages.
 
 Without NumPy or a compiler all is skipped. Without Blender its half is, and says so, also with HEATDIFF_NO_SKIP: Blender is
-400 MB, and its installation takes as long as a good part of all other tests."""
+150 MB of packages, which take a minute of processor time to install."""
 import os
 import re
 import shutil
@@ -575,6 +575,40 @@ def inside():
             self.close(weights(ob, "high"), before, 0 + 1e-12)
             self.close(weights(ob, "low"), kept, 1e-7)
 
+        def test_selected_bones(self):
+            V, Q = tube(12, 41, 0.5, 6)
+            ob, arm = add("arm", V, Q), rig(TWO + [("third", (0, 0, 2), (0, 0, 9))])
+            select(arm, ob)
+            bpy.ops.heat.bone_weights()
+            kept = weights(ob, "low")
+            g = ob.vertex_groups["high"]
+            g.remove(list(range(len(V))))
+            bpy.ops.object.mode_set(mode="POSE")
+            for b in arm.data.bones:
+                b.select = b.name == "high"
+            bpy.ops.heat.bone_weights(only_selected=True, least=0)
+            self.assertEqual(context.mode, "POSE")
+            self.close(weights(ob, "low"), kept, 1e-7)
+            self.close(sum(weights(ob, name) for name in ("low", "high", "third")), np.ones(len(V)), 1e-6)
+            for b in arm.data.bones:
+                b.select = False
+            self.assertIn("the groups of all selected bones are locked", said(bpy.ops.heat.bone_weights, only_selected=True))
+            bpy.ops.object.mode_set(mode="OBJECT")
+
+        def test_weight_paint(self):
+            V, Q = tube(12, 41, 0.5, 6)
+            ob = add("arm", V, Q)
+            select(rig(TWO), ob)
+            bpy.ops.heat.bone_weights()
+            before = weights(ob, "low")
+            select(ob)
+            bpy.ops.object.mode_set(mode="WEIGHT_PAINT")
+            self.assertIn("FINISHED", said(bpy.ops.heat.smooth_weights, t=10))
+            self.assertEqual(context.mode, "PAINT_WEIGHT")
+            bpy.ops.object.mode_set(mode="OBJECT")
+            self.assertGreater(abs(weights(ob, "low") - before).max(), 0.005)
+            self.close(weights(ob, "low") + weights(ob, "high"), np.ones(len(V)), 1e-6)
+
         def test_bad_mesh(self):
             """What bone heat of Blender fails on: an island that no bone is in, faces through each other, a fin, no area."""
             V, Q = tube(16, 41, 0.5, 6)
@@ -669,6 +703,13 @@ def inside():
             self.assertEqual(len(bpy.data.objects["sheet"].vertex_groups), 0)
             bpy.ops.ed.redo()
             self.assertIn("new", bpy.data.objects["sheet"].vertex_groups)
+            bpy.ops.object.mode_set(mode="EDIT")
+            bpy.ops.ed.undo_push(message="edit")
+            bpy.ops.heat.distance("EXEC_DEFAULT", True, name="newer")
+            bpy.ops.ed.undo()                                   # an empty group stays, as after Blender's own "Assign to New Group"
+            bpy.ops.object.mode_set(mode="OBJECT")
+            self.assertEqual(weights(bpy.data.objects["sheet"], "newer").max(), 0)
+            self.assertEqual(weights(bpy.data.objects["sheet"], "new").max(), 1)
 
         def test_esc(self):
             """The part of an operator that works behind the window, with the window's events made by hand."""

@@ -2,10 +2,11 @@
 """build.py - makes the zip of the add-on, which Blender 3.4 and later install from a file
 
     build.py [-o FOLDER] [--library FILE] [--platform NAME]
+    CC=x86_64-w64-mingw32-gcc build.py --platform windows-x64
 
 Copies the Python package of examples/python into the add-on and compiles heatdiff.h beside it (CC and CFLAGS are obeyed; some
-20 seconds). --library takes a shared library instead, such as one compiled for another system, and --platform the name that
-Blender has for that: linux-x64, windows-x64, macos-arm64 ..."""
+20 seconds). --library takes a shared library that is there already. --platform is Blender's name of the system that the library
+is for: linux-x64, windows-x64, macos-arm64 ..."""
 import argparse
 import os
 import platform

@@ -302,6 +302,7 @@ class HEAT_OT_bone_weights(Work, bpy.types.Operator):
     falloff: FloatProperty(name="Sharpness", description="c in H = c/d^2: larger values blend over a shorter way", default=1, min=0.01, soft_max=10)
     visible: BoolProperty(name="Visible Bones", description="Bones count that a vertex sees through the inside of the mesh", default=True)
     least: FloatProperty(name="Smallest Weight", default=0.01, min=0, max=0.5)
+    only_selected: BoolProperty(name="Selected Bones", description="Keep the weights of bones that are not selected in pose mode", default=False)
     most: IntProperty(name="Bones per Vertex", description="0: no limit", default=4, min=0, soft_max=8)
 
     @classmethod
@@ -318,9 +319,11 @@ class HEAT_OT_bone_weights(Work, bpy.types.Operator):
         mesh, world = Mesh(ob), np.array(rig.matrix_world)
         names = [b.name for b in bones]
         heads, tails = (np.array([world[:3, :3] @ getattr(b, end) + world[:3, 3] for b in bones]) for end in ("head_local", "tail_local"))
-        locked = np.array([bool(g and g.lock_weight) for g in map(ob.vertex_groups.get, names)])
+        selected = {b.name for b in context.selected_pose_bones or ()} if self.only_selected else names
+        groups = map(ob.vertex_groups.get, names)
+        locked = np.array([bool(g and g.lock_weight) or g_name not in selected for g, g_name in zip(groups, names)])
         if locked.all():
-            raise Refused("has no group to write to: the groups of all bones are locked")
+            raise Refused("has no group to write to: the groups of all %sbones are locked" % ("selected " * self.only_selected))
         V, F = mirrored(ob, mesh)
         defects, n = mesh.defects(), len(mesh.V)
 
