@@ -2612,12 +2612,13 @@ typedef struct hdi_call {
     hd_context *ctx;
 } hdi_call;
 
-static hd_status hdi_enter(hdi_call *c, hd_context *ctx, hd_error *err) {
+/* Begins a call. given: no argument is missing. */
+static hd_status hdi_enter(hdi_call *c, hd_context *ctx, int given, hd_error *err) {
     memset(&c->context, 0, sizeof c->context);
     c->e = err ? err : &c->error;
     c->ctx = ctx ? ctx : &c->context;
     hdi_error_clear(c->e);
-    return hdi_context_check(c->ctx, c->e);
+    return hdi_context_check(c->ctx, c->e) >= 0 && !given ? hdi_missing(c->e) : c->e->status;
 }
 
 #define HDI_CLEARED(opts) (!(opts)->begin_zero && !(opts)->end_zero)
@@ -2625,7 +2626,7 @@ static hd_status hdi_enter(hdi_call *c, hd_context *ctx, hd_error *err) {
 /* The same where options may name the context. Options that were not cleared are an error, and nothing in
  * them is used. */
 static hd_status hdi_enter_with(hdi_call *c, int cleared, hd_context *ctx, const char *text, hd_error *err) {
-    if (hdi_enter(c, cleared ? ctx : NULL, err) < 0) return c->e->status;
+    if (hdi_enter(c, cleared ? ctx : NULL, 1, err) < 0) return c->e->status;
     return cleared ? HD_OK : hdi_fail(c->e, HD_ERR_ARGUMENT, text);
 }
 
@@ -10773,7 +10774,7 @@ static void hdi_ldl_free(hd_ldl *f) {
 
 /* Begins a call for a real factor, or for packs. given: no array is missing. */
 static hd_status hdi_ldl_enter(hdi_call *c, const hd_ldl *f, int packs, int given, hd_error *err) {
-    if (hdi_enter(c, f ? f->ctx : NULL, err) < 0) return c->e->status;
+    if (hdi_enter(c, f ? f->ctx : NULL, 1, err) < 0) return c->e->status;
     if (!HDI_HAS_DIRECT) return HDI_LEFT_OUT(c->e, DIRECT, "factorisations");
     if (packs && !HDI_HAS_POLE_FACTORS)
         return HDI_LEFT_OUT(c->e, POLE_FACTORS, "factorisations of complex matrices");
@@ -14071,7 +14072,7 @@ static void hdi_warm_start(hdi_lane *lane, const hdi_family *fam, int32_t p, int
         c[m + i] *= unit[i];
         sum = hdi_cadd(sum, hdi_c(c[i], c[m + i]));
     }
-    for (i = 0; i < m; i++) {
+    for (i = 0; i < m && (sum.re != 0 || sum.im != 0); i++) {
         const hd_c64 w = hdi_cdiv(hdi_c(c[i], c[m + i]), sum), *HDI_RESTRICT y = next[pole[i]].x;
         const double sign = conj[i] ? -1 : 1;
         if (!hdi_cfinite(w)) return;
@@ -17665,7 +17666,7 @@ static hd_status hdi_spec_sums_ask(hdi_spec_sums *x, const char *refused, hd_err
     const double zero = 0;
     hdi_call c;
     int32_t q;
-    if (hdi_enter(&c, s ? s->context : NULL, err) < 0) return c.e->status;
+    if (hdi_enter(&c, s ? s->context : NULL, 1, err) < 0) return c.e->status;
     if (!HDI_HAS_SPECTRUM) return HDI_LEFT_OUT(c.e, SPECTRUM, "eigenpairs");
     if (x->power && x->n_times <= 1) {           /* no time */
         x->n_times = 1;
@@ -24656,7 +24657,7 @@ static hd_status hdi_geo_begin(hd_geodesic *g, const hd_sources *sources, const 
         memset(rep, 0, sizeof *rep);
         hdi_error_clear(&rep->error);
     }
-    if (hdi_enter(c, g ? g->ctx : NULL, err) < 0) return c->e->status;
+    if (hdi_enter(c, g ? g->ctx : NULL, 1, err) < 0) return c->e->status;
     if (!HDI_HAS_GEODESIC) return HDI_LEFT_OUT(c->e, GEODESIC, "geodesic distances");
     if (!g || !sources || (sources->count > 0 && !D)) return hdi_missing(c->e);
     if (!g->ready) return hdi_fail(c->e, HD_ERR_ARGUMENT, "geodesic: the last update failed");
@@ -24701,8 +24702,7 @@ HEATDIFF_API hd_status hd_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t
                                             hd_context *ctx, hd_error *err) {
     hdi_call c;
     hdi_scope s;
-    if (hdi_enter(&c, ctx, err) < 0) return c.e->status;
-    if (!out || (n_triplets > 0 && (!i || !j))) return hdi_missing(c.e);
+    if (hdi_enter(&c, ctx, out && (n_triplets <= 0 || (i && j)), err) < 0) return c.e->status;
     if (n_rows < 0 || n_cols < 0 || n_triplets < 0)
         return hdi_fail(c.e, HD_ERR_ARGUMENT, "triplets: a size is negative");
     s = hdi_scope_begin(c.ctx, c.e);
@@ -24712,7 +24712,7 @@ HEATDIFF_API hd_status hd_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t
 
 HEATDIFF_API void hd_csr_free(hd_csr *a, hd_context *ctx) {
     hdi_call c;
-    (void)hdi_enter(&c, ctx, NULL);
+    (void)hdi_enter(&c, ctx, 1, NULL);
     if (a) hdi_csr_free(c.ctx, a);
 }
 
@@ -24734,22 +24734,12 @@ static hd_laplacian *hdi_lap_new(const hd_laplacian_opts *opts, int32_t n, hd_la
     return lap;
 }
 
-static hd_status hdi_lap_done(hd_laplacian **out, hd_laplacian *lap, hd_status status) {
-    if (status >= 0) *out = lap;
+/* Hands out a Laplacian whose pair is there, or after an error frees what there is. */
+static hd_status hdi_lap_end(hd_laplacian **out, hd_laplacian *lap, hd_error *e) {
+    if (e->status >= 0 && hdi_lap_components(lap, e) >= 0) lap->lambda_max = hdi_lambda_known(lap);
+    if (e->status >= 0) *out = lap;
     else hdi_lap_drop(lap);
-    return status;
-}
-
-/* The same once the pair is there. */
-static hd_status hdi_lap_end(hd_laplacian **out, hd_laplacian *lap, hd_status status, hd_error *e) {
-    if (status >= 0) status = hdi_lap_components(lap, e);
-    if (status >= 0) lap->lambda_max = hdi_lambda_known(lap);
-    return hdi_lap_done(out, lap, status);
-}
-
-/* Ends the checks: returns their first failure, else reports that the assembly begins. */
-static hd_status hdi_lap_begin(const hdi_call *c) {
-    return c->e->status < 0 ? c->e->status : hdi_progress(c->ctx, "assemble", 0, c->e);
+    return e->status;
 }
 
 HEATDIFF_API hd_mesh hd_triangles(const double *xyz, int32_t n, const int32_t *tri, int32_t n_tri) {
@@ -24807,14 +24797,26 @@ static void hdi_lap_opts_check(const hd_mesh *m, const hd_laplacian_opts *o, hd_
                "laplacian of polygons: stiffening is not between 0 and 1e100", e);
 }
 
-/* Fills a Laplacian from a mesh whose shape and options are checked. */
-static hd_status hdi_lap_fill(hd_laplacian *lap, const hd_mesh *m, hdi_input *in, double stiffening,
-                              hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e), own = hdi_scope_begin(lap->context, e);
+/* Fills a Laplacian from a mesh. */
+static hd_status hdi_lap_fill(hd_laplacian *lap, const hd_mesh *m, const hd_laplacian_opts *o, hd_error *e) {
+    hdi_scope s, own;
     hdi_surface z;
-    if (hdi_input_open(in, m, stiffening != 0 ? stiffening : 1, &s) >= 0) {
-        if (HDI_HAS_POINTS && in->points && !in->flips) (void)hdi_lap_points(lap, in, e);
-        else (void)hdi_lap_surface(lap, &z, in, &own);
+    hdi_input in;
+    memset(&in, 0, sizeof in);
+    in.full = 1;
+    in.updatable = o->updatable;
+    in.split = m->shape == HD_POLYGONS && lap->kind != HD_LAPLACIAN_POLYGON;
+    (void)hdi_view_check(m, e);
+    hdi_intrinsic_opts(o->triangulation, o->mollify, &in, e);
+    hdi_lap_opts_check(m, o, lap->kind, e);
+    hdi_point_opts(lap, o, e);
+    lap->points.neighbours = hdi_point_neighbours(o->neighbours, m, e);
+    if (m->shape != HD_POINTS || m->nbr_ptr) lap->points.neighbours = 0;
+    if (e->status < 0 || hdi_progress(lap->context, "assemble", 0, e) < 0) return e->status;
+    s = own = hdi_scope_begin(lap->context, e);
+    if (hdi_input_open(&in, m, o->stiffening != 0 ? o->stiffening : 1, &s) >= 0) {
+        if (HDI_HAS_POINTS && in.points && !in.flips) (void)hdi_lap_points(lap, &in, e);
+        else (void)hdi_lap_surface(lap, &z, &in, &own);
     }
     (void)hdi_scope_end(&own);
     return hdi_scope_end(&s);
@@ -24823,30 +24825,18 @@ static hd_status hdi_lap_fill(hd_laplacian *lap, const hd_mesh *m, hdi_input *in
 HEATDIFF_API hd_status hd_laplacian_create(hd_laplacian **out, const hd_mesh *mesh,
                                            const hd_laplacian_opts *opts, hd_error *err) {
     hd_laplacian_opts o;
-    hdi_input in;
     hd_laplacian *lap;
     hdi_call c;
     memset(&o, 0, sizeof o);
-    memset(&in, 0, sizeof in);
     if (opts) o = *opts;
     lap = hdi_lap_new(&o, mesh ? mesh->n : 0, mesh ? hdi_lap_kind(mesh, &o) : o.kind, err, &c);
     if (!lap) return c.e->status;
-    if (!out || !mesh) return hdi_lap_done(out, lap, hdi_missing(c.e));
-    if (!HDI_HAS_POLYGONS && mesh->shape == HD_POLYGONS)
-        return hdi_lap_done(out, lap, HDI_LEFT_OUT(c.e, POLYGONS, "polygons"));
-    if (!HDI_HAS_POINTS && mesh->shape == HD_POINTS)
-        return hdi_lap_done(out, lap, HDI_LEFT_OUT(c.e, POINTS, "points"));
-    (void)hdi_view_check(mesh, c.e);
-    hdi_intrinsic_opts(o.triangulation, o.mollify, &in, c.e);
-    in.full = 1;
-    in.updatable = o.updatable;
-    in.split = mesh->shape == HD_POLYGONS && lap->kind != HD_LAPLACIAN_POLYGON;
-    hdi_lap_opts_check(mesh, &o, lap->kind, c.e);
-    hdi_point_opts(lap, &o, c.e);
-    lap->points.neighbours = hdi_point_neighbours(o.neighbours, mesh, c.e);
-    if (mesh->shape != HD_POINTS || mesh->nbr_ptr) lap->points.neighbours = 0;
-    if (hdi_lap_begin(&c) < 0) return hdi_lap_done(out, lap, c.e->status);
-    return hdi_lap_end(out, lap, hdi_lap_fill(lap, mesh, &in, o.stiffening, c.e), c.e);
+    if (!out || !mesh) (void)hdi_missing(c.e);
+    else if (!HDI_HAS_POLYGONS && mesh->shape == HD_POLYGONS)
+        (void)HDI_LEFT_OUT(c.e, POLYGONS, "polygons");
+    else if (!HDI_HAS_POINTS && mesh->shape == HD_POINTS) (void)HDI_LEFT_OUT(c.e, POINTS, "points");
+    else (void)hdi_lap_fill(lap, mesh, &o, c.e);
+    return hdi_lap_end(out, lap, c.e);
 }
 
 /* Of the options only context, updatable and held are for matrices. */
@@ -24865,42 +24855,39 @@ HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L
     hdi_call c;
     hd_laplacian *lap = hdi_lap_new(opts, L ? L->n_rows : 0, HD_LAPLACIAN_MATRICES, err, &c);
     if (!lap) return c.e->status;
-    if (!out || !L || !B || !L->val || !B->val) return hdi_lap_done(out, lap, hdi_missing(c.e));
+    if (!out || !L || !B || !L->val || !B->val) (void)hdi_missing(c.e);
     hdi_refuse(!hdi_finite(h) || h < 0, "laplacian of matrices: h is negative or not finite", c.e);
     if (opts) hdi_matrix_opts_check(opts, c.e);
-    if (c.e->status < 0 || hdi_csr_check(L, 1, c.e) < 0 || hdi_csr_check(B, 1, c.e) < 0)
-        return hdi_lap_done(out, lap, c.e->status);
-    if (L->n_rows != B->n_rows)
-        return hdi_lap_done(out, lap,
-                            hdi_fail_row(c.e, HD_ERR_ARGUMENT,
-                                         "laplacian of matrices: L and B differ in size", L->n_rows,
-                                         B->n_rows, 0));
-    if (hdi_pair_pattern(lap, L, B, c.e) >= 0 && hdi_pair_replace(lap, L, B, h, c.e) >= 0 && opts &&
-        opts->updatable) (void)hdi_moving_new(lap, c.e);
-    return hdi_lap_end(out, lap, c.e->status, c.e);
+    if (c.e->status >= 0 && hdi_csr_check(L, 1, c.e) >= 0 && hdi_csr_check(B, 1, c.e) >= 0) {
+        if (L->n_rows != B->n_rows)
+            hdi_fail_row(c.e, HD_ERR_ARGUMENT, "laplacian of matrices: L and B differ in size", L->n_rows,
+                         B->n_rows, 0);
+        else if (hdi_pair_pattern(lap, L, B, c.e) >= 0 && hdi_pair_replace(lap, L, B, h, c.e) >= 0 && opts &&
+                 opts->updatable) (void)hdi_moving_new(lap, c.e);
+    }
+    return hdi_lap_end(out, lap, c.e);
 }
 
 HEATDIFF_API hd_status hd_neighbours_nearest(const double *xyz, int32_t n, const double *query, int32_t m,
                                              int32_t k, int32_t *index, double *distance2, hd_context *ctx,
                                              hd_error *err) {
     hdi_call c;
-    if (hdi_enter(&c, ctx, err) < 0) return c.e->status;
+    if (hdi_enter(&c, ctx, 1, err) < 0) return c.e->status;
     return hdi_neighbours(xyz, n, query, m, k, index, distance2, &c);
 }
 
 HEATDIFF_API hd_status hd_laplacian_apply(const hd_laplacian *lap, double alpha, double beta, const double *x,
                                           double *y, hd_error *err) {
     hdi_call c;
-    if (hdi_enter(&c, lap ? lap->context : NULL, err) < 0) return c.e->status;
-    return lap && x && y ? hdi_lap_apply(lap, alpha, beta, x, y, c.e) : hdi_missing(c.e);
+    if (hdi_enter(&c, lap ? lap->context : NULL, lap && x && y, err) < 0) return c.e->status;
+    return hdi_lap_apply(lap, alpha, beta, x, y, c.e);
 }
 
 HEATDIFF_API hd_status hd_laplacian_update(hd_laplacian *lap, const hd_mesh *mesh, hd_error *err) {
     const double *xyz;
     hdi_call c;
     hdi_scope s;
-    if (hdi_enter(&c, lap ? lap->context : NULL, err) < 0) return c.e->status;
-    if (!lap) return hdi_missing(c.e);
+    if (hdi_enter(&c, lap ? lap->context : NULL, lap != NULL, err) < 0) return c.e->status;
     s = hdi_scope_begin(c.ctx, c.e);
     hdi_refuse(!lap->moving, "update: the Laplacian was not made with the option updatable", c.e);
     hdi_refuse(lap->moving && lap->kind == HD_LAPLACIAN_MATRICES,
@@ -24913,8 +24900,8 @@ HEATDIFF_API hd_status hd_laplacian_update(hd_laplacian *lap, const hd_mesh *mes
 HEATDIFF_API hd_status hd_laplacian_update_matrices(hd_laplacian *lap, const hd_csr *L, const hd_csr *B,
                                                     double h, hd_error *err) {
     hdi_call c;
-    if (hdi_enter(&c, lap ? lap->context : NULL, err) < 0) return c.e->status;
-    if (!lap || !L || !B || !L->val || !B->val) return hdi_missing(c.e);
+    if (hdi_enter(&c, lap ? lap->context : NULL, lap && L && B && L->val && B->val, err) < 0)
+        return c.e->status;
     hdi_refuse(!lap->moving || lap->kind != HD_LAPLACIAN_MATRICES,
                "update of matrices: the Laplacian was not made of matrices with the option updatable", c.e);
     hdi_refuse(!hdi_finite(h) || h < 0, "update of matrices: h is negative or not finite", c.e);
@@ -24934,15 +24921,15 @@ HEATDIFF_API void hd_laplacian_free(hd_laplacian *lap) { if (lap) hdi_lap_drop(l
 
 HEATDIFF_API hd_status hd_rational_exp(hd_rational *out, hd_pole_kind kind, int32_t degree, hd_error *err) {
     hdi_call c;
-    (void)hdi_enter(&c, NULL, err);
-    return out ? hdi_rational_get(out, kind, degree, c.e) : hdi_missing(c.e);
+    if (hdi_enter(&c, NULL, out != NULL, err) < 0) return c.e->status;
+    return hdi_rational_get(out, kind, degree, c.e);
 }
 
 HEATDIFF_API hd_status hd_rational_shared(hd_rational *out, int32_t n_times, const double *t, double tol,
                                           hd_context *ctx, hd_error *err) {
     hdi_call c;
-    if (hdi_enter(&c, ctx, err) < 0) return c.e->status;
-    return out && t ? hdi_rational_shared(out, n_times, t, tol, c.ctx, c.e) : hdi_missing(c.e);
+    if (hdi_enter(&c, ctx, out && t, err) < 0) return c.e->status;
+    return hdi_rational_shared(out, n_times, t, tol, c.ctx, c.e);
 }
 
 HEATDIFF_API double hd_rational_eval(const hd_rational *set, double x) { return hdi_rational_eval(set, x); }
@@ -24950,10 +24937,9 @@ HEATDIFF_API double hd_rational_eval(const hd_rational *set, double x) { return 
 HEATDIFF_API hd_status hd_rational_fit(hd_rational *out, int32_t count, const hd_filter *filters,
                                        double lambda_max, hd_context *ctx, hd_error *err) {
     hdi_call c;
-    if (hdi_enter(&c, ctx, err) < 0) return c.e->status;
+    if (hdi_enter(&c, ctx, out && filters, err) < 0) return c.e->status;
     hdi_refuse(count < 1, "filters: there is none", c.e);
-    if (c.e->status < 0) return c.e->status;
-    return out && filters ? hdi_rational_fit(out, count, filters, lambda_max, c.ctx, c.e) : hdi_missing(c.e);
+    return c.e->status < 0 ? c.e->status : hdi_rational_fit(out, count, filters, lambda_max, c.ctx, c.e);
 }
 
 HEATDIFF_API double hd_filter_eval(const hd_filter *filter, double lambda) {
@@ -25094,8 +25080,7 @@ HEATDIFF_API hd_status hd_heat_set_rational(hd_heat *heat, int32_t count, const 
     hd_heat_opts *o = heat ? &heat->opts : NULL;
     hd_rational *copy = NULL;
     hdi_call c;
-    if (hdi_enter(&c, heat ? heat->ctx : NULL, err) < 0) return c.e->status;
-    if (!heat || (count > 0 && !sets)) return hdi_missing(c.e);
+    if (hdi_enter(&c, heat ? heat->ctx : NULL, heat && (count <= 0 || sets), err) < 0) return c.e->status;
     hdi_refuse(count < 0, "heat: the number of sets is negative", c.e);
     hdi_refuse(count > 0 && (o->method == HD_METHOD_KRYLOV || o->solver == HD_SOLVER_LANCZOS),
                "heat: krylov and Lanczos have no use for a pole set", c.e);
@@ -25169,8 +25154,7 @@ HEATDIFF_API hd_status hd_spectrum_create(hd_spectrum **out, const hd_laplacian 
 
 HEATDIFF_API hd_status hd_times_auto(const hd_laplacian *lap, int32_t n_times, double *t, hd_error *err) {
     hdi_call c;
-    (void)hdi_enter(&c, lap ? lap->context : NULL, err);
-    hdi_refuse(!lap || !t, "an argument is missing", c.e);
+    (void)hdi_enter(&c, lap ? lap->context : NULL, lap && t, err);
     hdi_refuse(n_times < 1, "times: there is no time", c.e);
     if (c.e->status >= 0) hdi_lap_times(lap, n_times, t);
     return c.e->status;
@@ -25348,7 +25332,7 @@ HEATDIFF_API hd_status hd_geodesic_update(hd_geodesic *g, const hd_mesh *mesh, h
     const double *xyz;
     hdi_call c;
     hdi_scope s;
-    if (hdi_enter(&c, g ? g->ctx : NULL, err) < 0) return c.e->status;
+    if (hdi_enter(&c, g ? g->ctx : NULL, 1, err) < 0) return c.e->status;
     if (!HDI_HAS_GEODESIC) return HDI_LEFT_OUT(c.e, GEODESIC, "geodesic distances");
     if (!g) return hdi_missing(c.e);
     s = hdi_scope_begin(c.ctx, c.e);
