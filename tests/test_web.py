@@ -1,16 +1,21 @@
 #!/usr/bin/env python3
-"""Tests of examples/web: test_web.py [--keep FOLDER] [--large] [unittest options].
+"""Tests of examples/web and examples/npm: test_web.py [--keep FOLDER] [--large] [unittest options].
 
-Builds the page, compares the WASM module in node with the same C code built natively, and uses the page in headless
-Chromium: picks shapes, clicks, moves the slider, drops files. Needs nothing but Python 3. Parts whose programs are
-missing (clang with wasi-libc, node, chromium, a native compiler) are skipped. --keep FOLDER leaves the page and the
-screenshots there; --large measures a mesh of 36K vertices.
+Module: the page's WASM module in node against the same C code built natively. Package: the npm package is packed,
+installed elsewhere and used in node, against native code as well. Page: the page in headless Chromium: picks shapes,
+clicks, moves the slider, drops files. Three: the page with three.js in Chromium, and the package's types by TypeScript;
+both come from the npm registry.
+
+Needs nothing but Python 3. Parts whose programs are missing (clang with wasi-libc, node, npm, chromium, a native
+compiler, the npm registry) are skipped. --keep FOLDER leaves the page and the screenshots there; --large measures a mesh
+of 36K vertices.
 """
 import base64
 import ctypes
 import json
 import math
 import os
+import re
 import shutil
 import struct
 import subprocess
@@ -22,12 +27,13 @@ import unittest
 sys.dont_write_bytecode = True
 TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 WEB = os.path.join(TOP, "examples", "web")
+NPM = os.path.join(TOP, "examples", "npm")
 sys.path.insert(0, WEB)
 import build  # noqa: E402
 
 FOLDER, LARGE, BUILT = None, False, {}
 DIRECT, KRYLOV = 2, 3
-PAGE_LIMIT, MODULE_LIMIT, COLUMN_LIMIT = 1500000, 336000, 146000
+PAGE_LIMIT, MODULE_LIMIT, COLUMN_LIMIT, PACKAGE_LIMIT = 1500000, 336000, 146000, 330000
 
 
 def program(*names):
@@ -37,18 +43,24 @@ def program(*names):
 CHROMIUM = program("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 
 
-def built():
-    """The page, made once; None where the compiler cannot make it."""
-    if "page" not in BUILT:
+def compiles():
+    """Whether there is a compiler for the module, with its C library."""
+    if "compiles" not in BUILT:
         clang = os.environ.get("CLANG", "clang")
         probe = os.path.join(FOLDER, "probe.c")
         with open(probe, "w") as f:
             f.write("#include <math.h>\n#include <stdlib.h>\ndouble f(double x) { return sin(x); }\n")
         command = [clang] + build.LINK + ["-Wl,--export=f", probe, "-o", probe + ".wasm"]
         quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-        there = shutil.which(clang) and subprocess.run(command, **quiet).returncode == 0
-        BUILT["wasm"] = build.module(FOLDER) if there else None
-        BUILT["page"] = build.page(FOLDER, BUILT["wasm"]) if there else None
+        BUILT["compiles"] = shutil.which(clang) and subprocess.run(command, **quiet).returncode == 0
+    return BUILT["compiles"]
+
+
+def built():
+    """The page, made once; None where the compiler cannot make it."""
+    if "page" not in BUILT:
+        BUILT["wasm"] = build.module(FOLDER) if compiles() else None
+        BUILT["page"] = build.page(FOLDER, BUILT["wasm"]) if compiles() else None
     return BUILT["page"]
 
 
@@ -57,8 +69,8 @@ def absent(what):
     raise (AssertionError if os.environ.get("HEATDIFF_NO_SKIP") else unittest.SkipTest)(what)
 
 
-def needs(*what):
-    if not built():
+def needs(*what, page=True):
+    if not (built() if page else compiles()):
         absent("no clang for wasm32-wasi")
     for name, there in what:
         if not there:
@@ -156,16 +168,16 @@ def in_node(steps):
     return rows
 
 
-def native_library():
-    if "native" not in BUILT:
+def native_library(source=os.path.join(WEB, "web.c")):
+    if source not in BUILT:
         cc = program(os.environ.get("CC", "cc"), "gcc", "clang")
-        lib = os.path.join(FOLDER, "web.so")
-        BUILT["native"] = None
+        lib = os.path.join(FOLDER, os.path.basename(source) + ".so")
+        BUILT[source] = None
         if cc:                                   # times are printed with --large only
             subprocess.run([cc, "-std=gnu99", "-O2" if LARGE else "-O1", "-ffp-contract=off", "-DNDEBUG", "-DHEATDIFF_NO_SIMD", "-fPIC",
-                            "-shared", "-Wno-unused-function", os.path.join(WEB, "web.c"), "-o", lib, "-lm"], check=True)
-            BUILT["native"] = lib
-    return BUILT["native"]
+                            "-shared", "-Wno-unused-function", source, "-o", lib, "-lm"], check=True)
+            BUILT[source] = lib
+    return BUILT[source]
 
 
 def natively(steps):
@@ -310,6 +322,167 @@ class Module(unittest.TestCase):
             print("%-42s wasm %7.1f ms, native %7.1f ms, ratio %.2f"
                   % (name, a["ms"], b["ms"], a["ms"] / b["ms"]), file=sys.stderr)
         print("%d vertices, %.0f MB" % (there[0]["n"], there[-1]["bytes"] / 2 ** 20), file=sys.stderr)
+
+
+# ---- the package ----
+
+def npm(folder, *arguments, **more):
+    """Runs npm with a cache of its own and without a word about itself; returns what it prints."""
+    environment = dict(os.environ, npm_config_cache=os.path.join(FOLDER, "npm-cache"), npm_config_update_notifier="false",
+                       npm_config_audit="false", npm_config_fund="false")
+    run = subprocess.run([program("npm"), *arguments], cwd=folder, env=environment, stdout=subprocess.PIPE,
+                         stderr=subprocess.PIPE, universal_newlines=True, **more)
+    if run.returncode:
+        raise AssertionError("npm %s: %s" % (" ".join(arguments), run.stderr[-3000:]))
+    return run.stdout
+
+
+def packed():
+    """The tarball and the names in it, packed once, from a copy: the source tree stays as it is."""
+    if "package" not in BUILT:
+        tree = os.path.join(FOLDER, "tree")
+        for name in ("examples/web", "examples/npm"):
+            shutil.copytree(os.path.join(TOP, name), os.path.join(tree, name), ignore=shutil.ignore_patterns(
+                "node_modules", "*.tgz", "heatdiff.wasm", "inline.js", "LICENSE", "__pycache__"))
+        for name in ("heatdiff.h", "LICENSE"):
+            shutil.copy(os.path.join(TOP, name), tree)
+        said = npm(os.path.join(tree, "examples", "npm"), "pack", "--json", "--pack-destination", FOLDER)
+        said = json.loads(said[said.index("["):])[0]
+        BUILT["package"] = os.path.join(FOLDER, said["filename"]), {f["path"] for f in said["files"]}
+    return BUILT["package"]
+
+
+def installed(*more):
+    """A folder with the package, and others of the registry."""
+    if more in BUILT:
+        return BUILT[more]
+    folder = BUILT[more] = tempfile.mkdtemp(dir=FOLDER)
+    with open(os.path.join(folder, "package.json"), "w") as f:
+        json.dump({"name": "user", "private": True, "type": "module"}, f)
+    npm(folder, "install", *([] if more else ["--offline"]), packed()[0], *more, timeout=240)
+    return folder
+
+
+def natively_packed(mesh, queries):
+    """What module.c says natively: the mean edge, three times, and the queries' values."""
+    lib, real, whole = ctypes.CDLL(native_library(os.path.join(NPM, "module.c"))), ctypes.c_double, ctypes.c_int32
+    lib.module_create.restype = lib.module_alloc.restype = ctypes.c_void_p
+    lib.module_facts.restype = ctypes.POINTER(real)
+    lib.module_alloc.argtypes = [ctypes.c_size_t]
+
+    def block(kind, values):
+        p = lib.module_alloc(ctypes.sizeof(kind) * len(values))
+        ctypes.memmove(p, (kind * len(values))(*values), ctypes.sizeof(kind) * len(values))
+        return ctypes.c_void_p(p)
+
+    n, n_faces = len(mesh["positions"]) // mesh["stride"], len(mesh["indices"]) // 3
+    s = ctypes.c_void_p(lib.module_create(n, block(ctypes.c_float, mesh["positions"]), 32, ctypes.c_size_t(4 * mesh["stride"]), n_faces,
+                                          block(ctypes.c_uint32, mesh["indices"]), 32, 0, 0, 0, 0, None, real(0)))
+    h, three = lib.module_facts()[4], (real * 3)()
+    lib.module_times(s, 3, three)
+    answers = []
+    for op, times, sources, words in queries:
+        t, v, many = (real * len(times))(*(x * h * h for x in times)), (whole * len(sources))(*sources), max(1, len(times))
+        out, list_ = (real * (3 * n * many * max(1, len(sources))))(), (whole * n)()
+        size = n * many * len(sources)
+        if op == "columns":
+            status = lib.module_columns(s, words["method"][0], words["kernel"][0], len(t), t, len(v), v, out)
+        elif op == "signature":
+            status, size = lib.module_signature(s, 1, len(t), t, out, (real * many)()), n * many
+        elif op == "distance":
+            status = lib.module_distance(s, words["kind"][0], len(t), t, len(v), v, out)
+        elif op == "geodesic":
+            status = lib.module_geodesic(s, 0, len(v), v, out)
+        elif op == "sample":
+            status, size = lib.module_sample(s, 0, real(t[0]), 0, v, 5, list_, out), 5
+        else:
+            xyz, size = (real * (3 * n))(), 3 * n
+            lib.module_coordinates(s, xyz)
+            status = lib.module_apply(s, 0, 1, t, 3, xyz, out)
+        assert status == 0, op
+        values = list(list_[:5] if op == "sample" else out[:size])
+        if op == "smooth":
+            values = [values[i % 3 * n + i // 3] for i in range(3 * n)]
+        options = {k: w[1] for k, w in words.items()}
+        args = {"sample": [5, list(t)], "smooth": [list(t)], "signature": [list(t)], "geodesic": [sources]}.get(
+            op, [sources, list(t) or None, options])
+        answers.append({"op": op, "args": args, "values": values})
+    lib.module_dispose(s)
+    return dict(mesh, h=h, times=list(three), answers=answers)
+
+
+PACKAGE_QUERIES = [
+    ("columns", [30.0], [7], {"method": (DIRECT, "direct"), "kernel": (1, "symmetric")}),
+    ("columns", [2.0, 4.0, 8.0], [33, 5], {"method": (KRYLOV, "krylov"), "kernel": (0, "operator")}),
+    ("columns", [3.0], [2], {"method": (1, "iterative"), "kernel": (0, "operator")}),
+    ("signature", [20.0, 40.0], [], {}), ("smooth", [2.0], [], {}), ("geodesic", [], [11, 2], {}), ("sample", [30.0], [], {}),
+    ("distance", [9.0, 30.0], [4, 500], {"kind": (0, "classical")}), ("distance", [], [3], {"kind": (3, "biharmonic")})]
+
+
+class Package(unittest.TestCase):
+    def setUp(self):
+        needs(("node", program("node", "nodejs")), ("npm", program("npm")), page=False)
+
+    def test_in_node(self):
+        needs(("native compiler", native_library(os.path.join(NPM, "module.c"))), page=False)
+        lines = ring(40, 20).split("\n")
+        single = ctypes.c_float
+        mesh = {"stride": 5, "indices": [int(i) - 1 for l in lines if l[:1] == "f" for i in l.split()[1:]],
+                "positions": [single(float(x)).value for l in lines if l[:1] == "v" for x in l.split()[1:] + ["7", "nan"]]}
+        folder = installed()
+        given = natively_packed(mesh, PACKAGE_QUERIES)
+        given["positions"] = [x if math.isfinite(x) else 0 for x in given["positions"]]     # nobody reads the two behind z
+        with open(os.path.join(folder, "answers.json"), "w") as f:
+            f.write(json.dumps(given).replace("Infinity", "1e999"))
+        shutil.copy(os.path.join(TOP, "tests", "npm.mjs"), folder)
+        run = subprocess.run([program("node", "nodejs"), "--expose-gc", "npm.mjs", "answers.json"], cwd=folder, timeout=300,
+                             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
+        print(run.stdout, file=sys.stderr)
+        self.assertEqual(run.returncode, 0, run.stdout[-6000:])
+        self.assertGreater(run.stdout.count("ok: "), 14)
+
+    def test_contents(self):
+        path, names = packed()
+        with open(os.path.join(NPM, "package.json")) as f:
+            about = json.load(f)
+        wanted = {name[2:] for e in about["exports"].values() for name in (e.values() if isinstance(e, dict) else [e])}
+        self.assertEqual(names, wanted | {"core.js", "inline.js", "thread.js", "README.md", "LICENSE", "package.json"})
+        with open(os.path.join(TOP, "heatdiff.h")) as f:
+            header = f.read()
+        version = [re.search(r"#define HD_VERSION_%s (\d+)" % part, header).group(1) for part in ("MAJOR", "MINOR", "PATCH")]
+        self.assertEqual(about["version"], ".".join(version))
+        wasm = os.path.getsize(os.path.join(FOLDER, "tree", "examples", "npm", "heatdiff.wasm"))
+        print("module of the package %.0f KB, package %.0f KB" % (wasm / 1000, os.path.getsize(path) / 1000), file=sys.stderr)
+        if shutil.which("wasm-opt"):
+            self.assertLess(wasm, PACKAGE_LIMIT)
+
+    def test_words(self):
+        """Words stand in the order of the header's enums; types name what there is."""
+        with open(os.path.join(TOP, "heatdiff.h")) as f:
+            header = re.sub(r"/\*.*?\*/", "", f.read(), flags=re.S)
+        with open(os.path.join(NPM, "core.js")) as f:
+            core = f.read()
+        words = re.search(r"WORDS = \{(.*?)\n\};", core, re.S).group(1)
+        for name, body in re.findall(r"(\w+): \[(.*?)\]", words, re.S):
+            enum = re.findall(r"\b(HD_[A-Z_0-9]+)", re.search(r"typedef enum %s \{(.*?)\}" % name, header, re.S).group(1))
+            here = ["HD_" + w.upper().replace("-", "_") for w in re.findall(r'"(.*?)"', body)]
+            prefix = os.path.commonprefix(enum)
+            enum = ["HD_" + e[len(prefix):] for e in enum]
+            self.assertEqual(here, enum[:len(here)], name)
+            self.assertLessEqual(set(enum[len(here):]), {"HD_MATRICES"}, name)
+        code = "for (const e of process.argv.slice(1)) console.log(JSON.stringify(Object.keys(await import(e)).sort()))"
+        entries = ["heatdiff", "heatdiff/slim", "heatdiff/worker", "heatdiff/three"]
+        run = subprocess.run([program("node", "nodejs"), "--input-type=module", "-e", code] + entries, cwd=installed(), check=True,
+                             stdout=subprocess.PIPE)
+        for entry, line in zip(("index", "slim", "worker", "three"), run.stdout.splitlines()):
+            with open(os.path.join(NPM, entry + ".d.ts")) as f:
+                typed = f.read()
+            names = set(re.findall(r"export (?:const|class|function) (\w+)", typed))
+            if entry != "three":
+                names |= {"Answer", "HeatError", "supported"}
+            if entry == "slim":
+                names |= {"Surface", "memory", "ready"}
+            self.assertEqual(names, set(json.loads(line)), entry)
 
 
 # ---- the page in a browser ----
