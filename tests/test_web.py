@@ -21,8 +21,10 @@ import struct
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 import unittest
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 
 sys.dont_write_bytecode = True
 TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
@@ -503,7 +505,7 @@ class Browser:
             [CHROMIUM, "--headless=new", "--no-sandbox", "--disable-quic", "--no-first-run", "--disable-sync",
              "--disable-background-networking", "--disable-component-update", "--disable-extensions", "--use-gl=angle",
              "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--hide-scrollbars",
-             "--host-resolver-rules=MAP * ~NOTFOUND", "--remote-debugging-pipe", "--user-data-dir=" + self.profile,
+             "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1", "--remote-debugging-pipe", "--user-data-dir=" + self.profile,
              "about:blank"],
             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, close_fds=False, preexec_fn=wire)
         os.close(from_us)
@@ -517,7 +519,7 @@ class Browser:
                  mobile=phone)
         if phone:
             self.ask("Emulation.setTouchEmulationEnabled", enabled=True)
-        self.ask("Page.navigate", url="file://" + page)
+        self.ask("Page.navigate", url=page if page.startswith("http:") else "file://" + page)
 
     def read(self):
         while b"\0" not in self.buffer:
@@ -774,6 +776,114 @@ class Page(unittest.TestCase):
             self.mode("kernel")
             b.until(IDLE, 120)
             b.shot("shape-" + value.replace(":", "-"))
+        self.assertEqual(b.errors, [])
+
+
+# ---- three.js, and types ----
+
+TYPED = """
+import { ready, Surface, HeatError, type Answer, type Report } from "heatdiff";
+import { init } from "heatdiff/slim";
+import { Surface as InWorker } from "heatdiff/worker";
+import { GeometrySurface } from "heatdiff/three";
+await ready;
+await init(new URL("x.wasm", "http://127.0.0.1"));
+const s = new Surface(new Uint16Array(3), new Float32Array(9), 3, { kind: "voronoi-cot", triangulation: "delaunay" });
+const a: Answer<Report> = s.columns([0, 1], ["10h2", 0.3], { kernel: "symmetric", progress: (stage, done) => done < 1 });
+const bound: number = a.report.bound + s.signature("auto:4").trace[0] + s.sample(3, 1).vertices[0];
+const none: null = s.geodesic(0, { nearest: true }).report.bound;
+const w = await InWorker.create(null, new Float64Array(9), 3, { signal: new AbortController().signal });
+const column: Float64Array = (await w.distance(0, "10h2", { kind: "weighted" })).column(0, 0);
+declare const geometry: { isBufferGeometry: true; attributes: Record<string, unknown>; index: null };
+const attribute = new GeometrySurface(geometry, { say: null }).smooth("2h2").attribute;
+try { s.dispose(); } catch (e) { if (e instanceof HeatError) console.log(e.status, e.face, bound, none, column, attribute); }
+// @ts-expect-error: no such word
+s.columns(0, 1, { kernel: "both" });
+// @ts-expect-error: a list of numbers is no typed array
+new Surface([0, 1, 2], new Float32Array(9));
+// @ts-expect-error: no such option
+s.geodesic(0, { far: true });
+"""
+
+
+class Three(unittest.TestCase):
+    def folder(self):
+        needs(("node", program("node", "nodejs")), ("npm", program("npm")), page=False)
+        packed()
+        try:
+            return installed("three@0.187", "typescript@5")
+        except (AssertionError, subprocess.TimeoutExpired) as e:
+            absent("npm registry: %s" % e)
+
+    def test_types(self):
+        folder = self.folder()
+        with open(os.path.join(folder, "typed.mts"), "w") as f:
+            f.write(TYPED)
+        tsc = os.path.join(folder, "node_modules", "typescript", "bin", "tsc")
+        for resolution in (["--module", "nodenext"], ["--module", "esnext", "--moduleResolution", "bundler"]):
+            run = subprocess.run([program("node", "nodejs"), tsc, "--noEmit", "--strict", "--target", "es2022", "--lib", "es2022,dom",
+                                  *resolution, "typed.mts"], cwd=folder, stdout=subprocess.PIPE, universal_newlines=True)
+            self.assertEqual(run.returncode, 0, run.stdout)
+
+    def open(self):
+        needs(("chromium", CHROMIUM), page=False)
+        folder = self.folder()
+        for name in ("index.html", "page.js"):
+            shutil.copy(os.path.join(NPM, "page", name), folder)
+
+        class Quiet(SimpleHTTPRequestHandler):
+            extensions_map = dict(SimpleHTTPRequestHandler.extensions_map, **{".wasm": "application/wasm", ".js": "text/javascript"})
+
+            def __init__(self, *args):
+                super().__init__(*args, directory=folder)
+
+            def log_message(self, *args):
+                pass
+
+        server = ThreadingHTTPServer(("127.0.0.1", 0), Quiet)
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        self.addCleanup(server.server_close)
+        self.addCleanup(server.shutdown)
+        self.browser = Browser("http://127.0.0.1:%d/index.html" % server.server_port, 800, 600)
+        self.addCleanup(self.browser.close)
+        return self.browser
+
+    def test_page(self):
+        b = self.open()
+        b.until("window.example && example.geometry.attributes.heat", 120)
+        self.assertIn("heatdiff: 14749 vertices stand at 14400 places", b.text("said"))
+        self.assertEqual(b.js("example.geometry.attributes.heat.constructor.name"), "Float32BufferAttribute")
+        self.assertEqual(b.js("example.surface.info.boundaryEdges"), 0, "the seams are welded")
+        self.assertEqual(b.js("example.geometry.attributes.heat.array[example.source]"), 0)
+        before = b.shot("three-geodesic")
+        colours = "(() => { const c = document.querySelector('canvas'), s = new Set(), g = c.getContext('webgl2'), p = new Uint8Array(4);" \
+                  "for (let y = 60; y < 540; y += 9) for (let x = 60; x < 740; x += 9) { g.readPixels(x, y, 1, 1, g.RGBA, g.UNSIGNED_BYTE, p);" \
+                  "s.add(String(p)); } return s.size; })()"
+        self.assertGreater(b.js(colours), 200, before)
+        source = b.js("example.source")
+        b.click(*b.js("(() => { for (let x = 520; x > 300; x -= 5) if (example.pick(x, 300) >= 0 && example.pick(x, 300) !== example.source) return [x, 300]; })()"))
+        b.until("example.source !== %d" % source)
+        for what in ("distance", "columns", "signature", "geodesic"):
+            b.js("(() => { const s = document.getElementById('what'); s.value = '%s'; s.dispatchEvent(new Event('change')); })()" % what)
+            self.assertIn("about" if what == "geodesic" else "at most", b.text("said"))
+            b.shot("three-" + what)
+        # the worker, and the module beside the page, in a browser too
+        self.assertEqual(b.js("""(async () => {
+            const { Surface } = await import('./node_modules/heatdiff/worker.js'), { weld } = await import('heatdiff/three');
+            const { positions, indices } = weld(example.geometry), stages = new Set();
+            const s = await Surface.create(indices, positions), heat = await s.columns(0, '60h2', { progress: (name) => void stages.add(name) });
+            const here = example.surface.surface.columns(0, '60h2'), stop = new AbortController();
+            const work = s.signature('auto:16', { signal: stop.signal, progress: () => stop.abort() }).catch((e) => e.status);
+            const same = heat.values.every((x, i) => Math.abs(x - here.values[i]) < 1e-7), status = await work;
+            const again = await s.columns(0, '60h2');
+            s.dispose();
+            return [same, status, again.values.length].join(' ');
+        })()"""), "true HD_ERR_CANCELLED 14400")
+        self.assertEqual(b.js("""(async () => {
+            const { init, Surface } = await import('./node_modules/heatdiff/slim.js');
+            await init('./node_modules/heatdiff/heatdiff.wasm');
+            return new Surface(null, new Float32Array(90).map((x, i) => Math.sin(i * i))).n;
+        })()"""), 30)
         self.assertEqual(b.errors, [])
 
 
