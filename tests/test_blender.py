@@ -278,7 +278,8 @@ class Zip(unittest.TestCase):
         with zipfile.ZipFile(path) as z:
             names = z.namelist()
         self.assertEqual({n.split("/")[0] for n in names}, {build.NAME})
-        for n in ("__init__.py", "blender_manifest.toml", "LICENSE", "heatdiff/__init__.py", "heatdiff/libheatdiff.so"):
+        library = "heatdiff/libheatdiff" + build.SUFFIX[build.this_platform().split("-")[0]]
+        for n in ("__init__.py", "blender_manifest.toml", "LICENSE", "heatdiff/__init__.py", library):
             self.assertIn(build.NAME + "/" + n, names)
         self.assertFalse([n for n in names if "pycache" in n])
         self.assertEqual(path, os.path.join(WORK, "heat_on_meshes-%s-%s.zip" % (
@@ -517,6 +518,13 @@ def inside():
             g = ob.vertex_groups.new(name="kept")
             g.add([2], 0.25, "REPLACE")
             g.lock_weight = True
+            ob.vertex_groups.new(name="both")
+            self.assertIn("has a vertex group both already: the attribute needs another name",
+                          said(bpy.ops.heat.distance, target="ATTRIBUTE", name="both"))
+            ob.vertex_groups.remove(ob.vertex_groups["both"])
+            bpy.ops.heat.distance(target="ATTRIBUTE", name="field")
+            self.assertIn("has an attribute field already: the group needs another name", said(bpy.ops.heat.distance, name="field"))
+            self.assertRegex(said(bpy.ops.heat.distance, target="ATTRIBUTE", name="position"), "sheet (has|cannot have) an attribute position")
             self.assertIn("sheet has a locked group kept", said(bpy.ops.heat.distance, name="kept"))
             self.assertEqual(weights(ob, "kept").sum(), 0.25)
             self.assertIn("sheet has no vertex group that is not locked", said(bpy.ops.heat.smooth_weights))
@@ -618,7 +626,10 @@ def inside():
             ob = add("bad", V, np.zeros((0, 3)))
             ob.data.clear_geometry()
             ob.data.from_pydata(V.tolist(), [(0, n)], faces)
-            select(rig(TWO), ob)
+            arm = rig(TWO)
+            select(arm, ob)
+            self.assertIn("failed to find solution", said(bpy.ops.object.parent_set, type="ARMATURE_AUTO"))
+            self.assertEqual(weights(ob, "low").max() + weights(ob, "high").max(), 0)
             text = said(bpy.ops.heat.bone_weights)
             self.assertIn("FINISHED", text)
             for line in ("bad: 1 edge without length (first: vertices 0 and %d)" % n, "bad: 1 face without area (first: face %d)" % len(Q),

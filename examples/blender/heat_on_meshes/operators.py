@@ -125,6 +125,8 @@ def write_attribute(me, name, values, domain, kind):
     if a and (a.domain, a.data_type) != (domain, kind):
         raise Refused("has an attribute %s already, of another kind" % name)
     a = a or me.attributes.new(name, kind, domain)
+    if not a:
+        raise Refused("cannot have an attribute %s" % name)
     a.data.foreach_set("value", np.ascontiguousarray(values, np.float32 if kind == "FLOAT" else np.int32))
     me.update()
     return a.name
@@ -178,7 +180,7 @@ class Work:
             except hd.CancelledError:
                 self.cancelled = True
                 return
-            except (hd.Error, ValueError, MemoryError) as error:
+            except Exception as error:                          # told in finish(): nobody sees what a thread raises
                 self.answers.append((ob, None, error))
 
     def finish(self, context):
@@ -189,7 +191,7 @@ class Work:
             for ob, write, error in self.answers:
                 try:
                     if error:
-                        raise Refused("cannot be used: %s" % error)
+                        raise Refused("cannot be used: %s" % (str(error) or type(error).__name__))
                     write()
                     self.written += 1
                 except Refused as refused:
@@ -271,6 +273,10 @@ class HEAT_OT_distance(Work, bpy.types.Operator):
         group = ob.vertex_groups.get(self.name)
         if self.target == "GROUP" and group and group.lock_weight:
             raise Refused("has a locked group %s" % self.name)
+        if self.target == "GROUP" and not group and self.name in ob.data.attributes:
+            raise Refused("has an attribute %s already: the group needs another name" % self.name)
+        if self.target == "ATTRIBUTE" and group:
+            raise Refused("has a vertex group %s already: the attribute needs another name" % self.name)
         defects = mesh.defects()
 
         def task(progress):
