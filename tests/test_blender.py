@@ -700,6 +700,12 @@ def inside():
                 self.assertEqual(len(set(label[side])), 1)
             self.assertEqual(set(label), {1, 2})
             self.assertEqual(list(attribute(ob, ".sculpt_face_set")), list(label))
+            choose(ob, [0, 2, 204])                             # two in a corner, one at the other end
+            bpy.ops.heat.face_sets(from_selected=True, name="part")
+            self.assertEqual(len(set(attribute(ob, "part"))), 3)
+            self.assertEqual(set(attribute(ob, "part")[middle > 5.3]), {attribute(ob, "part")[-1]})
+            choose(ob, [])
+            self.assertIn("strip has no selected vertex", said(bpy.ops.heat.face_sets, from_selected=True))
             two = add("two", np.concatenate([V, V + [0, 3, 0]]), np.concatenate([Q, Q + len(V)]))
             self.assertIn("two: 2 face sets", said(bpy.ops.heat.face_sets, count=1))
 

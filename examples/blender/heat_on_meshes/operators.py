@@ -54,6 +54,13 @@ def column(items, name, width, dtype=np.float32):
     return flat.reshape(-1, width) if width > 1 else flat
 
 
+def selected_vertices(ob):
+    found = np.flatnonzero(column(ob.data.vertices, "select", 1, bool)).astype(np.int32)
+    if not len(found):
+        raise Refused("has no selected vertex")
+    return found
+
+
 def modified(context, ob):
     """Coordinates behind the modifiers, if these keep the vertices."""
     other = ob.evaluated_get(context.evaluated_depsgraph_get())
@@ -265,9 +272,7 @@ class HEAT_OT_distance(Work, bpy.types.Operator):
 
     def read(self, context, ob):
         mesh = Mesh(ob, modified(context, ob) if self.use_modifiers else None)
-        sources = np.flatnonzero(column(ob.data.vertices, "select", 1, bool)).astype(np.int32)
-        if not len(sources):
-            raise Refused("has no selected vertex")
+        sources = selected_vertices(ob)
         if not self.name:
             raise Refused("needs a name to write to")
         group = ob.vertex_groups.get(self.name)
@@ -427,15 +432,17 @@ class HEAT_OT_face_sets(Work, bpy.types.Operator):
     bl_idname, bl_label = "heat.face_sets", "Heat: Face Sets"
 
     count: IntProperty(name="Face Sets", default=8, min=1, soft_max=64)
+    from_selected: BoolProperty(name="Around Selected", description="A face set around each selected vertex", default=False)
     name: StringProperty(name="Attribute", description="Also write the numbers to an attribute of faces; empty: not", default="")
 
     def read(self, context, ob):
         mesh = Mesh(ob)
         corners = column(ob.data.loops, "vertex_index", 1, np.int32)
         first = column(ob.data.polygons, "loop_start", 1, np.int32)
+        seeds = selected_vertices(ob) if self.from_selected else None
 
         def task(progress):
-            label = surface.segments(mesh.V, mesh.F, corners, first, self.count, progress)
+            label = surface.segments(mesh.V, mesh.F, corners, first, self.count, seeds, progress)
             return lambda: self.write(ob, label)
         return task
 

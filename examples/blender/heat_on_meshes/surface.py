@@ -174,17 +174,18 @@ def clean(W, least, most):
 
 # ---- segments ----
 
-def segments(V, F, corners, first, count, progress=None):
-    """(faces,) ids from 1: each face goes to the nearest of `count` samples, which lie as far from each other as can be, in
-    biharmonic distance. An island without a sample is a segment of its own.
+def segments(V, F, corners, first, count, seeds=None, progress=None):
+    """(faces,) ids from 1: each face goes to the nearest of the vertices `seeds`, in biharmonic distance; None: of `count`
+    samples, which lie as far from each other as can be. An island without a seed is a segment of its own.
     corners: the vertices of all faces, one face after the other; first: where each begins."""
     lap = laplacian(V, F, progress)
     heat, island = hd.Heat(lap), lap.component
-    sample = np.array(heat.sample(min(count, len(lap.vertex)), kind="biharmonic")[0])
-    far = np.array(heat.distance(sample, kind="biharmonic"))
-    far[island[:, None] != island[sample]] = np.inf
+    if seeds is None:
+        seeds = np.array(heat.sample(min(count, len(lap.vertex)), kind="biharmonic")[0])
+    far = np.array(heat.distance(seeds, kind="biharmonic"))
+    far[island[:, None] != island[seeds]] = np.inf
     per_face = np.add.reduceat(far[corners], first, axis=0)
     label = per_face.argmin(axis=1)
     alone = ~np.isfinite(per_face.min(axis=1))
-    label[alone] = len(sample) + 1 + np.maximum.reduceat(island[corners], first)[alone]
+    label[alone] = len(seeds) + 1 + np.maximum.reduceat(island[corners], first)[alone]
     return np.unique(label, return_inverse=True)[1].reshape(-1) + 1
