@@ -162,7 +162,7 @@
 #define HD_VERSION_MAJOR 2
 #define HD_VERSION_MINOR 0
 #define HD_VERSION_PATCH 0
-/* Versions are semantic, and compare as numbers: HD_VERSION >= HD_MAKE_VERSION(1, 2, 0). */
+/* Versions compare as numbers: HD_VERSION >= HD_MAKE_VERSION(1, 2, 0). */
 #define HD_MAKE_VERSION(major, minor, patch) ((major) * 1000000 + (minor) * 1000 + (patch))
 #define HD_VERSION HD_MAKE_VERSION(HD_VERSION_MAJOR, HD_VERSION_MINOR, HD_VERSION_PATCH)
 
@@ -183,8 +183,7 @@ extern "C" {
 /* A complex number. Same layout as C99 double complex and std::complex<double>. */
 typedef struct hd_c64 { double re, im; } hd_c64;
 
-/* Zero is success, negative is an error, positive means "usable, but read the report". One list makes codes
- * and texts. */
+/* Negative is an error, positive means "usable, but read the report". */
 #define HD_STATUS_LIST(X)                                                                         \
     X(HD_OK, 0, "done")                                                                           \
     X(HD_WARN_ACCURACY, 1,                                                                        \
@@ -218,19 +217,17 @@ typedef struct hd_error {
     int64_t face, vertex;  /* ids as the caller numbers them */
     int64_t row, column;   /* of a matrix or of a field */
     int64_t pole;          /* index in the rational set, or of the matrix in a complex factorisation */
-    /* The offending value; 0 if there is none. HD_ERR_MEMORY_LIMIT: a byte_limit below this is too small (or
-     * an allocation_limit, if the text names that one). For a factorisation this is all that it and what
-     * follows need, which is known before it begins. */
+    /* The offending value, or 0. HD_ERR_MEMORY_LIMIT: a byte_limit below this is too small (or an
+     * allocation_limit, if the text says so); before a factorisation it is all that this and what follows
+     * need. */
     double value;
 } hd_error;
 
-/* What a progress callback returns. Any other value is HD_ERR_ARGUMENT. Neither value is 0 or 1, so that a
- * callback of the wrong type is noticed. */
+/* What a progress callback returns. Any other value, such as 0 or 1, is HD_ERR_ARGUMENT. */
 typedef enum hd_progress { HD_PROGRESS_CONTINUE = 0x100, HD_PROGRESS_CANCEL = 0x200 } hd_progress;
 
-/* Memory functions, called from the calling thread only. alloc returns NULL if there is no memory; its blocks
- * must be aligned to 8 bytes. free receives the size that the block was allocated with. There is no realloc.
- * The stacks of threads do not come from them. */
+/* Memory functions, called from the calling thread only. alloc returns blocks aligned to 8 bytes, or NULL.
+ * free receives the size that was asked for. Stacks of threads do not come from them. */
 typedef struct hd_allocator {
     void *(*alloc)(void *user, size_t size);
     void (*free)(void *user, void *block, size_t size);
@@ -240,9 +237,8 @@ typedef struct hd_allocator {
 /* One task of a parallel loop. worker numbers the threads; 0 is the thread that called the library. */
 typedef void (*hd_task)(void *arg, int64_t index, int32_t worker);
 
-/* Instruction sets of the dense kernels. GCC and Clang on x86-64 compile several versions; other compilers
- * and processors use plain C, with the multiply-adds of NEON on AArch64. Results of two instruction sets
- * agree up to rounding. */
+/* Instruction sets of the dense kernels, by GCC and Clang on x86-64. Elsewhere they are plain C, with the
+ * multiply-adds of NEON on AArch64. Results of two sets agree up to rounding. */
 typedef enum hd_simd {
     HD_SIMD_AUTO = 0,           /* the best set that the processor has */
     HD_SIMD_NONE,               /* plain C */
@@ -252,18 +248,16 @@ typedef enum hd_simd {
 
 typedef struct hd_threads hd_threads;            /* started and ended by the library */
 
-/* Memory, progress and threads of a computation. All zeros are good defaults: malloc, no limits, no progress,
- * as many threads as the process may use processors. The context belongs to the caller and must outlive
- * every object made with it; do not copy it in the meantime. Wherever a function takes a context, NULL means
- * one with all defaults. */
+/* Memory, progress and threads of a computation. All zeros are defaults, as is NULL: malloc, no limits, no
+ * progress, as many threads as the process may use processors. The context is the caller's and must outlive
+ * every object made with it; do not copy it in the meantime. */
 typedef struct hd_context {
     hd_allocator allocator;     /* both functions or none; NULL from alloc ends a call with HD_ERR_MEMORY */
-    /* most bytes in use at one time; 0: no limit. Where one way would exceed it, others that need less are
-     * tried: set it where memory is scarce */
+    /* most bytes in use at one time; 0: no limit. Where one way would exceed it, others are tried */
     uint64_t byte_limit;
     uint64_t allocation_limit;  /* most calls of alloc; 0: no limit */
 
-    /* Called now and then during long work, by the calling thread only. done runs from 0 to 1 within a stage:
+    /* Called now and then during long work, by the calling thread. done runs from 0 to 1 within a stage:
      * "neighbours" (search among points), "assemble" (L and B), "flip edges" (Delaunay), "order" and
      * "analyse" (of an elimination), "factor", "invert" (selected inversion), "precondition", "solve" (also
      * iterations), "sample" (farthest points). If it cancels, the running function frees everything and
@@ -271,13 +265,13 @@ typedef struct hd_context {
     hd_progress (*progress)(void *user, const char *stage, double done);
     void *progress_user;
 
-    /* Runs task(arg, i, worker) for every i in [0, n_tasks), in any order, and returns when all are done. The
-     * calling thread is worker 0. Some tasks work for as long as they find something to do, so they should
-     * run side by side; none waits for another. NULL: the library's own threads. */
+    /* Runs task(arg, i, worker) for every i in [0, n_tasks), in any order, and returns when all are done.
+     * Some tasks work for as long as they find something to do, so they should run side by side; none waits
+     * for another. NULL: the library's own threads. */
     void (*parallel_for)(void *user, int64_t n_tasks, hd_task task, void *arg);
     void *parallel_user;
-    /* Threads that work at the same time, the calling one included. 0: as many as the process may use
-     * processors; 1: serial. Ignored if parallel_for is set. */
+    /* Threads, the calling one included. 0: one for each processor that the process may use; 1: serial.
+     * Ignored if parallel_for is set. */
     int32_t n_threads;
     hd_simd simd;
 
@@ -290,22 +284,22 @@ typedef struct hd_context {
     int32_t n_holders;          /* objects made with this context: its threads end with the last one */
 } hd_context;
 
-/* How many threads work for this context (NULL: one with all defaults). 1 if this build has no threads. */
+/* How many threads work for this context. 1 if this build has none. */
 HEATDIFF_API int32_t hd_context_threads(const hd_context *ctx);
 
-/* A sparse matrix by compressed rows. In every row the columns ascend and occur once. val may be NULL in a
- * pattern. Matrices made by the library are freed with hd_csr_free. Your own arrays stay yours. */
+/* A sparse matrix by compressed rows, whose columns ascend and occur once. Matrices made by the library are
+ * freed with hd_csr_free. */
 typedef struct hd_csr {
     int32_t n_rows, n_cols;
     int64_t nnz;
     int64_t *row_ptr;      /* [n_rows + 1] */
     int32_t *col;          /* [nnz] */
-    double *val;           /* [nnz] */
+    double *val;           /* [nnz]; NULL in a pattern */
 } hd_csr;
 
 /* ==== [C] options and reports ==== */
-/* Options are structs whose zeros mean defaults; a NULL pointer means all defaults. begin_zero and end_zero
- * must stay zero: they tell a cleared struct from an uninitialised one. */
+/* Zeros in options mean defaults, and so does a NULL pointer to them. begin_zero and end_zero must stay zero:
+ * they tell a cleared struct from an uninitialised one. */
 
 typedef enum hd_laplacian_kind {
     /* fem for triangles, polygon for polygons, voronoi-exp for points. hd_laplacian.kind tells which. */
@@ -319,8 +313,8 @@ typedef enum hd_laplacian_kind {
     /* Faces of any number of corners k, planar or not. B is diagonal: each face gives area/k to each of its
      * corners (Alexa, Wardetzky 2011). */
     HD_LAPLACIAN_POLYGON,
-    /* Points: L_ij = -v_i v_j exp(-|p_i - p_j|^2 / 4s) / (4 pi s^2) and B = diag(v). v_i is the area of the
-     * Voronoi cell of point i in its tangent plane, s is the bandwidth (Liu, Prabhakaran, Guo 2012). */
+    /* Points: L_ij = -v_i v_j exp(-|p_i - p_j|^2 / 4s) / (4 pi s^2), B = diag(v), v_i the area of the Voronoi
+     * cell of point i in its tangent plane, s the bandwidth (Liu, Prabhakaran, Guo 2012). */
     HD_LAPLACIAN_VORONOI_EXP,
     /* Points: L_ij = -exp(-|p_i - p_j|^2 / 4s) / (4 pi n s^2) and B = I (Belkin, Niyogi 2008). For evenly
      * spread samples B^-1 L tends to Laplacian/area, so the unit of t is an area times a squared length. */
@@ -345,7 +339,7 @@ typedef enum hd_triangulation {
     HD_TRIANGULATION_GIVEN = 0,     /* those of the mesh; points have none, and take exponential weights */
     /* Meshes: edges are flipped along the surface until the triangulation is Delaunay. Then no cotangent
      * weight is negative, except on boundary edges opposite to an obtuse angle. Surfaces that are not
-     * manifold or not orientable are covered twice. */
+     * manifold, or whose faces are not oriented alike, are covered twice. */
     HD_TRIANGULATION_DELAUNAY,
     /* The same on the tufted cover, where a second sheet is glued to the boundary: no weight is negative on
      * any mesh. Points: triangles are made from neighbours. */
@@ -358,27 +352,24 @@ typedef struct hd_laplacian_opts {
     hd_laplacian_kind kind;
     hd_context *context;
     hd_triangulation triangulation;
-    /* Kind polygon: weight of the stabilising term for face functions that the gradient cannot see; larger
-     * values stiffen faces of more than three corners. Default 1, at most 1e100. */
+    /* Kind polygon: weight of the term for face functions that the gradient cannot see; it stiffens faces of
+     * more than three corners. Default 1, at most 1e100. */
     double stiffening;
-    /* Exponential weights: s, a squared length. Default: from the sampling, see hd_laplacian_create. */
+    /* Exponential weights: s, a squared length. Default: see hd_laplacian_create. */
     double bandwidth2;
     double weight_cut;          /* exponentials below this are left out, in (0, 1); default 1e-8 */
     /* Delaunay and tufted: all edges are lengthened by one number, so that every triangle inequality has a
      * margin of mollify times the mean edge length. Default 1e-5; at most 1; negative: not at all. */
     double mollify;
-    /* Points: nearest neighbours that determine the tangent plane and the cell or star of a point, 6..128;
-     * default 30. */
+    /* Points: nearest neighbours for the tangent plane and cell or star of a point, 6..128; default 30. */
     int32_t neighbours;
     /* 1: hd_laplacian_update (triangles and polygons in space, as given) or hd_laplacian_update_matrices may
      * be called. Takes 90 bytes more for each triangle, or 65 for each corner of polygons. */
     int32_t updatable;
-    /* Meshes: natural, or Dirichlet: every vertex at the border of the faces used is held at zero. Points and
-     * matrices do not know their border: use held. */
+    /* Of the faces used of meshes. Points and matrices do not know their border: use held. */
     hd_border border;
-    /* Further vertices that are held at zero: [n_held] ids, repeated ones do no harm. L and B lose their rows
-     * and columns, so that heat flows out there. With updatable the pair of all vertices is kept as well:
-     * twice the memory. */
+    /* [n_held] ids of further vertices that are held at zero, repeated ones do no harm. L and B lose their
+     * rows and columns, so that heat flows out there. */
     int32_t n_held;
     const int32_t *held;
     int32_t end_zero;
@@ -386,30 +377,29 @@ typedef struct hd_laplacian_opts {
 
 typedef enum hd_shape { HD_TRIANGLES = 0, HD_POLYGONS, HD_POINTS } hd_shape;
 
-/* A surface as the caller has it: for Laplacians and geodesic plans. Clear the struct, then set what there
- * is. Positions need not be aligned. No array is used after the call.
- * NOTE: vertex buffers often repeat vertices along seams of texture coordinates or normals, and no heat
- * crosses such a seam. Weld them first. */
+/* A surface as the caller has it. Clear the struct, then set what there is. Positions need not be aligned. No
+ * array is used after the call.
+ * NOTE: vertex buffers often repeat vertices along seams of texture coordinates or normals, which no heat
+ * crosses. Weld them first. */
 typedef struct hd_mesh {
     int32_t begin_zero;
     hd_shape shape;
     int32_t n;                  /* vertices, or points */
     const double *xyz;          /* x, y and z of each vertex, finite */
     const float *xyz_float;     /* or this */
-    size_t stride;              /* bytes from one vertex to the next; 0: packed, three numbers */
+    size_t stride;              /* bytes from one vertex to the next; 0: packed */
     /* [3 n_faces] of triangles, in place of coordinates: lengths[3 f + q] is the side from corner q to the
      * next one (after 2 comes 0), finite and not negative. All faces at an edge agree up to 1e-12 of it; two
      * vertices have one edge only. No side may be longer than the two others together. */
     const double *lengths;
     int32_t n_faces;
-    /* [n_faces + 1] of polygons: face f has the corners face_ptr[f] .. face_ptr[f + 1] - 1 of all. From 0,
-     * not descending. */
+    /* [n_faces + 1] of polygons: face f has the corners face_ptr[f] .. face_ptr[f + 1] - 1, from 0 */
     const int64_t *face_ptr;
-    const int32_t *corner;      /* vertex ids in [0, n): three for each triangle, or as face_ptr says */
+    const int32_t *corner;      /* vertex ids: three for each triangle, or as face_ptr says */
     const uint16_t *corner_u16; /* or this, of triangles */
     /* Of points that are triangulated: nbr[nbr_ptr[i]] .. nbr[nbr_ptr[i + 1] - 1] are neighbours of point i
-     * in any order, at most 256, some 30 nearest ones suit. The point itself, points at its place and
-     * repeated ids do no harm. NULL: they are searched. */
+     * in any order, at most 256; 30 nearest ones suit. The point itself, points at its place and repeated ids
+     * do no harm. NULL: they are searched. */
     const int64_t *nbr_ptr;
     const int32_t *nbr;
     int32_t end_zero;
@@ -431,13 +421,13 @@ typedef struct hd_mesh_report {
     int64_t n_misoriented_edges;     /* with two faces that run along the edge in the same direction */
     int32_t n_boundary_loops;        /* connected sets of boundary edges */
     int32_t n_inert;                 /* vertices without mass, held or not */
-    /* Edges of negative cotangent weight: legitimate, but the maximum principle does not hold then. Polygons:
-     * pairs of vertices whose entry of L is positive; most faces of more than three corners have some. */
+    /* Edges of negative cotangent weight: the maximum principle does not hold then. Polygons: pairs of
+     * vertices whose entry of L is positive; most faces of more than three corners have some. */
     int64_t n_negative_weights;
     double smallest_angle;           /* in radians, of the faces used; polygons: of convex corners */
 
-    /* Delaunay and tufted triangulations; else zero. All fields above, except n_negative_weights, describe
-     * the faces as they were given. */
+    /* Delaunay and tufted triangulations; else zero. Fields above, except n_negative_weights, describe the
+     * faces as given. */
     int32_t n_sheets;                /* 1, or 2: the surface is covered twice */
     int32_t n_mollified;             /* faces that needed mollification */
     double mollify_epsilon;          /* added to the length of every edge */
@@ -447,8 +437,8 @@ typedef struct hd_mesh_report {
     double smallest_intrinsic_angle; /* after the flips, in radians */
 } hd_mesh_report;
 
-/* What was found in a point set, and what was chosen for it. Nothing here is an error. A place is a position
- * that holds one or more points. */
+/* What was found in a point set, and chosen for it. Nothing here is an error. A place is a position of one
+ * or more points. */
 typedef struct hd_point_report {
     double bandwidth2;               /* s of the exponential weights */
     double weight_cut, cut_radius;   /* exponentials below weight_cut, beyond cut_radius, are 0 */
@@ -464,11 +454,11 @@ typedef struct hd_point_report {
     int32_t n_not_flat;
 } hd_point_report;
 
-/* A discrete surface: the pair (L, B) on one pattern. The library makes and frees it. Read all fields freely,
- * change none. Rows are the vertices that have mass and are not held at zero, in the caller's order. */
+/* A discrete surface: the pair (L, B) on one pattern. Read all fields, change none. Rows are the vertices
+ * that have mass and are not held at zero, in the caller's order. */
 typedef struct hd_laplacian {
     int32_t n;                  /* vertices of the caller */
-    int32_t n_active;           /* rows: vertices with mass that are not held */
+    int32_t n_active;           /* rows */
     int32_t n_held;             /* vertices held at zero */
     int32_t n_components;       /* of the rows, joined by entries of L or B that are not zero */
     hd_laplacian_kind kind;
@@ -482,8 +472,8 @@ typedef struct hd_laplacian {
     double area;
     hd_csr L;                   /* n_active x n_active, every diagonal entry present */
     double *B;                  /* [L.nnz] values of B on the pattern of L, or NULL: B = diag(mass) */
-    /* [n_active] b = B 1, the masses of the vertices. Next to held vertices a full B leaves less; the heat
-     * that is there is b'u with the b of the Laplacian that holds none. */
+    /* [n_active] b = B 1, the masses of the vertices. Next to held vertices a full B has lost entries: the
+     * heat there is b'u with the b of the Laplacian that holds none. */
     double *mass;
     double *b_diag;             /* [n_active] diagonal of B; the same array as mass if B is diagonal */
     int32_t *vertex;            /* [n_active] row -> vertex */
@@ -494,16 +484,15 @@ typedef struct hd_laplacian {
     /* B >= b_ratio diag(B): 1 if B is diagonal, 1/2 for fem (0.42 if some edge joins a vertex to itself).
      * Matrices: proven by Gershgorin's circles or by factorisations. 0: unknown. */
     double b_ratio;
-    /* 1: L 1 = 0, so that heat is conserved. Always so for meshes and points of which no vertex is held.
-     * Matrices: if it holds up to 4 DBL_EPSILON sum_j |L_ij| in each row.
-     * 2: only on some components. The others lose heat to vertices held at zero: they tend to 0, and their
-     * component_mass is infinite.
+    /* 1: L 1 = 0, so that heat is conserved: meshes and points of which no vertex is held; matrices if it
+     * holds up to 4 DBL_EPSILON sum_j |L_ij| in each row.
+     * 2: only on some components. The others lose heat to held vertices and tend to 0: their component_mass
+     * is infinite.
      * 0: on none, or unknown. From about t = 15/lambda_1 on bounds of poles say little, see hd_heat_apply. */
     int32_t conserves;
     /* Matrices and points: only n_inert. Tufted points: the triangles of their stars. */
     hd_mesh_report mesh;
-    /* Zeros for meshes and matrices. Tufted points: n_not_flat; if neighbours were searched, also
-     * neighbours and n_coincident. */
+    /* Points. Tufted: only n_not_flat and, if neighbours were searched, neighbours and n_coincident. */
     hd_point_report points;
     hd_context *context;
     int64_t version;            /* number of updates */
@@ -886,24 +875,22 @@ HEATDIFF_API const char *hd_status_text(hd_status status);  /* "out of memory" *
 
 /* ---- sparse matrices ---- */
 
-/* A from triplets (i, j, v) in any order. Values at the same place are summed in the order given. Free out
- * with hd_csr_free and the same ctx.
+/* A from triplets (i, j, v) in any order. Values at the same place are summed in the order given.
  * i, j   [n_triplets] in [0, n_rows) and [0, n_cols)
  * v      [n_triplets], or NULL: a pattern
- * Errors HD_ERR_INDEX (row: index of the triplet), HD_ERR_NOT_FINITE (row: index of the triplet; if a sum
- *        overflows, its row and column)
+ * Errors HD_ERR_INDEX, HD_ERR_NOT_FINITE (row: the triplet; of a sum that overflows row and column)
  * Cost   O(n_rows + n_cols + n_triplets) */
 HEATDIFF_API hd_status hd_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_cols,
                                             int64_t n_triplets, const int32_t *i,
                                             const int32_t *j, const double *v,
                                             hd_context *ctx, hd_error *err);
 
-/* Frees what the library allocated with the same ctx, and clears the struct. */
+/* Clears a, too. ctx: the one that a was made with. */
 HEATDIFF_API void hd_csr_free(hd_csr *a, hd_context *ctx);
 
 /* ---- operators ---- */
 
-/* A mesh of triangles. Other fields may be set before it is used. */
+/* A mesh of triangles. Other fields may be set then. */
 HEATDIFF_API hd_mesh hd_triangles(const double *xyz, int32_t n, const int32_t *tri, int32_t n_tri);
 
 /* Vertices as sources. */
@@ -912,26 +899,24 @@ HEATDIFF_API hd_sources hd_vertices(int32_t count, const int32_t *vertex);
 /* The Laplacian of a mesh.
  * Triangles have the kinds fem (default), voronoi-cot and cot. Polygons, planar and convex or not, also have
  * polygon, their default; for the others every face is split into a fan from its first corner, and out->mesh
- * counts triangles, while errors name the polygon. Points have voronoi-exp (default) and exp, or tufted the
- * kinds of triangles, as have Delaunay and tufted triangulations of meshes. Faces of zero area, with a
- * repeated corner, or with the corners of an earlier face are left out and counted in out->mesh. Vertices
- * without mass become inert. Non-manifold edges and several components are allowed.
+ * counts triangles, while errors name the polygon. Points have voronoi-exp (default) and exp; Delaunay and
+ * tufted triangulations, of points too, the kinds of triangles. Faces that hd_mesh_report names are left out.
+ * Vertices without mass become inert. Non-manifold edges and several components are allowed.
  * Delaunay, tufted: L and B of an intrinsic triangulation of the same surface on the same vertices. With
  *          voronoi-cot or cot heat then obeys the maximum principle
- * lengths  intrinsic geometry, such as a flat torus. lap->xyz is NULL: no nested dissection, and curves
- *          (hd_sources) need their lengths. At an edge of three faces or more a Delaunay or tufted
- *          triangulation takes the sheets in the order of the faces
+ * lengths  intrinsic geometry, such as a flat torus. There is no nested dissection, and curves (hd_sources)
+ *          need their lengths. At an edge of three faces or more Delaunay and tufted triangulations take the
+ *          sheets in the order of the faces
  * polygons the pattern of L contains the diagonals of the faces; triangles have the cotangent L for any
  *          stiffening
  * points   Let r_k be the distance of the k-th neighbour, and m the mean of pi r_k^2/k, the area of a point.
  *          The default bandwidth2 is s = m (m/h^2)/4, within 0.3 m and 1 m. Weights reach as far as 8.6
  *          sqrt(s), and a row has about 230 s/m non-zeros; weight_cut = 1e-4 halves that and changes the
- *          operator by 0.1 %. To go below an error of 1 to 3 %, let s/m grow as points become denser. Points
- *          at the same place share its cell; out->points counts all special cases
- * tufted points have 7 to 13 non-zeros in a row. Each point's Delaunay star among its neighbours is computed
- *          in their tangent plane. All stars form a triangle soup, which out->mesh describes, in which each
- *          triangle counts a third. Points in no star are inert, as are searched points at the place of an
- *          earlier one. Sheets of a surface two spacings apart are kept separate (three for random points).
+ *          operator by 0.1 %. To go below an error of 1 to 3 %, let s/m grow as points become denser
+ * tufted points have 7 to 13 non-zeros in a row. Their Delaunay stars among their neighbours, in the tangent
+ *          planes, form a soup, which out->mesh describes, where each triangle counts a third. Points in no
+ *          star are inert, as are searched points at the place of an earlier one. Sheets of a surface two
+ *          spacings apart are kept separate (three for random points).
  *          HINT: if you know normals, leave neighbours whose normals point the other way out of nbr
  * Errors HD_ERR_INDEX (face, value: the id), HD_ERR_NOT_FINITE (vertex, or face of a length),
  *        HD_ERR_STRUCTURE (face: face_ptr descends there), HD_ERR_EMPTY; HD_ERR_ARGUMENT (vertex, value: a
@@ -947,13 +932,13 @@ HEATDIFF_API hd_sources hd_vertices(int32_t count, const int32_t *vertex);
 HEATDIFF_API hd_status hd_laplacian_create(hd_laplacian **out, const hd_mesh *mesh,
                                            const hd_laplacian_opts *opts, hd_error *err);
 
-/* The pair of the caller's own matrices, on any graph. Both are copied.
+/* The pair of the caller's own matrices, which are copied.
  * L      n x n, symmetric positive semi-definite: minus the cotangent matrix of libigl. Checked are L_ii >= 0
  *        and L_ij^2 <= L_ii L_jj. If its rows do not sum to zero, heat is not conserved
  * B      n x n, symmetric positive definite, any pattern. Rows of B without non-zeros are inert vertices.
  *        Definiteness is checked on the diagonal, by a factorisation if some row is not dominated by its
  *        diagonal, and later by solvers
- * h      unit length of the caller's mesh, for lap->h; 0 if there is none
+ * h      for lap->h; 0 if there is none
  * The pair has the union of both patterns. Explicit zeros stay if their mirror entry is stored too.
  * Errors HD_ERR_STRUCTURE, HD_ERR_INDEX, HD_ERR_NOT_FINITE, HD_ERR_NOT_SYMMETRIC (row, column; value);
  *        HD_ERR_NOT_FINITE (row, value: the sizes of its entries in L or in B add up to more than 1e100),
@@ -963,32 +948,28 @@ HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L
                                              double h, const hd_laplacian_opts *opts,
                                              hd_error *err);
 
-/* y = (alpha L + beta B) x for a field on the vertices. y is 0 at vertices without mass.
- * x, y   [n]; they must not overlap
- * Cost   one pass over L and B, and 16 bytes for each row */
+/* y = (alpha L + beta B) x for a field on the vertices; 0 at those without a row.
+ * x, y   [n]; they must not overlap */
 HEATDIFF_API hd_status hd_laplacian_apply(const hd_laplacian *lap, double alpha, double beta,
                                           const double *x, double *y, hd_error *err);
 
-/* New positions for the same faces, of a Laplacian with the option updatable. Plans notice: their next query
- * computes with the new values, on the ordering and analysis that they have.
+/* New positions for the same faces, of a Laplacian with the option updatable. The next query of plans
+ * computes with the new values, on the ordering and analysis that it has.
  * mesh   n as before, and positions; its faces are not read
- * Rows, pattern, held vertices and faces that were left out stay as they are; faces that lose their area are
- * counted and add nothing. All values, components and reports are those of a new Laplacian, to the last bit,
- * in the same arrays.
+ * Rows, pattern, held vertices and faces that were left out stay; faces that lose their area are counted and
+ * add nothing. All values, components and reports are those of a new Laplacian, to the last bit, in the same
+ * arrays.
  * Errors as of hd_laplacian_create; HD_ERR_EMPTY (vertex: none of its faces has an area any more). After an
  *        error nothing has changed
  * Cost   one pass over faces and entries. Not while a plan on lap is at work */
 HEATDIFF_API hd_status hd_laplacian_update(hd_laplacian *lap, const hd_mesh *mesh, hd_error *err);
 
-/* New values of the caller's own matrices, of a Laplacian made by hd_laplacian_matrices with the option
- * updatable. Plans notice as above.
+/* The same for hd_laplacian_matrices.
  * L, B   n x n. Entries that the pattern does not have must be zero; those that are missing become zeros.
  *        Inert vertices stay inert. If B was diagonal it stays so
- * h      as in hd_laplacian_matrices
- * The pair is that of a new Laplacian of these matrices, to the last bit, if that has the same pattern.
+ * The pair is that of a new Laplacian, to the last bit, if that has the same pattern.
  * Errors as hd_laplacian_matrices; HD_ERR_STRUCTURE (row, column, value: an entry that was not there). After
- *        an error nothing has changed
- * Cost   as hd_laplacian_matrices */
+ *        an error nothing has changed */
 HEATDIFF_API hd_status hd_laplacian_update_matrices(hd_laplacian *lap, const hd_csr *L,
                                                     const hd_csr *B, double h, hd_error *err);
 
@@ -996,13 +977,12 @@ HEATDIFF_API void hd_laplacian_free(hd_laplacian *lap);  /* NULL is fine */
 
 /* ---- neighbours of points ---- */
 
-/* The k nearest points of each query point.
- * index      [k m] ids of points, k for each query, nearest first. Equally distant points are ordered by id.
- *            A query that is a point of the set finds itself too. -1 beyond n
+/* The k nearest points of each query point, exactly.
+ * index      [k m] ids of points, k for each query, nearest first, equally distant ones by id; -1 beyond n.
+ *            A query that is a point of the set finds itself too
  * distance2  [k m] squared distances, infinite beyond n; NULL: not wanted
- * xyz        [3 n] the points, as of hd_laplacian_points
+ * xyz        [3 n] the points, as of hd_laplacian_create
  * query      [3 m] the query points, at most 1e100; NULL: all n points, m = n
- * The result is exact.
  * Errors     HD_ERR_NOT_FINITE (vertex, or row for a query)
  * Cost       O((n + k m) log n)
  * Source     Friedman, Bentley, Finkel 1977 */
@@ -1731,13 +1711,6 @@ static int64_t hdi_most(int64_t a, int64_t b) { return a < b ? b : a; }
 /* By value, so that no branch has to be guessed. */
 static HDI_INLINE int32_t hdi_low32(int32_t a, int32_t b) { return a < b ? a : b; }
 static HDI_INLINE int32_t hdi_high32(int32_t a, int32_t b) { return a < b ? b : a; }
-
-/* The power of four that brings a number near one: roots change by a power of two. 1 for 0. */
-static double hdi_even_unit(double size) {
-    int exponent = 0;
-    (void)frexp(size, &exponent);
-    return ldexp(1, hdi_low32(-2 * (exponent / 2), 1022));
-}
 
 /* Three numbers for each of n things; where those of thing number n begin. */
 static HDI_INLINE int64_t hdi_triple(int32_t n) { return 3 * (int64_t)n; }
@@ -2801,22 +2774,12 @@ static int32_t hdi_find(int32_t *parent, int32_t i) {
     return i;
 }
 
-static void hdi_unite(int32_t *parent, int32_t i, int32_t j) {
+/* Returns 1 where two sets become one. */
+static int hdi_unite(int32_t *parent, int32_t i, int32_t j) {
     const int32_t a = hdi_find(parent, i), b = hdi_find(parent, j);
     if (a < b) parent[b] = a;
     else parent[a] = b;
-}
-
-/* How many connected sets are united in parent [n], which is overwritten; single members are no set. */
-static int32_t hdi_count_sets(int32_t *parent, int32_t n) {
-    int32_t i, count = 0;
-    for (i = 0; i < n; i++) parent[i] = hdi_find(parent, i);
-    for (i = 0; i < n; i++) {                    /* a root is marked when its second member is met */
-        if (parent[i] == i || parent[parent[i]] < 0) continue;
-        parent[parent[i]] = -1;
-        count++;
-    }
-    return count;
+    return a != b;
 }
 
 /* First place in the ascending rel[0..n) that is at least x. */
@@ -5424,8 +5387,8 @@ static int hdi_polygon_clip_hull(hdi_polygon *g, double (*x)[2], int32_t n) {
  * oriented alike is its own cover: half of it is not stored. A flip must also lower the sum of the six
  * cotangents. In exact arithmetic it always does (Rippa 1990), and so rounding cannot make flips run in
  * circles. Zero-area faces are left out before. Lengths are in units of the mean edge length: nothing
- * overflows, and results do not depend on the unit of the coordinates. Only what a flip needs is unfolded.
- * */
+ * overflows, and results do not depend on the unit of the coordinates. Only what a flip needs is
+ * unfolded. */
 
 /* ---- soups ----
  * Different faces, each of which comes once, as in meshes, or several times, as in the stars of points,
@@ -6091,7 +6054,7 @@ static void hdi_lap_connect(hd_laplacian *lap) {
     for (i = 0; i < lap->n_active; i++) {
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1] && lap->L.col[p] < i; p++) {
             const int joins = lap->L.val[p] != 0 || (lap->B && lap->B[p] != 0);
-            if (joins && c[i] != c[lap->L.col[p]]) hdi_unite(c, i, lap->L.col[p]);
+            if (joins && c[i] != c[lap->L.col[p]]) (void)hdi_unite(c, i, lap->L.col[p]);
         }
     }
     lap->n_components = 0;                       /* c[i] <= i, and before i they have their numbers */
@@ -6106,11 +6069,10 @@ static void hdi_held_components(hd_laplacian *lap) {
     if (!x || x->border == 2) return;
     for (i = 0; i < lap->n_active && lap->conserves; i++) {
         double *mass = lap->component_mass + lap->component[i];
-        if (*mass < 0 || !x->leak[lap->vertex[i]]) continue;
-        *mass = -HUGE_VAL;                       /* not what a sum that overflows is */
+        if (!x->leak[lap->vertex[i]] || *mass == HUGE_VAL) continue;
+        *mass = HUGE_VAL;
         leaks++;
     }
-    for (i = 0; i < lap->n_components; i++) lap->component_mass[i] = fabs(lap->component_mass[i]);
     if (leaks > 0) lap->conserves = leaks < lap->n_components ? 2 : 0;
     if (!lap->conserves) hdi_lap_component_masses(lap);
 }
@@ -6401,17 +6363,17 @@ static void hdi_rows_report(hdi_rows *x, hdi_tally all, hd_mesh_report *rep, dou
     hdi_ring r = hdi_rows_ring(x, 0);
     int32_t v, q;
     hdi_fill_own(x->count, x->mesh.n);
-    for (v = 0; v < x->mesh.n; v++) {
+    for (v = 0, rep->n_boundary_loops = 0; v < x->mesh.n; v++) {
         if (!x->border[v]) continue;
+        rep->n_boundary_loops++;                 /* a set, until it is united with another one */
         hdi_ring_make(&r, &x->mesh, x->lump, v);
         for (q = 1; q < r.n; q++)
-            if (r.entry[q].faces == 1) hdi_unite(x->count, v, r.entry[q].to);
+            if (r.entry[q].faces == 1) rep->n_boundary_loops -= hdi_unite(x->count, v, r.entry[q].to);
     }
     rep->n_edges = all.n[HDI_EDGES];
     rep->n_boundary_edges = all.n[HDI_BOUNDARY];
     rep->n_nonmanifold_edges = all.n[HDI_NONMANIFOLD];
     rep->n_misoriented_edges = all.n[HDI_MISORIENTED];
-    rep->n_boundary_loops = all.n[HDI_BOUNDARY] ? hdi_count_sets(x->count, x->mesh.n) : 0;
     *h = all.length / (double)all.n[HDI_EDGES];
 }
 
@@ -6871,9 +6833,10 @@ enum { HDI_ROWS_AHEAD = 8 };     /* rows of a matrix taken in any order are aske
  * length. */
 static double hdi_pair_scale(const hd_laplacian *lap) {
     double largest = 0;
-    int32_t i;
+    int32_t i, exponent;
     for (i = 0; i < lap->n_active; i++) largest = hdi_max(largest, lap->b_diag[i]);
-    return hdi_even_unit(largest);
+    (void)frexp(largest, &exponent);
+    return ldexp(1, -2 * (exponent / 2));
 }
 
 /* The values of lap, which may have changed, into its copy in another order, where B is scaled as above.
@@ -7121,14 +7084,10 @@ static hd_status hdi_cloud_cells(hdi_cloud *cloud, hdi_scope *s) {
     int32_t i;
     cloud->area = HDI_TAKE(s, double, cloud->n);
     cloud->border = HDI_TAKE(s, int8_t, cloud->n);
-    for (i = 0; i < cloud->n && s->e->status >= 0; i++) {
-        const double d2 = cloud->nearest[i] * cloud->nearest[i];
-        if (!(d2 > DBL_MIN / DBL_EPSILON))
-            hdi_fail_face(
-                s->e, HD_ERR_ARGUMENT,
-                "two points are too close together: the square of their distance is too small", -1,
-                cloud->name[i], d2);
-    }
+    for (i = 0; i < cloud->n && s->e->status >= 0; i++)
+        if (!(cloud->nearest[i] * cloud->nearest[i] > DBL_MIN / DBL_EPSILON))
+            hdi_fail_face(s->e, HD_ERR_ARGUMENT, "two points are too close together: the square of their "
+                          "distance is too small", -1, cloud->name[i], cloud->nearest[i] * cloud->nearest[i]);
     if (s->e->status < 0 || hdi_progress(s->ctx, "assemble", 0.2, s->e) < 0) return s->e->status;
     hdi_parallel_ranges(s->ctx, cloud->n, HDI_POINTS_PER_TASK, hdi_cell_task, cloud);
     for (i = 0; i < cloud->n && s->e->status >= 0; i++)
