@@ -52,12 +52,28 @@ if cmake -S "$top/tests/consumer" -B "$work/newer" -DWAY=package -DWANT_VERSION=
 fi
 grep -q "requested version" "$work/log" || { cat "$work/log"; fail "find_package(heatdiff 99) fails for another reason"; }
 
-# pkg-config, also for the shared library
+# pkg-config, after everything has moved: with the shared library, which is in its Libs, and with the header alone. The second
+# install has no shared library and its libraries further down.
 if command -v pkg-config >/dev/null; then
-  export PKG_CONFIG_PATH=$work/prefix/lib/pkgconfig
+  c=$top/tests/consumer/consumer.c
+  cp -a "$work/prefix" "$work/moved"
+  export PKG_CONFIG_PATH=$work/moved/lib/pkgconfig
   [ "$(pkg-config --modversion heatdiff)" = "$version" ] || fail "pkg-config knows another version"
-  quietly "$cc" $CFLAGS "$top/tests/consumer/consumer.c" -o "$work/by-pc" $(pkg-config --cflags --libs heatdiff)
-  is pkg-config "$work/by-pc"
+  told=$(pkg-config --cflags --libs heatdiff)
+  case $told in *"$work/prefix"*) fail "pkg-config looks where nothing may be any more: $told" ;; *-lheatdiff*) ;; *) fail "no shared library in $told" ;; esac
+  quietly "$cc" $CFLAGS -DCONSUMER_SHARED "$c" -o "$work/shared-by-pc" $told
+  is "pkg-config, shared library" env LD_LIBRARY_PATH="$work/moved/lib" "$work/shared-by-pc"
+  quietly "$cc" $CFLAGS "$c" -o "$work/by-pc" $(pkg-config --cflags heatdiff) -lm
+  is "pkg-config, header alone" "$work/by-pc"
+  quietly cmake -S "$top" -B "$work/plain" -DHEATDIFF_BUILD_TESTS=OFF -DHEATDIFF_BUILD_EXAMPLES=OFF -DHEATDIFF_BUILD_TOOLS=OFF \
+    -DCMAKE_INSTALL_PREFIX="$work/deep" -DCMAKE_INSTALL_LIBDIR=lib/some/where
+  quietly cmake --install "$work/plain"
+  mv "$work/deep" "$work/deeper"
+  export PKG_CONFIG_PATH=$work/deeper/lib/some/where/pkgconfig
+  told=$(pkg-config --cflags --libs heatdiff)
+  case $told in *-lheatdiff*) fail "there is no shared library, but $told" ;; esac
+  quietly "$cc" $CFLAGS "$c" -o "$work/plain-by-pc" $told
+  is "pkg-config, without a shared library" "$work/plain-by-pc"
 else
   echo "not here: pkg-config"
 fi

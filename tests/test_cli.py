@@ -2208,6 +2208,8 @@ class Terminals(Case):
         self.assertEqual(self.on_a_terminal(run + " --quiet"), (0, b""))
         code, text = self.on_a_terminal("render ico.obj --input count-12.txt -o -", output=None)
         self.assertEqual((code, b"nothing for a terminal" in text), (2, True))
+        code, text = self.on_a_terminal("smooth ico.ply", output=None)
+        self.assertEqual((code, b"nothing for a terminal" in text), (2, True))
 
     def test_bar_of_factorisations(self):
         for mesh, method, parts_of in (("torus-400-300.obj", "direct",
@@ -2574,6 +2576,13 @@ class Demo(Case):
         p = self.good("demo --json", cwd=path("here"))
         self.assertEqual(os.listdir(path("here")), ["heatdiff-demo"])
         names = os.listdir(path("here/heatdiff-demo"))
+        shapes = [read_obj(open(path("here/heatdiff-demo/%s.obj" % name), "rb").read()) for name in ("elephant", "bent", "noisy")]
+        for (v, faces), most in zip(shapes[1:], (1.5, 0.03)):
+            self.assertEqual((len(v), faces), (len(shapes[0][0]), shapes[0][1]))
+            away = [math.dist(p, q) for p, q in zip(shapes[0][0], v)]
+            self.assertTrue(0.4 * most < max(away) < most, max(away))
+        bent = [[(2 + z) * math.sin(x / 2), y, (2 + z) * math.cos(x / 2) - 2] for x, y, z in shapes[0][0]]
+        self.close(shapes[1][0], bent, 1e-12)
         self.assertLessEqual({"heat-trunk.png", "heat-trunk.ply", "isolines.png", "distance.png", "signature.png"}, set(names))
         for name in names:
             data = taken("here/heatdiff-demo/" + name)

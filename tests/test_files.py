@@ -2,8 +2,8 @@
 """The tool's files, read by the programs that people open them with: test_files.py TOOL [unittest options].
 
 Writes .ply, .obj and .vtu with 1, 4 and 16 columns, for triangles, polygons and points, and reads them with VTK (which ParaView
-reads with) and meshio. Counts, coordinates, names and values must be those of the .npy of the same run. Programs that are not
-installed are skipped (Debian: python3-vtk9, python3-meshio)."""
+reads with) and meshio. Counts, coordinates, names and values must be those of the .npy of the same run. Shapes alone are also
+written as .off and .stl. Programs that are not installed are skipped (Debian: python3-vtk9, python3-meshio)."""
 import math
 import os
 import subprocess
@@ -149,6 +149,16 @@ class Meshio(Files):
                 mesh = meshio.read(path)
                 self.same(mesh.points[:, :3], points, 1e-15)
                 self.assertEqual(self.faces(mesh), sorted(faces))
+
+
+    def test_shapes(self):
+        """.off and .stl, of which meshio knows triangles alone; .stl has 32 bits, and the same order of faces."""
+        points, faces = MESHES["triangles"]
+        for extension, most in (".off", 0), (".stl", 1e-7):
+            out = os.path.join(FOLDER.name, "shape" + extension)
+            subprocess.run([TOOL, "smooth", "--t", "0", os.path.join(FOLDER.name, "triangles.obj"), "-o", out, "--quiet"], check=True)
+            mesh = meshio.read(out)
+            self.same(mesh.points[mesh.cells[0].data], numpy.array(points)[faces], most)
 
 
 class Vtk(Files):

@@ -1025,7 +1025,7 @@ static const command_def COMMANDS[] = {
       "--input F [--input F..] -o PICTURE.png [OPTIONS] MESH [MESH..]",
       "A PNG picture, without numbers." },
     { "demo", CMD_DEMO, "all of it on a shape made in memory: start here", "[-o FOLDER] [OPTIONS]",
-      "Pictures and meshes with fields in the folder, and a text on standard output that tells\n"
+      "Pictures and meshes in the folder, and a text on standard output that tells\n"
       "what each file is." },
 };
 enum { N_COMMANDS = sizeof COMMANDS / sizeof COMMANDS[0] };
@@ -4606,6 +4606,8 @@ static int smooth_fields(run *r, double *f)
 static int check_smooth(const run *r)
 {
     const int kind = smooth_format(r), points = r->mesh.n_tri == 0;
+    if ((!r->o->output || is_stream(r->o->output)) && (kind == MIO_PLY || kind == MIO_STL) && stdout_is_terminal())
+        return fail(USAGE, "-o is needed here: %s is nothing for a terminal", r->mesh.file.format);
     if (points && kind == MIO_STL) return fail(FAILED, "%s: .stl needs faces, and there are none", r->mesh_name);
     if (!points && kind == MIO_TXT) return fail(FAILED, "%s: .xyz is for points, and this file has faces", r->mesh_name);
     return DONE;
@@ -5169,6 +5171,32 @@ static int demo_files(const run *r)
     return code ? code : demo_isolines(r);
 }
 
+static const double DEMO_NOISE = 0.017;      /* about half an edge length */
+
+/* The surface, bent, and with noise: for runs of one's own. */
+static int demo_shapes(const run *r)
+{
+    static const char *const names[3] = { "elephant", "bent", "noisy" };
+    const size_t size = 3 * (size_t)r->mesh.n;
+    double *xyz = new_columns(r->mesh.n, 3);
+    mio_mesh mesh = r->mesh.file;
+    char path[DEMO_PATH];
+    mio_output out;
+    mio_error e;
+    int k, code = xyz ? DONE : fail_memory("the demo's shapes");
+    memset(&out, 0, sizeof out);
+    mesh.xyz = xyz;
+    for (k = 0; k < 3 && !code; k++) {
+        memcpy(xyz, r->mesh.xyz, size * sizeof *xyz);
+        if (k == 1) shape_bend(xyz, mesh.n);
+        if (k == 2) shape_shake(xyz, mesh.n, DEMO_NOISE);
+        demo_path(r, path, sizeof path, "", names[k], ".obj");
+        if (mio_write(path, MIO_OBJ, &mesh, &out, &e) < 0) code = fail_file(&e);
+    }
+    free(xyz);
+    return code;
+}
+
 static void demo_print(const run *r, const demo_checks *c)
 {
     const char *folder = demo_folder(r), *program = r->o->program;
@@ -5200,12 +5228,14 @@ static void demo_print(const run *r, const demo_checks *c)
     for (q = 0; q < DEMO_SOURCES; q++)
         printf("  %s/heat-%s.ply  the mesh with all values, for MeshLab, Blender or ParaView\n", folder,
                DEMO_NAMES[q]);
+    printf("  %s/elephant.obj  the surface alone; bent.obj and noisy.obj: bent, and with noise\n", folder);
     printf("\nNext, on this mesh or one of your own\n");
     printf("  %s info %s/heat-trunk.ply\n", program, folder);
     printf("  %s kernel --source 0 --t 50h2 %s/heat-trunk.ply -o heat.png\n", program, folder);
     printf("  %s kernel --source 0,100 --t auto:4 %s/heat-trunk.ply > columns.txt\n", program, folder);
     printf("  %s distance --source 0 --t 500h2 %s/heat-trunk.ply -o distance.ply\n", program, folder);
     printf("  %s sample --count 10 --t 500h2 %s/heat-trunk.ply\n", program, folder);
+    printf("  %s smooth %s/noisy.obj -o smooth.obj\n", program, folder);
     printf("  %s --help\n", program);
 }
 
@@ -5234,6 +5264,7 @@ static int command_demo(run *r)
     if (!code) code = demo_files(r);
     o.log_scale = 0;                 /* distances are not spread over decades */
     if (!code) code = demo_fields(r);
+    if (!code) code = demo_shapes(r);
     bar_hide();
     if (!code) {
         if (!o.quiet) demo_print(r, &checks);

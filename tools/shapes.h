@@ -918,6 +918,29 @@ static shape shape_demo(int32_t approx_n)
     return s;
 }
 
+/* Bends n places around an axis that stands beside them, parallel to y. */
+static void shape_bend(double *xyz, int32_t n)
+{
+    int32_t i;
+    for (i = 0; i < n; i++) {
+        double *p = xyz + 3 * (size_t)i;
+        const double r = 2 + p[2], angle = p[0] / 2;
+        p[0] = r * sin(angle);
+        p[2] = r * cos(angle) - 2;
+    }
+}
+
+/* Moves each coordinate at random, by at most so much (Park, Miller 1988, with a small addition). */
+static void shape_shake(double *xyz, int32_t n, double most)
+{
+    uint64_t seed = 1;
+    size_t i;
+    for (i = 0; i < 3 * (size_t)n; i++) {
+        seed = (16807 * seed + 7) % 2147483647u;
+        xyz[i] += most * ((double)seed / 1073741823.5 - 1);
+    }
+}
+
 /* ==== [7] shapes of polygons ==== */
 
 typedef struct shape_poly {
