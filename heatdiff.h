@@ -12972,9 +12972,6 @@ typedef struct hdi_fit {
     double w[2 * HD_MAX_POLES + 2];     /* their weights; w[m] is that of infinity */
 } hdi_fit;
 
-/* A set in terms of scaled points, and its error at the points, weighted. */
-typedef struct hdi_fitted { double error; hd_rational set; } hdi_fitted;
-
 /* An error that names the filter. */
 static hd_status hdi_fit_fail(const hdi_fit *k, const hd_filter *filter, hd_status status, const char *text,
                               hd_error *e) {
@@ -13211,67 +13208,64 @@ static int32_t hdi_fit_idle(const hdi_fit *k, hd_rational *set) {
 }
 
 /* The best set that up to `most` support points give at these points: each is the point with the largest
- * error so far. Its weights are those of the last filter, its error is the largest of all. */
-static void hdi_fit_run(hdi_fit *k, hdi_fitted *best) {
+ * error so far. Its weights are those of the last filter, its error is the largest of all, weighted. */
+static void hdi_fit_run(hdi_fit *k, hd_rational *best) {
     const double goal = k->count > 1 ? HDI_FIT_MARGIN * k->tol : k->tol;
     const int32_t most = k->most + (k->constant ? 1 : 0);
     int32_t q, at = 0;
-    hdi_fitted s;
+    hd_rational set;
     memset(best, 0, sizeof *best);
     memset(k->support, 0, (size_t)k->n);
     k->m = 0;
     k->w[0] = 0;
-    best->error = hdi_fit_values(k, &at);        /* without poles */
-    while (k->m < most && best->error > goal) {
+    best->max_error = hdi_fit_values(k, &at);    /* without poles */
+    while (k->m < most && best->max_error > goal) {
         double off;
         k->support[at] = 1;
         k->at[k->m++] = at;
         hdi_fit_weights(k);
         off = hdi_fit_values(k, &at);
         if (k->count > 1 && off > HDI_FIT_CLOSE * k->tol && k->m < k->most) continue;
-        hdi_fit_poles(k, &s.set);
-        for (s.error = 0, q = 0; q < k->count; q++) {
-            double error = hdi_fit_residues(k, q, &s.set);
-            if (k->count == 1 && hdi_fit_idle(k, &s.set) > 0) error = hdi_fit_residues(k, q, &s.set);
-            s.error = hdi_worst(s.error, error);
+        hdi_fit_poles(k, &set);
+        for (q = 0; q < k->count; q++) {
+            double error = hdi_fit_residues(k, q, &set);
+            if (k->count == 1 && hdi_fit_idle(k, &set) > 0) error = hdi_fit_residues(k, q, &set);
+            set.max_error = hdi_worst(set.max_error, error);
         }
-        if (s.error < best->error && s.set.degree <= k->most) *best = s;
+        if (set.max_error < best->max_error && set.degree <= k->most) *best = set;
     }
 }
 
 /* ---- the error, and the set ---- */
 
-/* Errors over the finer points, relative to the largest |f|: plain, with the fit's weight, with 1 + t x. */
-typedef struct hdi_fit_errors { double plain, fit, by_t; } hdi_fit_errors;
-
-static double hdi_fit_error(const hdi_fit *k, int32_t q, const hd_rational *set, double x, double t,
-                            hdi_fit_errors *to, hd_error *e) {
+/* The weighted error of filter q at a point. Those of the set grow to that without weight, and to that with
+ * 1 + t x, both relative to the largest |f|. */
+static double hdi_fit_error(const hdi_fit *k, int32_t q, hd_rational *set, double x, double t, hd_error *e) {
     const double off = fabs(hdi_fit_f(k, k->filter[q], x, e) / k->largest[q] - hdi_rational_eval(set, x));
-    const double fit = (1 + k->filter[q]->weight * k->top * x) * off;
-    to->plain = hdi_worst(to->plain, off);
-    to->fit = hdi_worst(to->fit, fit);
-    to->by_t = hdi_worst(to->by_t, (1 + t * x) * off);
-    return fit;
+    set->max_error = hdi_worst(set->max_error, off);
+    set->max_weighted_error = hdi_worst(set->max_weighted_error, (1 + t * x) * off);
+    return (1 + k->filter[q]->weight * k->top * x) * off;
 }
 
-/* Measures the errors of filter q. Points where that of the fit is above `join` join it if there is room: the
- * worst ones between two where it is below. */
-static void hdi_fit_measure(hdi_fit *k, int32_t q, const hd_rational *set, double t, double join,
-                            hdi_fit_errors *to, hd_error *e) {
+/* Measures the errors of filter q over the finer points, and returns the weighted one. Points where it is
+ * above `join` join the fit if there is room: the worst ones between two where it is below. */
+static double hdi_fit_measure(hdi_fit *k, int32_t q, hd_rational *set, double t, double join, hd_error *e) {
     const int32_t n_log = HDI_FIT_FINER * HDI_FIT_LOG, n_linear = HDI_FIT_FINER * HDI_FIT_LINEAR;
     const double from = k->floor > HDI_FIT_FLOOR ? k->floor : HDI_FIT_BELOW * k->floor;
-    double worst = 0, at = 0;
+    double worst = 0, at = 0, all;
     int32_t i;
-    to->plain = to->fit = to->by_t = 0;
-    (void)hdi_fit_error(k, q, set, 0, t, to, e);
+    set->max_error = set->max_weighted_error = 0;
+    all = hdi_fit_error(k, q, set, 0, t, e);
     for (i = 0; i < n_log + n_linear && e->status >= 0; i++) {
-        const double x = hdi_fit_point(i, n_log, n_linear, from), off = hdi_fit_error(k, q, set, x, t, to, e);
+        const double x = hdi_fit_point(i, n_log, n_linear, from), off = hdi_fit_error(k, q, set, x, t, e);
+        all = hdi_worst(all, off);
         if (off > worst) at = x;
         worst = hdi_max(worst, off);
         if (off > join && i + 1 < n_log + n_linear) continue;
         if (worst > join && k->n < HDI_FIT_ROOM) hdi_fit_add(k, at, e);
         worst = 0;
     }
+    return all;
 }
 
 /* What rounding can add where the set is evaluated. */
@@ -13310,7 +13304,7 @@ static void hdi_fit_sort(hd_rational *set) {
 
 /* The set of filter q for x = -t lambda, by one in terms of scaled points. unit: t lambda_max. */
 static hd_status hdi_fit_take(const hdi_fit *k, int32_t q, const hd_rational *set, double unit,
-                              const hdi_fit_errors *off, hd_rational *out, hd_error *e) {
+                              hd_rational *out, hd_error *e) {
     const double largest = k->largest[q], rounding = hdi_fit_rounding(set);
     hd_rational to = *set;
     int32_t i;
@@ -13320,7 +13314,7 @@ static hd_status hdi_fit_take(const hdi_fit *k, int32_t q, const hd_rational *se
     to.lambda_max = k->top;
     to.largest = largest;
     to.a0 = largest * set->a0;
-    fine = hdi_finite(to.a0) && hdi_finite(off->plain);
+    fine = hdi_finite(to.a0) && hdi_finite(set->max_error);
     for (i = 0; i < set->n_poles; i++) {
         to.theta[i] = hdi_cscale(-unit, set->theta[i]);
         to.a[i] = hdi_cscale(-unit * largest, set->a[i]);
@@ -13331,8 +13325,9 @@ static hd_status hdi_fit_take(const hdi_fit *k, int32_t q, const hd_rational *se
         return hdi_fit_fail(k, k->filter[q], HD_ERR_BREAKDOWN,
                             "filter: a weight of its poles leaves the range of doubles", e);
     hdi_fit_sort(&to);
-    to.max_error = largest * (HDI_FIT_BETWEEN * off->plain + rounding);
-    to.max_weighted_error = largest * (HDI_FIT_BETWEEN * off->by_t + (1 + unit) * rounding);
+    to.max_error = largest * (HDI_FIT_BETWEEN * set->max_error + rounding);
+    to.max_weighted_error =
+        largest * (HDI_FIT_BETWEEN * set->max_weighted_error + (1 + unit) * rounding);
     *out = to;
     return HD_OK;
 }
@@ -13383,19 +13378,17 @@ static hd_status hdi_fit_begin(hdi_fit *k, int32_t count, const hd_filter *filte
 
 /* The sets of all filters by the poles of s. Of a lone filter, points join the fit where the error between
  * them is larger. Returns the filter that the poles serve worst, or -1 where all tolerances are kept. */
-static int32_t hdi_fit_sets(hdi_fit *k, hdi_fitted *s, hd_rational *out, hd_error *e) {
-    const double unit = hdi_fit_unit(&s->set);
-    const double join = k->n_list > 1 ? HUGE_VAL : 1.5 * hdi_max(k->tol, s->error);
+static int32_t hdi_fit_sets(hdi_fit *k, hd_rational *s, hd_rational *out, hd_error *e) {
+    const double unit = hdi_fit_unit(s);
+    const double join = k->n_list > 1 ? HUGE_VAL : 1.5 * hdi_max(k->tol, s->max_error);
     double most = 1;
     int32_t q, worst = -1;
     for (q = 0; q < k->n_list; q++) {
-        hdi_fit_errors off;
         double part;
         if (hdi_fit_load(k, k->count, k->list + q, e) < 0) return -1;
-        (void)hdi_fit_residues(k, k->count, &s->set);
-        hdi_fit_measure(k, k->count, &s->set, unit, join, &off, e);
-        if (e->status < 0 || hdi_fit_take(k, k->count, &s->set, unit, &off, out + q, e) < 0) return -1;
-        part = off.fit / hdi_fit_tol(k->list + q);
+        (void)hdi_fit_residues(k, k->count, s);
+        part = hdi_fit_measure(k, k->count, s, unit, join, e) / hdi_fit_tol(k->list + q);
+        if (e->status < 0 || hdi_fit_take(k, k->count, s, unit, out + q, e) < 0) return -1;
         if (part <= most) continue;
         most = part;
         worst = q;
@@ -13409,7 +13402,7 @@ static hd_status hdi_rational_fit(hd_rational *out, int32_t count, const hd_filt
                                   double lambda_max, hd_context *ctx, hd_error *e) {
     hdi_scope scope = hdi_scope_begin(ctx, e);
     int32_t q, round, worst = -1;
-    hdi_fitted s;
+    hd_rational s;
     hdi_fit k;
     for (q = 0; q < count; q++) {
         if (hdi_filter_check(filters + q, lambda_max, e) >= 0) continue;
@@ -14132,13 +14125,6 @@ static void hdi_elim_free(hdi_elim *m) {
     memset(m, 0, sizeof *m);
 }
 
-/* perm of the vertices -> perm of the rows */
-static void hdi_elim_own(const hd_laplacian *lap, const int32_t *perm, int32_t *rows) {
-    int32_t i, k = 0;
-    for (i = 0; i < lap->n; i++)
-        if (lap->row[perm[i]] >= 0) rows[k++] = lap->row[perm[i]];
-}
-
 /* 1/diag(B), and room for three more vectors. */
 static double *hdi_make_weight(const hd_laplacian *lap, hd_context *ctx, hd_error *e) {
     double *w = HDI_NEW(ctx, double, 4 * (uint64_t)lap->n_active, e);
@@ -14153,7 +14139,9 @@ static hd_status hdi_pair_analyse(hdi_symbolic *sym, const hd_laplacian *lap, hd
     hdi_scope s = hdi_scope_begin(ctx, e);
     int32_t *rows = HDI_TAKE(&s, int32_t, lap->n_active);
     const hdi_order order = {ordering, lap->xyz, own ? rows : NULL};
-    if (rows && own) hdi_elim_own(lap, own, rows);
+    int32_t v, k = 0;
+    for (v = 0; rows && own && v < lap->n; v++)
+        if (lap->row[own[v]] >= 0) rows[k++] = lap->row[own[v]];
     if (rows) (void)hdi_symbolic_order(sym, &lap->L, &order, ctx, e);
     return hdi_scope_end(&s);
 }
@@ -15247,7 +15235,6 @@ typedef struct hdi_krylov {
     double f_norm[HDI_WIDE], whole[HDI_WIDE];   /* |f|_B without and with its constants */
     /* of T_m of each right-hand side, when done: eigenvalues, then the eigenvectors one by one */
     double *eigen[HDI_WIDE];
-    int32_t eigen_m[HDI_WIDE];      /* 0: not known */
     int32_t eigen_room[HDI_WIDE];   /* the largest m that there is room for */
     int32_t done[HDI_WIDE];/* steps that were enough, 0: not yet */
     double g;
@@ -15328,7 +15315,6 @@ static hd_status hdi_krylov_start(hdi_krylov *z, hdi_lane *lane, hd_context *ctx
     z->probe = z->w + count;
     z->solved = 0;
     z->steps = 0;
-    memset(z->eigen_m, 0, sizeof z->eigen_m);
     for (r = 0; r < z->wide; r++) hdi_krylov_take(z, r, r < z->k ? lane + r : NULL);
     return HD_OK;
 }
@@ -15478,7 +15464,7 @@ typedef struct hdi_ritz {
 } hdi_ritz;
 
 static hd_status hdi_krylov_ritz(const hdi_krylov *z, int32_t r, int32_t m, hdi_ritz *s, hd_error *e) {
-    const int whole = z->eigen_m[r] == m;
+    const int whole = z->done[r] > 0;
     const int32_t rows = whole ? m : 2;
     double ends[2 * HDI_KRYLOV_MAX];
     const double *v = whole ? z->eigen[r] + m : ends;
@@ -15527,38 +15513,30 @@ static double hdi_ritz_bound(const hdi_ritz *s, double tau) {
     return HDI_KRYLOV_BETWEEN * s->beta * most;
 }
 
-/* All of T's eigenvectors. They are kept for all times. */
-static hd_status hdi_krylov_vectors(hdi_krylov *z, int32_t r, int32_t m, hd_error *e) {
-    hd_context *ctx = z->m->ctx;
-    if (z->eigen_m[r] == m) return HD_OK;
-    z->eigen_m[r] = 0;
+/* All of T's eigenvectors once a right-hand side is done. They serve for all times. */
+static hd_status hdi_krylov_vectors(hdi_krylov *z, int32_t r, hd_error *e) {
+    const int32_t m = z->done[r];
     if (z->eigen_room[r] < m) {
-        hdi_free(ctx, z->eigen[r]);
+        hdi_free(z->m->ctx, z->eigen[r]);
         z->eigen_room[r] = 0;
-        z->eigen[r] = HDI_NEW(ctx, double, (uint64_t)m * (uint64_t)(m + 1), e);
+        z->eigen[r] = HDI_NEW(z->m->ctx, double, (uint64_t)m * (uint64_t)(m + 1), e);
         if (!z->eigen[r]) return e->status;
         z->eigen_room[r] = m;
     }
-    if (!hdi_krylov_eigen(z, r, m, m, z->eigen[r], z->eigen[r] + m)) return hdi_lanczos_failed(e);
-    z->eigen_m[r] = m;
-    return HD_OK;
+    return hdi_krylov_eigen(z, r, m, m, z->eigen[r], z->eigen[r] + m) ? HD_OK : hdi_lanczos_failed(e);
 }
 
 /* Coefficients of the basis for right-hand side r at time t, times |f|_B: y = exp(-t (T^-1 - 1)/g) e_1, and
  * zeros up to the longest basis. */
-static hd_status hdi_krylov_coefficients(hdi_krylov *z, int32_t r, double t, double *y, hd_error *e) {
+static void hdi_krylov_coefficients(const hdi_krylov *z, int32_t r, double t, double *y) {
     const int32_t m = hdi_high32(z->done[r], 0);
-    const double *mu;
+    const double *mu = z->eigen[r], *v = mu;
     int32_t i;
     for (i = 0; i < z->steps; i++) y[i] = 0;
-    if (m == 0) return HD_OK;
-    if (hdi_krylov_vectors(z, r, m, e) < 0) return e->status;
-    mu = z->eigen[r];
     for (i = 0; i < m; i++) {
-        const double *v = mu + (int64_t)(i + 1) * m;
+        v += m;
         hdi_axpy(z->f_norm[r] * v[0] * hdi_krylov_value(mu[i], t / z->g, z->rate), v, y, m);
     }
-    return HD_OK;
 }
 
 /* Answers summed up in one pass over the basis: of one right-hand side at several times, or the reverse. */
@@ -15696,6 +15674,7 @@ static hd_status hdi_krylov_run(hdi_krylov *z, const double *t, int32_t n_times,
             if (now[0] <= 1) {
                 z->done[r] = z->steps;
                 left--;
+                if (hdi_krylov_vectors(z, r, e) < 0) return e->status;
             }
             miss_all = hdi_max(miss_all, now[0]);
         }
@@ -15911,30 +15890,24 @@ static hd_status hdi_sources_check(const hd_sources *s, int32_t n, hd_error *e) 
     return HD_OK;
 }
 
-/* The coordinates of point q, by those of rows. */
-static hd_status hdi_source_at(const hd_sources *s, int64_t q, const hd_laplacian *lap, double *to,
-                               hd_error *e) {
-    int32_t c, i;
-    to[0] = to[1] = to[2] = 0;
-    for (c = 0; c < hdi_source_corners(s); c++) {
-        const int32_t v = s->vertex[q * hdi_source_corners(s) + c], row = lap->row[v];
-        const double b = hdi_source_part(s, q, c);
-        if (b > 0 && (!lap->xyz || row < 0))
-            return hdi_source_fail(e, HD_ERR_ARGUMENT,
-                                   "source: a curve needs coordinates that are not there; give its lengths",
-                                   q, v, 0);
-        for (i = 0; i < 3 && b > 0; i++) to[i] += b * lap->xyz[hdi_triple(row) + i];
-    }
-    return HD_OK;
-}
-
-/* The length of the piece of a curve from point q to the next. */
+/* The length of the piece of a curve from point q to the next, whose corners follow. */
 static double hdi_source_piece(const hd_sources *s, int64_t q, const hd_laplacian *lap, hd_error *e) {
-    double a[3], b[3];
+    const int32_t corners = hdi_source_corners(s);
+    double d[3] = {0, 0, 0};
+    int32_t c, i;
     if (s->length) return s->length[q];
-    if (hdi_source_at(s, q, lap, a, e) < 0 || hdi_source_at(s, q + 1, lap, b, e) < 0) return 0;
-    hdi_sub3(a, b, a);
-    return hdi_norm3(a);
+    for (c = 0; c < 2 * corners; c++) {
+        const int32_t v = s->vertex[q * corners + c], row = lap->row[v];
+        const double b = hdi_source_part(s, q, c);
+        if (b > 0 && (!lap->xyz || row < 0)) {
+            hdi_source_fail(e, HD_ERR_ARGUMENT,
+                            "source: a curve needs coordinates that are not there; give its lengths",
+                            q + c / corners, v, 0);
+            return 0;
+        }
+        for (i = 0; i < 3 && b > 0; i++) d[i] += (c < corners ? -b : b) * lap->xyz[hdi_triple(row) + i];
+    }
+    return hdi_norm3(d);
 }
 
 /* Divides weights by their sum, which size is the size of. */
@@ -17292,34 +17265,25 @@ static double hdi_spec_mass_row(const hd_laplacian *lap, const double *x, int32_
 }
 
 /* What the vectors leave of the diagonals of B^-1 and of B: sums of squares of those that are not there. */
-typedef struct hdi_spec_left { const hd_laplacian *lap; hd_spectrum *out; } hdi_spec_left;
-
 static void hdi_spec_left_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_spec_left *a = (const hdi_spec_left *)arg;
-    const hd_spectrum *out = a->out;
+    const hd_spectrum *out = (const hd_spectrum *)arg;
+    const hd_laplacian *lap = out->lap;
     const double rounding = (HDI_NOISE_TERMS + out->count) * DBL_EPSILON;
     int64_t i;
     int32_t q;
     for (i = begin; i < end; i++) {
-        const int32_t row = (int32_t)i, v = a->lap->vertex[row];
-        const double inverse = hdi_inverse_mass(a->lap, row), b = a->lap->b_diag[row];
+        const int32_t row = (int32_t)i, v = lap->vertex[row];
+        const double inverse = hdi_inverse_mass(lap, row), b = lap->b_diag[row];
         double k = inverse * (1 + rounding), mass = b * (1 + rounding);
         for (q = 0; q < out->count; q++) {
             const double *x = out->vector + (int64_t)q * out->n;
-            const double bx = hdi_spec_mass_row(a->lap, x, row);
+            const double bx = hdi_spec_mass_row(lap, x, row);
             k -= x[v] * x[v];
             mass -= bx * bx;
         }
         out->left[v] = hdi_max(k, rounding * inverse);
         out->left_mass[v] = hdi_max(mass, rounding * b);
     }
-}
-
-static void hdi_spec_left_out(const hd_laplacian *lap, hd_spectrum *out, hd_context *ctx) {
-    hdi_spec_left a = {lap, out};
-    memset(out->left, 0, (size_t)out->n * sizeof *out->left);
-    memset(out->left_mass, 0, (size_t)out->n * sizeof *out->left_mass);
-    hdi_parallel_ranges(ctx, lap->n_active, 1024, hdi_spec_left_task, &a);
 }
 
 /* A pair found twice, with another one missing, would deceive the count of pivots. Are all vectors different?
@@ -17330,7 +17294,8 @@ static double hdi_spec_sign(int32_t q) {
     return (((uint32_t)q * 2654435761u) >> 31) != 0 ? 1 : -1;   /* Knuth's multiplicative hash */
 }
 
-static int hdi_spec_distinct(const hd_laplacian *lap, const hd_spectrum *out) {
+static int hdi_spec_distinct(const hd_spectrum *out) {
+    const hd_laplacian *lap = out->lap;
     double *sum = out->left, *mass = out->left_mass;
     int32_t q, v;
     memset(sum, 0, (size_t)out->n * sizeof *sum);
@@ -17387,8 +17352,9 @@ static hd_status hdi_spec_run(hdi_elim *m, const hdi_spec_goal *goal, double tol
             out->left_mass = out->left + n;
             hdi_spec_vectors(&s, out);
             hdi_spec_report(&s, out);
-            out->proven = out->proven && hdi_spec_distinct(m->source, out);
-            hdi_spec_left_out(m->source, out, m->ctx);
+            out->proven = out->proven && hdi_spec_distinct(out);
+            memset(out->left, 0, 2 * n * sizeof *out->left);
+            hdi_parallel_ranges(m->ctx, s.n, 1024, hdi_spec_left_task, out);
         }
     }
     hdi_spec_free(&s);
@@ -19532,7 +19498,7 @@ static hd_status hdi_krylov_answers(hdi_heat_call *h, int32_t n, int32_t q0, int
             a.u[p] = lane->skip ? NULL : n_here > 1 ? z->ahead + rows * p : lane->u;
             a.means[p] = lane->sums;
             a.y[p] = z->y[p];
-            if (hdi_krylov_coefficients(z, abreast ? p : 0, t, z->y[p], h->e) < 0) return h->e->status;
+            hdi_krylov_coefficients(z, abreast ? p : 0, t, z->y[p]);
         }
         hdi_krylov_sum_run(z, &a, ctx);
         for (p = 0; p < n_here; p++)
