@@ -19,8 +19,8 @@
        #define HEATDIFF_IMPLEMENTATION                   #include "heatdiff.h"
        #include "heatdiff.h"
 
-   and link with -lm. Give the implementation a file of its own: it takes about 12 s to compile at -O2, while
-   the declarations take almost no time. Two calls make a heat kernel of a triangle mesh:
+   and link with -lm. Give the implementation a file of its own: it takes about 12 s to compile at -O2. Two
+   calls make a heat kernel of a triangle mesh:
 
        hd_laplacian *lap = NULL;  hd_heat *heat = NULL;  hd_error err;
        hd_mesh mesh = hd_triangles(xyz, n, tri, n_tri);
@@ -36,13 +36,13 @@
               (kind `cot`), t is a pure number.
      t        lap->h is the mean edge length, and times are usually chosen as t = c h^2. Below t = h^2 heat
               sees the mesh rather than the surface.
-     kernels  K_t is not symmetric. Its column i diffuses the indicator of vertex i, whose heat is the mass
-              b_i. k_t = K_t B^-1 is symmetric, the pointwise heat kernel k_t(x,y). Its column i diffuses one
-              unit of heat placed at vertex i.
-     border   natural (Neumann): no heat leaves through a border. On request the border, or any vertices, are
-              held at zero (Dirichlet), and heat leaves there. Separate components exchange no heat at all.
+     kernels  K_t is not symmetric: its column i diffuses the indicator of vertex i, whose heat is the mass
+              b_i. k_t = K_t B^-1 is symmetric, the pointwise kernel k_t(x,y): its column i diffuses one unit
+              of heat at vertex i.
+     border   natural (Neumann): no heat leaves. On request the border, or any vertices, are held at zero
+              (Dirichlet), and heat leaves there. Separate components exchange no heat.
      mass     Vertices without mass (in no face, or only in faces of zero area) are inert: K_t leaves their
-              values as they are. The same holds for vertices held at zero, but K_t f is zero there.
+              values as they are. At vertices held at zero K_t f is zero.
      norm     |f|_B = sqrt(f' B f). Errors are relative in this norm or relative to the largest value; each
               report field says which.
 
@@ -95,8 +95,7 @@
      HEATDIFF_MALLOC(size), HEATDIFF_FREE(p)
                                used by contexts without an allocator; define both or none
      HEATDIFF_NO_THREADS       no threads of the library's own. They need POSIX threads or Windows, and
-                               atomic operations of GCC, Clang or MSVC; anything else is serial by itself,
-                               as is WebAssembly without threads
+                               atomic operations of GCC, Clang or MSVC; else it is serial by itself
      HEATDIFF_FILENAME         "name" of this file, which includes itself for AVX2 and AVX-512. Define it only
                                if you renamed the file and the compiler has no __FILE_NAME__
      HEATDIFF_NO_SIMD          plain C only, no kernels for AVX2 and AVX-512, no NEON
@@ -111,8 +110,8 @@
 
    Smaller builds (macros beside the implementation)
      The linker drops functions that nobody calls (gcc -ffunction-sections -Wl,--gc-sections). These switches
-     also drop code that an option could ask for. What is left out returns HD_ERR_NOT_BUILT, and the text of
-     the error names the switch. HD_METHOD_AUTO chooses among the methods that are there.
+     also drop code that an option could ask for, which returns HD_ERR_NOT_BUILT then; the error names the
+     switch. HD_METHOD_AUTO chooses among what is there.
      HEATDIFF_NO_DIRECT        all factorisations: hd_ldl_*, method krylov; implies NO_POLE_FACTORS,
                                NO_GEODESIC, NO_SPECTRUM. For hd_laplacian_matrices b_ratio then comes
                                from Gershgorin's circles alone
@@ -138,13 +137,13 @@
      -mfpmath=sse) or -ffast-math neither bits nor bounds near rounding are promised.
 
    Threads
-     There is no global or thread-local state. One object serves one thread at a time, and so does one
-     context. But plans and hd_spectrum_create only read their Laplacian: several threads may share one if
-     every plan and spectrum has a context of its own, by its options.
-     The library's own threads belong to a context. They start when the first long work needs them (20 to 50
-     microseconds each), sleep between calls, and end with the last object made with the context. The calling
-     thread works too, and never waits for a thread that has not begun. Results are the same to the last bit
-     for any number of threads. If your own threads each have a plan, set hd_context.n_threads = 1 there.
+     There is no global or thread-local state. An object or a context serves one thread at a time. But plans
+     and hd_spectrum_create only read their Laplacian: threads may share one if every plan and spectrum has a
+     context of its own, by its options.
+     The library's own threads belong to a context. They start with the first long work (20 to 50 microseconds
+     each), sleep between calls, and end with the last object made with the context. The calling thread works
+     too, and never waits for a thread that has not begun. Results are the same to the last bit for any number
+     of threads. If your own threads each have a plan, set hd_context.n_threads = 1 there.
      A forked child may use and free the objects of its parent. Do not fork while another thread is inside
      the library. With glibc older than 2.34 link with -lpthread. On Windows the implementation includes
      windows.h.
@@ -2066,12 +2065,6 @@ static void *hdi_keep(hdi_scope *s, void *block) {
     return block;
 }
 
-/* All blocks of s. */
-static void hdi_scope_move(hdi_scope *to, hdi_scope *s) {
-    HEATDIFF_ASSERT(to->n + s->n <= HDI_SCOPE_MOST);
-    while (s->n > 0) to->block[to->n++] = s->block[--s->n];
-}
-
 static hd_status hdi_scope_end(hdi_scope *s) {
     while (s->n > 0) hdi_free(s->ctx, s->block[--s->n]);
     return s->e->status;
@@ -2785,14 +2778,10 @@ static int hdi_unite(int32_t *parent, int32_t i, int32_t j) {
 /* First place in the ascending rel[0..n) that is at least x. */
 static int64_t hdi_lower_bound(const int32_t *rel, int64_t n, int64_t x) {
     int64_t lo = 0;
-    while (n > 0) {
-        const int64_t half = n / 2;
-        if (rel[lo + half] < x) {
-            lo += half + 1;
-            n -= half + 1;
-        } else {
-            n = half;
-        }
+    while (lo < n) {
+        const int64_t half = lo + (n - lo) / 2;
+        if (rel[half] < x) lo = half + 1;
+        else n = half;
     }
     return lo;
 }
@@ -4400,9 +4389,6 @@ static hd_status hdi_search_run(hdi_search_job *job, int64_t room, hdi_range_tas
     return HD_OK;
 }
 
-/* Bounds of squares of rounded sums grow by so much: then nothing that belongs within is left out. */
-static double hdi_raise(double x) { return x * (1 + 16 * DBL_EPSILON); }
-
 static void hdi_nearest_task(void *arg, int64_t begin, int64_t end) {
     const hdi_search_job *job = (const hdi_search_job *)arg;
     hdi_found *f = job->found + begin / job->per_task;
@@ -4415,7 +4401,8 @@ static void hdi_nearest_task(void *arg, int64_t begin, int64_t end) {
         before = v;
         v = job->order ? job->order[i] : i;
         limit = reach + hdi_edge_length(job->query, (int32_t)before, (int32_t)v);
-        hdi_found_begin(f, job->k, reach >= 0 ? hdi_raise(limit * limit) : HDI_NO_BOUND);
+        /* raised by what rounding may have taken: nothing that belongs within is left out */
+        hdi_found_begin(f, job->k, reach >= 0 ? limit * limit * (1 + 16 * DBL_EPSILON) : HDI_NO_BOUND);
         hdi_search(job->t, hdi_at3(job->query, v), f);
         m = hdi_found_sort(f);
         for (p = 0; p < k; p++) {
@@ -5434,8 +5421,7 @@ static hd_status hdi_soup_lengths(hdi_surface *z, double delta, hd_mesh_report *
         cot[0] = cot[1] = cot[2] = 0;
         if (!(mesh->area[f] > 0)) continue;
         for (q = 0; q < 3; q++) len[q] += add;
-        z->area[f] = hdi_length_area(len[0], len[1], len[2]);
-        if (z->area[f] > 0) hdi_length_cots(len, z->area[f], cot);
+        z->area[f] = hdi_sides_measure(len, cot);
     }
     return HD_OK;
 }
@@ -6038,13 +6024,6 @@ static void hdi_lap_pack(hd_laplacian *lap) {
     lap->L.nnz = q;
 }
 
-/* Masses of the components. */
-static void hdi_lap_component_masses(hd_laplacian *lap) {
-    int32_t i;
-    memset(lap->component_mass, 0, (size_t)lap->n_components * sizeof(double));
-    for (i = 0; i < lap->n_active; i++) lap->component_mass[lap->component[i]] += lap->mass[i];
-}
-
 /* Components by values: an entry of L or B that is not zero joins its rows. They are numbered by their first
  * row. */
 static void hdi_lap_connect(hd_laplacian *lap) {
@@ -6061,20 +6040,18 @@ static void hdi_lap_connect(hd_laplacian *lap) {
     for (i = 0; i < lap->n_active; i++) c[i] = c[i] == i ? lap->n_components++ : c[c[i]];
 }
 
-/* Which components conserve their heat, of a Laplacian with its masses. An infinite one takes the constants
- * out of all formulas: their part of K_t f is the heat divided by the mass. */
-static void hdi_held_components(hd_laplacian *lap) {
-    const hdi_holding *x = lap->holding;
+/* Masses of the components, and which of them conserve their heat. An infinite mass takes the constants out
+ * of all formulas: their part of K_t f is the heat divided by the mass. */
+static void hdi_lap_component_masses(hd_laplacian *lap) {
+    const hdi_holding *x = lap->conserves && lap->holding && lap->holding->border != 2 ? lap->holding : NULL;
+    double *mass = lap->component_mass;
     int32_t i, leaks = 0;
-    if (!x || x->border == 2) return;
-    for (i = 0; i < lap->n_active && lap->conserves; i++) {
-        double *mass = lap->component_mass + lap->component[i];
-        if (!x->leak[lap->vertex[i]] || *mass == HUGE_VAL) continue;
-        *mass = HUGE_VAL;
-        leaks++;
-    }
+    memset(mass, 0, (size_t)lap->n_components * sizeof *mass);
+    for (i = 0; i < lap->n_active; i++)
+        mass[lap->component[i]] += x && x->leak[lap->vertex[i]] ? HUGE_VAL : lap->mass[i];
+    for (i = 0; i < lap->n_components; i++) leaks += mass[i] == HUGE_VAL;
     if (leaks > 0) lap->conserves = leaks < lap->n_components ? 2 : 0;
-    if (!lap->conserves) hdi_lap_component_masses(lap);
+    if (!lap->conserves && x) hdi_lap_component_masses(lap);           /* finite ones */
 }
 
 /* Components and their masses, once L, B and mass have values, new or for the first time. */
@@ -6088,7 +6065,6 @@ static hd_status hdi_lap_components(hd_laplacian *lap, hd_error *e) {
         lap->component_mass = HDI_TAKE(keep, double, lap->moving ? lap->n_active : lap->n_components);
     if (!lap->component_mass) return e->status;
     hdi_lap_component_masses(lap);
-    hdi_held_components(lap);
     return HD_OK;
 }
 
@@ -6501,7 +6477,7 @@ static hd_status hdi_input_open(hdi_input *in, const hd_mesh *m, double stiffeni
     return HDI_HAS_POLYGONS && in->split ? hdi_poly_fans(&in->mesh, s) : HD_OK;
 }
 
-/* (L, B) and places of faces that are measured and live in s. Those of an updatable Laplacian move to it. */
+/* (L, B) and places of faces that are measured and live in s. */
 static hd_status hdi_lap_mesh(hd_laplacian *lap, const hdi_mesh *mesh, const hdi_input *in, hdi_scope *s) {
     hdi_scope own = hdi_scope_begin(lap->context, s->e);
     const hdi_kind *kind = hdi_kind_of(lap->kind);
@@ -6517,10 +6493,7 @@ static hd_status hdi_lap_mesh(hd_laplacian *lap, const hdi_mesh *mesh, const hdi
     /* The element matrix area/12 (1 1' + I) is at least 1/2 of its diagonal, area/12 I; that of a triangle
      * with corners v, v, w at least 1 - sqrt(1/3), and that of corners v, v, v is its diagonal. */
     lap->b_ratio = !lap->B ? 1 : lap->mesh.n_self_edges ? 1 - sqrt(1.0 / 3) : 0.5;
-    if (hdi_progress(lap->context, "assemble", 0.8, s->e) >= 0 && in->updatable) {
-        hdi_moving_make(x, s);
-        hdi_scope_move(hdi_lap_keep(lap, s->e), s);
-    }
+    if (hdi_progress(lap->context, "assemble", 0.8, s->e) >= 0 && in->updatable) hdi_moving_make(x, s);
     return hdi_scope_end(&own);
 }
 
@@ -7404,10 +7377,11 @@ static hd_status hdi_star_soup(hdi_surface *z, hdi_cloud *cloud, hd_laplacian *l
     return hdi_scope_end(&own);
 }
 
-/* (L, B) of faces, of intrinsic triangles or of the stars of points; what they are made of, in s. Of a cover
- * each sheet counts half. */
+/* (L, B) of faces, of intrinsic triangles or of the stars of points; what they are made of, in s, or where it
+ * lives for updates. Of a cover each sheet counts half. */
 static hd_status hdi_lap_surface(hd_laplacian *lap, hdi_surface *z, const hdi_input *in, hdi_scope *s) {
     hdi_cloud cloud;
+    if (in->updatable) s = hdi_lap_keep(lap, s->e);
     memset(z, 0, sizeof *z);
     if (HDI_HAS_POINTS && HDI_HAS_INTRINSIC && in->points)
         return hdi_star_soup(z, &cloud, lap, in, s) < 0 ? s->e->status
