@@ -132,7 +132,8 @@ class Recipe(unittest.TestCase):
         flags = ["-DCMAKE_C_FLAGS=-DCONSUMER_SHARED", "-DCMAKE_C_STANDARD_LIBRARIES=" + library] if library else []
         run("cmake", "-S", project, "-B", out, *flags, *("-D%s=%s" % x for x in given.items()))
         run("cmake", "--build", out)
-        said = run(os.path.join(out, "consumer"))
+        there = {"LD_LIBRARY_PATH": os.path.dirname(library)} if library else {}
+        said = run(os.path.join(out, "consumer"), env=dict(os.environ, **there))
         self.assertTrue(said.startswith(version() + " 0."), said)
 
 
