@@ -14538,6 +14538,18 @@ static void hdi_lane_means(hdi_lane *lane, const hd_laplacian *lap) {
         lane->sums[i] = lap->conserves ? lane->target[i] / lap->component_mass[i] : 0;
 }
 
+/* Takes them out of the field and its right-hand side, which leaves more digits for the rest. They are put
+ * back exactly in the end. */
+static void hdi_lane_deflate(hdi_lane *lane, const hd_laplacian *lap) {
+    int32_t i;
+    hdi_lane_means(lane, lap);
+    for (i = 0; i < lap->n_active && lap->conserves; i++) {
+        const double mean = lane->sums[lap->component[i]];
+        lane->f[i] -= mean;
+        lane->rhs[i] -= lap->mass[i] * mean;
+    }
+}
+
 /* Their squared norm, which every answer has at least. */
 static double hdi_lane_means_norm2(const hdi_lane *lane, const hd_laplacian *lap) {
     double sum = 0;
@@ -14631,22 +14643,19 @@ static int hdi_lane_negative(const hd_laplacian *lap, const hdi_lane *lane) {
     return sum < -1e-10 * size;
 }
 
-/* The right-hand side without its constants, complex. */
-static void hdi_lane_rhs(hdi_lane *lane, const hd_laplacian *lap) {
-    int32_t i;
-    hdi_lane_means(lane, lap);
-    for (i = 0; i < lap->n_active; i++)
-        lane->b[i] = hdi_c(lane->rhs[i] - lap->mass[i] * lane->sums[lap->component[i]], 0);
-}
-
 /* Squares of a right-hand side whose largest part is below this underflow, or its residuals' do. */
 #define HDI_LANE_LEAST 1e-140
 
-static int hdi_lane_vanishes(const hdi_lane *lane, int32_t n) {
+/* The right-hand side without its constants, complex. Returns 0 where it vanishes. */
+static int hdi_lane_rhs(hdi_lane *lane, const hd_laplacian *lap) {
     double most = 0;
     int32_t i;
-    for (i = 0; i < n; i++) most = hdi_max(most, fabs(lane->b[i].re));
-    return most > 0 && most < HDI_LANE_LEAST;
+    hdi_lane_deflate(lane, lap);
+    for (i = 0; i < lap->n_active; i++) {
+        lane->b[i] = hdi_c(lane->rhs[i], 0);
+        most = hdi_max(most, fabs(lane->rhs[i]));
+    }
+    return most == 0 || most >= HDI_LANE_LEAST;
 }
 
 /* Ends an answer by poles: constants, norms, bounds. dense: see hdi_conserve_off. */
@@ -14670,8 +14679,7 @@ static hd_status hdi_family_run(const hdi_family *fam, double tol, double drift_
     hdi_watch part = *watch;
     hd_status status = HD_OK;
     int32_t round;
-    hdi_lane_rhs(lane, lap);
-    if (hdi_lane_vanishes(lane, lap->n_active))
+    if (!hdi_lane_rhs(lane, lap))
         return hdi_fail(e, HD_ERR_BREAKDOWN,
                         "the iteration broke down: masses or values differ so much that squares underflow");
     for (round = 0; round < 6; round++) {
@@ -15164,21 +15172,14 @@ static hd_status hdi_lanczos_run(const hdi_lanczos_task *task, hdi_lane *lane, c
                                  hd_error *e) {
     const hd_laplacian *lap = task->lap;
     const int32_t n = lap->n_active;
+    const double fixed = hdi_lane_means_norm2(lane, lap);
     hd_status status = HD_OK;
-    double f0_norm, fixed = 0;
+    double f0_norm;
     int32_t i;
-    memset(lane->u, 0, (size_t)n * sizeof *lane->u);
     hdi_lane_clear_off(lane);
     lane->rounding = HD_EVIDENCE_ESTIMATED;
-    if (lap->conserves) {                        /* f0 = f - constants, rhs0 = B f0 */
-        fixed = hdi_lane_means_norm2(lane, lap);
-        hdi_lane_means(lane, lap);
-        for (i = 0; i < n; i++) {
-            lane->u[i] = lane->sums[lap->component[i]];
-            lane->f[i] -= lane->u[i];
-            lane->rhs[i] -= lap->mass[i] * lane->u[i];
-        }
-    }
+    hdi_lane_deflate(lane, lap);                 /* f0 = f - constants, rhs0 = B f0 */
+    for (i = 0; i < n; i++) lane->u[i] = lane->sums[lap->component[i]];
     f0_norm = hdi_dot(lane->f, lane->rhs, n);
     f0_norm = f0_norm > 0 ? sqrt(f0_norm) : 0;
     lane->u_norm = sqrt(fixed);
@@ -15251,29 +15252,18 @@ static void hdi_wide_dots(const double *HDI_RESTRICT x, const double *HDI_RESTRI
 /* Right-hand side r of the start: the lane's f and rhs = B f without their constants, of norm one. */
 static void hdi_krylov_take(hdi_krylov *z, int32_t r, hdi_lane *lane) {
     const hd_laplacian *lap = z->m->lap;
-    double *v = z->v[0], norm = 0;
+    double norm;
     int64_t i;
-    z->done[r] = -1;                             /* nothing there but constants */
-    z->f_norm[r] = 0;
-    z->whole[r] = lane ? lane->f_norm : 0;
-    if (lane && !lane->skip) {
-        hdi_lane_means(lane, lap);
-        for (i = 0; i < lap->n_active; i++) {
-            const int64_t at = z->wide * i + r;
-            const double mean = lane->sums[lap->component[i]];
-            v[at] = lane->f[i] - mean;
-            z->c[at] = lane->rhs[i] - lap->mass[i] * mean;
-            norm += v[at] * z->c[at];
-        }
-        if (norm > 0 && sqrt(norm) > DBL_EPSILON * lane->f_norm) {
-            z->f_norm[r] = sqrt(norm);
-            z->done[r] = 0;
-        }
-    }
+    z->whole[r] = lane->f_norm;
+    if (lane->skip) return;
+    hdi_lane_deflate(lane, lap);
+    norm = sqrt(hdi_max(0, hdi_dot(lane->f, lane->rhs, lap->n_active)));
+    if (!(norm > DBL_EPSILON * lane->f_norm)) return;
+    z->f_norm[r] = norm;
+    z->done[r] = 0;
     for (i = 0; i < lap->n_active; i++) {
-        const int64_t at = z->wide * i + r;
-        v[at] = z->f_norm[r] > 0 ? v[at] / z->f_norm[r] : 0;
-        z->c[at] = z->f_norm[r] > 0 ? z->c[at] / z->f_norm[r] : 0;
+        z->v[0][z->wide * i + r] = lane->f[i] / norm;
+        z->c[z->wide * i + r] = lane->rhs[i] / norm;
     }
 }
 
@@ -15289,7 +15279,13 @@ static hd_status hdi_krylov_start(hdi_krylov *z, hdi_lane *lane, hd_context *ctx
     z->probe = z->w + count;
     z->solved = 0;
     z->steps = 0;
-    for (r = 0; r < z->wide; r++) hdi_krylov_take(z, r, r < z->k ? lane + r : NULL);
+    memset(z->v[0], 0, (size_t)count * sizeof *z->c);
+    memset(z->c, 0, (size_t)count * sizeof *z->c);
+    for (r = 0; r < z->wide; r++) {
+        z->done[r] = -1;                         /* nothing there but constants */
+        z->f_norm[r] = z->whole[r] = 0;
+        if (r < z->k) hdi_krylov_take(z, r, lane + r);
+    }
     return HD_OK;
 }
 
@@ -19241,15 +19237,6 @@ static void hdi_batches_task(void *arg, int64_t index, int32_t worker) {
  * are nearly all of the answer there, and their rounding would be most of the error. Below, right-hand sides
  * stay sparse. */
 #define HDI_DEFLATE 3e5
-
-/* Takes the constants out of a dense right-hand side, which leaves more digits for the rest. They are put
- * back exactly in the end. */
-static void hdi_lane_deflate(hdi_lane *lane, const hd_laplacian *lap) {
-    int32_t i;
-    hdi_lane_means(lane, lap);
-    for (i = 0; i < lap->n_active && lap->conserves; i++)
-        lane->rhs[i] -= lap->mass[i] * lane->sums[lap->component[i]];
-}
 
 static hd_status hdi_heat_by_direct(hdi_heat_call *h) {
     hd_heat *heat = h->heat;

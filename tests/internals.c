@@ -928,6 +928,8 @@ static void int_krylov_bound_of(int kind, int32_t wide, double t) {
     z->k = k;
     z->g = m.shift;
     CHECK(hdi_krylov_start(z, lane, &ctx, &e) == HD_OK);
+    for (r = 0; r < k; r++)                      /* the start takes the constants out */
+        for (q = 0; q < n; q++) lane[r].rhs[q] += m.lap->mass[q] * lane[r].sums[m.lap->component[q]];
     for (step = 1; step <= 45; step++) {
         CHECK(hdi_krylov_step(z, &ctx, &e) == HD_OK && z->steps == step);
         for (q = 0; q < 5 * k && (step <= 12 || step % 4 == 0); q++) {
