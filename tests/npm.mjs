@@ -213,12 +213,26 @@ test("progress, and cancelling", () => {
   assert.throws(() => new Surface(...mesh(), { progress: () => false }), { status: "HD_ERR_CANCELLED" });
 });
 
+test("a trap ends the instance, and others can be made", () => {
+  const one = new Surface(...mesh()),
+    other = new Surface(FACES, OCTAHEDRON);
+  const trap = () => {
+    throw new WebAssembly.RuntimeError("unreachable");
+  };
+  assert.throws(() => one.columns(0, "9h2", { progress: trap }), /the module stopped.*unreachable.*lost/);
+  assert.ok(one.disposed && other.disposed);
+  assert.throws(() => other.columns(0, 1), /disposed/);
+  one.dispose();
+  assert.equal(new Surface(FACES, OCTAHEDRON).columns(0, 1).values.length, 6);
+});
+
 // ---- slim ----
 
 function slim(source, then = "") {
   const code = `import { readFileSync } from "node:fs";
     import { init, ready, Surface } from "heatdiff/slim";
-    const url = new URL(import.meta.resolve("heatdiff/heatdiff.wasm"));
+    import { pathToFileURL } from "node:url";
+    const url = pathToFileURL("node_modules/heatdiff/heatdiff.wasm");
     ${source}; await ready;
     console.log(new Surface(null, new Float32Array(90).map((x, i) => Math.sin(i * i))).n); ${then}`;
   return execFileSync(process.execPath, ["--input-type=module", "-e", code], { stdio: "pipe" }).toString().trim();
@@ -279,6 +293,11 @@ async function cancelling(shared) {
       { status: "HD_ERR_CANCELLED" },
     );
   assert.equal(heard, shared ? 1 : 0);
+  const thrower = () => {
+    throw new Error("mine");
+  };
+  await assert.rejects(one.signature(Array.from({ length: 40 }, (_, k) => `${1.3 ** k}h2`), { progress: thrower }), /^Error: mine$/);
+  near((await one.columns(5, "3h2", { method: "krylov" })).values, want, 1e-9, "it works on");
   one.dispose();
 }
 

@@ -141,7 +141,7 @@ for (const [op, ...given] of steps) {
     if (Array.isArray(x)) args.push(times = x.length, p = put(new Uint8Array(Float64Array.from(x).buffer)));
     else args.push(typeof x === "string" ? put(Buffer.from(x)) : x);
   }
-  const status = wasm["page_" + op](...args), facts = op === "begin", count = facts ? 9 : (perVertex[op] || 0) * n * times;
+  const status = wasm["page_" + op](...args), facts = op === "begin", count = facts ? 10 : (perVertex[op] || 0) * n * times;
   const ms = clock() - begin, from = facts ? wasm.page_facts() : wasm.page_out();
   if (p) wasm.page_free(p);
   const values = status < 0 ? [] : new Float64Array(wasm.memory.buffer, from, count);
@@ -187,6 +187,7 @@ def natively(steps):
     lib.page_alloc.restype = ctypes.c_void_p
     lib.page_out.restype = lib.page_facts.restype = ctypes.POINTER(ctypes.c_double)
     lib.page_text.restype = ctypes.c_char_p
+    lib.page_begin.argtypes = [ctypes.c_int32, ctypes.c_double]
     lib.page_file.argtypes = [ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p]
     lib.page_alloc.argtypes = [ctypes.c_size_t]
     rows = []
@@ -204,7 +205,7 @@ def natively(steps):
         status = getattr(lib, "page_" + op)(*args)
         ms = 1000 * (time.thread_time() - begin)
         facts, count = op == "begin", PER_VERTEX.get(op, 0) * n * times
-        values = (lib.page_facts()[:9] if facts else lib.page_out()[:count] if count else []) if status >= 0 else []
+        values = (lib.page_facts()[:10] if facts else lib.page_out()[:count] if count else []) if status >= 0 else []
         rows.append({"status": status, "ms": ms, "n": lib.page_n(), "values": tuple(values),
                      "text": lib.page_text().decode() if status < 0 else ""})
     return rows
@@ -276,10 +277,10 @@ class Module(unittest.TestCase):
     def test_same_numbers_as_native(self):
         needs(("node", program("node", "nodejs")), ("native compiler", native_library()))
         for surface in STEPS:
-            h = natively([surface, ["begin", 0]])[1]["values"][0]
-            steps = [surface, ["begin", 0]] + with_times(QUERIES, h)
+            h = natively([surface, ["begin", 0, 0]])[1]["values"][0]
+            steps = [surface, ["begin", 0, 0]] + with_times(QUERIES, h)
             if surface[:2] == ["shape", 2]:
-                steps += [["begin", 1]] + with_times(QUERIES[:1], h)
+                steps += [["begin", 1, 0]] + with_times(QUERIES[:1], h)
             there, here = in_node(steps), natively(steps)
             for step, a, b in zip(steps, there, here):
                 with self.subTest(surface=surface[:2], step=step[0]):
@@ -291,13 +292,41 @@ class Module(unittest.TestCase):
                     for x, y in zip(a["values"], b["values"]):
                         self.assertTrue(x == y or abs(x - y) <= 1e-12 * most, (x, y, most))
 
+    def test_start_and_limit(self):
+        """Heat begins on the largest piece, though another one reaches farther; and a limit of memory is kept."""
+        needs(("node", program("node", "nodejs")))
+        small = "".join("v %d %d %d\n" % p for p in ((90, 0, 0), (91, 0, 0), (90, 1, 0))) + "f 801 802 803\n"
+        first, again, answer = in_node([file_step("two.obj", ring(40, 20) + small), ["begin", 0, 0], ["begin", 0, 1e6],
+                                        ["columns", DIRECT, [1.0], 7]])[1:]
+        self.assertEqual(first["values"][3], 2)
+        self.assertLess(first["values"][9], 800)
+        self.assertEqual((again["status"], answer["status"]), (0, -3), answer["text"])
+
+    def test_colours(self):
+        """The page draws with the colours of tools/picture.h."""
+        needs(("node", program("node", "nodejs")), ("native compiler", native_library()))
+        source = os.path.join(FOLDER, "colours.c")
+        with open(source, "w") as f:
+            f.write('#include "%s/tools/picture.h"\nvoid colour(double s, uint8_t *rgb);\n'
+                    "void colour(double s, uint8_t *rgb) { pic_colormap(s, rgb, PIC_MAP_EMBER); }\n" % TOP)
+        library = os.path.join(FOLDER, "colours.so")
+        cc = program(os.environ.get("CC", "cc"), "gcc", "clang")
+        subprocess.run([cc, "-std=gnu99", "-w", "-fPIC", "-shared", source, "-o", library, "-lm"], check=True)
+        code = ("const vm = require('vm'), all = {}; vm.runInNewContext(require('fs').readFileSync(process.argv[1], 'utf8'), all);"
+                "console.log(JSON.stringify(Array.from({ length: 101 }, (_, i) => all.colourOf(i / 100))))")
+        run = subprocess.run([program("node", "nodejs"), "-e", code, os.path.join(WEB, "view.js")], stdout=subprocess.PIPE, check=True)
+        for i, have in enumerate(json.loads(run.stdout)):
+            want = (ctypes.c_uint8 * 3)()
+            ctypes.CDLL(library).colour(ctypes.c_double(i / 100), want)
+            self.assertLessEqual(max(abs(a - b) for a, b in zip(have, want)), 1, (i, have, list(want)))
+
     def test_bad_files(self):
         needs(("node", program("node", "nodejs")))
         files = {"a.obj": "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", "a.txt": "hello",
                  "a.ply": "ply\nformat ascii 1.0\nelement vertex 2\nend_header\n", "a.off": "OFF\n3 1\n",
                  "a.stl": "", "flat.obj": "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"}
         for name, content in files.items():
-            rows = in_node([file_step(name, content), ["begin", 0], ["shape", 1, 700], ["begin", 0]])
+            rows = in_node([file_step(name, content), ["begin", 0, 0], ["shape", 1, 700], ["begin", 0, 0]])
             said = rows[0]["text"] or rows[1]["text"]
             print("%s: %s" % (name, said), file=sys.stderr)
             self.assertTrue(said)
@@ -309,9 +338,9 @@ class Module(unittest.TestCase):
             raise unittest.SkipTest("--large")
         needs(("node", program("node", "nodejs")), ("native compiler", native_library()))
         surface = ["shape", 0, 36000]
-        h = natively([surface, ["begin", 0]])[1]["values"][0]
+        h = natively([surface, ["begin", 0, 0]])[1]["values"][0]
         decade = [10 * 2 ** (k / 3) for k in range(10)]
-        steps = [surface, ["begin", 0]] + with_times([
+        steps = [surface, ["begin", 0, 0]] + with_times([
             ["columns", DIRECT, [100.0], 7], ["columns", DIRECT, [200.0], 7], ["columns", DIRECT, [200.0], 700],
             ["columns", DIRECT, [200.0], 1700], ["columns", KRYLOV, decade, 7], ["columns", KRYLOV, decade, 99],
             ["smooth", decade], ["geodesic", 5], ["geodesic", 6],
@@ -611,9 +640,9 @@ IDLE = SHOWN + " && document.body.dataset.idle === 'yes'"
 
 
 class Page(unittest.TestCase):
-    def open(self, width=1280, height=800, phone=False):
+    def open(self, width=1280, height=800, phone=False, hash=""):
         needs(("chromium", CHROMIUM))
-        self.browser = Browser(BUILT["page"], width, height, phone)
+        self.browser = Browser(BUILT["page"] + hash, width, height, phone)
         self.addCleanup(self.browser.close)
         self.browser.until("window.heatdiff && heatdiff.times.length && " + SHOWN)
         return self.browser
@@ -697,7 +726,7 @@ class Page(unittest.TestCase):
         chunk = at // 10
         times = b.js("chunkTimes(%d)" % chunk)
         far = b.js("chunkTimes(%d)" % ((at + 3) // 10))
-        native = natively([file_step("ring.obj", text), ["begin", 0], ["columns", KRYLOV, times, 17],
+        native = natively([file_step("ring.obj", text), ["begin", 0, 0], ["columns", KRYLOV, times, 17],
                            ["columns", KRYLOV, far, 17], ["signature", far], ["geodesic", 17]])
         n, k, j = 1800, at - 10 * chunk, at + 3 - 10 * ((at + 3) // 10)
         self.assertAlmostEqual(times[k] / t, 1, 14)
@@ -741,13 +770,88 @@ class Page(unittest.TestCase):
         b.until("heatdiff.times.length && " + SHOWN)
         self.assertEqual(b.errors, [])
 
+    def alert(self):
+        return self.browser.js("document.getElementById('alert').hidden ? '' : document.getElementById('alert-title').textContent"
+                               " + ': ' + document.getElementById('alert-text').textContent")
+
+    def test_looks(self):
+        """A sentence for each mode, dark colours by the system and by the switch, and which way is up."""
+        b = self.open()
+        b.until(IDLE, 120)
+        about = set()
+        for name in ("kernel", "distance", "geodesic", "signature", "smooth"):
+            b.js("document.querySelector('[value=%s]').click()" % name)
+            about.add(b.text("about"))
+        self.assertEqual(len(about), 5)
+        self.assertGreater(min(map(len, about)), 50)
+        pixel = ("(() => { view.drawNow(); const g = view.gl, p = new Uint8Array(4); g.readPixels(5, %s, 1, 1, g.RGBA, g.UNSIGNED_BYTE, p);"
+                 "return p[0]; })()")
+        paper = "getComputedStyle(document.getElementById('panel')).backgroundColor"
+        self.assertGreater(b.js(pixel % 5), 215)
+        bright = b.js(paper)
+        b.ask("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "dark"}])
+        b.until("document.documentElement.dataset.theme === 'dark'", 5)
+        self.assertLess(b.js(pixel % 5), 40)
+        self.assertNotEqual(b.js(paper), bright)
+        b.until(IDLE, 120)
+        b.shot("laptop-dark")
+        b.js("document.getElementById('dark').click()")
+        self.assertEqual(b.js(paper), bright)
+        # the elephant stands: its shadow is darker than the paper beside it; then it lies
+        box = ("(() => { const lo = [9, 9, 9], hi = [-9, -9, -9]; view.at.forEach((x, i) => { lo[i % 3] = Math.min(lo[i % 3], x);"
+               "hi[i % 3] = Math.max(hi[i % 3], x); }); return hi.map((x, c) => x - lo[c]); })()")
+        self.assertGreater(b.js("Math.max(...new Uint8Array(shadowOf(view.at, view.tri, view.height)))"), 100)
+        was = b.js(box)
+        for axis, order in (("z", (0, 2, 1)), ("x", (1, 0, 2)), ("y", (0, 1, 2))):
+            b.js("(() => { const u = document.getElementById('up'); u.value = '%s'; u.dispatchEvent(new Event('change')); })()" % axis)
+            for have, k in zip(b.js(box), order):
+                self.assertAlmostEqual(have, was[k], 5)
+            self.assertAlmostEqual(b.js("view.height - Math.min(...view.at.filter((_, i) => i % 3 === 1))"), 0, 6)
+        self.assertEqual(b.errors, [])
+
+    def test_loading(self):
+        """The old shape is not shown under a new name."""
+        b = self.open()
+        b.until(IDLE, 120)
+        n, hidden, text = b.js("(() => { const s = document.getElementById('shape'); s.value = '1:10000'; s.dispatchEvent(new Event('change'));"
+                               "return [view.n, document.getElementById('legend').hidden, document.getElementById('mesh').textContent]; })()")
+        self.assertEqual((n, hidden, text), (0, True, "reading Bumpy ball …"))
+        b.until("heatdiff.times.length && view.n === heatdiff.mesh.n && " + SHOWN)
+        self.assertIn("10,", b.text("mesh"))
+        b.js("document.getElementById('mend').click()")         # the same shape: it stays
+        self.assertEqual(b.js("view.n"), b.js("heatdiff.mesh.n"))
+        self.assertEqual(b.errors, [])
+
+    def test_little_memory(self):
+        """What fails is said only where nothing else answers: a surface too large for all factors still has its picture."""
+        b = self.open(hash="#memory=40")
+        b.until(IDLE + " && heatdiff.failed.has('direct')", 120)
+        self.assertEqual(self.alert(), "")
+        self.assertTrue(b.js("heatdiff.shown.values.length === heatdiff.mesh.n"))
+        self.assertIn("each click takes longer", b.text("note"))
+        b.js("setSource(1000)")
+        b.until(IDLE, 60)
+        self.assertEqual(b.js("heatdiff.shown.source"), 1000)
+        b.js("setMode('signature')")
+        b.until("!document.getElementById('alert').hidden", 60)
+        self.assertIn("No signature for this surface: ", self.alert())
+        self.assertIn("byte limit", self.alert())
+        b.shot("laptop-little-memory")
+        b.js("setMode('kernel')")
+        self.assertEqual(self.alert(), "")
+        self.assertEqual(b.errors, [])
+
     def test_out_of_memory(self):
         """A trap in a worker costs that answer and no more."""
         b = self.open()
         b.until(IDLE, 120)
         b.js("give(workers[1], { op: 'columns', t: null, done: (m) => fail(m, 'smooth') })")     # null traps
-        b.until("!document.getElementById('alert').hidden")
-        self.assertIn("memory", b.text("alert-text"))
+        b.until("heatdiff.failed.has('smooth')")
+        self.assertEqual(self.alert(), "")
+        b.js("setMode('smooth')")
+        self.assertIn("No smoothing for this surface: out of memory", self.alert())
+        b.js("setMode('kernel')")
+        self.assertEqual(self.alert(), "")
         b.js("setSource(1000)")
         b.until(IDLE + " && heatdiff.known === heatdiff.shownCount", 120)
         self.assertEqual(b.errors, [])

@@ -129,11 +129,17 @@ export class Surface {
     const job = this.#running;
     if (!job) return;
     if (m.stage !== undefined) {
-      if (job.progress && job.progress(m.stage, m.done) === false) job.stop();
+      try {
+        if (job.progress && job.progress(m.stage, m.done) === false) job.stop();
+      } catch (e) {
+        job.thrown = e;
+        job.stop();
+      }
       return;
     }
     this.#end(job, () => {
       if (!m.error) return job.done(unpack(m.value));
+      if (job.thrown) return job.fail(job.thrown);
       const { name, message, ...fields } = m.error;
       const kinds = { TypeError, RangeError },
         e = name === "HeatError" ? Object.create(HeatError.prototype) : new (kinds[name] || Error)(message);
@@ -152,7 +158,7 @@ export class Surface {
   }
 
   #stop(job) {
-    const e = cancelled(job.signal || { reason: null });
+    const e = job.thrown || cancelled(job.signal || { reason: null });
     if (job !== this.#running) {
       this.#queue = this.#queue.filter((other) => other !== job);
       return job.fail(e);

@@ -14,7 +14,8 @@ import sys
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 COMPILE = ["--target=wasm32-wasi", "-std=c99", "-Oz", "-msimd128", "-mbulk-memory", "-DNDEBUG",
-           "-D_WASI_EMULATED_SIGNAL", "-D_WASI_EMULATED_PROCESS_CLOCKS", "-Wall", "-Wextra", "-Wno-unused-function",
+           "-D_WASI_EMULATED_SIGNAL", "-D_WASI_EMULATED_PROCESS_CLOCKS", "-D_WASI_EMULATED_GETPID",
+           "-Wall", "-Wextra", "-Wno-unused-function",
            # 6 % of the module: small functions stay calls, and loops keep their plain counters. Times of
            # test_web.py --large in node change by no more than from run to run.
            "-mllvm", "-inline-threshold=-50", "-mllvm", "-disable-lsr"]

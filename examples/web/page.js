@@ -17,6 +17,20 @@ const NAMES = {
   signature: "Heat kernel signature (per area)",
   smooth: "Displacement of the surface",
 };
+const MODES = {
+  kernel: "heat kernel",
+  distance: "diffusion distance",
+  geodesic: "geodesic distance",
+  signature: "signature",
+  smooth: "smoothing",
+};
+const ABOUT = {
+  kernel: "How much heat is at each place after the time t, if all of it began at one vertex.",
+  distance: "How differently heat spreads from here and from the source. Noise and thin bridges hardly change it.",
+  geodesic: "The length of the shortest way along the surface to the source.",
+  signature: "How much heat stays where it was put: tips keep it, flat places lose it. Bending hardly changes it.",
+  smooth: "The surface itself after the time t. Noise goes first, shapes later.",
+};
 const STAGES = {
   neighbours: "finding neighbours",
   assemble: "assembling",
@@ -45,8 +59,9 @@ const state = {
   factored: -1,
   shown: null,
   asked: 0,
-  failed: new Set(), // what could not be computed on this surface
+  failed: new Map(), // what could not be computed on this surface, and why
   log: { kernel: false, signature: true },
+  limit: 1e6 * Number((/memory=(\d+)/.exec(location.hash) || [])[1] || 0), // #memory=500: most megabytes of a worker
   settled: 0,
   answers: 0,
 };
@@ -114,11 +129,17 @@ function step() {
 
 // ---- a new surface ----
 
-function load(surface, name) {
+// The old shape goes at once, so that nothing is shown under another's name; again: it is the same shape.
+function load(surface, name, again = false) {
   state.generation++;
-  Object.assign(state, { times: [], failed: new Set(), factored: -1 });
+  Object.assign(state, { times: [], failed: new Map(), factored: -1 });
   forgetAnswers();
   hideAlert();
+  if (!again) {
+    view.clear();
+    showNoNumbers();
+    $("mesh").textContent = `reading ${name} …`;
+  }
   for (const w of workers) w.queue = [];
   order(workers[0], surface, (m) => loaded(m, name), ready);
   order(workers[1], surface);
@@ -129,12 +150,17 @@ function load(surface, name) {
 function order(w, surface, whenLoaded = () => {}, whenReady = () => {}) {
   if (!surface) return;
   const copy = surface.data ? { ...surface, data: surface.data.slice(0) } : surface;
-  w.queue.unshift({ ...copy, done: whenLoaded }, { op: "begin", mend: $("mend").checked, done: whenReady });
+  w.queue.unshift({ ...copy, done: whenLoaded }, { op: "begin", mend: $("mend").checked, limit: state.limit, done: whenReady });
 }
 
 function loaded(m, name) {
   if (m.status < 0) return refuse(`Could not read ${name}`, m.text);
   Object.assign(state, { next: m.mesh, name });
+  view.source = -1;
+  view.setMesh(m.mesh.xyz, m.mesh.tri, 0);
+  if (m.mesh.tri.length) showBare(m.mesh);
+  else view.clear(); // the size of the dots is not known yet
+  $("mesh").textContent = `${m.mesh.n.toLocaleString("en")} vertices …`;
 }
 
 // A surface that cannot be used leaves the page as it is, but for the message: the last surface is loaded again.
@@ -153,7 +179,7 @@ function refuse(title, text) {
 function ready(m) {
   if (m.status < 0) return refuse(`Cannot compute on ${state.name}`, m.text);
   const keep = state.mesh === null ? -1 : state.keepSource ? state.source : -1;
-  const [h, area, active, components, border, nonmanifold, leftOut] = m.facts;
+  const [h, area, active, components, border, nonmanifold, leftOut, , , start] = m.facts;
   const mesh = (state.mesh = state.next || state.mesh);
   state.facts = { h, area, active, components, border, nonmanifold, leftOut };
   state.last = { order: state.order, name: state.name, choice: $("shape").value };
@@ -169,7 +195,7 @@ function ready(m) {
   state.at = state.everShown ? Math.round(was * (count - 1)) : Math.round(0.62 * (count - 1));
   state.everShown = true;
   slider.value = state.at;
-  state.source = keep >= 0 && keep < mesh.n ? keep : farthest(mesh);
+  state.source = keep >= 0 && keep < mesh.n ? keep : start;
   $("source").max = mesh.n - 1;
   view.setMesh(mesh.xyz, mesh.tri, h);
   showNothingYet();
@@ -179,12 +205,6 @@ function ready(m) {
   if (!mesh.tri.length && state.mode === "geodesic") setMode("kernel");
   show();
 }
-
-const farthest = (mesh) => {
-  let best = 0;
-  for (let i = 1; i < mesh.n; i++) if (mesh.xyz[3 * i] > mesh.xyz[3 * best]) best = i;
-  return best;
-};
 
 function forgetAnswers() {
   Object.assign(state, { columns: [], signature: [], smooth: [], geodesic: null, shown: null });
@@ -338,11 +358,28 @@ function wanted(w) {
   );
 }
 
-// Most likely memory: the rest of the page goes on without this kind of answer.
+// Most likely memory: the rest of the page goes on without this kind of answer, and another way may still answer.
 function fail(m, what) {
-  state.failed.add(what);
-  state.factored = -1;
-  say("The computation failed", m.text);
+  state.failed.set(what, m.text);
+  if (what === "direct") state.factored = -1;
+  showFailure();
+}
+
+// What must fail before a mode has no answer: all of one of these lists.
+const WAYS = {
+  kernel: [["columns", "direct"]],
+  distance: [["columns", "direct"], ["signature"]],
+  geodesic: [["geodesic"]],
+  signature: [["signature"]],
+  smooth: [["smooth"]],
+};
+
+// Said only while it keeps what is asked from being answered.
+function showFailure() {
+  const { failed, mode } = state,
+    stuck = !answerNow() && WAYS[mode].find((ways) => ways.every((way) => failed.has(way)));
+  if (stuck) say(`No ${MODES[mode]} for this surface`, failed.get(stuck[0]), "failure");
+  else if ($("alert").dataset.kind === "failure") hideAlert();
 }
 
 function arrived(op, m) {
@@ -461,6 +498,7 @@ function show() {
   const answer = answerNow(),
     { mode } = state;
   showControls();
+  showFailure();
   if (!answer) {
     state.shown = null;
     step();
@@ -484,7 +522,13 @@ function showNothingYet() {
   view.setPositions(state.mesh.xyz);
   view.moved = false;
   view.source = usesSource() ? state.source : -1;
-  view.setValues(new Float32Array(state.mesh.n).fill(-1), [0, 0.5], false);
+  showBare(state.mesh);
+  showNoNumbers();
+}
+
+const showBare = (mesh) => view.setValues(new Float32Array(mesh.n).fill(-1), [0, 0.5], false);
+
+function showNoNumbers() {
   $("legend").hidden = true;
   for (const id of ["fact-bound", "fact-time", "fact-ready"]) $(id).textContent = "–";
   $("note").textContent = "";
@@ -492,6 +536,7 @@ function showNothingYet() {
 
 function showControls() {
   const { mode, times, facts } = state;
+  $("about").textContent = ABOUT[mode];
   if (!facts || !times.length) return;
   const t = times[state.at],
     noTime = mode === "geodesic",
@@ -512,14 +557,14 @@ function drawLegend(scale, mode) {
   const bar = $("bar"),
     g = bar.getContext("2d");
   for (let x = 0; x < bar.width; x++) {
-    g.fillStyle = `rgb(${viridis(x / (bar.width - 1))})`;
+    g.fillStyle = `rgb(${colourOf(x / (bar.width - 1))})`;
     g.fillRect(x, 0, 1, bar.height);
   }
   if (view.lines && state.mesh.tri.length)
     for (let k = Math.ceil(scale.lo / scale.line); k * scale.line <= scale.hi; k++) {
       const s = (k * scale.line - scale.lo) / (scale.hi - scale.lo);
       if (s <= 0.004 || s >= 0.996) continue;
-      g.fillStyle = s > 0.4 ? "rgba(0,0,0,0.55)" : "rgba(255,255,255,0.55)";
+      g.fillStyle = "rgba(0,0,0,0.6)";
       g.fillRect(Math.round(s * bar.width) - 1, 0, 2, bar.height);
     }
   $("legend-name").textContent = NAMES[mode] + (scale.log ? ", logarithmic" : "");
@@ -559,6 +604,9 @@ function showFacts(a) {
   };
   $("note").textContent =
     notes[state.mode] +
+    (state.failed.has("direct") && usesSource() && state.mode !== "geodesic"
+      ? " Factors for quick clicks do not fit in the memory here, so each click takes longer."
+      : "") +
     (a.lost ? ` ${a.lost.toLocaleString("en")} distances are too small to be sure of.` : "");
   state.took = took;
 }
@@ -602,7 +650,8 @@ function showBusy() {
   document.body.dataset.idle = idle ? "yes" : "no";
 }
 
-function say(title, text) {
+function say(title, text, kind = "news") {
+  $("alert").dataset.kind = kind;
   $("alert-title").textContent = title;
   $("alert-text").textContent = text;
   $("alert").hidden = false;
@@ -638,6 +687,18 @@ function setMode(mode) {
   if (!state.times.length) return;
   if (!answerNow()) showNothingYet();
   show();
+}
+
+function setTheme(theme) {
+  document.documentElement.dataset.theme = view.theme = theme;
+  $("dark").checked = theme === "dark";
+  view.draw();
+}
+
+// Another axis of the file points up.
+function setUp(axis) {
+  view.up = axis;
+  if (state.mesh && view.n) view.setPositions((state.shown && state.shown.xyz) || state.mesh.xyz);
 }
 
 // The list offers the last file that could be read.
@@ -799,7 +860,7 @@ function picture() {
     w = box.width * ratio,
     h = box.height * ratio;
   g.drawImage($("bar"), x, y, w, h);
-  g.fillStyle = "#33373d";
+  g.fillStyle = getComputedStyle($("ticks")).color;
   g.font = `${12 * ratio}px system-ui, sans-serif`;
   g.fillText($("legend-name").textContent, x, y - 7 * ratio);
   g.textAlign = "center";
@@ -826,7 +887,7 @@ function ply() {
     for (let c = 0; c < 3; c++, p += 8) body.setFloat64(p, xyz[3 * i + c], true);
     body.setFloat64(p, shown.values[i], true);
     p += 8;
-    for (const c of shown.scale.s[i] < 0 ? [158, 158, 158] : viridis(shown.scale.s[i])) body.setUint8(p++, c);
+    for (const c of shown.scale.s[i] < 0 ? [158, 158, 158] : colourOf(shown.scale.s[i])) body.setUint8(p++, c);
   }
   for (let k = 0; k < f; k++) {
     body.setUint8(p++, 3);
@@ -847,7 +908,7 @@ function listen() {
   };
   $("mend").onchange = () => {
     state.keepSource = true;
-    if (state.order) load(state.order, state.name);
+    if (state.order) load(state.order, state.name, true);
   };
   for (const input of document.querySelectorAll("[name=mode]")) input.onchange = () => setMode(input.value);
   $("time").oninput = (e) => setTime(Number(e.target.value));
@@ -866,6 +927,11 @@ function listen() {
     state.log[state.mode] = e.target.checked;
     show();
   };
+  $("up").onchange = (e) => setUp(e.target.value);
+  const system = matchMedia("(prefers-color-scheme: dark)");
+  setTheme(system.matches ? "dark" : "light");
+  system.onchange = (e) => setTheme(e.matches ? "dark" : "light");
+  $("dark").onchange = (e) => setTheme(e.target.checked ? "dark" : "light");
   $("alert-close").onclick = hideAlert;
   $("save-png").onclick = () =>
     state.shown && picture().toBlob((blob) => save(blob, fileName("png")), "image/png");

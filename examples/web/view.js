@@ -1,24 +1,134 @@
-// view.js - draws one surface with raw WebGL2: colours by value, isolines, edges, a mark at the source; picks vertices
+// view.js - draws one surface with raw WebGL2: colours by value, isolines, edges, a mark at the source, light and a shadow on
+// the ground; picks vertices. Colours, light and shadow are those of tools/picture.h.
 "use strict";
 
-// Viridis as a polynomial of degree six (coefficients of the public domain, fitted by Matt Zucker).
-const VIRIDIS = [
-  [0.2777273272, 0.0054073445, 0.3340998053],
-  [0.1050930431, 1.4046135299, 1.3845901626],
-  [-0.3308618287, 0.2148475595, 0.095095163],
-  [-4.634230499, -5.7991009734, -19.3324409563],
-  [6.2282699363, 14.1799333668, 56.6905526007],
-  [4.7763849977, -13.7451453777, -65.3530326334],
-  [-5.4354558559, 4.6458526122, 26.3124352496],
+// The map ember: lightness, chroma and hue of equally spaced colours in OKLab (Björn Ottosson 2020), joined by a smooth
+// curve. Lightness is linear from end to end; colours outside sRGB lose chroma.
+const EMBER = [
+  [0.425, 0.135, 272],
+  [0.53, 0.185, 303],
+  [0.635, 0.205, 352],
+  [0.74, 0.172, 40],
+  [0.845, 0.148, 75],
+  [0.95, 0.085, 103],
 ];
 
-function viridis(s) {
-  return [0, 1, 2].map((c) => {
-    let v = 0;
-    for (let k = 6; k >= 0; k--) v = v * s + VIRIDIS[k][c];
-    return Math.max(0, Math.min(255, Math.round(255 * v)));
+function oklabToLinear(l, a, b) {
+  const [p, q, r] = [
+    l + 0.3963377774 * a + 0.2158037573 * b,
+    l - 0.1055613458 * a - 0.0638541728 * b,
+    l - 0.0894841775 * a - 1.291485548 * b,
+  ].map((x) => x ** 3);
+  return [
+    4.0767416621 * p - 3.3077115913 * q + 0.2309699292 * r,
+    -1.2684380046 * p + 2.6097574011 * q - 0.3413193965 * r,
+    -0.0041960863 * p - 0.7034186147 * q + 1.707614701 * r,
+  ];
+}
+
+// Catmull-Rom; at the ends the curve continues straight.
+function along(values, i, t) {
+  const b = values[i],
+    c = values[i + 1],
+    a = i > 0 ? values[i - 1] : 2 * b - c,
+    d = i + 2 < values.length ? values[i + 2] : 2 * c - b;
+  return b + 0.5 * t * (c - a + t * (2 * a - 5 * b + 4 * c - d + t * (3 * (b - c) + d - a)));
+}
+
+const clamp = (x, lo, hi) => Math.max(lo, Math.min(hi, x));
+
+// The colour of s in [0, 1], as three bytes of sRGB.
+function colourOf(s) {
+  const u = clamp(s, 0, 1) * (EMBER.length - 1),
+    i = Math.min(EMBER.length - 2, Math.floor(u)),
+    t = u - i;
+  const hue = (f) => EMBER.map(([, c, h]) => c * f((h * Math.PI) / 180));
+  const l = EMBER[i][0] + t * (EMBER[i + 1][0] - EMBER[i][0]),
+    a = along(hue(Math.cos), i, t),
+    b = along(hue(Math.sin), i, t);
+  let rgb;
+  for (let keep = 1; keep > 0; keep -= 1 / 64) {
+    rgb = oklabToLinear(l, a * keep, b * keep);
+    if (Math.min(...rgb) >= -1e-4 && Math.max(...rgb) <= 1.0001) break;
+  }
+  return rgb.map((x) => {
+    const v = clamp(x, 0, 1);
+    return Math.floor(255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * v ** (1 / 2.4) - 0.055) + 0.5);
   });
 }
+
+// The paper at the top and at the bottom, in sRGB.
+const PAPER = {
+  light: [
+    [0.984, 0.984, 0.978],
+    [0.902, 0.912, 0.925],
+  ],
+  dark: [
+    [0.155, 0.165, 0.18],
+    [0.085, 0.09, 0.1],
+  ],
+};
+
+// The plane that the surface stands on: a map of CELLS by CELLS over [-HALF, HALF]^2.
+const CELLS = 160,
+  HALF = 1.5;
+
+// How much of the shape stands over each place of the ground, low parts more; blurred. at: within the unit ball.
+function shadowOf(at, tri, height) {
+  const dark = new Float32Array(CELLS * CELLS),
+    cell = (2 * HALF) / CELLS,
+    drop = (x, y, z) => {
+      const i = Math.floor((x / HALF / 2 + 0.5) * CELLS),
+        j = Math.floor((z / HALF / 2 + 0.5) * CELLS);
+      if (i < 0 || j < 0 || i >= CELLS || j >= CELLS) return;
+      const v = Math.exp(-2.6 * (y - height));
+      if (v > dark[j * CELLS + i]) dark[j * CELLS + i] = v;
+    };
+  const every = 3 * Math.ceil(tri.length / 600000); // of large meshes some triangles will do
+  for (let f = 0; f < tri.length; f += every) {
+    const [a, b, c] = [3 * tri[f], 3 * tri[f + 1], 3 * tri[f + 2]];
+    let size = 0;
+    for (let k = 0; k < 3; k++)
+      size = Math.max(size, Math.abs(at[a + k] - at[b + k]), Math.abs(at[b + k] - at[c + k]), Math.abs(at[c + k] - at[a + k]));
+    const n = 1 + Math.floor(size / cell);
+    for (let i = 0; i <= n; i++)
+      for (let j = 0; j <= n - i; j++) {
+        const u = i / n,
+          v = j / n,
+          w = 1 - u - v;
+        drop(
+          u * at[a] + v * at[b] + w * at[c],
+          u * at[a + 1] + v * at[b + 1] + w * at[c + 1],
+          u * at[a + 2] + v * at[b + 2] + w * at[c + 2],
+        );
+      }
+  }
+  if (!tri.length) for (let i = 0; i < at.length; i += 3) drop(at[i], at[i + 1], at[i + 2]);
+  // A running mean along the rows, written transposed: two of them blur both ways.
+  const blur = (from) => {
+    const to = new Float32Array(CELLS * CELLS),
+      reach = 4;
+    for (let y = 0; y < CELLS; y++) {
+      let sum = 0;
+      for (let x = -reach; x < CELLS; x++) {
+        if (x + reach < CELLS) sum += from[y * CELLS + x + reach];
+        if (x - reach - 1 >= 0) sum -= from[y * CELLS + x - reach - 1];
+        if (x >= 0) to[x * CELLS + y] = sum / (2 * reach + 1);
+      }
+    }
+    return to;
+  };
+  let soft = dark;
+  for (let pass = 0; pass < 6; pass++) soft = blur(soft);
+  return Uint8Array.from(soft, (x) => Math.round(255 * clamp(x, 0, 1)));
+}
+
+// Which way is up in the file: what x, y and z of the picture are.
+const UP = {
+  x: (x, y, z) => [-y, x, z],
+  y: (x, y, z) => [x, y, z],
+  z: (x, y, z) => [x, z, -y],
+};
 
 const SURFACE_VERTEX = `#version 300 es
 layout(location = 0) in vec3 at;
@@ -38,6 +148,11 @@ void main() {
   gl_PointSize = max(1.5, dot_size / gl_Position.w);
 }`;
 
+const COLOURS = `
+vec3 toLinear(vec3 c) { return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), step(0.04045, c)); }
+vec3 toSrgb(vec3 c) { c = clamp(c, 0.0, 1.0); return mix(12.92 * c, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, c)); }
+`;
+
 const SURFACE_FRAGMENT = `#version 300 es
 precision highp float;
 in vec3 n;
@@ -49,7 +164,20 @@ uniform float lines;
 uniform float zero;       // whether there is an isoline at zero
 uniform float points;
 uniform float flat_colour;
+uniform vec3 up;
+uniform float back;
 out vec4 colour;
+${COLOURS}
+// A sky above, a key light from the upper left, a weak one from the right, a soft highlight, a darker rim.
+vec3 shade(vec3 base, vec3 m) {
+  const vec3 key = vec3(-0.4264, 0.6396, 0.6396), fill = vec3(0.8575, 0.0857, 0.5073), behind = vec3(0.2169, 0.5965, -0.7727);
+  vec3 v = normalize(vec3(0.0, 0.0, back) - eye);
+  float rim = 1.0 - clamp(dot(m, v), 0.0, 1.0), sky = 0.5 + 0.5 * dot(m, up);
+  float light = 0.30 + 0.24 * sky + 0.15 * max(0.0, dot(m, fill)) + 0.62 * max(0.0, (dot(m, key) + 0.25) / 1.25);
+  float shine = 0.07 * pow(max(0.0, dot(m, normalize(key + v))), 32.0);
+  float streak = 0.30 * rim * rim * max(0.0, dot(m, behind) + 0.25);
+  return base * (light * (1.0 - 0.30 * rim * rim * rim) + streak) + shine;
+}
 void main() {
   vec3 m = normalize(n);
   float ink = 0.0;
@@ -62,14 +190,47 @@ void main() {
   float u = rule.x * s + rule.y, w = max(fwidth(u), 1e-7);
   if (lines > 0.5) ink = (1.0 - smoothstep(0.5, 1.3, abs(fract(u - 0.5) - 0.5) / w)) * (1.0 - smoothstep(0.25, 0.6, w));
   if (zero < 0.5 && abs(u) < 0.5) ink = 0.0;
-  vec3 base = s < -0.5 ? vec3(0.62) : texture(map, vec2(clamp(s, 0.002, 0.998), 0.5)).rgb;
+  vec3 base = s < -0.5 ? vec3(0.56, 0.60, 0.66) : toLinear(texture(map, vec2(clamp(s, 0.002, 0.998), 0.5)).rgb);
   if (flat_colour > 0.5) { colour = vec4(0.06, 0.07, 0.09, 0.28); return; }
-  float key = max(0.0, dot(m, normalize(vec3(-0.45, 0.65, 0.65)))), fill = 0.5 + 0.5 * m.y;
-  float shine = pow(max(0.0, dot(m, normalize(vec3(-0.3, 0.5, 1.0)))), 40.0);
-  vec3 lit = base * (0.6 + 0.16 * fill + 0.4 * key) + vec3(0.03, 0.035, 0.045) * (0.4 + fill + key) + 0.06 * shine;
-  float luma = dot(base, vec3(0.3, 0.59, 0.11));
-  vec3 line = luma > 0.3 ? lit * 0.35 : lit + vec3(0.34);
-  colour = vec4(mix(lit, line, 0.75 * ink), 1.0);
+  colour = vec4(toSrgb(shade(base, m) * (1.0 - 0.70 * ink)), 1.0);
+}`;
+
+const PAPER_VERTEX = `#version 300 es
+out float below;
+void main() {
+  vec2 p = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
+  below = 0.5 - 0.5 * p.y;
+  gl_Position = vec4(p, 0.0, 1.0);
+}`;
+
+const PAPER_FRAGMENT = `#version 300 es
+precision highp float;
+in float below;
+uniform vec3 top;
+uniform vec3 bottom;
+out vec4 colour;
+void main() { colour = vec4(mix(top, bottom, smoothstep(0.0, 1.0, below)), 1.0); }`;
+
+const GROUND_VERTEX = `#version 300 es
+uniform mat4 camera;
+uniform float height;
+out vec2 place;
+void main() {
+  place = vec2(gl_VertexID & 1, gl_VertexID >> 1);
+  vec2 p = (2.0 * place - 1.0) * ${HALF.toFixed(1)};
+  gl_Position = camera * vec4(p.x, height, p.y, 1.0);
+}`;
+
+const GROUND_FRAGMENT = `#version 300 es
+precision highp float;
+in vec2 place;
+uniform sampler2D shadow;
+out vec4 colour;
+void main() {
+  vec2 d = 2.0 * abs(place - 0.5);
+  float fade = (1.0 - smoothstep(0.7, 1.0, d.x)) * (1.0 - smoothstep(0.7, 1.0, d.y));
+  float dark = 0.50 * fade * texture(shadow, place).r;
+  colour = vec4(0.0, 0.0, 0.0, 1.0 - pow(1.0 - dark, 1.0 / 2.4));
 }`;
 
 const MARK_VERTEX = `#version 300 es
@@ -93,6 +254,8 @@ class View {
     const gl = (this.gl = canvas.getContext("webgl2", { antialias: true, alpha: false }));
     if (!gl) throw new Error("This page draws with WebGL 2, which this browser does not offer.");
     this.surface = this.program(SURFACE_VERTEX, SURFACE_FRAGMENT);
+    this.paper = this.program(PAPER_VERTEX, PAPER_FRAGMENT);
+    this.ground = this.program(GROUND_VERTEX, GROUND_FRAGMENT);
     this.mark = this.program(MARK_VERTEX, MARK_FRAGMENT);
     this.buffers = {
       at: gl.createBuffer(),
@@ -101,17 +264,15 @@ class View {
       tri: gl.createBuffer(),
       edge: gl.createBuffer(),
     };
-    this.map = gl.createTexture();
-    gl.bindTexture(gl.TEXTURE_2D, this.map);
     const ramp = new Uint8Array(1024);
-    for (let i = 0; i < 256; i++) ramp.set([...viridis(i / 255), 255], 4 * i);
-    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, 256, 1, 0, gl.RGBA, gl.UNSIGNED_BYTE, ramp);
-    for (const [k, v] of [
-      [gl.TEXTURE_MIN_FILTER, gl.LINEAR],
-      [gl.TEXTURE_MAG_FILTER, gl.LINEAR],
-      [gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE],
-    ])
-      gl.texParameteri(gl.TEXTURE_2D, k, v);
+    for (let i = 0; i < 256; i++) ramp.set([...colourOf(i / 255), 255], 4 * i);
+    this.map = this.texture(gl.RGBA, 256, 1, ramp);
+    this.shadow = this.texture(gl.RED, CELLS, CELLS, new Uint8Array(CELLS * CELLS));
+    this.theme = "light";
+    this.up = "y";
+    this.height = 0;
+    this.tri = new Int32Array(0);
+    this.at = new Float32Array(0);
     this.yaw = -0.55;
     this.pitch = 0.32;
     this.zoom = 1;
@@ -124,6 +285,23 @@ class View {
     this.later = 0;
     this.frames = 0;
     new ResizeObserver(() => this.draw()).observe(canvas);
+  }
+
+  texture(format, width, height, data) {
+    const gl = this.gl,
+      t = gl.createTexture();
+    gl.bindTexture(gl.TEXTURE_2D, t);
+    for (const [k, v] of [
+      [gl.TEXTURE_MIN_FILTER, gl.LINEAR],
+      [gl.TEXTURE_MAG_FILTER, gl.LINEAR],
+      [gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE],
+      [gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE],
+    ])
+      gl.texParameteri(gl.TEXTURE_2D, k, v);
+    const internal = format === gl.RED ? gl.R8 : format;
+    gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
+    gl.texImage2D(gl.TEXTURE_2D, 0, internal, width, height, 0, format, gl.UNSIGNED_BYTE, data);
+    return t;
   }
 
   program(vertex, fragment) {
@@ -153,6 +331,14 @@ class View {
     this.gl.bufferData(target, data, this.gl.DYNAMIC_DRAW);
   }
 
+  // Nothing is shown but the paper.
+  clear() {
+    this.n = 0;
+    this.tri = new Int32Array(0);
+    this.at = new Float32Array(0);
+    this.draw();
+  }
+
   setMesh(xyz, tri, h) {
     const gl = this.gl;
     this.n = xyz.length / 3;
@@ -180,8 +366,17 @@ class View {
     for (let i = 0; i < n; i++)
       far = Math.max(far, Math.hypot(xyz[3 * i] - mid[0], xyz[3 * i + 1] - mid[1], xyz[3 * i + 2] - mid[2]));
     this.radius = far || 1;
-    for (let i = 0; i < 3 * n; i++) at[i] = (xyz[i] - mid[i % 3]) / this.radius;
+    const turned = UP[this.up];
+    let height = Infinity;
+    for (let i = 0; i < 3 * n; i += 3) {
+      const p = turned((xyz[i] - mid[0]) / this.radius, (xyz[i + 1] - mid[1]) / this.radius, (xyz[i + 2] - mid[2]) / this.radius);
+      at.set(p, i);
+      if (p[1] < height) height = p[1];
+    }
     this.at = at;
+    this.height = n ? height : 0;
+    this.gl.deleteTexture(this.shadow);
+    this.shadow = this.texture(this.gl.RED, CELLS, CELLS, shadowOf(at, this.tri, this.height));
     this.upload("at", this.gl.ARRAY_BUFFER, at);
     this.upload("normal", this.gl.ARRAY_BUFFER, this.normals());
     this.draw();
@@ -290,12 +485,14 @@ class View {
     }
     const { camera, turn } = this.matrices();
     gl.viewport(0, 0, width, height);
-    gl.clearColor(0.933, 0.929, 0.914, 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-    if (!this.n) return;
-    gl.enable(gl.DEPTH_TEST);
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+    this.drawGround(camera);
+    this.frames++;
+    if (!this.n) return;
+    gl.enable(gl.DEPTH_TEST);
+    gl.bindTexture(gl.TEXTURE_2D, this.map);
     gl.useProgram(surface.p);
     gl.uniformMatrix4fv(surface.camera, false, camera);
     gl.uniformMatrix3fv(surface.turn, false, turn);
@@ -304,6 +501,8 @@ class View {
     gl.uniform1f(surface.zero, this.zero ? 1 : 0);
     gl.uniform1f(surface.points, this.tri.length ? 0 : 1);
     gl.uniform1f(surface.flat_colour, 0);
+    gl.uniform3fv(surface.up, turn.subarray(3, 6));
+    gl.uniform1f(surface.back, camera[15]);
     gl.uniform1f(
       surface.dot_size,
       (((((1.8 * this.h) / this.radius) * camera[5]) / Math.max(0.1, Math.cos(this.pitch))) * height) / 2,
@@ -331,7 +530,24 @@ class View {
       }
     } else gl.drawArrays(gl.POINTS, 0, this.n);
     if (this.source >= 0) this.drawMark(camera, ratio);
-    this.frames++;
+  }
+
+  // Paper, and the shadow where the ground is seen from above.
+  drawGround(camera) {
+    const { gl, paper, ground } = this,
+      [top, bottom] = PAPER[this.theme];
+    for (const k of [0, 1, 2]) gl.disableVertexAttribArray(k);
+    gl.disable(gl.DEPTH_TEST);
+    gl.useProgram(paper.p);
+    gl.uniform3fv(paper.top, top);
+    gl.uniform3fv(paper.bottom, bottom);
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+    if (!this.n || this.pitch < 0.08) return;
+    gl.useProgram(ground.p);
+    gl.uniformMatrix4fv(ground.camera, false, camera);
+    gl.uniform1f(ground.height, this.height - 0.004);
+    gl.bindTexture(gl.TEXTURE_2D, this.shadow);
+    gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
   }
 
   drawMark(camera, ratio) {

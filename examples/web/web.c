@@ -109,7 +109,7 @@ static void page_progress(const char *stage, double done) { (void)stage; (void)d
 enum {
     FACT_ERROR_BOUND, FACT_EVIDENCE, FACT_METHOD, FACT_DEGREE, FACT_ITERATIONS, FACT_FACTOR_NNZ, FACT_RESIDUAL,
     FACT_H = 0, FACT_AREA, FACT_ACTIVE, FACT_COMPONENTS, FACT_BOUNDARY_EDGES, FACT_NONMANIFOLD_EDGES,
-    FACT_LEFT_OUT, FACT_NEGATIVE_WEIGHTS, FACT_KIND, N_FACTS
+    FACT_LEFT_OUT, FACT_NEGATIVE_WEIGHTS, FACT_KIND, FACT_START, N_FACTS
 };
 
 static struct {
@@ -283,9 +283,19 @@ static int page_triangles_only(void) {
     return page.mesh.face_ptr[page.mesh.n_faces] == 3 * (int64_t)page.mesh.n_faces;
 }
 
+/* Where heat begins: the vertex with the largest x of the piece with the most mass. */
+static int32_t page_start(void) {
+    const hd_laplacian *lap = page.lap;
+    int32_t r, c, best = -1, largest = 0;
+    for (c = 1; c < lap->n_components; c++) if (lap->component_mass[c] > lap->component_mass[largest]) largest = c;
+    for (r = 0; r < lap->n_active; r++)
+        if (lap->component[r] == largest && (best < 0 || lap->xyz[3 * (size_t)r] > lap->xyz[3 * (size_t)best])) best = r;
+    return lap->vertex[best];
+}
+
 /* The Laplacian: linear elements for triangles, that of polygons, tufted for points. mend = 1: intrinsic Delaunay
- * triangulation of the faces, split into triangles. */
-hd_status PAGE_EXPORT(page_begin)(int32_t mend) {
+ * triangulation of the faces, split into triangles. byte_limit 0: none. */
+hd_status PAGE_EXPORT(page_begin)(int32_t mend, double byte_limit) {
     const mio_mesh *m = &page.mesh;
     hd_mesh mesh = hd_triangles(m->xyz, m->n, page.tri, page.n_tri);
     hd_laplacian_opts o;
@@ -296,6 +306,7 @@ hd_status PAGE_EXPORT(page_begin)(int32_t mend) {
     memset(&page.ctx, 0, sizeof page.ctx);
     memset(&o, 0, sizeof o);
     page.ctx.progress = page_tick;
+    page.ctx.byte_limit = (uint64_t)byte_limit;
     o.context = &page.ctx;
     o.triangulation = mend && m->n_faces ? HD_TRIANGULATION_DELAUNAY : HD_TRIANGULATION_GIVEN;
     if (m->n_faces == 0) {
@@ -320,6 +331,7 @@ hd_status PAGE_EXPORT(page_begin)(int32_t mend) {
     page.facts[FACT_LEFT_OUT] = (double)r->n_repeated_corner + r->n_zero_area + r->n_repeated_face;
     page.facts[FACT_NEGATIVE_WEIGHTS] = (double)r->n_negative_weights;
     page.facts[FACT_KIND] = page.lap->kind;
+    page.facts[FACT_START] = page_start();
     return status;
 }
 

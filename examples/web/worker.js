@@ -77,7 +77,7 @@ const ops = {
     wasm.page_free(name);
     return [status, 0];
   },
-  begin: (m) => [wasm.page_begin(m.mend ? 1 : 0), 0],
+  begin: (m) => [wasm.page_begin(m.mend ? 1 : 0, m.limit || 0), 0],
   columns: (m) => [
     withTimes(m.t, (k, t) => wasm.page_columns(m.method, k, t, m.source)),
     wasm.page_n() * m.t.length,
@@ -107,7 +107,7 @@ onmessage = ({ data: m }) => {
       answer.mesh = mesh();
       give.push(answer.mesh.xyz.buffer, answer.mesh.tri.buffer);
     } else {
-      answer.facts = doubles(wasm.page_facts(), 9);
+      answer.facts = doubles(wasm.page_facts(), 10);
       if (count) give.push((answer.out = doubles(wasm.page_out(), count)).buffer);
     }
   } catch (e) {
