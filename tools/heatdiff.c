@@ -369,7 +369,8 @@ enum { CMD_INFO = 1, CMD_KERNEL = 2, CMD_DIFFUSE = 4, CMD_RENDER = 8, CMD_DEMO =
        CMD_TABLES = CMD_PAIRS | CMD_SAMPLE | CMD_TRACE,
        CMD_HEAT = CMD_KERNEL | CMD_DIFFUSE | CMD_SMOOTH | CMD_HKS | CMD_DISTANCE | CMD_TABLES,
        /* results have a row per vertex */
-       CMD_SOLVES = CMD_HEAT | CMD_GEODESIC | CMD_SPECTRUM, CMD_FIELDS = CMD_SOLVES & ~(CMD_TABLES | CMD_SMOOTH),
+       CMD_SOLVES = CMD_HEAT | CMD_GEODESIC | CMD_SPECTRUM,
+       CMD_FIELDS = CMD_SOLVES & ~(CMD_TABLES | CMD_SMOOTH),
        /* by selected inversion, which only the direct method has */
        CMD_METRIC = CMD_DISTANCE | CMD_PAIRS | CMD_SAMPLE,
        CMD_INVERTS = CMD_HKS | CMD_DISTANCE | CMD_SAMPLE | CMD_TRACE,
@@ -837,7 +838,8 @@ static const option_def OPTIONS[] = {
     { "border", 0, CMD_SMOOTH, 0, parse_words, AT(border), BORDERS, 0, 0, "NAME", "natural or dirichlet",
       "of meshes: natural (default): borders move as all else does, and\n"
       "holes widen; dirichlet: the vertices of borders stay where they are" },
-    { "border", 0, CMD_LAPLACIAN & ~CMD_SMOOTH, 0, parse_words, AT(border), BORDERS, 0, 0, "NAME", "natural or dirichlet",
+    { "border", 0, CMD_LAPLACIAN & ~CMD_SMOOTH, 0, parse_words, AT(border), BORDERS, 0, 0, "NAME",
+      "natural or dirichlet",
       "of meshes: natural (default): no heat leaves through a border;\n"
       "dirichlet: the vertices of borders are held at zero" },
     { "border", 0, CMD_GEODESIC, 0, parse_words, AT(border), GEODESIC_BORDERS, 0, 0, "NAME",
@@ -910,7 +912,8 @@ static const option_def OPTIONS[] = {
       "bytes, also with K, M or G, such as 500M",
       "most memory for the computation, also with K, M or G\n(default: nine tenths of the machine's)" },
     { "dry-run", 0, CMD_SOLVES, 0, parse_flag, AT(dry_run), NULL, 0, 0, NULL, "no value",
-      "only say what the run would take: method, work, memory, time,\non standard output. Nothing is computed, and no file is written" },
+      "only say what the run would take: method, work, memory, time,\n"
+      "on standard output. Nothing is computed, and no file is written" },
     { "output", 'o', CMD_TABLES, 0, parse_text, AT(output), NULL, 0, 0, "FILE", "a file name",
       "where the result goes: .txt .csv or .npy; - or nothing:\nstandard output, as text" },
     { "output", 'o', CMD_FIELDS, 0, parse_text, AT(output), NULL, 0, 0, "FILE", "a file name",
@@ -922,8 +925,8 @@ static const option_def OPTIONS[] = {
     { "output", 'o', CMD_SMOOTH, 0, parse_text, AT(output), NULL, 0, 0, "FILE", "a file name",
       "where the mesh goes: .obj .off .ply .stl .vtu, or .xyz for points;\n"
       "- or nothing: standard output, in the format that was read" },
-    { "no-header", 0, (CMD_SOLVES & ~CMD_SMOOTH) | CMD_LEVELS, 0, parse_flag, AT(no_header), NULL, 0, 0, NULL, "no value",
-      "of .csv: no first line with the names of the columns" },
+    { "no-header", 0, (CMD_SOLVES & ~CMD_SMOOTH) | CMD_LEVELS, 0, parse_flag, AT(no_header), NULL, 0, 0, NULL,
+      "no value", "of .csv: no first line with the names of the columns" },
     { "output", 'o', CMD_RENDER, 0, parse_text, AT(output), NULL, 0, 0, "FILE", "the file name of a .png",
       "the .png, or - for standard output" },
     { "output", 'o', CMD_DEMO, 0, parse_text, AT(output), NULL, 0, 0, "FOLDER", "the name of a folder",
@@ -949,7 +952,8 @@ static const option_def OPTIONS[] = {
     { "up", 0, CMD_PICTURE, 0, parse_words, AT(up), AXES, 0, 0, "AXIS", "x, y or z",
       "the axis that points up in pictures: x, y (default) or z" },
     { "labels", 0, CMD_RENDER, 0, parse_flag, AT(labels), NULL, 0, 0, NULL, "no value",
-      "fields of whole numbers from 0, as --nearest of distance writes:\na colour for each, without isolines; -1 is none" },
+      "fields of whole numbers from 0, as --nearest of distance writes:\n"
+      "a colour for each, without isolines; -1 is none" },
     { "colormap", 0, CMD_PICTURE | CMD_DEMO, 0, parse_words, AT(colormap), COLORMAPS, 0, 0, "NAME",
       "ember, lagoon, diverging or grey", "ember (default), lagoon, diverging or grey" },
     { "size", 0, CMD_PICTURE, 0, parse_size, 0, NULL, 64, 8192, "WxH", "WxH in pixels, each 64..8192",
@@ -1062,8 +1066,8 @@ enum { NAME_LETTERS = 24 };          /* no name of a command or an option is lon
 
 static int least_of(int a, int b) { return a < b ? a : b; }
 
-/* How many slips of the hand lead from one name to another: a letter too many, too few or wrong, or two exchanged
- * (F. J. Damerau, 1964). n: letters of the first. */
+/* How many slips of the hand lead from one name to another: a letter too many, too few or wrong, or two
+ * exchanged (F. J. Damerau, 1964). n: letters of the first. */
 static int count_slips(const char *name, size_t n, const char *other)
 {
     int d[NAME_LETTERS + 1][NAME_LETTERS + 1];
@@ -1074,7 +1078,8 @@ static int count_slips(const char *name, size_t n, const char *other)
         for (k = 0; k <= m; k++) {
             d[i][k] = (int)(i + k);
             if (!i || !k) continue;
-            d[i][k] = least_of(least_of(d[i - 1][k], d[i][k - 1]) + 1, d[i - 1][k - 1] + (name[i - 1] != other[k - 1]));
+            d[i][k] = least_of(d[i - 1][k], d[i][k - 1]) + 1;
+            d[i][k] = least_of(d[i][k], d[i - 1][k - 1] + (name[i - 1] != other[k - 1]));
             if (i > 1 && k > 1 && name[i - 1] == other[k - 2] && name[i - 2] == other[k - 1])
                 d[i][k] = least_of(d[i][k], d[i - 2][k - 2] + 1);
         }
@@ -1195,7 +1200,8 @@ static int check_output(const options *o)
     }
     if (o->command == CMD_SMOOTH)
         return strcmp(o->output, "-") == 0 || mio_mesh_format_of(o->output) != MIO_UNKNOWN ? DONE
-               : fail(USAGE, "-o takes a name that ends in .obj, .off, .ply, .stl, .vtu or .xyz here, not '%.200s'", o->output);
+               : fail(USAGE, "-o takes a name that ends in .obj, .off, .ply, .stl, .vtu or .xyz here, not "
+                      "'%.200s'", o->output);
     if (output_format(o->output) != MIO_UNKNOWN) return DONE;
     return fail(USAGE,
                 "-o takes a name that ends in .txt, .csv, .npy, .ply, .obj, .vtu or .png, not '%.200s'",
@@ -1367,11 +1373,12 @@ static int shows_labels(const options *o) { return o->labels || (o->nearest && o
 /* Labels have a colour each. */
 static int check_labels(const options *o)
 {
-    const char *name = o->log_scale ? "log" : o->has_range ? "range" : o->colormap ? "colormap" : o->isolines > 0 ? "isolines" : NULL;
+    const char *name = o->log_scale ? "log" : o->has_range ? "range" : o->colormap ? "colormap"
+                       : o->isolines > 0 ? "isolines" : NULL;
     if (!name || !shows_labels(o)) return DONE;
     if (o->labels) return fail(USAGE, "--%s takes no --labels beside it: labels have a colour each", name);
-    return fail(USAGE, "--%s takes --column %ld beside --nearest, which has distances: column %ld has the numbers of sources", name,
-                o->column + 1, o->column);
+    return fail(USAGE, "--%s takes --column %ld beside --nearest, which has distances: column %ld has the "
+                "numbers of sources", name, o->column + 1, o->column);
 }
 
 static int is_stream(const char *name) { return name && strcmp(name, "-") == 0; }
@@ -1417,13 +1424,16 @@ static int check_options(const options *o)
     if ((code = check_times(o)) != DONE || (code = check_definition(o)) != DONE ||
         (code = check_signature(o)) != DONE || (code = check_method(o)) != DONE)
         return code;
-    if (o->degree == 1 && o->poles != HD_POLES_UNIFORM && (o->poles || !(o->command & (CMD_DIFFUSE | CMD_SMOOTH))))
+    if (o->degree == 1 && o->poles != HD_POLES_UNIFORM &&
+        (o->poles || !(o->command & (CMD_DIFFUSE | CMD_SMOOTH))))
         return fail(USAGE,
                     "--degree takes 2..14 with --poles kernel or diagonal, and 1..14 with --poles uniform");
     if (o->n_meshes > 1 && o->n_meshes != o->n_inputs)
         return fail(USAGE, "--input takes a field for each mesh here: %d are given for %d meshes",
                     o->n_inputs, o->n_meshes);
-    if ((code = check_lengths(o)) != DONE || (code = check_labels(o)) != DONE || (code = check_streams(o)) != DONE) return code;
+    if ((code = check_lengths(o)) != DONE || (code = check_labels(o)) != DONE ||
+        (code = check_streams(o)) != DONE)
+        return code;
     return check_output(o);
 }
 
@@ -2540,8 +2550,8 @@ static hd_query query_of(const run *r, int32_t *k)
     return query_of_distance((hd_distance_kind)o->definition);
 }
 
-/* Each sample waits for those before it. Columns that are solved one by one take this many times as long as those of the
- * batches that estimates are of (measured on meshes of 3K to 43K vertices: 3 to 5). */
+/* Each sample waits for those before it. Columns that are solved one by one take this many times as long as
+ * those of the batches that estimates are of (measured on meshes of 3K to 43K vertices: 3 to 5). */
 static const double ONE_BY_ONE = 4;
 
 /* What the samples of a run take besides. Sums over eigenpairs are one by one in any case. */
@@ -3017,7 +3027,8 @@ static int solve_pairs(run *r, int k)
     int code = solved_time(r, k, hd_heat_distance_pairs(r->heat, kind, 1, &r->times[k], r->rows, i, j, d, &report, NULL), &report);
     keep_larger(&r->bound[1], report.error_bound);
     if (code || timeless) return code;
-    code = solved_time(r, k, hd_heat_entries(r->heat, (hd_kernel)o->kernel, 1, &r->times[k], r->rows, i, j, K, &report, NULL), &report);
+    code = solved_time(r, k, hd_heat_entries(r->heat, (hd_kernel)o->kernel, 1, &r->times[k], r->rows, i, j, K,
+                                             &report, NULL), &report);
     keep_larger(&r->bound[0], report.error_bound);
     return code;
 }
@@ -3489,7 +3500,8 @@ static void print_query(const run *r)
         fprintf(stderr, "filter %s to %.1e of its largest value, ", o->filter,
                 r->filter.max_error / r->filter.largest);
     else if (o->command == CMD_SMOOTH)
-        fprintf(stderr, "vertices moved by %.3g on average, %.3g at most, t = %s, ", r->moved[0], r->moved[1], r->time_names[0]);
+        fprintf(stderr, "vertices moved by %.3g on average, %.3g at most, t = %s, ", r->moved[0], r->moved[1],
+                r->time_names[0]);
     else if (!is_timeless(o)) fprintf(stderr, "%d time%s, ", r->n_times, plural(r->n_times));
     if (o->command & CMD_METRIC) fprintf(stderr, "%s, ", word_of(DEFINITIONS, o->definition));
     fprintf(stderr, "%s Laplacian%s%s", word_of(LAPLACIANS, (int)r->lap->kind),
@@ -3517,8 +3529,8 @@ static void print_laplacian(const run *r)
 static void print_bound(const run *r)
 {
     if (r->o->command == CMD_PAIRS && !is_timeless(r->o))
-        fprintf(stderr, "error of K at most %.1e of its largest value, of d at most %.1e of its largest", r->bound[0],
-                r->bound[1]);
+        fprintf(stderr, "error of K at most %.1e of its largest value, of d at most %.1e of its largest",
+                r->bound[0], r->bound[1]);
     else if (r->o->command == CMD_SMOOTH) fprintf(stderr, "each coordinate is off by at most %.1e", r->off);
     else fprintf(stderr, "error at most %.1e of the largest value", r->sum.worst.error_bound);
 }
@@ -3708,11 +3720,12 @@ static void print_geodesic(const run *r)
     if (full) print_surface(r);
     if (full) fprintf(stderr, "geodesic: ");
     else print_subject(r);
-    fprintf(stderr, "%d source%s, t = %.4g (%.4g h^2)\n", r->n_inputs, plural(r->n_inputs), g->t, g->t / (g->h * g->h));
+    fprintf(stderr, "%d source%s, t = %.4g (%.4g h^2)\n", r->n_inputs, plural(r->n_inputs), g->t,
+            g->t / (g->h * g->h));
     if (full)
         fprintf(stderr, "%s factors: %.3g non-zeros each; %.3g flops, ordering %s\n",
-                r->o->border == HD_GEODESIC_BORDER_MEAN ? "three" : "two", (double)g->factor_nnz, g->factor_flops,
-                word_of(ORDERINGS, (int)g->ordering));
+                r->o->border == HD_GEODESIC_BORDER_MEAN ? "three" : "two", (double)g->factor_nnz,
+                g->factor_flops, word_of(ORDERINGS, (int)g->ordering));
     fprintf(stderr, "residuals %.1e and %.1e", g->residual_heat, g->residual_distance);
     if (full) fprintf(stderr, ", heat followed in %ld stage%s\n", (long)g->n_stages, plural(g->n_stages));
     else print_total(r);
@@ -3812,7 +3825,8 @@ static int32_t count_labels(const pic_panel *panels, int n_panels)
     int32_t i;
     int k;
     for (k = 0; k < n_panels; k++)
-        for (i = 0; i < panels[k].n; i++) if (isfinite(panels[k].field[i]) && panels[k].field[i] > most) most = panels[k].field[i];
+        for (i = 0; i < panels[k].n; i++)
+            if (isfinite(panels[k].field[i])) keep_larger(&most, panels[k].field[i]);
     return (int32_t)most + 1;
 }
 
@@ -4425,13 +4439,15 @@ static int command_diffuse(run *r)
 }
 
 /* ---- smooth ---- */
-/* Vertices move by K_t f - f, f their coordinates from the middle of the shape, as K_t keeps constants. Where borders
- * are held, f is instead how far vertices are from the shape w that heat tends to: L w = 0 inside, w = x on borders.
- * It is zero on borders and L f = L x inside, so that K_t with borders held at zero makes x of w + K_t f. */
+/* Vertices move by K_t f - f, f their coordinates from the middle of the shape, as K_t keeps constants. Where
+ * borders are held, f is instead how far vertices are from the shape w that heat tends to: L w = 0 inside,
+ * and w = x on borders. It is zero on borders and L f = L x inside, and the place at time t is w + K_t f, by K_t
+ * with borders held at zero. */
 
-/* L of all vertices times the three columns of f, at the rows that are not held: the right-hand sides. On components
- * without a border f stays, and their rows of val become those of the identity. */
-static void held_sides(const hd_laplacian *lap, const hd_laplacian *whole, const double *f, double *val, double *side)
+/* L of all vertices times the three columns of f, at the rows that are not held: the right-hand sides. On
+ * components without a border f stays, and their rows of val become those of the identity. */
+static void held_sides(const hd_laplacian *lap, const hd_laplacian *whole, const double *f, double *val,
+                       double *side)
 {
     const size_t n = (size_t)lap->n, rows = (size_t)lap->n_active;
     int64_t p;
@@ -4444,8 +4460,10 @@ static void held_sides(const hd_laplacian *lap, const hd_laplacian *whole, const
         for (c = 0; c < 3; c++) side[c * rows + (size_t)i] = closed ? f[c * n + (size_t)v] : 0;
         for (p = lap->L.row_ptr[i]; closed && p < lap->L.row_ptr[i + 1]; p++) val[p] = lap->L.col[p] == i;
         for (p = whole->L.row_ptr[row]; !closed && p < whole->L.row_ptr[row + 1]; p++)
-            for (c = 0; c < 3; c++)
-                side[c * rows + (size_t)i] += whole->L.val[p] * f[c * n + (size_t)whole->vertex[whole->L.col[p]]];
+            for (c = 0; c < 3; c++) {
+                const int32_t other = whole->vertex[whole->L.col[p]];
+                side[c * rows + (size_t)i] += whole->L.val[p] * f[c * n + (size_t)other];
+            }
     }
 }
 
@@ -4523,15 +4541,18 @@ static int hold_borders(run *r, double *f)
         code = leave_computation(code);
     }
     for (i = 0; i < n && !code; i++)
-        for (c = 0; c < 3; c++) f[c * n + i] = r->lap->row[i] < 0 ? 0 : work[(3 + c) * rows + (size_t)r->lap->row[i]];
+        for (c = 0; c < 3; c++) {
+            const int32_t row = r->lap->row[i];
+            f[c * n + i] = row < 0 ? 0 : work[(3 + c) * rows + (size_t)row];
+        }
     hd_laplacian_free(whole);
     free(val);
     free(work);
     return code;
 }
 
-/* The new coordinates, how far vertices moved, and how far off they can be: the bound of K_t f, twice the error of f
- * and the rounding of the sum. */
+/* The new coordinates, how far vertices moved, and how far off they can be: the bound of K_t f, twice the
+ * error of f and the rounding of the sum. */
 static double *smooth_places(run *r)
 {
     const size_t n = (size_t)r->mesh.n;
@@ -4556,10 +4577,11 @@ static double *smooth_places(run *r)
 /* The format of the output; to standard output that of the input. */
 static int smooth_format(const run *r)
 {
-    static const word formats[] = { { "OBJ", MIO_OBJ }, { "OFF", MIO_OFF }, { "PLY", MIO_PLY }, { "STL", MIO_STL }, { "XYZ", MIO_TXT } };
-    size_t i;
+    static const word formats[] = { { "OBJ", MIO_OBJ }, { "OFF", MIO_OFF }, { "PLY", MIO_PLY },
+                                    { "STL", MIO_STL }, { NULL, MIO_TXT } };
+    int i;
     if (r->o->output && !is_stream(r->o->output)) return mio_mesh_format_of(r->o->output);
-    for (i = 0; i + 1 < sizeof formats / sizeof *formats && strncmp(formats[i].name, r->mesh.file.format, 3) != 0; i++) {}
+    for (i = 0; formats[i].name && strncmp(formats[i].name, r->mesh.file.format, 3) != 0; i++) {}
     return formats[i].value;
 }
 
@@ -4577,7 +4599,8 @@ static int write_smooth(run *r)
     mesh.xyz = xyz;
     if (kind == MIO_TXT) {               /* points as three columns */
         for (c = 0; c < 3; c++)
-            for (out.rows = 0; out.rows < mesh.n; out.rows++) r->values[c * (int64_t)mesh.n + out.rows] = xyz[3 * out.rows + c];
+            for (out.rows = 0; out.rows < mesh.n; out.rows++)
+                r->values[c * (int64_t)mesh.n + out.rows] = xyz[3 * out.rows + c];
         out.ld = mesh.n;
         out.cols = 3;
         out.values = r->values;
@@ -4606,10 +4629,13 @@ static int smooth_fields(run *r, double *f)
 static int check_smooth(const run *r)
 {
     const int kind = smooth_format(r), points = r->mesh.n_tri == 0;
-    if ((!r->o->output || is_stream(r->o->output)) && (kind == MIO_PLY || kind == MIO_STL) && stdout_is_terminal())
+    const int shown = (!r->o->output || is_stream(r->o->output)) && stdout_is_terminal();
+    if (shown && (kind == MIO_PLY || kind == MIO_STL))
         return fail(USAGE, "-o is needed here: %s is nothing for a terminal", r->mesh.file.format);
-    if (points && kind == MIO_STL) return fail(FAILED, "%s: .stl needs faces, and there are none", r->mesh_name);
-    if (!points && kind == MIO_TXT) return fail(FAILED, "%s: .xyz is for points, and this file has faces", r->mesh_name);
+    if (points && kind == MIO_STL)
+        return fail(FAILED, "%s: .stl needs faces, and there are none", r->mesh_name);
+    if (!points && kind == MIO_TXT)
+        return fail(FAILED, "%s: .xyz is for points, and this file has faces", r->mesh_name);
     return DONE;
 }
 
@@ -4779,8 +4805,9 @@ static void levels_print(const run *r, const lev_set *s, const double *level, co
     int64_t lines, closed;
     double length;
     int k, outside = 0;
-    fprintf(stderr, "levels of %s: %lld line%s at %d value%s, %lld points, %.3g s\n", field, (long long)s->n_lines,
-            plural(s->n_lines), r->o->n_levels, plural(r->o->n_levels), (long long)s->n_points, now() - r->started);
+    fprintf(stderr, "levels of %s: %lld line%s at %d value%s, %lld points, %.3g s\n", field,
+            (long long)s->n_lines, plural(s->n_lines), r->o->n_levels, plural(r->o->n_levels),
+            (long long)s->n_points, now() - r->started);
     for (k = 0; k < r->o->n_levels; k++) {
         outside += !(level[k] >= range[0] && level[k] <= range[1]);
         levels_count(s, level[k], &lines, &closed, &length);
@@ -4788,10 +4815,12 @@ static void levels_print(const run *r, const lev_set *s, const double *level, co
             fprintf(stderr, "level %.9g: %lld line%s, %lld closed, length %.9g\n", level[k], (long long)lines,
                     plural(lines), (long long)closed, length);
     }
-    if (outside && range[0] > range[1]) fprintf(stderr, "note: column %ld of %s has no finite value\n", r->o->column, field);
+    if (outside && range[0] > range[1])
+        fprintf(stderr, "note: column %ld of %s has no finite value\n", r->o->column, field);
     else if (outside)
-        fprintf(stderr, "note: %d of %d level%s %s outside the range of column %ld of %s, from %.9g to %.9g\n", outside,
-                r->o->n_levels, outside == 1 ? plural(r->o->n_levels) : "s", outside == 1 ? "is" : "are", r->o->column, field, range[0], range[1]);
+        fprintf(stderr, "note: %d of %d level%s outside the range of column %ld of %s, from %.9g to %.9g\n",
+                outside, r->o->n_levels, r->o->n_levels == 1 ? " is" : outside == 1 ? "s is" : "s are",
+                r->o->column, field, range[0], range[1]);
 }
 
 /* Is x among the first n levels? Its lines are there already then. */
@@ -4874,9 +4903,10 @@ static int check_label_values(const options *o, const char *file, const double *
 {
     int32_t i;
     for (i = 0; i < n; i++)
-        if (isfinite(values[i]) && !(values[i] >= -1 && values[i] < INT32_MAX && values[i] == floor(values[i])))
-            return fail(FAILED, "%s: row %ld, column %ld: --labels takes whole numbers from 0, or -1 for none, not %.9g",
-                        display_name(file), (long)i, o->column, values[i]);
+        if (isfinite(values[i]) &&
+            !(values[i] >= -1 && values[i] < INT32_MAX && values[i] == floor(values[i])))
+            return fail(FAILED, "%s: row %ld, column %ld: --labels takes whole numbers from 0, or -1 for "
+                        "none, not %.9g", display_name(file), (long)i, o->column, values[i]);
     return DONE;
 }
 
@@ -4893,7 +4923,8 @@ static int view_load(const run *r, int k, view_data *v)
         code = fail(FAILED, "%s: --column %ld is beyond its %ld columns, numbered from 0",
                     display_name(o->inputs[k]), o->column, (long)v->field.columns);
     if (!code && o->labels)
-        code = check_label_values(o, o->inputs[k], v->field.values + (size_t)o->column * (size_t)v->mesh->n, v->mesh->n);
+        code = check_label_values(o, o->inputs[k], v->field.values + (size_t)o->column * (size_t)v->mesh->n,
+                                  v->mesh->n);
     return code;
 }
 
@@ -5317,7 +5348,8 @@ static int fail_command(const char *name)
     list_commands(CMD_ALL, commands, sizeof commands);
     for (i = 0; name && i < N_COMMANDS; i++) suggest(name, strlen(name), COMMANDS[i].name, &slips, &best);
     if (!name) return fail(USAGE, "a command is missing; there are %s (see heatdiff --help)", commands);
-    if (best) return fail(USAGE, "'%.80s' is not a command; did you mean %s? There are %s", name, best, commands);
+    if (best)
+        return fail(USAGE, "'%.80s' is not a command; did you mean %s? There are %s", name, best, commands);
     return fail(USAGE, "'%.80s' is not a command; there are %s", name, commands);
 }
 
