@@ -2576,7 +2576,10 @@ class Demo(Case):
         p = self.good("demo --json", cwd=path("here"))
         self.assertEqual(os.listdir(path("here")), ["heatdiff-demo"])
         names = os.listdir(path("here/heatdiff-demo"))
-        shapes = [read_obj(open(path("here/heatdiff-demo/%s.obj" % name), "rb").read()) for name in ("elephant", "bent", "noisy")]
+        shapes = []
+        for name in ("elephant", "bent", "noisy"):
+            with open(path("here/heatdiff-demo/%s.obj" % name), "rb") as f:
+                shapes.append(read_obj(f.read()))
         for (v, faces), most in zip(shapes[1:], (1.5, 0.03)):
             self.assertEqual((len(v), faces), (len(shapes[0][0]), shapes[0][1]))
             away = [math.dist(p, q) for p, q in zip(shapes[0][0], v)]
