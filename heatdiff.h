@@ -19715,10 +19715,11 @@ static hd_status hdi_heat_engine(hdi_heat_call *h) {
 /* Eigenpairs are tried before poles when so many are expected to do, and after them up to the second number.
  * The bound by poles goes above 1e-6 where 13 to 80 are expected on meshes of 642 to 41K vertices, and at
  * 164K where 240 are (classical, t = 1000 h^2) or 340 (weighted, 700 h^2). 20 take one to two times as long
- * as poles do, once, and the second number about ten times. The worst bound of many sources is above 1e-6
- * where 60 are expected on a regular torus of 36K vertices and 200 on a scan: the root of n decides there. */
+ * as poles do, once, and the second number about ten times. For sources all over the surface that bound grows
+ * with the span (see below): it was above 1e-6 just below the third number times span^1.2 on 14 meshes. */
 #define HDI_MODES_FIRST 20
 #define HDI_MODES_MOST 360
+#define HDI_MODES_MANY 0.02
 /* With a larger bound by poles, relative to the largest value, eigenpairs are asked for help. */
 #define HDI_MODES_HELP 1e-6
 #define HDI_MODES_REASON "at such a t few eigenpairs are left: answers are sums over them"
@@ -22747,12 +22748,13 @@ static hd_status hdi_sample_by_pairs(hdi_task *task) {
  * exp(depth) = |y| over the part that may be left out. The largest distance is at least about
  * 1/sqrt(mass) times exp(-t low). */
 static void hdi_distance_task(hdi_task *task, hdi_heat_call *h, const hdi_distance_row *kind, int32_t k) {
-    const int32_t many = k < HDI_LANES_BATCH ? 0 : (int32_t)(0.3 * sqrt(h->heat->source->n_active));
+    const double span = hdi_modes_span(h->heat);
+    const double many = k < HDI_LANES_BATCH || kind->mass > 0 ? 0 : HDI_MODES_MANY * pow(span, 1.2);
     memset(task, 0, sizeof *task);
     task->h = h;
     if (!HDI_HAS_MODES || !(kind->time > 0) || !hdi_modes_allowed(h->heat)) return;
-    task->serves = hdi_high32(HDI_MODES_FIRST, hdi_low32(many, HDI_MODES_MOST));
-    task->depth = hdi_max(0, log(2 * hdi_modes_span(h->heat) / hdi_modes_tol(h->heat)));   /* 0: tol is all */
+    task->serves = (int32_t)hdi_min(hdi_max(HDI_MODES_FIRST, many), HDI_MODES_MOST / 2);
+    task->depth = hdi_max(0, log(2 * span / hdi_modes_tol(h->heat)));   /* 0: tol is all there is */
 }
 
 /* The start of a query of a distance. Commute and biharmonic distances have no time: n_times is 0 or 1,
