@@ -13372,29 +13372,32 @@ static int32_t hdi_fit_sets(hdi_fit *k, hd_rational *s, hd_rational *out, hd_err
 
 /* Sets of one filter, or of several that share their poles. These are found for some of the filters, and then
  * for those as well that they serve worst. */
-static hd_status hdi_rational_fit(hd_rational *out, int32_t count, const hd_filter *filters,
-                                  double lambda_max, hd_context *ctx, hd_error *e) {
-    hdi_scope scope = hdi_scope_begin(ctx, e);
+HEATDIFF_API hd_status hd_rational_fit(hd_rational *out, int32_t count, const hd_filter *filters,
+                                       double lambda_max, hd_context *ctx, hd_error *err) {
     int32_t q, round, worst = -1;
     hd_rational s;
+    hdi_scope scope;
+    hdi_call c;
     hdi_fit k;
-    for (q = 0; q < count; q++) {
-        if (hdi_filter_check(filters + q, lambda_max, e) >= 0) continue;
-        e->column = q;
-        return e->status;
-    }
-    if (hdi_fit_begin(&k, count, filters, lambda_max, &scope) < 0) return hdi_scope_end(&scope);
-    for (round = 1; e->status >= 0; round++) {
+    if (hdi_enter(&c, ctx, out && filters, err) < 0) return c.e->status;
+    hdi_refuse(count < 1, "filters: there is none", c.e);
+    for (q = 0; q < count && c.e->status >= 0; q++)
+        if (hdi_filter_check(filters + q, lambda_max, c.e) < 0) c.e->column = q;
+    if (c.e->status < 0) return c.e->status;
+    scope = hdi_scope_begin(c.ctx, c.e);
+    (void)hdi_fit_begin(&k, count, filters, lambda_max, &scope);
+    for (round = 1; c.e->status >= 0; round++) {
         const int32_t before = k.n;
         hdi_fit_run(&k, &s);
-        worst = hdi_fit_sets(&k, &s, out, e);
+        worst = hdi_fit_sets(&k, &s, out, c.e);
         if (count == 1 && (k.n == before || round == HDI_FIT_ROUNDS)) break;
         if (count == 1) continue;
-        if (worst < 0 || k.count == HDI_FIT_MOST || hdi_fit_load(&k, k.count, filters + worst, e) < 0) break;
+        if (worst < 0 || k.count == HDI_FIT_MOST ||
+            hdi_fit_load(&k, k.count, filters + worst, c.e) < 0) break;
         k.count++;
     }
     (void)hdi_scope_end(&scope);
-    return e->status < 0 ? e->status : worst >= 0 ? HD_WARN_ACCURACY : HD_OK;
+    return c.e->status < 0 ? c.e->status : worst >= 0 ? HD_WARN_ACCURACY : HD_OK;
 }
 
 /* ==== [22] poles ====
@@ -15500,13 +15503,11 @@ static hd_status hdi_krylov_vectors(hdi_krylov *z, int32_t r, hd_error *e) {
  * zeros up to the longest basis. */
 static void hdi_krylov_coefficients(const hdi_krylov *z, int32_t r, double t, double *y) {
     const int32_t m = hdi_high32(z->done[r], 0);
-    const double *mu = z->eigen[r], *v = mu;
+    const double *mu = z->eigen[r];
     int32_t i;
-    for (i = 0; i < z->steps; i++) y[i] = 0;
-    for (i = 0; i < m; i++) {
-        v += m;
-        hdi_axpy(z->f_norm[r] * v[0] * hdi_krylov_value(mu[i], t / z->g, z->rate), v, y, m);
-    }
+    memset(y, 0, (size_t)z->steps * sizeof *y);
+    for (i = 1; i <= m; i++)
+        hdi_axpy(z->f_norm[r] * mu[i * m] * hdi_krylov_value(mu[i - 1], t / z->g, z->rate), mu + i * m, y, m);
 }
 
 /* Answers summed up in one pass over the basis: of one right-hand side at several times, or the reverse. */
@@ -16016,9 +16017,7 @@ typedef struct hdi_ground {
 
 static void hdi_ground_free(hdi_ground *g, hd_context *ctx) {
     hdi_factor_free(&g->factor);
-    hdi_free(ctx, g->held);
     hdi_free(ctx, g->diag);
-    hdi_free(ctx, g->trace);
     memset(g, 0, sizeof *g);
 }
 
@@ -16108,6 +16107,12 @@ static void hdi_ground_refined(const hdi_elim *m, const hdi_ground *g, const dou
     hdi_ground_residual(m, g, b, x, extra, r, off);
 }
 
+/* Doubles of a ground's arrays, which begin with diag. */
+static uint64_t hdi_ground_size(const hdi_elim *m) {
+    const uint64_t n = (uint64_t)m->sym.n;
+    return 3 * n + 2 * (uint64_t)m->lap->n_components + n / sizeof(double) + 1;
+}
+
 /* Factor, diag(G) and the trace. */
 static hd_status hdi_ground_make(hdi_elim *m, hdi_ground *g, hd_error *e) {
     hdi_scope s = hdi_scope_begin(m->ctx, e);
@@ -16122,14 +16127,14 @@ static hd_status hdi_ground_make(hdi_elim *m, hdi_ground *g, hd_error *e) {
     if (g->diag) return HD_OK;
     val = HDI_TAKE(&s, double, lap->L.nnz);
     loose = HDI_TAKE(&s, char, n_comp);
-    if (e->status >= 0) g->held = HDI_NEW(m->ctx, char, n, e);
-    if (g->held) g->diag = HDI_NEW(m->ctx, double, 3 * n, e);
-    if (g->diag) g->trace = HDI_NEW(m->ctx, double, 2 * n_comp, e);
-    if (g->trace && hdi_factor_make(&g->factor, NULL, &m->sym, 1, m->ctx, e) >= 0) {
-        memset(g->trace, 0, n_comp * sizeof *g->trace);
-        g->mean_off = g->trace + n_comp;
+    if (e->status >= 0) g->diag = HDI_NEW(m->ctx, double, hdi_ground_size(m), e);
+    if (g->diag && hdi_factor_make(&g->factor, NULL, &m->sym, 1, m->ctx, e) >= 0) {
         g->mean = g->diag + n;
         g->form = g->mean + n;
+        g->trace = g->form + n;
+        g->mean_off = g->trace + n_comp;
+        g->held = (char *)(void *)(g->mean_off + n_comp);
+        memset(g->trace, 0, n_comp * sizeof *g->trace);
         hdi_ground_components(lap, loose);
         for (i = lap->n_active; i-- > 0;) {      /* the last of each component */
             g->held[i] = loose[lap->component[i]];
@@ -16239,9 +16244,7 @@ static uint64_t hdi_ground_need(const hdi_elim *m, const hdi_ground *g, int form
     uint64_t held = 0, make = 0, form = 0;
     if (!g->diag) {
         held = hdi_factor_bytes(&m->sym, 1);
-        hdi_scope_count(&held, n, sizeof(char));
-        hdi_scope_count(&held, 3 * n, sizeof(double));
-        hdi_scope_count(&held, 2 * n_comp, sizeof(double));
+        hdi_scope_count(&held, hdi_ground_size(m), sizeof(double));
         make = hdi_inverse_bytes(&m->sym, 1, 0, 0);
         hdi_scope_count(&make, nnz, sizeof(double));
         hdi_scope_count(&make, n_comp, sizeof(char));
@@ -17284,22 +17287,6 @@ static int hdi_spec_distinct(const hd_spectrum *out) {
     return 1;
 }
 
-/* What one call computed, into arrays that are there. */
-static void hdi_spec_report(const hdi_spec *s, hd_spectrum *out) {
-    out->n_constant = hdi_low32(s->n_null, out->count);
-    out->next = s->m->scale * s->next;
-    out->proven = s->proven;
-    out->n_poor = s->n_poor;
-    out->shift = s->m->scale * s->sigma;
-    out->shift_margin = s->m->scale * s->off;
-    out->n_factors = s->n_factors;
-    out->n_runs = s->n_runs;
-    out->n_solves = s->n_solves;
-    out->factor_nnz = s->m->sym.nnz;
-    out->factor_flops = s->m->sym.flops * s->n_factors;
-    out->ordering = s->m->sym.ordering;
-}
-
 /* Eigenpairs for the goal. m: a pair that is analysed, whose factor kept in m is not touched. The arrays of
  * out belong to ctx of m. */
 static hd_status hdi_spec_run(hdi_elim *m, const hdi_spec_goal *goal, double tol, hd_spectrum *out,
@@ -17321,8 +17308,18 @@ static hd_status hdi_spec_run(hdi_elim *m, const hdi_spec_goal *goal, double tol
             out->residual = out->value + k;
             out->left_mass = out->left + n;
             hdi_spec_vectors(&s, out);
-            hdi_spec_report(&s, out);
-            out->proven = out->proven && hdi_spec_distinct(out);
+            out->n_constant = hdi_low32(s.n_null, count);
+            out->next = m->scale * s.next;
+            out->n_poor = s.n_poor;
+            out->shift = m->scale * s.sigma;
+            out->shift_margin = m->scale * s.off;
+            out->n_factors = s.n_factors;
+            out->n_runs = s.n_runs;
+            out->n_solves = s.n_solves;
+            out->factor_nnz = m->sym.nnz;
+            out->factor_flops = m->sym.flops * s.n_factors;
+            out->ordering = m->sym.ordering;
+            out->proven = s.proven && hdi_spec_distinct(out);
             memset(out->left, 0, 2 * n * sizeof *out->left);
             hdi_parallel_ranges(m->ctx, s.n, 1024, hdi_spec_left_task, out);
         }
@@ -17333,33 +17330,19 @@ static hd_status hdi_spec_run(hdi_elim *m, const hdi_spec_goal *goal, double tol
 
 #define HDI_TOL_SPECTRUM 1e-10
 
-static hd_status hdi_spectrum_check(const hd_laplacian *lap, const hd_spectrum_opts *o, hd_error *e) {
+static hd_status hdi_spectrum_check(const hd_laplacian *lap, const hd_spectrum_opts *o, hd_context *ctx,
+                                    hd_error *e) {
     hdi_refuse(o->count < 0 || (o->count == 0 && o->below == 0), "spectrum: neither a count nor a bound", e);
     hdi_refuse_value(o->count > lap->n_active, "spectrum: more pairs than rows", o->count, e);
     hdi_refuse_value(!hdi_finite(o->below) || o->below < 0, "spectrum: below is negative or not finite",
                      o->below, e);
     hdi_refuse(!hdi_finite(o->tol) || o->tol < 0 || o->tol >= 1, "spectrum: tol is not in [0, 1)", e);
     hdi_refuse_ordering(o->ordering, o->perm, "spectrum: unknown ordering", e);
+    if (e->status >= 0 && o->ordering == HD_ORDERING_OWN) (void)hdi_order_check(o->perm, lap->n, ctx, e);
     return e->status;
 }
 
-static hd_status hdi_spectrum_make(hd_spectrum *s, const hd_spectrum_opts *o, hd_error *e) {
-    const double scale = hdi_pair_scale(s->lap), tol = o->tol > 0 ? o->tol : HDI_TOL_SPECTRUM;
-    const hdi_spec_goal goal = {o->count > 0 ? o->count : INT32_MAX,
-                                o->below > 0 ? o->below / scale : HUGE_VAL};
-    hdi_elim m;
-    if (o->ordering == HD_ORDERING_OWN && hdi_order_check(o->perm, s->lap->n, s->context, e) < 0)
-        return e->status;
-    memset(&m, 0, sizeof m);
-    if (hdi_elim_make(&m, s->lap, o->ordering, o->ordering == HD_ORDERING_OWN ? o->perm : NULL, scale,
-                      s->context, e) >= 0)
-        (void)hdi_spec_run(&m, &goal, tol, s, e);
-    hdi_elim_free(&m);
-    if (e->status < 0) return e->status;
-    return s->proven && s->n_poor == 0 ? HD_OK : HD_WARN_ACCURACY;
-}
-
-static void hdi_spectrum_free(hd_spectrum *s) {
+HEATDIFF_API void hd_spectrum_free(hd_spectrum *s) {
     hd_context *ctx;
     if (!s) return;
     ctx = s->context;
@@ -17368,6 +17351,35 @@ static void hdi_spectrum_free(hd_spectrum *s) {
     hdi_free(ctx, s->left);
     hdi_free(ctx, s);
     hdi_let_go(ctx);
+}
+
+HEATDIFF_API hd_status hd_spectrum_create(hd_spectrum **out, const hd_laplacian *lap,
+                                          const hd_spectrum_opts *o, hd_error *err) {
+    hdi_spec_goal goal;
+    hdi_call c;
+    hdi_elim m;
+    hd_spectrum *s;
+    double scale;
+    if (hdi_enter_with(&c, !o || HDI_CLEARED(o), o && o->context ? o->context : lap ? lap->context : NULL,
+                       "spectrum options: not cleared before use", err) < 0) return c.e->status;
+    if (!out || !lap || !o) return hdi_missing(c.e);
+    if (!HDI_HAS_SPECTRUM) return HDI_LEFT_OUT(c.e, SPECTRUM, "eigenpairs");
+    if (hdi_spectrum_check(lap, o, c.ctx, c.e) < 0) return c.e->status;
+    s = (hd_spectrum *)hdi_alloc_zero(c.ctx, 1, sizeof *s, c.e);
+    if (!s) return c.e->status;
+    s->lap = lap;
+    s->context = c.ctx;                          /* the caller's: every Laplacian has one */
+    hdi_hold(s->context);
+    scale = hdi_pair_scale(lap);
+    goal.count = o->count > 0 ? o->count : INT32_MAX;
+    goal.below = o->below > 0 ? o->below / scale : HUGE_VAL;
+    if (hdi_elim_make(&m, lap, o->ordering, o->ordering == HD_ORDERING_OWN ? o->perm : NULL, scale, c.ctx,
+                      c.e) >= 0)
+        (void)hdi_spec_run(&m, &goal, o->tol > 0 ? o->tol : HDI_TOL_SPECTRUM, s, c.e);
+    hdi_elim_free(&m);
+    if (c.e->status >= 0) *out = s;
+    else hd_spectrum_free(s);
+    return c.e->status < 0 || (s->proven && s->n_poor == 0) ? c.e->status : HD_WARN_ACCURACY;
 }
 
 /* ---- kernels from eigenpairs ---- */
@@ -24186,12 +24198,10 @@ static void hdi_geo_values(hd_geodesic *g, const hdi_geo_source *s, const double
 static hd_status hdi_geo_values_room(hd_geodesic *g, int32_t most, hd_error *e) {
     if (g->value_size >= most) return HD_OK;
     hdi_free(g->ctx, g->sorted);
-    g->value_size = 0;
     g->sorted = HDI_NEW(g->ctx, hdi_pair, (most + (int64_t)most / 2 + 1), e);
-    if (!g->sorted) return e->status;
-    g->value = (double *)(void *)(g->sorted + most);
-    g->value_size = most;
-    return HD_OK;
+    g->value_size = g->sorted ? most : 0;
+    if (g->sorted) g->value = (double *)(void *)(g->sorted + most);
+    return e->status;
 }
 
 /* ---- distances ---- */
@@ -24459,16 +24469,6 @@ static hd_status hdi_geo_distances(hd_geodesic *g, const hd_sources *from, doubl
     return e->status;
 }
 
-/* What a report says before anything is solved. */
-static void hdi_geo_tell_plan(const hd_geodesic *g, hd_geodesic_report *rep) {
-    rep->t = g->t;
-    rep->h = g->h;
-    rep->n_components = g->n_components;
-    rep->ordering = g->sym.ordering;
-    rep->factor_nnz = g->sym.nnz;
-    rep->factor_flops = (g->border == HD_GEODESIC_BORDER_MEAN ? 3 : 2) * g->sym.flops;
-}
-
 /* ---- options and arguments ---- */
 
 #define HDI_LAMBDA_GEODESIC (1.0 / 6)    /* measured from 0.05 to 1 on spheres, planes and tubes */
@@ -24530,12 +24530,14 @@ static hd_status hdi_geo_create(hd_geodesic **out, const hd_mesh *mesh, const hd
     return c->e->status;
 }
 
-static hd_status hdi_geo_end(hd_geodesic_report *rep, hd_error *e) {
-    if (rep && e->status < 0) {
-        rep->status = e->status;
-        rep->error = *e;
-    }
-    return rep ? rep->status : e->status;
+/* What a report says before anything is solved. */
+static void hdi_geo_tell_plan(const hd_geodesic *g, hd_geodesic_report *rep) {
+    rep->t = g->t;
+    rep->h = g->h;
+    rep->n_components = g->n_components;
+    rep->ordering = g->sym.ordering;
+    rep->factor_nnz = g->sym.nnz;
+    rep->factor_flops = (g->border == HD_GEODESIC_BORDER_MEAN ? 3 : 2) * g->sym.flops;
 }
 
 /* Checks the arguments of a query, and fills the report with what the plan says. */
@@ -24822,14 +24824,6 @@ HEATDIFF_API hd_status hd_rational_shared(hd_rational *out, int32_t n_times, con
 
 HEATDIFF_API double hd_rational_eval(const hd_rational *set, double x) { return hdi_rational_eval(set, x); }
 
-HEATDIFF_API hd_status hd_rational_fit(hd_rational *out, int32_t count, const hd_filter *filters,
-                                       double lambda_max, hd_context *ctx, hd_error *err) {
-    hdi_call c;
-    if (hdi_enter(&c, ctx, out && filters, err) < 0) return c.e->status;
-    hdi_refuse(count < 1, "filters: there is none", c.e);
-    return c.e->status < 0 ? c.e->status : hdi_rational_fit(out, count, filters, lambda_max, c.ctx, c.e);
-}
-
 HEATDIFF_API double hd_filter_eval(const hd_filter *filter, double lambda) {
     return hdi_filter_value(filter, lambda);
 }
@@ -25018,28 +25012,6 @@ HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c6
 
 /* ---- eigenpairs ---- */
 
-HEATDIFF_API hd_status hd_spectrum_create(hd_spectrum **out, const hd_laplacian *lap,
-                                          const hd_spectrum_opts *opts, hd_error *err) {
-    hdi_call c;
-    hd_spectrum *s;
-    hd_status status;
-    if (hdi_enter_with(&c, !opts || HDI_CLEARED(opts),
-                       opts && opts->context ? opts->context : lap ? lap->context : NULL,
-                       "spectrum options: not cleared before use", err) < 0) return c.e->status;
-    if (!out || !lap || !opts) return hdi_missing(c.e);
-    if (!HDI_HAS_SPECTRUM) return HDI_LEFT_OUT(c.e, SPECTRUM, "eigenpairs");
-    if (hdi_spectrum_check(lap, opts, c.e) < 0) return c.e->status;
-    s = (hd_spectrum *)hdi_alloc_zero(c.ctx, 1, sizeof *s, c.e);
-    if (!s) return c.e->status;
-    s->lap = lap;
-    s->context = c.ctx;                          /* the caller's: every Laplacian has one */
-    hdi_hold(s->context);
-    status = hdi_spectrum_make(s, opts, c.e);
-    if (status >= 0) *out = s;
-    else hd_spectrum_free(s);
-    return status;
-}
-
 HEATDIFF_API hd_status hd_times_auto(const hd_laplacian *lap, int32_t n_times, double *t, hd_error *err) {
     hdi_call c;
     (void)hdi_enter(&c, lap ? lap->context : NULL, lap && t, err);
@@ -25047,8 +25019,6 @@ HEATDIFF_API hd_status hd_times_auto(const hd_laplacian *lap, int32_t n_times, d
     if (c.e->status >= 0) hdi_lap_times(lap, n_times, t);
     return c.e->status;
 }
-
-HEATDIFF_API void hd_spectrum_free(hd_spectrum *s) { hdi_spectrum_free(s); }
 
 HEATDIFF_API hd_status hd_spectrum_columns(const hd_spectrum *s, hd_kernel kernel, int32_t n_times,
                                            const double *t, const hd_sources *sources, double *U,
@@ -25237,7 +25207,11 @@ HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, const hd_sources *so
     hdi_call c;
     if (hdi_geo_begin(g, sources, D, &ldd, report, err, &c) >= 0 && HDI_HAS_GEODESIC)
         (void)hdi_geo_distances(g, sources, D, ldd, report, c.e);
-    return hdi_geo_end(report, c.e);
+    if (report && c.e->status < 0) {
+        report->status = c.e->status;
+        report->error = *c.e;
+    }
+    return report ? report->status : c.e->status;
 }
 
 /* ==== [31] closing ====
