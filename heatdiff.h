@@ -1001,8 +1001,8 @@ HEATDIFF_API hd_status hd_rational_exp(hd_rational *out, hd_pole_kind kind, int3
  * out    [n_times] out[q] is the set for t[q]
  * t      [n_times] > 0, in any order
  * tol    bound of max_weighted_error of every set
- * theta_i/t[q] is the same for all q, so that one set of factors serves every time. The number of pole pairs
- * is a multiple of four: at tol = 1e-6 it is 8, 12 and 16 for times that differ by 10, 100 and 1000.
+ * theta_i/t[q] is the same for all q, so that one set of factors serves every time. At tol = 1e-6 there are
+ * 8, 12 and 16 pairs for times that differ by 10, 100 and 1000.
  * Errors HD_ERR_ARGUMENT: a time is not positive and finite (row), or there is no such set (value: the ratio
  *        of the times)
  * Cost   under a millisecond for each time
@@ -1019,14 +1019,13 @@ HEATDIFF_API double hd_rational_eval(const hd_rational *set, double x);
  * filters    [count] count >= 1. Degrees rise until tol is reached, or max_degree, which several filters
  *            ignore: these may have HD_MAX_POLES pairs
  * lambda_max that of the Laplacian, or more; 1/area
- * max_error is the largest |f - c| on 42,000 points, and reports call what follows from it measured. Poles
- * are found for at most 20 of the filters. A hundred wave filters of usual width over three decades of
- * eigenvalues take 24 to 28 pairs, one of them alone 8 to 10.
+ * max_error is the largest |f - c| on 42,000 points: measured. Poles are found for at most 20 filters. A
+ * hundred wave filters of usual width over three decades of eigenvalues take 24 to 28 pairs, one 8 to 10.
  * Distances become d^2 = (e_i - e_j)' f(B^-1 L) B^-1 (e_i - e_j), or with B f(B^-1 L). So f is what is summed
  * in d^2, for example exp(-2 t lambda), and should not be negative.
  * Errors     HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (value: the eigenvalue), HD_ERR_BREAKDOWN (a weight
  *            overflows), all with column: which filter. HD_WARN_ACCURACY: an error is above its tol
- * Cost       some 2 to 50 milliseconds, and 50 to 200 thousand values of f; a second for 16 filters, three to
+ * Cost       2 to 50 milliseconds, and 50 to 200 thousand values of f; a second for 16 filters, three to
  *            seven for 100
  * Source     Nakatsukasa, Sete, Trefethen 2018, with weights refitted to the poles; Lietaert, Meerbergen,
  *            Perez, Vandereycken 2022 for several functions at once */
@@ -1379,8 +1378,8 @@ HEATDIFF_API void hd_spectrum_free(hd_spectrum *s);  /* NULL is fine */
  * x_i(y) and the like. All else is as in hd_heat_columns, hd_heat_diagonal and hd_heat_distance.
  * t      >= 0, unit length^2; commute and biharmonic ignore it
  * bound  NULL, or as large as the output, with the same ldu or ldd: bounds on the error of each value. The
- *        part of the pairs left out is at most exp(-t next) sqrt(left(x) left(y)), proven if s->proven; that
- *        of residuals follows from their sizes, and rounding is estimated
+ *        part of the pairs left out is at most exp(-t next) sqrt(left(x) left(y)), proven if s->proven;
+ *        rounding is estimated
  * Errors those of hd_heat_columns for sources
  * Cost   2 n count flops for each column; with the weighted distance or the diagonal of K_t and a full B some
  *        ten times as many */
@@ -1416,10 +1415,10 @@ typedef struct hd_geodesic hd_geodesic;
 /* A plan for distances along a surface, by the heat method.
  * mesh   as in hd_laplacian_create, whose errors it has
  * opts   NULL: t = h^2, barycentric masses, natural border. Use a Delaunay triangulation if there are
- *        slivers: on a plane of cells squeezed 1:20 it lowers mean errors from 0.19 to 0.003 of the width
+ *        slivers: on cells squeezed 1:20 it lowers mean errors from 0.19 to 0.003 of the width
  * Gradients on polygons are those of Alexa and Wardetzky 2011. Points must be tufted, because exponential
- * weights have no gradient; those in the same place have the same distance. On quadrangles, hexagons and
- * evenly spread points, distances are as accurate as on triangles with edges of the same length.
+ * weights have no gradient. On quadrangles, hexagons and evenly spread points, distances are as accurate as
+ * on triangles with edges of the same length.
  * Errors HD_ERR_BREAKDOWN (vertex: a pivot too small to divide by)
  * Cost   assembly, one analysis, two real factorisations. The plan keeps both: 16 bytes for each non-zero of
  *        the factor, and about 430 bytes for each vertex; polygons 28 bytes more for each corner, and 12 for
@@ -1436,24 +1435,21 @@ HEATDIFF_API hd_status hd_geodesic_update(hd_geodesic *g, const hd_mesh *mesh, h
 HEATDIFF_API void hd_geodesic_free(hd_geodesic *g);  /* NULL is fine */
 
 /* The distance of every vertex to each source: to the nearest of its points, or to its curve.
- * sources  weights, and lengths of curves, are ignored. Points that are no vertices, and every piece of a
- *          curve, must lie in a face that is used, its edges and corners included. Plans of polygons take
- *          vertices only
+ * sources  weights and lengths are ignored. Points that are no vertices, and every piece of a curve, must
+ *          lie in a face, its edges and corners included. Plans of polygons take vertices only
  * D        n x count, columns ldd apart (0: n), in the unit of xyz: |phi - phi_s|, zero at vertices that are
  *          sources, HUGE_VAL in components without one and at vertices without mass. For several points phi_s
  *          is a mean weighted by their heat, which is almost the value of the nearest one
  * The method has an error of the order of h: a few percent on coarse meshes, about one percent on fine ones,
- * most where fronts meet, and relative to the distance more near a source. d from i to j and d from j to i
- * differ by about that error. Where a source is no vertex, D is exact at the corners of its faces, along
- * straight lines within them.
+ * most where fronts meet and near a source. d from i to j and d from j to i differ by about that. Where a
+ * source is no vertex, D is exact at the corners of its faces.
  * Errors   those of hd_heat_columns for sources; HD_ERR_ARGUMENT (column, row): a point or a piece is in no
  *          face, or has a corner where heat is held at zero; HD_ERR_BREAKDOWN (rounding left no number).
  *          HD_WARN_ACCURACY, only if a report is given
  * Cost     two solves and two passes over the faces for each source; a third solve with several points in a
  *          component; with a report two more passes. Vertices are solved eight side by side, in a third of
- *          the time. Where heat fades below 1e-200 of the source's, about 450 edges away at t = h^2, another
- *          solve and three passes follow (report->n_stages). Of calls with vertices alone, only those with
- *          more sources or points than any before allocate
+ *          the time. Every 450 edges or so at t = h^2, where heat fades, another solve and three passes
+ *          follow (report->n_stages). Calls with vertices alone allocate only if there are more than before
  * Only one thread at a time may use a plan. */
 HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, const hd_sources *sources, double *D,
                                             size_t ldd, hd_geodesic_report *report, hd_error *err);
