@@ -24,13 +24,19 @@ function near(have, want, tolerance, what) {
   assert.equal(have.length, want.length, what);
   const most = want.reduce((a, x) => (Math.abs(x) < Infinity ? Math.max(a, Math.abs(x)) : a), 1e-300);
   want.forEach((x, i) =>
-    assert.ok(have[i] === x || Math.abs(have[i] - x) <= tolerance * most, `${what}, ${i}: ${have[i]} and not ${x}`),
+    assert.ok(
+      have[i] === x || Math.abs(have[i] - x) <= tolerance * most,
+      `${what}, ${i}: ${have[i]} and not ${x}`,
+    ),
   );
 }
 
 test("before it is ready, surfaces say so", () => {
   const code = 'import { Surface } from "heatdiff"; new Surface(null, new Float32Array(9));';
-  assert.throws(() => execFileSync(process.execPath, ["--input-type=module", "-e", code], { stdio: "pipe" }), /await ready/);
+  assert.throws(
+    () => execFileSync(process.execPath, ["--input-type=module", "-e", code], { stdio: "pipe" }),
+    /await ready/,
+  );
 });
 
 test("numbers of native code", () => {
@@ -41,7 +47,8 @@ test("numbers of native code", () => {
     const a = s[op](...args);
     near(op === "sample" ? a.vertices : a.values, values, 1e-12, op);
     assert.equal(a.report.status, "HD_OK");
-    if (op !== "geodesic") assert.ok(a.report.bound > 0 && a.report.bound < 1e-5 && a.report.evidence !== "none", op);
+    if (op !== "geodesic")
+      assert.ok(a.report.bound > 0 && a.report.bound < 1e-5 && a.report.evidence !== "none", op);
   }
   assert.deepEqual(new Set(s.components()), new Set([0]));
   s.dispose();
@@ -112,7 +119,11 @@ const MISUSE = [
   [() => new Surface([0, 1, 2], OCTAHEDRON), TypeError, /indices is of type Array, wanted is a Uint32Array/],
   [() => new Surface(new Float32Array(3), OCTAHEDRON), TypeError, /indices is of type Float32Array/],
   [() => new Surface(undefined, OCTAHEDRON), TypeError, /indices is undefined.*null for points/],
-  [() => new Surface(FACES.subarray(1), OCTAHEDRON), RangeError, /indices has length 23, wanted is a multiple of three/],
+  [
+    () => new Surface(FACES.subarray(1), OCTAHEDRON),
+    RangeError,
+    /indices has length 23, wanted is a multiple of three/,
+  ],
   [() => new Surface(FACES, [...OCTAHEDRON]), TypeError, /positions is of type Array/],
   [() => new Surface(FACES, new Uint8Array(18)), TypeError, /positions is of type Uint8Array/],
   [() => new Surface(FACES), TypeError, /positions is undefined/],
@@ -120,18 +131,45 @@ const MISUSE = [
   [() => new Surface(FACES, OCTAHEDRON, 3.5), TypeError, /stride is 3.5, wanted is an integer/],
   [() => new Surface(FACES, OCTAHEDRON, 4), RangeError, /length 18, wanted is a multiple of the stride 4/],
   [() => new Surface(FACES, OCTAHEDRON, 3, "fem"), TypeError, /options is "fem"/],
-  [() => new Surface(FACES, OCTAHEDRON, 3, { metod: "direct" }), TypeError, /no option metod, only kind.*method/],
-  [() => new Surface(FACES, OCTAHEDRON, 3, { kind: "cotan" }), RangeError, /kind is "cotan", wanted is one of default, fem/],
+  [
+    () => new Surface(FACES, OCTAHEDRON, 3, { metod: "direct" }),
+    TypeError,
+    /no option metod, only kind.*method/,
+  ],
+  [
+    () => new Surface(FACES, OCTAHEDRON, 3, { kind: "cotan" }),
+    RangeError,
+    /kind is "cotan", wanted is one of default, fem/,
+  ],
   [() => new Surface(FACES, OCTAHEDRON, 3, { held: [6] }), HeatError, /held: there is no such vertex/],
   [() => new Surface(FACES, OCTAHEDRON, 3, { memoryLimit: "1G" }), TypeError, /memoryLimit is "1G"/],
-  [() => new Surface(FACES, OCTAHEDRON, 3, { progress: 1 }), TypeError, /progress is 1, wanted is a function/],
-  [() => new Surface(FACES, bad(NaN, 7)), HeatError, /not finite \(vertex 2\)/, { status: "HD_ERR_NOT_FINITE", vertex: 2 }],
+  [
+    () => new Surface(FACES, OCTAHEDRON, 3, { progress: 1 }),
+    TypeError,
+    /progress is 1, wanted is a function/,
+  ],
+  [
+    () => new Surface(FACES, bad(NaN, 7)),
+    HeatError,
+    /not finite \(vertex 2\)/,
+    { status: "HD_ERR_NOT_FINITE", vertex: 2 },
+  ],
   [() => new Surface(FACES, bad(Infinity, 3)), HeatError, /not finite/, { vertex: 1 }],
-  [() => new Surface(Uint32Array.of(0, 1, 2, 0, 1, 6), OCTAHEDRON), HeatError, /does not exist \(face 1\)/, { status: "HD_ERR_INDEX", face: 1, value: 6 }],
+  [
+    () => new Surface(Uint32Array.of(0, 1, 2, 0, 1, 6), OCTAHEDRON),
+    HeatError,
+    /does not exist \(face 1\)/,
+    { status: "HD_ERR_INDEX", face: 1, value: 6 },
+  ],
   [() => new Surface(Uint32Array.of(0, 1, 4e9), OCTAHEDRON), HeatError, /does not exist \(face 0\)/],
   [() => new Surface(Uint32Array.of(0, 0, 1), OCTAHEDRON), HeatError, /./, { status: "HD_ERR_EMPTY" }],
   [() => new Surface(null, new Float32Array(0)), HeatError, /./],
-  [() => s().columns(6, 1), HeatError, /sources: there is no such vertex/, { status: "HD_ERR_INDEX", vertex: 6 }],
+  [
+    () => s().columns(6, 1),
+    HeatError,
+    /sources: there is no such vertex/,
+    { status: "HD_ERR_INDEX", vertex: 6 },
+  ],
   [() => s().columns(-1, 1), HeatError, /no such vertex/],
   [() => s().columns(2 ** 32, 1), HeatError, /no such vertex/],
   [() => s().columns(0.5, 1), TypeError, /sources is 0.5, wanted is an integer/],
@@ -142,9 +180,18 @@ const MISUSE = [
   [() => s().columns(0, NaN), RangeError, /t is NaN/],
   [() => s().columns(0, "10 h2"), TypeError, /t is "10 h2", wanted is a number, "10h2"/],
   [() => s().columns(0, []), TypeError, /at least one time/],
-  [() => s().columns(0, 1, { kernel: "both" }), RangeError, /kernel is "both", wanted is one of operator, symmetric/],
+  [
+    () => s().columns(0, 1, { kernel: "both" }),
+    RangeError,
+    /kernel is "both", wanted is one of operator, symmetric/,
+  ],
   [() => s().apply(new Float64Array(7), 1), RangeError, /field has length 7, wanted is a multiple of the 6/],
-  [() => s().apply(Float64Array.of(0, 0, NaN, 0, 0, 0), 1), HeatError, /./, { status: "HD_ERR_NOT_FINITE", row: 2 }],
+  [
+    () => s().apply(Float64Array.of(0, 0, NaN, 0, 0, 0), 1),
+    HeatError,
+    /./,
+    { status: "HD_ERR_NOT_FINITE", row: 2 },
+  ],
   [() => s().signature(0), HeatError, /./, { status: "HD_ERR_ARGUMENT" }],
   [() => s().distance(0, 1, { kind: "biharmonic" }), TypeError, /biharmonic has no time/],
   [() => s().distance(0, 1, { kind: "eucl" }), RangeError, /kind is "eucl"/],
@@ -189,7 +236,8 @@ test("memory comes back", async () => {
     one.dispose();
     assert.ok(one.disposed && one.bytes === 0);
     assert.throws(() => one.columns(0, 1), /disposed/);
-    for (let bad = 0; bad < 4; bad++) assert.throws(() => new Surface(Uint32Array.of(0, 1, 99), OCTAHEDRON), HeatError);
+    for (let bad = 0; bad < 4; bad++)
+      assert.throws(() => new Surface(Uint32Array.of(0, 1, 99), OCTAHEDRON), HeatError);
     if (k === 2) most = memory().reserved;
     if (k > 2) assert.equal(memory().reserved, most, "the same work takes no more memory");
   }
@@ -199,7 +247,9 @@ test("memory comes back", async () => {
 
 test("progress, and cancelling", () => {
   const stages = new Set();
-  const one = new Surface(...mesh(), { progress: (stage, done) => void stages.add(stage) || (done >= 0 && done <= 1) });
+  const one = new Surface(...mesh(), {
+    progress: (stage, done) => void stages.add(stage) || (done >= 0 && done <= 1),
+  });
   one.columns(0, "7h2", { progress: (stage) => void stages.add(stage) });
   assert.ok(stages.has("assemble") && stages.has("solve"), [...stages].join());
   assert.throws(() => one.columns(0, "9h2", { progress: () => false }), { status: "HD_ERR_CANCELLED" });
@@ -207,7 +257,10 @@ test("progress, and cancelling", () => {
   const thrower = () => {
     throw own;
   };
-  assert.throws(() => one.columns(0, "9h2", { progress: thrower }), (e) => e === own);
+  assert.throws(
+    () => one.columns(0, "9h2", { progress: thrower }),
+    (e) => e === own,
+  );
   assert.throws(() => one.columns(0, "9h2", { progress: () => one.columns(1, 1) }), /is at work/);
   near(one.columns(0, "9h2").values, new Surface(...mesh()).columns(0, "9h2").values, 1e-7, "it works on");
   assert.throws(() => new Surface(...mesh(), { progress: () => false }), { status: "HD_ERR_CANCELLED" });
@@ -235,7 +288,9 @@ function slim(source, then = "") {
     const url = pathToFileURL("node_modules/heatdiff/heatdiff.wasm");
     ${source}; await ready;
     console.log(new Surface(null, new Float32Array(90).map((x, i) => Math.sin(i * i))).n); ${then}`;
-  return execFileSync(process.execPath, ["--input-type=module", "-e", code], { stdio: "pipe" }).toString().trim();
+  return execFileSync(process.execPath, ["--input-type=module", "-e", code], { stdio: "pipe" })
+    .toString()
+    .trim();
 }
 
 test("slim, from a URL, bytes or a module", () => {
@@ -245,7 +300,10 @@ test("slim, from a URL, bytes or a module", () => {
   assert.equal(slim("await init(readFileSync(url))"), "30");
   assert.equal(slim("await init(await WebAssembly.compile(readFileSync(url)))"), "30");
   assert.throws(() => slim("await init(7)"), /wanted is a URL, bytes or a WebAssembly.Module/);
-  assert.throws(() => slim("init(readFileSync(url)).then(() => {}); new Surface(null, new Float32Array(9))"), /not ready/);
+  assert.throws(
+    () => slim("init(readFileSync(url)).then(() => {}); new Surface(null, new Float32Array(9))"),
+    /not ready/,
+  );
 });
 
 // ---- workers ----
@@ -263,7 +321,10 @@ test("a worker gives the same numbers, and hears", async () => {
   const order = [];
   await Promise.all(["1h2", "2h2"].map((t) => one.columns(0, t).then(() => order.push(t))));
   assert.deepEqual(order, ["1h2", "2h2"]);
-  await assert.rejects(one.columns(one.n, 1), (e) => e instanceof WorkerError && e.vertex === one.n && e.status === "HD_ERR_INDEX");
+  await assert.rejects(
+    one.columns(one.n, 1),
+    (e) => e instanceof WorkerError && e.vertex === one.n && e.status === "HD_ERR_INDEX",
+  );
   await assert.rejects(one.columns(0, "soon"), TypeError);
   await assert.rejects(one.columns(0, 1, { metod: 1 }), /no option metod/);
   await assert.rejects(WorkerSurface.create(FACES, bad(NaN)), { status: "HD_ERR_NOT_FINITE" });
@@ -278,9 +339,14 @@ async function cancelling(shared) {
   const one = await WorkerSurface.create(...mesh());
   const want = (await one.columns(5, "3h2", { method: "krylov" })).values;
   const stop = new AbortController();
-  const work = one.signature(Array.from({ length: 40 }, (_, k) => `${1.3 ** k}h2`), { signal: stop.signal });
+  const work = one.signature(
+    Array.from({ length: 40 }, (_, k) => `${1.3 ** k}h2`),
+    { signal: stop.signal },
+  );
   const next = one.columns(5, "3h2", { method: "krylov" });
-  const never = assert.rejects(one.columns(6, "3h2", { signal: stop.signal }), { status: "HD_ERR_CANCELLED" });
+  const never = assert.rejects(one.columns(6, "3h2", { signal: stop.signal }), {
+    status: "HD_ERR_CANCELLED",
+  });
   setTimeout(() => stop.abort(), 60);
   await assert.rejects(work, (e) => e instanceof WorkerError && e.status === "HD_ERR_CANCELLED");
   await never;
@@ -289,14 +355,23 @@ async function cancelling(shared) {
   let heard = 0;
   if (shared)
     await assert.rejects(
-      one.signature(Array.from({ length: 40 }, (_, k) => `${1.3 ** k}h2`), { progress: () => (heard++, false) }),
+      one.signature(
+        Array.from({ length: 40 }, (_, k) => `${1.3 ** k}h2`),
+        { progress: () => (heard++, false) },
+      ),
       { status: "HD_ERR_CANCELLED" },
     );
   assert.equal(heard, shared ? 1 : 0);
   const thrower = () => {
     throw new Error("mine");
   };
-  await assert.rejects(one.signature(Array.from({ length: 40 }, (_, k) => `${1.3 ** k}h2`), { progress: thrower }), /^Error: mine$/);
+  await assert.rejects(
+    one.signature(
+      Array.from({ length: 40 }, (_, k) => `${1.3 ** k}h2`),
+      { progress: thrower },
+    ),
+    /^Error: mine$/,
+  );
   near((await one.columns(5, "3h2", { method: "krylov" })).values, want, 1e-9, "it works on");
   one.dispose();
 }
@@ -318,7 +393,11 @@ test("a worker that is not disposed of lets node end", async () => {
 
 class Attribute {
   constructor(array, itemSize, more = {}) {
-    Object.assign(this, { isBufferAttribute: true, array, itemSize, count: array.length / itemSize, normalized: false }, more);
+    Object.assign(
+      this,
+      { isBufferAttribute: true, array, itemSize, count: array.length / itemSize, normalized: false },
+      more,
+    );
   }
 }
 // A box as three makes it: 24 vertices, four for each side.
@@ -328,7 +407,12 @@ function box(more = {}) {
   for (let axis = 0; axis < 3; axis++)
     for (const side of [-1, 1]) {
       const at = xyz.length / 3;
-      for (const [u, v] of [[-1, -1], [1, -1], [1, 1], [-1, 1]]) {
+      for (const [u, v] of [
+        [-1, -1],
+        [1, -1],
+        [1, 1],
+        [-1, 1],
+      ]) {
         const p = [0, 0, 0];
         p[axis] = side;
         p[(axis + 1) % 3] = u;
@@ -338,7 +422,12 @@ function box(more = {}) {
       index.push(at, at + 1, at + 2, at, at + 2, at + 3);
     }
   const position = new Attribute(new Float32Array(xyz), 3);
-  return { isBufferGeometry: true, attributes: { position }, index: { array: Uint16Array.from(index) }, ...more };
+  return {
+    isBufferGeometry: true,
+    attributes: { position },
+    index: { array: Uint16Array.from(index) },
+    ...more,
+  };
 }
 
 test("a geometry: seams are welded, and said", () => {
@@ -349,7 +438,9 @@ test("a geometry: seams are welded, and said", () => {
   assert.equal(one.welded.merged, 16);
   assert.equal(one.info.boundaryEdges, 0);
   const { attribute, attributes, report } = one.columns([3, 23], ["1h2", "2h2", "3h2"]);
-  assert.ok(attribute instanceof Attribute && attribute.array instanceof Float32Array && attribute.itemSize === 1);
+  assert.ok(
+    attribute instanceof Attribute && attribute.array instanceof Float32Array && attribute.itemSize === 1,
+  );
   assert.equal(attributes.length, 6);
   assert.ok(report.bound < 1e-5);
   const { place } = one.welded,
@@ -360,10 +451,18 @@ test("a geometry: seams are welded, and said", () => {
   const smooth = one.smooth("0.1h2").attribute;
   assert.equal(smooth.itemSize, 3);
   assert.ok(Math.abs(smooth.array[0]) < 1 && smooth.array.length === 72);
-  assert.ok(one.geodesic(0).attribute.array[0] === 0 && one.distance(0, "1h2").attribute && one.signature("1h2").attribute);
+  assert.ok(
+    one.geodesic(0).attribute.array[0] === 0 &&
+      one.distance(0, "1h2").attribute &&
+      one.signature("1h2").attribute,
+  );
   assert.throws(() => one.columns(24, 1), /no vertex 24, only 0 to 23/);
   one.dispose();
-  const plain = { ...geometry, index: null, attributes: { position: new Attribute(Float32Array.from(OCTAHEDRON), 3) } };
+  const plain = {
+    ...geometry,
+    index: null,
+    attributes: { position: new Attribute(Float32Array.from(OCTAHEDRON), 3) },
+  };
   const silent = new GeometrySurface(plain, { say: () => assert.fail("there is no seam") });
   assert.equal(silent.welded.message, "");
   const loose = box();
@@ -380,10 +479,16 @@ test("geometries that are refused", () => {
     [{}, /wanted is a BufferGeometry/],
     [null, /wanted is a BufferGeometry/],
     [{ ...box(), attributes: {} }, /no attribute position/],
-    [of({ isInterleavedBufferAttribute: true, itemSize: 3 }), /position is interleaved.*deinterleaveGeometry/],
+    [
+      of({ isInterleavedBufferAttribute: true, itemSize: 3 }),
+      /position is interleaved.*deinterleaveGeometry/,
+    ],
     [of(new Attribute(new Int16Array(72), 3, { normalized: true })), /position is quantised \(Int16Array\)/],
     [of(new Attribute(position.array, 2)), /itemSize 2, wanted is 3/],
-    [{ ...box(), index: { array: Uint16Array.of(0, 1, 24) } }, /names vertex 24, but there are only 24 \(face 0\)/],
+    [
+      { ...box(), index: { array: Uint16Array.of(0, 1, 24) } },
+      /names vertex 24, but there are only 24 \(face 0\)/,
+    ],
     [{ ...box(), index: { array: Uint16Array.of(0, 1) } }, /2 corners, wanted is a multiple of three/],
   ])
     assert.throws(() => new GeometrySurface(geometry, { say: null }), text);

@@ -466,7 +466,7 @@ class Package(unittest.TestCase):
         with open(os.path.join(folder, "answers.json"), "w") as f:
             f.write(json.dumps(given).replace("Infinity", "1e999"))
         shutil.copy(os.path.join(TOP, "tests", "npm.mjs"), folder)
-        run = subprocess.run([program("node", "nodejs"), "--expose-gc", "npm.mjs", "answers.json"], cwd=folder, timeout=300,
+        run = subprocess.run([program("node", "nodejs"), "--expose-gc", "npm.mjs", "answers.json"], cwd=folder, timeout=200,
                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
         print(run.stdout, file=sys.stderr)
         self.assertEqual(run.returncode, 0, run.stdout[-6000:])

@@ -141,7 +141,39 @@ let compiled = null, // WebAssembly.Module
 export const supported =
   typeof WebAssembly === "object" &&
   WebAssembly.validate(
-    Uint8Array.of(0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11),
+    Uint8Array.of(
+      0,
+      97,
+      115,
+      109,
+      1,
+      0,
+      0,
+      0,
+      1,
+      5,
+      1,
+      96,
+      0,
+      1,
+      123,
+      3,
+      2,
+      1,
+      0,
+      10,
+      10,
+      1,
+      8,
+      0,
+      65,
+      0,
+      253,
+      15,
+      253,
+      98,
+      11,
+    ),
   );
 
 export const compiledModule = () => compiled;
@@ -169,7 +201,11 @@ function instance() {
       return 1;
     }
   };
-  const it = { wasm: new WebAssembly.Instance(compiled, { heatdiff: { progress } }).exports, surfaces: 0, text };
+  const it = {
+    wasm: new WebAssembly.Instance(compiled, { heatdiff: { progress } }).exports,
+    surfaces: 0,
+    text,
+  };
   it.wasm._initialize();
   return (home = it);
 }
@@ -300,7 +336,8 @@ function checkMesh(indices, positions, stride) {
     );
   if (positions.length / stride > LARGEST) throw new RangeError("positions has too many vertices");
   if (indices === null) return;
-  if (!isOne(indices, INTEGERS)) throw wrong("indices", indices, "a Uint32Array or Uint16Array, or null for points");
+  if (!isOne(indices, INTEGERS))
+    throw wrong("indices", indices, "a Uint32Array or Uint16Array, or null for points");
   if (indices.length % 3)
     throw new RangeError(`indices has length ${indices.length}, wanted is a multiple of three`);
 }
@@ -323,7 +360,8 @@ export class Surface {
       triangulation = choice("triangulation", o.triangulation, "hd_triangulation"),
       border = choice("border", o.border, "hd_border");
     choice("method", o.method, "hd_method");
-    if (typeof o.memoryLimit !== "number" || !(o.memoryLimit >= 0)) throw wrong("memoryLimit", o.memoryLimit, "bytes");
+    if (typeof o.memoryLimit !== "number" || !(o.memoryLimit >= 0))
+      throw wrong("memoryLimit", o.memoryLimit, "bytes");
     const n = positions.length / stride,
       held = o.held === null ? new Int32Array(0) : vertices("held", o.held, n);
     const it = instance(),
@@ -395,7 +433,8 @@ export class Surface {
         status = call(wasm, p, scope, t, out, more);
       return [
         status,
-        (it) => new Answer(scope.get(Float64Array, out, length * many), length, times, report(it, status), more),
+        (it) =>
+          new Answer(scope.get(Float64Array, out, length * many), length, times, report(it, status), more),
       ];
     });
   }
@@ -415,7 +454,8 @@ export class Surface {
       const word = typeof x === "string" ? /^(\d*\.?\d+(?:e[-+]?\d+)?)(h2)?$/.exec(x) : null;
       const number = word ? Number(word[1]) * (word[2] ? this.h ** 2 : 1) : x;
       if (typeof number !== "number") throw wrong("t", x, 'a number, "10h2", "auto:8", or a list of them');
-      if (!Number.isFinite(number) || number < 0) throw new RangeError(`t is ${x}, wanted is a number from 0 on`);
+      if (!Number.isFinite(number) || number < 0)
+        throw new RangeError(`t is ${x}, wanted is a number from 0 on`);
       return number;
     });
   }
@@ -448,7 +488,9 @@ export class Surface {
       times = this.times(t);
     if (!isOne(field, FLOATS)) throw wrong("field", field, "a Float32Array or Float64Array");
     if (!field.length || field.length % this.n)
-      throw new RangeError(`field has length ${field.length}, wanted is a multiple of the ${this.n} vertices`);
+      throw new RangeError(
+        `field has length ${field.length}, wanted is a multiple of the ${this.n} vertices`,
+      );
     const count = field.length / this.n,
       f = isOne(field, ["Float64Array"]) ? field : Float64Array.from(field);
     return this.#columns(o.progress, this.n, count, times, (wasm, p, scope, at, out) =>
@@ -511,7 +553,16 @@ export class Surface {
     if (times.length > 1) throw new RangeError(`t has ${times.length} times, wanted is one`);
     return this.#columns(o.progress, count, 1, times, (wasm, p, scope, at, out, more) => {
       const list = scope.room(4 * count);
-      const status = wasm.module_sample(p, kind, times[0] || 0, before.length, scope.put(before), count, list, out);
+      const status = wasm.module_sample(
+        p,
+        kind,
+        times[0] || 0,
+        before.length,
+        scope.put(before),
+        count,
+        list,
+        out,
+      );
       more.vertices = scope.get(Int32Array, list, count);
       return status;
     });
@@ -519,7 +570,8 @@ export class Surface {
 
   #timeOf(kind, t) {
     if (kind < 2) return this.times(t);
-    if (t !== undefined && t !== null) throw wrong("t", t, `undefined: ${WORDS.hd_distance_kind[kind]} has no time`);
+    if (t !== undefined && t !== null)
+      throw wrong("t", t, `undefined: ${WORDS.hd_distance_kind[kind]} has no time`);
     return new Float64Array(0);
   }
 
@@ -537,7 +589,12 @@ export class Surface {
         (it) => {
           const all = named(GEODESIC_FACTS, facts(it));
           // The heat method's own error is about an edge length; there is no bound.
-          const r = { ...all, status: it.text(it.wasm.module_status_name(status)), bound: null, error: all.h };
+          const r = {
+            ...all,
+            status: it.text(it.wasm.module_status_name(status)),
+            bound: null,
+            error: all.h,
+          };
           return new Answer(scope.get(Float64Array, out, this.n * columns), this.n, new Float64Array(0), r);
         },
       ];
@@ -558,7 +615,12 @@ export class Surface {
         (it) => {
           const all = named(ESTIMATE_FACTS, facts(it));
           const flags = { fits: all.fits === 1, analysed: all.analysed === 1 };
-          return { ...all, ...flags, method: WORDS.hd_method[all.method], reason: it.text(it.wasm.module_text()) };
+          return {
+            ...all,
+            ...flags,
+            method: WORDS.hd_method[all.method],
+            reason: it.text(it.wasm.module_text()),
+          };
         },
       ];
     });
@@ -569,10 +631,15 @@ export class Surface {
 function vertices(name, x, n) {
   const list = typeof x === "number" ? [x] : x;
   if (!Array.isArray(list) && !isOne(list, INTEGERS)) throw wrong(name, x, "a vertex or a list of vertices");
-  if (!list.length && name !== "held") throw new RangeError(`${name} is empty, wanted is at least one vertex`);
+  if (!list.length && name !== "held")
+    throw new RangeError(`${name} is empty, wanted is at least one vertex`);
   return Int32Array.from(list, (v) => {
     if (typeof v !== "number" || !Number.isInteger(v)) throw wrong(name, v, "an integer");
-    if (v < 0 || v >= n) throw new HeatError("HD_ERR_INDEX", `${name}: there is no such vertex, only 0 to ${n - 1}`, { vertex: Math.abs(v), value: v });
+    if (v < 0 || v >= n)
+      throw new HeatError("HD_ERR_INDEX", `${name}: there is no such vertex, only 0 to ${n - 1}`, {
+        vertex: Math.abs(v),
+        value: v,
+      });
     return v;
   });
 }

@@ -177,7 +177,11 @@ export class Surface {
   /** The component of each vertex; -1 where there is no mass. */
   components(): Int32Array;
   /** Heat from vertices: columns of K_t ("operator", the default) or k_t ("symmetric"). */
-  columns(sources: Vertices, t: Times, options?: { kernel?: Kernel; method?: Method; progress?: Progress | null }): Answer;
+  columns(
+    sources: Vertices,
+    t: Times,
+    options?: { kernel?: Kernel; method?: Method; progress?: Progress | null },
+  ): Answer;
   /** A field of your own after the time t: n numbers, or several times n. */
   apply(field: Floats, t: Times, options?: { method?: Method; progress?: Progress | null }): Answer;
   /** The surface, smoothed: columns of 3 n numbers, x y z of one vertex after another. */
@@ -185,7 +189,11 @@ export class Surface {
   /** The heat kernel signature k_t(x, x), or with "operator" the diagonal of K_t. Default: "auto:16". */
   signature(t?: Times, options?: { kernel?: Kernel; progress?: Progress | null }): SignatureAnswer;
   /** Diffusion distances. "commute" and "biharmonic" have no time: t is undefined. */
-  distance(sources: Vertices, t?: Times | null, options?: { kind?: Distance; progress?: Progress | null }): Answer;
+  distance(
+    sources: Vertices,
+    t?: Times | null,
+    options?: { kind?: Distance; progress?: Progress | null },
+  ): Answer;
   /** Farthest points: `vertices`, each farthest from those before it and those given; `values` are their distances. */
   sample(
     count: number,
@@ -193,7 +201,15 @@ export class Surface {
     options?: { kind?: Distance; given?: Vertices | null; progress?: Progress | null },
   ): SampleAnswer;
   /** Distances along the surface. nearest: one column, to the nearest source. Infinity: no path. */
-  geodesic(sources: Vertices, options?: { nearest?: boolean; progress?: Progress | null }): Answer<GeodesicReport>;
+  geodesic(
+    sources: Vertices,
+    options?: { nearest?: boolean; progress?: Progress | null },
+  ): Answer<GeodesicReport>;
   /** What a query would take. count: fields, columns, sources, points or eigenpairs. */
-  estimate(query: Query, t?: Times | null, count?: number, options?: { method?: Method; progress?: Progress | null }): Estimate;
+  estimate(
+    query: Query,
+    t?: Times | null,
+    count?: number,
+    options?: { method?: Method; progress?: Progress | null },
+  ): Estimate;
 }

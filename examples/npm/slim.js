@@ -18,7 +18,10 @@ async function bytesOf(url) {
 // source: a URL of heatdiff.wasm (text or URL), its bytes, or a WebAssembly.Module; by default the file beside this one.
 export async function init(source = new URL("./heatdiff.wasm", import.meta.url)) {
   const isUrl = typeof source === "string" || source instanceof URL;
-  if (!isUrl && !(source instanceof WebAssembly.Module || source instanceof ArrayBuffer || ArrayBuffer.isView(source)))
+  if (
+    !isUrl &&
+    !(source instanceof WebAssembly.Module || source instanceof ArrayBuffer || ArrayBuffer.isView(source))
+  )
     throw new TypeError("init: wanted is a URL, bytes or a WebAssembly.Module");
   const base = typeof location === "object" ? location.href : import.meta.url;
   await start(isUrl ? await bytesOf(new URL(source, base)) : source);

@@ -26,11 +26,21 @@ function begin([indices, positions, stride, options], wanted) {
   return { n, h, area, info, method };
 }
 
-const listening = (wanted) => (wanted || flag ? { progress: wanted ? tell : () => !Atomics.load(flag, 0) } : {});
+const listening = (wanted) =>
+  wanted || flag ? { progress: wanted ? tell : () => !Atomics.load(flag, 0) } : {};
 
 const QUIET = ["times", "components"]; // without options
 // How many arguments stand before the options.
-const BEFORE = { columns: 2, apply: 2, smooth: 1, signature: 1, distance: 2, sample: 2, geodesic: 1, estimate: 3 };
+const BEFORE = {
+  columns: 2,
+  apply: 2,
+  smooth: 1,
+  signature: 1,
+  distance: 2,
+  sample: 2,
+  geodesic: 1,
+  estimate: 3,
+};
 
 function ask(op, args, wanted) {
   if (QUIET.includes(op)) return surface[op](...args);

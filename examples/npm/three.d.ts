@@ -1,5 +1,15 @@
 import {
-  Answer, Distance, GeodesicReport, Kernel, Method, Progress, SignatureAnswer, Surface, SurfaceInfo, SurfaceOptions, Times,
+  Answer,
+  Distance,
+  GeodesicReport,
+  Kernel,
+  Method,
+  Progress,
+  SignatureAnswer,
+  Surface,
+  SurfaceInfo,
+  SurfaceOptions,
+  Times,
   Vertices,
 } from "./index.js";
 
@@ -34,7 +44,12 @@ export interface Welded {
  * With /worker: Surface.create of what weld returns, then attributeFrom.
  */
 export function weld(geometry: Geometry, tolerance?: number): Welded;
-export function attributeFrom(geometry: Geometry, column: ArrayLike<number>, place: Uint32Array, itemSize?: number): Attribute;
+export function attributeFrom(
+  geometry: Geometry,
+  column: ArrayLike<number>,
+  place: Uint32Array,
+  itemSize?: number,
+): Attribute;
 
 /** A geometry as a surface; vertices are numbered as in the geometry. */
 export class GeometrySurface {
@@ -51,12 +66,22 @@ export class GeometrySurface {
   dispose(): void;
   times(t: Times): Float64Array;
   columns(
-    sources: Vertices, t: Times, options?: { kernel?: Kernel; method?: Method; progress?: Progress | null },
+    sources: Vertices,
+    t: Times,
+    options?: { kernel?: Kernel; method?: Method; progress?: Progress | null },
   ): WithAttributes<Answer>;
   distance(
-    sources: Vertices, t?: Times | null, options?: { kind?: Distance; progress?: Progress | null },
+    sources: Vertices,
+    t?: Times | null,
+    options?: { kind?: Distance; progress?: Progress | null },
   ): WithAttributes<Answer>;
-  geodesic(sources: Vertices, options?: { nearest?: boolean; progress?: Progress | null }): WithAttributes<Answer<GeodesicReport>>;
-  signature(t?: Times, options?: { kernel?: Kernel; progress?: Progress | null }): WithAttributes<SignatureAnswer>;
+  geodesic(
+    sources: Vertices,
+    options?: { nearest?: boolean; progress?: Progress | null },
+  ): WithAttributes<Answer<GeodesicReport>>;
+  signature(
+    t?: Times,
+    options?: { kernel?: Kernel; progress?: Progress | null },
+  ): WithAttributes<SignatureAnswer>;
   smooth(t: Times, options?: { method?: Method; progress?: Progress | null }): WithAttributes<Answer>;
 }

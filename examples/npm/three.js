@@ -14,7 +14,8 @@ function attributeOf(geometry, name, itemSize) {
       `the attribute ${name} is interleaved; make it one of its own first: BufferGeometryUtils.deinterleaveGeometry(geometry)`,
     );
   if (!a.isBufferAttribute) throw new TypeError(`the attribute ${name} is no BufferAttribute`);
-  if (a.itemSize !== itemSize) throw new TypeError(`the attribute ${name} has itemSize ${a.itemSize}, wanted is ${itemSize}`);
+  if (a.itemSize !== itemSize)
+    throw new TypeError(`the attribute ${name} has itemSize ${a.itemSize}, wanted is ${itemSize}`);
   if (a.normalized || !(isArrayOf(a.array, "Float32Array") || isArrayOf(a.array, "Float64Array")))
     throw new TypeError(
       `the attribute ${name} is quantised (${a.array.constructor.name}); make it a Float32Array first, by getX, getY and getZ`,
@@ -28,14 +29,15 @@ function attributeOf(geometry, name, itemSize) {
 // place[v] is the place of vertex v; positions and indices are those of the places.
 export function weld(geometry, tolerance = 0) {
   if (!geometry || !geometry.isBufferGeometry) throw new TypeError("wanted is a BufferGeometry of three.js");
-  if (!(tolerance >= 0 && tolerance < Infinity)) throw new RangeError(`tolerance is ${tolerance}, wanted is a length from 0 on`);
+  if (!(tolerance >= 0 && tolerance < Infinity))
+    throw new RangeError(`tolerance is ${tolerance}, wanted is a length from 0 on`);
   const from = attributeOf(geometry, "position", 3),
     n = from.count,
     xyz = from.array;
   const place = new Uint32Array(n),
     at = new Map(),
     kept = [];
-  const cell = (x) => (tolerance ? Math.round(x / tolerance) : x) + 0; // -0 is 0
+  const cell = (x) => (tolerance ? Math.round(x / tolerance) : x);
   for (let v = 0; v < n; v++) {
     const key = `${cell(xyz[3 * v])},${cell(xyz[3 * v + 1])},${cell(xyz[3 * v + 2])}`;
     let p = at.get(key);
@@ -49,11 +51,15 @@ export function weld(geometry, tolerance = 0) {
   kept.forEach((v, p) => positions.set(xyz.subarray(3 * v, 3 * v + 3), 3 * p));
   const index = geometry.index ? geometry.index.array : null,
     corners = index ? index.length : n;
-  if (corners % 3) throw new RangeError(`the geometry has ${corners} corners, wanted is a multiple of three: triangles`);
+  if (corners % 3)
+    throw new RangeError(`the geometry has ${corners} corners, wanted is a multiple of three: triangles`);
   const indices = new Uint32Array(corners);
   for (let c = 0; c < corners; c++) {
     const v = index ? index[c] : c;
-    if (!(v >= 0 && v < n)) throw new RangeError(`the index names vertex ${v}, but there are only ${n} (face ${Math.floor(c / 3)})`);
+    if (!(v >= 0 && v < n))
+      throw new RangeError(
+        `the index names vertex ${v}, but there are only ${n} (face ${Math.floor(c / 3)})`,
+      );
     indices[c] = place[v];
   }
   const merged = n - kept.length;
@@ -100,7 +106,8 @@ export class GeometrySurface {
         return place[v];
       };
     if (typeof sources === "number") return one(sources);
-    if (!Array.isArray(sources) && !ArrayBuffer.isView(sources)) throw new TypeError("sources: wanted is a vertex or a list of vertices");
+    if (!Array.isArray(sources) && !ArrayBuffer.isView(sources))
+      throw new TypeError("sources: wanted is a vertex or a list of vertices");
     return Array.from(sources, one);
   }
 

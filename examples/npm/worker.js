@@ -44,7 +44,9 @@ async function thread() {
 }
 
 const cancelled = (signal) =>
-  signal.reason instanceof HeatError ? signal.reason : new HeatError("HD_ERR_CANCELLED", "cancelled by its signal");
+  signal.reason instanceof HeatError
+    ? signal.reason
+    : new HeatError("HD_ERR_CANCELLED", "cancelled by its signal");
 
 function unpack(value) {
   if (!value || !value.isAnswer) return value;
@@ -61,7 +63,8 @@ export class Surface {
   #disposed = false;
 
   constructor(key, mesh) {
-    if (key !== Surface.#key) throw new TypeError("await Surface.create(indices, positions, stride, options)");
+    if (key !== Surface.#key)
+      throw new TypeError("await Surface.create(indices, positions, stride, options)");
     this.#mesh = mesh;
   }
   static #key = {};
@@ -185,7 +188,18 @@ export class Surface {
   }
 
   static {
-    for (const op of ["times", "components", "columns", "apply", "smooth", "signature", "distance", "sample", "geodesic", "estimate"])
+    for (const op of [
+      "times",
+      "components",
+      "columns",
+      "apply",
+      "smooth",
+      "signature",
+      "distance",
+      "sample",
+      "geodesic",
+      "estimate",
+    ])
       Surface.prototype[op] = async function (...args) {
         const last = args.at(-1),
           isOptions = Object.prototype.toString.call(last) === "[object Object]";

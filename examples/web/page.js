@@ -26,9 +26,11 @@ const MODES = {
 };
 const ABOUT = {
   kernel: "How much heat is at each place after the time t, if all of it began at one vertex.",
-  distance: "How differently heat spreads from here and from the source. Noise and thin bridges hardly change it.",
+  distance:
+    "How differently heat spreads from here and from the source. Noise and thin bridges hardly change it.",
   geodesic: "The length of the shortest way along the surface to the source.",
-  signature: "How much heat stays where it was put: tips keep it, flat places lose it. Bending hardly changes it.",
+  signature:
+    "How much heat stays where it was put: tips keep it, flat places lose it. Bending hardly changes it.",
   smooth: "The surface itself after the time t. Noise goes first, shapes later.",
 };
 const STAGES = {
@@ -150,7 +152,10 @@ function load(surface, name, again = false) {
 function order(w, surface, whenLoaded = () => {}, whenReady = () => {}) {
   if (!surface) return;
   const copy = surface.data ? { ...surface, data: surface.data.slice(0) } : surface;
-  w.queue.unshift({ ...copy, done: whenLoaded }, { op: "begin", mend: $("mend").checked, limit: state.limit, done: whenReady });
+  w.queue.unshift(
+    { ...copy, done: whenLoaded },
+    { op: "begin", mend: $("mend").checked, limit: state.limit, done: whenReady },
+  );
 }
 
 function loaded(m, name) {
@@ -887,7 +892,8 @@ function ply() {
     for (let c = 0; c < 3; c++, p += 8) body.setFloat64(p, xyz[3 * i + c], true);
     body.setFloat64(p, shown.values[i], true);
     p += 8;
-    for (const c of shown.scale.s[i] < 0 ? [158, 158, 158] : colourOf(shown.scale.s[i])) body.setUint8(p++, c);
+    for (const c of shown.scale.s[i] < 0 ? [158, 158, 158] : colourOf(shown.scale.s[i]))
+      body.setUint8(p++, c);
   }
   for (let k = 0; k < f; k++) {
     body.setUint8(p++, 3);

@@ -89,7 +89,12 @@ function shadowOf(at, tri, height) {
     const [a, b, c] = [3 * tri[f], 3 * tri[f + 1], 3 * tri[f + 2]];
     let size = 0;
     for (let k = 0; k < 3; k++)
-      size = Math.max(size, Math.abs(at[a + k] - at[b + k]), Math.abs(at[b + k] - at[c + k]), Math.abs(at[c + k] - at[a + k]));
+      size = Math.max(
+        size,
+        Math.abs(at[a + k] - at[b + k]),
+        Math.abs(at[b + k] - at[c + k]),
+        Math.abs(at[c + k] - at[a + k]),
+      );
     const n = 1 + Math.floor(size / cell);
     for (let i = 0; i <= n; i++)
       for (let j = 0; j <= n - i; j++) {
@@ -369,7 +374,11 @@ class View {
     const turned = UP[this.up];
     let height = Infinity;
     for (let i = 0; i < 3 * n; i += 3) {
-      const p = turned((xyz[i] - mid[0]) / this.radius, (xyz[i + 1] - mid[1]) / this.radius, (xyz[i + 2] - mid[2]) / this.radius);
+      const p = turned(
+        (xyz[i] - mid[0]) / this.radius,
+        (xyz[i + 1] - mid[1]) / this.radius,
+        (xyz[i + 2] - mid[2]) / this.radius,
+      );
       at.set(p, i);
       if (p[1] < height) height = p[1];
     }

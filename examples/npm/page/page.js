@@ -77,9 +77,16 @@ function show() {
     took = performance.now() - begin;
   geometry.setAttribute("heat", attribute);
   const values = attribute.array.filter(Number.isFinite);
-  range.value.set(values.reduce((a, b) => Math.min(a, b)), values.reduce((a, b) => Math.max(a, b)));
-  const error = report.bound === null ? `about ${report.error.toPrecision(2)}` : `at most ${report.bound.toExponential(0)} of the largest value`;
-  document.getElementById("said").textContent = `${seams}\n${surface.info.n} vertices, ${took.toFixed(0)} ms, error ${error}`;
+  range.value.set(
+    values.reduce((a, b) => Math.min(a, b)),
+    values.reduce((a, b) => Math.max(a, b)),
+  );
+  const error =
+    report.bound === null
+      ? `about ${report.error.toPrecision(2)}`
+      : `at most ${report.bound.toExponential(0)} of the largest value`;
+  document.getElementById("said").textContent =
+    `${seams}\n${surface.info.n} vertices, ${took.toFixed(0)} ms, error ${error}`;
   draw();
 }
 
