@@ -4012,16 +4012,15 @@ static hd_status hdi_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_co
             const double before = same && tv ? a.val[a.nnz - 1] : 0;
             a.nnz += !same;
             a.col[a.nnz - 1] = j;
-            if (tv) a.val[a.nnz - 1] = before + tv[at[p].id];
+            if (!tv) continue;
+            a.val[a.nnz - 1] = before + tv[at[p].id];
+            if (!hdi_finite(a.val[a.nnz - 1]))
+                return hdi_fail_row(s->e, HD_ERR_NOT_FINITE,
+                                    "triplets: the sum of those at one place is not finite", i, j,
+                                    a.val[a.nnz - 1]);
         }
     }
     a.row_ptr[n_rows] = a.nnz;
-    for (i = 0; tv && i < n_rows; i++)
-        for (q = a.row_ptr[i]; q < a.row_ptr[i + 1]; q++)
-            if (!hdi_finite(a.val[q]))
-                return hdi_fail_row(s->e, HD_ERR_NOT_FINITE,
-                                    "triplets: the sum of those at one place is not finite", i, a.col[q],
-                                    a.val[q]);
     hdi_keep(s, a.row_ptr);
     hdi_keep(s, a.col);
     hdi_keep(s, a.val);
@@ -4879,13 +4878,7 @@ typedef struct hdi_tally {
     double length;                      /* of all edges */
 } hdi_tally;
 
-static hdi_tally hdi_tally_none(void) {
-    hdi_tally t;
-    memset(&t, 0, sizeof t);
-    t.refused = -1;
-    t.steepest = -HUGE_VAL;
-    return t;
-}
+static const hdi_tally hdi_tally_none = {{0}, -1, -DBL_MAX, 0};
 
 static void hdi_face_refuse(const hdi_mesh *mesh, int32_t f, hdi_tally *t) {
     if (t->refused < 0 || hdi_face_name(mesh, f) < hdi_face_name(mesh, t->refused)) t->refused = f;
@@ -4894,7 +4887,7 @@ static void hdi_face_refuse(const hdi_mesh *mesh, int32_t f, hdi_tally *t) {
 /* All blocks of n faces or vertices. */
 static hdi_tally hdi_tally_all(const hdi_mesh *mesh, int64_t n) {
     const int64_t size = hdi_block_size(n);
-    hdi_tally all = hdi_tally_none();
+    hdi_tally all = hdi_tally_none;
     int64_t i;
     int k;
     for (i = 0; i * size < n; i++) {
@@ -4940,7 +4933,7 @@ static HDI_INLINE double hdi_face_measure(const hdi_mesh *mesh, int32_t f, hdi_t
 
 static void hdi_measure_task(void *arg, int64_t begin, int64_t end) {
     const hdi_mesh *mesh = (const hdi_mesh *)arg;
-    hdi_tally tally = hdi_tally_none();
+    hdi_tally tally = hdi_tally_none;
     int32_t f;
     for (f = (int32_t)begin; f < end; f++) {
         mesh->area[f] = hdi_face_measure(mesh, f, &tally);
@@ -5774,7 +5767,7 @@ static hd_status hdi_cover_flat(hdi_surface *z, const hdi_cover *c, hd_mesh_repo
     if (3 * m > INT32_MAX)
         return hdi_fail(s->e, HD_ERR_TOO_LARGE, "more than 2^31 face corners in an intrinsic triangulation");
     z->tri = HDI_TAKE(s, int32_t, 3 * m);
-    hdi_mesh_clear(&z->flat, NULL, z->flat.n, z->tri, (int32_t)m);
+    hdi_mesh_clear(&z->flat, NULL, z->mesh.n, z->tri, (int32_t)m);
     z->flat.copies = HDI_TAKE(s, int32_t, m);
     z->parts = z->share * c->n_sheets;
     if (hdi_mesh_take(&z->flat, s) < 0) return s->e->status;
@@ -5790,6 +5783,7 @@ static hd_status hdi_cover_flat(hdi_surface *z, const hdi_cover *c, hd_mesh_repo
         hdi_flat_add(z, v, len, c->area[f], 1, &steepest);
     }
     rep->smallest_intrinsic_angle = hdi_finite(steepest) ? atan2(1, steepest) : 0;
+    hdi_mesh_corners(&z->flat);
     return HD_OK;
 }
 
@@ -6269,7 +6263,7 @@ static int32_t hdi_rows_count(hdi_rows *x, const hdi_ring *r, int32_t v) {
 static void hdi_rows_block(hdi_rows *x, hdi_ring *r, int32_t begin, int32_t end, hdi_tally *t) {
     const hdi_mesh *mesh = &x->mesh;
     int32_t v;
-    *t = hdi_tally_none();
+    *t = hdi_tally_none;
     for (v = begin; v < end; v++) {
         x->border[v] = 0;
         if (!x->entry) {
@@ -6503,21 +6497,15 @@ static hd_status hdi_lap_edges(hd_laplacian *lap, const hdi_mesh *mesh, double *
     return hdi_scope_end(&own);
 }
 
-/* (L, B) of the intrinsic Delaunay triangulation of a soup whose faces are measured, in s. name: the caller's
- * numbers of its vertices, which its triangles come to have, too; NULL: their own. */
-static hd_status hdi_lap_flat(hd_laplacian *lap, hdi_surface *z, const hdi_input *in, const int32_t *name,
-                              hdi_scope *s) {
-    int64_t c;
+/* (L, B) of the intrinsic Delaunay triangulation of a soup whose faces are measured, in s. */
+static hd_status hdi_lap_flat(hd_laplacian *lap, hdi_surface *z, const hdi_input *in, hdi_scope *s) {
     if (hdi_lap_edges(lap, &z->mesh, &z->unit, s->e) < 0) return s->e->status;
     if (lap->mesh.n_faces_used == 0)
-        return hdi_fail(s->e, HD_ERR_EMPTY, name ? "the points' neighbourhoods make no triangle"
-                                                 : "no vertex has mass");
-    z->flat.n = lap->n;
+        return hdi_fail(s->e, HD_ERR_EMPTY, in->points ? "the points' neighbourhoods make no triangle"
+                                                       : "no vertex has mass");
     if (hdi_soup_lengths(z, in->delta, &lap->mesh, s) < 0 ||
         hdi_soup_delaunay(z, in->close, &lap->mesh, s) < 0)
         return s->e->status;
-    for (c = 0; c < hdi_triple(z->flat.m) && name; c++) z->tri[c] = name[z->tri[c]];
-    hdi_mesh_corners(&z->flat);
     lap->area = z->total / z->share;
     if (!(lap->h > 0)) lap->h = z->unit;
     return hdi_lap_mesh(lap, &z->flat, in, s);
@@ -6959,15 +6947,15 @@ static void hdi_cloud_given(const hdi_cloud *cloud, const hdi_input *in, int32_t
     }
 }
 
-/* Points with their neighbours, in s; xyz and name live in keep. places: the k nearest of each, and before
- * them it itself; NULL: all points, with those that the caller gives. */
+/* Points with their neighbours, in s. places: the k nearest of each, and before them it itself; NULL: all
+ * points, with those that the caller gives. */
 static hd_status hdi_cloud_make(hdi_cloud *cloud, const hdi_input *in, const hdi_places *places, int64_t k,
-                                hdi_scope *s, hdi_scope *keep) {
+                                hdi_scope *s) {
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
     const double *xyz = places ? places->xyz : in->mesh.xyz;
     const int32_t n = cloud->n = places ? places->n : in->mesh.n;
-    double *points = HDI_TAKE(keep, double, hdi_triple(n));
-    int32_t *name = HDI_TAKE(keep, int32_t, n), *inverse = HDI_TAKE(&own, int32_t, n), v, n_near = 0;
+    double *points = HDI_TAKE(s, double, hdi_triple(n));
+    int32_t *name = HDI_TAKE(s, int32_t, n), *inverse = HDI_TAKE(&own, int32_t, n), v, n_near = 0;
     hdi_tree tree;
     cloud->xyz = points;
     cloud->name = name;
@@ -7186,7 +7174,7 @@ static hd_status hdi_lap_points(hd_laplacian *lap, const hdi_input *in, hd_error
     hdi_cloud cloud;
     if (!copies || hdi_places_make(&places, xyz, lap->n, &s) < 0) return hdi_scope_end(&s);
     if (places.n < 2) hdi_fail(e, HD_ERR_EMPTY, "points: fewer than two different ones");
-    if (e->status < 0 || hdi_cloud_make(&cloud, in, &places, rep->neighbours, &s, &s) < 0 ||
+    if (e->status < 0 || hdi_cloud_make(&cloud, in, &places, rep->neighbours, &s) < 0 ||
         hdi_cloud_cells(&cloud, &s) < 0) return hdi_scope_end(&s);
     lap->h = cloud.h;
     if (rep->bandwidth2 == 0) rep->bandwidth2 = hdi_cloud_bandwidth(&cloud, (uint64_t *)(void *)work);
@@ -7293,9 +7281,10 @@ static int hdi_star_has(const hdi_cloud *cloud, int32_t a, int32_t b, int32_t c)
     return 0;
 }
 
-/* The different triangles of all stars, each by the first star that has it. tri NULL: they are counted. */
+/* The different triangles of all stars, each by the first star that has it, in the caller's numbers.
+ * tri NULL: they are counted. */
 static int32_t hdi_star_faces(const hdi_cloud *cloud, int32_t *tri, int32_t *copies, int32_t *odd) {
-    int32_t i, k, m = 0;
+    int32_t i, k, q, m = 0;
     for (i = 0; i < cloud->n; i++) {
         const int32_t *star = cloud->nbr + cloud->ptr[i];
         for (k = 0; k < cloud->size[i]; k++) {
@@ -7303,7 +7292,7 @@ static int32_t hdi_star_faces(const hdi_cloud *cloud, int32_t *tri, int32_t *cop
             const int second = hdi_star_has(cloud, v[1], v[2], i), third = hdi_star_has(cloud, v[2], i, v[1]);
             if ((second && v[1] < i) || (third && v[2] < i)) continue;
             if (tri) {
-                memcpy(tri + hdi_triple(m), v, sizeof v);
+                for (q = 0; q < 3; q++) tri[hdi_triple(m) + q] = cloud->name[v[q]];
                 copies[m] = 1 + (second != 0) + (third != 0);
                 odd[m] = (second < 0) + (third < 0);
             }
@@ -7314,7 +7303,8 @@ static int32_t hdi_star_faces(const hdi_cloud *cloud, int32_t *tri, int32_t *cop
 }
 
 /* The stars' triangles as a mesh in s, which is not measured. */
-static hd_status hdi_stars(hdi_mesh *mesh, hdi_cloud *cloud, hd_laplacian *lap, hdi_scope *s) {
+static hd_status hdi_stars(hdi_mesh *mesh, hdi_cloud *cloud, const double *xyz, hd_laplacian *lap,
+                           hdi_scope *s) {
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
     int32_t *tri, i, m;
     int64_t count = 0;
@@ -7329,7 +7319,7 @@ static hd_status hdi_stars(hdi_mesh *mesh, hdi_cloud *cloud, hd_laplacian *lap, 
         hdi_fail(s->e, HD_ERR_TOO_LARGE, "more than 2^31 corners of triangles in the points' stars");
     m = hdi_star_faces(cloud, NULL, NULL, NULL);
     tri = HDI_TAKE(s, int32_t, hdi_triple(m));
-    hdi_mesh_clear(mesh, cloud->xyz, cloud->n, tri, m);
+    hdi_mesh_clear(mesh, xyz, lap->n, tri, m);
     mesh->copies = HDI_TAKE(s, int32_t, m);
     mesh->odd = HDI_TAKE(s, int32_t, m);
     if (s->e->status >= 0) (void)hdi_star_faces(cloud, tri, mesh->copies, mesh->odd);
@@ -7352,40 +7342,33 @@ static hd_status hdi_stars(hdi_mesh *mesh, hdi_cloud *cloud, hd_laplacian *lap, 
  *    spheres, tori, noise and shells 2/3 from the plane is better than projections alone or within 5 %;
  *    1, or heights from the point, are worse on undersampled tori or in noise. Known loss: voronoi-cot,
  *    500 to 1250 random points on a torus, 12 to 36 % more error.)
- * Of several points in one place only the first takes part. xyz and name live in s, nothing else is left of
- * neighbours and stars. */
-static hd_status hdi_star_soup(hdi_surface *z, hdi_cloud *cloud, hd_laplacian *lap, const hdi_input *in,
-                               hdi_scope *s) {
+ * Of several points in one place only the first takes part. Nothing is left of neighbours and stars. */
+static hd_status hdi_star_soup(hdi_surface *z, hd_laplacian *lap, const hdi_input *in, hdi_scope *s) {
     hdi_scope own = hdi_scope_begin(s->ctx, s->e), apart = hdi_scope_begin(s->ctx, s->e);
+    hdi_cloud cloud;
     hdi_places places;
     z->share = 3;
     if (in->nbr_ptr || hdi_places_make(&places, in->mesh.xyz, lap->n, &apart) >= 0)
-        (void)hdi_cloud_make(cloud, in, in->nbr_ptr ? NULL : &places, lap->points.neighbours, &own, s);
-    if (hdi_scope_end(&apart) < 0 || hdi_stars(&z->mesh, cloud, lap, s) < 0 ||
+        (void)hdi_cloud_make(&cloud, in, in->nbr_ptr ? NULL : &places, lap->points.neighbours, &own);
+    if (hdi_scope_end(&apart) < 0 || hdi_stars(&z->mesh, &cloud, in->mesh.xyz, lap, s) < 0 ||
         hdi_progress(s->ctx, "assemble", 0.2, s->e) < 0) return hdi_scope_end(&own);
-    lap->h = cloud->h;
-    lap->points.n_coincident = lap->n - cloud->n;
-    if (hdi_mesh_make(&z->mesh, &lap->mesh, s) < 0) {
-        /* the caller knows no faces */
-        if (s->e->face >= 0) s->e->vertex = cloud->name[z->mesh.tri[3 * s->e->face]];
-        s->e->face = -1;
-    }
+    lap->h = cloud.h;
+    lap->points.n_coincident = lap->n - cloud.n;
+    if (hdi_mesh_make(&z->mesh, &lap->mesh, s) < 0) s->e->face = -1;       /* the caller knows no faces */
     return hdi_scope_end(&own);
 }
 
 /* (L, B) of faces, of intrinsic triangles or of the stars of points; what they are made of, in s, or where it
  * lives for updates. Of a cover each sheet counts half. */
 static hd_status hdi_lap_surface(hd_laplacian *lap, hdi_surface *z, const hdi_input *in, hdi_scope *s) {
-    hdi_cloud cloud;
+    const int stars = HDI_HAS_POINTS && HDI_HAS_INTRINSIC && in->points;
     if (in->updatable) s = hdi_lap_keep(lap, s->e);
     memset(z, 0, sizeof *z);
-    if (HDI_HAS_POINTS && HDI_HAS_INTRINSIC && in->points)
-        return hdi_star_soup(z, &cloud, lap, in, s) < 0 ? s->e->status
-                                                        : hdi_lap_flat(lap, z, in, cloud.name, s);
     z->mesh = in->mesh;
     z->share = 1;
-    if (hdi_mesh_make(&z->mesh, &lap->mesh, s) < 0) return s->e->status;
-    return HDI_HAS_INTRINSIC && in->flips ? hdi_lap_flat(lap, z, in, NULL, s)
+    if ((stars ? hdi_star_soup(z, lap, in, s) : hdi_mesh_make(&z->mesh, &lap->mesh, s)) < 0)
+        return s->e->status;
+    return HDI_HAS_INTRINSIC && in->flips ? hdi_lap_flat(lap, z, in, s)
                                           : hdi_lap_mesh(lap, &z->mesh, in, s);
 }
 
