@@ -2087,9 +2087,8 @@ static hd_status hdi_context_check(const hd_context *ctx, hd_error *e) {
 
 /* By the calling thread only. */
 static hd_status hdi_progress(hd_context *ctx, const char *stage, double done, hd_error *e) {
-    hd_progress answer;
-    if (!ctx->progress) return HD_OK;
-    answer = ctx->progress(ctx->progress_user, stage, done);
+    const hd_progress answer =
+        ctx->progress ? ctx->progress(ctx->progress_user, stage, done) : HD_PROGRESS_CONTINUE;
     if (answer == HD_PROGRESS_CONTINUE) return HD_OK;
     if (answer == HD_PROGRESS_CANCEL)
         return hdi_fail(e, HD_ERR_CANCELLED, "cancelled by the progress callback");
