@@ -145,8 +145,8 @@
      too, and never waits for a thread that has not begun. Results are the same to the last bit for any number
      of threads. If your own threads each have a plan, set hd_context.n_threads = 1 there.
      A forked child may use and free the objects of its parent. Do not fork while another thread is inside
-     the library. With glibc older than 2.34 link with -lpthread. On Windows the implementation includes
-     windows.h.
+     the library. With glibc older than 2.34 link with -lpthread; without it programs run on one thread. On
+     Windows the implementation includes windows.h.
 
    Licence: MIT or public domain, at your choice; see the end of the file. */
 
@@ -2131,6 +2131,15 @@ static void hdi_locks_end(hdi_mutex *m, hdi_signal *c, hdi_signal *d) {
 #define HDI_SIGNALS 0
 #endif
 
+/* Before glibc 2.34 these are in a library of their own. A program linked without it has no threads. */
+#if defined(__GLIBC__) && __GLIBC__ == 2 && __GLIBC_MINOR__ < 34
+#pragma weak pthread_create
+#pragma weak pthread_join
+#pragma weak pthread_attr_setstacksize
+#pragma weak pthread_sigmask
+#define HDI_THREADS_LINKED (pthread_create && pthread_join && pthread_attr_setstacksize)
+#endif
+
 /* The stack of a thread: some systems give as little as 128 KB, musl among them. */
 enum { HDI_STACK = 1 << 20 };
 
@@ -2216,9 +2225,13 @@ static void hdi_thread_join(hdi_thread t) { (void)t; }
 static int32_t hdi_processors(void) { return 1; }
 #endif
 
+#ifndef HDI_THREADS_LINKED
+#define HDI_THREADS_LINKED HDI_THREADS
+#endif
+
 /* Threads that work for the context, the calling one included. */
 static int32_t hdi_context_width(const hd_context *ctx) {
-    if (!HDI_THREADS) return 1;
+    if (!HDI_THREADS_LINKED) return 1;
     return ctx->n_threads > 0 ? ctx->n_threads : hdi_processors();
 }
 
@@ -2426,7 +2439,7 @@ static void hdi_threads_end(hd_context *ctx) {
  * they are the user's. */
 static hd_threads *hdi_threads_own(hd_context *ctx, int64_t n) {
     hd_threads *t = ctx->threads;
-    if (!HDI_THREADS || ctx->parallel_for || n < 2 || ctx->n_threads == 1 || ctx->n_holders == 0)
+    if (!HDI_THREADS_LINKED || ctx->parallel_for || n < 2 || ctx->n_threads == 1 || ctx->n_holders == 0)
         return NULL;
     if (t && t->walk) return NULL;               /* called by a task */
     if (t && (t->process != hdi_process() || t->asked != ctx->n_threads)) {
