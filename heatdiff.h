@@ -6802,7 +6802,8 @@ enum { HDI_ROWS_AHEAD = 8 };     /* rows of a matrix taken in any order are aske
  * length. */
 static double hdi_pair_scale(const hd_laplacian *lap) {
     double largest = 0;
-    int32_t i, exponent;
+    int32_t i;
+    int exponent;
     for (i = 0; i < lap->n_active; i++) largest = hdi_max(largest, lap->b_diag[i]);
     (void)frexp(largest, &exponent);
     return ldexp(1, -2 * (exponent / 2));
@@ -13696,6 +13697,10 @@ typedef struct hdi_extra {
     double *sum;
 } hdi_extra;
 
+/* Inner products of solutions of the last poles, D = diag(B), with q >= p, and p and q each modulo the
+ * number of poles: gram[p][q][0] = x_q^* D x_p,   gram[p][q][1] = x_q' D x_p. */
+typedef hd_c64 hdi_gram[HDI_WARM_POLES][HDI_WARM_POLES][2];
+
 /* What a lane has room for, beside a field and an answer: steps of Lanczos; systems, which run one after the
  * other, and the vectors that they share. */
 typedef struct hdi_lane_room { int64_t n, n_components; int32_t steps, systems, vectors; } hdi_lane_room;
@@ -13708,6 +13713,7 @@ typedef struct hdi_lane {
     double *target, *sums, *spare_sums;  /* [n_components] heat per component, work */
     hd_c64 *b;                   /* begins the systems' arrays */
     hdi_iteration *k;            /* [systems] */
+    hdi_gram *gram;
     hdi_lanczos lanczos;
     int32_t skip;
     int32_t exponent;            /* the field is the caller's times 2^-exponent */
@@ -13748,9 +13754,11 @@ static hdi_lane_room hdi_lane_room_of(const hd_laplacian *lap, const hdi_family 
 }
 
 /* Doubles of the work between solves, which is part of the systems' arrays if there are systems: a
- * right-hand side, vectors, a solution of each, means. The whole of it serves to make preconditioners. */
+ * right-hand side, vectors, a solution of each, means, inner products. The whole of it serves to make
+ * preconditioners. */
 static uint64_t hdi_lane_systems_size(const hdi_lane_room *r) {
-    return (uint64_t)(r->systems ? 2 * ((1 + r->vectors + r->systems) * r->n + r->n_components) : 4 * r->n);
+    const int64_t all = 2 * ((1 + r->vectors + r->systems) * r->n + r->n_components);
+    return (uint64_t)(r->systems ? all + (int64_t)(sizeof(hdi_gram) / sizeof(double)) : 4 * r->n);
 }
 
 /* Doubles of a lane's arrays. */
@@ -13796,7 +13804,9 @@ static hd_status hdi_lane_make(hdi_lane *lane, hdi_lane_room room, hd_context *c
     lane->tmp = lane->spare_sums + room.n_components;
     lane->b = (hd_c64 *)(void *)lane->tmp;
     hdi_lane_lanczos(&lane->lanczos, &room, lane->tmp + hdi_lane_systems_size(&room));
-    if (room.systems) lane->tmp += 6 * room.n;   /* after b and the first two vectors */
+    if (!room.systems) return HD_OK;
+    lane->tmp += 6 * room.n;                     /* after b and the first two vectors */
+    lane->gram = (hdi_gram *)(void *)(lane->lanczos.v - sizeof(hdi_gram) / sizeof(double));
     return HD_OK;
 }
 
@@ -13936,48 +13946,51 @@ static void hdi_lane_sum(hdi_lane *lane, const hdi_family *fam) {
                        k->r_norm, &k->x->re, 2);
 }
 
-/* x^* D y and x' D y for D = diag(B). */
-static void hdi_warm_products(const hd_c64 *HDI_RESTRICT x, const hd_c64 *HDI_RESTRICT y, const double *d,
-                              int32_t n, hd_c64 *out) {
-    double rr = 0, ii = 0, ri = 0, ir = 0;
-    int32_t i;
-    for (i = 0; i < n; i++) {
-        const double yr = d[i] * y[i].re, yi = d[i] * y[i].im;
-        rr += x[i].re * yr;
-        ii += x[i].im * yi;
-        ri += x[i].re * yi;
-        ir += x[i].im * yr;
+/* Those of solution p with those of poles p to last. */
+static void hdi_warm_products(const hdi_lane *lane, const double *d, int32_t p, int32_t last, int32_t n,
+                              hdi_gram gram) {
+    const hd_c64 *HDI_RESTRICT y = lane->k[p].x;
+    int32_t q, i;
+    for (q = p; q <= last && q < p + HDI_WARM_POLES; q++) {
+        const hd_c64 *HDI_RESTRICT x = lane->k[q].x;
+        hd_c64 *out = gram[p % HDI_WARM_POLES][q % HDI_WARM_POLES];
+        double rr = 0, ii = 0, ri = 0, ir = 0;
+        for (i = 0; i < n; i++) {
+            const double yr = d[i] * y[i].re, yi = d[i] * y[i].im;
+            rr += x[i].re * yr;
+            ii += x[i].im * yi;
+            ri += x[i].re * yi;
+            ir += x[i].im * yr;
+        }
+        out[0] = hdi_c(rr + ii, ri - ir);
+        out[1] = hdi_c(rr - ii, ri + ir);
     }
-    out[0] = hdi_c(rr + ii, ri - ir);
-    out[1] = hdi_c(rr - ii, ri + ir);
 }
 
 /* The start of system p, of smallest residual, from the solutions of poles p + 1 to last: H c = 1 (a unit
  * diagonal, plus what rounding eats of it). A point is a pole or its conjugate. */
-static void hdi_warm_start(hdi_lane *lane, const hdi_family *fam, int32_t p, int32_t last) {
+static void hdi_warm_start(hdi_lane *lane, const hdi_family *fam, int32_t p, int32_t last, hdi_gram gram) {
     const int32_t n = fam->lap->n_active;
-    const hdi_iteration *next = lane->k + p + 1;
-    hd_c64 gram[HDI_WARM_POLES][HDI_WARM_POLES][2], shift[HDI_WARM_MAX], sum = hdi_c(0, 0);
-    hd_c64 *HDI_RESTRICT x = lane->k[p].x;
+    hd_c64 shift[HDI_WARM_MAX], sum = hdi_c(0, 0), *HDI_RESTRICT x = lane->k[p].x;
     double A[4 * HDI_WARM_MAX * HDI_WARM_MAX], c[2 * HDI_WARM_MAX] = {0}, unit[HDI_WARM_MAX];
     int32_t m = 0, i, j, pole[HDI_WARM_MAX], conj[HDI_WARM_MAX];
-    for (i = 0; i < last - p; i++) {
-        for (j = 0; j <= i; j++) hdi_warm_products(next[i].x, next[j].x, fam->lap->b_diag, n, gram[i][j]);
-        for (j = 0; j < (next[i].a.theta.im == 0 ? 1 : 2); j++, m++) {
+    for (i = p + 1; i <= last; i++) {
+        for (j = 0; j < (fam->set.theta[i].im == 0 ? 1 : 2); j++, m++) {
             pole[m] = i;
             conj[m] = j;
         }
     }
     for (i = 0; i < m; i++) {
-        const hd_c64 theta = next[pole[i]].a.theta;
+        const hd_c64 theta = fam->set.theta[pole[i]];
+        const int32_t at = pole[i] % HDI_WARM_POLES;
         shift[i] = hdi_csub(fam->set.theta[p], conj[i] ? hdi_cconj(theta) : theta);
-        c[i] = hdi_cabs(shift[i]) * sqrt(gram[pole[i]][pole[i]][0].re);
+        c[i] = hdi_cabs(shift[i]) * sqrt(gram[at][at][0].re);
         c[i] = unit[i] = c[i] > 0 ? 1 / c[i] : 0;
         shift[i] = hdi_cscale(unit[i], shift[i]);
     }
     for (i = 0; i < m; i++) {
         for (j = 0; j <= i; j++) {
-            hd_c64 v = gram[pole[i]][pole[j]][conj[i] != conj[j]];
+            hd_c64 v = gram[pole[j] % HDI_WARM_POLES][pole[i] % HDI_WARM_POLES][conj[i] != conj[j]];
             v = hdi_cmul(hdi_cmul(hdi_cconj(shift[i]), shift[j]), conj[j] ? hdi_cconj(v) : v);
             if (i == j) v = hdi_c(1 + 1e-14, 0);
             A[2 * m * j + i] = A[2 * m * i + j] = v.re;
@@ -13993,7 +14006,7 @@ static void hdi_warm_start(hdi_lane *lane, const hdi_family *fam, int32_t p, int
         sum = hdi_cadd(sum, hdi_c(c[i], c[m + i]));
     }
     for (i = 0; i < m && (sum.re != 0 || sum.im != 0); i++) {
-        const hd_c64 w = hdi_cdiv(hdi_c(c[i], c[m + i]), sum), *HDI_RESTRICT y = next[pole[i]].x;
+        const hd_c64 w = hdi_cdiv(hdi_c(c[i], c[m + i]), sum), *HDI_RESTRICT y = lane->k[pole[i]].x;
         const double sign = conj[i] ? -1 : 1;
         if (!hdi_cfinite(w)) return;
         for (j = 0; j < n; j++) x[j] = hdi_cadd(x[j], hdi_cmul(w, hdi_c(y[j].re, sign * y[j].im)));
@@ -14022,7 +14035,7 @@ static hd_status hdi_lane_run(hdi_lane *lane, const hdi_family *fam, int fresh, 
         const int runs = fresh || k->r_norm > target, warm = fresh && p < last && b_norm > 0;
         if (runs && hdi_family_shares(fam)) hdi_precond_make(&k->m, k->r);
         if (fresh) hdi_iteration_start(k, b_norm);
-        if (warm) hdi_warm_start(lane, fam, p, last);
+        if (warm) hdi_warm_start(lane, fam, p, last, *lane->gram);
         if (runs) hdi_iteration_residual(k, lane->b);
         if (warm && !(k->r_norm < b_norm)) {
             hdi_iteration_start(k, b_norm);
@@ -14037,6 +14050,8 @@ static hd_status hdi_lane_run(hdi_lane *lane, const hdi_family *fam, int fresh, 
         }
         if (status > worst) worst = status;
         left -= weight * hdi_pole_error(k);
+        if (fresh && p > 0)
+            hdi_warm_products(lane, fam->lap->b_diag, p, last, fam->lap->n_active, *lane->gram);
     }
     return worst;
 }
