@@ -447,6 +447,7 @@ static void tpic_test_labels(void) {
         o.view_given = 1;
         o.no_legend = 1;
         o.labels = 4;
+        o.isolines = -1;
         plain = tpic_draw(&all, &p, 1, &o, "labels");
         o.isolines = 7;
         lines = tpic_draw(&all, &p, 1, &o, "labels without lines");
