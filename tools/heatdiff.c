@@ -2724,18 +2724,25 @@ static int dry_run(run *r)
 /* Flops per second of real factorisations, and bytes for each vertex, of a plan for geodesic distances. */
 static const double GEODESIC_RATE = 25e9, GEODESIC_VERTEX = 430;
 
-/* The same of geodesic: two real factors on the pattern of L, or three with the mean border. */
-static int dry_run_geodesic(run *r)
+/* Options of a factor on the pattern of L. */
+static hd_ldl_opts ldl_options(run *r)
 {
-    hd_cost *c = r->estimate.cost;
     hd_ldl_opts opts;
-    hd_ldl_report report;
-    hd_ldl *f = NULL;
-    hd_error err;
     memset(&opts, 0, sizeof opts);
     opts.ordering = (hd_ordering)r->o->ordering;
     opts.xyz = r->lap->xyz;
     opts.context = &r->context;
+    return opts;
+}
+
+/* The same of geodesic: two real factors on the pattern of L, or three with the mean border. */
+static int dry_run_geodesic(run *r)
+{
+    hd_cost *c = r->estimate.cost;
+    const hd_ldl_opts opts = ldl_options(r);
+    hd_ldl_report report;
+    hd_ldl *f = NULL;
+    hd_error err;
     if (hd_ldl_analyse(&f, &r->lap->L, &opts, &report, &err) < 0) return fail_library(r->mesh_name, &err);
     r->estimate.bytes_in_use = (double)r->context.bytes_in_use;
     hd_ldl_free(f);
@@ -4484,13 +4491,9 @@ static hd_status held_solve(run *r, const double *val, double *work, hd_error *e
 {
     const size_t size = 3 * (size_t)r->lap->n_active;
     double *side = work, *y = work + size, *d = y + size;
-    hd_ldl_opts opts;
+    const hd_ldl_opts opts = ldl_options(r);
     hd_ldl *f = NULL;
     size_t i;
-    memset(&opts, 0, sizeof opts);
-    opts.ordering = (hd_ordering)r->o->ordering;
-    opts.xyz = r->lap->xyz;
-    opts.context = &r->context;
     if (hd_ldl_analyse(&f, &r->lap->L, &opts, NULL, err) >= 0 && hd_ldl_factor(f, val, NULL, err) >= 0 &&
         hd_ldl_solve(f, 3, side, 0, y, 0, err) >= 0) {
         held_residual(&r->lap->L, val, y, side);
