@@ -17722,7 +17722,7 @@ struct hd_heat {
     double drift;
     int64_t version;             /* of the Laplacian that all this is made of */
     int64_t *fill;               /* [n_active] work of a renewal, made at the first */
-    double *sums;                /* [2 n_sums] work */
+    hdi_sum *sums;               /* [n_sums] work */
     int32_t n_sums;              /* components that these and the lanes are for */
 };
 
@@ -17831,23 +17831,18 @@ static double hdi_lambda_known(const hd_laplacian *lap) {
 /* Of two bounds that differ by rounding, after an update that changes nothing. */
 #define HDI_LAMBDA_SLACK (1 + 1e-9)
 
-/* |1'L 1| / 1'B1 of the component where it is largest, by sums without rounding to speak of (Neumaier 1974).
- * sum [2 n_components]: work. */
-static double hdi_heat_drift(const hd_laplacian *lap, double *sum) {
-    double *rest = sum + lap->n_components, drift = 0;
+/* |1'L 1| / 1'B1 of the component where it is largest, by sums without rounding to speak of. sum
+ * [n_components]: work. */
+static double hdi_heat_drift(const hd_laplacian *lap, hdi_sum *sum) {
+    double drift = 0;
     int64_t p;
     int32_t i;
-    memset(sum, 0, 2 * (size_t)lap->n_components * sizeof *sum);
-    for (i = 0; i < lap->n_active && lap->conserves; i++) {
-        const int32_t c = lap->component[i];
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
-            const double v = lap->L.val[p], t = sum[c] + v;
-            rest[c] += fabs(sum[c]) >= fabs(v) ? sum[c] - t + v : v - t + sum[c];
-            sum[c] = t;
-        }
-    }
+    memset(sum, 0, (size_t)lap->n_components * sizeof *sum);
+    for (i = 0; i < lap->n_active && lap->conserves; i++)
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
+            hdi_sum_add(sum + lap->component[i], lap->L.val[p]);
     for (i = 0; i < lap->n_components && lap->conserves; i++)
-        drift = hdi_max(drift, fabs(sum[i] + rest[i]) / lap->component_mass[i]);
+        drift = hdi_max(drift, fabs(sum[i].high + sum[i].low) / lap->component_mass[i]);
     return drift;
 }
 
@@ -17866,7 +17861,7 @@ static hd_status hdi_heat_sums(hd_heat *heat, hd_error *e) {
     hdi_heat_free_lanes(heat);
     hdi_free(heat->ctx, heat->sums);
     heat->n_sums = 0;
-    heat->sums = HDI_NEW(heat->ctx, double, 2 * (uint64_t)n, e);
+    heat->sums = HDI_NEW(heat->ctx, hdi_sum, n, e);
     if (heat->sums) heat->n_sums = n;
     return e->status;
 }
@@ -19778,20 +19773,16 @@ static double hdi_modes_gram(const hd_laplacian *lap, const hd_spectrum *s, doub
     return sqrt(sum);
 }
 
-/* B 1 by vertices in two doubles each (Neumaier 1974). */
+/* B 1 by vertices in two doubles each. */
 static void hdi_modes_one(const hd_laplacian *lap, double *one) {
     int32_t i;
     int64_t p;
     memset(one, 0, 2 * (size_t)lap->n * sizeof *one);
     for (i = 0; i < lap->n_active; i++) {
-        double sum = 0, rest = 0;
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1] && lap->B; p++) {
-            const double v = lap->B[p], t = sum + v;
-            rest += fabs(sum) >= fabs(v) ? sum - t + v : v - t + sum;
-            sum = t;
-        }
-        one[lap->vertex[i]] = lap->B ? sum + rest : lap->mass[i];
-        if (lap->B) one[lap->n + lap->vertex[i]] = sum - one[lap->vertex[i]] + rest;
+        hdi_sum sum = {0, 0};
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1] && lap->B; p++) hdi_sum_add(&sum, lap->B[p]);
+        one[lap->vertex[i]] = lap->B ? sum.high + sum.low : lap->mass[i];
+        if (lap->B) one[lap->n + lap->vertex[i]] = sum.high - one[lap->vertex[i]] + sum.low;
     }
 }
 
@@ -21928,17 +21919,17 @@ static double *hdi_metric_sum(const hdi_metric *x, int32_t i, int32_t q, int g) 
 /* The column of a source where only means are left. */
 static void hdi_metric_means(const hdi_metric *x, const hdi_terms *source, double *u) {
     const hd_laplacian *lap = x->h->lap;
-    double *share = x->h->heat->sums;
+    hdi_sum *share = x->h->heat->sums;
     int32_t i, q;
     memset(share, 0, (size_t)lap->n_components * sizeof *share);
     for (q = 0; q < source->n; q++) {
         const int32_t row = lap->row[hdi_terms_at(source, q)];
         if (row < 0) continue;
-        share[lap->component[row]] += hdi_terms_weight(source, q) *
+        share[lap->component[row]].high += hdi_terms_weight(source, q) *
             hdi_by_mass(1 / lap->component_mass[lap->component[row]], lap->mass[row], x->f.mass / 2);
     }
     for (i = 0; i < lap->n_active; i++)
-        u[i] = hdi_by_mass(share[lap->component[i]], lap->mass[i], x->f.mass / 2);
+        u[i] = hdi_by_mass(share[lap->component[i]].high, lap->mass[i], x->f.mass / 2);
 }
 
 /* Makes a sum of K_t e_s, or of k_t, one of f or, with a0 = 0, of the bound g. */
@@ -22457,43 +22448,16 @@ static hd_status hdi_pairs_vertices(hdi_pairs_part *x, hdi_scope *s) {
     return HD_OK;
 }
 
-/* How many of the n pairs, from the first on, have at most so many vertices. mark: by vertex, below stamp. */
-static int64_t hdi_pairs_few(const int32_t *i, const int32_t *j, int64_t n, int64_t most, int64_t stamp,
-                             int64_t *mark) {
-    int64_t q, count = 0;
-    for (q = 0; q < n; q++) {
-        count += (mark[i[q]] != stamp) + (mark[j[q]] != stamp && i[q] != j[q]);
-        if (count > most && q > 0) break;
-        mark[i[q]] = mark[j[q]] = stamp;
-    }
-    return q;
-}
-
-/* |u - v|_B of fields on vertices of any size; v NULL: |u|_B. B scale is near one. work [2 n_active]. */
-static double hdi_vertex_norm(const hd_laplacian *lap, const double *u, const double *v, double *work,
-                              double scale) {
-    double most = 0, unit;
+/* |u - v|_B of fields on vertices, whose squares may leave the range of doubles; v NULL: |u|_B. work
+ * [2 n_active]. */
+static double hdi_vertex_norm(const hd_laplacian *lap, const double *u, const double *v, double *work) {
+    double most, unit;
     int32_t r;
-    for (r = 0; r < lap->n_active; r++) {
-        work[r] = u[lap->vertex[r]] - (v ? v[lap->vertex[r]] : 0);
-        most = hdi_max(most, fabs(work[r]));
-    }
-    if (most == 0) return 0;
+    for (r = 0; r < lap->n_active; r++) work[r] = u[lap->vertex[r]] - (v ? v[lap->vertex[r]] : 0);
+    most = hdi_largest(work, lap->n_active);
     unit = hdi_unit_of(most);
     for (r = 0; r < lap->n_active; r++) work[r] *= unit;
-    if (lap->B) {
-        double sum = 0;
-        int64_t p;
-        for (r = 0; r < lap->n_active; r++) {
-            double s = 0;
-            for (p = lap->L.row_ptr[r]; p < lap->L.row_ptr[r + 1]; p++)
-                s += scale * lap->B[p] * work[lap->L.col[p]];
-            sum += work[r] * s;
-        }
-        return sqrt(hdi_max(0, sum)) / sqrt(scale) / unit;
-    }
-    for (most = 0, r = 0; r < lap->n_active; r++) most += scale * lap->mass[r] * (work[r] * work[r]);
-    return sqrt(most) / sqrt(scale) / unit;
+    return most == 0 ? 0 : sqrt(hdi_max(0, hdi_b_norm2(lap, work, work + lap->n_active))) / unit;
 }
 
 /* Distributes a bound that stands in rounding over all parts, in the ratio of another bound. */
@@ -22530,7 +22494,7 @@ static void hdi_pairs_note(const hd_heat *heat, const hdi_pairs_part *x, hd_repo
         const int32_t i = x->place[2 * q], j = x->place[2 * q + 1];
         x->d[q] = 0;
         if (x->i[q] == x->j[q]) continue;
-        x->d[q] = hdi_vertex_norm(lap, x->U + n * (size_t)i, x->U + n * (size_t)j, x->work, heat->scale);
+        x->d[q] = hdi_vertex_norm(lap, x->U + n * (size_t)i, x->U + n * (size_t)j, x->work);
         part.rounding = hdi_pairs_column_off(lap, x->i[q], x->size[i], rep->error_bound_b) +
                         hdi_pairs_column_off(lap, x->j[q], x->size[j], rep->error_bound_b) +
                         4 * DBL_EPSILON * (x->size[i] + x->size[j]);
@@ -22568,15 +22532,14 @@ static hd_status hdi_pairs_some(hdi_heat_call *h, const hdi_pairs *to, hdi_pairs
     }
     if (hdi_heat_run(&c) < 0) *h->e = rep->error;
     for (q = 0; q < x->n_vertex && h->e->status >= 0; q++)
-        x->size[q] = hdi_vertex_norm(heat->source, x->U + n * (uint64_t)q, NULL, x->work, heat->scale);
+        x->size[q] = hdi_vertex_norm(heat->source, x->U + n * (uint64_t)q, NULL, x->work);
     if (h->e->status >= 0) hdi_pairs_note(heat, x, rep, all);
     return hdi_scope_end(&s);
 }
 
-/* All pairs at the time under way, as many at once as their columns have room for. */
-static hd_status hdi_pairs_columns(const hdi_pairs *to, int32_t degree, int64_t *mark) {
+/* All pairs at the time under way, so many at once. */
+static hd_status hdi_pairs_columns(const hdi_pairs *to, int32_t degree, int64_t most) {
     hdi_heat_call *h = to->task.h;
-    const int64_t room = HDI_PAIRS_DOUBLES / h->heat->source->n;
     hdi_ledger all = hdi_ledger_begin(HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, 1);
     hd_report one, sum;
     hdi_pairs_part x;
@@ -22585,7 +22548,7 @@ static hd_status hdi_pairs_columns(const hdi_pairs *to, int32_t degree, int64_t 
         x.i = to->i + p;
         x.j = to->j + p;
         x.d = to->d + to->n * h->now + p;
-        x.n = mark ? hdi_pairs_few(x.i, x.j, to->n - p, room, to->n * h->now + p + 1, mark) : to->n;
+        x.n = hdi_least(to->n - p, most);
         if (hdi_pairs_some(h, to, &x, degree, &one, &all) < 0) return h->e->status;
         if (p == 0) sum = one;
         else hdi_report_merge(&sum, &one);
@@ -22634,23 +22597,23 @@ static hd_status hdi_pairs_by_poles(hdi_task *task) {
     const hdi_pairs *to = (const hdi_pairs *)task;
     hdi_heat_call *h = task->h;
     hd_heat *heat = h->heat;
-    const int32_t n = heat->source->n;
+    const int64_t room = HDI_PAIRS_DOUBLES / heat->source->n;
     hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
-    int64_t *mark = NULL;
+    hdi_pairs_part all = {to->n, to->i, to->j, NULL, 0, NULL, NULL, NULL, NULL, NULL};
+    int64_t most = to->n;
     int fits = to->kind->time > 0 && !hdi_heat_filtered(heat);
-    if (fits && 2 * to->n > HDI_PAIRS_DOUBLES / n) {
-        mark = HDI_TAKE_ZERO(&s, int64_t, n);
-        if (!mark) return hdi_scope_end(&s);
-        fits = hdi_direct_barred(heat) ||
-               hdi_pairs_few(to->i, to->j, to->n, HDI_PAIRS_DOUBLES / n, INT64_MAX, mark) == to->n;
+    if (fits && 2 * to->n > room && hdi_pairs_vertices(&all, &s) >= 0 && all.n_vertex > room) {
+        fits = hdi_direct_barred(heat);
+        most = hdi_high32(1, (int32_t)(room / 2));
     }
-    if (fits && hdi_pairs_columns(to, 0, mark) >= 0 && h->rep->error_bound > HDI_MODES_HELP &&
+    if (hdi_scope_end(&s) < 0) return h->e->status;
+    if (!fits) return hdi_pairs_one_by_one(to);
+    if (hdi_pairs_columns(to, 0, most) >= 0 && h->rep->error_bound > HDI_MODES_HELP &&
         hdi_degree_open(heat) && h->rep->method == HD_METHOD_DIRECT) {
         hdi_task_at(h, h->now);
-        (void)hdi_pairs_columns(to, HDI_RAT_KERNEL_MAX, mark);
+        (void)hdi_pairs_columns(to, HDI_RAT_KERNEL_MAX, most);
     }
-    if (!fits) (void)hdi_pairs_one_by_one(to);
-    return hdi_scope_end(&s);
+    return h->e->status;
 }
 
 /* Distances of the pairs at the time under way from the eigenpairs that are there. */
