@@ -13717,7 +13717,6 @@ typedef struct hdi_lane {
     hdi_lanczos lanczos;
     int32_t skip;
     int32_t exponent;            /* the field is the caller's times 2^-exponent */
-    double step;                 /* how far apart the smallest doubles are, in the unit of u */
     int32_t dual;                /* what is asked for is B u, which goes to tmp in the end */
     double f_off, rhs_off;       /* what f, and B^-1 times the right-hand side, are off by in the B norm */
     /* outcome, norms absolute */
@@ -15004,7 +15003,6 @@ typedef struct hdi_lanczos_task {
     double t, tol;
     double drift;                        /* change of a constant in unit time */
     int32_t max_iterations;
-    int cut;                             /* t stands for a longer time */
     int rate;                            /* t times the derivative is asked for */
 } hdi_lanczos_task;
 
@@ -15134,9 +15132,6 @@ static hd_status hdi_lanczos_first(const hdi_lanczos_task *task, double f0_norm,
         lane->off.solver = f0_norm * bound;
         /* the coefficients are by poles */
         lane->off.rounding = f0_norm * (hdi_lanczos_rounding(z, t, task->rate) + set.max_error);
-        /* what is left may fade, and never grows; x exp(-x) is below 0.4 */
-        if (task->cut)
-            lane->off.rounding += f0_norm * (sqrt(hdi_dot(z->y, z->y, z->m)) + (task->rate ? 0.4 : 0));
         if (lane->off.solver <= tol * lane->u_norm || z->beta[z->m] == 0) return HD_OK;
         if (bound < best / 2) {
             best = bound;
@@ -17752,32 +17747,19 @@ static hdi_parts hdi_lane_bound(const hd_laplacian *lap, const hdi_lane *lane, c
                  : hdi_parts_scale(by_b, lane->off);
 }
 
-/* A bound on the B norm of any d with |d_v| <= 1, by 2 |B_vw d_v d_w| <= B_vv d_v^2 + B_ww d_w^2. Of a dual
- * lane it is that of the norm of B^-1. */
-static double hdi_lane_spread(const hd_laplacian *lap, int dual) {
-    double sum = 0;
-    int32_t i;
-    for (i = 0; i < lap->n_active; i++)
-        sum += dual ? hdi_inverse_mass(lap, i) : (lap->B ? hdi_row_terms(lap, i) : 1) * lap->b_diag[i];
-    return sqrt(sum);
-}
-
-/* The power of two that brings a number near one. */
-static double hdi_unit_of(double size) {
-    int exponent = 0;
-    (void)frexp(size, &exponent);
-    return ldexp(1, hdi_low32(-exponent, 1023)); /* which is the largest */
-}
+/* What sums lose where they are among the smallest doubles. */
+#define HDI_FAINT (1e-9 * DBL_MIN)
 
 /* Adds the numbers of one field to the report, which keeps the worst. ledger: a new one, or NULL where single
- * values are noted elsewhere. */
+ * values are noted elsewhere. least: HDI_FAINT in the unit of u. */
 static void hdi_heat_judge(const hd_laplacian *lap, const hdi_lane *lane, hdi_ledger *ledger,
-                           const double *reach, int own, int by_value, hd_report *rep) {
+                           const double *reach, int own, int by_value, double least, hd_report *rep) {
     const double *out = hdi_lane_answer(lane);
-    double largest = 0, heat = 0, heat_in = 0, heat_abs = 0;
+    double largest = 0, heat = 0, heat_in = 0, heat_abs = 0, spread = 0;
     int32_t i;
     for (i = 0; i < lap->n_active; i++) {
         largest = hdi_max(largest, fabs(out[i]));
+        spread += lane->dual ? hdi_inverse_mass(lap, i) : lap->b_diag[i];
         if (!hdi_finite(lap->component_mass[lap->component[i]])) continue;
         heat += lap->mass[i] * lane->u[i];
         heat_abs += fabs(lap->mass[i] * lane->u[i]);
@@ -17788,14 +17770,9 @@ static void hdi_heat_judge(const hd_laplacian *lap, const hdi_lane *lane, hdi_le
         double total = hdi_parts_sum(&lane->off);
         hdi_parts off = by_value && !lane->dual ? lane->off_value : hdi_lane_bound(lap, lane, reach);
         /* of the value itself; an adjoint is divided by B and multiplied by it, even at t = 0 */
-        if (lane->dual) off.rounding += 2 * DBL_EPSILON * largest;
-        else if (total > 0) off.rounding += DBL_EPSILON * largest;
-        off.rounding += lane->step;              /* where answers are among the smallest doubles */
-        if (lane->step > DBL_EPSILON * DBL_EPSILON * largest) {
-            const double terms = lane->dual && lap->B ? lap->n_active : 1;   /* B u is a sum */
-            off.rounding += terms * lane->step;
-            total += terms * lane->step * hdi_lane_spread(lap, lane->dual);
-        }
+        if (lane->f_norm > 0 && (total > 0 || lane->dual || by_value))
+            off.rounding += (lane->dual ? 2 : 1) * DBL_EPSILON * largest + least;
+        if (off.rounding > 0) total += least * sqrt(spread);
         hdi_ledger_note(ledger, largest, off);
         hdi_ledger_close(ledger, rep);
         rep->error_bound_b = hdi_max(rep->error_bound_b, hdi_quotient(total, lane->u_norm - total));
@@ -18282,8 +18259,6 @@ typedef struct hdi_heat_call {
     int32_t relative;            /* the report has errors relative to each value too */
     int32_t deflated;            /* direct: right-hand sides are without their constants */
     int32_t watching;            /* direct: the lanes keep the source's own entry, see hdi_lane.watch */
-    /* t = 0 stands for a t so small that K_t f is f to rounding; |K_t - 1| <= this */
-    double still;
     int32_t equal;               /* t is so large that each component has its mean */
     int32_t by_pairs;            /* answers are sums over eigenpairs */
     hdi_extra rows;              /* direct: further sums of every item, one after the other */
@@ -18294,9 +18269,16 @@ typedef struct hdi_heat_call {
     int32_t stop;
 } hdi_heat_call;
 
-/* t for the scaled pair, within the range of doubles: any t as large, or as small, has the same answers. */
+/* t for the scaled pair. It is 0 where t lambda is at most the first number, which is nothing beside one:
+ * |exp(-t lambda) - 1| <= t lambda. By the second one all that moves is gone, unless eigenvalues differ by as
+ * much; its square is a double. */
+#define HDI_STILL 1e-18
+#define HDI_ENDLESS 1e140
+
 static double hdi_heat_scaled(const hd_heat *heat, double t) {
-    return t > 0 ? hdi_max(1e-300, hdi_min(t * heat->scale, 1e300)) : 0;
+    const double most = hdi_min(1e300, hdi_quotient(HDI_ENDLESS, heat->lambda_max));
+    if (!heat->opts.rational && t * heat->scale * heat->lambda_max <= HDI_STILL) return 0;
+    return hdi_min(t * heat->scale, most);
 }
 
 /* What the plan keeps of the pair as a whole. */
@@ -18420,9 +18402,6 @@ static hdi_fill hdi_heat_fill(const hd_heat *heat, const hdi_elim *m) {
     return f;
 }
 
-/* Below this t lambda is nothing beside one, in doubles. */
-#define HDI_STILL 1e-18
-
 /* From this t lambda_max on it is worth while to ask whether only the means are left. exp(-x) is zero in
  * doubles beyond the second number. */
 #define HDI_EQUAL_FROM 1e8
@@ -18515,14 +18494,13 @@ static hdi_terms hdi_heat_source(const hdi_heat_call *h, int32_t q) {
     return hdi_terms_vertex((int32_t)h->ask.list->order[h->ask.list->begin[q]].key);
 }
 
-/* Brings fields near one, by a power of two, where their squares could leave the range of doubles. */
+/* Brings a field near one, by a power of two. */
 static void hdi_lane_unit(const hd_laplacian *lap, hdi_lane *lane) {
     double most = 0;
     int32_t i;
     int exponent = 0;
     for (i = 0; i < lap->n_active; i++) most = hdi_max(most, fabs(lane->f[i]));
     if (most > 0) frexp(most, &exponent);
-    if (exponent > -256 && exponent < 256) return;
     lane->exponent = exponent;
     for (i = 0; i < lap->n_active; i++) lane->f[i] = ldexp(lane->f[i], -exponent);
 }
@@ -18676,19 +18654,11 @@ static double hdi_heat_unit(const hdi_heat_call *h) {
     return h->ask.query == HDI_QUERY_SYMMETRIC && h->lap != h->heat->source ? h->heat->scale : 1;
 }
 
-/* How far apart the smallest doubles are, in the unit of a lane's answers; 0 where these are exact. */
-static double hdi_heat_step(const hdi_heat_call *h, const hdi_lane *lane) {
-    const int given = h->ask.query == HDI_QUERY_FIELD || h->ask.query == HDI_QUERY_OPERATOR;
-    const double least = DBL_MIN * DBL_EPSILON;
-    if (lane->f_norm == 0 || (h->t == 0 && h->still == 0 && given && !h->rate)) return 0;
-    return ldexp(least, hdi_high32(-lane->exponent, 0)) / hdi_heat_unit(h);
-}
-
 /* The entries of item q, from the lane's answer. */
 static void hdi_heat_store_entries(const hdi_heat_call *h, int32_t q, const hdi_lane *lane) {
     const hd_laplacian *lap = h->lap;
     const hdi_entry_list *list = h->ask.list;
-    const double unit = hdi_heat_unit(h), step = unit * lane->step;
+    const double unit = hdi_heat_unit(h);
     double *values = list->values + list->n * h->now;
     int64_t p;
     for (p = list->begin[q]; p < list->begin[q + 1]; p++) {
@@ -18702,7 +18672,7 @@ static void hdi_heat_store_entries(const hdi_heat_call *h, int32_t q, const hdi_
         if (!lane->skip && row >= 0)
             off = hdi_parts_scale(unit * hdi_ratio_root(lap) / sqrt(lap->b_diag[row]), lane->off);
         if (!lane->skip && row >= 0 && h->by_pairs) off = lane->off_value;
-        if (!lane->skip && row >= 0) off.rounding += step;
+        if (h->by_pairs || hdi_parts_sum(&off) > 0) off.rounding += HDI_FAINT;
         hdi_ledger_note(list->ledger + h->now, values[at.id], off);
     }
 }
@@ -18802,18 +18772,12 @@ static hd_status hdi_heat_set(hdi_heat_call *h, hd_rational *set) {
     return hdi_heat_set_of(h, degree, set);
 }
 
-/* t times the largest eigenvalue is at most this in Lanczos: it is squared. By then all that moves is gone,
- * unless eigenvalues differ by as much. */
-#define HDI_LANCZOS_REACH 1e140
-
 static hdi_lanczos_task hdi_heat_lanczos_task(const hd_heat *heat, double t) {
     hdi_lanczos_task task;
-    const double most = heat->lambda_max > 0 ? HDI_LANCZOS_REACH / heat->lambda_max : t;
     task.lap = heat->lap;
     task.weight = heat->weight;
     task.noise = heat->noise;
-    task.t = hdi_min(t, most);
-    task.cut = t > most;
+    task.t = t;
     task.tol = heat->opts.tol;
     task.drift = heat->drift;
     task.rate = 0;
@@ -18879,9 +18843,9 @@ static void hdi_heat_note(hdi_heat_call *h, hdi_ledger ledger, int32_t i, int ow
     const double *reach = solved && m->resolvent && m->resolvent_t == m->t ? m->resolvent : NULL;
     int32_t q;
     ledger.evidence.rounding = lane->rounding;
-    lane->step = hdi_heat_step(h, lane);
     if (lane->dual) hdi_pair_apply(h->lap, 0, 1, lane->u, lane->tmp);
-    hdi_heat_judge(h->lap, lane, h->ask.list ? NULL : &ledger, reach, own, h->by_pairs, h->rep);
+    hdi_heat_judge(h->lap, lane, h->ask.list ? NULL : &ledger, reach, own, h->by_pairs,
+                   ldexp(HDI_FAINT / hdi_heat_unit(h), -lane->exponent), h->rep);
     if (h->ask.list) h->ask.list->ledger[h->now].evidence = ledger.evidence;
     for (q = 0; q < h->n_off; q++)
         h->off[(h->batch + i) * h->n_off + q] = hdi_column_off(h->lap, lane, h->set + q);
@@ -19685,11 +19649,6 @@ static hd_status hdi_heat_pick(hdi_heat_call *h) {
 static hd_status hdi_heat_engine(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     if (hdi_heat_make_lanes(heat, 1, h->e) < 0) return h->e->status;
-    /* |exp(-t lambda) - 1| <= t lambda */
-    if (h->n_times == 1 && !heat->opts.rational && h->t * heat->lambda_max < HDI_STILL) {
-        h->still = h->t * heat->lambda_max;
-        h->t = 0;
-    }
     if (h->t == 0) {                             /* nothing to solve */
         h->method = heat->opts.method;
         if (h->method == HD_METHOD_AUTO)
@@ -19930,17 +19889,14 @@ typedef struct hdi_decay {
     int32_t first;               /* of the pairs that are not constants */
     double *weight, *off;        /* [count] exp(-t (theta_i - low)); bounds on the errors per |c_i| */
     double depth;                /* t low */
-    /* exp(-t low) is their product: as one number it would underflow before answers do */
-    double scale, rest;
+    double root;                 /* exp(-t low / 2): whole it would underflow before answers do */
     double cut, mixed;           /* factors of |Q y|: by what is left out, by residuals */
     double rounding;             /* factor of |y| */
     double t, next;              /* all eigenvalues of the complement of the pairs are at least next */
 } hdi_decay;
 
-#define HDI_DECAY_FIRST 600      /* of t low, in the first factor */
-
 /* exp(-t low) x */
-static double hdi_decayed(const hdi_decay *d, double x) { return x * d->scale * d->rest; }
+static double hdi_decayed(const hdi_decay *d, double x) { return x * d->root * d->root; }
 
 /* work [2 count] */
 static hdi_decay hdi_decay_at(const hdi_modes *of, double t, double *work) {
@@ -19954,8 +19910,7 @@ static hdi_decay hdi_decay_at(const hdi_modes *of, double t, double *work) {
     a.off = work + s->count;
     a.first = s->n_constant;
     a.depth = t * of->low;
-    a.scale = exp(-hdi_min(a.depth, HDI_DECAY_FIRST));
-    a.rest = exp(-hdi_max(0, a.depth - HDI_DECAY_FIRST));
+    a.root = exp(-a.depth / 2);
     for (q = a.first; q < s->count; q++) {
         const double over = hdi_max(0, s->value[q] - of->low);
         a.weight[q] = exp(-t * over);
@@ -20062,7 +20017,6 @@ static void hdi_task_at(hdi_heat_call *h, int32_t q) {
     h->times = &h->t;
     h->n_times = 1;
     h->time_column = NULL;
-    h->still = 0;
     h->equal = 0;
     h->batch = 0;
     h->lap = h->heat->source;
@@ -20301,17 +20255,16 @@ static void hdi_fading_bound(const hdi_heat_call *h, const hdi_decay *x, const h
     const double left = sqrt(hdi_max(0, f2 - (1 - of->off_gram) * c->found) + rounding * f2);
     const double sums = hdi_decayed(x, 2 * hdi_ratio_root(h->lap) * rounding * lane->f_norm + lane->rhs_off);
     const double itself = 8 * (1 + hdi_min(x->depth, HDI_EQUAL_BEYOND)) * DBL_EPSILON;
-    const double least = lane->f_norm > 0 ? 2 * DBL_MIN * DBL_EPSILON : 0;   /* of each value */
     hdi_lane_clear_off(lane);
     lane->u_norm = hdi_decayed(x, sqrt(c->kept));
     lane->off.rational = hdi_decayed(x, x->cut * left);
     lane->off.solver = hdi_decayed(x, c->inner + x->mixed * left);
-    lane->off.rounding = sums + itself * lane->u_norm + least * hdi_lane_spread(h->lap, 0);
+    lane->off.rounding = sums + itself * lane->u_norm;
     lane->off_value.rational = lane->off.rational * most->left;
     lane->off_value.solver = hdi_decayed(x, x->mixed * x->mixed * most->left * left + most->side * left +
                                             (c->side + twice) * most->left +
                                             most->found * (c->inner + twice));
-    lane->off_value.rounding = most->found * (sums + itself * lane->u_norm) + least;
+    lane->off_value.rounding = most->found * (sums + itself * lane->u_norm);
     lane->off_m = lane->off;
     lane->rounding = HD_EVIDENCE_ESTIMATED;
 }
@@ -20451,11 +20404,14 @@ static void hdi_plain_means(const hdi_heat_call *h, hdi_lane *lane) {
     hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, 0, hdi_query_fields(h->ask.query)));
 }
 
+/* What a time that counts as zero does. */
+static double hdi_plain_off(const hdi_heat_call *h) { return h->ask.t[h->now] > 0 ? HDI_STILL : 0; }
+
 /* The field itself. */
 static void hdi_plain_field(const hdi_heat_call *h, hdi_lane *lane) {
     memcpy(lane->u, lane->f, (size_t)h->lap->n_active * sizeof *lane->u);
     lane->u_norm = lane->f_norm;
-    hdi_lane_rounding(lane, h->still * lane->f_norm);
+    hdi_lane_rounding(lane, hdi_plain_off(h) * lane->f_norm);
     if (h->ask.query == HDI_QUERY_SYMMETRIC) hdi_lane_rounding(lane, 2 * DBL_EPSILON * lane->f_norm);
     if (lane->f_off > 0) {
         hdi_lane_rounding(lane, lane->f_off);
@@ -20477,7 +20433,7 @@ static hd_status hdi_plain_rate(const hdi_heat_call *h, hdi_lane *lane) {
     lane->u_norm = sqrt(hdi_max(0, hdi_b_norm2(lap, lane->u, lane->tmp)));
     hdi_lane_rounding(lane, hdi_ratio_root(lap) *
                             (2 * sqrt(sum) + (lap->B ? HDI_MASS_TOL : 4 * DBL_EPSILON) * lane->u_norm) +
-                            h->still * lane->u_norm);
+                            hdi_plain_off(h) * lane->u_norm);
     return HD_OK;
 }
 
@@ -20611,7 +20567,7 @@ static hd_status hdi_heat_sort_times(hdi_heat_call *h, double factor, const char
     hdi_sort_pairs(order, n);
     for (q = 0; q < n; q++) {
         column[q] = (int32_t)order[q].id;
-        sorted[q] = hdi_min(factor * hdi_heat_scaled(h->heat, h->ask.t[column[q]]), 1e300);
+        sorted[q] = factor * hdi_heat_scaled(h->heat, h->ask.t[column[q]]);
     }
     h->times = sorted;
     h->n_times = n;
@@ -20634,7 +20590,7 @@ static hd_status hdi_columns_together(hdi_task *task, char *done, hd_report *one
     int32_t q, first;
     if (!HDI_HAS_DIRECT || hdi_heat_sort_times(h, 1, done) < 0 || h->n_times == 0) return h->e->status;
     first = h->time_column[0];
-    if (h->times[0] * heat->lambda_max < HDI_STILL) return HD_OK;
+    if (h->times[0] == 0) return HD_OK;
     if (hdi_heat_engine(h) >= 0) {
         if (h->method != HD_METHOD_KRYLOV || hdi_heat_equal(heat, h->m, h->t, h->e) || h->e->status < 0)
             return h->e->status;
@@ -21890,8 +21846,7 @@ static hd_status hdi_metric_make(hdi_heat_call *h, const hdi_distance_row *kind,
     hd_heat *heat = h->heat;
     if (hdi_heat_analysed(heat, h->e) < 0 || hdi_metric_take(x, h, kind, 1, s) < 0) return h->e->status;
     if (kind->time > 0) {                        /* d^2 of a filter is the sum of the filter itself */
-        h->t = hdi_heat_filtered(heat) ? 1 : kind->time;
-        h->t = hdi_min(h->t * hdi_heat_scaled(heat, h->ask.t[h->now]), 1e300);
+        h->t = (hdi_heat_filtered(heat) ? 1 : kind->time) * hdi_heat_scaled(heat, h->ask.t[h->now]);
         x->equal = hdi_heat_equal(heat, &heat->elim, h->t, h->e);
     }
     if (kind->power > 0) {
@@ -22172,7 +22127,6 @@ typedef struct hdi_mode_sum {
     int32_t own;                 /* its component, -1: none, or several */
     double share[HDI_MODES_FIRST];   /* what the constant of each component takes of it */
     double left, whole;          /* |Q y| and |y| there, or bounds */
-    double unit;                 /* a power of two that brings entries near one, where they are squared */
     double constant_off;         /* what rounding of the sums over the source makes of the constants' part */
     double at, rest;             /* B 1 there, in two doubles */
     double *d;                   /* [n] */
@@ -22268,7 +22222,7 @@ static void hdi_mode_sum_task(void *arg, int64_t begin, int64_t end) {
     int32_t q;
     for (v = begin; v < end; v++) sum[v] = off[v] = 0;
     for (q = a->decay.first; q < a->of->s.count; q++) {
-        const double *x = a->x + q * n, w = a->unit * a->decay.weight[q], c = a->decay.off[q];
+        const double *x = a->x + q * n, w = a->decay.weight[q], c = a->decay.off[q];
         const double from = hdi_modes_source_value(a, x, plain);
         for (v = begin; v < end; v++) {
             const double z = (plain ? x[v] : by[v] * x[v]) - from;
@@ -22281,7 +22235,7 @@ static void hdi_mode_sum_task(void *arg, int64_t begin, int64_t end) {
         const double left = far_left + sqrt(hdi_modes_left(a, at));
         out[v] = a->decay.cut * left;
         off[v] += a->decay.mixed * left;
-        sum[v] = hdi_pythag(hdi_modes_constant(a, at), hdi_decayed(&a->decay, sqrt(sum[v]) / a->unit));
+        sum[v] = hdi_pythag(hdi_modes_constant(a, at), hdi_decayed(&a->decay, sqrt(sum[v])));
     }
 }
 
@@ -22333,7 +22287,6 @@ static hd_status hdi_mode_sum_make(hdi_mode_sum *a, hdi_heat_call *h, const hdi_
     work = HDI_TAKE(s, double, 2 * ((uint64_t)heat->source->n + count) + 1);
     if (!work) return h->e->status;
     a->x = a->weighted && of->bx ? of->bx : of->s.vector;
-    a->unit = a->weighted ? sqrt(heat->scale) : 1 / sqrt(heat->scale);   /* the scale is a power of four */
     a->decay = hdi_decay_at(of, h->ask.t[h->now], work);
     a->part = work + 2 * count;
     return HD_OK;
@@ -22451,13 +22404,12 @@ static hd_status hdi_pairs_vertices(hdi_pairs_part *x, hdi_scope *s) {
 /* |u - v|_B of fields on vertices, whose squares may leave the range of doubles; v NULL: |u|_B. work
  * [2 n_active]. */
 static double hdi_vertex_norm(const hd_laplacian *lap, const double *u, const double *v, double *work) {
-    double most, unit;
+    double most;
     int32_t r;
     for (r = 0; r < lap->n_active; r++) work[r] = u[lap->vertex[r]] - (v ? v[lap->vertex[r]] : 0);
-    most = hdi_largest(work, lap->n_active);
-    unit = hdi_unit_of(most);
-    for (r = 0; r < lap->n_active; r++) work[r] *= unit;
-    return most == 0 ? 0 : sqrt(hdi_max(0, hdi_b_norm2(lap, work, work + lap->n_active))) / unit;
+    for (r = 0, most = 0; r < lap->n_active; r++) most = hdi_max(most, fabs(work[r]));
+    for (r = 0; r < lap->n_active && most > 0; r++) work[r] /= most;
+    return most * sqrt(hdi_max(0, hdi_b_norm2(lap, work, work + lap->n_active)));
 }
 
 /* Distributes a bound that stands in rounding over all parts, in the ratio of another bound. */
@@ -23154,9 +23106,9 @@ static hd_status hdi_estimate_run(hdi_heat_call *h, const hdi_query_row *query, 
     if (query->distance) hdi_distance_task(&x.task, h, query->distance, hdi_estimate_pairwise(&x) ? 1 : x.k);
     else hdi_fading_task(&x.task, h);
     if (hdi_heat_sort_times(h, x.unit / heat->scale, NULL) < 0) return h->e->status;
-    for (; h->n_times > 1 && h->times[0] * heat->lambda_max < HDI_STILL; h->n_times--) h->times++;
+    for (; h->n_times > 1 && h->times[0] == 0; h->n_times--) h->times++;
     h->t = h->times[h->n_times - 1];
-    if (h->t * heat->lambda_max < HDI_STILL && query->by == HDI_BY_SOLVES) {
+    if (h->t == 0 && query->by == HDI_BY_SOLVES) {
         to->method = heat->opts.method ? heat->opts.method : HD_METHOD_ITERATIVE;
         to->reason = "t = 0";
         to->cost[to->method].possible = 1;
