@@ -192,19 +192,21 @@ static void int_memory(void) {
     }
 }
 
-/* Advice on large blocks begins where pages do, be they of 4, 16 or 64 KB, and stays within the block. */
+/* Advice on large blocks begins where their first pages do, and ends where they end. */
 static void int_large_pages(void) {
-#if HDI_LARGE_PAGES
+#ifdef MADV_HUGEPAGE
+    const size_t page = (size_t)sysconf(_SC_PAGESIZE);
     hd_context ctx;
     hd_error e = int_no_error();
     size_t k;
     memset(&ctx, 0, sizeof ctx);
     for (k = 0; k < 6; k++) {
         const size_t size = ((size_t)5 << 20) + 5000 * k;
-        char *p = (char *)hdi_alloc(&ctx, size, 1, &e);
-        CHECK_MSG((size_t)int_advised_at % 65536 == 0 && int_advised > size - 2 * 65536, "%zu of %zu bytes, %zu past a page",
-                  int_advised, size, (size_t)int_advised_at % 65536);
-        CHECK(p && int_advised_at >= p - HDI_ALIGN - HDI_HEADER && int_advised_at + int_advised <= p + size);
+        char *p = (char *)hdi_alloc(&ctx, size, 1, &e), *first = p - HDI_ALIGN - HDI_HEADER;
+        CHECK_MSG((size_t)int_advised_at % page == 0 && int_advised >= size, "%zu of %zu bytes, %zu past a page",
+                  int_advised, size, (size_t)int_advised_at % page);
+        CHECK(p && int_advised_at > first - page && int_advised_at + int_advised >= p + size &&
+              int_advised_at + int_advised <= p + size + HDI_ALIGN);
         hdi_free(&ctx, p);
     }
 #endif
