@@ -2,17 +2,17 @@
 
    ==== [A] opening ====
 
-   A surface is a pair of sparse matrices (L, B). L is the stiffness matrix, symmetric positive semi-definite.
-   B is the mass matrix, symmetric positive definite. Heat f diffuses as K_t f with the heat kernel matrix
-   K_t = exp(-t B^-1 L). This file builds (L, B) from a mesh or from points, and applies K_t through a
-   rational approximation of the exponential,
+   A surface is a pair of sparse symmetric matrices (L, B): the stiffness matrix L, positive semi-definite,
+   and the mass matrix B, positive definite. Heat f diffuses as K_t f with the kernel K_t = exp(-t B^-1 L).
+   This file builds (L, B) from a mesh or from points, and applies K_t through a rational approximation of the
+   exponential,
 
        K_t f = a0 f - sum_i a_i (t L + theta_i B)^-1 B f,
 
-   which takes a handful of sparse complex-symmetric systems. It needs no eigenvectors and cuts no part of the
-   spectrum off; eigenpairs serve only where t is so large that few are left. Every answer comes with a bound
-   on its error. The method is that of G. Patane and M. Spagnuolo, "Heat diffusion kernel and distance on
-   surface meshes and point sets", Computers & Graphics 37, 2013, called the paper below.
+   which takes a handful of sparse complex-symmetric systems. No part of the spectrum is cut off; eigenpairs
+   serve only where t is so large that few are left. Every answer comes with a bound on its error. The method
+   is that of G. Patane and M. Spagnuolo, "Heat diffusion kernel and distance on surface meshes and point
+   sets", Computers & Graphics 37, 2013, called the paper below.
 
    In one C or C++ file:                             Everywhere else:
 
@@ -30,122 +30,94 @@
        hd_heat_free(heat);  hd_laplacian_free(lap);
 
    Conventions
-     sign     L is positive semi-definite. This is minus the usual cotangent matrix of libigl. The rows of L
-              sum to zero.
-     units    L has no unit. B is an area, and so is t (length squared). k_t = K_t B^-1 is 1/area. If B = I
-              (kind `cot`), t is a pure number.
-     t        lap->h is the mean edge length, and times are usually chosen as t = c h^2. Below t = h^2 heat
+     sign     L is positive semi-definite: minus the usual cotangent matrix of libigl. Its rows sum to zero.
+     units    L has no unit. B is an area, and so is t (length squared). If B = I (kind cot), t is a number.
+     t        Times are usually chosen as t = c h^2, where h = lap->h is the mean edge length. Below h^2 heat
               sees the mesh rather than the surface.
      kernels  K_t is not symmetric: its column i diffuses the indicator of vertex i, whose heat is the mass
-              b_i. k_t = K_t B^-1 is symmetric, the pointwise kernel k_t(x,y): its column i diffuses one unit
-              of heat at vertex i.
+              b_i. The pointwise kernel k_t = K_t B^-1, unit 1/area, is symmetric: its column i diffuses one
+              unit of heat at vertex i.
      border   natural (Neumann): no heat leaves. On request the border, or any vertices, are held at zero
               (Dirichlet), and heat leaves there. Separate components exchange no heat.
-     mass     Vertices without mass (in no face, or only in faces of zero area) are inert: K_t leaves their
-              values as they are. At vertices held at zero K_t f is zero.
-     norm     |f|_B = sqrt(f' B f). Errors are relative in this norm or relative to the largest value; each
-              report field says which.
+     mass     Vertices without mass (in no face, or only in faces of zero area) are inert: their row and
+              column of K_t are those of the identity, those of k_t are zero. Of held vertices both are zero.
+     norm     |f|_B = sqrt(f' B f).
 
    Contents
-     Declarations
-     [A] opening     what the library computes, conventions, options, limits
-     [B] base        version, linkage, status and error, context, sparse matrix
-     [C] options     option structs (zeros are defaults), report structs, the Laplacian
-     [D] functions   by task: matrices, operators, neighbours, pole sets, solvers, heat, geodesic distance
+     [A] opening      this text                            [13] degree      orderings by minimum degree
+     [B] base         status, context, sparse matrix       [14] dissection  nested dissection in space
+     [C] options      options, reports, the Laplacian      [15] analysis    supernodes, fronts, plan of memory
+     [D] functions    by task                              [16] order       choice of an elimination order
+     Implementation: a room calls only rooms above it      [17] direct      multifrontal L D L', solves
+     [00] platform    compilers, the C library, threads    [18] selinv      selected inversion
+     [01] scalar      checked sizes, complex numbers       [19] precond     Jacobi, SSOR, incomplete L D L'
+     [02] error       filling hd_error                     [20] iterative   COCG, CS-MINRES
+     [03] memory      counted blocks, scopes               [21] rational    pole sets: tables, fits, values
+     [04] context     progress, parallel loops             [22] poles       the family t L + theta_i B
+     [05] arrays      prefix sums, sorting, union-find     [23] lanczos     K_t f without poles
+     [06] vectors     products, small dense problems       [24] ground      sources; distances without a time
+     [07] kernels     dense fronts in vector registers     [25] spectrum    the smallest eigenpairs
+     [08] sparse      compressed rows                      [26] plan        hd_heat: method, run, report
+     [09] spatial     k-d tree                             [27] kernel      diagonals and traces
+     [10] geometry    triangles: areas, edges, defects     [28] diffusion   distances, sampling, estimates
+     [11] intrinsic   Delaunay flips, the tufted cover     [29] geodesic    the heat method
+     [12] operators   (L, B) of meshes, points, matrices   [30] api         arguments, public functions
 
-     Implementation, from the bottom up: a room calls only rooms above it in the file
-     [00] platform   compilers, the C library, threads of the system, configuration macros
-     [01] scalar     minima and maxima, checked sizes, complex arithmetic
-     [02] error      filling hd_error
-     [03] memory     counted allocation and scopes that free work arrays
-     [04] context    progress, cancelling, parallel loops
-     [05] arrays     prefix sums, sorting, union-find
-     [06] vectors    dot products and norms, small dense eigenproblems and least squares
-     [07] kernels    dense fronts, real and in lanes of four complex matrices, for each instruction set
-     [08] sparse     compressed rows: build and check
-     [09] spatial    k-d tree: nearest neighbours and radius search
-     [10] geometry   triangles: checks, areas, cotangents, edges, defects
-     [11] intrinsic  intrinsic Delaunay triangulations and the tufted cover
-     [12] operators  the pair (L, B) of triangles, polygons, points and the caller's own matrices
-     [13] degree     orderings by minimum degree
-     [14] dissection nested dissection of meshes in space
-     [15] analysis   elimination tree, supernodes, fronts, tasks, plan of memory
-     [16] order      the choice of an elimination order
-     [17] direct     multifrontal L D L' and triangular solves
-     [18] selinv     selected inversion: entries of the inverse, quadratic forms
-     [19] precond    Jacobi, SSOR and incomplete L D L'
-     [20] iterative  COCG, CS-MINRES
-     [21] rational   pole sets: tables, evaluation, sets shared by many times, fits of filters
-     [22] poles      the family t L + theta_i B: factors or preconditioners, answers, error bounds
-     [23] lanczos    K_t f without poles: Lanczos for the exponential, and shift-and-invert
-     [24] ground     sources; L with one vertex of each component held: distances without a time
-     [25] spectrum   the smallest eigenpairs, counted and complete
-     [26] plan       hd_heat: choice of method, kept factors and bases, the run of a request, its report
-     [27] kernel     diagonals and traces, by selected inversion
-     [28] diffusion  diffusion distances, pairs, sampling; what a query would take
-     [29] geodesic   the heat method
-     [30] api        arguments, lifetimes and bodies of the public functions
-     [31] closing    end of the implementation, licence
-
-   Options (macros)
-     Beside the implementation only:
+   Macros beside the implementation
      HEATDIFF_IMPLEMENTATION   compiles the implementation; define it in one file
      HEATDIFF_ASSERT(x)        your own assert; default: assert() unless NDEBUG
      HEATDIFF_AUDIT            more asserts, which take time; on by itself under the address sanitizer
      HEATDIFF_MALLOC(size), HEATDIFF_FREE(p)
                                used by contexts without an allocator; define both or none
-     HEATDIFF_NO_THREADS       no threads of the library's own. They need POSIX threads or Windows, and
-                               atomic operations of GCC, Clang or MSVC; else it is serial by itself
-     HEATDIFF_FILENAME         "name" of this file, which includes itself for AVX2 and AVX-512. Define it only
-                               if you renamed the file and the compiler has no __FILE_NAME__
-     HEATDIFF_NO_SIMD          plain C only, no kernels for AVX2 and AVX-512, no NEON
-     HEATDIFF_USE_BLAS         dgemm of a BLAS (32-bit integers) for large fronts of real factors, twice as
-                               fast as plain C. Kernels for AVX2 and AVX-512 are faster still, and stay
+     HEATDIFF_FILENAME         "name" of this file, which includes itself. Define it only if you renamed the
+                               file and the compiler has no __FILE_NAME__
+     HEATDIFF_USE_BLAS         dgemm of a BLAS (32-bit integers) for large fronts of real factors, where
+                               neither AVX2 nor AVX-512 serves
+     HEATDIFF_NO_SIMD          plain C: no kernels for AVX2, AVX-512 and NEON
+     HEATDIFF_NO_THREADS       serial. Threads need POSIX threads or Windows, and atomic operations of GCC,
+                               Clang or MSVC; elsewhere this is set by itself
      HEATDIFF_NO_LARGE_PAGES   no madvise for large pages on Linux
-     HEATDIFF_NO_...           leaves out what a program does not use, see the table below
-     Wherever the file is included, the same everywhere:
-     HEATDIFF_STATIC           all functions are static, for a single file that uses them
-     HEATDIFF_API              your own linkage attribute
-     No macro changes a public type or prototype.
 
-   Smaller builds (macros beside the implementation)
-     The linker drops functions that nobody calls (gcc -ffunction-sections -Wl,--gc-sections). These switches
-     also drop code that an option could ask for, which returns HD_ERR_NOT_BUILT then; the error names the
-     switch. HD_METHOD_AUTO chooses among what is there.
+   More macros there, for smaller builds. (The linker drops functions that nobody calls by itself, with gcc
+   -ffunction-sections -Wl,--gc-sections.) What is left out returns HD_ERR_NOT_BUILT, and the error names the
+   macro. HD_METHOD_AUTO chooses among what is there.
      HEATDIFF_NO_DIRECT        all factorisations: hd_ldl_*, method krylov; implies NO_POLE_FACTORS,
-                               NO_GEODESIC, NO_SPECTRUM. For hd_laplacian_matrices b_ratio then comes
-                               from Gershgorin's circles alone
-     HEATDIFF_NO_POLE_FACTORS  factors of complex matrices: method direct, hd_ldl_*_complex; implies
-                               NO_DIAGONAL
+                               NO_GEODESIC, NO_SPECTRUM. hd_laplacian_matrices finds b_ratio by Gershgorin's
+                               circles alone
+     HEATDIFF_NO_POLE_FACTORS  complex factors: method direct, hd_ldl_*_complex; implies NO_DIAGONAL
      HEATDIFF_NO_DIAGONAL      selected inversion: hd_heat_diagonal, hd_ldl_inverse*, diagonal pole sets;
-                               implies NO_DIFFUSION. The error bounds of method direct are larger then, and
-                               times so large that only the means are left take longer
+                               implies NO_DIFFUSION. Method direct then has larger error bounds, and takes
+                               longer at times so large that only the means are left
      HEATDIFF_NO_DIFFUSION     hd_heat_distance, hd_heat_distance_pairs, hd_heat_sample
-     HEATDIFF_NO_SPECTRUM      eigenpairs: hd_spectrum_*. Distances at large t, and all answers where heat
-                               flows out, are less accurate then; their bounds say so
-     HEATDIFF_NO_ITERATIVE     iterations: method iterative, hd_shifted_solve. Your choice of poles then needs
-                               method direct, and factors that do not fit byte_limit are an error
+     HEATDIFF_NO_SPECTRUM      hd_spectrum_*. Distances at large t, and all answers where heat flows out, are
+                               less accurate then; their bounds say so
+     HEATDIFF_NO_ITERATIVE     method iterative, hd_shifted_solve. Your choice of poles then needs method
+                               direct, and factors that do not fit byte_limit are an error
      HEATDIFF_NO_GEODESIC      hd_geodesic_*
      HEATDIFF_NO_INTRINSIC     the triangulations Delaunay and tufted
      HEATDIFF_NO_POINTS        HD_POINTS, hd_neighbours_*
      HEATDIFF_NO_POLYGONS      HD_POLYGONS
 
+   Macros wherever the file is included, the same everywhere
+     HEATDIFF_STATIC           all functions are static, for a single file that uses them
+     HEATDIFF_API              your own linkage attribute
+   No macro changes a public type or prototype.
+
    Limits
      Vertices and faces are counted in 32 bits, non-zeros and offsets in 64. The library prints nothing, opens
-     no file and never exits.
-     Arithmetic must be that of doubles (FLT_EVAL_METHOD 0). With x87 registers (32-bit x86 without -msse2
-     -mfpmath=sse) or -ffast-math neither bits nor bounds near rounding are promised.
+     no file and never exits. Arithmetic must be that of doubles (FLT_EVAL_METHOD 0): with x87 registers
+     (32-bit x86 without -msse2 -mfpmath=sse) or -ffast-math neither bits nor bounds near rounding are
+     promised.
 
    Threads
-     There is no global or thread-local state. An object or a context serves one thread at a time. But plans
-     and hd_spectrum_create only read their Laplacian: threads may share one if every plan and spectrum has a
-     context of its own, by its options.
-     The library's own threads belong to a context. They start with the first long work (20 to 50 microseconds
-     each), sleep between calls, and end with the last object made with the context. The calling thread works
-     too, and never waits for a thread that has not begun. Results are the same to the last bit for any number
-     of threads. If your own threads each have a plan, set hd_context.n_threads = 1 there.
+     There is no global or thread-local state. An object or a context serves one thread at a time. Only a
+     Laplacian may be shared, by threads whose plans (hd_heat) and spectra have a context each in their
+     options: these read it and do not change it.
+     The library's own threads belong to a context. They start with its first long work, sleep between calls,
+     and end with the last object made with it. The calling thread works too. Results are the same to the last
+     bit for any number of threads. If each of your threads has a plan, set hd_context.n_threads = 1.
      A forked child may use and free the objects of its parent. Do not fork while another thread is inside
-     the library. With glibc older than 2.34 link with -lpthread; without it programs run on one thread. On
+     the library. With glibc older than 2.34 link with -lpthread, otherwise programs run on one thread. On
      Windows the implementation includes windows.h.
 
    Licence: MIT or public domain, at your choice; see the end of the file. */
