@@ -869,26 +869,22 @@ HEATDIFF_API hd_sources hd_vertices(int32_t count, const int32_t *vertex);
 
 /* The Laplacian of a mesh.
  * Triangles have the kinds fem (default), voronoi-cot and cot. Polygons, planar and convex or not, also have
- * polygon, their default; for the others every face is split into a fan from its first corner, and out->mesh
- * counts triangles, while errors name the polygon. Points have voronoi-exp (default) and exp; Delaunay and
- * tufted triangulations, of points too, the kinds of triangles. Faces that hd_mesh_report names are left out.
- * Vertices without mass become inert. Non-manifold edges and several components are allowed.
+ * polygon, their default; for other kinds every face is split into a fan from its first corner, and out->mesh
+ * counts triangles, while errors name the polygon. Points have voronoi-exp (default) and exp; when
+ * tufted, the kinds of triangles. Non-manifold edges and several components are allowed.
  * Delaunay, tufted: L and B of an intrinsic triangulation of the same surface on the same vertices. With
  *          voronoi-cot or cot heat then obeys the maximum principle
- * lengths  intrinsic geometry, such as a flat torus. There is no nested dissection, and curves (hd_sources)
- *          need their lengths. At an edge of three faces or more Delaunay and tufted triangulations take the
- *          sheets in the order of the faces
- * polygons the pattern of L contains the diagonals of the faces; triangles have the cotangent L for any
- *          stiffening
+ * lengths  intrinsic geometry, such as a flat torus, without nested dissection. At an edge of three faces or
+ *          more Delaunay and tufted triangulations take the sheets in the order of the faces
+ * polygons the pattern of L contains the diagonals of the faces; on triangles L is the cotangent L
  * points   Let r_k be the distance of the k-th neighbour, and m the mean of pi r_k^2/k, the area of a point.
- *          The default bandwidth2 is s = m (m/h^2)/4, within 0.3 m and 1 m. Weights reach as far as 8.6
- *          sqrt(s), and a row has about 230 s/m non-zeros; weight_cut = 1e-4 halves that and changes the
- *          operator by 0.1 %. To go below an error of 1 to 3 %, let s/m grow as points become denser
- * tufted points have 7 to 13 non-zeros in a row. Their Delaunay stars among their neighbours, in the tangent
- *          planes, form a soup, which out->mesh describes, where each triangle counts a third. Points in no
- *          star are inert, as are searched points at the place of an earlier one. Sheets of a surface two
- *          spacings apart are kept separate (three for random points).
- *          HINT: if you know normals, leave neighbours whose normals point the other way out of nbr
+ *          The default bandwidth2 is s = m (m/h^2)/4, within 0.3 m and 1 m. A row has about 230 s/m
+ *          non-zeros; weight_cut = 1e-4 halves that and changes the operator by 0.1 %. For errors below 1
+ *          to 3 %, let s/m grow as points become denser
+ * tufted points have 7 to 13 non-zeros in a row. Their Delaunay stars in the tangent planes form a soup,
+ *          which out->mesh describes, where each triangle counts a third. Points in no star are inert, as are
+ *          searched points at the place of an earlier one. Sheets two spacings apart are kept separate (three
+ *          for random points); closer ones if nbr leaves out neighbours whose normals point the other way
  * Errors HD_ERR_INDEX (face, value: the id), HD_ERR_NOT_FINITE (vertex, or face of a length),
  *        HD_ERR_STRUCTURE (face: face_ptr descends there), HD_ERR_EMPTY; HD_ERR_ARGUMENT (vertex, value: a
  *        coordinate beyond 1e100, or all within 1e-100 of each other; face, vertex, value: an area that is
@@ -924,15 +920,14 @@ HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L
 HEATDIFF_API hd_status hd_laplacian_apply(const hd_laplacian *lap, double alpha, double beta,
                                           const double *x, double *y, hd_error *err);
 
-/* New positions for the same faces, of a Laplacian with the option updatable. The next query of plans
- * computes with the new values, on the ordering and analysis that it has.
- * mesh   n as before, and positions; its faces are not read
+/* New positions for the same faces, of a Laplacian with the option updatable. Plans on lap keep their
+ * ordering and analysis, and compute with the new values from the next query on; none may be at work
+ * meanwhile. mesh   n as before, and positions; its faces are not read
  * Rows, pattern, held vertices and faces that were left out stay; faces that lose their area are counted and
- * add nothing. All values, components and reports are those of a new Laplacian, to the last bit, in the same
- * arrays.
+ * add nothing. All else is that of a new Laplacian, to the last bit, in the same arrays.
  * Errors as of hd_laplacian_create; HD_ERR_EMPTY (vertex: none of its faces has an area any more). After an
  *        error nothing has changed
- * Cost   one pass over faces and entries. Not while a plan on lap is at work */
+ * Cost   one pass over faces and entries */
 HEATDIFF_API hd_status hd_laplacian_update(hd_laplacian *lap, const hd_mesh *mesh, hd_error *err);
 
 /* The same for hd_laplacian_matrices.
@@ -991,10 +986,8 @@ HEATDIFF_API double hd_rational_eval(const hd_rational *set, double x);
  * filters    [count] count >= 1. Degrees rise until tol is reached, or max_degree, which several filters
  *            ignore: these may have HD_MAX_POLES pairs
  * lambda_max that of the Laplacian, or more; 1/area
- * max_error is the largest |f - c| on 42,000 points: measured. Poles are found for at most 20 filters. A
- * hundred wave filters of usual width over three decades of eigenvalues take 24 to 28 pairs, one 8 to 10.
- * Distances become d^2 = (e_i - e_j)' f(B^-1 L) B^-1 (e_i - e_j), or with B f(B^-1 L). So f is what is summed
- * in d^2, for example exp(-2 t lambda), and should not be negative.
+ * max_error is the largest |f - c| on 42,000 points: measured. Poles are found for at most 20 filters.
+ * In distances f is what is summed in d^2, for example exp(-2 t lambda), and should not be negative.
  * Errors     HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (value: the eigenvalue), HD_ERR_BREAKDOWN (a weight
  *            overflows), all with column: which filter. HD_WARN_ACCURACY: an error is above its tol
  * Cost       2 to 50 milliseconds, and 50 to 200 thousand values of f; a second for 16 filters, three to
@@ -1132,10 +1125,9 @@ HEATDIFF_API void hd_ldl_free(hd_ldl *f);  /* NULL is fine */
 
 typedef struct hd_heat hd_heat;
 
-/* A plan for heat on lap, which must outlive it. Creating it is cheap: whatever a method needs is made at its
- * first use. So the first column, field or diagonal at a time t pays for the factorisation, and further ones
- * at the same t are much faster. The plan keeps the renumbered pair, the analysis, work arrays, and the
- * factors or preconditioners of the last pole set and time. One thread at a time, see Threads above.
+/* A plan for heat on lap, which must outlive it. Creating it is cheap: the first query at a time t pays for
+ * the ordering and factors, or whatever else its method needs. The plan keeps them, the factors or
+ * preconditioners of the last pole set and time only, so that further queries at the same t are much faster.
  * Errors HD_ERR_INDEX (row: perm is not a permutation) */
 HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap,
                                       const hd_heat_opts *opts, hd_error *err);
@@ -1180,16 +1172,16 @@ HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const doubl
                                      const double *F, size_t ldf, double *U, size_t ldu,
                                      hd_report *report, hd_error *err);
 
-/* U = dK_t/dt F = -B^-1 L K_t F at each time; unit 1/area.
+/* U = dK_t/dt F = -B^-1 L K_t F at each time; unit 1/area. With poles, t dK_t/dt takes other weights on the
+ * same poles, by default of degree 14.
  * t      >= 0
- * F, U   as above. The derivative is 0 at vertices without mass and at held ones
+ * F, U   as above. The derivative is 0 at vertices without mass
  * report bounds are relative to the derivative, which fades faster than K_t F: where only means are left it
  *        is 0, and the bound is infinite
- * With poles, t dK_t/dt takes other weights on the same poles, by default of degree 14.
- * HINT: to train t, make the plan with poles = HD_POLES_KERNEL and a degree. Then hd_heat_apply,
- * hd_heat_derivative and hd_heat_adjoint at one t share the factors of the direct method, and the adjoint is
- * that of the very matrix applied, up to rounding. With G the gradient of a loss with respect to U = K_t F,
- * K_t' G is that with respect to F, and the sum of all G_ij (dK_t/dt F)_ij its derivative in t.
+ * HINT: to train t, make the plan with poles = HD_POLES_KERNEL and a degree. Then hd_heat_apply, derivative
+ * and adjoint at one t share the factors of the direct method, and the adjoint is that of the very matrix
+ * applied, up to rounding. If G is the gradient of a loss in U = K_t F, that in F is K_t' G, and the
+ * derivative in t is the sum of all G_ij (dK_t/dt F)_ij.
  * Errors as above; HD_ERR_ARGUMENT with a pole set of your own
  * Cost   as above */
 HEATDIFF_API hd_status hd_heat_derivative(hd_heat *heat, int32_t n_times, const double *t,
@@ -1224,19 +1216,16 @@ HEATDIFF_API hd_status hd_heat_columns(hd_heat *heat, hd_kernel kernel, int32_t 
 HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, hd_kernel kernel, double t, int32_t source,
                                       double *u, hd_report *report, hd_error *err);
 
-/* The diagonal of k_t or K_t at every vertex, and the heat trace. That of k_t is the heat kernel signature
- * (Sun et al. 2009), also called auto-diffusion function (Gebal et al. 2009). They come from selected
- * inversion, without eigenvectors and without columns. Divided by the trace, signatures have the integral 1
- * at each time, so that no time outweighs the others (Sun et al. 2009, section 4).
+/* The diagonal of k_t or K_t at every vertex, and the heat trace, by selected inversion. That of k_t is the
+ * heat kernel signature (Sun et al. 2009), also called auto-diffusion function (Gebal et al. 2009);
+ * divided by the trace it has the integral 1 at each time (Sun et al. 2009, section 4).
  * t      > 0
- * D      n x n_times, column q for t[q], columns ldd apart (0: n); k_t: unit 1/area. A vertex without mass
- *        has 0 (K_t: 1), a held one 0. NULL: not wanted
- * Z      [n_times] tr K_t = sum_i exp(-t lambda_i) over all eigenvalues; no unit. It is the integral of
- *        k_t(x,x). Vertices without mass and held ones do not count. NULL: not wanted
+ * D      n x n_times, column q for t[q], columns ldd apart (0: n). NULL: not wanted
+ * Z      [n_times] tr K_t = sum_i exp(-t lambda_i) over all eigenvalues; no unit. Vertices without mass and
+ *        held ones do not count. NULL: not wanted
  * bound  [n_times] or NULL: bounds on the absolute error of each Z
- * With several filters (hd_heat_set_rational) there is a column, a Z and a bound for each, and n_times is 0.
- * For wave filters D/Z are the wave kernel signatures at all energies. Bounds are looser than those of a
- * filter by itself: with waves over three decades 1e-5 to 1e-3 where errors are below 1e-7.
+ * With several filters (hd_heat_set_rational) there is a column, a Z and a bound for each, and n_times is 0;
+ * bounds are looser than those of a filter by itself. For wave filters D/Z are the wave kernel signatures.
  * report the rational part is proven at every vertex. Rounding is measured by solves whose residuals are
  *        known, at the vertices where it is largest
  * If B is not diagonal, k_t leaves out the term a0 diag(B^-1) of a uniform set. It is as large as the set's
@@ -1251,36 +1240,34 @@ HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t
                                         const double *t, double *D, size_t ldd, double *Z,
                                         double *bound, hd_report *report, hd_error *err);
 
-/* Times that suit the area A of the surface, 1'B1: evenly spaced in log t from 0.0024 A to 0.37 A. At the
- * first about 300 eigenvalues matter, at the last two. With one time it is their geometric mean.
+/* Times that suit the area A of the surface, 1'B1: evenly spaced in log t from 0.0024 A to 0.37 A, where
+ * about 300 and two eigenvalues matter. One time is their geometric mean.
  * t      [n_times] length^2, or the unit that t has for this Laplacian (kind exp: A is the squared area)
- * Source Weyl's law: the k-th eigenvalue is about 4 pi k/A. Times that suit the first eigenvalue are c/value[
- *        n_constant] of hd_spectrum: at c = 1 signatures show tips and branches, at 0.1 details (Gebal et al.
- *        2009) */
+ * Source Weyl's law: the k-th eigenvalue is about 4 pi k/A. Times that suit the first eigenvalue are
+ *        c/value[n_constant] of hd_spectrum: at c = 1 signatures show tips and branches, at 0.1 details
+ *        (Gebal et al. 2009) */
 HEATDIFF_API hd_status hd_times_auto(const hd_laplacian *lap, int32_t n_times, double *t,
                                      hd_error *err);
 
 /* Diffusion distances from each source to every vertex. With the functional c of a source, divided by the sum
- * of its weights, d^2 = (e_v - c)' F (e_v - c), where F is the matrix of the kind: k_2t, B K_2t and so on.
- * This is the distance between what diffuses from v and what diffuses from the source. It is zero only at a
- * vertex that is the source itself.
+ * of its weights, d^2 = (e_v - c)' F (e_v - c), where F is the matrix of the kind: k_2t, B K_2t and so on. It
+ * is zero only at a vertex that is the source itself. Vertices without mass, and held ones, have a zero row.
  * t      > 0. Commute and biharmonic have no time: t is ignored, n_times is 0 or 1. With a filter d^2 is the
  *        sum of the filter itself, see hd_rational_fit
  * D      n x (k n_times), column q n_times + m for source q and time m, columns ldd apart (0: n). Unit:
  *        classical 1/length, weighted length, commute none, biharmonic length
- * sources of positive weight. One that reaches into several components, or contains vertices without mass or
- *        held ones, has infinite commute and biharmonic distances
+ * sources of positive weight
  * report error_bound and error_relative are for the distance d itself. n_lost counts distances with at most
  *        about one sure digit: next to the source, or so small that they underflow. Nothing is ever NaN
- * Vertices without mass, and held ones, are treated as having a zero kernel row. Between components, and to
- * vertices without a row, commute and biharmonic are infinite (HUGE_VAL). On components that lose heat they
- * are those of the inverse of L. With default poles and degree, degree 14 takes over if the error bound
- * relative to the largest distance is, or will be, above 3.5e-7. Many times then share one set of poles.
- * At large t classical and weighted distances are sums over the few eigenpairs left, which the plan keeps: no
- * cancellation, to a part in 1e7 of the largest one, what is left out proven small. Poles serve otherwise,
- * and if pairs exceed the byte limit. `reason` says which. On meshes of more than about 170K vertices
- * (weighted) or 240K (classical) the bound may be above 1e-6 at times between the two.
- * Errors as hd_heat_diagonal and hd_heat_columns
+ * Commute and biharmonic are infinite (HUGE_VAL) between components, to vertices without a row, and from
+ * sources that reach into several components or such vertices. On components that lose heat they are those of
+ * the inverse of L.
+ * With default poles and degree, degree 14 takes over if the bound relative to the largest distance is, or
+ * will be, above 3.5e-7; many times then share one set of poles. At large t classical and weighted distances
+ * are sums over the few eigenpairs left, which the plan keeps: no cancellation, to a part in 1e7 of the
+ * largest one, what is left out proven small. If the pairs exceed the byte limit, poles serve. `reason`
+ * says which. Above about 170K vertices (weighted) or 240K (classical) bounds may exceed 1e-6 at times
+ * between the two. Errors as hd_heat_diagonal and hd_heat_columns
  * Cost   one diagonal at 2t, shared by all sources, and one column for each source. HD_DISTANCE_WEIGHTED with
  *        a full B: the diagonal takes about twice as long. Eigenpairs: as hd_spectrum_create the first time,
  *        later 4 n flops for each. Commute: one real factorisation and its inversion; biharmonic: the same,
@@ -1366,14 +1353,13 @@ HEATDIFF_API hd_status hd_spectrum_distance(const hd_spectrum *s, hd_distance_ki
                                             const hd_sources *sources, double *D, double *bound,
                                             size_t ldd, hd_error *err);
 
-/* What a query would take, without running it: the method, floating-point operations, bytes and seconds, by
- * that method and by the others.
+/* What a query would take by each method, without running it.
  * t        [n_times] as in the query; commute, biharmonic and spectrum: n_times may be 0
  * k        see hd_query
  * estimate if there is not enough memory, cost[HD_METHOD_AUTO].fits is 0. That is no error
  * Bytes of the direct method are sums of the arrays that the query will allocate: an upper bound, by a few
- * percent; where eigenpairs come first it allows for poles instead. Those of the other two methods depend on
- * their steps and are estimates. Output arrays are the caller's and not counted.
+ * percent; where eigenpairs come first it allows for poles instead. For other methods they are estimates.
+ * Output arrays are not counted.
  * Cost     one ordering and analysis, if the query needs them; the plan keeps them for the query. Otherwise
  *          one pass over L */
 HEATDIFF_API hd_status hd_heat_estimate(hd_heat *heat, hd_query query, int32_t n_times,
@@ -1412,17 +1398,17 @@ HEATDIFF_API void hd_geodesic_free(hd_geodesic *g);  /* NULL is fine */
  * D        n x count, columns ldd apart (0: n), in the unit of xyz: |phi - phi_s|, zero at vertices that are
  *          sources, HUGE_VAL in components without one and at vertices without mass. For several points phi_s
  *          is a mean weighted by their heat, which is almost the value of the nearest one
- * The method has an error of the order of h: a few percent on coarse meshes, about one percent on fine ones,
- * most where fronts meet and near a source. d from i to j and d from j to i differ by about that. Where a
- * source is no vertex, D is exact at the corners of its faces.
+ * The error is of the order of h: a few percent on coarse meshes, about one percent on fine ones, most where
+ * fronts meet and near a source; d from i to j and from j to i differ by about that. Where a source is no
+ * vertex, D is exact at the corners of its faces.
  * Errors   those of hd_heat_columns for sources; HD_ERR_ARGUMENT (column, row): a point or a piece is in no
  *          face, or has a corner where heat is held at zero; HD_ERR_BREAKDOWN (rounding left no number).
  *          HD_WARN_ACCURACY, only if a report is given
  * Cost     two solves and two passes over the faces for each source; a third solve with several points in a
  *          component; with a report two more passes. Vertices are solved eight side by side, in a third of
  *          the time. Every 450 edges or so at t = h^2, where heat fades, another solve and three passes
- *          follow (report->n_stages). Calls with vertices alone allocate only if there are more than before
- * Only one thread at a time may use a plan. */
+ *          follow (report->n_stages). Calls with vertices alone allocate only if there are more than
+ *          before */
 HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, const hd_sources *sources, double *D,
                                             size_t ldd, hd_geodesic_report *report, hd_error *err);
 
