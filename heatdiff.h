@@ -273,14 +273,10 @@ typedef struct hd_csr {
  * they tell a cleared struct from an uninitialised one. */
 
 typedef enum hd_laplacian_kind {
-    /* fem for triangles, polygon for polygons, voronoi-exp for points. hd_laplacian.kind tells which. */
-    HD_LAPLACIAN_DEFAULT = 0,
-    /* Cotangent L, linear finite-element B: each triangle adds area/6 on the diagonal, area/12 off it. */
-    HD_LAPLACIAN_FEM,
-    /* Cotangent L, B diagonal: mixed Voronoi areas (Meyer, Desbrun, Schroeder, Barr 2003). */
-    HD_LAPLACIAN_VORONOI_COT,
-    /* Cotangent L, B = I (Pinkall, Polthier 1993). */
-    HD_LAPLACIAN_COT,
+    HD_LAPLACIAN_DEFAULT = 0,   /* triangles: fem, polygons: polygon, points: voronoi-exp */
+    HD_LAPLACIAN_FEM,           /* cotangent L; B: a triangle adds area/6 on, area/12 off the diagonal */
+    HD_LAPLACIAN_VORONOI_COT,   /* cotangent L; B: mixed Voronoi areas (Meyer et al. 2003), diagonal */
+    HD_LAPLACIAN_COT,           /* cotangent L, B = I (Pinkall, Polthier 1993) */
     /* Faces of any number of corners k, planar or not. B is diagonal: each face gives area/k to each of its
      * corners (Alexa, Wardetzky 2011). */
     HD_LAPLACIAN_POLYGON,
@@ -293,7 +289,7 @@ typedef enum hd_laplacian_kind {
     HD_LAPLACIAN_MATRICES       /* the caller's own two matrices */
 } hd_laplacian_kind;
 
-/* Conditions at the border of the surface: the ends of edges with one face. */
+/* The border of the surface: the ends of edges with one face. */
 typedef enum hd_border {
     HD_BORDER_NATURAL = 0,      /* Neumann: no heat leaves */
     HD_BORDER_DIRICHLET         /* all its vertices are held at zero */
@@ -326,22 +322,18 @@ typedef struct hd_laplacian_opts {
     /* Kind polygon: weight of the term for face functions that the gradient cannot see; it stiffens faces of
      * more than three corners. Default 1, at most 1e100. */
     double stiffening;
-    /* Exponential weights: s, a squared length. Default: see hd_laplacian_create. */
-    double bandwidth2;
+    double bandwidth2;          /* s of exponential weights; default: see hd_laplacian_create */
     double weight_cut;          /* exponentials below this are left out, in (0, 1); default 1e-8 */
     /* Delaunay and tufted: all edges are lengthened by one number, so that every triangle inequality has a
      * margin of mollify times the mean edge length. Default 1e-5; at most 1; negative: not at all. */
     double mollify;
-    /* Points: nearest neighbours for the tangent plane and cell or star of a point, 6..128; default 30. */
-    int32_t neighbours;
+    int32_t neighbours;         /* points: nearest ones for the plane and cell or star, 6..128; default 30 */
     /* 1: hd_laplacian_update (triangles and polygons in space, as given) or hd_laplacian_update_matrices may
      * be called. Takes 90 bytes more for each triangle, or 65 for each corner of polygons. */
     int32_t updatable;
-    /* Of the faces used of meshes. Points and matrices do not know their border: use held. */
-    hd_border border;
-    /* [n_held] ids of further vertices that are held at zero, repeated ones do no harm. L and B lose their
-     * rows and columns, so that heat flows out there. */
+    hd_border border;           /* of the faces used of meshes; points and matrices: use held */
     int32_t n_held;
+    /* [n_held] more vertices held at zero; repeated ids do no harm. L and B lose their rows and columns. */
     const int32_t *held;
     int32_t end_zero;
 } hd_laplacian_opts;
@@ -420,8 +412,8 @@ typedef struct hd_point_report {
     int32_t n_border;                /* places whose cell ends at the hull of their neighbours */
     int32_t most_in_row;             /* most non-zeros in a row of L, diagonal included */
     /* Places whose nearest neighbours spread across their plane more than 0.45 times as far as along it: at
-     * creases, rims and tips, in noise, and where two sheets are closer than about 1.5 spacings. Planes are
-     * uncertain there, and heat may cross to the other sheet. */
+     * creases, rims and tips, in noise, and where two sheets are closer than about 1.5 spacings. Heat may
+     * cross to the other sheet there. */
     int32_t n_not_flat;
 } hd_point_report;
 
@@ -473,13 +465,10 @@ typedef struct hd_laplacian {
 
 typedef enum hd_pole_kind {
     HD_POLES_DEFAULT = 0,
-    /* Best uniform (r,r) approximations, r = 1..14: smallest max |exp - c| on (-inf, 0]. */
-    HD_POLES_UNIFORM,
-    /* a0 = 0, c(0) = 1, smallest max (1 + |x|) |exp - c|, r = 2..14: relative to the kernel's own size */
-    HD_POLES_KERNEL,
+    HD_POLES_UNIFORM,           /* r = 1..14: smallest max |exp - c| on (-inf, 0] */
+    HD_POLES_KERNEL,            /* r = 2..14: a0 = 0, c(0) = 1, smallest max (1 + |x|) |exp - c| */
     HD_POLES_OWN,               /* the caller's */
-    /* r = 2..14, for diagonals and distances: the weight rises to five times (1 + |x|) at large |x| */
-    HD_POLES_DIAGONAL
+    HD_POLES_DIAGONAL           /* r = 2..14: the weight rises to five times (1 + |x|) at large |x| */
 } hd_pole_kind;
 
 enum { HD_MAX_POLES = 32 };
@@ -547,7 +536,7 @@ typedef enum hd_method {
     HD_METHOD_AUTO = 0,
     HD_METHOD_ITERATIVE,        /* a Krylov method for each pole, or Lanczos for the exponential */
     HD_METHOD_DIRECT,           /* all poles factorised in one sweep: for many fields or columns */
-    HD_METHOD_KRYLOV            /* shift-and-invert Lanczos: one real factor, for few fields or many times */
+    HD_METHOD_KRYLOV            /* shift-and-invert Lanczos: one real factor, few fields or many times */
 } hd_method;
 
 /* The order in which a factorisation eliminates rows. */
@@ -576,33 +565,29 @@ typedef enum hd_precond {
     HD_PRECOND_MILDL            /* the same, 97 % of dropped fill goes to the diagonal (Gustafsson 1978) */
 } hd_precond;
 
+/* A plan's options. Those of factorisations serve all methods that factorise. */
 typedef struct hd_heat_opts {
     int32_t begin_zero;
     hd_method method;
     hd_solver solver;
     hd_precond precond;
     hd_pole_kind poles;         /* default: kernel for columns and entries, uniform for fields */
-    /* Default: chosen so that the rational error relative to the answer is below about 1e-8 (direct: degree 9
-     * and 3e-8). */
+    /* Default: the rational error relative to the answer is below about 1e-8 (direct: degree 9 and 3e-8). */
     int32_t degree;
-    /* A set of your own, for any filter of the spectrum, such as hd_rational_fit makes. It is copied. poles
-     * and degree are then ignored, and Lanczos is not used. */
+    /* Copied: a set of your own, for any filter of the spectrum, such as hd_rational_fit makes. poles and
+     * degree are then ignored, and Lanczos is not used. */
     const hd_rational *rational;
     double tol;                 /* the solver's part of |error|_B / |answer|_B; default 1e-9 */
     int32_t max_iterations;     /* per system; default 20000 */
-    /* Of the methods that factorise. Auto: few columns by one real factor may take a minimum degree order; a
-     * plan that is also asked for other answers keeps both. */
-    hd_ordering ordering;
+    hd_ordering ordering;       /* auto: a plan may keep a second one, for few columns */
     /* [n] with HD_ORDERING_OWN: perm[k] is the vertex eliminated k-th, those without mass anywhere */
     const int32_t *perm;
     hd_context *context;        /* default: the Laplacian's */
     int32_t end_zero;
 } hd_heat_opts;
 
-typedef enum hd_kernel {
-    HD_KERNEL_OPERATOR = 0,     /* K_t = exp(-t B^-1 L) */
-    HD_KERNEL_SYMMETRIC         /* k_t = K_t B^-1 */
-} hd_kernel;
+/* K_t = exp(-t B^-1 L), and k_t = K_t B^-1. */
+typedef enum hd_kernel { HD_KERNEL_OPERATOR = 0, HD_KERNEL_SYMMETRIC } hd_kernel;
 
 /* Sources, a column of the answer for each. A source is a vertex, or points inside faces, on edges or at
  * vertices, each with a weight, or a curve through points. It is a functional c of fields that are linear on
@@ -699,7 +684,7 @@ typedef struct hd_spectrum_opts {
     double below;               /* > 0: only eigenvalues below this */
     double tol;                 /* of hd_spectrum.residual; default 1e-10 */
     hd_ordering ordering;
-    const int32_t *perm;        /* [n] with HD_ORDERING_OWN: perm[k] is the vertex eliminated k-th */
+    const int32_t *perm;        /* as in hd_heat_opts */
     hd_context *context;        /* default: the Laplacian's */
     int32_t end_zero;
 } hd_spectrum_opts;
@@ -752,7 +737,7 @@ typedef enum hd_query {
     HD_QUERY_SPECTRUM             /* hd_spectrum_create: eigenpairs; the plan's method is ignored */
 } hd_query;
 
-/* What a query takes by one method. */
+/* What a query would take by one method. */
 typedef struct hd_cost {
     int32_t possible;           /* 0: the query or the plan's options rule the method out; the rest is 0 */
     int32_t fits;               /* 1: bytes are not above what the byte limit leaves */
@@ -769,10 +754,8 @@ typedef struct hd_cost {
 typedef struct hd_estimate {
     hd_method method;           /* that would be taken */
     const char *reason;         /* why, in a few words */
-    /* 1: figures of factorisations come from the analysis of the pattern. 0: they are guesses, within a
-     * factor of about three, because iterations cost less or the analysis itself does not fit. */
-    int32_t analysed;
-    hd_cost cost[HD_METHOD_KRYLOV + 1];   /* by hd_method. cost[HD_METHOD_AUTO] is that of method */
+    int32_t analysed;           /* 1: the pattern was analysed. 0: factors are guesses, within about 3 */
+    hd_cost cost[HD_METHOD_KRYLOV + 1];   /* by hd_method; cost[HD_METHOD_AUTO] is that of method */
     double bytes_in_use;        /* by the context, now */
     double bytes_left;          /* of the byte limit; HUGE_VAL without one */
 } hd_estimate;
@@ -795,21 +778,18 @@ typedef enum hd_geodesic_border {
 
 typedef struct hd_geodesic_opts {
     int32_t begin_zero;
-    /* How long heat flows, unit length^2. Larger values give smoother and less accurate distances. Default
-     * h^2, with h the mean edge length. On irregular triangles and points 2 h^2 is often better. */
+    /* How long heat flows, unit length^2; default h^2, with h the mean edge length. Larger values give
+     * smoother and less accurate distances. On irregular triangles and points 2 h^2 is often better. */
     double t;
     hd_geodesic_mass mass;      /* the diagonal of B, which has little influence on the distance */
     hd_ordering ordering;       /* of both factorisations */
     const int32_t *perm;        /* as in hd_heat_opts */
     hd_context *context;
-    /* 1: hd_geodesic_update may be called, for triangles in space. The plan keeps L, and 100 bytes a face. */
-    int32_t updatable;
+    int32_t updatable;          /* 1: hd_geodesic_update of triangles in space; keeps L, 100 bytes a face */
     hd_geodesic_border border;  /* of meshes */
     hd_triangulation triangulation; /* points need tufted; faces with more corners are split */
     double mollify;             /* as in hd_laplacian_opts */
-    /* Polygons: as in hd_laplacian_opts, but by default 1/6: on squares, bilinear finite elements. With 1,
-     * errors of distances are two to four times as large. */
-    double stiffening;
+    double stiffening;          /* of polygons; default 1/6: on squares, bilinear finite elements */
     int32_t neighbours;         /* of points; as in hd_laplacian_opts */
     double t_in_h2;             /* t as a multiple of h^2, where t is 0; default 1 */
     int32_t end_zero;
