@@ -6248,7 +6248,9 @@ static hd_status hdi_rows_begin(hdi_rows *x, const hdi_mesh *mesh, hd_mesh_repor
     int32_t v, repeated;
     memset(x, 0, sizeof *x);
     x->mesh = *mesh;
-    x->strands = hdi_is_serial(s->ctx) ? 1 : (int32_t)hdi_least(HDI_STRANDS, n / hdi_block_size(n) + 1);
+    x->strands = hdi_is_serial(s->ctx) ? 1 : hdi_low32(HDI_STRANDS, n / (int32_t)hdi_block_size(n) + 1);
+    if (!s->ctx->parallel_for)                   /* work arrays are fresh memory, which takes time */
+        x->strands = hdi_low32(x->strands, 2 * hdi_low32(HDI_STRANDS, hdi_context_width(s->ctx)));
     x->most = hdi_rows_room(hdi_fullest(mesh->at, n));
     x->count = HDI_TAKE(s, int32_t, n);
     x->border = HDI_TAKE(s, char, n);
