@@ -17317,13 +17317,60 @@ HEATDIFF_API hd_status hd_spectrum_create(hd_spectrum **out, const hd_laplacian 
 }
 
 /* ---- kernels from eigenpairs ---- */
+/* Let A = B^-1 L, X the vectors found with their values Theta, R = A X - X Theta, and for a field y c = X'B y
+ * and Q y = y - X c. Norms are those of B, and A >= low, where the constants may be left out. Then
+ *     exp(-t A) X - X exp(-t Theta) = - int exp(-(t - s) A) R exp(-s Theta) ds,
+ * and without R the complement of X would be invariant, A >= a = next - |R| there by the count of eigenvalues
+ * (Weyl's inequality). So K_t y is off from X exp(-t Theta) c by no more than exp(-t low) times
+ *     sum_i |r_i| min(t, 1/(theta_i - low)) |c_i| + (exp(-t (a - low)) + m) |Q y|,
+ * m = |R| min(t, 1/(a - low)). Of K_t y the part in the span of X is off by the sum and m |Q y|; the rest
+ * adds to the square of a distance |K_t y|. A single value is an inner product with g = B^-1 e_v, of which
+ * little is in the span of X. On that and its complement A has the blocks A_11, A_22 >= a and |A_21| <= |R|,
+ * and by variation of constants
+ *     |exp(-t A)_21 c| <= exp(-t low) s(c),
+ *         s(c) = sum_i |r_i| exp(-t (theta_i - low)) min(t, 1/(a - theta_i)) |c_i| + m t |R| |c|,
+ *     |exp(-t A)_22| <= exp(-t low) (exp(-t (a - low)) + m^2),
+ *     |exp(-t A)_11 c - exp(-t Theta) c|
+ *         <= exp(-t low) (sum_i |r_i| min(t, 1/(theta_i - low)) |c_i| + m t |R| |c|).
+ * So a value is off by no more than exp(-t low) times
+ *     (exp(-t (a - low)) + m^2) |Q g| |Q f| + s(c_g) |Q f| + s(c) |Q g| + |c_g| (the last sum).
+ * Of vertices sums over |c_i| are taken as |c| times a norm, and |c|^2 = |y|^2 - |Q y|^2. Every term carries
+ * exp(-t low): errors are small beside distances of 1e-200 as well. For A^-1 and A^-2,
+ * A^-1 X - X Theta^-1 = -A^-1 R Theta^-1 and that of their product. */
+
+/* The smallest eigenpairs, and what bounds need of them. Nothing is there while s.value is NULL. */
+typedef struct hdi_modes {
+    hd_spectrum s;               /* in the caller's units; without a shell */
+    double *off;                 /* [count] norms of residuals |B^-1 L x - lambda x|_B with their rounding */
+    double *bx;                  /* [n count] B x for a full B; made when needed, else NULL */
+    double *one;                 /* [2 n] B 1 by vertices, and what rounding left out of it */
+    int32_t first;               /* pairs before it do not count */
+    double low;                  /* eigenvalues are at least this, but for those that do not count */
+    double off_norm;             /* |B^-1 L X - X Lambda| */
+    double off_gram;             /* |X' B X - 1| */
+    int32_t barred;              /* they could not be found; no other try */
+} hdi_modes;
+
+/* Of a field y |Q y|, |X' B y|, |y|, the sum of |r_i| min(t, ..) |c_i|, and s(c); or bounds. */
+typedef struct hdi_share { double left, found, whole, inner, side; } hdi_share;
+
+/* A function of the pairs, exp(-t lambda), 1/lambda or 1/lambda^2, and the factors of its errors. */
+typedef struct hdi_bank {
+    /* [count] exp(-t (theta - low)), and the factors of |c_i| in the two sums */
+    double *weight, *inner_of, *side_of;
+    int32_t first;
+    double depth, root;          /* t low; exp(-t low/2): whole it would underflow before answers do */
+    double cut, mixed, square, twice;    /* exp(-t (a - low)), m, m^2, m t |R| */
+    double inner, side;          /* norms of the factors */
+    double noise, most;          /* of rounding; the largest weight */
+} hdi_bank;
 
 /* Sums over the pairs: kernels or distances of k sources at n_times times, or a diagonal. */
 typedef struct hdi_spec_sums {
-    const hd_spectrum *of;
+    const hdi_modes *of;
     int distance, diagonal;      /* squares of differences, or of entries, instead of products */
     int mass;                    /* of B x instead of x */
-    int times, power;            /* of exp(-times t lambda); or without a time of 1/lambda^power */
+    int power;                   /* 0: of exp(-t lambda); without a time of 1/lambda^power */
     int32_t n_times, k;
     const double *t;
     const hd_sources *sources;   /* [k], not for the diagonal; they become terms */
@@ -17332,55 +17379,114 @@ typedef struct hdi_spec_sums {
     double *out, *bound;         /* column q n_times + m for source q and time m, ld apart; bound or NULL */
     size_t ld;
     /* for one source and time */
-    double *x, *weight;          /* [count] the source in the vectors; the function of eigenvalues */
-    double rest, error;          /* see hdi_spec_filter */
-    double left, whole;          /* of the source, see hdi_spec_size */
-    double *column, *off;
+    hdi_bank bank;
+    double *x;                   /* [count] the source in the vectors */
+    hdi_share from;              /* of the source */
+    double sums_off;             /* rounding of sums over it, relative */
+    double *column, *off;        /* [n] */
+    double *inner;               /* [n] of distances the first sum of errors, or NULL */
 } hdi_spec_sums;
 
-/* weight: exp(-t lambda), 1/lambda or 1/lambda^2, the last two for values that are not of constants. rest: it
- * is no larger for those left out. error: what the residuals and rounding can do to a sum over the pairs with
- * entries of norm one. With S = B^-1 L, S X = X Theta + R the error of exp is the integral of exp(-(t - s) S)
- * R exp(-s Theta), at most |r_i| min(t, 1/theta_i) for each pair; of the others it is S^-1 R Theta^-1, and
- * that of their product. */
-static void hdi_spec_filter(hdi_spec_sums *a, double t) {
-    const hd_spectrum *s = a->of;
+/* exp(-t low) x */
+static double hdi_decayed(const hdi_bank *b, double x) { return x * b->root * b->root; }
+
+/* The integral of exp(-s gap) up to t is at most this. */
+static double hdi_time_within(double t, double gap) { return gap > 0 ? hdi_min(t, 1 / gap) : t; }
+
+static hdi_bank hdi_bank_at(const hdi_modes *of, double t, double *weight) {
+    const hd_spectrum *s = &of->s;
+    const double next = s->next < HUGE_VAL ? hdi_max(0, s->next - of->off_norm) : HUGE_VAL;
+    const double gap = hdi_max(0, next - of->low);
+    hdi_bank a;
+    int32_t q;
+    memset(&a, 0, sizeof a);
+    a.weight = weight;
+    a.inner_of = weight + s->count;
+    a.side_of = a.inner_of + s->count;
+    a.first = of->first;
+    a.mixed = hdi_bound_times(of->off_norm, hdi_time_within(t, gap));
+    a.square = a.mixed * a.mixed;
+    a.twice = hdi_bound_times(a.mixed, hdi_bound_times(of->off_norm, t));
+    for (q = a.first; q < s->count; q++) {
+        const double over = hdi_max(0, s->value[q] - of->low);
+        weight[q] = exp(-hdi_bound_times(t, over));
+        a.inner_of[q] = hdi_bound_times(of->off[q], hdi_time_within(t, over));
+        a.side_of[q] = hdi_bound_times(weight[q] * of->off[q], hdi_time_within(t, next - s->value[q]));
+        a.inner = hdi_pythag(a.inner, a.inner_of[q]);
+        a.side = hdi_pythag(a.side, a.side_of[q]);
+    }
+    a.depth = hdi_bound_times(t, of->low);
+    a.root = exp(-a.depth / 2);
+    a.cut = exp(-hdi_bound_times(t, gap));
+    a.noise = of->off_gram + (HDI_NOISE_TERMS + s->count) * DBL_EPSILON;
+    a.most = 1;
+    return a;
+}
+
+/* The same of 1/lambda^power, for values that are not of constants. */
+static hdi_bank hdi_bank_inverse(const hdi_modes *of, int power, double *weight) {
+    const hd_spectrum *s = &of->s;
     const int32_t first = hdi_low32(s->n_constant, s->count);
     const double low = first < s->count ? s->value[first] : s->next, next = hdi_max(s->next, 0);
-    double sum = 0, most = 0;
-    int32_t i;
-    a->rest = a->power == 0 ? exp(-hdi_bound_times(t, next))
-              : next > 0 ? 1 / (a->power == 1 ? next : next * next) : HUGE_VAL;
-    for (i = 0; i < s->count; i++) {
-        const double x = s->value[i], inverse = a->power && i >= first && x > 0 ? 1 / x : 0;
-        double by;
-        if (a->power == 0) {
-            a->weight[i] = exp(-hdi_bound_times(t, hdi_max(x, 0)));
-            by = x > 0 ? hdi_min(t, 1 / x) : t;
-        } else {
-            a->weight[i] = a->power == 1 ? inverse : inverse * inverse;
-            by = inverse == 0 ? 0 : (a->power == 1 ? 1 : 1 / x + 1 / low) / low / x;
-        }
-        by = hdi_bound_times(by, hdi_bound_times(s->residual[i], hdi_max(x, low)));
-        sum = hypot(sum, a->power && i >= first && x <= 0 ? HUGE_VAL : by);   /* 1/x is not known at all */
-        most = hdi_max(most, a->weight[i]);
+    hdi_bank a = hdi_bank_at(of, 0, weight);
+    int32_t q;
+    a.first = first;
+    a.cut = next > 0 ? 1 / (power == 1 ? next : next * next) : HUGE_VAL;
+    for (q = first, a.inner = a.most = 0; q < s->count; q++) {
+        const double x = s->value[q], inverse = x > 0 ? 1 / x : 0;
+        const double by = inverse == 0 ? HUGE_VAL : (power == 1 ? 1 : 1 / x + 1 / low) / low / x;
+        weight[q] = power == 1 ? inverse : inverse * inverse;
+        a.inner_of[q] = a.side_of[q] = inverse == 0 ? by : hdi_bound_times(by, of->off[q]);
+        a.inner = hdi_pythag(a.inner, a.inner_of[q]);
+        a.most = hdi_max(a.most, weight[q]);
     }
-    a->error = hdi_bound_times(2 * hdi_ratio_root(s->lap), sum) +
-               4 * (HDI_NOISE_TERMS + s->count) * DBL_EPSILON * most;
+    a.mixed = a.square = a.side = a.inner;
+    return a;
 }
 
-/* Square roots of what the pairs leave out of the diagonal of B^-1 at a row, or with mass of B, and of all of
- * it. */
-static void hdi_spec_size(const hd_spectrum *s, int32_t row, int mass, double *left, double *whole) {
-    const int32_t v = s->lap->vertex[row];
-    *left = sqrt(mass ? s->left_mass[v] : s->left[v]);
-    *whole = sqrt(mass ? s->lap->b_diag[row] : hdi_inverse_mass(s->lap, row));
+/* B^-1 e_v, or with mass e_v. */
+static hdi_share hdi_share_of(const hdi_spec_sums *a, int32_t v, int mass) {
+    const hd_spectrum *s = &a->of->s;
+    const int32_t row = s->lap->row[v];
+    hdi_share y = {0, 0, 0, 0, 0};
+    double whole, left;
+    if (row < 0) return y;
+    whole = mass ? s->lap->b_diag[row] : hdi_inverse_mass(s->lap, row);
+    left = mass ? s->left_mass[v] : s->left[v];
+    y.whole = sqrt(whole);
+    y.left = sqrt(left + a->of->off_gram * whole);
+    y.found = sqrt(hdi_max(0, whole - left) + 2 * a->bank.noise * whole);
+    y.inner = hdi_bound_times(a->bank.inner + a->bank.twice, y.found);
+    y.side = hdi_bound_times(a->bank.side + a->bank.twice, y.found);
+    return y;
 }
 
-/* Entry of vector q, or of B times it. */
-static double hdi_spec_entry(const hd_spectrum *s, int32_t q, int32_t row, int mass) {
-    const double *x = s->vector + (int64_t)q * s->n;
-    return mass ? hdi_spec_mass_row(s->lap, x, row) : x[s->lap->vertex[row]];
+static void hdi_share_add(hdi_share *to, double w, hdi_share y) {
+    to->left += fabs(w) * y.left;
+    to->found += fabs(w) * y.found;
+    to->whole += fabs(w) * y.whole;
+    to->inner += fabs(w) * y.inner;
+    to->side += fabs(w) * y.side;
+}
+
+/* What rounding makes of a value: of sums of such a size, of exp(-t low) whose argument is rounded, and of
+ * numbers below the normal ones. */
+static double hdi_bank_rounding(const hdi_bank *b, double size, double value) {
+    const double itself = hdi_bound_times(1 + b->depth, fabs(value));
+    return hdi_decayed(b, b->most * size) + 8 * DBL_EPSILON * itself + 4 * DBL_MIN * DBL_EPSILON;
+}
+
+/* Bounds of the error of a value, an inner product of g with the answer to f. */
+static hdi_parts hdi_bank_off(const hdi_spec_sums *a, const hdi_share *g, const hdi_share *f, double value) {
+    const hdi_bank *b = &a->bank;
+    hdi_parts off = {0, 0, 0, 0};
+    if (g->whole == 0 || f->whole == 0) return off;
+    off.rational = hdi_decayed(b, hdi_bound_times(b->cut, g->left * f->left));
+    off.solver = hdi_decayed(b, hdi_bound_times(b->square, g->left * f->left) +
+                                hdi_bound_times(g->side, f->left) + hdi_bound_times(f->side, g->left) +
+                                hdi_bound_times(f->inner, g->found));
+    off.rounding = hdi_bank_rounding(b, 2 * (b->noise + a->sums_off) * g->found * f->whole, value);
+    return off;
 }
 
 /* A bound of |sqrt(a) - sqrt(b)| where b differs by at most off from a. */
@@ -17389,92 +17495,127 @@ static double hdi_spec_root_off(double a, double off) {
     return off > 0 ? off / hdi_max(sqrt(hdi_max(a, 0)), sqrt(off)) : 0;
 }
 
+/* Bounds of the error of value d at vertex v. */
+static hdi_parts hdi_spec_off(const hdi_spec_sums *a, int32_t v, double d) {
+    const hdi_bank *b = &a->bank;
+    const hdi_share g = hdi_share_of(a, v, a->mass && a->distance);
+    const hdi_share f = a->diagonal ? hdi_share_of(a, v, a->mass) : a->from;
+    hdi_parts off = {0, 0, 0, 0}, square;
+    hdi_share y = f;
+    double beside;
+    if (!a->distance) return hdi_bank_off(a, &g, &f, d);
+    hdi_share_add(&y, 1, g);
+    if (a->inner) y.inner = a->inner[v];
+    if (a->power) {
+        square = hdi_bank_off(a, &y, &y, d * d);
+        off.rational = hdi_spec_root_off(d * d, hdi_parts_sum(&square));
+        return off;
+    }
+    beside = hdi_decayed(b, (b->cut + b->square) * y.left);
+    off.rational = beside > 0 ? beside * (beside / (d + hdi_pythag(d, beside))) : 0;
+    off.solver = hdi_decayed(b, y.inner + hdi_bound_times(b->mixed, y.left));
+    off.rounding = hdi_bank_rounding(b, b->noise * y.whole + a->sums_off * f.whole, d);
+    return off;
+}
+
 /* Rows whose sums are made together, so that vectors are read along their columns. */
 enum { HDI_SPEC_ROWS = 512 };
 
-/* The sums of n rows from the given one on. */
-static void hdi_spec_sum_rows(const hdi_spec_sums *a, int32_t row, int32_t n, double *sum) {
-    const int32_t *vertex = a->of->lap->vertex + row;
+/* n entries of vector q from vertex v on, or with mass of B times it. y [n] */
+static const double *hdi_spec_entries(const hdi_modes *of, int32_t q, int64_t v, int32_t n, int mass,
+                                      double *y) {
+    const hd_laplacian *lap = of->s.lap;
+    const double *x = of->s.vector + (int64_t)q * of->s.n;
+    int32_t i;
+    if (!mass) return x + v;
+    if (of->bx) return of->bx + (int64_t)q * of->s.n + v;
+    for (i = 0; i < n; i++) y[i] = lap->row[v + i] < 0 ? 0 : hdi_spec_mass_row(lap, x, lap->row[v + i]);
+    return y;
+}
+
+/* The values at the vertices, and their bounds where these are wanted. */
+static void hdi_spec_sum_task(void *arg, int64_t begin, int64_t end) {
+    const hdi_spec_sums *a = (const hdi_spec_sums *)arg;
+    const hdi_modes *of = a->of;
     const int mass = a->mass && (a->distance || a->diagonal);   /* else of the source alone */
-    int32_t q, i;
-    for (i = 0; i < n; i++) sum[i] = 0;
-    for (q = 0; q < a->of->count; q++) {
-        const double *x = a->of->vector + (int64_t)q * a->of->n;
-        const double w = a->weight[q], at = a->x[q];
-        for (i = 0; i < n; i++) {
-            const double y = x[vertex[i]], other = mass ? hdi_spec_entry(a->of, q, row + i, 1) : y;
-            if (a->distance) sum[i] += w * (other - at) * (other - at);
-            else sum[i] += w * y * (a->diagonal ? other : at);
+    double y[HDI_SPEC_ROWS];
+    int64_t v;
+    int32_t k, q, n;
+    for (v = begin; v < end; v += n) {
+        double *HDI_RESTRICT sum = a->column + v;
+        n = (int32_t)hdi_least(end - v, HDI_SPEC_ROWS);
+        memset(sum, 0, (size_t)n * sizeof *sum);
+        if (a->inner) memset(a->inner + v, 0, (size_t)n * sizeof *sum);
+        for (q = a->bank.first; q < of->s.count; q++) {
+            const double *x = of->s.vector + (int64_t)q * of->s.n + v;
+            const double w = a->bank.weight[q], at = a->x[q];
+            const double *other = hdi_spec_entries(of, q, v, n, mass, y);
+            for (k = 0; k < n && a->distance; k++) sum[k] += w * (other[k] - at) * (other[k] - at);
+            for (k = 0; k < n && a->inner; k++)
+                a->inner[v + k] += a->bank.inner_of[q] * fabs(other[k] - at);
+            for (k = 0; k < n && a->diagonal; k++) sum[k] += w * x[k] * other[k];
+            for (k = 0; k < n && !a->distance && !a->diagonal; k++) sum[k] += w * x[k] * at;
+        }
+        for (k = 0; k < n; k++) {
+            sum[k] = hdi_decayed(&a->bank, a->distance ? sqrt(sum[k]) : sum[k]);
+            if (a->off) {
+                const hdi_parts off = hdi_spec_off(a, (int32_t)v + k, sum[k]);
+                a->off[v + k] = hdi_parts_sum(&off);
+            }
         }
     }
 }
 
-/* The value of a row and its bound, from its sum. */
-static void hdi_spec_sum_store(const hdi_spec_sums *a, int32_t row, double sum) {
-    const int32_t v = a->of->lap->vertex[row];
-    double left, whole, left2 = a->left, whole2 = a->whole, off;
-    hdi_spec_size(a->of, row, a->distance && a->mass, &left, &whole);
-    if (a->diagonal) hdi_spec_size(a->of, row, a->mass, &left2, &whole2);
-    if (a->distance) {                           /* of the difference of two vertices */
-        left = left2 = left + left2;
-        whole = whole2 = whole + whole2;
-    }
-    off = hdi_bound_times(a->rest, left * left2) + hdi_bound_times(a->error, whole * whole2);
-    a->column[v] = a->distance ? sqrt(sum) : sum;
-    if (a->off) a->off[v] = a->distance ? hdi_spec_root_off(sum, off) : off;
-}
-
-static void hdi_spec_sum_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_spec_sums *a = (const hdi_spec_sums *)arg;
-    double sum[HDI_SPEC_ROWS];
-    int64_t i;
-    int32_t k, n;
-    for (i = begin; i < end; i += n) {
-        n = (int32_t)hdi_least(end - i, HDI_SPEC_ROWS);
-        hdi_spec_sum_rows(a, (int32_t)i, n, sum);
-        for (k = 0; k < n; k++) hdi_spec_sum_store(a, (int32_t)i + k, sum[k]);
+/* The sums of |c_i| of the source, whose entries are there. */
+static void hdi_spec_sum_errors(hdi_spec_sums *a) {
+    int32_t q;
+    a->from.inner = a->from.side = hdi_bound_times(a->bank.twice, a->from.found);
+    for (q = a->bank.first; q < a->of->s.count; q++) {
+        a->from.inner += hdi_bound_times(a->bank.inner_of[q], fabs(a->x[q]));
+        a->from.side += hdi_bound_times(a->bank.side_of[q], fabs(a->x[q]));
     }
 }
 
-/* The source's entries in the vectors, and what bounds follow from: of a sum of vertices by the triangle
- * inequality. Those without a row count nothing. */
+/* The source's entries in the vectors, and its norms: of a sum of vertices by the triangle inequality. Those
+ * without a row count nothing. */
 static void hdi_spec_sum_from(hdi_spec_sums *a, const hdi_terms *from) {
-    const hd_spectrum *s = a->of;
-    double most = 0, left, whole;
+    const hdi_share none = {0, 0, 0, 0, 0};
     int32_t q, i;
-    a->left = a->whole = 0;
-    memset(a->x, 0, (size_t)s->count * sizeof *a->x);
+    double y;
+    a->from = none;
+    a->sums_off = hdi_high32(from->n - 1, 0) * DBL_EPSILON;
+    memset(a->x, 0, (size_t)a->of->s.count * sizeof *a->x);
     for (i = 0; i < from->n; i++) {
-        const int32_t row = s->lap->row[hdi_terms_at(from, i)];
+        const int32_t v = hdi_terms_at(from, i);
         const double w = hdi_terms_weight(from, i);
-        if (row < 0) continue;
-        for (q = 0; q < s->count; q++) a->x[q] += w * hdi_spec_entry(s, q, row, a->mass);
-        hdi_spec_size(s, row, a->mass, &left, &whole);
-        a->left += fabs(w) * left;
-        a->whole += fabs(w) * whole;
+        for (q = a->bank.first; q < a->of->s.count; q++)
+            a->x[q] += w * *hdi_spec_entries(a->of, q, v, 1, a->mass, &y);
+        hdi_share_add(&a->from, w, hdi_share_of(a, v, a->mass));
     }
-    for (q = 0; q < s->count; q++) most = hdi_max(most, a->weight[q]);
-    a->error += 4 * hdi_high32(from->n - 1, 0) * DBL_EPSILON * most;   /* rounding of the sums */
+    hdi_spec_sum_errors(a);
 }
 
-/* Vertices without a row: those without mass have a zero kernel row, so that distances to them are those from
- * the origin. Without a time, other components, and they, are out of reach. */
+/* Takes up a time. d^2 is made of squares of the weights for d. */
+static void hdi_spec_sum_at(hdi_spec_sums *a, double t) {
+    int32_t q;
+    a->bank = a->power ? hdi_bank_inverse(a->of, a->power, a->bank.weight)
+                       : hdi_bank_at(a->of, t, a->bank.weight);
+    for (q = a->bank.first; q < a->of->s.count && a->distance && !a->power; q++)
+        a->bank.weight[q] *= a->bank.weight[q];
+}
+
+/* Vertices without mass in K_t. Without a time, other components and vertices without a row are out of
+ * reach. */
 static void hdi_spec_sum_others(const hdi_spec_sums *a, const hdi_terms *from) {
-    const hd_laplacian *lap = a->of->lap;
+    const hd_laplacian *lap = a->of->s.lap;
     const int32_t own = a->power ? hdi_terms_component(lap, from) : -1;
-    const double off = hdi_bound_times(a->rest, a->left * a->left) +
-                       hdi_bound_times(a->error, a->whole * a->whole);
-    double sum = 0;
     int32_t q, v;
-    for (q = 0; q < a->of->count && a->distance; q++) sum += a->weight[q] * a->x[q] * a->x[q];
-    for (v = 0; v < lap->n; v++) {
+    for (v = 0; v < lap->n && (a->power || (a->diagonal && a->mass)); v++) {
         const int32_t row = lap->row[v];
-        const int apart = a->power && (from->weight || v != from->one);
-        if (row >= 0 && (!apart || lap->component[row] == own)) continue;
-        if (apart) a->column[v] = HUGE_VAL;
-        else if (a->distance) a->column[v] = a->power ? 0 : sqrt(sum);
-        else a->column[v] = row == HD_ROW_INERT && a->diagonal && a->mass;
-        if (a->off) a->off[v] = a->distance && !a->power ? hdi_spec_root_off(sum, off) : 0;
+        if (a->diagonal) a->column[v] = row == HD_ROW_INERT ? 1 : a->column[v];
+        if (a->diagonal || (row >= 0 && lap->component[row] == own)) continue;
+        a->column[v] = from->weight || v != from->one ? HUGE_VAL : 0;
+        if (a->off) a->off[v] = 0;
     }
     for (q = 0; q < from->n && a->mass && !a->distance; q++) {
         v = hdi_terms_at(from, q);
@@ -17492,19 +17633,36 @@ static void hdi_spec_sums_run(hdi_spec_sums *a, hd_context *ctx) {
             const size_t at = ((size_t)q * (size_t)a->n_times + (size_t)m) * a->ld;
             a->column = a->out + at;
             a->off = a->bound ? a->bound + at : NULL;
-            hdi_spec_filter(a, a->times * hdi_min(a->t[m], DBL_MAX / 2));
+            hdi_spec_sum_at(a, a->t[m]);
             hdi_spec_sum_from(a, &from);
-            hdi_parallel_ranges(ctx, a->of->lap->n_active, 1024, hdi_spec_sum_task, a);
+            hdi_parallel_ranges(ctx, a->of->s.n, 1024, hdi_spec_sum_task, a);
             hdi_spec_sum_others(a, &from);
         }
     }
 }
 
+/* Pairs of the caller's, whose residuals are known. off [count] */
+static hdi_modes hdi_modes_of(const hd_spectrum *s, double *off) {
+    const int32_t first = hdi_low32(s->n_constant, s->count);
+    const double low = first < s->count ? s->value[first] : s->next;
+    hdi_modes x;
+    int32_t q;
+    memset(&x, 0, sizeof x);
+    x.s = *s;
+    x.off = off;
+    for (q = 0; q < s->count; q++) {
+        off[q] = 2 * hdi_ratio_root(s->lap) * hdi_bound_times(s->residual[q], hdi_max(s->value[q], low));
+        x.off_norm = hypot(x.off_norm, off[q]);
+    }
+    return x;
+}
+
 /* Checks the arguments of sums over the pairs, makes room for them, and runs them. refused: of their kind, or
  * NULL. */
-static hd_status hdi_spec_sums_ask(hdi_spec_sums *x, const char *refused, hd_error *err) {
-    const hd_spectrum *s = x->of;
+static hd_status hdi_spec_sums_ask(hdi_spec_sums *x, const hd_spectrum *s, const char *refused,
+                                   hd_error *err) {
     const double zero = 0;
+    hdi_modes of;
     hdi_call c;
     int32_t q;
     if (hdi_enter(&c, s ? s->context : NULL, 1, err) < 0) return c.e->status;
@@ -17527,34 +17685,37 @@ static hd_status hdi_spec_sums_ask(hdi_spec_sums *x, const char *refused, hd_err
     if (c.e->status < 0) return c.e->status;
     x->ld = x->ld ? x->ld : (size_t)s->n;
     x->scope = hdi_scope_begin(c.ctx, c.e);
-    x->x = HDI_TAKE(&x->scope, double, 2 * (uint64_t)s->count + 1);
-    x->weight = x->x ? x->x + s->count : NULL;
+    x->x = HDI_TAKE(&x->scope, double, 5 * (uint64_t)s->count + 1);
     if (x->sources && x->x) x->terms = hdi_terms_all(x->sources, s->lap, x->distance, &x->scope);
-    if (c.e->status >= 0) hdi_spec_sums_run(x, c.ctx);
+    if (c.e->status >= 0) {
+        x->bank.weight = x->x + s->count;
+        of = hdi_modes_of(s, x->x + 4 * (size_t)s->count);
+        x->of = &of;
+        hdi_spec_sums_run(x, c.ctx);
+    }
     return hdi_scope_end(&x->scope);
 }
 
-static hd_status hdi_spec_sums_kernel(hdi_spec_sums *x, hd_kernel kernel, hd_error *err) {
+static hd_status hdi_spec_sums_kernel(hdi_spec_sums *x, const hd_spectrum *s, hd_kernel kernel,
+                                      hd_error *err) {
     x->mass = kernel == HD_KERNEL_OPERATOR;
-    return hdi_spec_sums_ask(x, x->mass || kernel == HD_KERNEL_SYMMETRIC ? NULL : "spectrum: unknown kernel",
-                             err);
+    return hdi_spec_sums_ask(x, s, x->mass || kernel == HD_KERNEL_SYMMETRIC ? NULL
+                                   : "spectrum: unknown kernel", err);
 }
 
-static hd_status hdi_spec_sums_distance(hdi_spec_sums *x, hd_distance_kind kind, hd_error *err) {
+static hd_status hdi_spec_sums_distance(hdi_spec_sums *x, const hd_spectrum *s, hd_distance_kind kind,
+                                        hd_error *err) {
     const hdi_distance_row *row = hdi_distance_of(kind);
     x->distance = 1;
-    x->times = row ? row->time : 0;
     x->power = row ? row->power : 0;
     x->mass = row && row->mass > 0;
-    return hdi_spec_sums_ask(x, row ? NULL : "spectrum: unknown distance", err);
+    return hdi_spec_sums_ask(x, s, row ? NULL : "spectrum: unknown distance", err);
 }
 
-static hdi_spec_sums hdi_spec_sums_of(const hd_spectrum *s, int32_t n_times, const double *t, double *out,
-                                      double *bound, size_t ld) {
+static hdi_spec_sums hdi_spec_sums_of(int32_t n_times, const double *t, double *out, double *bound,
+                                      size_t ld) {
     hdi_spec_sums a;
     memset(&a, 0, sizeof a);
-    a.of = s;
-    a.times = 1;
     a.n_times = n_times;
     a.t = t;
     a.out = out;
@@ -17573,19 +17734,6 @@ static hdi_spec_sums hdi_spec_sums_of(const hd_spectrum *s, int32_t n_times, con
  * each component are carried exactly, so that uniform sets conserve heat too. */
 
 #define HDI_ROUNDING_LIMIT 1e-7              /* the direct method's own error by default is 3e-8 */
-
-/* The smallest eigenpairs, for distances at large times. Nothing is there while s.value is NULL. */
-typedef struct hdi_modes {
-    hd_spectrum s;               /* in the caller's units; without a shell */
-    double *off;                 /* [count] norms of residuals |B^-1 L x - lambda x|_B with their rounding */
-    double *bx;                  /* [n count] B x, for weighted distances with a full B; made when needed */
-    double *one;                 /* [2 n] B 1 by vertices, and what rounding left out of it */
-    double *by;                  /* [n] what entries of bx, or of the vectors, count by: 1, or diagonal B */
-    double low;                  /* all eigenvalues but those of the constants are at least this */
-    double off_norm;             /* |B^-1 L X - X Lambda| */
-    double off_gram;             /* |X' B X - 1| */
-    int32_t barred;              /* they could not be found; no other try */
-} hdi_modes;
 
 static void hdi_modes_free(hdi_modes *x, hd_context *ctx) {
     hdi_free(ctx, x->s.value);
@@ -19685,11 +19833,11 @@ static hd_status hdi_modes_measure(hd_heat *heat, hd_error *e) {
     const hd_laplacian *lap = heat->source;
     const uint64_t n = (uint64_t)s->n;
     const int32_t first = s->n_constant;
-    int32_t q, i;
+    int32_t q;
     x->off = HDI_NEW(heat->ctx, double, s->count + 1, e);
-    if (x->off) x->one = HDI_NEW(heat->ctx, double, 3 * n, e);
+    if (x->off) x->one = HDI_NEW(heat->ctx, double, 2 * n, e);
     if (e->status < 0) return e->status;
-    x->by = x->one + 2 * n;
+    x->first = first;
     x->off_gram = hdi_modes_gram(lap, s, x->one);
     for (q = 0, x->off_norm = 0; q < s->count; q++) {
         const double value = s->value[q], unit = first < s->count ? s->value[first] : 0;
@@ -19701,8 +19849,6 @@ static hd_status hdi_modes_measure(hd_heat *heat, hd_error *e) {
     x->low = first < s->count ? s->value[first] : s->next < HUGE_VAL ? s->next : 0;
     x->low = hdi_max(0, x->low - x->off_norm);
     hdi_modes_one(lap, x->one);
-    memset(x->by, 0, (size_t)lap->n * sizeof *x->by);
-    for (i = 0; i < lap->n_active; i++) x->by[lap->vertex[i]] = lap->mass[i];
     return HD_OK;
 }
 
@@ -19815,46 +19961,6 @@ static int hdi_modes_enough(hd_heat *heat, double t, double depth, int32_t most,
     }
     if (hdi_over_limit(heat->ctx, e)) hdi_error_clear(e);
     return 0;
-}
-
-/* What is left of the pairs at time t, and what that is off by per |c_i| and |Q y|: see their sums. */
-typedef struct hdi_decay {
-    int32_t first;               /* of the pairs that are not constants */
-    double *weight, *off;        /* [count] exp(-t (theta_i - low)); bounds on the errors per |c_i| */
-    double depth;                /* t low */
-    double root;                 /* exp(-t low / 2): whole it would underflow before answers do */
-    double cut, mixed;           /* factors of |Q y|: by what is left out, by residuals */
-    double rounding;             /* factor of |y| */
-    double t, next;              /* all eigenvalues of the complement of the pairs are at least next */
-} hdi_decay;
-
-/* exp(-t low) x */
-static double hdi_decayed(const hdi_decay *d, double x) { return x * d->root * d->root; }
-
-/* work [2 count] */
-static hdi_decay hdi_decay_at(const hdi_modes *of, double t, double *work) {
-    const hd_spectrum *s = &of->s;
-    const double next = s->next < HUGE_VAL ? s->next - of->off_norm : HUGE_VAL;
-    const double gap = hdi_max(0, next - of->low);
-    hdi_decay a;
-    int32_t q;
-    memset(&a, 0, sizeof a);
-    a.weight = work;
-    a.off = work + s->count;
-    a.first = s->n_constant;
-    a.depth = t * of->low;
-    a.root = exp(-a.depth / 2);
-    for (q = a.first; q < s->count; q++) {
-        const double over = hdi_max(0, s->value[q] - of->low);
-        a.weight[q] = exp(-t * over);
-        a.off[q] = of->off[q] * hdi_min(t, over > 0 ? 1 / over : t);
-    }
-    a.cut = next < HUGE_VAL ? exp(-t * gap) : 0;
-    a.mixed = of->off_norm * (next < HUGE_VAL ? hdi_min(t, gap > 0 ? 1 / gap : t) : 0);
-    a.rounding = of->off_gram + (HDI_NOISE_TERMS + s->count) * DBL_EPSILON;
-    a.t = t;
-    a.next = next;
-    return a;
 }
 
 /* What the report says of answers from eigenpairs. */
@@ -20053,21 +20159,7 @@ static hd_status hdi_task_run(hdi_heat_call *h, void *what) {
 
 /* ---- heat that fades ---- */
 /* Where heat flows out everything falls like exp(-t lambda_1), but the errors of poles do not. There few
- * eigenpairs are left too, and K_t f = sum_i exp(-t lambda_i) c_i x_i with c = X' B f has errors that fall as
- * fast. With A = B^-1 L, Q f = f - X c and R = A X - X Theta, the bound of room [28] for distances holds
- * without its constants, and for the same reasons: |K_t f - X exp(-t Theta) c| is at most
- *     exp(-t low) (sum_i |r_i| min(t, 1/(theta_i - low)) |c_i|
- *                  + (exp(-t (next - |R| - low)) + |R|/(next - |R| - low)) |Q f|).
- * That is in the B norm. A single value is an inner product with g = B^-1 e_v, of which little is in the span
- * of X. On that and its complement A has the blocks A_11, A_22 >= a = next - |R| and |A_21| <= |R|, and by
- * variation of constants (m = |R|/(a - low), |A_21 x_i| <= |r_i|)
- *     |exp(-t A)_21 c| <= exp(-t low) s(c),
- *         s(c) = sum_i |r_i| exp(-t (theta_i - low)) min(t, 1/(a - theta_i)) |c_i| + m t |R| |c|,
- *     |exp(-t A)_22| <= exp(-t low) (exp(-t (a - low)) + m^2),
- *     |exp(-t A)_11 c - exp(-t Theta) c|
- *         <= exp(-t low) (sum_i |r_i| min(t, 1/(theta_i - low)) |c_i| + m t |R| |c|).
- * So a value is off by no more than exp(-t low) times
- *     (exp(-t (a - low)) + m^2) |Q g| |Q f| + s(c_g) |Q f| + s(c) |Q g| + |c_g| (the last sum). */
+ * eigenpairs are left too, whose errors fall as fast, see [25]. */
 
 /* Eigenpairs come first from a time on that is this many times 1/lambda_1: with the border of a square held,
  * bounds by poles of degree 9 are 4e-7 at t lambda_1 = 0.4 and 6e-5 at 7, those of krylov 4e-7 there. */
@@ -20097,156 +20189,89 @@ static void hdi_fading_task(hdi_task *task, hdi_heat_call *h) {
     task->depth = hdi_max(0, log(span * span / (HDI_FADING_LOW * hdi_modes_tol(h->heat))));
 }
 
-/* Vector q at a vertex, with mass B times it. */
-static double hdi_modes_entry(const hdi_modes *of, int mass, int32_t q, int32_t v) {
-    const int64_t at = (int64_t)q * of->s.n + v;
-    return !mass ? of->s.vector[at] : of->bx ? of->bx[at] : of->by[v] * of->s.vector[at];
+/* Sums over the pairs that are there, at the time under way. Arrays are in s. */
+static hd_status hdi_late_make(hdi_spec_sums *a, hdi_heat_call *h, int distance, int mass, hdi_scope *s) {
+    hd_heat *heat = h->heat;
+    const uint64_t count = (uint64_t)heat->modes.s.count;
+    hdi_modes_tell(heat, h->rep);
+    memset(a, 0, sizeof *a);
+    a->of = &heat->modes;
+    a->distance = distance;
+    a->mass = mass;
+    if (mass && hdi_modes_mass(heat, h->e) < 0) return h->e->status;
+    a->x = HDI_TAKE(s, double, 4 * count + 1);
+    if (!a->x) return h->e->status;
+    a->bank.weight = a->x + count;
+    hdi_spec_sum_at(a, h->ask.t[h->now]);
+    return HD_OK;
 }
 
-/* The factor of |c_q| in s(c), and what s(c) and the last sum have besides for each |c|. */
-static double hdi_decay_side(const hdi_modes *of, const hdi_decay *x, int32_t q) {
-    const double gap = x->next - of->s.value[q];
-    if (x->next >= HUGE_VAL) return 0;
-    return x->weight[q] * of->off[q] * hdi_min(x->t, gap > 0 ? 1 / gap : x->t);
-}
-
-static double hdi_decay_twice(const hdi_modes *of, const hdi_decay *x) {
-    return x->mixed * of->off_norm * x->t;
-}
-
-/* Sums of a field's coefficients: |c|^2, |w c|^2, of |r_i| min(t, ...) |c_i|, and s(c) but its last term. */
-typedef struct hdi_fading_size { double found, kept, inner, side; } hdi_fading_size;
-
-static void hdi_fading_size_add(hdi_fading_size *c, const hdi_decay *x, int32_t q, double side, double y) {
-    c->found += y * y;
-    c->inner += x->off[q] * fabs(y);
-    c->side += side * fabs(y);
-}
-
-/* Those of B^-1 e_v, or with mass of e_v, at the vertices of rows [begin, end). */
-static void hdi_fading_sizes(const hdi_modes *of, const hdi_decay *x, int mass, int64_t begin, int64_t end,
-                             hdi_fading_size *c) {
-    int64_t i;
-    int32_t q;
-    memset(c + begin, 0, (size_t)(end - begin) * sizeof *c);
-    for (q = 0; q < of->s.count; q++) {
-        const double side = hdi_decay_side(of, x, q);
-        for (i = begin; i < end; i++)
-            hdi_fading_size_add(c + i, x, q, side, hdi_modes_entry(of, mass, q, of->s.lap->vertex[i]));
-    }
-}
-
-/* The largest |Q g|, s(c_g), |c_g| and last sum of all vertices. */
-typedef struct hdi_fading_far { double left, side, found, inner; } hdi_fading_far;
-
-/* work [n_active] */
-static hdi_fading_far hdi_fading_reach(const hdi_modes *of, const hdi_decay *x, hdi_fading_size *work) {
-    const hd_laplacian *lap = of->s.lap;
-    hdi_fading_far most = {0, 0, 0, 0};
-    int32_t i;
-    hdi_fading_sizes(of, x, 0, 0, lap->n_active, work);
-    for (i = 0; i < lap->n_active; i++) {
-        const double c = sqrt(work[i].found), twice = hdi_decay_twice(of, x) * c;
-        const double left2 = of->s.left[lap->vertex[i]] + of->off_gram * hdi_inverse_mass(lap, i);
-        most.left = hdi_max(most.left, sqrt(left2));
-        most.side = hdi_max(most.side, work[i].side + twice);
-        most.inner = hdi_max(most.inner, work[i].inner + twice);
-        most.found = hdi_max(most.found, c);
-    }
-    return most;
-}
-
-/* A sum over the pairs by rows of the caller's pair. */
-typedef struct hdi_fading_sum {
-    const hdi_modes *of;
-    const hdi_decay *decay;
-    const double *c;
-    double *u;
-} hdi_fading_sum;
-
-static void hdi_fading_rows(void *arg, int64_t begin, int64_t end) {
-    const hdi_fading_sum *a = (const hdi_fading_sum *)arg;
-    const hd_spectrum *s = &a->of->s;
-    const int32_t *vertex = s->lap->vertex;
-    int64_t i;
-    int32_t q;
-    for (i = begin; i < end; i++) a->u[i] = 0;
-    for (q = 0; q < s->count; q++) {
-        const double *x = s->vector + (int64_t)q * s->n;
-        for (i = begin; i < end; i++) a->u[i] += a->c[q] * x[vertex[i]];
-    }
-    for (i = begin; i < end; i++) a->u[i] = hdi_decayed(a->decay, a->u[i]);
-}
-
-/* The bounds of a lane's answer. */
-static void hdi_fading_bound(const hdi_heat_call *h, const hdi_decay *x, const hdi_fading_far *most,
-                             const hdi_fading_size *c, hdi_lane *lane) {
-    const hdi_modes *of = &h->heat->modes;
+/* The bounds of a lane's answer. most: the largest norms of vertices. found, kept: |c|^2 of the field and of
+ * the answer before its decay. */
+static void hdi_fading_bound(const hdi_heat_call *h, hdi_spec_sums *a, const hdi_share *most, double found,
+                             double kept, hdi_lane *lane) {
+    const hdi_bank *b = &a->bank;
+    hdi_share *f = &a->from;
     const double terms = hdi_query_fields(h->ask.query) ? (double)h->lap->n_active / 2 : 0;
-    const double f2 = lane->f_norm * lane->f_norm, twice = hdi_decay_twice(of, x) * sqrt(c->found);
-    const double rounding = x->rounding + terms * DBL_EPSILON;
-    const double left = sqrt(hdi_max(0, f2 - (1 - of->off_gram) * c->found) + rounding * f2);
-    const double sums = hdi_decayed(x, 2 * hdi_ratio_root(h->lap) * rounding * lane->f_norm + lane->rhs_off);
-    const double itself = 8 * (1 + hdi_min(x->depth, HDI_EQUAL_BEYOND)) * DBL_EPSILON;
+    const double f2 = lane->f_norm * lane->f_norm, rounding = b->noise + terms * DBL_EPSILON;
+    const double sums = hdi_decayed(b, 2 * hdi_ratio_root(h->lap) * rounding * lane->f_norm + lane->rhs_off);
+    f->whole = lane->f_norm;
+    f->found = sqrt(found);
+    hdi_spec_sum_errors(a);
+    f->left = sqrt(hdi_max(0, f2 - (1 - a->of->off_gram) * found) + rounding * f2);
     hdi_lane_clear_off(lane);
-    lane->u_norm = hdi_decayed(x, sqrt(c->kept));
-    lane->off.rational = hdi_decayed(x, x->cut * left);
-    lane->off.solver = hdi_decayed(x, c->inner + x->mixed * left);
-    lane->off.rounding = sums + itself * lane->u_norm;
-    lane->off_value.rational = lane->off.rational * most->left;
-    lane->off_value.solver = hdi_decayed(x, x->mixed * x->mixed * most->left * left + most->side * left +
-                                            (c->side + twice) * most->left +
-                                            most->found * (c->inner + twice));
-    lane->off_value.rounding = most->found * (sums + itself * lane->u_norm);
+    lane->u_norm = hdi_decayed(b, sqrt(kept));
+    lane->off.rational = hdi_decayed(b, b->cut * f->left);
+    lane->off.solver = hdi_decayed(b, f->inner + b->mixed * f->left);
+    lane->off.rounding = sums + 8 * (1 + hdi_min(b->depth, HDI_EQUAL_BEYOND)) * DBL_EPSILON * lane->u_norm;
+    lane->off_value = hdi_bank_off(a, most, f, 0);
+    lane->off_value.rounding = most->found * lane->off.rounding;
     lane->off_m = lane->off;
     lane->rounding = HD_EVIDENCE_ESTIMATED;
 }
 
-/* The answer of a lane from the pairs. work [count] */
-static void hdi_fading_lane(const hdi_heat_call *h, const hdi_decay *x, const hdi_fading_far *most,
-                            hdi_lane *lane, double *work) {
+/* The answer of a lane from the pairs. */
+static void hdi_fading_lane(const hdi_heat_call *h, hdi_spec_sums *a, const hdi_share *most, hdi_lane *lane) {
     const hd_laplacian *lap = h->lap;
-    const hdi_modes *of = &h->heat->modes;
-    hdi_fading_size size = {0, 0, 0, 0};
-    hdi_fading_sum a;
+    double found = 0, kept = 0;
     int32_t q, i;
-    for (q = 0; q < of->s.count; q++) {
-        const double *v = of->s.vector + (int64_t)q * of->s.n;
+    for (q = 0; q < a->of->s.count; q++) {
+        const double *v = a->of->s.vector + (int64_t)q * a->of->s.n, w = a->bank.weight[q];
         double c = 0;
         for (i = 0; i < lap->n_active; i++) c += lane->rhs[i] * v[lap->vertex[i]];
-        work[q] = x->weight[q] * c;
-        size.kept += work[q] * work[q];
-        hdi_fading_size_add(&size, x, q, hdi_decay_side(of, x, q), c);
+        a->x[q] = c;
+        found += c * c;
+        kept += w * c * (w * c);
     }
-    a.of = of;
-    a.c = work;
-    a.decay = x;
-    a.u = lane->u;
-    hdi_parallel_ranges(h->heat->ctx, lap->n_active, 1024, hdi_fading_rows, &a);
-    hdi_fading_bound(h, x, most, &size, lane);
+    hdi_parallel_ranges(h->heat->ctx, lap->n, 1024, hdi_spec_sum_task, a);
+    hdi_gather(lap, a->column, lane->u);
+    hdi_fading_bound(h, a, most, found, kept, lane);
 }
 
 /* The request at one time from the pairs that are there. */
-static hd_status hdi_fading_answer(hdi_heat_call *h, double t) {
+static hd_status hdi_fading_answer(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
-    const int32_t count = heat->modes.s.count;
     hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
-    double *work = HDI_TAKE(&s, double, 3 * (uint64_t)count);
-    hdi_fading_size *sizes = HDI_TAKE(&s, hdi_fading_size, heat->source->n_active);
-    hdi_fading_far most;
-    hdi_decay x;
+    hdi_share most = {0, 0, 0, 0, 0};
+    hdi_spec_sums a;
+    int32_t v;
     h->lap = heat->source;
     h->by_pairs = 1;
     h->method = HD_METHOD_DIRECT;
     h->solver = HD_SOLVER_AUTO;
-    hdi_modes_tell(heat, h->rep);
+    if (hdi_late_make(&a, h, 0, 0, &s) >= 0) a.column = HDI_TAKE(&s, double, heat->source->n);
     if (h->e->status >= 0 && hdi_heat_lanes(h, 1, 0, 0) >= 0) {
-        x = hdi_decay_at(&heat->modes, t, work + count);
-        most = hdi_fading_reach(&heat->modes, &x, sizes);
+        for (v = 0; v < heat->source->n; v++) {
+            const hdi_share g = hdi_share_of(&a, v, 0);
+            most.left = hdi_max(most.left, g.left);
+            most.found = hdi_max(most.found, g.found);
+            most.whole = hdi_max(most.whole, g.whole);
+            most.side = hdi_max(most.side, g.side);
+        }
         for (h->batch = 0; h->batch < h->ask.k; h->batch++) {
             if (hdi_progress(heat->ctx, "solve", (double)h->batch / h->ask.k, h->e) < 0 ||
                 hdi_heat_load(h, h->batch, h->heat->lane) < 0) break;
-            if (!h->heat->lane->skip) hdi_fading_lane(h, &x, &most, h->heat->lane, work);
+            if (!h->heat->lane->skip) hdi_fading_lane(h, &a, &most, h->heat->lane);
             if (hdi_heat_store_some(h, 1) < 0) break;
         }
         if (h->e->status >= 0 && h->ask.list) hdi_ledger_close(h->ask.list->ledger + h->now, h->rep);
@@ -20511,7 +20536,7 @@ static hd_status hdi_heat_sort_times(hdi_heat_call *h, double factor, const char
 
 /* The ways to answer a request at a time. */
 static hd_status hdi_columns_by_pairs(hdi_task *task) {
-    return hdi_fading_answer(task->h, task->h->ask.t[task->h->now]);
+    return hdi_fading_answer(task->h);
 }
 
 static hd_status hdi_columns_by_poles(hdi_task *task) { return hdi_heat_chosen(task->h); }
@@ -21482,77 +21507,23 @@ static hd_status hdi_diagonals_together(hdi_task *task, char *done, hd_report *o
 
 /* ---- heat that fades ---- */
 
-/* The diagonal from the pairs that are there: an entry is <B^-1 e_v, K_t f> with f = B^-1 e_v or e_v. It is
- * off by as much as a value of a column, see [26]. */
-typedef struct hdi_fading_diagonal {
-    const hdi_modes *of;
-    const hd_laplacian *lap;
-    hdi_decay decay;
-    int mass;                    /* of K_t */
-    double *value;               /* [n] the sums */
-    hdi_fading_size *c;          /* [n] what the coefficients of f sum up to */
-    hdi_fading_size *g;          /* [n] of B^-1 e_v; the same for k_t */
-} hdi_fading_diagonal;
-
-static void hdi_fading_diagonal_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_fading_diagonal *a = (const hdi_fading_diagonal *)arg;
-    const hd_spectrum *s = &a->of->s;
-    int64_t i;
-    int32_t q;
-    memset(a->value + begin, 0, (size_t)(end - begin) * sizeof *a->value);
-    for (q = 0; q < s->count; q++)
-        for (i = begin; i < end; i++) {
-            const int32_t v = a->lap->vertex[i];
-            a->value[i] += a->decay.weight[q] * s->vector[(int64_t)q * s->n + v] *
-                hdi_modes_entry(a->of, a->mass, q, v);
-        }
-    hdi_fading_sizes(a->of, &a->decay, a->mass, begin, end, a->c);
-    if (a->mass) hdi_fading_sizes(a->of, &a->decay, 0, begin, end, a->g);
-}
-
-/* Gives row i to its vertex, and its errors to the report. */
-static void hdi_fading_diagonal_note(const hdi_fading_diagonal *a, int32_t i, double *out,
-                                     hdi_ledger *ledger) {
-    const hdi_decay *x = &a->decay;
-    const hdi_fading_size *c = a->c + i, *g = a->g + i;
-    const int32_t v = a->lap->vertex[i];
-    const double inverse = hdi_inverse_mass(a->lap, i), b = a->mass ? a->lap->b_diag[i] : inverse;
-    const double gram = a->of->off_gram, left_g = sqrt(a->of->s.left[v] + gram * inverse);
-    const double left = a->mass ? sqrt(a->of->s.left_mass[v] + gram * b) : left_g;
-    const double twice = hdi_decay_twice(a->of, x), found_g = sqrt(g->found), found = sqrt(c->found);
-    hdi_parts part;
-    out[v] = hdi_decayed(x, a->value[i]);
-    part.rational = hdi_decayed(x, x->cut * left_g * left);
-    part.solver = hdi_decayed(x, x->mixed * x->mixed * left_g * left + (g->side + twice * found_g) * left +
-                                 (c->side + twice * found) * left_g + found_g * (c->inner + twice * found));
-    part.rounding = hdi_decayed(x, 2 * x->rounding * found_g * sqrt(b)) + 4 * DBL_MIN * DBL_EPSILON +
-                    8 * (1 + hdi_min(x->depth, HDI_EQUAL_BEYOND)) * DBL_EPSILON * fabs(out[v]);
-    hdi_ledger_note(ledger, out[v], part);
-}
-
-static hd_status hdi_fading_diagonal_run(hdi_heat_call *h, double t, hd_kernel kernel, double *out) {
-    hd_heat *heat = h->heat;
-    const hd_laplacian *lap = heat->source;
-    const uint64_t n = (uint64_t)lap->n_active, count = (uint64_t)heat->modes.s.count;
-    hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
-    double *work = HDI_TAKE(&s, double, 2 * count + n);
+/* The diagonal from the pairs that are there: an entry is <B^-1 e_v, K_t f> with f = B^-1 e_v or e_v. */
+static hd_status hdi_fading_diagonal(hdi_heat_call *h, hd_kernel kernel, double *out) {
+    const hd_laplacian *lap = h->heat->source;
+    const int mass = kernel == HD_KERNEL_OPERATOR;
+    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
     hdi_ledger ledger = hdi_modes_ledger();
-    hdi_fading_diagonal a;
-    int32_t i;
-    memset(&a, 0, sizeof a);
-    a.of = &heat->modes;
-    a.lap = lap;
-    a.mass = kernel == HD_KERNEL_OPERATOR;
-    a.c = HDI_TAKE(&s, hdi_fading_size, a.mass ? 2 * n : n);
-    if (h->e->status < 0 || (a.mass && hdi_modes_mass(heat, h->e) < 0)) return hdi_scope_end(&s);
-    a.value = work + 2 * count;
-    a.g = a.mass ? a.c + n : a.c;
-    a.decay = hdi_decay_at(a.of, t, work);
-    hdi_parallel_ranges(heat->ctx, lap->n_active, 1024, hdi_fading_diagonal_task, &a);
-    for (i = 0; i < lap->n; i++) out[i] = a.mass && lap->row[i] == HD_ROW_INERT;
-    for (i = 0; i < lap->n_active; i++) hdi_fading_diagonal_note(&a, i, out, &ledger);
+    hdi_spec_sums a;
+    int32_t v;
+    if (hdi_late_make(&a, h, 0, mass, &s) < 0) return hdi_scope_end(&s);
+    memset(a.x, 0, (size_t)a.of->s.count * sizeof *a.x);
+    a.diagonal = 1;
+    a.column = out;
+    hdi_parallel_ranges(h->heat->ctx, lap->n, 1024, hdi_spec_sum_task, &a);
+    for (v = 0; v < lap->n; v++)
+        if (lap->row[v] >= 0) hdi_ledger_note(&ledger, out[v], hdi_spec_off(&a, v, out[v]));
+        else out[v] = mass && lap->row[v] == HD_ROW_INERT;
     h->relative = 1;
-    hdi_modes_tell(heat, h->rep);
     hdi_ledger_close(&ledger, h->rep);
     return hdi_scope_end(&s);
 }
@@ -21584,7 +21555,7 @@ static hd_status hdi_diagonals_by_pairs(hdi_task *task) {
     const hdi_diagonals *to = (const hdi_diagonals *)task;
     hdi_heat_call *h = task->h;
     const double t = h->ask.t[h->now];
-    if (to->D && hdi_fading_diagonal_run(h, t, to->kernel, to->D + (size_t)h->now * to->ldd) < 0)
+    if (to->D && hdi_fading_diagonal(h, to->kernel, to->D + (size_t)h->now * to->ldd) < 0)
         return h->e->status;
     if (to->Z) hdi_fading_trace(to, t);
     return h->e->status;
@@ -22036,85 +22007,37 @@ static hd_status hdi_distances_once(const hdi_distances *to, int32_t degree) {
 
 /* ---- distances from the smallest eigenpairs ---- */
 /* At large t all vertices look alike, and f_ss - 2 f_sv + f_vv cancels. There few eigenpairs are left, and
- *     d_t(x,y)^2 = sum_i exp(-2 t lambda_i) (x_i(x) - x_i(y))^2
- * does not cancel, however small it is. Constants drop out within a component; S takes them out below.
- * Bounds. Let A = B^-1 L, X the vectors found with their values Theta, R = A X - X Theta, c = X' B y for
- * y = B^-1 (e_x - e_y), and Q y = y - X c. All norms are those of B, and A >= low where S leaves anything.
- * Then d = |exp(-t A) y| differs from |exp(-t Theta) c| by at most
- *     |exp(-t A) S X c - S X exp(-t Theta) c| + |exp(-t A) S Q y|.
- * With exp(-t A) X - X exp(-t Theta) = - int exp(-(t - s) A) R exp(-s Theta) ds the first is at most
- *     exp(-t low) sum_i |r_i| min(t, 1/(theta_i - low)) |c_i|.
- * No gap enters. Without R the complement of X would be invariant, A >= next - |R| there by the count of
- * eigenvalues (Weyl's inequality), and in the same way the second is at most
- *     exp(-t low) (exp(-t (next - |R| - low)) + |R|/(next - |R| - low)) |Q y|.
- * Every term carries exp(-t low), so that the error is small beside distances of 1e-200 as well. */
+ *     d_t(x,y)^2 = sum_i exp(-2 t lambda_i) (x_i(x) - x_i(y))^2 = |K_t B^-1 (e_x - e_y)|^2
+ * does not cancel, however small it is; its bounds are in [25]. Constants drop out within a component. */
 
-/* The sum over the pairs between one vertex and all others at one time. */
+/* Distances between a source and all vertices at one time. */
 typedef struct hdi_mode_sum {
-    const hdi_modes *of;
+    hdi_spec_sums sums;
     const hd_laplacian *lap;
-    int weighted;
-    const double *x;             /* [n count] of vectors, or of B times them */
-    hdi_decay decay;
     hdi_terms source;
     int32_t own;                 /* its component, -1: none, or several */
     double share[HDI_MODES_FIRST];   /* what the constant of each component takes of it */
-    double left, whole;          /* |Q y| and |y| there, or bounds */
     double constant_off;         /* what rounding of the sums over the source makes of the constants' part */
     double at, rest;             /* B 1 there, in two doubles */
-    double *d;                   /* [n] */
-    double *part;                /* [2 n] the errors by residuals, then by what is left out, without scale */
 } hdi_mode_sum;
 
-/* The square of |y| at one vertex, all of it and what the pairs leave. */
-static double hdi_modes_whole(const hdi_mode_sum *a, int32_t v) {
-    const int32_t r = a->lap->row[v];
-    return r < 0 ? 0 : a->weighted ? a->lap->b_diag[r] : hdi_inverse_mass(a->lap, r);
-}
-
-static double hdi_modes_left(const hdi_mode_sum *a, int32_t v) {
-    return (a->weighted ? a->of->s.left_mass[v] : a->of->s.left[v]) + a->of->off_gram * hdi_modes_whole(a, v);
-}
-
-/* The norms of |y| at the source: bounds of them where it has several vertices. */
-static double hdi_modes_source_norm(const hdi_mode_sum *a, int left) {
-    double sum = 0;
-    int32_t q;
-    for (q = 0; q < a->source.n; q++) {
-        const int32_t v = hdi_terms_at(&a->source, q);
-        const double norm2 = left ? hdi_modes_left(a, v) : hdi_modes_whole(a, v);
-        sum += fabs(hdi_terms_weight(&a->source, q)) * sqrt(norm2);
-    }
-    return sum;
-}
-
-/* A vector's entry at the source. */
-static double hdi_modes_source_value(const hdi_mode_sum *a, const double *x, int plain) {
-    double sum = 0;
-    int32_t q;
-    for (q = 0; q < a->source.n; q++) {
-        const int32_t v = hdi_terms_at(&a->source, q);
-        sum += hdi_terms_weight(&a->source, q) * (x[v] * (plain ? 1 : a->of->by[v]));
-    }
-    return sum;
-}
-
 static void hdi_mode_sum_from(hdi_mode_sum *a, hdi_terms source) {
+    const int weighted = a->sums.mass;
+    const double *one = a->sums.of->one;
     int32_t q;
+    hdi_spec_sum_from(&a->sums, &source);
     a->source = source;
     a->own = hdi_terms_component(a->lap, &source);
-    a->left = hdi_modes_source_norm(a, 1);
-    a->whole = hdi_modes_source_norm(a, 0);
-    a->at = hdi_terms_value(&source, a->of->one);
-    a->rest = hdi_terms_value(&source, a->of->one + a->lap->n);
+    a->at = hdi_terms_value(&source, one);
+    a->rest = hdi_terms_value(&source, one + a->lap->n);
     memset(a->share, 0, sizeof a->share);
     a->constant_off = 0;
-    for (q = 0; q < source.n && a->decay.first > 0; q++) {
+    for (q = 0; q < source.n && a->sums.bank.first > 0; q++) {
         const int32_t v = hdi_terms_at(&source, q), row = a->lap->row[v];
-        const double w = hdi_terms_weight(&source, q), by = a->weighted ? w * a->of->one[v] : w;
+        const double w = hdi_terms_weight(&source, q), by = weighted ? w * one[v] : w;
         if (row < 0) continue;
         a->share[a->lap->component[row]] += by;
-        if (source.weight && (a->weighted || a->own < 0))
+        if (source.weight && (weighted || a->own < 0))
             a->constant_off += (source.n + 1) * DBL_EPSILON * fabs(by) /
                 sqrt(a->lap->component_mass[a->lap->component[row]]);
     }
@@ -22125,70 +22048,37 @@ static double hdi_modes_constant(const hdi_mode_sum *a, int32_t v) {
     const hd_laplacian *lap = a->lap;
     const int32_t j = lap->row[v], n = lap->n;
     const int32_t ci = a->own, cj = j < 0 ? -1 : lap->component[j];
-    const double *one = a->of->one;
+    const double *one = a->sums.of->one;
     double bi = 0, bj = 0, sum = 0;
     int32_t c;
-    if (a->decay.first == 0) return 0;
+    if (a->sums.bank.first == 0) return 0;
     for (c = 0; c < lap->n_components && ci < 0; c++) {
-        const double by = c == cj ? (a->weighted ? one[v] : 1) : 0;
+        const double by = c == cj ? (a->sums.mass ? one[v] : 1) : 0;
         sum = hdi_pythag(sum, (a->share[c] - by) / sqrt(lap->component_mass[c]));
     }
     if (ci < 0) return sum;
     if (ci == cj) {
-        if (!a->weighted) return 0;
+        if (!a->sums.mass) return 0;
         bi = a->at - one[v] + (a->rest - one[n + v]);
         return fabs(bi) / sqrt(lap->component_mass[ci]);
     }
-    bi = (a->weighted ? a->at : 1) / sqrt(lap->component_mass[ci]);
-    if (cj >= 0) bj = (a->weighted ? one[v] : 1) / sqrt(lap->component_mass[cj]);
+    bi = (a->sums.mass ? a->at : 1) / sqrt(lap->component_mass[ci]);
+    if (cj >= 0) bj = (a->sums.mass ? one[v] : 1) / sqrt(lap->component_mass[cj]);
     return hdi_pythag(bi, bj);
 }
 
-static void hdi_mode_sum_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_mode_sum *a = (const hdi_mode_sum *)arg;
-    const double *by = a->of->by;
-    const int64_t n = a->lap->n;
-    const int plain = !a->weighted || a->of->bx != NULL;
-    double *HDI_RESTRICT sum = a->d, *HDI_RESTRICT off = a->part, *HDI_RESTRICT out = a->part + n;
-    const double far_left = a->left;
-    int64_t v;
-    int32_t q;
-    for (v = begin; v < end; v++) sum[v] = off[v] = 0;
-    for (q = a->decay.first; q < a->of->s.count; q++) {
-        const double *x = a->x + q * n, w = a->decay.weight[q], c = a->decay.off[q];
-        const double from = hdi_modes_source_value(a, x, plain);
-        for (v = begin; v < end; v++) {
-            const double z = (plain ? x[v] : by[v] * x[v]) - from;
-            sum[v] += w * z * (w * z);
-            off[v] += c * fabs(z);
-        }
-    }
-    for (v = begin; v < end; v++) {
-        const int32_t at = (int32_t)v;
-        const double left = far_left + sqrt(hdi_modes_left(a, at));
-        out[v] = a->decay.cut * left;
-        off[v] += a->decay.mixed * left;
-        sum[v] = hdi_pythag(hdi_modes_constant(a, at), hdi_decayed(&a->decay, sqrt(sum[v])));
-    }
-}
-
-/* The largest error that rounding makes of a distance d: of sums, of exp(-t low) whose argument is rounded,
- * and of numbers below the normal ones. */
-static double hdi_modes_rounding(const hdi_mode_sum *a, int32_t v, double d) {
-    const double sums = (a->source.n - 1) * DBL_EPSILON;
-    const double off = a->decay.rounding * (a->whole + sqrt(hdi_modes_whole(a, v))) + sums * a->whole;
-    return hdi_decayed(&a->decay, off) + a->constant_off +
-           8 * (1 + hdi_min(a->decay.depth, HDI_EQUAL_BEYOND)) * DBL_EPSILON * d + 4 * DBL_MIN * DBL_EPSILON;
-}
-
-/* Notes the distance to v and its bound. */
+/* Makes the distance to v of the part that decays, and notes its bound. */
 static void hdi_mode_sum_note(const hdi_mode_sum *a, int32_t v, hdi_ledger *ledger, hd_report *rep) {
-    hdi_parts part;
-    part.rational = hdi_decayed(&a->decay, a->part[a->lap->n + v]);
-    part.solver = hdi_decayed(&a->decay, a->part[v]);
-    part.rounding = hdi_modes_rounding(a, v, a->d[v]);
-    rep->n_lost += a->d[v] < 10 * hdi_parts_sum(&part);
-    hdi_ledger_note(ledger, a->d[v], part);
+    const double still = hdi_modes_constant(a, v);
+    double *d = a->sums.column + v;
+    hdi_parts part = hdi_spec_off(&a->sums, v, still > 0 ? 0 : *d);
+    part.rounding += a->constant_off;
+    if (still > 0) {
+        *d = hdi_pythag(still, *d);
+        part.rounding += 8 * (1 + hdi_min(a->sums.bank.depth, HDI_EQUAL_BEYOND)) * DBL_EPSILON * *d;
+    }
+    rep->n_lost += *d < 10 * hdi_parts_sum(&part);
+    hdi_ledger_note(ledger, *d, part);
 }
 
 /* d from the source to all vertices; the account goes to the ledger. */
@@ -22197,8 +22087,8 @@ static void hdi_mode_sum_run(hdi_mode_sum *a, hdi_terms source, double *d, hdi_l
     const int32_t n = a->lap->n, only = source.weight ? -1 : source.one;
     int32_t v;
     hdi_mode_sum_from(a, source);
-    a->d = d;
-    hdi_parallel_ranges(ctx, n, 1024, hdi_mode_sum_task, a);
+    a->sums.column = d;
+    hdi_parallel_ranges(ctx, n, 1024, hdi_spec_sum_task, &a->sums);
     if (only >= 0) d[only] = 0;
     for (v = 0; v < n; v++)
         if (v != only) hdi_mode_sum_note(a, v, ledger, rep);
@@ -22207,22 +22097,11 @@ static void hdi_mode_sum_run(hdi_mode_sum *a, hdi_terms source, double *d, hdi_l
 /* Makes the sum for the time under way; arrays are in s. */
 static hd_status hdi_mode_sum_make(hdi_mode_sum *a, hdi_heat_call *h, const hdi_distance_row *kind,
                                    hdi_scope *s) {
-    hd_heat *heat = h->heat;
-    const hdi_modes *of = &heat->modes;
-    const uint64_t count = (uint64_t)of->s.count;
-    double *work;
-    hdi_modes_tell(heat, h->rep);
     memset(a, 0, sizeof *a);
-    a->of = of;
-    a->lap = heat->source;
-    a->weighted = kind->mass > 0;
-    if (a->weighted && hdi_modes_mass(heat, h->e) < 0) return h->e->status;
-    work = HDI_TAKE(s, double, 2 * ((uint64_t)heat->source->n + count) + 1);
-    if (!work) return h->e->status;
-    a->x = a->weighted && of->bx ? of->bx : of->s.vector;
-    a->decay = hdi_decay_at(of, h->ask.t[h->now], work);
-    a->part = work + 2 * count;
-    return HD_OK;
+    a->lap = h->heat->source;
+    if (hdi_late_make(&a->sums, h, 1, kind->mass > 0, s) >= 0)
+        a->sums.inner = HDI_TAKE(s, double, a->lap->n);
+    return h->e->status;
 }
 
 /* ---- distances to all vertices ---- */
@@ -22511,14 +22390,14 @@ static hd_status hdi_pairs_by_pairs(hdi_task *task) {
     hdi_mode_sum sum;
     int64_t q;
     if (!work || hdi_mode_sum_make(&sum, h, to->kind, &s) < 0) return hdi_scope_end(&s);
-    sum.d = work;
+    sum.sums.column = work;
     for (q = 0; q < to->n; q++) {
         d[q] = 0;
         if (to->i[q] == to->j[q]) continue;
         hdi_mode_sum_from(&sum, hdi_terms_vertex(to->i[q]));
-        hdi_mode_sum_task(&sum, to->j[q], (int64_t)to->j[q] + 1);
-        d[q] = work[to->j[q]];
+        hdi_spec_sum_task(&sum.sums, to->j[q], (int64_t)to->j[q] + 1);
         hdi_mode_sum_note(&sum, to->j[q], &ledger, h->rep);
+        d[q] = work[to->j[q]];
     }
     hdi_ledger_close(&ledger, h->rep);
     return hdi_scope_end(&s);
@@ -24877,25 +24756,25 @@ HEATDIFF_API hd_status hd_times_auto(const hd_laplacian *lap, int32_t n_times, d
 HEATDIFF_API hd_status hd_spectrum_columns(const hd_spectrum *s, hd_kernel kernel, int32_t n_times,
                                            const double *t, const hd_sources *sources, double *U,
                                            double *bound, size_t ldu, hd_error *err) {
-    hdi_spec_sums x = hdi_spec_sums_of(s, n_times, t, U, bound, ldu);
+    hdi_spec_sums x = hdi_spec_sums_of(n_times, t, U, bound, ldu);
     x.sources = sources;
-    return hdi_spec_sums_kernel(&x, kernel, err);
+    return hdi_spec_sums_kernel(&x, s, kernel, err);
 }
 
 HEATDIFF_API hd_status hd_spectrum_diagonal(const hd_spectrum *s, hd_kernel kernel, int32_t n_times,
                                             const double *t, double *D, double *bound, size_t ldd,
                                             hd_error *err) {
-    hdi_spec_sums x = hdi_spec_sums_of(s, n_times, t, D, bound, ldd);
+    hdi_spec_sums x = hdi_spec_sums_of(n_times, t, D, bound, ldd);
     x.diagonal = 1;
-    return hdi_spec_sums_kernel(&x, kernel, err);
+    return hdi_spec_sums_kernel(&x, s, kernel, err);
 }
 
 HEATDIFF_API hd_status hd_spectrum_distance(const hd_spectrum *s, hd_distance_kind kind, int32_t n_times,
                                             const double *t, const hd_sources *sources, double *D,
                                             double *bound, size_t ldd, hd_error *err) {
-    hdi_spec_sums x = hdi_spec_sums_of(s, n_times, t, D, bound, ldd);
+    hdi_spec_sums x = hdi_spec_sums_of(n_times, t, D, bound, ldd);
     x.sources = sources;
-    return hdi_spec_sums_distance(&x, kind, err);
+    return hdi_spec_sums_distance(&x, s, kind, err);
 }
 
 HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const double *t, int32_t k,
