@@ -5399,6 +5399,14 @@ typedef struct hdi_cover {
     int64_t most_flips, work;
 } hdi_cover;
 
+/* old with n elements in a block of room elements; NULL, old freed, when there is none. */
+static void *hdi_regrow(hdi_cover *c, void *old, int64_t n, int64_t room, size_t size) {
+    void *block = c->e->status < 0 ? NULL : hdi_alloc(c->ctx, (uint64_t)room, size, c->e);
+    if (block && n > 0) memcpy(block, old, (size_t)n * size);
+    hdi_free(c->ctx, old);
+    return block;
+}
+
 /* Room for more faces: at least twice as many as before. */
 static hd_status hdi_cover_room(hdi_cover *c, int64_t more) {
     const int64_t n = c->n, need = n + more, twice = 2 * (int64_t)c->room, most = INT32_MAX / 3;
@@ -5406,10 +5414,8 @@ static hd_status hdi_cover_room(hdi_cover *c, int64_t more) {
     if (need <= c->room) return HD_OK;
     if (room > most)
         return hdi_fail(c->e, HD_ERR_TOO_LARGE, "more than 2^31 face corners in a cover of two sheets");
-    c->side = (hdi_side *)hdi_grown(c->ctx, c->side, 3 * (uint64_t)n, 3 * (uint64_t)room, sizeof *c->side,
-                                    c->e);
-    if (c->side)
-        c->area = (double *)hdi_grown(c->ctx, c->area, (uint64_t)n, (uint64_t)room, sizeof *c->area, c->e);
+    c->side = (hdi_side *)hdi_regrow(c, c->side, 3 * n, 3 * room, sizeof *c->side);
+    c->area = (double *)hdi_regrow(c, c->area, n, room, sizeof *c->area);
     if (c->e->status >= 0) c->room = (int32_t)room;
     return c->e->status;
 }
