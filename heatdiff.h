@@ -17485,7 +17485,7 @@ static double hdi_bank_rounding(const hdi_bank *b, double size, double value) {
 /* Bounds of the error of a value, an inner product of g with the answer to f. */
 static hdi_parts hdi_bank_off(const hdi_spec_sums *a, const hdi_share *g, const hdi_share *f, double value) {
     const hdi_bank *b = &a->bank;
-    hdi_parts off = {0, 0, 0, 0};
+    hdi_parts off = {0, 0, 0};
     if (g->whole == 0 || f->whole == 0) return off;
     off.rational = hdi_decayed(b, hdi_bound_times(b->cut, g->left * f->left));
     off.solver = hdi_decayed(b, hdi_bound_times(b->square, g->left * f->left) +
@@ -17506,7 +17506,7 @@ static hdi_parts hdi_spec_off(const hdi_spec_sums *a, int32_t v, double d) {
     const hdi_bank *b = &a->bank;
     const hdi_share g = hdi_share_of(a, v, a->mass && a->distance);
     const hdi_share f = a->diagonal ? hdi_share_of(a, v, a->mass) : a->from;
-    hdi_parts off = {0, 0, 0, 0}, square;
+    hdi_parts off = {0, 0, 0}, square;
     hdi_share y = f;
     double beside;
     if (!a->distance) return hdi_bank_off(a, &g, &f, d);
