@@ -810,10 +810,10 @@ typedef struct hd_geodesic_report {
 } hd_geodesic_report;
 
 /* ==== [D] functions ==== */
-/* Common to all functions. Arguments come in this order: the object that is made, or that the function works
- * on; what is asked for; the input; the output; report; err. A count stands before its array, except for
- * meshes and points, which are xyz, n. opts, ctx, report and err may be NULL. After an error nothing is left
- * allocated, *out is unchanged, and output arrays hold unspecified numbers.
+/* Common to all functions. Arguments come in this order: the object made or worked on; what is asked for; the
+ * input; the output; report; err. A count stands before its array, except for meshes and points (xyz, n).
+ * opts, ctx, report and err may be NULL, as may what is freed. After an error nothing is left allocated,
+ * *out is unchanged, and output arrays hold unspecified numbers.
  * Errors lists what says where in the input the fault lies, or has a special cause. Besides, any function may
  * return HD_ERR_ARGUMENT (a pointer is missing, a size is negative, an option is out of its range or was not
  * cleared), HD_ERR_TOO_LARGE, HD_ERR_MEMORY, HD_ERR_MEMORY_LIMIT, HD_ERR_CANCELLED and HD_ERR_NOT_BUILT. */
@@ -919,7 +919,7 @@ HEATDIFF_API hd_status hd_laplacian_update(hd_laplacian *lap, const hd_mesh *mes
 HEATDIFF_API hd_status hd_laplacian_update_matrices(hd_laplacian *lap, const hd_csr *L,
                                                     const hd_csr *B, double h, hd_error *err);
 
-HEATDIFF_API void hd_laplacian_free(hd_laplacian *lap);  /* NULL is fine */
+HEATDIFF_API void hd_laplacian_free(hd_laplacian *lap);
 
 /* ---- neighbours of points ---- */
 
@@ -944,12 +944,12 @@ HEATDIFF_API hd_status hd_neighbours_nearest(const double *xyz, int32_t n, const
 HEATDIFF_API hd_status hd_rational_exp(hd_rational *out, hd_pole_kind kind, int32_t degree,
                                        hd_error *err);
 
-/* Kernel sets for many times that share their poles.
+/* Kernel sets for many times that share their poles: theta_i/t[q] is the same for all q, so that one set of
+ * factors serves every time.
  * out    [n_times] out[q] is the set for t[q]
  * t      [n_times] > 0, in any order
- * tol    bound of max_weighted_error of every set
- * theta_i/t[q] is the same for all q, so that one set of factors serves every time. At tol = 1e-6 there are
- * 8, 12 and 16 pairs for times that differ by 10, 100 and 1000.
+ * tol    bound of max_weighted_error of every set; at 1e-6 there are 8, 12 and 16 pairs for times that differ
+ *        by 10, 100 and 1000
  * Errors HD_ERR_ARGUMENT: a time is not positive and finite (row), or there is no such set (value: the ratio
  *        of the times)
  * Cost   under a millisecond for each time
@@ -1081,8 +1081,8 @@ HEATDIFF_API hd_status hd_ldl_solve(hd_ldl *f, int32_t k, const double *b, size_
                                     size_t ldx, hd_error *err);
 
 /* Solves A_q x_q = b_q for all matrices of the last complex factorisation: b_q = b + q ldb, x_q = x + q ldx.
- * ldx = 0 means n. ldb = 0 means the same b for all. x may be b if ldb is ldx or 0. Errors as above; cost: as
- * above for each matrix, four times the flops. */
+ * ldx = 0 means n. ldb = 0 means the same b for all. x may be b if ldb is ldx or 0. Errors as above; four
+ * times the flops for each matrix. */
 HEATDIFF_API hd_status hd_ldl_solve_complex(hd_ldl *f, const hd_c64 *b, size_t ldb, hd_c64 *x,
                                             size_t ldx, hd_error *err);
 
@@ -1099,7 +1099,7 @@ HEATDIFF_API hd_status hd_ldl_inverse(hd_ldl *f, double *values, double *diag, h
 HEATDIFF_API hd_status hd_ldl_inverse_complex(hd_ldl *f, hd_c64 *values, hd_c64 *diag,
                                               hd_error *err);
 
-HEATDIFF_API void hd_ldl_free(hd_ldl *f);  /* NULL is fine */
+HEATDIFF_API void hd_ldl_free(hd_ldl *f);
 
 /* ---- heat ---- */
 
@@ -1111,7 +1111,7 @@ typedef struct hd_heat hd_heat;
  * Errors HD_ERR_INDEX (row: perm is not a permutation) */
 HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap,
                                       const hd_heat_opts *opts, hd_error *err);
-HEATDIFF_API void hd_heat_free(hd_heat *heat);  /* NULL is fine */
+HEATDIFF_API void hd_heat_free(hd_heat *heat);
 
 /* Other pole sets for a plan, in place of hd_heat_opts.rational. Ordering, analysis and memory stay, and
  * factors too if the sets have the t and the poles of those before.
@@ -1131,22 +1131,20 @@ HEATDIFF_API hd_status hd_heat_set_rational(hd_heat *heat, int32_t count, const 
  * err    NULL, or the error, which report->error has as well */
 
 /* U = K_t F at each time.
- * t      >= 0. t = 0 copies F. For large t the answer tends to the mean over each component; t may be
- *        arbitrarily large.
+ * t      >= 0; t = 0 copies F. For large t, which may be arbitrarily large, the answer tends to the mean over
+ *        each component.
  *        Where all heat flows out (every component has held vertices, or an L of your own does not conserve
  *        it) the answer falls like exp(-t lambda_1), while the error of poles does not. Methods auto and
  *        direct then take the few eigenpairs left, for columns, entries, diagonals and traces as well. Where
  *        all values underflow the bound is above 1 or infinite, with HD_WARN_ACCURACY
  * F      n x k doubles, column-major, columns ldf apart (0: n)
  * U      n x (k n_times), column q n_times + m for field q and time m, columns ldu apart (0: n). With one
- *        time U may be F. With the default degree, all fields of a call use the largest degree that one of
- *        them needs
+ *        time U may be F. By default all fields of a call use the largest degree that one of them needs
  * Errors HD_ERR_NOT_FINITE (row, column), HD_ERR_NOT_CONVERGED, HD_ERR_BREAKDOWN (vertex: where the answer
  *        overflows), HD_ERR_NOT_POSITIVE; HD_WARN_ACCURACY
  * Cost   direct: one factorisation of all poles for each new t, then one sweep through the factors for eight
  *        fields at a time. krylov: one real factorisation, then 15 to 30 real solves for each field; one
- *        factor and one basis serve all times within one or two decades. iterative: one solve for each pole,
- *        started from the solutions before it, up to four fields in parallel
+ *        factor and one basis serve all times within one or two decades. iterative: one solve for each pole
  * Source the paper, eqs. (8) and (9), with the signs given at the top of the file */
 HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const double *t, int32_t k,
                                      const double *F, size_t ldf, double *U, size_t ldu,
@@ -1168,22 +1166,18 @@ HEATDIFF_API hd_status hd_heat_derivative(hd_heat *heat, int32_t n_times, const 
                                           int32_t k, const double *F, size_t ldf, double *U,
                                           size_t ldu, hd_report *report, hd_error *err);
 
-/* U = K_t' G = B K_t B^-1 G, the transpose, at each time: g' K_t f = f' K_t' g.
- * G, U   as F and U above. The sum of the values is kept. Vertices without mass keep their values; held ones
- *        have 0
+/* U = K_t' G = B K_t B^-1 G, the transpose, at each time: g' K_t f = f' K_t' g. It keeps the sum of the
+ * values. G, U   as F and U above
  * report error_bound_b is in the norm of B^-1, in which |K_t' g| <= |g|
  * Errors and cost as hd_heat_apply; a full B takes about 30 further products with B for each field */
 HEATDIFF_API hd_status hd_heat_adjoint(hd_heat *heat, int32_t n_times, const double *t, int32_t k,
                                        const double *G, size_t ldg, double *U, size_t ldu,
                                        hd_report *report, hd_error *err);
 
-/* Columns of the kernel: K_t c or k_t c, with the functional c of each source, which is the sum of the
- * columns of its vertices with the weights c_v. The column of K_t for a vertex s is K_t e_s: the field at
- * time t that starts as 1 at s and 0 elsewhere; its total heat 1'B u is the mass of s. That of k_t is the
- * field at time t of heat placed where the source is, as much as its weight.
- * U      as above, with sources in place of fields. The column of a vertex without mass is its unit vector
- *        for K_t, and zero for k_t. That of a held vertex is zero. A source of one vertex with weight 1 gives
- *        that vertex' column to the last bit
+/* Columns of the kernel: K_t c or k_t c, with the functional c of each source. For a vertex s K_t e_s is the
+ * field at time t that starts as 1 at s and 0 elsewhere, and k_t e_s that of one unit of heat placed at s.
+ * U      as above, with sources in place of fields; zero for a vertex without mass and k_t. A source of one
+ *        vertex with weight 1 gives that vertex' column to the last bit
  * Errors and cost as hd_heat_apply; HD_ERR_INDEX, HD_ERR_NOT_FINITE, HD_ERR_ARGUMENT (column: which source,
  *        row: which of its points, vertex): coordinates of a point are negative or do not sum to 1, a curve
  *        has one point or no length, or needs coordinates that the Laplacian does not have, or the sizes of
@@ -1261,9 +1255,9 @@ HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, in
  * t      >= 0; ignored by commute and biharmonic, with n_times 0 or 1
  * d      [n_pairs n_times], time by time
  * The distance is |K_t B^-1 (e_i - e_j)|_B, from the columns at t of all vertices that occur, without
- * cancellation, or from eigenpairs as above. If these columns would take more than half a GiB, it comes from
- * entries and the diagonal at 2t, one column at a time; sort the pairs by i in that case. Commute and
- * biharmonic always work that way. Plans of method iterative or krylov take columns of as many pairs as fit.
+ * cancellation, or from eigenpairs as above. If these columns would take more than half a GiB, and always for
+ * commute and biharmonic, it comes from entries and the diagonal at 2t, one column at a time: sort the
+ * pairs by i then. Plans of method iterative or krylov take columns of as many pairs as fit.
  * Errors as hd_heat_columns; HD_ERR_INDEX (vertex, row: which pair). HD_ERR_ARGUMENT: commute, biharmonic and
  *        distances of a filter need the direct method
  * Cost   one column for each distinct vertex, or for each of those taken at a time; from entries one for each
@@ -1273,8 +1267,7 @@ HEATDIFF_API hd_status hd_heat_distance_pairs(hd_heat *heat, hd_distance_kind ki
                                               const int32_t *j, double *d, hd_report *report,
                                               hd_error *err);
 
-/* Farthest points: each is the vertex farthest from all sources and all points before it, under the given
- * distance.
+/* Farthest points: each is the vertex farthest from all sources and all points before it.
  * t        > 0; ignored by commute and biharmonic
  * sources  that come before all points, as in hd_heat_distance. NULL: none; the first vertex with mass is
  *          then the first point
@@ -1291,8 +1284,7 @@ HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, doub
 /* Single entries of K_t or k_t.
  * t      >= 0
  * values [n_pairs n_times], time by time: the entry (i[q], j[q])
- * report the bound is relative to the largest |value| in the list. Far from the source, where the kernel is
- *        nearly zero, it may say nothing about a single value
+ * report the bound is relative to the largest |value| in the list, and may say nothing about small ones
  * Errors as hd_heat_columns; HD_ERR_INDEX (vertex, row: which pair)
  * Cost   one column for each distinct j, with n doubles of memory at a time */
 HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t n_times,
@@ -1311,7 +1303,7 @@ HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t 
  * Source Grimes, Lewis, Simon 1994: block Lanczos with shifts, eigenvalues counted by Sylvester's law */
 HEATDIFF_API hd_status hd_spectrum_create(hd_spectrum **out, const hd_laplacian *lap,
                                           const hd_spectrum_opts *opts, hd_error *err);
-HEATDIFF_API void hd_spectrum_free(hd_spectrum *s);  /* NULL is fine */
+HEATDIFF_API void hd_spectrum_free(hd_spectrum *s);
 
 /* Kernels and distances from the pairs of s, as in eq. (1) of the paper: sums of exp(-t lambda_i) x_i(x)
  * x_i(y) and the like. All else is as in hd_heat_columns, hd_heat_diagonal and hd_heat_distance.
@@ -1351,17 +1343,15 @@ HEATDIFF_API hd_status hd_heat_estimate(hd_heat *heat, hd_query query, int32_t n
 typedef struct hd_geodesic hd_geodesic;
 
 /* A plan for distances along a surface, by the heat method.
- * mesh   as in hd_laplacian_create, whose errors it has
- * opts   NULL: t = h^2, barycentric masses, natural border. Use a Delaunay triangulation if there are
- *        slivers: on cells squeezed 1:20 it lowers mean errors from 0.19 to 0.003 of the width
- * Gradients on polygons are those of Alexa and Wardetzky 2011. Points must be tufted, because exponential
- * weights have no gradient. On quadrangles, hexagons and evenly spread points, distances are as accurate as
- * on triangles with edges of the same length.
+ * mesh   as in hd_laplacian_create, whose errors it has. Points must be tufted, because exponential weights
+ *        have no gradient. If there are slivers, use a Delaunay triangulation
+ * opts   NULL: t = h^2, barycentric masses, natural border
  * Errors HD_ERR_BREAKDOWN (vertex: a pivot too small to divide by)
  * Cost   assembly, one analysis, two real factorisations. The plan keeps both: 16 bytes for each non-zero of
  *        the factor, and about 430 bytes for each vertex; polygons 28 bytes more for each corner, and 12 for
  *        each non-zero of L
- * Source Crane, Weischedel, Wardetzky 2013, algorithm 1 and section 3.2.1 */
+ * Source Crane, Weischedel, Wardetzky 2013, algorithm 1 and section 3.2.1; gradients on polygons: Alexa,
+ *        Wardetzky 2011 */
 HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const hd_mesh *mesh,
                                           const hd_geodesic_opts *opts, hd_error *err);
 /* New positions for the same triangles, of a plan made with the option updatable.
@@ -1370,7 +1360,7 @@ HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const hd_mesh *mesh
  *        nothing has changed. After any other error the plan answers no query until an update succeeds
  * Cost   one pass over faces and entries, and the two factorisations */
 HEATDIFF_API hd_status hd_geodesic_update(hd_geodesic *g, const hd_mesh *mesh, hd_error *err);
-HEATDIFF_API void hd_geodesic_free(hd_geodesic *g);  /* NULL is fine */
+HEATDIFF_API void hd_geodesic_free(hd_geodesic *g);
 
 /* The distance of every vertex to each source: to the nearest of its points, or to its curve.
  * sources  weights and lengths are ignored. Points that are no vertices, and every piece of a curve, must
