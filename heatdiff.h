@@ -18342,8 +18342,8 @@ typedef struct hdi_heat_call {
 
 static double hdi_heat_scaled(const hd_heat *heat, double t) {
     const double most = hdi_min(1e300, hdi_quotient(HDI_ENDLESS, heat->lambda_max));
-    if (!heat->opts.rational && t * heat->scale * heat->lambda_max <= HDI_STILL) return 0;
-    return hdi_min(t * heat->scale, most);
+    if (heat->opts.rational && t > 0) return hdi_max(1e-300, hdi_min(t * heat->scale, most));   /* r(0) is not 1 */
+    return t * heat->scale * heat->lambda_max <= HDI_STILL ? 0 : hdi_min(t * heat->scale, most);
 }
 
 /* What the plan keeps of the pair as a whole. */

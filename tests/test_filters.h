@@ -325,6 +325,25 @@ static hd_heat *filt_plan(const hd_laplacian *lap, const hd_rational *set, const
     return heat;
 }
 
+/* A filter is what it is at any time, however small: r(0) need not be 1. */
+static void filt_early(void) {
+    static const double t[3] = {1e-12, 1e-250, 5e-324};
+    const hd_laplacian *lap = kit_pair("ico/1 voronoi");
+    double *u = KIT_NEW(double, lap->n);
+    hd_rational set;
+    hd_heat *heat;
+    int k;
+    memset(&set, 0, sizeof set);
+    set.degree = set.n_poles = 1;
+    set.theta[0].re = 2;
+    set.a[0].re = -1;                            /* 1/(2 - x) */
+    heat = filt_plan(lap, &set, "");
+    for (k = 0; k < 3; k++) {
+        CHECK(heat_column(heat, t[k], 5, u, NULL) >= 0);
+        CHECK_MSG(fabs(u[5] - 0.5) < 1e-9 && fabs(u[6]) < 1e-9, "t %g: %g, %g", t[k], u[5], u[6]);
+    }
+}
+
 /* Without times, with that of the set: the same answers to the bit. Distances are those of entries. What reports say of a filter. */
 static void filt_pairs(void) {
     enum { N = 20 };
@@ -614,6 +633,7 @@ static void test_filters(void) {
     filt_arguments();
     filt_cases();
     filt_pairs();
+    filt_early();
     filt_one_plan();
     filt_shared();
     filt_refused();
