@@ -9,18 +9,16 @@
 
        K_t f = a0 f - sum_i a_i (t L + theta_i B)^-1 B f,
 
-   which takes a handful of sparse complex-symmetric systems. No part of the spectrum is cut off; eigenpairs
-   serve only where t is so large that few are left. Every answer comes with a bound on its error. The method
-   is that of G. Patane and M. Spagnuolo, "Heat diffusion kernel and distance on surface meshes and point
-   sets", Computers & Graphics 37, 2013, called the paper below.
+   that is a handful of sparse complex-symmetric systems. No part of the spectrum is cut off. Every answer
+   comes with a bound on its error. The method is that of G. Patane and M. Spagnuolo, "Heat diffusion kernel
+   and distance on surface meshes and point sets", Computers & Graphics 37, 2013, called the paper below.
 
    In one C or C++ file:                             Everywhere else:
 
        #define HEATDIFF_IMPLEMENTATION                   #include "heatdiff.h"
        #include "heatdiff.h"
 
-   and link with -lm. Give the implementation a file of its own: it takes about 12 s to compile at -O2. Two
-   calls make a heat kernel of a triangle mesh:
+   and link with -lm. Give the implementation, which takes about 12 s to compile at -O2, a file of its own:
 
        hd_laplacian *lap = NULL;  hd_heat *heat = NULL;  hd_error err;
        hd_mesh mesh = hd_triangles(xyz, n, tri, n_tri);
@@ -32,13 +30,13 @@
    Conventions
      sign     L is positive semi-definite: minus the usual cotangent matrix of libigl. Its rows sum to zero.
      units    L has no unit. B is an area, and so is t (length squared). If B = I (kind cot), t is a number.
-     t        Times are usually chosen as t = c h^2, where h = lap->h is the mean edge length. Below h^2 heat
-              sees the mesh rather than the surface.
+     t        usually c h^2, where h = lap->h is the mean edge length. Below h^2 heat sees the mesh rather
+              than the surface.
      kernels  K_t is not symmetric: its column i diffuses the indicator of vertex i, whose heat is the mass
               b_i. The pointwise kernel k_t = K_t B^-1, unit 1/area, is symmetric: its column i diffuses one
               unit of heat at vertex i.
      border   natural (Neumann): no heat leaves. On request the border, or any vertices, are held at zero
-              (Dirichlet), and heat leaves there. Separate components exchange no heat.
+              (Dirichlet), and heat leaves there.
      mass     Vertices without mass (in no face, or only in faces of zero area) are inert: their row and
               column of K_t are those of the identity, those of k_t are zero. Of held vertices both are zero.
      norm     |f|_B = sqrt(f' B f).
@@ -69,30 +67,29 @@
      HEATDIFF_AUDIT            more asserts, which take time; on by itself under the address sanitizer
      HEATDIFF_MALLOC(size), HEATDIFF_FREE(p)
                                used by contexts without an allocator; define both or none
-     HEATDIFF_FILENAME         "name" of this file, which includes itself. Define it only if you renamed the
-                               file and the compiler has no __FILE_NAME__
+     HEATDIFF_FILENAME         "name" of this file, which includes itself: only if you renamed it and the
+                               compiler has no __FILE_NAME__
      HEATDIFF_USE_BLAS         dgemm of a BLAS (32-bit integers) for large fronts of real factors, where
                                neither AVX2 nor AVX-512 serves
      HEATDIFF_NO_SIMD          plain C: no kernels for AVX2, AVX-512 and NEON
-     HEATDIFF_NO_THREADS       serial. Threads need POSIX threads or Windows, and atomic operations of GCC,
-                               Clang or MSVC; elsewhere this is set by itself
+     HEATDIFF_NO_THREADS       serial; set by itself without POSIX threads or Windows, and without the atomic
+                               operations of GCC, Clang or MSVC
      HEATDIFF_NO_LARGE_PAGES   no madvise for large pages on Linux
 
-   More macros there, for smaller builds. (The linker drops functions that nobody calls by itself, with gcc
-   -ffunction-sections -Wl,--gc-sections.) What is left out returns HD_ERR_NOT_BUILT, and the error names the
-   macro. HD_METHOD_AUTO chooses among what is there.
+   More macros there, for smaller builds, where -ffunction-sections -Wl,--gc-sections does not drop enough.
+   What is left out returns HD_ERR_NOT_BUILT, and the error names the macro. HD_METHOD_AUTO chooses among what
+   is there.
      HEATDIFF_NO_DIRECT        all factorisations: hd_ldl_*, method krylov; implies NO_POLE_FACTORS,
                                NO_GEODESIC, NO_SPECTRUM. hd_laplacian_matrices finds b_ratio by Gershgorin's
                                circles alone
      HEATDIFF_NO_POLE_FACTORS  complex factors: method direct, hd_ldl_*_complex; implies NO_DIAGONAL
      HEATDIFF_NO_DIAGONAL      selected inversion: hd_heat_diagonal, hd_ldl_inverse*, diagonal pole sets;
-                               implies NO_DIFFUSION. Method direct then has larger error bounds, and takes
-                               longer at times so large that only the means are left
+                               implies NO_DIFFUSION. Method direct then has larger error bounds
      HEATDIFF_NO_DIFFUSION     hd_heat_distance, hd_heat_distance_pairs, hd_heat_sample
-     HEATDIFF_NO_SPECTRUM      hd_spectrum_*. Distances at large t, and all answers where heat flows out, are
-                               less accurate then; their bounds say so
-     HEATDIFF_NO_ITERATIVE     method iterative, hd_shifted_solve. Your choice of poles then needs method
-                               direct, and factors that do not fit byte_limit are an error
+     HEATDIFF_NO_SPECTRUM      hd_spectrum_*. Bounds of distances at large t, and of all answers where heat
+                               flows out, are larger then
+     HEATDIFF_NO_ITERATIVE     method iterative, hd_shifted_solve. Factors that do not fit byte_limit are an
+                               error then
      HEATDIFF_NO_GEODESIC      hd_geodesic_*
      HEATDIFF_NO_INTRINSIC     the triangulations Delaunay and tufted
      HEATDIFF_NO_POINTS        HD_POINTS, hd_neighbours_*
@@ -105,17 +102,15 @@
 
    Limits
      Vertices and faces are counted in 32 bits, non-zeros and offsets in 64. The library prints nothing, opens
-     no file and never exits. Arithmetic must be that of doubles (FLT_EVAL_METHOD 0): with x87 registers
-     (32-bit x86 without -msse2 -mfpmath=sse) or -ffast-math neither bits nor bounds near rounding are
-     promised.
+     no file and never exits. With x87 registers (32-bit x86 without -msse2 -mfpmath=sse) or -ffast-math
+     neither bits nor bounds near rounding are promised.
 
    Threads
      There is no global or thread-local state. An object or a context serves one thread at a time. Only a
-     Laplacian may be shared, by threads whose plans (hd_heat) and spectra have a context each in their
-     options: these read it and do not change it.
+     Laplacian may be shared, by threads whose plans (hd_heat) and spectra have a context each.
      The library's own threads belong to a context. They start with its first long work, sleep between calls,
-     and end with the last object made with it. The calling thread works too. Results are the same to the last
-     bit for any number of threads. If each of your threads has a plan, set hd_context.n_threads = 1.
+     and end with the last object made with it. Results are the same to the last bit for any number of them.
+     If each of your threads has a plan, set hd_context.n_threads = 1.
      A forked child may use and free the objects of its parent. Do not fork while another thread is inside
      the library. With glibc older than 2.34 link with -lpthread, otherwise programs run on one thread. On
      Windows the implementation includes windows.h.
@@ -188,9 +183,8 @@ typedef struct hd_error {
     int64_t face, vertex;  /* ids as the caller numbers them */
     int64_t row, column;   /* of a matrix or of a field */
     int64_t pole;          /* index in the rational set, or of the matrix in a complex factorisation */
-    /* The offending value, or 0. HD_ERR_MEMORY_LIMIT: a byte_limit below this is too small (or an
-     * allocation_limit, if the text says so); before a factorisation it is all that this and what follows
-     * need. */
+    /* The offending value, or 0. HD_ERR_MEMORY_LIMIT: a byte_limit (or, if the text says so, an
+     * allocation_limit) below this is too small. */
     double value;
 } hd_error;
 
@@ -208,20 +202,14 @@ typedef struct hd_allocator {
 /* One task of a parallel loop. worker numbers the threads; 0 is the thread that called the library. */
 typedef void (*hd_task)(void *arg, int64_t index, int32_t worker);
 
-/* Instruction sets of the dense kernels, by GCC and Clang on x86-64. Elsewhere they are plain C, with the
- * multiply-adds of NEON on AArch64. Results of two sets agree up to rounding. */
-typedef enum hd_simd {
-    HD_SIMD_AUTO = 0,           /* the best set that the processor has */
-    HD_SIMD_NONE,               /* plain C */
-    HD_SIMD_AVX2,               /* AVX2 with FMA, if the processor has it */
-    HD_SIMD_AVX512              /* AVX-512, if the processor has it */
-} hd_simd;
+/* Instruction sets of the dense kernels on x86-64, with GCC and Clang: by default the best that the processor
+ * has. Elsewhere they are plain C, on AArch64 with NEON. Results of two sets agree up to rounding. */
+typedef enum hd_simd { HD_SIMD_AUTO = 0, HD_SIMD_NONE, HD_SIMD_AVX2, HD_SIMD_AVX512 } hd_simd;
 
 typedef struct hd_threads hd_threads;            /* started and ended by the library */
 
-/* Memory, progress and threads of a computation. All zeros are defaults, as is NULL: malloc, no limits, no
- * progress, as many threads as the process may use processors. The context is the caller's and must outlive
- * every object made with it; do not copy it in the meantime. */
+/* Memory, progress and threads of a computation. All zeros are defaults, as is NULL. The context is the
+ * caller's and must outlive every object made with it; do not copy it in the meantime. */
 typedef struct hd_context {
     hd_allocator allocator;     /* both functions or none; NULL from alloc ends a call with HD_ERR_MEMORY */
     /* most bytes in use at one time; 0: no limit. Where one way would exceed it, others are tried */
@@ -229,16 +217,14 @@ typedef struct hd_context {
     uint64_t allocation_limit;  /* most calls of alloc; 0: no limit */
 
     /* Called now and then during long work, by the calling thread. done runs from 0 to 1 within a stage:
-     * "neighbours" (search among points), "assemble" (L and B), "flip edges" (Delaunay), "order" and
-     * "analyse" (of an elimination), "factor", "invert" (selected inversion), "precondition", "solve" (also
-     * iterations), "sample" (farthest points). If it cancels, the running function frees everything and
-     * returns HD_ERR_CANCELLED. */
+     * "neighbours", "assemble", "flip edges", "order", "analyse", "factor", "invert" (selected inversion),
+     * "precondition", "solve", "sample". If it cancels, the running function frees everything and returns
+     * HD_ERR_CANCELLED. */
     hd_progress (*progress)(void *user, const char *stage, double done);
     void *progress_user;
 
     /* Runs task(arg, i, worker) for every i in [0, n_tasks), in any order, and returns when all are done.
-     * Some tasks work for as long as they find something to do, so they should run side by side; none waits
-     * for another. NULL: the library's own threads. */
+     * Tasks should run side by side; none waits for another. NULL: the library's own threads. */
     void (*parallel_for)(void *user, int64_t n_tasks, hd_task task, void *arg);
     void *parallel_user;
     /* Threads, the calling one included. 0: one for each processor that the process may use; 1: serial.
@@ -847,20 +833,19 @@ HEATDIFF_API hd_mesh hd_triangles(const double *xyz, int32_t n, const int32_t *t
 /* Vertices as sources. */
 HEATDIFF_API hd_sources hd_vertices(int32_t count, const int32_t *vertex);
 
-/* The Laplacian of a mesh.
- * Triangles have the kinds fem (default), voronoi-cot and cot. Polygons, planar and convex or not, also have
- * polygon, their default; for other kinds every face is split into a fan from its first corner, and out->mesh
- * counts triangles, while errors name the polygon. Points have voronoi-exp (default) and exp; when
- * tufted, the kinds of triangles. Non-manifold edges and several components are allowed.
+/* The Laplacian of a mesh. Non-manifold edges and several components are allowed.
+ *          kinds (default first)
+ * triangles  fem, voronoi-cot, cot
+ * polygons   polygon, and those of triangles, for which every face is split into a fan from its first corner
+ *          (out->mesh counts triangles then, errors name the polygon). Faces may be neither planar nor
+ *          convex. The pattern of L contains their diagonals; on triangles L is the cotangent L
+ * points     voronoi-exp, exp; those of triangles when tufted. Let r_k be the distance of the k-th neighbour,
+ *          and m the mean of pi r_k^2/k, the area of a point. The default bandwidth2 is s = m (m/h^2)/4,
+ *          within 0.3 m and 1 m. A row has about 230 s/m non-zeros; weight_cut = 1e-4 halves that and changes
+ *          the operator by 0.1 %. For errors below 1 to 3 %, let s/m grow as points become denser
  * Delaunay, tufted: L and B of an intrinsic triangulation of the same surface on the same vertices. With
  *          voronoi-cot or cot heat then obeys the maximum principle
- * lengths  intrinsic geometry, such as a flat torus, without nested dissection. At an edge of three faces or
- *          more Delaunay and tufted triangulations take the sheets in the order of the faces
- * polygons the pattern of L contains the diagonals of the faces; on triangles L is the cotangent L
- * points   Let r_k be the distance of the k-th neighbour, and m the mean of pi r_k^2/k, the area of a point.
- *          The default bandwidth2 is s = m (m/h^2)/4, within 0.3 m and 1 m. A row has about 230 s/m
- *          non-zeros; weight_cut = 1e-4 halves that and changes the operator by 0.1 %. For errors below 1
- *          to 3 %, let s/m grow as points become denser
+ * lengths  intrinsic geometry, such as a flat torus, without nested dissection
  * tufted points have 7 to 13 non-zeros in a row. Their Delaunay stars in the tangent planes form a soup,
  *          which out->mesh describes, where each triangle counts a third. Points in no star are inert, as are
  *          searched points at the place of an earlier one. Sheets two spacings apart are kept separate (three
@@ -902,12 +887,12 @@ HEATDIFF_API hd_status hd_laplacian_apply(const hd_laplacian *lap, double alpha,
 
 /* New positions for the same faces, of a Laplacian with the option updatable. Plans on lap keep their
  * ordering and analysis, and compute with the new values from the next query on; none may be at work
- * meanwhile. mesh   n as before, and positions; its faces are not read
- * Rows, pattern, held vertices and faces that were left out stay; faces that lose their area are counted and
- * add nothing. All else is that of a new Laplacian, to the last bit, in the same arrays.
+ * meanwhile.
+ * mesh   n as before, and positions; its faces are not read
+ * Rows, pattern and held vertices stay, as do faces left out; those that lose their area are counted. All
+ * else is that of a new Laplacian, to the last bit, in the same arrays.
  * Errors as of hd_laplacian_create; HD_ERR_EMPTY (vertex: none of its faces has an area any more). After an
- *        error nothing has changed
- * Cost   one pass over faces and entries */
+ *        error nothing has changed */
 HEATDIFF_API hd_status hd_laplacian_update(hd_laplacian *lap, const hd_mesh *mesh, hd_error *err);
 
 /* The same for hd_laplacian_matrices.
@@ -938,7 +923,7 @@ HEATDIFF_API hd_status hd_neighbours_nearest(const double *xyz, int32_t n, const
 
 /* ---- rational approximations ---- */
 
-/* A built-in set: uniform, kernel or diagonal. tools/poles.py computes and checks the constants.
+/* A built-in set: uniform, kernel or diagonal.
  * Errors HD_ERR_ARGUMENT for any other kind or degree (value: a wrong degree)
  * Source Cody, Meinardus, Varga 1969; Carpenter, Ruttan, Varga 1984 */
 HEATDIFF_API hd_status hd_rational_exp(hd_rational *out, hd_pole_kind kind, int32_t degree,
@@ -952,12 +937,11 @@ HEATDIFF_API hd_status hd_rational_exp(hd_rational *out, hd_pole_kind kind, int3
  *        by 10, 100 and 1000
  * Errors HD_ERR_ARGUMENT: a time is not positive and finite (row), or there is no such set (value: the ratio
  *        of the times)
- * Cost   under a millisecond for each time
  * Source Lopez-Fernandez, Palencia, Schaedle 2006, with free poles instead of poles on a hyperbola */
 HEATDIFF_API hd_status hd_rational_shared(hd_rational *out, int32_t n_times, const double *t,
                                           double tol, hd_context *ctx, hd_error *err);
 
-/* c(x) for real x <= 0; for a filter's set x = -t lambda. Cost: one division for each pole. */
+/* c(x) for real x <= 0; for a filter's set x = -t lambda. */
 HEATDIFF_API double hd_rational_eval(const hd_rational *set, double x);
 
 /* Sets for filters f of the spectrum: K_t becomes f(B^-1 L), and k_t becomes f(B^-1 L) B^-1. Several filters
@@ -966,18 +950,17 @@ HEATDIFF_API double hd_rational_eval(const hd_rational *set, double x);
  * filters    [count] count >= 1. Degrees rise until tol is reached, or max_degree, which several filters
  *            ignore: these may have HD_MAX_POLES pairs
  * lambda_max that of the Laplacian, or more; 1/area
- * max_error is the largest |f - c| on 42,000 points: measured. Poles are found for at most 20 filters.
- * In distances f is what is summed in d^2, for example exp(-2 t lambda), and should not be negative.
+ * max_error is the largest |f - c| on 42,000 points: measured. In distances f is what is summed in d^2, for
+ * example exp(-2 t lambda), and should not be negative.
  * Errors     HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (value: the eigenvalue), HD_ERR_BREAKDOWN (a weight
  *            overflows), all with column: which filter. HD_WARN_ACCURACY: an error is above its tol
- * Cost       2 to 50 milliseconds, and 50 to 200 thousand values of f; a second for 16 filters, three to
- *            seven for 100
+ * Cost       2 to 50 milliseconds, and 50 to 200 thousand values of f; seconds for 100 filters
  * Source     Nakatsukasa, Sete, Trefethen 2018, with weights refitted to the poles; Lietaert, Meerbergen,
  *            Perez, Vandereycken 2022 for several functions at once */
 HEATDIFF_API hd_status hd_rational_fit(hd_rational *out, int32_t count, const hd_filter *filters,
                                        double lambda_max, hd_context *ctx, hd_error *err);
 
-/* f(lambda) itself, lambda >= 0 in 1/area. Cost: one value of f. */
+/* f(lambda) itself, lambda >= 0 in 1/area. */
 HEATDIFF_API double hd_filter_eval(const hd_filter *filter, double lambda);
 
 /* ---- shifted systems ---- */
@@ -1005,8 +988,6 @@ typedef struct hd_solve_report {
  * report filled also if the status is HD_ERR_NOT_CONVERGED
  * Errors HD_ERR_NOT_FINITE (row: of rhs, or of x if it overflows), HD_ERR_NOT_CONVERGED, HD_ERR_BREAKDOWN;
  *        HD_WARN_ACCURACY
- * Cost   an ordering and a preconditioner; one product with the matrix and one preconditioner solve for each
- *        iteration
  * Source see hd_solver */
 HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c64 theta,
                                         const hd_c64 *rhs, hd_c64 *x, const hd_solve_opts *opts,
