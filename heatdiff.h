@@ -985,7 +985,7 @@ typedef struct hd_solve_report {
  * t      >= 0, unit length^2
  * theta  not on (-inf, 0]; no unit
  * rhs, x [n] on the vertices; they may be the same array. x is 0 at vertices without mass
- * report filled also if the status is HD_ERR_NOT_CONVERGED
+ * report filled also with HD_ERR_NOT_CONVERGED
  * Errors HD_ERR_NOT_FINITE (row: of rhs, or of x if it overflows), HD_ERR_NOT_CONVERGED, HD_ERR_BREAKDOWN;
  *        HD_WARN_ACCURACY
  * Source see hd_solver */
@@ -996,9 +996,9 @@ HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c6
 /* ---- direct solver ---- */
 
 /* The factorisation P A P' = L D L' without pivoting, L unit lower triangular, D diagonal. It suits real
- * matrices that are definite or quasi-definite, and complex-symmetric matrices (A = A', never conjugated)
- * whose real part is definite after a rotation, such as t L + theta B. One analysis of a pattern serves any
- * number of factorisations, and these allocate nothing after the first of their kind. */
+ * matrices that are definite or quasi-definite, and complex-symmetric ones (A = A', never conjugated) whose
+ * real part is definite after a rotation, such as t L + theta B. One analysis of a pattern serves any number
+ * of factorisations. Only the first of each kind allocates. */
 typedef struct hd_ldl hd_ldl;
 
 typedef struct hd_ldl_opts {
@@ -1028,9 +1028,9 @@ typedef struct hd_ldl_report {
 } hd_ldl_report;
 
 /* Computes the ordering, the elimination tree and the supernodes.
- * a      n x n with a symmetric pattern. Its values are ignored, and diagonal entries may be missing
- * Errors HD_ERR_STRUCTURE, HD_ERR_INDEX, HD_ERR_NOT_SYMMETRIC (row, column); HD_ERR_NOT_FINITE (row; column:
- *        0 to 2) if a coordinate is not finite; HD_ERR_INDEX (row) if perm is not a permutation
+ * a      n x n with a symmetric pattern. Values are ignored, and diagonal entries may be missing
+ * Errors HD_ERR_STRUCTURE, HD_ERR_INDEX, HD_ERR_NOT_SYMMETRIC (row, column); HD_ERR_NOT_FINITE (row; column
+ *        0 to 2: a coordinate); HD_ERR_INDEX (row: perm is not a permutation)
  * Cost   nearly linear in the non-zeros of A, plus the ordering
  * Source Amestoy, Davis, Duff 1996; George 1973; Gilbert, Ng, Peyton 1994 */
 HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ldl_opts *opts,
@@ -1045,8 +1045,7 @@ HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ld
 HEATDIFF_API hd_status hd_ldl_factor(hd_ldl *f, const double *val, hd_ldl_report *report,
                                      hd_error *err);
 
-/* Factorises k complex-symmetric matrices in one sweep. Four at a time are stored side by side, so three cost
- * as much as four.
+/* Factorises k complex-symmetric matrices in one sweep, four at a time: three cost as much as four.
  * val    [k nnz], one matrix after the other
  * Errors as above; pole is the index of the matrix
  * Cost   for each four matrices 16 times the flops and 8 times the bytes of one real factor
@@ -1057,26 +1056,25 @@ HEATDIFF_API hd_status hd_ldl_factor_complex(hd_ldl *f, int32_t k, const hd_c64 
 /* Solves A x = b for k real right-hand sides, with the last real factorisation. Columns are ldb and ldx apart
  * (0: n). x may be b.
  * Errors HD_ERR_ARGUMENT (the last factorisation was not real, or failed)
- * Cost   4 factor_nnz flops for each right-hand side; the factor is read once for eight of them */
+ * Cost   4 factor_nnz flops for each right-hand side; eight at a time share the reading of the factor */
 HEATDIFF_API hd_status hd_ldl_solve(hd_ldl *f, int32_t k, const double *b, size_t ldb, double *x,
                                     size_t ldx, hd_error *err);
 
 /* Solves A_q x_q = b_q for all matrices of the last complex factorisation: b_q = b + q ldb, x_q = x + q ldx.
- * ldx = 0 means n. ldb = 0 means the same b for all. x may be b if ldb is ldx or 0. Errors as above; four
- * times the flops for each matrix. */
+ * ldx = 0 means n, ldb = 0 the same b for all. x may be b if ldb is ldx or 0. Errors as above; four times the
+ * flops for each matrix. */
 HEATDIFF_API hd_status hd_ldl_solve_complex(hd_ldl *f, const hd_c64 *b, size_t ldb, hd_c64 *x,
                                             size_t ldx, hd_error *err);
 
 /* Entries of A^-1 by selected inversion. A is the matrix of the last real factorisation, which is kept.
  * values [nnz] on the analysed pattern and in its order, both of each pair; NULL: not wanted
  * diag   [n] also where the pattern has no diagonal entry; NULL: not wanted
- * Errors HD_ERR_ARGUMENT (the last factorisation was not real, or failed)
+ * Errors as hd_ldl_solve
  * Cost   about twice the flops of the factorisation
  * Source Takahashi, Fagan, Chin 1973; Erisman, Tinney 1975 */
 HEATDIFF_API hd_status hd_ldl_inverse(hd_ldl *f, double *values, double *diag, hd_error *err);
 
-/* The same for all k matrices of the last complex factorisation: values [k nnz], diag [k n]. A^-1 is complex
- * symmetric like A. Errors and cost as above. */
+/* The same for all k matrices of the last complex factorisation: values [k nnz], diag [k n]. */
 HEATDIFF_API hd_status hd_ldl_inverse_complex(hd_ldl *f, hd_c64 *values, hd_c64 *diag,
                                               hd_error *err);
 
@@ -1086,69 +1084,64 @@ HEATDIFF_API void hd_ldl_free(hd_ldl *f);
 
 typedef struct hd_heat hd_heat;
 
-/* A plan for heat on lap, which must outlive it. Creating it is cheap: the first query at a time t pays for
- * the ordering and factors, or whatever else its method needs. The plan keeps them, the factors or
- * preconditioners of the last pole set and time only, so that further queries at the same t are much faster.
+/* A plan for heat on lap, which must outlive it. Creating it is cheap. The first query at a time t pays for
+ * ordering and factors; the plan keeps those of the last pole set and time, so that further queries at that t
+ * are much faster.
  * Errors HD_ERR_INDEX (row: perm is not a permutation) */
 HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap,
                                       const hd_heat_opts *opts, hd_error *err);
 HEATDIFF_API void hd_heat_free(hd_heat *heat);
 
 /* Other pole sets for a plan, in place of hd_heat_opts.rational. Ordering, analysis and memory stay, and
- * factors too if the sets have the t and the poles of those before.
- * sets   [count] copied. Several must have one t, one lambda_max and the same theta, as from hd_rational_fit:
- *        hd_heat_diagonal answers for all of them at once, other queries for the first. count = 0: from now
- *        on exp, with poles and degree by default
- * Errors HD_ERR_ARGUMENT (column: which set; also if the plan is of method krylov or of Lanczos),
- *        HD_ERR_NOT_FINITE; then nothing has changed */
+ * factors too if t and the poles do.
+ * sets   [count] copied. Several must have one t, one lambda_max and the same theta, as from hd_rational_fit.
+ *        hd_heat_diagonal answers for all of them, other queries for the first. count = 0: exp again, with
+ *        poles and degree by default
+ * Errors HD_ERR_ARGUMENT (column: which set; or the plan's method is krylov or Lanczos), HD_ERR_NOT_FINITE;
+ *        then nothing has changed */
 HEATDIFF_API hd_status hd_heat_set_rational(hd_heat *heat, int32_t count, const hd_rational *sets,
                                             hd_error *err);
 
 /* Common to all queries of a plan:
  * kernel HD_KERNEL_OPERATOR for K_t, HD_KERNEL_SYMMETRIC for k_t = K_t B^-1
- * t      [n_times], n_times >= 1, in any order; unit length^2. One time: n_times = 1 and the address of t.
- *        With a filter: n_times = 0, or 1 and the t of its set; answers count as those of one time
+ * t      [n_times], n_times >= 1, in any order; unit length^2. With a filter: n_times = 0, or 1 and the t of
+ *        its set; answers count as those of one time
  * report NULL, or what happened; with several columns or times the worst of them
  * err    NULL, or the error, which report->error has as well */
 
 /* U = K_t F at each time.
- * t      >= 0; t = 0 copies F. For large t, which may be arbitrarily large, the answer tends to the mean over
- *        each component.
- *        Where all heat flows out (every component has held vertices, or an L of your own does not conserve
- *        it) the answer falls like exp(-t lambda_1), while the error of poles does not. Methods auto and
- *        direct then take the few eigenpairs left, for columns, entries, diagonals and traces as well. Where
- *        all values underflow the bound is above 1 or infinite, with HD_WARN_ACCURACY
+ * t      >= 0. t = 0 copies F; for large t, without limit, U tends to the mean over each component. Where all
+ *        heat flows out, U falls like exp(-t lambda_1) while the error of poles does not. Methods auto and
+ *        direct then take the few eigenpairs left, here and for columns, entries, diagonals and traces. Where
+ *        all values underflow, the bound is above 1 or infinite
  * F      n x k doubles, column-major, columns ldf apart (0: n)
  * U      n x (k n_times), column q n_times + m for field q and time m, columns ldu apart (0: n). With one
  *        time U may be F. By default all fields of a call use the largest degree that one of them needs
  * Errors HD_ERR_NOT_FINITE (row, column), HD_ERR_NOT_CONVERGED, HD_ERR_BREAKDOWN (vertex: where the answer
  *        overflows), HD_ERR_NOT_POSITIVE; HD_WARN_ACCURACY
- * Cost   direct: one factorisation of all poles for each new t, then one sweep through the factors for eight
- *        fields at a time. krylov: one real factorisation, then 15 to 30 real solves for each field; one
- *        factor and one basis serve all times within one or two decades. iterative: one solve for each pole
+ * Cost   direct: one factorisation of all poles for each new t, and one sweep through the factors for eight
+ *        fields. krylov: one real factorisation, then 15 to 30 real solves for each field, which serve all
+ *        times within one or two decades. iterative: one solve for each pole
  * Source the paper, eqs. (8) and (9), with the signs given at the top of the file */
 HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const double *t, int32_t k,
                                      const double *F, size_t ldf, double *U, size_t ldu,
                                      hd_report *report, hd_error *err);
 
-/* U = dK_t/dt F = -B^-1 L K_t F at each time; unit 1/area. With poles, t dK_t/dt takes other weights on the
- * same poles, by default of degree 14.
+/* U = dK_t/dt F = -B^-1 L K_t F at each time; unit 1/area. Poles are by default of degree 14.
  * t      >= 0
  * F, U   as above. The derivative is 0 at vertices without mass
- * report bounds are relative to the derivative, which fades faster than K_t F: where only means are left it
- *        is 0, and the bound is infinite
+ * report bounds are relative to the derivative. Where only means are left it is 0, and the bound infinite
  * HINT: to train t, make the plan with poles = HD_POLES_KERNEL and a degree. Then hd_heat_apply, derivative
  * and adjoint at one t share the factors of the direct method, and the adjoint is that of the very matrix
  * applied, up to rounding. If G is the gradient of a loss in U = K_t F, that in F is K_t' G, and the
  * derivative in t is the sum of all G_ij (dK_t/dt F)_ij.
- * Errors as above; HD_ERR_ARGUMENT with a pole set of your own
- * Cost   as above */
+ * Errors and cost as above; HD_ERR_ARGUMENT with a pole set of your own */
 HEATDIFF_API hd_status hd_heat_derivative(hd_heat *heat, int32_t n_times, const double *t,
                                           int32_t k, const double *F, size_t ldf, double *U,
                                           size_t ldu, hd_report *report, hd_error *err);
 
-/* U = K_t' G = B K_t B^-1 G, the transpose, at each time: g' K_t f = f' K_t' g. It keeps the sum of the
- * values. G, U   as F and U above
+/* U = K_t' G = B K_t B^-1 G, the transpose, at each time: g' K_t f = f' K_t' g. It keeps the sum of values.
+ * G, U   as F and U above
  * report error_bound_b is in the norm of B^-1, in which |K_t' g| <= |g|
  * Errors and cost as hd_heat_apply; a full B takes about 30 further products with B for each field */
 HEATDIFF_API hd_status hd_heat_adjoint(hd_heat *heat, int32_t n_times, const double *t, int32_t k,
@@ -1157,12 +1150,13 @@ HEATDIFF_API hd_status hd_heat_adjoint(hd_heat *heat, int32_t n_times, const dou
 
 /* Columns of the kernel: K_t c or k_t c, with the functional c of each source. For a vertex s K_t e_s is the
  * field at time t that starts as 1 at s and 0 elsewhere, and k_t e_s that of one unit of heat placed at s.
- * U      as above, with sources in place of fields; zero for a vertex without mass and k_t. A source of one
+ * U      as above, with sources in place of fields; for k_t and a vertex without mass zero. A source of one
  *        vertex with weight 1 gives that vertex' column to the last bit
- * Errors and cost as hd_heat_apply; HD_ERR_INDEX, HD_ERR_NOT_FINITE, HD_ERR_ARGUMENT (column: which source,
- *        row: which of its points, vertex): coordinates of a point are negative or do not sum to 1, a curve
- *        has one point or no length, or needs coordinates that the Laplacian does not have, or the sizes of
- *        the weights, or a curve's length, do not sum to between 1e-100 and 1e100 */
+ * Errors as hd_heat_apply; HD_ERR_INDEX, HD_ERR_NOT_FINITE, HD_ERR_ARGUMENT (column: which source, row: which
+ *        of its points, vertex): bary is not as hd_sources asks, a curve has one point, no length or no
+ *        coordinates, or the sizes of the weights, or a curve's length, sum to less than 1e-100 or more than
+ *        1e100
+ * Cost   as hd_heat_apply */
 HEATDIFF_API hd_status hd_heat_columns(hd_heat *heat, hd_kernel kernel, int32_t n_times,
                                        const double *t, const hd_sources *sources, double *U,
                                        size_t ldu, hd_report *report, hd_error *err);
@@ -1172,61 +1166,54 @@ HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, hd_kernel kernel, double t,
                                       double *u, hd_report *report, hd_error *err);
 
 /* The diagonal of k_t or K_t at every vertex, and the heat trace, by selected inversion. That of k_t is the
- * heat kernel signature (Sun et al. 2009), also called auto-diffusion function (Gebal et al. 2009);
- * divided by the trace it has the integral 1 at each time (Sun et al. 2009, section 4).
+ * heat kernel signature (Sun et al. 2009), or auto-diffusion function (Gebal et al. 2009); divided by the
+ * trace it has the integral 1 at each time (Sun et al. 2009, section 4).
  * t      > 0
  * D      n x n_times, column q for t[q], columns ldd apart (0: n). NULL: not wanted
- * Z      [n_times] tr K_t = sum_i exp(-t lambda_i) over all eigenvalues; no unit. Vertices without mass and
- *        held ones do not count. NULL: not wanted
+ * Z      [n_times] tr K_t = sum_i exp(-t lambda_i); no unit. Vertices without mass and held ones do not
+ *        count. NULL: not wanted
  * bound  [n_times] or NULL: bounds on the absolute error of each Z
- * With several filters (hd_heat_set_rational) there is a column, a Z and a bound for each, and n_times is 0;
- * bounds are looser than those of a filter by itself. For wave filters D/Z are the wave kernel signatures.
- * report the rational part is proven at every vertex. Rounding is measured by solves whose residuals are
- *        known, at the vertices where it is largest
- * If B is not diagonal, k_t leaves out the term a0 diag(B^-1) of a uniform set. It is as large as the set's
- * error, and the bound includes it.
+ * Several filters have a column, a Z and a bound each, with n_times = 0; bounds are looser than those of one
+ * filter alone. For wave filters D/Z are the wave kernel signatures.
+ * report the rational part is proven at every vertex; rounding is measured where it is largest
+ * If B is not diagonal, k_t leaves out the term a0 diag(B^-1) of a uniform set; the bound includes it.
  * Errors HD_ERR_ARGUMENT (also if the method is iterative or krylov), HD_ERR_BREAKDOWN; HD_WARN_ACCURACY
- * Cost   for each t the factors of all poles, and about twice as much again. Many times share one set of
- *        poles if neither poles nor a degree are chosen: 16 or 100 times over three decades cost four or five
- *        times as much as one. Filters: once, and 2 n flops for each set and pole. Memory for the inverses of
- *        each pole: up to 48 n doubles, with a full B and traces 250 n
+ * Cost   for each t the factors of all poles, and about twice as much again. If neither poles nor a degree
+ *        are chosen, many times share poles: three decades cost four or five times as much as one time.
+ *        Filters: once, and 2 n flops for each set and pole. Memory for the inverses of each pole: up to 48 n
+ *        doubles, with a full B and traces 250 n
  * Source Takahashi, Fagan, Chin 1973; Erisman, Tinney 1975 for the inversion */
 HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t n_times,
                                         const double *t, double *D, size_t ldd, double *Z,
                                         double *bound, hd_report *report, hd_error *err);
 
-/* Times that suit the area A of the surface, 1'B1: evenly spaced in log t from 0.0024 A to 0.37 A, where
+/* Times that suit the area A = 1'B1 of the surface: evenly spaced in log t from 0.0024 A to 0.37 A, where
  * about 300 and two eigenvalues matter. One time is their geometric mean.
  * t      [n_times] length^2, or the unit that t has for this Laplacian (kind exp: A is the squared area)
- * Source Weyl's law: the k-th eigenvalue is about 4 pi k/A. Times that suit the first eigenvalue are
- *        c/value[n_constant] of hd_spectrum: at c = 1 signatures show tips and branches, at 0.1 details
- *        (Gebal et al. 2009) */
+ * Source Weyl's law: the k-th eigenvalue is about 4 pi k/A. For the first eigenvalue take c/value[n_constant]
+ *        of hd_spectrum: at c = 1 signatures show tips and branches, at 0.1 details (Gebal et al. 2009) */
 HEATDIFF_API hd_status hd_times_auto(const hd_laplacian *lap, int32_t n_times, double *t,
                                      hd_error *err);
 
 /* Diffusion distances from each source to every vertex. With the functional c of a source, divided by the sum
  * of its weights, d^2 = (e_v - c)' F (e_v - c), where F is the matrix of the kind: k_2t, B K_2t and so on. It
  * is zero only at a vertex that is the source itself. Vertices without mass, and held ones, have a zero row.
- * t      > 0. Commute and biharmonic have no time: t is ignored, n_times is 0 or 1. With a filter d^2 is the
- *        sum of the filter itself, see hd_rational_fit
+ * t      > 0. Commute and biharmonic ignore t; n_times is 0 or 1. With a filter F is the filter itself
  * D      n x (k n_times), column q n_times + m for source q and time m, columns ldd apart (0: n). Unit:
  *        classical 1/length, weighted length, commute none, biharmonic length
  * sources of positive weight
- * report error_bound and error_relative are for the distance d itself. n_lost counts distances with at most
- *        about one sure digit: next to the source, or so small that they underflow. Nothing is ever NaN
+ * report error_bound and error_relative are for d itself. n_lost counts distances with at most about one sure
+ *        digit: next to the source, or underflowing. Nothing is ever NaN
  * Commute and biharmonic are infinite (HUGE_VAL) between components, to vertices without a row, and from
- * sources that reach into several components or such vertices. On components that lose heat they are those of
- * the inverse of L.
- * With default poles and degree, degree 14 takes over if the bound relative to the largest distance is, or
- * will be, above 3.5e-7; many times then share one set of poles. At large t classical and weighted distances
- * are sums over the few eigenpairs left, which the plan keeps: no cancellation, to a part in 1e7 of the
- * largest one, what is left out proven small. If the pairs exceed the byte limit, poles serve. `reason`
- * says which. Above about 170K vertices (weighted) or 240K (classical) bounds may exceed 1e-6 at times
- * between the two. Errors as hd_heat_diagonal and hd_heat_columns
- * Cost   one diagonal at 2t, shared by all sources, and one column for each source. HD_DISTANCE_WEIGHTED with
- *        a full B: the diagonal takes about twice as long. Eigenpairs: as hd_spectrum_create the first time,
- *        later 4 n flops for each. Commute: one real factorisation and its inversion; biharmonic: the same,
- *        and those of one pole
+ * sources that reach into several components or such vertices. Where heat is lost they are those of L^-1.
+ * With default poles and degree, degree 14 takes over if the bound relative to the largest distance would be
+ * above 3.5e-7. At large t classical and weighted distances are sums over the few eigenpairs left, to a part
+ * in 1e7 of the largest one; what is left out is proven small. If the pairs exceed the byte limit, poles
+ * serve. Between the two, above about 170K vertices (weighted) or 240K (classical), bounds may exceed 1e-6.
+ * Errors as hd_heat_diagonal and hd_heat_columns
+ * Cost   one diagonal at 2t, twice as long if weighted with a full B, and one column for each source.
+ *        Eigenpairs: as hd_spectrum_create once, then 4 n flops for each. Commute: one real factorisation
+ *        and its inversion; biharmonic: also those of one pole
  * Source see hd_distance_kind */
 HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, int32_t n_times,
                                         const double *t, const hd_sources *sources, double *D,
@@ -1235,14 +1222,14 @@ HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, in
 /* Diffusion distances of listed pairs.
  * t      >= 0; ignored by commute and biharmonic, with n_times 0 or 1
  * d      [n_pairs n_times], time by time
- * The distance is |K_t B^-1 (e_i - e_j)|_B, from the columns at t of all vertices that occur, without
- * cancellation, or from eigenpairs as above. If these columns would take more than half a GiB, and always for
- * commute and biharmonic, it comes from entries and the diagonal at 2t, one column at a time: sort the
- * pairs by i then. Plans of method iterative or krylov take columns of as many pairs as fit.
+ * The distance is |K_t B^-1 (e_i - e_j)|_B, without cancellation, or from eigenpairs as above. If the columns
+ * of all vertices would take more than half a GiB, and always for commute and biharmonic, it comes from
+ * entries and the diagonal at 2t: sort the pairs by i then. Plans of method iterative or krylov take as many
+ * columns at a time as fit.
  * Errors as hd_heat_columns; HD_ERR_INDEX (vertex, row: which pair). HD_ERR_ARGUMENT: commute, biharmonic and
  *        distances of a filter need the direct method
- * Cost   one column for each distinct vertex, or for each of those taken at a time; from entries one for each
- *        distinct i, and a diagonal */
+ * Cost   one column for each distinct vertex, or of those taken at a time; from entries one for each distinct
+ *        i, and a diagonal */
 HEATDIFF_API hd_status hd_heat_distance_pairs(hd_heat *heat, hd_distance_kind kind, int32_t n_times,
                                               const double *t, int64_t n_pairs, const int32_t *i,
                                               const int32_t *j, double *d, hd_report *report,
@@ -1253,8 +1240,7 @@ HEATDIFF_API hd_status hd_heat_distance_pairs(hd_heat *heat, hd_distance_kind ki
  * sources  that come before all points, as in hd_heat_distance. NULL: none; the first vertex with mass is
  *          then the first point
  * vertex   [count]
- * distance [count] or NULL: distance of each point to the sources and the points before it (0 for the first
- *          without sources)
+ * distance [count] or NULL: of each point to those before it (0 for the first without sources)
  * Errors   as hd_heat_distance; HD_ERR_ARGUMENT (value: count is more than there are vertices with mass)
  * Cost     a diagonal, and one column for each source and point
  * Source   Gonzalez 1985 */
@@ -1279,8 +1265,8 @@ HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t 
  * opts   not NULL: count, at most n_active, or below, or both: then whichever ends first
  * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_POSITIVE, HD_ERR_NOT_CONVERGED, HD_ERR_INDEX (row: perm is not a
  *        permutation); HD_WARN_ACCURACY with a result: n_poor is not 0, or proven is 0
- * Cost   for about 100 pairs one real factorisation, some 250 solves, and the orthogonalisation of as many
- *        vectors; at the end 4 n count^2 flops. Memory: the vectors twice, some 400 more, and a factor
+ * Cost   for about 100 pairs one real factorisation, some 250 solves, and as many vectors made orthogonal; at
+ *        the end 4 n count^2 flops. Memory: the vectors twice, some 400 more, and a factor
  * Source Grimes, Lewis, Simon 1994: block Lanczos with shifts, eigenvalues counted by Sylvester's law */
 HEATDIFF_API hd_status hd_spectrum_create(hd_spectrum **out, const hd_laplacian *lap,
                                           const hd_spectrum_opts *opts, hd_error *err);
@@ -1289,9 +1275,8 @@ HEATDIFF_API void hd_spectrum_free(hd_spectrum *s);
 /* Kernels and distances from the pairs of s, as in eq. (1) of the paper: sums of exp(-t lambda_i) x_i(x)
  * x_i(y) and the like. All else is as in hd_heat_columns, hd_heat_diagonal and hd_heat_distance.
  * t      >= 0, unit length^2; commute and biharmonic ignore it
- * bound  NULL, or as large as the output, with the same ldu or ldd: bounds on the error of each value. The
- *        part of the pairs left out is at most exp(-t next) sqrt(left(x) left(y)), proven if s->proven;
- *        rounding is estimated
+ * bound  NULL, or as large as the output, with the same ldu or ldd: bounds on the error of each value. Pairs
+ *        left out add at most exp(-t next) sqrt(left(x) left(y)), proven if s->proven; rounding is estimated
  * Errors those of hd_heat_columns for sources
  * Cost   2 n count flops for each column; with the weighted distance or the diagonal of K_t and a full B some
  *        ten times as many */
@@ -1310,11 +1295,9 @@ HEATDIFF_API hd_status hd_spectrum_distance(const hd_spectrum *s, hd_distance_ki
  * t        [n_times] as in the query; commute, biharmonic and spectrum: n_times may be 0
  * k        see hd_query
  * estimate if there is not enough memory, cost[HD_METHOD_AUTO].fits is 0. That is no error
- * Bytes of the direct method are sums of the arrays that the query will allocate: an upper bound, by a few
- * percent; where eigenpairs come first it allows for poles instead. For other methods they are estimates.
- * Output arrays are not counted.
- * Cost     one ordering and analysis, if the query needs them; the plan keeps them for the query. Otherwise
- *          one pass over L */
+ * Bytes leave out the output arrays. For the direct method they are an upper bound, by a few percent, where
+ * eigenpairs come first that of poles; for others they are estimates.
+ * Cost     one ordering and analysis if the query needs them, which the plan keeps; else one pass over L */
 HEATDIFF_API hd_status hd_heat_estimate(hd_heat *heat, hd_query query, int32_t n_times,
                                         const double *t, int32_t k, hd_estimate *estimate,
                                         hd_error *err);
@@ -1324,13 +1307,12 @@ HEATDIFF_API hd_status hd_heat_estimate(hd_heat *heat, hd_query query, int32_t n
 typedef struct hd_geodesic hd_geodesic;
 
 /* A plan for distances along a surface, by the heat method.
- * mesh   as in hd_laplacian_create, whose errors it has. Points must be tufted, because exponential weights
- *        have no gradient. If there are slivers, use a Delaunay triangulation
+ * mesh   as in hd_laplacian_create, whose errors it has. Points must be tufted. If there are slivers, use a
+ *        Delaunay triangulation
  * opts   NULL: t = h^2, barycentric masses, natural border
  * Errors HD_ERR_BREAKDOWN (vertex: a pivot too small to divide by)
- * Cost   assembly, one analysis, two real factorisations. The plan keeps both: 16 bytes for each non-zero of
- *        the factor, and about 430 bytes for each vertex; polygons 28 bytes more for each corner, and 12 for
- *        each non-zero of L
+ * Cost   assembly, one analysis, two real factorisations. The plan keeps 16 bytes for each non-zero of the
+ *        factor and about 430 for each vertex; polygons 28 more for each corner and 12 for each non-zero of L
  * Source Crane, Weischedel, Wardetzky 2013, algorithm 1 and section 3.2.1; gradients on polygons: Alexa,
  *        Wardetzky 2011 */
 HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const hd_mesh *mesh,
@@ -1344,22 +1326,21 @@ HEATDIFF_API hd_status hd_geodesic_update(hd_geodesic *g, const hd_mesh *mesh, h
 HEATDIFF_API void hd_geodesic_free(hd_geodesic *g);
 
 /* The distance of every vertex to each source: to the nearest of its points, or to its curve.
- * sources  weights and lengths are ignored. Points that are no vertices, and every piece of a curve, must
- *          lie in a face, its edges and corners included. Plans of polygons take vertices only
+ * sources  weights and lengths are ignored. Points that are no vertices, and every piece of a curve, must lie
+ *          in a face, its edges and corners included. Plans of polygons take vertices only
  * D        n x count, columns ldd apart (0: n), in the unit of xyz: |phi - phi_s|, zero at vertices that are
  *          sources, HUGE_VAL in components without one and at vertices without mass. For several points phi_s
  *          is a mean weighted by their heat, which is almost the value of the nearest one
- * The error is of the order of h: a few percent on coarse meshes, about one percent on fine ones, most where
- * fronts meet and near a source; d from i to j and from j to i differ by about that. Where a source is no
- * vertex, D is exact at the corners of its faces.
+ * The error is of the order of h: a few percent on coarse meshes, about one on fine ones, most where fronts
+ * meet and near a source; d from i to j and from j to i differ by about that. Where a source is no vertex, D
+ * is exact at the corners of its faces.
  * Errors   those of hd_heat_columns for sources; HD_ERR_ARGUMENT (column, row): a point or a piece is in no
  *          face, or has a corner where heat is held at zero; HD_ERR_BREAKDOWN (rounding left no number).
  *          HD_WARN_ACCURACY, only if a report is given
  * Cost     two solves and two passes over the faces for each source; a third solve with several points in a
- *          component; with a report two more passes. Vertices are solved eight side by side, in a third of
- *          the time. Every 450 edges or so at t = h^2, where heat fades, another solve and three passes
- *          follow (report->n_stages). Calls with vertices alone allocate only if there are more than
- *          before */
+ *          component; two more passes with a report. Vertices are solved eight at a time, three times as
+ *          fast. Another solve and three passes follow where heat fades, every 450 edges or so at t = h^2.
+ *          Calls with vertices alone allocate only if there are more than before */
 HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, const hd_sources *sources, double *D,
                                             size_t ldd, hd_geodesic_report *report, hd_error *err);
 
