@@ -996,9 +996,9 @@ HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c6
 /* ---- direct solver ---- */
 
 /* The factorisation P A P' = L D L' without pivoting, L unit lower triangular, D diagonal. It suits real
- * matrices that are definite or quasi-definite, and complex-symmetric ones (A = A', never conjugated) whose
- * real part is definite after a rotation, such as t L + theta B. One analysis of a pattern serves any number
- * of factorisations. Only the first of each kind allocates. */
+ * definite or quasi-definite matrices, and complex-symmetric ones (A = A', never conjugated) whose real part
+ * is definite after a rotation, such as t L + theta B. One analysis of a pattern serves any number of
+ * factorisations. Only the first of each kind allocates. */
 typedef struct hd_ldl hd_ldl;
 
 typedef struct hd_ldl_opts {
@@ -1085,18 +1085,15 @@ HEATDIFF_API void hd_ldl_free(hd_ldl *f);
 typedef struct hd_heat hd_heat;
 
 /* A plan for heat on lap, which must outlive it. Creating it is cheap. The first query at a time t pays for
- * ordering and factors; the plan keeps those of the last pole set and time, so that further queries at that t
- * are much faster.
+ * ordering and factors. The plan keeps those of the last pole set and time for further queries at that t.
  * Errors HD_ERR_INDEX (row: perm is not a permutation) */
 HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap,
                                       const hd_heat_opts *opts, hd_error *err);
 HEATDIFF_API void hd_heat_free(hd_heat *heat);
 
-/* Other pole sets for a plan, in place of hd_heat_opts.rational. Ordering, analysis and memory stay, and
- * factors too if t and the poles do.
- * sets   [count] copied. Several must have one t, one lambda_max and the same theta, as from hd_rational_fit.
- *        hd_heat_diagonal answers for all of them, other queries for the first. count = 0: exp again, with
- *        poles and degree by default
+/* Other pole sets for a plan, in place of hd_heat_opts.rational. Factors stay if t and the poles do.
+ * sets   [count] copied. Several must have one t, lambda_max and theta, as from hd_rational_fit.
+ *        hd_heat_diagonal answers for all of them, other queries for the first. count = 0: exp by default
  * Errors HD_ERR_ARGUMENT (column: which set; or the plan's method is krylov or Lanczos), HD_ERR_NOT_FINITE;
  *        then nothing has changed */
 HEATDIFF_API hd_status hd_heat_set_rational(hd_heat *heat, int32_t count, const hd_rational *sets,
@@ -1105,23 +1102,22 @@ HEATDIFF_API hd_status hd_heat_set_rational(hd_heat *heat, int32_t count, const 
 /* Common to all queries of a plan:
  * kernel HD_KERNEL_OPERATOR for K_t, HD_KERNEL_SYMMETRIC for k_t = K_t B^-1
  * t      [n_times], n_times >= 1, in any order; unit length^2. With a filter: n_times = 0, or 1 and the t of
- *        its set; answers count as those of one time
- * report NULL, or what happened; with several columns or times the worst of them
- * err    NULL, or the error, which report->error has as well */
+ *        its set
+ * report what happened; with several columns or times the worst of them. report->error is *err */
 
 /* U = K_t F at each time.
  * t      >= 0. t = 0 copies F; for large t, without limit, U tends to the mean over each component. Where all
  *        heat flows out, U falls like exp(-t lambda_1) while the error of poles does not. Methods auto and
- *        direct then take the few eigenpairs left, here and for columns, entries, diagonals and traces. Where
- *        all values underflow, the bound is above 1 or infinite
+ *        direct then take the few eigenpairs left, for columns, entries, diagonals and traces too. Where all
+ *        values underflow, the bound is above 1 or infinite
  * F      n x k doubles, column-major, columns ldf apart (0: n)
  * U      n x (k n_times), column q n_times + m for field q and time m, columns ldu apart (0: n). With one
  *        time U may be F. By default all fields of a call use the largest degree that one of them needs
  * Errors HD_ERR_NOT_FINITE (row, column), HD_ERR_NOT_CONVERGED, HD_ERR_BREAKDOWN (vertex: where the answer
  *        overflows), HD_ERR_NOT_POSITIVE; HD_WARN_ACCURACY
  * Cost   direct: one factorisation of all poles for each new t, and one sweep through the factors for eight
- *        fields. krylov: one real factorisation, then 15 to 30 real solves for each field, which serve all
- *        times within one or two decades. iterative: one solve for each pole
+ *        fields. krylov: one real factorisation, and 15 to 30 real solves for each field and one or two
+ *        decades of t. iterative: one solve for each pole
  * Source the paper, eqs. (8) and (9), with the signs given at the top of the file */
 HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const double *t, int32_t k,
                                      const double *F, size_t ldf, double *U, size_t ldu,
@@ -1131,10 +1127,10 @@ HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const doubl
  * t      >= 0
  * F, U   as above. The derivative is 0 at vertices without mass
  * report bounds are relative to the derivative. Where only means are left it is 0, and the bound infinite
- * HINT: to train t, make the plan with poles = HD_POLES_KERNEL and a degree. Then hd_heat_apply, derivative
- * and adjoint at one t share the factors of the direct method, and the adjoint is that of the very matrix
- * applied, up to rounding. If G is the gradient of a loss in U = K_t F, that in F is K_t' G, and the
- * derivative in t is the sum of all G_ij (dK_t/dt F)_ij.
+ * HINT: to train t, give the plan poles = HD_POLES_KERNEL and a degree. Then apply, derivative and adjoint at
+ * one t share the direct method's factors, and the adjoint is that of the very matrix applied, up to
+ * rounding. If G is the gradient of a loss in U = K_t F, that in F is K_t' G, and that in t is the sum of all
+ * G_ij (dK_t/dt F)_ij.
  * Errors and cost as above; HD_ERR_ARGUMENT with a pole set of your own */
 HEATDIFF_API hd_status hd_heat_derivative(hd_heat *heat, int32_t n_times, const double *t,
                                           int32_t k, const double *F, size_t ldf, double *U,
@@ -1143,20 +1139,18 @@ HEATDIFF_API hd_status hd_heat_derivative(hd_heat *heat, int32_t n_times, const 
 /* U = K_t' G = B K_t B^-1 G, the transpose, at each time: g' K_t f = f' K_t' g. It keeps the sum of values.
  * G, U   as F and U above
  * report error_bound_b is in the norm of B^-1, in which |K_t' g| <= |g|
- * Errors and cost as hd_heat_apply; a full B takes about 30 further products with B for each field */
+ * Errors and cost as hd_heat_apply; a full B takes about 30 more products with B for each field */
 HEATDIFF_API hd_status hd_heat_adjoint(hd_heat *heat, int32_t n_times, const double *t, int32_t k,
                                        const double *G, size_t ldg, double *U, size_t ldu,
                                        hd_report *report, hd_error *err);
 
 /* Columns of the kernel: K_t c or k_t c, with the functional c of each source. For a vertex s K_t e_s is the
- * field at time t that starts as 1 at s and 0 elsewhere, and k_t e_s that of one unit of heat placed at s.
- * U      as above, with sources in place of fields; for k_t and a vertex without mass zero. A source of one
- *        vertex with weight 1 gives that vertex' column to the last bit
- * Errors as hd_heat_apply; HD_ERR_INDEX, HD_ERR_NOT_FINITE, HD_ERR_ARGUMENT (column: which source, row: which
- *        of its points, vertex): bary is not as hd_sources asks, a curve has one point, no length or no
- *        coordinates, or the sizes of the weights, or a curve's length, sum to less than 1e-100 or more than
- *        1e100
- * Cost   as hd_heat_apply */
+ * field that starts as 1 at s and 0 elsewhere, and k_t e_s that of one unit of heat placed at s.
+ * U      as above, a source for each field; of k_t zero for a vertex without mass. A source of one vertex
+ *        with weight 1 gives that vertex' column to the last bit
+ * Errors and cost as hd_heat_apply; HD_ERR_INDEX, HD_ERR_NOT_FINITE, HD_ERR_ARGUMENT (column: which source,
+ *        row: which of its points, vertex): bary is not as hd_sources asks, a curve has one point, no length
+ *        or no coordinates, or weights or lengths sum to less than 1e-100 or more than 1e100 */
 HEATDIFF_API hd_status hd_heat_columns(hd_heat *heat, hd_kernel kernel, int32_t n_times,
                                        const double *t, const hd_sources *sources, double *U,
                                        size_t ldu, hd_report *report, hd_error *err);
@@ -1165,23 +1159,22 @@ HEATDIFF_API hd_status hd_heat_columns(hd_heat *heat, hd_kernel kernel, int32_t 
 HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, hd_kernel kernel, double t, int32_t source,
                                       double *u, hd_report *report, hd_error *err);
 
-/* The diagonal of k_t or K_t at every vertex, and the heat trace, by selected inversion. That of k_t is the
- * heat kernel signature (Sun et al. 2009), or auto-diffusion function (Gebal et al. 2009); divided by the
- * trace it has the integral 1 at each time (Sun et al. 2009, section 4).
+/* The diagonal of k_t or K_t, and the heat trace, by selected inversion. That of k_t is the heat kernel
+ * signature (Sun et al. 2009), or auto-diffusion function (Gebal et al. 2009); divided by the trace it has
+ * the integral 1 (Sun et al. 2009, section 4).
  * t      > 0
- * D      n x n_times, column q for t[q], columns ldd apart (0: n). NULL: not wanted
- * Z      [n_times] tr K_t = sum_i exp(-t lambda_i); no unit. Vertices without mass and held ones do not
- *        count. NULL: not wanted
+ * D      n x n_times, columns ldd apart (0: n). NULL: not wanted
+ * Z      [n_times] tr K_t = sum_i exp(-t lambda_i), without held vertices and those without mass; no unit.
+ *        NULL: not wanted
  * bound  [n_times] or NULL: bounds on the absolute error of each Z
  * Several filters have a column, a Z and a bound each, with n_times = 0; bounds are looser than those of one
  * filter alone. For wave filters D/Z are the wave kernel signatures.
  * report the rational part is proven at every vertex; rounding is measured where it is largest
  * If B is not diagonal, k_t leaves out the term a0 diag(B^-1) of a uniform set; the bound includes it.
  * Errors HD_ERR_ARGUMENT (also if the method is iterative or krylov), HD_ERR_BREAKDOWN; HD_WARN_ACCURACY
- * Cost   for each t the factors of all poles, and about twice as much again. If neither poles nor a degree
- *        are chosen, many times share poles: three decades cost four or five times as much as one time.
- *        Filters: once, and 2 n flops for each set and pole. Memory for the inverses of each pole: up to 48 n
- *        doubles, with a full B and traces 250 n
+ * Cost   for each t about three times the factors of all poles. By default many times share poles: three
+ *        decades cost four or five times as much as one t. Filters: once, and 2 n flops for each set and
+ *        pole. Memory for each pole: up to 48 n doubles, with a full B and traces 250 n
  * Source Takahashi, Fagan, Chin 1973; Erisman, Tinney 1975 for the inversion */
 HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t n_times,
                                         const double *t, double *D, size_t ldd, double *Z,
@@ -1189,9 +1182,10 @@ HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t
 
 /* Times that suit the area A = 1'B1 of the surface: evenly spaced in log t from 0.0024 A to 0.37 A, where
  * about 300 and two eigenvalues matter. One time is their geometric mean.
- * t      [n_times] length^2, or the unit that t has for this Laplacian (kind exp: A is the squared area)
- * Source Weyl's law: the k-th eigenvalue is about 4 pi k/A. For the first eigenvalue take c/value[n_constant]
- *        of hd_spectrum: at c = 1 signatures show tips and branches, at 0.1 details (Gebal et al. 2009) */
+ * t      [n_times] in the unit of t for this Laplacian (kind exp: A is the squared area)
+ * Source Weyl's law: the k-th eigenvalue is about 4 pi k/A. To suit the first eigenvalue, take
+ *        c/value[n_constant] of hd_spectrum: c = 1 shows tips and branches, 0.1 details (Gebal et al.
+ *        2009) */
 HEATDIFF_API hd_status hd_times_auto(const hd_laplacian *lap, int32_t n_times, double *t,
                                      hd_error *err);
 
@@ -1202,14 +1196,13 @@ HEATDIFF_API hd_status hd_times_auto(const hd_laplacian *lap, int32_t n_times, d
  * D      n x (k n_times), column q n_times + m for source q and time m, columns ldd apart (0: n). Unit:
  *        classical 1/length, weighted length, commute none, biharmonic length
  * sources of positive weight
- * report error_bound and error_relative are for d itself. n_lost counts distances with at most about one sure
- *        digit: next to the source, or underflowing. Nothing is ever NaN
+ * report bounds are for d itself. n_lost counts values next to the source or underflowing. None is ever NaN
  * Commute and biharmonic are infinite (HUGE_VAL) between components, to vertices without a row, and from
  * sources that reach into several components or such vertices. Where heat is lost they are those of L^-1.
- * With default poles and degree, degree 14 takes over if the bound relative to the largest distance would be
- * above 3.5e-7. At large t classical and weighted distances are sums over the few eigenpairs left, to a part
- * in 1e7 of the largest one; what is left out is proven small. If the pairs exceed the byte limit, poles
- * serve. Between the two, above about 170K vertices (weighted) or 240K (classical), bounds may exceed 1e-6.
+ * By default degree 14 takes over if the bound relative to the largest distance would be above 3.5e-7. At
+ * large t classical and weighted distances are sums over the few eigenpairs left, proven to a part in 1e7 of
+ * the largest one; poles serve if the pairs exceed the byte limit. Between the two, above about 170K vertices
+ * (weighted) or 240K (classical), bounds may exceed 1e-6.
  * Errors as hd_heat_diagonal and hd_heat_columns
  * Cost   one diagonal at 2t, twice as long if weighted with a full B, and one column for each source.
  *        Eigenpairs: as hd_spectrum_create once, then 4 n flops for each. Commute: one real factorisation
@@ -1224,12 +1217,10 @@ HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, in
  * d      [n_pairs n_times], time by time
  * The distance is |K_t B^-1 (e_i - e_j)|_B, without cancellation, or from eigenpairs as above. If the columns
  * of all vertices would take more than half a GiB, and always for commute and biharmonic, it comes from
- * entries and the diagonal at 2t: sort the pairs by i then. Plans of method iterative or krylov take as many
- * columns at a time as fit.
+ * entries and the diagonal at 2t: sort the pairs by i then.
  * Errors as hd_heat_columns; HD_ERR_INDEX (vertex, row: which pair). HD_ERR_ARGUMENT: commute, biharmonic and
  *        distances of a filter need the direct method
- * Cost   one column for each distinct vertex, or of those taken at a time; from entries one for each distinct
- *        i, and a diagonal */
+ * Cost   one column for each distinct vertex; from entries one for each distinct i, and a diagonal */
 HEATDIFF_API hd_status hd_heat_distance_pairs(hd_heat *heat, hd_distance_kind kind, int32_t n_times,
                                               const double *t, int64_t n_pairs, const int32_t *i,
                                               const int32_t *j, double *d, hd_report *report,
@@ -1237,8 +1228,7 @@ HEATDIFF_API hd_status hd_heat_distance_pairs(hd_heat *heat, hd_distance_kind ki
 
 /* Farthest points: each is the vertex farthest from all sources and all points before it.
  * t        > 0; ignored by commute and biharmonic
- * sources  that come before all points, as in hd_heat_distance. NULL: none; the first vertex with mass is
- *          then the first point
+ * sources  as in hd_heat_distance. NULL: none; the first vertex with mass is then the first point
  * vertex   [count]
  * distance [count] or NULL: of each point to those before it (0 for the first without sources)
  * Errors   as hd_heat_distance; HD_ERR_ARGUMENT (value: count is more than there are vertices with mass)
@@ -1274,10 +1264,9 @@ HEATDIFF_API void hd_spectrum_free(hd_spectrum *s);
 
 /* Kernels and distances from the pairs of s, as in eq. (1) of the paper: sums of exp(-t lambda_i) x_i(x)
  * x_i(y) and the like. All else is as in hd_heat_columns, hd_heat_diagonal and hd_heat_distance.
- * t      >= 0, unit length^2; commute and biharmonic ignore it
+ * t      >= 0
  * bound  NULL, or as large as the output, with the same ldu or ldd: bounds on the error of each value. Pairs
  *        left out add at most exp(-t next) sqrt(left(x) left(y)), proven if s->proven; rounding is estimated
- * Errors those of hd_heat_columns for sources
  * Cost   2 n count flops for each column; with the weighted distance or the diagonal of K_t and a full B some
  *        ten times as many */
 HEATDIFF_API hd_status hd_spectrum_columns(const hd_spectrum *s, hd_kernel kernel, int32_t n_times,
@@ -1294,9 +1283,9 @@ HEATDIFF_API hd_status hd_spectrum_distance(const hd_spectrum *s, hd_distance_ki
 /* What a query would take by each method, without running it.
  * t        [n_times] as in the query; commute, biharmonic and spectrum: n_times may be 0
  * k        see hd_query
- * estimate if there is not enough memory, cost[HD_METHOD_AUTO].fits is 0. That is no error
- * Bytes leave out the output arrays. For the direct method they are an upper bound, by a few percent, where
- * eigenpairs come first that of poles; for others they are estimates.
+ * estimate too little memory is no error: cost[HD_METHOD_AUTO].fits is 0
+ * Bytes leave out the output arrays. For the direct method they are an upper bound, by a few percent (where
+ * eigenpairs come first that of poles); for others they are estimates.
  * Cost     one ordering and analysis if the query needs them, which the plan keeps; else one pass over L */
 HEATDIFF_API hd_status hd_heat_estimate(hd_heat *heat, hd_query query, int32_t n_times,
                                         const double *t, int32_t k, hd_estimate *estimate,
@@ -1309,7 +1298,6 @@ typedef struct hd_geodesic hd_geodesic;
 /* A plan for distances along a surface, by the heat method.
  * mesh   as in hd_laplacian_create, whose errors it has. Points must be tufted. If there are slivers, use a
  *        Delaunay triangulation
- * opts   NULL: t = h^2, barycentric masses, natural border
  * Errors HD_ERR_BREAKDOWN (vertex: a pivot too small to divide by)
  * Cost   assembly, one analysis, two real factorisations. The plan keeps 16 bytes for each non-zero of the
  *        factor and about 430 for each vertex; polygons 28 more for each corner and 12 for each non-zero of L
@@ -1330,17 +1318,17 @@ HEATDIFF_API void hd_geodesic_free(hd_geodesic *g);
  *          in a face, its edges and corners included. Plans of polygons take vertices only
  * D        n x count, columns ldd apart (0: n), in the unit of xyz: |phi - phi_s|, zero at vertices that are
  *          sources, HUGE_VAL in components without one and at vertices without mass. For several points phi_s
- *          is a mean weighted by their heat, which is almost the value of the nearest one
+ *          is a mean weighted by their heat
  * The error is of the order of h: a few percent on coarse meshes, about one on fine ones, most where fronts
- * meet and near a source; d from i to j and from j to i differ by about that. Where a source is no vertex, D
- * is exact at the corners of its faces.
+ * meet and near a source; d(i, j) and d(j, i) differ by about that. Where a source is no vertex, D is exact
+ * at the corners of its faces.
  * Errors   those of hd_heat_columns for sources; HD_ERR_ARGUMENT (column, row): a point or a piece is in no
  *          face, or has a corner where heat is held at zero; HD_ERR_BREAKDOWN (rounding left no number).
  *          HD_WARN_ACCURACY, only if a report is given
  * Cost     two solves and two passes over the faces for each source; a third solve with several points in a
- *          component; two more passes with a report. Vertices are solved eight at a time, three times as
- *          fast. Another solve and three passes follow where heat fades, every 450 edges or so at t = h^2.
- *          Calls with vertices alone allocate only if there are more than before */
+ *          component; two more passes with a report. Eight vertices together are three times as fast. Every
+ *          450 edges or so at t = h^2, where heat fades, take another solve and three passes. Calls with
+ *          vertices alone allocate only if there are more than before */
 HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, const hd_sources *sources, double *D,
                                             size_t ldd, hd_geodesic_report *report, hd_error *err);
 
