@@ -1103,13 +1103,13 @@ HEATDIFF_API hd_status hd_heat_set_rational(hd_heat *heat, int32_t count, const 
  * kernel HD_KERNEL_OPERATOR for K_t, HD_KERNEL_SYMMETRIC for k_t = K_t B^-1
  * t      [n_times], n_times >= 1, in any order; unit length^2. With a filter: n_times = 0, or 1 and the t of
  *        its set
- * report what happened; with several columns or times the worst of them. report->error is *err */
+ * report NULL, or what happened; with several columns or times the worst of them. Its error is *err too */
 
 /* U = K_t F at each time.
  * t      >= 0. t = 0 copies F; for large t, without limit, U tends to the mean over each component. Where all
  *        heat flows out, U falls like exp(-t lambda_1) while the error of poles does not. Methods auto and
  *        direct then take the few eigenpairs left, for columns, entries, diagonals and traces too. Where all
- *        values underflow, the bound is above 1 or infinite
+ *        values underflow, the bound is above 1 or infinite, with HD_WARN_ACCURACY
  * F      n x k doubles, column-major, columns ldf apart (0: n)
  * U      n x (k n_times), column q n_times + m for field q and time m, columns ldu apart (0: n). With one
  *        time U may be F. By default all fields of a call use the largest degree that one of them needs
@@ -1200,9 +1200,9 @@ HEATDIFF_API hd_status hd_times_auto(const hd_laplacian *lap, int32_t n_times, d
  * Commute and biharmonic are infinite (HUGE_VAL) between components, to vertices without a row, and from
  * sources that reach into several components or such vertices. Where heat is lost they are those of L^-1.
  * By default degree 14 takes over if the bound relative to the largest distance would be above 3.5e-7. At
- * large t classical and weighted distances are sums over the few eigenpairs left, proven to a part in 1e7 of
- * the largest one; poles serve if the pairs exceed the byte limit. Between the two, above about 170K vertices
- * (weighted) or 240K (classical), bounds may exceed 1e-6.
+ * large t classical and weighted distances are sums over the few eigenpairs left, to a part in 1e7 of the
+ * largest one, what is left out proven small; poles serve if the pairs exceed the byte limit. Between the
+ * two, above about 170K vertices (weighted) or 240K (classical), bounds may exceed 1e-6.
  * Errors as hd_heat_diagonal and hd_heat_columns
  * Cost   one diagonal at 2t, twice as long if weighted with a full B, and one column for each source.
  *        Eigenpairs: as hd_spectrum_create once, then 4 n flops for each. Commute: one real factorisation
@@ -1216,8 +1216,8 @@ HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, in
  * t      >= 0; ignored by commute and biharmonic, with n_times 0 or 1
  * d      [n_pairs n_times], time by time
  * The distance is |K_t B^-1 (e_i - e_j)|_B, without cancellation, or from eigenpairs as above. If the columns
- * of all vertices would take more than half a GiB, and always for commute and biharmonic, it comes from
- * entries and the diagonal at 2t: sort the pairs by i then.
+ * of all vertices that occur would take more than half a GiB, and always for commute and biharmonic, it comes
+ * from entries and the diagonal at 2t: sort the pairs by i then.
  * Errors as hd_heat_columns; HD_ERR_INDEX (vertex, row: which pair). HD_ERR_ARGUMENT: commute, biharmonic and
  *        distances of a filter need the direct method
  * Cost   one column for each distinct vertex; from entries one for each distinct i, and a diagonal */
@@ -18292,7 +18292,8 @@ typedef struct hdi_heat_call {
 
 static double hdi_heat_scaled(const hd_heat *heat, double t) {
     const double most = hdi_min(1e300, hdi_quotient(HDI_ENDLESS, heat->lambda_max));
-    if (heat->opts.rational && t > 0) return hdi_max(1e-300, hdi_min(t * heat->scale, most));   /* r(0) is not 1 */
+    /* of a filter r(0) is not 1 */
+    if (heat->opts.rational && t > 0) return hdi_max(1e-300, hdi_min(t * heat->scale, most));
     return t * heat->scale * heat->lambda_max <= HDI_STILL ? 0 : hdi_min(t * heat->scale, most);
 }
 
