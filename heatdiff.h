@@ -255,23 +255,21 @@ typedef struct hd_csr {
 } hd_csr;
 
 /* ==== [C] options and reports ==== */
-/* Zeros in options mean defaults, and so does a NULL pointer to them. begin_zero and end_zero must stay zero:
- * they tell a cleared struct from an uninitialised one. */
+/* A zero in options means the default, and so does a NULL pointer to them. Clear a struct before you fill it
+ * in: begin_zero and end_zero must be zero, as a sign of that. */
 
+/* Points: E_ij = exp(-|p_i - p_j|^2 / 4s) / (4 pi s^2), s is the bandwidth, and v_i the area of the Voronoi
+ * cell of point i in its tangent plane. For exp and evenly spread samples B^-1 L tends to Laplacian/area: the
+ * unit of t is an area times a squared length. */
 typedef enum hd_laplacian_kind {
     HD_LAPLACIAN_DEFAULT = 0,   /* triangles: fem, polygons: polygon, points: voronoi-exp */
     HD_LAPLACIAN_FEM,           /* cotangent L; B: a triangle adds area/6 on, area/12 off the diagonal */
     HD_LAPLACIAN_VORONOI_COT,   /* cotangent L; B: mixed Voronoi areas (Meyer et al. 2003), diagonal */
     HD_LAPLACIAN_COT,           /* cotangent L, B = I (Pinkall, Polthier 1993) */
-    /* Faces of any number of corners k, planar or not. B is diagonal: each face gives area/k to each of its
-     * corners (Alexa, Wardetzky 2011). */
+    /* Faces of k corners, planar or not; B: area/k at each corner, diagonal (Alexa, Wardetzky 2011) */
     HD_LAPLACIAN_POLYGON,
-    /* Points: L_ij = -v_i v_j exp(-|p_i - p_j|^2 / 4s) / (4 pi s^2), B = diag(v), v_i the area of the Voronoi
-     * cell of point i in its tangent plane, s the bandwidth (Liu, Prabhakaran, Guo 2012). */
-    HD_LAPLACIAN_VORONOI_EXP,
-    /* Points: L_ij = -exp(-|p_i - p_j|^2 / 4s) / (4 pi n s^2) and B = I (Belkin, Niyogi 2008). For evenly
-     * spread samples B^-1 L tends to Laplacian/area, so the unit of t is an area times a squared length. */
-    HD_LAPLACIAN_EXP,
+    HD_LAPLACIAN_VORONOI_EXP,   /* L_ij = -v_i v_j E_ij, B = diag(v) (Liu, Prabhakaran, Guo 2012) */
+    HD_LAPLACIAN_EXP,           /* L_ij = -E_ij/n, B = I (Belkin, Niyogi 2008) */
     HD_LAPLACIAN_MATRICES       /* the caller's own two matrices */
 } hd_laplacian_kind;
 
@@ -281,21 +279,17 @@ typedef enum hd_border {
     HD_BORDER_DIRICHLET         /* all its vertices are held at zero */
 } hd_border;
 
-/* What hd_laplacian.row says of a vertex that has no row. */
-enum {
-    HD_ROW_INERT = -1,          /* without mass: K_t leaves its value as it is */
-    HD_ROW_HELD = -2            /* held at zero: K_t f is zero there, for any f and t */
-};
+/* Vertices without a row. Inert: without mass, K_t leaves the value. Held: K_t f is always zero there. */
+enum { HD_ROW_INERT = -1, HD_ROW_HELD = -2 };
 
 /* The triangles that operators are made on. */
 typedef enum hd_triangulation {
-    HD_TRIANGULATION_GIVEN = 0,     /* those of the mesh; points have none, and take exponential weights */
-    /* Meshes: edges are flipped along the surface until the triangulation is Delaunay. Then no cotangent
-     * weight is negative, except on boundary edges opposite to an obtuse angle. Surfaces that are not
-     * manifold, or whose faces are not oriented alike, are covered twice. */
+    HD_TRIANGULATION_GIVEN = 0, /* those of the mesh; points have none, and take exponential weights */
+    /* Meshes: edges are flipped along the surface. Cotangent weights are negative only on boundary edges
+     * opposite to an obtuse angle. Surfaces not manifold, or not oriented alike, are covered twice. */
     HD_TRIANGULATION_DELAUNAY,
-    /* The same on the tufted cover, where a second sheet is glued to the boundary: no weight is negative on
-     * any mesh. Points: triangles are made from neighbours. */
+    /* Meshes: the same, always on two sheets, glued at the boundary; no weight is negative. Points: triangles
+     * are made from neighbours. */
     HD_TRIANGULATION_TUFTED
 } hd_triangulation;
 
@@ -305,29 +299,25 @@ typedef struct hd_laplacian_opts {
     hd_laplacian_kind kind;
     hd_context *context;
     hd_triangulation triangulation;
-    /* Kind polygon: weight of the term for face functions that the gradient cannot see; it stiffens faces of
-     * more than three corners. Default 1, at most 1e100. */
-    double stiffening;
+    double stiffening;          /* polygon: of faces with more than three corners; default 1, at most 1e100 */
     double bandwidth2;          /* s of exponential weights; default: see hd_laplacian_create */
     double weight_cut;          /* exponentials below this are left out, in (0, 1); default 1e-8 */
-    /* Delaunay and tufted: all edges are lengthened by one number, so that every triangle inequality has a
-     * margin of mollify times the mean edge length. Default 1e-5; at most 1; negative: not at all. */
+    /* Delaunay and tufted: all edges are lengthened by one number, to give triangle inequalities a margin of
+     * mollify times the mean edge length. Default 1e-5; at most 1; negative: not at all. */
     double mollify;
     int32_t neighbours;         /* points: nearest ones for the plane and cell or star, 6..128; default 30 */
-    /* 1: hd_laplacian_update (triangles and polygons in space, as given) or hd_laplacian_update_matrices may
-     * be called. Takes 90 bytes more for each triangle, or 65 for each corner of polygons. */
+    /* 1: allows hd_laplacian_update (triangles and polygons in space, as given) and
+     * hd_laplacian_update_matrices. Takes 90 bytes a triangle, or 65 a corner of polygons. */
     int32_t updatable;
     hd_border border;           /* of the faces used of meshes; points and matrices: use held */
     int32_t n_held;
-    /* [n_held] more vertices held at zero; repeated ids do no harm. L and B lose their rows and columns. */
-    const int32_t *held;
+    const int32_t *held;        /* [n_held] more vertices held at zero; ids may repeat */
     int32_t end_zero;
 } hd_laplacian_opts;
 
 typedef enum hd_shape { HD_TRIANGLES = 0, HD_POLYGONS, HD_POINTS } hd_shape;
 
-/* A surface as the caller has it. Clear the struct, then set what there is. Positions need not be aligned. No
- * array is used after the call.
+/* A surface as the caller has it. Positions need not be aligned. No array is used after the call.
  * NOTE: vertex buffers often repeat vertices along seams of texture coordinates or normals, which no heat
  * crosses. Weld them first. */
 typedef struct hd_mesh {
@@ -338,17 +328,16 @@ typedef struct hd_mesh {
     const float *xyz_float;     /* or this */
     size_t stride;              /* bytes from one vertex to the next; 0: packed */
     /* [3 n_faces] of triangles, in place of coordinates: lengths[3 f + q] is the side from corner q to the
-     * next one (after 2 comes 0), finite and not negative. All faces at an edge agree up to 1e-12 of it; two
-     * vertices have one edge only. No side may be longer than the two others together. */
+     * next, finite, not negative, and no longer than the other two together. All faces at an edge agree up to
+     * 1e-12 of it; two vertices have one edge only. */
     const double *lengths;
     int32_t n_faces;
-    /* [n_faces + 1] of polygons: face f has the corners face_ptr[f] .. face_ptr[f + 1] - 1, from 0 */
-    const int64_t *face_ptr;
+    const int64_t *face_ptr;    /* [n_faces + 1] from 0: polygon f has corners face_ptr[f] and on */
     const int32_t *corner;      /* vertex ids: three for each triangle, or as face_ptr says */
     const uint16_t *corner_u16; /* or this, of triangles */
-    /* Of points that are triangulated: nbr[nbr_ptr[i]] .. nbr[nbr_ptr[i + 1] - 1] are neighbours of point i
-     * in any order, at most 256; 30 nearest ones suit. The point itself, points at its place and repeated ids
-     * do no harm. NULL: they are searched. */
+    /* Points that are triangulated: nbr[nbr_ptr[i]] .. nbr[nbr_ptr[i + 1] - 1] are neighbours of point i, at
+     * most 256; 30 nearest ones suit. The point itself, points at its place and repeats do no harm. NULL:
+     * they are searched. */
     const int64_t *nbr_ptr;
     const int32_t *nbr;
     int32_t end_zero;
@@ -356,27 +345,23 @@ typedef struct hd_mesh {
 
 /* What was found in a mesh. Nothing here is an error: faces that cannot be used are left out and counted. */
 typedef struct hd_mesh_report {
-    int32_t n_faces;                 /* given */
-    int32_t n_faces_used;            /* assembled */
+    int32_t n_faces, n_faces_used;   /* given; assembled */
     int32_t n_repeated_corner;       /* left out: two corners are the same vertex */
-    /* Left out: the cross product of two edges is exactly zero. Polygons: fewer than three corners, or a zero
-     * vector area (for more than three corners, up to rounding). */
+    /* Left out: a cross product or vector area of exactly zero (more than three corners: up to rounding), or
+     * fewer than three corners. */
     int32_t n_zero_area;
-    /* Left out: same corners as an earlier face. Polygons: in the same cyclic order, in either direction. */
-    int32_t n_repeated_face;
-    int64_t n_edges;                 /* distinct edges of the faces used */
-    int64_t n_boundary_edges;        /* with one face */
+    int32_t n_repeated_face;         /* left out: corners of an earlier face; polygons: in its cyclic order */
+    int64_t n_edges, n_boundary_edges;   /* distinct edges of the faces used; those with one face */
     int64_t n_nonmanifold_edges;     /* with three faces or more: their weights are summed */
     int64_t n_misoriented_edges;     /* with two faces that run along the edge in the same direction */
     int32_t n_boundary_loops;        /* connected sets of boundary edges */
     int32_t n_inert;                 /* vertices without mass, held or not */
-    /* Edges of negative cotangent weight: the maximum principle does not hold then. Polygons: pairs of
-     * vertices whose entry of L is positive; most faces of more than three corners have some. */
+    /* Edges of negative cotangent weight, which break the maximum principle. Polygons: pairs of vertices
+     * whose entry of L is positive; most faces of more than three corners have some. */
     int64_t n_negative_weights;
     double smallest_angle;           /* in radians, of the faces used; polygons: of convex corners */
 
-    /* Delaunay and tufted triangulations; else zero. Fields above, except n_negative_weights, describe the
-     * faces as given. */
+    /* Delaunay and tufted; else zero. All above but n_negative_weights is of the faces as given. */
     int32_t n_sheets;                /* 1, or 2: the surface is covered twice */
     int32_t n_mollified;             /* faces that needed mollification */
     double mollify_epsilon;          /* added to the length of every edge */
@@ -386,8 +371,8 @@ typedef struct hd_mesh_report {
     double smallest_intrinsic_angle; /* after the flips, in radians */
 } hd_mesh_report;
 
-/* What was found in a point set, and chosen for it. Nothing here is an error. A place is a position of one
- * or more points. */
+/* What was found in a point set, and chosen for it. Nothing here is an error. A place is a position of one or
+ * more points. */
 typedef struct hd_point_report {
     double bandwidth2;               /* s of the exponential weights */
     double weight_cut, cut_radius;   /* exponentials below weight_cut, beyond cut_radius, are 0 */
@@ -397,56 +382,46 @@ typedef struct hd_point_report {
     int32_t n_no_area;               /* points whose neighbours lie on a line: inert for voronoi-exp */
     int32_t n_border;                /* places whose cell ends at the hull of their neighbours */
     int32_t most_in_row;             /* most non-zeros in a row of L, diagonal included */
-    /* Places whose nearest neighbours spread across their plane more than 0.45 times as far as along it: at
-     * creases, rims and tips, in noise, and where two sheets are closer than about 1.5 spacings. Heat may
-     * cross to the other sheet there. */
+    /* Places whose nearest neighbours spread across their plane over 0.45 times as far as along it: creases,
+     * rims, tips, noise, and sheets closer than about 1.5 spacings, where heat may cross over. */
     int32_t n_not_flat;
 } hd_point_report;
 
-/* A discrete surface: the pair (L, B) on one pattern. Read all fields, change none. Rows are the vertices
- * that have mass and are not held at zero, in the caller's order. */
+/* A discrete surface: the pair (L, B) on one pattern, to be read only. Rows are the vertices with mass that
+ * are not held at zero, in the caller's order. */
 typedef struct hd_laplacian {
-    int32_t n;                  /* vertices of the caller */
-    int32_t n_active;           /* rows */
+    int32_t n, n_active;        /* vertices of the caller; rows */
     int32_t n_held;             /* vertices held at zero */
     int32_t n_components;       /* of the rows, joined by entries of L or B that are not zero */
     hd_laplacian_kind kind;
-    /* A bound on the largest eigenvalue of B^-1 L in 1/area, by Gershgorin's circles: up to about five times
-     * as large. HUGE_VAL if b_ratio is 0. */
+    /* A bound on the largest eigenvalue of B^-1 L in 1/area, up to about five times as large. HUGE_VAL if
+     * b_ratio is 0. */
     double lambda_max;
-    /* Mean length of the distinct edges, before any flip. Points: mean distance of a place to the nearest
-     * other place. Matrices: as the caller gave it. */
-    double h;
-    /* Area of the faces used, before any flip. Points: of their cells or stars. Matrices: 1'B1. */
-    double area;
+    double h;                   /* mean edge before flips, or nearest place's distance; matrices: as given */
+    double area;                /* of the faces used, or of points' cells or stars; matrices: 1'B1 */
     hd_csr L;                   /* n_active x n_active, every diagonal entry present */
     double *B;                  /* [L.nnz] values of B on the pattern of L, or NULL: B = diag(mass) */
     /* [n_active] b = B 1, the masses of the vertices. Next to held vertices a full B has lost entries: the
      * heat there is b'u with the b of the Laplacian that holds none. */
     double *mass;
     double *b_diag;             /* [n_active] diagonal of B; the same array as mass if B is diagonal */
-    int32_t *vertex;            /* [n_active] row -> vertex */
-    int32_t *row;               /* [n] vertex -> row, or HD_ROW_INERT or HD_ROW_HELD */
+    int32_t *vertex, *row;      /* [n_active] row -> vertex; [n] vertex -> row, HD_ROW_INERT or HD_ROW_HELD */
     int32_t *component;         /* [n_active] row -> component, numbered by first vertices */
     double *xyz;                /* [3 n_active] coordinates of the rows; NULL for matrices and lengths */
-    double *component_mass;     /* [n_components] sum of mass; see conserves */
-    /* B >= b_ratio diag(B): 1 if B is diagonal, 1/2 for fem (0.42 if some edge joins a vertex to itself).
-     * Matrices: proven by Gershgorin's circles or by factorisations. 0: unknown. */
+    double *component_mass;     /* [n_components] sum of mass; infinite where heat is lost to held vertices */
+    /* B >= b_ratio diag(B), proven: 1 if B is diagonal, 1/2 for fem (0.42 if some edge joins a vertex to
+     * itself). 0: unknown. */
     double b_ratio;
-    /* 1: L 1 = 0, so that heat is conserved: meshes and points of which no vertex is held; matrices if it
-     * holds up to 4 DBL_EPSILON sum_j |L_ij| in each row.
-     * 2: only on some components. The others lose heat to held vertices and tend to 0: their component_mass
-     * is infinite.
-     * 0: on none, or unknown. From about t = 15/lambda_1 on bounds of poles say little, see hd_heat_apply. */
+    /* Where heat is conserved, L 1 = 0. 1: everywhere; for matrices L 1 = 0 up to 4 DBL_EPSILON sum_j |L_ij|
+     * in each row. 2: on some components; the others tend to 0. 0: on none, or unknown; from about
+     * t = 15/lambda_1 on, bounds of poles then say little, see hd_heat_apply. */
     int32_t conserves;
-    /* Matrices and points: only n_inert. Tufted points: the triangles of their stars. */
-    hd_mesh_report mesh;
-    /* Points. Tufted: only n_not_flat and, if neighbours were searched, neighbours and n_coincident. */
-    hd_point_report points;
+    hd_mesh_report mesh;        /* matrices and points: only n_inert; tufted points: triangles of stars */
+    hd_point_report points;     /* tufted: only n_not_flat and, if searched, neighbours and n_coincident */
     hd_context *context;
     int64_t version;            /* number of updates */
-    struct hd_moving *moving;   /* private: what hd_laplacian_update needs, or NULL */
-    struct hd_holding *holding; /* private: what is held, or NULL */
+    struct hd_moving *moving;   /* private, as is the next */
+    struct hd_holding *holding;
 } hd_laplacian;
 
 typedef enum hd_pole_kind {
@@ -460,37 +435,31 @@ typedef enum hd_pole_kind {
 enum { HD_MAX_POLES = 32 };
 
 /* c(x) = a0 + sum_real a/(x - theta) + 2 Re sum_pairs a/(x - theta) for x = -t lambda <= 0. Of each conjugate
- * pair only the pole with Im theta > 0 is listed. No pole may lie on (-inf, 0]. Clear the struct before you
- * fill in a set of your own. */
+ * pair only the pole with Im theta > 0 is listed. No pole may lie on (-inf, 0]. Clear sets of your own. */
 typedef struct hd_rational {
     hd_pole_kind kind;
-    int32_t degree;             /* real poles + 2 pairs */
-    int32_t n_poles;            /* listed, at most HD_MAX_POLES */
+    int32_t degree, n_poles;    /* real poles + 2 pairs; poles listed, at most HD_MAX_POLES */
     double a0;
-    hd_c64 theta[HD_MAX_POLES];
-    hd_c64 a[HD_MAX_POLES];
+    hd_c64 theta[HD_MAX_POLES], a[HD_MAX_POLES];
     /* max |exp - c| on (-inf, 0], and max (1 + |x|) |exp - c|, where 0 is unbounded. 0: unknown, in sets of
      * your own; if both are, bounds in reports are for c itself. */
     double max_error, max_weighted_error;
-    /* 0, or the t of a filter f: c(-t lambda) stands for f(lambda), and errors are those of f on
-     * [0, lambda_max], measured on a grid */
-    double t;
-    double lambda_max;          /* filters: queries refuse a Laplacian with larger eigenvalues */
-    double largest;             /* filters: max |f| */
+    /* Filters f: c(-t lambda) stands for f(lambda), with errors measured on a grid of [0, lambda_max];
+     * queries refuse a Laplacian with larger eigenvalues; largest is max |f|. Otherwise t is 0. */
+    double t, lambda_max, largest;
 } hd_rational;
 
 /* Filters f(lambda) of the eigenvalues of B^-1 L, with their parameters a and b. */
 typedef enum hd_filter_kind {
     HD_FILTER_OWN = 0,          /* f(lambda, user) */
     HD_FILTER_HEAT,             /* exp(-a lambda) */
-    /* exp(-(a - log lambda)^2 / (2 b^2)), 0 at 0. a is the energy, b the width sigma. The diagonal divided by
-     * the trace is the wave kernel signature (Aubry, Schlickewei, Cremers 2011, eq. (4)). */
+    /* exp(-(a - log lambda)^2 / (2 b^2)), 0 at 0: energy a, width b. The diagonal over the trace is the wave
+     * kernel signature (Aubry, Schlickewei, Cremers 2011, eq. (4)). */
     HD_FILTER_WAVE,
     HD_FILTER_MEXICAN_HAT,      /* lambda exp(-a lambda): the wavelet -d/dt K_t at t = a (Hou, Qin 2012) */
     HD_FILTER_RESOLVENT,        /* 1 / (1 + a lambda) */
     HD_FILTER_FRACTIONAL,       /* exp(-a lambda^b): fractional diffusion */
-    /* 1 / (1 + ((lambda - a b/lambda)/(b - a))^4), 0 at 0: the band from a to b, 1/2 at both (Butterworth
-     * 1930) */
+    /* 1 / (1 + ((lambda - a b/lambda)/(b - a))^4), 0 at 0, 1/2 at a and b (Butterworth 1930) */
     HD_FILTER_BAND,
     HD_FILTER_BIHARMONIC        /* 1 / (lambda^2 + a^2): a floor for the biharmonic kernel */
 } hd_filter_kind;
@@ -502,12 +471,12 @@ typedef struct hd_filter {
     double (*f)(double lambda, void *user);   /* HD_FILTER_OWN: finite on [0, lambda_max] */
     void *user;
     double tol;                 /* max (1 + weight lambda) |f - c| / max |f|; default 1e-10 */
-    /* >= 0. With 1/weight near the eigenvalues that f lets pass, the error is small where most eigenvalues
-     * are. For a wave, weight = exp(-a) and tol = 1e-7 give bounds near 1e-6 with 16 poles. */
+    /* >= 0. Take 1/weight near the eigenvalues that f lets pass. For a wave, weight = exp(-a) and tol = 1e-7
+     * give bounds near 1e-6 with 16 poles. */
     double weight;
     int32_t max_degree;         /* of the set, at most HD_MAX_POLES; default 24 */
-    /* > 0: there is no eigenvalue between 0 and this, and c may take any value there. Filters that are not
-     * smooth at 0 then need half of the poles. The second value of hd_spectrum is such a number. */
+    /* > 0: no eigenvalue lies between 0 and this, and c may take any value there. Halves the poles of filters
+     * not smooth at 0. The second value of hd_spectrum is such a number. */
     double lambda_min;
     /* 1: c may have an a0, for filters that do not fade where lambda is large. With a full B diagonals leave
      * a0 B^-1 out, and the bound includes it. */
@@ -515,10 +484,10 @@ typedef struct hd_filter {
     int32_t end_zero;
 } hd_filter;
 
+/* Answers of two methods differ within their bounds. */
 typedef enum hd_method {
-    /* The cheapest by a model of flops and bytes, within the byte limit. When columns or fields, one after
-     * another at one t, have cost more than factors of all poles, the plan changes to direct. No clock: the
-     * same calls take the same methods. Answers of two methods differ within their bounds. */
+    /* The cheapest by a model, within the byte limit. Columns or fields at one t change to direct when they
+     * have cost more than its factors. The same calls take the same methods. */
     HD_METHOD_AUTO = 0,
     HD_METHOD_ITERATIVE,        /* a Krylov method for each pole, or Lanczos for the exponential */
     HD_METHOD_DIRECT,           /* all poles factorised in one sweep: for many fields or columns */
@@ -536,9 +505,7 @@ typedef enum hd_ordering {
 typedef enum hd_solver {
     HD_SOLVER_AUTO = 0,         /* Lanczos for small t if it costs less, else cocg */
     HD_SOLVER_COCG,             /* conjugate orthogonal CG (van der Vorst, Melissen 1990); real poles: CG */
-    /* CS-MINRES (Choi 2013). Plain MINRES is for Hermitian matrices and converges to a wrong result here. It
-     * needs a real positive definite preconditioner: that of t L + |theta| B. */
-    HD_SOLVER_MINRES = 3,       /* there is no 2 */
+    HD_SOLVER_MINRES = 3,       /* CS-MINRES (Choi 2013), preconditioned by that of t L + |theta| B */
     HD_SOLVER_LANCZOS           /* for the exponential, no poles: about 1.1 sqrt(t lambda_max) steps */
 } hd_solver;
 
@@ -560,14 +527,12 @@ typedef struct hd_heat_opts {
     hd_pole_kind poles;         /* default: kernel for columns and entries, uniform for fields */
     /* Default: the rational error relative to the answer is below about 1e-8 (direct: degree 9 and 3e-8). */
     int32_t degree;
-    /* Copied: a set of your own, for any filter of the spectrum, such as hd_rational_fit makes. poles and
-     * degree are then ignored, and Lanczos is not used. */
+    /* Copied: your own set, or hd_rational_fit's. Then poles and degree are ignored, Lanczos is not used. */
     const hd_rational *rational;
     double tol;                 /* the solver's part of |error|_B / |answer|_B; default 1e-9 */
     int32_t max_iterations;     /* per system; default 20000 */
     hd_ordering ordering;       /* auto: a plan may keep a second one, for few columns */
-    /* [n] with HD_ORDERING_OWN: perm[k] is the vertex eliminated k-th, those without mass anywhere */
-    const int32_t *perm;
+    const int32_t *perm;        /* [n] HD_ORDERING_OWN: perm[k] is eliminated k-th; massless ones anywhere */
     hd_context *context;        /* default: the Laplacian's */
     int32_t end_zero;
 } hd_heat_opts;
@@ -577,59 +542,48 @@ typedef enum hd_kernel { HD_KERNEL_OPERATOR = 0, HD_KERNEL_SYMMETRIC } hd_kernel
 
 /* Sources, a column of the answer for each. A source is a vertex, or points inside faces, on edges or at
  * vertices, each with a weight, or a curve through points. It is a functional c of fields that are linear on
- * each face: c_v is what it takes of vertex v. Clear the struct, then set count and vertex, or see
- * hd_vertices. */
+ * each face: c_v is what it takes of vertex v. Set count and vertex, or see hd_vertices. */
 typedef struct hd_sources {
     int32_t begin_zero;
     int32_t count;
     /* [count + 1] source q has the points first[q] .. first[q + 1] - 1, at least one. NULL: one each */
     const int64_t *first;
-    /* Vertices that each point lies between: 1 for a vertex, 2 for an edge, 3 for a triangle, more for
-     * polygons. 0: 1. Points at vertices and on edges may stand among points of triangles, with weights 0. */
+    /* Vertices a point lies between: 1 at a vertex, 2 on an edge, 3 in a triangle, more in polygons. 0: 1.
+     * Points at vertices and on edges may stand among points of triangles, with weights 0. */
     int32_t corners;
-    /* 1: curves of straight pieces from each point of a source to its next, at least two points. Two in
-     * turn must lie in one face, edges and corners included. A curve has weight 1 for each unit of its
-     * length. To close it, repeat the first point. */
+    /* 1: a source is a curve of straight pieces from each point to its next, at least two points. Each piece
+     * lies in one face, edges and corners included, and weighs its length. To close it, repeat the first. */
     int32_t curve;
     const int32_t *vertex;      /* [corners] of each point */
-    /* [corners] of each point, barycentric coordinates: not negative, and of sum 1 up to 1e-6. NULL: the mean
-     * of the corners. */
-    const double *bary;
+    const double *bary;         /* [corners] of each point: >= 0, sum 1 up to 1e-6; NULL: the corners' mean */
     const double *weight;       /* of each point; NULL: 1 each. Curves have none */
-    /* Curves: from each point to the next; that of a last point is not read. NULL: from the coordinates of
-     * their corners. */
-    const double *length;
+    const double *length;       /* from each point to its next, a last one unread; NULL: from coordinates */
     int32_t end_zero;
 } hd_sources;
 
+/* The squared distance d^2 of each kind. The last two sum over the eigenpairs (lambda_l, x_l) of (L, B) with
+ * lambda_l > 0, and have no time. */
 typedef enum hd_distance_kind {
-    /* d^2 = k_2t(i,i) - 2 k_2t(i,j) + k_2t(j,j) (Coifman, Lafon 2006). Intrinsic; the usual definition. */
-    HD_DISTANCE_CLASSICAL = 0,
-    /* d^2 = (e_i - e_j)' B K_2t (e_i - e_j), eq. (6) of the paper. Not intrinsic: for large t it tends to
-     * |b_i - b_j|/sqrt(area). */
+    HD_DISTANCE_CLASSICAL = 0,  /* k_2t(i,i) - 2 k_2t(i,j) + k_2t(j,j) (Coifman, Lafon 2006); intrinsic */
+    /* (e_i - e_j)' B K_2t (e_i - e_j), eq. (6) of the paper. Not intrinsic: d tends to |b_i - b_j|/sqrt(area)
+     * for large t. */
     HD_DISTANCE_WEIGHTED,
-    /* d^2 = sum_l (x_l(i) - x_l(j))^2 / lambda_l over the eigenpairs of (L, B) with lambda_l > 0: the
-     * effective resistance. It needs neither a time nor poles. */
-    HD_DISTANCE_COMMUTE,
-    /* The same with lambda_l^2 (Lipman, Rustamov, Funkhouser 2010). */
-    HD_DISTANCE_BIHARMONIC
+    HD_DISTANCE_COMMUTE,        /* sum_l (x_l(i) - x_l(j))^2 / lambda_l: the effective resistance */
+    HD_DISTANCE_BIHARMONIC      /* the same with lambda_l^2 (Lipman, Rustamov, Funkhouser 2010) */
 } hd_distance_kind;
 
 /* How a part of an error bound is known. For several answers the report holds the largest number. */
 typedef enum hd_evidence {
     HD_EVIDENCE_NONE = 0,       /* the part does not apply */
     HD_EVIDENCE_PROVEN,         /* a theorem, applied to norms and residuals of this answer */
-    /* Measured at some columns or solves of this answer, and assumed for all of it. Filters: measured at the
-     * points of a grid, and assumed between them. */
-    HD_EVIDENCE_MEASURED,
+    HD_EVIDENCE_MEASURED,       /* at some columns, solves or points of a filter's grid, assumed for all */
     HD_EVIDENCE_ESTIMATED       /* a model: of rounding, or of how the iterations of krylov converge */
 } hd_evidence;
 
 /* What happened, and how large the error can be. For several fields, columns or times: the worst of them.
- * error_bound is the sum of three parts: of the rational approximation of exp or of a filter, the iterative
- * solver, and rounding. It bounds the largest error of any value returned, relative to the largest |value|
- * returned: of each field, column and time, or of the whole list for entries and pairs. Above 1e-2 the status
- * is HD_WARN_ACCURACY. */
+ * error_bound bounds the largest error of any value returned, relative to the largest |value|: of each field,
+ * column and time, or of the whole list for entries and pairs. Above 1e-2 the status is HD_WARN_ACCURACY. It
+ * is the sum of three parts: the rational approximation, the iterative solver, and rounding. */
 typedef struct hd_report {
     hd_status status;
     hd_error error;             /* filled if status < 0 */
@@ -638,19 +592,17 @@ typedef struct hd_report {
     hd_solver solver;           /* HD_SOLVER_AUTO for direct, HD_SOLVER_LANCZOS for krylov */
     hd_precond precond;         /* HD_PRECOND_NONE for Lanczos and direct */
     hd_pole_kind poles;         /* HD_POLES_DEFAULT for Lanczos, which has none */
-    int32_t degree;             /* 0 for Lanczos */
-    int32_t n_poles;
+    int32_t degree, n_poles;    /* 0 for Lanczos */
     int64_t iterations;         /* total over systems and fields; Lanczos: steps */
     int64_t pole_iterations[HD_MAX_POLES];  /* per pole, summed over the fields */
     hd_ordering ordering;       /* of the factorisation; HD_ORDERING_AUTO without one */
     int64_t factor_nnz;         /* non-zeros of the factor L, diagonal included; 0 without a factorisation */
     double factor_flops;        /* real floating-point operations of all factorisations that the plan holds */
     double growth;              /* largest |pivot| / largest |diagonal entry|, see hd_ldl_report */
-    /* Largest |b - A x| / |b| over the systems, in the norm of diag(B)^-1, computed from x. 0 for Lanczos.
-     * After HD_ERR_NOT_CONVERGED: of the system that failed; for Lanczos its bound on the relative error. */
+    /* Largest |b - A x| / |b| over the systems, in the norm of diag(B)^-1. 0 for Lanczos. After
+     * HD_ERR_NOT_CONVERGED: of the system that failed; for Lanczos its bound on the relative error. */
     double residual;
-    double error_bound;         /* the sum of the next three */
-    double error_rational, error_solver, error_rounding;
+    double error_bound, error_rational, error_solver, error_rounding;
     hd_evidence evidence_rational, evidence_solver, evidence_rounding;
     /* Fields and columns: bound on |error|_B / |answer|_B. Otherwise HUGE_VAL and HD_EVIDENCE_NONE. */
     double error_bound_b;
@@ -660,8 +612,7 @@ typedef struct hd_report {
     double error_relative;
     double smallest;            /* diagonals and distances: the smallest value that is not zero */
     int64_t n_lost;             /* distances with at most about one sure digit, see hd_heat_distance */
-    /* |1'B u - 1'B f| / 1'B|u|. 0 if L does not conserve heat or the filter is the caller's. */
-    double mass_drift;
+    double mass_drift;          /* |1'B u - 1'B f| / 1'B|u|; 0 if L loses heat, or for the caller's filters */
 } hd_report;
 
 typedef struct hd_spectrum_opts {
@@ -678,8 +629,7 @@ typedef struct hd_spectrum_opts {
 /* The smallest eigenpairs of L x = lambda B x, to be read. The Laplacian must outlive it, and must not be
  * updated in between. */
 typedef struct hd_spectrum {
-    int32_t n;                  /* vertices */
-    int32_t count;              /* pairs */
+    int32_t n, count;           /* vertices; pairs */
     double *value;              /* [count] eigenvalues, ascending, 1/area */
     /* [n count] column-major, B-orthonormal, 0 at vertices without mass; the largest |entry| is positive */
     double *vector;
@@ -687,12 +637,10 @@ typedef struct hd_spectrum {
      * the first eigenvalue that does not belong to constants */
     double *residual;
     double largest_residual;
-    /* residuals above tol and what rounding of L x makes, or above a tenth of lambda. That rounding counts
-     * where the smallest eigenvalues are below 1e-6 of the largest. */
-    int32_t n_poor;
+    int32_t n_poor;             /* residuals above tol and the rounding of L x, or above a tenth of lambda */
     int32_t n_constant;         /* the first pairs are the constants of components; their residual is 0 */
-    /* 1: complete, as L - shift B has as many negative pivots as eigenvalues were found below the shift, and
-     * none found is so near (shift_margin) that rounding could change the count. 0: not proven. */
+    /* 1: complete, by a count of the eigenvalues below the shift, none so near (shift_margin) that rounding
+     * could change it. 0: not proven. */
     int32_t proven;
     double shift, shift_margin;
     double next;                /* all other eigenvalues are at least this; HUGE_VAL: there are none */
@@ -714,12 +662,10 @@ typedef enum hd_query {
     HD_QUERY_DIAGONAL,            /* hd_heat_diagonal of k_t; no k */
     HD_QUERY_DIAGONAL_OPERATOR,   /* hd_heat_diagonal of K_t; no k */
     HD_QUERY_TRACE,               /* hd_heat_diagonal with Z; no k */
-    /* hd_heat_distance: sources, hd_heat_sample: points; commute and biharmonic also
-     * hd_heat_distance_pairs */
-    HD_QUERY_DISTANCE,            /* classical */
-    HD_QUERY_DISTANCE_WEIGHTED,
-    HD_QUERY_DISTANCE_COMMUTE,
-    HD_QUERY_DISTANCE_BIHARMONIC,
+    HD_QUERY_DISTANCE,            /* classical; hd_heat_distance: sources, hd_heat_sample: points */
+    HD_QUERY_DISTANCE_WEIGHTED,   /* the same */
+    HD_QUERY_DISTANCE_COMMUTE,    /* the same, and hd_heat_distance_pairs: distinct vertices */
+    HD_QUERY_DISTANCE_BIHARMONIC, /* as commute */
     HD_QUERY_SPECTRUM             /* hd_spectrum_create: eigenpairs; the plan's method is ignored */
 } hd_query;
 
@@ -728,12 +674,10 @@ typedef struct hd_cost {
     int32_t possible;           /* 0: the query or the plan's options rule the method out; the rest is 0 */
     int32_t fits;               /* 1: bytes are not above what the byte limit leaves */
     double flops;               /* real floating-point operations, of factorisations, inversions and solves */
-    /* By a model of one idle core, within a factor of about two; iterations with poles may take far longer on
-     * thin triangles with obtuse angles. */
-    double seconds;
+    double seconds;             /* of one idle core, a model within twofold; iterations on slivers: longer */
     double bytes;               /* at the peak, beyond what the context has in use now */
     /* The same if poles of degree 14 or eigenpairs take over, where slivers or the time make a bound too
-     * large. By the direct method so much room gives the same answers as no limit. */
+     * large. With this much room the direct method gives the same answers as without a limit. */
     double bytes_most;
 } hd_cost;
 
@@ -742,8 +686,7 @@ typedef struct hd_estimate {
     const char *reason;         /* why, in a few words */
     int32_t analysed;           /* 1: the pattern was analysed. 0: factors are guesses, within about 3 */
     hd_cost cost[HD_METHOD_KRYLOV + 1];   /* by hd_method; cost[HD_METHOD_AUTO] is that of method */
-    double bytes_in_use;        /* by the context, now */
-    double bytes_left;          /* of the byte limit; HUGE_VAL without one */
+    double bytes_in_use, bytes_left;   /* of the context now; of the byte limit, HUGE_VAL without one */
 } hd_estimate;
 
 typedef enum hd_geodesic_mass {
@@ -764,8 +707,8 @@ typedef enum hd_geodesic_border {
 
 typedef struct hd_geodesic_opts {
     int32_t begin_zero;
-    /* How long heat flows, unit length^2; default h^2, with h the mean edge length. Larger values give
-     * smoother and less accurate distances. On irregular triangles and points 2 h^2 is often better. */
+    /* How long heat flows, unit length^2; default h^2, with h as in hd_laplacian. Larger values give
+     * smoother, less accurate distances; 2 h^2 often suits irregular triangles and points better. */
     double t;
     hd_geodesic_mass mass;      /* the diagonal of B, which has little influence on the distance */
     hd_ordering ordering;       /* of both factorisations */
@@ -786,11 +729,10 @@ typedef struct hd_geodesic_report {
     hd_status status;           /* HD_WARN_ACCURACY: a residual is above 1e-6 */
     hd_error error;             /* filled if status < 0 */
     double t, h;
-    int32_t n_components;
-    int32_t n_stages;           /* heat solves for a column: several where heat faded below 1e-200 */
+    int32_t n_components, n_stages;   /* heat solves for a column: several where heat fades below 1e-200 */
     hd_ordering ordering;
     int64_t factor_nnz;         /* of each factor, diagonal included */
-    double factor_flops;        /* of both, or of the three of the mean border */
+    double factor_flops;        /* of all two or three */
     /* |b - A x| / |b| of (L + B/t) u and of L phi; they say nothing of the error of the method itself */
     double residual_heat, residual_distance;
 } hd_geodesic_report;
