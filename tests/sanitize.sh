@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The tests under checkers. In each mode a planted error first proves that the checker is on.
-#     sanitize.sh WORKFOLDER [all]                    addresses and undefined behaviour, as CI does, but for ten slow groups, whose
+#     sanitize.sh WORKFOLDER [all]                    addresses and undefined behaviour, as CI does, but for some slow groups, whose
 #                                                     code the others run as well; all: these too
 #     sanitize.sh WORKFOLDER python [COUNT]           the arguments that test_python.py throws, under the address sanitizer
 #     sanitize.sh WORKFOLDER address|memory|threads|traps|valgrind [GROUP...]
@@ -127,7 +127,7 @@ address | all)
     planted $cc $flags <<<'#include <stdlib.h>
 int main(int c, char **v) { char *p = (char *)malloc(4); (void)v; p[3 + c] = 1; c = p[3]; free(p); return c; }'
   done
-  [ "$mode" = all ] || [ -n "$groups" ] || left_out=$(printf '%s\n' bounds estimate engines points deep spectrum ldl geodesic diagonal filters)
+  [ "$mode" = all ] || [ -n "$groups" ] || left_out=$(printf '%s\n' bounds estimate engines points deep spectrum ldl geodesic diagonal filters sources signatures large_t)
   each shared gcc $flags ;;
 *)
   echo "usage: sanitize.sh WORKFOLDER [address | all | python [COUNT] | memory | threads | traps | valgrind [GROUP...]]"
