@@ -63,6 +63,8 @@ for c in gcc g++ clang clang++; do
   $c -fsyntax-only -DHEATDIFF_NO_SIMD -I"$top" wrong.$ext
   echo "ok: static copies, renamed, $c"
 done
+# the benchmark is built on request only
+gcc -std=gnu99 -Werror=implicit-function-declaration -fsyntax-only -I"$top" "$top/tools/bench.c"
 # -ffast-math lets compilers take it that no number is NaN or infinite: those in the input are told all the same
 cat >"$work/fast.c" <<'END'
 #define HEATDIFF_IMPLEMENTATION
