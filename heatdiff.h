@@ -9,7 +9,7 @@
 
        K_t f = a0 f - sum_i a_i (t L + theta_i B)^-1 B f,
 
-   that is a handful of sparse complex-symmetric systems. No part of the spectrum is cut off. Every answer
+   which takes a few sparse complex-symmetric systems. No part of the spectrum is cut off. Every answer
    comes with a bound on its error. The method is that of G. Patane and M. Spagnuolo, "Heat diffusion kernel
    and distance on surface meshes and point sets", Computers & Graphics 37, 2013, called the paper below.
 
@@ -332,7 +332,7 @@ typedef struct hd_mesh {
      * 1e-12 of it; two vertices have one edge only. */
     const double *lengths;
     int32_t n_faces;
-    const int64_t *face_ptr;    /* [n_faces + 1] from 0: polygon f has corners face_ptr[f] and on */
+    const int64_t *face_ptr;    /* [n_faces + 1] of polygons: where the corners of each begin, from 0 */
     const int32_t *corner;      /* vertex ids: three for each triangle, or as face_ptr says */
     const uint16_t *corner_u16; /* or this, of triangles */
     /* Points that are triangulated: nbr[nbr_ptr[i]] .. nbr[nbr_ptr[i + 1] - 1] are neighbours of point i, at
@@ -350,7 +350,7 @@ typedef struct hd_mesh_report {
     /* Left out: a cross product or vector area of exactly zero (more than three corners: up to rounding), or
      * fewer than three corners. */
     int32_t n_zero_area;
-    int32_t n_repeated_face;         /* left out: corners of an earlier face; polygons: in its cyclic order */
+    int32_t n_repeated_face;         /* left out: corners of an earlier face, for polygons in cyclic order */
     int64_t n_edges, n_boundary_edges;   /* distinct edges of the faces used; those with one face */
     int64_t n_nonmanifold_edges;     /* with three faces or more: their weights are summed */
     int64_t n_misoriented_edges;     /* with two faces that run along the edge in the same direction */
@@ -397,7 +397,7 @@ typedef struct hd_laplacian {
     /* A bound on the largest eigenvalue of B^-1 L in 1/area, up to about five times as large. HUGE_VAL if
      * b_ratio is 0. */
     double lambda_max;
-    double h;                   /* mean edge before flips, or nearest place's distance; matrices: as given */
+    double h;                   /* mean edge length before flips; points: nearest places; matrices: given */
     double area;                /* of the faces used, or of points' cells or stars; matrices: 1'B1 */
     hd_csr L;                   /* n_active x n_active, every diagonal entry present */
     double *B;                  /* [L.nnz] values of B on the pattern of L, or NULL: B = diag(mass) */
@@ -435,7 +435,7 @@ typedef enum hd_pole_kind {
 enum { HD_MAX_POLES = 32 };
 
 /* c(x) = a0 + sum_real a/(x - theta) + 2 Re sum_pairs a/(x - theta) for x = -t lambda <= 0. Of each conjugate
- * pair only the pole with Im theta > 0 is listed. No pole may lie on (-inf, 0]. Clear sets of your own. */
+ * pair only the pole with Im theta > 0 is listed. No pole may lie on (-inf, 0]. */
 typedef struct hd_rational {
     hd_pole_kind kind;
     int32_t degree, n_poles;    /* real poles + 2 pairs; poles listed, at most HD_MAX_POLES */
@@ -532,7 +532,7 @@ typedef struct hd_heat_opts {
     double tol;                 /* the solver's part of |error|_B / |answer|_B; default 1e-9 */
     int32_t max_iterations;     /* per system; default 20000 */
     hd_ordering ordering;       /* auto: a plan may keep a second one, for few columns */
-    const int32_t *perm;        /* [n] HD_ORDERING_OWN: perm[k] is eliminated k-th; massless ones anywhere */
+    const int32_t *perm;        /* [n] HD_ORDERING_OWN: vertices in order, those without mass anywhere */
     hd_context *context;        /* default: the Laplacian's */
     int32_t end_zero;
 } hd_heat_opts;
@@ -557,7 +557,7 @@ typedef struct hd_sources {
     const int32_t *vertex;      /* [corners] of each point */
     const double *bary;         /* [corners] of each point: >= 0, sum 1 up to 1e-6; NULL: the corners' mean */
     const double *weight;       /* of each point; NULL: 1 each. Curves have none */
-    const double *length;       /* from each point to its next, a last one unread; NULL: from coordinates */
+    const double *length;       /* of curves, from each point to the next; NULL: from coordinates */
     int32_t end_zero;
 } hd_sources;
 
@@ -576,7 +576,7 @@ typedef enum hd_distance_kind {
 typedef enum hd_evidence {
     HD_EVIDENCE_NONE = 0,       /* the part does not apply */
     HD_EVIDENCE_PROVEN,         /* a theorem, applied to norms and residuals of this answer */
-    HD_EVIDENCE_MEASURED,       /* at some columns, solves or points of a filter's grid, assumed for all */
+    HD_EVIDENCE_MEASURED,       /* at some columns, solves or points of a grid, and assumed for all */
     HD_EVIDENCE_ESTIMATED       /* a model: of rounding, or of how the iterations of krylov converge */
 } hd_evidence;
 
@@ -637,7 +637,7 @@ typedef struct hd_spectrum {
      * the first eigenvalue that does not belong to constants */
     double *residual;
     double largest_residual;
-    int32_t n_poor;             /* residuals above tol and the rounding of L x, or above a tenth of lambda */
+    int32_t n_poor;             /* pairs of residual above tol and rounding of L x, or a tenth of lambda */
     int32_t n_constant;         /* the first pairs are the constants of components; their residual is 0 */
     /* 1: complete, by a count of the eigenvalues below the shift, none so near (shift_margin) that rounding
      * could change it. 0: not proven. */
@@ -674,7 +674,7 @@ typedef struct hd_cost {
     int32_t possible;           /* 0: the query or the plan's options rule the method out; the rest is 0 */
     int32_t fits;               /* 1: bytes are not above what the byte limit leaves */
     double flops;               /* real floating-point operations, of factorisations, inversions and solves */
-    double seconds;             /* of one idle core, a model within twofold; iterations on slivers: longer */
+    double seconds;             /* on one idle core, within about 2; iterations on slivers may take longer */
     double bytes;               /* at the peak, beyond what the context has in use now */
     /* The same if poles of degree 14 or eigenpairs take over, where slivers or the time make a bound too
      * large. With this much room the direct method gives the same answers as without a limit. */
@@ -1045,7 +1045,7 @@ HEATDIFF_API hd_status hd_heat_set_rational(hd_heat *heat, int32_t count, const 
  * kernel HD_KERNEL_OPERATOR for K_t, HD_KERNEL_SYMMETRIC for k_t = K_t B^-1
  * t      [n_times], n_times >= 1, in any order; unit length^2. With a filter: n_times = 0, or 1 and the t of
  *        its set
- * report NULL, or what happened; with several columns or times the worst of them. Its error is *err too */
+ * report NULL, or what happened, at worst among columns and times; its error is the one in err */
 
 /* U = K_t F at each time.
  * t      >= 0. t = 0 copies F; for large t, without limit, U tends to the mean over each component. Where all

@@ -137,7 +137,7 @@ static void fail_recover(fail_world *f, const fail_case *c, const fail_want *wan
     fail_end(f, c);
 }
 
-/* Where cases are few each third allocation of a query fails, of the next query those beside them. */
+/* 3: only each third allocation fails, and of the next case those after them. */
 static int64_t fail_step = 1;
 
 static void fail_each_allocation(fail_world *f, const fail_case *c, const fail_want *want) {
