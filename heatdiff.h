@@ -1859,6 +1859,13 @@ static void *hdi_take(hdi_scope *s, uint64_t count, size_t size) {
     return p;
 }
 
+/* One block for what is taken next: fresh memory costs less in large pieces. An estimate will do. */
+static void hdi_take_room(hdi_scope *s, int64_t bytes) {
+    s->left = 0;
+    s->room = (char *)hdi_take(s, (uint64_t)bytes, 1);
+    s->left = s->room ? (uint64_t)bytes : 0;
+}
+
 static void *hdi_take_zero(hdi_scope *s, uint64_t count, size_t size) {
     void *p = hdi_take(s, count, size);
     if (p) memset(p, 0, (size_t)count * size);
@@ -2058,16 +2065,14 @@ static int32_t hdi_context_width(const hd_context *ctx) {
 /* A walk does nodes, each by a task, of which some wait for others. What a node waits for is counted by those
  * who know: a task releases the nodes that waited for it alone. Nodes stand in a list in the order in which
  * they are released, and are claimed in that order, under a lock. One thread goes through the list by itself.
- * Threads of the user go through it in drains, tasks that claim nodes until they find none. The library's own
- * threads look around for a while and then sleep: waking one takes a call of the system, about 5
- * microseconds, and 50 pass until it works. The calling thread claims like the others and waits only for
- * nodes that others have claimed. Nothing blocks, in whatever order, on however few threads, drains are
- * run. */
+ * Threads of the user do in rounds what has been released. The library's own threads look around for a
+ * while and then sleep: waking one takes a call of the system, about 5 microseconds, and 50 pass until it
+ * works. The calling thread claims like the others and waits only for nodes that others have claimed. */
 
 /* Threads at most. How often a thread looks around before it sleeps: 20 to 50 microseconds in all. Walks of
  * fewer nodes than HDI_TASKS_START share them with threads that run, but start none: assembling 50K vertices,
  * 6 ms with 3 such loops, gained nothing alone and took 1.4 times as long on a busy machine. */
-enum { HDI_THREADS_MOST = 256, HDI_SPIN = 1000, HDI_TASKS_START = 9, HDI_TELLS = 64, HDI_DRAINS = 64 };
+enum { HDI_THREADS_MOST = 256, HDI_SPIN = 1000, HDI_TASKS_START = 9, HDI_TELLS = 64 };
 
 /* Threads read `done` and `stop` without the lock, too. */
 typedef struct hdi_walk {
@@ -2084,8 +2089,6 @@ typedef struct hdi_walk {
     int32_t told;                /* parts told of */
     volatile int32_t stop;       /* nothing more is begun */
     int32_t busy;                /* the lock of a user's threads */
-    int32_t drains, most;        /* that are under way; the most that were */
-    int32_t caller;              /* the calling thread has one of them */
 } hdi_walk;
 
 struct hd_threads {
@@ -2171,13 +2174,6 @@ static void hdi_walk_tell(hdi_walk *w) {
         hdi_walk_stop(w);
 }
 
-/* Whether a drain ends though there are nodes: when one that ended before can take one in the next round, or
- * when the calling thread is not among those who drain, and should tell how far the walk is. */
-static int hdi_drain_leaves(const hdi_walk *w) {
-    if (w->drains == 0) return 0;
-    return w->caller ? w->drains < w->most && w->ready - w->next > 1 : hdi_walk_part(w) >= 0;
-}
-
 /* Claims nodes and does them until there is none. Under the lock, which tasks are without. The last node of
  * all wakes the calling thread. */
 static void hdi_walk_work(hdi_walk *w, int32_t worker) {
@@ -2189,9 +2185,8 @@ static void hdi_walk_work(hdi_walk *w, int32_t worker) {
         if (worker == 0) hdi_walk_tell(w);
         hdi_walk_lock(w);
         HDI_STORE(&w->done, w->done + 1);
-        if (w->threads && worker > 0) w->ctx->helped++;
-        if (w->threads && w->done == w->ready) hdi_threads_wake(w->threads, 0);
-        if (hdi_drain_leaves(w)) break;
+        if (worker > 0) w->ctx->helped++;
+        if (w->done == w->ready) hdi_threads_wake(w->threads, 0);
     }
 }
 
@@ -2303,16 +2298,13 @@ static void hdi_let_go(hd_context *ctx) {
 
 /* ---- loops ---- */
 
-/* By a user's thread. */
-static void hdi_drain(void *arg, int64_t index, int32_t worker) {
+/* A node of a round, by a user's thread. */
+static void hdi_round(void *arg, int64_t index, int32_t worker) {
     hdi_walk *w = (hdi_walk *)arg;
-    (void)index;
-    hdi_walk_lock(w);
-    w->caller |= worker == 0;
-    w->most = hdi_high32(w->most, ++w->drains);
-    hdi_walk_work(w, worker);
-    w->drains--;
-    hdi_walk_unlock(w);
+    if (hdi_walk_stopped(w)) return;
+    w->task(w->arg, w->order ? w->order[w->next + index] : w->next + index, worker);
+    HDI_ATOMIC_ADD(&w->done, 1);
+    if (worker == 0) hdi_walk_tell(w);
 }
 
 /* Whether the calling thread will do it all. */
@@ -2336,12 +2328,15 @@ static void hdi_walk_open(hdi_walk *w, hd_context *ctx, int64_t n, int32_t *orde
 
 static void hdi_walk_run(hdi_walk *w) {
     hd_context *ctx = w->ctx;
+    int32_t n;
     hdi_walk_tell(w);
     if (w->threads) hdi_threads_walk(w);
     else
-        for (; w->done < w->ready; hdi_walk_tell(w)) {
-            if (hdi_walk_alone(w)) hdi_drain(w, 0, 0);
-            else ctx->parallel_for(ctx->parallel_user, hdi_least(w->n, HDI_DRAINS), hdi_drain, w);
+        for (; w->next < w->ready; w->next += n) {
+            n = hdi_walk_alone(w) ? 1 : w->ready - w->next;
+            if (n == 1) hdi_round(w, 0, 0);
+            else ctx->parallel_for(ctx->parallel_user, n, hdi_round, w);
+            hdi_walk_tell(w);
         }
 }
 
@@ -4838,11 +4833,19 @@ static int hdi_corner_same(const hdi_mesh *mesh, int64_t c, int64_t d) {
     return 0;
 }
 
-/* Of n faces with the same smallest vertex, known by their corners there, those get area 0 that have the
- * corners of an earlier one in the same cyclic order, in either direction. Returns their number. */
-static int32_t hdi_mesh_repeats(const hdi_mesh *mesh, hdi_pair *face, int32_t n) {
-    int32_t p, q, count = 0;
-    for (p = 0; p < n; p++) face[p].key = hdi_corner_key(mesh, face[p].id);
+/* Of the faces with v as their smallest vertex those get area 0 that have the corners of an earlier one in
+ * the same cyclic order, in either direction. Returns their number. face: room for them. */
+static int32_t hdi_mesh_repeats(const hdi_mesh *mesh, int32_t v, hdi_pair *face) {
+    int32_t p, q, n = 0, count = 0;
+    int64_t at, d;
+    for (at = mesh->at[v]; at < mesh->at[v + 1]; at++) {
+        const int32_t c = mesh->corner[at], f = hdi_corner_face(mesh, c);
+        int smallest = 1;
+        for (d = hdi_face_begin(mesh, f); d < hdi_face_begin(mesh, f + 1); d++) smallest &= mesh->tri[d] >= v;
+        face[n].key = hdi_corner_key(mesh, c);
+        face[n].id = c;
+        n += smallest;
+    }
     hdi_sort_pairs(face, n);
     for (p = 1; p < n; p++) {
         for (q = p - 1; q >= 0 && face[q].key == face[p].key; q--)
@@ -5652,36 +5655,13 @@ static hd_status hdi_soup_delaunay(hdi_surface *z, int close, hd_mesh_report *re
  * at its vertex, in the order of the faces: both rows of a pair of vertices add the same numbers in the same
  * order, so that L is symmetric to the last bit, and any thread can fill any row. */
 
-/* How masses are lumped. */
-typedef enum hdi_lump { HDI_LUMP_PARTS, HDI_LUMP_MIXED, HDI_LUMP_ONES } hdi_lump;
+static int hdi_is_cotangent(hd_laplacian_kind kind) {
+    return kind >= HD_LAPLACIAN_FEM && kind <= HD_LAPLACIAN_COT;
+}
 
-/* What a Laplacian is made of. */
-typedef enum hdi_made_of {
-    HDI_OF_NONE, HDI_OF_TRIANGLES, HDI_OF_POLYGONS, HDI_OF_POINTS, HDI_OF_MATRICES
-} hdi_made_of;
-
-/* What kinds of Laplacians differ in. */
-typedef struct hdi_kind {
-    hdi_made_of of;
-    hdi_lump lump;
-    int full;                   /* B is not diagonal */
-} hdi_kind;
-
-static const hdi_kind hdi_kinds[] = {
-    {HDI_OF_NONE, HDI_LUMP_PARTS, 0},            /* HD_LAPLACIAN_DEFAULT */
-    {HDI_OF_TRIANGLES, HDI_LUMP_PARTS, 1},       /* _FEM */
-    {HDI_OF_TRIANGLES, HDI_LUMP_MIXED, 0},       /* _VORONOI_COT */
-    {HDI_OF_TRIANGLES, HDI_LUMP_ONES, 0},        /* _COT */
-    {HDI_OF_POLYGONS, HDI_LUMP_PARTS, 0},        /* _POLYGON */
-    {HDI_OF_POINTS, HDI_LUMP_MIXED, 0},          /* _VORONOI_EXP */
-    {HDI_OF_POINTS, HDI_LUMP_ONES, 0},           /* _EXP */
-    {HDI_OF_MATRICES, HDI_LUMP_PARTS, 0}         /* _MATRICES */
-};
-typedef char hdi_kinds_are_all[sizeof hdi_kinds == (HD_LAPLACIAN_MATRICES + 1) * sizeof(hdi_kind) ? 1 : -1];
-
-/* The first for a number that is none. */
-static const hdi_kind *hdi_kind_of(hd_laplacian_kind kind) {
-    return hdi_kinds + (kind >= HD_LAPLACIAN_DEFAULT && kind <= HD_LAPLACIAN_MATRICES ? kind : 0);
+/* Is B the identity? */
+static int hdi_is_plain(hd_laplacian_kind kind) {
+    return kind == HD_LAPLACIAN_COT || kind == HD_LAPLACIAN_EXP;
 }
 
 /* What a vertex shares with another one. */
@@ -5692,29 +5672,19 @@ typedef struct hdi_entry {
     int32_t faces, forward;     /* of which their edge is a side; sides that run from the vertex to it */
 } hdi_entry;
 
-/* What one vertex shares with others: first itself, then those it has faces with, as they come. */
-typedef struct hdi_ring {
-    int32_t *place;             /* [n] where a vertex is in entry, if it is there */
-    hdi_entry *entry;
-    hdi_pair *order;            /* [longest row] entries by their vertices */
-    int32_t n;
-    double mass;
-} hdi_ring;
-
-/* Blocks of vertices are worked on by so many tasks, each with its own work arrays. */
+/* Blocks of vertices are worked on by so many tasks, each with its own list. */
 enum { HDI_STRANDS = 8 };
 
 /* Rows of a mesh, and work. Updates of a mesh keep one; those of the caller's matrices need nothing. */
 typedef struct hd_moving {
     hdi_mesh mesh;
     hd_laplacian *lap;          /* whose rows are filled; NULL: edges are counted */
-    hdi_lump lump;
+    hd_laplacian_kind kind;
     int32_t strands;
-    int64_t most;               /* entries of the longest row */
-    int32_t *place;             /* [strands n], see hdi_ring */
-    hdi_entry *entry;           /* [strands most] */
-    hdi_pair *order;            /* [strands most] */
-    int32_t *count;             /* [n] how many others have faces with a vertex; then work */
+    int64_t most;               /* room of a list */
+    hdi_pair *list;             /* [strands most], see hdi_ring_list */
+    int counting;               /* the entries of rows */
+    int32_t *count;             /* [n] entries of a row, -1: the vertex has no face; then work */
     char *border;               /* [n] 1: at an edge with one face */
 } hdi_rows;
 
@@ -5725,10 +5695,11 @@ typedef struct hd_holding {
     char *leak;                 /* [n] 1: heat flows from here to a vertex that is held */
 } hdi_holding;
 
-/* A Laplacian, and the scope of all that it has: the first block of it may be its context. */
+/* A Laplacian, the scope of all that it has, and a context where the caller gave none. */
 typedef struct hdi_laplacian {
     hd_laplacian lap;
     hdi_scope keep;
+    hd_context own;
 } hdi_laplacian;
 
 static hd_laplacian *hdi_lap_shell(hd_context *ctx, hd_error *e) {
@@ -5751,23 +5722,17 @@ static void hdi_laplacian_free(hd_laplacian *lap, hd_context *ctx) {
     hdi_free(ctx, lap);
 }
 
-/* A Laplacian for the caller, which holds its context: theirs, or a new one. */
+/* A Laplacian for the caller, which holds its context: theirs, or its own. */
 static hd_laplacian *hdi_lap_open(hdi_call *c) {
     hd_laplacian *lap = hdi_lap_shell(c->ctx, c->e);
-    hd_context *own = NULL;
-    if (lap && c->ctx == &c->context) own = HDI_TAKE(hdi_lap_keep(lap, c->e), hd_context, 1);
-    if (c->e->status < 0) {
-        hdi_laplacian_free(lap, c->ctx);
-        return NULL;
-    }
-    lap->context = hdi_enter_keep(c, own);
+    if (!lap) return NULL;
+    lap->context = hdi_enter_keep(c, &((hdi_laplacian *)(void *)lap)->own);
     hdi_hold(c->ctx);
     return lap;
 }
 
 static void hdi_lap_drop(hd_laplacian *lap) {
-    const hd_context *own = (const hd_context *)((hdi_laplacian *)(void *)lap)->keep.block[0];
-    hd_context copy, *ctx = hdi_outlive(lap->context, own, &copy);
+    hd_context copy, *ctx = hdi_outlive(lap->context, &((hdi_laplacian *)(void *)lap)->own, &copy);
     hdi_laplacian_free(lap, ctx);
     hdi_let_go(ctx);
 }
@@ -5801,29 +5766,41 @@ static hd_status hdi_lap_held(hd_laplacian *lap, const hd_laplacian_opts *o, hd_
     return hdi_holding_make(lap, o->border == HD_BORDER_DIRICHLET, o->held, o->n_held, e);
 }
 
-/* Numbers the rows: vertices with mass that are not held, in their order. Fills row, vertex, mass, b_diag,
- * n_active and what is counted of the others. */
-static hd_status hdi_lap_rows(hd_laplacian *lap, const double *vertex_mass, hd_error *e) {
-    const char *held = lap->holding && lap->holding->border != 2 ? lap->holding->mark : NULL;
+/* [n] 1: held; NULL: none are. */
+static const char *hdi_lap_marks(const hd_laplacian *lap) {
+    return lap->holding && lap->holding->border != 2 ? lap->holding->mark : NULL;
+}
+
+/* Numbers the rows: vertices with mass that are not held, in their order. Takes what rows need, and counts
+ * the other vertices. count [n]: entries of a row; -1: the vertex has no mass. full: B is not diagonal. */
+static hd_status hdi_lap_rows(hd_laplacian *lap, const int32_t *count, int full, hd_error *e) {
+    const char *held = hdi_lap_marks(lap);
     hdi_scope *keep = hdi_lap_keep(lap, e);
+    int64_t nnz = 0;
     int32_t v, k = 0;
     lap->row = HDI_TAKE(keep, int32_t, lap->n);
     if (!lap->row) return e->status;
     for (v = 0; v < lap->n; v++) {
-        lap->mesh.n_inert += !(vertex_mass[v] > 0);
+        lap->mesh.n_inert += count[v] < 0;
         lap->n_held += held && held[v];
-        lap->row[v] = held && held[v] ? HD_ROW_HELD : vertex_mass[v] > 0 ? k++ : HD_ROW_INERT;
+        lap->row[v] = held && held[v] ? HD_ROW_HELD : count[v] >= 0 ? k++ : HD_ROW_INERT;
+        nnz += lap->row[v] < 0 ? 0 : count[v];
     }
     lap->n_active = k;
     if (lap->mesh.n_inert == lap->n) return hdi_fail(e, HD_ERR_EMPTY, "no vertex has mass");
     if (k == 0) return hdi_fail(e, HD_ERR_EMPTY, "laplacian: all vertices with mass are held at zero");
+    hdi_take_room(keep, 1024 + (24 + 8 * full) * (int64_t)k + (12 + 8 * full) * nnz);
     lap->vertex = HDI_TAKE(keep, int32_t, k);
+    lap->L = hdi_csr_take(keep, k, k, nnz, 1);
+    lap->B = full ? HDI_TAKE(keep, double, nnz) : NULL;
     lap->b_diag = lap->mass = HDI_TAKE(keep, double, k);
+    if (full) lap->b_diag = HDI_TAKE(keep, double, k);
     for (v = 0; v < lap->n && e->status >= 0; v++) {
         if (lap->row[v] < 0) continue;
         lap->vertex[lap->row[v]] = v;
-        lap->mass[lap->row[v]] = vertex_mass[v];
+        lap->L.row_ptr[lap->row[v]] = count[v];
     }
+    if (e->status >= 0) hdi_prefix_sum(lap->L.row_ptr, k);
     return e->status;
 }
 
@@ -5864,7 +5841,7 @@ static void hdi_lap_connect(hd_laplacian *lap) {
 /* Masses of the components, and which of them conserve their heat. An infinite mass takes the constants out
  * of all formulas: their part of K_t f is the heat divided by the mass. */
 static void hdi_lap_component_masses(hd_laplacian *lap) {
-    const hdi_holding *x = lap->conserves && lap->holding && lap->holding->border != 2 ? lap->holding : NULL;
+    const hdi_holding *x = lap->conserves && hdi_lap_marks(lap) ? lap->holding : NULL;
     double *mass = lap->component_mass;
     int32_t i, leaks = 0;
     memset(mass, 0, (size_t)lap->n_components * sizeof *mass);
@@ -5931,191 +5908,150 @@ static double hdi_mixed_mass(const double *cot, int64_t q, double area) {
     return area / 4 + area / 4 * (cot[hdi_next3[q]] * cot[hdi_prev3[q]] / sum);
 }
 
-/* The entry of vertex v. */
-static HDI_INLINE hdi_entry *hdi_ring_entry(hdi_ring *r, int32_t v) {
-    const int32_t at = r->place[v];
-    hdi_entry *e = r->entry + at;
-    if ((at < r->n) & (e->to == v)) return e;
-    r->place[v] = r->n;
-    e = r->entry + r->n++;
-    e->L = e->B = e->size = 0;
-    e->faces = e->forward = 0;
-    e->to = v;
-    return e;
-}
+/* Behind the last pair of a list. */
+#define HDI_RING_END UINT64_MAX
 
-/* Adds corner c of a face with this area, which has k corners from begin on. */
-static HDI_INLINE void hdi_ring_corner(hdi_ring *r, const hdi_mesh *mesh, hdi_lump lump, int64_t c,
-                                       double area, int64_t begin, int64_t k, int poly) {
-    const int64_t end = begin + k, before = c > begin ? c - 1 : end - 1, after = c + 1 < end ? c + 1 : begin;
-    const double *cot = poly ? NULL : mesh->cot + begin;
-    const int32_t copies = poly || !mesh->copies ? 1 : mesh->copies[begin / 3],
-                  odd = poly || !mesh->odd ? 0 : mesh->odd[begin / 3];
-    int64_t d;
-    if (area > 0) r->mass += lump == HDI_LUMP_MIXED ? hdi_mixed_mass(cot, c - begin, area) : area / (double)k;
-    for (d = begin; d < end; d++) {
-        hdi_entry *e;
-        if (d == c) continue;
-        e = hdi_ring_entry(r, mesh->tri[d]);
-        if (!(area > 0)) continue;
-        if (poly) e->L += hdi_poly_entry(mesh, c, d, k, d == before || d == after);
-        else e->L -= cot[3 + 2 * begin - c - d] / 2;
-        if (!poly && mesh->len) e->size = mesh->len[d == after ? c : d];
-        else if (!mesh->xyz) e->size += fabs(cot[0]) + fabs(cot[1]) + fabs(cot[2]);
-        e->B += area;
-        e->faces += d == before || d == after ? copies : 0;
-        e->forward += d == after ? copies - odd : odd;
+/* What vertex v shares with others: at each of its corners c the other corners d of the face, as pairs of
+ * their vertices and of c and d, sorted by these. Before its own pairs v has one more. */
+static void hdi_ring_list(const hdi_mesh *mesh, int32_t v, hdi_pair *list) {
+    int64_t p, d, n = 1;
+    list->key = (uint64_t)v;
+    list->id = 0;
+    for (p = mesh->at[v]; p < mesh->at[v + 1]; p++) {
+        const int64_t c = mesh->corner[p];
+        const int32_t f = hdi_corner_face(mesh, c);
+        for (d = hdi_face_begin(mesh, f); d < hdi_face_begin(mesh, f + 1); d++) {
+            if (d == c) continue;
+            list[n].key = (uint64_t)mesh->tri[d];
+            list[n++].id = c << 32 | d;
+        }
     }
+    hdi_sort_pairs(list, n);
+    list[n].key = HDI_RING_END;
 }
 
-/* All that vertex v shares with others. Without coordinates, weights above zero, which are there by rounding
- * only, become zero when they are below 1e-13 of the cotangents that they are made of. */
-static void hdi_ring_make(hdi_ring *ring, const hdi_mesh *from, hdi_lump lump, int32_t v) {
-    const hdi_mesh mesh = *from;                 /* copies, which stores cannot change */
-    hdi_ring r = *ring;
+/* Adds what the face of corners c and d adds to their entry. */
+static HDI_INLINE void hdi_entry_add(hdi_entry *e, const hdi_mesh *mesh, int64_t c, int64_t d) {
+    const int32_t f = hdi_corner_face(mesh, c), copies = hdi_copies(mesh, f),
+                  odd = mesh->odd ? mesh->odd[f] : 0;
+    const int64_t begin = hdi_face_begin(mesh, f), end = hdi_face_begin(mesh, f + 1), k = end - begin;
+    const int after = d == (c + 1 < end ? c + 1 : begin), before = c == (d + 1 < end ? d + 1 : begin);
+    const double *cot = mesh->cot + begin;
+    if (!(mesh->area[f] > 0)) return;
+    if (hdi_is_poly(mesh)) e->L += hdi_poly_entry(mesh, c, d, k, after | before);
+    else e->L -= cot[3 + 2 * begin - c - d] / 2;
+    if (mesh->len) e->size = mesh->len[after ? c : d];
+    else if (!mesh->xyz) e->size += fabs(cot[0]) + fabs(cot[1]) + fabs(cot[2]);
+    e->B += mesh->area[f];
+    e->faces += after | before ? copies : 0;
+    e->forward += after ? copies - odd : odd;
+}
+
+/* The entry that p begins with, p at one of a list. Returns where the next one begins. Without coordinates,
+ * weights above zero, which are there by rounding only, become zero when they are below 1e-13 of the
+ * cotangents that they are made of. */
+static const hdi_pair *hdi_ring_entry(const hdi_mesh *mesh, const hdi_pair *p, hdi_entry *e) {
+    memset(e, 0, sizeof *e);
+    e->to = (int32_t)p->key;
+    for (p += p->id == 0; p->key == (uint64_t)e->to; p++)
+        hdi_entry_add(e, mesh, p->id >> 32, p->id & 0xffffffff);
+    if (!mesh->xyz && !mesh->len && e->L > 0 && e->L <= 1e-13 * e->size) e->L = 0;
+    return p;
+}
+
+static double hdi_vertex_mass(const hdi_mesh *mesh, hd_laplacian_kind kind, int32_t v) {
+    double mass = 0;
     int64_t p;
-    int32_t q;
-    r.n = 0;
-    r.mass = 0;
-    (void)hdi_ring_entry(&r, v);
-    for (p = mesh.at[v]; p < mesh.at[v + 1]; p++) {
-        const int64_t c = mesh.corner[p];
-        const int32_t f = hdi_corner_face(&mesh, c);
-        const int64_t begin = hdi_face_begin(&mesh, f);
-        if (hdi_is_poly(&mesh))
-            hdi_ring_corner(&r, &mesh, lump, c, mesh.area[f], begin, mesh.ptr[f + 1] - begin, 1);
-        else
-            hdi_ring_corner(&r, &mesh, lump, c, mesh.area[f], begin, 3, 0);
+    for (p = mesh->at[v]; p < mesh->at[v + 1]; p++) {
+        const int64_t c = mesh->corner[p];
+        const int32_t f = hdi_corner_face(mesh, c);
+        const int64_t begin = hdi_face_begin(mesh, f), k = hdi_face_begin(mesh, f + 1) - begin;
+        if (!(mesh->area[f] > 0)) continue;
+        mass += kind == HD_LAPLACIAN_VORONOI_COT ? hdi_mixed_mass(mesh->cot + begin, c - begin, mesh->area[f])
+                                                 : mesh->area[f] / (double)k;
     }
-    for (q = 1; q < r.n && !mesh.xyz && !mesh.len; q++)
-        if (r.entry[q].L > 0 && r.entry[q].L <= 1e-13 * r.entry[q].size) r.entry[q].L = 0;
-    ring->n = r.n;
-    ring->mass = lump == HDI_LUMP_ONES ? 1 : r.mass;
+    return hdi_is_plain(kind) ? 1 : mass;
 }
 
-/* The ring of strand number `strand`. */
-static hdi_ring hdi_rows_ring(const hdi_rows *x, int64_t strand) {
-    hdi_ring r;
-    memset(&r, 0, sizeof r);
-    r.place = x->place + strand * x->mesh.n;
-    if (x->entry) r.entry = x->entry + strand * x->most;
-    r.order = x->order + strand * x->most;
-    return r;
-}
-
-/* Sorts the entries and counts the edges to later vertices. */
-static void hdi_rows_edges(const hdi_rows *x, hdi_ring *r, hdi_tally *t) {
+/* Counts an edge of vertex v, if it is one to a later vertex. */
+static HDI_INLINE void hdi_rows_edge(const hdi_rows *x, int32_t v, const hdi_entry *e, hdi_tally *t) {
     const hdi_mesh *mesh = &x->mesh;
-    const int32_t v = r->entry[0].to;
-    int32_t q;
-    for (q = 0; q < r->n; q++) {
-        r->order[q].key = (uint64_t)r->entry[q].to;
-        r->order[q].id = q;
-    }
-    hdi_sort_pairs(r->order, r->n);
-    for (q = 0; q < r->n; q++) {
-        const hdi_entry *e = r->entry + r->order[q].id;
-        if (e->faces == 1) x->border[v] = 1;
-        if (e->to <= v) continue;
-        t->n[HDI_NEGATIVE] += e->L > 0;
-        if (e->faces == 0 || (!mesh->xyz && !mesh->len)) continue;
-        t->n[HDI_EDGES]++;
-        t->n[HDI_BOUNDARY] += e->faces == 1;
-        t->n[HDI_NONMANIFOLD] += e->faces > 2;
-        t->n[HDI_MISORIENTED] += (e->faces == 2) & (e->forward != 1);
-        t->length += mesh->len ? e->size : hdi_edge_length(mesh->xyz, v, e->to);
-    }
+    if (e->faces == 1) x->border[v] = 1;
+    if (e->to <= v) return;
+    t->n[HDI_NEGATIVE] += e->L > 0;
+    if (e->faces == 0 || (!mesh->xyz && !mesh->len)) return;
+    t->n[HDI_EDGES]++;
+    t->n[HDI_BOUNDARY] += e->faces == 1;
+    t->n[HDI_NONMANIFOLD] += e->faces > 2;
+    t->n[HDI_MISORIENTED] += (e->faces == 2) & (e->forward != 1);
+    t->length += mesh->len ? e->size : hdi_edge_length(mesh->xyz, v, e->to);
 }
 
-/* The row of vertex v in L and B, if it has one. A column without a row adds to the diagonal and is not
- * written; its room, which updates do not have any more, is marked. An edge from the vertex to itself has no
- * weight, and is twice in its B. */
-static void hdi_rows_write(const hdi_rows *x, const hdi_ring *r, int32_t v) {
+/* Counts the edges of vertex v, and fills its row in L and B, if it has one. A column without a row adds to
+ * the diagonal and is not written; its room, which updates do not have any more, is marked. An edge from the
+ * vertex to itself has no weight, and is twice in its B. */
+static void hdi_rows_fill(const hdi_rows *x, const hdi_pair *p, int32_t v, hdi_tally *t) {
     hd_laplacian *lap = x->lap;
-    const int32_t i = lap->row[v];
-    double *L = lap->L.val, *B = lap->B, sum = 0, b_sum = 0;
-    int64_t at, diagonal = 0;
-    int32_t q, held = 0, leaks = 0;
-    if (i < 0) return;
-    for (q = 0, at = lap->L.row_ptr[i]; q < r->n; q++) {
-        const hdi_entry *e = r->entry + r->order[q].id;
-        const int32_t j = lap->row[r->order[q].key];
+    const int32_t i = lap ? lap->row[v] : -1;
+    double *B = lap ? lap->B : NULL, sum = 0, b_sum = 0, b_own = 0;
+    int64_t at = i < 0 ? 0 : lap->L.row_ptr[i], diagonal = 0;
+    int held = 0, leaks = 0;
+    while (p->key != HDI_RING_END) {
+        hdi_entry e;
+        int32_t j;
+        p = hdi_ring_entry(&x->mesh, p, &e);
+        hdi_rows_edge(x, v, &e, t);
+        if (i < 0) continue;
+        j = lap->row[e.to];
         if (j == i) {
             diagonal = at++;
+            b_own = e.B / 12;
             continue;
         }
-        sum += e->L;
-        if (j < 0) {
-            held = 1;
-            leaks |= e->L != 0;
-            continue;
-        }
+        sum += e.L;
+        held |= j < 0;
+        leaks |= j < 0 && e.L != 0;
+        if (j < 0) continue;
         lap->L.col[at] = j;
-        L[at] = e->L;
-        if (B) b_sum += B[at] = e->B / 12;
+        lap->L.val[at] = e.L;
+        if (B) b_sum += B[at] = e.B / 12;
         at++;
     }
+    if (i < 0) return;
     for (; at < lap->L.row_ptr[i + 1]; at++) lap->L.col[at] = -1;
     lap->L.col[diagonal] = i;
-    L[diagonal] = -sum;
-    lap->mass[i] = r->mass;
+    lap->L.val[diagonal] = -sum;
+    lap->mass[i] = hdi_vertex_mass(&x->mesh, x->kind, v);
     /* a sixth of the areas that the mass has thirds of */
-    if (B) B[diagonal] = lap->b_diag[i] = r->mass / 2 + r->entry[0].B / 12;
+    if (B) B[diagonal] = lap->b_diag[i] = lap->mass[i] / 2 + b_own;
     if (B && held) lap->mass[i] = b_sum + B[diagonal];
     if (lap->holding) lap->holding->leak[v] = (char)leaks;
 }
 
-/* Counts the vertices that v has faces with. Those faces of which it is the smallest come to be first in
- * order; returns their number. */
-static int32_t hdi_rows_count(hdi_rows *x, const hdi_ring *r, int32_t v) {
+/* Vertex v: counts others, or fills its row. In covers faces repeat others by right. */
+static void hdi_rows_vertex(hdi_rows *x, hdi_pair *list, int32_t v, hdi_tally *t) {
     const hdi_mesh *mesh = &x->mesh;
-    int32_t n = 0, n_faces = 0, *mark = r->place;
-    int64_t p, d;
-    mark[v] = v;
-    for (p = mesh->at[v]; p < mesh->at[v + 1]; p++) {
-        const int32_t f = hdi_corner_face(mesh, mesh->corner[p]);
-        const int64_t end = hdi_face_begin(mesh, f + 1);
-        int smallest = 1;
-        for (d = hdi_face_begin(mesh, f); d < end; d++) {
-            const int32_t j = mesh->tri[d];
-            smallest &= j >= v;
-            n += mark[j] != v;
-            mark[j] = v;
-        }
-        r->order[n_faces].id = mesh->corner[p];
-        n_faces += smallest;
-    }
-    x->count[v] = n;
-    return n_faces;
-}
-
-/* The block of vertices [begin, end): counts rows while there are no entries, then fills them. In covers
- * faces repeat others by right. */
-static void hdi_rows_block(hdi_rows *x, hdi_ring *r, int32_t begin, int32_t end, hdi_tally *t) {
-    const hdi_mesh *mesh = &x->mesh;
-    int32_t v;
-    *t = hdi_tally_none;
-    for (v = begin; v < end; v++) {
-        x->border[v] = 0;
-        if (!x->entry) {
-            const int32_t n = hdi_rows_count(x, r, v);
-            if (mesh->xyz || mesh->len) t->n[HDI_REPEATED_FACE] += hdi_mesh_repeats(mesh, r->order, n);
-        } else if (mesh->at[v] < mesh->at[v + 1]) {
-            hdi_ring_make(r, mesh, x->lump, v);
-            hdi_rows_edges(x, r, t);
-            if (x->lap) hdi_rows_write(x, r, v);
-        }
-    }
+    const hdi_pair *p;
+    x->border[v] = 0;
+    if (x->counting) x->count[v] = -(mesh->at[v] == mesh->at[v + 1]);
+    if (mesh->at[v] == mesh->at[v + 1]) return;
+    hdi_ring_list(mesh, v, list);
+    for (p = list; x->counting && p->key != HDI_RING_END; p++) x->count[v] += p->key != p[1].key;
+    if (!x->counting) hdi_rows_fill(x, list, v, t);
+    else if (mesh->xyz || mesh->len) t->n[HDI_REPEATED_FACE] += hdi_mesh_repeats(mesh, v, list);
 }
 
 static void hdi_rows_task(void *arg, int64_t strand, int32_t worker) {
     hdi_rows *x = (hdi_rows *)arg;
     const int64_t n = x->mesh.n, size = hdi_block_size(n);
-    hdi_ring r = hdi_rows_ring(x, strand);
     int64_t b;
+    int32_t v;
     (void)worker;
-    for (b = strand; b * size < n; b += x->strands)
-        hdi_rows_block(x, &r, (int32_t)(b * size), (int32_t)hdi_least(n, (b + 1) * size), x->mesh.tally + b);
+    for (b = strand; b * size < n; b += x->strands) {
+        x->mesh.tally[b] = hdi_tally_none;
+        for (v = (int32_t)(b * size); v < hdi_least(n, (b + 1) * size); v++)
+            hdi_rows_vertex(x, x->list + strand * x->most, v, x->mesh.tally + b);
+    }
 }
 
 /* All rows of lap; NULL: of none. Returns what was counted. */
@@ -6125,49 +6061,48 @@ static hdi_tally hdi_rows_run(hdi_rows *x, hd_laplacian *lap, hd_context *ctx) {
     return hdi_tally_all(&x->mesh, x->mesh.n);
 }
 
-/* So that strands share no line of a cache. */
-static int64_t hdi_rows_room(int64_t n) { return n / 32 * 32 + 32; }
-
-/* Finds faces that repeat others, counts the entries of rows and takes the work arrays for them, in s. The
- * corners of the mesh are listed. */
+/* Finds faces that repeat others and counts the entries of rows, in s. The corners of the mesh are listed. */
 static hd_status hdi_rows_begin(hdi_rows *x, const hdi_mesh *mesh, hd_mesh_report *rep, hdi_scope *s) {
-    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
     const int32_t n = mesh->n;
     int32_t v, repeated;
+    int64_t p;
     memset(x, 0, sizeof *x);
     x->mesh = *mesh;
     x->strands = hdi_is_serial(s->ctx) ? 1 : hdi_low32(HDI_STRANDS, n / (int32_t)hdi_block_size(n) + 1);
-    if (!s->ctx->parallel_for)                   /* work arrays are fresh memory, which takes time */
-        x->strands = hdi_low32(x->strands, 2 * hdi_low32(HDI_STRANDS, hdi_context_width(s->ctx)));
-    x->most = hdi_rows_room(hdi_fullest(mesh->at, n));
+    for (v = 0, p = 0; v < n; v++) {
+        int64_t all = 8;                         /* both ends, and no line of a cache is shared */
+        for (; p < mesh->at[v + 1]; p++) {
+            const int32_t f = hdi_corner_face(mesh, mesh->corner[p]);
+            all += hdi_face_begin(mesh, f + 1) - hdi_face_begin(mesh, f) - 1;
+        }
+        x->most = hdi_most(x->most, all);
+    }
     x->count = HDI_TAKE(s, int32_t, n);
     x->border = HDI_TAKE(s, char, n);
-    x->place = HDI_TAKE(s, int32_t, x->strands * (int64_t)n);
-    x->order = HDI_TAKE(&own, hdi_pair, x->strands * x->most);
-    if (s->e->status < 0) return hdi_scope_end(&own);
-    hdi_fill_i32(x->place, x->strands * (int64_t)n, -1);
+    x->list = HDI_TAKE(s, hdi_pair, x->strands * x->most);
+    if (s->e->status < 0) return s->e->status;
+    x->counting = 1;
     repeated = (int32_t)hdi_rows_run(x, NULL, s->ctx).n[HDI_REPEATED_FACE];
+    x->counting = 0;
     rep->n_repeated_face += repeated;
     rep->n_faces_used -= repeated;
-    (void)hdi_scope_end(&own);
-    hdi_fill_i32(x->place, x->strands * (int64_t)n, 0);
-    for (v = 0, x->most = 0; v < n; v++) x->most = hdi_most(x->most, hdi_rows_room(x->count[v]));
-    x->entry = HDI_TAKE(s, hdi_entry, x->strands * x->most);
-    x->order = HDI_TAKE(s, hdi_pair, x->strands * x->most);
-    return s->e->status;
+    return HD_OK;
 }
 
 /* What is known of the edges of a mesh in space, and their mean length. */
 static void hdi_rows_report(hdi_rows *x, hdi_tally all, hd_mesh_report *rep, double *h) {
-    hdi_ring r = hdi_rows_ring(x, 0);
-    int32_t v, q;
+    const hdi_pair *p;
+    hdi_entry entry;
+    int32_t v;
     hdi_fill_own(x->count, x->mesh.n);
     for (v = 0, rep->n_boundary_loops = 0; v < x->mesh.n; v++) {
         if (!x->border[v]) continue;
         rep->n_boundary_loops++;                 /* a set, until it is united with another one */
-        hdi_ring_make(&r, &x->mesh, x->lump, v);
-        for (q = 1; q < r.n; q++)
-            if (r.entry[q].faces == 1) rep->n_boundary_loops -= hdi_unite(x->count, v, r.entry[q].to);
+        hdi_ring_list(&x->mesh, v, x->list);
+        for (p = x->list; p->key != HDI_RING_END;) {
+            p = hdi_ring_entry(&x->mesh, p, &entry);
+            if (entry.faces == 1) rep->n_boundary_loops -= hdi_unite(x->count, v, entry.to);
+        }
     }
     rep->n_edges = all.n[HDI_EDGES];
     rep->n_boundary_edges = all.n[HDI_BOUNDARY];
@@ -6185,24 +6120,6 @@ static void hdi_rows_border(hdi_rows *x, const hd_laplacian *lap) {
     for (v = 0; v < lap->n; v++) mark[v] |= x->border[v];
 }
 
-/* Rows for the vertices that have faces, and room for their values. */
-static hd_status hdi_lap_pattern(hd_laplacian *lap, const hdi_rows *x, int full, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e), *keep = hdi_lap_keep(lap, e);
-    double *mass = HDI_TAKE_ZERO(&s, double, lap->n);
-    int64_t nnz = 0;
-    int32_t v;
-    for (v = 0; v < lap->n && mass; v++) mass[v] = x->mesh.at[v] < x->mesh.at[v + 1];
-    if (!mass || hdi_lap_rows(lap, mass, e) < 0) return hdi_scope_end(&s);
-    for (v = 0; v < lap->n; v++) nnz += lap->row[v] >= 0 ? x->count[v] + 1 : 0;
-    lap->L = hdi_csr_take(keep, lap->n_active, lap->n_active, nnz, 1);
-    if (full) lap->B = HDI_TAKE(keep, double, nnz);
-    if (full) lap->b_diag = HDI_TAKE(keep, double, lap->n_active);
-    for (v = 0; v < lap->n && e->status >= 0; v++)
-        if (lap->row[v] >= 0) lap->L.row_ptr[lap->row[v]] = x->count[v] + 1;
-    if (e->status >= 0) hdi_prefix_sum(lap->L.row_ptr, lap->n_active);
-    return hdi_scope_end(&s);
-}
-
 /* Values of the rows and what is known of them. area and h of intrinsic triangles are known. */
 static void hdi_lap_values(hd_laplacian *lap, hdi_rows *x) {
     const hdi_tally all = hdi_rows_run(x, lap, lap->context);
@@ -6215,10 +6132,6 @@ static void hdi_lap_values(hd_laplacian *lap, hdi_rows *x) {
 }
 
 /* ---- meshes that move ---- */
-
-static hdi_rows *hdi_moving_new(hd_laplacian *lap, hd_error *e) {
-    return lap->moving = HDI_TAKE_ZERO(hdi_lap_keep(lap, e), hdi_rows, 1);
-}
 
 /* Copies the faces, which may be the caller's, into s, where all else is. Those that are left out stay out,
  * whatever they would measure: their areas become negative. */
@@ -6302,22 +6215,21 @@ static hd_status hdi_input_open(hdi_input *in, const hd_mesh *m, double stiffeni
 
 /* (L, B) and places of faces that are measured and live in s. */
 static hd_status hdi_lap_mesh(hd_laplacian *lap, const hdi_mesh *mesh, const hdi_input *in, hdi_scope *s) {
-    hdi_scope own = hdi_scope_begin(lap->context, s->e);
-    const hdi_kind *kind = hdi_kind_of(lap->kind);
-    hdi_rows once, *x = in->updatable ? hdi_moving_new(lap, s->e) : &once;
-    if (!x || hdi_rows_begin(x, mesh, &lap->mesh, in->updatable ? s : &own) < 0) return hdi_scope_end(&own);
-    x->lump = kind->lump;
+    hdi_rows *x = HDI_TAKE(s, hdi_rows, 1);
+    if (!x || hdi_rows_begin(x, mesh, &lap->mesh, s) < 0) return s->e->status;
+    if (in->updatable) lap->moving = x;
+    x->kind = lap->kind;
     hdi_rows_border(x, lap);
-    if (hdi_lap_pattern(lap, x, in->full && kind->full, s->e) < 0 ||
+    if (hdi_lap_rows(lap, x->count, in->full && lap->kind == HD_LAPLACIAN_FEM, s->e) < 0 ||
         hdi_progress(lap->context, "assemble", 0.4, s->e) < 0 || hdi_lap_places(lap, in->mesh.xyz, s->e) < 0)
-        return hdi_scope_end(&own);
+        return s->e->status;
     hdi_lap_values(lap, x);
     if (lap->n_held > 0) hdi_lap_pack(lap);
     /* The element matrix area/12 (1 1' + I) is at least 1/2 of its diagonal, area/12 I; that of a triangle
      * with corners v, v, w at least 1 - sqrt(1/3), and that of corners v, v, v is its diagonal. */
     lap->b_ratio = !lap->B ? 1 : lap->mesh.n_self_edges ? 1 - sqrt(1.0 / 3) : 0.5;
     if (hdi_progress(lap->context, "assemble", 0.8, s->e) >= 0 && in->updatable) hdi_moving_make(x, s);
-    return hdi_scope_end(&own);
+    return s->e->status;
 }
 
 /* Reports the edges of a mesh, whose mean length is put into h. */
@@ -6434,18 +6346,19 @@ static void hdi_component_add(const hd_laplacian *lap, const double *value, doub
 
 /* The columns of row v of the pair: the union of L and B (both over vertices), and the diagonal. An explicit
  * zero whose mirror entry neither matrix stores is left out: the pattern becomes symmetric. col NULL: counts
- * only. */
-static int64_t hdi_pair_shape(const hd_laplacian *lap, const hd_csr *L, const hd_csr *B, int32_t v,
-                              int32_t *col) {
-    int64_t p = L->row_ptr[v], q = B->row_ptr[v], n = 0;
+ * only; count is -1 where there is no mass. */
+static int32_t hdi_pair_shape(const hd_laplacian *lap, const int32_t *count, const hd_csr *L, const hd_csr *B,
+                              int32_t v, int32_t *col) {
+    const char *held = hdi_lap_marks(lap);
+    int64_t p = L->row_ptr[v], q = B->row_ptr[v];
     const int64_t p_end = L->row_ptr[v + 1], q_end = B->row_ptr[v + 1];
-    int diagonal = 0;
+    int32_t n = 0, diagonal = 0;
     while (p < p_end || q < q_end || !diagonal) {
         const int32_t cp = p < p_end ? L->col[p] : INT32_MAX, cq = q < q_end ? B->col[q] : INT32_MAX;
         const int32_t c = hdi_low32(hdi_low32(cp, cq), diagonal ? INT32_MAX : v);
         const int stays = c == v || (cp == c && L->val[p] != 0) || (cq == c && B->val[q] != 0) ||
                           hdi_csr_find(L, c, v) >= 0 || hdi_csr_find(B, c, v) >= 0;
-        if (stays && lap->row[c] >= 0) {
+        if (stays && count[c] >= 0 && !(held && held[c])) {
             if (col) col[n] = lap->row[c];
             n++;
         }
@@ -6458,24 +6371,23 @@ static int64_t hdi_pair_shape(const hd_laplacian *lap, const hd_csr *L, const hd
 
 /* Rows of the vertices that have entries in B, and the pattern of the pair. */
 static hd_status hdi_pair_pattern(hd_laplacian *lap, const hd_csr *L, const hd_csr *B, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e), *keep = hdi_lap_keep(lap, e);
-    double *present = HDI_TAKE_ZERO(&s, double, lap->n);
-    int64_t nnz = 0, p;
-    int32_t i, full = 0;
-    for (i = 0; present && i < lap->n; i++) {
+    hdi_scope s = hdi_scope_begin(lap->context, e);
+    int32_t *count = HDI_TAKE(&s, int32_t, lap->n), i, full = 0;
+    int64_t p;
+    if (!count) return hdi_scope_end(&s);
+    for (i = 0; i < lap->n; i++) {
+        count[i] = -1;
         for (p = B->row_ptr[i]; p < B->row_ptr[i + 1]; p++) {
             if (B->val[p] == 0) continue;
-            present[i] = 1;
+            count[i] = 0;
             full |= B->col[p] != i;
         }
     }
-    if (!present || hdi_lap_rows(lap, present, e) < 0) return hdi_scope_end(&s);
-    for (i = 0; i < lap->n_active; i++) nnz += hdi_pair_shape(lap, L, B, lap->vertex[i], NULL);
-    lap->L = hdi_csr_take(keep, lap->n_active, lap->n_active, nnz, 1);
-    if (full) lap->B = HDI_TAKE(keep, double, nnz);
-    if (full) lap->b_diag = HDI_TAKE(keep, double, lap->n_active);
-    for (i = 0, nnz = 0; i < lap->n_active && e->status >= 0; i++)
-        lap->L.row_ptr[i + 1] = nnz += hdi_pair_shape(lap, L, B, lap->vertex[i], lap->L.col + nnz);
+    for (i = 0; i < lap->n; i++)
+        if (count[i] >= 0) count[i] = hdi_pair_shape(lap, count, L, B, i, NULL);
+    if (hdi_lap_rows(lap, count, full, e) < 0) return hdi_scope_end(&s);
+    for (i = 0; i < lap->n_active; i++)
+        (void)hdi_pair_shape(lap, count, L, B, lap->vertex[i], lap->L.col + lap->L.row_ptr[i]);
     return hdi_scope_end(&s);
 }
 
@@ -6609,12 +6521,6 @@ static void hdi_pair_take(hd_laplacian *lap, const hd_laplacian *next) {
 }
 
 /* ---- pairs renumbered ---- */
-
-static void *hdi_copy(const void *from, uint64_t count, size_t size, hd_context *ctx, hd_error *e) {
-    void *to = e->status < 0 ? NULL : hdi_alloc(ctx, count, size, e);
-    if (to && count > 0) memcpy(to, from, (size_t)count * size);
-    return to;
-}
 
 enum { HDI_ROWS_AHEAD = 8 };     /* rows of a matrix taken in any order are asked for so many rows early */
 
@@ -6961,7 +6867,7 @@ static hd_status hdi_cloud_assemble(hd_laplacian *lap, const double *xyz, const 
         hdi_within(&lap->L, &tree, n > lap->n_active ? lap->xyz : NULL, lap->n_active, cut2, keep) < 0 ||
         hdi_progress(lap->context, "assemble", 0.7, e) < 0) return hdi_scope_end(&s);
     job.scale = hdi_divide(hdi_divide(HDI_QUARTER_INV_PI, job.bandwidth), job.bandwidth) / n;
-    if (hdi_kind_of(lap->kind)->lump == HDI_LUMP_ONES) job.mass = NULL;
+    if (hdi_is_plain(lap->kind)) job.mass = NULL;
     hdi_parallel_ranges(lap->context, lap->n_active, HDI_POINTS_PER_TASK, hdi_weights_task, &job);
     for (i = 0; i < lap->n_active; i++) {
         const int64_t count = lap->L.row_ptr[i + 1] - lap->L.row_ptr[i];
@@ -6982,7 +6888,7 @@ static hd_status hdi_cloud_assemble(hd_laplacian *lap, const double *xyz, const 
 /* Masses of the points: equal shares of their place's cell, or 1; and what there is to report about them. */
 static void hdi_cloud_masses(const hdi_cloud *cloud, hd_laplacian *lap, const hdi_places *places,
                              int32_t *copies, double *mass) {
-    const int ones = hdi_kind_of(lap->kind)->lump == HDI_LUMP_ONES;
+    const int ones = hdi_is_plain(lap->kind);
     hd_point_report *rep = &lap->points;
     int32_t i;
     for (i = 0; i < lap->n; i++) copies[places->place[i]]++;
@@ -7003,7 +6909,7 @@ static hd_status hdi_lap_points(hd_laplacian *lap, const hdi_input *in, hd_error
     hd_point_report *rep = &lap->points;
     const double *xyz = in->mesh.xyz;
     double *work = HDI_TAKE(&s, double, lap->n), cut2;
-    int32_t *copies = HDI_TAKE_ZERO(&s, int32_t, lap->n);
+    int32_t *copies = HDI_TAKE_ZERO(&s, int32_t, lap->n), v;
     hdi_places places;
     hdi_cloud cloud;
     if (!copies || hdi_places_make(&places, xyz, lap->n, &s) < 0) return hdi_scope_end(&s);
@@ -7015,7 +6921,11 @@ static hd_status hdi_lap_points(hd_laplacian *lap, const hdi_input *in, hd_error
     cut2 = -4 * log(rep->weight_cut) * rep->bandwidth2;
     rep->cut_radius = sqrt(cut2);
     hdi_cloud_masses(&cloud, lap, &places, copies, work);
-    if (hdi_lap_rows(lap, work, e) >= 0 && hdi_progress(lap->context, "assemble", 0.4, e) >= 0 &&
+    for (v = 0; v < lap->n; v++) copies[v] = work[v] > 0 ? 0 : -1;
+    (void)hdi_lap_rows(lap, copies, 0, e);
+    for (v = 0; v < lap->n && e->status >= 0; v++)
+        if (lap->row[v] >= 0) lap->mass[lap->row[v]] = work[v];
+    if (e->status >= 0 && hdi_progress(lap->context, "assemble", 0.4, e) >= 0 &&
         hdi_lap_places(lap, xyz, e) >= 0)
         (void)hdi_cloud_assemble(lap, xyz, work, cut2, e);
     lap->b_ratio = 1;
@@ -7037,7 +6947,7 @@ static int32_t hdi_point_neighbours(int32_t asked, const hd_mesh *m, hd_error *e
 
 /* Checks the options of point sets and resolves them into lap->points. */
 static void hdi_point_opts(hd_laplacian *lap, const hd_laplacian_opts *o, hd_error *e) {
-    const int weights = hdi_kind_of(lap->kind)->of == HDI_OF_POINTS;
+    const int weights = lap->kind == HD_LAPLACIAN_VORONOI_EXP || lap->kind == HD_LAPLACIAN_EXP;
     hd_point_report *rep = &lap->points;
     hdi_refuse((o->bandwidth2 != 0 || o->weight_cut != 0) && !weights,
                "laplacian options: bandwidth2 and weight_cut are for exponential weights", e);
@@ -10371,11 +10281,14 @@ static hd_status hdi_ldl_analyse(hd_ldl *f, const hd_csr *a, const hd_ldl_opts *
             return hdi_fail_row(e, HD_ERR_NOT_FINITE, "ldl options: a coordinate is not finite", p / 3, p % 3,
                                 o->xyz[p]);
     if (hdi_symbolic_order(&f->sym, a, &order, f->ctx, e) < 0) return e->status;
-    f->row_ptr = (int64_t *)hdi_copy(a->row_ptr, n + 1, sizeof *f->row_ptr, f->ctx, e);
-    f->col = (int32_t *)hdi_copy(a->col, nnz, sizeof *f->col, f->ctx, e);
-    if (f->col) f->inv = (int32_t *)hdi_alloc(f->ctx, n, sizeof *f->inv, e);
-    for (i = 0; f->inv && i < f->n; i++) f->inv[f->sym.perm[i]] = i;
-    return e->status;
+    f->row_ptr = HDI_NEW(f->ctx, int64_t, n + 1, e);
+    if (f->row_ptr) f->col = HDI_NEW(f->ctx, int32_t, nnz, e);
+    if (f->col) f->inv = HDI_NEW(f->ctx, int32_t, n, e);
+    if (!f->inv) return e->status;
+    memcpy(f->row_ptr, a->row_ptr, (size_t)(n + 1) * sizeof *f->row_ptr);
+    if (nnz > 0) memcpy(f->col, a->col, (size_t)nnz * sizeof *f->col);
+    for (i = 0; i < f->n; i++) f->inv[f->sym.perm[i]] = i;
+    return HD_OK;
 }
 
 /* Finds the first value that is not finite, and the largest diagonal entry. stride: doubles per value. */
@@ -20620,7 +20533,8 @@ static hd_status hdi_heat_make(hd_heat *heat, const hd_laplacian *lap, hd_error 
     if (hdi_heat_sums(heat, e) < 0) return e->status;
     hdi_heat_measure_pair(heat);
     if (heat->opts.ordering == HD_ORDERING_OWN && hdi_order_check(heat->opts.perm, lap->n, ctx, e) >= 0)
-        heat->perm = (int32_t *)hdi_copy(heat->opts.perm, (uint64_t)lap->n, sizeof *heat->perm, ctx, e);
+        heat->perm = HDI_NEW(ctx, int32_t, lap->n, e);
+    if (heat->perm) memcpy(heat->perm, heat->opts.perm, (size_t)lap->n * sizeof *heat->perm);
     heat->opts.perm = heat->perm;
     return e->status;
 }
@@ -21108,7 +21022,7 @@ static double hdi_diagonal_seen(const hdi_heat_call *h, const hdi_inverses *x, i
 #define HDI_DIAGONAL_LOOSE 50
 
 static double hdi_diagonal_limit(const hd_laplacian *lap, hd_kernel kernel) {
-    const int plain = hdi_kind_of(lap->kind)->lump == HDI_LUMP_ONES;
+    const int plain = hdi_is_plain(lap->kind);
     const double loose = kernel == HD_KERNEL_OPERATOR && lap->B ? HDI_DIAGONAL_LOOSE : 1;
     return loose * (plain ? HDI_DIAGONAL_SURE_PLAIN : HDI_DIAGONAL_SURE);
 }
@@ -24270,7 +24184,7 @@ static hd_laplacian_kind hdi_lap_kind(const hd_mesh *m, const hd_laplacian_opts 
 static void hdi_lap_opts_check(const hd_mesh *m, const hd_laplacian_opts *o, hd_laplacian_kind kind,
                                hd_error *e) {
     const int flips = o->triangulation != HD_TRIANGULATION_GIVEN, points = m->shape == HD_POINTS;
-    const int cotangents = hdi_kind_of(kind)->of == HDI_OF_TRIANGLES;
+    const int cotangents = hdi_is_cotangent(kind);
     hdi_refuse(m->shape == HD_TRIANGLES && !cotangents,
                "laplacian of triangles: the kind is fem, voronoi-cot or cot", e);
     hdi_refuse(m->shape == HD_POLYGONS && !cotangents && kind != HD_LAPLACIAN_POLYGON,
@@ -24363,7 +24277,7 @@ HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L
             hdi_fail_row(c.e, HD_ERR_ARGUMENT, "laplacian of matrices: L and B differ in size", L->n_rows,
                          B->n_rows, 0);
         else if (hdi_pair_pattern(lap, L, B, c.e) >= 0 && hdi_pair_replace(lap, L, B, h, c.e) >= 0 && opts &&
-                 opts->updatable) (void)hdi_moving_new(lap, c.e);
+                 opts->updatable) lap->moving = HDI_TAKE(hdi_lap_keep(lap, c.e), hdi_rows, 1);
     }
     return hdi_lap_end(out, lap, c.e);
 }
