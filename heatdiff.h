@@ -4516,8 +4516,6 @@ static const double *hdi_view_moved(const hd_mesh *m, int32_t n, hdi_scope *s) {
 
 static const signed char hdi_next3[3] = {1, 2, 0}, hdi_prev3[3] = {2, 0, 1};
 
-static HDI_INLINE int32_t hdi_face_low(const int32_t *v) { return hdi_low32(v[0], hdi_low32(v[1], v[2])); }
-
 /* Area of the triangle with these sides, relatively exact for any shape; 0 where they make none (W. Kahan,
  * Miscalculating area and angles of a needle-like triangle, 2014). */
 static double hdi_length_area(double a, double b, double c) {
@@ -4901,30 +4899,21 @@ static hd_status hdi_lengths_agree(const hdi_mesh *mesh, hdi_scope *s) {
     return hdi_scope_end(&own);
 }
 
-/* Triangles in space whose smallest corners jump about become a copy in s that is sorted by these: what
- * neighbours need is then at hand. */
+/* Triangles in space become a copy in s, sorted by their smallest corners: what neighbours need is then at
+ * hand. */
 static hd_status hdi_mesh_sort(hdi_mesh *mesh, hdi_scope *s) {
-    enum { NEARBY = 4096 };                      /* vertices, whose coordinates fit into a cache */
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
-    int32_t *tri, *face, f, last = 0, jumps = 0;
-    int64_t *at;
-    for (f = 0; f < mesh->m && mesh->xyz && !mesh->copies && !hdi_is_poly(mesh); f++) {
-        const int32_t low = hdi_face_low(mesh->tri + hdi_triple(f));
-        jumps += (low > last ? low - last : last - low) > NEARBY;
-        last = low;
-    }
-    if (jumps <= mesh->m / 16) return hdi_scope_end(&own);
-    at = HDI_TAKE_ZERO(&own, int64_t, (int64_t)mesh->n + 1);
-    tri = HDI_TAKE(s, int32_t, hdi_triple(mesh->m));
-    face = HDI_TAKE(s, int32_t, mesh->m);
+    int32_t *low = HDI_TAKE(&own, int32_t, mesh->m), *at = HDI_TAKE(&own, int32_t, (int64_t)mesh->n + 1);
+    int32_t *tri = HDI_TAKE(s, int32_t, hdi_triple(mesh->m)), *face = HDI_TAKE(s, int32_t, mesh->m), f;
     if (s->e->status < 0) return hdi_scope_end(&own);
-    for (f = 0; f < mesh->m; f++) at[hdi_face_low(mesh->tri + hdi_triple(f))]++;
-    hdi_prefix_sum(at, mesh->n);
     for (f = 0; f < mesh->m; f++) {
         const int32_t *v = mesh->tri + hdi_triple(f);
-        const int64_t to = at[hdi_face_low(v)]++;
-        memcpy(tri + 3 * to, v, 3 * sizeof *v);
-        face[to] = hdi_face_name(mesh, f);
+        low[f] = hdi_low32(v[0], hdi_low32(v[1], v[2]));
+    }
+    hdi_group(low, mesh->m, mesh->n, at, face);
+    for (f = 0; f < mesh->m; f++) {
+        memcpy(tri + hdi_triple(f), mesh->tri + hdi_triple(face[f]), 3 * sizeof *tri);
+        face[f] = hdi_face_name(mesh, face[f]);
     }
     mesh->tri = tri;
     mesh->face = face;
@@ -4934,8 +4923,8 @@ static hd_status hdi_mesh_sort(hdi_mesh *mesh, hdi_scope *s) {
 /* Measures the faces of a mesh that is checked and lists the corners at each vertex, in s. */
 static hd_status hdi_mesh_make(hdi_mesh *mesh, hd_mesh_report *rep, hdi_scope *s) {
     rep->n_faces = mesh->m;
-    if (hdi_mesh_sort(mesh, s) < 0 || hdi_mesh_take(mesh, s) < 0) return s->e->status;
-    if (hdi_faces_measure(mesh, rep, s->ctx, s->e) < 0) return s->e->status;
+    if (mesh->xyz && !mesh->copies && !hdi_is_poly(mesh) && hdi_mesh_sort(mesh, s) < 0) return s->e->status;
+    if (hdi_mesh_take(mesh, s) < 0 || hdi_faces_measure(mesh, rep, s->ctx, s->e) < 0) return s->e->status;
     hdi_mesh_corners(mesh);
     return mesh->len ? hdi_lengths_agree(mesh, s) : HD_OK;
 }
