@@ -4959,55 +4959,11 @@ enum {
     HDI_STAR_MOST = 256        /* of a point, for its star */
 };
 
-/* 2^64 / golden ratio: multiplied by it, numbers spread evenly (Knuth) */
-#define HDI_GOLDEN 0x9e3779b97f4a7c15u
-
-static uint64_t hdi_place_hash(const double *p) {
-    uint64_t h = 0, bits;
-    int c;
-    for (c = 0; c < 3; c++) {
-        const double x = p[c] + 0.0;             /* -0 is 0 */
-        memcpy(&bits, &x, sizeof bits);
-        h = (h ^ bits) * HDI_GOLDEN;
-        h ^= h >> 29;
-    }
-    return h;
-}
-
-/* Different places of points. */
-typedef struct hdi_places {
-    int32_t n;
-    int32_t *place;             /* [points] the place where a point is; numbered by their first points */
-    int32_t *first;             /* [n] that point */
-    double *xyz;                /* [3 n] */
-} hdi_places;
-
-/* Of n checked points, in s. */
-static hd_status hdi_places_make(hdi_places *out, const double *xyz, int32_t n, hdi_scope *s) {
-    const int64_t slots = 2 * (int64_t)n + 1;
-    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
-    int32_t *table = HDI_TAKE(&own, int32_t, slots), v;
-    out->n = 0;
-    out->place = HDI_TAKE(s, int32_t, n);
-    out->first = HDI_TAKE(s, int32_t, n);
-    if (s->e->status < 0) return hdi_scope_end(&own);
-    hdi_fill_i32(table, slots, -1);
-    for (v = 0; v < n; v++) {
-        const double *p = hdi_at3(xyz, v);
-        int64_t at = (int64_t)(hdi_place_hash(p) % (uint64_t)slots);
-        for (; table[at] >= 0; at = at + 1 < slots ? at + 1 : 0) {
-            const double *q = hdi_at3(xyz, out->first[table[at]]);
-            if (p[0] == q[0] && p[1] == q[1] && p[2] == q[2]) break;
-        }
-        if (table[at] < 0) {
-            out->first[out->n] = v;
-            table[at] = out->n++;
-        }
-        out->place[v] = table[at];
-    }
-    out->xyz = HDI_TAKE(s, double, hdi_triple(out->n));
-    for (v = 0; v < out->n && out->xyz; v++) hdi_copy3(out->xyz + hdi_triple(v), hdi_at3(xyz, out->first[v]));
-    return hdi_scope_end(&own);
+/* The tree of n checked points, in s, and of each the first one in its place. */
+static hd_status hdi_points_first(hdi_tree *tree, const double *xyz, int32_t n, int32_t *first,
+                                  hdi_scope *s) {
+    if (s->e->status < 0 || hdi_tree_make(tree, xyz, n, s) < 0) return s->e->status;
+    return hdi_nearest(tree, NULL, n, 1, first, NULL, s->ctx, s->e);
 }
 
 typedef struct hdi_plane {
@@ -6613,10 +6569,11 @@ static hd_laplacian *hdi_pair_renumber(const hd_laplacian *lap, const int32_t *p
 
 enum { HDI_POINTS_PER_TASK = 256 };    /* some ms of work */
 
-/* Points with their neighbours, in the order of the leaves of a tree: neighbours are near in memory then. */
+/* Different places of points, in the order of the leaves of a tree: neighbours are near in memory then. */
 typedef struct hdi_cloud {
-    const double *xyz;
-    const int32_t *name;       /* [n] the caller's number of a point */
+    double *xyz;
+    int32_t *place;            /* [points] where the caller's points are */
+    int32_t *name;             /* [n] the first of them in a place */
     int32_t n;
     int64_t *ptr;
     int32_t *nbr;              /* [ptr[n]] point i itself from ptr[i] on, and its neighbours; then its star */
@@ -6663,57 +6620,67 @@ static void hdi_cloud_reach_task(void *arg, int64_t begin, int64_t end) {
     }
 }
 
+/* Places of points, in s, and their tree, in own. Those that come with their neighbours are told apart. */
+static hd_status hdi_cloud_places(hdi_cloud *cloud, const hdi_input *in, hdi_tree *tree, hdi_scope *own,
+                                  hdi_scope *s) {
+    const int32_t n = in->mesh.n;
+    int32_t *first = HDI_TAKE(own, int32_t, n), v, i;
+    cloud->n = 0;
+    cloud->place = HDI_TAKE(s, int32_t, n);
+    cloud->name = HDI_TAKE(s, int32_t, n);
+    cloud->xyz = HDI_TAKE(s, double, hdi_triple(n));
+    if (hdi_points_first(tree, in->mesh.xyz, n, first, own) < 0) return s->e->status;
+    if (in->nbr_ptr) hdi_fill_own(first, n);
+    for (i = 0; i < n; i++) {
+        v = tree->id[i];
+        if (first[v] != v) continue;
+        hdi_copy3(cloud->xyz + hdi_triple(cloud->n), hdi_at3(in->mesh.xyz, v));
+        cloud->place[v] = tree->id[cloud->n] = cloud->n;
+        cloud->name[cloud->n++] = v;
+    }
+    for (v = 0; v < n; v++) cloud->place[v] = cloud->place[first[v]];
+    tree->xyz = cloud->xyz;
+    return cloud->n < n ? hdi_tree_make(tree, cloud->xyz, cloud->n, own) : HD_OK;
+}
+
 /* The neighbours that the caller gives, renumbered. */
-static void hdi_cloud_given(const hdi_cloud *cloud, const hdi_input *in, int32_t *inverse) {
+static void hdi_cloud_given(const hdi_cloud *cloud, const hdi_input *in) {
     int64_t p, q = 0;
     int32_t v;
-    for (v = 0; v < cloud->n; v++) inverse[cloud->name[v]] = v;
     for (v = 0; v < cloud->n; v++) {
         cloud->nbr[q++] = v;
         for (p = in->nbr_ptr[cloud->name[v]]; p < in->nbr_ptr[cloud->name[v] + 1]; p++)
-            cloud->nbr[q++] = inverse[in->nbr[p]];
+            cloud->nbr[q++] = cloud->place[in->nbr[p]];
         cloud->ptr[v + 1] = q;
     }
 }
 
-/* Points with their neighbours, in s. places: the k nearest of each, and before them it itself; NULL: all
- * points, with those that the caller gives. */
-static hd_status hdi_cloud_make(hdi_cloud *cloud, const hdi_input *in, const hdi_places *places, int64_t k,
-                                hdi_scope *s) {
+/* Places, each with itself and its neighbours, in s: those that the caller gives, or the k nearest. */
+static hd_status hdi_cloud_make(hdi_cloud *cloud, const hdi_input *in, int64_t k, hdi_scope *s) {
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
-    const double *xyz = places ? places->xyz : in->mesh.xyz;
-    const int32_t n = cloud->n = places ? places->n : in->mesh.n;
-    double *points = HDI_TAKE(s, double, hdi_triple(n));
-    int32_t *name = HDI_TAKE(s, int32_t, n), *inverse = HDI_TAKE(&own, int32_t, n), v, n_near = 0;
+    int32_t n, v, n_near = 0;
     hdi_tree tree;
-    cloud->xyz = points;
-    cloud->name = name;
+    if ((in->nbr_ptr && hdi_star_check(in->nbr_ptr, in->nbr, in->mesh.n, s->e) < 0) ||
+        hdi_cloud_places(cloud, in, &tree, &own, s) < 0) return hdi_scope_end(&own);
+    n = cloud->n;
+    k = hdi_least(k + 1, n);
     cloud->ptr = HDI_TAKE_ZERO(s, int64_t, (int64_t)n + 1);
     cloud->nearest = HDI_TAKE(s, double, n);
     cloud->reach = HDI_TAKE(s, double, n);
     cloud->not_flat = HDI_TAKE(s, int8_t, n);
-    if (s->e->status < 0 || (!places && hdi_star_check(in->nbr_ptr, in->nbr, n, s->e) < 0))
-        return hdi_scope_end(&own);
-    k = hdi_least(k + 1, n);
-    cloud->nbr = HDI_TAKE(s, int32_t, places ? k * n : n + in->nbr_ptr[n]);
-    if (s->e->status < 0 || hdi_tree_make(&tree, xyz, n, &own) < 0) return hdi_scope_end(&own);
-    for (v = 0; v < n; v++) {
-        name[v] = places ? places->first[tree.id[v]] : tree.id[v];
-        hdi_copy3(points + hdi_triple(v), hdi_at3(xyz, tree.id[v]));
-        tree.id[v] = v;
-        cloud->ptr[v + 1] = (v + 1) * k;
-    }
-    tree.xyz = points;
-    if (!places) hdi_cloud_given(cloud, in, inverse);
-    else if (hdi_nearest(&tree, NULL, n, (int32_t)k, cloud->nbr, NULL, s->ctx, s->e) < 0)
-        return hdi_scope_end(&own);
+    cloud->nbr = HDI_TAKE(s, int32_t, in->nbr_ptr ? n + in->nbr_ptr[n] : k * n);
+    if (s->e->status < 0) return hdi_scope_end(&own);
+    if (in->nbr_ptr) hdi_cloud_given(cloud, in);
+    else (void)hdi_nearest(&tree, NULL, n, (int32_t)k, cloud->nbr, NULL, s->ctx, s->e);
+    if (hdi_scope_end(&own) < 0) return s->e->status;
+    for (v = 0; v < n && !in->nbr_ptr; v++) cloud->ptr[v + 1] = (v + 1) * k;
     hdi_parallel_ranges(s->ctx, n, HDI_POINTS_PER_TASK, hdi_cloud_reach_task, cloud);
     for (v = 0, cloud->h = 0; v < n; v++) {
         n_near += cloud->nearest[v] > 0;
         cloud->h += cloud->nearest[v];
     }
     cloud->h /= n_near > 0 ? n_near : 1;
-    return hdi_scope_end(&own);
+    return HD_OK;
 }
 
 /* Area for each point where the last of k - 1 neighbours is so far away. */
@@ -6875,21 +6842,18 @@ static hd_status hdi_cloud_assemble(hd_laplacian *lap, const double *xyz, const 
 }
 
 /* Masses of the points: equal shares of their place's cell, or 1; and what there is to report about them. */
-static void hdi_cloud_masses(const hdi_cloud *cloud, hd_laplacian *lap, const hdi_places *places,
-                             int32_t *copies, double *mass) {
-    const int ones = hdi_is_plain(lap->kind);
+static void hdi_cloud_masses(const hdi_cloud *cloud, hd_laplacian *lap, int32_t *copies, double *mass) {
     hd_point_report *rep = &lap->points;
     int32_t i;
-    for (i = 0; i < lap->n; i++) copies[places->place[i]]++;
+    for (i = 0; i < lap->n; i++) copies[cloud->place[i]]++;
+    for (i = 0; i < lap->n; i++)
+        mass[i] = hdi_is_plain(lap->kind) ? 1 : cloud->area[cloud->place[i]] / copies[cloud->place[i]];
     for (i = 0; i < cloud->n; i++) {
-        const int32_t v = cloud->name[i], n = copies[places->place[v]];
-        mass[v] = ones ? 1 : cloud->area[i] / n;
         lap->area += cloud->area[i];
         rep->n_border += cloud->border[i];
         rep->n_not_flat += cloud->not_flat[i];
-        rep->n_no_area += cloud->area[i] > 0 ? 0 : n;
+        rep->n_no_area += cloud->area[i] > 0 ? 0 : copies[i];
     }
-    for (i = 0; i < lap->n; i++) mass[i] = mass[places->first[places->place[i]]];
     rep->n_coincident = lap->n - cloud->n;
 }
 
@@ -6899,17 +6863,15 @@ static hd_status hdi_lap_points(hd_laplacian *lap, const hdi_input *in, hd_error
     const double *xyz = in->mesh.xyz;
     double *work = HDI_TAKE(&s, double, lap->n), cut2;
     int32_t *copies = HDI_TAKE_ZERO(&s, int32_t, lap->n), v;
-    hdi_places places;
     hdi_cloud cloud;
-    if (!copies || hdi_places_make(&places, xyz, lap->n, &s) < 0) return hdi_scope_end(&s);
-    if (places.n < 2) hdi_fail(e, HD_ERR_EMPTY, "points: fewer than two different ones");
-    if (e->status < 0 || hdi_cloud_make(&cloud, in, &places, rep->neighbours, &s) < 0 ||
-        hdi_cloud_cells(&cloud, &s) < 0) return hdi_scope_end(&s);
+    if (!copies || hdi_cloud_make(&cloud, in, rep->neighbours, &s) < 0) return hdi_scope_end(&s);
+    if (cloud.n < 2) hdi_fail(e, HD_ERR_EMPTY, "points: fewer than two different ones");
+    if (e->status < 0 || hdi_cloud_cells(&cloud, &s) < 0) return hdi_scope_end(&s);
     lap->h = cloud.h;
     if (rep->bandwidth2 == 0) rep->bandwidth2 = hdi_cloud_bandwidth(&cloud, (uint64_t *)(void *)work);
     cut2 = -4 * log(rep->weight_cut) * rep->bandwidth2;
     rep->cut_radius = sqrt(cut2);
-    hdi_cloud_masses(&cloud, lap, &places, copies, work);
+    hdi_cloud_masses(&cloud, lap, copies, work);
     for (v = 0; v < lap->n; v++) copies[v] = work[v] > 0 ? 0 : -1;
     (void)hdi_lap_rows(lap, copies, 0, e);
     for (v = 0; v < lap->n && e->status >= 0; v++)
@@ -6954,7 +6916,7 @@ static void hdi_point_opts(hd_laplacian *lap, const hd_laplacian_opts *o, hd_err
 /* A number in [0, 1) for each point: which of four cocircular points are joined must be the same in the
  * stars of all four, on a grid for instance. */
 static double hdi_point_chance(int32_t i) {
-    uint64_t x = ((uint64_t)i + 1) * HDI_GOLDEN;
+    uint64_t x = ((uint64_t)i + 1) * 0x9e3779b97f4a7c15u;
     x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9u;
     x ^= x >> 27;
     return (double)(x >> 11) / 9007199254740992.0;
@@ -7077,13 +7039,11 @@ static hd_status hdi_stars(hdi_mesh *mesh, hdi_cloud *cloud, const double *xyz, 
  *    500 to 1250 random points on a torus, 12 to 36 % more error.)
  * Of several points in one place only the first takes part. Nothing is left of neighbours and stars. */
 static hd_status hdi_star_soup(hdi_surface *z, hd_laplacian *lap, const hdi_input *in, hdi_scope *s) {
-    hdi_scope own = hdi_scope_begin(s->ctx, s->e), apart = hdi_scope_begin(s->ctx, s->e);
+    hdi_scope own = hdi_scope_begin(s->ctx, s->e);
     hdi_cloud cloud;
-    hdi_places places;
     z->share = 3;
-    if (in->nbr_ptr || hdi_places_make(&places, in->mesh.xyz, lap->n, &apart) >= 0)
-        (void)hdi_cloud_make(&cloud, in, in->nbr_ptr ? NULL : &places, lap->points.neighbours, &own);
-    if (hdi_scope_end(&apart) < 0 || hdi_stars(&z->mesh, &cloud, in->mesh.xyz, lap, s) < 0 ||
+    if (hdi_cloud_make(&cloud, in, lap->points.neighbours, &own) < 0 ||
+        hdi_stars(&z->mesh, &cloud, in->mesh.xyz, lap, s) < 0 ||
         hdi_progress(s->ctx, "assemble", 0.2, s->e) < 0) return hdi_scope_end(&own);
     lap->h = cloud.h;
     lap->points.n_coincident = lap->n - cloud.n;
@@ -23072,10 +23032,10 @@ static hd_status hdi_geo_room(hd_geodesic *g, hdi_scope *own) {
 /* Points in the place of an earlier one, which the triangles leave out, share its row. */
 static hd_status hdi_geo_coincident(hd_geodesic *g, const double *xyz, hd_error *e) {
     hdi_scope s = hdi_scope_begin(g->ctx, e);
-    hdi_places places;
-    int32_t v;
-    if (hdi_places_make(&places, xyz, g->n, &s) < 0) return hdi_scope_end(&s);
-    for (v = 0; v < g->n; v++) g->row[v] = g->row[places.first[places.place[v]]];
+    int32_t *first = HDI_TAKE(&s, int32_t, g->n), v;
+    hdi_tree tree;
+    if (hdi_points_first(&tree, xyz, g->n, first, &s) < 0) return hdi_scope_end(&s);
+    for (v = 0; v < g->n; v++) g->row[v] = g->row[first[v]];
     return hdi_scope_end(&s);
 }
 
