@@ -1872,13 +1872,6 @@ static void *hdi_take_zero(hdi_scope *s, uint64_t count, size_t size) {
     return p;
 }
 
-/* Of NULL it is NULL. */
-static void *hdi_take_copy(hdi_scope *s, const void *from, int64_t count, size_t size) {
-    void *p = from ? hdi_take(s, (uint64_t)count, size) : NULL;
-    if (p && count > 0) memcpy(p, from, (size_t)count * size);
-    return p;
-}
-
 /* Takes a block out of the scope: it becomes the caller's. */
 static void *hdi_keep(hdi_scope *s, void *block) {
     int32_t i;
@@ -2159,16 +2152,10 @@ static void hdi_walk_stop(hdi_walk *w) {
 /* A long task of a walk that was stopped may end early. */
 static int hdi_walk_stopped(const hdi_walk *w) { return HDI_LOAD(&w->stop); }
 
-/* How far it is, where that has not been told yet; else -1. */
-static int32_t hdi_walk_part(const hdi_walk *w) {
-    const int32_t part = (int32_t)((int64_t)HDI_TELLS * HDI_LOAD(&w->done) / (w->n + 1));
-    return w->stage && w->ctx->progress && part != w->told && !hdi_walk_stopped(w) ? part : -1;
-}
-
-/* By the calling thread only. */
+/* Tells how far it is, where that has not been told yet. By the calling thread only. */
 static void hdi_walk_tell(hdi_walk *w) {
-    const int32_t part = hdi_walk_part(w);
-    if (part < 0) return;
+    const int32_t part = (int32_t)((int64_t)HDI_TELLS * HDI_LOAD(&w->done) / (w->n + 1));
+    if (!w->stage || !w->ctx->progress || part == w->told || hdi_walk_stopped(w)) return;
     w->told = part;
     if (hdi_progress(w->ctx, w->stage, w->from + (w->to - w->from) * part / (double)HDI_TELLS, w->e) < 0)
         hdi_walk_stop(w);
@@ -3894,11 +3881,12 @@ static hd_status hdi_csr_check_rows(const hd_csr *a, hd_error *e) {
  * file. */
 #define HDI_SYMMETRY_TOL 1e-12
 
-/* A missing entry is a zero. Of several pairs that differ the first one is told. */
-static hd_status hdi_csr_check_symmetric(const hd_csr *a, hd_error *e) {
+/* Also symmetry. A missing entry is a zero. Of several pairs that differ the first one is told. */
+static hd_status hdi_csr_check(const hd_csr *a, hd_error *e) {
     int32_t i, row = INT32_MAX, col = 0;
     double value = 0;
     int64_t p, q;
+    if (hdi_csr_check_rows(a, e) < 0) return e->status;
     if (a->n_rows != a->n_cols)
         return hdi_fail_row(e, HD_ERR_NOT_SYMMETRIC, "matrix: not square", a->n_rows, a->n_cols, 0);
     for (i = 0; i < a->n_rows; i++) {
@@ -3916,11 +3904,6 @@ static hd_status hdi_csr_check_symmetric(const hd_csr *a, hd_error *e) {
     }
     return row < INT32_MAX ? hdi_fail_row(e, HD_ERR_NOT_SYMMETRIC, "matrix: not symmetric", row, col, value)
                            : HD_OK;
-}
-
-static hd_status hdi_csr_check(const hd_csr *a, int symmetric, hd_error *e) {
-    if (hdi_csr_check_rows(a, e) < 0) return e->status;
-    return symmetric ? hdi_csr_check_symmetric(a, e) : HD_OK;
 }
 
 /* How far ahead of a sweep over a matrix its entries are asked for, once a row. The processor's own
@@ -4899,23 +4882,29 @@ static hd_status hdi_lengths_agree(const hdi_mesh *mesh, hdi_scope *s) {
     return hdi_scope_end(&own);
 }
 
-/* Triangles in space become a copy in s, sorted by their smallest corners: what neighbours need is then at
- * hand. */
+/* Faces in space become a copy in s, sorted by smallest corners: what neighbours need is then at hand. */
 static hd_status hdi_mesh_sort(hdi_mesh *mesh, hdi_scope *s) {
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
-    int32_t *low = HDI_TAKE(&own, int32_t, mesh->m), *at = HDI_TAKE(&own, int32_t, (int64_t)mesh->n + 1);
-    int32_t *tri = HDI_TAKE(s, int32_t, hdi_triple(mesh->m)), *face = HDI_TAKE(s, int32_t, mesh->m), f;
+    const int32_t *v = mesh->tri, m = mesh->m;
+    int32_t *low = HDI_TAKE(&own, int32_t, m), *at = HDI_TAKE(&own, int32_t, (int64_t)mesh->n + 2), f;
+    int32_t *tri = HDI_TAKE(s, int32_t, hdi_face_begin(mesh, m)), *face = HDI_TAKE(s, int32_t, m);
+    int64_t *ptr = hdi_is_poly(mesh) ? HDI_TAKE(s, int64_t, (int64_t)m + 1) : NULL, n, k;
     if (s->e->status < 0) return hdi_scope_end(&own);
-    for (f = 0; f < mesh->m; f++) {
-        const int32_t *v = mesh->tri + hdi_triple(f);
-        low[f] = hdi_low32(v[0], hdi_low32(v[1], v[2]));
+    for (f = 0; f < m; f++) {
+        low[f] = mesh->n;                        /* of a face without corners */
+        for (k = hdi_face_begin(mesh, f); k < hdi_face_begin(mesh, f + 1); k++)
+            low[f] = hdi_low32(low[f], v[k]);
     }
-    hdi_group(low, mesh->m, mesh->n, at, face);
-    for (f = 0; f < mesh->m; f++) {
-        memcpy(tri + hdi_triple(f), mesh->tri + hdi_triple(face[f]), 3 * sizeof *tri);
+    hdi_group(low, m, mesh->n + 1, at, face);
+    for (f = 0, n = 0; f < m; f++, n += k) {
+        k = hdi_face_begin(mesh, face[f] + 1) - hdi_face_begin(mesh, face[f]);
+        if (ptr) ptr[f] = n;
+        if (k > 0) memcpy(tri + n, v + hdi_face_begin(mesh, face[f]), (size_t)k * sizeof *tri);
         face[f] = hdi_face_name(mesh, face[f]);
     }
+    if (ptr) ptr[m] = n;
     mesh->tri = tri;
+    mesh->ptr = ptr;
     mesh->face = face;
     return hdi_scope_end(&own);
 }
@@ -4923,7 +4912,7 @@ static hd_status hdi_mesh_sort(hdi_mesh *mesh, hdi_scope *s) {
 /* Measures the faces of a mesh that is checked and lists the corners at each vertex, in s. */
 static hd_status hdi_mesh_make(hdi_mesh *mesh, hd_mesh_report *rep, hdi_scope *s) {
     rep->n_faces = mesh->m;
-    if (mesh->xyz && !mesh->copies && !hdi_is_poly(mesh) && hdi_mesh_sort(mesh, s) < 0) return s->e->status;
+    if (mesh->xyz && !mesh->copies && hdi_mesh_sort(mesh, s) < 0) return s->e->status;
     if (hdi_mesh_take(mesh, s) < 0 || hdi_faces_measure(mesh, rep, s->ctx, s->e) < 0) return s->e->status;
     hdi_mesh_corners(mesh);
     return mesh->len ? hdi_lengths_agree(mesh, s) : HD_OK;
@@ -6078,20 +6067,6 @@ static void hdi_lap_values(hd_laplacian *lap, hdi_rows *x) {
 
 /* ---- meshes that move ---- */
 
-/* Copies the faces, which may be the caller's, into s, where all else is. Those that are left out stay out,
- * whatever they would measure: their areas become negative. */
-static void hdi_moving_make(hdi_rows *x, hdi_scope *s) {
-    hdi_mesh *mesh = &x->mesh;
-    const int64_t n = hdi_face_begin(mesh, mesh->m);
-    int32_t f;
-    mesh->xyz = NULL;
-    mesh->tri = (const int32_t *)hdi_take_copy(s, mesh->tri, n, sizeof *mesh->tri);
-    mesh->face = (const int32_t *)hdi_take_copy(s, mesh->face, mesh->m, sizeof *mesh->face);
-    mesh->ptr = (const int64_t *)hdi_take_copy(s, mesh->ptr, mesh->m + 1, sizeof *mesh->ptr);
-    for (f = 0; f < mesh->m; f++)
-        if (!(mesh->area[f] > 0)) mesh->area[f] = -1;
-}
-
 /* Has each vertex that had a face still one with an area? */
 static hd_status hdi_moving_masses(const hdi_mesh *mesh, hd_error *e) {
     int64_t p = 0;
@@ -6120,7 +6095,6 @@ static hd_status hdi_lap_update(hd_laplacian *lap, const double *xyz, hd_error *
     to->n_zero_area = to->n_faces - rep.n_faces_used - to->n_repeated_corner - to->n_repeated_face;
     to->smallest_angle = rep.smallest_angle;
     (void)hdi_lap_places(lap, xyz, e);
-    x->mesh.xyz = NULL;
     return hdi_lap_components(lap, e);
 }
 
@@ -6161,6 +6135,7 @@ static hd_status hdi_input_open(hdi_input *in, const hd_mesh *m, double stiffeni
 /* (L, B) and places of faces that are measured and live in s. */
 static hd_status hdi_lap_mesh(hd_laplacian *lap, const hdi_mesh *mesh, const hdi_input *in, hdi_scope *s) {
     hdi_rows *x = HDI_TAKE(s, hdi_rows, 1);
+    int32_t f;
     if (!x || hdi_rows_begin(x, mesh, &lap->mesh, s) < 0) return s->e->status;
     if (in->updatable) lap->moving = x;
     x->kind = lap->kind;
@@ -6173,23 +6148,23 @@ static hd_status hdi_lap_mesh(hd_laplacian *lap, const hdi_mesh *mesh, const hdi
     /* The element matrix area/12 (1 1' + I) is at least 1/2 of its diagonal, area/12 I; that of a triangle
      * with corners v, v, w at least 1 - sqrt(1/3), and that of corners v, v, v is its diagonal. */
     lap->b_ratio = !lap->B ? 1 : lap->mesh.n_self_edges ? 1 - sqrt(1.0 / 3) : 0.5;
-    if (hdi_progress(lap->context, "assemble", 0.8, s->e) >= 0 && in->updatable) hdi_moving_make(x, s);
-    return s->e->status;
+    for (f = 0; f < x->mesh.m && in->updatable; f++)       /* those that are left out stay out */
+        if (!(x->mesh.area[f] > 0)) x->mesh.area[f] = -1;
+    return hdi_progress(lap->context, "assemble", 0.8, s->e);
 }
 
 /* Reports the edges of a mesh, whose mean length is put into h. */
-static hd_status hdi_lap_edges(hd_laplacian *lap, const hdi_mesh *mesh, double *h, hd_error *e) {
-    hdi_scope own = hdi_scope_begin(lap->context, e);
+static hd_status hdi_lap_edges(hd_laplacian *lap, const hdi_mesh *mesh, double *h, hdi_scope *s) {
     hdi_rows x;
-    if (hdi_rows_begin(&x, mesh, &lap->mesh, &own) < 0) return hdi_scope_end(&own);
+    if (hdi_rows_begin(&x, mesh, &lap->mesh, s) < 0) return s->e->status;
     hdi_rows_report(&x, hdi_rows_run(&x, NULL, lap->context), &lap->mesh, h);
     hdi_rows_border(&x, lap);
-    return hdi_scope_end(&own);
+    return HD_OK;
 }
 
 /* (L, B) of the intrinsic Delaunay triangulation of a soup whose faces are measured, in s. */
 static hd_status hdi_lap_flat(hd_laplacian *lap, hdi_surface *z, const hdi_input *in, hdi_scope *s) {
-    if (hdi_lap_edges(lap, &z->mesh, &z->unit, s->e) < 0) return s->e->status;
+    if (hdi_lap_edges(lap, &z->mesh, &z->unit, s) < 0) return s->e->status;
     if (lap->mesh.n_faces_used == 0)
         return hdi_fail(s->e, HD_ERR_EMPTY, in->points ? "the points' neighbourhoods make no triangle"
                                                        : "no vertex has mass");
@@ -24221,7 +24196,7 @@ HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L
     if (!out || !L || !B || !L->val || !B->val) (void)hdi_missing(c.e);
     hdi_refuse(!hdi_finite(h) || h < 0, "laplacian of matrices: h is negative or not finite", c.e);
     if (opts) hdi_matrix_opts_check(opts, c.e);
-    if (c.e->status >= 0 && hdi_csr_check(L, 1, c.e) >= 0 && hdi_csr_check(B, 1, c.e) >= 0) {
+    if (c.e->status >= 0 && hdi_csr_check(L, c.e) >= 0 && hdi_csr_check(B, c.e) >= 0) {
         if (L->n_rows != B->n_rows)
             hdi_fail_row(c.e, HD_ERR_ARGUMENT, "laplacian of matrices: L and B differ in size", L->n_rows,
                          B->n_rows, 0);
@@ -24270,7 +24245,7 @@ HEATDIFF_API hd_status hd_laplacian_update_matrices(hd_laplacian *lap, const hd_
     hdi_refuse(!hdi_finite(h) || h < 0, "update of matrices: h is negative or not finite", c.e);
     hdi_refuse(L->n_rows != lap->n || B->n_rows != lap->n || L->n_cols != lap->n || B->n_cols != lap->n,
                "update of matrices: a matrix has another size", c.e);
-    if (c.e->status >= 0 && hdi_csr_check(L, 1, c.e) >= 0 && hdi_csr_check(B, 1, c.e) >= 0 &&
+    if (c.e->status >= 0 && hdi_csr_check(L, c.e) >= 0 && hdi_csr_check(B, c.e) >= 0 &&
         hdi_pair_replace(lap, L, B, h, c.e) >= 0) {
         lap->lambda_max = hdi_lambda_known(lap);
         (void)hdi_lap_components(lap, c.e);
@@ -24319,7 +24294,7 @@ HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ld
     if (!out || !a) return hdi_missing(c.e);
     shape = *a;
     shape.val = NULL;
-    if (hdi_csr_check(&shape, 1, c.e) < 0) return c.e->status;
+    if (hdi_csr_check(&shape, c.e) < 0) return c.e->status;
     f = (hd_ldl *)hdi_alloc_zero(c.ctx, 1, sizeof *f, c.e);
     if (!f) return c.e->status;
     f->ctx = hdi_enter_keep(&c, &f->context);
