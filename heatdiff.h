@@ -2000,13 +2000,10 @@ typedef HANDLE hdi_thread;
 #define HDI_THREAD_BODY static DWORD WINAPI
 #define HDI_THREAD_DONE 0
 typedef DWORD (WINAPI *hdi_thread_body)(void *);
-static void hdi_locks_make(hdi_mutex *m, hdi_signal *c, hdi_signal *d) { (void)m, (void)c, (void)d; }
-static void hdi_locks_end(hdi_mutex *m, hdi_signal *c, hdi_signal *d) { (void)m, (void)c, (void)d; }
 static void hdi_lock(hdi_mutex *m) { AcquireSRWLockExclusive(m); }
 static void hdi_unlock(hdi_mutex *m) { ReleaseSRWLockExclusive(m); }
 static void hdi_signal_wait(hdi_signal *c, hdi_mutex *m) { SleepConditionVariableSRW(c, m, INFINITE, 0); }
 static void hdi_signal_one(hdi_signal *c) { WakeConditionVariable(c); }
-static int64_t hdi_process(void) { return 0; }   /* no fork here */
 
 static int hdi_thread_start(hdi_thread *t, hdi_thread_body body, void *arg) {
     *t = CreateThread(NULL, 0, body, arg, 0, NULL);
@@ -2030,18 +2027,20 @@ typedef int hdi_mutex, hdi_signal, hdi_thread;
 #define HDI_THREAD_BODY static void *
 #define HDI_THREAD_DONE NULL
 typedef void *(*hdi_thread_body)(void *);
-static void hdi_locks_make(hdi_mutex *m, hdi_signal *c, hdi_signal *d) { (void)m, (void)c, (void)d; }
-static void hdi_locks_end(hdi_mutex *m, hdi_signal *c, hdi_signal *d) { (void)m, (void)c, (void)d; }
 static void hdi_lock(hdi_mutex *m) { (void)m; }
 static void hdi_unlock(hdi_mutex *m) { (void)m; }
 static void hdi_signal_wait(hdi_signal *c, hdi_mutex *m) { (void)c, (void)m; }
 static void hdi_signal_one(hdi_signal *c) { (void)c; }
-static int64_t hdi_process(void) { return 0; }
 static int hdi_thread_start(hdi_thread *t, hdi_thread_body body, void *arg) {
     return (void)t, (void)body, (void)arg, 0;
 }
 static void hdi_thread_join(hdi_thread t) { (void)t; }
 static int32_t hdi_processors(void) { return 1; }
+#endif
+#if HDI_THREADS != HDI_THREADS_POSIX             /* nothing to make, and no fork */
+static void hdi_locks_make(hdi_mutex *m, hdi_signal *c, hdi_signal *d) { (void)m, (void)c, (void)d; }
+static void hdi_locks_end(hdi_mutex *m, hdi_signal *c, hdi_signal *d) { (void)m, (void)c, (void)d; }
+static int64_t hdi_process(void) { return 0; }
 #endif
 
 #ifndef HDI_THREADS_LINKED
@@ -4911,7 +4910,6 @@ static hd_status hdi_mesh_sort(hdi_mesh *mesh, hdi_scope *s) {
 
 /* Measures the faces of a mesh that is checked and lists the corners at each vertex, in s. */
 static hd_status hdi_mesh_make(hdi_mesh *mesh, hd_mesh_report *rep, hdi_scope *s) {
-    rep->n_faces = mesh->m;
     if (mesh->xyz && !mesh->copies && hdi_mesh_sort(mesh, s) < 0) return s->e->status;
     if (hdi_mesh_take(mesh, s) < 0 || hdi_faces_measure(mesh, rep, s->ctx, s->e) < 0) return s->e->status;
     hdi_mesh_corners(mesh);
@@ -5218,25 +5216,23 @@ typedef struct hdi_cover {
     int64_t most_flips, work;
 } hdi_cover;
 
-/* old with n elements in a block of room elements; NULL, old freed, when there is none. */
-static void *hdi_regrow(hdi_cover *c, void *old, int64_t n, int64_t room, size_t size) {
-    void *block = c->e->status < 0 ? NULL : hdi_alloc(c->ctx, (uint64_t)room, size, c->e);
-    if (block && n > 0) memcpy(block, old, (size_t)n * size);
-    hdi_free(c->ctx, old);
-    return block;
-}
-
-/* Room for more faces: at least twice as many as before. */
+/* Room for more faces, in one block: at least twice as many as before. */
 static hd_status hdi_cover_room(hdi_cover *c, int64_t more) {
     const int64_t n = c->n, need = n + more, twice = 2 * (int64_t)c->room, most = INT32_MAX / 3;
     const int64_t room = hdi_least(need > twice ? need + 1024 : twice, need > most ? need : most);
+    hdi_side *side;
     if (need <= c->room) return HD_OK;
     if (room > most)
         return hdi_fail(c->e, HD_ERR_TOO_LARGE, "more than 2^31 face corners in a cover of two sheets");
-    c->side = (hdi_side *)hdi_regrow(c, c->side, 3 * n, 3 * room, sizeof *c->side);
-    c->area = (double *)hdi_regrow(c, c->area, n, room, sizeof *c->area);
-    if (c->e->status >= 0) c->room = (int32_t)room;
-    return c->e->status;
+    side = (hdi_side *)hdi_alloc(c->ctx, (uint64_t)room, 3 * sizeof *side + sizeof *c->area, c->e);
+    if (!side) return c->e->status;
+    if (n > 0) memcpy(side, c->side, 3 * (size_t)n * sizeof *side);
+    if (n > 0) memcpy(side + 3 * room, c->area, (size_t)n * sizeof *c->area);
+    hdi_free(c->ctx, c->side);
+    c->side = side;
+    c->area = (double *)(void *)(side + 3 * room);
+    c->room = (int32_t)room;
+    return HD_OK;
 }
 
 /* Nothing is unfolded yet. rep knows the edges of the soup. */
@@ -5565,7 +5561,6 @@ static hd_status hdi_soup_delaunay(hdi_surface *z, int close, hd_mesh_report *re
         (void)hdi_cover_flat(z, &c, rep, s);
     }
     hdi_free(c.ctx, c.side);
-    hdi_free(c.ctx, c.area);
     return hdi_scope_end(&own);
 }
 
@@ -5613,7 +5608,6 @@ enum { HDI_STRANDS = 8 };
 typedef struct hd_moving {
     hdi_mesh mesh;
     hd_laplacian *lap;          /* whose rows are filled; NULL: edges are counted */
-    hd_laplacian_kind kind;
     int32_t strands;
     int64_t most;               /* room of a list */
     hdi_pair *list;             /* [strands most], see hdi_ring_list */
@@ -5955,7 +5949,7 @@ static void hdi_rows_fill(const hdi_rows *x, const hdi_pair *p, int32_t v, hdi_t
     for (; at < lap->L.row_ptr[i + 1]; at++) lap->L.col[at] = -1;
     lap->L.col[diagonal] = i;
     lap->L.val[diagonal] = -sum;
-    lap->mass[i] = hdi_vertex_mass(&x->mesh, x->kind, v);
+    lap->mass[i] = hdi_vertex_mass(&x->mesh, lap->kind, v);
     /* a sixth of the areas that the mass has thirds of */
     if (B) B[diagonal] = lap->b_diag[i] = lap->mass[i] / 2 + b_own;
     if (B && held) lap->mass[i] = b_sum + B[diagonal];
@@ -6014,7 +6008,8 @@ static hd_status hdi_rows_begin(hdi_rows *x, const hdi_mesh *mesh, hd_mesh_repor
     x->count = HDI_TAKE(s, int32_t, n);
     x->border = HDI_TAKE(s, char, n);
     x->list = HDI_TAKE(s, hdi_pair, x->strands * x->most);
-    if (s->e->status < 0) return s->e->status;
+    /* the stars of points have different faces, of which only edges are asked for */
+    if (s->e->status < 0 || (mesh->copies && mesh->xyz)) return s->e->status;
     x->counting = 1;
     repeated = (int32_t)hdi_rows_run(x, NULL, s->ctx).n[HDI_REPEATED_FACE];
     x->counting = 0;
@@ -6138,7 +6133,6 @@ static hd_status hdi_lap_mesh(hd_laplacian *lap, const hdi_mesh *mesh, const hdi
     int32_t f;
     if (!x || hdi_rows_begin(x, mesh, &lap->mesh, s) < 0) return s->e->status;
     if (in->updatable) lap->moving = x;
-    x->kind = lap->kind;
     hdi_rows_border(x, lap);
     if (hdi_lap_rows(lap, x->count, in->full && lap->kind == HD_LAPLACIAN_FEM, s->e) < 0 ||
         hdi_progress(lap->context, "assemble", 0.4, s->e) < 0 || hdi_lap_places(lap, in->mesh.xyz, s->e) < 0)
@@ -6176,14 +6170,11 @@ static hd_status hdi_lap_flat(hd_laplacian *lap, hdi_surface *z, const hdi_input
     return hdi_lap_mesh(lap, &z->flat, in, s);
 }
 
-/* The default of the option, as its declaration states. */
-#define HDI_MOLLIFY_DELTA 1e-5
-
 /* Checks the options of intrinsic triangulations and resolves them into in. */
 static void hdi_intrinsic_opts(hd_triangulation which, double mollify, hdi_input *in, hd_error *e) {
     in->flips = which != HD_TRIANGULATION_GIVEN;
     in->close = which == HD_TRIANGULATION_TUFTED;
-    in->delta = mollify != 0 ? mollify : HDI_MOLLIFY_DELTA;
+    in->delta = mollify != 0 ? mollify : 1e-5;
     hdi_refuse(which < HD_TRIANGULATION_GIVEN || which > HD_TRIANGULATION_TUFTED,
                "options: unknown triangulation", e);
     hdi_refuse(hdi_nan(in->delta) || in->delta > 1, "options: mollify is above 1 or not a number", e);
@@ -6859,16 +6850,13 @@ static hd_status hdi_lap_points(hd_laplacian *lap, const hdi_input *in, hd_error
     return hdi_scope_end(&s);
 }
 
-#define HDI_WEIGHT_CUT 1e-8
-enum { HDI_NEIGHBOURS = 30 };
-
 /* The option neighbours of this mesh. */
 static int32_t hdi_point_neighbours(int32_t asked, const hd_mesh *m, hd_error *e) {
     hdi_refuse(asked != 0 && (m->shape != HD_POINTS || m->nbr_ptr),
                "options: neighbours is for points that do not come with theirs", e);
     hdi_refuse(asked != 0 && (asked < 6 || asked > HDI_MOST_NEIGHBOURS),
                "options: neighbours is not in 6..128", e);
-    return asked ? asked : HDI_NEIGHBOURS;
+    return asked ? asked : 30;
 }
 
 /* Checks the options of point sets and resolves them into lap->points. */
@@ -6879,7 +6867,7 @@ static void hdi_point_opts(hd_laplacian *lap, const hd_laplacian_opts *o, hd_err
                "laplacian options: bandwidth2 and weight_cut are for exponential weights", e);
     if (!weights) return;
     rep->bandwidth2 = o->bandwidth2;
-    rep->weight_cut = o->weight_cut != 0 ? o->weight_cut : HDI_WEIGHT_CUT;
+    rep->weight_cut = o->weight_cut != 0 ? o->weight_cut : 1e-8;
     hdi_refuse(!hdi_finite(rep->bandwidth2) || rep->bandwidth2 < 0,
                "laplacian of points: bandwidth2 is negative or not finite", e);
     hdi_refuse(!hdi_finite(rep->weight_cut) || !(rep->weight_cut > 0 && rep->weight_cut < 1),
