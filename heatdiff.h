@@ -2144,7 +2144,7 @@ static void hdi_release(hdi_walk *w, int32_t id, int32_t n) {
 static void hdi_walk_stop(hdi_walk *w) {
     hdi_walk_lock(w);
     HDI_STORE(&w->stop, 1);
-    w->ready = w->next;
+    w->ready = HDI_LOAD(&w->next);
     hdi_walk_unlock(w);
 }
 
@@ -2284,11 +2284,12 @@ static void hdi_let_go(hd_context *ctx) {
 
 /* ---- loops ---- */
 
-/* A node of a round, by a user's thread. */
+/* A node of a round, by a user's thread: the next one, whatever index says. */
 static void hdi_round(void *arg, int64_t index, int32_t worker) {
     hdi_walk *w = (hdi_walk *)arg;
     if (hdi_walk_stopped(w)) return;
-    w->task(w->arg, w->order ? w->order[w->next + index] : w->next + index, worker);
+    index = (int32_t)HDI_ATOMIC_ADD(&w->next, 1) - 1;
+    w->task(w->arg, w->order ? w->order[index] : index, worker);
     HDI_ATOMIC_ADD(&w->done, 1);
     if (worker == 0) hdi_walk_tell(w);
 }
@@ -2318,7 +2319,7 @@ static void hdi_walk_run(hdi_walk *w) {
     hdi_walk_tell(w);
     if (w->threads) hdi_threads_walk(w);
     else
-        for (; w->next < w->ready; w->next += n) {
+        while (w->next < w->ready) {
             n = hdi_walk_alone(w) ? 1 : w->ready - w->next;
             if (n == 1) hdi_round(w, 0, 0);
             else ctx->parallel_for(ctx->parallel_user, n, hdi_round, w);
