@@ -2315,14 +2315,12 @@ static void hdi_walk_open(hdi_walk *w, hd_context *ctx, int64_t n, int32_t *orde
 
 static void hdi_walk_run(hdi_walk *w) {
     hd_context *ctx = w->ctx;
-    int32_t n;
     hdi_walk_tell(w);
     if (w->threads) hdi_threads_walk(w);
     else
         while (w->next < w->ready) {
-            n = hdi_walk_alone(w) ? 1 : w->ready - w->next;
-            if (n == 1) hdi_round(w, 0, 0);
-            else ctx->parallel_for(ctx->parallel_user, n, hdi_round, w);
+            if (hdi_walk_alone(w) || w->ready - w->next == 1) hdi_round(w, 0, 0);
+            else ctx->parallel_for(ctx->parallel_user, w->ready - w->next, hdi_round, w);
             hdi_walk_tell(w);
         }
 }
