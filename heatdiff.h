@@ -22893,7 +22893,6 @@ struct hd_geodesic {
     char *held;                  /* [n_active] rows of the border; NULL: the border is natural */
     double copies;               /* in which L and B count */
     hdi_geo_face *face;          /* [n_faces] ordered by the corner that is eliminated first */
-    int32_t *face_ptr;           /* [n_super + 1] the first face of each front, by that corner */
     hdi_geo_polygons poly;       /* in the same order */
     double *mass;                /* [n_active] diagonal of B/t. This and all below is in elimination order */
     int32_t *row;                /* [n] vertex -> row, -1 without mass */
@@ -22986,9 +22985,8 @@ static void hdi_geo_frames(hd_geodesic *g, const hdi_mesh *mesh, const int32_t *
  * the vectors once. */
 static hd_status hdi_geo_order(hd_geodesic *g, const hdi_mesh *mesh, hdi_scope *own, hdi_scope *s) {
     uint64_t *key = HDI_TAKE(s, uint64_t, mesh->m);
-    int32_t f, v, k = 0;
+    int32_t f;
     int64_t c;
-    g->face_ptr = HDI_TAKE(own, int32_t, (int64_t)g->sym.n_super + 1);
     g->from = HDI_TAKE(g->lap ? own : s, int32_t, mesh->m);
     for (f = 0; f < mesh->m && own->e->status >= 0; f++) {
         int32_t first = g->n_active;
@@ -22999,11 +22997,7 @@ static hd_status hdi_geo_order(hd_geodesic *g, const hdi_mesh *mesh, hdi_scope *
     }
     if (own->e->status < 0) return own->e->status;
     hdi_sort_keys(key, g->n_faces);
-    for (v = 0; v <= g->sym.n_super; v++) {
-        for (; k < g->n_faces && (int64_t)(key[k] >> 32) < g->sym.super[v]; k++)
-            g->from[k] = (int32_t)(key[k] & INT32_MAX);
-        g->face_ptr[v] = k;
-    }
+    for (f = 0; f < g->n_faces; f++) g->from[f] = (int32_t)(key[f] & INT32_MAX);
     return HD_OK;
 }
 
@@ -23279,11 +23273,6 @@ static HDI_INLINE double hdi_geo_inverse_root(double x) {
 
 typedef struct hdi_geo_range { int32_t begin, end; } hdi_geo_range;
 
-static hdi_geo_range hdi_geo_part(const int32_t *ptr, int32_t k) {
-    const hdi_geo_range part = {ptr[k], ptr[k + 1]};
-    return part;
-}
-
 /* Adds div X of X = -grad |u| / |grad |u|| to b, integrated against the hat functions. A face adds nothing
  * where no |u| reaches least, or where the slope is within rounding: where fronts of symmetric meshes meet,
  * rounding would choose a side. u is normalised by its largest modulus on the face before anything is
@@ -23376,14 +23365,15 @@ static HDI_INLINE void hdi_geo_stiff(const hdi_geo_face *a, double sign, const d
     r[a->v[2]] += g2;
 }
 
-/* Adds div X of some faces to b: the right-hand side of L phi = b. In the faces of items, which one column
- * has, X is the gradient of the known distances. Returns the columns as bits in which some faces have heat,
- * but all of it below least. */
-static int hdi_geo_divergence(const hd_geodesic *g, hdi_geo_range part, int k, const double *u,
-                              const double *least, const char *done, const hdi_geo_items *items, double *b) {
+/* Adds div X to b: the right-hand side of L phi = b. In the faces of items, which one column has, X is the
+ * gradient of the known distances. Returns the columns as bits in which some faces have heat, but all of it
+ * below least. */
+static int hdi_geo_divergence(const hd_geodesic *g, int k, const double *u, const double *least,
+                              const char *done, const hdi_geo_items *items, double *b) {
     const int level = k > 1 ? hdi_simd_level(g->ctx) : 0;
+    const int32_t end = g->n_faces;
+    hdi_geo_range part = {0, g->n_faces};
     double dim[HDI_GEO_WIDE] = {0};
-    const int32_t end = part.end;
     int32_t q;
     int c, faint = 0;
     for (q = 0; items && q < items->n_home; q++) {
@@ -23407,15 +23397,14 @@ static int hdi_geo_divergence(const hd_geodesic *g, hdi_geo_range part, int k, c
     return faint;
 }
 
-/* r -= L x: of polygons some rows of L, else the part of some faces. */
-static void hdi_geo_subtract(const hd_geodesic *g, hdi_geo_range rows, hdi_geo_range faces,
-                             const double *HDI_RESTRICT x, double *HDI_RESTRICT r) {
+/* r -= L x */
+static void hdi_geo_subtract(const hd_geodesic *g, const double *HDI_RESTRICT x, double *HDI_RESTRICT r) {
     const hd_csr *L = &g->poly.L;
     int32_t f, i;
     int64_t p;
-    for (i = rows.begin; i < rows.end && g->poly.ptr; i++)
+    for (i = 0; i < L->n_rows; i++)
         for (p = L->row_ptr[i]; p < L->row_ptr[i + 1]; p++) r[i] -= L->val[p] * x[L->col[p]];
-    for (f = faces.begin; f < faces.end && g->face; f++) hdi_geo_stiff(g->face + f, -1, x, r);
+    for (f = 0; f < g->n_faces && g->face; f++) hdi_geo_stiff(g->face + f, -1, x, r);
 }
 
 /* x = the inverse times x in k columns. */
@@ -23440,14 +23429,13 @@ static int hdi_geo_is_held(const hd_geodesic *g, int32_t row) {
 
 /* |r - A x| / |r|, where A is L, or with heat L + B/t. r is overwritten. */
 static double hdi_geo_residual(const hd_geodesic *g, int heat, const double *x, double *r) {
-    const hdi_geo_range rows = {0, g->n_active}, faces = {0, g->n_faces};
     double b2 = 0, r2 = 0;
     int32_t i;
     for (i = 0; i < g->n_active; i++) {
         b2 += r[i] * r[i];
         if (heat) r[i] -= g->mass[i] * x[i];
     }
-    hdi_geo_subtract(g, rows, faces, x, r);
+    hdi_geo_subtract(g, x, r);
     for (i = 0; i < g->n_active; i++) r2 += heat && hdi_geo_is_held(g, i) ? 0 : r[i] * r[i];
     return b2 > 0 ? sqrt(r2 / b2) : 0;
 }
@@ -23459,150 +23447,55 @@ static double hdi_geo_residual(const hd_geodesic *g, int heat, const double *x, 
  *     f_i = sum over j beyond of L_ij u_j for i in S,   f_j = -sum over i in S of L_ij u_i for j beyond.
  * f is scaled to one. Solving for u' continues u as far again as before. The scale does not matter, because
  * only directions are used. A face belongs to the first stage that reaches one of its corners.
- * A stage costs what it reaches: fronts, their rows, and the faces whose first corner is one of these. */
+ * A stage goes down to the fronts only that have rows beyond. */
 
-typedef struct hdi_geo_far {
-    hd_geodesic *g;              /* x and r are zero in rows that the last stage has not reached */
-    double *y, *z;               /* [n_active] */
-    int32_t *open, n_open;       /* [n_super] fronts to go to on the way up, descending */
-    int32_t *live;               /* [n_super] fronts where it has been; g->active marks both */
-    int32_t *front, n_fronts;    /* [n_super] fronts that it has reached, parents first */
-} hdi_geo_far;
-
-static hd_status hdi_geo_far_begin(hdi_geo_far *w, hd_geodesic *g, hdi_scope *s) {
-    w->g = g;
-    w->y = HDI_TAKE_ZERO(s, double, g->n_active);
-    w->z = HDI_TAKE_ZERO(s, double, g->n_active);
-    w->front = HDI_TAKE(s, int32_t, g->sym.n_super);
-    w->open = HDI_TAKE(s, int32_t, g->sym.n_super);
-    w->live = HDI_TAKE(s, int32_t, g->sym.n_super);
-    if (s->e->status < 0) return s->e->status;
-    for (w->n_fronts = 0; w->n_fronts < g->sym.n_super; w->n_fronts++) w->front[w->n_fronts] = w->n_fronts;
-    w->n_open = 0;
-    memset(g->r, 0, (size_t)g->n_active * sizeof *g->r);
-    memset(g->mark, 0, (size_t)g->n_active);
+/* g->x = f, where u was, of which |u| >= least is known now: g->mark. What was known before has no neighbours
+ * beyond. f [2 n]: work. Marks the fronts where it is, and those wanted, which have rows beyond. Returns 0 if
+ * there is no usable number along the border. */
+static int hdi_geo_border(hd_geodesic *g, double least, double *f, char *wanted) {
+    const size_t n = (size_t)g->n_active;
+    double *x = g->x, *from_known = f, *from_beyond = f + n, most = 0;
+    int32_t i;
+    for (i = 0; i < g->n_active; i++) {
+        const int beyond = !g->mark[i] && !(fabs(x[i]) >= least);
+        g->r[i] = beyond ? x[i] : 0;
+        if (beyond || g->mark[i]) x[i] = 0;
+        g->mark[i] = (char)!beyond;
+    }
+    memset(f, 0, 2 * n * sizeof *f);
+    hdi_geo_subtract(g, x, from_known);
+    hdi_geo_subtract(g, g->r, from_beyond);
+    for (i = 0; i < g->n_active; i++) {
+        x[i] = hdi_geo_is_held(g, i) ? 0 : g->mark[i] ? -from_beyond[i] : from_known[i];
+        most = hdi_max(most, fabs(x[i]));
+    }
     memset(g->active, 0, (size_t)g->sym.n_super);
-    return HD_OK;
-}
-
-/* Marks the rows where u, in g->x, is known now. Of it only what has become known is left there, and -L times
- * that in y; z becomes -L times u beyond. */
-static void hdi_geo_tell(hdi_geo_far *w, double least) {
-    const hd_geodesic *g = w->g;
-    double *x = g->x;
-    int32_t k, i;
-    for (k = 0; k < w->n_fronts; k++) {
-        const hdi_geo_range rows = hdi_geo_part(g->sym.super, w->front[k]);
-        for (i = rows.begin; i < rows.end; i++) {
-            const int beyond = !g->mark[i] && !(fabs(x[i]) >= least);
-            g->r[i] = beyond ? x[i] : 0;
-            if (beyond || g->mark[i]) x[i] = 0;
-            g->mark[i] = (char)!beyond;
-            w->y[i] = w->z[i] = 0;
-        }
+    memset(wanted, 0, (size_t)g->sym.n_super);
+    for (i = 0; i < g->n_active && most > DBL_MIN; i++) {
+        if (x[i] != 0) hdi_sweep_touch(&g->sym, i, g->active);
+        if (!g->mark[i]) hdi_sweep_touch(&g->sym, i, wanted);
+        x[i] /= most;
     }
-    for (k = 0; k < w->n_fronts; k++) {
-        const hdi_geo_range rows = hdi_geo_part(g->sym.super, w->front[k]),
-                            faces = hdi_geo_part(g->face_ptr, w->front[k]);
-        hdi_geo_subtract(g, rows, faces, x, w->y);
-        hdi_geo_subtract(g, rows, faces, g->r, w->z);
-    }
-}
-
-static void hdi_geo_open(hdi_geo_far *w, int32_t v) {
-    int32_t i = w->n_open;
-    if (w->g->active[v]) return;
-    w->g->active[v] = 1;
-    for (w->n_open++; i > 0 && w->open[i - 1] < v; i--) w->open[i] = w->open[i - 1];
-    w->open[i] = v;
-}
-
-/* g->x = f, where u was; opens the fronts where it is. Returns 0 if there is no usable number along
- * the border. */
-static int hdi_geo_border(hdi_geo_far *w, double least) {
-    const hd_geodesic *g = w->g;
-    double *x = g->x, most = 0;
-    int32_t k, i;
-    hdi_geo_tell(w, least);
-    for (k = 0; k < w->n_fronts; k++) {
-        const hdi_geo_range rows = hdi_geo_part(g->sym.super, w->front[k]);
-        for (i = rows.begin; i < rows.end; i++) {
-            x[i] = hdi_geo_is_held(g, i) ? 0 : g->mark[i] ? -w->z[i] : w->y[i];
-            g->r[i] = 0;
-            most = hdi_max(most, fabs(x[i]));
-            if (x[i] != 0) hdi_geo_open(w, g->sym.super_of[i]);
-        }
-    }
-    for (k = 0; k < w->n_open && most > DBL_MIN; k++)
-        for (i = g->sym.super[w->open[k]]; i < g->sym.super[w->open[k] + 1]; i++) x[i] /= most;
     return most > DBL_MIN;
-}
-
-/* Whether rows beyond S that are eliminated later bring heat to front v. */
-static int hdi_geo_warm(const hd_geodesic *g, int32_t v) {
-    int64_t p;
-    for (p = g->sym.row_ptr[v]; p < g->sym.row_ptr[v + 1]; p++)
-        if (!g->mark[g->sym.row[p]] && fabs(g->x[g->sym.row[p]]) >= DBL_MIN) return 1;
-    return 0;
-}
-
-/* From the open fronts upwards, as long as a front has something to hand on. Returns how many are live. */
-static int32_t hdi_geo_up(hdi_geo_far *w, const hdi_sweep *z) {
-    const hdi_symbolic *s = &w->g->sym;
-    int32_t n = 0;
-    while (w->n_open > 0) {
-        const int32_t v = w->open[--w->n_open];
-        const double *from = z->vec + s->vector[v];
-        const int64_t below = hdi_front_below(s, v);
-        int64_t i = 0;
-        hdi_sweep_front(z, v);
-        w->live[n++] = v;
-        while (i < below && !(fabs(from[i]) >= DBL_MIN)) i++;
-        if (i < below) hdi_geo_open(w, s->parent[v]);
-    }
-    return n;
-}
-
-/* g->x = A^-1 g->x: up, and down again from where that ends, the highest first, wherever heat comes. Returns
- * the largest |u| beyond. */
-static double hdi_geo_stage(hdi_geo_far *w) {
-    const hdi_symbolic *s = &w->g->sym;
-    char *active = w->g->active;
-    hdi_sweep z = hdi_sweep_open(&w->g->heat, 1, w->g->x, w->g->work);
-    double most = 0;
-    int32_t n_live, k = 0, q, v, i;
-    z.active = active;
-    n_live = hdi_geo_up(w, &z);
-    z.backward = 1;
-    for (w->n_fronts = 0; n_live > 0;) {
-        v = w->live[--n_live];
-        if (s->parent[v] >= 0 && active[s->parent[v]]) continue;     /* it came with its parent */
-        for (w->front[w->n_fronts++] = v; k < w->n_fronts; k++) {
-            v = w->front[k];
-            hdi_sweep_front(&z, v);
-            active[v] = 1;
-            for (i = s->super[v]; i < s->super[v + 1]; i++)
-                if (!w->g->mark[i]) most = hdi_max(most, fabs(w->g->x[i]));
-            for (q = s->kid_ptr[v]; q < s->kid_ptr[v + 1]; q++)
-                if (active[s->kid[q]] || hdi_geo_warm(w->g, s->kid[q])) w->front[w->n_fronts++] = s->kid[q];
-        }
-    }
-    while (k > 0) active[w->front[--k]] = 0;
-    return most;
 }
 
 /* Adds to g->b what lies beyond |u| >= least, stage by stage, with u in g->x. Where heat ends for good (the
  * component ends, or weights are zero), the rest has no direction. */
 static hd_status hdi_geo_further(hd_geodesic *g, double least, int32_t *n_stages, hd_error *e) {
     hdi_scope s = hdi_scope_begin(g->ctx, e);
-    hdi_geo_far w;
-    int32_t k, faint = hdi_geo_far_begin(&w, g, &s) >= 0;
-    while (faint && hdi_geo_border(&w, least) && hdi_progress(g->ctx, "solve", 0.5, e) >= 0) {
-        least = hdi_geo_stage(&w) * HDI_GEO_FAINT;
+    double *f = HDI_TAKE(&s, double, 2 * (uint64_t)g->n_active), most;
+    char *wanted = HDI_TAKE(&s, char, g->sym.n_super);
+    int32_t i, faint = e->status >= 0;
+    memset(g->mark, 0, (size_t)g->n_active);
+    while (faint && hdi_geo_border(g, least, f, wanted) && hdi_progress(g->ctx, "solve", 0.5, e) >= 0) {
+        hdi_sweep z = hdi_sweep_open(&g->heat, 1, g->x, g->work);
+        z.active = g->active;
+        z.wanted = wanted;
+        hdi_sweep_run(&z, g->ctx);
+        for (i = 0, most = 0; i < g->n_active; i++) most = hdi_max(most, g->mark[i] ? 0 : fabs(g->x[i]));
+        least = most * HDI_GEO_FAINT;
+        faint = least > DBL_MIN && hdi_geo_divergence(g, 1, g->x, &least, g->mark, NULL, g->b);
         ++*n_stages;
-        for (k = 0, faint = 0; k < w.n_fronts && least > DBL_MIN; k++)
-            faint |= hdi_geo_divergence(g, hdi_geo_part(g->face_ptr, w.front[k]), 1, g->x, &least, g->mark,
-                                        NULL, g->b);
     }
     return hdi_scope_end(&s);
 }
@@ -23966,13 +23859,12 @@ static hd_status hdi_geo_solve(hd_geodesic *g, const hdi_geo_source *s, int32_t 
     const size_t size = (size_t)k * (size_t)g->n_active * sizeof(double);
     double *x = n > 1 ? g->wide_x : g->x, *b = n > 1 ? g->wide_b : g->b;
     double least[HDI_GEO_WIDE], heat[HDI_GEO_WIDE];
-    const hdi_geo_range faces = {0, g->n_faces};
     int32_t c, n_stages = 1;
     hdi_geo_heat(g, s, n, k, x, b, rep ? heat : NULL);
     for (c = 0; c < k; c++) least[c] = c < n ? hdi_geo_least(g, s + c, k, x + c) : DBL_MIN;
     if (s->n > 1) memcpy(g->first, x, size);
     memset(b, 0, size);
-    *faint = hdi_geo_divergence(g, faces, k, x, least, NULL, s->items, b);
+    *faint = hdi_geo_divergence(g, k, x, least, NULL, s->items, b);
     if (n == 1 && *faint && hdi_geo_further(g, least[0], &n_stages, e) < 0) return e->status;
     if (rep) memcpy(x, b, size);
     for (c = 0; c < g->n_components; c++)

@@ -1317,53 +1317,6 @@ static void int_polygon(void) {
     CHECK(g.n == 2 * HDI_MOST_NEIGHBOURS && g.n <= HDI_POLYGON_MOST);
 }
 
-/* ---- [29] geodesic: later stages ---- */
-
-/* On a long strip a later stage visits fronts near the border of what is known: all stages together a few times as many as there are. */
-static void int_far_stages(void) {
-    enum { LONG = 6000, N = 3 * LONG, M = 4 * (LONG - 1) };
-    double *xyz = (double *)calloc(3 * N, sizeof *xyz), least;
-    int32_t *tri = (int32_t *)malloc(3 * M * sizeof *tri), i, k, n = 0, stages = 0, visits = 0;
-    hd_geodesic *g = NULL;
-    hd_mesh mesh;
-    hd_error e;
-    hdi_geo_far w;
-    for (i = 0; i < N; i++) {
-        xyz[3 * i] = i / 3;
-        xyz[3 * i + 1] = i % 3;
-    }
-    for (i = 0; i < LONG - 1; i++) {
-        for (k = 3 * i; k < 3 * i + 2; k++) {
-            const int32_t square[6] = {k, k + 3, k + 4, k, k + 4, k + 1};
-            memcpy(tri + n, square, sizeof square);
-            n += 6;
-        }
-    }
-    mesh = hd_triangles(xyz, N, tri, M);
-    CHECK(hd_geodesic_create(&g, &mesh, NULL, &e) == HD_OK);
-    if (g) {
-        hdi_scope s = hdi_scope_begin(g->ctx, &e);
-        memset(g->x, 0, N * sizeof *g->x);
-        g->x[g->row[0]] = 1;
-        hdi_geo_sweep(g, &g->heat, 1, g->x, NULL);
-        least = fabs(g->x[g->row[0]]) * HDI_GEO_FAINT;
-        CHECK(hdi_geo_far_begin(&w, g, &s) == HD_OK);
-        while (least > DBL_MIN && hdi_geo_border(&w, least)) {
-            least = hdi_geo_stage(&w) * HDI_GEO_FAINT;
-            visits += w.n_fronts;
-            stages++;
-        }
-        for (i = n = 0; i < N; i++) n += g->mark[i] == 0;
-        CHECK_MSG(stages >= 8 && visits < 4 * g->sym.n_super, "%d stages, %d visits of %d fronts", (int)stages, (int)visits,
-                  (int)g->sym.n_super);
-        CHECK_MSG(n == 0, "%d rows are never known", (int)n);
-        (void)hdi_scope_end(&s);
-    }
-    hd_geodesic_free(g);
-    free(tri);
-    free(xyz);
-}
-
 /* ---- [04] context: tasks of threads ---- */
 
 #if HDI_THREADS
@@ -1423,7 +1376,7 @@ static void (*const int_tests[])(void) = {
     int_krylov_slopes, int_ritz_above, int_probe_rows, int_pairs_degree, int_spectrum_proof,
     int_spectrum_twice, int_least_squares, int_exp_rest, int_shared_bounds, int_length_area, int_around, int_selection,
     int_eigen3, int_polygon, int_krylov_bounds, int_damages_1, int_damages_2, int_damages_3,
-    int_damages_4, int_damages_5, int_far_stages,
+    int_damages_4, int_damages_5,
 };
 
 int main(int argc, char **argv) {
