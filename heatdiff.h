@@ -12666,7 +12666,6 @@ enum {
     HDI_FIT_FINER = 30,          /* so many times as many measure the error */
     HDI_FIT_JOIN = 400,          /* most points that join the fit */
     HDI_FIT_ROUNDS = 4,
-    HDI_FIT_INVERSE = 40,        /* steps of inverse iteration */
     HDI_FIT_ABERTH = 100,        /* steps; 10 to 30 are the rule */
     HDI_FIT_ROOM = HDI_FIT_LOG + HDI_FIT_LINEAR + HDI_FIT_JOIN + 2,
     HDI_FIT_FIRST = 16,          /* filters that poles are found for, when several share them, */
@@ -12821,33 +12820,10 @@ static hd_status hdi_fit_load(hdi_fit *k, int32_t j, const hd_filter *filter, hd
 
 /* ---- the AAA step ---- */
 
-/* The right singular vector w of the smallest singular value of the triangle R [c c], in columns of ld, by
- * inverse iteration. Among values that are close any vector serves. */
-static void hdi_fit_null(double *R, int64_t ld, int32_t c, double *w) {
-    double most = 0;
-    int32_t i, step;
-    for (i = 0; i < c; i++) most = hdi_max(most, fabs(R[i * ld + i]));
-    for (i = 0; i < c; i++) {
-        w[i] = 1 / (1.0 + i);
-        if (fabs(R[i * ld + i]) < 1e-20 * most) R[i * ld + i] = 1e-20 * most;
-    }
-    for (step = 0; step < HDI_FIT_INVERSE; step++) {
-        double norm;
-        for (i = 0; i < c; i++) w[i] = (w[i] - hdi_dot(R + i * ld, w, i)) / R[i * ld + i];
-        norm = sqrt(hdi_dot(w, w, c));
-        for (i = c - 1; i >= 0; i--) {
-            w[i] /= norm * R[i * ld + i];
-            hdi_axpy(-norm * w[i], R + i * ld, w, i);
-        }
-        norm = sqrt(hdi_dot(w, w, c));
-        for (i = 0; i < c; i++) w[i] /= norm;
-    }
-}
-
 /* The weights: those that make f times the denominator nearest to the numerator, over all other points, for
- * all filters at once. */
+ * all filters at once. The first one is 1. */
 static void hdi_fit_weights(hdi_fit *k) {
-    const int32_t c = k->m + (k->constant ? 0 : 1);   /* without a0 infinity has a weight, too */
+    const int32_t c = k->m - (k->constant ? 1 : 0);   /* without a0 infinity has a weight, too */
     const int64_t rows = (int64_t)(k->n - k->m) * k->count;
     double *A = k->work, *b = A + c * rows;
     int64_t row = 0;
@@ -12856,15 +12832,18 @@ static void hdi_fit_weights(hdi_fit *k) {
         const double *f = k->f + q * HDI_FIT_ROOM, *u = k->u + q * HDI_FIT_ROOM;
         for (i = 0; i < k->n; i++) {
             if (k->support[i]) continue;
-            for (j = 0; j < k->m; j++)
-                A[j * rows + row] = u[i] * (f[i] - f[k->at[j]]) / (k->x[i] - k->x[k->at[j]]);
-            if (c > k->m) A[k->m * rows + row] = u[i] * f[i];
-            b[row++] = 0;
+            for (j = 0; j < k->m; j++) {
+                const double v = u[i] * (f[i] - f[k->at[j]]) / (k->x[i] - k->x[k->at[j]]);
+                *(j ? A + (j - 1) * rows + row : b + row) = j ? v : -v;
+            }
+            if (!k->constant) A[(k->m - 1) * rows + row] = u[i] * f[i];
+            row++;
         }
     }
-    hdi_least_squares(A, rows, c, b);            /* for its triangle */
+    hdi_least_squares(A, rows, c, b);
     k->w[k->m] = 0;
-    hdi_fit_null(A, rows, c, k->w);
+    k->w[0] = 1;
+    memcpy(k->w + 1, b, (size_t)c * sizeof *b);
 }
 
 /* The largest error of the approximations, of all filters, and the point where it is. */
@@ -12951,16 +12930,23 @@ static int hdi_fit_serves(hd_c64 *p) {
     return p->im == 0 ? p->re < 0 : p->im < 0 && hdi_fit_distance(*p) > HDI_FIT_NEAR * size;
 }
 
-/* The poles of a step. Of zeros that have not settled, which are no pairs, there may be too many. */
+static int hdi_fit_before(hd_c64 a, hd_c64 b) {
+    return (a.im == 0) != (b.im == 0) ? a.im == 0 : hdi_cabs2(a) < hdi_cabs2(b);
+}
+
+/* The poles of a step. Of zeros that have not settled, which are no pairs, there may be too many. Real ones
+ * come first, as that may save a pack of factors; then small ones, as iterations like it. */
 static void hdi_fit_poles(const hdi_fit *k, hd_rational *set) {
     hd_c64 p[2 * HD_MAX_POLES + 1];
-    int32_t i;
+    int32_t i, j;
     memset(set, 0, sizeof *set);
     hdi_fit_zeros(k, p);
     for (i = 0; i < k->m; i++) {
         if (!hdi_fit_serves(p + i) || set->n_poles == HD_MAX_POLES || set->degree >= k->most) continue;
         set->degree += p[i].im != 0 ? 2 : 1;
-        set->theta[set->n_poles++] = p[i];
+        for (j = set->n_poles++; j > 0 && hdi_fit_before(p[i], set->theta[j - 1]); j--)
+            set->theta[j] = set->theta[j - 1];
+        set->theta[j] = p[i];
     }
 }
 
@@ -13073,22 +13059,6 @@ static double hdi_fit_unit(const hd_rational *set) {
     return 1 / least;
 }
 
-/* Small |theta| first, as iterations like it; the first is real where that saves a pack of factors. */
-static void hdi_fit_sort(hd_rational *set) {
-    int32_t i, j, least;
-    for (i = 0; i < set->n_poles; i++) {
-        const hd_c64 theta = set->theta[i], a = set->a[i];
-        for (least = j = i; j < set->n_poles; j++) {
-            const int real = set->theta[j].im == 0, by_size = i > 0 || real == (set->theta[least].im == 0);
-            if (by_size ? hdi_cabs(set->theta[j]) < hdi_cabs(set->theta[least]) : real) least = j;
-        }
-        set->theta[i] = set->theta[least];
-        set->a[i] = set->a[least];
-        set->theta[least] = theta;
-        set->a[least] = a;
-    }
-}
-
 /* The set of filter q for x = -t lambda, by one in terms of scaled points. unit: t lambda_max. */
 static hd_status hdi_fit_take(const hdi_fit *k, int32_t q, const hd_rational *set, double unit,
                               hd_rational *out, hd_error *e) {
@@ -13111,7 +13081,6 @@ static hd_status hdi_fit_take(const hdi_fit *k, int32_t q, const hd_rational *se
     if (!fine)
         return hdi_fit_fail(k, k->filter[q], HD_ERR_BREAKDOWN,
                             "filter: a weight of its poles leaves the range of doubles", e);
-    hdi_fit_sort(&to);
     to.max_error = largest * (HDI_FIT_BETWEEN * set->max_error + rounding);
     to.max_weighted_error =
         largest * (HDI_FIT_BETWEEN * set->max_weighted_error + (1 + unit) * rounding);
@@ -16138,6 +16107,7 @@ typedef struct hdi_spec {
     double *sweep, *h, *part, *work;
     double *noise;               /* [n] weights of rounding in residuals; [n] work */
     int32_t n_poor;              /* residuals above the tolerance and rounding */
+    int32_t alike;               /* vectors of a block depended on each other */
     uint64_t seed;
     int32_t n_factors, n_runs, n_solves;
     double next;                 /* no other eigenvalue is below it */
@@ -16665,15 +16635,18 @@ static void hdi_spec_polish(hdi_spec *s, const double *value, int32_t first, dou
 #define HDI_SPEC_LOST 0.1        /* a residual that is a larger part of its value leaves nothing of it */
 
 /* Makes block `at`, n columns that are nearly orthonormal, orthonormal and orthogonal to all before it, and
- * enters its pairs, but for those of which much was in blocks before already. */
+ * enters its pairs, but for those of which much was in blocks before. A pair found twice, with another one
+ * missing, would deceive the count of pivots: so columns that depend on each other are noted. */
 static void hdi_spec_settle(hdi_spec *s, const double *value, int32_t at, int32_t n) {
     double G[64], R[64], scale[HDI_WIDE], norm[HDI_WIDE], noise[HDI_WIDE], twin[HDI_WIDE], *x = s->lock[at];
+    int64_t i;
     int32_t r;
     hdi_spec_mass(s, x, s->bx);
     hdi_spec_project(s, s->lock, at, x, s->bx, twin);
+    for (i = 0; i < 8 * (int64_t)s->n; i++) x[i] = twin[i % 8] > 0.1 ? 0 : x[i];
     hdi_spec_mass(s, x, s->bx);
     for (r = 0; r < HDI_WIDE; r++) scale[r] = 1;
-    (void)hdi_spec_orthonormal(s, x, s->bx, scale, scale, NULL, G, R);
+    s->alike |= !(hdi_spec_orthonormal(s, x, s->bx, scale, scale, NULL, G, R) < 0.5);
     (void)hdi_spec_measure(s, value, x, norm);
     hdi_wide_norms(x, s->noise, s->n, HDI_WIDE, noise);
     for (r = 0; r < n; r++) {
@@ -16799,14 +16772,14 @@ static int32_t hdi_spec_rank(const hdi_spec *s, double x) {
     return n;
 }
 
-/* Whether the count at the shift is that of the exact pair: no value found is so near that rounding could
- * move it across. */
+/* Whether the count at the shift is that of the exact pair, and no pair stands for two: no value found is so
+ * near that rounding could move it across. */
 static int hdi_spec_sure(const hdi_spec *s) {
     const double root = hdi_ratio_root(s->lap);
     int32_t i;
     for (i = 0; i < s->found; i++)
         if (fabs(s->value[i] - s->sigma) <= s->off + root * s->residual[i]) return 0;
-    return s->off < HUGE_VAL;
+    return s->off < HUGE_VAL && !s->alike;
 }
 
 /* ---- a row of shifts ---- */
@@ -17009,34 +16982,6 @@ static void hdi_spec_left_task(void *arg, int64_t begin, int64_t end) {
     }
 }
 
-/* A pair found twice, with another one missing, would deceive the count of pivots. Are all vectors different?
- * They are, if X'B X c = c, where the signs c are as good as random. Uses left and left_mass as work. */
-#define HDI_SPEC_DISTINCT 1e-6
-
-static double hdi_spec_sign(int32_t q) {
-    return (((uint32_t)q * 2654435761u) >> 31) != 0 ? 1 : -1;   /* Knuth's multiplicative hash */
-}
-
-static int hdi_spec_distinct(const hd_spectrum *out) {
-    const hd_laplacian *lap = out->lap;
-    double *sum = out->left, *mass = out->left_mass;
-    int32_t q, v;
-    memset(sum, 0, (size_t)out->n * sizeof *sum);
-    for (q = 0; q < out->count; q++) {
-        const double *x = out->vector + (int64_t)q * out->n;
-        const double c = hdi_spec_sign(q);
-        for (v = 0; v < out->n; v++) sum[v] += c * x[v];
-    }
-    for (v = 0; v < out->n; v++) mass[v] = lap->row[v] < 0 ? 0 : hdi_spec_mass_row(lap, sum, lap->row[v]);
-    for (q = 0; q < out->count; q++) {
-        const double *x = out->vector + (int64_t)q * out->n;
-        double dot = 0;
-        for (v = 0; v < out->n; v++) dot += x[v] * mass[v];
-        if (!(fabs(dot - hdi_spec_sign(q)) <= HDI_SPEC_DISTINCT)) return 0;
-    }
-    return 1;
-}
-
 /* Eigenpairs for the goal. m: a pair that is analysed, whose factor kept in m is not touched. The arrays of
  * out belong to ctx of m. */
 static hd_status hdi_spec_run(hdi_elim *m, const hdi_spec_goal *goal, double tol, hd_spectrum *out,
@@ -17069,7 +17014,7 @@ static hd_status hdi_spec_run(hdi_elim *m, const hdi_spec_goal *goal, double tol
             out->factor_nnz = m->sym.nnz;
             out->factor_flops = m->sym.flops * s.n_factors;
             out->ordering = m->sym.ordering;
-            out->proven = s.proven && hdi_spec_distinct(out);
+            out->proven = s.proven;
             memset(out->left, 0, 2 * n * sizeof *out->left);
             hdi_parallel_ranges(m->ctx, s.n, 1024, hdi_spec_left_task, out);
         }

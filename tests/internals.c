@@ -1103,22 +1103,6 @@ static void int_spectrum_proof(void) {
     hdi_elim_free(&m);
 }
 
-/* The same pair twice is seen, wherever the two stand. */
-static void int_spectrum_twice(void) {
-    const hd_laplacian *lap = kit_pair("bumpy/2/5 fem");
-    hd_spectrum_opts o;
-    hd_spectrum *twice = NULL;
-    int32_t i;
-    memset(&o, 0, sizeof o);
-    o.count = 30;
-    for (i = 3; i < 29; i += 5) {
-        CHECK(hd_spectrum_create(&twice, lap, &o, NULL) == HD_OK && hdi_spec_distinct(twice));
-        memcpy(twice->vector + 29 * (int64_t)twice->n, twice->vector + i * (int64_t)twice->n, (size_t)twice->n * sizeof(double));
-        CHECK(!hdi_spec_distinct(twice));
-        hd_spectrum_free(twice);
-    }
-}
-
 /* ---- [21] rational: pieces of shared sets, of which test_shared.h sees the whole ---- */
 
 /* Residuals are orthogonal to the columns, also of nearly dependent ones; without full rank the answer is finite. */
@@ -1374,7 +1358,7 @@ static void (*const int_tests[])(void) = {
     int_large_pages, int_sorting, int_union_find, int_tridiagonal, int_tridiagonal_odd, int_collinear, int_krylov_done,
     int_ildl, int_products, int_residuals, int_noise_weights, int_pole_bounds, int_resolvent_pole, int_no_numbers, int_lanczos_bound,
     int_krylov_slopes, int_ritz_above, int_probe_rows, int_pairs_degree, int_spectrum_proof,
-    int_spectrum_twice, int_least_squares, int_exp_rest, int_shared_bounds, int_length_area, int_around, int_selection,
+    int_least_squares, int_exp_rest, int_shared_bounds, int_length_area, int_around, int_selection,
     int_eigen3, int_polygon, int_krylov_bounds, int_damages_1, int_damages_2, int_damages_3,
     int_damages_4, int_damages_5,
 };
