@@ -12962,24 +12962,6 @@ static double hdi_fit_residues(hdi_fit *k, int32_t q, hd_rational *set) {
     return most;
 }
 
-/* The most that a pole gives on the spectrum. */
-static double hdi_fit_share(const hd_rational *set, int32_t i) {
-    return hdi_rat_count(set, i) * hdi_cabs(set->a[i]) / hdi_fit_distance(set->theta[i]);
-}
-
-/* Drops poles that the error would not miss. Returns how many. */
-static int32_t hdi_fit_idle(const hdi_fit *k, hd_rational *set) {
-    int32_t i, kept = 0, n = set->n_poles;
-    set->degree = 0;
-    for (i = 0; i < n; i++) {
-        if (hdi_fit_share(set, i) <= 0.1 * k->tol) continue;
-        set->degree += set->theta[i].im != 0 ? 2 : 1;
-        set->theta[kept++] = set->theta[i];
-    }
-    set->n_poles = kept;
-    return n - kept;
-}
-
 /* The best set that up to `most` support points give at these points: each is the point with the largest
  * error so far. Its weights are those of the last filter, its error is the largest of all, weighted. */
 static void hdi_fit_run(hdi_fit *k, hd_rational *best) {
@@ -13001,8 +12983,7 @@ static void hdi_fit_run(hdi_fit *k, hd_rational *best) {
         if (k->count > 1 && off > HDI_FIT_CLOSE * k->tol && k->m < k->most) continue;
         hdi_fit_poles(k, &set);
         for (q = 0; q < k->count; q++) {
-            double error = hdi_fit_residues(k, q, &set);
-            if (k->count == 1 && hdi_fit_idle(k, &set) > 0) error = hdi_fit_residues(k, q, &set);
+            const double error = hdi_fit_residues(k, q, &set);
             set.max_error = hdi_worst(set.max_error, error);
         }
         if (set.max_error < best->max_error && set.degree <= k->most) *best = set;
@@ -13045,7 +13026,8 @@ static double hdi_fit_measure(hdi_fit *k, int32_t q, hd_rational *set, double t,
 static double hdi_fit_rounding(const hd_rational *set) {
     double sum = 1 + fabs(set->a0);
     int32_t i;
-    for (i = 0; i < set->n_poles; i++) sum += hdi_fit_share(set, i);
+    for (i = 0; i < set->n_poles; i++)           /* the most that a pole gives on the spectrum */
+        sum += hdi_rat_count(set, i) * hdi_cabs(set->a[i]) / hdi_fit_distance(set->theta[i]);
     return 4 * DBL_EPSILON * sum;
 }
 
