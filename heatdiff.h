@@ -428,8 +428,7 @@ typedef enum hd_pole_kind {
     HD_POLES_DEFAULT = 0,
     HD_POLES_UNIFORM,           /* r = 1..14: smallest max |exp - c| on (-inf, 0] */
     HD_POLES_KERNEL,            /* r = 2..14: a0 = 0, c(0) = 1, smallest max (1 + |x|) |exp - c| */
-    HD_POLES_OWN,               /* the caller's */
-    HD_POLES_DIAGONAL           /* r = 2..14: the weight rises to five times (1 + |x|) at large |x| */
+    HD_POLES_OWN                /* the caller's */
 } hd_pole_kind;
 
 enum { HD_MAX_POLES = 32 };
@@ -524,7 +523,7 @@ typedef struct hd_heat_opts {
     hd_method method;
     hd_solver solver;
     hd_precond precond;
-    hd_pole_kind poles;         /* default: kernel for columns and entries, uniform for fields */
+    hd_pole_kind poles;         /* default: uniform for fields, else kernel */
     /* Default: the rational error relative to the answer is below about 1e-8 (direct: degree 9 and 3e-8). */
     int32_t degree;
     /* Copied: your own set, or hd_rational_fit's. Then poles and degree are ignored, Lanczos is not used. */
@@ -865,7 +864,7 @@ HEATDIFF_API hd_status hd_neighbours_nearest(const double *xyz, int32_t n, const
 
 /* ---- rational approximations ---- */
 
-/* A built-in set: uniform, kernel or diagonal.
+/* A built-in set: uniform or kernel.
  * Errors HD_ERR_ARGUMENT for any other kind or degree (value: a wrong degree)
  * Source Cody, Meinardus, Varga 1969; Carpenter, Ruttan, Varga 1984 */
 HEATDIFF_API hd_status hd_rational_exp(hd_rational *out, hd_pole_kind kind, int32_t degree,
@@ -12030,89 +12029,16 @@ static const double hdi_rat_table[] = {
     -0.98196506093423674, 10.467711454192054, -0.078142978167783206, 0.21550257610584828,
     -4.5075605895604021, 13.008767567859003, -0.0010383125651999775, -0.0086362070804686056,
     -9.7413256359447953, 15.840947521360885, 2.0671816855185641e-05, 6.5573823084788806e-05,
-#if !defined(HEATDIFF_NO_DIRECT) && !defined(HEATDIFF_NO_POLE_FACTORS) && !defined(HEATDIFF_NO_DIAGONAL)
-    0, 0.067537133737907679, 0.084246004368216873,   /* diagonal r = 2 */
-    0.093165638432949657, 0.78606720760465709, 0.0084246004368216873, -0.39955314986781715,
-    0, 0.008827961386663535, 0.010442809434321652,   /* diagonal r = 3 */
-    0.82583993214481199, 0, -0.6708823891869552, 0,
-    -0.38137972156259914, 1.879992248278864, 0.33439691365004542, -0.11579931529770687,
-    0, 0.0011772217643792788, 0.0013423623600534568,   /* diagonal r = 4 */
-    0.95364093252912396, 0.99014596020921519, -0.14238645345641066, -0.8903168914974795,
-    -1.0137929984233569, 3.0436577814491423, 0.14252068969241599, 0.17704643017030255,
-    0, 0.00015286872126302198, 0.00017020187449105295,   /* diagonal r = 5 */
-    1.5305988264114367, 0, -1.5071962916274879, 0,
-    0.79496963375585472, 2.0648242488303703, 0.81999666196924936, -0.39763577394813476,
-    -1.7386371635751181, 4.2421940249737515, -0.066415536342954523, 0.10612573631193803,
-    0, 1.9404126482242763e-05, 2.1243136355080079e-05,   /* diagonal r = 6 */
-    1.7403291915150134, 1.0508777810170973, -0.46945354680866597, -1.9337112147649937,
-    0.46845091128664179, 3.1874731275997692, 0.53058373822256644, 0.53195920721973822,
-    -2.5242654997752321, 5.4646451895220576, -0.061128067100264978, -0.014778077847248062,
-    0, 2.412596399658805e-06, 2.6085677357032684e-06,   /* diagonal r = 7 */
-    2.2587108249348247, 0, -3.2523445692370117, 0,
-    1.7285599625302293, 2.1435592178425069, 1.8605988718308413, -1.1049045554843731,
-    0.02975382932653408, 4.3426481816353268, -0.23226156481092178, 0.48607958827629705,
-    -3.3534714915089023, 6.7059077028578731, -0.0021652832581871267, -0.029590579663120412,
-    0, 2.9479288418651553e-07, 3.1570971228532059e-07,   /* diagonal r = 8 */
-    2.5142509751129301, 1.0823272318226731, -1.1972697412305799, -4.1920853464776231,
-    1.5665766326190609, 3.2671178582916962, 1.5321217388024098, 1.3129169180216853,
-    -0.49031600390114177, 5.5221078207391807, -0.3473011302864667, -0.037278309794394476,
-    -4.2159324328825925, 7.962476104494943, 0.012449164285608104, -0.0048644027630989142,
-    0, 3.5524614672975907e-08, 3.7759512940471612e-08,   /* diagonal r = 9 */
-    3.0037632063722302, 0, -7.0120532960817847, 0,
-    2.5889719865228709, 2.1905146441527563, 4.1540003879217764, -2.7667114907450197,
-    1.2945586667253488, 4.4144394949515586, -0.60444229963006224, 1.5552295032232204,
-    -1.0729254816698168, 6.7203973595020807, -0.047105620203199583, -0.20446296144071352,
-    -5.1049774011321016, 9.2312447202954093, 0.0035741761764263497, 0.0045788157819185576,
-    0, 4.2342178872084898e-09, 4.4732537833884187e-09,   /* diagonal r = 10 */
-    3.2873924431636969, 1.1022552213870953, -2.8289920084429534, -9.1064874041311423,
-    2.5302908088373912, 3.3198444586612692, 3.9838641796477434, 3.0606974631135127,
-    0.93765342127352547, 5.5805918225656841, -1.2543801051059043, -0.037404810718164969,
-    -1.7055012565967682, 7.9336742051217808, 0.1009434281265153, -0.062378797736551063,
-    -6.0159168215796504, 10.509773539372675, -0.0014354937780756717, 0.0019882812866436638,
-    0, 5.0021846689596646e-10, 5.2580978086542119e-10,   /* diagonal r = 11 */
-    3.7589461970886253, 0, -15.148948949204554, 0,
-    3.4181443270160519, 2.2221329996842121, 9.2125981360945897, -6.5902805609642856,
-    2.3683553134810875, 4.4666139801276348, -1.4193485357460269, 4.3238105206994364,
-    0.5128455800316476, 6.7620649790154106, -0.26684733005187411, -0.83260767428322346,
-    -2.379100613238514, 9.1591928578650474, 0.049022113704178832, 0.040992343240600949,
-    -6.9452579838979789, 11.79627716879928, -0.00094990945117058828, -0.00034571181787770053,
-    0, 5.8661050518504886e-11, 6.1403279086032692e-11,   /* diagonal r = 12 */
-    4.0610869219941961, 1.116048086453026, -6.4724526450927371, -19.800986950452625,
-    3.4300936656689154, 3.3573104594890664, 9.8055149092097036, 6.9636278019653055,
-    2.1236663707526828, 5.6279851297529859, -3.777063165087494, 0.094270513988374965,
-    0.032242520993688462, 7.9562992640911672, 0.45627066834523922, -0.34492929621099749,
-    -3.0870878465596405, 10.394946906715006, -0.012301681054688813, 0.030667347038706546,
-    -7.8903128787456671, 13.089450497161112, 3.1913686116974329e-05, -0.00040712600366819992,
-    0, 6.8365743495114318e-12, 7.1306418567934206e-12,   /* diagonal r = 13 */
-    4.5202913913027034, 0, -32.783137527896145, 0,
-    4.2310263506800085, 2.2448762717592685, 20.347189887795118, -15.274130373091314,
-    3.3465717998601754, 4.5057579496393751, -3.1850618922459386, 11.17507781679377,
-    1.8108756340281571, 6.8017763374151308, -1.0492043791856276, -2.7209511380543314,
-    -0.49517616961888949, 9.1613738263301858, 0.29495176440813958, 0.19748383147240292,
-    -3.8243861741232053, 11.639423888576662, -0.016465925177306037, -0.0011879972207539352,
-    -8.8489656005868085, 14.388310285612475, 0.00015930835297385204, -3.0280580654715494e-05,
-    0, 7.9251842589203527e-13, 8.2407404085801184e-13,   /* diagonal r = 14 */
-    4.8355707150445477, 1.1261687721267875, -14.567599485838048, -43.080327612915774,
-    4.294404025993809, 3.3852827675703461, 23.360062602508137, 15.644916006216233,
-    3.1843260042494643, 5.6657810904450612, -10.340872607797349, 0.68524673717873286,
-    1.4408641893813143, 7.986286821448644, 1.6044788633921492, -1.3795300766921736,
-    -1.0625421595687834, 10.375806417114624, -0.054252691775587503, 0.20350620469919772,
-    -4.5870160409811707, 12.891449259479609, -0.0018442580277614033, -0.0077932972131342215,
-    -9.8195193949567514, 15.692091318644374, 2.7577538544225898e-05, 5.7130444708159529e-05,
-#endif
 };
 /* poles.py: end */
 
-/* Kernel and diagonal sets have the same degrees. */
-enum { HDI_RAT_UNIFORM_MAX = 14, HDI_RAT_KERNEL_MIN = 2, HDI_RAT_KERNEL_MAX = 14 };   /* diagonal sets too */
+enum { HDI_RAT_UNIFORM_MAX = 14, HDI_RAT_KERNEL_MIN = 2, HDI_RAT_KERNEL_MAX = 14 };
 
-/* Where the set begins in the table: uniform sets come first, then kernel, then diagonal ones. */
+/* Where the set begins in the table: uniform sets come first, then kernel ones. */
 static const double *hdi_rat_row(hd_pole_kind kind, int32_t degree) {
-    const int32_t n_each = HDI_RAT_KERNEL_MAX - HDI_RAT_KERNEL_MIN + 1;
     const double *row = hdi_rat_table;
     int32_t k = degree - 1, r = 1;
-    if (kind != HD_POLES_UNIFORM)
-        k = HDI_RAT_UNIFORM_MAX + degree - HDI_RAT_KERNEL_MIN + (kind == HD_POLES_DIAGONAL ? n_each : 0);
+    if (kind == HD_POLES_KERNEL) k = HDI_RAT_UNIFORM_MAX + degree - HDI_RAT_KERNEL_MIN;
     for (; k > 0; k--, r = r < HDI_RAT_KERNEL_MAX ? r + 1 : HDI_RAT_KERNEL_MIN) row += 3 + 4 * ((r + 1) / 2);
     return row;
 }
@@ -12121,13 +12047,11 @@ static hd_status hdi_rational_get(hd_rational *out, hd_pole_kind kind, int32_t d
     const int uniform = kind == HD_POLES_UNIFORM;
     const double *row;
     int32_t i;
-    if (!uniform && kind != HD_POLES_KERNEL && kind != HD_POLES_DIAGONAL)
-        return hdi_fail(e, HD_ERR_ARGUMENT, "pole set: the kind is uniform, kernel or diagonal");
-    if (kind == HD_POLES_DIAGONAL && !HDI_HAS_DIAGONAL)
-        return HDI_LEFT_OUT(e, DIAGONAL, "pole sets for diagonals");
+    if (!uniform && kind != HD_POLES_KERNEL)
+        return hdi_fail(e, HD_ERR_ARGUMENT, "pole set: the kind is uniform or kernel");
     if (degree < (uniform ? 1 : HDI_RAT_KERNEL_MIN) || degree > HDI_RAT_KERNEL_MAX)
         return hdi_fail_row(e, HD_ERR_ARGUMENT, uniform ? "pole set: uniform sets have degrees 1 to 14"
-                            : "pole set: kernel and diagonal sets have degrees 2 to 14", -1, -1, degree);
+                            : "pole set: kernel sets have degrees 2 to 14", -1, -1, degree);
     row = hdi_rat_row(kind, degree);
     memset(out, 0, sizeof *out);
     out->kind = kind;
@@ -12159,7 +12083,7 @@ static double hdi_rational_eval(const hd_rational *set, double x) {
     return sum;
 }
 
-/* Turns a kernel or diagonal set, c, into the set x c(x) for x exp(x) on the same poles:
+/* Turns a kernel set, c, into the set x c(x) for x exp(x) on the same poles:
  *   x a/(x - theta) = a + a theta/(x - theta).
  * It is off by |x e(x)| <= max (1 + |x|)|e(x)|, and 0 at 0. Nothing better is known of large |x|. */
 static void hdi_rational_rate(hd_rational *set) {
@@ -18248,9 +18172,8 @@ static int hdi_heat_equal(hd_heat *heat, hdi_elim *m, double t, hd_error *e) {
 static hd_pole_kind hdi_heat_kind(const hdi_heat_call *h) {
     const hd_pole_kind asked = h->heat->opts.poles;
     /* see hdi_rational_rate: errors of uniform sets do not fall off */
-    if (h->rate) return asked == HD_POLES_DIAGONAL ? asked : HD_POLES_KERNEL;
-    return asked ? asked : hdi_query_fields(h->ask.query) ? HD_POLES_UNIFORM
-           : h->diagonal ? HD_POLES_DIAGONAL : HD_POLES_KERNEL;
+    if (h->rate) return HD_POLES_KERNEL;
+    return asked ? asked : hdi_query_fields(h->ask.query) ? HD_POLES_UNIFORM : HD_POLES_KERNEL;
 }
 
 static hd_status hdi_heat_end(hdi_heat_call *h) {
@@ -20425,16 +20348,15 @@ static void hdi_heat_built(const hd_heat_opts *o, hd_error *e) {
 }
 
 static hd_status hdi_heat_check(const hd_heat_opts *o, hd_error *e) {
-    const int from_two = o->poles == HD_POLES_KERNEL || o->poles == HD_POLES_DIAGONAL;
     hdi_refuse(o->method < HD_METHOD_AUTO || o->method > HD_METHOD_KRYLOV, "heat: unknown method", e);
     hdi_refuse(!hdi_solver_known(o->solver), "heat: unknown solver", e);
     hdi_refuse(!hdi_precond_known(o->precond), "heat: unknown preconditioner", e);
-    hdi_refuse(o->poles != HD_POLES_DIAGONAL && (o->poles < HD_POLES_DEFAULT || o->poles > HD_POLES_KERNEL),
-               "heat: poles are uniform, kernel or diagonal; own sets go into rational", e);
+    hdi_refuse(o->poles < HD_POLES_DEFAULT || o->poles > HD_POLES_KERNEL,
+               "heat: poles are uniform or kernel; own sets go into rational", e);
     hdi_refuse_value(o->degree < 0 || o->degree > HDI_RAT_UNIFORM_MAX, "heat: the degree is not in 1..14",
                      o->degree, e);
-    hdi_refuse_value(from_two && o->degree && o->degree < HDI_RAT_KERNEL_MIN,
-                     "heat: kernel and diagonal sets have degrees 2 to 14", o->degree, e);
+    hdi_refuse_value(o->poles == HD_POLES_KERNEL && o->degree && o->degree < HDI_RAT_KERNEL_MIN,
+                     "heat: kernel sets have degrees 2 to 14", o->degree, e);
     hdi_refuse(!hdi_finite(o->tol) || o->tol < 0 || o->tol >= 1, "heat: tol is not in [0, 1)", e);
     hdi_refuse(o->max_iterations < 0, "heat: max_iterations is negative", e);
     hdi_refuse_ordering(o->ordering, o->perm, "heat: unknown ordering", e);
