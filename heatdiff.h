@@ -12034,25 +12034,20 @@ static const double hdi_rat_table[] = {
 
 enum { HDI_RAT_UNIFORM_MAX = 14, HDI_RAT_KERNEL_MIN = 2, HDI_RAT_KERNEL_MAX = 14 };
 
-/* Where the set begins in the table: uniform sets come first, then kernel ones. */
-static const double *hdi_rat_row(hd_pole_kind kind, int32_t degree) {
-    const double *row = hdi_rat_table;
-    int32_t k = degree - 1, r = 1;
-    if (kind == HD_POLES_KERNEL) k = HDI_RAT_UNIFORM_MAX + degree - HDI_RAT_KERNEL_MIN;
-    for (; k > 0; k--, r = r < HDI_RAT_KERNEL_MAX ? r + 1 : HDI_RAT_KERNEL_MIN) row += 3 + 4 * ((r + 1) / 2);
-    return row;
-}
-
 static hd_status hdi_rational_get(hd_rational *out, hd_pole_kind kind, int32_t degree, hd_error *e) {
     const int uniform = kind == HD_POLES_UNIFORM;
-    const double *row;
-    int32_t i;
+    const double *row = hdi_rat_table;
+    int32_t i, r = 1;
     if (!uniform && kind != HD_POLES_KERNEL)
         return hdi_fail(e, HD_ERR_ARGUMENT, "pole set: the kind is uniform or kernel");
     if (degree < (uniform ? 1 : HDI_RAT_KERNEL_MIN) || degree > HDI_RAT_KERNEL_MAX)
         return hdi_fail_row(e, HD_ERR_ARGUMENT, uniform ? "pole set: uniform sets have degrees 1 to 14"
                             : "pole set: kernel sets have degrees 2 to 14", -1, -1, degree);
-    row = hdi_rat_row(kind, degree);
+    /* uniform sets come first, then kernel ones */
+    for (i = uniform ? 1 : HDI_RAT_KERNEL_MIN - HDI_RAT_UNIFORM_MAX; i < degree; i++, r++) {
+        if (r > HDI_RAT_UNIFORM_MAX) r = HDI_RAT_KERNEL_MIN;
+        row += 3 + 4 * ((r + 1) / 2);
+    }
     memset(out, 0, sizeof *out);
     out->kind = kind;
     out->degree = degree;
@@ -12456,7 +12451,6 @@ static double hdi_shared_exp_rest(double tau, double c, double w, int32_t m) {
  * its largest value at n Chebyshev points (Ehlich, Zeller). The bound includes the rounding of the
  * evaluation. */
 static double hdi_shared_panel(const hd_rational *set, double tau, double lo, double hi, double goal) {
-    const double pi = 3.141592653589793238;
     const double c = hi > 0 ? (lo + hi) / 2 : 0.5 / lo, w = hi > 0 ? (hi - lo) / 2 : 0.5 / lo;
     double inv[HD_MAX_POLES], part[HD_MAX_POLES], rest = HUGE_VAL, most = 0, size, largest = 0;
     int32_t i, j, m;
@@ -12476,11 +12470,11 @@ static double hdi_shared_panel(const hd_rational *set, double tau, double lo, do
         if (rest <= 0.02 * goal || m == HDI_SHARED_MOST) break;
     }
     for (j = 0; j < 4 * m; j++) {
-        const double u = c + w * cos(pi * (j + 0.5) / (4 * m));
+        const double u = c + w * cos(HDI_PI * (j + 0.5) / (4 * m));
         most = hdi_max(most, fabs(hdi_shared_error(set, tau, hi > 0 ? u : 1, hi > 0 ? 1 : u, &size)));
         largest = hdi_max(largest, size);
     }
-    return (most + rest + 4 * DBL_EPSILON * largest) / cos(pi / 8) + rest;
+    return (most + rest + 4 * DBL_EPSILON * largest) / cos(HDI_PI / 8) + rest;
 }
 
 /* max_weighted_error and max_error: bounds that hold for all y >= 0. Panels double in length away from the
@@ -12946,15 +12940,6 @@ static double hdi_fit_measure(hdi_fit *k, int32_t q, hd_rational *set, double t,
     return all;
 }
 
-/* What rounding can add where the set is evaluated. */
-static double hdi_fit_rounding(const hd_rational *set) {
-    double sum = 1 + fabs(set->a0);
-    int32_t i;
-    for (i = 0; i < set->n_poles; i++)           /* the most that a pole gives on the spectrum */
-        sum += hdi_rat_count(set, i) * hdi_cabs(set->a[i]) / hdi_fit_distance(set->theta[i]);
-    return 4 * DBL_EPSILON * sum;
-}
-
 /* The unit of t, in which a pole is at least 1 from the spectrum, see HDI_FIT_UNIT. */
 static double hdi_fit_unit(const hd_rational *set) {
     double least = set->n_poles > 0 ? HUGE_VAL : 1;
@@ -12968,7 +12953,8 @@ static double hdi_fit_unit(const hd_rational *set) {
 /* The set of filter q for x = -t lambda, by one in terms of scaled points. unit: t lambda_max. */
 static hd_status hdi_fit_take(const hdi_fit *k, int32_t q, const hd_rational *set, double unit,
                               hd_rational *out, hd_error *e) {
-    const double largest = k->largest[q], rounding = hdi_fit_rounding(set);
+    const double largest = k->largest[q];
+    double rounding = 1 + fabs(set->a0);         /* where the set is evaluated */
     hd_rational to = *set;
     int32_t i;
     int fine;
@@ -12983,7 +12969,9 @@ static hd_status hdi_fit_take(const hdi_fit *k, int32_t q, const hd_rational *se
         to.a[i] = hdi_cscale(-unit * largest, set->a[i]);
         if (set->theta[i].im == 0) to.theta[i].im = to.a[i].im = 0;
         fine &= hdi_cfinite(to.a[i]);
+        rounding += hdi_rat_count(set, i) * hdi_cabs(set->a[i]) / hdi_fit_distance(set->theta[i]);
     }
+    rounding *= 4 * DBL_EPSILON;
     if (!fine)
         return hdi_fit_fail(k, k->filter[q], HD_ERR_BREAKDOWN,
                             "filter: a weight of its poles leaves the range of doubles", e);
@@ -14110,6 +14098,8 @@ static int hdi_lap_exceeds(const hd_laplacian *lap, double sigma, double *value,
 
 /* B with a smaller ratio counts as one that is not positive definite. */
 #define HDI_RATIO_LEAST 1e-12
+/* A smaller one by Gershgorin's circles is worth a proof by factorisations. */
+#define HDI_RATIO_POOR 0.01
 
 /* A proven b_ratio where that of Gershgorin's theorem, which lap has, is poor, as in finite elements: 1/2,
  * 1/4 and so on are each tried by a factorisation. Its rounding is that of a matrix E with |x'Ex| <= eps
@@ -14143,20 +14133,13 @@ static hd_status hdi_lap_ratio(hd_laplacian *lap, hd_error *e) {
     return hdi_scope_end(&s);
 }
 
-/* A smaller b_ratio by Gershgorin's circles is worth a proof by factorisations. */
-#define HDI_RATIO_POOR 0.01
-
-static hd_status hdi_lap_ratio_prove(hd_laplacian *lap, hd_error *e) {
-    if (HDI_HAS_DIRECT && e->status >= 0 && lap->b_ratio < HDI_RATIO_POOR) (void)hdi_lap_ratio(lap, e);
-    return e->status;
-}
-
 /* Takes the values of new matrices, or leaves all as it was. */
 static hd_status hdi_pair_replace(hd_laplacian *lap, const hd_csr *L, const hd_csr *B, double h,
                                   hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
     hd_laplacian next;
-    if (hdi_pair_next(&next, lap, L, B, &s) >= 0 && hdi_lap_ratio_prove(&next, e) >= 0) {
+    if (hdi_pair_next(&next, lap, L, B, &s) >= 0 &&
+        (!HDI_HAS_DIRECT || next.b_ratio >= HDI_RATIO_POOR || hdi_lap_ratio(&next, e) >= 0)) {
         next.h = h;
         hdi_pair_take(lap, &next);
     }
@@ -22646,11 +22629,11 @@ typedef struct hdi_geo_polygons {
     int32_t *row;                /* [corners] in elimination order */
     double *side;                /* [3 corners] c_i, see above, in units of h */
     double *flat;                /* [n_faces] |W|^2 below this is rounding */
-    hd_csr L;                    /* rows and columns in elimination order; columns do not ascend */
+    hd_laplacian *pair;          /* in elimination order */
 } hdi_geo_polygons;
 
 /* Columns of a batch, and the fewest that are worth one. A batch always costs as much as a full one. */
-enum { HDI_GEO_WIDE = 8, HDI_GEO_WIDE_FROM = 3, HDI_GEO_BLOCKS = 24 };
+enum { HDI_GEO_WIDE = 8, HDI_GEO_WIDE_FROM = 3 };
 
 /* |u| over its largest: below, u is taken as unknown, since underflow is near */
 #define HDI_GEO_FAINT 1e-200
@@ -22688,8 +22671,7 @@ struct hd_geodesic {
     int32_t *from;               /* [n_faces] which of the mesh's faces each is; of updatable plans kept */
     double t_asked, t_in_h2;     /* 0: t_in_h2 h^2 */
     int32_t ready;               /* 0: the last update failed half way */
-    int32_t n_blocks;
-    void *block[HDI_GEO_BLOCKS]; /* what was allocated for the arrays that every plan has */
+    hdi_scope keep;              /* arrays but those that grow */
 };
 
 /* ---- making ---- */
@@ -22708,23 +22690,17 @@ static void hdi_geo_free(hd_geodesic *g) {
     hdi_geo_factors_free(g, ctx);
     hdi_symbolic_free(ctx, &g->sym);
     hdi_laplacian_free(g->lap, ctx);
-    while (g->n_blocks > 0) hdi_free(ctx, g->block[--g->n_blocks]);
+    hdi_laplacian_free(g->poly.pair, ctx);
+    while (g->keep.n > 0) hdi_free(ctx, g->keep.block[--g->keep.n]);
     hdi_free(ctx, g->sorted);
     hdi_free(ctx, g);
     hdi_let_go(ctx);
 }
 
-/* An array for good, made when it is first needed. */
-static double *hdi_geo_array(hd_geodesic *g, uint64_t size, hd_error *e) {
-    double *x = HDI_NEW(g->ctx, double, size, e);
-    if (x) g->block[g->n_blocks++] = x;
-    return x;
-}
-
-/* Ends the scope; its blocks become those of the plan, if all are there. */
-static hd_status hdi_geo_keep(hd_geodesic *g, hdi_scope *s) {
-    for (; s->e->status >= 0 && s->n > 0; s->n--) g->block[g->n_blocks++] = s->block[s->n - 1];
-    return hdi_scope_end(s);
+static hdi_scope *hdi_geo_keep(hd_geodesic *g, hd_error *e) {
+    g->keep.ctx = g->ctx;
+    g->keep.e = e;
+    return &g->keep;
 }
 
 /* Triangle f in its plane with the longest edge on the axis. Its area and cotangents are those of weight
@@ -22803,29 +22779,6 @@ static hd_status hdi_geo_poly_faces(hd_geodesic *g, const hdi_mesh *mesh, hdi_sc
         }
     }
     z->ptr[g->n_faces] = n;
-    return HD_OK;
-}
-
-/* L of polygons by rows in elimination order. */
-static hd_status hdi_geo_poly_rows(hd_geodesic *g, const hd_laplacian *lap, hdi_scope *own) {
-    hd_csr *a = &g->poly.L;
-    int64_t n = 0, p;
-    int32_t i;
-    a->n_rows = a->n_cols = g->n_active;
-    a->nnz = lap->L.nnz;
-    a->row_ptr = HDI_TAKE(own, int64_t, (int64_t)g->n_active + 1);
-    a->col = HDI_TAKE(own, int32_t, a->nnz);
-    a->val = HDI_TAKE(own, double, a->nnz);
-    if (own->e->status < 0) return own->e->status;
-    for (i = 0; i < g->n_active; i++) {
-        const int32_t from = g->sym.perm[i];
-        a->row_ptr[i] = n;
-        for (p = lap->L.row_ptr[from]; p < lap->L.row_ptr[from + 1]; p++, n++) {
-            a->col[n] = g->row[lap->vertex[lap->L.col[p]]];
-            a->val[n] = lap->L.val[p];
-        }
-    }
-    a->row_ptr[g->n_active] = n;
     return HD_OK;
 }
 
@@ -22954,7 +22907,8 @@ static hd_status hdi_geo_store(hd_geodesic *g, const hd_laplacian *lap, const hd
     const hdi_mesh *mesh = HDI_HAS_INTRINSIC && in->flips ? &z->flat : &z->mesh;
     if (hdi_geo_order(g, mesh, own, &s) < 0) return hdi_scope_end(&s);
     if (hdi_is_poly(mesh)) {
-        if (hdi_geo_poly_faces(g, mesh, own) >= 0) (void)hdi_geo_poly_rows(g, lap, own);
+        if (hdi_geo_poly_faces(g, mesh, own) >= 0)
+            g->poly.pair = hdi_pair_renumber(lap, g->sym.perm, g->ctx, own->e);
     } else {
         g->face = HDI_TAKE(own, hdi_geo_face, g->n_faces);
         if (g->face) hdi_geo_frames(g, mesh, mesh->copies);
@@ -22966,7 +22920,7 @@ static hd_status hdi_geo_store(hd_geodesic *g, const hd_laplacian *lap, const hd
 
 static hd_status hdi_geo_make(hd_geodesic *g, const hdi_input *in, int32_t neighbours,
                               const hd_geodesic_opts *o, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(g->ctx, e), own = hdi_scope_begin(g->ctx, e);
+    hdi_scope s = hdi_scope_begin(g->ctx, e), *own = hdi_geo_keep(g, e);
     hd_laplacian *lap = hdi_lap_shell(g->ctx, e);
     const int32_t *perm = o->ordering == HD_ORDERING_OWN ? o->perm : NULL;
     hdi_surface z;
@@ -22988,14 +22942,12 @@ static hd_status hdi_geo_make(hd_geodesic *g, const hdi_input *in, int32_t neigh
         g->n_components = lap->n_components;
     }
     if (e->status >= 0 && hdi_pair_analyse(&g->sym, lap, o->ordering, perm, g->ctx, e) >= 0 &&
-        hdi_geo_rows(g, lap, &own) >= 0 &&
-        hdi_geo_store(g, lap, &z, in, &own) >= 0) {
+        hdi_geo_rows(g, lap, own) >= 0 && hdi_geo_store(g, lap, &z, in, own) >= 0) {
         hdi_scope_end(&s);                       /* the mesh is not needed any more */
-        if (hdi_geo_factors(g, lap, e) >= 0) g->ready = hdi_geo_room(g, &own) >= 0;
+        if (hdi_geo_factors(g, lap, e) >= 0) g->ready = hdi_geo_room(g, own) >= 0;
     }
     if (!g->lap) hdi_laplacian_free(lap, g->ctx);
-    (void)hdi_scope_end(&s);
-    return hdi_geo_keep(g, &own);
+    return hdi_scope_end(&s);
 }
 
 /* The plan for new coordinates. Queries do not read g->lap: until g->ready is 0 nothing has changed. */
@@ -23176,10 +23128,10 @@ static int hdi_geo_divergence(const hd_geodesic *g, int k, const double *u, cons
 
 /* r -= L x */
 static void hdi_geo_subtract(const hd_geodesic *g, const double *HDI_RESTRICT x, double *HDI_RESTRICT r) {
-    const hd_csr *L = &g->poly.L;
+    const hd_csr *L = g->face ? NULL : &g->poly.pair->L;
     int32_t f, i;
     int64_t p;
-    for (i = 0; i < L->n_rows; i++)
+    for (i = 0; L && i < L->n_rows; i++)
         for (p = L->row_ptr[i]; p < L->row_ptr[i + 1]; p++) r[i] -= L->val[p] * x[L->col[p]];
     for (f = 0; f < g->n_faces && g->face; f++) hdi_geo_stiff(g->face + f, -1, x, r);
 }
@@ -23661,7 +23613,7 @@ static hd_status hdi_geo_alone(hd_geodesic *g, const hdi_geo_source *s, hd_geode
                                hd_error *e) {
     int faint;
     if (hdi_geo_values_room(g, s->items ? s->items->n : s->n, e) < 0) return e->status;
-    if (s->n > 1 && !g->first) g->first = hdi_geo_array(g, (uint64_t)g->n_active, e);
+    if (s->n > 1 && !g->first) g->first = HDI_TAKE(hdi_geo_keep(g, e), double, g->n_active);
     if (e->status >= 0) (void)hdi_geo_solve(g, s, 1, &faint, rep, e);
     return e->status;
 }
@@ -23673,7 +23625,8 @@ static hd_status hdi_geo_batch(hd_geodesic *g, const hdi_geo_source *s, int32_t 
     const uint64_t size = HDI_GEO_WIDE * (uint64_t)g->n_active;
     int faint = 0;
     int32_t c;
-    if (!g->wide_x) g->wide_x = hdi_geo_array(g, 2 * size + hdi_sweep_size(&g->sym, 1, HDI_GEO_WIDE), e);
+    if (!g->wide_x)
+        g->wide_x = HDI_TAKE(hdi_geo_keep(g, e), double, 2 * size + hdi_sweep_size(&g->sym, 1, HDI_GEO_WIDE));
     if (!g->wide_x) return e->status;
     g->wide_b = g->wide_x + size;
     g->wide_work = g->wide_b + size;
@@ -23809,16 +23762,6 @@ static hd_status hdi_geo_create(hd_geodesic **out, const hd_mesh *mesh, const hd
     return c->e->status;
 }
 
-/* What a report says before anything is solved. */
-static void hdi_geo_tell_plan(const hd_geodesic *g, hd_geodesic_report *rep) {
-    rep->t = g->t;
-    rep->h = g->h;
-    rep->n_components = g->n_components;
-    rep->ordering = g->sym.ordering;
-    rep->factor_nnz = g->sym.nnz;
-    rep->factor_flops = (g->border == HD_GEODESIC_BORDER_MEAN ? 3 : 2) * g->sym.flops;
-}
-
 /* Checks the arguments of a query, and fills the report with what the plan says. */
 static hd_status hdi_geo_begin(hd_geodesic *g, const hd_sources *sources, const double *D, size_t *ldd,
                                hd_geodesic_report *rep, hd_error *err, hdi_call *c) {
@@ -23830,7 +23773,14 @@ static hd_status hdi_geo_begin(hd_geodesic *g, const hd_sources *sources, const 
     if (!HDI_HAS_GEODESIC) return HDI_LEFT_OUT(c->e, GEODESIC, "geodesic distances");
     if (!g || !sources || (sources->count > 0 && !D)) return hdi_missing(c->e);
     if (!g->ready) return hdi_fail(c->e, HD_ERR_ARGUMENT, "geodesic: the last update failed");
-    if (rep) hdi_geo_tell_plan(g, rep);
+    if (rep) {
+        rep->t = g->t;
+        rep->h = g->h;
+        rep->n_components = g->n_components;
+        rep->ordering = g->sym.ordering;
+        rep->factor_nnz = g->sym.nnz;
+        rep->factor_flops = (g->border == HD_GEODESIC_BORDER_MEAN ? 3 : 2) * g->sym.flops;
+    }
     *ldd = *ldd ? *ldd : (size_t)g->n;
     hdi_refuse(*ldd < (size_t)g->n, "geodesic: the leading dimension is smaller than n", c->e);
     return c->e->status < 0 ? c->e->status : hdi_sources_check(sources, g->n, c->e);

@@ -1080,7 +1080,7 @@ static void int_pairs_degree(void) {
 
 /* ---- [25] spectrum ---- */
 
-/* The proof sees a pair that is taken away, and a shift too near; and the same pair twice is seen, wherever the two stand. */
+/* The proof sees a pair that is taken away, and a shift too near. */
 static void int_spectrum_proof(void) {
     const hd_laplacian *lap = kit_pair("ico/3 fem");
     hd_context ctx;
