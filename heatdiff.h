@@ -428,8 +428,7 @@ typedef enum hd_pole_kind {
     HD_POLES_DEFAULT = 0,
     HD_POLES_UNIFORM,           /* r = 1..14: smallest max |exp - c| on (-inf, 0] */
     HD_POLES_KERNEL,            /* r = 2..14: a0 = 0, c(0) = 1, smallest max (1 + |x|) |exp - c| */
-    HD_POLES_OWN,               /* the caller's */
-    HD_POLES_DIAGONAL           /* r = 2..14: the weight rises to five times (1 + |x|) at large |x| */
+    HD_POLES_OWN                /* the caller's */
 } hd_pole_kind;
 
 enum { HD_MAX_POLES = 32 };
@@ -524,7 +523,7 @@ typedef struct hd_heat_opts {
     hd_method method;
     hd_solver solver;
     hd_precond precond;
-    hd_pole_kind poles;         /* default: kernel for columns and entries, uniform for fields */
+    hd_pole_kind poles;         /* default: uniform for fields, else kernel */
     /* Default: the rational error relative to the answer is below about 1e-8 (direct: degree 9 and 3e-8). */
     int32_t degree;
     /* Copied: your own set, or hd_rational_fit's. Then poles and degree are ignored, Lanczos is not used. */
@@ -865,7 +864,7 @@ HEATDIFF_API hd_status hd_neighbours_nearest(const double *xyz, int32_t n, const
 
 /* ---- rational approximations ---- */
 
-/* A built-in set: uniform, kernel or diagonal.
+/* A built-in set: uniform or kernel.
  * Errors HD_ERR_ARGUMENT for any other kind or degree (value: a wrong degree)
  * Source Cody, Meinardus, Varga 1969; Carpenter, Ruttan, Varga 1984 */
 HEATDIFF_API hd_status hd_rational_exp(hd_rational *out, hd_pole_kind kind, int32_t degree,
@@ -11854,105 +11853,25 @@ static const double hdi_rat_table[] = {
     -0.98196506093423674, 10.467711454192054, -0.078142978167783206, 0.21550257610584828,
     -4.5075605895604021, 13.008767567859003, -0.0010383125651999775, -0.0086362070804686056,
     -9.7413256359447953, 15.840947521360885, 2.0671816855185641e-05, 6.5573823084788806e-05,
-#if !defined(HEATDIFF_NO_DIRECT) && !defined(HEATDIFF_NO_POLE_FACTORS) && !defined(HEATDIFF_NO_DIAGONAL)
-    0, 0.067537133737907679, 0.084246004368216873,   /* diagonal r = 2 */
-    0.093165638432949657, 0.78606720760465709, 0.0084246004368216873, -0.39955314986781715,
-    0, 0.008827961386663535, 0.010442809434321652,   /* diagonal r = 3 */
-    0.82583993214481199, 0, -0.6708823891869552, 0,
-    -0.38137972156259914, 1.879992248278864, 0.33439691365004542, -0.11579931529770687,
-    0, 0.0011772217643792788, 0.0013423623600534568,   /* diagonal r = 4 */
-    0.95364093252912396, 0.99014596020921519, -0.14238645345641066, -0.8903168914974795,
-    -1.0137929984233569, 3.0436577814491423, 0.14252068969241599, 0.17704643017030255,
-    0, 0.00015286872126302198, 0.00017020187449105295,   /* diagonal r = 5 */
-    1.5305988264114367, 0, -1.5071962916274879, 0,
-    0.79496963375585472, 2.0648242488303703, 0.81999666196924936, -0.39763577394813476,
-    -1.7386371635751181, 4.2421940249737515, -0.066415536342954523, 0.10612573631193803,
-    0, 1.9404126482242763e-05, 2.1243136355080079e-05,   /* diagonal r = 6 */
-    1.7403291915150134, 1.0508777810170973, -0.46945354680866597, -1.9337112147649937,
-    0.46845091128664179, 3.1874731275997692, 0.53058373822256644, 0.53195920721973822,
-    -2.5242654997752321, 5.4646451895220576, -0.061128067100264978, -0.014778077847248062,
-    0, 2.412596399658805e-06, 2.6085677357032684e-06,   /* diagonal r = 7 */
-    2.2587108249348247, 0, -3.2523445692370117, 0,
-    1.7285599625302293, 2.1435592178425069, 1.8605988718308413, -1.1049045554843731,
-    0.02975382932653408, 4.3426481816353268, -0.23226156481092178, 0.48607958827629705,
-    -3.3534714915089023, 6.7059077028578731, -0.0021652832581871267, -0.029590579663120412,
-    0, 2.9479288418651553e-07, 3.1570971228532059e-07,   /* diagonal r = 8 */
-    2.5142509751129301, 1.0823272318226731, -1.1972697412305799, -4.1920853464776231,
-    1.5665766326190609, 3.2671178582916962, 1.5321217388024098, 1.3129169180216853,
-    -0.49031600390114177, 5.5221078207391807, -0.3473011302864667, -0.037278309794394476,
-    -4.2159324328825925, 7.962476104494943, 0.012449164285608104, -0.0048644027630989142,
-    0, 3.5524614672975907e-08, 3.7759512940471612e-08,   /* diagonal r = 9 */
-    3.0037632063722302, 0, -7.0120532960817847, 0,
-    2.5889719865228709, 2.1905146441527563, 4.1540003879217764, -2.7667114907450197,
-    1.2945586667253488, 4.4144394949515586, -0.60444229963006224, 1.5552295032232204,
-    -1.0729254816698168, 6.7203973595020807, -0.047105620203199583, -0.20446296144071352,
-    -5.1049774011321016, 9.2312447202954093, 0.0035741761764263497, 0.0045788157819185576,
-    0, 4.2342178872084898e-09, 4.4732537833884187e-09,   /* diagonal r = 10 */
-    3.2873924431636969, 1.1022552213870953, -2.8289920084429534, -9.1064874041311423,
-    2.5302908088373912, 3.3198444586612692, 3.9838641796477434, 3.0606974631135127,
-    0.93765342127352547, 5.5805918225656841, -1.2543801051059043, -0.037404810718164969,
-    -1.7055012565967682, 7.9336742051217808, 0.1009434281265153, -0.062378797736551063,
-    -6.0159168215796504, 10.509773539372675, -0.0014354937780756717, 0.0019882812866436638,
-    0, 5.0021846689596646e-10, 5.2580978086542119e-10,   /* diagonal r = 11 */
-    3.7589461970886253, 0, -15.148948949204554, 0,
-    3.4181443270160519, 2.2221329996842121, 9.2125981360945897, -6.5902805609642856,
-    2.3683553134810875, 4.4666139801276348, -1.4193485357460269, 4.3238105206994364,
-    0.5128455800316476, 6.7620649790154106, -0.26684733005187411, -0.83260767428322346,
-    -2.379100613238514, 9.1591928578650474, 0.049022113704178832, 0.040992343240600949,
-    -6.9452579838979789, 11.79627716879928, -0.00094990945117058828, -0.00034571181787770053,
-    0, 5.8661050518504886e-11, 6.1403279086032692e-11,   /* diagonal r = 12 */
-    4.0610869219941961, 1.116048086453026, -6.4724526450927371, -19.800986950452625,
-    3.4300936656689154, 3.3573104594890664, 9.8055149092097036, 6.9636278019653055,
-    2.1236663707526828, 5.6279851297529859, -3.777063165087494, 0.094270513988374965,
-    0.032242520993688462, 7.9562992640911672, 0.45627066834523922, -0.34492929621099749,
-    -3.0870878465596405, 10.394946906715006, -0.012301681054688813, 0.030667347038706546,
-    -7.8903128787456671, 13.089450497161112, 3.1913686116974329e-05, -0.00040712600366819992,
-    0, 6.8365743495114318e-12, 7.1306418567934206e-12,   /* diagonal r = 13 */
-    4.5202913913027034, 0, -32.783137527896145, 0,
-    4.2310263506800085, 2.2448762717592685, 20.347189887795118, -15.274130373091314,
-    3.3465717998601754, 4.5057579496393751, -3.1850618922459386, 11.17507781679377,
-    1.8108756340281571, 6.8017763374151308, -1.0492043791856276, -2.7209511380543314,
-    -0.49517616961888949, 9.1613738263301858, 0.29495176440813958, 0.19748383147240292,
-    -3.8243861741232053, 11.639423888576662, -0.016465925177306037, -0.0011879972207539352,
-    -8.8489656005868085, 14.388310285612475, 0.00015930835297385204, -3.0280580654715494e-05,
-    0, 7.9251842589203527e-13, 8.2407404085801184e-13,   /* diagonal r = 14 */
-    4.8355707150445477, 1.1261687721267875, -14.567599485838048, -43.080327612915774,
-    4.294404025993809, 3.3852827675703461, 23.360062602508137, 15.644916006216233,
-    3.1843260042494643, 5.6657810904450612, -10.340872607797349, 0.68524673717873286,
-    1.4408641893813143, 7.986286821448644, 1.6044788633921492, -1.3795300766921736,
-    -1.0625421595687834, 10.375806417114624, -0.054252691775587503, 0.20350620469919772,
-    -4.5870160409811707, 12.891449259479609, -0.0018442580277614033, -0.0077932972131342215,
-    -9.8195193949567514, 15.692091318644374, 2.7577538544225898e-05, 5.7130444708159529e-05,
-#endif
 };
 /* poles.py: end */
 
-/* Kernel and diagonal sets have the same degrees. */
-enum { HDI_RAT_UNIFORM_MAX = 14, HDI_RAT_KERNEL_MIN = 2, HDI_RAT_KERNEL_MAX = 14 };   /* diagonal sets too */
-
-/* Where the set begins in the table: uniform sets come first, then kernel, then diagonal ones. */
-static const double *hdi_rat_row(hd_pole_kind kind, int32_t degree) {
-    const int32_t n_each = HDI_RAT_KERNEL_MAX - HDI_RAT_KERNEL_MIN + 1;
-    const double *row = hdi_rat_table;
-    int32_t k = degree - 1, r = 1;
-    if (kind != HD_POLES_UNIFORM)
-        k = HDI_RAT_UNIFORM_MAX + degree - HDI_RAT_KERNEL_MIN + (kind == HD_POLES_DIAGONAL ? n_each : 0);
-    for (; k > 0; k--, r = r < HDI_RAT_KERNEL_MAX ? r + 1 : HDI_RAT_KERNEL_MIN) row += 3 + 4 * ((r + 1) / 2);
-    return row;
-}
+enum { HDI_RAT_UNIFORM_MAX = 14, HDI_RAT_KERNEL_MIN = 2, HDI_RAT_KERNEL_MAX = 14 };
 
 static hd_status hdi_rational_get(hd_rational *out, hd_pole_kind kind, int32_t degree, hd_error *e) {
     const int uniform = kind == HD_POLES_UNIFORM;
-    const double *row;
-    int32_t i;
-    if (!uniform && kind != HD_POLES_KERNEL && kind != HD_POLES_DIAGONAL)
-        return hdi_fail(e, HD_ERR_ARGUMENT, "pole set: the kind is uniform, kernel or diagonal");
-    if (kind == HD_POLES_DIAGONAL && !HDI_HAS_DIAGONAL)
-        return HDI_LEFT_OUT(e, DIAGONAL, "pole sets for diagonals");
+    const double *row = hdi_rat_table;
+    int32_t i, r = 1;
+    if (!uniform && kind != HD_POLES_KERNEL)
+        return hdi_fail(e, HD_ERR_ARGUMENT, "pole set: the kind is uniform or kernel");
     if (degree < (uniform ? 1 : HDI_RAT_KERNEL_MIN) || degree > HDI_RAT_KERNEL_MAX)
         return hdi_fail_row(e, HD_ERR_ARGUMENT, uniform ? "pole set: uniform sets have degrees 1 to 14"
-                            : "pole set: kernel and diagonal sets have degrees 2 to 14", -1, -1, degree);
-    row = hdi_rat_row(kind, degree);
+                            : "pole set: kernel sets have degrees 2 to 14", -1, -1, degree);
+    /* uniform sets come first, then kernel ones */
+    for (i = uniform ? 1 : HDI_RAT_KERNEL_MIN - HDI_RAT_UNIFORM_MAX; i < degree; i++, r++) {
+        if (r > HDI_RAT_UNIFORM_MAX) r = HDI_RAT_KERNEL_MIN;
+        row += 3 + 4 * ((r + 1) / 2);
+    }
     memset(out, 0, sizeof *out);
     out->kind = kind;
     out->degree = degree;
@@ -11983,7 +11902,7 @@ static double hdi_rational_eval(const hd_rational *set, double x) {
     return sum;
 }
 
-/* Turns a kernel or diagonal set, c, into the set x c(x) for x exp(x) on the same poles:
+/* Turns a kernel set, c, into the set x c(x) for x exp(x) on the same poles:
  *   x a/(x - theta) = a + a theta/(x - theta).
  * It is off by |x e(x)| <= max (1 + |x|)|e(x)|, and 0 at 0. Nothing better is known of large |x|. */
 static void hdi_rational_rate(hd_rational *set) {
@@ -12356,7 +12275,6 @@ static double hdi_shared_exp_rest(double tau, double c, double w, int32_t m) {
  * its largest value at n Chebyshev points (Ehlich, Zeller). The bound includes the rounding of the
  * evaluation. */
 static double hdi_shared_panel(const hd_rational *set, double tau, double lo, double hi, double goal) {
-    const double pi = 3.141592653589793238;
     const double c = hi > 0 ? (lo + hi) / 2 : 0.5 / lo, w = hi > 0 ? (hi - lo) / 2 : 0.5 / lo;
     double inv[HD_MAX_POLES], part[HD_MAX_POLES], rest = HUGE_VAL, most = 0, size, largest = 0;
     int32_t i, j, m;
@@ -12376,11 +12294,11 @@ static double hdi_shared_panel(const hd_rational *set, double tau, double lo, do
         if (rest <= 0.02 * goal || m == HDI_SHARED_MOST) break;
     }
     for (j = 0; j < 4 * m; j++) {
-        const double u = c + w * cos(pi * (j + 0.5) / (4 * m));
+        const double u = c + w * cos(HDI_PI * (j + 0.5) / (4 * m));
         most = hdi_max(most, fabs(hdi_shared_error(set, tau, hi > 0 ? u : 1, hi > 0 ? 1 : u, &size)));
         largest = hdi_max(largest, size);
     }
-    return (most + rest + 4 * DBL_EPSILON * largest) / cos(pi / 8) + rest;
+    return (most + rest + 4 * DBL_EPSILON * largest) / cos(HDI_PI / 8) + rest;
 }
 
 /* max_weighted_error and max_error: bounds that hold for all y >= 0. Panels double in length away from the
@@ -12490,7 +12408,6 @@ enum {
     HDI_FIT_FINER = 30,          /* so many times as many measure the error */
     HDI_FIT_JOIN = 400,          /* most points that join the fit */
     HDI_FIT_ROUNDS = 4,
-    HDI_FIT_INVERSE = 40,        /* steps of inverse iteration */
     HDI_FIT_ABERTH = 100,        /* steps; 10 to 30 are the rule */
     HDI_FIT_ROOM = HDI_FIT_LOG + HDI_FIT_LINEAR + HDI_FIT_JOIN + 2,
     HDI_FIT_FIRST = 16,          /* filters that poles are found for, when several share them, */
@@ -12645,33 +12562,10 @@ static hd_status hdi_fit_load(hdi_fit *k, int32_t j, const hd_filter *filter, hd
 
 /* ---- the AAA step ---- */
 
-/* The right singular vector w of the smallest singular value of the triangle R [c c], in columns of ld, by
- * inverse iteration. Among values that are close any vector serves. */
-static void hdi_fit_null(double *R, int64_t ld, int32_t c, double *w) {
-    double most = 0;
-    int32_t i, step;
-    for (i = 0; i < c; i++) most = hdi_max(most, fabs(R[i * ld + i]));
-    for (i = 0; i < c; i++) {
-        w[i] = 1 / (1.0 + i);
-        if (fabs(R[i * ld + i]) < 1e-20 * most) R[i * ld + i] = 1e-20 * most;
-    }
-    for (step = 0; step < HDI_FIT_INVERSE; step++) {
-        double norm;
-        for (i = 0; i < c; i++) w[i] = (w[i] - hdi_dot(R + i * ld, w, i)) / R[i * ld + i];
-        norm = sqrt(hdi_dot(w, w, c));
-        for (i = c - 1; i >= 0; i--) {
-            w[i] /= norm * R[i * ld + i];
-            hdi_axpy(-norm * w[i], R + i * ld, w, i);
-        }
-        norm = sqrt(hdi_dot(w, w, c));
-        for (i = 0; i < c; i++) w[i] /= norm;
-    }
-}
-
 /* The weights: those that make f times the denominator nearest to the numerator, over all other points, for
- * all filters at once. */
+ * all filters at once. The first one is 1. */
 static void hdi_fit_weights(hdi_fit *k) {
-    const int32_t c = k->m + (k->constant ? 0 : 1);   /* without a0 infinity has a weight, too */
+    const int32_t c = k->m - (k->constant ? 1 : 0);   /* without a0 infinity has a weight, too */
     const int64_t rows = (int64_t)(k->n - k->m) * k->count;
     double *A = k->work, *b = A + c * rows;
     int64_t row = 0;
@@ -12680,15 +12574,18 @@ static void hdi_fit_weights(hdi_fit *k) {
         const double *f = k->f + q * HDI_FIT_ROOM, *u = k->u + q * HDI_FIT_ROOM;
         for (i = 0; i < k->n; i++) {
             if (k->support[i]) continue;
-            for (j = 0; j < k->m; j++)
-                A[j * rows + row] = u[i] * (f[i] - f[k->at[j]]) / (k->x[i] - k->x[k->at[j]]);
-            if (c > k->m) A[k->m * rows + row] = u[i] * f[i];
-            b[row++] = 0;
+            for (j = 0; j < k->m; j++) {
+                const double v = u[i] * (f[i] - f[k->at[j]]) / (k->x[i] - k->x[k->at[j]]);
+                *(j ? A + (j - 1) * rows + row : b + row) = j ? v : -v;
+            }
+            if (!k->constant) A[(k->m - 1) * rows + row] = u[i] * f[i];
+            row++;
         }
     }
-    hdi_least_squares(A, rows, c, b);            /* for its triangle */
+    hdi_least_squares(A, rows, c, b);
     k->w[k->m] = 0;
-    hdi_fit_null(A, rows, c, k->w);
+    k->w[0] = 1;
+    memcpy(k->w + 1, b, (size_t)c * sizeof *b);
 }
 
 /* The largest error of the approximations, of all filters, and the point where it is. */
@@ -12775,16 +12672,23 @@ static int hdi_fit_serves(hd_c64 *p) {
     return p->im == 0 ? p->re < 0 : p->im < 0 && hdi_fit_distance(*p) > HDI_FIT_NEAR * size;
 }
 
-/* The poles of a step. Of zeros that have not settled, which are no pairs, there may be too many. */
+static int hdi_fit_before(hd_c64 a, hd_c64 b) {
+    return (a.im == 0) != (b.im == 0) ? a.im == 0 : hdi_cabs2(a) < hdi_cabs2(b);
+}
+
+/* The poles of a step. Of zeros that have not settled, which are no pairs, there may be too many. Real ones
+ * come first, as that may save a pack of factors; then small ones, as iterations like it. */
 static void hdi_fit_poles(const hdi_fit *k, hd_rational *set) {
     hd_c64 p[2 * HD_MAX_POLES + 1];
-    int32_t i;
+    int32_t i, j;
     memset(set, 0, sizeof *set);
     hdi_fit_zeros(k, p);
     for (i = 0; i < k->m; i++) {
         if (!hdi_fit_serves(p + i) || set->n_poles == HD_MAX_POLES || set->degree >= k->most) continue;
         set->degree += p[i].im != 0 ? 2 : 1;
-        set->theta[set->n_poles++] = p[i];
+        for (j = set->n_poles++; j > 0 && hdi_fit_before(p[i], set->theta[j - 1]); j--)
+            set->theta[j] = set->theta[j - 1];
+        set->theta[j] = p[i];
     }
 }
 
@@ -12798,24 +12702,6 @@ static double hdi_fit_residues(hdi_fit *k, int32_t q, hd_rational *set) {
     hdi_residues_fit(set, k->n, k->x, u, f, k->constant, k->work);
     for (i = 0; i < k->n; i++) most = hdi_worst(most, u[i] * fabs(hdi_rational_eval(set, k->x[i]) - f[i]));
     return most;
-}
-
-/* The most that a pole gives on the spectrum. */
-static double hdi_fit_share(const hd_rational *set, int32_t i) {
-    return hdi_rat_count(set, i) * hdi_cabs(set->a[i]) / hdi_fit_distance(set->theta[i]);
-}
-
-/* Drops poles that the error would not miss. Returns how many. */
-static int32_t hdi_fit_idle(const hdi_fit *k, hd_rational *set) {
-    int32_t i, kept = 0, n = set->n_poles;
-    set->degree = 0;
-    for (i = 0; i < n; i++) {
-        if (hdi_fit_share(set, i) <= 0.1 * k->tol) continue;
-        set->degree += set->theta[i].im != 0 ? 2 : 1;
-        set->theta[kept++] = set->theta[i];
-    }
-    set->n_poles = kept;
-    return n - kept;
 }
 
 /* The best set that up to `most` support points give at these points: each is the point with the largest
@@ -12839,8 +12725,7 @@ static void hdi_fit_run(hdi_fit *k, hd_rational *best) {
         if (k->count > 1 && off > HDI_FIT_CLOSE * k->tol && k->m < k->most) continue;
         hdi_fit_poles(k, &set);
         for (q = 0; q < k->count; q++) {
-            double error = hdi_fit_residues(k, q, &set);
-            if (k->count == 1 && hdi_fit_idle(k, &set) > 0) error = hdi_fit_residues(k, q, &set);
+            const double error = hdi_fit_residues(k, q, &set);
             set.max_error = hdi_worst(set.max_error, error);
         }
         if (set.max_error < best->max_error && set.degree <= k->most) *best = set;
@@ -12879,14 +12764,6 @@ static double hdi_fit_measure(hdi_fit *k, int32_t q, hd_rational *set, double t,
     return all;
 }
 
-/* What rounding can add where the set is evaluated. */
-static double hdi_fit_rounding(const hd_rational *set) {
-    double sum = 1 + fabs(set->a0);
-    int32_t i;
-    for (i = 0; i < set->n_poles; i++) sum += hdi_fit_share(set, i);
-    return 4 * DBL_EPSILON * sum;
-}
-
 /* The unit of t, in which a pole is at least 1 from the spectrum, see HDI_FIT_UNIT. */
 static double hdi_fit_unit(const hd_rational *set) {
     double least = set->n_poles > 0 ? HUGE_VAL : 1;
@@ -12897,26 +12774,11 @@ static double hdi_fit_unit(const hd_rational *set) {
     return 1 / least;
 }
 
-/* Small |theta| first, as iterations like it; the first is real where that saves a pack of factors. */
-static void hdi_fit_sort(hd_rational *set) {
-    int32_t i, j, least;
-    for (i = 0; i < set->n_poles; i++) {
-        const hd_c64 theta = set->theta[i], a = set->a[i];
-        for (least = j = i; j < set->n_poles; j++) {
-            const int real = set->theta[j].im == 0, by_size = i > 0 || real == (set->theta[least].im == 0);
-            if (by_size ? hdi_cabs(set->theta[j]) < hdi_cabs(set->theta[least]) : real) least = j;
-        }
-        set->theta[i] = set->theta[least];
-        set->a[i] = set->a[least];
-        set->theta[least] = theta;
-        set->a[least] = a;
-    }
-}
-
 /* The set of filter q for x = -t lambda, by one in terms of scaled points. unit: t lambda_max. */
 static hd_status hdi_fit_take(const hdi_fit *k, int32_t q, const hd_rational *set, double unit,
                               hd_rational *out, hd_error *e) {
-    const double largest = k->largest[q], rounding = hdi_fit_rounding(set);
+    const double largest = k->largest[q];
+    double rounding = 1 + fabs(set->a0);         /* where the set is evaluated */
     hd_rational to = *set;
     int32_t i;
     int fine;
@@ -12931,11 +12793,12 @@ static hd_status hdi_fit_take(const hdi_fit *k, int32_t q, const hd_rational *se
         to.a[i] = hdi_cscale(-unit * largest, set->a[i]);
         if (set->theta[i].im == 0) to.theta[i].im = to.a[i].im = 0;
         fine &= hdi_cfinite(to.a[i]);
+        rounding += hdi_rat_count(set, i) * hdi_cabs(set->a[i]) / hdi_fit_distance(set->theta[i]);
     }
+    rounding *= 4 * DBL_EPSILON;
     if (!fine)
         return hdi_fit_fail(k, k->filter[q], HD_ERR_BREAKDOWN,
                             "filter: a weight of its poles leaves the range of doubles", e);
-    hdi_fit_sort(&to);
     to.max_error = largest * (HDI_FIT_BETWEEN * set->max_error + rounding);
     to.max_weighted_error =
         largest * (HDI_FIT_BETWEEN * set->max_weighted_error + (1 + unit) * rounding);
@@ -13041,12 +12904,9 @@ HEATDIFF_API hd_status hd_rational_fit(hd_rational *out, int32_t count, const hd
  * Owns the family t L + theta_i B over the poles of a set: solutions for one right-hand side, by iterations
  * or with factors, their weighted sum, the bound on its error, and weighted sums of the inverses. May call
  * [18], [20] and [21].
- * Iterations take the poles one after the other, because the solutions at hand give a good start for the next
- * pole. With
- *   A_p = A_q + (theta_p - theta_q) B,   A_p sum c_q x_q = (sum c_q) b + B sum c_q (theta_p - theta_q) x_q,
- * and for sum c_q = 1 the residual is a combination of vectors that least squares make small. The conjugate
- * of a solution is the solution of the conjugate pole, and counts as another one. Parallel tasks are
- * right-hand sides, and preconditioners. */
+ * Iterations take the poles one after the other, because a solution gives a start for the next pole: the
+ * conjugate of a solution is the solution of the conjugate pole, and x(theta) is continued by the straight
+ * line through both. Parallel tasks are right-hand sides, and preconditioners. */
 
 /* ---- what answers can be off by ---- */
 /* An error r in the system of a pole, b - A x = r, is an error A^-1 r in its solution. Two norms bound it:
@@ -13332,8 +13192,6 @@ typedef struct hdi_lanczos {
     int32_t m, room;                      /* steps: done, at most */
 } hdi_lanczos;
 
-enum { HDI_WARM_POLES = 6, HDI_WARM_MAX = 2 * HDI_WARM_POLES };
-
 /* Further sums of the poles' solutions beside an answer: sum p of Re(weight_p x_p) for n rows of weights,
  * which are stride apart, into [n] arrays one after the other. */
 typedef struct hdi_extra {
@@ -13341,10 +13199,6 @@ typedef struct hdi_extra {
     const hd_c64 *weight;
     double *sum;
 } hdi_extra;
-
-/* Inner products of solutions of the last poles, D = diag(B), with q >= p, and p and q each modulo the
- * number of poles: gram[p][q][0] = x_q^* D x_p,   gram[p][q][1] = x_q' D x_p. */
-typedef hd_c64 hdi_gram[HDI_WARM_POLES][HDI_WARM_POLES][2];
 
 /* What a lane has room for, beside a field and an answer: steps of Lanczos; systems, which run one after the
  * other, and the vectors that they share. */
@@ -13358,7 +13212,6 @@ typedef struct hdi_lane {
     double *target, *sums, *spare_sums;  /* [n_components] heat per component, work */
     hd_c64 *b;                   /* begins the systems' arrays */
     hdi_iteration *k;            /* [systems] */
-    hdi_gram *gram;
     hdi_lanczos lanczos;
     int32_t skip;
     int32_t exponent;            /* the field is the caller's times 2^-exponent */
@@ -13398,11 +13251,10 @@ static hdi_lane_room hdi_lane_room_of(const hd_laplacian *lap, const hdi_family 
 }
 
 /* Doubles of the work between solves, which is part of the systems' arrays if there are systems: a
- * right-hand side, vectors, a solution of each, means, inner products. The whole of it serves to make
- * preconditioners. */
+ * right-hand side, vectors, a solution of each, means. The whole of it serves to make preconditioners. */
 static uint64_t hdi_lane_systems_size(const hdi_lane_room *r) {
     const int64_t all = 2 * ((1 + r->vectors + r->systems) * r->n + r->n_components);
-    return (uint64_t)(r->systems ? all + (int64_t)(sizeof(hdi_gram) / sizeof(double)) : 4 * r->n);
+    return (uint64_t)(r->systems ? all : 4 * r->n);
 }
 
 /* Doubles of a lane's arrays. */
@@ -13448,9 +13300,7 @@ static hd_status hdi_lane_make(hdi_lane *lane, hdi_lane_room room, hd_context *c
     lane->tmp = lane->spare_sums + room.n_components;
     lane->b = (hd_c64 *)(void *)lane->tmp;
     hdi_lane_lanczos(&lane->lanczos, &room, lane->tmp + hdi_lane_systems_size(&room));
-    if (!room.systems) return HD_OK;
-    lane->tmp += 6 * room.n;                     /* after b and the first two vectors */
-    lane->gram = (hdi_gram *)(void *)(lane->lanczos.v - sizeof(hdi_gram) / sizeof(double));
+    if (room.systems) lane->tmp += 6 * room.n;   /* after b and the first two vectors */
     return HD_OK;
 }
 
@@ -13590,75 +13440,19 @@ static void hdi_lane_sum(hdi_lane *lane, const hdi_family *fam) {
                        k->r_norm, &k->x->re, 2);
 }
 
-/* Those of solution p with those of poles p to last. */
-static void hdi_warm_products(const hdi_lane *lane, const double *d, int32_t p, int32_t last, int32_t n,
-                              hdi_gram gram) {
-    const hd_c64 *HDI_RESTRICT y = lane->k[p].x;
-    int32_t q, i;
-    for (q = p; q <= last && q < p + HDI_WARM_POLES; q++) {
-        const hd_c64 *HDI_RESTRICT x = lane->k[q].x;
-        hd_c64 *out = gram[p % HDI_WARM_POLES][q % HDI_WARM_POLES];
-        double rr = 0, ii = 0, ri = 0, ir = 0;
-        for (i = 0; i < n; i++) {
-            const double yr = d[i] * y[i].re, yi = d[i] * y[i].im;
-            rr += x[i].re * yr;
-            ii += x[i].im * yi;
-            ri += x[i].re * yi;
-            ir += x[i].im * yr;
-        }
-        out[0] = hdi_c(rr + ii, ri - ir);
-        out[1] = hdi_c(rr - ii, ri + ir);
-    }
-}
-
-/* The start of system p, of smallest residual, from the solutions of poles p + 1 to last: H c = 1 (a unit
- * diagonal, plus what rounding eats of it). A point is a pole or its conjugate. */
-static void hdi_warm_start(hdi_lane *lane, const hdi_family *fam, int32_t p, int32_t last, hdi_gram gram) {
-    const int32_t n = fam->lap->n_active;
-    hd_c64 shift[HDI_WARM_MAX], sum = hdi_c(0, 0), *HDI_RESTRICT x = lane->k[p].x;
-    double A[4 * HDI_WARM_MAX * HDI_WARM_MAX], c[2 * HDI_WARM_MAX] = {0}, unit[HDI_WARM_MAX];
-    int32_t m = 0, i, j, pole[HDI_WARM_MAX], conj[HDI_WARM_MAX];
-    for (i = p + 1; i <= last; i++) {
-        for (j = 0; j < (fam->set.theta[i].im == 0 ? 1 : 2); j++, m++) {
-            pole[m] = i;
-            conj[m] = j;
-        }
-    }
-    for (i = 0; i < m; i++) {
-        const hd_c64 theta = fam->set.theta[pole[i]];
-        const int32_t at = pole[i] % HDI_WARM_POLES;
-        shift[i] = hdi_csub(fam->set.theta[p], conj[i] ? hdi_cconj(theta) : theta);
-        c[i] = hdi_cabs(shift[i]) * sqrt(gram[at][at][0].re);
-        c[i] = unit[i] = c[i] > 0 ? 1 / c[i] : 0;
-        shift[i] = hdi_cscale(unit[i], shift[i]);
-    }
-    for (i = 0; i < m; i++) {
-        for (j = 0; j <= i; j++) {
-            hd_c64 v = gram[pole[j] % HDI_WARM_POLES][pole[i] % HDI_WARM_POLES][conj[i] != conj[j]];
-            v = hdi_cmul(hdi_cmul(hdi_cconj(shift[i]), shift[j]), conj[j] ? hdi_cconj(v) : v);
-            if (i == j) v = hdi_c(1 + 1e-14, 0);
-            A[2 * m * j + i] = A[2 * m * i + j] = v.re;
-            A[2 * m * (m + j) + m + i] = A[2 * m * (m + i) + m + j] = v.re;
-            A[2 * m * j + m + i] = A[2 * m * (m + i) + j] = v.im;
-            A[2 * m * (m + j) + i] = A[2 * m * i + m + j] = -v.im;
-        }
-    }
-    hdi_least_squares(A, 2 * m, 2 * m, c);
-    for (i = 0; i < m; i++) {
-        c[i] *= unit[i];
-        c[m + i] *= unit[i];
-        sum = hdi_cadd(sum, hdi_c(c[i], c[m + i]));
-    }
-    for (i = 0; i < m && (sum.re != 0 || sum.im != 0); i++) {
-        const hd_c64 w = hdi_cdiv(hdi_c(c[i], c[m + i]), sum), *HDI_RESTRICT y = lane->k[pole[i]].x;
-        const double sign = conj[i] ? -1 : 1;
-        if (!hdi_cfinite(w)) return;
-        for (j = 0; j < n; j++) x[j] = hdi_cadd(x[j], hdi_cmul(w, hdi_c(y[j].re, sign * y[j].im)));
-    }
+/* The start of system p from the solution of the next pole: for theta = theta_p in
+ *   x(theta) ~ c x_q + (1 - c) conj(x_q),   c = (theta - conj(theta_q))/(theta_q - conj(theta_q)). */
+static void hdi_warm_start(hdi_lane *lane, const hdi_family *fam, int32_t p) {
+    const hd_c64 at = fam->set.theta[p], q = fam->set.theta[p + 1], *HDI_RESTRICT y = lane->k[p + 1].x;
+    const hd_c64 c = q.im > 0 ? hdi_cdiv(hdi_csub(at, hdi_cconj(q)), hdi_c(0, 2 * q.im)) : hdi_c(1, 0);
+    hd_c64 *HDI_RESTRICT x = lane->k[p].x;
+    int32_t i;
+    for (i = 0; i < fam->lap->n_active; i++)     /* conj(x_q) is x_q - 2 i Im(x_q) */
+        x[i] = hdi_cadd(y[i], hdi_cmul(hdi_csub(c, hdi_c(1, 0)), hdi_c(0, 2 * y[i].im)));
 }
 
 /* Runs the systems until the bound of their part of the answer's error is at most aim. Each may use an equal
- * share of what is left over by those before it. fresh: each starts from the solutions of those before it,
+ * share of what is left over by those before it. fresh: each starts from the solution of the one before it,
  * else from where it is. The order from the last pole to the first was the fastest in measurements. */
 static hd_status hdi_lane_run(hdi_lane *lane, const hdi_family *fam, int fresh, double aim,
                               const hdi_watch *watch, hd_error *e) {
@@ -13671,15 +13465,14 @@ static hd_status hdi_lane_run(hdi_lane *lane, const hdi_family *fam, int fresh, 
     part.share = n_poles > 0 ? watch->share / n_poles : 0;
     for (p = n_poles; p-- > 0;) {
         hdi_iteration *k = lane->k + p;
-        const int32_t last = p + HDI_WARM_POLES < n_poles ? p + HDI_WARM_POLES : n_poles - 1;
         const double weight = hdi_pole_size(&fam->set, p);
         const double fair = hdi_max(left / (p + 1), 0.1 * aim / n_poles);
         const double share = weight > 0 ? fair / weight : DBL_MAX;
         const double target = share * sqrt(fam->lap->b_ratio) * hdi_pole_distance(fam->set.theta[p]);
-        const int runs = fresh || k->r_norm > target, warm = fresh && p < last && b_norm > 0;
+        const int runs = fresh || k->r_norm > target, warm = fresh && p + 1 < n_poles && b_norm > 0;
         if (runs && hdi_family_shares(fam)) hdi_precond_make(&k->m, k->r);
         if (fresh) hdi_iteration_start(k, b_norm);
-        if (warm) hdi_warm_start(lane, fam, p, last, *lane->gram);
+        if (warm) hdi_warm_start(lane, fam, p);
         if (runs) hdi_iteration_residual(k, lane->b);
         if (warm && !(k->r_norm < b_norm)) {
             hdi_iteration_start(k, b_norm);
@@ -13694,8 +13487,6 @@ static hd_status hdi_lane_run(hdi_lane *lane, const hdi_family *fam, int fresh, 
         }
         if (status > worst) worst = status;
         left -= weight * hdi_pole_error(k);
-        if (fresh && p > 0)
-            hdi_warm_products(lane, fam->lap->b_diag, p, last, fam->lap->n_active, *lane->gram);
     }
     return worst;
 }
@@ -14131,6 +13922,8 @@ static int hdi_lap_exceeds(const hd_laplacian *lap, double sigma, double *value,
 
 /* B with a smaller ratio counts as one that is not positive definite. */
 #define HDI_RATIO_LEAST 1e-12
+/* A smaller one by Gershgorin's circles is worth a proof by factorisations. */
+#define HDI_RATIO_POOR 0.01
 
 /* A proven b_ratio where that of Gershgorin's theorem, which lap has, is poor, as in finite elements: 1/2,
  * 1/4 and so on are each tried by a factorisation. Its rounding is that of a matrix E with |x'Ex| <= eps
@@ -14164,20 +13957,13 @@ static hd_status hdi_lap_ratio(hd_laplacian *lap, hd_error *e) {
     return hdi_scope_end(&s);
 }
 
-/* A smaller b_ratio by Gershgorin's circles is worth a proof by factorisations. */
-#define HDI_RATIO_POOR 0.01
-
-static hd_status hdi_lap_ratio_prove(hd_laplacian *lap, hd_error *e) {
-    if (HDI_HAS_DIRECT && e->status >= 0 && lap->b_ratio < HDI_RATIO_POOR) (void)hdi_lap_ratio(lap, e);
-    return e->status;
-}
-
 /* Takes the values of new matrices, or leaves all as it was. */
 static hd_status hdi_pair_replace(hd_laplacian *lap, const hd_csr *L, const hd_csr *B, double h,
                                   hd_error *e) {
     hdi_scope s = hdi_scope_begin(lap->context, e);
     hd_laplacian next;
-    if (hdi_pair_next(&next, lap, L, B, &s) >= 0 && hdi_lap_ratio_prove(&next, e) >= 0) {
+    if (hdi_pair_next(&next, lap, L, B, &s) >= 0 &&
+        (!HDI_HAS_DIRECT || next.b_ratio >= HDI_RATIO_POOR || hdi_lap_ratio(&next, e) >= 0)) {
         next.h = h;
         hdi_pair_take(lap, &next);
     }
@@ -16034,6 +15820,7 @@ typedef struct hdi_spec {
     double *sweep, *h, *part, *work;
     double *noise;               /* [n] weights of rounding in residuals; [n] work */
     int32_t n_poor;              /* residuals above the tolerance and rounding */
+    int32_t alike;               /* vectors of a block depended on each other */
     uint64_t seed;
     int32_t n_factors, n_runs, n_solves;
     double next;                 /* no other eigenvalue is below it */
@@ -16561,15 +16348,18 @@ static void hdi_spec_polish(hdi_spec *s, const double *value, int32_t first, dou
 #define HDI_SPEC_LOST 0.1        /* a residual that is a larger part of its value leaves nothing of it */
 
 /* Makes block `at`, n columns that are nearly orthonormal, orthonormal and orthogonal to all before it, and
- * enters its pairs, but for those of which much was in blocks before already. */
+ * enters its pairs, but for those of which much was in blocks before. A pair found twice, with another one
+ * missing, would deceive the count of pivots: so columns that depend on each other are noted. */
 static void hdi_spec_settle(hdi_spec *s, const double *value, int32_t at, int32_t n) {
     double G[64], R[64], scale[HDI_WIDE], norm[HDI_WIDE], noise[HDI_WIDE], twin[HDI_WIDE], *x = s->lock[at];
+    int64_t i;
     int32_t r;
     hdi_spec_mass(s, x, s->bx);
     hdi_spec_project(s, s->lock, at, x, s->bx, twin);
+    for (i = 0; i < 8 * (int64_t)s->n; i++) x[i] = twin[i % 8] > 0.1 ? 0 : x[i];
     hdi_spec_mass(s, x, s->bx);
     for (r = 0; r < HDI_WIDE; r++) scale[r] = 1;
-    (void)hdi_spec_orthonormal(s, x, s->bx, scale, scale, NULL, G, R);
+    s->alike |= !(hdi_spec_orthonormal(s, x, s->bx, scale, scale, NULL, G, R) < 0.5);
     (void)hdi_spec_measure(s, value, x, norm);
     hdi_wide_norms(x, s->noise, s->n, HDI_WIDE, noise);
     for (r = 0; r < n; r++) {
@@ -16695,14 +16485,14 @@ static int32_t hdi_spec_rank(const hdi_spec *s, double x) {
     return n;
 }
 
-/* Whether the count at the shift is that of the exact pair: no value found is so near that rounding could
- * move it across. */
+/* Whether the count at the shift is that of the exact pair, and no pair stands for two: no value found is so
+ * near that rounding could move it across. */
 static int hdi_spec_sure(const hdi_spec *s) {
     const double root = hdi_ratio_root(s->lap);
     int32_t i;
     for (i = 0; i < s->found; i++)
         if (fabs(s->value[i] - s->sigma) <= s->off + root * s->residual[i]) return 0;
-    return s->off < HUGE_VAL;
+    return s->off < HUGE_VAL && !s->alike;
 }
 
 /* ---- a row of shifts ---- */
@@ -16905,34 +16695,6 @@ static void hdi_spec_left_task(void *arg, int64_t begin, int64_t end) {
     }
 }
 
-/* A pair found twice, with another one missing, would deceive the count of pivots. Are all vectors different?
- * They are, if X'B X c = c, where the signs c are as good as random. Uses left and left_mass as work. */
-#define HDI_SPEC_DISTINCT 1e-6
-
-static double hdi_spec_sign(int32_t q) {
-    return (((uint32_t)q * 2654435761u) >> 31) != 0 ? 1 : -1;   /* Knuth's multiplicative hash */
-}
-
-static int hdi_spec_distinct(const hd_spectrum *out) {
-    const hd_laplacian *lap = out->lap;
-    double *sum = out->left, *mass = out->left_mass;
-    int32_t q, v;
-    memset(sum, 0, (size_t)out->n * sizeof *sum);
-    for (q = 0; q < out->count; q++) {
-        const double *x = out->vector + (int64_t)q * out->n;
-        const double c = hdi_spec_sign(q);
-        for (v = 0; v < out->n; v++) sum[v] += c * x[v];
-    }
-    for (v = 0; v < out->n; v++) mass[v] = lap->row[v] < 0 ? 0 : hdi_spec_mass_row(lap, sum, lap->row[v]);
-    for (q = 0; q < out->count; q++) {
-        const double *x = out->vector + (int64_t)q * out->n;
-        double dot = 0;
-        for (v = 0; v < out->n; v++) dot += x[v] * mass[v];
-        if (!(fabs(dot - hdi_spec_sign(q)) <= HDI_SPEC_DISTINCT)) return 0;
-    }
-    return 1;
-}
-
 /* Eigenpairs for the goal. m: a pair that is analysed, whose factor kept in m is not touched. The arrays of
  * out belong to ctx of m. */
 static hd_status hdi_spec_run(hdi_elim *m, const hdi_spec_goal *goal, double tol, hd_spectrum *out,
@@ -16965,7 +16727,7 @@ static hd_status hdi_spec_run(hdi_elim *m, const hdi_spec_goal *goal, double tol
             out->factor_nnz = m->sym.nnz;
             out->factor_flops = m->sym.flops * s.n_factors;
             out->ordering = m->sym.ordering;
-            out->proven = s.proven && hdi_spec_distinct(out);
+            out->proven = s.proven;
             memset(out->left, 0, 2 * n * sizeof *out->left);
             hdi_parallel_ranges(m->ctx, s.n, 1024, hdi_spec_left_task, out);
         }
@@ -18217,9 +17979,8 @@ static int hdi_heat_equal(hd_heat *heat, hdi_elim *m, double t, hd_error *e) {
 static hd_pole_kind hdi_heat_kind(const hdi_heat_call *h) {
     const hd_pole_kind asked = h->heat->opts.poles;
     /* see hdi_rational_rate: errors of uniform sets do not fall off */
-    if (h->rate) return asked == HD_POLES_DIAGONAL ? asked : HD_POLES_KERNEL;
-    return asked ? asked : hdi_query_fields(h->ask.query) ? HD_POLES_UNIFORM
-           : h->diagonal ? HD_POLES_DIAGONAL : HD_POLES_KERNEL;
+    if (h->rate) return HD_POLES_KERNEL;
+    return asked ? asked : hdi_query_fields(h->ask.query) ? HD_POLES_UNIFORM : HD_POLES_KERNEL;
 }
 
 static hd_status hdi_heat_end(hdi_heat_call *h) {
@@ -20394,16 +20155,15 @@ static void hdi_heat_built(const hd_heat_opts *o, hd_error *e) {
 }
 
 static hd_status hdi_heat_check(const hd_heat_opts *o, hd_error *e) {
-    const int from_two = o->poles == HD_POLES_KERNEL || o->poles == HD_POLES_DIAGONAL;
     hdi_refuse(o->method < HD_METHOD_AUTO || o->method > HD_METHOD_KRYLOV, "heat: unknown method", e);
     hdi_refuse(!hdi_solver_known(o->solver), "heat: unknown solver", e);
     hdi_refuse(!hdi_precond_known(o->precond), "heat: unknown preconditioner", e);
-    hdi_refuse(o->poles != HD_POLES_DIAGONAL && (o->poles < HD_POLES_DEFAULT || o->poles > HD_POLES_KERNEL),
-               "heat: poles are uniform, kernel or diagonal; own sets go into rational", e);
+    hdi_refuse(o->poles < HD_POLES_DEFAULT || o->poles > HD_POLES_KERNEL,
+               "heat: poles are uniform or kernel; own sets go into rational", e);
     hdi_refuse_value(o->degree < 0 || o->degree > HDI_RAT_UNIFORM_MAX, "heat: the degree is not in 1..14",
                      o->degree, e);
-    hdi_refuse_value(from_two && o->degree && o->degree < HDI_RAT_KERNEL_MIN,
-                     "heat: kernel and diagonal sets have degrees 2 to 14", o->degree, e);
+    hdi_refuse_value(o->poles == HD_POLES_KERNEL && o->degree && o->degree < HDI_RAT_KERNEL_MIN,
+                     "heat: kernel sets have degrees 2 to 14", o->degree, e);
     hdi_refuse(!hdi_finite(o->tol) || o->tol < 0 || o->tol >= 1, "heat: tol is not in [0, 1)", e);
     hdi_refuse(o->max_iterations < 0, "heat: max_iterations is negative", e);
     hdi_refuse_ordering(o->ordering, o->perm, "heat: unknown ordering", e);
@@ -22694,11 +22454,11 @@ typedef struct hdi_geo_polygons {
     int32_t *row;                /* [corners] in elimination order */
     double *side;                /* [3 corners] c_i, see above, in units of h */
     double *flat;                /* [n_faces] |W|^2 below this is rounding */
-    hd_csr L;                    /* rows and columns in elimination order; columns do not ascend */
+    hd_laplacian *pair;          /* in elimination order */
 } hdi_geo_polygons;
 
 /* Columns of a batch, and the fewest that are worth one. A batch always costs as much as a full one. */
-enum { HDI_GEO_WIDE = 8, HDI_GEO_WIDE_FROM = 3, HDI_GEO_BLOCKS = 24 };
+enum { HDI_GEO_WIDE = 8, HDI_GEO_WIDE_FROM = 3 };
 
 /* |u| over its largest: below, u is taken as unknown, since underflow is near */
 #define HDI_GEO_FAINT 1e-200
@@ -22718,7 +22478,6 @@ struct hd_geodesic {
     char *held;                  /* [n_active] rows of the border; NULL: the border is natural */
     double copies;               /* in which L and B count */
     hdi_geo_face *face;          /* [n_faces] ordered by the corner that is eliminated first */
-    int32_t *face_ptr;           /* [n_super + 1] the first face of each front, by that corner */
     hdi_geo_polygons poly;       /* in the same order */
     double *mass;                /* [n_active] diagonal of B/t. This and all below is in elimination order */
     int32_t *row;                /* [n] vertex -> row, -1 without mass */
@@ -22737,8 +22496,7 @@ struct hd_geodesic {
     int32_t *from;               /* [n_faces] which of the mesh's faces each is; of updatable plans kept */
     double t_asked, t_in_h2;     /* 0: t_in_h2 h^2 */
     int32_t ready;               /* 0: the last update failed half way */
-    int32_t n_blocks;
-    void *block[HDI_GEO_BLOCKS]; /* what was allocated for the arrays that every plan has */
+    hdi_scope keep;              /* arrays but those that grow */
 };
 
 /* ---- making ---- */
@@ -22757,23 +22515,17 @@ static void hdi_geo_free(hd_geodesic *g) {
     hdi_geo_factors_free(g, ctx);
     hdi_symbolic_free(ctx, &g->sym);
     hdi_laplacian_free(g->lap, ctx);
-    while (g->n_blocks > 0) hdi_free(ctx, g->block[--g->n_blocks]);
+    hdi_laplacian_free(g->poly.pair, ctx);
+    while (g->keep.n > 0) hdi_free(ctx, g->keep.block[--g->keep.n]);
     hdi_free(ctx, g->sorted);
     hdi_free(ctx, g);
     hdi_let_go(ctx);
 }
 
-/* An array for good, made when it is first needed. */
-static double *hdi_geo_array(hd_geodesic *g, uint64_t size, hd_error *e) {
-    double *x = HDI_NEW(g->ctx, double, size, e);
-    if (x) g->block[g->n_blocks++] = x;
-    return x;
-}
-
-/* Ends the scope; its blocks become those of the plan, if all are there. */
-static hd_status hdi_geo_keep(hd_geodesic *g, hdi_scope *s) {
-    for (; s->e->status >= 0 && s->n > 0; s->n--) g->block[g->n_blocks++] = s->block[s->n - 1];
-    return hdi_scope_end(s);
+static hdi_scope *hdi_geo_keep(hd_geodesic *g, hd_error *e) {
+    g->keep.ctx = g->ctx;
+    g->keep.e = e;
+    return &g->keep;
 }
 
 /* Triangle f in its plane with the longest edge on the axis. Its area and cotangents are those of weight
@@ -22811,9 +22563,8 @@ static void hdi_geo_frames(hd_geodesic *g, const hdi_mesh *mesh, const int32_t *
  * the vectors once. */
 static hd_status hdi_geo_order(hd_geodesic *g, const hdi_mesh *mesh, hdi_scope *own, hdi_scope *s) {
     uint64_t *key = HDI_TAKE(s, uint64_t, mesh->m);
-    int32_t f, v, k = 0;
+    int32_t f;
     int64_t c;
-    g->face_ptr = HDI_TAKE(own, int32_t, (int64_t)g->sym.n_super + 1);
     g->from = HDI_TAKE(g->lap ? own : s, int32_t, mesh->m);
     for (f = 0; f < mesh->m && own->e->status >= 0; f++) {
         int32_t first = g->n_active;
@@ -22824,11 +22575,7 @@ static hd_status hdi_geo_order(hd_geodesic *g, const hdi_mesh *mesh, hdi_scope *
     }
     if (own->e->status < 0) return own->e->status;
     hdi_sort_keys(key, g->n_faces);
-    for (v = 0; v <= g->sym.n_super; v++) {
-        for (; k < g->n_faces && (int64_t)(key[k] >> 32) < g->sym.super[v]; k++)
-            g->from[k] = (int32_t)(key[k] & INT32_MAX);
-        g->face_ptr[v] = k;
-    }
+    for (f = 0; f < g->n_faces; f++) g->from[f] = (int32_t)(key[f] & INT32_MAX);
     return HD_OK;
 }
 
@@ -22857,29 +22604,6 @@ static hd_status hdi_geo_poly_faces(hd_geodesic *g, const hdi_mesh *mesh, hdi_sc
         }
     }
     z->ptr[g->n_faces] = n;
-    return HD_OK;
-}
-
-/* L of polygons by rows in elimination order. */
-static hd_status hdi_geo_poly_rows(hd_geodesic *g, const hd_laplacian *lap, hdi_scope *own) {
-    hd_csr *a = &g->poly.L;
-    int64_t n = 0, p;
-    int32_t i;
-    a->n_rows = a->n_cols = g->n_active;
-    a->nnz = lap->L.nnz;
-    a->row_ptr = HDI_TAKE(own, int64_t, (int64_t)g->n_active + 1);
-    a->col = HDI_TAKE(own, int32_t, a->nnz);
-    a->val = HDI_TAKE(own, double, a->nnz);
-    if (own->e->status < 0) return own->e->status;
-    for (i = 0; i < g->n_active; i++) {
-        const int32_t from = g->sym.perm[i];
-        a->row_ptr[i] = n;
-        for (p = lap->L.row_ptr[from]; p < lap->L.row_ptr[from + 1]; p++, n++) {
-            a->col[n] = g->row[lap->vertex[lap->L.col[p]]];
-            a->val[n] = lap->L.val[p];
-        }
-    }
-    a->row_ptr[g->n_active] = n;
     return HD_OK;
 }
 
@@ -23008,7 +22732,8 @@ static hd_status hdi_geo_store(hd_geodesic *g, const hd_laplacian *lap, const hd
     const hdi_mesh *mesh = HDI_HAS_INTRINSIC && in->flips ? &z->flat : &z->mesh;
     if (hdi_geo_order(g, mesh, own, &s) < 0) return hdi_scope_end(&s);
     if (hdi_is_poly(mesh)) {
-        if (hdi_geo_poly_faces(g, mesh, own) >= 0) (void)hdi_geo_poly_rows(g, lap, own);
+        if (hdi_geo_poly_faces(g, mesh, own) >= 0)
+            g->poly.pair = hdi_pair_renumber(lap, g->sym.perm, g->ctx, own->e);
     } else {
         g->face = HDI_TAKE(own, hdi_geo_face, g->n_faces);
         if (g->face) hdi_geo_frames(g, mesh, mesh->copies);
@@ -23020,7 +22745,7 @@ static hd_status hdi_geo_store(hd_geodesic *g, const hd_laplacian *lap, const hd
 
 static hd_status hdi_geo_make(hd_geodesic *g, const hdi_input *in, int32_t neighbours,
                               const hd_geodesic_opts *o, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(g->ctx, e), own = hdi_scope_begin(g->ctx, e);
+    hdi_scope s = hdi_scope_begin(g->ctx, e), *own = hdi_geo_keep(g, e);
     hd_laplacian *lap = hdi_lap_shell(g->ctx, e);
     const int32_t *perm = o->ordering == HD_ORDERING_OWN ? o->perm : NULL;
     hdi_surface z;
@@ -23042,14 +22767,12 @@ static hd_status hdi_geo_make(hd_geodesic *g, const hdi_input *in, int32_t neigh
         g->n_components = lap->n_components;
     }
     if (e->status >= 0 && hdi_pair_analyse(&g->sym, lap, o->ordering, perm, g->ctx, e) >= 0 &&
-        hdi_geo_rows(g, lap, &own) >= 0 &&
-        hdi_geo_store(g, lap, &z, in, &own) >= 0) {
+        hdi_geo_rows(g, lap, own) >= 0 && hdi_geo_store(g, lap, &z, in, own) >= 0) {
         hdi_scope_end(&s);                       /* the mesh is not needed any more */
-        if (hdi_geo_factors(g, lap, e) >= 0) g->ready = hdi_geo_room(g, &own) >= 0;
+        if (hdi_geo_factors(g, lap, e) >= 0) g->ready = hdi_geo_room(g, own) >= 0;
     }
     if (!g->lap) hdi_laplacian_free(lap, g->ctx);
-    (void)hdi_scope_end(&s);
-    return hdi_geo_keep(g, &own);
+    return hdi_scope_end(&s);
 }
 
 /* The plan for new coordinates. Queries do not read g->lap: until g->ready is 0 nothing has changed. */
@@ -23103,11 +22826,6 @@ static HDI_INLINE double hdi_geo_inverse_root(double x) {
 }
 
 typedef struct hdi_geo_range { int32_t begin, end; } hdi_geo_range;
-
-static hdi_geo_range hdi_geo_part(const int32_t *ptr, int32_t k) {
-    const hdi_geo_range part = {ptr[k], ptr[k + 1]};
-    return part;
-}
 
 /* Adds div X of X = -grad |u| / |grad |u|| to b, integrated against the hat functions. A face adds nothing
  * where no |u| reaches least, or where the slope is within rounding: where fronts of symmetric meshes meet,
@@ -23201,14 +22919,15 @@ static HDI_INLINE void hdi_geo_stiff(const hdi_geo_face *a, double sign, const d
     r[a->v[2]] += g2;
 }
 
-/* Adds div X of some faces to b: the right-hand side of L phi = b. In the faces of items, which one column
- * has, X is the gradient of the known distances. Returns the columns as bits in which some faces have heat,
- * but all of it below least. */
-static int hdi_geo_divergence(const hd_geodesic *g, hdi_geo_range part, int k, const double *u,
-                              const double *least, const char *done, const hdi_geo_items *items, double *b) {
+/* Adds div X to b: the right-hand side of L phi = b. In the faces of items, which one column has, X is the
+ * gradient of the known distances. Returns the columns as bits in which some faces have heat, but all of it
+ * below least. */
+static int hdi_geo_divergence(const hd_geodesic *g, int k, const double *u, const double *least,
+                              const char *done, const hdi_geo_items *items, double *b) {
     const int level = k > 1 ? hdi_simd_level(g->ctx) : 0;
+    const int32_t end = g->n_faces;
+    hdi_geo_range part = {0, g->n_faces};
     double dim[HDI_GEO_WIDE] = {0};
-    const int32_t end = part.end;
     int32_t q;
     int c, faint = 0;
     for (q = 0; items && q < items->n_home; q++) {
@@ -23232,15 +22951,14 @@ static int hdi_geo_divergence(const hd_geodesic *g, hdi_geo_range part, int k, c
     return faint;
 }
 
-/* r -= L x: of polygons some rows of L, else the part of some faces. */
-static void hdi_geo_subtract(const hd_geodesic *g, hdi_geo_range rows, hdi_geo_range faces,
-                             const double *HDI_RESTRICT x, double *HDI_RESTRICT r) {
-    const hd_csr *L = &g->poly.L;
+/* r -= L x */
+static void hdi_geo_subtract(const hd_geodesic *g, const double *HDI_RESTRICT x, double *HDI_RESTRICT r) {
+    const hd_csr *L = g->face ? NULL : &g->poly.pair->L;
     int32_t f, i;
     int64_t p;
-    for (i = rows.begin; i < rows.end && g->poly.ptr; i++)
+    for (i = 0; L && i < L->n_rows; i++)
         for (p = L->row_ptr[i]; p < L->row_ptr[i + 1]; p++) r[i] -= L->val[p] * x[L->col[p]];
-    for (f = faces.begin; f < faces.end && g->face; f++) hdi_geo_stiff(g->face + f, -1, x, r);
+    for (f = 0; f < g->n_faces && g->face; f++) hdi_geo_stiff(g->face + f, -1, x, r);
 }
 
 /* x = the inverse times x in k columns. */
@@ -23265,14 +22983,13 @@ static int hdi_geo_is_held(const hd_geodesic *g, int32_t row) {
 
 /* |r - A x| / |r|, where A is L, or with heat L + B/t. r is overwritten. */
 static double hdi_geo_residual(const hd_geodesic *g, int heat, const double *x, double *r) {
-    const hdi_geo_range rows = {0, g->n_active}, faces = {0, g->n_faces};
     double b2 = 0, r2 = 0;
     int32_t i;
     for (i = 0; i < g->n_active; i++) {
         b2 += r[i] * r[i];
         if (heat) r[i] -= g->mass[i] * x[i];
     }
-    hdi_geo_subtract(g, rows, faces, x, r);
+    hdi_geo_subtract(g, x, r);
     for (i = 0; i < g->n_active; i++) r2 += heat && hdi_geo_is_held(g, i) ? 0 : r[i] * r[i];
     return b2 > 0 ? sqrt(r2 / b2) : 0;
 }
@@ -23284,150 +23001,55 @@ static double hdi_geo_residual(const hd_geodesic *g, int heat, const double *x, 
  *     f_i = sum over j beyond of L_ij u_j for i in S,   f_j = -sum over i in S of L_ij u_i for j beyond.
  * f is scaled to one. Solving for u' continues u as far again as before. The scale does not matter, because
  * only directions are used. A face belongs to the first stage that reaches one of its corners.
- * A stage costs what it reaches: fronts, their rows, and the faces whose first corner is one of these. */
+ * A stage goes down to the fronts only that have rows beyond. */
 
-typedef struct hdi_geo_far {
-    hd_geodesic *g;              /* x and r are zero in rows that the last stage has not reached */
-    double *y, *z;               /* [n_active] */
-    int32_t *open, n_open;       /* [n_super] fronts to go to on the way up, descending */
-    int32_t *live;               /* [n_super] fronts where it has been; g->active marks both */
-    int32_t *front, n_fronts;    /* [n_super] fronts that it has reached, parents first */
-} hdi_geo_far;
-
-static hd_status hdi_geo_far_begin(hdi_geo_far *w, hd_geodesic *g, hdi_scope *s) {
-    w->g = g;
-    w->y = HDI_TAKE_ZERO(s, double, g->n_active);
-    w->z = HDI_TAKE_ZERO(s, double, g->n_active);
-    w->front = HDI_TAKE(s, int32_t, g->sym.n_super);
-    w->open = HDI_TAKE(s, int32_t, g->sym.n_super);
-    w->live = HDI_TAKE(s, int32_t, g->sym.n_super);
-    if (s->e->status < 0) return s->e->status;
-    for (w->n_fronts = 0; w->n_fronts < g->sym.n_super; w->n_fronts++) w->front[w->n_fronts] = w->n_fronts;
-    w->n_open = 0;
-    memset(g->r, 0, (size_t)g->n_active * sizeof *g->r);
-    memset(g->mark, 0, (size_t)g->n_active);
+/* g->x = f, where u was, of which |u| >= least is known now: g->mark. What was known before has no neighbours
+ * beyond. f [2 n]: work. Marks the fronts where it is, and those wanted, which have rows beyond. Returns 0 if
+ * there is no usable number along the border. */
+static int hdi_geo_border(hd_geodesic *g, double least, double *f, char *wanted) {
+    const size_t n = (size_t)g->n_active;
+    double *x = g->x, *from_known = f, *from_beyond = f + n, most = 0;
+    int32_t i;
+    for (i = 0; i < g->n_active; i++) {
+        const int beyond = !g->mark[i] && !(fabs(x[i]) >= least);
+        g->r[i] = beyond ? x[i] : 0;
+        if (beyond || g->mark[i]) x[i] = 0;
+        g->mark[i] = (char)!beyond;
+    }
+    memset(f, 0, 2 * n * sizeof *f);
+    hdi_geo_subtract(g, x, from_known);
+    hdi_geo_subtract(g, g->r, from_beyond);
+    for (i = 0; i < g->n_active; i++) {
+        x[i] = hdi_geo_is_held(g, i) ? 0 : g->mark[i] ? -from_beyond[i] : from_known[i];
+        most = hdi_max(most, fabs(x[i]));
+    }
     memset(g->active, 0, (size_t)g->sym.n_super);
-    return HD_OK;
-}
-
-/* Marks the rows where u, in g->x, is known now. Of it only what has become known is left there, and -L times
- * that in y; z becomes -L times u beyond. */
-static void hdi_geo_tell(hdi_geo_far *w, double least) {
-    const hd_geodesic *g = w->g;
-    double *x = g->x;
-    int32_t k, i;
-    for (k = 0; k < w->n_fronts; k++) {
-        const hdi_geo_range rows = hdi_geo_part(g->sym.super, w->front[k]);
-        for (i = rows.begin; i < rows.end; i++) {
-            const int beyond = !g->mark[i] && !(fabs(x[i]) >= least);
-            g->r[i] = beyond ? x[i] : 0;
-            if (beyond || g->mark[i]) x[i] = 0;
-            g->mark[i] = (char)!beyond;
-            w->y[i] = w->z[i] = 0;
-        }
+    memset(wanted, 0, (size_t)g->sym.n_super);
+    for (i = 0; i < g->n_active && most > DBL_MIN; i++) {
+        if (x[i] != 0) hdi_sweep_touch(&g->sym, i, g->active);
+        if (!g->mark[i]) hdi_sweep_touch(&g->sym, i, wanted);
+        x[i] /= most;
     }
-    for (k = 0; k < w->n_fronts; k++) {
-        const hdi_geo_range rows = hdi_geo_part(g->sym.super, w->front[k]),
-                            faces = hdi_geo_part(g->face_ptr, w->front[k]);
-        hdi_geo_subtract(g, rows, faces, x, w->y);
-        hdi_geo_subtract(g, rows, faces, g->r, w->z);
-    }
-}
-
-static void hdi_geo_open(hdi_geo_far *w, int32_t v) {
-    int32_t i = w->n_open;
-    if (w->g->active[v]) return;
-    w->g->active[v] = 1;
-    for (w->n_open++; i > 0 && w->open[i - 1] < v; i--) w->open[i] = w->open[i - 1];
-    w->open[i] = v;
-}
-
-/* g->x = f, where u was; opens the fronts where it is. Returns 0 if there is no usable number along
- * the border. */
-static int hdi_geo_border(hdi_geo_far *w, double least) {
-    const hd_geodesic *g = w->g;
-    double *x = g->x, most = 0;
-    int32_t k, i;
-    hdi_geo_tell(w, least);
-    for (k = 0; k < w->n_fronts; k++) {
-        const hdi_geo_range rows = hdi_geo_part(g->sym.super, w->front[k]);
-        for (i = rows.begin; i < rows.end; i++) {
-            x[i] = hdi_geo_is_held(g, i) ? 0 : g->mark[i] ? -w->z[i] : w->y[i];
-            g->r[i] = 0;
-            most = hdi_max(most, fabs(x[i]));
-            if (x[i] != 0) hdi_geo_open(w, g->sym.super_of[i]);
-        }
-    }
-    for (k = 0; k < w->n_open && most > DBL_MIN; k++)
-        for (i = g->sym.super[w->open[k]]; i < g->sym.super[w->open[k] + 1]; i++) x[i] /= most;
     return most > DBL_MIN;
-}
-
-/* Whether rows beyond S that are eliminated later bring heat to front v. */
-static int hdi_geo_warm(const hd_geodesic *g, int32_t v) {
-    int64_t p;
-    for (p = g->sym.row_ptr[v]; p < g->sym.row_ptr[v + 1]; p++)
-        if (!g->mark[g->sym.row[p]] && fabs(g->x[g->sym.row[p]]) >= DBL_MIN) return 1;
-    return 0;
-}
-
-/* From the open fronts upwards, as long as a front has something to hand on. Returns how many are live. */
-static int32_t hdi_geo_up(hdi_geo_far *w, const hdi_sweep *z) {
-    const hdi_symbolic *s = &w->g->sym;
-    int32_t n = 0;
-    while (w->n_open > 0) {
-        const int32_t v = w->open[--w->n_open];
-        const double *from = z->vec + s->vector[v];
-        const int64_t below = hdi_front_below(s, v);
-        int64_t i = 0;
-        hdi_sweep_front(z, v);
-        w->live[n++] = v;
-        while (i < below && !(fabs(from[i]) >= DBL_MIN)) i++;
-        if (i < below) hdi_geo_open(w, s->parent[v]);
-    }
-    return n;
-}
-
-/* g->x = A^-1 g->x: up, and down again from where that ends, the highest first, wherever heat comes. Returns
- * the largest |u| beyond. */
-static double hdi_geo_stage(hdi_geo_far *w) {
-    const hdi_symbolic *s = &w->g->sym;
-    char *active = w->g->active;
-    hdi_sweep z = hdi_sweep_open(&w->g->heat, 1, w->g->x, w->g->work);
-    double most = 0;
-    int32_t n_live, k = 0, q, v, i;
-    z.active = active;
-    n_live = hdi_geo_up(w, &z);
-    z.backward = 1;
-    for (w->n_fronts = 0; n_live > 0;) {
-        v = w->live[--n_live];
-        if (s->parent[v] >= 0 && active[s->parent[v]]) continue;     /* it came with its parent */
-        for (w->front[w->n_fronts++] = v; k < w->n_fronts; k++) {
-            v = w->front[k];
-            hdi_sweep_front(&z, v);
-            active[v] = 1;
-            for (i = s->super[v]; i < s->super[v + 1]; i++)
-                if (!w->g->mark[i]) most = hdi_max(most, fabs(w->g->x[i]));
-            for (q = s->kid_ptr[v]; q < s->kid_ptr[v + 1]; q++)
-                if (active[s->kid[q]] || hdi_geo_warm(w->g, s->kid[q])) w->front[w->n_fronts++] = s->kid[q];
-        }
-    }
-    while (k > 0) active[w->front[--k]] = 0;
-    return most;
 }
 
 /* Adds to g->b what lies beyond |u| >= least, stage by stage, with u in g->x. Where heat ends for good (the
  * component ends, or weights are zero), the rest has no direction. */
 static hd_status hdi_geo_further(hd_geodesic *g, double least, int32_t *n_stages, hd_error *e) {
     hdi_scope s = hdi_scope_begin(g->ctx, e);
-    hdi_geo_far w;
-    int32_t k, faint = hdi_geo_far_begin(&w, g, &s) >= 0;
-    while (faint && hdi_geo_border(&w, least) && hdi_progress(g->ctx, "solve", 0.5, e) >= 0) {
-        least = hdi_geo_stage(&w) * HDI_GEO_FAINT;
+    double *f = HDI_TAKE(&s, double, 2 * (uint64_t)g->n_active), most;
+    char *wanted = HDI_TAKE(&s, char, g->sym.n_super);
+    int32_t i, faint = e->status >= 0;
+    memset(g->mark, 0, (size_t)g->n_active);
+    while (faint && hdi_geo_border(g, least, f, wanted) && hdi_progress(g->ctx, "solve", 0.5, e) >= 0) {
+        hdi_sweep z = hdi_sweep_open(&g->heat, 1, g->x, g->work);
+        z.active = g->active;
+        z.wanted = wanted;
+        hdi_sweep_run(&z, g->ctx);
+        for (i = 0, most = 0; i < g->n_active; i++) most = hdi_max(most, g->mark[i] ? 0 : fabs(g->x[i]));
+        least = most * HDI_GEO_FAINT;
+        faint = least > DBL_MIN && hdi_geo_divergence(g, 1, g->x, &least, g->mark, NULL, g->b);
         ++*n_stages;
-        for (k = 0, faint = 0; k < w.n_fronts && least > DBL_MIN; k++)
-            faint |= hdi_geo_divergence(g, hdi_geo_part(g->face_ptr, w.front[k]), 1, g->x, &least, g->mark,
-                                        NULL, g->b);
     }
     return hdi_scope_end(&s);
 }
@@ -23791,13 +23413,12 @@ static hd_status hdi_geo_solve(hd_geodesic *g, const hdi_geo_source *s, int32_t 
     const size_t size = (size_t)k * (size_t)g->n_active * sizeof(double);
     double *x = n > 1 ? g->wide_x : g->x, *b = n > 1 ? g->wide_b : g->b;
     double least[HDI_GEO_WIDE], heat[HDI_GEO_WIDE];
-    const hdi_geo_range faces = {0, g->n_faces};
     int32_t c, n_stages = 1;
     hdi_geo_heat(g, s, n, k, x, b, rep ? heat : NULL);
     for (c = 0; c < k; c++) least[c] = c < n ? hdi_geo_least(g, s + c, k, x + c) : DBL_MIN;
     if (s->n > 1) memcpy(g->first, x, size);
     memset(b, 0, size);
-    *faint = hdi_geo_divergence(g, faces, k, x, least, NULL, s->items, b);
+    *faint = hdi_geo_divergence(g, k, x, least, NULL, s->items, b);
     if (n == 1 && *faint && hdi_geo_further(g, least[0], &n_stages, e) < 0) return e->status;
     if (rep) memcpy(x, b, size);
     for (c = 0; c < g->n_components; c++)
@@ -23817,7 +23438,7 @@ static hd_status hdi_geo_alone(hd_geodesic *g, const hdi_geo_source *s, hd_geode
                                hd_error *e) {
     int faint;
     if (hdi_geo_values_room(g, s->items ? s->items->n : s->n, e) < 0) return e->status;
-    if (s->n > 1 && !g->first) g->first = hdi_geo_array(g, (uint64_t)g->n_active, e);
+    if (s->n > 1 && !g->first) g->first = HDI_TAKE(hdi_geo_keep(g, e), double, g->n_active);
     if (e->status >= 0) (void)hdi_geo_solve(g, s, 1, &faint, rep, e);
     return e->status;
 }
@@ -23829,7 +23450,8 @@ static hd_status hdi_geo_batch(hd_geodesic *g, const hdi_geo_source *s, int32_t 
     const uint64_t size = HDI_GEO_WIDE * (uint64_t)g->n_active;
     int faint = 0;
     int32_t c;
-    if (!g->wide_x) g->wide_x = hdi_geo_array(g, 2 * size + hdi_sweep_size(&g->sym, 1, HDI_GEO_WIDE), e);
+    if (!g->wide_x)
+        g->wide_x = HDI_TAKE(hdi_geo_keep(g, e), double, 2 * size + hdi_sweep_size(&g->sym, 1, HDI_GEO_WIDE));
     if (!g->wide_x) return e->status;
     g->wide_b = g->wide_x + size;
     g->wide_work = g->wide_b + size;
@@ -23965,16 +23587,6 @@ static hd_status hdi_geo_create(hd_geodesic **out, const hd_mesh *mesh, const hd
     return c->e->status;
 }
 
-/* What a report says before anything is solved. */
-static void hdi_geo_tell_plan(const hd_geodesic *g, hd_geodesic_report *rep) {
-    rep->t = g->t;
-    rep->h = g->h;
-    rep->n_components = g->n_components;
-    rep->ordering = g->sym.ordering;
-    rep->factor_nnz = g->sym.nnz;
-    rep->factor_flops = (g->border == HD_GEODESIC_BORDER_MEAN ? 3 : 2) * g->sym.flops;
-}
-
 /* Checks the arguments of a query, and fills the report with what the plan says. */
 static hd_status hdi_geo_begin(hd_geodesic *g, const hd_sources *sources, const double *D, size_t *ldd,
                                hd_geodesic_report *rep, hd_error *err, hdi_call *c) {
@@ -23986,7 +23598,14 @@ static hd_status hdi_geo_begin(hd_geodesic *g, const hd_sources *sources, const 
     if (!HDI_HAS_GEODESIC) return HDI_LEFT_OUT(c->e, GEODESIC, "geodesic distances");
     if (!g || !sources || (sources->count > 0 && !D)) return hdi_missing(c->e);
     if (!g->ready) return hdi_fail(c->e, HD_ERR_ARGUMENT, "geodesic: the last update failed");
-    if (rep) hdi_geo_tell_plan(g, rep);
+    if (rep) {
+        rep->t = g->t;
+        rep->h = g->h;
+        rep->n_components = g->n_components;
+        rep->ordering = g->sym.ordering;
+        rep->factor_nnz = g->sym.nnz;
+        rep->factor_flops = (g->border == HD_GEODESIC_BORDER_MEAN ? 3 : 2) * g->sym.flops;
+    }
     *ldd = *ldd ? *ldd : (size_t)g->n;
     hdi_refuse(*ldd < (size_t)g->n, "geodesic: the leading dimension is smaller than n", c->e);
     return c->e->status < 0 ? c->e->status : hdi_sources_check(sources, g->n, c->e);

@@ -406,8 +406,6 @@ static void check_poles(const hd_laplacian *lap) {
     hd_rational set;
     CHECK(hd_rational_exp(&set, HD_POLES_UNIFORM, 7, &err) == HD_OK && near_to(hd_rational_eval(&set, -1), exp(-1.0)));
     CHECK(hd_rational_exp(&set, HD_POLES_KERNEL, 10, &err) == HD_OK && near_to(hd_rational_eval(&set, -2), exp(-2.0)));
-    if (BUILT(hd_rational_exp(&set, HD_POLES_DIAGONAL, 10, &err), no.diagonal))
-        CHECK(near_to(hd_rational_eval(&set, -2), exp(-2.0)));
     check_filter(lap);
 }
 

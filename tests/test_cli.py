@@ -746,7 +746,7 @@ natural or dirichlet :: info ico.obj --border neumann
 --method takes auto or direct :: {hks ico.obj|distance ico.obj --source 0|sample ico.obj --count 2} --t 1 --method {krylov|iterative}
 --solver :: {hks ico.obj|distance ico.obj --source 0|sample ico.obj --count 2} --t 1 --solver cocg
 --degree takes :: {hks ico.obj|distance ico.obj --source 0|pairs ico.obj --input p.txt|sample ico.obj --count 2} --t 1 --degree 1 \
-    {--poles kernel|--poles diagonal|}
+    {--poles kernel|}
 --definition takes :: {distance ico.obj --source 0|pairs ico.obj --input p.txt|sample ico.obj --count 2} --t 1 --definition paper
 --t takes --definition :: {distance ico.obj --source 0|pairs ico.obj --input p.txt|sample ico.obj --count 2} --t 1 \
     --definition {commute|biharmonic}
@@ -848,7 +848,7 @@ class Usage(Case):
     def test_fuzz(self):
         rnd = random.Random(7)
         pool = ["kernel", "info", "diffuse", "render", "hks", "--definition", "--definition=commute", "--count=3",
-                "--poles=diagonal", "--t",
+                "--poles=kernel", "--t",
                 "--t=", "--t=1h2", "--t=auto:2", "--source", "--source=0", "--source=0,0", "--degree", "5", "-1", "nan",
                 "--json", "--quiet", "-o",
                 "-", "--", "---", "--=", "-=", "=", "--t==1", "fem", "--laplacian=cot", "--poles=kernel", "1,2", "%s%n", "%n",
@@ -1427,10 +1427,10 @@ kernel torus-80-50.obj --source 7,3000 --t 50h2 --method {direct|krylov} --order
     kernel torus-80-50.obj --source 7,3000 --t 50h2 --method {1} :: 1e-9
 kernel parts.obj --source 0,390,490 --t 2h2,900h2 --laplacian {fem|voronoi-cot} --method {direct|krylov|auto|iterative} :: \
     kernel parts.obj --source 0,390,490 --t 2h2,900h2 --laplacian {1} --method iterative --degree 14 --tol 1e-12 :: 1e-7
-hks torus-40-24.obj --t 10h2 --laplacian {fem|voronoi-cot} --method direct {--poles diagonal --degree 12|--poles kernel --degree 12\
+hks torus-40-24.obj --t 10h2 --laplacian {fem|voronoi-cot} --method direct {--poles kernel --degree 12\
 |--poles uniform --degree 14} :: hks torus-40-24.obj --t 10h2 --laplacian {1} :: 1e-7
-distance torus-40-24.obj --source 5 --t 10h2 --laplacian {fem|voronoi-cot} --method direct {--poles diagonal --degree 12\
-|--poles kernel --degree 12|--poles uniform --degree 14} :: distance torus-40-24.obj --source 5 --t 10h2 --laplacian {1} :: 1e-6
+distance torus-40-24.obj --source 5 --t 10h2 --laplacian {fem|voronoi-cot} --method direct {--poles kernel --degree 12\
+|--poles uniform --degree 14} :: distance torus-40-24.obj --source 5 --t 10h2 --laplacian {1} :: 1e-6
 kernel torus-40-24.obj --source 9 --t 30h2 --method direct --poles {kernel --degree 10|kernel --degree 13|kernel --degree 14\
 |uniform --degree 12|uniform --degree 14} :: kernel torus-40-24.obj --source 9 --t 30h2 --method krylov --tol 1e-12 :: 1e-7
 kernel torus-40-24.obj --source 7,800 --t 2h2,50h2 --method {direct|krylov|auto|iterative} --simd {avx2|avx512|auto} :: \
@@ -1878,7 +1878,7 @@ diffuse patch-9.off --input ones-100.txt --t 2 --poles uniform --degree 7 --solv
 kernel torus-40-24.obj --source 9 --t 30h2 --method direct --poles kernel --degree 13 :: poles=kernel degree=13
 kernel torus-40-24.obj --source 9 --t 30h2 {--degree 9|--poles kernel} :: method=direct/iterative
 hks torus-40-24.obj --t 10h2 --method direct --poles uniform --degree 14 :: poles=uniform degree=14
-distance torus-40-24.obj --source 5 --t 10h2 :: poles=diagonal
+distance torus-40-24.obj --source 5 --t 10h2 :: poles=kernel
 distance torus-40-24.obj --source 3,700,3 --t 9h2,1h2,3h2,20h2,2h2,14h2,1.5h2,5h2,7h2,4h2,12h2,17h2 :: degree>14
 hks patch-9.off --t 1 :: kernel=symmetric method=direct
 hks patch-4.obj --t 1e-5,1e3 --scale-invariant 4 :: times#426 error_bound<1e-4

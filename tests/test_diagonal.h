@@ -314,11 +314,11 @@ static void diag_inverse_of_nothing(void) {
 static const case_row diag_rows[] = {
     /* diagonals of both kernels and edges: on a bumpy sphere; a hole, pieces, three sheets at an edge and vertices in no face; slivers */
     {"shape=bumpy/1/5|tangle|sliver/2/3/3 op=fem|vor|cot query=diagonal kernel=operator|symmetric th=0.5|3|30|300|3000|1e4", 1e-6, 0, 0},
-    {"shape=bumpy/1/5|tangle|sliver/2/3/3 op=fem|vor|cot query=diagonal kernel=symmetric|operator poles=diagonal|kernel degree=14 "
+    {"shape=bumpy/1/5|tangle|sliver/2/3/3 op=fem|vor|cot query=diagonal kernel=symmetric|operator poles=kernel degree=14 "
      "th=0.5|3|30|300|3000|1e4", 3e-7, 0, 0},
-    {"shape=bumpy/1/5|tangle|sliver/2/3/3 op=fem|vor query=diagonal kernel=operator|symmetric poles=diagonal|uniform degree=10 th=0.5|30|3000",
+    {"shape=bumpy/1/5|tangle|sliver/2/3/3 op=fem|vor query=diagonal kernel=operator|symmetric poles=kernel|uniform degree=10 th=0.5|30|3000",
      1e-2, 0, 0},
-    {"shape=bumpy/1/5|tangle op=fem|vor query=diagonal kernel=operator|symmetric poles=diagonal|uniform degree=4 th=0.5|30|3000", 0, 0, 21},
+    {"shape=bumpy/1/5|tangle op=fem|vor query=diagonal kernel=operator|symmetric poles=kernel|uniform degree=4 th=0.5|30|3000", 0, 0, 21},
     {"shape=soup/12/3 op=fem query=diagonal kernel=operator|symmetric th=0.5|3|30|300", 1e-6, 0, 0},
     {"shape=leak/30/0.01|drain/30/0.5|tree/30/3 op=I|diag|tri query=diagonal kernel=operator|symmetric th=0.5|3|10", 1e-5, 0, 0},
     {DIAG_PAIRS "diagonal kernel=operator|symmetric times=5 span=1000 th=1 seed=0|1", 1e-6, 0, 0},
@@ -329,7 +329,7 @@ static const case_row diag_rows[] = {
     /* distances (without a bound of each where the source has no mass), and pairs, of which a few may be near each other */
     {DIAG_PAIRS "distance kind=classical|weighted|commute|biharmonic k=4 th=0.7|5|40", 1e-6, 0, 4},
     {DIAG_PAIRS "distance kind=classical|weighted k=4 times=3 span=50 th=0.7 seed=0|1", 1e-6, 0, 4},
-    {DIAG_PAIRS "distance kind=classical|weighted k=4 poles=diagonal degree=14 th=0.7|2", 1e-5, 0, 0},
+    {DIAG_PAIRS "distance kind=classical|weighted k=4 poles=kernel degree=14 th=0.7|2", 1e-5, 0, 0},
     {DIAG_PAIRS "distance kind=classical|weighted k=4 poles=uniform|kernel degree=8 th=0.7|2|40", 0, 0, 19},
     {DIAG_PAIRS "pairs kind=classical|weighted|commute|biharmonic k=40 method=auto|direct th=0.7|4|40 seed=1|2",
      3e-6, 0, 8},
@@ -341,7 +341,7 @@ static const case_row diag_rows[] = {
 static const case_row diag_level_rows[] = {
     {"shape=bumpy/1/5|grid/9/2 op=fem|vor query=diagonal kernel=operator|symmetric method=direct th=0.7|10", 1e-6, 0, 0},
     {"shape=bumpy/1/5|grid/9/2 op=fem|vor query=distance kind=classical|weighted method=direct k=9 times=1|3 span=50 th=0.7|10", 1e-6, 0, 0},
-    {"shape=bumpy/1/5|grid/9/2 op=fem|vor query=distance kind=classical|weighted k=9 poles=diagonal degree=14 th=0.7|2", 1e-5, 0, 0},
+    {"shape=bumpy/1/5|grid/9/2 op=fem|vor query=distance kind=classical|weighted k=9 poles=kernel degree=14 th=0.7|2", 1e-5, 0, 0},
     {"shape=bumpy/1/5|grid/9/2 op=fem|vor query=apply|column|entries method=direct k=9 th=0.7|10", 2e-6, 0, 0},
 };
 
@@ -359,7 +359,7 @@ static void diag_cases(void) {
 static void diag_reports(void) {
     static const char *const pairs[3] = {"bumpy/2/5 fem", "tangle vor", "leak/30/0.01 diag"};
     static const struct { const char *words; int32_t degree; } plans[4] = {
-        {"", 0}, {"poles=diagonal degree=14", 14}, {"poles=kernel degree=9", 9}, {"poles=uniform degree=10", 10}};
+        {"", 0}, {"poles=kernel degree=14", 14}, {"poles=kernel degree=9", 9}, {"poles=uniform degree=10", 10}};
     int q, k;
     for (q = 0; q < 12; q++) {
         const hd_laplacian *lap = kit_pair(pairs[q / 4]);
@@ -632,7 +632,7 @@ static void diag_samples(void) {
         trial_work *w = case_truth_of(texts[q / 12]);
         const hd_laplacian *lap = w->s->lap;
         const double t = when[q / 4 % 3] * w->s->unit;
-        hd_heat *heat = kit_heat(lap, q / 4 % 3 ? "" : "poles=diagonal degree=14");
+        hd_heat *heat = kit_heat(lap, q / 4 % 3 ? "" : "poles=kernel degree=14");
         double *far = KIT_NEW(double, lap->n * lap->n), off;
         int32_t one = -9;
         kind = q % 4;
@@ -670,32 +670,6 @@ static void diag_samples_lost(void) {
 }
 
 /* ---- sets, orderings, threads ---- */
-
-/* Sets made for diagonals: c(0) = 1, and the error under their weight as promised. */
-static void diag_sets(void) {
-    hd_rational set;
-    hd_error e;
-    int32_t r, k;
-    for (r = 2; r <= 14; r++) {
-        double weighted = 0, plain = 0;
-        CHECK(hd_rational_exp(&set, HD_POLES_DIAGONAL, r, &e) == HD_OK && set.kind == HD_POLES_DIAGONAL && set.degree == r &&
-              set.n_poles == (r + 1) / 2 && set.a0 == 0);
-        CHECK_MSG(fabs(hd_rational_eval(&set, 0) - 1) < 2e-15 * pow(1.5, r), "degree %d: c(0) - 1 = %g", (int)r,
-                  hd_rational_eval(&set, 0) - 1);
-        for (k = 0; k <= 10000; k++) {
-            const double x = pow(10, -6 + k * 1e-3), error = fabs(exp(-x) - hd_rational_eval(&set, -x));
-            plain = fmax(plain, error);
-            if (x < 1e4) weighted = fmax(weighted, (1 + x) * (1 + 4 * x / (x + 1000)) * error);
-        }
-        CHECK_MSG(plain <= set.max_error + 1e-14 * pow(1.43, r) && plain >= 0.85 * set.max_error - 2e-15,
-                  "degree %d: error %g, promised %g", (int)r, plain, set.max_error);
-        CHECK_MSG(weighted <= set.max_weighted_error + 1e-13 * pow(1.43, r) && weighted >= 0.85 * set.max_weighted_error - 2e-15,
-                  "degree %d: weighted error %g, promised %g", (int)r,
-                  weighted, set.max_weighted_error);
-    }
-    CHECK(hd_rational_exp(&set, HD_POLES_DIAGONAL, 1, &e) == HD_ERR_ARGUMENT && hd_rational_exp(&set, HD_POLES_DIAGONAL, 15,
-        &e) == HD_ERR_ARGUMENT);
-}
 
 /* The elimination order makes no difference, whoever gives it. (Threads make none at all.) */
 static void diag_orders(void) {
@@ -949,7 +923,6 @@ static void test_diagonal(void) {
     diag_pairs_method();
     diag_samples();
     diag_samples_lost();
-    diag_sets();
     diag_orders();
     diag_threads();
     diag_refused();

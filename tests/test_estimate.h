@@ -448,7 +448,7 @@ static void est_sweep_one(hd_heat *heat, const hd_heat_opts *o, hd_query query, 
 
 /* The plans of the sweep, in words of tools/trials.h; the last has a set of its own. */
 static const char *const est_plans[] = {
-    "", "method=direct", "method=iterative", "method=krylov", "tol=1e-8", "poles=uniform", "poles=kernel degree=6", "poles=diagonal",
+    "", "method=direct", "method=iterative", "method=krylov", "tol=1e-8", "poles=uniform", "poles=kernel degree=6",
     "degree=7 method=direct", "method=iterative precond=none", "method=iterative precond=jacobi solver=minres",
     "method=iterative solver=lanczos", "tol=1e-6 method=direct", "",
 };

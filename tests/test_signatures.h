@@ -59,14 +59,13 @@ static void sign_traces(const trial_work *w, double most) {
 
 /* By each kind of poles. */
 static void sign_sets(const trial_work *w) {
-    static const char *const plans[3] = {"method=direct poles=uniform degree=14", "method=direct poles=kernel degree=14",
-        "method=direct poles=diagonal degree=14"};
-    static const hd_pole_kind kinds[3] = {HD_POLES_UNIFORM, HD_POLES_KERNEL, HD_POLES_DIAGONAL};
+    static const char *const plans[2] = {"method=direct poles=uniform degree=14", "method=direct poles=kernel degree=14"};
+    static const hd_pole_kind kinds[2] = {HD_POLES_UNIFORM, HD_POLES_KERNEL};
     double t[SIGN_TIMES], Z[3], bound[3];
     hd_report rep;
     int set, k;
     sign_times(w, t);
-    for (set = 0; set < 3; set++) {
+    for (set = 0; set < 2; set++) {
         CHECK(hd_heat_diagonal(kit_heat(sign_pair(w), plans[set]), HD_KERNEL_OPERATOR, 3, t, NULL, 0, Z, bound, &rep, NULL) >= 0 && rep.poles == kinds[set]);
         for (k = 0; k < 3; k++) {
             const double want = sign_trace(w, t[k]);

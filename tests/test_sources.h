@@ -448,7 +448,7 @@ static void src_samples(trial_work *w, int turn) {
     double *near = KIT_NEW(double, n), distance[COUNT], own[COUNT];
     int kind, q;
     for (kind = 0; kind < 4; kind++) {
-        hd_heat *heat = kit_heat(lap, "poles=diagonal degree=14");
+        hd_heat *heat = kit_heat(lap, "poles=kernel degree=14");
         int32_t vertex[COUNT], again[COUNT], v;
         src_room both, alone[2];
         hd_report rep;

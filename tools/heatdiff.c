@@ -302,7 +302,7 @@ static const word LAPLACIANS[] = {
     { "polygon", HD_LAPLACIAN_POLYGON }, { "voronoi-exp", HD_LAPLACIAN_VORONOI_EXP },
     { "exp", HD_LAPLACIAN_EXP }, { NULL, 0 } };
 static const word POLES[] = {
-    { "uniform", HD_POLES_UNIFORM }, { "kernel", HD_POLES_KERNEL }, { "diagonal", HD_POLES_DIAGONAL },
+    { "uniform", HD_POLES_UNIFORM }, { "kernel", HD_POLES_KERNEL },
     { NULL, 0 } };
 static const word METHODS[] = {
     { "auto", HD_METHOD_AUTO }, { "direct", HD_METHOD_DIRECT }, { "krylov", HD_METHOD_KRYLOV },
@@ -871,9 +871,8 @@ static const option_def OPTIONS[] = {
     { "degree", 0, CMD_HEAT, 0, parse_integer, AT(degree), NULL, 1, 14, "R", "1..14",
       "degree of the rational approximation, 1..14 (default: by the\n"
       "error); not for krylov, which has none" },
-    { "poles", 0, CMD_HEAT, 0, parse_words, AT(poles), POLES, 0, 0, "NAME", "uniform, kernel or diagonal",
-      "uniform (default of diffuse, smooth), kernel (of kernel, pairs) or\n"
-      "diagonal (of hks, distance and sample)" },
+    { "poles", 0, CMD_HEAT, 0, parse_words, AT(poles), POLES, 0, 0, "NAME", "uniform or kernel",
+      "uniform (default of diffuse, smooth) or kernel (of all others)" },
     { "tol", 0, CMD_SPECTRUM, 0, parse_tol, 0, NULL, 0, 0, "E", "a number between 0 and 1, such as 1e-10",
       "residuals relative to eigenvalues (1e-10)" },
     { "tol", 0, CMD_HEAT, 0, parse_tol, 0, NULL, 0, 0, "E", "a number between 0 and 1, such as 1e-9",
@@ -1427,7 +1426,7 @@ static int check_options(const options *o)
     if (o->degree == 1 && o->poles != HD_POLES_UNIFORM &&
         (o->poles || !(o->command & (CMD_DIFFUSE | CMD_SMOOTH))))
         return fail(USAGE,
-                    "--degree takes 2..14 with --poles kernel or diagonal, and 1..14 with --poles uniform");
+                    "--degree takes 2..14 with --poles kernel, and 1..14 with --poles uniform");
     if (o->n_meshes > 1 && o->n_meshes != o->n_inputs)
         return fail(USAGE, "--input takes a field for each mesh here: %d are given for %d meshes",
                     o->n_inputs, o->n_meshes);

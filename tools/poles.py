@@ -3,17 +3,16 @@
 
     exp(x) ~ c(x) = a0 + sum_i a_i/(x - theta_i)    for x in (-inf, 0],    e(x) = exp(x) - c(x)
 
-Three families, each with r poles (a real one for odd r, the others in conjugate pairs):
+Two families, each with r poles (a real one for odd r, the others in conjugate pairs):
 
     uniform  r = 1..14   numerator of degree r; minimises max |e(x)|
     kernel   r = 2..14   a0 = 0 and c(0) = 1 exactly; minimises max (1 + |x|) |e(x)|
-    diagonal r = 2..14   the same for max (1 + |x|)(1 + 4 |x|/(|x| + 1000)) |e(x)|
 
 Usage
     poles.py                      print the C table for heatdiff.h
     poles.py --check [heatdiff.h] recompute everything, compare with published values and with the table in the
                                   header (default: the one in the folder above this script), digit by digit
-    --kind uniform|kernel|diagonal, --max-degree R    only these sets, for quick runs
+    --kind uniform|kernel, --max-degree R    only these sets, for quick runs
 
 Needs Python 3 and mpmath (Debian: python3-mpmath). The full run takes about a minute.
 
@@ -21,10 +20,10 @@ Method
     x = -scale (1 - s)/(1 + s) takes s in [-1, 1] to the half line; s = 1 is x = 0 and s = -1 is x = -inf. Both families
     then read: find polynomials p, q in s so that the weighted error
 
-        E(s) = F(s) - g(s) p(s)/q(s),     F = W exp,   W = 1 (uniform) or 1 + |x| (kernel) or as above (diagonal)
+        E(s) = F(s) - g(s) p(s)/q(s),     F = W exp,   W = 1 (uniform) or 1 + |x| (kernel)
 
     alternates as often as it can. g is 1 for uniform sets. For kernel sets c = (1 + s) p/q, which vanishes at -inf and so
-    has no a0, and g = W (1 + s) is a polynomial of degree 1, for diagonal sets a rational function. Remez' second algorithm:
+    has no a0, and g = W (1 + s) is a polynomial of degree 1. Remez' second algorithm:
       1. on a reference s_0 > ... > s_(n-1) solve  F - g p/q = sign_k lambda  (level_reference);
       2. move each reference point to the extremum of E in its own sign run (alternation_of);
       3. repeat until all extrema have the same height.
@@ -64,7 +63,6 @@ DIGITS = 90                            # working precision
 MAX_DEGREE = 14                        # in double precision rounding takes over at 15
 CELLS_PER_EXTREMUM = 12                # grid cells between two neighbouring extrema of the error
 BEGIN, END = '/* poles.py: begin */', '/* poles.py: end */'
-GUARD = '#if HDI_HAS_DIAGONAL', '#endif'
 DECLARATION = 'static const double hdi_rat_table[] = {'
 
 
@@ -138,31 +136,7 @@ class Kernel:
         return mp.fsum(p.multiplicity*mp.re(p.residue) for p in c.poles)
 
 
-class Diagonal(Kernel):
-    """The same with a weight that rises to five times 1 + |x| far out: max (1 + |x|)(1 + 4 |x|/(|x| + 1000))|e(x)|. On a surface eigenvalues are
-    equally dense, so that the error of the kernel's diagonal is the integral of e, to which the tail -sum a_i/x of kernel sets adds its logarithm.
-    This weight costs columns a third and makes the diagonal five times as accurate (r = 9)."""
-    name = 'diagonal'
-    rise, middle = 4, 1000
-
-    @classmethod
-    def weight(cls, x):
-        rise = cls.rise*x/(x - cls.middle)
-        return (1 - x)*(1 + rise), -(1 + rise) - (1 - x)*cls.rise*cls.middle/(x - cls.middle)**2
-
-    @classmethod
-    def weighted_factor(cls, s, scale):
-        near, d_near = Kernel.weighted_factor(s, scale)
-        bottom = scale*(1 - s) + cls.middle*(1 + s)
-        rise, d_rise = 1 + cls.rise*scale*(1 - s)/bottom, -2*cls.rise*cls.middle*scale/bottom**2
-        return near*rise, d_near*rise + near*d_rise
-
-    @classmethod
-    def error_at_infinity(cls, c):
-        return (1 + cls.rise)*Kernel.error_at_infinity(c)
-
-
-PROBLEMS = (Uniform, Kernel, Diagonal)
+PROBLEMS = (Uniform, Kernel)
 
 # multiplicity: 1 for a real pole, 2 for a pole that stands for itself and its conjugate (Im theta > 0)
 Pole = namedtuple('Pole', 'theta residue multiplicity')
@@ -495,11 +469,9 @@ def table_text(sets):
              ' * pole: the real pole first (odd r), then one of each conjugate pair by ascending Im theta. */',
              DECLARATION]
     for one in sets:
-        if one.problem.name == 'diagonal' and GUARD[0] not in lines:   # the last sets, which smaller builds leave out
-            lines.append(GUARD[0])
         rows = ['    ' + ', '.join('%.17g' % v for v in row) + ',' for row in set_rows(one)]
         lines += ['%s   /* %s r = %d */' % (rows[0], one.problem.name, one.degree)] + rows[1:]
-    return '\n'.join(lines + ([GUARD[1]] if GUARD[0] in lines else []) + ['};', END])
+    return '\n'.join(lines + ['};', END])
 
 
 def parse_table(path):
@@ -510,7 +482,6 @@ def parse_table(path):
         raise ValueError('%s: the lines %s and %s must occur once each' % (path, BEGIN, END))
     body = text[text.index(BEGIN) + len(BEGIN):text.index(END)]
     body = re.sub(r'/\*.*?\*/', ' ', body, flags=re.S)
-    body = re.sub(r'^#.*$', ' ', body, flags=re.M)
     if body.count(DECLARATION) != 1:
         raise ValueError('%s: no "%s" between the markers' % (path, DECLARATION))
     body = body[body.index(DECLARATION) + len(DECLARATION):]

@@ -575,7 +575,7 @@ static const char *const trial_kinds[] = {"classical", "weighted", "commute", "b
 static const char *const trial_methods[] = {"auto", "iterative", "direct", "krylov", NULL};
 static const char *const trial_solvers[] = {"auto", "cocg", "no number", "minres", "lanczos", NULL};
 static const char *const trial_preconds[] = {"auto", "none", "jacobi", "ssor", "ildl", "mildl", NULL};
-static const char *const trial_poles[] = {"default", "uniform", "kernel", "own", "diagonal", NULL};
+static const char *const trial_poles[] = {"default", "uniform", "kernel", "own", NULL};
 static const char *const trial_owns[] = {"none",   "copy",      "copy0", "loose", "near",
                                         "random", "resolvent", "a0", "packs", "fitted", NULL};
 static const char *const trial_fields[] = {"random", "smooth",    "nearly", "huge",     "tiny",

@@ -70,7 +70,7 @@ class Heat(Object):
     method          'auto', 'direct' (many columns; signatures, distances), 'krylov' (few columns, many times), 'iterative'
     solver          of iterations: 'auto', 'cocg', 'minres', 'lanczos'
     precond         of iterations: 'auto', 'none', 'jacobi', 'ssor', 'ildl', 'mildl'
-    poles           'default', 'uniform', 'kernel', 'diagonal'; training: 'kernel' and a degree
+    poles           'default', 'uniform', 'kernel'; training: 'kernel' and a degree
     degree          of the rational function, 1 to 14; 0: chosen, for errors near 1e-8
     tol             of the solver; 0: 1e-9
     max_iterations  0: 20000
