@@ -17656,8 +17656,6 @@ struct hd_heat {
     /* of rounding relative to the answer, above which the status warns: tol, or by default */
     double limit;
     uint64_t no_factors_limit;   /* the byte limit that factors did not fit */
-    /* auto: the time asked for last without factors of its poles, and the cost of these calls by the model */
-    double habit_t, habit_spent;
     int32_t spare;               /* of a call that exceeded the byte limit: an hdi_spare */
     hd_rational own_set;
     hd_rational *sets;           /* [n_sets] where these are several; own_set is the first */
@@ -18205,8 +18203,6 @@ typedef struct hdi_heat_call {
     int32_t n_times;
     const int32_t *time_column;  /* which of ask.t each is; NULL: in order */
     hd_method method;
-    double cost;                 /* of this method by the model, where auto picks by it; else 0 */
-    int32_t by_habit;            /* auto picks direct because of the calls before */
     int32_t forced;              /* auto takes iterations because of the byte limit */
     int32_t rate;                /* the derivative in t is asked for: methods give t times that */
     hd_solver solver;
@@ -18265,7 +18261,6 @@ static hd_status hdi_heat_renew(hd_heat *heat, hd_error *e) {
     const hd_laplacian *lap = heat->source;
     int32_t i;
     if (heat->version == lap->version) return HD_OK;
-    heat->habit_spent = 0;
     if (!heat->fill) heat->fill = HDI_NEW(heat->ctx, int64_t, lap->n_active, e);
     if (!heat->fill || hdi_heat_sums(heat, e) < 0) return e->status;
     hdi_heat_measure_pair(heat);
@@ -19063,19 +19058,16 @@ static int hdi_heat_at_hand(const hdi_heat_call *h) {
     return h->set || h->heat->opts.rational || m->set.kind == hdi_heat_kind(h);
 }
 
-/* Fields and columns at the times of the call. *factors: the seconds of what later calls at the same t do
- * without. */
-static void hdi_direct_cost(const hdi_heat_call *h, hd_cost *c, double *factors) {
-    const hdi_fill f = hdi_heat_fill(h->heat, &h->heat->elim);
+/* Fields and columns at the times of the call. */
+static void hdi_direct_cost(const hdi_heat_call *h, hd_cost *c) {
     hd_rational set;
+    double factors;
     if (hdi_heat_set_of(h, HDI_DEGREE_DIRECT, &set) < 0) return;
-    *factors = h->n_times * hdi_direct_set(h, &set, HDI_AFTER_BOUND, 0, h->ask.k, 0, c);
+    factors = hdi_direct_set(h, &set, HDI_AFTER_BOUND, 0, h->ask.k, 0, c);
     c->flops *= h->n_times;
-    c->seconds = c->seconds * h->n_times + HDI_FRESH_BYTE * c->bytes + f.analysis;
-    *factors += HDI_FRESH_BYTE * c->bytes + f.analysis;
-    if (!hdi_heat_at_hand(h)) return;
-    c->seconds -= *factors;
-    *factors = 0;
+    if (hdi_heat_at_hand(h)) c->seconds -= factors;
+    else c->seconds = c->seconds * h->n_times + HDI_FRESH_BYTE * c->bytes +
+                      hdi_heat_fill(h->heat, &h->heat->elim).analysis;
 }
 
 /* The pole set and its factors. What follows them is asked for too, so that nothing is begun that the byte
@@ -19491,9 +19483,8 @@ static hd_status hdi_heat_by_krylov(hdi_heat_call *h) {
 
 /* ---- choice of the method ---- */
 
-/* What each method would take, by hd_method, and the part of direct that later calls at the same t do
- * without. */
-typedef struct hdi_costs { hd_cost by[HD_METHOD_KRYLOV + 1]; double factors; } hdi_costs;
+/* What each method would take, by hd_method. */
+typedef struct hdi_costs { hd_cost by[HD_METHOD_KRYLOV + 1]; } hdi_costs;
 
 /* Those of the methods that the call may take. h->t is the last of its times. */
 static hdi_costs hdi_heat_costs(const hdi_heat_call *h) {
@@ -19502,7 +19493,7 @@ static hdi_costs hdi_heat_costs(const hdi_heat_call *h) {
     hdi_costs all;
     memset(&all, 0, sizeof all);
     if (HDI_HAS_ITERATIVE) hdi_iterative_cost(h, all.by + HD_METHOD_ITERATIVE);
-    if (HDI_HAS_POLE_FACTORS && factors) hdi_direct_cost(h, all.by + HD_METHOD_DIRECT, &all.factors);
+    if (HDI_HAS_POLE_FACTORS && factors) hdi_direct_cost(h, all.by + HD_METHOD_DIRECT);
     if (HDI_HAS_DIRECT && factors && !heat->poles_asked)
         hdi_krylov_cost(h, all.by + HD_METHOD_KRYLOV);
     return all;
@@ -19513,52 +19504,30 @@ static hdi_elim *hdi_heat_analysis(const hdi_heat_call *h) {
     return h->method == HD_METHOD_KRYLOV ? hdi_krylov_elim(h) : &h->heat->elim;
 }
 
-/* Have calls at this t cost as much as the factors of the poles, and would these be faster from now on?
- * Whoever buys when the rent paid amounts to the price never pays more than twice the least (ski rental;
- * Karlin, Manasse, Rudolph, Sleator 1988). The model counts, not a clock: methods are the same everywhere. */
-static int hdi_heat_habit(const hdi_heat_call *h, const hdi_costs *c, double room) {
-    const hd_cost *direct = c->by + HD_METHOD_DIRECT;
-    return h->method != HD_METHOD_DIRECT && direct->possible && direct->bytes <= room && h->n_times == 1 &&
-           h->t == h->heat->habit_t && h->heat->habit_spent >= c->factors &&
-           direct->seconds - c->factors < h->cost;
-}
-
-/* Notes what a call has cost. Factors that are made begin the count anew. */
-static void hdi_heat_spend(hdi_heat_call *h) {
-    hd_heat *heat = h->heat;
-    if (heat->opts.method != HD_METHOD_AUTO || h->t == 0 || h->equal) return;
-    if (h->method == HD_METHOD_DIRECT || heat->habit_t != h->t) heat->habit_spent = 0;
-    heat->habit_t = h->t;
-    if (h->method != HD_METHOD_DIRECT) heat->habit_spent += h->cost;
-}
-
 /* Takes the cheapest method that fits into so many bytes, or iterations. */
 static void hdi_heat_cheapest(hdi_heat_call *h, const hdi_costs *c, double room) {
     const hd_cost *by = c->by;
     int32_t q, fits = 0;
-    double least = HUGE_VAL;
+    double least = HUGE_VAL, cost = HUGE_VAL;
+    if (by[HD_METHOD_ITERATIVE].possible) cost = by[HD_METHOD_ITERATIVE].seconds;
     h->method = HD_METHOD_ITERATIVE;
-    h->cost = by[HD_METHOD_ITERATIVE].possible ? by[HD_METHOD_ITERATIVE].seconds : HUGE_VAL;
     for (q = HD_METHOD_KRYLOV; q >= HD_METHOD_DIRECT; q--) {
         if (!by[q].possible) continue;
         least = hdi_min(least, by[q].seconds);
         if (by[q].bytes > room) continue;
         fits = 1;
-        if (by[q].seconds >= h->cost) continue;
+        if (by[q].seconds >= cost) continue;
         h->method = (hd_method)q;
-        h->cost = by[q].seconds;
+        cost = by[q].seconds;
     }
-    h->forced |= room < HUGE_VAL && h->method == HD_METHOD_ITERATIVE && h->cost > least;
-    h->by_habit = hdi_heat_habit(h, c, room);
-    if (h->by_habit) h->method = HD_METHOD_DIRECT;
+    h->forced |= room < HUGE_VAL && h->method == HD_METHOD_ITERATIVE && cost > least;
     h->rep->reason =
-        h->by_habit ? "calls at this t have cost as much as the factors of the poles, which serve more"
-        : h->method == HD_METHOD_KRYLOV
+        h->method == HD_METHOD_KRYLOV
           ? (h->n_times > 1 ? "one real factor serves many times"
                             : "few columns: one real factor costs less than those of the poles")
         : h->method == HD_METHOD_DIRECT
           ? (h->ask.k > 1 ? "many columns: solves with the factors of the poles cost least"
-             : c->factors == 0 ? "the factors of the poles are there from calls before"
+             : hdi_heat_at_hand(h) ? "the factors of the poles are there from calls before"
                                : "the factors of the poles cost least")
         : fits ? "iterations cost less than a factorisation" : "factors would not fit the byte limit";
 }
@@ -19584,8 +19553,6 @@ static hd_status hdi_heat_pick_by_cost(hdi_heat_call *h) {
 static hd_status hdi_heat_pick(hdi_heat_call *h) {
     const hd_heat *heat = h->heat;
     h->method = heat->opts.method;
-    h->cost = 0;
-    h->by_habit = 0;
     h->rep->reason = "asked for";
     if (h->method != HD_METHOD_AUTO) return HD_OK;
     h->method = HD_METHOD_DIRECT;
@@ -20190,12 +20157,8 @@ static int hdi_heat_retreat(hdi_heat_call *h) {
     if (HDI_HAS_ITERATIVE && automatic && over && (heat->elim.ctx || heat->few.ctx) && !h->forced &&
         !h->degree) {
         hdi_heat_free_factors(heat);
-        if (h->by_habit) {                       /* the methods before have fitted, and do again */
-            heat->habit_spent = -DBL_MAX;
-        } else {
-            heat->no_factors = 1;
-            heat->no_factors_limit = heat->ctx->byte_limit;
-        }
+        heat->no_factors = 1;
+        heat->no_factors_limit = heat->ctx->byte_limit;
     } else if (HDI_HAS_POLE_FACTORS &&
                (automatic ? failed && h->method == HD_METHOD_ITERATIVE && !heat->iterations_asked
                           : over && h->method == HD_METHOD_DIRECT)) {
@@ -20300,7 +20263,6 @@ static hd_status hdi_heat_answer(hdi_heat_call *h) {
 /* Answers the time under way by the method picked. If factors do not fit the byte limit, iterations do. */
 static hd_status hdi_heat_chosen(hdi_heat_call *h) {
     while (hdi_heat_answer(h) < 0 && hdi_heat_retreat(h)) {}
-    if (h->e->status >= 0) hdi_heat_spend(h);
     if (h->e->status >= 0 && h->ask.list) hdi_ledger_close(h->ask.list->ledger + h->now, h->rep);
     return h->e->status;
 }
@@ -20650,7 +20612,6 @@ static void hdi_heat_take_set(hd_heat *heat, const hd_rational *set) {
     o->poles = HD_POLES_DEFAULT;
     o->degree = 0;
     heat->poles_asked = set != NULL;
-    heat->habit_spent = 0;
 }
 
 /* ==== [27] kernel ====
