@@ -17633,13 +17633,6 @@ static void hdi_modes_free(hdi_modes *x, hd_context *ctx) {
     memset(x, 0, sizeof *x);
 }
 
-/* Measures of the pair that the steps of iterations depend on, in units of the scaled pair. */
-typedef struct hdi_steps_scales {
-    double lowest;       /* about the smallest eigenvalue that is not zero */
-    double local;        /* L's diagonal over the masses, a mean of that: about 4 over squared edge lengths */
-    double obtuse;       /* what L has above zero beside its diagonal, relative to it, mean of the rows */
-} hdi_steps_scales;
-
 /* How a call goes on that exceeded the byte limit: without what is optional, that is eigenpairs and poles
  * that times share; besides by the direct method with the fewest poles. */
 enum { HDI_SPARE_OPTIONS = 1, HDI_SPARE_POLES };
@@ -17674,7 +17667,7 @@ struct hd_heat {
     hdi_lane *lane;              /* [n_lanes] work arrays, kept from call to call; HDI_LANES at most */
     int32_t n_lanes;
     double lambda_max;           /* bound on the largest eigenvalue of B^-1 L */
-    hdi_steps_scales scales;
+    double local;                /* mean of the diagonal of B^-1 L: about 4 over squared edge lengths */
     double *noise;               /* [n] weights of rounding of a product with L, in lap's order */
     /* conserving pairs: a constant's change in unit time, were row sums not taken as zero */
     double drift;
@@ -18002,141 +17995,58 @@ static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const 
 }
 
 /* ---- what iterations take ---- */
-/* Steps of Lanczos for the exponential. A region of the spectrum that reaches up to lambda takes about 3
- * sqrt(t lambda) steps for nine digits (Hochbruck, Lubich 1997), fewer for times beyond that of the smallest
- * eigenvalue. The few eigenvalues far above the mean of the diagonal, of thin triangles, do not count: they
- * are found one by one.
- * Steps of COCG with the modified factors: Gustafsson's 1978 bound has the fourth root of t lambda, that of
- * the unmodified ones the square root. What is measured grows with a power between them. Where edges have
- * weights of the wrong sign the factors are poor.
- * Constants were fitted to meshes of 2K to 10K vertices with t from 0.1 h^2 to 1e5 h^2: balls, tori, grids
- * with jitter, strips, unevenly sampled ones, noise, thin triangles made Delaunay, points. There the model
- * has 0.35 to 2.8 times the steps that Lanczos takes, and 0.4 to 2.8 times those of COCG; 0.6 to 1.7 times
- * where triangles are fair. Thin triangles with obtuse angles may take ten times more, or never end. */
-#define HDI_LANCZOS_GROWTH 3.3
-#define HDI_LANCZOS_SPREAD 16
-#define HDI_LANCZOS_LOWEST 0.22
-#define HDI_LANCZOS_LEAST 3
-#define HDI_COCG_GROWTH 2.4
-#define HDI_COCG_POWER 0.43
-#define HDI_COCG_LOWEST 1.7
-#define HDI_COCG_FULL_B 2          /* more steps where B is full */
-#define HDI_COCG_WIDE 0.65         /* rows of more than seven entries leave less out */
-#define HDI_COCG_OBTUSE 80
-#define HDI_STEPS_DIGITS 9         /* of tol in those runs */
 
-/* The smallest eigenvalue that is not zero, about: of a string as long as the shape or, without coordinates,
- * of a sphere of its area. */
-static double hdi_steps_lowest(const hd_laplacian *lap) {
-    double extent = 0, mass = 0, lowest;
-    int32_t i, c;
-    for (i = 0; i < lap->n_active; i++) mass += lap->mass[i];
-    for (c = 0; c < 3 && lap->xyz; c++) {
-        double low = HUGE_VAL, high = -HUGE_VAL;
-        for (i = 0; i < lap->n_active; i++) {
-            low = hdi_min(low, lap->xyz[3 * (size_t)i + (size_t)c]);
-            high = hdi_max(high, lap->xyz[3 * (size_t)i + (size_t)c]);
-        }
-        extent = hdi_max(extent, high - low);
-    }
-    lowest = lap->xyz ? 9.87 / (extent * extent) : 25.1 * lap->n_components / mass;
-    return hdi_finite(lowest) ? hdi_max(0, lowest) : 0;
-}
+/* Of one quiet core: flops per second with packs and with real fronts; bytes per second that stream from
+ * memory; seconds for a byte of fresh memory, which the system clears, and for a row of an ordering with its
+ * analysis. Measured on meshes of 10K to 1M vertices. */
+#define HDI_RATE_PACK 70e9
+#define HDI_RATE_REAL 25e9
+#define HDI_RATE_BYTES 15e9
+#define HDI_FRESH_BYTE 0.4e-9
+#define HDI_ROW_ANALYSIS 0.8e-6
 
-/* Fills the scales; heat->lambda_max is there. */
-static void hdi_steps_measure(hd_heat *heat) {
-    const hd_laplacian *lap = heat->source;
-    const double n = lap->n_active;
-    hdi_steps_scales *s = &heat->scales;
+/* L's diagonal over the masses. The mean is one of fourth roots, which thin triangles do not spoil. */
+static double hdi_steps_local(const hd_laplacian *lap) {
+    double sum = 0;
     int32_t i;
-    int64_t p;
-    memset(s, 0, sizeof *s);
     for (i = 0; i < lap->n_active; i++) {
-        double diag = 0, positive = 0;
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
-            if (lap->L.col[p] == i) diag = lap->L.val[p];
-            else positive += hdi_max(0, lap->L.val[p]);
-        }
-        if (diag > 0) {
-            const double mass = lap->mass[i] > 0 ? lap->mass[i] : lap->b_diag[i];
-            s->local += sqrt(sqrt(diag / mass)) / n;
-            s->obtuse += hdi_min(1, positive / diag) / n;
-        }
+        const double mass = lap->mass[i] > 0 ? lap->mass[i] : lap->b_diag[i];
+        sum += sqrt(sqrt(hdi_max(0, hdi_row_diagonal(lap, i)) / mass)) / lap->n_active;
     }
-    s->local = s->local * s->local * s->local * s->local / heat->scale;
-    s->lowest = hdi_steps_lowest(lap) / heat->scale;
+    return sum * sum * sum * sum;
 }
 
-/* Digits asked for, relative to those of the runs that the constants are fitted to. */
-static double hdi_steps_digits(const hd_heat *heat) {
-    return hdi_max(0.1, -log10(heat->opts.tol) / HDI_STEPS_DIGITS);
+/* Steps of Lanczos for the exponential, or those of COCG for all poles together. The former grow with the
+ * root of t lambda (Hochbruck, Lubich 1997), the latter with less (Gustafsson 1978), up to the time of the
+ * smallest eigenvalue, which is about lambda/n. Solutions at hand give a good start: twice the poles do not
+ * take twice as many. On fair triangles this is within 2; thin ones with obtuse angles may take ten times
+ * more, or never end. */
+static double hdi_steps(const hd_heat *heat, hd_solver solver, double t, int32_t poles) {
+    const double n = heat->source->n_active, digits = hdi_max(0.1, -log10(heat->opts.tol) / 9);
+    const double x = hdi_min(t * heat->local, n);
+    const double each = solver == HD_SOLVER_MINRES ? 3.5 : hdi_preconds[heat->opts.precond].steps;
+    if (solver == HD_SOLVER_LANCZOS) return 3 + hdi_min(8 * sqrt(x * digits), n);
+    return hdi_min(each * digits * sqrt(poles / 5.0) * (5 + 14 * pow(x, 0.4)),
+                   (double)heat->opts.max_iterations * poles);
 }
 
-static double hdi_lanczos_steps(const hd_heat *heat, double t) {
-    const hdi_steps_scales *s = &heat->scales;
-    const double bounded = hdi_steps_digits(heat) / (1 / hdi_max(t, 1e-300) + HDI_LANCZOS_LOWEST * s->lowest);
-    const double lambda = hdi_min(heat->lambda_max, HDI_LANCZOS_SPREAD * s->local);
-    const double steps = HDI_LANCZOS_GROWTH * sqrt(bounded * lambda);
-    return HDI_LANCZOS_LEAST + hdi_min(steps, (double)heat->source->n_active);
-}
-
-/* Of all poles together. Solutions at hand give a good start: twice the poles do not take twice as many. */
-static double hdi_cocg_steps(const hd_heat *heat, double t, int32_t poles) {
-    const hdi_steps_scales *s = &heat->scales;
+/* Adds what k items take at time t. With Lanczos a full B is solved with in every step. */
+static void hdi_steps_cost(const hd_heat *heat, hd_solver solver, double t, int32_t poles, double k,
+                           hd_cost *c) {
     const hd_laplacian *lap = heat->source;
-    const double wide = hdi_max(1, (double)lap->L.nnz / (7.0 * lap->n_active));
-    const double bounded = 1 / (1 / hdi_max(t, 1e-300) + HDI_COCG_LOWEST * s->lowest);
-    double one = HDI_COCG_GROWTH * pow(bounded * s->local / pow(wide, HDI_COCG_WIDE), HDI_COCG_POWER);
-    one += 1 + (lap->B ? HDI_COCG_FULL_B : 0);
-    one *= exp(HDI_COCG_OBTUSE * s->obtuse * s->obtuse) * hdi_steps_digits(heat);
-    one *= heat->opts.solver == HD_SOLVER_MINRES ? 3.5 : hdi_preconds[heat->opts.precond].steps;
-    return hdi_min(one * sqrt(5.0 * poles), (double)heat->opts.max_iterations * poles);
-}
-
-/* Seconds of one quiet core for each non-zero and six times each row: a step of Lanczos, and of conjugate
- * gradients for B; of COCG with factors and without. Those per step squared that looks at the bound cost. For
- * each non-zero and each non-zero times those of a row: factors of a pole. For each row: the copy of the
- * pair. Measured on meshes of 2.5K to 1M vertices. */
-#define HDI_STEP_LANCZOS 0.9e-9
-#define HDI_LOOK_LANCZOS 0.4e-6
-#define HDI_STEP_MASS 1e-9
-#define HDI_STEP_COCG 1.7e-9
-#define HDI_STEP_PLAIN 1e-9
-#define HDI_MAKE_PRECOND 20e-9
-#define HDI_MAKE_WIDE 0.75e-9
-#define HDI_ROW_ITERATIVE 0.4e-6
-
-/* Steps, flops and seconds of k items. */
-typedef struct hdi_work { double steps, flops, seconds; } hdi_work;
-
-/* A full B is solved with in every step, to a residual of HDI_MASS_STOP. The ratio of the eigenvalues of B
- * relative to its diagonal is taken to be 2/b_ratio. */
-static hdi_work hdi_lanczos_work(const hd_heat *heat, double t, double k) {
-    const hd_laplacian *lap = heat->source;
-    const double nnz = (double)lap->L.nnz, n = lap->n_active, entries = nnz + 6 * n;
-    const double root = sqrt(2 / hdi_max(lap->b_ratio, 1e-12)), rate = log((root + 1) / (root - 1));
-    const double mass = lap->B ? hdi_min(-0.5 * log(HDI_MASS_STOP) / rate, HDI_MASS_STEPS) : 0;
-    hdi_work w;
-    w.steps = hdi_lanczos_steps(heat, t);
-    w.flops = k * w.steps * (2 * nnz + 12 * n + mass * (2 * nnz + 12 * n));
-    w.seconds = k * w.steps * (entries * (HDI_STEP_LANCZOS + mass * HDI_STEP_MASS) +
-                               w.steps * HDI_LOOK_LANCZOS);
-    return w;
-}
-
-static hdi_work hdi_cocg_work(const hd_heat *heat, double t, int32_t poles, double k) {
-    const hd_laplacian *lap = heat->source;
-    const double nnz = (double)lap->L.nnz, n = lap->n_active, full = lap->B ? 1.2 : 1;
-    const int made = heat->fam.filled && heat->fam.t == t;
-    const int plain = !hdi_preconds[heat->opts.precond].entries;
-    hdi_work w;
-    w.steps = hdi_cocg_steps(heat, t, poles);
-    w.flops = k * w.steps * ((lap->B ? 8 : 4) * nnz + (plain ? 0 : 8 * nnz) + 40 * n);
-    w.seconds = k * w.steps * (nnz + 6 * n) * full * (plain ? HDI_STEP_PLAIN : HDI_STEP_COCG);
-    if (plain || made) return w;
-    w.flops += poles * 2 * nnz * nnz / n;
-    w.seconds += poles * nnz * (HDI_MAKE_PRECOND + HDI_MAKE_WIDE * nnz / n);
-    return w;
+    const double nnz = (double)lap->L.nnz, n = lap->n_active, steps = hdi_steps(heat, solver, t, poles);
+    const double factors = hdi_preconds[heat->opts.precond].entries ? nnz : 0, full = lap->B ? 1 : 0;
+    if (solver == HD_SOLVER_LANCZOS) {
+        const double each = 1 + 20 * full;
+        c->flops += k * steps * each * (2 * nnz + 12 * n);
+        c->seconds += k * steps * (each * (12 * nnz + 80 * n) / HDI_RATE_BYTES + steps * 0.4e-6);
+        return;
+    }
+    c->flops += k * steps * ((4 + 4 * full) * nnz + 8 * factors + 40 * n);
+    c->seconds += k * steps * ((12 + 8 * full) * nnz + 20 * factors + 130 * n) / HDI_RATE_BYTES;
+    if (heat->fam.filled && heat->fam.t == t) return;
+    c->flops += poles * 2 * factors * (nnz / n);
+    c->seconds += poles * factors * (20 + nnz / n) * 1e-9;
 }
 
 /* Poles that the default of columns has. */
@@ -18146,11 +18056,12 @@ enum { HDI_POLES_EXPECTED = 5 };
  * takes less time for one item. */
 static hd_solver hdi_heat_choose(const hd_heat *heat, double t) {
     const hd_heat_opts *o = &heat->opts;
+    hd_cost lanczos = {0, 0, 0, 0, 0, 0}, cocg = lanczos;
     if (o->solver) return o->solver;
-    if (o->rational || o->poles || o->degree || o->precond != HD_PRECOND_MILDL || heat->source->B)
-        return HD_SOLVER_COCG;
-    return hdi_lanczos_work(heat, t, 1).seconds <= hdi_cocg_work(heat, t, HDI_POLES_EXPECTED, 1).seconds
-           ? HD_SOLVER_LANCZOS : HD_SOLVER_COCG;
+    if (heat->poles_asked || o->precond != HD_PRECOND_MILDL || heat->source->B) return HD_SOLVER_COCG;
+    hdi_steps_cost(heat, HD_SOLVER_LANCZOS, t, 0, 1, &lanczos);
+    hdi_steps_cost(heat, HD_SOLVER_COCG, t, HDI_POLES_EXPECTED, 1, &cocg);
+    return lanczos.seconds <= cocg.seconds ? HD_SOLVER_LANCZOS : HD_SOLVER_COCG;
 }
 
 /* Fields f and g, and columns. The adjoint K_t' g is B k_t g. */
@@ -18241,7 +18152,7 @@ static void hdi_heat_measure_pair(hd_heat *heat) {
     heat->version = lap->version;
     heat->scale = hdi_pair_scale(lap);
     heat->lambda_max = hdi_lambda_bound(lap) / heat->scale;
-    hdi_steps_measure(heat);
+    heat->local = hdi_steps_local(lap) / heat->scale;
     heat->drift = hdi_heat_drift(lap, heat->sums) / heat->scale;
 }
 
@@ -18299,53 +18210,20 @@ static hd_status hdi_heat_begin(hdi_heat_call *h, hd_heat *heat, hdi_query query
 
 /* ---- what factors take ---- */
 
-/* Flops per second of packs, with the seconds per non-zero that small fronts cost besides, and of real
- * fronts; bytes per second of sweeps, and how many times faster they are where right-hand sides of Lanczos
- * share them; seconds per row of an ordering with its analysis, and per byte of fresh memory, which the
- * system clears. Measured on meshes of 10K to 1M vertices. */
-#define HDI_RATE_PACK 70e9
-#define HDI_ENTRY_PACK 12e-9
-#define HDI_RATE_REAL 25e9
-#define HDI_RATE_SWEEP 15e9
-#define HDI_KRYLOV_SHARED 2.5
-#define HDI_ROW_ANALYSIS 0.8e-6
-#define HDI_FRESH_BYTE 0.2e-9
-
-/* What of the plan is known of factors, or guessed before the analysis. */
+/* What is known of the factors of elim or few, or guessed before the analysis. */
 typedef struct hdi_fill { double nnz, flops, stored, real_stored, analysis; } hdi_fill;
 
-/* The guess is what little fill a surface can have: nnz(L) = 30 n, 22 n^1.5 flops. Where rows are wider than
- * 10, so much more of the former and its square of the latter. (Point sets with 233 and 117 entries a row,
- * 20K to 150K points: 1220 to 1700 n and 13000 n^1.5, 600 to 830 n and 3500 n^1.5.) */
-static hdi_fill hdi_heat_guess(const hd_heat *heat) {
-    const double n = heat->source->n_active, entries = (double)heat->source->L.nnz;
-    const double wide = hdi_max(1, entries / (10 * n));
+/* The guess is what little fill a surface can have. Where rows are wider than 10, so much more of the
+ * non-zeros and its square of the flops. (Point sets with 233 and 117 entries a row, 20K to 150K points: 1220
+ * to 1700 n and 13000 n^1.5, 600 to 830 n and 3500 n^1.5.) */
+static hdi_fill hdi_heat_fill(const hd_heat *heat, const hdi_elim *m) {
+    const hdi_symbolic *s = &m->sym;
+    const double n = heat->source->n_active, wide = hdi_max(1, (double)heat->source->L.nnz / (10 * n));
     hdi_fill f;
     f.nnz = 30 * n * wide;
     f.flops = 22 * n * sqrt(n) * wide * wide;
     f.stored = f.real_stored = 40 * n * wide;
-    f.analysis = HDI_ROW_ANALYSIS * n * wide;
-    return f;
-}
-
-/* What minimum degree adds to the fill of nested dissection, in flops and in non-zeros by rows squared, and
- * the share of ordering with analysis that it takes. Meshes of 10K, 41K, 50K, 150K, 164K vertices: 0.26,
- * 0.14, 0.14, 0.13, 0.13 flops, 1.7, 1.8, 1.0, 0.9, 1.0 e-4 non-zeros; four fifths of the time where meshes
- * are numbered regularly, two thirds where they are not. */
-#define HDI_DEGREE_FLOPS 0.13
-#define HDI_DEGREE_NNZ 1e-4
-#define HDI_DEGREE_ANALYSIS 0.3
-
-/* The same for elim or few of the plan, from its analysis where that is there. */
-static hdi_fill hdi_heat_fill(const hd_heat *heat, const hdi_elim *m) {
-    const hdi_symbolic *s = &m->sym;
-    const double n = heat->source->n_active;
-    hdi_fill f = hdi_heat_guess(heat);
-    if (m == &heat->few) {
-        f.flops += HDI_DEGREE_FLOPS * n * n;
-        f.nnz += HDI_DEGREE_NNZ * n * n;
-        f.analysis *= HDI_DEGREE_ANALYSIS;
-    }
+    f.analysis = HDI_ROW_ANALYSIS * n * wide * (m == &heat->few ? 0.4 : 1);
     if (!m->ctx) return f;
     f.nnz = (double)s->nnz;
     f.flops = s->flops_done;
@@ -18897,14 +18775,9 @@ static void hdi_iterative_cost(const hdi_heat_call *h, hd_cost *c) {
                           : HDI_POLES_EXPECTED;
     int32_t q;
     c->possible = 1;
-    if (!heat->weight) c->seconds += HDI_ROW_ITERATIVE * heat->source->n_active;
-    for (q = 0; q < h->n_times; q++) {
-        const double t = h->times[q];
-        const hdi_work w = hdi_heat_solver(h, t) == HD_SOLVER_LANCZOS
-                           ? hdi_lanczos_work(heat, t, h->ask.k) : hdi_cocg_work(heat, t, poles, h->ask.k);
-        c->seconds += w.seconds;
-        c->flops += w.flops;
-    }
+    if (!heat->weight) c->seconds += HDI_ROW_ANALYSIS / 2 * heat->source->n_active;
+    for (q = 0; q < h->n_times; q++)
+        hdi_steps_cost(heat, hdi_heat_solver(h, h->times[q]), h->times[q], poles, h->ask.k, c);
     c->bytes = hdi_iterative_bytes(h, poles);
 }
 
@@ -19015,6 +18888,8 @@ enum { HDI_PROBES = 3 };         /* rows at which rounding of an inversion is me
 #define HDI_INVERT_FLOPS 2.0
 #define HDI_INVERT_SECONDS 2.0
 #define HDI_FORMS_SECONDS 4.0
+/* Sweeps are faster so many times where right-hand sides share them. */
+#define HDI_SHARED 2.5
 
 /* Adds what a set takes at one time: its factors, what comes after them, and solves of k items, beside
  * arrays of so many bytes. Of bytes the largest count. Returns the seconds of the factors. */
@@ -19027,8 +18902,8 @@ static double hdi_direct_set(const hdi_heat_call *h, const hd_rational *set, hdi
     /* a real pole alone counts as a pack: where all is so cheap iterations have better bounds */
     const double packs = hdi_high32(1, hdi_set_packs(set));
     const double solves = inverse ? (double)k + (double)HDI_PROBES : k;
-    const double pack = 16 * f.flops / HDI_RATE_PACK + HDI_ENTRY_PACK * f.nnz, real = f.flops / HDI_RATE_REAL;
-    const double factors = packs * pack + lone * real;
+    const double factors = packs * (16 * f.flops / HDI_RATE_PACK + 180 * f.nnz / HDI_RATE_BYTES) +
+                           lone * f.flops / HDI_RATE_REAL;
     const double longer = after == HDI_AFTER_FORMS ? HDI_FORMS_SECONDS : inverse ? HDI_INVERT_SECONDS : 0;
     double bytes = 8 * (8 * packs + 1) * f.stored + 200 * n + hdi_min(k, HDI_LANES) * 140 * n;
     k = hdi_high32(k, inverse ? HDI_PROBES : 0);
@@ -19046,7 +18921,7 @@ static double hdi_direct_set(const hdi_heat_call *h, const hd_rational *set, hdi
                 (bound ? (1 + HDI_INVERT_FLOPS - lone) * f.flops : 0) + solves * (64 * packs + 4) * f.nnz;
     /* without the bound, which a choice of the method has no need to look at */
     c->seconds += factors * (1 + longer) +
-                  solves * packs * (64 * f.nnz + 400 * n) / ((k > 1 ? 1.6 : 0.6) * HDI_RATE_SWEEP);
+                  solves * packs * (100 * f.nnz + 600 * n) / (HDI_RATE_BYTES * (k > 1 ? HDI_SHARED : 1));
     c->bytes = hdi_max(c->bytes, bytes + held);
     return factors;
 }
@@ -19066,8 +18941,7 @@ static void hdi_direct_cost(const hdi_heat_call *h, hd_cost *c) {
     factors = hdi_direct_set(h, &set, HDI_AFTER_BOUND, 0, h->ask.k, 0, c);
     c->flops *= h->n_times;
     if (hdi_heat_at_hand(h)) c->seconds -= factors;
-    else c->seconds = c->seconds * h->n_times + HDI_FRESH_BYTE * c->bytes +
-                      hdi_heat_fill(h->heat, &h->heat->elim).analysis;
+    else c->seconds = c->seconds * h->n_times + hdi_heat_fill(h->heat, &h->heat->elim).analysis;
 }
 
 /* The pole set and its factors. What follows them is asked for too, so that nothing is begun that the byte
@@ -19232,20 +19106,11 @@ static double hdi_krylov_steps(double ratio, int goes_on) {
     return hdi_min(goes_on ? 14 + 1.8 * sqrt(ratio) : 22 + 2.8 * sqrt(ratio), most);
 }
 
-/* The share of the steps that a single late time takes, of which few eigenvalues are left: 25 steps and 12
- * where t times the smallest eigenvalue is 1 and 14, measured at 2.5K and 10K vertices. */
-#define HDI_STEPS_LATE 0.08
-
-static double hdi_krylov_late(const hdi_heat_call *h) {
-    if (h->n_times > 1) return 1;
-    return hdi_max(0.4, 1 / (1 + HDI_STEPS_LATE * h->times[0] * h->heat->scales.lowest));
-}
-
 /* The number of windows of equal ratio that costs least. No basis serves beyond a ratio of 1e4; that of all
  * times might overflow. */
 static hdi_windows hdi_krylov_windows(const hdi_heat_call *h, hdi_fill f) {
     const double factor = f.flops / HDI_RATE_REAL;
-    const double step = 16 * f.nnz / HDI_RATE_SWEEP + 1e-8 * h->heat->source->n_active;
+    const double step = (16 * f.nnz + 100 * (double)h->heat->source->n_active) / HDI_RATE_BYTES;
     const double span = log(h->times[h->n_times - 1]) - log(hdi_max(h->times[0], 1e-300));
     const int32_t least = hdi_high32(1, (int32_t)ceil(span / log(1e4)));
     double best = HUGE_VAL;
@@ -19264,24 +19129,18 @@ static hdi_windows hdi_krylov_windows(const hdi_heat_call *h, hdi_fill f) {
     return all;
 }
 
-/* Does this method take an order of its own? For few columns one of minimum degree is found and analysed in a
- * third of the time, and the steps lose less. Not under a byte limit, where a second analysis might not fit.
- * Totals of one column with 20 steps, one thread, processor time, in that order and the other: 62 and 95 ms
- * at 50K vertices, 54 and 75 at 41K, 274 and 347 at 150K, 356 and 395 at 164K. */
-enum { HDI_FEW_COLUMNS = 3, HDI_FEW_ENTRIES = 900000 };
-
-static int hdi_krylov_few(const hdi_heat_call *h) {
-    const hd_heat *heat = h->heat;
-    const hd_csr *L = &heat->source->L;
-    const hdi_order order = {heat->opts.ordering, heat->source->xyz, NULL};
-    if (order.kind != HD_ORDERING_AUTO || hdi_order_kind(&order, L) != HD_ORDERING_NESTED_DISSECTION ||
-        h->ask.k > HDI_FEW_COLUMNS || heat->ctx->byte_limit) return 0;
-    return (double)h->ask.k * hdi_krylov_windows(h, hdi_heat_guess(heat)).n * (double)L->nnz <=
-           (double)HDI_FEW_ENTRIES;
-}
+/* The analysis of this method. For few columns an order of minimum degree is found and analysed in a third of
+ * the time, and the steps lose less. Not under a byte limit, where a second analysis might not fit. */
+#define HDI_FEW_ENTRIES 9e5
 
 static hdi_elim *hdi_krylov_elim(const hdi_heat_call *h) {
-    return hdi_krylov_few(h) ? &h->heat->few : &h->heat->elim;
+    hd_heat *heat = h->heat;
+    const hd_csr *L = &heat->source->L;
+    const hdi_order order = {heat->opts.ordering, heat->source->xyz, NULL};
+    const int few = order.kind == HD_ORDERING_AUTO && !heat->ctx->byte_limit &&
+                    (double)h->ask.k * h->n_times * (double)L->nnz <= HDI_FEW_ENTRIES &&
+                    hdi_order_kind(&order, L) == HD_ORDERING_NESTED_DISSECTION;
+    return few ? &heat->few : &heat->elim;
 }
 
 /* Bytes that a basis of so many steps takes, with the real factor before it where there is none. */
@@ -19303,21 +19162,20 @@ static void hdi_krylov_cost(const hdi_heat_call *h, hd_cost *c) {
     const int ready = h->n_times == 1 && m->shifted.ready &&
         m->shift == hdi_krylov_shift(0, h->t, h->t, heat->lambda_max);
     const int32_t wide = h->ask.k > 3 ? HDI_WIDE : 1;
-    const double n = heat->source->n_active, rate = HDI_RATE_SWEEP * (wide > 1 ? HDI_KRYLOV_SHARED : 1);
-    const double steps = h->ask.k * w.steps * hdi_krylov_late(h);
+    const double n = heat->source->n_active, steps = h->ask.k * w.steps;
     /* more than expected, to be safe */
     const double longest = hdi_min(HDI_KRYLOV_MAX, (h->n_times > 1 ? 1.3 : 1.15) * w.longest);
     c->possible = 1;
     c->flops = (w.n - ready) * f.flops + steps * 4 * f.nnz;
     c->seconds = f.analysis + (w.n - ready) * f.flops / HDI_RATE_REAL +
-                 steps * (16 * f.nnz + 100 * n) / rate + h->n_times * steps / w.n * 8 * n / HDI_RATE_SWEEP;
+                 steps * (16 * f.nnz + 100 * n) / (HDI_RATE_BYTES * (wide > 1 ? HDI_SHARED : 1)) +
+                 h->n_times * steps / w.n * 8 * n / HDI_RATE_BYTES;
     if (heat->krylov && heat->krylov->m == m && heat->krylov->wide == wide && heat->krylov->v[0] &&
         m->shifted.ctx) return;
     if (m->ctx) c->bytes = (double)hdi_krylov_need(m, wide, (int32_t)longest);
     else c->bytes = 8 * f.real_stored + 8 * n * wide * (longest + 4) + 200 * n;
     c->bytes += (double)sizeof(hdi_krylov) + wide * 56 * n;
     if (h->n_times > 1 && wide == 1) c->bytes += HDI_WIDE * 8 * n;   /* sums at several times */
-    c->seconds += HDI_FRESH_BYTE * c->bytes;
 }
 
 /* The steps of a basis for n items and the times [q0, q1). */
@@ -19491,11 +19349,14 @@ static hdi_costs hdi_heat_costs(const hdi_heat_call *h) {
     const hd_heat *heat = h->heat;
     const int factors = !heat->iterations_asked || heat->opts.method > HD_METHOD_ITERATIVE;
     hdi_costs all;
+    int q;
     memset(&all, 0, sizeof all);
     if (HDI_HAS_ITERATIVE) hdi_iterative_cost(h, all.by + HD_METHOD_ITERATIVE);
     if (HDI_HAS_POLE_FACTORS && factors) hdi_direct_cost(h, all.by + HD_METHOD_DIRECT);
     if (HDI_HAS_DIRECT && factors && !heat->poles_asked)
         hdi_krylov_cost(h, all.by + HD_METHOD_KRYLOV);
+    for (q = HD_METHOD_ITERATIVE; q <= HD_METHOD_KRYLOV; q++)
+        all.by[q].seconds += HDI_FRESH_BYTE * all.by[q].bytes;
     return all;
 }
 
@@ -19763,10 +19624,11 @@ static int32_t hdi_modes_count(const hd_heat *heat, double more) {
 
 static double hdi_modes_need(const hd_heat *heat, int32_t count) {
     const int32_t n = heat->source->n_active;
-    const double left = 2.0 * sizeof(double) * heat->source->n;
-    if (!heat->elim.ctx) return hdi_spec_need(n, count, 0) + left + 8 * hdi_heat_guess(heat).real_stored;
-    return hdi_spec_need(n, count, hdi_sweep_size(&heat->elim.sym, 1, HDI_WIDE)) + left +
-           (double)hdi_factor_bytes(&heat->elim.sym, 1);
+    const hdi_elim *m = &heat->elim;
+    const double factor = m->ctx ? (double)hdi_factor_bytes(&m->sym, 1)
+                          : 8 * hdi_heat_fill(heat, m).real_stored;
+    return hdi_spec_need(n, count, m->ctx ? hdi_sweep_size(&m->sym, 1, HDI_WIDE) : 0) + factor +
+           2.0 * sizeof(double) * heat->source->n;
 }
 
 /* Finds so many eigenpairs. Returns 0 where that fails, or where they are not proven complete, or where there
@@ -19854,11 +19716,6 @@ static void hdi_report_merge(hd_report *all, const hd_report *one) {
     *all = sum;
 }
 
-/* t times the smallest eigenvalue, which is a guess while no pairs are there. */
-static double hdi_modes_lowest(const hd_heat *heat, double t) {
-    return heat->modes.s.value ? t * heat->modes.low : t * heat->scale * heat->scales.lowest;
-}
-
 /* ---- which way ---- */
 
 /* A query that eigenpairs can answer as well as poles. Both ways answer the time under way, h->now; what
@@ -19868,7 +19725,6 @@ typedef struct hdi_task hdi_task;
 struct hdi_task {
     hdi_heat_call *h;
     int32_t serves;              /* eigenpairs first where so few are expected; 0: they may not answer */
-    double from;                 /* they come first where t times the smallest eigenvalue is this or more */
     double depth;                /* how far they have to reach above the smallest eigenvalue, times t */
     hd_status (*pairs)(hdi_task *task);
     hd_status (*poles)(hdi_task *task);
@@ -19888,7 +19744,7 @@ static HDI_INLINE int hdi_task_near(const hdi_task *task, double t, int32_t most
 
 /* Are eigenpairs tried before poles at time t? */
 static HDI_INLINE int hdi_task_first(const hdi_task *task, double t) {
-    return hdi_task_near(task, t, task->serves) && hdi_modes_lowest(task->h->heat, t) >= task->from;
+    return hdi_task_near(task, t, task->serves);
 }
 
 /* Takes up time q of the call, as if nothing had been tried. */
@@ -20005,10 +19861,6 @@ static hd_status hdi_task_run(hdi_heat_call *h, void *what) {
 /* Where heat flows out everything falls like exp(-t lambda_1), but the errors of poles do not. There few
  * eigenpairs are left too, whose errors fall as fast, see [25]. */
 
-/* Eigenpairs come first from a time on that is this many times 1/lambda_1: with the border of a square held,
- * bounds by poles of degree 9 are 4e-7 at t lambda_1 = 0.4 and 6e-5 at 7, those of krylov 4e-7 there. */
-#define HDI_FADING_FROM 1
-
 /* Does all heat of the call fade, and may eigenpairs serve it? */
 static HDI_INLINE int hdi_fading(const hdi_heat_call *h) {
     const hd_heat *heat = h->heat;
@@ -20026,7 +19878,6 @@ static void hdi_fading_task(hdi_task *task, hdi_heat_call *h) {
     double span;
     memset(task, 0, sizeof *task);
     task->h = h;
-    task->from = HDI_FADING_FROM;
     if (!HDI_HAS_MODES || !hdi_fading(h)) return;
     task->serves = HDI_MODES_FIRST;
     span = hdi_modes_span(h->heat);
@@ -22598,7 +22449,7 @@ static void hdi_estimate_ground(const hdi_estimate *x, hd_cost *c) {
     c->possible = 1;
     c->flops = factor * (1 + HDI_INVERT_FLOPS) + solves * 4 * f.nnz;
     c->seconds = factor / HDI_RATE_REAL * (1 + HDI_INVERT_SECONDS) +
-                 solves * (16 * f.nnz + 100 * n) / HDI_RATE_SWEEP;
+                 solves * (16 * f.nnz + 100 * n) / HDI_RATE_BYTES;
     c->bytes = 8 * f.real_stored * (forms ? 9 : 1);
     if (heat->elim.ctx)
         c->bytes = (double)hdi_ground_need(&heat->elim, &heat->ground, forms) +
