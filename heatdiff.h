@@ -21085,8 +21085,8 @@ static hd_status hdi_diagonals_once(const hdi_diagonals *to, double *relative) {
     return hdi_scope_end(&s);
 }
 
-/* May poles of the highest degree take over where the default's bound is too large? Not where the caller
- * chose, and not after the byte limit. */
+/* May poles of the highest degree take over where the default's bound is too large, and may times share their
+ * poles? Not where the caller chose, and not after the byte limit. */
 static int hdi_degree_open(const hd_heat *heat) {
     return !heat->poles_asked && !heat->exacting && !heat->spare;
 }
@@ -21115,11 +21115,6 @@ static hd_status hdi_diagonals_by_poles(hdi_task *task) {
 }
 
 /* ---- at many times ---- */
-
-/* May the times of a call share their poles? */
-static int hdi_shared_may(const hd_heat *heat) {
-    return !heat->poles_asked && !heat->exacting && !heat->spare;
-}
 
 /* How many windows of equal ratio take the fewest packs in all for times that ascend. 0: these are more than
  * for so many times one by one, each with a set of degree 9, that is a pack and a real factor, which costs an
@@ -21190,7 +21185,7 @@ static hd_status hdi_diagonals_together(hdi_task *task, char *done, hd_report *o
         done[at] = HDI_DONE_FOR_GOOD;
         if (hdi_diagonals_equal(to, at, one + at) < 0) return h->e->status;
     }
-    if (h->e->status < 0 || !hdi_shared_may(heat) || alone) return h->e->status;
+    if (h->e->status < 0 || !hdi_degree_open(heat) || alone) return h->e->status;
     return hdi_shared_run(task, n, HDI_SHARED_TOL, hdi_diagonals_window, done, one);
 }
 
@@ -21795,16 +21790,19 @@ static hd_status hdi_mode_sum_make(hdi_mode_sum *a, hdi_heat_call *h, const hdi_
 
 /* ---- distances to all vertices ---- */
 
+/* Is the bound of degree 9 sure to be too large at time t? */
+static int hdi_distance_sure(const hd_heat *heat, const hdi_distance_row *kind, double t) {
+    return kind->mass == 0 && heat->source->h > 0 &&
+           HDI_DISTANCE_EXPECTED * sqrt(t) > HDI_DISTANCE_SURE * heat->source->h;
+}
+
 /* Distances at the time under way by poles. Where much cancels, or is sure to, the highest degree takes
  * over if there is room for its factors. */
 static hd_status hdi_distances_by_poles(hdi_task *task) {
     const hdi_distances *to = (const hdi_distances *)task;
     hdi_heat_call *h = task->h;
-    hd_heat *heat = h->heat;
-    const int open = to->kind->time > 0 && hdi_degree_open(heat);
-    const double t = open ? h->ask.t[h->now] : 0;
-    const double expected = heat->source->h > 0 ? HDI_DISTANCE_EXPECTED * sqrt(t) / heat->source->h : 0;
-    const int sure = open && to->kind->mass == 0 && expected > HDI_DISTANCE_SURE;
+    const int open = to->kind->time > 0 && hdi_degree_open(h->heat);
+    const int sure = open && hdi_distance_sure(h->heat, to->kind, h->ask.t[h->now]);
     if (!sure && hdi_distances_once(to, 0) < 0) return h->e->status;
     if (!open || (!sure && h->rep->error_rational <= HDI_DISTANCE_SURE)) return h->e->status;
     hdi_task_at(h, h->now);
@@ -21853,7 +21851,7 @@ static hd_status hdi_distances_together(hdi_task *task, char *done, hd_report *o
     const int32_t times = ((const hdi_distances *)task)->kind->time;
     hdi_heat_call *h = task->h;
     hd_heat *heat = h->heat;
-    if (!hdi_shared_may(heat) || hdi_heat_analysed(heat, h->e) < 0 ||
+    if (!hdi_degree_open(heat) || hdi_heat_analysed(heat, h->e) < 0 ||
         hdi_heat_sort_times(h, times, done) < 0 || h->n_times < 2 ||
         hdi_heat_equal(heat, &heat->elim, h->times[h->n_times - 1], h->e) || h->e->status < 0)
         return h->e->status;
@@ -22308,15 +22306,6 @@ static int hdi_estimate_pairwise(const hdi_estimate *x) {
     return x->query->distance && x->query->by == HDI_BY_SOLVES;
 }
 
-/* Adds work that comes after what is there; bytes are those of the larger one. */
-static void hdi_cost_add(hd_cost *c, const hd_cost *one) {
-    c->possible = 1;
-    c->flops += one->flops;
-    c->seconds += one->seconds;
-    c->bytes = hdi_max(c->bytes, one->bytes);
-    c->bytes_most = hdi_max(hdi_max(c->bytes_most, one->bytes_most), c->bytes);
-}
-
 /* Analyses the pattern for a query that needs a factorisation. If there is no memory for that within the byte
  * limit, figures are guesses. */
 static hd_status hdi_estimate_analyse(hdi_heat_call *h) {
@@ -22389,7 +22378,7 @@ static int hdi_estimate_shared(const hdi_estimate *x, hd_cost *c) {
     const int distance = x->query->distance != NULL;
     const double tol = distance ? HDI_SHARED_DISTANCE_TOL : HDI_SHARED_TOL;
     int32_t windows = 0, w, q0, q1;
-    if (h->n_times > 1 && hdi_shared_may(h->heat) &&
+    if (h->n_times > 1 && hdi_degree_open(h->heat) &&
         !(x->query->mass == 1 && h->heat->source->B))
         windows = hdi_shared_windows(h->times, h->n_times, tol);
     for (w = 0, q0 = 0; windows > 0 && q0 < h->n_times; w++, q0 = q1) {
@@ -22405,38 +22394,35 @@ static int hdi_estimate_shared(const hdi_estimate *x, hd_cost *c) {
 /* Diagonals, traces and distances by poles: all times together if the run takes them so, else one by one,
  * as at the last time. Bytes are enough for either, to which the run comes back. In bytes_most the highest
  * degree takes over. */
-static hd_status hdi_estimate_inverses(const hdi_estimate *x, hd_cost *c) {
+static void hdi_estimate_inverses(const hdi_estimate *x, hd_cost *c) {
     hdi_heat_call *h = x->h;
-    hd_heat *heat = h->heat;
-    const double h0 = heat->source->h, t = h->t / x->unit;
-    const double expected = h0 > 0 ? HDI_DISTANCE_EXPECTED * sqrt(t) / h0 : 0;
-    hd_cost one, most;
+    const hd_heat *heat = h->heat;
+    const int sure = x->query->distance && hdi_degree_open(heat) &&
+                     hdi_distance_sure(heat, x->query->distance, h->t / x->unit);
+    hd_cost by[2];
     hd_rational set;
-    memset(c, 0, sizeof *c);
-    memset(&one, 0, sizeof one);
-    memset(&most, 0, sizeof most);
+    int32_t i, one;
+    memset(by, 0, sizeof by);
     h->diagonal = 1;
     h->method = HD_METHOD_DIRECT;
-    if (hdi_heat_set(h, &set) >= 0) hdi_estimate_inversion(x, &set, 1, &one);
-    h->degree = heat->poles_asked ? 0 : HDI_RAT_KERNEL_MAX;
-    if (hdi_heat_set(h, &set) >= 0) hdi_estimate_inversion(x, &set, 1, &most);
+    for (i = 0; i < 2; i++) {
+        h->degree = i == 1 && !heat->poles_asked ? HDI_RAT_KERNEL_MAX : 0;
+        if (hdi_heat_set(h, &set) >= 0) hdi_estimate_inversion(x, &set, 1, by + i);
+    }
     h->degree = 0;
-    if (h->e->status < 0) return h->e->status;
-    if (x->query->distance && x->query->distance->mass == 0 && hdi_shared_may(heat) &&
-        expected > HDI_DISTANCE_SURE && most.bytes <= hdi_bytes_left(heat->ctx)) one = most;
+    one = sure && by[1].bytes <= hdi_bytes_left(heat->ctx);
     if (heat->elim.ctx)                          /* after a first try, whose lanes and real factor stay */
-        most.bytes += (double)(hdi_batches_need(heat, 1, hdi_high32(x->k, HDI_PROBES)) +
-                               (heat->elim.real.ctx ? 0 : hdi_factor_bytes(&heat->elim.sym, 1)));
+        by[1].bytes += (double)(hdi_batches_need(heat, 1, hdi_high32(x->k, HDI_PROBES)) +
+                                (heat->elim.real.ctx ? 0 : hdi_factor_bytes(&heat->elim.sym, 1)));
     if (!hdi_estimate_shared(x, c)) {
         memset(c, 0, sizeof *c);
-        c->flops = h->n_times * one.flops;
-        c->seconds = h->n_times * one.seconds;
+        c->flops = h->n_times * by[one].flops;
+        c->seconds = h->n_times * by[one].seconds;
     }
-    one.flops = one.seconds = 0;
-    one.bytes_most = most.bytes;
-    hdi_cost_add(c, &one);
+    c->possible = 1;
+    c->bytes = hdi_max(c->bytes, by[one].bytes);
+    c->bytes_most = hdi_max(c->bytes, by[1].bytes);
     c->seconds += HDI_FRESH_BYTE * c->bytes;
-    return h->e->status;
 }
 
 /* Commute and biharmonic distances. */
@@ -22461,10 +22447,9 @@ static void hdi_estimate_ground(const hdi_estimate *x, hd_cost *c) {
 /* ---- estimates of eigenpairs ---- */
 
 /* Seconds that an eigenpair costs for each vertex, without factors, all of them together as much as so many
- * more, and each twice that where they are half of the most; of a sum. Measured on 2.5K to 43K vertices. */
+ * more, and each twice that where they are half of the most. Measured on 2.5K to 43K vertices. */
 #define HDI_MODES_SECONDS 7e-7
 #define HDI_MODES_BEGIN 5
-#define HDI_MODES_SUM 9e-9
 
 /* Bytes that eigenpairs may need where more are looked for than expected: 1.14 times those for the number
  * expected were seen on small meshes. */
@@ -22492,93 +22477,56 @@ static int32_t hdi_estimate_count(const hdi_estimate *x, int32_t q) {
     return hdi_modes_count(heat, hdi_modes_expected(heat, x->task.depth * x->unit / x->h->times[q]));
 }
 
-/* Bytes that so many hold when they are found. */
-static double hdi_estimate_kept(const hdi_estimate *x, int32_t count) {
-    const hdi_distance_row *kind = x->query->distance;
-    const int twice = kind && kind->mass > 0 && x->h->heat->source->B;
-    return 8.0 * x->h->heat->source->n * ((twice ? 2.0 : 1.0) * count + 5);
-}
-
-/* Late times, where eigenpairs come first: how many are left before them, and the cost of the others. *kept:
- * bytes of pairs that are found. */
-static int32_t hdi_estimate_late(const hdi_estimate *x, hd_cost *c, double *kept) {
+/* Eigenpairs that may come before or after poles at any time: their bytes while they are found, and then
+ * those that they hold beside poles. */
+static void hdi_estimate_help(const hdi_estimate *x, hd_cost *c) {
     const hdi_heat_call *h = x->h;
-    const hd_heat *heat = h->heat;
-    const double n = heat->source->n_active;
-    int32_t early = h->n_times, count;
-    memset(c, 0, sizeof *c);
-    *kept = 0;
-    while (early > 0 && hdi_task_first(&x->task, h->times[early - 1] / x->unit)) early--;
-    if (early == h->n_times) return early;
-    count = hdi_estimate_count(x, early);
-    if (hdi_modes_need(heat, count) > hdi_bytes_left(heat->ctx)) return h->n_times;
-    c->possible = 1;
-    c->bytes = c->bytes_most = 16 * (n + count);
-    if (!heat->modes.s.value || heat->modes.s.count < count) {
-        *c = hdi_estimate_pairs(heat, count);
-        *kept = hdi_estimate_kept(x, count);
-    }
-    c->flops += 6 * n * count * x->k;
-    c->seconds += HDI_MODES_SUM * n * count * x->k;
-    return early;
-}
-
-/* Eigenpairs that may come after poles at any time, with poles once more. */
-static void hdi_estimate_help(const hdi_estimate *x, double kept, hd_cost *c) {
-    const double most = c->bytes_most;
-    int32_t q, count;
-    for (q = 0; q < x->h->n_times; q++) {
-        if (!hdi_task_near(&x->task, x->h->times[q] / x->unit, HDI_MODES_MOST)) continue;
-        count = hdi_estimate_count(x, q);
-        c->bytes_most = hdi_max(c->bytes_most, most + hdi_max(0, hdi_estimate_kept(x, count) - kept));
-        c->bytes_most = hdi_max(c->bytes_most, hdi_estimate_pairs(x->h->heat, count).bytes_most);
+    const hd_laplacian *lap = h->heat->source;
+    const int twice = x->query->distance && x->query->distance->mass > 0 && lap->B;
+    const double bytes = c->bytes, most = c->bytes_most;
+    int32_t q;
+    for (q = 0; q < h->n_times; q++) {
+        const int32_t count = hdi_estimate_count(x, q);
+        const double held = 8.0 * lap->n * ((twice ? 2.0 : 1.0) * count + 5);
+        const hd_cost pairs = hdi_estimate_pairs(h->heat, count);
+        if (!hdi_task_near(&x->task, h->times[q] / x->unit, HDI_MODES_MOST)) continue;
+        c->bytes_most = hdi_max(c->bytes_most, hdi_max(most + held, pairs.bytes_most));
+        if (q == 0 || !hdi_task_first(&x->task, h->times[q] / x->unit)) continue;
+        c->bytes = hdi_max(c->bytes, hdi_max(bytes + held, pairs.bytes));
     }
 }
 
 /* ---- estimates of queries ---- */
 
-/* By poles, or by what the run picks. Returns the cost. */
-static hd_cost hdi_estimate_poles(const hdi_estimate *x) {
-    hd_cost c, zero;
-    memset(&zero, 0, sizeof zero);
-    x->h->t = x->h->times[x->h->n_times - 1];
-    if (x->query->by == HDI_BY_INVERSION) return hdi_estimate_inverses(x, &c) < 0 ? zero : c;
-    return hdi_estimate_solves(x) < 0 ? zero : x->to->cost[x->to->method];
-}
-
-/* A query at times: eigenpairs at late ones, as the run takes them, else poles. Bytes are enough for poles at
- * all times. */
+/* A query at times, by poles or by what the run picks. Where few eigenpairs serve they take about as long as
+ * poles, once; then poles do the other times. */
 static hd_status hdi_estimate_times(const hdi_estimate *x) {
     hdi_heat_call *h = x->h;
-    hd_estimate *to = x->to;
+    const hd_heat *heat = h->heat;
     const int32_t n_times = h->n_times;
-    hd_cost late, poles, early_poles;
-    double kept;
-    int32_t early;
-    if ((x->query->by == HDI_BY_INVERSION || hdi_task_first(&x->task, h->times[n_times - 1] / x->unit)) &&
-        hdi_estimate_analyse(h) < 0) return h->e->status;
-    early = hdi_estimate_pairwise(x) ? n_times : hdi_estimate_late(x, &late, &kept);
-    poles = hdi_estimate_poles(x);
-    if (early < n_times && h->e->status >= 0) {
-        if (early > 0) {
-            h->n_times = early;
-            early_poles = hdi_estimate_poles(x);
-            h->n_times = n_times;
-        } else {
-            memset(&early_poles, 0, sizeof early_poles);
-            memset(to->cost, 0, sizeof to->cost);
-            to->method = HD_METHOD_DIRECT;
-            to->reason = HDI_MODES_REASON;
-        }
-        if (kept > 0 || early > 0) {
-            early_poles.bytes = hdi_max(early_poles.bytes, poles.bytes) + (early > 0 ? kept : 0);
-            early_poles.bytes_most = hdi_max(early_poles.bytes_most, poles.bytes_most) + kept;
-        }
-        poles = early_poles;
-        hdi_cost_add(&poles, &late);
+    hd_cost *c = x->to->cost + HD_METHOD_DIRECT, fewer;
+    int32_t early = n_times, count;
+    while (early > 0 && hdi_task_first(&x->task, h->times[early - 1] / x->unit)) early--;
+    if ((x->query->by == HDI_BY_INVERSION || early == 0) && hdi_estimate_analyse(h) < 0) return h->e->status;
+    if (x->query->by == HDI_BY_SOLVES) (void)hdi_estimate_solves(x);
+    else hdi_estimate_inverses(x, c);
+    if (x->query->by == HDI_BY_INVERSION && early > 0 && early < n_times) {
+        h->n_times = early;
+        hdi_estimate_inverses(x, &fewer);
+        h->n_times = n_times;
+        c->bytes = hdi_max(c->bytes, fewer.bytes);
+        c->bytes_most = hdi_max(c->bytes_most, fewer.bytes_most);
     }
-    hdi_estimate_help(x, early < n_times ? kept : 0, &poles);
-    to->cost[to->method] = poles;
+    count = hdi_estimate_count(x, early == 0 ? 0 : n_times - 1);
+    if (early == 0 && hdi_modes_need(heat, count) <= hdi_bytes_left(heat->ctx)) {
+        x->to->method = HD_METHOD_DIRECT;
+        x->to->reason = HDI_MODES_REASON;
+        if (count <= heat->modes.s.count) {      /* they are there */
+            c->flops = 6.0 * heat->source->n * count * (x->k + 1);
+            c->seconds = 1.5e-9 * c->flops;
+        }
+    }
+    hdi_estimate_help(x, x->to->cost + x->to->method);
     return h->e->status;
 }
 
