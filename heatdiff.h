@@ -18796,23 +18796,18 @@ static int32_t hdi_batches_inside(const hdi_elim *m, int32_t packs, uint64_t dou
 static uint64_t hdi_batches_need(const hd_heat *heat, int32_t packs, int32_t k) {
     const hdi_lane_room room = hdi_lane_room_of(heat->source, &heat->fam, 0, 0);
     int32_t width, count, lanes, i;
-    uint64_t doubles, bytes = 0, old = 0;
+    uint64_t doubles, bytes = 0;
     if (k < 1) return 0;
     count = hdi_batches_shape(&heat->elim, k, &width, &doubles);
     lanes = hdi_low32(k, count * width);
-    if (lanes > heat->n_lanes) {
-        hdi_scope_count(&bytes, (uint64_t)lanes, sizeof(hdi_lane));
-        if (heat->lane) hdi_scope_count(&old, (uint64_t)heat->n_lanes, sizeof(hdi_lane));
-    }
     for (i = 0; i < lanes; i++)
         if (i >= heat->n_lanes || !heat->lane[i].f)
             hdi_scope_count(&bytes, hdi_lane_size(&room), sizeof(double));
+    if (lanes > heat->n_lanes) bytes += (uint64_t)(lanes - heat->n_lanes) * sizeof(hdi_lane);
     doubles *= (uint64_t)(count - hdi_batches_inside(&heat->elim, packs, doubles, count));
-    if (heat->batch_doubles < doubles) {
-        hdi_scope_count(&bytes, doubles, sizeof(double));
-        if (heat->batch_room) hdi_scope_count(&old, heat->batch_doubles, sizeof(double));
-    }
-    return bytes > old ? bytes - old : 0;        /* old room is freed */
+    if (heat->batch_doubles < doubles)           /* in place of the old room */
+        hdi_scope_count(&bytes, doubles - heat->batch_doubles, sizeof(double));
+    return bytes;
 }
 
 /* Bytes that the factors of a set take at their peak with all that follows: an inversion of so many sums, or
@@ -19669,6 +19664,7 @@ struct hdi_task {
     double depth;                /* how far they have to reach above the smallest eigenvalue, times t */
     hd_status (*pairs)(hdi_task *task);
     hd_status (*poles)(hdi_task *task);
+    double excess;               /* of the answer by poles: above 1 its error is not as it should be */
     /* Answers times that are not done together, if that is cheaper, and sets their place in done; their
      * reports go to one [n_times]. NULL: there is no such way. */
     hd_status (*together)(hdi_task *task, char *done, hd_report *one);
@@ -19686,6 +19682,12 @@ static HDI_INLINE int hdi_task_near(const hdi_task *task, double t, int32_t most
 /* Are eigenpairs tried before poles at time t? */
 static HDI_INLINE int hdi_task_first(const hdi_task *task, double t) {
     return hdi_task_near(task, t, task->serves);
+}
+
+/* May poles of the highest degree take over where the default's bound is too large, and may times share their
+ * poles? Not where the caller chose, and not after the byte limit. */
+static int hdi_degree_open(const hd_heat *heat) {
+    return !heat->poles_asked && !heat->exacting && !heat->spare;
 }
 
 /* Takes up time q of the call, as if nothing had been tried. */
@@ -19723,6 +19725,18 @@ static int hdi_task_pairs(hdi_task *task, int32_t q, int32_t most) {
     return 1;
 }
 
+/* The time under way by poles. The highest degree takes over where the error of the default is too large. */
+static hd_status hdi_task_poles(hdi_task *task) {
+    hdi_heat_call *h = task->h;
+    task->excess = 0;
+    if (task->poles(task) < 0 || !(task->excess > 1) || !hdi_degree_open(h->heat)) return h->e->status;
+    hdi_task_at(h, h->now);
+    h->degree = HDI_RAT_KERNEL_MAX;
+    (void)task->poles(task);
+    h->degree = 0;
+    return h->e->status;
+}
+
 /* Time q, which poles have answered: from eigenpairs after all, if the bound is not as it should be and
  * theirs is lower. bound: theirs, if they were tried before, or negative. */
 static hd_status hdi_task_help(hdi_task *task, int32_t q, double bound) {
@@ -19735,7 +19749,7 @@ static hd_status hdi_task_help(hdi_task *task, int32_t q, double bound) {
     if (!hdi_task_pairs(task, q, most) || h->e->status < 0 || h->rep->error_bound <= by_poles)
         return h->e->status;
     hdi_task_at(h, q);
-    return task->poles(task);
+    return hdi_task_poles(task);
 }
 
 /* Time q: from eigenpairs where few are left, else by poles. Where the bound is not as it should be the
@@ -19750,7 +19764,7 @@ static hd_status hdi_task_time(hdi_task *task, int32_t q) {
     }
     if (h->e->status < 0) return h->e->status;
     hdi_task_at(h, q);
-    if (task->poles(task) >= 0) return hdi_task_help(task, q, bound);
+    if (hdi_task_poles(task) >= 0) return hdi_task_help(task, q, bound);
     if (bound < 0 || !hdi_over_limit(h->heat->ctx, h->e)) return h->e->status;
     hdi_heat_drop(h->heat);                      /* an answer is better than none */
     hdi_error_clear(h->e);
@@ -19759,8 +19773,8 @@ static hd_status hdi_task_time(hdi_task *task, int32_t q) {
 }
 
 /* All times of a call: first those that few eigenpairs serve, then the others together or one by one. */
-static hd_status hdi_task_run(hdi_heat_call *h, void *what) {
-    hdi_task *task = (hdi_task *)what;
+static hd_status hdi_task_run(hdi_task *task) {
+    hdi_heat_call *h = task->h;
     const int32_t n = hdi_high32(h->ask.n_times, 1);
     hd_report *one, all;
     char *done;
@@ -19964,22 +19978,19 @@ static int hdi_heat_retreat(hdi_heat_call *h) {
     return 1;
 }
 
-/* One way to answer a call; what: its own arguments. */
-typedef hd_status (*hdi_way)(hdi_heat_call *h, void *what);
-
 /* Answers a call. If the byte limit ends it, all that can be made again is freed, and the call begins anew
  * without what is optional. */
-static hd_status hdi_heat_sparing(hdi_heat_call *h, hdi_way way, void *what) {
+static hd_status hdi_heat_sparing(hdi_heat_call *h, hdi_task *task) {
     const hdi_heat_call before = *h;
     const hd_report rep = *h->rep;
     hd_heat *heat = h->heat;
-    if (way(h, what) >= 0 || heat->spare || !hdi_over_limit(heat->ctx, h->e)) return h->e->status;
+    if (hdi_task_run(task) >= 0 || heat->spare || !hdi_over_limit(heat->ctx, h->e)) return h->e->status;
     while (h->s.n > before.s.n) hdi_free(heat->ctx, h->s.block[--h->s.n]);
     *h = before;
     *h->rep = rep;                               /* with its error, which is none */
     hdi_heat_shed(heat);
     heat->spare = HDI_SPARE_OPTIONS;
-    (void)way(h, what);
+    (void)hdi_task_run(task);
     heat->spare = 0;
     return h->e->status;
 }
@@ -20206,8 +20217,8 @@ static hd_status hdi_heat_run(hdi_heat_call *h) {
     if (task.serves && h->ask.n_times == 1 &&
         !(hdi_task_near(&task, h->ask.t[0], HDI_MODES_MOST) && hdi_fields_keep(h))) task.serves = 0;
     if (h->e->status < 0) return hdi_heat_end(h);
-    if (task.serves) (void)hdi_heat_sparing(h, hdi_task_run, &task);
-    else (void)hdi_task_run(h, &task);
+    if (task.serves) (void)hdi_heat_sparing(h, &task);
+    else (void)hdi_task_run(&task);
     h->heat->spare = spare;
     return hdi_heat_end(h);
 }
@@ -21026,33 +21037,19 @@ static hd_status hdi_diagonals_once(const hdi_diagonals *to, double *relative) {
     return hdi_scope_end(&s);
 }
 
-/* May poles of the highest degree take over where the default's bound is too large, and may times share their
- * poles? Not where the caller chose, and not after the byte limit. */
-static int hdi_degree_open(const hd_heat *heat) {
-    return !heat->poles_asked && !heat->exacting && !heat->spare;
-}
-
-/* The time under way by poles, with the set's degree by default. Tiny cells among large ones and slivers have
- * errors relative to their own value that may be above the promise. Where the bound shows this, the highest
- * degree takes over. The error seen is about a fifth of the bound on all meshes tried. */
+/* The time under way by poles. Tiny cells among large ones and slivers have errors relative to their own
+ * value that may be above the promise. The error seen is about a fifth of the bound on all meshes tried. */
 static hd_status hdi_diagonals_by_poles(hdi_task *task) {
     const hdi_diagonals *to = (const hdi_diagonals *)task;
     hdi_heat_call *h = task->h;
     hd_heat *heat = h->heat;
     const hd_kernel kernel = to->D ? to->kernel : HD_KERNEL_SYMMETRIC;
-    double relative;
-    hd_report before;
     if (hdi_heat_analysed(heat, h->e) < 0) return h->e->status;
     hdi_inverse_tell(h);
-    before = *h->rep;
     if (hdi_heat_equal(heat, &heat->elim, h->t, h->e)) return hdi_diagonals_equal(to, h->now, h->rep);
-    if (h->e->status < 0 || hdi_diagonals_once(to, &relative) < 0) return h->e->status;
-    if (!hdi_degree_open(heat) || relative <= hdi_diagonal_limit(heat->source, kernel)) return HD_OK;
-    h->degree = HDI_RAT_KERNEL_MAX;
-    *h->rep = before;
-    (void)hdi_diagonals_once(to, &relative);
-    h->degree = 0;
-    return h->e->status;
+    if (h->e->status < 0 || hdi_diagonals_once(to, &task->excess) < 0) return h->e->status;
+    task->excess /= hdi_diagonal_limit(heat->source, kernel);
+    return HD_OK;
 }
 
 /* ---- at many times ---- */
@@ -21219,7 +21216,7 @@ static hd_status hdi_diagonals_run(hdi_heat_call *h, hd_kernel kernel, double *D
     to.ldd = ldd;
     to.Z = Z;
     to.bound = bound;
-    return h->heat->n_sets > 1 ? hdi_diagonals_filters(&to) : hdi_heat_sparing(h, hdi_task_run, &to.task);
+    return h->heat->n_sets > 1 ? hdi_diagonals_filters(&to) : hdi_heat_sparing(h, &to.task);
 }
 
 /* Checks that there is selected inversion, and that the direct method is allowed. */
@@ -21368,10 +21365,9 @@ static hd_status hdi_metric_room(hdi_metric *x, int32_t group, int bounded, hdi_
     return x->h->e->status;
 }
 
-/* The metric of one time, the one under way, by poles of a degree (0: by default), for so many sources at the
- * same time. */
-static hd_status hdi_metric_make(hdi_heat_call *h, const hdi_distance_row *kind, int32_t degree,
-                                 int32_t group, int bounded, hdi_metric *x, hdi_scope *s) {
+/* The metric of the time under way by poles, for so many sources at the same time. */
+static hd_status hdi_metric_make(hdi_heat_call *h, const hdi_distance_row *kind, int32_t group, int bounded,
+                                 hdi_metric *x, hdi_scope *s) {
     hd_heat *heat = h->heat;
     if (hdi_heat_analysed(heat, h->e) < 0 || hdi_metric_take(x, h, kind, 1, s) < 0) return h->e->status;
     if (kind->time > 0) {                        /* d^2 of a filter is the sum of the filter itself */
@@ -21384,10 +21380,8 @@ static hd_status hdi_metric_make(hdi_heat_call *h, const hdi_distance_row *kind,
         hdi_diagonal_means(h->lap, &x->f);
         *x->rounding = (double)h->lap->n_active * DBL_EPSILON;
     } else if (h->e->status >= 0) {
-        h->degree = degree;
         if (hdi_inverses_take(&x->in, h, 1, hdi_metric_wanted(heat, kind), s) >= 0 &&
             hdi_heat_set(h, x->in.set) >= 0) (void)hdi_metric_invert(x, s);
-        h->degree = 0;
     }
     return h->e->status < 0 ? h->e->status : hdi_metric_room(x, group, bounded, s);
 }
@@ -21620,16 +21614,6 @@ static hd_status hdi_distances_of(const hdi_distances *to, hdi_metric *x, const 
     return h->e->status;
 }
 
-/* All sources at the time under way. degree 0: by default. */
-static hd_status hdi_distances_once(const hdi_distances *to, int32_t degree) {
-    hdi_heat_call *h = to->task.h;
-    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
-    hdi_metric x;
-    if (hdi_metric_make(h, to->kind, degree, hdi_low32(to->k, HDI_LANES), 1, &x, &s) >= 0)
-        (void)hdi_distances_of(to, &x, NULL, NULL);
-    return hdi_scope_end(&s);
-}
-
 /* ---- distances from the smallest eigenpairs ---- */
 /* At large t all vertices look alike, and f_ss - 2 f_sv + f_vv cancels. There few eigenpairs are left, and
  *     d_t(x,y)^2 = sum_i exp(-2 t lambda_i) (x_i(x) - x_i(y))^2 = |K_t B^-1 (e_x - e_y)|^2
@@ -21737,17 +21721,19 @@ static int hdi_distance_sure(const hd_heat *heat, const hdi_distance_row *kind, 
            HDI_DISTANCE_EXPECTED * sqrt(t) > HDI_DISTANCE_SURE * heat->source->h;
 }
 
-/* Distances at the time under way by poles. Where much cancels, or is sure to, the highest degree takes
- * over if there is room for its factors. */
+/* Distances at the time under way by poles. Where much is sure to cancel, the highest degree begins. */
 static hd_status hdi_distances_by_poles(hdi_task *task) {
     const hdi_distances *to = (const hdi_distances *)task;
     hdi_heat_call *h = task->h;
-    const int open = to->kind->time > 0 && hdi_degree_open(h->heat);
-    const int sure = open && hdi_distance_sure(h->heat, to->kind, h->ask.t[h->now]);
-    if (!sure && hdi_distances_once(to, 0) < 0) return h->e->status;
-    if (!open || (!sure && h->rep->error_rational <= HDI_DISTANCE_SURE)) return h->e->status;
-    hdi_task_at(h, h->now);
-    return hdi_distances_once(to, HDI_RAT_KERNEL_MAX);
+    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
+    hdi_metric x;
+    task->excess = 2;
+    if (to->kind->time > 0 && h->degree == 0 && hdi_degree_open(h->heat) &&
+        hdi_distance_sure(h->heat, to->kind, h->ask.t[h->now])) return HD_OK;
+    if (hdi_metric_make(h, to->kind, hdi_low32(to->k, HDI_LANES), 1, &x, &s) >= 0)
+        (void)hdi_distances_of(to, &x, NULL, NULL);
+    task->excess = to->kind->time > 0 ? h->rep->error_rational / HDI_DISTANCE_SURE : 0;
+    return hdi_scope_end(&s);
 }
 
 /* Distances of all sources at the time under way from the eigenpairs that are there. */
@@ -21897,9 +21883,9 @@ static void hdi_pairs_note(const hd_heat *heat, const hdi_pairs_part *x, hd_repo
     hdi_ledger_join(all, &of);
 }
 
-/* Some pairs at the time under way from columns by poles of a degree (0: by default). */
-static hd_status hdi_pairs_some(hdi_heat_call *h, const hdi_pairs *to, hdi_pairs_part *x, int32_t degree,
-                                hd_report *rep, hdi_ledger *all) {
+/* Some pairs at the time under way from columns. */
+static hd_status hdi_pairs_some(hdi_heat_call *h, const hdi_pairs *to, hdi_pairs_part *x, hd_report *rep,
+                                hdi_ledger *all) {
     const hd_kernel kernel = to->kind->mass > 0 ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
     const hd_heat *heat = h->heat;
     const uint64_t n = (uint64_t)heat->source->n;
@@ -21920,7 +21906,7 @@ static hd_status hdi_pairs_some(hdi_heat_call *h, const hdi_pairs *to, hdi_pairs
         c.ask.terms = terms;
         c.ask.U = x->U;
         c.ask.ldu = (size_t)n;
-        c.degree = degree;
+        c.degree = h->degree;
     }
     if (hdi_heat_run(&c) < 0) *h->e = rep->error;
     for (q = 0; q < x->n_vertex && h->e->status >= 0; q++)
@@ -21930,7 +21916,7 @@ static hd_status hdi_pairs_some(hdi_heat_call *h, const hdi_pairs *to, hdi_pairs
 }
 
 /* All pairs at the time under way, so many at once. */
-static hd_status hdi_pairs_columns(const hdi_pairs *to, int32_t degree, int64_t most) {
+static hd_status hdi_pairs_columns(const hdi_pairs *to, int64_t most) {
     hdi_heat_call *h = to->task.h;
     hdi_ledger all = hdi_ledger_begin(HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, 1);
     hd_report one, sum;
@@ -21941,7 +21927,7 @@ static hd_status hdi_pairs_columns(const hdi_pairs *to, int32_t degree, int64_t 
         x.j = to->j + p;
         x.d = to->d + to->n * h->now + p;
         x.n = hdi_least(to->n - p, most);
-        if (hdi_pairs_some(h, to, &x, degree, &one, &all) < 0) return h->e->status;
+        if (hdi_pairs_some(h, to, &x, &one, &all) < 0) return h->e->status;
         if (p == 0) sum = one;
         else hdi_report_merge(&sum, &one);
     }
@@ -21963,7 +21949,7 @@ static hd_status hdi_pairs_one_by_one(const hdi_pairs *to) {
     hdi_ledger ledger, all;
     hdi_metric x;
     int64_t q;
-    if (h->e->status < 0 || hdi_metric_make(h, to->kind, 0, 1, 0, &x, &s) < 0) return hdi_scope_end(&s);
+    if (h->e->status < 0 || hdi_metric_make(h, to->kind, 1, 0, &x, &s) < 0) return hdi_scope_end(&s);
     ledger = all = hdi_metric_ledger(&x);
     for (q = 0; q < to->n; q++) {                /* a column for each run of the same first vertex */
         const hdi_terms from = hdi_terms_vertex(to->i[q]);
@@ -21984,7 +21970,7 @@ static hd_status hdi_pairs_one_by_one(const hdi_pairs *to) {
 }
 
 /* Distances at the time under way from columns of all vertices of the pairs or, where these have no room,
- * by the metric. The highest degree takes over where the direct method's bound is not as it should be. */
+ * by the metric. */
 static hd_status hdi_pairs_by_poles(hdi_task *task) {
     const hdi_pairs *to = (const hdi_pairs *)task;
     hdi_heat_call *h = task->h;
@@ -22000,11 +21986,8 @@ static hd_status hdi_pairs_by_poles(hdi_task *task) {
     }
     if (hdi_scope_end(&s) < 0) return h->e->status;
     if (!fits) return hdi_pairs_one_by_one(to);
-    if (hdi_pairs_columns(to, 0, most) >= 0 && h->rep->error_bound > HDI_MODES_HELP &&
-        hdi_degree_open(heat) && h->rep->method == HD_METHOD_DIRECT) {
-        hdi_task_at(h, h->now);
-        (void)hdi_pairs_columns(to, HDI_RAT_KERNEL_MAX, most);
-    }
+    if (hdi_pairs_columns(to, most) >= 0 && h->rep->method == HD_METHOD_DIRECT)
+        task->excess = h->rep->error_bound / HDI_MODES_HELP;
     return h->e->status;
 }
 
@@ -22095,12 +22078,12 @@ static hd_status hdi_sample_by_poles(hdi_task *task) {
     hdi_samples *a = (hdi_samples *)task;
     hdi_heat_call *h = task->h;
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
-    const int open = a->kind->time > 0 && hdi_degree_open(h->heat);
     hdi_metric x;
     a->x = &x;
     a->sum = NULL;
-    if (hdi_metric_make(h, a->kind, open ? HDI_RAT_KERNEL_MAX : 0, 1, 0, &x, &s) >= 0)
-        (void)hdi_sample_points(a);
+    h->degree = a->kind->time > 0 && hdi_degree_open(h->heat) ? HDI_RAT_KERNEL_MAX : 0;
+    if (hdi_metric_make(h, a->kind, 1, 0, &x, &s) >= 0) (void)hdi_sample_points(a);
+    h->degree = 0;
     return hdi_scope_end(&s);
 }
 
@@ -22161,7 +22144,7 @@ static hd_status hdi_distance_answer(hd_heat *heat, hdi_distances *to, const hd_
     to->task.pairs = HDI_HAS_MODES ? hdi_distances_by_pairs : NULL;
     to->task.poles = hdi_distances_by_poles;
     to->task.together = hdi_distances_together;
-    (void)hdi_heat_sparing(&h, hdi_task_run, &to->task);
+    (void)hdi_heat_sparing(&h, &to->task);
     return hdi_heat_end(&h);
 }
 
@@ -22170,7 +22153,7 @@ static hd_status hdi_pairs_run(hdi_heat_call *h, hdi_pairs *to) {
     hdi_distance_task(&to->task, h, to->kind, 1);
     to->task.pairs = HDI_HAS_MODES ? hdi_pairs_by_pairs : NULL;
     to->task.poles = hdi_pairs_by_poles;
-    return hdi_heat_sparing(h, hdi_task_run, &to->task);
+    return hdi_heat_sparing(h, &to->task);
 }
 
 static hd_status hdi_sample_answer(hd_heat *heat, hdi_samples *a, const hd_sources *sources,
@@ -22189,7 +22172,7 @@ static hd_status hdi_sample_answer(hd_heat *heat, hdi_samples *a, const hd_sourc
     hdi_distance_task(&a->task, &h, a->kind, a->count + a->n_from);
     a->task.pairs = HDI_HAS_MODES ? hdi_sample_by_pairs : NULL;
     a->task.poles = hdi_sample_by_poles;
-    (void)hdi_heat_sparing(&h, hdi_task_run, &a->task);
+    (void)hdi_heat_sparing(&h, &a->task);
     return hdi_heat_end(&h);
 }
 
