@@ -16002,23 +16002,15 @@ static double hdi_ground_column(const hdi_elim *m, const hdi_ground *g, const hd
 
 /* Bytes that hdi_ground_make takes at its peak, and with forms hdi_ground_forms after it. */
 static uint64_t hdi_ground_need(const hdi_elim *m, const hdi_ground *g, int forms) {
-    const uint64_t n = (uint64_t)m->sym.n, n_comp = (uint64_t)m->lap->n_components;
-    const uint64_t nnz = (uint64_t)m->lap->L.nnz;
+    const uint64_t nnz = (uint64_t)m->lap->L.nnz, n = (uint64_t)m->sym.n;
     uint64_t held = 0, make = 0, form = 0;
     if (!g->diag) {
-        held = hdi_factor_bytes(&m->sym, 1);
-        hdi_scope_count(&held, hdi_ground_size(m), sizeof(double));
-        make = hdi_inverse_bytes(&m->sym, 1, 0, 0);
-        hdi_scope_count(&make, nnz, sizeof(double));
-        hdi_scope_count(&make, n_comp, sizeof(char));
+        held = hdi_factor_bytes(&m->sym, 1) + sizeof(double) * hdi_ground_size(m);
+        make = hdi_inverse_bytes(&m->sym, 1, 0, 0) + sizeof(double) * nnz;
     }
-    if (forms && !g->formed) {
-        form = hdi_factor_bytes(&m->sym, HDI_PACK) + hdi_inverse_bytes(&m->sym, HDI_PACK, 0, 0);
-        hdi_scope_count(&form, nnz, sizeof(hd_c64));
-        hdi_scope_count(&form, hdi_sweep_size(&m->sym, 1, 1), sizeof(double));
-        hdi_scope_count(&form, 2 * n, sizeof(double));
-        hdi_scope_count(&form, n_comp, sizeof(char));
-    }
+    if (forms && !g->formed)
+        form = hdi_factor_bytes(&m->sym, HDI_PACK) + hdi_inverse_bytes(&m->sym, HDI_PACK, 0, 0) +
+               sizeof(double) * (2 * nnz + 2 * n + hdi_sweep_size(&m->sym, 1, 1));
     return held + (make > form ? make : form);
 }
 
@@ -18230,24 +18222,6 @@ static void hdi_heat_measure(const hd_laplacian *lap, hdi_lane *lane) {
     hdi_component_sums(lap, NULL, lane->rhs, lane->target);
 }
 
-/* The error of a uniform set is at most this part of the least that the answer can be, which is what its
- * constants amount to. Direct: degree 9, which costs little more than 8, serves up to twice that. */
-#define HDI_UNIFORM_SHARE 1e-9
-#define HDI_UNIFORM_SHARE_DIRECT 2e-9
-
-/* Degree of a uniform set. Odd ones cost as much as the next even one; 9 fills a pack and the real factor. */
-static int32_t hdi_uniform_degree(const hd_laplacian *lap, const hdi_lane *lane, int direct) {
-    const double share = direct ? HDI_UNIFORM_SHARE_DIRECT : HDI_UNIFORM_SHARE;
-    const double most = share * sqrt(hdi_lane_means_norm2(lane, lap));
-    hd_rational set;
-    hd_error e;
-    int32_t r;
-    for (r = 8; r < HDI_RAT_UNIFORM_MAX; r = !direct ? r + 2 : r == 8 ? 9 : HDI_RAT_UNIFORM_MAX)
-        if (hdi_rational_get(&set, HD_POLES_UNIFORM, r, &e) == HD_OK && set.max_error * lane->f_norm <= most)
-            break;
-    return r;
-}
-
 /* All fields, before anything is solved or written. */
 static hd_status hdi_fields_check(const hdi_heat_call *h) {
     int32_t q, v;
@@ -18501,25 +18475,30 @@ static hd_status hdi_heat_lanes(hdi_heat_call *h, int32_t most, int32_t steps, i
     return h->e->status;
 }
 
-/* The degree of a uniform set for all fields. Columns, whose constants are small, get the highest one. */
+/* The error of a uniform set is at most this part of the least that the answer can be, which is what its
+ * constants amount to. */
+#define HDI_UNIFORM_SHARE 1e-9
+
+/* The degree of a uniform set for all fields. Odd ones cost as much as the next even one; but the direct
+ * method has a pack and a real factor for 9, which may have twice that share. Columns, whose constants are
+ * small, get the highest one. */
 static hd_status hdi_heat_degree(hdi_heat_call *h, int32_t *degree) {
-    const int fields = hdi_query_fields(h->ask.query);
-    int32_t q, r;
+    const int direct = h->method == HD_METHOD_DIRECT, fields = hdi_query_fields(h->ask.query);
+    hd_rational set;
+    int32_t q;
     *degree = fields ? 8 : HDI_RAT_UNIFORM_MAX;
     if (fields && hdi_heat_lanes(h, 1, 0, 0) < 0) return h->e->status;
     for (q = 0; q < h->ask.k && fields; q++) {
+        const hdi_lane *lane = h->heat->lane;
+        double most;
         if (hdi_heat_load(h, q, h->heat->lane) < 0) return h->e->status;
-        r = hdi_uniform_degree(h->lap, h->heat->lane, h->method == HD_METHOD_DIRECT);
-        if (r > *degree) *degree = r;
+        most = (direct ? 2 : 1) * HDI_UNIFORM_SHARE * sqrt(hdi_lane_means_norm2(lane, h->lap));
+        while (*degree < HDI_RAT_UNIFORM_MAX &&
+               hdi_rational_get(&set, HD_POLES_UNIFORM, *degree, h->e) >= 0 &&
+               !(set.max_error * lane->f_norm <= most))
+            *degree = !direct ? *degree + 2 : *degree == 8 ? 9 : HDI_RAT_UNIFORM_MAX;
     }
     return HD_OK;
-}
-
-/* Does the degree depend on the fields? */
-static int hdi_heat_open(const hdi_heat_call *h) {
-    const hd_heat *heat = h->heat;
-    return !h->set && !heat->opts.rational && !heat->opts.degree && !heat->exacting &&
-           hdi_heat_kind(h) == HD_POLES_UNIFORM && heat->spare != HDI_SPARE_POLES;
 }
 
 /* The pole set of this call. degree: where nothing else says which. */
@@ -18539,8 +18518,11 @@ static hd_status hdi_heat_set_of(const hdi_heat_call *h, int32_t degree, hd_rati
 enum { HDI_DEGREE_DIRECT = 9 };  /* four pairs fill a pack, a real pole costs little */
 
 static hd_status hdi_heat_set(hdi_heat_call *h, hd_rational *set) {
+    const hd_heat *heat = h->heat;
+    const int asked = h->set || heat->opts.rational || heat->opts.degree || heat->exacting;
     int32_t degree = h->method == HD_METHOD_DIRECT ? HDI_DEGREE_DIRECT : 10;
-    if (hdi_heat_open(h) && hdi_heat_degree(h, &degree) < 0) return h->e->status;
+    if (!asked && hdi_heat_kind(h) == HD_POLES_UNIFORM && heat->spare != HDI_SPARE_POLES &&
+        hdi_heat_degree(h, &degree) < 0) return h->e->status;
     return hdi_heat_set_of(h, degree, set);
 }
 
@@ -19079,17 +19061,6 @@ static hdi_elim *hdi_krylov_elim(const hdi_heat_call *h) {
     return few ? &heat->few : &heat->elim;
 }
 
-/* Bytes that a basis of so many steps takes, with the real factor before it where there is none. */
-static uint64_t hdi_krylov_need(const hdi_elim *m, int32_t wide, int32_t steps) {
-    const uint64_t n = (uint64_t)m->sym.n, count = n * (uint64_t)wide;
-    uint64_t bytes = m->shifted.ctx ? 0 : hdi_factor_bytes(&m->sym, 1);
-    int32_t q;
-    for (q = 0; q <= steps; q++) hdi_scope_count(&bytes, count, sizeof(double));
-    hdi_scope_count(&bytes, 2 * count + 2 * n, sizeof(double));
-    hdi_scope_count(&bytes, hdi_sweep_size(&m->sym, 1, wide), sizeof(double));
-    return bytes;
-}
-
 static void hdi_krylov_cost(const hdi_heat_call *h, hd_cost *c) {
     const hd_heat *heat = h->heat;
     const hdi_elim *m = hdi_krylov_elim(h);
@@ -19108,9 +19079,8 @@ static void hdi_krylov_cost(const hdi_heat_call *h, hd_cost *c) {
                  h->n_times * steps / w.n * 8 * n / HDI_RATE_BYTES;
     if (heat->krylov && heat->krylov->m == m && heat->krylov->wide == wide && heat->krylov->v[0] &&
         m->shifted.ctx) return;
-    if (m->ctx) c->bytes = (double)hdi_krylov_need(m, wide, (int32_t)longest);
-    else c->bytes = 8 * f.real_stored + 8 * n * wide * (longest + 4) + 200 * n;
-    c->bytes += (double)sizeof(hdi_krylov) + wide * 56 * n;
+    if (!m->shifted.ctx) c->bytes = m->ctx ? (double)hdi_factor_bytes(&m->sym, 1) : 8 * f.real_stored;
+    c->bytes += (double)sizeof(hdi_krylov) + 8 * n * (wide * (longest + 11) + 10);
     if (h->n_times > 1 && wide == 1) c->bytes += HDI_WIDE * 8 * n;   /* sums at several times */
 }
 
@@ -19123,10 +19093,11 @@ static hd_status hdi_krylov_basis(hdi_heat_call *h, int32_t n, int32_t q0, int32
     double g = hdi_krylov_shift(z->from, h->times[q0], h->times[q1 - 1], heat->lambda_max);
     /* derivatives of smooth fields at short times are small beside the fields, and digits of T are lost */
     if (h->rate && heat->lambda_max > 0) g = hdi_max(g, HDI_SHIFT_RATE / heat->lambda_max);
-    /* a step is the least */
-    if (!h->m->shifted.ctx && !z->v[0] &&
-        hdi_need(heat->ctx, hdi_krylov_need(h->m, z->wide, 1), "a real factor and a basis", h->e) < 0)
-        return h->e->status;
+    if (!h->m->shifted.ctx && !z->v[0]) {        /* a step is the least */
+        const uint64_t basis = 4 * sizeof(double) * (uint64_t)h->m->sym.n * (uint64_t)z->wide;
+        const uint64_t need = hdi_factor_bytes(&h->m->sym, 1) + basis;
+        if (hdi_need(heat->ctx, need, "a real factor and a basis", h->e) < 0) return h->e->status;
+    }
     if (hdi_elim_shift(h->m, g, h->e) < 0) return h->e->status;
     z->g = h->m->shift;
     z->k = n;
@@ -19304,29 +19275,22 @@ static hdi_elim *hdi_heat_analysis(const hdi_heat_call *h) {
 /* Takes the cheapest method that fits into so many bytes, or iterations. */
 static void hdi_heat_cheapest(hdi_heat_call *h, const hdi_costs *c, double room) {
     const hd_cost *by = c->by;
-    int32_t q, fits = 0;
+    int32_t q;
     double least = HUGE_VAL, cost = HUGE_VAL;
-    if (by[HD_METHOD_ITERATIVE].possible) cost = by[HD_METHOD_ITERATIVE].seconds;
     h->method = HD_METHOD_ITERATIVE;
-    for (q = HD_METHOD_KRYLOV; q >= HD_METHOD_DIRECT; q--) {
+    for (q = HD_METHOD_KRYLOV; q >= HD_METHOD_ITERATIVE; q--) {
         if (!by[q].possible) continue;
         least = hdi_min(least, by[q].seconds);
-        if (by[q].bytes > room) continue;
-        fits = 1;
-        if (by[q].seconds >= cost) continue;
+        if ((q > HD_METHOD_ITERATIVE && by[q].bytes > room) || by[q].seconds >= cost) continue;
         h->method = (hd_method)q;
         cost = by[q].seconds;
     }
-    h->forced |= room < HUGE_VAL && h->method == HD_METHOD_ITERATIVE && cost > least;
-    h->rep->reason =
-        h->method == HD_METHOD_KRYLOV
-          ? (h->n_times > 1 ? "one real factor serves many times"
-                            : "few columns: one real factor costs less than those of the poles")
-        : h->method == HD_METHOD_DIRECT
-          ? (h->ask.k > 1 ? "many columns: solves with the factors of the poles cost least"
-             : hdi_heat_at_hand(h) ? "the factors of the poles are there from calls before"
-                               : "the factors of the poles cost least")
-        : fits ? "iterations cost less than a factorisation" : "factors would not fit the byte limit";
+    h->forced |= h->method == HD_METHOD_ITERATIVE && cost > least;
+    h->rep->reason = h->method == HD_METHOD_KRYLOV ? "one real factor costs less than those of the poles"
+                     : h->method == HD_METHOD_ITERATIVE
+                       ? (h->forced ? "factors would not fit the byte limit" : "iterations cost the least")
+                     : hdi_heat_at_hand(h) ? "the factors of the poles are there from calls before"
+                                           : "the factors of the poles cost least";
 }
 
 /* Picks the method by the model. Analyses are made only where a factorisation could cost least. */
@@ -22244,16 +22208,17 @@ static hd_status hdi_estimate_analyse(hdi_heat_call *h) {
 static hd_status hdi_estimate_solves(const hdi_estimate *x) {
     hdi_heat_call *h = x->h;
     hd_heat *heat = h->heat;
+    const int32_t n_times = h->n_times;
     hd_cost *by = x->to->cost, *direct = by + HD_METHOD_DIRECT, most;
     hdi_costs all;
     hd_rational set;
     int32_t q;
-    if (hdi_heat_pick(h) >= 0 && h->n_times > 1 && h->method != HD_METHOD_KRYLOV) {   /* one by one */
-        hdi_heat_call last = *h;
-        last.times = &h->t;
-        last.n_times = 1;
-        (void)hdi_heat_pick(&last);
-        h->method = last.method;
+    if (hdi_heat_pick(h) >= 0 && n_times > 1 && h->method != HD_METHOD_KRYLOV) {   /* one by one */
+        h->times += n_times - 1;
+        h->n_times = 1;
+        (void)hdi_heat_pick(h);
+        h->n_times = n_times;
+        h->times -= n_times - 1;
     }
     if (hdi_over_limit(heat->ctx, h->e)) hdi_error_clear(h->e);
     if (h->e->status < 0 || (h->method != HD_METHOD_ITERATIVE && hdi_estimate_analyse(h) < 0))

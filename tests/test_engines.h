@@ -808,8 +808,8 @@ static void eng_choice(void) {
     double *u = KIT_NEW(double, s.n);
     int k;
     CHECK(eng_chosen(voronoi, &none, 0.01 * hh, 1, 0, "iterations") == HD_METHOD_ITERATIVE);    /* far from where they cost the same */
-    CHECK(eng_chosen(fem, &none, 300 * hh, 64, 0, "columns") == HD_METHOD_DIRECT);
-    CHECK(eng_chosen(fem, &none, 5 * hh, 1, 40, "times") == HD_METHOD_KRYLOV);
+    CHECK(eng_chosen(fem, &none, 300 * hh, 64, 0, "the poles cost least") == HD_METHOD_DIRECT);
+    CHECK(eng_chosen(fem, &none, 5 * hh, 1, 40, "one real factor") == HD_METHOD_KRYLOV);
     for (k = 0; k < 4; k++) {                    /* poles that are asked for are not passed over */
         o = none;
         if (k == 0) o.poles = HD_POLES_KERNEL;
