@@ -18526,38 +18526,32 @@ static hd_status hdi_heat_set(hdi_heat_call *h, hd_rational *set) {
     return hdi_heat_set_of(h, degree, set);
 }
 
-static hdi_lanczos_task hdi_heat_lanczos_task(const hd_heat *heat, double t) {
+static void hdi_heat_task(void *arg, int64_t index, int32_t worker) {
+    hdi_heat_call *h = (hdi_heat_call *)arg;
+    const hd_heat *heat = h->heat;
+    hdi_lane *lane = heat->lane + index;
     hdi_lanczos_task task;
+    hdi_watch watch;
+    hdi_error_clear(&lane->error);
+    if (lane->skip) return;
     task.lap = heat->lap;
     task.weight = heat->weight;
     task.noise = heat->noise;
-    task.t = t;
+    task.t = h->t;
     task.tol = heat->opts.tol;
     task.drift = heat->drift;
-    task.rate = 0;
-    task.max_iterations = heat->opts.max_iterations;
-    return task;
-}
-
-static void hdi_heat_task(void *arg, int64_t index, int32_t worker) {
-    hdi_heat_call *h = (hdi_heat_call *)arg;
-    hdi_lane *lane = h->heat->lane + index;
-    hdi_lanczos_task task = hdi_heat_lanczos_task(h->heat, h->t);
-    hdi_watch watch;
     task.rate = h->rate;
-    hdi_error_clear(&lane->error);
-    if (lane->skip) return;
-    watch.ctx = worker == 0 ? h->heat->ctx : NULL;
+    task.max_iterations = heat->opts.max_iterations;
+    watch.ctx = worker == 0 ? heat->ctx : NULL;
     watch.stop = &h->stop;
     watch.stage = "solve";
     watch.share = 1.0 / h->ask.k;
     watch.from = watch.share * (double)(h->batch + index);
     lane->status = hdi_watch_look(&watch, 0, &lane->error);
     if (lane->status >= 0) {
-        if (h->solver == HD_SOLVER_LANCZOS) lane->status = hdi_lanczos_run(&task, lane, &watch, &lane->error);
-        else
-            lane->status = hdi_family_run(&h->heat->fam, h->heat->opts.tol, h->t * h->heat->drift, lane,
-                                          &watch, &lane->error);
+        lane->status = h->solver == HD_SOLVER_LANCZOS
+                       ? hdi_lanczos_run(&task, lane, &watch, &lane->error)
+                       : hdi_family_run(&heat->fam, task.tol, task.t * task.drift, lane, &watch, &lane->error);
     }
     if (lane->status < 0) HDI_STORE(&h->stop, 1);
 }
@@ -18980,13 +18974,11 @@ static hd_status hdi_heat_by_direct(hdi_heat_call *h) {
 
 /* ---- krylov ---- */
 
-/* The time at part x of the way from t0 to t1, in equal ratios. Their own ratio might overflow. */
-static double hdi_time_between(double t0, double t1, double x) { return pow(t0, 1 - x) * pow(t1, x); }
-
-/* The end of window w of n_windows of equal ratio, from time q0 on; times ascend. */
+/* The end of window w of n_windows of equal ratio, from time q0 on; times ascend. The ratio of all might
+ * overflow. */
 static int32_t hdi_window_end(const double *times, int32_t n_times, int32_t q0, int32_t w,
                               int32_t n_windows) {
-    const double end = hdi_time_between(times[0], times[n_times - 1], (w + 1.0) / n_windows);
+    const double x = (w + 1.0) / n_windows, end = pow(times[0], 1 - x) * pow(times[n_times - 1], x);
     int32_t q1 = q0 + 1;
     /* 1e-13: rounding of pow */
     while (q1 < n_times && (w + 1 >= n_windows || times[q1] <= end * (1 + 1e-13))) q1++;
@@ -20102,20 +20094,8 @@ static hd_status hdi_direct_only(hdi_heat_call *h) {
     return HD_OK;
 }
 
-/* Leaves out of the sorted times those that are done: [ask.n_times] by their columns, or NULL. */
-static void hdi_heat_skip(hdi_heat_call *h, double *times, int32_t *column, const char *done) {
-    int32_t q, n = 0;
-    for (q = 0; q < h->n_times; q++) {
-        if (done && done[column[q]]) continue;
-        times[n] = times[q];
-        column[n++] = column[q];
-    }
-    h->n_times = n;
-    if (n > 0) h->t = times[n - 1];
-}
-
 /* Sorts the times of a call that are not done, scaled and times factor, into h->times, and notes which each
- * is. h->t becomes the last. */
+ * is. h->t becomes the last. done: [ask.n_times] by their columns, or NULL. */
 static hd_status hdi_heat_sort_times(hdi_heat_call *h, double factor, const char *done) {
     const int32_t n = h->ask.n_times;
     hdi_pair *order = HDI_TAKE(&h->s, hdi_pair, n);
@@ -20123,20 +20103,19 @@ static hd_status hdi_heat_sort_times(hdi_heat_call *h, double factor, const char
     int32_t *column = HDI_TAKE(&h->s, int32_t, n), q;
     if (h->e->status < 0) return h->e->status;
     /* bits of doubles that are not negative are in their order */
-    for (q = 0; q < n; q++) {
+    for (q = 0, h->n_times = 0; q < n; q++) {
         const double v = h->ask.t[q] + 0.0;
-        memcpy(&order[q].key, &v, sizeof v);
-        order[q].id = q;
+        if (done && done[q]) continue;
+        memcpy(&order[h->n_times].key, &v, sizeof v);
+        order[h->n_times++].id = q;
     }
-    hdi_sort_pairs(order, n);
-    for (q = 0; q < n; q++) {
+    hdi_sort_pairs(order, h->n_times);
+    for (q = 0; q < h->n_times; q++) {
         column[q] = (int32_t)order[q].id;
-        sorted[q] = factor * hdi_heat_scaled(h->heat, h->ask.t[column[q]]);
+        h->t = sorted[q] = factor * hdi_heat_scaled(h->heat, h->ask.t[column[q]]);
     }
     h->times = sorted;
-    h->n_times = n;
     h->time_column = column;
-    hdi_heat_skip(h, sorted, column, done);
     return HD_OK;
 }
 
@@ -22231,15 +22210,12 @@ static hd_status hdi_estimate_solves(const hdi_estimate *x) {
         if (by[q].possible) by[q].bytes += x->held + HDI_ESTIMATE_SMALL;
         by[q].bytes_most = by[q].bytes;
     }
-    if (!direct->possible) return h->e->status;
-    h->degree = x->query->distance && !heat->poles_asked ? HDI_RAT_KERNEL_MAX : 0;
-    if (hdi_heat_set_of(h, HDI_RAT_UNIFORM_MAX, &set) < 0) return h->e->status;
+    if (!direct->possible || hdi_heat_set_of(h, HDI_RAT_UNIFORM_MAX, &set) < 0) return h->e->status;
     memset(&most, 0, sizeof most);
     (void)hdi_direct_set(h, &set, HDI_AFTER_BOUND, 0, x->k, x->held + HDI_ESTIMATE_SMALL, &most);
-    if (h->degree && heat->elim.ctx)             /* the solves' arrays of the first try stay */
+    if (x->query->distance && !heat->poles_asked && heat->elim.ctx)   /* the arrays of the first try stay */
         most.bytes += (double)hdi_batches_need(heat, hdi_set_packs(&set), x->k);
     direct->bytes_most = hdi_max(direct->bytes, most.bytes);
-    h->degree = 0;
     return h->e->status;
 }
 
