@@ -18551,7 +18551,8 @@ static void hdi_heat_task(void *arg, int64_t index, int32_t worker) {
     if (lane->status >= 0) {
         lane->status = h->solver == HD_SOLVER_LANCZOS
                        ? hdi_lanczos_run(&task, lane, &watch, &lane->error)
-                       : hdi_family_run(&heat->fam, task.tol, task.t * task.drift, lane, &watch, &lane->error);
+                       : hdi_family_run(&h->heat->fam, task.tol, task.t * task.drift, lane, &watch,
+                                        &lane->error);
     }
     if (lane->status < 0) HDI_STORE(&h->stop, 1);
 }
@@ -19240,23 +19241,19 @@ static hd_status hdi_heat_by_krylov(hdi_heat_call *h) {
 
 /* ---- choice of the method ---- */
 
-/* What each method would take, by hd_method. */
-typedef struct hdi_costs { hd_cost by[HD_METHOD_KRYLOV + 1]; } hdi_costs;
-
-/* Those of the methods that the call may take. h->t is the last of its times. */
-static hdi_costs hdi_heat_costs(const hdi_heat_call *h) {
+/* What each method that the call may take would take, in by [HD_METHOD_KRYLOV + 1]. h->t is the last of its
+ * times. */
+static void hdi_heat_costs(const hdi_heat_call *h, hd_cost *by) {
     const hd_heat *heat = h->heat;
     const int factors = !heat->iterations_asked || heat->opts.method > HD_METHOD_ITERATIVE;
-    hdi_costs all;
     int q;
-    memset(&all, 0, sizeof all);
-    if (HDI_HAS_ITERATIVE) hdi_iterative_cost(h, all.by + HD_METHOD_ITERATIVE);
-    if (HDI_HAS_POLE_FACTORS && factors) hdi_direct_cost(h, all.by + HD_METHOD_DIRECT);
+    memset(by, 0, (HD_METHOD_KRYLOV + 1) * sizeof *by);
+    if (HDI_HAS_ITERATIVE) hdi_iterative_cost(h, by + HD_METHOD_ITERATIVE);
+    if (HDI_HAS_POLE_FACTORS && factors) hdi_direct_cost(h, by + HD_METHOD_DIRECT);
     if (HDI_HAS_DIRECT && factors && !heat->poles_asked)
-        hdi_krylov_cost(h, all.by + HD_METHOD_KRYLOV);
+        hdi_krylov_cost(h, by + HD_METHOD_KRYLOV);
     for (q = HD_METHOD_ITERATIVE; q <= HD_METHOD_KRYLOV; q++)
-        all.by[q].seconds += HDI_FRESH_BYTE * all.by[q].bytes;
-    return all;
+        by[q].seconds += HDI_FRESH_BYTE * by[q].bytes;
 }
 
 /* The analysis that the method picked works with. */
@@ -19265,8 +19262,7 @@ static hdi_elim *hdi_heat_analysis(const hdi_heat_call *h) {
 }
 
 /* Takes the cheapest method that fits into so many bytes, or iterations. */
-static void hdi_heat_cheapest(hdi_heat_call *h, const hdi_costs *c, double room) {
-    const hd_cost *by = c->by;
+static void hdi_heat_cheapest(hdi_heat_call *h, const hd_cost *by, double room) {
     int32_t q;
     double least = HUGE_VAL, cost = HUGE_VAL;
     h->method = HD_METHOD_ITERATIVE;
@@ -19291,11 +19287,11 @@ static hd_status hdi_heat_pick_by_cost(hdi_heat_call *h) {
     /* without iterations there is no retreat */
     const double room = HDI_HAS_ITERATIVE ? hdi_bytes_left(heat->ctx) : HUGE_VAL;
     hdi_elim *m;
-    hdi_costs c;
+    hd_cost by[HD_METHOD_KRYLOV + 1];
     for (;;) {
-        c = hdi_heat_costs(h);
+        hdi_heat_costs(h, by);
         if (h->e->status < 0) return h->e->status;
-        hdi_heat_cheapest(h, &c, room);
+        hdi_heat_cheapest(h, by, room);
         m = hdi_heat_analysis(h);
         if (h->method == HD_METHOD_ITERATIVE || m->ctx) return HD_OK;
         if (hdi_heat_analysed_in(heat, m, h->e) < 0) return h->e->status;
@@ -22189,7 +22185,6 @@ static hd_status hdi_estimate_solves(const hdi_estimate *x) {
     hd_heat *heat = h->heat;
     const int32_t n_times = h->n_times;
     hd_cost *by = x->to->cost, *direct = by + HD_METHOD_DIRECT, most;
-    hdi_costs all;
     hd_rational set;
     int32_t q;
     if (hdi_heat_pick(h) >= 0 && n_times > 1 && h->method != HD_METHOD_KRYLOV) {   /* one by one */
@@ -22204,9 +22199,8 @@ static hd_status hdi_estimate_solves(const hdi_estimate *x) {
         return h->e->status;
     x->to->method = h->method;
     x->to->reason = h->rep->reason;
-    all = hdi_heat_costs(h);
+    hdi_heat_costs(h, by);
     for (q = HD_METHOD_ITERATIVE; q <= HD_METHOD_KRYLOV; q++) {
-        by[q] = all.by[q];
         if (by[q].possible) by[q].bytes += x->held + HDI_ESTIMATE_SMALL;
         by[q].bytes_most = by[q].bytes;
     }

@@ -35,7 +35,7 @@ static const case_row adj_rows[] = {
     {ADJ_DRAIN " method=direct poles=kernel|diagonal degree=10|12", 0, 0, 18},
     {ADJ_DRAIN " method=krylov tol=1e-10|1e-3", 0, 0, 6},
     {ADJ_DRAIN " method=iterative solver=lanczos tol=1e-10", 0, 0, 0},
-    {ADJ_DRAIN " method=auto|iterative tol=1e-3", 0, 0, 4},
+    {ADJ_DRAIN " method=auto|iterative tol=1e-3", 0, 0, 12},
     {ADJ_DRAIN " method=iterative solver=lanczos tol=1e-3", 0, 0, 9},
     /* where iterations fail that auto has chosen, factors take over: the field has decayed by exp(-5) */
     {"shape=leak/40/1e-9 op=I query=derivative field=level seed=28|29|30|31|32 t=5.444e9 tol=1e-13", 0, 0, 5},
