@@ -15671,23 +15671,15 @@ static double hdi_ground_column(const hdi_elim *m, const hdi_ground *g, const hd
 
 /* Bytes that hdi_ground_make takes at its peak, and with forms hdi_ground_forms after it. */
 static uint64_t hdi_ground_need(const hdi_elim *m, const hdi_ground *g, int forms) {
-    const uint64_t n = (uint64_t)m->sym.n, n_comp = (uint64_t)m->lap->n_components;
-    const uint64_t nnz = (uint64_t)m->lap->L.nnz;
+    const uint64_t nnz = (uint64_t)m->lap->L.nnz, n = (uint64_t)m->sym.n;
     uint64_t held = 0, make = 0, form = 0;
     if (!g->diag) {
-        held = hdi_factor_bytes(&m->sym, 1);
-        hdi_scope_count(&held, hdi_ground_size(m), sizeof(double));
-        make = hdi_inverse_bytes(&m->sym, 1, 0, 0);
-        hdi_scope_count(&make, nnz, sizeof(double));
-        hdi_scope_count(&make, n_comp, sizeof(char));
+        held = hdi_factor_bytes(&m->sym, 1) + sizeof(double) * hdi_ground_size(m);
+        make = hdi_inverse_bytes(&m->sym, 1, 0, 0) + sizeof(double) * nnz;
     }
-    if (forms && !g->formed) {
-        form = hdi_factor_bytes(&m->sym, HDI_PACK) + hdi_inverse_bytes(&m->sym, HDI_PACK, 0, 0);
-        hdi_scope_count(&form, nnz, sizeof(hd_c64));
-        hdi_scope_count(&form, hdi_sweep_size(&m->sym, 1, 1), sizeof(double));
-        hdi_scope_count(&form, 2 * n, sizeof(double));
-        hdi_scope_count(&form, n_comp, sizeof(char));
-    }
+    if (forms && !g->formed)
+        form = hdi_factor_bytes(&m->sym, HDI_PACK) + hdi_inverse_bytes(&m->sym, HDI_PACK, 0, 0) +
+               sizeof(double) * (2 * nnz + 2 * n + hdi_sweep_size(&m->sym, 1, 1));
     return held + (make > form ? make : form);
 }
 
@@ -17219,13 +17211,6 @@ static void hdi_modes_free(hdi_modes *x, hd_context *ctx) {
     memset(x, 0, sizeof *x);
 }
 
-/* Measures of the pair that the steps of iterations depend on, in units of the scaled pair. */
-typedef struct hdi_steps_scales {
-    double lowest;       /* about the smallest eigenvalue that is not zero */
-    double local;        /* L's diagonal over the masses, a mean of that: about 4 over squared edge lengths */
-    double obtuse;       /* what L has above zero beside its diagonal, relative to it, mean of the rows */
-} hdi_steps_scales;
-
 /* How a call goes on that exceeded the byte limit: without what is optional, that is eigenpairs and poles
  * that times share; besides by the direct method with the fewest poles. */
 enum { HDI_SPARE_OPTIONS = 1, HDI_SPARE_POLES };
@@ -17242,8 +17227,6 @@ struct hd_heat {
     /* of rounding relative to the answer, above which the status warns: tol, or by default */
     double limit;
     uint64_t no_factors_limit;   /* the byte limit that factors did not fit */
-    /* auto: the time asked for last without factors of its poles, and the cost of these calls by the model */
-    double habit_t, habit_spent;
     int32_t spare;               /* of a call that exceeded the byte limit: an hdi_spare */
     hd_rational own_set;
     hd_rational *sets;           /* [n_sets] where these are several; own_set is the first */
@@ -17262,7 +17245,7 @@ struct hd_heat {
     hdi_lane *lane;              /* [n_lanes] work arrays, kept from call to call; HDI_LANES at most */
     int32_t n_lanes;
     double lambda_max;           /* bound on the largest eigenvalue of B^-1 L */
-    hdi_steps_scales scales;
+    double local;                /* mean of the diagonal of B^-1 L: about 4 over squared edge lengths */
     double *noise;               /* [n] weights of rounding of a product with L, in lap's order */
     /* conserving pairs: a constant's change in unit time, were row sums not taken as zero */
     double drift;
@@ -17590,141 +17573,58 @@ static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const 
 }
 
 /* ---- what iterations take ---- */
-/* Steps of Lanczos for the exponential. A region of the spectrum that reaches up to lambda takes about 3
- * sqrt(t lambda) steps for nine digits (Hochbruck, Lubich 1997), fewer for times beyond that of the smallest
- * eigenvalue. The few eigenvalues far above the mean of the diagonal, of thin triangles, do not count: they
- * are found one by one.
- * Steps of COCG with the modified factors: Gustafsson's 1978 bound has the fourth root of t lambda, that of
- * the unmodified ones the square root. What is measured grows with a power between them. Where edges have
- * weights of the wrong sign the factors are poor.
- * Constants were fitted to meshes of 2K to 10K vertices with t from 0.1 h^2 to 1e5 h^2: balls, tori, grids
- * with jitter, strips, unevenly sampled ones, noise, thin triangles made Delaunay, points. There the model
- * has 0.35 to 2.8 times the steps that Lanczos takes, and 0.4 to 2.8 times those of COCG; 0.6 to 1.7 times
- * where triangles are fair. Thin triangles with obtuse angles may take ten times more, or never end. */
-#define HDI_LANCZOS_GROWTH 3.3
-#define HDI_LANCZOS_SPREAD 16
-#define HDI_LANCZOS_LOWEST 0.22
-#define HDI_LANCZOS_LEAST 3
-#define HDI_COCG_GROWTH 2.4
-#define HDI_COCG_POWER 0.43
-#define HDI_COCG_LOWEST 1.7
-#define HDI_COCG_FULL_B 2          /* more steps where B is full */
-#define HDI_COCG_WIDE 0.65         /* rows of more than seven entries leave less out */
-#define HDI_COCG_OBTUSE 80
-#define HDI_STEPS_DIGITS 9         /* of tol in those runs */
 
-/* The smallest eigenvalue that is not zero, about: of a string as long as the shape or, without coordinates,
- * of a sphere of its area. */
-static double hdi_steps_lowest(const hd_laplacian *lap) {
-    double extent = 0, mass = 0, lowest;
-    int32_t i, c;
-    for (i = 0; i < lap->n_active; i++) mass += lap->mass[i];
-    for (c = 0; c < 3 && lap->xyz; c++) {
-        double low = HUGE_VAL, high = -HUGE_VAL;
-        for (i = 0; i < lap->n_active; i++) {
-            low = hdi_min(low, lap->xyz[3 * (size_t)i + (size_t)c]);
-            high = hdi_max(high, lap->xyz[3 * (size_t)i + (size_t)c]);
-        }
-        extent = hdi_max(extent, high - low);
-    }
-    lowest = lap->xyz ? 9.87 / (extent * extent) : 25.1 * lap->n_components / mass;
-    return hdi_finite(lowest) ? hdi_max(0, lowest) : 0;
-}
+/* Of one quiet core: flops per second with packs and with real fronts; bytes per second that stream from
+ * memory; seconds for a byte of fresh memory, which the system clears, and for a row of an ordering with its
+ * analysis. Measured on meshes of 10K to 1M vertices. */
+#define HDI_RATE_PACK 70e9
+#define HDI_RATE_REAL 25e9
+#define HDI_RATE_BYTES 15e9
+#define HDI_FRESH_BYTE 0.4e-9
+#define HDI_ROW_ANALYSIS 0.8e-6
 
-/* Fills the scales; heat->lambda_max is there. */
-static void hdi_steps_measure(hd_heat *heat) {
-    const hd_laplacian *lap = heat->source;
-    const double n = lap->n_active;
-    hdi_steps_scales *s = &heat->scales;
+/* L's diagonal over the masses. The mean is one of fourth roots, which thin triangles do not spoil. */
+static double hdi_steps_local(const hd_laplacian *lap) {
+    double sum = 0;
     int32_t i;
-    int64_t p;
-    memset(s, 0, sizeof *s);
     for (i = 0; i < lap->n_active; i++) {
-        double diag = 0, positive = 0;
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
-            if (lap->L.col[p] == i) diag = lap->L.val[p];
-            else positive += hdi_max(0, lap->L.val[p]);
-        }
-        if (diag > 0) {
-            const double mass = lap->mass[i] > 0 ? lap->mass[i] : lap->b_diag[i];
-            s->local += sqrt(sqrt(diag / mass)) / n;
-            s->obtuse += hdi_min(1, positive / diag) / n;
-        }
+        const double mass = lap->mass[i] > 0 ? lap->mass[i] : lap->b_diag[i];
+        sum += sqrt(sqrt(hdi_max(0, hdi_row_diagonal(lap, i)) / mass)) / lap->n_active;
     }
-    s->local = s->local * s->local * s->local * s->local / heat->scale;
-    s->lowest = hdi_steps_lowest(lap) / heat->scale;
+    return sum * sum * sum * sum;
 }
 
-/* Digits asked for, relative to those of the runs that the constants are fitted to. */
-static double hdi_steps_digits(const hd_heat *heat) {
-    return hdi_max(0.1, -log10(heat->opts.tol) / HDI_STEPS_DIGITS);
+/* Steps of Lanczos for the exponential, or those of COCG for all poles together. The former grow with the
+ * root of t lambda (Hochbruck, Lubich 1997), the latter with less (Gustafsson 1978), up to the time of the
+ * smallest eigenvalue, which is about lambda/n. Solutions at hand give a good start: twice the poles do not
+ * take twice as many. On fair triangles this is within 2; thin ones with obtuse angles may take ten times
+ * more, or never end. */
+static double hdi_steps(const hd_heat *heat, hd_solver solver, double t, int32_t poles) {
+    const double n = heat->source->n_active, digits = hdi_max(0.1, -log10(heat->opts.tol) / 9);
+    const double x = hdi_min(t * heat->local, n);
+    const double each = solver == HD_SOLVER_MINRES ? 3.5 : hdi_preconds[heat->opts.precond].steps;
+    if (solver == HD_SOLVER_LANCZOS) return 3 + hdi_min(8 * sqrt(x * digits), n);
+    return hdi_min(each * digits * sqrt(poles / 5.0) * (5 + 14 * pow(x, 0.4)),
+                   (double)heat->opts.max_iterations * poles);
 }
 
-static double hdi_lanczos_steps(const hd_heat *heat, double t) {
-    const hdi_steps_scales *s = &heat->scales;
-    const double bounded = hdi_steps_digits(heat) / (1 / hdi_max(t, 1e-300) + HDI_LANCZOS_LOWEST * s->lowest);
-    const double lambda = hdi_min(heat->lambda_max, HDI_LANCZOS_SPREAD * s->local);
-    const double steps = HDI_LANCZOS_GROWTH * sqrt(bounded * lambda);
-    return HDI_LANCZOS_LEAST + hdi_min(steps, (double)heat->source->n_active);
-}
-
-/* Of all poles together. Solutions at hand give a good start: twice the poles do not take twice as many. */
-static double hdi_cocg_steps(const hd_heat *heat, double t, int32_t poles) {
-    const hdi_steps_scales *s = &heat->scales;
+/* Adds what k items take at time t. With Lanczos a full B is solved with in every step. */
+static void hdi_steps_cost(const hd_heat *heat, hd_solver solver, double t, int32_t poles, double k,
+                           hd_cost *c) {
     const hd_laplacian *lap = heat->source;
-    const double wide = hdi_max(1, (double)lap->L.nnz / (7.0 * lap->n_active));
-    const double bounded = 1 / (1 / hdi_max(t, 1e-300) + HDI_COCG_LOWEST * s->lowest);
-    double one = HDI_COCG_GROWTH * pow(bounded * s->local / pow(wide, HDI_COCG_WIDE), HDI_COCG_POWER);
-    one += 1 + (lap->B ? HDI_COCG_FULL_B : 0);
-    one *= exp(HDI_COCG_OBTUSE * s->obtuse * s->obtuse) * hdi_steps_digits(heat);
-    one *= heat->opts.solver == HD_SOLVER_MINRES ? 3.5 : hdi_preconds[heat->opts.precond].steps;
-    return hdi_min(one * sqrt(5.0 * poles), (double)heat->opts.max_iterations * poles);
-}
-
-/* Seconds of one quiet core for each non-zero and six times each row: a step of Lanczos, and of conjugate
- * gradients for B; of COCG with factors and without. Those per step squared that looks at the bound cost. For
- * each non-zero and each non-zero times those of a row: factors of a pole. For each row: the copy of the
- * pair. Measured on meshes of 2.5K to 1M vertices. */
-#define HDI_STEP_LANCZOS 0.9e-9
-#define HDI_LOOK_LANCZOS 0.4e-6
-#define HDI_STEP_MASS 1e-9
-#define HDI_STEP_COCG 1.7e-9
-#define HDI_STEP_PLAIN 1e-9
-#define HDI_MAKE_PRECOND 20e-9
-#define HDI_MAKE_WIDE 0.75e-9
-#define HDI_ROW_ITERATIVE 0.4e-6
-
-/* Steps, flops and seconds of k items. */
-typedef struct hdi_work { double steps, flops, seconds; } hdi_work;
-
-/* A full B is solved with in every step, to a residual of HDI_MASS_STOP. The ratio of the eigenvalues of B
- * relative to its diagonal is taken to be 2/b_ratio. */
-static hdi_work hdi_lanczos_work(const hd_heat *heat, double t, double k) {
-    const hd_laplacian *lap = heat->source;
-    const double nnz = (double)lap->L.nnz, n = lap->n_active, entries = nnz + 6 * n;
-    const double root = sqrt(2 / hdi_max(lap->b_ratio, 1e-12)), rate = log((root + 1) / (root - 1));
-    const double mass = lap->B ? hdi_min(-0.5 * log(HDI_MASS_STOP) / rate, HDI_MASS_STEPS) : 0;
-    hdi_work w;
-    w.steps = hdi_lanczos_steps(heat, t);
-    w.flops = k * w.steps * (2 * nnz + 12 * n + mass * (2 * nnz + 12 * n));
-    w.seconds = k * w.steps * (entries * (HDI_STEP_LANCZOS + mass * HDI_STEP_MASS) +
-                               w.steps * HDI_LOOK_LANCZOS);
-    return w;
-}
-
-static hdi_work hdi_cocg_work(const hd_heat *heat, double t, int32_t poles, double k) {
-    const hd_laplacian *lap = heat->source;
-    const double nnz = (double)lap->L.nnz, n = lap->n_active, full = lap->B ? 1.2 : 1;
-    const int made = heat->fam.filled && heat->fam.t == t;
-    const int plain = !hdi_preconds[heat->opts.precond].entries;
-    hdi_work w;
-    w.steps = hdi_cocg_steps(heat, t, poles);
-    w.flops = k * w.steps * ((lap->B ? 8 : 4) * nnz + (plain ? 0 : 8 * nnz) + 40 * n);
-    w.seconds = k * w.steps * (nnz + 6 * n) * full * (plain ? HDI_STEP_PLAIN : HDI_STEP_COCG);
-    if (plain || made) return w;
-    w.flops += poles * 2 * nnz * nnz / n;
-    w.seconds += poles * nnz * (HDI_MAKE_PRECOND + HDI_MAKE_WIDE * nnz / n);
-    return w;
+    const double nnz = (double)lap->L.nnz, n = lap->n_active, steps = hdi_steps(heat, solver, t, poles);
+    const double factors = hdi_preconds[heat->opts.precond].entries ? nnz : 0, full = lap->B ? 1 : 0;
+    if (solver == HD_SOLVER_LANCZOS) {
+        const double each = 1 + 20 * full;
+        c->flops += k * steps * each * (2 * nnz + 12 * n);
+        c->seconds += k * steps * (each * (12 * nnz + 80 * n) / HDI_RATE_BYTES + steps * 0.4e-6);
+        return;
+    }
+    c->flops += k * steps * ((4 + 4 * full) * nnz + 8 * factors + 40 * n);
+    c->seconds += k * steps * ((12 + 8 * full) * nnz + 20 * factors + 130 * n) / HDI_RATE_BYTES;
+    if (heat->fam.filled && heat->fam.t == t) return;
+    c->flops += poles * 2 * factors * (nnz / n);
+    c->seconds += poles * factors * (20 + nnz / n) * 1e-9;
 }
 
 /* Poles that the default of columns has. */
@@ -17734,11 +17634,12 @@ enum { HDI_POLES_EXPECTED = 5 };
  * takes less time for one item. */
 static hd_solver hdi_heat_choose(const hd_heat *heat, double t) {
     const hd_heat_opts *o = &heat->opts;
+    hd_cost lanczos = {0, 0, 0, 0, 0, 0}, cocg = lanczos;
     if (o->solver) return o->solver;
-    if (o->rational || o->poles || o->degree || o->precond != HD_PRECOND_MILDL || heat->source->B)
-        return HD_SOLVER_COCG;
-    return hdi_lanczos_work(heat, t, 1).seconds <= hdi_cocg_work(heat, t, HDI_POLES_EXPECTED, 1).seconds
-           ? HD_SOLVER_LANCZOS : HD_SOLVER_COCG;
+    if (heat->poles_asked || o->precond != HD_PRECOND_MILDL || heat->source->B) return HD_SOLVER_COCG;
+    hdi_steps_cost(heat, HD_SOLVER_LANCZOS, t, 0, 1, &lanczos);
+    hdi_steps_cost(heat, HD_SOLVER_COCG, t, HDI_POLES_EXPECTED, 1, &cocg);
+    return lanczos.seconds <= cocg.seconds ? HD_SOLVER_LANCZOS : HD_SOLVER_COCG;
 }
 
 /* Fields f and g, and columns. The adjoint K_t' g is B k_t g. */
@@ -17791,8 +17692,6 @@ typedef struct hdi_heat_call {
     int32_t n_times;
     const int32_t *time_column;  /* which of ask.t each is; NULL: in order */
     hd_method method;
-    double cost;                 /* of this method by the model, where auto picks by it; else 0 */
-    int32_t by_habit;            /* auto picks direct because of the calls before */
     int32_t forced;              /* auto takes iterations because of the byte limit */
     int32_t rate;                /* the derivative in t is asked for: methods give t times that */
     hd_solver solver;
@@ -17831,7 +17730,7 @@ static void hdi_heat_measure_pair(hd_heat *heat) {
     heat->version = lap->version;
     heat->scale = hdi_pair_scale(lap);
     heat->lambda_max = hdi_lambda_bound(lap) / heat->scale;
-    hdi_steps_measure(heat);
+    heat->local = hdi_steps_local(lap) / heat->scale;
     heat->drift = hdi_heat_drift(lap, heat->sums) / heat->scale;
 }
 
@@ -17851,7 +17750,6 @@ static hd_status hdi_heat_renew(hd_heat *heat, hd_error *e) {
     const hd_laplacian *lap = heat->source;
     int32_t i;
     if (heat->version == lap->version) return HD_OK;
-    heat->habit_spent = 0;
     if (!heat->fill) heat->fill = HDI_NEW(heat->ctx, int64_t, lap->n_active, e);
     if (!heat->fill || hdi_heat_sums(heat, e) < 0) return e->status;
     hdi_heat_measure_pair(heat);
@@ -17890,53 +17788,20 @@ static hd_status hdi_heat_begin(hdi_heat_call *h, hd_heat *heat, hdi_query query
 
 /* ---- what factors take ---- */
 
-/* Flops per second of packs, with the seconds per non-zero that small fronts cost besides, and of real
- * fronts; bytes per second of sweeps, and how many times faster they are where right-hand sides of Lanczos
- * share them; seconds per row of an ordering with its analysis, and per byte of fresh memory, which the
- * system clears. Measured on meshes of 10K to 1M vertices. */
-#define HDI_RATE_PACK 70e9
-#define HDI_ENTRY_PACK 12e-9
-#define HDI_RATE_REAL 25e9
-#define HDI_RATE_SWEEP 15e9
-#define HDI_KRYLOV_SHARED 2.5
-#define HDI_ROW_ANALYSIS 0.8e-6
-#define HDI_FRESH_BYTE 0.2e-9
-
-/* What of the plan is known of factors, or guessed before the analysis. */
+/* What is known of the factors of elim or few, or guessed before the analysis. */
 typedef struct hdi_fill { double nnz, flops, stored, real_stored, analysis; } hdi_fill;
 
-/* The guess is what little fill a surface can have: nnz(L) = 30 n, 22 n^1.5 flops. Where rows are wider than
- * 10, so much more of the former and its square of the latter. (Point sets with 233 and 117 entries a row,
- * 20K to 150K points: 1220 to 1700 n and 13000 n^1.5, 600 to 830 n and 3500 n^1.5.) */
-static hdi_fill hdi_heat_guess(const hd_heat *heat) {
-    const double n = heat->source->n_active, entries = (double)heat->source->L.nnz;
-    const double wide = hdi_max(1, entries / (10 * n));
+/* The guess is what little fill a surface can have. Where rows are wider than 10, so much more of the
+ * non-zeros and its square of the flops. (Point sets with 233 and 117 entries a row, 20K to 150K points: 1220
+ * to 1700 n and 13000 n^1.5, 600 to 830 n and 3500 n^1.5.) */
+static hdi_fill hdi_heat_fill(const hd_heat *heat, const hdi_elim *m) {
+    const hdi_symbolic *s = &m->sym;
+    const double n = heat->source->n_active, wide = hdi_max(1, (double)heat->source->L.nnz / (10 * n));
     hdi_fill f;
     f.nnz = 30 * n * wide;
     f.flops = 22 * n * sqrt(n) * wide * wide;
     f.stored = f.real_stored = 40 * n * wide;
-    f.analysis = HDI_ROW_ANALYSIS * n * wide;
-    return f;
-}
-
-/* What minimum degree adds to the fill of nested dissection, in flops and in non-zeros by rows squared, and
- * the share of ordering with analysis that it takes. Meshes of 10K, 41K, 50K, 150K, 164K vertices: 0.26,
- * 0.14, 0.14, 0.13, 0.13 flops, 1.7, 1.8, 1.0, 0.9, 1.0 e-4 non-zeros; four fifths of the time where meshes
- * are numbered regularly, two thirds where they are not. */
-#define HDI_DEGREE_FLOPS 0.13
-#define HDI_DEGREE_NNZ 1e-4
-#define HDI_DEGREE_ANALYSIS 0.3
-
-/* The same for elim or few of the plan, from its analysis where that is there. */
-static hdi_fill hdi_heat_fill(const hd_heat *heat, const hdi_elim *m) {
-    const hdi_symbolic *s = &m->sym;
-    const double n = heat->source->n_active;
-    hdi_fill f = hdi_heat_guess(heat);
-    if (m == &heat->few) {
-        f.flops += HDI_DEGREE_FLOPS * n * n;
-        f.nnz += HDI_DEGREE_NNZ * n * n;
-        f.analysis *= HDI_DEGREE_ANALYSIS;
-    }
+    f.analysis = HDI_ROW_ANALYSIS * n * wide * (m == &heat->few ? 0.4 : 1);
     if (!m->ctx) return f;
     f.nnz = (double)s->nnz;
     f.flops = s->flops_done;
@@ -17999,24 +17864,6 @@ static void hdi_heat_measure(const hd_laplacian *lap, hdi_lane *lane) {
     const double f2 = hdi_dot(lane->f, lane->rhs, lap->n_active);
     lane->f_norm = f2 > 0 ? sqrt(f2) : 0;
     hdi_component_sums(lap, NULL, lane->rhs, lane->target);
-}
-
-/* The error of a uniform set is at most this part of the least that the answer can be, which is what its
- * constants amount to. Direct: degree 9, which costs little more than 8, serves up to twice that. */
-#define HDI_UNIFORM_SHARE 1e-9
-#define HDI_UNIFORM_SHARE_DIRECT 2e-9
-
-/* Degree of a uniform set. Odd ones cost as much as the next even one; 9 fills a pack and the real factor. */
-static int32_t hdi_uniform_degree(const hd_laplacian *lap, const hdi_lane *lane, int direct) {
-    const double share = direct ? HDI_UNIFORM_SHARE_DIRECT : HDI_UNIFORM_SHARE;
-    const double most = share * sqrt(hdi_lane_means_norm2(lane, lap));
-    hd_rational set;
-    hd_error e;
-    int32_t r;
-    for (r = 8; r < HDI_RAT_UNIFORM_MAX; r = !direct ? r + 2 : r == 8 ? 9 : HDI_RAT_UNIFORM_MAX)
-        if (hdi_rational_get(&set, HD_POLES_UNIFORM, r, &e) == HD_OK && set.max_error * lane->f_norm <= most)
-            break;
-    return r;
 }
 
 /* All fields, before anything is solved or written. */
@@ -18272,25 +18119,30 @@ static hd_status hdi_heat_lanes(hdi_heat_call *h, int32_t most, int32_t steps, i
     return h->e->status;
 }
 
-/* The degree of a uniform set for all fields. Columns, whose constants are small, get the highest one. */
+/* The error of a uniform set is at most this part of the least that the answer can be, which is what its
+ * constants amount to. */
+#define HDI_UNIFORM_SHARE 1e-9
+
+/* The degree of a uniform set for all fields. Odd ones cost as much as the next even one; but the direct
+ * method has a pack and a real factor for 9, which may have twice that share. Columns, whose constants are
+ * small, get the highest one. */
 static hd_status hdi_heat_degree(hdi_heat_call *h, int32_t *degree) {
-    const int fields = hdi_query_fields(h->ask.query);
-    int32_t q, r;
+    const int direct = h->method == HD_METHOD_DIRECT, fields = hdi_query_fields(h->ask.query);
+    hd_rational set;
+    int32_t q;
     *degree = fields ? 8 : HDI_RAT_UNIFORM_MAX;
     if (fields && hdi_heat_lanes(h, 1, 0, 0) < 0) return h->e->status;
     for (q = 0; q < h->ask.k && fields; q++) {
+        const hdi_lane *lane = h->heat->lane;
+        double most;
         if (hdi_heat_load(h, q, h->heat->lane) < 0) return h->e->status;
-        r = hdi_uniform_degree(h->lap, h->heat->lane, h->method == HD_METHOD_DIRECT);
-        if (r > *degree) *degree = r;
+        most = (direct ? 2 : 1) * HDI_UNIFORM_SHARE * sqrt(hdi_lane_means_norm2(lane, h->lap));
+        while (*degree < HDI_RAT_UNIFORM_MAX &&
+               hdi_rational_get(&set, HD_POLES_UNIFORM, *degree, h->e) >= 0 &&
+               !(set.max_error * lane->f_norm <= most))
+            *degree = !direct ? *degree + 2 : *degree == 8 ? 9 : HDI_RAT_UNIFORM_MAX;
     }
     return HD_OK;
-}
-
-/* Does the degree depend on the fields? */
-static int hdi_heat_open(const hdi_heat_call *h) {
-    const hd_heat *heat = h->heat;
-    return !h->set && !heat->opts.rational && !heat->opts.degree && !heat->exacting &&
-           hdi_heat_kind(h) == HD_POLES_UNIFORM && heat->spare != HDI_SPARE_POLES;
 }
 
 /* The pole set of this call. degree: where nothing else says which. */
@@ -18310,43 +18162,41 @@ static hd_status hdi_heat_set_of(const hdi_heat_call *h, int32_t degree, hd_rati
 enum { HDI_DEGREE_DIRECT = 9 };  /* four pairs fill a pack, a real pole costs little */
 
 static hd_status hdi_heat_set(hdi_heat_call *h, hd_rational *set) {
+    const hd_heat *heat = h->heat;
+    const int asked = h->set || heat->opts.rational || heat->opts.degree || heat->exacting;
     int32_t degree = h->method == HD_METHOD_DIRECT ? HDI_DEGREE_DIRECT : 10;
-    if (hdi_heat_open(h) && hdi_heat_degree(h, &degree) < 0) return h->e->status;
+    if (!asked && hdi_heat_kind(h) == HD_POLES_UNIFORM && heat->spare != HDI_SPARE_POLES &&
+        hdi_heat_degree(h, &degree) < 0) return h->e->status;
     return hdi_heat_set_of(h, degree, set);
-}
-
-static hdi_lanczos_task hdi_heat_lanczos_task(const hd_heat *heat, double t) {
-    hdi_lanczos_task task;
-    task.lap = heat->lap;
-    task.weight = heat->weight;
-    task.noise = heat->noise;
-    task.t = t;
-    task.tol = heat->opts.tol;
-    task.drift = heat->drift;
-    task.rate = 0;
-    task.max_iterations = heat->opts.max_iterations;
-    return task;
 }
 
 static void hdi_heat_task(void *arg, int64_t index, int32_t worker) {
     hdi_heat_call *h = (hdi_heat_call *)arg;
-    hdi_lane *lane = h->heat->lane + index;
-    hdi_lanczos_task task = hdi_heat_lanczos_task(h->heat, h->t);
+    const hd_heat *heat = h->heat;
+    hdi_lane *lane = heat->lane + index;
+    hdi_lanczos_task task;
     hdi_watch watch;
-    task.rate = h->rate;
     hdi_error_clear(&lane->error);
     if (lane->skip) return;
-    watch.ctx = worker == 0 ? h->heat->ctx : NULL;
+    task.lap = heat->lap;
+    task.weight = heat->weight;
+    task.noise = heat->noise;
+    task.t = h->t;
+    task.tol = heat->opts.tol;
+    task.drift = heat->drift;
+    task.rate = h->rate;
+    task.max_iterations = heat->opts.max_iterations;
+    watch.ctx = worker == 0 ? heat->ctx : NULL;
     watch.stop = &h->stop;
     watch.stage = "solve";
     watch.share = 1.0 / h->ask.k;
     watch.from = watch.share * (double)(h->batch + index);
     lane->status = hdi_watch_look(&watch, 0, &lane->error);
     if (lane->status >= 0) {
-        if (h->solver == HD_SOLVER_LANCZOS) lane->status = hdi_lanczos_run(&task, lane, &watch, &lane->error);
-        else
-            lane->status = hdi_family_run(&h->heat->fam, h->heat->opts.tol, h->t * h->heat->drift, lane,
-                                          &watch, &lane->error);
+        lane->status = h->solver == HD_SOLVER_LANCZOS
+                       ? hdi_lanczos_run(&task, lane, &watch, &lane->error)
+                       : hdi_family_run(&h->heat->fam, task.tol, task.t * task.drift, lane, &watch,
+                                        &lane->error);
     }
     if (lane->status < 0) HDI_STORE(&h->stop, 1);
 }
@@ -18487,14 +18337,9 @@ static void hdi_iterative_cost(const hdi_heat_call *h, hd_cost *c) {
                           : HDI_POLES_EXPECTED;
     int32_t q;
     c->possible = 1;
-    if (!heat->weight) c->seconds += HDI_ROW_ITERATIVE * heat->source->n_active;
-    for (q = 0; q < h->n_times; q++) {
-        const double t = h->times[q];
-        const hdi_work w = hdi_heat_solver(h, t) == HD_SOLVER_LANCZOS
-                           ? hdi_lanczos_work(heat, t, h->ask.k) : hdi_cocg_work(heat, t, poles, h->ask.k);
-        c->seconds += w.seconds;
-        c->flops += w.flops;
-    }
+    if (!heat->weight) c->seconds += HDI_ROW_ANALYSIS / 2 * heat->source->n_active;
+    for (q = 0; q < h->n_times; q++)
+        hdi_steps_cost(heat, hdi_heat_solver(h, h->times[q]), h->times[q], poles, h->ask.k, c);
     c->bytes = hdi_iterative_bytes(h, poles);
 }
 
@@ -18572,23 +18417,18 @@ static int32_t hdi_batches_inside(const hdi_elim *m, int32_t packs, uint64_t dou
 static uint64_t hdi_batches_need(const hd_heat *heat, int32_t packs, int32_t k) {
     const hdi_lane_room room = hdi_lane_room_of(heat->source, &heat->fam, 0, 0);
     int32_t width, count, lanes, i;
-    uint64_t doubles, bytes = 0, old = 0;
+    uint64_t doubles, bytes = 0;
     if (k < 1) return 0;
     count = hdi_batches_shape(&heat->elim, k, &width, &doubles);
     lanes = hdi_low32(k, count * width);
-    if (lanes > heat->n_lanes) {
-        hdi_scope_count(&bytes, (uint64_t)lanes, sizeof(hdi_lane));
-        if (heat->lane) hdi_scope_count(&old, (uint64_t)heat->n_lanes, sizeof(hdi_lane));
-    }
     for (i = 0; i < lanes; i++)
         if (i >= heat->n_lanes || !heat->lane[i].f)
             hdi_scope_count(&bytes, hdi_lane_size(&room), sizeof(double));
+    if (lanes > heat->n_lanes) bytes += (uint64_t)(lanes - heat->n_lanes) * sizeof(hdi_lane);
     doubles *= (uint64_t)(count - hdi_batches_inside(&heat->elim, packs, doubles, count));
-    if (heat->batch_doubles < doubles) {
-        hdi_scope_count(&bytes, doubles, sizeof(double));
-        if (heat->batch_room) hdi_scope_count(&old, heat->batch_doubles, sizeof(double));
-    }
-    return bytes > old ? bytes - old : 0;        /* old room is freed */
+    if (heat->batch_doubles < doubles)           /* in place of the old room */
+        hdi_scope_count(&bytes, doubles - heat->batch_doubles, sizeof(double));
+    return bytes;
 }
 
 /* Bytes that the factors of a set take at their peak with all that follows: an inversion of so many sums, or
@@ -18605,6 +18445,8 @@ enum { HDI_PROBES = 3 };         /* rows at which rounding of an inversion is me
 #define HDI_INVERT_FLOPS 2.0
 #define HDI_INVERT_SECONDS 2.0
 #define HDI_FORMS_SECONDS 4.0
+/* Sweeps are faster so many times where right-hand sides share them. */
+#define HDI_SHARED 2.5
 
 /* Adds what a set takes at one time: its factors, what comes after them, and solves of k items, beside
  * arrays of so many bytes. Of bytes the largest count. Returns the seconds of the factors. */
@@ -18617,8 +18459,8 @@ static double hdi_direct_set(const hdi_heat_call *h, const hd_rational *set, hdi
     /* a real pole alone counts as a pack: where all is so cheap iterations have better bounds */
     const double packs = hdi_high32(1, hdi_set_packs(set));
     const double solves = inverse ? (double)k + (double)HDI_PROBES : k;
-    const double pack = 16 * f.flops / HDI_RATE_PACK + HDI_ENTRY_PACK * f.nnz, real = f.flops / HDI_RATE_REAL;
-    const double factors = packs * pack + lone * real;
+    const double factors = packs * (16 * f.flops / HDI_RATE_PACK + 180 * f.nnz / HDI_RATE_BYTES) +
+                           lone * f.flops / HDI_RATE_REAL;
     const double longer = after == HDI_AFTER_FORMS ? HDI_FORMS_SECONDS : inverse ? HDI_INVERT_SECONDS : 0;
     double bytes = 8 * (8 * packs + 1) * f.stored + 200 * n + hdi_min(k, HDI_LANES) * 140 * n;
     k = hdi_high32(k, inverse ? HDI_PROBES : 0);
@@ -18636,7 +18478,7 @@ static double hdi_direct_set(const hdi_heat_call *h, const hd_rational *set, hdi
                 (bound ? (1 + HDI_INVERT_FLOPS - lone) * f.flops : 0) + solves * (64 * packs + 4) * f.nnz;
     /* without the bound, which a choice of the method has no need to look at */
     c->seconds += factors * (1 + longer) +
-                  solves * packs * (64 * f.nnz + 400 * n) / ((k > 1 ? 1.6 : 0.6) * HDI_RATE_SWEEP);
+                  solves * packs * (100 * f.nnz + 600 * n) / (HDI_RATE_BYTES * (k > 1 ? HDI_SHARED : 1));
     c->bytes = hdi_max(c->bytes, bytes + held);
     return factors;
 }
@@ -18648,19 +18490,15 @@ static int hdi_heat_at_hand(const hdi_heat_call *h) {
     return h->set || h->heat->opts.rational || m->set.kind == hdi_heat_kind(h);
 }
 
-/* Fields and columns at the times of the call. *factors: the seconds of what later calls at the same t do
- * without. */
-static void hdi_direct_cost(const hdi_heat_call *h, hd_cost *c, double *factors) {
-    const hdi_fill f = hdi_heat_fill(h->heat, &h->heat->elim);
+/* Fields and columns at the times of the call. */
+static void hdi_direct_cost(const hdi_heat_call *h, hd_cost *c) {
     hd_rational set;
+    double factors;
     if (hdi_heat_set_of(h, HDI_DEGREE_DIRECT, &set) < 0) return;
-    *factors = h->n_times * hdi_direct_set(h, &set, HDI_AFTER_BOUND, 0, h->ask.k, 0, c);
+    factors = hdi_direct_set(h, &set, HDI_AFTER_BOUND, 0, h->ask.k, 0, c);
     c->flops *= h->n_times;
-    c->seconds = c->seconds * h->n_times + HDI_FRESH_BYTE * c->bytes + f.analysis;
-    *factors += HDI_FRESH_BYTE * c->bytes + f.analysis;
-    if (!hdi_heat_at_hand(h)) return;
-    c->seconds -= *factors;
-    *factors = 0;
+    if (hdi_heat_at_hand(h)) c->seconds -= factors;
+    else c->seconds = c->seconds * h->n_times + hdi_heat_fill(h->heat, &h->heat->elim).analysis;
 }
 
 /* The pole set and its factors. What follows them is asked for too, so that nothing is begun that the byte
@@ -18781,13 +18619,11 @@ static hd_status hdi_heat_by_direct(hdi_heat_call *h) {
 
 /* ---- krylov ---- */
 
-/* The time at part x of the way from t0 to t1, in equal ratios. Their own ratio might overflow. */
-static double hdi_time_between(double t0, double t1, double x) { return pow(t0, 1 - x) * pow(t1, x); }
-
-/* The end of window w of n_windows of equal ratio, from time q0 on; times ascend. */
+/* The end of window w of n_windows of equal ratio, from time q0 on; times ascend. The ratio of all might
+ * overflow. */
 static int32_t hdi_window_end(const double *times, int32_t n_times, int32_t q0, int32_t w,
                               int32_t n_windows) {
-    const double end = hdi_time_between(times[0], times[n_times - 1], (w + 1.0) / n_windows);
+    const double x = (w + 1.0) / n_windows, end = pow(times[0], 1 - x) * pow(times[n_times - 1], x);
     int32_t q1 = q0 + 1;
     /* 1e-13: rounding of pow */
     while (q1 < n_times && (w + 1 >= n_windows || times[q1] <= end * (1 + 1e-13))) q1++;
@@ -18825,20 +18661,11 @@ static double hdi_krylov_steps(double ratio, int goes_on) {
     return hdi_min(goes_on ? 14 + 1.8 * sqrt(ratio) : 22 + 2.8 * sqrt(ratio), most);
 }
 
-/* The share of the steps that a single late time takes, of which few eigenvalues are left: 25 steps and 12
- * where t times the smallest eigenvalue is 1 and 14, measured at 2.5K and 10K vertices. */
-#define HDI_STEPS_LATE 0.08
-
-static double hdi_krylov_late(const hdi_heat_call *h) {
-    if (h->n_times > 1) return 1;
-    return hdi_max(0.4, 1 / (1 + HDI_STEPS_LATE * h->times[0] * h->heat->scales.lowest));
-}
-
 /* The number of windows of equal ratio that costs least. No basis serves beyond a ratio of 1e4; that of all
  * times might overflow. */
 static hdi_windows hdi_krylov_windows(const hdi_heat_call *h, hdi_fill f) {
     const double factor = f.flops / HDI_RATE_REAL;
-    const double step = 16 * f.nnz / HDI_RATE_SWEEP + 1e-8 * h->heat->source->n_active;
+    const double step = (16 * f.nnz + 100 * (double)h->heat->source->n_active) / HDI_RATE_BYTES;
     const double span = log(h->times[h->n_times - 1]) - log(hdi_max(h->times[0], 1e-300));
     const int32_t least = hdi_high32(1, (int32_t)ceil(span / log(1e4)));
     double best = HUGE_VAL;
@@ -18857,35 +18684,18 @@ static hdi_windows hdi_krylov_windows(const hdi_heat_call *h, hdi_fill f) {
     return all;
 }
 
-/* Does this method take an order of its own? For few columns one of minimum degree is found and analysed in a
- * third of the time, and the steps lose less. Not under a byte limit, where a second analysis might not fit.
- * Totals of one column with 20 steps, one thread, processor time, in that order and the other: 62 and 95 ms
- * at 50K vertices, 54 and 75 at 41K, 274 and 347 at 150K, 356 and 395 at 164K. */
-enum { HDI_FEW_COLUMNS = 3, HDI_FEW_ENTRIES = 900000 };
-
-static int hdi_krylov_few(const hdi_heat_call *h) {
-    const hd_heat *heat = h->heat;
-    const hd_csr *L = &heat->source->L;
-    const hdi_order order = {heat->opts.ordering, heat->source->xyz, NULL};
-    if (order.kind != HD_ORDERING_AUTO || hdi_order_kind(&order, L) != HD_ORDERING_NESTED_DISSECTION ||
-        h->ask.k > HDI_FEW_COLUMNS || heat->ctx->byte_limit) return 0;
-    return (double)h->ask.k * hdi_krylov_windows(h, hdi_heat_guess(heat)).n * (double)L->nnz <=
-           (double)HDI_FEW_ENTRIES;
-}
+/* The analysis of this method. For few columns an order of minimum degree is found and analysed in a third of
+ * the time, and the steps lose less. Not under a byte limit, where a second analysis might not fit. */
+#define HDI_FEW_ENTRIES 9e5
 
 static hdi_elim *hdi_krylov_elim(const hdi_heat_call *h) {
-    return hdi_krylov_few(h) ? &h->heat->few : &h->heat->elim;
-}
-
-/* Bytes that a basis of so many steps takes, with the real factor before it where there is none. */
-static uint64_t hdi_krylov_need(const hdi_elim *m, int32_t wide, int32_t steps) {
-    const uint64_t n = (uint64_t)m->sym.n, count = n * (uint64_t)wide;
-    uint64_t bytes = m->shifted.ctx ? 0 : hdi_factor_bytes(&m->sym, 1);
-    int32_t q;
-    for (q = 0; q <= steps; q++) hdi_scope_count(&bytes, count, sizeof(double));
-    hdi_scope_count(&bytes, 2 * count + 2 * n, sizeof(double));
-    hdi_scope_count(&bytes, hdi_sweep_size(&m->sym, 1, wide), sizeof(double));
-    return bytes;
+    hd_heat *heat = h->heat;
+    const hd_csr *L = &heat->source->L;
+    const hdi_order order = {heat->opts.ordering, heat->source->xyz, NULL};
+    const int few = order.kind == HD_ORDERING_AUTO && !heat->ctx->byte_limit &&
+                    (double)h->ask.k * h->n_times * (double)L->nnz <= HDI_FEW_ENTRIES &&
+                    hdi_order_kind(&order, L) == HD_ORDERING_NESTED_DISSECTION;
+    return few ? &heat->few : &heat->elim;
 }
 
 static void hdi_krylov_cost(const hdi_heat_call *h, hd_cost *c) {
@@ -18896,21 +18706,19 @@ static void hdi_krylov_cost(const hdi_heat_call *h, hd_cost *c) {
     const int ready = h->n_times == 1 && m->shifted.ready &&
         m->shift == hdi_krylov_shift(0, h->t, h->t, heat->lambda_max);
     const int32_t wide = h->ask.k > 3 ? HDI_WIDE : 1;
-    const double n = heat->source->n_active, rate = HDI_RATE_SWEEP * (wide > 1 ? HDI_KRYLOV_SHARED : 1);
-    const double steps = h->ask.k * w.steps * hdi_krylov_late(h);
+    const double n = heat->source->n_active, steps = h->ask.k * w.steps;
     /* more than expected, to be safe */
     const double longest = hdi_min(HDI_KRYLOV_MAX, (h->n_times > 1 ? 1.3 : 1.15) * w.longest);
     c->possible = 1;
     c->flops = (w.n - ready) * f.flops + steps * 4 * f.nnz;
     c->seconds = f.analysis + (w.n - ready) * f.flops / HDI_RATE_REAL +
-                 steps * (16 * f.nnz + 100 * n) / rate + h->n_times * steps / w.n * 8 * n / HDI_RATE_SWEEP;
+                 steps * (16 * f.nnz + 100 * n) / (HDI_RATE_BYTES * (wide > 1 ? HDI_SHARED : 1)) +
+                 h->n_times * steps / w.n * 8 * n / HDI_RATE_BYTES;
     if (heat->krylov && heat->krylov->m == m && heat->krylov->wide == wide && heat->krylov->v[0] &&
         m->shifted.ctx) return;
-    if (m->ctx) c->bytes = (double)hdi_krylov_need(m, wide, (int32_t)longest);
-    else c->bytes = 8 * f.real_stored + 8 * n * wide * (longest + 4) + 200 * n;
-    c->bytes += (double)sizeof(hdi_krylov) + wide * 56 * n;
+    if (!m->shifted.ctx) c->bytes = m->ctx ? (double)hdi_factor_bytes(&m->sym, 1) : 8 * f.real_stored;
+    c->bytes += (double)sizeof(hdi_krylov) + 8 * n * (wide * (longest + 11) + 10);
     if (h->n_times > 1 && wide == 1) c->bytes += HDI_WIDE * 8 * n;   /* sums at several times */
-    c->seconds += HDI_FRESH_BYTE * c->bytes;
 }
 
 /* The steps of a basis for n items and the times [q0, q1). */
@@ -18922,10 +18730,11 @@ static hd_status hdi_krylov_basis(hdi_heat_call *h, int32_t n, int32_t q0, int32
     double g = hdi_krylov_shift(z->from, h->times[q0], h->times[q1 - 1], heat->lambda_max);
     /* derivatives of smooth fields at short times are small beside the fields, and digits of T are lost */
     if (h->rate && heat->lambda_max > 0) g = hdi_max(g, HDI_SHIFT_RATE / heat->lambda_max);
-    /* a step is the least */
-    if (!h->m->shifted.ctx && !z->v[0] &&
-        hdi_need(heat->ctx, hdi_krylov_need(h->m, z->wide, 1), "a real factor and a basis", h->e) < 0)
-        return h->e->status;
+    if (!h->m->shifted.ctx && !z->v[0]) {        /* a step is the least */
+        const uint64_t basis = 4 * sizeof(double) * (uint64_t)h->m->sym.n * (uint64_t)z->wide;
+        const uint64_t need = hdi_factor_bytes(&h->m->sym, 1) + basis;
+        if (hdi_need(heat->ctx, need, "a real factor and a basis", h->e) < 0) return h->e->status;
+    }
     if (hdi_elim_shift(h->m, g, h->e) < 0) return h->e->status;
     z->g = h->m->shift;
     z->k = n;
@@ -19076,21 +18885,19 @@ static hd_status hdi_heat_by_krylov(hdi_heat_call *h) {
 
 /* ---- choice of the method ---- */
 
-/* What each method would take, by hd_method, and the part of direct that later calls at the same t do
- * without. */
-typedef struct hdi_costs { hd_cost by[HD_METHOD_KRYLOV + 1]; double factors; } hdi_costs;
-
-/* Those of the methods that the call may take. h->t is the last of its times. */
-static hdi_costs hdi_heat_costs(const hdi_heat_call *h) {
+/* What each method that the call may take would take, in by [HD_METHOD_KRYLOV + 1]. h->t is the last of its
+ * times. */
+static void hdi_heat_costs(const hdi_heat_call *h, hd_cost *by) {
     const hd_heat *heat = h->heat;
     const int factors = !heat->iterations_asked || heat->opts.method > HD_METHOD_ITERATIVE;
-    hdi_costs all;
-    memset(&all, 0, sizeof all);
-    if (HDI_HAS_ITERATIVE) hdi_iterative_cost(h, all.by + HD_METHOD_ITERATIVE);
-    if (HDI_HAS_POLE_FACTORS && factors) hdi_direct_cost(h, all.by + HD_METHOD_DIRECT, &all.factors);
+    int q;
+    memset(by, 0, (HD_METHOD_KRYLOV + 1) * sizeof *by);
+    if (HDI_HAS_ITERATIVE) hdi_iterative_cost(h, by + HD_METHOD_ITERATIVE);
+    if (HDI_HAS_POLE_FACTORS && factors) hdi_direct_cost(h, by + HD_METHOD_DIRECT);
     if (HDI_HAS_DIRECT && factors && !heat->poles_asked)
-        hdi_krylov_cost(h, all.by + HD_METHOD_KRYLOV);
-    return all;
+        hdi_krylov_cost(h, by + HD_METHOD_KRYLOV);
+    for (q = HD_METHOD_ITERATIVE; q <= HD_METHOD_KRYLOV; q++)
+        by[q].seconds += HDI_FRESH_BYTE * by[q].bytes;
 }
 
 /* The analysis that the method picked works with. */
@@ -19098,54 +18905,24 @@ static hdi_elim *hdi_heat_analysis(const hdi_heat_call *h) {
     return h->method == HD_METHOD_KRYLOV ? hdi_krylov_elim(h) : &h->heat->elim;
 }
 
-/* Have calls at this t cost as much as the factors of the poles, and would these be faster from now on?
- * Whoever buys when the rent paid amounts to the price never pays more than twice the least (ski rental;
- * Karlin, Manasse, Rudolph, Sleator 1988). The model counts, not a clock: methods are the same everywhere. */
-static int hdi_heat_habit(const hdi_heat_call *h, const hdi_costs *c, double room) {
-    const hd_cost *direct = c->by + HD_METHOD_DIRECT;
-    return h->method != HD_METHOD_DIRECT && direct->possible && direct->bytes <= room && h->n_times == 1 &&
-           h->t == h->heat->habit_t && h->heat->habit_spent >= c->factors &&
-           direct->seconds - c->factors < h->cost;
-}
-
-/* Notes what a call has cost. Factors that are made begin the count anew. */
-static void hdi_heat_spend(hdi_heat_call *h) {
-    hd_heat *heat = h->heat;
-    if (heat->opts.method != HD_METHOD_AUTO || h->t == 0 || h->equal) return;
-    if (h->method == HD_METHOD_DIRECT || heat->habit_t != h->t) heat->habit_spent = 0;
-    heat->habit_t = h->t;
-    if (h->method != HD_METHOD_DIRECT) heat->habit_spent += h->cost;
-}
-
 /* Takes the cheapest method that fits into so many bytes, or iterations. */
-static void hdi_heat_cheapest(hdi_heat_call *h, const hdi_costs *c, double room) {
-    const hd_cost *by = c->by;
-    int32_t q, fits = 0;
-    double least = HUGE_VAL;
+static void hdi_heat_cheapest(hdi_heat_call *h, const hd_cost *by, double room) {
+    int32_t q;
+    double least = HUGE_VAL, cost = HUGE_VAL;
     h->method = HD_METHOD_ITERATIVE;
-    h->cost = by[HD_METHOD_ITERATIVE].possible ? by[HD_METHOD_ITERATIVE].seconds : HUGE_VAL;
-    for (q = HD_METHOD_KRYLOV; q >= HD_METHOD_DIRECT; q--) {
+    for (q = HD_METHOD_KRYLOV; q >= HD_METHOD_ITERATIVE; q--) {
         if (!by[q].possible) continue;
         least = hdi_min(least, by[q].seconds);
-        if (by[q].bytes > room) continue;
-        fits = 1;
-        if (by[q].seconds >= h->cost) continue;
+        if ((q > HD_METHOD_ITERATIVE && by[q].bytes > room) || by[q].seconds >= cost) continue;
         h->method = (hd_method)q;
-        h->cost = by[q].seconds;
+        cost = by[q].seconds;
     }
-    h->forced |= room < HUGE_VAL && h->method == HD_METHOD_ITERATIVE && h->cost > least;
-    h->by_habit = hdi_heat_habit(h, c, room);
-    if (h->by_habit) h->method = HD_METHOD_DIRECT;
-    h->rep->reason =
-        h->by_habit ? "calls at this t have cost as much as the factors of the poles, which serve more"
-        : h->method == HD_METHOD_KRYLOV
-          ? (h->n_times > 1 ? "one real factor serves many times"
-                            : "few columns: one real factor costs less than those of the poles")
-        : h->method == HD_METHOD_DIRECT
-          ? (h->ask.k > 1 ? "many columns: solves with the factors of the poles cost least"
-             : c->factors == 0 ? "the factors of the poles are there from calls before"
-                               : "the factors of the poles cost least")
-        : fits ? "iterations cost less than a factorisation" : "factors would not fit the byte limit";
+    h->forced |= h->method == HD_METHOD_ITERATIVE && cost > least;
+    h->rep->reason = h->method == HD_METHOD_KRYLOV ? "one real factor costs less than those of the poles"
+                     : h->method == HD_METHOD_ITERATIVE
+                       ? (h->forced ? "factors would not fit the byte limit" : "iterations cost the least")
+                     : hdi_heat_at_hand(h) ? "the factors of the poles are there from calls before"
+                                           : "the factors of the poles cost least";
 }
 
 /* Picks the method by the model. Analyses are made only where a factorisation could cost least. */
@@ -19154,11 +18931,11 @@ static hd_status hdi_heat_pick_by_cost(hdi_heat_call *h) {
     /* without iterations there is no retreat */
     const double room = HDI_HAS_ITERATIVE ? hdi_bytes_left(heat->ctx) : HUGE_VAL;
     hdi_elim *m;
-    hdi_costs c;
+    hd_cost by[HD_METHOD_KRYLOV + 1];
     for (;;) {
-        c = hdi_heat_costs(h);
+        hdi_heat_costs(h, by);
         if (h->e->status < 0) return h->e->status;
-        hdi_heat_cheapest(h, &c, room);
+        hdi_heat_cheapest(h, by, room);
         m = hdi_heat_analysis(h);
         if (h->method == HD_METHOD_ITERATIVE || m->ctx) return HD_OK;
         if (hdi_heat_analysed_in(heat, m, h->e) < 0) return h->e->status;
@@ -19169,8 +18946,6 @@ static hd_status hdi_heat_pick_by_cost(hdi_heat_call *h) {
 static hd_status hdi_heat_pick(hdi_heat_call *h) {
     const hd_heat *heat = h->heat;
     h->method = heat->opts.method;
-    h->cost = 0;
-    h->by_habit = 0;
     h->rep->reason = "asked for";
     if (h->method != HD_METHOD_AUTO) return HD_OK;
     h->method = HD_METHOD_DIRECT;
@@ -19381,10 +19156,11 @@ static int32_t hdi_modes_count(const hd_heat *heat, double more) {
 
 static double hdi_modes_need(const hd_heat *heat, int32_t count) {
     const int32_t n = heat->source->n_active;
-    const double left = 2.0 * sizeof(double) * heat->source->n;
-    if (!heat->elim.ctx) return hdi_spec_need(n, count, 0) + left + 8 * hdi_heat_guess(heat).real_stored;
-    return hdi_spec_need(n, count, hdi_sweep_size(&heat->elim.sym, 1, HDI_WIDE)) + left +
-           (double)hdi_factor_bytes(&heat->elim.sym, 1);
+    const hdi_elim *m = &heat->elim;
+    const double factor = m->ctx ? (double)hdi_factor_bytes(&m->sym, 1)
+                          : 8 * hdi_heat_fill(heat, m).real_stored;
+    return hdi_spec_need(n, count, m->ctx ? hdi_sweep_size(&m->sym, 1, HDI_WIDE) : 0) + factor +
+           2.0 * sizeof(double) * heat->source->n;
 }
 
 /* Finds so many eigenpairs. Returns 0 where that fails, or where they are not proven complete, or where there
@@ -19472,11 +19248,6 @@ static void hdi_report_merge(hd_report *all, const hd_report *one) {
     *all = sum;
 }
 
-/* t times the smallest eigenvalue, which is a guess while no pairs are there. */
-static double hdi_modes_lowest(const hd_heat *heat, double t) {
-    return heat->modes.s.value ? t * heat->modes.low : t * heat->scale * heat->scales.lowest;
-}
-
 /* ---- which way ---- */
 
 /* A query that eigenpairs can answer as well as poles. Both ways answer the time under way, h->now; what
@@ -19486,10 +19257,10 @@ typedef struct hdi_task hdi_task;
 struct hdi_task {
     hdi_heat_call *h;
     int32_t serves;              /* eigenpairs first where so few are expected; 0: they may not answer */
-    double from;                 /* they come first where t times the smallest eigenvalue is this or more */
     double depth;                /* how far they have to reach above the smallest eigenvalue, times t */
     hd_status (*pairs)(hdi_task *task);
     hd_status (*poles)(hdi_task *task);
+    double excess;               /* of the answer by poles: above 1 its error is not as it should be */
     /* Answers times that are not done together, if that is cheaper, and sets their place in done; their
      * reports go to one [n_times]. NULL: there is no such way. */
     hd_status (*together)(hdi_task *task, char *done, hd_report *one);
@@ -19506,7 +19277,13 @@ static HDI_INLINE int hdi_task_near(const hdi_task *task, double t, int32_t most
 
 /* Are eigenpairs tried before poles at time t? */
 static HDI_INLINE int hdi_task_first(const hdi_task *task, double t) {
-    return hdi_task_near(task, t, task->serves) && hdi_modes_lowest(task->h->heat, t) >= task->from;
+    return hdi_task_near(task, t, task->serves);
+}
+
+/* May poles of the highest degree take over where the default's bound is too large, and may times share their
+ * poles? Not where the caller chose, and not after the byte limit. */
+static int hdi_degree_open(const hd_heat *heat) {
+    return !heat->poles_asked && !heat->exacting && !heat->spare;
 }
 
 /* Takes up time q of the call, as if nothing had been tried. */
@@ -19544,6 +19321,18 @@ static int hdi_task_pairs(hdi_task *task, int32_t q, int32_t most) {
     return 1;
 }
 
+/* The time under way by poles. The highest degree takes over where the error of the default is too large. */
+static hd_status hdi_task_poles(hdi_task *task) {
+    hdi_heat_call *h = task->h;
+    task->excess = 0;
+    if (task->poles(task) < 0 || !(task->excess > 1) || !hdi_degree_open(h->heat)) return h->e->status;
+    hdi_task_at(h, h->now);
+    h->degree = HDI_RAT_KERNEL_MAX;
+    (void)task->poles(task);
+    h->degree = 0;
+    return h->e->status;
+}
+
 /* Time q, which poles have answered: from eigenpairs after all, if the bound is not as it should be and
  * theirs is lower. bound: theirs, if they were tried before, or negative. */
 static hd_status hdi_task_help(hdi_task *task, int32_t q, double bound) {
@@ -19556,7 +19345,7 @@ static hd_status hdi_task_help(hdi_task *task, int32_t q, double bound) {
     if (!hdi_task_pairs(task, q, most) || h->e->status < 0 || h->rep->error_bound <= by_poles)
         return h->e->status;
     hdi_task_at(h, q);
-    return task->poles(task);
+    return hdi_task_poles(task);
 }
 
 /* Time q: from eigenpairs where few are left, else by poles. Where the bound is not as it should be the
@@ -19571,7 +19360,7 @@ static hd_status hdi_task_time(hdi_task *task, int32_t q) {
     }
     if (h->e->status < 0) return h->e->status;
     hdi_task_at(h, q);
-    if (task->poles(task) >= 0) return hdi_task_help(task, q, bound);
+    if (hdi_task_poles(task) >= 0) return hdi_task_help(task, q, bound);
     if (bound < 0 || !hdi_over_limit(h->heat->ctx, h->e)) return h->e->status;
     hdi_heat_drop(h->heat);                      /* an answer is better than none */
     hdi_error_clear(h->e);
@@ -19580,8 +19369,8 @@ static hd_status hdi_task_time(hdi_task *task, int32_t q) {
 }
 
 /* All times of a call: first those that few eigenpairs serve, then the others together or one by one. */
-static hd_status hdi_task_run(hdi_heat_call *h, void *what) {
-    hdi_task *task = (hdi_task *)what;
+static hd_status hdi_task_run(hdi_task *task) {
+    hdi_heat_call *h = task->h;
     const int32_t n = hdi_high32(h->ask.n_times, 1);
     hd_report *one, all;
     char *done;
@@ -19623,10 +19412,6 @@ static hd_status hdi_task_run(hdi_heat_call *h, void *what) {
 /* Where heat flows out everything falls like exp(-t lambda_1), but the errors of poles do not. There few
  * eigenpairs are left too, whose errors fall as fast, see [25]. */
 
-/* Eigenpairs come first from a time on that is this many times 1/lambda_1: with the border of a square held,
- * bounds by poles of degree 9 are 4e-7 at t lambda_1 = 0.4 and 6e-5 at 7, those of krylov 4e-7 there. */
-#define HDI_FADING_FROM 1
-
 /* Does all heat of the call fade, and may eigenpairs serve it? */
 static HDI_INLINE int hdi_fading(const hdi_heat_call *h) {
     const hd_heat *heat = h->heat;
@@ -19644,7 +19429,6 @@ static void hdi_fading_task(hdi_task *task, hdi_heat_call *h) {
     double span;
     memset(task, 0, sizeof *task);
     task->h = h;
-    task->from = HDI_FADING_FROM;
     if (!HDI_HAS_MODES || !hdi_fading(h)) return;
     task->serves = HDI_MODES_FIRST;
     span = hdi_modes_span(h->heat);
@@ -19775,12 +19559,8 @@ static int hdi_heat_retreat(hdi_heat_call *h) {
     if (HDI_HAS_ITERATIVE && automatic && over && (heat->elim.ctx || heat->few.ctx) && !h->forced &&
         !h->degree) {
         hdi_heat_free_factors(heat);
-        if (h->by_habit) {                       /* the methods before have fitted, and do again */
-            heat->habit_spent = -DBL_MAX;
-        } else {
-            heat->no_factors = 1;
-            heat->no_factors_limit = heat->ctx->byte_limit;
-        }
+        heat->no_factors = 1;
+        heat->no_factors_limit = heat->ctx->byte_limit;
     } else if (HDI_HAS_POLE_FACTORS &&
                (automatic ? failed && h->method == HD_METHOD_ITERATIVE && !heat->iterations_asked
                           : over && h->method == HD_METHOD_DIRECT)) {
@@ -19794,22 +19574,19 @@ static int hdi_heat_retreat(hdi_heat_call *h) {
     return 1;
 }
 
-/* One way to answer a call; what: its own arguments. */
-typedef hd_status (*hdi_way)(hdi_heat_call *h, void *what);
-
 /* Answers a call. If the byte limit ends it, all that can be made again is freed, and the call begins anew
  * without what is optional. */
-static hd_status hdi_heat_sparing(hdi_heat_call *h, hdi_way way, void *what) {
+static hd_status hdi_heat_sparing(hdi_heat_call *h, hdi_task *task) {
     const hdi_heat_call before = *h;
     const hd_report rep = *h->rep;
     hd_heat *heat = h->heat;
-    if (way(h, what) >= 0 || heat->spare || !hdi_over_limit(heat->ctx, h->e)) return h->e->status;
+    if (hdi_task_run(task) >= 0 || heat->spare || !hdi_over_limit(heat->ctx, h->e)) return h->e->status;
     while (h->s.n > before.s.n) hdi_free(heat->ctx, h->s.block[--h->s.n]);
     *h = before;
     *h->rep = rep;                               /* with its error, which is none */
     hdi_heat_shed(heat);
     heat->spare = HDI_SPARE_OPTIONS;
-    (void)way(h, what);
+    (void)hdi_task_run(task);
     heat->spare = 0;
     return h->e->status;
 }
@@ -19885,7 +19662,6 @@ static hd_status hdi_heat_answer(hdi_heat_call *h) {
 /* Answers the time under way by the method picked. If factors do not fit the byte limit, iterations do. */
 static hd_status hdi_heat_chosen(hdi_heat_call *h) {
     while (hdi_heat_answer(h) < 0 && hdi_heat_retreat(h)) {}
-    if (h->e->status >= 0) hdi_heat_spend(h);
     if (h->e->status >= 0 && h->ask.list) hdi_ledger_close(h->ask.list->ledger + h->now, h->rep);
     return h->e->status;
 }
@@ -19958,20 +19734,8 @@ static hd_status hdi_direct_only(hdi_heat_call *h) {
     return HD_OK;
 }
 
-/* Leaves out of the sorted times those that are done: [ask.n_times] by their columns, or NULL. */
-static void hdi_heat_skip(hdi_heat_call *h, double *times, int32_t *column, const char *done) {
-    int32_t q, n = 0;
-    for (q = 0; q < h->n_times; q++) {
-        if (done && done[column[q]]) continue;
-        times[n] = times[q];
-        column[n++] = column[q];
-    }
-    h->n_times = n;
-    if (n > 0) h->t = times[n - 1];
-}
-
 /* Sorts the times of a call that are not done, scaled and times factor, into h->times, and notes which each
- * is. h->t becomes the last. */
+ * is. h->t becomes the last. done: [ask.n_times] by their columns, or NULL. */
 static hd_status hdi_heat_sort_times(hdi_heat_call *h, double factor, const char *done) {
     const int32_t n = h->ask.n_times;
     hdi_pair *order = HDI_TAKE(&h->s, hdi_pair, n);
@@ -19979,20 +19743,19 @@ static hd_status hdi_heat_sort_times(hdi_heat_call *h, double factor, const char
     int32_t *column = HDI_TAKE(&h->s, int32_t, n), q;
     if (h->e->status < 0) return h->e->status;
     /* bits of doubles that are not negative are in their order */
-    for (q = 0; q < n; q++) {
+    for (q = 0, h->n_times = 0; q < n; q++) {
         const double v = h->ask.t[q] + 0.0;
-        memcpy(&order[q].key, &v, sizeof v);
-        order[q].id = q;
+        if (done && done[q]) continue;
+        memcpy(&order[h->n_times].key, &v, sizeof v);
+        order[h->n_times++].id = q;
     }
-    hdi_sort_pairs(order, n);
-    for (q = 0; q < n; q++) {
+    hdi_sort_pairs(order, h->n_times);
+    for (q = 0; q < h->n_times; q++) {
         column[q] = (int32_t)order[q].id;
-        sorted[q] = factor * hdi_heat_scaled(h->heat, h->ask.t[column[q]]);
+        h->t = sorted[q] = factor * hdi_heat_scaled(h->heat, h->ask.t[column[q]]);
     }
     h->times = sorted;
-    h->n_times = n;
     h->time_column = column;
-    hdi_heat_skip(h, sorted, column, done);
     return HD_OK;
 }
 
@@ -20037,8 +19800,8 @@ static hd_status hdi_heat_run(hdi_heat_call *h) {
     if (task.serves && h->ask.n_times == 1 &&
         !(hdi_task_near(&task, h->ask.t[0], HDI_MODES_MOST) && hdi_fields_keep(h))) task.serves = 0;
     if (h->e->status < 0) return hdi_heat_end(h);
-    if (task.serves) (void)hdi_heat_sparing(h, hdi_task_run, &task);
-    else (void)hdi_task_run(h, &task);
+    if (task.serves) (void)hdi_heat_sparing(h, &task);
+    else (void)hdi_task_run(&task);
     h->heat->spare = spare;
     return hdi_heat_end(h);
 }
@@ -20235,7 +19998,6 @@ static void hdi_heat_take_set(hd_heat *heat, const hd_rational *set) {
     o->poles = HD_POLES_DEFAULT;
     o->degree = 0;
     heat->poles_asked = set != NULL;
-    heat->habit_spent = 0;
 }
 
 /* ==== [27] kernel ====
@@ -20858,41 +20620,22 @@ static hd_status hdi_diagonals_once(const hdi_diagonals *to, double *relative) {
     return hdi_scope_end(&s);
 }
 
-/* May poles of the highest degree take over where the default's bound is too large? Not where the caller
- * chose, and not after the byte limit. */
-static int hdi_degree_open(const hd_heat *heat) {
-    return !heat->poles_asked && !heat->exacting && !heat->spare;
-}
-
-/* The time under way by poles, with the set's degree by default. Tiny cells among large ones and slivers have
- * errors relative to their own value that may be above the promise. Where the bound shows this, the highest
- * degree takes over. The error seen is about a fifth of the bound on all meshes tried. */
+/* The time under way by poles. Tiny cells among large ones and slivers have errors relative to their own
+ * value that may be above the promise. The error seen is about a fifth of the bound on all meshes tried. */
 static hd_status hdi_diagonals_by_poles(hdi_task *task) {
     const hdi_diagonals *to = (const hdi_diagonals *)task;
     hdi_heat_call *h = task->h;
     hd_heat *heat = h->heat;
     const hd_kernel kernel = to->D ? to->kernel : HD_KERNEL_SYMMETRIC;
-    double relative;
-    hd_report before;
     if (hdi_heat_analysed(heat, h->e) < 0) return h->e->status;
     hdi_inverse_tell(h);
-    before = *h->rep;
     if (hdi_heat_equal(heat, &heat->elim, h->t, h->e)) return hdi_diagonals_equal(to, h->now, h->rep);
-    if (h->e->status < 0 || hdi_diagonals_once(to, &relative) < 0) return h->e->status;
-    if (!hdi_degree_open(heat) || relative <= hdi_diagonal_limit(heat->source, kernel)) return HD_OK;
-    h->degree = HDI_RAT_KERNEL_MAX;
-    *h->rep = before;
-    (void)hdi_diagonals_once(to, &relative);
-    h->degree = 0;
-    return h->e->status;
+    if (h->e->status < 0 || hdi_diagonals_once(to, &task->excess) < 0) return h->e->status;
+    task->excess /= hdi_diagonal_limit(heat->source, kernel);
+    return HD_OK;
 }
 
 /* ---- at many times ---- */
-
-/* May the times of a call share their poles? */
-static int hdi_shared_may(const hd_heat *heat) {
-    return !heat->poles_asked && !heat->exacting && !heat->spare;
-}
 
 /* How many windows of equal ratio take the fewest packs in all for times that ascend. 0: these are more than
  * for so many times one by one, each with a set of degree 9, that is a pack and a real factor, which costs an
@@ -20963,7 +20706,7 @@ static hd_status hdi_diagonals_together(hdi_task *task, char *done, hd_report *o
         done[at] = HDI_DONE_FOR_GOOD;
         if (hdi_diagonals_equal(to, at, one + at) < 0) return h->e->status;
     }
-    if (h->e->status < 0 || !hdi_shared_may(heat) || alone) return h->e->status;
+    if (h->e->status < 0 || !hdi_degree_open(heat) || alone) return h->e->status;
     return hdi_shared_run(task, n, HDI_SHARED_TOL, hdi_diagonals_window, done, one);
 }
 
@@ -21056,7 +20799,7 @@ static hd_status hdi_diagonals_run(hdi_heat_call *h, hd_kernel kernel, double *D
     to.ldd = ldd;
     to.Z = Z;
     to.bound = bound;
-    return h->heat->n_sets > 1 ? hdi_diagonals_filters(&to) : hdi_heat_sparing(h, hdi_task_run, &to.task);
+    return h->heat->n_sets > 1 ? hdi_diagonals_filters(&to) : hdi_heat_sparing(h, &to.task);
 }
 
 /* Checks that there is selected inversion, and that the direct method is allowed. */
@@ -21205,10 +20948,9 @@ static hd_status hdi_metric_room(hdi_metric *x, int32_t group, int bounded, hdi_
     return x->h->e->status;
 }
 
-/* The metric of one time, the one under way, by poles of a degree (0: by default), for so many sources at the
- * same time. */
-static hd_status hdi_metric_make(hdi_heat_call *h, const hdi_distance_row *kind, int32_t degree,
-                                 int32_t group, int bounded, hdi_metric *x, hdi_scope *s) {
+/* The metric of the time under way by poles, for so many sources at the same time. */
+static hd_status hdi_metric_make(hdi_heat_call *h, const hdi_distance_row *kind, int32_t group, int bounded,
+                                 hdi_metric *x, hdi_scope *s) {
     hd_heat *heat = h->heat;
     if (hdi_heat_analysed(heat, h->e) < 0 || hdi_metric_take(x, h, kind, 1, s) < 0) return h->e->status;
     if (kind->time > 0) {                        /* d^2 of a filter is the sum of the filter itself */
@@ -21221,10 +20963,8 @@ static hd_status hdi_metric_make(hdi_heat_call *h, const hdi_distance_row *kind,
         hdi_diagonal_means(h->lap, &x->f);
         *x->rounding = (double)h->lap->n_active * DBL_EPSILON;
     } else if (h->e->status >= 0) {
-        h->degree = degree;
         if (hdi_inverses_take(&x->in, h, 1, hdi_metric_wanted(heat, kind), s) >= 0 &&
             hdi_heat_set(h, x->in.set) >= 0) (void)hdi_metric_invert(x, s);
-        h->degree = 0;
     }
     return h->e->status < 0 ? h->e->status : hdi_metric_room(x, group, bounded, s);
 }
@@ -21457,16 +21197,6 @@ static hd_status hdi_distances_of(const hdi_distances *to, hdi_metric *x, const 
     return h->e->status;
 }
 
-/* All sources at the time under way. degree 0: by default. */
-static hd_status hdi_distances_once(const hdi_distances *to, int32_t degree) {
-    hdi_heat_call *h = to->task.h;
-    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
-    hdi_metric x;
-    if (hdi_metric_make(h, to->kind, degree, hdi_low32(to->k, HDI_LANES), 1, &x, &s) >= 0)
-        (void)hdi_distances_of(to, &x, NULL, NULL);
-    return hdi_scope_end(&s);
-}
-
 /* ---- distances from the smallest eigenpairs ---- */
 /* At large t all vertices look alike, and f_ss - 2 f_sv + f_vv cancels. There few eigenpairs are left, and
  *     d_t(x,y)^2 = sum_i exp(-2 t lambda_i) (x_i(x) - x_i(y))^2 = |K_t B^-1 (e_x - e_y)|^2
@@ -21568,20 +21298,25 @@ static hd_status hdi_mode_sum_make(hdi_mode_sum *a, hdi_heat_call *h, const hdi_
 
 /* ---- distances to all vertices ---- */
 
-/* Distances at the time under way by poles. Where much cancels, or is sure to, the highest degree takes
- * over if there is room for its factors. */
+/* Is the bound of degree 9 sure to be too large at time t? */
+static int hdi_distance_sure(const hd_heat *heat, const hdi_distance_row *kind, double t) {
+    return kind->mass == 0 && heat->source->h > 0 &&
+           HDI_DISTANCE_EXPECTED * sqrt(t) > HDI_DISTANCE_SURE * heat->source->h;
+}
+
+/* Distances at the time under way by poles. Where much is sure to cancel, the highest degree begins. */
 static hd_status hdi_distances_by_poles(hdi_task *task) {
     const hdi_distances *to = (const hdi_distances *)task;
     hdi_heat_call *h = task->h;
-    hd_heat *heat = h->heat;
-    const int open = to->kind->time > 0 && hdi_degree_open(heat);
-    const double t = open ? h->ask.t[h->now] : 0;
-    const double expected = heat->source->h > 0 ? HDI_DISTANCE_EXPECTED * sqrt(t) / heat->source->h : 0;
-    const int sure = open && to->kind->mass == 0 && expected > HDI_DISTANCE_SURE;
-    if (!sure && hdi_distances_once(to, 0) < 0) return h->e->status;
-    if (!open || (!sure && h->rep->error_rational <= HDI_DISTANCE_SURE)) return h->e->status;
-    hdi_task_at(h, h->now);
-    return hdi_distances_once(to, HDI_RAT_KERNEL_MAX);
+    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
+    hdi_metric x;
+    task->excess = 2;
+    if (to->kind->time > 0 && h->degree == 0 && hdi_degree_open(h->heat) &&
+        hdi_distance_sure(h->heat, to->kind, h->ask.t[h->now])) return HD_OK;
+    if (hdi_metric_make(h, to->kind, hdi_low32(to->k, HDI_LANES), 1, &x, &s) >= 0)
+        (void)hdi_distances_of(to, &x, NULL, NULL);
+    task->excess = to->kind->time > 0 ? h->rep->error_rational / HDI_DISTANCE_SURE : 0;
+    return hdi_scope_end(&s);
 }
 
 /* Distances of all sources at the time under way from the eigenpairs that are there. */
@@ -21626,7 +21361,7 @@ static hd_status hdi_distances_together(hdi_task *task, char *done, hd_report *o
     const int32_t times = ((const hdi_distances *)task)->kind->time;
     hdi_heat_call *h = task->h;
     hd_heat *heat = h->heat;
-    if (!hdi_shared_may(heat) || hdi_heat_analysed(heat, h->e) < 0 ||
+    if (!hdi_degree_open(heat) || hdi_heat_analysed(heat, h->e) < 0 ||
         hdi_heat_sort_times(h, times, done) < 0 || h->n_times < 2 ||
         hdi_heat_equal(heat, &heat->elim, h->times[h->n_times - 1], h->e) || h->e->status < 0)
         return h->e->status;
@@ -21731,9 +21466,9 @@ static void hdi_pairs_note(const hd_heat *heat, const hdi_pairs_part *x, hd_repo
     hdi_ledger_join(all, &of);
 }
 
-/* Some pairs at the time under way from columns by poles of a degree (0: by default). */
-static hd_status hdi_pairs_some(hdi_heat_call *h, const hdi_pairs *to, hdi_pairs_part *x, int32_t degree,
-                                hd_report *rep, hdi_ledger *all) {
+/* Some pairs at the time under way from columns. */
+static hd_status hdi_pairs_some(hdi_heat_call *h, const hdi_pairs *to, hdi_pairs_part *x, hd_report *rep,
+                                hdi_ledger *all) {
     const hd_kernel kernel = to->kind->mass > 0 ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
     const hd_heat *heat = h->heat;
     const uint64_t n = (uint64_t)heat->source->n;
@@ -21754,7 +21489,7 @@ static hd_status hdi_pairs_some(hdi_heat_call *h, const hdi_pairs *to, hdi_pairs
         c.ask.terms = terms;
         c.ask.U = x->U;
         c.ask.ldu = (size_t)n;
-        c.degree = degree;
+        c.degree = h->degree;
     }
     if (hdi_heat_run(&c) < 0) *h->e = rep->error;
     for (q = 0; q < x->n_vertex && h->e->status >= 0; q++)
@@ -21764,7 +21499,7 @@ static hd_status hdi_pairs_some(hdi_heat_call *h, const hdi_pairs *to, hdi_pairs
 }
 
 /* All pairs at the time under way, so many at once. */
-static hd_status hdi_pairs_columns(const hdi_pairs *to, int32_t degree, int64_t most) {
+static hd_status hdi_pairs_columns(const hdi_pairs *to, int64_t most) {
     hdi_heat_call *h = to->task.h;
     hdi_ledger all = hdi_ledger_begin(HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, 1);
     hd_report one, sum;
@@ -21775,7 +21510,7 @@ static hd_status hdi_pairs_columns(const hdi_pairs *to, int32_t degree, int64_t 
         x.j = to->j + p;
         x.d = to->d + to->n * h->now + p;
         x.n = hdi_least(to->n - p, most);
-        if (hdi_pairs_some(h, to, &x, degree, &one, &all) < 0) return h->e->status;
+        if (hdi_pairs_some(h, to, &x, &one, &all) < 0) return h->e->status;
         if (p == 0) sum = one;
         else hdi_report_merge(&sum, &one);
     }
@@ -21797,7 +21532,7 @@ static hd_status hdi_pairs_one_by_one(const hdi_pairs *to) {
     hdi_ledger ledger, all;
     hdi_metric x;
     int64_t q;
-    if (h->e->status < 0 || hdi_metric_make(h, to->kind, 0, 1, 0, &x, &s) < 0) return hdi_scope_end(&s);
+    if (h->e->status < 0 || hdi_metric_make(h, to->kind, 1, 0, &x, &s) < 0) return hdi_scope_end(&s);
     ledger = all = hdi_metric_ledger(&x);
     for (q = 0; q < to->n; q++) {                /* a column for each run of the same first vertex */
         const hdi_terms from = hdi_terms_vertex(to->i[q]);
@@ -21818,7 +21553,7 @@ static hd_status hdi_pairs_one_by_one(const hdi_pairs *to) {
 }
 
 /* Distances at the time under way from columns of all vertices of the pairs or, where these have no room,
- * by the metric. The highest degree takes over where the direct method's bound is not as it should be. */
+ * by the metric. */
 static hd_status hdi_pairs_by_poles(hdi_task *task) {
     const hdi_pairs *to = (const hdi_pairs *)task;
     hdi_heat_call *h = task->h;
@@ -21834,11 +21569,8 @@ static hd_status hdi_pairs_by_poles(hdi_task *task) {
     }
     if (hdi_scope_end(&s) < 0) return h->e->status;
     if (!fits) return hdi_pairs_one_by_one(to);
-    if (hdi_pairs_columns(to, 0, most) >= 0 && h->rep->error_bound > HDI_MODES_HELP &&
-        hdi_degree_open(heat) && h->rep->method == HD_METHOD_DIRECT) {
-        hdi_task_at(h, h->now);
-        (void)hdi_pairs_columns(to, HDI_RAT_KERNEL_MAX, most);
-    }
+    if (hdi_pairs_columns(to, most) >= 0 && h->rep->method == HD_METHOD_DIRECT)
+        task->excess = h->rep->error_bound / HDI_MODES_HELP;
     return h->e->status;
 }
 
@@ -21929,12 +21661,12 @@ static hd_status hdi_sample_by_poles(hdi_task *task) {
     hdi_samples *a = (hdi_samples *)task;
     hdi_heat_call *h = task->h;
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
-    const int open = a->kind->time > 0 && hdi_degree_open(h->heat);
     hdi_metric x;
     a->x = &x;
     a->sum = NULL;
-    if (hdi_metric_make(h, a->kind, open ? HDI_RAT_KERNEL_MAX : 0, 1, 0, &x, &s) >= 0)
-        (void)hdi_sample_points(a);
+    h->degree = a->kind->time > 0 && hdi_degree_open(h->heat) ? HDI_RAT_KERNEL_MAX : 0;
+    if (hdi_metric_make(h, a->kind, 1, 0, &x, &s) >= 0) (void)hdi_sample_points(a);
+    h->degree = 0;
     return hdi_scope_end(&s);
 }
 
@@ -21995,7 +21727,7 @@ static hd_status hdi_distance_answer(hd_heat *heat, hdi_distances *to, const hd_
     to->task.pairs = HDI_HAS_MODES ? hdi_distances_by_pairs : NULL;
     to->task.poles = hdi_distances_by_poles;
     to->task.together = hdi_distances_together;
-    (void)hdi_heat_sparing(&h, hdi_task_run, &to->task);
+    (void)hdi_heat_sparing(&h, &to->task);
     return hdi_heat_end(&h);
 }
 
@@ -22004,7 +21736,7 @@ static hd_status hdi_pairs_run(hdi_heat_call *h, hdi_pairs *to) {
     hdi_distance_task(&to->task, h, to->kind, 1);
     to->task.pairs = HDI_HAS_MODES ? hdi_pairs_by_pairs : NULL;
     to->task.poles = hdi_pairs_by_poles;
-    return hdi_heat_sparing(h, hdi_task_run, &to->task);
+    return hdi_heat_sparing(h, &to->task);
 }
 
 static hd_status hdi_sample_answer(hd_heat *heat, hdi_samples *a, const hd_sources *sources,
@@ -22023,7 +21755,7 @@ static hd_status hdi_sample_answer(hd_heat *heat, hdi_samples *a, const hd_sourc
     hdi_distance_task(&a->task, &h, a->kind, a->count + a->n_from);
     a->task.pairs = HDI_HAS_MODES ? hdi_sample_by_pairs : NULL;
     a->task.poles = hdi_sample_by_poles;
-    (void)hdi_heat_sparing(&h, hdi_task_run, &a->task);
+    (void)hdi_heat_sparing(&h, &a->task);
     return hdi_heat_end(&h);
 }
 
@@ -22081,15 +21813,6 @@ static int hdi_estimate_pairwise(const hdi_estimate *x) {
     return x->query->distance && x->query->by == HDI_BY_SOLVES;
 }
 
-/* Adds work that comes after what is there; bytes are those of the larger one. */
-static void hdi_cost_add(hd_cost *c, const hd_cost *one) {
-    c->possible = 1;
-    c->flops += one->flops;
-    c->seconds += one->seconds;
-    c->bytes = hdi_max(c->bytes, one->bytes);
-    c->bytes_most = hdi_max(hdi_max(c->bytes_most, one->bytes_most), c->bytes);
-}
-
 /* Analyses the pattern for a query that needs a factorisation. If there is no memory for that within the byte
  * limit, figures are guesses. */
 static hd_status hdi_estimate_analyse(hdi_heat_call *h) {
@@ -22104,37 +21827,33 @@ static hd_status hdi_estimate_analyse(hdi_heat_call *h) {
 static hd_status hdi_estimate_solves(const hdi_estimate *x) {
     hdi_heat_call *h = x->h;
     hd_heat *heat = h->heat;
+    const int32_t n_times = h->n_times;
     hd_cost *by = x->to->cost, *direct = by + HD_METHOD_DIRECT, most;
-    hdi_costs all;
     hd_rational set;
     int32_t q;
-    if (hdi_heat_pick(h) >= 0 && h->n_times > 1 && h->method != HD_METHOD_KRYLOV) {   /* one by one */
-        hdi_heat_call last = *h;
-        last.times = &h->t;
-        last.n_times = 1;
-        (void)hdi_heat_pick(&last);
-        h->method = last.method;
+    if (hdi_heat_pick(h) >= 0 && n_times > 1 && h->method != HD_METHOD_KRYLOV) {   /* one by one */
+        h->times += n_times - 1;
+        h->n_times = 1;
+        (void)hdi_heat_pick(h);
+        h->n_times = n_times;
+        h->times -= n_times - 1;
     }
     if (hdi_over_limit(heat->ctx, h->e)) hdi_error_clear(h->e);
     if (h->e->status < 0 || (h->method != HD_METHOD_ITERATIVE && hdi_estimate_analyse(h) < 0))
         return h->e->status;
     x->to->method = h->method;
     x->to->reason = h->rep->reason;
-    all = hdi_heat_costs(h);
+    hdi_heat_costs(h, by);
     for (q = HD_METHOD_ITERATIVE; q <= HD_METHOD_KRYLOV; q++) {
-        by[q] = all.by[q];
         if (by[q].possible) by[q].bytes += x->held + HDI_ESTIMATE_SMALL;
         by[q].bytes_most = by[q].bytes;
     }
-    if (!direct->possible) return h->e->status;
-    h->degree = x->query->distance && !heat->poles_asked ? HDI_RAT_KERNEL_MAX : 0;
-    if (hdi_heat_set_of(h, HDI_RAT_UNIFORM_MAX, &set) < 0) return h->e->status;
+    if (!direct->possible || hdi_heat_set_of(h, HDI_RAT_UNIFORM_MAX, &set) < 0) return h->e->status;
     memset(&most, 0, sizeof most);
     (void)hdi_direct_set(h, &set, HDI_AFTER_BOUND, 0, x->k, x->held + HDI_ESTIMATE_SMALL, &most);
-    if (h->degree && heat->elim.ctx)             /* the solves' arrays of the first try stay */
+    if (x->query->distance && !heat->poles_asked && heat->elim.ctx)   /* the arrays of the first try stay */
         most.bytes += (double)hdi_batches_need(heat, hdi_set_packs(&set), x->k);
     direct->bytes_most = hdi_max(direct->bytes, most.bytes);
-    h->degree = 0;
     return h->e->status;
 }
 
@@ -22162,7 +21881,7 @@ static int hdi_estimate_shared(const hdi_estimate *x, hd_cost *c) {
     const int distance = x->query->distance != NULL;
     const double tol = distance ? HDI_SHARED_DISTANCE_TOL : HDI_SHARED_TOL;
     int32_t windows = 0, w, q0, q1;
-    if (h->n_times > 1 && hdi_shared_may(h->heat) &&
+    if (h->n_times > 1 && hdi_degree_open(h->heat) &&
         !(x->query->mass == 1 && h->heat->source->B))
         windows = hdi_shared_windows(h->times, h->n_times, tol);
     for (w = 0, q0 = 0; windows > 0 && q0 < h->n_times; w++, q0 = q1) {
@@ -22178,38 +21897,35 @@ static int hdi_estimate_shared(const hdi_estimate *x, hd_cost *c) {
 /* Diagonals, traces and distances by poles: all times together if the run takes them so, else one by one,
  * as at the last time. Bytes are enough for either, to which the run comes back. In bytes_most the highest
  * degree takes over. */
-static hd_status hdi_estimate_inverses(const hdi_estimate *x, hd_cost *c) {
+static void hdi_estimate_inverses(const hdi_estimate *x, hd_cost *c) {
     hdi_heat_call *h = x->h;
-    hd_heat *heat = h->heat;
-    const double h0 = heat->source->h, t = h->t / x->unit;
-    const double expected = h0 > 0 ? HDI_DISTANCE_EXPECTED * sqrt(t) / h0 : 0;
-    hd_cost one, most;
+    const hd_heat *heat = h->heat;
+    const int sure = x->query->distance && hdi_degree_open(heat) &&
+                     hdi_distance_sure(heat, x->query->distance, h->t / x->unit);
+    hd_cost by[2];
     hd_rational set;
-    memset(c, 0, sizeof *c);
-    memset(&one, 0, sizeof one);
-    memset(&most, 0, sizeof most);
+    int32_t i, one;
+    memset(by, 0, sizeof by);
     h->diagonal = 1;
     h->method = HD_METHOD_DIRECT;
-    if (hdi_heat_set(h, &set) >= 0) hdi_estimate_inversion(x, &set, 1, &one);
-    h->degree = heat->poles_asked ? 0 : HDI_RAT_KERNEL_MAX;
-    if (hdi_heat_set(h, &set) >= 0) hdi_estimate_inversion(x, &set, 1, &most);
+    for (i = 0; i < 2; i++) {
+        h->degree = i == 1 && !heat->poles_asked ? HDI_RAT_KERNEL_MAX : 0;
+        if (hdi_heat_set(h, &set) >= 0) hdi_estimate_inversion(x, &set, 1, by + i);
+    }
     h->degree = 0;
-    if (h->e->status < 0) return h->e->status;
-    if (x->query->distance && x->query->distance->mass == 0 && hdi_shared_may(heat) &&
-        expected > HDI_DISTANCE_SURE && most.bytes <= hdi_bytes_left(heat->ctx)) one = most;
+    one = sure && by[1].bytes <= hdi_bytes_left(heat->ctx);
     if (heat->elim.ctx)                          /* after a first try, whose lanes and real factor stay */
-        most.bytes += (double)(hdi_batches_need(heat, 1, hdi_high32(x->k, HDI_PROBES)) +
-                               (heat->elim.real.ctx ? 0 : hdi_factor_bytes(&heat->elim.sym, 1)));
+        by[1].bytes += (double)(hdi_batches_need(heat, 1, hdi_high32(x->k, HDI_PROBES)) +
+                                (heat->elim.real.ctx ? 0 : hdi_factor_bytes(&heat->elim.sym, 1)));
     if (!hdi_estimate_shared(x, c)) {
         memset(c, 0, sizeof *c);
-        c->flops = h->n_times * one.flops;
-        c->seconds = h->n_times * one.seconds;
+        c->flops = h->n_times * by[one].flops;
+        c->seconds = h->n_times * by[one].seconds;
     }
-    one.flops = one.seconds = 0;
-    one.bytes_most = most.bytes;
-    hdi_cost_add(c, &one);
+    c->possible = 1;
+    c->bytes = hdi_max(c->bytes, by[one].bytes);
+    c->bytes_most = hdi_max(c->bytes, by[1].bytes);
     c->seconds += HDI_FRESH_BYTE * c->bytes;
-    return h->e->status;
 }
 
 /* Commute and biharmonic distances. */
@@ -22222,7 +21938,7 @@ static void hdi_estimate_ground(const hdi_estimate *x, hd_cost *c) {
     c->possible = 1;
     c->flops = factor * (1 + HDI_INVERT_FLOPS) + solves * 4 * f.nnz;
     c->seconds = factor / HDI_RATE_REAL * (1 + HDI_INVERT_SECONDS) +
-                 solves * (16 * f.nnz + 100 * n) / HDI_RATE_SWEEP;
+                 solves * (16 * f.nnz + 100 * n) / HDI_RATE_BYTES;
     c->bytes = 8 * f.real_stored * (forms ? 9 : 1);
     if (heat->elim.ctx)
         c->bytes = (double)hdi_ground_need(&heat->elim, &heat->ground, forms) +
@@ -22234,10 +21950,9 @@ static void hdi_estimate_ground(const hdi_estimate *x, hd_cost *c) {
 /* ---- estimates of eigenpairs ---- */
 
 /* Seconds that an eigenpair costs for each vertex, without factors, all of them together as much as so many
- * more, and each twice that where they are half of the most; of a sum. Measured on 2.5K to 43K vertices. */
+ * more, and each twice that where they are half of the most. Measured on 2.5K to 43K vertices. */
 #define HDI_MODES_SECONDS 7e-7
 #define HDI_MODES_BEGIN 5
-#define HDI_MODES_SUM 9e-9
 
 /* Bytes that eigenpairs may need where more are looked for than expected: 1.14 times those for the number
  * expected were seen on small meshes. */
@@ -22265,93 +21980,56 @@ static int32_t hdi_estimate_count(const hdi_estimate *x, int32_t q) {
     return hdi_modes_count(heat, hdi_modes_expected(heat, x->task.depth * x->unit / x->h->times[q]));
 }
 
-/* Bytes that so many hold when they are found. */
-static double hdi_estimate_kept(const hdi_estimate *x, int32_t count) {
-    const hdi_distance_row *kind = x->query->distance;
-    const int twice = kind && kind->mass > 0 && x->h->heat->source->B;
-    return 8.0 * x->h->heat->source->n * ((twice ? 2.0 : 1.0) * count + 5);
-}
-
-/* Late times, where eigenpairs come first: how many are left before them, and the cost of the others. *kept:
- * bytes of pairs that are found. */
-static int32_t hdi_estimate_late(const hdi_estimate *x, hd_cost *c, double *kept) {
+/* Eigenpairs that may come before or after poles at any time: their bytes while they are found, and then
+ * those that they hold beside poles. */
+static void hdi_estimate_help(const hdi_estimate *x, hd_cost *c) {
     const hdi_heat_call *h = x->h;
-    const hd_heat *heat = h->heat;
-    const double n = heat->source->n_active;
-    int32_t early = h->n_times, count;
-    memset(c, 0, sizeof *c);
-    *kept = 0;
-    while (early > 0 && hdi_task_first(&x->task, h->times[early - 1] / x->unit)) early--;
-    if (early == h->n_times) return early;
-    count = hdi_estimate_count(x, early);
-    if (hdi_modes_need(heat, count) > hdi_bytes_left(heat->ctx)) return h->n_times;
-    c->possible = 1;
-    c->bytes = c->bytes_most = 16 * (n + count);
-    if (!heat->modes.s.value || heat->modes.s.count < count) {
-        *c = hdi_estimate_pairs(heat, count);
-        *kept = hdi_estimate_kept(x, count);
-    }
-    c->flops += 6 * n * count * x->k;
-    c->seconds += HDI_MODES_SUM * n * count * x->k;
-    return early;
-}
-
-/* Eigenpairs that may come after poles at any time, with poles once more. */
-static void hdi_estimate_help(const hdi_estimate *x, double kept, hd_cost *c) {
-    const double most = c->bytes_most;
-    int32_t q, count;
-    for (q = 0; q < x->h->n_times; q++) {
-        if (!hdi_task_near(&x->task, x->h->times[q] / x->unit, HDI_MODES_MOST)) continue;
-        count = hdi_estimate_count(x, q);
-        c->bytes_most = hdi_max(c->bytes_most, most + hdi_max(0, hdi_estimate_kept(x, count) - kept));
-        c->bytes_most = hdi_max(c->bytes_most, hdi_estimate_pairs(x->h->heat, count).bytes_most);
+    const hd_laplacian *lap = h->heat->source;
+    const int twice = x->query->distance && x->query->distance->mass > 0 && lap->B;
+    const double bytes = c->bytes, most = c->bytes_most;
+    int32_t q;
+    for (q = 0; q < h->n_times; q++) {
+        const int32_t count = hdi_estimate_count(x, q);
+        const double held = 8.0 * lap->n * ((twice ? 2.0 : 1.0) * count + 5);
+        const hd_cost pairs = hdi_estimate_pairs(h->heat, count);
+        if (!hdi_task_near(&x->task, h->times[q] / x->unit, HDI_MODES_MOST)) continue;
+        c->bytes_most = hdi_max(c->bytes_most, hdi_max(most + held, pairs.bytes_most));
+        if (q == 0 || !hdi_task_first(&x->task, h->times[q] / x->unit)) continue;
+        c->bytes = hdi_max(c->bytes, hdi_max(bytes + held, pairs.bytes));
     }
 }
 
 /* ---- estimates of queries ---- */
 
-/* By poles, or by what the run picks. Returns the cost. */
-static hd_cost hdi_estimate_poles(const hdi_estimate *x) {
-    hd_cost c, zero;
-    memset(&zero, 0, sizeof zero);
-    x->h->t = x->h->times[x->h->n_times - 1];
-    if (x->query->by == HDI_BY_INVERSION) return hdi_estimate_inverses(x, &c) < 0 ? zero : c;
-    return hdi_estimate_solves(x) < 0 ? zero : x->to->cost[x->to->method];
-}
-
-/* A query at times: eigenpairs at late ones, as the run takes them, else poles. Bytes are enough for poles at
- * all times. */
+/* A query at times, by poles or by what the run picks. Where few eigenpairs serve they take about as long as
+ * poles, once; then poles do the other times. */
 static hd_status hdi_estimate_times(const hdi_estimate *x) {
     hdi_heat_call *h = x->h;
-    hd_estimate *to = x->to;
+    const hd_heat *heat = h->heat;
     const int32_t n_times = h->n_times;
-    hd_cost late, poles, early_poles;
-    double kept;
-    int32_t early;
-    if ((x->query->by == HDI_BY_INVERSION || hdi_task_first(&x->task, h->times[n_times - 1] / x->unit)) &&
-        hdi_estimate_analyse(h) < 0) return h->e->status;
-    early = hdi_estimate_pairwise(x) ? n_times : hdi_estimate_late(x, &late, &kept);
-    poles = hdi_estimate_poles(x);
-    if (early < n_times && h->e->status >= 0) {
-        if (early > 0) {
-            h->n_times = early;
-            early_poles = hdi_estimate_poles(x);
-            h->n_times = n_times;
-        } else {
-            memset(&early_poles, 0, sizeof early_poles);
-            memset(to->cost, 0, sizeof to->cost);
-            to->method = HD_METHOD_DIRECT;
-            to->reason = HDI_MODES_REASON;
-        }
-        if (kept > 0 || early > 0) {
-            early_poles.bytes = hdi_max(early_poles.bytes, poles.bytes) + (early > 0 ? kept : 0);
-            early_poles.bytes_most = hdi_max(early_poles.bytes_most, poles.bytes_most) + kept;
-        }
-        poles = early_poles;
-        hdi_cost_add(&poles, &late);
+    hd_cost *c = x->to->cost + HD_METHOD_DIRECT, fewer;
+    int32_t early = n_times, count;
+    while (early > 0 && hdi_task_first(&x->task, h->times[early - 1] / x->unit)) early--;
+    if ((x->query->by == HDI_BY_INVERSION || early == 0) && hdi_estimate_analyse(h) < 0) return h->e->status;
+    if (x->query->by == HDI_BY_SOLVES) (void)hdi_estimate_solves(x);
+    else hdi_estimate_inverses(x, c);
+    if (x->query->by == HDI_BY_INVERSION && early > 0 && early < n_times) {
+        h->n_times = early;
+        hdi_estimate_inverses(x, &fewer);
+        h->n_times = n_times;
+        c->bytes = hdi_max(c->bytes, fewer.bytes);
+        c->bytes_most = hdi_max(c->bytes_most, fewer.bytes_most);
     }
-    hdi_estimate_help(x, early < n_times ? kept : 0, &poles);
-    to->cost[to->method] = poles;
+    count = hdi_estimate_count(x, early == 0 ? 0 : n_times - 1);
+    if (early == 0 && hdi_modes_need(heat, count) <= hdi_bytes_left(heat->ctx)) {
+        x->to->method = HD_METHOD_DIRECT;
+        x->to->reason = HDI_MODES_REASON;
+        if (count <= heat->modes.s.count) {      /* they are there */
+            c->flops = 6.0 * heat->source->n * count * (x->k + 1);
+            c->seconds = 1.5e-9 * c->flops;
+        }
+    }
+    hdi_estimate_help(x, x->to->cost + x->to->method);
     return h->e->status;
 }
 

@@ -8,10 +8,9 @@
    the same clicks, and the program prints the time of each:
 
    HD_METHOD_KRYLOV  one real factor, then some twenty solves with it for each column. The best for a few columns.
-   HD_METHOD_AUTO    sees one column at a time, so it begins with what is best for a few. When the columns have cost as much
-                     as the factors of all poles would, by its model, it makes these and is as fast as direct from then on.
+   HD_METHOD_AUTO    sees one column at a time and takes what is best for it, whatever was asked for before.
    HD_METHOD_DIRECT  factorises the systems of all poles at the first click, and each click then takes one solve. Set it
-                     where you know that many columns at the same t will follow: nothing is spent on another method first.
+                     where you know that many columns at the same t will follow.
 
    The answers differ by less than the bounds on their errors, which the program checks. */
 
@@ -83,8 +82,8 @@ int main(void) {
                 if (fabs(u[k][i] - u[0][i]) > (report[k].error_bound + report[0].error_bound) * u[0][vertex])
                     return printf("vertex %d: the answers differ by more than their bounds\n", i), 1;
     }
-    printf("in all:    krylov %.0f ms, auto %.0f ms, direct %.0f ms of processor time; auto ends with: %s\n", total[0], total[1],
-           total[2], report[1].reason);
+    printf("in all:    krylov %.0f ms, auto %.0f ms, direct %.0f ms of processor time; auto takes %s: %s\n", total[0], total[1],
+           total[2], names[report[1].method], report[1].reason);
     for (k = 0; k < PLANS; k++) hd_heat_free(plan[k]);
     hd_laplacian_free(lap);
     return 0;

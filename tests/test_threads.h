@@ -380,7 +380,7 @@ static void thr_light(void) {
                       dense_max_diff(u, v, d.s.n));
             thr_light_ask(&w, 1, light, u, q ? "threads" : "after four");
         }
-        if (q == 0) CHECK(call_words(&w, "auto plan", 1) == HD_OK);
+        if (q == 0) CHECK(call_words(&w, "krylov plan", 1) == HD_OK);
         if (q == 0) thr_light_ask(&w, 1, light, one + d.s.n, "a new plan");
         call_close(&w);
         CHECK(ctx.bytes_in_use == 0);
