@@ -37,8 +37,8 @@ static void plat_heat(const hd_laplacian *lap, const char *what, const double wa
 }
 
 static void test_platform(void) {
-    static const double fem[2] = {2.5543600282776149, 197.3638785557259}, flipped[2] = {2.9845496459786554, 206.81190328552705},
-                        points[2] = {2.5341179078977927, 322.10133007652712};
+    static const double fem[2] = {2.5543600282776149, 197.3638785557259}, flipped[2] = {2.9845496459786554, 206.81190328240322},
+                        points[2] = {2.5341179078977927, 322.10133008115127};
     shape ball = kit_own_shape(shape_bumpy(2, 9));
     const int32_t source = 7;
     const double t = 0.1;
