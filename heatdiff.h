@@ -18747,7 +18747,7 @@ static void hdi_heat_store_inert(const hdi_heat_call *h, int32_t q, double *u) {
     const hdi_terms c = hdi_heat_source(h, q);
     int32_t i;
     for (i = 0; i < c.n && h->ask.query == HDI_QUERY_OPERATOR; i++)
-        if (h->lap->row[hdi_terms_at(&c, i)] < 0) u[hdi_terms_at(&c, i)] = hdi_terms_weight(&c, i);
+        if (h->lap->row[hdi_terms_at(&c, i)] == HD_ROW_INERT) u[hdi_terms_at(&c, i)] = hdi_terms_weight(&c, i);
 }
 
 /* Fails where the answer at a vertex is so large that it leaves the range of doubles. */
@@ -19733,17 +19733,18 @@ static double hdi_local_edge(const hd_laplacian *lap, int32_t i) {
     return sqrt(4 * mass / lap->L.val[p]);
 }
 
-/* Adds the rows within `reach` of those that are there, by the shortest ways over edges; stops beyond `most`
- * rows. Ways that are found to be shorter than a first one are followed again. */
-static hd_status hdi_local_grow(hdi_local *l, const hd_laplacian *lap, double reach, int32_t most,
-                                hd_context *ctx, hd_error *e) {
+/* Adds the rows within `reach` of those that are there, by the shortest ways over edges, of which none counts
+ * more than `longest`; stops beyond `most` rows. Ways that are found to be shorter than a first one are
+ * followed again. */
+static hd_status hdi_local_grow(hdi_local *l, const hd_laplacian *lap, double reach, double longest,
+                                int32_t most, hd_context *ctx, hd_error *e) {
     int32_t i, first = 0, next;
     int64_t p;
     for (; first < l->n && l->n <= most; first = next) {
         next = INT32_MAX;
         for (i = first; i < l->n && l->n <= most; i++) {
-            const double way = l->at[i].way + hdi_local_edge(lap, l->at[i].row);
             const int32_t row = l->at[i].row;
+            const double way = l->at[i].way + hdi_min(hdi_local_edge(lap, row), longest);
             for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1] && way <= reach; p++) {
                 const int32_t at = l->place[lap->L.col[p]] - 1;
                 if (at < 0) {
@@ -19775,14 +19776,19 @@ static int64_t hdi_local_count(hdi_local *l, const hd_laplacian *lap, hdi_rim *r
     return nnz;
 }
 
-/* Fills the pair of the ball, and its ring, as hdi_pair_refresh does. d, id: room for the ring. */
+/* Fills the rows of the ball, and the edges that leave it. Entries are put as in hdi_pair_refresh. d, id:
+ * room of the ring. */
 static void hdi_local_fill(const hdi_local *l, const hd_laplacian *lap, hd_laplacian *out, hdi_rim *ring,
                            double *d, int32_t *id, int64_t *fill) {
     double *edge_l = d + ring->n, *edge_b = edge_l + ring->n_edges;
     int64_t p, e = 0;
-    int32_t i;
+    int32_t i, c;
     for (i = 0; i < l->n; i++) {
         const int32_t row = l->at[i].row;
+        out->mass[i] = lap->mass[row];
+        out->b_diag[i] = lap->b_diag[row];
+        out->component[i] = ring->n > 0 ? 0 : lap->component[row];
+        for (c = 0; c < 3 && lap->xyz; c++) out->xyz[3 * (int64_t)i + c] = lap->xyz[3 * (int64_t)row + c];
         for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1]; p++) {
             const int32_t place = l->place[lap->L.col[p]];
             if (place > 0) {
@@ -19806,55 +19812,54 @@ static void hdi_local_fill(const hdi_local *l, const hd_laplacian *lap, hd_lapla
     ring->from = id + ring->n_edges;
 }
 
-/* The pair of the ball, with its ring and, in *rows, its rows. */
+/* The pair of the ball with its ring. If nothing is around it, it is made of whole components, which may
+ * conserve heat. *rows: what its vertices are in the source. */
 static hd_laplacian *hdi_local_pair(hdi_local *l, const hd_laplacian *lap, hdi_rim *ring, int32_t **rows,
                                     hd_context *ctx, hd_error *e) {
     const int64_t n = l->n, nnz = hdi_local_count(l, lap, ring), m = ring->n_edges;
     hdi_scope s = hdi_scope_begin(ctx, e), *keep;
-    int64_t *fill = HDI_TAKE(&s, int64_t, n);
+    int64_t *fill = HDI_TAKE(&s, int64_t, n), p;
     hd_laplacian *out = fill ? hdi_lap_shell(ctx, e) : NULL;
-    double *d, least = HUGE_VAL;
-    int32_t *id, i, c;
+    double least = HUGE_VAL, *d;
+    int32_t i;
     if (!out) return (void)hdi_scope_end(&s), out;
     keep = hdi_lap_keep(out, e);
+    *out = *lap;
+    out->context = ctx;
+    out->moving = NULL;
+    out->holding = NULL;
     out->n = out->n_active = (int32_t)n;
-    out->n_components = 1;
-    out->version = lap->version;
-    out->b_ratio = lap->b_ratio;
-    out->h = lap->h;
+    out->n_components = ring->n > 0 ? 1 : lap->n_components;
+    out->conserves = ring->n > 0 ? 0 : lap->conserves;
     out->L = hdi_csr_take(keep, (int32_t)n, (int32_t)n, nnz, 1);
     out->B = lap->B ? HDI_TAKE(keep, double, nnz) : NULL;
-    d = HDI_TAKE(keep, double, 5 * n + 1 + ring->n + 2 * m);
-    id = HDI_TAKE_ZERO(keep, int32_t, 3 * n + 2 * m);
-    if (e->status < 0) {
-        (void)hdi_scope_end(&s);
-        hdi_laplacian_free(out, ctx);
-        return NULL;
+    out->component_mass = HDI_TAKE(keep, double, out->n_components);
+    out->mass = HDI_TAKE(keep, double, 5 * n + ring->n + 2 * m);
+    out->vertex = out->row = HDI_TAKE(keep, int32_t, 3 * n + 2 * m);
+    if (e->status >= 0) {
+        d = out->mass + (lap->B ? 2 : 1) * n;
+        out->b_diag = d - n;
+        out->xyz = lap->xyz ? d : NULL;
+        out->component = out->vertex + n;
+        *rows = out->component + n;
+        for (i = 0; i < out->n_components; i++)
+            out->component_mass[i] = ring->n > 0 ? HUGE_VAL : lap->component_mass[i];
+        for (i = 0; i < n; i++) {
+            const int32_t from = (*rows)[i] = l->at[i].row;
+            int64_t count = 0;
+            for (p = lap->L.row_ptr[from]; p < lap->L.row_ptr[from + 1]; p++)
+                count += l->place[lap->L.col[p]] > 0;
+            out->vertex[i] = i;
+            fill[i] = out->L.row_ptr[i];
+            out->L.row_ptr[i + 1] = fill[i] + count;
+            least = hdi_min(least, lap->b_diag[from]);
+        }
+        ring->finest = sqrt(least / l->smallest);
+        hdi_local_fill(l, lap, out, ring, d + 3 * n, *rows + n, fill);
     }
-    out->mass = d;
-    out->b_diag = lap->B ? d + n : d;
-    out->xyz = lap->xyz ? d + 2 * n : NULL;
-    out->component_mass = d + 5 * n;
-    out->component_mass[0] = HUGE_VAL;
-    out->component = id;
-    out->row = out->vertex = id + n;
-    *rows = id + 2 * n;
-    for (i = 0; i < n; i++) {
-        const int32_t row = (*rows)[i] = l->at[i].row;
-        int64_t p, count = 0;
-        for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1]; p++) count += l->place[lap->L.col[p]] > 0;
-        fill[i] = out->L.row_ptr[i];
-        out->L.row_ptr[i + 1] = fill[i] + count;
-        out->vertex[i] = i;
-        out->mass[i] = lap->mass[row];
-        out->b_diag[i] = lap->b_diag[row];
-        least = hdi_min(least, lap->b_diag[row]);
-        for (c = 0; c < 3 && lap->xyz; c++) out->xyz[3 * i + c] = lap->xyz[3 * (int64_t)row + c];
-    }
-    hdi_local_fill(l, lap, out, ring, d + 5 * n + 1, id + 3 * n, fill);
-    ring->finest = sqrt(least / l->smallest);
-    (void)hdi_scope_end(&s);
-    return out;
+    if (hdi_scope_end(&s) >= 0) return out;
+    hdi_laplacian_free(out, ctx);
+    return NULL;
 }
 
 static void hdi_local_drop(hdi_local *l) {
@@ -19924,9 +19929,16 @@ static hd_status hdi_local_plan(const hd_heat *heat, hdi_local *l, hd_error *e) 
 }
 
 /* The radius of a ball in edges, where sqrt(t) is so many: on meshes of 360K vertices with jitter it leaves
- * 1e-7 of the peak. What B^-1 of a full B does falls by a factor of three to four an edge. */
-static double hdi_local_edges(const hd_laplacian *lap, double edges) {
-    return hdi_max(4 + edges * (10.3 + 0.8 * log(hdi_max(edges, 1))), lap->B ? 16 + 2 * edges : 0);
+ * 1e-7 of the peak. */
+static double hdi_local_edges(double edges) { return 4 + edges * (10.3 + 0.8 * log(hdi_max(edges, 1))); }
+
+/* Edges that lie between a source and the ring at least. B^-1 of a full B falls by a factor of three an edge
+ * where b_ratio is 1/2 (Demko, Moss, Smith 1984). */
+#define HDI_LOCAL_DIGITS 17.6
+
+static double hdi_local_hops(const hd_laplacian *lap) {
+    const double root = sqrt(hdi_max(lap->b_ratio, 1e-300) / 2);
+    return lap->B ? HDI_LOCAL_DIGITS / log((1 + root) / (1 - root)) : 6;
 }
 
 /* The ball of item q, reach times as large as is usual, or of a row in the middle if items are not known. */
@@ -19951,7 +19963,8 @@ static hd_status hdi_local_find(hdi_heat_call *h, hdi_local *l, int32_t q, doubl
     }
     if (h->e->status < 0 || l->n == 0) return h->e->status;
     edge = hdi_local_edge(lap, l->at[0].row);
-    return hdi_local_grow(l, lap, reach * edge * hdi_local_edges(lap, sqrt(t) / edge), most, ctx, h->e);
+    reach *= edge * hdi_local_edges(sqrt(t) / edge);
+    return hdi_local_grow(l, lap, reach, reach / hdi_local_hops(lap), most, ctx, h->e);
 }
 
 /* The answers to item q on the ball, ld apart: at the time under way, or for each of the caller's times. */
@@ -20104,6 +20117,7 @@ static hd_status hdi_local_item(hdi_heat_call *h, hdi_local *l, int32_t q) {
     }
     hdi_free(heat->ctx, order);
     hdi_free(heat->ctx, U);
+    if (l->n == 0 && !h->ask.list) hdi_evidence_worst(&h->rep->evidence_b, HD_EVIDENCE_PROVEN);   /* exact */
     if (l->n == 0 || h->e->status < 0) return h->e->status;
     if (h->ask.list) rep.error_bound = rep.error_rational = rep.error_solver = rep.error_rounding = 0;
     rep.method = HD_METHOD_LOCAL;
@@ -20266,6 +20280,9 @@ static hd_status hdi_heat_pick(hdi_heat_call *h) {
     h->cost = 0;
     h->by_habit = 0;
     h->rep->reason = "asked for";
+    if (h->method == HD_METHOD_LOCAL && !hdi_local_can(h))
+        return hdi_fail(h->e, HD_ERR_ARGUMENT,
+                        "heat: method local serves columns, entries and fields, where b_ratio is known");
     if (h->method != HD_METHOD_AUTO) return HD_OK;
     h->method = HD_METHOD_DIRECT;
     h->rep->reason = "iterations, which would take less, fail";
