@@ -20121,6 +20121,7 @@ static hd_status hdi_local_item(hdi_heat_call *h, hdi_local *l, int32_t q) {
     if (l->n == 0 || h->e->status < 0) return h->e->status;
     if (h->ask.list) rep.error_bound = rep.error_rational = rep.error_solver = rep.error_rounding = 0;
     rep.method = HD_METHOD_LOCAL;
+    rep.solver = HD_SOLVER_LANCZOS;
     rep.reason = h->rep->reason;
     rep.n_touched = l->n;
     hdi_report_merge(h->rep, &rep);
@@ -20852,7 +20853,7 @@ static int hdi_heat_retreat(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     const int over = hdi_over_limit(heat->ctx, h->e), automatic = heat->opts.method == HD_METHOD_AUTO;
     const int failed = over || h->e->status == HD_ERR_BREAKDOWN || h->e->status == HD_ERR_NOT_CONVERGED;
-    if (!HDI_HAS_DIRECT || heat->spare == HDI_SPARE_POLES) return 0;
+    if (!HDI_HAS_DIRECT || heat->spare == HDI_SPARE_POLES || h->t == 0) return 0;
     if (h->method == HD_METHOD_LOCAL) {
         if (!automatic || !failed) return 0;
         h->not_local = 1;
