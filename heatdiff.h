@@ -490,7 +490,10 @@ typedef enum hd_method {
     HD_METHOD_AUTO = 0,
     HD_METHOD_ITERATIVE,        /* a Krylov method for each pole, or Lanczos for the exponential */
     HD_METHOD_DIRECT,           /* all poles factorised in one sweep: for many fields or columns */
-    HD_METHOD_KRYLOV            /* shift-and-invert Lanczos: one real factor, few fields or many times */
+    HD_METHOD_KRYLOV,           /* shift-and-invert Lanczos: one real factor, few fields or many times */
+    /* The same on the part of the mesh that heat reaches, about 10 sqrt(t) around each source or field. What
+     * it leaves beyond is 0 */
+    HD_METHOD_LOCAL
 } hd_method;
 
 /* The order in which a factorisation eliminates rows. */
@@ -530,6 +533,7 @@ typedef struct hd_heat_opts {
     const hd_rational *rational;
     double tol;                 /* the solver's part of |error|_B / |answer|_B; default 1e-9 */
     int32_t max_iterations;     /* per system; default 20000 */
+    double cut;                 /* of sparse columns: smaller values, relative to the largest, are left out */
     hd_ordering ordering;       /* auto: a plan may keep a second one, for few columns */
     const int32_t *perm;        /* [n] HD_ORDERING_OWN: vertices in order, those without mass anywhere */
     hd_context *context;        /* default: the Laplacian's */
@@ -582,7 +586,8 @@ typedef enum hd_evidence {
 /* What happened, and how large the error can be. For several fields, columns or times: the worst of them.
  * error_bound bounds the largest error of any value returned, relative to the largest |value|: of each field,
  * column and time, or of the whole list for entries and pairs. Above 1e-2 the status is HD_WARN_ACCURACY. It
- * is the sum of three parts: the rational approximation, the iterative solver, and rounding. */
+ * is the sum of four parts: the rational approximation, the iterative solver, rounding, and what heat does
+ * beyond the part of the mesh that method local works on. */
 typedef struct hd_report {
     hd_status status;
     hd_error error;             /* filled if status < 0 */
@@ -601,8 +606,8 @@ typedef struct hd_report {
     /* Largest |b - A x| / |b| over the systems, in the norm of diag(B)^-1. 0 for Lanczos. After
      * HD_ERR_NOT_CONVERGED: of the system that failed; for Lanczos its bound on the relative error. */
     double residual;
-    double error_bound, error_rational, error_solver, error_rounding;
-    hd_evidence evidence_rational, evidence_solver, evidence_rounding;
+    double error_bound, error_rational, error_solver, error_rounding, error_local;
+    hd_evidence evidence_rational, evidence_solver, evidence_rounding, evidence_local;
     /* Fields and columns: bound on |error|_B / |answer|_B. Otherwise HUGE_VAL and HD_EVIDENCE_NONE. */
     double error_bound_b;
     hd_evidence evidence_b;
@@ -611,6 +616,7 @@ typedef struct hd_report {
     double error_relative;
     double smallest;            /* diagonals and distances: the smallest value that is not zero */
     int64_t n_lost;             /* distances with at most about one sure digit, see hd_heat_distance */
+    int32_t n_touched;          /* local: vertices of the largest part */
     double mass_drift;          /* |1'B u - 1'B f| / 1'B|u|; 0 if L loses heat, or for the caller's filters */
 } hd_report;
 
@@ -684,7 +690,7 @@ typedef struct hd_estimate {
     hd_method method;           /* that would be taken */
     const char *reason;         /* why, in a few words */
     int32_t analysed;           /* 1: the pattern was analysed. 0: factors are guesses, within about 3 */
-    hd_cost cost[HD_METHOD_KRYLOV + 1];   /* by hd_method; cost[HD_METHOD_AUTO] is that of method */
+    hd_cost cost[HD_METHOD_LOCAL + 1];   /* by hd_method; cost[HD_METHOD_AUTO] is that of method */
     double bytes_in_use, bytes_left;   /* of the context now; of the byte limit, HUGE_VAL without one */
 } hd_estimate;
 
@@ -1095,6 +1101,15 @@ HEATDIFF_API hd_status hd_heat_adjoint(hd_heat *heat, int32_t n_times, const dou
 HEATDIFF_API hd_status hd_heat_columns(hd_heat *heat, hd_kernel kernel, int32_t n_times,
                                        const double *t, const hd_sources *sources, double *U,
                                        size_t ldu, hd_report *report, hd_error *err);
+
+/* The same as rows of a sparse matrix, without zeros. With method local no work or memory grows with n after
+ * the first call.
+ * out    cleared, or from a call before, whose arrays are freed. Row q n_times + m for source q and time m,
+ *        vertices ascend. Freed by hd_csr_free with the plan's context
+ * report error_bound includes opts.cut: a value that is not there is at most error_bound times the largest */
+HEATDIFF_API hd_status hd_heat_columns_sparse(hd_heat *heat, hd_kernel kernel, int32_t n_times,
+                                              const double *t, const hd_sources *sources,
+                                              hd_csr *out, hd_report *report, hd_error *err);
 
 /* The column of one vertex at one time. u [n]. Errors and cost as hd_heat_columns. */
 HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, hd_kernel kernel, double t, int32_t source,
@@ -14630,6 +14645,16 @@ static hd_status hdi_lanczos_run(const hdi_lanczos_task *task, hdi_lane *lane, c
 
 enum { HDI_KRYLOV_MAX = 160, HDI_KRYLOV_POINTS = 96 };
 
+/* The rows around a part of the mesh that is a pair of its own, and the edges that lead there from its
+ * vertices. */
+typedef struct hdi_rim {
+    int32_t n, n_edges;
+    const int32_t *to, *from;    /* [n_edges] which of the rows; a vertex of the part */
+    const double *l, *b;         /* [n_edges] entries of L and B; b NULL: B is diagonal */
+    const double *weight;        /* [n] 1/diag(B) */
+    double finest;               /* at least one: largest 1/sqrt(diag(B)) of all rows over that in the part */
+} hdi_rim;
+
 /* The process for 1 or 8 right-hand sides side by side. All times share it. */
 typedef struct hdi_krylov {
     const hdi_elim *m;
@@ -14652,6 +14677,8 @@ typedef struct hdi_krylov {
     hdi_parts before[HDI_WIDE];
     double last;                 /* the last time of the windows that will go on from this one, or 0 */
     int32_t rate;                /* t times the derivative is asked for */
+    const hdi_rim *ring;        /* the pair is a part of a larger one; NULL: it is not */
+    int32_t inverse;             /* the fields are B^-1 times those given */
 } hdi_krylov;
 
 /* ---- shift-and-invert Lanczos ---- */
@@ -15120,6 +15147,67 @@ static double hdi_krylov_rounding(const hdi_krylov *z, int32_t r, int32_t m, dou
     return z->f_norm[r] * sum + HDI_KRYLOV_BETWEEN2 * most[0] * given + m * DBL_EPSILON * size;
 }
 
+enum { HDI_RIM_SAMPLES = 6 };
+
+/* Samples of |L u + B u'| on the ring, in the norm of B^-1, at the times s in [0, t] after z->from; with rate
+ * those of its derivative. wl, wb: L and B times the basis there, by steps. rest [ring->n]. Returns the sum
+ * over the steps between samples, each by the larger of its ends. */
+static double hdi_rim_sum(const hdi_krylov *z, int32_t r, double t, const double *wl, const double *wb,
+                           double *rest) {
+    const hdi_rim *g = z->ring;
+    const int32_t m = z->done[r];
+    double sum = 0, last = 0, y[2 * HDI_KRYLOV_MAX];
+    int32_t q, i;
+    for (q = 0; q <= HDI_RIM_SAMPLES; q++) {
+        double now;
+        memset(y, 0, sizeof y);
+        memset(rest, 0, (size_t)g->n * sizeof *rest);
+        for (i = 0; i < m; i++) {
+            const double mu = z->eigen[r][i], *v = z->eigen[r] + m + (int64_t)i * m;
+            const double lambda = mu > HDI_KRYLOV_TINY ? hdi_max(0, 1 / mu - 1) / z->g : 0;
+            const double s = t / 2 + t / 2 * q / HDI_RIM_SAMPLES, part = (z->rate ? -lambda : 1) * v[0];
+            if (!(mu > HDI_KRYLOV_TINY)) continue;
+            hdi_axpy(part * exp(-s * lambda), v, y, m);
+            hdi_axpy(-lambda * part * exp(-s * lambda), v, y + HDI_KRYLOV_MAX, m);
+        }
+        for (i = 0; i < m; i++) {
+            hdi_axpy(y[i], wl + (int64_t)i * g->n, rest, g->n);
+            if (g->b) hdi_axpy(y[HDI_KRYLOV_MAX + i], wb + (int64_t)i * g->n, rest, g->n);
+        }
+        now = sqrt(hdi_norm2w(rest, g->weight, g->n));
+        sum += t / 2 * (q == 0 ? now : hdi_max(now, last) / HDI_RIM_SAMPLES);
+        last = now;
+    }
+    return z->f_norm[r] * sum;
+}
+
+/* What the answer of right-hand side r, a time t after z->from, is off by since it ends at the ring, in the
+ * norm of B. u(s), extended by zeros, solves the whole system but for rho(s) = L u + B u' on the ring, and so
+ * the error is at most the integral of |rho(s)| from 0 to t (Duhamel). A field B^-1 c is off by |B f| there
+ * to begin with. The integral is sampled: this is measured, not proven. */
+static double hdi_rim_bound(const hdi_krylov *z, int32_t r, double t, hd_error *e) {
+    const hdi_rim *g = z->ring;
+    const int32_t m = z->done[r], *row = z->m->lap->row;
+    const int64_t size = (int64_t)m * g->n;
+    double off, *wl, *wb;
+    int64_t p;
+    int32_t j;
+    if (m <= 0 || g->n == 0) return 0;
+    wl = (double *)hdi_alloc_zero(z->m->ctx, (uint64_t)(2 * size + g->n), sizeof *wl, e);
+    if (!wl) return 0;
+    wb = wl + size;
+    for (j = 0; j < m; j++)
+        for (p = 0; p < g->n_edges; p++) {
+            const double v = z->v[j][(int64_t)z->wide * row[g->from[p]] + r];
+            wl[(int64_t)j * g->n + g->to[p]] += g->l[p] * v;
+            if (g->b) wb[(int64_t)j * g->n + g->to[p]] += z->m->scale * g->b[p] * v;
+        }
+    off = hdi_rim_sum(z, r, t, wl, wb, wb + size) * (z->rate ? t : 1);
+    if (z->inverse && !(z->from > 0)) off += z->f_norm[r] * sqrt(hdi_norm2w(wb, g->weight, g->n));
+    hdi_free(z->m->ctx, wl);
+    return off / sqrt(z->m->scale) * hdi_ratio_root(z->m->lap) * g->finest;
+}
+
 /* Judges the answer in lane->u of right-hand side r, a time t after z->from. y: its coefficients. */
 static hd_status hdi_krylov_answer(hdi_krylov *z, int32_t r, double t, const double *y, double drift,
                                   hdi_lane *lane, hd_error *e) {
@@ -15133,13 +15221,15 @@ static hd_status hdi_krylov_answer(hdi_krylov *z, int32_t r, double t, const dou
         if (hdi_krylov_ritz(z, r, m, &s, e) < 0) return e->status;   /* its eigenvectors are there */
         lane->off.solver = hdi_ritz_bound(&s, t / z->g) * z->f_norm[r];
         lane->off.rounding = hdi_krylov_rounding(z, r, m, t, y, lane->rhs_off);
+        if (z->ring) lane->off.rational = hdi_rim_bound(z, r, t, e);
     }
-    lane->off.solver += z->before[r].solver;     /* K_t makes no error larger */
+    lane->off.rational += z->before[r].rational; /* K_t makes no error larger */
+    lane->off.solver += z->before[r].solver;
     lane->off.rounding += z->before[r].rounding;
     hdi_conserve(lap, lane, 1);
     lane->u_norm = sqrt(hdi_max(0, hdi_b_norm2(lap, lane->u, lane->tmp)));
     hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, t * drift, 1) + lane->f_off);
-    return HD_OK;
+    return e->status;
 }
 
 /* ==== [24] ground ====
@@ -17236,6 +17326,7 @@ struct hd_heat {
     hdi_ground ground;           /* made when it is first needed; of elim */
     hdi_modes modes;             /* so too */
     hdi_krylov *krylov;
+    struct hdi_local *part;      /* of the last column that was answered on a part of the mesh */
     double *batch_room;          /* arrays of the batches */
     uint64_t batch_doubles;
     hd_laplacian *lap;           /* to iterate on: renumbered and scaled */
@@ -17663,6 +17754,16 @@ typedef struct hdi_entry_list {
     int64_t n;
 } hdi_entry_list;
 
+/* Rows of an answer that leaves zeros out, added in any order. */
+typedef struct hdi_sparse {
+    int64_t n, room;
+    int32_t *col;                /* [room] */
+    double *val;                 /* [room] */
+    int64_t *begin, *end;        /* of each row */
+    double *dense;               /* [n] of methods that answer so, or NULL */
+    double cut;                  /* what is smaller is left out, relative to the row's largest */
+} hdi_sparse;
+
 /* A request: k items, each a field, a column, or the entries of a column. */
 typedef struct hdi_request {
     hdi_query query;
@@ -17671,6 +17772,7 @@ typedef struct hdi_request {
     const double *F;             /* fields, columns ldf apart */
     const hdi_terms *terms;      /* columns: their sources */
     const hdi_entry_list *list;  /* entries */
+    hdi_sparse *sparse;          /* rows in place of columns of U; row q n_times + m */
     double *U;                   /* item q at time m goes to column q n_times + m, ldu apart; NULL: nowhere */
     size_t ldf, ldu;
 } hdi_request;
@@ -17693,6 +17795,7 @@ typedef struct hdi_heat_call {
     const int32_t *time_column;  /* which of ask.t each is; NULL: in order */
     hd_method method;
     int32_t forced;              /* auto takes iterations because of the byte limit */
+    int32_t not_local;           /* balls have been tried in vain */
     int32_t rate;                /* the derivative in t is asked for: methods give t times that */
     hd_solver solver;
     const hd_laplacian *lap;     /* the copy of the pair that the method works on; the caller's for t = 0 */
@@ -17703,6 +17806,7 @@ typedef struct hdi_heat_call {
     int32_t watching;            /* direct: the lanes keep the source's own entry, see hdi_lane.watch */
     int32_t equal;               /* t is so large that each component has its mean */
     int32_t by_pairs;            /* answers are sums over eigenpairs */
+    const hdi_rim *ring;        /* krylov on a part of the mesh: the part's */
     hdi_extra rows;              /* direct: further sums of every item, one after the other */
     hdi_column_parts *off;       /* [k][n_off] by residuals and the sets that begin with set */
     int32_t n_off;
@@ -17794,14 +17898,20 @@ typedef struct hdi_fill { double nnz, flops, stored, real_stored, analysis; } hd
 /* The guess is what little fill a surface can have. Where rows are wider than 10, so much more of the
  * non-zeros and its square of the flops. (Point sets with 233 and 117 entries a row, 20K to 150K points: 1220
  * to 1700 n and 13000 n^1.5, 600 to 830 n and 3500 n^1.5.) */
-static hdi_fill hdi_heat_fill(const hd_heat *heat, const hdi_elim *m) {
-    const hdi_symbolic *s = &m->sym;
-    const double n = heat->source->n_active, wide = hdi_max(1, (double)heat->source->L.nnz / (10 * n));
+static hdi_fill hdi_fill_guess(double n, double entries) {
+    const double wide = hdi_max(1, entries / (10 * n));
     hdi_fill f;
     f.nnz = 30 * n * wide;
     f.flops = 22 * n * sqrt(n) * wide * wide;
     f.stored = f.real_stored = 40 * n * wide;
-    f.analysis = HDI_ROW_ANALYSIS * n * wide * (m == &heat->few ? 0.4 : 1);
+    f.analysis = HDI_ROW_ANALYSIS * n * wide;
+    return f;
+}
+
+static hdi_fill hdi_heat_fill(const hd_heat *heat, const hdi_elim *m) {
+    const hdi_symbolic *s = &m->sym;
+    hdi_fill f = hdi_fill_guess(heat->source->n_active, (double)heat->source->L.nnz);
+    if (m == &heat->few) f.analysis *= 0.4;
     if (!m->ctx) return f;
     f.nnz = (double)s->nnz;
     f.flops = s->flops_done;
@@ -18072,13 +18182,43 @@ static void hdi_heat_store_inert(const hdi_heat_call *h, int32_t q, double *u) {
     const hdi_terms c = hdi_heat_source(h, q);
     int32_t i;
     for (i = 0; i < c.n && h->ask.query == HDI_QUERY_OPERATOR; i++)
-        if (h->lap->row[hdi_terms_at(&c, i)] < 0) u[hdi_terms_at(&c, i)] = hdi_terms_weight(&c, i);
+        if (h->lap->row[hdi_terms_at(&c, i)] == HD_ROW_INERT) u[hdi_terms_at(&c, i)] = hdi_terms_weight(&c, i);
 }
 
 /* Fails where the answer at a vertex is so large that it leaves the range of doubles. */
 static hd_status hdi_fail_range(hd_error *e, int32_t v, double value) {
     if (hdi_finite(value)) return HD_OK;
     return hdi_fail_face(e, HD_ERR_BREAKDOWN, "heat: an answer leaves the range of doubles", -1, v, value);
+}
+
+/* Adds a row of values to the sparse answer, in ascending order, or all n without one. */
+static hd_status hdi_sparse_row(hdi_sparse *to, int64_t row, int32_t n, const hdi_pair *order,
+                                const double *u, hd_context *ctx, hd_error *e) {
+    double most = 0;
+    int32_t i;
+    for (i = 0; i < n; i++) most = hdi_max(most, fabs(u[i]));
+    if (to->n + n > to->room) {
+        const int64_t room = 2 * to->n + n;
+        int32_t *col = HDI_NEW(ctx, int32_t, room, e);
+        double *val = col ? HDI_NEW(ctx, double, room, e) : NULL;
+        if (!val) return hdi_free(ctx, col), e->status;
+        if (to->n > 0) memcpy(col, to->col, (size_t)to->n * sizeof *col);
+        if (to->n > 0) memcpy(val, to->val, (size_t)to->n * sizeof *val);
+        hdi_free(ctx, to->col);
+        hdi_free(ctx, to->val);
+        to->col = col;
+        to->val = val;
+        to->room = room;
+    }
+    to->begin[row] = to->n;
+    for (i = 0; i < n; i++) {
+        const double value = u[order ? order[i].id : i];
+        if (value == 0 || fabs(value) < to->cut * most) continue;
+        to->col[to->n] = order ? (int32_t)order[i].key : i;
+        to->val[to->n++] = value;
+    }
+    to->end[row] = to->n;
+    return e->status;
 }
 
 /* Stores the answer of item q at the time under way, from its lane. */
@@ -18088,9 +18228,12 @@ static void hdi_heat_store(const hdi_heat_call *h, int32_t q, const hdi_lane *la
     const double unit = hdi_heat_unit(h);
     const int copy = h->t == 0 && h->ask.query == HDI_QUERY_FIELD && !h->rate;
     double *u = h->ask.U ? h->ask.U + column * h->ask.ldu : NULL;
+    hdi_sparse *sparse = h->ask.sparse;
     const double *out = hdi_lane_answer(lane);
     int32_t i;
     if (h->ask.list) hdi_heat_store_entries(h, q, lane);
+    if (sparse && !sparse->dense) sparse->dense = HDI_NEW(h->heat->ctx, double, lap->n, h->e);
+    if (sparse) u = sparse->dense;
     if (!u) return;
     if (hdi_query_fields(h->ask.query)) {        /* vertices without mass keep their value */
         const double *f = h->ask.F + (size_t)q * h->ask.ldf;
@@ -18106,6 +18249,7 @@ static void hdi_heat_store(const hdi_heat_call *h, int32_t q, const hdi_lane *la
         u[lap->vertex[i]] = value;
         if ((lane->exponent > 0 || hdi_nan(value)) && hdi_fail_range(h->e, lap->vertex[i], value) < 0) return;
     }
+    if (sparse) (void)hdi_sparse_row(sparse, (int64_t)column, lap->n, NULL, u, h->heat->ctx, h->e);
 }
 
 /* Lanes for the items of the call, at most so many at a time, with room for steps of Lanczos or systems. */
@@ -18207,7 +18351,8 @@ static hdi_ledger hdi_heat_ledger(const hdi_heat_call *h) {
     const int still = h->t == 0 || h->equal;
     const hd_rational *set = h->method == HD_METHOD_DIRECT ? &h->heat->elim.set : &h->heat->fam.set;
     const int itself = set->kind == HD_POLES_OWN && hdi_set_uniform(set) == 0;   /* bounds are for c itself */
-    const hd_evidence rational = still || !poles || itself ? HD_EVIDENCE_NONE : hdi_set_evidence(set);
+    const hd_evidence rational = h->ring ? HD_EVIDENCE_MEASURED
+                               : still || !poles || itself ? HD_EVIDENCE_NONE : hdi_set_evidence(set);
     const hd_evidence solver = still || h->method == HD_METHOD_DIRECT ? HD_EVIDENCE_NONE
                              : h->method == HD_METHOD_KRYLOV ? HD_EVIDENCE_ESTIMATED : HD_EVIDENCE_PROVEN;
     if (h->by_pairs) return hdi_ledger_begin(HD_EVIDENCE_PROVEN, HD_EVIDENCE_PROVEN, HD_EVIDENCE_NONE, 0);
@@ -18303,7 +18448,7 @@ static hd_status hdi_heat_store_some(hdi_heat_call *h, int32_t n) {
     int32_t i;
     if (h->e->status < 0 || hdi_heat_collect(h, n) < 0) return h->e->status;
     for (i = 0; i < n; i++) hdi_heat_store(h, h->batch + i, h->heat->lane + i);
-    return HD_OK;
+    return h->e->status;
 }
 
 /* ---- iterative ---- */
@@ -18638,6 +18783,7 @@ static int32_t hdi_window_end(const double *times, int32_t n_times, int32_t q0, 
 #define HDI_SHIFT_FIELD 0.07
 #define HDI_SHIFT_ANSWER 0.15
 #define HDI_SHIFT_RATE 4         /* the least for derivatives, times the largest eigenvalue */
+#define HDI_SHIFT_PART 0.035     /* on a part of the mesh, times t: answers at earlier times matter, too */
 
 static double hdi_krylov_shift(double from, double first, double last, double lambda_max) {
     const double limit = lambda_max > 0 ? 1e12 / lambda_max : HUGE_VAL;   /* four digits of B are left */
@@ -18728,6 +18874,7 @@ static hd_status hdi_krylov_basis(hdi_heat_call *h, int32_t n, int32_t q0, int32
     double fixed[HDI_WIDE];
     int32_t i;
     double g = hdi_krylov_shift(z->from, h->times[q0], h->times[q1 - 1], heat->lambda_max);
+    if (h->ring && q1 - q0 == 1) g = HDI_SHIFT_PART * (h->times[q0] - z->from);
     /* derivatives of smooth fields at short times are small beside the fields, and digits of T are lost */
     if (h->rate && heat->lambda_max > 0) g = hdi_max(g, HDI_SHIFT_RATE / heat->lambda_max);
     if (!h->m->shifted.ctx && !z->v[0]) {        /* a step is the least */
@@ -18872,6 +19019,8 @@ static hd_status hdi_heat_by_krylov(hdi_heat_call *h) {
     heat->krylov->wide = wide;
     heat->krylov->m = h->m;
     heat->krylov->rate = h->rate;
+    heat->krylov->ring = h->ring;
+    heat->krylov->inverse = h->ask.query == HDI_QUERY_SYMMETRIC || h->ask.query == HDI_QUERY_ADJOINT;
     if (hdi_heat_lanes(h, wide, 0, 0) < 0) return h->e->status;
     for (h->batch = 0; h->batch < h->ask.k; h->batch += n) {
         n = hdi_low32(h->ask.k - h->batch, h->n_lanes);
@@ -18883,20 +19032,568 @@ static hd_status hdi_heat_by_krylov(hdi_heat_call *h) {
     return h->e->status;
 }
 
+/* The worse of two reports, counts added. */
+static void hdi_report_merge(hd_report *all, const hd_report *one) {
+    hd_report sum = *one;
+    int32_t p;
+    sum.status = all->status > sum.status ? all->status : sum.status;
+    sum.iterations += all->iterations;
+    for (p = 0; p < HD_MAX_POLES; p++) sum.pole_iterations[p] += all->pole_iterations[p];
+    sum.degree = hdi_high32(all->degree, sum.degree);
+    sum.n_poles = hdi_high32(all->n_poles, sum.n_poles);
+    sum.growth = hdi_max(all->growth, sum.growth);
+    sum.residual = hdi_max(all->residual, sum.residual);
+    sum.error_rational = hdi_max(all->error_rational, sum.error_rational);
+    sum.error_solver = hdi_max(all->error_solver, sum.error_solver);
+    sum.error_rounding = hdi_max(all->error_rounding, sum.error_rounding);
+    hdi_evidence_worst(&sum.evidence_rational, all->evidence_rational);
+    hdi_evidence_worst(&sum.evidence_solver, all->evidence_solver);
+    hdi_evidence_worst(&sum.evidence_rounding, all->evidence_rounding);
+    hdi_evidence_worst(&sum.evidence_b, all->evidence_b);
+    sum.error_local = hdi_max(all->error_local, sum.error_local);
+    hdi_evidence_worst(&sum.evidence_local, all->evidence_local);
+    sum.n_touched = hdi_high32(all->n_touched, sum.n_touched);
+    sum.error_bound_b = hdi_max(all->error_bound_b, sum.error_bound_b);
+    sum.error_bound = hdi_max(all->error_bound, sum.error_bound);
+    sum.mass_drift = hdi_max(all->mass_drift, sum.mass_drift);
+    sum.error_relative = hdi_max(all->error_relative, sum.error_relative);
+    if (all->smallest > 0 && (sum.smallest == 0 || all->smallest < sum.smallest))
+        sum.smallest = all->smallest;
+    sum.n_lost += all->n_lost;
+    *all = sum;
+}
+
+/* Computes what every query needs: scale, spectrum, drift. Copies the caller's permutation. */
+static hd_status hdi_heat_make(hd_heat *heat, const hd_laplacian *lap, hd_error *e) {
+    hd_context *ctx = heat->ctx;
+    heat->source = lap;
+    if (hdi_heat_sums(heat, e) < 0) return e->status;
+    hdi_heat_measure_pair(heat);
+    if (heat->opts.ordering == HD_ORDERING_OWN && hdi_order_check(heat->opts.perm, lap->n, ctx, e) >= 0)
+        heat->perm = HDI_NEW(ctx, int32_t, lap->n, e);
+    if (heat->perm) memcpy(heat->perm, heat->opts.perm, (size_t)lap->n * sizeof *heat->perm);
+    heat->opts.perm = heat->perm;
+    return e->status;
+}
+
+/* ---- local ---- */
+/* A column is found on a ball around its source, about as far as heat reaches until t: the principal
+ * submatrices of L and B there are a pair of their own, which loses the heat that arrives at its edge. What
+ * that makes is bounded by hdi_rim_bound; where it is too much, the ball grows. */
+
+typedef struct hdi_reached { double way; int32_t row; } hdi_reached;
+
+typedef struct hdi_local {
+    hd_heat heat;                /* a plan for the pair of the ball; hdi_rim_bound is its rational part */
+    hd_laplacian *ball;          /* the pair: its vertex i is row[i] of the source; NULL: none yet */
+    int32_t *row;
+    hdi_rim ring;
+    hdi_reached *at;             /* [n] rows within reach, in the order they were reached; room for so many */
+    int32_t n;
+    int64_t room;
+    /* [n_active] of a row of the source: 1 + its place in at, minus 1 + its number in the ring, 0: neither */
+    int32_t *place;
+    double smallest;             /* b_diag of the source in a version of it */
+    int64_t version;
+} hdi_local;
+
+/* Forgets the ball, but not the pair that was made of it. */
+static void hdi_local_clear(hdi_local *l, const hd_laplacian *lap) {
+    int64_t p;
+    for (; l->n > 0; l->n--) {
+        const int32_t i = l->at[l->n - 1].row;
+        l->place[i] = 0;
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) l->place[lap->L.col[p]] = 0;
+    }
+}
+
+static hd_status hdi_local_add(hdi_local *l, int32_t row, double way, hd_context *ctx, hd_error *e) {
+    if (l->n == l->room) {
+        const int64_t room = 2 * l->room + 64;
+        hdi_reached *more = HDI_NEW(ctx, hdi_reached, room, e);
+        if (!more) return e->status;
+        if (l->n > 0) memcpy(more, l->at, (size_t)l->n * sizeof *more);
+        hdi_free(ctx, l->at);
+        l->at = more;
+        l->room = room;
+    }
+    l->at[l->n].row = row;
+    l->at[l->n].way = way;
+    l->place[row] = ++l->n;
+    return HD_OK;
+}
+
+/* About the length of the edges at a row: 4 over its square is what L's diagonal is over the mass. */
+static double hdi_local_edge(const hd_laplacian *lap, int32_t i) {
+    const double mass = lap->mass[i] > 0 ? lap->mass[i] : lap->b_diag[i];
+    int64_t p = lap->L.row_ptr[i];
+    while (lap->L.col[p] != i) p++;
+    return sqrt(4 * mass / lap->L.val[p]);
+}
+
+/* Adds the rows within `reach` of those that are there, by the shortest ways over edges, of which none counts
+ * more than `longest`; stops beyond `most` rows. Ways that are found to be shorter than a first one are
+ * followed again. */
+static hd_status hdi_local_grow(hdi_local *l, const hd_laplacian *lap, double reach, double longest,
+                                int32_t most, hd_context *ctx, hd_error *e) {
+    int32_t i, first = 0, next;
+    int64_t p;
+    for (; first < l->n && l->n <= most; first = next) {
+        next = INT32_MAX;
+        for (i = first; i < l->n && l->n <= most; i++) {
+            const int32_t row = l->at[i].row;
+            const double way = l->at[i].way + hdi_min(hdi_local_edge(lap, row), longest);
+            for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1] && way <= reach; p++) {
+                const int32_t at = l->place[lap->L.col[p]] - 1;
+                if (at < 0) {
+                    if (hdi_local_add(l, lap->L.col[p], way, ctx, e) < 0) return e->status;
+                } else if (l->at[at].way > way) {
+                    l->at[at].way = way;
+                    next = at < i ? hdi_low32(next, at) : next;
+                }
+            }
+        }
+    }
+    return e->status;
+}
+
+/* Counts the entries inside the ball, and the edges to the rows around it, which it numbers. */
+static int64_t hdi_local_count(hdi_local *l, const hd_laplacian *lap, hdi_rim *ring) {
+    int64_t nnz = 0, p;
+    int32_t i;
+    memset(ring, 0, sizeof *ring);
+    for (i = 0; i < l->n; i++) {
+        const int32_t row = l->at[i].row;
+        for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1]; p++) {
+            int32_t *place = l->place + lap->L.col[p];
+            nnz += *place > 0;
+            ring->n_edges += *place <= 0;
+            if (*place == 0) *place = -(++ring->n);
+        }
+    }
+    return nnz;
+}
+
+/* Fills the rows of the ball, and the edges that leave it. Entries are put as in hdi_pair_refresh. d, id:
+ * room of the ring. */
+static void hdi_local_fill(const hdi_local *l, const hd_laplacian *lap, hd_laplacian *out, hdi_rim *ring,
+                           double *d, int32_t *id, int64_t *fill) {
+    double *edge_l = d + ring->n, *edge_b = edge_l + ring->n_edges;
+    int64_t p, e = 0;
+    int32_t i, c;
+    for (i = 0; i < l->n; i++) {
+        const int32_t row = l->at[i].row;
+        out->mass[i] = lap->mass[row];
+        out->b_diag[i] = lap->b_diag[row];
+        out->component[i] = ring->n > 0 ? 0 : lap->component[row];
+        for (c = 0; c < 3 && lap->xyz; c++) out->xyz[3 * (int64_t)i + c] = lap->xyz[3 * (int64_t)row + c];
+        for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1]; p++) {
+            const int32_t place = l->place[lap->L.col[p]];
+            if (place > 0) {
+                const int64_t q = fill[place - 1]++;
+                out->L.col[q] = i;
+                out->L.val[q] = lap->L.val[p];
+                if (lap->B) out->B[q] = lap->B[p];
+                continue;
+            }
+            d[-place - 1] = 1 / lap->b_diag[lap->L.col[p]];
+            id[e] = -place - 1;
+            id[ring->n_edges + e] = i;
+            edge_l[e] = lap->L.val[p];
+            edge_b[e++] = lap->B ? lap->B[p] : 0;
+        }
+    }
+    ring->weight = d;
+    ring->l = edge_l;
+    ring->b = lap->B ? edge_b : NULL;
+    ring->to = id;
+    ring->from = id + ring->n_edges;
+}
+
+/* The pair of the ball with its ring. If nothing is around it, it is made of whole components, which may
+ * conserve heat. *rows: what its vertices are in the source. */
+static hd_laplacian *hdi_local_pair(hdi_local *l, const hd_laplacian *lap, hdi_rim *ring, int32_t **rows,
+                                    hd_context *ctx, hd_error *e) {
+    const int64_t n = l->n, nnz = hdi_local_count(l, lap, ring), m = ring->n_edges;
+    hdi_scope s = hdi_scope_begin(ctx, e), *keep;
+    int64_t *fill = HDI_TAKE(&s, int64_t, n), p;
+    hd_laplacian *out = fill ? hdi_lap_shell(ctx, e) : NULL;
+    double least = HUGE_VAL, *d;
+    int32_t i;
+    if (!out) return (void)hdi_scope_end(&s), out;
+    keep = hdi_lap_keep(out, e);
+    *out = *lap;
+    out->context = ctx;
+    out->moving = NULL;
+    out->holding = NULL;
+    out->n = out->n_active = (int32_t)n;
+    out->n_components = ring->n > 0 ? 1 : lap->n_components;
+    out->conserves = ring->n > 0 ? 0 : lap->conserves;
+    out->L = hdi_csr_take(keep, (int32_t)n, (int32_t)n, nnz, 1);
+    out->B = lap->B ? HDI_TAKE(keep, double, nnz) : NULL;
+    out->component_mass = HDI_TAKE(keep, double, out->n_components);
+    out->mass = HDI_TAKE(keep, double, 5 * n + ring->n + 2 * m);
+    out->vertex = out->row = HDI_TAKE(keep, int32_t, 3 * n + 2 * m);
+    if (e->status >= 0) {
+        d = out->mass + (lap->B ? 2 : 1) * n;
+        out->b_diag = d - n;
+        out->xyz = lap->xyz ? d : NULL;
+        out->component = out->vertex + n;
+        *rows = out->component + n;
+        for (i = 0; i < out->n_components; i++)
+            out->component_mass[i] = ring->n > 0 ? HUGE_VAL : lap->component_mass[i];
+        for (i = 0; i < n; i++) {
+            const int32_t from = (*rows)[i] = l->at[i].row;
+            int64_t count = 0;
+            for (p = lap->L.row_ptr[from]; p < lap->L.row_ptr[from + 1]; p++)
+                count += l->place[lap->L.col[p]] > 0;
+            out->vertex[i] = i;
+            fill[i] = out->L.row_ptr[i];
+            out->L.row_ptr[i + 1] = fill[i] + count;
+            least = hdi_min(least, lap->b_diag[from]);
+        }
+        ring->finest = sqrt(least / l->smallest);
+        hdi_local_fill(l, lap, out, ring, d + 3 * n, *rows + n, fill);
+    }
+    if (hdi_scope_end(&s) >= 0) return out;
+    hdi_laplacian_free(out, ctx);
+    return NULL;
+}
+
+static void hdi_local_drop(hdi_local *l) {
+    hd_context *ctx = l->heat.ctx;
+    hdi_heat_free_factors(&l->heat);
+    hdi_free(ctx, l->heat.fill);
+    hdi_free(ctx, l->heat.sums);
+    memset(&l->heat, 0, sizeof l->heat);
+    l->heat.ctx = ctx;
+}
+
+static void hdi_local_free(hd_heat *heat) {
+    hdi_local *l = heat->part;
+    if (!l) return;
+    hdi_local_drop(l);
+    hdi_laplacian_free(l->ball, heat->ctx);
+    hdi_free(heat->ctx, l->at);
+    hdi_free(heat->ctx, l->place);
+    hdi_free(heat->ctx, l);
+    heat->part = NULL;
+}
+
+/* Room to look for balls, of the plan. */
+static hdi_local *hdi_local_open(hd_heat *heat, hd_error *e) {
+    const hd_laplacian *lap = heat->source;
+    hdi_local *l = heat->part;
+    int32_t i;
+    if (!l) {
+        l = (hdi_local *)hdi_alloc_zero(heat->ctx, 1, sizeof *l, e);
+        if (!l) return NULL;
+        heat->part = l;
+        l->heat.ctx = heat->ctx;
+        l->version = -1;
+        l->place = (int32_t *)hdi_alloc_zero(heat->ctx, (uint64_t)lap->n_active, sizeof *l->place, e);
+        if (!l->place) return NULL;
+    }
+    if (l->version == lap->version) return l;
+    l->smallest = HUGE_VAL;
+    for (i = 0; i < lap->n_active; i++) l->smallest = hdi_min(l->smallest, lap->b_diag[i]);
+    l->version = lap->version;
+    return l;
+}
+
+/* The pair of the ball and its plan. Where the ball is the one before, so is the analysis, and without an
+ * update of the Laplacian the factor. */
+static hd_status hdi_local_plan(const hd_heat *heat, hdi_local *l, hd_error *e) {
+    hd_heat *own = &l->heat;
+    hdi_rim ring;
+    int32_t *row = NULL;
+    hd_laplacian *ball = hdi_local_pair(l, heat->source, &ring, &row, heat->ctx, e);
+    if (!ball) return e->status;
+    if (l->ball && l->ball->n == ball->n && memcmp(row, l->row, (size_t)ball->n * sizeof *row) == 0) {
+        own->source = own->elim.source = own->few.source = ball;
+    } else {
+        hdi_local_drop(l);
+        own->opts = heat->opts;
+        own->opts.ordering = heat->perm ? HD_ORDERING_AUTO : heat->opts.ordering;
+        own->opts.perm = NULL;
+        own->limit = heat->limit;
+        (void)hdi_heat_make(own, ball, e);
+    }
+    hdi_laplacian_free(l->ball, heat->ctx);
+    l->ball = ball;
+    l->row = row;
+    l->ring = ring;
+    return e->status;
+}
+
+/* The radius of a ball in edges, where sqrt(t) is so many: on meshes of 360K vertices with jitter it leaves
+ * 1e-7 of the peak. */
+static double hdi_local_edges(double edges) { return 4 + edges * (10.3 + 0.8 * log(hdi_max(edges, 1))); }
+
+/* Edges that lie between a source and the ring at least. B^-1 of a full B falls by a factor of three an edge
+ * where b_ratio is 1/2 (Demko, Moss, Smith 1984). */
+#define HDI_LOCAL_DIGITS 17.6
+
+static double hdi_local_hops(const hd_laplacian *lap) {
+    const double root = sqrt(hdi_max(lap->b_ratio, 1e-300) / 2);
+    return lap->B ? HDI_LOCAL_DIGITS / log((1 + root) / (1 - root)) : 6;
+}
+
+/* The ball of item q, reach times as large as is usual, or of a row in the middle if items are not known. */
+static hd_status hdi_local_find(hdi_heat_call *h, hdi_local *l, int32_t q, double reach, int32_t most) {
+    const hd_laplacian *lap = h->heat->source;
+    const double t = h->times[h->n_times - 1] / h->heat->scale;
+    hd_context *ctx = h->heat->ctx;
+    hdi_terms c = hdi_terms_vertex(lap->vertex[lap->n_active / 2]);
+    double edge;
+    int32_t i;
+    hdi_local_clear(l, lap);
+    if (h->ask.F) {
+        const double *f = h->ask.F + (size_t)q * h->ask.ldf;
+        for (i = 0; i < lap->n_active && l->n <= most; i++)
+            if (f[lap->vertex[i]] != 0 && hdi_local_add(l, i, 0, ctx, h->e) < 0) break;
+    } else {
+        if (h->ask.terms || h->ask.list) c = hdi_heat_source(h, q);
+        for (i = 0; i < c.n && h->e->status >= 0; i++) {
+            const int32_t row = lap->row[hdi_terms_at(&c, i)];
+            if (row >= 0) (void)hdi_local_add(l, row, 0, ctx, h->e);
+        }
+    }
+    if (h->e->status < 0 || l->n == 0) return h->e->status;
+    edge = hdi_local_edge(lap, l->at[0].row);
+    reach *= edge * hdi_local_edges(sqrt(t) / edge);
+    return hdi_local_grow(l, lap, reach, reach / hdi_local_hops(lap), most, ctx, h->e);
+}
+
+/* The answers to item q on the ball, ld apart: at the time under way, or for each of the caller's times. */
+static hd_status hdi_local_solve(hdi_heat_call *h, hdi_local *l, int32_t q, double *U, size_t ld,
+                                 hd_report *rep) {
+    const hd_laplacian *lap = h->heat->source;
+    hdi_heat_call in;
+    hdi_terms c, to;
+    double *field, *times;
+    int32_t i, *id;
+    if (hdi_heat_begin(&in, &l->heat, h->ask.query, rep, h->e) < 0) return hdi_heat_end(&in);
+    field = HDI_TAKE(&in.s, double, l->n);
+    id = HDI_TAKE(&in.s, int32_t, l->n);
+    times = HDI_TAKE(&in.s, double, h->n_times);
+    if (in.e->status < 0) return hdi_heat_end(&in);
+    in.ring = &l->ring;
+    in.rate = h->rate;
+    in.ask = h->ask;
+    in.ask.k = 1;
+    in.ask.list = NULL;
+    in.ask.sparse = NULL;
+    in.ask.U = U;
+    in.ask.ldu = ld;
+    in.times = times;
+    in.n_times = h->n_times;
+    in.time_column = h->time_column;
+    if (!h->time_column) {
+        in.ask.n_times = 1;
+        in.ask.t += h->now;
+    }
+    for (i = 0; i < h->n_times; i++)
+        times[i] = in.t = hdi_heat_scaled(&l->heat, in.ask.t[h->time_column ? h->time_column[i] : 0]);
+    for (i = 0; i < l->n && h->ask.F; i++)
+        field[i] = h->ask.F[h->ask.ldf * (size_t)q + (size_t)lap->vertex[l->row[i]]];
+    if (h->ask.F) {
+        in.ask.F = field;
+        in.ask.ldf = ld;
+    } else {
+        c = hdi_heat_source(h, q);
+        to.n = 0;
+        for (i = 0; i < c.n; i++) {
+            const int32_t row = lap->row[hdi_terms_at(&c, i)];
+            if (row < 0) continue;
+            id[to.n] = l->place[row] - 1;
+            field[to.n++] = hdi_terms_weight(&c, i);
+        }
+        to.one = id[0];
+        to.vertex = id;
+        to.weight = c.weight ? field : NULL;
+        in.ask.terms = &to;
+    }
+    in.method = HD_METHOD_KRYLOV;
+    in.solver = HD_SOLVER_LANCZOS;
+    in.m = hdi_krylov_elim(&in);
+    if (hdi_heat_analysed_in(&l->heat, in.m, in.e) >= 0) {
+        in.lap = in.m->lap;
+        rep->ordering = in.m->sym.ordering;
+        rep->factor_nnz = in.m->sym.nnz;
+        (void)hdi_heat_by_krylov(&in);
+    }
+    return hdi_heat_end(&in);
+}
+
+/* The entries of item q at the time under way, from its answer on the ball. */
+static void hdi_local_entries(const hdi_heat_call *h, const hdi_local *l, int32_t q, const double *u,
+                              const hd_report *rep) {
+    const hdi_entry_list *list = h->ask.list;
+    double *values = list->values + list->n * h->now, most = 0;
+    hdi_parts off;
+    int64_t p;
+    int32_t i;
+    for (i = 0; i < l->n; i++) most = hdi_max(most, fabs(u[i]));
+    off.rational = hdi_bound_times(most, rep->error_rational);
+    off.solver = hdi_bound_times(most, rep->error_solver);
+    off.rounding = hdi_bound_times(most, rep->error_rounding);
+    for (p = list->begin[q]; p < list->begin[q + 1]; p++) {
+        const int32_t v = list->rows[list->order[p].id], row = h->heat->source->row[v];
+        double *value = values + list->order[p].id;
+        *value = row >= 0 && l->place[row] > 0 ? u[l->place[row] - 1] : 0;
+        if (row == HD_ROW_INERT && h->ask.query == HDI_QUERY_OPERATOR)
+            *value = (uint64_t)v == list->order[p].key;
+        hdi_ledger_note(list->ledger + h->now, *value, off);
+    }
+    list->ledger[h->now].evidence.rational = rep->evidence_rational;
+    list->ledger[h->now].evidence.solver = rep->evidence_solver;
+    list->ledger[h->now].evidence.rounding = rep->evidence_rounding;
+}
+
+/* The answer of item q at the time under way into the column or the row of the output. u: on the ball, with
+ * room for what vertices without mass keep. order: the ball by vertices, work. */
+static void hdi_local_store(hdi_heat_call *h, const hdi_local *l, int32_t q, double *u, hdi_pair *order) {
+    const hd_laplacian *lap = h->heat->source;
+    const size_t column = (size_t)q * (size_t)h->ask.n_times + (size_t)h->now;
+    double *out = h->ask.U ? h->ask.U + column * h->ask.ldu : NULL;
+    int32_t i, n = l->n;
+    hdi_terms c;
+    for (i = 0; i < lap->n && out; i++)
+        if (!h->ask.F || h->rate || lap->row[i] != HD_ROW_INERT) out[i] = 0;
+        else out[i] = h->ask.F[h->ask.ldf * (size_t)q + (size_t)i];
+    if (out && !h->ask.F) hdi_heat_store_inert(h, q, out);
+    for (i = 0; i < n && out; i++) out[lap->vertex[l->row[i]]] = u[i];
+    if (!h->ask.sparse) return;
+    c = hdi_heat_source(h, q);
+    for (i = 0; i < n; i++) order[i].key = (uint64_t)lap->vertex[l->row[i]];
+    for (i = 0; i < c.n && h->ask.query == HDI_QUERY_OPERATOR; i++) {
+        if (lap->row[hdi_terms_at(&c, i)] != HD_ROW_INERT) continue;
+        order[n].key = (uint64_t)hdi_terms_at(&c, i);
+        u[n++] = hdi_terms_weight(&c, i);
+    }
+    for (i = 0; i < n; i++) order[i].id = i;
+    hdi_sort_pairs(order, n);
+    (void)hdi_sparse_row(h->ask.sparse, (int64_t)column, n, order, u, h->heat->ctx, h->e);
+}
+
+/* What may be left out of an answer, relative to its largest value, in units of tol. The ball grows until
+ * then, as errors fall like exp(-R^2/4t). */
+#define HDI_LOCAL_SHARE 100
+enum { HDI_LOCAL_TRIES = 6 };
+
+/* Finds a ball for item q that is large enough, and the answers on it. */
+static hd_status hdi_local_item(hdi_heat_call *h, hdi_local *l, int32_t q) {
+    hd_heat *heat = h->heat;
+    const int32_t most = heat->opts.method == HD_METHOD_LOCAL ? INT32_MAX : heat->source->n_active / 2;
+    const int32_t columns = h->time_column ? h->ask.n_times : 1;
+    const double wanted = HDI_LOCAL_SHARE * heat->opts.tol;
+    double reach = 1, *U = NULL;
+    hdi_pair *order = NULL;
+    hd_report rep;
+    int32_t tries, m;
+    size_t ld = 0;
+    memset(&rep, 0, sizeof rep);
+    for (tries = 0; tries < HDI_LOCAL_TRIES && h->e->status >= 0; tries++) {
+        if (hdi_local_find(h, l, q, reach, most) < 0) break;
+        if (l->n > most) return hdi_fail(h->e, HD_ERR_NOT_CONVERGED, "local: heat reaches most of the mesh");
+        hdi_free(heat->ctx, U);
+        ld = (size_t)l->n + (h->ask.F ? 0 : (size_t)hdi_heat_source(h, q).n);
+        U = HDI_NEW(heat->ctx, double, ld * (size_t)columns, h->e);
+        if (!U || l->n == 0 || hdi_local_plan(heat, l, h->e) < 0) break;
+        if (hdi_local_solve(h, l, q, U, ld, &rep) < 0 || rep.error_rational <= wanted) break;
+        reach = sqrt(reach * reach + 0.06 * log(hdi_min(rep.error_rational, 1e9) / wanted)) + 0.02;
+    }
+    if (h->e->status >= 0 && tries == HDI_LOCAL_TRIES && heat->opts.method != HD_METHOD_LOCAL)
+        (void)hdi_fail(h->e, HD_ERR_NOT_CONVERGED, "local: too much is left out");
+    order = h->ask.sparse && h->e->status >= 0 ? HDI_NEW(heat->ctx, hdi_pair, ld, h->e) : NULL;
+    for (m = 0; m < h->n_times && h->e->status >= 0; m++) {
+        double *u = U + ld * (size_t)(h->time_column ? h->time_column[m] : 0);
+        h->now = h->time_column ? h->time_column[m] : h->now;
+        if (h->ask.list) hdi_local_entries(h, l, q, u, &rep);
+        else hdi_local_store(h, l, q, u, order);
+    }
+    hdi_free(heat->ctx, order);
+    hdi_free(heat->ctx, U);
+    if (l->n == 0 && !h->ask.list) hdi_evidence_worst(&h->rep->evidence_b, HD_EVIDENCE_PROVEN);   /* exact */
+    if (l->n == 0 || h->e->status < 0) return h->e->status;
+    if (h->ask.list) rep.error_bound = rep.error_rational = rep.error_solver = rep.error_rounding = 0;
+    rep.method = HD_METHOD_LOCAL;
+    rep.solver = HD_SOLVER_LANCZOS;
+    rep.reason = h->rep->reason;
+    rep.n_touched = l->n;
+    hdi_report_merge(h->rep, &rep);
+    return h->e->status;
+}
+
+/* The error of the ring stands where that of poles does, until an answer is there. */
+static void hdi_local_tell(hd_report *rep) {
+    if (rep->method != HD_METHOD_LOCAL) return;
+    rep->error_local = rep->error_rational;
+    rep->evidence_local = rep->evidence_rational;
+    rep->error_rational = 0;
+    rep->evidence_rational = HD_EVIDENCE_NONE;
+}
+
+static hd_status hdi_heat_by_local(hdi_heat_call *h) {
+    hdi_local *l = hdi_local_open(h->heat, h->e);
+    int32_t q;
+    for (q = 0; q < h->ask.k && h->e->status >= 0; q++) {
+        if (hdi_progress(h->heat->ctx, "solve", (double)q / h->ask.k, h->e) >= 0)
+            (void)hdi_local_item(h, l, q);
+        if (h->e->status < 0) h->e->column = q;
+    }
+    if (h->e->status < 0) hdi_local_free(h->heat);
+    return h->e->status;
+}
+
+/* Below so many rows nothing is to be gained. */
+enum { HDI_LOCAL_FROM = 4096 };
+#define HDI_ROW_LOCAL 0.8e-6       /* seconds for each row of a ball: to find it and make its pair */
+
+/* Can balls serve the call? */
+static int hdi_local_can(const hdi_heat_call *h) {
+    const hd_heat *heat = h->heat;
+    return HDI_HAS_DIRECT && !h->not_local && !h->set && !h->n_off && h->ask.query != HDI_QUERY_ADJOINT &&
+           !heat->poles_asked && !heat->iterations_asked && h->times[0] > 0 && heat->source->b_ratio > 0 &&
+           (h->ask.F != h->ask.U || h->ask.k == 1 || !h->ask.F);
+}
+
+/* As many balls as items, each like the first. Nothing is said where it is more than an eighth of the mesh. */
+static void hdi_local_cost(hdi_heat_call *h, hd_cost *c) {
+    const hd_laplacian *lap = h->heat->source;
+    const int32_t most = lap->n_active / 8;
+    hdi_local *l;
+    hdi_fill f;
+    double n, steps;
+    if (!hdi_local_can(h) || lap->n_active < HDI_LOCAL_FROM) return;
+    l = hdi_local_open(h->heat, h->e);
+    if (!l || hdi_local_find(h, l, 0, 1, most) < 0 || l->n > most) return;
+    n = l->n;
+    f = hdi_fill_guess(n, n * (double)lap->L.nnz / lap->n_active);
+    steps = hdi_krylov_windows(h, f).steps + HDI_STEPS_HANDED_ON;
+    c->possible = 1;
+    c->flops = h->ask.k * (f.flops + steps * 4 * f.nnz);
+    c->bytes = 8 * f.real_stored + (8 * steps + 400) * n;
+    c->seconds = h->ask.k * (f.analysis + HDI_ROW_LOCAL * n + f.flops / HDI_RATE_REAL +
+                             steps * (16 * f.nnz + 100 * n) / HDI_RATE_BYTES);
+}
+
 /* ---- choice of the method ---- */
 
-/* What each method that the call may take would take, in by [HD_METHOD_KRYLOV + 1]. h->t is the last of its
+/* What each method that the call may take would take, in by [HD_METHOD_LOCAL + 1]. h->t is the last of its
  * times. */
-static void hdi_heat_costs(const hdi_heat_call *h, hd_cost *by) {
+static void hdi_heat_costs(hdi_heat_call *h, hd_cost *by) {
     const hd_heat *heat = h->heat;
     const int factors = !heat->iterations_asked || heat->opts.method > HD_METHOD_ITERATIVE;
     int q;
-    memset(by, 0, (HD_METHOD_KRYLOV + 1) * sizeof *by);
+    memset(by, 0, (HD_METHOD_LOCAL + 1) * sizeof *by);
     if (HDI_HAS_ITERATIVE) hdi_iterative_cost(h, by + HD_METHOD_ITERATIVE);
     if (HDI_HAS_POLE_FACTORS && factors) hdi_direct_cost(h, by + HD_METHOD_DIRECT);
     if (HDI_HAS_DIRECT && factors && !heat->poles_asked)
         hdi_krylov_cost(h, by + HD_METHOD_KRYLOV);
-    for (q = HD_METHOD_ITERATIVE; q <= HD_METHOD_KRYLOV; q++)
+    if (h->e->status >= 0) hdi_local_cost(h, by + HD_METHOD_LOCAL);
+    for (q = HD_METHOD_ITERATIVE; q <= HD_METHOD_LOCAL; q++)
         by[q].seconds += HDI_FRESH_BYTE * by[q].bytes;
 }
 
@@ -18910,7 +19607,7 @@ static void hdi_heat_cheapest(hdi_heat_call *h, const hd_cost *by, double room) 
     int32_t q;
     double least = HUGE_VAL, cost = HUGE_VAL;
     h->method = HD_METHOD_ITERATIVE;
-    for (q = HD_METHOD_KRYLOV; q >= HD_METHOD_ITERATIVE; q--) {
+    for (q = HD_METHOD_LOCAL; q >= HD_METHOD_ITERATIVE; q--) {
         if (!by[q].possible) continue;
         least = hdi_min(least, by[q].seconds);
         if ((q > HD_METHOD_ITERATIVE && by[q].bytes > room) || by[q].seconds >= cost) continue;
@@ -18918,7 +19615,8 @@ static void hdi_heat_cheapest(hdi_heat_call *h, const hd_cost *by, double room) 
         cost = by[q].seconds;
     }
     h->forced |= h->method == HD_METHOD_ITERATIVE && cost > least;
-    h->rep->reason = h->method == HD_METHOD_KRYLOV ? "one real factor costs less than those of the poles"
+    h->rep->reason = h->method == HD_METHOD_LOCAL ? "heat reaches a small part of the mesh"
+                     : h->method == HD_METHOD_KRYLOV ? "one real factor costs less than those of the poles"
                      : h->method == HD_METHOD_ITERATIVE
                        ? (h->forced ? "factors would not fit the byte limit" : "iterations cost the least")
                      : hdi_heat_at_hand(h) ? "the factors of the poles are there from calls before"
@@ -18931,13 +19629,13 @@ static hd_status hdi_heat_pick_by_cost(hdi_heat_call *h) {
     /* without iterations there is no retreat */
     const double room = HDI_HAS_ITERATIVE ? hdi_bytes_left(heat->ctx) : HUGE_VAL;
     hdi_elim *m;
-    hd_cost by[HD_METHOD_KRYLOV + 1];
+    hd_cost by[HD_METHOD_LOCAL + 1];
     for (;;) {
         hdi_heat_costs(h, by);
         if (h->e->status < 0) return h->e->status;
         hdi_heat_cheapest(h, by, room);
         m = hdi_heat_analysis(h);
-        if (h->method == HD_METHOD_ITERATIVE || m->ctx) return HD_OK;
+        if (h->method == HD_METHOD_ITERATIVE || h->method == HD_METHOD_LOCAL || m->ctx) return HD_OK;
         if (hdi_heat_analysed_in(heat, m, h->e) < 0) return h->e->status;
     }
 }
@@ -18947,6 +19645,9 @@ static hd_status hdi_heat_pick(hdi_heat_call *h) {
     const hd_heat *heat = h->heat;
     h->method = heat->opts.method;
     h->rep->reason = "asked for";
+    if (h->method == HD_METHOD_LOCAL && !hdi_local_can(h))
+        return hdi_fail(h->e, HD_ERR_ARGUMENT,
+                        "heat: method local serves columns, entries and fields, where b_ratio is known");
     if (h->method != HD_METHOD_AUTO) return HD_OK;
     h->method = HD_METHOD_DIRECT;
     h->rep->reason = "iterations, which would take less, fail";
@@ -18977,7 +19678,7 @@ static hd_status hdi_heat_engine(hdi_heat_call *h) {
     } else if (HDI_HAS_ITERATIVE && h->method == HD_METHOD_ITERATIVE) {
         if (hdi_heat_iterative(heat, h->e) < 0) return h->e->status;
         h->lap = heat->lap;
-    } else if (HDI_HAS_DIRECT) {
+    } else if (HDI_HAS_DIRECT && h->method != HD_METHOD_LOCAL) {
         h->m = hdi_heat_analysis(h);
         if (hdi_heat_analysed_in(heat, h->m, h->e) < 0) return h->e->status;
         h->lap = h->m->lap;
@@ -18988,7 +19689,7 @@ static hd_status hdi_heat_engine(hdi_heat_call *h) {
     }
     h->rep->method = h->method;
     h->solver = h->method == HD_METHOD_ITERATIVE ? hdi_heat_solver(h, h->t)
-                : h->method == HD_METHOD_KRYLOV ? HD_SOLVER_LANCZOS : HD_SOLVER_AUTO;
+                : h->method >= HD_METHOD_KRYLOV ? HD_SOLVER_LANCZOS : HD_SOLVER_AUTO;
     h->rep->solver = h->solver;
     h->rep->precond = HD_PRECOND_NONE;
     if (h->method == HD_METHOD_ITERATIVE && h->solver != HD_SOLVER_LANCZOS)
@@ -19140,7 +19841,7 @@ static double hdi_modes_expected(const hd_heat *heat, double above) {
 /* May eigenpairs serve this plan? */
 static int hdi_modes_allowed(const hd_heat *heat) {
     return !heat->poles_asked && !heat->modes.barred && !heat->iterations_asked && !heat->spare &&
-           heat->opts.method != HD_METHOD_ITERATIVE && heat->opts.method != HD_METHOD_KRYLOV &&
+           heat->opts.method <= HD_METHOD_DIRECT && heat->opts.method != HD_METHOD_ITERATIVE &&
            heat->source->b_ratio > 0 && heat->source->n_components <= HDI_MODES_FIRST;
 }
 
@@ -19218,34 +19919,6 @@ static hdi_ledger hdi_modes_ledger(void) {
 /* Is a bound by eigenpairs as it should be, or so near zero that nothing else is better? */
 static int hdi_modes_good(const hd_heat *heat, double t, const hd_report *rep) {
     return rep->error_bound <= HDI_MODES_HELP || t * heat->modes.low > HDI_MODES_FADED;
-}
-
-/* The worse of two reports, counts added. */
-static void hdi_report_merge(hd_report *all, const hd_report *one) {
-    hd_report sum = *one;
-    int32_t p;
-    sum.status = all->status > sum.status ? all->status : sum.status;
-    sum.iterations += all->iterations;
-    for (p = 0; p < HD_MAX_POLES; p++) sum.pole_iterations[p] += all->pole_iterations[p];
-    sum.degree = hdi_high32(all->degree, sum.degree);
-    sum.n_poles = hdi_high32(all->n_poles, sum.n_poles);
-    sum.growth = hdi_max(all->growth, sum.growth);
-    sum.residual = hdi_max(all->residual, sum.residual);
-    sum.error_rational = hdi_max(all->error_rational, sum.error_rational);
-    sum.error_solver = hdi_max(all->error_solver, sum.error_solver);
-    sum.error_rounding = hdi_max(all->error_rounding, sum.error_rounding);
-    hdi_evidence_worst(&sum.evidence_rational, all->evidence_rational);
-    hdi_evidence_worst(&sum.evidence_solver, all->evidence_solver);
-    hdi_evidence_worst(&sum.evidence_rounding, all->evidence_rounding);
-    hdi_evidence_worst(&sum.evidence_b, all->evidence_b);
-    sum.error_bound_b = hdi_max(all->error_bound_b, sum.error_bound_b);
-    sum.error_bound = hdi_max(all->error_bound, sum.error_bound);
-    sum.mass_drift = hdi_max(all->mass_drift, sum.mass_drift);
-    sum.error_relative = hdi_max(all->error_relative, sum.error_relative);
-    if (all->smallest > 0 && (sum.smallest == 0 || all->smallest < sum.smallest))
-        sum.smallest = all->smallest;
-    sum.n_lost += all->n_lost;
-    *all = sum;
 }
 
 /* ---- which way ---- */
@@ -19553,7 +20226,13 @@ static int hdi_heat_retreat(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     const int over = hdi_over_limit(heat->ctx, h->e), automatic = heat->opts.method == HD_METHOD_AUTO;
     const int failed = over || h->e->status == HD_ERR_BREAKDOWN || h->e->status == HD_ERR_NOT_CONVERGED;
-    if (!HDI_HAS_DIRECT || heat->spare == HDI_SPARE_POLES) return 0;
+    if (!HDI_HAS_DIRECT || heat->spare == HDI_SPARE_POLES || h->t == 0) return 0;
+    if (h->method == HD_METHOD_LOCAL) {
+        if (!automatic || !failed) return 0;
+        h->not_local = 1;
+        hdi_error_clear(h->e);
+        return 1;
+    }
     /* fields may have been overwritten by their answers */
     if (h->batch > 0 && hdi_query_fields(h->ask.query)) return 0;
     if (HDI_HAS_ITERATIVE && automatic && over && (heat->elim.ctx || heat->few.ctx) && !h->forced &&
@@ -19655,6 +20334,7 @@ static hd_status hdi_heat_answer(hdi_heat_call *h) {
     if (h->t == 0 || h->equal) return hdi_heat_plain(h);
     if (HDI_HAS_POLE_FACTORS && h->method == HD_METHOD_DIRECT) return hdi_heat_by_direct(h);
     if (HDI_HAS_DIRECT && h->method == HD_METHOD_KRYLOV) return hdi_heat_by_krylov(h);
+    if (HDI_HAS_DIRECT && h->method == HD_METHOD_LOCAL) return hdi_heat_by_local(h);
     if (HDI_HAS_ITERATIVE && hdi_iterative_prepare(h) >= 0) (void)hdi_heat_by_iterations(h);
     return h->e->status;
 }
@@ -19663,6 +20343,7 @@ static hd_status hdi_heat_answer(hdi_heat_call *h) {
 static hd_status hdi_heat_chosen(hdi_heat_call *h) {
     while (hdi_heat_answer(h) < 0 && hdi_heat_retreat(h)) {}
     if (h->e->status >= 0 && h->ask.list) hdi_ledger_close(h->ask.list->ledger + h->now, h->rep);
+    if (h->e->status >= 0) hdi_local_tell(h->rep);
     return h->e->status;
 }
 
@@ -19723,7 +20404,7 @@ static size_t hdi_leading(hdi_heat_call *h, size_t ld) {
 
 /* Has the caller asked for another method than the direct one? */
 static int hdi_direct_barred(const hd_heat *heat) {
-    return heat->opts.method == HD_METHOD_ITERATIVE || heat->opts.method == HD_METHOD_KRYLOV;
+    return heat->opts.method == HD_METHOD_ITERATIVE || heat->opts.method >= HD_METHOD_KRYLOV;
 }
 
 #define HDI_DIRECT_REASON "diagonals and distances to all vertices need the direct method"
@@ -19775,13 +20456,16 @@ static hd_status hdi_columns_together(hdi_task *task, char *done, hd_report *one
     first = h->time_column[0];
     if (h->times[0] == 0) return HD_OK;
     if (hdi_heat_engine(h) >= 0) {
-        if (h->method != HD_METHOD_KRYLOV || hdi_heat_equal(heat, h->m, h->t, h->e) || h->e->status < 0)
+        if (h->method < HD_METHOD_KRYLOV ||
+            (h->method == HD_METHOD_KRYLOV && hdi_heat_equal(heat, h->m, h->t, h->e)) || h->e->status < 0)
             return h->e->status;
-        (void)hdi_heat_by_krylov(h);
+        if (h->method == HD_METHOD_LOCAL) (void)hdi_heat_by_local(h);
+        else (void)hdi_heat_by_krylov(h);
     }
     if (h->e->status < 0) return hdi_heat_retreat(h) ? HD_OK : h->e->status;
     for (q = 0; q < h->ask.n_times && h->ask.list; q++)
         if (!done[q]) hdi_ledger_close(h->ask.list->ledger + q, h->rep);
+    hdi_local_tell(h->rep);
     if (task->serves && h->rep->error_bound > HDI_MODES_HELP) return HD_OK;   /* one by one, then */
     for (q = 0; q < h->ask.n_times; q++) done[q] = HDI_DONE_FOR_GOOD;
     one[first] = *h->rep;
@@ -19901,13 +20585,69 @@ static hd_status hdi_pairs_check(hdi_heat_call *h, int64_t n_pairs, const int32_
     return hdi_vertices_check(lap, n_pairs, j, &h->e->row, h->e);
 }
 
+/* The rows that are there, as a matrix. */
+static hd_status hdi_sparse_close(const hdi_sparse *from, int64_t rows, int32_t n, hd_csr *out,
+                                  hd_context *ctx, hd_error *e) {
+    hdi_scope s = hdi_scope_begin(ctx, e);
+    hd_csr a;
+    int64_t r;
+    if (rows > INT32_MAX) return hdi_fail(e, HD_ERR_TOO_LARGE, "heat: too many rows for a matrix");
+    a = hdi_csr_take(&s, (int32_t)rows, n, from->n, 1);
+    for (r = 0; r < rows && e->status >= 0; r++) {
+        const int64_t size = from->end[r] - from->begin[r], at = a.row_ptr[r];
+        a.row_ptr[r + 1] = at + size;
+        if (size > 0) memcpy(a.col + at, from->col + from->begin[r], (size_t)size * sizeof *a.col);
+        if (size > 0) memcpy(a.val + at, from->val + from->begin[r], (size_t)size * sizeof *a.val);
+    }
+    if (e->status >= 0) {
+        hdi_csr_free(ctx, out);
+        *out = a;
+        s.n = 0;
+    }
+    return hdi_scope_end(&s);
+}
+
+HEATDIFF_API hd_status hd_heat_columns_sparse(hd_heat *heat, hd_kernel kernel, int32_t n_times,
+                                              const double *t, const hd_sources *sources, hd_csr *out,
+                                              hd_report *report, hd_error *err) {
+    hdi_heat_call h;
+    hdi_sparse to;
+    double none;
+    int64_t rows;
+    hd_error e;
+    if (hdi_kernel_begin(&h, heat, kernel, report, err) < 0) return hdi_heat_end(&h);
+    if (!out) return hdi_missing(h.e), hdi_heat_end(&h);
+    if (hdi_columns_ask(&h, n_times, t, sources, &none, 0) < 0) return hdi_heat_end(&h);
+    memset(&to, 0, sizeof to);
+    rows = (int64_t)h.ask.k * h.ask.n_times;
+    to.cut = heat->opts.cut;
+    to.begin = (int64_t *)hdi_alloc_zero(heat->ctx, 2 * (uint64_t)rows, sizeof *to.begin, h.e);
+    to.end = to.begin ? to.begin + rows : NULL;
+    h.ask.sparse = &to;
+    h.ask.U = NULL;
+    if (hdi_heat_run(&h) >= 0) {
+        hdi_error_clear(&e);
+        if (hdi_sparse_close(&to, rows, heat->source->n, out, heat->ctx, &e) < 0) {
+            h.rep->error = e;
+            h.rep->status = e.status;
+            if (err) *err = e;
+        }
+        h.rep->error_bound += to.cut;
+    }
+    hdi_free(heat->ctx, to.begin);
+    hdi_free(heat->ctx, to.col);
+    hdi_free(heat->ctx, to.val);
+    hdi_free(heat->ctx, to.dense);
+    return h.rep->status;
+}
+
 #define HDI_TOL_HEAT 1e-9
 enum { HDI_MAX_ITERATIONS = 20000 };
 
 /* Is what the options ask for in this build? */
 static void hdi_heat_built(const hd_heat_opts *o, hd_error *e) {
     const int poles = o->rational || o->poles || o->degree;
-    if (!HDI_HAS_DIRECT && (o->method == HD_METHOD_DIRECT || o->method == HD_METHOD_KRYLOV))
+    if (!HDI_HAS_DIRECT && o->method >= HD_METHOD_DIRECT)
         (void)HDI_LEFT_OUT(e, DIRECT, "factorisations");
     else if (!HDI_HAS_POLE_FACTORS && o->method == HD_METHOD_DIRECT)
         (void)HDI_LEFT_OUT(e, POLE_FACTORS, "method direct");
@@ -19918,7 +20658,7 @@ static void hdi_heat_built(const hd_heat_opts *o, hd_error *e) {
 }
 
 static hd_status hdi_heat_check(const hd_heat_opts *o, hd_error *e) {
-    hdi_refuse(o->method < HD_METHOD_AUTO || o->method > HD_METHOD_KRYLOV, "heat: unknown method", e);
+    hdi_refuse(o->method < HD_METHOD_AUTO || o->method > HD_METHOD_LOCAL, "heat: unknown method", e);
     hdi_refuse(!hdi_solver_known(o->solver), "heat: unknown solver", e);
     hdi_refuse(!hdi_precond_known(o->precond), "heat: unknown preconditioner", e);
     hdi_refuse(o->poles < HD_POLES_DEFAULT || o->poles > HD_POLES_KERNEL,
@@ -19929,10 +20669,11 @@ static hd_status hdi_heat_check(const hd_heat_opts *o, hd_error *e) {
                      "heat: kernel sets have degrees 2 to 14", o->degree, e);
     hdi_refuse(!hdi_finite(o->tol) || o->tol < 0 || o->tol >= 1, "heat: tol is not in [0, 1)", e);
     hdi_refuse(o->max_iterations < 0, "heat: max_iterations is negative", e);
+    hdi_refuse(!(o->cut >= 0 && o->cut < 1), "heat: cut is not in [0, 1)", e);
     hdi_refuse_ordering(o->ordering, o->perm, "heat: unknown ordering", e);
-    hdi_refuse(o->method == HD_METHOD_KRYLOV && (o->rational || o->poles || o->degree),
-               "heat: the krylov method has no use for poles or a degree", e);
-    hdi_refuse((o->method == HD_METHOD_KRYLOV || o->method == HD_METHOD_DIRECT) && (o->solver || o->precond),
+    hdi_refuse(o->method >= HD_METHOD_KRYLOV && (o->rational || o->poles || o->degree),
+               "heat: the methods krylov and local have no use for poles or a degree", e);
+    hdi_refuse(o->method >= HD_METHOD_DIRECT && (o->solver || o->precond),
                "heat: solver and precond belong to the iterative method", e);
     hdi_refuse(o->rational && o->solver == HD_SOLVER_LANCZOS, "heat: Lanczos has no use for a pole set", e);
     if (e->status >= 0) hdi_heat_built(o, e);
@@ -19960,25 +20701,13 @@ static void hdi_heat_defaults(hd_heat *heat, const hd_heat_opts *opts) {
     heat->fam.max_iterations = o->max_iterations;
 }
 
-/* Computes what every query needs: scale, spectrum, drift. Copies the caller's permutation. */
-static hd_status hdi_heat_make(hd_heat *heat, const hd_laplacian *lap, hd_error *e) {
-    hd_context *ctx = heat->ctx;
-    heat->source = lap;
-    if (hdi_heat_sums(heat, e) < 0) return e->status;
-    hdi_heat_measure_pair(heat);
-    if (heat->opts.ordering == HD_ORDERING_OWN && hdi_order_check(heat->opts.perm, lap->n, ctx, e) >= 0)
-        heat->perm = HDI_NEW(ctx, int32_t, lap->n, e);
-    if (heat->perm) memcpy(heat->perm, heat->opts.perm, (size_t)lap->n * sizeof *heat->perm);
-    heat->opts.perm = heat->perm;
-    return e->status;
-}
-
 static void hdi_heat_free(hd_heat *heat) {
     hd_context *ctx;
     if (!heat) return;
     ctx = heat->ctx;
     hdi_heat_free_iterative(heat);
     hdi_heat_free_factors(heat);
+    if (HDI_HAS_DIRECT) hdi_local_free(heat);
     hdi_free(ctx, heat->perm);
     hdi_free(ctx, heat->fill);
     hdi_free(ctx, heat->sums);
@@ -21844,7 +22573,7 @@ static hd_status hdi_estimate_solves(const hdi_estimate *x) {
     x->to->method = h->method;
     x->to->reason = h->rep->reason;
     hdi_heat_costs(h, by);
-    for (q = HD_METHOD_ITERATIVE; q <= HD_METHOD_KRYLOV; q++) {
+    for (q = HD_METHOD_ITERATIVE; q <= HD_METHOD_LOCAL; q++) {
         if (by[q].possible) by[q].bytes += x->held + HDI_ESTIMATE_SMALL;
         by[q].bytes_most = by[q].bytes;
     }
@@ -22079,7 +22808,7 @@ static void hdi_estimate_close(const hd_heat *heat, hd_estimate *to) {
     to->bytes_in_use = (double)heat->ctx->bytes_in_use;
     to->bytes_left = hdi_bytes_left(heat->ctx);
     to->cost[HD_METHOD_AUTO] = to->cost[to->method];
-    for (q = 0; q <= HD_METHOD_KRYLOV; q++)
+    for (q = 0; q <= HD_METHOD_LOCAL; q++)
         to->cost[q].fits = to->cost[q].possible && to->cost[q].bytes <= to->bytes_left;
 }
 
@@ -23696,8 +24425,8 @@ HEATDIFF_API hd_status hd_heat_set_rational(hd_heat *heat, int32_t count, const 
     hdi_call c;
     if (hdi_enter(&c, heat ? heat->ctx : NULL, heat && (count <= 0 || sets), err) < 0) return c.e->status;
     hdi_refuse(count < 0, "heat: the number of sets is negative", c.e);
-    hdi_refuse(count > 0 && (o->method == HD_METHOD_KRYLOV || o->solver == HD_SOLVER_LANCZOS),
-               "heat: krylov and Lanczos have no use for a pole set", c.e);
+    hdi_refuse(count > 0 && (o->method >= HD_METHOD_KRYLOV || o->solver == HD_SOLVER_LANCZOS),
+               "heat: krylov, local and Lanczos have no use for a pole set", c.e);
     if (c.e->status >= 0 && count > 0) {
         hd_heat_opts asked = *o;
         asked.rational = sets;

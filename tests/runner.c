@@ -200,6 +200,7 @@ static void test_tmp_remove(void) {
 #include "test_deep.h"
 #include "test_failures.h"
 #include "test_cases.h"
+#include "test_local.h"
 #endif
 
 /* shard: groups that ctest runs together; those of memory that fails are one of its own */
@@ -212,7 +213,7 @@ static const test_group test_groups[] = {
 #ifndef TEST_CORE
     {"filters", test_filters, 1}, {"heat", test_heat, 1}, {"lengths", test_lengths, 1}, {"view", test_view, 1},
     {"cases", test_cases, 1}, {"moving", test_moving, 1}, {"doors", test_doors, 1}, {"shared", test_shared, 1},
-    {"engines", test_engines, 2}, {"estimate", test_estimate, 2},
+    {"engines", test_engines, 2}, {"local", test_local, 2}, {"estimate", test_estimate, 2},
     {"points", test_points, 3}, {"deep", test_deep, 3}, {"diagonal", test_diagonal, 3}, {"spectrum", test_spectrum, 3},
     {"large_t", test_large_t, 3},
     {"geodesic", test_geodesic_all, 4}, {"ldl", test_ldl, 4}, {"order", test_order, 4}, {"threads", test_threads, 4},

@@ -252,7 +252,7 @@ static double draw_time(uint64_t *seed, double unit) {
 }
 
 static trial trial_draw(uint64_t *seed, const trial *from, double unit) {
-    static const int queries[] = {8, 8, 4, 4, 4, 4, 3, 6, 6, 8, 2, 10, 4}, methods[] = {5, 6, 5, 5},
+    static const int queries[] = {8, 8, 4, 4, 4, 4, 3, 6, 6, 8, 2, 10, 4}, methods[] = {5, 6, 5, 5, 4},
                      fields[] = {6, 4, 3, 1, 1, 2, 2, 2, 1, 2, 1, 1, 3};
     static const double tols[] = {0, 0, 0, 1e-6, 1e-11, 1e-13};
     trial c = *from;
@@ -265,13 +265,14 @@ static trial trial_draw(uint64_t *seed, const trial *from, double unit) {
     c.kind = c.query == QUERY_DISTANCE || c.query == QUERY_DISTANCE_FROM ? trial_below(seed, 4) : c.query == QUERY_PAIRS ? trial_below(seed, 8) % 5 : 0;
     if (c.kind == 4) c.kind = 0;
     direct = c.query >= QUERY_DIAGONAL || (c.query == QUERY_PAIRS && c.kind >= 2);
-    c.method = direct ? 2 * trial_below(seed, 2) : among(seed, methods, c.query == QUERY_FILTER ? 3 : 4);
+    c.method = direct ? 2 * trial_below(seed, 2)
+                      : among(seed, methods, c.query == QUERY_FILTER ? 3 : trial_local(c.query) ? 5 : 4);
     if (c.method == HD_METHOD_ITERATIVE) {
         c.solver = trial_below(seed, c.query == QUERY_FILTER ? 4 : 5);
         if (c.solver == 2) c.solver = HD_SOLVER_COCG;    /* no solver has this number */
         if (c.solver != HD_SOLVER_LANCZOS) c.precond = trial_below(seed, 5);
     }
-    if (c.method != HD_METHOD_KRYLOV && c.solver != HD_SOLVER_LANCZOS && c.kind < 2) {
+    if (c.method < HD_METHOD_KRYLOV && c.solver != HD_SOLVER_LANCZOS && c.kind < 2) {
         static const int which[] = {10, 3, 4, 0, 2};
         c.poles = among(seed, which, 5);
         if (trial_chance(seed, c.poles ? 0.6 : 0.1)) c.degree = 2 + trial_below(seed, 13);

@@ -572,7 +572,7 @@ static const char *const trial_queries[] = {"apply",    "column", "times",    "d
                                           "distance", "distance_from", NULL};
 static const char *const trial_kernels[] = {"operator", "symmetric", NULL};
 static const char *const trial_kinds[] = {"classical", "weighted", "commute", "biharmonic", NULL};
-static const char *const trial_methods[] = {"auto", "iterative", "direct", "krylov", NULL};
+static const char *const trial_methods[] = {"auto", "iterative", "direct", "krylov", "local", NULL};
 static const char *const trial_solvers[] = {"auto", "cocg", "no number", "minres", "lanczos", NULL};
 static const char *const trial_preconds[] = {"auto", "none", "jacobi", "ssor", "ildl", "mildl", NULL};
 static const char *const trial_poles[] = {"default", "uniform", "kernel", "own", NULL};
@@ -581,6 +581,11 @@ static const char *const trial_owns[] = {"none",   "copy",      "copy0", "loose"
 static const char *const trial_fields[] = {"random", "smooth",    "nearly", "huge",     "tiny",
                                           "delta",  "alternate", "mode",   "constant", "step",
                                           "linear", "zero",      "level",  NULL};
+
+/* Is there a method local for the query? */
+static int trial_local(int query) {
+    return query <= QUERY_DERIVATIVE || query == QUERY_FROM || query == QUERY_ENTRIES;
+}
 
 typedef struct trial {
     char shape[32], op[16];
