@@ -14670,7 +14670,6 @@ typedef struct hdi_krylov {
     double f_norm[HDI_WIDE], whole[HDI_WIDE];   /* |f|_B without and with its constants */
     /* of T_m of each right-hand side, when done: eigenvalues, then the eigenvectors one by one */
     double *eigen[HDI_WIDE];
-    int32_t eigen_room[HDI_WIDE];   /* the largest m that there is room for */
     int32_t done[HDI_WIDE];/* steps that were enough, 0: not yet */
     double g;
     double from;                 /* the time that the fields are answers of, with bounds on their errors */
@@ -14697,18 +14696,20 @@ static void hdi_krylov_free(hdi_krylov *z, hd_context *ctx) {
     memset(z, 0, sizeof *z);
 }
 
-/* out[r] = sum_i x_ir y_ir */
-static void hdi_wide_dots(const double *HDI_RESTRICT x, const double *HDI_RESTRICT y, int64_t n, int32_t wide,
-                          double *out) {
+/* out[r] = sum_i weight_i x_ir y_ir. Where there are weights y is x; else NULL. */
+static void hdi_wide_dots(const double *x, const double *y, const double *weight, int64_t n, int32_t wide,
+                          double *HDI_RESTRICT out) {
     int64_t i;
     int r;
     if (wide == 1) {
-        out[0] = hdi_dot(x, y, n);
+        out[0] = weight ? hdi_norm2w(x, weight, n) : hdi_dot(x, y, n);
         return;
     }
     for (r = 0; r < HDI_WIDE; r++) out[r] = 0;
-    for (i = 0; i < n; i++)
-        for (r = 0; r < HDI_WIDE; r++) out[r] += x[HDI_WIDE * i + r] * y[HDI_WIDE * i + r];
+    for (i = 0; i < n; i++) {
+        const double w = weight ? weight[i] : 1;
+        for (r = 0; r < HDI_WIDE; r++) out[r] += w * (x[HDI_WIDE * i + r] * y[HDI_WIDE * i + r]);
+    }
 }
 
 /* Right-hand side r of the start: the lane's f and rhs = B f without their constants, of norm one. */
@@ -14770,19 +14771,6 @@ static void hdi_krylov_probe(hdi_krylov *z) {
     }
 }
 
-/* out[r] = sqrt(sum_i weight_i x_ir^2) */
-static void hdi_wide_norms(const double *HDI_RESTRICT x, const double *HDI_RESTRICT weight, int64_t n,
-                           int32_t wide, double *out) {
-    int64_t i;
-    int r;
-    for (r = 0; r < HDI_WIDE; r++) out[r] = 0;
-    if (wide == 1) out[0] = hdi_norm2w(x, weight, n);
-    for (i = 0; wide > 1 && i < n; i++)
-        for (r = 0; r < HDI_WIDE; r++)
-            out[r] += weight[i] * (x[HDI_WIDE * i + r] * x[HDI_WIDE * i + r]);
-    for (r = 0; r < HDI_WIDE; r++) out[r] = sqrt(out[r]);
-}
-
 /* w -= alpha v + beta v_old, and v = w/beta with c = B v, for `wide` vectors side by side. */
 static HDI_INLINE void hdi_krylov_subtract(const int wide, double *HDI_RESTRICT w,
                                            const double *HDI_RESTRICT v, const double *HDI_RESTRICT v_old,
@@ -14820,14 +14808,15 @@ static hd_status hdi_krylov_step(hdi_krylov *z, hd_context *ctx, hd_error *e) {
     memcpy(w, z->c, (size_t)count * sizeof *w);
     s = hdi_sweep_open(&z->m->shifted, wide, w, z->work);
     hdi_sweep_run(&s, ctx);
-    hdi_wide_norms(w, z->m->noise_shift, n, wide, z->noise[j]);
+    hdi_wide_dots(w, w, z->m->noise_shift, n, wide, z->noise[j]);
+    for (r = 0; r < wide; r++) z->noise[j][r] = sqrt(z->noise[j][r]);
     if (j == 0 || j == 3) hdi_krylov_probe(z);
-    hdi_wide_dots(w, z->c, n, wide, z->alpha[j]);
+    hdi_wide_dots(w, z->c, NULL, n, wide, z->alpha[j]);
     for (r = 0; r < wide; r++) inv[r] = j > 0 ? z->beta[j][r] : 0;
     if (wide == 1) hdi_krylov_subtract(1, w, v, v_old, z->alpha[j], inv, n);
     else hdi_krylov_subtract(HDI_WIDE, w, v, v_old, z->alpha[j], inv, n);
     hdi_mass_apply(lap, wide, w, z->c, ctx);
-    hdi_wide_dots(w, z->c, n, wide, norm);
+    hdi_wide_dots(w, z->c, NULL, n, wide, norm);
     for (r = 0; r < wide; r++) {
         z->beta[j + 1][r] = norm[r] > 0 ? sqrt(norm[r]) : 0;
         inv[r] = norm[r] > 0 ? 1 / z->beta[j + 1][r] : 0;
@@ -14948,13 +14937,9 @@ static double hdi_ritz_bound(const hdi_ritz *s, double tau) {
 /* All of T's eigenvectors once a right-hand side is done. They serve for all times. */
 static hd_status hdi_krylov_vectors(hdi_krylov *z, int32_t r, hd_error *e) {
     const int32_t m = z->done[r];
-    if (z->eigen_room[r] < m) {
-        hdi_free(z->m->ctx, z->eigen[r]);
-        z->eigen_room[r] = 0;
-        z->eigen[r] = HDI_NEW(z->m->ctx, double, (uint64_t)m * (uint64_t)(m + 1), e);
-        if (!z->eigen[r]) return e->status;
-        z->eigen_room[r] = m;
-    }
+    hdi_free(z->m->ctx, z->eigen[r]);
+    z->eigen[r] = HDI_NEW(z->m->ctx, double, (uint64_t)m * (uint64_t)(m + 1), e);
+    if (!z->eigen[r]) return e->status;
     return hdi_krylov_eigen(z, r, m, m, z->eigen[r], z->eigen[r] + m) ? HD_OK : hdi_lanczos_failed(e);
 }
 
@@ -14971,6 +14956,7 @@ static void hdi_krylov_coefficients(const hdi_krylov *z, int32_t r, double t, do
 
 /* Answers summed up in one pass over the basis: of one right-hand side at several times, or the reverse. */
 typedef struct hdi_krylov_sum {
+    const hdi_krylov *z;
     int32_t count;
     const double *y[HDI_WIDE];   /* [steps] coefficients of each */
     double *u[HDI_WIDE];   /* [n], or NULL: not wanted */
@@ -14980,8 +14966,9 @@ typedef struct hdi_krylov_sum {
 enum { HDI_KRYLOV_BLOCK = 64 };  /* rows whose sums stay in the first cache */
 
 /* Rows [begin, end) of all sums, side by side: s [rows][8]. */
-static void hdi_krylov_sum_block(const hdi_krylov *z, const hdi_krylov_sum *a, int64_t begin, int64_t end,
-                                double *HDI_RESTRICT s) {
+static void hdi_krylov_sum_block(const hdi_krylov_sum *a, int64_t begin, int64_t end,
+                                 double *HDI_RESTRICT s) {
+    const hdi_krylov *z = a->z;
     int32_t j, p;
     int64_t i;
     for (j = 0; j < z->steps; j++) {
@@ -14999,21 +14986,17 @@ static void hdi_krylov_sum_block(const hdi_krylov *z, const hdi_krylov_sum *a, i
     }
 }
 
-typedef struct hdi_krylov_sum_job { const hdi_krylov *z; const hdi_krylov_sum *a; } hdi_krylov_sum_job;
-
 static void hdi_krylov_sum_task(void *arg, int64_t first, int64_t last) {
-    const hdi_krylov_sum_job *job = (const hdi_krylov_sum_job *)arg;
-    const hdi_krylov_sum *a = job->a;
-    const int32_t *component = job->z->m->lap->component;
-    const int64_t row = job->z->wide > 1 ? HDI_WIDE : 1;
-    const int64_t column = job->z->wide > 1 ? 1 : HDI_KRYLOV_BLOCK;
+    const hdi_krylov_sum *a = (const hdi_krylov_sum *)arg;
+    const int32_t *component = a->z->m->lap->component;
+    const int64_t row = a->z->wide > 1 ? HDI_WIDE : 1, column = a->z->wide > 1 ? 1 : HDI_KRYLOV_BLOCK;
     int64_t begin, i;
     int32_t p;
     for (begin = first; begin < last; begin += HDI_KRYLOV_BLOCK) {
         const int64_t end = begin + HDI_KRYLOV_BLOCK < last ? begin + HDI_KRYLOV_BLOCK : last;
         double s[(int32_t)HDI_WIDE * HDI_KRYLOV_BLOCK];
         memset(s, 0, sizeof s);
-        hdi_krylov_sum_block(job->z, a, begin, end, s);
+        hdi_krylov_sum_block(a, begin, end, s);
         for (p = 0; p < a->count; p++)
             for (i = begin; i < end && a->u[p]; i++)
                 a->u[p][i] = a->means[p][component[i]] + s[row * (i - begin) + column * p];
@@ -15021,9 +15004,9 @@ static void hdi_krylov_sum_task(void *arg, int64_t first, int64_t last) {
 }
 
 /* u = the constants and the part of the basis, for each answer. */
-static void hdi_krylov_sum_run(const hdi_krylov *z, const hdi_krylov_sum *a, hd_context *ctx) {
-    hdi_krylov_sum_job job = {z, a};
-    hdi_parallel_ranges(ctx, z->m->lap->n_active, HDI_ROWS_PER_TASK, hdi_krylov_sum_task, &job);
+static void hdi_krylov_sum_run(const hdi_krylov *z, hdi_krylov_sum *a, hd_context *ctx) {
+    a->z = z;
+    hdi_parallel_ranges(ctx, z->m->lap->n_active, HDI_ROWS_PER_TASK, hdi_krylov_sum_task, a);
 }
 
 /* What a window hands on to the next may bring this share of the error that is asked for at the last time of
@@ -16189,7 +16172,7 @@ static int32_t hdi_spec_append(hdi_spec *s) {
     memset(couple, 0, 64 * sizeof *couple);
     for (q = 0; q < HDI_WIDE; q++) couple[9 * q] = scale[q] = 1;
     hdi_spec_mass(s, w, s->bw);
-    hdi_wide_dots(w, s->bw, s->n, HDI_WIDE, norm);
+    hdi_wide_dots(w, s->bw, NULL, s->n, HDI_WIDE, norm);
     for (q = 0; q < HDI_WIDE; q++) norm[q] = norm[q] > 0 ? sqrt(norm[q]) : 0;
     if (s->n_blocks > 0) hdi_spec_local(s, w);
     for (pass = 0; pass < 2 || ((off > 0.1 || dirty) && pass < HDI_SPEC_PASSES); pass++) {
@@ -16401,8 +16384,11 @@ static double hdi_spec_measure(hdi_spec *s, const double *value, const double *x
     g.r = s->tmp;
     for (r = 0; r < HDI_WIDE; r++) g.re[r] = -value[r];
     hdi_residual_run(&g, s->ctx);
-    hdi_wide_norms(s->tmp, s->m->weight, s->n, HDI_WIDE, norm);
-    for (r = 0; r < HDI_WIDE; r++) worst = hdi_max(worst, norm[r] / hdi_max(fabs(value[r]), s->unit));
+    hdi_wide_dots(s->tmp, s->tmp, s->m->weight, s->n, HDI_WIDE, norm);
+    for (r = 0; r < HDI_WIDE; r++) {
+        norm[r] = sqrt(norm[r]);
+        worst = hdi_max(worst, norm[r] / hdi_max(fabs(value[r]), s->unit));
+    }
     return worst;
 }
 
@@ -16443,10 +16429,10 @@ static void hdi_spec_settle(hdi_spec *s, const double *value, int32_t at, int32_
     for (r = 0; r < HDI_WIDE; r++) scale[r] = 1;
     s->alike |= !(hdi_spec_orthonormal(s, x, s->bx, scale, scale, NULL, G, R) < 0.5);
     (void)hdi_spec_measure(s, value, x, norm);
-    hdi_wide_norms(x, s->noise, s->n, HDI_WIDE, noise);
+    hdi_wide_dots(x, x, s->noise, s->n, HDI_WIDE, noise);
     for (r = 0; r < n; r++) {
         if (twin[r] > 0.1 || s->found == s->n) continue;   /* found before */
-        s->n_poor += norm[r] > s->tol * hdi_max(fabs(value[r]), s->unit) + noise[r] ||
+        s->n_poor += norm[r] > s->tol * hdi_max(fabs(value[r]), s->unit) + sqrt(noise[r]) ||
                      norm[r] > HDI_SPEC_LOST * fabs(value[r]);
         hdi_spec_enter(s, value[r], norm[r], 8 * at + r);
     }
@@ -23523,15 +23509,19 @@ static int hdi_geo_item_in(hdi_geo_item *x, const hdi_geo_face *f, double *near_
     return 1;
 }
 
+#define HDI_GEO_ON_BORDER "geodesic: a source lies on the border, which is held at zero; take the mean border"
+
 static hd_status hdi_geo_lost(int32_t q, hd_error *e) {
     return hdi_source_fail(e, HD_ERR_ARGUMENT,
                            "geodesic: a point of the source, or a piece of its curve, lies in no face", q,
                            -1, 0);
 }
 
-/* The items of n points of sources, from one on, and the faces that they lie in. */
+/* The items of n points of sources, from one on, and the faces that they lie in. Refuses those on a border
+ * that is held at zero, and curves without a length. */
 static hd_status hdi_geo_items_make(hdi_geo_items *z, const hd_geodesic *g, const hd_sources *s,
                                     int64_t begin, int32_t n, hdi_scope *in) {
+    double length = 0;
     int32_t f, i;
     int q;
     z->s = s;
@@ -23560,9 +23550,17 @@ static hd_status hdi_geo_items_make(hdi_geo_items *z, const hd_geodesic *g, cons
                 here |= hdi_geo_item_in(z->item + i, g->face + f, z->near_by);
         if (here) z->home[z->n_home++] = f;
     }
-    for (i = 0; i < z->n; i++)
-        if (z->item[i].length < 0) return hdi_geo_lost(i, in->e);
-    return HD_OK;
+    for (i = 0; i < z->n; i++) {
+        const hdi_geo_item *x = z->item + i;
+        if (x->length < 0) return hdi_geo_lost(i, in->e);
+        length += x->length;
+        for (q = 0; q < x->n; q++)
+            if (hdi_geo_is_held(g, x->row[q]))
+                return hdi_source_fail(in->e, HD_ERR_ARGUMENT, HDI_GEO_ON_BORDER, i, -1, 0);
+    }
+    if (s->curve && !(length > 0))
+        hdi_fail(in->e, HD_ERR_ARGUMENT, "geodesic: the curve of the source has no length");
+    return in->e->status;
 }
 
 /* ---- sources ---- */
@@ -23574,8 +23572,6 @@ typedef struct hdi_geo_source {
     const hdi_geo_items *items;
     double *d;                   /* [n] the column */
 } hdi_geo_source;
-
-#define HDI_GEO_ON_BORDER "geodesic: a source lies on the border, which is held at zero; take the mean border"
 
 /* Adds the heat of a source to column x of k, which is clear, and opens the fronts that it touches. A vertex
  * named twice counts once. */
@@ -23603,19 +23599,6 @@ static hd_status hdi_geo_off_border(const hd_geodesic *g, const int32_t *sources
         if (g->row[sources[q]] < 0 || !hdi_geo_is_held(g, g->row[sources[q]])) continue;
         return hdi_source_fail(e, HD_ERR_ARGUMENT, HDI_GEO_ON_BORDER, q, sources[q], sources[q]);
     }
-    return e->status;
-}
-
-/* Refuses items there, and curves without a length. */
-static hd_status hdi_geo_items_check(const hd_geodesic *g, const hdi_geo_items *z, hd_error *e) {
-    double length = 0;
-    int32_t q, c;
-    for (q = 0; q < z->n; length += z->item[q++].length)
-        for (c = 0; c < z->item[q].n; c++)
-            if (hdi_geo_is_held(g, z->item[q].row[c]))
-                return hdi_source_fail(e, HD_ERR_ARGUMENT, HDI_GEO_ON_BORDER, q, -1, 0);
-    if (z->s->curve && !(length > 0))
-        hdi_fail(e, HD_ERR_ARGUMENT, "geodesic: the curve of the source has no length");
     return e->status;
 }
 
@@ -23696,14 +23679,13 @@ static int hdi_geo_measure(const hd_geodesic *g, const hdi_geo_source *s, int32_
     }
     for (v = 0; v < g->n; v++) {
         const int32_t i = g->row[v], part = i < 0 ? 0 : g->component[i];
-        const int64_t begin = i < 0 || k > 1 ? 0 : g->value_ptr[part];
-        const int64_t end = i < 0 || k > 1 ? 0 : g->value_ptr[part + 1];
         for (c = 0; c < n; c++) {
+            const double *value = k > 1 ? at + c : g->value + g->value_ptr[part];
+            const int64_t count = k > 1 ? part == own[c] : g->value_ptr[part + 1] - g->value_ptr[part];
             double *d = s[c].d + v;
             *d = HUGE_VAL;
-            if (i < 0 || (k > 1 ? part != own[c] : begin == end)) continue;
-            *d = g->h * (k > 1 ? fabs(phi[k * (int64_t)i + c] - at[c])
-                               : hdi_geo_nearest(g->value + begin, end - begin, phi[i]));
+            if (i < 0 || count == 0) continue;
+            *d = g->h * hdi_geo_nearest(value, count, phi[k * (int64_t)i + c]);
             fine &= skip >> c & 1 || hdi_finite(*d);
         }
     }
@@ -23900,7 +23882,6 @@ static hd_status hdi_geo_from(hd_geodesic *g, const hd_sources *from, int64_t be
         (void)hdi_fail(e, HD_ERR_ARGUMENT, "geodesic: on polygons sources are vertices only");
     } else if (list && hdi_geo_items_make(&items, g, from, begin, n, &scope) >= 0) {
         s->items = &items;
-        (void)hdi_geo_items_check(g, &items, e);
     }
     if (e->status >= 0) (void)hdi_geo_alone(g, s, rep, e);
     return hdi_scope_end(&scope);
