@@ -18168,7 +18168,8 @@ static void hdi_heat_store_inert(const hdi_heat_call *h, int32_t q, double *u) {
     const hdi_terms c = hdi_heat_source(h, q);
     int32_t i;
     for (i = 0; i < c.n && h->ask.query == HDI_QUERY_OPERATOR; i++)
-        if (h->lap->row[hdi_terms_at(&c, i)] == HD_ROW_INERT) u[hdi_terms_at(&c, i)] = hdi_terms_weight(&c, i);
+        if (h->lap->row[hdi_terms_at(&c, i)] == HD_ROW_INERT)
+            u[hdi_terms_at(&c, i)] = hdi_terms_weight(&c, i);
 }
 
 /* Fails where the answer at a vertex is so large that it leaves the range of doubles. */
@@ -19196,13 +19197,20 @@ static void hdi_local_fill(const hdi_local *l, const hd_laplacian *lap, hd_lapla
     ring->from = id + ring->n_edges;
 }
 
+/* How many entries of a row lie in the ball. */
+static int64_t hdi_local_inside(const hdi_local *l, const hd_laplacian *lap, int32_t row) {
+    int64_t count = 0, p;
+    for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1]; p++) count += l->place[lap->L.col[p]] > 0;
+    return count;
+}
+
 /* The pair of the ball with its ring. If nothing is around it, it is made of whole components, which may
  * conserve heat. *rows: what its vertices are in the source. */
 static hd_laplacian *hdi_local_pair(hdi_local *l, const hd_laplacian *lap, hdi_rim *ring, int32_t **rows,
                                     hd_context *ctx, hd_error *e) {
     const int64_t n = l->n, nnz = hdi_local_count(l, lap, ring), m = ring->n_edges;
     hdi_scope s = hdi_scope_begin(ctx, e), *keep;
-    int64_t *fill = HDI_TAKE(&s, int64_t, n), p;
+    int64_t *fill = HDI_TAKE(&s, int64_t, n);
     hd_laplacian *out = fill ? hdi_lap_shell(ctx, e) : NULL;
     double least = HUGE_VAL, *d;
     int32_t i;
@@ -19230,12 +19238,9 @@ static hd_laplacian *hdi_local_pair(hdi_local *l, const hd_laplacian *lap, hdi_r
             out->component_mass[i] = ring->n > 0 ? HUGE_VAL : lap->component_mass[i];
         for (i = 0; i < n; i++) {
             const int32_t from = (*rows)[i] = l->at[i].row;
-            int64_t count = 0;
-            for (p = lap->L.row_ptr[from]; p < lap->L.row_ptr[from + 1]; p++)
-                count += l->place[lap->L.col[p]] > 0;
             out->vertex[i] = i;
             fill[i] = out->L.row_ptr[i];
-            out->L.row_ptr[i + 1] = fill[i] + count;
+            out->L.row_ptr[i + 1] = fill[i] + hdi_local_inside(l, lap, from);
             least = hdi_min(least, lap->b_diag[from]);
         }
         ring->finest = sqrt(least / l->smallest);
@@ -19266,23 +19271,26 @@ static void hdi_local_free(hd_heat *heat) {
     heat->part = NULL;
 }
 
+static double hdi_local_finest(const hd_laplacian *lap) {
+    double least = HUGE_VAL;
+    int32_t i;
+    for (i = 0; i < lap->n_active; i++) least = hdi_min(least, lap->b_diag[i]);
+    return least;
+}
+
 /* Room to look for balls, of the plan. */
 static hdi_local *hdi_local_open(hd_heat *heat, hd_error *e) {
     const hd_laplacian *lap = heat->source;
     hdi_local *l = heat->part;
-    int32_t i;
     if (!l) {
-        l = (hdi_local *)hdi_alloc_zero(heat->ctx, 1, sizeof *l, e);
+        l = heat->part = (hdi_local *)hdi_alloc_zero(heat->ctx, 1, sizeof *l, e);
         if (!l) return NULL;
-        heat->part = l;
         l->heat.ctx = heat->ctx;
         l->version = -1;
         l->place = (int32_t *)hdi_alloc_zero(heat->ctx, (uint64_t)lap->n_active, sizeof *l->place, e);
-        if (!l->place) return NULL;
+        if (!l->place) return hdi_local_free(heat), (hdi_local *)NULL;
     }
-    if (l->version == lap->version) return l;
-    l->smallest = HUGE_VAL;
-    for (i = 0; i < lap->n_active; i++) l->smallest = hdi_min(l->smallest, lap->b_diag[i]);
+    if (l->version != lap->version) l->smallest = hdi_local_finest(lap);
     l->version = lap->version;
     return l;
 }
@@ -19351,12 +19359,28 @@ static hd_status hdi_local_find(hdi_heat_call *h, hdi_local *l, int32_t q, doubl
     return hdi_local_grow(l, lap, reach, reach / hdi_local_hops(lap), most, ctx, h->e);
 }
 
+/* The source of item q by vertices of the ball. id, weight: room for it. */
+static hdi_terms hdi_local_source(const hdi_heat_call *h, const hdi_local *l, int32_t q, int32_t *id,
+                                  double *weight) {
+    const hdi_terms c = hdi_heat_source(h, q);
+    hdi_terms to = {0, 0, id, c.weight ? weight : NULL};
+    int32_t i;
+    for (i = 0; i < c.n; i++) {
+        const int32_t row = h->heat->source->row[hdi_terms_at(&c, i)];
+        if (row < 0) continue;
+        id[to.n] = l->place[row] - 1;
+        weight[to.n++] = hdi_terms_weight(&c, i);
+    }
+    to.one = id[0];
+    return to;
+}
+
 /* The answers to item q on the ball, ld apart: at the time under way, or for each of the caller's times. */
 static hd_status hdi_local_solve(hdi_heat_call *h, hdi_local *l, int32_t q, double *U, size_t ld,
                                  hd_report *rep) {
     const hd_laplacian *lap = h->heat->source;
     hdi_heat_call in;
-    hdi_terms c, to;
+    hdi_terms c;
     double *field, *times;
     int32_t i, *id;
     if (hdi_heat_begin(&in, &l->heat, h->ask.query, rep, h->e) < 0) return hdi_heat_end(&in);
@@ -19370,36 +19394,20 @@ static hd_status hdi_local_solve(hdi_heat_call *h, hdi_local *l, int32_t q, doub
     in.ask.k = 1;
     in.ask.list = NULL;
     in.ask.sparse = NULL;
+    in.ask.F = h->ask.F ? field : NULL;
     in.ask.U = U;
-    in.ask.ldu = ld;
+    in.ask.ldf = in.ask.ldu = ld;
+    in.ask.n_times = h->time_column ? h->ask.n_times : 1;
+    in.ask.t += h->time_column ? 0 : h->now;
     in.times = times;
     in.n_times = h->n_times;
     in.time_column = h->time_column;
-    if (!h->time_column) {
-        in.ask.n_times = 1;
-        in.ask.t += h->now;
-    }
     for (i = 0; i < h->n_times; i++)
         times[i] = in.t = hdi_heat_scaled(&l->heat, in.ask.t[h->time_column ? h->time_column[i] : 0]);
     for (i = 0; i < l->n && h->ask.F; i++)
         field[i] = h->ask.F[h->ask.ldf * (size_t)q + (size_t)lap->vertex[l->row[i]]];
-    if (h->ask.F) {
-        in.ask.F = field;
-        in.ask.ldf = ld;
-    } else {
-        c = hdi_heat_source(h, q);
-        to.n = 0;
-        for (i = 0; i < c.n; i++) {
-            const int32_t row = lap->row[hdi_terms_at(&c, i)];
-            if (row < 0) continue;
-            id[to.n] = l->place[row] - 1;
-            field[to.n++] = hdi_terms_weight(&c, i);
-        }
-        to.one = id[0];
-        to.vertex = id;
-        to.weight = c.weight ? field : NULL;
-        in.ask.terms = &to;
-    }
+    if (!h->ask.F) c = hdi_local_source(h, l, q, id, field);
+    in.ask.terms = h->ask.F ? NULL : &c;
     in.method = HD_METHOD_KRYLOV;
     in.solver = HD_SOLVER_LANCZOS;
     in.m = hdi_krylov_elim(&in);
@@ -19412,25 +19420,30 @@ static hd_status hdi_local_solve(hdi_heat_call *h, hdi_local *l, int32_t q, doub
     return hdi_heat_end(&in);
 }
 
+/* The errors of values of which the largest is `most`. */
+static hdi_parts hdi_local_parts(const hd_report *rep, double most) {
+    hdi_parts off;
+    off.rational = hdi_bound_times(most, rep->error_rational);
+    off.solver = hdi_bound_times(most, rep->error_solver);
+    off.rounding = hdi_bound_times(most, rep->error_rounding);
+    return off;
+}
+
 /* The entries of item q at the time under way, from its answer on the ball. */
 static void hdi_local_entries(const hdi_heat_call *h, const hdi_local *l, int32_t q, const double *u,
                               const hd_report *rep) {
     const hdi_entry_list *list = h->ask.list;
     double *values = list->values + list->n * h->now, most = 0;
-    hdi_parts off;
     int64_t p;
     int32_t i;
     for (i = 0; i < l->n; i++) most = hdi_max(most, fabs(u[i]));
-    off.rational = hdi_bound_times(most, rep->error_rational);
-    off.solver = hdi_bound_times(most, rep->error_solver);
-    off.rounding = hdi_bound_times(most, rep->error_rounding);
     for (p = list->begin[q]; p < list->begin[q + 1]; p++) {
         const int32_t v = list->rows[list->order[p].id], row = h->heat->source->row[v];
         double *value = values + list->order[p].id;
         *value = row >= 0 && l->place[row] > 0 ? u[l->place[row] - 1] : 0;
         if (row == HD_ROW_INERT && h->ask.query == HDI_QUERY_OPERATOR)
             *value = (uint64_t)v == list->order[p].key;
-        hdi_ledger_note(list->ledger + h->now, *value, off);
+        hdi_ledger_note(list->ledger + h->now, *value, hdi_local_parts(rep, most));
     }
     list->ledger[h->now].evidence.rational = rep->evidence_rational;
     list->ledger[h->now].evidence.solver = rep->evidence_solver;
@@ -19468,48 +19481,60 @@ static void hdi_local_store(hdi_heat_call *h, const hdi_local *l, int32_t q, dou
 #define HDI_LOCAL_SHARE 100
 enum { HDI_LOCAL_TRIES = 6 };
 
-/* Finds a ball for item q that is large enough, and the answers on it. */
-static hd_status hdi_local_item(hdi_heat_call *h, hdi_local *l, int32_t q) {
+/* Finds a ball for item q that is large enough, and the answers on it, in U: ld apart, room as in
+ * hdi_local_solve. */
+static hd_status hdi_local_answer(hdi_heat_call *h, hdi_local *l, int32_t q, double **U, size_t *ld,
+                                  hd_report *rep) {
     hd_heat *heat = h->heat;
-    const int32_t most = heat->opts.method == HD_METHOD_LOCAL ? INT32_MAX : heat->source->n_active / 2;
-    const int32_t columns = h->time_column ? h->ask.n_times : 1;
+    const int automatic = heat->opts.method == HD_METHOD_AUTO;
+    const int32_t most = automatic ? heat->source->n_active / 2 : INT32_MAX;
+    const size_t columns = h->time_column ? (size_t)h->ask.n_times : 1;
     const double wanted = HDI_LOCAL_SHARE * heat->opts.tol;
-    double reach = 1, *U = NULL;
+    double reach = 1;
+    int32_t tries;
+    for (tries = 0; tries < HDI_LOCAL_TRIES; tries++) {
+        hdi_free(heat->ctx, *U);
+        *U = NULL;
+        if (hdi_local_find(h, l, q, reach, most) < 0 || l->n > most) break;
+        *ld = (size_t)l->n + (h->ask.F ? 0 : (size_t)hdi_heat_source(h, q).n);
+        *U = HDI_NEW(heat->ctx, double, *ld * columns, h->e);
+        if (!*U || l->n == 0 || hdi_local_plan(heat, l, h->e) < 0) return h->e->status;
+        if (hdi_local_solve(h, l, q, *U, *ld, rep) < 0 || rep->error_rational <= wanted) return h->e->status;
+        reach = sqrt(reach * reach + 0.06 * log(hdi_min(rep->error_rational, 1e9) / wanted)) + 0.02;
+    }
+    if (automatic && h->e->status >= 0)
+        hdi_fail(h->e, HD_ERR_NOT_CONVERGED, "local: heat reaches too much of the mesh");
+    rep->status = HD_WARN_ACCURACY;
+    return h->e->status;
+}
+
+/* Item q and its report. */
+static void hdi_local_item(hdi_heat_call *h, hdi_local *l, int32_t q) {
+    hd_context *ctx = h->heat->ctx;
     hdi_pair *order = NULL;
+    double *U = NULL;
     hd_report rep;
-    int32_t tries, m;
+    int32_t m;
     size_t ld = 0;
     memset(&rep, 0, sizeof rep);
-    for (tries = 0; tries < HDI_LOCAL_TRIES && h->e->status >= 0; tries++) {
-        if (hdi_local_find(h, l, q, reach, most) < 0) break;
-        if (l->n > most) return hdi_fail(h->e, HD_ERR_NOT_CONVERGED, "local: heat reaches most of the mesh");
-        hdi_free(heat->ctx, U);
-        ld = (size_t)l->n + (h->ask.F ? 0 : (size_t)hdi_heat_source(h, q).n);
-        U = HDI_NEW(heat->ctx, double, ld * (size_t)columns, h->e);
-        if (!U || l->n == 0 || hdi_local_plan(heat, l, h->e) < 0) break;
-        if (hdi_local_solve(h, l, q, U, ld, &rep) < 0 || rep.error_rational <= wanted) break;
-        reach = sqrt(reach * reach + 0.06 * log(hdi_min(rep.error_rational, 1e9) / wanted)) + 0.02;
-    }
-    if (h->e->status >= 0 && tries == HDI_LOCAL_TRIES && heat->opts.method != HD_METHOD_LOCAL)
-        (void)hdi_fail(h->e, HD_ERR_NOT_CONVERGED, "local: too much is left out");
-    order = h->ask.sparse && h->e->status >= 0 ? HDI_NEW(heat->ctx, hdi_pair, ld, h->e) : NULL;
+    if (hdi_local_answer(h, l, q, &U, &ld, &rep) >= 0 && h->ask.sparse)
+        order = HDI_NEW(ctx, hdi_pair, ld, h->e);
     for (m = 0; m < h->n_times && h->e->status >= 0; m++) {
         double *u = U + ld * (size_t)(h->time_column ? h->time_column[m] : 0);
         h->now = h->time_column ? h->time_column[m] : h->now;
         if (h->ask.list) hdi_local_entries(h, l, q, u, &rep);
         else hdi_local_store(h, l, q, u, order);
     }
-    hdi_free(heat->ctx, order);
-    hdi_free(heat->ctx, U);
+    hdi_free(ctx, order);
+    hdi_free(ctx, U);
     if (l->n == 0 && !h->ask.list) hdi_evidence_worst(&h->rep->evidence_b, HD_EVIDENCE_PROVEN);   /* exact */
-    if (l->n == 0 || h->e->status < 0) return h->e->status;
+    if (l->n == 0 || h->e->status < 0) return;
     if (h->ask.list) rep.error_bound = rep.error_rational = rep.error_solver = rep.error_rounding = 0;
     rep.method = HD_METHOD_LOCAL;
     rep.solver = HD_SOLVER_LANCZOS;
     rep.reason = h->rep->reason;
     rep.n_touched = l->n;
     hdi_report_merge(h->rep, &rep);
-    return h->e->status;
 }
 
 /* The error of the ring stands where that of poles does, until an answer is there. */
@@ -19526,7 +19551,7 @@ static hd_status hdi_heat_by_local(hdi_heat_call *h) {
     int32_t q;
     for (q = 0; q < h->ask.k && h->e->status >= 0; q++) {
         if (hdi_progress(h->heat->ctx, "solve", (double)q / h->ask.k, h->e) >= 0)
-            (void)hdi_local_item(h, l, q);
+            hdi_local_item(h, l, q);
         if (h->e->status < 0) h->e->column = q;
     }
     if (h->e->status < 0) hdi_local_free(h->heat);
@@ -19542,10 +19567,10 @@ static int hdi_local_can(const hdi_heat_call *h) {
     const hd_heat *heat = h->heat;
     return HDI_HAS_DIRECT && !h->not_local && !h->set && !h->n_off && h->ask.query != HDI_QUERY_ADJOINT &&
            !heat->poles_asked && !heat->iterations_asked && h->times[0] > 0 && heat->source->b_ratio > 0 &&
-           (h->ask.F != h->ask.U || h->ask.k == 1 || !h->ask.F);
+           (!hdi_query_fields(h->ask.query) || (h->ask.F && (h->ask.F != h->ask.U || h->ask.k == 1)));
 }
 
-/* As many balls as items, each like the first. Nothing is said where it is more than an eighth of the mesh. */
+/* As many balls as items, each like the first. Nothing is said where it is an eighth of the mesh or more. */
 static void hdi_local_cost(hdi_heat_call *h, hd_cost *c) {
     const hd_laplacian *lap = h->heat->source;
     const int32_t most = lap->n_active / 8;
@@ -19554,11 +19579,13 @@ static void hdi_local_cost(hdi_heat_call *h, hd_cost *c) {
     double n, steps;
     if (!hdi_local_can(h) || lap->n_active < HDI_LOCAL_FROM) return;
     l = hdi_local_open(h->heat, h->e);
-    if (!l || hdi_local_find(h, l, 0, 1, most) < 0 || l->n > most) return;
+    if (l) (void)hdi_local_find(h, l, 0, 1, most);
+    if (hdi_over_limit(h->heat->ctx, h->e)) hdi_error_clear(h->e);
+    else if (l && h->e->status >= 0) c->possible = l->n <= most;
+    if (!c->possible) return;
     n = l->n;
     f = hdi_fill_guess(n, n * (double)lap->L.nnz / lap->n_active);
     steps = hdi_krylov_windows(h, f).steps + HDI_STEPS_HANDED_ON;
-    c->possible = 1;
     c->flops = h->ask.k * (f.flops + steps * 4 * f.nnz);
     c->bytes = 8 * f.real_stored + (8 * steps + 400) * n;
     c->seconds = h->ask.k * (f.analysis + HDI_ROW_LOCAL * n + f.flops / HDI_RATE_REAL +
