@@ -79,12 +79,12 @@
    More macros there, for smaller builds, where -ffunction-sections -Wl,--gc-sections does not drop enough.
    What is left out returns HD_ERR_NOT_BUILT, and the error names the macro. HD_METHOD_AUTO chooses among what
    is there.
-     HEATDIFF_NO_DIRECT        all factorisations: hd_ldl_*, method krylov; implies NO_POLE_FACTORS,
-                               NO_GEODESIC, NO_SPECTRUM. hd_laplacian_matrices finds b_ratio by Gershgorin's
+     HEATDIFF_NO_DIRECT        all factorisations: hd_ldl_*, methods krylov and local; implies
+                               NO_POLE_FACTORS, NO_GEODESIC, NO_SPECTRUM. hd_laplacian_matrices finds b_ratio by Gershgorin's
                                circles alone
      HEATDIFF_NO_POLE_FACTORS  complex factors: method direct, hd_ldl_*_complex; implies NO_DIAGONAL
-     HEATDIFF_NO_DIAGONAL      selected inversion: hd_heat_diagonal, hd_ldl_inverse*, diagonal pole sets;
-                               implies NO_DIFFUSION. Method direct then has larger error bounds
+     HEATDIFF_NO_DIAGONAL      selected inversion: hd_heat_diagonal, hd_ldl_inverse*; implies NO_DIFFUSION.
+                               Method direct then has larger error bounds
      HEATDIFF_NO_DIFFUSION     hd_heat_distance, hd_heat_distance_pairs, hd_heat_sample
      HEATDIFF_NO_SPECTRUM      hd_spectrum_*. Bounds of distances at large t, and of all answers where heat
                                flows out, are larger then
@@ -485,14 +485,14 @@ typedef struct hd_filter {
 
 /* Answers of two methods differ within their bounds. */
 typedef enum hd_method {
-    /* The cheapest by a model, within the byte limit. Columns or fields at one t change to direct when they
-     * have cost more than its factors. The same calls take the same methods. */
+    /* The cheapest by a model, within the byte limit. For many calls with a column each at one t, ask for
+     * direct: its factors are kept. */
     HD_METHOD_AUTO = 0,
     HD_METHOD_ITERATIVE,        /* a Krylov method for each pole, or Lanczos for the exponential */
     HD_METHOD_DIRECT,           /* all poles factorised in one sweep: for many fields or columns */
     HD_METHOD_KRYLOV,           /* shift-and-invert Lanczos: one real factor, few fields or many times */
-    /* The same on the part of the mesh that heat reaches, about 10 sqrt(t) around each source or field. What
-     * it leaves beyond is 0 */
+    /* The same on a ball around the source, or around where a field is not zero: about 11 sqrt(t), more if
+     * need be. Answers beyond are 0. For columns, entries, fields and their derivatives */
     HD_METHOD_LOCAL
 } hd_method;
 
@@ -586,8 +586,8 @@ typedef enum hd_evidence {
 /* What happened, and how large the error can be. For several fields, columns or times: the worst of them.
  * error_bound bounds the largest error of any value returned, relative to the largest |value|: of each field,
  * column and time, or of the whole list for entries and pairs. Above 1e-2 the status is HD_WARN_ACCURACY. It
- * is the sum of four parts: the rational approximation, the iterative solver, rounding, and what heat does
- * beyond the part of the mesh that method local works on. */
+ * is the sum of four parts: the rational approximation, the iterative solver, rounding, and what method local
+ * leaves out. */
 typedef struct hd_report {
     hd_status status;
     hd_error error;             /* filled if status < 0 */
@@ -616,8 +616,8 @@ typedef struct hd_report {
     double error_relative;
     double smallest;            /* diagonals and distances: the smallest value that is not zero */
     int64_t n_lost;             /* distances with at most about one sure digit, see hd_heat_distance */
-    int32_t n_touched;          /* local: vertices of the largest part */
-    double mass_drift;          /* |1'B u - 1'B f| / 1'B|u|; 0 if L loses heat, or for the caller's filters */
+    int32_t n_touched;          /* local: vertices of the largest ball */
+    double mass_drift;          /* |1'B u - 1'B f| / 1'B|u|; 0 if L loses heat, for filters, or local */
 } hd_report;
 
 typedef struct hd_spectrum_opts {
@@ -15132,11 +15132,11 @@ static double hdi_krylov_rounding(const hdi_krylov *z, int32_t r, int32_t m, dou
 
 enum { HDI_RIM_SAMPLES = 6 };
 
-/* Samples of |L u + B u'| on the ring, in the norm of B^-1, at the times s in [0, t] after z->from; with rate
- * those of its derivative. wl, wb: L and B times the basis there, by steps. rest [ring->n]. Returns the sum
- * over the steps between samples, each by the larger of its ends. */
+/* The integral of |L u + B u'| on the ring, in the norm of B^-1, over a time t after z->from; with rate that
+ * of its derivative. Steps between samples count as the larger of their ends. wl, wb: L and B times the basis
+ * there, by steps. rest [ring->n]. */
 static double hdi_rim_sum(const hdi_krylov *z, int32_t r, double t, const double *wl, const double *wb,
-                           double *rest) {
+                          double *rest) {
     const hdi_rim *g = z->ring;
     const int32_t m = z->done[r];
     double sum = 0, last = 0, y[2 * HDI_KRYLOV_MAX];
@@ -15167,7 +15167,8 @@ static double hdi_rim_sum(const hdi_krylov *z, int32_t r, double t, const double
 /* What the answer of right-hand side r, a time t after z->from, is off by since it ends at the ring, in the
  * norm of B. u(s), extended by zeros, solves the whole system but for rho(s) = L u + B u' on the ring, and so
  * the error is at most the integral of |rho(s)| from 0 to t (Duhamel). A field B^-1 c is off by |B f| there
- * to begin with. The integral is sampled: this is measured, not proven. */
+ * to begin with. The integral is sampled in [t/2, t]: before, when less heat has arrived and the basis is
+ * poor, |rho| counts as at t/2. So this is measured, not proven. */
 static double hdi_rim_bound(const hdi_krylov *z, int32_t r, double t, hd_error *e) {
     const hdi_rim *g = z->ring;
     const int32_t m = z->done[r], *row = z->m->lap->row;
