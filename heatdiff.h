@@ -19563,28 +19563,31 @@ static hd_status hdi_heat_by_local(hdi_heat_call *h) {
 enum { HDI_LOCAL_FROM = 4096 };
 #define HDI_ROW_LOCAL 0.8e-6       /* seconds for each row of a ball: to find it and make its pair */
 
-/* Can balls serve the call? */
+/* Can balls serve the call? Auto takes fields that are not known, as in estimates, for large ones. */
 static int hdi_local_can(const hdi_heat_call *h) {
     const hd_heat *heat = h->heat;
+    const int asked = heat->opts.method == HD_METHOD_LOCAL;
     return HDI_HAS_DIRECT && !h->not_local && !h->set && !h->n_off && h->ask.query != HDI_QUERY_ADJOINT &&
            !heat->poles_asked && !heat->iterations_asked && h->times[0] > 0 && heat->source->b_ratio > 0 &&
-           (!hdi_query_fields(h->ask.query) || (h->ask.F && (h->ask.F != h->ask.U || h->ask.k == 1)));
+           (!hdi_query_fields(h->ask.query) || (h->ask.F ? h->ask.F != h->ask.U || h->ask.k == 1 : asked));
 }
 
-/* As many balls as items, each like the first. Nothing is said where it is an eighth of the mesh or more. */
+/* As many balls as items, each like the first; all of the mesh for fields that are not known. Auto is told
+ * nothing where it is an eighth of the mesh or more. */
 static void hdi_local_cost(hdi_heat_call *h, hd_cost *c) {
     const hd_laplacian *lap = h->heat->source;
-    const int32_t most = lap->n_active / 8;
+    const int asked = h->heat->opts.method == HD_METHOD_LOCAL;
+    const int32_t most = asked ? lap->n_active : lap->n_active / 8;
     hdi_local *l;
     hdi_fill f;
     double n, steps;
-    if (!hdi_local_can(h) || lap->n_active < HDI_LOCAL_FROM) return;
+    if (!hdi_local_can(h) || (!asked && lap->n_active < HDI_LOCAL_FROM)) return;
     l = hdi_local_open(h->heat, h->e);
     if (l) (void)hdi_local_find(h, l, 0, 1, most);
     if (hdi_over_limit(h->heat->ctx, h->e)) hdi_error_clear(h->e);
     else if (l && h->e->status >= 0) c->possible = l->n <= most;
     if (!c->possible) return;
-    n = l->n;
+    n = hdi_query_fields(h->ask.query) && !h->ask.F ? lap->n_active : l->n;
     f = hdi_fill_guess(n, n * (double)lap->L.nnz / lap->n_active);
     steps = hdi_krylov_windows(h, f).steps + HDI_STEPS_HANDED_ON;
     c->flops = h->ask.k * (f.flops + steps * 4 * f.nnz);

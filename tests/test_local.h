@@ -178,6 +178,17 @@ static void loc_auto(void) {
     kit_release(mark);
 }
 
+/* An estimate of what was asked for is there on any mesh; of fields, which it does not know, it is of all of the mesh. */
+static void loc_estimate(void) {
+    const hd_laplacian *lap = kit_pair("ico/3 fem");
+    hd_heat *heat = kit_heat(lap, "method=local");
+    const double t = lap->h * lap->h / 10;
+    hd_estimate e[2];
+    CHECK(hd_heat_estimate(heat, HD_QUERY_COLUMNS, 1, &t, 1, e, NULL) == HD_OK && hd_heat_estimate(heat, HD_QUERY_FIELDS, 1, &t, 1, e + 1, NULL) == HD_OK);
+    CHECK(e[0].method == HD_METHOD_LOCAL && e[0].cost[0].fits && e[1].cost[0].fits && e[0].cost[0].flops > 0);
+    CHECK(e[0].cost[0].flops < e[1].cost[0].flops);
+}
+
 /* What has no local answer is refused. */
 static void loc_refused(void) {
     const hd_laplacian *lap = kit_pair("ico/3 fem");
@@ -208,5 +219,6 @@ static void test_local(void) {
     loc_cut();
     loc_entries();
     loc_auto();
+    loc_estimate();
     loc_refused();
 }
