@@ -306,7 +306,7 @@ static const word POLES[] = {
     { NULL, 0 } };
 static const word METHODS[] = {
     { "auto", HD_METHOD_AUTO }, { "direct", HD_METHOD_DIRECT }, { "krylov", HD_METHOD_KRYLOV },
-    { "iterative", HD_METHOD_ITERATIVE }, { NULL, 0 } };
+    { "iterative", HD_METHOD_ITERATIVE }, { "local", HD_METHOD_LOCAL }, { NULL, 0 } };
 static const word ORDERINGS[] = {
     { "auto", HD_ORDERING_AUTO }, { "amd", HD_ORDERING_MINIMUM_DEGREE },
     { "dissection", HD_ORDERING_NESTED_DISSECTION }, { NULL, 0 } };
@@ -870,7 +870,7 @@ static const option_def OPTIONS[] = {
       "the last time, 16 an octave are taken between them" },
     { "degree", 0, CMD_HEAT, 0, parse_integer, AT(degree), NULL, 1, 14, "R", "1..14",
       "degree of the rational approximation, 1..14 (default: by the\n"
-      "error); not for krylov, which has none" },
+      "error); not for krylov and local, which have none" },
     { "poles", 0, CMD_HEAT, 0, parse_words, AT(poles), POLES, 0, 0, "NAME", "uniform or kernel",
       "uniform (default of diffuse, smooth) or kernel (of all others)" },
     { "tol", 0, CMD_SPECTRUM, 0, parse_tol, 0, NULL, 0, 0, "E", "a number between 0 and 1, such as 1e-10",
@@ -878,12 +878,13 @@ static const option_def OPTIONS[] = {
     { "tol", 0, CMD_HEAT, 0, parse_tol, 0, NULL, 0, 0, "E", "a number between 0 and 1, such as 1e-9",
       "relative error that iterative methods aim at (1e-9)" },
     { "method", 0, CMD_INVERTS, 0, parse_words, AT(method), METHODS, 0, 0, "NAME",
-      "auto, direct, krylov or iterative", "auto or direct, which are the same here" },
+      "auto, direct, krylov, iterative or local", "auto or direct, which are the same here" },
     { "method", 0, CMD_ANYHOW, 0, parse_words, AT(method), METHODS, 0, 0, "NAME",
-      "auto, direct, krylov or iterative",
+      "auto, direct, krylov, iterative or local",
       "direct: factors of all poles, for many sources or fields;\n"
       "krylov: one factor for one source and for many times;\n"
-      "iterative: no factor; auto (default): what costs least" },
+      "iterative: no factor; local: only the part that heat reaches;\n"
+      "auto (default): what costs least" },
     { "ordering", 0, CMD_GEODESIC, 0, parse_words, AT(ordering), ORDERINGS, 0, 0, "NAME",
       "auto, amd or dissection",
       "amd (minimum degree), dissection (nested, in space) or auto\n(default: by the size)" },
@@ -892,7 +893,7 @@ static const option_def OPTIONS[] = {
       "amd (minimum degree), dissection (nested, in space) or auto\n(default: by the size)" },
     { "ordering", 0, CMD_HEAT, 0, parse_words, AT(ordering), ORDERINGS, 0, 0, "NAME",
       "auto, amd or dissection",
-      "of direct and krylov: amd (minimum degree), dissection\n"
+      "of all but iterative: amd (minimum degree), dissection\n"
       "(nested, in space) or auto (default: by the size)" },
     { "solver", 0, CMD_ANYHOW, 0, parse_words, AT(solver), SOLVERS, 0, 0, "NAME",
       "cocg, minres or lanczos",
@@ -1211,25 +1212,26 @@ static int check_output(const options *o)
 static int check_method(const options *o)
 {
     const char *name = word_of(METHODS, o->method), *iterating = o->solver ? "--solver" : "--precond";
+    const int no_poles = o->method == HD_METHOD_KRYLOV || o->method == HD_METHOD_LOCAL;
     if ((o->command & CMD_INVERTS) && o->method != HD_METHOD_AUTO && o->method != HD_METHOD_DIRECT)
         return fail(USAGE, "--method takes auto or direct here, not %s: %s is read off the factors", name,
                     command_name(o->command));
-    if (o->method == HD_METHOD_KRYLOV && (o->degree || o->poles))
-        return fail(USAGE, "%s takes --method auto, direct or iterative: krylov has no poles",
-                    o->degree ? "--degree" : "--poles");
-    if (o->filter && (o->degree || o->poles || o->method == HD_METHOD_KRYLOV ||
-                      o->solver == HD_SOLVER_LANCZOS))
+    if (no_poles && (o->degree || o->poles))
+        return fail(USAGE, "%s takes --method auto, direct or iterative: %s has no poles",
+                    o->degree ? "--degree" : "--poles", name);
+    if (o->filter && no_poles)
+        return fail(USAGE, "--filter takes no --method %s: its poles are made for it, and it needs them", name);
+    if (o->filter && (o->degree || o->poles || o->solver == HD_SOLVER_LANCZOS))
         return fail(USAGE, "--filter takes no %s: its poles are made for it, and it needs them",
-                    o->degree ? "--degree" : o->poles ? "--poles"
-                    : o->solver ? "--solver lanczos" : "--method krylov");
+                    o->degree ? "--degree" : o->poles ? "--poles" : "--solver lanczos");
     if (o->filter && o->command == CMD_PAIRS && (o->method == HD_METHOD_ITERATIVE || o->solver || o->precond))
         return fail(USAGE,
                     "--method takes auto or direct here: distances of a filter are read off the factors");
-    if ((o->method == HD_METHOD_KRYLOV || o->method == HD_METHOD_DIRECT) && (o->solver || o->precond))
+    if ((no_poles || o->method == HD_METHOD_DIRECT) && (o->solver || o->precond))
         return fail(USAGE, "%s takes --method iterative or auto: %s does not iterate over systems", iterating,
                     name);
     if (o->ordering && o->method == HD_METHOD_ITERATIVE)
-        return fail(USAGE, "--ordering takes --method auto, direct or krylov: iterative factorises nothing");
+        return fail(USAGE, "--ordering takes no --method iterative: that factorises nothing");
     if (o->ordering && (o->solver || o->precond))
         return fail(USAGE,
                     "--ordering takes no %s beside it: that asks for iterations, which factorise nothing",
@@ -1278,7 +1280,7 @@ static int check_definition(const options *o)
     if (o->degree || o->poles)
         return fail(USAGE, "%s takes --definition classical or weighted: %s has poles of its own",
                     o->degree ? "--degree" : "--poles", name);
-    if (o->method == HD_METHOD_KRYLOV || o->method == HD_METHOD_ITERATIVE)
+    if (o->method != HD_METHOD_AUTO && o->method != HD_METHOD_DIRECT)
         return fail(USAGE, "--method takes auto or direct here, not %s: %s is read off the factors",
                     word_of(METHODS, o->method), name);
     if (o->solver || o->precond)
@@ -1705,9 +1707,12 @@ static void report_merge(hd_report *all, const hd_report *one)
     keep_larger(&all->error_rational, one->error_rational);
     keep_larger(&all->error_solver, one->error_solver);
     keep_larger(&all->error_rounding, one->error_rounding);
+    keep_larger(&all->error_local, one->error_local);
     if (one->evidence_rational > all->evidence_rational) all->evidence_rational = one->evidence_rational;
     if (one->evidence_solver > all->evidence_solver) all->evidence_solver = one->evidence_solver;
     if (one->evidence_rounding > all->evidence_rounding) all->evidence_rounding = one->evidence_rounding;
+    if (one->evidence_local > all->evidence_local) all->evidence_local = one->evidence_local;
+    if (one->n_touched > all->n_touched) all->n_touched = one->n_touched;
     if (one->evidence_b > all->evidence_b) all->evidence_b = one->evidence_b;
     keep_larger(&all->error_bound_b, one->error_bound_b);
     keep_larger(&all->error_bound, one->error_bound);
@@ -2474,14 +2479,14 @@ static int run_plan(run *r)
 
 /* ---- what a run would take ---- */
 
-/* The krylov method takes one input after the other, each at all times. Other methods take one time after the
- * other, each with all inputs. If the method is free, new pole factors for each time cost less once there are
+/* The methods krylov and local take one input after the other, each at all times. Others take one time after
+ * the other, each with all inputs. If the method is free, new pole factors for each time cost less once there are
  * about as many inputs as times, but never with many times. Measured on meshes of 12K, 35K and 150K vertices:
  * from 2 to 5 inputs with 4 times, from 8 to 15 inputs with 10. */
 static int time_by_time(const run *r, int n_times)
 {
     const options *o = r->o;
-    if (o->method != HD_METHOD_AUTO) return o->method != HD_METHOD_KRYLOV;
+    if (o->method != HD_METHOD_AUTO) return o->method < HD_METHOD_KRYLOV;
     return o->solver || o->precond || o->degree || o->poles || (n_times <= 16 && r->n_inputs >= n_times);
 }
 
@@ -2587,7 +2592,7 @@ static hd_status estimate_query(const run *r, hd_heat *heat, int n_times, hd_est
     if (hd_heat_estimate(heat, query, 2, twice, k, &two, err) < 0) return err->status;
     e->cost[HD_METHOD_DIRECT].bytes = two.cost[HD_METHOD_DIRECT].bytes;
     e->cost[HD_METHOD_DIRECT].bytes_most = two.cost[HD_METHOD_DIRECT].bytes_most;
-    for (m = 1; m <= HD_METHOD_KRYLOV; m++) {
+    for (m = 1; m <= HD_METHOD_LOCAL; m++) {
         e->cost[m].flops *= n_times;
         e->cost[m].seconds *= n_times;
         e->cost[m].fits = e->cost[m].possible && e->cost[m].bytes <= e->bytes_left;
@@ -2650,6 +2655,7 @@ static void find_ways(run *r)
 {
     const hd_estimate *e = &r->estimate;
     const hd_cost *iterative = &e->cost[HD_METHOD_ITERATIVE], *krylov = &e->cost[HD_METHOD_KRYLOV];
+    const hd_cost *local = &e->cost[HD_METHOD_LOCAL];
     hd_estimate one;
     hd_error err;
     options o = *r->o;
@@ -2659,6 +2665,8 @@ static void find_ways(run *r)
         add_way(r, "--method iterative", e->bytes_in_use + iterative->bytes, iterative->seconds);
     if (r->o->method == HD_METHOD_DIRECT && krylov->possible && !r->o->degree && !r->o->poles)
         add_way(r, "--method krylov", e->bytes_in_use + krylov->bytes, krylov->seconds);
+    if (r->o->method != HD_METHOD_LOCAL && local->possible)
+        add_way(r, "--method local", e->bytes_in_use + local->bytes, local->seconds);
     if (r->n_times > 1 && estimate_query(r, r->heat, 1, &one, &err) >= 0 &&
         one.cost[0].bytes < 0.95 * e->cost[0].bytes)
         add_way(r, "one time after the other", one.bytes_in_use + one.cost[0].bytes,
@@ -2838,7 +2846,7 @@ static int solve_group(run *r, const time_group *g)
     hd_report report;
     for (; q < r->n_inputs && !by_time && !code; q++) {
         code = solve_input(r, g, q, &report);
-        by_time = report.method != HD_METHOD_KRYLOV;
+        by_time = report.method < HD_METHOD_KRYLOV;
     }
     for (i = 0; i < g->n && q < r->n_inputs && !code; i++) code = solve_time(r, g->index[i], q);
     return code;
@@ -3335,12 +3343,14 @@ static void json_laplacian(json *j, const hd_laplacian *lap)
     if (lap->points.neighbours) json_points(j, &lap->points);
 }
 
-/* Fill, flops and growth of the factorisations; zeros if there are none. */
+/* Fill, flops and growth of the factorisations, and the most vertices that one of local had; zeros if there are
+ * none. */
 static void json_factor(json *j, const hd_report *p)
 {
     json_integer(j, "factor_nnz", p->factor_nnz);
     json_number(j, "factor_flops", p->factor_flops);
     json_number(j, "growth", p->growth);
+    json_integer(j, "touched", p->n_touched);
 }
 
 static const char *const EVIDENCE[] = {"none", "proven", "measured", "estimated"};    /* by hd_evidence */
@@ -3354,12 +3364,14 @@ static void json_errors(json *j, const hd_report *p)
     json_number(j, "error_rational", p->error_rational);
     json_number(j, "error_solver", p->error_solver);
     json_number(j, "error_rounding", p->error_rounding);
+    json_number(j, "error_local", p->error_local);
     json_number(j, "error_bound_b", p->error_bound_b);
     json_key(j, "evidence");
     json_open(&inner, j->out);
     json_text(&inner, "rational", EVIDENCE[p->evidence_rational]);
     json_text(&inner, "solver", EVIDENCE[p->evidence_solver]);
     json_text(&inner, "rounding", EVIDENCE[p->evidence_rounding]);
+    json_text(&inner, "local", EVIDENCE[p->evidence_local]);
     json_close(&inner);
 }
 
@@ -3462,10 +3474,13 @@ static void json_heat(json *j, const run *r)
 static void print_method(const run *r)
 {
     const hd_report *w = &r->sum.worst;
+    const double rows = w->n_touched > 0 ? w->n_touched : r->lap->n_active;
     fprintf(stderr, "method %s (%s)\n", method_text(&r->sum), reason_text(&r->sum));
+    if (w->n_touched > 0)
+        fprintf(stderr, "parts of at most %ld of %ld vertices\n", (long)w->n_touched, (long)r->lap->n_active);
     if (w->factor_nnz > 0)
         fprintf(stderr, "factors: %.3g non-zeros, %.3g a row; %.3g flops, growth %.3g, ordering %s\n",
-                (double)w->factor_nnz, (double)w->factor_nnz / r->lap->n_active, w->factor_flops, w->growth,
+                (double)w->factor_nnz, (double)w->factor_nnz / rows, w->factor_flops, w->growth,
                 or_none(&r->sum.ordering));
     fprintf(stderr, "solver %s, preconditioner %s, poles %s, degree %ld, %lld iterations\n",
             or_none(&r->sum.solver), or_none(&r->sum.precond), or_none(&r->sum.poles), (long)w->degree,
@@ -3550,7 +3565,7 @@ static void print_errors(const run *r)
         fprintf(stderr, ", %.1e of each; the smallest is %.4g\n", w->error_relative, w->smallest);
     else {
         if (r->o->command != CMD_PAIRS) fprintf(stderr, " (%.1e in the B norm)", w->error_bound_b);
-        if (r->o->filter) fprintf(stderr, "\n");
+        if (r->o->filter || w->n_touched > 0) fprintf(stderr, "\n");
         else if (r->lap->conserves == 1) fprintf(stderr, ", heat conserved to %.1e\n", w->mass_drift);
         else fprintf(stderr, ", heat leaves at the border\n");
     }
@@ -3647,7 +3662,7 @@ static void json_estimate(json *j, const run *r)
     json_number(j, "bytes_allowed", r->context.byte_limit ? (double)r->context.byte_limit : (double)NAN);
     json_key(j, "methods");
     json_open(&inner, j->out);
-    for (m = HD_METHOD_AUTO + 1; m <= HD_METHOD_KRYLOV; m++)
+    for (m = HD_METHOD_AUTO + 1; m <= HD_METHOD_LOCAL; m++)
         if (e->cost[m].possible) json_cost(&inner, word_of(METHODS, m), r, &e->cost[m]);
     json_close(&inner);
     json_key(j, "ways_out");
@@ -3679,7 +3694,7 @@ static void print_estimate(const run *r)
     if (c->bytes_most > c->bytes)
         printf("with poles of degree 14, if they are needed, %.1f MB\n",
                 1e-6 * (e->bytes_in_use + c->bytes_most));
-    for (m = HD_METHOD_AUTO + 1; m <= HD_METHOD_KRYLOV; m++)
+    for (m = HD_METHOD_AUTO + 1; m <= HD_METHOD_LOCAL; m++)
         if (e->cost[m].possible && r->o->command != CMD_GEODESIC) print_cost(r, word_of(METHODS, m), &e->cost[m]);
     for (m = 0; m < r->n_ways; m++)
         printf("%s needs %.1f MB and about %.3g s\n", r->ways[m].option, 1e-6 * r->ways[m].bytes,
