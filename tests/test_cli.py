@@ -501,7 +501,7 @@ def everything():
 KEYS = set("n faces components h area inert laplacian method times threads peak_bytes seconds ordering factor_nnz factor_flops "
            "residual".split())
 HEAT_KEYS = KEYS | set("solver precond poles degree iterations error_bound mass_drift reason growth evidence error_rational "
-                       "error_solver error_rounding".split())
+                       "error_solver error_rounding error_local touched".split())
 STAGES = ("load", "assemble", "order", "analyse", "factor", "precondition", "invert", "solve", "write")
 
 
@@ -564,7 +564,7 @@ class Case(unittest.TestCase):
             self.assertEqual((r["factor_nnz"], r["factor_flops"], r["growth"], r["ordering"], seconds["factor"]),
                              (0, 0, 0, "none", 0))
         elif r["method"] != "iterative":
-            self.assertTrue(0 < r["n"] - r["inert"] <= r["factor_nnz"] <= r["factor_flops"], r)
+            self.assertTrue(0 < (r.get("touched") or r["n"] - r["inert"]) <= r["factor_nnz"] <= r["factor_flops"], r)
             self.assertIn(r["ordering"], ("amd", "dissection"))
             self.assertGreater(min(seconds["order"] + seconds["analyse"], seconds["solve"]), 0, seconds)
         if r["command"] in ("kernel", "diffuse"):
@@ -574,10 +574,10 @@ class Case(unittest.TestCase):
             else:
                 self.assertEqual((r["method"], r["reason"]), (asked, "asked for"))
         if heat:
-            self.assertEqual(set(r["evidence"]), {"rational", "solver", "rounding"})
+            self.assertEqual(set(r["evidence"]), {"rational", "solver", "rounding", "local"})
             self.assertLessEqual(set(r["evidence"].values()), {"none", "proven", "measured", "estimated"})
             self.assertTrue(not r["times"] or [p["t"] for p in r["per_time"]] == r["times"])
-        if r["method"] == "krylov":
+        if r["method"] in ("krylov", "local"):
             self.assertEqual((r["solver"], r["precond"], r["poles"], r["degree"]), ("lanczos", "none", "none", 0))
         if r["command"] in ("distance", "hks", "sample"):
             self.assertTrue(r["method"] == "direct" and (r["poles"] == "none" or seconds["invert"] > 0)
@@ -658,12 +658,12 @@ times > 0 :: trace ico.obj --t 0
 --filter takes heat:T, wave:E,SIGMA :: hks ico.obj --filter sine:3
 read off the factors :: pairs ico.obj --input p.txt --filter heat:1 {--solver cocg|--precond ildl|--method iterative}
 no {--t|--degree} :: hks ico.obj --filter heat:1 {1} 4
-no {--method krylov|--solver lanczos} :: kernel ico.obj --source 1 --filter heat:1 {1}
+no {--method krylov|--method local|--solver lanczos} :: kernel ico.obj --source 1 --filter heat:1 {1}
 no --definition :: distance ico.obj --source 1 --filter heat:1 --definition commute
 --filter :: geodesic ico.obj --source 0 --filter heat:1
 --ordering takes no --precond :: kernel ico.obj --source 0 --t 1 --ordering amd --precond ildl
 single time :: sample ico.obj --count 3 --t auto:3
---method takes auto or direct :: pairs ico.obj --input p.txt --definition commute --method {krylov|iterative}
+--method takes auto or direct :: pairs ico.obj --input p.txt --definition commute --method {krylov|iterative|local}
 --solver takes --definition :: pairs ico.obj --input p.txt --definition {commute|biharmonic} --solver cocg
 --precond takes --definition :: pairs ico.obj --input p.txt --definition {commute|biharmonic} --precond ildl
 at most --count :: sample ico.obj --count 1 --t 1 --source 0,1
@@ -737,13 +737,13 @@ natural or dirichlet :: info ico.obj --border neumann
 --weight-cut :: info cloud-300.xyz --tufted --weight-cut 1e-4
 --lambda :: info quad.obj --lambda 1 --laplacian fem
 --t takes :: kernel not-there.obj --t abc --source 0
-{--degree|--poles} takes :: {kernel ico.obj --source 0|diffuse ico.obj --input f.txt} --t 1 --method krylov {1} {7|kernel}
---solver takes :: {kernel ico.obj --source 0|diffuse ico.obj --input f.txt} --t 1 --method {krylov|direct} --solver {cocg|lanczos}
---precond takes :: {kernel ico.obj --source 0|diffuse ico.obj --input f.txt} --t 1 --method {krylov|direct} --precond ildl
+{--degree|--poles} takes :: {kernel ico.obj --source 0|diffuse ico.obj --input f.txt} --t 1 --method {krylov|local} {1} {7|kernel}
+--solver takes :: {kernel ico.obj --source 0|diffuse ico.obj --input f.txt} --t 1 --method {krylov|direct|local} --solver {cocg|lanczos}
+--precond takes :: {kernel ico.obj --source 0|diffuse ico.obj --input f.txt} --t 1 --method {krylov|direct|local} --precond ildl
 --ordering takes :: {kernel ico.obj --source 0|diffuse ico.obj --input f.txt} --t 1 --method iterative --ordering amd
 --ordering takes :: {kernel ico.obj --source 0|diffuse ico.obj --input f.txt} --t 1 --solver minres --ordering dissection
 --t :: {hks ico.obj|distance ico.obj --source 0|pairs ico.obj --input p.txt|sample ico.obj --count 2}
---method takes auto or direct :: {hks ico.obj|distance ico.obj --source 0|sample ico.obj --count 2} --t 1 --method {krylov|iterative}
+--method takes auto or direct :: {hks ico.obj|distance ico.obj --source 0|sample ico.obj --count 2} --t 1 --method {krylov|iterative|local}
 --solver :: {hks ico.obj|distance ico.obj --source 0|sample ico.obj --count 2} --t 1 --solver cocg
 --degree takes :: {hks ico.obj|distance ico.obj --source 0|pairs ico.obj --input p.txt|sample ico.obj --count 2} --t 1 --degree 1 \
     {--poles kernel|}
@@ -761,13 +761,13 @@ Spectrum spectrum smoth smooth rendr render nosuch ? x ? """.split()
 TAKEN = table("""
 kernel ico.obj --source 0 --t 1 --degree 1 --poles uniform
 kernel ico.obj --source 0 --t 1 --method direct {--degree 9 --poles kernel|--ordering amd}
-kernel ico.obj --source 0 --t 1 --method krylov {--ordering dissection|--tol 1e-6}
+kernel ico.obj --source 0 --t 1 --method {krylov|local} {--ordering dissection|--tol 1e-6}
 kernel ico.obj --source 0 --t 1 {--ordering amd|--method auto --solver minres|--method iterative --ordering auto|--simd none}
 kernel {patch-9.off|ico.obj} --source 0 --t {auto:1,2h2|auto:17}
 diffuse ico.obj --t 1 --input ones-12.txt --degree 1 --method direct
-pairs ico.obj --input p.txt --t 1 --method krylov
+pairs ico.obj --input p.txt --t 1 --method {krylov|local}
 {sample ico.obj --count 2|geodesic ico.obj --source 0|smooth ico.obj} --t {1|auto:1}
-smooth ico.obj {|--degree 1|-o -|--t 0.1/l1 --method krylov|--t 0|--tufted --laplacian voronoi-cot|--dry-run}
+smooth ico.obj {|--degree 1|-o -|--t 0.1/l1 --method krylov|--method local|--t 0|--tufted --laplacian voronoi-cot|--dry-run}
 {hks ico.obj|distance ico.obj --source 0|pairs ico.obj --input p.txt|sample ico.obj --count 2} --t 1 --poles uniform --degree 1
 info {book.obj --lambda 2 --laplacian polygon|quad.obj --lambda 2}
 sample ico.obj --count 2 --t 1 --source {0:0.2,0.3,1,2|0+1,2+3,4+5 --curve|0,1,2 --source-file one.txt}
@@ -828,7 +828,7 @@ class Usage(Case):
             if command:
                 self.assertEqual(self.good(command + " -h").stdout.decode(), text)
         text = self.good("kernel --help").stdout.decode()
-        for option, values in (("method", "direct krylov iterative auto"), ("ordering", "amd dissection auto"),
+        for option, values in (("method", "direct krylov iterative local auto"), ("ordering", "amd dissection auto"),
                                ("simd", "none avx2 avx512 auto")):
             part = text[text.index("--" + option):].split("\n      --")[0]
             for value in values.split():
@@ -1368,7 +1368,7 @@ def answers(mesh, m, sources, times, pairs):
             return ends + d
         return ends + [c for x, row in zip(shown, d) for c in ([m.entry(heat(x), i, j, "x", side) for i, j in pairs], row)]
 
-    for method in METHODS:
+    for method in METHODS + ("local",):
         by = " --method " + method
         yield "kernel --source %s --t %s" % (at, t) + by, [m.column(heat(x), v) for v, x in both], 1e-7
         want = [m.applied(heat(x), f) for f in fields for x in times]
@@ -1425,6 +1425,10 @@ kernel cloud-300.{ply|obj|off|xyz} --source 5 --t 0.1,20h2 :: kernel more.xyz --
     squashed.obj --lengths sides-98.txt :: {1} patch-7.obj :: 1e-7
 kernel torus-80-50.obj --source 7,3000 --t 50h2 --method {direct|krylov} --ordering {amd|dissection|auto} :: \
     kernel torus-80-50.obj --source 7,3000 --t 50h2 --method {1} :: 1e-9
+{kernel --source 7,3000|kernel --kernel symmetric --source 7:0.2,0.3|pairs --input p.csv} torus-80-50.obj --t 1h2 --method local :: \
+    {1} torus-80-50.obj --t 1h2 --method direct :: 2e-7
+kernel torus-80-50.obj --source 7,3000 --t {0,2h2,1h2|2h2} --method local --tol 1e-12 {--threads 2|--laplacian voronoi-cot} :: \
+    kernel torus-80-50.obj --source 7,3000 --t {1} --method krylov --tol 1e-12 {2} :: 1e-9
 kernel parts.obj --source 0,390,490 --t 2h2,900h2 --laplacian {fem|voronoi-cot} --method {direct|krylov|auto|iterative} :: \
     kernel parts.obj --source 0,390,490 --t 2h2,900h2 --laplacian {1} --method iterative --degree 14 --tol 1e-12 :: 1e-7
 hks torus-40-24.obj --t 10h2 --laplacian {fem|voronoi-cot} --method direct {--poles kernel --degree 12\
@@ -1448,7 +1452,7 @@ distance torus-40-24.obj :: 3,700 :: 30h2,2h2,9h2 :: 1e-7
 distance torus-40-24.obj --laplacian voronoi-cot --definition {classical|weighted} :: 3 :: \
     9h2,1h2,3h2,20h2,2h2,14h2,1.5h2,5h2,7h2,4h2,12h2,17h2 :: 1e-6
 hks torus-40-24.obj :: :: 30h2,2h2,9h2 :: 2e-7
-kernel torus-40-24.obj --method {direct|krylov|auto|iterative} :: {3,700 :: 2h2,5h2,40h2|3 :: 500h2,0,2h2,40h2,2h2} :: 1e-7
+kernel torus-40-24.obj --method {direct|krylov|auto|iterative|local} :: {3,700 :: 2h2,5h2,40h2|3 :: 500h2,0,2h2,40h2,2h2} :: 1e-7
 kernel parts.obj --method krylov --laplacian {fem|voronoi-cot} :: 0,5,484 :: 100000h2,1h2,0,30000h2,3h2,0,0.01h2,1h2 :: 1e-7
 kernel torus-40-24.obj --kernel symmetric --method krylov :: 1,2 :: 1h2,90h2 :: 1e-7
 kernel torus-40-24.obj --method {auto|krylov|direct} :: 0,37,74,111,148,185,222,259,296 :: 50h2,3h2 :: 1e-7
@@ -1855,7 +1859,10 @@ kernel torus-80-50.obj --source 1,2 --t {30h2 :: times#1|3h2,30h2 :: times#2} ma
 kernel torus-80-50.obj --source 1,2 --method direct --t {30h2 :: times#1|3h2,30h2 :: times#2} factor_nnz>20000 mass_drift<1e-9 \
     growth>0.1 growth<5 solver=none precond=none poles=kernel
 kernel torus-80-50.obj --source 1,2 --method krylov --t {30h2 :: times#1|3h2,30h2 :: times#2} factor_nnz>20000 mass_drift<1e-9 \
-    growth>0.1 growth<5 iterations>5
+    growth>0.1 growth<5 iterations>5 touched=0 error_local=0
+kernel torus-80-50.obj --source 1,2 --method local --t {1h2 :: times#1|2h2,0,1h2 :: times#3} touched>500 touched<2000 \
+    error_rational=0 error_local>0 error_bound<2e-7
+kernel torus-150-100.obj --source 7 --t 1h2 :: method=local touched<1875 error_local>0 error_bound<2e-7
 kernel torus-80-50.obj --source 1,2 --method iterative --t {30h2 :: times#1|3h2,30h2 :: times#2} mass_drift<1e-9
 {hks|distance --source 1,2|sample --count 3} patch-9.off --t 3h2 :: times#1 n=100 lost=0 error_relative<1e-3 smallest>0
 hks patch-9.off --t 3h2,9h2 :: command=hks times#2 lost=0 error_relative<1e-3 smallest>0
@@ -1932,6 +1939,9 @@ kernel ico.obj --source 0 --t 1 :: \A(.+\n){1,8}\Z :: !\r
 kernel ico.obj --source 0 --t 0 -o x.npy :: t = 0
 kernel torus-80-50.obj --source 0 --t 9h2 -o x.npy --method {direct|krylov} :: (?m)^method {1} \(asked for\)$ :: \
     (?m)^factors: .*non-zeros.*flops :: \A(.+\n){1,8}\Z
+kernel torus-80-50.obj --source 0 --t 1h2 -o x.npy --method local :: (?m)^parts of at most \d+ of 4000 vertices$ :: factors: :: !conserved
+{kernel --source 0|diffuse --input ones-4000.txt|smooth} torus-80-50.obj --t 1h2 --method local --dry-run :: method local \(asked for\) \
+    :: (?m)^local +\d+ :: !too much
 kernel torus-80-50.obj --source 0 --t 9h2 -o x.npy {--method iterative :: !factors:|:: (?m)^method \w+ \(.+\)$}
 {hks --t 3h2,9h2|distance --source 1,2 --t 3h2|distance --source 3 --definition biharmonic|pairs --input p.txt --t 3h2\
 |pairs --input p.txt --definition commute|sample --count 3 --t 3h2|sample --count 3 --definition commute} patch-9.off -o x.npy :: \
@@ -2147,6 +2157,7 @@ class Limits(Case):
             text = self.bad(1, "", run, "--memory-limit", limit, "-o", "no.npy")
             for way in told:
                 self.assertIn(way + " needs ", text)
+        self.assertIn("--method local", self.narrow("kernel torus-150-100.obj --source 0 --t 1h2 --method direct", 0.3)[1])
         # and do not name what excludes what was asked for, or what is there already
         run = "kernel torus-24-12.xyz --source 0 --t 10h2 --method "
         for line, more in ((run + "direct --degree 8", ["--method iterative"]),
