@@ -494,8 +494,26 @@ class Face(unittest.TestCase):
         self.assertIn("error_bound", str(u.report))
         self.assertTrue(np.array_equal(pickle.loads(pickle.dumps(u)), u))
         estimate = heat.estimate("columns", "10h2", 5)
-        self.assertTrue(estimate.fits and estimate.bytes > 0 and set(estimate.costs) == {"direct", "krylov", "iterative"})
+        self.assertTrue(estimate.fits and estimate.bytes > 0 and set(estimate.costs) == {"direct", "krylov", "iterative", "local"})
         self.assertFalse(hd.Heat(lap, memory_limit=10000).estimate("diagonal", "10h2").fits)
+
+    def test_local(self):
+        """Columns on a part of the mesh, dense and sparse; what is cut; what heat does not reach has no value."""
+        xyz, tri, _ = bumpy(80)
+        lap = mesh(xyz, tri)
+        t, v = np.array([2, 1]) * lap.h ** 2, [0, 3210]
+        whole, local = hd.Heat(lap, method="krylov").columns(v, t), hd.Heat(lap, method="local")
+        u = local.columns(v, t)
+        self.assertTrue(u.report.method == "local" and 0 < u.report.n_touched < lap.n / 2)
+        self.assertTrue(0 < u.report.error_local < u.report.error_bound < 2e-7 and u.report.evidence_local == "measured")
+        self.assertLess(abs(u - whole).max(), 4e-7)
+        self.assertEqual(hd.Heat(lap).column(7, "0.2h2").report.method, "local")
+        rows = local.columns_sparse(v, t)
+        self.assertEqual((type(rows), rows.shape, local.report.method), (scipy.sparse.csr_matrix, (4, lap.n), "local"))
+        self.assertTrue(np.array_equal(rows.toarray(), u.transpose(1, 2, 0).reshape(4, -1)) and (rows.data != 0).all() and rows.has_sorted_indices)
+        few = hd.Heat(lap, method="local", cut=1e-3).columns_sparse(v, t)
+        self.assertTrue(few.nnz < rows.nnz / 2 and abs(few - rows).max() <= 1e-3 * u.max())
+        self.assertEqual((local.columns_sparse([], t).shape, local.columns_sparse(5, t[0], symmetric=True).shape), ((0, lap.n), (1, lap.n)))
 
     def test_errors(self):
         xyz, tri, _ = bumpy()
@@ -879,6 +897,8 @@ WRONG = {
         ("heat.scale_invariant(1, 2, 9, -1)", "n_freq is -1"), ("heat.scale_invariant([1, 1], 2)", "t0 has shape (2,), wanted is ()"),
         ("heat.scale_invariant(1, np.nan)", "t1 is negative or not finite"), ("heat.scale_invariant(2, 1)", "0 < t0 < t1"), ("heat.wks(0)", "energies is 0"), ("heat.wks([])", "energies are empty"),
         ("heat.wks([np.inf])", "energies are empty or not finite"), ("heat.wks(3, sigma=-1)", "b is not positive"),
+        ("hd.Heat(lap, method='local').adjoint(np.ones(25), 1)", "local"), ("hd.Heat(lap, method='local').hks(1)", "need the direct method"),
+        ("hd.Heat(lap, cut=1)", "cut is not in"), ("heat.columns_sparse(25, t)", "not in the mesh"),
         ("hd.Heat(lap, method='krylov').wks(3)", "krylov"), ("hd.Heat(lap, method='iterative').diagonal(1)", "need the direct method"),
         ("heat.distance(0, [], 'commute')", "at least one time"), ("heat.distance(0, [1, 2], 'commute')", "time"),
         ("heat.distance(0, t, 'comute')", "kind is 'comute': did you mean commute? There are classical, weighted, commute, biharmonic"),
@@ -932,7 +952,7 @@ WRONG = {
         ("moving.update(xyz[:24])", "vertices has shape (24, 3), wanted is (25, 3)"), ("moving.update(xyz * np.nan)", "not finite"),
         ("lap.update(xyz)", "updatable"), ("lap.update_matrices(L, B)", "updatable"),
         ("lap.update_matrices(L[:24, :24], B[:24, :24])", "L has 24 rows, wanted are 25"), ("geo.update(xyz)", "updatable"),
-        ("hd.Heat(lap, method='direkt')", "method is 'direkt': did you mean direct? There are auto, iterative, direct, krylov"),
+        ("hd.Heat(lap, method='direkt')", "method is 'direkt': did you mean direct? There are auto, iterative, direct, krylov, local"),
         ("hd.Heat(lap, method='kernel')", "method is 'kernel'"), ("hd.Heat(lap, poles='own')", "poles is 'own'"),
         ("hd.Heat(lap, solver='cg')", "solver is 'cg'"), ("hd.Heat(lap, precond='ilu')", "precond is 'ilu'"),
         ("hd.Heat(lap, degree=2 ** 32 + 9)", "degree is 4294967305"), ("hd.Heat(lap, degree=99, method='direct').column(0, 1)", "degree"),
@@ -1170,6 +1190,7 @@ def throws(names):
         (lambda i, j, s: heat.entries(i, j, s), ("same", ids), ("same", others), ("some", t)),
         (lambda i, j, s: heat.pairs(i, j, s), ("same", ids), ("same", others), ("some", t)),
         (lambda n, i: heat.sample(n, t1, i), ("count", 5), ("any", ids[:2])),
+        (lambda i, s: heat.columns_sparse(i, s).toarray(), ("any", ids), ("some", t)),
         (lambda i, w: heat.columns(hd.Sources(i, weights=w), t), ("same", ids), ("same", np.array([1.0, 2, 3]))),
         (lambda x, w: heat.columns(hd.Sources(x, w), t), ("same", tri[:4]), ("same", np.tile([0.5, 0.25, 0.25], (4, 1)))),
         (lambda x, y: hd.Geodesic(x, y).distance(4), ("all", xyz), ("any", tri)),

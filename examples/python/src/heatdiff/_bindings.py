@@ -29,9 +29,9 @@ CHOICES = {
     'hd_border': {'natural': 0, 'dirichlet': 1},
     'hd_triangulation': {'given': 0, 'delaunay': 1, 'tufted': 2},
     'hd_shape': {'triangles': 0, 'polygons': 1, 'points': 2},
-    'hd_pole_kind': {'default': 0, 'uniform': 1, 'kernel': 2, 'own': 3, 'diagonal': 4},
+    'hd_pole_kind': {'default': 0, 'uniform': 1, 'kernel': 2, 'own': 3},
     'hd_filter_kind': {'own': 0, 'heat': 1, 'wave': 2, 'mexican-hat': 3, 'resolvent': 4, 'fractional': 5, 'band': 6, 'biharmonic': 7},
-    'hd_method': {'auto': 0, 'iterative': 1, 'direct': 2, 'krylov': 3},
+    'hd_method': {'auto': 0, 'iterative': 1, 'direct': 2, 'krylov': 3, 'local': 4},
     'hd_ordering': {'auto': 0, 'minimum-degree': 1, 'nested-dissection': 2, 'own': 3},
     'hd_solver': {'auto': 0, 'cocg': 1, 'minres': 3, 'lanczos': 4},
     'hd_precond': {'auto': 0, 'none': 1, 'jacobi': 2, 'ssor': 3, 'ildl': 4, 'mildl': 5},
@@ -109,7 +109,7 @@ class hd_sources(Structure):
 
 
 class hd_report(Structure):
-    choices = {'status': 'hd_status', 'method': 'hd_method', 'solver': 'hd_solver', 'precond': 'hd_precond', 'poles': 'hd_pole_kind', 'ordering': 'hd_ordering', 'evidence_rational': 'hd_evidence', 'evidence_solver': 'hd_evidence', 'evidence_rounding': 'hd_evidence', 'evidence_b': 'hd_evidence'}
+    choices = {'status': 'hd_status', 'method': 'hd_method', 'solver': 'hd_solver', 'precond': 'hd_precond', 'poles': 'hd_pole_kind', 'ordering': 'hd_ordering', 'evidence_rational': 'hd_evidence', 'evidence_solver': 'hd_evidence', 'evidence_rounding': 'hd_evidence', 'evidence_local': 'hd_evidence', 'evidence_b': 'hd_evidence'}
 
 
 class hd_spectrum_opts(Structure):
@@ -340,6 +340,7 @@ hd_heat_opts._fields_ = [
     ('rational', POINTER(hd_rational)),
     ('tol', c_double),
     ('max_iterations', c_int32),
+    ('cut', c_double),
     ('ordering', c_int),
     ('perm', POINTER(c_int32)),
     ('context', POINTER(hd_context)),
@@ -380,14 +381,17 @@ hd_report._fields_ = [
     ('error_rational', c_double),
     ('error_solver', c_double),
     ('error_rounding', c_double),
+    ('error_local', c_double),
     ('evidence_rational', c_int),
     ('evidence_solver', c_int),
     ('evidence_rounding', c_int),
+    ('evidence_local', c_int),
     ('error_bound_b', c_double),
     ('evidence_b', c_int),
     ('error_relative', c_double),
     ('smallest', c_double),
     ('n_lost', c_int64),
+    ('n_touched', c_int32),
     ('mass_drift', c_double),
 ]
 
@@ -440,7 +444,7 @@ hd_estimate._fields_ = [
     ('method', c_int),
     ('reason', c_char_p),
     ('analysed', c_int32),
-    ('cost', hd_cost * 4),
+    ('cost', hd_cost * 5),
     ('bytes_in_use', c_double),
     ('bytes_left', c_double),
 ]
@@ -568,6 +572,8 @@ FUNCTIONS = {
         POINTER(c_double), c_size_t, POINTER(hd_report), POINTER(hd_error)),
     'hd_heat_columns': (c_int, POINTER(hd_heat), c_int, c_int32, POINTER(c_double), POINTER(hd_sources),
         POINTER(c_double), c_size_t, POINTER(hd_report), POINTER(hd_error)),
+    'hd_heat_columns_sparse': (c_int, POINTER(hd_heat), c_int, c_int32, POINTER(c_double), POINTER(hd_sources),
+        POINTER(hd_csr), POINTER(hd_report), POINTER(hd_error)),
     'hd_heat_column': (c_int, POINTER(hd_heat), c_int, c_double, c_int32, POINTER(c_double), POINTER(hd_report),
         POINTER(hd_error)),
     'hd_heat_diagonal': (c_int, POINTER(hd_heat), c_int, c_int32, POINTER(c_double), POINTER(c_double), c_size_t,

@@ -15,12 +15,13 @@ class Report:
 
     method, reason: the way that was taken, and why. poles, degree, iterations: of that method.
     error_bound: bound on the largest error of any value, relative to the largest value returned. It is the sum of the
-    three parts error_rational, error_solver and error_rounding; each evidence_... says how the part is known: 'proven',
+    four parts error_rational, error_solver, error_rounding and error_local; each evidence_... says how the part is known: 'proven',
     'measured', 'estimated', or 'none' if it does not apply.
     error_bound_b: bound on |error| / |answer| in the norm of B; infinite if there is none.
     error_relative: bound relative to each value itself (signatures, distances, pairs); infinite if there is none.
     n_lost: distances with at most about one sure digit. smallest: the smallest value that is not zero.
     mass_drift: how much of the heat was lost or gained. residual: of the linear systems.
+    n_touched: vertices of the largest part of the mesh that method local worked on.
     factor_nnz, factor_flops: size of the factors, and operations of the factorisations. status: 'HD_OK' or
     'HD_WARN_ACCURACY'."""
     status: str
@@ -33,12 +34,15 @@ class Report:
     error_rational: float
     error_solver: float
     error_rounding: float
+    error_local: float
     evidence_rational: str
     evidence_solver: str
     evidence_rounding: str
+    evidence_local: str
     error_bound_b: float
     error_relative: float
     n_lost: int
+    n_touched: int
     smallest: float
     mass_drift: float
     residual: float

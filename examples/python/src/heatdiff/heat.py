@@ -8,9 +8,9 @@ import numpy as np
 
 from . import _bindings as c
 from . import arrays
-from ._library import NAMES, Context, Handle, Object, Progress, attach, call, doubt, plain
+from ._library import NAMES, Context, Handle, Object, Progress, attach, call, doubt, lib, plain
 from .answers import Answer, Estimate, Report, report
-from .laplacian import Laplacian, Times, _copy
+from .laplacian import CSR, Laplacian, Times, _copy, _sparse
 
 TIMELESS = (c.CHOICES["hd_distance_kind"]["commute"], c.CHOICES["hd_distance_kind"]["biharmonic"])
 
@@ -67,13 +67,15 @@ class Heat(Object):
     by side, and Python's other threads run meanwhile.
 
     lap             the Laplacian
-    method          'auto', 'direct' (many columns; signatures, distances), 'krylov' (few columns, many times), 'iterative'
+    method          'auto', 'direct' (many columns; signatures, distances), 'krylov' (few columns, many times), 'iterative',
+                    'local' (small t: columns and fields on the part of the mesh that heat reaches)
     solver          of iterations: 'auto', 'cocg', 'minres', 'lanczos'
     precond         of iterations: 'auto', 'none', 'jacobi', 'ssor', 'ildl', 'mildl'
     poles           'default', 'uniform', 'kernel'; training: 'kernel' and a degree
     degree          of the rational function, 1 to 14; 0: chosen, for errors near 1e-8
     tol             of the solver; 0: 1e-9
     max_iterations  0: 20000
+    cut             of columns_sparse: smaller values, relative to the largest of each column, are left out
     ordering        of factors: 'auto', 'minimum-degree', 'nested-dissection', 'own'
     perm            (n,) with 'own': perm[k] is the vertex eliminated k-th
     threads, memory_limit, progress: as of the Laplacian, whose values are the defaults
@@ -85,8 +87,8 @@ class Heat(Object):
 
     @arrays.options
     def __init__(self, lap: Laplacian, *, method: str = "auto", solver: str = "auto", precond: str = "auto",
-                 poles: str = "default", degree: int = 0, tol: float = 0.0, max_iterations: int = 0, ordering: str = "auto",
-                 perm: Any = None, threads: Optional[int] = None, memory_limit: Optional[int] = None, progress: Progress = None):
+                 poles: str = "default", degree: int = 0, tol: float = 0.0, max_iterations: int = 0, cut: float = 0.0,
+                 ordering: str = "auto", perm: Any = None, threads: Optional[int] = None, memory_limit: Optional[int] = None, progress: Progress = None):
         if not isinstance(lap, Laplacian):
             raise TypeError(f"lap is a {type(lap).__name__}, wanted is a Laplacian")
         context = Context(threads, memory_limit, progress, lap._handle.context)
@@ -94,7 +96,7 @@ class Heat(Object):
             method=arrays.choice("method", method, "hd_method"), solver=arrays.choice("solver", solver, "hd_solver"),
             precond=arrays.choice("precond", precond, "hd_precond"), poles=arrays.choice("poles", poles, "hd_pole_kind", ("own",)),
             degree=arrays.integer("degree", degree), tol=arrays.number("tol", tol),
-            max_iterations=arrays.integer("max_iterations", max_iterations),
+            max_iterations=arrays.integer("max_iterations", max_iterations), cut=arrays.number("cut", cut),
             ordering=arrays.choice("ordering", ordering, "hd_ordering"), context=ctypes.pointer(context.struct))
         if perm is not None:
             attach(opts, perm=arrays.ints("perm", perm, (lap.n,)))
@@ -173,6 +175,22 @@ class Heat(Object):
         out = np.zeros((s.count, n_times, self._lap.n))
         rep = self._query("hd_heat_columns", _kernel(symmetric), n_times, t, ctypes.byref(s.struct), out, 0)
         return Answer(shaped(out, one, one_time), rep)
+
+    def columns_sparse(self, sources: Any, t: Times, symmetric: bool = False) -> Any:
+        """The columns as rows of a matrix of scipy.sparse, without zeros; without SciPy a tuple (data, indices, indptr). Row
+        q n_times + m is of source q and time m. With method 'local' no work after the first call grows with n. The plan's
+        report tells of it; its error_bound includes the plan's cut."""
+        (s, _), (n_times, t, _) = places("sources", sources), self._times(t)
+        out, struct, context, kernel = c.hd_csr(), c.hd_report(), self._handle.context, _kernel(symmetric)
+        with self._handle.use() as heat:
+            try:
+                status = call(context, "hd_heat_columns_sparse", heat, kernel, n_times, t, ctypes.byref(s.struct), ctypes.byref(out),
+                              ctypes.byref(struct), warn=False)
+                made = CSR(_copy(out.val, out.nnz), _copy(out.col, out.nnz), _copy(out.row_ptr, out.n_rows + 1))
+            finally:
+                lib.hd_csr_free(ctypes.byref(out), ctypes.byref(context.struct))
+        self._reported(struct, status)
+        return _sparse(made, (s.count * n_times, self._lap.n))
 
     def column(self, source: int, t: Times, symmetric: bool = False) -> Answer:
         """The column of one vertex."""

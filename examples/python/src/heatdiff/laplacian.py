@@ -15,7 +15,7 @@ from ._library import NAMES, Context, Handle, Object, Progress, attach, call, pl
 
 Times = Union[float, str, Sequence[Union[float, str]], np.ndarray]
 CSR = collections.namedtuple("CSR", "data indices indptr")
-CSR.__doc__ = "A square matrix by rows, where SciPy is missing."
+CSR.__doc__ = "A matrix by rows, where SciPy is missing."
 _NUMBER = re.compile(r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(h2|/l1)?$")
 
 
@@ -288,12 +288,7 @@ class Laplacian(Object):
                 col, ptr = _copy(a.L.col, a.L.nnz), _copy(a.L.row_ptr, a.n_active + 1)
         counts = np.zeros(self._n + 1, np.int64)
         counts[rows + 1] = np.diff(ptr)
-        made = CSR(data, rows[col], np.cumsum(counts))
-        try:
-            import scipy.sparse
-        except ImportError:
-            return made
-        return scipy.sparse.csr_matrix(made, (self._n, self._n))
+        return _sparse(CSR(data, rows[col], np.cumsum(counts)), (self._n, self._n))
 
     def times(self, t: Times, name: str = "t") -> np.ndarray:
         """Times as numbers, in the unit of t (length^2, a pure number if B = 1).
@@ -344,6 +339,15 @@ class Laplacian(Object):
 
 def _copy(address: Any, n: int) -> np.ndarray:
     return np.ctypeslib.as_array(address, (n,)).copy() if n else np.zeros(0, np.dtype(address._type_))
+
+
+def _sparse(made: CSR, shape: Tuple[int, int]) -> Any:
+    """A matrix of scipy.sparse, or without SciPy the tuple itself."""
+    try:
+        import scipy.sparse
+    except ImportError:
+        return made
+    return scipy.sparse.csr_matrix(made, shape)
 
 
 def _matrices(L: Any, B: Any) -> Tuple[list, int, list]:
