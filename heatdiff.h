@@ -80,8 +80,8 @@
    What is left out returns HD_ERR_NOT_BUILT, and the error names the macro. HD_METHOD_AUTO chooses among what
    is there.
      HEATDIFF_NO_DIRECT        all factorisations: hd_ldl_*, methods krylov and local; implies
-                               NO_POLE_FACTORS, NO_GEODESIC, NO_SPECTRUM. hd_laplacian_matrices finds b_ratio by Gershgorin's
-                               circles alone
+                               NO_POLE_FACTORS, NO_GEODESIC, NO_SPECTRUM. b_ratio of the caller's matrices
+                               comes from Gershgorin's circles alone
      HEATDIFF_NO_POLE_FACTORS  complex factors: method direct, hd_ldl_*_complex; implies NO_DIAGONAL
      HEATDIFF_NO_DIAGONAL      selected inversion: hd_heat_diagonal, hd_ldl_inverse*; implies NO_DIFFUSION.
                                Method direct then has larger error bounds
@@ -19323,7 +19323,7 @@ static hd_status hdi_local_plan(const hd_heat *heat, hdi_local *l, hd_error *e) 
 
 /* The radius of a ball in edges, where sqrt(t) is so many: on meshes of 360K vertices with jitter it leaves
  * 1e-7 of the peak. */
-static double hdi_local_edges(double edges) { return 4 + edges * (10.3 + 0.8 * log(hdi_max(edges, 1))); }
+static double hdi_local_edges(double edges) { return 4 + edges * (10.3 + 0.95 * log(hdi_max(edges, 1))); }
 
 /* Edges that lie between a source and the ring at least. B^-1 of a full B falls by a factor of three an edge
  * where b_ratio is 1/2 (Demko, Moss, Smith 1984). */
@@ -19559,9 +19559,12 @@ static hd_status hdi_heat_by_local(hdi_heat_call *h) {
     return h->e->status;
 }
 
-/* Below so many rows nothing is to be gained. */
+/* Below so many rows nothing is to be gained. Seconds for each row of a ball, to look for it, and to make its
+ * pair; the share of the time of other methods that it may take to look. */
 enum { HDI_LOCAL_FROM = 4096 };
-#define HDI_ROW_LOCAL 0.8e-6       /* seconds for each row of a ball: to find it and make its pair */
+#define HDI_LOCAL_LOOK 0.1e-6
+#define HDI_LOCAL_MAKE 0.5e-6
+#define HDI_LOCAL_SPARE 0.03
 
 /* Can balls serve the call? Auto takes fields that are not known, as in estimates, for large ones. */
 static int hdi_local_can(const hdi_heat_call *h) {
@@ -19572,12 +19575,13 @@ static int hdi_local_can(const hdi_heat_call *h) {
            (!hdi_query_fields(h->ask.query) || (h->ask.F ? h->ask.F != h->ask.U || h->ask.k == 1 : asked));
 }
 
-/* As many balls as items, each like the first; all of the mesh for fields that are not known. Auto is told
- * nothing where it is an eighth of the mesh or more. */
-static void hdi_local_cost(hdi_heat_call *h, hd_cost *c) {
+/* As many balls as items, each like the first; all of the mesh for fields that are not known. least: seconds of
+ * the best other method, of which auto spares a small part to look. */
+static void hdi_local_cost(hdi_heat_call *h, double least, hd_cost *c) {
     const hd_laplacian *lap = h->heat->source;
     const int asked = h->heat->opts.method == HD_METHOD_LOCAL;
-    const int32_t most = asked ? lap->n_active : lap->n_active / 8;
+    const double room = hdi_min(lap->n_active / 4.0, HDI_LOCAL_SPARE / HDI_LOCAL_LOOK * least);
+    const int32_t most = asked ? lap->n_active : (int32_t)room;
     hdi_local *l;
     hdi_fill f;
     double n, steps;
@@ -19592,7 +19596,7 @@ static void hdi_local_cost(hdi_heat_call *h, hd_cost *c) {
     steps = hdi_krylov_windows(h, f).steps + HDI_STEPS_HANDED_ON;
     c->flops = h->ask.k * (f.flops + steps * 4 * f.nnz);
     c->bytes = 8 * f.real_stored + (8 * steps + 400) * n;
-    c->seconds = h->ask.k * (f.analysis + HDI_ROW_LOCAL * n + f.flops / HDI_RATE_REAL +
+    c->seconds = h->ask.k * (f.analysis + HDI_LOCAL_MAKE * n + f.flops / HDI_RATE_REAL +
                              steps * (16 * f.nnz + 100 * n) / HDI_RATE_BYTES);
 }
 
@@ -19603,15 +19607,19 @@ static void hdi_local_cost(hdi_heat_call *h, hd_cost *c) {
 static void hdi_heat_costs(hdi_heat_call *h, hd_cost *by) {
     const hd_heat *heat = h->heat;
     const int factors = !heat->iterations_asked || heat->opts.method > HD_METHOD_ITERATIVE;
+    double least = HUGE_VAL;
     int q;
     memset(by, 0, (HD_METHOD_LOCAL + 1) * sizeof *by);
     if (HDI_HAS_ITERATIVE) hdi_iterative_cost(h, by + HD_METHOD_ITERATIVE);
     if (HDI_HAS_POLE_FACTORS && factors) hdi_direct_cost(h, by + HD_METHOD_DIRECT);
     if (HDI_HAS_DIRECT && factors && !heat->poles_asked)
         hdi_krylov_cost(h, by + HD_METHOD_KRYLOV);
-    if (h->e->status >= 0) hdi_local_cost(h, by + HD_METHOD_LOCAL);
-    for (q = HD_METHOD_ITERATIVE; q <= HD_METHOD_LOCAL; q++)
+    for (q = HD_METHOD_ITERATIVE; q <= HD_METHOD_KRYLOV; q++) {
         by[q].seconds += HDI_FRESH_BYTE * by[q].bytes;
+        if (by[q].possible) least = hdi_min(least, by[q].seconds);
+    }
+    if (h->e->status >= 0) hdi_local_cost(h, least, by + HD_METHOD_LOCAL);
+    by[HD_METHOD_LOCAL].seconds += HDI_FRESH_BYTE * by[HD_METHOD_LOCAL].bytes;
 }
 
 /* The analysis that the method picked works with. */
@@ -20367,9 +20375,10 @@ static hd_status hdi_heat_chosen(hdi_heat_call *h) {
 /* A filter has one time, that of its set, and is known up to an eigenvalue. */
 static hd_status hdi_filter_times(const hd_heat *heat, int32_t n_times, const double *t, hd_error *e) {
     const hd_rational *set = heat->opts.rational;
-    const double bound = hdi_lambda_known(heat->source);
+    double bound;
     int32_t q;
     if (!set || set->t == 0) return HD_OK;
+    bound = hdi_lambda_known(heat->source);
     for (q = 0; q < n_times; q++)
         if (t[q] != set->t)
             return hdi_fail_row(e, HD_ERR_ARGUMENT, "heat: the time of a filter is that of its set", -1, q,
