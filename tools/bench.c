@@ -657,7 +657,8 @@ static void describe_ours(char *to, size_t size, const ask *a, const ours *o) {
     if (!o->fine) snprintf(to, size, "failed");
     else if (r->method == HD_METHOD_DIRECT)
         snprintf(to, size, "%sdirect r=%d%s", asked, (int)r->degree, order);
-    else if (r->method == HD_METHOD_KRYLOV) snprintf(to, size, "%skrylov %lld%s", asked, steps, order);
+    else if (r->method >= HD_METHOD_KRYLOV)
+        snprintf(to, size, "%s%s %lld%s", asked, r->method == HD_METHOD_LOCAL ? "local" : "krylov", steps, order);
     else snprintf(to, size, "%s%s %lld", asked, r->solver == HD_SOLVER_LANCZOS ? "lanczos" : "cocg", steps);
 }
 
@@ -2114,7 +2115,7 @@ static void estimate_mesh(const char *name, const double *xyz, int32_t n, const 
 static void choices_mesh(const char *name, const double *xyz, int32_t n, const int32_t *tri, int32_t n_tri) {
     static const double tau[] = {1, 10, 100, 1000};
     static const int32_t ks[] = {1, 8, 50};
-    static const char *const methods[] = {"auto", "iterative", "direct", "krylov"};
+    static const char *const methods[] = {"auto", "iterative", "direct", "krylov", "local"};
     double *U = (double *)malloc((size_t)n * TRIAL_MOST * sizeof *U), worst = 1, log_sum = 0;
     int kind, i, q, m, cases = 0, right = 0;
     for (kind = 0; kind < 3 && U; kind++) {
@@ -2127,19 +2128,20 @@ static void choices_mesh(const char *name, const double *xyz, int32_t n, const i
                           : hd_laplacian_create(&lap, MESH_POINTS(xyz, n), NULL, NULL);
         for (i = 0; i < 12 && status >= 0; i++) {
             const double t = tau[i / 3] * lap->h * lap->h;
-            double seconds[4], best = HUGE_VAL;
+            double seconds[HD_METHOD_LOCAL + 1], best = HUGE_VAL;
             trial x = {"", HD_QUERY_COLUMNS, HD_METHOD_AUTO, ks[i % 3]};
-            trial_result r;
+            trial_result r, by_auto;
+            q = trial_once(lap, &x, t, 1, U, &by_auto) == HD_ERR_MEMORY_LIMIT ? (int)by_auto.expected.method : 0;
             printf("%s %s, t = %g h^2, %d columns:", name, kind == 0 ? "fem" : kind == 1 ? "voronoi-cot" : "points", tau[i / 3],
                    (int)x.k);
-            for (m = HD_METHOD_ITERATIVE; m <= HD_METHOD_KRYLOV; m++) {
+            for (m = HD_METHOD_ITERATIVE; m <= HD_METHOD_LOCAL; m++) {
+                seconds[m] = HUGE_VAL;
+                if (!by_auto.expected.cost[m].possible) continue;
                 x.method = (hd_method)m;
                 seconds[m] = trial_run(lap, &x, t, 9e9, U, &r) < 0 ? HUGE_VAL : r.seconds;
                 best = hdi_min(best, seconds[m]);
                 printf(" %s %.4f (%.4f),", methods[m], seconds[m], r.expected.cost[0].seconds);
             }
-            x.method = HD_METHOD_AUTO;
-            q = trial_once(lap, &x, t, 1, U, &r) == HD_ERR_MEMORY_LIMIT ? (int)r.expected.method : 0;
             printf(" auto %s %.2f\n", methods[q], seconds[q ? q : 1] / best);
             fflush(stdout);
             cases++;
