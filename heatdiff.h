@@ -19575,8 +19575,8 @@ static int hdi_local_can(const hdi_heat_call *h) {
            (!hdi_query_fields(h->ask.query) || (h->ask.F ? h->ask.F != h->ask.U || h->ask.k == 1 : asked));
 }
 
-/* As many balls as items, each like the first; all of the mesh for fields that are not known. least: seconds of
- * the best other method, of which auto spares a small part to look. */
+/* As many balls as items, each like the first; all of the mesh for fields that are not known. least: seconds
+ * of the best other method, of which auto spares a small part to look. */
 static void hdi_local_cost(hdi_heat_call *h, double least, hd_cost *c) {
     const hd_laplacian *lap = h->heat->source;
     const int asked = h->heat->opts.method == HD_METHOD_LOCAL;
