@@ -492,7 +492,7 @@ typedef enum hd_method {
     HD_METHOD_DIRECT,           /* all poles factorised in one sweep: for many fields or columns */
     HD_METHOD_KRYLOV,           /* shift-and-invert Lanczos: one real factor, few fields or many times */
     /* The same on a ball around the source, or around where a field is not zero: about 11 sqrt(t), more if
-     * need be. Answers beyond are 0. For columns, entries, fields and their derivatives */
+     * need be. Answers beyond are 0. Not for diagonals, distances and pole sets */
     HD_METHOD_LOCAL
 } hd_method;
 
@@ -14652,7 +14652,7 @@ typedef struct hdi_rim {
     const int32_t *to, *from;    /* [n_edges] which of the rows; a vertex of the part */
     const double *l, *b;         /* [n_edges] entries of L and B; b NULL: B is diagonal */
     const double *weight;        /* [n] 1/diag(B) */
-    double finest;               /* at least one: largest 1/sqrt(diag(B)) of all rows over that in the part */
+    double uneven;               /* >= 1: B's diagonal, or 1 over it, is so much larger elsewhere; its root */
 } hdi_rim;
 
 /* The process for 1 or 8 right-hand sides side by side. All times share it. */
@@ -14677,7 +14677,7 @@ typedef struct hdi_krylov {
     double last;                 /* the last time of the windows that will go on from this one, or 0 */
     int32_t rate;                /* t times the derivative is asked for */
     const hdi_rim *ring;        /* the pair is a part of a larger one; NULL: it is not */
-    int32_t inverse;             /* the fields are B^-1 times those given */
+    int32_t inverse, dual;       /* the fields are B^-1 times those given; answers are multiplied by B */
 } hdi_krylov;
 
 /* ---- shift-and-invert Lanczos ---- */
@@ -15141,24 +15141,28 @@ static double hdi_rim_sum(const hdi_krylov *z, int32_t r, double t, const double
     const int32_t m = z->done[r];
     double sum = 0, last = 0, y[2 * HDI_KRYLOV_MAX];
     int32_t q, i;
-    for (q = 0; q <= HDI_RIM_SAMPLES; q++) {
+    /* last of all B u on the ring, where the answer of an adjoint ends as well */
+    for (q = 0; q <= HDI_RIM_SAMPLES + (z->dual && g->b); q++) {
         double now;
         memset(y, 0, sizeof y);
         memset(rest, 0, (size_t)g->n * sizeof *rest);
         for (i = 0; i < m; i++) {
             const double mu = z->eigen[r][i], *v = z->eigen[r] + m + (int64_t)i * m;
             const double lambda = mu > HDI_KRYLOV_TINY ? hdi_max(0, 1 / mu - 1) / z->g : 0;
-            const double s = t / 2 + t / 2 * q / HDI_RIM_SAMPLES, part = (z->rate ? -lambda : 1) * v[0];
+            const double s = hdi_min(t, t / 2 + t / 2 * q / (double)HDI_RIM_SAMPLES);
+            const double part = (z->rate ? -lambda : 1) * v[0];
             if (!(mu > HDI_KRYLOV_TINY)) continue;
             hdi_axpy(part * exp(-s * lambda), v, y, m);
             hdi_axpy(-lambda * part * exp(-s * lambda), v, y + HDI_KRYLOV_MAX, m);
         }
         for (i = 0; i < m; i++) {
-            hdi_axpy(y[i], wl + (int64_t)i * g->n, rest, g->n);
-            if (g->b) hdi_axpy(y[HDI_KRYLOV_MAX + i], wb + (int64_t)i * g->n, rest, g->n);
+            hdi_axpy(y[i], (q <= HDI_RIM_SAMPLES ? wl : wb) + (int64_t)i * g->n, rest, g->n);
+            if (g->b && q <= HDI_RIM_SAMPLES)
+                hdi_axpy(y[HDI_KRYLOV_MAX + i], wb + (int64_t)i * g->n, rest, g->n);
         }
         now = sqrt(hdi_norm2w(rest, g->weight, g->n));
-        sum += t / 2 * (q == 0 ? now : hdi_max(now, last) / HDI_RIM_SAMPLES);
+        sum += q > HDI_RIM_SAMPLES ? now
+               : t / 2 * (q == 0 ? now : hdi_max(now, last) / (double)HDI_RIM_SAMPLES);
         last = now;
     }
     return z->f_norm[r] * sum;
@@ -15189,7 +15193,7 @@ static double hdi_rim_bound(const hdi_krylov *z, int32_t r, double t, hd_error *
     off = hdi_rim_sum(z, r, t, wl, wb, wb + size) * (z->rate ? t : 1);
     if (z->inverse && !(z->from > 0)) off += z->f_norm[r] * sqrt(hdi_norm2w(wb, g->weight, g->n));
     hdi_free(z->m->ctx, wl);
-    return off / sqrt(z->m->scale) * hdi_ratio_root(z->m->lap) * g->finest;
+    return off / sqrt(z->m->scale) * hdi_ratio_root(z->m->lap) * g->uneven;
 }
 
 /* Judges the answer in lane->u of right-hand side r, a time t after z->from. y: its coefficients. */
@@ -19008,7 +19012,8 @@ static hd_status hdi_heat_by_krylov(hdi_heat_call *h) {
     heat->krylov->m = h->m;
     heat->krylov->rate = h->rate;
     heat->krylov->ring = h->ring;
-    heat->krylov->inverse = h->ask.query == HDI_QUERY_SYMMETRIC || h->ask.query == HDI_QUERY_ADJOINT;
+    heat->krylov->dual = h->ask.query == HDI_QUERY_ADJOINT;
+    heat->krylov->inverse = heat->krylov->dual || h->ask.query == HDI_QUERY_SYMMETRIC;
     if (hdi_heat_lanes(h, wide, 0, 0) < 0) return h->e->status;
     for (h->batch = 0; h->batch < h->ask.k; h->batch += n) {
         n = hdi_low32(h->ask.k - h->batch, h->n_lanes);
@@ -19081,7 +19086,7 @@ typedef struct hdi_local {
     int64_t room;
     /* [n_active] of a row of the source: 1 + its place in at, minus 1 + its number in the ring, 0: neither */
     int32_t *place;
-    double smallest;             /* b_diag of the source in a version of it */
+    double smallest, largest;    /* b_diag of the source in a version of it */
     int64_t version;
 } hdi_local;
 
@@ -19198,6 +19203,17 @@ static void hdi_local_fill(const hdi_local *l, const hd_laplacian *lap, hd_lapla
     ring->from = id + ring->n_edges;
 }
 
+/* The smallest and the largest entry of B's diagonal. */
+static void hdi_local_range(const hd_laplacian *lap, double *least, double *most) {
+    int32_t i;
+    *least = HUGE_VAL;
+    *most = 0;
+    for (i = 0; i < lap->n_active; i++) {
+        *least = hdi_min(*least, lap->b_diag[i]);
+        *most = hdi_max(*most, lap->b_diag[i]);
+    }
+}
+
 /* How many entries of a row lie in the ball. */
 static int64_t hdi_local_inside(const hdi_local *l, const hd_laplacian *lap, int32_t row) {
     int64_t count = 0, p;
@@ -19213,7 +19229,7 @@ static hd_laplacian *hdi_local_pair(hdi_local *l, const hd_laplacian *lap, hdi_r
     hdi_scope s = hdi_scope_begin(ctx, e), *keep;
     int64_t *fill = HDI_TAKE(&s, int64_t, n);
     hd_laplacian *out = fill ? hdi_lap_shell(ctx, e) : NULL;
-    double least = HUGE_VAL, *d;
+    double least, most, *d;
     int32_t i;
     if (!out) return (void)hdi_scope_end(&s), out;
     keep = hdi_lap_keep(out, e);
@@ -19242,10 +19258,10 @@ static hd_laplacian *hdi_local_pair(hdi_local *l, const hd_laplacian *lap, hdi_r
             out->vertex[i] = i;
             fill[i] = out->L.row_ptr[i];
             out->L.row_ptr[i + 1] = fill[i] + hdi_local_inside(l, lap, from);
-            least = hdi_min(least, lap->b_diag[from]);
         }
-        ring->finest = sqrt(least / l->smallest);
         hdi_local_fill(l, lap, out, ring, d + 3 * n, *rows + n, fill);
+        hdi_local_range(out, &least, &most);
+        ring->uneven = sqrt(hdi_max(least / l->smallest, l->largest / most));
     }
     if (hdi_scope_end(&s) >= 0) return out;
     hdi_laplacian_free(out, ctx);
@@ -19272,13 +19288,6 @@ static void hdi_local_free(hd_heat *heat) {
     heat->part = NULL;
 }
 
-static double hdi_local_finest(const hd_laplacian *lap) {
-    double least = HUGE_VAL;
-    int32_t i;
-    for (i = 0; i < lap->n_active; i++) least = hdi_min(least, lap->b_diag[i]);
-    return least;
-}
-
 /* Room to look for balls, of the plan. */
 static hdi_local *hdi_local_open(hd_heat *heat, hd_error *e) {
     const hd_laplacian *lap = heat->source;
@@ -19291,7 +19300,7 @@ static hdi_local *hdi_local_open(hd_heat *heat, hd_error *e) {
         l->place = (int32_t *)hdi_alloc_zero(heat->ctx, (uint64_t)lap->n_active, sizeof *l->place, e);
         if (!l->place) return hdi_local_free(heat), (hdi_local *)NULL;
     }
-    if (l->version != lap->version) l->smallest = hdi_local_finest(lap);
+    if (l->version != lap->version) hdi_local_range(lap, &l->smallest, &l->largest);
     l->version = lap->version;
     return l;
 }
@@ -19570,8 +19579,8 @@ enum { HDI_LOCAL_FROM = 4096 };
 static int hdi_local_can(const hdi_heat_call *h) {
     const hd_heat *heat = h->heat;
     const int asked = heat->opts.method == HD_METHOD_LOCAL;
-    return HDI_HAS_DIRECT && !h->not_local && !h->set && !h->n_off && h->ask.query != HDI_QUERY_ADJOINT &&
-           !heat->poles_asked && !heat->iterations_asked && h->times[0] > 0 && heat->source->b_ratio > 0 &&
+    return HDI_HAS_DIRECT && !h->not_local && !h->set && !h->n_off && !heat->poles_asked &&
+           !heat->iterations_asked && h->times[0] > 0 && heat->source->b_ratio > 0 &&
            (!hdi_query_fields(h->ask.query) || (h->ask.F ? h->ask.F != h->ask.U || h->ask.k == 1 : asked));
 }
 

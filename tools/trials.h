@@ -584,7 +584,7 @@ static const char *const trial_fields[] = {"random", "smooth",    "nearly", "hug
 
 /* Is there a method local for the query? */
 static int trial_local(int query) {
-    return query <= QUERY_DERIVATIVE || query == QUERY_FROM || query == QUERY_ENTRIES;
+    return query <= QUERY_FROM || query == QUERY_ENTRIES;
 }
 
 typedef struct trial {

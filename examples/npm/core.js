@@ -10,7 +10,7 @@ export const WORDS = {
   hd_laplacian_kind: ["default", "fem", "voronoi-cot", "cot", "polygon", "voronoi-exp", "exp"],
   hd_triangulation: ["given", "delaunay", "tufted"],
   hd_border: ["natural", "dirichlet"],
-  hd_method: ["auto", "iterative", "direct", "krylov"],
+  hd_method: ["auto", "iterative", "direct", "krylov", "local"],
   hd_kernel: ["operator", "symmetric"],
   hd_distance_kind: ["classical", "weighted", "commute", "biharmonic"],
   hd_evidence: ["none", "proven", "measured", "estimated"],

@@ -14,7 +14,7 @@ export type Vertices = number | readonly number[] | Indices;
 /** A number, "10h2" (times h squared), "auto:8" (eight times that suit the surface), or a list of numbers and such words. */
 export type Times = number | string | readonly (number | string)[] | Floats;
 export type Kind = "default" | "fem" | "voronoi-cot" | "cot" | "voronoi-exp" | "exp";
-export type Method = "auto" | "iterative" | "direct" | "krylov";
+export type Method = "auto" | "iterative" | "direct" | "krylov" | "local";
 export type Kernel = "operator" | "symmetric";
 export type Distance = "classical" | "weighted" | "commute" | "biharmonic";
 export type Evidence = "none" | "proven" | "measured" | "estimated";

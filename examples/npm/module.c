@@ -29,7 +29,7 @@ typedef struct module_surface {
     void *xyz, *corner;
     hd_triangulation triangulation;
     hd_laplacian *lap;
-    hd_heat *plan[HD_METHOD_KRYLOV + 1];    /* by hd_method, made at their first use */
+    hd_heat *plan[HD_METHOD_LOCAL + 1];    /* by hd_method, made at their first use */
     hd_geodesic *geodesic;
 } module_surface;
 
@@ -71,7 +71,7 @@ static hd_progress tick(void *user, const char *stage, double done) {
 void MODULE_EXPORT(module_dispose)(module_surface *s) {
     int i;
     if (!s) return;
-    for (i = 0; i <= HD_METHOD_KRYLOV; i++) hd_heat_free(s->plan[i]);
+    for (i = 0; i <= HD_METHOD_LOCAL; i++) hd_heat_free(s->plan[i]);
     hd_geodesic_free(s->geodesic);
     hd_laplacian_free(s->lap);
     free(s->xyz);
