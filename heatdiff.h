@@ -20698,7 +20698,7 @@ static hd_status hdi_heat_check(const hd_heat_opts *o, hd_error *e) {
                      "heat: kernel sets have degrees 2 to 14", o->degree, e);
     hdi_refuse(!hdi_finite(o->tol) || o->tol < 0 || o->tol >= 1, "heat: tol is not in [0, 1)", e);
     hdi_refuse(o->max_iterations < 0, "heat: max_iterations is negative", e);
-    hdi_refuse(!(o->cut >= 0 && o->cut < 1), "heat: cut is not in [0, 1)", e);
+    hdi_refuse(!hdi_finite(o->cut) || o->cut < 0 || o->cut >= 1, "heat: cut is not in [0, 1)", e);
     hdi_refuse_ordering(o->ordering, o->perm, "heat: unknown ordering", e);
     hdi_refuse(o->method >= HD_METHOD_KRYLOV && (o->rational || o->poles || o->degree),
                "heat: the methods krylov and local have no use for poles or a degree", e);
