@@ -19121,7 +19121,7 @@ static double hdi_local_edge(const hd_laplacian *lap, int32_t i) {
     const double mass = lap->mass[i] > 0 ? lap->mass[i] : lap->b_diag[i];
     int64_t p = lap->L.row_ptr[i];
     while (lap->L.col[p] != i) p++;
-    return sqrt(4 * mass / lap->L.val[p]);
+    return lap->L.val[p] > 0 ? sqrt(4 * mass / lap->L.val[p]) : HUGE_VAL;
 }
 
 /* Adds the rows within `reach` of those that are there, by the shortest ways over edges, of which none counts
@@ -19339,7 +19339,7 @@ static double hdi_local_edges(double edges) { return 4 + edges * (10.3 + 0.95 * 
 #define HDI_LOCAL_DIGITS 17.6
 
 static double hdi_local_hops(const hd_laplacian *lap) {
-    const double root = sqrt(hdi_max(lap->b_ratio, 1e-300) / 2);
+    const double root = sqrt(hdi_max(lap->b_ratio, 1e-30) / 2);
     return lap->B ? HDI_LOCAL_DIGITS / log((1 + root) / (1 - root)) : 6;
 }
 
@@ -19365,8 +19365,8 @@ static hd_status hdi_local_find(hdi_heat_call *h, hdi_local *l, int32_t q, doubl
     }
     if (h->e->status < 0 || l->n == 0) return h->e->status;
     edge = hdi_local_edge(lap, l->at[0].row);
-    reach *= edge * hdi_local_edges(sqrt(t) / edge);
-    return hdi_local_grow(l, lap, reach, reach / hdi_local_hops(lap), most, ctx, h->e);
+    edge *= hdi_local_edges(sqrt(t) / edge);     /* reach times this; more reach takes more edges */
+    return hdi_local_grow(l, lap, reach * edge, edge / hdi_local_hops(lap), most, ctx, h->e);
 }
 
 /* The source of item q by vertices of the ball. id, weight: room for it. */
@@ -19384,6 +19384,16 @@ static hdi_terms hdi_local_source(const hdi_heat_call *h, const hdi_local *l, in
     to.one = id[0];
     return to;
 }
+
+/* Where only the means of whole components are left, answers are those at the first such time. */
+static void hdi_local_clip(hdi_local *l, const hdi_heat_call *in, double *times) {
+    int32_t i;
+    if (l->ring.n > 0 || !hdi_heat_equal(&l->heat, in->m, in->t, in->e)) return;
+    for (i = 0; i < in->n_times; i++)
+        times[i] = hdi_min(times[i], 2 * HDI_EQUAL_BEYOND * l->heat.ground.largest_trace);
+}
+
+#define HDI_LOCAL_STILL 1e-100   /* a time at which nothing moves: zero has no logarithm */
 
 /* The answers to item q on the ball, ld apart: at the time under way, or for each of the caller's times. */
 static hd_status hdi_local_solve(hdi_heat_call *h, hdi_local *l, int32_t q, double *U, size_t ld,
@@ -19413,7 +19423,8 @@ static hd_status hdi_local_solve(hdi_heat_call *h, hdi_local *l, int32_t q, doub
     in.n_times = h->n_times;
     in.time_column = h->time_column;
     for (i = 0; i < h->n_times; i++)
-        times[i] = in.t = hdi_heat_scaled(&l->heat, in.ask.t[h->time_column ? h->time_column[i] : 0]);
+        times[i] = in.t = hdi_max(HDI_LOCAL_STILL, hdi_heat_scaled(&l->heat, in.ask.t[h->time_column
+                                                                              ? h->time_column[i] : 0]));
     for (i = 0; i < l->n && h->ask.F; i++)
         field[i] = h->ask.F[h->ask.ldf * (size_t)q + (size_t)lap->vertex[l->row[i]]];
     if (!h->ask.F) c = hdi_local_source(h, l, q, id, field);
@@ -19425,6 +19436,7 @@ static hd_status hdi_local_solve(hdi_heat_call *h, hdi_local *l, int32_t q, doub
         in.lap = in.m->lap;
         rep->ordering = in.m->sym.ordering;
         rep->factor_nnz = in.m->sym.nnz;
+        hdi_local_clip(l, &in, times);
         (void)hdi_heat_by_krylov(&in);
     }
     return hdi_heat_end(&in);
@@ -19443,6 +19455,7 @@ static hdi_parts hdi_local_parts(const hd_report *rep, double most) {
 static void hdi_local_entries(const hdi_heat_call *h, const hdi_local *l, int32_t q, const double *u,
                               const hd_report *rep) {
     const hdi_entry_list *list = h->ask.list;
+    hdi_parts *how = &list->ledger[h->now].evidence;
     double *values = list->values + list->n * h->now, most = 0;
     int64_t p;
     int32_t i;
@@ -19455,9 +19468,9 @@ static void hdi_local_entries(const hdi_heat_call *h, const hdi_local *l, int32_
             *value = (uint64_t)v == list->order[p].key;
         hdi_ledger_note(list->ledger + h->now, *value, hdi_local_parts(rep, most));
     }
-    list->ledger[h->now].evidence.rational = rep->evidence_rational;
-    list->ledger[h->now].evidence.solver = rep->evidence_solver;
-    list->ledger[h->now].evidence.rounding = rep->evidence_rounding;
+    how->rational = hdi_max(how->rational, rep->evidence_rational);
+    how->solver = hdi_max(how->solver, rep->evidence_solver);
+    how->rounding = hdi_max(how->rounding, rep->evidence_rounding);
 }
 
 /* The answer of item q at the time under way into the column or the row of the output. u: on the ball, with
@@ -19578,10 +19591,11 @@ enum { HDI_LOCAL_FROM = 4096 };
 /* Can balls serve the call? Auto takes fields that are not known, as in estimates, for large ones. */
 static int hdi_local_can(const hdi_heat_call *h) {
     const hd_heat *heat = h->heat;
-    const int asked = heat->opts.method == HD_METHOD_LOCAL;
+    const int asked = heat->opts.method == HD_METHOD_LOCAL;      /* then there is no retreat to the fields */
     return HDI_HAS_DIRECT && !h->not_local && !h->set && !h->n_off && !heat->poles_asked &&
            !heat->iterations_asked && h->times[0] > 0 && heat->source->b_ratio > 0 &&
-           (!hdi_query_fields(h->ask.query) || (h->ask.F ? h->ask.F != h->ask.U || h->ask.k == 1 : asked));
+           (asked || !hdi_query_fields(h->ask.query) ||
+            (h->ask.F && (h->ask.F != h->ask.U || h->ask.k == 1)));
 }
 
 /* As many balls as items, each like the first; all of the mesh for fields that are not known. least: seconds
@@ -20261,14 +20275,15 @@ static int hdi_heat_retreat(hdi_heat_call *h) {
     const int over = hdi_over_limit(heat->ctx, h->e), automatic = heat->opts.method == HD_METHOD_AUTO;
     const int failed = over || h->e->status == HD_ERR_BREAKDOWN || h->e->status == HD_ERR_NOT_CONVERGED;
     if (!HDI_HAS_DIRECT || heat->spare == HDI_SPARE_POLES || h->t == 0) return 0;
-    if (h->method == HD_METHOD_LOCAL) {
-        if (!automatic || !failed) return 0;
-        h->not_local = 1;
-        hdi_error_clear(h->e);
-        return 1;
-    }
     /* fields may have been overwritten by their answers */
     if (h->batch > 0 && hdi_query_fields(h->ask.query)) return 0;
+    if (automatic && failed && (h->method == HD_METHOD_LOCAL || (over && heat->part))) {
+        hdi_local_free(heat);
+        h->not_local = 1;
+        hdi_task_at(h, h->now);
+        return 1;
+    }
+    if (h->method == HD_METHOD_LOCAL) return 0;
     if (HDI_HAS_ITERATIVE && automatic && over && (heat->elim.ctx || heat->few.ctx) && !h->forced &&
         !h->degree) {
         hdi_heat_free_factors(heat);
@@ -20668,6 +20683,7 @@ HEATDIFF_API hd_status hd_heat_columns_sparse(hd_heat *heat, hd_kernel kernel, i
             if (err) *err = e;
         }
         h.rep->error_bound += to.cut;
+        hdi_bound_judge(h.rep->error_bound, h.rep);
     }
     hdi_free(heat->ctx, to.begin);
     hdi_free(heat->ctx, to.col);
@@ -20704,7 +20720,7 @@ static hd_status hdi_heat_check(const hd_heat_opts *o, hd_error *e) {
                      "heat: kernel sets have degrees 2 to 14", o->degree, e);
     hdi_refuse(!hdi_finite(o->tol) || o->tol < 0 || o->tol >= 1, "heat: tol is not in [0, 1)", e);
     hdi_refuse(o->max_iterations < 0, "heat: max_iterations is negative", e);
-    hdi_refuse(!(o->cut >= 0 && o->cut < 1), "heat: cut is not in [0, 1)", e);
+    hdi_refuse(!hdi_finite(o->cut) || o->cut < 0 || o->cut >= 1, "heat: cut is not in [0, 1)", e);
     hdi_refuse_ordering(o->ordering, o->perm, "heat: unknown ordering", e);
     hdi_refuse(o->method >= HD_METHOD_KRYLOV && (o->rational || o->poles || o->degree),
                "heat: the methods krylov and local have no use for poles or a degree", e);
@@ -22212,7 +22228,7 @@ static void hdi_pairs_note(const hd_heat *heat, const hdi_pairs_part *x, hd_repo
     hdi_ledger of = hdi_ledger_begin(rep->evidence_rational, rep->evidence_solver, rep->evidence_rounding, 1);
     hdi_parts part = {0, 0, 0}, share;
     int64_t q;
-    share.rational = rep->error_rational;
+    share.rational = rep->error_rational + rep->error_local;
     share.solver = rep->error_solver;
     share.rounding = rep->error_rounding;
     for (q = 0; q < x->n; q++) {
@@ -22279,11 +22295,15 @@ static hd_status hdi_pairs_columns(const hdi_pairs *to, int64_t most) {
         else hdi_report_merge(&sum, &one);
     }
     sum.error_bound = sum.error_rational = sum.error_solver = sum.error_rounding = 0;
-    sum.error_relative = sum.smallest = 0;
+    sum.error_relative = sum.smallest = sum.error_local = 0;
     sum.error_bound_b = HUGE_VAL;
     sum.evidence_b = HD_EVIDENCE_NONE;
     *h->rep = sum;
     hdi_ledger_close(&all, h->rep);
+    if (!sum.evidence_rational && sum.evidence_local) {       /* of parts of the mesh */
+        h->rep->error_local = h->rep->error_rational;
+        h->rep->error_rational = 0;
+    }
     return h->e->status;
 }
 
@@ -22595,7 +22615,7 @@ static hd_status hdi_estimate_solves(const hdi_estimate *x) {
     hd_cost *by = x->to->cost, *direct = by + HD_METHOD_DIRECT, most;
     hd_rational set;
     int32_t q;
-    if (hdi_heat_pick(h) >= 0 && n_times > 1 && h->method != HD_METHOD_KRYLOV) {   /* one by one */
+    if (hdi_heat_pick(h) >= 0 && n_times > 1 && h->method < HD_METHOD_KRYLOV) {   /* one by one */
         h->times += n_times - 1;
         h->n_times = 1;
         (void)hdi_heat_pick(h);
@@ -22603,8 +22623,8 @@ static hd_status hdi_estimate_solves(const hdi_estimate *x) {
         h->times -= n_times - 1;
     }
     if (hdi_over_limit(heat->ctx, h->e)) hdi_error_clear(h->e);
-    if (h->e->status < 0 || (h->method != HD_METHOD_ITERATIVE && hdi_estimate_analyse(h) < 0))
-        return h->e->status;
+    if (h->e->status < 0 || (h->method != HD_METHOD_ITERATIVE && h->method != HD_METHOD_LOCAL &&
+                             hdi_estimate_analyse(h) < 0)) return h->e->status;
     x->to->method = h->method;
     x->to->reason = h->rep->reason;
     hdi_heat_costs(h, by);

@@ -24,6 +24,18 @@ static hd_status heat_times(hd_heat *heat, int32_t n_times, const double *t, hd_
     return hd_heat_columns(heat, kernel, n_times, t, VERTICES(1, &source), U, ldu, report, NULL);
 }
 
+/* The answer into an empty matrix, which stays so after an error. */
+static hd_status at_sparse(hd_csr *out, hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t, const hd_sources *sources,
+                           hd_report *report, hd_error *e) {
+    hd_csr own;
+    hd_status st;
+    memset(&own, 0, sizeof own);
+    st = hd_heat_columns_sparse(heat, kernel, n_times, t, sources, out ? &own : NULL, report, e);
+    CHECK(st >= 0 || (!own.row_ptr && !own.col && !own.val));
+    if (st >= 0) *out = own;
+    return st;
+}
+
 static hd_status heat_diagonal(hd_heat *heat, int32_t n_times, const double *t, hd_kernel kernel, double *D, size_t ldd,
                                hd_report *report) {
     return hd_heat_diagonal(heat, kernel, n_times, t, D, ldd, NULL, NULL, report, NULL);

@@ -14,8 +14,8 @@
 /* ---- arguments ---- */
 
 typedef struct call_args {
-    hd_laplacian *lap, *lap2, *lap3, **out_lap;      /* 2, 3: room for further objects, by x=y */
-    hd_heat *heat, *heat2, *heat3, **out_heat;
+    hd_laplacian *lap, *lap2, *lap3, **out_lap;      /* 2, 3, 4: room for further objects, by x=y */
+    hd_heat *heat, *heat2, *heat3, *heat4, **out_heat;
     hd_ldl *ldl, *ldl2, *ldl3, **out_ldl;
     hd_spectrum *spectrum, **out_spectrum;
     hd_geodesic *geodesic, **out_geodesic;
@@ -107,6 +107,8 @@ typedef struct call_args {
     X(adjoint, hd_heat_adjoint, "", (a->heat, a->n_times, a->t, a->k, a->f, a->ldf, a->u, a->ld, a->rep, a->err))              \
     X(columns, hd_heat_columns, "",                                                                                            \
       (a->heat, (hd_kernel)a->kernel, a->n_times, a->t, VERTICES(a->k, a->ids), a->u, a->ld, a->rep, a->err))                  \
+    X(columns_sparse, at_sparse, "",                                                                                           \
+      (a->out_csr, a->heat, (hd_kernel)a->kernel, a->n_times, a->t, VERTICES(a->k, a->ids), a->rep, a->err))                   \
     X(column, hd_heat_column, "", (a->heat, (hd_kernel)a->kernel, a->time, a->source, a->u, a->rep, a->err))                   \
     X(columns_from, hd_heat_columns, "",                                                                                       \
       (a->heat, (hd_kernel)a->kernel, a->n_times, a->t, a->sources, a->u, a->ld, a->rep, a->err))                              \
@@ -188,7 +190,7 @@ typedef struct call_field { const char *name; size_t at; call_type type; } call_
 #define D(field) {#field, CALL_AT(field), CALL_DOUBLE}
 #define P(field) {#field, CALL_AT(field), CALL_POINTER}
 static const call_field call_fields[] = {
-    P(lap), P(lap2), P(lap3), P(out_lap), P(heat), P(heat2), P(heat3), P(out_heat), P(ldl), P(ldl2), P(ldl3), P(out_ldl),
+    P(lap), P(lap2), P(lap3), P(out_lap), P(heat), P(heat2), P(heat3), P(heat4), P(out_heat), P(ldl), P(ldl2), P(ldl3), P(out_ldl),
     P(spectrum), P(out_spectrum), P(geodesic), P(out_geodesic), P(out_csr), P(out_set), P(ctx), I(n), I(n_tri), I(n_times), I(k),
     I(count), I(n_filters), I(n_sets), I(n_matrices), I(n_queries), I(rows),
     I(cols), I(source), I(degree), I(kernel), I(kind), I(poles), I(query), L(n_pairs), L(n_triplets), S(ldf), S(ld),
@@ -210,7 +212,7 @@ static const call_field call_fields[] = {
     I(lo.begin_zero), I(lo.end_zero), I(lo.kind), I(lo.triangulation), I(go.updatable), I(go.triangulation), I(lo.border),
     I(lo.n_held), I(lo.updatable), I(lo.neighbours), D(lo.stiffening), D(lo.bandwidth2), D(lo.weight_cut), D(lo.mollify),
     I(ho.begin_zero), I(ho.end_zero), I(ho.method), I(ho.solver), I(ho.precond), I(ho.poles), I(ho.degree), P(ho.rational),
-    D(ho.tol), I(ho.max_iterations), I(ho.ordering), P(ho.perm), I(so.begin_zero), I(so.end_zero), I(so.count), D(so.below),
+    D(ho.tol), D(ho.cut), I(ho.max_iterations), I(ho.ordering), P(ho.perm), I(so.begin_zero), I(so.end_zero), I(so.count), D(so.below),
     D(so.tol), I(so.ordering), P(so.perm), I(go.begin_zero), I(go.end_zero), D(go.t), D(go.t_in_h2), I(go.mass), I(go.border),
     I(go.ordering), P(go.perm), D(go.stiffening), I(go.neighbours), D(go.mollify), I(fo.begin_zero), I(fo.end_zero), I(fo.ordering),
     P(fo.perm), P(fo.xyz), I(vo.begin_zero), I(vo.end_zero), I(vo.solver), I(vo.precond), D(vo.tol), I(vo.max_iterations),
@@ -234,7 +236,8 @@ static const struct { const char *name; size_t at; int32_t value; } call_choices
     {"tufted", CALL_AT(lo.triangulation), HD_TRIANGULATION_TUFTED},
     {"tufted", CALL_AT(go.triangulation), HD_TRIANGULATION_TUFTED}, {"auto", CALL_AT(ho.method), HD_METHOD_AUTO},
     {"iterative", CALL_AT(ho.method), HD_METHOD_ITERATIVE}, {"direct", CALL_AT(ho.method), HD_METHOD_DIRECT},
-    {"krylov", CALL_AT(ho.method), HD_METHOD_KRYLOV}, {"cocg", CALL_AT(ho.solver), HD_SOLVER_COCG},
+    {"krylov", CALL_AT(ho.method), HD_METHOD_KRYLOV}, {"local", CALL_AT(ho.method), HD_METHOD_LOCAL},
+    {"cocg", CALL_AT(ho.solver), HD_SOLVER_COCG},
     {"cocg", CALL_AT(vo.solver), HD_SOLVER_COCG}, {"minres", CALL_AT(ho.solver), HD_SOLVER_MINRES},
     {"minres", CALL_AT(vo.solver), HD_SOLVER_MINRES}, {"lanczos", CALL_AT(ho.solver), HD_SOLVER_LANCZOS},
     {"ssor", CALL_AT(vo.precond), HD_PRECOND_SSOR}, {"ildl", CALL_AT(vo.precond), HD_PRECOND_ILDL},
@@ -559,7 +562,7 @@ static void call_data_free(call_data *d) {
 
 /* ---- a world: a context, the objects in it, and the last answer ---- */
 
-enum { CALL_KEPT = 4, CALL_SETS = 5 };
+enum { CALL_KEPT = 5, CALL_SETS = 5 };
 
 typedef struct call_world {
     const call_data *data;

@@ -19,7 +19,7 @@ static const door_row door_rows[] = {
     {"inverse", HD_OK, "", NULL, "v=NULL u=NULL"}, {"diagonal", BAD "must not be NULL", NULL, "v=NULL u=NULL"},
     {"entries pairs", HD_OK, "", NULL, "ids=NULL other=NULL u=NULL n_pairs=0"},
     {"nearest", HD_OK, "", NULL, "queries=xyz n_queries=0 vertex=NULL"}, {"distance geodesic_each", HD_OK, "", NULL, "k=0 ids=NULL u=NULL"},
-    {"eigen_columns eigen_distance columns sample", HD_OK, "", NULL, "k=0 ids=NULL"}, {"sample_from", HD_OK, "", NULL, "sources=NULL"},
+    {"eigen_columns eigen_distance columns columns_sparse sample", HD_OK, "", NULL, "k=0 ids=NULL"}, {"sample_from", HD_OK, "", NULL, "sources=NULL"},
     {NULL, HD_OK, "", NULL, "from.count=0 from.vertex=NULL sources=sources; from.begin_zero=0 sources=curve"},
     {"diagonal distance distance_from", BAD "t is not positive and finite", "column=0", "t=zero"},
     {"shared_poles", BAD "a time is not positive", "row=0", "t=zero"},
@@ -44,7 +44,7 @@ static const door_row door_rows[] = {
     {"shared_poles", BAD "a time is not positive", "row=1", "n_times=2 t=low"},
     {"shared_poles", BAD "a time is not positive or not finite", "row=1", "n_times=2 t=bad"},
     {"diagonal distance distance_from", BAD "t is not positive and finite", "column=1", "n_times=2 t=low; n_times=2 t=bad"},
-    {"apply derivative adjoint columns columns_from pairs entries estimate", BAD "t is negative or not finite", "column=1",
+    {"apply derivative adjoint columns columns_sparse columns_from pairs entries estimate", BAD "t is negative or not finite", "column=1",
      "n_times=2 t=low; n_times=2 t=bad"},
     {NULL, BAD "t is negative or not finite", "value=-1", "n_times=2 t=low"},
     {NULL, BAD "t is negative or not finite", NULL, "n_times=2 t=bad"},
@@ -71,6 +71,9 @@ static const door_row door_rows[] = {
     {NULL, BAD "degrees 1 to 14", "value=99", "degree=99"},
     {"diagonal distance sample sample_from distance_from", BAD "need the direct method", NULL, "heat=heat2"},
     {"distance", BAD "need the direct method", NULL, "heat=heat2 commute"},
+    {"diagonal distance distance_from sample sample_from", BAD "need the direct method", NULL, "heat=heat4"},
+    {"set_rational", BAD "", NULL, "heat=heat4"},
+    {"apply derivative columns columns_sparse columns_from entries pairs", HD_OK, "", NULL, "heat=heat4; heat=heat4 f=u"},
     {"solve inverse", BAD "not a real one", NULL, "ldl=ldl2"},
     {"solve_c inverse_c", BAD "not a complex one", NULL, "ldl=ldl3"},
     {"update", BAD "matrices of your own", NULL, "lap=lap2"}, {"update_matrices", BAD "not made of matrices", NULL, "lap=lap3"},
@@ -80,11 +83,11 @@ static const door_row door_rows[] = {
     {"pairs entries", HD_ERR_INDEX, "", "row=1", "n_pairs=2 ids=far_id"},
     {"pairs entries", HD_ERR_INDEX, "", "value=-1", "n_pairs=2 ids=low_id"},
     {NULL, HD_ERR_INDEX, "", "value=21", "n_pairs=2 other=far_id"}, {NULL, HD_ERR_INDEX, "", "row=1", "n_pairs=2 other=low_id"},
-    {"columns distance sample eigen_columns eigen_distance geodesic_each", HD_ERR_INDEX, "", "column=1", "k=2 ids=far_id; k=2 ids=low_id"},
-    {"columns distance sample eigen_columns eigen_distance geodesic_each", HD_ERR_INDEX, "", "row=0", "k=2 ids=far_id; k=2 ids=low_id"},
+    {"columns columns_sparse distance sample eigen_columns eigen_distance geodesic_each", HD_ERR_INDEX, "", "column=1", "k=2 ids=far_id; k=2 ids=low_id"},
+    {"columns columns_sparse distance sample eigen_columns eigen_distance geodesic_each", HD_ERR_INDEX, "", "row=0", "k=2 ids=far_id; k=2 ids=low_id"},
     {"geodesic_set", HD_ERR_INDEX, "", "column=0", "k=2 ids=far_id"}, {"geodesic_set", HD_ERR_INDEX, "", "row=1", "k=2 ids=far_id"},
-    {"columns distance sample eigen_columns eigen_distance geodesic_set geodesic_each", HD_ERR_INDEX, "", "vertex=21", "k=2 ids=far_id"},
-    {"columns distance sample eigen_columns eigen_distance geodesic_set geodesic_each", HD_ERR_INDEX, "", "value=-1", "k=2 ids=low_id"},
+    {"columns columns_sparse distance sample eigen_columns eigen_distance geodesic_set geodesic_each", HD_ERR_INDEX, "", "vertex=21", "k=2 ids=far_id"},
+    {"columns columns_sparse distance sample eigen_columns eigen_distance geodesic_set geodesic_each", HD_ERR_INDEX, "", "value=-1", "k=2 ids=low_id"},
     {"triplets", HD_ERR_INDEX, "", "value=-1", "n_triplets=2 triplet_i=low_id"},
     {"triplets", HD_ERR_INDEX, "", "value=21", "n_triplets=2 triplet_i=far_id"},
     {"triplets", HD_ERR_INDEX, "", "row=1", "n_triplets=2 triplet_j=low_id; n_triplets=2 triplet_j=far_id"},
@@ -175,8 +178,9 @@ static const door_row door_rows[] = {
     {"plan", BAD "poles are uniform", NULL, "ho.poles=-1; ho.poles=3"},
     {"plan", BAD "", "value=1", "ho.poles=2 ho.degree=1"},
     {"plan", BAD "", NULL, "ho.degree=-1; ho.degree=15; lanczos ho.rational=set"},
-    {"plan", BAD "no use for poles", NULL, "krylov ho.rational=set; krylov ho.poles=1; krylov ho.degree=7"},
-    {"plan", BAD "belong to the iterative", NULL, "krylov cocg; direct cocg; direct jacobi"},
+    {"plan", BAD "no use for poles", NULL, "krylov ho.rational=set; krylov ho.poles=1; krylov ho.degree=7; local ho.rational=set; local ho.degree=9"},
+    {"plan", BAD "belong to the iterative", NULL, "krylov cocg; local cocg; local jacobi; direct cocg; direct jacobi"},
+    {"plan", BAD "cut is not in", NULL, "ho.cut=-1e-3; ho.cut=1; ho.cut=nan"},
 
     /* options of geodesic plans */
     {"geodesic", BAD "t is negative", NULL, "go.t=-1"}, {"geodesic", BAD "t is negative or not finite", NULL, "go.t=nan"},
@@ -214,14 +218,14 @@ typedef struct doors {
     hd_context ctx;
 } doors;
 
-/* 2 and 3: a pair of matrices, triangles that move; an iterative plan, one of a filter; complex factors, real ones. */
+/* 2 and 3: a pair of matrices, triangles that move; an iterative plan, one of a filter; complex factors, real ones. 4: a plan of parts. */
 static void doors_open(doors *d) {
     memset(d, 0, sizeof *d);
     call_data_make(&d->data, call_pair_of_shapes());
     call_open(&d->w, &d->data, &d->ctx);
     d->w.what = "doors";
     CHECK(call_words(&d->w, "updatable matrices lap2=lap triangles lap3=lap geodesic", 1) == HD_OK);
-    CHECK(call_words(&d->w, "lo.updatable=0 go.updatable=0 triangles iterative plan heat2=heat auto", 1) == HD_OK);
+    CHECK(call_words(&d->w, "lo.updatable=0 go.updatable=0 triangles iterative plan heat2=heat local plan heat4=heat auto", 1) == HD_OK);
     CHECK(call_words(&d->w, "plan set_rational heat3=heat plan eigenpairs", 1) == HD_OK);
     CHECK(call_words(&d->w, "analyse factor_c ldl2=ldl analyse factor ldl3=ldl", 1) == HD_OK);
     d->good = d->w.a;
