@@ -193,9 +193,9 @@ static void loc_estimate(void) {
 }
 
 /* Columns of two sources at two times, dense. */
-static hd_status loc_two(hd_heat *heat, double *U, hd_report *rep) {
-    const double h2 = heat->source->h * heat->source->h, t[2] = {h2 / 2, h2 / 8};
-    const int32_t v[2] = {heat->source->n / 2, heat->source->n / 3};
+static hd_status loc_two(hd_heat *heat, const hd_laplacian *lap, double *U, hd_report *rep) {
+    const double h2 = lap->h * lap->h, t[2] = {h2 / 2, h2 / 8};
+    const int32_t v[2] = {lap->n / 2, lap->n / 3};
     return hd_heat_columns(heat, HD_KERNEL_SYMMETRIC, 2, t, VERTICES(2, v), U, 0, rep, NULL);
 }
 
@@ -225,7 +225,7 @@ static void loc_starved(hd_method method) {
         ctx.byte_limit = limit;
         ctx.bytes_peak = ctx.bytes_in_use;
         if (k == 0) calls = -m.calls;
-        st = loc_two(heat, k ? u : want, &rep);
+        st = loc_two(heat, lap, k ? u : want, &rep);
         if (k == 0) {
             calls += m.calls;
             peak = ctx.bytes_peak - before;
@@ -241,7 +241,7 @@ static void loc_starved(hd_method method) {
         }
         m.fail_at = 0;
         ctx.byte_limit = 0;
-        if (k % 5 == 0) CHECK(loc_two(heat, u, NULL) == HD_OK && (k > calls || memcmp(u, want, size) == 0));
+        if (k % 5 == 0) CHECK(loc_two(heat, lap, u, NULL) == HD_OK && (k > calls || memcmp(u, want, size) == 0));
         hd_heat_free(heat);
         CHECK_MSG(ctx.bytes_in_use == before, "%d of %d: %d bytes are left", (int)k, (int)calls, (int)(ctx.bytes_in_use - before));
     }
@@ -402,16 +402,11 @@ static void loc_own_set(void) {
 }
 
 static void test_local(void) {
-    loc_pair("bumpy/4/1 fem", 8);
-    loc_pair("bumpy/4/5 vor", 14);
-    loc_pair("flat/60/40/0.4 fem+held", 9);
-    loc_pair("cylinder/8/300 vor", 5);
-    loc_pair("grid/50/4 fem", 3);
-    loc_pair("needles/4 fem+id", 3);
-    loc_pair("two/3/1/3 fem", 12);
-    loc_pair("cone/40/40 vor", 1);
-    loc_pair("qtorus/60/30 poly", 8);
-    loc_pair("points/1200/1/1 vexp", 1);
+    static const struct { const char *spec; int32_t parts; } pairs[] = {
+        {"bumpy/4/1 fem", 8}, {"bumpy/4/5 vor", 14}, {"cylinder/8/300 vor", 5}, {"grid/50/4 fem", 3}, {"flat/60/40/0.4 fem+held", 9},
+        {"two/3/1/3 fem", 12}, {"cone/40/40 vor", 1}, {"qtorus/60/30 poly", 8}, {"needles/4 fem+id", 3}, {"points/1200/1/1 vexp", 1}};
+    size_t i;
+    for (i = 0; i < sizeof pairs / sizeof *pairs; i += CASES_FEW ? 4 : 1) loc_pair(pairs[i].spec, pairs[i].parts);
     loc_sparse();
     loc_cut();
     loc_entries();
