@@ -79,9 +79,10 @@
    More macros there, for smaller builds, where -ffunction-sections -Wl,--gc-sections does not drop enough.
    What is left out returns HD_ERR_NOT_BUILT, and the error names the macro. HD_METHOD_AUTO chooses among what
    is there.
-     HEATDIFF_NO_DIRECT        all factorisations: hd_ldl_*, methods krylov and local; implies
+     HEATDIFF_NO_DIRECT        all factorisations: hd_ldl_*, method krylov; implies NO_LOCAL,
                                NO_POLE_FACTORS, NO_GEODESIC, NO_SPECTRUM. b_ratio of the caller's matrices
                                comes from Gershgorin's circles alone
+     HEATDIFF_NO_LOCAL         method local
      HEATDIFF_NO_POLE_FACTORS  complex factors: method direct, hd_ldl_*_complex; implies NO_DIAGONAL
      HEATDIFF_NO_DIAGONAL      selected inversion: hd_heat_diagonal, hd_ldl_inverse*; implies NO_DIFFUSION.
                                Method direct then has larger error bounds
@@ -1423,6 +1424,7 @@ HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, const hd_sources *so
 #define HDI_QUOTED(x) HDI_QUOTE(x)
 #define HDI_BUILT(without) (sizeof HDI_QUOTED(without) == sizeof #without)
 #define HDI_HAS_DIRECT HDI_BUILT(HEATDIFF_NO_DIRECT)
+#define HDI_HAS_LOCAL (HDI_HAS_DIRECT && HDI_BUILT(HEATDIFF_NO_LOCAL))
 #define HDI_HAS_POLE_FACTORS (HDI_HAS_DIRECT && HDI_BUILT(HEATDIFF_NO_POLE_FACTORS))
 #define HDI_HAS_DIAGONAL (HDI_HAS_POLE_FACTORS && HDI_BUILT(HEATDIFF_NO_DIAGONAL))
 #define HDI_HAS_DIFFUSION (HDI_HAS_DIAGONAL && HDI_BUILT(HEATDIFF_NO_DIFFUSION))
@@ -15209,7 +15211,7 @@ static hd_status hdi_krylov_answer(hdi_krylov *z, int32_t r, double t, const dou
         if (hdi_krylov_ritz(z, r, m, &s, e) < 0) return e->status;   /* its eigenvectors are there */
         lane->off.solver = hdi_ritz_bound(&s, t / z->g) * z->f_norm[r];
         lane->off.rounding = hdi_krylov_rounding(z, r, m, t, y, lane->rhs_off);
-        if (z->ring) lane->off.rational = hdi_rim_bound(z, r, t, e);
+        if (HDI_HAS_LOCAL && z->ring) lane->off.rational = hdi_rim_bound(z, r, t, e);
     }
     lane->off.rational += z->before[r].rational; /* K_t makes no error larger */
     lane->off.solver += z->before[r].solver;
@@ -19592,7 +19594,7 @@ enum { HDI_LOCAL_FROM = 4096 };
 static int hdi_local_can(const hdi_heat_call *h) {
     const hd_heat *heat = h->heat;
     const int asked = heat->opts.method == HD_METHOD_LOCAL;      /* then there is no retreat to the fields */
-    return HDI_HAS_DIRECT && !h->not_local && !h->set && !h->n_off && !heat->poles_asked &&
+    return HDI_HAS_LOCAL && !h->not_local && !h->set && !h->n_off && !heat->poles_asked &&
            !heat->iterations_asked && h->times[0] > 0 && heat->source->b_ratio > 0 &&
            (asked || !hdi_query_fields(h->ask.query) ||
             (h->ask.F && (h->ask.F != h->ask.U || h->ask.k == 1)));
@@ -19641,7 +19643,7 @@ static void hdi_heat_costs(hdi_heat_call *h, hd_cost *by) {
         by[q].seconds += HDI_FRESH_BYTE * by[q].bytes;
         if (by[q].possible) least = hdi_min(least, by[q].seconds);
     }
-    if (h->e->status >= 0) hdi_local_cost(h, least, by + HD_METHOD_LOCAL);
+    if (HDI_HAS_LOCAL && h->e->status >= 0) hdi_local_cost(h, least, by + HD_METHOD_LOCAL);
     by[HD_METHOD_LOCAL].seconds += HDI_FRESH_BYTE * by[HD_METHOD_LOCAL].bytes;
 }
 
@@ -20277,7 +20279,8 @@ static int hdi_heat_retreat(hdi_heat_call *h) {
     if (!HDI_HAS_DIRECT || heat->spare == HDI_SPARE_POLES || h->t == 0) return 0;
     /* fields may have been overwritten by their answers */
     if (h->batch > 0 && hdi_query_fields(h->ask.query)) return 0;
-    if (automatic && failed && (h->method == HD_METHOD_LOCAL || (over && heat->part))) {
+    if (HDI_HAS_LOCAL && automatic && failed &&
+        (h->method == HD_METHOD_LOCAL || (over && heat->part))) {
         hdi_local_free(heat);
         h->not_local = 1;
         hdi_task_at(h, h->now);
@@ -20383,7 +20386,7 @@ static hd_status hdi_heat_answer(hdi_heat_call *h) {
     if (h->t == 0 || h->equal) return hdi_heat_plain(h);
     if (HDI_HAS_POLE_FACTORS && h->method == HD_METHOD_DIRECT) return hdi_heat_by_direct(h);
     if (HDI_HAS_DIRECT && h->method == HD_METHOD_KRYLOV) return hdi_heat_by_krylov(h);
-    if (HDI_HAS_DIRECT && h->method == HD_METHOD_LOCAL) return hdi_heat_by_local(h);
+    if (HDI_HAS_LOCAL && h->method == HD_METHOD_LOCAL) return hdi_heat_by_local(h);
     if (HDI_HAS_ITERATIVE && hdi_iterative_prepare(h) >= 0) (void)hdi_heat_by_iterations(h);
     return h->e->status;
 }
@@ -20509,7 +20512,7 @@ static hd_status hdi_columns_together(hdi_task *task, char *done, hd_report *one
         if (h->method < HD_METHOD_KRYLOV ||
             (h->method == HD_METHOD_KRYLOV && hdi_heat_equal(heat, h->m, h->t, h->e)) || h->e->status < 0)
             return h->e->status;
-        if (h->method == HD_METHOD_LOCAL) (void)hdi_heat_by_local(h);
+        if (HDI_HAS_LOCAL && h->method == HD_METHOD_LOCAL) (void)hdi_heat_by_local(h);
         else (void)hdi_heat_by_krylov(h);
     }
     if (h->e->status < 0) return hdi_heat_retreat(h) ? HD_OK : h->e->status;
@@ -20700,6 +20703,8 @@ static void hdi_heat_built(const hd_heat_opts *o, hd_error *e) {
     const int poles = o->rational || o->poles || o->degree;
     if (!HDI_HAS_DIRECT && o->method >= HD_METHOD_DIRECT)
         (void)HDI_LEFT_OUT(e, DIRECT, "factorisations");
+    else if (!HDI_HAS_LOCAL && o->method == HD_METHOD_LOCAL)
+        (void)HDI_LEFT_OUT(e, LOCAL, "method local");
     else if (!HDI_HAS_POLE_FACTORS && o->method == HD_METHOD_DIRECT)
         (void)HDI_LEFT_OUT(e, POLE_FACTORS, "method direct");
     else if (!HDI_HAS_ITERATIVE && (o->method == HD_METHOD_ITERATIVE || o->solver || o->precond))
@@ -20758,7 +20763,7 @@ static void hdi_heat_free(hd_heat *heat) {
     ctx = heat->ctx;
     hdi_heat_free_iterative(heat);
     hdi_heat_free_factors(heat);
-    if (HDI_HAS_DIRECT) hdi_local_free(heat);
+    if (HDI_HAS_LOCAL) hdi_local_free(heat);
     hdi_free(ctx, heat->perm);
     hdi_free(ctx, heat->fill);
     hdi_free(ctx, heat->sums);

@@ -15,7 +15,8 @@ cp "$work/static.c" "$work/static.cpp"
 gone() {
   case $1 in
     DIRECT) echo "hdi_factor_part hdi_nd_split hdi_amd_run hdi_symbolic_order hdi_sweep_run hdi_elim_make hdi_krylov_run hdi_real_product_plain" \
-                 "$(gone POLE_FACTORS) $(gone GEODESIC) $(gone SPECTRUM)" ;;
+                 "$(gone LOCAL) $(gone POLE_FACTORS) $(gone GEODESIC) $(gone SPECTRUM)" ;;
+    LOCAL) echo "hdi_local_pair hdi_local_grow hdi_rim_sum" ;;
     POLE_FACTORS) echo "hdi_pack_product_plain hdi_batch_run hdi_elim_poles $(gone DIAGONAL)" ;;
     DIAGONAL) echo "hdi_inverse_run hdi_form_run hdi_ground_make hdi_diagonal_once hdi_trace_window hdi_filters_run hdi_fading_poles $(gone DIFFUSION)" ;;
     SPECTRUM) echo "hdi_spec_run hdi_spec_sums_run hdi_modes_distance hdi_modes_pairs hdi_pairs_by_modes hdi_sample_modes hdi_slab_dots_task" ;;
@@ -67,7 +68,7 @@ POLYGONS
 THREADS SIMD
 ITERATIVE POLE_FACTORS INTRINSIC
 ITERATIVE DIAGONAL SPECTRUM INTRINSIC
-ITERATIVE DIFFUSION
+ITERATIVE DIFFUSION LOCAL
 ITERATIVE DIAGONAL GEODESIC INTRINSIC POINTS POLYGONS THREADS SIMD
 DIRECT INTRINSIC POINTS POLYGONS THREADS SIMD
 END

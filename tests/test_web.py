@@ -237,7 +237,7 @@ __attribute__((export_name("column"))) double column(double t, int32_t v) {
 }
 """ % TOP.replace("\\", "/")
 COLUMN_SWITCHES = ["-DHEATDIFF_NO_POLE_FACTORS", "-DHEATDIFF_NO_INTRINSIC", "-DHEATDIFF_NO_ITERATIVE", "-DHEATDIFF_NO_SPECTRUM",
-                   "-DHEATDIFF_NO_POINTS", "-DHEATDIFF_NO_POLYGONS"]
+                   "-DHEATDIFF_NO_POINTS", "-DHEATDIFF_NO_POLYGONS", "-DHEATDIFF_NO_LOCAL"]
 COLUMN_NODE = """
 const fs = require("fs"), m = new WebAssembly.Module(fs.readFileSync(process.argv[1]));
 const wasm = new WebAssembly.Instance(m, {}).exports;
