@@ -19395,12 +19395,12 @@ static void hdi_local_clip(hdi_local *l, const hdi_heat_call *in, double *times)
         times[i] = hdi_min(times[i], 2 * HDI_EQUAL_BEYOND * l->heat.ground.largest_trace);
 }
 
-#define HDI_LOCAL_STILL 1e-100   /* a time at which nothing moves: zero has no logarithm */
-
 /* The answers to item q on the ball, ld apart: at the time under way, or for each of the caller's times. */
 static hd_status hdi_local_solve(hdi_heat_call *h, hdi_local *l, int32_t q, double *U, size_t ld,
                                  hd_report *rep) {
-    const hd_laplacian *lap = h->heat->source;
+    const int32_t *v = h->heat->source->vertex;
+    /* a time at which nothing moves: zero has no logarithm */
+    const double still = hdi_min(1, hdi_quotient(HDI_STILL, l->heat.lambda_max));
     hdi_heat_call in;
     hdi_terms c;
     double *field, *times;
@@ -19425,10 +19425,9 @@ static hd_status hdi_local_solve(hdi_heat_call *h, hdi_local *l, int32_t q, doub
     in.n_times = h->n_times;
     in.time_column = h->time_column;
     for (i = 0; i < h->n_times; i++)
-        times[i] = in.t = hdi_max(HDI_LOCAL_STILL, hdi_heat_scaled(&l->heat, in.ask.t[h->time_column
-                                                                              ? h->time_column[i] : 0]));
-    for (i = 0; i < l->n && h->ask.F; i++)
-        field[i] = h->ask.F[h->ask.ldf * (size_t)q + (size_t)lap->vertex[l->row[i]]];
+        times[i] = in.t =
+            hdi_max(still, hdi_heat_scaled(&l->heat, in.ask.t[h->time_column ? h->time_column[i] : 0]));
+    for (i = 0; i < l->n && h->ask.F; i++) field[i] = h->ask.F[h->ask.ldf * (size_t)q + (size_t)v[l->row[i]]];
     if (!h->ask.F) c = hdi_local_source(h, l, q, id, field);
     in.ask.terms = h->ask.F ? NULL : &c;
     in.method = HD_METHOD_KRYLOV;

@@ -10,7 +10,7 @@ import subprocess
 import sys
 
 CHECKED = {     # sha256 of script and table
-    "poles.py": "2696b65c16d77367f88a173bb6c48bf52dfab9e1846a8f66d8184461588a3216",
+    "poles.py": "2bdf0e3becf82ed93843d82556e237ddaa0b1d9d04f5d0df6af63263d6a6700e",
     "shared_poles.py": "4275da660aa0dbe65ff70402036d4fc721423fedac5c2da65ed54c4e566ffcdf",
 }
 TOOLS = os.path.dirname(os.path.abspath(__file__))
