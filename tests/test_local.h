@@ -217,7 +217,7 @@ static void loc_starved(hd_method method) {
     lap = test_laplacian_at(s, s->xyz, HD_LAPLACIAN_FEM, 0, &ctx);
     o.method = method;
     before = ctx.bytes_in_use;
-    for (k = 0; k <= calls + 16; k += k > 0 && k <= calls ? CASES_FEW ? 7 : 3 : 1) {     /* failures, then limits */
+    for (k = 0; k <= calls + 16; k += k > 0 && k <= calls ? CASES_FEW ? 15 : 3 : 1) {     /* failures, then limits */
         hd_status st;
         const uint64_t limit = k > calls ? before + peak * (uint64_t)(k - calls) / 15 : 0;
         CHECK(hd_heat_create(&heat, lap, &o, NULL) == HD_OK);
