@@ -14647,8 +14647,8 @@ static hd_status hdi_lanczos_run(const hdi_lanczos_task *task, hdi_lane *lane, c
 
 enum { HDI_KRYLOV_MAX = 160, HDI_KRYLOV_POINTS = 96 };
 
-/* The rows around a part of the mesh that is a pair of its own, and the edges that lead there from its
- * vertices. */
+/* The rim of a part of the mesh that is a pair of its own: the rows around it, and the edges that lead there
+ * from its vertices. */
 typedef struct hdi_rim {
     int32_t n, n_edges;
     const int32_t *to, *from;    /* [n_edges] which of the rows; a vertex of the part */
@@ -14678,7 +14678,7 @@ typedef struct hdi_krylov {
     hdi_parts before[HDI_WIDE];
     double last;                 /* the last time of the windows that will go on from this one, or 0 */
     int32_t rate;                /* t times the derivative is asked for */
-    const hdi_rim *ring;        /* the pair is a part of a larger one; NULL: it is not */
+    const hdi_rim *rim;          /* the pair is a part of a larger one; NULL: it is not */
     int32_t inverse, dual;       /* the fields are B^-1 times those given; answers are multiplied by B */
 } hdi_krylov;
 
@@ -15132,54 +15132,42 @@ static double hdi_krylov_rounding(const hdi_krylov *z, int32_t r, int32_t m, dou
     return z->f_norm[r] * sum + HDI_KRYLOV_BETWEEN2 * most[0] * given + m * DBL_EPSILON * size;
 }
 
-enum { HDI_RIM_SAMPLES = 6 };
-
-/* The integral of |L u + B u'| on the ring, in the norm of B^-1, over a time t after z->from; with rate that
- * of its derivative. Steps between samples count as the larger of their ends. wl, wb: L and B times the basis
- * there, by steps. rest [ring->n]. */
-static double hdi_rim_sum(const hdi_krylov *z, int32_t r, double t, const double *wl, const double *wb,
-                          double *rest) {
-    const hdi_rim *g = z->ring;
-    const int32_t m = z->done[r];
-    double sum = 0, last = 0, y[2 * HDI_KRYLOV_MAX];
-    int32_t q, i;
-    /* last of all B u on the ring, where the answer of an adjoint ends as well */
-    for (q = 0; q <= HDI_RIM_SAMPLES + (z->dual && g->b); q++) {
-        double now;
-        memset(y, 0, sizeof y);
-        memset(rest, 0, (size_t)g->n * sizeof *rest);
-        for (i = 0; i < m; i++) {
-            const double mu = z->eigen[r][i], *v = z->eigen[r] + m + (int64_t)i * m;
-            const double lambda = mu > HDI_KRYLOV_TINY ? hdi_max(0, 1 / mu - 1) / z->g : 0;
-            const double s = hdi_min(t, t / 2 + t / 2 * q / (double)HDI_RIM_SAMPLES);
-            const double part = (z->rate ? -lambda : 1) * v[0];
-            if (!(mu > HDI_KRYLOV_TINY)) continue;
-            hdi_axpy(part * exp(-s * lambda), v, y, m);
-            hdi_axpy(-lambda * part * exp(-s * lambda), v, y + HDI_KRYLOV_MAX, m);
-        }
-        for (i = 0; i < m; i++) {
-            hdi_axpy(y[i], (q <= HDI_RIM_SAMPLES ? wl : wb) + (int64_t)i * g->n, rest, g->n);
-            if (g->b && q <= HDI_RIM_SAMPLES)
-                hdi_axpy(y[HDI_KRYLOV_MAX + i], wb + (int64_t)i * g->n, rest, g->n);
-        }
-        now = sqrt(hdi_norm2w(rest, g->weight, g->n));
-        sum += q > HDI_RIM_SAMPLES ? now
-               : t / 2 * (q == 0 ? now : hdi_max(now, last) / (double)HDI_RIM_SAMPLES);
-        last = now;
+/* The norm of w u + dw u' on the rim, in that of B^-1 and relative to |f|_B, at time s after z->from; with
+ * rate that of its derivative. w, dw: matrices times the basis there, by steps; dw may be NULL. rest [n]. */
+static double hdi_rim_norm(const hdi_krylov *z, int32_t r, double s, const double *w, const double *dw,
+                           double *rest) {
+    const int32_t m = z->done[r], n = z->rim->n;
+    double y[HDI_KRYLOV_MAX] = {0}, dy[HDI_KRYLOV_MAX] = {0};
+    int32_t i;
+    for (i = 0; i < m; i++) {
+        const double mu = z->eigen[r][i], *v = z->eigen[r] + m + (int64_t)i * m;
+        const double lambda = mu > HDI_KRYLOV_TINY ? hdi_max(0, 1 / mu - 1) / z->g : 0;
+        const double part = (z->rate ? -lambda : 1) * v[0] * exp(-s * lambda);
+        if (!(mu > HDI_KRYLOV_TINY)) continue;
+        hdi_axpy(part, v, y, m);
+        hdi_axpy(-lambda * part, v, dy, m);
     }
-    return z->f_norm[r] * sum;
+    memset(rest, 0, (size_t)n * sizeof *rest);
+    for (i = 0; i < m; i++) {
+        hdi_axpy(y[i], w + (int64_t)i * n, rest, n);
+        if (dw) hdi_axpy(dy[i], dw + (int64_t)i * n, rest, n);
+    }
+    return sqrt(hdi_norm2w(rest, z->rim->weight, n));
 }
 
-/* What the answer of right-hand side r, a time t after z->from, is off by since it ends at the ring, in the
- * norm of B. u(s), extended by zeros, solves the whole system but for rho(s) = L u + B u' on the ring, and so
+enum { HDI_RIM_SAMPLES = 6 };
+
+/* What the answer of right-hand side r, a time t after z->from, is off by since it ends at the rim, in the
+ * norm of B. u(s), extended by zeros, solves the whole system but for rho(s) = L u + B u' on the rim, and so
  * the error is at most the integral of |rho(s)| from 0 to t (Duhamel). A field B^-1 c is off by |B f| there
  * to begin with. The integral is sampled in [t/2, t]: before, when less heat has arrived and the basis is
- * poor, |rho| counts as at t/2. So this is measured, not proven. */
+ * poor, |rho| counts as at t/2. So this is measured, not proven. An adjoint, B u, goes on there: that counts
+ * as an error, too. */
 static double hdi_rim_bound(const hdi_krylov *z, int32_t r, double t, hd_error *e) {
-    const hdi_rim *g = z->ring;
+    const hdi_rim *g = z->rim;
     const int32_t m = z->done[r], *row = z->m->lap->row;
     const int64_t size = (int64_t)m * g->n;
-    double off, *wl, *wb;
+    double off, last, *wl, *wb;
     int64_t p;
     int32_t j;
     if (m <= 0 || g->n == 0) return 0;
@@ -15192,10 +15180,19 @@ static double hdi_rim_bound(const hdi_krylov *z, int32_t r, double t, hd_error *
             wl[(int64_t)j * g->n + g->to[p]] += g->l[p] * v;
             if (g->b) wb[(int64_t)j * g->n + g->to[p]] += z->m->scale * g->b[p] * v;
         }
-    off = hdi_rim_sum(z, r, t, wl, wb, wb + size) * (z->rate ? t : 1);
-    if (z->inverse && !(z->from > 0)) off += z->f_norm[r] * sqrt(hdi_norm2w(wb, g->weight, g->n));
+    last = hdi_rim_norm(z, r, t / 2, wl, wb, wb + size);
+    off = t / 2 * last;
+    for (j = 1; j <= HDI_RIM_SAMPLES; j++) {     /* steps count as the larger of their ends */
+        const double step = t / 2 / (double)HDI_RIM_SAMPLES;
+        const double now = hdi_rim_norm(z, r, t / 2 + j * step, wl, wb, wb + size);
+        off += step * hdi_max(now, last);
+        last = now;
+    }
+    if (z->dual && g->b) off += hdi_rim_norm(z, r, t, wb, NULL, wb + size);
+    off *= z->rate ? t : 1;
+    if (z->inverse && !(z->from > 0)) off += sqrt(hdi_norm2w(wb, g->weight, g->n));
     hdi_free(z->m->ctx, wl);
-    return off / sqrt(z->m->scale) * hdi_ratio_root(z->m->lap) * g->uneven;
+    return off * z->f_norm[r] / sqrt(z->m->scale) * hdi_ratio_root(z->m->lap) * g->uneven;
 }
 
 /* Judges the answer in lane->u of right-hand side r, a time t after z->from. y: its coefficients. */
@@ -15211,7 +15208,7 @@ static hd_status hdi_krylov_answer(hdi_krylov *z, int32_t r, double t, const dou
         if (hdi_krylov_ritz(z, r, m, &s, e) < 0) return e->status;   /* its eigenvectors are there */
         lane->off.solver = hdi_ritz_bound(&s, t / z->g) * z->f_norm[r];
         lane->off.rounding = hdi_krylov_rounding(z, r, m, t, y, lane->rhs_off);
-        if (HDI_HAS_LOCAL && z->ring) lane->off.rational = hdi_rim_bound(z, r, t, e);
+        if (HDI_HAS_LOCAL && z->rim) lane->off.rational = hdi_rim_bound(z, r, t, e);
     }
     lane->off.rational += z->before[r].rational; /* K_t makes no error larger */
     lane->off.solver += z->before[r].solver;
@@ -17667,14 +17664,17 @@ static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const 
 #define HDI_FRESH_BYTE 0.4e-9
 #define HDI_ROW_ANALYSIS 0.8e-6
 
-/* L's diagonal over the masses. The mean is one of fourth roots, which thin triangles do not spoil. */
+/* L's diagonal over the mass: about 4 over the square of an edge's length. */
+static double hdi_row_local(const hd_laplacian *lap, int32_t i) {
+    const double mass = lap->mass[i] > 0 ? lap->mass[i] : lap->b_diag[i];
+    return hdi_max(0, hdi_row_diagonal(lap, i)) / mass;
+}
+
+/* The mean of all rows, of fourth roots, which thin triangles do not spoil. */
 static double hdi_steps_local(const hd_laplacian *lap) {
     double sum = 0;
     int32_t i;
-    for (i = 0; i < lap->n_active; i++) {
-        const double mass = lap->mass[i] > 0 ? lap->mass[i] : lap->b_diag[i];
-        sum += sqrt(sqrt(hdi_max(0, hdi_row_diagonal(lap, i)) / mass)) / lap->n_active;
-    }
+    for (i = 0; i < lap->n_active; i++) sum += sqrt(sqrt(hdi_row_local(lap, i))) / lap->n_active;
     return sum * sum * sum * sum;
 }
 
@@ -17799,7 +17799,7 @@ typedef struct hdi_heat_call {
     int32_t watching;            /* direct: the lanes keep the source's own entry, see hdi_lane.watch */
     int32_t equal;               /* t is so large that each component has its mean */
     int32_t by_pairs;            /* answers are sums over eigenpairs */
-    const hdi_rim *ring;        /* krylov on a part of the mesh: the part's */
+    const hdi_rim *rim;          /* krylov on a part of the mesh: the part's */
     hdi_extra rows;              /* direct: further sums of every item, one after the other */
     hdi_column_parts *off;       /* [k][n_off] by residuals and the sets that begin with set */
     int32_t n_off;
@@ -18345,7 +18345,7 @@ static hdi_ledger hdi_heat_ledger(const hdi_heat_call *h) {
     const int still = h->t == 0 || h->equal;
     const hd_rational *set = h->method == HD_METHOD_DIRECT ? &h->heat->elim.set : &h->heat->fam.set;
     const int itself = set->kind == HD_POLES_OWN && hdi_set_uniform(set) == 0;   /* bounds are for c itself */
-    const hd_evidence rational = h->ring ? HD_EVIDENCE_MEASURED
+    const hd_evidence rational = h->rim ? HD_EVIDENCE_MEASURED
                                : still || !poles || itself ? HD_EVIDENCE_NONE : hdi_set_evidence(set);
     const hd_evidence solver = still || h->method == HD_METHOD_DIRECT ? HD_EVIDENCE_NONE
                              : h->method == HD_METHOD_KRYLOV ? HD_EVIDENCE_ESTIMATED : HD_EVIDENCE_PROVEN;
@@ -18868,7 +18868,7 @@ static hd_status hdi_krylov_basis(hdi_heat_call *h, int32_t n, int32_t q0, int32
     double fixed[HDI_WIDE];
     int32_t i;
     double g = hdi_krylov_shift(z->from, h->times[q0], h->times[q1 - 1], heat->lambda_max);
-    if (h->ring && q1 - q0 == 1) g = HDI_SHIFT_PART * (h->times[q0] - z->from);
+    if (h->rim && q1 - q0 == 1) g = HDI_SHIFT_PART * (h->times[q0] - z->from);
     /* derivatives of smooth fields at short times are small beside the fields, and digits of T are lost */
     if (h->rate && heat->lambda_max > 0) g = hdi_max(g, HDI_SHIFT_RATE / heat->lambda_max);
     if (!h->m->shifted.ctx && !z->v[0]) {        /* a step is the least */
@@ -19013,7 +19013,7 @@ static hd_status hdi_heat_by_krylov(hdi_heat_call *h) {
     heat->krylov->wide = wide;
     heat->krylov->m = h->m;
     heat->krylov->rate = h->rate;
-    heat->krylov->ring = h->ring;
+    heat->krylov->rim = h->rim;
     heat->krylov->dual = h->ask.query == HDI_QUERY_ADJOINT;
     heat->krylov->inverse = heat->krylov->dual || h->ask.query == HDI_QUERY_SYMMETRIC;
     if (hdi_heat_lanes(h, wide, 0, 0) < 0) return h->e->status;
@@ -19082,11 +19082,11 @@ typedef struct hdi_local {
     hd_heat heat;                /* a plan for the pair of the ball; hdi_rim_bound is its rational part */
     hd_laplacian *ball;          /* the pair: its vertex i is row[i] of the source; NULL: none yet */
     int32_t *row;
-    hdi_rim ring;
+    hdi_rim rim;
     hdi_reached *at;             /* [n] rows within reach, in the order they were reached; room for so many */
     int32_t n;
     int64_t room;
-    /* [n_active] of a row of the source: 1 + its place in at, minus 1 + its number in the ring, 0: neither */
+    /* [n_active] of a row of the source: 1 + its place in at, minus 1 + its number in the rim, 0: neither */
     int32_t *place;
     double smallest, largest;    /* b_diag of the source in a version of it */
     int64_t version;
@@ -19118,12 +19118,9 @@ static hd_status hdi_local_add(hdi_local *l, int32_t row, double way, hd_context
     return HD_OK;
 }
 
-/* About the length of the edges at a row: 4 over its square is what L's diagonal is over the mass. */
+/* About the length of the edges at a row; HUGE_VAL where it has none. */
 static double hdi_local_edge(const hd_laplacian *lap, int32_t i) {
-    const double mass = lap->mass[i] > 0 ? lap->mass[i] : lap->b_diag[i];
-    int64_t p = lap->L.row_ptr[i];
-    while (lap->L.col[p] != i) p++;
-    return lap->L.val[p] > 0 ? sqrt(4 * mass / lap->L.val[p]) : HUGE_VAL;
+    return sqrt(hdi_quotient(4, hdi_row_local(lap, i)));
 }
 
 /* Adds the rows within `reach` of those that are there, by the shortest ways over edges, of which none counts
@@ -19153,34 +19150,34 @@ static hd_status hdi_local_grow(hdi_local *l, const hd_laplacian *lap, double re
 }
 
 /* Counts the entries inside the ball, and the edges to the rows around it, which it numbers. */
-static int64_t hdi_local_count(hdi_local *l, const hd_laplacian *lap, hdi_rim *ring) {
+static int64_t hdi_local_count(hdi_local *l, const hd_laplacian *lap, hdi_rim *rim) {
     int64_t nnz = 0, p;
     int32_t i;
-    memset(ring, 0, sizeof *ring);
+    memset(rim, 0, sizeof *rim);
     for (i = 0; i < l->n; i++) {
         const int32_t row = l->at[i].row;
         for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1]; p++) {
             int32_t *place = l->place + lap->L.col[p];
             nnz += *place > 0;
-            ring->n_edges += *place <= 0;
-            if (*place == 0) *place = -(++ring->n);
+            rim->n_edges += *place <= 0;
+            if (*place == 0) *place = -(++rim->n);
         }
     }
     return nnz;
 }
 
 /* Fills the rows of the ball, and the edges that leave it. Entries are put as in hdi_pair_refresh. d, id:
- * room of the ring. */
-static void hdi_local_fill(const hdi_local *l, const hd_laplacian *lap, hd_laplacian *out, hdi_rim *ring,
+ * room of the rim. */
+static void hdi_local_fill(const hdi_local *l, const hd_laplacian *lap, hd_laplacian *out, hdi_rim *rim,
                            double *d, int32_t *id, int64_t *fill) {
-    double *edge_l = d + ring->n, *edge_b = edge_l + ring->n_edges;
+    double *edge_l = d + rim->n, *edge_b = edge_l + rim->n_edges;
     int64_t p, e = 0;
     int32_t i, c;
     for (i = 0; i < l->n; i++) {
         const int32_t row = l->at[i].row;
         out->mass[i] = lap->mass[row];
         out->b_diag[i] = lap->b_diag[row];
-        out->component[i] = ring->n > 0 ? 0 : lap->component[row];
+        out->component[i] = rim->n > 0 ? 0 : lap->component[row];
         for (c = 0; c < 3 && lap->xyz; c++) out->xyz[3 * (int64_t)i + c] = lap->xyz[3 * (int64_t)row + c];
         for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1]; p++) {
             const int32_t place = l->place[lap->L.col[p]];
@@ -19193,16 +19190,16 @@ static void hdi_local_fill(const hdi_local *l, const hd_laplacian *lap, hd_lapla
             }
             d[-place - 1] = 1 / lap->b_diag[lap->L.col[p]];
             id[e] = -place - 1;
-            id[ring->n_edges + e] = i;
+            id[rim->n_edges + e] = i;
             edge_l[e] = lap->L.val[p];
             edge_b[e++] = lap->B ? lap->B[p] : 0;
         }
     }
-    ring->weight = d;
-    ring->l = edge_l;
-    ring->b = lap->B ? edge_b : NULL;
-    ring->to = id;
-    ring->from = id + ring->n_edges;
+    rim->weight = d;
+    rim->l = edge_l;
+    rim->b = lap->B ? edge_b : NULL;
+    rim->to = id;
+    rim->from = id + rim->n_edges;
 }
 
 /* The smallest and the largest entry of B's diagonal. */
@@ -19223,11 +19220,11 @@ static int64_t hdi_local_inside(const hdi_local *l, const hd_laplacian *lap, int
     return count;
 }
 
-/* The pair of the ball with its ring. If nothing is around it, it is made of whole components, which may
+/* The pair of the ball with its rim. If nothing is around it, it is made of whole components, which may
  * conserve heat. *rows: what its vertices are in the source. */
-static hd_laplacian *hdi_local_pair(hdi_local *l, const hd_laplacian *lap, hdi_rim *ring, int32_t **rows,
+static hd_laplacian *hdi_local_pair(hdi_local *l, const hd_laplacian *lap, hdi_rim *rim, int32_t **rows,
                                     hd_context *ctx, hd_error *e) {
-    const int64_t n = l->n, nnz = hdi_local_count(l, lap, ring), m = ring->n_edges;
+    const int64_t n = l->n, nnz = hdi_local_count(l, lap, rim), m = rim->n_edges;
     hdi_scope s = hdi_scope_begin(ctx, e), *keep;
     int64_t *fill = HDI_TAKE(&s, int64_t, n);
     hd_laplacian *out = fill ? hdi_lap_shell(ctx, e) : NULL;
@@ -19240,12 +19237,12 @@ static hd_laplacian *hdi_local_pair(hdi_local *l, const hd_laplacian *lap, hdi_r
     out->moving = NULL;
     out->holding = NULL;
     out->n = out->n_active = (int32_t)n;
-    out->n_components = ring->n > 0 ? 1 : lap->n_components;
-    out->conserves = ring->n > 0 ? 0 : lap->conserves;
+    out->n_components = rim->n > 0 ? 1 : lap->n_components;
+    out->conserves = rim->n > 0 ? 0 : lap->conserves;
     out->L = hdi_csr_take(keep, (int32_t)n, (int32_t)n, nnz, 1);
     out->B = lap->B ? HDI_TAKE(keep, double, nnz) : NULL;
     out->component_mass = HDI_TAKE(keep, double, out->n_components);
-    out->mass = HDI_TAKE(keep, double, 5 * n + ring->n + 2 * m);
+    out->mass = HDI_TAKE(keep, double, 5 * n + rim->n + 2 * m);
     out->vertex = out->row = HDI_TAKE(keep, int32_t, 3 * n + 2 * m);
     if (e->status >= 0) {
         d = out->mass + (lap->B ? 2 : 1) * n;
@@ -19254,16 +19251,16 @@ static hd_laplacian *hdi_local_pair(hdi_local *l, const hd_laplacian *lap, hdi_r
         out->component = out->vertex + n;
         *rows = out->component + n;
         for (i = 0; i < out->n_components; i++)
-            out->component_mass[i] = ring->n > 0 ? HUGE_VAL : lap->component_mass[i];
+            out->component_mass[i] = rim->n > 0 ? HUGE_VAL : lap->component_mass[i];
         for (i = 0; i < n; i++) {
             const int32_t from = (*rows)[i] = l->at[i].row;
             out->vertex[i] = i;
             fill[i] = out->L.row_ptr[i];
             out->L.row_ptr[i + 1] = fill[i] + hdi_local_inside(l, lap, from);
         }
-        hdi_local_fill(l, lap, out, ring, d + 3 * n, *rows + n, fill);
+        hdi_local_fill(l, lap, out, rim, d + 3 * n, *rows + n, fill);
         hdi_local_range(out, &least, &most);
-        ring->uneven = sqrt(hdi_max(least / l->smallest, l->largest / most));
+        rim->uneven = sqrt(hdi_max(least / l->smallest, l->largest / most));
     }
     if (hdi_scope_end(&s) >= 0) return out;
     hdi_laplacian_free(out, ctx);
@@ -19311,9 +19308,9 @@ static hdi_local *hdi_local_open(hd_heat *heat, hd_error *e) {
  * update of the Laplacian the factor. */
 static hd_status hdi_local_plan(const hd_heat *heat, hdi_local *l, hd_error *e) {
     hd_heat *own = &l->heat;
-    hdi_rim ring;
+    hdi_rim rim;
     int32_t *row = NULL;
-    hd_laplacian *ball = hdi_local_pair(l, heat->source, &ring, &row, heat->ctx, e);
+    hd_laplacian *ball = hdi_local_pair(l, heat->source, &rim, &row, heat->ctx, e);
     if (!ball) return e->status;
     if (l->ball && l->ball->n == ball->n && memcmp(row, l->row, (size_t)ball->n * sizeof *row) == 0) {
         own->source = own->elim.source = own->few.source = ball;
@@ -19328,7 +19325,7 @@ static hd_status hdi_local_plan(const hd_heat *heat, hdi_local *l, hd_error *e) 
     hdi_laplacian_free(l->ball, heat->ctx);
     l->ball = ball;
     l->row = row;
-    l->ring = ring;
+    l->rim = rim;
     return e->status;
 }
 
@@ -19336,7 +19333,7 @@ static hd_status hdi_local_plan(const hd_heat *heat, hdi_local *l, hd_error *e) 
  * 1e-7 of the peak. */
 static double hdi_local_edges(double edges) { return 4 + edges * (10.3 + 0.95 * log(hdi_max(edges, 1))); }
 
-/* Edges that lie between a source and the ring at least. B^-1 of a full B falls by a factor of three an edge
+/* Edges that lie between a source and the rim at least. B^-1 of a full B falls by a factor of three an edge
  * where b_ratio is 1/2 (Demko, Moss, Smith 1984). */
 #define HDI_LOCAL_DIGITS 17.6
 
@@ -19390,7 +19387,7 @@ static hdi_terms hdi_local_source(const hdi_heat_call *h, const hdi_local *l, in
 /* Where only the means of whole components are left, answers are those at the first such time. */
 static void hdi_local_clip(hdi_local *l, const hdi_heat_call *in, double *times) {
     int32_t i;
-    if (l->ring.n > 0 || !hdi_heat_equal(&l->heat, in->m, in->t, in->e)) return;
+    if (l->rim.n > 0 || !hdi_heat_equal(&l->heat, in->m, in->t, in->e)) return;
     for (i = 0; i < in->n_times; i++)
         times[i] = hdi_min(times[i], 2 * HDI_EQUAL_BEYOND * l->heat.ground.largest_trace);
 }
@@ -19410,7 +19407,7 @@ static hd_status hdi_local_solve(hdi_heat_call *h, hdi_local *l, int32_t q, doub
     id = HDI_TAKE(&in.s, int32_t, l->n);
     times = HDI_TAKE(&in.s, double, h->n_times);
     if (in.e->status < 0) return hdi_heat_end(&in);
-    in.ring = &l->ring;
+    in.rim = &l->rim;
     in.rate = h->rate;
     in.ask = h->ask;
     in.ask.k = 1;
@@ -19561,7 +19558,7 @@ static void hdi_local_item(hdi_heat_call *h, hdi_local *l, int32_t q) {
     hdi_report_merge(h->rep, &rep);
 }
 
-/* The error of the ring stands where that of poles does, until an answer is there. */
+/* The error of the rim stands where that of poles does, until an answer is there. */
 static void hdi_local_tell(hd_report *rep) {
     if (rep->method != HD_METHOD_LOCAL) return;
     rep->error_local = rep->error_rational;
