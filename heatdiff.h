@@ -19097,7 +19097,6 @@ static void hdi_local_clear(hdi_local *l, const hd_laplacian *lap) {
     int64_t p;
     for (; l->n > 0; l->n--) {
         const int32_t i = l->at[l->n - 1].row;
-        l->place[i] = 0;
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) l->place[lap->L.col[p]] = 0;
     }
 }
