@@ -16200,17 +16200,19 @@ static int32_t hdi_spec_append(hdi_spec *s) {
 
 /* ---- a run ---- */
 
-/* A block of numbers in (-1, 1) that are the same on every machine (splitmix64). */
+/* The next of numbers in (-1, 1) that are the same on every machine (splitmix64). */
+static double hdi_random(uint64_t *seed) {
+    uint64_t x = *seed += UINT64_C(0x9e3779b97f4a7c15);
+    x = (x ^ x >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
+    x = (x ^ x >> 27) * UINT64_C(0x94d049bb133111eb);
+    x ^= x >> 31;
+    return (double)(int64_t)(x >> 11) * ldexp(1, -52) - 1;
+}
+
 static void hdi_spec_random(hdi_spec *s, double *w) {
     const int64_t size = 8 * (int64_t)s->n;
     int64_t i;
-    for (i = 0; i < size; i++) {
-        uint64_t x = s->seed += UINT64_C(0x9e3779b97f4a7c15);
-        x = (x ^ x >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
-        x = (x ^ x >> 27) * UINT64_C(0x94d049bb133111eb);
-        x ^= x >> 31;
-        w[i] = (double)(int64_t)(x >> 11) * ldexp(1, -52) - 1;
-    }
+    for (i = 0; i < size; i++) w[i] = hdi_random(&s->seed);
 }
 
 static double hdi_spec_lambda(const hdi_spec *s, int32_t i) { return s->sigma + 1 / s->d[i]; }
@@ -17800,6 +17802,7 @@ typedef struct hdi_heat_call {
     int32_t equal;               /* t is so large that each component has its mean */
     int32_t by_pairs;            /* answers are sums over eigenpairs */
     const hdi_rim *rim;          /* krylov on a part of the mesh: the part's */
+    int32_t core;                /* diagonals on a part: its first so many vertices count; 0: all */
     hdi_extra rows;              /* direct: further sums of every item, one after the other */
     hdi_column_parts *off;       /* [k][n_off] by residuals and the sets that begin with set */
     int32_t n_off;
@@ -19076,7 +19079,9 @@ static hd_status hdi_heat_make(hd_heat *heat, const hd_laplacian *lap, hd_error 
  * submatrices of L and B there are a pair of their own, which loses the heat that arrives at its edge. What
  * that makes is bounded by hdi_rim_bound; where it is too much, the ball grows. */
 
-typedef struct hdi_reached { double way; int32_t row; } hdi_reached;
+/* A row, how far it is, the row among the first from which that is, and what lengths there are multiplied
+ * by. */
+typedef struct hdi_reached { double way, unit; int32_t row, from; } hdi_reached;
 
 typedef struct hdi_local {
     hd_heat heat;                /* a plan for the pair of the ball; hdi_rim_bound is its rational part */
@@ -19101,7 +19106,8 @@ static void hdi_local_clear(hdi_local *l, const hd_laplacian *lap) {
     }
 }
 
-static hd_status hdi_local_add(hdi_local *l, int32_t row, double way, hd_context *ctx, hd_error *e) {
+/* Adds a row that is as far as `at` says. */
+static hd_status hdi_local_put(hdi_local *l, hdi_reached at, hd_context *ctx, hd_error *e) {
     if (l->n == l->room) {
         const int64_t room = 2 * l->room + 64;
         hdi_reached *more = HDI_NEW(ctx, hdi_reached, room, e);
@@ -19111,9 +19117,8 @@ static hd_status hdi_local_add(hdi_local *l, int32_t row, double way, hd_context
         l->at = more;
         l->room = room;
     }
-    l->at[l->n].row = row;
-    l->at[l->n].way = way;
-    l->place[row] = ++l->n;
+    l->at[l->n] = at;
+    l->place[at.row] = ++l->n;
     return HD_OK;
 }
 
@@ -19122,25 +19127,53 @@ static double hdi_local_edge(const hd_laplacian *lap, int32_t i) {
     return sqrt(hdi_quotient(4, hdi_row_local(lap, i)));
 }
 
-/* Adds the rows within `reach` of those that are there, by the shortest ways over edges, of which none counts
- * more than `longest`; stops beyond `most` rows. Ways that are found to be shorter than a first one are
- * followed again. */
-static hd_status hdi_local_grow(hdi_local *l, const hd_laplacian *lap, double reach, double longest,
-                                int32_t most, hd_context *ctx, hd_error *e) {
-    int32_t i, first = 0, next;
+/* The distance in space between two rows. */
+static double hdi_local_apart(const hd_laplacian *lap, int32_t i, int32_t j) {
+    const double *a = lap->xyz + 3 * (int64_t)i, *b = lap->xyz + 3 * (int64_t)j;
+    const double d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+    return sqrt(hdi_dot3(d, d));
+}
+
+/* Adds one of the first rows. Lengths at it are multiplied by 1 where L is a Laplace operator for them, for
+ * then sum_j |L_ij| |x_i - x_j|^2 = 4 B_ii on surfaces. */
+static hd_status hdi_local_add(hdi_local *l, const hd_laplacian *lap, int32_t row, hd_context *ctx, hd_error *e) {
+    hdi_reached at = {0, 0, row, row};
+    double sum = 0;
+    int64_t p;
+    for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1] && lap->xyz; p++) {
+        const double edge = hdi_local_apart(lap, row, lap->L.col[p]);
+        sum += fabs(lap->L.val[p]) * (edge * edge);
+    }
+    at.unit = sqrt(hdi_quotient(4 * (lap->mass[row] > 0 ? lap->mass[row] : lap->b_diag[row]), sum));
+    return hdi_local_put(l, at, ctx, e);
+}
+
+/* Adds the rows that edges lead to from those that are there: all that are less than `hops` edges away, and
+ * those within `reach`; stops beyond `most` rows. In space a row is as far as from the first row that its
+ * neighbour came from: edges turn too often for their lengths to be added up. Rows that are found to be
+ * nearer than at first are followed again. */
+static hd_status hdi_local_grow(hdi_local *l, const hd_laplacian *lap, double reach, double hops, int32_t most,
+                                hd_context *ctx, hd_error *e) {
+    int32_t i, first = 0, next, level = 0, level_end = l->n;
     int64_t p;
     for (; first < l->n && l->n <= most; first = next) {
         next = INT32_MAX;
         for (i = first; i < l->n && l->n <= most; i++) {
-            const int32_t row = l->at[i].row;
-            const double way = l->at[i].way + hdi_min(hdi_local_edge(lap, row), longest);
-            for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1] && way <= reach; p++) {
-                const int32_t at = l->place[lap->L.col[p]] - 1;
-                if (at < 0) {
-                    if (hdi_local_add(l, lap->L.col[p], way, ctx, e) < 0) return e->status;
-                } else if (l->at[at].way > way) {
-                    l->at[at].way = way;
-                    next = at < i ? hdi_low32(next, at) : next;
+            hdi_reached at = l->at[i];
+            const double far = at.way + hdi_local_edge(lap, at.row);
+            if (i == level_end) {
+                level++;
+                level_end = l->n;
+            }
+            for (p = lap->L.row_ptr[l->at[i].row]; p < lap->L.row_ptr[l->at[i].row + 1]; p++) {
+                const int32_t there = l->place[lap->L.col[p]] - 1;
+                at.row = lap->L.col[p];
+                at.way = lap->xyz ? at.unit * hdi_local_apart(lap, at.row, at.from) : far;
+                if (there < 0 && (at.way <= reach || level < hops)) {
+                    if (hdi_local_put(l, at, ctx, e) < 0) return e->status;
+                } else if (there >= 0 && l->at[there].way > at.way) {
+                    l->at[there] = at;
+                    next = there < i ? hdi_low32(next, there) : next;
                 }
             }
         }
@@ -19328,9 +19361,13 @@ static hd_status hdi_local_plan(const hd_heat *heat, hdi_local *l, hd_error *e) 
     return e->status;
 }
 
-/* The radius of a ball in edges, where sqrt(t) is so many: on meshes of 360K vertices with jitter it leaves
- * 1e-7 of the peak. */
-static double hdi_local_edges(double edges) { return 4 + edges * (10.3 + 0.95 * log(hdi_max(edges, 1))); }
+/* The radius of a ball in edges, where sqrt(t) is so many: on meshes of 250K vertices with jitter it leaves
+ * 1e-8 to 1e-7 of the peak. Ways over edges that have no places are up to so much longer than straight ones. */
+#define HDI_LOCAL_TURNS 1.36
+
+static double hdi_local_edges(const hd_laplacian *lap, double edges) {
+    return (lap->xyz ? 1 : HDI_LOCAL_TURNS) * (2 + edges * (8.6 + 0.55 * log(hdi_max(edges, 1))));
+}
 
 /* Edges that lie between a source and the rim at least. B^-1 of a full B falls by a factor of three an edge
  * where b_ratio is 1/2 (Demko, Moss, Smith 1984). */
@@ -19353,18 +19390,18 @@ static hd_status hdi_local_find(hdi_heat_call *h, hdi_local *l, int32_t q, doubl
     if (h->ask.F) {
         const double *f = h->ask.F + (size_t)q * h->ask.ldf;
         for (i = 0; i < lap->n_active && l->n <= most; i++)
-            if (f[lap->vertex[i]] != 0 && hdi_local_add(l, i, 0, ctx, h->e) < 0) break;
+            if (f[lap->vertex[i]] != 0 && hdi_local_add(l, lap, i, ctx, h->e) < 0) break;
     } else {
         if (h->ask.terms || h->ask.list) c = hdi_heat_source(h, q);
         for (i = 0; i < c.n && h->e->status >= 0; i++) {
             const int32_t row = lap->row[hdi_terms_at(&c, i)];
-            if (row >= 0) (void)hdi_local_add(l, row, 0, ctx, h->e);
+            if (row >= 0) (void)hdi_local_add(l, lap, row, ctx, h->e);
         }
     }
     if (h->e->status < 0 || l->n == 0) return h->e->status;
     edge = hdi_local_edge(lap, l->at[0].row);
-    edge *= hdi_local_edges(sqrt(t) / edge);     /* reach times this; more reach takes more edges */
-    return hdi_local_grow(l, lap, reach * edge, edge / hdi_local_hops(lap), most, ctx, h->e);
+    edge *= hdi_local_edges(lap, sqrt(t) / edge);     /* reach times this; more reach takes more edges */
+    return hdi_local_grow(l, lap, reach * edge, reach * hdi_local_hops(lap), most, ctx, h->e);
 }
 
 /* The source of item q by vertices of the ball. id, weight: room for it. */
@@ -20998,6 +21035,11 @@ typedef struct hdi_diagonal {
     double left_out;             /* times spread, an error besides: a0 B^-1 of a full B, not at hand */
 } hdi_diagonal;
 
+/* Is row i of the copy of the pair one of those asked for? */
+static int hdi_row_counts(const hdi_heat_call *h, int32_t i) {
+    return h->core == 0 || h->heat->elim.lap->vertex[i] < h->core;
+}
+
 static hdi_diagonal hdi_diagonal_take(int32_t n, int32_t mass, hdi_scope *s) {
     hdi_diagonal d;
     memset(&d, 0, sizeof d);
@@ -21149,7 +21191,7 @@ static hd_status hdi_probe_run(hdi_heat_call *h, const hdi_inverses *x, int wors
     hdi_diagonal_read(h->heat, x, x->count - 1, d);
     for (i = 0; i < lap->n_active && worst; i++) {
         const double off = hdi_diagonal_off(d, d->g[i], d->spread[i]);
-        if (at >= 0 && !(off * d->value[at] > most * d->value[i])) continue;
+        if (!hdi_row_counts(h, i) || (at >= 0 && !(off * d->value[at] > most * d->value[i]))) continue;
         at = i;
         most = off;
     }
@@ -21280,6 +21322,7 @@ static double hdi_diagonal_tell(hdi_heat_call *h, const hdi_diagonal *d, hdi_led
     for (i = 0; i < lap->n_active; i++) {
         const double value = d->value[i], off = hdi_diagonal_off(d, d->g[i], d->spread[i]);
         hdi_parts part = {0, 0, 0};
+        if (!hdi_row_counts(h, i)) continue;
         part.rational = unit * off;
         part.rounding = unit * (4 * DBL_EPSILON * fabs(value) +
                                 (rounding > 0 ? rounding * hdi_diagonal_size(d, i) : 0));
@@ -21310,6 +21353,7 @@ static double hdi_trace_read(const hdi_heat_call *h, const hdi_inverses *x, int3
     int32_t i;
     if (lap->B) hdi_operator_diagonal(&h->heat->elim, 0, hdi_inverses_get(x, q, 1), work);
     for (i = 0; i < lap->n_active; i++) {
+        if (!hdi_row_counts(h, i)) continue;
         value += d->value[i];
         size += hdi_diagonal_size(d, i);
         form += lap->B ? work[i] * x->slack[q] : d->g[i];
@@ -21318,7 +21362,7 @@ static double hdi_trace_read(const hdi_heat_call *h, const hdi_inverses *x, int3
         components += hdi_finite(lap->component_mass[i]);
     form = hdi_finite(x->slack[q]) ? hdi_max(form, components) : HUGE_VAL;
     memset(off, 0, sizeof *off);
-    off->rational = hdi_set_off(d->set, form, lap->n_active);
+    off->rational = hdi_set_off(d->set, form, h->core > 0 ? h->core : lap->n_active);
     off->rounding = rounding * size + 4 * DBL_EPSILON * fabs(value);
     return value;
 }
@@ -21582,9 +21626,11 @@ static hd_status hdi_diagonals_run(hdi_heat_call *h, hd_kernel kernel, double *D
     return h->heat->n_sets > 1 ? hdi_diagonals_filters(&to) : hdi_heat_sparing(h, &to.task);
 }
 
-/* Checks that there is selected inversion, and that the direct method is allowed. */
+/* Checks that there is selected inversion, and that it is allowed. */
 static hd_status hdi_diagonal_check(hdi_heat_call *h) {
-    return HDI_HAS_DIAGONAL ? hdi_direct_only(h) : HDI_LEFT_OUT(h->e, DIAGONAL, "selected inversion");
+    if (!HDI_HAS_DIAGONAL) return HDI_LEFT_OUT(h->e, DIAGONAL, "selected inversion");
+    if (h->heat->opts.method == HD_METHOD_LOCAL && h->heat->source->b_ratio > 0) return HD_OK;
+    return hdi_direct_only(h);
 }
 
 /* Checks sets that one plan is to have. */
@@ -21598,6 +21644,362 @@ static hd_status hdi_sets_check(const hd_rational *sets, int32_t count, hd_error
         if (e->status < 0 && count > 1) e->column = q;
     }
     return e->status;
+}
+
+/* ---- patches ---- */
+/* An entry of a diagonal needs no more of the mesh than heat reaches and comes back from. So the rows are cut
+ * into pieces, and each piece, the core, gets a margin and a plan of its own. What is beyond the rim of
+ * the margin adds to an entry k_t(x,x) at most
+ *   int_0^t r(s) int_0^(t-s) r(s') ds' ds,   r(s)^2 = 1/b_ratio sum ((L + B d/ds) k_s e_x)_q^2 / B_qq,
+ * q being the rows of the rim (Duhamel's formula, once for each way). The r(s) of all x of a core are
+ * measured at once: by symmetry they are what k_s makes of random functions on the rim. */
+
+/* Random functions; times at which they are taken, from t on down, each half of the one before; steps of the
+ * integrals. */
+enum { HDI_PATCH_PROBES = 8, HDI_PATCH_TIMES = 3, HDI_PATCH_STEPS = 32 };
+enum { HDI_PATCH_LEAST = 256, HDI_PATCH_FROM = 20000 };
+
+/* The sum of squares of eight normal deviates is below a tenth of its mean once in 2,000 times. */
+#define HDI_PATCH_SAFETY 10
+#define HDI_PATCH_TOL 1e-11                  /* of what k_s makes of them */
+/* Of hdi_local_edges: heat has to go there and back. */
+#define HDI_PATCH_REACH 0.54
+
+typedef struct hdi_patches {
+    const hdi_diagonals *to;
+    hdi_local *local;
+    int32_t *row, *mark, *queue; /* [n_active] by pieces; work */
+    int32_t count, stamp;        /* of pieces; of marks */
+    double t, reach;             /* the last time, the caller's; margins are so many times as wide as usual */
+} hdi_patches;
+
+static int32_t hdi_patch_begin(const hdi_patches *x, int32_t count, int32_t p) {
+    return (int32_t)((int64_t)x->to->task.h->heat->source->n_active * p / count);
+}
+
+/* Orders rows as they are reached from the first of them, on ways through them alone. */
+static void hdi_patch_walk(hdi_patches *x, int32_t *row, int32_t n) {
+    const hd_csr *L = &x->to->task.h->heat->source->L;
+    int32_t i, head = 0, tail = 0;
+    int64_t p;
+    x->stamp++;
+    for (i = 0; i < n; i++) x->mark[row[i]] = x->stamp;
+    for (i = 0; i < n; i++) {
+        if (x->mark[row[i]] != x->stamp) continue;
+        x->mark[row[i]] = 0;
+        for (x->queue[tail++] = row[i]; head < tail; head++) {
+            for (p = L->row_ptr[x->queue[head]]; p < L->row_ptr[x->queue[head] + 1]; p++) {
+                if (x->mark[L->col[p]] != x->stamp) continue;
+                x->mark[L->col[p]] = 0;
+                x->queue[tail++] = L->col[p];
+            }
+        }
+    }
+    memcpy(row, x->queue, (size_t)n * sizeof *row);
+}
+
+/* Halves each of the pieces: rows from the one that is last reached. */
+static void hdi_patch_halve(hdi_patches *x) {
+    int32_t p;
+    for (p = 0; p < x->count; p++) {
+        const int32_t begin = hdi_patch_begin(x, x->count, p), n = hdi_patch_begin(x, x->count, p + 1) - begin;
+        hdi_patch_walk(x, x->row + begin, n);
+        if (n > 0) {
+            const int32_t last = x->row[begin + n - 1];
+            x->row[begin + n - 1] = x->row[begin];
+            x->row[begin] = last;
+        }
+        hdi_patch_walk(x, x->row + begin, n);
+    }
+    x->count *= 2;
+}
+
+/* Finds piece p of `count` with its margin; stops beyond `most` rows. */
+static hd_status hdi_patch_find(hdi_patches *x, int32_t count, int32_t p, int32_t most) {
+    hdi_heat_call *h = x->to->task.h;
+    const hd_laplacian *lap = h->heat->source;
+    const int32_t begin = hdi_patch_begin(x, count, p), end = hdi_patch_begin(x, count, p + 1);
+    double edge = 0;
+    int32_t i;
+    hdi_local_clear(x->local, lap);
+    for (i = begin; i < end; i++) {
+        edge += hdi_min(hdi_local_edge(lap, x->row[i]), sqrt(x->t)) / (end - begin);
+        if (hdi_local_add(x->local, lap, x->row[i], h->heat->ctx, h->e) < 0) return h->e->status;
+    }
+    edge *= HDI_PATCH_REACH * hdi_local_edges(lap, sqrt(x->t) / edge);
+    return hdi_local_grow(x->local, lap, x->reach * edge, x->reach * HDI_PATCH_REACH * hdi_local_hops(lap), most, h->heat->ctx,
+                          h->e);
+}
+
+/* Cuts until halves, with their margins, would take more in all, but at least until factors fit. */
+static hd_status hdi_patch_cut(hdi_patches *x) {
+    hdi_heat_call *h = x->to->task.h;
+    const hd_laplacian *lap = h->heat->source;
+    const double wide = (double)lap->L.nnz / lap->n_active;
+    double least = HUGE_VAL;
+    int32_t best = 1;
+    for (;;) {
+        hdi_fill f;
+        if (hdi_patch_find(x, x->count, x->count / 2, INT32_MAX) < 0) return h->e->status;
+        f = hdi_fill_guess(x->local->n, x->local->n * wide);
+        if (8 * 8 * f.stored < hdi_bytes_left(h->heat->ctx) && x->count * f.flops < least) {
+            least = x->count * f.flops;
+            best = x->count;
+        } else if (least < HUGE_VAL) {
+            break;
+        }
+        if (lap->n_active / x->count < 2 * HDI_PATCH_LEAST) break;
+        hdi_patch_halve(x);
+    }
+    x->count = best;
+    return HD_OK;
+}
+
+/* Random functions on the rim, as the fields that k_s applies to: with c = L w and c' = B w on the patch's
+ * side, k_s c + d/ds k_s c' = K_s B^-1 (c - L B^-1 c'). work [5 n] */
+static hd_status hdi_patch_probes(const hdi_local *l, double *F, double *work, hd_error *e) {
+    const hd_laplacian *lap = l->ball;
+    const hdi_rim *rim = &l->rim;
+    const int64_t n = lap->n;
+    double *c = work, *u = c + n, *rest = u + n;
+    uint64_t seed;
+    int32_t q, i;
+    for (q = 0; q < HDI_PATCH_PROBES && e->status >= 0; q++) {
+        memset(c, 0, 2 * (size_t)n * sizeof *c);
+        for (i = 0; i < rim->n_edges; i++) {
+            seed = (uint64_t)rim->to[i] * HDI_PATCH_PROBES + (uint64_t)q;
+            rest[0] = (hdi_random(&seed) < 0 ? -1 : 1) * sqrt(rim->weight[rim->to[i]]);
+            c[rim->from[i]] += rim->l[i] * rest[0];
+            u[rim->from[i]] += (rim->b ? rim->b[i] : 0) * rest[0];
+        }
+        if (rim->b && hdi_mass_solve(lap, u, F + q * n, rest, e) >= 0) {
+            hdi_pair_apply(lap, 1, 0, F + q * n, u);
+            for (i = 0; i < n; i++) c[i] -= u[i];
+        }
+        if (e->status >= 0) (void)hdi_mass_solve(lap, c, F + q * n, rest, e);
+    }
+    return e->status;
+}
+
+/* r(s) at the times, and last at 0, for the x among the first `count` vertices where it is largest. */
+static hd_status hdi_patch_rates(const hdi_patches *x, int32_t count, double *r) {
+    hd_heat *own = &x->local->heat;
+    hd_error *e = x->to->task.h->e;
+    const size_t n = (size_t)x->local->n;
+    const hd_heat_opts opts = own->opts;
+    hdi_scope s = hdi_scope_begin(own->ctx, e);
+    double *U = HDI_TAKE(&s, double, HDI_PATCH_PROBES * (HDI_PATCH_TIMES + 1) * n + 4 * n);
+    double *F = U ? U + HDI_PATCH_PROBES * HDI_PATCH_TIMES * n : NULL, t[HDI_PATCH_TIMES];
+    hdi_request ask = hdi_ask_fields(HDI_PATCH_TIMES, t, HDI_PATCH_PROBES, F, n, U, n);
+    hd_report rep;
+    int32_t i, q, m;
+    for (m = 0; m < HDI_PATCH_TIMES; m++) t[m] = ldexp(x->t, -m);
+    if (e->status < 0 || hdi_patch_probes(x->local, F, U, e) < 0) return hdi_scope_end(&s);
+    own->opts.method = HD_METHOD_KRYLOV;
+    own->opts.tol = HDI_PATCH_TOL;
+    if (hdi_fields_run(own, HDI_QUERY_FIELD, &ask, 0, &rep, NULL) < 0) *e = rep.error;
+    own->opts = opts;
+    for (m = 0; m <= HDI_PATCH_TIMES && e->status >= 0; m++) {
+        for (i = 0, r[m] = 0; i < count; i++) {
+            double sum = 0;
+            for (q = 0; q < HDI_PATCH_PROBES; q++) {
+                const double *u = m < HDI_PATCH_TIMES ? U + (size_t)(q * HDI_PATCH_TIMES + m) * n
+                                                      : F + (size_t)q * n;
+                sum += u[i] * (u[i] / HDI_PATCH_PROBES);
+            }
+            r[m] = hdi_max(r[m], sqrt(sum));
+        }
+    }
+    return hdi_scope_end(&s);
+}
+
+/* r(s) at time s of t, from those at the times: log r is convex in 1/s, as it is linear for what comes from
+ * one distance. */
+static double hdi_patch_rate(const double *r, double s) {
+    int32_t m = 0;
+    double part;
+    while (m < HDI_PATCH_TIMES - 1 && s <= ldexp(1, -m - 1)) m++;
+    if (m == HDI_PATCH_TIMES - 1) return hdi_max(r[m], r[m + 1]);
+    part = ldexp(1, -m) / s - 1;                 /* 0 at time m, 1 at the one before it */
+    return pow(r[m], 1 - part) * pow(r[m + 1], part);
+}
+
+/* What the patch, of which the first `core` vertices count, leaves out of entries of k_t at most. Those of
+ * K_t = k_t B take neighbours besides. */
+static double hdi_patch_off(const hdi_patches *x, int32_t core) {
+    const hd_laplacian *lap = x->local->ball;
+    double r[HDI_PATCH_TIMES + 1], inner[HDI_PATCH_STEPS + 1], sum = 0;
+    const double step = x->t / HDI_PATCH_STEPS;
+    int32_t count = core, i;
+    int64_t p;
+    if (x->local->rim.n == 0) return 0;
+    for (i = 0; i < core && lap->B; i++)
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
+            count = hdi_high32(count, lap->L.col[p] + 1);
+    if (hdi_patch_rates(x, count, r) < 0) return HUGE_VAL;
+    for (i = 0, inner[0] = 0; i < HDI_PATCH_STEPS; i++)
+        inner[i + 1] = inner[i] + step * hdi_patch_rate(r, (i + 1.0) / HDI_PATCH_STEPS);
+    for (i = 0; i < HDI_PATCH_STEPS; i++)
+        sum += step * hdi_patch_rate(r, (i + 1.0) / HDI_PATCH_STEPS) * inner[HDI_PATCH_STEPS - i];
+    return HDI_PATCH_SAFETY * sum / lap->b_ratio;
+}
+
+/* What a patch leaves out of the values of its core, D [n_times][n] or traces Z, where it is `off` of k_t:
+ * the larger parts into rep, and in all [n_times] what it is of traces. */
+static void hdi_patch_judge(const hdi_patches *x, int32_t core, const double *D, const double *Z, double off,
+                            double *all, hd_report *rep) {
+    const hdi_diagonals *to = x->to;
+    const hd_laplacian *lap = x->local->ball;
+    int32_t i, q;
+    int64_t p;
+    memset(rep, 0, sizeof *rep);
+    for (q = 0; q < to->task.h->ask.n_times; q++) {
+        hdi_ledger ledger = hdi_ledger_begin(HD_EVIDENCE_MEASURED, HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, 1);
+        hdi_parts part = {0, 0, 0};
+        for (i = 0, all[q] = 0; i < core; i++) {
+            double mass = lap->B ? 0 : lap->mass[i];
+            for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1] && lap->B; p++) mass += fabs(lap->B[p]);
+            all[q] += off * mass;
+            part.rational = to->kernel == HD_KERNEL_OPERATOR ? off * mass : off;
+            if (D) hdi_ledger_note(&ledger, D[(size_t)q * (size_t)lap->n + (size_t)i], part);
+        }
+        part.rational = all[q];
+        if (!D) hdi_ledger_note(&ledger, Z[q], part);
+        hdi_ledger_close(&ledger, rep);
+    }
+}
+
+/* The sum of two errors relative to the exact value, which may be as much smaller than the one found. */
+static double hdi_relative_sum(double a, double b) {
+    const double share = a / (1 + a) + b / (1 + b);
+    return hdi_finite(a) && hdi_finite(b) ? hdi_quotient(share, 1 - share) : HUGE_VAL;
+}
+
+/* Gives the core's values to the caller, and what is known of their errors: rep of the patch's plan, less of
+ * what is left out. */
+static void hdi_patch_tell(const hdi_patches *x, int32_t core, const double *D, const double *Z,
+                           const double *bound, const double *all, hd_report *rep, const hd_report *less) {
+    const hdi_diagonals *to = x->to;
+    const hdi_heat_call *h = to->task.h;
+    const int32_t *v = h->heat->source->vertex;
+    int32_t i, q;
+    for (q = 0; q < h->ask.n_times; q++) {
+        for (i = 0; i < core && D; i++)
+            to->D[(size_t)q * to->ldd + (size_t)v[x->local->row[i]]] = D[(size_t)q * (size_t)x->local->n + (size_t)i];
+        if (to->Z) to->Z[q] += Z[q];
+        if (to->Z && to->bound) to->bound[q] += bound[q] + all[q];
+    }
+    rep->method = HD_METHOD_LOCAL;
+    rep->reason = h->rep->reason;
+    rep->n_touched = x->local->n;
+    rep->error_local = less->error_rational;
+    rep->evidence_local = x->local->rim.n > 0 ? HD_EVIDENCE_MEASURED : HD_EVIDENCE_NONE;
+    rep->error_bound += less->error_rational;
+    rep->error_relative = hdi_relative_sum(rep->error_relative, less->error_relative);
+    hdi_bound_judge(rep->error_bound, rep);
+    hdi_report_merge(h->rep, rep);
+}
+
+/* Piece p. Its margin grows until what is left out is as little as of columns. */
+static hd_status hdi_patch_run(hdi_patches *x, int32_t p) {
+    const hdi_diagonals *to = x->to;
+    const int32_t core = hdi_patch_begin(x, x->count, p + 1) - hdi_patch_begin(x, x->count, p);
+    hdi_heat_call *h = to->task.h, in;
+    const int32_t n_times = h->ask.n_times;
+    const double wanted = HDI_LOCAL_SHARE * h->heat->opts.tol;
+    hdi_local *l = x->local;
+    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
+    double *Z = HDI_TAKE_ZERO(&s, double, 3 * (uint64_t)n_times), *D, off;
+    hd_report rep, less;
+    int32_t tries;
+    for (tries = 1; h->e->status >= 0; tries++) {
+        if (hdi_patch_find(x, x->count, p, INT32_MAX) < 0 || hdi_local_plan(h->heat, l, h->e) < 0) break;
+        l->heat.opts.method = HD_METHOD_DIRECT;
+        off = hdi_patch_off(x, core);
+        D = to->D && h->e->status >= 0 ? HDI_NEW(h->heat->ctx, double, (uint64_t)l->n * (uint64_t)n_times, h->e) : NULL;
+        if (h->e->status >= 0 && hdi_kernel_begin(&in, &l->heat, to->kernel, &rep, NULL) >= 0 &&
+            hdi_times_check(&in, n_times, h->ask.t, 1) >= 0) {
+            in.core = core;
+            (void)hdi_diagonals_run(&in, to->kernel, D, (size_t)l->n, to->Z ? Z : NULL, Z + n_times);
+        }
+        if (h->e->status >= 0 && hdi_heat_end(&in) < 0) *h->e = rep.error;
+        if (h->e->status >= 0) hdi_patch_judge(x, core, D, Z, off, Z + 2 * n_times, &less);
+        if (h->e->status >= 0 && (less.error_relative <= wanted || tries == HDI_LOCAL_TRIES)) {
+            hdi_patch_tell(x, core, D, Z, Z + n_times, Z + 2 * n_times, &rep, &less);
+            tries = HDI_LOCAL_TRIES;
+        }
+        hdi_free(h->heat->ctx, D);
+        if (tries == HDI_LOCAL_TRIES) break;
+        x->reach = sqrt(x->reach * x->reach + 0.05 * log(hdi_min(less.error_relative, 1e9) / wanted)) + 0.02;
+    }
+    return hdi_scope_end(&s);
+}
+
+/* Diagonals and traces by patches. */
+static hd_status hdi_patches_run(hdi_patches *x) {
+    const hdi_diagonals *to = x->to;
+    hdi_heat_call *h = to->task.h;
+    const hd_laplacian *lap = h->heat->source;
+    int32_t p, q, v;
+    for (q = 0; q < h->ask.n_times; q++) {
+        for (v = 0; v < lap->n && to->D; v++)
+            to->D[(size_t)q * to->ldd + (size_t)v] =
+                to->kernel == HD_KERNEL_OPERATOR && lap->row[v] == HD_ROW_INERT;
+        if (to->Z) to->Z[q] = 0;
+        if (to->Z && to->bound) to->bound[q] = 0;
+    }
+    h->relative = 1;
+    for (p = 0; p < x->count && h->e->status >= 0; p++)
+        if (hdi_progress(h->heat->ctx, "invert", (double)p / x->count, h->e) >= 0) (void)hdi_patch_run(x, p);
+    return h->e->status;
+}
+
+/* Is a diagonal to be found by patches? Auto does so where a patch is small beside the mesh: of a piece as
+ * wide as two margins most is core. */
+static int hdi_patches_pay(hdi_patches *x) {
+    hdi_heat_call *h = x->to->task.h;
+    const hd_heat *heat = h->heat;
+    const int32_t n = heat->source->n_active, most = n / 16;
+    if (heat->opts.method == HD_METHOD_LOCAL) return 1;
+    if (heat->opts.method != HD_METHOD_AUTO || n < HDI_PATCH_FROM || heat->opts.rational || heat->n_sets > 0)
+        return 0;
+    return hdi_patch_find(x, n, n / 2, most) >= 0 && x->local->n <= most;
+}
+
+/* A query for diagonals and traces as in hdi_diagonals_run, by patches where that costs less. */
+static hd_status hdi_diagonals_answer(hdi_heat_call *h, hd_kernel kernel, double *D, size_t ldd, double *Z,
+                                      double *bound) {
+    const int32_t n = h->heat->source->n_active;
+    hdi_diagonals to;
+    hdi_patches x;
+    int32_t q, pay = 0;
+    if (!HDI_HAS_LOCAL || h->heat->source->b_ratio <= 0) return hdi_diagonals_run(h, kernel, D, ldd, Z, bound);
+    memset(&to, 0, sizeof to);
+    memset(&x, 0, sizeof x);
+    to.task.h = h;
+    to.kernel = kernel;
+    to.D = D;
+    to.ldd = ldd;
+    to.Z = Z;
+    to.bound = bound;
+    x.to = &to;
+    x.count = 1;
+    x.reach = 1;
+    for (q = 0; q < h->ask.n_times; q++) x.t = hdi_max(x.t, h->ask.t[q]);
+    x.local = hdi_local_open(h->heat, h->e);
+    x.row = HDI_TAKE(&h->s, int32_t, 3 * (uint64_t)n);
+    if (h->e->status < 0) return h->e->status;
+    x.mark = x.row + n;
+    x.queue = x.mark + n;
+    for (q = 0; q < n; q++) x.row[q] = q;
+    memset(x.mark, 0, (size_t)n * sizeof *x.mark);
+    pay = hdi_patches_pay(&x);
+    if (pay) {
+        h->rep->reason = "asked for";
+        if (hdi_patch_cut(&x) >= 0) (void)hdi_patches_run(&x);
+        hdi_local_free(h->heat);
+    }
+    return pay || h->e->status < 0 ? h->e->status : hdi_diagonals_run(h, kernel, D, ldd, Z, bound);
 }
 
 /* ==== [28] diffusion ====
@@ -24612,7 +25014,7 @@ HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t
         hdi_diagonal_check(&h) < 0 || !HDI_HAS_DIAGONAL) return hdi_heat_end(&h);
     if (!D && !Z) hdi_missing(h.e);
     ldd = hdi_leading(&h, ldd);
-    if (h.e->status >= 0) (void)hdi_diagonals_run(&h, kernel, D, ldd, Z, bound);
+    if (h.e->status >= 0) (void)hdi_diagonals_answer(&h, kernel, D, ldd, Z, bound);
     return hdi_heat_end(&h);
 }
 
