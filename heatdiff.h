@@ -2,14 +2,14 @@
 
    ==== [A] opening ====
 
-   A surface is a pair of sparse symmetric matrices (L, B): the stiffness matrix L, positive semi-definite,
-   and the mass matrix B, positive definite. Heat f diffuses as K_t f with the kernel K_t = exp(-t B^-1 L).
-   This file builds (L, B) from a mesh or from points, and applies K_t through a rational approximation of the
+   A surface is a pair of sparse symmetric matrices: the stiffness matrix L, positive semi-definite, and the
+   mass matrix B, positive definite. Heat f diffuses as K_t f with the kernel K_t = exp(-t B^-1 L). This file
+   builds (L, B) from a mesh or from points, and applies K_t through a rational approximation of the
    exponential,
 
        K_t f = a0 f - sum_i a_i (t L + theta_i B)^-1 B f,
 
-   which takes a few sparse complex-symmetric systems. No part of the spectrum is cut off. Every answer
+   which takes a few sparse complex-symmetric systems. No part of the spectrum is cut off, and every answer
    comes with a bound on its error. The method is that of G. Patane and M. Spagnuolo, "Heat diffusion kernel
    and distance on surface meshes and point sets", Computers & Graphics 37, 2013, called the paper below.
 
@@ -18,7 +18,7 @@
        #define HEATDIFF_IMPLEMENTATION                   #include "heatdiff.h"
        #include "heatdiff.h"
 
-   and link with -lm. Give the implementation, which takes about 12 s to compile at -O2, a file of its own:
+   and link with -lm. The implementation compiles in about 12 s at -O2: give it a file of its own.
 
        hd_laplacian *lap = NULL;  hd_heat *heat = NULL;  hd_error err;
        hd_mesh mesh = hd_triangles(xyz, n, tri, n_tri);
@@ -28,7 +28,7 @@
        hd_heat_free(heat);  hd_laplacian_free(lap);
 
    Conventions
-     sign     L is positive semi-definite: minus the usual cotangent matrix of libigl. Its rows sum to zero.
+     sign     L is minus the usual cotangent matrix of libigl. Its rows sum to zero.
      units    L has no unit. B is an area, and so is t (length squared). If B = I (kind cot), t is a number.
      t        usually c h^2, where h = lap->h is the mean edge length. Below h^2 heat sees the mesh rather
               than the surface.
@@ -64,7 +64,7 @@
    Macros beside the implementation
      HEATDIFF_IMPLEMENTATION   compiles the implementation; define it in one file
      HEATDIFF_ASSERT(x)        your own assert; default: assert() unless NDEBUG
-     HEATDIFF_AUDIT            more asserts, which take time; on by itself under the address sanitizer
+     HEATDIFF_AUDIT            slow asserts as well; set by itself under the address sanitizer
      HEATDIFF_MALLOC(size), HEATDIFF_FREE(p)
                                used by contexts without an allocator; define both or none
      HEATDIFF_FILENAME         "name" of this file, which includes itself: only if you renamed it and the
@@ -76,30 +76,27 @@
                                operations of GCC, Clang or MSVC
      HEATDIFF_NO_LARGE_PAGES   no madvise for large pages on Linux
 
-   More macros there, for smaller builds, where -ffunction-sections -Wl,--gc-sections does not drop enough.
-   What is left out returns HD_ERR_NOT_BUILT, and the error names the macro. HD_METHOD_AUTO chooses among what
-   is there.
+   More of them make the build smaller, where -ffunction-sections -Wl,--gc-sections does not drop enough. What
+   is left out returns HD_ERR_NOT_BUILT, with the macro's name. HD_METHOD_AUTO chooses among what is there.
      HEATDIFF_NO_DIRECT        all factorisations: hd_ldl_*, method krylov; implies NO_LOCAL,
                                NO_POLE_FACTORS, NO_GEODESIC, NO_SPECTRUM. b_ratio of the caller's matrices
                                comes from Gershgorin's circles alone
      HEATDIFF_NO_LOCAL         method local
      HEATDIFF_NO_POLE_FACTORS  complex factors: method direct, hd_ldl_*_complex; implies NO_DIAGONAL
      HEATDIFF_NO_DIAGONAL      selected inversion: hd_heat_diagonal, hd_ldl_inverse*; implies NO_DIFFUSION.
-                               Method direct then has larger error bounds
+                               Error bounds of method direct are larger
      HEATDIFF_NO_DIFFUSION     hd_heat_distance, hd_heat_distance_pairs, hd_heat_sample
      HEATDIFF_NO_SPECTRUM      hd_spectrum_*. Bounds of distances at large t, and of all answers where heat
-                               flows out, are larger then
-     HEATDIFF_NO_ITERATIVE     method iterative, hd_shifted_solve. Factors that do not fit byte_limit are an
-                               error then
+                               flows out, are larger
+     HEATDIFF_NO_ITERATIVE     method iterative, hd_shifted_solve. Factors beyond byte_limit are an error
      HEATDIFF_NO_GEODESIC      hd_geodesic_*
      HEATDIFF_NO_INTRINSIC     the triangulations Delaunay and tufted
      HEATDIFF_NO_POINTS        HD_POINTS, hd_neighbours_*
      HEATDIFF_NO_POLYGONS      HD_POLYGONS
 
-   Macros wherever the file is included, the same everywhere
+   Macros wherever the file is included, the same everywhere; none changes a public type or prototype
      HEATDIFF_STATIC           all functions are static, for a single file that uses them
      HEATDIFF_API              your own linkage attribute
-   No macro changes a public type or prototype.
 
    Limits
      Vertices and faces are counted in 32 bits, non-zeros and offsets in 64. The library prints nothing, opens
@@ -180,69 +177,66 @@ typedef enum hd_status {
 /* What went wrong, and where in the caller's data. Places that do not apply are -1. */
 typedef struct hd_error {
     hd_status status;
-    char text[160];        /* one line for people, without the numbers below */
+    char text[160];        /* one line, without the numbers below */
     int64_t face, vertex;  /* ids as the caller numbers them */
     int64_t row, column;   /* of a matrix or of a field */
     int64_t pole;          /* index in the rational set, or of the matrix in a complex factorisation */
-    /* The offending value, or 0. HD_ERR_MEMORY_LIMIT: a byte_limit (or, if the text says so, an
-     * allocation_limit) below this is too small. */
+    /* The offending value, or 0. HD_ERR_MEMORY_LIMIT: no byte_limit (or allocation_limit, if the text says so)
+     * below this is enough. */
     double value;
 } hd_error;
 
 /* What a progress callback returns. Any other value, such as 0 or 1, is HD_ERR_ARGUMENT. */
 typedef enum hd_progress { HD_PROGRESS_CONTINUE = 0x100, HD_PROGRESS_CANCEL = 0x200 } hd_progress;
 
-/* Memory functions, called from the calling thread only. alloc returns blocks aligned to 8 bytes, or NULL.
- * free receives the size that was asked for. Stacks of threads do not come from them. */
+/* Called from the calling thread only. alloc returns blocks aligned to 8 bytes, or NULL, which ends a call
+ * with HD_ERR_MEMORY. free receives the size that was asked for. Stacks of threads do not come from here. */
 typedef struct hd_allocator {
     void *(*alloc)(void *user, size_t size);
     void (*free)(void *user, void *block, size_t size);
     void *user;
 } hd_allocator;
 
-/* One task of a parallel loop. worker numbers the threads; 0 is the thread that called the library. */
+/* One task of a parallel loop. worker numbers the threads; 0 is the calling one. */
 typedef void (*hd_task)(void *arg, int64_t index, int32_t worker);
 
-/* Instruction sets of the dense kernels on x86-64, with GCC and Clang: by default the best that the processor
- * has. Elsewhere they are plain C, on AArch64 with NEON. Results of two sets agree up to rounding. */
+/* Instruction sets of the dense kernels on x86-64 with GCC and Clang; default: the processor's best. AArch64
+ * has NEON, others plain C. Results of two sets agree up to rounding. */
 typedef enum hd_simd { HD_SIMD_AUTO = 0, HD_SIMD_NONE, HD_SIMD_AVX2, HD_SIMD_AVX512 } hd_simd;
 
 typedef struct hd_threads hd_threads;            /* started and ended by the library */
 
-/* Memory, progress and threads of a computation. All zeros are defaults, as is NULL. The context is the
- * caller's and must outlive every object made with it; do not copy it in the meantime. */
+/* Memory, progress and threads of a computation. All zeros are defaults, as is NULL. It must outlive every
+ * object made with it, and must not be copied in the meantime. */
 typedef struct hd_context {
-    hd_allocator allocator;     /* both functions or none; NULL from alloc ends a call with HD_ERR_MEMORY */
-    /* most bytes in use at one time; 0: no limit. Where one way would exceed it, others are tried */
-    uint64_t byte_limit;
+    hd_allocator allocator;     /* both functions or none */
+    uint64_t byte_limit;        /* most bytes in use at one time; 0: no limit. Other ways are tried first */
     uint64_t allocation_limit;  /* most calls of alloc; 0: no limit */
 
-    /* Called now and then during long work, by the calling thread. done runs from 0 to 1 within a stage:
-     * "neighbours", "assemble", "flip edges", "order", "analyse", "factor", "invert" (selected inversion),
-     * "precondition", "solve", "sample". If it cancels, the running function frees everything and returns
-     * HD_ERR_CANCELLED. */
+    /* Called now and then during long work, by the calling thread; may cancel with HD_ERR_CANCELLED. done
+     * runs from 0 to 1 within a stage: "neighbours", "assemble", "flip edges", "order", "analyse", "factor",
+     * "invert" (selected inversion), "precondition", "solve", "sample". */
     hd_progress (*progress)(void *user, const char *stage, double done);
     void *progress_user;
 
     /* Runs task(arg, i, worker) for every i in [0, n_tasks), in any order, and returns when all are done.
-     * Tasks should run side by side; none waits for another. NULL: the library's own threads. */
+     * None waits for another. NULL: the library's own threads. */
     void (*parallel_for)(void *user, int64_t n_tasks, hd_task task, void *arg);
     void *parallel_user;
-    /* Threads, the calling one included. 0: one for each processor that the process may use; 1: serial.
-     * Ignored if parallel_for is set. */
+    /* With the calling one. 0: one for each processor that the process may use. Not for parallel_for. */
     int32_t n_threads;
     hd_simd simd;
 
     /* Filled by the library. */
     uint64_t bytes_in_use, bytes_peak, allocations;
-    uint64_t regions;           /* parallel loops that other threads were asked to share */
+    uint64_t regions;           /* parallel loops shared with other threads */
     uint64_t helped;            /* tasks that other threads did */
     uint64_t waits;             /* times that the calling thread slept until others were done */
-    hd_threads *threads;        /* running, NULL: none; not counted in bytes_in_use */
-    int32_t n_holders;          /* objects made with this context: its threads end with the last one */
+    hd_threads *threads;        /* running; NULL: none; not counted in bytes_in_use */
+    int32_t n_holders;          /* objects made with this context */
 } hd_context;
 
-/* How many threads work for this context. 1 if this build has none. */
+/* How many threads work for this context. */
 HEATDIFF_API int32_t hd_context_threads(const hd_context *ctx);
 
 /* A sparse matrix by compressed rows, whose columns ascend and occur once. Matrices made by the library are
