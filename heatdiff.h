@@ -181,8 +181,8 @@ typedef struct hd_error {
     int64_t face, vertex;  /* ids as the caller numbers them */
     int64_t row, column;   /* of a matrix or of a field */
     int64_t pole;          /* index in the rational set, or of the matrix in a complex factorisation */
-    /* The offending value, or 0. HD_ERR_MEMORY_LIMIT: no byte_limit (or allocation_limit, if the text says so)
-     * below this is enough. */
+    /* The offending value, or 0. HD_ERR_MEMORY_LIMIT: a byte_limit (or allocation_limit, if the text says so)
+     * must be at least this. */
     double value;
 } hd_error;
 
@@ -251,18 +251,21 @@ typedef struct hd_csr {
 
 /* ==== [C] options and reports ==== */
 /* A zero in options means the default, and so does a NULL pointer to them. Clear a struct before you fill it
- * in: begin_zero and end_zero must be zero, as a sign of that. */
+ * in: begin_zero and end_zero must be zero, as a sign of that.
+ * context       default: the Laplacian's, if there is one
+ * perm          [n] HD_ORDERING_OWN: vertices in order of elimination, those without mass anywhere
+ * factor_nnz    non-zeros of one factor L, diagonal included; 0 without a factorisation
+ * factor_flops  real floating-point operations of all factorisations */
 
-/* Points: E_ij = exp(-|p_i - p_j|^2 / 4s) / (4 pi s^2), s is the bandwidth, and v_i the area of the Voronoi
- * cell of point i in its tangent plane. For exp and evenly spread samples B^-1 L tends to Laplacian/area: the
- * unit of t is an area times a squared length. */
+/* Points: E_ij = exp(-|p_i - p_j|^2 / 4s) / (4 pi s^2) with the bandwidth s, and v_i is the area of the
+ * Voronoi cell of point i in its tangent plane. For exp B^-1 L tends to Laplacian/area if points are evenly
+ * spread: the unit of t is an area times a squared length. */
 typedef enum hd_laplacian_kind {
     HD_LAPLACIAN_DEFAULT = 0,   /* triangles: fem, polygons: polygon, points: voronoi-exp */
     HD_LAPLACIAN_FEM,           /* cotangent L; B: a triangle adds area/6 on, area/12 off the diagonal */
     HD_LAPLACIAN_VORONOI_COT,   /* cotangent L; B: mixed Voronoi areas (Meyer et al. 2003), diagonal */
     HD_LAPLACIAN_COT,           /* cotangent L, B = I (Pinkall, Polthier 1993) */
-    /* Faces of k corners, planar or not; B: area/k at each corner, diagonal (Alexa, Wardetzky 2011) */
-    HD_LAPLACIAN_POLYGON,
+    HD_LAPLACIAN_POLYGON,       /* B: area/k at each of k corners, diagonal (Alexa, Wardetzky 2011) */
     HD_LAPLACIAN_VORONOI_EXP,   /* L_ij = -v_i v_j E_ij, B = diag(v) (Liu, Prabhakaran, Guo 2012) */
     HD_LAPLACIAN_EXP,           /* L_ij = -E_ij/n, B = I (Belkin, Niyogi 2008) */
     HD_LAPLACIAN_MATRICES       /* the caller's own two matrices */
@@ -274,17 +277,16 @@ typedef enum hd_border {
     HD_BORDER_DIRICHLET         /* all its vertices are held at zero */
 } hd_border;
 
-/* Vertices without a row. Inert: without mass, K_t leaves the value. Held: K_t f is always zero there. */
+/* Vertices without a row: without mass, or held at zero. */
 enum { HD_ROW_INERT = -1, HD_ROW_HELD = -2 };
 
-/* The triangles that operators are made on. */
 typedef enum hd_triangulation {
-    HD_TRIANGULATION_GIVEN = 0, /* those of the mesh; points have none, and take exponential weights */
+    HD_TRIANGULATION_GIVEN = 0, /* that of the mesh; points have none, and take exponential weights */
     /* Meshes: edges are flipped along the surface. Cotangent weights are negative only on boundary edges
-     * opposite to an obtuse angle. Surfaces not manifold, or not oriented alike, are covered twice. */
+     * opposite an obtuse angle. Surfaces not manifold, or not oriented alike, are covered twice. */
     HD_TRIANGULATION_DELAUNAY,
-    /* Meshes: the same, always on two sheets, glued at the boundary; no weight is negative. Points: triangles
-     * are made from neighbours. */
+    /* Meshes: the same on two sheets, glued at the boundary; no weight is negative. Points: triangles of
+     * neighbours. */
     HD_TRIANGULATION_TUFTED
 } hd_triangulation;
 
@@ -296,15 +298,15 @@ typedef struct hd_laplacian_opts {
     hd_triangulation triangulation;
     double stiffening;          /* polygon: of faces with more than three corners; default 1, at most 1e100 */
     double bandwidth2;          /* s of exponential weights; default: see hd_laplacian_create */
-    double weight_cut;          /* exponentials below this are left out, in (0, 1); default 1e-8 */
-    /* Delaunay and tufted: all edges are lengthened by one number, to give triangle inequalities a margin of
-     * mollify times the mean edge length. Default 1e-5; at most 1; negative: not at all. */
+    double weight_cut;          /* exponentials below this are left out; default 1e-8, below 1 */
+    /* Delaunay and tufted: all edges grow by one length, until triangle inequalities have a margin of mollify
+     * times the mean edge length. Default 1e-5, at most 1; negative: not at all. */
     double mollify;
     int32_t neighbours;         /* points: nearest ones for the plane and cell or star, 6..128; default 30 */
-    /* 1: allows hd_laplacian_update (triangles and polygons in space, as given) and
-     * hd_laplacian_update_matrices. Takes 90 bytes a triangle, or 65 a corner of polygons. */
+    /* 1: allows updates (triangles and polygons in space, as given; matrices). Takes 90 bytes for each
+     * triangle, or 65 for each corner of polygons. */
     int32_t updatable;
-    hd_border border;           /* of the faces used of meshes; points and matrices: use held */
+    hd_border border;           /* of meshes; points and matrices: use held */
     int32_t n_held;
     const int32_t *held;        /* [n_held] more vertices held at zero; ids may repeat */
     int32_t end_zero;
@@ -312,81 +314,79 @@ typedef struct hd_laplacian_opts {
 
 typedef enum hd_shape { HD_TRIANGLES = 0, HD_POLYGONS, HD_POINTS } hd_shape;
 
-/* A surface as the caller has it. Positions need not be aligned. No array is used after the call.
+/* A surface as the caller has it. No array is used after the call.
  * NOTE: vertex buffers often repeat vertices along seams of texture coordinates or normals, which no heat
  * crosses. Weld them first. */
 typedef struct hd_mesh {
     int32_t begin_zero;
     hd_shape shape;
     int32_t n;                  /* vertices, or points */
-    const double *xyz;          /* x, y and z of each vertex, finite */
+    const double *xyz;          /* x, y and z of each vertex, finite; need not be aligned */
     const float *xyz_float;     /* or this */
     size_t stride;              /* bytes from one vertex to the next; 0: packed */
     /* [3 n_faces] of triangles, in place of coordinates: lengths[3 f + q] is the side from corner q to the
-     * next, finite, not negative, and no longer than the other two together. All faces at an edge agree up to
-     * 1e-12 of it; two vertices have one edge only. */
+     * next, no longer than the other two together. All faces at an edge agree up to 1e-12 of it; two vertices
+     * have one edge only. */
     const double *lengths;
     int32_t n_faces;
     const int64_t *face_ptr;    /* [n_faces + 1] of polygons: where the corners of each begin, from 0 */
-    const int32_t *corner;      /* vertex ids: three for each triangle, or as face_ptr says */
+    const int32_t *corner;      /* vertex ids: three for each triangle, or by face_ptr */
     const uint16_t *corner_u16; /* or this, of triangles */
-    /* Points that are triangulated: nbr[nbr_ptr[i]] .. nbr[nbr_ptr[i + 1] - 1] are neighbours of point i, at
-     * most 256; 30 nearest ones suit. The point itself, points at its place and repeats do no harm. NULL:
-     * they are searched. */
+    /* Tufted points: nbr[nbr_ptr[i]] .. nbr[nbr_ptr[i + 1] - 1] are neighbours of point i, at most 256; 30
+     * nearest ones suit. The point itself, points at its place and repeats do no harm. NULL: searched. */
     const int64_t *nbr_ptr;
     const int32_t *nbr;
     int32_t end_zero;
 } hd_mesh;
 
-/* What was found in a mesh. Nothing here is an error: faces that cannot be used are left out and counted. */
+/* What was found in a mesh. Faces that cannot be used are no error: they are left out and counted. */
 typedef struct hd_mesh_report {
     int32_t n_faces, n_faces_used;   /* given; assembled */
     int32_t n_repeated_corner;       /* left out: two corners are the same vertex */
-    /* Left out: a cross product or vector area of exactly zero (more than three corners: up to rounding), or
-     * fewer than three corners. */
+    /* Left out: the area is exactly zero (more than three corners: up to rounding), or there are fewer than
+     * three corners. */
     int32_t n_zero_area;
     int32_t n_repeated_face;         /* left out: corners of an earlier face, for polygons in cyclic order */
-    int64_t n_edges, n_boundary_edges;   /* distinct edges of the faces used; those with one face */
-    int64_t n_nonmanifold_edges;     /* with three faces or more: their weights are summed */
-    int64_t n_misoriented_edges;     /* with two faces that run along the edge in the same direction */
+    int64_t n_edges, n_boundary_edges;   /* of the faces used; those with one face */
+    int64_t n_nonmanifold_edges;     /* three faces or more, whose weights are summed */
+    int64_t n_misoriented_edges;     /* two faces that run along the edge in the same direction */
     int32_t n_boundary_loops;        /* connected sets of boundary edges */
     int32_t n_inert;                 /* vertices without mass, held or not */
-    /* Edges of negative cotangent weight, which break the maximum principle. Polygons: pairs of vertices
-     * whose entry of L is positive; most faces of more than three corners have some. */
+    /* Edges of negative weight (polygons: positive entries of L), which break the maximum principle. Most
+     * faces of more than three corners have some. */
     int64_t n_negative_weights;
     double smallest_angle;           /* in radians, of the faces used; polygons: of convex corners */
 
-    /* Delaunay and tufted; else zero. All above but n_negative_weights is of the faces as given. */
-    int32_t n_sheets;                /* 1, or 2: the surface is covered twice */
-    int32_t n_mollified;             /* faces that needed mollification */
+    /* Delaunay and tufted. All above but n_negative_weights is of the faces as given. */
+    int32_t n_sheets;                /* 2: the surface is covered twice */
+    int32_t n_mollified;             /* faces that needed it */
     double mollify_epsilon;          /* added to the length of every edge */
     int64_t n_flips;                 /* on all sheets */
     int64_t n_not_delaunay;          /* edges that could not be flipped because of rounding */
-    int64_t n_self_edges;            /* edges from a vertex to itself after the flips; weightless */
-    double smallest_intrinsic_angle; /* after the flips, in radians */
+    int64_t n_self_edges;            /* after the flips, from a vertex to itself; weightless */
+    double smallest_intrinsic_angle; /* after the flips */
 } hd_mesh_report;
 
-/* What was found in a point set, and chosen for it. Nothing here is an error. A place is a position of one or
- * more points. */
+/* What was found in a point set, and chosen for it. A place is a position of one or more points. */
 typedef struct hd_point_report {
     double bandwidth2;               /* s of the exponential weights */
-    double weight_cut, cut_radius;   /* exponentials below weight_cut, beyond cut_radius, are 0 */
+    double weight_cut, cut_radius;   /* exponentials below weight_cut lie beyond cut_radius, and are 0 */
     int32_t neighbours;              /* used for tangent planes and cells */
     int32_t n_coincident;            /* points at the place of an earlier point: they share its cell */
-    int32_t n_isolated;              /* points without another within cut_radius: own components */
+    int32_t n_isolated;              /* points alone within cut_radius: components of their own */
     int32_t n_no_area;               /* points whose neighbours lie on a line: inert for voronoi-exp */
     int32_t n_border;                /* places whose cell ends at the hull of their neighbours */
-    int32_t most_in_row;             /* most non-zeros in a row of L, diagonal included */
-    /* Places whose nearest neighbours spread across their plane over 0.45 times as far as along it: creases,
-     * rims, tips, noise, and sheets closer than about 1.5 spacings, where heat may cross over. */
+    int32_t most_in_row;             /* most non-zeros in a row of L */
+    /* Places whose neighbours spread across their plane over 0.45 times as far as along it: creases, rims,
+     * tips, noise, and sheets closer than about 1.5 spacings, where heat may cross over. */
     int32_t n_not_flat;
 } hd_point_report;
 
-/* A discrete surface: the pair (L, B) on one pattern, to be read only. Rows are the vertices with mass that
- * are not held at zero, in the caller's order. */
+/* The pair (L, B) on one pattern, to be read only. Rows are the vertices with mass that are not held at zero,
+ * in the caller's order. */
 typedef struct hd_laplacian {
     int32_t n, n_active;        /* vertices of the caller; rows */
-    int32_t n_held;             /* vertices held at zero */
+    int32_t n_held;
     int32_t n_components;       /* of the rows, joined by entries of L or B that are not zero */
     hd_laplacian_kind kind;
     /* A bound on the largest eigenvalue of B^-1 L in 1/area, up to about five times as large. HUGE_VAL if
@@ -395,23 +395,22 @@ typedef struct hd_laplacian {
     double h;                   /* mean edge length before flips; points: nearest places; matrices: given */
     double area;                /* of the faces used, or of points' cells or stars; matrices: 1'B1 */
     hd_csr L;                   /* n_active x n_active, every diagonal entry present */
-    double *B;                  /* [L.nnz] values of B on the pattern of L, or NULL: B = diag(mass) */
-    /* [n_active] b = B 1, the masses of the vertices. Next to held vertices a full B has lost entries: the
-     * heat there is b'u with the b of the Laplacian that holds none. */
+    double *B;                  /* [L.nnz] B on the pattern of L; NULL: B = diag(mass) */
+    /* [n_active] b = B 1. Next to held vertices a full B has lost entries: the heat there is b'u with the b
+     * of the Laplacian that holds none. */
     double *mass;
-    double *b_diag;             /* [n_active] diagonal of B; the same array as mass if B is diagonal */
+    double *b_diag;             /* [n_active] diagonal of B; the array mass if B is diagonal */
     int32_t *vertex, *row;      /* [n_active] row -> vertex; [n] vertex -> row, HD_ROW_INERT or HD_ROW_HELD */
     int32_t *component;         /* [n_active] row -> component, numbered by first vertices */
     double *xyz;                /* [3 n_active] coordinates of the rows; NULL for matrices and lengths */
-    double *component_mass;     /* [n_components] sum of mass; infinite where heat is lost to held vertices */
+    double *component_mass;     /* [n_components] infinite where heat is lost to held vertices */
     /* B >= b_ratio diag(B), proven: 1 if B is diagonal, 1/2 for fem (0.42 if some edge joins a vertex to
      * itself). 0: unknown. */
     double b_ratio;
-    /* Where heat is conserved, L 1 = 0. 1: everywhere; for matrices L 1 = 0 up to 4 DBL_EPSILON sum_j |L_ij|
-     * in each row. 2: on some components; the others tend to 0. 0: on none, or unknown; from about
-     * t = 15/lambda_1 on, bounds of poles then say little, see hd_heat_apply. */
+    /* Where heat is conserved: L 1 = 0, for matrices up to 4 DBL_EPSILON sum_j |L_ij| in each row. 1:
+     * everywhere; 2: on some components; 0: on none, or unknown. See hd_heat_apply. */
     int32_t conserves;
-    hd_mesh_report mesh;        /* matrices and points: only n_inert; tufted points: triangles of stars */
+    hd_mesh_report mesh;        /* matrices, points: only n_inert; tufted points: triangles of stars */
     hd_point_report points;     /* tufted: only n_not_flat and, if searched, neighbours and n_coincident */
     hd_context *context;
     int64_t version;            /* number of updates */
@@ -421,9 +420,9 @@ typedef struct hd_laplacian {
 
 typedef enum hd_pole_kind {
     HD_POLES_DEFAULT = 0,
-    HD_POLES_UNIFORM,           /* r = 1..14: smallest max |exp - c| on (-inf, 0] */
-    HD_POLES_KERNEL,            /* r = 2..14: a0 = 0, c(0) = 1, smallest max (1 + |x|) |exp - c| */
-    HD_POLES_OWN                /* the caller's */
+    HD_POLES_UNIFORM,           /* degrees 1..14: smallest max |exp - c| on (-inf, 0] */
+    HD_POLES_KERNEL,            /* degrees 2..14: a0 = 0, c(0) = 1, smallest max (1 + |x|) |exp - c| */
+    HD_POLES_OWN
 } hd_pole_kind;
 
 enum { HD_MAX_POLES = 32 };
@@ -435,22 +434,22 @@ typedef struct hd_rational {
     int32_t degree, n_poles;    /* real poles + 2 pairs; poles listed, at most HD_MAX_POLES */
     double a0;
     hd_c64 theta[HD_MAX_POLES], a[HD_MAX_POLES];
-    /* max |exp - c| on (-inf, 0], and max (1 + |x|) |exp - c|, where 0 is unbounded. 0: unknown, in sets of
-     * your own; if both are, bounds in reports are for c itself. */
+    /* max |exp - c| on (-inf, 0], and max (1 + |x|) |exp - c|, 0 if that is infinite. In sets of your own 0
+     * means unknown; if both are, bounds in reports are for c itself. */
     double max_error, max_weighted_error;
-    /* Filters f: c(-t lambda) stands for f(lambda), with errors measured on a grid of [0, lambda_max];
-     * queries refuse a Laplacian with larger eigenvalues; largest is max |f|. Otherwise t is 0. */
+    /* Filters f: c(-t lambda) stands for f(lambda), with errors measured on [0, lambda_max]. Queries refuse a
+     * Laplacian with larger eigenvalues. largest is max |f|. Otherwise t is 0. */
     double t, lambda_max, largest;
 } hd_rational;
 
-/* Filters f(lambda) of the eigenvalues of B^-1 L, with their parameters a and b. */
+/* Filters f(lambda) of the eigenvalues of B^-1 L, with parameters a and b. */
 typedef enum hd_filter_kind {
     HD_FILTER_OWN = 0,          /* f(lambda, user) */
     HD_FILTER_HEAT,             /* exp(-a lambda) */
-    /* exp(-(a - log lambda)^2 / (2 b^2)), 0 at 0: energy a, width b. The diagonal over the trace is the wave
-     * kernel signature (Aubry, Schlickewei, Cremers 2011, eq. (4)). */
+    /* exp(-(a - log lambda)^2 / (2 b^2)), 0 at 0: energy a, width b, for wave kernel signatures (Aubry,
+     * Schlickewei, Cremers 2011, eq. (4)) */
     HD_FILTER_WAVE,
-    HD_FILTER_MEXICAN_HAT,      /* lambda exp(-a lambda): the wavelet -d/dt K_t at t = a (Hou, Qin 2012) */
+    HD_FILTER_MEXICAN_HAT,      /* lambda exp(-a lambda): a wavelet, -dK_t/dt at t = a (Hou, Qin 2012) */
     HD_FILTER_RESOLVENT,        /* 1 / (1 + a lambda) */
     HD_FILTER_FRACTIONAL,       /* exp(-a lambda^b): fractional diffusion */
     /* 1 / (1 + ((lambda - a b/lambda)/(b - a))^4), 0 at 0, 1/2 at a and b (Butterworth 1930) */
@@ -461,33 +460,30 @@ typedef enum hd_filter_kind {
 typedef struct hd_filter {
     int32_t begin_zero;
     hd_filter_kind kind;
-    double a, b;                /* finite; a > 0 except for waves, b > 0 where there is a b */
+    double a, b;                /* finite; a > 0 except for waves; b > 0, of bands b > a */
     double (*f)(double lambda, void *user);   /* HD_FILTER_OWN: finite on [0, lambda_max] */
     void *user;
     double tol;                 /* max (1 + weight lambda) |f - c| / max |f|; default 1e-10 */
-    /* >= 0. Take 1/weight near the eigenvalues that f lets pass. For a wave, weight = exp(-a) and tol = 1e-7
-     * give bounds near 1e-6 with 16 poles. */
+    /* >= 0; 1/weight is near the eigenvalues that f lets pass. For a wave, exp(-a) and tol = 1e-7 give bounds
+     * near 1e-6 with 16 poles. */
     double weight;
-    int32_t max_degree;         /* of the set, at most HD_MAX_POLES; default 24 */
-    /* > 0: no eigenvalue lies between 0 and this, and c may take any value there. Halves the poles of filters
-     * not smooth at 0. The second value of hd_spectrum is such a number. */
+    int32_t max_degree;         /* at most HD_MAX_POLES; default 24 */
+    /* > 0: no eigenvalue lies between 0 and this, and c may take any value there. The second value of
+     * hd_spectrum is such a number. It halves the poles of filters that are not smooth at 0. */
     double lambda_min;
-    /* 1: c may have an a0, for filters that do not fade where lambda is large. With a full B diagonals leave
-     * a0 B^-1 out, and the bound includes it. */
-    int32_t constant;
+    int32_t constant;           /* 1: c may have an a0, for filters that do not fade at large lambda */
     int32_t end_zero;
 } hd_filter;
 
-/* Answers of two methods differ within their bounds. */
 typedef enum hd_method {
-    /* The cheapest by a model, within the byte limit. For many calls with a column each at one t, ask for
-     * direct: its factors are kept. */
+    /* The cheapest by a model, within the byte limit. For many calls of one column at one t, ask for direct,
+     * which keeps its factors. */
     HD_METHOD_AUTO = 0,
     HD_METHOD_ITERATIVE,        /* a Krylov method for each pole, or Lanczos for the exponential */
     HD_METHOD_DIRECT,           /* all poles factorised in one sweep: for many fields or columns */
     HD_METHOD_KRYLOV,           /* shift-and-invert Lanczos: one real factor, few fields or many times */
-    /* The same on a ball around the source, or around where a field is not zero: about 11 sqrt(t), more if
-     * need be. Answers beyond are 0. Not for diagonals, distances and pole sets */
+    /* The same on a ball of radius 11 sqrt(t) or more around the source, or around where a field is not zero;
+     * answers beyond are 0. For fields, columns, entries and pairs without pole sets; needs b_ratio > 0 */
     HD_METHOD_LOCAL
 } hd_method;
 
@@ -502,7 +498,7 @@ typedef enum hd_ordering {
 typedef enum hd_solver {
     HD_SOLVER_AUTO = 0,         /* Lanczos for small t if it costs less, else cocg */
     HD_SOLVER_COCG,             /* conjugate orthogonal CG (van der Vorst, Melissen 1990); real poles: CG */
-    HD_SOLVER_MINRES = 3,       /* CS-MINRES (Choi 2013), preconditioned by that of t L + |theta| B */
+    HD_SOLVER_MINRES = 3,       /* CS-MINRES (Choi 2013), with the preconditioner of t L + |theta| B */
     HD_SOLVER_LANCZOS           /* for the exponential, no poles: about 1.1 sqrt(t lambda_max) steps */
 } hd_solver;
 
@@ -512,42 +508,38 @@ typedef enum hd_precond {
     HD_PRECOND_JACOBI,          /* the diagonal */
     HD_PRECOND_SSOR,            /* symmetric successive over-relaxation, omega = 1 */
     HD_PRECOND_ILDL,            /* incomplete L D L' on the pattern of L, no fill */
-    HD_PRECOND_MILDL            /* the same, 97 % of dropped fill goes to the diagonal (Gustafsson 1978) */
+    HD_PRECOND_MILDL            /* the same; 97 % of the fill goes to the diagonal (Gustafsson 1978) */
 } hd_precond;
 
-/* A plan's options. Those of factorisations serve all methods that factorise. */
 typedef struct hd_heat_opts {
     int32_t begin_zero;
     hd_method method;
     hd_solver solver;
     hd_precond precond;
     hd_pole_kind poles;         /* default: uniform for fields, else kernel */
-    /* Default: the rational error relative to the answer is below about 1e-8 (direct: degree 9 and 3e-8). */
-    int32_t degree;
-    /* Copied: your own set, or hd_rational_fit's. Then poles and degree are ignored, Lanczos is not used. */
-    const hd_rational *rational;
+    int32_t degree;             /* default: a rational error near 1e-8 (direct: degree 9 and 3e-8) */
+    const hd_rational *rational;    /* copied: your own set or a filter's, in place of poles and degree */
     double tol;                 /* the solver's part of |error|_B / |answer|_B; default 1e-9 */
     int32_t max_iterations;     /* per system; default 20000 */
-    double cut;                 /* of sparse columns: smaller values, relative to the largest, are left out */
+    double cut;                 /* sparse columns leave out values below this times the largest */
     hd_ordering ordering;       /* auto: a plan may keep a second one, for few columns */
-    const int32_t *perm;        /* [n] HD_ORDERING_OWN: vertices in order, those without mass anywhere */
-    hd_context *context;        /* default: the Laplacian's */
+    const int32_t *perm;
+    hd_context *context;
     int32_t end_zero;
 } hd_heat_opts;
 
 /* K_t = exp(-t B^-1 L), and k_t = K_t B^-1. */
 typedef enum hd_kernel { HD_KERNEL_OPERATOR = 0, HD_KERNEL_SYMMETRIC } hd_kernel;
 
-/* Sources, a column of the answer for each. A source is a vertex, or points inside faces, on edges or at
- * vertices, each with a weight, or a curve through points. It is a functional c of fields that are linear on
- * each face: c_v is what it takes of vertex v. Set count and vertex, or see hd_vertices. */
+/* Each source gives a column. It is a vertex, or points inside faces, on edges or at vertices, each with a
+ * weight, or a curve through points. In formulas it is a functional c of fields that are linear on each face:
+ * c_v is what it takes of vertex v. Set count and vertex, or see hd_vertices. */
 typedef struct hd_sources {
     int32_t begin_zero;
     int32_t count;
-    /* [count + 1] source q has the points first[q] .. first[q + 1] - 1, at least one. NULL: one each */
-    const int64_t *first;
+    const int64_t *first;       /* [count + 1] where the points of each source begin; NULL: one each */
     /* Vertices a point lies between: 1 at a vertex, 2 on an edge, 3 in a triangle, more in polygons. 0: 1.
-     * Points at vertices and on edges may stand among points of triangles, with weights 0. */
+     * Points of triangles may lie on edges or at vertices, with zeros in bary. */
     int32_t corners;
     /* 1: a source is a curve of straight pieces from each point to its next, at least two points. Each piece
      * lies in one face, edges and corners included, and weighs its length. To close it, repeat the first. */
@@ -559,58 +551,57 @@ typedef struct hd_sources {
     int32_t end_zero;
 } hd_sources;
 
-/* The squared distance d^2 of each kind. The last two sum over the eigenpairs (lambda_l, x_l) of (L, B) with
- * lambda_l > 0, and have no time. */
+/* Squared distances d^2. The last two sum over the eigenpairs (lambda_l, x_l) of (L, B) with lambda_l > 0,
+ * and have no time. */
 typedef enum hd_distance_kind {
     HD_DISTANCE_CLASSICAL = 0,  /* k_2t(i,i) - 2 k_2t(i,j) + k_2t(j,j) (Coifman, Lafon 2006); intrinsic */
-    /* (e_i - e_j)' B K_2t (e_i - e_j), eq. (6) of the paper. Not intrinsic: d tends to |b_i - b_j|/sqrt(area)
-     * for large t. */
+    /* (e_i - e_j)' B K_2t (e_i - e_j), eq. (6) of the paper. Not intrinsic: for large t d tends to
+     * |b_i - b_j|/sqrt(area). */
     HD_DISTANCE_WEIGHTED,
     HD_DISTANCE_COMMUTE,        /* sum_l (x_l(i) - x_l(j))^2 / lambda_l: the effective resistance */
     HD_DISTANCE_BIHARMONIC      /* the same with lambda_l^2 (Lipman, Rustamov, Funkhouser 2010) */
 } hd_distance_kind;
 
-/* How a part of an error bound is known. For several answers the report holds the largest number. */
+/* How a part of an error bound is known; for several answers the largest number. */
 typedef enum hd_evidence {
     HD_EVIDENCE_NONE = 0,       /* the part does not apply */
     HD_EVIDENCE_PROVEN,         /* a theorem, applied to norms and residuals of this answer */
     HD_EVIDENCE_MEASURED,       /* at some columns, solves or points of a grid, and assumed for all */
-    HD_EVIDENCE_ESTIMATED       /* a model: of rounding, or of how the iterations of krylov converge */
+    HD_EVIDENCE_ESTIMATED       /* a model of rounding, or of how krylov converges */
 } hd_evidence;
 
-/* What happened, and how large the error can be. For several fields, columns or times: the worst of them.
- * error_bound bounds the largest error of any value returned, relative to the largest |value|: of each field,
- * column and time, or of the whole list for entries and pairs. Above 1e-2 the status is HD_WARN_ACCURACY. It
- * is the sum of four parts: the rational approximation, the iterative solver, rounding, and what method local
- * leaves out. */
+/* What happened, and how large the error can be: the worst of all fields, columns and times. error_bound
+ * bounds the error of any value returned, relative to the largest |value| of its column, or of the whole list
+ * for entries and pairs. Above 1e-2 the status is HD_WARN_ACCURACY. It is the sum of four parts: the rational
+ * approximation, the iterative solver, rounding, and what method local leaves out. */
 typedef struct hd_report {
     hd_status status;
-    hd_error error;             /* filled if status < 0 */
+    hd_error error;             /* if status < 0 */
     hd_method method;
-    const char *reason;         /* why this method, in a few words */
+    const char *reason;         /* why this method */
     hd_solver solver;           /* HD_SOLVER_AUTO for direct, HD_SOLVER_LANCZOS for krylov */
     hd_precond precond;         /* HD_PRECOND_NONE for Lanczos and direct */
     hd_pole_kind poles;         /* HD_POLES_DEFAULT for Lanczos, which has none */
     int32_t degree, n_poles;    /* 0 for Lanczos */
-    int64_t iterations;         /* total over systems and fields; Lanczos: steps */
-    int64_t pole_iterations[HD_MAX_POLES];  /* per pole, summed over the fields */
-    hd_ordering ordering;       /* of the factorisation; HD_ORDERING_AUTO without one */
-    int64_t factor_nnz;         /* non-zeros of the factor L, diagonal included; 0 without a factorisation */
-    double factor_flops;        /* real floating-point operations of all factorisations that the plan holds */
-    double growth;              /* largest |pivot| / largest |diagonal entry|, see hd_ldl_report */
-    /* Largest |b - A x| / |b| over the systems, in the norm of diag(B)^-1. 0 for Lanczos. After
+    int64_t iterations;         /* of all systems and fields; Lanczos: steps */
+    int64_t pole_iterations[HD_MAX_POLES];  /* of all fields */
+    hd_ordering ordering;       /* HD_ORDERING_AUTO without a factorisation */
+    int64_t factor_nnz;
+    double factor_flops;        /* of those that the plan holds */
+    double growth;              /* see hd_ldl_report */
+    /* Largest |b - A x| / |b| over the systems, in the norm of diag(B)^-1; 0 for Lanczos. After
      * HD_ERR_NOT_CONVERGED: of the system that failed; for Lanczos its bound on the relative error. */
     double residual;
     double error_bound, error_rational, error_solver, error_rounding, error_local;
     hd_evidence evidence_rational, evidence_solver, evidence_rounding, evidence_local;
-    /* Fields and columns: bound on |error|_B / |answer|_B. Otherwise HUGE_VAL and HD_EVIDENCE_NONE. */
+    /* Fields and columns: bound on |error|_B / |answer|_B; otherwise HUGE_VAL. */
     double error_bound_b;
     hd_evidence evidence_b;
-    /* Diagonals, distances, pairs: bound on the largest error relative to the value itself. HUGE_VAL if it
-     * does not apply, or if a value is zero that need not be zero. */
+    /* Diagonals, distances, pairs: bound on the error of each value relative to itself; otherwise, or if a
+     * value is zero that need not be zero, HUGE_VAL. */
     double error_relative;
     double smallest;            /* diagonals and distances: the smallest value that is not zero */
-    int64_t n_lost;             /* distances with at most about one sure digit, see hd_heat_distance */
+    int64_t n_lost;             /* distances with at most about one sure digit */
     int32_t n_touched;          /* local: vertices of the largest ball */
     double mass_drift;          /* |1'B u - 1'B f| / 1'B|u|; 0 if L loses heat, for filters, or local */
 } hd_report;
@@ -621,72 +612,72 @@ typedef struct hd_spectrum_opts {
     double below;               /* > 0: only eigenvalues below this */
     double tol;                 /* of hd_spectrum.residual; default 1e-10 */
     hd_ordering ordering;
-    const int32_t *perm;        /* as in hd_heat_opts */
-    hd_context *context;        /* default: the Laplacian's */
+    const int32_t *perm;
+    hd_context *context;
     int32_t end_zero;
 } hd_spectrum_opts;
 
-/* The smallest eigenpairs of L x = lambda B x, to be read. The Laplacian must outlive it, and must not be
- * updated in between. */
+/* The smallest eigenpairs of L x = lambda B x, to be read only. The Laplacian must outlive them, and must not
+ * be updated. */
 typedef struct hd_spectrum {
     int32_t n, count;           /* vertices; pairs */
     double *value;              /* [count] eigenvalues, ascending, 1/area */
     /* [n count] column-major, B-orthonormal, 0 at vertices without mass; the largest |entry| is positive */
     double *vector;
-    /* [count] |L x - lambda B x| / lambda in the norm of diag(B)^-1, measured; for lambda near 0 relative to
+    /* [count] |L x - lambda B x| / lambda in the norm of diag(B)^-1, measured; for lambda near 0 divided by
      * the first eigenvalue that does not belong to constants */
     double *residual;
     double largest_residual;
-    int32_t n_poor;             /* pairs of residual above tol and rounding of L x, or a tenth of lambda */
+    int32_t n_poor;             /* pairs of residual above tol and rounding, or above 0.1 */
     int32_t n_constant;         /* the first pairs are the constants of components; their residual is 0 */
-    /* 1: complete, by a count of the eigenvalues below the shift, none so near (shift_margin) that rounding
-     * could change it. 0: not proven. */
+    /* 1: none is missing, by a count of the eigenvalues below shift; none is so near (shift_margin) that
+     * rounding could change it */
     int32_t proven;
     double shift, shift_margin;
     double next;                /* all other eigenvalues are at least this; HUGE_VAL: there are none */
     double *left, *left_mass;   /* [n] diagonals of B^-1 (a bound of it) and of B, less the pairs' share */
     int32_t n_factors, n_runs;  /* factorisations; runs of Lanczos */
-    int64_t n_solves;           /* right-hand sides solved for */
+    int64_t n_solves;           /* right-hand sides */
     hd_ordering ordering;
-    int64_t factor_nnz;         /* of one factor */
-    double factor_flops;        /* of all factorisations */
+    int64_t factor_nnz;
+    double factor_flops;
     const hd_laplacian *lap;
     hd_context *context;
 } hd_spectrum;
 
-/* Queries of a plan, for hd_heat_estimate. Its k is the number of what stands behind each query's name. */
+/* Queries for hd_heat_estimate, whose k counts what stands in brackets. */
 typedef enum hd_query {
-    HD_QUERY_FIELDS = 0,          /* hd_heat_apply: fields. The default degree is taken as 9 */
-    HD_QUERY_COLUMNS,             /* hd_heat_columns: sources. hd_heat_entries: distinct j */
-    HD_QUERY_PAIRS,               /* hd_heat_distance_pairs, classical or weighted: distinct vertices */
-    HD_QUERY_DIAGONAL,            /* hd_heat_diagonal of k_t; no k */
-    HD_QUERY_DIAGONAL_OPERATOR,   /* hd_heat_diagonal of K_t; no k */
-    HD_QUERY_TRACE,               /* hd_heat_diagonal with Z; no k */
-    HD_QUERY_DISTANCE,            /* classical; hd_heat_distance: sources, hd_heat_sample: points */
+    HD_QUERY_FIELDS = 0,          /* hd_heat_apply (fields), with degree 9 by default */
+    HD_QUERY_COLUMNS,             /* hd_heat_columns (sources), hd_heat_entries (distinct j) */
+    HD_QUERY_PAIRS,               /* hd_heat_distance_pairs, classical or weighted (distinct vertices) */
+    HD_QUERY_DIAGONAL,            /* hd_heat_diagonal of k_t */
+    HD_QUERY_DIAGONAL_OPERATOR,   /* hd_heat_diagonal of K_t */
+    HD_QUERY_TRACE,               /* hd_heat_diagonal with Z */
+    HD_QUERY_DISTANCE,            /* classical: hd_heat_distance (sources), hd_heat_sample (points) */
     HD_QUERY_DISTANCE_WEIGHTED,   /* the same */
-    HD_QUERY_DISTANCE_COMMUTE,    /* the same, and hd_heat_distance_pairs: distinct vertices */
+    HD_QUERY_DISTANCE_COMMUTE,    /* the same, and hd_heat_distance_pairs (distinct vertices) */
     HD_QUERY_DISTANCE_BIHARMONIC, /* as commute */
-    HD_QUERY_SPECTRUM             /* hd_spectrum_create: eigenpairs; the plan's method is ignored */
+    HD_QUERY_SPECTRUM             /* hd_spectrum_create (eigenpairs); the plan's method is ignored */
 } hd_query;
 
 /* What a query would take by one method. */
 typedef struct hd_cost {
     int32_t possible;           /* 0: the query or the plan's options rule the method out; the rest is 0 */
-    int32_t fits;               /* 1: bytes are not above what the byte limit leaves */
-    double flops;               /* real floating-point operations, of factorisations, inversions and solves */
-    double seconds;             /* on one idle core, within about 2; iterations on slivers may take longer */
+    int32_t fits;               /* 1: bytes are within what the byte limit leaves */
+    double flops;               /* real floating-point operations of factorisations, inversions and solves */
+    double seconds;             /* on one idle core, up to a factor of about 2; slivers may take longer */
     double bytes;               /* at the peak, beyond what the context has in use now */
-    /* The same if poles of degree 14 or eigenpairs take over, where slivers or the time make a bound too
-     * large. With this much room the direct method gives the same answers as without a limit. */
+    /* The same if a bound would be too large, and poles of degree 14 or eigenpairs take over. With this much
+     * room the direct method gives the same answers as without a limit. */
     double bytes_most;
 } hd_cost;
 
 typedef struct hd_estimate {
     hd_method method;           /* that would be taken */
-    const char *reason;         /* why, in a few words */
-    int32_t analysed;           /* 1: the pattern was analysed. 0: factors are guesses, within about 3 */
+    const char *reason;         /* why */
+    int32_t analysed;           /* 0: the sizes of factors are guessed, up to a factor of about 3 */
     hd_cost cost[HD_METHOD_LOCAL + 1];   /* by hd_method; cost[HD_METHOD_AUTO] is that of method */
-    double bytes_in_use, bytes_left;   /* of the context now; of the byte limit, HUGE_VAL without one */
+    double bytes_in_use, bytes_left;   /* by the context now; of the byte limit, HUGE_VAL without one */
 } hd_estimate;
 
 typedef enum hd_geodesic_mass {
@@ -694,7 +685,7 @@ typedef enum hd_geodesic_mass {
     HD_GEODESIC_MASS_VORONOI            /* mixed Voronoi areas, as in HD_LAPLACIAN_VORONOI_COT */
 } hd_geodesic_mass;
 
-/* How heat meets the border while it flows. Distances themselves always have a natural border. */
+/* How heat meets the border of a mesh while it flows. */
 typedef enum hd_geodesic_border {
     HD_GEODESIC_BORDER_NATURAL = 0, /* no heat leaves; fronts meet the border at a right angle */
     /* The mean of the two others (Crane et al. 2013, section 3.4), by a third factor. Fronts hardly bend, and
@@ -707,32 +698,32 @@ typedef enum hd_geodesic_border {
 
 typedef struct hd_geodesic_opts {
     int32_t begin_zero;
-    /* How long heat flows, unit length^2; default h^2, with h as in hd_laplacian. Larger values give
-     * smoother, less accurate distances; 2 h^2 often suits irregular triangles and points better. */
+    /* How long heat flows, unit length^2. Larger values give smoother, less accurate distances; 2 h^2 often
+     * suits irregular triangles and points better. */
     double t;
     hd_geodesic_mass mass;      /* the diagonal of B, which has little influence on the distance */
-    hd_ordering ordering;       /* of both factorisations */
-    const int32_t *perm;        /* as in hd_heat_opts */
+    hd_ordering ordering;
+    const int32_t *perm;
     hd_context *context;
     int32_t updatable;          /* 1: hd_geodesic_update of triangles in space; keeps L, 100 bytes a face */
-    hd_geodesic_border border;  /* of meshes */
+    hd_geodesic_border border;
     hd_triangulation triangulation; /* points need tufted; faces with more corners are split */
     double mollify;             /* as in hd_laplacian_opts */
     double stiffening;          /* of polygons; default 1/6: on squares, bilinear finite elements */
     int32_t neighbours;         /* of points; as in hd_laplacian_opts */
-    double t_in_h2;             /* t as a multiple of h^2, where t is 0; default 1 */
+    double t_in_h2;             /* if t is 0: t/h^2 with h as in hd_laplacian; default 1 */
     int32_t end_zero;
 } hd_geodesic_opts;
 
-/* What happened in a call. For several columns: the worst of them. */
+/* What happened in a call: the worst of all columns. */
 typedef struct hd_geodesic_report {
     hd_status status;           /* HD_WARN_ACCURACY: a residual is above 1e-6 */
-    hd_error error;             /* filled if status < 0 */
+    hd_error error;             /* if status < 0 */
     double t, h;
-    int32_t n_components, n_stages;   /* heat solves for a column: several where heat fades below 1e-200 */
+    int32_t n_components, n_stages;   /* heat solves of a column: several where heat fades below 1e-200 */
     hd_ordering ordering;
-    int64_t factor_nnz;         /* of each factor, diagonal included */
-    double factor_flops;        /* of all two or three */
+    int64_t factor_nnz;
+    double factor_flops;
     /* |b - A x| / |b| of (L + B/t) u and of L phi; they say nothing of the error of the method itself */
     double residual_heat, residual_distance;
 } hd_geodesic_report;
@@ -740,109 +731,103 @@ typedef struct hd_geodesic_report {
 /* ==== [D] functions ==== */
 /* Common to all functions. Arguments come in this order: the object made or worked on; what is asked for; the
  * input; the output; report; err. A count stands before its array, except for meshes and points (xyz, n).
- * opts, ctx, report and err may be NULL, as may what is freed. After an error nothing is left allocated,
- * *out is unchanged, and output arrays hold unspecified numbers.
+ * opts, ctx, report and err may be NULL, as may what is freed, and outputs with the mark "or NULL". Arrays
+ *        are
+ * column-major; columns are ldf, ldu, ldd, ldb or ldx apart (0: n).
+ * After an error nothing is left allocated, *out is unchanged, and output arrays hold unspecified numbers.
  * Errors lists what says where in the input the fault lies, or has a special cause. Besides, any function may
  * return HD_ERR_ARGUMENT (a pointer is missing, a size is negative, an option is out of its range or was not
  * cleared), HD_ERR_TOO_LARGE, HD_ERR_MEMORY, HD_ERR_MEMORY_LIMIT, HD_ERR_CANCELLED and HD_ERR_NOT_BUILT. */
 
 /* ---- statuses ---- */
 
-/* Static strings; of numbers that are no status "HD_UNKNOWN_STATUS" and "unknown status". */
+/* Static strings. Numbers that are no status have some, too. */
 HEATDIFF_API const char *hd_status_name(hd_status status);  /* "HD_ERR_MEMORY" */
 HEATDIFF_API const char *hd_status_text(hd_status status);  /* "out of memory" */
 
 /* ---- sparse matrices ---- */
 
-/* A from triplets (i, j, v) in any order. Values at the same place are summed in the order given.
- * i, j   [n_triplets] in [0, n_rows) and [0, n_cols)
- * v      [n_triplets], or NULL: a pattern
- * Errors HD_ERR_INDEX, HD_ERR_NOT_FINITE (row: the triplet; of a sum that overflows row and column)
- * Cost   O(n_rows + n_cols + n_triplets) */
+/* A matrix from triplets (i, j, v) in any order. Values at the same place are summed in the order given.
+ * i, j, v [n_triplets]; v NULL: a pattern
+ * Errors  HD_ERR_INDEX, HD_ERR_NOT_FINITE (row: the triplet; of a sum that overflows row and column)
+ * Cost    linear */
 HEATDIFF_API hd_status hd_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_cols,
                                             int64_t n_triplets, const int32_t *i,
                                             const int32_t *j, const double *v,
                                             hd_context *ctx, hd_error *err);
 
-/* Clears a, too. ctx: the one that a was made with. */
+/* Clears a, too. ctx: that of its making. */
 HEATDIFF_API void hd_csr_free(hd_csr *a, hd_context *ctx);
 
 /* ---- operators ---- */
 
-/* A mesh of triangles. Other fields may be set then. */
+/* A mesh of triangles; other fields may be set then. */
 HEATDIFF_API hd_mesh hd_triangles(const double *xyz, int32_t n, const int32_t *tri, int32_t n_tri);
 
 /* Vertices as sources. */
 HEATDIFF_API hd_sources hd_vertices(int32_t count, const int32_t *vertex);
 
 /* The Laplacian of a mesh. Non-manifold edges and several components are allowed.
- *          kinds (default first)
- * triangles  fem, voronoi-cot, cot
- * polygons   polygon, and those of triangles, for which every face is split into a fan from its first corner
- *          (out->mesh counts triangles then, errors name the polygon). Faces may be neither planar nor
- *          convex. The pattern of L contains their diagonals; on triangles L is the cotangent L
- * points     voronoi-exp, exp; those of triangles when tufted. Let r_k be the distance of the k-th neighbour,
- *          and m the mean of pi r_k^2/k, the area of a point. The default bandwidth2 is s = m (m/h^2)/4,
- *          within 0.3 m and 1 m. A row has about 230 s/m non-zeros; weight_cut = 1e-4 halves that and changes
- *          the operator by 0.1 %. For errors below 1 to 3 %, let s/m grow as points become denser
- * Delaunay, tufted: L and B of an intrinsic triangulation of the same surface on the same vertices. With
- *          voronoi-cot or cot heat then obeys the maximum principle
- * lengths  intrinsic geometry, such as a flat torus, without nested dissection
- * tufted points have 7 to 13 non-zeros in a row. Their Delaunay stars in the tangent planes form a soup,
- *          which out->mesh describes, where each triangle counts a third. Points in no star are inert, as are
- *          searched points at the place of an earlier one. Sheets two spacings apart are kept separate (three
- *          for random points); closer ones if nbr leaves out neighbours whose normals point the other way
- * Errors HD_ERR_INDEX (face, value: the id), HD_ERR_NOT_FINITE (vertex, or face of a length),
+ * triangles kinds fem, voronoi-cot, cot
+ * polygons  kind polygon: faces may be neither planar nor convex, the pattern of L contains their diagonals,
+ *           and triangles have the cotangent L. For the kinds of triangles every face is split into a fan
+ *           from its first corner; out->mesh counts triangles then, errors name the polygon
+ * points    kinds voronoi-exp, exp. The default bandwidth2 is s = m (m/h^2)/4, within 0.3 m and m, where m is
+ *           the mean of pi r_k^2/k, and r_k the distance of the k-th neighbour. A row has about 230 s/m
+ *           non-zeros; weight_cut = 1e-4 halves that and changes the operator by 0.1 %. For errors below 1 to
+ *           3 %, let s/m grow as points become denser
+ * tufted    points, with the kinds of triangles: 7 to 13 non-zeros in a row. Their Delaunay stars in the
+ *           tangent planes form a soup, where each triangle counts a third; out->mesh describes it. Points in
+ *           no star are inert, as are searched points at the place of an earlier one. Sheets two spacings
+ *           apart stay separate (three for random points); closer ones if nbr omits neighbours of opposite
+ *           normal
+ * Delaunay, tufted: the vertices stay. With voronoi-cot or cot heat obeys the maximum principle
+ * lengths   intrinsic geometry, such as a flat torus; no nested dissection
+ * Errors HD_ERR_INDEX (face, value: the id; row: of held), HD_ERR_NOT_FINITE (vertex, or face of a length),
  *        HD_ERR_STRUCTURE (face: face_ptr descends there), HD_ERR_EMPTY; HD_ERR_ARGUMENT (vertex, value: a
  *        coordinate beyond 1e100, or all within 1e-100 of each other; face, vertex, value: an area that is
  *        not zero and outside 1e-100 .. 1e100, a weight above 1e100, a length that cannot be; vertex: two
- *        faces disagree on an edge from there). Neighbours: HD_ERR_STRUCTURE, HD_ERR_INDEX, HD_ERR_TOO_LARGE
- *        (row)
+ *        faces disagree on an edge from there). nbr: HD_ERR_STRUCTURE, HD_ERR_INDEX, HD_ERR_TOO_LARGE (row)
  * Cost   O(n + faces + flips); a polygon with k corners k^2; points O(n log n + nnz)
- * Source Pinkall, Polthier 1993; Meyer et al. 2003; Alexa, Wardetzky 2011, with one weight for all faces;
- *        Bobenko, Springborn 2007; Sharp, Crane 2020, for points section 5.7. Liu, Prabhakaran, Guo 2012;
- *        Belkin, Niyogi 2008: here weights are cut by distance, so that L is symmetric, and neighbours more
- *        than 45 degrees off the tangent plane count with their height */
+ * Source see hd_laplacian_kind; polygons have one stiffening for all faces. Exponential weights are cut by
+ *        distance, so that L is symmetric; neighbours more than 45 degrees off the tangent plane count with
+ *        their height. Bobenko, Springborn 2007 (Delaunay); Sharp, Crane 2020 (tufted; points: section 5.7)
+ *        */
 HEATDIFF_API hd_status hd_laplacian_create(hd_laplacian **out, const hd_mesh *mesh,
                                            const hd_laplacian_opts *opts, hd_error *err);
 
-/* The pair of the caller's own matrices, which are copied.
- * L      n x n, symmetric positive semi-definite: minus the cotangent matrix of libigl. Checked are L_ii >= 0
- *        and L_ij^2 <= L_ii L_jj. If its rows do not sum to zero, heat is not conserved
- * B      n x n, symmetric positive definite, any pattern. Rows of B without non-zeros are inert vertices.
- *        Definiteness is checked on the diagonal, by a factorisation if some row is not dominated by its
- *        diagonal, and later by solvers
- * h      for lap->h; 0 if there is none
- * The pair has the union of both patterns. Explicit zeros stay if their mirror entry is stored too.
- * Errors HD_ERR_STRUCTURE, HD_ERR_INDEX, HD_ERR_NOT_FINITE, HD_ERR_NOT_SYMMETRIC (row, column; value);
- *        HD_ERR_NOT_FINITE (row, value: the sizes of its entries in L or in B add up to more than 1e100),
- *        HD_ERR_NOT_POSITIVE (row, column, value; also B_ii below 1e-100), HD_ERR_EMPTY
+/* The pair of the caller's own matrices, copied onto the union of their patterns. Explicit zeros stay if
+ * their mirror entry is stored too.
+ * L, B   n x n, symmetric, positive semi-definite and definite. Checked are L_ii >= 0, L_ij^2 <= L_ii L_jj
+ *        and B_ii; if some row of B is not dominated by its diagonal, B is factorised; solvers check later.
+ *        If rows of L do not sum to zero, heat is not conserved. Empty rows of B are inert vertices
+ * h      for lap->h, or 0
+ * Errors HD_ERR_STRUCTURE, HD_ERR_INDEX, HD_ERR_NOT_FINITE (also if the sizes of a row's entries add up to
+ *        more than 1e100), HD_ERR_NOT_SYMMETRIC, HD_ERR_NOT_POSITIVE (also if B_ii is below 1e-100), all with
+ *        row, column, value; HD_ERR_EMPTY
  * Cost   linear, except for a factorisation of B */
 HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L, const hd_csr *B,
                                              double h, const hd_laplacian_opts *opts,
                                              hd_error *err);
 
-/* y = (alpha L + beta B) x for a field on the vertices; 0 at those without a row.
- * x, y   [n]; they must not overlap */
+/* y = (alpha L + beta B) x for fields [n] that do not overlap; 0 at vertices without a row. */
 HEATDIFF_API hd_status hd_laplacian_apply(const hd_laplacian *lap, double alpha, double beta,
                                           const double *x, double *y, hd_error *err);
 
 /* New positions for the same faces, of a Laplacian with the option updatable. Plans on lap keep their
- * ordering and analysis, and compute with the new values from the next query on; none may be at work
- * meanwhile.
+ * analysis, and use the new values from the next query on; none may be at work meanwhile. Rows, pattern, held
+ * vertices and faces left out stay; faces that lose their area are counted. All else is that of a new
+ * Laplacian, to the last bit, in the same arrays.
  * mesh   n as before, and positions; its faces are not read
- * Rows, pattern and held vertices stay, as do faces left out; those that lose their area are counted. All
- * else is that of a new Laplacian, to the last bit, in the same arrays.
  * Errors as of hd_laplacian_create; HD_ERR_EMPTY (vertex: none of its faces has an area any more). After an
  *        error nothing has changed */
 HEATDIFF_API hd_status hd_laplacian_update(hd_laplacian *lap, const hd_mesh *mesh, hd_error *err);
 
-/* The same for hd_laplacian_matrices.
- * L, B   n x n. Entries that the pattern does not have must be zero; those that are missing become zeros.
- *        Inert vertices stay inert. If B was diagonal it stays so
- * The pair is that of a new Laplacian, to the last bit, if that has the same pattern.
- * Errors as hd_laplacian_matrices; HD_ERR_STRUCTURE (row, column, value: an entry that was not there). After
- *        an error nothing has changed */
+/* The same for matrices.
+ * L, B   n x n. Entries that are not in the pattern must be zero; missing ones become zero. Inert vertices
+ *        stay inert, and a diagonal B stays diagonal
+ * Errors as of hd_laplacian_matrices; HD_ERR_STRUCTURE (row, column, value: a new entry). After an error
+ *        nothing has changed */
 HEATDIFF_API hd_status hd_laplacian_update_matrices(hd_laplacian *lap, const hd_csr *L,
                                                     const hd_csr *B, double h, hd_error *err);
 
@@ -851,11 +836,10 @@ HEATDIFF_API void hd_laplacian_free(hd_laplacian *lap);
 /* ---- neighbours of points ---- */
 
 /* The k nearest points of each query point, exactly.
- * index      [k m] ids of points, k for each query, nearest first, equally distant ones by id; -1 beyond n.
- *            A query that is a point of the set finds itself too
- * distance2  [k m] squared distances, infinite beyond n; NULL: not wanted
- * xyz        [3 n] the points, as of hd_laplacian_create
- * query      [3 m] the query points, at most 1e100; NULL: all n points, m = n
+ * index      [k m] k ids for each query, nearest first, equally distant ones by id; -1 beyond n. A query that
+ *            is a point of the set finds itself too
+ * distance2  [k m] or NULL: squared distances, infinite beyond n
+ * xyz, query [3 n], [3 m] coordinates of at most 1e100; query NULL: all n points, m = n
  * Errors     HD_ERR_NOT_FINITE (vertex, or row for a query)
  * Cost       O((n + k m) log n)
  * Source     Friedman, Bentley, Finkel 1977 */
@@ -866,19 +850,16 @@ HEATDIFF_API hd_status hd_neighbours_nearest(const double *xyz, int32_t n, const
 /* ---- rational approximations ---- */
 
 /* A built-in set: uniform or kernel.
- * Errors HD_ERR_ARGUMENT for any other kind or degree (value: a wrong degree)
+ * Errors HD_ERR_ARGUMENT (value: a wrong degree)
  * Source Cody, Meinardus, Varga 1969; Carpenter, Ruttan, Varga 1984 */
 HEATDIFF_API hd_status hd_rational_exp(hd_rational *out, hd_pole_kind kind, int32_t degree,
                                        hd_error *err);
 
-/* Kernel sets for many times that share their poles: theta_i/t[q] is the same for all q, so that one set of
+/* Kernel sets [n_times] that share their poles: theta_i/t[q] is the same for all q, so that one set of
  * factors serves every time.
- * out    [n_times] out[q] is the set for t[q]
  * t      [n_times] > 0, in any order
- * tol    bound of max_weighted_error of every set; at 1e-6 there are 8, 12 and 16 pairs for times that differ
- *        by 10, 100 and 1000
- * Errors HD_ERR_ARGUMENT: a time is not positive and finite (row), or there is no such set (value: the ratio
- *        of the times)
+ * tol    of max_weighted_error; at 1e-6 times that differ by 10, 100 and 1000 take 8, 12 and 16 pairs
+ * Errors HD_ERR_ARGUMENT (row: a time is not positive; value: no set has this ratio of the times)
  * Source Lopez-Fernandez, Palencia, Schaedle 2006, with free poles instead of poles on a hyperbola */
 HEATDIFF_API hd_status hd_rational_shared(hd_rational *out, int32_t n_times, const double *t,
                                           double tol, hd_context *ctx, hd_error *err);
@@ -886,14 +867,12 @@ HEATDIFF_API hd_status hd_rational_shared(hd_rational *out, int32_t n_times, con
 /* c(x) for real x <= 0; for a filter's set x = -t lambda. */
 HEATDIFF_API double hd_rational_eval(const hd_rational *set, double x);
 
-/* Sets for filters f of the spectrum: K_t becomes f(B^-1 L), and k_t becomes f(B^-1 L) B^-1. Several filters
- * share their poles and factors, see hd_heat_set_rational.
- * out        [count] c(-t lambda) ~ f(lambda) on [0, lambda_max] with t = out->t; only weights a differ
- * filters    [count] count >= 1. Degrees rise until tol is reached, or max_degree, which several filters
- *            ignore: these may have HD_MAX_POLES pairs
+/* Sets for filters f: K_t becomes f(B^-1 L), and k_t becomes f(B^-1 L) B^-1. In distances f is what d^2 sums,
+ * for example exp(-2 t lambda), and should not be negative.
+ * out        [count] c(-t lambda) ~ f(lambda) on [0, lambda_max] with t = out->t. Several sets differ only in
+ *            the weights a. max_error is the largest |f - c| on 42,000 points
+ * filters    [count] degrees rise until tol or max_degree is reached; several filters take HD_MAX_POLES pairs
  * lambda_max that of the Laplacian, or more; 1/area
- * max_error is the largest |f - c| on 42,000 points: measured. In distances f is what is summed in d^2, for
- * example exp(-2 t lambda), and should not be negative.
  * Errors     HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (value: the eigenvalue), HD_ERR_BREAKDOWN (a weight
  *            overflows), all with column: which filter. HD_WARN_ACCURACY: an error is above its tol
  * Cost       2 to 50 milliseconds, and 50 to 200 thousand values of f; seconds for 100 filters
@@ -902,7 +881,7 @@ HEATDIFF_API double hd_rational_eval(const hd_rational *set, double x);
 HEATDIFF_API hd_status hd_rational_fit(hd_rational *out, int32_t count, const hd_filter *filters,
                                        double lambda_max, hd_context *ctx, hd_error *err);
 
-/* f(lambda) itself, lambda >= 0 in 1/area. */
+/* f(lambda) itself. */
 HEATDIFF_API double hd_filter_eval(const hd_filter *filter, double lambda);
 
 /* ---- shifted systems ---- */
@@ -911,44 +890,41 @@ typedef struct hd_solve_opts {
     int32_t begin_zero;
     hd_solver solver;           /* cocg or minres; default cocg */
     hd_precond precond;
-    double tol;                 /* |b - A x| / |b| in the norm of diag(B)^-1; default 1e-10 */
+    double tol;                 /* of the residual; default 1e-10 */
     int32_t max_iterations;     /* default 20000 */
-    hd_context *context;        /* default: the Laplacian's */
+    hd_context *context;
     int32_t end_zero;
 } hd_solve_opts;
 
 typedef struct hd_solve_report {
     int64_t iterations;
-    double residual;            /* reached, computed from x, in the norm of diag(B)^-1 */
-    double error_b;             /* bound on |x - exact|_B / |x|_B; infinite if nothing is known about B */
+    double residual;            /* |b - A x| / |b|, computed from x, in the norm of diag(B)^-1 */
+    double error_b;             /* bound on |x - exact|_B / |x|_B; infinite if b_ratio is 0 */
 } hd_solve_report;
 
 /* Solves (t L + theta B) x = rhs, a complex-symmetric system, by iterations.
  * t      >= 0, unit length^2
  * theta  not on (-inf, 0]; no unit
- * rhs, x [n] on the vertices; they may be the same array. x is 0 at vertices without mass
+ * rhs, x [n] on the vertices; x may be rhs, and is 0 at vertices without a row
  * report filled also with HD_ERR_NOT_CONVERGED
  * Errors HD_ERR_NOT_FINITE (row: of rhs, or of x if it overflows), HD_ERR_NOT_CONVERGED, HD_ERR_BREAKDOWN;
- *        HD_WARN_ACCURACY
- * Source see hd_solver */
+ *        HD_WARN_ACCURACY */
 HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c64 theta,
                                         const hd_c64 *rhs, hd_c64 *x, const hd_solve_opts *opts,
                                         hd_solve_report *report, hd_error *err);
 
 /* ---- direct solver ---- */
 
-/* The factorisation P A P' = L D L' without pivoting, L unit lower triangular, D diagonal. It suits real
- * definite or quasi-definite matrices, and complex-symmetric ones (A = A', never conjugated) whose real part
- * is definite after a rotation, such as t L + theta B. One analysis of a pattern serves any number of
- * factorisations. Only the first of each kind allocates. */
+/* P A P' = L D L' without pivoting, for real definite or quasi-definite matrices, and for complex-symmetric
+ * ones (A = A', never conjugated) whose real part is definite after a rotation, such as t L + theta B. One
+ * analysis of a pattern serves any number of factorisations. Only the first of each kind allocates. */
 typedef struct hd_ldl hd_ldl;
 
 typedef struct hd_ldl_opts {
     int32_t begin_zero;
-    /* Default: nested dissection if coordinates are given and there are many rows, else minimum degree. */
     hd_ordering ordering;
-    const int32_t *perm;        /* [n] with HD_ORDERING_OWN: perm[k] is the row eliminated k-th */
-    const double *xyz;          /* [3 n] coordinates of the rows, finite; NULL: none */
+    const int32_t *perm;        /* [n] HD_ORDERING_OWN: perm[k] is the row eliminated k-th */
+    const double *xyz;          /* [3 n] coordinates of the rows; NULL: none */
     hd_context *context;
     int32_t end_zero;
 } hd_ldl_opts;
@@ -957,16 +933,14 @@ typedef struct hd_ldl_report {
     hd_ordering ordering;
     int32_t n_supernodes;
     int32_t n_matrices;         /* in the factor; 0: only analysed */
-    int64_t factor_nnz;         /* of L, diagonal included, without padding */
-    int64_t stored;             /* entries of an array of factors, padding included */
-    /* Of one real factorisation: the sum of the squares of L's column counts. A complex matrix takes four
-     * times as many. */
-    double factor_flops;
+    int64_t factor_nnz;         /* without padding */
+    int64_t stored;             /* with padding */
+    double factor_flops;        /* of one real factorisation; a complex matrix takes four times as many */
     /* Largest |pivot| / largest |diagonal entry of A|: what is lost because there is no pivoting. At most 3.8
      * for uniform sets and 4.2 for kernel sets. */
     double growth;
     double smallest_pivot;      /* smallest |pivot| / largest |diagonal entry of A| */
-    int32_t n_negative;         /* real: negative pivots, which is the number of negative eigenvalues */
+    int32_t n_negative;         /* real: negative pivots, as many as negative eigenvalues */
 } hd_ldl_report;
 
 /* Computes the ordering, the elimination tree and the supernodes.
@@ -980,8 +954,7 @@ HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ld
 
 /* Factorises a real matrix.
  * val    [nnz] in the order of the analysed pattern. Of each pair (i,j), (j,i) one entry is read
- * Errors HD_ERR_NOT_FINITE (row, column), HD_ERR_BREAKDOWN (row, value: a pivot too small to divide by, the
- *        same one with any number of threads)
+ * Errors HD_ERR_NOT_FINITE (row, column), HD_ERR_BREAKDOWN (row, value: a pivot too small to divide by)
  * Cost   hd_ldl_report.factor_flops; 8 bytes for each stored entry
  * Source Duff, Reid 1983; Liu 1992: multifrontal */
 HEATDIFF_API hd_status hd_ldl_factor(hd_ldl *f, const double *val, hd_ldl_report *report,
@@ -990,27 +963,27 @@ HEATDIFF_API hd_status hd_ldl_factor(hd_ldl *f, const double *val, hd_ldl_report
 /* Factorises k complex-symmetric matrices in one sweep, four at a time: three cost as much as four.
  * val    [k nnz], one matrix after the other
  * Errors as above; pole is the index of the matrix
- * Cost   for each four matrices 16 times the flops and 8 times the bytes of one real factor
+ * Cost   for four matrices 16 times the flops and 8 times the bytes of a real factor
  * Source Higham 1998 for the missing pivoting */
 HEATDIFF_API hd_status hd_ldl_factor_complex(hd_ldl *f, int32_t k, const hd_c64 *val,
                                              hd_ldl_report *report, hd_error *err);
 
-/* Solves A x = b for k real right-hand sides, with the last real factorisation. Columns are ldb and ldx apart
- * (0: n). x may be b.
+/* Solves A x = b for k real right-hand sides, with the last real factorisation. x may be b.
  * Errors HD_ERR_ARGUMENT (the last factorisation was not real, or failed)
  * Cost   4 factor_nnz flops for each right-hand side; eight at a time share the reading of the factor */
 HEATDIFF_API hd_status hd_ldl_solve(hd_ldl *f, int32_t k, const double *b, size_t ldb, double *x,
                                     size_t ldx, hd_error *err);
 
 /* Solves A_q x_q = b_q for all matrices of the last complex factorisation: b_q = b + q ldb, x_q = x + q ldx.
- * ldx = 0 means n, ldb = 0 the same b for all. x may be b if ldb is ldx or 0. Errors as above; four times the
- * flops for each matrix. */
+ * ldb = 0 means the same b for all. x may be b if ldb is ldx or 0.
+ * Errors as hd_ldl_solve
+ * Cost   four times as many flops for each matrix */
 HEATDIFF_API hd_status hd_ldl_solve_complex(hd_ldl *f, const hd_c64 *b, size_t ldb, hd_c64 *x,
                                             size_t ldx, hd_error *err);
 
 /* Entries of A^-1 by selected inversion. A is the matrix of the last real factorisation, which is kept.
- * values [nnz] on the analysed pattern and in its order, both of each pair; NULL: not wanted
- * diag   [n] also where the pattern has no diagonal entry; NULL: not wanted
+ * values [nnz] or NULL: on the analysed pattern and in its order, both of each pair
+ * diag   [n] or NULL: also where the pattern has no diagonal entry
  * Errors as hd_ldl_solve
  * Cost   about twice the flops of the factorisation
  * Source Takahashi, Fagan, Chin 1973; Erisman, Tinney 1975 */
@@ -1026,8 +999,8 @@ HEATDIFF_API void hd_ldl_free(hd_ldl *f);
 
 typedef struct hd_heat hd_heat;
 
-/* A plan for heat on lap, which must outlive it. Creating it is cheap. The first query at a time t pays for
- * ordering and factors. The plan keeps those of the last pole set and time for further queries at that t.
+/* A plan for heat on lap, which must outlive it. Making one is cheap: the first query at a time t pays for
+ * ordering and factors. The plan keeps those of the last pole set and time.
  * Errors HD_ERR_INDEX (row: perm is not a permutation) */
 HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap,
                                       const hd_heat_opts *opts, hd_error *err);
@@ -1036,27 +1009,33 @@ HEATDIFF_API void hd_heat_free(hd_heat *heat);
 /* Other pole sets for a plan, in place of hd_heat_opts.rational. Factors stay if t and the poles do.
  * sets   [count] copied. Several must have one t, lambda_max and theta, as from hd_rational_fit.
  *        hd_heat_diagonal answers for all of them, other queries for the first. count = 0: exp by default
- * Errors HD_ERR_ARGUMENT (column: which set; or the plan's method is krylov or Lanczos), HD_ERR_NOT_FINITE;
- *        then nothing has changed */
+ * Errors HD_ERR_ARGUMENT (column: which set; or the plan's method is krylov, local or Lanczos),
+ *        HD_ERR_NOT_FINITE; then nothing has changed */
 HEATDIFF_API hd_status hd_heat_set_rational(hd_heat *heat, int32_t count, const hd_rational *sets,
                                             hd_error *err);
 
-/* Common to all queries of a plan:
+/* Common to all queries of a plan
  * kernel HD_KERNEL_OPERATOR for K_t, HD_KERNEL_SYMMETRIC for k_t = K_t B^-1
- * t      [n_times], n_times >= 1, in any order; unit length^2. With a filter: n_times = 0, or 1 and the t of
- *        its set
- * report NULL, or what happened, at worst among columns and times; its error is the one in err */
+ * t      [n_times] >= 0 in any order, unit length^2. With a filter: n_times = 0, or 1 and the t of its set.
+ *        Commute and biharmonic ignore t: n_times = 0 or 1
+ * fields F, G [n k]. Answers U and D have the column q n_times + m for field or source q at time m
+ * pairs  i, j [n_pairs]. Answers are [n_pairs n_times], time by time
+ * Errors HD_ERR_NOT_CONVERGED, HD_ERR_BREAKDOWN (vertex: where the answer overflows), HD_ERR_NOT_POSITIVE;
+ *        HD_WARN_ACCURACY. report->error is the same as err
+ *        fields:  HD_ERR_NOT_FINITE (row, column)
+ *        pairs:   HD_ERR_INDEX (vertex; row: which pair)
+ *        sources: HD_ERR_INDEX, HD_ERR_NOT_FINITE, HD_ERR_ARGUMENT (column: which source, row: which of its
+ *                 points, vertex): bary is not as hd_sources asks, a curve has one point, no length or no
+ *                 coordinates, or weights or lengths sum to less than 1e-100 or more than 1e100
+ *        method:  HD_ERR_ARGUMENT. Diagonals, traces, distances to all vertices and samples take auto or
+ *                 direct, as do pairs by commute, biharmonic or a filter
+ * Where all heat flows out, answers fall like exp(-t lambda_1), while the error of poles does not. From about
+ * t = 15/lambda_1 on methods auto and direct take the few eigenpairs left. Where all values underflow, the
+ * bound is above 1 or infinite. */
 
-/* U = K_t F at each time.
- * t      >= 0. t = 0 copies F; for large t, without limit, U tends to the mean over each component. Where all
- *        heat flows out, U falls like exp(-t lambda_1) while the error of poles does not. Methods auto and
- *        direct then take the few eigenpairs left, for columns, entries, diagonals and traces too. Where all
- *        values underflow, the bound is above 1 or infinite, with HD_WARN_ACCURACY
- * F      n x k doubles, column-major, columns ldf apart (0: n)
- * U      n x (k n_times), column q n_times + m for field q and time m, columns ldu apart (0: n). With one
- *        time U may be F. By default all fields of a call use the largest degree that one of them needs
- * Errors HD_ERR_NOT_FINITE (row, column), HD_ERR_NOT_CONVERGED, HD_ERR_BREAKDOWN (vertex: where the answer
- *        overflows), HD_ERR_NOT_POSITIVE; HD_WARN_ACCURACY
+/* U = K_t F at each time. t = 0 copies F; for large t, without limit, U tends to the mean over each
+ * component. U      may be F if there is one time. The default degree is the largest that one of the fields
+ * needs
  * Cost   direct: one factorisation of all poles for each new t, and one sweep through the factors for eight
  *        fields. krylov: one real factorisation, and 15 to 30 real solves for each field and one or two
  *        decades of t. iterative: one solve for each pole
@@ -1065,64 +1044,56 @@ HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const doubl
                                      const double *F, size_t ldf, double *U, size_t ldu,
                                      hd_report *report, hd_error *err);
 
-/* U = dK_t/dt F = -B^-1 L K_t F at each time; unit 1/area. Poles are by default of degree 14.
- * t      >= 0
- * F, U   as above. The derivative is 0 at vertices without mass
+/* U = dK_t/dt F = -B^-1 L K_t F at each time, by default with degree 14; unit 1/area; 0 at vertices without
+ * mass.
  * report bounds are relative to the derivative. Where only means are left it is 0, and the bound infinite
+ * Errors HD_ERR_ARGUMENT with a pole set of your own
+ * Cost   as hd_heat_apply
  * HINT: to train t, give the plan poles = HD_POLES_KERNEL and a degree. Then apply, derivative and adjoint at
  * one t share the direct method's factors, and the adjoint is that of the very matrix applied, up to
  * rounding. If G is the gradient of a loss in U = K_t F, that in F is K_t' G, and that in t is the sum of all
- * G_ij (dK_t/dt F)_ij.
- * Errors and cost as above; HD_ERR_ARGUMENT with a pole set of your own */
+ * G_ij (dK_t/dt F)_ij. */
 HEATDIFF_API hd_status hd_heat_derivative(hd_heat *heat, int32_t n_times, const double *t,
                                           int32_t k, const double *F, size_t ldf, double *U,
                                           size_t ldu, hd_report *report, hd_error *err);
 
-/* U = K_t' G = B K_t B^-1 G, the transpose, at each time: g' K_t f = f' K_t' g. It keeps the sum of values.
- * G, U   as F and U above
+/* U = K_t' G = B K_t B^-1 G at each time, with the transpose of K_t. It keeps the sum of values.
  * report error_bound_b is in the norm of B^-1, in which |K_t' g| <= |g|
- * Errors and cost as hd_heat_apply; a full B takes about 30 more products with B for each field */
+ * Cost   as hd_heat_apply; a full B takes about 30 more products with B for each field */
 HEATDIFF_API hd_status hd_heat_adjoint(hd_heat *heat, int32_t n_times, const double *t, int32_t k,
                                        const double *G, size_t ldg, double *U, size_t ldu,
                                        hd_report *report, hd_error *err);
 
-/* Columns of the kernel: K_t c or k_t c, with the functional c of each source. For a vertex s K_t e_s is the
+/* Columns K_t c or k_t c of the kernel, with the functional c of each source. For a vertex s K_t e_s is the
  * field that starts as 1 at s and 0 elsewhere, and k_t e_s that of one unit of heat placed at s.
- * U      as above, a source for each field; of k_t zero for a vertex without mass. A source of one vertex
- *        with weight 1 gives that vertex' column to the last bit
- * Errors and cost as hd_heat_apply; HD_ERR_INDEX, HD_ERR_NOT_FINITE, HD_ERR_ARGUMENT (column: which source,
- *        row: which of its points, vertex): bary is not as hd_sources asks, a curve has one point, no length
- *        or no coordinates, or weights or lengths sum to less than 1e-100 or more than 1e100 */
+ * Cost   as hd_heat_apply */
 HEATDIFF_API hd_status hd_heat_columns(hd_heat *heat, hd_kernel kernel, int32_t n_times,
                                        const double *t, const hd_sources *sources, double *U,
                                        size_t ldu, hd_report *report, hd_error *err);
 
-/* The same as rows of a sparse matrix, without zeros. With method local no work or memory grows with n after
- * the first call.
- * out    cleared, or from a call before, whose arrays are freed. Row q n_times + m for source q and time m,
- *        vertices ascend. Freed by hd_csr_free with the plan's context
- * report error_bound includes opts.cut: a value that is not there is at most error_bound times the largest */
+/* The same as rows of a sparse matrix, without zeros: row q n_times + m for source q at time m.
+ * out    cleared, or from an earlier call. hd_csr_free takes the plan's context
+ * report error_bound includes opts.cut: a value that is not there is at most error_bound times the largest
+ * Errors HD_ERR_TOO_LARGE: more than 2^31 - 1 rows
+ * Cost   as hd_heat_columns. With method local nothing grows with n after the first call */
 HEATDIFF_API hd_status hd_heat_columns_sparse(hd_heat *heat, hd_kernel kernel, int32_t n_times,
                                               const double *t, const hd_sources *sources,
                                               hd_csr *out, hd_report *report, hd_error *err);
 
-/* The column of one vertex at one time. u [n]. Errors and cost as hd_heat_columns. */
+/* The column u [n] of one vertex at one time. */
 HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, hd_kernel kernel, double t, int32_t source,
                                       double *u, hd_report *report, hd_error *err);
 
 /* The diagonal of k_t or K_t, and the heat trace, by selected inversion. That of k_t is the heat kernel
  * signature (Sun et al. 2009), or auto-diffusion function (Gebal et al. 2009); divided by the trace it has
- * the integral 1 (Sun et al. 2009, section 4).
+ * the integral 1 (Sun et al. 2009, section 4). For wave filters D/Z are wave kernel signatures. Each of
+ * several filters has a column, a Z and a bound, which is looser than that of one alone.
  * t      > 0
- * D      n x n_times, columns ldd apart (0: n). NULL: not wanted
- * Z      [n_times] tr K_t = sum_i exp(-t lambda_i), without held vertices and those without mass; no unit.
- *        NULL: not wanted
- * bound  [n_times] or NULL: bounds on the absolute error of each Z
- * Several filters have a column, a Z and a bound each, with n_times = 0; bounds are looser than those of one
- * filter alone. For wave filters D/Z are the wave kernel signatures.
- * report the rational part is proven at every vertex; rounding is measured where it is largest
- * If B is not diagonal, k_t leaves out the term a0 diag(B^-1) of a uniform set; the bound includes it.
- * Errors HD_ERR_ARGUMENT (also if the method is iterative or krylov), HD_ERR_BREAKDOWN; HD_WARN_ACCURACY
+ * D      n x n_times, or NULL
+ * Z      [n_times] or NULL: tr K_t = sum_i exp(-t lambda_i) over the rows of the Laplacian; no unit
+ * bound  [n_times] or NULL: on the absolute error of each Z
+ * report the rational part is proven at every vertex; rounding is measured where it is largest. If B is not
+ *        diagonal, k_t leaves out the term a0 diag(B^-1) of a set; the bound includes it
  * Cost   for each t about three times the factors of all poles. By default many times share poles: three
  *        decades cost four or five times as much as one t. Filters: once, and 2 n flops for each set and
  *        pole. Memory for each pole: up to 48 n doubles, with a full B and traces 250 n
@@ -1131,69 +1102,55 @@ HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t
                                         const double *t, double *D, size_t ldd, double *Z,
                                         double *bound, hd_report *report, hd_error *err);
 
-/* Times that suit the area A = 1'B1 of the surface: evenly spaced in log t from 0.0024 A to 0.37 A, where
- * about 300 and two eigenvalues matter. One time is their geometric mean.
- * t      [n_times] in the unit of t for this Laplacian (kind exp: A is the squared area)
- * Source Weyl's law: the k-th eigenvalue is about 4 pi k/A. To suit the first eigenvalue, take
- *        c/value[n_constant] of hd_spectrum: c = 1 shows tips and branches, 0.1 details (Gebal et al.
- *        2009) */
+/* Times t [n_times] that suit the area A = 1'B1 (kind exp: the squared area): evenly spaced in log t from
+ * 0.0024 A to 0.37 A, where about 300 and two eigenvalues matter. One time is their geometric mean. To suit
+ * the first eigenvalue, take c/value[n_constant] of hd_spectrum instead: c = 1 shows tips and branches, 0.1
+ * details (Gebal et al. 2009).
+ * Source Weyl's law: the k-th eigenvalue is about 4 pi k/A */
 HEATDIFF_API hd_status hd_times_auto(const hd_laplacian *lap, int32_t n_times, double *t,
                                      hd_error *err);
 
-/* Diffusion distances from each source to every vertex. With the functional c of a source, divided by the sum
- * of its weights, d^2 = (e_v - c)' F (e_v - c), where F is the matrix of the kind: k_2t, B K_2t and so on. It
- * is zero only at a vertex that is the source itself. Vertices without mass, and held ones, have a zero row.
- * t      > 0. Commute and biharmonic ignore t; n_times is 0 or 1. With a filter F is the filter itself
- * D      n x (k n_times), column q n_times + m for source q and time m, columns ldd apart (0: n). Unit:
- *        classical 1/length, weighted length, commute none, biharmonic length
- * sources of positive weight
- * report bounds are for d itself. n_lost counts values next to the source or underflowing. None is ever NaN
- * Commute and biharmonic are infinite (HUGE_VAL) between components, to vertices without a row, and from
- * sources that reach into several components or such vertices. Where heat is lost they are those of L^-1.
- * By default degree 14 takes over if the bound relative to the largest distance would be above 3.5e-7. At
- * large t classical and weighted distances are sums over the few eigenpairs left, to a part in 1e7 of the
- * largest one, what is left out proven small; poles serve if the pairs exceed the byte limit. Between the
- * two, above about 170K vertices (weighted) or 240K (classical), bounds may exceed 1e-6.
- * Errors as hd_heat_diagonal and hd_heat_columns
+/* Distances d from each source to every vertex: d^2 = (e_v - c)' F (e_v - c). c is the functional of the
+ * source divided by the sum of its weights, which must be positive; F is k_2t, B K_2t and so on by the kind,
+ * or the filter itself. F is zero in rows of vertices without mass, and of held ones. d is zero only at a
+ * vertex that is the source itself.
+ * t      > 0
+ * D      unit: classical 1/length, weighted length, commute none, biharmonic length. Commute and biharmonic
+ *        are infinite (HUGE_VAL) between components, to vertices without a row, and from sources that reach
+ *        into several components or such vertices. Where heat is lost they are those of L^-1
+ * report bounds are for d itself. n_lost counts values next to the source or underflowing. If a bound would
+ *        be above 3.5e-7, degree 14 takes over by default, and at large t the few eigenpairs left if the byte
+ *        limit allows them. Between the two, above about 170K vertices (weighted) or 240K (classical), bounds
+ *        may exceed 1e-6
  * Cost   one diagonal at 2t, twice as long if weighted with a full B, and one column for each source.
- *        Eigenpairs: as hd_spectrum_create once, then 4 n flops for each. Commute: one real factorisation
- *        and its inversion; biharmonic: also those of one pole
- * Source see hd_distance_kind */
+ *        Eigenpairs: hd_spectrum_create once, then 4 n flops for each. Commute: one real factorisation and
+ *        its inversion; biharmonic: also those of one pole */
 HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, int32_t n_times,
                                         const double *t, const hd_sources *sources, double *D,
                                         size_t ldd, hd_report *report, hd_error *err);
 
-/* Diffusion distances of listed pairs.
- * t      >= 0; ignored by commute and biharmonic, with n_times 0 or 1
- * d      [n_pairs n_times], time by time
- * The distance is |K_t B^-1 (e_i - e_j)|_B, without cancellation, or from eigenpairs as above. If the columns
- * of all vertices that occur would take more than half a GiB, and always for commute and biharmonic, it comes
- * from entries and the diagonal at 2t: sort the pairs by i then.
- * Errors as hd_heat_columns; HD_ERR_INDEX (vertex, row: which pair). HD_ERR_ARGUMENT: commute, biharmonic and
- *        distances of a filter need the direct method
+/* Distances of pairs: |K_t B^-1 (e_i - e_j)|_B, without cancellation, or from eigenpairs. Commute,
+ * biharmonic, and all pairs whose columns would take more than half a GiB, come from entries and the diagonal
+ * at 2t: sort the pairs by i then.
  * Cost   one column for each distinct vertex; from entries one for each distinct i, and a diagonal */
 HEATDIFF_API hd_status hd_heat_distance_pairs(hd_heat *heat, hd_distance_kind kind, int32_t n_times,
                                               const double *t, int64_t n_pairs, const int32_t *i,
                                               const int32_t *j, double *d, hd_report *report,
                                               hd_error *err);
 
-/* Farthest points: each is the vertex farthest from all sources and all points before it.
- * t        > 0; ignored by commute and biharmonic
- * sources  as in hd_heat_distance. NULL: none; the first vertex with mass is then the first point
- * vertex   [count]
- * distance [count] or NULL: of each point to those before it (0 for the first without sources)
- * Errors   as hd_heat_distance; HD_ERR_ARGUMENT (value: count is more than there are vertices with mass)
+/* Farthest points vertex [count]: each is the vertex farthest from all sources and all points before it.
+ * t        > 0
+ * sources  as in hd_heat_distance. NULL: none; the first row's vertex is then the first point
+ * distance [count] or NULL: of each point to those before it; without sources 0 for the first
+ * Errors   HD_ERR_ARGUMENT (value: count is more than n_active)
  * Cost     a diagonal, and one column for each source and point
  * Source   Gonzalez 1985 */
 HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, double t,
                                       const hd_sources *sources, int32_t count, int32_t *vertex,
                                       double *distance, hd_report *report, hd_error *err);
 
-/* Single entries of K_t or k_t.
- * t      >= 0
- * values [n_pairs n_times], time by time: the entry (i[q], j[q])
- * report the bound is relative to the largest |value| in the list, and may say nothing about small ones
- * Errors as hd_heat_columns; HD_ERR_INDEX (vertex, row: which pair)
+/* Single entries (i, j) of K_t or k_t. The bound is relative to the largest |value| of all, and may say
+ * nothing about small ones.
  * Cost   one column for each distinct j, with n doubles of memory at a time */
 HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t n_times,
                                        const double *t, int64_t n_pairs, const int32_t *i,
@@ -1203,9 +1160,9 @@ HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t 
 /* ---- eigenpairs ---- */
 
 /* The smallest eigenpairs, with all copies of multiple eigenvalues.
- * opts   not NULL: count, at most n_active, or below, or both: then whichever ends first
- * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_POSITIVE, HD_ERR_NOT_CONVERGED, HD_ERR_INDEX (row: perm is not a
- *        permutation); HD_WARN_ACCURACY with a result: n_poor is not 0, or proven is 0
+ * opts   count, at most n_active, or below, or both: whichever ends first
+ * Errors HD_ERR_NOT_POSITIVE, HD_ERR_NOT_CONVERGED, HD_ERR_INDEX (row: perm is not a permutation);
+ *        HD_WARN_ACCURACY with a result: n_poor is not 0, or proven is 0
  * Cost   for about 100 pairs one real factorisation, some 250 solves, and as many vectors made orthogonal; at
  *        the end 4 n count^2 flops. Memory: the vectors twice, some 400 more, and a factor
  * Source Grimes, Lewis, Simon 1994: block Lanczos with shifts, eigenvalues counted by Sylvester's law */
@@ -1214,10 +1171,9 @@ HEATDIFF_API hd_status hd_spectrum_create(hd_spectrum **out, const hd_laplacian 
 HEATDIFF_API void hd_spectrum_free(hd_spectrum *s);
 
 /* Kernels and distances from the pairs of s, as in eq. (1) of the paper: sums of exp(-t lambda_i) x_i(x)
- * x_i(y) and the like. All else is as in hd_heat_columns, hd_heat_diagonal and hd_heat_distance.
- * t      >= 0
- * bound  NULL, or as large as the output, with the same ldu or ldd: bounds on the error of each value. Pairs
- *        left out add at most exp(-t next) sqrt(left(x) left(y)), proven if s->proven; rounding is estimated
+ * x_i(y) and the like. All else is as in hd_heat_columns, hd_heat_diagonal and hd_heat_distance, but t >= 0.
+ * bound  NULL, or laid out as the output: on the error of each value. Pairs left out add at most
+ *        exp(-t next) sqrt(left(x) left(y)), proven if s->proven; rounding is estimated
  * Cost   2 n count flops for each column; with the weighted distance or the diagonal of K_t and a full B some
  *        ten times as many */
 HEATDIFF_API hd_status hd_spectrum_columns(const hd_spectrum *s, hd_kernel kernel, int32_t n_times,
@@ -1232,11 +1188,11 @@ HEATDIFF_API hd_status hd_spectrum_distance(const hd_spectrum *s, hd_distance_ki
                                             size_t ldd, hd_error *err);
 
 /* What a query would take by each method, without running it.
- * t        [n_times] as in the query; commute, biharmonic and spectrum: n_times may be 0
+ * t        as in the query; spectrum: n_times may be 0
  * k        see hd_query
- * estimate too little memory is no error: cost[HD_METHOD_AUTO].fits is 0
- * Bytes leave out the output arrays. For the direct method they are an upper bound, by a few percent (where
- * eigenpairs come first that of poles); for others they are estimates.
+ * estimate fits is 0 if there is too little memory. Bytes leave out the output arrays. For the direct method
+ *          they are an upper bound, by a few percent (where eigenpairs come first that of poles); for others
+ *          they are estimates
  * Cost     one ordering and analysis if the query needs them, which the plan keeps; else one pass over L */
 HEATDIFF_API hd_status hd_heat_estimate(hd_heat *heat, hd_query query, int32_t n_times,
                                         const double *t, int32_t k, hd_estimate *estimate,
@@ -1247,8 +1203,7 @@ HEATDIFF_API hd_status hd_heat_estimate(hd_heat *heat, hd_query query, int32_t n
 typedef struct hd_geodesic hd_geodesic;
 
 /* A plan for distances along a surface, by the heat method.
- * mesh   as in hd_laplacian_create, whose errors it has. Points must be tufted. If there are slivers, use a
- *        Delaunay triangulation
+ * mesh   as in hd_laplacian_create, whose errors it has. With slivers, use a Delaunay triangulation
  * Errors HD_ERR_BREAKDOWN (vertex: a pivot too small to divide by)
  * Cost   assembly, one analysis, two real factorisations. The plan keeps 16 bytes for each non-zero of the
  *        factor and about 430 for each vertex; polygons 28 more for each corner and 12 for each non-zero of L
@@ -1265,17 +1220,16 @@ HEATDIFF_API hd_status hd_geodesic_update(hd_geodesic *g, const hd_mesh *mesh, h
 HEATDIFF_API void hd_geodesic_free(hd_geodesic *g);
 
 /* The distance of every vertex to each source: to the nearest of its points, or to its curve.
- * sources  weights and lengths are ignored. Points that are no vertices, and every piece of a curve, must lie
+ * sources  as in queries of heat, but weights and lengths are ignored. Points that are no vertices must lie
  *          in a face, its edges and corners included. Plans of polygons take vertices only
- * D        n x count, columns ldd apart (0: n), in the unit of xyz: |phi - phi_s|, zero at vertices that are
- *          sources, HUGE_VAL in components without one and at vertices without mass. For several points phi_s
- *          is a mean weighted by their heat
- * The error is of the order of h: a few percent on coarse meshes, about one on fine ones, most where fronts
- * meet and near a source; d(i, j) and d(j, i) differ by about that. Where a source is no vertex, D is exact
- * at the corners of its faces.
- * Errors   those of hd_heat_columns for sources; HD_ERR_ARGUMENT (column, row): a point or a piece is in no
- *          face, or has a corner where heat is held at zero; HD_ERR_BREAKDOWN (rounding left no number).
- *          HD_WARN_ACCURACY, only if a report is given
+ * D        n x count in the unit of xyz: |phi - phi_s|, zero at vertices that are sources, HUGE_VAL in
+ *          components without one and at vertices without mass. For several points phi_s is a mean weighted
+ *          by their heat. The error is of the order of h: a few percent on coarse meshes, about one on fine
+ *          ones, most where fronts meet and near a source; d(i, j) and d(j, i) differ by about that. Where a
+ *          source is no vertex, D is exact at the corners of its faces
+ * Errors   those of sources; HD_ERR_ARGUMENT (column, row): a point or a piece is in no face, or has a corner
+ *          where heat is held at zero; HD_ERR_BREAKDOWN (rounding left no number); HD_WARN_ACCURACY, only if
+ *          a report is given
  * Cost     two solves and two passes over the faces for each source; a third solve with several points in a
  *          component; two more passes with a report. Eight vertices together are three times as fast. Every
  *          450 edges or so at t = h^2, where heat fades, take another solve and three passes. Calls with
