@@ -253,7 +253,8 @@ typedef struct hd_csr {
 /* A zero in options means the default, and so does a NULL pointer to them. Clear a struct before you fill it
  * in: begin_zero and end_zero must be zero, as a sign of that.
  * context       default: the Laplacian's, if there is one
- * perm          [n] HD_ORDERING_OWN: vertices in order of elimination, those without mass anywhere
+ * perm          [n] HD_ORDERING_OWN: vertices in order of elimination, those without mass anywhere. If it is
+ *               no permutation, the error is HD_ERR_INDEX (row)
  * factor_nnz    non-zeros of one factor L, diagonal included; 0 without a factorisation
  * factor_flops  real floating-point operations of all factorisations */
 
@@ -285,8 +286,8 @@ typedef enum hd_triangulation {
     /* Meshes: edges are flipped along the surface. Cotangent weights are negative only on boundary edges
      * opposite an obtuse angle. Surfaces not manifold, or not oriented alike, are covered twice. */
     HD_TRIANGULATION_DELAUNAY,
-    /* Meshes: the same on two sheets, glued at the boundary; no weight is negative. Points: triangles of
-     * neighbours. */
+    /* Meshes: the same on two sheets, glued at the boundary; no weight is negative. Points: triangles are
+     * made from neighbours. */
     HD_TRIANGULATION_TUFTED
 } hd_triangulation;
 
@@ -348,8 +349,8 @@ typedef struct hd_mesh_report {
     int32_t n_zero_area;
     int32_t n_repeated_face;         /* left out: corners of an earlier face, for polygons in cyclic order */
     int64_t n_edges, n_boundary_edges;   /* of the faces used; those with one face */
-    int64_t n_nonmanifold_edges;     /* three faces or more, whose weights are summed */
-    int64_t n_misoriented_edges;     /* two faces that run along the edge in the same direction */
+    int64_t n_nonmanifold_edges;     /* with three faces or more, whose weights are summed */
+    int64_t n_misoriented_edges;     /* with two faces that run along them in the same direction */
     int32_t n_boundary_loops;        /* connected sets of boundary edges */
     int32_t n_inert;                 /* vertices without mass, held or not */
     /* Edges of negative weight (polygons: positive entries of L), which break the maximum principle. Most
@@ -359,7 +360,7 @@ typedef struct hd_mesh_report {
 
     /* Delaunay and tufted. All above but n_negative_weights is of the faces as given. */
     int32_t n_sheets;                /* 2: the surface is covered twice */
-    int32_t n_mollified;             /* faces that needed it */
+    int32_t n_mollified;             /* faces that needed mollification */
     double mollify_epsilon;          /* added to the length of every edge */
     int64_t n_flips;                 /* on all sheets */
     int64_t n_not_delaunay;          /* edges that could not be flipped because of rounding */
@@ -408,7 +409,7 @@ typedef struct hd_laplacian {
      * itself). 0: unknown. */
     double b_ratio;
     /* Where heat is conserved: L 1 = 0, for matrices up to 4 DBL_EPSILON sum_j |L_ij| in each row. 1:
-     * everywhere; 2: on some components; 0: on none, or unknown. See hd_heat_apply. */
+     * everywhere; 2: on some components; 0: on none, or unknown. */
     int32_t conserves;
     hd_mesh_report mesh;        /* matrices, points: only n_inert; tufted points: triangles of stars */
     hd_point_report points;     /* tufted: only n_not_flat and, if searched, neighbours and n_coincident */
@@ -464,8 +465,8 @@ typedef struct hd_filter {
     double (*f)(double lambda, void *user);   /* HD_FILTER_OWN: finite on [0, lambda_max] */
     void *user;
     double tol;                 /* max (1 + weight lambda) |f - c| / max |f|; default 1e-10 */
-    /* >= 0; 1/weight is near the eigenvalues that f lets pass. For a wave, exp(-a) and tol = 1e-7 give bounds
-     * near 1e-6 with 16 poles. */
+    /* >= 0. Take 1/weight near the eigenvalues that f lets pass. For a wave, exp(-a) and tol = 1e-7 give
+     * bounds near 1e-6 with 16 poles. */
     double weight;
     int32_t max_degree;         /* at most HD_MAX_POLES; default 24 */
     /* > 0: no eigenvalue lies between 0 and this, and c may take any value there. The second value of
@@ -562,7 +563,7 @@ typedef enum hd_distance_kind {
     HD_DISTANCE_BIHARMONIC      /* the same with lambda_l^2 (Lipman, Rustamov, Funkhouser 2010) */
 } hd_distance_kind;
 
-/* How a part of an error bound is known; for several answers the largest number. */
+/* How a part of an error bound is known. For several answers the report holds the largest number. */
 typedef enum hd_evidence {
     HD_EVIDENCE_NONE = 0,       /* the part does not apply */
     HD_EVIDENCE_PROVEN,         /* a theorem, applied to norms and residuals of this answer */
@@ -677,7 +678,7 @@ typedef struct hd_estimate {
     const char *reason;         /* why */
     int32_t analysed;           /* 0: the sizes of factors are guessed, up to a factor of about 3 */
     hd_cost cost[HD_METHOD_LOCAL + 1];   /* by hd_method; cost[HD_METHOD_AUTO] is that of method */
-    double bytes_in_use, bytes_left;   /* by the context now; of the byte limit, HUGE_VAL without one */
+    double bytes_in_use, bytes_left;   /* now, and of the byte limit, HUGE_VAL without one */
 } hd_estimate;
 
 typedef enum hd_geodesic_mass {
@@ -698,8 +699,8 @@ typedef enum hd_geodesic_border {
 
 typedef struct hd_geodesic_opts {
     int32_t begin_zero;
-    /* How long heat flows, unit length^2. Larger values give smoother, less accurate distances; 2 h^2 often
-     * suits irregular triangles and points better. */
+    /* How long heat flows, unit length^2; default: see t_in_h2. Larger values give smoother, less accurate
+     * distances; 2 h^2 often suits irregular triangles and points better. */
     double t;
     hd_geodesic_mass mass;      /* the diagonal of B, which has little influence on the distance */
     hd_ordering ordering;
@@ -707,7 +708,7 @@ typedef struct hd_geodesic_opts {
     hd_context *context;
     int32_t updatable;          /* 1: hd_geodesic_update of triangles in space; keeps L, 100 bytes a face */
     hd_geodesic_border border;
-    hd_triangulation triangulation; /* points need tufted; faces with more corners are split */
+    hd_triangulation triangulation; /* points need tufted; Delaunay and tufted split polygons */
     double mollify;             /* as in hd_laplacian_opts */
     double stiffening;          /* of polygons; default 1/6: on squares, bilinear finite elements */
     int32_t neighbours;         /* of points; as in hd_laplacian_opts */
@@ -720,7 +721,7 @@ typedef struct hd_geodesic_report {
     hd_status status;           /* HD_WARN_ACCURACY: a residual is above 1e-6 */
     hd_error error;             /* if status < 0 */
     double t, h;
-    int32_t n_components, n_stages;   /* heat solves of a column: several where heat fades below 1e-200 */
+    int32_t n_components, n_stages;   /* n_stages: heat solves, several where heat fades below 1e-200 */
     hd_ordering ordering;
     int64_t factor_nnz;
     double factor_flops;
@@ -731,17 +732,17 @@ typedef struct hd_geodesic_report {
 /* ==== [D] functions ==== */
 /* Common to all functions. Arguments come in this order: the object made or worked on; what is asked for; the
  * input; the output; report; err. A count stands before its array, except for meshes and points (xyz, n).
- * opts, ctx, report and err may be NULL, as may what is freed, and outputs with the mark "or NULL". Arrays
- *        are
- * column-major; columns are ldf, ldu, ldd, ldb or ldx apart (0: n).
- * After an error nothing is left allocated, *out is unchanged, and output arrays hold unspecified numbers.
+ * opts, ctx, report and err may be NULL, as may what is freed, and outputs marked "or NULL". Matrices are
+ * column-major, with columns ldf, ldu, ldd, ldb or ldx apart (0: n).
+ * After an error nothing is left allocated, *out and what should change are unchanged, and output arrays hold
+ * unspecified numbers.
  * Errors lists what says where in the input the fault lies, or has a special cause. Besides, any function may
  * return HD_ERR_ARGUMENT (a pointer is missing, a size is negative, an option is out of its range or was not
  * cleared), HD_ERR_TOO_LARGE, HD_ERR_MEMORY, HD_ERR_MEMORY_LIMIT, HD_ERR_CANCELLED and HD_ERR_NOT_BUILT. */
 
 /* ---- statuses ---- */
 
-/* Static strings. Numbers that are no status have some, too. */
+/* Static strings, never NULL. */
 HEATDIFF_API const char *hd_status_name(hd_status status);  /* "HD_ERR_MEMORY" */
 HEATDIFF_API const char *hd_status_text(hd_status status);  /* "out of memory" */
 
@@ -756,7 +757,7 @@ HEATDIFF_API hd_status hd_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t
                                             const int32_t *j, const double *v,
                                             hd_context *ctx, hd_error *err);
 
-/* Clears a, too. ctx: that of its making. */
+/* Clears a, too. ctx: the one that a was made with. */
 HEATDIFF_API void hd_csr_free(hd_csr *a, hd_context *ctx);
 
 /* ---- operators ---- */
@@ -775,12 +776,12 @@ HEATDIFF_API hd_sources hd_vertices(int32_t count, const int32_t *vertex);
  * points    kinds voronoi-exp, exp. The default bandwidth2 is s = m (m/h^2)/4, within 0.3 m and m, where m is
  *           the mean of pi r_k^2/k, and r_k the distance of the k-th neighbour. A row has about 230 s/m
  *           non-zeros; weight_cut = 1e-4 halves that and changes the operator by 0.1 %. For errors below 1 to
- *           3 %, let s/m grow as points become denser
- * tufted    points, with the kinds of triangles: 7 to 13 non-zeros in a row. Their Delaunay stars in the
- *           tangent planes form a soup, where each triangle counts a third; out->mesh describes it. Points in
- *           no star are inert, as are searched points at the place of an earlier one. Sheets two spacings
- *           apart stay separate (three for random points); closer ones if nbr omits neighbours of opposite
- *           normal
+ *           3 %, let s/m grow as points become denser.
+ *           Tufted points have the kinds of triangles, and 7 to 13 non-zeros in a row. Their Delaunay stars
+ *           in the tangent planes form a soup of triangles, each of which counts a third; out->mesh describes
+ *           it. Points in no star are inert, as are searched points at the place of an earlier one. Sheets
+ *           two spacings apart stay separate (three for random points); closer ones if nbr leaves out
+ *           neighbours whose normals point the other way
  * Delaunay, tufted: the vertices stay. With voronoi-cot or cot heat obeys the maximum principle
  * lengths   intrinsic geometry, such as a flat torus; no nested dissection
  * Errors HD_ERR_INDEX (face, value: the id; row: of held), HD_ERR_NOT_FINITE (vertex, or face of a length),
@@ -791,17 +792,17 @@ HEATDIFF_API hd_sources hd_vertices(int32_t count, const int32_t *vertex);
  * Cost   O(n + faces + flips); a polygon with k corners k^2; points O(n log n + nnz)
  * Source see hd_laplacian_kind; polygons have one stiffening for all faces. Exponential weights are cut by
  *        distance, so that L is symmetric; neighbours more than 45 degrees off the tangent plane count with
- *        their height. Bobenko, Springborn 2007 (Delaunay); Sharp, Crane 2020 (tufted; points: section 5.7)
- *        */
+ *        their height. Bobenko, Springborn 2007: Delaunay; Sharp, Crane 2020: tufted, section 5.7: points */
 HEATDIFF_API hd_status hd_laplacian_create(hd_laplacian **out, const hd_mesh *mesh,
                                            const hd_laplacian_opts *opts, hd_error *err);
 
 /* The pair of the caller's own matrices, copied onto the union of their patterns. Explicit zeros stay if
  * their mirror entry is stored too.
- * L, B   n x n, symmetric, positive semi-definite and definite. Checked are L_ii >= 0, L_ij^2 <= L_ii L_jj
- *        and B_ii; if some row of B is not dominated by its diagonal, B is factorised; solvers check later.
- *        If rows of L do not sum to zero, heat is not conserved. Empty rows of B are inert vertices
- * h      for lap->h, or 0
+ * L      n x n, symmetric positive semi-definite: checked are L_ii >= 0 and L_ij^2 <= L_ii L_jj. If its rows
+ *        do not sum to zero, heat is not conserved
+ * B      n x n, symmetric positive definite: checked on the diagonal, by a factorisation if some row is not
+ *        dominated by its diagonal, and later by solvers. Empty rows are inert vertices
+ * h      for lap->h; 0 if there is none
  * Errors HD_ERR_STRUCTURE, HD_ERR_INDEX, HD_ERR_NOT_FINITE (also if the sizes of a row's entries add up to
  *        more than 1e100), HD_ERR_NOT_SYMMETRIC, HD_ERR_NOT_POSITIVE (also if B_ii is below 1e-100), all with
  *        row, column, value; HD_ERR_EMPTY
@@ -819,15 +820,13 @@ HEATDIFF_API hd_status hd_laplacian_apply(const hd_laplacian *lap, double alpha,
  * vertices and faces left out stay; faces that lose their area are counted. All else is that of a new
  * Laplacian, to the last bit, in the same arrays.
  * mesh   n as before, and positions; its faces are not read
- * Errors as of hd_laplacian_create; HD_ERR_EMPTY (vertex: none of its faces has an area any more). After an
- *        error nothing has changed */
+ * Errors as of hd_laplacian_create; HD_ERR_EMPTY (vertex: none of its faces has an area any more) */
 HEATDIFF_API hd_status hd_laplacian_update(hd_laplacian *lap, const hd_mesh *mesh, hd_error *err);
 
 /* The same for matrices.
  * L, B   n x n. Entries that are not in the pattern must be zero; missing ones become zero. Inert vertices
  *        stay inert, and a diagonal B stays diagonal
- * Errors as of hd_laplacian_matrices; HD_ERR_STRUCTURE (row, column, value: a new entry). After an error
- *        nothing has changed */
+ * Errors as of hd_laplacian_matrices; HD_ERR_STRUCTURE (row, column, value: a new entry) */
 HEATDIFF_API hd_status hd_laplacian_update_matrices(hd_laplacian *lap, const hd_csr *L,
                                                     const hd_csr *B, double h, hd_error *err);
 
@@ -855,11 +854,11 @@ HEATDIFF_API hd_status hd_neighbours_nearest(const double *xyz, int32_t n, const
 HEATDIFF_API hd_status hd_rational_exp(hd_rational *out, hd_pole_kind kind, int32_t degree,
                                        hd_error *err);
 
-/* Kernel sets [n_times] that share their poles: theta_i/t[q] is the same for all q, so that one set of
+/* Kernel sets out [n_times] that share their poles: theta_i/t[q] is the same for all q, so that one set of
  * factors serves every time.
  * t      [n_times] > 0, in any order
- * tol    of max_weighted_error; at 1e-6 times that differ by 10, 100 and 1000 take 8, 12 and 16 pairs
- * Errors HD_ERR_ARGUMENT (row: a time is not positive; value: no set has this ratio of the times)
+ * tol    of max_weighted_error; at 1e-6, times that differ by 10, 100 and 1000 take 8, 12 and 16 pairs
+ * Errors HD_ERR_ARGUMENT: a time is not positive (row), or no set has this ratio of the times (value)
  * Source Lopez-Fernandez, Palencia, Schaedle 2006, with free poles instead of poles on a hyperbola */
 HEATDIFF_API hd_status hd_rational_shared(hd_rational *out, int32_t n_times, const double *t,
                                           double tol, hd_context *ctx, hd_error *err);
@@ -871,7 +870,8 @@ HEATDIFF_API double hd_rational_eval(const hd_rational *set, double x);
  * for example exp(-2 t lambda), and should not be negative.
  * out        [count] c(-t lambda) ~ f(lambda) on [0, lambda_max] with t = out->t. Several sets differ only in
  *            the weights a. max_error is the largest |f - c| on 42,000 points
- * filters    [count] degrees rise until tol or max_degree is reached; several filters take HD_MAX_POLES pairs
+ * filters    [count] degrees rise until tol or max_degree is reached. Several filters ignore max_degree, and
+ *            take at most HD_MAX_POLES pairs
  * lambda_max that of the Laplacian, or more; 1/area
  * Errors     HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (value: the eigenvalue), HD_ERR_BREAKDOWN (a weight
  *            overflows), all with column: which filter. HD_WARN_ACCURACY: an error is above its tol
@@ -934,7 +934,7 @@ typedef struct hd_ldl_report {
     int32_t n_supernodes;
     int32_t n_matrices;         /* in the factor; 0: only analysed */
     int64_t factor_nnz;         /* without padding */
-    int64_t stored;             /* with padding */
+    int64_t stored;             /* the same with padding */
     double factor_flops;        /* of one real factorisation; a complex matrix takes four times as many */
     /* Largest |pivot| / largest |diagonal entry of A|: what is lost because there is no pivoting. At most 3.8
      * for uniform sets and 4.2 for kernel sets. */
@@ -946,7 +946,7 @@ typedef struct hd_ldl_report {
 /* Computes the ordering, the elimination tree and the supernodes.
  * a      n x n with a symmetric pattern. Values are ignored, and diagonal entries may be missing
  * Errors HD_ERR_STRUCTURE, HD_ERR_INDEX, HD_ERR_NOT_SYMMETRIC (row, column); HD_ERR_NOT_FINITE (row; column
- *        0 to 2: a coordinate); HD_ERR_INDEX (row: perm is not a permutation)
+ *        0 to 2: a coordinate)
  * Cost   nearly linear in the non-zeros of A, plus the ordering
  * Source Amestoy, Davis, Duff 1996; George 1973; Gilbert, Ng, Peyton 1994 */
 HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ldl_opts *opts,
@@ -1000,8 +1000,7 @@ HEATDIFF_API void hd_ldl_free(hd_ldl *f);
 typedef struct hd_heat hd_heat;
 
 /* A plan for heat on lap, which must outlive it. Making one is cheap: the first query at a time t pays for
- * ordering and factors. The plan keeps those of the last pole set and time.
- * Errors HD_ERR_INDEX (row: perm is not a permutation) */
+ * ordering and factors. The plan keeps those of the last pole set and time. */
 HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap,
                                       const hd_heat_opts *opts, hd_error *err);
 HEATDIFF_API void hd_heat_free(hd_heat *heat);
@@ -1010,14 +1009,14 @@ HEATDIFF_API void hd_heat_free(hd_heat *heat);
  * sets   [count] copied. Several must have one t, lambda_max and theta, as from hd_rational_fit.
  *        hd_heat_diagonal answers for all of them, other queries for the first. count = 0: exp by default
  * Errors HD_ERR_ARGUMENT (column: which set; or the plan's method is krylov, local or Lanczos),
- *        HD_ERR_NOT_FINITE; then nothing has changed */
+ *        HD_ERR_NOT_FINITE */
 HEATDIFF_API hd_status hd_heat_set_rational(hd_heat *heat, int32_t count, const hd_rational *sets,
                                             hd_error *err);
 
 /* Common to all queries of a plan
- * kernel HD_KERNEL_OPERATOR for K_t, HD_KERNEL_SYMMETRIC for k_t = K_t B^-1
- * t      [n_times] >= 0 in any order, unit length^2. With a filter: n_times = 0, or 1 and the t of its set.
- *        Commute and biharmonic ignore t: n_times = 0 or 1
+ * t      [n_times] in any order, unit length^2; >= 0, for diagonals, distances to all vertices and samples
+ *        > 0. With a filter: n_times = 0, or 1 and the t of its set. Commute and biharmonic ignore t: n_times
+ *        = 0 or 1
  * fields F, G [n k]. Answers U and D have the column q n_times + m for field or source q at time m
  * pairs  i, j [n_pairs]. Answers are [n_pairs n_times], time by time
  * Errors HD_ERR_NOT_CONVERGED, HD_ERR_BREAKDOWN (vertex: where the answer overflows), HD_ERR_NOT_POSITIVE;
@@ -1031,24 +1030,22 @@ HEATDIFF_API hd_status hd_heat_set_rational(hd_heat *heat, int32_t count, const 
  *                 direct, as do pairs by commute, biharmonic or a filter
  * Where all heat flows out, answers fall like exp(-t lambda_1), while the error of poles does not. From about
  * t = 15/lambda_1 on methods auto and direct take the few eigenpairs left. Where all values underflow, the
- * bound is above 1 or infinite. */
+ * bound is above 1 or infinite.
+ * Cost   of fields and columns, direct: one factorisation of all poles for each new t, and one sweep through
+ *        the factors for eight fields. krylov: one real factorisation, and 15 to 30 real solves for each
+ *        field and one or two decades of t. iterative: one solve for each pole */
 
 /* U = K_t F at each time. t = 0 copies F; for large t, without limit, U tends to the mean over each
- * component. U      may be F if there is one time. The default degree is the largest that one of the fields
- * needs
- * Cost   direct: one factorisation of all poles for each new t, and one sweep through the factors for eight
- *        fields. krylov: one real factorisation, and 15 to 30 real solves for each field and one or two
- *        decades of t. iterative: one solve for each pole
+ * component. U may be F if there is one time. The default degree is the largest that one of the fields needs.
  * Source the paper, eqs. (8) and (9), with the signs given at the top of the file */
 HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const double *t, int32_t k,
                                      const double *F, size_t ldf, double *U, size_t ldu,
                                      hd_report *report, hd_error *err);
 
-/* U = dK_t/dt F = -B^-1 L K_t F at each time, by default with degree 14; unit 1/area; 0 at vertices without
- * mass.
+/* U = dK_t/dt F = -B^-1 L K_t F at each time; unit 1/area; 0 at vertices without mass. The default degree is
+ * 14.
  * report bounds are relative to the derivative. Where only means are left it is 0, and the bound infinite
  * Errors HD_ERR_ARGUMENT with a pole set of your own
- * Cost   as hd_heat_apply
  * HINT: to train t, give the plan poles = HD_POLES_KERNEL and a degree. Then apply, derivative and adjoint at
  * one t share the direct method's factors, and the adjoint is that of the very matrix applied, up to
  * rounding. If G is the gradient of a loss in U = K_t F, that in F is K_t' G, and that in t is the sum of all
@@ -1057,25 +1054,24 @@ HEATDIFF_API hd_status hd_heat_derivative(hd_heat *heat, int32_t n_times, const 
                                           int32_t k, const double *F, size_t ldf, double *U,
                                           size_t ldu, hd_report *report, hd_error *err);
 
-/* U = K_t' G = B K_t B^-1 G at each time, with the transpose of K_t. It keeps the sum of values.
+/* U = K_t' G = B K_t B^-1 G, with the transpose, at each time. The sum of values is kept.
  * report error_bound_b is in the norm of B^-1, in which |K_t' g| <= |g|
- * Cost   as hd_heat_apply; a full B takes about 30 more products with B for each field */
+ * Cost   with a full B about 30 more products with B for each field */
 HEATDIFF_API hd_status hd_heat_adjoint(hd_heat *heat, int32_t n_times, const double *t, int32_t k,
                                        const double *G, size_t ldg, double *U, size_t ldu,
                                        hd_report *report, hd_error *err);
 
 /* Columns K_t c or k_t c of the kernel, with the functional c of each source. For a vertex s K_t e_s is the
- * field that starts as 1 at s and 0 elsewhere, and k_t e_s that of one unit of heat placed at s.
- * Cost   as hd_heat_apply */
+ * field that starts as 1 at s and 0 elsewhere, and k_t e_s that of one unit of heat placed at s. */
 HEATDIFF_API hd_status hd_heat_columns(hd_heat *heat, hd_kernel kernel, int32_t n_times,
                                        const double *t, const hd_sources *sources, double *U,
                                        size_t ldu, hd_report *report, hd_error *err);
 
 /* The same as rows of a sparse matrix, without zeros: row q n_times + m for source q at time m.
- * out    cleared, or from an earlier call. hd_csr_free takes the plan's context
+ * out    cleared, or an earlier answer, which is freed. hd_csr_free takes the plan's context
  * report error_bound includes opts.cut: a value that is not there is at most error_bound times the largest
  * Errors HD_ERR_TOO_LARGE: more than 2^31 - 1 rows
- * Cost   as hd_heat_columns. With method local nothing grows with n after the first call */
+ * Cost   with method local no work or memory grows with n after the first call */
 HEATDIFF_API hd_status hd_heat_columns_sparse(hd_heat *heat, hd_kernel kernel, int32_t n_times,
                                               const double *t, const hd_sources *sources,
                                               hd_csr *out, hd_report *report, hd_error *err);
@@ -1088,16 +1084,15 @@ HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, hd_kernel kernel, double t,
  * signature (Sun et al. 2009), or auto-diffusion function (Gebal et al. 2009); divided by the trace it has
  * the integral 1 (Sun et al. 2009, section 4). For wave filters D/Z are wave kernel signatures. Each of
  * several filters has a column, a Z and a bound, which is looser than that of one alone.
- * t      > 0
  * D      n x n_times, or NULL
  * Z      [n_times] or NULL: tr K_t = sum_i exp(-t lambda_i) over the rows of the Laplacian; no unit
- * bound  [n_times] or NULL: on the absolute error of each Z
+ * bound  [n_times] or NULL: of the absolute error of each Z
  * report the rational part is proven at every vertex; rounding is measured where it is largest. If B is not
  *        diagonal, k_t leaves out the term a0 diag(B^-1) of a set; the bound includes it
  * Cost   for each t about three times the factors of all poles. By default many times share poles: three
  *        decades cost four or five times as much as one t. Filters: once, and 2 n flops for each set and
  *        pole. Memory for each pole: up to 48 n doubles, with a full B and traces 250 n
- * Source Takahashi, Fagan, Chin 1973; Erisman, Tinney 1975 for the inversion */
+ * Source see hd_ldl_inverse */
 HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t n_times,
                                         const double *t, double *D, size_t ldd, double *Z,
                                         double *bound, hd_report *report, hd_error *err);
@@ -1112,14 +1107,13 @@ HEATDIFF_API hd_status hd_times_auto(const hd_laplacian *lap, int32_t n_times, d
 
 /* Distances d from each source to every vertex: d^2 = (e_v - c)' F (e_v - c). c is the functional of the
  * source divided by the sum of its weights, which must be positive; F is k_2t, B K_2t and so on by the kind,
- * or the filter itself. F is zero in rows of vertices without mass, and of held ones. d is zero only at a
+ * or the filter itself. Vertices without mass, and held ones, have a zero row in F. d is zero only at a
  * vertex that is the source itself.
- * t      > 0
  * D      unit: classical 1/length, weighted length, commute none, biharmonic length. Commute and biharmonic
  *        are infinite (HUGE_VAL) between components, to vertices without a row, and from sources that reach
  *        into several components or such vertices. Where heat is lost they are those of L^-1
- * report bounds are for d itself. n_lost counts values next to the source or underflowing. If a bound would
- *        be above 3.5e-7, degree 14 takes over by default, and at large t the few eigenpairs left if the byte
+ * report bounds are for d itself; n_lost counts values next to the source or underflowing. By default degree
+ *        14 takes over if a bound would be above 3.5e-7, and at large t the few eigenpairs left, if the byte
  *        limit allows them. Between the two, above about 170K vertices (weighted) or 240K (classical), bounds
  *        may exceed 1e-6
  * Cost   one diagonal at 2t, twice as long if weighted with a full B, and one column for each source.
@@ -1129,19 +1123,19 @@ HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, in
                                         const double *t, const hd_sources *sources, double *D,
                                         size_t ldd, hd_report *report, hd_error *err);
 
-/* Distances of pairs: |K_t B^-1 (e_i - e_j)|_B, without cancellation, or from eigenpairs. Commute,
- * biharmonic, and all pairs whose columns would take more than half a GiB, come from entries and the diagonal
- * at 2t: sort the pairs by i then.
+/* Distances of pairs: |K_t B^-1 (e_i - e_j)|_B, without cancellation, or from eigenpairs as above. Commute,
+ * biharmonic, filters, and lists whose columns would take more than half a GiB, come from entries and the
+ * diagonal at 2t: sort the pairs by i then.
  * Cost   one column for each distinct vertex; from entries one for each distinct i, and a diagonal */
 HEATDIFF_API hd_status hd_heat_distance_pairs(hd_heat *heat, hd_distance_kind kind, int32_t n_times,
                                               const double *t, int64_t n_pairs, const int32_t *i,
                                               const int32_t *j, double *d, hd_report *report,
                                               hd_error *err);
 
-/* Farthest points vertex [count]: each is the vertex farthest from all sources and all points before it.
- * t        > 0
- * sources  as in hd_heat_distance. NULL: none; the first row's vertex is then the first point
- * distance [count] or NULL: of each point to those before it; without sources 0 for the first
+/* Farthest points: each is the vertex farthest from all sources and all points before it.
+ * sources  as in hd_heat_distance. NULL: none; the vertex of the first row is then the first point
+ * vertex   [count]
+ * distance [count] or NULL: of each point to those before it (0 for the first without sources)
  * Errors   HD_ERR_ARGUMENT (value: count is more than n_active)
  * Cost     a diagonal, and one column for each source and point
  * Source   Gonzalez 1985 */
@@ -1161,8 +1155,8 @@ HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t 
 
 /* The smallest eigenpairs, with all copies of multiple eigenvalues.
  * opts   count, at most n_active, or below, or both: whichever ends first
- * Errors HD_ERR_NOT_POSITIVE, HD_ERR_NOT_CONVERGED, HD_ERR_INDEX (row: perm is not a permutation);
- *        HD_WARN_ACCURACY with a result: n_poor is not 0, or proven is 0
+ * Errors HD_ERR_NOT_POSITIVE, HD_ERR_NOT_CONVERGED; HD_WARN_ACCURACY with a result: n_poor is not 0, or
+ *        proven is 0
  * Cost   for about 100 pairs one real factorisation, some 250 solves, and as many vectors made orthogonal; at
  *        the end 4 n count^2 flops. Memory: the vectors twice, some 400 more, and a factor
  * Source Grimes, Lewis, Simon 1994: block Lanczos with shifts, eigenvalues counted by Sylvester's law */
@@ -1172,7 +1166,7 @@ HEATDIFF_API void hd_spectrum_free(hd_spectrum *s);
 
 /* Kernels and distances from the pairs of s, as in eq. (1) of the paper: sums of exp(-t lambda_i) x_i(x)
  * x_i(y) and the like. All else is as in hd_heat_columns, hd_heat_diagonal and hd_heat_distance, but t >= 0.
- * bound  NULL, or laid out as the output: on the error of each value. Pairs left out add at most
+ * bound  NULL, or of the shape of the output: of the error of each value. Pairs left out add at most
  *        exp(-t next) sqrt(left(x) left(y)), proven if s->proven; rounding is estimated
  * Cost   2 n count flops for each column; with the weighted distance or the diagonal of K_t and a full B some
  *        ten times as many */
@@ -1213,8 +1207,8 @@ HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const hd_mesh *mesh
                                           const hd_geodesic_opts *opts, hd_error *err);
 /* New positions for the same triangles, of a plan made with the option updatable.
  * mesh   as in hd_laplacian_update
- * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE; HD_ERR_EMPTY (face or vertex: it has no area any more). Then
- *        nothing has changed. After any other error the plan answers no query until an update succeeds
+ * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE; HD_ERR_EMPTY (face or vertex: it has no area any more). After
+ *        any other error the plan has changed, and answers no query until an update succeeds
  * Cost   one pass over faces and entries, and the two factorisations */
 HEATDIFF_API hd_status hd_geodesic_update(hd_geodesic *g, const hd_mesh *mesh, hd_error *err);
 HEATDIFF_API void hd_geodesic_free(hd_geodesic *g);
