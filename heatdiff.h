@@ -734,8 +734,8 @@ typedef struct hd_geodesic_report {
  * input; the output; report; err. A count stands before its array, except for meshes and points (xyz, n).
  * opts, ctx, report and err may be NULL, as may what is freed, and outputs marked "or NULL". Matrices are
  * column-major, with columns ldf, ldu, ldd, ldb or ldx apart (0: n).
- * After an error nothing is left allocated, *out and what should change are unchanged, and output arrays hold
- * unspecified numbers.
+ * After an error nothing is left allocated, *out and what was to be updated are unchanged, and output arrays
+ * hold unspecified numbers.
  * Errors lists what says where in the input the fault lies, or has a special cause. Besides, any function may
  * return HD_ERR_ARGUMENT (a pointer is missing, a size is negative, an option is out of its range or was not
  * cleared), HD_ERR_TOO_LARGE, HD_ERR_MEMORY, HD_ERR_MEMORY_LIMIT, HD_ERR_CANCELLED and HD_ERR_NOT_BUILT. */
@@ -17233,8 +17233,8 @@ static void hdi_modes_free(hdi_modes *x, hd_context *ctx) {
     memset(x, 0, sizeof *x);
 }
 
-/* How a call goes on that exceeded the byte limit: without what is optional, that is eigenpairs and poles
- * that times share; besides by the direct method with the fewest poles. */
+/* What a call does without after it exceeded the byte limit: first what is optional, which is eigenpairs and
+ * poles that times share; then all methods but the direct one with the fewest poles. */
 enum { HDI_SPARE_OPTIONS = 1, HDI_SPARE_POLES };
 
 struct hd_heat {
@@ -17245,10 +17245,10 @@ struct hd_heat {
     hd_heat_opts opts;           /* resolved, perm and rational copied */
     int32_t *perm;
     int32_t iterations_asked, poles_asked, no_factors;   /* no_factors: they did not fit */
-    int32_t exacting;            /* a tol below the default is asked for: sets of the highest degree */
-    /* of rounding relative to the answer, above which the status warns: tol, or by default */
+    int32_t exacting;            /* tol is below the default: sets have the highest degree */
+    /* the status warns where rounding relative to the answer is above this: tol, or HDI_ROUNDING_LIMIT */
     double limit;
-    uint64_t no_factors_limit;   /* the byte limit that factors did not fit */
+    uint64_t no_factors_limit;   /* the byte limit into which factors did not fit */
     int32_t spare;               /* of a call that exceeded the byte limit: an hdi_spare */
     hd_rational own_set;
     hd_rational *sets;           /* [n_sets] where these are several; own_set is the first */
@@ -17256,7 +17256,7 @@ struct hd_heat {
     hdi_elim elim;               /* to factorise */
     hdi_elim few;                /* the same in an order that is found fast, see hdi_krylov_few */
     hdi_ground ground;           /* made when it is first needed; of elim */
-    hdi_modes modes;             /* so too */
+    hdi_modes modes;             /* made when it is first needed */
     hdi_krylov *krylov;
     struct hdi_local *part;      /* of the last column that was answered on a part of the mesh */
     double *batch_room;          /* arrays of the batches */
@@ -17270,9 +17270,9 @@ struct hd_heat {
     double lambda_max;           /* bound on the largest eigenvalue of B^-1 L */
     double local;                /* mean of the diagonal of B^-1 L: about 4 over squared edge lengths */
     double *noise;               /* [n] weights of rounding of a product with L, in lap's order */
-    /* conserving pairs: a constant's change in unit time, were row sums not taken as zero */
+    /* conserving pairs: how fast a constant would change in time if row sums were not taken as zero */
     double drift;
-    int64_t version;             /* of the Laplacian that all this is made of */
+    int64_t version;             /* of the Laplacian from which all this was made */
     int64_t *fill;               /* [n_active] work of a renewal, made at the first */
     hdi_sum *sums;               /* [n_sums] work */
     int32_t n_sums;              /* components that these and the lanes are for */
@@ -17304,7 +17304,7 @@ static hdi_parts hdi_lane_bound(const hd_laplacian *lap, const hdi_lane *lane, c
                  : hdi_parts_scale(by_b, lane->off);
 }
 
-/* What sums lose where they are among the smallest doubles. */
+/* What a sum may lose where its terms are among the smallest doubles. */
 #define HDI_FAINT (1e-9 * DBL_MIN)
 
 /* Adds the numbers of one field to the report, which keeps the worst. ledger: a new one, or NULL where single
@@ -17362,11 +17362,11 @@ static double hdi_lambda_known(const hd_laplacian *lap) {
     return lap->b_ratio > 0 ? hdi_lambda_bound(lap) : HUGE_VAL;
 }
 
-/* Of two bounds that differ by rounding, after an update that changes nothing. */
+/* Two bounds may differ by this factor through rounding, after an update that changes nothing. */
 #define HDI_LAMBDA_SLACK (1 + 1e-9)
 
-/* |1'L 1| / 1'B1 of the component where it is largest, by sums without rounding to speak of. sum
- * [n_components]: work. */
+/* |1'L 1| / 1'B1 of the component where it is largest, by sums with hardly any rounding. sum [n_components]:
+ * work. */
 static double hdi_heat_drift(const hd_laplacian *lap, hdi_sum *sum) {
     double drift = 0;
     int64_t p;
@@ -17400,7 +17400,7 @@ static hd_status hdi_heat_sums(hd_heat *heat, hd_error *e) {
     return e->status;
 }
 
-/* Makes the plan have n lanes, without their arrays. */
+/* Gives the plan n lanes, without their arrays. */
 static hd_status hdi_heat_make_lanes(hd_heat *heat, int32_t n, hd_error *e) {
     hdi_lane *lane;
     if (n <= heat->n_lanes) return HD_OK;
@@ -17423,7 +17423,7 @@ static void hdi_heat_free_iterative(hd_heat *heat) {
     heat->lap = NULL;
 }
 
-/* The copy of the pair to iterate on. */
+/* Makes the copy of the pair to iterate on. */
 static hd_status hdi_heat_iterative(hd_heat *heat, hd_error *e) {
     if (heat->weight) return HD_OK;
     if (!heat->lap) {
@@ -17451,7 +17451,8 @@ static void hdi_heat_drop(hd_heat *heat) {
     hdi_elim_drop(&heat->few);
 }
 
-/* Frees what is made again when it is needed, but the analyses and the copy of the pair to iterate on. */
+/* Frees what is made again when it is needed, except for the analyses and the copy of the pair to iterate
+ * on. */
 static void hdi_heat_shed(hd_heat *heat) {
     hdi_heat_free_lanes(heat);
     hdi_free(heat->ctx, heat->batch_room);
@@ -17653,7 +17654,7 @@ static void hdi_steps_cost(const hd_heat *heat, hd_solver solver, double t, int3
     c->seconds += poles * factors * (20 + nnz / n) * 1e-9;
 }
 
-/* Poles that the default of columns has. */
+/* The number of poles that columns have by default. */
 enum { HDI_POLES_EXPECTED = 5 };
 
 /* Lanczos where the caller leaves the choice and asks for no pole set, B needs no solve, and by the model it
@@ -17735,7 +17736,7 @@ typedef struct hdi_heat_call {
     hd_solver solver;
     const hd_laplacian *lap;     /* the copy of the pair that the method works on; the caller's for t = 0 */
     const hd_rational *set;      /* instead of what the plan would take */
-    int32_t diagonal, degree;    /* by default a set made for diagonals; its degree, 0: as ever */
+    int32_t diagonal, degree;    /* the default set is that of diagonals; its degree, 0: the usual one */
     int32_t relative;            /* the report has errors relative to each value too */
     int32_t deflated;            /* direct: right-hand sides are without their constants */
     int32_t watching;            /* direct: the lanes keep the source's own entry, see hdi_lane.watch */
@@ -17750,9 +17751,9 @@ typedef struct hdi_heat_call {
     int32_t stop;
 } hdi_heat_call;
 
-/* t for the scaled pair. It is 0 where t lambda is at most the first number, which is nothing beside one:
- * |exp(-t lambda) - 1| <= t lambda. By the second one all that moves is gone, unless eigenvalues differ by as
- * much; its square is a double. */
+/* t for the scaled pair. It is 0 where t lambda is at most the first number: |exp(-t lambda) - 1| <= t lambda
+ * is lost in rounding. It is at most the second one over lambda, by when all that decays is gone unless
+ * eigenvalues differ by as much, and whose square is still a double. */
 #define HDI_STILL 1e-18
 #define HDI_ENDLESS 1e140
 
@@ -17830,9 +17831,9 @@ static hd_status hdi_heat_begin(hdi_heat_call *h, hd_heat *heat, hdi_query query
 /* What is known of the factors of elim or few, or guessed before the analysis. */
 typedef struct hdi_fill { double nnz, flops, stored, real_stored, analysis; } hdi_fill;
 
-/* The guess is what little fill a surface can have. Where rows are wider than 10, so much more of the
- * non-zeros and its square of the flops. (Point sets with 233 and 117 entries a row, 20K to 150K points: 1220
- * to 1700 n and 13000 n^1.5, 600 to 830 n and 3500 n^1.5.) */
+/* The guess is the least fill that a surface can have. With w entries in a row, w > 10, non-zeros are w/10
+ * times and flops (w/10)^2 times as many. (Point sets with 233 and 117 entries a row, 20K to 150K points:
+ * 1220 to 1700 n and 13000 n^1.5, 600 to 830 n and 3500 n^1.5.) */
 static hdi_fill hdi_fill_guess(double n, double entries) {
     const double wide = hdi_max(1, entries / (10 * n));
     hdi_fill f;
@@ -17856,20 +17857,20 @@ static hdi_fill hdi_heat_fill(const hd_heat *heat, const hdi_elim *m) {
     return f;
 }
 
-/* From this t lambda_max on it is worth while to ask whether only the means are left. exp(-x) is zero in
- * doubles beyond the second number. */
+/* From this t lambda_max on it is worthwhile to ask whether only the means are left. Beyond the second number
+ * exp(-x) is zero in doubles. */
 #define HDI_EQUAL_FROM 1e8
 #define HDI_EQUAL_BEYOND 750
 
-/* Is that asked at t (scaled)? */
+/* Is it worthwhile to ask at t (scaled)? */
 static int hdi_heat_equal_asks(const hd_heat *heat, double t) {
     return HDI_HAS_DIAGONAL && heat->source->conserves && !heat->opts.rational &&
            t * heat->lambda_max >= HDI_EQUAL_FROM;
 }
 
 /* Is t (scaled) so large that only the means of the components are left? 1 or 0; errors are in e. m: an
- * analysis of the plan. What tells is one number; its factor is not kept, so that there is room for those
- * of poles. Where there is no such factor, or no room for it, all goes on as ever. */
+ * analysis of the plan. The answer depends on one number, from a factor of L that is not kept, so that there
+ * is room for those of poles. If there is no such factor, or no room for it, the answer is 0. */
 static int hdi_heat_equal(hd_heat *heat, hdi_elim *m, double t, hd_error *e) {
     hdi_ground *g = &heat->ground, one;
     if (!HDI_HAS_DIAGONAL || !hdi_heat_equal_asks(heat, t) || !m->ctx) return 0;
@@ -17911,7 +17912,7 @@ static void hdi_heat_measure(const hd_laplacian *lap, hdi_lane *lane) {
     hdi_component_sums(lap, NULL, lane->rhs, lane->target);
 }
 
-/* All fields, before anything is solved or written. */
+/* Checks all fields, before anything is solved or written. */
 static hd_status hdi_fields_check(const hdi_heat_call *h) {
     int32_t q, v;
     for (q = 0; q < h->ask.k; q++) {
@@ -17929,7 +17930,7 @@ static hdi_terms hdi_heat_source(const hdi_heat_call *h, int32_t q) {
     return hdi_terms_vertex((int32_t)h->ask.list->order[h->ask.list->begin[q]].key);
 }
 
-/* Brings a field near one, by a power of two. */
+/* Scales a field by a power of two, so that its values are near one. */
 static void hdi_lane_unit(const hd_laplacian *lap, hdi_lane *lane) {
     double most = 0;
     int32_t i;
@@ -17969,8 +17970,8 @@ static double hdi_lane_f_off(const hd_laplacian *lap, hdi_lane *lane) {
     return sqrt(sum) * hdi_ratio_root(lap) + hdi_lane_rhs_off(lap, lane->f);
 }
 
-/* Takes the constants out of a field for good: they do not change in time. Where they are nearly all of it,
- * rounding leaves some of them, and the second time takes those. What rounding does to a difference is small
+/* Takes the constants, which do not change in time, out of a field. Where they are nearly all of it,
+ * rounding leaves some of them, which the second pass takes out. The rounding of the differences is small
  * beside that. */
 static void hdi_lane_moving(const hd_laplacian *lap, hdi_lane *lane) {
     int32_t i, pass;
@@ -17986,7 +17987,7 @@ static void hdi_lane_moving(const hd_laplacian *lap, hdi_lane *lane) {
         if (hdi_finite(lap->component_mass[i])) lane->target[i] = 0;
 }
 
-/* Is a bound on the norm of B^-1 e all that a column of k_t needs, and not B^-1 e? */
+/* Does a column of k_t need only a bound on the norm of B^-1 e, and not B^-1 e itself? */
 static int hdi_lane_bounded(const hdi_heat_call *h) {
     if (h->by_pairs) return h->lap->b_ratio > 0;
     return h->method == HD_METHOD_DIRECT && h->t > 0 && h->heat->elim.set.a0 == 0 && h->lap->b_ratio > 0;
@@ -18188,7 +18189,8 @@ static void hdi_heat_store(const hdi_heat_call *h, int32_t q, const hdi_lane *la
     if (sparse) (void)hdi_sparse_row(sparse, (int64_t)column, lap->n, NULL, u, h->heat->ctx, h->e);
 }
 
-/* Lanes for the items of the call, at most so many at a time, with room for steps of Lanczos or systems. */
+/* Makes lanes for the items of the call, at most `most` at a time, with room for steps of Lanczos or
+ * systems. */
 static hd_status hdi_heat_lanes(hdi_heat_call *h, int32_t most, int32_t steps, int32_t systems) {
     const hdi_lane_room room = hdi_lane_room_of(h->lap, &h->heat->fam, steps, systems);
     int32_t i;
@@ -18199,8 +18201,8 @@ static hd_status hdi_heat_lanes(hdi_heat_call *h, int32_t most, int32_t steps, i
     return h->e->status;
 }
 
-/* The error of a uniform set is at most this part of the least that the answer can be, which is what its
- * constants amount to. */
+/* The error of a uniform set is at most this part of the smallest norm that the answer can have, which is
+ * that of its constants. */
 #define HDI_UNIFORM_SHARE 1e-9
 
 /* The degree of a uniform set for all fields. Odd ones cost as much as the next even one; but the direct
@@ -18389,7 +18391,7 @@ static hd_status hdi_heat_store_some(hdi_heat_call *h, int32_t n) {
 
 /* ---- iterative ---- */
 
-/* The same for a call: of derivatives Lanczos must be asked for. */
+/* The same for a call. For derivatives Lanczos is taken only if it is asked for. */
 static hd_solver hdi_heat_solver(const hdi_heat_call *h, double t) {
     return h->rate && !h->heat->opts.solver ? HD_SOLVER_COCG : hdi_heat_choose(h->heat, t);
 }
@@ -18410,7 +18412,7 @@ static double hdi_iterative_bytes(const hdi_heat_call *h, int32_t poles) {
                                                                   (int64_t)(nnz - n) / 2);
 }
 
-/* The times one by one. */
+/* The cost of the times one by one. */
 static void hdi_iterative_cost(const hdi_heat_call *h, hd_cost *c) {
     const hd_heat *heat = h->heat;
     const hd_heat_opts *o = &heat->opts;
@@ -18424,7 +18426,7 @@ static void hdi_iterative_cost(const hdi_heat_call *h, hd_cost *c) {
     c->bytes = hdi_iterative_bytes(h, poles);
 }
 
-/* Lanes, the pole set and its preconditioners. */
+/* Makes the lanes, the pole set and its preconditioners. */
 static hd_status hdi_iterative_prepare(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     /* without a bound on the eigenvalues nothing is known of the steps */
@@ -18488,13 +18490,13 @@ static int32_t hdi_batches_shape(const hdi_elim *m, int32_t k, int32_t *width, u
     return count;
 }
 
-/* How many of them have their arrays where the update matrices of the first of so many packs were. */
+/* How many batches have their arrays where the update matrices of the first of the packs were. */
 static int32_t hdi_batches_inside(const hdi_elim *m, int32_t packs, uint64_t doubles, int32_t count) {
     const uint64_t spare = packs > 0 ? HDI_PACK * (uint64_t)m->sym.work : 0;
     return (int32_t)hdi_least((int64_t)(spare / doubles), count);
 }
 
-/* Bytes that solves of k items with so many packs take beyond what the plan has. */
+/* Bytes that solves of k items with this many packs take beyond what the plan has. */
 static uint64_t hdi_batches_need(const hd_heat *heat, int32_t packs, int32_t k) {
     const hdi_lane_room room = hdi_lane_room_of(heat->source, &heat->fam, 0, 0);
     int32_t width, count, lanes, i;
@@ -18512,7 +18514,7 @@ static uint64_t hdi_batches_need(const hd_heat *heat, int32_t packs, int32_t k) 
     return bytes;
 }
 
-/* Bytes that the factors of a set take at their peak with all that follows: an inversion of so many sums, or
+/* Bytes that the factors of a set take at their peak with all that follows: an inversion of n_sums sums, or
  * hdi_elim_bound, and solves of k items. */
 static uint64_t hdi_direct_need(const hd_heat *heat, const hd_rational *set, hdi_after after, int32_t n_sets,
                                 int32_t k, hd_error *e) {
@@ -18526,11 +18528,12 @@ enum { HDI_PROBES = 3 };         /* rows at which rounding of an inversion is me
 #define HDI_INVERT_FLOPS 2.0
 #define HDI_INVERT_SECONDS 2.0
 #define HDI_FORMS_SECONDS 4.0
-/* Sweeps are faster so many times where right-hand sides share them. */
+/* Sweeps are faster by this factor where several right-hand sides share them. */
 #define HDI_SHARED 2.5
 
-/* Adds what a set takes at one time: its factors, what comes after them, and solves of k items, beside
- * arrays of so many bytes. Of bytes the largest count. Returns the seconds of the factors. */
+/* Adds what a set takes at one time: its factors, what comes after them, and solves of k items, while arrays
+ * hold `held` bytes. Flops and seconds add up, of bytes the largest number counts. Returns the seconds of the
+ * factors. */
 static double hdi_direct_set(const hdi_heat_call *h, const hd_rational *set, hdi_after after, int32_t n_sets,
                              int32_t k, double held, hd_cost *c) {
     hd_heat *heat = h->heat;
@@ -18564,14 +18567,15 @@ static double hdi_direct_set(const hdi_heat_call *h, const hd_rational *set, hdi
     return factors;
 }
 
-/* Are the factors of the poles there? A field's default degree, not known yet, is taken as the last. */
+/* Are the factors of the poles there? The default degree of fields is not known yet: that of the last call is
+ * assumed. */
 static int hdi_heat_at_hand(const hdi_heat_call *h) {
     const hdi_elim *m = &h->heat->elim;
     if (!m->filled || m->t != h->t || h->n_times > 1) return 0;
     return h->set || h->heat->opts.rational || m->set.kind == hdi_heat_kind(h);
 }
 
-/* Fields and columns at the times of the call. */
+/* The cost of fields and columns at the times of the call. */
 static void hdi_direct_cost(const hdi_heat_call *h, hd_cost *c) {
     hd_rational set;
     double factors;
@@ -18582,8 +18586,8 @@ static void hdi_direct_cost(const hdi_heat_call *h, hd_cost *c) {
     else c->seconds = c->seconds * h->n_times + hdi_heat_fill(h->heat, &h->heat->elim).analysis;
 }
 
-/* The pole set and its factors. What follows them is asked for too, so that nothing is begun that the byte
- * limit forbids to end. */
+/* Makes the pole set and its factors. The bytes of what follows them are checked too, so that no work begins
+ * that the byte limit would end. */
 static hd_status hdi_direct_factors(hdi_heat_call *h, hdi_after after, int32_t n_sets) {
     hdi_elim *m = &h->heat->elim;
     hd_report *rep = h->rep;
@@ -18620,8 +18624,8 @@ typedef struct hdi_batches {
     int32_t inside;              /* batches whose arrays are where the first pack's update matrices were */
 } hdi_batches;
 
-/* Finds how many batches, and makes room for them: lanes, and the batches' arrays, as many as fit where the
- * update matrices of the first pack were, the others in the plan. */
+/* Finds the number of batches, and makes room for them: lanes, and the batches' arrays. As many as fit lie
+ * where the update matrices of the first pack were, the others in the plan. */
 static hd_status hdi_batches_make(hdi_batches *b, hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     uint64_t fresh;
@@ -18766,8 +18770,9 @@ static hdi_windows hdi_krylov_windows(const hdi_heat_call *h, hdi_fill f) {
     return all;
 }
 
-/* The analysis of this method. For few columns an order of minimum degree is found and analysed in a third of
- * the time, and the steps lose less. Not under a byte limit, where a second analysis might not fit. */
+/* The analysis of this method. For few columns it is that of a minimum degree order: finding and analysing it
+ * takes a third of the time, which saves more than its slower steps cost. Under a byte limit there is only
+ * one analysis, since a second one might not fit. */
 #define HDI_FEW_ENTRIES 9e5
 
 static hdi_elim *hdi_krylov_elim(const hdi_heat_call *h) {
@@ -19270,12 +19275,12 @@ static hd_status hdi_local_plan(const hd_heat *heat, hdi_local *l, hd_error *e) 
     return e->status;
 }
 
-/* The radius of a ball in edges, where sqrt(t) is so many: on meshes of 360K vertices with jitter it leaves
- * 1e-7 of the peak. */
+/* The radius of a ball in edges, from sqrt(t) in edges. On meshes of 360K vertices with jitter 1e-7 of the
+ * peak is left beyond it. */
 static double hdi_local_edges(double edges) { return 4 + edges * (10.3 + 0.95 * log(hdi_max(edges, 1))); }
 
-/* Edges that lie between a source and the rim at least. B^-1 of a full B falls by a factor of three an edge
- * where b_ratio is 1/2 (Demko, Moss, Smith 1984). */
+/* The least number of edges between a source and the rim. B^-1 of a full B falls by a factor of three with
+ * each edge where b_ratio is 1/2 (Demko, Moss, Smith 1984). */
 #define HDI_LOCAL_DIGITS 17.6
 
 static double hdi_local_hops(const hd_laplacian *lap) {
@@ -19283,7 +19288,8 @@ static double hdi_local_hops(const hd_laplacian *lap) {
     return lap->B ? HDI_LOCAL_DIGITS / log((1 + root) / (1 - root)) : 6;
 }
 
-/* The ball of item q, reach times as large as is usual, or of a row in the middle if items are not known. */
+/* Finds the ball of item q, `reach` times as large as usual, or that of a row in the middle if items are not
+ * known. */
 static hd_status hdi_local_find(hdi_heat_call *h, hdi_local *l, int32_t q, double reach, int32_t most) {
     const hd_laplacian *lap = h->heat->source;
     const double t = h->times[h->n_times - 1] / h->heat->scale;
@@ -19520,14 +19526,15 @@ static hd_status hdi_heat_by_local(hdi_heat_call *h) {
     return h->e->status;
 }
 
-/* Below so many rows nothing is to be gained. Seconds for each row of a ball, to look for it, and to make its
- * pair; the share of the time of other methods that it may take to look. */
+/* With fewer rows than this there is nothing to gain. Then the seconds that each row of a ball takes, to look
+ * for it and to make its pair, and the share of the other methods' time that looking may take. */
 enum { HDI_LOCAL_FROM = 4096 };
 #define HDI_LOCAL_LOOK 0.1e-6
 #define HDI_LOCAL_MAKE 0.5e-6
 #define HDI_LOCAL_SPARE 0.03
 
-/* Can balls serve the call? Auto takes fields that are not known, as in estimates, for large ones. */
+/* Can balls serve the call? If fields are not known, as in estimates, auto assumes that they reach
+ * everywhere. */
 static int hdi_local_can(const hdi_heat_call *h) {
     const hd_heat *heat = h->heat;
     const int asked = heat->opts.method == HD_METHOD_LOCAL;      /* then there is no retreat to the fields */
@@ -19589,7 +19596,7 @@ static hdi_elim *hdi_heat_analysis(const hdi_heat_call *h) {
     return h->method == HD_METHOD_KRYLOV ? hdi_krylov_elim(h) : &h->heat->elim;
 }
 
-/* Takes the cheapest method that fits into so many bytes, or iterations. */
+/* Takes the cheapest method that fits into `room` bytes, or else iterations. */
 static void hdi_heat_cheapest(hdi_heat_call *h, const hd_cost *by, double room) {
     int32_t q;
     double least = HUGE_VAL, cost = HUGE_VAL;
@@ -19690,18 +19697,19 @@ static hd_status hdi_heat_engine(hdi_heat_call *h) {
 #define HDI_MODES_TOL 1e-7
 /* The tolerance of the residuals of eigenpairs, far below what the bound allows for at t lambda = 700. */
 #define HDI_MODES_RESIDUAL 1e-12
-/* Eigenpairs are tried before poles when so many are expected to do, and after them up to the second number.
- * The bound by poles goes above 1e-6 where 13 to 80 are expected on meshes of 642 to 41K vertices, and at
- * 164K where 240 are (classical, t = 1000 h^2) or 340 (weighted, 700 h^2). 20 take one to two times as long
- * as poles do, once, and the second number about ten times. For sources all over the surface that bound grows
- * with the span (see below): it was above 1e-6 just below the third number times span^1.2 on 14 meshes. */
+/* Eigenpairs are tried before poles when at most the first number of them is expected to be enough, and after
+ * poles up to the second number. The bound by poles goes above 1e-6 where 13 to 80 are expected on meshes of
+ * 642 to 41K vertices, and at 164K where 240 are (classical, t = 1000 h^2) or 340 (weighted, 700 h^2). 20
+ * take one to two times as long as poles do, once, and the second number about ten times. For sources all
+ * over the surface that bound grows with the span (see below): it was above 1e-6 just below the third number
+ * times span^1.2 on 14 meshes. */
 #define HDI_MODES_FIRST 20
 #define HDI_MODES_MOST 360
 #define HDI_MODES_MANY 0.02
 /* With a larger bound by poles, relative to the largest value, eigenpairs are asked for help. */
 #define HDI_MODES_HELP 1e-6
 #define HDI_MODES_REASON "at such a t few eigenpairs are left: answers are sums over them"
-/* Vectors further from orthonormal are not what they should be: one may be there twice. */
+/* Vectors further from orthonormal than this are refused: one may be there twice. */
 #define HDI_MODES_ORTHO 1e-6
 /* From this t low on values are among the smallest doubles. */
 #define HDI_MODES_FADED 650
@@ -19839,8 +19847,8 @@ static int32_t hdi_modes_count(const hd_heat *heat, double more) {
     return (int32_t)hdi_min(lap->n_active, ceil(1.25 * more) + 6 + constants);
 }
 
-/* Bytes that finding so many pairs takes; a guess before the analysis. */
-#define HDI_MODES_SURE 0.5       /* this part is taken for sure: 0.67 was seen on a dozen vertices */
+/* Bytes that finding `count` pairs takes; a guess before the analysis. */
+#define HDI_MODES_SURE 0.5       /* at least this part is needed: 0.67 was seen on a dozen vertices */
 
 static double hdi_modes_need(const hd_heat *heat, int32_t count) {
     const int32_t n = heat->source->n_active;
@@ -19851,8 +19859,8 @@ static double hdi_modes_need(const hd_heat *heat, int32_t count) {
            2.0 * sizeof(double) * heat->source->n;
 }
 
-/* Finds so many eigenpairs. Returns 0 where that fails, or where they are not proven complete, or where there
- * is no room: then poles go on. Only out of memory by the system, and cancelling, are errors. */
+/* Finds `count` eigenpairs. Returns 0 if that fails, if they are not proven complete, or if there is no room:
+ * then poles answer. Only cancelling, and memory that the system does not have, are errors. */
 static int hdi_modes_find(hd_heat *heat, int32_t count, hd_error *e) {
     hdi_modes *x = &heat->modes;
     const hd_laplacian *lap = heat->source;
@@ -19874,7 +19882,7 @@ static int hdi_modes_find(hd_heat *heat, int32_t count, hd_error *e) {
     return 0;
 }
 
-/* Are there eigenpairs enough for time t, if need be after finding them? depth: how far they have to reach
+/* Are there enough eigenpairs for time t, if need be after finding them? depth: how far they have to reach
  * above the lowest one, times t. At most `most` are looked for. */
 static int hdi_modes_enough(hd_heat *heat, double t, double depth, int32_t most, hd_error *e) {
     const double above = depth / t;
@@ -19903,7 +19911,7 @@ static hdi_ledger hdi_modes_ledger(void) {
     return hdi_ledger_begin(HD_EVIDENCE_PROVEN, HD_EVIDENCE_PROVEN, HD_EVIDENCE_ESTIMATED, 1);
 }
 
-/* Is a bound by eigenpairs as it should be, or so near zero that nothing else is better? */
+/* Is a bound by eigenpairs small enough, or the answer so near zero that nothing else is better? */
 static int hdi_modes_good(const hd_heat *heat, double t, const hd_report *rep) {
     return rep->error_bound <= HDI_MODES_HELP || t * heat->modes.low > HDI_MODES_FADED;
 }
@@ -19920,16 +19928,16 @@ struct hdi_task {
     double depth;                /* how far they have to reach above the smallest eigenvalue, times t */
     hd_status (*pairs)(hdi_task *task);
     hd_status (*poles)(hdi_task *task);
-    double excess;               /* of the answer by poles: above 1 its error is not as it should be */
+    double excess;               /* of the answer by poles: above 1 its error is too large */
     /* Answers times that are not done together, if that is cheaper, and sets their place in done; their
      * reports go to one [n_times]. NULL: there is no such way. */
     hd_status (*together)(hdi_task *task, char *done, hd_report *one);
 };
 
-/* In done: the time is settled; it is answered by poles, and eigenpairs may do better. */
+/* Values of done: the time is settled; poles have answered it, and eigenpairs may do better. */
 enum { HDI_DONE_FOR_GOOD = 1, HDI_DONE_BY_POLES };
 
-/* Are at most so many eigenpairs expected to answer at time t? */
+/* Are at most `most` eigenpairs expected to be enough at time t? */
 static HDI_INLINE int hdi_task_near(const hdi_task *task, double t, int32_t most) {
     return HDI_HAS_MODES && task->serves && t > 0 && hdi_modes_allowed(task->h->heat) &&
            hdi_modes_expected(task->h->heat, task->depth / t) <= most;
@@ -19962,8 +19970,8 @@ static void hdi_task_at(hdi_heat_call *h, int32_t q) {
         h->ask.list->ledger[q] = hdi_ledger_begin(HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, 0);
 }
 
-/* Time q from at most `most` eigenpairs, which are found if need be: more of them where those left out
- * show in the bound. Returns 0 where there are not enough. */
+/* Answers time q from at most `most` eigenpairs, which are found if need be: more of them where those left
+ * out show in the bound. Returns 0 where there are not enough. */
 static int hdi_task_pairs(hdi_task *task, int32_t q, int32_t most) {
     hdi_heat_call *h = task->h;
     const double t = h->ask.t[q];
@@ -19981,7 +19989,8 @@ static int hdi_task_pairs(hdi_task *task, int32_t q, int32_t most) {
     return 1;
 }
 
-/* The time under way by poles. The highest degree takes over where the error of the default is too large. */
+/* Answers the time under way by poles. The highest degree takes over where the error of the default is too
+ * large. */
 static hd_status hdi_task_poles(hdi_task *task) {
     hdi_heat_call *h = task->h;
     task->excess = 0;
@@ -19993,8 +20002,8 @@ static hd_status hdi_task_poles(hdi_task *task) {
     return h->e->status;
 }
 
-/* Time q, which poles have answered: from eigenpairs after all, if the bound is not as it should be and
- * theirs is lower. bound: theirs, if they were tried before, or negative. */
+/* Answers time q, which poles have answered, from eigenpairs after all, if the bound is too large and theirs
+ * is lower. bound: theirs, if they were tried before, or negative. */
 static hd_status hdi_task_help(hdi_task *task, int32_t q, double bound) {
     hdi_heat_call *h = task->h;
     const double by_poles = h->rep->error_bound;
@@ -20008,8 +20017,8 @@ static hd_status hdi_task_help(hdi_task *task, int32_t q, double bound) {
     return hdi_task_poles(task);
 }
 
-/* Time q: from eigenpairs where few are left, else by poles. Where the bound is not as it should be the
- * other way is tried too, and the one with the lower bound taken. */
+/* Answers time q: from eigenpairs where few are left, else by poles. Where the bound is too large the other
+ * way is tried too, and the answer with the lower bound is taken. */
 static hd_status hdi_task_time(hdi_task *task, int32_t q) {
     hdi_heat_call *h = task->h;
     double bound = -1;
@@ -20028,7 +20037,8 @@ static hd_status hdi_task_time(hdi_task *task, int32_t q) {
     return h->e->status;
 }
 
-/* All times of a call: first those that few eigenpairs serve, then the others together or one by one. */
+/* Answers all times of a call: first those that few eigenpairs serve, then the others together or one by
+ * one. */
 static hd_status hdi_task_run(hdi_task *task) {
     hdi_heat_call *h = task->h;
     const int32_t n = hdi_high32(h->ask.n_times, 1);
@@ -20251,7 +20261,7 @@ static hd_status hdi_heat_sparing(hdi_heat_call *h, hdi_task *task) {
     if (hdi_task_run(task) >= 0 || heat->spare || !hdi_over_limit(heat->ctx, h->e)) return h->e->status;
     while (h->s.n > before.s.n) hdi_free(heat->ctx, h->s.block[--h->s.n]);
     *h = before;
-    *h->rep = rep;                               /* with its error, which is none */
+    *h->rep = rep;                               /* its error is cleared */
     hdi_heat_shed(heat);
     heat->spare = HDI_SPARE_OPTIONS;
     (void)hdi_task_run(task);
@@ -21004,14 +21014,14 @@ static void hdi_diagonal_means(const hd_laplacian *lap, hdi_diagonal *d) {
  * it is largest: the entry is compared with a solve with the same poles, whose own error its residual
  * bounds. */
 
-/* Differences seen at the probes stand for those of all rows, times the first; for functions of the caller's,
- * whose poles may lie beside the spectrum, times the second too. */
+/* Rounding in all rows is taken as the difference seen at the probes, times the first number. For the
+ * caller's functions, whose poles may lie beside the spectrum, also times the second. */
 #define HDI_PROBE_SAFETY 4
 #define HDI_PROBE_OWN 100
 
-/* Does rounding show in the values alone? k_t(i,i) is at least what the constants are of it, and no set that
- * approximates exp gives less. Of K_t with a full B the parts of other eigenvectors, x(v) (B x)(v), may be
- * negative. Returns the largest relative error that a smaller value proves. */
+/* Does rounding show in the values alone? k_t(i,i) is at least the part that the constants have in it, and no
+ * set that approximates exp gives less. (In K_t with a full B the parts of other eigenvectors, x(v) (B x)(v),
+ * may be negative.) Returns the largest relative error that a smaller value proves. */
 static double hdi_below_constants(const hd_laplacian *lap, const hdi_diagonal *d) {
     double most = 0;
     int32_t i;
@@ -21114,8 +21124,8 @@ static hd_status hdi_probe_run(hdi_heat_call *h, const hdi_inverses *x, int wors
     return probe->k > 0 ? hdi_direct_columns(h, &c) : h->e->status;
 }
 
-/* Rounding of a value, relative to size, by a probe whose own error is at most off. Of a probe that is not a
- * number nothing is known; a maximum would forget it. */
+/* Rounding of a value, relative to size, by a probe whose own error is at most off. It is infinite if the
+ * probe is not a number, which a maximum would ignore. */
 static double hdi_probe_seen(double probe, double off, double value, double size) {
     const double seen = hdi_quotient(HDI_PROBE_SAFETY * fabs(probe - value) + off, fabs(size));
     return hdi_nan(seen) ? HUGE_VAL : seen;
@@ -21359,8 +21369,8 @@ static hd_status hdi_diagonals_by_poles(hdi_task *task) {
 
 /* ---- at many times ---- */
 
-/* How many windows of equal ratio take the fewest packs in all for times that ascend. 0: these are more than
- * for so many times one by one, each with a set of degree 9, that is a pack and a real factor, which costs an
+/* How many windows of equal ratio take the fewest packs in all for times that ascend. 0: it costs less to
+ * take the times one by one, each with a set of degree 9, which is a pack and a real factor that costs an
  * eighth of a pack. */
 static int32_t hdi_shared_windows(const double *times, int32_t n_times, double tol) {
     const double ratio = times[n_times - 1] / times[0];
@@ -21570,9 +21580,9 @@ typedef struct hdi_metric {
     hdi_diagonal f;              /* of function q */
     int32_t q;
     double *rounding;            /* [in.count] of their diagonals, relative to the size of these */
-    int32_t group;               /* so many sources are solved for at the same time */
+    int32_t group;               /* the number of sources that are solved for at the same time */
     hdi_extra rows;              /* their columns of f and, where it is of use, of the bound g, by function */
-    int bounded;                 /* it is */
+    int bounded;                 /* rows has columns of g */
     hdi_column_parts *off;       /* [group][in.count] */
     double *work;                /* [n], or of grounded solves */
 } hdi_metric;
@@ -21613,7 +21623,7 @@ static hd_status hdi_metric_ground(hdi_metric *x, hdi_scope *s) {
         const double seen = 4 * HDI_PROBE_SAFETY * fabs(u[row] - value[row]) + off;
         *x->rounding = hdi_max(*x->rounding, hdi_quotient(seen, value[row]));
     }
-    for (i = 0; i < n; i++)                      /* rounding has left nothing of what is positive */
+    for (i = 0; i < n; i++)                      /* rounding has left nothing of a positive value */
         if (!g->held[i] && !(value[i] > 0)) *x->rounding = HUGE_VAL;
     return HD_OK;
 }
@@ -22162,8 +22172,7 @@ static double hdi_pairs_column_off(const hd_laplacian *lap, int32_t v, double si
 /* Most doubles of columns that are held at the same time: half a GiB. */
 #define HDI_PAIRS_DOUBLES (INT64_C(1) << 26)
 
-/* Distances |K_t B^-1 (e_i - e_j)|_B from the columns. They lose nothing beside what the columns are off
- * by. rep: of these. */
+/* Distances |K_t B^-1 (e_i - e_j)|_B from the columns, whose errors are the only ones. rep: of these. */
 static void hdi_pairs_note(const hd_heat *heat, const hdi_pairs_part *x, hd_report *rep, hdi_ledger *all) {
     const hd_laplacian *lap = heat->source;
     const size_t n = (size_t)lap->n;
@@ -22220,7 +22229,7 @@ static hd_status hdi_pairs_some(hdi_heat_call *h, const hdi_pairs *to, hdi_pairs
     return hdi_scope_end(&s);
 }
 
-/* All pairs at the time under way, so many at once. */
+/* All pairs at the time under way, `most` at once. */
 static hd_status hdi_pairs_columns(const hdi_pairs *to, int64_t most) {
     hdi_heat_call *h = to->task.h;
     hdi_ledger all = hdi_ledger_begin(HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, 1);
@@ -22377,7 +22386,7 @@ static hd_status hdi_sample_points(const hdi_samples *a) {
         from = q < 0 ? a->terms[a->n_from + q] : hdi_terms_vertex(vertex[q]);
         if (hdi_sample_distances(a, &from) < 0) break;
         for (v = 0; v < lap->n; v++) a->nearest[v] = hdi_min(a->nearest[v], a->u[v]);
-        if (!from.weight) a->nearest[from.one] = -1;     /* not again, even when no distance is left */
+        if (!from.weight) a->nearest[from.one] = -1;     /* never again, even when no distance is left */
     }
     return h->e->status;
 }
@@ -22486,8 +22495,8 @@ static hd_status hdi_sample_answer(hd_heat *heat, hdi_samples *a, const hd_sourc
 }
 
 /* ---- estimates ---- */
-/* What a query would take: the costs of the ways that its run goes, beside the arrays of its own. Tests
- * compare bytes with what is allocated. */
+/* What a query would take: the cost of the way that its run would go, and its own arrays. Tests compare the
+ * bytes with what is allocated. */
 
 /* How a query is answered: by solves, by an inversion, from L grounded, or from eigenpairs. */
 typedef enum hdi_by { HDI_BY_SOLVES, HDI_BY_INVERSION, HDI_BY_GROUND, HDI_BY_SPECTRUM } hdi_by;
@@ -22526,7 +22535,7 @@ typedef struct hdi_estimate {
     const hdi_query_row *query;
     hd_estimate *to;
     int32_t k;
-    double unit;                 /* of the call's times: the caller's times this */
+    double unit;                 /* the call's times are the caller's times this */
     double held;                 /* bytes of arrays that the query takes first */
     hdi_task task;               /* for eigenpairs */
 } hdi_estimate;
@@ -22534,7 +22543,7 @@ typedef struct hdi_estimate {
 /* Bytes of small arrays that are not listed one by one. */
 #define HDI_ESTIMATE_SMALL 4096
 
-/* Pairs by solves? */
+/* Are pairs answered by solves? */
 static int hdi_estimate_pairwise(const hdi_estimate *x) {
     return x->query->distance && x->query->by == HDI_BY_SOLVES;
 }
@@ -22583,7 +22592,7 @@ static hd_status hdi_estimate_solves(const hdi_estimate *x) {
     return h->e->status;
 }
 
-/* An inversion for so many times of a query that share a set, with what is made of it. */
+/* An inversion for `count` times of a query that share a set, with what is made of it. */
 static void hdi_estimate_inversion(const hdi_estimate *x, const hd_rational *set, int32_t count,
                                    hd_cost *c) {
     const hd_laplacian *lap = x->h->heat->source;
@@ -22601,7 +22610,7 @@ static void hdi_estimate_inversion(const hdi_estimate *x, const hd_rational *set
                          x->held + 8 * doubles + HDI_ESTIMATE_SMALL, c);
 }
 
-/* The times of the call by poles that they share, in windows. Returns 0 where they do not. */
+/* The times of the call by poles that they share, in windows. Returns 0 if they share none. */
 static int hdi_estimate_shared(const hdi_estimate *x, hd_cost *c) {
     hdi_heat_call *h = x->h;
     const int distance = x->query->distance != NULL;
@@ -22620,9 +22629,9 @@ static int hdi_estimate_shared(const hdi_estimate *x, hd_cost *c) {
     return windows > 0 && c->bytes <= hdi_bytes_left(h->heat->ctx);
 }
 
-/* Diagonals, traces and distances by poles: all times together if the run takes them so, else one by one,
- * as at the last time. Bytes are enough for either, to which the run comes back. In bytes_most the highest
- * degree takes over. */
+/* Diagonals, traces and distances by poles: all times together if the run does so, else one by one, each as
+ * the last time. Bytes are enough for both, since the run may fall back to the latter. In bytes_most the
+ * highest degree takes over. */
 static void hdi_estimate_inverses(const hdi_estimate *x, hd_cost *c) {
     hdi_heat_call *h = x->h;
     const hd_heat *heat = h->heat;
@@ -22675,16 +22684,16 @@ static void hdi_estimate_ground(const hdi_estimate *x, hd_cost *c) {
 
 /* ---- estimates of eigenpairs ---- */
 
-/* Seconds that an eigenpair costs for each vertex, without factors, all of them together as much as so many
- * more, and each twice that where they are half of the most. Measured on 2.5K to 43K vertices. */
+/* Seconds that an eigenpair costs for each vertex, without factors, and how many pairs' cost is added for the
+ * beginning. Half of HDI_MODES_MOST pairs cost twice as much each. Measured on 2.5K to 43K vertices. */
 #define HDI_MODES_SECONDS 7e-7
 #define HDI_MODES_BEGIN 5
 
-/* Bytes that eigenpairs may need where more are looked for than expected: 1.14 times those for the number
- * expected were seen on small meshes. */
+/* Bytes that eigenpairs may need, relative to those for the number expected, where more are looked for: 1.14
+ * was seen on small meshes. */
 #define HDI_MODES_OVER 1.25
 
-/* Finding so many of them. */
+/* The cost of finding `count` of them. */
 static hd_cost hdi_estimate_pairs(const hd_heat *heat, int32_t count) {
     const hdi_fill f = hdi_heat_fill(heat, &heat->elim);
     const double n = heat->source->n_active, runs = 2 + ceil(count / (double)HDI_SPEC_HALF);
@@ -22706,8 +22715,8 @@ static int32_t hdi_estimate_count(const hdi_estimate *x, int32_t q) {
     return hdi_modes_count(heat, hdi_modes_expected(heat, x->task.depth * x->unit / x->h->times[q]));
 }
 
-/* Eigenpairs that may come before or after poles at any time: their bytes while they are found, and then
- * those that they hold beside poles. */
+/* Adds the bytes of eigenpairs, which may come before or after poles at any time: while they are found, and
+ * then beside poles. */
 static void hdi_estimate_help(const hdi_estimate *x, hd_cost *c) {
     const hdi_heat_call *h = x->h;
     const hd_laplacian *lap = h->heat->source;
@@ -22880,7 +22889,7 @@ struct hd_geodesic {
     hdi_factor cold;             /* of the mean of two borders: L + B/t with the border held at zero */
     hd_geodesic_border border;
     char *held;                  /* [n_active] rows of the border; NULL: the border is natural */
-    double copies;               /* in which L and B count */
+    double copies;               /* L and B are multiplied by this */
     hdi_geo_face *face;          /* [n_faces] ordered by the corner that is eliminated first */
     hdi_geo_polygons poly;       /* in the same order */
     double *mass;                /* [n_active] diagonal of B/t. This and all below is in elimination order */
@@ -22896,11 +22905,11 @@ struct hd_geodesic {
     hdi_pair *sorted;            /* [value_size] */
     double *value;               /* [value_size] phi at the sources, by component, ascending; after sorted */
     int32_t value_size;
-    hd_laplacian *lap;           /* of updatable plans, else NULL */
-    int32_t *from;               /* [n_faces] which of the mesh's faces each is; of updatable plans kept */
+    hd_laplacian *lap;           /* kept by updatable plans, else NULL */
+    int32_t *from;               /* [n_faces] which of the mesh's faces each is; kept by updatable plans */
     double t_asked, t_in_h2;     /* 0: t_in_h2 h^2 */
     int32_t ready;               /* 0: the last update failed half way */
-    hdi_scope keep;              /* arrays but those that grow */
+    hdi_scope keep;              /* all arrays except those that grow */
 };
 
 /* ---- making ---- */
@@ -22933,8 +22942,8 @@ static hdi_scope *hdi_geo_keep(hd_geodesic *g, hd_error *e) {
 }
 
 /* Triangle f in its plane with the longest edge on the axis. Its area and cotangents are those of weight
- * triangles. The angles at the longest edge are acute, so that nothing is cancelled, and the height is as
- * small as it can be and keeps its relative precision. */
+ * triangles. The angles at the longest edge are acute, so that nothing cancels. The height is the smallest
+ * one, and keeps its relative precision. */
 static hdi_geo_face hdi_geo_frame(const hdi_mesh *mesh, int32_t f, const int32_t *row, double h,
                                   double weight) {
     const int32_t *v = mesh->tri + hdi_triple(f);
@@ -23129,7 +23138,7 @@ static hd_status hdi_geo_coincident(hd_geodesic *g, const double *xyz, hd_error 
     return hdi_scope_end(&s);
 }
 
-/* The faces as the passes over them want them. */
+/* Makes the faces as the passes over them need them. */
 static hd_status hdi_geo_store(hd_geodesic *g, const hd_laplacian *lap, const hdi_surface *z,
                                const hdi_input *in, hdi_scope *own) {
     hdi_scope s = hdi_scope_begin(g->ctx, own->e);
@@ -23380,7 +23389,7 @@ static const double *hdi_geo_column(const hd_geodesic *g, int k, const double *x
     return to;
 }
 
-/* Whether heat is held at zero in a row. Then it has no equation. */
+/* Is heat held at zero in a row? Then the row has no equation. */
 static int hdi_geo_is_held(const hd_geodesic *g, int32_t row) {
     return g->border == HD_GEODESIC_BORDER_DIRICHLET && g->held[row];
 }
@@ -23500,7 +23509,7 @@ static double hdi_geo_to_piece(const double *c, const double *a, const double *b
     return hdi_pythag(a[0] + at * x - c[0], a[1] + at * y - c[1]);
 }
 
-/* Whether an item lies in a face. Then its length is noted, and the distances of the corners. */
+/* Does an item lie in a face? Then its length is noted, and the distances of the corners. */
 static int hdi_geo_item_in(hdi_geo_item *x, const hdi_geo_face *f, double *near_by) {
     const double corner[3][2] = {{0, 0}, {2 * f->l, 0}, {2 * f->p, 2 * f->q}};
     double a[2] = {0, 0}, b[2] = {0, 0};
@@ -23733,10 +23742,10 @@ static void hdi_geo_heat(const hd_geodesic *g, const hdi_geo_source *s, int32_t 
     if (g->border == HD_GEODESIC_BORDER_MEAN) hdi_geo_add_cold(g, k, x, y);
 }
 
-/* phi is not the same at all sources of a set. With u the heat of the sources and v the heat of the values of
- * phi at them, v/u is near every source its own value, since heat fades so fast. Distances are measured from
- * that wherever the first stage knows u, |u| >= least. phi is in g->b, u in g->first; g->x and g->r are
- * overwritten. */
+/* phi is not the same at all sources of a set. Let u be the heat of the sources, and v the heat with the
+ * values of phi at them. Since heat fades so fast, v/u is near each source the value of phi there. Distances
+ * are measured from that wherever the first stage knows u, |u| >= least. phi is in g->b, u in g->first; g->x
+ * and g->r are overwritten. */
 static void hdi_geo_own_source(hd_geodesic *g, const hdi_geo_source *s, double least) {
     int32_t q, v, c, several = 0;
     for (c = 0; c < g->n_components; c++)
@@ -23793,7 +23802,7 @@ static void hdi_geo_judge(hd_geodesic_report *rep, double heat, double distance,
     if (!(heat <= HDI_GEO_RESIDUAL) || !(distance <= HDI_GEO_RESIDUAL)) rep->status = HD_WARN_ACCURACY;
 }
 
-/* From which |u| on a column of k counts as known: u is largest at the source. */
+/* The least |u| of a column of k that counts as known: u is largest at the source. */
 static double hdi_geo_least(const hd_geodesic *g, const hdi_geo_source *s, int k, const double *u) {
     double most = 0;
     int32_t q, c;
@@ -23861,7 +23870,7 @@ static hd_status hdi_geo_batch(hd_geodesic *g, const hdi_geo_source *s, int32_t 
     return e->status;
 }
 
-/* The vertices of n points from one on into list, where these are nothing else; else 0. */
+/* Puts the vertices of n points, from one on, into list if all are at vertices; returns 0 if one is not. */
 static int hdi_geo_vertices(const hd_sources *s, int64_t begin, int32_t n, int32_t *list) {
     const int32_t corners = hdi_source_corners(s);
     int32_t q, c;
@@ -24341,7 +24350,7 @@ HEATDIFF_API hd_status hd_ldl_solve(hd_ldl *f, int32_t k, const double *b, size_
     ldx = ldx ? ldx : (size_t)f->n;
     if (hdi_ldl_leading(f, ldb, ldx, c.e) < 0 || hdi_ldl_room(f, 0, c.e) < 0) return c.e->status;
     for (q = 0; q < k && b == x && ldb != ldx; q++) {
-        const size_t at = (size_t)(ldx > ldb ? k - 1 - q : q);   /* none is written over before it moves */
+        const size_t at = (size_t)(ldx > ldb ? k - 1 - q : q);   /* none is overwritten before it moves */
         memmove(x + at * ldx, x + at * ldb, (size_t)f->n * sizeof *x);
     }
     if (b == x) ldb = ldx;
