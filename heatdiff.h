@@ -179,7 +179,7 @@ typedef struct hd_error {
     hd_status status;
     char text[160];        /* one line, without the numbers below */
     int64_t face, vertex;  /* ids as the caller numbers them */
-    int64_t row, column;   /* of a matrix or of a field */
+    int64_t row, column;   /* of a matrix or field, or as a function says */
     int64_t pole;          /* index in the rational set, or of the matrix in a complex factorisation */
     /* The offending value, or 0. HD_ERR_MEMORY_LIMIT: a byte_limit (or allocation_limit, if the text says so)
      * must be at least this. */
@@ -210,12 +210,13 @@ typedef struct hd_threads hd_threads;            /* started and ended by the lib
  * object made with it, and must not be copied in the meantime. */
 typedef struct hd_context {
     hd_allocator allocator;     /* both functions or none */
-    uint64_t byte_limit;        /* most bytes in use at one time; 0: no limit. Other ways are tried first */
+    /* most bytes in use at one time; 0: no limit. Where one way would exceed it, others are tried */
+    uint64_t byte_limit;
     uint64_t allocation_limit;  /* most calls of alloc; 0: no limit */
 
-    /* Called now and then during long work, by the calling thread; may cancel with HD_ERR_CANCELLED. done
-     * runs from 0 to 1 within a stage: "neighbours", "assemble", "flip edges", "order", "analyse", "factor",
-     * "invert" (selected inversion), "precondition", "solve", "sample". */
+    /* Called now and then during long work, by the calling thread. If it cancels, the running function ends
+     * with HD_ERR_CANCELLED. done runs from 0 to 1 within a stage: "neighbours", "assemble", "flip edges",
+     * "order", "analyse", "factor", "invert" (selected inversion), "precondition", "solve", "sample". */
     hd_progress (*progress)(void *user, const char *stage, double done);
     void *progress_user;
 
@@ -223,7 +224,8 @@ typedef struct hd_context {
      * None waits for another. NULL: the library's own threads. */
     void (*parallel_for)(void *user, int64_t n_tasks, hd_task task, void *arg);
     void *parallel_user;
-    /* With the calling one. 0: one for each processor that the process may use. Not for parallel_for. */
+    /* The calling one included; 0: one for each processor that the process may use. Ignored if parallel_for
+     * is set. */
     int32_t n_threads;
     hd_simd simd;
 
@@ -736,9 +738,10 @@ typedef struct hd_geodesic_report {
  * column-major, with columns ldf, ldu, ldd, ldb or ldx apart (0: n).
  * After an error nothing is left allocated, *out and what was to be updated are unchanged, and output arrays
  * hold unspecified numbers.
- * Errors lists what says where in the input the fault lies, or has a special cause. Besides, any function may
- * return HD_ERR_ARGUMENT (a pointer is missing, a size is negative, an option is out of its range or was not
- * cleared), HD_ERR_TOO_LARGE, HD_ERR_MEMORY, HD_ERR_MEMORY_LIMIT, HD_ERR_CANCELLED and HD_ERR_NOT_BUILT. */
+ * The entry Errors lists those that say where in the input the fault lies, or have a special cause. Any
+ * function may also return HD_ERR_ARGUMENT (a pointer is missing, a size is negative, an option is out of its
+ * range or was not cleared), HD_ERR_TOO_LARGE, HD_ERR_MEMORY, HD_ERR_MEMORY_LIMIT, HD_ERR_CANCELLED and
+ * HD_ERR_NOT_BUILT. */
 
 /* ---- statuses ---- */
 
@@ -782,13 +785,14 @@ HEATDIFF_API hd_sources hd_vertices(int32_t count, const int32_t *vertex);
  *           it. Points in no star are inert, as are searched points at the place of an earlier one. Sheets
  *           two spacings apart stay separate (three for random points); closer ones if nbr leaves out
  *           neighbours whose normals point the other way
- * Delaunay, tufted: the vertices stay. With voronoi-cot or cot heat obeys the maximum principle
+ * Delaunay, tufted: the surface and its vertices stay. With voronoi-cot or cot heat obeys the maximum
+ *           principle
  * lengths   intrinsic geometry, such as a flat torus; no nested dissection
- * Errors HD_ERR_INDEX (face, value: the id; row: of held), HD_ERR_NOT_FINITE (vertex, or face of a length),
- *        HD_ERR_STRUCTURE (face: face_ptr descends there), HD_ERR_EMPTY; HD_ERR_ARGUMENT (vertex, value: a
- *        coordinate beyond 1e100, or all within 1e-100 of each other; face, vertex, value: an area that is
- *        not zero and outside 1e-100 .. 1e100, a weight above 1e100, a length that cannot be; vertex: two
- *        faces disagree on an edge from there). nbr: HD_ERR_STRUCTURE, HD_ERR_INDEX, HD_ERR_TOO_LARGE (row)
+ * Errors HD_ERR_INDEX (face, value: the id; row: of held), HD_ERR_NOT_FINITE (vertex or face, value),
+ *        HD_ERR_STRUCTURE (face: face_ptr descends there), HD_ERR_EMPTY; HD_ERR_ARGUMENT (face, vertex,
+ *        value: a coordinate or weight beyond 1e100, all points within 1e-100 of each other, an area that is
+ *        not zero and outside 1e-100 .. 1e100, a length that cannot be, or one that two faces disagree on).
+ *        nbr: HD_ERR_STRUCTURE, HD_ERR_INDEX, HD_ERR_TOO_LARGE (row)
  * Cost   O(n + faces + flips); a polygon with k corners k^2; points O(n log n + nnz)
  * Source see hd_laplacian_kind; polygons have one stiffening for all faces. Exponential weights are cut by
  *        distance, so that L is symmetric; neighbours more than 45 degrees off the tangent plane count with
@@ -801,7 +805,7 @@ HEATDIFF_API hd_status hd_laplacian_create(hd_laplacian **out, const hd_mesh *me
  * L      n x n, symmetric positive semi-definite: checked are L_ii >= 0 and L_ij^2 <= L_ii L_jj. If its rows
  *        do not sum to zero, heat is not conserved
  * B      n x n, symmetric positive definite: checked on the diagonal, by a factorisation if some row is not
- *        dominated by its diagonal, and later by solvers. Empty rows are inert vertices
+ *        dominated by its diagonal, and later by solvers. Rows without non-zeros are inert vertices
  * h      for lap->h; 0 if there is none
  * Errors HD_ERR_STRUCTURE, HD_ERR_INDEX, HD_ERR_NOT_FINITE (also if the sizes of a row's entries add up to
  *        more than 1e100), HD_ERR_NOT_SYMMETRIC, HD_ERR_NOT_POSITIVE (also if B_ii is below 1e-100), all with
@@ -817,8 +821,8 @@ HEATDIFF_API hd_status hd_laplacian_apply(const hd_laplacian *lap, double alpha,
 
 /* New positions for the same faces, of a Laplacian with the option updatable. Plans on lap keep their
  * analysis, and use the new values from the next query on; none may be at work meanwhile. Rows, pattern, held
- * vertices and faces left out stay; faces that lose their area are counted. All else is that of a new
- * Laplacian, to the last bit, in the same arrays.
+ * vertices and the faces left out stay as they are; faces that lose their area are counted. All else is that
+ * of a new Laplacian, to the last bit, in the same arrays.
  * mesh   n as before, and positions; its faces are not read
  * Errors as of hd_laplacian_create; HD_ERR_EMPTY (vertex: none of its faces has an area any more) */
 HEATDIFF_API hd_status hd_laplacian_update(hd_laplacian *lap, const hd_mesh *mesh, hd_error *err);
@@ -915,9 +919,10 @@ HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c6
 
 /* ---- direct solver ---- */
 
-/* P A P' = L D L' without pivoting, for real definite or quasi-definite matrices, and for complex-symmetric
- * ones (A = A', never conjugated) whose real part is definite after a rotation, such as t L + theta B. One
- * analysis of a pattern serves any number of factorisations. Only the first of each kind allocates. */
+/* The factorisation P A P' = L D L' without pivoting, for real definite or quasi-definite matrices, and for
+ * complex-symmetric ones (A = A', never conjugated) whose real part is definite after a rotation, such as
+ * t L + theta B. One analysis of a pattern serves any number of factorisations. Only the first of each kind
+ * allocates. */
 typedef struct hd_ldl hd_ldl;
 
 typedef struct hd_ldl_opts {
@@ -1007,17 +1012,17 @@ HEATDIFF_API void hd_heat_free(hd_heat *heat);
 
 /* Other pole sets for a plan, in place of hd_heat_opts.rational. Factors stay if t and the poles do.
  * sets   [count] copied. Several must have one t, lambda_max and theta, as from hd_rational_fit.
- *        hd_heat_diagonal answers for all of them, other queries for the first. count = 0: exp by default
+ *        hd_heat_diagonal answers for all of them, other queries for the first. count = 0: exp again
  * Errors HD_ERR_ARGUMENT (column: which set; or the plan's method is krylov, local or Lanczos),
  *        HD_ERR_NOT_FINITE */
 HEATDIFF_API hd_status hd_heat_set_rational(hd_heat *heat, int32_t count, const hd_rational *sets,
                                             hd_error *err);
 
 /* Common to all queries of a plan
- * t      [n_times] in any order, unit length^2; >= 0, for diagonals, distances to all vertices and samples
- *        > 0. With a filter: n_times = 0, or 1 and the t of its set. Commute and biharmonic ignore t: n_times
- *        = 0 or 1
- * fields F, G [n k]. Answers U and D have the column q n_times + m for field or source q at time m
+ * t      [n_times] >= 0, in any order, unit length^2; > 0 for diagonals, samples and distances to all
+ *        vertices. With a filter: n_times = 0, or 1 and the t of its set. Commute and biharmonic ignore t:
+ *        n_times is 0 or 1
+ * fields F, G [n k]. Answers U, D have n rows, and the column q n_times + m for field or source q at time m
  * pairs  i, j [n_pairs]. Answers are [n_pairs n_times], time by time
  * Errors HD_ERR_NOT_CONVERGED, HD_ERR_BREAKDOWN (vertex: where the answer overflows), HD_ERR_NOT_POSITIVE;
  *        HD_WARN_ACCURACY. report->error is the same as err
@@ -1026,7 +1031,7 @@ HEATDIFF_API hd_status hd_heat_set_rational(hd_heat *heat, int32_t count, const 
  *        sources: HD_ERR_INDEX, HD_ERR_NOT_FINITE, HD_ERR_ARGUMENT (column: which source, row: which of its
  *                 points, vertex): bary is not as hd_sources asks, a curve has one point, no length or no
  *                 coordinates, or weights or lengths sum to less than 1e-100 or more than 1e100
- *        method:  HD_ERR_ARGUMENT. Diagonals, traces, distances to all vertices and samples take auto or
+ *        method:  HD_ERR_ARGUMENT. Diagonals, traces, distances to all vertices and samples need auto or
  *                 direct, as do pairs by commute, biharmonic or a filter
  * Where all heat flows out, answers fall like exp(-t lambda_1), while the error of poles does not. From about
  * t = 15/lambda_1 on methods auto and direct take the few eigenpairs left. Where all values underflow, the
@@ -1042,8 +1047,7 @@ HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const doubl
                                      const double *F, size_t ldf, double *U, size_t ldu,
                                      hd_report *report, hd_error *err);
 
-/* U = dK_t/dt F = -B^-1 L K_t F at each time; unit 1/area; 0 at vertices without mass. The default degree is
- * 14.
+/* U = dK_t/dt F = -B^-1 L K_t F at each time; unit 1/area; 0 at vertices without mass; default degree 14.
  * report bounds are relative to the derivative. Where only means are left it is 0, and the bound infinite
  * Errors HD_ERR_ARGUMENT with a pole set of your own
  * HINT: to train t, give the plan poles = HD_POLES_KERNEL and a degree. Then apply, derivative and adjoint at
@@ -1086,7 +1090,7 @@ HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, hd_kernel kernel, double t,
  * several filters has a column, a Z and a bound, which is looser than that of one alone.
  * D      n x n_times, or NULL
  * Z      [n_times] or NULL: tr K_t = sum_i exp(-t lambda_i) over the rows of the Laplacian; no unit
- * bound  [n_times] or NULL: of the absolute error of each Z
+ * bound  [n_times] or NULL: bounds on the absolute error of each Z
  * report the rational part is proven at every vertex; rounding is measured where it is largest. If B is not
  *        diagonal, k_t leaves out the term a0 diag(B^-1) of a set; the bound includes it
  * Cost   for each t about three times the factors of all poles. By default many times share poles: three
@@ -1154,7 +1158,7 @@ HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t 
 /* ---- eigenpairs ---- */
 
 /* The smallest eigenpairs, with all copies of multiple eigenvalues.
- * opts   count, at most n_active, or below, or both: whichever ends first
+ * opts   not NULL: count, at most n_active, or below, or both: whichever ends first
  * Errors HD_ERR_NOT_POSITIVE, HD_ERR_NOT_CONVERGED; HD_WARN_ACCURACY with a result: n_poor is not 0, or
  *        proven is 0
  * Cost   for about 100 pairs one real factorisation, some 250 solves, and as many vectors made orthogonal; at
@@ -1166,7 +1170,7 @@ HEATDIFF_API void hd_spectrum_free(hd_spectrum *s);
 
 /* Kernels and distances from the pairs of s, as in eq. (1) of the paper: sums of exp(-t lambda_i) x_i(x)
  * x_i(y) and the like. All else is as in hd_heat_columns, hd_heat_diagonal and hd_heat_distance, but t >= 0.
- * bound  NULL, or of the shape of the output: of the error of each value. Pairs left out add at most
+ * bound  NULL, or of the output's shape: bounds on the error of each value. Pairs left out add at most
  *        exp(-t next) sqrt(left(x) left(y)), proven if s->proven; rounding is estimated
  * Cost   2 n count flops for each column; with the weighted distance or the diagonal of K_t and a full B some
  *        ten times as many */
@@ -1184,7 +1188,7 @@ HEATDIFF_API hd_status hd_spectrum_distance(const hd_spectrum *s, hd_distance_ki
 /* What a query would take by each method, without running it.
  * t        as in the query; spectrum: n_times may be 0
  * k        see hd_query
- * estimate fits is 0 if there is too little memory. Bytes leave out the output arrays. For the direct method
+ * estimate too little memory is no error: fits is 0. Bytes leave out the output arrays. For the direct method
  *          they are an upper bound, by a few percent (where eigenpairs come first that of poles); for others
  *          they are estimates
  * Cost     one ordering and analysis if the query needs them, which the plan keeps; else one pass over L */
@@ -1224,10 +1228,10 @@ HEATDIFF_API void hd_geodesic_free(hd_geodesic *g);
  * Errors   those of sources; HD_ERR_ARGUMENT (column, row): a point or a piece is in no face, or has a corner
  *          where heat is held at zero; HD_ERR_BREAKDOWN (rounding left no number); HD_WARN_ACCURACY, only if
  *          a report is given
- * Cost     two solves and two passes over the faces for each source; a third solve with several points in a
- *          component; two more passes with a report. Eight vertices together are three times as fast. Every
- *          450 edges or so at t = h^2, where heat fades, take another solve and three passes. Calls with
- *          vertices alone allocate only if there are more than before */
+ * Cost     two solves and two passes over the faces for each source; another solve with several points in a
+ *          component, two more passes with a report, and a solve and three passes for every 450 edges or so
+ *          at t = h^2, where heat fades. Eight vertices together are three times as fast. Calls with vertices
+ *          alone allocate only if there are more than before */
 HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, const hd_sources *sources, double *D,
                                             size_t ldd, hd_geodesic_report *report, hd_error *err);
 
