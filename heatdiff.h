@@ -511,7 +511,7 @@ typedef enum hd_precond {
     HD_PRECOND_JACOBI,          /* the diagonal */
     HD_PRECOND_SSOR,            /* symmetric successive over-relaxation, omega = 1 */
     HD_PRECOND_ILDL,            /* incomplete L D L' on the pattern of L, no fill */
-    HD_PRECOND_MILDL            /* the same; 97 % of the fill goes to the diagonal (Gustafsson 1978) */
+    HD_PRECOND_MILDL            /* the same; 97 % of dropped fill goes to the diagonal (Gustafsson 1978) */
 } hd_precond;
 
 typedef struct hd_heat_opts {
@@ -520,7 +520,7 @@ typedef struct hd_heat_opts {
     hd_solver solver;
     hd_precond precond;
     hd_pole_kind poles;         /* default: uniform for fields, else kernel */
-    int32_t degree;             /* default: a rational error near 1e-8 (direct: degree 9 and 3e-8) */
+    int32_t degree;             /* default: rational error below about 1e-8 (direct: 9, 3e-8) */
     const hd_rational *rational;    /* copied: your own set or a filter's, in place of poles and degree */
     double tol;                 /* the solver's part of |error|_B / |answer|_B; default 1e-9 */
     int32_t max_iterations;     /* per system; default 20000 */
@@ -17717,7 +17717,7 @@ typedef struct hdi_request {
     size_t ldf, ldu;
 } hdi_request;
 
-/* What residuals make of a column, in the norms of B and of B + tL. */
+/* How much residuals change a column, in the norms of B and of B + tL. */
 typedef struct hdi_column_parts { double by_b, by_m; } hdi_column_parts;
 
 /* A call. It takes a few items at a time, each in a lane. */
@@ -17735,7 +17735,7 @@ typedef struct hdi_heat_call {
     const int32_t *time_column;  /* which of ask.t each is; NULL: in order */
     hd_method method;
     int32_t forced;              /* auto takes iterations because of the byte limit */
-    int32_t not_local;           /* balls have been tried in vain */
+    int32_t not_local;           /* balls have been tried, and did not serve */
     int32_t rate;                /* the derivative in t is asked for: methods give t times that */
     hd_solver solver;
     const hd_laplacian *lap;     /* the copy of the pair that the method works on; the caller's for t = 0 */
@@ -17961,8 +17961,7 @@ static double hdi_lane_rhs_off(const hd_laplacian *lap, const double *f) {
     return DBL_EPSILON / 2 * sqrt(sum) * hdi_ratio_root(lap);
 }
 
-/* What f, which comes from rhs by a solve with a full B, is off by: its residual, with the rounding of
- * that. */
+/* The error of f, which comes from rhs by a solve with a full B: its residual, with the rounding of that. */
 static double hdi_lane_f_off(const hd_laplacian *lap, hdi_lane *lane) {
     double sum = 0;
     int32_t i;
@@ -18301,8 +18300,8 @@ static hdi_ledger hdi_heat_ledger(const hdi_heat_call *h) {
     return hdi_ledger_begin(rational, solver, HD_EVIDENCE_NONE, 0);
 }
 
-/* What the residuals of a column's systems make of its sum by the weights of set. Poles of times that share
- * them differ by a factor, and so do the solutions; residuals are the same. */
+/* How much the residuals of a column's systems change its sum by the weights of set. Poles of times that
+ * share them differ by a factor, and so do the solutions; residuals are the same. */
 static hdi_column_parts hdi_column_off(const hd_laplacian *lap, const hdi_lane *lane,
                                        const hd_rational *set) {
     hdi_column_parts off = {0, 0};
@@ -18454,7 +18453,7 @@ static hd_status hdi_heat_by_iterations(hdi_heat_call *h) {
     int32_t n;
     for (h->batch = 0; h->batch < h->ask.k; h->batch += n) {
         n = hdi_heat_load_some(h);
-        /* told here too: the calling thread may find all lanes taken */
+        /* progress here too: the calling thread may find all lanes taken */
         if (h->e->status >= 0 && hdi_progress(h->heat->ctx, "solve", (double)h->batch / h->ask.k, h->e) >= 0)
             hdi_parallel(h->heat->ctx, n, hdi_heat_task, h);
         if (hdi_heat_store_some(h, n) < 0) break;
@@ -18837,7 +18836,8 @@ static hd_status hdi_krylov_basis(hdi_heat_call *h, int32_t n, int32_t q0, int32
     return hdi_krylov_run(z, h->times + q0, q1 - q0, heat->opts.tol, fixed, heat->ctx, h->e);
 }
 
-/* The answers of n items at time q, whose sums are in place p and after in a. counted: steps are told. */
+/* The answers of n items at time q, whose sums are in place p and after in a. counted: steps go into the
+ * report. */
 static hd_status hdi_krylov_store(hdi_heat_call *h, int32_t n, int32_t q, const hdi_krylov_sum *a, int32_t p,
                                   int counted, hd_status status) {
     const hd_heat *heat = h->heat;
@@ -18978,7 +18978,7 @@ static hd_status hdi_heat_by_krylov(hdi_heat_call *h) {
     return h->e->status;
 }
 
-/* The worse of two reports, counts added. */
+/* The worse of two reports, with their counts added. */
 static void hdi_report_merge(hd_report *all, const hd_report *one) {
     hd_report sum = *one;
     int32_t p;
@@ -19034,7 +19034,7 @@ typedef struct hdi_local {
     hd_laplacian *ball;          /* the pair: its vertex i is row[i] of the source; NULL: none yet */
     int32_t *row;
     hdi_rim rim;
-    hdi_reached *at;             /* [n] rows within reach, in the order they were reached; room for so many */
+    hdi_reached *at;             /* [n] rows within reach, in the order they were reached; there is room for `room` */
     int32_t n;
     int64_t room;
     /* [n_active] of a row of the source: 1 + its place in at, minus 1 + its number in the rim, 0: neither */
@@ -19319,7 +19319,7 @@ static hd_status hdi_local_find(hdi_heat_call *h, hdi_local *l, int32_t q, doubl
     return hdi_local_grow(l, lap, reach * edge, edge / hdi_local_hops(lap), most, ctx, h->e);
 }
 
-/* The source of item q by vertices of the ball. id, weight: room for it. */
+/* The source of item q in terms of vertices of the ball. id, weight: room for it. */
 static hdi_terms hdi_local_source(const hdi_heat_call *h, const hdi_local *l, int32_t q, int32_t *id,
                                   double *weight) {
     const hdi_terms c = hdi_heat_source(h, q);
@@ -20283,7 +20283,7 @@ static void hdi_plain_means(const hdi_heat_call *h, hdi_lane *lane) {
     hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, 0, hdi_query_fields(h->ask.query)));
 }
 
-/* What a time that counts as zero does. */
+/* Answers a time that counts as zero. */
 static double hdi_plain_off(const hdi_heat_call *h) { return h->ask.t[h->now] > 0 ? HDI_STILL : 0; }
 
 /* The field itself. */
@@ -20762,10 +20762,10 @@ typedef struct hdi_columns {
     const hdi_terms *terms;      /* [k] sources */
     hdi_extra rows;              /* of every column; n = 0: none */
     int32_t n_off;               /* functions, whose sets follow set */
-    hdi_column_parts *off;       /* [k][n_off] what residuals make of their columns */
+    hdi_column_parts *off;       /* [k][n_off] how much residuals change their columns */
 } hdi_columns;
 
-/* The columns. The larger residual stays in the report. */
+/* Computes the columns. The larger residual stays in the report. */
 static hd_status hdi_direct_columns(hdi_heat_call *h, const hdi_columns *c) {
     hdi_heat_call own;
     hd_report rep;
@@ -20818,7 +20818,7 @@ static void hdi_inverses_places(const hdi_symbolic *s, int64_t *place) {
             if (s->a_row[at] == s->a_col[at]) place[s->super[v] + s->a_col[at]] = at;
 }
 
-/* Room for so many functions, whose sets have to be filled in. */
+/* Makes room for `count` functions, whose sets have to be filled in. */
 static hd_status hdi_inverses_take(hdi_inverses *x, const hdi_heat_call *h, int32_t count, hdi_wanted wanted,
                                    hdi_scope *s) {
     const hdi_symbolic *sym = &h->heat->elim.sym;
@@ -21250,7 +21250,7 @@ static double hdi_diagonal_tell(hdi_heat_call *h, const hdi_diagonal *d, hdi_led
 /* Gives a trace and the bound on its error to the caller, and to the report where that has no diagonal. */
 static void hdi_trace_tell(const hdi_diagonals *to, hdi_ledger ledger, int32_t q, double value, hdi_parts off,
                            hd_report *rep) {
-    if (!hdi_finite(off.rounding)) off.rounding = HUGE_VAL;      /* where 0 times infinity is no number */
+    if (!hdi_finite(off.rounding)) off.rounding = HUGE_VAL;      /* 0 times infinity is not a number */
     to->Z[q] = value;
     if (to->bound) to->bound[q] = hdi_parts_sum(&off);
     if (to->D) return;
@@ -21654,7 +21654,7 @@ static hd_status hdi_metric_invert(hdi_metric *x, hdi_scope *s) {
     return HD_OK;
 }
 
-/* A metric of so many functions; an inversion, L grounded or means fill it. */
+/* Makes a metric of `count` functions, which an inversion, L grounded or means have to fill. */
 static hd_status hdi_metric_take(hdi_metric *x, hdi_heat_call *h, const hdi_distance_row *kind,
                                  int32_t count, hdi_scope *s) {
     const hdi_elim *m = &h->heat->elim;
@@ -21670,8 +21670,8 @@ static hd_status hdi_metric_take(hdi_metric *x, hdi_heat_call *h, const hdi_dist
     return h->e->status;
 }
 
-/* Room for the columns of so many sources at the same time; with `bounded` those of g, too, where they are of
- * use. */
+/* Makes room for the columns of `group` sources at the same time; with `bounded` those of g, too, where they
+ * are of use. */
 static hd_status hdi_metric_room(hdi_metric *x, int32_t group, int bounded, hdi_scope *s) {
     const int32_t count = hdi_high32(x->in.count, 1), n_poles = x->in.count > 0 ? x->in.set->n_poles : 0;
     x->bounded = x->bounded && bounded;
@@ -21684,7 +21684,7 @@ static hd_status hdi_metric_room(hdi_metric *x, int32_t group, int bounded, hdi_
     return x->h->e->status;
 }
 
-/* The metric of the time under way by poles, for so many sources at the same time. */
+/* The metric of the time under way by poles, for `group` sources at the same time. */
 static hd_status hdi_metric_make(hdi_heat_call *h, const hdi_distance_row *kind, int32_t group, int bounded,
                                  hdi_metric *x, hdi_scope *s) {
     hd_heat *heat = h->heat;
@@ -21789,7 +21789,7 @@ static hd_status hdi_metric_solve(const hdi_metric *x, const hdi_terms *source, 
  * error of f by rounding; spread is a bound, and so is g where its column is NULL. */
 typedef struct hdi_metric_self { double f, g, spread, size, off; } hdi_metric_self;
 
-/* What an error of these sizes in the norms of B + tL and B makes of a value: 0 times infinity is 0. */
+/* How much an error of these sizes in the norms of B + tL and B changes a value: 0 times infinity is 0. */
 static double hdi_metric_off(double by_m, double by_b, const hdi_column_parts *off) {
     return hdi_min(hdi_bound_times(hdi_finite(by_m) ? by_m : HUGE_VAL, off->by_m),
                    hdi_bound_times(hdi_finite(by_b) ? by_b : HUGE_VAL, off->by_b));
@@ -21834,7 +21834,7 @@ static double hdi_metric_rational(const hdi_metric *x, const hdi_metric_self *se
     return hdi_diagonal_off(&x->f, form, wide * wide);
 }
 
-/* What rounding of the diagonals and of the column makes of d^2. given: there is a column. */
+/* How much rounding of the diagonals and of the column changes d^2. given: there is a column. */
 static double hdi_metric_rounding(const hdi_metric *x, const hdi_metric_self *self, int given, int32_t r,
                                   const hdi_column_parts *off) {
     const double relative = x->rounding[x->q], f = r < 0 ? 0 : x->f.value[r];
@@ -21945,7 +21945,7 @@ typedef struct hdi_mode_sum {
     hdi_terms source;
     int32_t own;                 /* its component, -1: none, or several */
     double share[HDI_MODES_FIRST];   /* what the constant of each component takes of it */
-    double constant_off;         /* what rounding of the sums over the source makes of the constants' part */
+    double constant_off;         /* how much rounding of the sums over the source changes that of constants */
     double at, rest;             /* B 1 there, in two doubles */
 } hdi_mode_sum;
 
@@ -23665,7 +23665,7 @@ static void hdi_geo_values(hd_geodesic *g, const hdi_geo_source *s, const double
     hdi_geo_values_sort(g, n);
 }
 
-/* Memory for phi at so many points. */
+/* Makes room for phi at `most` points. */
 static hd_status hdi_geo_values_room(hd_geodesic *g, int32_t most, hd_error *e) {
     if (g->value_size >= most) return HD_OK;
     hdi_free(g->ctx, g->sorted);
