@@ -18836,8 +18836,8 @@ static hd_status hdi_krylov_basis(hdi_heat_call *h, int32_t n, int32_t q0, int32
     return hdi_krylov_run(z, h->times + q0, q1 - q0, heat->opts.tol, fixed, heat->ctx, h->e);
 }
 
-/* The answers of n items at time q, whose sums are in place p and after in a. counted: steps go into the
- * report. */
+/* The answers of n items at time q, whose sums are in place p and after in a. counted: their steps are in the
+ * report already. */
 static hd_status hdi_krylov_store(hdi_heat_call *h, int32_t n, int32_t q, const hdi_krylov_sum *a, int32_t p,
                                   int counted, hd_status status) {
     const hd_heat *heat = h->heat;
@@ -19034,7 +19034,7 @@ typedef struct hdi_local {
     hd_laplacian *ball;          /* the pair: its vertex i is row[i] of the source; NULL: none yet */
     int32_t *row;
     hdi_rim rim;
-    hdi_reached *at;             /* [n] rows within reach, in the order they were reached; there is room for `room` */
+    hdi_reached *at;             /* [n] of [room]: rows within reach, in the order they were reached */
     int32_t n;
     int64_t room;
     /* [n_active] of a row of the source: 1 + its place in at, minus 1 + its number in the rim, 0: neither */
