@@ -206,8 +206,8 @@ typedef enum hd_simd { HD_SIMD_AUTO = 0, HD_SIMD_NONE, HD_SIMD_AVX2, HD_SIMD_AVX
 
 typedef struct hd_threads hd_threads;            /* started and ended by the library */
 
-/* Memory, progress and threads of a computation. All zeros are defaults, as is NULL. It must outlive every
- * object made with it, and must not be copied in the meantime. */
+/* Memory, progress and threads. All zeros are defaults, as is NULL. A context must outlive every object made
+ * with it, and must not be copied in the meantime. */
 typedef struct hd_context {
     hd_allocator allocator;     /* both functions or none */
     /* most bytes in use at one time; 0: no limit. Where one way would exceed it, others are tried */
@@ -271,13 +271,13 @@ typedef enum hd_laplacian_kind {
     HD_LAPLACIAN_POLYGON,       /* B: area/k at each of k corners, diagonal (Alexa, Wardetzky 2011) */
     HD_LAPLACIAN_VORONOI_EXP,   /* L_ij = -v_i v_j E_ij, B = diag(v) (Liu, Prabhakaran, Guo 2012) */
     HD_LAPLACIAN_EXP,           /* L_ij = -E_ij/n, B = I (Belkin, Niyogi 2008) */
-    HD_LAPLACIAN_MATRICES       /* the caller's own two matrices */
+    HD_LAPLACIAN_MATRICES       /* the caller's */
 } hd_laplacian_kind;
 
 /* The border of the surface: the ends of edges with one face. */
 typedef enum hd_border {
-    HD_BORDER_NATURAL = 0,      /* Neumann: no heat leaves */
-    HD_BORDER_DIRICHLET         /* all its vertices are held at zero */
+    HD_BORDER_NATURAL = 0,
+    HD_BORDER_DIRICHLET         /* its vertices are held at zero */
 } hd_border;
 
 /* Vertices without a row: without mass, or held at zero. */
@@ -317,7 +317,7 @@ typedef struct hd_laplacian_opts {
 
 typedef enum hd_shape { HD_TRIANGLES = 0, HD_POLYGONS, HD_POINTS } hd_shape;
 
-/* A surface as the caller has it. No array is used after the call.
+/* The caller's surface. No array is used after the call.
  * NOTE: vertex buffers often repeat vertices along seams of texture coordinates or normals, which no heat
  * crosses. Weld them first. */
 typedef struct hd_mesh {
@@ -342,7 +342,7 @@ typedef struct hd_mesh {
     int32_t end_zero;
 } hd_mesh;
 
-/* What was found in a mesh. Faces that cannot be used are no error: they are left out and counted. */
+/* Faces that cannot be used are no error: they are left out and counted. */
 typedef struct hd_mesh_report {
     int32_t n_faces, n_faces_used;   /* given; assembled */
     int32_t n_repeated_corner;       /* left out: two corners are the same vertex */
@@ -370,7 +370,7 @@ typedef struct hd_mesh_report {
     double smallest_intrinsic_angle; /* after the flips */
 } hd_mesh_report;
 
-/* What was found in a point set, and chosen for it. A place is a position of one or more points. */
+/* What was found and chosen. A place is a position of one or more points. */
 typedef struct hd_point_report {
     double bandwidth2;               /* s of the exponential weights */
     double weight_cut, cut_radius;   /* exponentials below weight_cut lie beyond cut_radius, and are 0 */
@@ -490,12 +490,12 @@ typedef enum hd_method {
     HD_METHOD_LOCAL
 } hd_method;
 
-/* The order in which a factorisation eliminates rows. */
+/* In which a factorisation eliminates rows. */
 typedef enum hd_ordering {
     HD_ORDERING_AUTO = 0,           /* nested dissection for large meshes, else minimum degree */
     HD_ORDERING_MINIMUM_DEGREE,     /* approximate minimum degree (Amestoy, Davis, Duff 1996) */
     HD_ORDERING_NESTED_DISSECTION,  /* cuts the mesh in space; needs coordinates */
-    HD_ORDERING_OWN                 /* the caller's permutation */
+    HD_ORDERING_OWN                 /* perm */
 } hd_ordering;
 
 typedef enum hd_solver {
@@ -508,7 +508,7 @@ typedef enum hd_solver {
 typedef enum hd_precond {
     HD_PRECOND_AUTO = 0,        /* mildl */
     HD_PRECOND_NONE,
-    HD_PRECOND_JACOBI,          /* the diagonal */
+    HD_PRECOND_JACOBI,
     HD_PRECOND_SSOR,            /* symmetric successive over-relaxation, omega = 1 */
     HD_PRECOND_ILDL,            /* incomplete L D L' on the pattern of L, no fill */
     HD_PRECOND_MILDL            /* the same; 97 % of dropped fill goes to the diagonal (Gustafsson 1978) */
@@ -581,7 +581,7 @@ typedef struct hd_report {
     hd_status status;
     hd_error error;             /* if status < 0 */
     hd_method method;
-    const char *reason;         /* why this method */
+    const char *reason;         /* of this method */
     hd_solver solver;           /* HD_SOLVER_AUTO for direct, HD_SOLVER_LANCZOS for krylov */
     hd_precond precond;         /* HD_PRECOND_NONE for Lanczos and direct */
     hd_pole_kind poles;         /* HD_POLES_DEFAULT for Lanczos, which has none */
@@ -677,7 +677,7 @@ typedef struct hd_cost {
 
 typedef struct hd_estimate {
     hd_method method;           /* that would be taken */
-    const char *reason;         /* why */
+    const char *reason;
     int32_t analysed;           /* 0: the sizes of factors are guessed, up to a factor of about 3 */
     hd_cost cost[HD_METHOD_LOCAL + 1];   /* by hd_method; cost[HD_METHOD_AUTO] is that of method */
     double bytes_in_use, bytes_left;   /* now, and of the byte limit, HUGE_VAL without one */
@@ -718,7 +718,7 @@ typedef struct hd_geodesic_opts {
     int32_t end_zero;
 } hd_geodesic_opts;
 
-/* What happened in a call: the worst of all columns. */
+/* The worst of all columns of a call. */
 typedef struct hd_geodesic_report {
     hd_status status;           /* HD_WARN_ACCURACY: a residual is above 1e-6 */
     hd_error error;             /* if status < 0 */
@@ -852,7 +852,7 @@ HEATDIFF_API hd_status hd_neighbours_nearest(const double *xyz, int32_t n, const
 
 /* ---- rational approximations ---- */
 
-/* A built-in set: uniform or kernel.
+/* A uniform or kernel set.
  * Errors HD_ERR_ARGUMENT (value: a wrong degree)
  * Source Cody, Meinardus, Varga 1969; Carpenter, Ruttan, Varga 1984 */
 HEATDIFF_API hd_status hd_rational_exp(hd_rational *out, hd_pole_kind kind, int32_t degree,
@@ -1065,8 +1065,7 @@ HEATDIFF_API hd_status hd_heat_adjoint(hd_heat *heat, int32_t n_times, const dou
                                        const double *G, size_t ldg, double *U, size_t ldu,
                                        hd_report *report, hd_error *err);
 
-/* Columns K_t c or k_t c of the kernel, with the functional c of each source. For a vertex s K_t e_s is the
- * field that starts as 1 at s and 0 elsewhere, and k_t e_s that of one unit of heat placed at s. */
+/* Columns K_t c or k_t c of the kernel, with the functional c of each source: e_i for vertex i. */
 HEATDIFF_API hd_status hd_heat_columns(hd_heat *heat, hd_kernel kernel, int32_t n_times,
                                        const double *t, const hd_sources *sources, double *U,
                                        size_t ldu, hd_report *report, hd_error *err);
