@@ -2,14 +2,14 @@
 
    ==== [A] opening ====
 
-   A surface is a pair of sparse symmetric matrices (L, B): the stiffness matrix L, positive semi-definite,
-   and the mass matrix B, positive definite. Heat f diffuses as K_t f with the kernel K_t = exp(-t B^-1 L).
-   This file builds (L, B) from a mesh or from points, and applies K_t through a rational approximation of the
+   A surface is a pair of sparse symmetric matrices: the stiffness matrix L, positive semi-definite, and the
+   mass matrix B, positive definite. Heat f diffuses as K_t f with the kernel K_t = exp(-t B^-1 L). This file
+   builds (L, B) from a mesh or from points, and applies K_t through a rational approximation of the
    exponential,
 
        K_t f = a0 f - sum_i a_i (t L + theta_i B)^-1 B f,
 
-   which takes a few sparse complex-symmetric systems. No part of the spectrum is cut off. Every answer
+   which takes a few sparse complex-symmetric systems. No part of the spectrum is cut off, and every answer
    comes with a bound on its error. The method is that of G. Patane and M. Spagnuolo, "Heat diffusion kernel
    and distance on surface meshes and point sets", Computers & Graphics 37, 2013, called the paper below.
 
@@ -18,7 +18,7 @@
        #define HEATDIFF_IMPLEMENTATION                   #include "heatdiff.h"
        #include "heatdiff.h"
 
-   and link with -lm. Give the implementation, which takes about 12 s to compile at -O2, a file of its own:
+   and link with -lm. The implementation compiles in about 12 s at -O2: give it a file of its own.
 
        hd_laplacian *lap = NULL;  hd_heat *heat = NULL;  hd_error err;
        hd_mesh mesh = hd_triangles(xyz, n, tri, n_tri);
@@ -28,7 +28,7 @@
        hd_heat_free(heat);  hd_laplacian_free(lap);
 
    Conventions
-     sign     L is positive semi-definite: minus the usual cotangent matrix of libigl. Its rows sum to zero.
+     sign     L is minus the usual cotangent matrix of libigl. Its rows sum to zero.
      units    L has no unit. B is an area, and so is t (length squared). If B = I (kind cot), t is a number.
      t        usually c h^2, where h = lap->h is the mean edge length. Below h^2 heat sees the mesh rather
               than the surface.
@@ -64,7 +64,7 @@
    Macros beside the implementation
      HEATDIFF_IMPLEMENTATION   compiles the implementation; define it in one file
      HEATDIFF_ASSERT(x)        your own assert; default: assert() unless NDEBUG
-     HEATDIFF_AUDIT            more asserts, which take time; on by itself under the address sanitizer
+     HEATDIFF_AUDIT            slow asserts as well; set by itself under the address sanitizer
      HEATDIFF_MALLOC(size), HEATDIFF_FREE(p)
                                used by contexts without an allocator; define both or none
      HEATDIFF_FILENAME         "name" of this file, which includes itself: only if you renamed it and the
@@ -76,30 +76,27 @@
                                operations of GCC, Clang or MSVC
      HEATDIFF_NO_LARGE_PAGES   no madvise for large pages on Linux
 
-   More macros there, for smaller builds, where -ffunction-sections -Wl,--gc-sections does not drop enough.
-   What is left out returns HD_ERR_NOT_BUILT, and the error names the macro. HD_METHOD_AUTO chooses among what
-   is there.
+   More of them make the build smaller, where -ffunction-sections -Wl,--gc-sections does not drop enough. What
+   is left out returns HD_ERR_NOT_BUILT, with the macro's name. HD_METHOD_AUTO chooses among what is there.
      HEATDIFF_NO_DIRECT        all factorisations: hd_ldl_*, method krylov; implies NO_LOCAL,
                                NO_POLE_FACTORS, NO_GEODESIC, NO_SPECTRUM. b_ratio of the caller's matrices
                                comes from Gershgorin's circles alone
      HEATDIFF_NO_LOCAL         method local
      HEATDIFF_NO_POLE_FACTORS  complex factors: method direct, hd_ldl_*_complex; implies NO_DIAGONAL
      HEATDIFF_NO_DIAGONAL      selected inversion: hd_heat_diagonal, hd_ldl_inverse*; implies NO_DIFFUSION.
-                               Method direct then has larger error bounds
+                               Error bounds of method direct are larger
      HEATDIFF_NO_DIFFUSION     hd_heat_distance, hd_heat_distance_pairs, hd_heat_sample
      HEATDIFF_NO_SPECTRUM      hd_spectrum_*. Bounds of distances at large t, and of all answers where heat
-                               flows out, are larger then
-     HEATDIFF_NO_ITERATIVE     method iterative, hd_shifted_solve. Factors that do not fit byte_limit are an
-                               error then
+                               flows out, are larger
+     HEATDIFF_NO_ITERATIVE     method iterative, hd_shifted_solve. Factors beyond byte_limit are an error
      HEATDIFF_NO_GEODESIC      hd_geodesic_*
      HEATDIFF_NO_INTRINSIC     the triangulations Delaunay and tufted
      HEATDIFF_NO_POINTS        HD_POINTS, hd_neighbours_*
      HEATDIFF_NO_POLYGONS      HD_POLYGONS
 
-   Macros wherever the file is included, the same everywhere
+   Macros wherever the file is included, the same everywhere; none changes a public type or prototype
      HEATDIFF_STATIC           all functions are static, for a single file that uses them
      HEATDIFF_API              your own linkage attribute
-   No macro changes a public type or prototype.
 
    Limits
      Vertices and faces are counted in 32 bits, non-zeros and offsets in 64. The library prints nothing, opens
@@ -180,69 +177,68 @@ typedef enum hd_status {
 /* What went wrong, and where in the caller's data. Places that do not apply are -1. */
 typedef struct hd_error {
     hd_status status;
-    char text[160];        /* one line for people, without the numbers below */
+    char text[160];        /* one line, without the numbers below */
     int64_t face, vertex;  /* ids as the caller numbers them */
-    int64_t row, column;   /* of a matrix or of a field */
+    int64_t row, column;   /* of a matrix or field, or as a function says */
     int64_t pole;          /* index in the rational set, or of the matrix in a complex factorisation */
-    /* The offending value, or 0. HD_ERR_MEMORY_LIMIT: a byte_limit (or, if the text says so, an
-     * allocation_limit) below this is too small. */
+    /* The offending value, or 0. HD_ERR_MEMORY_LIMIT: a byte_limit (or allocation_limit, if the text says so)
+     * must be at least this. */
     double value;
 } hd_error;
 
 /* What a progress callback returns. Any other value, such as 0 or 1, is HD_ERR_ARGUMENT. */
 typedef enum hd_progress { HD_PROGRESS_CONTINUE = 0x100, HD_PROGRESS_CANCEL = 0x200 } hd_progress;
 
-/* Memory functions, called from the calling thread only. alloc returns blocks aligned to 8 bytes, or NULL.
- * free receives the size that was asked for. Stacks of threads do not come from them. */
+/* Called from the calling thread only. alloc returns blocks aligned to 8 bytes, or NULL, which ends a call
+ * with HD_ERR_MEMORY. free receives the size that was asked for. Stacks of threads do not come from here. */
 typedef struct hd_allocator {
     void *(*alloc)(void *user, size_t size);
     void (*free)(void *user, void *block, size_t size);
     void *user;
 } hd_allocator;
 
-/* One task of a parallel loop. worker numbers the threads; 0 is the thread that called the library. */
+/* One task of a parallel loop. worker numbers the threads; 0 is the calling one. */
 typedef void (*hd_task)(void *arg, int64_t index, int32_t worker);
 
-/* Instruction sets of the dense kernels on x86-64, with GCC and Clang: by default the best that the processor
- * has. Elsewhere they are plain C, on AArch64 with NEON. Results of two sets agree up to rounding. */
+/* Instruction sets of the dense kernels on x86-64 with GCC and Clang; default: the processor's best. AArch64
+ * has NEON, others plain C. Results of two sets agree up to rounding. */
 typedef enum hd_simd { HD_SIMD_AUTO = 0, HD_SIMD_NONE, HD_SIMD_AVX2, HD_SIMD_AVX512 } hd_simd;
 
 typedef struct hd_threads hd_threads;            /* started and ended by the library */
 
-/* Memory, progress and threads of a computation. All zeros are defaults, as is NULL. The context is the
- * caller's and must outlive every object made with it; do not copy it in the meantime. */
+/* Memory, progress and threads. All zeros are defaults, as is NULL. A context must outlive every object made
+ * with it, and must not be copied in the meantime. */
 typedef struct hd_context {
-    hd_allocator allocator;     /* both functions or none; NULL from alloc ends a call with HD_ERR_MEMORY */
+    hd_allocator allocator;     /* both functions or none */
     /* most bytes in use at one time; 0: no limit. Where one way would exceed it, others are tried */
     uint64_t byte_limit;
     uint64_t allocation_limit;  /* most calls of alloc; 0: no limit */
 
-    /* Called now and then during long work, by the calling thread. done runs from 0 to 1 within a stage:
-     * "neighbours", "assemble", "flip edges", "order", "analyse", "factor", "invert" (selected inversion),
-     * "precondition", "solve", "sample". If it cancels, the running function frees everything and returns
-     * HD_ERR_CANCELLED. */
+    /* Called now and then during long work, by the calling thread. If it cancels, the running function ends
+     * with HD_ERR_CANCELLED. done runs from 0 to 1 within a stage: "neighbours", "assemble", "flip edges",
+     * "order", "analyse", "factor", "invert" (selected inversion), "precondition", "solve", "sample". */
     hd_progress (*progress)(void *user, const char *stage, double done);
     void *progress_user;
 
     /* Runs task(arg, i, worker) for every i in [0, n_tasks), in any order, and returns when all are done.
-     * Tasks should run side by side; none waits for another. NULL: the library's own threads. */
+     * None waits for another. NULL: the library's own threads. */
     void (*parallel_for)(void *user, int64_t n_tasks, hd_task task, void *arg);
     void *parallel_user;
-    /* Threads, the calling one included. 0: one for each processor that the process may use; 1: serial.
-     * Ignored if parallel_for is set. */
+    /* The calling one included; 0: one for each processor that the process may use. Ignored if parallel_for
+     * is set. */
     int32_t n_threads;
     hd_simd simd;
 
     /* Filled by the library. */
     uint64_t bytes_in_use, bytes_peak, allocations;
-    uint64_t regions;           /* parallel loops that other threads were asked to share */
+    uint64_t regions;           /* parallel loops shared with other threads */
     uint64_t helped;            /* tasks that other threads did */
     uint64_t waits;             /* times that the calling thread slept until others were done */
-    hd_threads *threads;        /* running, NULL: none; not counted in bytes_in_use */
-    int32_t n_holders;          /* objects made with this context: its threads end with the last one */
+    hd_threads *threads;        /* running; NULL: none; not counted in bytes_in_use */
+    int32_t n_holders;          /* objects made with this context */
 } hd_context;
 
-/* How many threads work for this context. 1 if this build has none. */
+/* How many threads work for this context. */
 HEATDIFF_API int32_t hd_context_threads(const hd_context *ctx);
 
 /* A sparse matrix by compressed rows, whose columns ascend and occur once. Matrices made by the library are
@@ -257,40 +253,43 @@ typedef struct hd_csr {
 
 /* ==== [C] options and reports ==== */
 /* A zero in options means the default, and so does a NULL pointer to them. Clear a struct before you fill it
- * in: begin_zero and end_zero must be zero, as a sign of that. */
+ * in: begin_zero and end_zero must be zero, as a sign of that.
+ * context       default: the Laplacian's, if there is one
+ * perm          [n] HD_ORDERING_OWN: vertices in order of elimination, those without mass anywhere. If it is
+ *               no permutation, the error is HD_ERR_INDEX (row)
+ * factor_nnz    non-zeros of one factor L, diagonal included; 0 without a factorisation
+ * factor_flops  real floating-point operations of all factorisations */
 
-/* Points: E_ij = exp(-|p_i - p_j|^2 / 4s) / (4 pi s^2), s is the bandwidth, and v_i the area of the Voronoi
- * cell of point i in its tangent plane. For exp and evenly spread samples B^-1 L tends to Laplacian/area: the
- * unit of t is an area times a squared length. */
+/* Points: E_ij = exp(-|p_i - p_j|^2 / 4s) / (4 pi s^2) with the bandwidth s, and v_i is the area of the
+ * Voronoi cell of point i in its tangent plane. For exp B^-1 L tends to Laplacian/area if points are evenly
+ * spread: the unit of t is an area times a squared length. */
 typedef enum hd_laplacian_kind {
     HD_LAPLACIAN_DEFAULT = 0,   /* triangles: fem, polygons: polygon, points: voronoi-exp */
     HD_LAPLACIAN_FEM,           /* cotangent L; B: a triangle adds area/6 on, area/12 off the diagonal */
     HD_LAPLACIAN_VORONOI_COT,   /* cotangent L; B: mixed Voronoi areas (Meyer et al. 2003), diagonal */
     HD_LAPLACIAN_COT,           /* cotangent L, B = I (Pinkall, Polthier 1993) */
-    /* Faces of k corners, planar or not; B: area/k at each corner, diagonal (Alexa, Wardetzky 2011) */
-    HD_LAPLACIAN_POLYGON,
+    HD_LAPLACIAN_POLYGON,       /* B: area/k at each of k corners, diagonal (Alexa, Wardetzky 2011) */
     HD_LAPLACIAN_VORONOI_EXP,   /* L_ij = -v_i v_j E_ij, B = diag(v) (Liu, Prabhakaran, Guo 2012) */
     HD_LAPLACIAN_EXP,           /* L_ij = -E_ij/n, B = I (Belkin, Niyogi 2008) */
-    HD_LAPLACIAN_MATRICES       /* the caller's own two matrices */
+    HD_LAPLACIAN_MATRICES       /* the caller's */
 } hd_laplacian_kind;
 
 /* The border of the surface: the ends of edges with one face. */
 typedef enum hd_border {
-    HD_BORDER_NATURAL = 0,      /* Neumann: no heat leaves */
-    HD_BORDER_DIRICHLET         /* all its vertices are held at zero */
+    HD_BORDER_NATURAL = 0,
+    HD_BORDER_DIRICHLET         /* its vertices are held at zero */
 } hd_border;
 
-/* Vertices without a row. Inert: without mass, K_t leaves the value. Held: K_t f is always zero there. */
+/* Vertices without a row: without mass, or held at zero. */
 enum { HD_ROW_INERT = -1, HD_ROW_HELD = -2 };
 
-/* The triangles that operators are made on. */
 typedef enum hd_triangulation {
-    HD_TRIANGULATION_GIVEN = 0, /* those of the mesh; points have none, and take exponential weights */
+    HD_TRIANGULATION_GIVEN = 0, /* that of the mesh; points have none, and take exponential weights */
     /* Meshes: edges are flipped along the surface. Cotangent weights are negative only on boundary edges
-     * opposite to an obtuse angle. Surfaces not manifold, or not oriented alike, are covered twice. */
+     * opposite an obtuse angle. Surfaces not manifold, or not oriented alike, are covered twice. */
     HD_TRIANGULATION_DELAUNAY,
-    /* Meshes: the same, always on two sheets, glued at the boundary; no weight is negative. Points: triangles
-     * are made from neighbours. */
+    /* Meshes: the same on two sheets, glued at the boundary; no weight is negative. Points: triangles are
+     * made from neighbours. */
     HD_TRIANGULATION_TUFTED
 } hd_triangulation;
 
@@ -302,15 +301,15 @@ typedef struct hd_laplacian_opts {
     hd_triangulation triangulation;
     double stiffening;          /* polygon: of faces with more than three corners; default 1, at most 1e100 */
     double bandwidth2;          /* s of exponential weights; default: see hd_laplacian_create */
-    double weight_cut;          /* exponentials below this are left out, in (0, 1); default 1e-8 */
-    /* Delaunay and tufted: all edges are lengthened by one number, to give triangle inequalities a margin of
-     * mollify times the mean edge length. Default 1e-5; at most 1; negative: not at all. */
+    double weight_cut;          /* exponentials below this are left out; default 1e-8, below 1 */
+    /* Delaunay and tufted: all edges grow by one length, until triangle inequalities have a margin of mollify
+     * times the mean edge length. Default 1e-5, at most 1; negative: not at all. */
     double mollify;
     int32_t neighbours;         /* points: nearest ones for the plane and cell or star, 6..128; default 30 */
-    /* 1: allows hd_laplacian_update (triangles and polygons in space, as given) and
-     * hd_laplacian_update_matrices. Takes 90 bytes a triangle, or 65 a corner of polygons. */
+    /* 1: allows updates (triangles and polygons in space, as given; matrices). Takes 90 bytes for each
+     * triangle, or 65 for each corner of polygons. */
     int32_t updatable;
-    hd_border border;           /* of the faces used of meshes; points and matrices: use held */
+    hd_border border;           /* of meshes; points and matrices: use held */
     int32_t n_held;
     const int32_t *held;        /* [n_held] more vertices held at zero; ids may repeat */
     int32_t end_zero;
@@ -318,81 +317,79 @@ typedef struct hd_laplacian_opts {
 
 typedef enum hd_shape { HD_TRIANGLES = 0, HD_POLYGONS, HD_POINTS } hd_shape;
 
-/* A surface as the caller has it. Positions need not be aligned. No array is used after the call.
+/* The caller's surface. No array is used after the call.
  * NOTE: vertex buffers often repeat vertices along seams of texture coordinates or normals, which no heat
  * crosses. Weld them first. */
 typedef struct hd_mesh {
     int32_t begin_zero;
     hd_shape shape;
     int32_t n;                  /* vertices, or points */
-    const double *xyz;          /* x, y and z of each vertex, finite */
+    const double *xyz;          /* x, y and z of each vertex, finite; need not be aligned */
     const float *xyz_float;     /* or this */
     size_t stride;              /* bytes from one vertex to the next; 0: packed */
     /* [3 n_faces] of triangles, in place of coordinates: lengths[3 f + q] is the side from corner q to the
-     * next, finite, not negative, and no longer than the other two together. All faces at an edge agree up to
-     * 1e-12 of it; two vertices have one edge only. */
+     * next, no longer than the other two together. All faces at an edge agree up to 1e-12 of it; two vertices
+     * have one edge only. */
     const double *lengths;
     int32_t n_faces;
     const int64_t *face_ptr;    /* [n_faces + 1] of polygons: where the corners of each begin, from 0 */
-    const int32_t *corner;      /* vertex ids: three for each triangle, or as face_ptr says */
+    const int32_t *corner;      /* vertex ids: three for each triangle, or by face_ptr */
     const uint16_t *corner_u16; /* or this, of triangles */
-    /* Points that are triangulated: nbr[nbr_ptr[i]] .. nbr[nbr_ptr[i + 1] - 1] are neighbours of point i, at
-     * most 256; 30 nearest ones suit. The point itself, points at its place and repeats do no harm. NULL:
-     * they are searched. */
+    /* Tufted points: nbr[nbr_ptr[i]] .. nbr[nbr_ptr[i + 1] - 1] are neighbours of point i, at most 256; 30
+     * nearest ones suit. The point itself, points at its place and repeats do no harm. NULL: searched. */
     const int64_t *nbr_ptr;
     const int32_t *nbr;
     int32_t end_zero;
 } hd_mesh;
 
-/* What was found in a mesh. Nothing here is an error: faces that cannot be used are left out and counted. */
+/* Faces that cannot be used are no error: they are left out and counted. */
 typedef struct hd_mesh_report {
     int32_t n_faces, n_faces_used;   /* given; assembled */
     int32_t n_repeated_corner;       /* left out: two corners are the same vertex */
-    /* Left out: a cross product or vector area of exactly zero (more than three corners: up to rounding), or
-     * fewer than three corners. */
+    /* Left out: the area is exactly zero (more than three corners: up to rounding), or there are fewer than
+     * three corners. */
     int32_t n_zero_area;
     int32_t n_repeated_face;         /* left out: corners of an earlier face, for polygons in cyclic order */
-    int64_t n_edges, n_boundary_edges;   /* distinct edges of the faces used; those with one face */
-    int64_t n_nonmanifold_edges;     /* with three faces or more: their weights are summed */
-    int64_t n_misoriented_edges;     /* with two faces that run along the edge in the same direction */
+    int64_t n_edges, n_boundary_edges;   /* of the faces used; those with one face */
+    int64_t n_nonmanifold_edges;     /* with three faces or more, whose weights are summed */
+    int64_t n_misoriented_edges;     /* with two faces that run along them in the same direction */
     int32_t n_boundary_loops;        /* connected sets of boundary edges */
     int32_t n_inert;                 /* vertices without mass, held or not */
-    /* Edges of negative cotangent weight, which break the maximum principle. Polygons: pairs of vertices
-     * whose entry of L is positive; most faces of more than three corners have some. */
+    /* Edges of negative weight (polygons: positive entries of L), which break the maximum principle. Most
+     * faces of more than three corners have some. */
     int64_t n_negative_weights;
     double smallest_angle;           /* in radians, of the faces used; polygons: of convex corners */
 
-    /* Delaunay and tufted; else zero. All above but n_negative_weights is of the faces as given. */
-    int32_t n_sheets;                /* 1, or 2: the surface is covered twice */
+    /* Delaunay and tufted. All above but n_negative_weights is of the faces as given. */
+    int32_t n_sheets;                /* 2: the surface is covered twice */
     int32_t n_mollified;             /* faces that needed mollification */
     double mollify_epsilon;          /* added to the length of every edge */
     int64_t n_flips;                 /* on all sheets */
     int64_t n_not_delaunay;          /* edges that could not be flipped because of rounding */
-    int64_t n_self_edges;            /* edges from a vertex to itself after the flips; weightless */
-    double smallest_intrinsic_angle; /* after the flips, in radians */
+    int64_t n_self_edges;            /* after the flips, from a vertex to itself; weightless */
+    double smallest_intrinsic_angle; /* after the flips */
 } hd_mesh_report;
 
-/* What was found in a point set, and chosen for it. Nothing here is an error. A place is a position of one or
- * more points. */
+/* What was found and chosen. A place is a position of one or more points. */
 typedef struct hd_point_report {
     double bandwidth2;               /* s of the exponential weights */
-    double weight_cut, cut_radius;   /* exponentials below weight_cut, beyond cut_radius, are 0 */
+    double weight_cut, cut_radius;   /* exponentials below weight_cut lie beyond cut_radius, and are 0 */
     int32_t neighbours;              /* used for tangent planes and cells */
     int32_t n_coincident;            /* points at the place of an earlier point: they share its cell */
-    int32_t n_isolated;              /* points without another within cut_radius: own components */
+    int32_t n_isolated;              /* points alone within cut_radius: components of their own */
     int32_t n_no_area;               /* points whose neighbours lie on a line: inert for voronoi-exp */
     int32_t n_border;                /* places whose cell ends at the hull of their neighbours */
-    int32_t most_in_row;             /* most non-zeros in a row of L, diagonal included */
-    /* Places whose nearest neighbours spread across their plane over 0.45 times as far as along it: creases,
-     * rims, tips, noise, and sheets closer than about 1.5 spacings, where heat may cross over. */
+    int32_t most_in_row;             /* most non-zeros in a row of L */
+    /* Places whose neighbours spread across their plane over 0.45 times as far as along it: creases, rims,
+     * tips, noise, and sheets closer than about 1.5 spacings, where heat may cross over. */
     int32_t n_not_flat;
 } hd_point_report;
 
-/* A discrete surface: the pair (L, B) on one pattern, to be read only. Rows are the vertices with mass that
- * are not held at zero, in the caller's order. */
+/* The pair (L, B) on one pattern, to be read only. Rows are the vertices with mass that are not held at zero,
+ * in the caller's order. */
 typedef struct hd_laplacian {
     int32_t n, n_active;        /* vertices of the caller; rows */
-    int32_t n_held;             /* vertices held at zero */
+    int32_t n_held;
     int32_t n_components;       /* of the rows, joined by entries of L or B that are not zero */
     hd_laplacian_kind kind;
     /* A bound on the largest eigenvalue of B^-1 L in 1/area, up to about five times as large. HUGE_VAL if
@@ -401,23 +398,22 @@ typedef struct hd_laplacian {
     double h;                   /* mean edge length before flips; points: nearest places; matrices: given */
     double area;                /* of the faces used, or of points' cells or stars; matrices: 1'B1 */
     hd_csr L;                   /* n_active x n_active, every diagonal entry present */
-    double *B;                  /* [L.nnz] values of B on the pattern of L, or NULL: B = diag(mass) */
-    /* [n_active] b = B 1, the masses of the vertices. Next to held vertices a full B has lost entries: the
-     * heat there is b'u with the b of the Laplacian that holds none. */
+    double *B;                  /* [L.nnz] B on the pattern of L; NULL: B = diag(mass) */
+    /* [n_active] b = B 1. Next to held vertices a full B has lost entries: the heat there is b'u with the b
+     * of the Laplacian that holds none. */
     double *mass;
-    double *b_diag;             /* [n_active] diagonal of B; the same array as mass if B is diagonal */
+    double *b_diag;             /* [n_active] diagonal of B; the array mass if B is diagonal */
     int32_t *vertex, *row;      /* [n_active] row -> vertex; [n] vertex -> row, HD_ROW_INERT or HD_ROW_HELD */
     int32_t *component;         /* [n_active] row -> component, numbered by first vertices */
     double *xyz;                /* [3 n_active] coordinates of the rows; NULL for matrices and lengths */
-    double *component_mass;     /* [n_components] sum of mass; infinite where heat is lost to held vertices */
+    double *component_mass;     /* [n_components] infinite where heat is lost to held vertices */
     /* B >= b_ratio diag(B), proven: 1 if B is diagonal, 1/2 for fem (0.42 if some edge joins a vertex to
      * itself). 0: unknown. */
     double b_ratio;
-    /* Where heat is conserved, L 1 = 0. 1: everywhere; for matrices L 1 = 0 up to 4 DBL_EPSILON sum_j |L_ij|
-     * in each row. 2: on some components; the others tend to 0. 0: on none, or unknown; from about
-     * t = 15/lambda_1 on, bounds of poles then say little, see hd_heat_apply. */
+    /* Where heat is conserved: L 1 = 0, for matrices up to 4 DBL_EPSILON sum_j |L_ij| in each row. 1:
+     * everywhere; 2: on some components; 0: on none, or unknown. */
     int32_t conserves;
-    hd_mesh_report mesh;        /* matrices and points: only n_inert; tufted points: triangles of stars */
+    hd_mesh_report mesh;        /* matrices, points: only n_inert; tufted points: triangles of stars */
     hd_point_report points;     /* tufted: only n_not_flat and, if searched, neighbours and n_coincident */
     hd_context *context;
     int64_t version;            /* number of updates */
@@ -427,9 +423,9 @@ typedef struct hd_laplacian {
 
 typedef enum hd_pole_kind {
     HD_POLES_DEFAULT = 0,
-    HD_POLES_UNIFORM,           /* r = 1..14: smallest max |exp - c| on (-inf, 0] */
-    HD_POLES_KERNEL,            /* r = 2..14: a0 = 0, c(0) = 1, smallest max (1 + |x|) |exp - c| */
-    HD_POLES_OWN                /* the caller's */
+    HD_POLES_UNIFORM,           /* degrees 1..14: smallest max |exp - c| on (-inf, 0] */
+    HD_POLES_KERNEL,            /* degrees 2..14: a0 = 0, c(0) = 1, smallest max (1 + |x|) |exp - c| */
+    HD_POLES_OWN
 } hd_pole_kind;
 
 enum { HD_MAX_POLES = 32 };
@@ -441,22 +437,22 @@ typedef struct hd_rational {
     int32_t degree, n_poles;    /* real poles + 2 pairs; poles listed, at most HD_MAX_POLES */
     double a0;
     hd_c64 theta[HD_MAX_POLES], a[HD_MAX_POLES];
-    /* max |exp - c| on (-inf, 0], and max (1 + |x|) |exp - c|, where 0 is unbounded. 0: unknown, in sets of
-     * your own; if both are, bounds in reports are for c itself. */
+    /* max |exp - c| on (-inf, 0], and max (1 + |x|) |exp - c|, 0 if that is infinite. In sets of your own 0
+     * means unknown; if both are, bounds in reports are for c itself. */
     double max_error, max_weighted_error;
-    /* Filters f: c(-t lambda) stands for f(lambda), with errors measured on a grid of [0, lambda_max];
-     * queries refuse a Laplacian with larger eigenvalues; largest is max |f|. Otherwise t is 0. */
+    /* Filters f: c(-t lambda) stands for f(lambda), with errors measured on [0, lambda_max]. Queries refuse a
+     * Laplacian with larger eigenvalues. largest is max |f|. Otherwise t is 0. */
     double t, lambda_max, largest;
 } hd_rational;
 
-/* Filters f(lambda) of the eigenvalues of B^-1 L, with their parameters a and b. */
+/* Filters f(lambda) of the eigenvalues of B^-1 L, with parameters a and b. */
 typedef enum hd_filter_kind {
     HD_FILTER_OWN = 0,          /* f(lambda, user) */
     HD_FILTER_HEAT,             /* exp(-a lambda) */
-    /* exp(-(a - log lambda)^2 / (2 b^2)), 0 at 0: energy a, width b. The diagonal over the trace is the wave
-     * kernel signature (Aubry, Schlickewei, Cremers 2011, eq. (4)). */
+    /* exp(-(a - log lambda)^2 / (2 b^2)), 0 at 0: energy a, width b, for wave kernel signatures (Aubry,
+     * Schlickewei, Cremers 2011, eq. (4)) */
     HD_FILTER_WAVE,
-    HD_FILTER_MEXICAN_HAT,      /* lambda exp(-a lambda): the wavelet -d/dt K_t at t = a (Hou, Qin 2012) */
+    HD_FILTER_MEXICAN_HAT,      /* lambda exp(-a lambda): a wavelet, -dK_t/dt at t = a (Hou, Qin 2012) */
     HD_FILTER_RESOLVENT,        /* 1 / (1 + a lambda) */
     HD_FILTER_FRACTIONAL,       /* exp(-a lambda^b): fractional diffusion */
     /* 1 / (1 + ((lambda - a b/lambda)/(b - a))^4), 0 at 0, 1/2 at a and b (Butterworth 1930) */
@@ -467,93 +463,86 @@ typedef enum hd_filter_kind {
 typedef struct hd_filter {
     int32_t begin_zero;
     hd_filter_kind kind;
-    double a, b;                /* finite; a > 0 except for waves, b > 0 where there is a b */
+    double a, b;                /* finite; a > 0 except for waves; b > 0, of bands b > a */
     double (*f)(double lambda, void *user);   /* HD_FILTER_OWN: finite on [0, lambda_max] */
     void *user;
     double tol;                 /* max (1 + weight lambda) |f - c| / max |f|; default 1e-10 */
-    /* >= 0. Take 1/weight near the eigenvalues that f lets pass. For a wave, weight = exp(-a) and tol = 1e-7
-     * give bounds near 1e-6 with 16 poles. */
+    /* >= 0. Take 1/weight near the eigenvalues that f lets pass. For a wave, exp(-a) and tol = 1e-7 give
+     * bounds near 1e-6 with 16 poles. */
     double weight;
-    int32_t max_degree;         /* of the set, at most HD_MAX_POLES; default 24 */
-    /* > 0: no eigenvalue lies between 0 and this, and c may take any value there. Halves the poles of filters
-     * not smooth at 0. The second value of hd_spectrum is such a number. */
+    int32_t max_degree;         /* at most HD_MAX_POLES; default 24 */
+    /* > 0: no eigenvalue lies between 0 and this, and c may take any value there. The second value of
+     * hd_spectrum is such a number. It halves the poles of filters that are not smooth at 0. */
     double lambda_min;
-    /* 1: c may have an a0, for filters that do not fade where lambda is large. With a full B diagonals leave
-     * a0 B^-1 out, and the bound includes it. */
-    int32_t constant;
+    int32_t constant;           /* 1: c may have an a0, for filters that do not fade at large lambda */
     int32_t end_zero;
 } hd_filter;
 
-/* Answers of two methods differ within their bounds. */
 typedef enum hd_method {
-    /* The cheapest by a model, within the byte limit. For many calls with a column each at one t, ask for
-     * direct: its factors are kept. */
+    /* The cheapest by a model, within the byte limit. For many calls of one column at one t, ask for direct,
+     * which keeps its factors. */
     HD_METHOD_AUTO = 0,
     HD_METHOD_ITERATIVE,        /* a Krylov method for each pole, or Lanczos for the exponential */
     HD_METHOD_DIRECT,           /* all poles factorised in one sweep: for many fields or columns */
     HD_METHOD_KRYLOV,           /* shift-and-invert Lanczos: one real factor, few fields or many times */
-    /* The same on a ball around the source, or around where a field is not zero: about 11 sqrt(t), more if
-     * need be. Answers beyond are 0. Not for diagonals, distances and pole sets */
+    /* The same on a ball of radius 11 sqrt(t) or more around the source, or around where a field is not zero;
+     * answers beyond are 0. For fields, columns, entries and pairs without pole sets; needs b_ratio > 0 */
     HD_METHOD_LOCAL
 } hd_method;
 
-/* The order in which a factorisation eliminates rows. */
+/* In which a factorisation eliminates rows. */
 typedef enum hd_ordering {
     HD_ORDERING_AUTO = 0,           /* nested dissection for large meshes, else minimum degree */
     HD_ORDERING_MINIMUM_DEGREE,     /* approximate minimum degree (Amestoy, Davis, Duff 1996) */
     HD_ORDERING_NESTED_DISSECTION,  /* cuts the mesh in space; needs coordinates */
-    HD_ORDERING_OWN                 /* the caller's permutation */
+    HD_ORDERING_OWN                 /* perm */
 } hd_ordering;
 
 typedef enum hd_solver {
     HD_SOLVER_AUTO = 0,         /* Lanczos for small t if it costs less, else cocg */
     HD_SOLVER_COCG,             /* conjugate orthogonal CG (van der Vorst, Melissen 1990); real poles: CG */
-    HD_SOLVER_MINRES = 3,       /* CS-MINRES (Choi 2013), preconditioned by that of t L + |theta| B */
+    HD_SOLVER_MINRES = 3,       /* CS-MINRES (Choi 2013), with the preconditioner of t L + |theta| B */
     HD_SOLVER_LANCZOS           /* for the exponential, no poles: about 1.1 sqrt(t lambda_max) steps */
 } hd_solver;
 
 typedef enum hd_precond {
     HD_PRECOND_AUTO = 0,        /* mildl */
     HD_PRECOND_NONE,
-    HD_PRECOND_JACOBI,          /* the diagonal */
+    HD_PRECOND_JACOBI,
     HD_PRECOND_SSOR,            /* symmetric successive over-relaxation, omega = 1 */
     HD_PRECOND_ILDL,            /* incomplete L D L' on the pattern of L, no fill */
-    HD_PRECOND_MILDL            /* the same, 97 % of dropped fill goes to the diagonal (Gustafsson 1978) */
+    HD_PRECOND_MILDL            /* the same; 97 % of dropped fill goes to the diagonal (Gustafsson 1978) */
 } hd_precond;
 
-/* A plan's options. Those of factorisations serve all methods that factorise. */
 typedef struct hd_heat_opts {
     int32_t begin_zero;
     hd_method method;
     hd_solver solver;
     hd_precond precond;
     hd_pole_kind poles;         /* default: uniform for fields, else kernel */
-    /* Default: the rational error relative to the answer is below about 1e-8 (direct: degree 9 and 3e-8). */
-    int32_t degree;
-    /* Copied: your own set, or hd_rational_fit's. Then poles and degree are ignored, Lanczos is not used. */
-    const hd_rational *rational;
+    int32_t degree;             /* default: rational error below about 1e-8 (direct: 9, 3e-8) */
+    const hd_rational *rational;    /* copied: your own set or a filter's, in place of poles and degree */
     double tol;                 /* the solver's part of |error|_B / |answer|_B; default 1e-9 */
     int32_t max_iterations;     /* per system; default 20000 */
-    double cut;                 /* of sparse columns: smaller values, relative to the largest, are left out */
+    double cut;                 /* sparse columns leave out values below this times the largest */
     hd_ordering ordering;       /* auto: a plan may keep a second one, for few columns */
-    const int32_t *perm;        /* [n] HD_ORDERING_OWN: vertices in order, those without mass anywhere */
-    hd_context *context;        /* default: the Laplacian's */
+    const int32_t *perm;
+    hd_context *context;
     int32_t end_zero;
 } hd_heat_opts;
 
 /* K_t = exp(-t B^-1 L), and k_t = K_t B^-1. */
 typedef enum hd_kernel { HD_KERNEL_OPERATOR = 0, HD_KERNEL_SYMMETRIC } hd_kernel;
 
-/* Sources, a column of the answer for each. A source is a vertex, or points inside faces, on edges or at
- * vertices, each with a weight, or a curve through points. It is a functional c of fields that are linear on
- * each face: c_v is what it takes of vertex v. Set count and vertex, or see hd_vertices. */
+/* Each source gives a column. It is a vertex, or points inside faces, on edges or at vertices, each with a
+ * weight, or a curve through points. In formulas it is a functional c of fields that are linear on each face:
+ * c_v is what it takes of vertex v. Set count and vertex, or see hd_vertices. */
 typedef struct hd_sources {
     int32_t begin_zero;
     int32_t count;
-    /* [count + 1] source q has the points first[q] .. first[q + 1] - 1, at least one. NULL: one each */
-    const int64_t *first;
+    const int64_t *first;       /* [count + 1] where the points of each source begin; NULL: one each */
     /* Vertices a point lies between: 1 at a vertex, 2 on an edge, 3 in a triangle, more in polygons. 0: 1.
-     * Points at vertices and on edges may stand among points of triangles, with weights 0. */
+     * Points of triangles may lie on edges or at vertices, with zeros in bary. */
     int32_t corners;
     /* 1: a source is a curve of straight pieces from each point to its next, at least two points. Each piece
      * lies in one face, edges and corners included, and weighs its length. To close it, repeat the first. */
@@ -565,12 +554,12 @@ typedef struct hd_sources {
     int32_t end_zero;
 } hd_sources;
 
-/* The squared distance d^2 of each kind. The last two sum over the eigenpairs (lambda_l, x_l) of (L, B) with
- * lambda_l > 0, and have no time. */
+/* Squared distances d^2. The last two sum over the eigenpairs (lambda_l, x_l) of (L, B) with lambda_l > 0,
+ * and have no time. */
 typedef enum hd_distance_kind {
     HD_DISTANCE_CLASSICAL = 0,  /* k_2t(i,i) - 2 k_2t(i,j) + k_2t(j,j) (Coifman, Lafon 2006); intrinsic */
-    /* (e_i - e_j)' B K_2t (e_i - e_j), eq. (6) of the paper. Not intrinsic: d tends to |b_i - b_j|/sqrt(area)
-     * for large t. */
+    /* (e_i - e_j)' B K_2t (e_i - e_j), eq. (6) of the paper. Not intrinsic: for large t d tends to
+     * |b_i - b_j|/sqrt(area). */
     HD_DISTANCE_WEIGHTED,
     HD_DISTANCE_COMMUTE,        /* sum_l (x_l(i) - x_l(j))^2 / lambda_l: the effective resistance */
     HD_DISTANCE_BIHARMONIC      /* the same with lambda_l^2 (Lipman, Rustamov, Funkhouser 2010) */
@@ -581,42 +570,41 @@ typedef enum hd_evidence {
     HD_EVIDENCE_NONE = 0,       /* the part does not apply */
     HD_EVIDENCE_PROVEN,         /* a theorem, applied to norms and residuals of this answer */
     HD_EVIDENCE_MEASURED,       /* at some columns, solves or points of a grid, and assumed for all */
-    HD_EVIDENCE_ESTIMATED       /* a model: of rounding, or of how the iterations of krylov converge */
+    HD_EVIDENCE_ESTIMATED       /* a model of rounding, or of how krylov converges */
 } hd_evidence;
 
-/* What happened, and how large the error can be. For several fields, columns or times: the worst of them.
- * error_bound bounds the largest error of any value returned, relative to the largest |value|: of each field,
- * column and time, or of the whole list for entries and pairs. Above 1e-2 the status is HD_WARN_ACCURACY. It
- * is the sum of four parts: the rational approximation, the iterative solver, rounding, and what method local
- * leaves out. */
+/* What happened, and how large the error can be: the worst of all fields, columns and times. error_bound
+ * bounds the error of any value returned, relative to the largest |value| of its column, or of the whole list
+ * for entries and pairs. Above 1e-2 the status is HD_WARN_ACCURACY. It is the sum of four parts: the rational
+ * approximation, the iterative solver, rounding, and what method local leaves out. */
 typedef struct hd_report {
     hd_status status;
-    hd_error error;             /* filled if status < 0 */
+    hd_error error;             /* if status < 0 */
     hd_method method;
-    const char *reason;         /* why this method, in a few words */
+    const char *reason;         /* of this method */
     hd_solver solver;           /* HD_SOLVER_AUTO for direct, HD_SOLVER_LANCZOS for krylov */
     hd_precond precond;         /* HD_PRECOND_NONE for Lanczos and direct */
     hd_pole_kind poles;         /* HD_POLES_DEFAULT for Lanczos, which has none */
     int32_t degree, n_poles;    /* 0 for Lanczos */
-    int64_t iterations;         /* total over systems and fields; Lanczos: steps */
-    int64_t pole_iterations[HD_MAX_POLES];  /* per pole, summed over the fields */
-    hd_ordering ordering;       /* of the factorisation; HD_ORDERING_AUTO without one */
-    int64_t factor_nnz;         /* non-zeros of the factor L, diagonal included; 0 without a factorisation */
-    double factor_flops;        /* real floating-point operations of all factorisations that the plan holds */
-    double growth;              /* largest |pivot| / largest |diagonal entry|, see hd_ldl_report */
-    /* Largest |b - A x| / |b| over the systems, in the norm of diag(B)^-1. 0 for Lanczos. After
+    int64_t iterations;         /* of all systems and fields; Lanczos: steps */
+    int64_t pole_iterations[HD_MAX_POLES];  /* of all fields */
+    hd_ordering ordering;       /* HD_ORDERING_AUTO without a factorisation */
+    int64_t factor_nnz;
+    double factor_flops;        /* of those that the plan holds */
+    double growth;              /* see hd_ldl_report */
+    /* Largest |b - A x| / |b| over the systems, in the norm of diag(B)^-1; 0 for Lanczos. After
      * HD_ERR_NOT_CONVERGED: of the system that failed; for Lanczos its bound on the relative error. */
     double residual;
     double error_bound, error_rational, error_solver, error_rounding, error_local;
     hd_evidence evidence_rational, evidence_solver, evidence_rounding, evidence_local;
-    /* Fields and columns: bound on |error|_B / |answer|_B. Otherwise HUGE_VAL and HD_EVIDENCE_NONE. */
+    /* Fields and columns: bound on |error|_B / |answer|_B; otherwise HUGE_VAL. */
     double error_bound_b;
     hd_evidence evidence_b;
-    /* Diagonals, distances, pairs: bound on the largest error relative to the value itself. HUGE_VAL if it
-     * does not apply, or if a value is zero that need not be zero. */
+    /* Diagonals, distances, pairs: bound on the error of each value relative to itself; otherwise, or if a
+     * value is zero that need not be zero, HUGE_VAL. */
     double error_relative;
     double smallest;            /* diagonals and distances: the smallest value that is not zero */
-    int64_t n_lost;             /* distances with at most about one sure digit, see hd_heat_distance */
+    int64_t n_lost;             /* distances with at most about one sure digit */
     int32_t n_touched;          /* local: vertices of the largest ball */
     double mass_drift;          /* |1'B u - 1'B f| / 1'B|u|; 0 if L loses heat, for filters, or local */
 } hd_report;
@@ -627,72 +615,72 @@ typedef struct hd_spectrum_opts {
     double below;               /* > 0: only eigenvalues below this */
     double tol;                 /* of hd_spectrum.residual; default 1e-10 */
     hd_ordering ordering;
-    const int32_t *perm;        /* as in hd_heat_opts */
-    hd_context *context;        /* default: the Laplacian's */
+    const int32_t *perm;
+    hd_context *context;
     int32_t end_zero;
 } hd_spectrum_opts;
 
-/* The smallest eigenpairs of L x = lambda B x, to be read. The Laplacian must outlive it, and must not be
- * updated in between. */
+/* The smallest eigenpairs of L x = lambda B x, to be read only. The Laplacian must outlive them, and must not
+ * be updated. */
 typedef struct hd_spectrum {
     int32_t n, count;           /* vertices; pairs */
     double *value;              /* [count] eigenvalues, ascending, 1/area */
     /* [n count] column-major, B-orthonormal, 0 at vertices without mass; the largest |entry| is positive */
     double *vector;
-    /* [count] |L x - lambda B x| / lambda in the norm of diag(B)^-1, measured; for lambda near 0 relative to
+    /* [count] |L x - lambda B x| / lambda in the norm of diag(B)^-1, measured; for lambda near 0 divided by
      * the first eigenvalue that does not belong to constants */
     double *residual;
     double largest_residual;
-    int32_t n_poor;             /* pairs of residual above tol and rounding of L x, or a tenth of lambda */
+    int32_t n_poor;             /* pairs of residual above tol and rounding, or above 0.1 */
     int32_t n_constant;         /* the first pairs are the constants of components; their residual is 0 */
-    /* 1: complete, by a count of the eigenvalues below the shift, none so near (shift_margin) that rounding
-     * could change it. 0: not proven. */
+    /* 1: none is missing, by a count of the eigenvalues below shift; none is so near (shift_margin) that
+     * rounding could change it */
     int32_t proven;
     double shift, shift_margin;
     double next;                /* all other eigenvalues are at least this; HUGE_VAL: there are none */
     double *left, *left_mass;   /* [n] diagonals of B^-1 (a bound of it) and of B, less the pairs' share */
     int32_t n_factors, n_runs;  /* factorisations; runs of Lanczos */
-    int64_t n_solves;           /* right-hand sides solved for */
+    int64_t n_solves;           /* right-hand sides */
     hd_ordering ordering;
-    int64_t factor_nnz;         /* of one factor */
-    double factor_flops;        /* of all factorisations */
+    int64_t factor_nnz;
+    double factor_flops;
     const hd_laplacian *lap;
     hd_context *context;
 } hd_spectrum;
 
-/* Queries of a plan, for hd_heat_estimate. Its k is the number of what stands behind each query's name. */
+/* Queries for hd_heat_estimate, whose k counts what stands in brackets. */
 typedef enum hd_query {
-    HD_QUERY_FIELDS = 0,          /* hd_heat_apply: fields. The default degree is taken as 9 */
-    HD_QUERY_COLUMNS,             /* hd_heat_columns: sources. hd_heat_entries: distinct j */
-    HD_QUERY_PAIRS,               /* hd_heat_distance_pairs, classical or weighted: distinct vertices */
-    HD_QUERY_DIAGONAL,            /* hd_heat_diagonal of k_t; no k */
-    HD_QUERY_DIAGONAL_OPERATOR,   /* hd_heat_diagonal of K_t; no k */
-    HD_QUERY_TRACE,               /* hd_heat_diagonal with Z; no k */
-    HD_QUERY_DISTANCE,            /* classical; hd_heat_distance: sources, hd_heat_sample: points */
+    HD_QUERY_FIELDS = 0,          /* hd_heat_apply (fields), with degree 9 by default */
+    HD_QUERY_COLUMNS,             /* hd_heat_columns (sources), hd_heat_entries (distinct j) */
+    HD_QUERY_PAIRS,               /* hd_heat_distance_pairs, classical or weighted (distinct vertices) */
+    HD_QUERY_DIAGONAL,            /* hd_heat_diagonal of k_t */
+    HD_QUERY_DIAGONAL_OPERATOR,   /* hd_heat_diagonal of K_t */
+    HD_QUERY_TRACE,               /* hd_heat_diagonal with Z */
+    HD_QUERY_DISTANCE,            /* classical: hd_heat_distance (sources), hd_heat_sample (points) */
     HD_QUERY_DISTANCE_WEIGHTED,   /* the same */
-    HD_QUERY_DISTANCE_COMMUTE,    /* the same, and hd_heat_distance_pairs: distinct vertices */
+    HD_QUERY_DISTANCE_COMMUTE,    /* the same, and hd_heat_distance_pairs (distinct vertices) */
     HD_QUERY_DISTANCE_BIHARMONIC, /* as commute */
-    HD_QUERY_SPECTRUM             /* hd_spectrum_create: eigenpairs; the plan's method is ignored */
+    HD_QUERY_SPECTRUM             /* hd_spectrum_create (eigenpairs); the plan's method is ignored */
 } hd_query;
 
 /* What a query would take by one method. */
 typedef struct hd_cost {
     int32_t possible;           /* 0: the query or the plan's options rule the method out; the rest is 0 */
-    int32_t fits;               /* 1: bytes are not above what the byte limit leaves */
-    double flops;               /* real floating-point operations, of factorisations, inversions and solves */
-    double seconds;             /* on one idle core, within about 2; iterations on slivers may take longer */
+    int32_t fits;               /* 1: bytes are within what the byte limit leaves */
+    double flops;               /* real floating-point operations of factorisations, inversions and solves */
+    double seconds;             /* on one idle core, up to a factor of about 2; slivers may take longer */
     double bytes;               /* at the peak, beyond what the context has in use now */
-    /* The same if poles of degree 14 or eigenpairs take over, where slivers or the time make a bound too
-     * large. With this much room the direct method gives the same answers as without a limit. */
+    /* The same if a bound would be too large, and poles of degree 14 or eigenpairs take over. With this much
+     * room the direct method gives the same answers as without a limit. */
     double bytes_most;
 } hd_cost;
 
 typedef struct hd_estimate {
     hd_method method;           /* that would be taken */
-    const char *reason;         /* why, in a few words */
-    int32_t analysed;           /* 1: the pattern was analysed. 0: factors are guesses, within about 3 */
+    const char *reason;
+    int32_t analysed;           /* 0: the sizes of factors are guessed, up to a factor of about 3 */
     hd_cost cost[HD_METHOD_LOCAL + 1];   /* by hd_method; cost[HD_METHOD_AUTO] is that of method */
-    double bytes_in_use, bytes_left;   /* of the context now; of the byte limit, HUGE_VAL without one */
+    double bytes_in_use, bytes_left;   /* now, and of the byte limit, HUGE_VAL without one */
 } hd_estimate;
 
 typedef enum hd_geodesic_mass {
@@ -700,7 +688,7 @@ typedef enum hd_geodesic_mass {
     HD_GEODESIC_MASS_VORONOI            /* mixed Voronoi areas, as in HD_LAPLACIAN_VORONOI_COT */
 } hd_geodesic_mass;
 
-/* How heat meets the border while it flows. Distances themselves always have a natural border. */
+/* How heat meets the border of a mesh while it flows. */
 typedef enum hd_geodesic_border {
     HD_GEODESIC_BORDER_NATURAL = 0, /* no heat leaves; fronts meet the border at a right angle */
     /* The mean of the two others (Crane et al. 2013, section 3.4), by a third factor. Fronts hardly bend, and
@@ -713,32 +701,32 @@ typedef enum hd_geodesic_border {
 
 typedef struct hd_geodesic_opts {
     int32_t begin_zero;
-    /* How long heat flows, unit length^2; default h^2, with h as in hd_laplacian. Larger values give
-     * smoother, less accurate distances; 2 h^2 often suits irregular triangles and points better. */
+    /* How long heat flows, unit length^2; default: see t_in_h2. Larger values give smoother, less accurate
+     * distances; 2 h^2 often suits irregular triangles and points better. */
     double t;
     hd_geodesic_mass mass;      /* the diagonal of B, which has little influence on the distance */
-    hd_ordering ordering;       /* of both factorisations */
-    const int32_t *perm;        /* as in hd_heat_opts */
+    hd_ordering ordering;
+    const int32_t *perm;
     hd_context *context;
     int32_t updatable;          /* 1: hd_geodesic_update of triangles in space; keeps L, 100 bytes a face */
-    hd_geodesic_border border;  /* of meshes */
-    hd_triangulation triangulation; /* points need tufted; faces with more corners are split */
+    hd_geodesic_border border;
+    hd_triangulation triangulation; /* points need tufted; Delaunay and tufted split polygons */
     double mollify;             /* as in hd_laplacian_opts */
     double stiffening;          /* of polygons; default 1/6: on squares, bilinear finite elements */
     int32_t neighbours;         /* of points; as in hd_laplacian_opts */
-    double t_in_h2;             /* t as a multiple of h^2, where t is 0; default 1 */
+    double t_in_h2;             /* if t is 0: t/h^2 with h as in hd_laplacian; default 1 */
     int32_t end_zero;
 } hd_geodesic_opts;
 
-/* What happened in a call. For several columns: the worst of them. */
+/* The worst of all columns of a call. */
 typedef struct hd_geodesic_report {
     hd_status status;           /* HD_WARN_ACCURACY: a residual is above 1e-6 */
-    hd_error error;             /* filled if status < 0 */
+    hd_error error;             /* if status < 0 */
     double t, h;
-    int32_t n_components, n_stages;   /* heat solves for a column: several where heat fades below 1e-200 */
+    int32_t n_components, n_stages;   /* n_stages: heat solves, several where heat fades below 1e-200 */
     hd_ordering ordering;
-    int64_t factor_nnz;         /* of each factor, diagonal included */
-    double factor_flops;        /* of all two or three */
+    int64_t factor_nnz;
+    double factor_flops;
     /* |b - A x| / |b| of (L + B/t) u and of L phi; they say nothing of the error of the method itself */
     double residual_heat, residual_distance;
 } hd_geodesic_report;
@@ -746,25 +734,27 @@ typedef struct hd_geodesic_report {
 /* ==== [D] functions ==== */
 /* Common to all functions. Arguments come in this order: the object made or worked on; what is asked for; the
  * input; the output; report; err. A count stands before its array, except for meshes and points (xyz, n).
- * opts, ctx, report and err may be NULL, as may what is freed. After an error nothing is left allocated,
- * *out is unchanged, and output arrays hold unspecified numbers.
- * Errors lists what says where in the input the fault lies, or has a special cause. Besides, any function may
- * return HD_ERR_ARGUMENT (a pointer is missing, a size is negative, an option is out of its range or was not
- * cleared), HD_ERR_TOO_LARGE, HD_ERR_MEMORY, HD_ERR_MEMORY_LIMIT, HD_ERR_CANCELLED and HD_ERR_NOT_BUILT. */
+ * opts, ctx, report and err may be NULL, as may what is freed, and outputs marked "or NULL". Matrices are
+ * column-major, with columns ldf, ldu, ldd, ldb or ldx apart (0: n).
+ * After an error nothing is left allocated, *out and what was to be updated are unchanged, and output arrays
+ * hold unspecified numbers.
+ * The entry Errors lists those that say where in the input the fault lies, or have a special cause. Any
+ * function may also return HD_ERR_ARGUMENT (a pointer is missing, a size is negative, an option is out of its
+ * range or was not cleared), HD_ERR_TOO_LARGE, HD_ERR_MEMORY, HD_ERR_MEMORY_LIMIT, HD_ERR_CANCELLED and
+ * HD_ERR_NOT_BUILT. */
 
 /* ---- statuses ---- */
 
-/* Static strings; of numbers that are no status "HD_UNKNOWN_STATUS" and "unknown status". */
+/* Static strings, never NULL. */
 HEATDIFF_API const char *hd_status_name(hd_status status);  /* "HD_ERR_MEMORY" */
 HEATDIFF_API const char *hd_status_text(hd_status status);  /* "out of memory" */
 
 /* ---- sparse matrices ---- */
 
-/* A from triplets (i, j, v) in any order. Values at the same place are summed in the order given.
- * i, j   [n_triplets] in [0, n_rows) and [0, n_cols)
- * v      [n_triplets], or NULL: a pattern
- * Errors HD_ERR_INDEX, HD_ERR_NOT_FINITE (row: the triplet; of a sum that overflows row and column)
- * Cost   O(n_rows + n_cols + n_triplets) */
+/* A matrix from triplets (i, j, v) in any order. Values at the same place are summed in the order given.
+ * i, j, v [n_triplets]; v NULL: a pattern
+ * Errors  HD_ERR_INDEX, HD_ERR_NOT_FINITE (row: the triplet; of a sum that overflows row and column)
+ * Cost    linear */
 HEATDIFF_API hd_status hd_csr_from_triplets(hd_csr *out, int32_t n_rows, int32_t n_cols,
                                             int64_t n_triplets, const int32_t *i,
                                             const int32_t *j, const double *v,
@@ -775,80 +765,72 @@ HEATDIFF_API void hd_csr_free(hd_csr *a, hd_context *ctx);
 
 /* ---- operators ---- */
 
-/* A mesh of triangles. Other fields may be set then. */
+/* A mesh of triangles; other fields may be set then. */
 HEATDIFF_API hd_mesh hd_triangles(const double *xyz, int32_t n, const int32_t *tri, int32_t n_tri);
 
 /* Vertices as sources. */
 HEATDIFF_API hd_sources hd_vertices(int32_t count, const int32_t *vertex);
 
 /* The Laplacian of a mesh. Non-manifold edges and several components are allowed.
- *          kinds (default first)
- * triangles  fem, voronoi-cot, cot
- * polygons   polygon, and those of triangles, for which every face is split into a fan from its first corner
- *          (out->mesh counts triangles then, errors name the polygon). Faces may be neither planar nor
- *          convex. The pattern of L contains their diagonals; on triangles L is the cotangent L
- * points     voronoi-exp, exp; those of triangles when tufted. Let r_k be the distance of the k-th neighbour,
- *          and m the mean of pi r_k^2/k, the area of a point. The default bandwidth2 is s = m (m/h^2)/4,
- *          within 0.3 m and 1 m. A row has about 230 s/m non-zeros; weight_cut = 1e-4 halves that and changes
- *          the operator by 0.1 %. For errors below 1 to 3 %, let s/m grow as points become denser
- * Delaunay, tufted: L and B of an intrinsic triangulation of the same surface on the same vertices. With
- *          voronoi-cot or cot heat then obeys the maximum principle
- * lengths  intrinsic geometry, such as a flat torus, without nested dissection
- * tufted points have 7 to 13 non-zeros in a row. Their Delaunay stars in the tangent planes form a soup,
- *          which out->mesh describes, where each triangle counts a third. Points in no star are inert, as are
- *          searched points at the place of an earlier one. Sheets two spacings apart are kept separate (three
- *          for random points); closer ones if nbr leaves out neighbours whose normals point the other way
- * Errors HD_ERR_INDEX (face, value: the id), HD_ERR_NOT_FINITE (vertex, or face of a length),
- *        HD_ERR_STRUCTURE (face: face_ptr descends there), HD_ERR_EMPTY; HD_ERR_ARGUMENT (vertex, value: a
- *        coordinate beyond 1e100, or all within 1e-100 of each other; face, vertex, value: an area that is
- *        not zero and outside 1e-100 .. 1e100, a weight above 1e100, a length that cannot be; vertex: two
- *        faces disagree on an edge from there). Neighbours: HD_ERR_STRUCTURE, HD_ERR_INDEX, HD_ERR_TOO_LARGE
- *        (row)
+ * triangles kinds fem, voronoi-cot, cot
+ * polygons  kind polygon: faces may be neither planar nor convex, the pattern of L contains their diagonals,
+ *           and triangles have the cotangent L. For the kinds of triangles every face is split into a fan
+ *           from its first corner; out->mesh counts triangles then, errors name the polygon
+ * points    kinds voronoi-exp, exp. The default bandwidth2 is s = m (m/h^2)/4, within 0.3 m and m, where m is
+ *           the mean of pi r_k^2/k, and r_k the distance of the k-th neighbour. A row has about 230 s/m
+ *           non-zeros; weight_cut = 1e-4 halves that and changes the operator by 0.1 %. For errors below 1 to
+ *           3 %, let s/m grow as points become denser.
+ *           Tufted points have the kinds of triangles, and 7 to 13 non-zeros in a row. Their Delaunay stars
+ *           in the tangent planes form a soup of triangles, each of which counts a third; out->mesh describes
+ *           it. Points in no star are inert, as are searched points at the place of an earlier one. Sheets
+ *           two spacings apart stay separate (three for random points); closer ones if nbr leaves out
+ *           neighbours whose normals point the other way
+ * Delaunay, tufted: the surface and its vertices stay. With voronoi-cot or cot heat obeys the maximum
+ *           principle
+ * lengths   intrinsic geometry, such as a flat torus; no nested dissection
+ * Errors HD_ERR_INDEX (face, value: the id; row: of held), HD_ERR_NOT_FINITE (vertex or face, value),
+ *        HD_ERR_STRUCTURE (face: face_ptr descends there), HD_ERR_EMPTY; HD_ERR_ARGUMENT (face, vertex,
+ *        value: a coordinate or weight beyond 1e100, all points within 1e-100 of each other, an area that is
+ *        not zero and outside 1e-100 .. 1e100, a length that cannot be, or one that two faces disagree on).
+ *        nbr: HD_ERR_STRUCTURE, HD_ERR_INDEX, HD_ERR_TOO_LARGE (row)
  * Cost   O(n + faces + flips); a polygon with k corners k^2; points O(n log n + nnz)
- * Source Pinkall, Polthier 1993; Meyer et al. 2003; Alexa, Wardetzky 2011, with one weight for all faces;
- *        Bobenko, Springborn 2007; Sharp, Crane 2020, for points section 5.7. Liu, Prabhakaran, Guo 2012;
- *        Belkin, Niyogi 2008: here weights are cut by distance, so that L is symmetric, and neighbours more
- *        than 45 degrees off the tangent plane count with their height */
+ * Source see hd_laplacian_kind; polygons have one stiffening for all faces. Exponential weights are cut by
+ *        distance, so that L is symmetric; neighbours more than 45 degrees off the tangent plane count with
+ *        their height. Bobenko, Springborn 2007: Delaunay; Sharp, Crane 2020: tufted, section 5.7: points */
 HEATDIFF_API hd_status hd_laplacian_create(hd_laplacian **out, const hd_mesh *mesh,
                                            const hd_laplacian_opts *opts, hd_error *err);
 
-/* The pair of the caller's own matrices, which are copied.
- * L      n x n, symmetric positive semi-definite: minus the cotangent matrix of libigl. Checked are L_ii >= 0
- *        and L_ij^2 <= L_ii L_jj. If its rows do not sum to zero, heat is not conserved
- * B      n x n, symmetric positive definite, any pattern. Rows of B without non-zeros are inert vertices.
- *        Definiteness is checked on the diagonal, by a factorisation if some row is not dominated by its
- *        diagonal, and later by solvers
+/* The pair of the caller's own matrices, copied onto the union of their patterns. Explicit zeros stay if
+ * their mirror entry is stored too.
+ * L      n x n, symmetric positive semi-definite: checked are L_ii >= 0 and L_ij^2 <= L_ii L_jj. If its rows
+ *        do not sum to zero, heat is not conserved
+ * B      n x n, symmetric positive definite: checked on the diagonal, by a factorisation if some row is not
+ *        dominated by its diagonal, and later by solvers. Rows without non-zeros are inert vertices
  * h      for lap->h; 0 if there is none
- * The pair has the union of both patterns. Explicit zeros stay if their mirror entry is stored too.
- * Errors HD_ERR_STRUCTURE, HD_ERR_INDEX, HD_ERR_NOT_FINITE, HD_ERR_NOT_SYMMETRIC (row, column; value);
- *        HD_ERR_NOT_FINITE (row, value: the sizes of its entries in L or in B add up to more than 1e100),
- *        HD_ERR_NOT_POSITIVE (row, column, value; also B_ii below 1e-100), HD_ERR_EMPTY
+ * Errors HD_ERR_STRUCTURE, HD_ERR_INDEX, HD_ERR_NOT_FINITE (also if the sizes of a row's entries add up to
+ *        more than 1e100), HD_ERR_NOT_SYMMETRIC, HD_ERR_NOT_POSITIVE (also if B_ii is below 1e-100), all with
+ *        row, column, value; HD_ERR_EMPTY
  * Cost   linear, except for a factorisation of B */
 HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L, const hd_csr *B,
                                              double h, const hd_laplacian_opts *opts,
                                              hd_error *err);
 
-/* y = (alpha L + beta B) x for a field on the vertices; 0 at those without a row.
- * x, y   [n]; they must not overlap */
+/* y = (alpha L + beta B) x for fields [n] that do not overlap; 0 at vertices without a row. */
 HEATDIFF_API hd_status hd_laplacian_apply(const hd_laplacian *lap, double alpha, double beta,
                                           const double *x, double *y, hd_error *err);
 
 /* New positions for the same faces, of a Laplacian with the option updatable. Plans on lap keep their
- * ordering and analysis, and compute with the new values from the next query on; none may be at work
- * meanwhile.
+ * analysis, and use the new values from the next query on; none may be at work meanwhile. Rows, pattern, held
+ * vertices and the faces left out stay as they are; faces that lose their area are counted. All else is that
+ * of a new Laplacian, to the last bit, in the same arrays.
  * mesh   n as before, and positions; its faces are not read
- * Rows, pattern and held vertices stay, as do faces left out; those that lose their area are counted. All
- * else is that of a new Laplacian, to the last bit, in the same arrays.
- * Errors as of hd_laplacian_create; HD_ERR_EMPTY (vertex: none of its faces has an area any more). After an
- *        error nothing has changed */
+ * Errors as of hd_laplacian_create; HD_ERR_EMPTY (vertex: none of its faces has an area any more) */
 HEATDIFF_API hd_status hd_laplacian_update(hd_laplacian *lap, const hd_mesh *mesh, hd_error *err);
 
-/* The same for hd_laplacian_matrices.
- * L, B   n x n. Entries that the pattern does not have must be zero; those that are missing become zeros.
- *        Inert vertices stay inert. If B was diagonal it stays so
- * The pair is that of a new Laplacian, to the last bit, if that has the same pattern.
- * Errors as hd_laplacian_matrices; HD_ERR_STRUCTURE (row, column, value: an entry that was not there). After
- *        an error nothing has changed */
+/* The same for matrices.
+ * L, B   n x n. Entries that are not in the pattern must be zero; missing ones become zero. Inert vertices
+ *        stay inert, and a diagonal B stays diagonal
+ * Errors as of hd_laplacian_matrices; HD_ERR_STRUCTURE (row, column, value: a new entry) */
 HEATDIFF_API hd_status hd_laplacian_update_matrices(hd_laplacian *lap, const hd_csr *L,
                                                     const hd_csr *B, double h, hd_error *err);
 
@@ -857,11 +839,10 @@ HEATDIFF_API void hd_laplacian_free(hd_laplacian *lap);
 /* ---- neighbours of points ---- */
 
 /* The k nearest points of each query point, exactly.
- * index      [k m] ids of points, k for each query, nearest first, equally distant ones by id; -1 beyond n.
- *            A query that is a point of the set finds itself too
- * distance2  [k m] squared distances, infinite beyond n; NULL: not wanted
- * xyz        [3 n] the points, as of hd_laplacian_create
- * query      [3 m] the query points, at most 1e100; NULL: all n points, m = n
+ * index      [k m] k ids for each query, nearest first, equally distant ones by id; -1 beyond n. A query that
+ *            is a point of the set finds itself too
+ * distance2  [k m] or NULL: squared distances, infinite beyond n
+ * xyz, query [3 n], [3 m] coordinates of at most 1e100; query NULL: all n points, m = n
  * Errors     HD_ERR_NOT_FINITE (vertex, or row for a query)
  * Cost       O((n + k m) log n)
  * Source     Friedman, Bentley, Finkel 1977 */
@@ -871,20 +852,17 @@ HEATDIFF_API hd_status hd_neighbours_nearest(const double *xyz, int32_t n, const
 
 /* ---- rational approximations ---- */
 
-/* A built-in set: uniform or kernel.
- * Errors HD_ERR_ARGUMENT for any other kind or degree (value: a wrong degree)
+/* A uniform or kernel set.
+ * Errors HD_ERR_ARGUMENT (value: a wrong degree)
  * Source Cody, Meinardus, Varga 1969; Carpenter, Ruttan, Varga 1984 */
 HEATDIFF_API hd_status hd_rational_exp(hd_rational *out, hd_pole_kind kind, int32_t degree,
                                        hd_error *err);
 
-/* Kernel sets for many times that share their poles: theta_i/t[q] is the same for all q, so that one set of
+/* Kernel sets out [n_times] that share their poles: theta_i/t[q] is the same for all q, so that one set of
  * factors serves every time.
- * out    [n_times] out[q] is the set for t[q]
  * t      [n_times] > 0, in any order
- * tol    bound of max_weighted_error of every set; at 1e-6 there are 8, 12 and 16 pairs for times that differ
- *        by 10, 100 and 1000
- * Errors HD_ERR_ARGUMENT: a time is not positive and finite (row), or there is no such set (value: the ratio
- *        of the times)
+ * tol    of max_weighted_error; at 1e-6, times that differ by 10, 100 and 1000 take 8, 12 and 16 pairs
+ * Errors HD_ERR_ARGUMENT: a time is not positive (row), or no set has this ratio of the times (value)
  * Source Lopez-Fernandez, Palencia, Schaedle 2006, with free poles instead of poles on a hyperbola */
 HEATDIFF_API hd_status hd_rational_shared(hd_rational *out, int32_t n_times, const double *t,
                                           double tol, hd_context *ctx, hd_error *err);
@@ -892,14 +870,13 @@ HEATDIFF_API hd_status hd_rational_shared(hd_rational *out, int32_t n_times, con
 /* c(x) for real x <= 0; for a filter's set x = -t lambda. */
 HEATDIFF_API double hd_rational_eval(const hd_rational *set, double x);
 
-/* Sets for filters f of the spectrum: K_t becomes f(B^-1 L), and k_t becomes f(B^-1 L) B^-1. Several filters
- * share their poles and factors, see hd_heat_set_rational.
- * out        [count] c(-t lambda) ~ f(lambda) on [0, lambda_max] with t = out->t; only weights a differ
- * filters    [count] count >= 1. Degrees rise until tol is reached, or max_degree, which several filters
- *            ignore: these may have HD_MAX_POLES pairs
+/* Sets for filters f: K_t becomes f(B^-1 L), and k_t becomes f(B^-1 L) B^-1. In distances f is what d^2 sums,
+ * for example exp(-2 t lambda), and should not be negative.
+ * out        [count] c(-t lambda) ~ f(lambda) on [0, lambda_max] with t = out->t. Several sets differ only in
+ *            the weights a. max_error is the largest |f - c| on 42,000 points
+ * filters    [count] degrees rise until tol or max_degree is reached. Several filters ignore max_degree, and
+ *            take at most HD_MAX_POLES pairs
  * lambda_max that of the Laplacian, or more; 1/area
- * max_error is the largest |f - c| on 42,000 points: measured. In distances f is what is summed in d^2, for
- * example exp(-2 t lambda), and should not be negative.
  * Errors     HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (value: the eigenvalue), HD_ERR_BREAKDOWN (a weight
  *            overflows), all with column: which filter. HD_WARN_ACCURACY: an error is above its tol
  * Cost       2 to 50 milliseconds, and 50 to 200 thousand values of f; seconds for 100 filters
@@ -908,7 +885,7 @@ HEATDIFF_API double hd_rational_eval(const hd_rational *set, double x);
 HEATDIFF_API hd_status hd_rational_fit(hd_rational *out, int32_t count, const hd_filter *filters,
                                        double lambda_max, hd_context *ctx, hd_error *err);
 
-/* f(lambda) itself, lambda >= 0 in 1/area. */
+/* f(lambda) itself. */
 HEATDIFF_API double hd_filter_eval(const hd_filter *filter, double lambda);
 
 /* ---- shifted systems ---- */
@@ -917,44 +894,42 @@ typedef struct hd_solve_opts {
     int32_t begin_zero;
     hd_solver solver;           /* cocg or minres; default cocg */
     hd_precond precond;
-    double tol;                 /* |b - A x| / |b| in the norm of diag(B)^-1; default 1e-10 */
+    double tol;                 /* of the residual; default 1e-10 */
     int32_t max_iterations;     /* default 20000 */
-    hd_context *context;        /* default: the Laplacian's */
+    hd_context *context;
     int32_t end_zero;
 } hd_solve_opts;
 
 typedef struct hd_solve_report {
     int64_t iterations;
-    double residual;            /* reached, computed from x, in the norm of diag(B)^-1 */
-    double error_b;             /* bound on |x - exact|_B / |x|_B; infinite if nothing is known about B */
+    double residual;            /* |b - A x| / |b|, computed from x, in the norm of diag(B)^-1 */
+    double error_b;             /* bound on |x - exact|_B / |x|_B; infinite if b_ratio is 0 */
 } hd_solve_report;
 
 /* Solves (t L + theta B) x = rhs, a complex-symmetric system, by iterations.
  * t      >= 0, unit length^2
  * theta  not on (-inf, 0]; no unit
- * rhs, x [n] on the vertices; they may be the same array. x is 0 at vertices without mass
+ * rhs, x [n] on the vertices; x may be rhs, and is 0 at vertices without a row
  * report filled also with HD_ERR_NOT_CONVERGED
  * Errors HD_ERR_NOT_FINITE (row: of rhs, or of x if it overflows), HD_ERR_NOT_CONVERGED, HD_ERR_BREAKDOWN;
- *        HD_WARN_ACCURACY
- * Source see hd_solver */
+ *        HD_WARN_ACCURACY */
 HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c64 theta,
                                         const hd_c64 *rhs, hd_c64 *x, const hd_solve_opts *opts,
                                         hd_solve_report *report, hd_error *err);
 
 /* ---- direct solver ---- */
 
-/* The factorisation P A P' = L D L' without pivoting, L unit lower triangular, D diagonal. It suits real
- * definite or quasi-definite matrices, and complex-symmetric ones (A = A', never conjugated) whose real part
- * is definite after a rotation, such as t L + theta B. One analysis of a pattern serves any number of
- * factorisations. Only the first of each kind allocates. */
+/* The factorisation P A P' = L D L' without pivoting, for real definite or quasi-definite matrices, and for
+ * complex-symmetric ones (A = A', never conjugated) whose real part is definite after a rotation, such as
+ * t L + theta B. One analysis of a pattern serves any number of factorisations. Only the first of each kind
+ * allocates. */
 typedef struct hd_ldl hd_ldl;
 
 typedef struct hd_ldl_opts {
     int32_t begin_zero;
-    /* Default: nested dissection if coordinates are given and there are many rows, else minimum degree. */
     hd_ordering ordering;
-    const int32_t *perm;        /* [n] with HD_ORDERING_OWN: perm[k] is the row eliminated k-th */
-    const double *xyz;          /* [3 n] coordinates of the rows, finite; NULL: none */
+    const int32_t *perm;        /* [n] HD_ORDERING_OWN: perm[k] is the row eliminated k-th */
+    const double *xyz;          /* [3 n] coordinates of the rows; NULL: none */
     hd_context *context;
     int32_t end_zero;
 } hd_ldl_opts;
@@ -963,22 +938,20 @@ typedef struct hd_ldl_report {
     hd_ordering ordering;
     int32_t n_supernodes;
     int32_t n_matrices;         /* in the factor; 0: only analysed */
-    int64_t factor_nnz;         /* of L, diagonal included, without padding */
-    int64_t stored;             /* entries of an array of factors, padding included */
-    /* Of one real factorisation: the sum of the squares of L's column counts. A complex matrix takes four
-     * times as many. */
-    double factor_flops;
+    int64_t factor_nnz;         /* without padding */
+    int64_t stored;             /* the same with padding */
+    double factor_flops;        /* of one real factorisation; a complex matrix takes four times as many */
     /* Largest |pivot| / largest |diagonal entry of A|: what is lost because there is no pivoting. At most 3.8
      * for uniform sets and 4.2 for kernel sets. */
     double growth;
     double smallest_pivot;      /* smallest |pivot| / largest |diagonal entry of A| */
-    int32_t n_negative;         /* real: negative pivots, which is the number of negative eigenvalues */
+    int32_t n_negative;         /* real: negative pivots, as many as negative eigenvalues */
 } hd_ldl_report;
 
 /* Computes the ordering, the elimination tree and the supernodes.
  * a      n x n with a symmetric pattern. Values are ignored, and diagonal entries may be missing
  * Errors HD_ERR_STRUCTURE, HD_ERR_INDEX, HD_ERR_NOT_SYMMETRIC (row, column); HD_ERR_NOT_FINITE (row; column
- *        0 to 2: a coordinate); HD_ERR_INDEX (row: perm is not a permutation)
+ *        0 to 2: a coordinate)
  * Cost   nearly linear in the non-zeros of A, plus the ordering
  * Source Amestoy, Davis, Duff 1996; George 1973; Gilbert, Ng, Peyton 1994 */
 HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ldl_opts *opts,
@@ -986,8 +959,7 @@ HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ld
 
 /* Factorises a real matrix.
  * val    [nnz] in the order of the analysed pattern. Of each pair (i,j), (j,i) one entry is read
- * Errors HD_ERR_NOT_FINITE (row, column), HD_ERR_BREAKDOWN (row, value: a pivot too small to divide by, the
- *        same one with any number of threads)
+ * Errors HD_ERR_NOT_FINITE (row, column), HD_ERR_BREAKDOWN (row, value: a pivot too small to divide by)
  * Cost   hd_ldl_report.factor_flops; 8 bytes for each stored entry
  * Source Duff, Reid 1983; Liu 1992: multifrontal */
 HEATDIFF_API hd_status hd_ldl_factor(hd_ldl *f, const double *val, hd_ldl_report *report,
@@ -996,27 +968,27 @@ HEATDIFF_API hd_status hd_ldl_factor(hd_ldl *f, const double *val, hd_ldl_report
 /* Factorises k complex-symmetric matrices in one sweep, four at a time: three cost as much as four.
  * val    [k nnz], one matrix after the other
  * Errors as above; pole is the index of the matrix
- * Cost   for each four matrices 16 times the flops and 8 times the bytes of one real factor
+ * Cost   for four matrices 16 times the flops and 8 times the bytes of a real factor
  * Source Higham 1998 for the missing pivoting */
 HEATDIFF_API hd_status hd_ldl_factor_complex(hd_ldl *f, int32_t k, const hd_c64 *val,
                                              hd_ldl_report *report, hd_error *err);
 
-/* Solves A x = b for k real right-hand sides, with the last real factorisation. Columns are ldb and ldx apart
- * (0: n). x may be b.
+/* Solves A x = b for k real right-hand sides, with the last real factorisation. x may be b.
  * Errors HD_ERR_ARGUMENT (the last factorisation was not real, or failed)
  * Cost   4 factor_nnz flops for each right-hand side; eight at a time share the reading of the factor */
 HEATDIFF_API hd_status hd_ldl_solve(hd_ldl *f, int32_t k, const double *b, size_t ldb, double *x,
                                     size_t ldx, hd_error *err);
 
 /* Solves A_q x_q = b_q for all matrices of the last complex factorisation: b_q = b + q ldb, x_q = x + q ldx.
- * ldx = 0 means n, ldb = 0 the same b for all. x may be b if ldb is ldx or 0. Errors as above; four times the
- * flops for each matrix. */
+ * ldb = 0 means the same b for all. x may be b if ldb is ldx or 0.
+ * Errors as hd_ldl_solve
+ * Cost   four times as many flops for each matrix */
 HEATDIFF_API hd_status hd_ldl_solve_complex(hd_ldl *f, const hd_c64 *b, size_t ldb, hd_c64 *x,
                                             size_t ldx, hd_error *err);
 
 /* Entries of A^-1 by selected inversion. A is the matrix of the last real factorisation, which is kept.
- * values [nnz] on the analysed pattern and in its order, both of each pair; NULL: not wanted
- * diag   [n] also where the pattern has no diagonal entry; NULL: not wanted
+ * values [nnz] or NULL: on the analysed pattern and in its order, both of each pair
+ * diag   [n] or NULL: also where the pattern has no diagonal entry
  * Errors as hd_ldl_solve
  * Cost   about twice the flops of the factorisation
  * Source Takahashi, Fagan, Chin 1973; Erisman, Tinney 1975 */
@@ -1032,151 +1004,131 @@ HEATDIFF_API void hd_ldl_free(hd_ldl *f);
 
 typedef struct hd_heat hd_heat;
 
-/* A plan for heat on lap, which must outlive it. Creating it is cheap. The first query at a time t pays for
- * ordering and factors. The plan keeps those of the last pole set and time for further queries at that t.
- * Errors HD_ERR_INDEX (row: perm is not a permutation) */
+/* A plan for heat on lap, which must outlive it. Making one is cheap: the first query at a time t pays for
+ * ordering and factors. The plan keeps those of the last pole set and time. */
 HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap,
                                       const hd_heat_opts *opts, hd_error *err);
 HEATDIFF_API void hd_heat_free(hd_heat *heat);
 
 /* Other pole sets for a plan, in place of hd_heat_opts.rational. Factors stay if t and the poles do.
  * sets   [count] copied. Several must have one t, lambda_max and theta, as from hd_rational_fit.
- *        hd_heat_diagonal answers for all of them, other queries for the first. count = 0: exp by default
- * Errors HD_ERR_ARGUMENT (column: which set; or the plan's method is krylov or Lanczos), HD_ERR_NOT_FINITE;
- *        then nothing has changed */
+ *        hd_heat_diagonal answers for all of them, other queries for the first. count = 0: exp again
+ * Errors HD_ERR_ARGUMENT (column: which set; or the plan's method is krylov, local or Lanczos),
+ *        HD_ERR_NOT_FINITE */
 HEATDIFF_API hd_status hd_heat_set_rational(hd_heat *heat, int32_t count, const hd_rational *sets,
                                             hd_error *err);
 
-/* Common to all queries of a plan:
- * kernel HD_KERNEL_OPERATOR for K_t, HD_KERNEL_SYMMETRIC for k_t = K_t B^-1
- * t      [n_times], n_times >= 1, in any order; unit length^2. With a filter: n_times = 0, or 1 and the t of
- *        its set
- * report NULL, or what happened, at worst among columns and times; its error is the one in err */
+/* Common to all queries of a plan
+ * t      [n_times] >= 0, in any order, unit length^2; > 0 for diagonals, samples and distances to all
+ *        vertices. With a filter: n_times = 0, or 1 and the t of its set. Commute and biharmonic ignore t:
+ *        n_times is 0 or 1
+ * fields F, G [n k]. Answers U, D have n rows, and the column q n_times + m for field or source q at time m
+ * pairs  i, j [n_pairs]. Answers are [n_pairs n_times], time by time
+ * Errors HD_ERR_NOT_CONVERGED, HD_ERR_BREAKDOWN (vertex: where the answer overflows), HD_ERR_NOT_POSITIVE;
+ *        HD_WARN_ACCURACY. report->error is the same as err
+ *        fields:  HD_ERR_NOT_FINITE (row, column)
+ *        pairs:   HD_ERR_INDEX (vertex; row: which pair)
+ *        sources: HD_ERR_INDEX, HD_ERR_NOT_FINITE, HD_ERR_ARGUMENT (column: which source, row: which of its
+ *                 points, vertex): bary is not as hd_sources asks, a curve has one point, no length or no
+ *                 coordinates, or weights or lengths sum to less than 1e-100 or more than 1e100
+ *        method:  HD_ERR_ARGUMENT. Diagonals, traces, distances to all vertices and samples need auto or
+ *                 direct, as do pairs by commute, biharmonic or a filter
+ * Where all heat flows out, answers fall like exp(-t lambda_1), while the error of poles does not. From about
+ * t = 15/lambda_1 on methods auto and direct take the few eigenpairs left. Where all values underflow, the
+ * bound is above 1 or infinite.
+ * Cost   of fields and columns, direct: one factorisation of all poles for each new t, and one sweep through
+ *        the factors for eight fields. krylov: one real factorisation, and 15 to 30 real solves for each
+ *        field and one or two decades of t. iterative: one solve for each pole */
 
-/* U = K_t F at each time.
- * t      >= 0. t = 0 copies F; for large t, without limit, U tends to the mean over each component. Where all
- *        heat flows out, U falls like exp(-t lambda_1) while the error of poles does not. Methods auto and
- *        direct then take the few eigenpairs left, for columns, entries, diagonals and traces too. Where all
- *        values underflow, the bound is above 1 or infinite, with HD_WARN_ACCURACY
- * F      n x k doubles, column-major, columns ldf apart (0: n)
- * U      n x (k n_times), column q n_times + m for field q and time m, columns ldu apart (0: n). With one
- *        time U may be F. By default all fields of a call use the largest degree that one of them needs
- * Errors HD_ERR_NOT_FINITE (row, column), HD_ERR_NOT_CONVERGED, HD_ERR_BREAKDOWN (vertex: where the answer
- *        overflows), HD_ERR_NOT_POSITIVE; HD_WARN_ACCURACY
- * Cost   direct: one factorisation of all poles for each new t, and one sweep through the factors for eight
- *        fields. krylov: one real factorisation, and 15 to 30 real solves for each field and one or two
- *        decades of t. iterative: one solve for each pole
+/* U = K_t F at each time. t = 0 copies F; for large t, without limit, U tends to the mean over each
+ * component. U may be F if there is one time. The default degree is the largest that one of the fields needs.
  * Source the paper, eqs. (8) and (9), with the signs given at the top of the file */
 HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const double *t, int32_t k,
                                      const double *F, size_t ldf, double *U, size_t ldu,
                                      hd_report *report, hd_error *err);
 
-/* U = dK_t/dt F = -B^-1 L K_t F at each time; unit 1/area. Poles are by default of degree 14.
- * t      >= 0
- * F, U   as above. The derivative is 0 at vertices without mass
+/* U = dK_t/dt F = -B^-1 L K_t F at each time; unit 1/area; 0 at vertices without mass; default degree 14.
  * report bounds are relative to the derivative. Where only means are left it is 0, and the bound infinite
+ * Errors HD_ERR_ARGUMENT with a pole set of your own
  * HINT: to train t, give the plan poles = HD_POLES_KERNEL and a degree. Then apply, derivative and adjoint at
  * one t share the direct method's factors, and the adjoint is that of the very matrix applied, up to
  * rounding. If G is the gradient of a loss in U = K_t F, that in F is K_t' G, and that in t is the sum of all
- * G_ij (dK_t/dt F)_ij.
- * Errors and cost as above; HD_ERR_ARGUMENT with a pole set of your own */
+ * G_ij (dK_t/dt F)_ij. */
 HEATDIFF_API hd_status hd_heat_derivative(hd_heat *heat, int32_t n_times, const double *t,
                                           int32_t k, const double *F, size_t ldf, double *U,
                                           size_t ldu, hd_report *report, hd_error *err);
 
-/* U = K_t' G = B K_t B^-1 G, the transpose, at each time: g' K_t f = f' K_t' g. It keeps the sum of values.
- * G, U   as F and U above
+/* U = K_t' G = B K_t B^-1 G, with the transpose, at each time. The sum of values is kept.
  * report error_bound_b is in the norm of B^-1, in which |K_t' g| <= |g|
- * Errors and cost as hd_heat_apply; a full B takes about 30 more products with B for each field */
+ * Cost   with a full B about 30 more products with B for each field */
 HEATDIFF_API hd_status hd_heat_adjoint(hd_heat *heat, int32_t n_times, const double *t, int32_t k,
                                        const double *G, size_t ldg, double *U, size_t ldu,
                                        hd_report *report, hd_error *err);
 
-/* Columns of the kernel: K_t c or k_t c, with the functional c of each source. For a vertex s K_t e_s is the
- * field that starts as 1 at s and 0 elsewhere, and k_t e_s that of one unit of heat placed at s.
- * U      as above, a source for each field; of k_t zero for a vertex without mass. A source of one vertex
- *        with weight 1 gives that vertex' column to the last bit
- * Errors and cost as hd_heat_apply; HD_ERR_INDEX, HD_ERR_NOT_FINITE, HD_ERR_ARGUMENT (column: which source,
- *        row: which of its points, vertex): bary is not as hd_sources asks, a curve has one point, no length
- *        or no coordinates, or weights or lengths sum to less than 1e-100 or more than 1e100 */
+/* Columns K_t c or k_t c of the kernel, with the functional c of each source: e_i for vertex i. */
 HEATDIFF_API hd_status hd_heat_columns(hd_heat *heat, hd_kernel kernel, int32_t n_times,
                                        const double *t, const hd_sources *sources, double *U,
                                        size_t ldu, hd_report *report, hd_error *err);
 
-/* The same as rows of a sparse matrix, without zeros. With method local no work or memory grows with n after
- * the first call.
- * out    cleared, or from a call before, whose arrays are freed. Row q n_times + m for source q and time m,
- *        vertices ascend. Freed by hd_csr_free with the plan's context
- * report error_bound includes opts.cut: a value that is not there is at most error_bound times the largest */
+/* The same as rows of a sparse matrix, without zeros: row q n_times + m for source q at time m.
+ * out    cleared, or an earlier answer, which is freed. hd_csr_free takes the plan's context
+ * report error_bound includes opts.cut: a value that is not there is at most error_bound times the largest
+ * Errors HD_ERR_TOO_LARGE: more than 2^31 - 1 rows
+ * Cost   with method local no work or memory grows with n after the first call */
 HEATDIFF_API hd_status hd_heat_columns_sparse(hd_heat *heat, hd_kernel kernel, int32_t n_times,
                                               const double *t, const hd_sources *sources,
                                               hd_csr *out, hd_report *report, hd_error *err);
 
-/* The column of one vertex at one time. u [n]. Errors and cost as hd_heat_columns. */
+/* The column u [n] of one vertex at one time. */
 HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, hd_kernel kernel, double t, int32_t source,
                                       double *u, hd_report *report, hd_error *err);
 
 /* The diagonal of k_t or K_t, and the heat trace, by selected inversion. That of k_t is the heat kernel
  * signature (Sun et al. 2009), or auto-diffusion function (Gebal et al. 2009); divided by the trace it has
- * the integral 1 (Sun et al. 2009, section 4).
- * t      > 0
- * D      n x n_times, columns ldd apart (0: n). NULL: not wanted
- * Z      [n_times] tr K_t = sum_i exp(-t lambda_i), without held vertices and those without mass; no unit.
- *        NULL: not wanted
+ * the integral 1 (Sun et al. 2009, section 4). For wave filters D/Z are wave kernel signatures. Each of
+ * several filters has a column, a Z and a bound, which is looser than that of one alone.
+ * D      n x n_times, or NULL
+ * Z      [n_times] or NULL: tr K_t = sum_i exp(-t lambda_i) over the rows of the Laplacian; no unit
  * bound  [n_times] or NULL: bounds on the absolute error of each Z
- * Several filters have a column, a Z and a bound each, with n_times = 0; bounds are looser than those of one
- * filter alone. For wave filters D/Z are the wave kernel signatures.
- * report the rational part is proven at every vertex; rounding is measured where it is largest
- * If B is not diagonal, k_t leaves out the term a0 diag(B^-1) of a uniform set; the bound includes it.
- * Errors HD_ERR_ARGUMENT (also if the method is iterative or krylov), HD_ERR_BREAKDOWN; HD_WARN_ACCURACY
+ * report the rational part is proven at every vertex; rounding is measured where it is largest. If B is not
+ *        diagonal, k_t leaves out the term a0 diag(B^-1) of a set; the bound includes it
  * Cost   for each t about three times the factors of all poles. By default many times share poles: three
  *        decades cost four or five times as much as one t. Filters: once, and 2 n flops for each set and
  *        pole. Memory for each pole: up to 48 n doubles, with a full B and traces 250 n
- * Source Takahashi, Fagan, Chin 1973; Erisman, Tinney 1975 for the inversion */
+ * Source see hd_ldl_inverse */
 HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t n_times,
                                         const double *t, double *D, size_t ldd, double *Z,
                                         double *bound, hd_report *report, hd_error *err);
 
-/* Times that suit the area A = 1'B1 of the surface: evenly spaced in log t from 0.0024 A to 0.37 A, where
- * about 300 and two eigenvalues matter. One time is their geometric mean.
- * t      [n_times] in the unit of t for this Laplacian (kind exp: A is the squared area)
- * Source Weyl's law: the k-th eigenvalue is about 4 pi k/A. To suit the first eigenvalue, take
- *        c/value[n_constant] of hd_spectrum: c = 1 shows tips and branches, 0.1 details (Gebal et al.
- *        2009) */
+/* Times t [n_times] that suit the area A = 1'B1 (kind exp: the squared area): evenly spaced in log t from
+ * 0.0024 A to 0.37 A, where about 300 and two eigenvalues matter. One time is their geometric mean. To suit
+ * the first eigenvalue, take c/value[n_constant] of hd_spectrum instead: c = 1 shows tips and branches, 0.1
+ * details (Gebal et al. 2009).
+ * Source Weyl's law: the k-th eigenvalue is about 4 pi k/A */
 HEATDIFF_API hd_status hd_times_auto(const hd_laplacian *lap, int32_t n_times, double *t,
                                      hd_error *err);
 
-/* Diffusion distances from each source to every vertex. With the functional c of a source, divided by the sum
- * of its weights, d^2 = (e_v - c)' F (e_v - c), where F is the matrix of the kind: k_2t, B K_2t and so on. It
- * is zero only at a vertex that is the source itself. Vertices without mass, and held ones, have a zero row.
- * t      > 0. Commute and biharmonic ignore t; n_times is 0 or 1. With a filter F is the filter itself
- * D      n x (k n_times), column q n_times + m for source q and time m, columns ldd apart (0: n). Unit:
- *        classical 1/length, weighted length, commute none, biharmonic length
- * sources of positive weight
- * report bounds are for d itself. n_lost counts values next to the source or underflowing. None is ever NaN
- * Commute and biharmonic are infinite (HUGE_VAL) between components, to vertices without a row, and from
- * sources that reach into several components or such vertices. Where heat is lost they are those of L^-1.
- * By default degree 14 takes over if the bound relative to the largest distance would be above 3.5e-7. At
- * large t classical and weighted distances are sums over the few eigenpairs left, to a part in 1e7 of the
- * largest one, what is left out proven small; poles serve if the pairs exceed the byte limit. Between the
- * two, above about 170K vertices (weighted) or 240K (classical), bounds may exceed 1e-6.
- * Errors as hd_heat_diagonal and hd_heat_columns
+/* Distances d from each source to every vertex: d^2 = (e_v - c)' F (e_v - c). c is the functional of the
+ * source divided by the sum of its weights, which must be positive; F is k_2t, B K_2t and so on by the kind,
+ * or the filter itself. Vertices without mass, and held ones, have a zero row in F. d is zero only at a
+ * vertex that is the source itself.
+ * D      unit: classical 1/length, weighted length, commute none, biharmonic length. Commute and biharmonic
+ *        are infinite (HUGE_VAL) between components, to vertices without a row, and from sources that reach
+ *        into several components or such vertices. Where heat is lost they are those of L^-1
+ * report bounds are for d itself; n_lost counts values next to the source or underflowing. By default degree
+ *        14 takes over if a bound would be above 3.5e-7, and at large t the few eigenpairs left, if the byte
+ *        limit allows them. Between the two, above about 170K vertices (weighted) or 240K (classical), bounds
+ *        may exceed 1e-6
  * Cost   one diagonal at 2t, twice as long if weighted with a full B, and one column for each source.
- *        Eigenpairs: as hd_spectrum_create once, then 4 n flops for each. Commute: one real factorisation
- *        and its inversion; biharmonic: also those of one pole
- * Source see hd_distance_kind */
+ *        Eigenpairs: hd_spectrum_create once, then 4 n flops for each. Commute: one real factorisation and
+ *        its inversion; biharmonic: also those of one pole */
 HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, int32_t n_times,
                                         const double *t, const hd_sources *sources, double *D,
                                         size_t ldd, hd_report *report, hd_error *err);
 
-/* Diffusion distances of listed pairs.
- * t      >= 0; ignored by commute and biharmonic, with n_times 0 or 1
- * d      [n_pairs n_times], time by time
- * The distance is |K_t B^-1 (e_i - e_j)|_B, without cancellation, or from eigenpairs as above. If the columns
- * of all vertices that occur would take more than half a GiB, and always for commute and biharmonic, it comes
- * from entries and the diagonal at 2t: sort the pairs by i then.
- * Errors as hd_heat_columns; HD_ERR_INDEX (vertex, row: which pair). HD_ERR_ARGUMENT: commute, biharmonic and
- *        distances of a filter need the direct method
+/* Distances of pairs: |K_t B^-1 (e_i - e_j)|_B, without cancellation, or from eigenpairs as above. Commute,
+ * biharmonic, filters, and lists whose columns would take more than half a GiB, come from entries and the
+ * diagonal at 2t: sort the pairs by i then.
  * Cost   one column for each distinct vertex; from entries one for each distinct i, and a diagonal */
 HEATDIFF_API hd_status hd_heat_distance_pairs(hd_heat *heat, hd_distance_kind kind, int32_t n_times,
                                               const double *t, int64_t n_pairs, const int32_t *i,
@@ -1184,22 +1136,18 @@ HEATDIFF_API hd_status hd_heat_distance_pairs(hd_heat *heat, hd_distance_kind ki
                                               hd_error *err);
 
 /* Farthest points: each is the vertex farthest from all sources and all points before it.
- * t        > 0; ignored by commute and biharmonic
- * sources  as in hd_heat_distance. NULL: none; the first vertex with mass is then the first point
+ * sources  as in hd_heat_distance. NULL: none; the vertex of the first row is then the first point
  * vertex   [count]
  * distance [count] or NULL: of each point to those before it (0 for the first without sources)
- * Errors   as hd_heat_distance; HD_ERR_ARGUMENT (value: count is more than there are vertices with mass)
+ * Errors   HD_ERR_ARGUMENT (value: count is more than n_active)
  * Cost     a diagonal, and one column for each source and point
  * Source   Gonzalez 1985 */
 HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, double t,
                                       const hd_sources *sources, int32_t count, int32_t *vertex,
                                       double *distance, hd_report *report, hd_error *err);
 
-/* Single entries of K_t or k_t.
- * t      >= 0
- * values [n_pairs n_times], time by time: the entry (i[q], j[q])
- * report the bound is relative to the largest |value| in the list, and may say nothing about small ones
- * Errors as hd_heat_columns; HD_ERR_INDEX (vertex, row: which pair)
+/* Single entries (i, j) of K_t or k_t. The bound is relative to the largest |value| of all, and may say
+ * nothing about small ones.
  * Cost   one column for each distinct j, with n doubles of memory at a time */
 HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t n_times,
                                        const double *t, int64_t n_pairs, const int32_t *i,
@@ -1209,9 +1157,9 @@ HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t 
 /* ---- eigenpairs ---- */
 
 /* The smallest eigenpairs, with all copies of multiple eigenvalues.
- * opts   not NULL: count, at most n_active, or below, or both: then whichever ends first
- * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_POSITIVE, HD_ERR_NOT_CONVERGED, HD_ERR_INDEX (row: perm is not a
- *        permutation); HD_WARN_ACCURACY with a result: n_poor is not 0, or proven is 0
+ * opts   not NULL: count, at most n_active, or below, or both: whichever ends first
+ * Errors HD_ERR_NOT_POSITIVE, HD_ERR_NOT_CONVERGED; HD_WARN_ACCURACY with a result: n_poor is not 0, or
+ *        proven is 0
  * Cost   for about 100 pairs one real factorisation, some 250 solves, and as many vectors made orthogonal; at
  *        the end 4 n count^2 flops. Memory: the vectors twice, some 400 more, and a factor
  * Source Grimes, Lewis, Simon 1994: block Lanczos with shifts, eigenvalues counted by Sylvester's law */
@@ -1220,10 +1168,9 @@ HEATDIFF_API hd_status hd_spectrum_create(hd_spectrum **out, const hd_laplacian 
 HEATDIFF_API void hd_spectrum_free(hd_spectrum *s);
 
 /* Kernels and distances from the pairs of s, as in eq. (1) of the paper: sums of exp(-t lambda_i) x_i(x)
- * x_i(y) and the like. All else is as in hd_heat_columns, hd_heat_diagonal and hd_heat_distance.
- * t      >= 0
- * bound  NULL, or as large as the output, with the same ldu or ldd: bounds on the error of each value. Pairs
- *        left out add at most exp(-t next) sqrt(left(x) left(y)), proven if s->proven; rounding is estimated
+ * x_i(y) and the like. All else is as in hd_heat_columns, hd_heat_diagonal and hd_heat_distance, but t >= 0.
+ * bound  NULL, or of the output's shape: bounds on the error of each value. Pairs left out add at most
+ *        exp(-t next) sqrt(left(x) left(y)), proven if s->proven; rounding is estimated
  * Cost   2 n count flops for each column; with the weighted distance or the diagonal of K_t and a full B some
  *        ten times as many */
 HEATDIFF_API hd_status hd_spectrum_columns(const hd_spectrum *s, hd_kernel kernel, int32_t n_times,
@@ -1238,11 +1185,11 @@ HEATDIFF_API hd_status hd_spectrum_distance(const hd_spectrum *s, hd_distance_ki
                                             size_t ldd, hd_error *err);
 
 /* What a query would take by each method, without running it.
- * t        [n_times] as in the query; commute, biharmonic and spectrum: n_times may be 0
+ * t        as in the query; spectrum: n_times may be 0
  * k        see hd_query
- * estimate too little memory is no error: cost[HD_METHOD_AUTO].fits is 0
- * Bytes leave out the output arrays. For the direct method they are an upper bound, by a few percent (where
- * eigenpairs come first that of poles); for others they are estimates.
+ * estimate too little memory is no error: fits is 0. Bytes leave out the output arrays. For the direct method
+ *          they are an upper bound, by a few percent (where eigenpairs come first that of poles); for others
+ *          they are estimates
  * Cost     one ordering and analysis if the query needs them, which the plan keeps; else one pass over L */
 HEATDIFF_API hd_status hd_heat_estimate(hd_heat *heat, hd_query query, int32_t n_times,
                                         const double *t, int32_t k, hd_estimate *estimate,
@@ -1253,8 +1200,7 @@ HEATDIFF_API hd_status hd_heat_estimate(hd_heat *heat, hd_query query, int32_t n
 typedef struct hd_geodesic hd_geodesic;
 
 /* A plan for distances along a surface, by the heat method.
- * mesh   as in hd_laplacian_create, whose errors it has. Points must be tufted. If there are slivers, use a
- *        Delaunay triangulation
+ * mesh   as in hd_laplacian_create, whose errors it has. With slivers, use a Delaunay triangulation
  * Errors HD_ERR_BREAKDOWN (vertex: a pivot too small to divide by)
  * Cost   assembly, one analysis, two real factorisations. The plan keeps 16 bytes for each non-zero of the
  *        factor and about 430 for each vertex; polygons 28 more for each corner and 12 for each non-zero of L
@@ -1264,28 +1210,27 @@ HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const hd_mesh *mesh
                                           const hd_geodesic_opts *opts, hd_error *err);
 /* New positions for the same triangles, of a plan made with the option updatable.
  * mesh   as in hd_laplacian_update
- * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE; HD_ERR_EMPTY (face or vertex: it has no area any more). Then
- *        nothing has changed. After any other error the plan answers no query until an update succeeds
+ * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE; HD_ERR_EMPTY (face or vertex: it has no area any more). After
+ *        any other error the plan has changed, and answers no query until an update succeeds
  * Cost   one pass over faces and entries, and the two factorisations */
 HEATDIFF_API hd_status hd_geodesic_update(hd_geodesic *g, const hd_mesh *mesh, hd_error *err);
 HEATDIFF_API void hd_geodesic_free(hd_geodesic *g);
 
 /* The distance of every vertex to each source: to the nearest of its points, or to its curve.
- * sources  weights and lengths are ignored. Points that are no vertices, and every piece of a curve, must lie
+ * sources  as in queries of heat, but weights and lengths are ignored. Points that are no vertices must lie
  *          in a face, its edges and corners included. Plans of polygons take vertices only
- * D        n x count, columns ldd apart (0: n), in the unit of xyz: |phi - phi_s|, zero at vertices that are
- *          sources, HUGE_VAL in components without one and at vertices without mass. For several points phi_s
- *          is a mean weighted by their heat
- * The error is of the order of h: a few percent on coarse meshes, about one on fine ones, most where fronts
- * meet and near a source; d(i, j) and d(j, i) differ by about that. Where a source is no vertex, D is exact
- * at the corners of its faces.
- * Errors   those of hd_heat_columns for sources; HD_ERR_ARGUMENT (column, row): a point or a piece is in no
- *          face, or has a corner where heat is held at zero; HD_ERR_BREAKDOWN (rounding left no number).
- *          HD_WARN_ACCURACY, only if a report is given
- * Cost     two solves and two passes over the faces for each source; a third solve with several points in a
- *          component; two more passes with a report. Eight vertices together are three times as fast. Every
- *          450 edges or so at t = h^2, where heat fades, take another solve and three passes. Calls with
- *          vertices alone allocate only if there are more than before */
+ * D        n x count in the unit of xyz: |phi - phi_s|, zero at vertices that are sources, HUGE_VAL in
+ *          components without one and at vertices without mass. For several points phi_s is a mean weighted
+ *          by their heat. The error is of the order of h: a few percent on coarse meshes, about one on fine
+ *          ones, most where fronts meet and near a source; d(i, j) and d(j, i) differ by about that. Where a
+ *          source is no vertex, D is exact at the corners of its faces
+ * Errors   those of sources; HD_ERR_ARGUMENT (column, row): a point or a piece is in no face, or has a corner
+ *          where heat is held at zero; HD_ERR_BREAKDOWN (rounding left no number); HD_WARN_ACCURACY, only if
+ *          a report is given
+ * Cost     two solves and two passes over the faces for each source; another solve with several points in a
+ *          component, two more passes with a report, and a solve and three passes for every 450 edges or so
+ *          at t = h^2, where heat fades. Eight vertices together are three times as fast. Calls with vertices
+ *          alone allocate only if there are more than before */
 HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, const hd_sources *sources, double *D,
                                             size_t ldd, hd_geodesic_report *report, hd_error *err);
 
@@ -17293,8 +17238,8 @@ static void hdi_modes_free(hdi_modes *x, hd_context *ctx) {
     memset(x, 0, sizeof *x);
 }
 
-/* How a call goes on that exceeded the byte limit: without what is optional, that is eigenpairs and poles
- * that times share; besides by the direct method with the fewest poles. */
+/* What a call does without after it exceeded the byte limit: first what is optional, which is eigenpairs and
+ * poles that times share; then all methods but the direct one with the fewest poles. */
 enum { HDI_SPARE_OPTIONS = 1, HDI_SPARE_POLES };
 
 struct hd_heat {
@@ -17305,10 +17250,10 @@ struct hd_heat {
     hd_heat_opts opts;           /* resolved, perm and rational copied */
     int32_t *perm;
     int32_t iterations_asked, poles_asked, no_factors;   /* no_factors: they did not fit */
-    int32_t exacting;            /* a tol below the default is asked for: sets of the highest degree */
-    /* of rounding relative to the answer, above which the status warns: tol, or by default */
+    int32_t exacting;            /* tol is below the default: sets have the highest degree */
+    /* the status warns where rounding relative to the answer is above this: tol, or HDI_ROUNDING_LIMIT */
     double limit;
-    uint64_t no_factors_limit;   /* the byte limit that factors did not fit */
+    uint64_t no_factors_limit;   /* the byte limit into which factors did not fit */
     int32_t spare;               /* of a call that exceeded the byte limit: an hdi_spare */
     hd_rational own_set;
     hd_rational *sets;           /* [n_sets] where these are several; own_set is the first */
@@ -17316,7 +17261,7 @@ struct hd_heat {
     hdi_elim elim;               /* to factorise */
     hdi_elim few;                /* the same in an order that is found fast, see hdi_krylov_few */
     hdi_ground ground;           /* made when it is first needed; of elim */
-    hdi_modes modes;             /* so too */
+    hdi_modes modes;             /* made when it is first needed */
     hdi_krylov *krylov;
     struct hdi_local *part;      /* of the last column that was answered on a part of the mesh */
     double *batch_room;          /* arrays of the batches */
@@ -17330,9 +17275,9 @@ struct hd_heat {
     double lambda_max;           /* bound on the largest eigenvalue of B^-1 L */
     double local;                /* mean of the diagonal of B^-1 L: about 4 over squared edge lengths */
     double *noise;               /* [n] weights of rounding of a product with L, in lap's order */
-    /* conserving pairs: a constant's change in unit time, were row sums not taken as zero */
+    /* conserving pairs: how fast a constant would change in time if row sums were not taken as zero */
     double drift;
-    int64_t version;             /* of the Laplacian that all this is made of */
+    int64_t version;             /* of the Laplacian from which all this was made */
     int64_t *fill;               /* [n_active] work of a renewal, made at the first */
     hdi_sum *sums;               /* [n_sums] work */
     int32_t n_sums;              /* components that these and the lanes are for */
@@ -17364,7 +17309,7 @@ static hdi_parts hdi_lane_bound(const hd_laplacian *lap, const hdi_lane *lane, c
                  : hdi_parts_scale(by_b, lane->off);
 }
 
-/* What sums lose where they are among the smallest doubles. */
+/* What a sum may lose where its terms are among the smallest doubles. */
 #define HDI_FAINT (1e-9 * DBL_MIN)
 
 /* Adds the numbers of one field to the report, which keeps the worst. ledger: a new one, or NULL where single
@@ -17422,11 +17367,11 @@ static double hdi_lambda_known(const hd_laplacian *lap) {
     return lap->b_ratio > 0 ? hdi_lambda_bound(lap) : HUGE_VAL;
 }
 
-/* Of two bounds that differ by rounding, after an update that changes nothing. */
+/* Two bounds may differ by this factor through rounding, after an update that changes nothing. */
 #define HDI_LAMBDA_SLACK (1 + 1e-9)
 
-/* |1'L 1| / 1'B1 of the component where it is largest, by sums without rounding to speak of. sum
- * [n_components]: work. */
+/* |1'L 1| / 1'B1 of the component where it is largest, by sums with hardly any rounding. sum [n_components]:
+ * work. */
 static double hdi_heat_drift(const hd_laplacian *lap, hdi_sum *sum) {
     double drift = 0;
     int64_t p;
@@ -17460,7 +17405,7 @@ static hd_status hdi_heat_sums(hd_heat *heat, hd_error *e) {
     return e->status;
 }
 
-/* Makes the plan have n lanes, without their arrays. */
+/* Gives the plan n lanes, without their arrays. */
 static hd_status hdi_heat_make_lanes(hd_heat *heat, int32_t n, hd_error *e) {
     hdi_lane *lane;
     if (n <= heat->n_lanes) return HD_OK;
@@ -17483,7 +17428,7 @@ static void hdi_heat_free_iterative(hd_heat *heat) {
     heat->lap = NULL;
 }
 
-/* The copy of the pair to iterate on. */
+/* Makes the copy of the pair to iterate on. */
 static hd_status hdi_heat_iterative(hd_heat *heat, hd_error *e) {
     if (heat->weight) return HD_OK;
     if (!heat->lap) {
@@ -17511,7 +17456,8 @@ static void hdi_heat_drop(hd_heat *heat) {
     hdi_elim_drop(&heat->few);
 }
 
-/* Frees what is made again when it is needed, but the analyses and the copy of the pair to iterate on. */
+/* Frees what is made again when it is needed, except for the analyses and the copy of the pair to iterate
+ * on. */
 static void hdi_heat_shed(hd_heat *heat) {
     hdi_heat_free_lanes(heat);
     hdi_free(heat->ctx, heat->batch_room);
@@ -17713,7 +17659,7 @@ static void hdi_steps_cost(const hd_heat *heat, hd_solver solver, double t, int3
     c->seconds += poles * factors * (20 + nnz / n) * 1e-9;
 }
 
-/* Poles that the default of columns has. */
+/* The number of poles that columns have by default. */
 enum { HDI_POLES_EXPECTED = 5 };
 
 /* Lanczos where the caller leaves the choice and asks for no pole set, B needs no solve, and by the model it
@@ -17772,7 +17718,7 @@ typedef struct hdi_request {
     size_t ldf, ldu;
 } hdi_request;
 
-/* What residuals make of a column, in the norms of B and of B + tL. */
+/* How much residuals change a column, in the norms of B and of B + tL. */
 typedef struct hdi_column_parts { double by_b, by_m; } hdi_column_parts;
 
 /* A call. It takes a few items at a time, each in a lane. */
@@ -17790,12 +17736,12 @@ typedef struct hdi_heat_call {
     const int32_t *time_column;  /* which of ask.t each is; NULL: in order */
     hd_method method;
     int32_t forced;              /* auto takes iterations because of the byte limit */
-    int32_t not_local;           /* balls have been tried in vain */
+    int32_t not_local;           /* balls have been tried, and did not serve */
     int32_t rate;                /* the derivative in t is asked for: methods give t times that */
     hd_solver solver;
     const hd_laplacian *lap;     /* the copy of the pair that the method works on; the caller's for t = 0 */
     const hd_rational *set;      /* instead of what the plan would take */
-    int32_t diagonal, degree;    /* by default a set made for diagonals; its degree, 0: as ever */
+    int32_t diagonal, degree;    /* the default set is that of diagonals; its degree, 0: the usual one */
     int32_t relative;            /* the report has errors relative to each value too */
     int32_t deflated;            /* direct: right-hand sides are without their constants */
     int32_t watching;            /* direct: the lanes keep the source's own entry, see hdi_lane.watch */
@@ -17811,9 +17757,9 @@ typedef struct hdi_heat_call {
     int32_t stop;
 } hdi_heat_call;
 
-/* t for the scaled pair. It is 0 where t lambda is at most the first number, which is nothing beside one:
- * |exp(-t lambda) - 1| <= t lambda. By the second one all that moves is gone, unless eigenvalues differ by as
- * much; its square is a double. */
+/* t for the scaled pair. It is 0 where t lambda is at most the first number: |exp(-t lambda) - 1| <= t lambda
+ * is lost in rounding. It is at most the second one over lambda, by when all that decays is gone unless
+ * eigenvalues differ by as much, and whose square is still a double. */
 #define HDI_STILL 1e-18
 #define HDI_ENDLESS 1e140
 
@@ -17891,9 +17837,9 @@ static hd_status hdi_heat_begin(hdi_heat_call *h, hd_heat *heat, hdi_query query
 /* What is known of the factors of elim or few, or guessed before the analysis. */
 typedef struct hdi_fill { double nnz, flops, stored, real_stored, analysis; } hdi_fill;
 
-/* The guess is what little fill a surface can have. Where rows are wider than 10, so much more of the
- * non-zeros and its square of the flops. (Point sets with 233 and 117 entries a row, 20K to 150K points: 1220
- * to 1700 n and 13000 n^1.5, 600 to 830 n and 3500 n^1.5.) */
+/* The guess is the least fill that a surface can have. With w entries in a row, w > 10, non-zeros are w/10
+ * times and flops (w/10)^2 times as many. (Point sets with 233 and 117 entries a row, 20K to 150K points:
+ * 1220 to 1700 n and 13000 n^1.5, 600 to 830 n and 3500 n^1.5.) */
 static hdi_fill hdi_fill_guess(double n, double entries) {
     const double wide = hdi_max(1, entries / (10 * n));
     hdi_fill f;
@@ -17917,20 +17863,20 @@ static hdi_fill hdi_heat_fill(const hd_heat *heat, const hdi_elim *m) {
     return f;
 }
 
-/* From this t lambda_max on it is worth while to ask whether only the means are left. exp(-x) is zero in
- * doubles beyond the second number. */
+/* From this t lambda_max on it is worthwhile to ask whether only the means are left. Beyond the second number
+ * exp(-x) is zero in doubles. */
 #define HDI_EQUAL_FROM 1e8
 #define HDI_EQUAL_BEYOND 750
 
-/* Is that asked at t (scaled)? */
+/* Is it worthwhile to ask at t (scaled)? */
 static int hdi_heat_equal_asks(const hd_heat *heat, double t) {
     return HDI_HAS_DIAGONAL && heat->source->conserves && !heat->opts.rational &&
            t * heat->lambda_max >= HDI_EQUAL_FROM;
 }
 
 /* Is t (scaled) so large that only the means of the components are left? 1 or 0; errors are in e. m: an
- * analysis of the plan. What tells is one number; its factor is not kept, so that there is room for those
- * of poles. Where there is no such factor, or no room for it, all goes on as ever. */
+ * analysis of the plan. The answer depends on one number, from a factor of L that is not kept, so that there
+ * is room for those of poles. If there is no such factor, or no room for it, the answer is 0. */
 static int hdi_heat_equal(hd_heat *heat, hdi_elim *m, double t, hd_error *e) {
     hdi_ground *g = &heat->ground, one;
     if (!HDI_HAS_DIAGONAL || !hdi_heat_equal_asks(heat, t) || !m->ctx) return 0;
@@ -17972,7 +17918,7 @@ static void hdi_heat_measure(const hd_laplacian *lap, hdi_lane *lane) {
     hdi_component_sums(lap, NULL, lane->rhs, lane->target);
 }
 
-/* All fields, before anything is solved or written. */
+/* Checks all fields, before anything is solved or written. */
 static hd_status hdi_fields_check(const hdi_heat_call *h) {
     int32_t q, v;
     for (q = 0; q < h->ask.k; q++) {
@@ -17990,7 +17936,7 @@ static hdi_terms hdi_heat_source(const hdi_heat_call *h, int32_t q) {
     return hdi_terms_vertex((int32_t)h->ask.list->order[h->ask.list->begin[q]].key);
 }
 
-/* Brings a field near one, by a power of two. */
+/* Scales a field by a power of two, so that its values are near one. */
 static void hdi_lane_unit(const hd_laplacian *lap, hdi_lane *lane) {
     double most = 0;
     int32_t i;
@@ -18017,8 +17963,7 @@ static double hdi_lane_rhs_off(const hd_laplacian *lap, const double *f) {
     return DBL_EPSILON / 2 * sqrt(sum) * hdi_ratio_root(lap);
 }
 
-/* What f, which comes from rhs by a solve with a full B, is off by: its residual, with the rounding of
- * that. */
+/* The error of f, which comes from rhs by a solve with a full B: its residual, with the rounding of that. */
 static double hdi_lane_f_off(const hd_laplacian *lap, hdi_lane *lane) {
     double sum = 0;
     int32_t i;
@@ -18030,8 +17975,8 @@ static double hdi_lane_f_off(const hd_laplacian *lap, hdi_lane *lane) {
     return sqrt(sum) * hdi_ratio_root(lap) + hdi_lane_rhs_off(lap, lane->f);
 }
 
-/* Takes the constants out of a field for good: they do not change in time. Where they are nearly all of it,
- * rounding leaves some of them, and the second time takes those. What rounding does to a difference is small
+/* Takes the constants, which do not change in time, out of a field. Where they are nearly all of it,
+ * rounding leaves some of them, which the second pass takes out. The rounding of the differences is small
  * beside that. */
 static void hdi_lane_moving(const hd_laplacian *lap, hdi_lane *lane) {
     int32_t i, pass;
@@ -18047,7 +17992,7 @@ static void hdi_lane_moving(const hd_laplacian *lap, hdi_lane *lane) {
         if (hdi_finite(lap->component_mass[i])) lane->target[i] = 0;
 }
 
-/* Is a bound on the norm of B^-1 e all that a column of k_t needs, and not B^-1 e? */
+/* Does a column of k_t need only a bound on the norm of B^-1 e, and not B^-1 e itself? */
 static int hdi_lane_bounded(const hdi_heat_call *h) {
     if (h->by_pairs) return h->lap->b_ratio > 0;
     return h->method == HD_METHOD_DIRECT && h->t > 0 && h->heat->elim.set.a0 == 0 && h->lap->b_ratio > 0;
@@ -18249,7 +18194,8 @@ static void hdi_heat_store(const hdi_heat_call *h, int32_t q, const hdi_lane *la
     if (sparse) (void)hdi_sparse_row(sparse, (int64_t)column, lap->n, NULL, u, h->heat->ctx, h->e);
 }
 
-/* Lanes for the items of the call, at most so many at a time, with room for steps of Lanczos or systems. */
+/* Makes lanes for the items of the call, at most `most` at a time, with room for steps of Lanczos or
+ * systems. */
 static hd_status hdi_heat_lanes(hdi_heat_call *h, int32_t most, int32_t steps, int32_t systems) {
     const hdi_lane_room room = hdi_lane_room_of(h->lap, &h->heat->fam, steps, systems);
     int32_t i;
@@ -18260,8 +18206,8 @@ static hd_status hdi_heat_lanes(hdi_heat_call *h, int32_t most, int32_t steps, i
     return h->e->status;
 }
 
-/* The error of a uniform set is at most this part of the least that the answer can be, which is what its
- * constants amount to. */
+/* The error of a uniform set is at most this part of the smallest norm that the answer can have, which is
+ * that of its constants. */
 #define HDI_UNIFORM_SHARE 1e-9
 
 /* The degree of a uniform set for all fields. Odd ones cost as much as the next even one; but the direct
@@ -18356,8 +18302,8 @@ static hdi_ledger hdi_heat_ledger(const hdi_heat_call *h) {
     return hdi_ledger_begin(rational, solver, HD_EVIDENCE_NONE, 0);
 }
 
-/* What the residuals of a column's systems make of its sum by the weights of set. Poles of times that share
- * them differ by a factor, and so do the solutions; residuals are the same. */
+/* How much the residuals of a column's systems change its sum by the weights of set. Poles of times that
+ * share them differ by a factor, and so do the solutions; residuals are the same. */
 static hdi_column_parts hdi_column_off(const hd_laplacian *lap, const hdi_lane *lane,
                                        const hd_rational *set) {
     hdi_column_parts off = {0, 0};
@@ -18450,7 +18396,7 @@ static hd_status hdi_heat_store_some(hdi_heat_call *h, int32_t n) {
 
 /* ---- iterative ---- */
 
-/* The same for a call: of derivatives Lanczos must be asked for. */
+/* The same for a call. For derivatives Lanczos is taken only if it is asked for. */
 static hd_solver hdi_heat_solver(const hdi_heat_call *h, double t) {
     return h->rate && !h->heat->opts.solver ? HD_SOLVER_COCG : hdi_heat_choose(h->heat, t);
 }
@@ -18471,7 +18417,7 @@ static double hdi_iterative_bytes(const hdi_heat_call *h, int32_t poles) {
                                                                   (int64_t)(nnz - n) / 2);
 }
 
-/* The times one by one. */
+/* The cost of the times one by one. */
 static void hdi_iterative_cost(const hdi_heat_call *h, hd_cost *c) {
     const hd_heat *heat = h->heat;
     const hd_heat_opts *o = &heat->opts;
@@ -18485,7 +18431,7 @@ static void hdi_iterative_cost(const hdi_heat_call *h, hd_cost *c) {
     c->bytes = hdi_iterative_bytes(h, poles);
 }
 
-/* Lanes, the pole set and its preconditioners. */
+/* Makes the lanes, the pole set and its preconditioners. */
 static hd_status hdi_iterative_prepare(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     /* without a bound on the eigenvalues nothing is known of the steps */
@@ -18509,7 +18455,7 @@ static hd_status hdi_heat_by_iterations(hdi_heat_call *h) {
     int32_t n;
     for (h->batch = 0; h->batch < h->ask.k; h->batch += n) {
         n = hdi_heat_load_some(h);
-        /* told here too: the calling thread may find all lanes taken */
+        /* progress here too: the calling thread may find all lanes taken */
         if (h->e->status >= 0 && hdi_progress(h->heat->ctx, "solve", (double)h->batch / h->ask.k, h->e) >= 0)
             hdi_parallel(h->heat->ctx, n, hdi_heat_task, h);
         if (hdi_heat_store_some(h, n) < 0) break;
@@ -18549,13 +18495,13 @@ static int32_t hdi_batches_shape(const hdi_elim *m, int32_t k, int32_t *width, u
     return count;
 }
 
-/* How many of them have their arrays where the update matrices of the first of so many packs were. */
+/* How many batches have their arrays where the update matrices of the first of the packs were. */
 static int32_t hdi_batches_inside(const hdi_elim *m, int32_t packs, uint64_t doubles, int32_t count) {
     const uint64_t spare = packs > 0 ? HDI_PACK * (uint64_t)m->sym.work : 0;
     return (int32_t)hdi_least((int64_t)(spare / doubles), count);
 }
 
-/* Bytes that solves of k items with so many packs take beyond what the plan has. */
+/* Bytes that solves of k items with this many packs take beyond what the plan has. */
 static uint64_t hdi_batches_need(const hd_heat *heat, int32_t packs, int32_t k) {
     const hdi_lane_room room = hdi_lane_room_of(heat->source, &heat->fam, 0, 0);
     int32_t width, count, lanes, i;
@@ -18573,7 +18519,7 @@ static uint64_t hdi_batches_need(const hd_heat *heat, int32_t packs, int32_t k) 
     return bytes;
 }
 
-/* Bytes that the factors of a set take at their peak with all that follows: an inversion of so many sums, or
+/* Bytes that the factors of a set take at their peak with all that follows: an inversion of n_sums sums, or
  * hdi_elim_bound, and solves of k items. */
 static uint64_t hdi_direct_need(const hd_heat *heat, const hd_rational *set, hdi_after after, int32_t n_sets,
                                 int32_t k, hd_error *e) {
@@ -18587,11 +18533,12 @@ enum { HDI_PROBES = 3 };         /* rows at which rounding of an inversion is me
 #define HDI_INVERT_FLOPS 2.0
 #define HDI_INVERT_SECONDS 2.0
 #define HDI_FORMS_SECONDS 4.0
-/* Sweeps are faster so many times where right-hand sides share them. */
+/* Sweeps are faster by this factor where several right-hand sides share them. */
 #define HDI_SHARED 2.5
 
-/* Adds what a set takes at one time: its factors, what comes after them, and solves of k items, beside
- * arrays of so many bytes. Of bytes the largest count. Returns the seconds of the factors. */
+/* Adds what a set takes at one time: its factors, what comes after them, and solves of k items, while arrays
+ * hold `held` bytes. Flops and seconds add up, of bytes the largest number counts. Returns the seconds of the
+ * factors. */
 static double hdi_direct_set(const hdi_heat_call *h, const hd_rational *set, hdi_after after, int32_t n_sets,
                              int32_t k, double held, hd_cost *c) {
     hd_heat *heat = h->heat;
@@ -18625,14 +18572,15 @@ static double hdi_direct_set(const hdi_heat_call *h, const hd_rational *set, hdi
     return factors;
 }
 
-/* Are the factors of the poles there? A field's default degree, not known yet, is taken as the last. */
+/* Are the factors of the poles there? The default degree of fields is not known yet: that of the last call is
+ * assumed. */
 static int hdi_heat_at_hand(const hdi_heat_call *h) {
     const hdi_elim *m = &h->heat->elim;
     if (!m->filled || m->t != h->t || h->n_times > 1) return 0;
     return h->set || h->heat->opts.rational || m->set.kind == hdi_heat_kind(h);
 }
 
-/* Fields and columns at the times of the call. */
+/* The cost of fields and columns at the times of the call. */
 static void hdi_direct_cost(const hdi_heat_call *h, hd_cost *c) {
     hd_rational set;
     double factors;
@@ -18643,8 +18591,8 @@ static void hdi_direct_cost(const hdi_heat_call *h, hd_cost *c) {
     else c->seconds = c->seconds * h->n_times + hdi_heat_fill(h->heat, &h->heat->elim).analysis;
 }
 
-/* The pole set and its factors. What follows them is asked for too, so that nothing is begun that the byte
- * limit forbids to end. */
+/* Makes the pole set and its factors. The bytes of what follows them are checked too, so that no work begins
+ * that the byte limit would end. */
 static hd_status hdi_direct_factors(hdi_heat_call *h, hdi_after after, int32_t n_sets) {
     hdi_elim *m = &h->heat->elim;
     hd_report *rep = h->rep;
@@ -18681,8 +18629,8 @@ typedef struct hdi_batches {
     int32_t inside;              /* batches whose arrays are where the first pack's update matrices were */
 } hdi_batches;
 
-/* Finds how many batches, and makes room for them: lanes, and the batches' arrays, as many as fit where the
- * update matrices of the first pack were, the others in the plan. */
+/* Finds the number of batches, and makes room for them: lanes, and the batches' arrays. As many as fit lie
+ * where the update matrices of the first pack were, the others in the plan. */
 static hd_status hdi_batches_make(hdi_batches *b, hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     uint64_t fresh;
@@ -18827,8 +18775,9 @@ static hdi_windows hdi_krylov_windows(const hdi_heat_call *h, hdi_fill f) {
     return all;
 }
 
-/* The analysis of this method. For few columns an order of minimum degree is found and analysed in a third of
- * the time, and the steps lose less. Not under a byte limit, where a second analysis might not fit. */
+/* The analysis of this method. For few columns it is that of a minimum degree order: finding and analysing it
+ * takes a third of the time, which saves more than its slower steps cost. Under a byte limit there is only
+ * one analysis, since a second one might not fit. */
 #define HDI_FEW_ENTRIES 9e5
 
 static hdi_elim *hdi_krylov_elim(const hdi_heat_call *h) {
@@ -18889,7 +18838,8 @@ static hd_status hdi_krylov_basis(hdi_heat_call *h, int32_t n, int32_t q0, int32
     return hdi_krylov_run(z, h->times + q0, q1 - q0, heat->opts.tol, fixed, heat->ctx, h->e);
 }
 
-/* The answers of n items at time q, whose sums are in place p and after in a. counted: steps are told. */
+/* The answers of n items at time q, whose sums are in place p and after in a. counted: their steps are in the
+ * report already. */
 static hd_status hdi_krylov_store(hdi_heat_call *h, int32_t n, int32_t q, const hdi_krylov_sum *a, int32_t p,
                                   int counted, hd_status status) {
     const hd_heat *heat = h->heat;
@@ -19030,7 +18980,7 @@ static hd_status hdi_heat_by_krylov(hdi_heat_call *h) {
     return h->e->status;
 }
 
-/* The worse of two reports, counts added. */
+/* The worse of two reports, with their counts added. */
 static void hdi_report_merge(hd_report *all, const hd_report *one) {
     hd_report sum = *one;
     int32_t p;
@@ -19088,7 +19038,7 @@ typedef struct hdi_local {
     hd_laplacian *ball;          /* the pair: its vertex i is row[i] of the source; NULL: none yet */
     int32_t *row;
     hdi_rim rim;
-    hdi_reached *at;             /* [n] rows within reach, in the order they were reached; room for so many */
+    hdi_reached *at;             /* [n] of [room]: rows within reach, in the order they were reached */
     int32_t n;
     int64_t room;
     /* [n_active] of a row of the source: 1 + its place in at, minus 1 + its number in the rim, 0: neither */
@@ -19369,8 +19319,8 @@ static double hdi_local_edges(const hd_laplacian *lap, double edges) {
     return (lap->xyz ? 1 : HDI_LOCAL_TURNS) * (2 + edges * (8.6 + 0.55 * log(hdi_max(edges, 1))));
 }
 
-/* Edges that lie between a source and the rim at least. B^-1 of a full B falls by a factor of three an edge
- * where b_ratio is 1/2 (Demko, Moss, Smith 1984). */
+/* The least number of edges between a source and the rim. B^-1 of a full B falls by a factor of three with
+ * each edge where b_ratio is 1/2 (Demko, Moss, Smith 1984). */
 #define HDI_LOCAL_DIGITS 17.6
 
 static double hdi_local_hops(const hd_laplacian *lap) {
@@ -19378,7 +19328,8 @@ static double hdi_local_hops(const hd_laplacian *lap) {
     return lap->B ? HDI_LOCAL_DIGITS / log((1 + root) / (1 - root)) : 6;
 }
 
-/* The ball of item q, reach times as large as is usual, or of a row in the middle if items are not known. */
+/* Finds the ball of item q, `reach` times as large as usual, or that of a row in the middle if items are not
+ * known. */
 static hd_status hdi_local_find(hdi_heat_call *h, hdi_local *l, int32_t q, double reach, int32_t most) {
     const hd_laplacian *lap = h->heat->source;
     const double t = h->times[h->n_times - 1] / h->heat->scale;
@@ -19404,7 +19355,7 @@ static hd_status hdi_local_find(hdi_heat_call *h, hdi_local *l, int32_t q, doubl
     return hdi_local_grow(l, lap, reach * edge, reach * hdi_local_hops(lap), most, ctx, h->e);
 }
 
-/* The source of item q by vertices of the ball. id, weight: room for it. */
+/* The source of item q in terms of vertices of the ball. id, weight: room for it. */
 static hdi_terms hdi_local_source(const hdi_heat_call *h, const hdi_local *l, int32_t q, int32_t *id,
                                   double *weight) {
     const hdi_terms c = hdi_heat_source(h, q);
@@ -19615,14 +19566,15 @@ static hd_status hdi_heat_by_local(hdi_heat_call *h) {
     return h->e->status;
 }
 
-/* Below so many rows nothing is to be gained. Seconds for each row of a ball, to look for it, and to make its
- * pair; the share of the time of other methods that it may take to look. */
+/* With fewer rows than this there is nothing to gain. Then the seconds that each row of a ball takes, to look
+ * for it and to make its pair, and the share of the other methods' time that looking may take. */
 enum { HDI_LOCAL_FROM = 4096 };
 #define HDI_LOCAL_LOOK 0.1e-6
 #define HDI_LOCAL_MAKE 0.5e-6
 #define HDI_LOCAL_SPARE 0.03
 
-/* Can balls serve the call? Auto takes fields that are not known, as in estimates, for large ones. */
+/* Can balls serve the call? If fields are not known, as in estimates, auto assumes that they reach
+ * everywhere. */
 static int hdi_local_can(const hdi_heat_call *h) {
     const hd_heat *heat = h->heat;
     const int asked = heat->opts.method == HD_METHOD_LOCAL;      /* then there is no retreat to the fields */
@@ -19684,7 +19636,7 @@ static hdi_elim *hdi_heat_analysis(const hdi_heat_call *h) {
     return h->method == HD_METHOD_KRYLOV ? hdi_krylov_elim(h) : &h->heat->elim;
 }
 
-/* Takes the cheapest method that fits into so many bytes, or iterations. */
+/* Takes the cheapest method that fits into `room` bytes, or else iterations. */
 static void hdi_heat_cheapest(hdi_heat_call *h, const hd_cost *by, double room) {
     int32_t q;
     double least = HUGE_VAL, cost = HUGE_VAL;
@@ -19785,18 +19737,19 @@ static hd_status hdi_heat_engine(hdi_heat_call *h) {
 #define HDI_MODES_TOL 1e-7
 /* The tolerance of the residuals of eigenpairs, far below what the bound allows for at t lambda = 700. */
 #define HDI_MODES_RESIDUAL 1e-12
-/* Eigenpairs are tried before poles when so many are expected to do, and after them up to the second number.
- * The bound by poles goes above 1e-6 where 13 to 80 are expected on meshes of 642 to 41K vertices, and at
- * 164K where 240 are (classical, t = 1000 h^2) or 340 (weighted, 700 h^2). 20 take one to two times as long
- * as poles do, once, and the second number about ten times. For sources all over the surface that bound grows
- * with the span (see below): it was above 1e-6 just below the third number times span^1.2 on 14 meshes. */
+/* Eigenpairs are tried before poles when at most the first number of them is expected to be enough, and after
+ * poles up to the second number. The bound by poles goes above 1e-6 where 13 to 80 are expected on meshes of
+ * 642 to 41K vertices, and at 164K where 240 are (classical, t = 1000 h^2) or 340 (weighted, 700 h^2). 20
+ * take one to two times as long as poles do, once, and the second number about ten times. For sources all
+ * over the surface that bound grows with the span (see below): it was above 1e-6 just below the third number
+ * times span^1.2 on 14 meshes. */
 #define HDI_MODES_FIRST 20
 #define HDI_MODES_MOST 360
 #define HDI_MODES_MANY 0.02
 /* With a larger bound by poles, relative to the largest value, eigenpairs are asked for help. */
 #define HDI_MODES_HELP 1e-6
 #define HDI_MODES_REASON "at such a t few eigenpairs are left: answers are sums over them"
-/* Vectors further from orthonormal are not what they should be: one may be there twice. */
+/* Vectors further from orthonormal than this are refused: one may be there twice. */
 #define HDI_MODES_ORTHO 1e-6
 /* From this t low on values are among the smallest doubles. */
 #define HDI_MODES_FADED 650
@@ -19934,8 +19887,8 @@ static int32_t hdi_modes_count(const hd_heat *heat, double more) {
     return (int32_t)hdi_min(lap->n_active, ceil(1.25 * more) + 6 + constants);
 }
 
-/* Bytes that finding so many pairs takes; a guess before the analysis. */
-#define HDI_MODES_SURE 0.5       /* this part is taken for sure: 0.67 was seen on a dozen vertices */
+/* Bytes that finding `count` pairs takes; a guess before the analysis. */
+#define HDI_MODES_SURE 0.5       /* at least this part is needed: 0.67 was seen on a dozen vertices */
 
 static double hdi_modes_need(const hd_heat *heat, int32_t count) {
     const int32_t n = heat->source->n_active;
@@ -19946,8 +19899,8 @@ static double hdi_modes_need(const hd_heat *heat, int32_t count) {
            2.0 * sizeof(double) * heat->source->n;
 }
 
-/* Finds so many eigenpairs. Returns 0 where that fails, or where they are not proven complete, or where there
- * is no room: then poles go on. Only out of memory by the system, and cancelling, are errors. */
+/* Finds `count` eigenpairs. Returns 0 if that fails, if they are not proven complete, or if there is no room:
+ * then poles answer. Only cancelling, and memory that the system does not have, are errors. */
 static int hdi_modes_find(hd_heat *heat, int32_t count, hd_error *e) {
     hdi_modes *x = &heat->modes;
     const hd_laplacian *lap = heat->source;
@@ -19969,7 +19922,7 @@ static int hdi_modes_find(hd_heat *heat, int32_t count, hd_error *e) {
     return 0;
 }
 
-/* Are there eigenpairs enough for time t, if need be after finding them? depth: how far they have to reach
+/* Are there enough eigenpairs for time t, if need be after finding them? depth: how far they have to reach
  * above the lowest one, times t. At most `most` are looked for. */
 static int hdi_modes_enough(hd_heat *heat, double t, double depth, int32_t most, hd_error *e) {
     const double above = depth / t;
@@ -19998,7 +19951,7 @@ static hdi_ledger hdi_modes_ledger(void) {
     return hdi_ledger_begin(HD_EVIDENCE_PROVEN, HD_EVIDENCE_PROVEN, HD_EVIDENCE_ESTIMATED, 1);
 }
 
-/* Is a bound by eigenpairs as it should be, or so near zero that nothing else is better? */
+/* Is a bound by eigenpairs small enough, or the answer so near zero that nothing else is better? */
 static int hdi_modes_good(const hd_heat *heat, double t, const hd_report *rep) {
     return rep->error_bound <= HDI_MODES_HELP || t * heat->modes.low > HDI_MODES_FADED;
 }
@@ -20015,16 +19968,16 @@ struct hdi_task {
     double depth;                /* how far they have to reach above the smallest eigenvalue, times t */
     hd_status (*pairs)(hdi_task *task);
     hd_status (*poles)(hdi_task *task);
-    double excess;               /* of the answer by poles: above 1 its error is not as it should be */
+    double excess;               /* of the answer by poles: above 1 its error is too large */
     /* Answers times that are not done together, if that is cheaper, and sets their place in done; their
      * reports go to one [n_times]. NULL: there is no such way. */
     hd_status (*together)(hdi_task *task, char *done, hd_report *one);
 };
 
-/* In done: the time is settled; it is answered by poles, and eigenpairs may do better. */
+/* Values of done: the time is settled; poles have answered it, and eigenpairs may do better. */
 enum { HDI_DONE_FOR_GOOD = 1, HDI_DONE_BY_POLES };
 
-/* Are at most so many eigenpairs expected to answer at time t? */
+/* Are at most `most` eigenpairs expected to be enough at time t? */
 static HDI_INLINE int hdi_task_near(const hdi_task *task, double t, int32_t most) {
     return HDI_HAS_MODES && task->serves && t > 0 && hdi_modes_allowed(task->h->heat) &&
            hdi_modes_expected(task->h->heat, task->depth / t) <= most;
@@ -20057,8 +20010,8 @@ static void hdi_task_at(hdi_heat_call *h, int32_t q) {
         h->ask.list->ledger[q] = hdi_ledger_begin(HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, 0);
 }
 
-/* Time q from at most `most` eigenpairs, which are found if need be: more of them where those left out
- * show in the bound. Returns 0 where there are not enough. */
+/* Answers time q from at most `most` eigenpairs, which are found if need be: more of them where those left
+ * out show in the bound. Returns 0 where there are not enough. */
 static int hdi_task_pairs(hdi_task *task, int32_t q, int32_t most) {
     hdi_heat_call *h = task->h;
     const double t = h->ask.t[q];
@@ -20076,7 +20029,8 @@ static int hdi_task_pairs(hdi_task *task, int32_t q, int32_t most) {
     return 1;
 }
 
-/* The time under way by poles. The highest degree takes over where the error of the default is too large. */
+/* Answers the time under way by poles. The highest degree takes over where the error of the default is too
+ * large. */
 static hd_status hdi_task_poles(hdi_task *task) {
     hdi_heat_call *h = task->h;
     task->excess = 0;
@@ -20088,8 +20042,8 @@ static hd_status hdi_task_poles(hdi_task *task) {
     return h->e->status;
 }
 
-/* Time q, which poles have answered: from eigenpairs after all, if the bound is not as it should be and
- * theirs is lower. bound: theirs, if they were tried before, or negative. */
+/* Answers time q, which poles have answered, from eigenpairs after all, if the bound is too large and theirs
+ * is lower. bound: theirs, if they were tried before, or negative. */
 static hd_status hdi_task_help(hdi_task *task, int32_t q, double bound) {
     hdi_heat_call *h = task->h;
     const double by_poles = h->rep->error_bound;
@@ -20103,8 +20057,8 @@ static hd_status hdi_task_help(hdi_task *task, int32_t q, double bound) {
     return hdi_task_poles(task);
 }
 
-/* Time q: from eigenpairs where few are left, else by poles. Where the bound is not as it should be the
- * other way is tried too, and the one with the lower bound taken. */
+/* Answers time q: from eigenpairs where few are left, else by poles. Where the bound is too large the other
+ * way is tried too, and the answer with the lower bound is taken. */
 static hd_status hdi_task_time(hdi_task *task, int32_t q) {
     hdi_heat_call *h = task->h;
     double bound = -1;
@@ -20123,7 +20077,8 @@ static hd_status hdi_task_time(hdi_task *task, int32_t q) {
     return h->e->status;
 }
 
-/* All times of a call: first those that few eigenpairs serve, then the others together or one by one. */
+/* Answers all times of a call: first those that few eigenpairs serve, then the others together or one by
+ * one. */
 static hd_status hdi_task_run(hdi_task *task) {
     hdi_heat_call *h = task->h;
     const int32_t n = hdi_high32(h->ask.n_times, 1);
@@ -20346,7 +20301,7 @@ static hd_status hdi_heat_sparing(hdi_heat_call *h, hdi_task *task) {
     if (hdi_task_run(task) >= 0 || heat->spare || !hdi_over_limit(heat->ctx, h->e)) return h->e->status;
     while (h->s.n > before.s.n) hdi_free(heat->ctx, h->s.block[--h->s.n]);
     *h = before;
-    *h->rep = rep;                               /* with its error, which is none */
+    *h->rep = rep;                               /* its error is cleared */
     hdi_heat_shed(heat);
     heat->spare = HDI_SPARE_OPTIONS;
     (void)hdi_task_run(task);
@@ -20364,7 +20319,7 @@ static void hdi_plain_means(const hdi_heat_call *h, hdi_lane *lane) {
     hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, 0, hdi_query_fields(h->ask.query)));
 }
 
-/* What a time that counts as zero does. */
+/* Answers a time that counts as zero. */
 static double hdi_plain_off(const hdi_heat_call *h) { return h->ask.t[h->now] > 0 ? HDI_STILL : 0; }
 
 /* The field itself. */
@@ -20843,10 +20798,10 @@ typedef struct hdi_columns {
     const hdi_terms *terms;      /* [k] sources */
     hdi_extra rows;              /* of every column; n = 0: none */
     int32_t n_off;               /* functions, whose sets follow set */
-    hdi_column_parts *off;       /* [k][n_off] what residuals make of their columns */
+    hdi_column_parts *off;       /* [k][n_off] how much residuals change their columns */
 } hdi_columns;
 
-/* The columns. The larger residual stays in the report. */
+/* Computes the columns. The larger residual stays in the report. */
 static hd_status hdi_direct_columns(hdi_heat_call *h, const hdi_columns *c) {
     hdi_heat_call own;
     hd_report rep;
@@ -20899,7 +20854,7 @@ static void hdi_inverses_places(const hdi_symbolic *s, int64_t *place) {
             if (s->a_row[at] == s->a_col[at]) place[s->super[v] + s->a_col[at]] = at;
 }
 
-/* Room for so many functions, whose sets have to be filled in. */
+/* Makes room for `count` functions, whose sets have to be filled in. */
 static hd_status hdi_inverses_take(hdi_inverses *x, const hdi_heat_call *h, int32_t count, hdi_wanted wanted,
                                    hdi_scope *s) {
     const hdi_symbolic *sym = &h->heat->elim.sym;
@@ -21104,14 +21059,14 @@ static void hdi_diagonal_means(const hd_laplacian *lap, hdi_diagonal *d) {
  * it is largest: the entry is compared with a solve with the same poles, whose own error its residual
  * bounds. */
 
-/* Differences seen at the probes stand for those of all rows, times the first; for functions of the caller's,
- * whose poles may lie beside the spectrum, times the second too. */
+/* Rounding in all rows is taken as the difference seen at the probes, times the first number. For the
+ * caller's functions, whose poles may lie beside the spectrum, also times the second. */
 #define HDI_PROBE_SAFETY 4
 #define HDI_PROBE_OWN 100
 
-/* Does rounding show in the values alone? k_t(i,i) is at least what the constants are of it, and no set that
- * approximates exp gives less. Of K_t with a full B the parts of other eigenvectors, x(v) (B x)(v), may be
- * negative. Returns the largest relative error that a smaller value proves. */
+/* Does rounding show in the values alone? k_t(i,i) is at least the part that the constants have in it, and no
+ * set that approximates exp gives less. (In K_t with a full B the parts of other eigenvectors, x(v) (B x)(v),
+ * may be negative.) Returns the largest relative error that a smaller value proves. */
 static double hdi_below_constants(const hd_laplacian *lap, const hdi_diagonal *d) {
     double most = 0;
     int32_t i;
@@ -21214,8 +21169,8 @@ static hd_status hdi_probe_run(hdi_heat_call *h, const hdi_inverses *x, int wors
     return probe->k > 0 ? hdi_direct_columns(h, &c) : h->e->status;
 }
 
-/* Rounding of a value, relative to size, by a probe whose own error is at most off. Of a probe that is not a
- * number nothing is known; a maximum would forget it. */
+/* Rounding of a value, relative to size, by a probe whose own error is at most off. It is infinite if the
+ * probe is not a number, which a maximum would ignore. */
 static double hdi_probe_seen(double probe, double off, double value, double size) {
     const double seen = hdi_quotient(HDI_PROBE_SAFETY * fabs(probe - value) + off, fabs(size));
     return hdi_nan(seen) ? HUGE_VAL : seen;
@@ -21337,7 +21292,7 @@ static double hdi_diagonal_tell(hdi_heat_call *h, const hdi_diagonal *d, hdi_led
 /* Gives a trace and the bound on its error to the caller, and to the report where that has no diagonal. */
 static void hdi_trace_tell(const hdi_diagonals *to, hdi_ledger ledger, int32_t q, double value, hdi_parts off,
                            hd_report *rep) {
-    if (!hdi_finite(off.rounding)) off.rounding = HUGE_VAL;      /* where 0 times infinity is no number */
+    if (!hdi_finite(off.rounding)) off.rounding = HUGE_VAL;      /* 0 times infinity is not a number */
     to->Z[q] = value;
     if (to->bound) to->bound[q] = hdi_parts_sum(&off);
     if (to->D) return;
@@ -21461,8 +21416,8 @@ static hd_status hdi_diagonals_by_poles(hdi_task *task) {
 
 /* ---- at many times ---- */
 
-/* How many windows of equal ratio take the fewest packs in all for times that ascend. 0: these are more than
- * for so many times one by one, each with a set of degree 9, that is a pack and a real factor, which costs an
+/* How many windows of equal ratio take the fewest packs in all for times that ascend. 0: it costs less to
+ * take the times one by one, each with a set of degree 9, which is a pack and a real factor that costs an
  * eighth of a pack. */
 static int32_t hdi_shared_windows(const double *times, int32_t n_times, double tol) {
     const double ratio = times[n_times - 1] / times[0];
@@ -22030,9 +21985,9 @@ typedef struct hdi_metric {
     hdi_diagonal f;              /* of function q */
     int32_t q;
     double *rounding;            /* [in.count] of their diagonals, relative to the size of these */
-    int32_t group;               /* so many sources are solved for at the same time */
+    int32_t group;               /* the number of sources that are solved for at the same time */
     hdi_extra rows;              /* their columns of f and, where it is of use, of the bound g, by function */
-    int bounded;                 /* it is */
+    int bounded;                 /* rows has columns of g */
     hdi_column_parts *off;       /* [group][in.count] */
     double *work;                /* [n], or of grounded solves */
 } hdi_metric;
@@ -22073,7 +22028,7 @@ static hd_status hdi_metric_ground(hdi_metric *x, hdi_scope *s) {
         const double seen = 4 * HDI_PROBE_SAFETY * fabs(u[row] - value[row]) + off;
         *x->rounding = hdi_max(*x->rounding, hdi_quotient(seen, value[row]));
     }
-    for (i = 0; i < n; i++)                      /* rounding has left nothing of what is positive */
+    for (i = 0; i < n; i++)                      /* rounding has left nothing of a positive value */
         if (!g->held[i] && !(value[i] > 0)) *x->rounding = HUGE_VAL;
     return HD_OK;
 }
@@ -22100,7 +22055,7 @@ static hd_status hdi_metric_invert(hdi_metric *x, hdi_scope *s) {
     return HD_OK;
 }
 
-/* A metric of so many functions; an inversion, L grounded or means fill it. */
+/* Makes a metric of `count` functions, which an inversion, L grounded or means have to fill. */
 static hd_status hdi_metric_take(hdi_metric *x, hdi_heat_call *h, const hdi_distance_row *kind,
                                  int32_t count, hdi_scope *s) {
     const hdi_elim *m = &h->heat->elim;
@@ -22116,8 +22071,8 @@ static hd_status hdi_metric_take(hdi_metric *x, hdi_heat_call *h, const hdi_dist
     return h->e->status;
 }
 
-/* Room for the columns of so many sources at the same time; with `bounded` those of g, too, where they are of
- * use. */
+/* Makes room for the columns of `group` sources at the same time; with `bounded` those of g, too, where they
+ * are of use. */
 static hd_status hdi_metric_room(hdi_metric *x, int32_t group, int bounded, hdi_scope *s) {
     const int32_t count = hdi_high32(x->in.count, 1), n_poles = x->in.count > 0 ? x->in.set->n_poles : 0;
     x->bounded = x->bounded && bounded;
@@ -22130,7 +22085,7 @@ static hd_status hdi_metric_room(hdi_metric *x, int32_t group, int bounded, hdi_
     return x->h->e->status;
 }
 
-/* The metric of the time under way by poles, for so many sources at the same time. */
+/* The metric of the time under way by poles, for `group` sources at the same time. */
 static hd_status hdi_metric_make(hdi_heat_call *h, const hdi_distance_row *kind, int32_t group, int bounded,
                                  hdi_metric *x, hdi_scope *s) {
     hd_heat *heat = h->heat;
@@ -22235,7 +22190,7 @@ static hd_status hdi_metric_solve(const hdi_metric *x, const hdi_terms *source, 
  * error of f by rounding; spread is a bound, and so is g where its column is NULL. */
 typedef struct hdi_metric_self { double f, g, spread, size, off; } hdi_metric_self;
 
-/* What an error of these sizes in the norms of B + tL and B makes of a value: 0 times infinity is 0. */
+/* How much an error of these sizes in the norms of B + tL and B changes a value: 0 times infinity is 0. */
 static double hdi_metric_off(double by_m, double by_b, const hdi_column_parts *off) {
     return hdi_min(hdi_bound_times(hdi_finite(by_m) ? by_m : HUGE_VAL, off->by_m),
                    hdi_bound_times(hdi_finite(by_b) ? by_b : HUGE_VAL, off->by_b));
@@ -22280,7 +22235,7 @@ static double hdi_metric_rational(const hdi_metric *x, const hdi_metric_self *se
     return hdi_diagonal_off(&x->f, form, wide * wide);
 }
 
-/* What rounding of the diagonals and of the column makes of d^2. given: there is a column. */
+/* How much rounding of the diagonals and of the column changes d^2. given: there is a column. */
 static double hdi_metric_rounding(const hdi_metric *x, const hdi_metric_self *self, int given, int32_t r,
                                   const hdi_column_parts *off) {
     const double relative = x->rounding[x->q], f = r < 0 ? 0 : x->f.value[r];
@@ -22391,7 +22346,7 @@ typedef struct hdi_mode_sum {
     hdi_terms source;
     int32_t own;                 /* its component, -1: none, or several */
     double share[HDI_MODES_FIRST];   /* what the constant of each component takes of it */
-    double constant_off;         /* what rounding of the sums over the source makes of the constants' part */
+    double constant_off;         /* how much rounding of the sums over the source changes that of constants */
     double at, rest;             /* B 1 there, in two doubles */
 } hdi_mode_sum;
 
@@ -22622,8 +22577,7 @@ static double hdi_pairs_column_off(const hd_laplacian *lap, int32_t v, double si
 /* Most doubles of columns that are held at the same time: half a GiB. */
 #define HDI_PAIRS_DOUBLES (INT64_C(1) << 26)
 
-/* Distances |K_t B^-1 (e_i - e_j)|_B from the columns. They lose nothing beside what the columns are off
- * by. rep: of these. */
+/* Distances |K_t B^-1 (e_i - e_j)|_B from the columns, whose errors are the only ones. rep: of these. */
 static void hdi_pairs_note(const hd_heat *heat, const hdi_pairs_part *x, hd_report *rep, hdi_ledger *all) {
     const hd_laplacian *lap = heat->source;
     const size_t n = (size_t)lap->n;
@@ -22680,7 +22634,7 @@ static hd_status hdi_pairs_some(hdi_heat_call *h, const hdi_pairs *to, hdi_pairs
     return hdi_scope_end(&s);
 }
 
-/* All pairs at the time under way, so many at once. */
+/* All pairs at the time under way, `most` at once. */
 static hd_status hdi_pairs_columns(const hdi_pairs *to, int64_t most) {
     hdi_heat_call *h = to->task.h;
     hdi_ledger all = hdi_ledger_begin(HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, 1);
@@ -22837,7 +22791,7 @@ static hd_status hdi_sample_points(const hdi_samples *a) {
         from = q < 0 ? a->terms[a->n_from + q] : hdi_terms_vertex(vertex[q]);
         if (hdi_sample_distances(a, &from) < 0) break;
         for (v = 0; v < lap->n; v++) a->nearest[v] = hdi_min(a->nearest[v], a->u[v]);
-        if (!from.weight) a->nearest[from.one] = -1;     /* not again, even when no distance is left */
+        if (!from.weight) a->nearest[from.one] = -1;     /* never again, even when no distance is left */
     }
     return h->e->status;
 }
@@ -22946,8 +22900,8 @@ static hd_status hdi_sample_answer(hd_heat *heat, hdi_samples *a, const hd_sourc
 }
 
 /* ---- estimates ---- */
-/* What a query would take: the costs of the ways that its run goes, beside the arrays of its own. Tests
- * compare bytes with what is allocated. */
+/* What a query would take: the cost of the way that its run would go, and its own arrays. Tests compare the
+ * bytes with what is allocated. */
 
 /* How a query is answered: by solves, by an inversion, from L grounded, or from eigenpairs. */
 typedef enum hdi_by { HDI_BY_SOLVES, HDI_BY_INVERSION, HDI_BY_GROUND, HDI_BY_SPECTRUM } hdi_by;
@@ -22986,7 +22940,7 @@ typedef struct hdi_estimate {
     const hdi_query_row *query;
     hd_estimate *to;
     int32_t k;
-    double unit;                 /* of the call's times: the caller's times this */
+    double unit;                 /* the call's times are the caller's times this */
     double held;                 /* bytes of arrays that the query takes first */
     hdi_task task;               /* for eigenpairs */
 } hdi_estimate;
@@ -22994,7 +22948,7 @@ typedef struct hdi_estimate {
 /* Bytes of small arrays that are not listed one by one. */
 #define HDI_ESTIMATE_SMALL 4096
 
-/* Pairs by solves? */
+/* Are pairs answered by solves? */
 static int hdi_estimate_pairwise(const hdi_estimate *x) {
     return x->query->distance && x->query->by == HDI_BY_SOLVES;
 }
@@ -23043,7 +22997,7 @@ static hd_status hdi_estimate_solves(const hdi_estimate *x) {
     return h->e->status;
 }
 
-/* An inversion for so many times of a query that share a set, with what is made of it. */
+/* An inversion for `count` times of a query that share a set, with what is made of it. */
 static void hdi_estimate_inversion(const hdi_estimate *x, const hd_rational *set, int32_t count,
                                    hd_cost *c) {
     const hd_laplacian *lap = x->h->heat->source;
@@ -23061,7 +23015,7 @@ static void hdi_estimate_inversion(const hdi_estimate *x, const hd_rational *set
                          x->held + 8 * doubles + HDI_ESTIMATE_SMALL, c);
 }
 
-/* The times of the call by poles that they share, in windows. Returns 0 where they do not. */
+/* The times of the call by poles that they share, in windows. Returns 0 if they share none. */
 static int hdi_estimate_shared(const hdi_estimate *x, hd_cost *c) {
     hdi_heat_call *h = x->h;
     const int distance = x->query->distance != NULL;
@@ -23080,9 +23034,9 @@ static int hdi_estimate_shared(const hdi_estimate *x, hd_cost *c) {
     return windows > 0 && c->bytes <= hdi_bytes_left(h->heat->ctx);
 }
 
-/* Diagonals, traces and distances by poles: all times together if the run takes them so, else one by one,
- * as at the last time. Bytes are enough for either, to which the run comes back. In bytes_most the highest
- * degree takes over. */
+/* Diagonals, traces and distances by poles: all times together if the run does so, else one by one, each as
+ * the last time. Bytes are enough for both, since the run may fall back to the latter. In bytes_most the
+ * highest degree takes over. */
 static void hdi_estimate_inverses(const hdi_estimate *x, hd_cost *c) {
     hdi_heat_call *h = x->h;
     const hd_heat *heat = h->heat;
@@ -23135,16 +23089,16 @@ static void hdi_estimate_ground(const hdi_estimate *x, hd_cost *c) {
 
 /* ---- estimates of eigenpairs ---- */
 
-/* Seconds that an eigenpair costs for each vertex, without factors, all of them together as much as so many
- * more, and each twice that where they are half of the most. Measured on 2.5K to 43K vertices. */
+/* Seconds that an eigenpair costs for each vertex, without factors, and how many pairs' cost is added for the
+ * beginning. Half of HDI_MODES_MOST pairs cost twice as much each. Measured on 2.5K to 43K vertices. */
 #define HDI_MODES_SECONDS 7e-7
 #define HDI_MODES_BEGIN 5
 
-/* Bytes that eigenpairs may need where more are looked for than expected: 1.14 times those for the number
- * expected were seen on small meshes. */
+/* Bytes that eigenpairs may need, relative to those for the number expected, where more are looked for: 1.14
+ * was seen on small meshes. */
 #define HDI_MODES_OVER 1.25
 
-/* Finding so many of them. */
+/* The cost of finding `count` of them. */
 static hd_cost hdi_estimate_pairs(const hd_heat *heat, int32_t count) {
     const hdi_fill f = hdi_heat_fill(heat, &heat->elim);
     const double n = heat->source->n_active, runs = 2 + ceil(count / (double)HDI_SPEC_HALF);
@@ -23166,8 +23120,8 @@ static int32_t hdi_estimate_count(const hdi_estimate *x, int32_t q) {
     return hdi_modes_count(heat, hdi_modes_expected(heat, x->task.depth * x->unit / x->h->times[q]));
 }
 
-/* Eigenpairs that may come before or after poles at any time: their bytes while they are found, and then
- * those that they hold beside poles. */
+/* Adds the bytes of eigenpairs, which may come before or after poles at any time: while they are found, and
+ * then beside poles. */
 static void hdi_estimate_help(const hdi_estimate *x, hd_cost *c) {
     const hdi_heat_call *h = x->h;
     const hd_laplacian *lap = h->heat->source;
@@ -23340,7 +23294,7 @@ struct hd_geodesic {
     hdi_factor cold;             /* of the mean of two borders: L + B/t with the border held at zero */
     hd_geodesic_border border;
     char *held;                  /* [n_active] rows of the border; NULL: the border is natural */
-    double copies;               /* in which L and B count */
+    double copies;               /* L and B are multiplied by this */
     hdi_geo_face *face;          /* [n_faces] ordered by the corner that is eliminated first */
     hdi_geo_polygons poly;       /* in the same order */
     double *mass;                /* [n_active] diagonal of B/t. This and all below is in elimination order */
@@ -23356,11 +23310,11 @@ struct hd_geodesic {
     hdi_pair *sorted;            /* [value_size] */
     double *value;               /* [value_size] phi at the sources, by component, ascending; after sorted */
     int32_t value_size;
-    hd_laplacian *lap;           /* of updatable plans, else NULL */
-    int32_t *from;               /* [n_faces] which of the mesh's faces each is; of updatable plans kept */
+    hd_laplacian *lap;           /* kept by updatable plans, else NULL */
+    int32_t *from;               /* [n_faces] which of the mesh's faces each is; kept by updatable plans */
     double t_asked, t_in_h2;     /* 0: t_in_h2 h^2 */
     int32_t ready;               /* 0: the last update failed half way */
-    hdi_scope keep;              /* arrays but those that grow */
+    hdi_scope keep;              /* all arrays except those that grow */
 };
 
 /* ---- making ---- */
@@ -23393,8 +23347,8 @@ static hdi_scope *hdi_geo_keep(hd_geodesic *g, hd_error *e) {
 }
 
 /* Triangle f in its plane with the longest edge on the axis. Its area and cotangents are those of weight
- * triangles. The angles at the longest edge are acute, so that nothing is cancelled, and the height is as
- * small as it can be and keeps its relative precision. */
+ * triangles. The angles at the longest edge are acute, so that nothing cancels. The height is the smallest
+ * one, and keeps its relative precision. */
 static hdi_geo_face hdi_geo_frame(const hdi_mesh *mesh, int32_t f, const int32_t *row, double h,
                                   double weight) {
     const int32_t *v = mesh->tri + hdi_triple(f);
@@ -23589,7 +23543,7 @@ static hd_status hdi_geo_coincident(hd_geodesic *g, const double *xyz, hd_error 
     return hdi_scope_end(&s);
 }
 
-/* The faces as the passes over them want them. */
+/* Makes the faces as the passes over them need them. */
 static hd_status hdi_geo_store(hd_geodesic *g, const hd_laplacian *lap, const hdi_surface *z,
                                const hdi_input *in, hdi_scope *own) {
     hdi_scope s = hdi_scope_begin(g->ctx, own->e);
@@ -23840,7 +23794,7 @@ static const double *hdi_geo_column(const hd_geodesic *g, int k, const double *x
     return to;
 }
 
-/* Whether heat is held at zero in a row. Then it has no equation. */
+/* Is heat held at zero in a row? Then the row has no equation. */
 static int hdi_geo_is_held(const hd_geodesic *g, int32_t row) {
     return g->border == HD_GEODESIC_BORDER_DIRICHLET && g->held[row];
 }
@@ -23960,7 +23914,7 @@ static double hdi_geo_to_piece(const double *c, const double *a, const double *b
     return hdi_pythag(a[0] + at * x - c[0], a[1] + at * y - c[1]);
 }
 
-/* Whether an item lies in a face. Then its length is noted, and the distances of the corners. */
+/* Does an item lie in a face? Then its length is noted, and the distances of the corners. */
 static int hdi_geo_item_in(hdi_geo_item *x, const hdi_geo_face *f, double *near_by) {
     const double corner[3][2] = {{0, 0}, {2 * f->l, 0}, {2 * f->p, 2 * f->q}};
     double a[2] = {0, 0}, b[2] = {0, 0};
@@ -24112,7 +24066,7 @@ static void hdi_geo_values(hd_geodesic *g, const hdi_geo_source *s, const double
     hdi_geo_values_sort(g, n);
 }
 
-/* Memory for phi at so many points. */
+/* Makes room for phi at `most` points. */
 static hd_status hdi_geo_values_room(hd_geodesic *g, int32_t most, hd_error *e) {
     if (g->value_size >= most) return HD_OK;
     hdi_free(g->ctx, g->sorted);
@@ -24193,10 +24147,10 @@ static void hdi_geo_heat(const hd_geodesic *g, const hdi_geo_source *s, int32_t 
     if (g->border == HD_GEODESIC_BORDER_MEAN) hdi_geo_add_cold(g, k, x, y);
 }
 
-/* phi is not the same at all sources of a set. With u the heat of the sources and v the heat of the values of
- * phi at them, v/u is near every source its own value, since heat fades so fast. Distances are measured from
- * that wherever the first stage knows u, |u| >= least. phi is in g->b, u in g->first; g->x and g->r are
- * overwritten. */
+/* phi is not the same at all sources of a set. Let u be the heat of the sources, and v the heat with the
+ * values of phi at them. Since heat fades so fast, v/u is near each source the value of phi there. Distances
+ * are measured from that wherever the first stage knows u, |u| >= least. phi is in g->b, u in g->first; g->x
+ * and g->r are overwritten. */
 static void hdi_geo_own_source(hd_geodesic *g, const hdi_geo_source *s, double least) {
     int32_t q, v, c, several = 0;
     for (c = 0; c < g->n_components; c++)
@@ -24253,7 +24207,7 @@ static void hdi_geo_judge(hd_geodesic_report *rep, double heat, double distance,
     if (!(heat <= HDI_GEO_RESIDUAL) || !(distance <= HDI_GEO_RESIDUAL)) rep->status = HD_WARN_ACCURACY;
 }
 
-/* From which |u| on a column of k counts as known: u is largest at the source. */
+/* The least |u| of a column of k that counts as known: u is largest at the source. */
 static double hdi_geo_least(const hd_geodesic *g, const hdi_geo_source *s, int k, const double *u) {
     double most = 0;
     int32_t q, c;
@@ -24321,7 +24275,7 @@ static hd_status hdi_geo_batch(hd_geodesic *g, const hdi_geo_source *s, int32_t 
     return e->status;
 }
 
-/* The vertices of n points from one on into list, where these are nothing else; else 0. */
+/* Puts the vertices of n points, from one on, into list if all are at vertices; returns 0 if one is not. */
 static int hdi_geo_vertices(const hd_sources *s, int64_t begin, int32_t n, int32_t *list) {
     const int32_t corners = hdi_source_corners(s);
     int32_t q, c;
@@ -24801,7 +24755,7 @@ HEATDIFF_API hd_status hd_ldl_solve(hd_ldl *f, int32_t k, const double *b, size_
     ldx = ldx ? ldx : (size_t)f->n;
     if (hdi_ldl_leading(f, ldb, ldx, c.e) < 0 || hdi_ldl_room(f, 0, c.e) < 0) return c.e->status;
     for (q = 0; q < k && b == x && ldb != ldx; q++) {
-        const size_t at = (size_t)(ldx > ldb ? k - 1 - q : q);   /* none is written over before it moves */
+        const size_t at = (size_t)(ldx > ldb ? k - 1 - q : q);   /* none is overwritten before it moves */
         memmove(x + at * ldx, x + at * ldb, (size_t)f->n * sizeof *x);
     }
     if (b == x) ldb = ldx;
