@@ -19086,7 +19086,8 @@ static double hdi_local_apart(const hd_laplacian *lap, int32_t i, int32_t j) {
 
 /* Adds one of the first rows. Lengths at it are multiplied by 1 where L is a Laplace operator for them, for
  * then sum_j |L_ij| |x_i - x_j|^2 = 4 B_ii on surfaces. */
-static hd_status hdi_local_add(hdi_local *l, const hd_laplacian *lap, int32_t row, hd_context *ctx, hd_error *e) {
+static hd_status hdi_local_add(hdi_local *l, const hd_laplacian *lap, int32_t row, hd_context *ctx,
+                               hd_error *e) {
     hdi_reached at = {0, 0, row, row};
     double sum = 0;
     int64_t p;
@@ -19102,8 +19103,8 @@ static hd_status hdi_local_add(hdi_local *l, const hd_laplacian *lap, int32_t ro
  * those within `reach`; stops beyond `most` rows. In space a row is as far as from the first row that its
  * neighbour came from: edges turn too often for their lengths to be added up. Rows that are found to be
  * nearer than at first are followed again. */
-static hd_status hdi_local_grow(hdi_local *l, const hd_laplacian *lap, double reach, double hops, int32_t most,
-                                hd_context *ctx, hd_error *e) {
+static hd_status hdi_local_grow(hdi_local *l, const hd_laplacian *lap, double reach, double hops,
+                                int32_t most, hd_context *ctx, hd_error *e) {
     int32_t i, first = 0, next, level = 0, level_end = l->n;
     int64_t p;
     for (; first < l->n && l->n <= most; first = next) {
@@ -19312,7 +19313,8 @@ static hd_status hdi_local_plan(const hd_heat *heat, hdi_local *l, hd_error *e) 
 }
 
 /* The radius of a ball in edges, where sqrt(t) is so many: on meshes of 250K vertices with jitter it leaves
- * 1e-8 to 1e-7 of the peak. Ways over edges that have no places are up to so much longer than straight ones. */
+ * 1e-8 to 1e-7 of the peak. Without places ways go over edges, and are longer than straight ones by the first
+ * number. */
 #define HDI_LOCAL_TURNS 1.36
 
 static double hdi_local_edges(const hd_laplacian *lap, double edges) {
@@ -21565,19 +21567,13 @@ static hd_status hdi_diagonals_filters(const hdi_diagonals *to) {
     return hdi_scope_end(&s);
 }
 
-/* A query for diagonals in D, ldd apart, for traces in Z with bounds, or for both. */
-static hd_status hdi_diagonals_run(hdi_heat_call *h, hd_kernel kernel, double *D, size_t ldd, double *Z,
-                                   double *bound) {
-    hdi_diagonals to;
+/* A query for diagonals or traces from one plan. */
+static hd_status hdi_diagonals_run(hdi_heat_call *h, const hdi_diagonals *query) {
+    hdi_diagonals to = *query;
     hdi_fading_task(&to.task, h);
     to.task.pairs = HDI_HAS_MODES ? hdi_diagonals_by_pairs : NULL;
     to.task.poles = hdi_diagonals_by_poles;
     to.task.together = hdi_diagonals_together;
-    to.kernel = kernel;
-    to.D = D;
-    to.ldd = ldd;
-    to.Z = Z;
-    to.bound = bound;
     return h->heat->n_sets > 1 ? hdi_diagonals_filters(&to) : hdi_heat_sparing(h, &to.task);
 }
 
@@ -21617,8 +21613,12 @@ enum { HDI_PATCH_LEAST = 256, HDI_PATCH_FROM = 20000 };
 /* The sum of squares of eight normal deviates is below a tenth of its mean once in 2,000 times. */
 #define HDI_PATCH_SAFETY 10
 #define HDI_PATCH_TOL 1e-11                  /* of what k_s makes of them */
-/* Of hdi_local_edges: heat has to go there and back. */
-#define HDI_PATCH_REACH 0.54
+/* Of hdi_local_edges and hdi_local_hops: heat has to go there and back. */
+#define HDI_PATCH_REACH 0.55
+#define HDI_PATCH_HOPS 0.8
+/* What a row takes besides the factor, in flops of it: on a patch with probes, on all of the mesh. */
+#define HDI_PATCH_ROW 7500
+#define HDI_WHOLE_ROW 2600
 
 typedef struct hdi_patches {
     const hdi_diagonals *to;
@@ -21657,7 +21657,8 @@ static void hdi_patch_walk(hdi_patches *x, int32_t *row, int32_t n) {
 static void hdi_patch_halve(hdi_patches *x) {
     int32_t p;
     for (p = 0; p < x->count; p++) {
-        const int32_t begin = hdi_patch_begin(x, x->count, p), n = hdi_patch_begin(x, x->count, p + 1) - begin;
+        const int32_t begin = hdi_patch_begin(x, x->count, p);
+        const int32_t n = hdi_patch_begin(x, x->count, p + 1) - begin;
         hdi_patch_walk(x, x->row + begin, n);
         if (n > 0) {
             const int32_t last = x->row[begin + n - 1];
@@ -21682,32 +21683,35 @@ static hd_status hdi_patch_find(hdi_patches *x, int32_t count, int32_t p, int32_
         if (hdi_local_add(x->local, lap, x->row[i], h->heat->ctx, h->e) < 0) return h->e->status;
     }
     edge *= HDI_PATCH_REACH * hdi_local_edges(lap, sqrt(x->t) / edge);
-    return hdi_local_grow(x->local, lap, x->reach * edge, x->reach * HDI_PATCH_REACH * hdi_local_hops(lap), most, h->heat->ctx,
-                          h->e);
+    return hdi_local_grow(x->local, lap, x->reach * edge, HDI_PATCH_HOPS * x->reach * hdi_local_hops(lap),
+                          most, h->heat->ctx, h->e);
 }
 
-/* Cuts until halves, with their margins, would take more in all, but at least until factors fit. */
-static hd_status hdi_patch_cut(hdi_patches *x) {
+/* Cuts until halves, with their margins, would take more in all, but at least until factors fit. Returns what
+ * that takes, less what all of the mesh does. */
+static double hdi_patch_cut(hdi_patches *x) {
     hdi_heat_call *h = x->to->task.h;
-    const hd_laplacian *lap = h->heat->source;
-    const double wide = (double)lap->L.nnz / lap->n_active;
+    const int32_t n = h->heat->source->n_active;
+    const double wide = (double)h->heat->source->L.nnz / n;
     double least = HUGE_VAL;
     int32_t best = 1;
     for (;;) {
         hdi_fill f;
-        if (hdi_patch_find(x, x->count, x->count / 2, INT32_MAX) < 0) return h->e->status;
+        double cost;
+        if (hdi_patch_find(x, x->count, x->count / 2, INT32_MAX) < 0) return 0;
         f = hdi_fill_guess(x->local->n, x->local->n * wide);
-        if (8 * 8 * f.stored < hdi_bytes_left(h->heat->ctx) && x->count * f.flops < least) {
-            least = x->count * f.flops;
+        cost = x->count * (f.flops + HDI_PATCH_ROW * (double)x->local->n);
+        if (8 * 8 * f.stored < hdi_bytes_left(h->heat->ctx) && cost < least) {
+            least = cost;
             best = x->count;
         } else if (least < HUGE_VAL) {
             break;
         }
-        if (lap->n_active / x->count < 2 * HDI_PATCH_LEAST) break;
+        if (n / x->count < 2 * HDI_PATCH_LEAST) break;
         hdi_patch_halve(x);
     }
     x->count = best;
-    return HD_OK;
+    return least - hdi_fill_guess(n, n * wide).flops - HDI_WHOLE_ROW * (double)n;
 }
 
 /* Random functions on the rim, as the fields that k_s applies to: with c = L w and c' = B w on the patch's
@@ -21837,10 +21841,11 @@ static void hdi_patch_tell(const hdi_patches *x, int32_t core, const double *D, 
     const hdi_diagonals *to = x->to;
     const hdi_heat_call *h = to->task.h;
     const int32_t *v = h->heat->source->vertex;
+    const size_t n = (size_t)x->local->n;
     int32_t i, q;
     for (q = 0; q < h->ask.n_times; q++) {
         for (i = 0; i < core && D; i++)
-            to->D[(size_t)q * to->ldd + (size_t)v[x->local->row[i]]] = D[(size_t)q * (size_t)x->local->n + (size_t)i];
+            to->D[(size_t)q * to->ldd + (size_t)v[x->local->row[i]]] = D[(size_t)q * n + (size_t)i];
         if (to->Z) to->Z[q] += Z[q];
         if (to->Z && to->bound) to->bound[q] += bound[q] + all[q];
     }
@@ -21863,19 +21868,26 @@ static hd_status hdi_patch_run(hdi_patches *x, int32_t p) {
     const int32_t n_times = h->ask.n_times;
     const double wanted = HDI_LOCAL_SHARE * h->heat->opts.tol;
     hdi_local *l = x->local;
+    hdi_diagonals own = *to;
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
     double *Z = HDI_TAKE_ZERO(&s, double, 3 * (uint64_t)n_times), *D, off;
     hd_report rep, less;
     int32_t tries;
+    own.Z = to->Z ? Z : NULL;
+    own.bound = Z + n_times;
     for (tries = 1; h->e->status >= 0; tries++) {
         if (hdi_patch_find(x, x->count, p, INT32_MAX) < 0 || hdi_local_plan(h->heat, l, h->e) < 0) break;
         l->heat.opts.method = HD_METHOD_DIRECT;
         off = hdi_patch_off(x, core);
-        D = to->D && h->e->status >= 0 ? HDI_NEW(h->heat->ctx, double, (uint64_t)l->n * (uint64_t)n_times, h->e) : NULL;
+        D = NULL;
+        if (to->D && h->e->status >= 0)
+            D = HDI_NEW(h->heat->ctx, double, (uint64_t)l->n * (uint64_t)n_times, h->e);
         if (h->e->status >= 0 && hdi_kernel_begin(&in, &l->heat, to->kernel, &rep, NULL) >= 0 &&
             hdi_times_check(&in, n_times, h->ask.t, 1) >= 0) {
             in.core = core;
-            (void)hdi_diagonals_run(&in, to->kernel, D, (size_t)l->n, to->Z ? Z : NULL, Z + n_times);
+            own.D = D;
+            own.ldd = (size_t)l->n;
+            (void)hdi_diagonals_run(&in, &own);
         }
         if (h->e->status >= 0 && hdi_heat_end(&in) < 0) *h->e = rep.error;
         if (h->e->status >= 0) hdi_patch_judge(x, core, D, Z, off, Z + 2 * n_times, &less);
@@ -21909,28 +21921,62 @@ static hd_status hdi_patches_run(hdi_patches *x) {
     return h->e->status;
 }
 
-/* Is a diagonal to be found by patches? Auto does so where a patch is small beside the mesh: of a piece as
- * wide as two margins most is core. */
-static int hdi_patches_pay(hdi_patches *x) {
-    hdi_heat_call *h = x->to->task.h;
-    const hd_heat *heat = h->heat;
-    const int32_t n = heat->source->n_active, most = n / 16;
-    if (heat->opts.method == HD_METHOD_LOCAL) return 1;
-    if (heat->opts.method != HD_METHOD_AUTO || n < HDI_PATCH_FROM || heat->opts.rational || heat->n_sets > 0)
-        return 0;
-    return hdi_patch_find(x, n, n / 2, most) >= 0 && x->local->n <= most;
+/* Room for pieces of all rows. */
+static hd_status hdi_patches_open(hdi_patches *x, const hdi_diagonals *to) {
+    hdi_heat_call *h = to->task.h;
+    const int32_t n = h->heat->source->n_active;
+    int32_t q;
+    memset(x, 0, sizeof *x);
+    x->to = to;
+    x->count = 1;
+    x->reach = 1;
+    for (q = 0; q < h->ask.n_times; q++) x->t = hdi_max(x->t, h->ask.t[q]);
+    x->local = hdi_local_open(h->heat, h->e);
+    x->row = HDI_TAKE_ZERO(&h->s, int32_t, 3 * (uint64_t)n);
+    if (h->e->status < 0) return h->e->status;
+    x->mark = x->row + n;
+    x->queue = x->mark + n;
+    for (q = 0; q < n; q++) x->row[q] = q;
+    return HD_OK;
 }
 
-/* A query for diagonals and traces as in hdi_diagonals_run, by patches where that costs less. */
+/* Does auto find a diagonal by patches? Pieces as wide as two margins have to be small beside the mesh. */
+static int hdi_patches_pay(hdi_patches *x) {
+    hdi_heat_call *h = x->to->task.h;
+    const int32_t n = h->heat->source->n_active, most = n / 16;
+    if (n < HDI_PATCH_FROM || hdi_patches_open(x, x->to) < 0) return 0;
+    return hdi_patch_find(x, n, n / 2, most) >= 0 && x->local->n <= most && hdi_patch_cut(x) < 0;
+}
+
+/* Diagonals and traces by patches, which are smaller where the first do not fit the byte limit. */
+static hd_status hdi_diagonals_by_patches(hdi_heat_call *h, hdi_patches *x, const char *reason) {
+    const hd_report rep = *h->rep;
+    for (;;) {
+        h->rep->reason = reason;
+        if (hdi_patches_run(x) >= 0 || !hdi_over_limit(h->heat->ctx, h->e) ||
+            h->heat->source->n_active / x->count < 2 * HDI_PATCH_LEAST) break;
+        hdi_error_clear(h->e);
+        *h->rep = rep;
+        hdi_local_free(h->heat);
+        x->local = hdi_local_open(h->heat, h->e);
+        if (h->e->status < 0) break;
+        hdi_patch_halve(x);
+    }
+    hdi_local_free(h->heat);
+    return h->e->status;
+}
+
+/* A query for diagonals in D, ldd apart, for traces in Z with bounds, or for both. */
 static hd_status hdi_diagonals_answer(hdi_heat_call *h, hd_kernel kernel, double *D, size_t ldd, double *Z,
                                       double *bound) {
-    const int32_t n = h->heat->source->n_active;
+    const hd_heat *heat = h->heat;
+    const int asked = heat->opts.method == HD_METHOD_LOCAL;
+    const int may = HDI_HAS_LOCAL && heat->source->b_ratio > 0 && !heat->opts.rational && heat->n_sets == 0 &&
+                    heat->source->n_active > 0 && (asked || heat->opts.method == HD_METHOD_AUTO);
+    const hd_report rep = *h->rep;
     hdi_diagonals to;
     hdi_patches x;
-    int32_t q, pay = 0;
-    if (!HDI_HAS_LOCAL || h->heat->source->b_ratio <= 0) return hdi_diagonals_run(h, kernel, D, ldd, Z, bound);
     memset(&to, 0, sizeof to);
-    memset(&x, 0, sizeof x);
     to.task.h = h;
     to.kernel = kernel;
     to.D = D;
@@ -21938,23 +21984,20 @@ static hd_status hdi_diagonals_answer(hdi_heat_call *h, hd_kernel kernel, double
     to.Z = Z;
     to.bound = bound;
     x.to = &to;
-    x.count = 1;
-    x.reach = 1;
-    for (q = 0; q < h->ask.n_times; q++) x.t = hdi_max(x.t, h->ask.t[q]);
-    x.local = hdi_local_open(h->heat, h->e);
-    x.row = HDI_TAKE(&h->s, int32_t, 3 * (uint64_t)n);
-    if (h->e->status < 0) return h->e->status;
-    x.mark = x.row + n;
-    x.queue = x.mark + n;
-    for (q = 0; q < n; q++) x.row[q] = q;
-    memset(x.mark, 0, (size_t)n * sizeof *x.mark);
-    pay = hdi_patches_pay(&x);
-    if (pay) {
-        h->rep->reason = "asked for";
-        if (hdi_patch_cut(&x) >= 0) (void)hdi_patches_run(&x);
-        hdi_local_free(h->heat);
+    if (may && asked && hdi_patches_open(&x, &to) >= 0) {
+        (void)hdi_patch_cut(&x);
+        return h->e->status < 0 ? h->e->status : hdi_diagonals_by_patches(h, &x, "asked for");
     }
-    return pay || h->e->status < 0 ? h->e->status : hdi_diagonals_run(h, kernel, D, ldd, Z, bound);
+    if (may && h->e->status >= 0 && hdi_patches_pay(&x))
+        return hdi_diagonals_by_patches(h, &x, "heat reaches a small part of the mesh");
+    if (h->e->status < 0 || hdi_diagonals_run(h, &to) >= 0 || !may || !hdi_over_limit(heat->ctx, h->e))
+        return h->e->status;
+    hdi_error_clear(h->e);
+    *h->rep = rep;
+    hdi_heat_free_factors(h->heat);
+    if (hdi_patches_open(&x, &to) >= 0) (void)hdi_patch_cut(&x);
+    return h->e->status < 0 ? h->e->status
+                            : hdi_diagonals_by_patches(h, &x, "factors would not fit the byte limit");
 }
 
 /* ==== [28] diffusion ====
