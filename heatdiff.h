@@ -12884,9 +12884,11 @@ HEATDIFF_API hd_status hd_rational_fit(hd_rational *out, int32_t count, const hd
  * what the means are off by. */
 
 /* Parts of an error bound, in one of the norms or of values. */
-typedef struct hdi_parts { double rational, solver, rounding; } hdi_parts;
+typedef struct hdi_parts { double rational, solver, rounding, local; } hdi_parts;
 
-static double hdi_parts_sum(const hdi_parts *p) { return p->rational + p->solver + p->rounding; }
+static double hdi_parts_sum(const hdi_parts *p) {
+    return p->rational + p->solver + p->rounding + p->local;
+}
 
 /* A product of bounds. Zero times infinity is zero, and infinity is HUGE_VAL. */
 static double hdi_bound_times(double a, double b) {
@@ -12898,6 +12900,7 @@ static hdi_parts hdi_parts_scale(double s, hdi_parts p) {
     p.rational = hdi_bound_times(s, p.rational);
     p.solver = hdi_bound_times(s, p.solver);
     p.rounding = hdi_bound_times(s, p.rounding);
+    p.local = hdi_bound_times(s, p.local);
     return p;
 }
 
@@ -12905,7 +12908,15 @@ static hdi_parts hdi_parts_least(hdi_parts a, hdi_parts b) {
     a.rational = hdi_min(a.rational, b.rational);
     a.solver = hdi_min(a.solver, b.solver);
     a.rounding = hdi_min(a.rounding, b.rounding);
+    a.local = hdi_min(a.local, b.local);
     return a;
+}
+
+static void hdi_parts_most(hdi_parts *a, hdi_parts b) {
+    a->rational = hdi_max(a->rational, b.rational);
+    a->solver = hdi_max(a->solver, b.solver);
+    a->rounding = hdi_max(a->rounding, b.rounding);
+    a->local = hdi_max(a->local, b.local);
 }
 
 /* The account of a query's errors, which becomes part of its report: absolute, over all values noted. */
@@ -12920,7 +12931,7 @@ typedef struct hdi_ledger {
 
 static hdi_ledger hdi_ledger_begin(hd_evidence rational, hd_evidence solver, hd_evidence rounding,
                                    int relative) {
-    const hdi_ledger l = {{0, 0, 0}, {(double)rational, (double)solver, (double)rounding}, 0, HUGE_VAL,
+    const hdi_ledger l = {{0, 0, 0, 0}, {(double)rational, (double)solver, (double)rounding, 0}, 0, HUGE_VAL,
                           relative ? 0.0 : -1.0, 0, 0};
     return l;
 }
@@ -12932,9 +12943,7 @@ static double hdi_bound_of(double off) { return hdi_nan(off) ? HUGE_VAL : off; }
 
 /* Adds the values that another ledger has noted. */
 static void hdi_ledger_join(hdi_ledger *l, const hdi_ledger *other) {
-    l->off.rational = hdi_max(l->off.rational, other->off.rational);
-    l->off.solver = hdi_max(l->off.solver, other->off.solver);
-    l->off.rounding = hdi_max(l->off.rounding, other->off.rounding);
+    hdi_parts_most(&l->off, other->off);
     l->largest = hdi_max(l->largest, other->largest);
     l->smallest = hdi_min(l->smallest, other->smallest);
     l->relative = hdi_max(l->relative, other->relative);
@@ -12944,8 +12953,8 @@ static void hdi_ledger_join(hdi_ledger *l, const hdi_ledger *other) {
 
 /* Notes a value and the bound on its error. */
 static void hdi_ledger_note(hdi_ledger *l, double value, hdi_parts off) {
-    hdi_ledger one = {{hdi_bound_of(off.rational), hdi_bound_of(off.solver), hdi_bound_of(off.rounding)},
-                      {0, 0, 0}, fabs(value), fabs(value) > 0 ? fabs(value) : HUGE_VAL, -1, 1,
+    hdi_ledger one = {{hdi_bound_of(off.rational), hdi_bound_of(off.solver), hdi_bound_of(off.rounding),
+                       hdi_bound_of(off.local)}, {0, 0, 0, 0}, fabs(value), fabs(value) > 0 ? fabs(value) : HUGE_VAL, -1, 1,
                       !hdi_finite(value)};
     const double all = hdi_parts_sum(&one.off);
     /* to the exact value, which is at least |value| - all */
@@ -12976,14 +12985,17 @@ static void hdi_ledger_close(const hdi_ledger *l, hd_report *rep) {
     part.rational = hdi_ledger_part(part.rational, l->largest);
     part.solver = hdi_ledger_part(part.solver, l->largest);
     part.rounding = hdi_ledger_part(part.rounding, l->largest);
+    part.local = hdi_ledger_part(part.local, l->largest);
     total = hdi_parts_sum(&part);
     rep->error_rational = hdi_max(rep->error_rational, part.rational);
     rep->error_solver = hdi_max(rep->error_solver, part.solver);
     rep->error_rounding = hdi_max(rep->error_rounding, part.rounding);
+    rep->error_local = hdi_max(rep->error_local, part.local);
     rep->error_bound = hdi_max(rep->error_bound, total);
     hdi_evidence_worst(&rep->evidence_rational, l->evidence.rational);
     hdi_evidence_worst(&rep->evidence_solver, l->evidence.solver);
     hdi_evidence_worst(&rep->evidence_rounding, l->evidence.rounding);
+    hdi_evidence_worst(&rep->evidence_local, l->evidence.local);
     if (hdi_finite(l->smallest))
         rep->smallest = rep->smallest > 0 ? hdi_min(rep->smallest, l->smallest) : l->smallest;
     if (l->relative >= 0 && rep->error_relative < l->relative) rep->error_relative = l->relative;
@@ -15153,11 +15165,12 @@ static hd_status hdi_krylov_answer(hdi_krylov *z, int32_t r, double t, const dou
         if (hdi_krylov_ritz(z, r, m, &s, e) < 0) return e->status;   /* its eigenvectors are there */
         lane->off.solver = hdi_ritz_bound(&s, t / z->g) * z->f_norm[r];
         lane->off.rounding = hdi_krylov_rounding(z, r, m, t, y, lane->rhs_off);
-        if (HDI_HAS_LOCAL && z->rim) lane->off.rational = hdi_rim_bound(z, r, t, e);
+        if (HDI_HAS_LOCAL && z->rim) lane->off.local = hdi_rim_bound(z, r, t, e);
     }
     lane->off.rational += z->before[r].rational; /* K_t makes no error larger */
     lane->off.solver += z->before[r].solver;
     lane->off.rounding += z->before[r].rounding;
+    lane->off.local += z->before[r].local;
     hdi_conserve(lap, lane, 1);
     lane->u_norm = sqrt(hdi_max(0, hdi_b_norm2(lap, lane->u, lane->tmp)));
     hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, t * drift, 1) + lane->f_off);
@@ -16972,7 +16985,7 @@ static double hdi_bank_rounding(const hdi_bank *b, double size, double value) {
 /* Bounds of the error of a value, an inner product of g with the answer to f. */
 static hdi_parts hdi_bank_off(const hdi_spec_sums *a, const hdi_share *g, const hdi_share *f, double value) {
     const hdi_bank *b = &a->bank;
-    hdi_parts off = {0, 0, 0};
+    hdi_parts off = {0, 0, 0, 0};
     if (g->whole == 0 || f->whole == 0) return off;
     off.rational = hdi_decayed(b, hdi_bound_times(b->cut, g->left * f->left));
     off.solver = hdi_decayed(b, hdi_bound_times(b->square, g->left * f->left) +
@@ -16993,7 +17006,7 @@ static hdi_parts hdi_spec_off(const hdi_spec_sums *a, int32_t v, double d) {
     const hdi_bank *b = &a->bank;
     const hdi_share g = hdi_share_of(a, v, a->mass && a->distance);
     const hdi_share f = a->diagonal ? hdi_share_of(a, v, a->mass) : a->from;
-    hdi_parts off = {0, 0, 0}, square;
+    hdi_parts off = {0, 0, 0, 0}, square;
     hdi_share y = f;
     double beside;
     if (!a->distance) return hdi_bank_off(a, &g, &f, d);
@@ -17340,7 +17353,7 @@ static void hdi_heat_judge(const hd_laplacian *lap, const hdi_lane *lane, hdi_le
         rep->error_bound_b = hdi_max(rep->error_bound_b, hdi_quotient(total, lane->u_norm - total));
         hdi_bound_judge(rep->error_bound_b, rep);
         hdi_evidence_worst(&rep->evidence_b,
-                           hdi_max(ledger->evidence.rational,
+                           hdi_max(hdi_max(ledger->evidence.rational, ledger->evidence.local),
                                    hdi_max(ledger->evidence.solver, ledger->evidence.rounding)));
     }
     rep->residual = hdi_max(rep->residual, lane->residual);
@@ -17749,6 +17762,7 @@ typedef struct hdi_heat_call {
     int32_t by_pairs;            /* answers are sums over eigenpairs */
     const hdi_rim *rim;          /* krylov on a part of the mesh: the part's */
     int32_t core;                /* diagonals on a part: its first so many vertices count; 0: all */
+    double left_out;             /* and what the part leaves out of k_t, scaled */
     hdi_extra rows;              /* direct: further sums of every item, one after the other */
     hdi_column_parts *off;       /* [k][n_off] by residuals and the sets that begin with set */
     int32_t n_off;
@@ -18294,12 +18308,13 @@ static hdi_ledger hdi_heat_ledger(const hdi_heat_call *h) {
     const int still = h->t == 0 || h->equal;
     const hd_rational *set = h->method == HD_METHOD_DIRECT ? &h->heat->elim.set : &h->heat->fam.set;
     const int itself = set->kind == HD_POLES_OWN && hdi_set_uniform(set) == 0;   /* bounds are for c itself */
-    const hd_evidence rational = h->rim ? HD_EVIDENCE_MEASURED
-                               : still || !poles || itself ? HD_EVIDENCE_NONE : hdi_set_evidence(set);
+    const hd_evidence rational = still || !poles || itself ? HD_EVIDENCE_NONE : hdi_set_evidence(set);
     const hd_evidence solver = still || h->method == HD_METHOD_DIRECT ? HD_EVIDENCE_NONE
                              : h->method == HD_METHOD_KRYLOV ? HD_EVIDENCE_ESTIMATED : HD_EVIDENCE_PROVEN;
+    hdi_ledger ledger = hdi_ledger_begin(rational, solver, HD_EVIDENCE_NONE, 0);
     if (h->by_pairs) return hdi_ledger_begin(HD_EVIDENCE_PROVEN, HD_EVIDENCE_PROVEN, HD_EVIDENCE_NONE, 0);
-    return hdi_ledger_begin(rational, solver, HD_EVIDENCE_NONE, 0);
+    ledger.evidence.local = h->rim ? HD_EVIDENCE_MEASURED : HD_EVIDENCE_NONE;
+    return ledger;
 }
 
 /* How much the residuals of a column's systems change its sum by the weights of set. Poles of times that
@@ -19034,7 +19049,7 @@ static hd_status hdi_heat_make(hd_heat *heat, const hd_laplacian *lap, hd_error 
 typedef struct hdi_reached { double way, unit; int32_t row, from; } hdi_reached;
 
 typedef struct hdi_local {
-    hd_heat heat;                /* a plan for the pair of the ball; hdi_rim_bound is its rational part */
+    hd_heat heat;                /* a plan for the pair of the ball; hdi_rim_bound is the local part of its errors */
     hd_laplacian *ball;          /* the pair: its vertex i is row[i] of the source; NULL: none yet */
     int32_t *row;
     hdi_rim rim;
@@ -19432,6 +19447,7 @@ static hd_status hdi_local_solve(hdi_heat_call *h, hdi_local *l, int32_t q, doub
 /* The errors of values of which the largest is `most`. */
 static hdi_parts hdi_local_parts(const hd_report *rep, double most) {
     hdi_parts off;
+    off.local = hdi_bound_times(most, rep->error_local);
     off.rational = hdi_bound_times(most, rep->error_rational);
     off.solver = hdi_bound_times(most, rep->error_solver);
     off.rounding = hdi_bound_times(most, rep->error_rounding);
@@ -19455,7 +19471,7 @@ static void hdi_local_entries(const hdi_heat_call *h, const hdi_local *l, int32_
             *value = (uint64_t)v == list->order[p].key;
         hdi_ledger_note(list->ledger + h->now, *value, hdi_local_parts(rep, most));
     }
-    how->rational = hdi_max(how->rational, rep->evidence_rational);
+    how->local = hdi_max(how->local, rep->evidence_local);
     how->solver = hdi_max(how->solver, rep->evidence_solver);
     how->rounding = hdi_max(how->rounding, rep->evidence_rounding);
 }
@@ -19509,8 +19525,8 @@ static hd_status hdi_local_answer(hdi_heat_call *h, hdi_local *l, int32_t q, dou
         *ld = (size_t)l->n + (h->ask.F ? 0 : (size_t)hdi_heat_source(h, q).n);
         *U = HDI_NEW(heat->ctx, double, *ld * columns, h->e);
         if (!*U || l->n == 0 || hdi_local_plan(heat, l, h->e) < 0) return h->e->status;
-        if (hdi_local_solve(h, l, q, *U, *ld, rep) < 0 || rep->error_rational <= wanted) return h->e->status;
-        reach = sqrt(reach * reach + 0.06 * log(hdi_min(rep->error_rational, 1e9) / wanted)) + 0.02;
+        if (hdi_local_solve(h, l, q, *U, *ld, rep) < 0 || rep->error_local <= wanted) return h->e->status;
+        reach = sqrt(reach * reach + 0.06 * log(hdi_min(rep->error_local, 1e9) / wanted)) + 0.02;
     }
     if (automatic && h->e->status >= 0)
         hdi_fail(h->e, HD_ERR_NOT_CONVERGED, "local: heat reaches too much of the mesh");
@@ -19539,21 +19555,12 @@ static void hdi_local_item(hdi_heat_call *h, hdi_local *l, int32_t q) {
     hdi_free(ctx, U);
     if (l->n == 0 && !h->ask.list) hdi_evidence_worst(&h->rep->evidence_b, HD_EVIDENCE_PROVEN);   /* exact */
     if (l->n == 0 || h->e->status < 0) return;
-    if (h->ask.list) rep.error_bound = rep.error_rational = rep.error_solver = rep.error_rounding = 0;
+    if (h->ask.list) rep.error_bound = rep.error_local = rep.error_solver = rep.error_rounding = 0;
     rep.method = HD_METHOD_LOCAL;
     rep.solver = HD_SOLVER_LANCZOS;
     rep.reason = h->rep->reason;
     rep.n_touched = l->n;
     hdi_report_merge(h->rep, &rep);
-}
-
-/* The error of the rim stands where that of poles does, until an answer is there. */
-static void hdi_local_tell(hd_report *rep) {
-    if (rep->method != HD_METHOD_LOCAL) return;
-    rep->error_local = rep->error_rational;
-    rep->evidence_local = rep->evidence_rational;
-    rep->error_rational = 0;
-    rep->evidence_rational = HD_EVIDENCE_NONE;
 }
 
 static hd_status hdi_heat_by_local(hdi_heat_call *h) {
@@ -20384,7 +20391,6 @@ static hd_status hdi_heat_answer(hdi_heat_call *h) {
 static hd_status hdi_heat_chosen(hdi_heat_call *h) {
     while (hdi_heat_answer(h) < 0 && hdi_heat_retreat(h)) {}
     if (h->e->status >= 0 && h->ask.list) hdi_ledger_close(h->ask.list->ledger + h->now, h->rep);
-    if (h->e->status >= 0) hdi_local_tell(h->rep);
     return h->e->status;
 }
 
@@ -20507,7 +20513,6 @@ static hd_status hdi_columns_together(hdi_task *task, char *done, hd_report *one
     if (h->e->status < 0) return hdi_heat_retreat(h) ? HD_OK : h->e->status;
     for (q = 0; q < h->ask.n_times && h->ask.list; q++)
         if (!done[q]) hdi_ledger_close(h->ask.list->ledger + q, h->rep);
-    hdi_local_tell(h->rep);
     if (task->serves && h->rep->error_bound > HDI_MODES_HELP) return HD_OK;   /* one by one, then */
     for (q = 0; q < h->ask.n_times; q++) done[q] = HDI_DONE_FOR_GOOD;
     one[first] = *h->rep;
@@ -20992,9 +20997,22 @@ typedef struct hdi_diagonal {
     double left_out;             /* times spread, an error besides: a0 B^-1 of a full B, not at hand */
 } hdi_diagonal;
 
+static double hdi_by_mass(double x, double b, int32_t mass) {
+    return mass == 0 ? x : mass == 1 ? b * x : b * (b * x);      /* b^2 may leave the range of doubles */
+}
+
 /* Is row i of the copy of the pair one of those asked for? */
 static int hdi_row_counts(const hdi_heat_call *h, int32_t i) {
     return h->core == 0 || h->heat->elim.lap->vertex[i] < h->core;
+}
+
+/* What a part of the mesh leaves out of an entry of the diagonal. That of K_t = k_t B takes entries beside. */
+static double hdi_diagonal_left_out(const hdi_heat_call *h, int32_t mass, int32_t i) {
+    const hd_laplacian *lap = h->heat->elim.lap;
+    double sum = mass > 0 && lap->B ? 0 : hdi_by_mass(1, lap->b_diag[i], mass);
+    int64_t p;
+    for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1] && mass > 0 && lap->B; p++) sum += fabs(lap->B[p]);
+    return h->left_out > 0 ? h->left_out * sum : 0;
 }
 
 static hdi_diagonal hdi_diagonal_take(int32_t n, int32_t mass, hdi_scope *s) {
@@ -21005,10 +21023,6 @@ static hdi_diagonal hdi_diagonal_take(int32_t n, int32_t mass, hdi_scope *s) {
     d.g = d.value ? d.value + n : NULL;
     d.spread = d.value ? d.g + n : NULL;
     return d;
-}
-
-static double hdi_by_mass(double x, double b, int32_t mass) {
-    return mass == 0 ? x : mass == 1 ? b * x : b * (b * x);      /* b^2 may leave the range of doubles */
 }
 
 /* A set's error of a form that is g and spread of (B + tL)^-1 and of B^-1. */
@@ -21264,7 +21278,9 @@ static hdi_ledger hdi_inverse_ledger(const hdi_heat_call *h, const hd_rational *
     const int exact_a0 = set->a0 == 0 || !h->heat->source->B;
     const int itself = set->kind == HD_POLES_OWN && hdi_set_uniform(set) == 0 && exact_a0;
     const hd_evidence rational = h->equal || itself ? HD_EVIDENCE_NONE : hdi_set_evidence(set);
-    return hdi_ledger_begin(rational, HD_EVIDENCE_NONE, HD_EVIDENCE_MEASURED, relative);
+    hdi_ledger ledger = hdi_ledger_begin(rational, HD_EVIDENCE_NONE, HD_EVIDENCE_MEASURED, relative);
+    if (h->left_out > 0) ledger.evidence.local = HD_EVIDENCE_MEASURED;
+    return ledger;
 }
 
 /* Gives a diagonal to vertices, in the caller's unit, and its errors to the report: those of the set, and
@@ -21278,9 +21294,10 @@ static double hdi_diagonal_tell(hdi_heat_call *h, const hdi_diagonal *d, hdi_led
     for (v = 0; v < lap->n; v++) out[v] = d->mass > 0 && lap->row[v] == HD_ROW_INERT;
     for (i = 0; i < lap->n_active; i++) {
         const double value = d->value[i], off = hdi_diagonal_off(d, d->g[i], d->spread[i]);
-        hdi_parts part = {0, 0, 0};
+        hdi_parts part = {0, 0, 0, 0};
         if (!hdi_row_counts(h, i)) continue;
         part.rational = unit * off;
+        part.local = unit * hdi_diagonal_left_out(h, d->mass, i);
         part.rounding = unit * (4 * DBL_EPSILON * fabs(value) +
                                 (rounding > 0 ? rounding * hdi_diagonal_size(d, i) : 0));
         out[lap->vertex[i]] = unit * value;
@@ -21308,17 +21325,18 @@ static double hdi_trace_read(const hdi_heat_call *h, const hdi_inverses *x, int3
     const hd_laplacian *lap = h->heat->elim.lap;
     double value = 0, size = 0, form = 0, components = 0;
     int32_t i;
+    memset(off, 0, sizeof *off);
     if (lap->B) hdi_operator_diagonal(&h->heat->elim, 0, hdi_inverses_get(x, q, 1), work);
     for (i = 0; i < lap->n_active; i++) {
         if (!hdi_row_counts(h, i)) continue;
         value += d->value[i];
+        off->local += hdi_diagonal_left_out(h, 1, i);
         size += hdi_diagonal_size(d, i);
         form += lap->B ? work[i] * x->slack[q] : d->g[i];
     }
     for (i = 0; i < lap->n_components && lap->conserves; i++)
         components += hdi_finite(lap->component_mass[i]);
     form = hdi_finite(x->slack[q]) ? hdi_max(form, components) : HUGE_VAL;
-    memset(off, 0, sizeof *off);
     off->rational = hdi_set_off(d->set, form, h->core > 0 ? h->core : lap->n_active);
     off->rounding = rounding * size + 4 * DBL_EPSILON * fabs(value);
     return value;
@@ -21374,7 +21392,7 @@ static hd_status hdi_diagonals_equal(const hdi_diagonals *to, int32_t q, hd_repo
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
     const hd_laplacian *lap = h->heat->elim.lap;
     hdi_diagonal d = hdi_diagonal_take(lap->n_active, to->kernel == HD_KERNEL_OPERATOR, &s);
-    const hdi_parts off = {0, 0, 0};
+    const hdi_parts off = {0, 0, 0, 0};
     double count = 0;
     int32_t i;
     h->equal = h->relative = 1;
@@ -21520,7 +21538,7 @@ static void hdi_fading_trace(const hdi_diagonals *to, double t) {
     hdi_heat_call *h = to->task.h;
     const hdi_modes *x = &h->heat->modes;
     const double others = (double)h->heat->source->n_active - x->s.count;
-    hdi_parts off = {0, 0, 0};
+    hdi_parts off = {0, 0, 0, 0};
     double value = 0;
     int32_t q;
     for (q = 0; q < x->s.count; q++) {
@@ -21571,6 +21589,7 @@ static hd_status hdi_diagonals_filters(const hdi_diagonals *to) {
 static hd_status hdi_diagonals_run(hdi_heat_call *h, const hdi_diagonals *query) {
     hdi_diagonals to = *query;
     hdi_fading_task(&to.task, h);
+    if (h->core > 0) to.task.serves = 0;         /* parts by inversion alone */
     to.task.pairs = HDI_HAS_MODES ? hdi_diagonals_by_pairs : NULL;
     to.task.poles = hdi_diagonals_by_poles;
     to.task.together = hdi_diagonals_together;
@@ -21803,103 +21822,67 @@ static double hdi_patch_off(const hdi_patches *x, int32_t core) {
     return HDI_PATCH_SAFETY * sum / lap->b_ratio;
 }
 
-/* What a patch leaves out of the values of its core, D [n_times][n] or traces Z, where it is `off` of k_t:
- * the larger parts into rep, and in all [n_times] what it is of traces. */
-static void hdi_patch_judge(const hdi_patches *x, int32_t core, const double *D, const double *Z, double off,
-                            double *all, hd_report *rep) {
-    const hdi_diagonals *to = x->to;
-    const hd_laplacian *lap = x->local->ball;
-    int32_t i, q;
-    int64_t p;
-    memset(rep, 0, sizeof *rep);
-    for (q = 0; q < to->task.h->ask.n_times; q++) {
-        hdi_ledger ledger = hdi_ledger_begin(HD_EVIDENCE_MEASURED, HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, 1);
-        hdi_parts part = {0, 0, 0};
-        for (i = 0, all[q] = 0; i < core; i++) {
-            double mass = lap->B ? 0 : lap->mass[i];
-            for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1] && lap->B; p++) mass += fabs(lap->B[p]);
-            all[q] += off * mass;
-            part.rational = to->kernel == HD_KERNEL_OPERATOR ? off * mass : off;
-            if (D) hdi_ledger_note(&ledger, D[(size_t)q * (size_t)lap->n + (size_t)i], part);
-        }
-        part.rational = all[q];
-        if (!D) hdi_ledger_note(&ledger, Z[q], part);
-        hdi_ledger_close(&ledger, rep);
-    }
-}
-
-/* The sum of two errors relative to the exact value, which may be as much smaller than the one found. */
-static double hdi_relative_sum(double a, double b) {
-    const double share = a / (1 + a) + b / (1 + b);
-    return hdi_finite(a) && hdi_finite(b) ? hdi_quotient(share, 1 - share) : HUGE_VAL;
-}
-
-/* Gives the core's values to the caller, and what is known of their errors: rep of the patch's plan, less of
- * what is left out. */
+/* Gives the core's values to the caller, D [n_times][n] and traces with bounds. */
 static void hdi_patch_tell(const hdi_patches *x, int32_t core, const double *D, const double *Z,
-                           const double *bound, const double *all, hd_report *rep, const hd_report *less) {
+                           const double *bound) {
     const hdi_diagonals *to = x->to;
     const hdi_heat_call *h = to->task.h;
-    const int32_t *v = h->heat->source->vertex;
     const size_t n = (size_t)x->local->n;
     int32_t i, q;
     for (q = 0; q < h->ask.n_times; q++) {
+        double *out = to->D + (size_t)q * to->ldd;
         for (i = 0; i < core && D; i++)
-            to->D[(size_t)q * to->ldd + (size_t)v[x->local->row[i]]] = D[(size_t)q * n + (size_t)i];
+            out[h->heat->source->vertex[x->local->row[i]]] = D[(size_t)q * n + (size_t)i];
         if (to->Z) to->Z[q] += Z[q];
-        if (to->Z && to->bound) to->bound[q] += bound[q] + all[q];
+        if (to->Z && to->bound) to->bound[q] += bound[q];
     }
-    rep->method = HD_METHOD_LOCAL;
-    rep->reason = h->rep->reason;
-    rep->n_touched = x->local->n;
-    rep->error_local = less->error_rational;
-    rep->evidence_local = x->local->rim.n > 0 ? HD_EVIDENCE_MEASURED : HD_EVIDENCE_NONE;
-    rep->error_bound += less->error_rational;
-    rep->error_relative = hdi_relative_sum(rep->error_relative, less->error_relative);
-    hdi_bound_judge(rep->error_bound, rep);
-    hdi_report_merge(h->rep, rep);
+}
+
+/* Piece p with the margin that it has. Values count where they leave out no more than `wanted`. */
+static hd_status hdi_patch_once(const hdi_patches *x, int32_t p, double wanted, hd_report *rep) {
+    const int32_t core = hdi_patch_begin(x, x->count, p + 1) - hdi_patch_begin(x, x->count, p);
+    hdi_heat_call *h = x->to->task.h, in;
+    hd_heat *own = &x->local->heat;
+    hdi_diagonals to = *x->to;
+    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
+    const uint64_t n = (uint64_t)h->ask.n_times, values = to.D ? n * (uint64_t)x->local->n : 0;
+    double off = 0;
+    if (hdi_local_plan(h->heat, x->local, h->e) < 0) return hdi_scope_end(&s);
+    own->opts.method = HD_METHOD_DIRECT;
+    off = hdi_patch_off(x, core);
+    to.ldd = (size_t)x->local->n;
+    to.D = HDI_TAKE(&s, double, values + 2 * n);
+    if (h->e->status < 0) return hdi_scope_end(&s);
+    to.bound = to.D + values;
+    to.Z = x->to->Z ? to.bound + n : NULL;
+    to.D = x->to->D ? to.D : NULL;
+    if (hdi_kernel_begin(&in, own, to.kernel, rep, NULL) >= 0 &&
+        hdi_times_check(&in, h->ask.n_times, h->ask.t, 1) >= 0) {
+        in.core = core;
+        in.left_out = off / own->scale;
+        (void)hdi_diagonals_run(&in, &to);
+    }
+    if (hdi_heat_end(&in) < 0) *h->e = rep->error;
+    else if (rep->error_local <= wanted) hdi_patch_tell(x, core, to.D, to.Z, to.bound);
+    return hdi_scope_end(&s);
 }
 
 /* Piece p. Its margin grows until what is left out is as little as of columns. */
 static hd_status hdi_patch_run(hdi_patches *x, int32_t p) {
-    const hdi_diagonals *to = x->to;
-    const int32_t core = hdi_patch_begin(x, x->count, p + 1) - hdi_patch_begin(x, x->count, p);
-    hdi_heat_call *h = to->task.h, in;
-    const int32_t n_times = h->ask.n_times;
+    hdi_heat_call *h = x->to->task.h;
     const double wanted = HDI_LOCAL_SHARE * h->heat->opts.tol;
-    hdi_local *l = x->local;
-    hdi_diagonals own = *to;
-    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
-    double *Z = HDI_TAKE_ZERO(&s, double, 3 * (uint64_t)n_times), *D, off;
-    hd_report rep, less;
+    hd_report rep;
     int32_t tries;
-    own.Z = to->Z ? Z : NULL;
-    own.bound = Z + n_times;
-    for (tries = 1; h->e->status >= 0; tries++) {
-        if (hdi_patch_find(x, x->count, p, INT32_MAX) < 0 || hdi_local_plan(h->heat, l, h->e) < 0) break;
-        l->heat.opts.method = HD_METHOD_DIRECT;
-        off = hdi_patch_off(x, core);
-        D = NULL;
-        if (to->D && h->e->status >= 0)
-            D = HDI_NEW(h->heat->ctx, double, (uint64_t)l->n * (uint64_t)n_times, h->e);
-        if (h->e->status >= 0 && hdi_kernel_begin(&in, &l->heat, to->kernel, &rep, NULL) >= 0 &&
-            hdi_times_check(&in, n_times, h->ask.t, 1) >= 0) {
-            in.core = core;
-            own.D = D;
-            own.ldd = (size_t)l->n;
-            (void)hdi_diagonals_run(&in, &own);
-        }
-        if (h->e->status >= 0 && hdi_heat_end(&in) < 0) *h->e = rep.error;
-        if (h->e->status >= 0) hdi_patch_judge(x, core, D, Z, off, Z + 2 * n_times, &less);
-        if (h->e->status >= 0 && (less.error_relative <= wanted || tries == HDI_LOCAL_TRIES)) {
-            hdi_patch_tell(x, core, D, Z, Z + n_times, Z + 2 * n_times, &rep, &less);
-            tries = HDI_LOCAL_TRIES;
-        }
-        hdi_free(h->heat->ctx, D);
-        if (tries == HDI_LOCAL_TRIES) break;
-        x->reach = sqrt(x->reach * x->reach + 0.05 * log(hdi_min(less.error_relative, 1e9) / wanted)) + 0.02;
+    for (tries = 1; hdi_patch_find(x, x->count, p, INT32_MAX) >= 0; tries++) {
+        if (hdi_patch_once(x, p, tries < HDI_LOCAL_TRIES ? wanted : HUGE_VAL, &rep) < 0) return h->e->status;
+        if (rep.error_local <= wanted || tries == HDI_LOCAL_TRIES) break;
+        x->reach = sqrt(x->reach * x->reach + 0.05 * log(hdi_min(rep.error_local, 1e9) / wanted)) + 0.02;
     }
-    return hdi_scope_end(&s);
+    rep.method = HD_METHOD_LOCAL;
+    rep.reason = h->rep->reason;
+    rep.n_touched = x->local->n;
+    if (h->e->status >= 0) hdi_report_merge(h->rep, &rep);
+    return h->e->status;
 }
 
 /* Diagonals and traces by patches. */
@@ -22293,7 +22276,7 @@ static double hdi_metric_note(const hdi_metric *x, double d2, double rational, d
                               hd_report *rep, hdi_ledger *ledger) {
     const double delta = rational + rounding, d = d2 > 0 ? sqrt(d2) : 0;
     const double error = x->root * (d2 > delta ? delta / d : sqrt(2 * delta));
-    hdi_parts part = {0, 0, 0};
+    hdi_parts part = {0, 0, 0, 0};
     if (delta > 0) {
         part.rational = hdi_finite(delta) ? error * (rational / delta) : rational;
         part.rounding = hdi_finite(delta) ? error * (rounding / delta) : rounding;
@@ -22608,6 +22591,7 @@ static void hdi_parts_share(hdi_parts *to, const hdi_parts *as) {
     to->rational = all * (as->rational / sum);
     to->solver = all * (as->solver / sum);
     to->rounding = all * (as->rounding / sum);
+    to->local = all * (as->local / sum);
 }
 
 /* The error of the column of v, whose size is given, in the norm of B: relative errors are below bound. That
@@ -22625,9 +22609,11 @@ static void hdi_pairs_note(const hd_heat *heat, const hdi_pairs_part *x, hd_repo
     const hd_laplacian *lap = heat->source;
     const size_t n = (size_t)lap->n;
     hdi_ledger of = hdi_ledger_begin(rep->evidence_rational, rep->evidence_solver, rep->evidence_rounding, 1);
-    hdi_parts part = {0, 0, 0}, share;
+    hdi_parts part = {0, 0, 0, 0}, share;
     int64_t q;
-    share.rational = rep->error_rational + rep->error_local;
+    of.evidence.local = rep->evidence_local;
+    share.rational = rep->error_rational;
+    share.local = rep->error_local;
     share.solver = rep->error_solver;
     share.rounding = rep->error_rounding;
     for (q = 0; q < x->n; q++) {
@@ -22699,10 +22685,6 @@ static hd_status hdi_pairs_columns(const hdi_pairs *to, int64_t most) {
     sum.evidence_b = HD_EVIDENCE_NONE;
     *h->rep = sum;
     hdi_ledger_close(&all, h->rep);
-    if (!sum.evidence_rational && sum.evidence_local) {       /* of parts of the mesh */
-        h->rep->error_local = h->rep->error_rational;
-        h->rep->error_rational = 0;
-    }
     return h->e->status;
 }
 
