@@ -19507,6 +19507,12 @@ static void hdi_local_store(hdi_heat_call *h, const hdi_local *l, int32_t q, dou
 #define HDI_LOCAL_SHARE 100
 enum { HDI_LOCAL_TRIES = 6 };
 
+/* A larger reach where what is left out is so much too large: as a Gaussian asks for, and once that has not
+ * helped, for distances are not what they seem, half as far again. */
+static double hdi_local_more(double reach, int32_t tries, double excess) {
+    return (tries > 0 ? 1.5 : 1) * sqrt(reach * reach + 0.06 * log(hdi_min(excess, 1e16))) + 0.02;
+}
+
 /* Finds a ball for item q that is large enough, and the answers on it, in U: ld apart, room as in
  * hdi_local_solve. */
 static hd_status hdi_local_answer(hdi_heat_call *h, hdi_local *l, int32_t q, double **U, size_t *ld,
@@ -19526,7 +19532,7 @@ static hd_status hdi_local_answer(hdi_heat_call *h, hdi_local *l, int32_t q, dou
         *U = HDI_NEW(heat->ctx, double, *ld * columns, h->e);
         if (!*U || l->n == 0 || hdi_local_plan(heat, l, h->e) < 0) return h->e->status;
         if (hdi_local_solve(h, l, q, *U, *ld, rep) < 0 || rep->error_local <= wanted) return h->e->status;
-        reach = sqrt(reach * reach + 0.06 * log(hdi_min(rep->error_local, 1e9) / wanted)) + 0.02;
+        reach = hdi_local_more(reach, tries, rep->error_local / wanted);
     }
     if (automatic && h->e->status >= 0)
         hdi_fail(h->e, HD_ERR_NOT_CONVERGED, "local: heat reaches too much of the mesh");
@@ -21638,6 +21644,8 @@ enum { HDI_PATCH_LEAST = 256, HDI_PATCH_FROM = 20000 };
 /* What a row takes besides the factor, in flops of it: on a patch with probes, on all of the mesh. */
 #define HDI_PATCH_ROW 7500
 #define HDI_WHOLE_ROW 2600
+/* For each number of a real factor: four complex ones, and what else there is. */
+#define HDI_PATCH_BYTES 80
 
 typedef struct hdi_patches {
     const hdi_diagonals *to;
@@ -21720,7 +21728,7 @@ static double hdi_patch_cut(hdi_patches *x) {
         if (hdi_patch_find(x, x->count, x->count / 2, INT32_MAX) < 0) return 0;
         f = hdi_fill_guess(x->local->n, x->local->n * wide);
         cost = x->count * (f.flops + HDI_PATCH_ROW * (double)x->local->n);
-        if (8 * 8 * f.stored < hdi_bytes_left(h->heat->ctx) && cost < least) {
+        if (HDI_PATCH_BYTES * f.stored < hdi_bytes_left(h->heat->ctx) && cost < least) {
             least = cost;
             best = x->count;
         } else if (least < HUGE_VAL) {
@@ -21777,6 +21785,7 @@ static hd_status hdi_patch_rates(const hdi_patches *x, int32_t count, double *r)
     own->opts.tol = HDI_PATCH_TOL;
     if (hdi_fields_run(own, HDI_QUERY_FIELD, &ask, 0, &rep, NULL) < 0) *e = rep.error;
     own->opts = opts;
+    hdi_heat_shed(own);
     for (m = 0; m <= HDI_PATCH_TIMES && e->status >= 0; m++) {
         for (i = 0, r[m] = 0; i < count; i++) {
             double sum = 0;
@@ -21876,7 +21885,7 @@ static hd_status hdi_patch_run(hdi_patches *x, int32_t p) {
     for (tries = 1; hdi_patch_find(x, x->count, p, INT32_MAX) >= 0; tries++) {
         if (hdi_patch_once(x, p, tries < HDI_LOCAL_TRIES ? wanted : HUGE_VAL, &rep) < 0) return h->e->status;
         if (rep.error_local <= wanted || tries == HDI_LOCAL_TRIES) break;
-        x->reach = sqrt(x->reach * x->reach + 0.05 * log(hdi_min(rep.error_local, 1e9) / wanted)) + 0.02;
+        x->reach = hdi_local_more(x->reach, tries - 1, rep.error_local / wanted);
     }
     rep.method = HD_METHOD_LOCAL;
     rep.reason = h->rep->reason;
