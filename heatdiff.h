@@ -12922,9 +12922,8 @@ HEATDIFF_API hd_status hd_rational_fit(hd_rational *out, int32_t count, const hd
  * Owns the family t L + theta_i B over the poles of a set: solutions for one right-hand side, by iterations
  * or with factors, their weighted sum, the bound on its error, and weighted sums of the inverses. May call
  * [18], [20] and [21].
- * Iterations take the poles one after the other, because a solution gives a start for the next pole: the
- * conjugate of a solution is the solution of the conjugate pole, and x(theta) is continued by the straight
- * line through both. Parallel tasks are right-hand sides, and preconditioners. */
+ * Iterations take the poles one after the other, because a solution is a start for the next pole. Parallel
+ * tasks are right-hand sides, and preconditioners. */
 
 /* ---- what answers can be off by ---- */
 /* An error r in the system of a pole, b - A x = r, is an error A^-1 r in its solution. Two norms bound it:
@@ -13151,38 +13150,12 @@ static int hdi_set_same_poles(const hd_rational *a, const hd_rational *b) {
     return a->n_poles == b->n_poles && memcmp(a->theta, b->theta, (size_t)a->n_poles * sizeof *a->theta) == 0;
 }
 
-/* Takes up a set and a time. When filled is 0, hdi_family_fill must follow. */
-static void hdi_family_set(hdi_family *fam, const hd_rational *set, double t) {
-    const int held = fam->filled && fam->t == t && hdi_set_same_poles(&fam->set, set);
-    fam->set = *set;                             /* weights cost nothing */
-    if (held) return;
-    fam->filled = 0;
-    fam->t = t;
-    hdi_noise_weights(fam->lap, t, hdi_rat_largest(set), fam->noise, fam->noise_work);
-}
-
 /* Do poles make their preconditioners in turns? */
 static int hdi_family_shares(const hdi_family *fam) { return fam->n_values < fam->set.n_poles; }
 
 /* Values of a preconditioner. */
 static uint64_t hdi_family_size(const hdi_family *fam) {
     return hdi_precond_size(hdi_preconds + fam->precond, fam->up->n, fam->up->ptr[fam->up->n]);
-}
-
-/* Room for the preconditioners of the set. */
-static hd_status hdi_family_room(hdi_family *fam, hd_error *e) {
-    const uint64_t size = hdi_family_size(fam);
-    int32_t room = fam->set.n_poles;
-    if (fam->n_values >= room) return HD_OK;
-    hdi_family_free(fam);
-    fam->values = HDI_NEW(fam->ctx, hd_c64, (uint64_t)room * size, e);
-    if (room > 1 && hdi_over_limit(fam->ctx, e)) {
-        hdi_error_clear(e);
-        fam->values = HDI_NEW(fam->ctx, hd_c64, size, e);
-        room = 1;
-    }
-    if (fam->values) fam->n_values = room;
-    return e->status;
 }
 
 /* Most right-hand sides at a time: in all, by iterations, and in a batch with the factors of the poles.
@@ -13358,8 +13331,29 @@ static void hdi_fill_task(void *arg, int64_t index, int32_t worker) {
     hdi_precond_make(&lane->k[index].m, lane->b + index * lane->room.n);
 }
 
-/* Makes the preconditioners, one parallel task each, with the systems of a lane. */
-static hd_status hdi_family_fill(hdi_family *fam, hdi_lane *lane, hd_error *e) {
+/* Takes up a set and a time with n lanes: their systems, and the preconditioners, one parallel task each. */
+static hd_status hdi_family_prepare(hdi_family *fam, const hd_rational *set, double t, hdi_lane *lane,
+                                    int32_t n, hd_error *e) {
+    const uint64_t size = hdi_family_size(fam);
+    int32_t room = set->n_poles, i;
+    if (!fam->filled || fam->t != t || !hdi_set_same_poles(&fam->set, set)) {
+        fam->filled = 0;
+        hdi_noise_weights(fam->lap, t, hdi_rat_largest(set), fam->noise, fam->noise_work);
+    }
+    fam->set = *set;                             /* weights cost nothing */
+    fam->t = t;
+    if (fam->n_values < room) {
+        hdi_family_free(fam);
+        fam->values = HDI_NEW(fam->ctx, hd_c64, (uint64_t)room * size, e);
+        if (room > 1 && hdi_over_limit(fam->ctx, e)) {
+            hdi_error_clear(e);
+            fam->values = HDI_NEW(fam->ctx, hd_c64, size, e);
+            room = 1;
+        }
+        if (!fam->values) return e->status;
+        fam->n_values = room;
+    }
+    for (i = 0; i < n; i++) hdi_lane_systems(lane + i, fam);
     if (fam->filled) return HD_OK;
     if (hdi_progress(fam->ctx, "precondition", 0, e) < 0) return e->status;
     if (!hdi_family_shares(fam)) hdi_parallel(fam->ctx, fam->set.n_poles, hdi_fill_task, lane);
@@ -13425,17 +13419,15 @@ static void hdi_lane_first(hdi_lane *lane, const hd_laplacian *lap, const hd_rat
     if (hdi_finite(factor)) lane->energy = hdi_min(lane->energy, factor * (fabs(sum) + lane->f_norm * error));
 }
 
-/* |x|_B^2 of a complex vector; tmp [3 n]. */
+/* |x|_B^2 of a complex vector; tmp [2 n]. */
 static double hdi_b_norm2_complex(const hd_laplacian *lap, const hd_c64 *x, double *tmp) {
-    const int32_t n = lap->n_active;
-    double *work = tmp + 2 * (int64_t)n;
+    const hdi_system mass = {lap, 0, {1, 0}};
+    double sum = 0;
     int32_t i;
-    if (!lap->B) return hdi_cnorm2w(x, lap->mass, n);
-    for (i = 0; i < n; i++) {
-        tmp[i] = x[i].re;
-        tmp[n + i] = x[i].im;
-    }
-    return hdi_max(0, hdi_b_norm2(lap, tmp, work) + hdi_b_norm2(lap, tmp + n, work));
+    if (!lap->B) return hdi_cnorm2w(x, lap->mass, lap->n_active);
+    (void)hdi_system_apply(&mass, x, (hd_c64 *)(void *)tmp);
+    for (i = 0; i < lap->n_active; i++) sum += x[i].re * tmp[2 * i] + x[i].im * tmp[2 * i + 1];
+    return hdi_max(0, sum);
 }
 
 /* u = a0 f - sum a_i x_i, in the order of the poles, and the bounds on its error but for the rational one. */
@@ -13458,17 +13450,6 @@ static void hdi_lane_sum(hdi_lane *lane, const hdi_family *fam) {
                        k->r_norm, &k->x->re, 2);
 }
 
-/* The start of system p from the solution of the next pole: for theta = theta_p in
- *   x(theta) ~ c x_q + (1 - c) conj(x_q),   c = (theta - conj(theta_q))/(theta_q - conj(theta_q)). */
-static void hdi_warm_start(hdi_lane *lane, const hdi_family *fam, int32_t p) {
-    const hd_c64 at = fam->set.theta[p], q = fam->set.theta[p + 1], *HDI_RESTRICT y = lane->k[p + 1].x;
-    const hd_c64 c = q.im > 0 ? hdi_cdiv(hdi_csub(at, hdi_cconj(q)), hdi_c(0, 2 * q.im)) : hdi_c(1, 0);
-    hd_c64 *HDI_RESTRICT x = lane->k[p].x;
-    int32_t i;
-    for (i = 0; i < fam->lap->n_active; i++)     /* conj(x_q) is x_q - 2 i Im(x_q) */
-        x[i] = hdi_cadd(y[i], hdi_cmul(hdi_csub(c, hdi_c(1, 0)), hdi_c(0, 2 * y[i].im)));
-}
-
 /* Runs the systems until the bound of their part of the answer's error is at most aim. Each may use an equal
  * share of what is left over by those before it. fresh: each starts from the solution of the one before it,
  * else from where it is. The order from the last pole to the first was the fastest in measurements. */
@@ -13487,15 +13468,11 @@ static hd_status hdi_lane_run(hdi_lane *lane, const hdi_family *fam, int fresh, 
         const double fair = hdi_max(left / (p + 1), 0.1 * aim / n_poles);
         const double share = weight > 0 ? fair / weight : DBL_MAX;
         const double target = share * sqrt(fam->lap->b_ratio) * hdi_pole_distance(fam->set.theta[p]);
-        const int runs = fresh || k->r_norm > target, warm = fresh && p + 1 < n_poles && b_norm > 0;
+        const int runs = fresh || k->r_norm > target;
         if (runs && hdi_family_shares(fam)) hdi_precond_make(&k->m, k->r);
         if (fresh) hdi_iteration_start(k, b_norm);
-        if (warm) hdi_warm_start(lane, fam, p);
+        if (fresh && p + 1 < n_poles) memcpy(k->x, k[1].x, (size_t)fam->lap->n_active * sizeof *k->x);
         if (runs) hdi_iteration_residual(k, lane->b);
-        if (warm && !(k->r_norm < b_norm)) {
-            hdi_iteration_start(k, b_norm);
-            hdi_iteration_residual(k, lane->b);
-        }
         part.from = watch->from + part.share * (n_poles - 1 - p);
         status = hdi_iteration_run(k, lane->b, target, fam->max_iterations, &part, e);
         if (status < 0) {
@@ -17489,11 +17466,8 @@ static hd_status hdi_shifted_prepare(hd_heat *heat, double t, hd_c64 theta, hd_e
     set.n_poles = 1;
     set.theta[0] = theta;
     if (hdi_heat_iterative(heat, e) < 0 || hdi_heat_make_lanes(heat, 1, e) < 0) return e->status;
-    hdi_family_set(fam, &set, t * heat->scale);
-    if (hdi_family_room(fam, e) < 0 ||
-        hdi_lane_make(heat->lane, hdi_lane_room_of(heat->lap, fam, 0, 1), heat->ctx, e) < 0) return e->status;
-    hdi_lane_systems(heat->lane, fam);
-    return hdi_family_fill(fam, heat->lane, e);
+    if (hdi_lane_make(heat->lane, hdi_lane_room_of(heat->lap, fam, 0, 1), heat->ctx, e) < 0) return e->status;
+    return hdi_family_prepare(fam, &set, t * heat->scale, heat->lane, 1, e);
 }
 
 #define HDI_TOL_SOLVE 1e-10
@@ -18395,15 +18369,11 @@ static hd_status hdi_iterative_prepare(hdi_heat_call *h) {
     const int known = heat->source->b_ratio > 0;
     const int32_t steps = known ? hdi_lanczos_most(h->t, heat->lambda_max) : HDI_LANCZOS_MAX;
     hd_rational set;
-    int32_t i;
     if (h->solver == HD_SOLVER_LANCZOS) return hdi_heat_lanes(h, HDI_LANES_ITERATIVE, steps, 0);
     if (hdi_heat_set(h, &set) < 0) return h->e->status;
-    hdi_family_set(&heat->fam, &set, h->t);
     hdi_report_set(h->rep, &set);
     if (hdi_heat_lanes(h, HDI_LANES_ITERATIVE, 0, set.n_poles) < 0 ||
-        hdi_family_room(&heat->fam, h->e) < 0) return h->e->status;
-    for (i = 0; i < h->n_lanes; i++) hdi_lane_systems(heat->lane + i, &heat->fam);
-    if (hdi_family_fill(&heat->fam, heat->lane, h->e) < 0) return h->e->status;
+        hdi_family_prepare(&heat->fam, &set, h->t, heat->lane, h->n_lanes, h->e) < 0) return h->e->status;
     if (hdi_family_shares(&heat->fam)) h->n_lanes = 1;
     return HD_OK;
 }
