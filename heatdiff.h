@@ -13254,24 +13254,10 @@ static uint64_t hdi_lane_size(const hdi_lane_room *r) {
     return (uint64_t)(3 * (r->n + r->n_components) + basis) + hdi_lane_systems_size(r);
 }
 
-/* Arrays of Lanczos in x, see hdi_lane_size. */
-static void hdi_lane_lanczos(hdi_lanczos *z, const hdi_lane_room *room, double *x) {
-    const int64_t n = room->n, most = (int64_t)room->steps + 1;
-    z->room = room->steps;
-    z->v = x;
-    z->c = z->v + n;
-    z->c_old = z->c + n;
-    z->alpha = z->c_old + n;
-    z->beta = z->alpha + most;
-    z->d = z->beta + most;
-    z->e = z->d + most;
-    z->ends = z->e + most;
-    z->y = z->ends + 2 * most;
-    z->work = (hd_c64 *)(void *)(z->y + most);
-}
-
 /* Room as asked for, or more. Where it grows, what the lane held is lost. */
 static hd_status hdi_lane_make(hdi_lane *lane, hdi_lane_room room, hd_context *ctx, hd_error *e) {
+    hdi_lanczos *z = &lane->lanczos;
+    int64_t most;
     room.steps = hdi_high32(room.steps, lane->room.steps);
     room.systems = hdi_high32(room.systems, lane->room.systems);
     if (lane->f && room.steps == lane->room.steps && room.systems == lane->room.systems) return HD_OK;
@@ -13290,7 +13276,18 @@ static hd_status hdi_lane_make(hdi_lane *lane, hdi_lane_room room, hd_context *c
     lane->spare_sums = lane->sums + room.n_components;
     lane->tmp = lane->spare_sums + room.n_components;
     lane->b = (hd_c64 *)(void *)lane->tmp;
-    hdi_lane_lanczos(&lane->lanczos, &room, lane->tmp + hdi_lane_systems_size(&room));
+    most = (int64_t)room.steps + 1;
+    z->room = room.steps;
+    z->v = lane->tmp + hdi_lane_systems_size(&room);
+    z->c = z->v + room.n;
+    z->c_old = z->c + room.n;
+    z->alpha = z->c_old + room.n;
+    z->beta = z->alpha + most;
+    z->d = z->beta + most;
+    z->e = z->d + most;
+    z->ends = z->e + most;
+    z->y = z->ends + 2 * most;
+    z->work = (hd_c64 *)(void *)(z->y + most);
     if (room.systems) lane->tmp += 6 * room.n;   /* after b and the first two vectors */
     return HD_OK;
 }
@@ -13562,13 +13559,11 @@ static hd_status hdi_elim_make(hdi_elim *m, const hd_laplacian *lap, hd_ordering
     m->pack = HDI_NEW(ctx, hdi_factor, HD_MAX_POLES / 4, e);
     if (e->status >= 0 && hdi_pair_analyse(&m->sym, lap, ordering, own, ctx, e) >= 0)
         m->lap = hdi_pair_renumber(lap, m->sym.perm, ctx, e);
-    if (m->lap) {
-        m->weight = hdi_make_weight(m->lap, ctx, e);
-        m->noise = m->weight ? m->weight + lap->n_active : NULL;
-        m->noise_shift = m->weight ? m->noise + lap->n_active : NULL;
-    }
-    if (e->status < 0) hdi_elim_free(m);
-    return e->status;
+    if (m->lap) m->weight = hdi_make_weight(m->lap, ctx, e);
+    if (!m->weight) return hdi_elim_free(m), e->status;
+    m->noise = m->weight + lap->n_active;
+    m->noise_shift = m->noise + lap->n_active;
+    return HD_OK;
 }
 
 /* Factors t L + theta B for the width of f: for a real theta, or four. t comes scaled, as B does in lap. */
@@ -13797,7 +13792,7 @@ static void hdi_batch_extra(const hdi_elim *m, int32_t i, const double *x, const
     }
 }
 
-/* Puts the constants of a right-hand side that was solved without them into its further sums. */
+/* Puts the constants of a right-hand side that was solved without them, lane->sums, into its further sums. */
 static void hdi_batch_extra_means(const hdi_elim *m, hdi_lane *lane) {
     const hd_laplacian *lap = m->lap;
     int32_t row, p, i;
@@ -13805,8 +13800,7 @@ static void hdi_batch_extra_means(const hdi_elim *m, hdi_lane *lane) {
         const hd_c64 *w = lane->rows.weight + (int64_t)row * lane->rows.stride;
         double *to = lane->rows.sum + (int64_t)row * lap->n_active, c = 0;
         for (p = 0; p < m->set.n_poles; p++) c += hdi_cdiv(w[p], m->set.theta[p]).re;
-        for (i = 0; i < lap->n_active; i++)
-            to[i] += c * lane->target[lap->component[i]] / lap->component_mass[lap->component[i]];
+        for (i = 0; i < lap->n_active; i++) to[i] += c * lane->sums[lap->component[i]];
     }
 }
 
@@ -14244,19 +14238,21 @@ typedef enum hdi_after { HDI_AFTER_SOLVES, HDI_AFTER_BOUND, HDI_AFTER_INVERSE, H
 static uint64_t hdi_elim_need(const hdi_elim *m, const hd_rational *set, hdi_after after, int32_t n_sets,
                               uint64_t solves, hd_error *e) {
     const int32_t lone = hdi_set_lone(set), packs = hdi_set_packs(set);
-    const int forms = after == HDI_AFTER_FORMS, bound = after == HDI_AFTER_BOUND;
     uint64_t bytes = 0, most = solves, need;
     int32_t i;
     for (i = m->n_packs; i < packs; i++) bytes += hdi_factor_tally(&m->sym, HDI_PACK, i > 0);
     if (lone && !m->real.ctx) bytes += hdi_factor_bytes(&m->sym, 1);
-    if (bound && !m->resolvent) hdi_scope_count(&bytes, (uint64_t)m->sym.n, sizeof *m->resolvent);
-    for (i = 0; i < 2 && after != HDI_AFTER_SOLVES && e->status >= 0; i++) {
+    if (after == HDI_AFTER_BOUND) {
+        if (!m->resolvent) hdi_scope_count(&bytes, (uint64_t)m->sym.n, sizeof *m->resolvent);
+        need = hdi_inverse_bytes(&m->sym, 1, !lone, hdi_elim_room(m, packs));
+        if (most < need) most = need;
+    }
+    for (i = 0; i < 2 && after > HDI_AFTER_BOUND && e->status >= 0; i++) {
         const int32_t width = i == 0 ? 1 : HDI_PACK;
-        if (!(bound ? i == 0 : i == 0 ? lone : packs)) continue;
-        need = bound ? hdi_inverse_bytes(&m->sym, 1, !lone, hdi_elim_room(m, packs))
-               : hdi_inverse_bytes(&m->sym, width, 0, 0);
-        if (!bound) hdi_scope_count(&need, HDI_PACK * (uint64_t)n_sets, sizeof(double));
-        if (forms) need += hdi_forms_bytes(&m->sym, width, &m->source->L, m->ctx, e);
+        if (!(i == 0 ? lone : packs)) continue;
+        need = hdi_inverse_bytes(&m->sym, width, 0, 0);
+        hdi_scope_count(&need, HDI_PACK * (uint64_t)n_sets, sizeof(double));
+        if (after == HDI_AFTER_FORMS) need += hdi_forms_bytes(&m->sym, width, &m->source->L, m->ctx, e);
         if (most < need) most = need;
     }
     return bytes + most;
@@ -16245,13 +16241,15 @@ static hd_status hdi_spec_lanczos(hdi_spec *s, int32_t missing, int32_t beyond, 
 
 /* ---- locking ---- */
 
-/* Another block for vectors that are found. */
-static double *hdi_spec_block(hdi_spec *s, hd_error *e) {
-    double *x = HDI_NEW(s->ctx, double, HDI_WIDE * (uint64_t)s->n, e);
-    if (!x) return NULL;
-    memset(x, 0, HDI_WIDE * (size_t)s->n * sizeof *x);
-    s->high[s->n_lock] = -HUGE_VAL;
-    return s->lock[s->n_lock++] = x;
+/* Blocks for n more vectors. */
+static hd_status hdi_spec_blocks(hdi_spec *s, int32_t n, hd_error *e) {
+    for (; n > 0; n -= HDI_WIDE) {
+        double *x = (double *)hdi_alloc_zero(s->ctx, HDI_WIDE * (uint64_t)s->n, sizeof *x, e);
+        if (!x) break;
+        s->high[s->n_lock] = -HUGE_VAL;
+        s->lock[s->n_lock++] = x;
+    }
+    return e->status;
 }
 
 /* Enters a pair whose vector is at a place. */
@@ -16368,7 +16366,7 @@ static hd_status hdi_spec_lock(hdi_spec *s, hd_error *e) {
         value[j] = hdi_spec_lambda(s, i);
     }
     n = hdi_low32(n, 8 * (s->room_lock - first));
-    for (i = 0; i < n; i += 8) if (!hdi_spec_block(s, e)) return e->status;
+    if (hdi_spec_blocks(s, n, e) < 0) return e->status;
     for (i = 0; i < n; i += most)
         hdi_spec_form(s, which + i, hdi_low32(n - i, most), s->lock + first + i / 8);
     for (i = 0; i < n; i += 8)
@@ -16379,20 +16377,18 @@ static hd_status hdi_spec_lock(hdi_spec *s, hd_error *e) {
 
 /* Constants of the first `most` components whose rows of L sum to zero: eigenvalue 0, without any search. */
 static hd_status hdi_spec_constants(hdi_spec *s, int32_t most, hd_error *e) {
-    hdi_scope work = hdi_scope_begin(s->ctx, e);
-    char *loose = HDI_TAKE(&work, char, s->lap->n_components);
-    int32_t *at = HDI_TAKE(&work, int32_t, s->lap->n_components), i, k, n = 0;
-    if (e->status < 0) return hdi_scope_end(&work);
+    char *loose = (char *)s->tmp;                /* their room is not in use yet */
+    int32_t *at = s->at, i, k, n = 0;
     hdi_ground_components(s->lap, loose);
     for (k = 0; k < s->lap->n_components; k++) at[k] = loose[k] && n < most ? n++ : -1;
-    for (k = 0; k < n; k += 8) if (!hdi_spec_block(s, e)) return hdi_scope_end(&work);
+    if (hdi_spec_blocks(s, n, e) < 0) return e->status;
     for (i = 0; i < s->n; i++) {
         const int32_t c = s->lap->component[i];
         if (at[c] >= 0) s->lock[at[c] / 8][8 * (int64_t)i + at[c] % 8] = 1 / sqrt(s->lap->component_mass[c]);
     }
     for (i = 0; i < n; i++) hdi_spec_enter(s, 0, 0, i);
     s->out->n_constant = n;
-    return hdi_scope_end(&work);
+    return HD_OK;
 }
 
 /* ---- counts ---- */
@@ -16432,17 +16428,11 @@ static double hdi_spec_count_off(hdi_spec *s) {
     return 0.5 * DBL_EPSILON * (1 + 1e-3) * worst * hdi_ratio_root(s->lap) * hdi_ratio_root(s->lap);
 }
 
-/* Factorises L - sigma B and counts. A shift where a pivot is zero is moved a little. */
-static hd_status hdi_spec_shift(hdi_spec *s, double sigma, double step, hd_error *e) {
-    int32_t tries;
-    for (tries = 0;; tries++) {
-        s->out->n_factors++;
-        s->sigma = sigma;
-        if (hdi_elim_real(s->m, &s->factor, 1, -sigma, e) >= 0) break;
-        if (e->status != HD_ERR_BREAKDOWN || tries == 4) return e->status;
-        hdi_error_clear(e);
-        sigma += 0.01 * step;
-    }
+/* Factorises L - sigma B and counts. */
+static hd_status hdi_spec_shift(hdi_spec *s, double sigma, hd_error *e) {
+    s->out->n_factors++;
+    s->sigma = sigma;
+    if (hdi_elim_real(s->m, &s->factor, 1, -sigma, e) < 0) return e->status;
     s->negative = s->factor.all.negative;
     s->off = hdi_spec_count_off(s);
     return HD_OK;
@@ -16485,60 +16475,49 @@ static int32_t hdi_spec_wanted(const hdi_spec *s, int *all) {
     return hdi_low32(n, s->count);
 }
 
-/* The middle of the widest gap among the next ones after the first n values, above `least`; HUGE_VAL if none
- * is wider than `narrow`. */
-static double hdi_spec_gap(const hdi_spec *s, int32_t n, double least, double narrow) {
-    double widest = narrow, at = HUGE_VAL;
-    int32_t i;
-    for (i = n; i < s->found && i < n + HDI_SPEC_GAPS; i++) {
-        const double from = hdi_max(i > 0 ? s->value[i - 1] : -HUGE_VAL, least);
-        if (!(s->value[i] - from > widest)) continue;
-        widest = s->value[i] - from;
-        at = from + widest / 2;
-    }
-    return at;
-}
-
-/* The next shift: in a gap above what is wanted if that much is found, else some way up, and every time much
- * farther where nothing was: parts of unlike scales may be 10^11 apart. failed: proofs that did not succeed;
- * each takes some more pairs. */
+/* The next shift: in the middle of the widest gap above what is wanted if that much is found, else some way
+ * up, and every time much farther where nothing was: parts of unlike scales may be 10^11 apart. failed:
+ * proofs that did not succeed; each takes some more pairs. */
 static double hdi_spec_next(const hdi_spec *s, int32_t failed, int32_t half) {
     int all;
     const int32_t n = hdi_spec_wanted(s, &all) + failed * HDI_SPEC_GAPS;
+    const double least = s->below < HUGE_VAL ? hdi_max(s->below, s->edge) : s->edge;
     const double step = hdi_spec_spacing(s);
     const double from = hdi_max(s->edge, s->found > 0 ? s->value[s->found - 1] : s->edge);
-    double at;
-    if (all && n < s->found) {
-        at = s->below < HUGE_VAL && s->below > s->edge ? s->below : s->edge;
-        at = hdi_spec_gap(s, n, at, HDI_SPEC_NARROW * step);
-        if (at < HUGE_VAL) return at;
+    double widest = HDI_SPEC_NARROW * step, at = HUGE_VAL;
+    int32_t i;
+    for (i = n; all && i < s->found && i < n + HDI_SPEC_GAPS; i++) {
+        const double low = hdi_max(i > 0 ? s->value[i - 1] : least, least);
+        if (!(s->value[i] - low > widest)) continue;
+        widest = s->value[i] - low;
+        at = low + widest / 2;
     }
+    if (at < HUGE_VAL) return at;
     at = hdi_min(half, (double)s->count - s->found + 3);
     at = from + ldexp(step, s->idle * (s->idle + 1) / 2) * hdi_max(1, at);
-    if (at >= s->below) at = hdi_max(s->below, from + 0.3 * step);
-    return at;
-}
-
-/* A shift that is not next to a value found. */
-static double hdi_spec_clear(const hdi_spec *s, double at, double step) {
-    int32_t i;
-    for (i = 0; i < s->found; i++)
-        if (fabs(s->value[i] - at) < HDI_SPEC_NARROW * step) at = s->value[i] + HDI_SPEC_NARROW * step;
-    return at;
+    return at < s->below ? at : hdi_max(s->below, from + 0.3 * step);
 }
 
 /* A shift below which about as many values are missing as a run finds, or none. */
 static hd_status hdi_spec_move(hdi_spec *s, int32_t failed, int32_t half, int64_t *missing, hd_error *e) {
-    const double step = hdi_spec_spacing(s);
-    double at = hdi_spec_next(s, failed, half), low = s->edge;
-    int32_t tries;
+    const double step = hdi_spec_spacing(s), apart = HDI_SPEC_NARROW * step;
+    double at = hdi_spec_next(s, failed, half);
+    int32_t tries, i;
     for (tries = 0; tries < HDI_SPEC_TRIES; tries++) {
-        if (hdi_spec_shift(s, hdi_spec_clear(s, at, step), step, e) < 0) return e->status;
+        double sigma = at;
+        for (i = 0; i < s->found; i++)           /* not next to a value found */
+            if (fabs(s->value[i] - sigma) < apart) sigma = s->value[i] + apart;
+        if (hdi_spec_shift(s, sigma, e) < 0) {
+            if (e->status != HD_ERR_BREAKDOWN || tries + 1 == HDI_SPEC_TRIES) return e->status;
+            hdi_error_clear(e);                  /* a pivot is zero */
+            at += 0.37 * step;
+            continue;
+        }
         *missing = s->negative - hdi_spec_rank(s, s->sigma);
         if (*missing < 0) at += 0.37 * step;     /* too near to a value: the count is wrong */
         else if (*missing > 2 * half) {
             const double from = s->found > 0 && *missing < 2 * (int64_t)half * HDI_SPEC_TRIES
-                ? hdi_max(low, hdi_min(s->value[s->found - 1], 0.5 * (low + at))) : low;
+                ? hdi_max(s->edge, hdi_min(s->value[s->found - 1], 0.5 * (s->edge + at))) : s->edge;
             at = from + (at - from) * hdi_max(0.05, half / (double)*missing);
         } else if (s->factor.all.largest > HDI_SPEC_GROWTH * s->factor.largest_entry && *missing > 0) {
             at += 0.11 * step;                   /* there may be better ones */
@@ -16566,7 +16545,7 @@ static hd_status hdi_spec_start(hdi_spec *s, hd_error *e) {
     }
     s->unit = sum > 0 ? 1 / sum : 1;
     s->edge = -s->unit;
-    if (hdi_spec_constants(s, s->count, e) < 0 || hdi_spec_shift(s, -s->unit, 0, e) < 0) return e->status;
+    if (hdi_spec_constants(s, s->count, e) < 0 || hdi_spec_shift(s, -s->unit, e) < 0) return e->status;
     if (s->negative && s->off < s->unit) return hdi_not_semidefinite(e);
     if (s->negative)
         return hdi_fail(e, HD_ERR_NOT_CONVERGED, "spectrum: the entries of L differ by so much that rounding "
@@ -16800,21 +16779,13 @@ typedef struct hdi_bank {
     double noise, most;          /* of rounding; the largest weight */
 } hdi_bank;
 
-/* Sums over the pairs: columns or distances of k sources at n_times times, or a diagonal. */
-typedef enum hdi_spec_kind { HDI_SPEC_COLUMNS, HDI_SPEC_DIAGONAL, HDI_SPEC_DISTANCE } hdi_spec_kind;
-
+/* Sums over the pairs: a column, a diagonal or distances, for one source and time. */
 typedef struct hdi_spec_sums {
     const hdi_modes *of;
     int distance, diagonal;      /* squares of differences, or of entries, instead of products */
     int mass;                    /* of B x instead of x */
     int power;                   /* 0: of exp(-t lambda); without a time of 1/lambda^power */
-    int32_t n_times, k;
-    const double *t;
-    const hdi_terms *terms;      /* [k] sources, not for the diagonal */
-    double *out, *bound;         /* column q n_times + m for source q and time m, ld apart; bound or NULL */
-    size_t ld;
-    /* for one source and time */
-    hdi_bank bank;
+    hdi_bank bank;               /* for one time */
     double *x;                   /* [count] the source in the vectors */
     hdi_share from;              /* of the source */
     double sums_off;             /* rounding of sums over it, relative */
@@ -16924,12 +16895,6 @@ static hdi_parts hdi_bank_off(const hdi_spec_sums *a, const hdi_share *g, const 
     return off;
 }
 
-/* A bound of |sqrt(a) - sqrt(b)| where b differs by at most off from a. */
-static double hdi_spec_root_off(double a, double off) {
-    if (off >= HUGE_VAL) return off;
-    return off > 0 ? off / hdi_max(sqrt(hdi_max(a, 0)), sqrt(off)) : 0;
-}
-
 /* Bounds of the error of value d at vertex v. */
 static hdi_parts hdi_spec_off(const hdi_spec_sums *a, int32_t v, double d) {
     const hdi_bank *b = &a->bank;
@@ -16937,13 +16902,14 @@ static hdi_parts hdi_spec_off(const hdi_spec_sums *a, int32_t v, double d) {
     const hdi_share f = a->diagonal ? hdi_share_of(a, v, a->mass) : a->from;
     hdi_parts off = {0, 0, 0}, square;
     hdi_share y = f;
-    double beside;
+    double beside, all;
     if (!a->distance) return hdi_bank_off(a, &g, &f, d);
     hdi_share_add(&y, 1, g);
     if (a->inner) y.inner = a->inner[v];
     if (a->power) {
         square = hdi_bank_off(a, &y, &y, d * d);
-        off.rational = hdi_spec_root_off(d * d, hdi_parts_sum(&square));
+        all = hdi_parts_sum(&square);            /* of d^2 */
+        off.rational = all > 0 && hdi_finite(all) ? all / hdi_max(d, sqrt(all)) : all;
         return off;
     }
     beside = hdi_decayed(b, (b->cut + b->square) * y.left);
@@ -17058,20 +17024,36 @@ static void hdi_spec_sum_others(const hdi_spec_sums *a, const hdi_terms *from) {
     }
 }
 
-static void hdi_spec_sums_run(hdi_spec_sums *a, hd_context *ctx) {
+/* A call for sums. kind: an hd_kernel or, for distances, an hd_distance_kind. Column q n_times + m is for
+ * source q and time m. */
+typedef enum hdi_spec_sort { HDI_SPEC_COLUMNS, HDI_SPEC_DIAGONAL, HDI_SPEC_DISTANCE } hdi_spec_sort;
+
+typedef struct hdi_spec_ask {
+    hdi_spec_sort sort;
+    int kind;
+    int32_t n_times;
+    const double *t;
+    const hd_sources *sources;   /* not for the diagonal */
+    double *out, *bound;         /* columns ld apart; bound or NULL */
+    size_t ld;
+} hdi_spec_ask;
+
+/* terms: of the sources. */
+static void hdi_spec_sums_run(hdi_spec_sums *x, const hdi_spec_ask *a, const hdi_terms *terms,
+                              hd_context *ctx) {
     hdi_terms from;
     int32_t q, m;
     memset(&from, 0, sizeof from);
-    for (q = 0; q < a->k; q++) {
-        if (!a->diagonal) from = a->terms[q];
+    for (q = 0; q < (x->diagonal ? 1 : a->sources->count); q++) {
+        if (!x->diagonal) from = terms[q];
         for (m = 0; m < a->n_times; m++) {
             const size_t at = ((size_t)q * (size_t)a->n_times + (size_t)m) * a->ld;
-            a->column = a->out + at;
-            a->off = a->bound ? a->bound + at : NULL;
-            hdi_spec_sum_at(a, a->t[m]);
-            hdi_spec_sum_from(a, &from);
-            hdi_parallel_ranges(ctx, a->of->s.n, 1024, hdi_spec_sum_task, a);
-            hdi_spec_sum_others(a, &from);
+            x->column = a->out + at;
+            x->off = a->bound ? a->bound + at : NULL;
+            hdi_spec_sum_at(x, a->t[m]);
+            hdi_spec_sum_from(x, &from);
+            hdi_parallel_ranges(ctx, x->of->s.n, 1024, hdi_spec_sum_task, x);
+            hdi_spec_sum_others(x, &from);
         }
     }
 }
@@ -17092,63 +17074,51 @@ static hdi_modes hdi_modes_of(const hd_spectrum *s, double *off) {
     return x;
 }
 
-static hd_status hdi_spec_sums_check(const hdi_spec_sums *x, const hd_spectrum *s, hd_error *e) {
+static hd_status hdi_spec_sums_check(const hdi_spec_ask *a, const hd_spectrum *s, int timeless, hd_error *e) {
+    const int32_t k = a->sort == HDI_SPEC_DIAGONAL ? 1 : a->sources->count;
     int32_t q;
-    if ((x->n_times > 0 && !x->t) || (x->k > 0 && !x->out)) return hdi_missing(e);
-    hdi_refuse(x->n_times < 1, "spectrum: there is no time", e);
-    hdi_refuse(x->k < 0, "spectrum: a number of columns is negative", e);
-    hdi_refuse(x->ld < (size_t)s->n, "spectrum: columns would overlap", e);
-    for (q = 0; q < x->n_times; q++)
-        hdi_refuse_value(!hdi_finite(x->t[q]) || x->t[q] < 0, "spectrum: t is negative or not finite",
-                         x->t[q], e);
-    hdi_refuse(x->power && x->n_times > 1, "spectrum: this distance has no time", e);
+    if ((a->n_times > 0 && !a->t) || (k > 0 && !a->out)) return hdi_missing(e);
+    hdi_refuse(a->n_times < 1, "spectrum: there is no time", e);
+    hdi_refuse(k < 0, "spectrum: a number of columns is negative", e);
+    hdi_refuse(a->ld < (size_t)s->n, "spectrum: columns would overlap", e);
+    for (q = 0; q < a->n_times; q++)
+        hdi_refuse_value(!hdi_finite(a->t[q]) || a->t[q] < 0, "spectrum: t is negative or not finite",
+                         a->t[q], e);
+    hdi_refuse(timeless && a->n_times > 1, "spectrum: this distance has no time", e);
     return e->status;
 }
 
-/* The arguments of a call for sums. kind: an hd_kernel or, for distances, an hd_distance_kind. */
-typedef struct hdi_spec_ask {
-    hdi_spec_kind what;
-    int kind;
-    int32_t n_times;
-    const double *t;
-    const hd_sources *sources;
-    double *out, *bound;
-    size_t ld;
-} hdi_spec_ask;
-
-static hd_status hdi_spec_sums_ask(const hd_spectrum *s, const hdi_spec_ask *a, hd_error *err) {
-    const hdi_distance_row *row = hdi_distance_of((hd_distance_kind)a->kind);
+static hd_status hdi_spec_sums_ask(const hd_spectrum *s, hdi_spec_ask a, hd_error *err) {
+    const hdi_distance_row *row = hdi_distance_of((hd_distance_kind)a.kind);
     const double zero = 0;
+    hdi_terms *terms = NULL;
     hdi_spec_sums x;
     hdi_scope scope;
     hdi_modes of;
     hdi_call c;
-    if (hdi_enter(&c, s ? s->context : NULL, s && (a->what == HDI_SPEC_DIAGONAL || a->sources), err) < 0)
+    if (hdi_enter(&c, s ? s->context : NULL, s && (a.sort == HDI_SPEC_DIAGONAL || a.sources), err) < 0)
         return c.e->status;
     if (!HDI_HAS_SPECTRUM) return HDI_LEFT_OUT(c.e, SPECTRUM, "eigenpairs");
     memset(&x, 0, sizeof x);
-    x.diagonal = a->what == HDI_SPEC_DIAGONAL;
-    x.distance = a->what == HDI_SPEC_DISTANCE;
+    x.diagonal = a.sort == HDI_SPEC_DIAGONAL;
+    x.distance = a.sort == HDI_SPEC_DISTANCE;
     x.power = x.distance && row ? row->power : 0;
-    x.mass = !x.distance ? a->kind == HD_KERNEL_OPERATOR : row && row->mass > 0;
-    x.n_times = x.power ? hdi_high32(a->n_times, 1) : a->n_times;
-    x.t = x.power && a->n_times <= 1 ? &zero : a->t;
-    x.k = x.diagonal ? 1 : a->sources->count;
-    x.out = a->out;
-    x.bound = a->bound;
-    x.ld = a->ld ? a->ld : (size_t)s->n;
-    if (hdi_spec_sums_check(&x, s, c.e) < 0) return c.e->status;
-    if (x.distance && !row) return hdi_fail(c.e, HD_ERR_ARGUMENT, "spectrum: unknown distance");
-    if (!x.distance && !x.mass && a->kind != HD_KERNEL_SYMMETRIC)
-        return hdi_fail(c.e, HD_ERR_ARGUMENT, "spectrum: unknown kernel");
+    x.mass = x.distance ? row && row->mass > 0 : a.kind == HD_KERNEL_OPERATOR;
+    if (x.power && a.n_times <= 1) a.t = &zero;
+    if (x.power) a.n_times = hdi_high32(a.n_times, 1);
+    if (a.ld == 0) a.ld = (size_t)s->n;
+    if (hdi_spec_sums_check(&a, s, x.power, c.e) < 0) return c.e->status;
+    if (x.distance ? !row : !x.mass && a.kind != HD_KERNEL_SYMMETRIC)
+        return hdi_fail(c.e, HD_ERR_ARGUMENT,
+                        x.distance ? "spectrum: unknown distance" : "spectrum: unknown kernel");
     scope = hdi_scope_begin(c.ctx, c.e);
     x.x = HDI_TAKE(&scope, double, 5 * (uint64_t)s->count + 1);
-    if (!x.diagonal && x.x) x.terms = hdi_terms_all(a->sources, s->lap, x.distance, &scope);
+    if (!x.diagonal && x.x) terms = hdi_terms_all(a.sources, s->lap, x.distance, &scope);
     if (c.e->status >= 0) {
         x.bank.weight = x.x + s->count;
         of = hdi_modes_of(s, x.x + 4 * (size_t)s->count);
         x.of = &of;
-        hdi_spec_sums_run(&x, c.ctx);
+        hdi_spec_sums_run(&x, &a, terms, c.ctx);
     }
     return hdi_scope_end(&scope);
 }
@@ -24402,21 +24372,21 @@ HEATDIFF_API hd_status hd_spectrum_columns(const hd_spectrum *s, hd_kernel kerne
                                            const double *t, const hd_sources *sources, double *U,
                                            double *bound, size_t ldu, hd_error *err) {
     const hdi_spec_ask ask = {HDI_SPEC_COLUMNS, (int)kernel, n_times, t, sources, U, bound, ldu};
-    return hdi_spec_sums_ask(s, &ask, err);
+    return hdi_spec_sums_ask(s, ask, err);
 }
 
 HEATDIFF_API hd_status hd_spectrum_diagonal(const hd_spectrum *s, hd_kernel kernel, int32_t n_times,
                                             const double *t, double *D, double *bound, size_t ldd,
                                             hd_error *err) {
     const hdi_spec_ask ask = {HDI_SPEC_DIAGONAL, (int)kernel, n_times, t, NULL, D, bound, ldd};
-    return hdi_spec_sums_ask(s, &ask, err);
+    return hdi_spec_sums_ask(s, ask, err);
 }
 
 HEATDIFF_API hd_status hd_spectrum_distance(const hd_spectrum *s, hd_distance_kind kind, int32_t n_times,
                                             const double *t, const hd_sources *sources, double *D,
                                             double *bound, size_t ldd, hd_error *err) {
     const hdi_spec_ask ask = {HDI_SPEC_DISTANCE, (int)kind, n_times, t, sources, D, bound, ldd};
-    return hdi_spec_sums_ask(s, &ask, err);
+    return hdi_spec_sums_ask(s, ask, err);
 }
 
 HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const double *t, int32_t k,
