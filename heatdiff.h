@@ -14222,10 +14222,6 @@ static hd_status hdi_elim_bound(hdi_elim *m, hd_error *e) {
         }
         m->resolvent_t = m->t;
     }
-    if (e->status < 0) {
-        hdi_free(m->ctx, m->resolvent);
-        m->resolvent = NULL;
-    }
     return hdi_scope_end(&s);
 }
 
@@ -15810,7 +15806,7 @@ typedef struct hdi_spec {
     double *sweep, *h, *part, *work;
     double *noise;               /* [n] weights of rounding in residuals; [n] work */
     int32_t alike;               /* vectors of a block depended on each other */
-    uint32_t seed;
+    uint64_t seed;
 } hdi_spec;
 
 /* Frees what only runs need. */
@@ -16119,6 +16115,19 @@ static int32_t hdi_spec_append(hdi_spec *s) {
 
 /* ---- a run ---- */
 
+/* A block of numbers in (-1, 1) that are the same on every machine (splitmix64). */
+static void hdi_spec_random(hdi_spec *s, double *w) {
+    const int64_t size = 8 * (int64_t)s->n;
+    int64_t i;
+    for (i = 0; i < size; i++) {
+        uint64_t x = s->seed += UINT64_C(0x9e3779b97f4a7c15);
+        x = (x ^ x >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
+        x = (x ^ x >> 27) * UINT64_C(0x94d049bb133111eb);
+        x ^= x >> 31;
+        w[i] = (double)(int64_t)(x >> 11) * ldexp(1, -52) - 1;
+    }
+}
+
 static double hdi_spec_lambda(const hdi_spec *s, int32_t i) { return s->sigma + 1 / s->d[i]; }
 
 static int hdi_spec_converged(const hdi_spec *s, int32_t i) {
@@ -16214,12 +16223,10 @@ static int hdi_spec_enough(const hdi_spec *s, int32_t missing, int32_t beyond) {
  * until the basis is full. */
 static hd_status hdi_spec_lanczos(hdi_spec *s, int32_t missing, int32_t beyond, hd_error *e) {
     int32_t look = missing + beyond + 4 * HDI_WIDE;
-    int64_t i;
     hdi_spec_nearby(s);
     s->n_blocks = s->cols = 0;
     s->lost = 0;
-    for (i = 0; i < 8 * (int64_t)s->n; i++)
-        s->basis[i] = 2 * hdi_point_chance((int32_t)(s->seed++ & INT32_MAX)) - 1;
+    hdi_spec_random(s, s->basis);
     s->width = hdi_spec_append(s);
     s->out->n_runs++;
     while (s->width > 0) {                       /* else nothing is left of the space */
