@@ -2746,6 +2746,7 @@ typedef struct hdi_residual {
     /* of each block |R|^2 in the norm of weight, |X|^2 in that of noise, and X'BX, by numbers; or NULL */
     double (*sum)[3][HDI_PACK];
     const double *weight, *noise;
+    void (*kernel)(const struct hdi_residual *g);
 } hdi_residual;
 
 /* The kernels of one instruction set and width. A tile has nr columns. Slices: groups of nr columns of a
@@ -12866,9 +12867,8 @@ HEATDIFF_API hd_status hd_rational_fit(hd_rational *out, int32_t count, const hd
  * Owns the family t L + theta_i B over the poles of a set: solutions for one right-hand side, by iterations
  * or with factors, their weighted sum, the bound on its error, and weighted sums of the inverses. May call
  * [18], [20] and [21].
- * Iterations take the poles one after the other, because a solution gives a start for the next pole: the
- * conjugate of a solution is the solution of the conjugate pole, and x(theta) is continued by the straight
- * line through both. Parallel tasks are right-hand sides, and preconditioners. */
+ * Iterations take the poles one after the other, because a solution is a start for the next pole. Parallel
+ * tasks are right-hand sides, and preconditioners. */
 
 /* ---- what answers can be off by ---- */
 /* An error r in the system of a pole, b - A x = r, is an error A^-1 r in its solution. Two norms bound it:
@@ -13095,38 +13095,12 @@ static int hdi_set_same_poles(const hd_rational *a, const hd_rational *b) {
     return a->n_poles == b->n_poles && memcmp(a->theta, b->theta, (size_t)a->n_poles * sizeof *a->theta) == 0;
 }
 
-/* Takes up a set and a time. When filled is 0, hdi_family_fill must follow. */
-static void hdi_family_set(hdi_family *fam, const hd_rational *set, double t) {
-    const int held = fam->filled && fam->t == t && hdi_set_same_poles(&fam->set, set);
-    fam->set = *set;                             /* weights cost nothing */
-    if (held) return;
-    fam->filled = 0;
-    fam->t = t;
-    hdi_noise_weights(fam->lap, t, hdi_rat_largest(set), fam->noise, fam->noise_work);
-}
-
 /* Do poles make their preconditioners in turns? */
 static int hdi_family_shares(const hdi_family *fam) { return fam->n_values < fam->set.n_poles; }
 
 /* Values of a preconditioner. */
 static uint64_t hdi_family_size(const hdi_family *fam) {
     return hdi_precond_size(hdi_preconds + fam->precond, fam->up->n, fam->up->ptr[fam->up->n]);
-}
-
-/* Room for the preconditioners of the set. */
-static hd_status hdi_family_room(hdi_family *fam, hd_error *e) {
-    const uint64_t size = hdi_family_size(fam);
-    int32_t room = fam->set.n_poles;
-    if (fam->n_values >= room) return HD_OK;
-    hdi_family_free(fam);
-    fam->values = HDI_NEW(fam->ctx, hd_c64, (uint64_t)room * size, e);
-    if (room > 1 && hdi_over_limit(fam->ctx, e)) {
-        hdi_error_clear(e);
-        fam->values = HDI_NEW(fam->ctx, hd_c64, size, e);
-        room = 1;
-    }
-    if (fam->values) fam->n_values = room;
-    return e->status;
 }
 
 /* Most right-hand sides at a time: in all, by iterations, and in a batch with the factors of the poles.
@@ -13225,24 +13199,10 @@ static uint64_t hdi_lane_size(const hdi_lane_room *r) {
     return (uint64_t)(3 * (r->n + r->n_components) + basis) + hdi_lane_systems_size(r);
 }
 
-/* Arrays of Lanczos in x, see hdi_lane_size. */
-static void hdi_lane_lanczos(hdi_lanczos *z, const hdi_lane_room *room, double *x) {
-    const int64_t n = room->n, most = (int64_t)room->steps + 1;
-    z->room = room->steps;
-    z->v = x;
-    z->c = z->v + n;
-    z->c_old = z->c + n;
-    z->alpha = z->c_old + n;
-    z->beta = z->alpha + most;
-    z->d = z->beta + most;
-    z->e = z->d + most;
-    z->ends = z->e + most;
-    z->y = z->ends + 2 * most;
-    z->work = (hd_c64 *)(void *)(z->y + most);
-}
-
 /* Room as asked for, or more. Where it grows, what the lane held is lost. */
 static hd_status hdi_lane_make(hdi_lane *lane, hdi_lane_room room, hd_context *ctx, hd_error *e) {
+    hdi_lanczos *z = &lane->lanczos;
+    int64_t most;
     room.steps = hdi_high32(room.steps, lane->room.steps);
     room.systems = hdi_high32(room.systems, lane->room.systems);
     if (lane->f && room.steps == lane->room.steps && room.systems == lane->room.systems) return HD_OK;
@@ -13261,7 +13221,18 @@ static hd_status hdi_lane_make(hdi_lane *lane, hdi_lane_room room, hd_context *c
     lane->spare_sums = lane->sums + room.n_components;
     lane->tmp = lane->spare_sums + room.n_components;
     lane->b = (hd_c64 *)(void *)lane->tmp;
-    hdi_lane_lanczos(&lane->lanczos, &room, lane->tmp + hdi_lane_systems_size(&room));
+    most = (int64_t)room.steps + 1;
+    z->room = room.steps;
+    z->v = lane->tmp + hdi_lane_systems_size(&room);
+    z->c = z->v + room.n;
+    z->c_old = z->c + room.n;
+    z->alpha = z->c_old + room.n;
+    z->beta = z->alpha + most;
+    z->d = z->beta + most;
+    z->e = z->d + most;
+    z->ends = z->e + most;
+    z->y = z->ends + 2 * most;
+    z->work = (hd_c64 *)(void *)(z->y + most);
     if (room.systems) lane->tmp += 6 * room.n;   /* after b and the first two vectors */
     return HD_OK;
 }
@@ -13302,8 +13273,29 @@ static void hdi_fill_task(void *arg, int64_t index, int32_t worker) {
     hdi_precond_make(&lane->k[index].m, lane->b + index * lane->room.n);
 }
 
-/* Makes the preconditioners, one parallel task each, with the systems of a lane. */
-static hd_status hdi_family_fill(hdi_family *fam, hdi_lane *lane, hd_error *e) {
+/* Takes up a set and a time with n lanes: their systems, and the preconditioners, one parallel task each. */
+static hd_status hdi_family_prepare(hdi_family *fam, const hd_rational *set, double t, hdi_lane *lane,
+                                    int32_t n, hd_error *e) {
+    const uint64_t size = hdi_family_size(fam);
+    int32_t room = set->n_poles, i;
+    if (!fam->filled || fam->t != t || !hdi_set_same_poles(&fam->set, set)) {
+        fam->filled = 0;
+        hdi_noise_weights(fam->lap, t, hdi_rat_largest(set), fam->noise, fam->noise_work);
+    }
+    fam->set = *set;                             /* weights cost nothing */
+    fam->t = t;
+    if (fam->n_values < room) {
+        hdi_family_free(fam);
+        fam->values = HDI_NEW(fam->ctx, hd_c64, (uint64_t)room * size, e);
+        if (room > 1 && hdi_over_limit(fam->ctx, e)) {
+            hdi_error_clear(e);
+            fam->values = HDI_NEW(fam->ctx, hd_c64, size, e);
+            room = 1;
+        }
+        if (!fam->values) return e->status;
+        fam->n_values = room;
+    }
+    for (i = 0; i < n; i++) hdi_lane_systems(lane + i, fam);
     if (fam->filled) return HD_OK;
     if (hdi_progress(fam->ctx, "precondition", 0, e) < 0) return e->status;
     if (!hdi_family_shares(fam)) hdi_parallel(fam->ctx, fam->set.n_poles, hdi_fill_task, lane);
@@ -13369,17 +13361,15 @@ static void hdi_lane_first(hdi_lane *lane, const hd_laplacian *lap, const hd_rat
     if (hdi_finite(factor)) lane->energy = hdi_min(lane->energy, factor * (fabs(sum) + lane->f_norm * error));
 }
 
-/* |x|_B^2 of a complex vector; tmp [3 n]. */
+/* |x|_B^2 of a complex vector; tmp [2 n]. */
 static double hdi_b_norm2_complex(const hd_laplacian *lap, const hd_c64 *x, double *tmp) {
-    const int32_t n = lap->n_active;
-    double *work = tmp + 2 * (int64_t)n;
+    const hdi_system mass = {lap, 0, {1, 0}};
+    double sum = 0;
     int32_t i;
-    if (!lap->B) return hdi_cnorm2w(x, lap->mass, n);
-    for (i = 0; i < n; i++) {
-        tmp[i] = x[i].re;
-        tmp[n + i] = x[i].im;
-    }
-    return hdi_max(0, hdi_b_norm2(lap, tmp, work) + hdi_b_norm2(lap, tmp + n, work));
+    if (!lap->B) return hdi_cnorm2w(x, lap->mass, lap->n_active);
+    (void)hdi_system_apply(&mass, x, (hd_c64 *)(void *)tmp);
+    for (i = 0; i < lap->n_active; i++) sum += x[i].re * tmp[2 * i] + x[i].im * tmp[2 * i + 1];
+    return hdi_max(0, sum);
 }
 
 /* u = a0 f - sum a_i x_i, in the order of the poles, and the bounds on its error but for the rational one. */
@@ -13402,17 +13392,6 @@ static void hdi_lane_sum(hdi_lane *lane, const hdi_family *fam) {
                        k->r_norm, &k->x->re, 2);
 }
 
-/* The start of system p from the solution of the next pole: for theta = theta_p in
- *   x(theta) ~ c x_q + (1 - c) conj(x_q),   c = (theta - conj(theta_q))/(theta_q - conj(theta_q)). */
-static void hdi_warm_start(hdi_lane *lane, const hdi_family *fam, int32_t p) {
-    const hd_c64 at = fam->set.theta[p], q = fam->set.theta[p + 1], *HDI_RESTRICT y = lane->k[p + 1].x;
-    const hd_c64 c = q.im > 0 ? hdi_cdiv(hdi_csub(at, hdi_cconj(q)), hdi_c(0, 2 * q.im)) : hdi_c(1, 0);
-    hd_c64 *HDI_RESTRICT x = lane->k[p].x;
-    int32_t i;
-    for (i = 0; i < fam->lap->n_active; i++)     /* conj(x_q) is x_q - 2 i Im(x_q) */
-        x[i] = hdi_cadd(y[i], hdi_cmul(hdi_csub(c, hdi_c(1, 0)), hdi_c(0, 2 * y[i].im)));
-}
-
 /* Runs the systems until the bound of their part of the answer's error is at most aim. Each may use an equal
  * share of what is left over by those before it. fresh: each starts from the solution of the one before it,
  * else from where it is. The order from the last pole to the first was the fastest in measurements. */
@@ -13431,15 +13410,11 @@ static hd_status hdi_lane_run(hdi_lane *lane, const hdi_family *fam, int fresh, 
         const double fair = hdi_max(left / (p + 1), 0.1 * aim / n_poles);
         const double share = weight > 0 ? fair / weight : DBL_MAX;
         const double target = share * sqrt(fam->lap->b_ratio) * hdi_pole_distance(fam->set.theta[p]);
-        const int runs = fresh || k->r_norm > target, warm = fresh && p + 1 < n_poles && b_norm > 0;
+        const int runs = fresh || k->r_norm > target;
         if (runs && hdi_family_shares(fam)) hdi_precond_make(&k->m, k->r);
         if (fresh) hdi_iteration_start(k, b_norm);
-        if (warm) hdi_warm_start(lane, fam, p);
+        if (fresh && p + 1 < n_poles) memcpy(k->x, k[1].x, (size_t)fam->lap->n_active * sizeof *k->x);
         if (runs) hdi_iteration_residual(k, lane->b);
-        if (warm && !(k->r_norm < b_norm)) {
-            hdi_iteration_start(k, b_norm);
-            hdi_iteration_residual(k, lane->b);
-        }
         part.from = watch->from + part.share * (n_poles - 1 - p);
         status = hdi_iteration_run(k, lane->b, target, fam->max_iterations, &part, e);
         if (status < 0) {
@@ -13451,13 +13426,6 @@ static hd_status hdi_lane_run(hdi_lane *lane, const hdi_family *fam, int fresh, 
         left -= weight * hdi_pole_error(k);
     }
     return worst;
-}
-
-/* max (1 + x)^-1 |x + theta| over x >= 0: then |(B + t L)^-1 B f|_B <= this |(t L + theta B)^-1 B f|_B. */
-static double hdi_resolvent_ratio(hd_c64 theta) {
-    const double x = theta.re < 1 ? theta.im * theta.im / (1 - theta.re) - theta.re : -1;
-    const double inside = x > 0 ? hypot(x + theta.re, theta.im) / (1 + x) : 0;
-    return hdi_max(inside, hdi_max(1, hdi_cabs(theta)));
 }
 
 /* ---- the same by factorisation ---- */
@@ -13536,45 +13504,38 @@ static hd_status hdi_elim_make(hdi_elim *m, const hd_laplacian *lap, hd_ordering
     m->pack = HDI_NEW(ctx, hdi_factor, HD_MAX_POLES / 4, e);
     if (e->status >= 0 && hdi_pair_analyse(&m->sym, lap, ordering, own, ctx, e) >= 0)
         m->lap = hdi_pair_renumber(lap, m->sym.perm, ctx, e);
-    if (m->lap) {
-        m->weight = hdi_make_weight(m->lap, ctx, e);
-        m->noise = m->weight ? m->weight + lap->n_active : NULL;
-        m->noise_shift = m->weight ? m->noise + lap->n_active : NULL;
-    }
-    if (e->status < 0) hdi_elim_free(m);
-    return e->status;
+    if (m->lap) m->weight = hdi_make_weight(m->lap, ctx, e);
+    if (!m->weight) return hdi_elim_free(m), e->status;
+    m->noise = m->weight + lap->n_active;
+    m->noise_shift = m->noise + lap->n_active;
+    return HD_OK;
 }
 
-/* t L + theta B in terms of the source's entries; t comes scaled, as B does in lap. */
-static hdi_values hdi_elim_values(const hdi_elim *m, double t) {
+/* Factors t L + theta B for the width of f: for a real theta, or four. t comes scaled, as B does in lap. */
+static hd_status hdi_elim_factor(hdi_elim *m, hdi_factor *f, double t, const hd_c64 *theta, hd_error *e) {
+    const int32_t k = f->width == 1 ? 1 : (int32_t)HDI_PACK_LANES;
+    double most = 0;
     hdi_values v;
+    int32_t i, q;
     memset(&v, 0, sizeof v);
     v.l = m->source->L.val;
     v.b = m->source->B;
     v.b_diag = m->source->b_diag;
     v.t = t;
-    return v;
-}
-
-/* Largest |diagonal entry| of t L + theta_q B, over k of them. */
-static double hdi_elim_diagonal(const hd_laplacian *lap, double t, const hd_c64 *theta, int32_t k) {
-    double most = 0;
-    int32_t i, q;
-    for (i = 0; i < lap->n_active; i++) {
-        const double b = lap->b_diag[i], l = t * hdi_row_diagonal(lap, i);
+    for (q = 0; q < k; q++) v.theta[q] = hdi_cscale(m->scale, theta[q]);
+    for (i = 0; i < m->lap->n_active; i++) {
+        const double b = m->lap->b_diag[i], l = t * hdi_row_diagonal(m->lap, i);
         for (q = 0; q < k; q++) most = hdi_max(most, hdi_cabs2(hdi_c(l + theta[q].re * b, theta[q].im * b)));
     }
-    return sqrt(most);
+    f->largest_entry = sqrt(most);
+    return hdi_factor_run(f, &v, e);
 }
 
 /* The real factor f of t L + theta B. */
 static hd_status hdi_elim_real(hdi_elim *m, hdi_factor *f, double t, double theta, hd_error *e) {
     const hd_c64 real = hdi_c(theta, 0);
-    hdi_values v = hdi_elim_values(m, t);
-    v.theta[0] = hdi_cscale(m->scale, real);
     if (!f->ctx && hdi_factor_make(f, NULL, &m->sym, 1, m->ctx, e) < 0) return e->status;
-    f->largest_entry = hdi_elim_diagonal(m->lap, t, &real, 1);
-    return hdi_factor_run(f, &v, e);
+    return hdi_elim_factor(m, f, t, &real, e);
 }
 
 /* The factor of B + g L. */
@@ -13606,7 +13567,6 @@ static int hdi_elim_holds(const hdi_elim *m, const hd_rational *set, double t) {
 
 /* Factors of all poles of a set at a time. */
 static hd_status hdi_elim_poles(hdi_elim *m, const hd_rational *set, double t, hd_error *e) {
-    hdi_values v = hdi_elim_values(m, t);
     const int there = hdi_elim_holds(m, set, t);
     int32_t i, q;
     m->set = *set;                               /* weights cost nothing */
@@ -13622,12 +13582,8 @@ static hd_status hdi_elim_poles(hdi_elim *m, const hd_rational *set, double t, h
     if (m->lone >= 0 && hdi_elim_real(m, &m->real, t, set->theta[0].re, e) < 0) return e->status;
     for (i = 0; i < m->n_used; i++) {
         hd_c64 theta[4];
-        for (q = 0; q < 4; q++) {
-            theta[q] = set->theta[hdi_elim_pole(m, i, q)];
-            v.theta[q] = hdi_cscale(m->scale, theta[q]);
-        }
-        m->pack[i].largest_entry = hdi_elim_diagonal(m->lap, t, theta, 4);
-        if (hdi_factor_run(m->pack + i, &v, e) < 0) {
+        for (q = 0; q < 4; q++) theta[q] = set->theta[hdi_elim_pole(m, i, q)];
+        if (hdi_elim_factor(m, m->pack + i, t, theta, e) < 0) {
             if (e->pole >= 0) e->pole = hdi_elim_pole(m, i, (int32_t)e->pole);
             return e->status;
         }
@@ -13679,24 +13635,18 @@ static hdi_residual hdi_residual_open(const hd_laplacian *lap, double t, const d
     return g;
 }
 
-typedef struct hdi_residual_job {
-    const hdi_residual *g;
-    const hdi_kernels *ops;
-} hdi_residual_job;
-
 static void hdi_residual_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_residual_job *job = (const hdi_residual_job *)arg;
-    hdi_residual part = *job->g;
+    hdi_residual part = *(const hdi_residual *)arg;
     part.begin = (int32_t)begin;
     part.end = (int32_t)end;
-    job->ops->residual(&part);
+    part.kernel(&part);
 }
 
 /* Threads share the rows where nothing is summed over them. */
-static void hdi_residual_run(const hdi_residual *g, hd_context *ctx) {
-    hdi_residual_job job = {g, hdi_kernels_get(hdi_simd_level(ctx), 0)};
-    if (g->sum) job.ops->residual(g);
-    else hdi_parallel_ranges(ctx, g->end, HDI_ROWS_PER_TASK, hdi_residual_task, &job);
+static void hdi_residual_run(hdi_residual *g, hd_context *ctx) {
+    g->kernel = hdi_kernels_get(hdi_simd_level(ctx), 0)->residual;
+    if (g->sum) g->kernel(g);
+    else hdi_parallel_ranges(ctx, g->end, HDI_ROWS_PER_TASK, hdi_residual_task, g);
 }
 
 /* y = B x for a block, or for wide = 1 a vector. */
@@ -13724,23 +13674,6 @@ static void hdi_elim_coef(const hdi_elim *m, int32_t i, const hd_c64 *w, double 
     }
 }
 
-/* The same of the poles of pack i, or for i < 0 of the lone real pole. w [n_poles]: weights of an answer. */
-static hdi_residual hdi_elim_residual(const hdi_elim *m, int32_t i, const hd_c64 *w, const double *x,
-                                      int32_t n_blocks, double (*sum)[3][HDI_PACK]) {
-    hdi_residual g = hdi_residual_open(m->lap, m->t, x, n_blocks, sum);
-    int q;
-    g.real = i < 0;
-    g.weight = m->weight;
-    g.noise = m->noise;
-    hdi_elim_coef(m, i, w, g.coef);
-    for (q = 0; q < HDI_PACK; q++) {
-        const hd_c64 theta = m->set.theta[i < 0 ? m->lone : hdi_elim_pole(m, i, q % 4)];
-        g.re[q] = theta.re;
-        g.im[q] = theta.im;
-    }
-    return g;
-}
-
 /* Notes for a lane what is measured of pole p, number q of a block. Re x of row i is at x + i stride. */
 static void hdi_batch_note(const hdi_elim *m, int32_t p, double (*sum)[HDI_PACK], int q, const double *x,
                            int64_t stride, hdi_lane *to) {
@@ -13762,10 +13695,18 @@ static void hdi_batch_check(const hdi_elim *m, int32_t i, const double *x, hdi_l
     const int32_t n_here = i < 0 ? 1 : hdi_low32(m->set.n_poles - first, 4);
     double sum[HDI_LANES_BATCH][3][HDI_PACK];
     hd_c64 w[HD_MAX_POLES];
-    hdi_residual g;
-    int32_t p, r;
+    hdi_residual g = hdi_residual_open(m->lap, m->t, x, n_blocks, sum);
+    int32_t p, q, r;
     for (p = 0; p < m->set.n_poles; p++) w[p] = hdi_cscale(-hdi_rat_count(&m->set, p), m->set.a[p]);
-    g = hdi_elim_residual(m, i, w, x, n_blocks, sum);
+    hdi_elim_coef(m, i, w, g.coef);
+    for (q = 0; q < HDI_PACK; q++) {
+        const hd_c64 theta = m->set.theta[i < 0 ? m->lone : hdi_elim_pole(m, i, q % 4)];
+        g.re[q] = theta.re;
+        g.im[q] = theta.im;
+    }
+    g.real = i < 0;
+    g.weight = m->weight;
+    g.noise = m->noise;
     for (r = 0; r < k; r++) {
         g.f[r] = lane[r].skip ? NULL : lane[r].rhs;
         g.u[r] = lane[r].skip ? NULL : lane[r].u;
@@ -13796,7 +13737,7 @@ static void hdi_batch_extra(const hdi_elim *m, int32_t i, const double *x, const
     }
 }
 
-/* Puts the constants of a right-hand side that was solved without them into its further sums. */
+/* Puts the constants of a right-hand side that was solved without them, lane->sums, into its further sums. */
 static void hdi_batch_extra_means(const hdi_elim *m, hdi_lane *lane) {
     const hd_laplacian *lap = m->lap;
     int32_t row, p, i;
@@ -13804,23 +13745,20 @@ static void hdi_batch_extra_means(const hdi_elim *m, hdi_lane *lane) {
         const hd_c64 *w = lane->rows.weight + (int64_t)row * lane->rows.stride;
         double *to = lane->rows.sum + (int64_t)row * lap->n_active, c = 0;
         for (p = 0; p < m->set.n_poles; p++) c += hdi_cdiv(w[p], m->set.theta[p]).re;
-        for (i = 0; i < lap->n_active; i++)
-            to[i] += c * lane->target[lap->component[i]] / lap->component_mass[lap->component[i]];
+        for (i = 0; i < lap->n_active; i++) to[i] += c * lane->sums[lap->component[i]];
     }
 }
 
-/* Solves for the lone real pole. The solution of one right-hand side is spread into a block. */
-static void hdi_batch_solve_real(const hdi_elim *m, const hdi_batch *b, const hdi_lane *lane, int32_t k,
-                                 const char *active, hd_context *ctx) {
-    hdi_sweep z = hdi_sweep_open(&m->real, k > 1 ? 8 : 1, b->x, b->work);
-    const double *rhs[HDI_LANES_BATCH] = {NULL};
-    int32_t r;
+/* Solves for pack i, or for i < 0 the lone real pole, where a single solution is spread into a block. */
+static void hdi_batch_solve(const hdi_elim *m, const hdi_batch *b, int32_t i, const double *const *rhs,
+                            int32_t k, const char *active, hd_context *ctx) {
+    const int32_t wide = i >= 0 ? k : k > 1 ? 8 : 1;
+    hdi_sweep z = hdi_sweep_open(i < 0 ? &m->real : m->pack + i, wide, b->x, b->work);
     int64_t j;
-    for (r = 0; r < k; r++) rhs[r] = lane[r].skip ? NULL : lane[r].rhs;
     z.rhs = rhs;
     z.active = active;
     hdi_sweep_run(&z, ctx);
-    for (j = m->sym.n; k == 1 && j-- > 0;) {
+    for (j = m->sym.n; i < 0 && k == 1 && j-- > 0;) {
         const double x = b->x[j];
         memset(b->x + 8 * j, 0, 8 * sizeof x);
         b->x[8 * j] = x;
@@ -13832,11 +13770,10 @@ static void hdi_batch_solve_real(const hdi_elim *m, const hdi_batch *b, const hd
 static void hdi_batch_run(const hdi_elim *m, const hdi_batch *b, hdi_lane *lane, int32_t k, hd_context *ctx) {
     const hdi_symbolic *s = &m->sym;
     const int32_t n = s->n;
-    const double *rhs[HDI_LANES_BATCH];
+    const double *rhs[HDI_LANES_BATCH] = {NULL};
     const char *active;
     int64_t j, touched = 0;
     int32_t i, r;
-    hdi_sweep z;
     memset(b->active, 0, (size_t)s->n_super);
     for (r = 0; r < k; r++) {
         double norm2 = 0;
@@ -13852,16 +13789,8 @@ static void hdi_batch_run(const hdi_elim *m, const hdi_batch *b, hdi_lane *lane,
         hdi_lane_clear_off(lane + r);
     }
     active = touched < 64 * (int64_t)k ? b->active : NULL;
-    if (m->lone >= 0) {
-        hdi_batch_solve_real(m, b, lane, k, active, ctx);
-        hdi_batch_check(m, -1, b->x, lane, k);
-        hdi_batch_extra(m, -1, b->x, lane, k);
-    }
-    for (i = 0; i < m->n_used; i++) {
-        z = hdi_sweep_open(m->pack + i, k, b->x, b->work);
-        z.rhs = rhs;
-        z.active = active;
-        hdi_sweep_run(&z, ctx);
+    for (i = m->lone >= 0 ? -1 : 0; i < m->n_used; i++) {
+        hdi_batch_solve(m, b, i, rhs, k, active, ctx);
         hdi_batch_check(m, i, b->x, lane, k);
         hdi_batch_extra(m, i, b->x, lane, k);
     }
@@ -14004,12 +13933,9 @@ static void hdi_rational_bound(const hd_laplacian *lap, const hd_rational *set, 
     const int constants = lap->conserves && set->kind == HD_POLES_OWN;
     int32_t p;
     /* c(0), by which constants are multiplied, and what they leave when taken out */
-    for (p = 0; p < set->n_poles && constants; p++) {
-        const double off = 8 * DBL_EPSILON * hdi_rat_count(set, p) * hdi_cabs(set->a[p]) /
-                           hdi_pole_distance(set->theta[p]) * lane->f_norm;
-        lane->off.rounding += off;
-        lane->off_m.rounding += off;
-    }
+    for (p = 0; p < set->n_poles && constants; p++)
+        hdi_lane_rounding(lane, 8 * DBL_EPSILON * hdi_rat_count(set, p) * hdi_cabs(set->a[p]) /
+                                hdi_pole_distance(set->theta[p]) * lane->f_norm);
     for (p = 0; p < set->n_poles; p++)           /* the sum of the answers again: |x_v| <= sqrt(g_v) |x|_M */
         lane->off_m.rounding += (set->n_poles + 1) * DBL_EPSILON * hdi_pole_size(set, p) *
             hdi_pole_gain(set->theta[p]) * sqrt(lane->energy);
@@ -14022,8 +13948,9 @@ static void hdi_rational_bound(const hd_laplacian *lap, const hd_rational *set, 
     lane->off_m.rational =
         hdi_finite(weighted) ? weighted * (constants ? lane->f_norm : sqrt(lane->energy)) : HUGE_VAL;
     if (hdi_finite(weighted) && set->n_poles > 0) {
-        const double resolvent = constants ? lane->f_norm
-                                 : hdi_resolvent_ratio(set->theta[lane->first_pole]) * lane->first_norm;
+        /* |x + theta| <= max(1, |theta|) (1 + x) for x >= 0 */
+        const double most = hdi_max(1, hdi_cabs(set->theta[lane->first_pole]));
+        const double resolvent = constants ? lane->f_norm : most * lane->first_norm;
         lane->off.rational = hdi_min(lane->off.rational, weighted * hdi_min(resolvent, lane->f_norm));
     }
 }
@@ -14111,35 +14038,37 @@ typedef struct hdi_elim_sums {
     int64_t stride;
 } hdi_elim_sums;
 
-/* The part of n factors of the same width, f[i] with the coefficients of pack i, or of the lone real pole. b:
- * the entries of B where forms are wanted. coef [n_sets][8]: work. */
+/* The part of n factors of the same width, f[i] with the coefficients of pack i, or of the lone real pole.
+ * Forms are of the source's B, and their coefficients make up for its scale. */
 static void hdi_elim_invert_width(hdi_elim *m, hdi_factor *f, int32_t n, const hdi_elim_sums *sums,
-                                  const double *b, double *coef, hd_error *e) {
-    const int32_t width = n > 0 ? f->width : 0;
-    hdi_forms forms;
+                                  hd_error *e) {
+    const int32_t width = n > 0 ? f->width : 0, forms = sums->wanted == HDI_WANT_FORMS;
+    const double scale = forms ? m->scale * m->scale : 1;
+    double *coef;
+    hdi_forms q;
     hdi_inverse z;
     hdi_scope s;
     uint64_t room;
-    int32_t i, k;
+    int32_t i, k, c;
     if (n == 0 || e->status < 0) return;
     s = hdi_scope_begin(m->ctx, e);
     hdi_inverse_take(&z, &m->sym, width, &s);
-    if (b) {
-        room = hdi_forms_make(&forms, &m->sym, width, &m->source->L, &s);
-        forms.room = HDI_TAKE(&s, double, room);
-        forms.x = b;
+    z.coef = coef = HDI_TAKE(&s, double, HDI_PACK * (uint64_t)sums->n_sets);
+    if (forms) {
+        room = hdi_forms_make(&q, &m->sym, width, &m->source->L, &s);
+        q.room = HDI_TAKE(&s, double, room);
+        q.x = m->source->B;
     }
-    z.coef = coef;
     z.n_sets = sums->n_sets;
     z.wanted = sums->wanted;
-    z.forms = b ? &forms : NULL;
+    z.forms = forms ? &q : NULL;
     z.values = sums->values;
     z.stride = sums->stride;
     for (i = 0; i < n && e->status >= 0; i++) {
         for (k = 0; k < sums->n_sets; k++) {
-            const hd_c64 *w = sums->weight + (int64_t)k * m->set.n_poles;
-            if (width == 1) coef[k] = w[m->lone].re;
-            else hdi_elim_coef(m, i, w, coef + HDI_PACK * (int64_t)k);
+            double part[HDI_PACK];
+            hdi_elim_coef(m, width == 1 ? -1 : i, sums->weight + (int64_t)k * m->set.n_poles, part);
+            for (c = 0; c < width; c++) coef[width * (int64_t)k + c] = scale * part[c];
         }
         (void)hdi_inverse_run(&z, f + i, e);
     }
@@ -14148,16 +14077,9 @@ static void hdi_elim_invert_width(hdi_elim *m, hdi_factor *f, int32_t n, const h
 
 /* Sums over all poles. The factors are there, and stay. */
 static hd_status hdi_elim_invert(hdi_elim *m, const hdi_elim_sums *sums, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(m->ctx, e);
-    double *coef = HDI_TAKE(&s, double, HDI_PACK * (uint64_t)sums->n_sets), *b = NULL;
-    int64_t p;
-    if (sums->wanted == HDI_WANT_FORMS) {        /* the source's entries, scaled as m->lap is */
-        b = HDI_TAKE(&s, double, m->source->L.nnz);
-        for (p = 0; b && p < m->source->L.nnz; p++) b[p] = m->scale * m->source->B[p];
-    }
-    hdi_elim_invert_width(m, &m->real, m->lone >= 0, sums, b, coef, e);
-    hdi_elim_invert_width(m, m->pack, m->n_used, sums, b, coef, e);
-    return hdi_scope_end(&s);
+    hdi_elim_invert_width(m, &m->real, m->lone >= 0, sums, e);
+    hdi_elim_invert_width(m, m->pack, m->n_used, sums, e);
+    return e->status;
 }
 
 /* out [n] = the diagonal of a factor's inverse, by pivots. coef [width]: of its parts, see hdi_elim_coef.
@@ -14178,28 +14100,35 @@ static hd_status hdi_elim_inverse_diagonal(const hdi_elim *m, hdi_factor *f, con
 
 enum { HDI_RESOLVENT_POLES = 8, HDI_RESOLVENT_POINTS = 160 };
 
-/* Weights with (B + tL)^-1 <= (1 + *slack) sum_p Re(weight_p (tL + theta_p B)^-1): 1/(1 + x) by least squares
- * of the relative error, for sets of few poles. Returns 0 where there are none. */
-static int hdi_resolvent_weights(const hd_rational *set, hd_c64 *weight, double *slack) {
+/* Weights with (B + tL)^-1 <= *factor sum_p Re(weight_p (tL + theta_p B)^-1), or a *factor of HUGE_VAL: for
+ * sets of few poles those of 1/(1 + x) by least squares of the relative error, else the best single pole. */
+static double hdi_resolvent_weights(const hd_rational *set, hd_c64 *weight) {
     enum { COLS = 2 * HDI_RESOLVENT_POLES + 1, N = HDI_RESOLVENT_POINTS };
-    double x[N], u[N], f[N], work[(N + COLS) * (COLS + 1) + COLS], worst = 0;
+    double x[N], u[N], f[N], work[(N + COLS) * (COLS + 1) + COLS], worst = 0, least = HUGE_VAL;
     hd_rational fit = *set;
-    int32_t i, p;
-    if (set->n_poles > HDI_RESOLVENT_POLES) return 0;
+    int32_t i, p, best = 0;
     for (i = 0; i < N; i++) {
         const double s = (i + 0.5) / (double)N;
         u[i] = 1 + 2 * s / ((1 - s) * (1 - s));
         x[i] = 1 - u[i];
         f[i] = 1 / u[i];
     }
-    hdi_residues_fit(&fit, N, x, u, f, 0, work);
-    for (p = 0; p < set->n_poles; p++) weight[p] = hdi_cscale(-hdi_rat_count(set, p), fit.a[p]);
+    if (set->n_poles > HDI_RESOLVENT_POLES) worst = HUGE_VAL;
+    else hdi_residues_fit(&fit, N, x, u, f, 0, work);
     for (i = 0; i <= 8 * N; i++) {               /* the end is as good as infinity */
         const double s = i / (8 * (double)N), at = 2 * s / hdi_max((1 - s) * (1 - s), 1e-20);
         worst = hdi_max(worst, fabs((1 + at) * hdi_rational_eval(&fit, -at) - 1));
     }
-    *slack = 2 * worst;
-    return worst < 0.2;
+    for (p = 0; p < set->n_poles; p++) {
+        const double factor = hdi_resolvent_factor(set->theta[p]);
+        weight[p] = worst < 0.2 ? hdi_cscale(-hdi_rat_count(set, p), fit.a[p]) : hdi_c(0, 0);
+        if (factor >= least) continue;
+        least = factor;
+        best = p;
+    }
+    if (worst < 0.2) return 1 + 2 * worst;
+    if (least < HUGE_VAL) weight[best] = hdi_c(1, 0);
+    return least;
 }
 
 /* The part of the constants in diag((B + tL)^-1). It is known exactly, whatever rounding has eaten. */
@@ -14238,10 +14167,6 @@ static hd_status hdi_elim_bound(hdi_elim *m, hd_error *e) {
         }
         m->resolvent_t = m->t;
     }
-    if (e->status < 0) {
-        hdi_free(m->ctx, m->resolvent);
-        m->resolvent = NULL;
-    }
     return hdi_scope_end(&s);
 }
 
@@ -14254,36 +14179,24 @@ typedef enum hdi_after { HDI_AFTER_SOLVES, HDI_AFTER_BOUND, HDI_AFTER_INVERSE, H
 static uint64_t hdi_elim_need(const hdi_elim *m, const hd_rational *set, hdi_after after, int32_t n_sets,
                               uint64_t solves, hd_error *e) {
     const int32_t lone = hdi_set_lone(set), packs = hdi_set_packs(set);
-    const int forms = after == HDI_AFTER_FORMS, bound = after == HDI_AFTER_BOUND;
     uint64_t bytes = 0, most = solves, need;
     int32_t i;
     for (i = m->n_packs; i < packs; i++) bytes += hdi_factor_tally(&m->sym, HDI_PACK, i > 0);
     if (lone && !m->real.ctx) bytes += hdi_factor_bytes(&m->sym, 1);
-    if (bound && !m->resolvent) hdi_scope_count(&bytes, (uint64_t)m->sym.n, sizeof *m->resolvent);
-    for (i = 0; i < 2 && after != HDI_AFTER_SOLVES && e->status >= 0; i++) {
+    if (after == HDI_AFTER_BOUND) {
+        if (!m->resolvent) hdi_scope_count(&bytes, (uint64_t)m->sym.n, sizeof *m->resolvent);
+        need = hdi_inverse_bytes(&m->sym, 1, !lone, hdi_elim_room(m, packs));
+        if (most < need) most = need;
+    }
+    for (i = 0; i < 2 && after > HDI_AFTER_BOUND && e->status >= 0; i++) {
         const int32_t width = i == 0 ? 1 : HDI_PACK;
-        if (!(bound ? i == 0 : i == 0 ? lone : packs)) continue;
-        need = bound ? hdi_inverse_bytes(&m->sym, 1, !lone, hdi_elim_room(m, packs))
-               : hdi_inverse_bytes(&m->sym, width, 0, 0);
-        if (!bound) hdi_scope_count(&need, HDI_PACK * (uint64_t)n_sets, sizeof(double));
-        if (forms) hdi_scope_count(&need, (uint64_t)m->source->L.nnz, sizeof(double));
-        if (forms) need += hdi_forms_bytes(&m->sym, width, &m->source->L, m->ctx, e);
+        if (!(i == 0 ? lone : packs)) continue;
+        need = hdi_inverse_bytes(&m->sym, width, 0, 0);
+        hdi_scope_count(&need, HDI_PACK * (uint64_t)n_sets, sizeof(double));
+        if (after == HDI_AFTER_FORMS) need += hdi_forms_bytes(&m->sym, width, &m->source->L, m->ctx, e);
         if (most < need) most = need;
     }
     return bytes + most;
-}
-
-/* The pole whose Re (tL + theta B)^-1 times *factor bounds (B + tL)^-1 best: Re 1/(x + theta) >= 1/(factor (1
- * + x)) for x >= 0. Returns -1 where no pole does. */
-static int32_t hdi_resolvent_pole(const hd_rational *set, double *factor) {
-    int32_t p, best = -1;
-    for (p = 0; p < set->n_poles; p++) {
-        const double f = hdi_resolvent_factor(set->theta[p]);
-        if (set->theta[p].re <= 0 || (best >= 0 && f >= *factor)) continue;
-        best = p;
-        *factor = f;
-    }
-    return best;
 }
 
 /* ==== [23] lanczos ====
@@ -15802,11 +15715,14 @@ typedef struct hdi_spec {
     hdi_elim *m;
     const hd_laplacian *lap;
     const hdi_kernels *ops;
+    hd_spectrum *out;            /* its counts and proven are kept while all goes on, too */
+    int32_t count;               /* wanted: so many, and those below */
+    double below;
     hdi_scope keep, runs;        /* what is there to the end, and what only runs need */
     int32_t n;
     hdi_factor factor;
     double sigma, off;           /* shift of the factor; how far from sigma its count may be wrong */
-    int64_t below;               /* its negative pivots */
+    int64_t negative;            /* its negative pivots */
     double unit;                 /* about the smallest eigenvalue that is not zero */
     double tol;
     double edge;                 /* all below are found */
@@ -15826,6 +15742,7 @@ typedef struct hdi_spec {
     int32_t cols, width;         /* columns of T, and of its last block */
     int32_t n_group;             /* blocks of vectors that are formed at a time */
     double lost;                 /* largest column of a block that was dropped */
+    double frontier;             /* the smallest Ritz value above the shift that has not converged */
     int32_t stuck;               /* Ritz pairs that cannot come nearer for rounding */
     double *own, *couple;        /* [room + 1][8][8] of T: on its diagonal, and below it */
     double *A, *z;               /* [cols][cols] T, eigenvectors */
@@ -15833,12 +15750,8 @@ typedef struct hdi_spec {
     double *bw, *bx, *tmp;       /* [n][8] B times blocks, and another */
     double *sweep, *h, *part, *work;
     double *noise;               /* [n] weights of rounding in residuals; [n] work */
-    int32_t n_poor;              /* residuals above the tolerance and rounding */
     int32_t alike;               /* vectors of a block depended on each other */
     uint64_t seed;
-    int32_t n_factors, n_runs, n_solves;
-    double next;                 /* no other eigenvalue is below it */
-    int32_t n_null, proven;
 } hdi_spec;
 
 /* Frees what only runs need. */
@@ -15848,7 +15761,6 @@ static void hdi_spec_runs_free(hdi_spec *s) {
 }
 
 static void hdi_spec_free(hdi_spec *s) {
-    if (!s->ctx) return;
     while (s->n_lock > 0) hdi_free(s->ctx, s->lock[--s->n_lock]);
     hdi_spec_runs_free(s);
     (void)hdi_scope_end(&s->keep);
@@ -15906,11 +15818,15 @@ static double hdi_spec_need(int32_t n, int32_t count, uint64_t n_sweep) {
     return (double)bytes + 2.0 * sizeof(double) * n * ((double)count + (double)HDI_SPEC_GAPS);
 }
 
-static hd_status hdi_spec_make(hdi_spec *s, hdi_elim *m, int32_t count, double tol, hd_error *e) {
+static hd_status hdi_spec_make(hdi_spec *s, hdi_elim *m, int32_t count, double below, double tol,
+                               hd_spectrum *out, hd_error *e) {
     memset(s, 0, sizeof *s);
     s->ctx = m->ctx;
     s->m = m;
     s->lap = m->lap;
+    s->out = out;
+    s->count = count;
+    s->below = below;
     s->tol = tol;
     s->ops = hdi_kernels_get(hdi_simd_level(m->ctx), 0);
     s->keep = s->runs = hdi_scope_begin(m->ctx, e);
@@ -16001,29 +15917,26 @@ static void hdi_spec_inverse(hdi_spec *s, const double *b, double *w) {
     hdi_sweep z = hdi_sweep_open(&s->factor, HDI_WIDE, w, s->sweep);
     memcpy(w, b, 8 * (size_t)s->n * sizeof *w);
     hdi_sweep_run(&z, s->ctx);
-    s->n_solves += HDI_WIDE;
+    s->out->n_solves += HDI_WIDE;
 }
 
 /* ---- orthogonal blocks ---- */
 
-/* Rows of w and bw times R^-1, R upper triangular. Columns with a zero on its diagonal become zero. */
-typedef struct hdi_spec_scale { double *w, *bw; const double *R; } hdi_spec_scale;
-
+/* Rows of the blocks times h^-1, h upper triangular. Columns with a zero on its diagonal become zero. */
 static void hdi_spec_scale_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_spec_scale *a = (const hdi_spec_scale *)arg;
+    const hdi_spec_pass *p = (const hdi_spec_pass *)arg;
     double inv[HDI_WIDE];
+    const double *R = p->h;
     int64_t i;
-    int q, k;
-    for (q = 0; q < HDI_WIDE; q++) inv[q] = a->R[9 * q] > 0 ? 1 / a->R[9 * q] : 0;
-    for (i = begin; i < end; i++) {
-        double *x = a->w + 8 * i, *y = a->bw + 8 * i;
-        for (q = 0; q < HDI_WIDE; q++) {
-            for (k = 0; k < q; k++) {
-                x[q] -= a->R[8 * k + q] * x[k];
-                y[q] -= a->R[8 * k + q] * y[k];
+    int b, q, k;
+    for (q = 0; q < HDI_WIDE; q++) inv[q] = R[9 * q] > 0 ? 1 / R[9 * q] : 0;
+    for (b = 0; b < p->n_v; b++) {
+        for (i = begin; i < end; i++) {
+            double *x = p->v[b] + 8 * i;
+            for (q = 0; q < HDI_WIDE; q++) {
+                for (k = 0; k < q; k++) x[q] -= R[8 * k + q] * x[k];
+                x[q] *= inv[q];
             }
-            x[q] *= inv[q];
-            y[q] *= inv[q];
         }
     }
 }
@@ -16076,11 +15989,13 @@ static double hdi_spec_cholesky(const double *G, double *R, double *scale, const
 /* Makes the columns of x orthonormal in B by their Gram matrix G = R' R, with bx = B x. */
 static double hdi_spec_orthonormal(const hdi_spec *s, double *x, double *bx, double *scale,
                                    const double *norm, double *drop, double *G, double *R) {
-    hdi_spec_scale job = {x, bx, R};
-    double off;
+    double *both[2], off;
+    hdi_spec_pass p = {s->ops, both, NULL, R, s->n, 2, 0, 0};
+    both[0] = x;
+    both[1] = bx;
     hdi_spec_dots(s, &x, 1, bx, G);
     off = hdi_spec_cholesky(G, R, scale, norm, drop);
-    hdi_parallel_ranges(s->ctx, s->n, HDI_ROWS_PER_TASK, hdi_spec_scale_task, &job);
+    hdi_parallel_ranges(s->ctx, s->n, HDI_ROWS_PER_TASK, hdi_spec_scale_task, &p);
     return off;
 }
 
@@ -16202,6 +16117,7 @@ static hd_status hdi_spec_ritz(hdi_spec *s, int full, hd_error *e) {
     hdi_spec_reduce(s->A, s->d, off, s->z, m, r, s->work);
     if (!hdi_tridiag_eigen(s->d, off, s->z, m, r)) return hdi_lanczos_failed(e);
     for (i = 0; i < m; i++) largest = hdi_max(largest, fabs(s->d[i]));
+    s->frontier = HUGE_VAL;
     for (i = s->stuck = 0; i < m; i++) {
         const double *y = s->z + (int64_t)i * r + r - s->width, d2 = s->d[i] * s->d[i];
         double sum = 0;
@@ -16214,22 +16130,16 @@ static hd_status hdi_spec_ritz(hdi_spec *s, int full, hd_error *e) {
         reached = hdi_spec_converged(s, i);
         if (d2 > 0) s->off_ritz[i] += ((double)HDI_WIDE * DBL_EPSILON * largest + s->lost) / d2;
         s->stuck += reached && !hdi_spec_converged(s, i);
+        if (s->d[i] > 0 && !hdi_spec_converged(s, i))
+            s->frontier = hdi_min(s->frontier, hdi_spec_lambda(s, i));
     }
     return HD_OK;
 }
 
-/* The smallest Ritz value above the shift that has not converged: those below it are taken. */
-static double hdi_spec_frontier(const hdi_spec *s) {
-    double least = HUGE_VAL;
-    int32_t i;
-    for (i = 0; i < s->cols; i++)
-        if (s->d[i] > 0 && !hdi_spec_converged(s, i)) least = hdi_min(least, hdi_spec_lambda(s, i));
-    return least;
-}
-
-static int hdi_spec_taken(const hdi_spec *s, int32_t i, double frontier) {
+/* Is a pair taken? Those below the frontier are. */
+static int hdi_spec_taken(const hdi_spec *s, int32_t i) {
     const double x = s->d[i] != 0 ? hdi_spec_lambda(s, i) : HUGE_VAL;
-    return hdi_spec_converged(s, i) && x > s->edge && x < frontier;
+    return hdi_spec_converged(s, i) && x > s->edge && x < s->frontier;
 }
 
 /* The blocks that a run at the shift could find again, those beyond the edge and those nearly as near; then
@@ -16245,10 +16155,9 @@ static void hdi_spec_nearby(hdi_spec *s) {
 
 /* Would `missing` pairs below the shift and `beyond` above it be taken? */
 static int hdi_spec_enough(const hdi_spec *s, int32_t missing, int32_t beyond) {
-    const double frontier = hdi_spec_frontier(s);
     int32_t i;
     for (i = 0; i < s->cols; i++) {
-        const int taken = hdi_spec_taken(s, i, frontier);
+        const int taken = hdi_spec_taken(s, i);
         missing -= taken && s->d[i] < 0;
         beyond -= taken && s->d[i] > 0;
     }
@@ -16262,9 +16171,9 @@ static hd_status hdi_spec_lanczos(hdi_spec *s, int32_t missing, int32_t beyond, 
     hdi_spec_nearby(s);
     s->n_blocks = s->cols = 0;
     s->lost = 0;
-    hdi_spec_random(s, s->list[s->n_near]);
+    hdi_spec_random(s, s->basis);
     s->width = hdi_spec_append(s);
-    s->n_runs++;
+    s->out->n_runs++;
     while (s->width > 0) {                       /* else nothing is left of the space */
         int32_t more;
         hdi_spec_inverse(s, s->bw, s->list[s->n_near + ++s->n_blocks]);
@@ -16284,13 +16193,15 @@ static hd_status hdi_spec_lanczos(hdi_spec *s, int32_t missing, int32_t beyond, 
 
 /* ---- locking ---- */
 
-/* Another block for vectors that are found. */
-static double *hdi_spec_block(hdi_spec *s, hd_error *e) {
-    double *x = HDI_NEW(s->ctx, double, HDI_WIDE * (uint64_t)s->n, e);
-    if (!x) return NULL;
-    memset(x, 0, HDI_WIDE * (size_t)s->n * sizeof *x);
-    s->high[s->n_lock] = -HUGE_VAL;
-    return s->lock[s->n_lock++] = x;
+/* Blocks for n more vectors. */
+static hd_status hdi_spec_blocks(hdi_spec *s, int32_t n, hd_error *e) {
+    for (; n > 0; n -= HDI_WIDE) {
+        double *x = (double *)hdi_alloc_zero(s->ctx, HDI_WIDE * (uint64_t)s->n, sizeof *x, e);
+        if (!x) break;
+        s->high[s->n_lock] = -HUGE_VAL;
+        s->lock[s->n_lock++] = x;
+    }
+    return e->status;
 }
 
 /* Enters a pair whose vector is at a place. */
@@ -16381,65 +16292,55 @@ static void hdi_spec_settle(hdi_spec *s, const double *value, int32_t at, int32_
     hdi_wide_dots(x, x, s->noise, s->n, HDI_WIDE, noise);
     for (r = 0; r < n; r++) {
         if (twin[r] > 0.1 || s->found == s->n) continue;   /* found before */
-        s->n_poor += norm[r] > s->tol * hdi_max(fabs(value[r]), s->unit) + sqrt(noise[r]) ||
+        s->out->n_poor += norm[r] > s->tol * hdi_max(fabs(value[r]), s->unit) + sqrt(noise[r]) ||
                      norm[r] > HDI_SPEC_LOST * fabs(value[r]);
         hdi_spec_enter(s, value[r], norm[r], 8 * at + r);
     }
 }
 
-/* Locks the Ritz vectors which[0..n), whose blocks stand from `first` on. Errors of solves, which eigenvalues
- * next to the shift make large, leave fast modes in the vectors. They are taken out where they are seen. Then
- * all become orthogonal to the blocks before them: those far away, against which the run did not work, are so
- * up to residuals. */
-static void hdi_spec_lock_all(hdi_spec *s, const int32_t *which, int32_t n, int32_t first) {
+/* Takes what a run has found into the list. Errors of solves, which eigenvalues next to the shift make large,
+ * leave fast modes in the vectors. They are taken out where they are seen. Then all become orthogonal to the
+ * blocks before them: those far away, against which the run did not work, are so up to residuals. */
+static hd_status hdi_spec_lock(hdi_spec *s, hd_error *e) {
+    const int32_t first = s->n_lock, most = 8 * s->n_group;
     double value[(int)HDI_SPEC_MOST + (int)HDI_WIDE] = {0};
-    const int32_t most = 8 * s->n_group;
-    int32_t i;
-    for (i = 0; i < n; i++) value[i] = hdi_spec_lambda(s, which[i]);
+    int32_t which[HDI_SPEC_MOST], n = 0, i, j;
+    if (s->n_blocks == 0) return HD_OK;
+    if (hdi_spec_ritz(s, 1, e) < 0) return e->status;
+    hdi_noise_weights(s->lap, 1, 2 * fabs(s->sigma), s->noise, s->noise + s->n);
+    for (i = 0; i < s->cols; i++) {
+        if (!hdi_spec_taken(s, i)) continue;
+        for (j = n++; j > 0 && value[j - 1] > hdi_spec_lambda(s, i); j--) {
+            which[j] = which[j - 1];
+            value[j] = value[j - 1];
+        }
+        which[j] = i;
+        value[j] = hdi_spec_lambda(s, i);
+    }
+    n = hdi_low32(n, 8 * (s->room_lock - first));
+    if (hdi_spec_blocks(s, n, e) < 0) return e->status;
     for (i = 0; i < n; i += most)
         hdi_spec_form(s, which + i, hdi_low32(n - i, most), s->lock + first + i / 8);
     for (i = 0; i < n; i += 8)
         hdi_spec_polish(s, value + i, first, s->lock[first + i / 8], hdi_low32(n - i, 8));
     for (i = 0; i < n; i += 8) hdi_spec_settle(s, value + i, first + i / 8, hdi_low32(n - i, 8));
-}
-
-/* Takes what a run has found into the list. */
-static hd_status hdi_spec_lock(hdi_spec *s, hd_error *e) {
-    const int32_t first = s->n_lock;
-    int32_t which[HDI_SPEC_MOST], n = 0, i, j;
-    double frontier;
-    if (s->n_blocks == 0) return HD_OK;
-    if (hdi_spec_ritz(s, 1, e) < 0) return e->status;
-    frontier = hdi_spec_frontier(s);
-    hdi_noise_weights(s->lap, 1, 2 * fabs(s->sigma), s->noise, s->noise + s->n);
-    for (i = 0; i < s->cols; i++) {
-        if (!hdi_spec_taken(s, i, frontier)) continue;
-        for (j = n++; j > 0 && hdi_spec_lambda(s, which[j - 1]) > hdi_spec_lambda(s, i); j--)
-            which[j] = which[j - 1];
-        which[j] = i;
-    }
-    n = hdi_low32(n, 8 * (s->room_lock - first));
-    for (i = 0; i < n; i += 8) if (!hdi_spec_block(s, e)) return e->status;
-    hdi_spec_lock_all(s, which, n, first);
     return HD_OK;
 }
 
 /* Constants of the first `most` components whose rows of L sum to zero: eigenvalue 0, without any search. */
 static hd_status hdi_spec_constants(hdi_spec *s, int32_t most, hd_error *e) {
-    hdi_scope work = hdi_scope_begin(s->ctx, e);
-    char *loose = HDI_TAKE(&work, char, s->lap->n_components);
-    int32_t *at = HDI_TAKE(&work, int32_t, s->lap->n_components), i, k, n = 0;
-    if (e->status < 0) return hdi_scope_end(&work);
+    char *loose = (char *)s->tmp;                /* their room is not in use yet */
+    int32_t *at = s->at, i, k, n = 0;
     hdi_ground_components(s->lap, loose);
     for (k = 0; k < s->lap->n_components; k++) at[k] = loose[k] && n < most ? n++ : -1;
-    for (k = 0; k < n; k += 8) if (!hdi_spec_block(s, e)) return hdi_scope_end(&work);
+    if (hdi_spec_blocks(s, n, e) < 0) return e->status;
     for (i = 0; i < s->n; i++) {
         const int32_t c = s->lap->component[i];
         if (at[c] >= 0) s->lock[at[c] / 8][8 * (int64_t)i + at[c] % 8] = 1 / sqrt(s->lap->component_mass[c]);
     }
     for (i = 0; i < n; i++) hdi_spec_enter(s, 0, 0, i);
-    s->n_null = n;
-    return hdi_scope_end(&work);
+    s->out->n_constant = n;
+    return HD_OK;
 }
 
 /* ---- counts ---- */
@@ -16479,18 +16380,12 @@ static double hdi_spec_count_off(hdi_spec *s) {
     return 0.5 * DBL_EPSILON * (1 + 1e-3) * worst * hdi_ratio_root(s->lap) * hdi_ratio_root(s->lap);
 }
 
-/* Factorises L - sigma B and counts. A shift where a pivot is zero is moved a little. */
-static hd_status hdi_spec_shift(hdi_spec *s, double sigma, double step, hd_error *e) {
-    int32_t tries;
-    for (tries = 0;; tries++) {
-        s->n_factors++;
-        s->sigma = sigma;
-        if (hdi_elim_real(s->m, &s->factor, 1, -sigma, e) >= 0) break;
-        if (e->status != HD_ERR_BREAKDOWN || tries == 4) return e->status;
-        hdi_error_clear(e);
-        sigma += 0.01 * step;
-    }
-    s->below = s->factor.all.negative;
+/* Factorises L - sigma B and counts. */
+static hd_status hdi_spec_shift(hdi_spec *s, double sigma, hd_error *e) {
+    s->out->n_factors++;
+    s->sigma = sigma;
+    if (hdi_elim_real(s->m, &s->factor, 1, -sigma, e) < 0) return e->status;
+    s->negative = s->factor.all.negative;
     s->off = hdi_spec_count_off(s);
     return HD_OK;
 }
@@ -16514,14 +16409,11 @@ static int hdi_spec_sure(const hdi_spec *s) {
 
 /* ---- a row of shifts ---- */
 
-/* What is wanted. */
-typedef struct hdi_spec_goal { int32_t count; double below; } hdi_spec_goal;
-
 /* Mean distance of the last values found, and not less than a part of the mean of all. */
 static double hdi_spec_spacing(const hdi_spec *s) {
     const int32_t f = s->found, q = hdi_low32(f - 1, HDI_SPEC_HALF / 2);
     double step = s->unit;
-    if (f > s->n_null) {
+    if (f > s->out->n_constant) {
         step = 0.2 * s->value[f - 1] / f;
         if (q > 0) step = hdi_max(step, (s->value[f - 1] - s->value[f - 1 - q]) / q);
     }
@@ -16529,67 +16421,55 @@ static double hdi_spec_spacing(const hdi_spec *s) {
 }
 
 /* How many of the pairs found are wanted. *all: nothing wanted can follow, if nothing is missing between. */
-static int32_t hdi_spec_wanted(const hdi_spec *s, const hdi_spec_goal *goal, int *all) {
-    const int32_t n = hdi_spec_rank(s, goal->below);
-    *all = n >= goal->count || n < s->found || s->found == s->n || s->edge >= goal->below;
-    return hdi_low32(n, goal->count);
+static int32_t hdi_spec_wanted(const hdi_spec *s, int *all) {
+    const int32_t n = hdi_spec_rank(s, s->below);
+    *all = n >= s->count || n < s->found || s->found == s->n || s->edge >= s->below;
+    return hdi_low32(n, s->count);
 }
 
-/* The middle of the widest gap among the next ones after the first n values, above `least`; HUGE_VAL if none
- * is wider than `narrow`. */
-static double hdi_spec_gap(const hdi_spec *s, int32_t n, double least, double narrow) {
-    double widest = narrow, at = HUGE_VAL;
-    int32_t i;
-    for (i = n; i < s->found && i < n + HDI_SPEC_GAPS; i++) {
-        const double from = hdi_max(i > 0 ? s->value[i - 1] : -HUGE_VAL, least);
-        if (!(s->value[i] - from > widest)) continue;
-        widest = s->value[i] - from;
-        at = from + widest / 2;
-    }
-    return at;
-}
-
-/* The next shift: in a gap above what is wanted if that much is found, else some way up, and every time much
- * farther where nothing was: parts of unlike scales may be 10^11 apart. failed: proofs that did not succeed;
- * each takes some more pairs. */
-static double hdi_spec_next(const hdi_spec *s, const hdi_spec_goal *goal, int32_t failed, int32_t half) {
+/* The next shift: in the middle of the widest gap above what is wanted if that much is found, else some way
+ * up, and every time much farther where nothing was: parts of unlike scales may be 10^11 apart. failed:
+ * proofs that did not succeed; each takes some more pairs. */
+static double hdi_spec_next(const hdi_spec *s, int32_t failed, int32_t half) {
     int all;
-    const int32_t n = hdi_spec_wanted(s, goal, &all) + failed * HDI_SPEC_GAPS;
+    const int32_t n = hdi_spec_wanted(s, &all) + failed * HDI_SPEC_GAPS;
+    const double least = s->below < HUGE_VAL ? hdi_max(s->below, s->edge) : s->edge;
     const double step = hdi_spec_spacing(s);
     const double from = hdi_max(s->edge, s->found > 0 ? s->value[s->found - 1] : s->edge);
-    double at;
-    if (all && n < s->found) {
-        at = goal->below < HUGE_VAL && goal->below > s->edge ? goal->below : s->edge;
-        at = hdi_spec_gap(s, n, at, HDI_SPEC_NARROW * step);
-        if (at < HUGE_VAL) return at;
-    }
-    at = hdi_min(half, (double)goal->count - s->found + 3);
-    at = from + ldexp(step, s->idle * (s->idle + 1) / 2) * hdi_max(1, at);
-    if (at >= goal->below) at = hdi_max(goal->below, from + 0.3 * step);
-    return at;
-}
-
-/* A shift that is not next to a value found. */
-static double hdi_spec_clear(const hdi_spec *s, double at, double step) {
+    double widest = HDI_SPEC_NARROW * step, at = HUGE_VAL;
     int32_t i;
-    for (i = 0; i < s->found; i++)
-        if (fabs(s->value[i] - at) < HDI_SPEC_NARROW * step) at = s->value[i] + HDI_SPEC_NARROW * step;
-    return at;
+    for (i = n; all && i < s->found && i < n + HDI_SPEC_GAPS; i++) {
+        const double low = hdi_max(i > 0 ? s->value[i - 1] : least, least);
+        if (!(s->value[i] - low > widest)) continue;
+        widest = s->value[i] - low;
+        at = low + widest / 2;
+    }
+    if (at < HUGE_VAL) return at;
+    at = hdi_min(half, (double)s->count - s->found + 3);
+    at = from + ldexp(step, s->idle * (s->idle + 1) / 2) * hdi_max(1, at);
+    return at < s->below ? at : hdi_max(s->below, from + 0.3 * step);
 }
 
 /* A shift below which about as many values are missing as a run finds, or none. */
-static hd_status hdi_spec_move(hdi_spec *s, const hdi_spec_goal *goal, int32_t failed, int32_t half,
-                               int64_t *missing, hd_error *e) {
-    const double step = hdi_spec_spacing(s);
-    double at = hdi_spec_next(s, goal, failed, half), low = s->edge;
-    int32_t tries;
+static hd_status hdi_spec_move(hdi_spec *s, int32_t failed, int32_t half, int64_t *missing, hd_error *e) {
+    const double step = hdi_spec_spacing(s), apart = HDI_SPEC_NARROW * step;
+    double at = hdi_spec_next(s, failed, half);
+    int32_t tries, i;
     for (tries = 0; tries < HDI_SPEC_TRIES; tries++) {
-        if (hdi_spec_shift(s, hdi_spec_clear(s, at, step), step, e) < 0) return e->status;
-        *missing = s->below - hdi_spec_rank(s, s->sigma);
+        double sigma = at;
+        for (i = 0; i < s->found; i++)           /* not next to a value found */
+            if (fabs(s->value[i] - sigma) < apart) sigma = s->value[i] + apart;
+        if (hdi_spec_shift(s, sigma, e) < 0) {
+            if (e->status != HD_ERR_BREAKDOWN || tries + 1 == HDI_SPEC_TRIES) return e->status;
+            hdi_error_clear(e);                  /* a pivot is zero */
+            at += 0.37 * step;
+            continue;
+        }
+        *missing = s->negative - hdi_spec_rank(s, s->sigma);
         if (*missing < 0) at += 0.37 * step;     /* too near to a value: the count is wrong */
         else if (*missing > 2 * half) {
             const double from = s->found > 0 && *missing < 2 * (int64_t)half * HDI_SPEC_TRIES
-                ? hdi_max(low, hdi_min(s->value[s->found - 1], 0.5 * (low + at))) : low;
+                ? hdi_max(s->edge, hdi_min(s->value[s->found - 1], 0.5 * (s->edge + at))) : s->edge;
             at = from + (at - from) * hdi_max(0.05, half / (double)*missing);
         } else if (s->factor.all.largest > HDI_SPEC_GROWTH * s->factor.largest_entry && *missing > 0) {
             at += 0.11 * step;                   /* there may be better ones */
@@ -16602,12 +16482,12 @@ static hd_status hdi_spec_move(hdi_spec *s, const hdi_spec_goal *goal, int32_t f
 static double hdi_spec_rest(const hdi_spec *s, int32_t n) {
     if (n < s->found) return hdi_max(0, s->value[n] - hdi_ratio_root(s->lap) * s->residual[n]);
     if (n == s->n) return HUGE_VAL;
-    return s->proven ? hdi_max(0, s->sigma - s->off) : n > 0 ? s->value[n - 1] : 0;
+    return s->out->proven ? hdi_max(0, s->sigma - s->off) : n > 0 ? s->value[n - 1] : 0;
 }
 
 /* The first run: the low end, from a shift below all eigenvalues. */
-static hd_status hdi_spec_start(hdi_spec *s, const hdi_spec_goal *goal, hd_error *e) {
-    const int32_t more = goal->count - hdi_low32(goal->count, s->n_null);
+static hd_status hdi_spec_start(hdi_spec *s, hd_error *e) {
+    const int32_t more = s->count - hdi_low32(s->count, s->out->n_constant);
     const int32_t beyond = hdi_low32(HDI_SPEC_HALF - 2, more) + 2;
     double sum = 0;
     int32_t i;
@@ -16617,45 +16497,50 @@ static hd_status hdi_spec_start(hdi_spec *s, const hdi_spec_goal *goal, hd_error
     }
     s->unit = sum > 0 ? 1 / sum : 1;
     s->edge = -s->unit;
-    if (hdi_spec_constants(s, goal->count, e) < 0 || hdi_spec_shift(s, -s->unit, 0, e) < 0) return e->status;
-    if (s->below && s->off < s->unit) return hdi_not_semidefinite(e);
-    if (s->below)
+    if (hdi_spec_constants(s, s->count, e) < 0 || hdi_spec_shift(s, -s->unit, e) < 0) return e->status;
+    if (s->negative && s->off < s->unit) return hdi_not_semidefinite(e);
+    if (s->negative)
         return hdi_fail(e, HD_ERR_NOT_CONVERGED, "spectrum: the entries of L differ by so much that rounding "
                         "hides the smallest eigenvalues");
-    if (goal->count <= s->n_null || s->found == s->n) return HD_OK;
+    if (s->count <= s->out->n_constant || s->found == s->n) return HD_OK;
     return hdi_spec_lanczos(s, 0, beyond, e) < 0 ? e->status : hdi_spec_lock(s, e);
 }
 
-/* All that the goal asks for; how many these are into *count. */
-static hd_status hdi_spec_solve(hdi_spec *s, const hdi_spec_goal *goal, int32_t *count, hd_error *e) {
+/* All that is wanted; how many these are goes to out. */
+static hd_status hdi_spec_solve(hdi_spec *s, hd_error *e) {
     int32_t half = hdi_low32(HDI_SPEC_HALF, 2 * s->room + 1), failed = 0, stalls = 0;
     int64_t missing = 0;
+    int32_t *proven = &s->out->proven;
     int all = 0;
-    if (hdi_spec_start(s, goal, e) < 0) return e->status;
-    s->proven = s->found == s->n || goal->count <= s->n_null;
-    while (!s->proven && failed < HDI_SPEC_PROOFS && stalls < HDI_SPEC_TRIES && s->idle < HDI_SPEC_IDLE) {
+    if (hdi_spec_start(s, e) < 0) return e->status;
+    *proven = s->found == s->n || s->count <= s->out->n_constant;
+    while (!*proven && failed < HDI_SPEC_PROOFS && stalls < HDI_SPEC_TRIES && s->idle < HDI_SPEC_IDLE) {
         const int32_t before = s->found;
-        if (hdi_spec_move(s, goal, failed, half, &missing, e) < 0) return e->status;
+        if (hdi_spec_move(s, failed, half, &missing, e) == HD_ERR_BREAKDOWN) {
+            hdi_error_clear(e);                  /* no shift up there can be told from zero */
+            break;
+        }
+        if (e->status < 0) return e->status;
         if (missing > 0) {                       /* a run at the shift */
-            s->share = hdi_min(0.99, s->found / (1.0 + hdi_min(goal->count, s->n)));
+            s->share = hdi_min(0.99, s->found / (1.0 + hdi_min(s->count, s->n)));
             if (hdi_spec_lanczos(s, (int32_t)missing, 0, e) < 0 || hdi_spec_lock(s, e) < 0) return e->status;
-            if (s->below == hdi_spec_rank(s, s->sigma)) s->edge = s->sigma;
             stalls = s->found > before ? 0 : stalls + 1;
             half = stalls ? half / 2 + 1 : half;
         }
         s->idle = missing == 0 ? s->idle + 1 : 0;
-        if (missing == 0) s->edge = hdi_max(s->edge, s->sigma);
-        if (s->below == hdi_spec_rank(s, s->sigma) &&
-            (s->below >= goal->count || s->sigma >= goal->below)) {
-            s->proven = hdi_spec_sure(s);
-            failed += !s->proven;
+        failed += missing < 0;
+        if (s->negative == hdi_spec_rank(s, s->sigma)) {
+            s->edge = hdi_max(s->edge, s->sigma);
+            if (s->negative >= s->count || s->sigma >= s->below) {
+                *proven = hdi_spec_sure(s);
+                failed += !*proven;
+            }
         }
-        if (missing < 0) failed++;
-        if (s->found == s->n) s->proven = 1;
+        if (s->found == s->n) *proven = 1;
     }
-    *count = hdi_spec_wanted(s, goal, &all);
-    s->next = hdi_spec_rest(s, *count);
-    if (all || s->proven) return HD_OK;
+    s->out->count = hdi_spec_wanted(s, &all);
+    s->out->next = s->m->scale * hdi_spec_rest(s, s->out->count);
+    if (all || *proven) return HD_OK;
     return hdi_fail(e, HD_ERR_NOT_CONVERGED, "spectrum: some eigenpairs were not found");
 }
 
@@ -16663,7 +16548,7 @@ static hd_status hdi_spec_solve(hdi_spec *s, const hdi_spec_goal *goal, int32_t 
 
 /* Vectors by vertices, the largest entry of each positive, and values in the units of the source. */
 static void hdi_spec_vectors(const hdi_spec *s, hd_spectrum *out) {
-    const double root = sqrt(s->m->scale), first = s->n_null < s->found ? s->value[s->n_null] : 0;
+    const double root = sqrt(s->m->scale), first = out->n_constant < s->found ? s->value[out->n_constant] : 0;
     int32_t q, i;
     for (q = 0; q < out->count; q++) {
         const double *from = s->lock[s->at[q] / 8] + s->at[q] % 8;
@@ -16712,20 +16597,17 @@ static void hdi_spec_left_task(void *arg, int64_t begin, int64_t end) {
     }
 }
 
-/* Eigenpairs for the goal. m: a pair that is analysed, whose factor kept in m is not touched. The arrays of
- * out belong to ctx of m. */
-static hd_status hdi_spec_run(hdi_elim *m, const hdi_spec_goal *goal, double tol, hd_spectrum *out,
+/* So many eigenpairs, and those below. m: a pair that is analysed, whose factor kept in m is not touched. The
+ * arrays of out belong to ctx of m. */
+static hd_status hdi_spec_run(hdi_elim *m, int32_t count, double below, double tol, hd_spectrum *out,
                               hd_error *e) {
     hdi_spec s;
-    int32_t count = 0;
     uint64_t n, k;
-    memset(&s, 0, sizeof s);
-    if (hdi_spec_make(&s, m, goal->count, tol, e) >= 0 && hdi_spec_solve(&s, goal, &count, e) >= 0) {
+    if (hdi_spec_make(&s, m, count, below, tol, out, e) >= 0 && hdi_spec_solve(&s, e) >= 0) {
         n = (uint64_t)m->source->n;
-        k = (uint64_t)count;
+        k = (uint64_t)out->count;
         hdi_spec_runs_free(&s);                  /* before the vectors are there twice */
         out->n = m->source->n;
-        out->count = count;
         out->value = HDI_NEW(m->ctx, double, 2 * k, e);
         if (out->value) out->vector = HDI_NEW(m->ctx, double, n * k, e);
         if (out->vector) out->left = HDI_NEW(m->ctx, double, 2 * n, e);
@@ -16733,18 +16615,12 @@ static hd_status hdi_spec_run(hdi_elim *m, const hdi_spec_goal *goal, double tol
             out->residual = out->value + k;
             out->left_mass = out->left + n;
             hdi_spec_vectors(&s, out);
-            out->n_constant = hdi_low32(s.n_null, count);
-            out->next = m->scale * s.next;
-            out->n_poor = s.n_poor;
+            out->n_constant = hdi_low32(out->n_constant, out->count);
             out->shift = m->scale * s.sigma;
             out->shift_margin = m->scale * s.off;
-            out->n_factors = s.n_factors;
-            out->n_runs = s.n_runs;
-            out->n_solves = s.n_solves;
             out->factor_nnz = m->sym.nnz;
-            out->factor_flops = m->sym.flops * s.n_factors;
+            out->factor_flops = m->sym.flops * out->n_factors;
             out->ordering = m->sym.ordering;
-            out->proven = s.proven;
             memset(out->left, 0, 2 * n * sizeof *out->left);
             hdi_parallel_ranges(m->ctx, s.n, 1024, hdi_spec_left_task, out);
         }
@@ -16780,7 +16656,6 @@ HEATDIFF_API void hd_spectrum_free(hd_spectrum *s) {
 
 HEATDIFF_API hd_status hd_spectrum_create(hd_spectrum **out, const hd_laplacian *lap,
                                           const hd_spectrum_opts *o, hd_error *err) {
-    hdi_spec_goal goal;
     hdi_call c;
     hdi_elim m;
     hd_spectrum *s;
@@ -16796,11 +16671,11 @@ HEATDIFF_API hd_status hd_spectrum_create(hd_spectrum **out, const hd_laplacian 
     s->context = c.ctx;                          /* the caller's: every Laplacian has one */
     hdi_hold(s->context);
     scale = hdi_pair_scale(lap);
-    goal.count = o->count > 0 ? o->count : INT32_MAX;
-    goal.below = o->below > 0 ? o->below / scale : HUGE_VAL;
     if (hdi_elim_make(&m, lap, o->ordering, o->ordering == HD_ORDERING_OWN ? o->perm : NULL, scale, c.ctx,
                       c.e) >= 0)
-        (void)hdi_spec_run(&m, &goal, o->tol > 0 ? o->tol : HDI_TOL_SPECTRUM, s, c.e);
+        (void)hdi_spec_run(&m, o->count > 0 ? o->count : INT32_MAX,
+                           o->below > 0 ? o->below / scale : HUGE_VAL,
+                           o->tol > 0 ? o->tol : HDI_TOL_SPECTRUM, s, c.e);
     hdi_elim_free(&m);
     if (c.e->status >= 0) *out = s;
     else hd_spectrum_free(s);
@@ -16856,21 +16731,13 @@ typedef struct hdi_bank {
     double noise, most;          /* of rounding; the largest weight */
 } hdi_bank;
 
-/* Sums over the pairs: kernels or distances of k sources at n_times times, or a diagonal. */
+/* Sums over the pairs: a column, a diagonal or distances, for one source and time. */
 typedef struct hdi_spec_sums {
     const hdi_modes *of;
     int distance, diagonal;      /* squares of differences, or of entries, instead of products */
     int mass;                    /* of B x instead of x */
     int power;                   /* 0: of exp(-t lambda); without a time of 1/lambda^power */
-    int32_t n_times, k;
-    const double *t;
-    const hd_sources *sources;   /* [k], not for the diagonal; they become terms */
-    const hdi_terms *terms;
-    hdi_scope scope;
-    double *out, *bound;         /* column q n_times + m for source q and time m, ld apart; bound or NULL */
-    size_t ld;
-    /* for one source and time */
-    hdi_bank bank;
+    hdi_bank bank;               /* for one time */
     double *x;                   /* [count] the source in the vectors */
     hdi_share from;              /* of the source */
     double sums_off;             /* rounding of sums over it, relative */
@@ -16980,12 +16847,6 @@ static hdi_parts hdi_bank_off(const hdi_spec_sums *a, const hdi_share *g, const 
     return off;
 }
 
-/* A bound of |sqrt(a) - sqrt(b)| where b differs by at most off from a. */
-static double hdi_spec_root_off(double a, double off) {
-    if (off >= HUGE_VAL) return off;
-    return off > 0 ? off / hdi_max(sqrt(hdi_max(a, 0)), sqrt(off)) : 0;
-}
-
 /* Bounds of the error of value d at vertex v. */
 static hdi_parts hdi_spec_off(const hdi_spec_sums *a, int32_t v, double d) {
     const hdi_bank *b = &a->bank;
@@ -16993,13 +16854,14 @@ static hdi_parts hdi_spec_off(const hdi_spec_sums *a, int32_t v, double d) {
     const hdi_share f = a->diagonal ? hdi_share_of(a, v, a->mass) : a->from;
     hdi_parts off = {0, 0, 0}, square;
     hdi_share y = f;
-    double beside;
+    double beside, all;
     if (!a->distance) return hdi_bank_off(a, &g, &f, d);
     hdi_share_add(&y, 1, g);
     if (a->inner) y.inner = a->inner[v];
     if (a->power) {
         square = hdi_bank_off(a, &y, &y, d * d);
-        off.rational = hdi_spec_root_off(d * d, hdi_parts_sum(&square));
+        all = hdi_parts_sum(&square);            /* of d^2 */
+        off.rational = all > 0 && hdi_finite(all) ? all / hdi_max(d, sqrt(all)) : all;
         return off;
     }
     beside = hdi_decayed(b, (b->cut + b->square) * y.left);
@@ -17114,20 +16976,36 @@ static void hdi_spec_sum_others(const hdi_spec_sums *a, const hdi_terms *from) {
     }
 }
 
-static void hdi_spec_sums_run(hdi_spec_sums *a, hd_context *ctx) {
+/* A call for sums. kind: an hd_kernel or, for distances, an hd_distance_kind. Column q n_times + m is for
+ * source q and time m. */
+typedef enum hdi_spec_sort { HDI_SPEC_COLUMNS, HDI_SPEC_DIAGONAL, HDI_SPEC_DISTANCE } hdi_spec_sort;
+
+typedef struct hdi_spec_ask {
+    hdi_spec_sort sort;
+    int kind;
+    int32_t n_times;
+    const double *t;
+    const hd_sources *sources;   /* not for the diagonal */
+    double *out, *bound;         /* columns ld apart; bound or NULL */
+    size_t ld;
+} hdi_spec_ask;
+
+/* terms: of the sources. */
+static void hdi_spec_sums_run(hdi_spec_sums *x, const hdi_spec_ask *a, const hdi_terms *terms,
+                              hd_context *ctx) {
     hdi_terms from;
     int32_t q, m;
     memset(&from, 0, sizeof from);
-    for (q = 0; q < a->k; q++) {
-        if (!a->diagonal) from = a->terms[q];
+    for (q = 0; q < (x->diagonal ? 1 : a->sources->count); q++) {
+        if (!x->diagonal) from = terms[q];
         for (m = 0; m < a->n_times; m++) {
             const size_t at = ((size_t)q * (size_t)a->n_times + (size_t)m) * a->ld;
-            a->column = a->out + at;
-            a->off = a->bound ? a->bound + at : NULL;
-            hdi_spec_sum_at(a, a->t[m]);
-            hdi_spec_sum_from(a, &from);
-            hdi_parallel_ranges(ctx, a->of->s.n, 1024, hdi_spec_sum_task, a);
-            hdi_spec_sum_others(a, &from);
+            x->column = a->out + at;
+            x->off = a->bound ? a->bound + at : NULL;
+            hdi_spec_sum_at(x, a->t[m]);
+            hdi_spec_sum_from(x, &from);
+            hdi_parallel_ranges(ctx, x->of->s.n, 1024, hdi_spec_sum_task, x);
+            hdi_spec_sum_others(x, &from);
         }
     }
 }
@@ -17148,71 +17026,53 @@ static hdi_modes hdi_modes_of(const hd_spectrum *s, double *off) {
     return x;
 }
 
-/* Checks the arguments of sums over the pairs, makes room for them, and runs them. refused: of their kind, or
- * NULL. */
-static hd_status hdi_spec_sums_ask(hdi_spec_sums *x, const hd_spectrum *s, const char *refused,
-                                   hd_error *err) {
+static hd_status hdi_spec_sums_check(const hdi_spec_ask *a, const hd_spectrum *s, int timeless, hd_error *e) {
+    const int32_t k = a->sort == HDI_SPEC_DIAGONAL ? 1 : a->sources->count;
+    int32_t q;
+    if ((a->n_times > 0 && !a->t) || (k > 0 && !a->out)) return hdi_missing(e);
+    hdi_refuse(a->n_times < 1, "spectrum: there is no time", e);
+    hdi_refuse(k < 0, "spectrum: a number of columns is negative", e);
+    hdi_refuse(a->ld < (size_t)s->n, "spectrum: columns would overlap", e);
+    for (q = 0; q < a->n_times; q++)
+        hdi_refuse_value(!hdi_finite(a->t[q]) || a->t[q] < 0, "spectrum: t is negative or not finite",
+                         a->t[q], e);
+    hdi_refuse(timeless && a->n_times > 1, "spectrum: this distance has no time", e);
+    return e->status;
+}
+
+static hd_status hdi_spec_sums_ask(const hd_spectrum *s, hdi_spec_ask a, hd_error *err) {
+    const hdi_distance_row *row = hdi_distance_of((hd_distance_kind)a.kind);
     const double zero = 0;
+    hdi_terms *terms = NULL;
+    hdi_spec_sums x;
+    hdi_scope scope;
     hdi_modes of;
     hdi_call c;
-    int32_t q;
-    if (hdi_enter(&c, s ? s->context : NULL, 1, err) < 0) return c.e->status;
+    if (hdi_enter(&c, s ? s->context : NULL, s && (a.sort == HDI_SPEC_DIAGONAL || a.sources), err) < 0)
+        return c.e->status;
     if (!HDI_HAS_SPECTRUM) return HDI_LEFT_OUT(c.e, SPECTRUM, "eigenpairs");
-    if (x->power && x->n_times <= 1) {           /* no time */
-        x->n_times = 1;
-        x->t = &zero;
-    }
-    x->k = x->diagonal ? 1 : x->sources ? x->sources->count : 0;
-    if (!s || (x->n_times > 0 && !x->t) || (x->k > 0 && !x->out)) return hdi_missing(c.e);
-    if (!x->diagonal && !x->sources) return hdi_missing(c.e);
-    hdi_refuse(x->n_times < 1, "spectrum: there is no time", c.e);
-    hdi_refuse(x->k < 0, "spectrum: a number of columns is negative", c.e);
-    hdi_refuse(x->ld != 0 && x->ld < (size_t)s->n, "spectrum: columns would overlap", c.e);
-    for (q = 0; q < x->n_times; q++)
-        hdi_refuse_value(!hdi_finite(x->t[q]) || x->t[q] < 0, "spectrum: t is negative or not finite",
-                         x->t[q], c.e);
-    hdi_refuse(refused != NULL, refused, c.e);
-    hdi_refuse(x->power && x->n_times > 1, "spectrum: this distance has no time", c.e);
-    if (c.e->status < 0) return c.e->status;
-    x->ld = x->ld ? x->ld : (size_t)s->n;
-    x->scope = hdi_scope_begin(c.ctx, c.e);
-    x->x = HDI_TAKE(&x->scope, double, 5 * (uint64_t)s->count + 1);
-    if (x->sources && x->x) x->terms = hdi_terms_all(x->sources, s->lap, x->distance, &x->scope);
+    memset(&x, 0, sizeof x);
+    x.diagonal = a.sort == HDI_SPEC_DIAGONAL;
+    x.distance = a.sort == HDI_SPEC_DISTANCE;
+    x.power = x.distance && row ? row->power : 0;
+    x.mass = x.distance ? row && row->mass > 0 : a.kind == HD_KERNEL_OPERATOR;
+    if (x.power && a.n_times <= 1) a.t = &zero;
+    if (x.power) a.n_times = hdi_high32(a.n_times, 1);
+    if (a.ld == 0) a.ld = (size_t)s->n;
+    if (hdi_spec_sums_check(&a, s, x.power, c.e) < 0) return c.e->status;
+    if (x.distance ? !row : !x.mass && a.kind != HD_KERNEL_SYMMETRIC)
+        return hdi_fail(c.e, HD_ERR_ARGUMENT,
+                        x.distance ? "spectrum: unknown distance" : "spectrum: unknown kernel");
+    scope = hdi_scope_begin(c.ctx, c.e);
+    x.x = HDI_TAKE(&scope, double, 5 * (uint64_t)s->count + 1);
+    if (!x.diagonal && x.x) terms = hdi_terms_all(a.sources, s->lap, x.distance, &scope);
     if (c.e->status >= 0) {
-        x->bank.weight = x->x + s->count;
-        of = hdi_modes_of(s, x->x + 4 * (size_t)s->count);
-        x->of = &of;
-        hdi_spec_sums_run(x, c.ctx);
+        x.bank.weight = x.x + s->count;
+        of = hdi_modes_of(s, x.x + 4 * (size_t)s->count);
+        x.of = &of;
+        hdi_spec_sums_run(&x, &a, terms, c.ctx);
     }
-    return hdi_scope_end(&x->scope);
-}
-
-static hd_status hdi_spec_sums_kernel(hdi_spec_sums *x, const hd_spectrum *s, hd_kernel kernel,
-                                      hd_error *err) {
-    x->mass = kernel == HD_KERNEL_OPERATOR;
-    return hdi_spec_sums_ask(x, s, x->mass || kernel == HD_KERNEL_SYMMETRIC ? NULL
-                                   : "spectrum: unknown kernel", err);
-}
-
-static hd_status hdi_spec_sums_distance(hdi_spec_sums *x, const hd_spectrum *s, hd_distance_kind kind,
-                                        hd_error *err) {
-    const hdi_distance_row *row = hdi_distance_of(kind);
-    x->distance = 1;
-    x->power = row ? row->power : 0;
-    x->mass = row && row->mass > 0;
-    return hdi_spec_sums_ask(x, s, row ? NULL : "spectrum: unknown distance", err);
-}
-
-static hdi_spec_sums hdi_spec_sums_of(int32_t n_times, const double *t, double *out, double *bound,
-                                      size_t ld) {
-    hdi_spec_sums a;
-    memset(&a, 0, sizeof a);
-    a.n_times = n_times;
-    a.t = t;
-    a.out = out;
-    a.bound = bound;
-    a.ld = ld;
-    return a;
+    return hdi_scope_end(&scope);
 }
 
 /* ==== [26] plan ====
@@ -17529,11 +17389,8 @@ static hd_status hdi_shifted_prepare(hd_heat *heat, double t, hd_c64 theta, hd_e
     set.n_poles = 1;
     set.theta[0] = theta;
     if (hdi_heat_iterative(heat, e) < 0 || hdi_heat_make_lanes(heat, 1, e) < 0) return e->status;
-    hdi_family_set(fam, &set, t * heat->scale);
-    if (hdi_family_room(fam, e) < 0 ||
-        hdi_lane_make(heat->lane, hdi_lane_room_of(heat->lap, fam, 0, 1), heat->ctx, e) < 0) return e->status;
-    hdi_lane_systems(heat->lane, fam);
-    return hdi_family_fill(fam, heat->lane, e);
+    if (hdi_lane_make(heat->lane, hdi_lane_room_of(heat->lap, fam, 0, 1), heat->ctx, e) < 0) return e->status;
+    return hdi_family_prepare(fam, &set, t * heat->scale, heat->lane, 1, e);
 }
 
 #define HDI_TOL_SOLVE 1e-10
@@ -18435,15 +18292,11 @@ static hd_status hdi_iterative_prepare(hdi_heat_call *h) {
     const int known = heat->source->b_ratio > 0;
     const int32_t steps = known ? hdi_lanczos_most(h->t, heat->lambda_max) : HDI_LANCZOS_MAX;
     hd_rational set;
-    int32_t i;
     if (h->solver == HD_SOLVER_LANCZOS) return hdi_heat_lanes(h, HDI_LANES_ITERATIVE, steps, 0);
     if (hdi_heat_set(h, &set) < 0) return h->e->status;
-    hdi_family_set(&heat->fam, &set, h->t);
     hdi_report_set(h->rep, &set);
     if (hdi_heat_lanes(h, HDI_LANES_ITERATIVE, 0, set.n_poles) < 0 ||
-        hdi_family_room(&heat->fam, h->e) < 0) return h->e->status;
-    for (i = 0; i < h->n_lanes; i++) hdi_lane_systems(heat->lane + i, &heat->fam);
-    if (hdi_family_fill(&heat->fam, heat->lane, h->e) < 0) return h->e->status;
+        hdi_family_prepare(&heat->fam, &set, h->t, heat->lane, h->n_lanes, h->e) < 0) return h->e->status;
     if (hdi_family_shares(&heat->fam)) h->n_lanes = 1;
     return HD_OK;
 }
@@ -19867,15 +19720,12 @@ static double hdi_modes_need(const hd_heat *heat, int32_t count) {
 static int hdi_modes_find(hd_heat *heat, int32_t count, hd_error *e) {
     hdi_modes *x = &heat->modes;
     const hd_laplacian *lap = heat->source;
-    hdi_spec_goal goal;
     hdi_modes_free(x, heat->ctx);
     if (hdi_heat_analysed(heat, e) < 0 ||
         HDI_MODES_SURE * hdi_modes_need(heat, count) > hdi_bytes_left(heat->ctx)) return 0;
-    goal.below = HUGE_VAL;
-    goal.count = count;
     x->s.lap = lap;
     x->s.context = heat->ctx;
-    if (hdi_spec_run(&heat->elim, &goal, HDI_MODES_RESIDUAL, &x->s, e) >= 0 && x->s.proven &&
+    if (hdi_spec_run(&heat->elim, count, HUGE_VAL, HDI_MODES_RESIDUAL, &x->s, e) >= 0 && x->s.proven &&
         x->s.n_constant == (lap->conserves ? lap->n_components : 0) && hdi_modes_measure(heat, e) >= 0 &&
         x->off_gram <= HDI_MODES_ORTHO) return 1;
     hdi_modes_free(x, heat->ctx);
@@ -20837,14 +20687,8 @@ static void hdi_inverses_weigh(hdi_inverses *x, int32_t q) {
     const hd_rational *set = x->set + q;
     const double tau = hdi_inverses_tau(x, q);
     hd_c64 *k = x->weight + 2 * (size_t)q * (size_t)set->n_poles, *g = k + set->n_poles;
-    double slack = 0, factor = 1;
-    int32_t p, best = 0;
-    if (!hdi_resolvent_weights(set, g, &slack)) {
-        slack = 0;
-        best = hdi_resolvent_pole(set, &factor);
-        for (p = 0; p < set->n_poles; p++) g[p] = hdi_c(p == best ? factor : 0, 0);
-    }
-    x->slack[q] = best >= 0 ? 1 + slack : HUGE_VAL;
+    int32_t p;
+    x->slack[q] = hdi_resolvent_weights(set, g);
     for (p = 0; p < set->n_poles; p++) {
         k[p] = hdi_cscale(-hdi_rat_count(set, p) / tau, set->a[p]);
         g[p] = hdi_cscale(1 / tau, g[p]);
@@ -24488,25 +24332,22 @@ HEATDIFF_API hd_status hd_times_auto(const hd_laplacian *lap, int32_t n_times, d
 HEATDIFF_API hd_status hd_spectrum_columns(const hd_spectrum *s, hd_kernel kernel, int32_t n_times,
                                            const double *t, const hd_sources *sources, double *U,
                                            double *bound, size_t ldu, hd_error *err) {
-    hdi_spec_sums x = hdi_spec_sums_of(n_times, t, U, bound, ldu);
-    x.sources = sources;
-    return hdi_spec_sums_kernel(&x, s, kernel, err);
+    const hdi_spec_ask ask = {HDI_SPEC_COLUMNS, (int)kernel, n_times, t, sources, U, bound, ldu};
+    return hdi_spec_sums_ask(s, ask, err);
 }
 
 HEATDIFF_API hd_status hd_spectrum_diagonal(const hd_spectrum *s, hd_kernel kernel, int32_t n_times,
                                             const double *t, double *D, double *bound, size_t ldd,
                                             hd_error *err) {
-    hdi_spec_sums x = hdi_spec_sums_of(n_times, t, D, bound, ldd);
-    x.diagonal = 1;
-    return hdi_spec_sums_kernel(&x, s, kernel, err);
+    const hdi_spec_ask ask = {HDI_SPEC_DIAGONAL, (int)kernel, n_times, t, NULL, D, bound, ldd};
+    return hdi_spec_sums_ask(s, ask, err);
 }
 
 HEATDIFF_API hd_status hd_spectrum_distance(const hd_spectrum *s, hd_distance_kind kind, int32_t n_times,
                                             const double *t, const hd_sources *sources, double *D,
                                             double *bound, size_t ldd, hd_error *err) {
-    hdi_spec_sums x = hdi_spec_sums_of(n_times, t, D, bound, ldd);
-    x.sources = sources;
-    return hdi_spec_sums_distance(&x, s, kind, err);
+    const hdi_spec_ask ask = {HDI_SPEC_DISTANCE, (int)kind, n_times, t, sources, D, bound, ldd};
+    return hdi_spec_sums_ask(s, ask, err);
 }
 
 HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const double *t, int32_t k,
