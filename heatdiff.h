@@ -22948,17 +22948,13 @@ struct hd_geodesic {
     char *active;                /* [n_super] fronts that the sources touch */
     char *mark;                  /* [n_active] 1: u is known; or a source */
     double *x, *b, *r, *work;    /* [n_active] each; sweeps */
-    double *first;               /* [n_active] u of the first stage, made with the first set of sources */
     double *wide_x, *wide_b, *wide_work;   /* the same for a batch, one array made when first needed */
-    int64_t *value_ptr;          /* [n_components + 1] */
-    hdi_pair *sorted;            /* [value_size] */
-    double *value;               /* [value_size] phi at the sources, by component, ascending; after sorted */
-    int32_t value_size;
+    int64_t *value_ptr;          /* [n_components + 1] where the values of a source begin */
     hd_laplacian *lap;           /* of updatable plans, else NULL */
     int32_t *from;               /* [n_faces] which of the mesh's faces each is; of updatable plans kept */
     double t_asked, t_in_h2;     /* 0: t_in_h2 h^2 */
     int32_t ready;               /* 0: the last update failed half way */
-    hdi_scope keep;              /* arrays but those that grow */
+    hdi_scope keep;              /* all arrays */
 };
 
 /* ---- making ---- */
@@ -22979,7 +22975,6 @@ static void hdi_geo_free(hd_geodesic *g) {
     hdi_laplacian_free(g->lap, ctx);
     hdi_laplacian_free(g->poly.pair, ctx);
     while (g->keep.n > 0) hdi_free(ctx, g->keep.block[--g->keep.n]);
-    hdi_free(ctx, g->sorted);
     hdi_free(ctx, g);
     hdi_let_go(ctx);
 }
@@ -23257,21 +23252,27 @@ static hd_status hdi_geo_update(hd_geodesic *g, const double *xyz, hd_error *e) 
     return e->status;
 }
 
-/* A point of a source, or a piece of a curve from a to b, in barycentric coordinates of up to three rows. */
+/* A point of a source, or a piece of a curve from a to b, in barycentric coordinates of up to three rows. A
+ * vertex without mass has no row. */
 typedef struct hdi_geo_item {
     int32_t n, row[3], next;     /* the next item that has the same first row, -1: none */
+    int32_t vertex;              /* one of its corners */
     double a[3], b[3];
     double length;               /* in units of h, -1: it has been found in no face */
 } hdi_geo_item;
 
-typedef struct hdi_geo_items {
-    const hd_sources *s;
-    hdi_geo_item *item;
-    int32_t n;
-    int32_t *first;              /* [n_active] items by their first row, -1: none */
-    int32_t *home, n_home;       /* [n_home] faces with items */
-    double *near_by;             /* [n_active] distance to the source along its faces, in units of h */
-} hdi_geo_items;
+/* What the distances of a column start from. */
+typedef struct hdi_geo_source {
+    hdi_geo_item *item;          /* [n] */
+    int32_t n, curve;
+    double *near_by;             /* [n_active] distance along the items' faces, in units of h; NULL: all items
+                                    are vertices */
+    int32_t *home, n_home;       /* [n_home] these faces */
+    double *first;               /* [n_active] u of the first stage; NULL: not several vertices */
+    hdi_pair *sorted;            /* [n] */
+    double *value;               /* [n] phi at the items, by component, ascending */
+    double *d;                   /* [n] the column */
+} hdi_geo_source;
 
 /* ---- passes over the faces ---- */
 /* Vectors hold k columns side by side: one, or a batch. */
@@ -23381,21 +23382,20 @@ static HDI_INLINE void hdi_geo_stiff(const hdi_geo_face *a, double sign, const d
     r[a->v[2]] += g2;
 }
 
-/* Adds div X to b: the right-hand side of L phi = b. In the faces of items, which one column has, X is the
- * gradient of the known distances. Returns the columns as bits in which some faces have heat, but all of it
- * below least. */
+/* Adds div X to b: the right-hand side of L phi = b. In the home faces of s, X is the gradient of the known
+ * distances. Returns the columns as bits in which some faces have heat, but all of it below least. */
 static int hdi_geo_divergence(const hd_geodesic *g, int k, const double *u, const double *least,
-                              const char *done, const hdi_geo_items *items, double *b) {
+                              const char *done, const hdi_geo_source *s, double *b) {
     const int level = k > 1 ? hdi_simd_level(g->ctx) : 0;
     const int32_t end = g->n_faces;
     hdi_geo_range part = {0, g->n_faces};
     double dim[HDI_GEO_WIDE] = {0};
     int32_t q;
     int c, faint = 0;
-    for (q = 0; items && q < items->n_home; q++) {
-        part.end = items->home[q];
+    for (q = 0; s && q < s->n_home; q++) {
+        part.end = s->home[q];
         hdi_geo_flow(g, part, 1, u, least, NULL, b, dim);
-        hdi_geo_stiff(g->face + part.end, 1, items->near_by, b);
+        hdi_geo_stiff(g->face + part.end, 1, s->near_by, b);
         part.begin = part.end + 1;
         part.end = end;
     }
@@ -23423,10 +23423,12 @@ static void hdi_geo_subtract(const hd_geodesic *g, const double *HDI_RESTRICT x,
     for (f = 0; f < g->n_faces && g->face; f++) hdi_geo_stiff(g->face + f, -1, x, r);
 }
 
-/* x = the inverse times x in k columns. */
-static void hdi_geo_sweep(const hd_geodesic *g, const hdi_factor *f, int k, double *x, const char *active) {
+/* x = the inverse times x in k columns. Of heat x is not zero in the fronts g->active only, and it is asked
+ * for in those wanted; NULL: in all. */
+static void hdi_geo_sweep(const hd_geodesic *g, const hdi_factor *f, int k, double *x, const char *wanted) {
     hdi_sweep z = hdi_sweep_open(f, k, x, k == 1 ? g->work : g->wide_work);
-    z.active = active;
+    z.active = f == &g->poisson ? NULL : g->active;
+    z.wanted = wanted;
     hdi_sweep_run(&z, g->ctx);
 }
 
@@ -23504,10 +23506,7 @@ static hd_status hdi_geo_further(hd_geodesic *g, double least, int32_t *n_stages
     int32_t i, faint = e->status >= 0;
     memset(g->mark, 0, (size_t)g->n_active);
     while (faint && hdi_geo_border(g, least, f, wanted) && hdi_progress(g->ctx, "solve", 0.5, e) >= 0) {
-        hdi_sweep z = hdi_sweep_open(&g->heat, 1, g->x, g->work);
-        z.active = g->active;
-        z.wanted = wanted;
-        hdi_sweep_run(&z, g->ctx);
+        hdi_geo_sweep(g, &g->heat, 1, g->x, wanted);
         for (i = 0, most = 0; i < g->n_active; i++) most = hdi_max(most, g->mark[i] ? 0 : fabs(g->x[i]));
         least = most * HDI_GEO_FAINT;
         faint = least > DBL_MIN && hdi_geo_divergence(g, 1, g->x, &least, g->mark, NULL, g->b);
@@ -23527,19 +23526,23 @@ static hd_status hdi_geo_further(hd_geodesic *g, double least, int32_t *n_stages
 /* Barycentric coordinates below this do not keep a point off an edge, or off a vertex. */
 #define HDI_GEO_ASIDE 1e-9
 
-/* Adds point q of the source to an item; end: 0 for a, 1 for b. Returns 0 if the item gets more than three
- * rows, or one that has no mass. */
+/* Adds point q of the sources to an item; end: 0 for a, 1 for b. Returns 0 if the item gets more than three
+ * rows, or a vertex without mass that is not all of a source's point. */
 static int hdi_geo_item_add(const hd_geodesic *g, const hd_sources *s, hdi_geo_item *x, int64_t q, int end) {
     const int32_t corners = hdi_source_corners(s);
-    int32_t c, k;
+    int32_t c, k, parts = 0, none = 0;
     double sum = 0;
     for (c = 0; c < corners; c++) sum += hdi_source_part(s, q, c);
     for (c = 0; c < corners; c++) {
         const double w = hdi_source_part(s, q, c) / sum;
-        const int32_t row = g->row[s->vertex[q * corners + c]];
+        const int32_t vertex = s->vertex[q * corners + c], row = g->row[vertex];
         if (w < HDI_GEO_ASIDE) continue;
+        x->vertex = vertex;
+        parts++;
+        none += row < 0;
         for (k = 0; k < x->n && x->row[k] != row; k++) {}
-        if (row < 0 || k == 3) return 0;
+        if (row < 0) continue;
+        if (k == 3) return 0;
         if (k == x->n) {
             x->a[k] = x->b[k] = 0;
             x->row[x->n++] = row;
@@ -23547,7 +23550,7 @@ static int hdi_geo_item_add(const hd_geodesic *g, const hd_sources *s, hdi_geo_i
         if (!end) x->a[k] += w;
         else x->b[k] += w;
     }
-    return 1;
+    return none == 0 || (parts == 1 && !s->curve);
 }
 
 /* The distance of the corner at c from the line from a to b, in the plane. */
@@ -23578,146 +23581,116 @@ static int hdi_geo_item_in(hdi_geo_item *x, const hdi_geo_face *f, double *near_
     return 1;
 }
 
-#define HDI_GEO_ON_BORDER "geodesic: a source lies on the border, which is held at zero; take the mean border"
-
 static hd_status hdi_geo_lost(int32_t q, hd_error *e) {
     return hdi_source_fail(e, HD_ERR_ARGUMENT,
                            "geodesic: a point of the source, or a piece of its curve, lies in no face", q,
                            -1, 0);
 }
 
-/* The items of n points of sources, from one on, and the faces that they lie in. Refuses those on a border
- * that is held at zero, and curves without a length. */
-static hd_status hdi_geo_items_make(hdi_geo_items *z, const hd_geodesic *g, const hd_sources *s,
-                                    int64_t begin, int32_t n, hdi_scope *in) {
+/* Finds the faces that the items lie in. Refuses curves without a length. */
+static hd_status hdi_geo_source_faces(hdi_geo_source *z, const hd_geodesic *g, hdi_scope *in) {
+    int32_t *first = HDI_TAKE(in, int32_t, g->n_active), f, i;   /* items by their first row, -1: none */
     double length = 0;
-    int32_t f, i;
     int q;
-    z->s = s;
-    z->n = s->curve ? n - 1 : n;
-    z->item = HDI_TAKE_ZERO(in, hdi_geo_item, z->n);
-    z->first = HDI_TAKE(in, int32_t, g->n_active);
     z->home = HDI_TAKE(in, int32_t, g->n_faces);
-    z->n_home = 0;
     z->near_by = HDI_TAKE(in, double, g->n_active);
     if (in->e->status < 0) return in->e->status;
-    hdi_fill_i32(z->first, g->n_active, -1);
+    hdi_fill_i32(first, g->n_active, -1);
     for (i = 0; i < g->n_active; i++) z->near_by[i] = HUGE_VAL;
     for (i = 0; i < z->n; i++) {
         hdi_geo_item *x = z->item + i;
-        const int64_t at = begin + i;
-        if (!hdi_geo_item_add(g, s, x, at, 0) || !hdi_geo_item_add(g, s, x, s->curve ? at + 1 : at, 1))
-            return hdi_geo_lost(i, in->e);
         x->length = -1;
-        x->next = z->first[x->row[0]];
-        z->first[x->row[0]] = i;
+        if (x->n == 0) continue;
+        x->next = first[x->row[0]];
+        first[x->row[0]] = i;
     }
     for (f = 0; f < g->n_faces; f++) {
         int here = 0;
         for (q = 0; q < 3; q++)
-            for (i = z->first[g->face[f].v[q]]; i >= 0; i = z->item[i].next)
+            for (i = first[g->face[f].v[q]]; i >= 0; i = z->item[i].next)
                 here |= hdi_geo_item_in(z->item + i, g->face + f, z->near_by);
         if (here) z->home[z->n_home++] = f;
     }
     for (i = 0; i < z->n; i++) {
-        const hdi_geo_item *x = z->item + i;
-        if (x->length < 0) return hdi_geo_lost(i, in->e);
-        length += x->length;
-        for (q = 0; q < x->n; q++)
-            if (hdi_geo_is_held(g, x->row[q]))
-                return hdi_source_fail(in->e, HD_ERR_ARGUMENT, HDI_GEO_ON_BORDER, i, -1, 0);
+        if (z->item[i].length < 0) return hdi_geo_lost(i, in->e);
+        length += z->item[i].length;
     }
-    if (s->curve && !(length > 0))
+    if (z->curve && !(length > 0))
         hdi_fail(in->e, HD_ERR_ARGUMENT, "geodesic: the curve of the source has no length");
     return in->e->status;
 }
 
-/* ---- sources ---- */
+/* Source k, with arrays in a scope. Refuses those on a border that is held at zero. */
+static hd_status hdi_geo_source_make(hdi_geo_source *z, const hd_geodesic *g, const hd_sources *s, int32_t k,
+                                     hdi_scope *in) {
+    const int64_t begin = hdi_source_first(s, k), end = hdi_source_first(s, k + 1);
+    int32_t i, vertices = 1;
+    int q;
+    memset(z, 0, sizeof *z);
+    z->curve = s->curve != 0;
+    z->n = (int32_t)(end - begin) - z->curve;
+    z->item = HDI_TAKE_ZERO(in, hdi_geo_item, z->n);
+    z->sorted = HDI_TAKE(in, hdi_pair, z->n);
+    z->value = HDI_TAKE(in, double, z->n);
+    for (i = 0; i < z->n && in->e->status >= 0; i++) {
+        hdi_geo_item *x = z->item + i;
+        const int fits = hdi_geo_item_add(g, s, x, begin + i, 0) &&
+                         hdi_geo_item_add(g, s, x, begin + i + z->curve, 1);
+        vertices = vertices && fits && x->n <= 1 && !z->curve;
+        if (!vertices && g->poly.ptr)
+            return hdi_fail(in->e, HD_ERR_ARGUMENT, "geodesic: on polygons sources are vertices only");
+        if (!fits) return hdi_geo_lost(i, in->e);
+    }
+    if (in->e->status < 0 || (!vertices && hdi_geo_source_faces(z, g, in) < 0)) return in->e->status;
+    for (i = 0; i < z->n; i++)
+        for (q = 0; q < z->item[i].n; q++)
+            if (hdi_geo_is_held(g, z->item[i].row[q]))
+                return hdi_source_fail(in->e, HD_ERR_ARGUMENT, "geodesic: a source lies on the border, which "
+                                       "is held at zero; take the mean border", i,
+                                       vertices ? z->item[i].vertex : -1, 0);
+    if (vertices && z->n > 1) z->first = HDI_TAKE(in, double, g->n_active);
+    return in->e->status;
+}
 
-/* What the distances of a column start from: vertices, or items. */
-typedef struct hdi_geo_source {
-    const int32_t *vertex;
-    int32_t n;
-    const hdi_geo_items *items;
-    double *d;                   /* [n] the column */
-} hdi_geo_source;
+/* ---- sources ---- */
 
 /* Adds the heat of a source to column x of k, which is clear, and opens the fronts that it touches. A vertex
  * named twice counts once. */
 static void hdi_geo_load(const hd_geodesic *g, const hdi_geo_source *s, int k, double *x) {
     int32_t q, c;
     for (q = 0; q < s->n; q++) {
-        const int32_t i = g->row[s->vertex[q]];
-        if (i < 0) continue;
-        x[k * (int64_t)i] = 1;
-        hdi_sweep_touch(&g->sym, i, g->active);
-    }
-    for (q = 0; s->items && q < s->items->n; q++) {
-        const hdi_geo_item *p = s->items->item + q;
+        const hdi_geo_item *p = s->item + q;
         for (c = 0; c < p->n; c++) {
-            x[k * (int64_t)p->row[c]] += (s->items->s->curve ? p->length : 1) * (p->a[c] + p->b[c]) / 2;
+            double *to = x + k * (int64_t)p->row[c];
+            *to = s->near_by ? *to + (s->curve ? p->length : 1) * (p->a[c] + p->b[c]) / 2 : 1;
             hdi_sweep_touch(&g->sym, p->row[c], g->active);
         }
     }
 }
 
-/* Refuses vertices where heat is held at zero. */
-static hd_status hdi_geo_off_border(const hd_geodesic *g, const int32_t *sources, int32_t k, hd_error *e) {
-    int32_t q;
-    for (q = 0; q < k; q++) {
-        if (g->row[sources[q]] < 0 || !hdi_geo_is_held(g, g->row[sources[q]])) continue;
-        return hdi_source_fail(e, HD_ERR_ARGUMENT, HDI_GEO_ON_BORDER, q, sources[q], sources[q]);
-    }
-    return e->status;
-}
-
-/* Notes phi at a point of the source, as number q. */
-static void hdi_geo_note(hd_geodesic *g, int32_t q, double phi, int32_t component) {
-    g->sorted[q].key = hdi_rank(phi);
-    g->sorted[q].id = component;
-}
-
-/* Sorts n notes into g->value, ascending within each component. */
-static void hdi_geo_values_sort(hd_geodesic *g, int32_t n) {
-    int32_t q;
-    memset(g->value_ptr, 0, ((size_t)g->n_components + 1) * sizeof *g->value_ptr);
-    for (q = 0; q < n; q++) g->value_ptr[g->sorted[q].id]++;
-    hdi_sort_pairs(g->sorted, n);
-    hdi_prefix_sum(g->value_ptr, g->n_components);
-    for (q = 0; q < n; q++) g->value[g->value_ptr[g->sorted[q].id]++] = hdi_unrank(g->sorted[q].key);
-    hdi_rewind(g->value_ptr, g->n_components);
-}
-
-/* Collects phi at the source: at its points, or one mean along a curve, less the known distances there. */
+/* Collects phi at the source: at its points, or one mean along a curve, less the known distances there. They
+ * ascend within each component. */
 static void hdi_geo_values(hd_geodesic *g, const hdi_geo_source *s, const double *phi) {
-    const hdi_geo_items *z = s->items;
     double sum = 0, length = 0;
     int32_t q, c, n = 0;
+    memset(g->value_ptr, 0, ((size_t)g->n_components + 1) * sizeof *g->value_ptr);
     for (q = 0; q < s->n; q++) {
-        const int32_t i = g->row[s->vertex[q]];
-        if (i >= 0) hdi_geo_note(g, n++, phi[i], g->component[i]);
-    }
-    for (q = 0; z && q < z->n; q++) {
-        const hdi_geo_item *p = z->item + q;
+        const hdi_geo_item *p = s->item + q;
         double own = 0;
+        if (p->n == 0) continue;
         for (c = 0; c < p->n; c++)
-            own += (p->a[c] + p->b[c]) / 2 * (phi[p->row[c]] - z->near_by[p->row[c]]);
+            own += (p->a[c] + p->b[c]) / 2 * (phi[p->row[c]] - (s->near_by ? s->near_by[p->row[c]] : 0));
         sum += p->length * own;
         length += p->length;
-        if (z->s->curve) n = 0;                  /* the last note, of all, remains */
-        hdi_geo_note(g, n++, z->s->curve && length > 0 ? sum / length : own, g->component[p->row[0]]);
+        if (s->curve) n = 0;                     /* the last note, of all, remains */
+        s->sorted[n].key = hdi_rank(s->curve && length > 0 ? sum / length : own);
+        s->sorted[n++].id = g->component[p->row[0]];
     }
-    hdi_geo_values_sort(g, n);
-}
-
-/* Memory for phi at so many points. */
-static hd_status hdi_geo_values_room(hd_geodesic *g, int32_t most, hd_error *e) {
-    if (g->value_size >= most) return HD_OK;
-    hdi_free(g->ctx, g->sorted);
-    g->sorted = HDI_NEW(g->ctx, hdi_pair, (most + (int64_t)most / 2 + 1), e);
-    g->value_size = g->sorted ? most : 0;
-    if (g->sorted) g->value = (double *)(void *)(g->sorted + most);
-    return e->status;
+    for (q = 0; q < n; q++) g->value_ptr[s->sorted[q].id]++;
+    hdi_sort_pairs(s->sorted, n);
+    hdi_prefix_sum(g->value_ptr, g->n_components);
+    for (q = 0; q < n; q++) s->value[g->value_ptr[s->sorted[q].id]++] = hdi_unrank(s->sorted[q].key);
+    hdi_rewind(g->value_ptr, g->n_components);
 }
 
 /* ---- distances ---- */
@@ -23742,14 +23715,14 @@ static int hdi_geo_measure(const hd_geodesic *g, const hdi_geo_source *s, int32_
     double at[HDI_GEO_WIDE];
     int32_t own[HDI_GEO_WIDE], v, c, fine = 1;
     for (c = 0; c < n && k > 1; c++) {
-        const int32_t i = g->row[s[c].vertex[0]];
+        const int32_t i = s[c].item->n > 0 ? s[c].item->row[0] : -1;
         own[c] = i < 0 ? -1 : g->component[i];
         at[c] = i < 0 ? 0 : phi[k * (int64_t)i + c];
     }
     for (v = 0; v < g->n; v++) {
         const int32_t i = g->row[v], part = i < 0 ? 0 : g->component[i];
         for (c = 0; c < n; c++) {
-            const double *value = k > 1 ? at + c : g->value + g->value_ptr[part];
+            const double *value = k > 1 ? at + c : s->value + g->value_ptr[part];
             const int64_t count = k > 1 ? part == own[c] : g->value_ptr[part + 1] - g->value_ptr[part];
             double *d = s[c].d + v;
             *d = HUGE_VAL;
@@ -23770,7 +23743,7 @@ static void hdi_geo_add_cold(const hd_geodesic *g, int k, double *x, double *y) 
     int32_t i;
     for (i = 0; i < g->n_active; i++)
         if (g->held[i]) memset(y + k * (int64_t)i, 0, (size_t)k * sizeof *y);
-    hdi_geo_sweep(g, &g->cold, k, y, g->active);
+    hdi_geo_sweep(g, &g->cold, k, y, NULL);
     for (p = 0; p < size; p++) x[p] += y[p];
 }
 
@@ -23782,7 +23755,7 @@ static void hdi_geo_heat(const hd_geodesic *g, const hdi_geo_source *s, int32_t 
     memset(x, 0, (size_t)k * (size_t)g->n_active * sizeof *x);
     for (c = 0; c < n; c++) hdi_geo_load(g, s + c, k, x + c);
     if (g->border == HD_GEODESIC_BORDER_MEAN) memcpy(y, x, (size_t)k * (size_t)g->n_active * sizeof *x);
-    hdi_geo_sweep(g, &g->heat, k, x, g->active);
+    hdi_geo_sweep(g, &g->heat, k, x, NULL);
     for (c = 0; c < n && heat; c++) {
         memset(g->r, 0, (size_t)g->n_active * sizeof *g->r);
         hdi_geo_load(g, s + c, 1, g->r);
@@ -23791,38 +23764,38 @@ static void hdi_geo_heat(const hd_geodesic *g, const hdi_geo_source *s, int32_t 
     if (g->border == HD_GEODESIC_BORDER_MEAN) hdi_geo_add_cold(g, k, x, y);
 }
 
-/* phi is not the same at all sources of a set. With u the heat of the sources and v the heat of the values of
+/* phi is not the same at all vertices of a source. With u the heat of the sources and v the heat of the values of
  * phi at them, v/u is near every source its own value, since heat fades so fast. Distances are measured from
- * that wherever the first stage knows u, |u| >= least. phi is in g->b, u in g->first; g->x and g->r are
+ * that wherever the first stage knows u, |u| >= least. phi is in g->b, u in s->first; g->x and g->r are
  * overwritten. */
 static void hdi_geo_own_source(hd_geodesic *g, const hdi_geo_source *s, double least) {
     int32_t q, v, c, several = 0;
     for (c = 0; c < g->n_components; c++)
         several |= g->value_ptr[c + 1] > g->value_ptr[c] &&
-                   g->value[g->value_ptr[c + 1] - 1] > g->value[g->value_ptr[c]];
+                   s->value[g->value_ptr[c + 1] - 1] > s->value[g->value_ptr[c]];
     if (!several) return;
     memset(g->active, 0, (size_t)g->sym.n_super);
     memset(g->x, 0, (size_t)g->n_active * sizeof *g->x);
     memset(g->mark, 0, (size_t)g->n_active);
     hdi_geo_load(g, s, 1, g->x);
     for (q = 0; q < s->n; q++) {
-        const int32_t i = g->row[s->vertex[q]];
-        if (i < 0) continue;
-        g->x[i] = g->b[i] - g->value[g->value_ptr[g->component[i]]];
+        const int32_t i = s->item[q].row[0];
+        if (s->item[q].n == 0) continue;
+        g->x[i] = g->b[i] - s->value[g->value_ptr[g->component[i]]];
         g->mark[i] = 1;
     }
     memcpy(g->r, g->x, (size_t)g->n_active * sizeof *g->x);
-    hdi_geo_sweep(g, &g->heat, 1, g->x, g->active);
+    hdi_geo_sweep(g, &g->heat, 1, g->x, NULL);
     if (g->border == HD_GEODESIC_BORDER_MEAN) hdi_geo_add_cold(g, 1, g->x, g->r);
     for (v = 0; v < g->n; v++) {
         const int32_t i = g->row[v];
         const double *value, *end;
-        if (i < 0 || g->mark[i] || !(fabs(g->first[i]) >= least)) continue;
-        value = g->value + g->value_ptr[g->component[i]];
-        end = g->value + g->value_ptr[g->component[i] + 1];
+        if (i < 0 || g->mark[i] || !(fabs(s->first[i]) >= least)) continue;
+        value = s->value + g->value_ptr[g->component[i]];
+        end = s->value + g->value_ptr[g->component[i] + 1];
         if (value == end) continue;
         s->d[v] = g->h * fabs(g->b[i] - value[0] -
-                              hdi_min(hdi_max(g->x[i] / g->first[i], 0), end[-1] - value[0]));
+                              hdi_min(hdi_max(g->x[i] / s->first[i], 0), end[-1] - value[0]));
     }
 }
 
@@ -23835,12 +23808,11 @@ static hd_status hdi_geo_answer(hd_geodesic *g, const hdi_geo_source *s, int32_t
     if (!hdi_geo_measure(g, s, n, k, n > 1 ? g->wide_b : g->b, skip))
         return hdi_fail(e, HD_ERR_BREAKDOWN, "geodesic: rounding leaves nothing of the answer: the mesh has "
                                              "faces that are too thin");
-    if (s->n > 1) hdi_geo_own_source(g, s, least);
-    for (c = 0; c < n; c++)
-        for (i = 0; i < s[c].n; i++) s[c].d[s[c].vertex[i]] = 0;     /* those without mass too */
-    for (i = 0; i < g->n && s->items; i++)
-        if (g->row[i] >= 0 && s->items->near_by[g->row[i]] < HUGE_VAL)
-            s->d[i] = g->h * s->items->near_by[g->row[i]];
+    if (s->first) hdi_geo_own_source(g, s, least);
+    for (c = 0; c < n && !s->near_by; c++)
+        for (i = 0; i < s[c].n; i++) s[c].d[s[c].item[i].vertex] = 0;    /* those without mass too */
+    for (i = 0; i < g->n && s->near_by; i++)
+        if (g->row[i] >= 0 && s->near_by[g->row[i]] < HUGE_VAL) s->d[i] = g->h * s->near_by[g->row[i]];
     return HD_OK;
 }
 
@@ -23852,14 +23824,11 @@ static void hdi_geo_judge(hd_geodesic_report *rep, double heat, double distance,
 }
 
 /* From which |u| on a column of k counts as known: u is largest at the source. */
-static double hdi_geo_least(const hd_geodesic *g, const hdi_geo_source *s, int k, const double *u) {
+static double hdi_geo_least(const hdi_geo_source *s, int k, const double *u) {
     double most = 0;
     int32_t q, c;
     for (q = 0; q < s->n; q++)
-        if (g->row[s->vertex[q]] >= 0) most = hdi_max(most, fabs(u[k * (int64_t)g->row[s->vertex[q]]]));
-    for (q = 0; s->items && q < s->items->n; q++)
-        for (c = 0; c < s->items->item[q].n; c++)
-            most = hdi_max(most, fabs(u[k * (int64_t)s->items->item[q].row[c]]));
+        for (c = 0; c < s->item[q].n; c++) most = hdi_max(most, fabs(u[k * (int64_t)s->item[q].row[c]]));
     return hdi_max(most * HDI_GEO_FAINT, DBL_MIN);
 }
 
@@ -23873,10 +23842,10 @@ static hd_status hdi_geo_solve(hd_geodesic *g, const hdi_geo_source *s, int32_t 
     double least[HDI_GEO_WIDE], heat[HDI_GEO_WIDE];
     int32_t c, n_stages = 1;
     hdi_geo_heat(g, s, n, k, x, b, rep ? heat : NULL);
-    for (c = 0; c < k; c++) least[c] = c < n ? hdi_geo_least(g, s + c, k, x + c) : DBL_MIN;
-    if (s->n > 1) memcpy(g->first, x, size);
+    for (c = 0; c < k; c++) least[c] = c < n ? hdi_geo_least(s + c, k, x + c) : DBL_MIN;
+    if (s->first) memcpy(s->first, x, size);
     memset(b, 0, size);
-    *faint = hdi_geo_divergence(g, k, x, least, NULL, s->items, b);
+    *faint = hdi_geo_divergence(g, k, x, least, NULL, s, b);
     if (n == 1 && *faint && hdi_geo_further(g, least[0], &n_stages, e) < 0) return e->status;
     if (rep) memcpy(x, b, size);
     for (c = 0; c < g->n_components; c++)
@@ -23891,22 +23860,12 @@ static hd_status hdi_geo_solve(hd_geodesic *g, const hdi_geo_source *s, int32_t 
     return hdi_geo_answer(g, s, n, least[0], *faint, e);
 }
 
-/* The distances of a column by itself. */
-static hd_status hdi_geo_alone(hd_geodesic *g, const hdi_geo_source *s, hd_geodesic_report *rep,
-                               hd_error *e) {
-    int faint;
-    if (hdi_geo_values_room(g, s->items ? s->items->n : s->n, e) < 0) return e->status;
-    if (s->n > 1 && !g->first) g->first = HDI_TAKE(hdi_geo_keep(g, e), double, g->n_active);
-    if (e->status >= 0) (void)hdi_geo_solve(g, s, 1, &faint, rep, e);
-    return e->status;
-}
-
 /* The distances of up to a batch of columns of one vertex each. Columns whose heat fades are computed again
  * alone. */
 static hd_status hdi_geo_batch(hd_geodesic *g, const hdi_geo_source *s, int32_t n, hd_geodesic_report *rep,
                                hd_error *e) {
     const uint64_t size = HDI_GEO_WIDE * (uint64_t)g->n_active;
-    int faint = 0;
+    int faint = 0, none;
     int32_t c;
     if (!g->wide_x)
         g->wide_x = HDI_TAKE(hdi_geo_keep(g, e), double, 2 * size + hdi_sweep_size(&g->sym, 1, HDI_GEO_WIDE));
@@ -23915,70 +23874,29 @@ static hd_status hdi_geo_batch(hd_geodesic *g, const hdi_geo_source *s, int32_t 
     g->wide_work = g->wide_b + size;
     if (hdi_geo_solve(g, s, n, &faint, rep, e) < 0) return e->status;
     for (c = 0; c < n; c++)
-        if (faint >> c & 1 && hdi_geo_alone(g, s + c, rep, e) < 0) break;
+        if (faint >> c & 1 && hdi_geo_solve(g, s + c, 1, &none, rep, e) < 0) break;
     return e->status;
-}
-
-/* The vertices of n points from one on into list, where these are nothing else; else 0. */
-static int hdi_geo_vertices(const hd_sources *s, int64_t begin, int32_t n, int32_t *list) {
-    const int32_t corners = hdi_source_corners(s);
-    int32_t q, c;
-    for (q = 0; q < n && !s->curve; q++) {
-        int32_t parts = 0;
-        for (c = 0; c < corners; c++) {
-            if (hdi_source_part(s, begin + q, c) == 0) continue;
-            list[q] = s->vertex[(begin + q) * corners + c];
-            parts++;
-        }
-        if (parts > 1) return 0;
-    }
-    return !s->curve;
-}
-
-/* Distances to a column that is more than a list of vertices: n points from one on; s->d is set. */
-static hd_status hdi_geo_from(hd_geodesic *g, const hd_sources *from, int64_t begin, int32_t n,
-                              hdi_geo_source *s, hd_geodesic_report *rep, hd_error *e) {
-    hdi_scope scope = hdi_scope_begin(g->ctx, e);
-    int32_t *list = HDI_TAKE(&scope, int32_t, n);
-    hdi_geo_items items;
-    s->vertex = list;
-    s->n = 0;
-    s->items = NULL;
-    if (list && hdi_geo_vertices(from, begin, n, list)) {
-        s->n = n;
-        (void)hdi_geo_off_border(g, list, n, e);
-    } else if (list && g->poly.ptr) {
-        (void)hdi_fail(e, HD_ERR_ARGUMENT, "geodesic: on polygons sources are vertices only");
-    } else if (list && hdi_geo_items_make(&items, g, from, begin, n, &scope) >= 0) {
-        s->items = &items;
-    }
-    if (e->status >= 0) (void)hdi_geo_alone(g, s, rep, e);
-    return hdi_scope_end(&scope);
 }
 
 /* Columns of distances, ldd apart, from sources that are checked. */
 static hd_status hdi_geo_distances(hd_geodesic *g, const hd_sources *from, double *D, size_t ldd,
                                    hd_geodesic_report *rep, hd_error *e) {
-    const int vertices = hdi_source_corners(from) == 1 && !from->curve;
-    const int32_t most = vertices && !from->first ? HDI_GEO_WIDE : 1, n = from->count;
+    const int vertices = hdi_source_corners(from) == 1 && !from->curve && !from->first;
+    const int32_t n = from->count;
     hdi_geo_source s[HDI_GEO_WIDE];
     int32_t m, c, k;
-    memset(s, 0, sizeof s);
+    int faint;
     for (m = 0; m < n && e->status >= 0; m += k) {
-        k = n - m >= HDI_GEO_WIDE_FROM ? hdi_low32(n - m, most) : 1;
-        if (hdi_progress(g->ctx, "solve", (double)m / n, e) < 0) break;
-        for (c = 0; c < k; c++) {
-            const int64_t begin = hdi_source_first(from, m + c);
-            s[c].vertex = from->vertex + begin;
-            s[c].n = (int32_t)(hdi_source_first(from, m + c + 1) - begin);
+        hdi_scope scope = hdi_scope_begin(g->ctx, e);
+        k = vertices && n - m >= HDI_GEO_WIDE_FROM ? hdi_low32(n - m, HDI_GEO_WIDE) : 1;
+        (void)hdi_progress(g->ctx, "solve", (double)m / n, e);
+        for (c = 0; c < k && e->status >= 0; c++) {
+            if (hdi_geo_source_make(s + c, g, from, m + c, &scope) < 0) e->column = m + c;
             s[c].d = D + (size_t)(m + c) * ldd;
-            if (!vertices || hdi_geo_off_border(g, s[c].vertex, s[c].n, e) >= 0) continue;
-            e->column = m + c;
-            return e->status;
         }
-        if (k > 1) (void)hdi_geo_batch(g, s, k, rep, e);
-        else if (vertices) (void)hdi_geo_alone(g, s, rep, e);
-        else if (hdi_geo_from(g, from, hdi_source_first(from, m), s->n, s, rep, e) < 0) e->column = m;
+        if (e->status >= 0 && k > 1) (void)hdi_geo_batch(g, s, k, rep, e);
+        else if (e->status >= 0) (void)hdi_geo_solve(g, s, 1, &faint, rep, e);
+        (void)hdi_scope_end(&scope);
     }
     return e->status;
 }
