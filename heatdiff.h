@@ -22162,32 +22162,20 @@ typedef struct hdi_pairs {
 
 /* Some of the pairs, and columns of their vertices. */
 typedef struct hdi_pairs_part {
-    int64_t n;
-    const int32_t *i, *j;
-    double *d;
-    int32_t n_vertex, *vertex;   /* distinct ones, ascending */
-    int32_t *place;              /* [2 n] which of them each pair's two are */
-    double *U, *size;            /* their columns, and the norms of B of these */
+    int64_t begin, end;
+    int32_t n_vertex, *place;    /* [n] which of the columns each vertex has, -1: none */
+    double *U, *size;            /* the columns, and their norms of B */
     double *work;                /* [2 n_active] */
 } hdi_pairs_part;
 
 /* Finds the vertices. */
-static hd_status hdi_pairs_vertices(hdi_pairs_part *x, hdi_scope *s) {
-    hdi_pair *order = HDI_TAKE(s, hdi_pair, 2 * (uint64_t)x->n);
+static void hdi_pairs_vertices(const hdi_pairs *to, hdi_pairs_part *x, int32_t n) {
     int64_t q;
-    x->vertex = HDI_TAKE(s, int32_t, 2 * (uint64_t)x->n);
-    x->place = HDI_TAKE(s, int32_t, 2 * (uint64_t)x->n);
-    if (s->e->status < 0) return s->e->status;
-    for (q = 0; q < 2 * x->n; q++) {
-        order[q].key = (uint64_t)(q % 2 ? x->j[q / 2] : x->i[q / 2]);
-        order[q].id = q;
-    }
-    hdi_sort_pairs(order, 2 * x->n);
-    for (q = 0, x->n_vertex = 0; q < 2 * x->n; q++) {
-        if (q == 0 || order[q].key != order[q - 1].key) x->vertex[x->n_vertex++] = (int32_t)order[q].key;
-        x->place[order[q].id] = x->n_vertex - 1;
-    }
-    return HD_OK;
+    int32_t v;
+    hdi_fill_i32(x->place, n, -1);
+    for (q = x->begin; q < x->end; q++) x->place[to->i[q]] = x->place[to->j[q]] = 0;
+    for (v = 0, x->n_vertex = 0; v < n; v++)
+        if (x->place[v] == 0) x->place[v] = x->n_vertex++;
 }
 
 /* |u - v|_B of fields on vertices, whose squares may leave the range of doubles; v NULL: |u|_B. work
@@ -22201,15 +22189,6 @@ static double hdi_vertex_norm(const hd_laplacian *lap, const double *u, const do
     return most * sqrt(hdi_max(0, hdi_b_norm2(lap, work, work + lap->n_active)));
 }
 
-/* Distributes a bound that stands in rounding over all parts, in the ratio of another bound. */
-static void hdi_parts_share(hdi_parts *to, const hdi_parts *as) {
-    const double all = to->rounding, sum = hdi_parts_sum(as);
-    if (!(sum > 0 && hdi_finite(sum) && hdi_finite(all))) return;
-    to->rational = all * (as->rational / sum);
-    to->solver = all * (as->solver / sum);
-    to->rounding = all * (as->rounding / sum);
-}
-
 /* The error of the column of v, whose size is given, in the norm of B: relative errors are below bound. That
  * of a vertex without a row is exact. */
 static double hdi_pairs_column_off(const hd_laplacian *lap, int32_t v, double size, double bound) {
@@ -22220,49 +22199,54 @@ static double hdi_pairs_column_off(const hd_laplacian *lap, int32_t v, double si
 /* Most doubles of columns that are held at the same time: half a GiB. */
 #define HDI_PAIRS_DOUBLES (INT64_C(1) << 26)
 
-/* Distances |K_t B^-1 (e_i - e_j)|_B from the columns. They lose nothing beside what the columns are off
- * by. rep: of these. */
-static void hdi_pairs_note(const hd_heat *heat, const hdi_pairs_part *x, hd_report *rep, hdi_ledger *all) {
+/* Distances |K_t B^-1 (e_i - e_j)|_B from the columns, whose report is given. They lose nothing beside what
+ * the columns are off by. The parts of the bound are in the ratio of those of the columns. */
+static void hdi_pairs_note(const hdi_pairs *to, const hdi_pairs_part *x, hd_report *rep, hdi_ledger *all) {
+    const hd_heat *heat = to->task.h->heat;
     const hd_laplacian *lap = heat->source;
     const size_t n = (size_t)lap->n;
-    hdi_ledger of = hdi_ledger_begin(rep->evidence_rational, rep->evidence_solver, rep->evidence_rounding, 1);
-    hdi_parts part = {0, 0, 0}, share;
+    double *d = to->d + to->n * to->task.h->now, sum;
+    hdi_parts share;
     int64_t q;
     share.rational = rep->error_rational + rep->error_local;
     share.solver = rep->error_solver;
     share.rounding = rep->error_rounding;
-    for (q = 0; q < x->n; q++) {
-        const int32_t i = x->place[2 * q], j = x->place[2 * q + 1];
-        x->d[q] = 0;
-        if (x->i[q] == x->j[q]) continue;
-        x->d[q] = hdi_vertex_norm(lap, x->U + n * (size_t)i, x->U + n * (size_t)j, x->work);
-        part.rounding = hdi_pairs_column_off(lap, x->i[q], x->size[i], rep->error_bound_b) +
-                        hdi_pairs_column_off(lap, x->j[q], x->size[j], rep->error_bound_b) +
+    sum = hdi_parts_sum(&share);
+    for (q = x->begin; q < x->end; q++) {
+        const int32_t i = x->place[to->i[q]], j = x->place[to->j[q]];
+        hdi_parts part = {0, 0, 0};
+        d[q] = 0;
+        if (i == j) continue;
+        d[q] = hdi_vertex_norm(lap, x->U + n * (size_t)i, x->U + n * (size_t)j, x->work);
+        part.rounding = hdi_pairs_column_off(lap, to->i[q], x->size[i], rep->error_bound_b) +
+                        hdi_pairs_column_off(lap, to->j[q], x->size[j], rep->error_bound_b) +
                         4 * DBL_EPSILON * (x->size[i] + x->size[j]);
-        rep->n_lost += x->d[q] < 10 * part.rounding;
-        hdi_ledger_note(&of, x->d[q], part);
+        rep->n_lost += d[q] < 10 * part.rounding;
+        if (sum > 0 && hdi_finite(sum) && hdi_finite(part.rounding))
+            part = hdi_parts_scale(part.rounding / sum, share);
+        hdi_ledger_note(all, d[q], part);
     }
-    hdi_parts_share(&of.off, &share);
-    hdi_ledger_join(all, &of);
 }
 
 /* Some pairs at the time under way from columns. */
-static hd_status hdi_pairs_some(hdi_heat_call *h, const hdi_pairs *to, hdi_pairs_part *x, hd_report *rep,
-                                hdi_ledger *all) {
+static hd_status hdi_pairs_some(const hdi_pairs *to, hdi_pairs_part *x, hd_report *rep, hdi_ledger *all) {
     const hd_kernel kernel = to->kind->mass > 0 ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
-    const hd_heat *heat = h->heat;
-    const uint64_t n = (uint64_t)heat->source->n;
-    hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
-    hdi_heat_call c;
+    hdi_heat_call *h = to->task.h, c;
+    const hd_laplacian *lap = h->heat->source;
+    const uint64_t n = (uint64_t)lap->n;
+    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
     hdi_terms *terms;
-    int32_t q;
-    if (hdi_pairs_vertices(x, &s) < 0) return hdi_scope_end(&s);
+    int32_t v;
+    x->place = HDI_TAKE(&s, int32_t, n);
+    if (!x->place) return hdi_scope_end(&s);
+    hdi_pairs_vertices(to, x, lap->n);
     x->work = HDI_TAKE(&s, double, 2 * n + 1);
     x->U = HDI_TAKE(&s, double, n * (uint64_t)x->n_vertex);
     x->size = HDI_TAKE(&s, double, x->n_vertex);
     terms = HDI_TAKE(&s, hdi_terms, x->n_vertex);
     if (h->e->status < 0) return hdi_scope_end(&s);
-    for (q = 0; q < x->n_vertex; q++) terms[q] = hdi_terms_vertex(x->vertex[q]);
+    for (v = 0; v < lap->n; v++)
+        if (x->place[v] >= 0) terms[x->place[v]] = hdi_terms_vertex(v);
     if (hdi_kernel_begin(&c, h->heat, kernel, rep, NULL) >= 0 &&
         hdi_times_check(&c, 1, h->ask.t + h->now, 0) >= 0) {
         c.ask.k = x->n_vertex;
@@ -22272,9 +22256,9 @@ static hd_status hdi_pairs_some(hdi_heat_call *h, const hdi_pairs *to, hdi_pairs
         c.degree = h->degree;
     }
     if (hdi_heat_run(&c) < 0) *h->e = rep->error;
-    for (q = 0; q < x->n_vertex && h->e->status >= 0; q++)
-        x->size[q] = hdi_vertex_norm(heat->source, x->U + n * (uint64_t)q, NULL, x->work);
-    if (h->e->status >= 0) hdi_pairs_note(heat, x, rep, all);
+    for (v = 0; v < x->n_vertex && h->e->status >= 0; v++)
+        x->size[v] = hdi_vertex_norm(lap, x->U + n * (uint64_t)v, NULL, x->work);
+    if (h->e->status >= 0) hdi_pairs_note(to, x, rep, all);
     return hdi_scope_end(&s);
 }
 
@@ -22284,15 +22268,11 @@ static hd_status hdi_pairs_columns(const hdi_pairs *to, int64_t most) {
     hdi_ledger all = hdi_ledger_begin(HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, 1);
     hd_report one, sum;
     hdi_pairs_part x;
-    int64_t p;
-    for (p = 0; p < to->n; p += x.n) {
-        x.i = to->i + p;
-        x.j = to->j + p;
-        x.d = to->d + to->n * h->now + p;
-        x.n = hdi_least(to->n - p, most);
-        if (hdi_pairs_some(h, to, &x, &one, &all) < 0) return h->e->status;
-        if (p == 0) sum = one;
-        else hdi_report_merge(&sum, &one);
+    memset(&sum, 0, sizeof sum);
+    for (x.begin = 0; x.begin < to->n; x.begin = x.end) {
+        x.end = hdi_least(to->n, x.begin + most);
+        if (hdi_pairs_some(to, &x, &one, &all) < 0) return h->e->status;
+        hdi_report_merge(&sum, &one);
     }
     sum.error_bound = sum.error_rational = sum.error_solver = sum.error_rounding = 0;
     sum.error_relative = sum.smallest = sum.error_local = 0;
@@ -22313,6 +22293,7 @@ static hd_status hdi_pairs_one_by_one(const hdi_pairs *to) {
     hdi_heat_call *h = to->task.h;
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
     double *d = HDI_TAKE(&s, double, h->heat->source->n), *out = to->d + to->n * h->now;
+    const hdi_parts none = {0, 0, 0};
     hdi_ledger ledger, all;
     hdi_metric x;
     int64_t q;
@@ -22325,10 +22306,7 @@ static hd_status hdi_pairs_one_by_one(const hdi_pairs *to) {
             hdi_metric_distance(&x, &from, 0, d, h->rep, &all);
         }
         out[q] = d[to->j[q]];
-        if (!hdi_finite(out[q])) continue;
-        ledger.largest = hdi_max(ledger.largest, out[q]);
-        if (out[q] > 0) ledger.smallest = hdi_min(ledger.smallest, out[q]);
-        ledger.n_values += to->i[q] != to->j[q];
+        if (hdi_finite(out[q]) && to->i[q] != to->j[q]) hdi_ledger_note(&ledger, out[q], none);
     }
     ledger.off = all.off;
     ledger.relative = all.relative;
@@ -22344,10 +22322,12 @@ static hd_status hdi_pairs_by_poles(hdi_task *task) {
     hd_heat *heat = h->heat;
     const int64_t room = HDI_PAIRS_DOUBLES / heat->source->n;
     hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
-    hdi_pairs_part all = {to->n, to->i, to->j, NULL, 0, NULL, NULL, NULL, NULL, NULL};
+    hdi_pairs_part all = {0, to->n, 0, NULL, NULL, NULL, NULL};
     int64_t most = to->n;
     int fits = to->kind->time > 0 && !hdi_heat_filtered(heat);
-    if (fits && 2 * to->n > room && hdi_pairs_vertices(&all, &s) >= 0 && all.n_vertex > room) {
+    if (fits && 2 * to->n > room) all.place = HDI_TAKE(&s, int32_t, heat->source->n);
+    if (all.place) hdi_pairs_vertices(to, &all, heat->source->n);
+    if (all.n_vertex > room) {
         fits = hdi_direct_barred(heat);
         most = hdi_high32(1, (int32_t)(room / 2));
     }
@@ -22852,7 +22832,7 @@ static hd_status hdi_estimate_run(hdi_heat_call *h, const hdi_query_row *query, 
         return HD_OK;
     }
     if (hdi_estimate_pairwise(&x))
-        x.held = 8 * hdi_min(n * x.k, (double)HDI_PAIRS_DOUBLES) + 8.0 * x.k + 16 * n;
+        x.held = 8 * hdi_min(n * x.k, (double)HDI_PAIRS_DOUBLES) + 40.0 * x.k + 20 * n;
     return hdi_estimate_times(&x);
 }
 
@@ -23764,9 +23744,9 @@ static void hdi_geo_heat(const hd_geodesic *g, const hdi_geo_source *s, int32_t 
     if (g->border == HD_GEODESIC_BORDER_MEAN) hdi_geo_add_cold(g, k, x, y);
 }
 
-/* phi is not the same at all vertices of a source. With u the heat of the sources and v the heat of the values of
- * phi at them, v/u is near every source its own value, since heat fades so fast. Distances are measured from
- * that wherever the first stage knows u, |u| >= least. phi is in g->b, u in s->first; g->x and g->r are
+/* phi is not the same at all vertices of a source. With u the heat of the source and v the heat of the values
+ * of phi at its vertices, v/u is near each its own value, since heat fades so fast. Distances are measured
+ * from that wherever the first stage knows u, |u| >= least. phi is in g->b, u in s->first; g->x and g->r are
  * overwritten. */
 static void hdi_geo_own_source(hd_geodesic *g, const hdi_geo_source *s, double least) {
     int32_t q, v, c, several = 0;
