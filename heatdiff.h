@@ -15226,25 +15226,35 @@ static hd_status hdi_krylov_answer(hdi_krylov *z, int32_t r, double t, const dou
 
 /* ---- kinds of distances ---- */
 
-/* d^2 of a kind is made of a kernel at a time, or of sums over eigenpairs of 1/lambda^power. In the order of
- * hd_distance_kind; a kind without a row is unknown. All who answer for distances read these rows. */
+/* All that is known of a kind. d^2 is made of a kernel at a time, or of sums over eigenpairs of
+ * 1/lambda^power. All who answer for distances read these rows; a kind without a row is unknown. */
 typedef struct hdi_distance_row {
-    int32_t time;                /* the kernel is of t times this; 0: there is no time */
+    hd_distance_kind kind;
+    hd_query query;              /* its name for hd_heat_estimate */
+    int32_t time;                /* the kernel is of t times this; 0: there is no time, and L grounded serves */
     int32_t power;               /* without a time */
     int32_t mass;                /* how often B is a factor: 2 of B k B */
+    int32_t many;                /* 1: from many sources the bound by poles soon calls for eigenpairs */
+    /* The default goes to the highest degree where the bound on the error relative to the largest distance is
+     * above the first number, 0: never. The bound of degree 9 is expected at the second one times sqrt(t)/h,
+     * as seen on meshes of 1K to 50K vertices; 0: there is no such rule. */
+    double sure, expected;
 } hdi_distance_row;
 
 static const hdi_distance_row hdi_distance_rows[] = {
-    {2, 0, 0},                   /* classical */
-    {2, 0, 2},                   /* weighted */
-    {0, 1, 0},                   /* commute */
-    {0, 2, 0}                    /* biharmonic */
+    {HD_DISTANCE_CLASSICAL, HD_QUERY_DISTANCE, 2, 0, 0, 1, 3.5e-7, 4.4e-7},
+    {HD_DISTANCE_WEIGHTED, HD_QUERY_DISTANCE_WEIGHTED, 2, 0, 2, 0, 3.5e-7, 0},
+    {HD_DISTANCE_COMMUTE, HD_QUERY_DISTANCE_COMMUTE, 0, 1, 0, 0, 0, 0},
+    {HD_DISTANCE_BIHARMONIC, HD_QUERY_DISTANCE_BIHARMONIC, 0, 2, 0, 0, 0, 0}
 };
+enum { HDI_DISTANCES = sizeof hdi_distance_rows / sizeof *hdi_distance_rows };
 
 /* NULL: there is no such kind. */
 static const hdi_distance_row *hdi_distance_of(hd_distance_kind kind) {
-    const size_t n = sizeof hdi_distance_rows / sizeof *hdi_distance_rows;
-    return (size_t)kind < n ? hdi_distance_rows + kind : NULL;
+    int q;
+    for (q = 0; q < HDI_DISTANCES; q++)
+        if (hdi_distance_rows[q].kind == kind) return hdi_distance_rows + q;
+    return NULL;
 }
 
 /* ---- sources ---- */
@@ -21668,8 +21678,8 @@ static hd_status hdi_metric_ground(hdi_metric *x, hdi_scope *s) {
         const int32_t row = i < probe.k ? probe.row[i] : nearest;
         const hdi_terms at = hdi_terms_vertex(m->lap->vertex[row]);
         const double off = hdi_ground_column(m, g, &at, forms, u, x->work) * sqrt(x->f.g[row]);
-        const double seen = 4 * HDI_PROBE_SAFETY * fabs(u[row] - value[row]) + off;
-        *x->rounding = hdi_max(*x->rounding, hdi_quotient(seen, value[row]));
+        const double seen = hdi_probe_seen(u[row], off / 4, value[row], value[row]);
+        *x->rounding = hdi_max(*x->rounding, 4 * seen);
     }
     for (i = 0; i < n; i++)                      /* rounding has left nothing of what is positive */
         if (!g->held[i] && !(value[i] > 0)) *x->rounding = HUGE_VAL;
@@ -21948,14 +21958,8 @@ static double *hdi_distances_at(const hdi_distances *to, int32_t r, int32_t q) {
     return to->D + ((size_t)r * n_times + (size_t)q) * to->ld;
 }
 
-/* The default goes to the highest degree where the bound on the error relative to the largest distance is
- * above the first number. The bound of degree 9 is expected at the second one times sqrt(t)/h, as seen on
- * meshes of 1K to 50K vertices. */
-#define HDI_DISTANCE_SURE 3.5e-7
-#define HDI_DISTANCE_EXPECTED 4.4e-7
-
-/* All sources by a metric: the times of its functions are columns of the query, whose reports are in one, or
- * NULL for the time under way. */
+/* All sources by a metric: the times of its functions are columns of the query, whose reports are in one; NULL:
+ * it is the call's. */
 static hd_status hdi_distances_of(const hdi_distances *to, hdi_metric *x, const int32_t *column,
                                   hd_report *one) {
     hdi_heat_call *h = to->task.h;
@@ -21964,7 +21968,7 @@ static hd_status hdi_distances_of(const hdi_distances *to, hdi_metric *x, const 
         k = hdi_low32(to->k - r, x->group);
         if (hdi_metric_solve(x, to->source + r, k) < 0) break;
         for (q = 0; q < hdi_high32(x->in.count, 1); q++) {
-            const int32_t at = column ? column[q] : h->now;
+            const int32_t at = column[q];
             hd_report *rep = one ? one + at : h->rep;
             hdi_metric_at(x, q);
             for (i = 0; i < k; i++) {
@@ -22013,30 +22017,25 @@ static void hdi_mode_sum_from(hdi_mode_sum *a, hdi_terms source) {
             a->constant_off += (source.n + 1) * DBL_EPSILON * fabs(by) /
                 sqrt(a->lap->component_mass[a->lap->component[row]]);
     }
+    if (a->own >= 0 && !weighted) a->share[a->own] = 1;
 }
 
-/* The part of d that does not decay: that of the constants. */
+/* The part of d that does not decay: that of the constants. Within a component of the source B 1 is compared
+ * in two doubles. */
 static double hdi_modes_constant(const hdi_mode_sum *a, int32_t v) {
     const hd_laplacian *lap = a->lap;
-    const int32_t j = lap->row[v], n = lap->n;
-    const int32_t ci = a->own, cj = j < 0 ? -1 : lap->component[j];
-    const double *one = a->sums.of->one;
-    double bi = 0, bj = 0, sum = 0;
+    const int32_t row = lap->row[v], own = row < 0 ? -1 : lap->component[row], mass = a->sums.mass;
+    const double *one = a->sums.of->one, *rest = one + lap->n;
+    double sum = 0;
     int32_t c;
-    if (a->sums.bank.first == 0) return 0;
-    for (c = 0; c < lap->n_components && ci < 0; c++) {
-        const double by = c == cj ? (a->sums.mass ? one[v] : 1) : 0;
-        sum = hdi_pythag(sum, (a->share[c] - by) / sqrt(lap->component_mass[c]));
+    if (own >= 0 && own == a->own && !mass) return 0;
+    for (c = 0; c < lap->n_components && a->sums.bank.first > 0; c++) {
+        const double by = c == own ? (mass ? one[v] : 1) : 0;
+        const double off = own >= 0 && own == a->own ? (c == own ? a->at - one[v] + (a->rest - rest[v]) : 0)
+                                                     : a->share[c] - by;
+        sum = hdi_pythag(sum, off / sqrt(lap->component_mass[c]));
     }
-    if (ci < 0) return sum;
-    if (ci == cj) {
-        if (!a->sums.mass) return 0;
-        bi = a->at - one[v] + (a->rest - one[n + v]);
-        return fabs(bi) / sqrt(lap->component_mass[ci]);
-    }
-    bi = (a->sums.mass ? a->at : 1) / sqrt(lap->component_mass[ci]);
-    if (cj >= 0) bj = (a->sums.mass ? one[v] : 1) / sqrt(lap->component_mass[cj]);
-    return hdi_pythag(bi, bj);
+    return sum;
 }
 
 /* Makes the distance to v of the part that decays, and notes its bound. */
@@ -22078,10 +22077,19 @@ static hd_status hdi_mode_sum_make(hdi_mode_sum *a, hdi_heat_call *h, const hdi_
 
 /* ---- distances to all vertices ---- */
 
+/* Distances from one source, by a metric or, where that is NULL, from eigenpairs. */
+static hd_status hdi_distances_from(hdi_heat_call *h, const hdi_metric *x, hdi_mode_sum *sum,
+                                    const hdi_terms *from, double *d) {
+    hdi_ledger ledger = x ? hdi_metric_ledger(x) : hdi_modes_ledger();
+    if (!x) hdi_mode_sum_run(sum, *from, d, &ledger, h->rep, h->heat->ctx);
+    else if (hdi_metric_solve(x, from, 1) >= 0) hdi_metric_distance(x, from, 0, d, h->rep, &ledger);
+    if (h->e->status >= 0) hdi_ledger_close(&ledger, h->rep);
+    return h->e->status;
+}
+
 /* Is the bound of degree 9 sure to be too large at time t? */
 static int hdi_distance_sure(const hd_heat *heat, const hdi_distance_row *kind, double t) {
-    return kind->mass == 0 && heat->source->h > 0 &&
-           HDI_DISTANCE_EXPECTED * sqrt(t) > HDI_DISTANCE_SURE * heat->source->h;
+    return heat->source->h > 0 && kind->expected * sqrt(t) > kind->sure * heat->source->h;
 }
 
 /* Distances at the time under way by poles. Where much is sure to cancel, the highest degree begins. */
@@ -22091,11 +22099,11 @@ static hd_status hdi_distances_by_poles(hdi_task *task) {
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
     hdi_metric x;
     task->excess = 2;
-    if (to->kind->time > 0 && h->degree == 0 && hdi_degree_open(h->heat) &&
+    if (to->kind->expected > 0 && h->degree == 0 && hdi_degree_open(h->heat) &&
         hdi_distance_sure(h->heat, to->kind, h->ask.t[h->now])) return HD_OK;
     if (hdi_metric_make(h, to->kind, hdi_low32(to->k, HDI_LANES), 1, &x, &s) >= 0)
-        (void)hdi_distances_of(to, &x, NULL, NULL);
-    task->excess = to->kind->time > 0 ? h->rep->error_rational / HDI_DISTANCE_SURE : 0;
+        (void)hdi_distances_of(to, &x, &h->now, NULL);
+    task->excess = to->kind->sure > 0 ? h->rep->error_rational / to->kind->sure : 0;
     return hdi_scope_end(&s);
 }
 
@@ -22103,17 +22111,13 @@ static hd_status hdi_distances_by_poles(hdi_task *task) {
 static hd_status hdi_distances_by_pairs(hdi_task *task) {
     const hdi_distances *to = (const hdi_distances *)task;
     hdi_heat_call *h = task->h;
-    hd_heat *heat = h->heat;
-    hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
+    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
     hdi_mode_sum sum;
     int32_t r;
-    if (hdi_mode_sum_make(&sum, h, to->kind, &s) < 0) return hdi_scope_end(&s);
-    for (r = 0; r < to->k; r++) {
-        hdi_ledger ledger = hdi_modes_ledger();
-        if (hdi_progress(heat->ctx, "solve", (double)r / to->k, h->e) < 0) break;
-        hdi_mode_sum_run(&sum, to->source[r], hdi_distances_at(to, r, h->now), &ledger, h->rep, heat->ctx);
-        hdi_ledger_close(&ledger, h->rep);
-    }
+    (void)hdi_mode_sum_make(&sum, h, to->kind, &s);
+    for (r = 0; r < to->k && h->e->status >= 0; r++)
+        if (hdi_progress(h->heat->ctx, "solve", (double)r / to->k, h->e) >= 0)
+            (void)hdi_distances_from(h, NULL, &sum, to->source + r, hdi_distances_at(to, r, h->now));
     return hdi_scope_end(&s);
 }
 
@@ -22371,8 +22375,7 @@ static int32_t hdi_sample_next(const hd_laplacian *lap, const double *nearest) {
     return best;
 }
 
-/* A query for farthest points, and where distances to the last one come from: a metric, or else
- * eigenpairs. */
+/* A query for farthest points. */
 typedef struct hdi_samples {
     hdi_task task;
     const hdi_distance_row *kind;
@@ -22381,24 +22384,11 @@ typedef struct hdi_samples {
     int32_t n_from;              /* sources that come before all points */
     const hdi_terms *terms;      /* [n_from] */
     double *distance, *nearest, *u;
-    const hdi_metric *x;
-    hdi_mode_sum *sum;
 } hdi_samples;
-
-/* Distances from a source into u. */
-static hd_status hdi_sample_distances(const hdi_samples *a, const hdi_terms *from) {
-    hdi_heat_call *h = a->task.h;
-    hdi_ledger ledger = a->sum ? hdi_modes_ledger() : hdi_metric_ledger(a->x);
-    if (a->sum) hdi_mode_sum_run(a->sum, *from, a->u, &ledger, h->rep, h->heat->ctx);
-    else if (hdi_metric_solve(a->x, from, 1) >= 0)
-        hdi_metric_distance(a->x, from, 0, a->u, h->rep, &ledger);
-    if (h->e->status >= 0) hdi_ledger_close(&ledger, h->rep);
-    return h->e->status;
-}
 
 /* All points, each the one that is farthest from those before it. This function is based on
  *   T. Gonzalez, Clustering to minimize the maximum intercluster distance, 1985 */
-static hd_status hdi_sample_points(const hdi_samples *a) {
+static void hdi_sample_points(const hdi_samples *a, const hdi_metric *x, hdi_mode_sum *sum) {
     hdi_heat_call *h = a->task.h;
     const hd_laplacian *lap = h->heat->source;
     int32_t *vertex = a->vertex, q, v;
@@ -22413,35 +22403,31 @@ static hd_status hdi_sample_points(const hdi_samples *a) {
         if (q + 1 == a->count || hdi_progress(h->heat->ctx, "sample", hdi_max(0, q) / a->count, h->e) < 0)
             break;
         from = q < 0 ? a->terms[a->n_from + q] : hdi_terms_vertex(vertex[q]);
-        if (hdi_sample_distances(a, &from) < 0) break;
+        if (hdi_distances_from(h, x, sum, &from, a->u) < 0) break;
         for (v = 0; v < lap->n; v++) a->nearest[v] = hdi_min(a->nearest[v], a->u[v]);
         if (!from.weight) a->nearest[from.one] = -1;     /* not again, even when no distance is left */
     }
-    return h->e->status;
 }
 
 /* The points by distances from poles. */
 static hd_status hdi_sample_by_poles(hdi_task *task) {
-    hdi_samples *a = (hdi_samples *)task;
+    const hdi_samples *a = (const hdi_samples *)task;
     hdi_heat_call *h = task->h;
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
     hdi_metric x;
-    a->x = &x;
-    a->sum = NULL;
     h->degree = a->kind->time > 0 && hdi_degree_open(h->heat) ? HDI_RAT_KERNEL_MAX : 0;
-    if (hdi_metric_make(h, a->kind, 1, 0, &x, &s) >= 0) (void)hdi_sample_points(a);
+    if (hdi_metric_make(h, a->kind, 1, 0, &x, &s) >= 0) hdi_sample_points(a, &x, NULL);
     h->degree = 0;
     return hdi_scope_end(&s);
 }
 
 /* The points by distances from the eigenpairs that are there. */
 static hd_status hdi_sample_by_pairs(hdi_task *task) {
-    hdi_samples *a = (hdi_samples *)task;
+    const hdi_samples *a = (const hdi_samples *)task;
     hdi_heat_call *h = task->h;
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
     hdi_mode_sum sum;
-    a->sum = &sum;
-    if (hdi_mode_sum_make(&sum, h, a->kind, &s) >= 0) (void)hdi_sample_points(a);
+    if (hdi_mode_sum_make(&sum, h, a->kind, &s) >= 0) hdi_sample_points(a, NULL, &sum);
     return hdi_scope_end(&s);
 }
 
@@ -22452,7 +22438,7 @@ static hd_status hdi_sample_by_pairs(hdi_task *task) {
  * 1/sqrt(mass) times exp(-t low). */
 static void hdi_distance_task(hdi_task *task, hdi_heat_call *h, const hdi_distance_row *kind, int32_t k) {
     const double span = hdi_modes_span(h->heat);
-    const double many = k < HDI_LANES_BATCH || kind->mass > 0 ? 0 : HDI_MODES_MANY * pow(span, 1.2);
+    const double many = kind->many && k >= HDI_LANES_BATCH ? HDI_MODES_MANY * pow(span, 1.2) : 0;
     memset(task, 0, sizeof *task);
     task->h = h;
     if (!HDI_HAS_MODES || !(kind->time > 0) || !hdi_modes_allowed(h->heat)) return;
@@ -22460,28 +22446,28 @@ static void hdi_distance_task(hdi_task *task, hdi_heat_call *h, const hdi_distan
     task->depth = hdi_max(0, log(2 * span / hdi_modes_tol(h->heat)));   /* 0: tol is all there is */
 }
 
-/* The start of a query of a distance. Commute and biharmonic distances have no time: n_times is 0 or 1,
- * and t is not read. */
+/* The start of a query of a distance; all but pairs of vertices have positive times and the direct method only.
+ * Without a time n_times is 0 or 1, and t is not read. */
 static hd_status hdi_distance_begin(hdi_heat_call *h, hd_heat *heat, const hdi_distance_row *kind,
-                                    int32_t n_times, const double *t, int positive, hd_report *report,
+                                    int32_t n_times, const double *t, int pairs, hd_report *report,
                                     hd_error *err) {
     if (hdi_heat_begin(h, heat, HDI_QUERY_SYMMETRIC, report, err) < 0) return h->e->status;
     h->relative = 1;
     if (!HDI_HAS_DIFFUSION) return HDI_LEFT_OUT(h->e, DIFFUSION, "diffusion distances");
     if (!kind) return hdi_fail(h->e, HD_ERR_ARGUMENT, "distance: unknown kind");
-    if (kind->time > 0) return hdi_times_check(h, n_times, t, positive);
-    if (n_times > 1 || n_times < 0)
+    if (kind->time > 0 && hdi_times_check(h, n_times, t, !pairs) < 0) return h->e->status;
+    if (kind->time == 0 && (n_times > 1 || n_times < 0))
         return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "distance: n_times is 0 or 1 for commute and biharmonic",
                             -1, -1, n_times);
-    return hdi_direct_only(h);
+    return pairs && kind->time > 0 && !hdi_heat_filtered(heat) ? HD_OK : hdi_direct_only(h);
 }
 
 /* Distances to all vertices from sources. */
 static hd_status hdi_distance_answer(hd_heat *heat, hdi_distances *to, const hd_sources *sources,
                                      int32_t n_times, const double *t, hd_report *report, hd_error *err) {
     hdi_heat_call h;
-    if (hdi_distance_begin(&h, heat, to->kind, n_times, t, 1, report, err) < 0 || hdi_direct_only(&h) < 0 ||
-        !HDI_HAS_DIFFUSION) return hdi_heat_end(&h);
+    if (hdi_distance_begin(&h, heat, to->kind, n_times, t, 0, report, err) < 0 || !HDI_HAS_DIFFUSION)
+        return hdi_heat_end(&h);
     if (!sources || (sources->count > 0 && !to->D)) hdi_missing(h.e);
     to->ld = hdi_leading(&h, to->ld);
     if (h.e->status >= 0) to->source = hdi_terms_all(sources, heat->source, 1, &h.s);
@@ -22506,8 +22492,8 @@ static hd_status hdi_pairs_run(hdi_heat_call *h, hdi_pairs *to) {
 static hd_status hdi_sample_answer(hd_heat *heat, hdi_samples *a, const hd_sources *sources,
                                    hd_report *report, hd_error *err) {
     hdi_heat_call h;
-    if (hdi_distance_begin(&h, heat, a->kind, 1, &a->t, 1, report, err) < 0 || hdi_direct_only(&h) < 0 ||
-        !HDI_HAS_DIFFUSION) return hdi_heat_end(&h);
+    if (hdi_distance_begin(&h, heat, a->kind, 1, &a->t, 0, report, err) < 0 || !HDI_HAS_DIFFUSION)
+        return hdi_heat_end(&h);
     if (a->count < 1 || a->count > heat->source->n_active)
         hdi_fail_row(h.e, HD_ERR_ARGUMENT, "sample: more points than vertices, or none", -1, -1, a->count);
     else if (!a->vertex) hdi_missing(h.e);
@@ -22528,34 +22514,42 @@ static hd_status hdi_sample_answer(hd_heat *heat, hdi_samples *a, const hd_sourc
  * compare bytes with what is allocated. */
 
 /* How a query is answered: by solves, by an inversion, from L grounded, or from eigenpairs. */
-typedef enum hdi_by { HDI_BY_SOLVES, HDI_BY_INVERSION, HDI_BY_GROUND, HDI_BY_SPECTRUM } hdi_by;
+typedef enum hdi_by { HDI_BY_NOTHING, HDI_BY_SOLVES, HDI_BY_INVERSION, HDI_BY_GROUND, HDI_BY_SPECTRUM } hdi_by;
 
-/* What queries are, in hd_query's order; one without a row is unknown. */
+/* What a query is. */
 typedef struct hdi_query_row {
-    hdi_by by;
-    const hdi_distance_row *distance;   /* its kind, or NULL */
+    hd_query query;
+    hdi_by by;                   /* nothing: there is no such query */
     int32_t columns;             /* k counts columns that are solved for */
     int32_t mass;                /* K_t is asked for, not k_t */
+    const hdi_distance_row *distance;   /* its kind, or NULL */
 } hdi_query_row;
 
-static const hdi_query_row hdi_query_rows[] = {
-    {HDI_BY_SOLVES, NULL, 1, 0},                        /* fields */
-    {HDI_BY_SOLVES, NULL, 1, 0},                        /* columns */
-    {HDI_BY_SOLVES, hdi_distance_rows + HD_DISTANCE_CLASSICAL, 1, 0},   /* pairs */
-    {HDI_BY_INVERSION, NULL, 0, 0},                     /* diagonal of k_t */
-    {HDI_BY_INVERSION, NULL, 0, 1},                     /* diagonal of K_t */
-    {HDI_BY_INVERSION, NULL, 0, 2},                     /* trace, perhaps with either */
-    {HDI_BY_INVERSION, hdi_distance_rows + HD_DISTANCE_CLASSICAL, 1, 0},
-    {HDI_BY_INVERSION, hdi_distance_rows + HD_DISTANCE_WEIGHTED, 1, 0},
-    {HDI_BY_GROUND, hdi_distance_rows + HD_DISTANCE_COMMUTE, 1, 0},
-    {HDI_BY_GROUND, hdi_distance_rows + HD_DISTANCE_BIHARMONIC, 1, 0},
-    {HDI_BY_SPECTRUM, NULL, 1, 0}
-};
+static hdi_query_row hdi_query_of(hd_query query) {
+    static const hdi_query_row others[] = {
+        {HD_QUERY_FIELDS, HDI_BY_SOLVES, 1, 0, NULL},
+        {HD_QUERY_COLUMNS, HDI_BY_SOLVES, 1, 0, NULL},
+        {HD_QUERY_PAIRS, HDI_BY_SOLVES, 1, 0, hdi_distance_rows},
+        {HD_QUERY_DIAGONAL, HDI_BY_INVERSION, 0, 0, NULL},
+        {HD_QUERY_DIAGONAL_OPERATOR, HDI_BY_INVERSION, 0, 1, NULL},
+        {HD_QUERY_TRACE, HDI_BY_INVERSION, 0, 2, NULL},     /* perhaps with either diagonal */
+        {HD_QUERY_SPECTRUM, HDI_BY_SPECTRUM, 1, 0, NULL}
+    };
+    hdi_query_row row = {query, HDI_BY_NOTHING, 1, 0, NULL};
+    size_t q;
+    for (q = 0; q < sizeof others / sizeof *others; q++)
+        if (others[q].query == query) return others[q];
+    for (q = 0; q < HDI_DISTANCES; q++) {
+        if (hdi_distance_rows[q].query != query) continue;
+        row.distance = hdi_distance_rows + q;
+        row.by = row.distance->time > 0 ? HDI_BY_INVERSION : HDI_BY_GROUND;
+    }
+    return row;
+}
 
-/* NULL: there is no such query. */
-static const hdi_query_row *hdi_query_of(hd_query query) {
-    const size_t n = sizeof hdi_query_rows / sizeof *hdi_query_rows;
-    return (size_t)query < n ? hdi_query_rows + query : NULL;
+/* Has the query times? */
+static int hdi_query_timed(const hdi_query_row *query) {
+    return query->by == HDI_BY_SOLVES || query->by == HDI_BY_INVERSION;
 }
 
 /* A query under estimation. */
@@ -22812,7 +22806,7 @@ static hd_status hdi_estimate_run(hdi_heat_call *h, const hdi_query_row *query, 
     x.k = h->ask.k = query->columns ? hdi_high32(k, 1) : 0;
     to->method = h->method = HD_METHOD_DIRECT;
     to->reason = query->by == HDI_BY_SPECTRUM ? "eigenpairs take real factors" : HDI_DIRECT_REASON;
-    if (query->by > HDI_BY_INVERSION) {
+    if (!hdi_query_timed(query)) {
         if (hdi_estimate_analyse(h) < 0) return h->e->status;
         if (query->by == HDI_BY_GROUND) hdi_estimate_ground(&x, direct);
         else *direct = hdi_estimate_pairs(heat, hdi_low32(x.k, heat->source->n_active));
@@ -22848,7 +22842,7 @@ static void hdi_estimate_close(const hd_heat *heat, hd_estimate *to) {
 }
 
 static hd_status hdi_estimate_check(hdi_heat_call *h, const hdi_query_row *query, int32_t k) {
-    if (!query) return hdi_fail(h->e, HD_ERR_ARGUMENT, "estimate: unknown query");
+    if (query->by == HDI_BY_NOTHING) return hdi_fail(h->e, HD_ERR_ARGUMENT, "estimate: unknown query");
     if (k < 0)
         return hdi_fail(h->e, HD_ERR_ARGUMENT, "estimate: a number of fields or columns is negative");
     if (query->by == HDI_BY_SPECTRUM)
@@ -24532,9 +24526,8 @@ HEATDIFF_API hd_status hd_heat_distance_pairs(hd_heat *heat, hd_distance_kind ki
     hdi_heat_call h;
     hdi_pairs to;
     to.kind = hdi_distance_of(kind);
-    if (hdi_distance_begin(&h, heat, to.kind, n_times, t, 0, report, err) < 0 || !HDI_HAS_DIFFUSION)
+    if (hdi_distance_begin(&h, heat, to.kind, n_times, t, 1, report, err) < 0 || !HDI_HAS_DIFFUSION)
         return hdi_heat_end(&h);
-    if (hdi_heat_filtered(heat)) (void)hdi_direct_only(&h);
     if (n_pairs > 0 && !d) hdi_missing(h.e);
     to.n = n_pairs;
     to.i = i;
@@ -24561,16 +24554,16 @@ HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, doub
 HEATDIFF_API hd_status hd_heat_estimate(hd_heat *heat, hd_query query, int32_t n_times, const double *t,
                                         int32_t k, hd_estimate *estimate, hd_error *err) {
     const hdi_query as = query == HD_QUERY_FIELDS ? HDI_QUERY_FIELD : HDI_QUERY_SYMMETRIC;
-    const hdi_query_row *row = hdi_query_of(query);
+    const hdi_query_row row = hdi_query_of(query);
     hdi_heat_call h;
     hd_estimate found;
     hd_status status;
     memset(&found, 0, sizeof found);
     if (hdi_heat_begin(&h, heat, as, NULL, err) < 0) return hdi_heat_end(&h);
     if (!estimate) hdi_missing(h.e);
-    else if (hdi_estimate_check(&h, row, k) >= 0 && row->by <= HDI_BY_INVERSION)
-        (void)hdi_times_check(&h, n_times, t, row->by == HDI_BY_INVERSION);
-    if (h.e->status >= 0) (void)hdi_estimate_run(&h, row, k, &found);
+    else if (hdi_estimate_check(&h, &row, k) >= 0 && hdi_query_timed(&row))
+        (void)hdi_times_check(&h, n_times, t, row.by == HDI_BY_INVERSION);
+    if (h.e->status >= 0) (void)hdi_estimate_run(&h, &row, k, &found);
     status = hdi_heat_end(&h);
     if (status < 0) return status;
     hdi_estimate_close(heat, &found);
