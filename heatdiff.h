@@ -15231,7 +15231,7 @@ static hd_status hdi_krylov_answer(hdi_krylov *z, int32_t r, double t, const dou
 typedef struct hdi_distance_row {
     hd_distance_kind kind;
     hd_query query;              /* its name for hd_heat_estimate */
-    int32_t time;                /* the kernel is of t times this; 0: there is no time, and L grounded serves */
+    int32_t time;                /* the kernel is of t times this; 0: L grounded serves, without a time */
     int32_t power;               /* without a time */
     int32_t mass;                /* how often B is a factor: 2 of B k B */
     int32_t many;                /* 1: from many sources the bound by poles soon calls for eigenpairs */
@@ -21943,44 +21943,6 @@ static hdi_ledger hdi_metric_ledger(const hdi_metric *x) {
                             HD_EVIDENCE_MEASURED, 1);
 }
 
-/* A query for distances of a kind from k sources to all vertices. */
-typedef struct hdi_distances {
-    hdi_task task;
-    const hdi_distance_row *kind;
-    int32_t k;
-    const hdi_terms *source;     /* [k] */
-    double *D;                   /* source r at time q: column r n_times + q */
-    size_t ld;
-} hdi_distances;
-
-static double *hdi_distances_at(const hdi_distances *to, int32_t r, int32_t q) {
-    const size_t n_times = (size_t)hdi_high32(to->task.h->ask.n_times, 1);
-    return to->D + ((size_t)r * n_times + (size_t)q) * to->ld;
-}
-
-/* All sources by a metric: the times of its functions are columns of the query, whose reports are in one; NULL:
- * it is the call's. */
-static hd_status hdi_distances_of(const hdi_distances *to, hdi_metric *x, const int32_t *column,
-                                  hd_report *one) {
-    hdi_heat_call *h = to->task.h;
-    int32_t r, k, i, q;
-    for (r = 0; r < to->k && h->e->status >= 0; r += k) {
-        k = hdi_low32(to->k - r, x->group);
-        if (hdi_metric_solve(x, to->source + r, k) < 0) break;
-        for (q = 0; q < hdi_high32(x->in.count, 1); q++) {
-            const int32_t at = column[q];
-            hd_report *rep = one ? one + at : h->rep;
-            hdi_metric_at(x, q);
-            for (i = 0; i < k; i++) {
-                hdi_ledger ledger = hdi_metric_ledger(x);
-                hdi_metric_distance(x, to->source + r + i, i, hdi_distances_at(to, r + i, at), rep, &ledger);
-                hdi_ledger_close(&ledger, rep);
-            }
-        }
-    }
-    return h->e->status;
-}
-
 /* ---- distances from the smallest eigenpairs ---- */
 /* At large t all vertices look alike, and f_ss - 2 f_sv + f_vv cancels. There few eigenpairs are left, and
  *     d_t(x,y)^2 = sum_i exp(-2 t lambda_i) (x_i(x) - x_i(y))^2 = |K_t B^-1 (e_x - e_y)|^2
@@ -22075,7 +22037,33 @@ static hd_status hdi_mode_sum_make(hdi_mode_sum *a, hdi_heat_call *h, const hdi_
     return h->e->status;
 }
 
-/* ---- distances to all vertices ---- */
+/* ---- both ways ---- */
+
+/* A query for distances of a kind. Those below begin with this struct. */
+typedef struct hdi_distance_query hdi_distance_query;
+struct hdi_distance_query {
+    hdi_task task;
+    const hdi_distance_row *kind;
+    /* Answers the time under way by a metric or, where that is NULL, from eigenpairs. */
+    void (*answer)(const hdi_distance_query *to, hdi_metric *x, hdi_mode_sum *sum);
+};
+
+/* The answer from the eigenpairs that are there. */
+static hd_status hdi_distance_by_pairs(hdi_task *task) {
+    const hdi_distance_query *to = (const hdi_distance_query *)task;
+    hdi_scope s = hdi_scope_begin(task->h->heat->ctx, task->h->e);
+    hdi_mode_sum sum;
+    if (hdi_mode_sum_make(&sum, task->h, to->kind, &s) >= 0) to->answer(to, NULL, &sum);
+    return hdi_scope_end(&s);
+}
+
+/* The answer by poles, for so many sources at the same time, as in hdi_metric_make. */
+static hd_status hdi_distance_by_metric(const hdi_distance_query *to, int32_t group, int bounded) {
+    hdi_scope s = hdi_scope_begin(to->task.h->heat->ctx, to->task.h->e);
+    hdi_metric x;
+    if (hdi_metric_make(to->task.h, to->kind, group, bounded, &x, &s) >= 0) to->answer(to, &x, NULL);
+    return hdi_scope_end(&s);
+}
 
 /* Distances from one source, by a metric or, where that is NULL, from eigenpairs. */
 static hd_status hdi_distances_from(hdi_heat_call *h, const hdi_metric *x, hdi_mode_sum *sum,
@@ -22087,6 +22075,55 @@ static hd_status hdi_distances_from(hdi_heat_call *h, const hdi_metric *x, hdi_m
     return h->e->status;
 }
 
+/* ---- distances to all vertices ---- */
+
+/* A query for distances from k sources to all vertices. */
+typedef struct hdi_distances {
+    hdi_distance_query of;
+    int32_t k;
+    const hdi_terms *source;     /* [k] */
+    double *D;                   /* source r at time q: column r n_times + q */
+    size_t ld;
+} hdi_distances;
+
+static double *hdi_distances_at(const hdi_distances *to, int32_t r, int32_t q) {
+    const size_t n_times = (size_t)hdi_high32(to->of.task.h->ask.n_times, 1);
+    return to->D + ((size_t)r * n_times + (size_t)q) * to->ld;
+}
+
+/* All sources by a metric: the times of its functions are columns of the query, whose reports are in one;
+ * NULL: it is the call's. */
+static hd_status hdi_distances_of(const hdi_distances *to, hdi_metric *x, const int32_t *column,
+                                  hd_report *one) {
+    hdi_heat_call *h = to->of.task.h;
+    int32_t r, k, i, q;
+    for (r = 0; r < to->k && h->e->status >= 0; r += k) {
+        k = hdi_low32(to->k - r, x->group);
+        if (hdi_metric_solve(x, to->source + r, k) < 0) break;
+        for (q = 0; q < hdi_high32(x->in.count, 1); q++) {
+            const int32_t at = column[q];
+            hd_report *rep = one ? one + at : h->rep;
+            hdi_metric_at(x, q);
+            for (i = 0; i < k; i++) {
+                hdi_ledger ledger = hdi_metric_ledger(x);
+                hdi_metric_distance(x, to->source + r + i, i, hdi_distances_at(to, r + i, at), rep, &ledger);
+                hdi_ledger_close(&ledger, rep);
+            }
+        }
+    }
+    return h->e->status;
+}
+
+static void hdi_distances_answer(const hdi_distance_query *of, hdi_metric *x, hdi_mode_sum *sum) {
+    const hdi_distances *to = (const hdi_distances *)of;
+    hdi_heat_call *h = of->task.h;
+    int32_t r;
+    if (x) (void)hdi_distances_of(to, x, &h->now, NULL);
+    for (r = 0; r < to->k && sum && h->e->status >= 0; r++)
+        if (hdi_progress(h->heat->ctx, "solve", (double)r / to->k, h->e) >= 0)
+            (void)hdi_distances_from(h, NULL, sum, to->source + r, hdi_distances_at(to, r, h->now));
+}
+
 /* Is the bound of degree 9 sure to be too large at time t? */
 static int hdi_distance_sure(const hd_heat *heat, const hdi_distance_row *kind, double t) {
     return heat->source->h > 0 && kind->expected * sqrt(t) > kind->sure * heat->source->h;
@@ -22095,30 +22132,14 @@ static int hdi_distance_sure(const hd_heat *heat, const hdi_distance_row *kind, 
 /* Distances at the time under way by poles. Where much is sure to cancel, the highest degree begins. */
 static hd_status hdi_distances_by_poles(hdi_task *task) {
     const hdi_distances *to = (const hdi_distances *)task;
+    const hdi_distance_row *kind = to->of.kind;
     hdi_heat_call *h = task->h;
-    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
-    hdi_metric x;
     task->excess = 2;
-    if (to->kind->expected > 0 && h->degree == 0 && hdi_degree_open(h->heat) &&
-        hdi_distance_sure(h->heat, to->kind, h->ask.t[h->now])) return HD_OK;
-    if (hdi_metric_make(h, to->kind, hdi_low32(to->k, HDI_LANES), 1, &x, &s) >= 0)
-        (void)hdi_distances_of(to, &x, &h->now, NULL);
-    task->excess = to->kind->sure > 0 ? h->rep->error_rational / to->kind->sure : 0;
-    return hdi_scope_end(&s);
-}
-
-/* Distances of all sources at the time under way from the eigenpairs that are there. */
-static hd_status hdi_distances_by_pairs(hdi_task *task) {
-    const hdi_distances *to = (const hdi_distances *)task;
-    hdi_heat_call *h = task->h;
-    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
-    hdi_mode_sum sum;
-    int32_t r;
-    (void)hdi_mode_sum_make(&sum, h, to->kind, &s);
-    for (r = 0; r < to->k && h->e->status >= 0; r++)
-        if (hdi_progress(h->heat->ctx, "solve", (double)r / to->k, h->e) >= 0)
-            (void)hdi_distances_from(h, NULL, &sum, to->source + r, hdi_distances_at(to, r, h->now));
-    return hdi_scope_end(&s);
+    if (kind->expected > 0 && h->degree == 0 && hdi_degree_open(h->heat) &&
+        hdi_distance_sure(h->heat, kind, h->ask.t[h->now])) return HD_OK;
+    (void)hdi_distance_by_metric(&to->of, hdi_low32(to->k, HDI_LANES), 1);
+    task->excess = kind->sure > 0 ? h->rep->error_rational / kind->sure : 0;
+    return h->e->status;
 }
 
 /* Distances at times q0 to q1 - 1 of the call, sorted, by one set of poles. */
@@ -22130,8 +22151,8 @@ static hd_status hdi_distances_window(const hdi_task *task, int32_t q0, int32_t 
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
     hdi_metric x;
     int32_t q;
-    if (hdi_metric_take(&x, h, to->kind, count, &s) >= 0 &&
-        hdi_window_take(&x.in, h, q0, q1, hdi_metric_wanted(h->heat, to->kind), HDI_SHARED_DISTANCE_TOL,
+    if (hdi_metric_take(&x, h, to->of.kind, count, &s) >= 0 &&
+        hdi_window_take(&x.in, h, q0, q1, hdi_metric_wanted(h->heat, to->of.kind), HDI_SHARED_DISTANCE_TOL,
                         &s) >= 0 &&
         hdi_metric_invert(&x, &s) >= 0 && hdi_metric_room(&x, group, 1, &s) >= 0) {
         for (q = 0; q < count; q++) one[column[q]] = *h->rep;
@@ -22142,7 +22163,7 @@ static hd_status hdi_distances_window(const hdi_task *task, int32_t q0, int32_t 
 
 /* With shared poles, where that is cheaper than one by one. */
 static hd_status hdi_distances_together(hdi_task *task, char *done, hd_report *one) {
-    const int32_t times = ((const hdi_distances *)task)->kind->time;
+    const int32_t times = ((const hdi_distances *)task)->of.kind->time;
     hdi_heat_call *h = task->h;
     hd_heat *heat = h->heat;
     if (!hdi_degree_open(heat) || hdi_heat_analysed(heat, h->e) < 0 ||
@@ -22157,8 +22178,7 @@ static hd_status hdi_distances_together(hdi_task *task, char *done, hd_report *o
 
 /* A query for distances of pairs of vertices. */
 typedef struct hdi_pairs {
-    hdi_task task;
-    const hdi_distance_row *kind;
+    hdi_distance_query of;
     int64_t n;
     const int32_t *i, *j;
     double *d;                   /* [n] for each time */
@@ -22206,10 +22226,9 @@ static double hdi_pairs_column_off(const hd_laplacian *lap, int32_t v, double si
 /* Distances |K_t B^-1 (e_i - e_j)|_B from the columns, whose report is given. They lose nothing beside what
  * the columns are off by. The parts of the bound are in the ratio of those of the columns. */
 static void hdi_pairs_note(const hdi_pairs *to, const hdi_pairs_part *x, hd_report *rep, hdi_ledger *all) {
-    const hd_heat *heat = to->task.h->heat;
-    const hd_laplacian *lap = heat->source;
+    const hd_laplacian *lap = to->of.task.h->heat->source;
     const size_t n = (size_t)lap->n;
-    double *d = to->d + to->n * to->task.h->now, sum;
+    double *d = to->d + to->n * to->of.task.h->now, sum;
     hdi_parts share;
     int64_t q;
     share.rational = rep->error_rational + rep->error_local;
@@ -22234,8 +22253,8 @@ static void hdi_pairs_note(const hdi_pairs *to, const hdi_pairs_part *x, hd_repo
 
 /* Some pairs at the time under way from columns. */
 static hd_status hdi_pairs_some(const hdi_pairs *to, hdi_pairs_part *x, hd_report *rep, hdi_ledger *all) {
-    const hd_kernel kernel = to->kind->mass > 0 ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
-    hdi_heat_call *h = to->task.h, c;
+    const hd_kernel kernel = to->of.kind->mass > 0 ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
+    hdi_heat_call *h = to->of.task.h, c;
     const hd_laplacian *lap = h->heat->source;
     const uint64_t n = (uint64_t)lap->n;
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
@@ -22268,7 +22287,7 @@ static hd_status hdi_pairs_some(const hdi_pairs *to, hdi_pairs_part *x, hd_repor
 
 /* All pairs at the time under way, so many at once. */
 static hd_status hdi_pairs_columns(const hdi_pairs *to, int64_t most) {
-    hdi_heat_call *h = to->task.h;
+    hdi_heat_call *h = to->of.task.h;
     hdi_ledger all = hdi_ledger_begin(HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, 1);
     hd_report one, sum;
     hdi_pairs_part x;
@@ -22291,31 +22310,43 @@ static hd_status hdi_pairs_columns(const hdi_pairs *to, int64_t most) {
     return h->e->status;
 }
 
-/* Distances from columns and the diagonal, for more vertices than columns fit. Errors are those of all
- * vertices from the same ones. */
-static hd_status hdi_pairs_one_by_one(const hdi_pairs *to) {
-    hdi_heat_call *h = to->task.h;
+/* A pair from eigenpairs. out [n] */
+static double hdi_pairs_from_sum(hdi_heat_call *h, hdi_mode_sum *sum, int32_t i, int32_t j, double *out,
+                                 hdi_ledger *ledger) {
+    sum->sums.column = out;
+    hdi_mode_sum_from(sum, hdi_terms_vertex(i));
+    hdi_spec_sum_task(&sum->sums, j, (int64_t)j + 1);
+    hdi_mode_sum_note(sum, j, ledger, h->rep);
+    return out[j];
+}
+
+/* Pairs by a metric, for more vertices than columns fit, or from eigenpairs. By a metric there is a column for
+ * each run of the same first vertex, and errors are those of all vertices from these. */
+static void hdi_pairs_answer(const hdi_distance_query *of, hdi_metric *x, hdi_mode_sum *sum) {
+    const hdi_pairs *to = (const hdi_pairs *)of;
+    hdi_heat_call *h = of->task.h;
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
     double *d = HDI_TAKE(&s, double, h->heat->source->n), *out = to->d + to->n * h->now;
     const hdi_parts none = {0, 0, 0};
-    hdi_ledger ledger, all;
-    hdi_metric x;
+    hdi_ledger ledger = sum ? hdi_modes_ledger() : hdi_metric_ledger(x), all = ledger;
+    int32_t from = -1;
     int64_t q;
-    if (h->e->status < 0 || hdi_metric_make(h, to->kind, 1, 0, &x, &s) < 0) return hdi_scope_end(&s);
-    ledger = all = hdi_metric_ledger(&x);
-    for (q = 0; q < to->n; q++) {                /* a column for each run of the same first vertex */
-        const hdi_terms from = hdi_terms_vertex(to->i[q]);
-        if (q == 0 || to->i[q] != to->i[q - 1]) {
-            if (hdi_metric_solve(&x, &from, 1) < 0) break;
-            hdi_metric_distance(&x, &from, 0, d, h->rep, &all);
-        }
+    for (q = 0; q < to->n && h->e->status >= 0; q++) {
+        const hdi_terms source = hdi_terms_vertex(to->i[q]);
+        out[q] = 0;
+        if (to->i[q] == to->j[q]) continue;
+        if (sum) out[q] = hdi_pairs_from_sum(h, sum, to->i[q], to->j[q], d, &ledger);
+        if (sum) continue;
+        if (to->i[q] != from && hdi_metric_solve(x, &source, 1) >= 0)
+            hdi_metric_distance(x, &source, 0, d, h->rep, &all);
+        from = to->i[q];
         out[q] = d[to->j[q]];
-        if (hdi_finite(out[q]) && to->i[q] != to->j[q]) hdi_ledger_note(&ledger, out[q], none);
+        if (hdi_finite(out[q])) hdi_ledger_note(&ledger, out[q], none);
     }
-    ledger.off = all.off;
-    ledger.relative = all.relative;
+    if (x) ledger.off = all.off;
+    if (x) ledger.relative = all.relative;
     if (h->e->status >= 0) hdi_ledger_close(&ledger, h->rep);
-    return hdi_scope_end(&s);
+    (void)hdi_scope_end(&s);
 }
 
 /* Distances at the time under way from columns of all vertices of the pairs or, where these have no room,
@@ -22328,7 +22359,7 @@ static hd_status hdi_pairs_by_poles(hdi_task *task) {
     hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
     hdi_pairs_part all = {0, to->n, 0, NULL, NULL, NULL, NULL};
     int64_t most = to->n;
-    int fits = to->kind->time > 0 && !hdi_heat_filtered(heat);
+    int fits = to->of.kind->time > 0 && !hdi_heat_filtered(heat);
     if (fits && 2 * to->n > room) all.place = HDI_TAKE(&s, int32_t, heat->source->n);
     if (all.place) hdi_pairs_vertices(to, &all, heat->source->n);
     if (all.n_vertex > room) {
@@ -22336,33 +22367,10 @@ static hd_status hdi_pairs_by_poles(hdi_task *task) {
         most = hdi_high32(1, (int32_t)(room / 2));
     }
     if (hdi_scope_end(&s) < 0) return h->e->status;
-    if (!fits) return hdi_pairs_one_by_one(to);
+    if (!fits) return hdi_distance_by_metric(&to->of, 1, 0);
     if (hdi_pairs_columns(to, most) >= 0 && h->rep->method == HD_METHOD_DIRECT)
         task->excess = h->rep->error_bound / HDI_MODES_HELP;
     return h->e->status;
-}
-
-/* Distances of the pairs at the time under way from the eigenpairs that are there. */
-static hd_status hdi_pairs_by_pairs(hdi_task *task) {
-    const hdi_pairs *to = (const hdi_pairs *)task;
-    hdi_heat_call *h = task->h;
-    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
-    double *work = HDI_TAKE(&s, double, h->heat->source->n), *d = to->d + to->n * h->now;
-    hdi_ledger ledger = hdi_modes_ledger();
-    hdi_mode_sum sum;
-    int64_t q;
-    if (!work || hdi_mode_sum_make(&sum, h, to->kind, &s) < 0) return hdi_scope_end(&s);
-    sum.sums.column = work;
-    for (q = 0; q < to->n; q++) {
-        d[q] = 0;
-        if (to->i[q] == to->j[q]) continue;
-        hdi_mode_sum_from(&sum, hdi_terms_vertex(to->i[q]));
-        hdi_spec_sum_task(&sum.sums, to->j[q], (int64_t)to->j[q] + 1);
-        hdi_mode_sum_note(&sum, to->j[q], &ledger, h->rep);
-        d[q] = work[to->j[q]];
-    }
-    hdi_ledger_close(&ledger, h->rep);
-    return hdi_scope_end(&s);
 }
 
 /* ---- farthest points ---- */
@@ -22377,8 +22385,7 @@ static int32_t hdi_sample_next(const hd_laplacian *lap, const double *nearest) {
 
 /* A query for farthest points. */
 typedef struct hdi_samples {
-    hdi_task task;
-    const hdi_distance_row *kind;
+    hdi_distance_query of;
     double t;
     int32_t count, *vertex;
     int32_t n_from;              /* sources that come before all points */
@@ -22388,8 +22395,9 @@ typedef struct hdi_samples {
 
 /* All points, each the one that is farthest from those before it. This function is based on
  *   T. Gonzalez, Clustering to minimize the maximum intercluster distance, 1985 */
-static void hdi_sample_points(const hdi_samples *a, const hdi_metric *x, hdi_mode_sum *sum) {
-    hdi_heat_call *h = a->task.h;
+static void hdi_sample_answer(const hdi_distance_query *of, hdi_metric *x, hdi_mode_sum *sum) {
+    const hdi_samples *a = (const hdi_samples *)of;
+    hdi_heat_call *h = of->task.h;
     const hd_laplacian *lap = h->heat->source;
     int32_t *vertex = a->vertex, q, v;
     for (v = 0; v < lap->n; v++) a->nearest[v] = HUGE_VAL;
@@ -22411,24 +22419,12 @@ static void hdi_sample_points(const hdi_samples *a, const hdi_metric *x, hdi_mod
 
 /* The points by distances from poles. */
 static hd_status hdi_sample_by_poles(hdi_task *task) {
-    const hdi_samples *a = (const hdi_samples *)task;
+    const hdi_distance_query *of = (const hdi_distance_query *)task;
     hdi_heat_call *h = task->h;
-    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
-    hdi_metric x;
-    h->degree = a->kind->time > 0 && hdi_degree_open(h->heat) ? HDI_RAT_KERNEL_MAX : 0;
-    if (hdi_metric_make(h, a->kind, 1, 0, &x, &s) >= 0) hdi_sample_points(a, &x, NULL);
+    h->degree = of->kind->time > 0 && hdi_degree_open(h->heat) ? HDI_RAT_KERNEL_MAX : 0;
+    (void)hdi_distance_by_metric(of, 1, 0);
     h->degree = 0;
-    return hdi_scope_end(&s);
-}
-
-/* The points by distances from the eigenpairs that are there. */
-static hd_status hdi_sample_by_pairs(hdi_task *task) {
-    const hdi_samples *a = (const hdi_samples *)task;
-    hdi_heat_call *h = task->h;
-    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
-    hdi_mode_sum sum;
-    if (hdi_mode_sum_make(&sum, h, a->kind, &s) >= 0) hdi_sample_points(a, NULL, &sum);
-    return hdi_scope_end(&s);
+    return h->e->status;
 }
 
 /* ---- queries of distances ---- */
@@ -22441,13 +22437,14 @@ static void hdi_distance_task(hdi_task *task, hdi_heat_call *h, const hdi_distan
     const double many = kind->many && k >= HDI_LANES_BATCH ? HDI_MODES_MANY * pow(span, 1.2) : 0;
     memset(task, 0, sizeof *task);
     task->h = h;
+    task->pairs = HDI_HAS_MODES ? hdi_distance_by_pairs : NULL;
     if (!HDI_HAS_MODES || !(kind->time > 0) || !hdi_modes_allowed(h->heat)) return;
     task->serves = (int32_t)hdi_min(hdi_max(HDI_MODES_FIRST, many), HDI_MODES_MOST / 2);
     task->depth = hdi_max(0, log(2 * span / hdi_modes_tol(h->heat)));   /* 0: tol is all there is */
 }
 
-/* The start of a query of a distance; all but pairs of vertices have positive times and the direct method only.
- * Without a time n_times is 0 or 1, and t is not read. */
+/* The start of a query of a distance. All but pairs of vertices have positive times and the direct method
+ * only. Without a time n_times is 0 or 1, and t is not read. */
 static hd_status hdi_distance_begin(hdi_heat_call *h, hd_heat *heat, const hdi_distance_row *kind,
                                     int32_t n_times, const double *t, int pairs, hd_report *report,
                                     hd_error *err) {
@@ -22462,37 +22459,37 @@ static hd_status hdi_distance_begin(hdi_heat_call *h, hd_heat *heat, const hdi_d
     return pairs && kind->time > 0 && !hdi_heat_filtered(heat) ? HD_OK : hdi_direct_only(h);
 }
 
-/* Distances to all vertices from sources. */
-static hd_status hdi_distance_answer(hd_heat *heat, hdi_distances *to, const hd_sources *sources,
+/* Runs a query for distances to all vertices from sources. */
+static hd_status hdi_distances_run(hd_heat *heat, hdi_distances *to, const hd_sources *sources,
                                      int32_t n_times, const double *t, hd_report *report, hd_error *err) {
     hdi_heat_call h;
-    if (hdi_distance_begin(&h, heat, to->kind, n_times, t, 0, report, err) < 0 || !HDI_HAS_DIFFUSION)
+    if (hdi_distance_begin(&h, heat, to->of.kind, n_times, t, 0, report, err) < 0 || !HDI_HAS_DIFFUSION)
         return hdi_heat_end(&h);
     if (!sources || (sources->count > 0 && !to->D)) hdi_missing(h.e);
     to->ld = hdi_leading(&h, to->ld);
     if (h.e->status >= 0) to->source = hdi_terms_all(sources, heat->source, 1, &h.s);
     to->k = h.e->status >= 0 ? sources->count : 0;
     if (h.e->status < 0 || to->k == 0) return hdi_heat_end(&h);
-    hdi_distance_task(&to->task, &h, to->kind, to->k);
-    to->task.pairs = HDI_HAS_MODES ? hdi_distances_by_pairs : NULL;
-    to->task.poles = hdi_distances_by_poles;
-    to->task.together = hdi_distances_together;
-    (void)hdi_heat_sparing(&h, &to->task);
+    hdi_distance_task(&to->of.task, &h, to->of.kind, to->k);
+    to->of.answer = hdi_distances_answer;
+    to->of.task.poles = hdi_distances_by_poles;
+    to->of.task.together = hdi_distances_together;
+    (void)hdi_heat_sparing(&h, &to->of.task);
     return hdi_heat_end(&h);
 }
 
 /* Runs a query for pairs whose arguments are checked. */
 static hd_status hdi_pairs_run(hdi_heat_call *h, hdi_pairs *to) {
-    hdi_distance_task(&to->task, h, to->kind, 1);
-    to->task.pairs = HDI_HAS_MODES ? hdi_pairs_by_pairs : NULL;
-    to->task.poles = hdi_pairs_by_poles;
-    return hdi_heat_sparing(h, &to->task);
+    hdi_distance_task(&to->of.task, h, to->of.kind, 1);
+    to->of.answer = hdi_pairs_answer;
+    to->of.task.poles = hdi_pairs_by_poles;
+    return hdi_heat_sparing(h, &to->of.task);
 }
 
-static hd_status hdi_sample_answer(hd_heat *heat, hdi_samples *a, const hd_sources *sources,
-                                   hd_report *report, hd_error *err) {
+static hd_status hdi_sample_run(hd_heat *heat, hdi_samples *a, const hd_sources *sources, hd_report *report,
+                                hd_error *err) {
     hdi_heat_call h;
-    if (hdi_distance_begin(&h, heat, a->kind, 1, &a->t, 0, report, err) < 0 || !HDI_HAS_DIFFUSION)
+    if (hdi_distance_begin(&h, heat, a->of.kind, 1, &a->t, 0, report, err) < 0 || !HDI_HAS_DIFFUSION)
         return hdi_heat_end(&h);
     if (a->count < 1 || a->count > heat->source->n_active)
         hdi_fail_row(h.e, HD_ERR_ARGUMENT, "sample: more points than vertices, or none", -1, -1, a->count);
@@ -22502,10 +22499,10 @@ static hd_status hdi_sample_answer(hd_heat *heat, hdi_samples *a, const hd_sourc
     a->nearest = HDI_TAKE(&h.s, double, heat->source->n);
     a->u = HDI_TAKE(&h.s, double, heat->source->n);
     if (h.e->status < 0) return hdi_heat_end(&h);
-    hdi_distance_task(&a->task, &h, a->kind, a->count + a->n_from);
-    a->task.pairs = HDI_HAS_MODES ? hdi_sample_by_pairs : NULL;
-    a->task.poles = hdi_sample_by_poles;
-    (void)hdi_heat_sparing(&h, &a->task);
+    hdi_distance_task(&a->of.task, &h, a->of.kind, a->count + a->n_from);
+    a->of.answer = hdi_sample_answer;
+    a->of.task.poles = hdi_sample_by_poles;
+    (void)hdi_heat_sparing(&h, &a->of.task);
     return hdi_heat_end(&h);
 }
 
@@ -22514,7 +22511,9 @@ static hd_status hdi_sample_answer(hd_heat *heat, hdi_samples *a, const hd_sourc
  * compare bytes with what is allocated. */
 
 /* How a query is answered: by solves, by an inversion, from L grounded, or from eigenpairs. */
-typedef enum hdi_by { HDI_BY_NOTHING, HDI_BY_SOLVES, HDI_BY_INVERSION, HDI_BY_GROUND, HDI_BY_SPECTRUM } hdi_by;
+typedef enum hdi_by {
+    HDI_BY_NOTHING, HDI_BY_SOLVES, HDI_BY_INVERSION, HDI_BY_GROUND, HDI_BY_SPECTRUM
+} hdi_by;
 
 /* What a query is. */
 typedef struct hdi_query_row {
@@ -24513,10 +24512,10 @@ HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, in
                                         hd_report *report, hd_error *err) {
     hdi_distances to;
     memset(&to, 0, sizeof to);
-    to.kind = hdi_distance_of(kind);
+    to.of.kind = hdi_distance_of(kind);
     to.D = D;
     to.ld = ldd;
-    return hdi_distance_answer(heat, &to, sources, n_times, t, report, err);
+    return hdi_distances_run(heat, &to, sources, n_times, t, report, err);
 }
 
 HEATDIFF_API hd_status hd_heat_distance_pairs(hd_heat *heat, hd_distance_kind kind, int32_t n_times,
@@ -24525,8 +24524,8 @@ HEATDIFF_API hd_status hd_heat_distance_pairs(hd_heat *heat, hd_distance_kind ki
                                               hd_error *err) {
     hdi_heat_call h;
     hdi_pairs to;
-    to.kind = hdi_distance_of(kind);
-    if (hdi_distance_begin(&h, heat, to.kind, n_times, t, 1, report, err) < 0 || !HDI_HAS_DIFFUSION)
+    to.of.kind = hdi_distance_of(kind);
+    if (hdi_distance_begin(&h, heat, to.of.kind, n_times, t, 1, report, err) < 0 || !HDI_HAS_DIFFUSION)
         return hdi_heat_end(&h);
     if (n_pairs > 0 && !d) hdi_missing(h.e);
     to.n = n_pairs;
@@ -24543,12 +24542,12 @@ HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, doub
                                       double *distance, hd_report *report, hd_error *err) {
     hdi_samples a;
     memset(&a, 0, sizeof a);
-    a.kind = hdi_distance_of(kind);
+    a.of.kind = hdi_distance_of(kind);
     a.t = t;
     a.count = count;
     a.vertex = vertex;
     a.distance = distance;
-    return hdi_sample_answer(heat, &a, sources, report, err);
+    return hdi_sample_run(heat, &a, sources, report, err);
 }
 
 HEATDIFF_API hd_status hd_heat_estimate(hd_heat *heat, hd_query query, int32_t n_times, const double *t,
