@@ -22069,7 +22069,7 @@ static hd_status hdi_distance_by_metric(const hdi_distance_query *to, int32_t gr
 static hd_status hdi_distances_from(hdi_heat_call *h, const hdi_metric *x, hdi_mode_sum *sum,
                                     const hdi_terms *from, double *d) {
     hdi_ledger ledger = x ? hdi_metric_ledger(x) : hdi_modes_ledger();
-    if (!x) hdi_mode_sum_run(sum, *from, d, &ledger, h->rep, h->heat->ctx);
+    if (HDI_HAS_MODES && sum) hdi_mode_sum_run(sum, *from, d, &ledger, h->rep, h->heat->ctx);
     else if (hdi_metric_solve(x, from, 1) >= 0) hdi_metric_distance(x, from, 0, d, h->rep, &ledger);
     if (h->e->status >= 0) hdi_ledger_close(&ledger, h->rep);
     return h->e->status;
@@ -22320,8 +22320,8 @@ static double hdi_pairs_from_sum(hdi_heat_call *h, hdi_mode_sum *sum, int32_t i,
     return out[j];
 }
 
-/* Pairs by a metric, for more vertices than columns fit, or from eigenpairs. By a metric there is a column for
- * each run of the same first vertex, and errors are those of all vertices from these. */
+/* Pairs by a metric, for more vertices than columns fit, or from eigenpairs. By a metric each run of the same
+ * first vertex has a column, and errors are those of all vertices from these. */
 static void hdi_pairs_answer(const hdi_distance_query *of, hdi_metric *x, hdi_mode_sum *sum) {
     const hdi_pairs *to = (const hdi_pairs *)of;
     hdi_heat_call *h = of->task.h;
@@ -22335,7 +22335,7 @@ static void hdi_pairs_answer(const hdi_distance_query *of, hdi_metric *x, hdi_mo
         const hdi_terms source = hdi_terms_vertex(to->i[q]);
         out[q] = 0;
         if (to->i[q] == to->j[q]) continue;
-        if (sum) out[q] = hdi_pairs_from_sum(h, sum, to->i[q], to->j[q], d, &ledger);
+        if (HDI_HAS_MODES && sum) out[q] = hdi_pairs_from_sum(h, sum, to->i[q], to->j[q], d, &ledger);
         if (sum) continue;
         if (to->i[q] != from && hdi_metric_solve(x, &source, 1) >= 0)
             hdi_metric_distance(x, &source, 0, d, h->rep, &all);
@@ -22565,11 +22565,6 @@ typedef struct hdi_estimate {
 /* Bytes of small arrays that are not listed one by one. */
 #define HDI_ESTIMATE_SMALL 4096
 
-/* Pairs by solves? */
-static int hdi_estimate_pairwise(const hdi_estimate *x) {
-    return x->query->distance && x->query->by == HDI_BY_SOLVES;
-}
-
 /* Analyses the pattern for a query that needs a factorisation. If there is no memory for that within the byte
  * limit, figures are guesses. */
 static hd_status hdi_estimate_analyse(hdi_heat_call *h) {
@@ -22585,15 +22580,16 @@ static hd_status hdi_estimate_solves(const hdi_estimate *x) {
     hdi_heat_call *h = x->h;
     hd_heat *heat = h->heat;
     const int32_t n_times = h->n_times;
+    const double *times = h->times;
     hd_cost *by = x->to->cost, *direct = by + HD_METHOD_DIRECT, most;
     hd_rational set;
     int32_t q;
     if (hdi_heat_pick(h) >= 0 && n_times > 1 && h->method < HD_METHOD_KRYLOV) {   /* one by one */
-        h->times += n_times - 1;
+        h->times = &h->t;                        /* the last */
         h->n_times = 1;
         (void)hdi_heat_pick(h);
         h->n_times = n_times;
-        h->times -= n_times - 1;
+        h->times = times;
     }
     if (hdi_over_limit(heat->ctx, h->e)) hdi_error_clear(h->e);
     if (h->e->status < 0 || (h->method != HD_METHOD_ITERATIVE && h->method != HD_METHOD_LOCAL &&
@@ -22759,7 +22755,7 @@ static void hdi_estimate_help(const hdi_estimate *x, hd_cost *c) {
 /* ---- estimates of queries ---- */
 
 /* A query at times, by poles or by what the run picks. Where few eigenpairs serve they take about as long as
- * poles, once; then poles do the other times. */
+ * poles, once; then poles do the other times, or all if there is no room for pairs. */
 static hd_status hdi_estimate_times(const hdi_estimate *x) {
     hdi_heat_call *h = x->h;
     const hd_heat *heat = h->heat;
@@ -22794,7 +22790,8 @@ static hd_status hdi_estimate_times(const hdi_estimate *x) {
 static hd_status hdi_estimate_run(hdi_heat_call *h, const hdi_query_row *query, int32_t k,
                                   hd_estimate *to) {
     const hd_heat *heat = h->heat;
-    const int32_t times = query->by == HDI_BY_INVERSION && query->distance ? query->distance->time : 1;
+    const int pairs = query->query == HD_QUERY_PAIRS;
+    const int32_t times = query->distance && !pairs ? query->distance->time : 1;
     const double n = heat->source->n;
     hd_cost *direct = to->cost + HD_METHOD_DIRECT;
     hdi_estimate x;
@@ -22812,7 +22809,7 @@ static hd_status hdi_estimate_run(hdi_heat_call *h, const hdi_query_row *query, 
         return HD_OK;
     }
     x.unit = times * heat->scale;
-    if (query->distance) hdi_distance_task(&x.task, h, query->distance, hdi_estimate_pairwise(&x) ? 1 : x.k);
+    if (query->distance) hdi_distance_task(&x.task, h, query->distance, pairs ? 1 : x.k);
     else hdi_fading_task(&x.task, h);
     if (hdi_heat_sort_times(h, x.unit / heat->scale, NULL) < 0) return h->e->status;
     for (; h->n_times > 1 && h->times[0] == 0; h->n_times--) h->times++;
@@ -22824,7 +22821,7 @@ static hd_status hdi_estimate_run(hdi_heat_call *h, const hdi_query_row *query, 
         to->cost[to->method].bytes = to->cost[to->method].bytes_most = 64 * n + HDI_ESTIMATE_SMALL;
         return HD_OK;
     }
-    if (hdi_estimate_pairwise(&x))
+    if (pairs)
         x.held = 8 * hdi_min(n * x.k, (double)HDI_PAIRS_DOUBLES) + 40.0 * x.k + 20 * n;
     return hdi_estimate_times(&x);
 }
@@ -22958,34 +22955,25 @@ static hdi_scope *hdi_geo_keep(hd_geodesic *g, hd_error *e) {
     return &g->keep;
 }
 
-/* Triangle f in its plane with the longest edge on the axis. Its area and cotangents are those of weight
- * triangles. The angles at the longest edge are acute, so that nothing is cancelled, and the height is as
- * small as it can be and keeps its relative precision. */
-static hdi_geo_face hdi_geo_frame(const hdi_mesh *mesh, int32_t f, const int32_t *row, double h,
-                                  double weight) {
-    const int32_t *v = mesh->tri + hdi_triple(f);
-    const double *cot = mesh->cot + hdi_triple(f);
-    const int apex = cot[0] <= cot[1] ? (cot[0] <= cot[2] ? 0 : 2) : cot[1] <= cot[2] ? 1 : 2;
-    const int a = (apex + 1) % 3, b = (apex + 2) % 3;
-    const double twice = 2 * mesh->area[f] / weight, length = sqrt(twice * ((cot[a] + cot[b]) / weight));
-    hdi_geo_face out;
-    out.l = length / 2 / h;
-    out.q = twice / length / 2 / h;
-    out.p = out.q * (cot[a] / weight);
-    out.v[0] = row[v[a]];
-    out.v[1] = row[v[b]];
-    out.v[2] = row[v[apex]];
-    out.copies = 1;
-    return out;
-}
-
-/* All triangles, in their order. copies [mesh->m] of intrinsic ones; NULL: 1 each. */
-static void hdi_geo_frames(hd_geodesic *g, const hdi_mesh *mesh, const int32_t *copies) {
+/* All triangles, in their order: each in its plane with the longest edge on the axis. Areas and cotangents
+ * are those of as many triangles as the copy counts. The angles at the longest edge are acute, so that nothing is
+ * cancelled, and the height is as small as it can be and keeps its relative precision. */
+static void hdi_geo_frames(hd_geodesic *g, const hdi_mesh *mesh) {
     int32_t k;
     for (k = 0; k < g->n_faces; k++) {
-        const int32_t n = copies ? copies[g->from[k]] : 1;
-        g->face[k] = hdi_geo_frame(mesh, g->from[k], g->row, g->h, n / g->copies);
-        g->face[k].copies = n;
+        const int32_t f = g->from[k], *v = mesh->tri + hdi_triple(f), n = mesh->copies ? mesh->copies[f] : 1;
+        const double *cot = mesh->cot + hdi_triple(f), weight = n / g->copies;
+        const int apex = cot[0] <= cot[1] ? (cot[0] <= cot[2] ? 0 : 2) : cot[1] <= cot[2] ? 1 : 2;
+        const int a = (apex + 1) % 3, b = (apex + 2) % 3;
+        const double twice = 2 * mesh->area[f] / weight, length = sqrt(twice * ((cot[a] + cot[b]) / weight));
+        hdi_geo_face *out = g->face + k;
+        out->l = length / 2 / g->h;
+        out->q = twice / length / 2 / g->h;
+        out->p = out->q * (cot[a] / weight);
+        out->v[0] = g->row[v[a]];
+        out->v[1] = g->row[v[b]];
+        out->v[2] = g->row[v[apex]];
+        out->copies = n;
     }
 }
 
@@ -23057,9 +23045,16 @@ static hd_status hdi_geo_masses(hd_geodesic *g, const hd_laplacian *lap, double 
     return HD_OK;
 }
 
-/* The arrays over rows, in elimination order. */
+/* The arrays over rows, in elimination order, and work of the queries. */
 static hd_status hdi_geo_rows(hd_geodesic *g, const hd_laplacian *lap, hdi_scope *own) {
     int32_t i, v;
+    g->active = HDI_TAKE(own, char, g->sym.n_super);
+    g->mark = HDI_TAKE(own, char, g->n_active);
+    g->value_ptr = HDI_TAKE(own, int64_t, (int64_t)g->n_components + 1);
+    g->x = HDI_TAKE(own, double, g->n_active);
+    g->b = HDI_TAKE(own, double, g->n_active);
+    g->r = HDI_TAKE(own, double, g->n_active);
+    g->work = HDI_TAKE(own, double, hdi_sweep_size(&g->sym, 1, 1));
     g->mass = HDI_TAKE(own, double, g->n_active);
     g->row = HDI_TAKE(own, int32_t, g->n);
     g->component = HDI_TAKE(own, int32_t, g->n_active);
@@ -23133,18 +23128,6 @@ static hd_status hdi_geo_factors(hd_geodesic *g, const hd_laplacian *lap, hd_err
     return hdi_scope_end(&s);
 }
 
-/* Work of the queries. */
-static hd_status hdi_geo_room(hd_geodesic *g, hdi_scope *own) {
-    g->active = HDI_TAKE(own, char, g->sym.n_super);
-    g->mark = HDI_TAKE(own, char, g->n_active);
-    g->value_ptr = HDI_TAKE(own, int64_t, (int64_t)g->n_components + 1);
-    g->x = HDI_TAKE(own, double, g->n_active);
-    g->b = HDI_TAKE(own, double, g->n_active);
-    g->r = HDI_TAKE(own, double, g->n_active);
-    g->work = HDI_TAKE(own, double, hdi_sweep_size(&g->sym, 1, 1));
-    return own->e->status;
-}
-
 /* Points in the place of an earlier one, which the triangles leave out, share its row. */
 static hd_status hdi_geo_coincident(hd_geodesic *g, const double *xyz, hd_error *e) {
     hdi_scope s = hdi_scope_begin(g->ctx, e);
@@ -23166,7 +23149,7 @@ static hd_status hdi_geo_store(hd_geodesic *g, const hd_laplacian *lap, const hd
             g->poly.pair = hdi_pair_renumber(lap, g->sym.perm, g->ctx, own->e);
     } else {
         g->face = HDI_TAKE(own, hdi_geo_face, g->n_faces);
-        if (g->face) hdi_geo_frames(g, mesh, mesh->copies);
+        if (g->face) hdi_geo_frames(g, mesh);
     }
     if (!g->lap) g->from = NULL;
     if (hdi_scope_end(&s) < 0 || !HDI_HAS_POINTS || !in->points || in->nbr_ptr) return own->e->status;
@@ -23199,7 +23182,7 @@ static hd_status hdi_geo_make(hd_geodesic *g, const hdi_input *in, int32_t neigh
     if (e->status >= 0 && hdi_pair_analyse(&g->sym, lap, o->ordering, perm, g->ctx, e) >= 0 &&
         hdi_geo_rows(g, lap, own) >= 0 && hdi_geo_store(g, lap, &z, in, own) >= 0) {
         hdi_scope_end(&s);                       /* the mesh is not needed any more */
-        if (hdi_geo_factors(g, lap, e) >= 0) g->ready = hdi_geo_room(g, own) >= 0;
+        g->ready = hdi_geo_factors(g, lap, e) >= 0;
     }
     if (!g->lap) hdi_laplacian_free(lap, g->ctx);
     return hdi_scope_end(&s);
@@ -23219,9 +23202,9 @@ static hd_status hdi_geo_update(hd_geodesic *g, const double *xyz, hd_error *e) 
     g->ready = 0;
     g->x = g->mass;
     g->mass = mass;
-    hdi_geo_frames(g, moving, NULL);
+    hdi_geo_frames(g, moving);
     hdi_geo_factors_free(g, g->ctx);
-    if (hdi_geo_factors(g, g->lap, e) >= 0) g->ready = 1;
+    g->ready = hdi_geo_factors(g, g->lap, e) >= 0;
     return e->status;
 }
 
@@ -23711,9 +23694,10 @@ static int hdi_geo_measure(const hd_geodesic *g, const hdi_geo_source *s, int32_
  * right-hand side in y, which is overwritten. Twice the mean points the same way. A source on the border has
  * no heat then. g->active holds the fronts that the sources touch. */
 static void hdi_geo_add_cold(const hd_geodesic *g, int k, double *x, double *y) {
-    const int64_t size = k * (int64_t)g->n_active;
+    const int64_t size = g->border == HD_GEODESIC_BORDER_MEAN ? k * (int64_t)g->n_active : 0;
     int64_t p;
     int32_t i;
+    if (size == 0) return;
     for (i = 0; i < g->n_active; i++)
         if (g->held[i]) memset(y + k * (int64_t)i, 0, (size_t)k * sizeof *y);
     hdi_geo_sweep(g, &g->cold, k, y, NULL);
@@ -23734,7 +23718,7 @@ static void hdi_geo_heat(const hd_geodesic *g, const hdi_geo_source *s, int32_t 
         hdi_geo_load(g, s + c, 1, g->r);
         heat[c] = hdi_geo_residual(g, 1, hdi_geo_column(g, k, x, c, g->x), g->r);
     }
-    if (g->border == HD_GEODESIC_BORDER_MEAN) hdi_geo_add_cold(g, k, x, y);
+    hdi_geo_add_cold(g, k, x, y);
 }
 
 /* phi is not the same at all vertices of a source. With u the heat of the source and v the heat of the values
@@ -23759,7 +23743,7 @@ static void hdi_geo_own_source(hd_geodesic *g, const hdi_geo_source *s, double l
     }
     memcpy(g->r, g->x, (size_t)g->n_active * sizeof *g->x);
     hdi_geo_sweep(g, &g->heat, 1, g->x, NULL);
-    if (g->border == HD_GEODESIC_BORDER_MEAN) hdi_geo_add_cold(g, 1, g->x, g->r);
+    hdi_geo_add_cold(g, 1, g->x, g->r);
     for (v = 0; v < g->n; v++) {
         const int32_t i = g->row[v];
         const double *value, *end;
@@ -23787,13 +23771,6 @@ static hd_status hdi_geo_answer(hd_geodesic *g, const hdi_geo_source *s, int32_t
     for (i = 0; i < g->n && s->near_by; i++)
         if (g->row[i] >= 0 && s->near_by[g->row[i]] < HUGE_VAL) s->d[i] = g->h * s->near_by[g->row[i]];
     return HD_OK;
-}
-
-static void hdi_geo_judge(hd_geodesic_report *rep, double heat, double distance, int32_t n_stages) {
-    rep->residual_heat = hdi_max(rep->residual_heat, heat);
-    rep->residual_distance = hdi_max(rep->residual_distance, distance);
-    rep->n_stages = hdi_high32(rep->n_stages, n_stages);
-    if (!(heat <= HDI_GEO_RESIDUAL) || !(distance <= HDI_GEO_RESIDUAL)) rep->status = HD_WARN_ACCURACY;
 }
 
 /* From which |u| on a column of k counts as known: u is largest at the source. */
@@ -23825,10 +23802,14 @@ static hd_status hdi_geo_solve(hd_geodesic *g, const hdi_geo_source *s, int32_t 
         memset(b + k * (int64_t)g->pin[c], 0, (size_t)k * sizeof *b);
     hdi_geo_sweep(g, &g->poisson, k, b, NULL);
     for (c = 0; c < n && rep; c++) {
-        double *rhs = k > 1 ? g->r : g->x;
+        double *rhs = k > 1 ? g->r : g->x, distance;
         if (k > 1 && *faint >> c & 1) continue;
         (void)hdi_geo_column(g, k, x, c, rhs);
-        hdi_geo_judge(rep, heat[c], hdi_geo_residual(g, 0, hdi_geo_column(g, k, b, c, g->x), rhs), n_stages);
+        distance = hdi_geo_residual(g, 0, hdi_geo_column(g, k, b, c, g->x), rhs);
+        rep->residual_heat = hdi_max(rep->residual_heat, heat[c]);
+        rep->residual_distance = hdi_max(rep->residual_distance, distance);
+        rep->n_stages = hdi_high32(rep->n_stages, n_stages);
+        if (!(heat[c] <= HDI_GEO_RESIDUAL && distance <= HDI_GEO_RESIDUAL)) rep->status = HD_WARN_ACCURACY;
     }
     return hdi_geo_answer(g, s, n, least[0], *faint, e);
 }
