@@ -22956,8 +22956,8 @@ static hdi_scope *hdi_geo_keep(hd_geodesic *g, hd_error *e) {
 }
 
 /* All triangles, in their order: each in its plane with the longest edge on the axis. Areas and cotangents
- * are those of as many triangles as the copy counts. The angles at the longest edge are acute, so that nothing is
- * cancelled, and the height is as small as it can be and keeps its relative precision. */
+ * are those of as many triangles as the copy counts. The angles at the longest edge are acute, so that
+ * nothing is cancelled, and the height is as small as it can be and keeps its relative precision. */
 static void hdi_geo_frames(hd_geodesic *g, const hdi_mesh *mesh) {
     int32_t k;
     for (k = 0; k < g->n_faces; k++) {
