@@ -15084,25 +15084,35 @@ static hd_status hdi_krylov_answer(hdi_krylov *z, int32_t r, double t, const dou
 
 /* ---- kinds of distances ---- */
 
-/* d^2 of a kind is made of a kernel at a time, or of sums over eigenpairs of 1/lambda^power. In the order of
- * hd_distance_kind; a kind without a row is unknown. All who answer for distances read these rows. */
+/* All that is known of a kind. d^2 is made of a kernel at a time, or of sums over eigenpairs of
+ * 1/lambda^power. All who answer for distances read these rows; a kind without a row is unknown. */
 typedef struct hdi_distance_row {
-    int32_t time;                /* the kernel is of t times this; 0: there is no time */
+    hd_distance_kind kind;
+    hd_query query;              /* its name for hd_heat_estimate */
+    int32_t time;                /* the kernel is of t times this; 0: L grounded serves, without a time */
     int32_t power;               /* without a time */
     int32_t mass;                /* how often B is a factor: 2 of B k B */
+    int32_t many;                /* 1: from many sources the bound by poles soon calls for eigenpairs */
+    /* The default goes to the highest degree where the bound on the error relative to the largest distance is
+     * above the first number, 0: never. The bound of degree 9 is expected at the second one times sqrt(t)/h,
+     * as seen on meshes of 1K to 50K vertices; 0: there is no such rule. */
+    double sure, expected;
 } hdi_distance_row;
 
 static const hdi_distance_row hdi_distance_rows[] = {
-    {2, 0, 0},                   /* classical */
-    {2, 0, 2},                   /* weighted */
-    {0, 1, 0},                   /* commute */
-    {0, 2, 0}                    /* biharmonic */
+    {HD_DISTANCE_CLASSICAL, HD_QUERY_DISTANCE, 2, 0, 0, 1, 3.5e-7, 4.4e-7},
+    {HD_DISTANCE_WEIGHTED, HD_QUERY_DISTANCE_WEIGHTED, 2, 0, 2, 0, 3.5e-7, 0},
+    {HD_DISTANCE_COMMUTE, HD_QUERY_DISTANCE_COMMUTE, 0, 1, 0, 0, 0, 0},
+    {HD_DISTANCE_BIHARMONIC, HD_QUERY_DISTANCE_BIHARMONIC, 0, 2, 0, 0, 0, 0}
 };
+enum { HDI_DISTANCES = sizeof hdi_distance_rows / sizeof *hdi_distance_rows };
 
 /* NULL: there is no such kind. */
 static const hdi_distance_row *hdi_distance_of(hd_distance_kind kind) {
-    const size_t n = sizeof hdi_distance_rows / sizeof *hdi_distance_rows;
-    return (size_t)kind < n ? hdi_distance_rows + kind : NULL;
+    int q;
+    for (q = 0; q < HDI_DISTANCES; q++)
+        if (hdi_distance_rows[q].kind == kind) return hdi_distance_rows + q;
+    return NULL;
 }
 
 /* ---- sources ---- */
@@ -21467,8 +21477,8 @@ static hd_status hdi_metric_ground(hdi_metric *x, hdi_scope *s) {
         const int32_t row = i < probe.k ? probe.row[i] : nearest;
         const hdi_terms at = hdi_terms_vertex(m->lap->vertex[row]);
         const double off = hdi_ground_column(m, g, &at, forms, u, x->work) * sqrt(x->f.g[row]);
-        const double seen = 4 * HDI_PROBE_SAFETY * fabs(u[row] - value[row]) + off;
-        *x->rounding = hdi_max(*x->rounding, hdi_quotient(seen, value[row]));
+        const double seen = hdi_probe_seen(u[row], off / 4, value[row], value[row]);
+        *x->rounding = hdi_max(*x->rounding, 4 * seen);
     }
     for (i = 0; i < n; i++)                      /* rounding has left nothing of a positive value */
         if (!g->held[i] && !(value[i] > 0)) *x->rounding = HUGE_VAL;
@@ -21732,50 +21742,6 @@ static hdi_ledger hdi_metric_ledger(const hdi_metric *x) {
                             HD_EVIDENCE_MEASURED, 1);
 }
 
-/* A query for distances of a kind from k sources to all vertices. */
-typedef struct hdi_distances {
-    hdi_task task;
-    const hdi_distance_row *kind;
-    int32_t k;
-    const hdi_terms *source;     /* [k] */
-    double *D;                   /* source r at time q: column r n_times + q */
-    size_t ld;
-} hdi_distances;
-
-static double *hdi_distances_at(const hdi_distances *to, int32_t r, int32_t q) {
-    const size_t n_times = (size_t)hdi_high32(to->task.h->ask.n_times, 1);
-    return to->D + ((size_t)r * n_times + (size_t)q) * to->ld;
-}
-
-/* The default goes to the highest degree where the bound on the error relative to the largest distance is
- * above the first number. The bound of degree 9 is expected at the second one times sqrt(t)/h, as seen on
- * meshes of 1K to 50K vertices. */
-#define HDI_DISTANCE_SURE 3.5e-7
-#define HDI_DISTANCE_EXPECTED 4.4e-7
-
-/* All sources by a metric: the times of its functions are columns of the query, whose reports are in one, or
- * NULL for the time under way. */
-static hd_status hdi_distances_of(const hdi_distances *to, hdi_metric *x, const int32_t *column,
-                                  hd_report *one) {
-    hdi_heat_call *h = to->task.h;
-    int32_t r, k, i, q;
-    for (r = 0; r < to->k && h->e->status >= 0; r += k) {
-        k = hdi_low32(to->k - r, x->group);
-        if (hdi_metric_solve(x, to->source + r, k) < 0) break;
-        for (q = 0; q < hdi_high32(x->in.count, 1); q++) {
-            const int32_t at = column ? column[q] : h->now;
-            hd_report *rep = one ? one + at : h->rep;
-            hdi_metric_at(x, q);
-            for (i = 0; i < k; i++) {
-                hdi_ledger ledger = hdi_metric_ledger(x);
-                hdi_metric_distance(x, to->source + r + i, i, hdi_distances_at(to, r + i, at), rep, &ledger);
-                hdi_ledger_close(&ledger, rep);
-            }
-        }
-    }
-    return h->e->status;
-}
-
 /* ---- distances from the smallest eigenpairs ---- */
 /* At large t all vertices look alike, and f_ss - 2 f_sv + f_vv cancels. There few eigenpairs are left, and
  *     d_t(x,y)^2 = sum_i exp(-2 t lambda_i) (x_i(x) - x_i(y))^2 = |K_t B^-1 (e_x - e_y)|^2
@@ -21812,30 +21778,25 @@ static void hdi_mode_sum_from(hdi_mode_sum *a, hdi_terms source) {
             a->constant_off += (source.n + 1) * DBL_EPSILON * fabs(by) /
                 sqrt(a->lap->component_mass[a->lap->component[row]]);
     }
+    if (a->own >= 0 && !weighted) a->share[a->own] = 1;
 }
 
-/* The part of d that does not decay: that of the constants. */
+/* The part of d that does not decay: that of the constants. Within a component of the source B 1 is compared
+ * in two doubles. */
 static double hdi_modes_constant(const hdi_mode_sum *a, int32_t v) {
     const hd_laplacian *lap = a->lap;
-    const int32_t j = lap->row[v], n = lap->n;
-    const int32_t ci = a->own, cj = j < 0 ? -1 : lap->component[j];
-    const double *one = a->sums.of->one;
-    double bi = 0, bj = 0, sum = 0;
+    const int32_t row = lap->row[v], own = row < 0 ? -1 : lap->component[row], mass = a->sums.mass;
+    const double *one = a->sums.of->one, *rest = one + lap->n;
+    double sum = 0;
     int32_t c;
-    if (a->sums.bank.first == 0) return 0;
-    for (c = 0; c < lap->n_components && ci < 0; c++) {
-        const double by = c == cj ? (a->sums.mass ? one[v] : 1) : 0;
-        sum = hdi_pythag(sum, (a->share[c] - by) / sqrt(lap->component_mass[c]));
+    if (own >= 0 && own == a->own && !mass) return 0;
+    for (c = 0; c < lap->n_components && a->sums.bank.first > 0; c++) {
+        const double by = c == own ? (mass ? one[v] : 1) : 0;
+        const double off = own >= 0 && own == a->own ? (c == own ? a->at - one[v] + (a->rest - rest[v]) : 0)
+                                                     : a->share[c] - by;
+        sum = hdi_pythag(sum, off / sqrt(lap->component_mass[c]));
     }
-    if (ci < 0) return sum;
-    if (ci == cj) {
-        if (!a->sums.mass) return 0;
-        bi = a->at - one[v] + (a->rest - one[n + v]);
-        return fabs(bi) / sqrt(lap->component_mass[ci]);
-    }
-    bi = (a->sums.mass ? a->at : 1) / sqrt(lap->component_mass[ci]);
-    if (cj >= 0) bj = (a->sums.mass ? one[v] : 1) / sqrt(lap->component_mass[cj]);
-    return hdi_pythag(bi, bj);
+    return sum;
 }
 
 /* Makes the distance to v of the part that decays, and notes its bound. */
@@ -21875,45 +21836,109 @@ static hd_status hdi_mode_sum_make(hdi_mode_sum *a, hdi_heat_call *h, const hdi_
     return h->e->status;
 }
 
+/* ---- both ways ---- */
+
+/* A query for distances of a kind. Those below begin with this struct. */
+typedef struct hdi_distance_query hdi_distance_query;
+struct hdi_distance_query {
+    hdi_task task;
+    const hdi_distance_row *kind;
+    /* Answers the time under way by a metric or, where that is NULL, from eigenpairs. */
+    void (*answer)(const hdi_distance_query *to, hdi_metric *x, hdi_mode_sum *sum);
+};
+
+/* The answer from the eigenpairs that are there. */
+static hd_status hdi_distance_by_pairs(hdi_task *task) {
+    const hdi_distance_query *to = (const hdi_distance_query *)task;
+    hdi_scope s = hdi_scope_begin(task->h->heat->ctx, task->h->e);
+    hdi_mode_sum sum;
+    if (hdi_mode_sum_make(&sum, task->h, to->kind, &s) >= 0) to->answer(to, NULL, &sum);
+    return hdi_scope_end(&s);
+}
+
+/* The answer by poles, for so many sources at the same time, as in hdi_metric_make. */
+static hd_status hdi_distance_by_metric(const hdi_distance_query *to, int32_t group, int bounded) {
+    hdi_scope s = hdi_scope_begin(to->task.h->heat->ctx, to->task.h->e);
+    hdi_metric x;
+    if (hdi_metric_make(to->task.h, to->kind, group, bounded, &x, &s) >= 0) to->answer(to, &x, NULL);
+    return hdi_scope_end(&s);
+}
+
+/* Distances from one source, by a metric or, where that is NULL, from eigenpairs. */
+static hd_status hdi_distances_from(hdi_heat_call *h, const hdi_metric *x, hdi_mode_sum *sum,
+                                    const hdi_terms *from, double *d) {
+    hdi_ledger ledger = x ? hdi_metric_ledger(x) : hdi_modes_ledger();
+    if (HDI_HAS_MODES && sum) hdi_mode_sum_run(sum, *from, d, &ledger, h->rep, h->heat->ctx);
+    else if (hdi_metric_solve(x, from, 1) >= 0) hdi_metric_distance(x, from, 0, d, h->rep, &ledger);
+    if (h->e->status >= 0) hdi_ledger_close(&ledger, h->rep);
+    return h->e->status;
+}
+
 /* ---- distances to all vertices ---- */
+
+/* A query for distances from k sources to all vertices. */
+typedef struct hdi_distances {
+    hdi_distance_query of;
+    int32_t k;
+    const hdi_terms *source;     /* [k] */
+    double *D;                   /* source r at time q: column r n_times + q */
+    size_t ld;
+} hdi_distances;
+
+static double *hdi_distances_at(const hdi_distances *to, int32_t r, int32_t q) {
+    const size_t n_times = (size_t)hdi_high32(to->of.task.h->ask.n_times, 1);
+    return to->D + ((size_t)r * n_times + (size_t)q) * to->ld;
+}
+
+/* All sources by a metric: the times of its functions are columns of the query, whose reports are in one;
+ * NULL: it is the call's. */
+static hd_status hdi_distances_of(const hdi_distances *to, hdi_metric *x, const int32_t *column,
+                                  hd_report *one) {
+    hdi_heat_call *h = to->of.task.h;
+    int32_t r, k, i, q;
+    for (r = 0; r < to->k && h->e->status >= 0; r += k) {
+        k = hdi_low32(to->k - r, x->group);
+        if (hdi_metric_solve(x, to->source + r, k) < 0) break;
+        for (q = 0; q < hdi_high32(x->in.count, 1); q++) {
+            const int32_t at = column[q];
+            hd_report *rep = one ? one + at : h->rep;
+            hdi_metric_at(x, q);
+            for (i = 0; i < k; i++) {
+                hdi_ledger ledger = hdi_metric_ledger(x);
+                hdi_metric_distance(x, to->source + r + i, i, hdi_distances_at(to, r + i, at), rep, &ledger);
+                hdi_ledger_close(&ledger, rep);
+            }
+        }
+    }
+    return h->e->status;
+}
+
+static void hdi_distances_answer(const hdi_distance_query *of, hdi_metric *x, hdi_mode_sum *sum) {
+    const hdi_distances *to = (const hdi_distances *)of;
+    hdi_heat_call *h = of->task.h;
+    int32_t r;
+    if (x) (void)hdi_distances_of(to, x, &h->now, NULL);
+    for (r = 0; r < to->k && sum && h->e->status >= 0; r++)
+        if (hdi_progress(h->heat->ctx, "solve", (double)r / to->k, h->e) >= 0)
+            (void)hdi_distances_from(h, NULL, sum, to->source + r, hdi_distances_at(to, r, h->now));
+}
 
 /* Is the bound of degree 9 sure to be too large at time t? */
 static int hdi_distance_sure(const hd_heat *heat, const hdi_distance_row *kind, double t) {
-    return kind->mass == 0 && heat->source->h > 0 &&
-           HDI_DISTANCE_EXPECTED * sqrt(t) > HDI_DISTANCE_SURE * heat->source->h;
+    return heat->source->h > 0 && kind->expected * sqrt(t) > kind->sure * heat->source->h;
 }
 
 /* Distances at the time under way by poles. Where much is sure to cancel, the highest degree begins. */
 static hd_status hdi_distances_by_poles(hdi_task *task) {
     const hdi_distances *to = (const hdi_distances *)task;
+    const hdi_distance_row *kind = to->of.kind;
     hdi_heat_call *h = task->h;
-    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
-    hdi_metric x;
     task->excess = 2;
-    if (to->kind->time > 0 && h->degree == 0 && hdi_degree_open(h->heat) &&
-        hdi_distance_sure(h->heat, to->kind, h->ask.t[h->now])) return HD_OK;
-    if (hdi_metric_make(h, to->kind, hdi_low32(to->k, HDI_LANES), 1, &x, &s) >= 0)
-        (void)hdi_distances_of(to, &x, NULL, NULL);
-    task->excess = to->kind->time > 0 ? h->rep->error_rational / HDI_DISTANCE_SURE : 0;
-    return hdi_scope_end(&s);
-}
-
-/* Distances of all sources at the time under way from the eigenpairs that are there. */
-static hd_status hdi_distances_by_pairs(hdi_task *task) {
-    const hdi_distances *to = (const hdi_distances *)task;
-    hdi_heat_call *h = task->h;
-    hd_heat *heat = h->heat;
-    hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
-    hdi_mode_sum sum;
-    int32_t r;
-    if (hdi_mode_sum_make(&sum, h, to->kind, &s) < 0) return hdi_scope_end(&s);
-    for (r = 0; r < to->k; r++) {
-        hdi_ledger ledger = hdi_modes_ledger();
-        if (hdi_progress(heat->ctx, "solve", (double)r / to->k, h->e) < 0) break;
-        hdi_mode_sum_run(&sum, to->source[r], hdi_distances_at(to, r, h->now), &ledger, h->rep, heat->ctx);
-        hdi_ledger_close(&ledger, h->rep);
-    }
-    return hdi_scope_end(&s);
+    if (kind->expected > 0 && h->degree == 0 && hdi_degree_open(h->heat) &&
+        hdi_distance_sure(h->heat, kind, h->ask.t[h->now])) return HD_OK;
+    (void)hdi_distance_by_metric(&to->of, hdi_low32(to->k, HDI_LANES), 1);
+    task->excess = kind->sure > 0 ? h->rep->error_rational / kind->sure : 0;
+    return h->e->status;
 }
 
 /* Distances at times q0 to q1 - 1 of the call, sorted, by one set of poles. */
@@ -21925,8 +21950,8 @@ static hd_status hdi_distances_window(const hdi_task *task, int32_t q0, int32_t 
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
     hdi_metric x;
     int32_t q;
-    if (hdi_metric_take(&x, h, to->kind, count, &s) >= 0 &&
-        hdi_window_take(&x.in, h, q0, q1, hdi_metric_wanted(h->heat, to->kind), HDI_SHARED_DISTANCE_TOL,
+    if (hdi_metric_take(&x, h, to->of.kind, count, &s) >= 0 &&
+        hdi_window_take(&x.in, h, q0, q1, hdi_metric_wanted(h->heat, to->of.kind), HDI_SHARED_DISTANCE_TOL,
                         &s) >= 0 &&
         hdi_metric_invert(&x, &s) >= 0 && hdi_metric_room(&x, group, 1, &s) >= 0) {
         for (q = 0; q < count; q++) one[column[q]] = *h->rep;
@@ -21937,7 +21962,7 @@ static hd_status hdi_distances_window(const hdi_task *task, int32_t q0, int32_t 
 
 /* With shared poles, where that is cheaper than one by one. */
 static hd_status hdi_distances_together(hdi_task *task, char *done, hd_report *one) {
-    const int32_t times = ((const hdi_distances *)task)->kind->time;
+    const int32_t times = ((const hdi_distances *)task)->of.kind->time;
     hdi_heat_call *h = task->h;
     hd_heat *heat = h->heat;
     if (!hdi_degree_open(heat) || hdi_heat_analysed(heat, h->e) < 0 ||
@@ -21952,8 +21977,7 @@ static hd_status hdi_distances_together(hdi_task *task, char *done, hd_report *o
 
 /* A query for distances of pairs of vertices. */
 typedef struct hdi_pairs {
-    hdi_task task;
-    const hdi_distance_row *kind;
+    hdi_distance_query of;
     int64_t n;
     const int32_t *i, *j;
     double *d;                   /* [n] for each time */
@@ -21961,32 +21985,20 @@ typedef struct hdi_pairs {
 
 /* Some of the pairs, and columns of their vertices. */
 typedef struct hdi_pairs_part {
-    int64_t n;
-    const int32_t *i, *j;
-    double *d;
-    int32_t n_vertex, *vertex;   /* distinct ones, ascending */
-    int32_t *place;              /* [2 n] which of them each pair's two are */
-    double *U, *size;            /* their columns, and the norms of B of these */
+    int64_t begin, end;
+    int32_t n_vertex, *place;    /* [n] which of the columns each vertex has, -1: none */
+    double *U, *size;            /* the columns, and their norms of B */
     double *work;                /* [2 n_active] */
 } hdi_pairs_part;
 
 /* Finds the vertices. */
-static hd_status hdi_pairs_vertices(hdi_pairs_part *x, hdi_scope *s) {
-    hdi_pair *order = HDI_TAKE(s, hdi_pair, 2 * (uint64_t)x->n);
+static void hdi_pairs_vertices(const hdi_pairs *to, hdi_pairs_part *x, int32_t n) {
     int64_t q;
-    x->vertex = HDI_TAKE(s, int32_t, 2 * (uint64_t)x->n);
-    x->place = HDI_TAKE(s, int32_t, 2 * (uint64_t)x->n);
-    if (s->e->status < 0) return s->e->status;
-    for (q = 0; q < 2 * x->n; q++) {
-        order[q].key = (uint64_t)(q % 2 ? x->j[q / 2] : x->i[q / 2]);
-        order[q].id = q;
-    }
-    hdi_sort_pairs(order, 2 * x->n);
-    for (q = 0, x->n_vertex = 0; q < 2 * x->n; q++) {
-        if (q == 0 || order[q].key != order[q - 1].key) x->vertex[x->n_vertex++] = (int32_t)order[q].key;
-        x->place[order[q].id] = x->n_vertex - 1;
-    }
-    return HD_OK;
+    int32_t v;
+    hdi_fill_i32(x->place, n, -1);
+    for (q = x->begin; q < x->end; q++) x->place[to->i[q]] = x->place[to->j[q]] = 0;
+    for (v = 0, x->n_vertex = 0; v < n; v++)
+        if (x->place[v] == 0) x->place[v] = x->n_vertex++;
 }
 
 /* |u - v|_B of fields on vertices, whose squares may leave the range of doubles; v NULL: |u|_B. work
@@ -22000,15 +22012,6 @@ static double hdi_vertex_norm(const hd_laplacian *lap, const double *u, const do
     return most * sqrt(hdi_max(0, hdi_b_norm2(lap, work, work + lap->n_active)));
 }
 
-/* Distributes a bound that stands in rounding over all parts, in the ratio of another bound. */
-static void hdi_parts_share(hdi_parts *to, const hdi_parts *as) {
-    const double all = to->rounding, sum = hdi_parts_sum(as);
-    if (!(sum > 0 && hdi_finite(sum) && hdi_finite(all))) return;
-    to->rational = all * (as->rational / sum);
-    to->solver = all * (as->solver / sum);
-    to->rounding = all * (as->rounding / sum);
-}
-
 /* The error of the column of v, whose size is given, in the norm of B: relative errors are below bound. That
  * of a vertex without a row is exact. */
 static double hdi_pairs_column_off(const hd_laplacian *lap, int32_t v, double size, double bound) {
@@ -22019,48 +22022,53 @@ static double hdi_pairs_column_off(const hd_laplacian *lap, int32_t v, double si
 /* Most doubles of columns that are held at the same time: half a GiB. */
 #define HDI_PAIRS_DOUBLES (INT64_C(1) << 26)
 
-/* Distances |K_t B^-1 (e_i - e_j)|_B from the columns, whose errors are the only ones. rep: of these. */
-static void hdi_pairs_note(const hd_heat *heat, const hdi_pairs_part *x, hd_report *rep, hdi_ledger *all) {
-    const hd_laplacian *lap = heat->source;
+/* Distances |K_t B^-1 (e_i - e_j)|_B from the columns, whose errors are the only ones. The parts of the bound
+ * are in the ratio of those of the columns. rep: of these. */
+static void hdi_pairs_note(const hdi_pairs *to, const hdi_pairs_part *x, hd_report *rep, hdi_ledger *all) {
+    const hd_laplacian *lap = to->of.task.h->heat->source;
     const size_t n = (size_t)lap->n;
-    hdi_ledger of = hdi_ledger_begin(rep->evidence_rational, rep->evidence_solver, rep->evidence_rounding, 1);
-    hdi_parts part = {0, 0, 0}, share;
+    double *d = to->d + to->n * to->of.task.h->now, sum;
+    hdi_parts share;
     int64_t q;
     share.rational = rep->error_rational + rep->error_local;
     share.solver = rep->error_solver;
     share.rounding = rep->error_rounding;
-    for (q = 0; q < x->n; q++) {
-        const int32_t i = x->place[2 * q], j = x->place[2 * q + 1];
-        x->d[q] = 0;
-        if (x->i[q] == x->j[q]) continue;
-        x->d[q] = hdi_vertex_norm(lap, x->U + n * (size_t)i, x->U + n * (size_t)j, x->work);
-        part.rounding = hdi_pairs_column_off(lap, x->i[q], x->size[i], rep->error_bound_b) +
-                        hdi_pairs_column_off(lap, x->j[q], x->size[j], rep->error_bound_b) +
+    sum = hdi_parts_sum(&share);
+    for (q = x->begin; q < x->end; q++) {
+        const int32_t i = x->place[to->i[q]], j = x->place[to->j[q]];
+        hdi_parts part = {0, 0, 0};
+        d[q] = 0;
+        if (i == j) continue;
+        d[q] = hdi_vertex_norm(lap, x->U + n * (size_t)i, x->U + n * (size_t)j, x->work);
+        part.rounding = hdi_pairs_column_off(lap, to->i[q], x->size[i], rep->error_bound_b) +
+                        hdi_pairs_column_off(lap, to->j[q], x->size[j], rep->error_bound_b) +
                         4 * DBL_EPSILON * (x->size[i] + x->size[j]);
-        rep->n_lost += x->d[q] < 10 * part.rounding;
-        hdi_ledger_note(&of, x->d[q], part);
+        rep->n_lost += d[q] < 10 * part.rounding;
+        if (sum > 0 && hdi_finite(sum) && hdi_finite(part.rounding))
+            part = hdi_parts_scale(part.rounding / sum, share);
+        hdi_ledger_note(all, d[q], part);
     }
-    hdi_parts_share(&of.off, &share);
-    hdi_ledger_join(all, &of);
 }
 
 /* Some pairs at the time under way from columns. */
-static hd_status hdi_pairs_some(hdi_heat_call *h, const hdi_pairs *to, hdi_pairs_part *x, hd_report *rep,
-                                hdi_ledger *all) {
-    const hd_kernel kernel = to->kind->mass > 0 ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
-    const hd_heat *heat = h->heat;
-    const uint64_t n = (uint64_t)heat->source->n;
-    hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
-    hdi_heat_call c;
+static hd_status hdi_pairs_some(const hdi_pairs *to, hdi_pairs_part *x, hd_report *rep, hdi_ledger *all) {
+    const hd_kernel kernel = to->of.kind->mass > 0 ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
+    hdi_heat_call *h = to->of.task.h, c;
+    const hd_laplacian *lap = h->heat->source;
+    const uint64_t n = (uint64_t)lap->n;
+    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
     hdi_terms *terms;
-    int32_t q;
-    if (hdi_pairs_vertices(x, &s) < 0) return hdi_scope_end(&s);
+    int32_t v;
+    x->place = HDI_TAKE(&s, int32_t, n);
+    if (!x->place) return hdi_scope_end(&s);
+    hdi_pairs_vertices(to, x, lap->n);
     x->work = HDI_TAKE(&s, double, 2 * n + 1);
     x->U = HDI_TAKE(&s, double, n * (uint64_t)x->n_vertex);
     x->size = HDI_TAKE(&s, double, x->n_vertex);
     terms = HDI_TAKE(&s, hdi_terms, x->n_vertex);
     if (h->e->status < 0) return hdi_scope_end(&s);
-    for (q = 0; q < x->n_vertex; q++) terms[q] = hdi_terms_vertex(x->vertex[q]);
+    for (v = 0; v < lap->n; v++)
+        if (x->place[v] >= 0) terms[x->place[v]] = hdi_terms_vertex(v);
     if (hdi_kernel_begin(&c, h->heat, kernel, rep, NULL) >= 0 &&
         hdi_times_check(&c, 1, h->ask.t + h->now, 0) >= 0) {
         c.ask.k = x->n_vertex;
@@ -22070,27 +22078,23 @@ static hd_status hdi_pairs_some(hdi_heat_call *h, const hdi_pairs *to, hdi_pairs
         c.degree = h->degree;
     }
     if (hdi_heat_run(&c) < 0) *h->e = rep->error;
-    for (q = 0; q < x->n_vertex && h->e->status >= 0; q++)
-        x->size[q] = hdi_vertex_norm(heat->source, x->U + n * (uint64_t)q, NULL, x->work);
-    if (h->e->status >= 0) hdi_pairs_note(heat, x, rep, all);
+    for (v = 0; v < x->n_vertex && h->e->status >= 0; v++)
+        x->size[v] = hdi_vertex_norm(lap, x->U + n * (uint64_t)v, NULL, x->work);
+    if (h->e->status >= 0) hdi_pairs_note(to, x, rep, all);
     return hdi_scope_end(&s);
 }
 
 /* All pairs at the time under way, `most` at once. */
 static hd_status hdi_pairs_columns(const hdi_pairs *to, int64_t most) {
-    hdi_heat_call *h = to->task.h;
+    hdi_heat_call *h = to->of.task.h;
     hdi_ledger all = hdi_ledger_begin(HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, 1);
     hd_report one, sum;
     hdi_pairs_part x;
-    int64_t p;
-    for (p = 0; p < to->n; p += x.n) {
-        x.i = to->i + p;
-        x.j = to->j + p;
-        x.d = to->d + to->n * h->now + p;
-        x.n = hdi_least(to->n - p, most);
-        if (hdi_pairs_some(h, to, &x, &one, &all) < 0) return h->e->status;
-        if (p == 0) sum = one;
-        else hdi_report_merge(&sum, &one);
+    memset(&sum, 0, sizeof sum);
+    for (x.begin = 0; x.begin < to->n; x.begin = x.end) {
+        x.end = hdi_least(to->n, x.begin + most);
+        if (hdi_pairs_some(to, &x, &one, &all) < 0) return h->e->status;
+        hdi_report_merge(&sum, &one);
     }
     sum.error_bound = sum.error_rational = sum.error_solver = sum.error_rounding = 0;
     sum.error_relative = sum.smallest = sum.error_local = 0;
@@ -22105,33 +22109,43 @@ static hd_status hdi_pairs_columns(const hdi_pairs *to, int64_t most) {
     return h->e->status;
 }
 
-/* Distances from columns and the diagonal, for more vertices than columns fit. Errors are those of all
- * vertices from the same ones. */
-static hd_status hdi_pairs_one_by_one(const hdi_pairs *to) {
-    hdi_heat_call *h = to->task.h;
+/* A pair from eigenpairs. out [n] */
+static double hdi_pairs_from_sum(hdi_heat_call *h, hdi_mode_sum *sum, int32_t i, int32_t j, double *out,
+                                 hdi_ledger *ledger) {
+    sum->sums.column = out;
+    hdi_mode_sum_from(sum, hdi_terms_vertex(i));
+    hdi_spec_sum_task(&sum->sums, j, (int64_t)j + 1);
+    hdi_mode_sum_note(sum, j, ledger, h->rep);
+    return out[j];
+}
+
+/* Pairs by a metric, for more vertices than columns fit, or from eigenpairs. By a metric each run of the same
+ * first vertex has a column, and errors are those of all vertices from these. */
+static void hdi_pairs_answer(const hdi_distance_query *of, hdi_metric *x, hdi_mode_sum *sum) {
+    const hdi_pairs *to = (const hdi_pairs *)of;
+    hdi_heat_call *h = of->task.h;
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
     double *d = HDI_TAKE(&s, double, h->heat->source->n), *out = to->d + to->n * h->now;
-    hdi_ledger ledger, all;
-    hdi_metric x;
+    const hdi_parts none = {0, 0, 0};
+    hdi_ledger ledger = sum ? hdi_modes_ledger() : hdi_metric_ledger(x), all = ledger;
+    int32_t from = -1;
     int64_t q;
-    if (h->e->status < 0 || hdi_metric_make(h, to->kind, 1, 0, &x, &s) < 0) return hdi_scope_end(&s);
-    ledger = all = hdi_metric_ledger(&x);
-    for (q = 0; q < to->n; q++) {                /* a column for each run of the same first vertex */
-        const hdi_terms from = hdi_terms_vertex(to->i[q]);
-        if (q == 0 || to->i[q] != to->i[q - 1]) {
-            if (hdi_metric_solve(&x, &from, 1) < 0) break;
-            hdi_metric_distance(&x, &from, 0, d, h->rep, &all);
-        }
+    for (q = 0; q < to->n && h->e->status >= 0; q++) {
+        const hdi_terms source = hdi_terms_vertex(to->i[q]);
+        out[q] = 0;
+        if (to->i[q] == to->j[q]) continue;
+        if (HDI_HAS_MODES && sum) out[q] = hdi_pairs_from_sum(h, sum, to->i[q], to->j[q], d, &ledger);
+        if (sum) continue;
+        if (to->i[q] != from && hdi_metric_solve(x, &source, 1) >= 0)
+            hdi_metric_distance(x, &source, 0, d, h->rep, &all);
+        from = to->i[q];
         out[q] = d[to->j[q]];
-        if (!hdi_finite(out[q])) continue;
-        ledger.largest = hdi_max(ledger.largest, out[q]);
-        if (out[q] > 0) ledger.smallest = hdi_min(ledger.smallest, out[q]);
-        ledger.n_values += to->i[q] != to->j[q];
+        if (hdi_finite(out[q])) hdi_ledger_note(&ledger, out[q], none);
     }
-    ledger.off = all.off;
-    ledger.relative = all.relative;
+    if (x) ledger.off = all.off;
+    if (x) ledger.relative = all.relative;
     if (h->e->status >= 0) hdi_ledger_close(&ledger, h->rep);
-    return hdi_scope_end(&s);
+    (void)hdi_scope_end(&s);
 }
 
 /* Distances at the time under way from columns of all vertices of the pairs or, where these have no room,
@@ -22142,41 +22156,20 @@ static hd_status hdi_pairs_by_poles(hdi_task *task) {
     hd_heat *heat = h->heat;
     const int64_t room = HDI_PAIRS_DOUBLES / heat->source->n;
     hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
-    hdi_pairs_part all = {to->n, to->i, to->j, NULL, 0, NULL, NULL, NULL, NULL, NULL};
+    hdi_pairs_part all = {0, to->n, 0, NULL, NULL, NULL, NULL};
     int64_t most = to->n;
-    int fits = to->kind->time > 0 && !hdi_heat_filtered(heat);
-    if (fits && 2 * to->n > room && hdi_pairs_vertices(&all, &s) >= 0 && all.n_vertex > room) {
+    int fits = to->of.kind->time > 0 && !hdi_heat_filtered(heat);
+    if (fits && 2 * to->n > room) all.place = HDI_TAKE(&s, int32_t, heat->source->n);
+    if (all.place) hdi_pairs_vertices(to, &all, heat->source->n);
+    if (all.n_vertex > room) {
         fits = hdi_direct_barred(heat);
         most = hdi_high32(1, (int32_t)(room / 2));
     }
     if (hdi_scope_end(&s) < 0) return h->e->status;
-    if (!fits) return hdi_pairs_one_by_one(to);
+    if (!fits) return hdi_distance_by_metric(&to->of, 1, 0);
     if (hdi_pairs_columns(to, most) >= 0 && h->rep->method == HD_METHOD_DIRECT)
         task->excess = h->rep->error_bound / HDI_MODES_HELP;
     return h->e->status;
-}
-
-/* Distances of the pairs at the time under way from the eigenpairs that are there. */
-static hd_status hdi_pairs_by_pairs(hdi_task *task) {
-    const hdi_pairs *to = (const hdi_pairs *)task;
-    hdi_heat_call *h = task->h;
-    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
-    double *work = HDI_TAKE(&s, double, h->heat->source->n), *d = to->d + to->n * h->now;
-    hdi_ledger ledger = hdi_modes_ledger();
-    hdi_mode_sum sum;
-    int64_t q;
-    if (!work || hdi_mode_sum_make(&sum, h, to->kind, &s) < 0) return hdi_scope_end(&s);
-    sum.sums.column = work;
-    for (q = 0; q < to->n; q++) {
-        d[q] = 0;
-        if (to->i[q] == to->j[q]) continue;
-        hdi_mode_sum_from(&sum, hdi_terms_vertex(to->i[q]));
-        hdi_spec_sum_task(&sum.sums, to->j[q], (int64_t)to->j[q] + 1);
-        hdi_mode_sum_note(&sum, to->j[q], &ledger, h->rep);
-        d[q] = work[to->j[q]];
-    }
-    hdi_ledger_close(&ledger, h->rep);
-    return hdi_scope_end(&s);
 }
 
 /* ---- farthest points ---- */
@@ -22189,35 +22182,21 @@ static int32_t hdi_sample_next(const hd_laplacian *lap, const double *nearest) {
     return best;
 }
 
-/* A query for farthest points, and where distances to the last one come from: a metric, or else
- * eigenpairs. */
+/* A query for farthest points. */
 typedef struct hdi_samples {
-    hdi_task task;
-    const hdi_distance_row *kind;
+    hdi_distance_query of;
     double t;
     int32_t count, *vertex;
     int32_t n_from;              /* sources that come before all points */
     const hdi_terms *terms;      /* [n_from] */
     double *distance, *nearest, *u;
-    const hdi_metric *x;
-    hdi_mode_sum *sum;
 } hdi_samples;
-
-/* Distances from a source into u. */
-static hd_status hdi_sample_distances(const hdi_samples *a, const hdi_terms *from) {
-    hdi_heat_call *h = a->task.h;
-    hdi_ledger ledger = a->sum ? hdi_modes_ledger() : hdi_metric_ledger(a->x);
-    if (a->sum) hdi_mode_sum_run(a->sum, *from, a->u, &ledger, h->rep, h->heat->ctx);
-    else if (hdi_metric_solve(a->x, from, 1) >= 0)
-        hdi_metric_distance(a->x, from, 0, a->u, h->rep, &ledger);
-    if (h->e->status >= 0) hdi_ledger_close(&ledger, h->rep);
-    return h->e->status;
-}
 
 /* All points, each the one that is farthest from those before it. This function is based on
  *   T. Gonzalez, Clustering to minimize the maximum intercluster distance, 1985 */
-static hd_status hdi_sample_points(const hdi_samples *a) {
-    hdi_heat_call *h = a->task.h;
+static void hdi_sample_answer(const hdi_distance_query *of, hdi_metric *x, hdi_mode_sum *sum) {
+    const hdi_samples *a = (const hdi_samples *)of;
+    hdi_heat_call *h = of->task.h;
     const hd_laplacian *lap = h->heat->source;
     int32_t *vertex = a->vertex, q, v;
     for (v = 0; v < lap->n; v++) a->nearest[v] = HUGE_VAL;
@@ -22231,36 +22210,20 @@ static hd_status hdi_sample_points(const hdi_samples *a) {
         if (q + 1 == a->count || hdi_progress(h->heat->ctx, "sample", hdi_max(0, q) / a->count, h->e) < 0)
             break;
         from = q < 0 ? a->terms[a->n_from + q] : hdi_terms_vertex(vertex[q]);
-        if (hdi_sample_distances(a, &from) < 0) break;
+        if (hdi_distances_from(h, x, sum, &from, a->u) < 0) break;
         for (v = 0; v < lap->n; v++) a->nearest[v] = hdi_min(a->nearest[v], a->u[v]);
         if (!from.weight) a->nearest[from.one] = -1;     /* never again, even when no distance is left */
     }
-    return h->e->status;
 }
 
 /* The points by distances from poles. */
 static hd_status hdi_sample_by_poles(hdi_task *task) {
-    hdi_samples *a = (hdi_samples *)task;
+    const hdi_distance_query *of = (const hdi_distance_query *)task;
     hdi_heat_call *h = task->h;
-    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
-    hdi_metric x;
-    a->x = &x;
-    a->sum = NULL;
-    h->degree = a->kind->time > 0 && hdi_degree_open(h->heat) ? HDI_RAT_KERNEL_MAX : 0;
-    if (hdi_metric_make(h, a->kind, 1, 0, &x, &s) >= 0) (void)hdi_sample_points(a);
+    h->degree = of->kind->time > 0 && hdi_degree_open(h->heat) ? HDI_RAT_KERNEL_MAX : 0;
+    (void)hdi_distance_by_metric(of, 1, 0);
     h->degree = 0;
-    return hdi_scope_end(&s);
-}
-
-/* The points by distances from the eigenpairs that are there. */
-static hd_status hdi_sample_by_pairs(hdi_task *task) {
-    hdi_samples *a = (hdi_samples *)task;
-    hdi_heat_call *h = task->h;
-    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
-    hdi_mode_sum sum;
-    a->sum = &sum;
-    if (hdi_mode_sum_make(&sum, h, a->kind, &s) >= 0) (void)hdi_sample_points(a);
-    return hdi_scope_end(&s);
+    return h->e->status;
 }
 
 /* ---- queries of distances ---- */
@@ -22270,62 +22233,63 @@ static hd_status hdi_sample_by_pairs(hdi_task *task) {
  * 1/sqrt(mass) times exp(-t low). */
 static void hdi_distance_task(hdi_task *task, hdi_heat_call *h, const hdi_distance_row *kind, int32_t k) {
     const double span = hdi_modes_span(h->heat);
-    const double many = k < HDI_LANES_BATCH || kind->mass > 0 ? 0 : HDI_MODES_MANY * pow(span, 1.2);
+    const double many = kind->many && k >= HDI_LANES_BATCH ? HDI_MODES_MANY * pow(span, 1.2) : 0;
     memset(task, 0, sizeof *task);
     task->h = h;
+    task->pairs = HDI_HAS_MODES ? hdi_distance_by_pairs : NULL;
     if (!HDI_HAS_MODES || !(kind->time > 0) || !hdi_modes_allowed(h->heat)) return;
     task->serves = (int32_t)hdi_min(hdi_max(HDI_MODES_FIRST, many), HDI_MODES_MOST / 2);
     task->depth = hdi_max(0, log(2 * span / hdi_modes_tol(h->heat)));   /* 0: tol is all there is */
 }
 
-/* The start of a query of a distance. Commute and biharmonic distances have no time: n_times is 0 or 1,
- * and t is not read. */
+/* The start of a query of a distance. All but pairs of vertices have positive times and the direct method
+ * only. Without a time n_times is 0 or 1, and t is not read. */
 static hd_status hdi_distance_begin(hdi_heat_call *h, hd_heat *heat, const hdi_distance_row *kind,
-                                    int32_t n_times, const double *t, int positive, hd_report *report,
+                                    int32_t n_times, const double *t, int pairs, hd_report *report,
                                     hd_error *err) {
     if (hdi_heat_begin(h, heat, HDI_QUERY_SYMMETRIC, report, err) < 0) return h->e->status;
     h->relative = 1;
     if (!HDI_HAS_DIFFUSION) return HDI_LEFT_OUT(h->e, DIFFUSION, "diffusion distances");
     if (!kind) return hdi_fail(h->e, HD_ERR_ARGUMENT, "distance: unknown kind");
-    if (kind->time > 0) return hdi_times_check(h, n_times, t, positive);
-    if (n_times > 1 || n_times < 0)
+    if (kind->time > 0 && hdi_times_check(h, n_times, t, !pairs) < 0) return h->e->status;
+    if (kind->time == 0 && (n_times > 1 || n_times < 0))
         return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "distance: n_times is 0 or 1 for commute and biharmonic",
                             -1, -1, n_times);
-    return hdi_direct_only(h);
+    return pairs && kind->time > 0 && !hdi_heat_filtered(heat) ? HD_OK : hdi_direct_only(h);
 }
 
-/* Distances to all vertices from sources. */
-static hd_status hdi_distance_answer(hd_heat *heat, hdi_distances *to, const hd_sources *sources,
+/* Runs a query for distances to all vertices from sources. */
+static hd_status hdi_distances_run(hd_heat *heat, hdi_distances *to, const hd_sources *sources,
                                      int32_t n_times, const double *t, hd_report *report, hd_error *err) {
     hdi_heat_call h;
-    if (hdi_distance_begin(&h, heat, to->kind, n_times, t, 1, report, err) < 0 || hdi_direct_only(&h) < 0 ||
-        !HDI_HAS_DIFFUSION) return hdi_heat_end(&h);
+    if (hdi_distance_begin(&h, heat, to->of.kind, n_times, t, 0, report, err) < 0 || !HDI_HAS_DIFFUSION)
+        return hdi_heat_end(&h);
     if (!sources || (sources->count > 0 && !to->D)) hdi_missing(h.e);
     to->ld = hdi_leading(&h, to->ld);
     if (h.e->status >= 0) to->source = hdi_terms_all(sources, heat->source, 1, &h.s);
     to->k = h.e->status >= 0 ? sources->count : 0;
     if (h.e->status < 0 || to->k == 0) return hdi_heat_end(&h);
-    hdi_distance_task(&to->task, &h, to->kind, to->k);
-    to->task.pairs = HDI_HAS_MODES ? hdi_distances_by_pairs : NULL;
-    to->task.poles = hdi_distances_by_poles;
-    to->task.together = hdi_distances_together;
-    (void)hdi_heat_sparing(&h, &to->task);
+    hdi_distance_task(&to->of.task, &h, to->of.kind, to->k);
+    to->of.answer = hdi_distances_answer;
+    to->of.task.poles = hdi_distances_by_poles;
+    to->of.task.together = hdi_distances_together;
+    (void)hdi_heat_sparing(&h, &to->of.task);
     return hdi_heat_end(&h);
 }
 
 /* Runs a query for pairs whose arguments are checked. */
 static hd_status hdi_pairs_run(hdi_heat_call *h, hdi_pairs *to) {
-    hdi_distance_task(&to->task, h, to->kind, 1);
-    to->task.pairs = HDI_HAS_MODES ? hdi_pairs_by_pairs : NULL;
-    to->task.poles = hdi_pairs_by_poles;
-    return hdi_heat_sparing(h, &to->task);
+    hdi_distance_task(&to->of.task, h, to->of.kind, 1);
+    to->of.answer = hdi_pairs_answer;
+    to->of.task.poles = hdi_pairs_by_poles;
+    return hdi_heat_sparing(h, &to->of.task);
 }
 
-static hd_status hdi_sample_answer(hd_heat *heat, hdi_samples *a, const hd_sources *sources,
-                                   hd_report *report, hd_error *err) {
+static hd_status hdi_sample_run(hd_heat *heat, hdi_samples *a, const hd_sources *sources, hd_report *report,
+                                hd_error *err) {
     hdi_heat_call h;
-    if (hdi_distance_begin(&h, heat, a->kind, 1, &a->t, 1, report, err) < 0 || hdi_direct_only(&h) < 0 ||
-        !HDI_HAS_DIFFUSION) return hdi_heat_end(&h);
+    if (hdi_distance_begin(&h, heat, a->of.kind, 1, &a->t, 0, report, err) < 0 || !HDI_HAS_DIFFUSION)
+        return hdi_heat_end(&h);
     if (a->count < 1 || a->count > heat->source->n_active)
         hdi_fail_row(h.e, HD_ERR_ARGUMENT, "sample: more points than vertices, or none", -1, -1, a->count);
     else if (!a->vertex) hdi_missing(h.e);
@@ -22334,10 +22298,10 @@ static hd_status hdi_sample_answer(hd_heat *heat, hdi_samples *a, const hd_sourc
     a->nearest = HDI_TAKE(&h.s, double, heat->source->n);
     a->u = HDI_TAKE(&h.s, double, heat->source->n);
     if (h.e->status < 0) return hdi_heat_end(&h);
-    hdi_distance_task(&a->task, &h, a->kind, a->count + a->n_from);
-    a->task.pairs = HDI_HAS_MODES ? hdi_sample_by_pairs : NULL;
-    a->task.poles = hdi_sample_by_poles;
-    (void)hdi_heat_sparing(&h, &a->task);
+    hdi_distance_task(&a->of.task, &h, a->of.kind, a->count + a->n_from);
+    a->of.answer = hdi_sample_answer;
+    a->of.task.poles = hdi_sample_by_poles;
+    (void)hdi_heat_sparing(&h, &a->of.task);
     return hdi_heat_end(&h);
 }
 
@@ -22346,34 +22310,44 @@ static hd_status hdi_sample_answer(hd_heat *heat, hdi_samples *a, const hd_sourc
  * bytes with what is allocated. */
 
 /* How a query is answered: by solves, by an inversion, from L grounded, or from eigenpairs. */
-typedef enum hdi_by { HDI_BY_SOLVES, HDI_BY_INVERSION, HDI_BY_GROUND, HDI_BY_SPECTRUM } hdi_by;
+typedef enum hdi_by {
+    HDI_BY_NOTHING, HDI_BY_SOLVES, HDI_BY_INVERSION, HDI_BY_GROUND, HDI_BY_SPECTRUM
+} hdi_by;
 
-/* What queries are, in hd_query's order; one without a row is unknown. */
+/* What a query is. */
 typedef struct hdi_query_row {
-    hdi_by by;
-    const hdi_distance_row *distance;   /* its kind, or NULL */
+    hd_query query;
+    hdi_by by;                   /* nothing: there is no such query */
     int32_t columns;             /* k counts columns that are solved for */
     int32_t mass;                /* K_t is asked for, not k_t */
+    const hdi_distance_row *distance;   /* its kind, or NULL */
 } hdi_query_row;
 
-static const hdi_query_row hdi_query_rows[] = {
-    {HDI_BY_SOLVES, NULL, 1, 0},                        /* fields */
-    {HDI_BY_SOLVES, NULL, 1, 0},                        /* columns */
-    {HDI_BY_SOLVES, hdi_distance_rows + HD_DISTANCE_CLASSICAL, 1, 0},   /* pairs */
-    {HDI_BY_INVERSION, NULL, 0, 0},                     /* diagonal of k_t */
-    {HDI_BY_INVERSION, NULL, 0, 1},                     /* diagonal of K_t */
-    {HDI_BY_INVERSION, NULL, 0, 2},                     /* trace, perhaps with either */
-    {HDI_BY_INVERSION, hdi_distance_rows + HD_DISTANCE_CLASSICAL, 1, 0},
-    {HDI_BY_INVERSION, hdi_distance_rows + HD_DISTANCE_WEIGHTED, 1, 0},
-    {HDI_BY_GROUND, hdi_distance_rows + HD_DISTANCE_COMMUTE, 1, 0},
-    {HDI_BY_GROUND, hdi_distance_rows + HD_DISTANCE_BIHARMONIC, 1, 0},
-    {HDI_BY_SPECTRUM, NULL, 1, 0}
-};
+static hdi_query_row hdi_query_of(hd_query query) {
+    static const hdi_query_row others[] = {
+        {HD_QUERY_FIELDS, HDI_BY_SOLVES, 1, 0, NULL},
+        {HD_QUERY_COLUMNS, HDI_BY_SOLVES, 1, 0, NULL},
+        {HD_QUERY_PAIRS, HDI_BY_SOLVES, 1, 0, hdi_distance_rows},
+        {HD_QUERY_DIAGONAL, HDI_BY_INVERSION, 0, 0, NULL},
+        {HD_QUERY_DIAGONAL_OPERATOR, HDI_BY_INVERSION, 0, 1, NULL},
+        {HD_QUERY_TRACE, HDI_BY_INVERSION, 0, 2, NULL},     /* perhaps with either diagonal */
+        {HD_QUERY_SPECTRUM, HDI_BY_SPECTRUM, 1, 0, NULL}
+    };
+    hdi_query_row row = {query, HDI_BY_NOTHING, 1, 0, NULL};
+    size_t q;
+    for (q = 0; q < sizeof others / sizeof *others; q++)
+        if (others[q].query == query) return others[q];
+    for (q = 0; q < HDI_DISTANCES; q++) {
+        if (hdi_distance_rows[q].query != query) continue;
+        row.distance = hdi_distance_rows + q;
+        row.by = row.distance->time > 0 ? HDI_BY_INVERSION : HDI_BY_GROUND;
+    }
+    return row;
+}
 
-/* NULL: there is no such query. */
-static const hdi_query_row *hdi_query_of(hd_query query) {
-    const size_t n = sizeof hdi_query_rows / sizeof *hdi_query_rows;
-    return (size_t)query < n ? hdi_query_rows + query : NULL;
+/* Has the query times? */
+static int hdi_query_timed(const hdi_query_row *query) {
+    return query->by == HDI_BY_SOLVES || query->by == HDI_BY_INVERSION;
 }
 
 /* A query under estimation. */
@@ -22390,11 +22364,6 @@ typedef struct hdi_estimate {
 /* Bytes of small arrays that are not listed one by one. */
 #define HDI_ESTIMATE_SMALL 4096
 
-/* Are pairs answered by solves? */
-static int hdi_estimate_pairwise(const hdi_estimate *x) {
-    return x->query->distance && x->query->by == HDI_BY_SOLVES;
-}
-
 /* Analyses the pattern for a query that needs a factorisation. If there is no memory for that within the byte
  * limit, figures are guesses. */
 static hd_status hdi_estimate_analyse(hdi_heat_call *h) {
@@ -22410,15 +22379,16 @@ static hd_status hdi_estimate_solves(const hdi_estimate *x) {
     hdi_heat_call *h = x->h;
     hd_heat *heat = h->heat;
     const int32_t n_times = h->n_times;
+    const double *times = h->times;
     hd_cost *by = x->to->cost, *direct = by + HD_METHOD_DIRECT, most;
     hd_rational set;
     int32_t q;
     if (hdi_heat_pick(h) >= 0 && n_times > 1 && h->method < HD_METHOD_KRYLOV) {   /* one by one */
-        h->times += n_times - 1;
+        h->times = &h->t;                        /* the last */
         h->n_times = 1;
         (void)hdi_heat_pick(h);
         h->n_times = n_times;
-        h->times -= n_times - 1;
+        h->times = times;
     }
     if (hdi_over_limit(heat->ctx, h->e)) hdi_error_clear(h->e);
     if (h->e->status < 0 || (h->method != HD_METHOD_ITERATIVE && h->method != HD_METHOD_LOCAL &&
@@ -22584,7 +22554,7 @@ static void hdi_estimate_help(const hdi_estimate *x, hd_cost *c) {
 /* ---- estimates of queries ---- */
 
 /* A query at times, by poles or by what the run picks. Where few eigenpairs serve they take about as long as
- * poles, once; then poles do the other times. */
+ * poles, once; then poles do the other times, or all if there is no room for pairs. */
 static hd_status hdi_estimate_times(const hdi_estimate *x) {
     hdi_heat_call *h = x->h;
     const hd_heat *heat = h->heat;
@@ -22619,7 +22589,8 @@ static hd_status hdi_estimate_times(const hdi_estimate *x) {
 static hd_status hdi_estimate_run(hdi_heat_call *h, const hdi_query_row *query, int32_t k,
                                   hd_estimate *to) {
     const hd_heat *heat = h->heat;
-    const int32_t times = query->by == HDI_BY_INVERSION && query->distance ? query->distance->time : 1;
+    const int pairs = query->query == HD_QUERY_PAIRS;
+    const int32_t times = query->distance && !pairs ? query->distance->time : 1;
     const double n = heat->source->n;
     hd_cost *direct = to->cost + HD_METHOD_DIRECT;
     hdi_estimate x;
@@ -22630,14 +22601,14 @@ static hd_status hdi_estimate_run(hdi_heat_call *h, const hdi_query_row *query, 
     x.k = h->ask.k = query->columns ? hdi_high32(k, 1) : 0;
     to->method = h->method = HD_METHOD_DIRECT;
     to->reason = query->by == HDI_BY_SPECTRUM ? "eigenpairs take real factors" : HDI_DIRECT_REASON;
-    if (query->by > HDI_BY_INVERSION) {
+    if (!hdi_query_timed(query)) {
         if (hdi_estimate_analyse(h) < 0) return h->e->status;
         if (query->by == HDI_BY_GROUND) hdi_estimate_ground(&x, direct);
         else *direct = hdi_estimate_pairs(heat, hdi_low32(x.k, heat->source->n_active));
         return HD_OK;
     }
     x.unit = times * heat->scale;
-    if (query->distance) hdi_distance_task(&x.task, h, query->distance, hdi_estimate_pairwise(&x) ? 1 : x.k);
+    if (query->distance) hdi_distance_task(&x.task, h, query->distance, pairs ? 1 : x.k);
     else hdi_fading_task(&x.task, h);
     if (hdi_heat_sort_times(h, x.unit / heat->scale, NULL) < 0) return h->e->status;
     for (; h->n_times > 1 && h->times[0] == 0; h->n_times--) h->times++;
@@ -22649,8 +22620,8 @@ static hd_status hdi_estimate_run(hdi_heat_call *h, const hdi_query_row *query, 
         to->cost[to->method].bytes = to->cost[to->method].bytes_most = 64 * n + HDI_ESTIMATE_SMALL;
         return HD_OK;
     }
-    if (hdi_estimate_pairwise(&x))
-        x.held = 8 * hdi_min(n * x.k, (double)HDI_PAIRS_DOUBLES) + 8.0 * x.k + 16 * n;
+    if (pairs)
+        x.held = 8 * hdi_min(n * x.k, (double)HDI_PAIRS_DOUBLES) + 40.0 * x.k + 20 * n;
     return hdi_estimate_times(&x);
 }
 
@@ -22666,7 +22637,7 @@ static void hdi_estimate_close(const hd_heat *heat, hd_estimate *to) {
 }
 
 static hd_status hdi_estimate_check(hdi_heat_call *h, const hdi_query_row *query, int32_t k) {
-    if (!query) return hdi_fail(h->e, HD_ERR_ARGUMENT, "estimate: unknown query");
+    if (query->by == HDI_BY_NOTHING) return hdi_fail(h->e, HD_ERR_ARGUMENT, "estimate: unknown query");
     if (k < 0)
         return hdi_fail(h->e, HD_ERR_ARGUMENT, "estimate: a number of fields or columns is negative");
     if (query->by == HDI_BY_SPECTRUM)
@@ -22746,17 +22717,13 @@ struct hd_geodesic {
     char *active;                /* [n_super] fronts that the sources touch */
     char *mark;                  /* [n_active] 1: u is known; or a source */
     double *x, *b, *r, *work;    /* [n_active] each; sweeps */
-    double *first;               /* [n_active] u of the first stage, made with the first set of sources */
     double *wide_x, *wide_b, *wide_work;   /* the same for a batch, one array made when first needed */
-    int64_t *value_ptr;          /* [n_components + 1] */
-    hdi_pair *sorted;            /* [value_size] */
-    double *value;               /* [value_size] phi at the sources, by component, ascending; after sorted */
-    int32_t value_size;
-    hd_laplacian *lap;           /* kept by updatable plans, else NULL */
-    int32_t *from;               /* [n_faces] which of the mesh's faces each is; kept by updatable plans */
+    int64_t *value_ptr;          /* [n_components + 1] where the values of a source begin */
+    hd_laplacian *lap;           /* of updatable plans, else NULL */
+    int32_t *from;               /* [n_faces] which of the mesh's faces each is; of updatable plans kept */
     double t_asked, t_in_h2;     /* 0: t_in_h2 h^2 */
     int32_t ready;               /* 0: the last update failed half way */
-    hdi_scope keep;              /* all arrays except those that grow */
+    hdi_scope keep;              /* all arrays */
 };
 
 /* ---- making ---- */
@@ -22777,7 +22744,6 @@ static void hdi_geo_free(hd_geodesic *g) {
     hdi_laplacian_free(g->lap, ctx);
     hdi_laplacian_free(g->poly.pair, ctx);
     while (g->keep.n > 0) hdi_free(ctx, g->keep.block[--g->keep.n]);
-    hdi_free(ctx, g->sorted);
     hdi_free(ctx, g);
     hdi_let_go(ctx);
 }
@@ -22788,34 +22754,25 @@ static hdi_scope *hdi_geo_keep(hd_geodesic *g, hd_error *e) {
     return &g->keep;
 }
 
-/* Triangle f in its plane with the longest edge on the axis. Its area and cotangents are those of weight
- * triangles. The angles at the longest edge are acute, so that nothing cancels. The height is the smallest
- * one, and keeps its relative precision. */
-static hdi_geo_face hdi_geo_frame(const hdi_mesh *mesh, int32_t f, const int32_t *row, double h,
-                                  double weight) {
-    const int32_t *v = mesh->tri + hdi_triple(f);
-    const double *cot = mesh->cot + hdi_triple(f);
-    const int apex = cot[0] <= cot[1] ? (cot[0] <= cot[2] ? 0 : 2) : cot[1] <= cot[2] ? 1 : 2;
-    const int a = (apex + 1) % 3, b = (apex + 2) % 3;
-    const double twice = 2 * mesh->area[f] / weight, length = sqrt(twice * ((cot[a] + cot[b]) / weight));
-    hdi_geo_face out;
-    out.l = length / 2 / h;
-    out.q = twice / length / 2 / h;
-    out.p = out.q * (cot[a] / weight);
-    out.v[0] = row[v[a]];
-    out.v[1] = row[v[b]];
-    out.v[2] = row[v[apex]];
-    out.copies = 1;
-    return out;
-}
-
-/* All triangles, in their order. copies [mesh->m] of intrinsic ones; NULL: 1 each. */
-static void hdi_geo_frames(hd_geodesic *g, const hdi_mesh *mesh, const int32_t *copies) {
+/* All triangles, in their order: each in its plane with the longest edge on the axis. Areas and cotangents
+ * are those of as many triangles as the copy counts. The angles at the longest edge are acute, so that
+ * nothing is cancelled, and the height is as small as it can be and keeps its relative precision. */
+static void hdi_geo_frames(hd_geodesic *g, const hdi_mesh *mesh) {
     int32_t k;
     for (k = 0; k < g->n_faces; k++) {
-        const int32_t n = copies ? copies[g->from[k]] : 1;
-        g->face[k] = hdi_geo_frame(mesh, g->from[k], g->row, g->h, n / g->copies);
-        g->face[k].copies = n;
+        const int32_t f = g->from[k], *v = mesh->tri + hdi_triple(f), n = mesh->copies ? mesh->copies[f] : 1;
+        const double *cot = mesh->cot + hdi_triple(f), weight = n / g->copies;
+        const int apex = cot[0] <= cot[1] ? (cot[0] <= cot[2] ? 0 : 2) : cot[1] <= cot[2] ? 1 : 2;
+        const int a = (apex + 1) % 3, b = (apex + 2) % 3;
+        const double twice = 2 * mesh->area[f] / weight, length = sqrt(twice * ((cot[a] + cot[b]) / weight));
+        hdi_geo_face *out = g->face + k;
+        out->l = length / 2 / g->h;
+        out->q = twice / length / 2 / g->h;
+        out->p = out->q * (cot[a] / weight);
+        out->v[0] = g->row[v[a]];
+        out->v[1] = g->row[v[b]];
+        out->v[2] = g->row[v[apex]];
+        out->copies = n;
     }
 }
 
@@ -22887,9 +22844,16 @@ static hd_status hdi_geo_masses(hd_geodesic *g, const hd_laplacian *lap, double 
     return HD_OK;
 }
 
-/* The arrays over rows, in elimination order. */
+/* The arrays over rows, in elimination order, and work of the queries. */
 static hd_status hdi_geo_rows(hd_geodesic *g, const hd_laplacian *lap, hdi_scope *own) {
     int32_t i, v;
+    g->active = HDI_TAKE(own, char, g->sym.n_super);
+    g->mark = HDI_TAKE(own, char, g->n_active);
+    g->value_ptr = HDI_TAKE(own, int64_t, (int64_t)g->n_components + 1);
+    g->x = HDI_TAKE(own, double, g->n_active);
+    g->b = HDI_TAKE(own, double, g->n_active);
+    g->r = HDI_TAKE(own, double, g->n_active);
+    g->work = HDI_TAKE(own, double, hdi_sweep_size(&g->sym, 1, 1));
     g->mass = HDI_TAKE(own, double, g->n_active);
     g->row = HDI_TAKE(own, int32_t, g->n);
     g->component = HDI_TAKE(own, int32_t, g->n_active);
@@ -22963,18 +22927,6 @@ static hd_status hdi_geo_factors(hd_geodesic *g, const hd_laplacian *lap, hd_err
     return hdi_scope_end(&s);
 }
 
-/* Work of the queries. */
-static hd_status hdi_geo_room(hd_geodesic *g, hdi_scope *own) {
-    g->active = HDI_TAKE(own, char, g->sym.n_super);
-    g->mark = HDI_TAKE(own, char, g->n_active);
-    g->value_ptr = HDI_TAKE(own, int64_t, (int64_t)g->n_components + 1);
-    g->x = HDI_TAKE(own, double, g->n_active);
-    g->b = HDI_TAKE(own, double, g->n_active);
-    g->r = HDI_TAKE(own, double, g->n_active);
-    g->work = HDI_TAKE(own, double, hdi_sweep_size(&g->sym, 1, 1));
-    return own->e->status;
-}
-
 /* Points in the place of an earlier one, which the triangles leave out, share its row. */
 static hd_status hdi_geo_coincident(hd_geodesic *g, const double *xyz, hd_error *e) {
     hdi_scope s = hdi_scope_begin(g->ctx, e);
@@ -22996,7 +22948,7 @@ static hd_status hdi_geo_store(hd_geodesic *g, const hd_laplacian *lap, const hd
             g->poly.pair = hdi_pair_renumber(lap, g->sym.perm, g->ctx, own->e);
     } else {
         g->face = HDI_TAKE(own, hdi_geo_face, g->n_faces);
-        if (g->face) hdi_geo_frames(g, mesh, mesh->copies);
+        if (g->face) hdi_geo_frames(g, mesh);
     }
     if (!g->lap) g->from = NULL;
     if (hdi_scope_end(&s) < 0 || !HDI_HAS_POINTS || !in->points || in->nbr_ptr) return own->e->status;
@@ -23029,7 +22981,7 @@ static hd_status hdi_geo_make(hd_geodesic *g, const hdi_input *in, int32_t neigh
     if (e->status >= 0 && hdi_pair_analyse(&g->sym, lap, o->ordering, perm, g->ctx, e) >= 0 &&
         hdi_geo_rows(g, lap, own) >= 0 && hdi_geo_store(g, lap, &z, in, own) >= 0) {
         hdi_scope_end(&s);                       /* the mesh is not needed any more */
-        if (hdi_geo_factors(g, lap, e) >= 0) g->ready = hdi_geo_room(g, own) >= 0;
+        g->ready = hdi_geo_factors(g, lap, e) >= 0;
     }
     if (!g->lap) hdi_laplacian_free(lap, g->ctx);
     return hdi_scope_end(&s);
@@ -23049,27 +23001,33 @@ static hd_status hdi_geo_update(hd_geodesic *g, const double *xyz, hd_error *e) 
     g->ready = 0;
     g->x = g->mass;
     g->mass = mass;
-    hdi_geo_frames(g, moving, NULL);
+    hdi_geo_frames(g, moving);
     hdi_geo_factors_free(g, g->ctx);
-    if (hdi_geo_factors(g, g->lap, e) >= 0) g->ready = 1;
+    g->ready = hdi_geo_factors(g, g->lap, e) >= 0;
     return e->status;
 }
 
-/* A point of a source, or a piece of a curve from a to b, in barycentric coordinates of up to three rows. */
+/* A point of a source, or a piece of a curve from a to b, in barycentric coordinates of up to three rows. A
+ * vertex without mass has no row. */
 typedef struct hdi_geo_item {
     int32_t n, row[3], next;     /* the next item that has the same first row, -1: none */
+    int32_t vertex;              /* one of its corners */
     double a[3], b[3];
     double length;               /* in units of h, -1: it has been found in no face */
 } hdi_geo_item;
 
-typedef struct hdi_geo_items {
-    const hd_sources *s;
-    hdi_geo_item *item;
-    int32_t n;
-    int32_t *first;              /* [n_active] items by their first row, -1: none */
-    int32_t *home, n_home;       /* [n_home] faces with items */
-    double *near_by;             /* [n_active] distance to the source along its faces, in units of h */
-} hdi_geo_items;
+/* What the distances of a column start from. */
+typedef struct hdi_geo_source {
+    hdi_geo_item *item;          /* [n] */
+    int32_t n, curve;
+    double *near_by;             /* [n_active] distance along the items' faces, in units of h; NULL: all items
+                                    are vertices */
+    int32_t *home, n_home;       /* [n_home] these faces */
+    double *first;               /* [n_active] u of the first stage; NULL: not several vertices */
+    hdi_pair *sorted;            /* [n] */
+    double *value;               /* [n] phi at the items, by component, ascending */
+    double *d;                   /* [n] the column */
+} hdi_geo_source;
 
 /* ---- passes over the faces ---- */
 /* Vectors hold k columns side by side: one, or a batch. */
@@ -23179,21 +23137,20 @@ static HDI_INLINE void hdi_geo_stiff(const hdi_geo_face *a, double sign, const d
     r[a->v[2]] += g2;
 }
 
-/* Adds div X to b: the right-hand side of L phi = b. In the faces of items, which one column has, X is the
- * gradient of the known distances. Returns the columns as bits in which some faces have heat, but all of it
- * below least. */
+/* Adds div X to b: the right-hand side of L phi = b. In the home faces of s, X is the gradient of the known
+ * distances. Returns the columns as bits in which some faces have heat, but all of it below least. */
 static int hdi_geo_divergence(const hd_geodesic *g, int k, const double *u, const double *least,
-                              const char *done, const hdi_geo_items *items, double *b) {
+                              const char *done, const hdi_geo_source *s, double *b) {
     const int level = k > 1 ? hdi_simd_level(g->ctx) : 0;
     const int32_t end = g->n_faces;
     hdi_geo_range part = {0, g->n_faces};
     double dim[HDI_GEO_WIDE] = {0};
     int32_t q;
     int c, faint = 0;
-    for (q = 0; items && q < items->n_home; q++) {
-        part.end = items->home[q];
+    for (q = 0; s && q < s->n_home; q++) {
+        part.end = s->home[q];
         hdi_geo_flow(g, part, 1, u, least, NULL, b, dim);
-        hdi_geo_stiff(g->face + part.end, 1, items->near_by, b);
+        hdi_geo_stiff(g->face + part.end, 1, s->near_by, b);
         part.begin = part.end + 1;
         part.end = end;
     }
@@ -23221,10 +23178,12 @@ static void hdi_geo_subtract(const hd_geodesic *g, const double *HDI_RESTRICT x,
     for (f = 0; f < g->n_faces && g->face; f++) hdi_geo_stiff(g->face + f, -1, x, r);
 }
 
-/* x = the inverse times x in k columns. */
-static void hdi_geo_sweep(const hd_geodesic *g, const hdi_factor *f, int k, double *x, const char *active) {
+/* x = the inverse times x in k columns. Of heat x is not zero in the fronts g->active only, and it is asked
+ * for in those wanted; NULL: in all. */
+static void hdi_geo_sweep(const hd_geodesic *g, const hdi_factor *f, int k, double *x, const char *wanted) {
     hdi_sweep z = hdi_sweep_open(f, k, x, k == 1 ? g->work : g->wide_work);
-    z.active = active;
+    z.active = f == &g->poisson ? NULL : g->active;
+    z.wanted = wanted;
     hdi_sweep_run(&z, g->ctx);
 }
 
@@ -23302,10 +23261,7 @@ static hd_status hdi_geo_further(hd_geodesic *g, double least, int32_t *n_stages
     int32_t i, faint = e->status >= 0;
     memset(g->mark, 0, (size_t)g->n_active);
     while (faint && hdi_geo_border(g, least, f, wanted) && hdi_progress(g->ctx, "solve", 0.5, e) >= 0) {
-        hdi_sweep z = hdi_sweep_open(&g->heat, 1, g->x, g->work);
-        z.active = g->active;
-        z.wanted = wanted;
-        hdi_sweep_run(&z, g->ctx);
+        hdi_geo_sweep(g, &g->heat, 1, g->x, wanted);
         for (i = 0, most = 0; i < g->n_active; i++) most = hdi_max(most, g->mark[i] ? 0 : fabs(g->x[i]));
         least = most * HDI_GEO_FAINT;
         faint = least > DBL_MIN && hdi_geo_divergence(g, 1, g->x, &least, g->mark, NULL, g->b);
@@ -23325,19 +23281,23 @@ static hd_status hdi_geo_further(hd_geodesic *g, double least, int32_t *n_stages
 /* Barycentric coordinates below this do not keep a point off an edge, or off a vertex. */
 #define HDI_GEO_ASIDE 1e-9
 
-/* Adds point q of the source to an item; end: 0 for a, 1 for b. Returns 0 if the item gets more than three
- * rows, or one that has no mass. */
+/* Adds point q of the sources to an item; end: 0 for a, 1 for b. Returns 0 if the item gets more than three
+ * rows, or a vertex without mass that is not all of a source's point. */
 static int hdi_geo_item_add(const hd_geodesic *g, const hd_sources *s, hdi_geo_item *x, int64_t q, int end) {
     const int32_t corners = hdi_source_corners(s);
-    int32_t c, k;
+    int32_t c, k, parts = 0, none = 0;
     double sum = 0;
     for (c = 0; c < corners; c++) sum += hdi_source_part(s, q, c);
     for (c = 0; c < corners; c++) {
         const double w = hdi_source_part(s, q, c) / sum;
-        const int32_t row = g->row[s->vertex[q * corners + c]];
+        const int32_t vertex = s->vertex[q * corners + c], row = g->row[vertex];
         if (w < HDI_GEO_ASIDE) continue;
+        x->vertex = vertex;
+        parts++;
+        none += row < 0;
         for (k = 0; k < x->n && x->row[k] != row; k++) {}
-        if (row < 0 || k == 3) return 0;
+        if (row < 0) continue;
+        if (k == 3) return 0;
         if (k == x->n) {
             x->a[k] = x->b[k] = 0;
             x->row[x->n++] = row;
@@ -23345,7 +23305,7 @@ static int hdi_geo_item_add(const hd_geodesic *g, const hd_sources *s, hdi_geo_i
         if (!end) x->a[k] += w;
         else x->b[k] += w;
     }
-    return 1;
+    return none == 0 || (parts == 1 && !s->curve);
 }
 
 /* The distance of the corner at c from the line from a to b, in the plane. */
@@ -23376,146 +23336,116 @@ static int hdi_geo_item_in(hdi_geo_item *x, const hdi_geo_face *f, double *near_
     return 1;
 }
 
-#define HDI_GEO_ON_BORDER "geodesic: a source lies on the border, which is held at zero; take the mean border"
-
 static hd_status hdi_geo_lost(int32_t q, hd_error *e) {
     return hdi_source_fail(e, HD_ERR_ARGUMENT,
                            "geodesic: a point of the source, or a piece of its curve, lies in no face", q,
                            -1, 0);
 }
 
-/* The items of n points of sources, from one on, and the faces that they lie in. Refuses those on a border
- * that is held at zero, and curves without a length. */
-static hd_status hdi_geo_items_make(hdi_geo_items *z, const hd_geodesic *g, const hd_sources *s,
-                                    int64_t begin, int32_t n, hdi_scope *in) {
+/* Finds the faces that the items lie in. Refuses curves without a length. */
+static hd_status hdi_geo_source_faces(hdi_geo_source *z, const hd_geodesic *g, hdi_scope *in) {
+    int32_t *first = HDI_TAKE(in, int32_t, g->n_active), f, i;   /* items by their first row, -1: none */
     double length = 0;
-    int32_t f, i;
     int q;
-    z->s = s;
-    z->n = s->curve ? n - 1 : n;
-    z->item = HDI_TAKE_ZERO(in, hdi_geo_item, z->n);
-    z->first = HDI_TAKE(in, int32_t, g->n_active);
     z->home = HDI_TAKE(in, int32_t, g->n_faces);
-    z->n_home = 0;
     z->near_by = HDI_TAKE(in, double, g->n_active);
     if (in->e->status < 0) return in->e->status;
-    hdi_fill_i32(z->first, g->n_active, -1);
+    hdi_fill_i32(first, g->n_active, -1);
     for (i = 0; i < g->n_active; i++) z->near_by[i] = HUGE_VAL;
     for (i = 0; i < z->n; i++) {
         hdi_geo_item *x = z->item + i;
-        const int64_t at = begin + i;
-        if (!hdi_geo_item_add(g, s, x, at, 0) || !hdi_geo_item_add(g, s, x, s->curve ? at + 1 : at, 1))
-            return hdi_geo_lost(i, in->e);
         x->length = -1;
-        x->next = z->first[x->row[0]];
-        z->first[x->row[0]] = i;
+        if (x->n == 0) continue;
+        x->next = first[x->row[0]];
+        first[x->row[0]] = i;
     }
     for (f = 0; f < g->n_faces; f++) {
         int here = 0;
         for (q = 0; q < 3; q++)
-            for (i = z->first[g->face[f].v[q]]; i >= 0; i = z->item[i].next)
+            for (i = first[g->face[f].v[q]]; i >= 0; i = z->item[i].next)
                 here |= hdi_geo_item_in(z->item + i, g->face + f, z->near_by);
         if (here) z->home[z->n_home++] = f;
     }
     for (i = 0; i < z->n; i++) {
-        const hdi_geo_item *x = z->item + i;
-        if (x->length < 0) return hdi_geo_lost(i, in->e);
-        length += x->length;
-        for (q = 0; q < x->n; q++)
-            if (hdi_geo_is_held(g, x->row[q]))
-                return hdi_source_fail(in->e, HD_ERR_ARGUMENT, HDI_GEO_ON_BORDER, i, -1, 0);
+        if (z->item[i].length < 0) return hdi_geo_lost(i, in->e);
+        length += z->item[i].length;
     }
-    if (s->curve && !(length > 0))
+    if (z->curve && !(length > 0))
         hdi_fail(in->e, HD_ERR_ARGUMENT, "geodesic: the curve of the source has no length");
     return in->e->status;
 }
 
-/* ---- sources ---- */
+/* Source k, with arrays in a scope. Refuses those on a border that is held at zero. */
+static hd_status hdi_geo_source_make(hdi_geo_source *z, const hd_geodesic *g, const hd_sources *s, int32_t k,
+                                     hdi_scope *in) {
+    const int64_t begin = hdi_source_first(s, k), end = hdi_source_first(s, k + 1);
+    int32_t i, vertices = 1;
+    int q;
+    memset(z, 0, sizeof *z);
+    z->curve = s->curve != 0;
+    z->n = (int32_t)(end - begin) - z->curve;
+    z->item = HDI_TAKE_ZERO(in, hdi_geo_item, z->n);
+    z->sorted = HDI_TAKE(in, hdi_pair, z->n);
+    z->value = HDI_TAKE(in, double, z->n);
+    for (i = 0; i < z->n && in->e->status >= 0; i++) {
+        hdi_geo_item *x = z->item + i;
+        const int fits = hdi_geo_item_add(g, s, x, begin + i, 0) &&
+                         hdi_geo_item_add(g, s, x, begin + i + z->curve, 1);
+        vertices = vertices && fits && x->n <= 1 && !z->curve;
+        if (!vertices && g->poly.ptr)
+            return hdi_fail(in->e, HD_ERR_ARGUMENT, "geodesic: on polygons sources are vertices only");
+        if (!fits) return hdi_geo_lost(i, in->e);
+    }
+    if (in->e->status < 0 || (!vertices && hdi_geo_source_faces(z, g, in) < 0)) return in->e->status;
+    for (i = 0; i < z->n; i++)
+        for (q = 0; q < z->item[i].n; q++)
+            if (hdi_geo_is_held(g, z->item[i].row[q]))
+                return hdi_source_fail(in->e, HD_ERR_ARGUMENT, "geodesic: a source lies on the border, which "
+                                       "is held at zero; take the mean border", i,
+                                       vertices ? z->item[i].vertex : -1, 0);
+    if (vertices && z->n > 1) z->first = HDI_TAKE(in, double, g->n_active);
+    return in->e->status;
+}
 
-/* What the distances of a column start from: vertices, or items. */
-typedef struct hdi_geo_source {
-    const int32_t *vertex;
-    int32_t n;
-    const hdi_geo_items *items;
-    double *d;                   /* [n] the column */
-} hdi_geo_source;
+/* ---- sources ---- */
 
 /* Adds the heat of a source to column x of k, which is clear, and opens the fronts that it touches. A vertex
  * named twice counts once. */
 static void hdi_geo_load(const hd_geodesic *g, const hdi_geo_source *s, int k, double *x) {
     int32_t q, c;
     for (q = 0; q < s->n; q++) {
-        const int32_t i = g->row[s->vertex[q]];
-        if (i < 0) continue;
-        x[k * (int64_t)i] = 1;
-        hdi_sweep_touch(&g->sym, i, g->active);
-    }
-    for (q = 0; s->items && q < s->items->n; q++) {
-        const hdi_geo_item *p = s->items->item + q;
+        const hdi_geo_item *p = s->item + q;
         for (c = 0; c < p->n; c++) {
-            x[k * (int64_t)p->row[c]] += (s->items->s->curve ? p->length : 1) * (p->a[c] + p->b[c]) / 2;
+            double *to = x + k * (int64_t)p->row[c];
+            *to = s->near_by ? *to + (s->curve ? p->length : 1) * (p->a[c] + p->b[c]) / 2 : 1;
             hdi_sweep_touch(&g->sym, p->row[c], g->active);
         }
     }
 }
 
-/* Refuses vertices where heat is held at zero. */
-static hd_status hdi_geo_off_border(const hd_geodesic *g, const int32_t *sources, int32_t k, hd_error *e) {
-    int32_t q;
-    for (q = 0; q < k; q++) {
-        if (g->row[sources[q]] < 0 || !hdi_geo_is_held(g, g->row[sources[q]])) continue;
-        return hdi_source_fail(e, HD_ERR_ARGUMENT, HDI_GEO_ON_BORDER, q, sources[q], sources[q]);
-    }
-    return e->status;
-}
-
-/* Notes phi at a point of the source, as number q. */
-static void hdi_geo_note(hd_geodesic *g, int32_t q, double phi, int32_t component) {
-    g->sorted[q].key = hdi_rank(phi);
-    g->sorted[q].id = component;
-}
-
-/* Sorts n notes into g->value, ascending within each component. */
-static void hdi_geo_values_sort(hd_geodesic *g, int32_t n) {
-    int32_t q;
-    memset(g->value_ptr, 0, ((size_t)g->n_components + 1) * sizeof *g->value_ptr);
-    for (q = 0; q < n; q++) g->value_ptr[g->sorted[q].id]++;
-    hdi_sort_pairs(g->sorted, n);
-    hdi_prefix_sum(g->value_ptr, g->n_components);
-    for (q = 0; q < n; q++) g->value[g->value_ptr[g->sorted[q].id]++] = hdi_unrank(g->sorted[q].key);
-    hdi_rewind(g->value_ptr, g->n_components);
-}
-
-/* Collects phi at the source: at its points, or one mean along a curve, less the known distances there. */
+/* Collects phi at the source: at its points, or one mean along a curve, less the known distances there. They
+ * ascend within each component. */
 static void hdi_geo_values(hd_geodesic *g, const hdi_geo_source *s, const double *phi) {
-    const hdi_geo_items *z = s->items;
     double sum = 0, length = 0;
     int32_t q, c, n = 0;
+    memset(g->value_ptr, 0, ((size_t)g->n_components + 1) * sizeof *g->value_ptr);
     for (q = 0; q < s->n; q++) {
-        const int32_t i = g->row[s->vertex[q]];
-        if (i >= 0) hdi_geo_note(g, n++, phi[i], g->component[i]);
-    }
-    for (q = 0; z && q < z->n; q++) {
-        const hdi_geo_item *p = z->item + q;
+        const hdi_geo_item *p = s->item + q;
         double own = 0;
+        if (p->n == 0) continue;
         for (c = 0; c < p->n; c++)
-            own += (p->a[c] + p->b[c]) / 2 * (phi[p->row[c]] - z->near_by[p->row[c]]);
+            own += (p->a[c] + p->b[c]) / 2 * (phi[p->row[c]] - (s->near_by ? s->near_by[p->row[c]] : 0));
         sum += p->length * own;
         length += p->length;
-        if (z->s->curve) n = 0;                  /* the last note, of all, remains */
-        hdi_geo_note(g, n++, z->s->curve && length > 0 ? sum / length : own, g->component[p->row[0]]);
+        if (s->curve) n = 0;                     /* the last note, of all, remains */
+        s->sorted[n].key = hdi_rank(s->curve && length > 0 ? sum / length : own);
+        s->sorted[n++].id = g->component[p->row[0]];
     }
-    hdi_geo_values_sort(g, n);
-}
-
-/* Makes room for phi at `most` points. */
-static hd_status hdi_geo_values_room(hd_geodesic *g, int32_t most, hd_error *e) {
-    if (g->value_size >= most) return HD_OK;
-    hdi_free(g->ctx, g->sorted);
-    g->sorted = HDI_NEW(g->ctx, hdi_pair, (most + (int64_t)most / 2 + 1), e);
-    g->value_size = g->sorted ? most : 0;
-    if (g->sorted) g->value = (double *)(void *)(g->sorted + most);
-    return e->status;
+    for (q = 0; q < n; q++) g->value_ptr[s->sorted[q].id]++;
+    hdi_sort_pairs(s->sorted, n);
+    hdi_prefix_sum(g->value_ptr, g->n_components);
+    for (q = 0; q < n; q++) s->value[g->value_ptr[s->sorted[q].id]++] = hdi_unrank(s->sorted[q].key);
+    hdi_rewind(g->value_ptr, g->n_components);
 }
 
 /* ---- distances ---- */
@@ -23540,14 +23470,14 @@ static int hdi_geo_measure(const hd_geodesic *g, const hdi_geo_source *s, int32_
     double at[HDI_GEO_WIDE];
     int32_t own[HDI_GEO_WIDE], v, c, fine = 1;
     for (c = 0; c < n && k > 1; c++) {
-        const int32_t i = g->row[s[c].vertex[0]];
+        const int32_t i = s[c].item->n > 0 ? s[c].item->row[0] : -1;
         own[c] = i < 0 ? -1 : g->component[i];
         at[c] = i < 0 ? 0 : phi[k * (int64_t)i + c];
     }
     for (v = 0; v < g->n; v++) {
         const int32_t i = g->row[v], part = i < 0 ? 0 : g->component[i];
         for (c = 0; c < n; c++) {
-            const double *value = k > 1 ? at + c : g->value + g->value_ptr[part];
+            const double *value = k > 1 ? at + c : s->value + g->value_ptr[part];
             const int64_t count = k > 1 ? part == own[c] : g->value_ptr[part + 1] - g->value_ptr[part];
             double *d = s[c].d + v;
             *d = HUGE_VAL;
@@ -23563,12 +23493,13 @@ static int hdi_geo_measure(const hd_geodesic *g, const hdi_geo_source *s, int32_
  * right-hand side in y, which is overwritten. Twice the mean points the same way. A source on the border has
  * no heat then. g->active holds the fronts that the sources touch. */
 static void hdi_geo_add_cold(const hd_geodesic *g, int k, double *x, double *y) {
-    const int64_t size = k * (int64_t)g->n_active;
+    const int64_t size = g->border == HD_GEODESIC_BORDER_MEAN ? k * (int64_t)g->n_active : 0;
     int64_t p;
     int32_t i;
+    if (size == 0) return;
     for (i = 0; i < g->n_active; i++)
         if (g->held[i]) memset(y + k * (int64_t)i, 0, (size_t)k * sizeof *y);
-    hdi_geo_sweep(g, &g->cold, k, y, g->active);
+    hdi_geo_sweep(g, &g->cold, k, y, NULL);
     for (p = 0; p < size; p++) x[p] += y[p];
 }
 
@@ -23580,47 +23511,47 @@ static void hdi_geo_heat(const hd_geodesic *g, const hdi_geo_source *s, int32_t 
     memset(x, 0, (size_t)k * (size_t)g->n_active * sizeof *x);
     for (c = 0; c < n; c++) hdi_geo_load(g, s + c, k, x + c);
     if (g->border == HD_GEODESIC_BORDER_MEAN) memcpy(y, x, (size_t)k * (size_t)g->n_active * sizeof *x);
-    hdi_geo_sweep(g, &g->heat, k, x, g->active);
+    hdi_geo_sweep(g, &g->heat, k, x, NULL);
     for (c = 0; c < n && heat; c++) {
         memset(g->r, 0, (size_t)g->n_active * sizeof *g->r);
         hdi_geo_load(g, s + c, 1, g->r);
         heat[c] = hdi_geo_residual(g, 1, hdi_geo_column(g, k, x, c, g->x), g->r);
     }
-    if (g->border == HD_GEODESIC_BORDER_MEAN) hdi_geo_add_cold(g, k, x, y);
+    hdi_geo_add_cold(g, k, x, y);
 }
 
-/* phi is not the same at all sources of a set. Let u be the heat of the sources, and v the heat with the
- * values of phi at them. Since heat fades so fast, v/u is near each source the value of phi there. Distances
- * are measured from that wherever the first stage knows u, |u| >= least. phi is in g->b, u in g->first; g->x
- * and g->r are overwritten. */
+/* phi is not the same at all vertices of a source. With u the heat of the source and v that of the values of
+ * phi at its vertices, v/u is near each of them the value of phi there, since heat fades so fast. Distances are measured
+ * from that wherever the first stage knows u, |u| >= least. phi is in g->b, u in s->first; g->x and g->r are
+ * overwritten. */
 static void hdi_geo_own_source(hd_geodesic *g, const hdi_geo_source *s, double least) {
     int32_t q, v, c, several = 0;
     for (c = 0; c < g->n_components; c++)
         several |= g->value_ptr[c + 1] > g->value_ptr[c] &&
-                   g->value[g->value_ptr[c + 1] - 1] > g->value[g->value_ptr[c]];
+                   s->value[g->value_ptr[c + 1] - 1] > s->value[g->value_ptr[c]];
     if (!several) return;
     memset(g->active, 0, (size_t)g->sym.n_super);
     memset(g->x, 0, (size_t)g->n_active * sizeof *g->x);
     memset(g->mark, 0, (size_t)g->n_active);
     hdi_geo_load(g, s, 1, g->x);
     for (q = 0; q < s->n; q++) {
-        const int32_t i = g->row[s->vertex[q]];
-        if (i < 0) continue;
-        g->x[i] = g->b[i] - g->value[g->value_ptr[g->component[i]]];
+        const int32_t i = s->item[q].row[0];
+        if (s->item[q].n == 0) continue;
+        g->x[i] = g->b[i] - s->value[g->value_ptr[g->component[i]]];
         g->mark[i] = 1;
     }
     memcpy(g->r, g->x, (size_t)g->n_active * sizeof *g->x);
-    hdi_geo_sweep(g, &g->heat, 1, g->x, g->active);
-    if (g->border == HD_GEODESIC_BORDER_MEAN) hdi_geo_add_cold(g, 1, g->x, g->r);
+    hdi_geo_sweep(g, &g->heat, 1, g->x, NULL);
+    hdi_geo_add_cold(g, 1, g->x, g->r);
     for (v = 0; v < g->n; v++) {
         const int32_t i = g->row[v];
         const double *value, *end;
-        if (i < 0 || g->mark[i] || !(fabs(g->first[i]) >= least)) continue;
-        value = g->value + g->value_ptr[g->component[i]];
-        end = g->value + g->value_ptr[g->component[i] + 1];
+        if (i < 0 || g->mark[i] || !(fabs(s->first[i]) >= least)) continue;
+        value = s->value + g->value_ptr[g->component[i]];
+        end = s->value + g->value_ptr[g->component[i] + 1];
         if (value == end) continue;
         s->d[v] = g->h * fabs(g->b[i] - value[0] -
-                              hdi_min(hdi_max(g->x[i] / g->first[i], 0), end[-1] - value[0]));
+                              hdi_min(hdi_max(g->x[i] / s->first[i], 0), end[-1] - value[0]));
     }
 }
 
@@ -23633,31 +23564,20 @@ static hd_status hdi_geo_answer(hd_geodesic *g, const hdi_geo_source *s, int32_t
     if (!hdi_geo_measure(g, s, n, k, n > 1 ? g->wide_b : g->b, skip))
         return hdi_fail(e, HD_ERR_BREAKDOWN, "geodesic: rounding leaves nothing of the answer: the mesh has "
                                              "faces that are too thin");
-    if (s->n > 1) hdi_geo_own_source(g, s, least);
-    for (c = 0; c < n; c++)
-        for (i = 0; i < s[c].n; i++) s[c].d[s[c].vertex[i]] = 0;     /* those without mass too */
-    for (i = 0; i < g->n && s->items; i++)
-        if (g->row[i] >= 0 && s->items->near_by[g->row[i]] < HUGE_VAL)
-            s->d[i] = g->h * s->items->near_by[g->row[i]];
+    if (s->first) hdi_geo_own_source(g, s, least);
+    for (c = 0; c < n && !s->near_by; c++)
+        for (i = 0; i < s[c].n; i++) s[c].d[s[c].item[i].vertex] = 0;    /* those without mass too */
+    for (i = 0; i < g->n && s->near_by; i++)
+        if (g->row[i] >= 0 && s->near_by[g->row[i]] < HUGE_VAL) s->d[i] = g->h * s->near_by[g->row[i]];
     return HD_OK;
 }
 
-static void hdi_geo_judge(hd_geodesic_report *rep, double heat, double distance, int32_t n_stages) {
-    rep->residual_heat = hdi_max(rep->residual_heat, heat);
-    rep->residual_distance = hdi_max(rep->residual_distance, distance);
-    rep->n_stages = hdi_high32(rep->n_stages, n_stages);
-    if (!(heat <= HDI_GEO_RESIDUAL) || !(distance <= HDI_GEO_RESIDUAL)) rep->status = HD_WARN_ACCURACY;
-}
-
 /* The least |u| of a column of k that counts as known: u is largest at the source. */
-static double hdi_geo_least(const hd_geodesic *g, const hdi_geo_source *s, int k, const double *u) {
+static double hdi_geo_least(const hdi_geo_source *s, int k, const double *u) {
     double most = 0;
     int32_t q, c;
     for (q = 0; q < s->n; q++)
-        if (g->row[s->vertex[q]] >= 0) most = hdi_max(most, fabs(u[k * (int64_t)g->row[s->vertex[q]]]));
-    for (q = 0; s->items && q < s->items->n; q++)
-        for (c = 0; c < s->items->item[q].n; c++)
-            most = hdi_max(most, fabs(u[k * (int64_t)s->items->item[q].row[c]]));
+        for (c = 0; c < s->item[q].n; c++) most = hdi_max(most, fabs(u[k * (int64_t)s->item[q].row[c]]));
     return hdi_max(most * HDI_GEO_FAINT, DBL_MIN);
 }
 
@@ -23671,32 +23591,26 @@ static hd_status hdi_geo_solve(hd_geodesic *g, const hdi_geo_source *s, int32_t 
     double least[HDI_GEO_WIDE], heat[HDI_GEO_WIDE];
     int32_t c, n_stages = 1;
     hdi_geo_heat(g, s, n, k, x, b, rep ? heat : NULL);
-    for (c = 0; c < k; c++) least[c] = c < n ? hdi_geo_least(g, s + c, k, x + c) : DBL_MIN;
-    if (s->n > 1) memcpy(g->first, x, size);
+    for (c = 0; c < k; c++) least[c] = c < n ? hdi_geo_least(s + c, k, x + c) : DBL_MIN;
+    if (s->first) memcpy(s->first, x, size);
     memset(b, 0, size);
-    *faint = hdi_geo_divergence(g, k, x, least, NULL, s->items, b);
+    *faint = hdi_geo_divergence(g, k, x, least, NULL, s, b);
     if (n == 1 && *faint && hdi_geo_further(g, least[0], &n_stages, e) < 0) return e->status;
     if (rep) memcpy(x, b, size);
     for (c = 0; c < g->n_components; c++)
         memset(b + k * (int64_t)g->pin[c], 0, (size_t)k * sizeof *b);
     hdi_geo_sweep(g, &g->poisson, k, b, NULL);
     for (c = 0; c < n && rep; c++) {
-        double *rhs = k > 1 ? g->r : g->x;
+        double *rhs = k > 1 ? g->r : g->x, distance;
         if (k > 1 && *faint >> c & 1) continue;
         (void)hdi_geo_column(g, k, x, c, rhs);
-        hdi_geo_judge(rep, heat[c], hdi_geo_residual(g, 0, hdi_geo_column(g, k, b, c, g->x), rhs), n_stages);
+        distance = hdi_geo_residual(g, 0, hdi_geo_column(g, k, b, c, g->x), rhs);
+        rep->residual_heat = hdi_max(rep->residual_heat, heat[c]);
+        rep->residual_distance = hdi_max(rep->residual_distance, distance);
+        rep->n_stages = hdi_high32(rep->n_stages, n_stages);
+        if (!(heat[c] <= HDI_GEO_RESIDUAL && distance <= HDI_GEO_RESIDUAL)) rep->status = HD_WARN_ACCURACY;
     }
     return hdi_geo_answer(g, s, n, least[0], *faint, e);
-}
-
-/* The distances of a column by itself. */
-static hd_status hdi_geo_alone(hd_geodesic *g, const hdi_geo_source *s, hd_geodesic_report *rep,
-                               hd_error *e) {
-    int faint;
-    if (hdi_geo_values_room(g, s->items ? s->items->n : s->n, e) < 0) return e->status;
-    if (s->n > 1 && !g->first) g->first = HDI_TAKE(hdi_geo_keep(g, e), double, g->n_active);
-    if (e->status >= 0) (void)hdi_geo_solve(g, s, 1, &faint, rep, e);
-    return e->status;
 }
 
 /* The distances of up to a batch of columns of one vertex each. Columns whose heat fades are computed again
@@ -23704,7 +23618,7 @@ static hd_status hdi_geo_alone(hd_geodesic *g, const hdi_geo_source *s, hd_geode
 static hd_status hdi_geo_batch(hd_geodesic *g, const hdi_geo_source *s, int32_t n, hd_geodesic_report *rep,
                                hd_error *e) {
     const uint64_t size = HDI_GEO_WIDE * (uint64_t)g->n_active;
-    int faint = 0;
+    int faint = 0, none;
     int32_t c;
     if (!g->wide_x)
         g->wide_x = HDI_TAKE(hdi_geo_keep(g, e), double, 2 * size + hdi_sweep_size(&g->sym, 1, HDI_GEO_WIDE));
@@ -23713,70 +23627,29 @@ static hd_status hdi_geo_batch(hd_geodesic *g, const hdi_geo_source *s, int32_t 
     g->wide_work = g->wide_b + size;
     if (hdi_geo_solve(g, s, n, &faint, rep, e) < 0) return e->status;
     for (c = 0; c < n; c++)
-        if (faint >> c & 1 && hdi_geo_alone(g, s + c, rep, e) < 0) break;
+        if (faint >> c & 1 && hdi_geo_solve(g, s + c, 1, &none, rep, e) < 0) break;
     return e->status;
-}
-
-/* Puts the vertices of n points, from one on, into list if all are at vertices; returns 0 if one is not. */
-static int hdi_geo_vertices(const hd_sources *s, int64_t begin, int32_t n, int32_t *list) {
-    const int32_t corners = hdi_source_corners(s);
-    int32_t q, c;
-    for (q = 0; q < n && !s->curve; q++) {
-        int32_t parts = 0;
-        for (c = 0; c < corners; c++) {
-            if (hdi_source_part(s, begin + q, c) == 0) continue;
-            list[q] = s->vertex[(begin + q) * corners + c];
-            parts++;
-        }
-        if (parts > 1) return 0;
-    }
-    return !s->curve;
-}
-
-/* Distances to a column that is more than a list of vertices: n points from one on; s->d is set. */
-static hd_status hdi_geo_from(hd_geodesic *g, const hd_sources *from, int64_t begin, int32_t n,
-                              hdi_geo_source *s, hd_geodesic_report *rep, hd_error *e) {
-    hdi_scope scope = hdi_scope_begin(g->ctx, e);
-    int32_t *list = HDI_TAKE(&scope, int32_t, n);
-    hdi_geo_items items;
-    s->vertex = list;
-    s->n = 0;
-    s->items = NULL;
-    if (list && hdi_geo_vertices(from, begin, n, list)) {
-        s->n = n;
-        (void)hdi_geo_off_border(g, list, n, e);
-    } else if (list && g->poly.ptr) {
-        (void)hdi_fail(e, HD_ERR_ARGUMENT, "geodesic: on polygons sources are vertices only");
-    } else if (list && hdi_geo_items_make(&items, g, from, begin, n, &scope) >= 0) {
-        s->items = &items;
-    }
-    if (e->status >= 0) (void)hdi_geo_alone(g, s, rep, e);
-    return hdi_scope_end(&scope);
 }
 
 /* Columns of distances, ldd apart, from sources that are checked. */
 static hd_status hdi_geo_distances(hd_geodesic *g, const hd_sources *from, double *D, size_t ldd,
                                    hd_geodesic_report *rep, hd_error *e) {
-    const int vertices = hdi_source_corners(from) == 1 && !from->curve;
-    const int32_t most = vertices && !from->first ? HDI_GEO_WIDE : 1, n = from->count;
+    const int vertices = hdi_source_corners(from) == 1 && !from->curve && !from->first;
+    const int32_t n = from->count;
     hdi_geo_source s[HDI_GEO_WIDE];
     int32_t m, c, k;
-    memset(s, 0, sizeof s);
+    int faint;
     for (m = 0; m < n && e->status >= 0; m += k) {
-        k = n - m >= HDI_GEO_WIDE_FROM ? hdi_low32(n - m, most) : 1;
-        if (hdi_progress(g->ctx, "solve", (double)m / n, e) < 0) break;
-        for (c = 0; c < k; c++) {
-            const int64_t begin = hdi_source_first(from, m + c);
-            s[c].vertex = from->vertex + begin;
-            s[c].n = (int32_t)(hdi_source_first(from, m + c + 1) - begin);
+        hdi_scope scope = hdi_scope_begin(g->ctx, e);
+        k = vertices && n - m >= HDI_GEO_WIDE_FROM ? hdi_low32(n - m, HDI_GEO_WIDE) : 1;
+        (void)hdi_progress(g->ctx, "solve", (double)m / n, e);
+        for (c = 0; c < k && e->status >= 0; c++) {
+            if (hdi_geo_source_make(s + c, g, from, m + c, &scope) < 0) e->column = m + c;
             s[c].d = D + (size_t)(m + c) * ldd;
-            if (!vertices || hdi_geo_off_border(g, s[c].vertex, s[c].n, e) >= 0) continue;
-            e->column = m + c;
-            return e->status;
         }
-        if (k > 1) (void)hdi_geo_batch(g, s, k, rep, e);
-        else if (vertices) (void)hdi_geo_alone(g, s, rep, e);
-        else if (hdi_geo_from(g, from, hdi_source_first(from, m), s->n, s, rep, e) < 0) e->column = m;
+        if (e->status >= 0 && k > 1) (void)hdi_geo_batch(g, s, k, rep, e);
+        else if (e->status >= 0) (void)hdi_geo_solve(g, s, 1, &faint, rep, e);
+        (void)hdi_scope_end(&scope);
     }
     return e->status;
 }
@@ -24416,10 +24289,10 @@ HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, in
                                         hd_report *report, hd_error *err) {
     hdi_distances to;
     memset(&to, 0, sizeof to);
-    to.kind = hdi_distance_of(kind);
+    to.of.kind = hdi_distance_of(kind);
     to.D = D;
     to.ld = ldd;
-    return hdi_distance_answer(heat, &to, sources, n_times, t, report, err);
+    return hdi_distances_run(heat, &to, sources, n_times, t, report, err);
 }
 
 HEATDIFF_API hd_status hd_heat_distance_pairs(hd_heat *heat, hd_distance_kind kind, int32_t n_times,
@@ -24428,10 +24301,9 @@ HEATDIFF_API hd_status hd_heat_distance_pairs(hd_heat *heat, hd_distance_kind ki
                                               hd_error *err) {
     hdi_heat_call h;
     hdi_pairs to;
-    to.kind = hdi_distance_of(kind);
-    if (hdi_distance_begin(&h, heat, to.kind, n_times, t, 0, report, err) < 0 || !HDI_HAS_DIFFUSION)
+    to.of.kind = hdi_distance_of(kind);
+    if (hdi_distance_begin(&h, heat, to.of.kind, n_times, t, 1, report, err) < 0 || !HDI_HAS_DIFFUSION)
         return hdi_heat_end(&h);
-    if (hdi_heat_filtered(heat)) (void)hdi_direct_only(&h);
     if (n_pairs > 0 && !d) hdi_missing(h.e);
     to.n = n_pairs;
     to.i = i;
@@ -24447,27 +24319,27 @@ HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, doub
                                       double *distance, hd_report *report, hd_error *err) {
     hdi_samples a;
     memset(&a, 0, sizeof a);
-    a.kind = hdi_distance_of(kind);
+    a.of.kind = hdi_distance_of(kind);
     a.t = t;
     a.count = count;
     a.vertex = vertex;
     a.distance = distance;
-    return hdi_sample_answer(heat, &a, sources, report, err);
+    return hdi_sample_run(heat, &a, sources, report, err);
 }
 
 HEATDIFF_API hd_status hd_heat_estimate(hd_heat *heat, hd_query query, int32_t n_times, const double *t,
                                         int32_t k, hd_estimate *estimate, hd_error *err) {
     const hdi_query as = query == HD_QUERY_FIELDS ? HDI_QUERY_FIELD : HDI_QUERY_SYMMETRIC;
-    const hdi_query_row *row = hdi_query_of(query);
+    const hdi_query_row row = hdi_query_of(query);
     hdi_heat_call h;
     hd_estimate found;
     hd_status status;
     memset(&found, 0, sizeof found);
     if (hdi_heat_begin(&h, heat, as, NULL, err) < 0) return hdi_heat_end(&h);
     if (!estimate) hdi_missing(h.e);
-    else if (hdi_estimate_check(&h, row, k) >= 0 && row->by <= HDI_BY_INVERSION)
-        (void)hdi_times_check(&h, n_times, t, row->by == HDI_BY_INVERSION);
-    if (h.e->status >= 0) (void)hdi_estimate_run(&h, row, k, &found);
+    else if (hdi_estimate_check(&h, &row, k) >= 0 && hdi_query_timed(&row))
+        (void)hdi_times_check(&h, n_times, t, row.by == HDI_BY_INVERSION);
+    if (h.e->status >= 0) (void)hdi_estimate_run(&h, &row, k, &found);
     status = hdi_heat_end(&h);
     if (status < 0) return status;
     hdi_estimate_close(heat, &found);
