@@ -2746,6 +2746,7 @@ typedef struct hdi_residual {
     /* of each block |R|^2 in the norm of weight, |X|^2 in that of noise, and X'BX, by numbers; or NULL */
     double (*sum)[3][HDI_PACK];
     const double *weight, *noise;
+    void (*kernel)(const struct hdi_residual *g);
 } hdi_residual;
 
 /* The kernels of one instruction set and width. A tile has nr columns. Slices: groups of nr columns of a
@@ -12866,9 +12867,8 @@ HEATDIFF_API hd_status hd_rational_fit(hd_rational *out, int32_t count, const hd
  * Owns the family t L + theta_i B over the poles of a set: solutions for one right-hand side, by iterations
  * or with factors, their weighted sum, the bound on its error, and weighted sums of the inverses. May call
  * [18], [20] and [21].
- * Iterations take the poles one after the other, because a solution gives a start for the next pole: the
- * conjugate of a solution is the solution of the conjugate pole, and x(theta) is continued by the straight
- * line through both. Parallel tasks are right-hand sides, and preconditioners. */
+ * Iterations take the poles one after the other, because a solution is a start for the next pole. Parallel
+ * tasks are right-hand sides, and preconditioners. */
 
 /* ---- what answers can be off by ---- */
 /* An error r in the system of a pole, b - A x = r, is an error A^-1 r in its solution. Two norms bound it:
@@ -12954,7 +12954,8 @@ static void hdi_ledger_join(hdi_ledger *l, const hdi_ledger *other) {
 /* Notes a value and the bound on its error. */
 static void hdi_ledger_note(hdi_ledger *l, double value, hdi_parts off) {
     hdi_ledger one = {{hdi_bound_of(off.rational), hdi_bound_of(off.solver), hdi_bound_of(off.rounding),
-                       hdi_bound_of(off.local)}, {0, 0, 0, 0}, fabs(value), fabs(value) > 0 ? fabs(value) : HUGE_VAL, -1, 1,
+                       hdi_bound_of(off.local)},
+                      {0, 0, 0, 0}, fabs(value), fabs(value) > 0 ? fabs(value) : HUGE_VAL, -1, 1,
                       !hdi_finite(value)};
     const double all = hdi_parts_sum(&one.off);
     /* to the exact value, which is at least |value| - all */
@@ -13107,38 +13108,12 @@ static int hdi_set_same_poles(const hd_rational *a, const hd_rational *b) {
     return a->n_poles == b->n_poles && memcmp(a->theta, b->theta, (size_t)a->n_poles * sizeof *a->theta) == 0;
 }
 
-/* Takes up a set and a time. When filled is 0, hdi_family_fill must follow. */
-static void hdi_family_set(hdi_family *fam, const hd_rational *set, double t) {
-    const int held = fam->filled && fam->t == t && hdi_set_same_poles(&fam->set, set);
-    fam->set = *set;                             /* weights cost nothing */
-    if (held) return;
-    fam->filled = 0;
-    fam->t = t;
-    hdi_noise_weights(fam->lap, t, hdi_rat_largest(set), fam->noise, fam->noise_work);
-}
-
 /* Do poles make their preconditioners in turns? */
 static int hdi_family_shares(const hdi_family *fam) { return fam->n_values < fam->set.n_poles; }
 
 /* Values of a preconditioner. */
 static uint64_t hdi_family_size(const hdi_family *fam) {
     return hdi_precond_size(hdi_preconds + fam->precond, fam->up->n, fam->up->ptr[fam->up->n]);
-}
-
-/* Room for the preconditioners of the set. */
-static hd_status hdi_family_room(hdi_family *fam, hd_error *e) {
-    const uint64_t size = hdi_family_size(fam);
-    int32_t room = fam->set.n_poles;
-    if (fam->n_values >= room) return HD_OK;
-    hdi_family_free(fam);
-    fam->values = HDI_NEW(fam->ctx, hd_c64, (uint64_t)room * size, e);
-    if (room > 1 && hdi_over_limit(fam->ctx, e)) {
-        hdi_error_clear(e);
-        fam->values = HDI_NEW(fam->ctx, hd_c64, size, e);
-        room = 1;
-    }
-    if (fam->values) fam->n_values = room;
-    return e->status;
 }
 
 /* Most right-hand sides at a time: in all, by iterations, and in a batch with the factors of the poles.
@@ -13237,24 +13212,10 @@ static uint64_t hdi_lane_size(const hdi_lane_room *r) {
     return (uint64_t)(3 * (r->n + r->n_components) + basis) + hdi_lane_systems_size(r);
 }
 
-/* Arrays of Lanczos in x, see hdi_lane_size. */
-static void hdi_lane_lanczos(hdi_lanczos *z, const hdi_lane_room *room, double *x) {
-    const int64_t n = room->n, most = (int64_t)room->steps + 1;
-    z->room = room->steps;
-    z->v = x;
-    z->c = z->v + n;
-    z->c_old = z->c + n;
-    z->alpha = z->c_old + n;
-    z->beta = z->alpha + most;
-    z->d = z->beta + most;
-    z->e = z->d + most;
-    z->ends = z->e + most;
-    z->y = z->ends + 2 * most;
-    z->work = (hd_c64 *)(void *)(z->y + most);
-}
-
 /* Room as asked for, or more. Where it grows, what the lane held is lost. */
 static hd_status hdi_lane_make(hdi_lane *lane, hdi_lane_room room, hd_context *ctx, hd_error *e) {
+    hdi_lanczos *z = &lane->lanczos;
+    int64_t most;
     room.steps = hdi_high32(room.steps, lane->room.steps);
     room.systems = hdi_high32(room.systems, lane->room.systems);
     if (lane->f && room.steps == lane->room.steps && room.systems == lane->room.systems) return HD_OK;
@@ -13273,7 +13234,18 @@ static hd_status hdi_lane_make(hdi_lane *lane, hdi_lane_room room, hd_context *c
     lane->spare_sums = lane->sums + room.n_components;
     lane->tmp = lane->spare_sums + room.n_components;
     lane->b = (hd_c64 *)(void *)lane->tmp;
-    hdi_lane_lanczos(&lane->lanczos, &room, lane->tmp + hdi_lane_systems_size(&room));
+    most = (int64_t)room.steps + 1;
+    z->room = room.steps;
+    z->v = lane->tmp + hdi_lane_systems_size(&room);
+    z->c = z->v + room.n;
+    z->c_old = z->c + room.n;
+    z->alpha = z->c_old + room.n;
+    z->beta = z->alpha + most;
+    z->d = z->beta + most;
+    z->e = z->d + most;
+    z->ends = z->e + most;
+    z->y = z->ends + 2 * most;
+    z->work = (hd_c64 *)(void *)(z->y + most);
     if (room.systems) lane->tmp += 6 * room.n;   /* after b and the first two vectors */
     return HD_OK;
 }
@@ -13314,8 +13286,29 @@ static void hdi_fill_task(void *arg, int64_t index, int32_t worker) {
     hdi_precond_make(&lane->k[index].m, lane->b + index * lane->room.n);
 }
 
-/* Makes the preconditioners, one parallel task each, with the systems of a lane. */
-static hd_status hdi_family_fill(hdi_family *fam, hdi_lane *lane, hd_error *e) {
+/* Takes up a set and a time with n lanes: their systems, and the preconditioners, one parallel task each. */
+static hd_status hdi_family_prepare(hdi_family *fam, const hd_rational *set, double t, hdi_lane *lane,
+                                    int32_t n, hd_error *e) {
+    const uint64_t size = hdi_family_size(fam);
+    int32_t room = set->n_poles, i;
+    if (!fam->filled || fam->t != t || !hdi_set_same_poles(&fam->set, set)) {
+        fam->filled = 0;
+        hdi_noise_weights(fam->lap, t, hdi_rat_largest(set), fam->noise, fam->noise_work);
+    }
+    fam->set = *set;                             /* weights cost nothing */
+    fam->t = t;
+    if (fam->n_values < room) {
+        hdi_family_free(fam);
+        fam->values = HDI_NEW(fam->ctx, hd_c64, (uint64_t)room * size, e);
+        if (room > 1 && hdi_over_limit(fam->ctx, e)) {
+            hdi_error_clear(e);
+            fam->values = HDI_NEW(fam->ctx, hd_c64, size, e);
+            room = 1;
+        }
+        if (!fam->values) return e->status;
+        fam->n_values = room;
+    }
+    for (i = 0; i < n; i++) hdi_lane_systems(lane + i, fam);
     if (fam->filled) return HD_OK;
     if (hdi_progress(fam->ctx, "precondition", 0, e) < 0) return e->status;
     if (!hdi_family_shares(fam)) hdi_parallel(fam->ctx, fam->set.n_poles, hdi_fill_task, lane);
@@ -13381,17 +13374,15 @@ static void hdi_lane_first(hdi_lane *lane, const hd_laplacian *lap, const hd_rat
     if (hdi_finite(factor)) lane->energy = hdi_min(lane->energy, factor * (fabs(sum) + lane->f_norm * error));
 }
 
-/* |x|_B^2 of a complex vector; tmp [3 n]. */
+/* |x|_B^2 of a complex vector; tmp [2 n]. */
 static double hdi_b_norm2_complex(const hd_laplacian *lap, const hd_c64 *x, double *tmp) {
-    const int32_t n = lap->n_active;
-    double *work = tmp + 2 * (int64_t)n;
+    const hdi_system mass = {lap, 0, {1, 0}};
+    double sum = 0;
     int32_t i;
-    if (!lap->B) return hdi_cnorm2w(x, lap->mass, n);
-    for (i = 0; i < n; i++) {
-        tmp[i] = x[i].re;
-        tmp[n + i] = x[i].im;
-    }
-    return hdi_max(0, hdi_b_norm2(lap, tmp, work) + hdi_b_norm2(lap, tmp + n, work));
+    if (!lap->B) return hdi_cnorm2w(x, lap->mass, lap->n_active);
+    (void)hdi_system_apply(&mass, x, (hd_c64 *)(void *)tmp);
+    for (i = 0; i < lap->n_active; i++) sum += x[i].re * tmp[2 * i] + x[i].im * tmp[2 * i + 1];
+    return hdi_max(0, sum);
 }
 
 /* u = a0 f - sum a_i x_i, in the order of the poles, and the bounds on its error but for the rational one. */
@@ -13414,17 +13405,6 @@ static void hdi_lane_sum(hdi_lane *lane, const hdi_family *fam) {
                        k->r_norm, &k->x->re, 2);
 }
 
-/* The start of system p from the solution of the next pole: for theta = theta_p in
- *   x(theta) ~ c x_q + (1 - c) conj(x_q),   c = (theta - conj(theta_q))/(theta_q - conj(theta_q)). */
-static void hdi_warm_start(hdi_lane *lane, const hdi_family *fam, int32_t p) {
-    const hd_c64 at = fam->set.theta[p], q = fam->set.theta[p + 1], *HDI_RESTRICT y = lane->k[p + 1].x;
-    const hd_c64 c = q.im > 0 ? hdi_cdiv(hdi_csub(at, hdi_cconj(q)), hdi_c(0, 2 * q.im)) : hdi_c(1, 0);
-    hd_c64 *HDI_RESTRICT x = lane->k[p].x;
-    int32_t i;
-    for (i = 0; i < fam->lap->n_active; i++)     /* conj(x_q) is x_q - 2 i Im(x_q) */
-        x[i] = hdi_cadd(y[i], hdi_cmul(hdi_csub(c, hdi_c(1, 0)), hdi_c(0, 2 * y[i].im)));
-}
-
 /* Runs the systems until the bound of their part of the answer's error is at most aim. Each may use an equal
  * share of what is left over by those before it. fresh: each starts from the solution of the one before it,
  * else from where it is. The order from the last pole to the first was the fastest in measurements. */
@@ -13443,15 +13423,11 @@ static hd_status hdi_lane_run(hdi_lane *lane, const hdi_family *fam, int fresh, 
         const double fair = hdi_max(left / (p + 1), 0.1 * aim / n_poles);
         const double share = weight > 0 ? fair / weight : DBL_MAX;
         const double target = share * sqrt(fam->lap->b_ratio) * hdi_pole_distance(fam->set.theta[p]);
-        const int runs = fresh || k->r_norm > target, warm = fresh && p + 1 < n_poles && b_norm > 0;
+        const int runs = fresh || k->r_norm > target;
         if (runs && hdi_family_shares(fam)) hdi_precond_make(&k->m, k->r);
         if (fresh) hdi_iteration_start(k, b_norm);
-        if (warm) hdi_warm_start(lane, fam, p);
+        if (fresh && p + 1 < n_poles) memcpy(k->x, k[1].x, (size_t)fam->lap->n_active * sizeof *k->x);
         if (runs) hdi_iteration_residual(k, lane->b);
-        if (warm && !(k->r_norm < b_norm)) {
-            hdi_iteration_start(k, b_norm);
-            hdi_iteration_residual(k, lane->b);
-        }
         part.from = watch->from + part.share * (n_poles - 1 - p);
         status = hdi_iteration_run(k, lane->b, target, fam->max_iterations, &part, e);
         if (status < 0) {
@@ -13463,13 +13439,6 @@ static hd_status hdi_lane_run(hdi_lane *lane, const hdi_family *fam, int fresh, 
         left -= weight * hdi_pole_error(k);
     }
     return worst;
-}
-
-/* max (1 + x)^-1 |x + theta| over x >= 0: then |(B + t L)^-1 B f|_B <= this |(t L + theta B)^-1 B f|_B. */
-static double hdi_resolvent_ratio(hd_c64 theta) {
-    const double x = theta.re < 1 ? theta.im * theta.im / (1 - theta.re) - theta.re : -1;
-    const double inside = x > 0 ? hypot(x + theta.re, theta.im) / (1 + x) : 0;
-    return hdi_max(inside, hdi_max(1, hdi_cabs(theta)));
 }
 
 /* ---- the same by factorisation ---- */
@@ -13548,45 +13517,38 @@ static hd_status hdi_elim_make(hdi_elim *m, const hd_laplacian *lap, hd_ordering
     m->pack = HDI_NEW(ctx, hdi_factor, HD_MAX_POLES / 4, e);
     if (e->status >= 0 && hdi_pair_analyse(&m->sym, lap, ordering, own, ctx, e) >= 0)
         m->lap = hdi_pair_renumber(lap, m->sym.perm, ctx, e);
-    if (m->lap) {
-        m->weight = hdi_make_weight(m->lap, ctx, e);
-        m->noise = m->weight ? m->weight + lap->n_active : NULL;
-        m->noise_shift = m->weight ? m->noise + lap->n_active : NULL;
-    }
-    if (e->status < 0) hdi_elim_free(m);
-    return e->status;
+    if (m->lap) m->weight = hdi_make_weight(m->lap, ctx, e);
+    if (!m->weight) return hdi_elim_free(m), e->status;
+    m->noise = m->weight + lap->n_active;
+    m->noise_shift = m->noise + lap->n_active;
+    return HD_OK;
 }
 
-/* t L + theta B in terms of the source's entries; t comes scaled, as B does in lap. */
-static hdi_values hdi_elim_values(const hdi_elim *m, double t) {
+/* Factors t L + theta B for the width of f: for a real theta, or four. t comes scaled, as B does in lap. */
+static hd_status hdi_elim_factor(hdi_elim *m, hdi_factor *f, double t, const hd_c64 *theta, hd_error *e) {
+    const int32_t k = f->width == 1 ? 1 : (int32_t)HDI_PACK_LANES;
+    double most = 0;
     hdi_values v;
+    int32_t i, q;
     memset(&v, 0, sizeof v);
     v.l = m->source->L.val;
     v.b = m->source->B;
     v.b_diag = m->source->b_diag;
     v.t = t;
-    return v;
-}
-
-/* Largest |diagonal entry| of t L + theta_q B, over k of them. */
-static double hdi_elim_diagonal(const hd_laplacian *lap, double t, const hd_c64 *theta, int32_t k) {
-    double most = 0;
-    int32_t i, q;
-    for (i = 0; i < lap->n_active; i++) {
-        const double b = lap->b_diag[i], l = t * hdi_row_diagonal(lap, i);
+    for (q = 0; q < k; q++) v.theta[q] = hdi_cscale(m->scale, theta[q]);
+    for (i = 0; i < m->lap->n_active; i++) {
+        const double b = m->lap->b_diag[i], l = t * hdi_row_diagonal(m->lap, i);
         for (q = 0; q < k; q++) most = hdi_max(most, hdi_cabs2(hdi_c(l + theta[q].re * b, theta[q].im * b)));
     }
-    return sqrt(most);
+    f->largest_entry = sqrt(most);
+    return hdi_factor_run(f, &v, e);
 }
 
 /* The real factor f of t L + theta B. */
 static hd_status hdi_elim_real(hdi_elim *m, hdi_factor *f, double t, double theta, hd_error *e) {
     const hd_c64 real = hdi_c(theta, 0);
-    hdi_values v = hdi_elim_values(m, t);
-    v.theta[0] = hdi_cscale(m->scale, real);
     if (!f->ctx && hdi_factor_make(f, NULL, &m->sym, 1, m->ctx, e) < 0) return e->status;
-    f->largest_entry = hdi_elim_diagonal(m->lap, t, &real, 1);
-    return hdi_factor_run(f, &v, e);
+    return hdi_elim_factor(m, f, t, &real, e);
 }
 
 /* The factor of B + g L. */
@@ -13618,7 +13580,6 @@ static int hdi_elim_holds(const hdi_elim *m, const hd_rational *set, double t) {
 
 /* Factors of all poles of a set at a time. */
 static hd_status hdi_elim_poles(hdi_elim *m, const hd_rational *set, double t, hd_error *e) {
-    hdi_values v = hdi_elim_values(m, t);
     const int there = hdi_elim_holds(m, set, t);
     int32_t i, q;
     m->set = *set;                               /* weights cost nothing */
@@ -13634,12 +13595,8 @@ static hd_status hdi_elim_poles(hdi_elim *m, const hd_rational *set, double t, h
     if (m->lone >= 0 && hdi_elim_real(m, &m->real, t, set->theta[0].re, e) < 0) return e->status;
     for (i = 0; i < m->n_used; i++) {
         hd_c64 theta[4];
-        for (q = 0; q < 4; q++) {
-            theta[q] = set->theta[hdi_elim_pole(m, i, q)];
-            v.theta[q] = hdi_cscale(m->scale, theta[q]);
-        }
-        m->pack[i].largest_entry = hdi_elim_diagonal(m->lap, t, theta, 4);
-        if (hdi_factor_run(m->pack + i, &v, e) < 0) {
+        for (q = 0; q < 4; q++) theta[q] = set->theta[hdi_elim_pole(m, i, q)];
+        if (hdi_elim_factor(m, m->pack + i, t, theta, e) < 0) {
             if (e->pole >= 0) e->pole = hdi_elim_pole(m, i, (int32_t)e->pole);
             return e->status;
         }
@@ -13691,24 +13648,18 @@ static hdi_residual hdi_residual_open(const hd_laplacian *lap, double t, const d
     return g;
 }
 
-typedef struct hdi_residual_job {
-    const hdi_residual *g;
-    const hdi_kernels *ops;
-} hdi_residual_job;
-
 static void hdi_residual_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_residual_job *job = (const hdi_residual_job *)arg;
-    hdi_residual part = *job->g;
+    hdi_residual part = *(const hdi_residual *)arg;
     part.begin = (int32_t)begin;
     part.end = (int32_t)end;
-    job->ops->residual(&part);
+    part.kernel(&part);
 }
 
 /* Threads share the rows where nothing is summed over them. */
-static void hdi_residual_run(const hdi_residual *g, hd_context *ctx) {
-    hdi_residual_job job = {g, hdi_kernels_get(hdi_simd_level(ctx), 0)};
-    if (g->sum) job.ops->residual(g);
-    else hdi_parallel_ranges(ctx, g->end, HDI_ROWS_PER_TASK, hdi_residual_task, &job);
+static void hdi_residual_run(hdi_residual *g, hd_context *ctx) {
+    g->kernel = hdi_kernels_get(hdi_simd_level(ctx), 0)->residual;
+    if (g->sum) g->kernel(g);
+    else hdi_parallel_ranges(ctx, g->end, HDI_ROWS_PER_TASK, hdi_residual_task, g);
 }
 
 /* y = B x for a block, or for wide = 1 a vector. */
@@ -13736,23 +13687,6 @@ static void hdi_elim_coef(const hdi_elim *m, int32_t i, const hd_c64 *w, double 
     }
 }
 
-/* The same of the poles of pack i, or for i < 0 of the lone real pole. w [n_poles]: weights of an answer. */
-static hdi_residual hdi_elim_residual(const hdi_elim *m, int32_t i, const hd_c64 *w, const double *x,
-                                      int32_t n_blocks, double (*sum)[3][HDI_PACK]) {
-    hdi_residual g = hdi_residual_open(m->lap, m->t, x, n_blocks, sum);
-    int q;
-    g.real = i < 0;
-    g.weight = m->weight;
-    g.noise = m->noise;
-    hdi_elim_coef(m, i, w, g.coef);
-    for (q = 0; q < HDI_PACK; q++) {
-        const hd_c64 theta = m->set.theta[i < 0 ? m->lone : hdi_elim_pole(m, i, q % 4)];
-        g.re[q] = theta.re;
-        g.im[q] = theta.im;
-    }
-    return g;
-}
-
 /* Notes for a lane what is measured of pole p, number q of a block. Re x of row i is at x + i stride. */
 static void hdi_batch_note(const hdi_elim *m, int32_t p, double (*sum)[HDI_PACK], int q, const double *x,
                            int64_t stride, hdi_lane *to) {
@@ -13774,10 +13708,18 @@ static void hdi_batch_check(const hdi_elim *m, int32_t i, const double *x, hdi_l
     const int32_t n_here = i < 0 ? 1 : hdi_low32(m->set.n_poles - first, 4);
     double sum[HDI_LANES_BATCH][3][HDI_PACK];
     hd_c64 w[HD_MAX_POLES];
-    hdi_residual g;
-    int32_t p, r;
+    hdi_residual g = hdi_residual_open(m->lap, m->t, x, n_blocks, sum);
+    int32_t p, q, r;
     for (p = 0; p < m->set.n_poles; p++) w[p] = hdi_cscale(-hdi_rat_count(&m->set, p), m->set.a[p]);
-    g = hdi_elim_residual(m, i, w, x, n_blocks, sum);
+    hdi_elim_coef(m, i, w, g.coef);
+    for (q = 0; q < HDI_PACK; q++) {
+        const hd_c64 theta = m->set.theta[i < 0 ? m->lone : hdi_elim_pole(m, i, q % 4)];
+        g.re[q] = theta.re;
+        g.im[q] = theta.im;
+    }
+    g.real = i < 0;
+    g.weight = m->weight;
+    g.noise = m->noise;
     for (r = 0; r < k; r++) {
         g.f[r] = lane[r].skip ? NULL : lane[r].rhs;
         g.u[r] = lane[r].skip ? NULL : lane[r].u;
@@ -13808,7 +13750,7 @@ static void hdi_batch_extra(const hdi_elim *m, int32_t i, const double *x, const
     }
 }
 
-/* Puts the constants of a right-hand side that was solved without them into its further sums. */
+/* Puts the constants of a right-hand side that was solved without them, lane->sums, into its further sums. */
 static void hdi_batch_extra_means(const hdi_elim *m, hdi_lane *lane) {
     const hd_laplacian *lap = m->lap;
     int32_t row, p, i;
@@ -13816,23 +13758,20 @@ static void hdi_batch_extra_means(const hdi_elim *m, hdi_lane *lane) {
         const hd_c64 *w = lane->rows.weight + (int64_t)row * lane->rows.stride;
         double *to = lane->rows.sum + (int64_t)row * lap->n_active, c = 0;
         for (p = 0; p < m->set.n_poles; p++) c += hdi_cdiv(w[p], m->set.theta[p]).re;
-        for (i = 0; i < lap->n_active; i++)
-            to[i] += c * lane->target[lap->component[i]] / lap->component_mass[lap->component[i]];
+        for (i = 0; i < lap->n_active; i++) to[i] += c * lane->sums[lap->component[i]];
     }
 }
 
-/* Solves for the lone real pole. The solution of one right-hand side is spread into a block. */
-static void hdi_batch_solve_real(const hdi_elim *m, const hdi_batch *b, const hdi_lane *lane, int32_t k,
-                                 const char *active, hd_context *ctx) {
-    hdi_sweep z = hdi_sweep_open(&m->real, k > 1 ? 8 : 1, b->x, b->work);
-    const double *rhs[HDI_LANES_BATCH] = {NULL};
-    int32_t r;
+/* Solves for pack i, or for i < 0 the lone real pole, where a single solution is spread into a block. */
+static void hdi_batch_solve(const hdi_elim *m, const hdi_batch *b, int32_t i, const double *const *rhs,
+                            int32_t k, const char *active, hd_context *ctx) {
+    const int32_t wide = i >= 0 ? k : k > 1 ? 8 : 1;
+    hdi_sweep z = hdi_sweep_open(i < 0 ? &m->real : m->pack + i, wide, b->x, b->work);
     int64_t j;
-    for (r = 0; r < k; r++) rhs[r] = lane[r].skip ? NULL : lane[r].rhs;
     z.rhs = rhs;
     z.active = active;
     hdi_sweep_run(&z, ctx);
-    for (j = m->sym.n; k == 1 && j-- > 0;) {
+    for (j = m->sym.n; i < 0 && k == 1 && j-- > 0;) {
         const double x = b->x[j];
         memset(b->x + 8 * j, 0, 8 * sizeof x);
         b->x[8 * j] = x;
@@ -13844,11 +13783,10 @@ static void hdi_batch_solve_real(const hdi_elim *m, const hdi_batch *b, const hd
 static void hdi_batch_run(const hdi_elim *m, const hdi_batch *b, hdi_lane *lane, int32_t k, hd_context *ctx) {
     const hdi_symbolic *s = &m->sym;
     const int32_t n = s->n;
-    const double *rhs[HDI_LANES_BATCH];
+    const double *rhs[HDI_LANES_BATCH] = {NULL};
     const char *active;
     int64_t j, touched = 0;
     int32_t i, r;
-    hdi_sweep z;
     memset(b->active, 0, (size_t)s->n_super);
     for (r = 0; r < k; r++) {
         double norm2 = 0;
@@ -13864,16 +13802,8 @@ static void hdi_batch_run(const hdi_elim *m, const hdi_batch *b, hdi_lane *lane,
         hdi_lane_clear_off(lane + r);
     }
     active = touched < 64 * (int64_t)k ? b->active : NULL;
-    if (m->lone >= 0) {
-        hdi_batch_solve_real(m, b, lane, k, active, ctx);
-        hdi_batch_check(m, -1, b->x, lane, k);
-        hdi_batch_extra(m, -1, b->x, lane, k);
-    }
-    for (i = 0; i < m->n_used; i++) {
-        z = hdi_sweep_open(m->pack + i, k, b->x, b->work);
-        z.rhs = rhs;
-        z.active = active;
-        hdi_sweep_run(&z, ctx);
+    for (i = m->lone >= 0 ? -1 : 0; i < m->n_used; i++) {
+        hdi_batch_solve(m, b, i, rhs, k, active, ctx);
         hdi_batch_check(m, i, b->x, lane, k);
         hdi_batch_extra(m, i, b->x, lane, k);
     }
@@ -14016,12 +13946,9 @@ static void hdi_rational_bound(const hd_laplacian *lap, const hd_rational *set, 
     const int constants = lap->conserves && set->kind == HD_POLES_OWN;
     int32_t p;
     /* c(0), by which constants are multiplied, and what they leave when taken out */
-    for (p = 0; p < set->n_poles && constants; p++) {
-        const double off = 8 * DBL_EPSILON * hdi_rat_count(set, p) * hdi_cabs(set->a[p]) /
-                           hdi_pole_distance(set->theta[p]) * lane->f_norm;
-        lane->off.rounding += off;
-        lane->off_m.rounding += off;
-    }
+    for (p = 0; p < set->n_poles && constants; p++)
+        hdi_lane_rounding(lane, 8 * DBL_EPSILON * hdi_rat_count(set, p) * hdi_cabs(set->a[p]) /
+                                hdi_pole_distance(set->theta[p]) * lane->f_norm);
     for (p = 0; p < set->n_poles; p++)           /* the sum of the answers again: |x_v| <= sqrt(g_v) |x|_M */
         lane->off_m.rounding += (set->n_poles + 1) * DBL_EPSILON * hdi_pole_size(set, p) *
             hdi_pole_gain(set->theta[p]) * sqrt(lane->energy);
@@ -14034,8 +13961,9 @@ static void hdi_rational_bound(const hd_laplacian *lap, const hd_rational *set, 
     lane->off_m.rational =
         hdi_finite(weighted) ? weighted * (constants ? lane->f_norm : sqrt(lane->energy)) : HUGE_VAL;
     if (hdi_finite(weighted) && set->n_poles > 0) {
-        const double resolvent = constants ? lane->f_norm
-                                 : hdi_resolvent_ratio(set->theta[lane->first_pole]) * lane->first_norm;
+        /* |x + theta| <= max(1, |theta|) (1 + x) for x >= 0 */
+        const double most = hdi_max(1, hdi_cabs(set->theta[lane->first_pole]));
+        const double resolvent = constants ? lane->f_norm : most * lane->first_norm;
         lane->off.rational = hdi_min(lane->off.rational, weighted * hdi_min(resolvent, lane->f_norm));
     }
 }
@@ -14123,35 +14051,37 @@ typedef struct hdi_elim_sums {
     int64_t stride;
 } hdi_elim_sums;
 
-/* The part of n factors of the same width, f[i] with the coefficients of pack i, or of the lone real pole. b:
- * the entries of B where forms are wanted. coef [n_sets][8]: work. */
+/* The part of n factors of the same width, f[i] with the coefficients of pack i, or of the lone real pole.
+ * Forms are of the source's B, and their coefficients make up for its scale. */
 static void hdi_elim_invert_width(hdi_elim *m, hdi_factor *f, int32_t n, const hdi_elim_sums *sums,
-                                  const double *b, double *coef, hd_error *e) {
-    const int32_t width = n > 0 ? f->width : 0;
-    hdi_forms forms;
+                                  hd_error *e) {
+    const int32_t width = n > 0 ? f->width : 0, forms = sums->wanted == HDI_WANT_FORMS;
+    const double scale = forms ? m->scale * m->scale : 1;
+    double *coef;
+    hdi_forms q;
     hdi_inverse z;
     hdi_scope s;
     uint64_t room;
-    int32_t i, k;
+    int32_t i, k, c;
     if (n == 0 || e->status < 0) return;
     s = hdi_scope_begin(m->ctx, e);
     hdi_inverse_take(&z, &m->sym, width, &s);
-    if (b) {
-        room = hdi_forms_make(&forms, &m->sym, width, &m->source->L, &s);
-        forms.room = HDI_TAKE(&s, double, room);
-        forms.x = b;
+    z.coef = coef = HDI_TAKE(&s, double, HDI_PACK * (uint64_t)sums->n_sets);
+    if (forms) {
+        room = hdi_forms_make(&q, &m->sym, width, &m->source->L, &s);
+        q.room = HDI_TAKE(&s, double, room);
+        q.x = m->source->B;
     }
-    z.coef = coef;
     z.n_sets = sums->n_sets;
     z.wanted = sums->wanted;
-    z.forms = b ? &forms : NULL;
+    z.forms = forms ? &q : NULL;
     z.values = sums->values;
     z.stride = sums->stride;
     for (i = 0; i < n && e->status >= 0; i++) {
         for (k = 0; k < sums->n_sets; k++) {
-            const hd_c64 *w = sums->weight + (int64_t)k * m->set.n_poles;
-            if (width == 1) coef[k] = w[m->lone].re;
-            else hdi_elim_coef(m, i, w, coef + HDI_PACK * (int64_t)k);
+            double part[HDI_PACK];
+            hdi_elim_coef(m, width == 1 ? -1 : i, sums->weight + (int64_t)k * m->set.n_poles, part);
+            for (c = 0; c < width; c++) coef[width * (int64_t)k + c] = scale * part[c];
         }
         (void)hdi_inverse_run(&z, f + i, e);
     }
@@ -14160,16 +14090,9 @@ static void hdi_elim_invert_width(hdi_elim *m, hdi_factor *f, int32_t n, const h
 
 /* Sums over all poles. The factors are there, and stay. */
 static hd_status hdi_elim_invert(hdi_elim *m, const hdi_elim_sums *sums, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(m->ctx, e);
-    double *coef = HDI_TAKE(&s, double, HDI_PACK * (uint64_t)sums->n_sets), *b = NULL;
-    int64_t p;
-    if (sums->wanted == HDI_WANT_FORMS) {        /* the source's entries, scaled as m->lap is */
-        b = HDI_TAKE(&s, double, m->source->L.nnz);
-        for (p = 0; b && p < m->source->L.nnz; p++) b[p] = m->scale * m->source->B[p];
-    }
-    hdi_elim_invert_width(m, &m->real, m->lone >= 0, sums, b, coef, e);
-    hdi_elim_invert_width(m, m->pack, m->n_used, sums, b, coef, e);
-    return hdi_scope_end(&s);
+    hdi_elim_invert_width(m, &m->real, m->lone >= 0, sums, e);
+    hdi_elim_invert_width(m, m->pack, m->n_used, sums, e);
+    return e->status;
 }
 
 /* out [n] = the diagonal of a factor's inverse, by pivots. coef [width]: of its parts, see hdi_elim_coef.
@@ -14190,28 +14113,35 @@ static hd_status hdi_elim_inverse_diagonal(const hdi_elim *m, hdi_factor *f, con
 
 enum { HDI_RESOLVENT_POLES = 8, HDI_RESOLVENT_POINTS = 160 };
 
-/* Weights with (B + tL)^-1 <= (1 + *slack) sum_p Re(weight_p (tL + theta_p B)^-1): 1/(1 + x) by least squares
- * of the relative error, for sets of few poles. Returns 0 where there are none. */
-static int hdi_resolvent_weights(const hd_rational *set, hd_c64 *weight, double *slack) {
+/* Weights with (B + tL)^-1 <= *factor sum_p Re(weight_p (tL + theta_p B)^-1), or a *factor of HUGE_VAL: for
+ * sets of few poles those of 1/(1 + x) by least squares of the relative error, else the best single pole. */
+static double hdi_resolvent_weights(const hd_rational *set, hd_c64 *weight) {
     enum { COLS = 2 * HDI_RESOLVENT_POLES + 1, N = HDI_RESOLVENT_POINTS };
-    double x[N], u[N], f[N], work[(N + COLS) * (COLS + 1) + COLS], worst = 0;
+    double x[N], u[N], f[N], work[(N + COLS) * (COLS + 1) + COLS], worst = 0, least = HUGE_VAL;
     hd_rational fit = *set;
-    int32_t i, p;
-    if (set->n_poles > HDI_RESOLVENT_POLES) return 0;
+    int32_t i, p, best = 0;
     for (i = 0; i < N; i++) {
         const double s = (i + 0.5) / (double)N;
         u[i] = 1 + 2 * s / ((1 - s) * (1 - s));
         x[i] = 1 - u[i];
         f[i] = 1 / u[i];
     }
-    hdi_residues_fit(&fit, N, x, u, f, 0, work);
-    for (p = 0; p < set->n_poles; p++) weight[p] = hdi_cscale(-hdi_rat_count(set, p), fit.a[p]);
+    if (set->n_poles > HDI_RESOLVENT_POLES) worst = HUGE_VAL;
+    else hdi_residues_fit(&fit, N, x, u, f, 0, work);
     for (i = 0; i <= 8 * N; i++) {               /* the end is as good as infinity */
         const double s = i / (8 * (double)N), at = 2 * s / hdi_max((1 - s) * (1 - s), 1e-20);
         worst = hdi_max(worst, fabs((1 + at) * hdi_rational_eval(&fit, -at) - 1));
     }
-    *slack = 2 * worst;
-    return worst < 0.2;
+    for (p = 0; p < set->n_poles; p++) {
+        const double factor = hdi_resolvent_factor(set->theta[p]);
+        weight[p] = worst < 0.2 ? hdi_cscale(-hdi_rat_count(set, p), fit.a[p]) : hdi_c(0, 0);
+        if (factor >= least) continue;
+        least = factor;
+        best = p;
+    }
+    if (worst < 0.2) return 1 + 2 * worst;
+    if (least < HUGE_VAL) weight[best] = hdi_c(1, 0);
+    return least;
 }
 
 /* The part of the constants in diag((B + tL)^-1). It is known exactly, whatever rounding has eaten. */
@@ -14250,10 +14180,6 @@ static hd_status hdi_elim_bound(hdi_elim *m, hd_error *e) {
         }
         m->resolvent_t = m->t;
     }
-    if (e->status < 0) {
-        hdi_free(m->ctx, m->resolvent);
-        m->resolvent = NULL;
-    }
     return hdi_scope_end(&s);
 }
 
@@ -14266,36 +14192,24 @@ typedef enum hdi_after { HDI_AFTER_SOLVES, HDI_AFTER_BOUND, HDI_AFTER_INVERSE, H
 static uint64_t hdi_elim_need(const hdi_elim *m, const hd_rational *set, hdi_after after, int32_t n_sets,
                               uint64_t solves, hd_error *e) {
     const int32_t lone = hdi_set_lone(set), packs = hdi_set_packs(set);
-    const int forms = after == HDI_AFTER_FORMS, bound = after == HDI_AFTER_BOUND;
     uint64_t bytes = 0, most = solves, need;
     int32_t i;
     for (i = m->n_packs; i < packs; i++) bytes += hdi_factor_tally(&m->sym, HDI_PACK, i > 0);
     if (lone && !m->real.ctx) bytes += hdi_factor_bytes(&m->sym, 1);
-    if (bound && !m->resolvent) hdi_scope_count(&bytes, (uint64_t)m->sym.n, sizeof *m->resolvent);
-    for (i = 0; i < 2 && after != HDI_AFTER_SOLVES && e->status >= 0; i++) {
+    if (after == HDI_AFTER_BOUND) {
+        if (!m->resolvent) hdi_scope_count(&bytes, (uint64_t)m->sym.n, sizeof *m->resolvent);
+        need = hdi_inverse_bytes(&m->sym, 1, !lone, hdi_elim_room(m, packs));
+        if (most < need) most = need;
+    }
+    for (i = 0; i < 2 && after > HDI_AFTER_BOUND && e->status >= 0; i++) {
         const int32_t width = i == 0 ? 1 : HDI_PACK;
-        if (!(bound ? i == 0 : i == 0 ? lone : packs)) continue;
-        need = bound ? hdi_inverse_bytes(&m->sym, 1, !lone, hdi_elim_room(m, packs))
-               : hdi_inverse_bytes(&m->sym, width, 0, 0);
-        if (!bound) hdi_scope_count(&need, HDI_PACK * (uint64_t)n_sets, sizeof(double));
-        if (forms) hdi_scope_count(&need, (uint64_t)m->source->L.nnz, sizeof(double));
-        if (forms) need += hdi_forms_bytes(&m->sym, width, &m->source->L, m->ctx, e);
+        if (!(i == 0 ? lone : packs)) continue;
+        need = hdi_inverse_bytes(&m->sym, width, 0, 0);
+        hdi_scope_count(&need, HDI_PACK * (uint64_t)n_sets, sizeof(double));
+        if (after == HDI_AFTER_FORMS) need += hdi_forms_bytes(&m->sym, width, &m->source->L, m->ctx, e);
         if (most < need) most = need;
     }
     return bytes + most;
-}
-
-/* The pole whose Re (tL + theta B)^-1 times *factor bounds (B + tL)^-1 best: Re 1/(x + theta) >= 1/(factor (1
- * + x)) for x >= 0. Returns -1 where no pole does. */
-static int32_t hdi_resolvent_pole(const hd_rational *set, double *factor) {
-    int32_t p, best = -1;
-    for (p = 0; p < set->n_poles; p++) {
-        const double f = hdi_resolvent_factor(set->theta[p]);
-        if (set->theta[p].re <= 0 || (best >= 0 && f >= *factor)) continue;
-        best = p;
-        *factor = f;
-    }
-    return best;
 }
 
 /* ==== [23] lanczos ====
@@ -15184,25 +15098,35 @@ static hd_status hdi_krylov_answer(hdi_krylov *z, int32_t r, double t, const dou
 
 /* ---- kinds of distances ---- */
 
-/* d^2 of a kind is made of a kernel at a time, or of sums over eigenpairs of 1/lambda^power. In the order of
- * hd_distance_kind; a kind without a row is unknown. All who answer for distances read these rows. */
+/* All that is known of a kind. d^2 is made of a kernel at a time, or of sums over eigenpairs of
+ * 1/lambda^power. All who answer for distances read these rows; a kind without a row is unknown. */
 typedef struct hdi_distance_row {
-    int32_t time;                /* the kernel is of t times this; 0: there is no time */
+    hd_distance_kind kind;
+    hd_query query;              /* its name for hd_heat_estimate */
+    int32_t time;                /* the kernel is of t times this; 0: L grounded serves, without a time */
     int32_t power;               /* without a time */
     int32_t mass;                /* how often B is a factor: 2 of B k B */
+    int32_t many;                /* 1: from many sources the bound by poles soon calls for eigenpairs */
+    /* The default goes to the highest degree where the bound on the error relative to the largest distance is
+     * above the first number, 0: never. The bound of degree 9 is expected at the second one times sqrt(t)/h,
+     * as seen on meshes of 1K to 50K vertices; 0: there is no such rule. */
+    double sure, expected;
 } hdi_distance_row;
 
 static const hdi_distance_row hdi_distance_rows[] = {
-    {2, 0, 0},                   /* classical */
-    {2, 0, 2},                   /* weighted */
-    {0, 1, 0},                   /* commute */
-    {0, 2, 0}                    /* biharmonic */
+    {HD_DISTANCE_CLASSICAL, HD_QUERY_DISTANCE, 2, 0, 0, 1, 3.5e-7, 4.4e-7},
+    {HD_DISTANCE_WEIGHTED, HD_QUERY_DISTANCE_WEIGHTED, 2, 0, 2, 0, 3.5e-7, 0},
+    {HD_DISTANCE_COMMUTE, HD_QUERY_DISTANCE_COMMUTE, 0, 1, 0, 0, 0, 0},
+    {HD_DISTANCE_BIHARMONIC, HD_QUERY_DISTANCE_BIHARMONIC, 0, 2, 0, 0, 0, 0}
 };
+enum { HDI_DISTANCES = sizeof hdi_distance_rows / sizeof *hdi_distance_rows };
 
 /* NULL: there is no such kind. */
 static const hdi_distance_row *hdi_distance_of(hd_distance_kind kind) {
-    const size_t n = sizeof hdi_distance_rows / sizeof *hdi_distance_rows;
-    return (size_t)kind < n ? hdi_distance_rows + kind : NULL;
+    int q;
+    for (q = 0; q < HDI_DISTANCES; q++)
+        if (hdi_distance_rows[q].kind == kind) return hdi_distance_rows + q;
+    return NULL;
 }
 
 /* ---- sources ---- */
@@ -15815,11 +15739,14 @@ typedef struct hdi_spec {
     hdi_elim *m;
     const hd_laplacian *lap;
     const hdi_kernels *ops;
+    hd_spectrum *out;            /* its counts and proven are kept while all goes on, too */
+    int32_t count;               /* wanted: so many, and those below */
+    double below;
     hdi_scope keep, runs;        /* what is there to the end, and what only runs need */
     int32_t n;
     hdi_factor factor;
     double sigma, off;           /* shift of the factor; how far from sigma its count may be wrong */
-    int64_t below;               /* its negative pivots */
+    int64_t negative;            /* its negative pivots */
     double unit;                 /* about the smallest eigenvalue that is not zero */
     double tol;
     double edge;                 /* all below are found */
@@ -15839,6 +15766,7 @@ typedef struct hdi_spec {
     int32_t cols, width;         /* columns of T, and of its last block */
     int32_t n_group;             /* blocks of vectors that are formed at a time */
     double lost;                 /* largest column of a block that was dropped */
+    double frontier;             /* the smallest Ritz value above the shift that has not converged */
     int32_t stuck;               /* Ritz pairs that cannot come nearer for rounding */
     double *own, *couple;        /* [room + 1][8][8] of T: on its diagonal, and below it */
     double *A, *z;               /* [cols][cols] T, eigenvectors */
@@ -15846,12 +15774,8 @@ typedef struct hdi_spec {
     double *bw, *bx, *tmp;       /* [n][8] B times blocks, and another */
     double *sweep, *h, *part, *work;
     double *noise;               /* [n] weights of rounding in residuals; [n] work */
-    int32_t n_poor;              /* residuals above the tolerance and rounding */
     int32_t alike;               /* vectors of a block depended on each other */
     uint64_t seed;
-    int32_t n_factors, n_runs, n_solves;
-    double next;                 /* no other eigenvalue is below it */
-    int32_t n_null, proven;
 } hdi_spec;
 
 /* Frees what only runs need. */
@@ -15861,7 +15785,6 @@ static void hdi_spec_runs_free(hdi_spec *s) {
 }
 
 static void hdi_spec_free(hdi_spec *s) {
-    if (!s->ctx) return;
     while (s->n_lock > 0) hdi_free(s->ctx, s->lock[--s->n_lock]);
     hdi_spec_runs_free(s);
     (void)hdi_scope_end(&s->keep);
@@ -15919,11 +15842,15 @@ static double hdi_spec_need(int32_t n, int32_t count, uint64_t n_sweep) {
     return (double)bytes + 2.0 * sizeof(double) * n * ((double)count + (double)HDI_SPEC_GAPS);
 }
 
-static hd_status hdi_spec_make(hdi_spec *s, hdi_elim *m, int32_t count, double tol, hd_error *e) {
+static hd_status hdi_spec_make(hdi_spec *s, hdi_elim *m, int32_t count, double below, double tol,
+                               hd_spectrum *out, hd_error *e) {
     memset(s, 0, sizeof *s);
     s->ctx = m->ctx;
     s->m = m;
     s->lap = m->lap;
+    s->out = out;
+    s->count = count;
+    s->below = below;
     s->tol = tol;
     s->ops = hdi_kernels_get(hdi_simd_level(m->ctx), 0);
     s->keep = s->runs = hdi_scope_begin(m->ctx, e);
@@ -16014,29 +15941,26 @@ static void hdi_spec_inverse(hdi_spec *s, const double *b, double *w) {
     hdi_sweep z = hdi_sweep_open(&s->factor, HDI_WIDE, w, s->sweep);
     memcpy(w, b, 8 * (size_t)s->n * sizeof *w);
     hdi_sweep_run(&z, s->ctx);
-    s->n_solves += HDI_WIDE;
+    s->out->n_solves += HDI_WIDE;
 }
 
 /* ---- orthogonal blocks ---- */
 
-/* Rows of w and bw times R^-1, R upper triangular. Columns with a zero on its diagonal become zero. */
-typedef struct hdi_spec_scale { double *w, *bw; const double *R; } hdi_spec_scale;
-
+/* Rows of the blocks times h^-1, h upper triangular. Columns with a zero on its diagonal become zero. */
 static void hdi_spec_scale_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_spec_scale *a = (const hdi_spec_scale *)arg;
+    const hdi_spec_pass *p = (const hdi_spec_pass *)arg;
     double inv[HDI_WIDE];
+    const double *R = p->h;
     int64_t i;
-    int q, k;
-    for (q = 0; q < HDI_WIDE; q++) inv[q] = a->R[9 * q] > 0 ? 1 / a->R[9 * q] : 0;
-    for (i = begin; i < end; i++) {
-        double *x = a->w + 8 * i, *y = a->bw + 8 * i;
-        for (q = 0; q < HDI_WIDE; q++) {
-            for (k = 0; k < q; k++) {
-                x[q] -= a->R[8 * k + q] * x[k];
-                y[q] -= a->R[8 * k + q] * y[k];
+    int b, q, k;
+    for (q = 0; q < HDI_WIDE; q++) inv[q] = R[9 * q] > 0 ? 1 / R[9 * q] : 0;
+    for (b = 0; b < p->n_v; b++) {
+        for (i = begin; i < end; i++) {
+            double *x = p->v[b] + 8 * i;
+            for (q = 0; q < HDI_WIDE; q++) {
+                for (k = 0; k < q; k++) x[q] -= R[8 * k + q] * x[k];
+                x[q] *= inv[q];
             }
-            x[q] *= inv[q];
-            y[q] *= inv[q];
         }
     }
 }
@@ -16089,11 +16013,13 @@ static double hdi_spec_cholesky(const double *G, double *R, double *scale, const
 /* Makes the columns of x orthonormal in B by their Gram matrix G = R' R, with bx = B x. */
 static double hdi_spec_orthonormal(const hdi_spec *s, double *x, double *bx, double *scale,
                                    const double *norm, double *drop, double *G, double *R) {
-    hdi_spec_scale job = {x, bx, R};
-    double off;
+    double *both[2], off;
+    hdi_spec_pass p = {s->ops, both, NULL, R, s->n, 2, 0, 0};
+    both[0] = x;
+    both[1] = bx;
     hdi_spec_dots(s, &x, 1, bx, G);
     off = hdi_spec_cholesky(G, R, scale, norm, drop);
-    hdi_parallel_ranges(s->ctx, s->n, HDI_ROWS_PER_TASK, hdi_spec_scale_task, &job);
+    hdi_parallel_ranges(s->ctx, s->n, HDI_ROWS_PER_TASK, hdi_spec_scale_task, &p);
     return off;
 }
 
@@ -16217,6 +16143,7 @@ static hd_status hdi_spec_ritz(hdi_spec *s, int full, hd_error *e) {
     hdi_spec_reduce(s->A, s->d, off, s->z, m, r, s->work);
     if (!hdi_tridiag_eigen(s->d, off, s->z, m, r)) return hdi_lanczos_failed(e);
     for (i = 0; i < m; i++) largest = hdi_max(largest, fabs(s->d[i]));
+    s->frontier = HUGE_VAL;
     for (i = s->stuck = 0; i < m; i++) {
         const double *y = s->z + (int64_t)i * r + r - s->width, d2 = s->d[i] * s->d[i];
         double sum = 0;
@@ -16229,22 +16156,16 @@ static hd_status hdi_spec_ritz(hdi_spec *s, int full, hd_error *e) {
         reached = hdi_spec_converged(s, i);
         if (d2 > 0) s->off_ritz[i] += ((double)HDI_WIDE * DBL_EPSILON * largest + s->lost) / d2;
         s->stuck += reached && !hdi_spec_converged(s, i);
+        if (s->d[i] > 0 && !hdi_spec_converged(s, i))
+            s->frontier = hdi_min(s->frontier, hdi_spec_lambda(s, i));
     }
     return HD_OK;
 }
 
-/* The smallest Ritz value above the shift that has not converged: those below it are taken. */
-static double hdi_spec_frontier(const hdi_spec *s) {
-    double least = HUGE_VAL;
-    int32_t i;
-    for (i = 0; i < s->cols; i++)
-        if (s->d[i] > 0 && !hdi_spec_converged(s, i)) least = hdi_min(least, hdi_spec_lambda(s, i));
-    return least;
-}
-
-static int hdi_spec_taken(const hdi_spec *s, int32_t i, double frontier) {
+/* Is a pair taken? Those below the frontier are. */
+static int hdi_spec_taken(const hdi_spec *s, int32_t i) {
     const double x = s->d[i] != 0 ? hdi_spec_lambda(s, i) : HUGE_VAL;
-    return hdi_spec_converged(s, i) && x > s->edge && x < frontier;
+    return hdi_spec_converged(s, i) && x > s->edge && x < s->frontier;
 }
 
 /* The blocks that a run at the shift could find again, those beyond the edge and those nearly as near; then
@@ -16260,10 +16181,9 @@ static void hdi_spec_nearby(hdi_spec *s) {
 
 /* Would `missing` pairs below the shift and `beyond` above it be taken? */
 static int hdi_spec_enough(const hdi_spec *s, int32_t missing, int32_t beyond) {
-    const double frontier = hdi_spec_frontier(s);
     int32_t i;
     for (i = 0; i < s->cols; i++) {
-        const int taken = hdi_spec_taken(s, i, frontier);
+        const int taken = hdi_spec_taken(s, i);
         missing -= taken && s->d[i] < 0;
         beyond -= taken && s->d[i] > 0;
     }
@@ -16277,9 +16197,9 @@ static hd_status hdi_spec_lanczos(hdi_spec *s, int32_t missing, int32_t beyond, 
     hdi_spec_nearby(s);
     s->n_blocks = s->cols = 0;
     s->lost = 0;
-    hdi_spec_random(s, s->list[s->n_near]);
+    hdi_spec_random(s, s->basis);
     s->width = hdi_spec_append(s);
-    s->n_runs++;
+    s->out->n_runs++;
     while (s->width > 0) {                       /* else nothing is left of the space */
         int32_t more;
         hdi_spec_inverse(s, s->bw, s->list[s->n_near + ++s->n_blocks]);
@@ -16299,13 +16219,15 @@ static hd_status hdi_spec_lanczos(hdi_spec *s, int32_t missing, int32_t beyond, 
 
 /* ---- locking ---- */
 
-/* Another block for vectors that are found. */
-static double *hdi_spec_block(hdi_spec *s, hd_error *e) {
-    double *x = HDI_NEW(s->ctx, double, HDI_WIDE * (uint64_t)s->n, e);
-    if (!x) return NULL;
-    memset(x, 0, HDI_WIDE * (size_t)s->n * sizeof *x);
-    s->high[s->n_lock] = -HUGE_VAL;
-    return s->lock[s->n_lock++] = x;
+/* Blocks for n more vectors. */
+static hd_status hdi_spec_blocks(hdi_spec *s, int32_t n, hd_error *e) {
+    for (; n > 0; n -= HDI_WIDE) {
+        double *x = (double *)hdi_alloc_zero(s->ctx, HDI_WIDE * (uint64_t)s->n, sizeof *x, e);
+        if (!x) break;
+        s->high[s->n_lock] = -HUGE_VAL;
+        s->lock[s->n_lock++] = x;
+    }
+    return e->status;
 }
 
 /* Enters a pair whose vector is at a place. */
@@ -16396,65 +16318,55 @@ static void hdi_spec_settle(hdi_spec *s, const double *value, int32_t at, int32_
     hdi_wide_dots(x, x, s->noise, s->n, HDI_WIDE, noise);
     for (r = 0; r < n; r++) {
         if (twin[r] > 0.1 || s->found == s->n) continue;   /* found before */
-        s->n_poor += norm[r] > s->tol * hdi_max(fabs(value[r]), s->unit) + sqrt(noise[r]) ||
+        s->out->n_poor += norm[r] > s->tol * hdi_max(fabs(value[r]), s->unit) + sqrt(noise[r]) ||
                      norm[r] > HDI_SPEC_LOST * fabs(value[r]);
         hdi_spec_enter(s, value[r], norm[r], 8 * at + r);
     }
 }
 
-/* Locks the Ritz vectors which[0..n), whose blocks stand from `first` on. Errors of solves, which eigenvalues
- * next to the shift make large, leave fast modes in the vectors. They are taken out where they are seen. Then
- * all become orthogonal to the blocks before them: those far away, against which the run did not work, are so
- * up to residuals. */
-static void hdi_spec_lock_all(hdi_spec *s, const int32_t *which, int32_t n, int32_t first) {
+/* Takes what a run has found into the list. Errors of solves, which eigenvalues next to the shift make large,
+ * leave fast modes in the vectors. They are taken out where they are seen. Then all become orthogonal to the
+ * blocks before them: those far away, against which the run did not work, are so up to residuals. */
+static hd_status hdi_spec_lock(hdi_spec *s, hd_error *e) {
+    const int32_t first = s->n_lock, most = 8 * s->n_group;
     double value[(int)HDI_SPEC_MOST + (int)HDI_WIDE] = {0};
-    const int32_t most = 8 * s->n_group;
-    int32_t i;
-    for (i = 0; i < n; i++) value[i] = hdi_spec_lambda(s, which[i]);
+    int32_t which[HDI_SPEC_MOST], n = 0, i, j;
+    if (s->n_blocks == 0) return HD_OK;
+    if (hdi_spec_ritz(s, 1, e) < 0) return e->status;
+    hdi_noise_weights(s->lap, 1, 2 * fabs(s->sigma), s->noise, s->noise + s->n);
+    for (i = 0; i < s->cols; i++) {
+        if (!hdi_spec_taken(s, i)) continue;
+        for (j = n++; j > 0 && value[j - 1] > hdi_spec_lambda(s, i); j--) {
+            which[j] = which[j - 1];
+            value[j] = value[j - 1];
+        }
+        which[j] = i;
+        value[j] = hdi_spec_lambda(s, i);
+    }
+    n = hdi_low32(n, 8 * (s->room_lock - first));
+    if (hdi_spec_blocks(s, n, e) < 0) return e->status;
     for (i = 0; i < n; i += most)
         hdi_spec_form(s, which + i, hdi_low32(n - i, most), s->lock + first + i / 8);
     for (i = 0; i < n; i += 8)
         hdi_spec_polish(s, value + i, first, s->lock[first + i / 8], hdi_low32(n - i, 8));
     for (i = 0; i < n; i += 8) hdi_spec_settle(s, value + i, first + i / 8, hdi_low32(n - i, 8));
-}
-
-/* Takes what a run has found into the list. */
-static hd_status hdi_spec_lock(hdi_spec *s, hd_error *e) {
-    const int32_t first = s->n_lock;
-    int32_t which[HDI_SPEC_MOST], n = 0, i, j;
-    double frontier;
-    if (s->n_blocks == 0) return HD_OK;
-    if (hdi_spec_ritz(s, 1, e) < 0) return e->status;
-    frontier = hdi_spec_frontier(s);
-    hdi_noise_weights(s->lap, 1, 2 * fabs(s->sigma), s->noise, s->noise + s->n);
-    for (i = 0; i < s->cols; i++) {
-        if (!hdi_spec_taken(s, i, frontier)) continue;
-        for (j = n++; j > 0 && hdi_spec_lambda(s, which[j - 1]) > hdi_spec_lambda(s, i); j--)
-            which[j] = which[j - 1];
-        which[j] = i;
-    }
-    n = hdi_low32(n, 8 * (s->room_lock - first));
-    for (i = 0; i < n; i += 8) if (!hdi_spec_block(s, e)) return e->status;
-    hdi_spec_lock_all(s, which, n, first);
     return HD_OK;
 }
 
 /* Constants of the first `most` components whose rows of L sum to zero: eigenvalue 0, without any search. */
 static hd_status hdi_spec_constants(hdi_spec *s, int32_t most, hd_error *e) {
-    hdi_scope work = hdi_scope_begin(s->ctx, e);
-    char *loose = HDI_TAKE(&work, char, s->lap->n_components);
-    int32_t *at = HDI_TAKE(&work, int32_t, s->lap->n_components), i, k, n = 0;
-    if (e->status < 0) return hdi_scope_end(&work);
+    char *loose = (char *)s->tmp;                /* their room is not in use yet */
+    int32_t *at = s->at, i, k, n = 0;
     hdi_ground_components(s->lap, loose);
     for (k = 0; k < s->lap->n_components; k++) at[k] = loose[k] && n < most ? n++ : -1;
-    for (k = 0; k < n; k += 8) if (!hdi_spec_block(s, e)) return hdi_scope_end(&work);
+    if (hdi_spec_blocks(s, n, e) < 0) return e->status;
     for (i = 0; i < s->n; i++) {
         const int32_t c = s->lap->component[i];
         if (at[c] >= 0) s->lock[at[c] / 8][8 * (int64_t)i + at[c] % 8] = 1 / sqrt(s->lap->component_mass[c]);
     }
     for (i = 0; i < n; i++) hdi_spec_enter(s, 0, 0, i);
-    s->n_null = n;
-    return hdi_scope_end(&work);
+    s->out->n_constant = n;
+    return HD_OK;
 }
 
 /* ---- counts ---- */
@@ -16494,18 +16406,12 @@ static double hdi_spec_count_off(hdi_spec *s) {
     return 0.5 * DBL_EPSILON * (1 + 1e-3) * worst * hdi_ratio_root(s->lap) * hdi_ratio_root(s->lap);
 }
 
-/* Factorises L - sigma B and counts. A shift where a pivot is zero is moved a little. */
-static hd_status hdi_spec_shift(hdi_spec *s, double sigma, double step, hd_error *e) {
-    int32_t tries;
-    for (tries = 0;; tries++) {
-        s->n_factors++;
-        s->sigma = sigma;
-        if (hdi_elim_real(s->m, &s->factor, 1, -sigma, e) >= 0) break;
-        if (e->status != HD_ERR_BREAKDOWN || tries == 4) return e->status;
-        hdi_error_clear(e);
-        sigma += 0.01 * step;
-    }
-    s->below = s->factor.all.negative;
+/* Factorises L - sigma B and counts. */
+static hd_status hdi_spec_shift(hdi_spec *s, double sigma, hd_error *e) {
+    s->out->n_factors++;
+    s->sigma = sigma;
+    if (hdi_elim_real(s->m, &s->factor, 1, -sigma, e) < 0) return e->status;
+    s->negative = s->factor.all.negative;
     s->off = hdi_spec_count_off(s);
     return HD_OK;
 }
@@ -16529,14 +16435,11 @@ static int hdi_spec_sure(const hdi_spec *s) {
 
 /* ---- a row of shifts ---- */
 
-/* What is wanted. */
-typedef struct hdi_spec_goal { int32_t count; double below; } hdi_spec_goal;
-
 /* Mean distance of the last values found, and not less than a part of the mean of all. */
 static double hdi_spec_spacing(const hdi_spec *s) {
     const int32_t f = s->found, q = hdi_low32(f - 1, HDI_SPEC_HALF / 2);
     double step = s->unit;
-    if (f > s->n_null) {
+    if (f > s->out->n_constant) {
         step = 0.2 * s->value[f - 1] / f;
         if (q > 0) step = hdi_max(step, (s->value[f - 1] - s->value[f - 1 - q]) / q);
     }
@@ -16544,67 +16447,55 @@ static double hdi_spec_spacing(const hdi_spec *s) {
 }
 
 /* How many of the pairs found are wanted. *all: nothing wanted can follow, if nothing is missing between. */
-static int32_t hdi_spec_wanted(const hdi_spec *s, const hdi_spec_goal *goal, int *all) {
-    const int32_t n = hdi_spec_rank(s, goal->below);
-    *all = n >= goal->count || n < s->found || s->found == s->n || s->edge >= goal->below;
-    return hdi_low32(n, goal->count);
+static int32_t hdi_spec_wanted(const hdi_spec *s, int *all) {
+    const int32_t n = hdi_spec_rank(s, s->below);
+    *all = n >= s->count || n < s->found || s->found == s->n || s->edge >= s->below;
+    return hdi_low32(n, s->count);
 }
 
-/* The middle of the widest gap among the next ones after the first n values, above `least`; HUGE_VAL if none
- * is wider than `narrow`. */
-static double hdi_spec_gap(const hdi_spec *s, int32_t n, double least, double narrow) {
-    double widest = narrow, at = HUGE_VAL;
-    int32_t i;
-    for (i = n; i < s->found && i < n + HDI_SPEC_GAPS; i++) {
-        const double from = hdi_max(i > 0 ? s->value[i - 1] : -HUGE_VAL, least);
-        if (!(s->value[i] - from > widest)) continue;
-        widest = s->value[i] - from;
-        at = from + widest / 2;
-    }
-    return at;
-}
-
-/* The next shift: in a gap above what is wanted if that much is found, else some way up, and every time much
- * farther where nothing was: parts of unlike scales may be 10^11 apart. failed: proofs that did not succeed;
- * each takes some more pairs. */
-static double hdi_spec_next(const hdi_spec *s, const hdi_spec_goal *goal, int32_t failed, int32_t half) {
+/* The next shift: in the middle of the widest gap above what is wanted if that much is found, else some way
+ * up, and every time much farther where nothing was: parts of unlike scales may be 10^11 apart. failed:
+ * proofs that did not succeed; each takes some more pairs. */
+static double hdi_spec_next(const hdi_spec *s, int32_t failed, int32_t half) {
     int all;
-    const int32_t n = hdi_spec_wanted(s, goal, &all) + failed * HDI_SPEC_GAPS;
+    const int32_t n = hdi_spec_wanted(s, &all) + failed * HDI_SPEC_GAPS;
+    const double least = s->below < HUGE_VAL ? hdi_max(s->below, s->edge) : s->edge;
     const double step = hdi_spec_spacing(s);
     const double from = hdi_max(s->edge, s->found > 0 ? s->value[s->found - 1] : s->edge);
-    double at;
-    if (all && n < s->found) {
-        at = goal->below < HUGE_VAL && goal->below > s->edge ? goal->below : s->edge;
-        at = hdi_spec_gap(s, n, at, HDI_SPEC_NARROW * step);
-        if (at < HUGE_VAL) return at;
-    }
-    at = hdi_min(half, (double)goal->count - s->found + 3);
-    at = from + ldexp(step, s->idle * (s->idle + 1) / 2) * hdi_max(1, at);
-    if (at >= goal->below) at = hdi_max(goal->below, from + 0.3 * step);
-    return at;
-}
-
-/* A shift that is not next to a value found. */
-static double hdi_spec_clear(const hdi_spec *s, double at, double step) {
+    double widest = HDI_SPEC_NARROW * step, at = HUGE_VAL;
     int32_t i;
-    for (i = 0; i < s->found; i++)
-        if (fabs(s->value[i] - at) < HDI_SPEC_NARROW * step) at = s->value[i] + HDI_SPEC_NARROW * step;
-    return at;
+    for (i = n; all && i < s->found && i < n + HDI_SPEC_GAPS; i++) {
+        const double low = hdi_max(i > 0 ? s->value[i - 1] : least, least);
+        if (!(s->value[i] - low > widest)) continue;
+        widest = s->value[i] - low;
+        at = low + widest / 2;
+    }
+    if (at < HUGE_VAL) return at;
+    at = hdi_min(half, (double)s->count - s->found + 3);
+    at = from + ldexp(step, s->idle * (s->idle + 1) / 2) * hdi_max(1, at);
+    return at < s->below ? at : hdi_max(s->below, from + 0.3 * step);
 }
 
 /* A shift below which about as many values are missing as a run finds, or none. */
-static hd_status hdi_spec_move(hdi_spec *s, const hdi_spec_goal *goal, int32_t failed, int32_t half,
-                               int64_t *missing, hd_error *e) {
-    const double step = hdi_spec_spacing(s);
-    double at = hdi_spec_next(s, goal, failed, half), low = s->edge;
-    int32_t tries;
+static hd_status hdi_spec_move(hdi_spec *s, int32_t failed, int32_t half, int64_t *missing, hd_error *e) {
+    const double step = hdi_spec_spacing(s), apart = HDI_SPEC_NARROW * step;
+    double at = hdi_spec_next(s, failed, half);
+    int32_t tries, i;
     for (tries = 0; tries < HDI_SPEC_TRIES; tries++) {
-        if (hdi_spec_shift(s, hdi_spec_clear(s, at, step), step, e) < 0) return e->status;
-        *missing = s->below - hdi_spec_rank(s, s->sigma);
+        double sigma = at;
+        for (i = 0; i < s->found; i++)           /* not next to a value found */
+            if (fabs(s->value[i] - sigma) < apart) sigma = s->value[i] + apart;
+        if (hdi_spec_shift(s, sigma, e) < 0) {
+            if (e->status != HD_ERR_BREAKDOWN || tries + 1 == HDI_SPEC_TRIES) return e->status;
+            hdi_error_clear(e);                  /* a pivot is zero */
+            at += 0.37 * step;
+            continue;
+        }
+        *missing = s->negative - hdi_spec_rank(s, s->sigma);
         if (*missing < 0) at += 0.37 * step;     /* too near to a value: the count is wrong */
         else if (*missing > 2 * half) {
             const double from = s->found > 0 && *missing < 2 * (int64_t)half * HDI_SPEC_TRIES
-                ? hdi_max(low, hdi_min(s->value[s->found - 1], 0.5 * (low + at))) : low;
+                ? hdi_max(s->edge, hdi_min(s->value[s->found - 1], 0.5 * (s->edge + at))) : s->edge;
             at = from + (at - from) * hdi_max(0.05, half / (double)*missing);
         } else if (s->factor.all.largest > HDI_SPEC_GROWTH * s->factor.largest_entry && *missing > 0) {
             at += 0.11 * step;                   /* there may be better ones */
@@ -16617,12 +16508,12 @@ static hd_status hdi_spec_move(hdi_spec *s, const hdi_spec_goal *goal, int32_t f
 static double hdi_spec_rest(const hdi_spec *s, int32_t n) {
     if (n < s->found) return hdi_max(0, s->value[n] - hdi_ratio_root(s->lap) * s->residual[n]);
     if (n == s->n) return HUGE_VAL;
-    return s->proven ? hdi_max(0, s->sigma - s->off) : n > 0 ? s->value[n - 1] : 0;
+    return s->out->proven ? hdi_max(0, s->sigma - s->off) : n > 0 ? s->value[n - 1] : 0;
 }
 
 /* The first run: the low end, from a shift below all eigenvalues. */
-static hd_status hdi_spec_start(hdi_spec *s, const hdi_spec_goal *goal, hd_error *e) {
-    const int32_t more = goal->count - hdi_low32(goal->count, s->n_null);
+static hd_status hdi_spec_start(hdi_spec *s, hd_error *e) {
+    const int32_t more = s->count - hdi_low32(s->count, s->out->n_constant);
     const int32_t beyond = hdi_low32(HDI_SPEC_HALF - 2, more) + 2;
     double sum = 0;
     int32_t i;
@@ -16632,45 +16523,50 @@ static hd_status hdi_spec_start(hdi_spec *s, const hdi_spec_goal *goal, hd_error
     }
     s->unit = sum > 0 ? 1 / sum : 1;
     s->edge = -s->unit;
-    if (hdi_spec_constants(s, goal->count, e) < 0 || hdi_spec_shift(s, -s->unit, 0, e) < 0) return e->status;
-    if (s->below && s->off < s->unit) return hdi_not_semidefinite(e);
-    if (s->below)
+    if (hdi_spec_constants(s, s->count, e) < 0 || hdi_spec_shift(s, -s->unit, e) < 0) return e->status;
+    if (s->negative && s->off < s->unit) return hdi_not_semidefinite(e);
+    if (s->negative)
         return hdi_fail(e, HD_ERR_NOT_CONVERGED, "spectrum: the entries of L differ by so much that rounding "
                         "hides the smallest eigenvalues");
-    if (goal->count <= s->n_null || s->found == s->n) return HD_OK;
+    if (s->count <= s->out->n_constant || s->found == s->n) return HD_OK;
     return hdi_spec_lanczos(s, 0, beyond, e) < 0 ? e->status : hdi_spec_lock(s, e);
 }
 
-/* All that the goal asks for; how many these are into *count. */
-static hd_status hdi_spec_solve(hdi_spec *s, const hdi_spec_goal *goal, int32_t *count, hd_error *e) {
+/* All that is wanted; how many these are goes to out. */
+static hd_status hdi_spec_solve(hdi_spec *s, hd_error *e) {
     int32_t half = hdi_low32(HDI_SPEC_HALF, 2 * s->room + 1), failed = 0, stalls = 0;
     int64_t missing = 0;
+    int32_t *proven = &s->out->proven;
     int all = 0;
-    if (hdi_spec_start(s, goal, e) < 0) return e->status;
-    s->proven = s->found == s->n || goal->count <= s->n_null;
-    while (!s->proven && failed < HDI_SPEC_PROOFS && stalls < HDI_SPEC_TRIES && s->idle < HDI_SPEC_IDLE) {
+    if (hdi_spec_start(s, e) < 0) return e->status;
+    *proven = s->found == s->n || s->count <= s->out->n_constant;
+    while (!*proven && failed < HDI_SPEC_PROOFS && stalls < HDI_SPEC_TRIES && s->idle < HDI_SPEC_IDLE) {
         const int32_t before = s->found;
-        if (hdi_spec_move(s, goal, failed, half, &missing, e) < 0) return e->status;
+        if (hdi_spec_move(s, failed, half, &missing, e) == HD_ERR_BREAKDOWN) {
+            hdi_error_clear(e);                  /* no shift up there can be told from zero */
+            break;
+        }
+        if (e->status < 0) return e->status;
         if (missing > 0) {                       /* a run at the shift */
-            s->share = hdi_min(0.99, s->found / (1.0 + hdi_min(goal->count, s->n)));
+            s->share = hdi_min(0.99, s->found / (1.0 + hdi_min(s->count, s->n)));
             if (hdi_spec_lanczos(s, (int32_t)missing, 0, e) < 0 || hdi_spec_lock(s, e) < 0) return e->status;
-            if (s->below == hdi_spec_rank(s, s->sigma)) s->edge = s->sigma;
             stalls = s->found > before ? 0 : stalls + 1;
             half = stalls ? half / 2 + 1 : half;
         }
         s->idle = missing == 0 ? s->idle + 1 : 0;
-        if (missing == 0) s->edge = hdi_max(s->edge, s->sigma);
-        if (s->below == hdi_spec_rank(s, s->sigma) &&
-            (s->below >= goal->count || s->sigma >= goal->below)) {
-            s->proven = hdi_spec_sure(s);
-            failed += !s->proven;
+        failed += missing < 0;
+        if (s->negative == hdi_spec_rank(s, s->sigma)) {
+            s->edge = hdi_max(s->edge, s->sigma);
+            if (s->negative >= s->count || s->sigma >= s->below) {
+                *proven = hdi_spec_sure(s);
+                failed += !*proven;
+            }
         }
-        if (missing < 0) failed++;
-        if (s->found == s->n) s->proven = 1;
+        if (s->found == s->n) *proven = 1;
     }
-    *count = hdi_spec_wanted(s, goal, &all);
-    s->next = hdi_spec_rest(s, *count);
-    if (all || s->proven) return HD_OK;
+    s->out->count = hdi_spec_wanted(s, &all);
+    s->out->next = s->m->scale * hdi_spec_rest(s, s->out->count);
+    if (all || *proven) return HD_OK;
     return hdi_fail(e, HD_ERR_NOT_CONVERGED, "spectrum: some eigenpairs were not found");
 }
 
@@ -16678,7 +16574,7 @@ static hd_status hdi_spec_solve(hdi_spec *s, const hdi_spec_goal *goal, int32_t 
 
 /* Vectors by vertices, the largest entry of each positive, and values in the units of the source. */
 static void hdi_spec_vectors(const hdi_spec *s, hd_spectrum *out) {
-    const double root = sqrt(s->m->scale), first = s->n_null < s->found ? s->value[s->n_null] : 0;
+    const double root = sqrt(s->m->scale), first = out->n_constant < s->found ? s->value[out->n_constant] : 0;
     int32_t q, i;
     for (q = 0; q < out->count; q++) {
         const double *from = s->lock[s->at[q] / 8] + s->at[q] % 8;
@@ -16727,20 +16623,17 @@ static void hdi_spec_left_task(void *arg, int64_t begin, int64_t end) {
     }
 }
 
-/* Eigenpairs for the goal. m: a pair that is analysed, whose factor kept in m is not touched. The arrays of
- * out belong to ctx of m. */
-static hd_status hdi_spec_run(hdi_elim *m, const hdi_spec_goal *goal, double tol, hd_spectrum *out,
+/* So many eigenpairs, and those below. m: a pair that is analysed, whose factor kept in m is not touched. The
+ * arrays of out belong to ctx of m. */
+static hd_status hdi_spec_run(hdi_elim *m, int32_t count, double below, double tol, hd_spectrum *out,
                               hd_error *e) {
     hdi_spec s;
-    int32_t count = 0;
     uint64_t n, k;
-    memset(&s, 0, sizeof s);
-    if (hdi_spec_make(&s, m, goal->count, tol, e) >= 0 && hdi_spec_solve(&s, goal, &count, e) >= 0) {
+    if (hdi_spec_make(&s, m, count, below, tol, out, e) >= 0 && hdi_spec_solve(&s, e) >= 0) {
         n = (uint64_t)m->source->n;
-        k = (uint64_t)count;
+        k = (uint64_t)out->count;
         hdi_spec_runs_free(&s);                  /* before the vectors are there twice */
         out->n = m->source->n;
-        out->count = count;
         out->value = HDI_NEW(m->ctx, double, 2 * k, e);
         if (out->value) out->vector = HDI_NEW(m->ctx, double, n * k, e);
         if (out->vector) out->left = HDI_NEW(m->ctx, double, 2 * n, e);
@@ -16748,18 +16641,12 @@ static hd_status hdi_spec_run(hdi_elim *m, const hdi_spec_goal *goal, double tol
             out->residual = out->value + k;
             out->left_mass = out->left + n;
             hdi_spec_vectors(&s, out);
-            out->n_constant = hdi_low32(s.n_null, count);
-            out->next = m->scale * s.next;
-            out->n_poor = s.n_poor;
+            out->n_constant = hdi_low32(out->n_constant, out->count);
             out->shift = m->scale * s.sigma;
             out->shift_margin = m->scale * s.off;
-            out->n_factors = s.n_factors;
-            out->n_runs = s.n_runs;
-            out->n_solves = s.n_solves;
             out->factor_nnz = m->sym.nnz;
-            out->factor_flops = m->sym.flops * s.n_factors;
+            out->factor_flops = m->sym.flops * out->n_factors;
             out->ordering = m->sym.ordering;
-            out->proven = s.proven;
             memset(out->left, 0, 2 * n * sizeof *out->left);
             hdi_parallel_ranges(m->ctx, s.n, 1024, hdi_spec_left_task, out);
         }
@@ -16795,7 +16682,6 @@ HEATDIFF_API void hd_spectrum_free(hd_spectrum *s) {
 
 HEATDIFF_API hd_status hd_spectrum_create(hd_spectrum **out, const hd_laplacian *lap,
                                           const hd_spectrum_opts *o, hd_error *err) {
-    hdi_spec_goal goal;
     hdi_call c;
     hdi_elim m;
     hd_spectrum *s;
@@ -16811,11 +16697,11 @@ HEATDIFF_API hd_status hd_spectrum_create(hd_spectrum **out, const hd_laplacian 
     s->context = c.ctx;                          /* the caller's: every Laplacian has one */
     hdi_hold(s->context);
     scale = hdi_pair_scale(lap);
-    goal.count = o->count > 0 ? o->count : INT32_MAX;
-    goal.below = o->below > 0 ? o->below / scale : HUGE_VAL;
     if (hdi_elim_make(&m, lap, o->ordering, o->ordering == HD_ORDERING_OWN ? o->perm : NULL, scale, c.ctx,
                       c.e) >= 0)
-        (void)hdi_spec_run(&m, &goal, o->tol > 0 ? o->tol : HDI_TOL_SPECTRUM, s, c.e);
+        (void)hdi_spec_run(&m, o->count > 0 ? o->count : INT32_MAX,
+                           o->below > 0 ? o->below / scale : HUGE_VAL,
+                           o->tol > 0 ? o->tol : HDI_TOL_SPECTRUM, s, c.e);
     hdi_elim_free(&m);
     if (c.e->status >= 0) *out = s;
     else hd_spectrum_free(s);
@@ -16871,21 +16757,13 @@ typedef struct hdi_bank {
     double noise, most;          /* of rounding; the largest weight */
 } hdi_bank;
 
-/* Sums over the pairs: kernels or distances of k sources at n_times times, or a diagonal. */
+/* Sums over the pairs: a column, a diagonal or distances, for one source and time. */
 typedef struct hdi_spec_sums {
     const hdi_modes *of;
     int distance, diagonal;      /* squares of differences, or of entries, instead of products */
     int mass;                    /* of B x instead of x */
     int power;                   /* 0: of exp(-t lambda); without a time of 1/lambda^power */
-    int32_t n_times, k;
-    const double *t;
-    const hd_sources *sources;   /* [k], not for the diagonal; they become terms */
-    const hdi_terms *terms;
-    hdi_scope scope;
-    double *out, *bound;         /* column q n_times + m for source q and time m, ld apart; bound or NULL */
-    size_t ld;
-    /* for one source and time */
-    hdi_bank bank;
+    hdi_bank bank;               /* for one time */
     double *x;                   /* [count] the source in the vectors */
     hdi_share from;              /* of the source */
     double sums_off;             /* rounding of sums over it, relative */
@@ -16995,12 +16873,6 @@ static hdi_parts hdi_bank_off(const hdi_spec_sums *a, const hdi_share *g, const 
     return off;
 }
 
-/* A bound of |sqrt(a) - sqrt(b)| where b differs by at most off from a. */
-static double hdi_spec_root_off(double a, double off) {
-    if (off >= HUGE_VAL) return off;
-    return off > 0 ? off / hdi_max(sqrt(hdi_max(a, 0)), sqrt(off)) : 0;
-}
-
 /* Bounds of the error of value d at vertex v. */
 static hdi_parts hdi_spec_off(const hdi_spec_sums *a, int32_t v, double d) {
     const hdi_bank *b = &a->bank;
@@ -17008,13 +16880,14 @@ static hdi_parts hdi_spec_off(const hdi_spec_sums *a, int32_t v, double d) {
     const hdi_share f = a->diagonal ? hdi_share_of(a, v, a->mass) : a->from;
     hdi_parts off = {0, 0, 0, 0}, square;
     hdi_share y = f;
-    double beside;
+    double beside, all;
     if (!a->distance) return hdi_bank_off(a, &g, &f, d);
     hdi_share_add(&y, 1, g);
     if (a->inner) y.inner = a->inner[v];
     if (a->power) {
         square = hdi_bank_off(a, &y, &y, d * d);
-        off.rational = hdi_spec_root_off(d * d, hdi_parts_sum(&square));
+        all = hdi_parts_sum(&square);            /* of d^2 */
+        off.rational = all > 0 && hdi_finite(all) ? all / hdi_max(d, sqrt(all)) : all;
         return off;
     }
     beside = hdi_decayed(b, (b->cut + b->square) * y.left);
@@ -17129,20 +17002,36 @@ static void hdi_spec_sum_others(const hdi_spec_sums *a, const hdi_terms *from) {
     }
 }
 
-static void hdi_spec_sums_run(hdi_spec_sums *a, hd_context *ctx) {
+/* A call for sums. kind: an hd_kernel or, for distances, an hd_distance_kind. Column q n_times + m is for
+ * source q and time m. */
+typedef enum hdi_spec_sort { HDI_SPEC_COLUMNS, HDI_SPEC_DIAGONAL, HDI_SPEC_DISTANCE } hdi_spec_sort;
+
+typedef struct hdi_spec_ask {
+    hdi_spec_sort sort;
+    int kind;
+    int32_t n_times;
+    const double *t;
+    const hd_sources *sources;   /* not for the diagonal */
+    double *out, *bound;         /* columns ld apart; bound or NULL */
+    size_t ld;
+} hdi_spec_ask;
+
+/* terms: of the sources. */
+static void hdi_spec_sums_run(hdi_spec_sums *x, const hdi_spec_ask *a, const hdi_terms *terms,
+                              hd_context *ctx) {
     hdi_terms from;
     int32_t q, m;
     memset(&from, 0, sizeof from);
-    for (q = 0; q < a->k; q++) {
-        if (!a->diagonal) from = a->terms[q];
+    for (q = 0; q < (x->diagonal ? 1 : a->sources->count); q++) {
+        if (!x->diagonal) from = terms[q];
         for (m = 0; m < a->n_times; m++) {
             const size_t at = ((size_t)q * (size_t)a->n_times + (size_t)m) * a->ld;
-            a->column = a->out + at;
-            a->off = a->bound ? a->bound + at : NULL;
-            hdi_spec_sum_at(a, a->t[m]);
-            hdi_spec_sum_from(a, &from);
-            hdi_parallel_ranges(ctx, a->of->s.n, 1024, hdi_spec_sum_task, a);
-            hdi_spec_sum_others(a, &from);
+            x->column = a->out + at;
+            x->off = a->bound ? a->bound + at : NULL;
+            hdi_spec_sum_at(x, a->t[m]);
+            hdi_spec_sum_from(x, &from);
+            hdi_parallel_ranges(ctx, x->of->s.n, 1024, hdi_spec_sum_task, x);
+            hdi_spec_sum_others(x, &from);
         }
     }
 }
@@ -17163,71 +17052,53 @@ static hdi_modes hdi_modes_of(const hd_spectrum *s, double *off) {
     return x;
 }
 
-/* Checks the arguments of sums over the pairs, makes room for them, and runs them. refused: of their kind, or
- * NULL. */
-static hd_status hdi_spec_sums_ask(hdi_spec_sums *x, const hd_spectrum *s, const char *refused,
-                                   hd_error *err) {
+static hd_status hdi_spec_sums_check(const hdi_spec_ask *a, const hd_spectrum *s, int timeless, hd_error *e) {
+    const int32_t k = a->sort == HDI_SPEC_DIAGONAL ? 1 : a->sources->count;
+    int32_t q;
+    if ((a->n_times > 0 && !a->t) || (k > 0 && !a->out)) return hdi_missing(e);
+    hdi_refuse(a->n_times < 1, "spectrum: there is no time", e);
+    hdi_refuse(k < 0, "spectrum: a number of columns is negative", e);
+    hdi_refuse(a->ld < (size_t)s->n, "spectrum: columns would overlap", e);
+    for (q = 0; q < a->n_times; q++)
+        hdi_refuse_value(!hdi_finite(a->t[q]) || a->t[q] < 0, "spectrum: t is negative or not finite",
+                         a->t[q], e);
+    hdi_refuse(timeless && a->n_times > 1, "spectrum: this distance has no time", e);
+    return e->status;
+}
+
+static hd_status hdi_spec_sums_ask(const hd_spectrum *s, hdi_spec_ask a, hd_error *err) {
+    const hdi_distance_row *row = hdi_distance_of((hd_distance_kind)a.kind);
     const double zero = 0;
+    hdi_terms *terms = NULL;
+    hdi_spec_sums x;
+    hdi_scope scope;
     hdi_modes of;
     hdi_call c;
-    int32_t q;
-    if (hdi_enter(&c, s ? s->context : NULL, 1, err) < 0) return c.e->status;
+    if (hdi_enter(&c, s ? s->context : NULL, s && (a.sort == HDI_SPEC_DIAGONAL || a.sources), err) < 0)
+        return c.e->status;
     if (!HDI_HAS_SPECTRUM) return HDI_LEFT_OUT(c.e, SPECTRUM, "eigenpairs");
-    if (x->power && x->n_times <= 1) {           /* no time */
-        x->n_times = 1;
-        x->t = &zero;
-    }
-    x->k = x->diagonal ? 1 : x->sources ? x->sources->count : 0;
-    if (!s || (x->n_times > 0 && !x->t) || (x->k > 0 && !x->out)) return hdi_missing(c.e);
-    if (!x->diagonal && !x->sources) return hdi_missing(c.e);
-    hdi_refuse(x->n_times < 1, "spectrum: there is no time", c.e);
-    hdi_refuse(x->k < 0, "spectrum: a number of columns is negative", c.e);
-    hdi_refuse(x->ld != 0 && x->ld < (size_t)s->n, "spectrum: columns would overlap", c.e);
-    for (q = 0; q < x->n_times; q++)
-        hdi_refuse_value(!hdi_finite(x->t[q]) || x->t[q] < 0, "spectrum: t is negative or not finite",
-                         x->t[q], c.e);
-    hdi_refuse(refused != NULL, refused, c.e);
-    hdi_refuse(x->power && x->n_times > 1, "spectrum: this distance has no time", c.e);
-    if (c.e->status < 0) return c.e->status;
-    x->ld = x->ld ? x->ld : (size_t)s->n;
-    x->scope = hdi_scope_begin(c.ctx, c.e);
-    x->x = HDI_TAKE(&x->scope, double, 5 * (uint64_t)s->count + 1);
-    if (x->sources && x->x) x->terms = hdi_terms_all(x->sources, s->lap, x->distance, &x->scope);
+    memset(&x, 0, sizeof x);
+    x.diagonal = a.sort == HDI_SPEC_DIAGONAL;
+    x.distance = a.sort == HDI_SPEC_DISTANCE;
+    x.power = x.distance && row ? row->power : 0;
+    x.mass = x.distance ? row && row->mass > 0 : a.kind == HD_KERNEL_OPERATOR;
+    if (x.power && a.n_times <= 1) a.t = &zero;
+    if (x.power) a.n_times = hdi_high32(a.n_times, 1);
+    if (a.ld == 0) a.ld = (size_t)s->n;
+    if (hdi_spec_sums_check(&a, s, x.power, c.e) < 0) return c.e->status;
+    if (x.distance ? !row : !x.mass && a.kind != HD_KERNEL_SYMMETRIC)
+        return hdi_fail(c.e, HD_ERR_ARGUMENT,
+                        x.distance ? "spectrum: unknown distance" : "spectrum: unknown kernel");
+    scope = hdi_scope_begin(c.ctx, c.e);
+    x.x = HDI_TAKE(&scope, double, 5 * (uint64_t)s->count + 1);
+    if (!x.diagonal && x.x) terms = hdi_terms_all(a.sources, s->lap, x.distance, &scope);
     if (c.e->status >= 0) {
-        x->bank.weight = x->x + s->count;
-        of = hdi_modes_of(s, x->x + 4 * (size_t)s->count);
-        x->of = &of;
-        hdi_spec_sums_run(x, c.ctx);
+        x.bank.weight = x.x + s->count;
+        of = hdi_modes_of(s, x.x + 4 * (size_t)s->count);
+        x.of = &of;
+        hdi_spec_sums_run(&x, &a, terms, c.ctx);
     }
-    return hdi_scope_end(&x->scope);
-}
-
-static hd_status hdi_spec_sums_kernel(hdi_spec_sums *x, const hd_spectrum *s, hd_kernel kernel,
-                                      hd_error *err) {
-    x->mass = kernel == HD_KERNEL_OPERATOR;
-    return hdi_spec_sums_ask(x, s, x->mass || kernel == HD_KERNEL_SYMMETRIC ? NULL
-                                   : "spectrum: unknown kernel", err);
-}
-
-static hd_status hdi_spec_sums_distance(hdi_spec_sums *x, const hd_spectrum *s, hd_distance_kind kind,
-                                        hd_error *err) {
-    const hdi_distance_row *row = hdi_distance_of(kind);
-    x->distance = 1;
-    x->power = row ? row->power : 0;
-    x->mass = row && row->mass > 0;
-    return hdi_spec_sums_ask(x, s, row ? NULL : "spectrum: unknown distance", err);
-}
-
-static hdi_spec_sums hdi_spec_sums_of(int32_t n_times, const double *t, double *out, double *bound,
-                                      size_t ld) {
-    hdi_spec_sums a;
-    memset(&a, 0, sizeof a);
-    a.n_times = n_times;
-    a.t = t;
-    a.out = out;
-    a.bound = bound;
-    a.ld = ld;
-    return a;
+    return hdi_scope_end(&scope);
 }
 
 /* ==== [26] plan ====
@@ -17544,11 +17415,8 @@ static hd_status hdi_shifted_prepare(hd_heat *heat, double t, hd_c64 theta, hd_e
     set.n_poles = 1;
     set.theta[0] = theta;
     if (hdi_heat_iterative(heat, e) < 0 || hdi_heat_make_lanes(heat, 1, e) < 0) return e->status;
-    hdi_family_set(fam, &set, t * heat->scale);
-    if (hdi_family_room(fam, e) < 0 ||
-        hdi_lane_make(heat->lane, hdi_lane_room_of(heat->lap, fam, 0, 1), heat->ctx, e) < 0) return e->status;
-    hdi_lane_systems(heat->lane, fam);
-    return hdi_family_fill(fam, heat->lane, e);
+    if (hdi_lane_make(heat->lane, hdi_lane_room_of(heat->lap, fam, 0, 1), heat->ctx, e) < 0) return e->status;
+    return hdi_family_prepare(fam, &set, t * heat->scale, heat->lane, 1, e);
 }
 
 #define HDI_TOL_SOLVE 1e-10
@@ -18453,15 +18321,11 @@ static hd_status hdi_iterative_prepare(hdi_heat_call *h) {
     const int known = heat->source->b_ratio > 0;
     const int32_t steps = known ? hdi_lanczos_most(h->t, heat->lambda_max) : HDI_LANCZOS_MAX;
     hd_rational set;
-    int32_t i;
     if (h->solver == HD_SOLVER_LANCZOS) return hdi_heat_lanes(h, HDI_LANES_ITERATIVE, steps, 0);
     if (hdi_heat_set(h, &set) < 0) return h->e->status;
-    hdi_family_set(&heat->fam, &set, h->t);
     hdi_report_set(h->rep, &set);
     if (hdi_heat_lanes(h, HDI_LANES_ITERATIVE, 0, set.n_poles) < 0 ||
-        hdi_family_room(&heat->fam, h->e) < 0) return h->e->status;
-    for (i = 0; i < h->n_lanes; i++) hdi_lane_systems(heat->lane + i, &heat->fam);
-    if (hdi_family_fill(&heat->fam, heat->lane, h->e) < 0) return h->e->status;
+        hdi_family_prepare(&heat->fam, &set, h->t, heat->lane, h->n_lanes, h->e) < 0) return h->e->status;
     if (hdi_family_shares(&heat->fam)) h->n_lanes = 1;
     return HD_OK;
 }
@@ -19049,7 +18913,7 @@ static hd_status hdi_heat_make(hd_heat *heat, const hd_laplacian *lap, hd_error 
 typedef struct hdi_reached { double way, unit; int32_t row, from; } hdi_reached;
 
 typedef struct hdi_local {
-    hd_heat heat;                /* a plan for the pair of the ball; hdi_rim_bound is the local part of its errors */
+    hd_heat heat;                /* a plan for the pair of the ball */
     hd_laplacian *ball;          /* the pair: its vertex i is row[i] of the source; NULL: none yet */
     int32_t *row;
     hdi_rim rim;
@@ -19919,15 +19783,12 @@ static double hdi_modes_need(const hd_heat *heat, int32_t count) {
 static int hdi_modes_find(hd_heat *heat, int32_t count, hd_error *e) {
     hdi_modes *x = &heat->modes;
     const hd_laplacian *lap = heat->source;
-    hdi_spec_goal goal;
     hdi_modes_free(x, heat->ctx);
     if (hdi_heat_analysed(heat, e) < 0 ||
         HDI_MODES_SURE * hdi_modes_need(heat, count) > hdi_bytes_left(heat->ctx)) return 0;
-    goal.below = HUGE_VAL;
-    goal.count = count;
     x->s.lap = lap;
     x->s.context = heat->ctx;
-    if (hdi_spec_run(&heat->elim, &goal, HDI_MODES_RESIDUAL, &x->s, e) >= 0 && x->s.proven &&
+    if (hdi_spec_run(&heat->elim, count, HUGE_VAL, HDI_MODES_RESIDUAL, &x->s, e) >= 0 && x->s.proven &&
         x->s.n_constant == (lap->conserves ? lap->n_components : 0) && hdi_modes_measure(heat, e) >= 0 &&
         x->off_gram <= HDI_MODES_ORTHO) return 1;
     hdi_modes_free(x, heat->ctx);
@@ -20887,14 +20748,8 @@ static void hdi_inverses_weigh(hdi_inverses *x, int32_t q) {
     const hd_rational *set = x->set + q;
     const double tau = hdi_inverses_tau(x, q);
     hd_c64 *k = x->weight + 2 * (size_t)q * (size_t)set->n_poles, *g = k + set->n_poles;
-    double slack = 0, factor = 1;
-    int32_t p, best = 0;
-    if (!hdi_resolvent_weights(set, g, &slack)) {
-        slack = 0;
-        best = hdi_resolvent_pole(set, &factor);
-        for (p = 0; p < set->n_poles; p++) g[p] = hdi_c(p == best ? factor : 0, 0);
-    }
-    x->slack[q] = best >= 0 ? 1 + slack : HUGE_VAL;
+    int32_t p;
+    x->slack[q] = hdi_resolvent_weights(set, g);
     for (p = 0; p < set->n_poles; p++) {
         k[p] = hdi_cscale(-hdi_rat_count(set, p) / tau, set->a[p]);
         g[p] = hdi_cscale(1 / tau, g[p]);
@@ -21012,7 +20867,7 @@ static int hdi_row_counts(const hdi_heat_call *h, int32_t i) {
     return h->core == 0 || h->heat->elim.lap->vertex[i] < h->core;
 }
 
-/* What a part of the mesh leaves out of an entry of the diagonal. That of K_t = k_t B takes entries beside. */
+/* What a part of the mesh leaves out of an entry of the diagonal. That of k_t B takes entries beside it. */
 static double hdi_diagonal_left_out(const hdi_heat_call *h, int32_t mass, int32_t i) {
     const hd_laplacian *lap = h->heat->elim.lap;
     double sum = mass > 0 && lap->B ? 0 : hdi_by_mass(1, lap->b_diag[i], mass);
@@ -22060,8 +21915,8 @@ static hd_status hdi_metric_ground(hdi_metric *x, hdi_scope *s) {
         const int32_t row = i < probe.k ? probe.row[i] : nearest;
         const hdi_terms at = hdi_terms_vertex(m->lap->vertex[row]);
         const double off = hdi_ground_column(m, g, &at, forms, u, x->work) * sqrt(x->f.g[row]);
-        const double seen = 4 * HDI_PROBE_SAFETY * fabs(u[row] - value[row]) + off;
-        *x->rounding = hdi_max(*x->rounding, hdi_quotient(seen, value[row]));
+        const double seen = hdi_probe_seen(u[row], off / 4, value[row], value[row]);
+        *x->rounding = hdi_max(*x->rounding, 4 * seen);
     }
     for (i = 0; i < n; i++)                      /* rounding has left nothing of a positive value */
         if (!g->held[i] && !(value[i] > 0)) *x->rounding = HUGE_VAL;
@@ -22325,50 +22180,6 @@ static hdi_ledger hdi_metric_ledger(const hdi_metric *x) {
                             HD_EVIDENCE_MEASURED, 1);
 }
 
-/* A query for distances of a kind from k sources to all vertices. */
-typedef struct hdi_distances {
-    hdi_task task;
-    const hdi_distance_row *kind;
-    int32_t k;
-    const hdi_terms *source;     /* [k] */
-    double *D;                   /* source r at time q: column r n_times + q */
-    size_t ld;
-} hdi_distances;
-
-static double *hdi_distances_at(const hdi_distances *to, int32_t r, int32_t q) {
-    const size_t n_times = (size_t)hdi_high32(to->task.h->ask.n_times, 1);
-    return to->D + ((size_t)r * n_times + (size_t)q) * to->ld;
-}
-
-/* The default goes to the highest degree where the bound on the error relative to the largest distance is
- * above the first number. The bound of degree 9 is expected at the second one times sqrt(t)/h, as seen on
- * meshes of 1K to 50K vertices. */
-#define HDI_DISTANCE_SURE 3.5e-7
-#define HDI_DISTANCE_EXPECTED 4.4e-7
-
-/* All sources by a metric: the times of its functions are columns of the query, whose reports are in one, or
- * NULL for the time under way. */
-static hd_status hdi_distances_of(const hdi_distances *to, hdi_metric *x, const int32_t *column,
-                                  hd_report *one) {
-    hdi_heat_call *h = to->task.h;
-    int32_t r, k, i, q;
-    for (r = 0; r < to->k && h->e->status >= 0; r += k) {
-        k = hdi_low32(to->k - r, x->group);
-        if (hdi_metric_solve(x, to->source + r, k) < 0) break;
-        for (q = 0; q < hdi_high32(x->in.count, 1); q++) {
-            const int32_t at = column ? column[q] : h->now;
-            hd_report *rep = one ? one + at : h->rep;
-            hdi_metric_at(x, q);
-            for (i = 0; i < k; i++) {
-                hdi_ledger ledger = hdi_metric_ledger(x);
-                hdi_metric_distance(x, to->source + r + i, i, hdi_distances_at(to, r + i, at), rep, &ledger);
-                hdi_ledger_close(&ledger, rep);
-            }
-        }
-    }
-    return h->e->status;
-}
-
 /* ---- distances from the smallest eigenpairs ---- */
 /* At large t all vertices look alike, and f_ss - 2 f_sv + f_vv cancels. There few eigenpairs are left, and
  *     d_t(x,y)^2 = sum_i exp(-2 t lambda_i) (x_i(x) - x_i(y))^2 = |K_t B^-1 (e_x - e_y)|^2
@@ -22405,30 +22216,25 @@ static void hdi_mode_sum_from(hdi_mode_sum *a, hdi_terms source) {
             a->constant_off += (source.n + 1) * DBL_EPSILON * fabs(by) /
                 sqrt(a->lap->component_mass[a->lap->component[row]]);
     }
+    if (a->own >= 0 && !weighted) a->share[a->own] = 1;
 }
 
-/* The part of d that does not decay: that of the constants. */
+/* The part of d that does not decay: that of the constants. Within a component of the source B 1 is compared
+ * in two doubles. */
 static double hdi_modes_constant(const hdi_mode_sum *a, int32_t v) {
     const hd_laplacian *lap = a->lap;
-    const int32_t j = lap->row[v], n = lap->n;
-    const int32_t ci = a->own, cj = j < 0 ? -1 : lap->component[j];
-    const double *one = a->sums.of->one;
-    double bi = 0, bj = 0, sum = 0;
+    const int32_t row = lap->row[v], own = row < 0 ? -1 : lap->component[row], mass = a->sums.mass;
+    const double *one = a->sums.of->one, *rest = one + lap->n;
+    double sum = 0;
     int32_t c;
-    if (a->sums.bank.first == 0) return 0;
-    for (c = 0; c < lap->n_components && ci < 0; c++) {
-        const double by = c == cj ? (a->sums.mass ? one[v] : 1) : 0;
-        sum = hdi_pythag(sum, (a->share[c] - by) / sqrt(lap->component_mass[c]));
+    if (own >= 0 && own == a->own && !mass) return 0;
+    for (c = 0; c < lap->n_components && a->sums.bank.first > 0; c++) {
+        const double by = c == own ? (mass ? one[v] : 1) : 0;
+        const double off = own >= 0 && own == a->own ? (c == own ? a->at - one[v] + (a->rest - rest[v]) : 0)
+                                                     : a->share[c] - by;
+        sum = hdi_pythag(sum, off / sqrt(lap->component_mass[c]));
     }
-    if (ci < 0) return sum;
-    if (ci == cj) {
-        if (!a->sums.mass) return 0;
-        bi = a->at - one[v] + (a->rest - one[n + v]);
-        return fabs(bi) / sqrt(lap->component_mass[ci]);
-    }
-    bi = (a->sums.mass ? a->at : 1) / sqrt(lap->component_mass[ci]);
-    if (cj >= 0) bj = (a->sums.mass ? one[v] : 1) / sqrt(lap->component_mass[cj]);
-    return hdi_pythag(bi, bj);
+    return sum;
 }
 
 /* Makes the distance to v of the part that decays, and notes its bound. */
@@ -22468,45 +22274,109 @@ static hd_status hdi_mode_sum_make(hdi_mode_sum *a, hdi_heat_call *h, const hdi_
     return h->e->status;
 }
 
+/* ---- both ways ---- */
+
+/* A query for distances of a kind. Those below begin with this struct. */
+typedef struct hdi_distance_query hdi_distance_query;
+struct hdi_distance_query {
+    hdi_task task;
+    const hdi_distance_row *kind;
+    /* Answers the time under way by a metric or, where that is NULL, from eigenpairs. */
+    void (*answer)(const hdi_distance_query *to, hdi_metric *x, hdi_mode_sum *sum);
+};
+
+/* The answer from the eigenpairs that are there. */
+static hd_status hdi_distance_by_pairs(hdi_task *task) {
+    const hdi_distance_query *to = (const hdi_distance_query *)task;
+    hdi_scope s = hdi_scope_begin(task->h->heat->ctx, task->h->e);
+    hdi_mode_sum sum;
+    if (hdi_mode_sum_make(&sum, task->h, to->kind, &s) >= 0) to->answer(to, NULL, &sum);
+    return hdi_scope_end(&s);
+}
+
+/* The answer by poles, for so many sources at the same time, as in hdi_metric_make. */
+static hd_status hdi_distance_by_metric(const hdi_distance_query *to, int32_t group, int bounded) {
+    hdi_scope s = hdi_scope_begin(to->task.h->heat->ctx, to->task.h->e);
+    hdi_metric x;
+    if (hdi_metric_make(to->task.h, to->kind, group, bounded, &x, &s) >= 0) to->answer(to, &x, NULL);
+    return hdi_scope_end(&s);
+}
+
+/* Distances from one source, by a metric or, where that is NULL, from eigenpairs. */
+static hd_status hdi_distances_from(hdi_heat_call *h, const hdi_metric *x, hdi_mode_sum *sum,
+                                    const hdi_terms *from, double *d) {
+    hdi_ledger ledger = x ? hdi_metric_ledger(x) : hdi_modes_ledger();
+    if (HDI_HAS_MODES && sum) hdi_mode_sum_run(sum, *from, d, &ledger, h->rep, h->heat->ctx);
+    else if (hdi_metric_solve(x, from, 1) >= 0) hdi_metric_distance(x, from, 0, d, h->rep, &ledger);
+    if (h->e->status >= 0) hdi_ledger_close(&ledger, h->rep);
+    return h->e->status;
+}
+
 /* ---- distances to all vertices ---- */
+
+/* A query for distances from k sources to all vertices. */
+typedef struct hdi_distances {
+    hdi_distance_query of;
+    int32_t k;
+    const hdi_terms *source;     /* [k] */
+    double *D;                   /* source r at time q: column r n_times + q */
+    size_t ld;
+} hdi_distances;
+
+static double *hdi_distances_at(const hdi_distances *to, int32_t r, int32_t q) {
+    const size_t n_times = (size_t)hdi_high32(to->of.task.h->ask.n_times, 1);
+    return to->D + ((size_t)r * n_times + (size_t)q) * to->ld;
+}
+
+/* All sources by a metric: the times of its functions are columns of the query, whose reports are in one;
+ * NULL: it is the call's. */
+static hd_status hdi_distances_of(const hdi_distances *to, hdi_metric *x, const int32_t *column,
+                                  hd_report *one) {
+    hdi_heat_call *h = to->of.task.h;
+    int32_t r, k, i, q;
+    for (r = 0; r < to->k && h->e->status >= 0; r += k) {
+        k = hdi_low32(to->k - r, x->group);
+        if (hdi_metric_solve(x, to->source + r, k) < 0) break;
+        for (q = 0; q < hdi_high32(x->in.count, 1); q++) {
+            const int32_t at = column[q];
+            hd_report *rep = one ? one + at : h->rep;
+            hdi_metric_at(x, q);
+            for (i = 0; i < k; i++) {
+                hdi_ledger ledger = hdi_metric_ledger(x);
+                hdi_metric_distance(x, to->source + r + i, i, hdi_distances_at(to, r + i, at), rep, &ledger);
+                hdi_ledger_close(&ledger, rep);
+            }
+        }
+    }
+    return h->e->status;
+}
+
+static void hdi_distances_answer(const hdi_distance_query *of, hdi_metric *x, hdi_mode_sum *sum) {
+    const hdi_distances *to = (const hdi_distances *)of;
+    hdi_heat_call *h = of->task.h;
+    int32_t r;
+    if (x) (void)hdi_distances_of(to, x, &h->now, NULL);
+    for (r = 0; r < to->k && sum && h->e->status >= 0; r++)
+        if (hdi_progress(h->heat->ctx, "solve", (double)r / to->k, h->e) >= 0)
+            (void)hdi_distances_from(h, NULL, sum, to->source + r, hdi_distances_at(to, r, h->now));
+}
 
 /* Is the bound of degree 9 sure to be too large at time t? */
 static int hdi_distance_sure(const hd_heat *heat, const hdi_distance_row *kind, double t) {
-    return kind->mass == 0 && heat->source->h > 0 &&
-           HDI_DISTANCE_EXPECTED * sqrt(t) > HDI_DISTANCE_SURE * heat->source->h;
+    return heat->source->h > 0 && kind->expected * sqrt(t) > kind->sure * heat->source->h;
 }
 
 /* Distances at the time under way by poles. Where much is sure to cancel, the highest degree begins. */
 static hd_status hdi_distances_by_poles(hdi_task *task) {
     const hdi_distances *to = (const hdi_distances *)task;
+    const hdi_distance_row *kind = to->of.kind;
     hdi_heat_call *h = task->h;
-    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
-    hdi_metric x;
     task->excess = 2;
-    if (to->kind->time > 0 && h->degree == 0 && hdi_degree_open(h->heat) &&
-        hdi_distance_sure(h->heat, to->kind, h->ask.t[h->now])) return HD_OK;
-    if (hdi_metric_make(h, to->kind, hdi_low32(to->k, HDI_LANES), 1, &x, &s) >= 0)
-        (void)hdi_distances_of(to, &x, NULL, NULL);
-    task->excess = to->kind->time > 0 ? h->rep->error_rational / HDI_DISTANCE_SURE : 0;
-    return hdi_scope_end(&s);
-}
-
-/* Distances of all sources at the time under way from the eigenpairs that are there. */
-static hd_status hdi_distances_by_pairs(hdi_task *task) {
-    const hdi_distances *to = (const hdi_distances *)task;
-    hdi_heat_call *h = task->h;
-    hd_heat *heat = h->heat;
-    hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
-    hdi_mode_sum sum;
-    int32_t r;
-    if (hdi_mode_sum_make(&sum, h, to->kind, &s) < 0) return hdi_scope_end(&s);
-    for (r = 0; r < to->k; r++) {
-        hdi_ledger ledger = hdi_modes_ledger();
-        if (hdi_progress(heat->ctx, "solve", (double)r / to->k, h->e) < 0) break;
-        hdi_mode_sum_run(&sum, to->source[r], hdi_distances_at(to, r, h->now), &ledger, h->rep, heat->ctx);
-        hdi_ledger_close(&ledger, h->rep);
-    }
-    return hdi_scope_end(&s);
+    if (kind->expected > 0 && h->degree == 0 && hdi_degree_open(h->heat) &&
+        hdi_distance_sure(h->heat, kind, h->ask.t[h->now])) return HD_OK;
+    (void)hdi_distance_by_metric(&to->of, hdi_low32(to->k, HDI_LANES), 1);
+    task->excess = kind->sure > 0 ? h->rep->error_rational / kind->sure : 0;
+    return h->e->status;
 }
 
 /* Distances at times q0 to q1 - 1 of the call, sorted, by one set of poles. */
@@ -22518,8 +22388,8 @@ static hd_status hdi_distances_window(const hdi_task *task, int32_t q0, int32_t 
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
     hdi_metric x;
     int32_t q;
-    if (hdi_metric_take(&x, h, to->kind, count, &s) >= 0 &&
-        hdi_window_take(&x.in, h, q0, q1, hdi_metric_wanted(h->heat, to->kind), HDI_SHARED_DISTANCE_TOL,
+    if (hdi_metric_take(&x, h, to->of.kind, count, &s) >= 0 &&
+        hdi_window_take(&x.in, h, q0, q1, hdi_metric_wanted(h->heat, to->of.kind), HDI_SHARED_DISTANCE_TOL,
                         &s) >= 0 &&
         hdi_metric_invert(&x, &s) >= 0 && hdi_metric_room(&x, group, 1, &s) >= 0) {
         for (q = 0; q < count; q++) one[column[q]] = *h->rep;
@@ -22530,7 +22400,7 @@ static hd_status hdi_distances_window(const hdi_task *task, int32_t q0, int32_t 
 
 /* With shared poles, where that is cheaper than one by one. */
 static hd_status hdi_distances_together(hdi_task *task, char *done, hd_report *one) {
-    const int32_t times = ((const hdi_distances *)task)->kind->time;
+    const int32_t times = ((const hdi_distances *)task)->of.kind->time;
     hdi_heat_call *h = task->h;
     hd_heat *heat = h->heat;
     if (!hdi_degree_open(heat) || hdi_heat_analysed(heat, h->e) < 0 ||
@@ -22545,8 +22415,7 @@ static hd_status hdi_distances_together(hdi_task *task, char *done, hd_report *o
 
 /* A query for distances of pairs of vertices. */
 typedef struct hdi_pairs {
-    hdi_task task;
-    const hdi_distance_row *kind;
+    hdi_distance_query of;
     int64_t n;
     const int32_t *i, *j;
     double *d;                   /* [n] for each time */
@@ -22554,32 +22423,20 @@ typedef struct hdi_pairs {
 
 /* Some of the pairs, and columns of their vertices. */
 typedef struct hdi_pairs_part {
-    int64_t n;
-    const int32_t *i, *j;
-    double *d;
-    int32_t n_vertex, *vertex;   /* distinct ones, ascending */
-    int32_t *place;              /* [2 n] which of them each pair's two are */
-    double *U, *size;            /* their columns, and the norms of B of these */
+    int64_t begin, end;
+    int32_t n_vertex, *place;    /* [n] which of the columns each vertex has, -1: none */
+    double *U, *size;            /* the columns, and their norms of B */
     double *work;                /* [2 n_active] */
 } hdi_pairs_part;
 
 /* Finds the vertices. */
-static hd_status hdi_pairs_vertices(hdi_pairs_part *x, hdi_scope *s) {
-    hdi_pair *order = HDI_TAKE(s, hdi_pair, 2 * (uint64_t)x->n);
+static void hdi_pairs_vertices(const hdi_pairs *to, hdi_pairs_part *x, int32_t n) {
     int64_t q;
-    x->vertex = HDI_TAKE(s, int32_t, 2 * (uint64_t)x->n);
-    x->place = HDI_TAKE(s, int32_t, 2 * (uint64_t)x->n);
-    if (s->e->status < 0) return s->e->status;
-    for (q = 0; q < 2 * x->n; q++) {
-        order[q].key = (uint64_t)(q % 2 ? x->j[q / 2] : x->i[q / 2]);
-        order[q].id = q;
-    }
-    hdi_sort_pairs(order, 2 * x->n);
-    for (q = 0, x->n_vertex = 0; q < 2 * x->n; q++) {
-        if (q == 0 || order[q].key != order[q - 1].key) x->vertex[x->n_vertex++] = (int32_t)order[q].key;
-        x->place[order[q].id] = x->n_vertex - 1;
-    }
-    return HD_OK;
+    int32_t v;
+    hdi_fill_i32(x->place, n, -1);
+    for (q = x->begin; q < x->end; q++) x->place[to->i[q]] = x->place[to->j[q]] = 0;
+    for (v = 0, x->n_vertex = 0; v < n; v++)
+        if (x->place[v] == 0) x->place[v] = x->n_vertex++;
 }
 
 /* |u - v|_B of fields on vertices, whose squares may leave the range of doubles; v NULL: |u|_B. work
@@ -22593,16 +22450,6 @@ static double hdi_vertex_norm(const hd_laplacian *lap, const double *u, const do
     return most * sqrt(hdi_max(0, hdi_b_norm2(lap, work, work + lap->n_active)));
 }
 
-/* Distributes a bound that stands in rounding over all parts, in the ratio of another bound. */
-static void hdi_parts_share(hdi_parts *to, const hdi_parts *as) {
-    const double all = to->rounding, sum = hdi_parts_sum(as);
-    if (!(sum > 0 && hdi_finite(sum) && hdi_finite(all))) return;
-    to->rational = all * (as->rational / sum);
-    to->solver = all * (as->solver / sum);
-    to->rounding = all * (as->rounding / sum);
-    to->local = all * (as->local / sum);
-}
-
 /* The error of the column of v, whose size is given, in the norm of B: relative errors are below bound. That
  * of a vertex without a row is exact. */
 static double hdi_pairs_column_off(const hd_laplacian *lap, int32_t v, double size, double bound) {
@@ -22613,50 +22460,54 @@ static double hdi_pairs_column_off(const hd_laplacian *lap, int32_t v, double si
 /* Most doubles of columns that are held at the same time: half a GiB. */
 #define HDI_PAIRS_DOUBLES (INT64_C(1) << 26)
 
-/* Distances |K_t B^-1 (e_i - e_j)|_B from the columns, whose errors are the only ones. rep: of these. */
-static void hdi_pairs_note(const hd_heat *heat, const hdi_pairs_part *x, hd_report *rep, hdi_ledger *all) {
-    const hd_laplacian *lap = heat->source;
+/* Distances |K_t B^-1 (e_i - e_j)|_B from the columns, whose errors are the only ones. The parts of the bound
+ * are in the ratio of those of the columns. rep: of these. */
+static void hdi_pairs_note(const hdi_pairs *to, const hdi_pairs_part *x, hd_report *rep, hdi_ledger *all) {
+    const hd_laplacian *lap = to->of.task.h->heat->source;
     const size_t n = (size_t)lap->n;
-    hdi_ledger of = hdi_ledger_begin(rep->evidence_rational, rep->evidence_solver, rep->evidence_rounding, 1);
-    hdi_parts part = {0, 0, 0, 0}, share;
+    double *d = to->d + to->n * to->of.task.h->now, sum;
+    hdi_parts share;
     int64_t q;
-    of.evidence.local = rep->evidence_local;
     share.rational = rep->error_rational;
     share.local = rep->error_local;
     share.solver = rep->error_solver;
     share.rounding = rep->error_rounding;
-    for (q = 0; q < x->n; q++) {
-        const int32_t i = x->place[2 * q], j = x->place[2 * q + 1];
-        x->d[q] = 0;
-        if (x->i[q] == x->j[q]) continue;
-        x->d[q] = hdi_vertex_norm(lap, x->U + n * (size_t)i, x->U + n * (size_t)j, x->work);
-        part.rounding = hdi_pairs_column_off(lap, x->i[q], x->size[i], rep->error_bound_b) +
-                        hdi_pairs_column_off(lap, x->j[q], x->size[j], rep->error_bound_b) +
+    sum = hdi_parts_sum(&share);
+    for (q = x->begin; q < x->end; q++) {
+        const int32_t i = x->place[to->i[q]], j = x->place[to->j[q]];
+        hdi_parts part = {0, 0, 0, 0};
+        d[q] = 0;
+        if (i == j) continue;
+        d[q] = hdi_vertex_norm(lap, x->U + n * (size_t)i, x->U + n * (size_t)j, x->work);
+        part.rounding = hdi_pairs_column_off(lap, to->i[q], x->size[i], rep->error_bound_b) +
+                        hdi_pairs_column_off(lap, to->j[q], x->size[j], rep->error_bound_b) +
                         4 * DBL_EPSILON * (x->size[i] + x->size[j]);
-        rep->n_lost += x->d[q] < 10 * part.rounding;
-        hdi_ledger_note(&of, x->d[q], part);
+        rep->n_lost += d[q] < 10 * part.rounding;
+        if (sum > 0 && hdi_finite(sum) && hdi_finite(part.rounding))
+            part = hdi_parts_scale(part.rounding / sum, share);
+        hdi_ledger_note(all, d[q], part);
     }
-    hdi_parts_share(&of.off, &share);
-    hdi_ledger_join(all, &of);
 }
 
 /* Some pairs at the time under way from columns. */
-static hd_status hdi_pairs_some(hdi_heat_call *h, const hdi_pairs *to, hdi_pairs_part *x, hd_report *rep,
-                                hdi_ledger *all) {
-    const hd_kernel kernel = to->kind->mass > 0 ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
-    const hd_heat *heat = h->heat;
-    const uint64_t n = (uint64_t)heat->source->n;
-    hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
-    hdi_heat_call c;
+static hd_status hdi_pairs_some(const hdi_pairs *to, hdi_pairs_part *x, hd_report *rep, hdi_ledger *all) {
+    const hd_kernel kernel = to->of.kind->mass > 0 ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
+    hdi_heat_call *h = to->of.task.h, c;
+    const hd_laplacian *lap = h->heat->source;
+    const uint64_t n = (uint64_t)lap->n;
+    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
     hdi_terms *terms;
-    int32_t q;
-    if (hdi_pairs_vertices(x, &s) < 0) return hdi_scope_end(&s);
+    int32_t v;
+    x->place = HDI_TAKE(&s, int32_t, n);
+    if (!x->place) return hdi_scope_end(&s);
+    hdi_pairs_vertices(to, x, lap->n);
     x->work = HDI_TAKE(&s, double, 2 * n + 1);
     x->U = HDI_TAKE(&s, double, n * (uint64_t)x->n_vertex);
     x->size = HDI_TAKE(&s, double, x->n_vertex);
     terms = HDI_TAKE(&s, hdi_terms, x->n_vertex);
     if (h->e->status < 0) return hdi_scope_end(&s);
-    for (q = 0; q < x->n_vertex; q++) terms[q] = hdi_terms_vertex(x->vertex[q]);
+    for (v = 0; v < lap->n; v++)
+        if (x->place[v] >= 0) terms[x->place[v]] = hdi_terms_vertex(v);
     if (hdi_kernel_begin(&c, h->heat, kernel, rep, NULL) >= 0 &&
         hdi_times_check(&c, 1, h->ask.t + h->now, 0) >= 0) {
         c.ask.k = x->n_vertex;
@@ -22666,27 +22517,23 @@ static hd_status hdi_pairs_some(hdi_heat_call *h, const hdi_pairs *to, hdi_pairs
         c.degree = h->degree;
     }
     if (hdi_heat_run(&c) < 0) *h->e = rep->error;
-    for (q = 0; q < x->n_vertex && h->e->status >= 0; q++)
-        x->size[q] = hdi_vertex_norm(heat->source, x->U + n * (uint64_t)q, NULL, x->work);
-    if (h->e->status >= 0) hdi_pairs_note(heat, x, rep, all);
+    for (v = 0; v < x->n_vertex && h->e->status >= 0; v++)
+        x->size[v] = hdi_vertex_norm(lap, x->U + n * (uint64_t)v, NULL, x->work);
+    if (h->e->status >= 0) hdi_pairs_note(to, x, rep, all);
     return hdi_scope_end(&s);
 }
 
 /* All pairs at the time under way, `most` at once. */
 static hd_status hdi_pairs_columns(const hdi_pairs *to, int64_t most) {
-    hdi_heat_call *h = to->task.h;
+    hdi_heat_call *h = to->of.task.h;
     hdi_ledger all = hdi_ledger_begin(HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, 1);
     hd_report one, sum;
     hdi_pairs_part x;
-    int64_t p;
-    for (p = 0; p < to->n; p += x.n) {
-        x.i = to->i + p;
-        x.j = to->j + p;
-        x.d = to->d + to->n * h->now + p;
-        x.n = hdi_least(to->n - p, most);
-        if (hdi_pairs_some(h, to, &x, &one, &all) < 0) return h->e->status;
-        if (p == 0) sum = one;
-        else hdi_report_merge(&sum, &one);
+    memset(&sum, 0, sizeof sum);
+    for (x.begin = 0; x.begin < to->n; x.begin = x.end) {
+        x.end = hdi_least(to->n, x.begin + most);
+        if (hdi_pairs_some(to, &x, &one, &all) < 0) return h->e->status;
+        hdi_report_merge(&sum, &one);
     }
     sum.error_bound = sum.error_rational = sum.error_solver = sum.error_rounding = 0;
     sum.error_relative = sum.smallest = sum.error_local = 0;
@@ -22697,33 +22544,43 @@ static hd_status hdi_pairs_columns(const hdi_pairs *to, int64_t most) {
     return h->e->status;
 }
 
-/* Distances from columns and the diagonal, for more vertices than columns fit. Errors are those of all
- * vertices from the same ones. */
-static hd_status hdi_pairs_one_by_one(const hdi_pairs *to) {
-    hdi_heat_call *h = to->task.h;
+/* A pair from eigenpairs. out [n] */
+static double hdi_pairs_from_sum(hdi_heat_call *h, hdi_mode_sum *sum, int32_t i, int32_t j, double *out,
+                                 hdi_ledger *ledger) {
+    sum->sums.column = out;
+    hdi_mode_sum_from(sum, hdi_terms_vertex(i));
+    hdi_spec_sum_task(&sum->sums, j, (int64_t)j + 1);
+    hdi_mode_sum_note(sum, j, ledger, h->rep);
+    return out[j];
+}
+
+/* Pairs by a metric, for more vertices than columns fit, or from eigenpairs. By a metric each run of the same
+ * first vertex has a column, and errors are those of all vertices from these. */
+static void hdi_pairs_answer(const hdi_distance_query *of, hdi_metric *x, hdi_mode_sum *sum) {
+    const hdi_pairs *to = (const hdi_pairs *)of;
+    hdi_heat_call *h = of->task.h;
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
     double *d = HDI_TAKE(&s, double, h->heat->source->n), *out = to->d + to->n * h->now;
-    hdi_ledger ledger, all;
-    hdi_metric x;
+    const hdi_parts none = {0, 0, 0, 0};
+    hdi_ledger ledger = sum ? hdi_modes_ledger() : hdi_metric_ledger(x), all = ledger;
+    int32_t from = -1;
     int64_t q;
-    if (h->e->status < 0 || hdi_metric_make(h, to->kind, 1, 0, &x, &s) < 0) return hdi_scope_end(&s);
-    ledger = all = hdi_metric_ledger(&x);
-    for (q = 0; q < to->n; q++) {                /* a column for each run of the same first vertex */
-        const hdi_terms from = hdi_terms_vertex(to->i[q]);
-        if (q == 0 || to->i[q] != to->i[q - 1]) {
-            if (hdi_metric_solve(&x, &from, 1) < 0) break;
-            hdi_metric_distance(&x, &from, 0, d, h->rep, &all);
-        }
+    for (q = 0; q < to->n && h->e->status >= 0; q++) {
+        const hdi_terms source = hdi_terms_vertex(to->i[q]);
+        out[q] = 0;
+        if (to->i[q] == to->j[q]) continue;
+        if (HDI_HAS_MODES && sum) out[q] = hdi_pairs_from_sum(h, sum, to->i[q], to->j[q], d, &ledger);
+        if (sum) continue;
+        if (to->i[q] != from && hdi_metric_solve(x, &source, 1) >= 0)
+            hdi_metric_distance(x, &source, 0, d, h->rep, &all);
+        from = to->i[q];
         out[q] = d[to->j[q]];
-        if (!hdi_finite(out[q])) continue;
-        ledger.largest = hdi_max(ledger.largest, out[q]);
-        if (out[q] > 0) ledger.smallest = hdi_min(ledger.smallest, out[q]);
-        ledger.n_values += to->i[q] != to->j[q];
+        if (hdi_finite(out[q])) hdi_ledger_note(&ledger, out[q], none);
     }
-    ledger.off = all.off;
-    ledger.relative = all.relative;
+    if (x) ledger.off = all.off;
+    if (x) ledger.relative = all.relative;
     if (h->e->status >= 0) hdi_ledger_close(&ledger, h->rep);
-    return hdi_scope_end(&s);
+    (void)hdi_scope_end(&s);
 }
 
 /* Distances at the time under way from columns of all vertices of the pairs or, where these have no room,
@@ -22734,41 +22591,20 @@ static hd_status hdi_pairs_by_poles(hdi_task *task) {
     hd_heat *heat = h->heat;
     const int64_t room = HDI_PAIRS_DOUBLES / heat->source->n;
     hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
-    hdi_pairs_part all = {to->n, to->i, to->j, NULL, 0, NULL, NULL, NULL, NULL, NULL};
+    hdi_pairs_part all = {0, to->n, 0, NULL, NULL, NULL, NULL};
     int64_t most = to->n;
-    int fits = to->kind->time > 0 && !hdi_heat_filtered(heat);
-    if (fits && 2 * to->n > room && hdi_pairs_vertices(&all, &s) >= 0 && all.n_vertex > room) {
+    int fits = to->of.kind->time > 0 && !hdi_heat_filtered(heat);
+    if (fits && 2 * to->n > room) all.place = HDI_TAKE(&s, int32_t, heat->source->n);
+    if (all.place) hdi_pairs_vertices(to, &all, heat->source->n);
+    if (all.n_vertex > room) {
         fits = hdi_direct_barred(heat);
         most = hdi_high32(1, (int32_t)(room / 2));
     }
     if (hdi_scope_end(&s) < 0) return h->e->status;
-    if (!fits) return hdi_pairs_one_by_one(to);
+    if (!fits) return hdi_distance_by_metric(&to->of, 1, 0);
     if (hdi_pairs_columns(to, most) >= 0 && h->rep->method == HD_METHOD_DIRECT)
         task->excess = h->rep->error_bound / HDI_MODES_HELP;
     return h->e->status;
-}
-
-/* Distances of the pairs at the time under way from the eigenpairs that are there. */
-static hd_status hdi_pairs_by_pairs(hdi_task *task) {
-    const hdi_pairs *to = (const hdi_pairs *)task;
-    hdi_heat_call *h = task->h;
-    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
-    double *work = HDI_TAKE(&s, double, h->heat->source->n), *d = to->d + to->n * h->now;
-    hdi_ledger ledger = hdi_modes_ledger();
-    hdi_mode_sum sum;
-    int64_t q;
-    if (!work || hdi_mode_sum_make(&sum, h, to->kind, &s) < 0) return hdi_scope_end(&s);
-    sum.sums.column = work;
-    for (q = 0; q < to->n; q++) {
-        d[q] = 0;
-        if (to->i[q] == to->j[q]) continue;
-        hdi_mode_sum_from(&sum, hdi_terms_vertex(to->i[q]));
-        hdi_spec_sum_task(&sum.sums, to->j[q], (int64_t)to->j[q] + 1);
-        hdi_mode_sum_note(&sum, to->j[q], &ledger, h->rep);
-        d[q] = work[to->j[q]];
-    }
-    hdi_ledger_close(&ledger, h->rep);
-    return hdi_scope_end(&s);
 }
 
 /* ---- farthest points ---- */
@@ -22781,35 +22617,21 @@ static int32_t hdi_sample_next(const hd_laplacian *lap, const double *nearest) {
     return best;
 }
 
-/* A query for farthest points, and where distances to the last one come from: a metric, or else
- * eigenpairs. */
+/* A query for farthest points. */
 typedef struct hdi_samples {
-    hdi_task task;
-    const hdi_distance_row *kind;
+    hdi_distance_query of;
     double t;
     int32_t count, *vertex;
     int32_t n_from;              /* sources that come before all points */
     const hdi_terms *terms;      /* [n_from] */
     double *distance, *nearest, *u;
-    const hdi_metric *x;
-    hdi_mode_sum *sum;
 } hdi_samples;
-
-/* Distances from a source into u. */
-static hd_status hdi_sample_distances(const hdi_samples *a, const hdi_terms *from) {
-    hdi_heat_call *h = a->task.h;
-    hdi_ledger ledger = a->sum ? hdi_modes_ledger() : hdi_metric_ledger(a->x);
-    if (a->sum) hdi_mode_sum_run(a->sum, *from, a->u, &ledger, h->rep, h->heat->ctx);
-    else if (hdi_metric_solve(a->x, from, 1) >= 0)
-        hdi_metric_distance(a->x, from, 0, a->u, h->rep, &ledger);
-    if (h->e->status >= 0) hdi_ledger_close(&ledger, h->rep);
-    return h->e->status;
-}
 
 /* All points, each the one that is farthest from those before it. This function is based on
  *   T. Gonzalez, Clustering to minimize the maximum intercluster distance, 1985 */
-static hd_status hdi_sample_points(const hdi_samples *a) {
-    hdi_heat_call *h = a->task.h;
+static void hdi_sample_answer(const hdi_distance_query *of, hdi_metric *x, hdi_mode_sum *sum) {
+    const hdi_samples *a = (const hdi_samples *)of;
+    hdi_heat_call *h = of->task.h;
     const hd_laplacian *lap = h->heat->source;
     int32_t *vertex = a->vertex, q, v;
     for (v = 0; v < lap->n; v++) a->nearest[v] = HUGE_VAL;
@@ -22823,36 +22645,20 @@ static hd_status hdi_sample_points(const hdi_samples *a) {
         if (q + 1 == a->count || hdi_progress(h->heat->ctx, "sample", hdi_max(0, q) / a->count, h->e) < 0)
             break;
         from = q < 0 ? a->terms[a->n_from + q] : hdi_terms_vertex(vertex[q]);
-        if (hdi_sample_distances(a, &from) < 0) break;
+        if (hdi_distances_from(h, x, sum, &from, a->u) < 0) break;
         for (v = 0; v < lap->n; v++) a->nearest[v] = hdi_min(a->nearest[v], a->u[v]);
         if (!from.weight) a->nearest[from.one] = -1;     /* never again, even when no distance is left */
     }
-    return h->e->status;
 }
 
 /* The points by distances from poles. */
 static hd_status hdi_sample_by_poles(hdi_task *task) {
-    hdi_samples *a = (hdi_samples *)task;
+    const hdi_distance_query *of = (const hdi_distance_query *)task;
     hdi_heat_call *h = task->h;
-    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
-    hdi_metric x;
-    a->x = &x;
-    a->sum = NULL;
-    h->degree = a->kind->time > 0 && hdi_degree_open(h->heat) ? HDI_RAT_KERNEL_MAX : 0;
-    if (hdi_metric_make(h, a->kind, 1, 0, &x, &s) >= 0) (void)hdi_sample_points(a);
+    h->degree = of->kind->time > 0 && hdi_degree_open(h->heat) ? HDI_RAT_KERNEL_MAX : 0;
+    (void)hdi_distance_by_metric(of, 1, 0);
     h->degree = 0;
-    return hdi_scope_end(&s);
-}
-
-/* The points by distances from the eigenpairs that are there. */
-static hd_status hdi_sample_by_pairs(hdi_task *task) {
-    hdi_samples *a = (hdi_samples *)task;
-    hdi_heat_call *h = task->h;
-    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
-    hdi_mode_sum sum;
-    a->sum = &sum;
-    if (hdi_mode_sum_make(&sum, h, a->kind, &s) >= 0) (void)hdi_sample_points(a);
-    return hdi_scope_end(&s);
+    return h->e->status;
 }
 
 /* ---- queries of distances ---- */
@@ -22862,62 +22668,63 @@ static hd_status hdi_sample_by_pairs(hdi_task *task) {
  * 1/sqrt(mass) times exp(-t low). */
 static void hdi_distance_task(hdi_task *task, hdi_heat_call *h, const hdi_distance_row *kind, int32_t k) {
     const double span = hdi_modes_span(h->heat);
-    const double many = k < HDI_LANES_BATCH || kind->mass > 0 ? 0 : HDI_MODES_MANY * pow(span, 1.2);
+    const double many = kind->many && k >= HDI_LANES_BATCH ? HDI_MODES_MANY * pow(span, 1.2) : 0;
     memset(task, 0, sizeof *task);
     task->h = h;
+    task->pairs = HDI_HAS_MODES ? hdi_distance_by_pairs : NULL;
     if (!HDI_HAS_MODES || !(kind->time > 0) || !hdi_modes_allowed(h->heat)) return;
     task->serves = (int32_t)hdi_min(hdi_max(HDI_MODES_FIRST, many), HDI_MODES_MOST / 2);
     task->depth = hdi_max(0, log(2 * span / hdi_modes_tol(h->heat)));   /* 0: tol is all there is */
 }
 
-/* The start of a query of a distance. Commute and biharmonic distances have no time: n_times is 0 or 1,
- * and t is not read. */
+/* The start of a query of a distance. All but pairs of vertices have positive times and the direct method
+ * only. Without a time n_times is 0 or 1, and t is not read. */
 static hd_status hdi_distance_begin(hdi_heat_call *h, hd_heat *heat, const hdi_distance_row *kind,
-                                    int32_t n_times, const double *t, int positive, hd_report *report,
+                                    int32_t n_times, const double *t, int pairs, hd_report *report,
                                     hd_error *err) {
     if (hdi_heat_begin(h, heat, HDI_QUERY_SYMMETRIC, report, err) < 0) return h->e->status;
     h->relative = 1;
     if (!HDI_HAS_DIFFUSION) return HDI_LEFT_OUT(h->e, DIFFUSION, "diffusion distances");
     if (!kind) return hdi_fail(h->e, HD_ERR_ARGUMENT, "distance: unknown kind");
-    if (kind->time > 0) return hdi_times_check(h, n_times, t, positive);
-    if (n_times > 1 || n_times < 0)
+    if (kind->time > 0 && hdi_times_check(h, n_times, t, !pairs) < 0) return h->e->status;
+    if (kind->time == 0 && (n_times > 1 || n_times < 0))
         return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "distance: n_times is 0 or 1 for commute and biharmonic",
                             -1, -1, n_times);
-    return hdi_direct_only(h);
+    return pairs && kind->time > 0 && !hdi_heat_filtered(heat) ? HD_OK : hdi_direct_only(h);
 }
 
-/* Distances to all vertices from sources. */
-static hd_status hdi_distance_answer(hd_heat *heat, hdi_distances *to, const hd_sources *sources,
+/* Runs a query for distances to all vertices from sources. */
+static hd_status hdi_distances_run(hd_heat *heat, hdi_distances *to, const hd_sources *sources,
                                      int32_t n_times, const double *t, hd_report *report, hd_error *err) {
     hdi_heat_call h;
-    if (hdi_distance_begin(&h, heat, to->kind, n_times, t, 1, report, err) < 0 || hdi_direct_only(&h) < 0 ||
-        !HDI_HAS_DIFFUSION) return hdi_heat_end(&h);
+    if (hdi_distance_begin(&h, heat, to->of.kind, n_times, t, 0, report, err) < 0 || !HDI_HAS_DIFFUSION)
+        return hdi_heat_end(&h);
     if (!sources || (sources->count > 0 && !to->D)) hdi_missing(h.e);
     to->ld = hdi_leading(&h, to->ld);
     if (h.e->status >= 0) to->source = hdi_terms_all(sources, heat->source, 1, &h.s);
     to->k = h.e->status >= 0 ? sources->count : 0;
     if (h.e->status < 0 || to->k == 0) return hdi_heat_end(&h);
-    hdi_distance_task(&to->task, &h, to->kind, to->k);
-    to->task.pairs = HDI_HAS_MODES ? hdi_distances_by_pairs : NULL;
-    to->task.poles = hdi_distances_by_poles;
-    to->task.together = hdi_distances_together;
-    (void)hdi_heat_sparing(&h, &to->task);
+    hdi_distance_task(&to->of.task, &h, to->of.kind, to->k);
+    to->of.answer = hdi_distances_answer;
+    to->of.task.poles = hdi_distances_by_poles;
+    to->of.task.together = hdi_distances_together;
+    (void)hdi_heat_sparing(&h, &to->of.task);
     return hdi_heat_end(&h);
 }
 
 /* Runs a query for pairs whose arguments are checked. */
 static hd_status hdi_pairs_run(hdi_heat_call *h, hdi_pairs *to) {
-    hdi_distance_task(&to->task, h, to->kind, 1);
-    to->task.pairs = HDI_HAS_MODES ? hdi_pairs_by_pairs : NULL;
-    to->task.poles = hdi_pairs_by_poles;
-    return hdi_heat_sparing(h, &to->task);
+    hdi_distance_task(&to->of.task, h, to->of.kind, 1);
+    to->of.answer = hdi_pairs_answer;
+    to->of.task.poles = hdi_pairs_by_poles;
+    return hdi_heat_sparing(h, &to->of.task);
 }
 
-static hd_status hdi_sample_answer(hd_heat *heat, hdi_samples *a, const hd_sources *sources,
-                                   hd_report *report, hd_error *err) {
+static hd_status hdi_sample_run(hd_heat *heat, hdi_samples *a, const hd_sources *sources, hd_report *report,
+                                hd_error *err) {
     hdi_heat_call h;
-    if (hdi_distance_begin(&h, heat, a->kind, 1, &a->t, 1, report, err) < 0 || hdi_direct_only(&h) < 0 ||
-        !HDI_HAS_DIFFUSION) return hdi_heat_end(&h);
+    if (hdi_distance_begin(&h, heat, a->of.kind, 1, &a->t, 0, report, err) < 0 || !HDI_HAS_DIFFUSION)
+        return hdi_heat_end(&h);
     if (a->count < 1 || a->count > heat->source->n_active)
         hdi_fail_row(h.e, HD_ERR_ARGUMENT, "sample: more points than vertices, or none", -1, -1, a->count);
     else if (!a->vertex) hdi_missing(h.e);
@@ -22926,10 +22733,10 @@ static hd_status hdi_sample_answer(hd_heat *heat, hdi_samples *a, const hd_sourc
     a->nearest = HDI_TAKE(&h.s, double, heat->source->n);
     a->u = HDI_TAKE(&h.s, double, heat->source->n);
     if (h.e->status < 0) return hdi_heat_end(&h);
-    hdi_distance_task(&a->task, &h, a->kind, a->count + a->n_from);
-    a->task.pairs = HDI_HAS_MODES ? hdi_sample_by_pairs : NULL;
-    a->task.poles = hdi_sample_by_poles;
-    (void)hdi_heat_sparing(&h, &a->task);
+    hdi_distance_task(&a->of.task, &h, a->of.kind, a->count + a->n_from);
+    a->of.answer = hdi_sample_answer;
+    a->of.task.poles = hdi_sample_by_poles;
+    (void)hdi_heat_sparing(&h, &a->of.task);
     return hdi_heat_end(&h);
 }
 
@@ -22938,34 +22745,44 @@ static hd_status hdi_sample_answer(hd_heat *heat, hdi_samples *a, const hd_sourc
  * bytes with what is allocated. */
 
 /* How a query is answered: by solves, by an inversion, from L grounded, or from eigenpairs. */
-typedef enum hdi_by { HDI_BY_SOLVES, HDI_BY_INVERSION, HDI_BY_GROUND, HDI_BY_SPECTRUM } hdi_by;
+typedef enum hdi_by {
+    HDI_BY_NOTHING, HDI_BY_SOLVES, HDI_BY_INVERSION, HDI_BY_GROUND, HDI_BY_SPECTRUM
+} hdi_by;
 
-/* What queries are, in hd_query's order; one without a row is unknown. */
+/* What a query is. */
 typedef struct hdi_query_row {
-    hdi_by by;
-    const hdi_distance_row *distance;   /* its kind, or NULL */
+    hd_query query;
+    hdi_by by;                   /* nothing: there is no such query */
     int32_t columns;             /* k counts columns that are solved for */
     int32_t mass;                /* K_t is asked for, not k_t */
+    const hdi_distance_row *distance;   /* its kind, or NULL */
 } hdi_query_row;
 
-static const hdi_query_row hdi_query_rows[] = {
-    {HDI_BY_SOLVES, NULL, 1, 0},                        /* fields */
-    {HDI_BY_SOLVES, NULL, 1, 0},                        /* columns */
-    {HDI_BY_SOLVES, hdi_distance_rows + HD_DISTANCE_CLASSICAL, 1, 0},   /* pairs */
-    {HDI_BY_INVERSION, NULL, 0, 0},                     /* diagonal of k_t */
-    {HDI_BY_INVERSION, NULL, 0, 1},                     /* diagonal of K_t */
-    {HDI_BY_INVERSION, NULL, 0, 2},                     /* trace, perhaps with either */
-    {HDI_BY_INVERSION, hdi_distance_rows + HD_DISTANCE_CLASSICAL, 1, 0},
-    {HDI_BY_INVERSION, hdi_distance_rows + HD_DISTANCE_WEIGHTED, 1, 0},
-    {HDI_BY_GROUND, hdi_distance_rows + HD_DISTANCE_COMMUTE, 1, 0},
-    {HDI_BY_GROUND, hdi_distance_rows + HD_DISTANCE_BIHARMONIC, 1, 0},
-    {HDI_BY_SPECTRUM, NULL, 1, 0}
-};
+static hdi_query_row hdi_query_of(hd_query query) {
+    static const hdi_query_row others[] = {
+        {HD_QUERY_FIELDS, HDI_BY_SOLVES, 1, 0, NULL},
+        {HD_QUERY_COLUMNS, HDI_BY_SOLVES, 1, 0, NULL},
+        {HD_QUERY_PAIRS, HDI_BY_SOLVES, 1, 0, hdi_distance_rows},
+        {HD_QUERY_DIAGONAL, HDI_BY_INVERSION, 0, 0, NULL},
+        {HD_QUERY_DIAGONAL_OPERATOR, HDI_BY_INVERSION, 0, 1, NULL},
+        {HD_QUERY_TRACE, HDI_BY_INVERSION, 0, 2, NULL},     /* perhaps with either diagonal */
+        {HD_QUERY_SPECTRUM, HDI_BY_SPECTRUM, 1, 0, NULL}
+    };
+    hdi_query_row row = {query, HDI_BY_NOTHING, 1, 0, NULL};
+    size_t q;
+    for (q = 0; q < sizeof others / sizeof *others; q++)
+        if (others[q].query == query) return others[q];
+    for (q = 0; q < HDI_DISTANCES; q++) {
+        if (hdi_distance_rows[q].query != query) continue;
+        row.distance = hdi_distance_rows + q;
+        row.by = row.distance->time > 0 ? HDI_BY_INVERSION : HDI_BY_GROUND;
+    }
+    return row;
+}
 
-/* NULL: there is no such query. */
-static const hdi_query_row *hdi_query_of(hd_query query) {
-    const size_t n = sizeof hdi_query_rows / sizeof *hdi_query_rows;
-    return (size_t)query < n ? hdi_query_rows + query : NULL;
+/* Has the query times? */
+static int hdi_query_timed(const hdi_query_row *query) {
+    return query->by == HDI_BY_SOLVES || query->by == HDI_BY_INVERSION;
 }
 
 /* A query under estimation. */
@@ -22982,11 +22799,6 @@ typedef struct hdi_estimate {
 /* Bytes of small arrays that are not listed one by one. */
 #define HDI_ESTIMATE_SMALL 4096
 
-/* Are pairs answered by solves? */
-static int hdi_estimate_pairwise(const hdi_estimate *x) {
-    return x->query->distance && x->query->by == HDI_BY_SOLVES;
-}
-
 /* Analyses the pattern for a query that needs a factorisation. If there is no memory for that within the byte
  * limit, figures are guesses. */
 static hd_status hdi_estimate_analyse(hdi_heat_call *h) {
@@ -23002,15 +22814,16 @@ static hd_status hdi_estimate_solves(const hdi_estimate *x) {
     hdi_heat_call *h = x->h;
     hd_heat *heat = h->heat;
     const int32_t n_times = h->n_times;
+    const double *times = h->times;
     hd_cost *by = x->to->cost, *direct = by + HD_METHOD_DIRECT, most;
     hd_rational set;
     int32_t q;
     if (hdi_heat_pick(h) >= 0 && n_times > 1 && h->method < HD_METHOD_KRYLOV) {   /* one by one */
-        h->times += n_times - 1;
+        h->times = &h->t;                        /* the last */
         h->n_times = 1;
         (void)hdi_heat_pick(h);
         h->n_times = n_times;
-        h->times -= n_times - 1;
+        h->times = times;
     }
     if (hdi_over_limit(heat->ctx, h->e)) hdi_error_clear(h->e);
     if (h->e->status < 0 || (h->method != HD_METHOD_ITERATIVE && h->method != HD_METHOD_LOCAL &&
@@ -23176,7 +22989,7 @@ static void hdi_estimate_help(const hdi_estimate *x, hd_cost *c) {
 /* ---- estimates of queries ---- */
 
 /* A query at times, by poles or by what the run picks. Where few eigenpairs serve they take about as long as
- * poles, once; then poles do the other times. */
+ * poles, once; then poles do the other times, or all if there is no room for pairs. */
 static hd_status hdi_estimate_times(const hdi_estimate *x) {
     hdi_heat_call *h = x->h;
     const hd_heat *heat = h->heat;
@@ -23211,7 +23024,8 @@ static hd_status hdi_estimate_times(const hdi_estimate *x) {
 static hd_status hdi_estimate_run(hdi_heat_call *h, const hdi_query_row *query, int32_t k,
                                   hd_estimate *to) {
     const hd_heat *heat = h->heat;
-    const int32_t times = query->by == HDI_BY_INVERSION && query->distance ? query->distance->time : 1;
+    const int pairs = query->query == HD_QUERY_PAIRS;
+    const int32_t times = query->distance && !pairs ? query->distance->time : 1;
     const double n = heat->source->n;
     hd_cost *direct = to->cost + HD_METHOD_DIRECT;
     hdi_estimate x;
@@ -23222,14 +23036,14 @@ static hd_status hdi_estimate_run(hdi_heat_call *h, const hdi_query_row *query, 
     x.k = h->ask.k = query->columns ? hdi_high32(k, 1) : 0;
     to->method = h->method = HD_METHOD_DIRECT;
     to->reason = query->by == HDI_BY_SPECTRUM ? "eigenpairs take real factors" : HDI_DIRECT_REASON;
-    if (query->by > HDI_BY_INVERSION) {
+    if (!hdi_query_timed(query)) {
         if (hdi_estimate_analyse(h) < 0) return h->e->status;
         if (query->by == HDI_BY_GROUND) hdi_estimate_ground(&x, direct);
         else *direct = hdi_estimate_pairs(heat, hdi_low32(x.k, heat->source->n_active));
         return HD_OK;
     }
     x.unit = times * heat->scale;
-    if (query->distance) hdi_distance_task(&x.task, h, query->distance, hdi_estimate_pairwise(&x) ? 1 : x.k);
+    if (query->distance) hdi_distance_task(&x.task, h, query->distance, pairs ? 1 : x.k);
     else hdi_fading_task(&x.task, h);
     if (hdi_heat_sort_times(h, x.unit / heat->scale, NULL) < 0) return h->e->status;
     for (; h->n_times > 1 && h->times[0] == 0; h->n_times--) h->times++;
@@ -23241,8 +23055,8 @@ static hd_status hdi_estimate_run(hdi_heat_call *h, const hdi_query_row *query, 
         to->cost[to->method].bytes = to->cost[to->method].bytes_most = 64 * n + HDI_ESTIMATE_SMALL;
         return HD_OK;
     }
-    if (hdi_estimate_pairwise(&x))
-        x.held = 8 * hdi_min(n * x.k, (double)HDI_PAIRS_DOUBLES) + 8.0 * x.k + 16 * n;
+    if (pairs)
+        x.held = 8 * hdi_min(n * x.k, (double)HDI_PAIRS_DOUBLES) + 40.0 * x.k + 20 * n;
     return hdi_estimate_times(&x);
 }
 
@@ -23258,7 +23072,7 @@ static void hdi_estimate_close(const hd_heat *heat, hd_estimate *to) {
 }
 
 static hd_status hdi_estimate_check(hdi_heat_call *h, const hdi_query_row *query, int32_t k) {
-    if (!query) return hdi_fail(h->e, HD_ERR_ARGUMENT, "estimate: unknown query");
+    if (query->by == HDI_BY_NOTHING) return hdi_fail(h->e, HD_ERR_ARGUMENT, "estimate: unknown query");
     if (k < 0)
         return hdi_fail(h->e, HD_ERR_ARGUMENT, "estimate: a number of fields or columns is negative");
     if (query->by == HDI_BY_SPECTRUM)
@@ -23338,17 +23152,13 @@ struct hd_geodesic {
     char *active;                /* [n_super] fronts that the sources touch */
     char *mark;                  /* [n_active] 1: u is known; or a source */
     double *x, *b, *r, *work;    /* [n_active] each; sweeps */
-    double *first;               /* [n_active] u of the first stage, made with the first set of sources */
     double *wide_x, *wide_b, *wide_work;   /* the same for a batch, one array made when first needed */
-    int64_t *value_ptr;          /* [n_components + 1] */
-    hdi_pair *sorted;            /* [value_size] */
-    double *value;               /* [value_size] phi at the sources, by component, ascending; after sorted */
-    int32_t value_size;
-    hd_laplacian *lap;           /* kept by updatable plans, else NULL */
-    int32_t *from;               /* [n_faces] which of the mesh's faces each is; kept by updatable plans */
+    int64_t *value_ptr;          /* [n_components + 1] where the values of a source begin */
+    hd_laplacian *lap;           /* of updatable plans, else NULL */
+    int32_t *from;               /* [n_faces] which of the mesh's faces each is; of updatable plans kept */
     double t_asked, t_in_h2;     /* 0: t_in_h2 h^2 */
     int32_t ready;               /* 0: the last update failed half way */
-    hdi_scope keep;              /* all arrays except those that grow */
+    hdi_scope keep;              /* all arrays */
 };
 
 /* ---- making ---- */
@@ -23369,7 +23179,6 @@ static void hdi_geo_free(hd_geodesic *g) {
     hdi_laplacian_free(g->lap, ctx);
     hdi_laplacian_free(g->poly.pair, ctx);
     while (g->keep.n > 0) hdi_free(ctx, g->keep.block[--g->keep.n]);
-    hdi_free(ctx, g->sorted);
     hdi_free(ctx, g);
     hdi_let_go(ctx);
 }
@@ -23380,34 +23189,25 @@ static hdi_scope *hdi_geo_keep(hd_geodesic *g, hd_error *e) {
     return &g->keep;
 }
 
-/* Triangle f in its plane with the longest edge on the axis. Its area and cotangents are those of weight
- * triangles. The angles at the longest edge are acute, so that nothing cancels. The height is the smallest
- * one, and keeps its relative precision. */
-static hdi_geo_face hdi_geo_frame(const hdi_mesh *mesh, int32_t f, const int32_t *row, double h,
-                                  double weight) {
-    const int32_t *v = mesh->tri + hdi_triple(f);
-    const double *cot = mesh->cot + hdi_triple(f);
-    const int apex = cot[0] <= cot[1] ? (cot[0] <= cot[2] ? 0 : 2) : cot[1] <= cot[2] ? 1 : 2;
-    const int a = (apex + 1) % 3, b = (apex + 2) % 3;
-    const double twice = 2 * mesh->area[f] / weight, length = sqrt(twice * ((cot[a] + cot[b]) / weight));
-    hdi_geo_face out;
-    out.l = length / 2 / h;
-    out.q = twice / length / 2 / h;
-    out.p = out.q * (cot[a] / weight);
-    out.v[0] = row[v[a]];
-    out.v[1] = row[v[b]];
-    out.v[2] = row[v[apex]];
-    out.copies = 1;
-    return out;
-}
-
-/* All triangles, in their order. copies [mesh->m] of intrinsic ones; NULL: 1 each. */
-static void hdi_geo_frames(hd_geodesic *g, const hdi_mesh *mesh, const int32_t *copies) {
+/* All triangles, in their order: each in its plane with the longest edge on the axis. Areas and cotangents
+ * are those of as many triangles as the copy counts. The angles at the longest edge are acute, so that
+ * nothing is cancelled, and the height is as small as it can be and keeps its relative precision. */
+static void hdi_geo_frames(hd_geodesic *g, const hdi_mesh *mesh) {
     int32_t k;
     for (k = 0; k < g->n_faces; k++) {
-        const int32_t n = copies ? copies[g->from[k]] : 1;
-        g->face[k] = hdi_geo_frame(mesh, g->from[k], g->row, g->h, n / g->copies);
-        g->face[k].copies = n;
+        const int32_t f = g->from[k], *v = mesh->tri + hdi_triple(f), n = mesh->copies ? mesh->copies[f] : 1;
+        const double *cot = mesh->cot + hdi_triple(f), weight = n / g->copies;
+        const int apex = cot[0] <= cot[1] ? (cot[0] <= cot[2] ? 0 : 2) : cot[1] <= cot[2] ? 1 : 2;
+        const int a = (apex + 1) % 3, b = (apex + 2) % 3;
+        const double twice = 2 * mesh->area[f] / weight, length = sqrt(twice * ((cot[a] + cot[b]) / weight));
+        hdi_geo_face *out = g->face + k;
+        out->l = length / 2 / g->h;
+        out->q = twice / length / 2 / g->h;
+        out->p = out->q * (cot[a] / weight);
+        out->v[0] = g->row[v[a]];
+        out->v[1] = g->row[v[b]];
+        out->v[2] = g->row[v[apex]];
+        out->copies = n;
     }
 }
 
@@ -23479,9 +23279,16 @@ static hd_status hdi_geo_masses(hd_geodesic *g, const hd_laplacian *lap, double 
     return HD_OK;
 }
 
-/* The arrays over rows, in elimination order. */
+/* The arrays over rows, in elimination order, and work of the queries. */
 static hd_status hdi_geo_rows(hd_geodesic *g, const hd_laplacian *lap, hdi_scope *own) {
     int32_t i, v;
+    g->active = HDI_TAKE(own, char, g->sym.n_super);
+    g->mark = HDI_TAKE(own, char, g->n_active);
+    g->value_ptr = HDI_TAKE(own, int64_t, (int64_t)g->n_components + 1);
+    g->x = HDI_TAKE(own, double, g->n_active);
+    g->b = HDI_TAKE(own, double, g->n_active);
+    g->r = HDI_TAKE(own, double, g->n_active);
+    g->work = HDI_TAKE(own, double, hdi_sweep_size(&g->sym, 1, 1));
     g->mass = HDI_TAKE(own, double, g->n_active);
     g->row = HDI_TAKE(own, int32_t, g->n);
     g->component = HDI_TAKE(own, int32_t, g->n_active);
@@ -23555,18 +23362,6 @@ static hd_status hdi_geo_factors(hd_geodesic *g, const hd_laplacian *lap, hd_err
     return hdi_scope_end(&s);
 }
 
-/* Work of the queries. */
-static hd_status hdi_geo_room(hd_geodesic *g, hdi_scope *own) {
-    g->active = HDI_TAKE(own, char, g->sym.n_super);
-    g->mark = HDI_TAKE(own, char, g->n_active);
-    g->value_ptr = HDI_TAKE(own, int64_t, (int64_t)g->n_components + 1);
-    g->x = HDI_TAKE(own, double, g->n_active);
-    g->b = HDI_TAKE(own, double, g->n_active);
-    g->r = HDI_TAKE(own, double, g->n_active);
-    g->work = HDI_TAKE(own, double, hdi_sweep_size(&g->sym, 1, 1));
-    return own->e->status;
-}
-
 /* Points in the place of an earlier one, which the triangles leave out, share its row. */
 static hd_status hdi_geo_coincident(hd_geodesic *g, const double *xyz, hd_error *e) {
     hdi_scope s = hdi_scope_begin(g->ctx, e);
@@ -23588,7 +23383,7 @@ static hd_status hdi_geo_store(hd_geodesic *g, const hd_laplacian *lap, const hd
             g->poly.pair = hdi_pair_renumber(lap, g->sym.perm, g->ctx, own->e);
     } else {
         g->face = HDI_TAKE(own, hdi_geo_face, g->n_faces);
-        if (g->face) hdi_geo_frames(g, mesh, mesh->copies);
+        if (g->face) hdi_geo_frames(g, mesh);
     }
     if (!g->lap) g->from = NULL;
     if (hdi_scope_end(&s) < 0 || !HDI_HAS_POINTS || !in->points || in->nbr_ptr) return own->e->status;
@@ -23621,7 +23416,7 @@ static hd_status hdi_geo_make(hd_geodesic *g, const hdi_input *in, int32_t neigh
     if (e->status >= 0 && hdi_pair_analyse(&g->sym, lap, o->ordering, perm, g->ctx, e) >= 0 &&
         hdi_geo_rows(g, lap, own) >= 0 && hdi_geo_store(g, lap, &z, in, own) >= 0) {
         hdi_scope_end(&s);                       /* the mesh is not needed any more */
-        if (hdi_geo_factors(g, lap, e) >= 0) g->ready = hdi_geo_room(g, own) >= 0;
+        g->ready = hdi_geo_factors(g, lap, e) >= 0;
     }
     if (!g->lap) hdi_laplacian_free(lap, g->ctx);
     return hdi_scope_end(&s);
@@ -23641,27 +23436,33 @@ static hd_status hdi_geo_update(hd_geodesic *g, const double *xyz, hd_error *e) 
     g->ready = 0;
     g->x = g->mass;
     g->mass = mass;
-    hdi_geo_frames(g, moving, NULL);
+    hdi_geo_frames(g, moving);
     hdi_geo_factors_free(g, g->ctx);
-    if (hdi_geo_factors(g, g->lap, e) >= 0) g->ready = 1;
+    g->ready = hdi_geo_factors(g, g->lap, e) >= 0;
     return e->status;
 }
 
-/* A point of a source, or a piece of a curve from a to b, in barycentric coordinates of up to three rows. */
+/* A point of a source, or a piece of a curve from a to b, in barycentric coordinates of up to three rows. A
+ * vertex without mass has no row. */
 typedef struct hdi_geo_item {
     int32_t n, row[3], next;     /* the next item that has the same first row, -1: none */
+    int32_t vertex;              /* one of its corners */
     double a[3], b[3];
     double length;               /* in units of h, -1: it has been found in no face */
 } hdi_geo_item;
 
-typedef struct hdi_geo_items {
-    const hd_sources *s;
-    hdi_geo_item *item;
-    int32_t n;
-    int32_t *first;              /* [n_active] items by their first row, -1: none */
-    int32_t *home, n_home;       /* [n_home] faces with items */
-    double *near_by;             /* [n_active] distance to the source along its faces, in units of h */
-} hdi_geo_items;
+/* What the distances of a column start from. */
+typedef struct hdi_geo_source {
+    hdi_geo_item *item;          /* [n] */
+    int32_t n, curve;
+    double *near_by;             /* [n_active] distance along the items' faces, in units of h; NULL: all items
+                                    are vertices */
+    int32_t *home, n_home;       /* [n_home] these faces */
+    double *first;               /* [n_active] u of the first stage; NULL: not several vertices */
+    hdi_pair *sorted;            /* [n] */
+    double *value;               /* [n] phi at the items, by component, ascending */
+    double *d;                   /* [n] the column */
+} hdi_geo_source;
 
 /* ---- passes over the faces ---- */
 /* Vectors hold k columns side by side: one, or a batch. */
@@ -23771,21 +23572,20 @@ static HDI_INLINE void hdi_geo_stiff(const hdi_geo_face *a, double sign, const d
     r[a->v[2]] += g2;
 }
 
-/* Adds div X to b: the right-hand side of L phi = b. In the faces of items, which one column has, X is the
- * gradient of the known distances. Returns the columns as bits in which some faces have heat, but all of it
- * below least. */
+/* Adds div X to b: the right-hand side of L phi = b. In the home faces of s, X is the gradient of the known
+ * distances. Returns the columns as bits in which some faces have heat, but all of it below least. */
 static int hdi_geo_divergence(const hd_geodesic *g, int k, const double *u, const double *least,
-                              const char *done, const hdi_geo_items *items, double *b) {
+                              const char *done, const hdi_geo_source *s, double *b) {
     const int level = k > 1 ? hdi_simd_level(g->ctx) : 0;
     const int32_t end = g->n_faces;
     hdi_geo_range part = {0, g->n_faces};
     double dim[HDI_GEO_WIDE] = {0};
     int32_t q;
     int c, faint = 0;
-    for (q = 0; items && q < items->n_home; q++) {
-        part.end = items->home[q];
+    for (q = 0; s && q < s->n_home; q++) {
+        part.end = s->home[q];
         hdi_geo_flow(g, part, 1, u, least, NULL, b, dim);
-        hdi_geo_stiff(g->face + part.end, 1, items->near_by, b);
+        hdi_geo_stiff(g->face + part.end, 1, s->near_by, b);
         part.begin = part.end + 1;
         part.end = end;
     }
@@ -23813,10 +23613,12 @@ static void hdi_geo_subtract(const hd_geodesic *g, const double *HDI_RESTRICT x,
     for (f = 0; f < g->n_faces && g->face; f++) hdi_geo_stiff(g->face + f, -1, x, r);
 }
 
-/* x = the inverse times x in k columns. */
-static void hdi_geo_sweep(const hd_geodesic *g, const hdi_factor *f, int k, double *x, const char *active) {
+/* x = the inverse times x in k columns. Of heat x is not zero in the fronts g->active only, and it is asked
+ * for in those wanted; NULL: in all. */
+static void hdi_geo_sweep(const hd_geodesic *g, const hdi_factor *f, int k, double *x, const char *wanted) {
     hdi_sweep z = hdi_sweep_open(f, k, x, k == 1 ? g->work : g->wide_work);
-    z.active = active;
+    z.active = f == &g->poisson ? NULL : g->active;
+    z.wanted = wanted;
     hdi_sweep_run(&z, g->ctx);
 }
 
@@ -23894,10 +23696,7 @@ static hd_status hdi_geo_further(hd_geodesic *g, double least, int32_t *n_stages
     int32_t i, faint = e->status >= 0;
     memset(g->mark, 0, (size_t)g->n_active);
     while (faint && hdi_geo_border(g, least, f, wanted) && hdi_progress(g->ctx, "solve", 0.5, e) >= 0) {
-        hdi_sweep z = hdi_sweep_open(&g->heat, 1, g->x, g->work);
-        z.active = g->active;
-        z.wanted = wanted;
-        hdi_sweep_run(&z, g->ctx);
+        hdi_geo_sweep(g, &g->heat, 1, g->x, wanted);
         for (i = 0, most = 0; i < g->n_active; i++) most = hdi_max(most, g->mark[i] ? 0 : fabs(g->x[i]));
         least = most * HDI_GEO_FAINT;
         faint = least > DBL_MIN && hdi_geo_divergence(g, 1, g->x, &least, g->mark, NULL, g->b);
@@ -23917,19 +23716,23 @@ static hd_status hdi_geo_further(hd_geodesic *g, double least, int32_t *n_stages
 /* Barycentric coordinates below this do not keep a point off an edge, or off a vertex. */
 #define HDI_GEO_ASIDE 1e-9
 
-/* Adds point q of the source to an item; end: 0 for a, 1 for b. Returns 0 if the item gets more than three
- * rows, or one that has no mass. */
+/* Adds point q of the sources to an item; end: 0 for a, 1 for b. Returns 0 if the item gets more than three
+ * rows, or a vertex without mass that is not all of a source's point. */
 static int hdi_geo_item_add(const hd_geodesic *g, const hd_sources *s, hdi_geo_item *x, int64_t q, int end) {
     const int32_t corners = hdi_source_corners(s);
-    int32_t c, k;
+    int32_t c, k, parts = 0, none = 0;
     double sum = 0;
     for (c = 0; c < corners; c++) sum += hdi_source_part(s, q, c);
     for (c = 0; c < corners; c++) {
         const double w = hdi_source_part(s, q, c) / sum;
-        const int32_t row = g->row[s->vertex[q * corners + c]];
+        const int32_t vertex = s->vertex[q * corners + c], row = g->row[vertex];
         if (w < HDI_GEO_ASIDE) continue;
+        x->vertex = vertex;
+        parts++;
+        none += row < 0;
         for (k = 0; k < x->n && x->row[k] != row; k++) {}
-        if (row < 0 || k == 3) return 0;
+        if (row < 0) continue;
+        if (k == 3) return 0;
         if (k == x->n) {
             x->a[k] = x->b[k] = 0;
             x->row[x->n++] = row;
@@ -23937,7 +23740,7 @@ static int hdi_geo_item_add(const hd_geodesic *g, const hd_sources *s, hdi_geo_i
         if (!end) x->a[k] += w;
         else x->b[k] += w;
     }
-    return 1;
+    return none == 0 || (parts == 1 && !s->curve);
 }
 
 /* The distance of the corner at c from the line from a to b, in the plane. */
@@ -23968,146 +23771,116 @@ static int hdi_geo_item_in(hdi_geo_item *x, const hdi_geo_face *f, double *near_
     return 1;
 }
 
-#define HDI_GEO_ON_BORDER "geodesic: a source lies on the border, which is held at zero; take the mean border"
-
 static hd_status hdi_geo_lost(int32_t q, hd_error *e) {
     return hdi_source_fail(e, HD_ERR_ARGUMENT,
                            "geodesic: a point of the source, or a piece of its curve, lies in no face", q,
                            -1, 0);
 }
 
-/* The items of n points of sources, from one on, and the faces that they lie in. Refuses those on a border
- * that is held at zero, and curves without a length. */
-static hd_status hdi_geo_items_make(hdi_geo_items *z, const hd_geodesic *g, const hd_sources *s,
-                                    int64_t begin, int32_t n, hdi_scope *in) {
+/* Finds the faces that the items lie in. Refuses curves without a length. */
+static hd_status hdi_geo_source_faces(hdi_geo_source *z, const hd_geodesic *g, hdi_scope *in) {
+    int32_t *first = HDI_TAKE(in, int32_t, g->n_active), f, i;   /* items by their first row, -1: none */
     double length = 0;
-    int32_t f, i;
     int q;
-    z->s = s;
-    z->n = s->curve ? n - 1 : n;
-    z->item = HDI_TAKE_ZERO(in, hdi_geo_item, z->n);
-    z->first = HDI_TAKE(in, int32_t, g->n_active);
     z->home = HDI_TAKE(in, int32_t, g->n_faces);
-    z->n_home = 0;
     z->near_by = HDI_TAKE(in, double, g->n_active);
     if (in->e->status < 0) return in->e->status;
-    hdi_fill_i32(z->first, g->n_active, -1);
+    hdi_fill_i32(first, g->n_active, -1);
     for (i = 0; i < g->n_active; i++) z->near_by[i] = HUGE_VAL;
     for (i = 0; i < z->n; i++) {
         hdi_geo_item *x = z->item + i;
-        const int64_t at = begin + i;
-        if (!hdi_geo_item_add(g, s, x, at, 0) || !hdi_geo_item_add(g, s, x, s->curve ? at + 1 : at, 1))
-            return hdi_geo_lost(i, in->e);
         x->length = -1;
-        x->next = z->first[x->row[0]];
-        z->first[x->row[0]] = i;
+        if (x->n == 0) continue;
+        x->next = first[x->row[0]];
+        first[x->row[0]] = i;
     }
     for (f = 0; f < g->n_faces; f++) {
         int here = 0;
         for (q = 0; q < 3; q++)
-            for (i = z->first[g->face[f].v[q]]; i >= 0; i = z->item[i].next)
+            for (i = first[g->face[f].v[q]]; i >= 0; i = z->item[i].next)
                 here |= hdi_geo_item_in(z->item + i, g->face + f, z->near_by);
         if (here) z->home[z->n_home++] = f;
     }
     for (i = 0; i < z->n; i++) {
-        const hdi_geo_item *x = z->item + i;
-        if (x->length < 0) return hdi_geo_lost(i, in->e);
-        length += x->length;
-        for (q = 0; q < x->n; q++)
-            if (hdi_geo_is_held(g, x->row[q]))
-                return hdi_source_fail(in->e, HD_ERR_ARGUMENT, HDI_GEO_ON_BORDER, i, -1, 0);
+        if (z->item[i].length < 0) return hdi_geo_lost(i, in->e);
+        length += z->item[i].length;
     }
-    if (s->curve && !(length > 0))
+    if (z->curve && !(length > 0))
         hdi_fail(in->e, HD_ERR_ARGUMENT, "geodesic: the curve of the source has no length");
     return in->e->status;
 }
 
-/* ---- sources ---- */
+/* Source k, with arrays in a scope. Refuses those on a border that is held at zero. */
+static hd_status hdi_geo_source_make(hdi_geo_source *z, const hd_geodesic *g, const hd_sources *s, int32_t k,
+                                     hdi_scope *in) {
+    const int64_t begin = hdi_source_first(s, k), end = hdi_source_first(s, k + 1);
+    int32_t i, vertices = 1;
+    int q;
+    memset(z, 0, sizeof *z);
+    z->curve = s->curve != 0;
+    z->n = (int32_t)(end - begin) - z->curve;
+    z->item = HDI_TAKE_ZERO(in, hdi_geo_item, z->n);
+    z->sorted = HDI_TAKE(in, hdi_pair, z->n);
+    z->value = HDI_TAKE(in, double, z->n);
+    for (i = 0; i < z->n && in->e->status >= 0; i++) {
+        hdi_geo_item *x = z->item + i;
+        const int fits = hdi_geo_item_add(g, s, x, begin + i, 0) &&
+                         hdi_geo_item_add(g, s, x, begin + i + z->curve, 1);
+        vertices = vertices && fits && x->n <= 1 && !z->curve;
+        if (!vertices && g->poly.ptr)
+            return hdi_fail(in->e, HD_ERR_ARGUMENT, "geodesic: on polygons sources are vertices only");
+        if (!fits) return hdi_geo_lost(i, in->e);
+    }
+    if (in->e->status < 0 || (!vertices && hdi_geo_source_faces(z, g, in) < 0)) return in->e->status;
+    for (i = 0; i < z->n; i++)
+        for (q = 0; q < z->item[i].n; q++)
+            if (hdi_geo_is_held(g, z->item[i].row[q]))
+                return hdi_source_fail(in->e, HD_ERR_ARGUMENT, "geodesic: a source lies on the border, which "
+                                       "is held at zero; take the mean border", i,
+                                       vertices ? z->item[i].vertex : -1, 0);
+    if (vertices && z->n > 1) z->first = HDI_TAKE(in, double, g->n_active);
+    return in->e->status;
+}
 
-/* What the distances of a column start from: vertices, or items. */
-typedef struct hdi_geo_source {
-    const int32_t *vertex;
-    int32_t n;
-    const hdi_geo_items *items;
-    double *d;                   /* [n] the column */
-} hdi_geo_source;
+/* ---- sources ---- */
 
 /* Adds the heat of a source to column x of k, which is clear, and opens the fronts that it touches. A vertex
  * named twice counts once. */
 static void hdi_geo_load(const hd_geodesic *g, const hdi_geo_source *s, int k, double *x) {
     int32_t q, c;
     for (q = 0; q < s->n; q++) {
-        const int32_t i = g->row[s->vertex[q]];
-        if (i < 0) continue;
-        x[k * (int64_t)i] = 1;
-        hdi_sweep_touch(&g->sym, i, g->active);
-    }
-    for (q = 0; s->items && q < s->items->n; q++) {
-        const hdi_geo_item *p = s->items->item + q;
+        const hdi_geo_item *p = s->item + q;
         for (c = 0; c < p->n; c++) {
-            x[k * (int64_t)p->row[c]] += (s->items->s->curve ? p->length : 1) * (p->a[c] + p->b[c]) / 2;
+            double *to = x + k * (int64_t)p->row[c];
+            *to = s->near_by ? *to + (s->curve ? p->length : 1) * (p->a[c] + p->b[c]) / 2 : 1;
             hdi_sweep_touch(&g->sym, p->row[c], g->active);
         }
     }
 }
 
-/* Refuses vertices where heat is held at zero. */
-static hd_status hdi_geo_off_border(const hd_geodesic *g, const int32_t *sources, int32_t k, hd_error *e) {
-    int32_t q;
-    for (q = 0; q < k; q++) {
-        if (g->row[sources[q]] < 0 || !hdi_geo_is_held(g, g->row[sources[q]])) continue;
-        return hdi_source_fail(e, HD_ERR_ARGUMENT, HDI_GEO_ON_BORDER, q, sources[q], sources[q]);
-    }
-    return e->status;
-}
-
-/* Notes phi at a point of the source, as number q. */
-static void hdi_geo_note(hd_geodesic *g, int32_t q, double phi, int32_t component) {
-    g->sorted[q].key = hdi_rank(phi);
-    g->sorted[q].id = component;
-}
-
-/* Sorts n notes into g->value, ascending within each component. */
-static void hdi_geo_values_sort(hd_geodesic *g, int32_t n) {
-    int32_t q;
-    memset(g->value_ptr, 0, ((size_t)g->n_components + 1) * sizeof *g->value_ptr);
-    for (q = 0; q < n; q++) g->value_ptr[g->sorted[q].id]++;
-    hdi_sort_pairs(g->sorted, n);
-    hdi_prefix_sum(g->value_ptr, g->n_components);
-    for (q = 0; q < n; q++) g->value[g->value_ptr[g->sorted[q].id]++] = hdi_unrank(g->sorted[q].key);
-    hdi_rewind(g->value_ptr, g->n_components);
-}
-
-/* Collects phi at the source: at its points, or one mean along a curve, less the known distances there. */
+/* Collects phi at the source: at its points, or one mean along a curve, less the known distances there. They
+ * ascend within each component. */
 static void hdi_geo_values(hd_geodesic *g, const hdi_geo_source *s, const double *phi) {
-    const hdi_geo_items *z = s->items;
     double sum = 0, length = 0;
     int32_t q, c, n = 0;
+    memset(g->value_ptr, 0, ((size_t)g->n_components + 1) * sizeof *g->value_ptr);
     for (q = 0; q < s->n; q++) {
-        const int32_t i = g->row[s->vertex[q]];
-        if (i >= 0) hdi_geo_note(g, n++, phi[i], g->component[i]);
-    }
-    for (q = 0; z && q < z->n; q++) {
-        const hdi_geo_item *p = z->item + q;
+        const hdi_geo_item *p = s->item + q;
         double own = 0;
+        if (p->n == 0) continue;
         for (c = 0; c < p->n; c++)
-            own += (p->a[c] + p->b[c]) / 2 * (phi[p->row[c]] - z->near_by[p->row[c]]);
+            own += (p->a[c] + p->b[c]) / 2 * (phi[p->row[c]] - (s->near_by ? s->near_by[p->row[c]] : 0));
         sum += p->length * own;
         length += p->length;
-        if (z->s->curve) n = 0;                  /* the last note, of all, remains */
-        hdi_geo_note(g, n++, z->s->curve && length > 0 ? sum / length : own, g->component[p->row[0]]);
+        if (s->curve) n = 0;                     /* the last note, of all, remains */
+        s->sorted[n].key = hdi_rank(s->curve && length > 0 ? sum / length : own);
+        s->sorted[n++].id = g->component[p->row[0]];
     }
-    hdi_geo_values_sort(g, n);
-}
-
-/* Makes room for phi at `most` points. */
-static hd_status hdi_geo_values_room(hd_geodesic *g, int32_t most, hd_error *e) {
-    if (g->value_size >= most) return HD_OK;
-    hdi_free(g->ctx, g->sorted);
-    g->sorted = HDI_NEW(g->ctx, hdi_pair, (most + (int64_t)most / 2 + 1), e);
-    g->value_size = g->sorted ? most : 0;
-    if (g->sorted) g->value = (double *)(void *)(g->sorted + most);
-    return e->status;
+    for (q = 0; q < n; q++) g->value_ptr[s->sorted[q].id]++;
+    hdi_sort_pairs(s->sorted, n);
+    hdi_prefix_sum(g->value_ptr, g->n_components);
+    for (q = 0; q < n; q++) s->value[g->value_ptr[s->sorted[q].id]++] = hdi_unrank(s->sorted[q].key);
+    hdi_rewind(g->value_ptr, g->n_components);
 }
 
 /* ---- distances ---- */
@@ -24132,14 +23905,14 @@ static int hdi_geo_measure(const hd_geodesic *g, const hdi_geo_source *s, int32_
     double at[HDI_GEO_WIDE];
     int32_t own[HDI_GEO_WIDE], v, c, fine = 1;
     for (c = 0; c < n && k > 1; c++) {
-        const int32_t i = g->row[s[c].vertex[0]];
+        const int32_t i = s[c].item->n > 0 ? s[c].item->row[0] : -1;
         own[c] = i < 0 ? -1 : g->component[i];
         at[c] = i < 0 ? 0 : phi[k * (int64_t)i + c];
     }
     for (v = 0; v < g->n; v++) {
         const int32_t i = g->row[v], part = i < 0 ? 0 : g->component[i];
         for (c = 0; c < n; c++) {
-            const double *value = k > 1 ? at + c : g->value + g->value_ptr[part];
+            const double *value = k > 1 ? at + c : s->value + g->value_ptr[part];
             const int64_t count = k > 1 ? part == own[c] : g->value_ptr[part + 1] - g->value_ptr[part];
             double *d = s[c].d + v;
             *d = HUGE_VAL;
@@ -24155,12 +23928,13 @@ static int hdi_geo_measure(const hd_geodesic *g, const hdi_geo_source *s, int32_
  * right-hand side in y, which is overwritten. Twice the mean points the same way. A source on the border has
  * no heat then. g->active holds the fronts that the sources touch. */
 static void hdi_geo_add_cold(const hd_geodesic *g, int k, double *x, double *y) {
-    const int64_t size = k * (int64_t)g->n_active;
+    const int64_t size = g->border == HD_GEODESIC_BORDER_MEAN ? k * (int64_t)g->n_active : 0;
     int64_t p;
     int32_t i;
+    if (size == 0) return;
     for (i = 0; i < g->n_active; i++)
         if (g->held[i]) memset(y + k * (int64_t)i, 0, (size_t)k * sizeof *y);
-    hdi_geo_sweep(g, &g->cold, k, y, g->active);
+    hdi_geo_sweep(g, &g->cold, k, y, NULL);
     for (p = 0; p < size; p++) x[p] += y[p];
 }
 
@@ -24172,47 +23946,47 @@ static void hdi_geo_heat(const hd_geodesic *g, const hdi_geo_source *s, int32_t 
     memset(x, 0, (size_t)k * (size_t)g->n_active * sizeof *x);
     for (c = 0; c < n; c++) hdi_geo_load(g, s + c, k, x + c);
     if (g->border == HD_GEODESIC_BORDER_MEAN) memcpy(y, x, (size_t)k * (size_t)g->n_active * sizeof *x);
-    hdi_geo_sweep(g, &g->heat, k, x, g->active);
+    hdi_geo_sweep(g, &g->heat, k, x, NULL);
     for (c = 0; c < n && heat; c++) {
         memset(g->r, 0, (size_t)g->n_active * sizeof *g->r);
         hdi_geo_load(g, s + c, 1, g->r);
         heat[c] = hdi_geo_residual(g, 1, hdi_geo_column(g, k, x, c, g->x), g->r);
     }
-    if (g->border == HD_GEODESIC_BORDER_MEAN) hdi_geo_add_cold(g, k, x, y);
+    hdi_geo_add_cold(g, k, x, y);
 }
 
-/* phi is not the same at all sources of a set. Let u be the heat of the sources, and v the heat with the
- * values of phi at them. Since heat fades so fast, v/u is near each source the value of phi there. Distances
- * are measured from that wherever the first stage knows u, |u| >= least. phi is in g->b, u in g->first; g->x
+/* phi is not the same at all vertices of a source. With u the heat of the source and v that of the values of
+ * phi at its vertices, v/u is near each of them the value of phi there, since heat fades so fast. Distances
+ * are measured from that wherever the first stage knows u, |u| >= least. phi is in g->b, u in s->first; g->x
  * and g->r are overwritten. */
 static void hdi_geo_own_source(hd_geodesic *g, const hdi_geo_source *s, double least) {
     int32_t q, v, c, several = 0;
     for (c = 0; c < g->n_components; c++)
         several |= g->value_ptr[c + 1] > g->value_ptr[c] &&
-                   g->value[g->value_ptr[c + 1] - 1] > g->value[g->value_ptr[c]];
+                   s->value[g->value_ptr[c + 1] - 1] > s->value[g->value_ptr[c]];
     if (!several) return;
     memset(g->active, 0, (size_t)g->sym.n_super);
     memset(g->x, 0, (size_t)g->n_active * sizeof *g->x);
     memset(g->mark, 0, (size_t)g->n_active);
     hdi_geo_load(g, s, 1, g->x);
     for (q = 0; q < s->n; q++) {
-        const int32_t i = g->row[s->vertex[q]];
-        if (i < 0) continue;
-        g->x[i] = g->b[i] - g->value[g->value_ptr[g->component[i]]];
+        const int32_t i = s->item[q].row[0];
+        if (s->item[q].n == 0) continue;
+        g->x[i] = g->b[i] - s->value[g->value_ptr[g->component[i]]];
         g->mark[i] = 1;
     }
     memcpy(g->r, g->x, (size_t)g->n_active * sizeof *g->x);
-    hdi_geo_sweep(g, &g->heat, 1, g->x, g->active);
-    if (g->border == HD_GEODESIC_BORDER_MEAN) hdi_geo_add_cold(g, 1, g->x, g->r);
+    hdi_geo_sweep(g, &g->heat, 1, g->x, NULL);
+    hdi_geo_add_cold(g, 1, g->x, g->r);
     for (v = 0; v < g->n; v++) {
         const int32_t i = g->row[v];
         const double *value, *end;
-        if (i < 0 || g->mark[i] || !(fabs(g->first[i]) >= least)) continue;
-        value = g->value + g->value_ptr[g->component[i]];
-        end = g->value + g->value_ptr[g->component[i] + 1];
+        if (i < 0 || g->mark[i] || !(fabs(s->first[i]) >= least)) continue;
+        value = s->value + g->value_ptr[g->component[i]];
+        end = s->value + g->value_ptr[g->component[i] + 1];
         if (value == end) continue;
         s->d[v] = g->h * fabs(g->b[i] - value[0] -
-                              hdi_min(hdi_max(g->x[i] / g->first[i], 0), end[-1] - value[0]));
+                              hdi_min(hdi_max(g->x[i] / s->first[i], 0), end[-1] - value[0]));
     }
 }
 
@@ -24225,31 +23999,20 @@ static hd_status hdi_geo_answer(hd_geodesic *g, const hdi_geo_source *s, int32_t
     if (!hdi_geo_measure(g, s, n, k, n > 1 ? g->wide_b : g->b, skip))
         return hdi_fail(e, HD_ERR_BREAKDOWN, "geodesic: rounding leaves nothing of the answer: the mesh has "
                                              "faces that are too thin");
-    if (s->n > 1) hdi_geo_own_source(g, s, least);
-    for (c = 0; c < n; c++)
-        for (i = 0; i < s[c].n; i++) s[c].d[s[c].vertex[i]] = 0;     /* those without mass too */
-    for (i = 0; i < g->n && s->items; i++)
-        if (g->row[i] >= 0 && s->items->near_by[g->row[i]] < HUGE_VAL)
-            s->d[i] = g->h * s->items->near_by[g->row[i]];
+    if (s->first) hdi_geo_own_source(g, s, least);
+    for (c = 0; c < n && !s->near_by; c++)
+        for (i = 0; i < s[c].n; i++) s[c].d[s[c].item[i].vertex] = 0;    /* those without mass too */
+    for (i = 0; i < g->n && s->near_by; i++)
+        if (g->row[i] >= 0 && s->near_by[g->row[i]] < HUGE_VAL) s->d[i] = g->h * s->near_by[g->row[i]];
     return HD_OK;
 }
 
-static void hdi_geo_judge(hd_geodesic_report *rep, double heat, double distance, int32_t n_stages) {
-    rep->residual_heat = hdi_max(rep->residual_heat, heat);
-    rep->residual_distance = hdi_max(rep->residual_distance, distance);
-    rep->n_stages = hdi_high32(rep->n_stages, n_stages);
-    if (!(heat <= HDI_GEO_RESIDUAL) || !(distance <= HDI_GEO_RESIDUAL)) rep->status = HD_WARN_ACCURACY;
-}
-
 /* The least |u| of a column of k that counts as known: u is largest at the source. */
-static double hdi_geo_least(const hd_geodesic *g, const hdi_geo_source *s, int k, const double *u) {
+static double hdi_geo_least(const hdi_geo_source *s, int k, const double *u) {
     double most = 0;
     int32_t q, c;
     for (q = 0; q < s->n; q++)
-        if (g->row[s->vertex[q]] >= 0) most = hdi_max(most, fabs(u[k * (int64_t)g->row[s->vertex[q]]]));
-    for (q = 0; s->items && q < s->items->n; q++)
-        for (c = 0; c < s->items->item[q].n; c++)
-            most = hdi_max(most, fabs(u[k * (int64_t)s->items->item[q].row[c]]));
+        for (c = 0; c < s->item[q].n; c++) most = hdi_max(most, fabs(u[k * (int64_t)s->item[q].row[c]]));
     return hdi_max(most * HDI_GEO_FAINT, DBL_MIN);
 }
 
@@ -24263,32 +24026,26 @@ static hd_status hdi_geo_solve(hd_geodesic *g, const hdi_geo_source *s, int32_t 
     double least[HDI_GEO_WIDE], heat[HDI_GEO_WIDE];
     int32_t c, n_stages = 1;
     hdi_geo_heat(g, s, n, k, x, b, rep ? heat : NULL);
-    for (c = 0; c < k; c++) least[c] = c < n ? hdi_geo_least(g, s + c, k, x + c) : DBL_MIN;
-    if (s->n > 1) memcpy(g->first, x, size);
+    for (c = 0; c < k; c++) least[c] = c < n ? hdi_geo_least(s + c, k, x + c) : DBL_MIN;
+    if (s->first) memcpy(s->first, x, size);
     memset(b, 0, size);
-    *faint = hdi_geo_divergence(g, k, x, least, NULL, s->items, b);
+    *faint = hdi_geo_divergence(g, k, x, least, NULL, s, b);
     if (n == 1 && *faint && hdi_geo_further(g, least[0], &n_stages, e) < 0) return e->status;
     if (rep) memcpy(x, b, size);
     for (c = 0; c < g->n_components; c++)
         memset(b + k * (int64_t)g->pin[c], 0, (size_t)k * sizeof *b);
     hdi_geo_sweep(g, &g->poisson, k, b, NULL);
     for (c = 0; c < n && rep; c++) {
-        double *rhs = k > 1 ? g->r : g->x;
+        double *rhs = k > 1 ? g->r : g->x, distance;
         if (k > 1 && *faint >> c & 1) continue;
         (void)hdi_geo_column(g, k, x, c, rhs);
-        hdi_geo_judge(rep, heat[c], hdi_geo_residual(g, 0, hdi_geo_column(g, k, b, c, g->x), rhs), n_stages);
+        distance = hdi_geo_residual(g, 0, hdi_geo_column(g, k, b, c, g->x), rhs);
+        rep->residual_heat = hdi_max(rep->residual_heat, heat[c]);
+        rep->residual_distance = hdi_max(rep->residual_distance, distance);
+        rep->n_stages = hdi_high32(rep->n_stages, n_stages);
+        if (!(heat[c] <= HDI_GEO_RESIDUAL && distance <= HDI_GEO_RESIDUAL)) rep->status = HD_WARN_ACCURACY;
     }
     return hdi_geo_answer(g, s, n, least[0], *faint, e);
-}
-
-/* The distances of a column by itself. */
-static hd_status hdi_geo_alone(hd_geodesic *g, const hdi_geo_source *s, hd_geodesic_report *rep,
-                               hd_error *e) {
-    int faint;
-    if (hdi_geo_values_room(g, s->items ? s->items->n : s->n, e) < 0) return e->status;
-    if (s->n > 1 && !g->first) g->first = HDI_TAKE(hdi_geo_keep(g, e), double, g->n_active);
-    if (e->status >= 0) (void)hdi_geo_solve(g, s, 1, &faint, rep, e);
-    return e->status;
 }
 
 /* The distances of up to a batch of columns of one vertex each. Columns whose heat fades are computed again
@@ -24296,7 +24053,7 @@ static hd_status hdi_geo_alone(hd_geodesic *g, const hdi_geo_source *s, hd_geode
 static hd_status hdi_geo_batch(hd_geodesic *g, const hdi_geo_source *s, int32_t n, hd_geodesic_report *rep,
                                hd_error *e) {
     const uint64_t size = HDI_GEO_WIDE * (uint64_t)g->n_active;
-    int faint = 0;
+    int faint = 0, none;
     int32_t c;
     if (!g->wide_x)
         g->wide_x = HDI_TAKE(hdi_geo_keep(g, e), double, 2 * size + hdi_sweep_size(&g->sym, 1, HDI_GEO_WIDE));
@@ -24305,70 +24062,29 @@ static hd_status hdi_geo_batch(hd_geodesic *g, const hdi_geo_source *s, int32_t 
     g->wide_work = g->wide_b + size;
     if (hdi_geo_solve(g, s, n, &faint, rep, e) < 0) return e->status;
     for (c = 0; c < n; c++)
-        if (faint >> c & 1 && hdi_geo_alone(g, s + c, rep, e) < 0) break;
+        if (faint >> c & 1 && hdi_geo_solve(g, s + c, 1, &none, rep, e) < 0) break;
     return e->status;
-}
-
-/* Puts the vertices of n points, from one on, into list if all are at vertices; returns 0 if one is not. */
-static int hdi_geo_vertices(const hd_sources *s, int64_t begin, int32_t n, int32_t *list) {
-    const int32_t corners = hdi_source_corners(s);
-    int32_t q, c;
-    for (q = 0; q < n && !s->curve; q++) {
-        int32_t parts = 0;
-        for (c = 0; c < corners; c++) {
-            if (hdi_source_part(s, begin + q, c) == 0) continue;
-            list[q] = s->vertex[(begin + q) * corners + c];
-            parts++;
-        }
-        if (parts > 1) return 0;
-    }
-    return !s->curve;
-}
-
-/* Distances to a column that is more than a list of vertices: n points from one on; s->d is set. */
-static hd_status hdi_geo_from(hd_geodesic *g, const hd_sources *from, int64_t begin, int32_t n,
-                              hdi_geo_source *s, hd_geodesic_report *rep, hd_error *e) {
-    hdi_scope scope = hdi_scope_begin(g->ctx, e);
-    int32_t *list = HDI_TAKE(&scope, int32_t, n);
-    hdi_geo_items items;
-    s->vertex = list;
-    s->n = 0;
-    s->items = NULL;
-    if (list && hdi_geo_vertices(from, begin, n, list)) {
-        s->n = n;
-        (void)hdi_geo_off_border(g, list, n, e);
-    } else if (list && g->poly.ptr) {
-        (void)hdi_fail(e, HD_ERR_ARGUMENT, "geodesic: on polygons sources are vertices only");
-    } else if (list && hdi_geo_items_make(&items, g, from, begin, n, &scope) >= 0) {
-        s->items = &items;
-    }
-    if (e->status >= 0) (void)hdi_geo_alone(g, s, rep, e);
-    return hdi_scope_end(&scope);
 }
 
 /* Columns of distances, ldd apart, from sources that are checked. */
 static hd_status hdi_geo_distances(hd_geodesic *g, const hd_sources *from, double *D, size_t ldd,
                                    hd_geodesic_report *rep, hd_error *e) {
-    const int vertices = hdi_source_corners(from) == 1 && !from->curve;
-    const int32_t most = vertices && !from->first ? HDI_GEO_WIDE : 1, n = from->count;
+    const int vertices = hdi_source_corners(from) == 1 && !from->curve && !from->first;
+    const int32_t n = from->count;
     hdi_geo_source s[HDI_GEO_WIDE];
     int32_t m, c, k;
-    memset(s, 0, sizeof s);
+    int faint;
     for (m = 0; m < n && e->status >= 0; m += k) {
-        k = n - m >= HDI_GEO_WIDE_FROM ? hdi_low32(n - m, most) : 1;
-        if (hdi_progress(g->ctx, "solve", (double)m / n, e) < 0) break;
-        for (c = 0; c < k; c++) {
-            const int64_t begin = hdi_source_first(from, m + c);
-            s[c].vertex = from->vertex + begin;
-            s[c].n = (int32_t)(hdi_source_first(from, m + c + 1) - begin);
+        hdi_scope scope = hdi_scope_begin(g->ctx, e);
+        k = vertices && n - m >= HDI_GEO_WIDE_FROM ? hdi_low32(n - m, HDI_GEO_WIDE) : 1;
+        (void)hdi_progress(g->ctx, "solve", (double)m / n, e);
+        for (c = 0; c < k && e->status >= 0; c++) {
+            if (hdi_geo_source_make(s + c, g, from, m + c, &scope) < 0) e->column = m + c;
             s[c].d = D + (size_t)(m + c) * ldd;
-            if (!vertices || hdi_geo_off_border(g, s[c].vertex, s[c].n, e) >= 0) continue;
-            e->column = m + c;
-            return e->status;
         }
-        if (k > 1) (void)hdi_geo_batch(g, s, k, rep, e);
-        else if (vertices) (void)hdi_geo_alone(g, s, rep, e);
-        else if (hdi_geo_from(g, from, hdi_source_first(from, m), s->n, s, rep, e) < 0) e->column = m;
+        if (e->status >= 0 && k > 1) (void)hdi_geo_batch(g, s, k, rep, e);
+        else if (e->status >= 0) (void)hdi_geo_solve(g, s, 1, &faint, rep, e);
+        (void)hdi_scope_end(&scope);
     }
     return e->status;
 }
@@ -24924,25 +24640,22 @@ HEATDIFF_API hd_status hd_times_auto(const hd_laplacian *lap, int32_t n_times, d
 HEATDIFF_API hd_status hd_spectrum_columns(const hd_spectrum *s, hd_kernel kernel, int32_t n_times,
                                            const double *t, const hd_sources *sources, double *U,
                                            double *bound, size_t ldu, hd_error *err) {
-    hdi_spec_sums x = hdi_spec_sums_of(n_times, t, U, bound, ldu);
-    x.sources = sources;
-    return hdi_spec_sums_kernel(&x, s, kernel, err);
+    const hdi_spec_ask ask = {HDI_SPEC_COLUMNS, (int)kernel, n_times, t, sources, U, bound, ldu};
+    return hdi_spec_sums_ask(s, ask, err);
 }
 
 HEATDIFF_API hd_status hd_spectrum_diagonal(const hd_spectrum *s, hd_kernel kernel, int32_t n_times,
                                             const double *t, double *D, double *bound, size_t ldd,
                                             hd_error *err) {
-    hdi_spec_sums x = hdi_spec_sums_of(n_times, t, D, bound, ldd);
-    x.diagonal = 1;
-    return hdi_spec_sums_kernel(&x, s, kernel, err);
+    const hdi_spec_ask ask = {HDI_SPEC_DIAGONAL, (int)kernel, n_times, t, NULL, D, bound, ldd};
+    return hdi_spec_sums_ask(s, ask, err);
 }
 
 HEATDIFF_API hd_status hd_spectrum_distance(const hd_spectrum *s, hd_distance_kind kind, int32_t n_times,
                                             const double *t, const hd_sources *sources, double *D,
                                             double *bound, size_t ldd, hd_error *err) {
-    hdi_spec_sums x = hdi_spec_sums_of(n_times, t, D, bound, ldd);
-    x.sources = sources;
-    return hdi_spec_sums_distance(&x, s, kind, err);
+    const hdi_spec_ask ask = {HDI_SPEC_DISTANCE, (int)kind, n_times, t, sources, D, bound, ldd};
+    return hdi_spec_sums_ask(s, ask, err);
 }
 
 HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const double *t, int32_t k,
@@ -25011,10 +24724,10 @@ HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, in
                                         hd_report *report, hd_error *err) {
     hdi_distances to;
     memset(&to, 0, sizeof to);
-    to.kind = hdi_distance_of(kind);
+    to.of.kind = hdi_distance_of(kind);
     to.D = D;
     to.ld = ldd;
-    return hdi_distance_answer(heat, &to, sources, n_times, t, report, err);
+    return hdi_distances_run(heat, &to, sources, n_times, t, report, err);
 }
 
 HEATDIFF_API hd_status hd_heat_distance_pairs(hd_heat *heat, hd_distance_kind kind, int32_t n_times,
@@ -25023,10 +24736,9 @@ HEATDIFF_API hd_status hd_heat_distance_pairs(hd_heat *heat, hd_distance_kind ki
                                               hd_error *err) {
     hdi_heat_call h;
     hdi_pairs to;
-    to.kind = hdi_distance_of(kind);
-    if (hdi_distance_begin(&h, heat, to.kind, n_times, t, 0, report, err) < 0 || !HDI_HAS_DIFFUSION)
+    to.of.kind = hdi_distance_of(kind);
+    if (hdi_distance_begin(&h, heat, to.of.kind, n_times, t, 1, report, err) < 0 || !HDI_HAS_DIFFUSION)
         return hdi_heat_end(&h);
-    if (hdi_heat_filtered(heat)) (void)hdi_direct_only(&h);
     if (n_pairs > 0 && !d) hdi_missing(h.e);
     to.n = n_pairs;
     to.i = i;
@@ -25042,27 +24754,27 @@ HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, doub
                                       double *distance, hd_report *report, hd_error *err) {
     hdi_samples a;
     memset(&a, 0, sizeof a);
-    a.kind = hdi_distance_of(kind);
+    a.of.kind = hdi_distance_of(kind);
     a.t = t;
     a.count = count;
     a.vertex = vertex;
     a.distance = distance;
-    return hdi_sample_answer(heat, &a, sources, report, err);
+    return hdi_sample_run(heat, &a, sources, report, err);
 }
 
 HEATDIFF_API hd_status hd_heat_estimate(hd_heat *heat, hd_query query, int32_t n_times, const double *t,
                                         int32_t k, hd_estimate *estimate, hd_error *err) {
     const hdi_query as = query == HD_QUERY_FIELDS ? HDI_QUERY_FIELD : HDI_QUERY_SYMMETRIC;
-    const hdi_query_row *row = hdi_query_of(query);
+    const hdi_query_row row = hdi_query_of(query);
     hdi_heat_call h;
     hd_estimate found;
     hd_status status;
     memset(&found, 0, sizeof found);
     if (hdi_heat_begin(&h, heat, as, NULL, err) < 0) return hdi_heat_end(&h);
     if (!estimate) hdi_missing(h.e);
-    else if (hdi_estimate_check(&h, row, k) >= 0 && row->by <= HDI_BY_INVERSION)
-        (void)hdi_times_check(&h, n_times, t, row->by == HDI_BY_INVERSION);
-    if (h.e->status >= 0) (void)hdi_estimate_run(&h, row, k, &found);
+    else if (hdi_estimate_check(&h, &row, k) >= 0 && hdi_query_timed(&row))
+        (void)hdi_times_check(&h, n_times, t, row.by == HDI_BY_INVERSION);
+    if (h.e->status >= 0) (void)hdi_estimate_run(&h, &row, k, &found);
     status = hdi_heat_end(&h);
     if (status < 0) return status;
     hdi_estimate_close(heat, &found);

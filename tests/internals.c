@@ -679,48 +679,48 @@ static void int_noise_weights(void) {
     }
 }
 
-/* The nearest and the most of |x + theta|, the latter over 1 + x, for x >= 0, by search. */
+/* The least of |x + theta|, and the most of 1 + x over it, for x >= 0, by search. */
 static void int_pole_bounds(void) {
     uint64_t seed = 4;
     int k, i;
     for (k = 0; k < 200; k++) {
         const double size = pow(10, 2 * dense_signed(&seed));
         const hd_c64 theta = hdi_c(size * 3 * dense_signed(&seed), size * (0.01 + fabs(dense_signed(&seed))));
-        double nearest = hdi_pole_distance(theta), ratio = hdi_resolvent_ratio(theta), least = HUGE_VAL, most = 0;
+        double nearest = hdi_pole_distance(theta), gain = hdi_pole_gain(theta), least = HUGE_VAL, most = 0;
         for (i = 0; i <= 20000; i++) {           /* x from 0 over 1e-4 to 1e6, and closely around the pole */
             const double x = i == 0 ? 0 : i % 2 ? pow(10, -4 + i * 5e-4) : fmax(0, -theta.re + (i - 10000) * 1e-3 * size);
             least = fmin(least, hypot(x + theta.re, theta.im));
-            most = fmax(most, hypot(x + theta.re, theta.im) / (1 + x));
+            most = fmax(most, (1 + x) / hypot(x + theta.re, theta.im));
         }
-        CHECK_MSG(nearest <= least * (1 + 1e-12) && nearest > least * (1 - 1e-4) && ratio >= most * (1 - 1e-12) &&
-                  ratio <= most * 1.001,
-                  "theta %g %+g i: %g, %g, by search %g, %g", theta.re, theta.im, nearest, ratio, least, most);
+        CHECK_MSG(nearest <= least * (1 + 1e-12) && nearest > least * (1 - 1e-4) && gain >= most * (1 - 1e-12) &&
+                  gain <= most * 1.001,
+                  "theta %g %+g i: %g, %g, by search %g, %g", theta.re, theta.im, nearest, gain, least, most);
     }
-    CHECK(hdi_resolvent_ratio(hdi_c(1, 0)) == 1 && hdi_resolvent_ratio(hdi_c(5, 0)) == 5 &&
-          hdi_resolvent_ratio(hdi_c(0.2, 0)) == 1);
 }
 
-/* factor Re 1/(x + theta) >= 1/(1 + x), which bounds of diagonals rest on, for the pole that all sets choose; an imaginary
- * one bounds nothing. */
-static void int_resolvent_pole(void) {
+/* factor sum Re w/(x + theta) >= 1/(1 + x), which bounds of diagonals rest on; an imaginary pole bounds nothing. */
+static void int_resolvent_weights(void) {
     static const hd_pole_kind kinds[2] = {HD_POLES_UNIFORM, HD_POLES_KERNEL};
+    hd_c64 weight[HD_MAX_POLES];
     hd_rational set;
-    double factor = 1;
-    int32_t r, k, best;
+    int32_t r, k, p;
     for (r = 2 * 2; r < 2 * 15; r++) {
         hd_error e = int_no_error();
-        factor = 1;
+        double factor;
         CHECK(hdi_rational_get(&set, kinds[r % 2], r / 2, &e) == HD_OK);
-        best = hdi_resolvent_pole(&set, &factor);
-        CHECK_MSG(best >= 0 && best < set.n_poles && factor < 10, "set %d: pole %d, factor %g", (int)r, (int)best, factor);
-        for (k = -1; k < 600 && best >= 0; k++) {
-            const double x = k < 0 ? 0 : pow(10, -4 + 0.02 * k), re = x + set.theta[best].re, im = set.theta[best].im;
-            CHECK_MSG(factor * re / (re * re + im * im) * (1 + x) >= 1 - 1e-12, "set %d, x %g", (int)r, x);
+        factor = hdi_resolvent_weights(&set, weight);
+        CHECK_MSG(factor < 10, "set %d: factor %g", (int)r, factor);
+        for (k = -1; k < 600; k++) {
+            const double x = k < 0 ? 0 : pow(10, -4 + 0.02 * k);
+            double sum = 0;
+            for (p = 0; p < set.n_poles; p++)
+                sum += hdi_cdiv(weight[p], hdi_c(x + set.theta[p].re, set.theta[p].im)).re;
+            CHECK_MSG(factor * sum * (1 + x) >= 1 - 1e-12, "set %d, x %g", (int)r, x);
         }
     }
     set.n_poles = 1;
     set.theta[0] = hdi_c(0, 1);
-    CHECK(hdi_resolvent_pole(&set, &factor) == -1);
+    CHECK(hdi_resolvent_weights(&set, weight) == HUGE_VAL);
 }
 
 /* What is known of an error by numbers that are none, or infinite: nothing. A bound is never a share of an infinite value,
@@ -1087,16 +1087,15 @@ static void int_spectrum_proof(void) {
     hd_error e;
     hdi_elim m;
     hdi_spec z;
-    hdi_spec_goal goal;
-    int32_t count = 0, i;
-    goal.count = 40;
-    goal.below = HUGE_VAL;
+    hd_spectrum out;
+    int32_t i;
+    memset(&out, 0, sizeof out);
     CHECK(int_elim(&m, lap, &ctx, &e) == HD_OK);
-    CHECK(hdi_spec_make(&z, &m, goal.count, 1e-10, &e) >= 0 && hdi_spec_solve(&z, &goal, &count, &e) >= 0);
-    CHECK(z.proven && count == 40 && z.below == hdi_spec_rank(&z, z.sigma) && hdi_spec_sure(&z));
+    CHECK(hdi_spec_make(&z, &m, 40, HUGE_VAL, 1e-10, &out, &e) >= 0 && hdi_spec_solve(&z, &e) >= 0);
+    CHECK(out.proven && out.count == 40 && z.negative == hdi_spec_rank(&z, z.sigma) && hdi_spec_sure(&z));
     for (i = 20; i + 1 < z.found; i++) z.value[i] = z.value[i + 1];
     z.found--;
-    CHECK(z.below == hdi_spec_rank(&z, z.sigma) + 1);
+    CHECK(z.negative == hdi_spec_rank(&z, z.sigma) + 1);
     z.value[7] = z.sigma * (1 + 1e-15);
     CHECK(!hdi_spec_sure(&z));
     hdi_spec_free(&z);
@@ -1356,7 +1355,7 @@ static void int_few_tasks(void) {
 static void (*const int_tests[])(void) = {
     int_few_tasks, int_division, int_not_finite, int_complex, int_sizes, int_texts, int_sums, int_arrays, int_memory,
     int_large_pages, int_sorting, int_union_find, int_tridiagonal, int_tridiagonal_odd, int_collinear, int_krylov_done,
-    int_ildl, int_products, int_residuals, int_noise_weights, int_pole_bounds, int_resolvent_pole, int_no_numbers, int_lanczos_bound,
+    int_ildl, int_products, int_residuals, int_noise_weights, int_pole_bounds, int_resolvent_weights, int_no_numbers, int_lanczos_bound,
     int_krylov_slopes, int_ritz_above, int_probe_rows, int_pairs_degree, int_spectrum_proof,
     int_least_squares, int_exp_rest, int_shared_bounds, int_length_area, int_around, int_selection,
     int_eigen3, int_polygon, int_krylov_bounds, int_damages_1, int_damages_2, int_damages_3,

@@ -419,7 +419,8 @@ static void est_ground(void) {
    with the work; what this plan cannot answer is refused. Then once more, when some of it has been done. */
 static void est_sweep_one(hd_heat *heat, const hd_heat_opts *o, hd_query query, int32_t n_times, const double *t, int limited, const char *what) {
     static const int32_t ks[3] = {1, 5, 40};
-    const int direct = query > HD_QUERY_PAIRS && query < HD_QUERY_SPECTRUM, timeless = query >= HD_QUERY_DISTANCE_COMMUTE;
+    const int direct = query > HD_QUERY_PAIRS && query < HD_QUERY_SPECTRUM;
+    const int timeless = query == HD_QUERY_DISTANCE_COMMUTE || query == HD_QUERY_DISTANCE_BIHARMONIC || query == HD_QUERY_SPECTRUM;
     const int refused = (direct && (o->method == HD_METHOD_ITERATIVE || o->method == HD_METHOD_KRYLOV)) ||
                         (query > HD_QUERY_PAIRS && !timeless && t[0] == 0);
     double flops = 0;

@@ -888,7 +888,7 @@ static void check_entries(work *w, hd_heat *heat, const answer *a) {
 /* Distances of the three sources by diagonals and by pairs. */
 static void check_distance(work *w, hd_heat *heat, hd_distance_kind kind) {
     static const int32_t of[3][2] = {{0, 1}, {1, 2}, {2, 0}};
-    const int timeless = kind >= HD_DISTANCE_COMMUTE;
+    const int timeless = kind == HD_DISTANCE_COMMUTE || kind == HD_DISTANCE_BIHARMONIC;
     double *D = room(3 * (int64_t)w->n), d[3], bound, most = 0;
     int32_t i[3], j[3], q, v;
     hd_report r, rp;
