@@ -21686,9 +21686,9 @@ static double hdi_patch_off(const hdi_patches *x, int32_t core) {
     return HDI_PATCH_SAFETY * sum / lap->b_ratio;
 }
 
-/* Gives the core's values to the caller, D [n_times][n] and traces with bounds. */
+/* Gives the core's values to the caller, D [n_times][n] and traces with bounds. first: of all pieces. */
 static void hdi_patch_tell(const hdi_patches *x, int32_t core, const double *D, const double *Z,
-                           const double *bound) {
+                           const double *bound, int first) {
     const hdi_diagonals *to = x->to;
     const hdi_heat_call *h = to->task.h;
     const size_t n = (size_t)x->local->n;
@@ -21697,8 +21697,8 @@ static void hdi_patch_tell(const hdi_patches *x, int32_t core, const double *D, 
         double *out = to->D + (size_t)q * to->ldd;
         for (i = 0; i < core && D; i++)
             out[h->heat->source->vertex[x->local->row[i]]] = D[(size_t)q * n + (size_t)i];
-        if (to->Z) to->Z[q] += Z[q];
-        if (to->Z && to->bound) to->bound[q] += bound[q];
+        if (to->Z) to->Z[q] = Z[q] + (first ? 0 : to->Z[q]);
+        if (to->Z && to->bound) to->bound[q] = bound[q] + (first ? 0 : to->bound[q]);
     }
 }
 
@@ -21727,7 +21727,7 @@ static hd_status hdi_patch_once(const hdi_patches *x, int32_t p, double wanted, 
         (void)hdi_diagonals_run(&in, &to);
     }
     if (hdi_heat_end(&in) < 0) *h->e = rep->error;
-    else if (rep->error_local <= wanted) hdi_patch_tell(x, core, to.D, to.Z, to.bound);
+    else if (rep->error_local <= wanted) hdi_patch_tell(x, core, to.D, to.Z, to.bound, p == 0);
     return hdi_scope_end(&s);
 }
 
@@ -21755,16 +21755,14 @@ static hd_status hdi_patches_run(hdi_patches *x) {
     hdi_heat_call *h = to->task.h;
     const hd_laplacian *lap = h->heat->source;
     int32_t p, q, v;
-    for (q = 0; q < h->ask.n_times; q++) {
-        for (v = 0; v < lap->n && to->D; v++)
-            to->D[(size_t)q * to->ldd + (size_t)v] =
-                to->kernel == HD_KERNEL_OPERATOR && lap->row[v] == HD_ROW_INERT;
-        if (to->Z) to->Z[q] = 0;
-        if (to->Z && to->bound) to->bound[q] = 0;
-    }
     h->relative = 1;
     for (p = 0; p < x->count && h->e->status >= 0; p++)
         if (hdi_progress(h->heat->ctx, "invert", (double)p / x->count, h->e) >= 0) (void)hdi_patch_run(x, p);
+    for (q = 0; q < h->ask.n_times && to->D && h->e->status >= 0; q++)
+        for (v = 0; v < lap->n; v++)
+            if (lap->row[v] < 0)
+                to->D[(size_t)q * to->ldd + (size_t)v] =
+                    to->kernel == HD_KERNEL_OPERATOR && lap->row[v] == HD_ROW_INERT;
     return h->e->status;
 }
 
@@ -21817,9 +21815,9 @@ static hd_status hdi_diagonals_by_patches(hdi_heat_call *h, hdi_patches *x, cons
 static hd_status hdi_diagonals_answer(hdi_heat_call *h, hd_kernel kernel, double *D, size_t ldd, double *Z,
                                       double *bound) {
     const hd_heat *heat = h->heat;
-    const int asked = heat->opts.method == HD_METHOD_LOCAL;
+    const int32_t asked = heat->opts.method == HD_METHOD_LOCAL, n = heat->source->n_active;
     const int may = HDI_HAS_LOCAL && heat->source->b_ratio > 0 && !heat->opts.rational && heat->n_sets == 0 &&
-                    heat->source->n_active > 0 && (asked || heat->opts.method == HD_METHOD_AUTO);
+                    (asked ? n > 0 : heat->opts.method == HD_METHOD_AUTO && n >= HDI_LOCAL_FROM);
     const hd_report rep = *h->rep;
     hdi_diagonals to;
     hdi_patches x;
