@@ -17263,67 +17263,8 @@ struct hd_heat {
 /* What the caller gets, by rows. */
 static const double *hdi_lane_answer(const hdi_lane *lane) { return lane->dual ? lane->tmp : lane->u; }
 
-/* The bounds of a lane's error at the vertices of the components where the answer is not zero, or of all if
- * it is zero: by the B norm, and by the norm of M = B + tL where reach is known. A zero of the answer says
- * nothing of its own error: rows that the steps of an iteration have not reached are exact zeros. reach: a
- * bound of diag(M^-1), or NULL. A dual lane answers with B u, where |(B d)_v| is at most sqrt(B_vv) times |d|
- * in both norms, for B M^-1 B <= B. */
-static hdi_parts hdi_lane_bound(const hd_laplacian *lap, const hdi_lane *lane, const double *reach) {
-    double smallest_b = HUGE_VAL, largest_b = 0, largest_g = 0, *touched = lane->spare_sums, by_b, by_m;
-    int32_t i, any = 0;
-    memset(touched, 0, (size_t)lap->n_components * sizeof *touched);
-    for (i = 0; i < lap->n_active; i++)
-        if (lane->u[i] != 0) touched[lap->component[i]] = any = 1;
-    for (i = 0; i < lap->n_active; i++) {
-        if (any && touched[lap->component[i]] == 0) continue;
-        smallest_b = hdi_min(smallest_b, lap->b_diag[i]);
-        largest_b = hdi_max(largest_b, lap->b_diag[i]);
-        if (reach) largest_g = hdi_max(largest_g, reach[i]);
-    }
-    by_b = lane->dual ? sqrt(largest_b) : hdi_ratio_root(lap) / sqrt(smallest_b);
-    by_m = sqrt(lane->dual ? largest_b : largest_g);
-    return reach ? hdi_parts_least(hdi_parts_scale(by_b, lane->off), hdi_parts_scale(by_m, lane->off_m))
-                 : hdi_parts_scale(by_b, lane->off);
-}
-
 /* What a sum may lose where its terms are among the smallest doubles. */
 #define HDI_FAINT (1e-9 * DBL_MIN)
-
-/* Adds the numbers of one field to the report, which keeps the worst. ledger: a new one, or NULL where single
- * values are noted elsewhere. least: HDI_FAINT in the unit of u. */
-static void hdi_heat_judge(const hd_laplacian *lap, const hdi_lane *lane, hdi_ledger *ledger,
-                           const double *reach, int own, int by_value, double least, hd_report *rep) {
-    const double *out = hdi_lane_answer(lane);
-    double largest = 0, heat = 0, heat_in = 0, heat_abs = 0, spread = 0;
-    int32_t i;
-    for (i = 0; i < lap->n_active; i++) {
-        largest = hdi_max(largest, fabs(out[i]));
-        spread += lane->dual ? hdi_inverse_mass(lap, i) : lap->b_diag[i];
-        if (!hdi_finite(lap->component_mass[lap->component[i]])) continue;
-        heat += lap->mass[i] * lane->u[i];
-        heat_abs += fabs(lap->mass[i] * lane->u[i]);
-    }
-    for (i = 0; i < lap->n_components; i++)
-        if (hdi_finite(lap->component_mass[i])) heat_in += lane->target[i];
-    if (ledger) {
-        double total = hdi_parts_sum(&lane->off);
-        hdi_parts off = by_value && !lane->dual ? lane->off_value : hdi_lane_bound(lap, lane, reach);
-        /* of the value itself; an adjoint is divided by B and multiplied by it, even at t = 0 */
-        if (lane->f_norm > 0 && (total > 0 || lane->dual || by_value))
-            off.rounding += (lane->dual ? 2 : 1) * DBL_EPSILON * largest + least;
-        if (off.rounding > 0) total += least * sqrt(spread);
-        hdi_ledger_note(ledger, largest, off);
-        hdi_ledger_close(ledger, rep);
-        rep->error_bound_b = hdi_max(rep->error_bound_b, hdi_quotient(total, lane->u_norm - total));
-        hdi_bound_judge(rep->error_bound_b, rep);
-        hdi_evidence_worst(&rep->evidence_b,
-                           hdi_max(ledger->evidence.rational,
-                                   hdi_max(ledger->evidence.solver, ledger->evidence.rounding)));
-    }
-    rep->residual = hdi_max(rep->residual, lane->residual);
-    if (lap->conserves && !own && heat_abs > 0)
-        rep->mass_drift = hdi_max(rep->mass_drift, hdi_bound_of(fabs(heat - heat_in) / heat_abs));
-}
 
 /* By Gershgorin's theorem every eigenvalue of B^-1 L is below this. Where b_ratio is not known it is a guess,
  * which serves for choices only. */
@@ -17381,17 +17322,13 @@ static hd_status hdi_heat_sums(hd_heat *heat, hd_error *e) {
     return e->status;
 }
 
-/* Gives the plan n lanes, without their arrays. */
+/* Gives the plan n lanes, without their arrays, or leaves it more. */
 static hd_status hdi_heat_make_lanes(hd_heat *heat, int32_t n, hd_error *e) {
-    hdi_lane *lane;
     if (n <= heat->n_lanes) return HD_OK;
-    lane = (hdi_lane *)hdi_alloc_zero(heat->ctx, (uint64_t)n, sizeof *lane, e);
-    if (!lane) return e->status;
-    if (heat->lane) memcpy(lane, heat->lane, (size_t)heat->n_lanes * sizeof *lane);
-    hdi_free(heat->ctx, heat->lane);
-    heat->lane = lane;
-    heat->n_lanes = n;
-    return HD_OK;
+    hdi_heat_free_lanes(heat);
+    heat->lane = (hdi_lane *)hdi_alloc_zero(heat->ctx, (uint64_t)n, sizeof *heat->lane, e);
+    heat->n_lanes = heat->lane ? n : 0;
+    return e->status;
 }
 
 static void hdi_heat_free_iterative(hd_heat *heat) {
@@ -18067,15 +18004,14 @@ static void hdi_heat_store_entries(const hdi_heat_call *h, int32_t q, const hdi_
     int64_t p;
     for (p = list->begin[q]; p < list->begin[q + 1]; p++) {
         const hdi_pair at = list->order[p];
-        const int32_t v = list->rows[at.id], row = lap->row[v];
-        hdi_parts off;
-        memset(&off, 0, sizeof off);
-        values[at.id] = row < 0 || lane->skip ? 0 : unit * lane->u[row];
+        const int32_t v = list->rows[at.id], row = lap->row[v], solved = row >= 0 && !lane->skip;
+        hdi_parts off = {0, 0, 0};
+        values[at.id] = solved ? unit * lane->u[row] : 0;
         if (row == HD_ROW_INERT)
             values[at.id] = h->ask.query == HDI_QUERY_OPERATOR && (uint64_t)v == at.key;
-        if (!lane->skip && row >= 0)
-            off = hdi_parts_scale(unit * hdi_ratio_root(lap) / sqrt(lap->b_diag[row]), lane->off);
-        if (!lane->skip && row >= 0 && h->by_pairs) off = lane->off_value;
+        if (solved)
+            off = h->by_pairs ? lane->off_value
+                  : hdi_parts_scale(unit * hdi_ratio_root(lap) / sqrt(lap->b_diag[row]), lane->off);
         if (h->by_pairs || hdi_parts_sum(&off) > 0) off.rounding += HDI_FAINT;
         hdi_ledger_note(list->ledger + h->now, values[at.id], off);
     }
@@ -18277,8 +18213,68 @@ static hdi_column_parts hdi_column_off(const hd_laplacian *lap, const hdi_lane *
     return off;
 }
 
+/* The bounds of a lane's error at the vertices of the components where the answer is not zero, or of all if
+ * it is zero: by the B norm, and by the norm of M = B + tL where reach is known. A zero of the answer says
+ * nothing of its own error: rows that the steps of an iteration have not reached are exact zeros. reach: a
+ * bound of diag(M^-1), or NULL. A dual lane answers with B u, where |(B d)_v| is at most sqrt(B_vv) times |d|
+ * in both norms, for B M^-1 B <= B. */
+static hdi_parts hdi_lane_bound(const hd_laplacian *lap, const hdi_lane *lane, const double *reach) {
+    double smallest_b = HUGE_VAL, largest_b = 0, largest_g = 0, *touched = lane->spare_sums, by_b, by_m;
+    int32_t i, any = 0;
+    memset(touched, 0, (size_t)lap->n_components * sizeof *touched);
+    for (i = 0; i < lap->n_active; i++)
+        if (lane->u[i] != 0) touched[lap->component[i]] = any = 1;
+    for (i = 0; i < lap->n_active; i++) {
+        if (any && touched[lap->component[i]] == 0) continue;
+        smallest_b = hdi_min(smallest_b, lap->b_diag[i]);
+        largest_b = hdi_max(largest_b, lap->b_diag[i]);
+        if (reach) largest_g = hdi_max(largest_g, reach[i]);
+    }
+    by_b = lane->dual ? sqrt(largest_b) : hdi_ratio_root(lap) / sqrt(smallest_b);
+    by_m = sqrt(lane->dual ? largest_b : largest_g);
+    return reach ? hdi_parts_least(hdi_parts_scale(by_b, lane->off), hdi_parts_scale(by_m, lane->off_m))
+                 : hdi_parts_scale(by_b, lane->off);
+}
+
+/* Adds the numbers of one field to the report, which keeps the worst. ledger: a new one; of entries, whose
+ * values are noted elsewhere, it is not used. */
+static void hdi_heat_judge(const hdi_heat_call *h, const hdi_lane *lane, hdi_ledger *ledger,
+                           const double *reach) {
+    const hd_laplacian *lap = h->lap;
+    const double *out = hdi_lane_answer(lane), least = ldexp(HDI_FAINT / hdi_heat_unit(h), -lane->exponent);
+    double largest = 0, heat = 0, heat_in = 0, heat_abs = 0, spread = 0, total = hdi_parts_sum(&lane->off);
+    hd_report *rep = h->rep;
+    int32_t i;
+    for (i = 0; i < lap->n_active; i++) {
+        largest = hdi_max(largest, fabs(out[i]));
+        spread += lane->dual ? hdi_inverse_mass(lap, i) : lap->b_diag[i];
+        if (!hdi_finite(lap->component_mass[lap->component[i]])) continue;
+        heat += lap->mass[i] * lane->u[i];
+        heat_abs += fabs(lap->mass[i] * lane->u[i]);
+    }
+    for (i = 0; i < lap->n_components; i++)
+        if (hdi_finite(lap->component_mass[i])) heat_in += lane->target[i];
+    if (!h->ask.list) {
+        hdi_parts off = h->by_pairs && !lane->dual ? lane->off_value : hdi_lane_bound(lap, lane, reach);
+        /* of the value itself; an adjoint is divided by B and multiplied by it, even at t = 0 */
+        if (lane->f_norm > 0 && (total > 0 || lane->dual || h->by_pairs))
+            off.rounding += (lane->dual ? 2 : 1) * DBL_EPSILON * largest + least;
+        if (off.rounding > 0) total += least * sqrt(spread);
+        hdi_ledger_note(ledger, largest, off);
+        hdi_ledger_close(ledger, rep);
+        rep->error_bound_b = hdi_max(rep->error_bound_b, hdi_quotient(total, lane->u_norm - total));
+        hdi_bound_judge(rep->error_bound_b, rep);
+        hdi_evidence_worst(&rep->evidence_b,
+                           hdi_max(ledger->evidence.rational,
+                                   hdi_max(ledger->evidence.solver, ledger->evidence.rounding)));
+    }
+    rep->residual = hdi_max(rep->residual, lane->residual);
+    if (lap->conserves && !h->heat->opts.rational && heat_abs > 0)
+        rep->mass_drift = hdi_max(rep->mass_drift, hdi_bound_of(fabs(heat - heat_in) / heat_abs));
+}
+
 /* Judges lane i of the batch. */
-static void hdi_heat_note(hdi_heat_call *h, hdi_ledger ledger, int32_t i, int own) {
+static void hdi_heat_note(hdi_heat_call *h, hdi_ledger ledger, int32_t i) {
     hdi_lane *lane = h->heat->lane + i;
     const hdi_elim *m = &h->heat->elim;
     const int solved = h->method == HD_METHOD_DIRECT && h->t > 0 && !h->equal && !h->by_pairs;
@@ -18286,8 +18282,7 @@ static void hdi_heat_note(hdi_heat_call *h, hdi_ledger ledger, int32_t i, int ow
     int32_t q;
     ledger.evidence.rounding = lane->rounding;
     if (lane->dual) hdi_pair_apply(h->lap, 0, 1, lane->u, lane->tmp);
-    hdi_heat_judge(h->lap, lane, h->ask.list ? NULL : &ledger, reach, own, h->by_pairs,
-                   ldexp(HDI_FAINT / hdi_heat_unit(h), -lane->exponent), h->rep);
+    hdi_heat_judge(h, lane, &ledger, reach);
     if (h->ask.list) h->ask.list->ledger[h->now].evidence = ledger.evidence;
     for (q = 0; q < h->n_off; q++)
         h->off[(h->batch + i) * h->n_off + q] = hdi_column_off(h->lap, lane, h->set + q);
@@ -18297,7 +18292,6 @@ static void hdi_heat_note(hdi_heat_call *h, hdi_ledger ledger, int32_t i, int ow
  * another task failed. */
 static hd_status hdi_heat_collect(hdi_heat_call *h, int32_t n) {
     const hd_rational *set = &h->heat->fam.set;
-    const int own = h->heat->opts.rational != NULL;
     const int poles = h->method == HD_METHOD_ITERATIVE && h->solver != HD_SOLVER_LANCZOS;
     const hdi_ledger blank = hdi_heat_ledger(h);
     int32_t i, p;
@@ -18321,7 +18315,7 @@ static hd_status hdi_heat_collect(hdi_heat_call *h, int32_t n) {
             h->rep->pole_iterations[p] += lane->k[p].iterations;
             h->rep->iterations += lane->k[p].iterations;
         }
-        hdi_heat_note(h, blank, i, own);
+        hdi_heat_note(h, blank, i);
     }
     return HD_OK;
 }
@@ -18371,34 +18365,29 @@ static hd_solver hdi_heat_solver(const hdi_heat_call *h, double t) {
     return lanczos.seconds <= cocg.seconds ? HD_SOLVER_LANCZOS : HD_SOLVER_COCG;
 }
 
-/* Bytes of iterations: the copy of the pair, its upper triangle, lanes and preconditioners, or bases. */
-static double hdi_iterative_bytes(const hdi_heat_call *h, int32_t poles) {
-    const hd_heat *heat = h->heat;
-    const double n = heat->source->n_active, nnz = (double)heat->source->L.nnz;
-    const int lanczos = hdi_heat_solver(h, h->t) == HD_SOLVER_LANCZOS;
-    const hdi_lane_room room = hdi_lane_room_of(heat->source, &heat->fam,
-                                                lanczos ? hdi_lanczos_most(h->t, heat->lambda_max) : 0,
-                                                lanczos ? 0 : poles);
-    double bytes = 8.0 * hdi_low32(h->ask.k, HDI_LANES_ITERATIVE) * (double)hdi_lane_size(&room);
-    if (!heat->lap) bytes += nnz * (heat->source->B ? 20 : 12) + 36 * n + 4.0 * heat->source->n;
-    if (!heat->weight) bytes += 8 * n + 4 * (nnz - n) / 2 + 32 * n;
-    return bytes + 16.0 * room.systems * (double)hdi_precond_size(hdi_preconds + heat->opts.precond,
-                                                                  heat->source->n_active,
-                                                                  (int64_t)(nnz - n) / 2);
-}
-
-/* The cost of the times one by one. */
+/* The cost of the times one by one. Bytes are those of the copy of the pair, its upper triangle, lanes and
+ * preconditioners, or bases. */
 static void hdi_iterative_cost(const hdi_heat_call *h, hd_cost *c) {
     const hd_heat *heat = h->heat;
     const hd_heat_opts *o = &heat->opts;
+    const hd_laplacian *lap = heat->source;
+    const double n = lap->n_active, nnz = (double)lap->L.nnz;
+    const int lanczos = hdi_heat_solver(h, h->t) == HD_SOLVER_LANCZOS;
     const int32_t poles = o->rational ? o->rational->n_poles : o->degree ? (o->degree + 1) / 2
-                          : HDI_POLES_EXPECTED;
+                          : HDI_POLES_EXPECTED, k = h->ask.k;
+    const hdi_lane_room room = hdi_lane_room_of(lap, &heat->fam,
+                                                lanczos ? hdi_lanczos_most(h->t, heat->lambda_max) : 0,
+                                                lanczos ? 0 : poles);
     int32_t q;
     c->possible = 1;
-    if (!heat->weight) c->seconds += HDI_ROW_ANALYSIS / 2 * heat->source->n_active;
+    if (!heat->weight) c->seconds += HDI_ROW_ANALYSIS / 2 * n;
     for (q = 0; q < h->n_times; q++)
-        hdi_steps_cost(heat, hdi_heat_solver(h, h->times[q]), h->times[q], poles, h->ask.k, c);
-    c->bytes = hdi_iterative_bytes(h, poles);
+        hdi_steps_cost(heat, hdi_heat_solver(h, h->times[q]), h->times[q], poles, k, c);
+    c->bytes = 8.0 * hdi_low32(k, HDI_LANES_ITERATIVE) * (double)hdi_lane_size(&room);
+    if (!heat->lap) c->bytes += nnz * (lap->B ? 20 : 12) + 36 * n + 4.0 * lap->n;
+    if (!heat->weight) c->bytes += 8 * n + 4 * (nnz - n) / 2 + 32 * n;
+    c->bytes += 16.0 * room.systems * (double)hdi_precond_size(hdi_preconds + o->precond, lap->n_active,
+                                                               (int64_t)(nnz - n) / 2);
 }
 
 /* Makes the lanes, the pole set and its preconditioners. */
@@ -18492,13 +18481,6 @@ static uint64_t hdi_batches_need(const hd_heat *heat, int32_t packs, int32_t k) 
     return bytes;
 }
 
-/* Bytes that the factors of a set take at their peak with all that follows: an inversion of n_sums sums, or
- * hdi_elim_bound, and solves of k items. */
-static uint64_t hdi_direct_need(const hd_heat *heat, const hd_rational *set, hdi_after after, int32_t n_sets,
-                                int32_t k, hd_error *e) {
-    return hdi_elim_need(&heat->elim, set, after, n_sets, hdi_batches_need(heat, hdi_set_packs(set), k), e);
-}
-
 enum { HDI_PROBES = 3 };         /* rows at which rounding of an inversion is measured, see [27] */
 
 /* Flops and seconds of inverting factors, relative to making them. By counting, with and without full B; by
@@ -18527,11 +18509,12 @@ static double hdi_direct_set(const hdi_heat_call *h, const hd_rational *set, hdi
     double bytes = 8 * (8 * packs + 1) * f.stored + 200 * n + hdi_min(k, HDI_LANES) * 140 * n;
     k = hdi_high32(k, inverse ? HDI_PROBES : 0);
     if (heat->elim.ctx) {
-        bytes = (double)hdi_direct_need(heat, set, after, n_sets, k, h->e);
+        const uint64_t solving = hdi_batches_need(heat, hdi_set_packs(set), k);
+        bytes = (double)hdi_elim_need(&heat->elim, set, after, n_sets, solving, h->e);
         if (hdi_heat_equal_asks(heat, h->t) && !heat->ground.traced)
             bytes = hdi_max(bytes, (double)hdi_ground_need(&heat->elim, &heat->ground, 0));
         /* the solves' arrays of one time stay while the next one is factorised */
-        if (h->n_times > 1) bytes += (double)hdi_batches_need(heat, hdi_set_packs(set), k);
+        if (h->n_times > 1) bytes += (double)solving;
     } else if (inverse) {
         bytes += 16 * n * n_sets;
     }
@@ -18575,7 +18558,8 @@ static hd_status hdi_direct_factors(hdi_heat_call *h, hdi_after after, int32_t n
     int32_t i;
     if (hdi_heat_set(h, &set) < 0) return h->e->status;
     if (!hdi_elim_holds(m, &set, h->t)) {
-        need = hdi_direct_need(h->heat, &set, after, n_sets, solves ? h->ask.k : 1, h->e);
+        need = hdi_batches_need(h->heat, hdi_set_packs(&set), solves ? h->ask.k : 1);
+        need = hdi_elim_need(m, &set, after, n_sets, need, h->e);
         if (h->e->status < 0 ||
             hdi_need(h->heat->ctx, need, solves ? "factors of the poles and solves"
                                                 : "factors of the poles and their inversion", h->e) < 0)
@@ -18783,16 +18767,12 @@ static hd_status hdi_krylov_basis(hdi_heat_call *h, int32_t n, int32_t q0, int32
     if (h->rim && q1 - q0 == 1) g = HDI_SHIFT_PART * (h->times[q0] - z->from);
     /* derivatives of smooth fields at short times are small beside the fields, and digits of T are lost */
     if (h->rate && heat->lambda_max > 0) g = hdi_max(g, HDI_SHIFT_RATE / heat->lambda_max);
-    if (!h->m->shifted.ctx && !z->v[0]) {        /* a step is the least */
-        const uint64_t basis = 4 * sizeof(double) * (uint64_t)h->m->sym.n * (uint64_t)z->wide;
-        const uint64_t need = hdi_factor_bytes(&h->m->sym, 1) + basis;
-        if (hdi_need(heat->ctx, need, "a real factor and a basis", h->e) < 0) return h->e->status;
-    }
-    if (hdi_elim_shift(h->m, g, h->e) < 0) return h->e->status;
-    z->g = h->m->shift;
     z->k = n;
     z->last = q1 < h->n_times && !h->rate ? h->times[h->n_times - 1] : 0;
-    if (hdi_krylov_start(z, h->heat->lane, heat->ctx, h->e) < 0) return h->e->status;
+    /* room for a step comes first, so that no work begins that the byte limit would end */
+    if (hdi_krylov_start(z, heat->lane, heat->ctx, h->e) < 0 || hdi_elim_shift(h->m, g, h->e) < 0)
+        return h->e->status;
+    z->g = h->m->shift;
     for (i = 0; i < n; i++)
         fixed[i] = heat->lane[i].skip ? 0 : hdi_lane_means_norm2(heat->lane + i, h->lap);
     return hdi_krylov_run(z, h->times + q0, q1 - q0, heat->opts.tol, fixed, heat->ctx, h->e);
@@ -20225,19 +20205,16 @@ static void hdi_plain_means(const hdi_heat_call *h, hdi_lane *lane) {
     hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, 0, hdi_query_fields(h->ask.query)));
 }
 
-/* Answers a time that counts as zero. */
+/* What answers are off by at a time that counts as zero, relative to their norm. */
 static double hdi_plain_off(const hdi_heat_call *h) { return h->ask.t[h->now] > 0 ? HDI_STILL : 0; }
 
 /* The field itself. */
 static void hdi_plain_field(const hdi_heat_call *h, hdi_lane *lane) {
+    const double plain = hdi_plain_off(h) + (h->ask.query == HDI_QUERY_SYMMETRIC ? 2 * DBL_EPSILON : 0);
     memcpy(lane->u, lane->f, (size_t)h->lap->n_active * sizeof *lane->u);
     lane->u_norm = lane->f_norm;
-    hdi_lane_rounding(lane, hdi_plain_off(h) * lane->f_norm);
-    if (h->ask.query == HDI_QUERY_SYMMETRIC) hdi_lane_rounding(lane, 2 * DBL_EPSILON * lane->f_norm);
-    if (lane->f_off > 0) {
-        hdi_lane_rounding(lane, lane->f_off);
-        lane->rounding = HD_EVIDENCE_ESTIMATED;
-    }
+    hdi_lane_rounding(lane, plain * lane->f_norm + lane->f_off);
+    if (lane->f_off > 0) lane->rounding = HD_EVIDENCE_ESTIMATED;
 }
 
 /* The derivative -A f, A = B^-1 L of the scaled pair. Rounding of f counts as much as that of
