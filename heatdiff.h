@@ -11890,10 +11890,10 @@ static hd_status hdi_rational_check(const hd_rational *set, hd_error *e) {
         return hdi_fail(e, HD_ERR_ARGUMENT, "own pole set: t, lambda_max or largest is out of its range");
     for (i = 0; i < set->n_poles; i++) {
         const int bad = !hdi_cfinite(set->theta[i]) || !hdi_cfinite(set->a[i]);
-        const char *text = bad ? "own pole set: a pole or weight is not finite"
-            : "own pole set: theta needs Im > 0, or Im = 0 and Re > 0";
         if (!bad && (set->theta[i].im > 0 || (set->theta[i].im == 0 && set->theta[i].re > 0))) continue;
-        hdi_fail(e, bad ? HD_ERR_NOT_FINITE : HD_ERR_ARGUMENT, text);
+        hdi_fail(e, bad ? HD_ERR_NOT_FINITE : HD_ERR_ARGUMENT,
+                 bad ? "own pole set: a pole or weight is not finite"
+                     : "own pole set: theta needs Im > 0, or Im = 0 and Re > 0");
         e->pole = i;
         return e->status;
     }
@@ -17475,7 +17475,7 @@ static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const 
     const hd_laplacian *lap;
     hdi_lane *lane;
     hdi_iteration *k;
-    hdi_watch watch;
+    const hdi_watch watch = {heat->ctx, NULL, 0, 1, "solve"};
     hd_status status;
     double b_norm;
     int32_t i, v;
@@ -17485,10 +17485,6 @@ static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const 
     lap = heat->lap;
     lane = heat->lane;
     k = lane->k;
-    memset(&watch, 0, sizeof watch);
-    watch.ctx = heat->ctx;
-    watch.share = 1;
-    watch.stage = "solve";
     b_norm = hdi_shifted_load(heat, rhs, exponent, theta, lane, x);
     hdi_iteration_start(k, b_norm);
     hdi_iteration_residual(k, lane->b);
@@ -17741,25 +17737,18 @@ typedef struct hdi_fill { double nnz, flops, stored, real_stored, analysis; } hd
  * times and flops (w/10)^2 times as many. (Point sets with 233 and 117 entries a row, 20K to 150K points:
  * 1220 to 1700 n and 13000 n^1.5, 600 to 830 n and 3500 n^1.5.) */
 static hdi_fill hdi_fill_guess(double n, double entries) {
-    const double wide = hdi_max(1, entries / (10 * n));
-    hdi_fill f;
-    f.nnz = 30 * n * wide;
-    f.flops = 22 * n * sqrt(n) * wide * wide;
-    f.stored = f.real_stored = 40 * n * wide;
-    f.analysis = HDI_ROW_ANALYSIS * n * wide;
+    const double wide = hdi_max(1, entries / (10 * n)), stored = 40 * n * wide;
+    const hdi_fill f = {30 * n * wide, 22 * n * sqrt(n) * wide * wide, stored, stored,
+                        HDI_ROW_ANALYSIS * n * wide};
     return f;
 }
 
 static hdi_fill hdi_heat_fill(const hd_heat *heat, const hdi_elim *m) {
     const hdi_symbolic *s = &m->sym;
-    hdi_fill f = hdi_fill_guess(heat->source->n_active, (double)heat->source->L.nnz);
+    hdi_fill f = {(double)s->nnz, s->flops_done, (double)(s->stored + s->work), 0, 0};
+    if (m->ctx) f.real_stored = (double)(s->panel[s->n_super] + s->work);
+    else f = hdi_fill_guess(heat->source->n_active, (double)heat->source->L.nnz);
     if (m == &heat->few) f.analysis *= 0.4;
-    if (!m->ctx) return f;
-    f.nnz = (double)s->nnz;
-    f.flops = s->flops_done;
-    f.stored = (double)(s->stored + s->work);
-    f.real_stored = (double)(s->panel[s->n_super] + s->work);
-    f.analysis = 0;
     return f;
 }
 
@@ -18158,23 +18147,13 @@ static void hdi_heat_task(void *arg, int64_t index, int32_t worker) {
     hdi_heat_call *h = (hdi_heat_call *)arg;
     const hd_heat *heat = h->heat;
     hdi_lane *lane = heat->lane + index;
-    hdi_lanczos_task task;
-    hdi_watch watch;
+    const hdi_lanczos_task task = {heat->lap, heat->weight, heat->noise, h->t, heat->opts.tol, heat->drift,
+                                   heat->opts.max_iterations, h->rate};
+    const double share = 1.0 / h->ask.k;
+    const hdi_watch watch = {worker == 0 ? heat->ctx : NULL, &h->stop, share * (double)(h->batch + index),
+                             share, "solve"};
     hdi_error_clear(&lane->error);
     if (lane->skip) return;
-    task.lap = heat->lap;
-    task.weight = heat->weight;
-    task.noise = heat->noise;
-    task.t = h->t;
-    task.tol = heat->opts.tol;
-    task.drift = heat->drift;
-    task.rate = h->rate;
-    task.max_iterations = heat->opts.max_iterations;
-    watch.ctx = worker == 0 ? heat->ctx : NULL;
-    watch.stop = &h->stop;
-    watch.stage = "solve";
-    watch.share = 1.0 / h->ask.k;
-    watch.from = watch.share * (double)(h->batch + index);
     lane->status = hdi_watch_look(&watch, 0, &lane->error);
     if (lane->status >= 0) {
         lane->status = h->solver == HD_SOLVER_LANCZOS
@@ -19810,12 +19789,10 @@ static double hdi_modes_need(const hd_heat *heat, int32_t count) {
 static int hdi_modes_find(hd_heat *heat, int32_t count, hd_error *e) {
     hdi_modes *x = &heat->modes;
     const hd_laplacian *lap = heat->source;
-    hdi_spec_goal goal;
+    const hdi_spec_goal goal = {count, HUGE_VAL};
     hdi_modes_free(x, heat->ctx);
     if (hdi_heat_analysed(heat, e) < 0 ||
         HDI_MODES_SURE * hdi_modes_need(heat, count) > hdi_bytes_left(heat->ctx)) return 0;
-    goal.below = HUGE_VAL;
-    goal.count = count;
     x->s.lap = lap;
     x->s.context = heat->ctx;
     if (hdi_spec_run(&heat->elim, &goal, HDI_MODES_RESIDUAL, &x->s, e) >= 0 && x->s.proven &&
@@ -19974,7 +19951,7 @@ static hd_status hdi_task_time(hdi_task *task, int32_t q) {
 static hd_status hdi_task_run(hdi_task *task) {
     hdi_heat_call *h = task->h;
     const int32_t n = hdi_high32(h->ask.n_times, 1);
-    hd_report *one, all;
+    hd_report *one;
     char *done;
     int32_t q;
     if (n == 1) return hdi_task_time(task, 0);
@@ -19999,14 +19976,9 @@ static hd_status hdi_task_run(hdi_task *task) {
         if (h->e->status < 0) h->e->column = q;
     }
     if (h->e->status < 0) return h->e->status;
-    memset(&all, 0, sizeof all);
-    hdi_error_clear(&all.error);
-    for (q = 0; q < n; q++) {
-        if (!one[q].reason) continue;            /* it is in the report of another */
-        if (all.reason) hdi_report_merge(&all, one + q);
-        else all = one[q];
-    }
-    *h->rep = all;
+    memset(h->rep, 0, sizeof *h->rep);
+    for (q = 0; q < n; q++)                      /* one without a reason is in the report of another */
+        if (one[q].reason) hdi_report_merge(h->rep, one + q);
     return HD_OK;
 }
 
@@ -20433,33 +20405,17 @@ static void hdi_fields_spread(hdi_request *ask, size_t n, double *U) {
     ask->ldf = ask->ldu;
 }
 
-static hdi_request hdi_ask_fields(int32_t n_times, const double *t, int32_t k, const double *F, size_t ldf,
-                                  double *U, size_t ldu) {
-    hdi_request ask;
-    memset(&ask, 0, sizeof ask);
-    ask.n_times = n_times;
-    ask.t = t;
-    ask.k = k;
-    ask.F = F;
-    ask.ldf = ldf;
-    ask.U = U;
-    ask.ldu = ldu;
-    return ask;
-}
-
 /* Checks a request of fields, and runs it. derivative: in time. */
-static hd_status hdi_fields_run(hd_heat *heat, hdi_query query, const hdi_request *ask, int derivative,
-                                hd_report *report, hd_error *err) {
+static hd_status hdi_fields_run(hd_heat *heat, const hdi_request *ask, int derivative, hd_report *report,
+                                hd_error *err) {
     hdi_heat_call h;
-    if (hdi_heat_begin(&h, heat, query, report, err) < 0) return hdi_heat_end(&h);
+    if (hdi_heat_begin(&h, heat, ask->query, report, err) < 0) return hdi_heat_end(&h);
+    h.ask = *ask;
     if (hdi_times_check(&h, ask->n_times, ask->t, 0) < 0) return hdi_heat_end(&h);
     if (ask->k < 0) hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: a number of fields or columns is negative");
     else if (ask->k > 0 && (!ask->F || !ask->U)) hdi_missing(h.e);
     else if (derivative && heat->opts.rational)
         hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: a pole set of your own has no derivative here");
-    h.ask.k = ask->k;
-    h.ask.F = ask->F;
-    h.ask.U = ask->U;
     h.ask.ldf = hdi_leading(&h, ask->ldf);
     h.ask.ldu = hdi_leading(&h, ask->ldu);
     if (h.e->status < 0 || hdi_fields_check(&h) < 0) return hdi_heat_end(&h);
@@ -24414,22 +24370,22 @@ HEATDIFF_API hd_status hd_spectrum_distance(const hd_spectrum *s, hd_distance_ki
 HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const double *t, int32_t k,
                                      const double *F, size_t ldf, double *U, size_t ldu, hd_report *report,
                                      hd_error *err) {
-    const hdi_request ask = hdi_ask_fields(n_times, t, k, F, ldf, U, ldu);
-    return hdi_fields_run(heat, HDI_QUERY_FIELD, &ask, 0, report, err);
+    const hdi_request ask = {HDI_QUERY_FIELD, k, n_times, t, F, NULL, NULL, NULL, U, ldf, ldu};
+    return hdi_fields_run(heat, &ask, 0, report, err);
 }
 
 HEATDIFF_API hd_status hd_heat_derivative(hd_heat *heat, int32_t n_times, const double *t, int32_t k,
                                           const double *F, size_t ldf, double *U, size_t ldu,
                                           hd_report *report, hd_error *err) {
-    const hdi_request ask = hdi_ask_fields(n_times, t, k, F, ldf, U, ldu);
-    return hdi_fields_run(heat, HDI_QUERY_FIELD, &ask, 1, report, err);
+    const hdi_request ask = {HDI_QUERY_FIELD, k, n_times, t, F, NULL, NULL, NULL, U, ldf, ldu};
+    return hdi_fields_run(heat, &ask, 1, report, err);
 }
 
 HEATDIFF_API hd_status hd_heat_adjoint(hd_heat *heat, int32_t n_times, const double *t, int32_t k,
                                        const double *G, size_t ldg, double *U, size_t ldu,
                                        hd_report *report, hd_error *err) {
-    const hdi_request ask = hdi_ask_fields(n_times, t, k, G, ldg, U, ldu);
-    return hdi_fields_run(heat, HDI_QUERY_ADJOINT, &ask, 0, report, err);
+    const hdi_request ask = {HDI_QUERY_ADJOINT, k, n_times, t, G, NULL, NULL, NULL, U, ldg, ldu};
+    return hdi_fields_run(heat, &ask, 0, report, err);
 }
 
 HEATDIFF_API hd_status hd_heat_columns(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t,
