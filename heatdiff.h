@@ -17790,13 +17790,11 @@ static hd_pole_kind hdi_heat_kind(const hdi_heat_call *h) {
 }
 
 static hd_status hdi_heat_end(hdi_heat_call *h) {
-    const hd_error kept = *h->e;
     if (h->s.e) hdi_scope_end(&h->s);
-    *h->e = kept;
-    if (kept.status < 0) h->rep->status = kept.status;
+    if (h->e->status < 0) h->rep->status = h->e->status;
     if (h->rep->evidence_b == HD_EVIDENCE_NONE) h->rep->error_bound_b = HUGE_VAL;
     if (!h->relative) h->rep->error_relative = HUGE_VAL;
-    if (h->err) *h->err = kept;
+    if (h->err) *h->err = *h->e;
     return h->rep->status;
 }
 
@@ -18776,7 +18774,7 @@ static hd_status hdi_krylov_store(hdi_heat_call *h, int32_t n, int32_t q, const 
         if (lane->off.solver > heat->opts.tol * lane->u_norm ||
             lane->off.rounding > heat->limit * lane->u_norm) lane->status = HD_WARN_ACCURACY;
     }
-    h->now = h->time_column ? h->time_column[q] : h->now;
+    if (h->time_column) h->now = h->time_column[q];
     return hdi_heat_store_some(h, n);
 }
 
@@ -19607,12 +19605,10 @@ static hd_status hdi_heat_engine(hdi_heat_call *h) {
         if (h->e->status < 0) return h->e->status;
     }
     h->rep->method = h->method;
-    h->solver = h->method == HD_METHOD_ITERATIVE ? hdi_heat_solver(h, h->t)
-                : h->method >= HD_METHOD_KRYLOV ? HD_SOLVER_LANCZOS : HD_SOLVER_AUTO;
-    h->rep->solver = h->solver;
-    h->rep->precond = HD_PRECOND_NONE;
-    if (h->method == HD_METHOD_ITERATIVE && h->solver != HD_SOLVER_LANCZOS)
-        h->rep->precond = heat->opts.precond;
+    h->rep->solver = h->solver = h->method == HD_METHOD_ITERATIVE ? hdi_heat_solver(h, h->t)
+                               : h->method >= HD_METHOD_KRYLOV ? HD_SOLVER_LANCZOS : HD_SOLVER_AUTO;
+    h->rep->precond = h->solver == HD_SOLVER_AUTO || h->solver == HD_SOLVER_LANCZOS ? HD_PRECOND_NONE
+                      : heat->opts.precond;
     return HD_OK;
 }
 
