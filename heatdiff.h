@@ -19117,12 +19117,12 @@ static hd_status hdi_local_plan(const hd_heat *heat, hdi_local *l, hd_error *e) 
 #define HDI_LOCAL_TURNS 1.36
 
 static double hdi_local_edges(const hd_laplacian *lap, double edges) {
-    return (lap->xyz ? 1 : HDI_LOCAL_TURNS) * (2 + edges * (8.6 + 0.55 * log(hdi_max(edges, 1))));
+    return (lap->xyz ? 1 : HDI_LOCAL_TURNS) * (4 + edges * (8.6 + 0.55 * log(hdi_max(edges, 1))));
 }
 
 /* The least number of edges between a source and the rim. B^-1 of a full B falls by a factor of three with
  * each edge where b_ratio is 1/2 (Demko, Moss, Smith 1984). */
-#define HDI_LOCAL_DIGITS 17.6
+#define HDI_LOCAL_DIGITS 23
 
 static double hdi_local_hops(const hd_laplacian *lap) {
     const double root = sqrt(hdi_max(lap->b_ratio, 1e-30) / 2);
@@ -21351,12 +21351,12 @@ enum { HDI_PATCH_LEAST = 256, HDI_PATCH_FROM = 20000 };
 #define HDI_PATCH_TOL 1e-11                  /* of what k_s makes of them */
 /* Of hdi_local_edges and hdi_local_hops: heat has to go there and back. */
 #define HDI_PATCH_REACH 0.55
-#define HDI_PATCH_HOPS 0.8
+#define HDI_PATCH_HOPS 0.6
 /* What a row takes besides the factor, in flops of it: on a patch with probes, on all of the mesh. */
 #define HDI_PATCH_ROW 7500
 #define HDI_WHOLE_ROW 2600
 /* For each number of a real factor: four complex ones, and what else there is. */
-#define HDI_PATCH_BYTES 80
+#define HDI_PATCH_BYTES 250
 
 typedef struct hdi_patches {
     const hdi_diagonals *to;
@@ -21487,7 +21487,8 @@ static hd_status hdi_patch_rates(const hdi_patches *x, int32_t count, double *r)
     hdi_scope s = hdi_scope_begin(own->ctx, e);
     double *U = HDI_TAKE(&s, double, HDI_PATCH_PROBES * (HDI_PATCH_TIMES + 1) * n + 4 * n);
     double *F = U ? U + HDI_PATCH_PROBES * HDI_PATCH_TIMES * n : NULL, t[HDI_PATCH_TIMES];
-    const hdi_request ask = {HDI_QUERY_FIELD, HDI_PATCH_PROBES, HDI_PATCH_TIMES, t, F, NULL, NULL, NULL, U, n, n};
+    const hdi_request ask = {HDI_QUERY_FIELD, HDI_PATCH_PROBES, HDI_PATCH_TIMES, t, F, NULL, NULL, NULL, U, n,
+                             n};
     hd_report rep;
     int32_t i, q, m;
     for (m = 0; m < HDI_PATCH_TIMES; m++) t[m] = ldexp(x->t, -m);
