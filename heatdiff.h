@@ -486,7 +486,7 @@ typedef enum hd_method {
     HD_METHOD_DIRECT,           /* all poles factorised in one sweep: for many fields or columns */
     HD_METHOD_KRYLOV,           /* shift-and-invert Lanczos: one real factor, few fields or many times */
     /* The same on a ball of radius 11 sqrt(t) or more around the source, or around where a field is not zero;
-     * answers beyond are 0. Diagonals: direct on patches of the mesh, each with a margin. For these, fields,
+     * answers beyond are 0. Diagonals: direct, on patches with margins. For these, fields,
      * columns, entries and pairs without pole sets; needs b_ratio > 0 */
     HD_METHOD_LOCAL
 } hd_method;
@@ -1097,8 +1097,9 @@ HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, hd_kernel kernel, double t,
  * Cost   for each t about three times the factors of all poles. By default many times share poles: three
  *        decades cost four or five times as much as one t. Filters: once, and 2 n flops for each set and
  *        pole. Memory for each pole: up to 48 n doubles, with a full B and traces 250 n.
- *        local: once or twice the time, and the memory of one patch. Auto takes patches where they cost less,
- *        or where factors of the whole mesh exceed the byte limit. They are as small as it asks for
+ *        local: the memory of one patch. The byte limit says how small patches have to be: to half of the
+ *        memory takes one to two times as long, to a sixth two to six times. Auto takes patches where they
+ *        cost less, or where factors of the whole mesh exceed the limit
  * Source see hd_ldl_inverse */
 HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t n_times,
                                         const double *t, double *D, size_t ldd, double *Z,

@@ -879,8 +879,9 @@ static const option_def OPTIONS[] = {
       "relative error that iterative methods aim at (1e-9)" },
     { "method", 0, CMD_DIAGONAL, 0, parse_words, AT(method), METHODS, 0, 0, "NAME",
       "auto, direct, krylov, iterative or local",
-      "direct: factors of the whole mesh; local: patch by patch, with\n"
-      "the memory of one; auto (default): what costs less, or fits" },
+      "direct: factors of the whole mesh; local: of patches, as small\n"
+      "as --memory-limit asks for; auto (default): what costs less, or\n"
+      "fits" },
     { "method", 0, CMD_INVERTS & ~CMD_DIAGONAL, 0, parse_words, AT(method), METHODS, 0, 0, "NAME",
       "auto, direct, krylov, iterative or local", "auto or direct, which are the same here" },
     { "method", 0, CMD_ANYHOW, 0, parse_words, AT(method), METHODS, 0, 0, "NAME",
