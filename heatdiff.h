@@ -81,7 +81,7 @@
      HEATDIFF_NO_DIRECT        all factorisations: hd_ldl_*, method krylov; implies NO_LOCAL,
                                NO_POLE_FACTORS, NO_GEODESIC, NO_SPECTRUM. b_ratio of the caller's matrices
                                comes from Gershgorin's circles alone
-     HEATDIFF_NO_LOCAL         method local
+     HEATDIFF_NO_LOCAL         method local. Diagonals beyond byte_limit are an error
      HEATDIFF_NO_POLE_FACTORS  complex factors: method direct, hd_ldl_*_complex; implies NO_DIAGONAL
      HEATDIFF_NO_DIAGONAL      selected inversion: hd_heat_diagonal, hd_ldl_inverse*; implies NO_DIFFUSION.
                                Error bounds of method direct are larger
@@ -485,8 +485,9 @@ typedef enum hd_method {
     HD_METHOD_ITERATIVE,        /* a Krylov method for each pole, or Lanczos for the exponential */
     HD_METHOD_DIRECT,           /* all poles factorised in one sweep: for many fields or columns */
     HD_METHOD_KRYLOV,           /* shift-and-invert Lanczos: one real factor, few fields or many times */
-    /* The same on a ball of radius 11 sqrt(t) or more around the source, or around where a field is not zero;
-     * answers beyond are 0. For fields, columns, entries and pairs without pole sets; needs b_ratio > 0 */
+    /* The same on a ball of radius 10 sqrt(t) or more around the source, or around where a field is not zero;
+     * answers beyond are 0. Diagonals: direct, on patches with margins. For fields, columns, entries, pairs
+     * and diagonals without pole sets; needs b_ratio > 0 */
     HD_METHOD_LOCAL
 } hd_method;
 
@@ -605,7 +606,7 @@ typedef struct hd_report {
     double error_relative;
     double smallest;            /* diagonals and distances: the smallest value that is not zero */
     int64_t n_lost;             /* distances with at most about one sure digit */
-    int32_t n_touched;          /* local: vertices of the largest ball */
+    int32_t n_touched;          /* local: vertices of the largest ball or patch */
     double mass_drift;          /* |1'B u - 1'B f| / 1'B|u|; 0 if L loses heat, for filters, or local */
 } hd_report;
 
@@ -1031,8 +1032,8 @@ HEATDIFF_API hd_status hd_heat_set_rational(hd_heat *heat, int32_t count, const 
  *        sources: HD_ERR_INDEX, HD_ERR_NOT_FINITE, HD_ERR_ARGUMENT (column: which source, row: which of its
  *                 points, vertex): bary is not as hd_sources asks, a curve has one point, no length or no
  *                 coordinates, or weights or lengths sum to less than 1e-100 or more than 1e100
- *        method:  HD_ERR_ARGUMENT. Diagonals, traces, distances to all vertices and samples need auto or
- *                 direct, as do pairs by commute, biharmonic or a filter
+ *        method:  HD_ERR_ARGUMENT. Distances to all vertices and samples need auto or direct, as do pairs by
+ *                 commute, biharmonic or a filter; diagonals and traces need these or local
  * Where all heat flows out, answers fall like exp(-t lambda_1), while the error of poles does not. From about
  * t = 15/lambda_1 on methods auto and direct take the few eigenpairs left. Where all values underflow, the
  * bound is above 1 or infinite.
@@ -1092,9 +1093,13 @@ HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, hd_kernel kernel, double t,
  * bound  [n_times] or NULL: bounds on the absolute error of each Z
  * report the rational part is proven at every vertex; rounding is measured where it is largest. If B is not
  *        diagonal, k_t leaves out the term a0 diag(B^-1) of a set; the bound includes it
+ * Errors HD_ERR_MEMORY_LIMIT: method auto or local, and not even the smallest patches fit
  * Cost   for each t about three times the factors of all poles. By default many times share poles: three
  *        decades cost four or five times as much as one t. Filters: once, and 2 n flops for each set and
- *        pole. Memory for each pole: up to 48 n doubles, with a full B and traces 250 n
+ *        pole. Memory for each pole: up to 48 n doubles, with a full B and traces 250 n.
+ *        local: the memory of one patch. The byte limit says how small patches have to be: to half of the
+ *        memory takes one to two times as long, to a sixth two to six times. Auto takes patches where they
+ *        cost less, or where factors of the whole mesh exceed the limit
  * Source see hd_ldl_inverse */
 HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t n_times,
                                         const double *t, double *D, size_t ldd, double *Z,
@@ -1189,7 +1194,8 @@ HEATDIFF_API hd_status hd_spectrum_distance(const hd_spectrum *s, hd_distance_ki
  * k        see hd_query
  * estimate too little memory is no error: fits is 0. Bytes leave out the output arrays. For the direct method
  *          they are an upper bound, by a few percent (where eigenpairs come first that of poles); for others
- *          they are estimates
+ *          they are estimates. Of diagonals the direct method alone is known, not what patches take
+ * Errors   HD_ERR_ARGUMENT: diagonals with method local
  * Cost     one ordering and analysis if the query needs them, which the plan keeps; else one pass over L */
 HEATDIFF_API hd_status hd_heat_estimate(hd_heat *heat, hd_query query, int32_t n_times,
                                         const double *t, int32_t k, hd_estimate *estimate,
@@ -19480,7 +19486,7 @@ static hd_status hdi_heat_pick(hdi_heat_call *h) {
     h->rep->reason = "asked for";
     if (h->method == HD_METHOD_LOCAL && !hdi_local_can(h))
         return hdi_fail(h->e, HD_ERR_ARGUMENT,
-                        "heat: method local serves columns, entries and fields, where b_ratio is known");
+                        "heat: local serves fields, columns, entries and diagonals, where b_ratio is known");
     if (h->method != HD_METHOD_AUTO) return HD_OK;
     h->method = HD_METHOD_DIRECT;
     h->rep->reason = "iterations, which would take less, fail";
@@ -20202,7 +20208,7 @@ static int hdi_direct_barred(const hd_heat *heat) {
     return heat->opts.method == HD_METHOD_ITERATIVE || heat->opts.method >= HD_METHOD_KRYLOV;
 }
 
-#define HDI_DIRECT_REASON "diagonals and distances to all vertices need the direct method"
+#define HDI_DIRECT_REASON "distances to all vertices need the direct method, diagonals that or local"
 
 /* Checks that the direct method is allowed, for queries that have no other. */
 static hd_status hdi_direct_only(hdi_heat_call *h) {

@@ -577,10 +577,10 @@ class Case(unittest.TestCase):
             self.assertEqual(set(r["evidence"]), {"rational", "solver", "rounding", "local"})
             self.assertLessEqual(set(r["evidence"].values()), {"none", "proven", "measured", "estimated"})
             self.assertTrue(not r["times"] or [p["t"] for p in r["per_time"]] == r["times"])
-        if r["method"] in ("krylov", "local"):
+        if r["method"] == "krylov" or r["method"] == "local" and r["command"] != "hks":
             self.assertEqual((r["solver"], r["precond"], r["poles"], r["degree"]), ("lanczos", "none", "none", 0))
         if r["command"] in ("distance", "hks", "sample"):
-            self.assertTrue(r["method"] == "direct" and (r["poles"] == "none" or seconds["invert"] > 0)
+            self.assertTrue(r["method"] in ("direct", "local")[:1 + (r["command"] == "hks")] and (r["poles"] == "none" or seconds["invert"] > 0)
                             and 0 < (r["error_bound"] or math.inf) <= (r["error_relative"] or math.inf), r)
 
     def text(self, line, *more):
@@ -659,6 +659,7 @@ times > 0 :: trace ico.obj --t 0
 read off the factors :: pairs ico.obj --input p.txt --filter heat:1 {--solver cocg|--precond ildl|--method iterative}
 no {--t|--degree} :: hks ico.obj --filter heat:1 {1} 4
 no {--method krylov|--method local|--solver lanczos} :: kernel ico.obj --source 1 --filter heat:1 {1}
+no --method local :: hks ico.obj --filter heat:1 --method local
 no --definition :: distance ico.obj --source 1 --filter heat:1 --definition commute
 --filter :: geodesic ico.obj --source 0 --filter heat:1
 --ordering takes no --precond :: kernel ico.obj --source 0 --t 1 --ordering amd --precond ildl
@@ -743,7 +744,10 @@ natural or dirichlet :: info ico.obj --border neumann
 --ordering takes :: {kernel ico.obj --source 0|diffuse ico.obj --input f.txt} --t 1 --method iterative --ordering amd
 --ordering takes :: {kernel ico.obj --source 0|diffuse ico.obj --input f.txt} --t 1 --solver minres --ordering dissection
 --t :: {hks ico.obj|distance ico.obj --source 0|pairs ico.obj --input p.txt|sample ico.obj --count 2}
---method takes auto or direct :: {hks ico.obj|distance ico.obj --source 0|sample ico.obj --count 2} --t 1 --method {krylov|iterative|local}
+--method takes auto or direct :: {distance ico.obj --source 0|sample ico.obj --count 2} --t 1 --method {krylov|iterative|local}
+--method takes auto, direct or local :: {hks|trace} ico.obj --t 1 --method {krylov|iterative}
+--dry-run takes --method auto or direct :: {hks|trace} ico.obj --t 1 --method local --dry-run
+{--degree|--poles} takes :: {hks|trace} ico.obj --t 1 --method local {1} {7|kernel}
 --solver :: {hks ico.obj|distance ico.obj --source 0|sample ico.obj --count 2} --t 1 --solver cocg
 --degree takes :: {hks ico.obj|distance ico.obj --source 0|pairs ico.obj --input p.txt|sample ico.obj --count 2} --t 1 --degree 1 \
     {--poles kernel|}
@@ -766,6 +770,7 @@ kernel ico.obj --source 0 --t 1 {--ordering amd|--method auto --solver minres|--
 kernel {patch-9.off|ico.obj} --source 0 --t {auto:1,2h2|auto:17}
 diffuse ico.obj --t 1 --input ones-12.txt --degree 1 --method direct
 pairs ico.obj --input p.txt --t 1 --method {krylov|local}
+{hks|hks --kernel operator|hks --normalise|trace} ico.obj --t 1,2 --method local {|--ordering amd}
 {sample ico.obj --count 2|geodesic ico.obj --source 0|smooth ico.obj} --t {1|auto:1}
 smooth ico.obj {|--degree 1|-o -|--t 0.1/l1 --method krylov|--method local|--t 0|--tufted --laplacian voronoi-cot|--dry-run}
 {hks ico.obj|distance ico.obj --source 0|pairs ico.obj --input p.txt|sample ico.obj --count 2} --t 1 --poles uniform --degree 1
@@ -1431,6 +1436,8 @@ kernel torus-80-50.obj --source 7,3000 --t {0,2h2,1h2|2h2} --method local --tol 
     kernel torus-80-50.obj --source 7,3000 --t {1} --method krylov --tol 1e-12 {2} :: 1e-9
 kernel parts.obj --source 0,390,490 --t 2h2,900h2 --laplacian {fem|voronoi-cot} --method {direct|krylov|auto|iterative} :: \
     kernel parts.obj --source 0,390,490 --t 2h2,900h2 --laplacian {1} --method iterative --degree 14 --tol 1e-12 :: 1e-7
+{hks --kernel operator|hks --normalise|trace} torus-80-50.obj --t 1h2,2h2 --threads 1 --memory-limit {40M|40M --method local} :: \
+    {1} torus-80-50.obj --t 1h2,2h2 --method direct :: 1e-6
 hks torus-40-24.obj --t 10h2 --laplacian {fem|voronoi-cot} --method direct {--poles kernel --degree 12\
 |--poles uniform --degree 14} :: hks torus-40-24.obj --t 10h2 --laplacian {1} :: 1e-7
 distance torus-40-24.obj --source 5 --t 10h2 --laplacian {fem|voronoi-cot} --method direct {--poles kernel --degree 12\
@@ -1863,6 +1870,8 @@ kernel torus-80-50.obj --source 1,2 --method krylov --t {30h2 :: times#1|3h2,30h
 kernel torus-80-50.obj --source 1,2 --method local --t {1h2 :: times#1|2h2,0,1h2 :: times#3} touched>500 touched<2000 \
     error_rational=0 error_local>0 error_bound<2e-7
 kernel torus-150-100.obj --source 7 --t 1h2 :: method=local touched<1875 error_local>0 error_bound<2e-7
+{hks|hks --kernel operator|trace} torus-80-50.obj --t 1h2 --threads 1 --memory-limit 30M {|--method local} :: method=local \
+    touched>500 touched<3999 error_local>0 error_relative<1e-6
 kernel torus-80-50.obj --source 1,2 --method iterative --t {30h2 :: times#1|3h2,30h2 :: times#2} mass_drift<1e-9
 {hks|distance --source 1,2|sample --count 3} patch-9.off --t 3h2 :: times#1 n=100 lost=0 error_relative<1e-3 smallest>0
 hks patch-9.off --t 3h2,9h2 :: command=hks times#2 lost=0 error_relative<1e-3 smallest>0
@@ -1919,6 +1928,7 @@ kernel square-12.obj --filter resolvent:10h2 --source 3 -o x.npy :: filter resol
 sample square-12.obj --filter heat:10h2 --count 3 -o x.npy :: filter heat:10h2
 diffuse square-12.obj --filter band:20,80 --input ones-169.txt -o x.npy :: filter band:20,80
 hks square-12.obj --filter heat:10h2 --dry-run :: method direct
+{hks|trace} torus-80-50.obj --t 1h2 --memory-limit 20M --dry-run :: too much\n--method local needs less
 info squashed.obj --lengths sides-98.txt :: lengths of edges +sides-98.txt :: !box
 kernel patch-7.obj --lengths sides-98.txt --source 0 --t 1 --size 64x64 -o x.png :: fem Laplacian, from lengths of edges
 hks squashed.obj --lengths sides-98.txt --t 1 --dry-run :: method
@@ -1939,7 +1949,7 @@ kernel ico.obj --source 0 --t 1 :: \A(.+\n){1,8}\Z :: !\r
 kernel ico.obj --source 0 --t 0 -o x.npy :: t = 0
 kernel torus-80-50.obj --source 0 --t 9h2 -o x.npy --method {direct|krylov} :: (?m)^method {1} \(asked for\)$ :: \
     (?m)^factors: .*non-zeros.*flops :: \A(.+\n){1,8}\Z
-kernel torus-80-50.obj --source 0 --t 1h2 -o x.npy --method local :: (?m)^parts of at most \d+ of 4000 vertices$ :: factors: :: !conserved
+{kernel --source 0|hks --memory-limit 30M --threads 1} torus-80-50.obj --t 1h2 -o x.npy --method local :: (?m)^parts of at most \d+ of 4000 vertices$ :: factors: :: !conserved
 {kernel --source 0|diffuse --input ones-4000.txt|smooth} torus-80-50.obj --t 1h2 --method local --dry-run :: method local \(asked for\) \
     :: (?m)^local +\d+ :: !too much
 kernel torus-80-50.obj --source 0 --t 9h2 -o x.npy {--method iterative :: !factors:|:: (?m)^method \w+ \(.+\)$}
@@ -2117,7 +2127,7 @@ class Limits(Case):
         run = " graded-40.obj --t 0.02"
         self.assertEqual([r["reason"] for r in (self.dry("sample --count 10" + run), self.dry("distance --source 0" + run))],
                          ["at such a t few eigenpairs are left: answers are sums over them",
-                          "diagonals and distances to all vertices need the direct method"])
+                          "distances to all vertices need the direct method, diagonals that or local"])
         r = self.report("sample --count 10" + run)
         self.assertEqual((r["poles"], r["seconds"]["invert"]), ("none", 0))
         self.assertLess(r["error_bound"], 1e-6)
@@ -2136,6 +2146,9 @@ class Limits(Case):
             self.assertRegex(text, r"--method %s needs [0-9.]+ MB[,\n]" % way)
             self.good(run, "--method", way, "--memory-limit", limit)
         os.remove(path("never.npy"))
+        run = "hks torus-80-50.obj --t 1h2 -o never.npy --memory-limit 10M"
+        for method, end in (("direct", "--method local needs less\n"), ("auto", "patches, which need less, do not fit\n"), ("local", "needed, ")):
+            self.bad(1, end, run, "--method", method)
         run, ways = "distance torus-80-50.xyz --source 0 --t 3h2", ["--tufted", "--weight-cut 1e-4"]
         d = self.dry(run)
         self.assertEqual(list(d["ways_out"]), ["--tufted"])          # told in any case: it is a small part

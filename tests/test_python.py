@@ -897,7 +897,7 @@ WRONG = {
         ("heat.scale_invariant(1, 2, 9, -1)", "n_freq is -1"), ("heat.scale_invariant([1, 1], 2)", "t0 has shape (2,), wanted is ()"),
         ("heat.scale_invariant(1, np.nan)", "t1 is negative or not finite"), ("heat.scale_invariant(2, 1)", "0 < t0 < t1"), ("heat.wks(0)", "energies is 0"), ("heat.wks([])", "energies are empty"),
         ("heat.wks([np.inf])", "energies are empty or not finite"), ("heat.wks(3, sigma=-1)", "b is not positive"),
-        ("hd.Heat(lap, method='local').hks(1)", "need the direct method"),
+        ("hd.Heat(lap, method='local').distance(0, 1)", "need the direct method"),
         ("hd.Heat(lap, cut=1)", "cut is not in"), ("heat.columns_sparse(25, t)", "not in the mesh"),
         ("hd.Heat(lap, method='krylov').wks(3)", "krylov"), ("hd.Heat(lap, method='iterative').diagonal(1)", "need the direct method"),
         ("heat.distance(0, [], 'commute')", "at least one time"), ("heat.distance(0, [1, 2], 'commute')", "time"),

@@ -371,9 +371,9 @@ enum { CMD_INFO = 1, CMD_KERNEL = 2, CMD_DIFFUSE = 4, CMD_RENDER = 8, CMD_DEMO =
        /* results have a row per vertex */
        CMD_SOLVES = CMD_HEAT | CMD_GEODESIC | CMD_SPECTRUM,
        CMD_FIELDS = CMD_SOLVES & ~(CMD_TABLES | CMD_SMOOTH),
-       /* by selected inversion, which only the direct method has */
        CMD_METRIC = CMD_DISTANCE | CMD_PAIRS | CMD_SAMPLE,
-       CMD_INVERTS = CMD_HKS | CMD_DISTANCE | CMD_SAMPLE | CMD_TRACE,
+       /* by selected inversion, which the direct method has, and diagonals also patch by patch */
+       CMD_DIAGONAL = CMD_HKS | CMD_TRACE, CMD_INVERTS = CMD_DIAGONAL | CMD_DISTANCE | CMD_SAMPLE,
        CMD_ANYHOW = CMD_HEAT & ~CMD_INVERTS, CMD_PICTURE = CMD_FIELDS | CMD_RENDER,
        CMD_LAPLACIAN = CMD_INFO | CMD_HEAT | CMD_SPECTRUM, CMD_SURFACE = CMD_LAPLACIAN | CMD_GEODESIC,
        CMD_FROM = CMD_DISTANCE | CMD_GEODESIC, CMD_ANYWHERE = CMD_KERNEL | CMD_FROM | CMD_SAMPLE };
@@ -870,14 +870,19 @@ static const option_def OPTIONS[] = {
       "the last time, 16 an octave are taken between them" },
     { "degree", 0, CMD_HEAT, 0, parse_integer, AT(degree), NULL, 1, 14, "R", "1..14",
       "degree of the rational approximation, 1..14 (default: by the\n"
-      "error); not for krylov and local, which have none" },
+      "error); not for krylov and local" },
     { "poles", 0, CMD_HEAT, 0, parse_words, AT(poles), POLES, 0, 0, "NAME", "uniform or kernel",
       "uniform (default of diffuse, smooth) or kernel (of all others)" },
     { "tol", 0, CMD_SPECTRUM, 0, parse_tol, 0, NULL, 0, 0, "E", "a number between 0 and 1, such as 1e-10",
       "residuals relative to eigenvalues (1e-10)" },
     { "tol", 0, CMD_HEAT, 0, parse_tol, 0, NULL, 0, 0, "E", "a number between 0 and 1, such as 1e-9",
       "relative error that iterative methods aim at (1e-9)" },
-    { "method", 0, CMD_INVERTS, 0, parse_words, AT(method), METHODS, 0, 0, "NAME",
+    { "method", 0, CMD_DIAGONAL, 0, parse_words, AT(method), METHODS, 0, 0, "NAME",
+      "auto, direct, krylov, iterative or local",
+      "direct: factors of the whole mesh; local: of patches, as small\n"
+      "as --memory-limit asks for; auto (default): what costs less, or\n"
+      "fits" },
+    { "method", 0, CMD_INVERTS & ~CMD_DIAGONAL, 0, parse_words, AT(method), METHODS, 0, 0, "NAME",
       "auto, direct, krylov, iterative or local", "auto or direct, which are the same here" },
     { "method", 0, CMD_ANYHOW, 0, parse_words, AT(method), METHODS, 0, 0, "NAME",
       "auto, direct, krylov, iterative or local",
@@ -1212,12 +1217,16 @@ static int check_output(const options *o)
 static int check_method(const options *o)
 {
     const char *name = word_of(METHODS, o->method), *iterating = o->solver ? "--solver" : "--precond";
+    const int patches = (o->command & CMD_DIAGONAL) && o->method == HD_METHOD_LOCAL;
     const int no_poles = o->method == HD_METHOD_KRYLOV || o->method == HD_METHOD_LOCAL;
-    if ((o->command & CMD_INVERTS) && o->method != HD_METHOD_AUTO && o->method != HD_METHOD_DIRECT)
-        return fail(USAGE, "--method takes auto or direct here, not %s: %s is read off the factors", name,
+    if ((o->command & CMD_INVERTS) && o->method != HD_METHOD_AUTO && o->method != HD_METHOD_DIRECT && !patches)
+        return fail(USAGE, "--method takes auto%s direct%s here, not %s: %s is read off the factors",
+                    o->command & CMD_DIAGONAL ? "," : " or", o->command & CMD_DIAGONAL ? " or local" : "", name,
                     command_name(o->command));
+    if (patches && o->dry_run)
+        return fail(USAGE, "--dry-run takes --method auto or direct here: what patches take is not known before");
     if (no_poles && (o->degree || o->poles))
-        return fail(USAGE, "%s takes --method auto, direct or iterative: %s has no poles",
+        return fail(USAGE, "%s takes no --method %s, which has no use for it",
                     o->degree ? "--degree" : "--poles", name);
     if (o->filter && no_poles)
         return fail(USAGE, "--filter takes no --method %s: its poles are made for it, and it needs them", name);
@@ -2694,6 +2703,9 @@ static void find_ways(run *r)
     if (has_exponentials(r) && r->o->weight_cut < WIDER_CUT) try_options(r, &o, "--weight-cut 1e-4");
 }
 
+/* Can diagonals go on patch by patch where factors of the whole mesh do not fit? */
+static int by_patches(const options *o) { return (o->command & CMD_DIAGONAL) && !o->filter; }
+
 /* A run that does not fit the memory: what it needs, what is allowed, and what would fit. */
 static int fail_limit(run *r, const hd_error *e)
 {
@@ -2711,6 +2723,9 @@ static int fail_limit(run *r, const hd_error *e)
     for (i = 0; i < r->n_ways; i++)
         snprintf(ways + strlen(ways), sizeof ways - strlen(ways), "%s%s needs %.1f MB%s", i ? ", " : "; ",
                  r->ways[i].option, 1e-6 * r->ways[i].bytes, r->ways[i].bytes > allowed ? " (too much)" : "");
+    if (by_patches(r->o))
+        snprintf(ways + strlen(ways), sizeof ways - strlen(ways), "; %s",
+                 r->o->method == HD_METHOD_DIRECT ? "--method local needs less" : "patches, which need less, do not fit");
     return fail(FAILED, "%s: %.1f MB are needed, and %.1f MB are allowed (--memory-limit, by default nine "
                 "tenths of the machine's memory)%s", r->mesh_name, 1e-6 * needed, 1e-6 * allowed, ways);
 }
@@ -3691,6 +3706,7 @@ static void print_estimate(const run *r)
             1e-6 * e->bytes_in_use);
     if (r->context.byte_limit) printf("; allowed %.1f MB", 1e-6 * (double)r->context.byte_limit);
     printf(c->fits ? "\n" : ": too much\n");
+    if (!c->fits && by_patches(r->o)) printf("--method local needs less; auto goes on by it\n");
     if (c->bytes_most > c->bytes)
         printf("with poles of degree 14, if they are needed, %.1f MB\n",
                 1e-6 * (e->bytes_in_use + c->bytes_most));
