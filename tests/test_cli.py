@@ -1870,8 +1870,8 @@ kernel torus-80-50.obj --source 1,2 --method krylov --t {30h2 :: times#1|3h2,30h
 kernel torus-80-50.obj --source 1,2 --method local --t {1h2 :: times#1|2h2,0,1h2 :: times#3} touched>500 touched<2000 \
     error_rational=0 error_local>0 error_bound<2e-7
 kernel torus-150-100.obj --source 7 --t 1h2 :: method=local touched<1875 error_local>0 error_bound<2e-7
-{hks|hks --kernel operator|trace} torus-80-50.obj --t 1h2 --threads 1 --memory-limit 30M {|--method local} :: method=local \
-    touched>500 touched<3999 error_local>0 error_relative<1e-6
+{hks|hks --kernel operator|trace} torus-150-100.obj --t 1h2 --threads 1 --memory-limit 80M {|--method local} :: method=local \
+    touched>500 touched<14000 error_local>0 error_relative<1e-6
 kernel torus-80-50.obj --source 1,2 --method iterative --t {30h2 :: times#1|3h2,30h2 :: times#2} mass_drift<1e-9
 {hks|distance --source 1,2|sample --count 3} patch-9.off --t 3h2 :: times#1 n=100 lost=0 error_relative<1e-3 smallest>0
 hks patch-9.off --t 3h2,9h2 :: command=hks times#2 lost=0 error_relative<1e-3 smallest>0

@@ -183,7 +183,7 @@ static void loc_auto(void) {
 
 /* An estimate of what was asked for is there on any mesh; of fields, which it does not know, it is of all of the mesh. */
 static void loc_estimate(void) {
-    const hd_laplacian *lap = kit_pair("ico/3 fem");
+    const hd_laplacian *lap = kit_pair("ico/4 fem");
     hd_heat *heat = kit_heat(lap, "method=local");
     const double t = lap->h * lap->h / 10;
     hd_estimate e[2];
@@ -404,7 +404,7 @@ static void loc_uneven(void) {
     for (q = 0; q < 2; q++) {
         const hd_laplacian *lap = kit_pair(q ? "two/3/2/3 vor" : "two/3/0/3 vor");
         const int32_t v = 5;
-        const double t = 0.002;
+        const double t = 0.001;
         double *u = KIT_NEW(double, lap->n);
         hd_report rep;
         CHECK(hd_heat_column(kit_heat(lap, "method=local tol=1e-4"), HD_KERNEL_OPERATOR, t, v, u, &rep, NULL) >= 0);
