@@ -11247,7 +11247,7 @@ static void hdi_upper_apply(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, 
     }
 }
 
-static const hdi_precond_row hdi_preconds[] = {                /* by hd_precond */
+static const hdi_precond_row hdi_preconds[] = {   /* by hd_precond: rows, entries, vectors, steps, ... */
     {1, 1, 0, 1, hdi_ildl, HDI_MILDL_KEPT, hdi_upper_apply},   /* auto */
     {0, 0, 0, 5.5, NULL, 0, hdi_none_apply},
     {1, 0, 0, 5, NULL, 0, hdi_jacobi_apply},
@@ -12864,9 +12864,9 @@ HEATDIFF_API hd_status hd_rational_fit(hd_rational *out, int32_t count, const hd
  * How an error_bound comes about, from the end: hdi_ledger_close divides the parts by the largest value;
  * hdi_heat_judge makes those of values from those of a lane, by hdi_lane_bound; hdi_heat_ledger and
  * hdi_heat_note say how each is known; and a lane has them in the norm of B from its engine. With poles
- * these are hdi_lane_residual and hdi_rational_bound; of krylov hdi_ritz_bound (solver) and
- * hdi_krylov_rounding, see hdi_krylov_answer; of Lanczos the like in hdi_lanczos_run. hdi_conserve_off adds
- * what the means are off by. */
+ * these are hdi_lane_residual and hdi_rational_bound; of krylov, in hdi_krylov_answer, hdi_ritz_bound
+ * (solver), hdi_rim_bound (local) and hdi_krylov_rounding, from the residuals that hdi_krylov_probe measures;
+ * of Lanczos the like in hdi_lanczos_run. hdi_conserve_off adds what means are off by. */
 
 /* Parts of an error bound, in one of the norms or of values. */
 typedef struct hdi_parts { double rational, solver, rounding, local; } hdi_parts;
@@ -19297,10 +19297,10 @@ static void hdi_local_store(hdi_heat_call *h, const hdi_local *l, int32_t q, dou
 #define HDI_LOCAL_SHARE 100
 enum { HDI_LOCAL_TRIES = 6 };
 
-/* A larger reach where what is left out is so much too large: as a Gaussian asks for, and once that has not
- * helped, for distances are not what they seem, half as far again. */
+/* A larger reach where what is left out is so much too large: as a Gaussian asks for, and where that has not
+ * helped twice, for distances are not what they seem, half as far again. */
 static double hdi_local_more(double reach, int32_t tries, double excess) {
-    return (tries > 0 ? 1.5 : 1) * sqrt(reach * reach + 0.06 * log(hdi_min(excess, 1e16))) + 0.02;
+    return (tries > 1 ? 1.5 : 1) * sqrt(reach * reach + 0.08 * log(hdi_min(excess, 1e16))) + 0.03;
 }
 
 /* Finds a ball for item q that is large enough, and the answers on it, in U: ld apart, room as in
@@ -21352,7 +21352,7 @@ static hd_status hdi_sets_check(const hd_rational *sets, int32_t count, hd_error
 enum { HDI_PATCH_PROBES = 8, HDI_PATCH_TIMES = 3, HDI_PATCH_STEPS = 32 };
 enum { HDI_PATCH_LEAST = 256, HDI_PATCH_FROM = 20000 };
 
-/* The sum of squares of eight normal deviates is below a tenth of its mean once in 2,000 times. */
+/* The sum of squares of eight normal deviates is below a tenth of its mean once in 1,300 times. */
 #define HDI_PATCH_SAFETY 10
 #define HDI_PATCH_TOL 1e-11                  /* of what k_s makes of them */
 /* Of hdi_local_edges and hdi_local_hops: heat has to go there and back. */
@@ -21510,7 +21510,7 @@ static hd_status hdi_patch_rates(const hdi_patches *x, int32_t count, double *r)
             for (q = 0; q < HDI_PATCH_PROBES; q++) {
                 const double *u = m < HDI_PATCH_TIMES ? U + (size_t)(q * HDI_PATCH_TIMES + m) * n
                                                       : F + (size_t)q * n;
-                sum += u[i] * (u[i] / HDI_PATCH_PROBES);
+                sum += u[i] * (u[i] / (double)HDI_PATCH_PROBES);
             }
             r[m] = hdi_max(r[m], sqrt(sum));
         }
@@ -21518,15 +21518,27 @@ static hd_status hdi_patch_rates(const hdi_patches *x, int32_t count, double *r)
     return hdi_scope_end(&s);
 }
 
-/* r(s) at time s of t, from those at the times: log r is convex in 1/s, as it is linear for what comes from
- * one distance. */
+/* Is r(s) known from what it is at the times? Far from the rim it rises, or hardly changes. If it falls, heat
+ * has left before, and nothing is known. */
+static int hdi_patch_rising(double *r) {
+    double least = r[HDI_PATCH_TIMES], most = least;
+    int32_t m, rising = 1;
+    for (m = 0; m < HDI_PATCH_TIMES; m++) {
+        rising &= m == 0 || r[m - 1] > r[m];
+        least = hdi_min(least, r[m]);
+        most = hdi_max(most, r[m]);
+    }
+    for (m = 0; m <= HDI_PATCH_TIMES && !rising; m++) r[m] = most;
+    return rising || most <= 4 * least;
+}
+
+/* r(s) at time s of t: log r is convex in 1/s, as it is linear for what comes from one distance. */
 static double hdi_patch_rate(const double *r, double s) {
     int32_t m = 0;
     double part;
     while (m < HDI_PATCH_TIMES - 1 && s <= ldexp(1, -m - 1)) m++;
-    if (m == HDI_PATCH_TIMES - 1) return hdi_max(r[m], r[m + 1]);
-    part = ldexp(1, -m) / s - 1;                 /* 0 at time m, 1 at the one before it */
-    return pow(r[m], 1 - part) * pow(r[m + 1], part);
+    part = m < HDI_PATCH_TIMES - 1 ? ldexp(1, -m) / s - 1 : 0;   /* 0 at time m, 1 at the one before it */
+    return hdi_max(r[HDI_PATCH_TIMES], pow(r[m], 1 - part) * pow(r[m + 1], part));
 }
 
 /* What the patch, of which the first `core` vertices count, leaves out of entries of k_t at most. Those of
@@ -21534,18 +21546,18 @@ static double hdi_patch_rate(const double *r, double s) {
 static double hdi_patch_off(const hdi_patches *x, int32_t core) {
     const hd_laplacian *lap = x->local->ball;
     double r[HDI_PATCH_TIMES + 1], inner[HDI_PATCH_STEPS + 1], sum = 0;
-    const double step = x->t / HDI_PATCH_STEPS;
+    const double step = x->t / (double)HDI_PATCH_STEPS;
     int32_t count = core, i;
     int64_t p;
     if (x->local->rim.n == 0) return 0;
     for (i = 0; i < core && lap->B; i++)
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
             count = hdi_high32(count, lap->L.col[p] + 1);
-    if (hdi_patch_rates(x, count, r) < 0) return HUGE_VAL;
+    if (hdi_patch_rates(x, count, r) < 0 || !hdi_patch_rising(r)) return HUGE_VAL;
     for (i = 0, inner[0] = 0; i < HDI_PATCH_STEPS; i++)
-        inner[i + 1] = inner[i] + step * hdi_patch_rate(r, (i + 1.0) / HDI_PATCH_STEPS);
+        inner[i + 1] = inner[i] + step * hdi_patch_rate(r, (i + 1.0) / (double)HDI_PATCH_STEPS);
     for (i = 0; i < HDI_PATCH_STEPS; i++)
-        sum += step * hdi_patch_rate(r, (i + 1.0) / HDI_PATCH_STEPS) * inner[HDI_PATCH_STEPS - i];
+        sum += step * hdi_patch_rate(r, (i + 1.0) / (double)HDI_PATCH_STEPS) * inner[HDI_PATCH_STEPS - i];
     return HDI_PATCH_SAFETY * sum / lap->b_ratio;
 }
 

@@ -1152,6 +1152,59 @@ static void int_exp_rest(void) {
     }
 }
 
+/* Patches whose margins are too narrow leave out what can be seen, and no more than they say. */
+static void int_patches(void) {
+    static const double reaches[4] = {0.15, 0.3, 0.4, 0.5};
+    static const char *const specs[3] = {"flat/40/40/0.3 fem", "bumpy/4/1 vor", "flat/40/40/0.3 fem+id"};
+    int32_t k, r, p, q, v;
+    for (k = 0; k < 3; k++) {
+        const hd_laplacian *lap = kit_pair(specs[k]);
+        const double t[2] = {5 * trial_unit(lap), 2 * trial_unit(lap)};
+        double *W = KIT_NEW(double, 2 * lap->n), *D = KIT_NEW(double, 2 * lap->n), Z[2], tightest = HUGE_VAL;
+        hd_report rep, all;
+        CHECK(hd_heat_diagonal(kit_heat(lap, "method=direct poles=kernel degree=14"), HD_KERNEL_SYMMETRIC, 2, t, W, 0, Z, NULL, &all, NULL) >= 0);
+        for (r = 0; r < 4; r++) {
+            hd_heat *heat = kit_heat(lap, "method=local tol=1e-10");
+            double sum[2] = {0, 0}, traces[2], sure[2];
+            hdi_diagonals to;
+            hdi_heat_call h;
+            hdi_patches x;
+            CHECK(hdi_kernel_begin(&h, heat, HD_KERNEL_SYMMETRIC, NULL, NULL) >= 0 && hdi_times_check(&h, 2, t, 1) >= 0);
+            memset(&to, 0, sizeof to);
+            to.task.h = &h;
+            to.kernel = HD_KERNEL_SYMMETRIC;
+            to.D = D;
+            to.ldd = (size_t)lap->n;
+            to.Z = traces;
+            to.bound = sure;
+            CHECK(hdi_patches_open(&x, &to) >= 0);
+            for (q = 0; q < 2; q++) hdi_patch_halve(&x);
+            x.reach = reaches[r];
+            for (p = 0; p < x.count; p++) {
+                int32_t core = hdi_patch_begin(&x, x.count, p + 1) - hdi_patch_begin(&x, x.count, p), i;
+                CHECK(hdi_patch_find(&x, x.count, p, INT32_MAX) >= 0 && hdi_patch_once(&x, p, HUGE_VAL, &rep) >= 0);
+                CHECK(x.local->n < lap->n && rep.error_local > 0);
+                for (q = 0; q < 2; q++) {
+                    for (i = 0; i < core; i++) {
+                        const double off = fabs(D[q * lap->n + lap->vertex[x.local->row[i]]] - W[q * lap->n + lap->vertex[x.local->row[i]]]);
+                        const double size = fabs(W[q * lap->n + lap->vertex[x.local->row[i]]]), less = off - 1e-6 * size;
+                        CHECK_MSG(off <= (1 + 1e-9) * (rep.error_relative + all.error_relative) * size, "%s, patch %d at %g: %g of %g", specs[k], p,
+                                  reaches[r], off / size, rep.error_relative);
+                        if (less > 0) tightest = hdi_min(tightest, rep.error_local * size / less);
+                    }
+                }
+            }
+            for (v = 0; v < lap->n; v++)
+                for (q = 0; q < 2; q++) sum[q] += lap->mass[v] * D[q * lap->n + lap->vertex[v]];
+            if (!lap->B)
+                for (q = 0; q < 2; q++) CHECK_MSG(fabs(traces[q] - sum[q]) < 1e-9 * sum[q], "%s: %g", specs[k], traces[q] - sum[q]);
+            for (q = 0; q < 2; q++) CHECK(fabs(traces[q] - Z[q]) <= sure[q] + 1e-5 * Z[q]);
+            (void)hdi_heat_end(&h);
+        }
+        CHECK_MSG(tightest < 2e4, "%s: bounds are %g times as large as errors", specs[k], tightest);
+    }
+}
+
 /* The bound on the error of any weights and times, and of poles that nearly touch the half line. */
 static void int_shared_bounds(void) {
     uint64_t seed = 77;
@@ -1357,7 +1410,7 @@ static void (*const int_tests[])(void) = {
     int_large_pages, int_sorting, int_union_find, int_tridiagonal, int_tridiagonal_odd, int_collinear, int_krylov_done,
     int_ildl, int_products, int_residuals, int_noise_weights, int_pole_bounds, int_resolvent_weights, int_no_numbers, int_lanczos_bound,
     int_krylov_slopes, int_ritz_above, int_probe_rows, int_pairs_degree, int_spectrum_proof,
-    int_least_squares, int_exp_rest, int_shared_bounds, int_length_area, int_around, int_selection,
+    int_least_squares, int_exp_rest, int_patches, int_shared_bounds, int_length_area, int_around, int_selection,
     int_eigen3, int_polygon, int_krylov_bounds, int_damages_1, int_damages_2, int_damages_3,
     int_damages_4, int_damages_5,
 };
