@@ -21518,18 +21518,16 @@ static hd_status hdi_patch_rates(const hdi_patches *x, int32_t count, double *r)
     return hdi_scope_end(&s);
 }
 
-/* Is r(s) known from what it is at the times? Far from the rim it rises, or hardly changes. If it falls, heat
- * has left before, and nothing is known. */
-static int hdi_patch_rising(double *r) {
-    double least = r[HDI_PATCH_TIMES], most = least;
-    int32_t m, rising = 1;
-    for (m = 0; m < HDI_PATCH_TIMES; m++) {
-        rising &= m == 0 || r[m - 1] > r[m];
+/* Is r(s) known from what it is at the times? Far from the rim it is largest at the last, or hardly changes.
+ * Else heat has left before, and nothing is known. */
+static int hdi_patch_rising(const double *r) {
+    double least = r[0], most = r[0];
+    int32_t m;
+    for (m = 1; m <= HDI_PATCH_TIMES; m++) {
         least = hdi_min(least, r[m]);
         most = hdi_max(most, r[m]);
     }
-    for (m = 0; m <= HDI_PATCH_TIMES && !rising; m++) r[m] = most;
-    return rising || most <= 4 * least;
+    return r[0] >= most || most <= 4 * least;
 }
 
 /* r(s) at time s of t: log r is convex in 1/s, as it is linear for what comes from one distance. */
