@@ -22629,20 +22629,21 @@ typedef struct hdi_query_row {
     const hdi_distance_row *distance;   /* its kind, or NULL */
 } hdi_query_row;
 
+static const hdi_query_row hdi_other_queries[] = {
+    {HD_QUERY_FIELDS, HDI_BY_SOLVES, 1, 0, NULL},
+    {HD_QUERY_COLUMNS, HDI_BY_SOLVES, 1, 0, NULL},
+    {HD_QUERY_PAIRS, HDI_BY_SOLVES, 1, 0, hdi_distance_rows},
+    {HD_QUERY_DIAGONAL, HDI_BY_INVERSION, 0, 0, NULL},
+    {HD_QUERY_DIAGONAL_OPERATOR, HDI_BY_INVERSION, 0, 1, NULL},
+    {HD_QUERY_TRACE, HDI_BY_INVERSION, 0, 2, NULL},     /* perhaps with either diagonal */
+    {HD_QUERY_SPECTRUM, HDI_BY_SPECTRUM, 1, 0, NULL}
+};
+
 static hdi_query_row hdi_query_of(hd_query query) {
-    static const hdi_query_row others[] = {
-        {HD_QUERY_FIELDS, HDI_BY_SOLVES, 1, 0, NULL},
-        {HD_QUERY_COLUMNS, HDI_BY_SOLVES, 1, 0, NULL},
-        {HD_QUERY_PAIRS, HDI_BY_SOLVES, 1, 0, hdi_distance_rows},
-        {HD_QUERY_DIAGONAL, HDI_BY_INVERSION, 0, 0, NULL},
-        {HD_QUERY_DIAGONAL_OPERATOR, HDI_BY_INVERSION, 0, 1, NULL},
-        {HD_QUERY_TRACE, HDI_BY_INVERSION, 0, 2, NULL},     /* perhaps with either diagonal */
-        {HD_QUERY_SPECTRUM, HDI_BY_SPECTRUM, 1, 0, NULL}
-    };
     hdi_query_row row = {query, HDI_BY_NOTHING, 1, 0, NULL};
     size_t q;
-    for (q = 0; q < sizeof others / sizeof *others; q++)
-        if (others[q].query == query) return others[q];
+    for (q = 0; q < sizeof hdi_other_queries / sizeof *hdi_other_queries; q++)
+        if (hdi_other_queries[q].query == query) return hdi_other_queries[q];
     for (q = 0; q < HDI_DISTANCES; q++) {
         if (hdi_distance_rows[q].query != query) continue;
         row.distance = hdi_distance_rows + q;
