@@ -18916,7 +18916,7 @@ static hd_status hdi_local_grow(hdi_local *l, const hd_laplacian *lap, double re
         next = INT32_MAX;
         for (i = first; i < l->n && l->n <= most; i++) {
             hdi_reached at = l->at[i];
-            const double far = at.way + hdi_local_edge(lap, at.row);
+            const double along = at.way + hdi_local_edge(lap, at.row);
             if (i == level_end) {
                 level++;
                 level_end = l->n;
@@ -18924,7 +18924,7 @@ static hd_status hdi_local_grow(hdi_local *l, const hd_laplacian *lap, double re
             for (p = lap->L.row_ptr[l->at[i].row]; p < lap->L.row_ptr[l->at[i].row + 1]; p++) {
                 const int32_t there = l->place[lap->L.col[p]] - 1;
                 at.row = lap->L.col[p];
-                at.way = lap->xyz ? at.unit * hdi_local_apart(lap, at.row, at.from) : far;
+                at.way = lap->xyz ? at.unit * hdi_local_apart(lap, at.row, at.from) : along;
                 if (there < 0 && (at.way <= reach || level < hops)) {
                     if (hdi_local_put(l, at, ctx, e) < 0) return e->status;
                 } else if (there >= 0 && l->at[there].way > at.way) {
