@@ -20,7 +20,7 @@ gone() {
     POLE_FACTORS) echo "hdi_pack_product_plain hdi_batch_run hdi_elim_poles $(gone DIAGONAL)" ;;
     DIAGONAL) echo "hdi_inverse_run hdi_form_run hdi_ground_make hdi_diagonal_once hdi_trace_window hdi_filters_run hdi_fading_poles $(gone DIFFUSION)" ;;
     SPECTRUM) echo "hdi_spec_run hdi_spec_sums_run hdi_modes_distance hdi_modes_pairs hdi_pairs_by_modes hdi_sample_modes hdi_slab_dots_task" ;;
-    DIFFUSION) echo "hdi_metric_make hdi_pairs_once hdi_sample_run" ;;
+    DIFFUSION) echo "hdi_metric_make hdi_pairs_once hdi_sample_answer" ;;
     ITERATIVE) echo "hdi_iteration_run hdi_precond_ordered hdi_fill_task hdi_lanczos_first hdi_family_run" ;;
     GEODESIC) echo "hdi_geo_make hdi_geo_sweep hdi_geo_free" ;;
     INTRINSIC) echo "hdi_soup_of_mesh hdi_lap_unfold" ;;

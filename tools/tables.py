@@ -11,7 +11,7 @@ import sys
 
 CHECKED = {     # sha256 of script and table
     "poles.py": "2bdf0e3becf82ed93843d82556e237ddaa0b1d9d04f5d0df6af63263d6a6700e",
-    "shared_poles.py": "4275da660aa0dbe65ff70402036d4fc721423fedac5c2da65ed54c4e566ffcdf",
+    "shared_poles.py": "f8ff4920b59c82906bf9f656db776cd68ca2f91a9872dc169953f2c00edafb93",
 }
 TOOLS = os.path.dirname(os.path.abspath(__file__))
 
