@@ -17059,9 +17059,9 @@ static hd_status hdi_spec_sums_ask(const hd_spectrum *s, hdi_spec_ask a, hd_erro
     hdi_scope scope;
     hdi_modes of;
     hdi_call c;
-    if (hdi_enter(&c, s ? s->context : NULL, s && (a.sort == HDI_SPEC_DIAGONAL || a.sources), err) < 0)
-        return c.e->status;
+    if (hdi_enter(&c, s ? s->context : NULL, 1, err) < 0) return c.e->status;
     if (!HDI_HAS_SPECTRUM) return HDI_LEFT_OUT(c.e, SPECTRUM, "eigenpairs");
+    if (!s || !(a.sort == HDI_SPEC_DIAGONAL || a.sources)) return hdi_missing(c.e);
     memset(&x, 0, sizeof x);
     x.diagonal = a.sort == HDI_SPEC_DIAGONAL;
     x.distance = a.sort == HDI_SPEC_DISTANCE;
