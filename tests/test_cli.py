@@ -1436,7 +1436,7 @@ kernel torus-80-50.obj --source 7,3000 --t {0,2h2,1h2|2h2} --method local --tol 
     kernel torus-80-50.obj --source 7,3000 --t {1} --method krylov --tol 1e-12 {2} :: 1e-9
 kernel parts.obj --source 0,390,490 --t 2h2,900h2 --laplacian {fem|voronoi-cot} --method {direct|krylov|auto|iterative} :: \
     kernel parts.obj --source 0,390,490 --t 2h2,900h2 --laplacian {1} --method iterative --degree 14 --tol 1e-12 :: 1e-7
-{hks --kernel operator|hks --normalise|trace} torus-80-50.obj --t 1h2,2h2 --threads 1 --memory-limit {40M|40M --method local} :: \
+{hks --kernel operator|hks --normalise|trace} torus-80-50.obj --t 1h2,2h2 --threads 1 --memory-limit 40M --method local :: \
     {1} torus-80-50.obj --t 1h2,2h2 --method direct :: 1e-6
 hks torus-40-24.obj --t 10h2 --laplacian {fem|voronoi-cot} --method direct {--poles kernel --degree 12\
 |--poles uniform --degree 14} :: hks torus-40-24.obj --t 10h2 --laplacian {1} :: 1e-7
@@ -1949,7 +1949,7 @@ kernel ico.obj --source 0 --t 1 :: \A(.+\n){1,8}\Z :: !\r
 kernel ico.obj --source 0 --t 0 -o x.npy :: t = 0
 kernel torus-80-50.obj --source 0 --t 9h2 -o x.npy --method {direct|krylov} :: (?m)^method {1} \(asked for\)$ :: \
     (?m)^factors: .*non-zeros.*flops :: \A(.+\n){1,8}\Z
-{kernel --source 0|hks --memory-limit 30M --threads 1} torus-80-50.obj --t 1h2 -o x.npy --method local :: (?m)^parts of at most \d+ of 4000 vertices$ :: factors: :: !conserved
+{kernel --source 0|hks --memory-limit 40M --threads 1} torus-80-50.obj --t 1h2 -o x.npy --method local :: (?m)^parts of at most \d+ of 4000 vertices$ :: factors: :: !conserved
 {kernel --source 0|diffuse --input ones-4000.txt|smooth} torus-80-50.obj --t 1h2 --method local --dry-run :: method local \(asked for\) \
     :: (?m)^local +\d+ :: !too much
 kernel torus-80-50.obj --source 0 --t 9h2 -o x.npy {--method iterative :: !factors:|:: (?m)^method \w+ \(.+\)$}
