@@ -21358,10 +21358,10 @@ enum { HDI_PATCH_LEAST = 256, HDI_PATCH_FROM = 20000 };
 /* Of hdi_local_edges and hdi_local_hops: heat has to go there and back. */
 #define HDI_PATCH_REACH 0.55
 #define HDI_PATCH_HOPS 0.6
-/* What a row takes besides the factor, in flops of it: on a patch with probes, on all of the mesh. */
+/* What a row costs besides the factor, in flops of the factor: on a patch, with probes, and on the mesh. */
 #define HDI_PATCH_ROW 7500
 #define HDI_WHOLE_ROW 2600
-/* For each number of a real factor: four complex ones, and what else there is. */
+/* Bytes of a patch for each number of its real factor, as measured: four complex factors and the rest. */
 #define HDI_PATCH_BYTES 250
 
 typedef struct hdi_patches {
@@ -21376,7 +21376,7 @@ static int32_t hdi_patch_begin(const hdi_patches *x, int32_t count, int32_t p) {
     return (int32_t)((int64_t)x->to->task.h->heat->source->n_active * p / count);
 }
 
-/* Orders rows as they are reached from the first of them, on ways through them alone. */
+/* Orders the rows of a piece breadth-first from the first of them, without leaving the piece. */
 static void hdi_patch_walk(hdi_patches *x, int32_t *row, int32_t n) {
     const hd_csr *L = &x->to->task.h->heat->source->L;
     int32_t i, head = 0, tail = 0;
@@ -21397,7 +21397,7 @@ static void hdi_patch_walk(hdi_patches *x, int32_t *row, int32_t n) {
     memcpy(row, x->queue, (size_t)n * sizeof *row);
 }
 
-/* Halves each of the pieces: rows from the one that is last reached. */
+/* Halves each of the pieces, after ordering it breadth-first from a row at its end. */
 static void hdi_patch_halve(hdi_patches *x) {
     int32_t p;
     for (p = 0; p < x->count; p++) {
@@ -21431,8 +21431,8 @@ static hd_status hdi_patch_find(hdi_patches *x, int32_t count, int32_t p, int32_
                           most, h->heat->ctx, h->e);
 }
 
-/* Cuts until halves, with their margins, would take more in all, but at least until factors fit. Returns what
- * that takes, less what all of the mesh does. */
+/* Halves pieces until factors of patches fit, and further while that makes less work. Returns the flops of
+ * all patches less those of the whole mesh. */
 static double hdi_patch_cut(hdi_patches *x) {
     hdi_heat_call *h = x->to->task.h;
     const int32_t n = h->heat->source->n_active;
@@ -21491,7 +21491,7 @@ static hd_status hdi_patch_rates(const hdi_patches *x, int32_t count, double *r)
     const size_t n = (size_t)x->local->n;
     const hd_heat_opts opts = own->opts;
     hdi_scope s = hdi_scope_begin(own->ctx, e);
-    double *U = HDI_TAKE(&s, double, HDI_PATCH_PROBES * (HDI_PATCH_TIMES + 1) * n + 4 * n);
+    double *U = HDI_TAKE(&s, double, HDI_PATCH_PROBES * (HDI_PATCH_TIMES + 1) * n);
     double *F = U ? U + HDI_PATCH_PROBES * HDI_PATCH_TIMES * n : NULL, t[HDI_PATCH_TIMES];
     const hdi_request ask = {HDI_QUERY_FIELD, HDI_PATCH_PROBES, HDI_PATCH_TIMES, t, F, NULL, NULL, NULL, U, n,
                              n};
@@ -21564,18 +21564,18 @@ static void hdi_patch_tell(const hdi_patches *x, int32_t core, const double *D, 
                            const double *bound, int first) {
     const hdi_diagonals *to = x->to;
     const hdi_heat_call *h = to->task.h;
+    const int32_t *v = h->heat->source->vertex;
     const size_t n = (size_t)x->local->n;
     int32_t i, q;
     for (q = 0; q < h->ask.n_times; q++) {
-        double *out = to->D + (size_t)q * to->ldd;
         for (i = 0; i < core && D; i++)
-            out[h->heat->source->vertex[x->local->row[i]]] = D[(size_t)q * n + (size_t)i];
+            to->D[(size_t)q * to->ldd + (size_t)v[x->local->row[i]]] = D[(size_t)q * n + (size_t)i];
         if (to->Z) to->Z[q] = Z[q] + (first ? 0 : to->Z[q]);
         if (to->Z && to->bound) to->bound[q] = bound[q] + (first ? 0 : to->bound[q]);
     }
 }
 
-/* Piece p with the margin that it has. Values count where they leave out no more than `wanted`. */
+/* Piece p with the margin that it has. Values go to the caller if they leave out no more than `wanted`. */
 static hd_status hdi_patch_once(const hdi_patches *x, int32_t p, double wanted, hd_report *rep) {
     const int32_t core = hdi_patch_begin(x, x->count, p + 1) - hdi_patch_begin(x, x->count, p);
     hdi_heat_call *h = x->to->task.h, in;
@@ -21583,7 +21583,7 @@ static hd_status hdi_patch_once(const hdi_patches *x, int32_t p, double wanted, 
     hdi_diagonals to = *x->to;
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
     const uint64_t n = (uint64_t)h->ask.n_times, values = to.D ? n * (uint64_t)x->local->n : 0;
-    double off = 0;
+    double off;
     if (hdi_local_plan(h->heat, x->local, h->e) < 0) return hdi_scope_end(&s);
     own->opts.method = HD_METHOD_DIRECT;
     off = hdi_patch_off(x, core);
@@ -21604,7 +21604,7 @@ static hd_status hdi_patch_once(const hdi_patches *x, int32_t p, double wanted, 
     return hdi_scope_end(&s);
 }
 
-/* Piece p. Its margin grows until what is left out is as little as of columns. */
+/* Piece p. Its margin grows until as little is left out as of columns. */
 static hd_status hdi_patch_run(hdi_patches *x, int32_t p) {
     hdi_heat_call *h = x->to->task.h;
     const double wanted = HDI_LOCAL_SHARE * h->heat->opts.tol;
@@ -21658,7 +21658,7 @@ static hd_status hdi_patches_open(hdi_patches *x, const hdi_diagonals *to) {
     return HD_OK;
 }
 
-/* Does auto find a diagonal by patches? Pieces as wide as two margins have to be small beside the mesh. */
+/* Does auto take patches? Only if a margin is small beside the mesh is it worth while to cut it. */
 static int hdi_patches_pay(hdi_patches *x) {
     hdi_heat_call *h = x->to->task.h;
     const int32_t n = h->heat->source->n_active, most = n / 16;
@@ -21666,7 +21666,7 @@ static int hdi_patches_pay(hdi_patches *x) {
     return hdi_patch_find(x, n, n / 2, most) >= 0 && x->local->n <= most && hdi_patch_cut(x) < 0;
 }
 
-/* Diagonals and traces by patches, which are smaller where the first do not fit the byte limit. */
+/* Diagonals and traces by patches. If one exceeds the byte limit, all are halved and done again. */
 static hd_status hdi_diagonals_by_patches(hdi_heat_call *h, hdi_patches *x, const char *reason) {
     const hd_report rep = *h->rep;
     for (;;) {
