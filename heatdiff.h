@@ -606,7 +606,7 @@ typedef struct hd_report {
     double error_relative;
     double smallest;            /* diagonals and distances: the smallest value that is not zero */
     int64_t n_lost;             /* distances with at most about one sure digit */
-    int32_t n_touched;          /* local: vertices of the largest ball or patch */
+    int32_t n_touched, n_patches;   /* local: vertices of the largest ball or patch; pieces of diagonals */
     double mass_drift;          /* |1'B u - 1'B f| / 1'B|u|; 0 if L loses heat, for filters, or local */
 } hd_report;
 
@@ -20729,13 +20729,18 @@ static int hdi_row_counts(const hdi_heat_call *h, int32_t i) {
     return h->core == 0 || h->heat->elim.lap->vertex[i] < h->core;
 }
 
-/* What a part of the mesh leaves out of an entry of the diagonal. That of k_t B takes entries beside it. */
-static double hdi_diagonal_left_out(const hdi_heat_call *h, int32_t mass, int32_t i) {
-    const hd_laplacian *lap = h->heat->elim.lap;
-    double sum = mass > 0 && lap->B ? 0 : hdi_by_mass(1, lap->b_diag[i], mass);
+/* The sum of a row of B, without signs. */
+static double hdi_mass_row(const hd_laplacian *lap, int32_t i) {
+    double sum = lap->B ? 0 : lap->b_diag[i];
     int64_t p;
-    for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1] && mass > 0 && lap->B; p++) sum += fabs(lap->B[p]);
-    return h->left_out > 0 ? h->left_out * sum : 0;
+    for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1] && lap->B; p++) sum += fabs(lap->B[p]);
+    return sum;
+}
+
+/* What a part of the mesh leaves out of an entry of the diagonal. B takes entries beside it. */
+static double hdi_diagonal_left_out(const hdi_heat_call *h, int32_t mass, int32_t i) {
+    if (!(h->left_out > 0)) return 0;
+    return h->left_out * hdi_by_mass(1, mass > 0 ? hdi_mass_row(h->heat->elim.lap, i) : 1, mass);
 }
 
 static hdi_diagonal hdi_diagonal_take(int32_t n, int32_t mass, hdi_scope *s) {
@@ -20970,10 +20975,9 @@ static double hdi_diagonal_seen(const hdi_heat_call *h, const hdi_inverses *x, i
 #define HDI_DIAGONAL_SURE_PLAIN 4.2e-7
 #define HDI_DIAGONAL_LOOSE 50
 
-static double hdi_diagonal_limit(const hd_laplacian *lap, hd_kernel kernel) {
-    const int plain = hdi_is_plain(lap->kind);
-    const double loose = kernel == HD_KERNEL_OPERATOR && lap->B ? HDI_DIAGONAL_LOOSE : 1;
-    return loose * (plain ? HDI_DIAGONAL_SURE_PLAIN : HDI_DIAGONAL_SURE);
+static double hdi_diagonal_limit(const hd_laplacian *lap, int loose) {
+    return (loose ? HDI_DIAGONAL_LOOSE : 1) *
+           (hdi_is_plain(lap->kind) ? HDI_DIAGONAL_SURE_PLAIN : HDI_DIAGONAL_SURE);
 }
 
 /* Largest weighted error of shared sets for diagonals, and for distances, where much cancels. Tuned on meshes
@@ -20984,16 +20988,18 @@ static double hdi_diagonal_limit(const hd_laplacian *lap, hd_kernel kernel) {
 /* A query for diagonals, traces or both. */
 typedef struct hdi_diagonals {
     hdi_task task;
-    hd_kernel kernel;
+    int32_t mass;                /* how often B is a factor: in k_t, in K_t, or on patches in B k_t B */
     double *D;                   /* [n n_times], columns ldd apart; NULL: not wanted */
     size_t ldd;
     double *Z, *bound;           /* [n_times] traces of K_t; NULL: not wanted */
+    int32_t n_rows, degree;      /* patches; degree 0: as usual */
+    const int32_t *rows;         /* patches: those wanted; NULL: all */
 } hdi_diagonals;
 
 /* What is wanted of inversions. A full B needs entries beside the diagonal for that of K_t = k_t B. */
 static hdi_wanted hdi_diagonals_wanted(const hdi_diagonals *to) {
-    const int mass = to->Z || to->kernel == HD_KERNEL_OPERATOR;
-    return mass && to->task.h->heat->source->B ? HDI_WANT_ENTRIES : HDI_WANT_DIAGONAL;
+    if (!to->task.h->heat->source->B || (to->mass == 0 && !to->Z)) return HDI_WANT_DIAGONAL;
+    return to->mass > 1 ? HDI_WANT_FORMS : HDI_WANT_ENTRIES;
 }
 
 /* The ledger of values found by inversion. */
@@ -21011,10 +21017,10 @@ static hdi_ledger hdi_inverse_ledger(const hdi_heat_call *h, const hd_rational *
 static double hdi_diagonal_tell(hdi_heat_call *h, const hdi_diagonal *d, hdi_ledger ledger, double rounding,
                                 double *out, hd_report *rep) {
     const hd_laplacian *lap = h->heat->elim.lap;
-    const double unit = d->mass == 0 ? h->heat->scale : 1;
+    const double unit = d->mass == 0 ? h->heat->scale : d->mass == 1 ? 1 : 1 / h->heat->scale;
     double most = 0;
     int32_t i, v;
-    for (v = 0; v < lap->n; v++) out[v] = d->mass > 0 && lap->row[v] == HD_ROW_INERT;
+    for (v = 0; v < lap->n; v++) out[v] = d->mass == 1 && lap->row[v] == HD_ROW_INERT;
     for (i = 0; i < lap->n_active; i++) {
         const double value = d->value[i], off = hdi_diagonal_off(d, d->g[i], d->spread[i]);
         hdi_parts part = {0, 0, 0, 0};
@@ -21073,7 +21079,7 @@ static hd_status hdi_diagonals_read(const hdi_diagonals *to, const hdi_inverses 
     hdi_heat_call *h = to->task.h;
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
     const int32_t n = h->heat->elim.sym.n;
-    hdi_diagonal d = hdi_diagonal_take(n, trace || to->kernel == HD_KERNEL_OPERATOR, &s);
+    hdi_diagonal d = hdi_diagonal_take(n, trace ? 1 : to->mass, &s);
     double *work = trace && h->heat->source->B ? HDI_TAKE(&s, double, n) : NULL;
     hdi_probe probe;
     int32_t q;
@@ -21114,7 +21120,7 @@ static hd_status hdi_diagonals_equal(const hdi_diagonals *to, int32_t q, hd_repo
     hdi_heat_call *h = to->task.h;
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
     const hd_laplacian *lap = h->heat->elim.lap;
-    hdi_diagonal d = hdi_diagonal_take(lap->n_active, to->kernel == HD_KERNEL_OPERATOR, &s);
+    hdi_diagonal d = hdi_diagonal_take(lap->n_active, to->mass, &s);
     const hdi_parts off = {0, 0, 0, 0};
     double count = 0;
     int32_t i;
@@ -21148,12 +21154,12 @@ static hd_status hdi_diagonals_by_poles(hdi_task *task) {
     const hdi_diagonals *to = (const hdi_diagonals *)task;
     hdi_heat_call *h = task->h;
     hd_heat *heat = h->heat;
-    const hd_kernel kernel = to->D ? to->kernel : HD_KERNEL_SYMMETRIC;
+    const int loose = to->D && to->mass > 0 && heat->source->B != NULL;
     if (hdi_heat_analysed(heat, h->e) < 0) return h->e->status;
     hdi_inverse_tell(h);
     if (hdi_heat_equal(heat, &heat->elim, h->t, h->e)) return hdi_diagonals_equal(to, h->now, h->rep);
     if (h->e->status < 0 || hdi_diagonals_once(to, &task->excess) < 0) return h->e->status;
-    task->excess /= hdi_diagonal_limit(heat->source, kernel);
+    task->excess /= hdi_diagonal_limit(heat->source, loose);
     return HD_OK;
 }
 
@@ -21218,7 +21224,7 @@ static hd_status hdi_diagonals_together(hdi_task *task, char *done, hd_report *o
     const hdi_diagonals *to = (const hdi_diagonals *)task;
     hdi_heat_call *h = task->h;
     hd_heat *heat = h->heat;
-    const int alone = to->D && to->kernel == HD_KERNEL_OPERATOR && heat->source->B;
+    const int alone = to->D && to->mass > 0 && heat->source->B;
     int32_t n;
     if (hdi_heat_analysed(heat, h->e) < 0 || hdi_heat_sort_times(h, 1, done) < 0) return h->e->status;
     hdi_inverse_tell(h);
@@ -21235,9 +21241,8 @@ static hd_status hdi_diagonals_together(hdi_task *task, char *done, hd_report *o
 /* ---- heat that fades ---- */
 
 /* The diagonal from the pairs that are there: an entry is <B^-1 e_v, K_t f> with f = B^-1 e_v or e_v. */
-static hd_status hdi_fading_diagonal(hdi_heat_call *h, hd_kernel kernel, double *out) {
+static hd_status hdi_fading_diagonal(hdi_heat_call *h, int mass, double *out) {
     const hd_laplacian *lap = h->heat->source;
-    const int mass = kernel == HD_KERNEL_OPERATOR;
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
     hdi_ledger ledger = hdi_modes_ledger();
     hdi_spec_sums a;
@@ -21282,7 +21287,7 @@ static hd_status hdi_diagonals_by_pairs(hdi_task *task) {
     const hdi_diagonals *to = (const hdi_diagonals *)task;
     hdi_heat_call *h = task->h;
     const double t = h->ask.t[h->now];
-    if (to->D && hdi_fading_diagonal(h, to->kernel, to->D + (size_t)h->now * to->ldd) < 0)
+    if (to->D && hdi_fading_diagonal(h, to->mass, to->D + (size_t)h->now * to->ldd) < 0)
         return h->e->status;
     if (to->Z) hdi_fading_trace(to, t);
     return h->e->status;
@@ -21347,14 +21352,14 @@ static hd_status hdi_sets_check(const hd_rational *sets, int32_t count, hd_error
  * q being the rows of the rim (Duhamel's formula, once for each way). The r(s) of all x of a core are
  * measured at once: by symmetry they are what k_s makes of random functions on the rim. */
 
-/* Random functions; times at which they are taken, from t on down, each half of the one before; steps of the
+/* Random functions; times at which they are taken, relative to t; these and an integral; steps of
  * integrals. */
-enum { HDI_PATCH_PROBES = 8, HDI_PATCH_TIMES = 3, HDI_PATCH_STEPS = 32 };
+enum { HDI_PATCH_PROBES = 8, HDI_PATCH_TIMES = 3, HDI_PATCH_ROWS = 4, HDI_PATCH_STEPS = 32 };
+static const double hdi_patch_time[HDI_PATCH_TIMES] = {1, 0.75, 0.5};
 enum { HDI_PATCH_LEAST = 256, HDI_PATCH_FROM = 20000 };
 
 /* The sum of squares of eight normal deviates is below a tenth of its mean once in 1,300 times. */
 #define HDI_PATCH_SAFETY 10
-#define HDI_PATCH_TOL 1e-11                  /* of what k_s makes of them */
 /* Of hdi_local_edges and hdi_local_hops: heat has to go there and back. */
 #define HDI_PATCH_REACH 0.55
 #define HDI_PATCH_HOPS 0.6
@@ -21367,13 +21372,13 @@ enum { HDI_PATCH_LEAST = 256, HDI_PATCH_FROM = 20000 };
 typedef struct hdi_patches {
     const hdi_diagonals *to;
     hdi_local *local;
-    int32_t *row, *mark, *queue; /* [n_active] by pieces; work */
+    int32_t n, *row, *mark, *queue;  /* rows by pieces [n]; work [n_active], [n] */
     int32_t count, stamp;        /* of pieces; of marks */
     double t, reach;             /* the last time, the caller's; margins are so many times as wide as usual */
 } hdi_patches;
 
 static int32_t hdi_patch_begin(const hdi_patches *x, int32_t count, int32_t p) {
-    return (int32_t)((int64_t)x->to->task.h->heat->source->n_active * p / count);
+    return (int32_t)((int64_t)x->n * p / count);
 }
 
 /* Orders the rows of a piece breadth-first from the first of them, without leaving the piece. */
@@ -21451,66 +21456,98 @@ static double hdi_patch_cut(hdi_patches *x) {
         } else if (least < HUGE_VAL) {
             break;
         }
-        if (n / x->count < 2 * HDI_PATCH_LEAST) break;
+        if (x->n / x->count < 2 * HDI_PATCH_LEAST) break;
         hdi_patch_halve(x);
     }
     x->count = best;
     return least - hdi_fill_guess(n, n * wide).flops - HDI_WHOLE_ROW * (double)n;
 }
 
-/* Random functions on the rim, as the fields that k_s applies to: with c = L w and c' = B w on the patch's
- * side, k_s c + d/ds k_s c' = K_s B^-1 (c - L B^-1 c'). work [5 n] */
-static hd_status hdi_patch_probes(const hdi_local *l, double *F, double *work, hd_error *e) {
+/* Random functions on the rim, as functionals C [n] each that k_s applies to: with c = L w and c' = B w on the
+ * patch's side, k_s c + d/ds k_s c' = k_s (c - L B^-1 c'). work [5 n] */
+static hd_status hdi_patch_probes(const hdi_local *l, double *C, double *work, hd_error *e) {
     const hd_laplacian *lap = l->ball;
     const hdi_rim *rim = &l->rim;
     const int64_t n = lap->n;
-    double *c = work, *u = c + n, *rest = u + n;
+    double *u = work, *v = u + n, *rest = v + n;
     uint64_t seed;
     int32_t q, i;
-    for (q = 0; q < HDI_PATCH_PROBES && e->status >= 0; q++) {
-        memset(c, 0, 2 * (size_t)n * sizeof *c);
+    memset(C, 0, HDI_PATCH_PROBES * (size_t)n * sizeof *C);
+    for (q = 0; q < HDI_PATCH_PROBES && e->status >= 0; q++, C += n) {
+        memset(u, 0, (size_t)n * sizeof *u);
         for (i = 0; i < rim->n_edges; i++) {
+            double w;
             seed = (uint64_t)rim->to[i] * HDI_PATCH_PROBES + (uint64_t)q;
-            rest[0] = (hdi_random(&seed) < 0 ? -1 : 1) * sqrt(rim->weight[rim->to[i]]);
-            c[rim->from[i]] += rim->l[i] * rest[0];
-            u[rim->from[i]] += (rim->b ? rim->b[i] : 0) * rest[0];
+            w = (hdi_random(&seed) < 0 ? -1 : 1) * sqrt(rim->weight[rim->to[i]]);
+            C[rim->from[i]] += rim->l[i] * w;
+            u[rim->from[i]] += (rim->b ? rim->b[i] : 0) * w;
         }
-        if (rim->b && hdi_mass_solve(lap, u, F + q * n, rest, e) >= 0) {
-            hdi_pair_apply(lap, 1, 0, F + q * n, u);
-            for (i = 0; i < n; i++) c[i] -= u[i];
-        }
-        if (e->status >= 0) (void)hdi_mass_solve(lap, c, F + q * n, rest, e);
+        if (!rim->b || hdi_mass_solve(lap, u, v, rest, e) < 0) continue;
+        hdi_pair_apply(lap, 1, 0, v, u);
+        for (i = 0; i < n; i++) C[i] -= u[i];
     }
     return e->status;
 }
 
-/* r(s) at the times, and last at 0, for the x among the first `count` vertices where it is largest. */
-static hd_status hdi_patch_rates(const hdi_patches *x, int32_t count, double *r) {
-    hd_heat *own = &x->local->heat;
-    hd_error *e = x->to->task.h->e;
-    const size_t n = (size_t)x->local->n;
-    const hd_heat_opts opts = own->opts;
-    hdi_scope s = hdi_scope_begin(own->ctx, e);
-    double *U = HDI_TAKE(&s, double, HDI_PATCH_PROBES * (HDI_PATCH_TIMES + 1) * n);
-    double *F = U ? U + HDI_PATCH_PROBES * HDI_PATCH_TIMES * n : NULL, t[HDI_PATCH_TIMES];
-    const hdi_request ask = {HDI_QUERY_FIELD, HDI_PATCH_PROBES, HDI_PATCH_TIMES, t, F, NULL, NULL, NULL, U, n,
-                             n};
-    hd_report rep;
-    int32_t i, q, m;
-    for (m = 0; m < HDI_PATCH_TIMES; m++) t[m] = ldexp(x->t, -m);
-    if (e->status < 0 || hdi_patch_probes(x->local, F, U, e) < 0) return hdi_scope_end(&s);
-    own->opts.method = HD_METHOD_KRYLOV;
-    own->opts.tol = HDI_PATCH_TOL;
-    if (hdi_fields_run(own, &ask, 0, &rep, NULL) < 0) *e = rep.error;
-    own->opts = opts;
-    hdi_heat_shed(own);
-    for (m = 0; m <= HDI_PATCH_TIMES && e->status >= 0; m++) {
-        for (i = 0, r[m] = 0; i < count; i++) {
+/* Weights with which the set's poles make r(s) at time m, or after the times its integral until half of t, by
+ * least squares. work: hdi_residues_room of the points, and three times as many numbers. */
+static void hdi_patch_weights(const hd_rational *set, int32_t m, double *work, hd_c64 *w) {
+    enum { N = HDI_RESOLVENT_POINTS };
+    double *x = work, *u = x + N, *f = u + N;
+    hd_rational fit = *set;
+    int32_t i;
+    for (i = 0; i < N; i++) {
+        const double s = (i + 0.5) / (double)N;
+        x[i] = -2 * s / ((1 - s) * (1 - s));
+        u[i] = 1;
+        f[i] = m < HDI_PATCH_TIMES ? exp(hdi_patch_time[m] * x[i]) : (exp(x[i] / 2) - 1) / x[i];
+    }
+    hdi_residues_fit(&fit, N, x, u, f, 0, f + N);
+    for (i = 0; i < set->n_poles; i++) w[i] = hdi_cscale(-hdi_rat_count(set, i), fit.a[i]);
+}
+
+/* r(s) at the times, and last its integral until half of t, over t: for the x among the first `count`
+ * vertices where it is largest, from the poles that the inversion takes. */
+static hd_status hdi_patch_rates(const hdi_patches *x, hdi_heat_call *in, int32_t count, double *r) {
+    const hdi_local *l = x->local;
+    const int32_t n = l->n;
+    hdi_scope s = hdi_scope_begin(in->heat->ctx, in->e);
+    double *C = HDI_TAKE(&s, double, HDI_PATCH_PROBES * (uint64_t)n);
+    double *U = HDI_TAKE(&s, double, HDI_PATCH_PROBES * HDI_PATCH_ROWS * (uint64_t)n);
+    double *work = HDI_TAKE(&s, double, hdi_residues_room(HDI_RESOLVENT_POINTS, HD_MAX_POLES) +
+                                        3 * HDI_RESOLVENT_POINTS);
+    int32_t *id = HDI_TAKE(&s, int32_t, n), i, q, m;
+    hd_c64 weight[HDI_PATCH_ROWS * HD_MAX_POLES];
+    hdi_terms terms[HDI_PATCH_PROBES];
+    hd_rational set;
+    hdi_columns c;
+    in->t = hdi_heat_scaled(in->heat, x->t);
+    if (in->e->status < 0 || hdi_patch_probes(l, C, U, in->e) < 0 ||
+        hdi_heat_analysed(in->heat, in->e) < 0 || hdi_heat_set(in, &set) < 0) return hdi_scope_end(&s);
+    for (i = 0; i < n; i++) id[i] = i;
+    for (q = 0; q < HDI_PATCH_PROBES; q++) {
+        terms[q].n = n;
+        terms[q].vertex = id;
+        terms[q].weight = C + (int64_t)q * n;
+    }
+    for (m = 0; m < HDI_PATCH_ROWS; m++) hdi_patch_weights(&set, m, work, weight + m * set.n_poles);
+    memset(&c, 0, sizeof c);
+    c.kernel = HD_KERNEL_SYMMETRIC;
+    c.set = &set;
+    c.k = HDI_PATCH_PROBES;
+    c.terms = terms;
+    c.rows.n = HDI_PATCH_ROWS;
+    c.rows.stride = set.n_poles;
+    c.rows.weight = weight;
+    c.rows.sum = U;
+    if (hdi_direct_columns(in, &c) < 0) return hdi_scope_end(&s);
+    for (m = 0; m < HDI_PATCH_ROWS; m++) {
+        for (i = 0, r[m] = 0; i < n; i++) {
             double sum = 0;
+            if (in->heat->elim.lap->vertex[i] >= count) continue;
             for (q = 0; q < HDI_PATCH_PROBES; q++) {
-                const double *u = m < HDI_PATCH_TIMES ? U + (size_t)(q * HDI_PATCH_TIMES + m) * n
-                                                      : F + (size_t)q * n;
-                sum += u[i] * (u[i] / (double)HDI_PATCH_PROBES);
+                const double u = in->heat->scale * U[(int64_t)(q * HDI_PATCH_ROWS + m) * n + i];
+                sum += u * (u / (double)HDI_PATCH_PROBES);
             }
             r[m] = hdi_max(r[m], sqrt(sum));
         }
@@ -21518,45 +21555,44 @@ static hd_status hdi_patch_rates(const hdi_patches *x, int32_t count, double *r)
     return hdi_scope_end(&s);
 }
 
-/* Is r(s) known from what it is at the times? Far from the rim it is largest at the last, or hardly changes.
- * Else heat has left before, and nothing is known. */
-static int hdi_patch_rising(const double *r) {
-    double least = r[0], most = r[0];
-    int32_t m;
-    for (m = 1; m <= HDI_PATCH_TIMES; m++) {
-        least = hdi_min(least, r[m]);
-        most = hdi_max(most, r[m]);
-    }
-    return r[0] >= most || most <= 4 * least;
-}
-
 /* r(s) at time s of t: log r is convex in 1/s, as it is linear for what comes from one distance. */
 static double hdi_patch_rate(const double *r, double s) {
-    int32_t m = 0;
-    double part;
-    while (m < HDI_PATCH_TIMES - 1 && s <= ldexp(1, -m - 1)) m++;
-    part = m < HDI_PATCH_TIMES - 1 ? ldexp(1, -m) / s - 1 : 0;   /* 0 at time m, 1 at the one before it */
-    return hdi_max(r[HDI_PATCH_TIMES], pow(r[m], 1 - part) * pow(r[m + 1], part));
+    const int32_t m = s < hdi_patch_time[1];
+    const double from = 1 / hdi_patch_time[m], to = 1 / hdi_patch_time[m + 1];
+    return r[m] * pow(hdi_min(1, hdi_quotient(r[m + 1], r[m])), (1 / s - from) / (to - from));
+}
+
+/* The double integral over t^2. Where one of both times is beyond half of t, the other is not, and the rate
+ * there is made to have the integral that was measured: heat may have come and gone before. */
+static double hdi_patch_integral(const double *r) {
+    enum { HALF = HDI_PATCH_STEPS / 2 };
+    const double step = 1.0 / HDI_PATCH_STEPS, early = r[HDI_PATCH_TIMES];
+    double later[HALF + 1], sum = 0, mixed = 0;
+    int32_t i;
+    for (i = 0, later[0] = 0; i < HALF; i++)
+        later[i + 1] = later[i] + step * hdi_patch_rate(r, 0.5 + step * (i + 1));
+    for (i = 0; i < HALF; i++) {
+        const double rate = step * hdi_patch_rate(r, step * (i + 1));
+        sum += rate;
+        mixed += rate * later[HALF - i];
+    }
+    if (early > sum) mixed = sum > 0 ? mixed * (early / sum) : early * later[HALF];
+    return early * early + 2 * mixed;
 }
 
 /* What the patch, of which the first `core` vertices count, leaves out of entries of k_t at most. Those of
  * K_t = k_t B take neighbours besides. */
-static double hdi_patch_off(const hdi_patches *x, int32_t core) {
+static double hdi_patch_off(const hdi_patches *x, hdi_heat_call *in, int32_t core) {
     const hd_laplacian *lap = x->local->ball;
-    double r[HDI_PATCH_TIMES + 1], inner[HDI_PATCH_STEPS + 1], sum = 0;
-    const double step = x->t / (double)HDI_PATCH_STEPS;
+    double r[HDI_PATCH_ROWS];
     int32_t count = core, i;
     int64_t p;
     if (x->local->rim.n == 0) return 0;
     for (i = 0; i < core && lap->B; i++)
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
             count = hdi_high32(count, lap->L.col[p] + 1);
-    if (hdi_patch_rates(x, count, r) < 0 || !hdi_patch_rising(r)) return HUGE_VAL;
-    for (i = 0, inner[0] = 0; i < HDI_PATCH_STEPS; i++)
-        inner[i + 1] = inner[i] + step * hdi_patch_rate(r, (i + 1.0) / (double)HDI_PATCH_STEPS);
-    for (i = 0; i < HDI_PATCH_STEPS; i++)
-        sum += step * hdi_patch_rate(r, (i + 1.0) / (double)HDI_PATCH_STEPS) * inner[HDI_PATCH_STEPS - i];
-    return HDI_PATCH_SAFETY * sum / lap->b_ratio;
+    if (hdi_patch_rates(x, in, count, r) < 0) return HUGE_VAL;
+    return hdi_bound_of(HDI_PATCH_SAFETY * x->t * x->t * hdi_patch_integral(r) / lap->b_ratio);
 }
 
 /* Gives the core's values to the caller, D [n_times][n] and traces with bounds. first: of all pieces. */
@@ -21583,21 +21619,22 @@ static hd_status hdi_patch_once(const hdi_patches *x, int32_t p, double wanted, 
     hdi_diagonals to = *x->to;
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
     const uint64_t n = (uint64_t)h->ask.n_times, values = to.D ? n * (uint64_t)x->local->n : 0;
-    double off;
     if (hdi_local_plan(h->heat, x->local, h->e) < 0) return hdi_scope_end(&s);
     own->opts.method = HD_METHOD_DIRECT;
-    off = hdi_patch_off(x, core);
+    own->opts.degree = to.degree ? to.degree : h->heat->opts.degree;
     to.ldd = (size_t)x->local->n;
     to.D = HDI_TAKE(&s, double, values + 2 * n);
     if (h->e->status < 0) return hdi_scope_end(&s);
     to.bound = to.D + values;
     to.Z = x->to->Z ? to.bound + n : NULL;
     to.D = x->to->D ? to.D : NULL;
-    if (hdi_kernel_begin(&in, own, to.kernel, rep, NULL) >= 0 &&
+    if (hdi_kernel_begin(&in, own, HD_KERNEL_SYMMETRIC, rep, NULL) >= 0 &&
         hdi_times_check(&in, h->ask.n_times, h->ask.t, 1) >= 0) {
         in.core = core;
-        in.left_out = off / own->scale;
-        (void)hdi_diagonals_run(&in, &to);
+        in.method = HD_METHOD_DIRECT;
+        in.diagonal = 1;
+        in.left_out = hdi_patch_off(x, &in, core) / own->scale;
+        if (in.e->status >= 0) (void)hdi_diagonals_run(&in, &to);
     }
     if (hdi_heat_end(&in) < 0) *h->e = rep->error;
     else if (rep->error_local <= wanted) hdi_patch_tell(x, core, to.D, to.Z, to.bound, p == 0);
@@ -21622,39 +21659,23 @@ static hd_status hdi_patch_run(hdi_patches *x, int32_t p) {
     return h->e->status;
 }
 
-/* Diagonals and traces by patches. */
-static hd_status hdi_patches_run(hdi_patches *x) {
-    const hdi_diagonals *to = x->to;
-    hdi_heat_call *h = to->task.h;
-    const hd_laplacian *lap = h->heat->source;
-    int32_t p, q, v;
-    h->relative = 1;
-    for (p = 0; p < x->count && h->e->status >= 0; p++)
-        if (hdi_progress(h->heat->ctx, "invert", (double)p / x->count, h->e) >= 0) (void)hdi_patch_run(x, p);
-    for (q = 0; q < h->ask.n_times && to->D && h->e->status >= 0; q++)
-        for (v = 0; v < lap->n; v++)
-            if (lap->row[v] < 0)
-                to->D[(size_t)q * to->ldd + (size_t)v] =
-                    to->kernel == HD_KERNEL_OPERATOR && lap->row[v] == HD_ROW_INERT;
-    return h->e->status;
-}
-
-/* Room for pieces of all rows. */
+/* Room for pieces of all rows, or of those wanted. */
 static hd_status hdi_patches_open(hdi_patches *x, const hdi_diagonals *to) {
     hdi_heat_call *h = to->task.h;
     const int32_t n = h->heat->source->n_active;
     int32_t q;
     memset(x, 0, sizeof *x);
     x->to = to;
+    x->n = to->rows ? to->n_rows : n;
     x->count = 1;
     x->reach = 1;
     for (q = 0; q < h->ask.n_times; q++) x->t = hdi_max(x->t, h->ask.t[q]);
     x->local = hdi_local_open(h->heat, h->e);
-    x->row = HDI_TAKE_ZERO(&h->s, int32_t, 3 * (uint64_t)n);
+    x->row = HDI_TAKE(&h->s, int32_t, 2 * (uint64_t)x->n);
+    x->mark = HDI_TAKE_ZERO(&h->s, int32_t, n);
     if (h->e->status < 0) return h->e->status;
-    x->mark = x->row + n;
-    x->queue = x->mark + n;
-    for (q = 0; q < n; q++) x->row[q] = q;
+    x->queue = x->row + x->n;
+    for (q = 0; q < x->n; q++) x->row[q] = to->rows ? to->rows[q] : q;
     return HD_OK;
 }
 
@@ -21663,59 +21684,72 @@ static int hdi_patches_pay(hdi_patches *x) {
     hdi_heat_call *h = x->to->task.h;
     const int32_t n = h->heat->source->n_active, most = n / 16;
     if (n < HDI_PATCH_FROM || hdi_patches_open(x, x->to) < 0) return 0;
-    return hdi_patch_find(x, n, n / 2, most) >= 0 && x->local->n <= most && hdi_patch_cut(x) < 0;
+    return hdi_patch_find(x, x->n, x->n / 2, most) >= 0 && x->local->n <= most && hdi_patch_cut(x) < 0;
 }
 
-/* Diagonals and traces by patches. If one exceeds the byte limit, all are halved and done again. */
-static hd_status hdi_diagonals_by_patches(hdi_heat_call *h, hdi_patches *x, const char *reason) {
-    const hd_report rep = *h->rep;
-    for (;;) {
-        h->rep->reason = reason;
-        if (hdi_patches_run(x) >= 0 || !hdi_over_limit(h->heat->ctx, h->e) ||
-            h->heat->source->n_active / x->count < 2 * HDI_PATCH_LEAST) break;
+/* Diagonals and traces by patches. Where one exceeds the byte limit, all that are left are halved. */
+static hd_status hdi_patches_run(hdi_patches *x, const char *reason) {
+    const hdi_diagonals *to = x->to;
+    hdi_heat_call *h = to->task.h;
+    const hd_laplacian *lap = h->heat->source;
+    int32_t p = 0, q, v;
+    h->relative = 1;
+    h->rep->reason = reason;
+    while (p < x->count && hdi_progress(h->heat->ctx, "invert", (double)p / x->count, h->e) >= 0) {
+        if (hdi_patch_run(x, p) >= 0) {
+            p++;
+            continue;
+        }
+        if (!hdi_over_limit(h->heat->ctx, h->e) || x->n / x->count < 2 * HDI_PATCH_LEAST) break;
         hdi_error_clear(h->e);
-        *h->rep = rep;
         hdi_local_free(h->heat);
         x->local = hdi_local_open(h->heat, h->e);
         if (h->e->status < 0) break;
         hdi_patch_halve(x);
+        p *= 2;
     }
+    h->rep->n_patches = x->count;
     hdi_local_free(h->heat);
+    for (q = 0; q < h->ask.n_times && to->D && h->e->status >= 0; q++)
+        for (v = 0; v < lap->n; v++)
+            if (lap->row[v] < 0)
+                to->D[(size_t)q * to->ldd + (size_t)v] = to->mass == 1 && lap->row[v] == HD_ROW_INERT;
     return h->e->status;
 }
 
-/* A query for diagonals in D, ldd apart, for traces in Z with bounds, or for both. */
-static hd_status hdi_diagonals_answer(hdi_heat_call *h, hd_kernel kernel, double *D, size_t ldd, double *Z,
-                                      double *bound) {
-    const hd_heat *heat = h->heat;
-    const int32_t asked = heat->opts.method == HD_METHOD_LOCAL, n = heat->source->n_active;
-    const int may = HDI_HAS_LOCAL && heat->source->b_ratio > 0 && !heat->opts.rational && heat->n_sets == 0 &&
-                    (asked ? n > 0 : heat->opts.method == HD_METHOD_AUTO && n >= HDI_LOCAL_FROM);
-    const hd_report rep = *h->rep;
-    hdi_diagonals to;
+/* Can patches serve? */
+static int hdi_patches_can(const hd_heat *heat) {
+    const int32_t n = heat->source->n_active;
+    return HDI_HAS_LOCAL && heat->source->b_ratio > 0 && !heat->opts.rational && heat->n_sets == 0 &&
+           (heat->opts.method == HD_METHOD_LOCAL ? n > 0
+                                                 : heat->opts.method == HD_METHOD_AUTO && n >= HDI_LOCAL_FROM);
+}
+
+#define HDI_PATCHES_PAY "heat reaches a small part of the mesh"
+#define HDI_PATCHES_FIT "factors would not fit the byte limit"
+
+/* A query by patches, if they can serve: by method local, or as fits. */
+static hd_status hdi_diagonals_by_patches(const hdi_diagonals *to, const char *reason) {
     hdi_patches x;
-    memset(&to, 0, sizeof to);
-    to.task.h = h;
-    to.kernel = kernel;
-    to.D = D;
-    to.ldd = ldd;
-    to.Z = Z;
-    to.bound = bound;
-    x.to = &to;
-    if (may && asked && hdi_patches_open(&x, &to) >= 0) {
-        (void)hdi_patch_cut(&x);
-        return h->e->status < 0 ? h->e->status : hdi_diagonals_by_patches(h, &x, "asked for");
-    }
-    if (may && h->e->status >= 0 && hdi_patches_pay(&x))
-        return hdi_diagonals_by_patches(h, &x, "heat reaches a small part of the mesh");
-    if (h->e->status < 0 || hdi_diagonals_run(h, &to) >= 0 || !may || !hdi_over_limit(heat->ctx, h->e))
+    if (hdi_patches_open(&x, to) >= 0) (void)hdi_patch_cut(&x);
+    return to->task.h->e->status < 0 ? to->task.h->e->status : hdi_patches_run(&x, reason);
+}
+
+/* A query for diagonals, traces or both. */
+static hd_status hdi_diagonals_answer(hdi_diagonals *to) {
+    hdi_heat_call *h = to->task.h;
+    const int may = hdi_patches_can(h->heat);
+    const hd_report rep = *h->rep;
+    hdi_patches x;
+    x.to = to;
+    if (may && h->heat->opts.method == HD_METHOD_LOCAL) return hdi_diagonals_by_patches(to, "asked for");
+    if (may && hdi_patches_pay(&x)) return hdi_patches_run(&x, HDI_PATCHES_PAY);
+    if (h->e->status < 0 || hdi_diagonals_run(h, to) >= 0 || !may || !hdi_over_limit(h->heat->ctx, h->e))
         return h->e->status;
     hdi_error_clear(h->e);
     *h->rep = rep;
     hdi_heat_free_factors(h->heat);
-    if (hdi_patches_open(&x, &to) >= 0) (void)hdi_patch_cut(&x);
-    return h->e->status < 0 ? h->e->status
-                            : hdi_diagonals_by_patches(h, &x, "factors would not fit the byte limit");
+    return hdi_diagonals_by_patches(to, HDI_PATCHES_FIT);
 }
 
 /* ==== [28] diffusion ====
@@ -24582,12 +24616,19 @@ HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t 
 HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t,
                                         double *D, size_t ldd, double *Z, double *bound, hd_report *report,
                                         hd_error *err) {
+    hdi_diagonals to;
     hdi_heat_call h;
     if (hdi_kernel_begin(&h, heat, kernel, report, err) < 0 || hdi_times_check(&h, n_times, t, 1) < 0 ||
         hdi_diagonal_check(&h) < 0 || !HDI_HAS_DIAGONAL) return hdi_heat_end(&h);
     if (!D && !Z) hdi_missing(h.e);
-    ldd = hdi_leading(&h, ldd);
-    if (h.e->status >= 0) (void)hdi_diagonals_answer(&h, kernel, D, ldd, Z, bound);
+    memset(&to, 0, sizeof to);
+    to.task.h = &h;
+    to.mass = kernel == HD_KERNEL_OPERATOR;
+    to.D = D;
+    to.ldd = hdi_leading(&h, ldd);
+    to.Z = Z;
+    to.bound = bound;
+    if (h.e->status >= 0) (void)hdi_diagonals_answer(&to);
     return hdi_heat_end(&h);
 }
 

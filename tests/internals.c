@@ -1165,14 +1165,13 @@ static void int_patches(void) {
         CHECK(hd_heat_diagonal(kit_heat(lap, "method=direct poles=kernel degree=14"), HD_KERNEL_SYMMETRIC, 2, t, W, 0, Z, NULL, &all, NULL) >= 0);
         for (r = 0; r < 4; r++) {
             hd_heat *heat = kit_heat(lap, "method=local tol=1e-10");
-            double sum[2] = {0, 0}, traces[2], sure[2], early = 0;
+            double sum[2] = {0, 0}, traces[2], sure[2], early = 0, off;
             hdi_diagonals to;
-            hdi_heat_call h;
+            hdi_heat_call h, in;
             hdi_patches x;
             CHECK(hdi_kernel_begin(&h, heat, HD_KERNEL_SYMMETRIC, NULL, NULL) >= 0 && hdi_times_check(&h, 2, t, 1) >= 0);
             memset(&to, 0, sizeof to);
             to.task.h = &h;
-            to.kernel = HD_KERNEL_SYMMETRIC;
             to.D = D;
             to.ldd = (size_t)lap->n;
             to.Z = traces;
@@ -1206,7 +1205,12 @@ static void int_patches(void) {
             x.t = 1000 * t[0];                   /* all heat has left long before */
             x.reach = 1e-3;
             CHECK(hdi_patch_find(&x, x.count, 1, INT32_MAX) >= 0 && hdi_local_plan(heat, x.local, h.e) >= 0);
-            CHECK(hdi_patch_off(&x, hdi_patch_begin(&x, x.count, 2) - hdi_patch_begin(&x, x.count, 1)) == HUGE_VAL);
+            CHECK(hdi_kernel_begin(&in, &x.local->heat, HD_KERNEL_SYMMETRIC, NULL, NULL) >= 0);
+            in.method = HD_METHOD_DIRECT;
+            in.diagonal = 1;
+            off = hdi_patch_off(&x, &in, hdi_patch_begin(&x, x.count, 2) - hdi_patch_begin(&x, x.count, 1));
+            CHECK_MSG(off > 1 / lap->component_mass[0], "%s: %g of %g", specs[k], off * lap->component_mass[0], reaches[r]);
+            CHECK(hdi_heat_end(&in) >= 0);
             (void)hdi_heat_end(&h);
         }
         CHECK_MSG(tightest < 2e4, "%s: bounds are %g times as large as errors", specs[k], tightest);
