@@ -20208,7 +20208,7 @@ static int hdi_direct_barred(const hd_heat *heat) {
     return heat->opts.method == HD_METHOD_ITERATIVE || heat->opts.method >= HD_METHOD_KRYLOV;
 }
 
-#define HDI_DIRECT_REASON "distances to all vertices need the direct method, diagonals that or local"
+#define HDI_DIRECT_REASON "diagonals and distances to all vertices need the direct method or local"
 
 /* Checks that the direct method is allowed, for queries that have no other. */
 static hd_status hdi_direct_only(hdi_heat_call *h) {
@@ -21463,8 +21463,8 @@ static double hdi_patch_cut(hdi_patches *x) {
     return least - hdi_fill_guess(n, n * wide).flops - HDI_WHOLE_ROW * (double)n;
 }
 
-/* Random functions on the rim, as functionals C [n] each that k_s applies to: with c = L w and c' = B w on the
- * patch's side, k_s c + d/ds k_s c' = k_s (c - L B^-1 c'). work [5 n] */
+/* Random functions on the rim, as functionals C [n] each that k_s applies to: with c = L w and c' = B w on
+ * the patch's side, k_s c + d/ds k_s c' = k_s (c - L B^-1 c'). work [5 n] */
 static hd_status hdi_patch_probes(const hdi_local *l, double *C, double *work, hd_error *e) {
     const hd_laplacian *lap = l->ball;
     const hdi_rim *rim = &l->rim;
@@ -21517,7 +21517,7 @@ static hd_status hdi_patch_rates(const hdi_patches *x, hdi_heat_call *in, int32_
     double *work = HDI_TAKE(&s, double, hdi_residues_room(HDI_RESOLVENT_POINTS, HD_MAX_POLES) +
                                         3 * HDI_RESOLVENT_POINTS);
     int32_t *id = HDI_TAKE(&s, int32_t, n), i, q, m;
-    hd_c64 weight[HDI_PATCH_ROWS * HD_MAX_POLES];
+    hd_c64 weight[HDI_PATCH_ROWS][HD_MAX_POLES];
     hdi_terms terms[HDI_PATCH_PROBES];
     hd_rational set;
     hdi_columns c;
@@ -21530,15 +21530,15 @@ static hd_status hdi_patch_rates(const hdi_patches *x, hdi_heat_call *in, int32_
         terms[q].vertex = id;
         terms[q].weight = C + (int64_t)q * n;
     }
-    for (m = 0; m < HDI_PATCH_ROWS; m++) hdi_patch_weights(&set, m, work, weight + m * set.n_poles);
+    for (m = 0; m < HDI_PATCH_ROWS; m++) hdi_patch_weights(&set, m, work, weight[m]);
     memset(&c, 0, sizeof c);
     c.kernel = HD_KERNEL_SYMMETRIC;
     c.set = &set;
     c.k = HDI_PATCH_PROBES;
     c.terms = terms;
     c.rows.n = HDI_PATCH_ROWS;
-    c.rows.stride = set.n_poles;
-    c.rows.weight = weight;
+    c.rows.stride = HD_MAX_POLES;
+    c.rows.weight = *weight;
     c.rows.sum = U;
     if (hdi_direct_columns(in, &c) < 0) return hdi_scope_end(&s);
     for (m = 0; m < HDI_PATCH_ROWS; m++) {
@@ -21566,7 +21566,7 @@ static double hdi_patch_rate(const double *r, double s) {
  * there is made to have the integral that was measured: heat may have come and gone before. */
 static double hdi_patch_integral(const double *r) {
     enum { HALF = HDI_PATCH_STEPS / 2 };
-    const double step = 1.0 / HDI_PATCH_STEPS, early = r[HDI_PATCH_TIMES];
+    const double step = 1 / (double)HDI_PATCH_STEPS, early = r[HDI_PATCH_TIMES];
     double later[HALF + 1], sum = 0, mixed = 0;
     int32_t i;
     for (i = 0, later[0] = 0; i < HALF; i++)
@@ -21719,10 +21719,9 @@ static hd_status hdi_patches_run(hdi_patches *x, const char *reason) {
 
 /* Can patches serve? */
 static int hdi_patches_can(const hd_heat *heat) {
-    const int32_t n = heat->source->n_active;
+    const int32_t n = heat->source->n_active, asked = heat->opts.method == HD_METHOD_LOCAL;
     return HDI_HAS_LOCAL && heat->source->b_ratio > 0 && !heat->opts.rational && heat->n_sets == 0 &&
-           (heat->opts.method == HD_METHOD_LOCAL ? n > 0
-                                                 : heat->opts.method == HD_METHOD_AUTO && n >= HDI_LOCAL_FROM);
+           (asked ? n > 0 : heat->opts.method == HD_METHOD_AUTO && n >= HDI_LOCAL_FROM);
 }
 
 #define HDI_PATCHES_PAY "heat reaches a small part of the mesh"
@@ -21785,6 +21784,7 @@ typedef struct hdi_metric {
     int bounded;                 /* rows has columns of g */
     hdi_column_parts *off;       /* [group][in.count] */
     double *work;                /* [n], or of grounded solves */
+    hd_report *local;            /* f is by patches, columns by balls: their errors; NULL: not so */
 } hdi_metric;
 
 static hdi_wanted hdi_metric_wanted(const hd_heat *heat, const hdi_distance_row *kind) {
@@ -21880,6 +21880,54 @@ static hd_status hdi_metric_room(hdi_metric *x, int32_t group, int bounded, hdi_
     return x->h->e->status;
 }
 
+/* Distances by patches and balls: as much cancels, little may be left out, and poles are of the highest
+ * degree. */
+#define HDI_METRIC_TOL 1e-12
+
+/* The diagonal by patches at the time under way, in the order of the source's rows. A column's errors are the
+ * same everywhere; those of B times it are by the sums of B's rows. local: the reports. */
+static hd_status hdi_metric_patches(hdi_metric *x, hdi_heat_call *h, const hdi_distance_row *kind,
+                                    hd_report *local, hdi_scope *s) {
+    const hd_laplacian *lap = h->heat->source;
+    const double t = kind->time * h->ask.t[h->now];
+    hdi_diagonals to;
+    hdi_heat_call d;
+    int32_t i;
+    memset(x, 0, sizeof *x);
+    memset(&to, 0, sizeof to);
+    x->h = h;
+    x->kind = kind;
+    x->root = x->group = 1;
+    x->local = local;
+    x->f = hdi_diagonal_take(lap->n_active, kind->mass, s);
+    x->rounding = HDI_TAKE_ZERO(s, double, 1);
+    x->work = HDI_TAKE(s, double, (uint64_t)lap->n + 1);
+    x->off = HDI_TAKE(s, hdi_column_parts, 1);
+    x->rows.n = 1;
+    x->rows.sum = HDI_TAKE(s, double, lap->n_active);
+    to.D = HDI_TAKE(s, double, lap->n);
+    h->lap = lap;
+    if (h->e->status < 0) return h->e->status;
+    if (hdi_kernel_begin(&d, h->heat, HD_KERNEL_SYMMETRIC, local, NULL) >= 0 &&
+        hdi_times_check(&d, 1, &t, 1) >= 0) {
+        to.task.h = &d;
+        to.mass = kind->mass;
+        to.degree = hdi_degree_open(h->heat) ? HDI_RAT_KERNEL_MAX : 0;
+        (void)hdi_diagonals_by_patches(&to, h->rep->reason);
+    }
+    if (hdi_heat_end(&d) < 0) *h->e = local->error;
+    for (i = 0; i < lap->n_active; i++) {
+        const double size = kind->mass > 0 ? hdi_mass_row(lap, i) : 1;
+        x->f.value[i] = to.D[lap->vertex[i]];
+        x->f.g[i] = HUGE_VAL;
+        x->f.spread[i] = size * size;
+    }
+    *x->rounding = local->error_relative;
+    local->error_relative = local->smallest = 0;
+    if (h->e->status >= 0) hdi_report_merge(h->rep, local);
+    return h->e->status;
+}
+
 /* The metric of the time under way by poles, for `group` sources at the same time. */
 static hd_status hdi_metric_make(hdi_heat_call *h, const hdi_distance_row *kind, int32_t group, int bounded,
                                  hdi_metric *x, hdi_scope *s) {
@@ -21957,10 +22005,38 @@ static hd_status hdi_metric_solve_plain(const hdi_metric *x, const hdi_terms *so
     return x->h->e->status;
 }
 
+/* The column of one source by a ball. */
+static hd_status hdi_metric_solve_ball(const hdi_metric *x, const hdi_terms *source) {
+    const double t = x->kind->time * x->h->ask.t[x->h->now];
+    const hd_laplacian *lap = x->h->heat->source;
+    double most = 0;
+    hdi_heat_call c;
+    hd_report rep;
+    int32_t i;
+    if (hdi_kernel_begin(&c, x->h->heat, x->kind->mass > 0 ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC, &rep,
+                         NULL) >= 0 && hdi_times_check(&c, 1, &t, 1) >= 0) {
+        c.ask.k = 1;
+        c.ask.terms = source;
+        c.ask.U = x->work;
+        c.ask.ldu = (size_t)lap->n;
+    }
+    if (hdi_heat_run(&c) < 0) return (void)(*x->h->e = rep.error), x->h->e->status;
+    for (i = 0; i < lap->n_active; i++) {
+        x->rows.sum[i] = x->work[lap->vertex[i]];
+        most = hdi_max(most, fabs(x->rows.sum[i]));
+    }
+    x->off->by_m = HUGE_VAL;
+    x->off->by_b = most * rep.error_bound;
+    hdi_report_merge(x->local, &rep);
+    hdi_metric_finish(x, source, 0, x->rows.sum);
+    return HD_OK;
+}
+
 /* The columns of k sources, x->group at most. */
 static hd_status hdi_metric_solve(const hdi_metric *x, const hdi_terms *source, int32_t k) {
     hdi_columns c;
     int32_t i, q;
+    if (x->local) return hdi_metric_solve_ball(x, source);
     memset(x->off, 0, (size_t)k * (size_t)hdi_high32(x->in.count, 1) * sizeof *x->off);
     if (x->kind->power > 0 || x->equal) return hdi_metric_solve_plain(x, source, k);
     memset(&c, 0, sizeof c);
@@ -22040,6 +22116,13 @@ static double hdi_metric_rounding(const hdi_metric *x, const hdi_metric_self *se
     return relative > 0 ? sum + relative * (self->size + (r < 0 ? 0 : hdi_diagonal_size(&x->f, r))) : sum;
 }
 
+/* An error in parts that are in the ratio of those of the report. */
+static hdi_parts hdi_parts_share(const hd_report *rep, double error) {
+    const hdi_parts whole = hdi_local_parts(rep, 1), rounding = {0, 0, error, 0};
+    const double sum = hdi_parts_sum(&whole);
+    return sum > 0 && hdi_finite(sum) ? hdi_parts_scale(error / sum, whole) : rounding;
+}
+
 /* Notes the distance whose d^2 is given, with its errors. Returns it. */
 static double hdi_metric_note(const hdi_metric *x, double d2, double rational, double rounding,
                               hd_report *rep, hdi_ledger *ledger) {
@@ -22050,6 +22133,7 @@ static double hdi_metric_note(const hdi_metric *x, double d2, double rational, d
         part.rational = hdi_finite(delta) ? error * (rational / delta) : rational;
         part.rounding = hdi_finite(delta) ? error * (rounding / delta) : rounding;
     }
+    if (x->local && hdi_finite(error)) part = hdi_parts_share(x->local, error);
     rep->n_lost += delta > 0 && d2 < 10 * delta;
     hdi_ledger_note(ledger, x->root * d, part);
     return x->root * d;
@@ -22081,6 +22165,12 @@ static void hdi_metric_distance(const hdi_metric *x, const hdi_terms *s, int32_t
 static hdi_ledger hdi_metric_ledger(const hdi_metric *x) {
     const hd_rational *set = x->f.set;
     const int none = !set || (hdi_set_uniform(set) == 0 && x->f.left_out == 0);
+    if (x->local) {
+        hdi_ledger ledger = hdi_ledger_begin(x->local->evidence_rational, x->local->evidence_solver,
+                                             HD_EVIDENCE_MEASURED, 1);
+        ledger.evidence.local = x->local->evidence_local;
+        return ledger;
+    }
     return hdi_ledger_begin(none ? HD_EVIDENCE_NONE : hdi_set_evidence(set), HD_EVIDENCE_NONE,
                             HD_EVIDENCE_MEASURED, 1);
 }
@@ -22188,6 +22278,7 @@ struct hdi_distance_query {
     const hdi_distance_row *kind;
     /* Answers the time under way by a metric or, where that is NULL, from eigenpairs. */
     void (*answer)(const hdi_distance_query *to, hdi_metric *x, hdi_mode_sum *sum);
+    const char *reason;          /* of patches */
 };
 
 /* The answer from the eigenpairs that are there. */
@@ -22205,6 +22296,63 @@ static hd_status hdi_distance_by_metric(const hdi_distance_query *to, int32_t gr
     hdi_metric x;
     if (hdi_metric_make(to->task.h, to->kind, group, bounded, &x, &s) >= 0) to->answer(to, &x, NULL);
     return hdi_scope_end(&s);
+}
+
+/* The answer by patches and balls. */
+static hd_status hdi_distance_by_patches(hdi_task *task) {
+    const hdi_distance_query *to = (const hdi_distance_query *)task;
+    hdi_scope s = hdi_scope_begin(task->h->heat->ctx, task->h->e);
+    hd_report local;
+    hdi_metric x;
+    task->h->rep->reason = to->reason;
+    if (hdi_metric_patches(&x, task->h, to->kind, &local, &s) >= 0) to->answer(to, &x, NULL);
+    task->h->rep->method = HD_METHOD_LOCAL;
+    return hdi_scope_end(&s);
+}
+
+/* Would the diagonal cost less by patches? */
+static int hdi_distance_pays(hdi_heat_call *h, const hdi_distance_row *kind) {
+    double t = 0;
+    hdi_diagonals to;
+    hdi_heat_call d;
+    hdi_patches x;
+    int32_t q;
+    int pays = 0;
+    for (q = 0; q < h->ask.n_times; q++) t = hdi_max(t, kind->time * h->ask.t[q]);
+    if (hdi_kernel_begin(&d, h->heat, HD_KERNEL_SYMMETRIC, NULL, h->e) >= 0 &&
+        hdi_times_check(&d, 1, &t, 1) >= 0) {
+        memset(&to, 0, sizeof to);
+        to.task.h = &d;
+        x.to = &to;
+        pays = hdi_patches_pay(&x);
+    }
+    return hdi_heat_end(&d) >= 0 && pays;
+}
+
+/* Answers a query for distances: by patches where method local is asked for, where that costs less, and where
+ * nothing else fits the byte limit. */
+static hd_status hdi_distance_answer(hdi_distance_query *to) {
+    hdi_heat_call *h = to->task.h;
+    hd_heat *heat = h->heat;
+    const int asked = heat->opts.method == HD_METHOD_LOCAL;
+    const int may = to->kind->time > 0 && hdi_patches_can(heat);
+    const hd_heat_opts opts = heat->opts;
+    to->reason = asked ? "asked for" : HDI_PATCHES_PAY;
+    if (!may || (!asked && !hdi_distance_pays(h, to->kind))) {
+        if (h->e->status < 0 || hdi_heat_sparing(h, &to->task) >= 0 || !may ||
+            !hdi_over_limit(heat->ctx, h->e)) return h->e->status;
+        hdi_error_clear(h->e);
+        hdi_heat_free_factors(heat);
+        to->reason = HDI_PATCHES_FIT;
+    }
+    to->task.serves = 0;
+    to->task.together = NULL;
+    to->task.poles = hdi_distance_by_patches;
+    heat->opts.method = HD_METHOD_LOCAL;
+    heat->opts.tol = hdi_min(opts.tol, HDI_METRIC_TOL);
+    (void)hdi_task_run(&to->task);
+    heat->opts = opts;
+    return h->e->status;
 }
 
 /* Distances from one source, by a metric or, where that is NULL, from eigenpairs. */
@@ -22370,14 +22518,8 @@ static double hdi_pairs_column_off(const hd_laplacian *lap, int32_t v, double si
 static void hdi_pairs_note(const hdi_pairs *to, const hdi_pairs_part *x, hd_report *rep, hdi_ledger *all) {
     const hd_laplacian *lap = to->of.task.h->heat->source;
     const size_t n = (size_t)lap->n;
-    double *d = to->d + to->n * to->of.task.h->now, sum;
-    hdi_parts share;
+    double *d = to->d + to->n * to->of.task.h->now;
     int64_t q;
-    share.rational = rep->error_rational;
-    share.local = rep->error_local;
-    share.solver = rep->error_solver;
-    share.rounding = rep->error_rounding;
-    sum = hdi_parts_sum(&share);
     for (q = x->begin; q < x->end; q++) {
         const int32_t i = x->place[to->i[q]], j = x->place[to->j[q]];
         hdi_parts part = {0, 0, 0, 0};
@@ -22388,8 +22530,7 @@ static void hdi_pairs_note(const hdi_pairs *to, const hdi_pairs_part *x, hd_repo
                         hdi_pairs_column_off(lap, to->j[q], x->size[j], rep->error_bound_b) +
                         4 * DBL_EPSILON * (x->size[i] + x->size[j]);
         rep->n_lost += d[q] < 10 * part.rounding;
-        if (sum > 0 && hdi_finite(sum) && hdi_finite(part.rounding))
-            part = hdi_parts_scale(part.rounding / sum, share);
+        if (hdi_finite(part.rounding)) part = hdi_parts_share(rep, part.rounding);
         hdi_ledger_note(all, d[q], part);
     }
 }
@@ -22595,7 +22736,8 @@ static hd_status hdi_distance_begin(hdi_heat_call *h, hd_heat *heat, const hdi_d
     if (kind->time == 0 && (n_times > 1 || n_times < 0))
         return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "distance: n_times is 0 or 1 for commute and biharmonic",
                             -1, -1, n_times);
-    return pairs && kind->time > 0 && !hdi_heat_filtered(heat) ? HD_OK : hdi_direct_only(h);
+    if (kind->time > 0 && (pairs ? !hdi_heat_filtered(heat) : hdi_patches_can(heat))) return HD_OK;
+    return hdi_direct_only(h);
 }
 
 /* Runs a query for distances to all vertices from sources. */
@@ -22613,7 +22755,7 @@ static hd_status hdi_distances_run(hd_heat *heat, hdi_distances *to, const hd_so
     to->of.answer = hdi_distances_answer;
     to->of.task.poles = hdi_distances_by_poles;
     to->of.task.together = hdi_distances_together;
-    (void)hdi_heat_sparing(&h, &to->of.task);
+    (void)hdi_distance_answer(&to->of);
     return hdi_heat_end(&h);
 }
 
@@ -22641,7 +22783,7 @@ static hd_status hdi_sample_run(hd_heat *heat, hdi_samples *a, const hd_sources 
     hdi_distance_task(&a->of.task, &h, a->of.kind, a->count + a->n_from);
     a->of.answer = hdi_sample_answer;
     a->of.task.poles = hdi_sample_by_poles;
-    (void)hdi_heat_sparing(&h, &a->of.task);
+    (void)hdi_distance_answer(&a->of);
     return hdi_heat_end(&h);
 }
 
