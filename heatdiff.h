@@ -17119,7 +17119,6 @@ struct hd_heat {
     hd_heat_opts opts;           /* resolved, perm and rational copied */
     int32_t *perm;
     int32_t iterations_asked, poles_asked;
-    int32_t exacting;            /* tol is below the default: sets have the highest degree */
     /* the status warns where rounding relative to the answer is above this: tol, or HDI_ROUNDING_LIMIT */
     double limit;
     uint64_t no_factors_limit;   /* the byte limit into which factors did not fit; 0: none */
@@ -17127,7 +17126,7 @@ struct hd_heat {
     hd_rational *sets;           /* [n_sets] of the caller's; opts.rational is the first */
     int32_t n_sets;
     hdi_elim elim;               /* to factorise */
-    hdi_elim few;                /* the same in an order that is found fast, see hdi_krylov_few */
+    hdi_elim few;                /* the same in an order that is found fast, see hdi_krylov_elim */
     hdi_ground ground;           /* made when it is first needed; of elim */
     hdi_modes modes;             /* made when it is first needed */
     hdi_krylov *krylov;
@@ -17149,6 +17148,10 @@ struct hd_heat {
     hdi_sum *sums;               /* [n_sums] work */
     int32_t n_sums;              /* components that these and the lanes are for */
 };
+
+/* Is tol below the default? Then sets have the highest degree. */
+#define HDI_TOL_HEAT 1e-9
+static int hdi_exacting(const hd_heat *heat) { return heat->opts.tol < HDI_TOL_HEAT; }
 
 /* What the caller gets, by rows. */
 static const double *hdi_lane_answer(const hdi_lane *lane) { return lane->dual ? lane->tmp : lane->u; }
@@ -17525,7 +17528,6 @@ typedef struct hdi_heat_call {
     const hd_rational *set;      /* instead of what the plan would take */
     int32_t diagonal, degree;    /* the default set is that of diagonals; its degree, 0: the usual one */
     int32_t relative;            /* the report has errors relative to each value too */
-    int32_t deflated;            /* direct: right-hand sides are without their constants */
     int32_t watching;            /* direct: the lanes keep the source's own entry, see hdi_lane.watch */
     int32_t equal;               /* t is so large that each component has its mean */
     int32_t by_pairs;            /* answers are sums over eigenpairs */
@@ -18004,7 +18006,7 @@ static hd_status hdi_heat_degree(hdi_heat_call *h, int32_t *degree) {
 /* The pole set of this call. degree: where nothing else says which. */
 static hd_status hdi_heat_set_of(const hdi_heat_call *h, int32_t degree, hd_rational *set) {
     const hd_heat_opts *o = &h->heat->opts;
-    if (h->heat->exacting || h->rate) degree = HDI_RAT_KERNEL_MAX;
+    if (hdi_exacting(h->heat) || h->rate) degree = HDI_RAT_KERNEL_MAX;
     if (h->degree) degree = h->degree;
     if (o->degree) degree = h->rate ? hdi_high32(o->degree, HDI_RAT_KERNEL_MIN) : o->degree;
     if (h->set || o->rational) {
@@ -18019,7 +18021,7 @@ enum { HDI_DEGREE_DIRECT = 9 };  /* four pairs fill a pack, a real pole costs li
 
 static hd_status hdi_heat_set(hdi_heat_call *h, hd_rational *set) {
     const hd_heat *heat = h->heat;
-    const int asked = h->set || heat->opts.rational || heat->opts.degree || heat->exacting;
+    const int asked = h->set || heat->opts.rational || heat->opts.degree || hdi_exacting(heat);
     int32_t degree = h->method == HD_METHOD_DIRECT ? HDI_DEGREE_DIRECT : 10;
     if (!asked && hdi_heat_kind(h) == HD_POLES_UNIFORM && heat->spare != HDI_SPARE_POLES &&
         hdi_heat_degree(h, &degree) < 0) return h->e->status;
@@ -18304,6 +18306,7 @@ static hd_status hdi_heat_by_iterations(hdi_heat_call *h) {
 typedef struct hdi_batches {
     hdi_heat_call *h;
     int32_t width, count, n;     /* n: items in lanes */
+    int32_t deflated;            /* right-hand sides are without their constants */
     uint64_t doubles;            /* of a batch's arrays */
     int32_t inside;              /* batches whose arrays are where the first pack's update matrices were */
     uint64_t fresh;              /* doubles of the other batches' arrays, which are in the plan */
@@ -18482,8 +18485,8 @@ static void hdi_batches_task(void *arg, int64_t index, int32_t worker) {
     hdi_batch_run(&heat->elim, &batch, lane, n, b->count > 1 ? NULL : heat->ctx);
     for (r = 0; r < n; r++) {
         if (lane[r].skip) continue;
-        if (h->deflated) hdi_batch_extra_means(&heat->elim, lane + r);
-        hdi_lane_finish(heat->elim.lap, &heat->elim.set, h->t * heat->drift, h->deflated, lane + r);
+        if (b->deflated) hdi_batch_extra_means(&heat->elim, lane + r);
+        hdi_lane_finish(heat->elim.lap, &heat->elim.set, h->t * heat->drift, b->deflated, lane + r);
         lane[r].status = lane[r].negative ? hdi_not_semidefinite(&lane[r].error)
             : lane[r].off.rounding <= heat->limit * (lane[r].u_norm - lane[r].off.rounding)
             ? HD_OK : HD_WARN_ACCURACY;
@@ -18499,7 +18502,7 @@ static void hdi_direct_solve(hdi_heat_call *h, int32_t n, void *arg) {
     hdi_batches *b = (hdi_batches *)arg;
     int32_t i;
     b->n = n;
-    for (i = 0; i < n && h->deflated; i++)
+    for (i = 0; i < n && b->deflated; i++)
         if (!h->heat->lane[i].skip) hdi_lane_deflate(h->heat->lane + i, h->lap);
     hdi_parallel(h->heat->ctx, (n + b->width - 1) / b->width, hdi_batches_task, b);
 }
@@ -18509,8 +18512,9 @@ static hd_status hdi_heat_by_direct(hdi_heat_call *h) {
     hdi_batches b;
     if (hdi_direct_factors(h, h->diagonal ? HDI_AFTER_SOLVES : HDI_AFTER_BOUND, 0) < 0) return h->e->status;
     if (HDI_HAS_DIAGONAL && !h->diagonal && hdi_elim_bound(&heat->elim, h->e) < 0) return h->e->status;
-    h->deflated = !h->watching && (hdi_query_fields(h->ask.query) || h->t * heat->lambda_max > HDI_DEFLATE);
-    return hdi_batches_make(&b, h) < 0 ? h->e->status : hdi_heat_items(h, hdi_direct_solve, &b);
+    if (hdi_batches_make(&b, h) < 0) return h->e->status;
+    b.deflated = !h->watching && (hdi_query_fields(h->ask.query) || h->t * heat->lambda_max > HDI_DEFLATE);
+    return hdi_heat_items(h, hdi_direct_solve, &b);
 }
 
 /* ---- krylov ---- */
@@ -19588,14 +19592,19 @@ static double hdi_modes_noise(const hd_laplacian *lap, const double *x, double v
     return hdi_ratio_root(lap) * sum;
 }
 
-/* The largest |X' B X - 1|, in the norm of Frobenius. bx [n] */
+/* out = B x, by vertices. */
+static void hdi_modes_apply(const hd_laplacian *lap, const double *x, double *out) {
+    int32_t i;
+    memset(out, 0, (size_t)lap->n * sizeof *out);
+    for (i = 0; i < lap->n_active; i++) out[lap->vertex[i]] = hdi_spec_mass_row(lap, x, i);
+}
+
+/* |X' B X - 1| in the norm of Frobenius. bx [n] */
 static double hdi_modes_gram(const hd_laplacian *lap, const hd_spectrum *s, double *bx) {
     double sum = 0;
-    int32_t i, j, q;
+    int32_t i, j;
     for (j = 0; j < s->count; j++) {
-        const double *xj = s->vector + (int64_t)j * s->n;
-        memset(bx, 0, (size_t)s->n * sizeof *bx);
-        for (q = 0; q < lap->n_active; q++) bx[lap->vertex[q]] = hdi_spec_mass_row(lap, xj, q);
+        hdi_modes_apply(lap, s->vector + (int64_t)j * s->n, bx);
         for (i = 0; i <= j; i++) {
             const double g = hdi_dot(s->vector + (int64_t)i * s->n, bx, s->n) - (i == j);
             sum += (i == j ? 1 : 2) * g * g;
@@ -19646,21 +19655,17 @@ static hd_status hdi_modes_measure(hd_heat *heat, hd_error *e) {
 /* B times the vectors. */
 static hd_status hdi_modes_mass(hd_heat *heat, hd_error *e) {
     hdi_modes *x = &heat->modes;
-    const hd_laplacian *lap = heat->source;
     const int64_t size = (int64_t)x->s.n * x->s.count;
     int64_t at;
-    int32_t i;
-    if (x->bx || !lap->B) return HD_OK;
-    x->bx = (double *)hdi_alloc_zero(heat->ctx, (uint64_t)size, sizeof *x->bx, e);
-    if (!x->bx) return e->status;
-    for (at = 0; at < size; at += x->s.n)
-        for (i = 0; i < lap->n_active; i++)
-            x->bx[at + lap->vertex[i]] = hdi_spec_mass_row(lap, x->s.vector + at, i);
-    return HD_OK;
+    if (x->bx || !heat->source->B) return HD_OK;
+    x->bx = HDI_NEW(heat->ctx, double, size, e);
+    for (at = 0; at < size && x->bx; at += x->s.n)
+        hdi_modes_apply(heat->source, x->s.vector + at, x->bx + at);
+    return e->status;
 }
 
 static double hdi_modes_tol(const hd_heat *heat) {
-    return heat->exacting ? hdi_min(HDI_MODES_TOL, 0.1 * heat->opts.tol) : HDI_MODES_TOL;
+    return hdi_exacting(heat) ? hdi_min(HDI_MODES_TOL, 0.1 * heat->opts.tol) : HDI_MODES_TOL;
 }
 
 /* The square root of the largest component's mass times the largest entry of the diagonal of B^-1. */
@@ -19801,7 +19806,7 @@ static HDI_INLINE int hdi_task_first(const hdi_task *task, double t) {
 /* May poles of the highest degree take over where the default's bound is too large, and may times share their
  * poles? Not where the caller chose, and not after the byte limit. */
 static int hdi_degree_open(const hd_heat *heat) {
-    return !heat->poles_asked && !heat->exacting && !heat->spare;
+    return !heat->poles_asked && !hdi_exacting(heat) && !heat->spare;
 }
 
 /* Takes up time q of the call, as if nothing had been tried. */
@@ -19820,9 +19825,8 @@ static void hdi_task_at(hdi_heat_call *h, int32_t q) {
         h->ask.list->ledger[q] = hdi_ledger_begin(HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, 0);
 }
 
-/* Answers time q from at most `most` eigenpairs, which are found if need be, or with 0 by poles, of which the
- * highest degree takes over where the error of the default is too large. Returns 0 where there are not enough
- * eigenpairs. */
+/* Answers time q from at most `most` eigenpairs, or returns 0 where these are not enough; with most = 0 by
+ * poles, of which the highest degree takes over where the error of the default is too large. */
 static int hdi_task_by(hdi_task *task, int32_t q, int32_t most) {
     hdi_heat_call *h = task->h;
     if (most > 0 && !hdi_modes_enough(h->heat, h->ask.t[q], task->depth, most, h->e)) return 0;
@@ -20027,11 +20031,12 @@ static int hdi_fields_keep(hdi_heat_call *h) {
     int32_t q;
     if (!h->ask.F || h->ask.U != h->ask.F) return 1;
     copy = HDI_TAKE(&h->s, double, n * (size_t)h->ask.k);
-    for (q = 0; q < h->ask.k && copy; q++)
+    if (!copy) return 0;
+    for (q = 0; q < h->ask.k; q++)
         memcpy(copy + n * (size_t)q, h->ask.F + h->ask.ldf * (size_t)q, n * sizeof *copy);
-    h->ask.F = copy ? copy : h->ask.F;
-    h->ask.ldf = copy ? n : h->ask.ldf;
-    return copy != NULL;
+    h->ask.F = copy;
+    h->ask.ldf = n;
+    return 1;
 }
 
 /* ---- the run ---- */
@@ -20046,12 +20051,9 @@ static void hdi_plain_means(const hdi_heat_call *h, hdi_lane *lane) {
     hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, 0, hdi_query_fields(h->ask.query)));
 }
 
-/* What answers are off by at a time that counts as zero, relative to their norm. */
-static double hdi_plain_off(const hdi_heat_call *h) { return h->ask.t[h->now] > 0 ? HDI_STILL : 0; }
-
 /* The field itself. */
 static void hdi_plain_field(const hdi_heat_call *h, hdi_lane *lane) {
-    const double plain = hdi_plain_off(h) + (h->ask.query == HDI_QUERY_SYMMETRIC ? 2 * DBL_EPSILON : 0);
+    const double plain = h->ask.query == HDI_QUERY_SYMMETRIC ? 2 * DBL_EPSILON : 0;
     memcpy(lane->u, lane->f, (size_t)h->lap->n_active * sizeof *lane->u);
     lane->u_norm = lane->f_norm;
     hdi_lane_rounding(lane, plain * lane->f_norm + lane->f_off);
@@ -20060,7 +20062,7 @@ static void hdi_plain_field(const hdi_heat_call *h, hdi_lane *lane) {
 
 /* The derivative -A f, A = B^-1 L of the scaled pair. Rounding of f counts as much as that of
  * the product. */
-static hd_status hdi_plain_rate(const hdi_heat_call *h, hdi_lane *lane) {
+static void hdi_plain_rate(const hdi_heat_call *h, hdi_lane *lane) {
     const hd_laplacian *lap = h->lap;
     const double unit = 1 / h->heat->scale;
     double *w = lane->tmp, *noise = w + lap->n_active, sum = 0;
@@ -20068,12 +20070,10 @@ static hd_status hdi_plain_rate(const hdi_heat_call *h, hdi_lane *lane) {
     hdi_noise_weights(lap, unit, 0, noise, noise + lap->n_active);
     for (i = 0; i < lap->n_active; i++) sum += noise[i] * lane->f[i] * lane->f[i];
     hdi_pair_apply(lap, -unit, 0, lane->f, w);
-    if (hdi_mass_solve(lap, w, lane->u, noise, h->e) < 0) return h->e->status;
+    if (hdi_mass_solve(lap, w, lane->u, noise, h->e) < 0) return;
     lane->u_norm = sqrt(hdi_max(0, hdi_b_norm2(lap, lane->u, lane->tmp)));
     hdi_lane_rounding(lane, hdi_ratio_root(lap) *
-                            (2 * sqrt(sum) + (lap->B ? HDI_MASS_TOL : 4 * DBL_EPSILON) * lane->u_norm) +
-                            hdi_plain_off(h) * lane->u_norm);
-    return HD_OK;
+                            (2 * sqrt(sum) + (lap->B ? HDI_MASS_TOL : 4 * DBL_EPSILON) * lane->u_norm));
 }
 
 static void hdi_plain_solve(hdi_heat_call *h, int32_t n, void *arg) {
@@ -20081,8 +20081,10 @@ static void hdi_plain_solve(hdi_heat_call *h, int32_t n, void *arg) {
     (void)n, (void)arg;
     if (lane->skip) return;
     if (h->equal) hdi_plain_means(h, lane);
-    else if (h->rate) (void)hdi_plain_rate(h, lane);
+    else if (h->rate) hdi_plain_rate(h, lane);
     else hdi_plain_field(h, lane);
+    /* at a time that counts as zero */
+    if (!h->equal && h->ask.t[h->now] > 0) hdi_lane_rounding(lane, HDI_STILL * lane->u_norm);
 }
 
 /* Answers that need no solve: those for t = 0, or the means for very large t. */
@@ -20104,16 +20106,16 @@ static hd_status hdi_heat_chosen(hdi_task *task) {
     return h->e->status;
 }
 
-/* After a failure the call begins anew in another way, with all freed that can be made again. At the byte
- * limit local gives way to the other methods; then what is optional is left out; then iterations that auto
- * takes do without factors. Where these fail, or direct is asked for, the fewest poles are left. Returns 0
- * where there is no other way. */
+/* After a failure the call begins anew: without local; at the byte limit without what is optional; then by
+ * iterations, without factors. Where iterations fail, or direct is asked for, the fewest poles are left.
+ * Returns 0 where there is no other way. */
 static int hdi_heat_retreat(const hdi_task *task) {
     hdi_heat_call *h = task->h;
     hd_heat *heat = h->heat;
     const int over = hdi_over_limit(heat->ctx, h->e), automatic = heat->opts.method == HD_METHOD_AUTO;
     const int failed = over || h->e->status == HD_ERR_BREAKDOWN || h->e->status == HD_ERR_NOT_CONVERGED;
     const int columns = HDI_HAS_DIRECT && task->poles == hdi_heat_chosen;
+    int32_t q;
     if (heat->spare == HDI_SPARE_POLES) return 0;
     /* fields may have been overwritten by their answers */
     if (h->ask.F && h->ask.F == h->ask.U && h->batch > 0) return 0;
@@ -20137,7 +20139,7 @@ static int hdi_heat_retreat(const hdi_task *task) {
     } else {
         return 0;
     }
-    hdi_task_at(h, h->now);
+    for (q = hdi_high32(h->ask.n_times, 1); q > 0; q--) hdi_task_at(h, q - 1);
     return 1;
 }
 
@@ -20236,9 +20238,8 @@ static hd_status hdi_heat_sort_times(hdi_heat_call *h, double factor, const char
 /* Many times with one or a few krylov bases, where that is the method. */
 static hd_status hdi_columns_together(hdi_task *task, char *done, hd_report *one) {
     hdi_heat_call *h = task->h;
-    int32_t q, first;
+    int32_t q;
     if (!HDI_HAS_DIRECT || hdi_heat_sort_times(h, 1, done) < 0 || h->n_times == 0) return h->e->status;
-    first = h->time_column[0];
     if (h->times[0] == 0) return HD_OK;
     if (hdi_heat_engine(h) >= 0) {
         if (h->method < HD_METHOD_KRYLOV || h->equal) return HD_OK;
@@ -20249,7 +20250,7 @@ static hd_status hdi_columns_together(hdi_task *task, char *done, hd_report *one
         if (!done[q]) hdi_ledger_close(h->ask.list->ledger + q, h->rep);
     if (task->serves && h->rep->error_bound > HDI_MODES_HELP) return HD_OK;   /* one by one, then */
     for (q = 0; q < h->ask.n_times; q++) done[q] = HDI_DONE_FOR_GOOD;
-    one[first] = *h->rep;
+    one[h->time_column[0]] = *h->rep;
     return HD_OK;
 }
 
@@ -20388,7 +20389,6 @@ HEATDIFF_API hd_status hd_heat_columns_sparse(hd_heat *heat, hd_kernel kernel, i
     return hdi_heat_end(&h);
 }
 
-#define HDI_TOL_HEAT 1e-9
 enum { HDI_MAX_ITERATIONS = 20000 };
 
 /* Is what the options ask for in this build? */
@@ -20435,7 +20435,6 @@ static void hdi_heat_defaults(hd_heat *heat, const hd_heat_opts *opts) {
     if (opts) *o = *opts;
     heat->iterations_asked = o->solver || o->precond;
     heat->poles_asked = o->rational || o->poles || o->degree;
-    heat->exacting = o->tol > 0 && o->tol < HDI_TOL_HEAT;
     heat->limit = o->tol > 0 ? o->tol : HDI_ROUNDING_LIMIT;
     o->precond = o->precond ? o->precond : HD_PRECOND_MILDL;
     o->tol = o->tol > 0 ? o->tol : HDI_TOL_HEAT;
